@@ -7,7 +7,7 @@
 #include "core/time.h"
 
 /// Ground truth from the simulator. Written to the log, never passed to the stack; only `score` and `render` read it.
-/// tests/core/rooms_test.py checks that no stack module includes this header.
+/// tests/core/modules_test.py checks that no stack module includes this header.
 namespace patrol {
 
 struct GroundTruth {

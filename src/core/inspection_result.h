@@ -64,7 +64,7 @@ struct LiningResult {
   Pose2 T_map_body;                 ///< pose from the registration; the estimate of the robot if that failed
   bool is_registered = false;       ///< false: the registration failed; cells, lines and findings are empty
   double registration_rms_m = 0.0;  ///< root mean square residual of the inliers of the registration
-  double registration_share = 0.0;  ///< inlier ratio of the registration
+  double registration_inlier_ratio = 0.0;  ///< inlier ratio of the registration
   double correction_m = 0.0;        ///< distance between the registered pose and the robot's own estimate
   std::vector<LiningCell> cells;
   std::vector<ConvergenceLine> lines;

@@ -98,7 +98,7 @@ struct Path {
 /// 2D scan after motion compensation: beams in `level` at `stamp`, without beam ends on the ground.
 struct LevelScan {
   struct Beam {
-    Eigen::Vector2f end_m;  ///< end of the beam, in level: the hit, or the farthest point known to be free
+    Eigen::Vector2f end_m;  ///< end of the beam, in level: the hit, or the end of the free part
     bool is_hit;
   };
   Time stamp{};

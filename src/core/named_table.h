@@ -35,7 +35,7 @@ concept NamedTable = std::ranges::forward_range<const Table> && requires(const T
   { std::ranges::begin(table)->summary } -> std::convertible_to<std::string_view>;
 };
 
-/// Whether row i holds the enumerator of value i: precondition of `row_of`. For use in a static_assert beside the table.
+/// Whether row i holds the enumerator of value i: precondition of `row_of`. For use in a static_assert next to the table.
 template <NamedTable Table>
 constexpr bool is_in_order(const Table& table) {
   std::size_t index = 0;

@@ -79,7 +79,7 @@ struct RobotDescription {
   /// Returns the pose of a sensor frame in body. Throws InputError if the robot has no such frame.
   const Pose3& T_body(const std::string& sensor) const {
     const auto frame = T_body_sensor.find(sensor);
-    if (frame == T_body_sensor.end()) throw InputError("robot " + name + ": there is no link named " + sensor);
+    if (frame == T_body_sensor.end()) throw InputError("robot " + name + ": link not found: " + sensor);
     return frame->second;
   }
 };

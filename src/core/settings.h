@@ -17,11 +17,11 @@
 /// (io/yaml/settings_yaml.h):
 ///
 ///   struct LidarSettings {
-///     double range_noise_m = 0.03;   ///< standard deviation
+///     double range_noise_std_m = 0.03;   ///< standard deviation
 ///     std::string preset = "rplidar_s2";
 ///     template <typename Self, typename Visitor>
 ///     static void fields(Self& self, Visitor& visit) {
-///       visit("range_noise_m", self.range_noise_m, at_least(0.0));
+///       visit("range_noise_std_m", self.range_noise_std_m, at_least(0.0));
 ///       visit("preset", self.preset, one_of({"rplidar_s2", "utm30lx"}));
 ///     }
 ///   };
@@ -58,7 +58,7 @@ Limits one_of(const Table& table) {
 inline std::string describe_limits(const Limits& limits) {
   if (!limits.allowed.empty()) return fmt::format("must be one of {}", fmt::join(limits.allowed, ", "));
   const bool has_min = std::isfinite(limits.min), has_max = std::isfinite(limits.max);
-  if (has_min && has_max) return fmt::format("must lie in {} ... {}", limits.min, limits.max);
+  if (has_min && has_max) return fmt::format("must be in [{}, {}]", limits.min, limits.max);
   if (has_min) return fmt::format("must be at least {}", limits.min);
   if (has_max) return fmt::format("must be at most {}", limits.max);
   return "must be finite";

@@ -156,11 +156,11 @@ TemGates::TemGates(const TemGateLayout& window) {
     for (const Quadrature& width : kGauss3) {
       for (const Quadrature& ramp : kGauss5) {
         const double time_s = middle_s * (1.0 + window.gate_width * (width.at - 0.5)) + window.ramp_s * ramp.at;
-        const double place = std::log(time_s / begin_s) / step;
-        const int base = std::clamp(static_cast<int>(place) - 1, 0, nodes - 4);
+        const double position = std::log(time_s / begin_s) / step;
+        const int base = std::clamp(static_cast<int>(position) - 1, 0, nodes - 4);
         for (int i = 0; i < 4; ++i) {
           double lagrange = 1.0;
-          for (int j = 0; j < 4; ++j) lagrange *= i == j ? 1.0 : (place - base - j) / (i - j);
+          for (int j = 0; j < 4; ++j) lagrange *= i == j ? 1.0 : (position - base - j) / (i - j);
           weights_(gate, base + i) +=
               width.weight * ramp.weight * lagrange * std::pow(node_s_[static_cast<std::size_t>(base + i)] / time_s, 2.5);
         }

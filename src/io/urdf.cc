@@ -109,7 +109,7 @@ void UrdfReader::check_numbers() const {
   for (std::sregex_iterator at(text_.begin(), text_.end(), numbers), end; at != end; ++at) {
     if (are_numbers((*at)[2])) continue;
     const auto line = 1 + std::count(text_.begin(), text_.begin() + at->position(), '\n');
-    throw input_error(path_, static_cast<int>(line), fmt::format("{}: must be made of finite numbers", at->str()));
+    throw input_error(path_, static_cast<int>(line), fmt::format("{}: must be finite numbers", at->str()));
   }
 }
 
@@ -121,7 +121,7 @@ void UrdfReader::check_links() const {
       const std::size_t begin = at + opening.size();
       const std::string link = text_.substr(begin, text_.find('"', begin) - begin);
       if (text_.find("<link name=\"" + link + "\"") == std::string::npos) {
-        fail(link, "a joint names this link as its " + tag + ", but there is no such link");
+        fail(link, "unknown link: " + tag + " of a joint");
       }
     }
   }
@@ -144,8 +144,8 @@ class ParserErrors : public console_bridge::OutputHandler {
 void UrdfReader::parse() {
   ParserErrors errors;
   model_ = urdf::parseURDF(text_);
-  if (!errors.first().empty()) throw InputError(fmt::format("{}: is not a URDF: {}", path_, errors.first()));
-  if (!model_) throw InputError(path_ + ": is not a URDF that urdfdom can read (check_urdf says more)");
+  if (!errors.first().empty()) throw InputError(fmt::format("{}: not a valid URDF file: {}", path_, errors.first()));
+  if (!model_) throw InputError(path_ + ": not a valid URDF file (see check_urdf)");
 }
 
 /// Rejects links with two parents and cycles of joints, both of which urdfdom accepts.
@@ -153,7 +153,7 @@ void UrdfReader::check_tree() const {
   std::map<std::string, std::string> parent_of;  // child link to parent link
   for (const auto& [name, joint] : model_->joints_) {
     if (!parent_of.emplace(joint->child_link_name, joint->parent_link_name).second) {
-      fail(joint->child_link_name, "two joints name this link as their child");
+      fail(joint->child_link_name, "child of two joints: only one is allowed");
     }
   }
   for (const auto& [name, link] : model_->links_) {
@@ -162,7 +162,7 @@ void UrdfReader::check_tree() const {
       if (++steps <= parent_of.size()) continue;
       // Break the shared-pointer cycle, which would leak.
       for (const auto& [ignored, held] : model_->links_) held->child_links.clear();
-      fail(name, "the joints go round in a circle here");
+      fail(name, "the joints form a cycle");
     }
   }
 }
@@ -177,14 +177,14 @@ void UrdfReader::check_inertias() const {
     const Eigen::Vector3d moments = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertia, Eigen::EigenvaluesOnly).eigenvalues();
     constexpr double kRounding = 1e-4;  // files have few digits
     if (moments[0] > 0.0 && moments[2] <= (moments[0] + moments[1]) * (1.0 + kRounding)) continue;
-    fail(name, fmt::format("the inertia is of no body: its principal moments are {:.3g}, {:.3g} and {:.3g} kg m2", moments[0],
+    fail(name, fmt::format("invalid inertia: principal moments {:.3g}, {:.3g} and {:.3g} kg m2", moments[0],
                            moments[1], moments[2]));
   }
 }
 
 urdf::JointConstSharedPtr UrdfReader::joint(const std::string& name) const {
   const urdf::JointConstSharedPtr found = model_->getJoint(name);
-  if (!found) throw InputError(fmt::format("{}: there is no joint {}", path_, name));
+  if (!found) throw InputError(fmt::format("{}: joint not found: {}", path_, name));
   return found;
 }
 
@@ -195,7 +195,7 @@ Pose3 UrdfReader::joint_origin(const std::string& name) const {
 double UrdfReader::foot_radius_m(const std::string& link) const {
   const urdf::LinkConstSharedPtr foot = model_->getLink(link);
   if (!foot || !foot->collision || foot->collision->geometry->type != urdf::Geometry::SPHERE) {
-    fail(link, "a foot needs a sphere as its collision shape");
+    fail(link, "collision shape of a foot must be a sphere");
   }
   return std::static_pointer_cast<const urdf::Sphere>(foot->collision->geometry)->radius;
 }
@@ -212,7 +212,7 @@ LegGeometry UrdfReader::read_leg(const std::string& name) const {
 double UrdfReader::sprocket_radius_m(const std::string& link) const {
   const urdf::LinkConstSharedPtr sprocket = model_->getLink(link);
   if (!sprocket || !sprocket->collision || sprocket->collision->geometry->type != urdf::Geometry::CYLINDER) {
-    fail(link, "a sprocket needs a cylinder as its collision shape");
+    fail(link, "collision shape of a sprocket must be a cylinder");
   }
   return std::static_pointer_cast<const urdf::Cylinder>(sprocket->collision->geometry)->radius;
 }
@@ -221,7 +221,7 @@ std::vector<Wheel> UrdfReader::read_wheels(const std::string& track) const {
   const urdf::LinkConstSharedPtr link = model_->getLink(track);
   if (!link || !link->parent_joint || link->parent_joint->type != urdf::Joint::FIXED ||
       link->parent_joint->parent_link_name != frame_id::kBody) {
-    fail(track, fmt::format("a track is a link fixed to {}", frame_id::kBody));
+    fail(track, fmt::format("a track must be fixed to {}", frame_id::kBody));
   }
   const Pose3 T_body_track = to_pose(link->parent_joint->parent_to_joint_origin_transform);
   std::vector<Wheel> wheels;
@@ -229,7 +229,7 @@ std::vector<Wheel> UrdfReader::read_wheels(const std::string& track) const {
     const Pose3 T_body_wheel = T_body_track * to_pose(collision->origin);
     const bool is_across = std::abs((T_body_wheel.rotation * Eigen::Vector3d::UnitZ()).y()) > 0.9999;
     if (collision->geometry->type != urdf::Geometry::CYLINDER || !is_across) {
-      fail(track, "the collision shapes of a track are the wheels that its belt runs round: cylinders along y");
+      fail(track, "collision shapes of a track must be its wheels: cylinders along y");
     }
     const auto& cylinder = static_cast<const urdf::Cylinder&>(*collision->geometry);
     wheels.push_back({.center_m = T_body_wheel.position, .radius_m = cylinder.radius, .width_m = cylinder.length});
@@ -239,11 +239,11 @@ std::vector<Wheel> UrdfReader::read_wheels(const std::string& track) const {
 
 JointLimit UrdfReader::read_limit(const std::string& name) const {
   const urdf::JointLimitsSharedPtr limits = joint(name)->limits;
-  if (!limits) fail(name, "has no <limit>");
+  if (!limits) fail(name, "<limit> is missing");
   const bool is_endless = joint(name)->type == urdf::Joint::CONTINUOUS;
   const double upper = is_endless ? std::numeric_limits<double>::infinity() : limits->upper;
   const double lower = is_endless ? -upper : limits->lower;
-  if (lower >= upper) fail(name, fmt::format("limit lower {} is not below upper {}", lower, upper));
+  if (lower >= upper) fail(name, fmt::format("limit lower = {}: must be below upper = {}", lower, upper));
   if (limits->effort <= 0.0 || limits->velocity <= 0.0) fail(name, "limit effort and velocity must be positive");
   return {.lower_rad = lower, .upper_rad = upper, .velocity_radps = limits->velocity, .effort_nm = limits->effort};
 }
@@ -309,7 +309,7 @@ void UrdfReader::read_legs(RobotDescription& robot) const {
 
 void UrdfReader::read_tracks(RobotDescription& robot) const {
   const std::vector<Wheel> left = read_wheels(kTrackNames[0]), right = read_wheels(kTrackNames[1]);
-  if (left.size() < 2 || left.size() != right.size()) fail(kTrackNames[0], "a track needs two wheels at least, as many as the other");
+  if (left.size() < 2 || left.size() != right.size()) fail(kTrackNames[0], "must have at least two wheels, as many as the other track");
   for (const char* side : kSideNames) {
     robot.joint_names.push_back(side + std::string("_sprocket_joint"));
     robot.joint_limits.push_back(read_limit(robot.joint_names.back()));
@@ -319,23 +319,23 @@ void UrdfReader::read_tracks(RobotDescription& robot) const {
                                .contact_length_m = contact_length_m(left),
                                .sprocket_radius_m = sprocket_radius_m("left_sprocket"),
                                .body_height_m = -underside_m(left)};
-  if (robot.tracks->gauge_m <= robot.tracks->width_m) fail(kTrackNames[0], "the left track must lie to the left of the right one");
-  if (robot.tracks->contact_length_m <= 0.0) fail(kTrackNames[0], "two wheels at least must stand on the ground");
+  if (robot.tracks->gauge_m <= robot.tracks->width_m) fail(kTrackNames[0], "must be to the left of the right track");
+  if (robot.tracks->contact_length_m <= 0.0) fail(kTrackNames[0], "at least two wheels must touch the ground");
 }
 
 AntennaGeometry UrdfReader::read_antenna() const {
   const auto check = [this](const char* name, const Eigen::Vector3d& axis) {
     const urdf::JointConstSharedPtr found = joint(name);
     const Eigen::Vector3d found_axis(found->axis.x, found->axis.y, found->axis.z);
-    if (found->type != urdf::Joint::REVOLUTE || (found_axis - axis).norm() > 1e-9) fail(name, "must be revolute, the yaw about z, the pitch about y");
+    if (found->type != urdf::Joint::REVOLUTE || (found_axis - axis).norm() > 1e-9) fail(name, "must be revolute, yaw about z, pitch about y");
     const Pose3 origin = joint_origin(name);
-    if (origin.position.norm() > 1e-9 || origin.rotation.vec().norm() > 1e-9) fail(name, "the axes of the antenna must meet in the coil's middle: no <origin>");
+    if (origin.position.norm() > 1e-9 || origin.rotation.vec().norm() > 1e-9) fail(name, "must have no <origin>: the axes of the antenna intersect in the center of the coil");
   };
   check("tem_yaw_joint", Eigen::Vector3d::UnitZ());
   check("tem_pitch_joint", Eigen::Vector3d::UnitY());
   const AntennaGeometry mount{
       .T_body_mount = joint_origin("tem_mount_joint"), .yaw = read_limit("tem_yaw_joint"), .pitch = read_limit("tem_pitch_joint")};
-  if (mount.pitch.lower_rad >= mount.stowed_pitch_rad) fail("tem_pitch_joint", "must reach -90 degrees, where the antenna is stowed");
+  if (mount.pitch.lower_rad >= mount.stowed_pitch_rad) fail("tem_pitch_joint", "lower limit must reach -90 degrees, the stowed pitch");
   return mount;
 }
 
@@ -346,12 +346,12 @@ RobotDescription UrdfReader::read() const {
     if (link->inertial) robot.mass_kg += link->inertial->mass;
     if (link->inertial && link->inertial->mass <= 0.0) fail(name, "mass must be positive");
     const bool moves = link->parent_joint && link->parent_joint->type != urdf::Joint::FIXED;
-    if (moves && !link->inertial) fail(name, "a link that moves needs an <inertial>");
+    if (moves && !link->inertial) fail(name, "<inertial> is missing: required for a moving link");
     if (link->parent_joint && link->parent_joint->type == urdf::Joint::FIXED && link->parent_joint->parent_link_name == frame_id::kBody) {
       robot.T_body_sensor[name] = to_pose(link->parent_joint->parent_to_joint_origin_transform);
     }
   }
-  if (!model_->getLink(frame_id::kBody)) throw InputError(fmt::format("{}: there is no link {}", path_, frame_id::kBody));
+  if (!model_->getLink(frame_id::kBody)) throw InputError(fmt::format("{}: link not found: {}", path_, frame_id::kBody));
   if (model_->getLink(kTrackNames[0])) {
     read_tracks(robot);
   } else {

@@ -12,10 +12,10 @@ namespace {
 
 constexpr double kMovingJoint_radps = 0.2;
 constexpr Time kMaxContactAge = std::chrono::milliseconds(20);
-constexpr Time kContactPatience = std::chrono::milliseconds(8);
-constexpr Time kLegSilence = std::chrono::milliseconds(100);
-constexpr double kHoldStd_mps = 0.5;        // without legs the velocity is at least not this wrong
-constexpr double kGeometricTrust = 0.1;     // weight of a foot that is only guessed to stand
+constexpr Time kContactTimeout = std::chrono::milliseconds(8);
+constexpr Time kLegTimeout = std::chrono::milliseconds(100);
+constexpr double kLegVelocityLimitStd_mps = 0.5;        // bound on the velocity error without legs
+constexpr double kGeometricWeight = 0.1;     // weight of a stance foot selected by its height
 constexpr double kHeightTime_s = 0.1;       // smoothing of the height above ground
 
 LegSample leg_sample(const JointState& joints) {
@@ -25,19 +25,19 @@ LegSample leg_sample(const JointState& joints) {
   return sample;
 }
 
-bool is_complete(const JointState& joints) {
+bool has_all_joints(const JointState& joints) {
   return joints.position_rad.size() == 3 * kNumLegs && joints.velocity_radps.size() == 3 * kNumLegs;
 }
 
 InertialFilter::Settings filter_settings(const BodyEstimatorSettings& s) {
-  return {.gyro_noise_radps_per_sqrt_hz = s.gyro_noise_radps_per_sqrt_hz,
+  return {.gyro_noise_density_radps_per_sqrt_hz = s.gyro_noise_density_radps_per_sqrt_hz,
           .gyro_bias_std_radps = s.gyro_bias_std_radps,
-          .gyro_bias_walk_radps_per_sqrt_s = s.gyro_bias_walk_radps_per_sqrt_s,
-          .accel_noise_mps2_per_sqrt_hz = s.accel_noise_mps2_per_sqrt_hz,
+          .gyro_bias_random_walk_radps_per_sqrt_s = s.gyro_bias_random_walk_radps_per_sqrt_s,
+          .accel_noise_density_mps2_per_sqrt_hz = s.accel_noise_density_mps2_per_sqrt_hz,
           .accel_bias_std_mps2 = s.accel_bias_std_mps2,
-          .accel_bias_walk_mps2_per_sqrt_s = s.accel_bias_walk_mps2_per_sqrt_s,
-          .way_std_m_per_sqrt_m = s.way_std_m_per_sqrt_m,
-          .turn_std_rad_per_sqrt_rad = s.turn_std_rad_per_sqrt_rad};
+          .accel_bias_random_walk_mps2_per_sqrt_s = s.accel_bias_random_walk_mps2_per_sqrt_s,
+          .position_random_walk_m_per_sqrt_m = s.position_random_walk_m_per_sqrt_m,
+          .yaw_random_walk_rad_per_sqrt_rad = s.yaw_random_walk_rad_per_sqrt_rad};
 }
 
 Pose3 imu_pose(const RobotDescription& robot) {
@@ -46,7 +46,7 @@ Pose3 imu_pose(const RobotDescription& robot) {
 }
 
 const BodyEstimatorSettings& checked(const BodyEstimatorSettings& settings) {
-  validate(settings, "odometry");
+  validate(settings, "odometry.legged");
   return settings;
 }
 
@@ -56,17 +56,17 @@ BodyEstimator::BodyEstimator(const RobotDescription& robot, const BodyEstimatorS
     : robot_(robot),
       settings_(checked(settings)),
       imu_(imu_pose(robot), {.standstill = {.window_s = settings.standstill_window_s,
-                                            .gyro_noise_radps_per_sqrt_hz = settings.gyro_noise_radps_per_sqrt_hz,
+                                            .gyro_noise_density_radps_per_sqrt_hz = settings.gyro_noise_density_radps_per_sqrt_hz,
                                             .foot_std_m = settings.standstill_foot_std_m},
-                             .history_s = settings.history_s,
-                             .extrapolation_s = settings.extrapolation_s}),
-      contact_({.contact_on_n = settings.touch_force_n,
-                .contact_off_n = settings.release_force_n,
-                .full_weight_n = settings.full_force_n,
-                .settle_s = settings.contact_settle_s}) {
+                             .buffer_s = settings.buffer_s,
+                             .max_extrapolation_s = settings.max_extrapolation_s}),
+      contact_({.contact_on_n = settings.contact_on_force_n,
+                .contact_off_n = settings.contact_off_force_n,
+                .full_weight_n = settings.full_weight_force_n,
+                .settling_time_s = settings.contact_settling_time_s}) {
   if (robot.legs.size() != kNumLegs) {
     throw InputError(
-        fmt::format("robot {} has {} legs: leg odometry needs {}", robot.name, robot.legs.size(), kNumLegs));
+        fmt::format("robot {}: {} legs: legged odometry requires {}", robot.name, robot.legs.size(), kNumLegs));
   }
 }
 
@@ -74,11 +74,11 @@ void BodyEstimator::add(const Imu& imu) {
   const std::optional<InertialSample> sample = imu_.accept(imu, joints_move_);
   if (!sample) return;
   advance(imu.stamp, *sample);
-  take_pending();
+  process_pending();
 }
 
 void BodyEstimator::add(const JointState& joints) {
-  if (!is_complete(joints) || pending_.is_full()) {
+  if (!has_all_joints(joints) || pending_.is_full()) {
     imu_.reject();
     return;
   }
@@ -90,9 +90,9 @@ void BodyEstimator::add(const JointState& joints) {
     return;
   }
   joints_move_ = is_moving;
-  if (last_contacts_ && *last_contacts_ >= sample.stamp) sample.weights = trust_;
+  if (last_contacts_ && *last_contacts_ >= sample.stamp) sample.weights = contact_weights_;
   pending_.insert(sample);
-  take_pending();
+  process_pending();
 }
 
 void BodyEstimator::add(const FootContacts& contacts) {
@@ -109,24 +109,23 @@ void BodyEstimator::add(const FootContacts& contacts) {
     imu_.reject();
     return;
   }
-  trust_ = contact_.update(contacts.stamp, force_n);
+  contact_weights_ = contact_.update(contacts.stamp, force_n);
   last_contacts_ = contacts.stamp;
   for (LegSample& sample : pending_) {
-    if (!sample.weights && sample.stamp <= contacts.stamp) sample.weights = trust_;
+    if (!sample.weights && sample.stamp <= contacts.stamp) sample.weights = contact_weights_;
   }
-  take_pending();
+  process_pending();
 }
 
 void BodyEstimator::advance(Time stamp, const InertialSample& sample) {
   const auto make_filter = [this](const InertialSample& first) { return InertialFilter(filter_settings(settings_), first); };
   if (imu_.advance(stamp, sample, make_filter) == ImuFrontEnd<InertialFilter>::Step::kIgnored) return;
   imu_.remember();
-  if (last_leg_update_ && imu_.now() - *last_leg_update_ > kLegSilence) hold_velocity();
+  if (last_leg_update_ && imu_.now() - *last_leg_update_ > kLegTimeout) limit_velocity();
 }
 
-// Readings of the legs are due once the IMU has passed their instant and the forces of that instant are known
-// or late.
-void BodyEstimator::take_pending() {
+// A leg reading is due when the IMU has passed its stamp and the foot forces of that stamp have arrived or timed out.
+void BodyEstimator::process_pending() {
   if (!imu_.filter()) {
     pending_.clear();
     return;
@@ -134,11 +133,11 @@ void BodyEstimator::take_pending() {
   while (!pending_.is_empty()) {
     LegSample sample = pending_.oldest();
     const Time newest = pending_.newest().stamp;
-    const bool imu_is_late = to_seconds(newest - sample.stamp) > settings_.imu_patience_s;
+    const bool imu_is_late = to_seconds(newest - sample.stamp) > settings_.imu_timeout_s;
     if (sample.stamp > imu_.now() && !imu_is_late) return;
     if (!sample.weights) {
-      if (std::max(imu_.now(), newest) - sample.stamp < kContactPatience) return;
-      if (last_contacts_ && sample.stamp - *last_contacts_ < kMaxContactAge) sample.weights = trust_;
+      if (std::max(imu_.now(), newest) - sample.stamp < kContactTimeout) return;
+      if (last_contacts_ && sample.stamp - *last_contacts_ < kMaxContactAge) sample.weights = contact_weights_;
     }
     if (sample.stamp > imu_.now()) coast_to(sample);
     pending_.pop_oldest();
@@ -156,12 +155,12 @@ void BodyEstimator::use_legs(const LegSample& sample) {
     imu_.reject();
     return;
   }
-  contacts_are_silent_ = !sample.weights;
+  contacts_timed_out_ = !sample.weights;
   const StanceFeet feet = stance_feet(sample);
   const std::optional<LegVelocity> legs = fuse_feet(
       feet, then->omega_body, then->v_body, settings_.foot_velocity_std_mps, settings_.slip_speed_mps);
   if (!legs) return;
-  slips_ += static_cast<std::uint64_t>(legs->num_slipping);
+  num_slips_ += static_cast<std::uint64_t>(legs->num_slipping);
   imu_.filter()->correct_velocity(legs->v_body - then->v_body, legs->p_contact, legs->variance);
   measure_standstill(sample, *then, feet);
 
@@ -186,7 +185,7 @@ StanceFeet BodyEstimator::stance_feet(const LegSample& sample) const {
   return feet;
 }
 
-// Without foot sensors.
+// Fallback without foot sensors.
 StanceFeet BodyEstimator::lowest_feet(const LegSample& sample) const {
   const Eigen::Vector3d up = imu_.filter()->up_in_body();
   StanceFeet all, lowest;
@@ -196,8 +195,8 @@ StanceFeet BodyEstimator::lowest_feet(const LegSample& sample) const {
     ground = std::min(ground, all.feet[static_cast<std::size_t>(leg)].p_contact.dot(up));
   }
   for (StanceFoot foot : all) {
-    if (foot.p_contact.dot(up) - ground > settings_.geometric_stance_m) continue;
-    foot.weight = kGeometricTrust;
+    if (foot.p_contact.dot(up) - ground > settings_.stance_height_tolerance_m) continue;
+    foot.weight = kGeometricWeight;
     lowest.push_back(foot);
   }
   return lowest;
@@ -205,20 +204,20 @@ StanceFeet BodyEstimator::lowest_feet(const LegSample& sample) const {
 
 void BodyEstimator::measure_standstill(const LegSample& sample, const TrunkMotion& then,
                                        const StanceFeet& feet) {
-  if (imu_.is_silent() || !sample.weights || feet.count < kNumLegs) {
-    imu_.bias_meter().reset();
+  if (imu_.has_timed_out() || !sample.weights || feet.count < kNumLegs) {
+    imu_.bias_estimator().reset();
     return;
   }
   const Eigen::Vector3d gyro = then.omega_body + imu_.filter()->gyro_bias_radps();
-  if (const auto reading = imu_.bias_meter().add(sample.stamp, feet, gyro)) {
+  if (const auto reading = imu_.bias_estimator().add(sample.stamp, feet, gyro)) {
     imu_.filter()->correct_gyro_bias(reading->bias_radps, reading->variance);
   }
 }
 
-// By the IMU alone the velocity would run away; a walking robot's does not.
-void BodyEstimator::hold_velocity() {
-  if (!imu_.is_velocity_hold_due(kLegSilence)) return;
-  imu_.filter()->correct_velocity(-imu_.filter()->motion().v_body, Eigen::Vector3d::Zero(), kHoldStd_mps * kHoldStd_mps);
+// The velocity of the IMU alone diverges; that of a walking robot is bounded.
+void BodyEstimator::limit_velocity() {
+  if (!imu_.is_velocity_limit_due(kLegTimeout)) return;
+  imu_.filter()->correct_velocity(-imu_.filter()->motion().v_body, Eigen::Vector3d::Zero(), kLegVelocityLimitStd_mps * kLegVelocityLimitStd_mps);
   imu_.remember();
 }
 
@@ -230,11 +229,11 @@ std::optional<OdometryEstimate> BodyEstimator::estimate() const {
 std::optional<Pose3> BodyEstimator::T_odom_body_at(Time stamp) const { return imu_.T_odom_body_at(stamp); }
 
 EstimatorHealth BodyEstimator::health() const {
-  EstimatorHealth health{.imu_is_silent = imu_.is_silent(),
-                         .contacts_are_silent = contacts_are_silent_,
-                         .rejected_messages = imu_.rejected_messages(),
-                         .slips = slips_};
-  health.legs_are_silent = !last_leg_update_ || imu_.now() - *last_leg_update_ > kLegSilence;
+  EstimatorHealth health{.imu_timed_out = imu_.has_timed_out(),
+                         .contacts_timed_out = contacts_timed_out_,
+                         .num_rejected_messages = imu_.num_rejected_messages(),
+                         .num_slips = num_slips_};
+  health.legs_timed_out = !last_leg_update_ || imu_.now() - *last_leg_update_ > kLegTimeout;
   if (imu_.filter()) {
     constexpr int kZ = InertialFilter::kGyroBias + 2;
     health.gyro_z_bias_std_radps = std::sqrt(imu_.filter()->covariance()(kZ, kZ));

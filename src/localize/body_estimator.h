@@ -6,7 +6,7 @@
 #include "core/messages.h"
 #include "core/robot_description.h"
 #include "core/sensors/registry.h"
-#include "core/settings.h"
+#include "localize/body_estimator_settings.h"
 #include "localize/frozen_readings.h"
 #include "localize/imu_front_end.h"
 #include "localize/inertial_filter.h"
@@ -15,78 +15,21 @@
 
 namespace patrol::localize {
 
-/// Defaults fit a MEMS IMU of robotics grade and encoders at 250 Hz.
-struct BodyEstimatorSettings {
-  // IMU.
-  double gyro_noise_radps_per_sqrt_hz = 2e-4;
-  double gyro_bias_std_radps = 5e-3;  ///< at switch-on
-  double gyro_bias_walk_radps_per_sqrt_s = 1e-5;
-  double accel_noise_mps2_per_sqrt_hz = 0.1;  ///< what sampling the shocks of walking adds included
-  double accel_bias_std_mps2 = 0.05;          ///< at switch-on
-  double accel_bias_walk_mps2_per_sqrt_s = 1e-3;
-  // Legs.
-  double touch_force_n = 15.0;      ///< a foot is loaded above
-  double release_force_n = 8.0;     ///< and no longer loaded below
-  double full_force_n = 30.0;       ///< a foot is trusted in full above, in proportion below
-  double contact_settle_s = 0.012;  ///< after touch-down
-  double foot_velocity_std_mps = 0.06;
-  double slip_speed_mps = 0.15;  ///< a foot this far from what the IMU predicts is losing trust
-  double geometric_stance_m =
-      0.012;  ///< without foot sensors the lowest feet, up to this above the lowest, stand
-  // Standing.
-  double standstill_window_s = 1.0;
-  double standstill_foot_std_m = 3e-5;
-  // What no single reading shows.
-  double way_std_m_per_sqrt_m = 0.01;
-  double turn_std_rad_per_sqrt_rad = 0.003;
-  // Faults.
-  double imu_patience_s =
-      0.1;  ///< how long the legs wait for a late IMU before the estimator goes on without
-  double history_s = 2.0;
-  double extrapolation_s = 0.15;  ///< beyond the newest IMU reading
-
-  template <typename Self, typename Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("gyro_noise_radps_per_sqrt_hz", self.gyro_noise_radps_per_sqrt_hz, between(1e-7, 0.1));
-    visit("gyro_bias_std_radps", self.gyro_bias_std_radps, between(0.0, 0.5));
-    visit("gyro_bias_walk_radps_per_sqrt_s", self.gyro_bias_walk_radps_per_sqrt_s, between(0.0, 0.1));
-    visit("accel_noise_mps2_per_sqrt_hz", self.accel_noise_mps2_per_sqrt_hz, between(1e-5, 10.0));
-    visit("accel_bias_std_mps2", self.accel_bias_std_mps2, between(0.0, 5.0));
-    visit("accel_bias_walk_mps2_per_sqrt_s", self.accel_bias_walk_mps2_per_sqrt_s, between(0.0, 1.0));
-    visit("touch_force_n", self.touch_force_n, between(0.1, 200.0));
-    visit("release_force_n", self.release_force_n, between(0.1, 200.0));
-    visit("full_force_n", self.full_force_n, between(0.1, 1000.0));
-    visit("contact_settle_s", self.contact_settle_s, between(0.0, 0.2));
-    visit("foot_velocity_std_mps", self.foot_velocity_std_mps, between(1e-4, 1.0));
-    visit("slip_speed_mps", self.slip_speed_mps, between(1e-3, 10.0));
-    visit("geometric_stance_m", self.geometric_stance_m, between(0.0, 0.1));
-    visit("standstill_window_s", self.standstill_window_s, between(0.1, 10.0));
-    visit("standstill_foot_std_m", self.standstill_foot_std_m, between(1e-7, 0.01));
-    visit("way_std_m_per_sqrt_m", self.way_std_m_per_sqrt_m, between(0.0, 0.5));
-    visit("turn_std_rad_per_sqrt_rad", self.turn_std_rad_per_sqrt_rad, between(0.0, 0.5));
-    visit("imu_patience_s", self.imu_patience_s, between(0.01, 1.0));
-    visit("history_s", self.history_s, between(0.5, 60.0));
-    visit("extrapolation_s", self.extrapolation_s, between(0.0, 1.0));
-  }
-};
-
-/// How the estimator fares, for the log and for whoever must decide whether to walk on.
+/// Health of the legged odometry, for the log and for the sensor monitor.
 struct EstimatorHealth {
-  bool imu_is_silent = false;        ///< going on by the feet alone
-  bool legs_are_silent = false;      ///< going on by the IMU alone
-  bool contacts_are_silent = false;  ///< guessing by the feet's heights which of them stand
+  bool imu_timed_out = false;       ///< the estimate is propagated by the feet alone
+  bool legs_timed_out = false;      ///< the estimate is propagated by the IMU alone
+  bool contacts_timed_out = false;  ///< stance feet are selected by their height
   double gyro_z_bias_std_radps = 0.0;
-  std::uint64_t rejected_messages =
-      0;                    ///< not finite, of the wrong size, frozen, or older than what was already used
-  std::uint64_t slips = 0;  ///< readings of a standing foot that was found slipping
+  std::uint64_t num_rejected_messages = 0;  ///< not finite, of the wrong size, frozen, or outdated
+  std::uint64_t num_slips = 0;              ///< number of readings of a stance foot that slips
 };
 
-/// Where the trunk is in `odom`, from IMU, joint encoders and foot forces; the estimate is at its newest
-/// reading.
+/// Legged odometry: pose of the trunk in `odom` from IMU, joint encoders and foot forces, at the newest reading.
 ///
-/// Messages may come late, out of order or not at all: joints wait for the IMU of their instant (up to
-/// `imu_patience_s`, then the feet carry on alone), and what comes after its instant has passed is compared
-/// with the state remembered from then. Not handled: a robot that is lifted or falls.
+/// Messages may be late, out of order or missing. Joint readings wait for the IMU reading of their stamp, at most
+/// `imu_timeout_s`; then the feet alone propagate the estimate. Readings older than the state are compared with the
+/// motion history. Not handled: a robot that is lifted or falls.
 class BodyEstimator {
  public:
   BodyEstimator(const RobotDescription& robot, const BodyEstimatorSettings& settings);
@@ -95,27 +38,27 @@ class BodyEstimator {
   void add(const JointState& joints);
   void add(const FootContacts& contacts);
 
-  /// None before the IMU and the legs have both been heard.
+  /// Returns nullopt before the first readings of both the IMU and the legs.
   std::optional<OdometryEstimate> estimate() const;
-  /// The body at an instant of the last seconds, or slightly after the newest; none outside of that.
+  /// Returns the pose at a stamp within the motion history or slightly after it; otherwise nullopt.
   std::optional<Pose3> T_odom_body_at(Time stamp) const;
-  /// Of the body's origin above the ground under its feet, m.
+  /// Returns the height of the body origin above the ground under the feet, m.
   double height_above_ground_m() const { return height_m_; }
 
   EstimatorHealth health() const;
-  /// The filter behind; none before the first IMU reading.
+  /// Returns the filter; nullopt before the first IMU reading.
   const std::optional<InertialFilter>& filter() const { return imu_.filter(); }
 
  private:
   void advance(Time stamp, const InertialSample& sample);
-  /// Uses the leg readings that are due.
-  void take_pending();
+  /// Processes the leg readings that are due.
+  void process_pending();
   void use_legs(const LegSample& sample);
   void coast_to(const LegSample& sample);
   StanceFeet stance_feet(const LegSample& sample) const;
   StanceFeet lowest_feet(const LegSample& sample) const;
   void measure_standstill(const LegSample& sample, const TrunkMotion& then, const StanceFeet& feet);
-  void hold_velocity();
+  void limit_velocity();
 
   RobotDescription robot_;
   BodyEstimatorSettings settings_;
@@ -124,7 +67,7 @@ class BodyEstimator {
   ContactDetector contact_;
   PendingReadings<LegSample> pending_;  ///< waiting for IMU and foot forces
   std::optional<Time> last_contacts_;
-  ContactWeights trust_{};  ///< then
+  ContactWeights contact_weights_{};  ///< at `last_contacts_`
   std::optional<Time> last_leg_update_;
   double height_m_ = 0.0;
 
@@ -132,8 +75,8 @@ class BodyEstimator {
   FrozenReadings<3 * kNumLegs> frozen_joints_;
   FrozenReadings<kNumLegs> frozen_contacts_;
   bool joints_move_ = false;
-  bool contacts_are_silent_ = false;
-  std::uint64_t slips_ = 0;
+  bool contacts_timed_out_ = false;
+  std::uint64_t num_slips_ = 0;
 };
 
 }  // namespace patrol::localize

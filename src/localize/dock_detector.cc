@@ -33,9 +33,9 @@ constexpr double kMaxStd_m = 0.05;
 
 DockDetector::DockDetector(const DockDetectorSettings& settings, std::vector<Eigen::Vector2d> profile_m)
     : settings_(settings), profile_m_(std::move(profile_m)) {
-  validate(settings_, "dock_detector");
+  validate(settings_, "docking.detector");
   if (profile_m_.size() < 2) {
-    throw InputError(fmt::format("the dock's profile has {} points: it must have at least 2", profile_m_.size()));
+    throw InputError(fmt::format("dock profile: {} points: must be at least 2", profile_m_.size()));
   }
   Eigen::AlignedBox2d box;
   for (const Eigen::Vector2d& p : profile_m_) box.extend(p);
@@ -61,7 +61,7 @@ std::optional<DockDetection> DockDetector::detect(const LevelScan& scan, const P
   return detection;
 }
 
-double DockDetector::max_beam_distance_m() const { return radius_m_ + settings_.search_m * std::sqrt(2.0) + settings_.margin_m; }
+double DockDetector::max_beam_distance_m() const { return radius_m_ + settings_.search_m * std::sqrt(2.0) + settings_.end_clearance_m; }
 
 // Returns the beams that could hit the post anywhere in the search range, and those that pass its ends.
 std::vector<DockDetector::Beam> DockDetector::beams_about(const LevelScan& scan, const Pose2& T_level_expected) const {
@@ -136,8 +136,8 @@ DockDetector::Fit DockDetector::search(const std::vector<Beam>& beams, const Eig
     for (int j = -kCoarseSteps; j <= kCoarseSteps; ++j) {
       for (int k = -kCoarseSteps; k <= kCoarseSteps; ++k) {
         const double step_m = settings_.search_m / kCoarseSteps, step_rad = settings_.search_rad / kCoarseSteps;
-        const Pose2 turned = step_pose(T_level_expected, 2, k * step_rad / kRadPerMeter);
-        const Pose2 T = step_pose(step_pose(turned, 0, i * step_m), 1, j * step_m);
+        const Pose2 rotated = step_pose(T_level_expected, 2, k * step_rad / kRadPerMeter);
+        const Pose2 T = step_pose(step_pose(rotated, 0, i * step_m), 1, j * step_m);
         candidates.push_back({T, support(beams, origin_m, T, kCoarseWidth_m)});
       }
     }
@@ -230,13 +230,13 @@ bool DockDetector::accept(const std::vector<Beam>& beams, const Eigen::Vector2d&
       for (std::size_t i = 0; i + 1 < profile_m_.size(); ++i) {
         distance_m = std::min(distance_m, distance_to_segment(end, profile_m_[i], profile_m_[i + 1]));
       }
-      num_outliers += distance_m < settings_.margin_m;
+      num_outliers += distance_m < settings_.end_clearance_m;
     }
   }
   if (num_inliers < settings_.min_beams) return false;
   detection.inlier_ratio = static_cast<double>(num_inliers) / (num_inliers + num_outliers);
   detection.rms_m = std::sqrt(squares / num_inliers);
-  return detection.inlier_ratio >= settings_.min_explained && detection.rms_m <= settings_.max_rms_m;
+  return detection.inlier_ratio >= settings_.min_inlier_ratio && detection.rms_m <= settings_.max_rms_m;
 }
 
 }  // namespace patrol::localize

@@ -5,32 +5,9 @@
 
 #include "core/dock_detection.h"
 #include "core/messages.h"
-#include "core/settings.h"
+#include "localize/dock_detector_settings.h"
 
 namespace patrol::localize {
-
-struct DockDetectorSettings {
-  double search_m = 0.3;        ///< search range around the expected position, longitudinal and lateral
-  double search_rad = 0.2;      ///< search range around the expected heading
-  double range_std_m = 0.025;   ///< standard deviation of the range of one beam
-  double margin_m = 0.15;  ///< free space required next to the ends of the post: hits there count against the detection
-  double min_explained = 0.75;  ///< minimum inlier ratio of the beams around the post
-  double max_rms_m = 0.04;
-  int min_beams = 25;           ///< minimum number of beams on the post
-  double max_range_m = 4.0;     ///< maximum distance of the expected post for a search
-
-  template <typename Self, typename Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("search_m", self.search_m, between(0.02, 1.0));
-    visit("search_rad", self.search_rad, between(0.02, 0.8));
-    visit("range_std_m", self.range_std_m, between(0.001, 0.2));
-    visit("margin_m", self.margin_m, between(0.0, 1.0));
-    visit("min_explained", self.min_explained, between(0.1, 1.0));
-    visit("max_rms_m", self.max_rms_m, between(0.005, 0.5));
-    visit("min_beams", self.min_beams, between(5, 10000));
-    visit("max_range_m", self.max_range_m, between(0.5, 50.0));
-  }
-};
 
 /// Detector of the charging post by its outline. For a pose hypothesis, the outline predicts a range for each beam. A
 /// beam supports the hypothesis by 1 - (error / w)^2 if the error is below w: a maximum-likelihood estimate with

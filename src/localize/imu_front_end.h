@@ -13,27 +13,28 @@
 
 namespace patrol::localize {
 
-/// IMU side of an odometry: checks readings, takes them to the body, propagates the filter in order of stamps, and remembers its motion.
-/// `Filter` is InertialFilter or TrackFilter. The odometry adds what its legs or tracks measure.
+/// IMU front end of an odometry: checks readings, transforms them to the body origin, propagates the filter in the
+/// order of the stamps, and records its motion. `Filter` is InertialFilter or TrackFilter. The odometry adds the
+/// measurements of legs or tracks.
 template <typename Filter>
 class ImuFrontEnd {
  public:
   struct Settings {
     StationaryGyroBiasEstimator::Settings standstill;
-    double history_s;
-    double extrapolation_s;  ///< beyond the newest motion
+    double buffer_s;             ///< length of the motion history
+    double max_extrapolation_s;  ///< maximum time after the newest motion
   };
   /// Result of a reading: without effect; filter started; gap bridged without the reading; filter propagated by it.
   enum class Step { kIgnored, kStarted, kBridged, kPropagated };
 
   ImuFrontEnd(const Pose3& T_body_imu, const Settings& settings)
       : mount_(T_body_imu),
-        history_(static_cast<std::size_t>(settings.history_s * kAssumedRate_hz)),
-        bias_meter_(settings.standstill),
-        extrapolation_s_(settings.extrapolation_s) {}
+        history_(static_cast<std::size_t>(settings.buffer_s * kAssumedRate_hz)),
+        bias_estimator_(settings.standstill),
+        max_extrapolation_s_(settings.max_extrapolation_s) {}
 
-  /// Reading at the body's origin; none, and counted as rejected, if it is implausible, not newer than the filter's state, or frozen while the
-  /// robot moves.
+  /// Returns the reading at the body origin. Returns nullopt and counts a rejection if the reading is implausible, not
+  /// newer than the filter state, or frozen while the robot moves.
   std::optional<InertialSample> accept(const Imu& imu, bool is_moving) {
     Eigen::Matrix<double, 6, 1> reading;
     reading << imu.angular_velocity_radps, imu.linear_acceleration_mps2;
@@ -44,7 +45,8 @@ class ImuFrontEnd {
     return mount_.to_body(imu);
   }
 
-  /// Takes the filter to the instant of an accepted reading. `make_filter` is called with the first reading from which the tilt can be read.
+  /// Propagates the filter to the stamp of an accepted reading. `make_filter` is called with the first reading that
+  /// gives the tilt.
   template <typename MakeFilter>
   Step advance(Time stamp, const InertialSample& sample, const MakeFilter& make_filter) {
     Step step = Step::kPropagated;
@@ -59,33 +61,33 @@ class ImuFrontEnd {
       filter_->predict(to_seconds(stamp - now_), sample);
     }
     now_ = stamp;
-    is_silent_ = false;
+    has_timed_out_ = false;
     return step;
   }
 
-  /// Takes the filter to an instant without the IMU.
+  /// Propagates the filter to a stamp without the IMU.
   void coast_to(Time stamp, double yaw_rate_radps) {
-    is_silent_ = true;
-    bias_meter_.reset();
+    has_timed_out_ = true;
+    bias_estimator_.reset();
     filter_->coast(to_seconds(stamp - now_), yaw_rate_radps);
     now_ = stamp;
     remember();
   }
 
-  /// Whether the filter may be told again, after `period`, that its velocity is about the last one known: without it the velocity would
-  /// run away by the IMU alone.
-  bool is_velocity_hold_due(Time period) {
-    if (now_ - last_velocity_hold_ < period) return false;
-    last_velocity_hold_ = now_;
+  /// Returns whether `period` has passed since the last velocity limit, a weak measurement that keeps the
+  /// velocity of the IMU alone from diverging; if so, the period starts again.
+  bool is_velocity_limit_due(Time period) {
+    if (now_ - last_velocity_limit_ < period) return false;
+    last_velocity_limit_ = now_;
     return true;
   }
 
-  /// Enters the filter's motion in the history.
+  /// Adds the motion of the filter to the history.
   void remember() { history_.push(now_, filter_->motion()); }
-  void forget_history() { history_.clear(); }
+  void clear_history() { history_.clear(); }
   std::optional<TrunkMotion> motion_at(Time stamp) const { return history_.motion_at(stamp); }
 
-  /// Estimate at the filter's instant; a filter must exist.
+  /// Returns the estimate at the stamp of the filter. Precondition: the filter exists.
   OdometryEstimate estimate() const {
     const TrunkMotion& motion = filter_->motion();
     return {.stamp = now_,
@@ -94,13 +96,13 @@ class ImuFrontEnd {
             .planar_covariance = filter_->planar_covariance()};
   }
 
-  /// Pose of the body at an instant of the history, or up to `extrapolation_s` after it; none outside of that.
+  /// Returns the body pose at a stamp within the history or up to `max_extrapolation_s` after it; otherwise nullopt.
   std::optional<Pose3> T_odom_body_at(Time stamp) const {
     if (history_.empty()) return std::nullopt;
     if (stamp <= history_.newest()) return history_.pose_at(stamp);
     const double ahead_s = to_seconds(stamp - history_.newest());
-    if (ahead_s > extrapolation_s_) return std::nullopt;
-    // Straight on, turning about the vertical: the wobble of a walk does not carry on.
+    if (ahead_s > max_extrapolation_s_) return std::nullopt;
+    // Constant horizontal velocity and yaw rate; the oscillation of the gait is not extrapolated.
     const TrunkMotion& motion = history_.newest_motion();
     const Eigen::Quaterniond& rotation = motion.T_odom_body.rotation;
     const double yaw_rate = (rotation * motion.omega_body).z();
@@ -108,18 +110,18 @@ class ImuFrontEnd {
                  quaternion_from_yaw(ahead_s * yaw_rate) * rotation};
   }
 
-  /// None before the first reading that could start it.
+  /// Returns the filter; nullopt before its first reading.
   std::optional<Filter>& filter() { return filter_; }
   const std::optional<Filter>& filter() const { return filter_; }
-  StationaryGyroBiasEstimator& bias_meter() { return bias_meter_; }
-  Time now() const { return now_; }              ///< instant of the filter's state
-  bool is_silent() const { return is_silent_; }  ///< the filter's last step was without the IMU
+  StationaryGyroBiasEstimator& bias_estimator() { return bias_estimator_; }
+  Time now() const { return now_; }              ///< stamp of the filter state
+  bool has_timed_out() const { return has_timed_out_; }  ///< the last step of the filter was without the IMU
 
-  void reject() { ++rejected_messages_; }
-  std::uint64_t rejected_messages() const { return rejected_messages_; }
+  void reject() { ++num_rejected_messages_; }
+  std::uint64_t num_rejected_messages() const { return num_rejected_messages_; }
 
  private:
-  static constexpr double kMaxStartAcceleration_mps2 = 1.0;  // the start's tilt is read from gravity alone
+  static constexpr double kMaxStartAcceleration_mps2 = 1.0;  // the initial tilt is that of gravity alone
   static constexpr Time kMaxStep = std::chrono::milliseconds(50);  // a longer gap is not integrated across
   static constexpr double kAssumedRate_hz = 1000.0;                // upper bound, for the size of the history
 
@@ -127,12 +129,12 @@ class ImuFrontEnd {
   std::optional<Filter> filter_;
   Time now_{};
   MotionHistory history_;
-  StationaryGyroBiasEstimator bias_meter_;
-  double extrapolation_s_;
-  Time last_velocity_hold_{};
+  StationaryGyroBiasEstimator bias_estimator_;
+  double max_extrapolation_s_;
+  Time last_velocity_limit_{};
   FrozenReadings<6> frozen_;
-  bool is_silent_ = false;
-  std::uint64_t rejected_messages_ = 0;
+  bool has_timed_out_ = false;
+  std::uint64_t num_rejected_messages_ = 0;
 };
 
 }  // namespace patrol::localize

@@ -46,10 +46,10 @@ void InertialFilter::predict(double dt_s, const InertialSample& sample) {
   const auto add_variance = [this](int block, double variance) {
     P_.diagonal().segment<3>(block).array() += variance;
   };
-  add_variance(kRotation, dt_s * std::pow(settings_.gyro_noise_radps_per_sqrt_hz, 2));
-  add_variance(kVelocity, dt_s * std::pow(settings_.accel_noise_mps2_per_sqrt_hz, 2));
-  add_variance(kGyroBias, dt_s * std::pow(settings_.gyro_bias_walk_radps_per_sqrt_s, 2));
-  add_variance(kAccelBias, dt_s * std::pow(settings_.accel_bias_walk_mps2_per_sqrt_s, 2));
+  add_variance(kRotation, dt_s * std::pow(settings_.gyro_noise_density_radps_per_sqrt_hz, 2));
+  add_variance(kVelocity, dt_s * std::pow(settings_.accel_noise_density_mps2_per_sqrt_hz, 2));
+  add_variance(kGyroBias, dt_s * std::pow(settings_.gyro_bias_random_walk_radps_per_sqrt_s, 2));
+  add_variance(kAccelBias, dt_s * std::pow(settings_.accel_bias_random_walk_mps2_per_sqrt_s, 2));
   add_dead_reckoning_noise(dt_s);
 }
 
@@ -71,8 +71,8 @@ void InertialFilter::coast(double dt_s, double yaw_rate_radps) {
 void InertialFilter::add_dead_reckoning_noise(double dt_s) {
   const double way_m = dt_s * motion_.v_body.norm();
   const double turn_rad = dt_s * std::abs(motion_.omega_body.z());
-  P_.diagonal().segment<3>(kPosition).array() += way_m * std::pow(settings_.way_std_m_per_sqrt_m, 2);
-  P_(kRotation + 2, kRotation + 2) += turn_rad * std::pow(settings_.turn_std_rad_per_sqrt_rad, 2);
+  P_.diagonal().segment<3>(kPosition).array() += way_m * std::pow(settings_.position_random_walk_m_per_sqrt_m, 2);
+  P_(kRotation + 2, kRotation + 2) += turn_rad * std::pow(settings_.yaw_random_walk_rad_per_sqrt_rad, 2);
 }
 
 void InertialFilter::correct_velocity(const Eigen::Vector3d& innovation, const Eigen::Vector3d& p_contact,

@@ -15,7 +15,7 @@ ContactWeights ContactDetector::update(Time stamp, const std::array<double, kNum
     const bool was_loaded = is_loaded_[leg];
     is_loaded_[leg] = force_n[leg] > (was_loaded ? settings_.contact_off_n : settings_.contact_on_n);
     if (is_loaded_[leg] && !was_loaded) loaded_since_[leg] = stamp;
-    const bool has_settled = is_loaded_[leg] && to_seconds(stamp - loaded_since_[leg]) >= settings_.settle_s;
+    const bool has_settled = is_loaded_[leg] && to_seconds(stamp - loaded_since_[leg]) >= settings_.settling_time_s;
     weights[leg] = has_settled ? std::clamp(force_n[leg] / settings_.full_weight_n, 0.0, 1.0) : 0.0;
   }
   return weights;
@@ -25,12 +25,12 @@ StanceFoot stance_foot(const LegGeometry& leg, int index, const LegSample& sampl
                        const Eigen::Vector3d& up_in_body) {
   const Eigen::Vector3d angle = sample.angle_rad.col(index);
   const Eigen::Vector3d speed = sample.speed_radps.col(index);
-  const Eigen::Vector3d centre_to_contact = -leg.foot_radius_m * up_in_body;
+  const Eigen::Vector3d center_to_contact = -leg.foot_radius_m * up_in_body;
   const Eigen::Vector3d pitch_axis(0.0, std::cos(angle[0]), std::sin(angle[0]));
   const Eigen::Vector3d shank_rate = speed[0] * Eigen::Vector3d::UnitX() + (speed[1] + speed[2]) * pitch_axis;
   return {.leg = index,
-          .p_contact = foot_position(leg, angle) + centre_to_contact,
-          .v_contact = foot_jacobian(leg, angle) * speed + shank_rate.cross(centre_to_contact)};
+          .p_contact = foot_position(leg, angle) + center_to_contact,
+          .v_contact = foot_jacobian(leg, angle) * speed + shank_rate.cross(center_to_contact)};
 }
 
 std::optional<LegVelocity> fuse_feet(const StanceFeet& feet, const Eigen::Vector3d& omega_body,

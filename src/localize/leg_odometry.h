@@ -33,7 +33,7 @@ class ContactDetector {
     double contact_on_n;    ///< contact starts above this force
     double contact_off_n;  ///< contact ends below this force
     double full_weight_n;
-    double settle_s;
+    double settling_time_s;
   };
   explicit ContactDetector(const Settings& settings) : settings_(settings) {}
 

@@ -14,14 +14,14 @@ namespace {
 constexpr int kFrozenRangeRepeats = 5;  // equal consecutive readings of one anchor, which noise practically excludes
 
 const RangeFilterSettings& checked(const RangeFilterSettings& settings) {
-  validate(settings, "uwb");
+  validate(settings, "uwb_filter");
   const std::vector<double>& distances = settings.bias_distance_m;
   if (distances.size() != settings.bias_m.size()) {
-    throw InputError(fmt::format("uwb.bias_m has {} values: must have one for each of the {} of uwb.bias_distance_m",
+    throw InputError(fmt::format("uwb_filter.bias_m: {} values: must be {}, one per entry of uwb_filter.bias_distance_m",
                                  settings.bias_m.size(), distances.size()));
   }
   if (std::adjacent_find(distances.begin(), distances.end(), std::greater_equal<>()) != distances.end()) {
-    throw InputError("uwb.bias_distance_m: must grow from value to value");
+    throw InputError("uwb_filter.bias_distance_m: must be strictly increasing");
   }
   return settings;
 }
@@ -30,7 +30,7 @@ std::map<int, UwbAnchor> by_number(const std::vector<UwbAnchor>& anchors) {
   std::map<int, UwbAnchor> numbered;
   for (const UwbAnchor& anchor : anchors) {
     if (!numbered.emplace(anchor.number, anchor).second) {
-      throw InputError(fmt::format("uwb anchor {} is surveyed twice: each number must stand for one anchor", anchor.number));
+      throw InputError(fmt::format("uwb anchor {}: duplicate number", anchor.number));
     }
   }
   return numbered;
@@ -86,8 +86,8 @@ RangeFilter::State RangeFilter::predicted(State state, Time stamp, const Pose3& 
   state.stamp = stamp;
 
   const Eigen::Vector2d went = state.T_map_body.position() - before.position();
-  const Eigen::Vector3d keep(std::exp(-way_m / settings_.along_length_m), std::exp(-way_m / settings_.across_length_m),
-                             std::exp(-dt_s / settings_.turn_time_s));
+  const Eigen::Vector3d keep(std::exp(-way_m / settings_.longitudinal_correlation_m), std::exp(-way_m / settings_.lateral_correlation_m),
+                             std::exp(-dt_s / settings_.yaw_correlation_s));
   Eigen::Matrix<double, kSize, kSize> F = Eigen::Matrix<double, kSize, kSize>::Identity();
   F(0, kYaw) = -went.y();
   F(1, kYaw) = went.x();
@@ -97,9 +97,9 @@ RangeFilter::State RangeFilter::predicted(State state, Time stamp, const Pose3& 
   state.drift = keep.cwiseProduct(state.drift);
 
   state.P = F * state.P * F.transpose();
-  state.P.diagonal().head<2>().array() += way_m * std::pow(settings_.way_std_m_per_sqrt_m, 2);
-  state.P(kYaw, kYaw) += dt_s * std::pow(settings_.turn_std_rad_per_sqrt_s, 2) +
-                         turn_rad * std::pow(settings_.turn_std_rad_per_sqrt_rad, 2);
+  state.P.diagonal().head<2>().array() += way_m * std::pow(settings_.position_random_walk_m_per_sqrt_m, 2);
+  state.P(kYaw, kYaw) += dt_s * std::pow(settings_.yaw_random_walk_rad_per_sqrt_s, 2) +
+                         turn_rad * std::pow(settings_.yaw_random_walk_rad_per_sqrt_rad, 2);
   state.P(kHeight, kHeight) += way_m * std::pow(settings_.height_std_m_per_sqrt_m, 2);
   state.P.diagonal().tail<3>().array() += 1.0 - keep.array().square();
   return state;
@@ -147,14 +147,14 @@ double RangeFilter::innovation(const UwbRange& range, const Pose3& T_odom_body, 
 }
 
 double RangeFilter::los_probability(double innovation_m, double std_m) const {
-  const double clear = (1.0 - settings_.blocked_share) * normal_density(innovation_m, std_m);
-  const double blocked = settings_.blocked_share * nlos_density(innovation_m, std_m, settings_.blocked_excess_m);
+  const double clear = (1.0 - settings_.nlos_probability) * normal_density(innovation_m, std_m);
+  const double blocked = settings_.nlos_probability * nlos_density(innovation_m, std_m, settings_.nlos_bias_m);
   return clear + blocked > 0.0 ? clear / (clear + blocked) : 0.0;
 }
 
 RangeStatus RangeFilter::classify(const RangeOutcome& outcome) const {
-  if (outcome.innovation_m < -settings_.max_short_sigmas * std::sqrt(outcome.variance_m2)) return RangeStatus::kTooShort;
-  return outcome.los_probability < settings_.min_clear_probability ? RangeStatus::kTooLong : RangeStatus::kAccepted;
+  if (outcome.innovation_m < -settings_.negative_gate_sigma * std::sqrt(outcome.variance_m2)) return RangeStatus::kTooShort;
+  return outcome.los_probability < settings_.min_los_probability ? RangeStatus::kTooLong : RangeStatus::kAccepted;
 }
 
 void RangeFilter::correct(const Vector& H, double innovation_m, double variance_m2) {
@@ -173,11 +173,11 @@ void RangeFilter::correct(const Vector& H, double innovation_m, double variance_
 void RangeFilter::count(bool is_accepted) {
   accepted_.push_back(is_accepted);
   if (static_cast<int>(accepted_.size()) > settings_.window) accepted_.pop_front();
-  if (static_cast<int>(accepted_.size()) < settings_.window || accepted_ratio() >= settings_.min_accepted_share) return;
+  if (static_cast<int>(accepted_.size()) < settings_.window || accepted_ratio() >= settings_.min_accepted_ratio) return;
   ++num_resets_;
   accepted_.clear();
-  state_.P.diagonal().head<2>().array() += settings_.doubt_std_m * settings_.doubt_std_m;
-  state_.P(kYaw, kYaw) += settings_.doubt_std_rad * settings_.doubt_std_rad;
+  state_.P.diagonal().head<2>().array() += settings_.reset_std_m * settings_.reset_std_m;
+  state_.P(kYaw, kYaw) += settings_.reset_std_rad * settings_.reset_std_rad;
 }
 
 double RangeFilter::accepted_ratio() const {

@@ -9,61 +9,10 @@
 
 #include "core/messages.h"
 #include "core/sensors/registry.h"
-#include "core/settings.h"
 #include "core/uwb.h"
+#include "localize/range_filter_settings.h"
 
 namespace patrol::localize {
-
-struct RangeFilterSettings {
-  // UWB ranges.
-  /// Bias of a line-of-sight range at each distance of `bias_distance_m`.
-  std::vector<double> bias_distance_m = UwbCalibration{}.distance_m;
-  std::vector<double> bias_m = UwbCalibration{}.bias_m;               ///< both lists empty: no bias
-  double range_std_m = 0.1;
-  double blocked_share = 0.3;     ///< prior probability of a non-line-of-sight (NLOS) range
-  double blocked_excess_m = 0.5;  ///< mean bias of NLOS ranges
-  /// Ranges that are too long and have a smaller line-of-sight probability are rejected.
-  double min_clear_probability = 0.1;
-  double max_short_sigmas = 3.3;       ///< ranges that are too short by more standard deviations are rejected: 99.9 %
-  // Odometry. The standard deviations of its errors are part of its output; here are their correlation lengths and
-  // white noise.
-  double along_length_m = 8.0;  ///< scale, slip
-  double across_length_m = 4.0;
-  double turn_time_s = 300.0;  ///< gyro bias, from one standstill to the next
-  double way_std_m_per_sqrt_m = 0.003;
-  double turn_std_rad_per_sqrt_s = 3.5e-4;
-  double turn_std_rad_per_sqrt_rad = 0.002;
-  double height_std_m_per_sqrt_m = 0.02;
-  double start_height_std_m = 0.05;
-  // Recovery from a wrong estimate.
-  int window = 30;                  ///< number of ranges over which rejections are counted
-  double min_accepted_share = 0.4;  ///< minimum acceptance ratio of the window; below it the covariance is inflated
-  double doubt_std_m = 0.5;         ///< standard deviation added to x and y
-  double doubt_std_rad = 0.05;
-
-  template <typename Self, typename Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("bias_distance_m", self.bias_distance_m, between(0.0, 1000.0));
-    visit("bias_m", self.bias_m, between(-10.0, 10.0));
-    visit("range_std_m", self.range_std_m, between(1e-3, 10.0));
-    visit("blocked_share", self.blocked_share, between(0.0, 0.99));
-    visit("blocked_excess_m", self.blocked_excess_m, between(1e-3, 100.0));
-    visit("min_clear_probability", self.min_clear_probability, between(0.0, 1.0));
-    visit("max_short_sigmas", self.max_short_sigmas, between(0.1, 100.0));
-    visit("along_length_m", self.along_length_m, between(0.01, 1e4));
-    visit("across_length_m", self.across_length_m, between(0.01, 1e4));
-    visit("turn_time_s", self.turn_time_s, between(0.1, 1e6));
-    visit("way_std_m_per_sqrt_m", self.way_std_m_per_sqrt_m, between(0.0, 1.0));
-    visit("turn_std_rad_per_sqrt_s", self.turn_std_rad_per_sqrt_s, between(0.0, 1.0));
-    visit("turn_std_rad_per_sqrt_rad", self.turn_std_rad_per_sqrt_rad, between(0.0, 1.0));
-    visit("height_std_m_per_sqrt_m", self.height_std_m_per_sqrt_m, between(0.0, 1.0));
-    visit("start_height_std_m", self.start_height_std_m, between(0.0, 10.0));
-    visit("window", self.window, between(5, 1000));
-    visit("min_accepted_share", self.min_accepted_share, between(0.0, 1.0));
-    visit("doubt_std_m", self.doubt_std_m, between(0.0, 100.0));
-    visit("doubt_std_rad", self.doubt_std_rad, between(0.0, 3.0));
-  }
-};
 
 enum class RangeStatus : std::uint8_t {
   kAccepted,

@@ -24,7 +24,7 @@ Time beam_time(const LaserScan& scan, double beam) {
 
 ScanLeveler::ScanLeveler(const Pose3& T_body_lidar, const ScanLevelerSettings& settings)
     : T_body_lidar_(T_body_lidar), settings_(settings) {
-  validate(settings, "leveling");
+  validate(settings, "scan_leveling");
 }
 
 std::optional<LevelScan> ScanLeveler::level(const LaserScan& scan, const BodyEstimator& odometry) const {
@@ -43,7 +43,7 @@ std::optional<LevelScan> ScanLeveler::level(const LaserScan& scan, const PoseLoo
   const Pose3 T_level_odom =
       Pose3{T_odom_body->position, quaternion_from_yaw(to_yaw(T_odom_body->rotation))}.inverse();
 
-  const auto mounted = [this](const Pose3& T_level_lidar) { return settings_.stabilized ? remove_tilt(T_level_lidar) : T_level_lidar; };
+  const auto mounted = [this](const Pose3& T_level_lidar) { return settings_.gimbal_stabilized ? remove_tilt(T_level_lidar) : T_level_lidar; };
   const std::size_t num_segments = std::min(kNumKnots - 1, num_beams);
   const auto knot_at = [&](std::size_t beam) -> std::optional<Knot> {
     const std::optional<Pose3> T = T_odom_body_at(beam_time(scan, static_cast<double>(beam)));
@@ -87,11 +87,11 @@ void ScanLeveler::add_beam(const Ray& ray, float range_m, double body_height_m, 
   if (std::isnan(range_m) || range_m < 0.0F) return;  // invalid, or -Inf: too close to measure
   const bool has_return = std::isfinite(range_m);
   const double in_band_m = length_in_band(ray, body_height_m);
-  const double range = has_return ? static_cast<double>(range_m) : settings_.no_return_free_m;
+  const double range = has_return ? static_cast<double>(range_m) : settings_.no_return_clearing_range_m;
   const bool is_hit = has_return && range <= in_band_m;
   if (is_hit && range > settings_.max_range_m) return;
   const Eigen::Vector2d end = (ray.start + std::min(range, in_band_m) * ray.direction).head<2>();
-  if (end.squaredNorm() < settings_.self_radius_m * settings_.self_radius_m) return;
+  if (end.squaredNorm() < settings_.self_filter_radius_m * settings_.self_filter_radius_m) return;
   level.beams.push_back({end.cast<float>(), is_hit});
 }
 

@@ -6,34 +6,10 @@
 #include "core/frames.h"
 #include "core/messages.h"
 #include "core/sensors/registry.h"
-#include "core/settings.h"
 #include "localize/body_estimator.h"
+#include "localize/scan_leveler_settings.h"
 
 namespace patrol::localize {
-
-struct ScanLevelerSettings {
-  /// Height limits of obstacles above the ground under the feet; a curb of 0.12 m is lower.
-  double min_height_m = 0.15;
-  double max_height_m = 1.5;
-  double tilt_margin_rad =
-      0.008;  ///< margin for an apparent rise of the ground with distance: tilt error and slope
-  double self_radius_m = 0.32;  ///< hits closer to the vertical axis of the body are the robot itself
-  double no_return_free_m =
-      6.0;  ///< a beam without return clears this distance only: glass and black surfaces give no return
-  double max_range_m = 30.0;  ///< hits farther away are excluded
-  bool stabilized = false;    ///< the lidar is on a stabilized gimbal: scans are level although the body tilts
-
-  template <typename Self, typename Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("min_height_m", self.min_height_m, between(-1.0, 5.0));
-    visit("max_height_m", self.max_height_m, between(0.0, 20.0));
-    visit("tilt_margin_rad", self.tilt_margin_rad, between(0.0, 0.2));
-    visit("self_radius_m", self.self_radius_m, between(0.0, 2.0));
-    visit("no_return_free_m", self.no_return_free_m, between(0.0, 100.0));
-    visit("max_range_m", self.max_range_m, between(0.1, 400.0));
-    visit("stabilized", self.stabilized);
-  }
-};
 
 using PoseLookup = std::function<std::optional<Pose3>(Time)>;
 

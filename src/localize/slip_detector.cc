@@ -7,7 +7,7 @@ namespace patrol::localize {
 namespace {
 
 constexpr double kSigmas = 4.0;       // significance threshold for the roughness
-constexpr double kMaxLateness_s = 0.5;  // maximum delay of the belts behind the IMU
+constexpr double kMaxLateness_s = 0.5;  // maximum delay of the tracks behind the IMU
 
 }  // namespace
 

@@ -7,15 +7,15 @@
 
 namespace patrol::localize {
 
-/// Evidence of slip: a speed change of the belts that differs from that of the accelerometer, within about a second.
+/// Evidence of slip: a speed change of the tracks that differs from that of the accelerometer, within about a second.
 struct SlipEvidence {
   double forward_mps = 0.0;     ///< body speed: estimate at the start of the window plus integrated acceleration
-  double disagreement_mps = 0.0;  ///< belts minus accelerometer
+  double disagreement_mps = 0.0;  ///< tracks minus accelerometer
   double duration_s = 0.0;
 };
 
-/// Slip detector: compares the speed change of the belts with the integrated IMU acceleration over a sliding window. An
-/// IMU cannot distinguish rest from steady motion. It does show whether the body accelerated together with the belts.
+/// Slip detector: compares the speed change of the tracks with the integrated IMU acceleration over a sliding window. An
+/// IMU cannot distinguish rest from steady motion. It does show whether the body accelerated together with the tracks.
 class SlipDetector {
  public:
   struct Settings {
@@ -26,7 +26,7 @@ class SlipDetector {
 
   /// Adds an IMU step: forward acceleration over the step that ends at `stamp`, without gravity.
   void add_acceleration(Time stamp, double dt_s, double acceleration_mps2);
-  /// Adds a belt reading, not newer than the newest acceleration: mean belt speed and estimated body speed. Returns
+  /// Adds a track reading, not newer than the newest acceleration: mean track speed and estimated body speed. Returns
   /// evidence if there is slip.
   std::optional<SlipEvidence> add_speed(Time stamp, double belts_mps, double estimated_mps);
   /// Starts a new window.

@@ -98,7 +98,7 @@ std::optional<GyroBiasMeasurement> StationaryGyroBiasEstimator::close() {
   const double span_s = final_.time_s - first_.time_s;
   const Eigen::Vector3d angle_var =
       2.0 * settings_.foot_std_m * settings_.foot_std_m * rotation.information.inverse().diagonal();
-  const double gyro_var = std::pow(settings_.gyro_noise_radps_per_sqrt_hz, 2) / span_s;
+  const double gyro_var = std::pow(settings_.gyro_noise_density_radps_per_sqrt_hz, 2) / span_s;
   return GyroBiasMeasurement{
       .bias_radps = (final_.gyro_angle_rad - first_.gyro_angle_rad - rotation.angle_rad) / span_s,
       .variance = (angle_var / (span_s * span_s)).array() + gyro_var};

@@ -23,7 +23,7 @@ class StationaryGyroBiasEstimator {
  public:
   struct Settings {
     double window_s;
-    double gyro_noise_radps_per_sqrt_hz;
+    double gyro_noise_density_radps_per_sqrt_hz;
     /// Standard deviation of the mean foot position at one end of the window: averaged encoder noise, and creep.
     double foot_std_m;
   };

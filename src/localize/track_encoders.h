@@ -6,7 +6,7 @@
 
 namespace patrol::localize {
 
-/// Speed of the two belts relative to the robot's body, from the track encoders; forward is positive.
+/// Speed of the two tracks relative to the robot's body, from the track encoders; forward is positive.
 struct TrackSpeed {
   double left_mps = 0.0;
   double right_mps = 0.0;
@@ -15,7 +15,7 @@ struct TrackSpeed {
   double difference_mps() const { return right_mps - left_mps; }
 };
 
-/// Motion of the belts between two encoder readings.
+/// Motion of the tracks between two encoder readings.
 struct EncoderInterval {
   Time start{}, end{};
   TrackSpeed speed{};
@@ -28,7 +28,7 @@ struct EncoderInterval {
   Time middle() const { return start + (end - start) / 2; }
 };
 
-/// Track encoders: belt speeds from the running counts of the Hall sensors.
+/// Track encoders: track speeds from the running counts of the Hall sensors.
 class TrackEncoders {
  public:
   struct Settings {
@@ -43,7 +43,7 @@ class TrackEncoders {
 
   /// Returns whether there was no tick for at least `kStandstill`.
   bool is_stationary() const { return stationary_since_ && last_ && last_->stamp - *stationary_since_ >= kStandstill; }
-  /// Returns the start of the standstill; valid only while `stand()` is true.
+  /// Returns the start of the standstill; valid only while `is_stationary()` is true.
   Time stationary_since() const { return *stationary_since_; }
   /// Returns the most recent reading.
   const std::optional<TrackTicks>& last() const { return last_; }

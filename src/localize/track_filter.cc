@@ -16,11 +16,11 @@ constexpr double kTrackStartTiltStd_rad = 0.05;
 constexpr double kTrackStartVelocityStd_mps = 0.05;
 constexpr double kTrackGate = 16.27;     // 99.9 % of chi-square, three degrees of freedom
 constexpr double kLostSpeedStd_mps = 0.1;
-constexpr double kBeltSmoothing_s = 1.0;
+constexpr double kTrackSmoothing_s = 1.0;
 constexpr double kPoseCorrectionTime_s = 0.5;       // after a loss of traction; the first readings contain nearly all information
 constexpr int kPoseRows[4] = {Error::kPosition, Error::kPosition + 1, Error::kPosition + 2, Error::kRotation + 2};
 // Process noise without an IMU.
-constexpr double kTrackCoastYawRateStd = 0.05;  // rad/sqrt(s): yaw rate from the belts
+constexpr double kTrackCoastYawRateStd = 0.05;  // rad/sqrt(s): yaw rate from the tracks
 constexpr double kTrackCoastTiltStd = 0.03;     // rad/sqrt(s)
 constexpr double kTrackCoastVelocityStd = 1.0;  // m/s/sqrt(s)
 
@@ -36,8 +36,8 @@ TrackFilter::TrackFilter(const Settings& settings, const InertialSample& first) 
   set_std(Error::kGyroBias, settings.gyro_bias_std_radps);
   set_std(Error::kAccelBias, settings.accel_bias_std_mps2);
   P_(kScale, kScale) = std::pow(settings.scale_std, 2);
-  P_(kIcr, kIcr) = std::pow(settings.turn_centre_x_std_m, 2);
-  P_(kIcr + 1, kIcr + 1) = std::pow(settings.turn_centre_y_std_m, 2);
+  P_(kIcr, kIcr) = std::pow(settings.icr_x_std_m, 2);
+  P_(kIcr + 1, kIcr + 1) = std::pow(settings.icr_y_std_m, 2);
 }
 
 void TrackFilter::predict(double dt_s, const InertialSample& sample) {
@@ -48,7 +48,7 @@ void TrackFilter::predict(double dt_s, const InertialSample& sample) {
 
   const InertialStep step = integrate(motion_, dt_s, omega, force);
   forward_acceleration_mps2_ = (step.after.v_body - motion_.v_body).x() / dt_s;
-  smooth_belts_mps_ += dt_s * forward_acceleration_mps2_;
+  smooth_track_mps_ += dt_s * forward_acceleration_mps2_;
   motion_ = step.after;
   motion_.omega_body = sample.rate_radps - gyro_bias_;
 
@@ -56,12 +56,12 @@ void TrackFilter::predict(double dt_s, const InertialSample& sample) {
   const auto add_noise = [&](int block, double density) {
     P_.diagonal().segment<3>(block).array() += dt_s * density * density;
   };
-  add_noise(Error::kRotation, settings_.gyro_noise_radps_per_sqrt_hz);
-  add_noise(Error::kVelocity, settings_.accel_noise_mps2_per_sqrt_hz);
-  add_noise(Error::kGyroBias, settings_.gyro_bias_walk_radps_per_sqrt_s);
-  add_noise(Error::kAccelBias, settings_.accel_bias_walk_mps2_per_sqrt_s);
+  add_noise(Error::kRotation, settings_.gyro_noise_density_radps_per_sqrt_hz);
+  add_noise(Error::kVelocity, settings_.accel_noise_density_mps2_per_sqrt_hz);
+  add_noise(Error::kGyroBias, settings_.gyro_bias_random_walk_radps_per_sqrt_s);
+  add_noise(Error::kAccelBias, settings_.accel_bias_random_walk_mps2_per_sqrt_s);
   P_(Error::kRotation + 2, Error::kRotation + 2) +=
-      dt_s * std::abs(omega.z()) * std::pow(settings_.turn_std_rad_per_sqrt_rad, 2);
+      dt_s * std::abs(omega.z()) * std::pow(settings_.yaw_random_walk_rad_per_sqrt_rad, 2);
 }
 
 void TrackFilter::coast(double dt_s, double yaw_rate_radps) {
@@ -87,10 +87,10 @@ void TrackFilter::propagate_slip(double way_m, double turn_rad, double slip_std)
     P_.col(row) *= a;
     P_(row, row) += (1.0 - a * a) * std * std;
   };
-  decay(kSlip, slip_, std::exp(-way_m / settings_.slip_length_m), slip_std);
-  const double a_turn = std::exp(-turn_rad / settings_.turn_centre_length_rad);
-  decay(kIcr, icr_m_.x(), a_turn, settings_.turn_centre_x_std_m);
-  decay(kIcr + 1, icr_m_.y(), a_turn, settings_.turn_centre_y_std_m);
+  decay(kSlip, slip_, std::exp(-way_m / settings_.slip_correlation_m), slip_std);
+  const double a_turn = std::exp(-turn_rad / settings_.icr_correlation_rad);
+  decay(kIcr, icr_m_.x(), a_turn, settings_.icr_x_std_m);
+  decay(kIcr + 1, icr_m_.y(), a_turn, settings_.icr_y_std_m);
 }
 
 // With p = p_true - dp, omega = omega_true + dbg and s = scale + slip = s_true - ds, the innovation
@@ -98,16 +98,16 @@ void TrackFilter::propagate_slip(double way_m, double turn_rad, double slip_std)
 //
 // The speed u that multiplies slip must not share the noise of the reading. Encoder steps of 1 to 2 mm would otherwise
 // bias the scale by several percent. It is therefore smoothed over one second and predicted with the IMU in between.
-void TrackFilter::correct_speed(double dt_s, double belts_mps, const TrunkMotion& then, const Eigen::Vector3d& std_mps) {
-  smooth_belts_mps_ += std::min(1.0, dt_s / kBeltSmoothing_s) * (belts_mps - smooth_belts_mps_);
+void TrackFilter::correct_speed(double dt_s, double track_mps, const TrunkMotion& then, const Eigen::Vector3d& std_mps) {
+  smooth_track_mps_ += std::min(1.0, dt_s / kTrackSmoothing_s) * (track_mps - smooth_track_mps_);
   const Eigen::Vector3d p(icr_m_.x(), icr_m_.y(), -settings_.height_m);
   const Eigen::Vector3d innovation =
-      Eigen::Vector3d(belts_mps - (scale_ + slip_) * smooth_belts_mps_, 0.0, 0.0) - then.v_body - then.omega_body.cross(p);
+      Eigen::Vector3d(track_mps - (scale_ + slip_) * smooth_track_mps_, 0.0, 0.0) - then.v_body - then.omega_body.cross(p);
 
   Eigen::Matrix<double, 3, kSize> H = Eigen::Matrix<double, 3, kSize>::Zero();
   H.middleCols<3>(Error::kVelocity).setIdentity();
   H.middleCols<3>(Error::kGyroBias) = cross_matrix(p);
-  H(0, kScale) = H(0, kSlip) = smooth_belts_mps_;
+  H(0, kScale) = H(0, kSlip) = smooth_track_mps_;
   H.middleCols<2>(kIcr) = cross_matrix(then.omega_body).leftCols<2>();
 
   const Gain W = P_ * H.transpose();
@@ -142,9 +142,9 @@ void TrackFilter::start_slip(double forward_mps, double way_std_m) {
   P_.block<3, 3>(Error::kPosition, Error::kPosition) += along * along.transpose();
 }
 
-void TrackFilter::end_slip(double belts_mps, double slip_std) {
+void TrackFilter::end_slip(double track_mps, double slip_std) {
   pose_correction_time_s_ = std::min(pose_correction_time_s_, kPoseCorrectionTime_s);
-  smooth_belts_mps_ = belts_mps;
+  smooth_track_mps_ = track_mps;
   slip_ = 0.0;
   decorrelate_state(kSlip, slip_std * slip_std);
 }
@@ -204,7 +204,7 @@ void TrackFilter::apply_error(const Eigen::Matrix<double, kSize, 1>& error) {
 
 // v = ((1 - scale - slip) u, 0) - omega x p
 Eigen::Vector2d TrackFilter::systematic_velocity_variance() const {
-  const double u = smooth_belts_mps_, omega = motion_.omega_body.z();
+  const double u = smooth_track_mps_, omega = motion_.omega_body.z();
   const Eigen::Vector4d ahead(-u, -u, 0.0, omega), left(0.0, 0.0, -omega, 0.0);
   const Eigen::Matrix4d P = P_.bottomRightCorner<4, 4>();
   return {ahead.dot(P * ahead), left.dot(P * left)};

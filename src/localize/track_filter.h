@@ -9,31 +9,31 @@ namespace patrol::localize {
 /// Error-state Kalman filter of a tracked robot: position, attitude, velocity, gyro and accelerometer bias as in
 /// InertialFilter, and the states of the track-soil interaction:
 ///
-///   scale        relative belt distance error (wear, tension): constant; positive if the encoders read too much
+///   scale        relative track distance error (wear, tension): constant; positive if the encoders read too much
 ///   slip         longitudinal slip ratio; Gauss-Markov process over distance
-///   turn center  (x, y) in body, m: mean of the instantaneous centers of rotation of the tracks [Mandow07], the point
+///   ICR          (x, y) in body, m: mean of the instantaneous centers of rotation of the tracks [Mandow07], the point
 ///                that moves straight ahead while the body rotates; Gauss-Markov process over rotation
 ///
-/// The belts measure the velocity of the turn center p at ground level: v + omega x p = ((1 - scale - slip) u, 0, 0),
-/// with u the mean belt speed. The yaw rate is that of the gyro, because the difference of the belt speeds is dominated
+/// The tracks measure the velocity of the ICR p at ground level: v + omega x p = ((1 - scale - slip) u, 0, 0),
+/// with u the mean track speed. The yaw rate is that of the gyro, because the difference of the track speeds is dominated
 /// by scrub. Yaw and position are not measured, and later estimates do not correct them: odom must not jump. (After a
 /// kilometer a tiny change of scale would repeatedly shift the position by a centimeter.) Exception: the drift of the
 /// IMU during a loss of traction is corrected.
 class TrackFilter {
  public:
   struct Settings {
-    double gyro_noise_radps_per_sqrt_hz;
+    double gyro_noise_density_radps_per_sqrt_hz;
     double gyro_bias_std_radps;  ///< at power-on
-    double gyro_bias_walk_radps_per_sqrt_s;
-    double accel_noise_mps2_per_sqrt_hz;
+    double gyro_bias_random_walk_radps_per_sqrt_s;
+    double accel_noise_density_mps2_per_sqrt_hz;
     double accel_bias_std_mps2;  ///< at power-on
-    double accel_bias_walk_mps2_per_sqrt_s;
-    double turn_std_rad_per_sqrt_rad;  ///< gyro scale factor and misalignment, during rotation
+    double accel_bias_random_walk_mps2_per_sqrt_s;
+    double yaw_random_walk_rad_per_sqrt_rad;  ///< gyro scale factor and misalignment, during rotation
     double scale_std;
-    double slip_length_m;           ///< correlation length of slip, in belt distance
-    double turn_centre_x_std_m;     ///< longitudinal offset: lateral slip during rotation
-    double turn_centre_y_std_m;     ///< lateral offset: different traction of the two sides
-    double turn_centre_length_rad;  ///< correlation angle of the turn center
+    double slip_correlation_m;           ///< correlation length of slip, in track distance
+    double icr_x_std_m;     ///< longitudinal offset: lateral slip during rotation
+    double icr_y_std_m;     ///< lateral offset: different traction of the two sides
+    double icr_correlation_rad;  ///< correlation angle of the ICR
     double height_m;                ///< height of the body origin above the ground
   };
 
@@ -42,16 +42,16 @@ class TrackFilter {
 
   /// Predicts from the previous sample to this one.
   void predict(double dt_s, const InertialSample& sample);
-  /// Predicts without IMU: velocity and tilt are constant, the yaw rate is that of the belts.
+  /// Predicts without IMU: velocity and tilt are constant, the yaw rate is that of the tracks.
   void coast(double dt_s, double yaw_rate_radps);
 
-  /// Propagates slip and turn center over a belt motion. `slip_std`: stationary standard deviation of slip on this
+  /// Propagates slip and ICR over a track motion. `slip_std`: stationary standard deviation of slip on this
   /// ground in this maneuver.
   void propagate_slip(double way_m, double turn_rad, double slip_std);
-  /// Corrects with the belt speed over `dt_s`, during which the body motion was `then`. `std_mps`: standard deviations
-  /// of the velocity of the turn center, in body. An innovation beyond the 99.9 % bound is down-weighted instead of
+  /// Corrects with the track speed over `dt_s`, during which the body motion was `then`. `std_mps`: standard deviations
+  /// of the velocity of the ICR, in body. An innovation beyond the 99.9 % bound is down-weighted instead of
   /// rejected.
-  void correct_speed(double dt_s, double belts_mps, const TrunkMotion& then, const Eigen::Vector3d& std_mps);
+  void correct_speed(double dt_s, double track_mps, const TrunkMotion& then, const Eigen::Vector3d& std_mps);
   /// Corrects with a velocity estimate, when no better measurement is available.
   void correct_velocity(const Eigen::Vector3d& v_body, double std_mps);
   void correct_gyro_bias(const Eigen::Vector3d& bias_radps, const Eigen::Vector3d& variance);
@@ -60,7 +60,7 @@ class TrackFilter {
   /// deviation of the distance error accumulated so far.
   void start_slip(double forward_mps, double way_std_m);
   /// Ends a loss of traction, at rest or at this speed; resets the slip estimate.
-  void end_slip(double belts_mps, double slip_std);
+  void end_slip(double track_mps, double slip_std);
   /// Resets odom: its origin and x axis become those of the present pose.
   void set_origin();
 
@@ -79,7 +79,7 @@ class TrackFilter {
   static constexpr int kScale = InertialError::kSize, kSlip = kScale + 1, kIcr = kSlip + 1, kSize = kIcr + 2;
   using Covariance = Eigen::Matrix<double, kSize, kSize>;
   const Covariance& covariance() const { return P_; }
-  /// Returns the variance of the longitudinal and lateral velocity from scale, slip and turn center, (m/s)2.
+  /// Returns the variance of the longitudinal and lateral velocity from scale, slip and ICR, (m/s)2.
   Eigen::Vector2d systematic_velocity_variance() const;
   /// Returns the covariance of x, y, yaw in odom.
   Eigen::Matrix3d planar_covariance() const;
@@ -104,7 +104,7 @@ class TrackFilter {
   InertialSample last_;
   double forward_acceleration_mps2_ = 0.0;
   double pose_correction_time_s_ = 0.0;      ///< remaining time in which corrections also change position and yaw
-  double smooth_belts_mps_ = 0.0;  ///< belt speed, predicted with the IMU and slowly corrected by the encoders
+  double smooth_track_mps_ = 0.0;  ///< track speed, predicted with the IMU and slowly corrected by the encoders
   Covariance P_ = Covariance::Zero();
 };
 

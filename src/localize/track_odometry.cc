@@ -11,42 +11,42 @@
 namespace patrol::localize {
 namespace {
 
-constexpr Time kTickSilence = std::chrono::milliseconds(200);
+constexpr Time kEncoderTimeout = std::chrono::milliseconds(200);
 constexpr double kStandingStd_mps = 0.002;
-constexpr double kStandstillCreep_m = 1e-5;  // of the belts' ends over a window at rest
-constexpr double kMaxBiasSigmas = 5.0;       // a gyro at rest that reads more is being turned
-constexpr double kTrackHoldStd_mps = 0.5;         // without the belts the velocity is at least not this wrong
-constexpr double kLastingSideways = 0.005;   // share of the way, straight on
-constexpr double kAgreement_mps = 0.15;      // of belts and IMU, after their disagreement,
-constexpr Time kAgreement = std::chrono::milliseconds(300);  // and how long it must last
+constexpr double kStandstillCreep_m = 1e-5;  // motion of the track ends over a window at rest
+constexpr double kMaxBiasSigmas = 5.0;       // a larger reading at rest is a rotation
+constexpr double kTrackVelocityLimitStd_mps = 0.5;         // bound on the velocity error without encoders
+constexpr double kSystematicLateral = 0.005;   // lateral per forward velocity, straight motion
+constexpr double kAgreement_mps = 0.15;      // maximum difference of tracks and IMU after slip,
+constexpr Time kAgreement = std::chrono::milliseconds(300);  // and its minimum duration
 
 const TrackOdometrySettings& checked(const TrackOdometrySettings& settings) {
-  validate(settings, "odometry");
+  validate(settings, "odometry.tracked");
   return settings;
 }
 
 const RobotDescription& checked(const RobotDescription& robot) {
-  if (!robot.tracks) throw InputError(fmt::format("robot {} has no tracks: track odometry needs them", robot.name));
+  if (!robot.tracks) throw InputError(fmt::format("robot {}: has no tracks: tracked odometry requires a tracked robot", robot.name));
   return robot;
 }
 
 TrackFilter::Settings filter_settings(const TrackOdometrySettings& s, const TrackGeometry& tracks) {
-  return {.gyro_noise_radps_per_sqrt_hz = s.gyro_noise_radps_per_sqrt_hz,
+  return {.gyro_noise_density_radps_per_sqrt_hz = s.gyro_noise_density_radps_per_sqrt_hz,
           .gyro_bias_std_radps = s.gyro_bias_std_radps,
-          .gyro_bias_walk_radps_per_sqrt_s = s.gyro_bias_walk_radps_per_sqrt_s,
-          .accel_noise_mps2_per_sqrt_hz = s.accel_noise_mps2_per_sqrt_hz,
+          .gyro_bias_random_walk_radps_per_sqrt_s = s.gyro_bias_random_walk_radps_per_sqrt_s,
+          .accel_noise_density_mps2_per_sqrt_hz = s.accel_noise_density_mps2_per_sqrt_hz,
           .accel_bias_std_mps2 = s.accel_bias_std_mps2,
-          .accel_bias_walk_mps2_per_sqrt_s = s.accel_bias_walk_mps2_per_sqrt_s,
-          .turn_std_rad_per_sqrt_rad = s.turn_std_rad_per_sqrt_rad,
+          .accel_bias_random_walk_mps2_per_sqrt_s = s.accel_bias_random_walk_mps2_per_sqrt_s,
+          .yaw_random_walk_rad_per_sqrt_rad = s.yaw_random_walk_rad_per_sqrt_rad,
           .scale_std = s.scale_std,
-          .slip_length_m = s.slip_length_m,
-          .turn_centre_x_std_m = s.turn_centre_x_std_m,
-          .turn_centre_y_std_m = s.turn_centre_y_std_m,
-          .turn_centre_length_rad = s.turn_centre_length_rad,
+          .slip_correlation_m = s.slip_correlation_m,
+          .icr_x_std_m = s.icr_x_std_m,
+          .icr_y_std_m = s.icr_y_std_m,
+          .icr_correlation_rad = s.icr_correlation_rad,
           .height_m = tracks.body_height_m};
 }
 
-/// The four ends of the two belts, as feet that all stand.
+/// Returns the four ends of the two tracks as stance feet.
 StanceFeet track_ends(const TrackGeometry& tracks) {
   StanceFeet ends;
   for (int end = 0; end < kNumLegs; ++end) {
@@ -61,31 +61,31 @@ StanceFeet track_ends(const TrackGeometry& tracks) {
 TrackOdometry::TrackOdometry(const RobotDescription& robot, const TrackOdometrySettings& settings)
     : robot_(checked(robot)),
       settings_(checked(settings)),
-      metres_per_tick_(2.0 * std::numbers::pi * robot.tracks->sprocket_radius_m / settings.ticks_per_sprocket_turn),
+      meters_per_tick_(2.0 * std::numbers::pi * robot.tracks->sprocket_radius_m / settings.ticks_per_sprocket_turn),
       track_ends_(track_ends(*robot.tracks)),
       imu_(robot.T_body("imu"), {.standstill = {.window_s = settings.standstill_window_s,
-                                                .gyro_noise_radps_per_sqrt_hz = settings.gyro_noise_radps_per_sqrt_hz,
+                                                .gyro_noise_density_radps_per_sqrt_hz = settings.gyro_noise_density_radps_per_sqrt_hz,
                                                 .foot_std_m = kStandstillCreep_m},
-                                 .history_s = settings.history_s,
-                                 .extrapolation_s = settings.extrapolation_s}),
-      slip_watch_({.window_s = settings.slip_window_s, .threshold_mps = settings.slip_disagreement_mps}),
-      counters_({.meters_per_tick = metres_per_tick_, .max_acceleration_mps2 = settings.max_belt_acceleration_mps2}) {}
+                                 .buffer_s = settings.buffer_s,
+                                 .max_extrapolation_s = settings.max_extrapolation_s}),
+      slip_detector_({.window_s = settings.slip_window_s, .threshold_mps = settings.slip_disagreement_mps}),
+      encoders_({.meters_per_tick = meters_per_tick_, .max_acceleration_mps2 = settings.max_track_acceleration_mps2}) {}
 
 void TrackOdometry::add(const Imu& imu) {
-  const std::optional<InertialSample> sample = imu_.accept(imu, !counters_.is_stationary());
+  const std::optional<InertialSample> sample = imu_.accept(imu, !encoders_.is_stationary());
   if (!sample) return;
   advance(imu.stamp, *sample);
-  take_pending();
+  process_pending();
 }
 
 void TrackOdometry::add(const TrackTicks& ticks) {
-  const TrackTicks* newest = !pending_.is_empty() ? &pending_.newest() : counters_.last() ? &*counters_.last() : nullptr;
+  const TrackTicks* newest = !pending_.is_empty() ? &pending_.newest() : encoders_.last() ? &*encoders_.last() : nullptr;
   if ((newest && ticks.stamp <= newest->stamp) || pending_.is_full()) {
     imu_.reject();
     return;
   }
   pending_.insert(ticks);
-  take_pending();
+  process_pending();
 }
 
 void TrackOdometry::advance(Time stamp, const InertialSample& sample) {
@@ -98,18 +98,18 @@ void TrackOdometry::advance(Time stamp, const InertialSample& sample) {
     imu_.filter()->end_slip(0.0, settings_.slip_std);
     started_ = stamp;
   } else if (step == Step::kBridged) {
-    slip_watch_.reset();
+    slip_detector_.reset();
   } else {
-    slip_watch_.add_acceleration(stamp, to_seconds(stamp - before), imu_.filter()->forward_acceleration_mps2());
+    slip_detector_.add_acceleration(stamp, to_seconds(stamp - before), imu_.filter()->forward_acceleration_mps2());
   }
-  watch_standstill(sample);
-  has_settled_ = has_settled_ || to_seconds(stamp - started_) > settings_.start_patience_s;
+  update_standstill(sample);
+  has_settled_ = has_settled_ || to_seconds(stamp - started_) > settings_.init_timeout_s;
   imu_.remember();
-  if (last_speed_update_ && ticks_are_silent()) hold_velocity();
+  if (last_speed_update_ && encoders_timed_out()) limit_velocity();
 }
 
-// Counters are due once the IMU has passed their instant, or is late.
-void TrackOdometry::take_pending() {
+// An encoder reading is due when the IMU has passed its stamp or has timed out.
+void TrackOdometry::process_pending() {
   if (!imu_.filter()) {
     pending_.clear();
     return;
@@ -117,7 +117,7 @@ void TrackOdometry::take_pending() {
   while (!pending_.is_empty()) {
     const TrackTicks ticks = pending_.oldest();
     if (ticks.stamp > imu_.now()) {
-      if (to_seconds(pending_.newest().stamp - imu_.now()) <= settings_.imu_patience_s) return;
+      if (to_seconds(pending_.newest().stamp - imu_.now()) <= settings_.imu_timeout_s) return;
       coast_to(ticks);
     }
     pending_.pop_oldest();
@@ -126,77 +126,77 @@ void TrackOdometry::take_pending() {
 }
 
 void TrackOdometry::coast_to(const TrackTicks& ticks) {
-  slip_watch_.reset();
+  slip_detector_.reset();
   double yaw_rate = imu_.filter()->yaw_rate_radps();
-  if (const auto& last = counters_.last()) {
+  if (const auto& last = encoders_.last()) {
     const auto turn_ticks = static_cast<double>((ticks.right - last->right) - (ticks.left - last->left));
-    yaw_rate = turn_ticks * metres_per_tick_ / to_seconds(ticks.stamp - last->stamp) /
-               (robot_.tracks->gauge_m * settings_.turn_ratio);
+    yaw_rate = turn_ticks * meters_per_tick_ / to_seconds(ticks.stamp - last->stamp) /
+               (robot_.tracks->gauge_m * settings_.skid_ratio);
   }
   imu_.coast_to(ticks.stamp, yaw_rate);
 }
 
 void TrackOdometry::use_ticks(const TrackTicks& ticks) {
-  const bool is_first = !counters_.last();
-  const std::optional<EncoderInterval> belts = counters_.add(ticks);
-  const std::optional<TrunkMotion> then = belts ? imu_.motion_at(belts->middle()) : std::nullopt;
+  const bool is_first = !encoders_.last();
+  const std::optional<EncoderInterval> interval = encoders_.add(ticks);
+  const std::optional<TrunkMotion> then = interval ? imu_.motion_at(interval->middle()) : std::nullopt;
   if (!then) {
     if (!is_first) imu_.reject();
     return;
   }
-  if (!imu_.is_silent() && !watch_grip(*belts)) return;
+  if (!imu_.has_timed_out() && !update_slip_state(*interval)) return;
 
-  const double disagreement = yaw_rate_disagreement_radps(*belts, *then);
+  const double disagreement = yaw_rate_disagreement_radps(*interval, *then);
   const double yaw_rate = std::abs(then->omega_body.z());
-  imu_.filter()->propagate_slip(0.5 * (std::abs(belts->speed.left_mps) + std::abs(belts->speed.right_mps)) * belts->dt_s(),
-                  yaw_rate * belts->dt_s(), usual_slip_std(yaw_rate, disagreement));
-  imu_.filter()->correct_speed(belts->dt_s(), belts->speed.mean_mps(), *then, speed_std(*belts, *then, disagreement));
-  last_speed_update_ = belts->end;
+  imu_.filter()->propagate_slip(0.5 * (std::abs(interval->speed.left_mps) + std::abs(interval->speed.right_mps)) * interval->dt_s(),
+                  yaw_rate * interval->dt_s(), stationary_slip_std(yaw_rate, disagreement));
+  imu_.filter()->correct_speed(interval->dt_s(), interval->speed.mean_mps(), *then, speed_std(*interval, *then, disagreement));
+  last_speed_update_ = interval->end;
   last_speed_ = imu_.filter()->motion().v_body;
   imu_.remember();
 }
 
-double TrackOdometry::yaw_rate_disagreement_radps(const EncoderInterval& belts, const TrunkMotion& then) const {
-  const double by_belts = belts.smooth.difference_mps() / (robot_.tracks->gauge_m * settings_.turn_ratio);
-  return std::abs(by_belts - then.omega_body.z());
+double TrackOdometry::yaw_rate_disagreement_radps(const EncoderInterval& interval, const TrunkMotion& then) const {
+  const double by_tracks = interval.smooth.difference_mps() / (robot_.tracks->gauge_m * settings_.skid_ratio);
+  return std::abs(by_tracks - then.omega_body.z());
 }
 
-double TrackOdometry::usual_slip_std(double yaw_rate_radps, double disagreement_radps) const {
+double TrackOdometry::stationary_slip_std(double yaw_rate_radps, double disagreement_radps) const {
   const Eigen::Vector3d up = imu_.filter()->up_in_body();
-  const Eigen::Vector4d parts(settings_.slip_std, settings_.slip_std_per_radps * yaw_rate_radps,
+  const Eigen::Vector4d terms(settings_.slip_std, settings_.slip_std_per_radps * yaw_rate_radps,
                               settings_.slip_std_per_tilt * up.head<2>().norm(),
                               settings_.slip_std_per_disagreement * disagreement_radps);
-  return parts.norm();
+  return terms.norm();
 }
 
-Eigen::Vector3d TrackOdometry::speed_std(const EncoderInterval& belts, const TrunkMotion& then,
+Eigen::Vector3d TrackOdometry::speed_std(const EncoderInterval& interval, const TrunkMotion& then,
                                          double disagreement_radps) const {
-  if (counters_.is_stationary()) return Eigen::Vector3d::Constant(kStandingStd_mps);
-  // A count is off by up to one tick at either end of the interval, evenly; two belts.
-  const double step_std = belts.step_mps / std::sqrt(12.0);
+  if (encoders_.is_stationary()) return Eigen::Vector3d::Constant(kStandingStd_mps);
+  // Quantization: uniform error of one tick at either end of the interval, two tracks.
+  const double step_std = interval.step_mps / std::sqrt(12.0);
   Eigen::Matrix<double, 5, 1> along;
-  along << settings_.speed_std_mps, step_std, settings_.scrub_std * belts.smooth.difference_mps(),
-      settings_.acceleration_std_s * belts.acceleration_mps2, settings_.disagreement_std_m * disagreement_radps;
+  along << settings_.speed_std_mps, step_std, settings_.scrub_std * interval.smooth.difference_mps(),
+      settings_.acceleration_std_s * interval.acceleration_mps2, settings_.disagreement_std_m * disagreement_radps;
   return {along.norm(), std::hypot(settings_.lateral_std_mps, settings_.lateral_std_m * then.omega_body.z()),
           settings_.vertical_std_mps};
 }
 
-// Belts that have lost their grip, and counters that stand still while the body goes on, look alike: what they say is not what
-// the body does. The IMU carries on alone until both agree for a while.
-bool TrackOdometry::watch_grip(const EncoderInterval& belts) {
-  const double believed = imu_.filter()->motion().v_body.x(), belts_mps = belts.smooth.mean_mps();
-  if (grip_is_lost_) {
-    if (std::abs(belts_mps - believed) > kAgreement_mps) agree_since_.reset();
-    else if (!agree_since_) agree_since_ = belts.start;
-    if (!agree_since_ || belts.end - *agree_since_ < kAgreement) return false;
-    grip_is_lost_ = false;
-    slip_watch_.reset();
-    imu_.filter()->end_slip(belts_mps, settings_.slip_std);
+// Loss of traction and frozen encoders are alike: the track speeds differ from the body speed. The IMU alone propagates
+// the estimate until both agree for `kAgreement`.
+bool TrackOdometry::update_slip_state(const EncoderInterval& interval) {
+  const double estimated_mps = imu_.filter()->motion().v_body.x(), track_mps = interval.smooth.mean_mps();
+  if (is_slipping_) {
+    if (std::abs(track_mps - estimated_mps) > kAgreement_mps) agree_since_.reset();
+    else if (!agree_since_) agree_since_ = interval.start;
+    if (!agree_since_ || interval.end - *agree_since_ < kAgreement) return false;
+    is_slipping_ = false;
+    slip_detector_.reset();
+    imu_.filter()->end_slip(track_mps, settings_.slip_std);
   }
-  const auto evidence = slip_watch_.add_speed(belts.end, belts.speed.mean_mps(), believed);
+  const auto evidence = slip_detector_.add_speed(interval.end, interval.speed.mean_mps(), estimated_mps);
   if (!evidence) return true;
-  ++slip_events_;
-  grip_is_lost_ = true;
+  ++num_slip_events_;
+  is_slipping_ = true;
   agree_since_.reset();
   imu_.filter()->start_slip(evidence->forward_mps, 0.5 * std::abs(evidence->disagreement_mps) * evidence->duration_s);
   last_speed_ = imu_.filter()->motion().v_body;
@@ -204,26 +204,26 @@ bool TrackOdometry::watch_grip(const EncoderInterval& belts) {
   return false;
 }
 
-void TrackOdometry::watch_standstill(const InertialSample& sample) {
-  if (!counters_.is_stationary() || grip_is_lost_) {
-    imu_.bias_meter().reset();
+void TrackOdometry::update_standstill(const InertialSample& sample) {
+  if (!encoders_.is_stationary() || is_slipping_) {
+    imu_.bias_estimator().reset();
     return;
   }
-  const auto reading = imu_.bias_meter().add(imu_.now(), track_ends_, sample.rate_radps);
+  const auto reading = imu_.bias_estimator().add(imu_.now(), track_ends_, sample.rate_radps);
   if (!reading) return;
   if (reading->bias_radps.cwiseAbs().maxCoeff() > kMaxBiasSigmas * settings_.gyro_bias_std_radps) return;
   imu_.filter()->correct_gyro_bias(reading->bias_radps, reading->variance);
   imu_.filter()->end_slip(0.0, settings_.slip_std);
-  if (has_settled_ || to_seconds(imu_.now() - counters_.stationary_since()) < settings_.settle_s) return;
+  if (has_settled_ || to_seconds(imu_.now() - encoders_.stationary_since()) < settings_.settling_time_s) return;
   imu_.filter()->set_origin();
-  imu_.forget_history();
+  imu_.clear_history();
   has_settled_ = true;
 }
 
-// By the IMU alone the velocity would run away; it stays about what it was when the belts were last heard.
-void TrackOdometry::hold_velocity() {
-  if (!imu_.is_velocity_hold_due(kTickSilence)) return;
-  imu_.filter()->correct_velocity(last_speed_, kTrackHoldStd_mps);
+// The velocity of the IMU alone diverges; it stays near that of the last encoder reading.
+void TrackOdometry::limit_velocity() {
+  if (!imu_.is_velocity_limit_due(kEncoderTimeout)) return;
+  imu_.filter()->correct_velocity(last_speed_, kTrackVelocityLimitStd_mps);
   imu_.remember();
 }
 
@@ -237,26 +237,26 @@ std::optional<Pose3> TrackOdometry::T_odom_body_at(Time stamp) const {
   return imu_.T_odom_body_at(stamp);
 }
 
-// With the belts heard, the velocity's quick errors (steps of the counters, shocks) average out within a tenth of a second; what
-// lasts is slip and the turn's centre, unless the IMU knows better.
+// With encoder readings, fast velocity errors (quantization, vibration) average out within a tenth of a second. The
+// systematic errors are slip and ICR, unless the IMU constrains them.
 Eigen::Vector3d TrackOdometry::twist_std() const {
   if (!imu_.filter()) return Eigen::Vector3d::Zero();
   constexpr int kVelocity = InertialError::kVelocity, kBias = InertialError::kGyroBias + 2;
   const auto& P = imu_.filter()->covariance();
   Eigen::Vector2d variance = P.diagonal().segment<2>(kVelocity);
-  if (!ticks_are_silent()) variance = variance.cwiseMin(imu_.filter()->systematic_velocity_variance());
-  const double sideways = kLastingSideways * imu_.filter()->motion().v_body.x();
-  return {std::sqrt(variance.x()), std::hypot(std::sqrt(variance.y()), sideways), std::sqrt(P(kBias, kBias))};
+  if (!encoders_timed_out()) variance = variance.cwiseMin(imu_.filter()->systematic_velocity_variance());
+  const double lateral_mps = kSystematicLateral * imu_.filter()->motion().v_body.x();
+  return {std::sqrt(variance.x()), std::hypot(std::sqrt(variance.y()), lateral_mps), std::sqrt(P(kBias, kBias))};
 }
 
-bool TrackOdometry::ticks_are_silent() const { return !last_speed_update_ || imu_.now() - *last_speed_update_ > kTickSilence; }
+bool TrackOdometry::encoders_timed_out() const { return !last_speed_update_ || imu_.now() - *last_speed_update_ > kEncoderTimeout; }
 
 TrackOdometryHealth TrackOdometry::health() const {
-  TrackOdometryHealth health{.imu_is_silent = imu_.is_silent(),
-                             .grip_is_lost = grip_is_lost_,
-                             .rejected_messages = imu_.rejected_messages(),
-                             .slip_events = slip_events_};
-  health.ticks_are_silent = ticks_are_silent();
+  TrackOdometryHealth health{.imu_timed_out = imu_.has_timed_out(),
+                             .is_slipping = is_slipping_,
+                             .num_rejected_messages = imu_.num_rejected_messages(),
+                             .num_slip_events = num_slip_events_};
+  health.encoders_timed_out = encoders_timed_out();
   if (!imu_.filter()) return health;
   health.gyro_z_bias_std_radps = twist_std().z();
   return health;

@@ -6,114 +6,33 @@
 #include "core/messages.h"
 #include "core/robot_description.h"
 #include "core/sensors/registry.h"
-#include "core/settings.h"
 #include "localize/track_encoders.h"
 #include "localize/imu_front_end.h"
 #include "localize/pending_readings.h"
 #include "localize/slip_detector.h"
 #include "localize/track_filter.h"
+#include "localize/track_odometry_settings.h"
 
 namespace patrol::localize {
 
-/// Defaults fit a MEMS IMU of robotics grade and tracks on rock, gravel and concrete.
-struct TrackOdometrySettings {
-  // IMU.
-  double gyro_noise_radps_per_sqrt_hz = 3.5e-4;  ///< of readings taken at 250 Hz, not averaged in between
-  double gyro_bias_std_radps = 5e-3;             ///< at switch-on
-  double gyro_bias_walk_radps_per_sqrt_s = 1e-5;
-  double accel_noise_mps2_per_sqrt_hz = 0.05;  ///< the shocks of driving included
-  double accel_bias_std_mps2 = 0.05;           ///< at switch-on
-  double accel_bias_walk_mps2_per_sqrt_s = 1e-3;
-  double turn_std_rad_per_sqrt_rad = 0.002;  ///< the gyro's scale and misalignment
-  // What the counters are, and how far the belts are to be believed.
-  double ticks_per_sprocket_turn = 720.0;  ///< edges of the motor's Hall sensors, by the gear
-  double turn_ratio = 1.5;             ///< yaw rate by the belts' difference over the gauge, to the true one: scrub
-  double speed_std_mps = 0.01;         ///< of the mean belt speed, straight on
-  double scrub_std = 0.02;             ///< and more by this share of the belts' difference,
-  double acceleration_std_s = 0.01;    ///< by this time of their acceleration,
-  double disagreement_std_m = 0.05;    ///< and by this length of what their yaw rate and the gyro's differ
-  double lateral_std_mps = 0.02;       ///< nothing goes sideways,
-  double lateral_std_m = 0.02;         ///< except on turns: by this length of the yaw rate
-  double vertical_std_mps = 0.05;
-  // Slip.
-  double scale_std = 0.01;                   ///< of the belts' way: wear, tension; constant
-  double slip_std = 0.015;                   ///< share of the way, straight on in the plane
-  double slip_std_per_radps = 0.05;          ///< more on turns,
-  double slip_std_per_tilt = 0.1;            ///< on slopes, by the sine of the tilt,
-  double slip_std_per_disagreement = 0.05;   ///< and when belts and gyro differ on the yaw rate, by rad/s
-  double slip_length_m = 3.0;                ///< over which the ground changes
-  double turn_centre_x_std_m = 0.05;
-  double turn_centre_y_std_m = 0.02;
-  double turn_centre_length_rad = 2.0;
-  double slip_window_s = 1.0;                ///< belts and accelerometer are compared over
-  double slip_disagreement_mps = 0.2;        ///< belts that gain so much more than the body have lost their grip
-  // Standing.
-  double settle_s = 1.5;        ///< at rest, before the first estimate
-  double start_patience_s = 6.0;  ///< then an estimate is given without any rest
-  double standstill_window_s = 1.0;
-  // Faults.
-  double imu_patience_s = 0.1;   ///< how long the belts wait for a late IMU before the odometry goes on without
-  double max_belt_acceleration_mps2 = 10.0;  ///< beyond, the counters are not believed
-  double history_s = 2.0;
-  double extrapolation_s = 0.15;  ///< beyond the newest reading
-
-  template <typename Self, typename Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("gyro_noise_radps_per_sqrt_hz", self.gyro_noise_radps_per_sqrt_hz, between(1e-7, 0.1));
-    visit("gyro_bias_std_radps", self.gyro_bias_std_radps, between(0.0, 0.5));
-    visit("gyro_bias_walk_radps_per_sqrt_s", self.gyro_bias_walk_radps_per_sqrt_s, between(0.0, 0.1));
-    visit("accel_noise_mps2_per_sqrt_hz", self.accel_noise_mps2_per_sqrt_hz, between(1e-5, 10.0));
-    visit("accel_bias_std_mps2", self.accel_bias_std_mps2, between(0.0, 5.0));
-    visit("accel_bias_walk_mps2_per_sqrt_s", self.accel_bias_walk_mps2_per_sqrt_s, between(0.0, 1.0));
-    visit("turn_std_rad_per_sqrt_rad", self.turn_std_rad_per_sqrt_rad, between(0.0, 0.5));
-    visit("ticks_per_sprocket_turn", self.ticks_per_sprocket_turn, between(1.0, 1e6));
-    visit("turn_ratio", self.turn_ratio, between(1.0, 10.0));
-    visit("speed_std_mps", self.speed_std_mps, between(1e-4, 1.0));
-    visit("scrub_std", self.scrub_std, between(0.0, 1.0));
-    visit("acceleration_std_s", self.acceleration_std_s, between(0.0, 1.0));
-    visit("disagreement_std_m", self.disagreement_std_m, between(0.0, 1.0));
-    visit("lateral_std_mps", self.lateral_std_mps, between(1e-4, 1.0));
-    visit("lateral_std_m", self.lateral_std_m, between(0.0, 1.0));
-    visit("vertical_std_mps", self.vertical_std_mps, between(1e-4, 1.0));
-    visit("scale_std", self.scale_std, between(0.0, 0.5));
-    visit("slip_std", self.slip_std, between(0.0, 0.5));
-    visit("slip_std_per_radps", self.slip_std_per_radps, between(0.0, 1.0));
-    visit("slip_std_per_tilt", self.slip_std_per_tilt, between(0.0, 2.0));
-    visit("slip_std_per_disagreement", self.slip_std_per_disagreement, between(0.0, 1.0));
-    visit("slip_length_m", self.slip_length_m, between(0.01, 1000.0));
-    visit("turn_centre_x_std_m", self.turn_centre_x_std_m, between(0.0, 1.0));
-    visit("turn_centre_y_std_m", self.turn_centre_y_std_m, between(0.0, 1.0));
-    visit("turn_centre_length_rad", self.turn_centre_length_rad, between(0.01, 1000.0));
-    visit("slip_window_s", self.slip_window_s, between(0.1, 5.0));
-    visit("slip_disagreement_mps", self.slip_disagreement_mps, between(0.02, 10.0));
-    visit("settle_s", self.settle_s, between(0.1, 60.0));
-    visit("start_patience_s", self.start_patience_s, between(0.1, 600.0));
-    visit("standstill_window_s", self.standstill_window_s, between(0.1, 10.0));
-    visit("imu_patience_s", self.imu_patience_s, between(0.01, 1.0));
-    visit("max_belt_acceleration_mps2", self.max_belt_acceleration_mps2, between(0.5, 1000.0));
-    visit("history_s", self.history_s, between(0.5, 60.0));
-    visit("extrapolation_s", self.extrapolation_s, between(0.0, 1.0));
-  }
-};
-
-/// How the odometry fares, for the log and for whoever must decide whether to drive on.
+/// Health of the tracked odometry, for the log and for the sensor monitor.
 struct TrackOdometryHealth {
-  bool imu_is_silent = false;     ///< going on by the belts alone
-  bool ticks_are_silent = false;  ///< going on by the IMU alone: nothing heard, or nothing that can be believed
-  bool grip_is_lost = false;      ///< belts and body do not go alike (or the counters are frozen): going on by the IMU
+  bool imu_timed_out = false;       ///< the estimate is propagated by the tracks alone
+  bool encoders_timed_out = false;  ///< the estimate is propagated by the IMU alone: no encoder reading was accepted
+  bool is_slipping = false;         ///< track and body speeds disagree, or the encoders are frozen: IMU alone
   double gyro_z_bias_std_radps = 0.0;
-  std::uint64_t rejected_messages = 0;  ///< not finite, frozen, implausible, or older than what was already used
-  std::uint64_t slip_events = 0;
+  std::uint64_t num_rejected_messages = 0;  ///< not finite, frozen, implausible, or outdated
+  std::uint64_t num_slip_events = 0;
 };
 
-/// Where the body of a tracked robot is in `odom`, from the counters of its belts and an IMU: TrackFilter fed with messages. The
-/// estimate is at its newest reading; odom starts, level, where the robot has first stood for a while.
+/// Tracked odometry: pose of the body in `odom` from track encoders and IMU (track_filter.h), at the newest reading.
+/// The origin of odom is the gravity-aligned pose after the first standstill.
 ///
-/// Messages may come late or not at all: counters wait for the IMU of their instant (up to `imu_patience_s`, then the belts carry
-/// on alone), and are compared with the state remembered from the middle of their interval. When belts and body agree again after a
-/// loss of grip, what the IMU has drifted meanwhile is taken back: odom then shifts by decimetres, once. Not handled: a robot that is carried,
-/// and belts that lose their grip so gently that the accelerometer cannot feel it (below `slip_disagreement_mps` in
-/// `slip_window_s`).
+/// Messages may be late or missing. Encoder readings wait for the IMU reading of their stamp, at most `imu_timeout_s`;
+/// then the tracks alone propagate the estimate. They are compared with the motion history at the middle of their
+/// interval. When tracks and body agree again after a loss of traction, the drift of the IMU is corrected, so that odom
+/// shifts once by decimeters. Not handled: a robot that is carried, and a loss of traction with an acceleration below
+/// `slip_disagreement_mps` in `slip_window_s`.
 class TrackOdometry {
  public:
   /// Throws InputError for a robot without tracks or without a frame `imu`.
@@ -122,55 +41,55 @@ class TrackOdometry {
   void add(const Imu& imu);
   void add(const TrackTicks& ticks);
 
-  /// None before the robot has stood for `settle_s`, or `start_patience_s` have passed.
+  /// Returns nullopt before a standstill of `settling_time_s` or the end of `init_timeout_s`.
   std::optional<OdometryEstimate> estimate() const;
-  /// The body at an instant of the last seconds, or slightly after the newest; none outside of that.
+  /// Returns the pose at a stamp within the motion history or slightly after it; otherwise nullopt.
   std::optional<Pose3> T_odom_body_at(Time stamp) const;
-  /// Standard deviation of what is wrong with the velocity for longer than moments, in body: ahead m/s, to the left m/s, yaw rate
-  /// rad/s. These errors last (scale, slip, bias): what they add to a pose grows with the way, not with its root.
+  /// Returns the standard deviation of the systematic velocity errors (scale, slip, bias), in body: forward m/s,
+  /// left m/s, yaw rate rad/s. The pose error that they cause grows with the distance, not with its square root.
   Eigen::Vector3d twist_std() const;
-  /// Of the body's origin above the ground, m, by the robot's geometry.
+  /// Returns the height of the body origin above the ground by the geometry of the robot, m.
   double height_above_ground_m() const { return robot_.tracks->body_height_m; }
 
   TrackOdometryHealth health() const;
-  /// The filter behind; none before the first IMU reading.
+  /// Returns the filter; nullopt before the first IMU reading.
   const std::optional<TrackFilter>& filter() const { return imu_.filter(); }
 
  private:
   void advance(Time stamp, const InertialSample& sample);
   void coast_to(const TrackTicks& ticks);
-  /// Uses the counters that are due.
-  void take_pending();
+  /// Processes the encoder readings that are due.
+  void process_pending();
   void use_ticks(const TrackTicks& ticks);
-  double yaw_rate_disagreement_radps(const EncoderInterval& belts, const TrunkMotion& then) const;
-  double usual_slip_std(double yaw_rate_radps, double disagreement_radps) const;
-  Eigen::Vector3d speed_std(const EncoderInterval& belts, const TrunkMotion& then, double disagreement_radps) const;
-  /// Whether the belts say what the body does.
-  bool watch_grip(const EncoderInterval& belts);
-  /// With the belts at rest: bias, slip, and whether the odometry may begin.
-  void watch_standstill(const InertialSample& sample);
-  void hold_velocity();
-  bool ticks_are_silent() const;
+  double yaw_rate_disagreement_radps(const EncoderInterval& interval, const TrunkMotion& then) const;
+  double stationary_slip_std(double yaw_rate_radps, double disagreement_radps) const;
+  Eigen::Vector3d speed_std(const EncoderInterval& interval, const TrunkMotion& then, double disagreement_radps) const;
+  /// Updates the slip state; returns whether the track speeds are usable.
+  bool update_slip_state(const EncoderInterval& interval);
+  /// Estimates the gyro bias with the tracks at rest, ends slip, and sets the origin after the first standstill.
+  void update_standstill(const InertialSample& sample);
+  void limit_velocity();
+  bool encoders_timed_out() const;
 
   RobotDescription robot_;
   TrackOdometrySettings settings_;
-  double metres_per_tick_;
-  StanceFeet track_ends_;  ///< these stand still while the belts do
+  double meters_per_tick_;
+  StanceFeet track_ends_;  ///< at rest while the tracks are
   ImuFrontEnd<TrackFilter> imu_;
 
   Time started_{};
   bool has_settled_ = false;
-  SlipDetector slip_watch_;
+  SlipDetector slip_detector_;
 
-  TrackEncoders counters_;
+  TrackEncoders encoders_;
   PendingReadings<TrackTicks> pending_;  ///< waiting for the IMU
   std::optional<Time> last_speed_update_;
-  Eigen::Vector3d last_speed_ = Eigen::Vector3d::Zero();  ///< of the body, when the belts were last believed, m/s
+  Eigen::Vector3d last_speed_ = Eigen::Vector3d::Zero();  ///< body velocity at the last accepted encoder reading, m/s
 
   // Faults.
-  bool grip_is_lost_ = false;
-  std::optional<Time> agree_since_;  ///< belts and IMU, after that
-  std::uint64_t slip_events_ = 0;
+  bool is_slipping_ = false;
+  std::optional<Time> agree_since_;  ///< start of the agreement of tracks and IMU after slip
+  std::uint64_t num_slip_events_ = 0;
 };
 
 }  // namespace patrol::localize

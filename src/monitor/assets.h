@@ -9,7 +9,7 @@ extern const std::string_view kPage;         ///< index.html
 extern const std::string_view kPageStyle;    ///< page.css
 extern const std::string_view kPageScript;   ///< page.js
 extern const std::string_view kSiteScript;   ///< site.js
-extern const std::string_view kWordsScript;  ///< words.js
+extern const std::string_view kFormatScript;  ///< format.js
 extern const std::string_view kMapScript;    ///< map.js
 extern const std::string_view kPlotsScript;  ///< plots.js
 extern const std::string_view kPlotLibrary;  ///< uPlot

@@ -37,10 +37,10 @@ bool Statement::step() {
   return false;
 }
 
-void Statement::bind_one(int place, std::int64_t value) { check(sqlite3_bind_int64(statement_.get(), place, value)); }
-void Statement::bind_one(int place, double value) { check(sqlite3_bind_double(statement_.get(), place, value)); }
-void Statement::bind_one(int place, const std::string& value) {
-  check(sqlite3_bind_text(statement_.get(), place, value.data(), static_cast<int>(value.size()), SQLITE_TRANSIENT));
+void Statement::bind_one(int index, std::int64_t value) { check(sqlite3_bind_int64(statement_.get(), index, value)); }
+void Statement::bind_one(int index, double value) { check(sqlite3_bind_double(statement_.get(), index, value)); }
+void Statement::bind_one(int index, const std::string& value) {
+  check(sqlite3_bind_text(statement_.get(), index, value.data(), static_cast<int>(value.size()), SQLITE_TRANSIENT));
 }
 
 std::int64_t Statement::integer(int column) const { return sqlite3_column_int64(statement_.get(), column); }
@@ -82,7 +82,7 @@ Database::Database(const std::filesystem::path& file) {
     execute("PRAGMA synchronous = FULL");
     execute("PRAGMA cache_size = -8000");  // KiB
   } catch (const std::runtime_error& error) {
-    throw InputError(fmt::format("{}: cannot be opened: {}", file.string(), error.what()));
+    throw InputError(fmt::format("{}: cannot open: {}", file.string(), error.what()));
   }
 }
 

@@ -20,8 +20,8 @@ class Statement {
   template <typename... Values>
   Statement& bind(const Values&... values) {
     reset();
-    int place = 0;
-    (bind_one(++place, values), ...);
+    int index = 0;
+    (bind_one(++index, values), ...);
     return *this;
   }
   /// Returns true when there is a row.
@@ -42,11 +42,11 @@ class Statement {
   Statement(sqlite3* database, std::string_view sql);
   void reset();
   void check(int code) const;
-  void bind_one(int place, std::int64_t value);
-  void bind_one(int place, int value) { bind_one(place, static_cast<std::int64_t>(value)); }
-  void bind_one(int place, double value);
-  void bind_one(int place, const std::string& value);
-  void bind_one(int place, const char* value) { bind_one(place, std::string(value)); }
+  void bind_one(int index, std::int64_t value);
+  void bind_one(int index, int value) { bind_one(index, static_cast<std::int64_t>(value)); }
+  void bind_one(int index, double value);
+  void bind_one(int index, const std::string& value);
+  void bind_one(int index, const char* value) { bind_one(index, std::string(value)); }
 
   struct Finalize {
     void operator()(sqlite3_stmt* statement) const;

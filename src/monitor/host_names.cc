@@ -35,7 +35,7 @@ HostNames::HostNames(const std::vector<std::string>& names) : names_{"localhost"
     const bool is_bare_v6 = std::ranges::count(name, ':') > 1 && !name.starts_with('[');
     const std::string plain = plain_host(is_bare_v6 ? "[" + name + "]" : name);
     const bool has_port = !is_bare_v6 && name.find(':') != std::string::npos && !name.ends_with(']');
-    if (plain.empty() || has_port) throw InputError(fmt::format("{}: not a host: must be a host name or an address, without a port", name));
+    if (plain.empty() || has_port) throw InputError(fmt::format("{}: must be a host name or an address, without a port", name));
     names_.push_back(plain);
   }
 }

@@ -26,8 +26,8 @@ asio::awaitable<HttpClientResponse> exchange(asio::io_context& context, const Ur
   beast::tcp_stream stream(context);
   stream.expires_after(std::chrono::milliseconds(static_cast<std::int64_t>(1e3 * timeout_s)));
   asio::ip::tcp::resolver resolver(context);
-  const auto places = co_await resolver.async_resolve(url.host, url.port, asio::use_awaitable);
-  co_await stream.async_connect(places, asio::use_awaitable);
+  const auto endpoints = co_await resolver.async_resolve(url.host, url.port, asio::use_awaitable);
+  co_await stream.async_connect(endpoints, asio::use_awaitable);
   // A server that refuses a large request at its header stops reading; its response is readable nevertheless.
   beast::error_code unsent;
   co_await http::async_write(stream, request, asio::redirect_error(asio::use_awaitable, unsent));

@@ -80,9 +80,9 @@ HttpRequest head_of(const Parser& parser, const Ends& ends) {
 }
 
 HttpResponse to_error_response(const Error& error) {
-  if (error == http::error::header_limit) return error_response(431, "the header is too large");
-  if (error == http::error::body_limit) return error_response(413, "the body is too large");
-  return error_response(400, "this is not an HTTP request");
+  if (error == http::error::header_limit) return error_response(431, "header too large");
+  if (error == http::error::body_limit) return error_response(413, "body too large");
+  return error_response(400, "invalid HTTP request");
 }
 
 /// Error response to a request with ambiguous framing (request smuggling), or with a body where none is allowed.
@@ -134,7 +134,7 @@ class HttpServer::Connections {
  public:
   Connections(const HttpServerSettings& settings, HttpHandler& handler, Log log)
       : settings_(settings), handler_(handler), log_(std::move(log)),
-        bodies_(to_bytes(settings.max_bodies_mb)), responses_(to_bytes(settings.max_answers_mb)), context_(1), acceptor_(context_), signals_(context_, SIGINT, SIGTERM) {
+        bodies_(to_bytes(settings.max_bodies_mb)), responses_(to_bytes(settings.max_responses_mb)), context_(1), acceptor_(context_), signals_(context_, SIGINT, SIGTERM) {
     validate(settings, "monitor");
     try {
       const asio::ip::tcp::endpoint place = endpoint_of(context_, settings);
@@ -198,7 +198,7 @@ class HttpServer::Connections {
         if (waiting_.size() + busy_.size() >= static_cast<std::size_t>(settings_.max_connections)) close_slowest();
         asio::co_spawn(context_, serve(std::move(socket)), asio::detached);
       } catch (const std::exception& failure) {  // out of memory for this connection
-        log("a connection given up: {}", failure.what());
+        log("connection aborted: {}", failure.what());
       }
     }
   }
@@ -210,7 +210,7 @@ class HttpServer::Connections {
     Connection* one = waits != nullptr ? waits : first_open(busy_);
     if (one == nullptr) return;
     one->stream.close();
-    log("{} closed: too many connections, and it is the slowest", one->peer);
+    log("{}: closed as the slowest of too many connections", one->peer);
   }
 
   static Connection* first_open(const std::list<Connection*>& list) {
@@ -222,10 +222,10 @@ class HttpServer::Connections {
     Connection connection(beast::tcp_stream(std::move(socket)), busy_);
     try {
       beast::flat_buffer buffer(static_cast<std::size_t>(settings_.max_header_kb) * 1024 + 65536);
-      double timeout_s = settings_.header_limit_s;
-      while (co_await serve_one(connection, buffer, timeout_s)) timeout_s = settings_.idle_limit_s;
+      double timeout_s = settings_.header_timeout_s;
+      while (co_await serve_one(connection, buffer, timeout_s)) timeout_s = settings_.idle_timeout_s;
     } catch (const std::exception& failure) {
-      log("{} given up: {}", connection.peer, failure.what());
+      log("{}: request aborted: {}", connection.peer, failure.what());
     }
   }
 
@@ -237,16 +237,16 @@ class HttpServer::Connections {
     const Error error = co_await read_header(connection, buffer, parser, timeout_s);
     if (error == http::error::end_of_stream || error == asio::error::connection_reset || error == asio::error::operation_aborted) co_return false;
     if (error == beast::error::timeout) {
-      if (parser.got_some() || buffer.size() > 0) log("{} given up: no whole header within {} s", connection.peer, timeout_s);
+      if (parser.got_some() || buffer.size() > 0) log("{}: request aborted: incomplete header after {} s", connection.peer, timeout_s);
       co_return false;
     }
-    connection.stream.expires_after(milliseconds(settings_.request_limit_s));
+    connection.stream.expires_after(milliseconds(settings_.request_timeout_s));
     HttpRequest request = head_of(parser, connection);
     std::optional<HttpResponse> error_reply = error ? to_error_response(error) : check_framing(parser);
     if (!error_reply) error_reply = handler_.refuse(request);
     const std::size_t body_bytes = parser.chunked() ? to_bytes(settings_.max_body_mb) : parser.content_length().value_or(0);
     std::optional<ByteBudget::Claim> body_claim = bodies_.claim(error_reply ? 0 : body_bytes);
-    if (!body_claim) error_reply = busy("too many bodies are on their way");
+    if (!body_claim) error_reply = busy("too many request bodies");
     if (error_reply) {
       co_await refuse(connection, request, std::move(*error_reply));
       co_return false;
@@ -279,7 +279,7 @@ class HttpServer::Connections {
     }
     if (!error) co_await http::async_read(connection.stream, buffer, parser, into(error));
     if (error == beast::error::timeout) {
-      log("{} given up: {} {}: no whole body within {} s", connection.peer, request.method, request.path, settings_.request_limit_s);
+      log("{}: request aborted: {} {}: incomplete body after {} s", connection.peer, request.method, request.path, settings_.request_timeout_s);
     }
     if (error == http::error::body_limit || error == http::error::bad_chunk || error == http::error::bad_chunk_extension) {
       co_await refuse(connection, request, to_error_response(error));
@@ -292,15 +292,15 @@ class HttpServer::Connections {
   asio::awaitable<bool> send(Connection& connection, const HttpRequest& request, HttpResponse response, const Parser::value_type& asked) {
     std::optional<ByteBudget::Claim> claim = responses_.claim(response.body.size());
     if (!claim) {
-      response = busy("too many answers wait to be read");
+      response = busy("too many unread responses");
       log_error(request, response);
     }
     Error error;
     auto message = to_message(std::move(response), asked.version(), asked.keep_alive());
     co_await http::async_write(connection.stream, message, into(error));
     if (error == beast::error::timeout) {
-      log("{} given up: {} {}: the answer was not read within {} s", connection.peer, request.method, request.path,
-          settings_.request_limit_s);
+      log("{}: request aborted: {} {}: response not read within {} s", connection.peer, request.method, request.path,
+          settings_.request_timeout_s);
     }
     co_return !error && message.keep_alive();
   }

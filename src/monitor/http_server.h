@@ -16,28 +16,28 @@ namespace patrol::monitor {
 struct HttpServerSettings {
   std::string host = "127.0.0.1";  ///< address or host name to listen on; the default accepts local connections only
   int port = 8080;                 ///< 0: any free port
-  double header_limit_s = 5.0;     ///< timeout from accepting a connection to the end of its first header
-  double request_limit_s = 30.0;   ///< timeout from the end of the header to the end of the response
-  double idle_limit_s = 15.0;      ///< timeout from a response to the end of the next header of the connection
+  double header_timeout_s = 5.0;     ///< timeout from accepting a connection to the end of its first header
+  double request_timeout_s = 30.0;   ///< timeout from the end of the header to the end of the response
+  double idle_timeout_s = 15.0;      ///< timeout from a response to the end of the next header of the connection
   /// simultaneous connections; a further one closes the one with the longest wait for its header
   int max_connections = 400;
   int max_header_kb = 16;
   double max_body_mb = 8.0;
   double max_bodies_mb = 64.0;     ///< request bodies of all connections; beyond it requests are refused with 503
-  double max_answers_mb = 64.0;    ///< unsent responses of all connections; beyond it responses are replaced by 503
+  double max_responses_mb = 64.0;    ///< unsent responses of all connections; beyond it responses are replaced by 503
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("host", self.host);
     visit("port", self.port, between(0, 65535));
-    visit("header_limit_s", self.header_limit_s, between(0.1, 600.0));
-    visit("request_limit_s", self.request_limit_s, between(0.1, 600.0));
-    visit("idle_limit_s", self.idle_limit_s, between(0.1, 600.0));
+    visit("header_timeout_s", self.header_timeout_s, between(0.1, 600.0));
+    visit("request_timeout_s", self.request_timeout_s, between(0.1, 600.0));
+    visit("idle_timeout_s", self.idle_timeout_s, between(0.1, 600.0));
     visit("max_connections", self.max_connections, between(1, 900));
     visit("max_header_kb", self.max_header_kb, between(1, 1024));
     visit("max_body_mb", self.max_body_mb, between(0.001, 256.0));
     visit("max_bodies_mb", self.max_bodies_mb, between(0.001, 4096.0));
-    visit("max_answers_mb", self.max_answers_mb, between(0.001, 4096.0));
+    visit("max_responses_mb", self.max_responses_mb, between(0.001, 4096.0));
   }
 };
 

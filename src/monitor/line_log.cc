@@ -21,7 +21,7 @@ constexpr std::size_t kMaxText = 500;  // bytes; at most 2,000 after escaping, w
 
 void LineLog::write(const std::string& text) noexcept {
   try {
-    const std::string lost = num_lost_ > 0 ? fmt::format("{} lines before this one could not be written\n", num_lost_) : "";
+    const std::string lost = num_lost_ > 0 ? fmt::format("{} earlier lines could not be written\n", num_lost_) : "";
     if (write_bytes(lost + io::on_one_line(text.substr(0, kMaxText)) + "\n")) num_lost_ = 0;
     else ++num_lost_;
   } catch (const std::exception&) {  // out of memory

@@ -27,9 +27,9 @@ constexpr std::size_t kMaxTextBytes = 2000;
 constexpr std::size_t kMaxSummaryBytes = 400;
 constexpr int kMaxMapSide_px = 8192;  // per side of a map
 
-std::string text_of(const JsonObject& object, const char* key, std::size_t least, std::size_t most) {
+std::string text_of(const JsonObject& object, const char* key, std::size_t min_bytes, std::size_t max_bytes) {
   const std::string text = object.string(key);
-  if (text.size() < least || text.size() > most) object.fail(fmt::format("{} must have {} ... {} bytes", key, least, most));
+  if (text.size() < min_bytes || text.size() > max_bytes) object.fail(fmt::format("{} must have {} ... {} bytes", key, min_bytes, max_bytes));
   return text;
 }
 
@@ -40,7 +40,7 @@ void check_point(const JsonObject& object, const char* key) { object.numbers(key
 void check_map(const std::string& location, const Json& data) {
   const JsonObject object(location, data, {"width", "height", "resolution_m", "origin_m", "png_base64"});
   for (const char* side : {"width", "height"}) {
-    if (object.integer(side) < 1 || object.integer(side) > kMaxMapSide_px) object.fail(fmt::format("{} must lie in 1 ... {}", side, kMaxMapSide_px));
+    if (object.integer(side) < 1 || object.integer(side) > kMaxMapSide_px) object.fail(fmt::format("{} must be in [1, {}]", side, kMaxMapSide_px));
   }
   if (object.number("resolution_m") <= 0.0) object.fail("resolution_m must be positive");
   check_point(object, "origin_m");

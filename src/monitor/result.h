@@ -8,7 +8,7 @@
 namespace patrol::monitor {
 
 /// Name and version of the schema (result.schema.json).
-inline constexpr const char* kResultSchema = "patrol-result/1";
+inline constexpr const char* kResultSchema = "patrol-result/2";
 
 /// Result reported by a robot: envelope and data.
 struct Result {

@@ -32,7 +32,7 @@ const Asset* asset_at(std::string_view path) {
                                   {"/page.css", "text/css; charset=utf-8", kPageStyle},
                                   {"/page.js", "text/javascript; charset=utf-8", kPageScript},
                                   {"/site.js", "text/javascript; charset=utf-8", kSiteScript},
-                                  {"/words.js", "text/javascript; charset=utf-8", kWordsScript},
+                                  {"/format.js", "text/javascript; charset=utf-8", kFormatScript},
                                   {"/map.js", "text/javascript; charset=utf-8", kMapScript},
                                   {"/plots.js", "text/javascript; charset=utf-8", kPlotsScript},
                                   {"/uplot.js", "text/javascript; charset=utf-8", kPlotLibrary},
@@ -67,7 +67,7 @@ std::int64_t count(const HttpRequest& request, const char* name, std::int64_t ot
   const std::string text = parameter(request, name);
   if (text.empty()) return otherwise;
   const auto value = whole(text);
-  if (!value || *value > 1'000'000'000'000) throw InputError(fmt::format("{} must be a whole number", name));
+  if (!value || *value > 1'000'000'000'000) throw InputError(fmt::format("{} must be an integer", name));
   return *value;
 }
 
@@ -107,7 +107,7 @@ HttpResponse get(Database& database, const HttpRequest& request) {
   }
   if (path == "/api/run") {
     const auto details = run_details(database, parameter(request, "robot"), parameter(request, "run"), count(request, "station", 0));
-    return details ? fresh(*details) : error_response(404, "there is no such robot or run");
+    return details ? fresh(*details) : error_response(404, "unknown robot or run");
   }
   if (path == "/api/lining") {
     return fresh(lining(database, parameter(request, "world"), parse_lining_page(parameter(request, "after"))));
@@ -119,7 +119,7 @@ HttpResponse get(Database& database, const HttpRequest& request) {
                                     .limit = limit_of(request, 25)}));
   }
   const auto image = map_image(database, *number_between(path, kMaps, ""));
-  if (!image) return error_response(404, "there is no such map");
+  if (!image) return error_response(404, "unknown map");
   return {.type = "image/png", .body = *image, .headers = {{"Cache-Control", "no-store"}}};
 }
 
@@ -131,18 +131,18 @@ Service::Service(Store& store, std::string token, HttpServer::Log log, HostNames
 std::optional<HttpResponse> Service::refuse(const HttpRequest& head) {
   if (!hosts_.allow(head.host, head.local)) {
     const std::string host = head.host.substr(0, kMaxShownHost);
-    return error_response(421, fmt::format("Host '{}': not a name of this platform: must be its address, localhost, or a name of --allow-host", host));
+    return error_response(421, fmt::format("Host '{}': unknown: must be the server's address, localhost, or a name of --allow-host", host));
   }
   const bool posts = is_post_path(head.path), gets = is_get_path(head.path);
-  if (!posts && !gets) return error_response(404, "there is nothing here");
+  if (!posts && !gets) return error_response(404, "not found");
   const std::string allowed = posts ? "POST" : "GET";
   if (head.method != allowed) {
-    HttpResponse no = error_response(405, fmt::format("only {} is allowed here", allowed));
+    HttpResponse no = error_response(405, fmt::format("method not allowed: must be {}", allowed));
     no.headers.emplace_back("Allow", allowed);
     return no;
   }
   if (posts && !is_same_token(bearer_token(head.authorization), token_)) {
-    HttpResponse no = error_response(401, head.authorization.empty() ? "a token is needed: Authorization: Bearer ..." : "this is not the token");
+    HttpResponse no = error_response(401, head.authorization.empty() ? "token required: Authorization: Bearer ..." : "invalid token");
     no.headers.emplace_back("WWW-Authenticate", "Bearer realm=\"patrol\"");
     return no;
   }
@@ -168,10 +168,10 @@ HttpResponse Service::take_results(const HttpRequest& request) {
     const bool is_conflict = stored[i] == StoreStatus::kConflict;
     has_conflict = has_conflict || is_conflict;
     list.push_back({{"id", results[i].id}, {"status", is_conflict ? "conflict" : stored[i] == StoreStatus::kExisting ? "known" : "stored"}});
-    if (is_conflict) log_(fmt::format("{} 409: another result with the id {} is there already", request.peer, results[i].id));
+    if (is_conflict) log_(fmt::format("{} 409: duplicate id {} with a different result", request.peer, results[i].id));
   }
   Json answer = {{"results", list}};
-  if (has_conflict) answer["error"] = "another result with the same id is there already; nothing of it was changed";
+  if (has_conflict) answer["error"] = "duplicate id with a different result; nothing was changed";
   return {.status = has_conflict ? 409 : 200, .body = answer.dump(), .headers = {}};
 }
 
@@ -184,8 +184,8 @@ HttpResponse Service::acknowledge(const HttpRequest& request) {
   if (note.size() > kMaxNoteBytes) object.fail(fmt::format("note must have at most {} bytes", kMaxNoteBytes));
   const std::int64_t number = *number_between(request.path, kAlarms, kAcknowledge);
   switch (store_.acknowledge(number, who, note, now_ms())) {
-    case AcknowledgeStatus::kUnknown: return error_response(404, "there is no such alarm");
-    case AcknowledgeStatus::kAlready: return error_response(409, "this alarm is acknowledged already");
+    case AcknowledgeStatus::kUnknown: return error_response(404, "unknown alarm");
+    case AcknowledgeStatus::kAlready: return error_response(409, "alarm already acknowledged");
     case AcknowledgeStatus::kDone: break;
   }
   log_(fmt::format("{} alarm {} acknowledged by {}", request.peer, number, who));

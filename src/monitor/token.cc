@@ -20,16 +20,16 @@ constexpr std::size_t kMinTokenLength = 16;
 
 std::string new_token() {
   std::array<unsigned char, 32> bytes{};
-  if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) throw std::runtime_error("the system gives no random bytes");
+  if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) throw std::runtime_error("no random bytes available");
   return fmt::format("{:02x}", fmt::join(bytes, ""));
 }
 
 }  // namespace
 
 void check_token(const std::string& location, const std::string& token) {
-  if (token.size() < kMinTokenLength) throw InputError(fmt::format("{}: a token must have at least {} characters", location, kMinTokenLength));
+  if (token.size() < kMinTokenLength) throw InputError(fmt::format("{}: invalid token: must have at least {} characters", location, kMinTokenLength));
   const bool is_plain = std::all_of(token.begin(), token.end(), [](char c) { return c > 0x20 && c < 0x7f; });
-  if (!is_plain) throw InputError(fmt::format("{}: a token must be of letters, digits and signs of ASCII, without spaces", location));
+  if (!is_plain) throw InputError(fmt::format("{}: invalid token: must consist of printable ASCII characters without spaces", location));
 }
 
 std::string load_token(const std::filesystem::path& file) {
@@ -48,7 +48,7 @@ std::string load_or_create_token(const std::filesystem::path& folder) {
   const int out = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
   const bool is_written = out >= 0 && ::write(out, line.data(), line.size()) == static_cast<ssize_t>(line.size()) && ::fsync(out) == 0;
   if (out >= 0) ::close(out);
-  if (!is_written) throw InputError(fmt::format("{}: cannot be written", file.string()));
+  if (!is_written) throw InputError(fmt::format("{}: cannot write", file.string()));
   std::filesystem::rename(temporary, file);
   return token;
 }

@@ -41,7 +41,7 @@ void split_target(const std::string& target, std::string& path, std::map<std::st
 }
 
 Url parse_url(const std::string& text) {
-  const auto refuse = [&] { return InputError(fmt::format("{}: must be an address such as http://127.0.0.1:8080", text)); };
+  const auto refuse = [&] { return InputError(fmt::format("{}: must be a URL such as http://127.0.0.1:8080", text)); };
   constexpr std::string_view kScheme = "http://";
   std::string_view rest = text;
   if (!rest.starts_with(kScheme)) throw refuse();

@@ -141,7 +141,7 @@ class Entry {
           .bind(result_.world, subject, made_ms_, run_, data["value"].get<double>())
           .run();
     }
-    if (kind == EventKind::kGoalMarked) {
+    if (kind == EventKind::kGoalSaved) {
       database_.prepared("UPDATE runs SET stations = json_insert(stations, '$[#]', "
                         "json_object('name', ?2, 'type', 'marked', 'position_m', json_array(?3, ?4))) WHERE number = ?1")
           .bind(run_, subject, p_map.x(), p_map.y())
@@ -157,13 +157,13 @@ class Entry {
   void enter_lining(const LiningResult& lining) {
     if (!lining.is_registered) return;
     enter_newest(lining.station);
-    std::map<int, LiningCell> most;  // cell with the maximum inward displacement of each ring
+    std::map<int, LiningCell> max_cells;  // cell with the maximum inward displacement of each ring
     for (const LiningCell& cell : lining.cells) {
       if (!std::isfinite(cell.inward_m)) continue;
-      const auto [there, is_new] = most.try_emplace(cell.ring, cell);
+      const auto [there, is_new] = max_cells.try_emplace(cell.ring, cell);
       if (!is_new && cell.inward_m > there->second.inward_m) there->second = cell;
     }
-    for (const auto& [ring, cell] : most) {
+    for (const auto& [ring, cell] : max_cells) {
       database_.prepared("INSERT OR REPLACE INTO rings VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)")
           .bind(result_.world, ring, made_ms_, run_, lining.station, cell.inward_m, cell.std_m, cell.clock_deg)
           .run();
@@ -176,7 +176,7 @@ class Entry {
           .run();
     }
     for (const RingFinding& finding : lining.findings) {
-      const std::string text = fmt::format("Ring {} has moved {:.1f} mm inwards (standard deviation {:.1f} mm) at {:.0f} degrees.", finding.ring,
+      const std::string text = fmt::format("Ring {} moved {:.1f} mm inward (standard deviation {:.1f} mm) at {:.0f} degrees.", finding.ring,
                                            1e3 * finding.inward_m, 1e3 * finding.std_m, finding.clock_deg);
       add_finding(finding.level, "lining", fmt::format("ring {}", finding.ring), text, finding.p_map.head<2>());
     }

@@ -23,7 +23,7 @@ std::filesystem::path font_file(bool is_bold) {
     if (std::filesystem::exists(file)) return file;
   }
   throw InputError(std::string(name) +
-                   " is not installed (package fonts-dejavu-core): a replay writes with it");
+                   " is not installed (package fonts-dejavu-core): required by replay");
 }
 
 /// Decodes the character at `at` of valid UTF-8 and advances `at` past it.

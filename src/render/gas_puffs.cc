@@ -99,9 +99,9 @@ std::vector<Puff> GasCloud::puffs(double now_s, double drift_m) const {
       const double ends = std::clamp(std::min(along_m + kUpwind_m, kReach_m - along_m), 0.0, 1.0);
       for (int j = -kBeside; j <= kBeside; ++j) {
         for (int k = -kBeside; k <= kBeside; ++k) {
-          const Eigen::Vector2d place = plume.source_m.head<2>() + (along_m + kStep_m * scatter(n, j, k, 0)) * downwind_ +
+          const Eigen::Vector2d p_puff = plume.source_m.head<2>() + (along_m + kStep_m * scatter(n, j, k, 0)) * downwind_ +
                                         spacing_m * (j + scatter(n, j, k, 1)) * across_wind;
-          const Eigen::Vector3d p(place.x(), place.y(), plume.source_m.z() + spacing_m * (k + scatter(n, j, k, 2)));
+          const Eigen::Vector3d p(p_puff.x(), p_puff.y(), plume.source_m.z() + spacing_m * (k + scatter(n, j, k, 2)));
           const double radius_m = std::hypot(0.05, 0.65 * spacing_m);
           const double mass_kg = plume.gas.concentration_kgpm3(p, now_s) * kStep_m * spacing_m * spacing_m;
           const double column_ppm_m = ends * mass_kg / (2.0 * std::numbers::pi * radius_m * radius_m) / sim::kMethaneDensity_kgpm3 * 1e6;

@@ -17,7 +17,7 @@ constexpr int kFooter_px = 92, kEdge_px = 16;
 class Sheet {
  public:
   Sheet(const HeatMap& map, int max_width_px) : map_(map) {
-    for (const HeatMap::Sample& place : map.positions) shown_.extend(place.p_m);
+    for (const HeatMap::Sample& sample : map.positions) shown_.extend(sample.p_m);
     constexpr double kMargin_m = 1.5;
     shown_.min().array() -= kMargin_m;
     shown_.max().array() += kMargin_m;
@@ -43,9 +43,9 @@ class Sheet {
 
   void draw_values() {
     const int side_px = std::max(1, static_cast<int>(std::ceil(px_per_m_ * map_.step_m)));
-    for (const HeatMap::Sample& place : map_.positions) {
-      const Eigen::Vector2d corner = pixel_of(place.p_m + 0.5 * map_.step_m * Eigen::Vector2d(-1.0, 1.0));
-      fill_rectangle(frame_, static_cast<int>(std::lround(corner.x())), static_cast<int>(std::lround(corner.y())), side_px, side_px, {heat_color(place.color_fraction)});
+    for (const HeatMap::Sample& sample : map_.positions) {
+      const Eigen::Vector2d corner = pixel_of(sample.p_m + 0.5 * map_.step_m * Eigen::Vector2d(-1.0, 1.0));
+      fill_rectangle(frame_, static_cast<int>(std::lround(corner.x())), static_cast<int>(std::lround(corner.y())), side_px, side_px, {heat_color(sample.color_fraction)});
     }
   }
 
@@ -62,10 +62,10 @@ class Sheet {
   }
 
   void draw_strokes() {
-    for (const HeatMap::Sample& place : map_.positions) {
-      if (!place.has_stroke) continue;
-      const Eigen::Vector2d half = 0.42 * map_.step_m * Eigen::Vector2d(std::cos(place.stroke_rad), std::sin(place.stroke_rad));
-      draw_line(frame_, pixel_of(place.p_m - half), pixel_of(place.p_m + half), 1.4, {kStroke});
+    for (const HeatMap::Sample& sample : map_.positions) {
+      if (!sample.has_stroke) continue;
+      const Eigen::Vector2d half = 0.42 * map_.step_m * Eigen::Vector2d(std::cos(sample.stroke_rad), std::sin(sample.stroke_rad));
+      draw_line(frame_, pixel_of(sample.p_m - half), pixel_of(sample.p_m + half), 1.4, {kStroke});
     }
   }
 
@@ -99,10 +99,10 @@ Color heat_color(double color_fraction) {
     double r, g, b;
   };
   static constexpr std::array<Stop, 5> kStops = {{{38, 42, 92}, {36, 104, 142}, {44, 160, 132}, {134, 204, 84}, {252, 230, 60}}};
-  const double place = std::clamp(color_fraction, 0.0, 1.0) * (kStops.size() - 1);
-  const auto below = std::min(static_cast<std::size_t>(place), kStops.size() - 2);
-  const double way = place - static_cast<double>(below);
-  const auto mix = [&](double a, double b) { return static_cast<std::uint8_t>(std::lround(a + way * (b - a))); };
+  const double position = std::clamp(color_fraction, 0.0, 1.0) * (kStops.size() - 1);
+  const auto below = std::min(static_cast<std::size_t>(position), kStops.size() - 2);
+  const double fraction = position - static_cast<double>(below);
+  const auto mix = [&](double a, double b) { return static_cast<std::uint8_t>(std::lround(a + fraction * (b - a))); };
   return {mix(kStops[below].r, kStops[below + 1].r), mix(kStops[below].g, kStops[below + 1].g), mix(kStops[below].b, kStops[below + 1].b)};
 }
 

@@ -43,7 +43,7 @@ std::string status_text(const RunSnapshot& snapshot, const std::optional<FilmNot
 Overlay::Overlay(int frame_height, GasCloud gas)
     : scale_(frame_height / 720.0),
       figures_(std::max(12, frame_height / 30), true),
-      words_(std::max(11, frame_height / 40)),
+      texts_(std::max(11, frame_height / 40)),
       title_(std::max(12, frame_height / 24), true),
       gas_(std::move(gas)) {}
 
@@ -51,11 +51,11 @@ void Overlay::draw(Frame& frame, const std::vector<float>& depth, const View& vi
                    const std::optional<FilmNote>& note) {
   const Projector projector(view, frame.width(), frame.height());
   draw_puffs(frame, depth, projector, gas_.puffs(to_seconds(snapshot.state.stamp), note ? kDrift_mps * note->film_s : 0.0));
-  WorldOverlay ink(frame, depth, projector);
-  ink.polyline(snapshot.planned_path, 0.03, {kPlanColor, 0.85});
-  ink.polyline(snapshot.true_path, 0.06, {kTruthColor, 0.85});
-  ink.polyline(snapshot.estimated_path, 0.03, {kEstimateColor, 0.95});
-  ink.dots(snapshot.scan, 0.02, {kScanColor, 0.9});
+  WorldOverlay color(frame, depth, projector);
+  color.polyline(snapshot.planned_path, 0.03, {kPlanColor, 0.85});
+  color.polyline(snapshot.true_path, 0.06, {kTruthColor, 0.85});
+  color.polyline(snapshot.estimated_path, 0.03, {kEstimateColor, 0.95});
+  color.dots(snapshot.scan, 0.02, {kScanColor, 0.9});
   inset_.draw(frame, snapshot);
   draw_figures(frame, snapshot, note);
   const int free_bottom = draw_legend(frame, snapshot);
@@ -66,15 +66,15 @@ void Overlay::draw(Frame& frame, const std::vector<float>& depth, const View& vi
 
 void Overlay::draw_figures(Frame& frame, const RunSnapshot& snapshot, const std::optional<FilmNote>& note) {
   const int margin = figures_.height_px() / 2;
-  const int line = words_.height_px() + margin;
+  const int line = texts_.height_px() + margin;
   fill_rectangle(frame, 0, 0, frame.width(), figures_.height_px() + 2 * margin + line, {kPanelColor, 0.6});
   const int baseline = margin + figures_.height_px();
   const int width = frame.width() - 4 * margin;
   figures_.draw(frame, 2 * margin, baseline, figures_.fitted(figures_text(snapshot), width), {kTextColor, 1.0});
   const std::string status = status_text(snapshot, note);
-  const int status_width = words_.width_px(status);
-  words_.draw(frame, frame.width() - 2 * margin - status_width, baseline + line, status, {kTextColor, 1.0});
-  words_.draw(frame, 2 * margin, baseline + line, words_.fitted(snapshot.event, width - status_width - 2 * margin),
+  const int status_width = texts_.width_px(status);
+  texts_.draw(frame, frame.width() - 2 * margin - status_width, baseline + line, status, {kTextColor, 1.0});
+  texts_.draw(frame, 2 * margin, baseline + line, texts_.fitted(snapshot.event, width - status_width - 2 * margin),
               {snapshot.is_alarm ? kAlarmColor : kTextColor, 1.0});
 }
 
@@ -83,18 +83,18 @@ int Overlay::draw_legend(Frame& frame, const RunSnapshot& snapshot) {
       {"true path", kTruthColor}, {"estimated path", kEstimateColor}, {"plan", kPlanColor}, {"scan", kScanColor}};
   if (!snapshot.particles.empty()) entries.emplace_back("particles", kParticleColor);
   if (!gas_.is_empty()) entries.emplace_back("methane", kGasColor);
-  if (ghost_opacity(snapshot.T_true_estimate) > 0.0) entries.emplace_back("where it believes to be", kEstimateColor);
-  const int line = words_.height_px() + words_.height_px() / 2;
-  const int left = line, text_left = left + 2 * words_.height_px();
-  int width = 9 * words_.height_px();
-  for (const auto& [name, color] : entries) width = std::max(width, words_.width_px(name));
+  if (ghost_opacity(snapshot.T_true_estimate) > 0.0) entries.emplace_back("estimated pose", kEstimateColor);
+  const int line = texts_.height_px() + texts_.height_px() / 2;
+  const int left = line, text_left = left + 2 * texts_.height_px();
+  int width = 9 * texts_.height_px();
+  for (const auto& [name, color] : entries) width = std::max(width, texts_.width_px(name));
   int baseline = frame.height() - line / 2 - line * static_cast<int>(entries.size() - 1);
   const int top = baseline - line;
   fill_rectangle(frame, left / 2, top, text_left + width, line * static_cast<int>(entries.size()) + line / 2, {kPanelColor, 0.5});
   for (const auto& [name, color] : entries) {
-    const double y = baseline - 0.35 * words_.height_px();
-    draw_line(frame, {left, y}, {left + 1.2 * words_.height_px(), y}, 4.0 * scale_, {color, 1.0});
-    words_.draw(frame, text_left, baseline, name, {kTextColor, 1.0});
+    const double y = baseline - 0.35 * texts_.height_px();
+    draw_line(frame, {left, y}, {left + 1.2 * texts_.height_px(), y}, 4.0 * scale_, {color, 1.0});
+    texts_.draw(frame, text_left, baseline, name, {kTextColor, 1.0});
     baseline += line;
   }
   return top;
@@ -102,7 +102,7 @@ int Overlay::draw_legend(Frame& frame, const RunSnapshot& snapshot) {
 
 void Overlay::draw_caption(Frame& frame, const std::vector<std::string>& lines, int bottom) {
   if (lines.empty()) return;
-  const int pad = title_.height_px() / 2, left = words_.height_px() * 3 / 4, bar = std::max(2, title_.height_px() / 5);
+  const int pad = title_.height_px() / 2, left = texts_.height_px() * 3 / 4, bar = std::max(2, title_.height_px() / 5);
   const int line = title_.height_px() * 5 / 4, height = line * static_cast<int>(lines.size()) + pad, top = bottom - height - pad;
   int width = 0;
   for (const std::string& text : lines) width = std::max(width, title_.width_px(text));

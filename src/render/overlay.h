@@ -32,7 +32,7 @@ class Overlay {
 
   double scale_;  ///< line width scale: 1 for a frame of 720 pixels height
   Font figures_;
-  Font words_;
+  Font texts_;
   Font title_;
   MapInset inset_;
   GasCloud gas_;

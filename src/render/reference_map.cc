@@ -254,7 +254,7 @@ ReferenceMap reference_map(const mjModel& view, const ReferenceMapSettings& sett
   mj_kinematics(&view, data.get());
   const std::vector<CutGeom> cut = geoms_cut_at(view, *data, settings.height_m);
   if (cut.empty()) {
-    throw InputError(fmt::format("the world has nothing that a lidar {:.2f} m above its ground could hit",
+    throw InputError(fmt::format("reference map: no geom intersects the slice at {:.2f} m",
                                  settings.height_m));
   }
   Bounds bounds;

@@ -35,7 +35,7 @@ std::optional<Pose3> sensor_on_body(const mjModel& model, const char* name) {
 
 Pose3 lidar_on_body(const mjModel& model) {
   const std::optional<Pose3> T_body_lidar = sensor_on_body(model, "lidar");
-  if (!T_body_lidar) throw InputError("the robot has no link `lidar`");
+  if (!T_body_lidar) throw InputError("robot: link 'lidar' not found");
   return *T_body_lidar;
 }
 

@@ -34,8 +34,8 @@ int checked(int code, const char* doing) {
 }
 
 template <typename Pointer>
-Pointer* made(Pointer* pointer, const char* what) {
-  if (pointer == nullptr) throw std::runtime_error(fmt::format("video: libav gives no {}", what));
+Pointer* not_null(Pointer* pointer, const char* what) {
+  if (pointer == nullptr) throw std::runtime_error(fmt::format("video: libav: cannot allocate {}", what));
   return pointer;
 }
 
@@ -44,9 +44,9 @@ constexpr AVRational kMillisecond{1, 1000};
 /// Allocates the chapters with libav's allocator, because libav frees them with the container.
 void add_chapters(AVFormatContext& container, const std::vector<Chapter>& chapters) {
   if (chapters.empty()) return;
-  container.chapters = made(static_cast<AVChapter**>(av_calloc(chapters.size(), sizeof(AVChapter*))), "memory for chapters");
+  container.chapters = not_null(static_cast<AVChapter**>(av_calloc(chapters.size(), sizeof(AVChapter*))), "memory for chapters");
   for (const Chapter& chapter : chapters) {
-    AVChapter* mark = made(static_cast<AVChapter*>(av_mallocz(sizeof(AVChapter))), "memory for a chapter");
+    AVChapter* mark = not_null(static_cast<AVChapter*>(av_mallocz(sizeof(AVChapter))), "memory for a chapter");
     container.chapters[container.nb_chapters++] = mark;
     mark->id = container.nb_chapters;
     mark->time_base = kMillisecond;
@@ -90,7 +90,8 @@ struct VideoWriter::Encoder {
   Encoder(const Encoder&) = delete;
   Encoder& operator=(const Encoder&) = delete;
 
-  void open(int width, int height, double frames_per_second, const std::vector<Chapter>& chapters);
+  void open_codec(int width, int height, double frames_per_second);
+  void open_container(int width, int height, const std::vector<Chapter>& chapters);
   void encode(const AVFrame* frame);
 
   std::filesystem::path file;
@@ -104,13 +105,13 @@ struct VideoWriter::Encoder {
   std::int64_t num_frames = 0;
 };
 
-void VideoWriter::Encoder::open(int width, int height, double frames_per_second, const std::vector<Chapter>& chapters) {
-  checked(avformat_alloc_output_context2(&container, nullptr, "mp4", temporary.c_str()), "no MP4 writer");
+void VideoWriter::Encoder::open_codec(int width, int height, double frames_per_second) {
+  checked(avformat_alloc_output_context2(&container, nullptr, "mp4", temporary.c_str()), "cannot create the MP4 writer");
   container->flags |= AVFMT_FLAG_BITEXACT;
   const AVCodec* kind = avcodec_find_encoder_by_name("libx264");
   const bool is_h264 = kind != nullptr;
-  if (!is_h264) kind = made(avcodec_find_encoder(AV_CODEC_ID_MPEG4), "encoder");
-  codec = made(avcodec_alloc_context3(kind), "encoder");
+  if (!is_h264) kind = not_null(avcodec_find_encoder(AV_CODEC_ID_MPEG4), "encoder");
+  codec = not_null(avcodec_alloc_context3(kind), "encoder");
   codec->width = width;
   codec->height = height;
   codec->framerate = av_d2q(frames_per_second, 100000);
@@ -129,9 +130,11 @@ void VideoWriter::Encoder::open(int width, int height, double frames_per_second,
     codec->flags |= AV_CODEC_FLAG_QSCALE;
     codec->global_quality = 4 * FF_QP2LAMBDA;
   }
-  checked(avcodec_open2(codec, kind, nullptr), "the encoder does not start");
+  checked(avcodec_open2(codec, kind, nullptr), "cannot start the encoder");
+}
 
-  stream = made(avformat_new_stream(container, nullptr), "stream");
+void VideoWriter::Encoder::open_container(int width, int height, const std::vector<Chapter>& chapters) {
+  stream = not_null(avformat_new_stream(container, nullptr), "stream");
   stream->time_base = codec->time_base;
   stream->avg_frame_rate = codec->framerate;
   checked(avcodec_parameters_from_context(stream->codecpar, codec), "stream parameters");
@@ -143,30 +146,30 @@ void VideoWriter::Encoder::open(int width, int height, double frames_per_second,
   av_dict_set(&options, "movflags", "+faststart", 0);
   const int code = avformat_write_header(container, &options);
   av_dict_free(&options);
-  checked(code, "the file's head");
+  checked(code, "file header");
 
-  scaler = made(sws_getContext(width, height, AV_PIX_FMT_RGB24, width, height, AV_PIX_FMT_YUV420P,
+  scaler = not_null(sws_getContext(width, height, AV_PIX_FMT_RGB24, width, height, AV_PIX_FMT_YUV420P,
                                SWS_POINT | SWS_ACCURATE_RND | SWS_BITEXACT, nullptr, nullptr, nullptr),
-                "colour conversion");
+                "color conversion");
   use_bt709(scaler);
-  picture = made(av_frame_alloc(), "picture");
+  picture = not_null(av_frame_alloc(), "picture");
   picture->format = AV_PIX_FMT_YUV420P;
   picture->width = width;
   picture->height = height;
-  checked(av_frame_get_buffer(picture, 0), "no memory for a picture");
-  packet = made(av_packet_alloc(), "packet");
+  checked(av_frame_get_buffer(picture, 0), "cannot allocate a picture");
+  packet = not_null(av_packet_alloc(), "packet");
 }
 
 void VideoWriter::Encoder::encode(const AVFrame* frame) {
-  checked(avcodec_send_frame(codec, frame), "a frame is refused");
+  checked(avcodec_send_frame(codec, frame), "frame rejected by the encoder");
   for (;;) {
     const int code = avcodec_receive_packet(codec, packet);
     if (code == AVERROR(EAGAIN) || code == AVERROR_EOF) return;
-    checked(code, "a frame cannot be encoded");
+    checked(code, "cannot encode a frame");
     packet->duration = 1;
     av_packet_rescale_ts(packet, codec->time_base, stream->time_base);
     packet->stream_index = stream->index;
-    checked(av_interleaved_write_frame(container, packet), "a frame cannot be written");
+    checked(av_interleaved_write_frame(container, packet), "cannot write a frame");
   }
 }
 
@@ -176,7 +179,8 @@ VideoWriter::VideoWriter(const std::filesystem::path& file, int width, int heigh
   if (width < 2 || height < 2 || width % 2 != 0 || height % 2 != 0) {
     throw InputError(fmt::format("size = {}x{}: a video's width and height must be even", width, height));
   }
-  encoder_->open(width, height, frames_per_second, chapters);
+  encoder_->open_codec(width, height, frames_per_second);
+  encoder_->open_container(width, height, chapters);
 }
 
 VideoWriter::~VideoWriter() = default;
@@ -184,9 +188,9 @@ VideoWriter::~VideoWriter() = default;
 void VideoWriter::add(const Frame& frame) {
   Encoder& encoder = *encoder_;
   if (frame.width() != encoder.codec->width || frame.height() != encoder.codec->height) {
-    throw std::runtime_error("video: a frame is not of the video's size");
+    throw std::runtime_error("video: frame size differs from the video size");
   }
-  checked(av_frame_make_writable(encoder.picture), "no memory for a picture");
+  checked(av_frame_make_writable(encoder.picture), "cannot allocate a picture");
   const std::uint8_t* rows[1] = {frame.bytes()};
   const int stride[1] = {3 * frame.width()};
   sws_scale(encoder.scaler, rows, stride, 0, frame.height(), encoder.picture->data,
@@ -198,8 +202,8 @@ void VideoWriter::add(const Frame& frame) {
 void VideoWriter::finish() {
   Encoder& encoder = *encoder_;
   encoder.encode(nullptr);
-  checked(av_write_trailer(encoder.container), "the file's end");
-  checked(avio_closep(&encoder.container->pb), "the file cannot be closed");
+  checked(av_write_trailer(encoder.container), "file trailer");
+  checked(avio_closep(&encoder.container->pb), "cannot close the file");
   std::error_code error;
   std::filesystem::rename(encoder.temporary, encoder.file, error);
   if (error) throw InputError(encoder.file.string() + ": cannot be written: " + error.message());
@@ -208,7 +212,7 @@ void VideoWriter::finish() {
 VideoInfo inspect_video(const std::filesystem::path& file) {
   AVFormatContext* opened = nullptr;
   if (avformat_open_input(&opened, file.c_str(), nullptr, nullptr) < 0) {
-    throw InputError(file.string() + ": cannot be read as a video");
+    throw InputError(file.string() + ": cannot read as a video");
   }
   const auto close = [](AVFormatContext* context) { avformat_close_input(&context); };
   const std::unique_ptr<AVFormatContext, decltype(close)> container(opened, close);
@@ -228,7 +232,7 @@ VideoInfo inspect_video(const std::filesystem::path& file) {
                              .title = title != nullptr ? title->value : ""});
   }
   const auto free_packet = [](AVPacket* packet) { av_packet_free(&packet); };
-  const std::unique_ptr<AVPacket, decltype(free_packet)> packet(made(av_packet_alloc(), "packet"),
+  const std::unique_ptr<AVPacket, decltype(free_packet)> packet(not_null(av_packet_alloc(), "packet"),
                                                                 free_packet);
   while (av_read_frame(opened, packet.get()) >= 0) {
     if (packet->stream_index == index) ++info.num_frames;

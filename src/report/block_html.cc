@@ -20,7 +20,7 @@ std::string to_html(const VerdictBlock& block) {
 
 std::string to_html(const KeyMetrics& block) {
   std::string html = "<dl class=\"figures\">\n";
-  for (const KeyMetric& figure : block.figures) {
+  for (const KeyMetric& figure : block.metrics) {
     html += fmt::format("<div><dt>{}</dt><dd><b>{}</b> <span>{}</span></dd><dd class=\"note\">{}</dd></div>\n", io::escaped_markup(figure.label),
                         io::escaped_markup(figure.value), io::escaped_markup(figure.unit), io::escaped_markup(figure.note));
   }
@@ -43,14 +43,14 @@ const char* css_class(Tone tone) {
   }
 }
 
-const char* css_class(SeriesColor ink) {
-  switch (ink) {
+const char* css_class(SeriesColor color) {
+  switch (color) {
     case SeriesColor::kTruth: return "truth";
     case SeriesColor::kEstimate: return "estimate";
     case SeriesColor::kBound: return "bound";
     case SeriesColor::kOdometry: return "odometry";
     case SeriesColor::kRanges: return "ranges";
-    case SeriesColor::kTrust: return "trust";
+    case SeriesColor::kConfidence: return "confidence";
     case SeriesColor::kAlarm: return "alarm";
     default: return "event";
   }

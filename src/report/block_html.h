@@ -24,6 +24,6 @@ std::string to_html(const VideoBlock& block);
 
 /// CSS class of report.css.
 const char* css_class(Tone tone);
-const char* css_class(SeriesColor ink);
+const char* css_class(SeriesColor color);
 
 }  // namespace patrol::report

@@ -18,7 +18,7 @@ namespace patrol::report {
 enum class Tone { kPlain, kGood, kWarning, kBad, kFaint };
 
 /// Meanings of colors in all figures of a page (report.css).
-enum class SeriesColor { kTruth, kEstimate, kBound, kOdometry, kRanges, kTrust, kEvent, kAlarm };
+enum class SeriesColor { kTruth, kEstimate, kBound, kOdometry, kRanges, kConfidence, kEvent, kAlarm };
 
 struct TableCell {
   std::string text;
@@ -61,7 +61,7 @@ struct KeyMetric {
   std::string note;
 };
 struct KeyMetrics {
-  std::vector<KeyMetric> figures;
+  std::vector<KeyMetric> metrics;
 };
 
 struct Bar {
@@ -105,14 +105,14 @@ struct WaterfallChart {
 
 struct Curve {
   std::string name;
-  SeriesColor ink = SeriesColor::kEstimate;
+  SeriesColor color = SeriesColor::kEstimate;
   bool is_dashed = false;
   std::vector<Eigen::Vector2d> points;  ///< increasing x
 };
 struct PlotMark {
   double x = 0.0;
   std::string text;
-  SeriesColor ink = SeriesColor::kEvent;
+  SeriesColor color = SeriesColor::kEvent;
 };
 struct PlotSpan {
   double from = 0.0, to = 0.0;
@@ -148,12 +148,12 @@ struct EventTimeline {
 
 struct MapPath {
   std::string name;
-  SeriesColor ink = SeriesColor::kEstimate;
+  SeriesColor color = SeriesColor::kEstimate;
   std::vector<std::vector<Eigen::Vector2d>> pieces_m;  ///< polylines, in the picture's frame
 };
 struct MapMark {
   std::string label;
-  SeriesColor ink = SeriesColor::kEvent;
+  SeriesColor color = SeriesColor::kEvent;
   Eigen::Vector2d p_m = Eigen::Vector2d::Zero();  ///< position, in the picture's frame
 };
 struct MapBlock {

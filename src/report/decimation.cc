@@ -18,9 +18,9 @@ std::vector<Eigen::Vector2d> decimate(const std::vector<Eigen::Vector2d>& curve,
   for (std::size_t i = 0; i < num_segments; ++i) {
     const auto begin = curve.begin() + static_cast<std::ptrdiff_t>(i * curve.size() / num_segments);
     const auto end = curve.begin() + static_cast<std::ptrdiff_t>((i + 1) * curve.size() / num_segments);
-    const auto [least, greatest] = std::minmax_element(begin, end, is_lower);
-    keep(*std::min(least, greatest));
-    keep(*std::max(least, greatest));
+    const auto [min, max] = std::minmax_element(begin, end, is_lower);
+    keep(*std::min(min, max));
+    keep(*std::max(min, max));
   }
   keep(curve.back());
   return kept;
@@ -35,11 +35,11 @@ std::vector<Eigen::Vector2d> simplify_path(const std::vector<Eigen::Vector2d>& p
   while (!open.empty()) {
     const auto [first, last] = open.back();
     open.pop_back();
-    double farthest = tolerance;
+    double max_distance = tolerance;
     std::size_t split = first;
     for (std::size_t i = first + 1; i < last; ++i) {
       const double distance = distance_to_segment(path[i], path[first], path[last]);
-      if (distance > farthest) std::tie(farthest, split) = std::pair(distance, i);
+      if (distance > max_distance) std::tie(max_distance, split) = std::pair(distance, i);
     }
     if (split == first) continue;
     is_kept[split] = true;

@@ -8,9 +8,6 @@
 /// Escaping of text and data for HTML pages.
 namespace patrol::report {
 
-/// Escapes text for HTML content and attributes. Line ends remain; other control characters become spaces.
-std::string escaped_html(std::string_view text);
-
 /// JSON for a <script> element: contains no character sequence that ends the element. Invalid UTF-8 becomes U+FFFD.
 std::string script_json(const nlohmann::ordered_json& value);
 

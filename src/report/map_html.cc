@@ -23,7 +23,7 @@ std::string points_of(const std::vector<Eigen::Vector2d>& piece_m, const MapPict
 std::string path_html(const MapPath& path, const MapPicture& picture) {
   std::string html;
   for (const std::vector<Eigen::Vector2d>& piece : path.pieces_m) {
-    html += fmt::format("<polyline class=\"{}\" points=\"{}\"/>\n", css_class(path.ink), points_of(piece, picture));
+    html += fmt::format("<polyline class=\"{}\" points=\"{}\"/>\n", css_class(path.color), points_of(piece, picture));
   }
   return html;
 }
@@ -32,7 +32,7 @@ std::string path_html(const MapPath& path, const MapPicture& picture) {
 std::string mark_html(const MapMark& mark, const MapPicture& picture) {
   const double x = mark.p_m.x() - picture.low_m.x(), y = picture.high_m.y() - mark.p_m.y();
   return fmt::format("<g class=\"{0}\"><path d=\"M{1:.2f} {2:.2f}h0\"/><text x=\"{1:.2f}\" y=\"{2:.2f}\">{3}</text></g>\n",
-                     css_class(mark.ink), x, y, io::escaped_markup(mark.label));
+                     css_class(mark.color), x, y, io::escaped_markup(mark.label));
 }
 
 std::string sheet_html(const char* name, const MapPicture::Sheet& sheet) {
@@ -47,7 +47,7 @@ std::string error_key() {
   for (int i = 0; i < kNumRampColors; ++i) {
     colors += fmt::format("{}{}", i == 0 ? "" : ",", css_color(map_error_color(kMapErrorEnd_m * i / (kNumRampColors - 1))));
   }
-  return fmt::format("<span class=\"ramp\">map: distance to the nearest true surface 0<i style=\"background:linear-gradient(90deg,{})\"></i>{:.0f} cm and more"
+  return fmt::format("<span class=\"ramp\">map: distance to the nearest true surface 0<i style=\"background:linear-gradient(90deg,{})\"></i>{:.0f} cm or more"
                      "</span><span class=\"key\" style=\"--ink:{}\">true surface</span>",
                      colors, 100.0 * kMapErrorEnd_m, css_color(kMapTruth));
 }
@@ -55,7 +55,7 @@ std::string error_key() {
 std::string legend_html(const MapBlock& block) {
   std::string html = block.picture.has_errors ? error_key() : "";
   for (const MapPath& path : block.paths) {
-    html += fmt::format("<span class=\"key {}\">{}</span>", css_class(path.ink), io::escaped_markup(path.name));
+    html += fmt::format("<span class=\"key {}\">{}</span>", css_class(path.color), io::escaped_markup(path.name));
   }
   return html;
 }

@@ -37,7 +37,7 @@ std::string to_png(const PaletteImage& image) {
   png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(header);
   std::string png(size, '\0');
   if (png_image_write_to_memory(&header, png.data(), &size, 0, image.pixels.data(), 0, palette.data()) == 0) {
-    throw InputError(std::string("the map's picture cannot be made: ") + header.message);
+    throw InputError(std::string("cannot encode the map picture: ") + header.message);
   }
   png.resize(size);
   return png;
@@ -147,15 +147,15 @@ void paint(const MapLayers& layers, Picture& picture) {
 // Dark blue over violet to red: an accurate map resembles a line drawing. The lightness increases with the error.
 Color map_error_color(double error_m) {
   struct Stop {
-    double share, r, g, b;
+    double fraction, r, g, b;
   };
   static constexpr std::array<Stop, 4> kStops = {{{0.0, 22, 34, 48}, {0.35, 92, 52, 150}, {0.7, 210, 48, 104}, {1.0, 250, 96, 46}}};
-  const double share = std::clamp(error_m / kMapErrorEnd_m, 0.0, 1.0);
+  const double fraction = std::clamp(error_m / kMapErrorEnd_m, 0.0, 1.0);
   std::size_t upper = 1;
-  while (upper + 1 < kStops.size() && share > kStops[upper].share) ++upper;
+  while (upper + 1 < kStops.size() && fraction > kStops[upper].fraction) ++upper;
   const Stop &a = kStops[upper - 1], &b = kStops[upper];
-  const double way = (share - a.share) / (b.share - a.share);
-  const auto mix = [&](double from, double to) { return static_cast<std::uint8_t>(std::lround(from + way * (to - from))); };
+  const double offset = (fraction - a.fraction) / (b.fraction - a.fraction);
+  const auto mix = [&](double from, double to) { return static_cast<std::uint8_t>(std::lround(from + offset * (to - from))); };
   return {mix(a.r, b.r), mix(a.g, b.g), mix(a.b, b.b)};
 }
 

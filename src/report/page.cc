@@ -14,7 +14,7 @@ namespace patrol::report {
 namespace {
 
 constexpr const char* kGridEnd =
-    "</div>\n<p class=\"note hint\">Drag over a stretch of a plot to zoom all of them, double-click for the whole.</p>\n";
+    "</div>\n<p class=\"note hint\">Drag to zoom all plots; double-click to reset.</p>\n";
 constexpr const char* kPolicy =
     "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:; media-src data: 'self' file:";
 
@@ -77,7 +77,7 @@ std::string to_html(const Page& page) {
       kPolicy, io::escaped_markup(page.title), kPlotStyle, kReportStyle);
   html += header_html(page) + navigation_html(page) + "<main>\n";
   for (const Section& section : page.sections) html += section_html(section);
-  html += fmt::format("</main>\n<footer>{}</footer>\n<noscript><p class=\"note\">The plots need JavaScript.</p></noscript>\n", io::escaped_markup(page.footer));
+  html += fmt::format("</main>\n<footer>{}</footer>\n<noscript><p class=\"note\">Plots require JavaScript.</p></noscript>\n", io::escaped_markup(page.footer));
   return html + scripts_html() + "</body></html>\n";
 }
 

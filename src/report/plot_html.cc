@@ -23,7 +23,7 @@ double shortened(double value) { return std::strtod(fmt::format("{:.4g}", value)
 double shortened_x(double x) { return std::round(1e3 * x) / 1e3; }
 
 Json curve_json(const Curve& curve) {
-  Json json = {{"name", curve.name}, {"ink", css_class(curve.ink)}, {"dashed", curve.is_dashed}, {"x", Json::array()}, {"y", Json::array()}};
+  Json json = {{"name", curve.name}, {"ink", css_class(curve.color)}, {"dashed", curve.is_dashed}, {"x", Json::array()}, {"y", Json::array()}};
   for (const Eigen::Vector2d& point : decimate(curve.points, kNumSegments)) {
     json["x"].push_back(shortened_x(point.x()));
     json["y"].push_back(shortened(point.y()));
@@ -33,7 +33,7 @@ Json curve_json(const Curve& curve) {
 
 Json marks_json(const std::vector<PlotMark>& marks) {
   Json json = Json::array();
-  for (const PlotMark& mark : marks) json.push_back({{"x", shortened_x(mark.x)}, {"text", mark.text}, {"ink", css_class(mark.ink)}});
+  for (const PlotMark& mark : marks) json.push_back({{"x", shortened_x(mark.x)}, {"text", mark.text}, {"ink", css_class(mark.color)}});
   return json;
 }
 
@@ -60,18 +60,18 @@ bool has_far_peak(const Curve& curve) {
 std::string legend_html(const std::vector<Curve>& curves) {
   std::string html;
   for (const Curve& curve : curves) {
-    html += fmt::format("<span class=\"key {} {}\">{}</span>", css_class(curve.ink), curve.is_dashed ? "dashed" : "", io::escaped_markup(curve.name));
+    html += fmt::format("<span class=\"key {} {}\">{}</span>", css_class(curve.color), curve.is_dashed ? "dashed" : "", io::escaped_markup(curve.name));
   }
   return html;
 }
 
 /// Note about decimated curves, empty if all points are drawn.
 std::string decimation_note(const std::vector<Curve>& curves) {
-  std::size_t most = 0;
-  for (const Curve& curve : curves) most = std::max(most, curve.points.size());
-  if (most <= 2 * kNumSegments) return "";
-  return fmt::format("<span class=\"thinned\" title=\"Least and greatest value of each of {} stretches: peaks stay\">min/max of {} samples</span>",
-                     kNumSegments, most);
+  std::size_t max_samples = 0;
+  for (const Curve& curve : curves) max_samples = std::max(max_samples, curve.points.size());
+  if (max_samples <= 2 * kNumSegments) return "";
+  return fmt::format("<span class=\"thinned\" title=\"Minimum and maximum of each of {} segments\">min/max of {} samples</span>",
+                     kNumSegments, max_samples);
 }
 
 std::string plot_html(const char* kind, const std::string& title, const std::string& legend, const Json& data) {

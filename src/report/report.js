@@ -24,7 +24,7 @@
   const short = (value) => String(+value.toPrecision(3));
 
   /// Draws spans and marks of the run below the curves.
-  function drawOccasions(plot, data) {
+  function drawEvents(plot, data) {
     const { ctx, bbox } = plot, x = (value) => plot.valToPos(value, 'x', true);
     ctx.save();
     ctx.beginPath();
@@ -71,13 +71,13 @@
         stroke: color(curve.ink), width: curve.dashed ? 1.25 : 1.5, dash: curve.dashed ? [4, 4] : undefined, spanGaps: true, points: { show: false },
       }))],
       cursor: { ...cursor, dataIdx: nearestSample },
-      hooks: { drawClear: [(plot) => drawOccasions(plot, data)], setCursor: [(plot) => showValues(plot, figure)] },
+      hooks: { drawClear: [(plot) => drawEvents(plot, data)], setCursor: [(plot) => showValues(plot, figure)] },
     }, uPlot.join([[[0, data.end], [null, null]], ...curves]).filter((_, i) => i !== 1), figure.querySelector('.drawing'));
   }
 
   function drawLanes(plot, data) {
     const { ctx } = plot, px = uPlot.pxRatio;
-    drawOccasions(plot, data);
+    drawEvents(plot, data);
     data.lanes.forEach((lane, i) => lane.marks.forEach((mark) => {
       const x = plot.valToPos(mark.x, 'x', true), y = plot.valToPos(i, 'y', true);
       if (x < plot.bbox.left - px || x > plot.bbox.left + plot.bbox.width + px) return;
@@ -87,7 +87,7 @@
   }
 
   /// Text at the cursor: the event of its lane, else the span.
-  function occasionAt(plot, data) {
+  function eventAt(plot, data) {
     const { left, top } = plot.cursor;
     if (left == null || left < 0) return '';
     const lane = data.lanes[Math.round(plot.posToVal(top, 'y'))];
@@ -106,7 +106,7 @@
       axes: [timeAxis(data), axis({ size: 14 + 6.6 * longest, splits: () => data.lanes.map((_, i) => i), values: () => data.lanes.map((lane) => lane.name) })],
       series: [{}, { paths: () => null, points: { show: false } }],
       cursor: { ...cursor, points: { show: false } },
-      hooks: { drawClear: [(plot) => drawLanes(plot, data)], setCursor: [(plot) => { figure.querySelector('output').textContent = occasionAt(plot, data); }] },
+      hooks: { drawClear: [(plot) => drawLanes(plot, data)], setCursor: [(plot) => { figure.querySelector('output').textContent = eventAt(plot, data); }] },
     }, [[0, data.end], [null, null]], figure.querySelector('.drawing'));
     return plot;
   }
@@ -125,9 +125,9 @@
     let shown = { x: 0, y: 0, width, height };  // m
     const scaleBar = view.appendChild(Object.assign(document.createElement('div'), { className: 'scale-bar' }));
 
-    const metresPerPixel = () => Math.max(shown.width / svg.clientWidth, shown.height / svg.clientHeight);
+    const metersPerPixel = () => Math.max(shown.width / svg.clientWidth, shown.height / svg.clientHeight);
     function show() {
-      const px = metresPerPixel();
+      const px = metersPerPixel();
       if (!Number.isFinite(px)) return;
       svg.setAttribute('viewBox', [shown.x, shown.y, shown.width, shown.height].map((value) => value.toFixed(3)).join(' '));
       svg.style.setProperty('--px', px);
@@ -149,17 +149,17 @@
     }
     /// Zooms about a point of the window: the map position under it stays fixed.
     function zoom(factor, clientX, clientY) {
-      const box = svg.getBoundingClientRect(), px = metresPerPixel();
+      const box = svg.getBoundingClientRect(), px = metersPerPixel();
       const fx = clientX - box.left - box.width / 2, fy = clientY - box.top - box.height / 2;
       const px2 = Math.min(px / factor, Math.max(width / svg.clientWidth, height / svg.clientHeight));
-      const centre = { x: shown.x + shown.width / 2 + fx * (px - px2), y: shown.y + shown.height / 2 + fy * (px - px2) };
+      const center = { x: shown.x + shown.width / 2 + fx * (px - px2), y: shown.y + shown.height / 2 + fy * (px - px2) };
       const share = px2 / px;
       shown = { width: shown.width * share, height: shown.height * share };
-      move(centre.x, centre.y);
+      move(center.x, center.y);
     }
-    function move(centreX, centreY) {
-      shown.x = Math.min(Math.max(centreX, 0), width) - shown.width / 2;
-      shown.y = Math.min(Math.max(centreY, 0), height) - shown.height / 2;
+    function move(centerX, centerY) {
+      shown.x = Math.min(Math.max(centerX, 0), width) - shown.width / 2;
+      shown.y = Math.min(Math.max(centerY, 0), height) - shown.height / 2;
       if (shown.width >= 0.99 * width) shown = { x: 0, y: 0, width, height };
       show();
     }
@@ -196,7 +196,7 @@
         const apart = (one) => Math.hypot(one.clientX - other.clientX, one.clientY - other.clientY);
         zoom(apart(event) / apart(before), (event.clientX + other.clientX) / 2, (event.clientY + other.clientY) / 2);
       } else if (svg.classList.contains('zoomed')) {
-        const px = metresPerPixel();
+        const px = metersPerPixel();
         move(shown.x + shown.width / 2 - px * (event.clientX - before.clientX), shown.y + shown.height / 2 - px * (event.clientY - before.clientY));
       }
       pointers.set(event.pointerId, event);

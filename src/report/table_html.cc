@@ -39,9 +39,9 @@ std::string head_html(const std::vector<Column>& columns) {
 
 /// Minimum of 1, 2 or 5 times a power of ten that covers `end` with at most `max_steps` steps.
 double round_step(double end, int max_steps) {
-  const double least = end / max_steps, power = std::pow(10.0, std::floor(std::log10(least)));
+  const double min = end / max_steps, power = std::pow(10.0, std::floor(std::log10(min)));
   for (const double factor : {1.0, 2.0, 5.0}) {
-    if (factor * power >= least * (1.0 - 1e-9)) return factor * power;
+    if (factor * power >= min * (1.0 - 1e-9)) return factor * power;
   }
   return 10.0 * power;
 }
@@ -76,11 +76,11 @@ std::string ticks_html(const Scale& scale, const std::string& unit) {
 }
 
 std::string box_html(const Box& box, const Scale& scale) {
-  const auto [least, greatest] = std::minmax_element(box.values.begin(), box.values.end());
+  const auto [min, max] = std::minmax_element(box.values.begin(), box.values.end());
   const auto span = [&](const char* name, double from, double to) {
     return fmt::format("<i class=\"{}\" style=\"left:{:.3f}%;width:{:.3f}%\"></i>", name, scale.percent(from), scale.width(from, to));
   };
-  std::string html = span("whisker", *least, *greatest) + span("box", box.lower_quartile, box.upper_quartile);
+  std::string html = span("whisker", *min, *max) + span("box", box.lower_quartile, box.upper_quartile);
   for (const double value : box.values) html += fmt::format("<i class=\"dot\" style=\"left:{:.3f}%\"></i>", scale.percent(value));
   return html + fmt::format("<i class=\"median\" style=\"left:{:.3f}%\"></i>", scale.percent(box.median));
 }
@@ -116,11 +116,11 @@ std::string to_html(const CollapsibleTables& block) {
 }
 
 std::string to_html(const BarBlock& block) {
-  double greatest = 0.0;
-  for (const Bar& bar : block.bars) greatest = std::max(greatest, bar.value);
+  double max = 0.0;
+  for (const Bar& bar : block.bars) max = std::max(max, bar.value);
   std::string html = fmt::format("<table class=\"chart bars\"><caption>{}</caption><tbody>\n", io::escaped_markup(block.caption));
   for (const Bar& bar : block.bars) {
-    const double percent = greatest > 0.0 ? 100.0 * std::max(bar.value, 0.0) / greatest : 0.0;
+    const double percent = max > 0.0 ? 100.0 * std::max(bar.value, 0.0) / max : 0.0;
     html += fmt::format("<tr><th>{}</th><td><i class=\"bar\" style=\"width:{:.3f}%\"></i></td><td class=\"number\">{}</td></tr>\n",
                         io::escaped_markup(bar.label), percent, io::escaped_markup(bar.text));
   }
@@ -128,13 +128,13 @@ std::string to_html(const BarBlock& block) {
 }
 
 std::string to_html(const WaterfallChart& block) {
-  double least = 0.0, greatest = 0.0;
+  double min = 0.0, max = 0.0;
   for (const Span& span : block.spans) {
     const auto [low, high] = span.interval.value_or(std::pair(span.to, span.to));
-    least = std::min({least, span.from, span.to, low});
-    greatest = std::max({greatest, span.from, span.to, high});
+    min = std::min({min, span.from, span.to, low});
+    max = std::max({max, span.from, span.to, high});
   }
-  const Scale scale(least, greatest);
+  const Scale scale(min, max);
   std::string html = fmt::format("<table class=\"chart spans\"><caption>{}</caption><tbody>\n", io::escaped_markup(block.caption));
   for (const Span& span : block.spans) {
     html += fmt::format("<tr><th>{}</th><td><div class=\"track\">{}</div></td><td class=\"number\">{}</td></tr>\n", io::escaped_markup(span.label),
@@ -144,11 +144,11 @@ std::string to_html(const WaterfallChart& block) {
 }
 
 std::string to_html(const BoxPlot& block) {
-  double least = 0.0, greatest = 0.0;
+  double min = 0.0, max = 0.0;
   for (const Box& box : block.boxes) {
-    for (const double value : box.values) least = std::min(least, value), greatest = std::max(greatest, value);
+    for (const double value : box.values) min = std::min(min, value), max = std::max(max, value);
   }
-  const Scale scale(least, greatest);
+  const Scale scale(min, max);
   std::string html = fmt::format("<table class=\"chart boxes\"><caption>{}</caption><tbody>\n", io::escaped_markup(block.caption));
   for (const Box& box : block.boxes) {
     if (box.values.empty()) continue;

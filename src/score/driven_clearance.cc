@@ -26,13 +26,13 @@ std::vector<Eigen::Vector2d> occupied_centers(const OccupancyGrid& map) {
 /// Distance from a point to the outline, 0 inside it.
 double distance_to_outline(const Eigen::Vector2d& p, const std::vector<Eigen::Vector2d>& outline) {
   bool is_inside = true;
-  double least = std::numeric_limits<double>::infinity();
+  double min_m = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < outline.size(); ++i) {
     const Eigen::Vector2d from = outline[i], side = outline[(i + 1) % outline.size()] - from, to_p = p - from;
     if (side.x() * to_p.y() - side.y() * to_p.x() < 0.0) is_inside = false;
-    least = std::min(least, distance_to_segment(p, from, from + side));
+    min_m = std::min(min_m, distance_to_segment(p, from, from + side));
   }
-  return is_inside ? 0.0 : least;
+  return is_inside ? 0.0 : min_m;
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ std::map<std::string, Pose2> goal_poses(const std::vector<Event>& events, const 
   std::map<std::string, Pose2> wanted;
   for (const SavedGoal& goal : given) wanted["goal_" + std::to_string(goal.number)] = T_world_map * goal.T_map_body;
   for (const Event& event : events) {
-    if (event.kind != EventKind::kGoalMarked) continue;
+    if (event.kind != EventKind::kGoalSaved) continue;
     if (const auto truth = truth_at(T_world_body, event.stamp)) wanted[event.subject] = *truth;
   }
   return wanted;

@@ -10,8 +10,8 @@ namespace {
 double true_peak_m(const LiningGroundTruth& truth, int ring) {
   double peak_m = 0.0;
   for (int clock_deg = 0; clock_deg < 360; ++clock_deg) {
-    const double moved_m = truth.inward_m(ring, clock_deg);
-    if (std::abs(moved_m) > std::abs(peak_m)) peak_m = moved_m;
+    const double displacement_m = truth.inward_m(ring, clock_deg);
+    if (std::abs(displacement_m) > std::abs(peak_m)) peak_m = displacement_m;
   }
   return peak_m;
 }
@@ -26,16 +26,16 @@ RingScore found_ring(const RingFinding& finding, const LiningGroundTruth& truth,
           .reported_m = finding.inward_m,
           .error_m = finding.inward_m - truth.inward_m(finding.ring, finding.clock_deg),
           .peak_error_m = finding.inward_m - peak_m,
-          .place_error_m = (T_world_map * finding.p_map - p_world).norm()};
+          .position_error_m = (T_world_map * finding.p_map - p_world).norm()};
 }
 
-void add_rings(const LiningResult& result, const LiningGroundTruth& truth, const Pose3& T_world_map, double moved_m, double still_m, LiningScore& score) {
+void add_rings(const LiningResult& result, const LiningGroundTruth& truth, const Pose3& T_world_map, double displacement_m, double still_m, LiningScore& score) {
   std::set<int> in_view;
   for (const LiningCell& cell : result.cells) in_view.insert(cell.ring);
   for (const RingFinding& finding : result.findings) in_view.insert(finding.ring);
   for (const int ring : in_view) {
     const double peak_m = true_peak_m(truth, ring);
-    const bool has_moved = std::abs(peak_m) >= moved_m, is_still = std::abs(peak_m) < still_m;
+    const bool has_moved = std::abs(peak_m) >= displacement_m, is_still = std::abs(peak_m) < still_m;
     const auto finding = std::ranges::find(result.findings, ring, &RingFinding::ring);
     const bool is_found = finding != result.findings.end();
     score.moved_rings += has_moved ? 1 : 0;
@@ -48,13 +48,13 @@ void add_rings(const LiningResult& result, const LiningGroundTruth& truth, const
     ++score.found;
     score.max_error_m = std::max(score.max_error_m, std::abs(ring_score.error_m));
     score.max_peak_error_m = std::max(score.max_peak_error_m, std::abs(ring_score.peak_error_m));
-    score.max_position_error_m = std::max(score.max_position_error_m, ring_score.place_error_m);
+    score.max_position_error_m = std::max(score.max_position_error_m, ring_score.position_error_m);
   }
 }
 
 }  // namespace
 
-LiningScore lining_score(const std::vector<LiningResult>& results, const LiningGroundTruth& truth, const Pose3& T_world_map, double moved_m, double still_m) {
+LiningScore lining_score(const std::vector<LiningResult>& results, const LiningGroundTruth& truth, const Pose3& T_world_map, double displacement_m, double still_m) {
   LiningScore score;
   double squares = 0.0;
   int held = 0;
@@ -62,7 +62,7 @@ LiningScore lining_score(const std::vector<LiningResult>& results, const LiningG
     ++score.stations;
     if (!result.is_registered) continue;
     ++score.registered;
-    add_rings(result, truth, T_world_map, moved_m, still_m, score);
+    add_rings(result, truth, T_world_map, displacement_m, still_m, score);
     for (const LiningCell& cell : result.cells) {
       const double error_m = cell.inward_m - truth.inward_m(cell.ring, cell.clock_deg);
       squares += error_m * error_m;

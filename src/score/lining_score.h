@@ -30,7 +30,7 @@ struct RingScore {
   double error_m = 0.0;          ///< reported minus true displacement at the reported clock position
   double peak_error_m = 0.0;     ///< reported displacement minus true peak
   /// distance from the reported position to the true intrados at the ring's middle and the reported clock position
-  double place_error_m = 0.0;
+  double position_error_m = 0.0;
 };
 
 /// Evaluation of all stations against the true deformation. A moved ring is found or missed
@@ -52,9 +52,9 @@ struct LiningScore {
   std::vector<RingScore> rings;  ///< moved rings and rings with a finding
 };
 
-/// Evaluates the findings of all stations. A ring counts as moved when its peak displacement is at least `moved_m`, and
+/// Evaluates the findings of all stations. A ring counts as moved when its peak displacement is at least `displacement_m`, and
 /// a finding is false when it is below `still_m`. Between the two limits, a finding and its absence are both correct.
-LiningScore lining_score(const std::vector<LiningResult>& results, const LiningGroundTruth& truth, const Pose3& T_world_map, double moved_m = 0.0025,
+LiningScore lining_score(const std::vector<LiningResult>& results, const LiningGroundTruth& truth, const Pose3& T_world_map, double displacement_m = 0.0025,
                          double still_m = 0.0015);
 
 }  // namespace patrol::score

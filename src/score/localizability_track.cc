@@ -27,12 +27,12 @@ std::vector<TrackedLocalizability> track_localizability(const RunRecord& record,
     const std::optional<Pose3> truth = pose_at(record.T_world_body, stamp);
     if (!truth) continue;
     const Eigen::Vector2d p_world_m = truth->position.head<2>();
-    const PrincipalAxes own = principal_axes(record.covariances[i].topLeftCorner<2, 2>());
+    const PrincipalAxes axes = principal_axes(record.covariances[i].topLeftCorner<2, 2>());
     track.push_back({.stamp = stamp,
                      .p_world_m = p_world_m,
                      .sample = {.truth = oracle(p_world_m),
-                                .reported_std_m = std::sqrt(std::max(own.large, 0.0)),
-                                .reported_direction_rad = T_world_map.yaw + own.large_direction_rad,
+                                .reported_std_m = std::sqrt(std::max(axes.large, 0.0)),
+                                .reported_direction_rad = T_world_map.yaw + axes.large_direction_rad,
                                 .confidence = confidence_at(record.confidences, stamp)}});
   }
   return track;

@@ -27,7 +27,7 @@ struct RelocalizationScore {
   std::optional<double> relocalized_s;
 };
 
-/// Evaluates a whole run. `matched` and `trusts` are ordered by time and begin when the localization starts.
+/// Evaluates a whole run. `matched` and `confidences` are ordered by time and begin when the localization starts.
 LocalizationScore localization_score(const std::vector<MatchedPose>& matched, const std::vector<LocalizationConfidence>& confidences);
 
 /// Evaluates the recovery from a kidnapping at time `kidnapped`.

@@ -73,8 +73,8 @@ MapError map_error(const OccupancyGrid& built, const Pose2& T_world_map, const R
   const Grid<std::uint8_t> reference_occupied = occupied_cells(reference.cells);
   const std::vector<Eigen::Vector2d> built_points = centers_of(built_occupied);
   const std::vector<Eigen::Vector2d> observable_points = centers_of(occupied_cells(observable_part(reference)));
-  if (built_points.empty()) throw InputError("the built map has no occupied cell");
-  if (observable_points.empty()) throw InputError("the reference map has no occupied cell that could be seen");
+  if (built_points.empty()) throw InputError("built map: no occupied cells");
+  if (observable_points.empty()) throw InputError("reference map: no observable occupied cells");
 
   const std::vector<double> nearest_m = distances_m(DistanceField(reference_occupied), T_world_map, built_points);
   const Pose2 T_map_world = T_world_map.inverse();

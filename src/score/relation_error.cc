@@ -15,7 +15,7 @@ namespace {
 class PoseLookup {
  public:
   PoseLookup(const Trajectory& T_map_body, const RelationSettings& settings)
-      : trajectory_(T_map_body), max_dt_(from_seconds(settings.max_dt_s)), T_body_reference_{settings.ref_x_m, 0.0, 0.0} {}
+      : trajectory_(T_map_body), max_dt_(from_seconds(settings.max_dt_s)), T_body_reference_{settings.reference_x_m, 0.0, 0.0} {}
 
   const Pose2& T_map_reference(Time stamp) {
     const auto known = found_.find(stamp);
@@ -47,8 +47,8 @@ class PoseLookup {
   /// Interpolates linearly in x, y and yaw, the yaw along the shorter arc.
   Pose2 between(const StampedPose& before, const StampedPose& after, Time stamp) const {
     const Pose2 a = reference_at(before), b = reference_at(after);
-    const double share = to_seconds(stamp - before.stamp) / to_seconds(after.stamp - before.stamp);
-    return {a.x + share * (b.x - a.x), a.y + share * (b.y - a.y), wrap_angle(a.yaw + share * wrap_angle(b.yaw - a.yaw))};
+    const double fraction = to_seconds(stamp - before.stamp) / to_seconds(after.stamp - before.stamp);
+    return {a.x + fraction * (b.x - a.x), a.y + fraction * (b.y - a.y), wrap_angle(a.yaw + fraction * wrap_angle(b.yaw - a.yaw))};
   }
 
   const Trajectory& trajectory_;
@@ -80,8 +80,8 @@ double upper_median(std::vector<double> values) {
 
 RelationError relation_error(const Trajectory& T_map_body, const std::vector<PoseRelation>& relations, const RelationSettings& settings) {
   validate(settings, "relations");
-  if (T_map_body.empty()) throw InputError("the estimate holds no poses");
-  if (relations.empty()) throw InputError("there are no relations to score");
+  if (T_map_body.empty()) throw InputError("estimate: no poses");
+  if (relations.empty()) throw InputError("relations: none to score");
   PoseLookup lookup(T_map_body, settings);
   std::vector<double> trans_m, rot_deg;
   for (const PoseRelation& relation : relations) {

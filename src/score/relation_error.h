@@ -13,12 +13,12 @@ namespace patrol::score {
 struct RelationSettings {
   /// maximum distance in time at which the nearest pose is used; beyond it the pose is interpolated
   double max_dt_s = 0.02;
-  double ref_x_m = 0.0;    ///< x offset of the relations' reference point in the trajectory's body frame
+  double reference_x_m = 0.0;    ///< x offset of the relations' reference point in the trajectory's body frame
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("max_dt_s", self.max_dt_s, between(0.0, 10.0));
-    visit("ref_x_m", self.ref_x_m, between(-10.0, 10.0));
+    visit("ref_x_m", self.reference_x_m, between(-10.0, 10.0));
   }
 };
 

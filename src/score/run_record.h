@@ -20,7 +20,7 @@ struct RunRecord {
   Trajectory T_world_body;  ///< ground truth
   std::vector<Event> events;
   std::vector<LocalizationConfidence> confidences;
-  std::vector<TeleopCommand> remote;
+  std::vector<TeleopCommand> teleop;
   std::vector<Collision> collisions;
   std::vector<LiningResult> linings;
   std::vector<WaterResult> waters;

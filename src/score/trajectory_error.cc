@@ -86,7 +86,7 @@ Pose3 fit_rigid_motion(const PointPairs& pairs) {
                                      static_cast<double>(pairs.estimate.cols());
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
   if (svd.singularValues()[1] <= std::numeric_limits<double>::epsilon()) {
-    throw InputError("the trajectories lie on a line or a point: no rigid motion can be fitted");
+    throw InputError("trajectories: no unique alignment: positions are on a line or a point");
   }
   Eigen::Vector3d sign = Eigen::Vector3d::Ones();
   if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0.0) sign.z() = -1.0;
@@ -102,7 +102,7 @@ Pose2 align_at_start(const Trajectory& T_map_body, const Trajectory& T_world_bod
       return to_pose2(*truth) * to_pose2(entry.pose).inverse();
     }
   }
-  throw InputError("the estimate and the reference have no instant in common");
+  throw InputError("estimate and reference do not overlap in time");
 }
 
 std::vector<MatchedPose> pair_poses(const Trajectory& T_map_body, const Pose2& T_world_map,
@@ -120,7 +120,7 @@ std::vector<MatchedPose> pair_poses(const Trajectory& T_map_body, const Pose2& T
 TrajectoryError trajectory_error(const Trajectory& T_map_body, const Pose2& T_world_map,
                                  const Trajectory& T_world_body) {
   const std::vector<MatchedPose> poses = pair_poses(T_map_body, T_world_map, T_world_body);
-  if (poses.empty()) throw InputError("the estimate and the reference have no instant in common");
+  if (poses.empty()) throw InputError("estimate and reference do not overlap in time");
   std::vector<double> position_m, heading_rad;
   for (const MatchedPose& pose : poses) {
     position_m.push_back(pose.position_error_m());
@@ -139,7 +139,7 @@ TrajectoryError trajectory_error(const Trajectory& T_map_body, const Pose2& T_wo
 AlignedError aligned_error(const Trajectory& estimate, const Trajectory& reference) {
   const PointPairs pairs = pair_by_stamp(estimate, reference);
   if (pairs.estimate.cols() < 3) {
-    throw InputError("the estimate and the reference have fewer than three stamps within 10 ms of each other");
+    throw InputError("estimate and reference: fewer than three stamps within 10 ms of each other");
   }
   AlignedError error{.num_pairs = static_cast<std::size_t>(pairs.estimate.cols()),
                      .T_reference_estimate = fit_rigid_motion(pairs)};

@@ -48,12 +48,12 @@ class CellWalk {
 };
 
 std::vector<Eigen::Vector2d> thin_out(const Trajectory& T_world_body, double spacing_m) {
-  std::vector<Eigen::Vector2d> places;
+  std::vector<Eigen::Vector2d> positions;
   for (const StampedPose& entry : T_world_body) {
     const Eigen::Vector2d p = entry.pose.position.head<2>();
-    if (places.empty() || (p - places.back()).norm() >= spacing_m) places.push_back(p);
+    if (positions.empty() || (p - positions.back()).norm() >= spacing_m) positions.push_back(p);
   }
-  return places;
+  return positions;
 }
 
 void mark_neighborhood(ReferenceMap& reference, Cell hit) {
@@ -84,9 +84,9 @@ ReferenceMap mark_observable(OccupancyGrid reference, const Trajectory& T_world_
   // Adjacent rays are two cells apart at full range; `mark_neighborhood` fills the gap.
   const double step_rad = 2.0 * geometry.resolution_m / max_range_m;
   const int num_rays = static_cast<int>(std::ceil(2.0 * std::numbers::pi / step_rad));
-  for (const Eigen::Vector2d& place : thin_out(T_world_body, spacing_m)) {
+  for (const Eigen::Vector2d& p_world : thin_out(T_world_body, spacing_m)) {
     for (int ray = 0; ray < num_rays; ++ray) {
-      mark_ray(marked, place, 2.0 * std::numbers::pi * ray / num_rays, max_range_m);
+      mark_ray(marked, p_world, 2.0 * std::numbers::pi * ray / num_rays, max_range_m);
     }
   }
   return marked;

@@ -50,12 +50,12 @@ std::string known_actors(const mjModel& model) {
 
 /// Returns the ground height at a position: the highest static collision surface below knee height, for a person on
 /// ground of height `from_m`.
-double ground_at(const mjModel& model, const mjData& data, const Eigen::Vector2d& place, double from_m) {
+double ground_at(const mjModel& model, const mjData& data, const Eigen::Vector2d& p_world, double from_m) {
   constexpr double kKnee_m = 0.5, kThrough_m = 1e-6;
   const mjtNum down[3] = {0.0, 0.0, -1.0};
   const mjtByte can_carry[mjNGROUP] = {1, 0, 1, 1, 0, 0};
   for (double height = from_m + kKnee_m;;) {
-    const mjtNum from[3] = {place.x(), place.y(), height};
+    const mjtNum from[3] = {p_world.x(), p_world.y(), height};
     int geom = -1;
     const mjtNum distance = mj_ray(&model, &data, from, down, can_carry, 1, -1, &geom, nullptr);
     if (distance < 0.0) return 0.0;
@@ -120,8 +120,8 @@ Eigen::Vector2d ActorPath::position(double along_m) const {
   if (next == along_.begin()) return points_.front();
   if (next == along_.end()) return points_.back();
   const auto i = static_cast<std::size_t>(next - along_.begin());
-  const double share = (along_m - along_[i - 1]) / (along_[i] - along_[i - 1]);
-  return points_[i - 1] + share * (points_[i] - points_[i - 1]);
+  const double fraction = (along_m - along_[i - 1]) / (along_[i] - along_[i - 1]);
+  return points_[i - 1] + fraction * (points_[i] - points_[i - 1]);
 }
 
 double ActorPath::heading_rad(double along_m) const {
@@ -139,7 +139,7 @@ Actors::Actors(const mjModel& model, const std::vector<ActorSettings>& settings)
     const std::string& name = actor_settings.name;
     const int body = mj_name2id(&model, mjOBJ_BODY, name.c_str());
     if (mocap_of(model, name) < 0) {
-      throw InputError(fmt::format("actors: name = {}: the world has no such actor (known: {})", name, known_actors(model)));
+      throw InputError(fmt::format("actors: unknown name '{}' (known: {})", name, known_actors(model)));
     }
     if (actor_settings.path.size() < 2) throw InputError(fmt::format("actors.{}.path: must have at least two points", name));
     Actor actor{.settings = actor_settings,
@@ -148,7 +148,7 @@ Actors::Actors(const mjModel& model, const std::vector<ActorSettings>& settings)
                           mocap_of(model, name + "_thigh_right"), mocap_of(model, name + "_shank_right")},
                 .base_height_m = 0.0,
                 .ground_m = {}};
-    if (actor.path.length_m() <= 0.0) throw InputError(fmt::format("actors.{}.path: has no length", name));
+    if (actor.path.length_m() <= 0.0) throw InputError(fmt::format("actors.{}.path: length is zero: must be positive", name));
     const Eigen::Vector3d placed(model.body_pos + 3 * body);
     actor.base_height_m = placed.z() - ground_at(model, *data, placed.head<2>(), 0.0);
     double ground = 0.0;
@@ -202,7 +202,7 @@ void Actors::advance(Time now, const ObservedRobot& robot, mjData& data) {
     const double change = (waits ? 4.0 : 1.0) * kAcceleration_mps2 * dt_s;
     actor.speed_mps += std::clamp(wanted - actor.speed_mps, -change, change);
     actor.walked_m += actor.speed_mps * dt_s;
-    place(actor, data);
+    write_pose(actor, data);
   }
 }
 
@@ -212,7 +212,7 @@ std::vector<Eigen::Vector2d> Actors::positions() const {
   return positions;
 }
 
-void Actors::place(const Actor& actor, mjData& data) const {
+void Actors::write_pose(const Actor& actor, mjData& data) const {
   const double along = along_path(actor);
   const bool is_facing_back = is_returning(actor) && actor.settings.kind != "car";  // a car reverses
   const double heading = actor.path.heading_rad(along) + (is_facing_back ? std::numbers::pi : 0.0);
@@ -222,10 +222,10 @@ void Actors::place(const Actor& actor, mjData& data) const {
     return actor.ground_m[i];
   };
   const double ground = (ground_at_index(along - 0.2) + ground_at_index(along) + ground_at_index(along + 0.2)) / 3.0;
-  const Eigen::Vector2d place = actor.path.position(along);
+  const Eigen::Vector2d p_world = actor.path.position(along);
   const bool has_legs = actor.mocap[1] >= 0;
   const double drop = has_legs ? hip_drop_m(actor.walked_m, actor.speed_mps) : 0.0;
-  const Eigen::Vector3d origin(place.x(), place.y(), ground + actor.base_height_m - drop);
+  const Eigen::Vector3d origin(p_world.x(), p_world.y(), ground + actor.base_height_m - drop);
   set_pose(data, actor.mocap[0], origin, quaternion_from_yaw(heading));
   if (has_legs) write_leg_poses(actor, origin, heading, data);
 }
@@ -233,12 +233,12 @@ void Actors::place(const Actor& actor, mjData& data) const {
 // Each foot is in stance for half a stride while the hip passes over it, then swings forward at twice the speed.
 void Actors::write_leg_poses(const Actor& actor, const Eigen::Vector3d& hip, double heading_rad, mjData& data) const {
   const Eigen::Quaterniond yaw = quaternion_from_yaw(heading_rad);
-  const double share = stride_fraction(actor.speed_mps);
+  const double fraction = stride_fraction(actor.speed_mps);
   const double hip_height = kLeg_m - hip_drop_m(actor.walked_m, actor.speed_mps);
   for (int side = 0; side < 2; ++side) {
     const double phase = stride_phase(actor.walked_m, side);
-    const double lift = phase < 0.5 ? 0.0 : share * 0.10 * std::sin(2.0 * std::numbers::pi * (phase - 0.5));
-    const auto [thigh, knee] = leg_angles(share * foot_forward_m(phase), hip_height - lift);
+    const double lift = phase < 0.5 ? 0.0 : fraction * 0.10 * std::sin(2.0 * std::numbers::pi * (phase - 0.5));
+    const auto [thigh, knee] = leg_angles(fraction * foot_forward_m(phase), hip_height - lift);
     const Eigen::Vector3d top = hip + yaw * Eigen::Vector3d(0.0, side == 0 ? kHipWidth_m : -kHipWidth_m, 0.0);
     const Eigen::Quaterniond q_thigh = yaw * Eigen::AngleAxisd(-thigh, Eigen::Vector3d::UnitY());
     const Eigen::Quaterniond q_shank = yaw * Eigen::AngleAxisd(knee - thigh, Eigen::Vector3d::UnitY());

@@ -101,7 +101,7 @@ class Actors {
     double speed_mps = 0.0;
   };
 
-  void place(const Actor& actor, mjData& data) const;
+  void write_pose(const Actor& actor, mjData& data) const;
   void write_leg_poses(const Actor& actor, const Eigen::Vector3d& hip, double heading_rad, mjData& data) const;
   static double along_path(const Actor& actor);
   static bool is_returning(const Actor& actor);

@@ -14,7 +14,7 @@ constexpr std::array kJointNames = {"tem_yaw_joint", "tem_pitch_joint"};
 
 int joint_id(const mjModel& physics, const char* name) {
   const int joint = mj_name2id(&physics, mjOBJ_JOINT, name);
-  if (joint < 0) throw InputError(std::string("the robot's model has no joint ") + name);
+  if (joint < 0) throw InputError(std::string("robot model: joint not found: ") + name);
   return joint;
 }
 

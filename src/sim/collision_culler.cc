@@ -57,7 +57,7 @@ void CollisionCuller::rebuild_bvh(const Eigen::Vector3d& robot) {
   near_leaves_.clear();
   const Eigen::Array3d reach = Eigen::Array3d::Constant(kRobotExtent_m + kRebuildDistance_m + kMotionMargin_m);
   for (const Leaf& leaf : leaves_) {
-    if (((leaf.centre - robot).array().abs() < leaf.half.array() + reach).all()) near_leaves_.push_back(leaf);
+    if (((leaf.center - robot).array().abs() < leaf.half.array() + reach).all()) near_leaves_.push_back(leaf);
   }
   if (near_leaves_.empty()) near_leaves_.push_back(leaves_.front());  // a tree has at least one leaf
   num_nodes_ = 0;
@@ -68,10 +68,10 @@ void CollisionCuller::rebuild_bvh(const Eigen::Vector3d& robot) {
 /// Appends the tree over [begin, end) to the nodes written so far, parents first as in MuJoCo; returns its root.
 int CollisionCuller::build_bvh(std::vector<Leaf>::iterator begin, std::vector<Leaf>::iterator end, int depth) {
   const int node = num_nodes_++;
-  Eigen::Vector3d lower = begin->centre - begin->half, upper = begin->centre + begin->half;
+  Eigen::Vector3d lower = begin->center - begin->half, upper = begin->center + begin->half;
   for (auto leaf = begin + 1; leaf != end; ++leaf) {
-    lower = lower.cwiseMin(leaf->centre - leaf->half);
-    upper = upper.cwiseMax(leaf->centre + leaf->half);
+    lower = lower.cwiseMin(leaf->center - leaf->half);
+    upper = upper.cwiseMax(leaf->center + leaf->half);
   }
   int left = -1, right = -1;
   if (end - begin > 1) {
@@ -79,7 +79,7 @@ int CollisionCuller::build_bvh(std::vector<Leaf>::iterator begin, std::vector<Le
     int axis = 0;
     (upper - lower).maxCoeff(&axis);
     std::sort(begin, end, [axis](const Leaf& a, const Leaf& b) {
-      return a.centre[axis] != b.centre[axis] ? a.centre[axis] < b.centre[axis] : a.geom < b.geom;
+      return a.center[axis] != b.center[axis] ? a.center[axis] < b.center[axis] : a.geom < b.geom;
     });
     left = build_bvh(begin, middle, depth + 1);
     right = build_bvh(middle, end, depth + 1);
@@ -89,8 +89,8 @@ int CollisionCuller::build_bvh(std::vector<Leaf>::iterator begin, std::vector<Le
   physics_.bvh_child[2 * address] = left;
   physics_.bvh_child[2 * address + 1] = right;
   physics_.bvh_nodeid[address] = left < 0 ? begin->geom : -1;
-  const Eigen::Vector3d centre = (lower + upper) / 2.0, half = (upper - lower) / 2.0;
-  std::copy_n(centre.data(), 3, physics_.bvh_aabb + 6 * address);
+  const Eigen::Vector3d center = (lower + upper) / 2.0, half = (upper - lower) / 2.0;
+  std::copy_n(center.data(), 3, physics_.bvh_aabb + 6 * address);
   std::copy_n(half.data(), 3, physics_.bvh_aabb + 6 * address + 3);
   return node;
 }

@@ -25,7 +25,7 @@ class CollisionCuller {
   /// Geom of the world body and its axis-aligned bounding box, as stored in a tree node.
   struct Leaf {
     int geom;
-    Eigen::Vector3d centre, half;
+    Eigen::Vector3d center, half;
   };
   struct Actor {
     int body;

@@ -12,13 +12,13 @@ struct DustSettings {
   bool enabled = false;
   double visibility_m = 50.0;  ///< meteorological range: distance at which the contrast of black against the sky falls
                                ///< to 2 %
-  double echo_share = 0.05;    ///< probability that extinguished light causes a return that a lidar takes for a surface
+  double backscatter_probability = 0.05;    ///< probability that extinguished light causes a return that a lidar takes for a surface
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("enabled", self.enabled);
     visit("visibility_m", self.visibility_m, between(0.5, 100000.0));
-    visit("echo_share", self.echo_share, between(0.0, 1.0));
+    visit("backscatter_probability", self.backscatter_probability, between(0.0, 1.0));
   }
 
   /// Returns the extinction coefficient (Koschmieder: ln 50 / visibility); 0 in clear air.

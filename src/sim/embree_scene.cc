@@ -31,10 +31,10 @@ Eigen::Vector3d half_extent(const PlacedGeom& geom) {
 
 void round_bounds(const RTCBoundsFunctionArguments* arguments) {
   const auto& geom = *static_cast<const PlacedGeom*>(arguments->geometryUserPtr);
-  const Eigen::Map<const Eigen::Vector3d> centre(geom.position);
+  const Eigen::Map<const Eigen::Vector3d> center(geom.position);
   const Eigen::Vector3d half =
       half_extent(geom).array() + 1e-4;  // exceeds the rounding error of float in a world of one kilometer
-  const Eigen::Vector3f lower = (centre - half).cast<float>(), upper = (centre + half).cast<float>();
+  const Eigen::Vector3f lower = (center - half).cast<float>(), upper = (center + half).cast<float>();
   *arguments->bounds_o = {.lower_x = lower.x(),
                           .lower_y = lower.y(),
                           .lower_z = lower.z(),
@@ -184,7 +184,9 @@ Triangles triangles_of(const mjModel& model, const PlacedGeom& placed) {
     case mjGEOM_HFIELD:
       return HeightFieldTriangles(model, model.geom_dataid[placed.geom]).make();
     default:
-      throw InputError(fmt::format("geom {}: the lidar cannot see shapes of this type", placed.geom));
+      throw InputError(fmt::format("geom {}: shape type not supported by the lidar: must be one of sphere, capsule, cylinder, "
+                                   "ellipsoid, box, plane, mesh, height field",
+                                   placed.geom));
   }
 }
 

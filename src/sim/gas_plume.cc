@@ -50,7 +50,7 @@ Eigen::Vector3d leak_source(const mjModel& world, const LeakSettings& leak) {
     if (world.site_bodyid[i] != 0) continue;
     known += (known.empty() ? "" : ", ") + std::string(mj_id2name(&world, mjOBJ_SITE, i));
   }
-  throw InputError(fmt::format("leaks: at = {}: the world has no such site (known: {})", leak.at, known));
+  throw InputError(fmt::format("leaks: unknown site at = '{}' (known: {})", leak.at, known));
 }
 
 GasPlume::GasPlume(const mjModel& world, const std::vector<LeakSettings>& leaks, const WindSettings& wind)

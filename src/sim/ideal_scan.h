@@ -11,7 +11,7 @@ namespace patrol::sim {
 struct IdealScanSettings {
   int beams = 720;
   double range_max_m = 30.0;
-  double grazing_deg = 85.0;  ///< maximum angle of incidence; surfaces beyond it return nothing
+  double max_incidence_deg = 85.0;  ///< maximum angle of incidence; surfaces beyond it return nothing
 };
 
 /// Returns the hits of an ideal lidar at `p_world_m`, on static and moving objects of `scene`. Beams without a hit are

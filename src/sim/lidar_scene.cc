@@ -62,12 +62,12 @@ class Boxes {
     }
   }
 
-  void set(std::size_t i, const Eigen::Vector3d& centre, const Eigen::Vector3d& half) {
+  void set(std::size_t i, const Eigen::Vector3d& center, const Eigen::Vector3d& half) {
     constexpr double kFloatLoss_m = 1e-3;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto row = static_cast<Eigen::Index>(axis);
-      lower_[axis][i] = static_cast<float>(centre[row] - half[row] - kFloatLoss_m);
-      upper_[axis][i] = static_cast<float>(centre[row] + half[row] + kFloatLoss_m);
+      lower_[axis][i] = static_cast<float>(center[row] - half[row] - kFloatLoss_m);
+      upper_[axis][i] = static_cast<float>(center[row] + half[row] + kFloatLoss_m);
     }
   }
 
@@ -110,7 +110,7 @@ class Boxes {
 
 struct LidarScene::Impl {
   explicit Impl(const mjModel& view) : model(view), device(rtcNewDevice("threads=1")) {
-    if (device == nullptr) throw std::runtime_error("Embree cannot start");
+    if (device == nullptr) throw std::runtime_error("Embree: device creation failed");
     static_scene = std::make_unique<EmbreeScene>(device, RTC_BUILD_QUALITY_HIGH);
     const std::unique_ptr<mjData, void (*)(mjData*)> data(mj_makeData(&model), mj_deleteData);
     mj_kinematics(&model, data.get());
@@ -123,7 +123,7 @@ struct LidarScene::Impl {
       enclose(part);
     }
     boxes.resize(parts.size());
-    place(*data);
+    update_poses(*data);
   }
 
   ~Impl() {
@@ -169,12 +169,12 @@ struct LidarScene::Impl {
       const Eigen::Map<const Matrix3> rotation(placed.rotation);
       const Eigen::Vector3d half =
           rotation.cwiseAbs() * Eigen::Map<const Eigen::Vector3d>(model.geom_aabb + 6 * placed.geom + 3);
-      const Eigen::Vector3d centre = position + rotation * middle;
-      part.box.extend(Eigen::AlignedBox3d(centre - half, centre + half));
+      const Eigen::Vector3d center = position + rotation * middle;
+      part.box.extend(Eigen::AlignedBox3d(center - half, center + half));
     }
   }
 
-  void place(const mjData& data) {
+  void update_poses(const mjData& data) {
     for (std::size_t i = 0; i < parts.size(); ++i) {
       MovingPart& part = parts[i];
       part.position = Eigen::Map<const Eigen::Vector3d>(data.xpos + 3 * part.body);
@@ -236,7 +236,7 @@ LidarScene::~LidarScene() = default;
 
 const mjModel& LidarScene::model() const { return impl_->model; }
 RTCSceneTy* LidarScene::static_scene() const { return impl_->static_scene->handle(); }
-void LidarScene::update(const mjData& data) { impl_->place(data); }
+void LidarScene::update(const mjData& data) { impl_->update_poses(data); }
 
 std::optional<RayHit> LidarScene::cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
                                        double max_range_m, std::uint32_t mask) const {

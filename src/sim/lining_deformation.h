@@ -44,7 +44,7 @@ double inward_m(const std::vector<LiningDeformationSettings>& moves, int ring, d
 /// Deforms the inner face of the mesh of geom `lining`, whose vertices are on both sides of every joint between rings.
 ///
 /// Precondition: no scene and no renderer has been made of `view`. `design` is in world. Throws InputError naming
-/// `lining.<index>.<field>` when a setting is out of range, the ring does not exist, or the world has no lining.
+/// `lining_deformation.<index>.<field>` when a setting is out of range, the ring does not exist, or the world has no lining.
 void deform_lining(const std::vector<LiningDeformationSettings>& moves, const std::optional<TunnelLining>& design, mjModel& view);
 
 }  // namespace patrol::sim

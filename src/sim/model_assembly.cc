@@ -17,9 +17,9 @@ namespace {
 /// Removes every geom that cannot be in contact. Masses are explicit in the files, so nothing else changes.
 void strip_visual_geoms(mjSpec& spec) { spec.compiler.discardvisual = 1; }
 
-SpecPtr load_world(const std::string& world_xml, const std::vector<StaticObstacleSettings>& props) {
+SpecPtr load_world(const std::string& world_xml, const std::vector<StaticObstacleSettings>& obstacles) {
   SpecPtr spec = load_spec(world_xml);
-  add_static_obstacles(*spec, props);
+  add_static_obstacles(*spec, obstacles);
   return spec;
 }
 
@@ -35,18 +35,18 @@ double start_height_m(const std::string& world_xml, mjSpec& world, const Stance&
   }
 }
 
-void refuse_start_inside_something(const mjModel& model, const std::vector<double>& qpos, const Pose2& T_world_start) {
+void refuse_start_in_collision(const mjModel& model, const std::vector<double>& qpos, const Pose2& T_world_start) {
   const DataPtr data = make_data(model);
   std::copy(qpos.begin(), qpos.end(), data->qpos);
   mj_forward(&model, data.get());
-  constexpr double kTouchDepth_m = 0.02;
+  constexpr double kContactDepth_m = 0.02;
   for (int i = 0; i < data->ncon; ++i) {
     const mjContact& contact = data->contact[i];
-    if (contact.dist > -kTouchDepth_m) continue;
+    if (contact.dist > -kContactDepth_m) continue;
     const bool first_is_robot = model.geom_group[contact.geom[0]] == kGroupRobotCollision;
-    const char* thing = mj_id2name(&model, mjOBJ_GEOM, contact.geom[first_is_robot ? 1 : 0]);
-    throw InputError(fmt::format("start pose ({:.2f}, {:.2f}) is inside {}", T_world_start.x, T_world_start.y,
-                                 thing == nullptr ? "an obstacle" : thing));
+    const char* object = mj_id2name(&model, mjOBJ_GEOM, contact.geom[first_is_robot ? 1 : 0]);
+    throw InputError(fmt::format("start pose ({:.2f}, {:.2f}): in collision with {}", T_world_start.x, T_world_start.y,
+                                 object == nullptr ? "an obstacle" : object));
   }
 }
 
@@ -71,7 +71,7 @@ double ground_height_m(const mjModel& model, const mjData& data, const Stance& s
     if (distance >= 0.0) nearest_m = std::min(nearest_m, distance);
   }
   if (!std::isfinite(nearest_m)) {
-    throw InputError(fmt::format("({:.2f}, {:.2f}): there is no ground below it", T_world_body.x, T_world_body.y));
+    throw InputError(fmt::format("({:.2f}, {:.2f}): no ground below", T_world_body.x, T_world_body.y));
   }
   return max_ground_height_m - nearest_m;
 }
@@ -90,11 +90,11 @@ void set_start_posture(const mjModel& model, mjtNum* qpos) {
 }
 
 AssembledModel assemble_model(const std::string& world_xml, const std::string& robot_urdf, const Pose2& T_world_start,
-                              const std::vector<StaticObstacleSettings>& props) {
+                              const std::vector<StaticObstacleSettings>& obstacles) {
   AssembledModel assembled;
   assembled.stance = to_stance(robot_urdf);
-  const double height_m = start_height_m(world_xml, *load_world(world_xml, props), assembled.stance, T_world_start);
-  const SpecPtr view = load_world(world_xml, props), physics = load_world(world_xml, props);
+  const double height_m = start_height_m(world_xml, *load_world(world_xml, obstacles), assembled.stance, T_world_start);
+  const SpecPtr view = load_world(world_xml, obstacles), physics = load_world(world_xml, obstacles);
   for (mjSpec* spec : {view.get(), physics.get()}) add_robot(*spec, robot_urdf, to_pose3(T_world_start, height_m));
   strip_visual_geoms(*physics);
   enable_sleep(*physics);
@@ -104,7 +104,7 @@ AssembledModel assemble_model(const std::string& world_xml, const std::string& r
   assembled.start_qpos.assign(model.qpos0, model.qpos0 + model.nq);
   set_start_posture(model, assembled.start_qpos.data());
   stow_antenna(model, assembled.start_qpos.data());
-  refuse_start_inside_something(model, assembled.start_qpos, T_world_start);
+  refuse_start_in_collision(model, assembled.start_qpos, T_world_start);
   return assembled;
 }
 

@@ -42,7 +42,7 @@ ModelPtr compile(mjSpec& spec, const std::string& name) {
 
 DataPtr make_data(const mjModel& model) {
   DataPtr data(mj_makeData(&model));
-  if (!data) throw std::runtime_error("MuJoCo has no memory for its data");
+  if (!data) throw std::runtime_error("MuJoCo: allocation of mjData failed");
   return data;
 }
 

@@ -56,7 +56,7 @@ void set_shape(const urdf::Geometry& geometry, mjsGeom& geom) {
       geom.size[0] = static_cast<const urdf::Sphere&>(geometry).radius;
       return;
     default:
-      throw InputError("meshes in a robot's URDF are not supported: use boxes, cylinders and spheres");
+      throw InputError("robot URDF: meshes are not supported: must be boxes, cylinders or spheres");
   }
 }
 
@@ -199,7 +199,7 @@ urdf::ModelInterfaceSharedPtr parse(const std::string& path) {
   std::ostringstream text;
   text << file.rdbuf();
   const urdf::ModelInterfaceSharedPtr model = file ? urdf::parseURDF(text.str()) : nullptr;
-  if (!model) throw InputError(path + ": is not a URDF that can be read");
+  if (!model) throw InputError(path + ": not a valid URDF file");
   return model;
 }
 

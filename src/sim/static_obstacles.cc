@@ -24,12 +24,12 @@ using Color = std::array<float, 4>;
 constexpr Color kRust = {0.42f, 0.24f, 0.14f, 1.0f}, kStone = {0.56f, 0.55f, 0.52f, 1.0f},
                 kBlue = {0.10f, 0.26f, 0.52f, 1.0f}, kBrick = {0.55f, 0.25f, 0.18f, 1.0f};
 
-mjsGeom* add_geom(mjsBody& body, mjtGeom type, const StaticObstacleSettings& static_obstacle, const Color& color) {
+mjsGeom* add_geom(mjsBody& body, mjtGeom type, const StaticObstacleSettings& obstacle, const Color& color) {
   mjsGeom* geom = mjs_addGeom(&body, nullptr);
   geom->type = type;
-  geom->pos[0] = static_obstacle.x_m;
-  geom->pos[1] = static_obstacle.y_m;
-  const double half_turn = static_obstacle.turn_deg * std::numbers::pi / 360.0;
+  geom->pos[0] = obstacle.x_m;
+  geom->pos[1] = obstacle.y_m;
+  const double half_turn = obstacle.yaw_deg * std::numbers::pi / 360.0;
   geom->quat[0] = std::cos(half_turn);
   geom->quat[3] = std::sin(half_turn);
   geom->group = kGroupSolid;
@@ -40,14 +40,14 @@ mjsGeom* add_geom(mjsBody& body, mjtGeom type, const StaticObstacleSettings& sta
 
 /// Makes a geom collidable and names it.
 void make_solid(mjsGeom& geom, int number) {
-  mjs_setName(geom.element, fmt::format("prop_{}", number).c_str());
+  mjs_setName(geom.element, fmt::format("static_obstacle_{}", number).c_str());
   geom.contype = 1;
   geom.conaffinity = 2;
 }
 
-void add_block(mjsBody& body, const StaticObstacleSettings& static_obstacle, int number, int group, const Color& color) {
-  const StaticObstacleSize size = static_obstacle_size(static_obstacle.kind);
-  mjsGeom* block = add_geom(body, mjGEOM_BOX, static_obstacle, color);
+void add_block(mjsBody& body, const StaticObstacleSettings& obstacle, int number, int group, const Color& color) {
+  const StaticObstacleSize size = static_obstacle_size(obstacle.kind);
+  mjsGeom* block = add_geom(body, mjGEOM_BOX, obstacle, color);
   block->group = group;
   block->pos[2] = (size.height_m - kFoot_m) / 2.0;
   block->size[0] = size.length_m / 2.0;
@@ -57,10 +57,10 @@ void add_block(mjsBody& body, const StaticObstacleSettings& static_obstacle, int
 }
 
 /// Adds a rod along the object's long side, `aside_m` to its left.
-mjsGeom* add_rod(mjsBody& body, const StaticObstacleSettings& static_obstacle, double radius_m, double aside_m, double height_m,
+mjsGeom* add_rod(mjsBody& body, const StaticObstacleSettings& obstacle, double radius_m, double aside_m, double height_m,
                  const Color& color) {
-  mjsGeom* rod = add_geom(body, mjGEOM_CAPSULE, static_obstacle, color);
-  const double turn = to_rad(static_obstacle.turn_deg);
+  mjsGeom* rod = add_geom(body, mjGEOM_CAPSULE, obstacle, color);
+  const double turn = to_rad(obstacle.yaw_deg);
   rod->pos[0] -= aside_m * std::sin(turn);
   rod->pos[1] += aside_m * std::cos(turn);
   rod->pos[2] = height_m;
@@ -69,31 +69,31 @@ mjsGeom* add_rod(mjsBody& body, const StaticObstacleSettings& static_obstacle, d
   const double laid[4] = {w * s, -z * s, w * s, z * s};
   std::copy_n(laid, 4, rod->quat);
   rod->size[0] = radius_m;
-  rod->size[1] = static_obstacle_size(static_obstacle.kind).length_m / 2.0 - radius_m;
+  rod->size[1] = static_obstacle_size(obstacle.kind).length_m / 2.0 - radius_m;
   return rod;
 }
 
-void add_rebar(mjsBody& body, const StaticObstacleSettings& static_obstacle, int number) {
+void add_rebar(mjsBody& body, const StaticObstacleSettings& obstacle, int number) {
   constexpr double kRadius_m = 0.016;
-  const StaticObstacleSize size = static_obstacle_size(static_obstacle.kind);
+  const StaticObstacleSize size = static_obstacle_size(obstacle.kind);
   for (int layer = 0; layer < 3; ++layer) {
     for (int bar = 0; bar < 5 - layer; ++bar) {
       const double aside = (bar - 0.5 * (4 - layer)) * (size.width_m - 2.0 * kRadius_m) / 4.0;
       const double height = kRadius_m + layer * (size.height_m - 2.0 * kRadius_m) / 2.0;
-      add_rod(body, static_obstacle, kRadius_m, aside, height, kRust);
+      add_rod(body, obstacle, kRadius_m, aside, height, kRust);
     }
   }
-  add_block(body, static_obstacle, number, kGroupCollisionOnly, kRust);
+  add_block(body, obstacle, number, kGroupCollisionOnly, kRust);
 }
 
-void add_truck(mjsBody& body, const StaticObstacleSettings& static_obstacle, int number) {
-  const double turn = to_rad(static_obstacle.turn_deg), c = std::cos(turn), s = std::sin(turn);
+void add_truck(mjsBody& body, const StaticObstacleSettings& obstacle, int number) {
+  const double turn = to_rad(obstacle.yaw_deg), c = std::cos(turn), s = std::sin(turn);
   for (const TruckPart& part : truck_parts()) {
     const bool is_wheel = part.shape == TruckPart::Shape::kWheel;
-    mjsGeom* geom = add_geom(body, is_wheel ? mjGEOM_CYLINDER : mjGEOM_BOX, static_obstacle, part.rgba);
-    geom->pos[0] += c * part.centre[0] - s * part.centre[1];
-    geom->pos[1] += s * part.centre[0] + c * part.centre[1];
-    geom->pos[2] = part.centre[2];
+    mjsGeom* geom = add_geom(body, is_wheel ? mjGEOM_CYLINDER : mjGEOM_BOX, obstacle, part.rgba);
+    geom->pos[0] += c * part.center[0] - s * part.center[1];
+    geom->pos[1] += s * part.center[0] + c * part.center[1];
+    geom->pos[2] = part.center[2];
     std::copy(part.half.begin(), part.half.end(), geom->size);
     if (!is_wheel) continue;
     const double half = std::sqrt(0.5), w = geom->quat[0], z = geom->quat[3];  // the axis of a cylinder is z: rotate it
@@ -101,16 +101,16 @@ void add_truck(mjsBody& body, const StaticObstacleSettings& static_obstacle, int
     const double laid[4] = {w * half, w * half, z * half, z * half};
     std::copy_n(laid, 4, geom->quat);
   }
-  add_block(body, static_obstacle, number, kGroupCollisionOnly, kStone);
+  add_block(body, obstacle, number, kGroupCollisionOnly, kStone);
 }
 
-void add_static_obstacle(mjsBody& body, const StaticObstacleSettings& static_obstacle, int number) {
-  if (static_obstacle.kind == "rebar") return add_rebar(body, static_obstacle, number);
-  if (static_obstacle.kind == "kerb") return add_block(body, static_obstacle, number, kGroupSolid, kStone);
-  if (static_obstacle.kind == "brick") return add_block(body, static_obstacle, number, kGroupSolid, kBrick);
-  if (static_obstacle.kind == "truck") return add_truck(body, static_obstacle, number);
+void add_static_obstacle(mjsBody& body, const StaticObstacleSettings& obstacle, int number) {
+  if (obstacle.kind == "rebar") return add_rebar(body, obstacle, number);
+  if (obstacle.kind == "kerb") return add_block(body, obstacle, number, kGroupSolid, kStone);
+  if (obstacle.kind == "brick") return add_block(body, obstacle, number, kGroupSolid, kBrick);
+  if (obstacle.kind == "truck") return add_truck(body, obstacle, number);
   const double radius = static_obstacle_size("hose").height_m / 2.0;
-  make_solid(*add_rod(body, static_obstacle, radius, 0.0, radius, kBlue), number);
+  make_solid(*add_rod(body, obstacle, radius, 0.0, radius, kBlue), number);
 }
 
 struct RoutePoint {
@@ -127,16 +127,16 @@ double length_m(const std::vector<WaypointSettings>& route) {
 }
 
 RoutePoint point_at(const std::vector<WaypointSettings>& route, double along_m) {
-  RoutePoint place{};
+  RoutePoint found{};
   for (std::size_t i = 1; i < route.size(); ++i) {
     const Eigen::Vector2d from(route[i - 1].x_m, route[i - 1].y_m), to(route[i].x_m, route[i].y_m);
     const double leg = (to - from).norm();
     if (leg <= 0.0) continue;
-    place = {.point = from + std::min(along_m / leg, 1.0) * (to - from), .ahead = (to - from) / leg};
+    found = {.point = from + std::min(along_m / leg, 1.0) * (to - from), .ahead = (to - from) / leg};
     if (along_m <= leg) break;
     along_m -= leg;
   }
-  return place;
+  return found;
 }
 
 }  // namespace
@@ -147,40 +147,40 @@ StaticObstacleSize static_obstacle_size(const std::string& kind) {
   if (kind == "hose") return {.length_m = 1.6, .width_m = 0.10, .height_m = 0.10};
   if (kind == "brick") return {.length_m = 0.25, .width_m = 0.12, .height_m = 0.14};
   if (kind == "truck") return {.length_m = 7.6, .width_m = 2.5, .height_m = 3.0};
-  throw InputError(fmt::format("there is no prop of kind {} (known: {}, truck)", kind, fmt::join(kLowKinds, ", ")));
+  throw InputError(fmt::format("static_obstacles.kind = {}: must be one of {}, truck", kind, fmt::join(kLowKinds, ", ")));
 }
 
-void add_static_obstacles(mjSpec& world, const std::vector<StaticObstacleSettings>& props) {
+void add_static_obstacles(mjSpec& world, const std::vector<StaticObstacleSettings>& obstacles) {
   mjsBody* body = mjs_findBody(&world, "world");
-  for (std::size_t i = 0; i < props.size(); ++i) {
-    validate(props[i], fmt::format("props.{}", i));
-    add_static_obstacle(*body, props[i], static_cast<int>(i) + 1);
+  for (std::size_t i = 0; i < obstacles.size(); ++i) {
+    validate(obstacles[i], fmt::format("static_obstacles.{}", i));
+    add_static_obstacle(*body, obstacles[i], static_cast<int>(i) + 1);
   }
 }
 
 std::vector<StaticObstacleSettings> scatter_low_obstacles(const LowObstacleSettings& settings, std::uint64_t seed) {
   validate(settings, "low_obstacles");
   if (settings.count == 0) return {};
-  const double part = (length_m(settings.route) - 2.0 * settings.clear_ends_m) / settings.count;
-  if (!(part > settings.apart_m)) {
+  const double part = (length_m(settings.route) - 2.0 * settings.end_clearance_m) / settings.count;
+  if (!(part > settings.min_spacing_m)) {
     throw InputError(fmt::format(
-        "low_obstacles.route is {:.1f} m long: too short for {} obstacles {} m apart, {} m clear at its ends",
-        length_m(settings.route), settings.count, settings.apart_m, settings.clear_ends_m));
+        "low_obstacles.route: length {:.1f} m: too short for {} obstacles with min_spacing_m = {} and end_clearance_m = {}",
+        length_m(settings.route), settings.count, settings.min_spacing_m, settings.end_clearance_m));
   }
   const RandomStream random(seed, "low_obstacles");
-  std::vector<StaticObstacleSettings> props;
+  std::vector<StaticObstacleSettings> obstacles;
   for (int i = 0; i < settings.count; ++i) {
     const auto obstacle = static_cast<std::uint64_t>(i);
-    const double in_part = random.uniform(obstacle, 0) * (part - settings.apart_m) + settings.apart_m / 2.0;
-    const RoutePoint place = point_at(settings.route, settings.clear_ends_m + i * part + in_part);
-    const double beside = settings.beside_m * (2.0 * random.uniform(obstacle, 1) - 1.0);
+    const double in_part = random.uniform(obstacle, 0) * (part - settings.min_spacing_m) + settings.min_spacing_m / 2.0;
+    const RoutePoint point = point_at(settings.route, settings.end_clearance_m + i * part + in_part);
+    const double lateral_m = settings.max_lateral_offset_m * (2.0 * random.uniform(obstacle, 1) - 1.0);
     const auto kind = static_cast<std::size_t>(random.uniform(obstacle, 2) * kLowKinds.size());
-    props.push_back({.kind = kLowKinds[kind],
-                     .x_m = place.point.x() - beside * place.ahead.y(),
-                     .y_m = place.point.y() + beside * place.ahead.x(),
-                     .turn_deg = 180.0 * random.uniform(obstacle, 3)});
+    obstacles.push_back({.kind = kLowKinds[kind],
+                         .x_m = point.point.x() - lateral_m * point.ahead.y(),
+                         .y_m = point.point.y() + lateral_m * point.ahead.x(),
+                         .yaw_deg = 180.0 * random.uniform(obstacle, 3)});
   }
-  return props;
+  return obstacles;
 }
 
 }  // namespace patrol::sim

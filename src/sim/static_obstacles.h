@@ -11,19 +11,19 @@
 
 namespace patrol::sim {
 
-/// Object lying on a building site below the plane of a 2D lidar, or a parked truck.
+/// Object on a building site below the plane of a 2D lidar, or a parked truck.
 struct StaticObstacleSettings {
   std::string kind = "rebar";
   double x_m = 0.0;  ///< center, in world
   double y_m = 0.0;
-  double turn_deg = 0.0;  ///< angle of the long side from x, counterclockwise
+  double yaw_deg = 0.0;  ///< angle of the long side from x, counterclockwise
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("kind", self.kind, one_of({"rebar", "kerb", "hose", "brick", "truck"}));
     visit("x_m", self.x_m);
     visit("y_m", self.y_m);
-    visit("turn_deg", self.turn_deg, between(-360.0, 360.0));
+    visit("yaw_deg", self.yaw_deg, between(-360.0, 360.0));
   }
 };
 
@@ -38,27 +38,27 @@ struct StaticObstacleSize {
 /// hose; brick: two bricks, stacked; truck: a dump truck with its nose along x (sim/truck_obstacle.h).
 StaticObstacleSize static_obstacle_size(const std::string& kind);
 
-/// Adds the objects to a world. Each is one collision geom `prop_<number>`, from 1, in group 0. A rebar bundle and a
+/// Adds the objects to a world. Each is one collision geom `static_obstacle_<number>`, from 1, in group 0. A rebar bundle and a
 /// truck have a hull in group 3 and visual parts. Objects lie at z = 0, within centimeters of the ground of tunnel and
-/// street. Throws InputError naming `props.<index>.<field>` when a setting is out of range.
-void add_static_obstacles(mjSpec& world, const std::vector<StaticObstacleSettings>& props);
+/// street. Throws InputError naming `static_obstacles.<index>.<field>` when a setting is out of range.
+void add_static_obstacles(mjSpec& world, const std::vector<StaticObstacleSettings>& obstacles);
 
 /// Low obstacles along a robot's route. The route is divided into `count` equal parts, each with one obstacle at a
 /// random position.
 struct LowObstacleSettings {
   int count = 0;
   std::vector<WaypointSettings> route;
-  double clear_ends_m = 4.0;  ///< length at both ends of the route that stays free of obstacles
-  double beside_m = 0.5;      ///< maximum lateral offset of the centers from the route
-  double apart_m = 2.0;       ///< minimum distance between the centers of neighbors along the route
+  double end_clearance_m = 4.0;  ///< length at both ends of the route that stays free of obstacles
+  double max_lateral_offset_m = 0.5;      ///< maximum lateral offset of the centers from the route
+  double min_spacing_m = 2.0;       ///< minimum distance between the centers of neighbors along the route
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("count", self.count, between(0.0, 1000.0));
     visit("route", self.route);
-    visit("clear_ends_m", self.clear_ends_m, at_least(0.0));
-    visit("beside_m", self.beside_m, between(0.0, 20.0));
-    visit("apart_m", self.apart_m, at_least(0.0));
+    visit("end_clearance_m", self.end_clearance_m, at_least(0.0));
+    visit("max_lateral_offset_m", self.max_lateral_offset_m, between(0.0, 20.0));
+    visit("min_spacing_m", self.min_spacing_m, at_least(0.0));
   }
 };
 

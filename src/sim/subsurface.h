@@ -36,7 +36,7 @@ struct RockSettings {
 /// Subsurface ahead of the tunnel face.
 struct Subsurface {
   RockSettings rock;
-  std::vector<WaterBodySettings> water;
+  std::vector<WaterBodySettings> water_bodies;
 };
 
 }  // namespace patrol::sim

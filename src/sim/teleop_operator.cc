@@ -7,11 +7,11 @@ namespace patrol::sim {
 namespace {
 
 constexpr double kLookAhead_m = 1.2;
-constexpr double kAtMark_m = 0.08;     // distance to a marked waypoint at which to stop
+constexpr double kAtGoal_m = 0.08;     // distance to a goal waypoint at which to stop
 constexpr double kPassed_m = 0.6;      // distance to any other waypoint at which to continue with the next
 constexpr double kAligned_rad = 0.03;
 constexpr double kTurnFirst_rad = 0.9; // direction error above which to turn in place
-constexpr double kMarkPause_s = 1.5;        // standstill before and after the button press
+constexpr double kGoalPause_s = 1.5;        // standstill before and after the button press
 constexpr double kMeeting_m = 1.5;     // distance within which the robot has arrived at the operator
 constexpr double kStationary_m = 0.02;     // maximum motion of a robot that stands still
 constexpr double kStationary_s = 4.0;      // required duration of the standstill
@@ -23,8 +23,8 @@ double speed_before_stop(double left_m) { return std::clamp(0.6 * left_m, 0.08, 
 
 TeleopOperator::TeleopOperator(const TeleopOperatorSettings& settings, TeleopRoute drive, std::uint64_t seed)
     : settings_(settings), drive_(std::move(drive)), steering_noise_(seed, "remote/hand") {
-  validate(settings, "remote.operator");
-  if (settings.meets_robot) phase_ = Phase::kWaiting;
+  validate(settings, "teleop.operator");
+  if (settings.wait_for_robot) phase_ = Phase::kWaiting;
 }
 
 std::optional<TeleopCommand> TeleopOperator::step(Time now, const Pose2& T_world_body,
@@ -35,7 +35,7 @@ std::optional<TeleopCommand> TeleopOperator::step(Time now, const Pose2& T_world
     return std::nullopt;
   }
   observed_.emplace_back(now, T_world_body);
-  while (observed_.size() > 1 && observed_[1].first <= now - from_seconds(settings_.reaction_s)) observed_.pop_front();
+  while (observed_.size() > 1 && observed_[1].first <= now - from_seconds(settings_.reaction_time_s)) observed_.pop_front();
   TeleopCommand command = decide(now, observed_.front().second, p_world_people, is_busy);
   command.stamp = now;
   ++count_;
@@ -77,13 +77,13 @@ TeleopCommand TeleopOperator::decide(Time now, const Pose2& T_world_body,
       if (std::abs(wrap_angle(waypoint().heading_rad - T_world_body.yaw)) < kAligned_rad) command = {}, enter(Phase::kLooking);
       break;
     case Phase::kLooking:
-      if (now - phase_start_ < from_seconds(kMarkPause_s)) break;
+      if (now - phase_start_ < from_seconds(kGoalPause_s)) break;
       command.save_goal = waypoint().is_goal;
-      enter(Phase::kMarked);
+      enter(Phase::kSaved);
       break;
-    case Phase::kMarked:
+    case Phase::kSaved:
       if (is_busy) phase_start_ = now;
-      if (now - phase_start_ < from_seconds(kMarkPause_s)) break;
+      if (now - phase_start_ < from_seconds(kGoalPause_s)) break;
       if (next_ + 1 < drive_.size()) {
         leg_start_m_ = drive_[next_++].p_m;
         enter(Phase::kDriving);
@@ -113,7 +113,7 @@ void TeleopOperator::drive(const Pose2& T_world_body, TeleopCommand& command) {
   const double curvature = 2.0 * std::sin(bearing) / std::max(towards.norm(), 0.3);
   command.vx_mps = sign * speed / (1.0 + std::abs(curvature));
   command.yaw_rate_radps = std::clamp(command.vx_mps * sign * curvature, -settings_.yaw_rate_radps, settings_.yaw_rate_radps) +
-                           settings_.steering_noise_radps * steering_noise_.normal(count_);
+                           settings_.steering_noise_std_radps * steering_noise_.normal(count_);
 }
 
 void TeleopOperator::rotate_to(double yaw_rad, const Pose2& T_world_body, TeleopCommand& command) const {
@@ -124,7 +124,7 @@ void TeleopOperator::rotate_to(double yaw_rad, const Pose2& T_world_body, Teleop
 bool TeleopOperator::has_passed_waypoint(const Pose2& T_world_body) const {
   const Eigen::Vector2d to_waypoint = waypoint().p_m - T_world_body.position();
   const bool stops = waypoint().is_goal || next_ + 1 == drive_.size();
-  if (to_waypoint.norm() < (stops ? kAtMark_m : kPassed_m)) return true;
+  if (to_waypoint.norm() < (stops ? kAtGoal_m : kPassed_m)) return true;
   // Accept a waypoint that has been passed along the leg: do not turn back for a miss of a few centimeters.
   const Eigen::Vector2d leg = waypoint().p_m - leg_start_m_;
   return leg.norm() > 0.1 && to_waypoint.dot(leg) < 0.0 && to_waypoint.norm() < 2.0 * kPassed_m;
@@ -135,7 +135,7 @@ bool TeleopOperator::is_pedestrian_ahead(const Pose2& T_world_body, const std::v
   return std::any_of(p_world_people.begin(), p_world_people.end(), [&](const Eigen::Vector2d& p_world) {
     const Eigen::Vector2d p_body = T_world_body.inverse() * p_world;
     const double ahead_m = sign * p_body.x();
-    return ahead_m > 0.0 && ahead_m < settings_.stop_for_people_m + 0.5 && std::abs(p_body.y()) < 1.0;
+    return ahead_m > 0.0 && ahead_m < settings_.pedestrian_stop_distance_m + 0.5 && std::abs(p_body.y()) < 1.0;
   });
 }
 

@@ -17,29 +17,29 @@ namespace patrol::sim {
 struct TeleopOperatorSettings {
   double speed_mps = 0.8;
   double yaw_rate_radps = 0.6;         ///< yaw rate of a turn in place
-  double reaction_s = 0.25;            ///< delay from an observation to the resulting command
-  double steering_noise_radps = 0.03;  ///< standard deviation of the steering noise added to each command
-  double stop_for_people_m = 2.0;      ///< stops while a person is within this distance ahead of the robot
+  double reaction_time_s = 0.25;            ///< delay from an observation to the resulting command
+  double steering_noise_std_radps = 0.03;  ///< standard deviation of the steering noise added to each command
+  double pedestrian_stop_distance_m = 2.0;      ///< stops while a person is within this distance ahead of the robot
   double rate_hz = 10.0;
-  bool meets_robot = false;            ///< true: waits at the first waypoint until the robot has arrived and stands
+  bool wait_for_robot = false;            ///< true: waits at the first waypoint until the robot has arrived and stands
                                        ///< still
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("speed_mps", self.speed_mps, between(0.05, 2.0));
     visit("yaw_rate_radps", self.yaw_rate_radps, between(0.05, 2.0));
-    visit("reaction_s", self.reaction_s, between(0.0, 2.0));
-    visit("steering_noise_radps", self.steering_noise_radps, between(0.0, 1.0));
-    visit("stop_for_people_m", self.stop_for_people_m, between(0.0, 10.0));
+    visit("reaction_time_s", self.reaction_time_s, between(0.0, 2.0));
+    visit("steering_noise_std_radps", self.steering_noise_std_radps, between(0.0, 1.0));
+    visit("pedestrian_stop_distance_m", self.pedestrian_stop_distance_m, between(0.0, 10.0));
     visit("rate_hz", self.rate_hz, between(1.0, 50.0));
-    visit("meets_robot", self.meets_robot);
+    visit("wait_for_robot", self.wait_for_robot);
   }
 };
 
 /// Teleoperator who walks behind the robot, observes its pose and drives it along a route by pure pursuit [Coulter92].
 /// Reaction time and steering noise are modeled.
 ///
-/// At marked waypoints the operator stops, turns the robot to the heading, presses the button and waits while the robot
+/// At goal waypoints the operator stops, turns the robot to the heading, presses the button and waits while the robot
 /// is busy. At the end the operator hands over control.
 class TeleopOperator {
  public:
@@ -52,7 +52,7 @@ class TeleopOperator {
                                     bool is_busy = false);
 
  private:
-  enum class Phase { kWaiting, kDriving, kTurning, kLooking, kMarked, kDone };
+  enum class Phase { kWaiting, kDriving, kTurning, kLooking, kSaved, kDone };
 
   bool robot_has_arrived(Time now, const Pose2& T_world_body);
   TeleopCommand decide(Time now, const Pose2& T_world_body, const std::vector<Eigen::Vector2d>& p_world_people, bool is_busy);

@@ -24,7 +24,7 @@ constexpr double kSprocketArmature_kgm2 = 0.25;
 void set(double* to, std::initializer_list<double> values) { std::copy(values.begin(), values.end(), to); }
 
 const urdf::Cylinder& wheel_shape(const urdf::Collision& wheel) {
-  if (wheel.geometry->type != urdf::Geometry::CYLINDER) throw InputError(wheel.name + ": a track's wheels must be cylinders");
+  if (wheel.geometry->type != urdf::Geometry::CYLINDER) throw InputError(wheel.name + ": wheels of a track must be cylinders");
   return static_cast<const urdf::Cylinder&>(*wheel.geometry);
 }
 
@@ -45,8 +45,8 @@ bool is_road_wheel(const urdf::Link& track, const urdf::Collision& wheel) {
 mjsBody* add_suspension(const urdf::Collision& wheel, double load_n, mjsBody& track) {
   mjsBody* carrier = mjs_addBody(&track, nullptr);
   mjs_setName(carrier->element, (wheel.name + "_carrier").c_str());
-  const urdf::Vector3& centre = wheel.origin.position;
-  set(carrier->pos, {centre.x, centre.y, centre.z});
+  const urdf::Vector3& center = wheel.origin.position;
+  set(carrier->pos, {center.x, center.y, center.z});
   carrier->explicitinertial = 1;
   carrier->mass = kWheelMass_kg;
   std::fill_n(carrier->inertia, 3, kWheelInertia_kgm2);
@@ -69,8 +69,8 @@ void add_wheel(const urdf::Collision& wheel, mjsBody& body, bool is_at_origin) {
   const urdf::Cylinder& shape = wheel_shape(wheel);
   mjsGeom* geom = mjs_addGeom(&body, nullptr);
   mjs_setName(geom->element, wheel.name.c_str());
-  const urdf::Vector3& centre = wheel.origin.position;
-  if (!is_at_origin) set(geom->pos, {centre.x, centre.y, centre.z});
+  const urdf::Vector3& center = wheel.origin.position;
+  if (!is_at_origin) set(geom->pos, {center.x, center.y, center.z});
   const urdf::Rotation& q = wheel.origin.rotation;
   set(geom->quat, {q.w, q.x, q.y, q.z});
   const double straight_m = shape.length / 2.0 - shape.radius;
@@ -121,13 +121,13 @@ Stance stance_on_tracks(const urdf::ModelInterface& robot) {
   Stance stance{.height_m = 0.0, .support_points_m = {Eigen::Vector2d::Zero()}, .max_ground_height_m = 1.0};
   for (const char* name : {"left_track", "right_track"}) {
     const urdf::LinkConstSharedPtr track = robot.getLink(name);
-    if (!track) throw InputError("robot " + robot.getName() + ": there is no link named " + name);
+    if (!track) throw InputError("robot " + robot.getName() + ": link not found: " + name);
     const urdf::Vector3& origin = track->parent_joint->parent_to_joint_origin_transform.position;
     for (const urdf::CollisionSharedPtr& wheel : track->collision_array) {
-      const urdf::Vector3& centre = wheel->origin.position;
+      const urdf::Vector3& center = wheel->origin.position;
       const double radius_m = wheel_shape(*wheel).radius;
-      stance.height_m = std::max(stance.height_m, radius_m - centre.z - origin.z + kDrop_m);
-      stance.support_points_m.emplace_back(origin.x + centre.x, origin.y + centre.y);
+      stance.height_m = std::max(stance.height_m, radius_m - center.z - origin.z + kDrop_m);
+      stance.support_points_m.emplace_back(origin.x + center.x, origin.y + center.y);
     }
   }
   return stance;

@@ -11,7 +11,7 @@ constexpr Color kCab = {0.86f, 0.62f, 0.06f, 1.0f}, kTub = {0.36f, 0.37f, 0.38f,
 /// Returns a box between two corners.
 TruckPart box(std::array<double, 2> x, std::array<double, 2> y, std::array<double, 2> z, const Color& rgba) {
   return {.shape = TruckPart::Shape::kBox,
-          .centre = {(x[0] + x[1]) / 2.0, (y[0] + y[1]) / 2.0, (z[0] + z[1]) / 2.0},
+          .center = {(x[0] + x[1]) / 2.0, (y[0] + y[1]) / 2.0, (z[0] + z[1]) / 2.0},
           .half = {(x[1] - x[0]) / 2.0, (y[1] - y[0]) / 2.0, (z[1] - z[0]) / 2.0},
           .rgba = rgba};
 }
@@ -43,8 +43,8 @@ std::vector<TruckPart> truck_parts() {
     parts.push_back(box({3.75, 3.77}, across(0.75, 1.05), {0.88, 1.06}, kLamp));
     parts.push_back(box({-3.82, -3.80}, across(0.80, 1.10), {1.02, 1.14}, kRed));
     for (const double x : {2.75, -1.75, -2.95}) {
-      parts.push_back({.shape = TruckPart::Shape::kWheel, .centre = {x, 1.02 * side, 0.50}, .half = {0.50, 0.19, 0.50}, .rgba = kRubber});
-      parts.push_back({.shape = TruckPart::Shape::kWheel, .centre = {x, 1.20 * side, 0.50}, .half = {0.27, 0.02, 0.27}, .rgba = kSteel});
+      parts.push_back({.shape = TruckPart::Shape::kWheel, .center = {x, 1.02 * side, 0.50}, .half = {0.50, 0.19, 0.50}, .rgba = kRubber});
+      parts.push_back({.shape = TruckPart::Shape::kWheel, .center = {x, 1.20 * side, 0.50}, .half = {0.27, 0.02, 0.27}, .rgba = kSteel});
     }
   }
   return parts;

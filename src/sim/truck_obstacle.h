@@ -10,7 +10,7 @@ namespace patrol::sim {
 struct TruckPart {
   enum class Shape { kBox, kWheel };
   Shape shape;
-  std::array<double, 3> centre;
+  std::array<double, 3> center;
   std::array<double, 3> half;  ///< half sizes; for a wheel: radius, half width, radius
   std::array<float, 4> rgba;
 };

@@ -40,9 +40,9 @@ void GridMap::add_hit(const Eigen::Vector2d& p_map) {
   if (cell.hits < kMaxCount) {
     ++cell.hits;
     const Eigen::Vector2f offset = (p_map - center_of(at)).cast<float>();
-    const float share = 1.0F / static_cast<float>(cell.hits);
-    cell.mean_x_m += share * (offset.x() - cell.mean_x_m);
-    cell.mean_y_m += share * (offset.y() - cell.mean_y_m);
+    const float weight = 1.0F / static_cast<float>(cell.hits);
+    cell.mean_x_m += weight * (offset.x() - cell.mean_x_m);
+    cell.mean_y_m += weight * (offset.y() - cell.mean_y_m);
   }
   tile->update_surface_bit(col, row);
   has_surface_ = true;

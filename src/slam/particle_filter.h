@@ -13,13 +13,13 @@ namespace patrol::slam {
 
 /// Set of particles at one step of an estimation problem, with the state to be estimated and the newest observation.
 template <typename Problem>
-concept ParticleProblem = requires(Problem problem, const Problem& seen, std::size_t particle, const Position& position, RandomSequence& random,
+concept ParticleProblem = requires(Problem problem, const Problem& const_problem, std::size_t particle, const Position& position, RandomSequence& random,
                                    const std::vector<Offspring>& offspring) {
-  { seen.size() } -> std::convertible_to<std::size_t>;
+  { const_problem.size() } -> std::convertible_to<std::size_t>;
   /// Sample of the particle's proposal distribution.
-  { seen.sample(particle, random) } -> std::convertible_to<Position>;
+  { const_problem.sample(particle, random) } -> std::convertible_to<Position>;
   /// Objective of the swarm optimizer, for one particle at a position.
-  { seen.log_fitness(particle, position) } -> std::convertible_to<double>;
+  { const_problem.log_fitness(particle, position) } -> std::convertible_to<double>;
   /// Moves the particle to the position, includes the observation and returns the increment of its log weight.
   { problem.commit(particle, position) } -> std::convertible_to<double>;
   problem.apply_resampling(offspring);

@@ -37,9 +37,9 @@ constexpr std::array kOptimizers = std::to_array<OptimizerRow>({
 });
 
 constexpr std::array kResamplers = std::to_array<ResamplerRow>({
-    {"multinomial", "One independent draw for each new particle", resample_multinomial},
-    {"systematic", "One draw for all new particles, at equal steps of the cumulative weight", resample_systematic},
-    {"residual", "Integer parts of the expected counts for certain, the rest drawn", resample_residual},
+    {"multinomial", "One independent sample for each new particle", resample_multinomial},
+    {"systematic", "One random offset for all new particles, at equal steps of the cumulative weight", resample_systematic},
+    {"residual", "Integer parts of the expected counts for certain, the rest sampled", resample_residual},
     {"low_weight", "Low-weight optimization of [Wu25]; biased", optimize_low_weights},
     {"stepwise", "Stepwise resampling of [Cui21]; biased",
      [](const std::vector<double>& weights, RandomSequence& random) { return resample_stepwise(weights, random); }},

@@ -11,13 +11,13 @@ struct PlanarScanSettings {
   /// Beams that end farther away clear free space up to here; their end points are too sparse for walls.
   double max_range_m = 40.0;
   /// Distance cleared by a beam without a return; small, since glass and black fabric give no return either.
-  double no_return_free_m = 0.0;
+  double no_return_clearing_range_m = 0.0;
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("min_range_m", self.min_range_m, at_least(0.0));
     visit("max_range_m", self.max_range_m, between(0.1, 1000.0));
-    visit("no_return_free_m", self.no_return_free_m, at_least(0.0));
+    visit("no_return_clearing_range_m", self.no_return_clearing_range_m, at_least(0.0));
   }
 };
 

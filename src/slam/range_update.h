@@ -5,24 +5,9 @@
 #include "core/settings.h"
 #include "core/uwb.h"
 #include "slam/pose_gaussian.h"
+#include "slam/range_update_settings.h"
 
 namespace patrol::slam {
-
-struct RangeUpdateSettings {
-  bool enabled = true;
-  double range_std_m = 0.15;   ///< standard deviation of a LOS range: radio noise and residual calibration bias
-  double gate_sigma = 3.0;       ///< ranges shorter than predicted by more standard deviations are rejected
-  double nlos_gate_sigma = 2.0;  ///< ranges longer than predicted by more standard deviations are rejected as NLOS
-  UwbCalibration calibration = {};  ///< bias calibration of the radio; not a scenario setting
-
-  template <typename Self, typename Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("enabled", self.enabled);
-    visit("range_std_m", self.range_std_m, between(0.001, 10.0));
-    visit("gate_std", self.gate_sigma, between(0.5, 100.0));
-    visit("gate_excess_std", self.nlos_gate_sigma, between(0.5, 100.0));
-  }
-};
 
 /// UWB range with the odometry at its time.
 struct RangeMeasurement {

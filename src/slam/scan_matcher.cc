@@ -94,8 +94,8 @@ std::optional<MatchResult> match_scan(const GridMap& map, const std::vector<Matc
 
   while (!result.converged && result.iterations < settings.max_iterations) {
     const NormalEquations sum = linearize(map, points, result.T_map_body, settings);
-    const double share = sum.num_observed > 0 ? static_cast<double>(sum.num_matched) / sum.num_observed : 0.0;
-    if (sum.num_matched < kMinPoints || share < settings.min_inlier_ratio) return std::nullopt;
+    const double inlier_ratio = sum.num_observed > 0 ? static_cast<double>(sum.num_matched) / sum.num_observed : 0.0;
+    if (sum.num_matched < kMinPoints || inlier_ratio < settings.min_inlier_ratio) return std::nullopt;
 
     Eigen::Matrix3d H = sum.H + prior_information;
     Eigen::Vector3d b = sum.b;
@@ -107,7 +107,7 @@ std::optional<MatchResult> match_scan(const GridMap& map, const std::vector<Matc
     result.T_map_body = perturbed(result.T_map_body, step);
     result.information = sum.H;
     result.log_likelihood = sum.log_likelihood;
-    result.inlier_ratio = share;
+    result.inlier_ratio = inlier_ratio;
     result.num_matched = sum.num_matched;
     result.converged = step.head<2>().norm() < kStepTol_m && std::abs(step.z()) < kStepTol_rad;
     ++result.iterations;

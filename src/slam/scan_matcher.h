@@ -5,41 +5,12 @@
 #include <optional>
 #include <vector>
 
-#include "core/settings.h"
 #include "slam/grid_map.h"
 #include "slam/match_points.h"
 #include "slam/pose_gaussian.h"
+#include "slam/scan_matcher_settings.h"
 
 namespace patrol::slam {
-
-struct ScanMatcherSettings {
-  int max_points = 800;                  ///< maximum number of scan points that are matched
-  double point_spacing_m = 0.08;         ///< consecutive beams that end within this distance are averaged
-  double point_std_m = 0.015;            ///< standard deviation of the range of a point
-  double point_angle_std_rad = 0.0005;   ///< standard deviation of the direction of a point
-  double kernel_m = 0.05;  ///< scale of the Cauchy kernel; residuals beyond it are down-weighted as outliers
-  int surface_radius_cells = 3;          ///< neighborhood of the line fit; also the largest initial distance of a point
-  int max_iterations = 8;
-  double min_inlier_ratio = 0.3;        ///< matches with a smaller inlier ratio are rejected
-  double search_window_m = 0.3;          ///< coarse search: half width along x and y
-  double search_window_rad = 0.12;
-  int search_points = 200;
-
-  template <typename Self, typename Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("max_points", self.max_points, between(3, 100000));
-    visit("point_spacing_m", self.point_spacing_m, between(0.0, 5.0));
-    visit("point_std_m", self.point_std_m, between(1e-4, 1.0));
-    visit("point_angle_std_rad", self.point_angle_std_rad, between(0.0, 0.1));
-    visit("kernel_m", self.kernel_m, between(1e-3, 10.0));
-    visit("surface_radius_cells", self.surface_radius_cells, between(1, 10));
-    visit("max_iterations", self.max_iterations, between(1, 100));
-    visit("min_matched_share", self.min_inlier_ratio, between(0.0, 1.0));
-    visit("search_window_m", self.search_window_m, between(0.0, 5.0));
-    visit("search_window_rad", self.search_window_rad, between(0.0, 1.6));
-    visit("search_points", self.search_points, between(3, 10000));
-  }
-};
 
 struct MatchResult {
   Pose2 T_map_body;

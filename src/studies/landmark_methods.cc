@@ -36,7 +36,7 @@ LandmarkMethod swarm_slam(const std::string& optimizer, int particles) {
   return particle_method(name, {.particles = particles}, slam::published_settings(optimizer));
 }
 
-LandmarkMethod learning_sand_cats(int particles) {
+LandmarkMethod iscso_plus(int particles) {
   return particle_method("ISCSO+", {.particles = particles, .bias = {.std = 0.2}, .prior_weight = 0.05}, {.optimizer = "iscso"});
 }
 

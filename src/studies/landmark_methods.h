@@ -29,7 +29,7 @@ LandmarkMethod swarm_slam(const std::string& optimizer, int particles);
 
 /// ISCSO+, the best method with sampled poses: improved sand cats with an odometry prior of estimated bias, and
 /// unbiased resampling.
-LandmarkMethod learning_sand_cats(int particles);
+LandmarkMethod iscso_plus(int particles);
 
 LandmarkMethod ekf_slam();
 

@@ -58,10 +58,10 @@ Pose2 campus_start() {
 std::vector<Eigen::Vector2d> campus_landmarks() {
   std::vector<Eigen::Vector2d> landmarks_m = {{5.0, 8.0}};
   for (std::size_t i = 0; i < kCampusWaypoints_m.size(); ++i) {
-    const Eigen::Vector2d from = kCampusWaypoints_m[i], way = kCampusWaypoints_m[(i + 1) % kCampusWaypoints_m.size()] - from;
-    const Eigen::Vector2d left = Eigen::Vector2d(-way.y(), way.x()).normalized();
-    landmarks_m.push_back(from + 0.5 * way + 7.0 * left);
-    landmarks_m.push_back(from + 0.25 * way - 9.0 * left);
+    const Eigen::Vector2d from = kCampusWaypoints_m[i], along = kCampusWaypoints_m[(i + 1) % kCampusWaypoints_m.size()] - from;
+    const Eigen::Vector2d left = Eigen::Vector2d(-along.y(), along.x()).normalized();
+    landmarks_m.push_back(from + 0.5 * along + 7.0 * left);
+    landmarks_m.push_back(from + 0.25 * along - 9.0 * left);
   }
   return landmarks_m;
 }
@@ -69,7 +69,7 @@ std::vector<Eigen::Vector2d> campus_landmarks() {
 /// Controls of a car that steers toward one waypoint after the other, in laps, with limits of 30 degrees and 20 deg/s.
 /// A waypoint is passed within 1 m, or where the car cannot turn sharply enough to reach it. The start is the origin;
 /// [step].
-std::vector<Control> drive_round(const std::vector<Eigen::Vector2d>& waypoints_m, double speed_mps, const ControlMotion& motion, int num_steps) {
+std::vector<Control> drive_laps(const std::vector<Eigen::Vector2d>& waypoints_m, double speed_mps, const ControlMotion& motion, int num_steps) {
   constexpr double kMaxSteering_rad = 30.0 * kDegree, kMaxRate_radps = 20.0 * kDegree;
   std::vector<Control> controls;
   Pose2 T_map_body;
@@ -129,7 +129,7 @@ LandmarkWorld campus_world(bool is_biased, double speed_mps, int num_steps) {
   for (const Eigen::Vector2d& p_site : kCampusWaypoints_m) waypoints_m.push_back(T_start_site * p_site);
   for (const Eigen::Vector2d& p_site : campus_landmarks()) world.landmarks_m.push_back(T_start_site * p_site);
   const ControlMotion fine = {.steering = Steering::kAckermann, .wheelbase_m = kWheelbase_m, .step_s = kFine_s};
-  world.controls = drive_round(waypoints_m, speed_mps, fine, num_steps);
+  world.controls = drive_laps(waypoints_m, speed_mps, fine, num_steps);
   return world;
 }
 

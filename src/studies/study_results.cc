@@ -13,8 +13,8 @@ namespace {
 
 io::TableValue number(const std::optional<double>& value) { return value ? io::TableValue{*value} : io::TableValue{}; }
 
-std::optional<double> published(const StudyVariant& variant, std::size_t figure) {
-  return figure < variant.published.size() ? variant.published[figure] : std::nullopt;
+std::optional<double> published(const StudyVariant& variant, std::size_t metric) {
+  return metric < variant.published.size() ? variant.published[metric] : std::nullopt;
 }
 
 /// Mean with its interval as text, three significant digits.
@@ -23,7 +23,7 @@ std::string with_interval(const std::optional<score::Interval>& interval, double
   return interval ? fmt::format("{} [{}, {}]", text(mean), text(interval->low), text(interval->high)) : text(mean);
 }
 
-std::string title_of(const StudyFigure& figure) { return figure.unit.empty() ? figure.name : fmt::format("{}, {}", figure.name, figure.unit); }
+std::string title_of(const StudyMetric& metric) { return metric.unit.empty() ? metric.name : fmt::format("{}, {}", metric.name, metric.unit); }
 
 /// Tables of one world: one per compared metric; the first one also has all metrics without comparison.
 std::vector<report::TableBlock> tables_of(const Study& study, const StudyResults& results, const std::string& world) {
@@ -31,31 +31,31 @@ std::vector<report::TableBlock> tables_of(const Study& study, const StudyResults
   const bool has_particles = std::any_of(study.variants.begin(), study.variants.end(), [](const StudyVariant& variant) { return variant.particles > 0; });
   const bool has_published = std::any_of(study.variants.begin(), study.variants.end(), [](const StudyVariant& variant) { return !variant.published.empty(); });
   std::vector<report::TableBlock> tables;
-  for (std::size_t f = 0; f < study.figures.size(); ++f) {
-    if (!study.figures[f].is_compared) continue;
-    report::TableBlock& table = tables.emplace_back(report::TableBlock{.caption = title_of(study.figures[f]), .columns = {{"method"}}, .rows = {}});
+  for (std::size_t f = 0; f < study.metrics.size(); ++f) {
+    if (!study.metrics[f].is_compared) continue;
+    report::TableBlock& table = tables.emplace_back(report::TableBlock{.caption = title_of(study.metrics[f]), .columns = {{"method"}}, .rows = {}});
     if (has_particles) table.columns.push_back({"N", true});
     if (has_published) table.columns.push_back({"published", true});
-    table.columns.push_back({has_published ? "ours" : "mean", true});
-    table.columns.push_back({"against " + study.compared_with, true});
+    table.columns.push_back({has_published ? "this work" : "mean", true});
+    table.columns.push_back({"relative to " + study.compared_with, true});
     const bool is_first = tables.size() == 1;
-    for (const StudyFigure& figure : study.figures) {
-      if (is_first && !figure.is_compared) table.columns.push_back({title_of(figure), true});
+    for (const StudyMetric& metric : study.metrics) {
+      if (is_first && !metric.is_compared) table.columns.push_back({title_of(metric), true});
     }
     for (std::size_t v = 0; v < study.variants.size(); ++v) {
       const StudyVariant& variant = study.variants[v];
       if (variant.world != world) continue;
       const StudyResult& result = results[v][f];
-      const auto paper = published(variant, f);
+      const auto published_value = published(variant, f);
       std::vector<report::TableCell>& row = table.rows.emplace_back();
       row.push_back({variant.method});
       if (has_particles) row.push_back({variant.particles > 0 ? std::to_string(variant.particles) : ""});
-      if (has_published) row.push_back({paper ? fmt::format("{:.4g}", *paper) : "–", report::Tone::kFaint});
+      if (has_published) row.push_back({published_value ? fmt::format("{:.4g}", *published_value) : "–", report::Tone::kFaint});
       row.push_back({result.num_seeds > 0 ? with_interval(result.interval, result.mean, "") : "–"});
       row.push_back({result.difference ? with_interval(result.difference, result.difference->center, "+") : "",
                      verdict_of(result) == "no difference" ? report::Tone::kFaint : report::Tone::kPlain});
-      for (std::size_t other = 0; is_first && other < study.figures.size(); ++other) {
-        if (study.figures[other].is_compared) continue;
+      for (std::size_t other = 0; is_first && other < study.metrics.size(); ++other) {
+        if (study.metrics[other].is_compared) continue;
         row.push_back({results[v][other].num_seeds > 0 ? fmt::format("{:.3g}", results[v][other].mean) : "–"});
       }
     }
@@ -103,9 +103,9 @@ std::string aligned(const report::TableBlock& table) {
 }  // namespace
 
 StudyResults summarize(const Study& study, const std::vector<StudySample>& samples) {
-  StudyResults results(study.variants.size(), std::vector<StudyResult>(study.figures.size()));
+  StudyResults results(study.variants.size(), std::vector<StudyResult>(study.metrics.size()));
   for (std::size_t v = 0; v < study.variants.size(); ++v) {
-    for (std::size_t f = 0; f < study.figures.size(); ++f) {
+    for (std::size_t f = 0; f < study.metrics.size(); ++f) {
       std::vector<double> values, differences;
       for (const StudySample& sample : samples) {
         const double value = sample[v][f], reference = sample[study.variants[v].reference][f];
@@ -114,7 +114,7 @@ StudyResults summarize(const Study& study, const std::vector<StudySample>& sampl
       }
       StudyResult& result = results[v][f];
       result = {.mean = score::mean(values), .interval = score::mean_interval(values), .difference = {}, .num_seeds = values.size()};
-      if (study.figures[f].is_compared && study.variants[v].reference != v) result.difference = score::mean_interval(differences);
+      if (study.metrics[f].is_compared && study.variants[v].reference != v) result.difference = score::mean_interval(differences);
     }
   }
   return results;
@@ -133,13 +133,13 @@ io::Table results_table(const Study& study, const StudyResults& results) {
                   .rows = {}};
   for (std::size_t v = 0; v < study.variants.size(); ++v) {
     const StudyVariant& variant = study.variants[v];
-    for (std::size_t f = 0; f < study.figures.size(); ++f) {
+    for (std::size_t f = 0; f < study.metrics.size(); ++f) {
       const StudyResult& result = results[v][f];
-      if (study.figures[f].is_of_the_clock || result.num_seeds == 0) continue;
+      if (study.metrics[f].is_processor_time || result.num_seeds == 0) continue;
       const auto part = [](const std::optional<score::Interval>& interval, double score::Interval::* end) {
         return interval ? io::TableValue{(*interval).*end} : io::TableValue{};
       };
-      table.rows.push_back({variant.world, variant.method, static_cast<std::int64_t>(variant.particles), study.figures[f].name, study.figures[f].unit,
+      table.rows.push_back({variant.world, variant.method, static_cast<std::int64_t>(variant.particles), study.metrics[f].name, study.metrics[f].unit,
                             number(published(variant, f)), static_cast<std::int64_t>(result.num_seeds), result.mean,
                             part(result.interval, &score::Interval::low), part(result.interval, &score::Interval::high),
                             part(result.difference, &score::Interval::center), part(result.difference, &score::Interval::low),
@@ -152,10 +152,10 @@ io::Table results_table(const Study& study, const StudyResults& results) {
 io::Table performance_table(const Study& study, const StudyResults& results) {
   io::Table table{.name = "performance", .columns = {"world", "method", "particles", "figure", "unit", "mean"}, .rows = {}};
   for (std::size_t v = 0; v < study.variants.size(); ++v) {
-    for (std::size_t f = 0; f < study.figures.size(); ++f) {
-      if (!study.figures[f].is_of_the_clock || results[v][f].num_seeds == 0) continue;
+    for (std::size_t f = 0; f < study.metrics.size(); ++f) {
+      if (!study.metrics[f].is_processor_time || results[v][f].num_seeds == 0) continue;
       table.rows.push_back({study.variants[v].world, study.variants[v].method, static_cast<std::int64_t>(study.variants[v].particles),
-                            study.figures[f].name, study.figures[f].unit, results[v][f].mean});
+                            study.metrics[f].name, study.metrics[f].unit, results[v][f].mean});
     }
   }
   return table;
@@ -163,8 +163,8 @@ io::Table performance_table(const Study& study, const StudyResults& results) {
 
 io::Table samples_table(const Study& study, const std::vector<std::uint64_t>& seeds, const std::vector<StudySample>& samples) {
   io::Table table{.name = "runs", .columns = {"seed", "world", "method", "particles"}, .rows = {}};
-  for (const StudyFigure& figure : study.figures) {
-    if (!figure.is_of_the_clock) table.columns.push_back(title_of(figure));
+  for (const StudyMetric& metric : study.metrics) {
+    if (!metric.is_processor_time) table.columns.push_back(title_of(metric));
   }
   for (std::size_t s = 0; s < samples.size(); ++s) {
     for (std::size_t v = 0; v < study.variants.size(); ++v) {
@@ -173,8 +173,8 @@ io::Table samples_table(const Study& study, const std::vector<std::uint64_t>& se
       row.emplace_back(study.variants[v].world);
       row.emplace_back(study.variants[v].method);
       row.push_back(static_cast<std::int64_t>(study.variants[v].particles));
-      for (std::size_t f = 0; f < study.figures.size(); ++f) {
-        if (study.figures[f].is_of_the_clock) continue;
+      for (std::size_t f = 0; f < study.metrics.size(); ++f) {
+        if (study.metrics[f].is_processor_time) continue;
         row.push_back(std::isfinite(samples[s][v][f]) ? io::TableValue{samples[s][v][f]} : io::TableValue{});
       }
     }
@@ -191,16 +191,16 @@ std::string results_text(const Study& study, const StudyResults& results) {
 }
 
 report::Page study_page(const Study& study, const std::vector<std::uint64_t>& seeds, const std::vector<StudySample>& samples, const StudyResults& results) {
-  report::Page page{.kind = "report of a study",
+  report::Page page{.kind = "study",
                     .title = study.title,
-                    .facts = {{"after", study.source}, {"seeds", fmt::format("{} … {}", seeds.front(), seeds.back())}},
+                    .facts = {{"source", study.source}, {"seeds", fmt::format("{} … {}", seeds.front(), seeds.back())}},
                     .sections = {},
-                    .footer = fmt::format("Made by patrol study {} {}.", study.name, PATROL_VERSION)};
+                    .footer = fmt::format("Generated by patrol study {} {}.", study.name, PATROL_VERSION)};
   page.sections.push_back({"", {report::TextBlock{study.conditions}}});
   for (const std::string& world : worlds_of(study)) {
     report::Section section{world, {}};
     for (report::TableBlock& table : tables_of(study, results, world)) section.blocks.emplace_back(std::move(table));
-    const StudyFigure& first = study.figures.front();
+    const StudyMetric& first = study.metrics.front();
     report::BoxPlot boxes{.caption = fmt::format("{}: every seed, median and quartiles", first.name), .unit = first.unit, .boxes = {}};
     for (std::size_t v = 0; v < study.variants.size(); ++v) {
       if (study.variants[v].world != world) continue;

@@ -18,7 +18,7 @@ struct StudyResult {
   std::size_t num_seeds = 0;                  ///< seeds with a value of the metric
 };
 
-/// [variant][figure]
+/// [variant][metric]
 using StudyResults = std::vector<std::vector<StudyResult>>;
 
 /// Computes the statistics. `samples`: [seed].

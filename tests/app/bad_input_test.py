@@ -42,24 +42,30 @@ class BadInput(unittest.TestCase):
         self.refuse("run", scenario, "--out", self.out, *more, says=says)
 
     def test_unknown_key_names_file_line_and_nearest_spelling(self):
-        file = self.scenario("world: street\nsensors:\n  lidar: {range_nois_m: 0.03}\n")
-        self.refuse_run(file, says=["scenario.yaml:3", "sensors.lidar.range_nois_m", "range_noise_m"])
+        file = self.scenario("world: street\nsensors:\n  lidar: {range_noise_st_m: 0.03}\n")
+        self.refuse_run(file, says=["scenario.yaml:3", "sensors.lidar.range_noise_st_m", "did you mean range_noise_std_m?"])
+
+    def test_renamed_key_names_the_new_one(self):
+        file = self.scenario("world: tunnel\nremote: {drive: drive.json}\n")
+        self.refuse_run(file, says=["scenario.yaml:2", "remote: renamed to teleop"])
+        file = self.scenario("sensors:\n  uwb: {blocked_loss: 0.1}\n")
+        self.refuse_run(file, says=["scenario.yaml:2", "sensors.uwb.blocked_loss: renamed to sensors.uwb.nlos_loss_probability"])
 
     def test_wrong_unit_is_an_unknown_key_that_names_the_right_unit(self):
-        file = self.scenario("sensors:\n  lidar: {range_noise_cm: 3}\n")
-        self.refuse_run(file, says=["scenario.yaml:2", "range_noise_cm", "range_noise_m"])
+        file = self.scenario("sensors:\n  lidar: {range_noise_std_cm: 3}\n")
+        self.refuse_run(file, says=["scenario.yaml:2", "range_noise_std_cm", "range_noise_std_m"])
 
     def test_wrong_type(self):
         file = self.scenario("seed: many\n")
         self.refuse_run(file, says=["scenario.yaml:1", "seed", "many"])
 
     def test_nan(self):
-        file = self.scenario("sensors:\n  lidar: {range_noise_m: .nan}\n")
-        self.refuse_run(file, says=["scenario.yaml:2", "range_noise_m"])
+        file = self.scenario("sensors:\n  lidar: {range_noise_std_m: .nan}\n")
+        self.refuse_run(file, says=["scenario.yaml:2", "range_noise_std_m"])
 
     def test_out_of_range_names_the_rule(self):
-        file = self.scenario("sensors:\n  lidar: {range_noise_m: -1}\n")
-        self.refuse_run(file, says=["scenario.yaml:2", "range_noise_m", "at least 0"])
+        file = self.scenario("sensors:\n  lidar: {range_noise_std_m: -1}\n")
+        self.refuse_run(file, says=["scenario.yaml:2", "range_noise_std_m", "at least 0"])
 
     def test_a_second_document_or_text_after_the_first(self):
         file = self.scenario("world: street\n---\nworld: tunnel\n")
@@ -86,17 +92,17 @@ class BadInput(unittest.TestCase):
 
     def test_numbers_that_are_not_finite(self):
         for number in ("1e400", "inf", "nan", "1e10"):
-            self.refuse_variants("sweep", f"--run-limit-s={number}", says=["--run-limit-s", number])
-        self.refuse_variants("localizability", "--step-m=1e400", says=["--step-m", "1e400"])
-        self.refuse_variants("faults", "--start-s=nan", says=["--start-s", "nan"])
-        self.refuse_variants("faults", "--duration-s=1e400", says=["--duration-s", "1e400"])
-        self.refuse_variants("sweep", "--margin=1e400", says=["--margin", "1e400"])
-        for option in ("--speed", "--slow", "--still"):
+            self.refuse_variants("sweep", f"--run-timeout-s={number}", says=["--run-timeout-s", number])
+        self.refuse_variants("localizability", "--grid-step-m=1e400", says=["--grid-step-m", "1e400"])
+        self.refuse_variants("fault-matrix", "--start-s=nan", says=["--start-s", "nan"])
+        self.refuse_variants("fault-matrix", "--duration-s=1e400", says=["--duration-s", "1e400"])
+        self.refuse_variants("sweep", "--equivalence-margin=1e400", says=["--equivalence-margin", "1e400"])
+        for option in ("--speed", "--highlight-speed", "--still"):
             self.refuse("replay", "absent", f"{option}=1e400", says=[option, "1e400"])
-        self.refuse("send", "absent", "--to=http://localhost:1", "--limit-s=1e400", says=["--limit-s", "1e400"])
+        self.refuse("upload", "absent", "--monitor-url=http://localhost:1", "--timeout-s=1e400", says=["--timeout-s", "1e400"])
         for option in ("--radius-m", "--speed-mps"):
             self.refuse("plan", "absent.yaml", f"{option}=-1e400", says=[option, "1e400"])
-        for option in ("--max-dt", "--ref-x"):
+        for option in ("--max-dt-s", "--reference-x-m"):
             self.refuse("score", "absent", f"{option}=1e400", says=[option, "1e400"])
 
     def test_devices_pipes_and_large_files(self):
@@ -122,7 +128,7 @@ class BadInput(unittest.TestCase):
         self.assertLess(int(memory_mb), 300)
 
     def test_truncated_yaml(self):
-        file = self.scenario("sensors:\n  lidar: {range_noise_m: 0.03\n")
+        file = self.scenario("sensors:\n  lidar: {range_noise_std_m: 0.03\n")
         self.refuse_run(file, says=["scenario.yaml"])
 
     def test_missing_scenario(self):
@@ -158,19 +164,19 @@ class BadInput(unittest.TestCase):
         self.refuse(command, SHORT, "--out", self.out, *more, says=says)
 
     def test_fault_matrix_of_a_missing_scenario(self):
-        self.refuse("faults", "absent.yaml", "--out", self.out, says=["absent.yaml"])
+        self.refuse("fault-matrix", "absent.yaml", "--out", self.out, says=["absent.yaml"])
 
     def test_faults_before_the_start(self):
-        self.refuse_variants("faults", "--start-s", -1, says=["start_s", "-1"])
+        self.refuse_variants("fault-matrix", "--start-s", -1, says=["start_s", "-1"])
 
     def test_budget_of_one_seed(self):
-        self.refuse_variants("budget", "--seeds", 1, says=["--seeds", "two"])
+        self.refuse_variants("error-budget", "--seeds", 1, says=["--seeds", "two"])
 
     def test_sweep_over_an_unknown_key(self):
-        self.refuse_variants("sweep", "--vary", "sensors.lidar.range_nois_m=0.1,0.2", says=["range_nois_m", "range_noise_m"])
+        self.refuse_variants("sweep", "--vary", "sensors.lidar.range_noise_st_m=0.1,0.2", says=["range_noise_st_m", "range_noise_std_m"])
 
     def test_places_that_are_no_distance_apart(self):
-        self.refuse_variants("localizability", "--step-m", 0, says=["--step-m 0"])
+        self.refuse_variants("localizability", "--grid-step-m", 0, says=["--grid-step-m 0"])
 
     def test_report_of_a_sweep_that_is_not_finished(self):
         (pathlib.Path(self.folder.name) / "INCOMPLETE").touch()
@@ -190,14 +196,20 @@ class BadInput(unittest.TestCase):
         run.mkdir()
         (folder / "precious").write_text("mine")
         (run / "INCOMPLETE").symlink_to(folder / "precious")
-        self.refuse("run", SHORT, "--out", run, says=["INCOMPLETE", "not a plain file"])
+        self.refuse("run", SHORT, "--out", run, says=["INCOMPLETE", "must be a regular file"])
         self.assertEqual((folder / "precious").read_text(), "mine")
 
     def test_unwritable_output(self):
         self.refuse("run", SHORT, "--out", "/proc/patrol", says=["/proc/patrol"])
 
     def test_unknown_command(self):
-        self.refuse("fly", says=["fly"])
+        self.refuse("fly", says=["unknown command 'fly' (known: run, score, "])
+
+    def test_former_names_of_commands_and_options_name_the_present_ones(self):
+        self.refuse("send", "absent", "--to", "http://localhost:1", says=["patrol: send: renamed to upload"])
+        self.refuse("train-neighbours", "absent", says=["patrol: train-neighbours: renamed to train-neighbors"])
+        self.refuse_run(SHORT, "--report-to=http://localhost:1", says=["patrol: --report-to: renamed to --monitor-url"])
+        self.refuse_variants("budget", "--keep", "all", says=["patrol: --keep: renamed to --keep-runs"])
 
     def test_score_of_a_directory_without_a_log(self):
         self.refuse("score", self.folder.name, says=[self.folder.name])

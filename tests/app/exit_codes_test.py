@@ -44,7 +44,7 @@ class ExitCodes(unittest.TestCase):
     def test_everything_as_expected_is_0_and_a_fault_after_the_end_is_skipped_not_passed(self):
         done = self.run_patrol("expect:\n  mission.completed: true\n"
                                "faults:\n  - {sensor: imu, kind: freeze, start_s: 900}\n"
-                               "  - {sensor: gnss, kind: silence, start_s: 0}\n")
+                               "  - {sensor: gnss, kind: dropout, start_s: 0}\n")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assert_complete()
         counts = [self.junit().get(key) for key in ("tests", "failures", "skipped")]
@@ -100,7 +100,7 @@ class ExitCodes(unittest.TestCase):
         done = self.run_patrol("time_limit_s: 0.1\n")
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
-        self.assertIn("another process writes a run there", done.stderr)
+        self.assertIn("in use by another process that writes a run", done.stderr)
         self.assertTrue((self.out / "log.mcap").exists())
         run.kill()
         run.communicate(timeout=60)

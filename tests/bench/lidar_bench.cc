@@ -17,7 +17,7 @@
 #include "sim/robot_model.h"
 #include "sim/sensors/lidar.h"
 #include "tests/bench/ratio.h"
-#include "tests/support/quadruped_twin.h"
+#include "tests/support/simulated_quadruped.h"
 
 namespace patrol::bench {
 namespace {

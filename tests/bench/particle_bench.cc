@@ -13,7 +13,7 @@
 #include "core/random.h"
 #include "studies/landmarks/fast_slam.h"
 #include "tests/bench/ratio.h"
-#include "tests/slam/landmarks/circle_world.h"
+#include "tests/studies/landmarks/circle_world.h"
 
 namespace patrol::bench {
 namespace {

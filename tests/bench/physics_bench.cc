@@ -7,8 +7,8 @@
 
 #include "tests/bench/ratio.h"
 #include "tests/sim/rubble.h"
-#include "tests/support/tracked_twin.h"
-#include "tests/support/quadruped_twin.h"
+#include "tests/support/simulated_tracked_robot.h"
+#include "tests/support/simulated_quadruped.h"
 
 namespace patrol::bench {
 namespace {

@@ -15,7 +15,7 @@ PATTERNS = {
     "degree conversion": (r"(?:\bpi\b|\bM_PI\b|\bkPi\b|3\.14159\d+) */ *180\b|\b180\.0 */ *(?:std::numbers::)?(?:pi\b|M_PI)", "src/core/geometry/angles.h"),
     "systematic resampling": (r"(?m)^std::vector<(?!Offspring>)[\w:]+> \w*systematic\w*\([^;{]*\) *\{", "src/core/particle_weights.cc"),
     "convex hull": (r"\b\w*hull\(std::vector<Eigen::Vector2d>[^;{]*\) *\{", "src/core/geometry/convex_polygon.cc"),
-    "distance transform": (r"class \w*(?:DistanceTransform|LineTransform|LowerEnvelope)\b|double intersection\(", "src/core/distance_transform."),
+    "distance transform": (r"class \w*(?:DistanceTransform|LineTransform|LowerEnvelope)\b|double intersection\(", "src/core/geometry/distance_transform."),
 }
 
 

@@ -23,7 +23,7 @@ TEST(SensorRegistry, NamesAndTopicsAreUniqueAndEveryEntryIsDocumented) {
 
 TEST(SensorRegistry, EverySensorHasFaultMagnitudesOrAReasonNotToBeInTheFaultMatrix) {
   for (const SensorInfo& info : kSensorInfos) {
-    const bool has_magnitudes = info.fault.drift_per_s > 0.0 && info.fault.spike > 0.0 && *info.fault.unit != '\0';
+    const bool has_magnitudes = info.fault.drift_per_s > 0.0 && info.fault.outlier > 0.0 && *info.fault.unit != '\0';
     const bool has_reason = *info.fault_matrix_exclusion_reason != '\0';
     EXPECT_NE(has_magnitudes, has_reason) << info.name;
   }

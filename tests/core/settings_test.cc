@@ -54,9 +54,9 @@ TEST(Validate, NamesFieldValueAndRule) {
 
 TEST(Validate, WalksIntoSectionsAndLists) {
   EXPECT_EQ(complaint_about({.spare = {.radius_m = 2.0}}, "cart"),
-            "cart.spare.radius_m = 2: must lie in 0.01 ... 1");
+            "cart.spare.radius_m = 2: must be in [0.01, 1]");
   EXPECT_EQ(complaint_about({.wheels = {{}, {.radius_m = 0.0}}}),
-            "wheels.1.radius_m = 0: must lie in 0.01 ... 1");
+            "wheels.1.radius_m = 0: must be in [0.01, 1]");
   EXPECT_EQ(complaint_about({.loads_kg = {0.0, -1.0}}), "loads_kg.1 = -1: must be at least 0");
 }
 

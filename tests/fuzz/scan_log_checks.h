@@ -27,9 +27,9 @@ inline void check_scan(const RecordedScan& recorded) {
 
 /// How many scans the log gives; none when it is refused.
 template <typename Log>
-std::optional<std::size_t> read_all(const std::filesystem::path& file, bool skip_bad_lines) {
+std::optional<std::size_t> read_all(const std::filesystem::path& file, bool skip_invalid) {
   io::ScanLogOptions options;
-  options.skip_bad_lines = skip_bad_lines;
+  options.skip_invalid = skip_invalid;
   std::size_t count = 0;
   try {
     Log log(file, options);

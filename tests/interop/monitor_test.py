@@ -119,7 +119,7 @@ class Page(Case):
         seen = datetime.datetime.now(datetime.timezone.utc)
         robot.wait(timeout=60)
         results = [json.loads(line) for line in (self.path / "run_street_spot-2/outbox.jsonl").read_text().splitlines()]
-        alarm = next(one for one in results if one["kind"] == "event" and one["data"]["kind"] == "alarm")
+        alarm = next(one for one in results if one["kind"] == "event" and one["data"]["kind"] == "gas_alarm")
         late_s = (seen - datetime.datetime.fromisoformat(alarm["made_utc"])).total_seconds()
         print(f"alarm on the page after {late_s:.2f} s")
         self.assertLess(late_s, 2.0)
@@ -134,7 +134,7 @@ class Page(Case):
         self.wait(f"return ((...arguments) => Boolean({row}))('Leak number 1.');")
         self.js(f"{row}.querySelector('button').click();", "Leak number 1.")
         self.js(fill, {"who": "Li Wei", "note": "valve closed", "token": "not-the-token-at-all"})
-        self.wait("return document.querySelector('dialog .error').textContent === 'This is not the token.';")
+        self.wait("return document.querySelector('dialog .error').textContent === 'Invalid token.';")
         self.js(fill, {"token": self.platform.token})
         self.wait(f"return ((...arguments) => !{row})('Leak number 1.');")
         self.js("document.querySelector('[data-open=\"0\"]').click();")
@@ -161,7 +161,7 @@ class Page(Case):
     def test_a_platform_that_is_away_is_said_and_its_return_too(self):
         self.show(1280)
         self.platform.kill()
-        self.wait("return document.querySelector('#live').textContent.startsWith('no answer since');")
+        self.wait("return document.querySelector('#live').textContent.startsWith('no response since');")
         self.platform.start()
         self.wait("return document.querySelector('#live').textContent === 'live';")
 

@@ -130,7 +130,7 @@ class Tunnel(World, unittest.TestCase):
                 left = -np.sin(clock)
                 direction = (-left * np.sin(turn), left * np.cos(turn), np.cos(clock))
                 near = design["crown_radius"] - 0.05  # past what hangs there
-                origin = np.array((x, y, design["crown_centre"])) + near * np.array(direction)
+                origin = np.array((x, y, design["crown_center"])) + near * np.array(direction)
                 distance, name = self.range(origin, direction, LIDAR_SEES)
                 self.assertEqual(name, "lining")
                 self.assertAlmostEqual(near + distance, design["crown_radius"], delta=1e-3)

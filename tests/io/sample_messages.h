@@ -77,7 +77,7 @@ inline DepthImage sample_depth() {
           .cy_px = 1.0,
           .depth_mm = {1000, 2000, 0, 65535, 1, 256}};
 }
-inline TeleopCommand sample_remote() {
+inline TeleopCommand sample_teleop() {
   return {.stamp = kSampleStamp, .vx_mps = 0.5, .yaw_rate_radps = -0.25, .save_goal = true, .hand_over = true};
 }
 inline PanoramicScan sample_panorama() {
@@ -93,7 +93,7 @@ inline LiningResult sample_lining() {
           .T_map_body = {1.0, 2.0, 0.5},
           .is_registered = true,
           .registration_rms_m = 0.002,
-          .registration_share = 0.75,
+          .registration_inlier_ratio = 0.75,
           .correction_m = 0.04,
           .cells = {{.ring = 12, .clock_deg = 95.0, .inward_m = 0.003, .std_m = 0.0002, .points = 340}},
           .lines = {{.ring = 12, .name = "9-3", .change_m = -0.006, .std_m = 0.0003}},
@@ -169,7 +169,7 @@ inline io::TransformSet sample_transforms() {
 inline auto all_samples() {
   return std::tuple(sample_scan(), sample_cloud(), sample_imu(), sample_joints(), sample_contacts(),
                     sample_gas(), sample_fix(), sample_ticks(), sample_uwb(),
-                    sample_ultrasonic(), sample_depth(), sample_remote(), sample_panorama(),
+                    sample_ultrasonic(), sample_depth(), sample_teleop(), sample_panorama(),
                     sample_antenna(), sample_sounding(), ScanCommand{kSampleStamp}, AntennaCommand{kSampleStamp, 0.5, -0.25},
                     SoundingCommand{kSampleStamp}, WarningCommand{kSampleStamp, true, false}, sample_lining(), sample_water(), sample_trust(), sample_odometry(), sample_estimate(), UwbPoseEstimate{sample_estimate()}, sample_particles(),
                     sample_map(), sample_path(), sample_command(), sample_event(), sample_truth(),

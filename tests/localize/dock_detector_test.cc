@@ -34,7 +34,7 @@ std::optional<DockDetection> look(const RoomWorld& world, const Pose2& T_world_b
   return DockDetector({}, profile_m).detect(scan, T_level_expected);
 }
 
-TEST(DockDetector, WithoutNoiseFindsThePostToThreeMillimetresFromThirtyCentimetresBeside) {
+TEST(DockDetector, WithoutNoiseFindsThePostToThreeMillimetersFromThirtyCentimetersBeside) {
   const Pose2 T_world_body{-1.3, 0.05, 0.06};
   const Pose2 T_level_docked = T_world_body.inverse();
   for (const Pose2& off : {Pose2{0.0, 0.0, 0.0}, Pose2{0.25, -0.2, 0.15}, Pose2{-0.25, 0.25, -0.15}}) {
@@ -143,9 +143,9 @@ TEST(DockDetector, SaysNothingFromTooFarAndOfAnEmptyScan) {
 
 TEST(DockDetector, RefusesAProfileOfOnePointAndSettingsThatBreakTheirRule) {
   EXPECT_THAT([] { DockDetector({}, {{0.5, 0.0}}); },
-              ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("the dock's profile has 1 points")));
-  EXPECT_THAT([] { DockDetector({.min_explained = 2.0}, make_dock_profile()); },
-              ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("dock_detector.min_explained = 2")));
+              ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("dock profile: 1 points")));
+  EXPECT_THAT([] { DockDetector({.min_inlier_ratio = 2.0}, make_dock_profile()); },
+              ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("docking.detector.min_inlier_ratio = 2")));
 }
 
 }  // namespace

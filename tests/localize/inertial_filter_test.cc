@@ -15,14 +15,14 @@ constexpr double kDt = 0.004;
 const Eigen::Vector3d kAtRest(0.0, 0.0, 9.81);
 
 InertialFilter::Settings quiet() {
-  return {.gyro_noise_radps_per_sqrt_hz = 1e-4,
+  return {.gyro_noise_density_radps_per_sqrt_hz = 1e-4,
           .gyro_bias_std_radps = 0.005,
-          .gyro_bias_walk_radps_per_sqrt_s = 1e-6,
-          .accel_noise_mps2_per_sqrt_hz = 0.01,
+          .gyro_bias_random_walk_radps_per_sqrt_s = 1e-6,
+          .accel_noise_density_mps2_per_sqrt_hz = 0.01,
           .accel_bias_std_mps2 = 0.05,
-          .accel_bias_walk_mps2_per_sqrt_s = 1e-4,
-          .way_std_m_per_sqrt_m = 0.0,
-          .turn_std_rad_per_sqrt_rad = 0.0};
+          .accel_bias_random_walk_mps2_per_sqrt_s = 1e-4,
+          .position_random_walk_m_per_sqrt_m = 0.0,
+          .yaw_random_walk_rad_per_sqrt_rad = 0.0};
 }
 
 TEST(InertialFilter, StartsTiltedAsGravitySays) {
@@ -81,7 +81,7 @@ TEST(InertialFilter, BiasReadingMovesBiasByTheRatioOfVariances) {
   EXPECT_NEAR(filter.gyro_bias_radps().z(), 0.0015, 1e-12);
 }
 
-// A bias found late explains half a metre of the way so far; odom is dead reckoning and stays where it is (REP 105).
+// A bias found late explains half a meter of the way so far; odom is dead reckoning and stays where it is (REP 105).
 TEST(InertialFilter, BiasReadingMovesNeitherPlaceNorHeading) {
   InertialFilter filter(quiet(), {.rate_radps = {0, 0, 0.01}, .force_mps2 = kAtRest});
   for (int i = 0; i < 5000; ++i) {  // 20 s at 1 m/s

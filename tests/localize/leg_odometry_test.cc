@@ -18,7 +18,7 @@ LegSample standing_pose() {
 }
 
 TEST(ContactDetector, CountsAFootOnceItsTouchDownIsOverAndUntilItIsReleased) {
-  ContactDetector detector({.contact_on_n = 15.0, .contact_off_n = 8.0, .full_weight_n = 40.0, .settle_s = 0.010});
+  ContactDetector detector({.contact_on_n = 15.0, .contact_off_n = 8.0, .full_weight_n = 40.0, .settling_time_s = 0.010});
   const auto at = [&](int ms, double force) {
     return detector.update(std::chrono::milliseconds(ms), {force, 0.0, 0.0, 0.0})[0];
   };
@@ -33,7 +33,7 @@ TEST(ContactDetector, CountsAFootOnceItsTouchDownIsOverAndUntilItIsReleased) {
 }
 
 TEST(StanceFoot, ShankTurningOverItsBallMovesTheContactByRadiusTimesRate) {
-  // The knee alone turns at 1 rad/s: the foot's centre moves with the shank, 0.213 m below the knee; the
+  // The knee alone turns at 1 rad/s: the foot's center moves with the shank, 0.213 m below the knee; the
   // contact is 0.02 m farther from the knee along the vertical.
   const RobotDescription robot = test::make_quadruped();
   LegSample sample;
@@ -82,7 +82,7 @@ TEST(FuseFeet, NoFootNoAnswer) {
   EXPECT_FALSE(yaw_rate_from_feet(none));
 }
 
-TEST(HeightByFeet, IsTheLegsLengthAndTheFootsRadius) {
+TEST(HeightFromFeet, IsTheLegsLengthAndTheFootsRadius) {
   // Thigh and shank at +-0.8 rad from the vertical: 2 * 0.213 * cos(0.8) + 0.02 = 0.3168 m.
   const RobotDescription robot = test::make_quadruped();
   StanceFeet feet;

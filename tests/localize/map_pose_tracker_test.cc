@@ -19,7 +19,7 @@ TEST(MapPoseTracker, BeforeAnyCorrectionMapIsOdom) {
 
 TEST(MapPoseTracker, CarriesACorrectionOnByOdometry) {
   MapPoseTracker tracker;
-  // Odometry had the body at (1, 0), heading 0; SLAM says (5, 5), heading 90 degrees. One metre on, ahead is
+  // Odometry had the body at (1, 0), heading 0; SLAM says (5, 5), heading 90 degrees. One meter on, ahead is
   // map's y.
   tracker.correct(from_seconds(1.0), {1.0, 0.0, 0.0}, {5.0, 5.0, kQuarter}, kCovariance);
   const Pose2 pose = tracker.at(from_seconds(2.0), {2.0, 0.0, 0.0}).T_map_body;

@@ -32,12 +32,12 @@ struct TunnelRun {
   double end_nees = 0.0;
   double end_error_m = 0.0;
   double nis_sum = 0.0;  ///< of the clear ranges
-  int num_clear = 0, num_blocked = 0, num_blocked_accepted = 0, num_clear_refused = 0;
+  int num_los = 0, num_nlos = 0, num_nlos_accepted = 0, num_los_refused = 0;
   std::uint64_t num_resets = 0;
 };
 
 struct TunnelSetting {
-  double blocked_share = 0.0;
+  double nlos_probability = 0.0;
   double until_s = 303.0;
   double start_error_m = 0.0;
 };
@@ -47,7 +47,7 @@ TunnelRun drive_tunnel(std::uint64_t seed, const TunnelSetting& setting) {
   const double height = robot.tracks->body_height_m;
   TrackedDrive drive(robot, stand_then_weave(), {}, seed);
   TrackOdometry odometry(robot, {});
-  UwbPolls polls{.anchors = make_tunnel_anchors(-10.0, 170.0), .blocked_share = setting.blocked_share};
+  UwbPolls polls{.anchors = make_tunnel_anchors(-10.0, 170.0), .nlos_probability = setting.nlos_probability};
   for (UwbAnchor& anchor : polls.anchors) anchor.p_m.z() -= height;  // map's origin is the body at its start
   RangeFilter filter({}, polls.anchors, robot.T_body("uwb"));
 
@@ -76,12 +76,12 @@ TunnelRun drive_tunnel(std::uint64_t seed, const TunnelSetting& setting) {
     if (++step % 2 != 0) continue;
     if (const auto poll = polls.poll(seed, ++tick, drive.now(), T_map_body, robot.T_body("uwb"))) {
       const RangeOutcome outcome = filter.add(poll->range, *odometry.T_odom_body_at(poll->range.stamp));
-      if (poll->is_blocked) {
-        ++result.num_blocked;
-        if (outcome.is_accepted()) ++result.num_blocked_accepted;
+      if (poll->is_nlos) {
+        ++result.num_nlos;
+        if (outcome.is_accepted()) ++result.num_nlos_accepted;
       } else {
-        ++result.num_clear;
-        if (!outcome.is_accepted()) ++result.num_clear_refused;
+        ++result.num_los;
+        if (!outcome.is_accepted()) ++result.num_los_refused;
         result.nis_sum += outcome.nis();
       }
     }
@@ -105,26 +105,26 @@ TunnelRun drive_tunnel(std::uint64_t seed, const TunnelSetting& setting) {
 /// Bounds that hold 95 % of the mean of 20 chi-square values of three degrees of freedom.
 constexpr double kLowNees = 40.48 / 20.0, kHighNees = 83.30 / 20.0;
 
-TEST(RangeFilter, OverTheWholeTunnelErrsLessThanFifteenCentimetresWithThirtyPercentBlocked) {
+TEST(RangeFilter, OverTheWholeTunnelErrsLessThanFifteenCentimetersWithThirtyPercentBlocked) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    const TunnelRun run = drive_tunnel(seed, {.blocked_share = 0.3});
+    const TunnelRun run = drive_tunnel(seed, {.nlos_probability = 0.3});
     EXPECT_LT(run.max_error_m, 0.15) << "seed " << seed;
     EXPECT_GT(run.max_odometry_error_m, 2.0) << "odometry alone does not do it, seed " << seed;
-    EXPECT_NEAR(static_cast<double>(run.num_blocked) / (run.num_blocked + run.num_clear), 0.3, 0.02);
+    EXPECT_NEAR(static_cast<double>(run.num_nlos) / (run.num_nlos + run.num_los), 0.3, 0.02);
     EXPECT_EQ(run.num_resets, 0U);
   }
 }
 
 TEST(RangeFilter, NeesAndNisOverTwentySeedsLieWithinTheirBounds) {
   double end_nees = 0.0, mean_nees = 0.0, nis = 0.0;
-  int num_clear = 0, num_refused = 0;
+  int num_los = 0, num_refused = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const TunnelRun run = drive_tunnel(seed, {.until_s = 63.0});
     end_nees += run.end_nees;
     mean_nees += run.mean_nees;
     nis += run.nis_sum;
-    num_clear += run.num_clear;
-    num_refused += run.num_clear_refused;
+    num_los += run.num_los;
+    num_refused += run.num_los_refused;
   }
   EXPECT_GT(end_nees / 20.0, kLowNees);
   EXPECT_LT(end_nees / 20.0, kHighNees);
@@ -132,19 +132,19 @@ TEST(RangeFilter, NeesAndNisOverTwentySeedsLieWithinTheirBounds) {
   EXPECT_GT(mean_nees / 20.0, kLowNees);
   EXPECT_LT(mean_nees / 20.0, kHighNees);
   // Innovations are white: n values of mean 1 and variance 2.
-  EXPECT_NEAR(nis / num_clear, 1.0, 1.96 * std::sqrt(2.0 / num_clear));
-  EXPECT_LT(num_refused, num_clear / 100) << "clear ranges are refused";
+  EXPECT_NEAR(nis / num_los, 1.0, 1.96 * std::sqrt(2.0 / num_los));
+  EXPECT_LT(num_refused, num_los / 100) << "clear ranges are refused";
 }
 
 TEST(RangeFilter, WithBlockedRangesTheNeesStaysWithinItsBounds) {
   double end_nees = 0.0;
-  for (std::uint64_t seed = 1; seed <= 20; ++seed) end_nees += drive_tunnel(seed, {.blocked_share = 0.3, .until_s = 63.0}).end_nees;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) end_nees += drive_tunnel(seed, {.nlos_probability = 0.3, .until_s = 63.0}).end_nees;
   EXPECT_GT(end_nees / 20.0, kLowNees);
   EXPECT_LT(end_nees / 20.0, kHighNees);
 }
 
-TEST(RangeFilter, AStartTwoMetresOffIsDoubtedAndFoundAgain) {
-  const TunnelRun run = drive_tunnel(1, {.blocked_share = 0.3, .until_s = 43.0, .start_error_m = 2.0});
+TEST(RangeFilter, AStartTwoMetersOffIsDoubtedAndFoundAgain) {
+  const TunnelRun run = drive_tunnel(1, {.nlos_probability = 0.3, .until_s = 43.0, .start_error_m = 2.0});
   EXPECT_GT(run.max_error_m, 1.9);
   EXPECT_GE(run.num_resets, 1U);
   EXPECT_LT(run.end_error_m, 0.15);
@@ -186,7 +186,7 @@ TEST(RangeFilter, OneRangeIsWeighedAsKalmanSays) {
   EXPECT_NEAR(estimate.covariance(1, 1), 1.0, 1e-6) << "an anchor ahead says nothing of the side";
 }
 
-TEST(RangeFilter, HalfAMetreTooLongIsBlockedAndHalfAMetreTooShortIsAnOutlier) {
+TEST(RangeFilter, HalfAMeterTooLongIsBlockedAndHalfAMeterTooShortIsAnOutlier) {
   Standing standing(0.01);
   EXPECT_EQ(standing.read(10.5).status, RangeStatus::kTooLong);
   EXPECT_EQ(standing.read(9.5).status, RangeStatus::kTooShort);
@@ -254,7 +254,7 @@ TEST(RangeFilter, BadSettingsAndDoubleAnchorsAreNamed) {
     RangeFilter({}, {{.number = 4}, {.number = 4}}, {});
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "uwb anchor 4 is surveyed twice: each number must stand for one anchor");
+    EXPECT_STREQ(error.what(), "uwb anchor 4: duplicate number");
   }
 }
 

@@ -74,7 +74,7 @@ double worst_wall_error(const LevelScan& level) {
   return worst;
 }
 
-TEST(ScanLeveler, WallsOfARoomAreExactToAMillimetreWhileWalkingAndTurning) {
+TEST(ScanLeveler, WallsOfARoomAreExactToAMillimeterWhileWalkingAndTurning) {
   const ScanLeveler leveler(kLidar, {});
   for (const double start_s : {0.0, 0.13, 0.29}) {
     const LaserScan scan = scan_room(wobbling, from_seconds(start_s), 3200, -10.0);
@@ -87,7 +87,7 @@ TEST(ScanLeveler, WallsOfARoomAreExactToAMillimetreWhileWalkingAndTurning) {
   }
 }
 
-TEST(ScanLeveler, WithoutTheMotionTheSameWallsAreHalfAMetreOff) {
+TEST(ScanLeveler, WithoutTheMotionTheSameWallsAreHalfAMeterOff) {
   const ScanLeveler leveler(kLidar, {});
   const LaserScan scan = scan_room(wobbling, Time{0}, 3200, -10.0);
   const Time end = scan.stamp + from_seconds(3199 * scan.time_increment_s);
@@ -100,7 +100,7 @@ TEST(ScanLeveler, ScansOfAStabilizedLidarAreExactOnceItIsKnown) {
   // What a lidar on a gimbal sees: from where the wobbling body carries it, but level.
   const auto level_lidar = [](Time stamp) { return std::optional(remove_tilt(wobbling(stamp) * kLidar) * kLidar.inverse()); };
   const LaserScan scan = scan_room(level_lidar, Time{0}, 3200, -10.0);
-  EXPECT_LT(worst_wall_error(*ScanLeveler(kLidar, {.stabilized = true}).level(scan, PoseLookup(wobbling), 0.3)), 0.001);
+  EXPECT_LT(worst_wall_error(*ScanLeveler(kLidar, {.gimbal_stabilized = true}).level(scan, PoseLookup(wobbling), 0.3)), 0.001);
   EXPECT_GT(worst_wall_error(*ScanLeveler(kLidar, {}).level(scan, PoseLookup(wobbling), 0.3)), 0.001);
 }
 
@@ -135,7 +135,7 @@ TEST(ScanLeveler, GroundInFrontOfATippedRobotIsNoObstacleAndFreeUpToTheBand) {
   }
 }
 
-TEST(ScanLeveler, KerbOfTwelveCentimetresIsNoObstacleAndAWallOfTwentyIs) {
+TEST(ScanLeveler, KerbOfTwelveCentimetersIsNoObstacleAndAWallOfTwentyIs) {
   const double pitch = 0.1;
   const PoseLookup tipped = [=](Time) { return Pose3{{0, 0, 0}, quaternion_from_rpy(0, pitch, 0)}; };
   const auto level_hit_at_height = [&](double height_m) {
@@ -173,7 +173,7 @@ TEST(ScanLeveler, RangesFollowRep117) {
                        .time_increment_s = 1e-4,
                        .ranges_m = {kInf, -kInf, std::numeric_limits<float>::quiet_NaN(), 3.0F, 0.1F},
                        .intensities = {}};
-  const auto level = ScanLeveler(kLidar, {.no_return_free_m = 7.0}).level(scan, still, 0.3);
+  const auto level = ScanLeveler(kLidar, {.no_return_clearing_range_m = 7.0}).level(scan, still, 0.3);
   ASSERT_TRUE(level);
   ASSERT_EQ(level->beams.size(),
             2U);  // no return: free; too close, invalid: nothing; 3 m: hit; 0.1 m: the robot itself

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace patrol::localize::slip_watch_test {
+namespace patrol::localize::slip_detector_test {
 namespace {
 
 constexpr double kDt = 0.004;
@@ -35,7 +35,7 @@ TEST(SlipDetector, BeltsThatTakeTheBodyAlongAreNoEvidence) {
   EXPECT_FALSE(Drive().speed_up(1.0, 0.9, 1.5)) << "a tenth is ordinary slip";
 }
 
-TEST(SlipDetector, BeltsAloneAtOneMetrePerSecondSquaredAreNoticedAtTwentyCentimetresPerSecond) {
+TEST(SlipDetector, BeltsAloneAtOneMeterPerSecondSquaredAreNoticedAtTwentyCentimetersPerSecond) {
   const auto evidence = Drive().speed_up(1.0, 0.0, 1.0);
   ASSERT_TRUE(evidence);
   EXPECT_NEAR(evidence->disagreement_mps, 0.2, 0.021);  // a reading each 20 ms
@@ -51,4 +51,4 @@ TEST(SlipDetector, ARoughRideAsksForMore) {
 }
 
 }  // namespace
-}  // namespace patrol::localize::slip_watch_test
+}  // namespace patrol::localize::slip_detector_test

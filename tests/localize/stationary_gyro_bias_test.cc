@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace patrol::localize::standstill_test {
+namespace patrol::localize::stationary_gyro_bias_test {
 namespace {
 
 constexpr double kSmallAngleTol = 1e-6;  // rad/s; the rigid fit is linear in angles of a milliradian
@@ -14,7 +14,7 @@ constexpr double kSmallAngleTol = 1e-6;  // rad/s; the rigid fit is linear in an
 /// A trunk that sways by `yaw(t)` over four feet that stay; the gyro reads its rate and a bias.
 std::optional<GyroBiasMeasurement> stand(const std::function<double(double)>& yaw, const Eigen::Vector3d& bias,
                                      const std::function<double(double)>& slip = nullptr) {
-  StationaryGyroBiasEstimator meter({.window_s = 1.0, .gyro_noise_radps_per_sqrt_hz = 1e-4, .foot_std_m = 1e-5});
+  StationaryGyroBiasEstimator meter({.window_s = 1.0, .gyro_noise_density_radps_per_sqrt_hz = 1e-4, .foot_std_m = 1e-5});
   for (int tick = 0; tick <= 250; ++tick) {
     const double t = 0.004 * tick;
     StanceFeet feet;
@@ -53,7 +53,7 @@ TEST(StationaryGyroBiasEstimator, VarianceIsThatOfGyroNoiseAndFeet) {
   EXPECT_NEAR(reading->variance.z(), gyro + feet, 0.02 * (gyro + feet));
 }
 
-TEST(StationaryGyroBiasEstimator, FootThatSlipsFiveMillimetresSpoilsTheWindow) {
+TEST(StationaryGyroBiasEstimator, FootThatSlipsFiveMillimetersSpoilsTheWindow) {
   EXPECT_FALSE(
       stand([](double) { return 0.0; }, Eigen::Vector3d::Zero(), [](double t) { return 0.005 * t; }));
 }
@@ -63,4 +63,4 @@ TEST(StationaryGyroBiasEstimator, TurningRobotIsNotStanding) {
 }
 
 }  // namespace
-}  // namespace patrol::localize::standstill_test
+}  // namespace patrol::localize::stationary_gyro_bias_test

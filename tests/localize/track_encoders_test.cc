@@ -2,24 +2,24 @@
 
 #include <gtest/gtest.h>
 
-namespace patrol::localize::belt_counters_test {
+namespace patrol::localize::track_encoders_test {
 namespace {
 
 using std::chrono::milliseconds;
 
 TrackEncoders make_counters() { return TrackEncoders({.meters_per_tick = 0.001, .max_acceleration_mps2 = 10.0}); }
 
-TEST(TrackEncoders, TenTicksOfAMillimetreInTwentyMillisecondsAreHalfAMetreASecond) {
+TEST(TrackEncoders, TenTicksOfAMillimeterInTwentyMillisecondsAreHalfAMeterASecond) {
   TrackEncoders counters = make_counters();
   EXPECT_FALSE(counters.add({milliseconds(0), 100, 200})) << "one reading is no way";
-  const auto belts = counters.add({milliseconds(20), 110, 194});
-  ASSERT_TRUE(belts);
-  EXPECT_DOUBLE_EQ(belts->speed.left_mps, 0.5);
-  EXPECT_DOUBLE_EQ(belts->speed.right_mps, -0.3);
-  EXPECT_DOUBLE_EQ(belts->speed.mean_mps(), 0.1);
-  EXPECT_DOUBLE_EQ(belts->speed.difference_mps(), -0.8);
-  EXPECT_DOUBLE_EQ(belts->step_mps, 0.05);
-  EXPECT_EQ(belts->middle(), milliseconds(10));
+  const auto interval = counters.add({milliseconds(20), 110, 194});
+  ASSERT_TRUE(interval);
+  EXPECT_DOUBLE_EQ(interval->speed.left_mps, 0.5);
+  EXPECT_DOUBLE_EQ(interval->speed.right_mps, -0.3);
+  EXPECT_DOUBLE_EQ(interval->speed.mean_mps(), 0.1);
+  EXPECT_DOUBLE_EQ(interval->speed.difference_mps(), -0.8);
+  EXPECT_DOUBLE_EQ(interval->step_mps, 0.05);
+  EXPECT_EQ(interval->middle(), milliseconds(10));
 }
 
 TEST(TrackEncoders, StandAfterThreeHundredMillisecondsWithoutATick) {
@@ -51,4 +51,4 @@ TEST(TrackEncoders, NothingIsSaidAcrossAGapOfASecond) {
 }
 
 }  // namespace
-}  // namespace patrol::localize::belt_counters_test
+}  // namespace patrol::localize::track_encoders_test

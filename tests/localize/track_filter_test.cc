@@ -13,28 +13,28 @@ constexpr double kDt = 0.004;
 const InertialSample kAtRest{.force_mps2 = {0.0, 0.0, 9.81}};
 
 TrackFilter::Settings quiet() {
-  return {.gyro_noise_radps_per_sqrt_hz = 1e-4,
+  return {.gyro_noise_density_radps_per_sqrt_hz = 1e-4,
           .gyro_bias_std_radps = 1e-3,
-          .gyro_bias_walk_radps_per_sqrt_s = 1e-6,
-          .accel_noise_mps2_per_sqrt_hz = 0.02,
+          .gyro_bias_random_walk_radps_per_sqrt_s = 1e-6,
+          .accel_noise_density_mps2_per_sqrt_hz = 0.02,
           .accel_bias_std_mps2 = 0.01,
-          .accel_bias_walk_mps2_per_sqrt_s = 1e-4,
-          .turn_std_rad_per_sqrt_rad = 0.0,
+          .accel_bias_random_walk_mps2_per_sqrt_s = 1e-4,
+          .yaw_random_walk_rad_per_sqrt_rad = 0.0,
           .scale_std = 0.02,
-          .slip_length_m = 2.0,
-          .turn_centre_x_std_m = 0.05,
-          .turn_centre_y_std_m = 0.02,
-          .turn_centre_length_rad = 2.0,
+          .slip_correlation_m = 2.0,
+          .icr_x_std_m = 0.05,
+          .icr_y_std_m = 0.02,
+          .icr_correlation_rad = 2.0,
           .height_m = 0.0};
 }
 
 /// Steady at a speed for a time, belts heard each 20 ms.
-void drive(TrackFilter& filter, double belts_mps, double duration_s, double slip_std) {
+void drive(TrackFilter& filter, double track_mps, double duration_s, double slip_std) {
   for (int step = 1; step <= std::lround(duration_s / kDt); ++step) {
     filter.predict(kDt, kAtRest);
     if (step % 5 != 0) continue;
-    filter.propagate_slip(std::abs(belts_mps) * 0.02, 0.0, slip_std);
-    filter.correct_speed(0.02, belts_mps, filter.motion(), {0.005, 0.005, 0.005});
+    filter.propagate_slip(std::abs(track_mps) * 0.02, 0.0, slip_std);
+    filter.correct_speed(0.02, track_mps, filter.motion(), {0.005, 0.005, 0.005});
   }
 }
 
@@ -104,14 +104,14 @@ TEST(TrackFilter, CovarianceStaysPositiveThroughDriveAndLossOfGrip) {
   EXPECT_GT(solver.eigenvalues().minCoeff(), -1e-12);
 }
 
-TEST(TrackFilter, TheTurnsCentreFiveCentimetresBehindDragsTheBodySideways) {
+TEST(TrackFilter, TheTurnsCenterFiveCentimetersBehindDragsTheBodySideways) {
   TrackFilter filter(quiet(), kAtRest);
   const InertialSample turning{.rate_radps = {0, 0, 0.5}, .force_mps2 = {0, 0, 9.81}};
   for (int step = 1; step <= 250; ++step) {
     filter.predict(kDt, turning);
     if (step % 5 == 0) filter.correct_speed(0.02, 0.0, filter.motion(), {0.005, 0.005, 0.005});
   }
-  // Turning on the spot by 0.5 rad/s, 0.05 m of centre leave 0.025 m/s to the left, and 0.02 m leave 0.01 m/s ahead.
+  // Turning on the spot by 0.5 rad/s, 0.05 m of center leave 0.025 m/s to the left, and 0.02 m leave 0.01 m/s ahead.
   EXPECT_NEAR(std::sqrt(filter.systematic_velocity_variance().y()), 0.025, 0.005);
   EXPECT_NEAR(std::sqrt(filter.systematic_velocity_variance().x()), 0.010, 0.002);
 }

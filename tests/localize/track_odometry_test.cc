@@ -101,7 +101,7 @@ TEST(TrackOdometry, DriftsLessThanOnePercentAndAFifthOfCountersAlone) {
   EXPECT_LT(by_filter, 0.2 * by_counters);
 }
 
-TEST(TrackOdometry, WithoutNoiseATourOfThirtySevenMetresIsExactToOneCentimetre) {
+TEST(TrackOdometry, WithoutNoiseATourOfThirtySevenMetersIsExactToOneCentimeter) {
   const TrackedDriveSettings quiet = TrackedDriveSettings::without_noise();
   TrackedDrive drive(make_tracked_robot(), make_tour(), quiet, 1);
   TrackOdometry odometry(make_tracked_robot(), {.ticks_per_sprocket_turn = quiet.ticks_per_sprocket_turn});
@@ -155,14 +155,14 @@ TEST(TrackOdometry, OnIceTheBodyStaysWithinThreeSigmaOfWhereItStands) {
     const double std_before = std::sqrt(odometry.estimate()->planar_covariance(0, 0));
     run(drive, odometry, 9.0);  // 5.7 s of belts at 0.5 m/s: 2.9 m by the counters
     EXPECT_LT(drive.way_m(), 0.01);
-    EXPECT_TRUE(odometry.health().grip_is_lost);
+    EXPECT_TRUE(odometry.health().is_slipping);
     const double std = std::sqrt(odometry.estimate()->planar_covariance(0, 0));
     EXPECT_LT(std::abs(planar_error(odometry, drive).x()), 3.0 * std);
     EXPECT_LT(std::abs(planar_error(odometry, drive).x()), 0.6);
     EXPECT_GT(std, 0.2 + std_before) << "a map matcher or UWB must be let in";
 
     run(drive, odometry, 12.0);  // the tracks have taken hold
-    EXPECT_FALSE(odometry.health().grip_is_lost);
+    EXPECT_FALSE(odometry.health().is_slipping);
     EXPECT_NEAR(odometry.estimate()->twist.linear.x(), drive.speed_mps(), 0.05);
     EXPECT_LT(std::abs(planar_error(odometry, drive).x()), 3.0 * std);
   }
@@ -179,11 +179,11 @@ TEST(TrackOdometry, CountersFrozenForFourSecondsAreSurvivedAndReported) {
       odometry.add(drive.imu());
       if (drive.has_ticks()) odometry.add(TrackTicks{drive.now(), frozen.left, frozen.right});
     }
-    EXPECT_TRUE(odometry.health().grip_is_lost);
+    EXPECT_TRUE(odometry.health().is_slipping);
     const double std = std::sqrt(odometry.estimate()->planar_covariance(0, 0));
     EXPECT_LT(std::abs(planar_error(odometry, drive).x()), 3.0 * std);
     run(drive, odometry, 14.0);
-    EXPECT_FALSE(odometry.health().grip_is_lost);
+    EXPECT_FALSE(odometry.health().is_slipping);
     // Believing them would have lost 4 s at 0.6 m/s: 2.4 m.
     EXPECT_LT(std::abs(planar_error(odometry, drive).x()), 0.5);
   }
@@ -195,12 +195,12 @@ TEST(TrackOdometry, SilentCountersAreReportedAndTheCovarianceGrows) {
   run(drive, odometry, 8.0);
   const double std_before = std::sqrt(odometry.estimate()->planar_covariance(0, 0));
   run(drive, odometry, 11.0, [](double) { return Channels{.ticks = false}; });
-  EXPECT_TRUE(odometry.health().ticks_are_silent);
+  EXPECT_TRUE(odometry.health().encoders_timed_out);
   const double std = std::sqrt(odometry.estimate()->planar_covariance(0, 0));
   EXPECT_GT(std, 2.0 * std_before);
   EXPECT_LT(std::abs(planar_error(odometry, drive).x()), 3.0 * std);
   run(drive, odometry, 12.0);
-  EXPECT_FALSE(odometry.health().ticks_are_silent);
+  EXPECT_FALSE(odometry.health().encoders_timed_out);
 }
 
 TEST(TrackOdometry, TwoSecondsWithoutImuTurnWithTheBeltsAndSaySo) {
@@ -209,12 +209,12 @@ TEST(TrackOdometry, TwoSecondsWithoutImuTurnWithTheBeltsAndSaySo) {
   run(drive, odometry, 16.0);
   const double yaw_std_before = std::sqrt(odometry.estimate()->planar_covariance(2, 2));
   run(drive, odometry, 18.0, [](double) { return Channels{.imu = false}; });
-  EXPECT_TRUE(odometry.health().imu_is_silent);
+  EXPECT_TRUE(odometry.health().imu_timed_out);
   const double yaw_std = std::sqrt(odometry.estimate()->planar_covariance(2, 2));
   EXPECT_GT(yaw_std, 2.0 * yaw_std_before);
   EXPECT_LT(std::abs(planar_error(odometry, drive).z()), 3.0 * yaw_std);
   run(drive, odometry, 19.0);
-  EXPECT_FALSE(odometry.health().imu_is_silent);
+  EXPECT_FALSE(odometry.health().imu_timed_out);
 }
 
 TEST(TrackOdometry, AFrozenImuCountsAsSilent) {
@@ -228,11 +228,11 @@ TEST(TrackOdometry, AFrozenImuCountsAsSilent) {
     odometry.add(frozen);
     if (drive.has_ticks()) odometry.add(drive.ticks());
   }
-  EXPECT_TRUE(odometry.health().imu_is_silent);
-  EXPECT_GT(odometry.health().rejected_messages, 200U);
+  EXPECT_TRUE(odometry.health().imu_timed_out);
+  EXPECT_GT(odometry.health().num_rejected_messages, 200U);
 }
 
-TEST(TrackOdometry, CountersFortyMillisecondsLateChangeTheEndOfThirtySecondsByLessThanFiveCentimetres) {
+TEST(TrackOdometry, CountersFortyMillisecondsLateChangeTheEndOfThirtySecondsByLessThanFiveCentimeters) {
   TrackedDrive drive(make_tracked_robot(), make_tour(), {}, 8);
   TrackOdometry punctual(make_tracked_robot(), {}), late(make_tracked_robot(), {});
   std::deque<TrackTicks> under_way;
@@ -249,7 +249,7 @@ TEST(TrackOdometry, CountersFortyMillisecondsLateChangeTheEndOfThirtySecondsByLe
   }
   const Eigen::Vector3d difference = late.estimate()->T_odom_body.position - punctual.estimate()->T_odom_body.position;
   EXPECT_LT(difference.head<2>().norm(), 0.05);
-  EXPECT_EQ(late.health().slip_events, 0U);
+  EXPECT_EQ(late.health().num_slip_events, 0U);
 }
 
 TEST(TrackOdometry, RepeatedOldAndBrokenMessagesAreRejectedAndChangeNothing) {
@@ -270,10 +270,10 @@ TEST(TrackOdometry, RepeatedOldAndBrokenMessagesAreRejectedAndChangeNothing) {
     pestered.add(drive.ticks());
   }
   EXPECT_EQ(clean.estimate()->T_odom_body.position, pestered.estimate()->T_odom_body.position);
-  EXPECT_EQ(pestered.health().rejected_messages, 2U * 2000U + 400U);
+  EXPECT_EQ(pestered.health().num_rejected_messages, 2U * 2000U + 400U);
 }
 
-TEST(TrackOdometry, CountersThatStartAnewAtZeroCostNoMetres) {
+TEST(TrackOdometry, CountersThatStartAnewAtZeroCostNoMeters) {
   TrackedDrive drive(make_tracked_robot(), make_tour(), {}, 10);
   TrackOdometry odometry(make_tracked_robot(), {});
   run(drive, odometry, 8.0);
@@ -286,7 +286,7 @@ TEST(TrackOdometry, CountersThatStartAnewAtZeroCostNoMetres) {
     odometry.add(TrackTicks{ticks.stamp, ticks.left - at_restart.left, ticks.right - at_restart.right});
   }
   EXPECT_LT(planar_error(odometry, drive).head<2>().norm(), 0.25);
-  EXPECT_EQ(odometry.health().slip_events, 0U);
+  EXPECT_EQ(odometry.health().num_slip_events, 0U);
 }
 
 TEST(TrackOdometry, PosesOfAtLeastTwoSecondsAreRememberedWithTheirTilt) {
@@ -313,9 +313,9 @@ TEST(TrackOdometry, ARobotWithoutTracksOrImuIsRefusedWithASentence) {
     TrackOdometry odometry(robot, {});
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "robot tracked has no tracks: track odometry needs them");
+    EXPECT_STREQ(error.what(), "robot tracked: has no tracks: tracked odometry requires a tracked robot");
   }
-  EXPECT_THROW(TrackOdometry(make_tracked_robot(), {.slip_length_m = 0.0}), InputError);
+  EXPECT_THROW(TrackOdometry(make_tracked_robot(), {.slip_correlation_m = 0.0}), InputError);
 }
 
 }  // namespace

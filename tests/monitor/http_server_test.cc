@@ -108,7 +108,7 @@ class Server : public testing::Test {
   bool is_log_broken_ = false;
 };
 
-constexpr HttpServerSettings kSmall{.header_limit_s = 0.3, .request_limit_s = 0.6, .idle_limit_s = 0.5, .max_connections = 20, .max_header_kb = 4, .max_body_mb = 0.01};
+constexpr HttpServerSettings kSmall{.header_timeout_s = 0.3, .request_timeout_s = 0.6, .idle_timeout_s = 0.5, .max_connections = 20, .max_header_kb = 4, .max_body_mb = 0.01};
 
 TEST_F(Server, AnswersAndKeepsTheConnection) {
   start({});
@@ -177,7 +177,7 @@ TEST_F(Server, WhoTricklesAHeaderOrABodyIsGivenUpInTime) {
     EXPECT_LT(Clock::now() - from, std::chrono::seconds(3));
   }
   EXPECT_NE(log().find("no whole header within 0.3 s"), std::string::npos);
-  EXPECT_NE(log().find("POST /: no whole body within 0.6 s"), std::string::npos);
+  EXPECT_NE(log().find("POST /: incomplete body after 0.6 s"), std::string::npos);
 }
 
 TEST_F(Server, WhoDoesNotReadItsAnswerIsGivenUpInTime) {
@@ -185,13 +185,13 @@ TEST_F(Server, WhoDoesNotReadItsAnswerIsGivenUpInTime) {
   Peer peer(port());
   peer.send("GET /large HTTP/1.1\r\nHost: x\r\n\r\n");
   for (int i = 0; i < 60 && log().empty(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  EXPECT_NE(log().find("the answer was not read within 0.6 s"), std::string::npos);
+  EXPECT_NE(log().find("response not read within 0.6 s"), std::string::npos);
   EXPECT_TRUE(is_alive());
 }
 
 TEST_F(Server, AHundredSilentPeersKeepNobodyWaiting) {
   HttpServerSettings settings = kSmall;
-  settings.header_limit_s = 60.0;
+  settings.header_timeout_s = 60.0;
   start(settings);
   std::vector<std::unique_ptr<Peer>> silent;
   for (int i = 0; i < 100; ++i) {
@@ -206,7 +206,7 @@ TEST_F(Server, AHundredSilentPeersKeepNobodyWaiting) {
 
 TEST_F(Server, BodiesOnTheirWayTogetherHaveALimit) {
   HttpServerSettings settings = kSmall;
-  settings.request_limit_s = 60.0;
+  settings.request_timeout_s = 60.0;
   settings.max_bodies_mb = 0.03;
   start(settings);
   const std::string head = "POST / HTTP/1.1\r\nHost: x\r\nAuthorization: Bearer key\r\n";
@@ -229,8 +229,8 @@ TEST_F(Server, BodiesOnTheirWayTogetherHaveALimit) {
 
 TEST_F(Server, AnswersThatNobodyReadsTogetherHaveALimit) {
   HttpServerSettings settings = kSmall;
-  settings.request_limit_s = 60.0;
-  settings.max_answers_mb = 60.0;
+  settings.request_timeout_s = 60.0;
+  settings.max_responses_mb = 60.0;
   start(settings);
   Peer silent(port());
   silent.send("GET /large HTTP/1.1\r\nHost: x\r\n\r\n");
@@ -290,7 +290,7 @@ TEST_F(Server, ListensAtAHostName) {
 TEST_F(Server, ALogThatThrowsEndsNeitherAConnectionNorTheServer) {
   HttpServerSettings settings = kSmall;
   settings.max_connections = 5;
-  settings.header_limit_s = 60.0;
+  settings.header_timeout_s = 60.0;
   start(settings);
   {
     const std::lock_guard lock(mutex_);
@@ -319,9 +319,9 @@ TEST_F(Server, AnAddressThatIsTakenIsAWrongInput) {
 }
 
 TEST_F(Server, AClientIsToldWhyNobodyAnswers) {
-  std::string why;
-  EXPECT_FALSE(post_json({.host = "127.0.0.1", .port = "1"}, "/", "key", "", 2.0, &why));
-  EXPECT_EQ(why, "Connection refused");
+  std::string reason;
+  EXPECT_FALSE(post_json({.host = "127.0.0.1", .port = "1"}, "/", "key", "", 2.0, &reason));
+  EXPECT_EQ(reason, "Connection refused");
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ TEST_F(LineLogTo, APipeThatIsNotReadLosesLinesAndSaysHowMany) {
   log.write("lost too");
   read();
   log.write("again");
-  EXPECT_NE(read().find("2 lines before this one could not be written\nagain\n"), std::string::npos);
+  EXPECT_NE(read().find("2 earlier lines could not be written\nagain\n"), std::string::npos);
   EXPECT_EQ(log.num_lost(), 0U);
 }
 

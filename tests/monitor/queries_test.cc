@@ -72,7 +72,7 @@ TEST_F(Queries, AStampWithinTheToleranceCountsAsItIs) {
 }
 
 TEST_F(Queries, ChangesGiveWhatIsNewSinceARevision) {
-  add({pose_result(1), event_result(2, "alarm", "well_1")});
+  add({pose_result(1), event_result(2, "gas_alarm", "well_1")});
   const Json first = Json::parse(changes(database(), 0, kNoon_ms));
   EXPECT_EQ(first["findings"][0]["level"], "alarm");
   EXPECT_EQ(first["open"]["alarm"], 1);
@@ -95,7 +95,7 @@ TEST_F(Queries, ATrackIsThinnedButKeepsItsEnd) {
 }
 
 TEST_F(Queries, ARunHasItsStationsAndThoseMarkedOnTheWay) {
-  add({status_result(0, "started"), event_result(1, "goal_marked", "goal_1")});
+  add({status_result(0, "started"), event_result(1, "goal_saved", "goal_1")});
   const Json stations = run()["stations"];
   ASSERT_EQ(stations.size(), 2U);
   EXPECT_EQ(stations[1]["name"], "goal_1");

@@ -11,7 +11,7 @@ namespace {
 using Json = nlohmann::json;
 using namespace patrol::test;
 
-std::string refusal_of(const std::string& text) {
+std::string complaint_about(const std::string& text) {
   try {
     results_from_json(text);
   } catch (const InputError& error) {
@@ -21,14 +21,14 @@ std::string refusal_of(const std::string& text) {
 }
 
 /// With one member changed; a discarded value takes it away.
-std::string refusal_with(const char* pointer, const Json& value) {
-  Json json = Json::parse(to_json(event_result(7, "alarm", "well_1", 640.0)));
+std::string complaint_with(const char* pointer, const Json& value) {
+  Json json = Json::parse(to_json(event_result(7, "gas_alarm", "well_1", 640.0)));
   json[Json::json_pointer(pointer)] = value;
-  return refusal_of(json.dump());
+  return complaint_about(json.dump());
 }
 
 TEST(Result, ComesBackFromItsJson) {
-  const Result result = event_result(7, "alarm", "well_1", 640.0);
+  const Result result = event_result(7, "gas_alarm", "well_1", 640.0);
   const std::vector<Result> back = results_from_json(to_json(result));
   ASSERT_EQ(back.size(), 1U);
   EXPECT_EQ(back[0].id, "spot-1/run_1/7");
@@ -38,33 +38,33 @@ TEST(Result, ComesBackFromItsJson) {
 TEST(Result, AListIsABatch) { EXPECT_EQ(results_from_json("[" + to_json(pose_result(0)) + "," + to_json(pose_result(1)) + "]").size(), 2U); }
 
 TEST(Result, EachFieldIsHeldToItsRule) {
-  EXPECT_EQ(refusal_with("/schema", "patrol-result/2"), "result: schema must be patrol-result/1");
-  EXPECT_EQ(refusal_with("/robot", ""), "result: robot must have 1 ... 200 bytes");
-  EXPECT_EQ(refusal_with("/id", std::string(201, 'x')), "result: id must have 1 ... 200 bytes");
-  EXPECT_EQ(refusal_with("/run", "a\nb"), "result: run must be a word");
-  EXPECT_EQ(refusal_with("/robot", "a\xc2\x9b" "31m"), "result: robot must be a word");  // C1: starts a sequence as ESC [ does
-  EXPECT_EQ(refusal_with("/robot", "a\x7f"), "result: robot must be a word");
-  EXPECT_EQ(refusal_with("/robot", "Gr\xc3\xb6\xc3\x9f" "e"), "");
-  EXPECT_EQ(refusal_with("/sequence", -1), "result: sequence must not be negative");
-  EXPECT_EQ(refusal_with("/time_s", "1"), "result: time_s must be a number");
-  EXPECT_EQ(refusal_with("/made_utc", "yesterday"), "result: made_utc must be a time such as 2026-11-22T10:45:33.120Z");
-  EXPECT_EQ(refusal_with("/kind", "rumour"), "result: kind must be one of event, lining, map, pose, status, water");
-  EXPECT_EQ(refusal_with("/colour", "red"), "result: unknown key colour");
-  EXPECT_EQ(refusal_with("/data/position_m", {1}), "result.data: position_m must be a list of 2 numbers");
-  EXPECT_EQ(refusal_with("/data", {1}), "result.data: must be an object");
+  EXPECT_EQ(complaint_with("/schema", "patrol-result/1"), "result: schema must be patrol-result/2");
+  EXPECT_EQ(complaint_with("/robot", ""), "result: robot must have 1 ... 200 bytes");
+  EXPECT_EQ(complaint_with("/id", std::string(201, 'x')), "result: id must have 1 ... 200 bytes");
+  EXPECT_EQ(complaint_with("/run", "a\nb"), "result: run must be a string");
+  EXPECT_EQ(complaint_with("/robot", "a\xc2\x9b" "31m"), "result: robot must be a string");  // C1: starts a sequence as ESC [ does
+  EXPECT_EQ(complaint_with("/robot", "a\x7f"), "result: robot must be a string");
+  EXPECT_EQ(complaint_with("/robot", "Gr\xc3\xb6\xc3\x9f" "e"), "");
+  EXPECT_EQ(complaint_with("/sequence", -1), "result: sequence must not be negative");
+  EXPECT_EQ(complaint_with("/time_s", "1"), "result: time_s must be a number");
+  EXPECT_EQ(complaint_with("/made_utc", "yesterday"), "result: made_utc must be a time such as 2026-11-22T10:45:33.120Z");
+  EXPECT_EQ(complaint_with("/kind", "rumour"), "result: kind must be one of event, lining, map, pose, status, water");
+  EXPECT_EQ(complaint_with("/colour", "red"), "result: unknown key colour");
+  EXPECT_EQ(complaint_with("/data/position_m", {1}), "result.data: position_m must be a list of 2 numbers");
+  EXPECT_EQ(complaint_with("/data", {1}), "result.data: must be an object");
 }
 
 TEST(Result, WhatIsNoJsonIsRefusedInOneLine) {
-  EXPECT_EQ(refusal_of(""), "body:1: is not JSON: ends too early");
-  EXPECT_EQ(refusal_of("{\"id\": 1, \"id\": 2}"), "body: id stands there twice");
-  EXPECT_EQ(refusal_of("[" + std::string(30, '[')), "body: [0][0][0][0][0][0][0][0][0][0][0][0][0][0][0][0][0][0][0][0]: lies more than 20 levels deep");
-  EXPECT_NE(refusal_of("\"\xff\""), "");
-  EXPECT_NE(refusal_of("[1, 2]"), "");
+  EXPECT_EQ(complaint_about(""), "body:1: is not JSON: ends too early");
+  EXPECT_EQ(complaint_about("{\"id\": 1, \"id\": 2}"), "body: id: duplicate key");
+  EXPECT_EQ(complaint_about("[" + std::string(30, '[')), "body: [0][0][0][0][0][0][0][0][0][0][0][0][0][0][0][0][0][0][0][0]: more than 20 nested levels");
+  EXPECT_NE(complaint_about("\"\xff\""), "");
+  EXPECT_NE(complaint_about("[1, 2]"), "");
 }
 
 TEST(Result, AMapMustBeAPngOfItsSize) {
   const auto map = [](const std::string& base64, int width) {
-    return refusal_of(to_json(result_of("map", {{"width", width}, {"height", 1}, {"resolution_m", 0.1}, {"origin_m", {0.0, 0.0}}, {"png_base64", base64}}, 1)));
+    return complaint_about(to_json(result_of("map", {{"width", width}, {"height", 1}, {"resolution_m", 0.1}, {"origin_m", {0.0, 0.0}}, {"png_base64", base64}}, 1)));
   };
   const char* kTwoByOne = "iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAAAAADRSSBWAAAAC0lEQVR4nGP4xwAAAf8A/5ijSg0AAAAASUVORK5CYII=";
   EXPECT_EQ(map(kTwoByOne, 2), "");
@@ -77,7 +77,7 @@ TEST(Result, AMapMustBeAPngOfItsSize) {
 TEST(Result, OneInABatchRefusesIt) {
   Json bad = Json::parse(to_json(pose_result(1)));
   bad["data"].erase("yaw");
-  EXPECT_EQ(refusal_of("[" + to_json(pose_result(0)) + "," + bad.dump() + "]"), "result[1].data: yaw is missing");
+  EXPECT_EQ(complaint_about("[" + to_json(pose_result(0)) + "," + bad.dump() + "]"), "result[1].data: yaw is missing");
 }
 
 TEST(Result, ItsSummaryHasTheLengthsOfLongLists) {

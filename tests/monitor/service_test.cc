@@ -13,12 +13,12 @@ using namespace patrol::test;
 
 constexpr const char* kToken = "0123456789abcdef";
 
-class Platform : public testing::Test {
+class RunningService : public testing::Test {
  protected:
   /// As the server does it: the head first.
   HttpResponse ask(const std::string& method, const std::string& path, const std::string& body = "", const std::string& authorization = std::string("Bearer ") + kToken) {
     HttpRequest request{.peer = "10.0.0.7", .local = "10.0.0.5", .host = host_, .method = method, .path = path, .parameters = {}, .authorization = authorization, .body = {}};
-    if (auto refused = service_.refuse(request)) return *refused;
+    if (auto error_reply = service_.refuse(request)) return *error_reply;
     request.body = body;
     return service_.answer(request);
   }
@@ -29,7 +29,7 @@ class Platform : public testing::Test {
   Service service_{store_, kToken, [this](const std::string& line) { log_ += line + "\n"; }, HostNames({"tunnel-office"})};
 };
 
-TEST_F(Platform, TakesResultsAndSaysOfEachWhatBecameOfIt) {
+TEST_F(RunningService, TakesResultsAndSaysOfEachWhatBecameOfIt) {
   const std::string one = to_json(pose_result(1)), two = to_json(pose_result(2));
   EXPECT_EQ(ask("POST", "/api/results", one).body, R"({"results":[{"id":"spot-1/run_1/1","status":"stored"}]})");
   const HttpResponse both = ask("POST", "/api/results", "[" + one + "," + two + "]");
@@ -38,22 +38,22 @@ TEST_F(Platform, TakesResultsAndSaysOfEachWhatBecameOfIt) {
   EXPECT_EQ(Json::parse(both.body)["results"][1]["status"], "stored");
 }
 
-TEST_F(Platform, AnotherContentUnderTheSameIdIs409AndLogged) {
+TEST_F(RunningService, AnotherContentUnderTheSameIdIs409AndLogged) {
   ask("POST", "/api/results", to_json(pose_result(1, 1.0)));
   const HttpResponse answer = ask("POST", "/api/results", to_json(pose_result(1, 2.0)));
   EXPECT_EQ(answer.status, 409);
   EXPECT_EQ(Json::parse(answer.body)["results"][0]["status"], "conflict");
-  EXPECT_EQ(log_, "10.0.0.7 409: another result with the id spot-1/run_1/1 is there already\n");
+  EXPECT_EQ(log_, "10.0.0.7 409: duplicate id spot-1/run_1/1 with a different result\n");
 }
 
-TEST_F(Platform, ChangesNeedTheToken) {
+TEST_F(RunningService, ChangesNeedTheToken) {
   for (const char* path : {"/api/results", "/api/alarms/1/acknowledge"}) {
     for (const char* shown : {"", "Bearer", "Bearer ", "Bearer 0123456789abcdeg", "Basic 0123456789abcdef", "0123456789abcdef"}) EXPECT_EQ(ask("POST", path, "", shown).status, 401) << shown;
   }
   EXPECT_EQ(Json::parse(ask("GET", "/api/robots", "", "").body)["robots"].size(), 0U);
 }
 
-TEST_F(Platform, AnotherHostNameIs421InOneLineForReadingAndWriting) {
+TEST_F(RunningService, AnotherHostNameIs421InOneLineForReadingAndWriting) {
   for (const char* allowed : {"localhost:8080", "tunnel-office", "10.0.0.5:8080"}) {
     host_ = allowed;
     EXPECT_EQ(ask("GET", "/api/robots", "", "").status, 200) << allowed;
@@ -66,17 +66,17 @@ TEST_F(Platform, AnotherHostNameIs421InOneLineForReadingAndWriting) {
   }
   host_ = "evil.example";
   EXPECT_EQ(ask("GET", "/").body,
-            R"({"error":"Host 'evil.example': not a name of this platform: must be its address, localhost, or a name of --allow-host"})");
+            R"({"error":"Host 'evil.example': unknown: must be the server's address, localhost, or a name of --allow-host"})");
 }
 
-TEST_F(Platform, TheSchemeOfTheTokenHasNoCase) {
+TEST_F(RunningService, TheSchemeOfTheTokenHasNoCase) {
   for (const char* scheme : {"bearer ", "BEARER ", "Bearer  "}) {
     EXPECT_EQ(ask("POST", "/api/results", "[]", std::string(scheme) + kToken).status, 200) << scheme;
   }
   EXPECT_EQ(ask("POST", "/api/results", "[]", std::string("bearerx ") + kToken).status, 401);
 }
 
-TEST_F(Platform, UnknownPathsAre404AndOtherMethods405) {
+TEST_F(RunningService, UnknownPathsAre404AndOtherMethods405) {
   for (const char* path : {"/..", "/../token", "/%2e%2e/token", "/token", "/page.css/..", "/api", "/api/results/", "/api/maps/", "/api/maps/-1", "/api/maps/x", "/api/alarms/x/acknowledge", "//", ""}) {
     EXPECT_EQ(ask("GET", path).status, 404) << path;
   }
@@ -86,8 +86,8 @@ TEST_F(Platform, UnknownPathsAre404AndOtherMethods405) {
   EXPECT_EQ(ask("GET", "/api/maps/5").status, 404);
 }
 
-TEST_F(Platform, AWrongBodyIs400AndNothingIsKept) {
-  for (const char* body : {"", "{}", "[{}]", "null", "[[[", "{\"schema\": \"patrol-result/1\"}"}) {
+TEST_F(RunningService, AWrongBodyIs400AndNothingIsKept) {
+  for (const char* body : {"", "{}", "[{}]", "null", "[[[", "{\"schema\": \"patrol-result/2\"}"}) {
     const HttpResponse answer = ask("POST", "/api/results", body);
     EXPECT_EQ(answer.status, 400) << body;
     EXPECT_EQ(Json::parse(answer.body)["error"].get<std::string>().find('\n'), std::string::npos);
@@ -95,8 +95,8 @@ TEST_F(Platform, AWrongBodyIs400AndNothingIsKept) {
   EXPECT_EQ(Json::parse(ask("GET", "/api/history").body)["results"].size(), 0U);
 }
 
-TEST_F(Platform, AnAlarmIsAcknowledgedByNameAndNote) {
-  ask("POST", "/api/results", to_json(event_result(1, "alarm", "well_1")));
+TEST_F(RunningService, AnAlarmIsAcknowledgedByNameAndNote) {
+  ask("POST", "/api/results", to_json(event_result(1, "gas_alarm", "well_1")));
   EXPECT_EQ(ask("POST", "/api/alarms/1/acknowledge", R"({"who": "", "note": ""})").status, 400);
   EXPECT_EQ(ask("POST", "/api/alarms/1/acknowledge", R"({"who": "Li"})").status, 400);
   EXPECT_EQ(ask("POST", "/api/alarms/1/acknowledge", R"({"who": "Li", "note": "seen"})").status, 200);
@@ -105,17 +105,17 @@ TEST_F(Platform, AnAlarmIsAcknowledgedByNameAndNote) {
   EXPECT_EQ(Json::parse(ask("GET", "/api/alarms").body)["findings"][0]["who"], "Li");
 }
 
-TEST_F(Platform, APageFetchesNothingFromElsewhere) {
+TEST_F(RunningService, APageFetchesNothingFromElsewhere) {
   const HttpResponse page = ask("GET", "/");
   const auto policy = std::find_if(page.headers.begin(), page.headers.end(), [](const auto& header) { return header.first == "Content-Security-Policy"; });
   ASSERT_NE(policy, page.headers.end());
   EXPECT_EQ(policy->second.find("default-src 'none'"), 0U);
   EXPECT_EQ(page.body.find("http://"), std::string::npos);
   EXPECT_EQ(page.body.find("https://"), std::string::npos);
-  for (const char* part : {"/page.css", "/page.js", "/site.js", "/words.js", "/map.js", "/plots.js", "/uplot.js", "/uplot.css", "/schema"}) EXPECT_GT(ask("GET", part).body.size(), 100U) << part;
+  for (const char* part : {"/page.css", "/page.js", "/site.js", "/format.js", "/map.js", "/plots.js", "/uplot.js", "/uplot.css", "/schema"}) EXPECT_GT(ask("GET", part).body.size(), 100U) << part;
 }
 
-TEST_F(Platform, AMapComesBackAsThePngThatWasSent) {
+TEST_F(RunningService, AMapComesBackAsThePngThatWasSent) {
   const char* kTwoByOne = "iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAAAAADRSSBWAAAAC0lEQVR4nGP4xwAAAf8A/5ijSg0AAAAASUVORK5CYII=";
   ask("POST", "/api/results", to_json(result_of("map", {{"width", 2}, {"height", 1}, {"resolution_m", 0.1}, {"origin_m", {0.0, 0.0}}, {"png_base64", kTwoByOne}}, 1)));
   const HttpResponse image = ask("GET", "/api/maps/1");

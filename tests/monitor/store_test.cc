@@ -22,7 +22,7 @@ std::int64_t count(Store& store, const std::string& table) {
 TEST(Store, TheSameResultIsKeptOnce) {
   const TemporaryFolder folder;
   Store store(folder.path());
-  const std::vector<Result> alarm = {event_result(1, "alarm", "well_1", 640.0)};
+  const std::vector<Result> alarm = {event_result(1, "gas_alarm", "well_1", 640.0)};
   EXPECT_EQ(store.add(alarm, kNoon_ms), std::vector{StoreStatus::kNew});
   EXPECT_EQ(store.add(alarm, kNoon_ms + 5), std::vector{StoreStatus::kExisting});
   EXPECT_EQ(count(store, "results"), 1);
@@ -52,7 +52,7 @@ TEST(Store, NothingOfABatchIsKeptWhenOneFails) {
 
 TEST(Store, WhatItKeptIsThereWhenItIsOpenedAgain) {
   const TemporaryFolder folder;
-  { Store(folder.path()).add({pose_result(1), event_result(2, "alarm", "well_1")}, kNoon_ms); }
+  { Store(folder.path()).add({pose_result(1), event_result(2, "gas_alarm", "well_1")}, kNoon_ms); }
   Store again(folder.path());
   EXPECT_EQ(count(again, "results"), 2);
   EXPECT_EQ(again.add({pose_result(1)}, kNoon_ms), std::vector{StoreStatus::kExisting});
@@ -89,7 +89,7 @@ TEST(Store, AFileThatIsNoDatabaseIsRefused) {
 TEST(Store, AnAlarmIsAcknowledgedOnce) {
   const TemporaryFolder folder;
   Store store(folder.path());
-  store.add({event_result(1, "alarm", "well_1")}, kNoon_ms);
+  store.add({event_result(1, "gas_alarm", "well_1")}, kNoon_ms);
   EXPECT_EQ(store.acknowledge(1, "Li", "valve closed", kNoon_ms + 9), AcknowledgeStatus::kDone);
   EXPECT_EQ(store.acknowledge(1, "Wu", "", kNoon_ms + 10), AcknowledgeStatus::kAlready);
   EXPECT_EQ(store.acknowledge(2, "Wu", "", kNoon_ms + 10), AcknowledgeStatus::kUnknown);

@@ -27,8 +27,8 @@ TEST(GasCloud, LiesDownwindAndIsAsDenseAsThePlume) {
   EXPECT_LT(upwind, 0.01 * downwind);
 }
 
-// What the twin's meter would read along a line across the plume, 1.5 m downwind: the puffs along that line add up to it.
-TEST(GasCloud, ItsPuffsAddUpToTheTwinsOwnColumn) {
+// What the simulated meter would read along a line across the plume, 1.5 m downwind: the puffs along that line add up to it.
+TEST(GasCloud, ItsPuffsAddUpToTheSimulatedColumn) {
   const sim::GasPlume plume(Eigen::Vector3d(0.0, 0.0, 0.5), 1.0, kWestWind);
   const double column_ppm_m = plume.column_ppm_m({1.5, -4.0, 0.5}, Eigen::Vector3d::UnitY(), 8.0, 10.0);
   double mean_ppm_m = 0.0;  // over the drift: the lattice's points pass by

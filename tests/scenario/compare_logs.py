@@ -1,13 +1,16 @@
 #!/usr/bin/env python3
 """Compares the log.mcap files of two versions of the program, after mapping the names that changed between them.
 
-Both logs must hold the same messages in the same order: topic, log time, publish time and payload bytes. The mapping is a JSON file:
-  topics       {"/old": "/new"}            topic of a channel
-  types        {"pkg/Old": "pkg/New"}      schema name
-  event_kinds  {"old": "new"}              field `kind` of patrol_msgs/Event
-  event_texts  [["regex", "replacement"]]  field `text` of patrol_msgs/Event, first full match wins
-  ignored      ["/topic"]                  topics whose payload is not compared, with the reason beside them in the file
-Payloads of other topics must be identical byte for byte. Schema texts are not compared, because comments in them may change.
+Both logs must contain the same messages in the same order: topic, log time, publish time and payload bytes. The mapping is a JSON file:
+  topics          {"/old": "/new"}                          topic of a channel
+  types           {"pkg/Old": "pkg/New"}                    schema name
+  event_kinds     {"old": "new"}                            field `kind` of patrol_msgs/Event
+  event_subjects  [["regex", "replacement"]]                field `subject` of patrol_msgs/Event, whole field
+  event_texts     {"module": [["regex", "replacement"]]}    field `text` of patrol_msgs/Event: every match in the text, in order
+  geoms           [["regex", "replacement"]]                geoms of patrol_msgs/Collision, whole field
+  ignored         ["/topic"]                                topics whose payload is not compared, with the reason beside them in the file
+tests/scenario/log_renames.json is the mapping from the last version with the former names. Payloads of other types must be identical byte for
+byte. Schema texts are not compared, because comments and field names in them may change.
 
 usage: compare_logs.py BEFORE AFTER [--renames FILE.json]
        BEFORE and AFTER are logs, or folders that hold a run directory for each scenario.
@@ -22,7 +25,19 @@ import sys
 
 from mcap.reader import make_reader
 
-EVENT = "patrol_msgs/Event"
+NUM_STRINGS = {"patrol_msgs/Event": 3, "patrol_msgs/Collision": 2}  # types with names in their payload: strings after the header
+
+
+def compiled(pairs):
+    return [(re.compile(pattern), replacement) for pattern, replacement in pairs]
+
+
+def replace_whole(pairs, text):
+    """Replacement of the first pattern that matches the whole text; the text itself if none does."""
+    for pattern, replacement in pairs:
+        if pattern.fullmatch(text):
+            return pattern.sub(replacement, text)
+    return text
 
 
 class Renames:
@@ -32,24 +47,34 @@ class Renames:
         self.topics = table.get("topics", {})
         self.types = table.get("types", {})
         self.event_kinds = table.get("event_kinds", {})
-        self.event_texts = [(re.compile(pattern), text) for pattern, text in table.get("event_texts", [])]
+        self.event_subjects = compiled(table.get("event_subjects", []))
+        self.event_texts = [pair for pairs in table.get("event_texts", {}).values() for pair in compiled(pairs)]
+        self.geoms = compiled(table.get("geoms", []))
         self.ignored = set(table.get("ignored", []))
 
     def text(self, text):
         for pattern, replacement in self.event_texts:
-            if pattern.fullmatch(text):
-                return pattern.sub(replacement, text)
+            text = pattern.sub(replacement, text)
         return text
 
+    def strings(self, type_name, strings):
+        """Mapped strings of a payload of this type."""
+        if type_name == "patrol_msgs/Collision":
+            return [replace_whole(self.geoms, name) for name in strings]
+        kind, subject, text = strings
+        return [self.event_kinds.get(kind, kind), replace_whole(self.event_subjects, subject), self.text(text)]
 
-class EventPayload:
-    """The three strings of an event's CDR payload (little endian), and the rest."""
 
-    def __init__(self, data):
-        self.header, at = self._string_end(data, 12)  # encapsulation, stamp, then frame_id
-        self.kind, at = self._string(data, at)
-        self.subject, at = self._string(data, at)
-        self.text, at = self._string(data, at)
+class NamedPayload:
+    """CDR payload (little endian) with names: header, strings, and the numbers after them."""
+
+    def __init__(self, type_name, data):
+        _, at = self._string(data, 12)  # encapsulation, stamp, then frame_id
+        self.header = data[:at]
+        self.strings = []
+        for _ in range(NUM_STRINGS[type_name]):
+            string, at = self._string(data, at)
+            self.strings.append(string)
         self.numbers = data[4 + (at - 4 + 7) // 8 * 8:]  # float64 from here on
 
     @staticmethod
@@ -58,12 +83,14 @@ class EventPayload:
         length = struct.unpack_from("<I", data, at)[0]
         return data[at + 4:at + 4 + length - 1].decode(), at + 4 + length
 
-    def _string_end(self, data, at):
-        _, end = self._string(data, at)
-        return data[:end], end
 
-    def mapped(self, renames):
-        return (self.header, renames.event_kinds.get(self.kind, self.kind), self.subject, renames.text(self.text), self.numbers)
+def named_difference(type_name, before, after, renames):
+    """Difference of two payloads with names; None if they are equal after the mapping."""
+    old, new = NamedPayload(type_name, before), NamedPayload(type_name, after)
+    expected = renames.strings(type_name, old.strings)
+    if (old.header, old.numbers) != (new.header, new.numbers):
+        return f"{new.strings}: header or numbers differ"
+    return None if expected == new.strings else f"{new.strings}, expected {expected}"
 
 
 def messages(log):
@@ -90,12 +117,12 @@ def first_difference(before, after, renames):
             return f"{place}: {b[1]}, expected {topic} of type {type_name}"
         if a[2:4] != b[2:4]:
             return f"{place}: times {b[2:4]}, before {a[2:4]}"
-        if topic not in renames.ignored and a[4] != b[4]:
-            if type_name != EVENT:
+        if topic not in renames.ignored and (a[4] != b[4] or type_name in NUM_STRINGS):
+            if type_name not in NUM_STRINGS:
                 return f"{place}: payload differs ({len(a[4])} and {len(b[4])} bytes)"
-            expected, found = EventPayload(a[4]).mapped(renames), EventPayload(b[4]).mapped(Renames({}))
-            if expected != found:
-                return f"{place}: event {found[1:4]}, expected {expected[1:4]}"
+            difference = named_difference(type_name, a[4], b[4], renames)
+            if difference:
+                return f"{place}: {difference}"
         count += 1
 
 

@@ -21,10 +21,15 @@ def cdr_string(payload, text):
     return payload + struct.pack("<I", len(text) + 1) + text.encode() + b"\0"
 
 
-def event(kind, text, value=1.5):
+def strings(*fields):
     payload = b"\0\1\0\0" + struct.pack("<iI", 3, 0)
-    for field in ("map", kind, "goal_1", text):
+    for field in fields:
         payload = cdr_string(payload, field)
+    return payload
+
+
+def event(kind, text, value=1.5, subject="goal_1"):
+    payload = strings("map", kind, subject, text)
     payload += b"\0" * (-(len(payload) - 4) % 8)
     return payload + struct.pack("<11d", value, *range(10))
 
@@ -49,15 +54,15 @@ class CompareLogs(unittest.TestCase):
               ("/scan", "sensor_msgs/msg/LaserScan", 3, b"\0\1\0\0ranges")]
     RENAMES = {"topics": {"/remote": "/teleop"}, "types": {"patrol_msgs/Remote": "patrol_msgs/Teleop"},
                "event_kinds": {"lost": "localization_lost"},
-               "event_texts": [[r"The robot stands for (\d+) s\.", r"Stopped for \1 s."]]}
+               "event_texts": {"mission": [[r"The robot stands for (\d+) s\.", r"Stopped for \1 s."]]}}
     AFTER = [("/teleop", "patrol_msgs/msg/Teleop", 1, b"\0\1\0\0abcd"),
              ("/events", "patrol_msgs/msg/Event", 2, event("localization_lost", "Stopped for 30 s.")),
              ("/scan", "sensor_msgs/msg/LaserScan", 3, b"\0\1\0\0ranges")]
 
-    def compare(self, after, renames=None):
+    def compare(self, after, renames=None, before=None):
         with tempfile.TemporaryDirectory() as folder:
             folder = pathlib.Path(folder)
-            write_log(folder / "a.mcap", self.BEFORE)
+            write_log(folder / "a.mcap", before or self.BEFORE)
             write_log(folder / "b.mcap", after)
             (folder / "renames.json").write_text(json.dumps(renames or {}))
             done = subprocess.run([sys.executable, COMPARE, str(folder / "a.mcap"), str(folder / "b.mcap"),
@@ -85,7 +90,39 @@ class CompareLogs(unittest.TestCase):
 
     def test_an_event_kind_without_mapping_is_found(self):
         renames = {**self.RENAMES, "event_kinds": {}}
-        self.assertIn("expected ('lost'", self.compare(self.AFTER, renames)[1])
+        self.assertIn("expected ['lost'", self.compare(self.AFTER, renames)[1])
+
+    def test_every_match_in_a_text_is_replaced(self):
+        before = [("/events", "patrol_msgs/msg/Event", 2, event("navigation", "Given up. There is no route."))]
+        after = [("/events", "patrol_msgs/msg/Event", 2, event("navigation", "Aborted: no path."))]
+        texts = {"plan": [[r"^Given up\. ", "Aborted: "], [r"There is no route\.$", "no path."]]}
+        self.assertEqual(self.compare(after, {"event_texts": texts}, before)[0], 0)
+
+    def test_a_renamed_subject_is_mapped_only_as_a_whole(self):
+        def log(subject):
+            return [("/events", "patrol_msgs/msg/Event", 2, event("sensor_fault", "Timeout.", subject=subject))]
+        renames = {"event_subjects": [["remote", "teleop"]]}
+        self.assertEqual(self.compare(log("teleop"), renames, log("remote"))[0], 0)
+        self.assertEqual(self.compare(log("teleop_2"), renames, log("remote_2"))[0], 1)
+
+    def test_renamed_geoms_of_a_collision_are_mapped(self):
+        def log(geom):
+            return [("/ground_truth/collisions", "patrol_msgs/msg/Collision", 2, strings("world", "trunk", geom))]
+        renames = {"geoms": [[r"prop_(\d+)", r"static_obstacle_\1"]]}
+        self.assertEqual(self.compare(log("static_obstacle_3"), renames, log("prop_3"))[0], 0)
+        self.assertIn("expected ['trunk', 'static_obstacle_3']", self.compare(log("static_obstacle_4"), renames, log("prop_3"))[1])
+
+    def test_the_mapping_of_the_repository_names_what_the_sources_have(self):
+        root = pathlib.Path(__file__).resolve().parents[2]
+        renames = json.loads((root / "tests/scenario/log_renames.json").read_text())
+        sources = "\n".join(file.read_text() for folder in ("src/core", "src/io") for file in (root / folder).rglob("*.h"))
+        kinds = (root / "src/core/event.h").read_text()
+        types = [new.replace("/", "/msg/") for new in renames["types"].values()]
+        missing = [new for new in [*renames["topics"].values(), *types] if f'"{new}"' not in sources]
+        missing += [new for new in renames["event_kinds"].values() if f'"{new}"' not in kinds]
+        self.assertEqual(missing, [])
+        self.assertEqual([old for old in renames["event_kinds"] if f'"{old}"' in kinds], [])
+        self.assertEqual([old for old in renames["topics"] if f'"{old}"' in sources], [])
 
     def test_a_missing_message_is_found(self):
         self.assertIn("only before: /scan", self.compare(self.AFTER[:2], self.RENAMES)[1])

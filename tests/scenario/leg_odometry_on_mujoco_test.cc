@@ -49,20 +49,20 @@ OdometryReport walk(const std::vector<Leg>& legs, std::uint64_t seed, const loca
   simulator_settings.world_xml = world.path();
   simulator_settings.robot_urdf = kRobotUrdf;
   simulator_settings.sensors.lidar.enabled = false;
-  sim::Simulator twin(simulator_settings, robot, seed);
+  sim::Simulator simulator(simulator_settings, robot, seed);
   localize::BodyEstimator estimator(robot, settings);
 
   OdometryReport report;
-  const Pose3 start = to_pose3(to_pose2(twin.truth().T_world_body), twin.truth().T_world_body.position.z());
+  const Pose3 start = to_pose3(to_pose2(simulator.truth().T_world_body), simulator.truth().T_world_body.position.z());
   Pose3 truth_before = start, estimate_before;
   double estimated_way = 0.0;
   int samples = 0;
   for (const Leg& leg : legs) {
-    twin.set_command(leg.command);
-    const Time end = twin.now() + from_seconds(leg.duration_s);
-    while (twin.now() < end) {
-      twin.step();
-      for (const SensorMessage& message : twin.take_messages()) {
+    simulator.set_command(leg.command);
+    const Time end = simulator.now() + from_seconds(leg.duration_s);
+    while (simulator.now() < end) {
+      simulator.step();
+      for (const SensorMessage& message : simulator.take_messages()) {
         std::visit(
             [&](const auto& m) {
               if constexpr (requires { estimator.add(m); }) estimator.add(m);
@@ -70,8 +70,8 @@ OdometryReport walk(const std::vector<Leg>& legs, std::uint64_t seed, const loca
             message);
       }
       const auto estimate = estimator.estimate();
-      if (!estimate || estimate->stamp != twin.now()) continue;
-      const GroundTruth truth = twin.truth();
+      if (!estimate || estimate->stamp != simulator.now()) continue;
+      const GroundTruth truth = simulator.truth();
       const Pose3 T_odom_body = start.inverse() * truth.T_world_body;
       const double yaw_error = wrap_angle(to_yaw(estimate->T_odom_body.rotation) - to_yaw(T_odom_body.rotation));
       report.max_yaw_error_rad = std::max(report.max_yaw_error_rad, std::abs(yaw_error));
@@ -91,7 +91,7 @@ OdometryReport walk(const std::vector<Leg>& legs, std::uint64_t seed, const loca
       report.end_error_m = error.head<2>().norm();
     }
   }
-  EXPECT_FALSE(twin.has_fallen());
+  EXPECT_FALSE(simulator.has_fallen());
   report.scale = report.way_m > 0.0 ? estimated_way / report.way_m : 1.0;
   report.tilt_rms_rad = std::sqrt(report.tilt_rms_rad / samples);
   report.height_rms_m = std::sqrt(report.height_rms_m / samples);

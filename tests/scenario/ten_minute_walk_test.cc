@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "tests/support/quadruped_twin.h"
+#include "tests/support/simulated_quadruped.h"
 
 /// The whole range of commands for ten minutes: -0.3 to 1.0 m/s, +-1 rad/s, starts, stops, turns in place.
 namespace patrol::sim::ten_minute_walk_test {

@@ -10,8 +10,8 @@
 
 #include "core/geometry/angles.h"
 #include "tests/sim/rubble.h"
-#include "tests/support/tracked_twin.h"
-#include "tests/support/quadruped_twin.h"
+#include "tests/support/simulated_tracked_robot.h"
+#include "tests/support/simulated_quadruped.h"
 
 namespace patrol::sim::tracks_test {
 namespace {
@@ -25,7 +25,7 @@ constexpr double kGearFriction_nm = 1.5;
 TrackDriveSettings open_loop(double friction = 0.8) {
   TrackDriveSettings settings;
   settings.use_gyro = false;
-  settings.gauge_factor = 1.0;
+  settings.effective_gauge_factor = 1.0;
   settings.friction = friction;
   return settings;
 }

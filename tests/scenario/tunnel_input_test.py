@@ -62,7 +62,7 @@ class BadInput(TunnelRun):
 
     def refuse_recorded(self, name, rows, *says):
         with self.subTest(name):
-            self.refuse(["remote.csv", *says], "mapping", f"remote={{recorded: {self.write('remote.csv', rows)}}}")
+            self.refuse(["teleop.csv", *says], "mapping", f"remote={{recorded: {self.write('teleop.csv', rows)}}}")
 
     def refuse_drive(self, name, content, *says):
         with self.subTest(name):
@@ -107,9 +107,9 @@ class BadInput(TunnelRun):
             self.refuse_goals(f"x = {x}", self.goals_with("position", [x, 0, 0]), "goal 2", "position", "outside the map")
 
     def test_goals_twice_none_and_too_many(self):
-        self.refuse_goals("one number twice", self.goals_with("number", 1), "[1]", "number 1 stands there twice")
+        self.refuse_goals("one number twice", self.goals_with("number", 1), "[1]", "number 1: duplicate")
         text = json.dumps(self.goals(), indent=1).replace('"accuracy": 0.1', '"accuracy": 0.1, "accuracy": 5', 1)
-        self.refuse_goals("one key twice", text, "[0]", "accuracy stands there twice")
+        self.refuse_goals("one key twice", text, "[0]", "accuracy: duplicate key")
         self.refuse_goals("misspelt", self.goals_with("acuracy", 1), "[1]", "acuracy", "accuracy")
         self.refuse_goals("none", [], "at least one goal")
         self.refuse_goals("an object", {"goals": self.goals()}, "list")
@@ -160,8 +160,8 @@ class BadInput(TunnelRun):
 
         self.refuse_map("truncated", "map.pgm", "ends too early", image=good[:1000])
         self.refuse_map("a row too few", "map.pgm", "ends too early", image=good[:-width])
-        self.refuse_map("a row too many", "map.pgm", "holds more", image=good + bytes(width))
-        self.refuse_map("another width", "map.pgm", "holds more", image=image(width - 1, height, pixels))
+        self.refuse_map("a row too many", "map.pgm", "has data after", image=good + bytes(width))
+        self.refuse_map("another width", "map.pgm", "has data after", image=image(width - 1, height, pixels))
         self.refuse_map("rows for columns", "map.yaml", "start", "outside the map", image=image(height, width, pixels))
         self.refuse_map("no pixel", "map.pgm", "0 x 0", image=image(0, 0, b""))
         self.refuse_map("more pixels than fit anywhere", "map.pgm", "ends too early", image=image(2000000000, 2000000000, b"\0"))
@@ -206,7 +206,7 @@ class BadInput(TunnelRun):
         ply = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n"
         for name, index, cloud, *says in [("no folder", None, None, "scans.json"), ("no cloud", good, None, "goal_1.ply"),
                                           ("truncated", good, ply, "goal_1.ply"), ("not a number", good, ply + "0 nan 0\n", "goal_1.ply"),
-                                          ("twice", good + good, ply + "0 0 0\n", "scans.json", "stands there twice"),
+                                          ("twice", good + good, ply + "0 0 0\n", "scans.json", "duplicate"),
                                           ("out of its folder", [good[0] | {"station": "../goal_1"}], None, "station"),
                                           ("upside down", [good[0] | {"orientation": [1, 0, 0, 0]}], None, "orientation")]:
             with self.subTest(name):
@@ -217,7 +217,7 @@ class BadInput(TunnelRun):
                 self.refuse(says, "inspection_round", f"references={self.folder}")
 
     def test_a_map_and_a_drive_that_makes_one(self):
-        self.refuse(["map", "remote control"], "mapping", "map=map/map.yaml")
+        self.refuse(["map", "teleop"], "mapping", "map=map/map.yaml")
 
 
 class NoRoute(TunnelRun):

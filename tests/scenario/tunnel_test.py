@@ -56,7 +56,7 @@ class Tunnel(unittest.TestCase):
         self.assertGreater(kidnap["moved_m"], 20.0)
         self.assertLess(kidnap["relocalized_s"], 30.0)
 
-    def test_crosses_the_bridge_there_and_back_by_remote_control_and_by_itself(self):
+    def test_crosses_the_bridge_there_and_back_teleoperated_and_by_itself(self):
         self.assert_as_expected("bridge")
         ways = self.crossings_of_the_deck()
         self.assertEqual([way > 0.0 for way in ways], [True, False, True, False])

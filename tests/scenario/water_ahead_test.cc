@@ -1,4 +1,4 @@
-// Water ahead of the face, instrument and inversion together: the twin's TEM (sim/sensors/tem.h), its gains, shift, steel and noise, on a mount whose
+// Water ahead of the face, instrument and inversion together: the simulator's TEM (sim/sensors/tem.h), its gains, shift, steel and noise, on a mount whose
 // angles are off, against the robot's inversion, which knows none of them. Without physics: the antenna is where it is put.
 //
 // Rock of 0.002 to 0.005 S/m, a body of 5 to 7 m in radius 12 to 20 m from the antenna, up to 20 degrees aside and 12 up or down, of a conductivity drawn

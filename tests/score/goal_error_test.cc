@@ -24,7 +24,7 @@ Trajectory truth() {
 }
 
 TEST(GoalErrors, AMarkedGoalIsMetWhereTheRobotTrulyStoodAtTheMark) {
-  const std::vector<Event> events = {event(EventKind::kGoalMarked, "goal_1", 1s), event(EventKind::kGoalReached, "goal_1", 2s, 1),
+  const std::vector<Event> events = {event(EventKind::kGoalSaved, "goal_1", 1s), event(EventKind::kGoalReached, "goal_1", 2s, 1),
                                      event(EventKind::kGoalReached, "goal_1", 3s, 2), event(EventKind::kGoalFailed, "goal_1", 3s, 3)};
   const std::vector<GoalError> errors = goal_errors(events, {}, {}, truth());
   ASSERT_EQ(errors.size(), 1u);

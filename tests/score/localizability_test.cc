@@ -144,8 +144,8 @@ TEST(Localizability, LeastSquaresOverFourHundredNoisyScansSpreadsAsTheBoundSays)
   EXPECT_NEAR(std::sqrt(strong_sum / kTrials) / bound.min_std_m, 1.0, 0.12);
 }
 
-LocalizabilitySample sample(double true_std_m, double reported_std_m, std::optional<double> trust = {}) {
-  LocalizabilitySample sample{.truth = {}, .reported_std_m = reported_std_m, .reported_direction_rad = 0.1, .confidence = trust};
+LocalizabilitySample sample(double true_std_m, double reported_std_m, std::optional<double> confidence = {}) {
+  LocalizabilitySample sample{.truth = {}, .reported_std_m = reported_std_m, .reported_direction_rad = 0.1, .confidence = confidence};
   sample.truth.max_std_m = true_std_m;
   return sample;
 }

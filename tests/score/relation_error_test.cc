@@ -103,7 +103,7 @@ TEST(RelationError, TheReferencePointMayLieAheadOfTheBody) {
   // Turning by 90 deg on the spot moves a point 1 m ahead from (1, 0) to (0, 1): seen from the first (-1, 1).
   const Trajectory turned = {pose_at(0s, 0.0, 0.0, 0.0), pose_at(1s, 0.0, 0.0, std::numbers::pi / 2.0)};
   const std::vector<PoseRelation> relations = {{0s, 1s, {-1.0, 1.0, std::numbers::pi / 2.0}}};
-  EXPECT_NEAR(relation_error(turned, relations, {.ref_x_m = 1.0}).trans_m.mean, 0.0, kTol);
+  EXPECT_NEAR(relation_error(turned, relations, {.reference_x_m = 1.0}).trans_m.mean, 0.0, kTol);
   EXPECT_NEAR(relation_error(turned, relations).trans_m.mean, std::sqrt(2.0), kTol);
 }
 

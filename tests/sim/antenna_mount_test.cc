@@ -9,9 +9,9 @@
 #include "core/geometry/angles.h"
 #include "core/error.h"
 #include "sim/simulator/simulator.h"
-#include "tests/support/quadruped_twin.h"
+#include "tests/support/simulated_quadruped.h"
 #include "tests/support/temporary_file.h"
-#include "tests/support/tracked_twin.h"
+#include "tests/support/simulated_tracked_robot.h"
 
 namespace patrol::sim::antenna_mount_test {
 namespace {
@@ -28,38 +28,38 @@ SimulatorSettings settings_for(const test::TemporaryFile& world) {
 /// The tracked robot on level ground, its TEM switched on.
 class AntennaOnTheRobot : public testing::Test {
  protected:
-  AntennaOnTheRobot() : file_("world.xml", make_flat_world()), twin_(settings_for(file_), tracked_description(), 1) {}
+  AntennaOnTheRobot() : file_("world.xml", make_flat_world()), simulator_(settings_for(file_), tracked_description(), 1) {}
 
   void run(double duration_s) {
-    for (const Time end = twin_.now() + from_seconds(duration_s); twin_.now() < end;) {
+    for (const Time end = simulator_.now() + from_seconds(duration_s); simulator_.now() < end;) {
       const double before = joint("tem_yaw_joint");
-      twin_.step();
+      simulator_.step();
       fastest_radps_ = std::max(fastest_radps_, std::abs(joint("tem_yaw_joint") - before) / 0.002);
-      for (const SensorMessage& message : twin_.take_messages()) {
+      for (const SensorMessage& message : simulator_.take_messages()) {
         if (const auto* state = std::get_if<AntennaState>(&message)) states_.push_back(*state);
         if (const auto* sounding = std::get_if<TemSounding>(&message)) sounding_ = *sounding;
       }
     }
   }
   void turn(double yaw_deg, double pitch_deg) {
-    twin_.command(AntennaCommand{.stamp = twin_.now(), .yaw_rad = yaw_deg * kDegree, .pitch_rad = pitch_deg * kDegree});
+    simulator_.command(AntennaCommand{.stamp = simulator_.now(), .yaw_rad = yaw_deg * kDegree, .pitch_rad = pitch_deg * kDegree});
   }
   /// The truth.
   double joint(const char* name) const {
-    return twin_.state().qpos[static_cast<std::size_t>(twin_.physics().jnt_qposadr[mj_name2id(&twin_.physics(), mjOBJ_JOINT, name)])];
+    return simulator_.state().qpos[static_cast<std::size_t>(simulator_.physics().jnt_qposadr[mj_name2id(&simulator_.physics(), mjOBJ_JOINT, name)])];
   }
 
   test::TemporaryFile file_;
-  Simulator twin_;
+  Simulator simulator_;
   std::vector<AntennaState> states_;
   std::optional<TemSounding> sounding_;
   double fastest_radps_ = 0.0;
 };
 
 TEST_F(AntennaOnTheRobot, StaysStowedFlatWithinOneDegreeWhileTheRobotDrives) {
-  twin_.set_command({.stamp = {}, .vx_mps = 0.5, .vy_mps = 0.0, .yaw_rate_radps = 0.4});
+  simulator_.set_command({.stamp = {}, .vx_mps = 0.5, .vy_mps = 0.0, .yaw_rate_radps = 0.4});
   run(3.0);
-  EXPECT_FALSE(twin_.is_busy());
+  EXPECT_FALSE(simulator_.is_busy());
   EXPECT_NEAR(joint("tem_pitch_joint"), -90.0 * kDegree, 1.5 * kDegree);
   EXPECT_NEAR(joint("tem_yaw_joint"), 0.0, 1.5 * kDegree);
 }
@@ -68,7 +68,7 @@ TEST_F(AntennaOnTheRobot, StaysStowedFlatWithinOneDegreeWhileTheRobotDrives) {
 TEST_F(AntennaOnTheRobot, TurnsWhereItIsToldByItsEncodersAndTrulyToTheirError) {
   turn(40.0, -15.0);
   run(4.0);
-  EXPECT_TRUE(twin_.is_busy());
+  EXPECT_TRUE(simulator_.is_busy());
   ASSERT_FALSE(states_.empty());
   EXPECT_NEAR(states_.back().yaw_rad, 40.0 * kDegree, 0.2 * kDegree);
   EXPECT_NEAR(states_.back().pitch_rad, -15.0 * kDegree, 0.2 * kDegree);
@@ -77,7 +77,7 @@ TEST_F(AntennaOnTheRobot, TurnsWhereItIsToldByItsEncodersAndTrulyToTheirError) {
   EXPECT_NE(joint("tem_yaw_joint"), states_.back().yaw_rad);
   turn(0.0, -90.0);
   run(4.0);
-  EXPECT_FALSE(twin_.is_busy());
+  EXPECT_FALSE(simulator_.is_busy());
 }
 
 TEST_F(AntennaOnTheRobot, KeepsToOneRadianASecondAndToTheStopsOfTheMount) {
@@ -113,18 +113,18 @@ TEST_F(AntennaOnTheRobot, ApproachedFromBothSidesItStandsApartByTheBacklash) {
 
 TEST_F(AntennaOnTheRobot, ASoundingComesASecondAfterItIsAskedForAndTheRobotStaysWhereItIs) {
   run(1.0);
-  const Eigen::Vector3d before = twin_.truth().T_world_body.position;
+  const Eigen::Vector3d before = simulator_.truth().T_world_body.position;
   turn(60.0, 30.0);
   run(4.0);
-  twin_.command(SoundingCommand{.stamp = twin_.now()});
-  const Time asked = twin_.now();
+  simulator_.command(SoundingCommand{.stamp = simulator_.now()});
+  const Time asked = simulator_.now();
   run(0.5);
   EXPECT_FALSE(sounding_);
-  EXPECT_TRUE(twin_.is_busy());
+  EXPECT_TRUE(simulator_.is_busy());
   run(1.0);
   ASSERT_TRUE(sounding_);
   EXPECT_NEAR(to_seconds(sounding_->stamp - asked), 1.0, 0.005);
-  EXPECT_LT((twin_.truth().T_world_body.position - before).norm(), 0.002);
+  EXPECT_LT((simulator_.truth().T_world_body.position - before).norm(), 0.002);
 }
 
 TEST(AntennaMount, RefusesAModelWithoutItsJointsAndASpeedOfNothing) {

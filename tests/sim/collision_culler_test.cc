@@ -9,8 +9,8 @@
 
 #include "core/random.h"
 #include "tests/sim/rubble.h"
-#include "tests/support/tracked_twin.h"
-#include "tests/support/quadruped_twin.h"
+#include "tests/support/simulated_tracked_robot.h"
+#include "tests/support/simulated_quadruped.h"
 
 namespace patrol::sim::nearby_scenery_test {
 namespace {

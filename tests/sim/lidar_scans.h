@@ -29,9 +29,9 @@ inline std::string box(const std::string& position, const std::string& size, con
 inline LidarSettings ideal() {
   LidarSettings settings;
   settings.beams = 720;
-  settings.range_noise_m = settings.range_resolution_m = settings.angle_noise_deg = settings.dropout = 0.0;
-  settings.grazing_deg = 90.0;
-  settings.dark_range_m = 0.0;
+  settings.range_noise_std_m = settings.range_quantization_m = settings.angle_noise_std_deg = settings.dropout_probability = 0.0;
+  settings.max_incidence_deg = 90.0;
+  settings.max_range_10pct_m = 0.0;
   settings.beam_width_deg = 0.0;
   return settings;
 }

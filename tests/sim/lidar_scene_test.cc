@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "core/random.h"
 #include "tests/sim/small_world.h"
-#include "tests/support/quadruped_twin.h"
+#include "tests/support/simulated_quadruped.h"
 
 namespace patrol::sim::lidar_scene_test {
 namespace {
@@ -256,7 +256,9 @@ TEST(LidarScene, AShapeWithoutSurfaceToCastAtIsRefusedByItsNumber) {
     LidarScene scene(*odd);
     FAIL() << "a signed distance field was taken";
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "geom 0: the lidar cannot see shapes of this type");
+    EXPECT_STREQ(error.what(),
+                 "geom 0: shape type not supported by the lidar: must be one of sphere, capsule, cylinder, ellipsoid, box, plane, "
+                 "mesh, height field");
   }
 }
 

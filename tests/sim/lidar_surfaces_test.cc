@@ -11,7 +11,7 @@ namespace {
 TEST(LidarSurfaces, GrazingBeamsBeyond85DegreesAreLost) {
   const SmallWorld world(R"(<geom type="plane" size="100 100 1" rgba="1 1 1 1"/>)");
   LidarSettings settings = narrow();
-  settings.grazing_deg = 85.0;
+  settings.max_incidence_deg = 85.0;
   const auto range_looking_down = [&](double degrees) {
     const Pose3 pose{Eigen::Vector3d(0, 0, 1),
                      Eigen::Quaterniond(Eigen::AngleAxisd(degrees * kDegree, Eigen::Vector3d::UnitY()))};
@@ -23,7 +23,7 @@ TEST(LidarSurfaces, GrazingBeamsBeyond85DegreesAreLost) {
 
 TEST(LidarSurfaces, ASurfaceOf10PercentReturnsUpTo10MetresAndAWhiteOneUpTo30) {
   LidarSettings settings = narrow();
-  settings.dark_range_m = 10.0;
+  settings.max_range_10pct_m = 10.0;
   const auto range_at = [&](double distance_m, const std::string& grey) {
     const SmallWorld world(box(std::to_string(distance_m + 0.5) + " 0 0", "0.5 20 5",
                                R"(rgba=")" + grey + " " + grey + " " + grey + R"( 1")"));
@@ -52,7 +52,7 @@ TEST(LidarSurfaces, GlassReturnsTheBeamOnlyWithin5DegreesOfItsNormal) {
 TEST(LidarSurfaces, RainOfOnePerCentAMetreShortensTheShareOfBeamsThatBeersLawSays) {
   const SmallWorld world(box("10.5 0 0", "0.5 20 5"));
   LidarSettings settings = narrow();
-  settings.rain_rate = 0.01;
+  settings.false_return_rate_per_m = 0.01;
   test::Moments drops;
   int all = 0;
   for (const LaserScan& scan : scans_at_rest(world, settings, 1.01)) {
@@ -79,8 +79,8 @@ LaserScan scan_in_dust(double wall_m, const DustSettings& dust, const LidarSetti
 // 7 m as from 7 exp(1.369) = 27.5 m.
 TEST(LidarSurfaces, InDustOf20MetresVisibilityAWhiteWallIsSeenAt7MetresAndNotAt9) {
   LidarSettings settings = narrow();
-  settings.dark_range_m = 10.0;
-  const DustSettings dust{.enabled = true, .visibility_m = 20.0, .echo_share = 0.0};
+  settings.max_range_10pct_m = 10.0;
+  const DustSettings dust{.enabled = true, .visibility_m = 20.0, .backscatter_probability = 0.0};
   EXPECT_NEAR(scan_in_dust(7.0, dust, settings).ranges_m.at(200), 7.0, 1e-3);
   EXPECT_EQ(scan_in_dust(9.0, dust, settings).ranges_m.at(200), kInfinity);
   EXPECT_NEAR(scan_in_dust(9.0, {}, settings).ranges_m.at(200), 9.0, 1e-3);
@@ -91,7 +91,7 @@ TEST(LidarSurfaces, DustGivesEchoesOfItsOwnByBeersLaw) {
   settings.fov_deg = 4.0;
   settings.beams = 20000;
   settings.rate_hz = 10.0;
-  const DustSettings dust{.enabled = true, .visibility_m = 20.0, .echo_share = 0.1};
+  const DustSettings dust{.enabled = true, .visibility_m = 20.0, .backscatter_probability = 0.1};
   const LaserScan scan = scan_in_dust(5.0, dust, settings);
   int echoes = 0;
   for (const float range : scan.ranges_m) echoes += range < 4.99f;

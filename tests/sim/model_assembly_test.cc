@@ -12,8 +12,8 @@
 #include "io/urdf.h"
 #include "sim/robot_model.h"
 #include "tests/sim/rubble.h"
-#include "tests/support/tracked_twin.h"
-#include "tests/support/quadruped_twin.h"
+#include "tests/support/simulated_tracked_robot.h"
+#include "tests/support/simulated_quadruped.h"
 #include "tests/support/temporary_file.h"
 
 namespace patrol::sim::model_assembly_test {
@@ -114,13 +114,13 @@ TEST_F(StreetAssembly, StripsNoMassFromActorsAndNoFrictionFromTheGround) {
   for (int geom = 0; geom < physics.ngeom; ++geom) {
     const char* name = mj_id2name(&physics, mjOBJ_GEOM, geom);
     if (name == nullptr || *name == '\0') continue;
-    const int twin = mj_name2id(&view, mjOBJ_GEOM, name);
-    ASSERT_GE(twin, 0) << name;
-    EXPECT_EQ(physics.geom_friction[3 * geom], view.geom_friction[3 * twin]) << name;
-    EXPECT_EQ(physics.geom_type[geom], view.geom_type[twin]) << name;
-    EXPECT_EQ(physics.geom_condim[geom], view.geom_condim[twin]) << name;
+    const int view_geom = mj_name2id(&view, mjOBJ_GEOM, name);
+    ASSERT_GE(view_geom, 0) << name;
+    EXPECT_EQ(physics.geom_friction[3 * geom], view.geom_friction[3 * view_geom]) << name;
+    EXPECT_EQ(physics.geom_type[geom], view.geom_type[view_geom]) << name;
+    EXPECT_EQ(physics.geom_condim[geom], view.geom_condim[view_geom]) << name;
     for (int i = 0; i < 3; ++i)
-      EXPECT_EQ(physics.geom_size[3 * geom + i], view.geom_size[3 * twin + i]) << name;
+      EXPECT_EQ(physics.geom_size[3 * geom + i], view.geom_size[3 * view_geom + i]) << name;
   }
 }
 
@@ -182,9 +182,9 @@ TEST(ModelAssembly, TheTrackedRobotStartsAHandsBreadthAboveRubbleAndAboveAKerbUn
 TEST(ModelAssembly, PropsAreThereToBeTouchedAndSeen) {
   const test::TemporaryFile file("world.xml", make_flat_world());
   const AssembledModel model =
-      assemble_model(file.path(), kTrackedUrdf, {}, {StaticObstacleSettings{.kind = "kerb", .x_m = 2.0, .y_m = 0.0, .turn_deg = 0.0}});
-  EXPECT_GE(mj_name2id(model.physics.get(), mjOBJ_GEOM, "prop_1"), 0);
-  EXPECT_GE(mj_name2id(model.view.get(), mjOBJ_GEOM, "prop_1"), 0);
+      assemble_model(file.path(), kTrackedUrdf, {}, {StaticObstacleSettings{.kind = "kerb", .x_m = 2.0, .y_m = 0.0, .yaw_deg = 0.0}});
+  EXPECT_GE(mj_name2id(model.physics.get(), mjOBJ_GEOM, "static_obstacle_1"), 0);
+  EXPECT_GE(mj_name2id(model.view.get(), mjOBJ_GEOM, "static_obstacle_1"), 0);
 }
 
 TEST(ModelAssembly, AStartInsideAWallIsRefusedWithTheWallsName) {

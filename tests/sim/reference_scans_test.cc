@@ -85,10 +85,10 @@ TEST(ReferenceScans, OfTheTunnelAreIndependentOfTheDropoutsOfTheInspection) {
   for (std::uint64_t number = 0; number < scans.size(); ++number) {
     for (const std::uint64_t beam : single_beams(scans[number])) {
       ++num_beams;
-      num_lost += dropout.uniform(number, beam) < settings.dropout;
+      num_lost += dropout.uniform(number, beam) < settings.dropout_probability;
     }
   }
-  const double expected = settings.dropout * static_cast<double>(num_beams);
+  const double expected = settings.dropout_probability * static_cast<double>(num_beams);
   RecordProperty("beams", static_cast<int>(num_beams));
   RecordProperty("lost", static_cast<int>(num_lost));
   EXPECT_GT(num_beams, 20'000u) << "single beams were not found";

@@ -10,13 +10,13 @@
 #include "sim/lidar_scene.h"
 #include "sim/mujoco.h"
 
-namespace patrol::sim::props_test {
+namespace patrol::sim::static_obstacles_test {
 namespace {
 
-ModelPtr world_with(const std::vector<StaticObstacleSettings>& props) {
+ModelPtr world_with(const std::vector<StaticObstacleSettings>& obstacles) {
   const SpecPtr spec = parse_spec("<mujoco/>");
-  add_static_obstacles(*spec, props);
-  return compile(*spec, "props");
+  add_static_obstacles(*spec, obstacles);
+  return compile(*spec, "obstacles");
 }
 
 /// Height of what is seen straight below (x, y); nothing below 1 m.
@@ -29,19 +29,19 @@ double seen_height(const mjModel& model, double x, double y) {
 LowObstacleSettings twenty_on_a_bent_route() {
   return {.count = 20,
           .route = {{0.0, 0.0}, {60.0, 0.0}, {60.0, 50.0}},
-          .clear_ends_m = 4.0,
-          .beside_m = 0.5,
-          .apart_m = 2.0};
+          .end_clearance_m = 4.0,
+          .max_lateral_offset_m = 0.5,
+          .min_spacing_m = 2.0};
 }
 
-TEST(Props, EachKindHasOneTouchableGeomUnderItsNumberAndIsSeenAtItsHeight) {
+TEST(StaticObstacles, EachKindHasOneTouchableGeomUnderItsNumberAndIsSeenAtItsHeight) {
   for (const char* kind : {"rebar", "kerb", "hose", "brick"}) {
-    const ModelPtr model = world_with({{.kind = kind, .x_m = 3.0, .y_m = -1.0, .turn_deg = 0.0}});
+    const ModelPtr model = world_with({{.kind = kind, .x_m = 3.0, .y_m = -1.0, .yaw_deg = 0.0}});
     int touchable = 0;
     for (int geom = 0; geom < model->ngeom; ++geom) {
       if (model->geom_contype[geom] == 0) continue;
       ++touchable;
-      EXPECT_STREQ(mj_id2name(model.get(), mjOBJ_GEOM, geom), "prop_1") << kind;
+      EXPECT_STREQ(mj_id2name(model.get(), mjOBJ_GEOM, geom), "static_obstacle_1") << kind;
       EXPECT_EQ(model->geom_conaffinity[geom], 2) << kind;
     }
     EXPECT_EQ(touchable, 1) << kind;
@@ -52,14 +52,14 @@ TEST(Props, EachKindHasOneTouchableGeomUnderItsNumberAndIsSeenAtItsHeight) {
   }
 }
 
-TEST(Props, AKerbTurnedBy90DegreesIsLongAlongY) {
-  const ModelPtr model = world_with({{.kind = "kerb", .x_m = 5.0, .y_m = 2.0, .turn_deg = 90.0}});
+TEST(StaticObstacles, AKerbTurnedBy90DegreesIsLongAlongY) {
+  const ModelPtr model = world_with({{.kind = "kerb", .x_m = 5.0, .y_m = 2.0, .yaw_deg = 90.0}});
   EXPECT_NEAR(seen_height(*model, 5.0, 2.45), 0.22, 1e-6);  // half its length is 0.5 m
   EXPECT_LT(seen_height(*model, 5.45, 2.0), 0.0);
 }
 
-TEST(Props, AHoseTurnedBy30DegreesLiesThere) {
-  const ModelPtr model = world_with({{.kind = "hose", .x_m = 0.0, .y_m = 0.0, .turn_deg = 30.0}});
+TEST(StaticObstacles, AHoseTurnedBy30DegreesLiesThere) {
+  const ModelPtr model = world_with({{.kind = "hose", .x_m = 0.0, .y_m = 0.0, .yaw_deg = 30.0}});
   const double c = std::cos(std::numbers::pi / 6.0), s = 0.5;
   EXPECT_NEAR(seen_height(*model, 0.7 * c, 0.7 * s), 0.10, 1e-6);
   EXPECT_NEAR(seen_height(*model, -0.7 * c, -0.7 * s), 0.10, 1e-6);
@@ -67,8 +67,8 @@ TEST(Props, AHoseTurnedBy30DegreesLiesThere) {
 }
 
 // Its nose points to +y: the cab's roof is 2.86 m up, the tub's rear edge 2.05 m, the wheels stand on the ground.
-TEST(Props, ATruckTurnedBy90DegreesStandsOnItsWheelsNoseTo90DegreesAndIsTouchedAsOneHull) {
-  const ModelPtr model = world_with({{.kind = "truck", .x_m = 5.0, .y_m = 2.0, .turn_deg = 90.0}});
+TEST(StaticObstacles, ATruckTurnedBy90DegreesStandsOnItsWheelsNoseTo90DegreesAndIsTouchedAsOneHull) {
+  const ModelPtr model = world_with({{.kind = "truck", .x_m = 5.0, .y_m = 2.0, .yaw_deg = 90.0}});
   const LidarScene scene(*model);
   const auto height = [&](double x, double y) {
     const auto hit = scene.cast({x, y, 4.0}, {0, 0, -1}, 5.0, kRayEverything);
@@ -85,34 +85,38 @@ TEST(Props, ATruckTurnedBy90DegreesStandsOnItsWheelsNoseTo90DegreesAndIsTouchedA
   int touchable = 0;
   for (int geom = 0; geom < model->ngeom; ++geom) touchable += model->geom_contype[geom] != 0;
   EXPECT_EQ(touchable, 1);
-  EXPECT_EQ(model->geom_group[mj_name2id(model.get(), mjOBJ_GEOM, "prop_1")], 3);
+  EXPECT_EQ(model->geom_group[mj_name2id(model.get(), mjOBJ_GEOM, "static_obstacle_1")], 3);
   EXPECT_EQ(static_obstacle_size("truck").height_m, 3.0);
 }
 
 TEST(LowObstacles, NoneIsATruck) {
-  const LowObstacleSettings settings{.count = 200, .route = {{0.0, 0.0}, {900.0, 0.0}}, .clear_ends_m = 0.0, .beside_m = 0.5, .apart_m = 1.0};
-  for (const StaticObstacleSettings& static_obstacle : scatter_low_obstacles(settings, 4)) EXPECT_NE(static_obstacle.kind, "truck");
+  const LowObstacleSettings settings{.count = 200,
+                                     .route = {{0.0, 0.0}, {900.0, 0.0}},
+                                     .end_clearance_m = 0.0,
+                                     .max_lateral_offset_m = 0.5,
+                                     .min_spacing_m = 1.0};
+  for (const StaticObstacleSettings& obstacle : scatter_low_obstacles(settings, 4)) EXPECT_NE(obstacle.kind, "truck");
 }
 
-TEST(Props, AnUnknownKindIsRefusedByItsPlaceInTheList) {
+TEST(StaticObstacles, AnUnknownKindIsRefusedByItsPlaceInTheList) {
   const SpecPtr spec = parse_spec("<mujoco/>");
   try {
     add_static_obstacles(*spec, {{.kind = "kerb"}, {.kind = "sofa"}});
     FAIL() << "a sofa was taken";
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "props.1.kind = sofa: must be one of rebar, kerb, hose, brick, truck");
+    EXPECT_STREQ(error.what(), "static_obstacles.1.kind = sofa: must be one of rebar, kerb, hose, brick, truck");
   }
 }
 
 TEST(LowObstacles, TwentyLieWithinHalfAMetreOfTheRouteTwoMetresApartAndClearOfItsEnds) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    const auto props = scatter_low_obstacles(twenty_on_a_bent_route(), seed);
-    ASSERT_EQ(props.size(), 20u);
+    const auto obstacles = scatter_low_obstacles(twenty_on_a_bent_route(), seed);
+    ASSERT_EQ(obstacles.size(), 20u);
     double last_along = 4.0 - 1.0;  // the first part begins 4 m on, and half of `apart` of it is left free
-    for (const StaticObstacleSettings& static_obstacle : props) {
-      const double from_first = std::abs(static_obstacle.y_m), from_second = std::abs(static_obstacle.x_m - 60.0);
+    for (const StaticObstacleSettings& obstacle : obstacles) {
+      const double from_first = std::abs(obstacle.y_m), from_second = std::abs(obstacle.x_m - 60.0);
       EXPECT_LE(std::min(from_first, from_second), 0.5);
-      const double along = from_first <= 0.5 && static_obstacle.x_m <= 60.0 ? static_obstacle.x_m : 60.0 + static_obstacle.y_m;
+      const double along = from_first <= 0.5 && obstacle.x_m <= 60.0 ? obstacle.x_m : 60.0 + obstacle.y_m;
       EXPECT_GE(along - last_along, 2.0 - 0.5 - 1e-9);  // at the bend, beside the route is along it
       last_along = along;
     }
@@ -123,15 +127,15 @@ TEST(LowObstacles, TwentyLieWithinHalfAMetreOfTheRouteTwoMetresApartAndClearOfIt
 TEST(LowObstacles, AllKindsComeUpAndOffsetsAreUniformWithinFourStandardErrors) {
   const LowObstacleSettings settings{.count = 1000,
                                      .route = {{0.0, 0.0}, {9000.0, 0.0}},
-                                     .clear_ends_m = 0.0,
-                                     .beside_m = 0.5,
-                                     .apart_m = 1.0};
+                                     .end_clearance_m = 0.0,
+                                     .max_lateral_offset_m = 0.5,
+                                     .min_spacing_m = 1.0};
   std::set<std::string> kinds;
   double sum = 0.0, sum_of_squares = 0.0;
-  for (const StaticObstacleSettings& static_obstacle : scatter_low_obstacles(settings, 3)) {
-    kinds.insert(static_obstacle.kind);
-    sum += static_obstacle.y_m;
-    sum_of_squares += static_obstacle.y_m * static_obstacle.y_m;
+  for (const StaticObstacleSettings& obstacle : scatter_low_obstacles(settings, 3)) {
+    kinds.insert(obstacle.kind);
+    sum += obstacle.y_m;
+    sum_of_squares += obstacle.y_m * obstacle.y_m;
   }
   EXPECT_EQ(kinds.size(), 4u);
   const double n = 1000.0, variance = 1.0 / 12.0;  // of a uniform variable one metre wide
@@ -145,8 +149,8 @@ TEST(LowObstacles, TheSameSeedGivesTheSameAndAnotherSeedOthers) {
   const auto other = scatter_low_obstacles(twenty_on_a_bent_route(), 8);
   for (std::size_t i = 0; i < 20; ++i) {
     EXPECT_EQ(first[i].x_m, again[i].x_m);
-    EXPECT_EQ(first[i].turn_deg, again[i].turn_deg);
-    EXPECT_NE(first[i].turn_deg, other[i].turn_deg);
+    EXPECT_EQ(first[i].yaw_deg, again[i].yaw_deg);
+    EXPECT_NE(first[i].yaw_deg, other[i].yaw_deg);
   }
 }
 
@@ -154,7 +158,7 @@ TEST(LowObstacles, ARouteTooShortForThemIsRefusedWithItsLength) {
   LowObstacleSettings settings = twenty_on_a_bent_route();
   settings.route.pop_back();  // 60 m: 52 m between the ends, 2.6 m for each
   EXPECT_EQ(scatter_low_obstacles(settings, 1).size(), 20u);
-  settings.apart_m = 3.0;
+  settings.min_spacing_m = 3.0;
   try {
     scatter_low_obstacles(settings, 1);
     FAIL() << "20 obstacles 3 m apart in 52 m";
@@ -166,4 +170,4 @@ TEST(LowObstacles, ARouteTooShortForThemIsRefusedWithItsLength) {
 }
 
 }  // namespace
-}  // namespace patrol::sim::props_test
+}  // namespace patrol::sim::static_obstacles_test

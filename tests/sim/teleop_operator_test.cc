@@ -7,7 +7,7 @@
 
 #include "core/geometry/angles.h"
 
-namespace patrol::sim::remote_operator_test {
+namespace patrol::sim::teleop_operator_test {
 namespace {
 
 constexpr double kTick_s = 0.02;
@@ -51,7 +51,7 @@ TEST(TeleopOperator, MarksWithinTenCentimetresAndThreeDegreesAndHandsOverAtTheEn
 }
 
 TEST(TeleopOperator, WaitsFourSecondsForTheRobotToStandWhereTheyMeet) {
-  TeleopOperator person({.meets_robot = true}, {{.p_m = {10.0, 0.0}}, {.p_m = {20.0, 0.0}}}, 7);
+  TeleopOperator person({.wait_for_robot = true}, {{.p_m = {10.0, 0.0}}, {.p_m = {20.0, 0.0}}}, 7);
   double first_s = 0.0;
   for (double t = 0.0; t < 60.0 && first_s == 0.0; t += kTick_s) {
     const Pose2 passing_then_standing{std::min(0.5 * t, 9.5), 0.0, 0.0};  // there at 19 s
@@ -103,4 +103,4 @@ TEST(TeleopOperator, KeepsWithinTwentyCentimetresOfAStraightLegWithAReactionTime
 }
 
 }  // namespace
-}  // namespace patrol::sim::remote_operator_test
+}  // namespace patrol::sim::teleop_operator_test

@@ -53,7 +53,7 @@ TEST(GridMap, ABeamPassesTheCellsThatItsPointsLieIn) {
     const Eigen::Vector2d from(8.0 * stream.uniform(i, 0) - 4.0, 8.0 * stream.uniform(i, 1) - 4.0);
     const Eigen::Vector2d to(8.0 * stream.uniform(i, 2) - 4.0, 8.0 * stream.uniform(i, 3) - 4.0);
     map.add_free_ray(from, to, 1, false);
-    std::set<std::pair<int, int>> crossed;  // by points every fiftieth of a millimetre or so
+    std::set<std::pair<int, int>> crossed;  // by points every fiftieth of a millimeter or so
     constexpr int kPoints = 200'000;
     for (int k = 0; k <= kPoints; ++k) {
       const Cell cell = map.cell_at(from + (to - from) * k / kPoints);
@@ -75,7 +75,7 @@ TEST(GridMap, HitsKeepTheirMeanWithinTheCell) {
   map.add_hit({0.38, -0.09});
   const GridCell cell = cell_of(map, {3, -1});
   EXPECT_EQ(cell.hits, 3);
-  // Mean (0.34, -0.05) from the centre (0.35, -0.05).
+  // Mean (0.34, -0.05) from the center (0.35, -0.05).
   EXPECT_NEAR(cell.mean_x_m, -0.01, 1e-7);
   EXPECT_NEAR(cell.mean_y_m, 0.0, 1e-7);
 }

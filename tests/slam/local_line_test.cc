@@ -10,7 +10,7 @@
 namespace patrol::slam::local_line_test {
 namespace {
 
-/// Hits every centimetre along a line through `through` at `angle`, 1 m each way, scattered across by
+/// Hits every centimeter along a line through `through` at `angle`, 1 m each way, scattered across by
 /// `std_m`.
 GridMap make_wall(const Eigen::Vector2d& through, double angle_rad, double std_m = 0.0) {
   GridMap map(0.05, 100.0);
@@ -25,7 +25,7 @@ GridMap make_wall(const Eigen::Vector2d& through, double angle_rad, double std_m
   return map;
 }
 
-TEST(FitLocalLine, MeasuresThreeCentimetresFromAWallAtAnyAngleToATenthOfAMillimetre) {
+TEST(FitLocalLine, MeasuresThreeCentimetersFromAWallAtAnyAngleToATenthOfAMillimeter) {
   for (int degrees = 0; degrees < 180; degrees += 7) {
     const double angle = to_rad(degrees);
     const GridMap map = make_wall({0.312, -0.457}, angle);
@@ -40,7 +40,7 @@ TEST(FitLocalLine, MeasuresThreeCentimetresFromAWallAtAnyAngleToATenthOfAMillime
   }
 }
 
-TEST(FitLocalLine, LiesInTheMiddleOfNoisyHitsOverTwoCellsToTwoMillimetres) {
+TEST(FitLocalLine, LiesInTheMiddleOfNoisyHitsOverTwoCellsToTwoMillimeters) {
   // The wall stands on the border of two cells: half of the hits fall in either.
   const GridMap map = make_wall({0.0, 0.5}, 0.0, 0.01);
   const auto line = fit_local_line(map, {0.0, 0.52}, 3);

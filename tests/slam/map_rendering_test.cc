@@ -59,7 +59,7 @@ TEST(RenderMap, ACellThatMoreBeamsPassedThanHitHasMovedOn) {
   EXPECT_EQ(render_map(map, 2, 0.26).at({4, 0}), kFree);
 }
 
-// Two centimetres of noise strew the hits of a wall at y = 0.48 over three rows of 5 cm; one row is drawn.
+// Two centimeters of noise strew the hits of a wall at y = 0.48 over three rows of 5 cm; one row is drawn.
 TEST(RenderMap, ANoisyWallIsOneCellThickAndLiesInItsCell) {
   GridMap map(0.05, 100.0);
   const RandomStream noise(1, "test/wall");

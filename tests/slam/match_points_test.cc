@@ -17,7 +17,7 @@ LevelScan scan_of(const std::vector<Eigen::Vector2f>& ends, bool are_hits = true
   return scan;
 }
 
-TEST(SelectMatchPoints, NeighboursWithinTheSpacingBecomeTheirMean) {
+TEST(DownsampleScan, NeighborsWithinTheSpacingBecomeTheirMean) {
   const auto points =
       downsample_scan(scan_of({{1.0F, 0.0F}, {1.0F, 0.04F}, {1.0F, 0.08F}, {1.0F, 0.2F}}), 0.1, 100);
   ASSERT_EQ(points.size(), 2U);
@@ -25,13 +25,13 @@ TEST(SelectMatchPoints, NeighboursWithinTheSpacingBecomeTheirMean) {
   EXPECT_THAT(points[1].p_body, VectorNear(Eigen::Vector2d(1.0, 0.2), 1e-6));
 }
 
-TEST(SelectMatchPoints, RangesCountFromTheLidar) {
+TEST(DownsampleScan, RangesCountFromTheLidar) {
   LevelScan scan = scan_of({{3.0F, 4.0F}});
   scan.origin_m = {3.0, 1.0};
   EXPECT_NEAR(downsample_scan(scan, 0.1, 100)[0].range_m, 3.0, 1e-6);
 }
 
-TEST(SelectMatchPoints, TakeNoBeamsWithoutEchoAndNoInvalidOnes) {
+TEST(DownsampleScan, TakeNoBeamsWithoutEchoAndNoInvalidOnes) {
   const float nan = std::numeric_limits<float>::quiet_NaN(),
               infinity = std::numeric_limits<float>::infinity();
   EXPECT_TRUE(downsample_scan(scan_of({{1.0F, 0.0F}, {2.0F, 0.0F}}, false), 0.1, 100).empty());
@@ -39,7 +39,7 @@ TEST(SelectMatchPoints, TakeNoBeamsWithoutEchoAndNoInvalidOnes) {
   EXPECT_TRUE(downsample_scan({}, 0.1, 100).empty());
 }
 
-TEST(SelectMatchPoints, KeepEveryTenthOfAThousandWhenAHundredAreAllowed) {
+TEST(DownsampleScan, KeepEveryTenthOfAThousandWhenAHundredAreAllowed) {
   std::vector<Eigen::Vector2f> ends;
   for (int i = 0; i < 1000; ++i) ends.emplace_back(static_cast<float>(i), 0.0F);
   const auto points = downsample_scan(scan_of(ends), 0.1, 100);

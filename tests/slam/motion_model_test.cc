@@ -17,7 +17,7 @@ using test::Pose2Near, test::VectorNear;
 constexpr double kExactTol = 1e-12;
 constexpr double kPi = std::numbers::pi;
 
-// Whole numbers: 0.3 along and 0.1 across per metre, 0.2 per rad, 0.4 per metre and 0.5 per second of turn.
+// Whole numbers: 0.3 along and 0.1 across per meter, 0.2 per rad, 0.4 per meter and 0.5 per second of turn.
 const MotionModelSettings kSettings{.longitudinal_std_m_per_m = 0.3,
                                     .lateral_std_m_per_m = 0.1,
                                     .yaw_std_rad_per_rad = 0.2,
@@ -32,7 +32,7 @@ TEST(PredictMotion, MeanIsTheOdometrysMoveFromWhereTheBodyWas) {
               Pose2Near((Pose2{0.0, 5.0, kPi / 2.0 + 0.5}), kExactTol, kExactTol));
 }
 
-TEST(PredictMotion, TwoMetresNorthSpreadSixtyCentimetresNorthAndTwentyEast) {
+TEST(PredictMotion, TwoMetersNorthSpreadSixtyCentimetersNorthAndTwentyEast) {
   const Eigen::Matrix3d P = predict_motion({0.0, 0.0, kPi / 2.0}, {2.0, 0.0, 0.0}, 0.0, kSettings).covariance;
   EXPECT_NEAR(P(0, 0), 0.2 * 0.2 + 1e-4, kExactTol);
   EXPECT_NEAR(P(1, 1), 0.6 * 0.6 + 1e-4, kExactTol);
@@ -88,7 +88,7 @@ TEST(MotionModelSettings, RefuseANegativeSpreadByName) {
     validate(settings, "slam.motion");
     FAIL() << "accepted";
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "slam.motion.across_std_m_per_m = -0.1: must be at least 0");
+    EXPECT_STREQ(error.what(), "slam.motion.lateral_std_m_per_m = -0.1: must be at least 0");
   }
 }
 

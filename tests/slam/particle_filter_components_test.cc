@@ -9,7 +9,7 @@
 #include "slam/swarm/sand_cat.h"
 #include "slam/swarm/whale.h"
 
-namespace patrol::slam::particle_filter_parts_test {
+namespace patrol::slam::particle_filter_components_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -19,7 +19,7 @@ bool makes(const char* name) {
   return dynamic_cast<const Optimizer*>(make_components({.optimizer = name}).optimizer.get()) != nullptr;
 }
 
-TEST(MakeParts, EachOfSixNamesIsItsOptimizer) {
+TEST(MakeComponents, EachOfSixNamesIsItsOptimizer) {
   EXPECT_TRUE(makes<WhaleOptimizer>("woa"));
   EXPECT_TRUE(makes<BatOptimizer>("ba"));
   EXPECT_TRUE(makes<FireflyOptimizer>("fa"));
@@ -29,8 +29,8 @@ TEST(MakeParts, EachOfSixNamesIsItsOptimizer) {
   EXPECT_EQ(make_components({}).optimizer, nullptr);
 }
 
-/// Of four particles for three generations: 4 at the start and 4 each.
-int num_judgements(const char* name) {
+/// Number of fitness evaluations for four particles and three generations: 4 at the start and 4 per generation.
+int num_evaluations(const char* name) {
   int count = 0;
   const Fitness fitness_of = [&](std::size_t, const Position& position) {
     ++count;
@@ -42,14 +42,14 @@ int num_judgements(const char* name) {
   return count;
 }
 
-// The improved sand cats judge 3 mutations and ceil(3 sin 30), ceil(3 sin 60), 3 who stand in: 2 + 3 + 3.
-TEST(MakeParts, OptimizersGoThroughThreeGenerations) {
-  for (const char* name : {"woa", "fa", "ifa", "scso"}) EXPECT_EQ(num_judgements(name), 16) << name;
-  EXPECT_EQ(num_judgements("iscso"), 16 + 3 + 8);
+// The improved sand cats also evaluate 3 mutations and ceil(3 sin 30), ceil(3 sin 60), 3 substitutes: 2 + 3 + 3.
+TEST(MakeComponents, OptimizersGoThroughThreeGenerations) {
+  for (const char* name : {"woa", "fa", "ifa", "scso"}) EXPECT_EQ(num_evaluations(name), 16) << name;
+  EXPECT_EQ(num_evaluations("iscso"), 16 + 3 + 8);
 }
 
 // Weights of 0.7 and 3 x 0.1: each resampler has a mark of its own.
-TEST(MakeParts, EachOfFiveNamesIsItsResampler) {
+TEST(MakeComponents, EachOfFiveNamesIsItsResampler) {
   const std::vector<double> weights = {0.7, 0.1, 0.1, 0.1};
   const auto same = [&](const char* name, const Resampler& expected) {
     RandomSequence random(RandomStream(1, "test/parts"), 0), again(RandomStream(1, "test/parts"), 0);
@@ -69,7 +69,7 @@ TEST(MakeParts, EachOfFiveNamesIsItsResampler) {
   EXPECT_NE(same("stepwise", [](const auto& w, RandomSequence& random) { return resample_stepwise(w, random); }).back().mutation, 0.0);
 }
 
-TEST(MakeParts, RefusesWhatIsNoNameOrOutOfItsRange) {
+TEST(MakeComponents, RefusesWhatIsNoNameOrOutOfItsRange) {
   const auto complaint = [](const ParticleFilterSettings& settings) -> std::string {
     try {
       make_components(settings);
@@ -86,4 +86,4 @@ TEST(MakeParts, RefusesWhatIsNoNameOrOutOfItsRange) {
 }
 
 }  // namespace
-}  // namespace patrol::slam::particle_filter_parts_test
+}  // namespace patrol::slam::particle_filter_components_test

@@ -108,7 +108,7 @@ TEST(ParticleFilter, ASwarmMakesItOverconfidentByHalfTheVariance) {
 }
 
 // Without resampling the log weights add up.
-TEST(AdvanceParticles, AddsTheLogLikelihoodToTheLogWeight) {
+TEST(PropagateAndWeight, AddsTheLogLikelihoodToTheLogWeight) {
   std::vector<double> states = {0.0, 1.0}, log_weights = {-1.0, -2.0};
   WalkProblem problem({.a = 1.0, .b = 0.0, .q = 0.0, .r = 1.0}, 1.0, states);
   RandomSequence random(RandomStream(1, "test/filter"), 0);
@@ -134,7 +134,7 @@ Renewal renew(std::vector<double> log_weights, double threshold) {
 }
 
 // Weights 0.7 and three of 0.1: N_eff = 1 / 0.52 = 1.923 of 4, a share of 0.481.
-TEST(RenewParticles, OnlyBelowTheThreshold) {
+TEST(ResampleIfDepleted, OnlyBelowTheThreshold) {
   const std::vector<double> logs = {std::log(0.7), std::log(0.1), std::log(0.1), std::log(0.1)};
   const Renewal above = renew(logs, 0.48), below = renew(logs, 0.49);
   EXPECT_FALSE(above.is_renewed);
@@ -146,7 +146,7 @@ TEST(RenewParticles, OnlyBelowTheThreshold) {
 }
 
 // 0.7 x 4 = 2.8: two or three children of the first.
-TEST(RenewParticles, ThenAllFourWeighTheSameAndTheHeavyOneHasTwoOrThreeChildren) {
+TEST(ResampleIfDepleted, ThenAllFourWeighTheSameAndTheHeavyOneHasTwoOrThreeChildren) {
   const Renewal renewal = renew({std::log(0.7), std::log(0.1), std::log(0.1), std::log(0.1)}, 0.5);
   EXPECT_EQ(renewal.log_weights, std::vector<double>(4, 0.0));
   const auto children = std::count(renewal.states.begin(), renewal.states.end(), 0.0);

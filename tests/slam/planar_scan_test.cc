@@ -55,7 +55,7 @@ TEST(PlanarScan, WhatIsTooFarIsFreeSoFarAndWhatIsInvalidOrTooNearIsNothing) {
 
 TEST(PlanarScan, ABeamWithoutReturnIsFreeOnlyAsFarAsIsAskedFor) {
   EXPECT_TRUE(planar_scan(make_scan({kInfinity, kInfinity, -kInfinity}), {}).beams.empty());
-  const LevelScan scan = planar_scan(make_scan({kInfinity, kInfinity, -kInfinity}), {.no_return_free_m = 6.0});
+  const LevelScan scan = planar_scan(make_scan({kInfinity, kInfinity, -kInfinity}), {.no_return_clearing_range_m = 6.0});
   ASSERT_EQ(scan.beams.size(), 2U);
   EXPECT_FALSE(scan.beams[0].is_hit);
   EXPECT_THAT(scan.beams[0].end_m, test::VectorNear(Eigen::Vector2f(6.5F, 0.0F), 1e-6));

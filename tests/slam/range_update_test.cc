@@ -17,7 +17,7 @@ PoseGaussian belief(const Pose2& mean, double std_m, double std_rad) {
 }
 
 /// What would be read at a pose, without noise.
-RangeMeasurement sighting_at(const Pose2& T_map_body, const Pose2& T_odom_body) {
+RangeMeasurement measurement_at(const Pose2& T_map_body, const Pose2& T_odom_body) {
   return {.anchor = kAnchor,
           .range_m = predict_uwb_range(kAnchor, T_map_body, kAntenna, {}).range_m,
           .T_odom_body = T_odom_body,
@@ -26,7 +26,7 @@ RangeMeasurement sighting_at(const Pose2& T_map_body, const Pose2& T_odom_body) 
 
 TEST(RangeUpdate, TheGradientIsThatOfFiniteDifferences) {
   const Pose2 T_odom_then{1.0, 2.0, 0.3}, T_odom_now{2.0, 1.5, 0.9};
-  const RangeMeasurement measurement = sighting_at({3.0, 1.0, 0.5}, T_odom_then);
+  const RangeMeasurement measurement = measurement_at({3.0, 1.0, 0.5}, T_odom_then);
   const PoseGaussian now = belief({4.0, 0.5, 1.1}, 0.1, 0.05);
   const RangeInnovation innovation = range_innovation(now, T_odom_now, measurement, {});
   constexpr double kStep = 1e-6;
@@ -41,7 +41,7 @@ TEST(RangeUpdate, TheGradientIsThatOfFiniteDifferences) {
 TEST(RangeUpdate, ARangeShrinksTheBeliefTowardsItsAnchorAndLeavesItAcross) {
   const Pose2 truth{0.0, 0.0, 0.0};
   PoseGaussian now = belief(truth, 1.0, 1e-6);
-  update_with_ranges({sighting_at(truth, {})}, {}, {.range_std_m = 0.1}, now);
+  update_with_ranges({measurement_at(truth, {})}, {}, {.range_std_m = 0.1}, now);
   const Eigen::Vector3d to_anchor = kAnchor.p_m - Eigen::Vector3d(0.2, -0.1, 0.8);
   const Eigen::Vector2d along = to_anchor.head<2>() / to_anchor.norm(), across(-along.y(), along.x());
   const Eigen::Matrix2d P = now.covariance.topLeftCorner<2, 2>();
@@ -58,7 +58,7 @@ TEST(RangeUpdate, InnovationsOf500RangesAreAsLargeAsTheirVariancesSay) {
   for (std::uint64_t i = 0; i < kCount; ++i) {
     const Pose2 truth{1.0, -2.0, 0.4};
     PoseGaussian now = belief(perturbed(truth, {0.2 * stream.normal(i, 0), 0.2 * stream.normal(i, 1), 0.02 * stream.normal(i, 2)}), 0.2, 0.02);
-    RangeMeasurement measurement = sighting_at(truth, {});
+    RangeMeasurement measurement = measurement_at(truth, {});
     measurement.range_m += 0.15 * stream.normal(i, 3);
     const RangeInnovation innovation = range_innovation(now, {}, measurement, {.range_std_m = 0.15});
     sum += innovation.innovation_m * innovation.innovation_m / innovation.variance_m2;

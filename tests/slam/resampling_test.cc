@@ -8,7 +8,7 @@
 
 #include "core/particle_weights.h"
 
-namespace patrol::slam::resampler_test {
+namespace patrol::slam::resampling_test {
 namespace {
 
 const std::vector<double> kWeights = {0.06, 0.32, 0.1, 0.2, 0.01, 0.16, 0.03, 0.12};
@@ -53,18 +53,18 @@ double chi_squared(const Resampler& resample) {
 
 std::vector<Offspring> stepwise(const std::vector<double>& weights, RandomSequence& random) { return resample_stepwise(weights, random); }
 
-TEST(ResampleMultinomially, MeanOfTwentyThousandDrawsIsNW) {
+TEST(ResampleMultinomial, MeanOfTwentyThousandDrawsIsNW) {
   EXPECT_LT(chi_squared(resample_multinomial), kChiSquared7);
   EXPECT_GT(chi_squared(resample_multinomial), 0.60);  // 0.1 %: it is drawn, not dealt out
 }
 
-TEST(ResampleEvenly, MeanOfTwentyThousandDrawsIsNW) { EXPECT_LT(chi_squared(resample_systematic), kChiSquared7); }
+TEST(ResampleSystematic, MeanOfTwentyThousandDrawsIsNW) { EXPECT_LT(chi_squared(resample_systematic), kChiSquared7); }
 
-TEST(ResampleByResiduals, MeanOfTwentyThousandDrawsIsNW) { EXPECT_LT(chi_squared(resample_residual), kChiSquared7); }
+TEST(ResampleResidual, MeanOfTwentyThousandDrawsIsNW) { EXPECT_LT(chi_squared(resample_residual), kChiSquared7); }
 
 // Each unbiased one to four standard errors, parent by parent. Evenly, a parent's number is floor or ceil of N w: variance f (1 - f) with f = N w's
 // fraction. By residuals, R = 4 are drawn with probability f / R each: variance f (1 - f / R).
-TEST(ResampleEvenly, EveryParentsMeanIsNWToFourStandardErrors) {
+TEST(ResampleSystematic, EveryParentsMeanIsNWToFourStandardErrors) {
   const std::vector<double> mean = mean_children(resample_systematic);
   for (std::size_t i = 0; i < mean.size(); ++i) {
     const double expected = 8.0 * kWeights[i], f = expected - std::floor(expected);
@@ -72,7 +72,7 @@ TEST(ResampleEvenly, EveryParentsMeanIsNWToFourStandardErrors) {
   }
 }
 
-TEST(ResampleByResiduals, EveryParentsMeanIsNWToFourStandardErrors) {
+TEST(ResampleResidual, EveryParentsMeanIsNWToFourStandardErrors) {
   const std::vector<double> mean = mean_children(resample_residual);
   for (std::size_t i = 0; i < mean.size(); ++i) {
     const double expected = 8.0 * kWeights[i], f = expected - std::floor(expected);
@@ -80,12 +80,12 @@ TEST(ResampleByResiduals, EveryParentsMeanIsNWToFourStandardErrors) {
   }
 }
 
-TEST(DrawLowWeightsUp, IsBiasedHundredsOfTimesBeyondTheQuantile) { EXPECT_GT(chi_squared(optimize_low_weights), 250.0 * kChiSquared7); }
+TEST(OptimizeLowWeights, IsBiasedHundredsOfTimesBeyondTheQuantile) { EXPECT_GT(chi_squared(optimize_low_weights), 250.0 * kChiSquared7); }
 
 TEST(ResampleStepwise, IsBiasedHundredsOfTimesBeyondTheQuantile) { EXPECT_GT(chi_squared(stepwise), 250.0 * kChiSquared7); }
 
 // N w = 2.56, 1.6, 1.28, ...: the whole numbers are certain, in every draw.
-TEST(ResampleByResiduals, FloorOfNWChildrenAreCertain) {
+TEST(ResampleResidual, FloorOfNWChildrenAreCertain) {
   for (std::uint64_t tick = 0; tick < 200; ++tick) {
     RandomSequence random = sequence(tick);
     const std::vector<Offspring> offspring = resample_residual(kWeights, random);
@@ -122,7 +122,7 @@ TEST(Resamplers, GiveASingleParticleItself) {
 }
 
 // Sum of w^2 = 0.197, N_eff = 5.08, so M = 5: weights 0.32, 0.2, 0.16, 0.12, 0.1, which are the particles 1, 3, 5, 7, 2.
-TEST(DrawLowWeightsUp, KeepsTheFiveHeaviestAndDrawsTheRestTowardsThem) {
+TEST(OptimizeLowWeights, KeepsTheFiveHeaviestAndDrawsTheRestTowardsThem) {
   const std::set<std::size_t> heaviest = {1, 3, 5, 7, 2};
   std::set<std::size_t> towards;
   for (std::uint64_t tick = 0; tick < 100; ++tick) {
@@ -146,14 +146,14 @@ TEST(DrawLowWeightsUp, KeepsTheFiveHeaviestAndDrawsTheRestTowardsThem) {
 
 // Three light ones give half of themselves to five heavy ones: 1 / 2 is left of each, and a heavy one has 1 + 3 / 10. Standard error of the latter under
 // sqrt(3 / 5 / kDraws), since a share is under 1.
-TEST(DrawLowWeightsUp, CountsTheFiveHeaviestAlike) {
+TEST(OptimizeLowWeights, CountsTheFiveHeaviestAlike) {
   const std::vector<double> mean = mean_children(optimize_low_weights);
   for (const std::size_t heavy : {1U, 3U, 5U, 7U, 2U}) EXPECT_NEAR(mean[heavy], 1.3, 4.0 * std::sqrt(0.6 / kDraws)) << heavy;
   for (const std::size_t light : {0U, 4U, 6U}) EXPECT_NEAR(mean[light], 0.5, 4.0 * std::sqrt(1.0 / 12.0 / kDraws)) << light;
 }
 
 // "Largest integer below": four equal weights have N_eff = 4, so M = 3.
-TEST(DrawLowWeightsUp, OfFourEqualWeightsKeepsThree) {
+TEST(OptimizeLowWeights, OfFourEqualWeightsKeepsThree) {
   RandomSequence random = sequence(0);
   const std::vector<Offspring> offspring = optimize_low_weights({0.25, 0.25, 0.25, 0.25}, random);
   EXPECT_EQ(std::count_if(offspring.begin(), offspring.end(), [](const Offspring& child) { return child.attraction == 0.0; }), 3);
@@ -221,4 +221,4 @@ TEST(ResampleStepwise, MutationsHaveTheStandardDeviationOfOnePercent) {
 }
 
 }  // namespace
-}  // namespace patrol::slam::resampler_test
+}  // namespace patrol::slam::resampling_test

@@ -29,7 +29,7 @@ RoomWorld make_corridor() {
 }
 
 constexpr RoomWorld::ScanOptions kNoisyLidar{
-    .beams = 1600, .range_max_m = 30.0, .no_return_free_m = 6.0, .range_std_m = 0.01};
+    .beams = 1600, .range_max_m = 30.0, .no_return_clearing_range_m = 6.0, .range_std_m = 0.01};
 
 /// A map of the room from five scans with 1 cm of noise at known poses.
 GridMap make_map(const RoomWorld& room) {
@@ -50,7 +50,7 @@ std::vector<MatchPoint> look(const RoomWorld& room, const Pose2& T_map_body) {
 
 const Pose2 kTruth{0.47, 0.33, 0.41};
 
-TEST(MatchScan, RecoversTenCentimetresAndThreeDegreesToFiveMillimetresAndATenthOfADegree) {
+TEST(MatchScan, RecoversTenCentimetersAndThreeDegreesToFiveMillimetersAndATenthOfADegree) {
   const RoomWorld room = make_room();
   const GridMap map = make_map(room);
   for (const double sign : {-1.0, 1.0}) {
@@ -122,7 +122,7 @@ TEST(MatchScan, FarOffThereIsNoMatchRatherThanAWrongOne) {
                           {kTruth.x + 0.7, kTruth.y - 0.6, kTruth.yaw + 0.5}, std::nullopt, settings));
 }
 
-TEST(MatchScan, AThirdOfThePointsOnAPersonMovesItByLessThanFiveMillimetres) {
+TEST(MatchScan, AThirdOfThePointsOnAPersonMovesItByLessThanFiveMillimeters) {
   const RoomWorld room = make_room();
   const GridMap map = make_map(room);
   RoomWorld crowded = room;
@@ -135,7 +135,7 @@ TEST(MatchScan, AThirdOfThePointsOnAPersonMovesItByLessThanFiveMillimetres) {
 }
 
 // The steps are two cells, and those two cells seen at the farthest point: a match from there must succeed.
-TEST(SearchPose, ComesWithinReachOfTheMatchFromThirtyCentimetresAndSixDegrees) {
+TEST(SearchPose, ComesWithinReachOfTheMatchFromThirtyCentimetersAndSixDegrees) {
   const RoomWorld room = make_room();
   const GridMap map = make_map(room);
   const auto points = look(room, kTruth);

@@ -96,7 +96,7 @@ inline std::vector<WalkStep> make_walk(const WalkOptions& options, std::uint64_t
   const double straight_1 = options.north_m - radius, bend = 0.5 * pi * radius, straight_2 = options.east_m - radius;
   const double length = straight_1 + bend + straight_2;
   const double walk_s = length / options.speed_mps, stop_s = 5.0, turn_s = pi / turn_rate;
-  // The centre line out, by way.
+  // The center line out, by way.
   const auto on_line = [&](double way) -> Pose2 {
     if (way < straight_1) return {8.6, 8.0 + way, pi / 2};
     const double angle = std::min((way - straight_1) / radius, pi / 2);

@@ -17,7 +17,7 @@ GridMap wall_from_below() {
   return map;
 }
 
-TEST(SurfacePoints, AreTheMeansOfTheHitsTenCentimetresApart) {
+TEST(SurfacePoints, AreTheMeansOfTheHitsTenCentimetersApart) {
   const std::vector<Eigen::Vector2d> points = surface_points(wall_from_below());
   ASSERT_EQ(points.size(), 40U);
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -32,7 +32,7 @@ TEST(SurfacePoints, ASingleHitIsNoSurface) {
   EXPECT_TRUE(surface_points(map).empty());
 }
 
-TEST(FacingsOf, AWallFacesThoseWhoHaveSeenIt) {
+TEST(FreeSpaceNormals, AWallFacesThoseWhoHaveSeenIt) {
   const GridMap map = wall_from_below();
   const std::vector<Eigen::Vector2d> points = surface_points(map), free_space_normals = estimate_free_space_normals(points, map, 0.3);
   for (std::size_t i = 3; i + 3 < points.size(); ++i) {
@@ -41,7 +41,7 @@ TEST(FacingsOf, AWallFacesThoseWhoHaveSeenIt) {
   }
 }
 
-TEST(FacingsOf, APostSeenFromAllAroundFacesNobody) {
+TEST(FreeSpaceNormals, APostSeenFromAllAroundFacesNobody) {
   GridMap map(0.05, 40.0);
   const Eigen::Vector2d post(1.025, 1.025);
   for (int i = 0; i < 72; ++i) {
@@ -54,7 +54,7 @@ TEST(FacingsOf, APostSeenFromAllAroundFacesNobody) {
   EXPECT_EQ(estimate_free_space_normals(points, map, 0.3)[0], Eigen::Vector2d(0.0, 0.0));
 }
 
-TEST(FacingsOf, WhereNothingIsKnownToBeFreeNobodyKnows) {
+TEST(FreeSpaceNormals, WhereNothingIsKnownToBeFreeNobodyKnows) {
   GridMap map(0.05, 40.0);
   map.add_hit({1.0, 1.0});
   EXPECT_EQ(estimate_free_space_normals({{1.0, 1.0}}, map, 0.3)[0], Eigen::Vector2d(0.0, 0.0));

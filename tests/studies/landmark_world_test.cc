@@ -11,18 +11,18 @@
 namespace patrol::studies::landmark_world_test {
 namespace {
 
-double way_m(const LandmarkRun& run) {
+double distance_m(const LandmarkRun& run) {
   double way = 0.0;
   for (std::size_t k = 1; k < run.truth.size(); ++k) way += (run.truth[k].position() - run.truth[k - 1].position()).norm();
   return way;
 }
 
-TEST(GardenWorld, OneLapOfARadiusOf7MetresIs44MetresAndEndsWhereItBegan) {
+TEST(GardenWorld, OneLapOfARadiusOf7MetersIs44MetersAndEndsWhereItBegan) {
   for (const bool is_circle : {true, false}) {
     const LandmarkRun run = simulate(garden_world("S5", is_circle), 1);
     EXPECT_NEAR(run.truth.back().position().norm(), 0.0, is_circle ? 0.15 : 0.3);
     if (is_circle) {
-      EXPECT_NEAR(way_m(run), 2.0 * std::numbers::pi * 7.0, 0.15);
+      EXPECT_NEAR(distance_m(run), 2.0 * std::numbers::pi * 7.0, 0.15);
     }
   }
 }
@@ -44,7 +44,7 @@ TEST(GardenWorld, OdometryErrsByTheStatedNoiseAndByABiasOf2DegreesPerSecond) {
   EXPECT_NEAR(turn.std(), 5.0 * kDegree, 4.0 * 5.0 * kDegree / std::sqrt(2.0 * count));
 }
 
-TEST(GardenWorld, EverySightIsOfALandmarkWithin10MetresAndErrsByHalfAMetreAnd5Degrees) {
+TEST(GardenWorld, EverySightIsOfALandmarkWithin10MetersAndErrsByHalfAMeterAnd5Degrees) {
   const LandmarkWorld world = garden_world("M", true);
   const LandmarkRun run = simulate(world, 3);
   test::Moments range, bearing;
@@ -61,7 +61,7 @@ TEST(GardenWorld, EverySightIsOfALandmarkWithin10MetresAndErrsByHalfAMetreAnd5De
   EXPECT_NEAR(bearing.std(), 5.0 * kDegree, 0.02 * 5.0 * kDegree * 2.0);
 }
 
-TEST(CampusWorld, TheCarSteersAtMost30DegreesAnd20DegreesPerSecondAndDrives600Metres) {
+TEST(CampusWorld, TheCarSteersAtMost30DegreesAnd20DegreesPerSecondAndDrives600Meters) {
   const LandmarkWorld world = campus_world(false, 3.0, 8000);
   ASSERT_EQ(world.landmarks_m.size(), 31u);
   for (std::size_t k = 0; k < world.controls.size(); ++k) {
@@ -72,10 +72,10 @@ TEST(CampusWorld, TheCarSteersAtMost30DegreesAnd20DegreesPerSecondAndDrives600Me
   }
   const LandmarkRun run = simulate(world, 1);
   EXPECT_EQ(run.truth.size(), 1000u);
-  EXPECT_NEAR(way_m(run), 600.0, 2.0);  // chords of 0.6 m, the first step left out
+  EXPECT_NEAR(distance_m(run), 600.0, 2.0);  // chords of 0.6 m, the first step left out
 }
 
-TEST(CampusWorld, TheWayStaysWithin100By80MetresAndGoesClockwise) {
+TEST(CampusWorld, TheWayStaysWithin100By80MetersAndGoesClockwise) {
   const LandmarkWorld world = campus_world(false, 3.0, 8000);
   const LandmarkRun run = simulate(world, 1);
   Eigen::AlignedBox2d extent;

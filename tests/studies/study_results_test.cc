@@ -18,7 +18,7 @@ constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 /// Two methods, of which the second is always 1 better, with noise that both share.
 Study two_methods() {
   Study study{.name = "two", .title = "Two methods", .source = "a paper", .conditions = "None."};
-  study.figures = {{.name = "RMSE", .unit = "m", .is_compared = true}, {.name = "NEES", .unit = ""}, {.name = "time", .unit = "s", .is_of_the_clock = true}};
+  study.metrics = {{.name = "RMSE", .unit = "m", .is_compared = true}, {.name = "NEES", .unit = ""}, {.name = "time", .unit = "s", .is_processor_time = true}};
   study.variants = {{.world = "flat", .method = "old", .particles = 10, .reference = 0, .published = {3.5}}, {.world = "flat", .method = "new", .particles = 10, .reference = 0}};
   study.illustrate = [](std::uint64_t) { return std::vector<report::Section>{}; };
   return study;
@@ -58,27 +58,11 @@ TEST(StudyResults, TheClockStandsInATableOfItsOwnAndWhatIsNotMeasuredHasNoRow) {
   EXPECT_THAT(io::to_csv(samples_table(study, {1001, 1002, 1003}, samples())), HasSubstr("1002,flat,new,10,3.1,\r\n"));
 }
 
-TEST(StudyResults, OnAScreenPublishedFiguresStandBesideOurs) {
+TEST(StudyResults, TextContainsPublishedValuesAndOwnMeans) {
   const Study study = two_methods();
   const std::string text = results_text(study, summarize(study, samples()));
   EXPECT_THAT(text, HasSubstr("3.5"));
   EXPECT_THAT(text, HasSubstr("-1 [-1.25, -0.752]"));
-}
-
-TEST(Study, AnUnknownOneIsRefusedWithTheKnownNames) {
-  try {
-    make_study("golf");
-    FAIL();
-  } catch (const std::exception& error) {
-    EXPECT_THAT(error.what(), HasSubstr("there is no study 'golf' (known: ungm, landmarks-circle, "));
-  }
-}
-
-TEST(Study, EveryVariantsReferenceLiesInItsOwnWorld) {
-  for (const std::string& name : study_names()) {
-    const Study study = make_study(name);
-    for (const StudyVariant& variant : study.variants) EXPECT_EQ(study.variants[variant.reference].world, variant.world) << name << ": " << variant.method;
-  }
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ struct SeenSubmap {
 inline SeenSubmap see_submap(const RoomWorld& world, const Pose2& T_world_submap, const std::vector<Pose2>& T_world_body, std::uint64_t seed) {
   SeenSubmap submap;
   const RandomStream noise(seed, "test/see_submap");
-  constexpr RoomWorld::ScanOptions kLidar{.beams = 720, .range_max_m = 20.0, .no_return_free_m = 6.0, .range_std_m = 0.01};
+  constexpr RoomWorld::ScanOptions kLidar{.beams = 720, .range_max_m = 20.0, .no_return_clearing_range_m = 6.0, .range_std_m = 0.01};
   for (std::size_t i = 0; i < T_world_body.size(); ++i) {
     slam::integrate_scan(world.scan(T_world_body[i], Time{}, kLidar, noise, i), T_world_submap.inverse() * T_world_body[i], {}, submap.map);
   }

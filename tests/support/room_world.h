@@ -93,7 +93,7 @@ class RoomWorld {
   struct ScanOptions {
     int beams = 1600;
     double range_max_m = 30.0;
-    double no_return_free_m = 6.0;  ///< as far as a beam without echo is taken to be free
+    double no_return_clearing_range_m = 6.0;  ///< as far as a beam without echo is taken to be free
     double range_std_m = 0.0;
   };
 
@@ -106,7 +106,7 @@ class RoomWorld {
     for (std::size_t beam = 0; beam < ranges.size(); ++beam) {
       const bool is_hit = std::isfinite(ranges[beam]);
       const double angle = 2.0 * std::numbers::pi * static_cast<double>(beam) / options.beams;
-      double range = is_hit ? ranges[beam] : options.no_return_free_m;
+      double range = is_hit ? ranges[beam] : options.no_return_clearing_range_m;
       if (is_hit && options.range_std_m > 0.0) range += options.range_std_m * noise.normal(tick, beam);
       scan.beams.push_back({(range * Eigen::Vector2d(std::cos(angle), std::sin(angle))).cast<float>(), is_hit});
     }

@@ -83,15 +83,15 @@ TrackedDriveSettings TrackedDriveSettings::without_noise() {
           .slip_per_tilt = 0.0,
           .crab = 0.0,
           .turn_ratio_std = 0.0,
-          .turn_centre_x_m = 0.0,
-          .turn_centre_y_m = 0.0,
+          .icr_x_m = 0.0,
+          .icr_y_m = 0.0,
           .vibration_mps2_rthz = 0.0,
           .gyro_noise_radps = 0.0,
           .gyro_bias_radps = 0.0,
-          .gyro_bias_walk_radps2_rthz = 0.0,
+          .gyro_bias_random_walk_radps_per_sqrt_s = 0.0,
           .accel_noise_mps2 = 0.0,
           .accel_bias_mps2 = 0.0,
-          .accel_bias_walk_mps3_rthz = 0.0,
+          .accel_bias_random_walk_mps2_per_sqrt_s = 0.0,
           .imu_scale = 0.0,
           .imu_misalignment_rad = 0.0,
           .gyro_resolution_radps = 0.0,
@@ -122,8 +122,8 @@ TrackedDrive::TrackedDrive(const RobotDescription& robot, BeltProgram program, c
   slip_right_.value = settings.slip * constants_.normal(1, 1);
   crab_.value = settings.crab * constants_.normal(1, 5);
   turn_ratio_.value = settings.turn_ratio_std * constants_.normal(1, 2);
-  turn_x_.value = settings.turn_centre_x_m * constants_.normal(1, 3);
-  turn_y_.value = settings.turn_centre_y_m * constants_.normal(1, 4);
+  turn_x_.value = settings.icr_x_m * constants_.normal(1, 3);
+  turn_y_.value = settings.icr_y_m * constants_.normal(1, 4);
   T_world_body_.position.z() = robot.tracks->body_height_m;
 }
 
@@ -151,8 +151,8 @@ void TrackedDrive::slip_and_turn(double dt_s) {
   crab_.go(std::abs(ahead_mps_) * dt_s / settings_.slip_length_m, settings_.crab, draw(5));
   const double turned = std::abs(yaw_rate_radps_) * dt_s / settings_.turn_length_rad;
   turn_ratio_.go(turned, settings_.turn_ratio_std, draw(2));
-  turn_x_.go(turned, settings_.turn_centre_x_m, draw(3));
-  turn_y_.go(turned, settings_.turn_centre_y_m, draw(4));
+  turn_x_.go(turned, settings_.icr_x_m, draw(3));
+  turn_y_.go(turned, settings_.icr_y_m, draw(4));
 
   const double left = (1.0 - scale_ - slip_left_.value) * contact_.left_mps;
   const double right = (1.0 - scale_ - slip_right_.value) * contact_.right_mps;
@@ -187,8 +187,8 @@ void TrackedDrive::place_body(double dt_s) {
 void TrackedDrive::measure_imu(const Eigen::Vector3d& omega_body, const Eigen::Vector3d& force_body) {
   const auto tick = static_cast<std::uint64_t>(imu_steps_);
   const double root_s = std::sqrt(settings_.imu_period_s);
-  gyro_bias_ += draw_vector(imu_noise_, tick, 0, settings_.gyro_bias_walk_radps2_rthz * root_s);
-  accel_bias_ += draw_vector(imu_noise_, tick, 3, settings_.accel_bias_walk_mps3_rthz * root_s);
+  gyro_bias_ += draw_vector(imu_noise_, tick, 0, settings_.gyro_bias_random_walk_radps_per_sqrt_s * root_s);
+  accel_bias_ += draw_vector(imu_noise_, tick, 3, settings_.accel_bias_random_walk_mps2_per_sqrt_s * root_s);
   const double vibration = settings_.vibration_mps2_rthz / root_s * std::abs(0.5 * (contact_.left_mps + contact_.right_mps));
   Eigen::Vector3d rate = gyro_distortion_ * omega_body + gyro_bias_ + draw_vector(imu_noise_, tick, 6, settings_.gyro_noise_radps);
   Eigen::Vector3d force = accel_distortion_ * force_body + accel_bias_ +

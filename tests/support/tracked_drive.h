@@ -19,7 +19,7 @@ struct Belts {
   double left_mps = 0.0;
   double right_mps = 0.0;
 };
-/// At a time; a driver with eyes may look where the body is.
+/// Command of an operator at a time; may depend on the pose of the body.
 using BeltProgram = std::function<Belts(double time_s, const Pose3& T_world_body)>;
 
 /// Straight stretches, curves and turns on the spot, about 0.4 m/s on average, with halts; the first 3 s it stands.
@@ -42,10 +42,10 @@ struct TrackedDriveSettings {
   double slip_per_tilt = 0.14;  ///< and on slopes, by the sine of the tilt
   double slip_length_m = 3.0;
   double crab = 0.005;          ///< sideways, share of the way; wanders over the same length
-  double turn_ratio = 1.5;      ///< mean: distance of the tracks' centres of rotation over the gauge
+  double turn_ratio = 1.5;      ///< mean: distance of the tracks' centers of rotation over the gauge
   double turn_ratio_std = 0.15;
-  double turn_centre_x_m = 0.05;
-  double turn_centre_y_m = 0.02;
+  double icr_x_m = 0.05;
+  double icr_y_m = 0.02;
   double turn_length_rad = 2.0;
   double pitch_rad = 0.03;      ///< amplitude of the ground's waves
   double roll_rad = 0.02;
@@ -54,10 +54,10 @@ struct TrackedDriveSettings {
   // IMU: the defaults of sim/sensors/imu.h, sampled every other tick of 2 ms.
   double gyro_noise_radps = 2.3e-4 / 0.0447213595;
   double gyro_bias_radps = 0.002;
-  double gyro_bias_walk_radps2_rthz = 1e-5;
+  double gyro_bias_random_walk_radps_per_sqrt_s = 1e-5;
   double accel_noise_mps2 = 0.002 / 0.0447213595;
   double accel_bias_mps2 = 0.03;
-  double accel_bias_walk_mps3_rthz = 1e-4;
+  double accel_bias_random_walk_mps2_per_sqrt_s = 1e-4;
   double imu_scale = 0.001;
   double imu_misalignment_rad = 0.00087;
   double gyro_resolution_radps = 7e-4;
@@ -67,7 +67,7 @@ struct TrackedDriveSettings {
 };
 
 /// A tracked robot by kinematics alone, for tests of odometry. Each belt slips by a share of its way that wanders; the body turns
-/// about the tracks' instantaneous centres of rotation (Mandow et al., IROS 2007):
+/// about the tracks' instantaneous centers of rotation (Mandow et al., IROS 2007):
 ///   yaw rate = (r - l) / D,  ahead = (l y_l - r y_r) / (y_l - y_r) with y_l - y_r = D,  left = -x yaw rate, and a little crabbing.
 /// The ground waves gently under it. Friction below what the belts ask for limits what the body can follow.
 class TrackedDrive {

@@ -57,7 +57,7 @@ struct Tunnel {
   }
 };
 
-inline constexpr RoomWorld::ScanOptions kTunnelLidar{.beams = 720, .range_max_m = 25.0, .no_return_free_m = 10.0, .range_std_m = 0.02};
+inline constexpr RoomWorld::ScanOptions kTunnelLidar{.beams = 720, .range_max_m = 25.0, .no_return_clearing_range_m = 10.0, .range_std_m = 0.02};
 
 /// The map that a robot makes which always knows where it is: scans with noise every half metre from x_begin to x_end, 5 cm cells.
 inline OccupancyGrid survey(const RoomWorld& world, double x_begin_m, double x_end_m) {

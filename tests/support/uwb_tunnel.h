@@ -28,12 +28,12 @@ inline std::vector<UwbAnchor> make_tunnel_anchors(double from_m, double to_m, do
 struct UwbPolls {
   struct Poll {
     UwbRange range;
-    bool is_blocked = false;
+    bool is_nlos = false;
   };
   std::vector<UwbAnchor> anchors;
   UwbCalibration calibration{};
-  double blocked_share = 0.0;
-  double blocked_excess_m = 0.5;
+  double nlos_probability = 0.0;
+  double nlos_bias_m = 0.5;
   double range_max_m = 50.0;
 
   /// Poll number `tick`: the anchors within reach take turns; none if there is none.
@@ -46,10 +46,10 @@ struct UwbPolls {
     const UwbAnchor& anchor = near[tick % near.size()];
     const double distance = (antenna - anchor.p_m).norm();
     Poll poll{.range = {.stamp = now, .anchor = anchor.number}};
-    poll.is_blocked = RandomStream(seed, "uwb/blocked").uniform(tick) < blocked_share;
+    poll.is_nlos = RandomStream(seed, "uwb/blocked").uniform(tick) < nlos_probability;
     poll.range.range_m = distance + uwb_bias_at(calibration, distance).bias_m +
                          calibration.range_std_m * RandomStream(seed, "uwb/noise").normal(tick);
-    if (poll.is_blocked) poll.range.range_m -= blocked_excess_m * std::log(RandomStream(seed, "uwb/excess").uniform(tick));
+    if (poll.is_nlos) poll.range.range_m -= nlos_bias_m * std::log(RandomStream(seed, "uwb/excess").uniform(tick));
     return poll;
   }
 };

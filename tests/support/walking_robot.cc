@@ -88,9 +88,9 @@ WalkingRobot::WalkingRobot(const RobotDescription& robot, Walk walk, const Walki
   place_trunk();
   for (int i = 0; i < 4; ++i) {
     Leg& leg = legs_[static_cast<std::size_t>(i)];
-    leg.centre = swing_centre(i, 1.0);
+    leg.center = swing_center(i, 1.0);
     leg.angle_rad =
-        *joint_angles(robot_.legs[static_cast<std::size_t>(i)], T_world_body_.inverse() * leg.centre);
+        *joint_angles(robot_.legs[static_cast<std::size_t>(i)], T_world_body_.inverse() * leg.center);
     leg.speed_radps.setZero();
   }
 }
@@ -144,7 +144,7 @@ void WalkingRobot::place_trunk() {
                 rate[0] * Eigen::Vector3d::UnitX();
 }
 
-// A standing foot's centre moves as the ball rolls: J q' = (omega + A q') x r n - v - omega x p, n the
+// A standing foot's center moves as the ball rolls: J q' = (omega + A q') x r n - v - omega x p, n the
 // ground's normal in body.
 Eigen::Vector3d WalkingRobot::rolling_speed(const LegGeometry& leg, int index,
                                             const Eigen::Vector3d& angle_rad) const {
@@ -165,7 +165,7 @@ bool WalkingRobot::should_stand(int index, double* swing_fraction) const {
   return phase < settings_.gait_duty;
 }
 
-Eigen::Vector3d WalkingRobot::swing_centre(int index, double fraction) const {
+Eigen::Vector3d WalkingRobot::swing_center(int index, double fraction) const {
   const Leg& leg = legs_[static_cast<std::size_t>(index)];
   const LegGeometry& geometry = robot_.legs[static_cast<std::size_t>(index)];
   const Eigen::Vector2d hip =
@@ -179,9 +179,9 @@ Eigen::Vector3d WalkingRobot::swing_centre(int index, double fraction) const {
   const Eigen::Vector3d end(landing.x(), landing.y(), geometry.foot_radius_m);
   if (fraction >= 1.0) return end;
   const double u = fraction * fraction * (3.0 - 2.0 * fraction);
-  Eigen::Vector3d centre = leg.lift_off + u * (end - leg.lift_off);
-  centre.z() += kClearance_m * std::pow(std::sin(std::numbers::pi * fraction), 2);
-  return centre;
+  Eigen::Vector3d center = leg.lift_off + u * (end - leg.lift_off);
+  center.z() += kClearance_m * std::pow(std::sin(std::numbers::pi * fraction), 2);
+  return center;
 }
 
 void WalkingRobot::substep() {
@@ -213,12 +213,12 @@ void WalkingRobot::substep() {
       leg.angle_rad +=
           0.5 * dt * (speed_before[static_cast<std::size_t>(i)] + rolling_speed(geometry, i, guess));
       leg.speed_radps = rolling_speed(geometry, i, leg.angle_rad);
-      leg.centre = T_world_body_ * foot_position(geometry, leg.angle_rad);
+      leg.center = T_world_body_ * foot_position(geometry, leg.angle_rad);
     }
-    if (leg.is_standing && !stands) leg.lift_off = leg.centre;
+    if (leg.is_standing && !stands) leg.lift_off = leg.center;
     if (!stands || !leg.is_standing) {
-      leg.centre = swing_centre(i, stands ? 1.0 : fraction);
-      const auto angle = joint_angles(geometry, T_world_body_.inverse() * leg.centre);
+      leg.center = swing_center(i, stands ? 1.0 : fraction);
+      const auto angle = joint_angles(geometry, T_world_body_.inverse() * leg.center);
       if (!angle) throw std::logic_error("the walking robot of the tests cannot reach its next foothold");
       leg.speed_radps =
           stands ? rolling_speed(geometry, i, *angle) : Eigen::Vector3d((*angle - leg.angle_rad) / dt);

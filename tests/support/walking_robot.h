@@ -74,14 +74,14 @@ class WalkingRobot {
   struct Leg {
     Eigen::Vector3d angle_rad, speed_radps;
     bool is_standing = true;
-    Eigen::Vector3d lift_off, centre;  ///< of the foot, in world
+    Eigen::Vector3d lift_off, center;  ///< of the foot, in world
   };
   void substep();
   void place_trunk();
   Eigen::Vector3d level_velocity_in_world(double time_s, double yaw_rad) const;
   Eigen::Vector3d rolling_speed(const LegGeometry& leg, int index, const Eigen::Vector3d& angle_rad) const;
   bool should_stand(int index, double* swing_fraction) const;
-  Eigen::Vector3d swing_centre(int index, double fraction) const;
+  Eigen::Vector3d swing_center(int index, double fraction) const;
 
   RobotDescription robot_;
   Walk walk_;

@@ -19,17 +19,17 @@ namespace patrol::app {
 namespace {
 
 const OutputKind kCalibrating = {.name = "calibration of a log",
-                                 .unfinished = "The log has not been calibrated.",
-                                 .made = {"calibration.yaml", "stretches.csv", "metrics.json", "settings.yaml"},
-                                 .proof = "settings.yaml",
-                                 .kept = {"*.part"}};
+                                 .marker_text = "The calibration is incomplete.",
+                                 .outputs = {"calibration.yaml", "segments.csv", "metrics.json", "settings.yaml"},
+                                 .required_file = "settings.yaml",
+                                 .preserved = {"*.part"}};
 
 /// Settings of `patrol calibrate --set`.
 struct LogCalibrationSettings {
   int passes = 2;  ///< passes over the log; each uses the calibration of the one before
   io::ScanLogOptions log;
   slam::PlanarScanSettings scan;
-  slam::MotionSegmentSettings stretches;
+  slam::MotionSegmentSettings segments;
   slam::CalibratorSettings calibrator;
 
   template <typename Self, typename Visitor>
@@ -37,7 +37,7 @@ struct LogCalibrationSettings {
     visit("passes", self.passes, between(1, 10));
     visit("log", self.log);
     visit("scan", self.scan);
-    visit("stretches", self.stretches);
+    visit("segments", self.segments);
     visit("calibrator", self.calibrator);
   }
 };
@@ -51,11 +51,11 @@ struct CalibratedLog {
 };
 
 /// Calibrates in one pass over the log; none if interrupted.
-std::optional<CalibratedLog> calibrate_once(const std::filesystem::path& file, const LogCalibrationSettings& settings, const slam::Calibration& known, const std::string& name) {
+std::optional<CalibratedLog> calibrate_once(const std::filesystem::path& file, const LogCalibrationSettings& settings, const slam::Calibration& prior, const std::string& name) {
   const InterruptGuard guard;
   ProgressBar bar;
   const std::unique_ptr<io::ScanLog> log = io::open_scan_log(file, settings.log);
-  slam::MotionSegmenter pairs(settings.stretches, settings.scan, known);
+  slam::MotionSegmenter pairs(settings.segments, settings.scan, prior);
   std::optional<Pose2> T_body_lidar;
   const bool is_whole = read_scans(*log, name, guard, bar, [&](const RecordedScan& recorded) {
     if (!T_body_lidar) T_body_lidar = recorded.T_body_lidar;
@@ -72,8 +72,8 @@ std::optional<CalibratedLog> calibrate_once(const std::filesystem::path& file, c
 }
 
 /// Table of the motion of each segment by odometry and by scan matching, with its error, which shows rejected segments.
-io::Table stretch_table(const CalibratedLog& log) {
-  io::Table table{.name = "stretches",
+io::Table segment_table(const CalibratedLog& log) {
+  io::Table table{.name = "segments",
                   .columns = {"begin_s", "end_s", "odometry_x_m", "odometry_y_m", "odometry_yaw_rad", "lidar_x_m", "lidar_y_m", "lidar_yaw_rad", "error_std"},
                   .rows = {}};
   for (std::size_t k = 0; k < log.pairs.size(); ++k) {
@@ -105,19 +105,19 @@ std::string table_text(const slam::CalibrationResult& result) {
     const char* unit;
     int decimals;
   };
-  constexpr std::array<Row, 6> kRows = {{{"lidar ahead of the body", 1.0, "m", 4},
-                                         {"lidar to its left", 1.0, "m", 4},
-                                         {"lidar turned to the left", kDegPerRad, "deg", 3},
-                                         {"true way over odometry's", 1.0, "", 5},
-                                         {"true turn over odometry's", 1.0, "", 5},
-                                         {"steering to the left", kDegPerRad, "deg/m", 3}}};
+  constexpr std::array<Row, 6> kRows = {{{"lidar x in body", 1.0, "m", 4},
+                                         {"lidar y in body", 1.0, "m", 4},
+                                         {"lidar yaw in body", kDegPerRad, "deg", 3},
+                                         {"distance scale", 1.0, "", 5},
+                                         {"rotation scale", 1.0, "", 5},
+                                         {"steering bias", kDegPerRad, "deg/m", 3}}};
   std::string text = fmt::format("{:<26} {:>10} {:>11} {:>9}\n", "", "in the log", "calibrated", "std");
   for (std::size_t i = 0; i < kRows.size(); ++i) {
     const Row& row = kRows[i];
     const slam::CalibratedParameter& parameter = result.parameters[i];
     const auto number = [&](double value) { return fmt::format("{:.{}f}", row.factor * value, row.decimals); };
     text += fmt::format("{:<26} {:>10} {:>11} {:>9} {}\n", row.name, number(parameter.before), parameter.is_observable ? number(parameter.value) : "-", number(parameter.std),
-                        parameter.is_observable ? row.unit : fmt::format("{} not observable: as it was", row.unit));
+                        parameter.is_observable ? row.unit : fmt::format("{} not observable: unchanged", row.unit));
   }
   return text;
 }
@@ -126,12 +126,12 @@ std::string table_text(const slam::CalibrationResult& result) {
 
 ExitCode calibrate_command(const CalibrateOptions& options) {
   std::vector<std::string> overrides = options.overrides;
-  if (options.skip_bad_lines) overrides.push_back("log.skip_bad_lines=true");
+  if (options.skip_invalid) overrides.push_back("log.skip_bad_lines=true");
   const auto settings = io::parse_settings<LogCalibrationSettings>(overrides);
   std::optional<CalibratedLog> log;
   for (int pass = 1; pass <= settings.passes; ++pass) {
-    const slam::Calibration known = log ? log->result.calibration() : slam::Calibration{};
-    log = calibrate_once(options.log, settings, known, fmt::format("{}, {} of {}", options.log.filename().string(), pass, settings.passes));
+    const slam::Calibration prior = log ? log->result.calibration() : slam::Calibration{};
+    log = calibrate_once(options.log, settings, prior, fmt::format("{}, {} of {}", options.log.filename().string(), pass, settings.passes));
     if (!log) break;
   }
   const OutputLock lock = begin_output(options.out, kCalibrating);  // not earlier: a damaged log must leave no output
@@ -141,12 +141,12 @@ ExitCode calibrate_command(const CalibrateOptions& options) {
   }
   const slam::CalibrationResult& result = log->result;
   io::save_settings(options.out / "calibration.yaml", result.calibration(), "from " + options.log.filename().string() + "; for patrol slam --calibration");
-  io::save_csv(options.out / "stretches.csv", stretch_table(*log));
+  io::save_csv(options.out / "segments.csv", segment_table(*log));
   io::save_metrics(options.out / "metrics.json", metrics_of(*log));
   io::save_settings(options.out / "settings.yaml", settings);
   complete_output(options.out);
 
-  fmt::print("{}{} stretches of the way, {} of them rejected (odometry slipped or lied, or the match was wrong){}\n{}{}\n", io::to_text(log->summary), result.num_segments,
+  fmt::print("{}{} segments, {} of them rejected (wheel slip, odometry error or wrong match){}\n{}{}\n", io::to_text(log->summary), result.num_segments,
              result.num_rejected, result.converged ? "" : "; not converged", table_text(result), (options.out / "calibration.yaml").string());
   return result.converged ? ExitCode::kDone : ExitCode::kExpectationMissed;
 }

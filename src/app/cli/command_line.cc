@@ -1,6 +1,5 @@
 #include "app/cli/command_line.h"
 
-#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
@@ -20,6 +19,7 @@
 #include <mujoco/mujoco.h>
 
 #include "app/cli/commands.h"
+#include "app/cli/renamed_options.h"
 #include "core/error.h"
 #include "io/files/one_line.h"
 
@@ -35,10 +35,10 @@ struct Call {
   ReportOptions report;
   std::filesystem::path verify_run;
   SweepOptions sweep;
-  std::filesystem::path collect_root;
-  std::vector<std::filesystem::path> collect_parts;
-  BudgetOptions budget;
-  FaultsOptions faults;
+  std::filesystem::path merge_root;
+  std::vector<std::filesystem::path> merge_parts;
+  ErrorBudgetOptions error_budget;
+  FaultMatrixOptions fault_matrix;
   SlamOptions slam;
   CalibrateOptions calibrate;
   TrainOptions train;
@@ -47,244 +47,272 @@ struct Call {
   StudyOptions study;
   TestOptions test;
   MonitorOptions monitor;
-  SendOptions send;
+  UploadOptions upload;
   std::function<ExitCode()> chosen;
 };
 
+constexpr const char* kSetHelp = "Override a setting, path=value (repeatable)";
+constexpr const char* kSetAllHelp = "Override a setting in every run, path=value (repeatable)";
+constexpr const char* kSeedHelp = "Random seed";
+constexpr const char* kOutHelp = "Output directory";
+constexpr const char* kSkipHelp = "Skip unreadable records of a damaged log";
+constexpr const char* kLogHelp = "Log file: CARMEN text (plain or gzip) or MCAP";
+constexpr const char* kTokenHelp = "File with the access token (default: $PATROL_TOKEN)";
+
 void add_run(CLI::App& app, Call& call) {
+  RunOptions& run = call.run;
   CLI::App* command = app.add_subcommand("run", "Run a scenario headless and score it");
-  command->add_option("scenario", call.run.scenario, "Scenario file (YAML)")->required();
-  command->add_option("--set", call.run.overrides, "Override a setting: path=value; may be repeated")->take_all();
-  command->add_option("--seed", call.run.seed, "Seed of every random stream");
-  command->add_flag("--watch", call.run.watch, "Show the run on the terminal while it goes: map, robot, figures, events");
-  command->add_option("--out", call.run.out, "Run directory to leave");
-  command->add_option("--report-to", call.run.report_to, "Tell a monitoring platform: http://host:port");
-  command->add_option("--report-token-file", call.run.report_token_file, "File of the platform's token (default: PATROL_TOKEN)");
-  command->add_option("--robot-name", call.run.robot_name, "As the platform shall know it (default: robot and seed)");
+  command->add_option("scenario", run.scenario, "Scenario file (YAML)")->required();
+  command->add_option("--set", run.overrides, kSetHelp)->take_all();
+  command->add_option("--seed", run.seed, kSeedHelp);
+  command->add_flag("--watch", run.watch, "Show live status in the terminal");
+  command->add_option("--out", run.out, kOutHelp);
+  command->add_option("--monitor-url", run.monitor_url, "Monitoring server, http://host:port");
+  command->add_option("--monitor-token-file", run.monitor_token_file, kTokenHelp);
+  command->add_option("--robot-name", run.robot_name, "Robot name shown by the monitor (default: robot and seed)");
   command->callback([&] { call.chosen = [&] { return run_command(call.run); }; });
 }
 
 void add_score(CLI::App& app, Call& call) {
-  CLI::App* command = app.add_subcommand("score", "Score a run, a trajectory or a map");
-  command->add_option("run", call.score.run, "Run directory");
-  command->add_option("--estimate", call.score.estimate, "Estimated trajectory (TUM)");
-  command->add_option("--reference", call.score.reference, "Reference trajectory (TUM)");
-  command->add_option("--relations", call.score.relations, "Reference relations (Freiburg: t1 t2 x y z roll pitch yaw)");
-  score::RelationSettings& relations = call.score.relation_settings;
-  command->add_option("--max-dt", relations.max_dt_s, "A pose within this of a relation's stamp is taken as it is, s")->capture_default_str();
-  command->add_option("--ref-x", relations.ref_x_m, "How far ahead of the body the relations' point lies, m")->capture_default_str();
-  command->add_option("--map", call.score.map, "Built map (map_server YAML)");
-  command->add_option("--reference-map", call.score.reference_map, "Reference map (map_server YAML)");
+  ScoreOptions& score = call.score;
+  CLI::App* command = app.add_subcommand("score", "Evaluate a run, a trajectory or a map");
+  command->add_option("run", score.run, "Run directory");
+  command->add_option("--estimate", score.estimate, "Estimated trajectory (TUM)");
+  command->add_option("--reference", score.reference, "Reference trajectory (TUM)");
+  command->add_option("--relations", score.relations, "Reference relations (Freiburg: t1 t2 x y z roll pitch yaw)");
+  score::RelationSettings& relations = score.relation_settings;
+  command->add_option("--max-dt-s", relations.max_dt_s, "Maximum time difference for nearest-pose association, s")
+      ->capture_default_str();
+  command->add_option("--reference-x-m", relations.reference_x_m, "Offset of the reference point along body x, m")
+      ->capture_default_str();
+  command->add_option("--map", score.map, "Built map (map_server YAML)");
+  command->add_option("--reference-map", score.reference_map, "Reference map (map_server YAML)");
   command->callback([&] { call.chosen = [&] { return score_command(call.score); }; });
 }
 
 void add_localizability(CLI::App& app, Call& call) {
-  CLI::App* command = app.add_subcommand("localizability", "Where a world's surfaces tell a lidar its place, and where they do not: a heat map");
-  command->add_option("scenario", call.localizability.scenario, "Scenario file (YAML)")->required();
-  command->add_option("--set", call.localizability.overrides, "Override a setting: path=value; may be repeated")->take_all();
-  command->add_option("--step-m", call.localizability.step_m, "From place to place, m")->capture_default_str();
-  command->add_option("--out", call.localizability.out, "Directory to leave")->capture_default_str();
+  LocalizabilityOptions& localizability = call.localizability;
+  CLI::App* command = app.add_subcommand("localizability", "Map the accuracy bound of lidar localization");
+  command->add_option("scenario", localizability.scenario, "Scenario file (YAML)")->required();
+  command->add_option("--set", localizability.overrides, kSetHelp)->take_all();
+  command->add_option("--grid-step-m", localizability.grid_step_m, "Grid spacing, m")->capture_default_str();
+  command->add_option("--out", localizability.out, kOutHelp)->capture_default_str();
   command->callback([&] { call.chosen = [&] { return localizability_command(call.localizability); }; });
 }
 
 void add_replay(CLI::App& app, Call& call) {
-  CLI::App* command = app.add_subcommand("replay", "Render a run from its log");
-  command->add_option("run", call.replay.run, "Run directory")->required();
-  command->add_option("--cut", call.replay.style, "story (slow and near at the notable moments) or plain (even)")->capture_default_str();
-  command->add_option("--camera", call.replay.camera, "chase, top or onboard")->capture_default_str();
-  command->add_option("--speed", call.replay.speed, "Simulated seconds per second of video")->capture_default_str();
-  command->add_option("--slow", call.replay.slow, "Likewise, at the moments of a story")->capture_default_str();
-  command->add_option("--renderer", call.replay.renderer, "auto, egl or osmesa")->capture_default_str();
-  command->add_option("--size", call.replay.size, "Width x height, pixels")->capture_default_str();
-  command->add_option("--still", call.replay.still_s, "One picture (PNG) of this instant instead, s");
-  command->add_option("--out", call.replay.out, "File to write");
+  ReplayOptions& replay = call.replay;
+  CLI::App* command = app.add_subcommand("replay", "Render a video or a still image from a run log");
+  command->add_option("run", replay.run, "Run directory")->required();
+  command->add_option("--style", replay.style, "Editing style: highlights or continuous")->capture_default_str();
+  command->add_option("--camera", replay.camera, "Camera: chase, top or onboard")->capture_default_str();
+  command->add_option("--speed", replay.speed, "Playback speed, simulated seconds per second of video")
+      ->capture_default_str();
+  command->add_option("--highlight-speed", replay.highlight_speed, "Playback speed during highlights")
+      ->capture_default_str();
+  command->add_option("--renderer", replay.renderer, "OpenGL implementation: auto, egl or osmesa")->capture_default_str();
+  command->add_option("--size", replay.size, "Width x height, pixels")->capture_default_str();
+  command->add_option("--still", replay.still_s, "Time of a single image (PNG) instead of a video, s");
+  command->add_option("--out", replay.out, "Output file");
   command->callback([&] { call.chosen = [&] { return replay_command(call.replay); }; });
 }
 
 void add_report(CLI::App& app, Call& call) {
-  CLI::App* command = app.add_subcommand("report", "One HTML page that tells all of a run, a sweep, a budget or a fault matrix, and fetches nothing");
-  command->add_option("directory", call.report.directory, "Directory of a run or of a sweep")->required();
-  command->add_option("--out", call.report.out, "File to write (default: report.html in the directory)");
+  CLI::App* command = app.add_subcommand("report", "Generate a self-contained HTML report");
+  command->add_option("directory", call.report.directory, "Directory of a run, a sweep, an error budget or a fault matrix")
+      ->required();
+  command->add_option("--out", call.report.out, "Output file (default: report.html in the directory)");
   command->callback([&] { call.chosen = [&] { return report_command(call.report); }; });
 }
 
 void add_verify(CLI::App& app, Call& call) {
-  CLI::App* command = app.add_subcommand("verify", "Run a run again and name the first difference");
+  CLI::App* command = app.add_subcommand("verify", "Rerun a scenario and compare the logs byte by byte");
   command->add_option("run", call.verify_run, "Run directory")->required();
   command->callback([&] { call.chosen = [&] { return verify_command(call.verify_run); }; });
 }
 
 void add_batch(CLI::App& command, BatchOptions& batch) {
-  command.add_option("--jobs", batch.jobs, "Runs at a time; 0: one for each core")->capture_default_str();
-  command.add_option("--run-limit-s", batch.run_limit_s, "Wall time of a run after which it is given up, s")->capture_default_str();
-  command.add_option("--keep", batch.keep, "Run directories that stay: none, failed, all")->capture_default_str();
+  command.add_option("--jobs", batch.jobs, "Parallel runs (0: one per core)")->capture_default_str();
+  command.add_option("--run-timeout-s", batch.run_timeout_s, "Wall-clock timeout per run, s")->capture_default_str();
+  command.add_option("--keep-runs", batch.keep_runs, "Run directories to keep: none, failed, all")->capture_default_str();
 }
 
-/// Adds the options that sweep, budget and faults share. `metrics` and `out` are the help texts of two of them.
+/// Adds the options that sweep, error-budget and fault-matrix have in common. `metrics`: help text of --metric.
 template <typename Options>
-void add_variants(CLI::App& command, Options& options, const char* metrics, const char* out) {
+void add_variants(CLI::App& command, Options& options, const char* metrics) {
   command.add_option("scenario", options.scenario, "Scenario file (YAML)")->required();
-  command.add_option("--set", options.overrides, "Override a setting in every run: path=value; may be repeated")->take_all();
-  command.add_option("--seeds", options.seeds, "N (seeds 1 ... N) or A..B")->capture_default_str();
+  command.add_option("--set", options.overrides, kSetAllHelp)->take_all();
+  command.add_option("--seeds", options.seeds, "Seeds: N (1 ... N) or A..B")->capture_default_str();
   command.add_option("--metric", options.metrics, metrics)->take_all()->capture_default_str();
   add_batch(command, options.batch);
-  command.add_option("--out", options.out, out)->capture_default_str();
+  command.add_option("--out", options.out, "Output directory; existing results are reused")->capture_default_str();
 }
 
 void add_sweep(CLI::App& app, Call& call) {
   SweepOptions& sweep = call.sweep;
-  CLI::App* command = app.add_subcommand("sweep", "Run variants of a scenario with many seeds and compare them");
-  add_variants(*command, sweep, "Figures to compare; may be repeated", "Directory of the sweep; results that lie there are not made again");
+  CLI::App* command = app.add_subcommand("sweep", "Run variants of a scenario and compare them");
+  add_variants(*command, sweep, "Metric to compare (repeatable)");
   command->add_option("--vary", sweep.vary,
-                      "path=a,b,c or path=range:FROM:TO:N, logrange:...: a variant for each; or uniform:LOW:HIGH, loguniform:LOW:HIGH, "
-                      "normal:MEAN:STD: a draw for each seed; may be repeated")->take_all();
-  command->add_flag("--stop-when-decided", sweep.stop_when_decided, "Leave off once the first metric is decided");
-  command->add_option("--margin", sweep.margin, "Differences of the first metric below this do not matter")->capture_default_str();
-  command->add_option("--shard", sweep.shard, "i/n: do only this part of the runs");
-  command->add_option("--engine", sweep.engine, "local or slurm")->capture_default_str();
-  command->add_option("--slurm-tasks", sweep.slurm_tasks, "Tasks of the job array, each a shard")->capture_default_str();
-  command->add_option("--slurm-option", sweep.slurm_options, "Option for sbatch, --slurm-option=--partition=long; may be repeated")->take_all();
-  command->add_flag("--detach", sweep.detach, "Submit to Slurm and do not wait");
+                      "Parameter axis (repeatable): path=a,b,c or path=range:FROM:TO:N or logrange:..., one variant per "
+                      "value; path=uniform:LOW:HIGH, loguniform:LOW:HIGH or normal:MEAN:STD, one sample per seed")
+      ->take_all();
+  command->add_flag("--early-stop", sweep.early_stop, "Stop a variant once its difference is significant");
+  command->add_option("--equivalence-margin", sweep.equivalence_margin, "Differences below this are treated as equal")
+      ->capture_default_str();
+  command->add_option("--shard", sweep.shard, "Process shard i/n of the runs");
+  command->add_option("--engine", sweep.engine, "Execution engine: local or slurm")->capture_default_str();
+  command->add_option("--slurm-tasks", sweep.slurm_tasks, "Tasks of the Slurm job array, one shard each")
+      ->capture_default_str();
+  command->add_option("--slurm-option", sweep.slurm_options, "Option for sbatch (repeatable): --slurm-option=--partition=long")
+      ->take_all();
+  command->add_flag("--detach", sweep.detach, "Submit to Slurm without waiting");
   command->callback([&] { call.chosen = [&] { return sweep_command(call.sweep); }; });
 }
 
-void add_collect(CLI::App& app, Call& call) {
-  CLI::App* command = app.add_subcommand("collect", "Put the shards of a sweep together");
-  command->add_option("sweep", call.collect_root, "Directory of the sweep")->required();
-  command->add_option("parts", call.collect_parts, "Directories of shards whose results to take over");
-  command->callback([&] { call.chosen = [&] { return collect_command(call.collect_root, call.collect_parts); }; });
+void add_merge(CLI::App& app, Call& call) {
+  CLI::App* command = app.add_subcommand("merge", "Merge the shards of a sweep");
+  command->add_option("sweep", call.merge_root, "Directory of the sweep")->required();
+  command->add_option("parts", call.merge_parts, "Directories of the shards");
+  command->callback([&] { call.chosen = [&] { return merge_command(call.merge_root, call.merge_parts); }; });
 }
 
-void add_budget(CLI::App& app, Call& call) {
-  BudgetOptions& budget = call.budget;
-  CLI::App* command = app.add_subcommand("budget", "Who owns how much of the error: one imperfection made ideal at a time");
-  add_variants(*command, budget, "Figures to take apart; may be repeated", "Directory of the budget; results that lie there are not made again");
-  command->callback([&] { call.chosen = [&] { return budget_command(call.budget); }; });
+void add_error_budget(CLI::App& app, Call& call) {
+  CLI::App* command = app.add_subcommand("error-budget", "Rerun with one error source removed at a time");
+  command->alias("budget");
+  add_variants(*command, call.error_budget, "Metric to analyze (repeatable)");
+  command->callback([&] { call.chosen = [&] { return error_budget_command(call.error_budget); }; });
 }
 
-void add_faults(CLI::App& app, Call& call) {
-  FaultsOptions& faults = call.faults;
-  CLI::App* command = app.add_subcommand("faults", "What each fault of each sensor leads to: survived, stopped, unsafe");
-  add_variants(*command, faults, "Figures to set beside those without a fault; may be repeated",
-               "Directory of the results; those that lie there are not made again");
-  command->add_option("--start-s", faults.start_s, "When each fault begins, s")->capture_default_str();
-  command->add_option("--duration-s", faults.duration_s, "How long it lasts, s")->capture_default_str();
-  command->callback([&] { call.chosen = [&] { return faults_command(call.faults); }; });
+void add_fault_matrix(CLI::App& app, Call& call) {
+  FaultMatrixOptions& faults = call.fault_matrix;
+  CLI::App* command = app.add_subcommand("fault-matrix", "Inject every fault into every sensor");
+  command->alias("faults");
+  add_variants(*command, faults, "Metric to compare with the fault-free run (repeatable)");
+  command->add_option("--start-s", faults.start_s, "Fault onset, s")->capture_default_str();
+  command->add_option("--duration-s", faults.duration_s, "Fault duration, s")->capture_default_str();
+  command->callback([&] { call.chosen = [&] { return fault_matrix_command(call.fault_matrix); }; });
 }
 
 void add_slam(CLI::App& app, Call& call) {
   SlamOptions& slam = call.slam;
-  CLI::App* command = app.add_subcommand("slam", "Map a recorded lidar log (CARMEN, MCAP)");
-  command->add_option("log", slam.log, "Log file: CARMEN's text, plain or in gzip, or MCAP")->required();
-  command->add_option("--method", slam.method, "How to map (patrol list)");
-  command->add_option("--set", slam.overrides, "Override a setting: path=value; may be repeated")->take_all();
-  command->add_option("--calibration", slam.calibration, "calibration.yaml of patrol calibrate: the lidar's place, odometry put right");
-  command->add_option("--seed", slam.seed, "Seed of every random stream");
-  command->add_flag("--skip-bad-lines", slam.skip_bad_lines, "Use what can be read of a damaged log");
-  command->add_option("--out", slam.out, "Directory to leave")->capture_default_str();
+  CLI::App* command = app.add_subcommand("slam", "Build a map from a recorded 2D lidar log (CARMEN, MCAP)");
+  command->add_option("log", slam.log, kLogHelp)->required();
+  command->add_option("--method", slam.method, "Mapping method (see 'patrol list')");
+  command->add_option("--set", slam.overrides, kSetHelp)->take_all();
+  command->add_option("--calibration", slam.calibration, "Calibration file of 'patrol calibrate'");
+  command->add_option("--seed", slam.seed, kSeedHelp);
+  command->add_flag("--skip-invalid", slam.skip_invalid, kSkipHelp);
+  command->add_option("--out", slam.out, kOutHelp)->capture_default_str();
   command->callback([&] { call.chosen = [&] { return slam_command(call.slam); }; });
 }
 
 void add_calibrate(CLI::App& app, Call& call) {
   CalibrateOptions& calibrate = call.calibrate;
-  CLI::App* command = app.add_subcommand("calibrate", "Where a log's lidar sits and how far its odometry can be believed, from the log alone");
-  command->add_option("log", calibrate.log, "Log file: CARMEN's text, plain or in gzip, or MCAP")->required();
-  command->add_option("--set", calibrate.overrides, "Override a setting: path=value; may be repeated")->take_all();
-  command->add_flag("--skip-bad-lines", calibrate.skip_bad_lines, "Use what can be read of a damaged log");
-  command->add_option("--out", calibrate.out, "Directory to leave")->capture_default_str();
+  CLI::App* command = app.add_subcommand("calibrate", "Calibrate lidar pose and odometry scale from a log");
+  command->add_option("log", calibrate.log, kLogHelp)->required();
+  command->add_option("--set", calibrate.overrides, kSetHelp)->take_all();
+  command->add_flag("--skip-invalid", calibrate.skip_invalid, kSkipHelp);
+  command->add_option("--out", calibrate.out, kOutHelp)->capture_default_str();
   command->callback([&] { call.chosen = [&] { return calibrate_command(call.calibrate); }; });
 }
 
 void add_train(CLI::App& app, Call& call) {
   TrainOptions& train = call.train;
-  CLI::App* command = app.add_subcommand("train-neighbours", "Learn to recognise neighbouring submaps from runs whose truth is known");
-  command->add_option("runs", train.runs, "Run directories, of which is learnt")->required();
-  command->add_option("--held-out", train.held_out, "Others, on which what was learnt is tried");
-  command->add_option("--set", train.overrides, "Override a setting: path=value; may be repeated")->take_all();
-  command->add_option("--out", train.out, "Model to write (JSON)")->capture_default_str();
+  CLI::App* command = app.add_subcommand("train-neighbors", "Train the submap-neighbor classifier");
+  command->add_option("runs", train.runs, "Run directories for training")->required();
+  command->add_option("--validation", train.validation, "Run directories for validation");
+  command->add_option("--set", train.overrides, kSetHelp)->take_all();
+  command->add_option("--out", train.out, "Output file (JSON)")->capture_default_str();
   command->callback([&] { call.chosen = [&] { return train_command(call.train); }; });
 }
 
 void add_solve(CLI::App& app, Call& call) {
   SolveOptions& solve = call.solve;
-  CLI::App* command = app.add_subcommand("solve", "Solve a pose graph in g2o's text");
+  CLI::App* command = app.add_subcommand("solve", "Optimize a pose graph (g2o)");
   command->add_option("graph", solve.graph, "Pose graph (g2o)")->required();
-  command->add_flag("--doubt-loops", solve.robust_loop_closures, "A robust loss on the edges that are not odometry");
-  command->add_option("--out", solve.out, "Solved graph to write (g2o)")->capture_default_str();
+  command->add_flag("--robust-loops", solve.robust_loop_closures, "Use a robust loss on loop closures");
+  command->add_option("--out", solve.out, "Output file (g2o)")->capture_default_str();
   command->callback([&] { call.chosen = [&] { return solve_command(call.solve); }; });
 }
 
 void add_plan(CLI::App& app, Call& call) {
   PlanOptions& plan = call.plan;
-  CLI::App* command = app.add_subcommand("plan", "A route on anybody's map, a tour of many stations, or every problem of a .scen file");
-  command->add_option("map", plan.map, "map_server YAML, MovingAI .map, or a .scen file of problems, its map beside it")->required();
-  command->add_option("--from", plan.from, "X,Y: metres in the map's frame; of a MovingAI map cells from the upper left, y down");
-  command->add_option("--to", plan.to, "X,Y likewise; of a tour where it ends (default: back at the start)");
-  command->add_option("--stations", plan.stations, "Visit these (CSV: name, x, y and, if wanted, service_s, earliest_s, latest_s, priority)");
-  command->add_option("--planner", plan.planner, "By which planner (patrol list)");
-  command->add_option("--robot", plan.robot, "Inflate by this robot's outline, with the costmap that it drives by (default: a point)");
-  command->add_option("--radius-m", plan.radius_m, "Or by a disc's, m");
-  command->add_flag("--smooth", plan.smooth, "Straighten the route where that keeps its clearance");
-  command->add_option("--speed-mps", plan.speed_mps, "On a tour, m/s (default: the robot's, or 1)");
-  command->add_option("--seed", plan.seed, "Seed of planners that draw");
-  command->add_option("--set", plan.overrides, "Override a setting: path=value; may be repeated")->take_all();
-  command->add_option("--out", plan.out, "Directory to leave");
+  CLI::App* command = app.add_subcommand("plan", "Plan a path, a station order, or a MovingAI benchmark");
+  command->add_option("map", plan.map, "map_server YAML, MovingAI .map, or a .scen file next to its map")->required();
+  command->add_option("--from", plan.from,
+                      "Start X,Y: meters in the map's frame; on a MovingAI map cells from the upper left, y down");
+  command->add_option("--to", plan.to, "Goal X,Y; with --stations the end (default: back to the start)");
+  command->add_option("--stations", plan.stations,
+                      "Stations to visit (CSV: name, x, y and optionally service_s, earliest_s, latest_s, priority)");
+  command->add_option("--planner", plan.planner, "Global planner (see 'patrol list')");
+  command->add_option("--robot", plan.robot, "Robot whose footprint and costmap are used (default: a point)");
+  command->add_option("--radius-m", plan.radius_m, "Disc footprint radius, m");
+  command->add_flag("--smooth", plan.smooth, "Smooth the path without losing clearance");
+  command->add_option("--speed-mps", plan.speed_mps, "Speed between stations, m/s (default: the robot's, or 1)");
+  command->add_option("--seed", plan.seed, "Random seed of the planner");
+  command->add_option("--set", plan.overrides, kSetHelp)->take_all();
+  command->add_option("--out", plan.out, kOutHelp);
   command->callback([&] { call.chosen = [&] { return plan_command(call.plan); }; });
 }
 
 void add_study(CLI::App& app, Call& call) {
   StudyOptions& study = call.study;
-  CLI::App* command = app.add_subcommand("study", "A paper's experiment: its published figures beside ours");
-  command->add_option("name", study.name, "Which one (patrol list)")->required();
-  command->add_option("--seeds", study.seeds, "N (the first N that nothing was tuned on) or A..B");
-  command->add_option("--jobs", study.jobs, "Seeds at a time; 0: one for each core")->capture_default_str();
-  command->add_option("--out", study.out, "Directory to leave; seeds that lie there are not run again")->capture_default_str();
+  CLI::App* command = app.add_subcommand("study", "Reproduce a published experiment");
+  command->add_option("name", study.name, "Name of the study (see 'patrol list')")->required();
+  command->add_option("--seeds", study.seeds, "Seeds: N (the first N that are not used for tuning) or A..B");
+  command->add_option("--jobs", study.jobs, "Parallel seeds (0: one per core)")->capture_default_str();
+  command->add_option("--out", study.out, "Output directory; existing seeds are reused")->capture_default_str();
   command->callback([&] { call.chosen = [&] { return study_command(call.study); }; });
 }
 
 void add_test(CLI::App& app, Call& call) {
   TestOptions& test = call.test;
-  CLI::App* command = app.add_subcommand("test", "Run every scenario of a folder and leave JUnit XML and a summary");
-  command->add_option("scenarios", test.scenarios, "Folder of scenarios, or one of them")->required();
-  command->add_option("--set", test.overrides, "Override a setting in every run: path=value; may be repeated")->take_all();
+  CLI::App* command = app.add_subcommand("test", "Run all scenarios of a folder; write JUnit XML");
+  command->add_option("scenarios", test.scenarios, "Folder of scenarios, or one scenario file")->required();
+  command->add_option("--set", test.overrides, kSetAllHelp)->take_all();
   add_batch(*command, test.batch);
-  command->add_option("--out", test.out, "Directory to leave")->capture_default_str();
+  command->add_option("--out", test.out, kOutHelp)->capture_default_str();
   command->callback([&] { call.chosen = [&] { return test_command(call.test); }; });
 }
 
 void add_monitor(CLI::App& app, Call& call) {
   MonitorOptions& monitor = call.monitor;
-  CLI::App* command = app.add_subcommand("monitor", "The monitoring platform: takes results from robots and shows them, until it is interrupted");
-  command->add_option("--port", monitor.port, "Port to listen at; 0: any that is free")->capture_default_str();
-  command->add_option("--host", monitor.host, "Address or host name to listen at; 0.0.0.0: of every network")->capture_default_str();
-  command->add_option("--allow-host", monitor.allowed_hosts, "Host name under which it is reached, besides its address; may be repeated");
-  command->add_option("--data", monitor.data, "Directory of what it keeps")->capture_default_str();
-  command->add_option("--token", monitor.token_file, "File of the token (default: PATROL_TOKEN, else one is made in the directory)");
+  CLI::App* command = app.add_subcommand("monitor", "Run the monitoring server until interrupted");
+  command->add_option("--port", monitor.port, "TCP port (0: any free port)")->capture_default_str();
+  command->add_option("--host", monitor.host, "Address or host name to listen on (0.0.0.0: all networks)")
+      ->capture_default_str();
+  command->add_option("--allow-host", monitor.allowed_hosts, "Host name accepted besides the address (repeatable)");
+  command->add_option("--data-dir", monitor.data_dir, "Data directory")->capture_default_str();
+  command->add_option("--token-file", monitor.token_file,
+                      "File with the access token (default: $PATROL_TOKEN, else created in the data directory)");
   command->callback([&] { call.chosen = [&] { return monitor_command(call.monitor); }; });
 }
 
-void add_send(CLI::App& app, Call& call) {
-  SendOptions& send = call.send;
-  CLI::App* command = app.add_subcommand("send", "Send what of a run's results still waits for the monitoring platform");
-  command->add_option("run", send.run, "Run directory")->required();
-  command->add_option("--to", send.to, "Platform: http://host:port")->required();
-  command->add_option("--token", send.token_file, "File of the platform's token (default: PATROL_TOKEN)");
-  command->add_option("--limit-s", send.limit_s, "Give up after so long without an answer, s")->capture_default_str();
-  command->callback([&] { call.chosen = [&] { return send_command(call.send); }; });
+void add_upload(CLI::App& app, Call& call) {
+  UploadOptions& upload = call.upload;
+  CLI::App* command = app.add_subcommand("upload", "Upload pending results of a run");
+  command->add_option("run", upload.run, "Run directory")->required();
+  command->add_option("--monitor-url", upload.monitor_url, "Monitoring server, http://host:port")->required();
+  command->add_option("--token-file", upload.token_file, kTokenHelp);
+  command->add_option("--timeout-s", upload.timeout_s, "Maximum time without progress, s")->capture_default_str();
+  command->callback([&] { call.chosen = [&] { return upload_command(call.upload); }; });
 }
 
 void add_list(CLI::App& app, Call& call) {
-  CLI::App* command = app.add_subcommand("list", "Worlds, scenarios, robots, sensors, methods");
+  CLI::App* command = app.add_subcommand("list", "List scenarios, worlds, robots, sensors and methods");
   command->callback([&] { call.chosen = [] { return list_command(); }; });
 }
 
 /// Throws InputError for an unknown command; the message of CLI11 would only be that a command is required.
 void refuse_unknown_command(const CLI::App& app, int argc, const char* const* argv) {
   const std::string word = argc > 1 ? argv[1] : "-";
+  if (word.starts_with('-')) return;
   std::vector<std::string> known;
-  for (const CLI::App* command : app.get_subcommands({})) known.push_back(command->get_name());
-  if (word.starts_with('-') || std::find(known.begin(), known.end(), word) != known.end()) return;
-  throw InputError(fmt::format("there is no command '{}' (known: {})", word, fmt::join(known, ", ")));
+  for (const CLI::App* command : app.get_subcommands({})) {
+    if (command->check_name(word)) return;
+    known.push_back(command->get_name());
+  }
+  throw InputError(fmt::format("unknown command '{}' (known: {})", word, fmt::join(known, ", ")));
 }
 
 /// Prints an error; does not throw if standard error is not writable.
@@ -299,16 +327,16 @@ std::string refuse_bad_seed(const std::string& text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   const bool is_octal = text.size() > 1 && text.front() == '0';
   if (error == std::errc() && end == text.data() + text.size() && !is_octal) return "";
-  return fmt::format("{} is no seed: must be a whole number in 0 ... {}", text, std::numeric_limits<std::uint64_t>::max());
+  return fmt::format("{}: must be an integer in [0, {}]", text, std::numeric_limits<std::uint64_t>::max());
 }
 
-/// Refuses numbers beyond all times, lengths and speeds in use. CLI11 converts 1e400 to infinity.
+/// Rejects numbers beyond all times, lengths and speeds in use. CLI11 converts 1e400 to infinity.
 std::string refuse_bad_number(const std::string& text) {
   constexpr double kMaxNumber = 1e9;
   char* end = nullptr;
   const double value = std::strtod(text.c_str(), &end);
   if (!text.empty() && *end == '\0' && std::abs(value) <= kMaxNumber) return "";
-  return fmt::format("{} is out of range: must be a number in -1e9 ... 1e9", text);
+  return fmt::format("{}: must be a number in [-1e9, 1e9]", text);
 }
 
 /// Adds checks that CLI11 lacks to every option of every command, by the type of its value.
@@ -325,6 +353,7 @@ void add_number_checks(CLI::App& app) {
 /// Parses the command line and runs its command. Exceptions become one line on standard error.
 int run_parsed(CLI::App& app, Call& call, int argc, const char* const* argv) {
   try {
+    refuse_renamed(argc, argv);
     refuse_unknown_command(app, argc, argv);
     app.parse(argc, argv);
     return static_cast<int>(call.chosen());
@@ -347,8 +376,9 @@ int run_command_line(int argc, const char* const* argv) {
   app.require_subcommand(1);
 
   Call call;
-  for (const auto add : {add_run, add_score, add_localizability, add_replay, add_report, add_verify, add_sweep, add_collect, add_budget, add_faults,
-                         add_slam, add_calibrate, add_train, add_solve, add_plan, add_study, add_test, add_monitor, add_send, add_list}) {
+  for (const auto add : {add_run, add_score, add_localizability, add_replay, add_report, add_verify, add_sweep, add_merge,
+                         add_error_budget, add_fault_matrix, add_slam, add_calibrate, add_train, add_solve, add_plan,
+                         add_study, add_test, add_monitor, add_upload, add_list}) {
     add(app, call);
   }
   add_number_checks(app);
@@ -356,7 +386,7 @@ int run_command_line(int argc, const char* const* argv) {
   const int code = run_parsed(app, call, argc, argv);
   const bool is_written = std::cout.flush().good() && std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
   if (is_written || code == static_cast<int>(ExitCode::kWrongInput) || code == static_cast<int>(ExitCode::kProgramFailed)) return code;
-  return report(fmt::format("standard output: cannot be written: {}", std::strerror(errno)), ExitCode::kProgramFailed);
+  return report(fmt::format("cannot write standard output: {}", std::strerror(errno)), ExitCode::kProgramFailed);
 }
 
 }  // namespace patrol::app

@@ -22,8 +22,8 @@ struct RunOptions {
   std::optional<std::uint64_t> seed;
   bool watch = false;  ///< show live status in the terminal
   std::optional<std::filesystem::path> out;
-  std::optional<std::string> report_to;  ///< URL of a monitoring server
-  std::optional<std::filesystem::path> report_token_file;
+  std::optional<std::string> monitor_url;  ///< URL of a monitoring server
+  std::optional<std::filesystem::path> monitor_token_file;
   std::optional<std::string> robot_name;  ///< name shown by the monitoring server; default: robot and seed
 };
 ExitCode run_command(const RunOptions& options);
@@ -43,7 +43,7 @@ ExitCode score_command(const ScoreOptions& options);
 struct LocalizabilityOptions {
   std::filesystem::path scenario;
   std::vector<std::string> overrides;
-  double step_m = 0.5;
+  double grid_step_m = 0.5;
   std::filesystem::path out = "out/localizability";
 };
 /// Maps the accuracy bound of a single scan over a scenario's world.
@@ -54,7 +54,7 @@ struct ReplayOptions {
   std::string style = "story";
   std::string camera = "chase";
   double speed = 8.0;
-  double slow = 2.0;
+  double highlight_speed = 2.0;
   std::string renderer = "auto";
   std::string size = "1280x720";
   std::optional<double> still_s;
@@ -75,13 +75,13 @@ ExitCode verify_command(const std::filesystem::path& run);
 ExitCode sweep_command(const SweepOptions& options);
 
 /// Copies the results of `parts`, shards of one sweep, to `root`, and writes the tables if all runs are complete.
-ExitCode collect_command(const std::filesystem::path& root, const std::vector<std::filesystem::path>& parts);
+ExitCode merge_command(const std::filesystem::path& root, const std::vector<std::filesystem::path>& parts);
 
 /// Computes an error budget: reruns the scenario with one error source removed at a time.
-ExitCode budget_command(const BudgetOptions& options);
+ExitCode error_budget_command(const ErrorBudgetOptions& options);
 
 /// Runs a scenario with every fault of every sensor and classifies the outcomes.
-ExitCode faults_command(const FaultsOptions& options);
+ExitCode fault_matrix_command(const FaultMatrixOptions& options);
 
 struct SlamOptions {
   std::filesystem::path log;          ///< CARMEN or MCAP
@@ -89,7 +89,7 @@ struct SlamOptions {
   std::vector<std::string> overrides;
   std::optional<std::filesystem::path> calibration;  ///< calibration.yaml of `patrol calibrate`
   std::optional<std::uint64_t> seed;
-  bool skip_bad_lines = false;
+  bool skip_invalid = false;
   std::filesystem::path out = "out/slam";
 };
 /// Builds a map from a recorded log.
@@ -98,7 +98,7 @@ ExitCode slam_command(const SlamOptions& options);
 struct CalibrateOptions {
   std::filesystem::path log;  ///< CARMEN or MCAP
   std::vector<std::string> overrides;
-  bool skip_bad_lines = false;
+  bool skip_invalid = false;
   std::filesystem::path out = "out/calibration";
 };
 /// Calibrates the lidar pose and the odometry scales from a recorded log.
@@ -106,9 +106,9 @@ ExitCode calibrate_command(const CalibrateOptions& options);
 
 struct TrainOptions {
   std::vector<std::filesystem::path> runs;      ///< run directories for training
-  std::vector<std::filesystem::path> held_out;  ///< run directories for validation
+  std::vector<std::filesystem::path> validation;  ///< run directories for validation
   std::vector<std::string> overrides;
-  std::filesystem::path out = "submap_neighbours.json";
+  std::filesystem::path out = "submap_neighbors.json";
 };
 /// Trains the classifier of neighboring submaps (`--method submap_rbpf`).
 ExitCode train_command(const TrainOptions& options);
@@ -128,7 +128,7 @@ struct StudyOptions {
   std::string name;
   std::optional<std::string> seeds;  ///< "N": 1001 ... 1000 + N, which were not used for tuning; or "A..B"
   int jobs = 0;                      ///< parallel seeds; 0: one per core
-  double seed_limit_s = 3600.0;      ///< wall-clock limit per seed
+  double seed_timeout_s = 3600.0;      ///< wall-clock limit per seed
   std::filesystem::path out = "out/study";
 };
 /// Reproduces a published experiment and compares the results.
@@ -140,14 +140,14 @@ ExitCode test_command(const TestOptions& options);
 /// Runs the monitoring server until it is interrupted.
 ExitCode monitor_command(const MonitorOptions& options);
 
-struct SendOptions {
+struct UploadOptions {
   std::filesystem::path run;
   std::string to;
   std::optional<std::filesystem::path> token_file;
-  double limit_s = 30.0;  ///< timeout without progress
+  double timeout_s = 30.0;  ///< timeout without progress
 };
 /// Uploads the pending results of a run to the monitoring server.
-ExitCode send_command(const SendOptions& options);
+ExitCode upload_command(const UploadOptions& options);
 
 ExitCode list_command();
 

@@ -99,10 +99,10 @@ ExitCode list_command() {
   print("localizers (stack.localizer)", allowed<stack::StackSettings>("localizer"));
   print("missions (stack.mission_type)", allowed<stack::StackSettings>("mission_type"));
   print_table("SLAM methods (stack.slam.method; patrol slam --method)", slam::mapping_methods());
-  print_table("odometry of the method rbpf (stack.slam.rbpf.odometry)", slam::kRbpfOdometries);
-  print_table("optimizers of particles (stack.slam.rbpf.optimizer)", slam::optimizers());
-  print_table("resamplers of particles", slam::resamplers());
-  print("localisation methods", {"Monte-Carlo localisation with KLD sampling (stack.localization)"});
+  print_table("odometry of method rbpf (stack.slam.rbpf.odometry)", slam::kRbpfOdometries);
+  print_table("particle optimizers (stack.slam.rbpf.optimizer)", slam::optimizers());
+  print_table("particle resamplers", slam::resamplers());
+  print("localization methods", {"Monte Carlo localization with KLD sampling (stack.localization)"});
   print_table("sensor models of localization (stack.localization.sensor_model)", localize::sensor_models());
   print_table("global planners (stack.navigation.global_planner.method; patrol plan --planner)", plan::route_planners());
   print_table("local planners (stack.navigation.local_planner.method)", plan::local_planners());

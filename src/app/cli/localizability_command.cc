@@ -15,20 +15,20 @@
 namespace patrol::app {
 namespace {
 
-const OutputKind kLocalizability = {.name = "map of localisability",
-                                    .unfinished = "Not every place has been looked from.",
-                                    .made = {"localizability.csv", "localizability.png", "*.part"},
-                                    .proof = "localizability.csv",
-                                    .kept = {}};
+const OutputKind kLocalizability = {.name = "localizability map",
+                                    .marker_text = "Incomplete: not every position has been evaluated.",
+                                    .outputs = {"localizability.csv", "localizability.png", "*.part"},
+                                    .required_file = "localizability.csv",
+                                    .preserved = {}};
 
 /// Maps a standard deviation to a logarithmic scale from 0.1 mm to 1 m.
-double share_of(double std_m) { return std::log10(std::clamp(std_m, 1e-4, 1.0)) / 4.0 + 1.0; }
+double to_color_scale(double std_m) { return std::log10(std::clamp(std_m, 1e-4, 1.0)) / 4.0 + 1.0; }
 
 io::Table table_of(const LocalizabilityMap& map) {
   io::Table table{.name = "localizability", .columns = {"x_m", "y_m", "weak_std_m", "weak_direction_deg", "strong_std_m", "returns"}, .rows = {}};
-  for (const LocalizablePlace& place : map.positions) {
-    table.rows.push_back({place.p_world_m.x(), place.p_world_m.y(), place.truth.max_std_m, to_deg(place.truth.max_std_direction_rad),
-                          place.truth.min_std_m, static_cast<std::int64_t>(place.truth.num_returns)});
+  for (const LocalizabilitySample& sample : map.positions) {
+    table.rows.push_back({sample.p_world_m.x(), sample.p_world_m.y(), sample.truth.max_std_m, to_deg(sample.truth.max_std_direction_rad),
+                          sample.truth.min_std_m, static_cast<std::int64_t>(sample.truth.num_returns)});
   }
   return table;
 }
@@ -37,15 +37,15 @@ render::Frame picture_of(const LocalizabilityMap& map, const std::string& where)
   render::HeatMap heat{.surfaces = map.surfaces,
                        .step_m = map.step_m,
                        .positions = {},
-                       .title = fmt::format("{}: what one scan leaves unknown", where),
-                       .note = fmt::format("standard deviation along the weak direction; strokes: that direction, where it is more than {:g} cm",
+                       .title = fmt::format("{}: bound of a single scan", where),
+                       .note = fmt::format("maximum standard deviation; strokes: its direction, above {:g} cm",
                                            100.0 * score::Localizability::kDegenerate_m),
-                       .scale = {{0.0, "0.1 mm"}, {0.25, "1 mm"}, {0.5, "1 cm"}, {0.75, "10 cm"}, {1.0, "1 m, more"}}};
-  for (const LocalizablePlace& place : map.positions) {
-    heat.positions.push_back({.p_m = place.p_world_m,
-                           .color_fraction = share_of(place.truth.max_std_m),
-                           .has_stroke = place.truth.is_degenerate(),
-                           .stroke_rad = place.truth.max_std_direction_rad});
+                       .scale = {{0.0, "0.1 mm"}, {0.25, "1 mm"}, {0.5, "1 cm"}, {0.75, "10 cm"}, {1.0, "1 m or more"}}};
+  for (const LocalizabilitySample& sample : map.positions) {
+    heat.positions.push_back({.p_m = sample.p_world_m,
+                           .color_fraction = to_color_scale(sample.truth.max_std_m),
+                           .has_stroke = sample.truth.is_degenerate(),
+                           .stroke_rad = sample.truth.max_std_direction_rad});
   }
   return render::draw_heat_map(heat);
 }
@@ -53,19 +53,19 @@ render::Frame picture_of(const LocalizabilityMap& map, const std::string& where)
 }  // namespace
 
 ExitCode localizability_command(const LocalizabilityOptions& options) {
-  if (!(options.step_m >= 0.05 && options.step_m <= 10.0)) throw InputError(fmt::format("--step-m {}: must lie in 0.05 ... 10", options.step_m));
+  if (!(options.grid_step_m >= 0.05 && options.grid_step_m <= 10.0)) throw InputError(fmt::format("--grid-step-m {}: must be in [0.05, 10]", options.grid_step_m));
   const Scenario scenario = load_scenario(options.scenario, options.overrides);
-  const LocalizabilityMap map = map_localizability(scenario, load_scenario_files(scenario, find_data_root(options.scenario)), options.step_m);
+  const LocalizabilityMap map = map_localizability(scenario, load_scenario_files(scenario, find_data_root(options.scenario)), options.grid_step_m);
   const OutputLock lock = begin_output(options.out, kLocalizability);
   io::save_csv(options.out / "localizability.csv", table_of(map));
   render::save_png(options.out / "localizability.png", picture_of(map, scenario.world));
   complete_output(options.out);
 
-  std::vector<double> weak_m;
-  for (const LocalizablePlace& place : map.positions) weak_m.push_back(place.truth.max_std_m);
-  const auto num_degenerate = std::count_if(map.positions.begin(), map.positions.end(), [](const auto& place) { return place.truth.is_degenerate(); });
-  fmt::print("{} places, {:g} m apart: one scan leaves {:.4f} m unknown along its weak direction at the median, {:.4f} m at the 95th percentile;\n",
-             map.positions.size(), options.step_m, score::percentile(weak_m, 0.5), score::percentile(weak_m, 0.95));
+  std::vector<double> max_std_m;
+  for (const LocalizabilitySample& sample : map.positions) max_std_m.push_back(sample.truth.max_std_m);
+  const auto num_degenerate = std::count_if(map.positions.begin(), map.positions.end(), [](const auto& sample) { return sample.truth.is_degenerate(); });
+  fmt::print("{} positions, spacing {:g} m: maximum standard deviation of one scan {:.4f} m (median), {:.4f} m (95th percentile);\n",
+             map.positions.size(), options.grid_step_m, score::percentile(max_std_m, 0.5), score::percentile(max_std_m, 0.95));
   fmt::print("{:.1f} % are degenerate (more than {} m).\n{}\n", 100.0 * static_cast<double>(num_degenerate) / static_cast<double>(map.positions.size()),
              score::Localizability::kDegenerate_m, (options.out / "localizability.png").string());
   return ExitCode::kDone;

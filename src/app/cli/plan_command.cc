@@ -28,12 +28,12 @@ void refuse_options_of_maps(const PlanOptions& options) {
                                                 {"--stations", options.stations.has_value()}, {"--robot", options.robot.has_value()},
                                                 {"--radius-m", options.radius_m.has_value()}, {"--smooth", options.smooth}};
   for (const auto& [option, is_given] : given) {
-    if (is_given) throw InputError(fmt::format("{}: is of a map: a .scen file has its own problems, a point's", option));
+    if (is_given) throw InputError(fmt::format("{}: not applicable to .scen files, which define their own point-robot problems", option));
   }
 }
 
 ExitCode interrupted() {
-  fmt::print(stderr, "patrol: interrupted; nothing was left\n");
+  fmt::print(stderr, "patrol: interrupted; nothing written\n");
   return ExitCode::kProgramFailed;
 }
 
@@ -67,22 +67,22 @@ struct Ground {
   bool is_blocked(const Eigen::Vector2d& p_m) const { return costs.at(costs.geometry().cell_at(p_m)) == plan::kLethalCost; }
 
   /// Message for a blocked point: "--to: 3, 4 is occupied; the nearest free cell is 2.5, 4, 0.50 m away".
-  std::string why_blocked(const std::string& key, const Eigen::Vector2d& p_m) const {
-    const std::string place = fmt::format("{}: {} {}", key, map.text_of(p_m), blocked_reason(occupancy, setup.settings.costmap, p_m));
+  std::string blocked_message(const std::string& key, const Eigen::Vector2d& p_m) const {
+    const std::string reason = fmt::format("{}: {} {}", key, map.text_of(p_m), blocked_reason(occupancy, setup.settings.costmap, p_m));
     const std::optional<Cell> free = nearest_free(costs, p_m);
-    if (!free) return place + "; no cell of the map is free";
+    if (!free) return reason + "; the map has no free cell";
     const Eigen::Vector2d p_free_m = costs.geometry().center_of(*free);
-    return fmt::format("{}; the nearest free cell is at {}, {:.2f} {} away", place, map.text_of(p_free_m), (p_free_m - p_m).norm(), map.unit());
+    return fmt::format("{}; the nearest free cell is at {}, {:.2f} {} away", reason, map.text_of(p_free_m), (p_free_m - p_m).norm(), map.unit());
   }
 };
 
 Ground load_ground(const PlanOptions& options) {
   PlanMap map(options.map);
   if (map.is_moving_ai() && (options.robot || options.radius_m)) {
-    throw InputError(fmt::format("{}: cells of a MovingAI map have no size: neither --robot nor --radius-m has a meaning", options.map.string()));
+    throw InputError(fmt::format("{}: MovingAI maps have no metric resolution; --robot and --radius-m are not supported", options.map.string()));
   }
   PlanSetup setup = load_plan_setup(options);
-  const Eigen::Vector2d p_from_m = map.place("--from", options.from.value());
+  const Eigen::Vector2d p_from_m = map.parse_point("--from", options.from.value());
   OccupancyGrid occupancy = map.occupancy_from(p_from_m);
   Grid<plan::Cost> costs = make_costs(occupancy, setup.body, setup.settings.costmap);
   return {.map = std::move(map), .map_name = options.map.filename().string(), .setup = std::move(setup), .p_from_m = p_from_m,
@@ -97,12 +97,12 @@ void save_picture(const std::filesystem::path& folder, const Ground& ground, con
 
 ExitCode plan_one(const PlanOptions& options) {
   const Ground ground = load_ground(options);
-  const Eigen::Vector2d p_to_m = ground.map.place("--to", options.to.value());
+  const Eigen::Vector2d p_to_m = ground.map.parse_point("--to", options.to.value());
   const GridGeometry& grid = ground.costs.geometry();
   const RouteReport report{.map = ground.map, .map_name = ground.map_name, .setup = ground.setup, .costs = ground.costs,
                            .p_from_m = ground.p_from_m, .p_to_m = p_to_m,
-                           .figures = figures_of_route(ground.costs, grid.cell_at(ground.p_from_m), grid.cell_at(p_to_m), ground.setup.settings)};
-  const plan::Route& route = report.figures.route;
+                           .metrics = evaluate_route(ground.costs, grid.cell_at(ground.p_from_m), grid.cell_at(p_to_m), ground.setup.settings)};
+  const plan::Route& route = report.metrics.route;
   const bool is_found = route.status == plan::PlanStatus::kFound;
   if (options.out) {
     const OutputLock lock = begin_output(*options.out, kPlanOutput);
@@ -114,8 +114,8 @@ ExitCode plan_one(const PlanOptions& options) {
     complete_output(*options.out);
   }
   fmt::print("{}", to_text(report));
-  if (route.status == plan::PlanStatus::kStartBlocked) fmt::print("{}\n", ground.why_blocked("--from", ground.p_from_m));
-  if (!is_found && ground.is_blocked(p_to_m)) fmt::print("{}\n", ground.why_blocked("--to", p_to_m));
+  if (route.status == plan::PlanStatus::kStartBlocked) fmt::print("{}\n", ground.blocked_message("--from", ground.p_from_m));
+  if (!is_found && ground.is_blocked(p_to_m)) fmt::print("{}\n", ground.blocked_message("--to", p_to_m));
   if (options.out) fmt::print("{}\n", (*options.out / "route.png").string());
   return is_found ? ExitCode::kDone : ExitCode::kExpectationMissed;
 }
@@ -123,7 +123,7 @@ ExitCode plan_one(const PlanOptions& options) {
 std::vector<TourStop> load_stops(const std::filesystem::path& file, const PlanMap& map) {
   std::vector<TourStop> stops;
   for (const io::TourStation& station : io::load_tour_stations(file)) {
-    stops.push_back({.station = station, .p_m = map.place(fmt::format("{}:{}: {}", file.string(), station.line, station.name), station.x, station.y)});
+    stops.push_back({.station = station, .p_m = map.parse_point(fmt::format("{}:{}: {}", file.string(), station.line, station.name), station.x, station.y)});
   }
   return stops;
 }
@@ -131,7 +131,7 @@ std::vector<TourStop> load_stops(const std::filesystem::path& file, const PlanMa
 ExitCode plan_stations(const PlanOptions& options) {
   const Ground ground = load_ground(options);
   const std::vector<TourStop> stops = load_stops(*options.stations, ground.map);
-  const std::optional<Eigen::Vector2d> p_end_m = options.to ? std::optional(ground.map.place("--to", *options.to)) : std::nullopt;
+  const std::optional<Eigen::Vector2d> p_end_m = options.to ? std::optional(ground.map.parse_point("--to", *options.to)) : std::nullopt;
   const std::optional<TourPlan> tour = plan_tour(ground.costs, ground.p_from_m, stops, p_end_m, ground.setup.settings);
   if (!tour) return interrupted();
   const TourReport report{.map = ground.map, .map_name = ground.map_name, .setup = ground.setup, .costs = ground.costs,
@@ -148,10 +148,10 @@ ExitCode plan_stations(const PlanOptions& options) {
     complete_output(*options.out);
   }
   fmt::print("{}", to_text(report));
-  if (ground.is_blocked(ground.p_from_m)) fmt::print("{}\n", ground.why_blocked("--from", ground.p_from_m));
-  for (const std::size_t place : tour->unreachable) {
-    const Eigen::Vector2d p_m = place <= stops.size() ? stops[place - 1].p_m : *p_end_m;
-    if (ground.is_blocked(p_m)) fmt::print("{}\n", ground.why_blocked(place_name(report, place), p_m));
+  if (ground.is_blocked(ground.p_from_m)) fmt::print("{}\n", ground.blocked_message("--from", ground.p_from_m));
+  for (const std::size_t node : tour->unreachable) {
+    const Eigen::Vector2d p_m = node <= stops.size() ? stops[node - 1].p_m : *p_end_m;
+    if (ground.is_blocked(p_m)) fmt::print("{}\n", ground.blocked_message(node_name(report, node), p_m));
   }
   if (options.out) fmt::print("{}\n", (*options.out / "route.png").string());
   return tour->order.is_found && tour->unreachable.empty() && tour->order.lateness <= 0.0 ? ExitCode::kDone : ExitCode::kExpectationMissed;
@@ -163,11 +163,11 @@ ExitCode plan_command(const PlanOptions& options) {
   const std::string extension = options.map.extension().string();
   if (extension == ".scen") return plan_problems(options);
   if (extension != ".yaml" && extension != ".yml" && extension != ".map") {
-    throw InputError(fmt::format("{}: must be a map_server map (.yaml), a MovingAI map (.map) or its problems (.scen)", options.map.string()));
+    throw InputError(fmt::format("{}: unknown file type (known: .yaml of map_server, .map and .scen of MovingAI)", options.map.string()));
   }
-  if (!options.from) throw InputError("--from: is missing: where does the route begin?");
+  if (!options.from) throw InputError("--from: required");
   if (options.stations) return plan_stations(options);
-  if (!options.to) throw InputError("--to: is missing: where does the route lead? Or give --stations for a tour");
+  if (!options.to) throw InputError("--to: required unless --stations is given");
   return plan_one(options);
 }
 

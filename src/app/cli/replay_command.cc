@@ -25,13 +25,13 @@ std::pair<int, int> parse_size(const std::string& text) {
   const auto [rest, bad_height] = has_cross ? std::from_chars(cross + 1, end, height) : std::from_chars_result{cross, bad_width};
   const auto is_fine = [](int value) { return value >= kMinSize && value <= kMaxSize && value % 2 == 0; };
   if (!has_cross || bad_height != std::errc{} || rest != end || !is_fine(width) || !is_fine(height)) {
-    throw InputError(fmt::format("--size {}: must be WIDTHxHEIGHT, even numbers of pixels in {} ... {}", text, kMinSize, kMaxSize));
+    throw InputError(fmt::format("--size {}: must be WIDTHxHEIGHT, even numbers of pixels in [{}, {}]", text, kMinSize, kMaxSize));
   }
   return {width, height};
 }
 
 double checked_speed(const char* option, double speed) {
-  if (!(speed > 0.0 && speed <= 1000.0)) throw InputError(fmt::format("{} {}: must lie in 0 ... 1000", option, speed));
+  if (!(speed > 0.0 && speed <= 1000.0)) throw InputError(fmt::format("{} {}: must be in (0, 1000]", option, speed));
   return speed;
 }
 
@@ -41,20 +41,20 @@ render::ReplaySettings replay_settings(const ReplayOptions& options) {
   settings.camera = render::parse_camera_kind(options.camera);
   settings.renderer = render::parse_renderer(options.renderer);
   settings.speed.fast = checked_speed("--speed", options.speed);
-  settings.speed.slow = checked_speed("--slow", options.slow);
+  settings.speed.slow = checked_speed("--highlight-speed", options.highlight_speed);
   std::tie(settings.width, settings.height) = parse_size(options.size);
   return settings;
 }
 
 /// Highlights at the start of faults. They come from the scenario because the log does not contain them.
-std::vector<render::Highlight> fault_moments(const std::vector<sim::FaultSettings>& faults) {
-  std::vector<render::Highlight> moments;
+std::vector<render::Highlight> fault_highlights(const std::vector<sim::FaultSettings>& faults) {
+  std::vector<render::Highlight> highlights;
   for (const sim::FaultSettings& fault : faults) {
-    moments.push_back({.at = from_seconds(fault.start_s),
+    highlights.push_back({.at = from_seconds(fault.start_s),
                        .kind = render::HighlightKind::kFault,
                        .title = fmt::format("Fault: {} of {} for {:g} s", fault.kind, fault.sensor, fault.duration_s)});
   }
-  return moments;
+  return highlights;
 }
 
 }  // namespace
@@ -68,19 +68,20 @@ ExitCode replay_command(const ReplayOptions& options) {
   settings.light = scenario.light;
   settings.leaks = scenario.leaks;
   settings.wind = scenario.wind;
-  settings.announced = fault_moments(scenario.faults);
+  settings.announced = fault_highlights(scenario.faults);
   settings.map = files.map;
   const RunRecord record = read_run_record(directory.log());
-  if (!record.has_estimate()) throw InputError(fmt::format("{}: ended before the robot had an estimate", directory.log().string()));
+  if (!record.has_estimate()) throw InputError(fmt::format("{}: contains no pose estimate", directory.log().string()));
   const Pose2 T_world_map =
       files.map ? files.T_site_start : score::align_at_start(record.T_map_body, record.T_world_body);
   sim::AssembledModel model =
-      sim::assemble_model(files.world_xml.string(), files.robot_urdf.string(), start_in_world(scenario, files), props_of(scenario));
+      sim::assemble_model(files.world_xml.string(), files.robot_urdf.string(), start_in_world(scenario, files),
+                          all_static_obstacles(scenario));
 
   if (options.still_s) {
     const Time at = from_seconds(*options.still_s);
     if (at < Time::zero() || at > record.T_world_body.back().stamp) {
-      throw InputError(fmt::format("--still {}: the run lasted from 0 to {:.1f} s", *options.still_s,
+      throw InputError(fmt::format("--still {}: must be in [0, {:.1f}], the duration of the run", *options.still_s,
                                    to_seconds(record.T_world_body.back().stamp)));
     }
     const std::filesystem::path out =
@@ -97,11 +98,11 @@ ExitCode replay_command(const ReplayOptions& options) {
     return !interrupt.is_interrupted();
   });
   if (summary.is_interrupted) {
-    fmt::print(stderr, "patrol: interrupted; no film is left\n");
+    fmt::print(stderr, "patrol: interrupted; no video written\n");
     return ExitCode::kProgramFailed;
   }
   fmt::print("{}: {} frames, {} chapters, {:.1f} s of the run{}\n", out.string(), summary.num_frames, summary.num_chapters,
-             to_seconds(summary.end), summary.log_is_complete ? "" : ", whose log was cut off");
+             to_seconds(summary.end), summary.log_is_complete ? "" : ", incomplete log");
   return ExitCode::kDone;
 }
 

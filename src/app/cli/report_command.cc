@@ -12,9 +12,9 @@ namespace patrol::app {
 namespace {
 
 /// Loads the page of a study or of a mapped log, which is generated with its results.
-std::string page_made_before(const std::filesystem::path& root) {
+std::string load_page(const std::filesystem::path& root) {
   const std::filesystem::path page = root / "report.html";
-  if (!std::filesystem::exists(page)) throw InputError(fmt::format("{}: has not come to its end: there is nothing to report", root.string()));
+  if (!std::filesystem::exists(page)) throw InputError(fmt::format("{}: incomplete: no report can be generated", root.string()));
   return io::load_text(page);
 }
 
@@ -23,9 +23,9 @@ report::Page page_of(const std::filesystem::path& root, const std::filesystem::p
   const SweepDirectory directory = open_sweep_directory(root);
   const SweepManifest manifest = load_manifest(directory.manifest());
   const SweepRows rows = load_rows(manifest, directory.store());
-  const SweepProgress progress = progress_of(manifest, rows);
+  const SweepProgress progress = evaluate_progress(manifest, rows);
   if (progress.needed.empty()) return sweep_page(manifest, rows, progress);
-  throw InputError(fmt::format("{}: {} of {} runs have no result yet: there is nothing to report", root.string(), progress.needed.size(), progress.counted.size()));
+  throw InputError(fmt::format("{}: {} of {} runs are missing; finish the sweep first", root.string(), progress.needed.size(), progress.counted.size()));
 }
 
 }  // namespace
@@ -34,10 +34,10 @@ ExitCode report_command(const ReportOptions& options) {
   const std::filesystem::path out = options.out.value_or(options.directory / "report.html");
   std::string html;
   try {
-    const bool is_made = std::filesystem::exists(options.directory / "study.json") || std::filesystem::exists(options.directory / "pose_graph.g2o");
-    html = is_made ? page_made_before(options.directory) : report::to_html(page_of(options.directory, out));
+    const bool is_generated = std::filesystem::exists(options.directory / "study.json") || std::filesystem::exists(options.directory / "pose_graph.g2o");
+    html = is_generated ? load_page(options.directory) : report::to_html(page_of(options.directory, out));
   } catch (const io::Metrics::exception& error) {
-    throw InputError(fmt::format("{}: metrics.json is not as a run leaves it: {}", options.directory.string(), error.what()));
+    throw InputError(fmt::format("{}: metrics.json: invalid: {}", options.directory.string(), error.what()));
   }
   io::save_text(out, html);
   fmt::print("{}: {:.2f} MB\n", out.string(), 1e-6 * static_cast<double>(html.size()));

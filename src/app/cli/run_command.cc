@@ -8,7 +8,7 @@
 #include "app/monitor/reporter.h"
 #include "app/common/progress_bar.h"
 #include "app/run/run_once.h"
-#include "app/run/terminal_watch.h"
+#include "app/run/terminal_view.h"
 #include "app/scoring/goal_table.h"
 #include "app/scoring/score_table.h"
 
@@ -31,8 +31,8 @@ class ProgressLine final : public RunObserver {
  public:
   explicit ProgressLine(const std::string& name) : name_(name) {}
 
-  bool go_on(Time now, double distance_m) override {
-    bar_.show(fmt::format("{}  {:6.1f} s simulated  {:6.1f} m walked", name_, to_seconds(now), distance_m));
+  bool keep_running(Time now, double distance_m) override {
+    bar_.show(fmt::format("{}  {:6.1f} s simulated  {:6.1f} m traveled", name_, to_seconds(now), distance_m));
     return !interrupt_.is_interrupted();
   }
 
@@ -43,17 +43,17 @@ class ProgressLine final : public RunObserver {
 };
 
 /// Group of observers; each may stop the run.
-class Together final : public RunObserver {
+class ObserverGroup final : public RunObserver {
  public:
-  explicit Together(std::vector<RunObserver*> observers) : observers_(std::move(observers)) {}
+  explicit ObserverGroup(std::vector<RunObserver*> observers) : observers_(std::move(observers)) {}
 
   void begin(const ScenarioFiles& files) override { for (RunObserver* one : observers_) one->begin(files); }
-  void see(const stack::StackMessage& message) override { for (RunObserver* one : observers_) one->see(message); }
-  void see(const GroundTruth& truth) override { for (RunObserver* one : observers_) one->see(truth); }
-  bool go_on(Time now, double distance_m) override {
-    bool goes_on = true;
-    for (RunObserver* one : observers_) goes_on = one->go_on(now, distance_m) && goes_on;
-    return goes_on;
+  void on_message(const stack::StackMessage& message) override { for (RunObserver* one : observers_) one->on_message(message); }
+  void on_ground_truth(const GroundTruth& truth) override { for (RunObserver* one : observers_) one->on_ground_truth(truth); }
+  bool keep_running(Time now, double distance_m) override {
+    bool keeps_running = true;
+    for (RunObserver* one : observers_) keeps_running = one->keep_running(now, distance_m) && keeps_running;
+    return keeps_running;
   }
 
  private:
@@ -61,27 +61,27 @@ class Together final : public RunObserver {
 };
 
 std::unique_ptr<RunObserver> observer_of(const RunOptions& options, const std::string& name) {
-  if (options.watch) return std::make_unique<TerminalWatch>(name);
+  if (options.watch) return std::make_unique<TerminalView>(name);
   return std::make_unique<ProgressLine>(name);
 }
 
 std::unique_ptr<Reporter> reporter_of(const RunOptions& options, const Scenario& scenario, const std::string& name, const std::filesystem::path& root) {
-  if (!options.report_to) return nullptr;
+  if (!options.monitor_url) return nullptr;
   const ReportedRun run{.robot = options.robot_name.value_or(fmt::format("{}-{}", scenario.robot, scenario.seed)),
                         .run = new_run_name(name, scenario.seed),
                         .world = scenario.world,
                         .scenario = name};
-  return std::make_unique<Reporter>(root, run, platform_from(*options.report_to, options.report_token_file));
+  return std::make_unique<Reporter>(root, run, make_monitor_server(*options.monitor_url, options.monitor_token_file));
 }
 
 std::optional<RunVerdict> run_reported(const RunOptions& options, const Scenario& scenario, const std::string& name, const std::filesystem::path& root,
                                       Reporter* reporter, RunObserver& screen) {
   const std::filesystem::path data_root = find_data_root(options.scenario);
   if (reporter == nullptr) return run_once(scenario, name, data_root, root, screen);
-  Together observers({&screen, reporter});
+  ObserverGroup observers({&screen, reporter});
   try {
     std::optional<RunVerdict> verdict = run_once(scenario, name, data_root, root, observers);
-    if (!verdict) reporter->finish("interrupted", "somebody stopped it");
+    if (!verdict) reporter->finish("interrupted", "interrupted by user");
     else reporter->finish(verdict->code() == ExitCode::kDone ? "finished" : "failed", verdict->message.empty() ? std::string(name_of(verdict->end)) : verdict->message);
     return verdict;
   } catch (const std::exception& error) {
@@ -90,15 +90,15 @@ std::optional<RunVerdict> run_reported(const RunOptions& options, const Scenario
   }
 }
 
-void say_what_was_sent(const Reporter& reporter, const std::string& to, const std::filesystem::path& root) {
-  if (reporter.num_refused() > 0) {
-    fmt::print(stderr, "patrol: {} refused {} results: they lie in {}\n", to, reporter.num_refused(), (root / "outbox.refused.jsonl").string());
+void report_delivery(const Reporter& reporter, const std::string& to, const std::filesystem::path& root) {
+  if (reporter.num_rejected() > 0) {
+    fmt::print(stderr, "patrol: {} rejected {} results, kept in {}\n", to, reporter.num_rejected(), (root / "outbox.refused.jsonl").string());
   }
-  if (const std::size_t waiting = reporter.num_waiting(); waiting > 0) {
-    fmt::print(stderr, "patrol: {} results wait in {} ({}); send them with: patrol send {} --to {}\n", waiting,
-               (root / "outbox.jsonl").string(), reporter.why_not(), root.string(), to);
+  if (const std::size_t num_pending = reporter.num_pending(); num_pending > 0) {
+    fmt::print(stderr, "patrol: {} results not delivered, kept in {} ({}); upload with: patrol upload {} --monitor-url {}\n", num_pending,
+               (root / "outbox.jsonl").string(), reporter.last_error(), root.string(), to);
   } else {
-    fmt::print(stderr, "patrol: {} has all {} results\n", to, reporter.num_results());
+    fmt::print(stderr, "patrol: {} received all {} results\n", to, reporter.num_results());
   }
 }
 
@@ -113,7 +113,7 @@ ExitCode run_command(const RunOptions& options) {
   std::unique_ptr<RunObserver> observer = observer_of(options, name);
   const std::optional<RunVerdict> verdict = run_reported(options, scenario, name, root, reporter.get(), *observer);
   observer.reset();  // restores the screen
-  if (reporter) say_what_was_sent(*reporter, *options.report_to, root);
+  if (reporter) report_delivery(*reporter, *options.monitor_url, root);
   if (!verdict) {
     fmt::print(stderr, "patrol: interrupted; {} is incomplete\n", root.string());
     return ExitCode::kProgramFailed;
@@ -121,7 +121,7 @@ ExitCode run_command(const RunOptions& options) {
 
   fmt::print("{}\n", score_table(verdict->metrics, verdict->checks));
   if (const std::string goals = goal_table(verdict->metrics); !goals.empty()) fmt::print("{}\n", goals);
-  for (const DeclaredEvent& event : verdict->events) fmt::print("{}: {}\n", event.what, event.was_triggered ? "executed" : "NOT EXECUTED");
+  for (const InjectedEvent& event : verdict->events) fmt::print("{}: {}\n", event.name, event.was_triggered ? "triggered" : "not triggered");
   fmt::print("run directory: {}\n", root.string());
   return verdict->code();
 }

@@ -18,7 +18,7 @@ namespace {
 ExitCode score_directory(const std::filesystem::path& root) {
   const RunDirectory directory = open_run_directory(root);
   if (std::filesystem::exists(incomplete_marker(directory.root))) {
-    throw InputError(fmt::format("{}: is incomplete: the run was cut off, there is nothing to score", directory.root.string()));
+    throw InputError(fmt::format("{}: incomplete run; cannot be scored", directory.root.string()));
   }
   const Scenario scenario = load_scenario(directory.scenario());
   const ScenarioFiles files = load_scenario_files(scenario, find_data_root(directory.scenario()));
@@ -56,7 +56,7 @@ ExitCode score_command(const ScoreOptions& options) {
     fmt::print("{}", score_table(score_maps(io::load_map(options.map), io::load_map(options.reference_map)), {}));
     return ExitCode::kDone;
   }
-  throw InputError("score: give a run directory, or --estimate and --reference, or --estimate and --relations, or --map and --reference-map");
+  throw InputError("score: needs a run directory, or --estimate and --reference, or --estimate and --relations, or --map and --reference-map");
 }
 
 }  // namespace patrol::app

@@ -30,10 +30,10 @@ namespace patrol::app {
 namespace {
 
 const OutputKind kMapping = {.name = "mapping of a log",
-                             .unfinished = "The log has not been mapped to its end.",
-                             .made = {"estimate.tum", "odometry.tum", "map.yaml", "map.pgm", "pose_graph.g2o", "performance.csv", "metrics.json", "settings.yaml", "report.html"},
-                             .proof = "settings.yaml",
-                             .kept = {"*.part"}};
+                             .marker_text = "The log is not completely mapped.",
+                             .outputs = {"estimate.tum", "odometry.tum", "map.yaml", "map.pgm", "pose_graph.g2o", "performance.csv", "metrics.json", "settings.yaml", "report.html"},
+                             .required_file = "settings.yaml",
+                             .preserved = {"*.part"}};
 
 /// Settings of `patrol slam --set`.
 struct LogMappingSettings {
@@ -98,7 +98,7 @@ bool map_log(io::ScanLog& log, const LogMappingSettings& settings, const std::st
     mapped.cost.add(mapped.stamps.size(), mapped.way_m);
   });
   if (!is_whole) return false;
-  bar.show(fmt::format("{}  {} scans, at the end once more over all of them", name, mapped.stamps.size()));
+  bar.show(fmt::format("{}  {} scans, final optimization", name, mapped.stamps.size()));
   mapper.finish();
   return !guard.is_interrupted();
 }
@@ -126,14 +126,14 @@ ExitCode slam_command(const SlamOptions& options) {
   std::vector<std::string> overrides = options.overrides;
   if (options.method) overrides.push_back("slam.method=" + *options.method);
   if (options.seed) overrides.push_back(fmt::format("seed={}", *options.seed));
-  if (options.skip_bad_lines) overrides.push_back("log.skip_bad_lines=true");
+  if (options.skip_invalid) overrides.push_back("log.skip_bad_lines=true");
   LogMappingSettings settings;
   if (options.calibration) settings.calibration = io::load_settings<slam::Calibration>(*options.calibration, {});
   io::SettingsReader::read_section("--set", io::parse_overrides(overrides), "", settings);
   const std::unique_ptr<io::ScanLog> log = io::open_scan_log(options.log, settings.log);
-  BoostedStumps neighbours;
-  if (needs_neighbor_model(settings.slam.method)) neighbours = neighbours_for(settings.slam.method, find_data_root(""));
-  const std::unique_ptr<slam::Mapper> mapper = slam::make_mapper(settings.slam, neighbours, settings.seed);
+  BoostedStumps neighbors;
+  if (needs_neighbor_model(settings.slam.method)) neighbors = load_neighbor_model(settings.slam.method, find_data_root(""));
+  const std::unique_ptr<slam::Mapper> mapper = slam::make_mapper(settings.slam, neighbors, settings.seed);
 
   const double wall_s = wall_seconds(), thread_s = thread_cpu_time_s();
   MappedLog mapped;

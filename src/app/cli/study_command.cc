@@ -24,13 +24,13 @@ namespace patrol::app {
 namespace {
 
 const OutputKind kStudy = {.name = "study",
-                           .unfinished = "Not every seed of this study has been run: tables come at the end. The same command goes on.",
-                           .made = {"results.csv", "runs.csv", "performance.csv", "report.html"},
-                           .proof = "study.json",
-                           .kept = {"study.json", "seeds", "*.part"}};
+                           .marker_text = "Not all seeds have run; the tables follow at the end. Rerun the same command to continue.",
+                           .outputs = {"results.csv", "runs.csv", "performance.csv", "report.html"},
+                           .required_file = "study.json",
+                           .preserved = {"study.json", "seeds", "*.part"}};
 
 /// Parses seeds. "N": the first N after those used for tuning; or "A..B".
-std::vector<std::uint64_t> held_out_seeds(const std::string& text) {
+std::vector<std::uint64_t> evaluation_seeds(const std::string& text) {
   constexpr std::uint64_t kTuned = 1000;
   std::vector<std::uint64_t> seeds = parse_seeds(text);
   if (text.find("..") == std::string::npos) {
@@ -52,8 +52,8 @@ class SampleStore {
     if (json.value("study", "") != study_.name || json.value("build", "") != build_ || !json.contains("figures")) return std::nullopt;
     studies::StudySample sample;
     for (const io::Metrics& variant : json["figures"]) {
-      std::vector<double>& figures = sample.emplace_back();
-      for (const io::Metrics& figure : variant) figures.push_back(figure.is_number() ? figure.get<double>() : std::numeric_limits<double>::quiet_NaN());
+      std::vector<double>& metrics = sample.emplace_back();
+      for (const io::Metrics& metric : variant) metrics.push_back(metric.is_number() ? metric.get<double>() : std::numeric_limits<double>::quiet_NaN());
     }
     return sample;
   }
@@ -85,7 +85,7 @@ bool run_seeds(const studies::Study& study, const std::vector<std::uint64_t>& se
   };
   const auto on_end = [&](const TaskEnd& end) {
     if (end.exit_code != 0 || end.signal != 0) {
-      throw std::runtime_error(fmt::format("study {}: seed {} failed: {}", study.name, missing[end.task], end.last_words));
+      throw std::runtime_error(fmt::format("study {}: seed {} failed: {}", study.name, missing[end.task], end.last_stderr_line));
     }
     bar.show(fmt::format("study {}: {} of {} seeds", study.name, ++num_done, seeds.size()));
   };
@@ -96,13 +96,13 @@ bool run_seeds(const studies::Study& study, const std::vector<std::uint64_t>& se
 
 ExitCode study_command(const StudyOptions& options) {
   const studies::Study study = make_study(options.name);
-  const std::vector<std::uint64_t> seeds = held_out_seeds(options.seeds.value_or(std::to_string(study.default_seeds)));
-  const BatchSettings settings = batch_settings({.jobs = options.jobs, .run_limit_s = options.seed_limit_s, .keep = "none"});
+  const std::vector<std::uint64_t> seeds = evaluation_seeds(options.seeds.value_or(std::to_string(study.default_seeds)));
+  const BatchSettings settings = batch_settings({.jobs = options.jobs, .run_timeout_s = options.seed_timeout_s, .keep_runs = "none"});
 
   const OutputLock lock = begin_output(options.out, kStudy);
   io::save_metrics(options.out / "study.json", {{"study", study.name}, {"seeds", seeds}});
   const SampleStore store(options.out / "seeds", study);
-  if (!run_seeds(study, seeds, store, settings.pool)) throw std::runtime_error(fmt::format("interrupted; {} is incomplete, the same command goes on", options.out.string()));
+  if (!run_seeds(study, seeds, store, settings.pool)) throw std::runtime_error(fmt::format("interrupted; {} is incomplete; rerun the same command to continue", options.out.string()));
 
   std::vector<studies::StudySample> samples;
   for (const std::uint64_t seed : seeds) samples.push_back(store.load(seed).value());
@@ -112,7 +112,7 @@ ExitCode study_command(const StudyOptions& options) {
   }
   io::save_text(options.out / "report.html", report::to_html(studies::study_page(study, seeds, samples, results)));
   complete_output(options.out);
-  fmt::print("{}\nafter {}\n{}\n\n{}{}\n", study.title, study.source, study.conditions, studies::results_text(study, results), (options.out / "report.html").string());
+  fmt::print("{}\nsource: {}\n{}\n\n{}{}\n", study.title, study.source, study.conditions, studies::results_text(study, results), (options.out / "report.html").string());
   return ExitCode::kDone;
 }
 

@@ -13,13 +13,13 @@ namespace {
 /// Checks options that have no check of their own. Throws InputError.
 void check(const SweepOptions& options) {
   if (options.engine != "local" && options.engine != "slurm") throw InputError(fmt::format("--engine {}: must be local or slurm", options.engine));
-  if (options.stop_when_decided && (!options.shard.empty() || options.engine == "slurm")) {
-    throw InputError("--stop-when-decided: cannot be shared out, since what is still to do depends on what all have found");
+  if (options.early_stop && (!options.shard.empty() || options.engine == "slurm")) {
+    throw InputError("--early-stop: not compatible with --shard and --engine slurm: decisions depend on all results");
   }
-  if (options.engine == "slurm" && !options.shard.empty()) throw InputError("--shard: the engine slurm makes the shards itself (--slurm-tasks)");
-  if (options.metrics.empty()) throw InputError("--metric: at least one is compared");
-  if (!(options.margin >= 0.0)) throw InputError("--margin: must not be negative");
-  if (options.slurm_tasks < 1 || options.slurm_tasks > 100'000) throw InputError("--slurm-tasks: must lie in 1 ... 100000");
+  if (options.engine == "slurm" && !options.shard.empty()) throw InputError("--shard: not compatible with --engine slurm, which has --slurm-tasks");
+  if (options.metrics.empty()) throw InputError("--metric: at least one is required");
+  if (!(options.equivalence_margin >= 0.0)) throw InputError("--equivalence-margin: must not be negative");
+  if (options.slurm_tasks < 1 || options.slurm_tasks > 100'000) throw InputError("--slurm-tasks: must be in [1, 100000]");
 }
 
 ExitCode perform(const std::filesystem::path& scenario, const SweepManifest& manifest, const Shard& shard, const BatchSettings& settings,
@@ -40,14 +40,14 @@ ExitCode sweep_command(const SweepOptions& options) {
   return perform(options.scenario, manifest, shard, settings, options.out);
 }
 
-ExitCode budget_command(const BudgetOptions& options) {
+ExitCode error_budget_command(const ErrorBudgetOptions& options) {
   const BatchSettings settings = batch_settings(options.batch);
-  return perform(options.scenario, plan_budget(options), {}, settings, options.out);
+  return perform(options.scenario, plan_error_budget(options), {}, settings, options.out);
 }
 
-ExitCode faults_command(const FaultsOptions& options) {
+ExitCode fault_matrix_command(const FaultMatrixOptions& options) {
   const BatchSettings settings = batch_settings(options.batch);
-  return perform(options.scenario, plan_faults(options), {}, settings, options.out);
+  return perform(options.scenario, plan_fault_matrix(options), {}, settings, options.out);
 }
 
 }  // namespace patrol::app

@@ -16,15 +16,15 @@ namespace patrol::app {
 namespace {
 
 const OutputKind kTest = {.name = "test",
-                          .unfinished = "Not every scenario has ended.",
-                          .made = {"junit.xml", "tests.csv", "summary.md", "report.html", "runs/[0-9][0-9][0-9][0-9]_*", "work/*-*-*", "*.part"},
-                          .proof = "junit.xml",
-                          .kept = {}};
+                          .marker_text = "Incomplete: not every scenario has ended.",
+                          .outputs = {"junit.xml", "tests.csv", "summary.md", "report.html", "runs/[0-9][0-9][0-9][0-9]_*", "work/*-*-*", "*.part"},
+                          .required_file = "junit.xml",
+                          .preserved = {}};
 
 std::vector<BatchRun> runs_of(const std::vector<TestedScenario>& tested, const TestOptions& options) {
   std::vector<BatchRun> runs;
   for (const TestedScenario& one : tested) {
-    runs.push_back({.scenario = one.file, .overrides = options.overrides, .address = one.address, .label = one.name});
+    runs.push_back({.scenario = one.file, .overrides = options.overrides, .key = one.key, .label = one.name});
   }
   return runs;
 }
@@ -42,7 +42,7 @@ ExitCode test_command(const TestOptions& options) {
   const BatchSettings settings = batch_settings(options.batch);
   std::vector<TestedScenario> tested = find_scenarios(options.scenarios, options.overrides);
   if (tested.empty()) {
-    fmt::print(stderr, "patrol: {}: holds no scenario (*.yaml): nothing was executed\n", options.scenarios.string());
+    fmt::print(stderr, "patrol: {}: contains no scenario (*.yaml); nothing executed\n", options.scenarios.string());
     return ExitCode::kNothingExecuted;
   }
   const OutputLock lock = begin_output(options.out, kTest);
@@ -52,7 +52,7 @@ ExitCode test_command(const TestOptions& options) {
   const ResultStore store(runs_folder(options.out));
   ExitCode worst = ExitCode::kDone;
   for (TestedScenario& one : tested) {
-    one.verdict = store.load(one.address);
+    one.verdict = store.load(one.key);
     if (one.verdict) worst = worse(worst, one.verdict->code());
   }
   save_test_junit(options.out / "junit.xml", tested);

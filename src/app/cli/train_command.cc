@@ -16,7 +16,7 @@
 namespace patrol::app {
 namespace {
 
-/// Settings of `patrol train-neighbours --set`.
+/// Settings of `patrol train-neighbors --set`.
 struct TrainingSettings {
   std::uint64_t seed = 1;
   slam::PlanarScanSettings scan;
@@ -46,22 +46,22 @@ std::optional<slam::LabeledFeatures> examples_of(const std::vector<std::filesyst
     const std::size_t before = examples.labels.size();
     slam::add_neighbor_examples(track->slam, track->T_world_submap, settings.submap_rbpf.surfaces, settings.examples, settings.seed + before, examples);
     const auto joinable = std::count(examples.labels.begin() + static_cast<std::ptrdiff_t>(before), examples.labels.end(), 1);
-    bar.say(fmt::format("{}: {} submaps, {} examples, {} of them neighbours", run.string(), track->T_world_submap.size(), examples.labels.size() - before, joinable));
+    bar.say(fmt::format("{}: {} submaps, {} examples, {} of them neighbors", run.string(), track->T_world_submap.size(), examples.labels.size() - before, joinable));
   }
   return examples;
 }
 
-struct Recognised {
+struct Recognized {
   double precision = 0.0, recall = 0.0;
 };
 
-Recognised recognised_at(double min_margin, const BoostedStumps& model, const slam::LabeledFeatures& examples) {
+Recognized recognized_at(double min_margin, const BoostedStumps& model, const slam::LabeledFeatures& examples) {
   int right = 0, wrong = 0, missed = 0;
   for (std::size_t i = 0; i < examples.labels.size(); ++i) {
-    const bool is_taken = model.margin(examples.examples[i]) > min_margin, is_neighbour = examples.labels[i] > 0;
-    right += is_taken && is_neighbour ? 1 : 0;
-    wrong += is_taken && !is_neighbour ? 1 : 0;
-    missed += !is_taken && is_neighbour ? 1 : 0;
+    const bool is_taken = model.margin(examples.examples[i]) > min_margin, is_neighbor = examples.labels[i] > 0;
+    right += is_taken && is_neighbor ? 1 : 0;
+    wrong += is_taken && !is_neighbor ? 1 : 0;
+    missed += !is_taken && is_neighbor ? 1 : 0;
   }
   const auto share = [](int part, int rest) { return part + rest > 0 ? static_cast<double>(part) / (part + rest) : 1.0; };
   return {.precision = share(right, wrong), .recall = share(right, missed)};
@@ -70,8 +70,8 @@ Recognised recognised_at(double min_margin, const BoostedStumps& model, const sl
 void print_recognition(const char* of, const BoostedStumps& model, const slam::LabeledFeatures& examples) {
   fmt::print("{}, {} examples:\n  margin above   precision   recall\n", of, examples.labels.size());
   for (const double margin : {0.0, 0.1, 0.2, 0.3, 0.4}) {
-    const Recognised recognised = recognised_at(margin, model, examples);
-    fmt::print("  {:12.1f}   {:9.4f}   {:6.4f}\n", margin, recognised.precision, recognised.recall);
+    const Recognized recognized = recognized_at(margin, model, examples);
+    fmt::print("  {:12.1f}   {:9.4f}   {:6.4f}\n", margin, recognized.precision, recognized.recall);
   }
 }
 
@@ -83,15 +83,15 @@ ExitCode train_command(const TrainOptions& options) {
   const std::optional<slam::LabeledFeatures> training = examples_of(options.runs, settings, guard);
   const std::optional<slam::LabeledFeatures> held_out = training ? examples_of(options.held_out, settings, guard) : std::nullopt;
   if (!training || !held_out) {
-    fmt::print(stderr, "patrol: interrupted; nothing is written\n");
+    fmt::print(stderr, "patrol: interrupted; nothing written\n");
     return ExitCode::kProgramFailed;
   }
   const slam::BoostingResult boosted = slam::train_adaboost(*training, settings.boosting);
   io::save_boosted_stumps(options.out, boosted.model);
-  fmt::print("{} stumps; of the training examples {:.2f} % wrong, the bound says at most {:.2f} %\n", boosted.model.stumps.size(), 100.0 * boosted.training_error,
+  fmt::print("{} stumps; training error {:.2f} %, bound {:.2f} %\n", boosted.model.stumps.size(), 100.0 * boosted.training_error,
              100.0 * std::min(1.0, boosted.error_bound));
   print_recognition("training", boosted.model, *training);
-  if (!held_out->labels.empty()) print_recognition("held out", boosted.model, *held_out);
+  if (!held_out->labels.empty()) print_recognition("validation", boosted.model, *held_out);
   fmt::print("{}\n", options.out.string());
   return ExitCode::kDone;
 }

@@ -16,15 +16,15 @@ ExitCode verify_command(const std::filesystem::path& run) {
 
   const TemporaryFolder again("verify");
   const std::filesystem::path log = again.path() / "log.mcap";
-  fmt::print(stderr, "verify: running {} again, seed {}\n", directory.scenario().string(), scenario.seed);
-  sim::Simulator twin = make_twin(scenario, files);
+  fmt::print(stderr, "verify: rerunning {}, seed {}\n", directory.scenario().string(), scenario.seed);
+  sim::Simulator simulator = make_simulator(scenario, files);
   stack::Stack stack = make_stack(scenario, files);
-  Unobserved nobody;
-  run_loop(scenario, files, twin, stack, log, nobody);
+  NullObserver observer;
+  run_loop(scenario, files, simulator, stack, log, observer);
 
   const std::optional<io::LogDifference> difference = io::first_difference(directory.log(), log);
   if (!difference) {
-    fmt::print("verified: {} is what the scenario gives, byte for byte\n", directory.log().string());
+    fmt::print("reproduced: {} is byte-identical\n", directory.log().string());
     return ExitCode::kDone;
   }
   fmt::print("differs: {}\n", io::describe(*difference));

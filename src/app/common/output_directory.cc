@@ -19,7 +19,7 @@ namespace patrol::app {
 namespace {
 
 /// Output of an earlier command: files, and the folders around them, outer ones first.
-struct Earlier {
+struct EarlierOutput {
   std::vector<std::filesystem::path> files;
   std::vector<std::filesystem::path> folders;
 };
@@ -35,33 +35,33 @@ bool is_folder_of(const std::string& name, const std::vector<std::string>& patte
 }
 
 InputError cannot_be_written(const std::filesystem::path& root, int error) {
-  return InputError(fmt::format("{}: cannot be written to: {}", root.string(), std::strerror(error)));
+  return InputError(fmt::format("{}: cannot write: {}", root.string(), std::strerror(error)));
 }
 
 /// Lists the entries that may be removed. Throws InputError if there are any others.
-Earlier earlier_output(const std::filesystem::path& root, const OutputKind& kind) {
-  Earlier earlier;
+EarlierOutput earlier_output(const std::filesystem::path& root, const OutputKind& kind) {
+  EarlierOutput earlier;
   std::error_code error;
   std::filesystem::recursive_directory_iterator entry(root, error);
   for (; !error && entry != std::filesystem::recursive_directory_iterator(); entry.increment(error)) {
     const std::string name = entry->path().lexically_relative(root).generic_string();
     const std::filesystem::file_type type = entry->symlink_status().type();
     if (type == std::filesystem::file_type::not_found) continue;  // removed by another process
-    if (entry.depth() == 0 && is_among(name, kind.kept)) {
+    if (entry.depth() == 0 && is_among(name, kind.preserved)) {
       entry.disable_recursion_pending();
-    } else if (type == std::filesystem::file_type::directory && is_folder_of(name, kind.made)) {
+    } else if (type == std::filesystem::file_type::directory && is_folder_of(name, kind.outputs)) {
       earlier.folders.push_back(entry->path());
-    } else if (type == std::filesystem::file_type::regular && is_among(name, kind.made)) {
+    } else if (type == std::filesystem::file_type::regular && is_among(name, kind.outputs)) {
       earlier.files.push_back(entry->path());
     } else if (entry->path() != incomplete_marker(root)) {  // checked when it is opened
-      throw InputError(fmt::format("{}: holds {}, which is not part of a {}; name an empty or new directory", root.string(), name, kind.name));
+      throw InputError(fmt::format("{}: contains '{}', which is not an output of '{}'; choose an empty or new directory", root.string(), name, kind.name));
     }
   }
-  if (error) throw InputError(fmt::format("{}: cannot be read: {}", root.string(), error.message()));
+  if (error) throw InputError(fmt::format("{}: cannot read: {}", root.string(), error.message()));
   const auto exists = [&](const std::filesystem::path& file) { return std::filesystem::is_regular_file(std::filesystem::symlink_status(file)); };
-  if (!earlier.files.empty() && !exists(incomplete_marker(root)) && !exists(root / kind.proof)) {
-    throw InputError(fmt::format("{}: holds {}, but no {} of an earlier {}; name an empty or new directory", root.string(),
-                                 earlier.files.front().lexically_relative(root).generic_string(), kind.proof, kind.name));
+  if (!earlier.files.empty() && !exists(incomplete_marker(root)) && !exists(root / kind.required_file)) {
+    throw InputError(fmt::format("{}: contains {}, but no {} of an earlier {}; choose an empty or new directory", root.string(),
+                                 earlier.files.front().lexically_relative(root).generic_string(), kind.required_file, kind.name));
   }
   return earlier;
 }
@@ -74,12 +74,12 @@ OutputLock open_marker(const std::filesystem::path& root, int& descriptor) {
   OutputLock lock(descriptor);
   struct stat status {};
   const bool is_plain = descriptor >= 0 && ::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode) && status.st_nlink <= 1;
-  if (!is_plain) throw InputError(fmt::format("{}: is not a plain file; remove it, or name another directory", marker.string()));
+  if (!is_plain) throw InputError(fmt::format("{}: must be a regular file; remove it or choose another directory", marker.string()));
   return lock;
 }
 
 /// Whether the open marker still has its name; the process that held it may have removed it.
-bool is_in_place(const std::filesystem::path& root, int descriptor) {
+bool has_marker_name(const std::filesystem::path& root, int descriptor) {
   struct stat opened {}, named {};
   return ::fstat(descriptor, &opened) == 0 && ::lstat(incomplete_marker(root).c_str(), &named) == 0 && opened.st_dev == named.st_dev &&
          opened.st_ino == named.st_ino;
@@ -90,21 +90,21 @@ OutputLock take_marker(const std::filesystem::path& root, const OutputKind& kind
   constexpr int kMaxTries = 100;
   for (int i = 0; i < kMaxTries; ++i) {
     OutputLock lock = open_marker(root, descriptor);
-    if (kind.is_shared) return lock;
+    if (kind.is_concurrent) return lock;
     struct flock whole {};
     whole.l_type = F_WRLCK;
     whole.l_whence = SEEK_SET;
     if (::fcntl(descriptor, F_SETLK, &whole) != 0) {
       if (errno != EACCES && errno != EAGAIN) throw cannot_be_written(root, errno);
-      throw InputError(fmt::format("{}: another process writes a {} there; name another directory, or wait", root.string(), kind.name));
+      throw InputError(fmt::format("{}: in use by another process that writes a {}; wait or choose another directory", root.string(), kind.name));
     }
-    if (is_in_place(root, descriptor)) return lock;
+    if (has_marker_name(root, descriptor)) return lock;
   }
-  throw InputError(fmt::format("{}: other processes write there; name another directory", root.string()));
+  throw InputError(fmt::format("{}: in use by other processes; choose another directory", root.string()));
 }
 
 void write_marker(const std::filesystem::path& root, const OutputKind& kind, int descriptor) {
-  const std::string text = kind.unfinished + "\n";
+  const std::string text = kind.marker_text + "\n";
   const bool is_written = ::ftruncate(descriptor, 0) == 0 && ::pwrite(descriptor, text.data(), text.size(), 0) == static_cast<ssize_t>(text.size());
   if (!is_written) throw cannot_be_written(root, errno);
 }
@@ -125,12 +125,12 @@ std::filesystem::path incomplete_marker(const std::filesystem::path& root) { ret
 OutputLock begin_output(const std::filesystem::path& root, const OutputKind& kind) {
   std::error_code error;
   std::filesystem::create_directories(root, error);
-  if (error) throw InputError(fmt::format("{}: cannot be made a directory: {}", root.string(), error.message()));
+  if (error) throw InputError(fmt::format("{}: cannot create the directory: {}", root.string(), error.message()));
   earlier_output(root, kind);  // throws before anything is written
   int descriptor = -1;
   OutputLock lock = take_marker(root, kind, descriptor);
   write_marker(root, kind, descriptor);
-  const Earlier earlier = earlier_output(root, kind);  // again, now under the lock
+  const EarlierOutput earlier = earlier_output(root, kind);  // again, now under the lock
   for (const std::filesystem::path& file : earlier.files) std::filesystem::remove(file, error);
   for (auto folder = earlier.folders.rbegin(); folder != earlier.folders.rend(); ++folder) std::filesystem::remove(*folder, error);
   return lock;

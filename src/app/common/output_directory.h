@@ -9,12 +9,12 @@ namespace patrol::app {
 /// Files that a command writes to its directory. Names may contain `*`, and a `/` for files below a folder:
 /// "scans/*.ply".
 struct OutputKind {
-  std::string name;               ///< "run"
-  std::string unfinished;         ///< text of the marker file while the directory is incomplete
-  std::vector<std::string> made;  ///< outputs, removed at the start if an earlier command of this kind wrote them
-  std::string proof;              ///< in every complete directory; without it or the marker, nothing is removed
-  std::vector<std::string> kept;  ///< files and folders that are never removed
-  bool is_shared = false;         ///< several processes may write to the directory at the same time
+  std::string name;                    ///< "run"
+  std::string marker_text;             ///< text of the marker file while the directory is incomplete
+  std::vector<std::string> outputs;    ///< outputs, removed at the start if an earlier command of this kind wrote them
+  std::string required_file;           ///< in every complete directory; without it or the marker, nothing is removed
+  std::vector<std::string> preserved;  ///< files and folders that are never removed
+  bool is_concurrent = false;          ///< several processes may write to the directory at the same time
 };
 
 /// Marker file of an incomplete directory; it exists from the start until everything else is written.
@@ -34,10 +34,10 @@ class OutputLock {
   int descriptor_ = -1;
 };
 
-/// Creates the directory, locks it unless `kind.is_shared`, marks it incomplete, and removes the regular files of an
+/// Creates the directory, locks it unless `kind.is_concurrent`, marks it incomplete, and removes the regular files of an
 /// earlier command of this kind. Throws InputError, and leaves the directory unchanged, if it contains other entries,
 /// if another process writes to it, or if it is not writable. Other entries are unknown names, links, a folder or a
-/// device in place of a file, or files of these names without proof.
+/// device in place of a file, or files of these names without the required file.
 [[nodiscard]] OutputLock begin_output(const std::filesystem::path& root, const OutputKind& kind);
 
 /// Removes the marker: the directory is complete.

@@ -31,19 +31,19 @@ void write(const std::string& text) { std::fputs(text.c_str(), stderr); }
 ProgressBar::ProgressBar() : is_terminal_(::isatty(STDERR_FILENO) == 1) {}
 
 ProgressBar::~ProgressBar() {
-  if (has_drawn_) write(kClear);
+  if (is_shown_) write(kClear);
 }
 
 void ProgressBar::show(const std::string& line) {
   if (!is_terminal_) return;
   write(kClear + line);
   std::fflush(stderr);
-  has_drawn_ = true;
+  is_shown_ = true;
 }
 
-void ProgressBar::say(const std::string& line) {
-  write((has_drawn_ ? kClear : "") + line + "\n");
-  has_drawn_ = false;
+void ProgressBar::print_line(const std::string& line) {
+  write((is_shown_ ? kClear : "") + line + "\n");
+  is_shown_ = false;
 }
 
 InterruptGuard::InterruptGuard() {

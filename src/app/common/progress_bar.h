@@ -16,11 +16,11 @@ class ProgressBar {
 
   void show(const std::string& line);
   /// Prints a permanent line above the progress line, also without a terminal.
-  void say(const std::string& line);
+  void print_line(const std::string& line);
 
  private:
   bool is_terminal_;
-  bool has_drawn_ = false;
+  bool is_shown_ = false;
 };
 
 /// Counts SIGINT (Ctrl-C), SIGTERM and SIGHUP (closed terminal) during its lifetime, instead of ending the process at

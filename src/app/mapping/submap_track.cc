@@ -27,7 +27,7 @@ std::optional<SubmapTrack> build_submaps(const std::filesystem::path& run, const
   track.slam.finish();
   for (const std::size_t first : track.slam.first_scans()) {
     const std::optional<Pose3> pose = pose_at(T_world_body, track.stamps[first]);
-    if (!pose) throw InputError(fmt::format("{}: ends before the log's scans do, or begins after them", directory.truth().string()));
+    if (!pose) throw InputError(fmt::format("{}: does not cover the scans of the log", directory.truth().string()));
     track.T_world_submap.push_back(to_pose2(*pose));
   }
   return track;

@@ -18,65 +18,65 @@ namespace {
 std::chrono::milliseconds milliseconds(double seconds) { return std::chrono::milliseconds(static_cast<std::int64_t>(1e3 * seconds)); }
 
 /// Error message of a response, one line.
-std::string error_of(const monitor::HttpClientResponse& answer) {
-  const auto json = nlohmann::json::parse(answer.body, nullptr, false);
-  const bool says_why = json.is_object() && json.contains("error") && json["error"].is_string();
-  return fmt::format("{} {}", answer.status, says_why ? json["error"].get<std::string>() : "");
+std::string error_of(const monitor::HttpClientResponse& response) {
+  const auto json = nlohmann::json::parse(response.body, nullptr, false);
+  const bool explain = json.is_object() && json.contains("error") && json["error"].is_string();
+  return fmt::format("{} {}", response.status, explain ? json["error"].get<std::string>() : "");
 }
 
 }  // namespace
 
-Platform platform_from(const std::string& address, const std::optional<std::filesystem::path>& token_file) {
-  Platform platform{.url = monitor::parse_url(address), .token = {}};
+MonitorServer make_monitor_server(const std::string& url, const std::optional<std::filesystem::path>& token_file) {
+  MonitorServer server{.url = monitor::parse_url(url), .token = {}};
   if (token_file) {
-    platform.token = monitor::load_token(*token_file);
+    server.token = monitor::load_token(*token_file);
   } else if (const char* token = std::getenv("PATROL_TOKEN"); token != nullptr) {
-    platform.token = token;
-    monitor::check_token("PATROL_TOKEN", platform.token);
+    server.token = token;
+    monitor::check_token("PATROL_TOKEN", server.token);
   } else {
-    throw InputError(fmt::format("{}: a token is needed: name its file (the platform has it in DIR/token), or set PATROL_TOKEN", address));
+    throw InputError(fmt::format("{}: access token required: name its file (DIR/token of the monitoring server) or set PATROL_TOKEN", url));
   }
-  return platform;
+  return server;
 }
 
-Sender::Sender(Outbox& outbox, Platform platform, const DeliverySettings& settings)
-    : outbox_(outbox), platform_(std::move(platform)), settings_(settings), limit_(settings.batch_results) {}
+Sender::Sender(Outbox& outbox, MonitorServer server, const DeliverySettings& settings)
+    : outbox_(outbox), server_(std::move(server)), settings_(settings), batch_limit_(settings.batch_results) {}
 
 Sender::Outcome Sender::send_next() {
-  const Outbox::Batch batch = outbox_.next(limit_, settings_.batch_bytes);
+  const Outbox::Batch batch = outbox_.next(batch_limit_, settings_.batch_bytes);
   if (batch.results.empty()) return Outcome::kEmpty;
   const std::string body = fmt::format("[{}]", fmt::join(batch.results, ","));
-  const auto answer = monitor::post_json(platform_.url, "/api/results", platform_.token, body, settings_.request_limit_s, &why_);
-  if (!answer) return Outcome::kUnreachable;
-  if (answer->status == 200 || answer->status == 409) {
-    if (answer->status == 409) set_aside_conflicts(batch, answer->body);
+  const auto response = monitor::post_json(server_.url, "/api/results", server_.token, body, settings_.request_timeout_s, &last_error_);
+  if (!response) return Outcome::kUnreachable;
+  if (response->status == 200 || response->status == 409) {
+    if (response->status == 409) set_aside_conflicts(batch, response->body);
     outbox_.mark_sent(batch);
-    limit_ = std::min(settings_.batch_results, 2 * limit_);
+    batch_limit_ = std::min(settings_.batch_results, 2 * batch_limit_);
     return Outcome::kSent;
   }
-  why_ = error_of(*answer);
-  if (answer->status == 401) return Outcome::kRefusedToken;
-  if (answer->status != 400 && answer->status != 413) return Outcome::kUnreachable;
+  last_error_ = error_of(*response);
+  if (response->status == 401) return Outcome::kInvalidToken;
+  if (response->status != 400 && response->status != 413) return Outcome::kUnreachable;
   if (batch.results.size() > 1) {
-    limit_ = batch.results.size() / 2;
+    batch_limit_ = batch.results.size() / 2;
   } else {
     outbox_.set_aside(batch.results.front());
     outbox_.mark_sent(batch);
-    limit_ = settings_.batch_results;
+    batch_limit_ = settings_.batch_results;
   }
   return Outcome::kSent;
 }
 
-void Sender::set_aside_conflicts(const Outbox::Batch& batch, const std::string& answer) {
-  const auto json = nlohmann::json::parse(answer);
+void Sender::set_aside_conflicts(const Outbox::Batch& batch, const std::string& response) {
+  const auto json = nlohmann::json::parse(response);
   const auto& results = json.at("results");  // in the order of the batch
   for (std::size_t i = 0; i < batch.results.size(); ++i) {
     if (results.at(i).at("status") == "conflict") outbox_.set_aside(batch.results[i]);
   }
 }
 
-Delivery::Delivery(Outbox& outbox, Platform platform, const DeliverySettings& settings)
-    : settings_(settings), sender_(outbox, std::move(platform), settings), thread_([this] { run(); }) {}
+Delivery::Delivery(Outbox& outbox, MonitorServer server, const DeliverySettings& settings)
+    : settings_(settings), sender_(outbox, std::move(server), settings), thread_([this] { run(); }) {}
 
 Delivery::~Delivery() {
   {
@@ -96,14 +96,14 @@ void Delivery::wake() {
   changed_.notify_all();
 }
 
-bool Delivery::wait_until_empty(double limit_s) {
+bool Delivery::wait_until_empty(double timeout_s) {
   std::unique_lock lock(mutex_);
-  return changed_.wait_for(lock, milliseconds(limit_s), [this] { return is_empty_; });
+  return changed_.wait_for(lock, milliseconds(timeout_s), [this] { return is_empty_; });
 }
 
-std::string Delivery::why_not() const {
+std::string Delivery::last_error() const {
   const std::lock_guard lock(mutex_);
-  return why_;
+  return last_error_;
 }
 
 void Delivery::run() {
@@ -113,12 +113,12 @@ void Delivery::run() {
     has_news_ = false;
     lock.unlock();
     Sender::Outcome outcome = Sender::Outcome::kUnreachable;
-    std::string why;
+    std::string reason;
     try {
       outcome = sender_.send_next();
-      why = sender_.why();
+      reason = sender_.last_error();
     } catch (const std::exception& error) {  // the disk is full, or the response is not one of a monitoring server
-      why = error.what();
+      reason = error.what();
     }
     lock.lock();
     if (outcome == Sender::Outcome::kSent) {
@@ -130,9 +130,9 @@ void Delivery::run() {
       changed_.wait(lock, [this] { return is_stopping_ || has_news_; });
       changed_.wait_for(lock, milliseconds(settings_.gather_s), [this] { return is_stopping_; });
     } else {
-      why_ = why;
+      last_error_ = reason;
       changed_.wait_for(lock, milliseconds(pause_s), [this] { return is_stopping_; });
-      pause_s = std::min(settings_.longest_pause_s, 2.0 * pause_s);
+      pause_s = std::min(settings_.max_pause_s, 2.0 * pause_s);
     }
   }
 }

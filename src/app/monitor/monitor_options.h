@@ -12,7 +12,7 @@ struct MonitorOptions {
   std::string host = "127.0.0.1";
   int port = 8080;
   std::vector<std::string> allowed_hosts;  ///< host names of the server besides its address and `localhost`
-  std::filesystem::path data = "out/monitor";
+  std::filesystem::path data_dir = "out/monitor";
   std::optional<std::filesystem::path> token_file;
 };
 

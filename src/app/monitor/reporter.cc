@@ -65,31 +65,31 @@ std::string new_run_name(const std::string& scenario, std::uint64_t seed) {
   return fmt::format("{}-seed{}-{:%Y%m%dT%H%M%SZ}-{:04x}", scenario, seed, fmt::gmtime(std::chrono::system_clock::to_time_t(now)), std::random_device()() & 0xffffU);
 }
 
-Reporter::Reporter(std::filesystem::path root, ReportedRun run, Platform platform, const ReporterSettings& settings)
-    : root_(std::move(root)), run_(std::move(run)), platform_(std::move(platform)), settings_(settings) {}
+Reporter::Reporter(std::filesystem::path root, ReportedRun run, MonitorServer server, const ReporterSettings& settings)
+    : root_(std::move(root)), run_(std::move(run)), server_(std::move(server)), settings_(settings) {}
 
 void Reporter::begin(const ScenarioFiles& files) {
   outbox_ = std::make_unique<Outbox>(root_);
-  delivery_ = std::make_unique<Delivery>(*outbox_, platform_);
-  tell_status("started", "", text_of(stations_of(files)));
-  if (files.map) tell_map({.stamp = {}, .map = *files.map});
+  delivery_ = std::make_unique<Delivery>(*outbox_, server_);
+  report_status("started", "", text_of(stations_of(files)));
+  if (files.map) report_map({.stamp = {}, .map = *files.map});
 }
 
-void Reporter::see(const stack::StackMessage& message) {
+void Reporter::on_message(const stack::StackMessage& message) {
   std::visit(Overloaded{
                  [&](const PoseEstimate& estimate) {
                    newest_ = std::max(newest_, estimate.stamp);
                    if (estimate.stamp < next_pose_) return;
                    next_pose_ = estimate.stamp + from_seconds(settings_.pose_period_s);
-                   tell(estimate.stamp, "pose", text_of(io::to_json(estimate.T_map_body)));
+                   report(estimate.stamp, "pose", text_of(io::to_json(estimate.T_map_body)));
                  },
                  [&](const MapUpdate& update) {
-                   untold_map_ = update;
-                   if (update.stamp >= next_map_) tell_map(update);
+                   pending_map_ = update;
+                   if (update.stamp >= next_map_) report_map(update);
                  },
-                 [&](const Event& event) { tell(event.stamp, "event", text_of(event_json(event))); },
-                 [&](const LiningResult& result) { tell(result.stamp, "lining", text_of(io::to_json(result))); },
-                 [&](const WaterResult& result) { tell(result.stamp, "water", text_of(io::to_json(result))); },
+                 [&](const Event& event) { report(event.stamp, "event", text_of(event_json(event))); },
+                 [&](const LiningResult& result) { report(result.stamp, "lining", text_of(io::to_json(result))); },
+                 [&](const WaterResult& result) { report(result.stamp, "water", text_of(io::to_json(result))); },
                  [](const auto&) {},
              },
              message);
@@ -97,12 +97,12 @@ void Reporter::see(const stack::StackMessage& message) {
 
 void Reporter::finish(const std::string& state, const std::string& message) {
   if (!outbox_) return;  // never begun
-  if (untold_map_) tell_map(*std::exchange(untold_map_, std::nullopt));
-  tell_status(state.c_str(), io::on_one_line(message), "[]");
-  delivery_->wait_until_empty(settings_.drain_limit_s);
+  if (pending_map_) report_map(*std::exchange(pending_map_, std::nullopt));
+  report_status(state.c_str(), io::on_one_line(message), "[]");
+  delivery_->wait_until_empty(settings_.drain_timeout_s);
 }
 
-void Reporter::tell(Time stamp, const char* kind, std::string data) {
+void Reporter::report(Time stamp, const char* kind, std::string data) {
   newest_ = std::max(newest_, stamp);
   outbox_->add({.id = fmt::format("{}/{}/{}", run_.robot, run_.run, sequence_),
                 .robot = run_.robot,
@@ -117,18 +117,18 @@ void Reporter::tell(Time stamp, const char* kind, std::string data) {
   delivery_->wake();
 }
 
-void Reporter::tell_map(const MapUpdate& update) {
+void Reporter::report_map(const MapUpdate& update) {
   const bool is_empty = update.map.values().empty();
-  untold_map_.reset();
-  if (is_empty || is_same(update.map, told_map_)) return;
+  pending_map_.reset();
+  if (is_empty || is_same(update.map, last_sent_map_)) return;
   next_map_ = update.stamp + from_seconds(settings_.map_period_s);
-  tell(update.stamp, "map", text_of(map_json(update.map)));
-  told_map_ = update.map;
+  report(update.stamp, "map", text_of(map_json(update.map)));
+  last_sent_map_ = update.map;
 }
 
-void Reporter::tell_status(const char* state, const std::string& message, std::string stations) {
+void Reporter::report_status(const char* state, const std::string& message, std::string stations) {
   const Json json = {{"state", state}, {"scenario", run_.scenario}, {"message", message}, {"stations", Json::parse(stations)}};
-  tell(newest_, "status", text_of(json));
+  report(newest_, "status", text_of(json));
 }
 
 }  // namespace patrol::app

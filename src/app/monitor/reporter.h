@@ -26,7 +26,7 @@ std::string new_run_name(const std::string& scenario, std::uint64_t seed);
 struct ReporterSettings {
   double pose_period_s = 1.0;   ///< simulated
   double map_period_s = 10.0;   ///< simulated; an unchanged map is not sent again
-  double drain_limit_s = 10.0;  ///< time limit at the end of the run for pending results
+  double drain_timeout_s = 10.0;  ///< time limit at the end of the run for pending results
 };
 
 /// Observer that reports messages of the robot's stack to the monitoring server. Ground truth is ignored. Does not
@@ -34,39 +34,39 @@ struct ReporterSettings {
 class Reporter final : public RunObserver {
  public:
   /// `root`: folder of the outbox, written from `begin` on.
-  Reporter(std::filesystem::path root, ReportedRun run, Platform platform, const ReporterSettings& settings = {});
+  Reporter(std::filesystem::path root, ReportedRun run, MonitorServer server, const ReporterSettings& settings = {});
 
   void begin(const ScenarioFiles& files) override;
-  void see(const stack::StackMessage& message) override;
-  void see(const GroundTruth&) override {}
-  bool go_on(Time, double) override { return true; }
+  void on_message(const stack::StackMessage& message) override;
+  void on_ground_truth(const GroundTruth&) override {}
+  bool keep_running(Time, double) override { return true; }
 
   /// Reports the end of the run: "finished", "failed" or "interrupted", with a message. Waits for the upload, within
   /// the limit.
   void finish(const std::string& state, const std::string& message);
 
   std::size_t num_results() const { return static_cast<std::size_t>(sequence_); }
-  std::size_t num_waiting() const { return outbox_ ? outbox_->num_waiting() : 0; }
-  std::size_t num_refused() const { return outbox_ ? outbox_->num_refused() : 0; }
+  std::size_t num_pending() const { return outbox_ ? outbox_->num_pending() : 0; }
+  std::size_t num_rejected() const { return outbox_ ? outbox_->num_rejected() : 0; }
   /// Reason why pending results were not delivered.
-  std::string why_not() const { return delivery_ ? delivery_->why_not() : ""; }
+  std::string last_error() const { return delivery_ ? delivery_->last_error() : ""; }
 
  private:
-  void tell(Time stamp, const char* kind, std::string data);
-  void tell_map(const MapUpdate& update);
-  void tell_status(const char* state, const std::string& message, std::string stations);
+  void report(Time stamp, const char* kind, std::string data);
+  void report_map(const MapUpdate& update);
+  void report_status(const char* state, const std::string& message, std::string stations);
 
   std::filesystem::path root_;
   ReportedRun run_;
-  Platform platform_;
+  MonitorServer server_;
   ReporterSettings settings_;
   std::unique_ptr<Outbox> outbox_;
   std::unique_ptr<Delivery> delivery_;
   std::int64_t sequence_ = 0;
   Time newest_{};
   Time next_pose_{}, next_map_{};
-  OccupancyGrid told_map_;
-  std::optional<MapUpdate> untold_map_;
+  OccupancyGrid last_sent_map_;
+  std::optional<MapUpdate> pending_map_;
 };
 
 }  // namespace patrol::app

@@ -64,8 +64,8 @@ std::optional<Cell> nearest_free(const Grid<plan::Cost>& costs, const Eigen::Vec
 const char* blocked_reason(const OccupancyGrid& occupancy, const plan::CostmapSettings& settings, const Eigen::Vector2d& p_m) {
   const std::int8_t value = occupancy.at(occupancy.geometry().cell_at(p_m));
   if (value >= settings.occupied_percent) return "is occupied";
-  if (value == kUnknown && !settings.allow_unknown) return "is not known to the map";
-  return "lies too near to an obstacle";
+  if (value == kUnknown && !settings.allow_unknown) return "is unknown in the map";
+  return "is too close to an obstacle";
 }
 
 }  // namespace patrol::app

@@ -32,31 +32,31 @@ OccupancyGrid PlanMap::occupancy_from(const Eigen::Vector2d& p_m) const {
   return is_moving_ai() ? io::to_occupancy(*moving_ai_, geometry().cell_at(p_m)) : occupancy_;
 }
 
-Eigen::Vector2d PlanMap::place(const std::string& key, const std::string& text) const {
+Eigen::Vector2d PlanMap::parse_point(const std::string& key, const std::string& text) const {
   const std::size_t comma = std::min(text.find(','), text.size());
   const std::optional<double> x = number_of(std::string_view(text).substr(0, comma));
   const std::optional<double> y = comma < text.size() ? number_of(std::string_view(text).substr(comma + 1)) : std::nullopt;
   if (!x || !y) throw InputError(fmt::format("{}: {}: must be two numbers, X,Y", key, text));
-  return place(key, *x, *y);
+  return parse_point(key, *x, *y);
 }
 
-Eigen::Vector2d PlanMap::place(const std::string& key, double x, double y) const {
+Eigen::Vector2d PlanMap::parse_point(const std::string& key, double x, double y) const {
   const GridGeometry& grid = geometry();
   if (is_moving_ai() && (x != std::floor(x) || y != std::floor(y))) {
-    throw InputError(fmt::format("{}: {}, {}: must be whole numbers, a cell's column and row from the upper left", key, x, y));
+    throw InputError(fmt::format("{}: {}, {}: must be integers, column and row of a cell from the upper left", key, x, y));
   }
   const Eigen::Vector2d p_m = is_moving_ai() ? Eigen::Vector2d(x + 0.5, grid.height - 0.5 - y) : Eigen::Vector2d(x, y);
   const Eigen::Array2d along = p_m - grid.origin_m, size = grid.resolution_m * Eigen::Array2d(grid.width, grid.height);
-  if (!((along >= 0.0).all() && (along < size).all())) throw InputError(fmt::format("{}: {}, {} lies outside the map, which spans {}", key, x, y, extent()));
+  if (!((along >= 0.0).all() && (along < size).all())) throw InputError(fmt::format("{}: {}, {} is outside the map, which spans {}", key, x, y, extent()));
   return p_m;
 }
 
-Eigen::Vector2d PlanMap::named(const Eigen::Vector2d& p_m) const {
+Eigen::Vector2d PlanMap::to_user(const Eigen::Vector2d& p_m) const {
   return is_moving_ai() ? Eigen::Vector2d(p_m.x() - 0.5, geometry().height - 0.5 - p_m.y()) : p_m;
 }
 
 std::string PlanMap::text_of(const Eigen::Vector2d& p_m) const {
-  const Eigen::Vector2d p = named(p_m);
+  const Eigen::Vector2d p = to_user(p_m);
   return is_moving_ai() ? fmt::format("{}, {}", p.x(), p.y()) : fmt::format("{:.2f}, {:.2f}", p.x(), p.y());
 }
 

@@ -27,10 +27,10 @@ class PlanMap {
 
   /// Converts a point from the user's coordinates. `key` names the point in messages. Throws InputError if the point is
   /// invalid or outside the map.
-  Eigen::Vector2d place(const std::string& key, const std::string& text) const;
-  Eigen::Vector2d place(const std::string& key, double x, double y) const;
+  Eigen::Vector2d parse_point(const std::string& key, const std::string& text) const;
+  Eigen::Vector2d parse_point(const std::string& key, double x, double y) const;
   /// Converts a position to the user's coordinates.
-  Eigen::Vector2d named(const Eigen::Vector2d& p_m) const;
+  Eigen::Vector2d to_user(const Eigen::Vector2d& p_m) const;
   std::string text_of(const Eigen::Vector2d& p_m) const;
 
  private:

@@ -37,7 +37,7 @@ std::filesystem::path urdf_of(const std::string& robot, const std::filesystem::p
   }
   std::sort(known.begin(), known.end());
   if (std::find(known.begin(), known.end(), robot) == known.end()) {
-    throw InputError(fmt::format("--robot: there is no robot '{}' (known: {})", robot, fmt::join(known, ", ")));
+    throw InputError(fmt::format("--robot: unknown robot '{}' (known: {})", robot, fmt::join(known, ", ")));
   }
   return models / robot / (robot + ".urdf");
 }
@@ -47,14 +47,14 @@ void set_robot(const std::string& robot, const std::filesystem::path& data_root,
   setup.body = {.name = robot, .footprint = plan::Footprint(io::load_robot_description(urdf.string()).footprint_m)};
   const plan::NavigatorSettings drives_with = default_scenario(robot, data_root).stack.navigation;
   setup.settings.costmap = drives_with.costmap;
-  setup.settings.unknown = drives_with.costmap.allow_unknown ? "free" : "lethal";
+  setup.settings.allow_unknown = drives_with.costmap.allow_unknown;
   setup.settings.routes = drives_with.global_planner.family;
-  setup.settings.kept_clearance_m = drives_with.global_planner.min_clearance_m;
+  setup.settings.min_clearance_m = drives_with.global_planner.min_clearance_m;
   setup.settings.speed_mps = drives_with.local_planner.dwa.max_speed_mps;
 }
 
 void set_disc(double radius_m, PlanSetup& setup) {
-  if (!(radius_m >= 0.01 && radius_m <= 10.0)) throw InputError(fmt::format("--radius-m: {}: must lie in 0.01 ... 10", radius_m));
+  if (!(radius_m >= 0.01 && radius_m <= 10.0)) throw InputError(fmt::format("--radius-m: {}: must be in [0.01, 10]", radius_m));
   setup.body = {.name = fmt::format("a disc of {} m", radius_m), .footprint = outline_of_disc(radius_m)};
   setup.settings.routes.cost_weight = plan::GlobalPlannerSettings().family.cost_weight;
 }
@@ -62,9 +62,10 @@ void set_disc(double radius_m, PlanSetup& setup) {
 }  // namespace
 
 PlanSetup load_plan_setup(const PlanOptions& options) {
-  if (options.robot && options.radius_m) throw InputError("--robot and --radius-m: only one of them can be followed");
+  if (options.robot && options.radius_m) throw InputError("--robot and --radius-m are mutually exclusive");
   for (const std::string& entry : options.overrides) {
-    if (entry.starts_with("costmap.allow_unknown")) throw InputError("--set: costmap.allow_unknown: say it by unknown=lethal or unknown=free");
+    const bool sets_unknown = entry.starts_with("costmap.crosses_unknown") || entry.starts_with("costmap.allow_unknown");
+    if (sets_unknown) throw InputError("--set: costmap.allow_unknown: not supported: use allow_unknown=true or allow_unknown=false");
   }
   PlanSetup setup;
   PlanSettings& settings = setup.settings;
@@ -77,10 +78,10 @@ PlanSetup load_plan_setup(const PlanOptions& options) {
   if (options.smooth) overrides.push_back("smooth=true");
   if (options.speed_mps) overrides.push_back(fmt::format("speed_mps={}", *options.speed_mps));
   io::SettingsReader::read_section("--set", io::parse_overrides(overrides), "", settings);
-  settings.costmap.allow_unknown = settings.unknown == "free";
+  settings.costmap.allow_unknown = settings.allow_unknown;
   plan::make_route_planner(settings.planner, settings.routes, settings.seed);  // throws for an unknown planner
   if (settings.smooth && settings.planner == "visibility_graph") {
-    throw InputError("--smooth: the any-angle optimum has nothing to smooth, and touches what is lethal");
+    throw InputError("--smooth: not applicable to the visibility graph, whose paths touch lethal cells");
   }
   return setup;
 }

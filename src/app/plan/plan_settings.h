@@ -14,17 +14,17 @@
 namespace patrol::app {
 
 /// Settings of `patrol plan --set`. The defaults are those of a point. For a disc, routes.cost_weight is that of the
-/// robots (plan/routes/global_planner.h). For a robot, costmap, unknown, routes and speed_mps come from its profile
+/// robots (plan/routes/global_planner.h). For a robot, costmap, allow_unknown, routes and speed_mps come from its profile
 /// (models/<robot>/<robot>.yaml: stack.navigation).
 struct PlanSettings {
   std::string planner = "theta_star";  ///< plan/routes/planners.h
   std::uint64_t seed = 1;              ///< seed of stochastic planners and station orders
-  std::string unknown = "lethal";      ///< or "free": unknown cells are passable
+  bool allow_unknown = false;          ///< unknown cells are passable, otherwise lethal
   bool smooth = false;
-  double kept_clearance_m = 0.3;       ///< smoothing keeps this or the route's clearance; MovingAI: cells
+  double min_clearance_m = 0.3;        ///< smoothing keeps this or the route's clearance; MovingAI: cells
   /// Maximum number of passable cells for the any-angle optimum, which took up to 8 s. The limit for all cells is 8 times
   /// as high.
-  int any_angle_most_cells = 150'000;
+  int max_any_angle_cells = 150'000;
   double speed_mps = 1.0;              ///< speed on a tour; on MovingAI maps cells/s
   plan::CostmapSettings costmap;
   plan::RoutePlannerSettings routes;
@@ -34,10 +34,10 @@ struct PlanSettings {
   static void fields(Self& self, Visitor& visit) {
     visit("planner", self.planner, one_of(plan::route_planners()));
     visit("seed", self.seed);
-    visit("unknown", self.unknown, one_of({"lethal", "free"}));
+    visit("allow_unknown", self.allow_unknown);
     visit("smooth", self.smooth);
-    visit("kept_clearance_m", self.kept_clearance_m, between(0.0, 5.0));
-    visit("any_angle_most_cells", self.any_angle_most_cells, between(0, 100'000'000));
+    visit("min_clearance_m", self.min_clearance_m, between(0.0, 5.0));
+    visit("max_any_angle_cells", self.max_any_angle_cells, between(0, 100'000'000));
     visit("speed_mps", self.speed_mps, between(0.001, 1000.0));
     visit("costmap", self.costmap);
     visit("routes", self.routes);

@@ -29,7 +29,7 @@ class Grids {
     const GridGeometry& size = map->second.terrain.geometry();
     if (size.width != problem.width || size.height != problem.height) {
       throw input_error(file_.string(), problem.line,
-                        fmt::format("{}: is {} x {} cells, the problem's map is {} x {}", problem.map, size.width, size.height, problem.width, problem.height));
+                        fmt::format("{}: has {} x {} cells, the problem's map {} x {}", problem.map, size.width, size.height, problem.width, problem.height));
     }
     const bool swims = map->second.terrain.at(problem.start) == 'W';
     const auto key = std::pair(problem.map, swims);
@@ -46,12 +46,12 @@ class Grids {
 
 std::optional<std::string> failure_of(const SolvedProblem& solved, const plan::Route& route, const Grid<plan::Cost>& costs, const std::string& planner) {
   const io::MovingAiProblem& problem = solved.problem;
-  if (solved.status == plan::PlanStatus::kNotFound) return "no route was found";
-  if (!solved.is_found()) return "there is no route: the file says there is";
-  if (const auto fault = find_fault(costs, route, problem.start, problem.goal, planner == "visibility_graph")) return "the route " + *fault;
+  if (solved.status == plan::PlanStatus::kNotFound) return "no route found";
+  if (!solved.is_found()) return "no route found, but the file states a length";
+  if (const auto fault = validate_route(costs, route, problem.start, problem.goal, planner == "visibility_graph")) return "the route " + *fault;
   if (must_agree(planner) && !solved.agrees()) return fmt::format("is {:.6f} cells long, published {:.6f}", solved.length, problem.optimal_length);
   if (is_any_angle(planner) && solved.length > problem.optimal_length + solved.published_tol()) {
-    return fmt::format("is {:.6f} cells long, longer than {:.6f} over eight neighbours", solved.length, problem.optimal_length);
+    return fmt::format("is {:.6f} cells long, more than {:.6f} over eight neighbors", solved.length, problem.optimal_length);
   }
   return std::nullopt;
 }
@@ -61,12 +61,12 @@ std::optional<std::string> failure_of(const SolvedProblem& solved, const plan::R
 bool must_agree(const std::string& planner) { return planner == "astar" || planner == "dijkstra"; }
 
 std::filesystem::path find_map(const std::filesystem::path& file, const io::MovingAiProblem& problem) {
-  const std::filesystem::path as_written = file.parent_path() / problem.map, beside = file.parent_path() / std::filesystem::path(problem.map).filename();
-  for (const std::filesystem::path& map : {as_written, beside}) {
+  const std::filesystem::path as_written = file.parent_path() / problem.map, in_same_folder = file.parent_path() / std::filesystem::path(problem.map).filename();
+  for (const std::filesystem::path& map : {as_written, in_same_folder}) {
     std::error_code ignored;  // an invalid file name
     if (std::filesystem::is_regular_file(map, ignored)) return map;
   }
-  throw input_error(file.string(), problem.line, fmt::format("{}: there is neither {} nor {}", problem.map, as_written.string(), beside.string()));
+  throw input_error(file.string(), problem.line, fmt::format("{}: neither {} nor {} found", problem.map, as_written.string(), in_same_folder.string()));
 }
 
 std::optional<std::vector<SolvedProblem>> solve_problems(const std::filesystem::path& file, const PlanSettings& settings) {

@@ -11,7 +11,7 @@
 namespace patrol::app {
 namespace {
 
-constexpr std::size_t kMostFailuresPrinted = 20;
+constexpr std::size_t kMaxFailuresPrinted = 20;
 
 struct Summary {
   std::size_t num_found = 0, num_agree = 0;
@@ -51,19 +51,19 @@ std::string to_text(const ProblemReport& report) {
   const std::size_t count = report.solved.size(), failed = num_failed(report);
   std::string text = fmt::format("{}: {} problems by {}\nroutes             {} found, each checked against every lethal cell\n", report.file_name, count,
                                  report.settings.planner, summary.num_found);
-  text += fmt::format("published lengths  {} agree to their last digit{}, worst difference {:.3g} cells\n", summary.num_agree,
-                      must_agree(report.settings.planner) ? "" : " (need not)", summary.worst_difference);
+  text += fmt::format("published lengths  {} agree to the last digit{}, worst difference {:.3g} cells\n", summary.num_agree,
+                      must_agree(report.settings.planner) ? "" : " (not expected)", summary.worst_difference);
   if (!summary.ratios.empty()) {
-    text += fmt::format("length / optimum   mean {:.6f}, median {:.6f}, least {:.6f}, worst {:.6f}\n", mean_of(summary.ratios),
+    text += fmt::format("length / optimum   mean {:.6f}, median {:.6f}, minimum {:.6f}, maximum {:.6f}\n", mean_of(summary.ratios),
                         score::percentile(summary.ratios, 0.5), *std::min_element(summary.ratios.begin(), summary.ratios.end()), *std::max_element(summary.ratios.begin(), summary.ratios.end()));
   }
-  text += fmt::format("processor time     {:.3f} ms a problem, {:.2f} s in all\nchecks failed      {}\n",
+  text += fmt::format("processor time     {:.3f} ms per problem, {:.2f} s in total\nchecks failed      {}\n",
                       1e3 * summary.processor_s / static_cast<double>(count), summary.processor_s, failed);
   std::size_t num_printed = 0;
   for (const SolvedProblem& solved : report.solved) {
-    if (solved.failure && num_printed++ < kMostFailuresPrinted) text += fmt::format("  {}:{}: {}\n", report.file_name, solved.problem.line, *solved.failure);
+    if (solved.failure && num_printed++ < kMaxFailuresPrinted) text += fmt::format("  {}:{}: {}\n", report.file_name, solved.problem.line, *solved.failure);
   }
-  if (failed > kMostFailuresPrinted) text += fmt::format("  and {} more\n", failed - kMostFailuresPrinted);
+  if (failed > kMaxFailuresPrinted) text += fmt::format("  and {} more\n", failed - kMaxFailuresPrinted);
   return text;
 }
 

@@ -18,7 +18,7 @@ struct Point {
 Point center_of(Cell cell) { return {.x = 2L * cell.col + 1, .y = 2L * cell.row + 1}; }
 
 /// Converts a point; none if it is neither a center nor a corner.
-std::optional<Point> whole_point(const Eigen::Vector2d& p) {
+std::optional<Point> to_half_cell_point(const Eigen::Vector2d& p) {
   const Eigen::Vector2d twice = 2.0 * p;
   if (!twice.allFinite() || twice.cwiseAbs().maxCoeff() > 1e9) return std::nullopt;
   const Point point{.x = std::lround(twice.x()), .y = std::lround(twice.y())};
@@ -58,7 +58,7 @@ class Leg {
   }
 
   /// Whether the leg passes a corner at which two lethal cells meet, or runs along a side between two.
-  bool squeezes() const {
+  bool passes_between_cells() const {
     if (low_.y == high_.y) {
       if (low_.y % 2 != 0) return false;  // through the middles of cells
       const auto [left, right] = std::minmax(low_.x, high_.x);
@@ -98,18 +98,18 @@ class Leg {
 
 }  // namespace
 
-std::optional<std::string> find_fault(const Grid<plan::Cost>& costs, const plan::Route& route, Cell start, Cell goal, bool may_touch) {
+std::optional<std::string> validate_route(const Grid<plan::Cost>& costs, const plan::Route& route, Cell start, Cell goal, bool may_touch) {
   std::vector<Point> points;
   for (const Eigen::Vector2d& p : route.points) {
-    const std::optional<Point> point = whole_point(p);
-    if (!point) return fmt::format("turns at {}, {}, no centre and no corner of a cell", p.x(), p.y());
+    const std::optional<Point> point = to_half_cell_point(p);
+    if (!point) return fmt::format("turns at {}, {}: must be a cell center or corner", p.x(), p.y());
     points.push_back(*point);
   }
   if (points.empty() || points.front() != center_of(start) || points.back() != center_of(goal)) return "does not lead from the start to the goal";
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Leg leg(costs, points[i == 0 ? 0 : i - 1], points[i]);
     if (const std::optional<Cell> cell = leg.lethal_cell(may_touch)) return fmt::format("meets the lethal cell {}, {}", cell->col, cell->row);
-    if (may_touch && leg.squeezes()) return fmt::format("passes between two lethal cells before {}, {}", route.points[i].x(), route.points[i].y());
+    if (may_touch && leg.passes_between_cells()) return fmt::format("passes between two lethal cells before {}, {}", route.points[i].x(), route.points[i].y());
   }
   return std::nullopt;
 }

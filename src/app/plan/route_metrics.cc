@@ -15,7 +15,7 @@ namespace {
 
 void smooth(const Grid<plan::Cost>& costs, const PlanSettings& settings, plan::Route& route) {
   const double cost_weight = settings.routes.cost_weight;
-  route.points = plan::smooth_route(costs, cost_weight, settings.kept_clearance_m / costs.geometry().resolution_m, route.points);
+  route.points = plan::smooth_route(costs, cost_weight, settings.min_clearance_m / costs.geometry().resolution_m, route.points);
   route.clearance = plan::compute_clearance(costs, route.points);
   route.length = route.cost = 0.0;
   for (std::size_t i = 1; i < route.points.size(); ++i) {
@@ -24,8 +24,8 @@ void smooth(const Grid<plan::Cost>& costs, const PlanSettings& settings, plan::R
   }
 }
 
-bool is_too_large(const Grid<plan::Cost>& costs, std::int64_t most_passable) {
-  return static_cast<std::int64_t>(costs.geometry().size()) > 8 * most_passable || num_passable(costs) > most_passable;
+bool is_too_large(const Grid<plan::Cost>& costs, std::int64_t max_passable) {
+  return static_cast<std::int64_t>(costs.geometry().size()) > 8 * max_passable || num_passable(costs) > max_passable;
 }
 
 }  // namespace
@@ -45,25 +45,25 @@ plan::Route plan_route(plan::RoutePlanner& planner, const Grid<plan::Cost>& cost
   return route;
 }
 
-RouteFigures figures_of_route(const Grid<plan::Cost>& costs, Cell start, Cell goal, const PlanSettings& settings) {
+RouteMetrics evaluate_route(const Grid<plan::Cost>& costs, Cell start, Cell goal, const PlanSettings& settings) {
   const std::unique_ptr<plan::RoutePlanner> planner = plan::make_route_planner(settings.planner, settings.routes, settings.seed);
-  RouteFigures figures;
+  RouteMetrics metrics;
   const double processor_s = process_seconds(), wall_s = wall_seconds();
-  figures.route = plan_route(*planner, costs, start, goal, settings);
-  figures.processor_s = process_seconds() - processor_s;
-  figures.wall_s = wall_seconds() - wall_s;
-  figures.num_turns = count_turns(figures.route.points);
+  metrics.route = plan_route(*planner, costs, start, goal, settings);
+  metrics.processor_s = process_seconds() - processor_s;
+  metrics.wall_s = wall_seconds() - wall_s;
+  metrics.num_turns = count_turns(metrics.route.points);
 
   using plan::GridSearch;
   const plan::Route octile = GridSearch(GridSearch::Method::kAstar).plan(costs, start, goal);
-  if (octile.status != plan::PlanStatus::kFound) return figures;
-  figures.octile_length = octile.length;
+  if (octile.status != plan::PlanStatus::kFound) return metrics;
+  metrics.octile_length = octile.length;
   const double cost_weight = settings.routes.cost_weight;
-  if (cost_weight > 0.0) figures.octile_cost = GridSearch(GridSearch::Method::kAstar, cost_weight).plan(costs, start, goal).cost;
-  if (settings.planner == "visibility_graph") figures.any_angle_length = figures.route.length;
-  else if (is_too_large(costs, settings.any_angle_most_cells)) figures.is_any_angle_left_out = true;
-  else figures.any_angle_length = plan::VisibilityGraphPlanner().plan(costs, start, goal).length;
-  return figures;
+  if (cost_weight > 0.0) metrics.octile_cost = GridSearch(GridSearch::Method::kAstar, cost_weight).plan(costs, start, goal).cost;
+  if (settings.planner == "visibility_graph") metrics.any_angle_length = metrics.route.length;
+  else if (is_too_large(costs, settings.max_any_angle_cells)) metrics.is_any_angle_skipped = true;
+  else metrics.any_angle_length = plan::VisibilityGraphPlanner().plan(costs, start, goal).length;
+  return metrics;
 }
 
 }  // namespace patrol::app

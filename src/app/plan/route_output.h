@@ -24,7 +24,7 @@ struct RouteReport {
   const PlanSetup& setup;
   const Grid<plan::Cost>& costs;
   Eigen::Vector2d p_from_m, p_to_m;  ///< in the grid's frame, as requested
-  RouteFigures figures;
+  RouteMetrics metrics;
 };
 
 /// "found", "start blocked" ...

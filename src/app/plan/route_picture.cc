@@ -13,7 +13,7 @@ namespace {
 
 constexpr Color kPaper{255, 255, 255}, kUnknownGround{214, 216, 219}, kObstacle{22, 34, 48}, kInflated{233, 164, 136}, kDear{252, 222, 170};
 constexpr Color kRoute{20, 90, 214}, kWriting{40, 48, 58};
-constexpr int kFooter_px = 74, kEdge_px = 16, kLeastWidth_px = 720;
+constexpr int kFooter_px = 74, kEdge_px = 16, kMinWidth_px = 720;
 constexpr double kMaxWidth_px = 1600.0, kMaxHeight_px = 1000.0, kMaxCell_px = 24.0;
 
 class Sheet {
@@ -32,7 +32,7 @@ class Sheet {
     px_per_m_ = std::min({kMaxWidth_px / shown_.sizes().x(), kMaxHeight_px / shown_.sizes().y(), kMaxCell_px / map.resolution_m});
     width_px_ = std::max(1, static_cast<int>(std::lround(px_per_m_ * shown_.sizes().x())));
     height_px_ = std::max(1, static_cast<int>(std::lround(px_per_m_ * shown_.sizes().y())));
-    frame_ = render::Frame(std::max(width_px_, kLeastWidth_px), height_px_ + kFooter_px, kPaper);
+    frame_ = render::Frame(std::max(width_px_, kMinWidth_px), height_px_ + kFooter_px, kPaper);
   }
 
   render::Frame draw() {
@@ -108,7 +108,7 @@ class Sheet {
     };
     add(kObstacle, "obstacle");
     add(kInflated, "lethal by inflation");
-    add(kDear, "dearer: near to an obstacle, or unknown");
+    add(kDear, "higher cost: near an obstacle, or unknown");
     add(kUnknownGround, "unknown");
     add(kRoute, "route");
   }

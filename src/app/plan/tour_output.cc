@@ -11,14 +11,14 @@
 namespace patrol::app {
 namespace {
 
-Eigen::Vector2d place_of(const TourReport& report, std::size_t place) {
-  if (place == 0) return report.p_from_m;
-  return place <= report.stops.size() ? report.stops[place - 1].p_m : *report.p_end_m;
+Eigen::Vector2d node_position(const TourReport& report, std::size_t node) {
+  if (node == 0) return report.p_from_m;
+  return node <= report.stops.size() ? report.stops[node - 1].p_m : *report.p_end_m;
 }
 
 std::vector<std::string> unreachable_names(const TourReport& report) {
   std::vector<std::string> names;
-  for (const std::size_t place : report.tour.unreachable) names.push_back(place_name(report, place));
+  for (const std::size_t node : report.tour.unreachable) names.push_back(node_name(report, node));
   return names;
 }
 
@@ -31,7 +31,7 @@ double length_m(const TourPlan& tour) {
 std::string windows_text(const TourPlan& tour) {
   const auto num_late = std::count_if(tour.visits.begin(), tour.visits.end(), [](const TourVisit& visit) { return visit.late_s > 0.0; });
   if (num_late == 0) return "every window kept";
-  return fmt::format("{} window{} missed, by {:.1f} s in all", num_late, num_late == 1 ? "" : "s", tour.order.lateness);
+  return fmt::format("{} window{} missed, by {:.1f} s in total", num_late, num_late == 1 ? "" : "s", tour.order.lateness);
 }
 
 double waiting_s(const TourPlan& tour) {
@@ -44,12 +44,12 @@ double waiting_s(const TourPlan& tour) {
 std::string visits_text(const TourReport& report) {
   std::size_t width = 5;
   for (const TourStop& stop : report.stops) width = std::clamp(stop.station.name.size(), width, std::size_t{32});
-  std::string text = fmt::format("     {:<{}}  {:>10}  {:>10}  {:>10}  {:>10}  {:>10}\n", "", width, fmt::format("way, {}", report.map.unit()),
+  std::string text = fmt::format("     {:<{}}  {:>10}  {:>10}  {:>10}  {:>10}  {:>10}\n", "", width, fmt::format("path, {}", report.map.unit()),
                                  "arrives, s", "waits, s", "leaves, s", "late, s");
   std::size_t number = 0;
   for (const TourVisit& visit : report.tour.visits) {
     const std::string late = visit.late_s > 0.0 ? fmt::format("{:.1f}", visit.late_s) : "";
-    const std::string line = fmt::format("{:>3}  {:<{}}  {:>10.2f}  {:>10.1f}  {:>10.1f}  {:>10.1f}  {:>10}", number++, place_name(report, visit.place),
+    const std::string line = fmt::format("{:>3}  {:<{}}  {:>10.2f}  {:>10.1f}  {:>10.1f}  {:>10.1f}  {:>10}", number++, node_name(report, visit.node),
                                          width, visit.leg_m, visit.arrives_s, visit.waits_s, visit.leaves_s, late);
     text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
   }
@@ -58,9 +58,9 @@ std::string visits_text(const TourReport& report) {
 
 }  // namespace
 
-std::string place_name(const TourReport& report, std::size_t place) {
-  if (place == 0) return "start";
-  return place <= report.stops.size() ? report.stops[place - 1].station.name : "end";
+std::string node_name(const TourReport& report, std::size_t node) {
+  if (node == 0) return "start";
+  return node <= report.stops.size() ? report.stops[node - 1].station.name : "end";
 }
 
 std::string tour_title(const TourReport& report) {
@@ -79,15 +79,15 @@ std::string to_text(const TourReport& report) {
     text += visits_text(report);
     text += fmt::format("completion   {:.1f} s at {} {}/s: {:.1f} s of it waiting; {}\n", tour.order.completion, report.setup.settings.speed_mps, unit,
                         waiting_s(tour), windows_text(tour));
-    text += tour.order.is_exact ? fmt::format("order        the best there is, by exact search (lower bound {:.1f} s)\n", tour.order.lower_bound)
-                                : fmt::format("order        by local search: at most {:.2f} % above the best, whose lower bound is {:.1f} s\n",
+    text += tour.order.is_exact ? fmt::format("order        optimal, by exact search (lower bound {:.1f} s)\n", tour.order.lower_bound)
+                                : fmt::format("order        by local search: at most {:.2f} % above the optimum, lower bound {:.1f} s\n",
                                               100.0 * tour.order.gap(), tour.order.lower_bound);
   } else if (tour.unreachable.size() + 1 < report.stops.size() + 1 + report.p_end_m.has_value()) {
-    text += "there is no order: between some of the places no way was found\n";
+    text += "no order: some stations are not connected\n";
   }
-  text += fmt::format("ways         {} planned, {:.2f} ms each\n", tour.num_routes, 1e3 * tour.processor_s / std::max(1, tour.num_routes));
+  text += fmt::format("paths        {} planned, {:.2f} ms each\n", tour.num_routes, 1e3 * tour.processor_s / std::max(1, tour.num_routes));
   if (!tour.unreachable.empty()) {
-    text += fmt::format("UNREACHABLE  {}{}\n", fmt::join(unreachable_names(report), ", "), tour.is_proved ? "" : ": this planner may miss a way");
+    text += fmt::format("UNREACHABLE  {}{}\n", fmt::join(unreachable_names(report), ", "), tour.is_proven ? "" : ": this planner is not complete");
   }
   return text;
 }
@@ -97,14 +97,14 @@ io::Metrics to_json(const TourReport& report) {
   const char* unit = report.map.unit();
   io::Metrics visits = io::Metrics::array();
   for (const TourVisit& visit : tour.visits) {
-    visits.push_back({{"name", place_name(report, visit.place)},
+    visits.push_back({{"name", node_name(report, visit.node)},
                       {fmt::format("way_{}", unit), visit.leg_m},
                       {"arrives_s", visit.arrives_s},
                       {"waits_s", visit.waits_s},
                       {"leaves_s", visit.leaves_s},
                       {"late_s", visit.late_s}});
   }
-  const auto figure = [&](double value) { return tour.order.is_found ? io::Metrics(value) : io::Metrics(nullptr); };
+  const auto value_or_null = [&](double value) { return tour.order.is_found ? io::Metrics(value) : io::Metrics(nullptr); };
   return {{"map", report.map_name},
           {"grid", grid_json(report.map, report.costs, report.setup.body)},
           {"planner", report.setup.settings.planner},
@@ -113,12 +113,12 @@ io::Metrics to_json(const TourReport& report) {
           {"tour",
            {{"is_found", tour.order.is_found},
             {"is_exact", tour.order.is_exact},
-            {fmt::format("length_{}", unit), figure(length_m(tour))},
-            {"completion_s", figure(tour.order.completion)},
-            {"waiting_s", figure(waiting_s(tour))},
-            {"lateness_s", figure(tour.order.lateness)},
-            {"lower_bound_s", figure(tour.order.lower_bound)},
-            {"gap", figure(tour.order.gap())},
+            {fmt::format("length_{}", unit), value_or_null(length_m(tour))},
+            {"completion_s", value_or_null(tour.order.completion)},
+            {"waiting_s", value_or_null(waiting_s(tour))},
+            {"lateness_s", value_or_null(tour.order.lateness)},
+            {"lower_bound_s", value_or_null(tour.order.lower_bound)},
+            {"gap", value_or_null(tour.order.gap())},
             {"unreachable", unreachable_names(report)}}},
           {"visits", visits},
           {"performance", {{"num_ways", tour.num_routes}, {"processor_s", tour.processor_s}}}};
@@ -128,8 +128,8 @@ io::Table tour_table(const TourReport& report) {
   const std::string unit = report.map.unit();
   io::Table table{.name = "tour", .columns = {"name", "x_" + unit, "y_" + unit, "way_" + unit, "arrives_s", "waits_s", "leaves_s", "late_s"}, .rows = {}};
   for (const TourVisit& visit : report.tour.visits) {
-    const Eigen::Vector2d p = report.map.named(place_of(report, visit.place));
-    table.rows.push_back({place_name(report, visit.place), p.x(), p.y(), visit.leg_m, visit.arrives_s, visit.waits_s, visit.leaves_s, visit.late_s});
+    const Eigen::Vector2d p = report.map.to_user(node_position(report, visit.node));
+    table.rows.push_back({node_name(report, visit.node), p.x(), p.y(), visit.leg_m, visit.arrives_s, visit.waits_s, visit.leaves_s, visit.late_s});
   }
   return table;
 }
@@ -137,11 +137,11 @@ io::Table tour_table(const TourReport& report) {
 std::vector<RoutePicture::Mark> marks_of(const TourReport& report) {
   std::vector<RoutePicture::Mark> marks = {{report.p_from_m, "start", kStartColor}};
   for (std::size_t k = 1; k < report.tour.visits.size(); ++k) {
-    const std::size_t place = report.tour.visits[k].place;
-    if (place == 0 || place > report.stops.size()) continue;
-    marks.push_back({place_of(report, place), fmt::format("{} {}", k, place_name(report, place)), kStopColor});
+    const std::size_t node = report.tour.visits[k].node;
+    if (node == 0 || node > report.stops.size()) continue;
+    marks.push_back({node_position(report, node), fmt::format("{} {}", k, node_name(report, node)), kStopColor});
   }
-  for (const std::size_t place : report.tour.unreachable) marks.push_back({place_of(report, place), place_name(report, place) + ": no way", kGoalColor});
+  for (const std::size_t node : report.tour.unreachable) marks.push_back({node_position(report, node), node_name(report, node) + ": no path", kGoalColor});
   const bool is_end_reached = report.tour.unreachable.empty() || report.tour.unreachable.back() <= report.stops.size();
   if (report.p_end_m && is_end_reached) marks.push_back({*report.p_end_m, "end", kGoalColor});
   return marks;

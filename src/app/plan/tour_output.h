@@ -27,7 +27,7 @@ struct TourReport {
 };
 
 /// "start", a station's name, or "end"; `place` as in TourVisit.
-std::string place_name(const TourReport& report, std::size_t place);
+std::string node_name(const TourReport& report, std::size_t node);
 
 std::string tour_title(const TourReport& report);
 /// Report for standard output: the order with its times.

@@ -20,7 +20,7 @@ struct TourStop {
 
 /// Visit of a planned tour. Times are from the tour's start.
 struct TourVisit {
-  std::size_t place = 0;  ///< 0: start, 1 ... n: stops, n + 1: end, if it differs from the start
+  std::size_t node = 0;  ///< 0: start, 1 ... n: stops, n + 1: end, if it differs from the start
   double leg_m = 0.0;     ///< length of the path to it
   double arrives_s = 0.0, waits_s = 0.0, leaves_s = 0.0, late_s = 0.0;
 };
@@ -29,7 +29,7 @@ struct TourPlan {
   plan::TourOrder order;              ///< order of the reachable stations, by their own indices
   std::vector<TourVisit> visits;      ///< in order, from the start to the end, or back to the start
   std::vector<std::size_t> unreachable;  ///< places without a path from the start
-  bool is_proved = true;                 ///< whether unreachability is proven; false with an incomplete planner
+  bool is_proven = true;                 ///< whether unreachability is proven; false with an incomplete planner
   std::vector<Eigen::Vector2d> points_m; ///< the whole path, in the grid's frame
   int num_routes = 0;                 ///< number of planned paths
   double processor_s = 0.0;           ///< processor time of planning

@@ -40,7 +40,7 @@ std::size_t num_lines(const std::filesystem::path& file, std::uint64_t from) {
 
 Outbox::Outbox(std::filesystem::path root) : root_(std::move(root)), sent_(sent_bytes(root_)) {
   file_ = ::open(file().c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
-  if (file_ < 0) throw InputError(fmt::format("{}: cannot be written", file().string()));
+  if (file_ < 0) throw InputError(fmt::format("{}: cannot write", file().string()));
   written_ = static_cast<std::uint64_t>(::lseek(file_, 0, SEEK_END));
   sent_ = std::min<std::uint64_t>(sent_, written_);
 }
@@ -52,7 +52,7 @@ void Outbox::add(const monitor::Result& result) {
   const ssize_t count = ::write(file_, line.data(), line.size());
   if (count != static_cast<ssize_t>(line.size())) {
     const bool is_cut_back = ::ftruncate(file_, static_cast<off_t>(written_.load())) == 0;
-    throw std::runtime_error(fmt::format("{}: cannot be written{}", file().string(), is_cut_back ? "" : ", and its last line is half one"));
+    throw std::runtime_error(fmt::format("{}: cannot write{}", file().string(), is_cut_back ? "" : ", and the last line is incomplete"));
   }
   written_ += line.size();
 }
@@ -90,9 +90,9 @@ void Outbox::mark_sent(const Batch& batch) {
 
 void Outbox::set_aside(const std::string& result) { std::ofstream(refused_file(root_), std::ios::binary | std::ios::app) << result << "\n"; }
 
-std::size_t Outbox::num_waiting() const { return num_waiting_results(root_); }
-std::size_t Outbox::num_refused() const { return num_lines(refused_file(root_), 0); }
+std::size_t Outbox::num_pending() const { return num_pending_results(root_); }
+std::size_t Outbox::num_rejected() const { return num_lines(refused_file(root_), 0); }
 
-std::size_t num_waiting_results(const std::filesystem::path& root) { return num_lines(root / "outbox.jsonl", sent_bytes(root)); }
+std::size_t num_pending_results(const std::filesystem::path& root) { return num_lines(root / "outbox.jsonl", sent_bytes(root)); }
 
 }  // namespace patrol::app

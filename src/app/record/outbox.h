@@ -37,8 +37,8 @@ class Outbox {
   void mark_sent(const Batch& batch);
   void set_aside(const std::string& result);
 
-  std::size_t num_waiting() const;
-  std::size_t num_refused() const;
+  std::size_t num_pending() const;
+  std::size_t num_rejected() const;
   std::filesystem::path file() const { return root_ / "outbox.jsonl"; }
 
  private:
@@ -49,6 +49,6 @@ class Outbox {
 };
 
 /// Number of results in a directory that wait for upload; 0 without an outbox.
-std::size_t num_waiting_results(const std::filesystem::path& root);
+std::size_t num_pending_results(const std::filesystem::path& root);
 
 }  // namespace patrol::app

@@ -11,12 +11,12 @@ namespace {
 
 const OutputKind kRun = {
     .name = "run",
-    .unfinished = "This run has not ended: what lies here is not a result.",
-    .made = {"scenario.yaml", "log.mcap", "metrics.json", "junit.xml", "estimate.tum", "truth.tum", "odometry.tum", "map.yaml", "map.pgm",
-             "truth_map.yaml", "truth_map.pgm", "report.html", "replay.mp4", "nav.json", "remote.csv", "scans/scans.json", "scans/*.ply", "map_errors.pgm", "localizability.csv", "still_*.png", "outbox.jsonl", "outbox.sent",
+    .marker_text = "Incomplete run: these files are not a result.",
+    .outputs = {"scenario.yaml", "log.mcap", "metrics.json", "junit.xml", "estimate.tum", "truth.tum", "odometry.tum", "map.yaml", "map.pgm",
+             "truth_map.yaml", "truth_map.pgm", "report.html", "replay.mp4", "nav.json", "teleop.csv", "scans/scans.json", "scans/*.ply", "map_errors.pgm", "localizability.csv", "still_*.png", "outbox.jsonl", "outbox.sent",
              "outbox.refused.jsonl", "*.part"},
-    .proof = "scenario.yaml",
-    .kept = {}};
+    .required_file = "scenario.yaml",
+    .preserved = {}};
 
 }  // namespace
 
@@ -25,8 +25,8 @@ bool RunDirectory::is_complete() const {
 }
 
 RunDirectory begin_run_directory(const std::filesystem::path& root) {
-  if (const std::size_t waiting = num_waiting_results(root); waiting > 0) {
-    throw InputError(fmt::format("{}: {} results of an earlier run wait there for the platform: patrol send them, or name another directory", root.string(), waiting));
+  if (const std::size_t num_pending = num_pending_results(root); num_pending > 0) {
+    throw InputError(fmt::format("{}: contains {} undelivered results of an earlier run; upload them with 'patrol upload' or choose another --out directory", root.string(), num_pending));
   }
   return {.root = root, .lock = std::make_shared<const OutputLock>(begin_output(root, kRun))};
 }
@@ -34,7 +34,7 @@ RunDirectory begin_run_directory(const std::filesystem::path& root) {
 RunDirectory open_run_directory(const std::filesystem::path& root) {
   const RunDirectory directory{root};
   if (!std::filesystem::exists(directory.log())) {
-    throw InputError(fmt::format("{}: not a run directory: it has no log.mcap", root.string()));
+    throw InputError(fmt::format("{}: not a run directory: log.mcap not found", root.string()));
   }
   return directory;
 }

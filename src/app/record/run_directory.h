@@ -16,7 +16,7 @@ struct RunDirectory {
   std::filesystem::path scenario() const { return root / "scenario.yaml"; }
   std::filesystem::path log() const { return root / "log.mcap"; }
   std::filesystem::path nav() const { return root / "nav.json"; }
-  std::filesystem::path remote() const { return root / "remote.csv"; }
+  std::filesystem::path teleop() const { return root / "teleop.csv"; }
   std::filesystem::path scans() const { return root / "scans"; }
   std::filesystem::path metrics() const { return root / "metrics.json"; }
   std::filesystem::path junit() const { return root / "junit.xml"; }

@@ -33,12 +33,12 @@ RunRecord read_run_record(const std::filesystem::path& log_mcap) {
   handlers.on<Path>([&](Time, const Path&) { ++record.num_paths; });
   handlers.on<Collision>([&](Time, const Collision& collision) { record.collisions.push_back(collision); });
   handlers.on<LocalizationConfidence>([&](Time, const LocalizationConfidence& confidence) { record.confidences.push_back(confidence); });
-  handlers.on<TeleopCommand>([&](Time, const TeleopCommand& command) { record.remote.push_back(command); });
+  handlers.on<TeleopCommand>([&](Time, const TeleopCommand& command) { record.teleop.push_back(command); });
   handlers.on<LiningResult>([&](Time, const LiningResult& result) { record.linings.push_back(result); });
   handlers.on<WaterResult>([&](Time, const WaterResult& result) { record.waters.push_back(result); });
   handlers.on<MapUpdate>([&](Time, const MapUpdate& update) { record.map = update.map; });
   record.is_complete = io::read_run_log(log_mcap, handlers);
-  if (record.T_world_body.empty()) throw InputError(fmt::format("{}: holds no ground truth", log_mcap.string()));
+  if (record.T_world_body.empty()) throw InputError(fmt::format("{}: contains no ground truth", log_mcap.string()));
   return record;
 }
 

@@ -12,18 +12,18 @@ using report::Tone;
 /// Steps of a waterfall chart, in the metric's display unit.
 class Waterfall {
  public:
-  explicit Waterfall(const Budget& budget) : unit_(report::unit_of(budget.metric)), level_(budget.as_it_is->center) {}
+  explicit Waterfall(const Budget& budget) : unit_(report::unit_of(budget.metric)), level_(budget.baseline->center) {}
 
   /// Adds a bar from zero.
   void total(const std::string& label, const score::Interval& value) {
     add(label, 0.0, value.center, value, Tone::kPlain, fmt::format("{:.3g} {}", unit_.factor * value.center, unit_.name));
   }
   /// Adds a bar down from the end of the previous step.
-  void step(const std::string& label, const score::Interval& share) {
-    const double next = level_ - share.center;
-    const Tone tone = share.contains(0.0) ? Tone::kFaint : share.center > 0.0 ? Tone::kBad : Tone::kGood;
-    add(label, level_, next, {.center = next, .low = level_ - share.high, .high = level_ - share.low}, tone,
-        fmt::format("{:+.3g} {}", -unit_.factor * share.center, unit_.name));
+  void step(const std::string& label, const score::Interval& contribution) {
+    const double next = level_ - contribution.center;
+    const Tone tone = contribution.contains(0.0) ? Tone::kFaint : contribution.center > 0.0 ? Tone::kBad : Tone::kGood;
+    add(label, level_, next, {.center = next, .low = level_ - contribution.high, .high = level_ - contribution.low}, tone,
+        fmt::format("{:+.3g} {}", -unit_.factor * contribution.center, unit_.name));
     level_ = next;
   }
   report::WaterfallChart chart() && { return std::move(chart_); }
@@ -44,7 +44,7 @@ class Waterfall {
   report::WaterfallChart chart_;
 };
 
-bool is_whole(const Budget& budget) { return budget.as_it_is && budget.ideal && budget.sum && budget.interaction; }
+bool is_whole(const Budget& budget) { return budget.baseline && budget.ideal && budget.sum && budget.interaction; }
 
 std::string with_interval(const score::Interval& value, const report::Unit& unit) {
   return fmt::format("{:+.3g} [{:+.3g}, {:+.3g}]", unit.factor * value.center, unit.factor * value.low, unit.factor * value.high);
@@ -53,34 +53,34 @@ std::string with_interval(const score::Interval& value, const report::Unit& unit
 }  // namespace
 
 std::vector<report::Block> budget_blocks(const Budget& budget) {
-  if (!is_whole(budget)) return {report::TextBlock{"Too few runs gave this figure."}};
+  if (!is_whole(budget)) return {report::TextBlock{"Too few runs with this metric."}};
   const report::Unit unit = report::unit_of(budget.metric);
   Waterfall waterfall(budget);
-  waterfall.total("as it is", *budget.as_it_is);
-  report::TableBlock table{.caption = "", .columns = {{"imperfection"}, {"seeds", true}, {fmt::format("share, {}", unit.name), true}, {""}}, .rows = {}};
-  for (const BudgetShare& share : budget.shares) {
-    if (!share.share) continue;
-    waterfall.step(share.name, *share.share);
-    const bool is_clear = !share.share->contains(0.0);
-    table.rows.push_back({{share.name}, {std::to_string(share.num_pairs)}, {with_interval(*share.share, unit)},
-                          {is_clear ? "" : "interval holds zero", Tone::kFaint}});
+  waterfall.total("baseline", *budget.baseline);
+  report::TableBlock table{.caption = "", .columns = {{"error source"}, {"seeds", true}, {fmt::format("contribution, {}", unit.name), true}, {""}}, .rows = {}};
+  for (const Contribution& contribution : budget.contributions) {
+    if (!contribution.value) continue;
+    waterfall.step(contribution.name, *contribution.value);
+    const bool is_clear = !contribution.value->contains(0.0);
+    table.rows.push_back({{contribution.name}, {std::to_string(contribution.num_pairs)}, {with_interval(*contribution.value, unit)},
+                          {is_clear ? "" : "interval contains zero", Tone::kFaint}});
   }
   waterfall.step("interaction", *budget.interaction);
   waterfall.total("all ideal", *budget.ideal);
-  table.rows.push_back({{"sum of the shares"}, {""}, {with_interval(*budget.sum, unit)}, {""}});
+  table.rows.push_back({{"sum of the contributions"}, {""}, {with_interval(*budget.sum, unit)}, {""}});
   table.rows.push_back({{"interaction"}, {""}, {with_interval(*budget.interaction, unit)}, {""}});
   return {std::move(waterfall).chart(), table,
-          report::TextBlock{"A share is the figure with all imperfections less the figure without this one, paired by seed, with its 95 % interval. Interaction: "
-                            "what all take away together, less the sum of the shares; imperfections that hide or feed each other."}};
+          report::TextBlock{"Contribution: baseline minus the metric without this error source, paired by seed, with 95 % interval. Interaction: "
+                            "effect of removing all minus the sum of the contributions."}};
 }
 
 std::string budget_finding(const Budget& budget) {
-  if (!is_whole(budget) || budget.shares.empty() || !budget.shares.front().share) return fmt::format("{}: too few runs gave it.", budget.metric);
+  if (!is_whole(budget) || budget.contributions.empty() || !budget.contributions.front().value) return fmt::format("{}: too few runs with this metric.", budget.metric);
   const report::Unit unit = report::unit_of(budget.metric);
-  const BudgetShare& first = budget.shares.front();
-  const std::string whole = fmt::format("{:.3g} {}", unit.factor * budget.as_it_is->center, unit.name);
-  if (first.share->contains(0.0)) return fmt::format("{}: of {}, no imperfection owns a share whose interval leaves out zero.", budget.metric, whole);
-  return fmt::format("{}: of {}, {} owns {:.3g} {}.", budget.metric, whole, first.name, unit.factor * first.share->center, unit.name);
+  const Contribution& first = budget.contributions.front();
+  const std::string whole = fmt::format("{:.3g} {}", unit.factor * budget.baseline->center, unit.name);
+  if (first.value->contains(0.0)) return fmt::format("{}: no error source contributes significantly to {} (95 %).", budget.metric, whole);
+  return fmt::format("{}: {}: {} contributes {:.3g} {}.", budget.metric, whole, first.name, unit.factor * first.value->center, unit.name);
 }
 
 }  // namespace patrol::app

@@ -13,9 +13,9 @@ namespace {
 
 using report::Tone;
 
-report::TableCell verdict_cell(const VariantFigure& figure) {
-  const bool is_difference = figure.verdict == "lower" || figure.verdict == "higher";
-  return {figure.verdict, is_difference ? Tone::kPlain : Tone::kFaint};
+report::TableCell verdict_cell(const VariantMetric& entry) {
+  const bool is_difference = entry.verdict == "lower" || entry.verdict == "higher";
+  return {entry.verdict, is_difference ? Tone::kPlain : Tone::kFaint};
 }
 
 std::string interval_text(const std::optional<score::Interval>& interval, const report::Unit& unit, const char* sign) {
@@ -39,18 +39,18 @@ std::vector<std::string> short_names(const SweepManifest& manifest) {
       const auto known = short_paths.find(override.substr(0, equals));
       if (known != short_paths.end()) parts.push_back(known->second + override.substr(equals));
     }
-    const bool is_told = manifest.kind == SweepKind::kSweep && are_unique && !parts.empty();
-    names.push_back(is_told ? fmt::format("{}", fmt::join(parts, ", ")) : variant.name);
+    const bool is_shown = manifest.kind == SweepKind::kSweep && are_unique && !parts.empty();
+    names.push_back(is_shown ? fmt::format("{}", fmt::join(parts, ", ")) : variant.name);
   }
   return names;
 }
 
 std::vector<report::Block> comparison_blocks(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress, const std::string& metric) {
   const report::Unit unit = report::unit_of(metric);
-  const auto figures = flatten_metrics(manifest, rows, metric);
+  const auto seed_values = flatten_metrics(manifest, rows, metric);
   const std::vector<std::string> names = short_names(manifest);
   report::BoxPlot boxes{.caption = "Every run, median and quartiles", .unit = unit.name, .boxes = {}};
-  report::WaterfallChart differences{.caption = fmt::format("Difference from {}, paired by seed, {:g} % intervals", names.front(), 100.0 * level_of(manifest)),
+  report::WaterfallChart differences{.caption = fmt::format("Difference from {}, paired by seed, {:g} % intervals", names.front(), 100.0 * confidence_level(manifest)),
                                 .unit = unit.name,
                                 .spans = {}};
   report::TableBlock table{.caption = "",
@@ -58,25 +58,25 @@ std::vector<report::Block> comparison_blocks(const SweepManifest& manifest, cons
                            .rows = {}};
   for (std::size_t variant = 0; variant < manifest.variants.size(); ++variant) {
     const std::string& name = names[variant];
-    const VariantFigure figure = compare(manifest, rows, metric, progress.num_seeds[variant], level_of(manifest))[variant];
+    const VariantMetric entry = compare(manifest, rows, metric, progress.num_seeds[variant], confidence_level(manifest))[variant];
     std::vector<double> values;
     for (std::size_t seed = 0; seed < progress.num_seeds[variant]; ++seed) {
-      if (figures[seed][variant]) values.push_back(*figures[seed][variant]);
+      if (seed_values[seed][variant]) values.push_back(*seed_values[seed][variant]);
     }
     if (!values.empty()) boxes.boxes.push_back(report::box_of(name, values, unit));
-    if (figure.difference) {
+    if (entry.difference) {
       differences.spans.push_back({.label = name,
                                    .from = 0.0,
-                                   .to = unit.factor * figure.difference->center,
-                                   .interval = std::pair(unit.factor * figure.difference->low, unit.factor * figure.difference->high),
-                                   .tone = figure.difference->contains(0.0) ? Tone::kFaint : Tone::kPlain,
-                                   .text = figure.verdict});
+                                   .to = unit.factor * entry.difference->center,
+                                   .interval = std::pair(unit.factor * entry.difference->low, unit.factor * entry.difference->high),
+                                   .tone = entry.difference->contains(0.0) ? Tone::kFaint : Tone::kPlain,
+                                   .text = entry.verdict});
     }
     table.rows.push_back({{name},
-                          {std::to_string(figure.num_runs)},
-                          {interval_text(figure.interval, unit, "")},
-                          {variant == 0 ? "" : interval_text(figure.difference, unit, "+")},
-                          verdict_cell(figure)});
+                          {std::to_string(entry.num_runs)},
+                          {interval_text(entry.interval, unit, "")},
+                          {variant == 0 ? "" : interval_text(entry.difference, unit, "+")},
+                          verdict_cell(entry)});
   }
   std::vector<report::Block> blocks;
   if (!boxes.boxes.empty()) blocks.emplace_back(boxes);
@@ -87,7 +87,7 @@ std::vector<report::Block> comparison_blocks(const SweepManifest& manifest, cons
 
 report::CollapsibleTables run_table(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress) {
   const std::vector<std::string> names = short_names(manifest);
-  report::TableBlock table{.caption = "", .columns = {{"variant"}, {"seed", true}, {"end"}, {"exit code", true}, {"why"}}, .rows = {}};
+  report::TableBlock table{.caption = "", .columns = {{"variant"}, {"seed", true}, {"end"}, {"exit code", true}, {"reason"}}, .rows = {}};
   std::vector<std::size_t> order = progress.counted;
   std::stable_partition(order.begin(), order.end(), [&](std::size_t i) { return rows[i]->code() != ExitCode::kDone; });
   for (const std::size_t i : order) {

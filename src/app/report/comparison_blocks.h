@@ -5,7 +5,7 @@
 
 namespace patrol::app {
 
-/// Short variant names for a page, [variant]: only the last part of each key ("range_noise_m=0.03"), if these are
+/// Short variant names for a page, [variant]: only the last part of each key ("range_noise_std_m=0.03"), if these are
 /// unique.
 std::vector<std::string> short_names(const SweepManifest& manifest);
 

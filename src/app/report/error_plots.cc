@@ -13,14 +13,14 @@ using report::Curve;
 using report::SeriesColor;
 using report::LinePlot;
 
-Curve position_curve(const std::string& name, SeriesColor ink, const std::vector<score::MatchedPose>& poses) {
-  Curve curve{.name = name, .ink = ink, .points = {}};
+Curve position_curve(const std::string& name, SeriesColor color, const std::vector<score::MatchedPose>& poses) {
+  Curve curve{.name = name, .color = color, .points = {}};
   for (const score::MatchedPose& pose : poses) curve.points.emplace_back(to_seconds(pose.stamp), pose.position_error_m());
   return curve;
 }
 
-Curve heading_curve(const std::string& name, SeriesColor ink, const std::vector<score::MatchedPose>& poses) {
-  Curve curve{.name = name, .ink = ink, .points = {}};
+Curve heading_curve(const std::string& name, SeriesColor color, const std::vector<score::MatchedPose>& poses) {
+  Curve curve{.name = name, .color = color, .points = {}};
   for (const score::MatchedPose& pose : poses) curve.points.emplace_back(to_seconds(pose.stamp), kDegPerRad * std::abs(pose.heading_error_rad()));
   return curve;
 }
@@ -29,7 +29,7 @@ Curve heading_curve(const std::string& name, SeriesColor ink, const std::vector<
 /// (2 DRMS), which contains 95 to 98 % of Gaussian errors.
 template <typename Deviation>
 Curve bound_curve(const std::string& name, const RunRecord& record, const Deviation& deviation) {
-  Curve curve{.name = name, .ink = SeriesColor::kBound, .is_dashed = true, .points = {}};
+  Curve curve{.name = name, .color = SeriesColor::kBound, .is_dashed = true, .points = {}};
   for (std::size_t i = 0; i < record.covariances.size(); ++i) {
     curve.points.emplace_back(to_seconds(record.T_map_body[i].stamp), 2.0 * deviation(record.covariances[i]));
   }
@@ -42,7 +42,7 @@ class Plots {
   explicit Plots(const RunContents& run) : axis_{.label = "time, s", .max = run.end_s()}, marks_(marks_of(run)), spans_(spans_of(run)) {}
 
   report::EventTimeline lanes(const RunContents& run) const {
-    return {.title = "Events", .axis = axis_, .lanes = lanes_of(run), .spans = spans_};
+    return {.title = "Events", .axis = axis_, .lanes = make_lanes(run), .spans = spans_};
   }
   LinePlot lines(const std::string& title, const std::string& unit, std::vector<Curve> curves) const {
     return {.title = title, .unit = unit, .axis = axis_, .max = {}, .curves = std::move(curves), .marks = marks_, .spans = spans_};
@@ -54,10 +54,10 @@ class Plots {
   std::vector<report::PlotSpan> spans_;
 };
 
-LinePlot trust_plot(const Plots& plots, const std::vector<LocalizationConfidence>& trusts) {
-  Curve confidence{.name = "0 lost, 1 sure", .ink = SeriesColor::kTrust, .points = {}};
-  for (const LocalizationConfidence& one : trusts) confidence.points.emplace_back(to_seconds(one.stamp), one.confidence);
-  LinePlot plot = plots.lines("Localisation's trust in itself", "", {confidence});
+LinePlot confidence_plot(const Plots& plots, const std::vector<LocalizationConfidence>& confidences) {
+  Curve confidence{.name = "0: lost, 1: certain", .color = SeriesColor::kConfidence, .points = {}};
+  for (const LocalizationConfidence& one : confidences) confidence.points.emplace_back(to_seconds(one.stamp), one.confidence);
+  LinePlot plot = plots.lines("Localization confidence", "", {confidence});
   plot.max = 1.05;
   return plot;
 }
@@ -84,13 +84,13 @@ std::vector<report::Block> error_blocks(const RunContents& run) {
   const std::vector<score::MatchedPose> estimate = score::pair_poses(record.T_map_body, run.T_world_map, record.T_world_body);
   const auto position_std_m = [](const Eigen::Matrix3d& covariance) { return std::sqrt(covariance(0, 0) + covariance(1, 1)); };
   const auto heading_std_deg = [](const Eigen::Matrix3d& covariance) { return kDegPerRad * std::sqrt(covariance(2, 2)); };
-  blocks.emplace_back(plots.lines("Position error", "m", {position_curve("estimate", SeriesColor::kEstimate, estimate), bound_curve("its own 2σ", record, position_std_m)}));
+  blocks.emplace_back(plots.lines("Position error", "m", {position_curve("estimate", SeriesColor::kEstimate, estimate), bound_curve("estimated 2σ", record, position_std_m)}));
   blocks.emplace_back(unaided_plot(plots, run));
-  blocks.emplace_back(plots.lines("Heading error", "°", {heading_curve("estimate", SeriesColor::kEstimate, estimate), bound_curve("its own 2σ", record, heading_std_deg)}));
-  if (!record.confidences.empty()) blocks.emplace_back(trust_plot(plots, record.confidences));
+  blocks.emplace_back(plots.lines("Heading error", "°", {heading_curve("estimate", SeriesColor::kEstimate, estimate), bound_curve("estimated 2σ", record, heading_std_deg)}));
+  if (!record.confidences.empty()) blocks.emplace_back(confidence_plot(plots, record.confidences));
   report::TextBlock note;
-  note.text = "Map and world are joined at the start; nothing is fitted afterwards. 2σ: of the position, twice the root of the sum of both variances. "
-              "Lines: troubles, recoveries, relocalisations; shaded: faults, and where the robot says that it is lost.";
+  note.text = "Map and world are aligned at the start only. 2σ of the position: twice the root of the sum of both variances. "
+              "Lines: failures, recoveries, relocalizations. Shaded: faults, reported delocalization.";
   blocks.emplace_back(note);
   return blocks;
 }

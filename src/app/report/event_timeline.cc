@@ -13,11 +13,11 @@ namespace {
 using report::SeriesColor;
 using report::PlotMark;
 
-const std::string kLostText = "The robot says that it is lost.";
+const std::string kLostText = "Localization reported lost.";
 
 /// Whether the marks of this lane are also shown in error curves.
-bool is_for_curves(const report::EventTimeline::Lane& lane) {
-  return lane.marks.front().ink == SeriesColor::kAlarm || lane.name == name_of(EventKind::kRecovery) || lane.name == name_of(EventKind::kRelocalized);
+bool is_marked_in_plots(const report::EventTimeline::Lane& lane) {
+  return lane.marks.front().color == SeriesColor::kAlarm || lane.name == name_of(EventKind::kRecovery) || lane.name == name_of(EventKind::kRelocalized);
 }
 
 report::EventTimeline::Lane& lane_named(std::vector<report::EventTimeline::Lane>& lanes, const std::string& name) {
@@ -30,10 +30,10 @@ std::string text_of(const Event& event) { return event.text.empty() ? kind_text(
 
 }  // namespace
 
-std::vector<report::EventTimeline::Lane> lanes_of(const RunContents& run) {
+std::vector<report::EventTimeline::Lane> make_lanes(const RunContents& run) {
   std::vector<report::EventTimeline::Lane> lanes;
-  const auto add = [&](const std::string& lane, SeriesColor ink, double at_s, const std::string& text) {
-    lane_named(lanes, lane).marks.push_back({.x = at_s, .text = text, .ink = ink});
+  const auto add = [&](const std::string& lane, SeriesColor color, double at_s, const std::string& text) {
+    lane_named(lanes, lane).marks.push_back({.x = at_s, .text = text, .color = color});
   };
   for (const Event& event : run.record.events) {
     add(kind_text(event), is_failure(event.kind) ? SeriesColor::kAlarm : SeriesColor::kEvent, to_seconds(event.stamp), text_of(event));
@@ -43,15 +43,15 @@ std::vector<report::EventTimeline::Lane> lanes_of(const RunContents& run) {
   }
   for (const KidnapSettings& kidnap : run.scenario.kidnaps) {
     if (!was_triggered(kidnap, run.record.T_world_body)) continue;
-    add("kidnap", SeriesColor::kAlarm, kidnap.at_s, fmt::format("The robot is lifted to ({:.1f}, {:.1f}) m.", kidnap.x_m, kidnap.y_m));
+    add("kidnap", SeriesColor::kAlarm, kidnap.at_s, fmt::format("Kidnapped to ({:.1f}, {:.1f}) m.", kidnap.x_m, kidnap.y_m));
   }
   return lanes;
 }
 
 std::vector<PlotMark> marks_of(const RunContents& run) {
   std::vector<PlotMark> marks;
-  for (const report::EventTimeline::Lane& lane : lanes_of(run)) {
-    if (is_for_curves(lane)) marks.insert(marks.end(), lane.marks.begin(), lane.marks.end());
+  for (const report::EventTimeline::Lane& lane : make_lanes(run)) {
+    if (is_marked_in_plots(lane)) marks.insert(marks.end(), lane.marks.begin(), lane.marks.end());
   }
   return marks;
 }
@@ -62,12 +62,12 @@ std::vector<report::PlotSpan> spans_of(const RunContents& run) {
     const double end_s = std::min(fault.start_s + fault.duration_s, run.end_s());
     if (fault.start_s < end_s) spans.push_back({.from = fault.start_s, .to = end_s, .text = name_of(fault)});
   }
-  const std::vector<LocalizationConfidence>& trusts = run.record.confidences;
-  for (std::size_t i = 0; i + 1 < trusts.size(); ++i) {
-    if (!trusts[i].is_lost) continue;
+  const std::vector<LocalizationConfidence>& confidences = run.record.confidences;
+  for (std::size_t i = 0; i + 1 < confidences.size(); ++i) {
+    if (!confidences[i].is_lost) continue;
     const std::size_t first = i;
-    while (i + 1 < trusts.size() && trusts[i].is_lost) ++i;
-    spans.push_back({.from = to_seconds(trusts[first].stamp), .to = to_seconds(trusts[i].stamp), .text = kLostText});
+    while (i + 1 < confidences.size() && confidences[i].is_lost) ++i;
+    spans.push_back({.from = to_seconds(confidences[first].stamp), .to = to_seconds(confidences[i].stamp), .text = kLostText});
   }
   return spans;
 }

@@ -9,7 +9,7 @@
 namespace patrol::app {
 
 /// One lane per kind of event, in the order of first occurrence; then collisions and kidnaps.
-std::vector<report::EventTimeline::Lane> lanes_of(const RunContents& run);
+std::vector<report::EventTimeline::Lane> make_lanes(const RunContents& run);
 
 /// Marks for error curves, from some of the lanes: failures, recoveries and relocalizations.
 std::vector<report::PlotMark> marks_of(const RunContents& run);

@@ -17,7 +17,7 @@ namespace {
 using report::Tone;
 
 /// Cell with a metric of an entry in fixed decimals, which aligns the decimal points of a column.
-report::TableCell figure_cell(const io::Metrics& entry, const std::string& path, int decimals, double factor = 1.0) {
+report::TableCell metric_cell(const io::Metrics& entry, const std::string& path, int decimals, double factor = 1.0) {
   const std::optional<double> value = io::metric_at(entry, path);
   return value ? report::TableCell{fmt::format("{:.{}f}", factor * *value, decimals)} : report::TableCell{"–", Tone::kFaint};
 }
@@ -48,10 +48,10 @@ report::BoxPlot box_plot(const io::Metrics& metrics, const std::string& metric, 
 }
 
 std::vector<report::TableCell> goal_row(const std::string& name, const io::Metrics& goal) {
-  std::vector<report::TableCell> row = {{name}, figure_cell(goal, "arrivals", 0), figure_cell(goal, "failed", 0)};
+  std::vector<report::TableCell> row = {{name}, metric_cell(goal, "arrivals", 0), metric_cell(goal, "failed", 0)};
   if (goal.value("failed", 0) > 0) row.back().tone = Tone::kBad;
-  for (const char* statistic : {"mean", "std", "max"}) row.push_back(figure_cell(goal, fmt::format("position_error_m.{}", statistic), 2, 100.0));
-  for (const char* statistic : {"mean", "std", "max"}) row.push_back(figure_cell(goal, fmt::format("heading_error_deg.{}", statistic), 2));
+  for (const char* statistic : {"mean", "std", "max"}) row.push_back(metric_cell(goal, fmt::format("position_error_m.{}", statistic), 2, 100.0));
+  for (const char* statistic : {"mean", "std", "max"}) row.push_back(metric_cell(goal, fmt::format("heading_error_deg.{}", statistic), 2));
   return row;
 }
 
@@ -61,34 +61,34 @@ bool is_list(const io::Metrics& metrics, const char* key) { return metrics.conta
 
 report::CollapsibleTables all_metrics(const io::Metrics& metrics, const std::vector<CheckedExpectation>& checks) {
   const std::vector<MetricLine> lines = metric_lines(metrics);
-  report::CollapsibleTables folded{.summary = fmt::format("All {} figures", lines.size()), .tables = {}};
+  report::CollapsibleTables collapsed{.summary = fmt::format("All {} metrics", lines.size()), .tables = {}};
   for (const MetricLine& line : lines) {
     const std::size_t dot = line.path.find('.');
     const std::string group = line.path.substr(0, dot);
-    if (folded.tables.empty() || folded.tables.back().caption != group) {
-      folded.tables.push_back({.caption = group, .columns = {{""}, {"", true}, {""}}, .rows = {}});
+    if (collapsed.tables.empty() || collapsed.tables.back().caption != group) {
+      collapsed.tables.push_back({.caption = group, .columns = {{""}, {"", true}, {""}}, .rows = {}});
     }
-    folded.tables.back().rows.push_back({{dot == std::string::npos ? group : line.path.substr(dot + 1)}, {line.text}, checked_cell(line.path, checks)});
+    collapsed.tables.back().rows.push_back({{dot == std::string::npos ? group : line.path.substr(dot + 1)}, {line.text}, checked_cell(line.path, checks)});
   }
-  return folded;
+  return collapsed;
 }
 
 std::vector<report::Block> station_blocks(const io::Metrics& metrics) {
   if (!is_list(metrics, "stations")) return {};
   report::TableBlock table{.caption = "",
-                           .columns = {{"station"}, {"reached"}, {"believed to be off, cm", true}, {"heading, °", true}, {"stood off, cm", true}, {"in the map off, cm", true}},
+                           .columns = {{"station"}, {"reached"}, {"estimated position error, cm", true}, {"heading error, °", true}, {"true position error, cm", true}, {"map error, cm", true}},
                            .rows = {}};
   for (const io::Metrics& station : metrics["stations"]) {
     const bool is_reached = station.value("reached", false);
     table.rows.push_back({{station.value("name", "")},
                           is_reached ? report::TableCell{"yes", Tone::kGood} : report::TableCell{"NO", Tone::kBad},
-                          figure_cell(station, "position_error_m", 1, 100.0),
-                          figure_cell(station, "heading_error_deg", 2),
-                          figure_cell(station, "stand_error_m", 1, 100.0),
-                          figure_cell(station, "map_error_m", 1, 100.0)});
+                          metric_cell(station, "position_error_m", 1, 100.0),
+                          metric_cell(station, "heading_error_deg", 2),
+                          metric_cell(station, "stand_error_m", 1, 100.0),
+                          metric_cell(station, "map_error_m", 1, 100.0)});
   }
-  return {table, report::TextBlock{"On arrival: error of the robot's own pose and heading; where it truly stood, from where the survey wants it; "
-                                   "how far the map's surroundings have to be moved to fit the world."}};
+  return {table, report::TextBlock{"On arrival: error of the estimated pose and heading; distance of the true position from the surveyed one; "
+                                   "local displacement between map and world."}};
 }
 
 std::vector<report::Block> goal_blocks(const io::Metrics& metrics) {
@@ -104,7 +104,7 @@ std::vector<report::Block> goal_blocks(const io::Metrics& metrics) {
     report::BoxPlot plot = box_plot(metrics, metric, caption);
     if (!plot.boxes.empty()) blocks.emplace_back(std::move(plot));
   }
-  if (blocks.size() > 1) blocks.emplace_back(report::TextBlock{"Box: from quartile to quartile; line: from least to greatest; dots: every arrival; at the right the median."});
+  if (blocks.size() > 1) blocks.emplace_back(report::TextBlock{"Box: quartiles; line: minimum to maximum; dots: every arrival; right: median."});
   return blocks;
 }
 
@@ -113,18 +113,18 @@ namespace {
 std::vector<report::Block> leak_blocks(const io::Metrics& metrics) {
   const bool has_findings = metrics.contains("inspection") && is_list(metrics["inspection"], "findings");
   if (!has_findings && io::metric_at(metrics, "inspection.leaks").value_or(0.0) == 0.0) return {};
-  if (!has_findings) return {report::TextBlock{fmt::format("{:.0f} leaks in the world, nothing found.", *io::metric_at(metrics, "inspection.leaks"))}};
+  if (!has_findings) return {report::TextBlock{fmt::format("{:.0f} leaks in the world, none found.", *io::metric_at(metrics, "inspection.leaks"))}};
   report::TableBlock table{.caption = "",
-                           .columns = {{"finding at"}, {"column, ppm m", true}, {"x, m", true}, {"y, m", true}, {"leak"}, {"off by, cm", true}},
+                           .columns = {{"finding at"}, {"column, ppm m", true}, {"x, m", true}, {"y, m", true}, {"leak"}, {"position error, cm", true}},
                            .rows = {}};
   for (const io::Metrics& finding : metrics["inspection"]["findings"]) {
     const bool is_leak = finding.contains("leak") && finding["leak"].is_string();
     table.rows.push_back({{finding.value("station", "")},
-                          figure_cell(finding, "column_ppm_m", 0),
-                          figure_cell(finding, "x_m", 2),
-                          figure_cell(finding, "y_m", 2),
+                          metric_cell(finding, "column_ppm_m", 0),
+                          metric_cell(finding, "x_m", 2),
+                          metric_cell(finding, "y_m", 2),
                           is_leak ? report::TableCell{finding["leak"].get<std::string>(), Tone::kGood} : report::TableCell{"false alarm", Tone::kBad},
-                          figure_cell(finding, "position_error_m", 1, 100.0)});
+                          metric_cell(finding, "position_error_m", 1, 100.0)});
   }
   return {table};
 }
@@ -132,42 +132,42 @@ std::vector<report::Block> leak_blocks(const io::Metrics& metrics) {
 std::vector<report::Block> lining_blocks(const io::Metrics& metrics) {
   if (!io::metric_at(metrics, "inspection.lining.stations")) return {};
   const io::Metrics& lining = metrics["inspection"]["lining"];
-  report::TableBlock table{.caption = "Rings of the lining",
-                           .columns = {{"station"}, {"ring", true}, {"true peak, mm", true}, {"reported, mm", true}, {"off by, mm", true}, {"place off by, cm", true}, {""}},
+  report::TableBlock table{.caption = "Lining rings",
+                           .columns = {{"station"}, {"ring", true}, {"true peak, mm", true}, {"reported, mm", true}, {"error, mm", true}, {"position error, cm", true}, {""}},
                            .rows = {}};
   for (const io::Metrics& ring : lining["rings"]) {
     const bool is_found = ring.value("is_found", false), has_moved = std::abs(ring.value("true_peak_mm", 0.0)) > 0.0;
     table.rows.push_back({{ring.value("station", "")},
                           {fmt::format("{}", ring.value("ring", 0))},
-                          figure_cell(ring, "true_peak_mm", 1),
-                          figure_cell(ring, "reported_mm", 2),
-                          figure_cell(ring, "error_mm", 2),
-                          figure_cell(ring, "place_error_m", 1, 100.0),
+                          metric_cell(ring, "true_peak_mm", 1),
+                          metric_cell(ring, "reported_mm", 2),
+                          metric_cell(ring, "error_mm", 2),
+                          metric_cell(ring, "place_error_m", 1, 100.0),
                           !is_found ? report::TableCell{"missed", Tone::kBad} : has_moved ? report::TableCell{"found", Tone::kGood} : report::TableCell{"false finding", Tone::kBad}});
   }
-  const auto figure = [&](const char* name) { return io::metric_at(lining, name).value_or(0.0); };
-  return {table, report::TextBlock{fmt::format("{:.0f} of {:.0f} scans were laid on their references. {:.0f} cells (a ring's part in ten degrees): RMS error {:.2f} mm; {:.1f} % of their "
-                                               "95 % intervals hold the truth.",
-                                               figure("registered"), figure("stations"), figure("cells"), figure("cell_rmse_mm"), 100.0 * figure("cell_coverage_95"))}};
+  const auto value = [&](const char* name) { return io::metric_at(lining, name).value_or(0.0); };
+  return {table, report::TextBlock{fmt::format("{:.0f} of {:.0f} scans were registered to their references. {:.0f} cells (10 degrees of a ring): RMS error {:.2f} mm; {:.1f} % of their "
+                                               "95 % intervals contain the true value.",
+                                               value("registered"), value("stations"), value("cells"), value("cell_rmse_mm"), 100.0 * value("cell_coverage_95"))}};
 }
 
 std::vector<report::Block> water_blocks(const io::Metrics& metrics) {
   if (!io::metric_at(metrics, "inspection.water.stations")) return {};
   const io::Metrics& water = metrics["inspection"]["water"];
-  const auto figure = [&](const char* name) { return io::metric_at(water, name).value_or(0.0); };
-  const std::string summary = fmt::format("Bodies of water ahead of the face: {:.0f}; found: {:.0f}; false alarms: {:.0f}.", figure("bodies"), figure("found"), figure("false_alarms"));
+  const auto value = [&](const char* name) { return io::metric_at(water, name).value_or(0.0); };
+  const std::string summary = fmt::format("Bodies of water ahead of the face: {:.0f}; found: {:.0f}; false alarms: {:.0f}.", value("bodies"), value("found"), value("false_alarms"));
   if (!is_list(water, "findings")) return {report::TextBlock{summary}};
   report::TableBlock table{.caption = "Water ahead of the face",
-                           .columns = {{"soundings"}, {"off by, m", true}, {"of that along the way, m", true}, {"radius off by, m", true}, {"interval"}, {""}},
+                           .columns = {{"soundings"}, {"position error, m", true}, {"of that along the path, m", true}, {"radius error, m", true}, {"interval"}, {""}},
                            .rows = {}};
   for (const io::Metrics& finding : water["findings"]) {
     const bool is_true = finding.value("is_true", false);
-    const bool holds = is_true && finding.value("distance_holds", false);
+    const bool is_in_interval = is_true && finding.value("distance_holds", false);
     table.rows.push_back({{finding.value("name", "")},
-                          figure_cell(finding, "position_error_m", 2),
-                          figure_cell(finding, "ahead_error_m", 2),
-                          figure_cell(finding, "radius_error_m", 2),
-                          {holds ? "holds the distance" : "does not hold it", holds ? Tone::kGood : Tone::kBad},
+                          metric_cell(finding, "position_error_m", 2),
+                          metric_cell(finding, "ahead_error_m", 2),
+                          metric_cell(finding, "radius_error_m", 2),
+                          {is_in_interval ? "contains the distance" : "does not contain it", is_in_interval ? Tone::kGood : Tone::kBad},
                           is_true ? report::TableCell{"found", Tone::kGood} : report::TableCell{"false alarm", Tone::kBad}});
   }
   return {table, report::TextBlock{summary}};
@@ -186,18 +186,18 @@ std::vector<report::Block> inspection_blocks(const io::Metrics& metrics) {
 std::vector<report::Block> performance_blocks(const io::Metrics& metrics) {
   if (!metrics.contains("performance") || !metrics["performance"].contains("parts_s")) return {};
   const io::Metrics& performance = metrics["performance"];
-  const auto figure = [&](const char* name) { return io::metric_at(performance, name).value_or(0.0); };
-  report::BarBlock bars{.caption = fmt::format("Wall time by part: {:.1f} s in all, {:.1f} s of processor time, {:.1f} simulated s per s, {:.0f} MB at most",
-                                               figure("wall_s"), figure("cpu_s"), figure("real_time_factor"), figure("peak_memory_mb")),
+  const auto value = [&](const char* name) { return io::metric_at(performance, name).value_or(0.0); };
+  report::BarBlock bars{.caption = fmt::format("Wall time by stage: {:.1f} s in total, {:.1f} s of processor time, {:.1f} simulated s per s, at most {:.0f} MB",
+                                               value("wall_s"), value("cpu_s"), value("real_time_factor"), value("peak_memory_mb")),
                         .bars = {}};
-  double rest_s = figure("wall_s");
+  double rest_s = value("wall_s");
   for (const auto& [part, seconds] : performance["parts_s"].items()) {
     const double part_s = seconds.get<double>();
     rest_s -= part_s;
     bars.bars.push_back({.label = part, .value = part_s, .text = fmt::format("{:.2f} s", part_s)});
   }
   std::stable_sort(bars.bars.begin(), bars.bars.end(), [](const report::Bar& a, const report::Bar& b) { return a.value > b.value; });
-  if (rest_s > 0.0) bars.bars.push_back({.label = "the rest", .value = rest_s, .text = fmt::format("{:.2f} s", rest_s)});
+  if (rest_s > 0.0) bars.bars.push_back({.label = "other", .value = rest_s, .text = fmt::format("{:.2f} s", rest_s)});
   return {bars};
 }
 

@@ -8,7 +8,7 @@
 namespace patrol::app {
 
 /// Main metrics; those that the run did not measure are omitted.
-report::KeyMetrics key_figures(const io::Metrics& metrics);
+report::KeyMetrics key_metrics(const io::Metrics& metrics);
 
 /// Every metric, one table per group.
 report::CollapsibleTables all_metrics(const io::Metrics& metrics, const std::vector<CheckedExpectation>& checks);

@@ -31,8 +31,8 @@ void read_junit(RunContents& run) {
 /// Pose of map in world as scored. Without a score, or with an older one, the trajectories are aligned at their first
 /// common pose.
 Pose2 map_in_world(const RunContents& run) {
-  const auto figure = [&](const char* name) { return io::metric_at(run.metrics, fmt::format("map.origin_in_world.{}", name)); };
-  const auto x_m = figure("x_m"), y_m = figure("y_m"), yaw_rad = figure("yaw_rad");
+  const auto value = [&](const char* name) { return io::metric_at(run.metrics, fmt::format("map.origin_in_world.{}", name)); };
+  const auto x_m = value("x_m"), y_m = value("y_m"), yaw_rad = value("yaw_rad");
   if (x_m && y_m && yaw_rad) return {*x_m, *y_m, *yaw_rad};
   if (!overlap(run.record.T_map_body, run.record.T_world_body)) return {};
   return score::align_at_start(run.record.T_map_body, run.record.T_world_body);
@@ -48,7 +48,7 @@ RunContents read_run_contents(const std::filesystem::path& root) {
   RunContents run;
   run.directory = open_run_directory(root);
   run.scenario = load_scenario(run.directory.scenario());
-  run.made_by = comment_of(run.directory.scenario());
+  run.origin_comment = comment_of(run.directory.scenario());
   read_junit(run);
   run.record = read_run_record(run.directory.log());
   run.is_complete = run.directory.is_complete() && run.record.is_complete;

@@ -18,7 +18,7 @@ struct RunContents {
   bool is_complete = false;
   std::string name;     ///< name of the scenario
   std::string version;  ///< version of the program that ran it
-  std::string made_by;  ///< first comment line of the resolved scenario
+  std::string origin_comment;  ///< first comment line of the resolved scenario
   Scenario scenario;
   RunRecord record;
   io::Metrics metrics = io::Metrics::object();

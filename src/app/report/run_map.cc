@@ -37,11 +37,11 @@ Eigen::AlignedBox2d extent_of(const std::vector<report::MapPath>& paths) {
 /// Marks on the map; marks that would overlap share a label.
 class Marks {
  public:
-  void add(const std::string& label, SeriesColor ink, const Eigen::Vector2d& p_world) {
+  void add(const std::string& label, SeriesColor color, const Eigen::Vector2d& p_world) {
     constexpr double kShared_m = 1.5;
-    if (!num_by_label_.emplace(label, 0).second && ink != SeriesColor::kAlarm) return;  // goals are reached repeatedly
-    const auto near = std::find_if(marks_.begin(), marks_.end(), [&](const MapMark& mark) { return mark.ink == ink && (mark.p_m - p_world).norm() < kShared_m; });
-    if (near == marks_.end()) marks_.push_back({.label = label, .ink = ink, .p_m = p_world});
+    if (!num_by_label_.emplace(label, 0).second && color != SeriesColor::kAlarm) return;  // goals are reached repeatedly
+    const auto near = std::find_if(marks_.begin(), marks_.end(), [&](const MapMark& mark) { return mark.color == color && (mark.p_m - p_world).norm() < kShared_m; });
+    if (near == marks_.end()) marks_.push_back({.label = label, .color = color, .p_m = p_world});
     else if (near->label.find(label) == std::string::npos) near->label += ", " + label;
   }
   std::vector<MapMark> take() { return std::move(marks_); }
@@ -60,7 +60,7 @@ std::vector<MapMark> marks_on_map(const RunContents& run) {
   marks.add("start", SeriesColor::kEvent, to_pose2(run.record.T_world_body.front().pose).position());
   for (const Event& event : run.record.events) {
     const EventKind kind = event.kind;
-    if (kind == EventKind::kStationReached || kind == EventKind::kGoalMarked || kind == EventKind::kGoalReached) marks.add(event.subject, SeriesColor::kEvent, truth_at(event.stamp));
+    if (kind == EventKind::kStationReached || kind == EventKind::kGoalSaved || kind == EventKind::kGoalReached) marks.add(event.subject, SeriesColor::kEvent, truth_at(event.stamp));
     if (kind == EventKind::kDocked) marks.add("dock", SeriesColor::kEvent, truth_at(event.stamp));
     if (class_of(kind) == EventClass::kHazard) marks.add(kind == EventKind::kGasAlarm ? "alarm" : event.subject, SeriesColor::kAlarm, run.T_world_map * event.p_map_target);
     if (class_of(kind) == EventClass::kTaskFailed) marks.add(event.subject + " failed", SeriesColor::kAlarm, truth_at(event.stamp));
@@ -68,7 +68,7 @@ std::vector<MapMark> marks_on_map(const RunContents& run) {
   }
   for (const Collision& collision : run.record.collisions) marks.add("collision", SeriesColor::kAlarm, truth_at(collision.stamp));
   for (const KidnapSettings& kidnap : run.scenario.kidnaps) {
-    if (was_triggered(kidnap, run.record.T_world_body)) marks.add("put here", SeriesColor::kAlarm, {kidnap.x_m, kidnap.y_m});
+    if (was_triggered(kidnap, run.record.T_world_body)) marks.add("kidnapped to", SeriesColor::kAlarm, {kidnap.x_m, kidnap.y_m});
   }
   return marks.take();
 }
@@ -82,9 +82,9 @@ std::vector<report::Block> map_blocks(const RunContents& run) {
   const std::vector<report::MapPath> paths = {{"true path", SeriesColor::kTruth, pieces_of(record.T_world_body, {})},
                                               {"estimated path", SeriesColor::kEstimate, pieces_of(record.T_map_body, run.T_world_map)}};
   const report::MapBlock map{.picture = report::map_picture(layers, extent_of(paths)), .paths = paths, .marks = marks_on_map(run)};
-  std::string note = "World frame, x to the right, y up; paths to a centimetre.";
-  if (run.truth_map) note += " True surfaces: those that could be seen on this run, at the lidar's height; errors are to any surface.";
-  if (!map.picture.has_errors) note += " The run left no map_errors.pgm (patrol score makes it): the map is drawn in one colour.";
+  std::string note = "World frame, x to the right, y up; paths to 1 cm.";
+  if (run.truth_map) note += " True surfaces: observable on this run, at the lidar's height; errors: distance to any surface.";
+  if (!map.picture.has_errors) note += " map_errors.pgm not found (written by patrol score): the map has a single color.";
   return {map, report::TextBlock{note}};
 }
 

@@ -9,7 +9,7 @@ namespace patrol::app {
 
 /// Setting of a scenario that differs from the default.
 struct SettingDifference {
-  std::string path;      ///< "sensors.lidar.range_noise_m"
+  std::string path;      ///< "sensors.lidar.range_noise_std_m"
   std::string standard;  ///< empty: an entry of a list that the default does not have
   std::string value;
 };

@@ -15,7 +15,7 @@ using report::Tone;
 
 std::string not_done(const SweepRows& rows, const SweepProgress& progress) {
   const auto num = std::count_if(progress.counted.begin(), progress.counted.end(), [&](std::size_t i) { return rows[i]->code() != ExitCode::kDone; });
-  return num == 0 ? fmt::format(" All {} runs came to their end as expected.", progress.counted.size())
+  return num == 0 ? fmt::format(" All {} runs ended as expected.", progress.counted.size())
                   : fmt::format(" {} of {} runs did not end as expected.", num, progress.counted.size());
 }
 
@@ -24,21 +24,21 @@ report::VerdictBlock sweep_verdict(const SweepManifest& manifest, const SweepRow
   const std::vector<std::string> names = short_names(manifest);
   std::vector<std::string> better, worse;
   for (std::size_t variant = 1; variant < manifest.variants.size(); ++variant) {
-    const VariantFigure figure = compare(manifest, rows, metric, progress.num_seeds[variant], level_of(manifest))[variant];
-    if (figure.verdict == "lower") better.push_back(names[variant]);
-    if (figure.verdict == "higher") worse.push_back(names[variant]);
+    const VariantMetric entry = compare(manifest, rows, metric, progress.num_seeds[variant], confidence_level(manifest))[variant];
+    if (entry.verdict == "lower") better.push_back(names[variant]);
+    if (entry.verdict == "higher") worse.push_back(names[variant]);
   }
   report::VerdictBlock verdict;
   if (manifest.variants.size() == 1) {
     verdict.word = "One variant";
-    verdict.reason = "Nothing is compared.";
+    verdict.reason = "No comparison.";
   } else if (better.empty() && worse.empty()) {
     verdict.word = "No difference";
     verdict.tone = Tone::kFaint;
-    verdict.reason = fmt::format("{}: every variant's interval of the paired difference from {} holds zero.", metric, names.front());
+    verdict.reason = fmt::format("{}: no variant differs significantly from {}.", metric, names.front());
   } else {
     verdict.word = fmt::format("{} of {} differ", better.size() + worse.size(), manifest.variants.size() - 1);
-    verdict.reason = fmt::format("{}, against {}:", metric, names.front());
+    verdict.reason = fmt::format("{}, relative to {}:", metric, names.front());
     if (!better.empty()) verdict.reason += fmt::format(" lower with {}.", fmt::join(better, "; "));
     if (!worse.empty()) verdict.reason += fmt::format(" higher with {}.", fmt::join(worse, "; "));
   }
@@ -48,8 +48,8 @@ report::VerdictBlock sweep_verdict(const SweepManifest& manifest, const SweepRow
 
 report::VerdictBlock budget_verdict(const std::vector<Budget>& budgets, const SweepRows& rows, const SweepProgress& progress) {
   report::VerdictBlock verdict;
-  const bool has_owner = !budgets.empty() && !budgets.front().shares.empty() && budgets.front().shares.front().share && !budgets.front().shares.front().share->contains(0.0);
-  verdict.word = has_owner ? budgets.front().shares.front().name : "No single owner";
+  const bool is_significant = !budgets.empty() && !budgets.front().contributions.empty() && budgets.front().contributions.front().value && !budgets.front().contributions.front().value->contains(0.0);
+  verdict.word = is_significant ? budgets.front().contributions.front().name : "No significant contribution";
   for (const Budget& budget : budgets) verdict.reason += budget_finding(budget) + " ";
   verdict.reason += not_done(rows, progress);
   return verdict;
@@ -66,16 +66,16 @@ Tone tone_of(FaultOutcome outcome) {
 
 /// Table of faults.csv, ordered by fault.
 report::TableBlock fault_table(const SweepManifest& manifest, const std::vector<FaultRow>& rows) {
-  report::TableBlock table{.caption = "", .columns = {{"fault"}, {"seed", true}, {"executed"}, {"outcome"}, {"noticed", true}, {"end"}}, .rows = {}};
+  report::TableBlock table{.caption = "", .columns = {{"fault"}, {"seed", true}, {"triggered"}, {"outcome"}, {"detected", true}, {"end"}}, .rows = {}};
   for (const std::string& metric : manifest.metrics) table.columns.push_back({metric, true});
   for (const FaultRow& row : rows) {
     std::vector<report::TableCell> cells = {{row.name},
                                        {std::to_string(row.seed)},
-                                       {executed_text(row), row.is_not_executed() ? Tone::kWarning : Tone::kPlain},
+                                       {trigger_text(row), row.is_not_triggered() ? Tone::kWarning : Tone::kPlain},
                                        {std::string(text_of(row.outcome)), tone_of(row.outcome)},
-                                       {row.num_noticed ? fmt::format("{:.0f}", *row.num_noticed) : "–"},
+                                       {row.num_detected ? fmt::format("{:.0f}", *row.num_detected) : "–"},
                                        {row.end}};
-    for (const auto& figure : row.figures) cells.push_back({figure ? fmt::format("{:.4g}", *figure) : "–"});
+    for (const auto& entry : row.values) cells.push_back({entry ? fmt::format("{:.4g}", *entry) : "–"});
     table.rows.push_back(cells);
   }
   return table;
@@ -113,7 +113,7 @@ report::Page sweep_page(const SweepManifest& manifest, const SweepRows& rows, co
                               {"seeds", manifest.seeds.size() == 1 ? std::to_string(manifest.seeds.front()) : fmt::format("{} … {}", manifest.seeds.front(), manifest.seeds.back())},
                               {"runs", std::to_string(progress.counted.size())}},
                     .sections = {},
-                    .footer = fmt::format("Made by patrol report {} from sweep.json and the results in runs/.", PATROL_VERSION)};
+                    .footer = fmt::format("Generated by patrol report {} from sweep.json and the results in runs/.", PATROL_VERSION)};
   if (!manifest.overrides.empty()) page.facts.emplace_back("set in every run", fmt::format("{}", fmt::join(manifest.overrides, ", ")));
   switch (manifest.kind) {
     case SweepKind::kSweep:

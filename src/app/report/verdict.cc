@@ -23,17 +23,17 @@ std::string early_end(const RunContents& run) {
   return end == nullptr || end->result == io::JunitResult::kPassed ? "" : end->message;
 }
 
-report::TableCell executed_cell(bool was_triggered) { return was_triggered ? report::TableCell{"executed", Tone::kGood} : report::TableCell{"NOT EXECUTED", Tone::kWarning}; }
+report::TableCell trigger_cell(bool was_triggered) { return was_triggered ? report::TableCell{"triggered", Tone::kGood} : report::TableCell{"not triggered", Tone::kWarning}; }
 
 std::vector<report::TableCell> expectation_row(const CheckedExpectation& check, bool is_complete) {
-  const report::TableCell judged = check.is_met ? report::TableCell{"met", Tone::kGood} : report::TableCell{"MISSED", Tone::kBad};
-  return {{check.metric}, {check.wanted}, {check.got}, is_complete ? judged : report::TableCell{"not known", Tone::kFaint}};
+  const report::TableCell result = check.is_met ? report::TableCell{"met", Tone::kGood} : report::TableCell{"MISSED", Tone::kBad};
+  return {{check.metric}, {check.wanted}, {check.got}, is_complete ? result : report::TableCell{"unknown", Tone::kFaint}};
 }
 
 std::vector<report::TableCell> fault_row(const RunContents& run, const sim::FaultSettings& fault) {
   const std::string name = name_of(fault);
   const io::JunitCase* test = case_named(run, name);
-  const report::TableCell result = test == nullptr ? report::TableCell{"not known", Tone::kFaint} : executed_cell(test->result == io::JunitResult::kPassed);
+  const report::TableCell result = test == nullptr ? report::TableCell{"unknown", Tone::kFaint} : trigger_cell(test->result == io::JunitResult::kPassed);
   return {{name}, {fmt::format("{} s long", fault.duration_s)}, {test == nullptr ? "" : test->message}, result};
 }
 
@@ -41,20 +41,20 @@ std::vector<report::TableCell> kidnap_row(const RunContents& run, const KidnapSe
   return {{name_of(kidnap)},
           {fmt::format("to ({}, {}) m", kidnap.x_m, kidnap.y_m)},
           {},
-          executed_cell(was_triggered(kidnap, run.record.T_world_body))};
+          trigger_cell(was_triggered(kidnap, run.record.T_world_body))};
 }
 
 std::string missed_text(const std::vector<CheckedExpectation>& checks) {
   std::vector<std::string> texts;
   for (const CheckedExpectation& check : checks) {
-    if (!check.is_met) texts.push_back(missed(check));
+    if (!check.is_met) texts.push_back(describe_missed(check));
   }
   if (texts.empty()) return "";
   return fmt::format("{} of {} expectations missed: {}.", texts.size(), checks.size(), fmt::join(texts, "; "));
 }
 
 /// Fills in verdict, tone and reason of a complete run.
-void judge(const RunContents& run, const std::vector<CheckedExpectation>& checks, report::VerdictBlock& verdict) {
+void fill_verdict(const RunContents& run, const std::vector<CheckedExpectation>& checks, report::VerdictBlock& verdict) {
   const std::string end = early_end(run), misses = missed_text(checks);
   const bool is_passed = end.empty() && status_of(RunEnd::kMissionOver, checks) == RunStatus::kDone;
   verdict.word = is_passed ? "Passed" : "Missed";
@@ -62,15 +62,15 @@ void judge(const RunContents& run, const std::vector<CheckedExpectation>& checks
   if (!end.empty()) verdict.reason = fmt::format("The run ended early: {}.", end);
   if (!misses.empty()) verdict.reason += (verdict.reason.empty() ? "" : " ") + misses;
   if (!is_passed) return;
-  verdict.reason = checks.empty()       ? "The run came to its end; the scenario expects nothing of it."
-                   : checks.size() == 1 ? "The run came to its end, and met its one expectation."
-                                        : fmt::format("The run came to its end, and met all {} expectations.", checks.size());
+  verdict.reason = checks.empty()       ? "Run completed; the scenario defines no expectations."
+                   : checks.size() == 1 ? "Run completed; its expectation was met."
+                                        : fmt::format("Run completed; all {} expectations were met.", checks.size());
 }
 
-void add_unexecuted(report::VerdictBlock& verdict) {
-  const auto is_unexecuted = [](const std::vector<report::TableCell>& row) { return row.back().tone == Tone::kWarning; };
-  const auto num = std::count_if(verdict.checks.rows.begin(), verdict.checks.rows.end(), is_unexecuted);
-  if (num > 0) verdict.reason += fmt::format(" {} declared, but NOT EXECUTED.", num == 1 ? "One fault or kidnap was" : fmt::format("{} faults and kidnaps were", num));
+void add_untriggered(report::VerdictBlock& verdict) {
+  const auto is_untriggered = [](const std::vector<report::TableCell>& row) { return row.back().tone == Tone::kWarning; };
+  const auto num = std::count_if(verdict.checks.rows.begin(), verdict.checks.rows.end(), is_untriggered);
+  if (num > 0) verdict.reason += fmt::format(" {} declared, but not triggered.", num == 1 ? "One fault or kidnap was" : fmt::format("{} faults and kidnaps were", num));
 }
 
 }  // namespace
@@ -90,13 +90,13 @@ report::VerdictBlock verdict_of(const RunContents& run) {
   for (const sim::FaultSettings& fault : run.scenario.faults) verdict.checks.rows.push_back(fault_row(run, fault));
   for (const KidnapSettings& kidnap : run.scenario.kidnaps) verdict.checks.rows.push_back(kidnap_row(run, kidnap));
   if (run.is_complete) {
-    judge(run, checks, verdict);
+    fill_verdict(run, checks, verdict);
   } else {
     verdict.word = "INCOMPLETE";
     verdict.tone = Tone::kBad;
-    verdict.reason = fmt::format("The run was cut off: its log ends after {:.1f} s. What follows is what the log holds, and not a result.", run.end_s());
+    verdict.reason = fmt::format("Incomplete run: the log ends after {:.1f} s. Partial data only; not a valid result.", run.end_s());
   }
-  add_unexecuted(verdict);
+  add_untriggered(verdict);
   return verdict;
 }
 

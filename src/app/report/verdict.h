@@ -6,7 +6,7 @@
 namespace patrol::app {
 
 /// Verdict of a run (passed, missed or incomplete) with its reason and everything that the scenario declares. Each
-/// expectation has the wanted and the measured value, each fault and kidnap whether it was executed.
+/// expectation has the wanted and the measured value, each fault and kidnap whether it was triggered.
 report::VerdictBlock verdict_of(const RunContents& run);
 
 /// Whether the ground truth in the log has the robot at the kidnap's position.

@@ -20,16 +20,16 @@ io::JunitCase expectation_case(const std::string& name, const CheckedExpectation
           .name = fmt::format("{} {}", check.metric, check.wanted),
           .time_s = 0.0,
           .result = check.is_met ? io::JunitResult::kPassed : io::JunitResult::kFailure,
-          .message = check.is_met ? "" : missed(check),
+          .message = check.is_met ? "" : describe_missed(check),
           .details = ""};
 }
 
-io::JunitCase event_case(const std::string& name, const DeclaredEvent& event) {
+io::JunitCase event_case(const std::string& name, const InjectedEvent& event) {
   return {.class_name = name,
-          .name = event.what,
+          .name = event.name,
           .time_s = 0.0,
           .result = event.was_triggered ? io::JunitResult::kPassed : io::JunitResult::kSkipped,
-          .message = event.was_triggered ? "" : "NOT EXECUTED",
+          .message = event.was_triggered ? "" : "not triggered",
           .details = ""};
 }
 
@@ -54,7 +54,7 @@ io::JunitSuite junit_suite(const std::string& name, const std::vector<std::pair<
   io::JunitSuite suite{.name = name, .time_s = wall_s, .properties = properties, .cases = {}};
   suite.cases.push_back(end_case(name, verdict, wall_s));
   for (const CheckedExpectation& check : verdict.checks) suite.cases.push_back(expectation_case(name, check));
-  for (const DeclaredEvent& event : verdict.events) suite.cases.push_back(event_case(name, event));
+  for (const InjectedEvent& event : verdict.events) suite.cases.push_back(event_case(name, event));
   return suite;
 }
 

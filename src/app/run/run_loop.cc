@@ -43,16 +43,16 @@ sim::SimulatorSettings simulator_settings(const Scenario& scenario, const Scenar
           .sensors = scenario.sensors,
           .locomotion = scenario.locomotion,
           .track_drive = scenario.track_drive,
-          .props = props_of(scenario),
+          .static_obstacles = all_static_obstacles(scenario),
           .lining = files.route.lining,  // site is world
-          .lining_deformations = scenario.lining,
+          .lining_deformations = scenario.lining_deformation,
           .actors = scenario.actors,
           .leaks = scenario.leaks,
           .wind = scenario.wind,
-          .subsurface = {.rock = scenario.rock, .water = scenario.water},
+          .subsurface = {.rock = scenario.rock, .water_bodies = scenario.water_bodies},
           .faults = scenario.faults,
-          .drive = files.drive,
-          .driver = scenario.remote.driver,
+          .teleop_route = files.teleop_route,
+          .teleop_operator = scenario.teleop.teleop_operator,
           .recorded = files.recorded};
 }
 
@@ -64,21 +64,148 @@ stack::LiningReferences references_of(const ScenarioFiles& files) {
   return references;
 }
 
+/// Closed loop of simulator and stack: exchanges their messages, writes the log and notifies the observer.
+class ClosedLoop {
+ public:
+  ClosedLoop(const Scenario& scenario, const ScenarioFiles& files, sim::Simulator& simulator, stack::Stack& stack,
+             const std::filesystem::path& log_mcap, RunObserver& observer)
+      : simulator_(simulator),
+        stack_(stack),
+        observer_(observer),
+        log_(log_mcap, files.robot),
+        truth_due_(scenario.log.truth_rate_hz),
+        state_due_(scenario.log.state_rate_hz),
+        limit_(from_seconds(scenario.time_limit_s)),
+        kidnaps_(scenario.kidnaps),
+        last_position_(simulator.truth().T_world_body.position) {
+    std::stable_sort(kidnaps_.begin(), kidnaps_.end(), [](const auto& a, const auto& b) { return a.at_s < b.at_s; });
+  }
+
+  RunOutcome run(const ScenarioFiles& files) {
+    observer_.begin(files);
+    for (bool is_running = true; is_running;) {
+      const Time now = simulator_.now();
+      handle_sensor_messages(now);
+      if (simulator_.has_fallen()) {
+        stack_.handle_fall(now);
+        outcome_.end = RunEnd::kFall;
+      }
+      stack_.step(now);
+      publish_stack_messages(now);
+      simulator_.set_command(stack_.command());
+      trigger_kidnaps(now);
+      record_ground_truth(now);
+      is_running = keep_running(now);
+      if (is_running) simulator_.step();
+    }
+    finish();
+    return std::move(outcome_);
+  }
+
+ private:
+  void handle_sensor_messages(Time now) {
+    for (const SensorMessage& message : simulator_.take_messages()) {
+      {
+        const auto timer = profiler_.time_stage("log");
+        log_.write(now, message);
+      }
+      stack_.handle(message);
+    }
+  }
+
+  void publish_stack_messages(Time now) {
+    for (const stack::StackMessage& message : stack_.take_messages()) {
+      const auto timer = profiler_.time_stage("log");
+      std::visit(Overloaded{[&](const auto& content) { log_.write(now, content); },
+                            [&]<InstrumentOrder Command>(const Command& order) {
+                              log_.write(now, order);
+                              simulator_.command(order);
+                            }},
+                 message);
+      observer_.on_message(message);
+    }
+  }
+
+  void trigger_kidnaps(Time now) {
+    const auto is_due = [&](const KidnapSettings& kidnap) { return from_seconds(kidnap.at_s) <= now; };
+    while (outcome_.num_kidnaps < kidnaps_.size() && is_due(kidnaps_[outcome_.num_kidnaps])) {
+      const KidnapSettings& kidnap = kidnaps_[outcome_.num_kidnaps++];
+      simulator_.teleport({kidnap.x_m, kidnap.y_m, to_rad(kidnap.heading_deg)});
+    }
+  }
+
+  void record_ground_truth(Time now) {
+    const GroundTruth truth = simulator_.truth();
+    for (const Collision& collision : simulator_.take_collisions()) log_.write(now, collision);
+    if (truth_due_.is_due(now)) {
+      distance_m_ += (truth.T_world_body.position - last_position_).head<2>().norm();
+      last_position_ = truth.T_world_body.position;
+      log_.write(now, truth);
+      observer_.on_ground_truth(truth);
+    }
+    if (state_due_.is_due(now)) log_.write(now, simulator_.state());
+  }
+
+  /// Checks the end of the mission, the time limit and the observer, and sets the outcome's end.
+  bool keep_running(Time now) {
+    if (now >= limit_) outcome_.end = RunEnd::kTimeLimit;
+    if (progress_due_.is_due(now) && !observer_.keep_running(now, distance_m_)) {
+      outcome_.end = RunEnd::kInterrupted;
+      return false;
+    }
+    return !stack_.mission_is_over() && now < limit_;
+  }
+
+  /// Writes the final map, closes the log and completes the outcome.
+  void finish() {
+    const MapUpdate final_map = stack_.final_map(simulator_.now());
+    log_.write(simulator_.now(), final_map);
+    observer_.on_message(stack::StackMessage(final_map));
+    log_.close();
+    outcome_.duration = simulator_.now();
+    outcome_.faults = simulator_.sensors().faults();
+    outcome_.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_start_).count();
+    outcome_.cpu_s = cpu_seconds() - cpu_start_;
+    for (const StageProfiler* part : {&simulator_.clock(), &stack_.clock(), &std::as_const(profiler_)}) {
+      for (const auto& [name, seconds] : part->seconds()) outcome_.seconds_by_stage[name] += seconds;
+    }
+    // Expensive sensors are stages of their own.
+    for (const auto& [name, seconds] : simulator_.sensors().clock().seconds()) {
+      outcome_.seconds_by_stage[name] += seconds;
+      outcome_.seconds_by_stage["sensors"] -= seconds;
+    }
+  }
+
+  const std::chrono::steady_clock::time_point wall_start_ = std::chrono::steady_clock::now();
+  const double cpu_start_ = cpu_seconds();
+  sim::Simulator& simulator_;
+  stack::Stack& stack_;
+  RunObserver& observer_;
+  io::RunLogWriter log_;
+  StageProfiler profiler_;
+  Schedule truth_due_, state_due_, progress_due_{2.0};
+  Time limit_;
+  std::vector<KidnapSettings> kidnaps_;  ///< by time
+  Eigen::Vector3d last_position_;
+  double distance_m_ = 0.0;
+  RunOutcome outcome_;
+};
+
 }  // namespace
 
 Pose2 start_in_world(const Scenario& scenario, const ScenarioFiles& files) {
   return files.T_site_start * Pose2{scenario.start.ahead_m, scenario.start.left_m,
-                                    to_rad(scenario.start.turn_deg)};
+                                    to_rad(scenario.start.yaw_deg)};
 }
 
-std::vector<sim::StaticObstacleSettings> props_of(const Scenario& scenario) {
-  std::vector<sim::StaticObstacleSettings> props = scenario.props;
+std::vector<sim::StaticObstacleSettings> all_static_obstacles(const Scenario& scenario) {
+  std::vector<sim::StaticObstacleSettings> obstacles = scenario.static_obstacles;
   const std::vector<sim::StaticObstacleSettings> scattered = sim::scatter_low_obstacles(scenario.low_obstacles, scenario.seed);
-  props.insert(props.end(), scattered.begin(), scattered.end());
-  return props;
+  obstacles.insert(obstacles.end(), scattered.begin(), scattered.end());
+  return obstacles;
 }
 
-sim::Simulator make_twin(const Scenario& scenario, const ScenarioFiles& files) {
+sim::Simulator make_simulator(const Scenario& scenario, const ScenarioFiles& files) {
   return sim::Simulator(simulator_settings(scenario, files), files.robot, scenario.seed, render::make_depth_renderer);
 }
 
@@ -93,95 +220,9 @@ stack::Stack make_stack(const Scenario& scenario, const ScenarioFiles& files) {
                             .seed = scenario.seed});
 }
 
-RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::Simulator& twin, stack::Stack& stack,
+RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::Simulator& simulator, stack::Stack& stack,
                     const std::filesystem::path& log_mcap, RunObserver& observer) {
-  const auto wall_start = std::chrono::steady_clock::now();
-  const double cpu_start = cpu_seconds();
-
-  io::RunLogWriter log(log_mcap, files.robot);
-  StageProfiler clock;
-
-  Schedule truth_due(scenario.log.truth_rate_hz), state_due(scenario.log.state_rate_hz);
-  Schedule progress_due(2.0);
-  const Time limit = from_seconds(scenario.time_limit_s);
-  double distance_m = 0.0;
-  Eigen::Vector3d last_position = twin.truth().T_world_body.position;
-  RunOutcome outcome;
-  std::vector<KidnapSettings> kidnaps = scenario.kidnaps;
-  std::stable_sort(kidnaps.begin(), kidnaps.end(), [](const auto& a, const auto& b) { return a.at_s < b.at_s; });
-
-  const auto write_stack_messages = [&](Time now) {
-    for (const stack::StackMessage& message : stack.take_messages()) {
-      const auto timer = clock.time_stage("log");
-      std::visit(Overloaded{[&](const auto& content) { log.write(now, content); },
-                            [&]<InstrumentOrder Command>(const Command& order) {
-                              log.write(now, order);
-                              twin.command(order);
-                            }},
-                 message);
-      observer.see(message);
-    }
-  };
-
-  observer.begin(files);
-  for (bool running = true; running;) {
-    const Time now = twin.now();
-    for (const SensorMessage& message : twin.take_messages()) {
-      {
-        const auto timer = clock.time_stage("log");
-        log.write(now, message);
-      }
-      stack.handle(message);
-    }
-    if (twin.has_fallen()) {
-      stack.handle_fall(now);
-      outcome.end = RunEnd::kFall;
-    }
-    stack.step(now);
-    write_stack_messages(now);
-    twin.set_command(stack.command());
-
-    const auto is_kidnapped = [&](const KidnapSettings& kidnap) { return from_seconds(kidnap.at_s) <= now; };
-    while (outcome.num_kidnaps < kidnaps.size() && is_kidnapped(kidnaps[outcome.num_kidnaps])) {
-      const KidnapSettings& kidnap = kidnaps[outcome.num_kidnaps++];
-      twin.teleport({kidnap.x_m, kidnap.y_m, to_rad(kidnap.heading_deg)});
-    }
-    const GroundTruth truth = twin.truth();
-    for (const Collision& collision : twin.take_collisions()) log.write(now, collision);
-    if (truth_due.is_due(now)) {
-      distance_m += (truth.T_world_body.position - last_position).head<2>().norm();
-      last_position = truth.T_world_body.position;
-      log.write(now, truth);
-      observer.see(truth);
-    }
-    if (state_due.is_due(now)) log.write(now, twin.state());
-
-    running = !stack.mission_is_over() && now < limit;
-    if (now >= limit) outcome.end = RunEnd::kTimeLimit;
-    if (progress_due.is_due(now) && !observer.go_on(now, distance_m)) {
-      outcome.end = RunEnd::kInterrupted;
-      running = false;
-    }
-    if (running) twin.step();
-  }
-
-  const MapUpdate final_map = stack.final_map(twin.now());
-  log.write(twin.now(), final_map);
-  observer.see(stack::StackMessage(final_map));
-  log.close();
-  outcome.duration = twin.now();
-  outcome.faults = twin.sensors().faults();
-  outcome.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_start).count();
-  outcome.cpu_s = cpu_seconds() - cpu_start;
-  for (const StageProfiler* part : {&twin.clock(), &stack.clock(), &std::as_const(clock)}) {
-    for (const auto& [name, seconds] : part->seconds()) outcome.seconds_by_part[name] += seconds;
-  }
-  // Expensive sensors are stages of their own.
-  for (const auto& [name, seconds] : twin.sensors().clock().seconds()) {
-    outcome.seconds_by_part[name] += seconds;
-    outcome.seconds_by_part["sensors"] -= seconds;
-  }
-  return outcome;
+  return ClosedLoop(scenario, files, simulator, stack, log_mcap, observer).run(files);
 }
 
 }  // namespace patrol::app

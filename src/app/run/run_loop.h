@@ -20,42 +20,42 @@ struct RunOutcome {
   Time duration{};                                   ///< simulated time
   double wall_s = 0.0;
   double cpu_s = 0.0;
-  std::map<std::string, double> seconds_by_part;     ///< wall time by stage
+  std::map<std::string, double> seconds_by_stage;     ///< wall time by stage
   std::vector<sim::FaultStatus> faults;
   std::size_t num_kidnaps = 0;                       ///< number of declared kidnaps, in order, that were executed
 };
 
-/// Observer of a running simulation. Must not influence the run; may stop it by returning false from `go_on`.
+/// Observer of a running simulation. Must not influence the run; may stop it by returning false from `keep_running`.
 class RunObserver {
  public:
   virtual ~RunObserver() = default;
 
   virtual void begin(const ScenarioFiles&) {}
-  virtual void see(const stack::StackMessage&) {}
-  virtual void see(const GroundTruth&) {}
+  virtual void on_message(const stack::StackMessage&) {}
+  virtual void on_ground_truth(const GroundTruth&) {}
   /// Called every 0.5 s of simulated time; false stops the run.
-  virtual bool go_on(Time now, double distance_m) = 0;
+  virtual bool keep_running(Time now, double distance_m) = 0;
 };
 
 /// Observer that ignores everything.
-class Unobserved final : public RunObserver {
+class NullObserver final : public RunObserver {
  public:
-  bool go_on(Time, double) override { return true; }
+  bool keep_running(Time, double) override { return true; }
 };
 
 /// Actual start pose of the robot, in world.
 Pose2 start_in_world(const Scenario& scenario, const ScenarioFiles& files);
 
 /// Static obstacles of the scenario: the listed ones and the randomly scattered ones.
-std::vector<sim::StaticObstacleSettings> props_of(const Scenario& scenario);
+std::vector<sim::StaticObstacleSettings> all_static_obstacles(const Scenario& scenario);
 
 /// Creates the simulator. Throws InputError if the settings of the scenario are inconsistent.
-sim::Simulator make_twin(const Scenario& scenario, const ScenarioFiles& files);
+sim::Simulator make_simulator(const Scenario& scenario, const ScenarioFiles& files);
 /// Creates the stack. Throws InputError if the settings of the scenario are inconsistent.
 stack::Stack make_stack(const Scenario& scenario, const ScenarioFiles& files);
 
 /// Runs simulator and stack in a closed loop until the mission ends, and writes everything to `log_mcap`.
-RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::Simulator& twin, stack::Stack& stack,
+RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::Simulator& simulator, stack::Stack& stack,
                     const std::filesystem::path& log_mcap, RunObserver& observer);
 
 }  // namespace patrol::app

@@ -14,8 +14,8 @@ namespace patrol::app {
 namespace {
 
 /// Header comment of a resolved scenario.
-std::string made_by(const std::string& name) {
-  return fmt::format("{}, every default written out, by patrol {} with MuJoCo {}", name, PATROL_VERSION, mj_versionString());
+std::string origin_comment(const std::string& name) {
+  return fmt::format("{}, all settings with defaults, patrol {}, MuJoCo {}", name, PATROL_VERSION, mj_versionString());
 }
 
 io::Metrics performance_of(const RunOutcome& outcome) {
@@ -24,7 +24,7 @@ io::Metrics performance_of(const RunOutcome& outcome) {
   performance["wall_s"] = outcome.wall_s;
   performance["cpu_s"] = outcome.cpu_s;
   performance["peak_memory_mb"] = peak_memory_mb();
-  for (const auto& [part, seconds] : outcome.seconds_by_part) performance["parts_s"][part] = seconds;
+  for (const auto& [part, seconds] : outcome.seconds_by_stage) performance["parts_s"][part] = seconds;
   return performance;
 }
 
@@ -33,13 +33,13 @@ io::Metrics performance_of(const RunOutcome& outcome) {
 std::optional<RunVerdict> run_once(const Scenario& scenario, const std::string& name, const std::filesystem::path& data_root,
                                   const std::filesystem::path& root, RunObserver& observer) {
   const ScenarioFiles files = load_scenario_files(scenario, data_root);
-  sim::Simulator twin = make_twin(scenario, files);  // these throw InputError before anything is written
+  sim::Simulator simulator = make_simulator(scenario, files);  // these throw InputError before anything is written
   stack::Stack stack = make_stack(scenario, files);
   const RunDirectory directory = begin_run_directory(root);
   io::save_junit(directory.junit(), {unfinished_suite(name, junit_properties(scenario))});
-  save_scenario(directory.scenario(), scenario, made_by(name));
+  save_scenario(directory.scenario(), scenario, origin_comment(name));
 
-  const RunOutcome outcome = run_loop(scenario, files, twin, stack, directory.log(), observer);
+  const RunOutcome outcome = run_loop(scenario, files, simulator, stack, directory.log(), observer);
   if (outcome.end == RunEnd::kInterrupted) return std::nullopt;
 
   const ScoredRun scored = score_run(directory.log(), scenario, files);

@@ -5,13 +5,13 @@
 namespace patrol::app {
 namespace {
 
-std::vector<DeclaredEvent> events_of(const RunOutcome& outcome, const std::vector<KidnapSettings>& kidnaps) {
-  std::vector<DeclaredEvent> events;
+std::vector<InjectedEvent> events_of(const RunOutcome& outcome, const std::vector<KidnapSettings>& kidnaps) {
+  std::vector<InjectedEvent> events;
   for (const sim::FaultStatus& report : outcome.faults) {
-    events.push_back({.what = name_of(report.fault), .was_triggered = report.was_triggered});
+    events.push_back({.name = name_of(report.fault), .was_triggered = report.was_triggered});
   }
   for (std::size_t i = 0; i < kidnaps.size(); ++i) {
-    events.push_back({.what = name_of(kidnaps[i]), .was_triggered = i < outcome.num_kidnaps});
+    events.push_back({.name = name_of(kidnaps[i]), .was_triggered = i < outcome.num_kidnaps});
   }
   return events;
 }
@@ -32,7 +32,7 @@ RunVerdict verdict_of(const RunOutcome& outcome, const std::vector<KidnapSetting
   RunVerdict verdict{.end = status_of(outcome.end, checks), .message = "", .metrics = std::move(metrics), .checks = std::move(checks),
                      .events = events_of(outcome, kidnaps)};
   for (const CheckedExpectation& check : verdict.checks) {
-    if (!check.is_met) verdict.message += (verdict.message.empty() ? "" : "; ") + missed(check);
+    if (!check.is_met) verdict.message += (verdict.message.empty() ? "" : "; ") + describe_missed(check);
   }
   if (verdict.end == RunStatus::kFall) {
     verdict.message = fmt::format("the robot fell at {:.2f} s", to_seconds(outcome.duration));
@@ -42,7 +42,7 @@ RunVerdict verdict_of(const RunOutcome& outcome, const std::vector<KidnapSetting
   return verdict;
 }
 
-std::string missed(const CheckedExpectation& check) {
+std::string describe_missed(const CheckedExpectation& check) {
   return fmt::format("{} is {}, expected {}", check.metric, check.got, check.wanted);
 }
 
@@ -60,8 +60,8 @@ io::Metrics to_json(const RunVerdict& verdict) {
                                     {"is_measured", check.is_measured},
                                     {"is_met", check.is_met}});
   }
-  for (const DeclaredEvent& event : verdict.events) {
-    json["events"].push_back({{"what", event.what}, {"is_executed", event.was_triggered}});
+  for (const InjectedEvent& event : verdict.events) {
+    json["events"].push_back({{"name", event.name}, {"was_triggered", event.was_triggered}});
   }
   return json;
 }
@@ -80,7 +80,7 @@ RunVerdict verdict_from_json(const io::Metrics& json) {
                               .is_met = check.at("is_met")});
   }
   for (const io::Metrics& event : json.at("events")) {
-    verdict.events.push_back({.what = event.at("what"), .was_triggered = event.at("is_executed")});
+    verdict.events.push_back({.name = event.at("name"), .was_triggered = event.at("was_triggered")});
   }
   return verdict;
 }

@@ -15,8 +15,8 @@
 namespace patrol::app {
 
 /// Event declared by a scenario: a fault or a kidnap.
-struct DeclaredEvent {
-  std::string what;          ///< "fault imu freeze at 12 s"
+struct InjectedEvent {
+  std::string name;          ///< "fault imu freeze at 12 s"
   bool was_triggered = false;
 };
 
@@ -38,8 +38,8 @@ inline constexpr std::array kRunStatuses = std::to_array<RunStatusRow>({
     {RunStatus::kTimeLimit, "time limit", "The simulated time reached its limit", ExitCode::kTimeLimit},
     {RunStatus::kWrongInput, "wrong input", "No score: the scenario or one of its files is invalid", ExitCode::kWrongInput},
     {RunStatus::kFailed, "failed", "No score: the simulation or the program failed", ExitCode::kProgramFailed},
-    {RunStatus::kCrashed, "crashed", "No score: the process of the run died", ExitCode::kProgramFailed},
-    {RunStatus::kWallTimeLimit, "wall time limit", "No score: the process of the run reached its limit of wall time", ExitCode::kTimeLimit},
+    {RunStatus::kCrashed, "crashed", "No score: the process of the run crashed", ExitCode::kProgramFailed},
+    {RunStatus::kWallTimeLimit, "wall time limit", "No score: the process of the run reached its wall-clock timeout", ExitCode::kTimeLimit},
 });
 static_assert(is_in_order(kRunStatuses));
 
@@ -52,7 +52,7 @@ struct RunVerdict {
   std::string message;  ///< reason for a status other than kDone, one line
   io::Metrics metrics;  ///< metrics.json; empty for a run without a score
   std::vector<CheckedExpectation> checks;
-  std::vector<DeclaredEvent> events;
+  std::vector<InjectedEvent> events;
 
   ExitCode code() const { return exit_code_of(end); }
 };
@@ -70,7 +70,7 @@ RunVerdict verdict_of(const RunOutcome& outcome, const std::vector<KidnapSetting
                       std::vector<CheckedExpectation> checks);
 
 /// Description of a missed expectation: "pose.ate_rmse_m is 0.2, expected <= 0.1".
-std::string missed(const CheckedExpectation& check);
+std::string describe_missed(const CheckedExpectation& check);
 
 io::Metrics to_json(const RunVerdict& verdict);
 /// Throws std::exception if `json` is not a verdict.

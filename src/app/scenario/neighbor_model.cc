@@ -7,11 +7,11 @@
 
 namespace patrol::app {
 
-bool needs_neighbor_model(const std::string& method) { return row_named(slam::mapping_methods(), method, "mapping").needs_neighbor_model; }
+bool needs_neighbor_model(const std::string& method) { return row_named(slam::mapping_methods(), method, "slam.method").needs_neighbor_model; }
 
-BoostedStumps neighbours_for(const std::string& method, const std::filesystem::path& data_root) {
+BoostedStumps load_neighbor_model(const std::string& method, const std::filesystem::path& data_root) {
   if (!needs_neighbor_model(method)) return {};
-  return io::load_boosted_stumps(data_root / kNeighbourModel, slam::pair_feature_names());
+  return io::load_boosted_stumps(data_root / kNeighborModel, slam::pair_feature_names());
 }
 
 }  // namespace patrol::app

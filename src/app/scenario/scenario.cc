@@ -23,7 +23,7 @@
 namespace patrol::app {
 namespace {
 
-bool holds_data(const std::filesystem::path& root) {
+bool contains_data(const std::filesystem::path& root) {
   std::error_code ignored;
   return std::filesystem::is_directory(root / "worlds", ignored) && std::filesystem::is_directory(root / "models", ignored);
 }
@@ -36,7 +36,7 @@ std::filesystem::path data_root_of_program() {
   if (error) return {};
   const std::filesystem::path outer = program.parent_path().parent_path();
   for (const std::filesystem::path& root : {outer / "share/patrol", outer}) {
-    if (holds_data(root)) return root;
+    if (contains_data(root)) return root;
   }
   return {};
 }
@@ -56,7 +56,7 @@ std::filesystem::path find_definition(const std::filesystem::path& root, const s
                                       const std::string& name, const std::string& extension) {
   const std::filesystem::path file = root / kind / name / (name + extension);
   if (!std::filesystem::exists(file)) {
-    throw InputError(fmt::format("{} = {}: there is no {} (known: {})", key, name, file.string(), folders_in(root / kind)));
+    throw InputError(fmt::format("{} = {}: {} not found (known: {})", key, name, file.string(), folders_in(root / kind)));
   }
   return file;
 }
@@ -64,7 +64,7 @@ std::filesystem::path find_definition(const std::filesystem::path& root, const s
 /// Path of a file below the world's folder that a key names. Throws InputError if it does not exist.
 std::filesystem::path find_named_file(const std::filesystem::path& world, const char* key, const std::string& name) {
   const std::filesystem::path file = world / name;
-  if (!std::filesystem::exists(file)) throw InputError(fmt::format("{} = {}: there is no {}", key, name, file.string()));
+  if (!std::filesystem::exists(file)) throw InputError(fmt::format("{} = {}: {} not found", key, name, file.string()));
   if (std::filesystem::is_directory(file)) throw InputError(fmt::format("{} = {}: {} is a folder", key, name, file.string()));
   return file;
 }
@@ -76,7 +76,8 @@ void add_mounts(RobotDescription& robot, const std::vector<MountSettings>& mount
     const Pose3 T_body_mount{{mount.x_m, mount.y_m, mount.z_m},
                              quaternion_from_rpy(kDegree * mount.roll_deg, kDegree * mount.pitch_deg, kDegree * mount.yaw_deg)};
     if (robot.T_body_sensor.emplace(mount.frame, T_body_mount).second) continue;
-    throw InputError(fmt::format("mounts.{}.frame = {}: the robot {} has this frame already: another name is needed", i, mount.frame, robot.name));
+    throw InputError(fmt::format("mounts.{}.frame = {}: duplicate frame of the robot {}: must be a new name", i, mount.frame,
+                                 robot.name));
   }
 }
 
@@ -108,24 +109,27 @@ void save_scenario(const std::filesystem::path& file, const Scenario& scenario, 
 
 std::filesystem::path find_data_root(const std::filesystem::path& scenario) {
   if (const char* named = std::getenv("PATROL_DATA"); named != nullptr && *named != '\0') {
-    if (!holds_data(named)) throw InputError(fmt::format("PATROL_DATA = {}: must be a folder that holds the folders worlds and models", named));
+    if (!contains_data(named)) {
+      throw InputError(fmt::format("PATROL_DATA = {}: must be a folder that contains the folders worlds and models", named));
+    }
     return std::filesystem::absolute(named);
   }
   std::filesystem::path folder = scenario.empty() ? std::filesystem::current_path() : std::filesystem::absolute(scenario).parent_path();
   for (; folder != folder.parent_path(); folder = folder.parent_path()) {
-    if (holds_data(folder)) return folder;
+    if (contains_data(folder)) return folder;
   }
-  if (holds_data(std::filesystem::current_path())) return std::filesystem::current_path();
+  if (contains_data(std::filesystem::current_path())) return std::filesystem::current_path();
   if (const std::filesystem::path found = data_root_of_program(); !found.empty()) return found;
-  if (holds_data(PATROL_SOURCE_DIR)) return PATROL_SOURCE_DIR;
-  throw InputError("the folders worlds and models were found neither beside the scenario nor beside the program: set PATROL_DATA to the "
-                   "folder that holds them");
+  if (contains_data(PATROL_SOURCE_DIR)) return PATROL_SOURCE_DIR;
+  throw InputError("folders worlds and models not found near the scenario or the program: set PATROL_DATA to the folder that "
+                   "contains them");
 }
 
 std::vector<std::filesystem::path> named_files(const Scenario& scenario, const std::filesystem::path& data_root) {
   const std::filesystem::path world = data_root / "worlds" / scenario.world;
   const std::pair<const char*, const std::string&> named[] = {{"mission", scenario.mission}, {"map", scenario.map}, {"goals", scenario.goals},
-                                                              {"remote.drive", scenario.remote.drive}, {"remote.recorded", scenario.remote.recorded}};
+                                                              {"teleop.route", scenario.teleop.route},
+                                                              {"teleop.recorded", scenario.teleop.recorded}};
   std::vector<std::filesystem::path> files;
   for (const auto& [key, name] : named) {
     if (!name.empty()) files.push_back(find_named_file(world, key, name));
@@ -134,7 +138,7 @@ std::vector<std::filesystem::path> named_files(const Scenario& scenario, const s
   if (!scenario.references.empty()) {
     for (const std::filesystem::path& file : io::station_scan_files(world / scenario.references)) files.push_back(file);
   }
-  if (needs_neighbor_model(scenario.stack.slam.method)) files.push_back(data_root / kNeighbourModel);
+  if (needs_neighbor_model(scenario.stack.slam.method)) files.push_back(data_root / kNeighborModel);
   return files;
 }
 
@@ -158,18 +162,19 @@ ScenarioFiles load_scenario_files(const Scenario& scenario, const std::filesyste
     files.goals = io::load_nav(file);
     stack::validate_goals(file.string(), files.goals, files.map);
   }
-  files.neighbor_model = neighbours_for(scenario.stack.slam.method, data_root);
+  files.neighbor_model = load_neighbor_model(scenario.stack.slam.method, data_root);
   if (!scenario.references.empty()) files.references = io::load_station_scans(files.world_xml.parent_path() / scenario.references);
-  const RemoteSettings& remote = scenario.remote;
-  if (!remote.drive.empty() && !remote.recorded.empty()) {
-    throw InputError("remote: has a drive and recorded commands: only one of them can be followed");
+  const TeleopSettings& teleop = scenario.teleop;
+  if (!teleop.route.empty() && !teleop.recorded.empty()) {
+    throw InputError("teleop: route and recorded are mutually exclusive: only one of them is allowed");
   }
-  if (!remote.drive.empty()) files.drive = io::load_teleop_route(named_file("remote.drive", remote.drive));
-  if (!remote.recorded.empty()) files.recorded = io::load_teleop(named_file("remote.recorded", remote.recorded));
-  const bool waits_for_remote = std::any_of(files.goals.begin(), files.goals.end(), [](const SavedGoal& goal) { return goal.type == GoalType::kOperator; });
-  if (files.map && files.has_teleop() && !waits_for_remote) {
-    throw InputError(fmt::format("map = {}: a map is given, and by remote control another would be made: only one of them can be used, unless "
-                                 "a goal of type R waits for the remote control",
+  if (!teleop.route.empty()) files.teleop_route = io::load_teleop_route(named_file("teleop.route", teleop.route));
+  if (!teleop.recorded.empty()) files.recorded = io::load_teleop(named_file("teleop.recorded", teleop.recorded));
+  const bool has_operator_goal =
+      std::any_of(files.goals.begin(), files.goals.end(), [](const SavedGoal& goal) { return goal.type == GoalType::kOperator; });
+  if (files.map && files.has_teleop() && !has_operator_goal) {
+    throw InputError(fmt::format("map = {}: map and teleop are mutually exclusive, because a teleoperated run builds a new map: both are "
+                                 "allowed only with a goal of type R",
                                  scenario.map));
   }
   return files;

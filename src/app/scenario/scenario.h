@@ -22,27 +22,27 @@ namespace patrol::app {
 struct StartOffsetSettings {
   double ahead_m = 0.0;
   double left_m = 0.0;
-  double turn_deg = 0.0;
+  double yaw_deg = 0.0;
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("ahead_m", self.ahead_m);
     visit("left_m", self.left_m);
-    visit("turn_deg", self.turn_deg, between(-180.0, 180.0));
+    visit("yaw_deg", self.yaw_deg, between(-180.0, 180.0));
   }
 };
 
-/// Source of teleoperation commands while the map is built and goals are saved. At most one of `drive` and `recorded`.
-struct RemoteSettings {
-  std::string drive;     ///< route of the simulated operator, below the world's folder
+/// Source of teleoperation commands while the map is built and goals are saved. At most one of `route` and `recorded`.
+struct TeleopSettings {
+  std::string route;     ///< route of the simulated operator, below the world's folder
   std::string recorded;  ///< table of recorded commands, below the world's folder
-  sim::TeleopOperatorSettings driver;
+  sim::TeleopOperatorSettings teleop_operator;  ///< key `operator`, which is a keyword of C++
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("drive", self.drive);
+    visit("route", self.route);
     visit("recorded", self.recorded);
-    visit("driver", self.driver);
+    visit("operator", self.teleop_operator);
   }
 };
 
@@ -97,7 +97,7 @@ struct LogSettings {
 /// Scenario of one run. A YAML file sets what differs from the defaults, which are defined here and in the settings
 /// that this struct contains.
 struct Scenario {
-  int version = 1;
+  int version = 2;  ///< version of the keys; 2 since they were renamed
   std::string world = "street";
   std::string robot = "quadruped";
   std::uint64_t seed = 1;
@@ -106,21 +106,21 @@ struct Scenario {
   std::string map;    ///< map_server YAML below the world's folder, in map; empty: the robot builds a map
   std::string goals;  ///< nav.json below the world's folder; empty: goals are saved during teleoperation
   std::string references;  ///< folder below the world's folder with scans of an earlier run (io/points/station_scans.h)
-  RemoteSettings remote;
+  TeleopSettings teleop;
   StartOffsetSettings start;
   std::vector<MountSettings> mounts;       ///< sensors in addition to those of the robot's URDF
   sim::SensorSuiteSettings sensors;
   sim::LocomotionSettings locomotion;      ///< locomotion of a legged robot
   sim::TrackDriveSettings track_drive;     ///< drive of a tracked robot
   stack::StackSettings stack;
-  std::vector<sim::StaticObstacleSettings> props;
-  sim::LowObstacleSettings low_obstacles;  ///< random obstacles by the seed, in addition to the props
-  std::vector<sim::LiningDeformationSettings> lining;  ///< displacements of the lining's rings
+  std::vector<sim::StaticObstacleSettings> static_obstacles;
+  sim::LowObstacleSettings low_obstacles;  ///< random obstacles by the seed, in addition to the static obstacles
+  std::vector<sim::LiningDeformationSettings> lining_deformation;  ///< displacements of the lining's rings
   std::vector<sim::ActorSettings> actors;
   std::vector<sim::LeakSettings> leaks;
   sim::WindSettings wind;
   sim::RockSettings rock;
-  std::vector<sim::WaterBodySettings> water;  ///< water bodies ahead of the tunnel face
+  std::vector<sim::WaterBodySettings> water_bodies;  ///< water bodies ahead of the tunnel face
   render::LightSettings light;  ///< light of the replay; for dust see sensors.dust
   std::vector<sim::FaultSettings> faults;
   std::vector<KidnapSettings> kidnaps;
@@ -129,7 +129,7 @@ struct Scenario {
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("version", self.version, between(1, 1));
+    visit("version", self.version, between(1, 2));
     visit("world", self.world);
     visit("robot", self.robot);
     visit("seed", self.seed);
@@ -138,21 +138,21 @@ struct Scenario {
     visit("map", self.map);
     visit("goals", self.goals);
     visit("references", self.references);
-    visit("remote", self.remote);
+    visit("teleop", self.teleop);
     visit("start", self.start);
     visit("mounts", self.mounts);
     visit("sensors", self.sensors);
     visit("locomotion", self.locomotion);
     visit("track_drive", self.track_drive);
     visit("stack", self.stack);
-    visit("props", self.props);
+    visit("static_obstacles", self.static_obstacles);
     visit("low_obstacles", self.low_obstacles);
-    visit("lining", self.lining);
+    visit("lining_deformation", self.lining_deformation);
     visit("actors", self.actors);
     visit("leaks", self.leaks);
     visit("wind", self.wind);
     visit("rock", self.rock);
-    visit("water", self.water);
+    visit("water_bodies", self.water_bodies);
     visit("light", self.light);
     visit("faults", self.faults);
     visit("kidnaps", self.kidnaps);
@@ -203,14 +203,14 @@ struct ScenarioFiles {
   RobotDescription robot;
   Route route;          ///< in site
   Pose2 T_site_start;   ///< surveyed start
-  TeleopRoute drive;                    ///< in site
-  std::vector<TeleopCommand> recorded;
-  std::vector<SavedGoal> goals;        ///< in map
+  TeleopRoute teleop_route;             ///< in site
+  std::vector<TeleopCommand> recorded;  ///< recorded teleoperation commands
+  std::vector<SavedGoal> goals;         ///< in map
   std::vector<io::StationScan> references;
   std::optional<OccupancyGrid> map;
   BoostedStumps neighbor_model;  ///< classifier of pairs of submaps; empty for SLAM methods that need none
 
-  bool has_teleop() const { return !drive.empty() || !recorded.empty(); }
+  bool has_teleop() const { return !teleop_route.empty() || !recorded.empty(); }
 };
 
 /// Loads the files of a scenario. Throws InputError with file and key if one is missing or invalid.

@@ -39,7 +39,7 @@ std::string goal_table(const io::Metrics& metrics) {
     if (failed > 0) text += fmt::format("  {:<8} not reached {} of {} times\n", goal.at("name").get<std::string>(), failed, arrivals + failed);
   }
   if (text.empty()) return "";
-  return "  goal     arrivals   position, cm     heading, deg     [Liu21], table 2: the same\n" + text;
+  return "  goal     arrivals   position, cm     heading, deg     [Liu21], table 2\n" + text;
 }
 
 }  // namespace patrol::app

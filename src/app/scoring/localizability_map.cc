@@ -23,22 +23,22 @@ LocalizabilityMap map_localizability(const Scenario& scenario, const ScenarioFil
   const score::DistanceField clearance(score::occupied_cells(map.surfaces));
   const LocalizabilityOracle oracle(*world.world, scenario.sensors.lidar, world.lidar_height_m);
   const Eigen::Vector2d start = files.T_site_start.position();
-  const auto place_at = [&](const std::pair<int, int>& node) { return Eigen::Vector2d(start + step_m * Eigen::Vector2d(node.first, node.second)); };
-  const auto can_stand = [&](const Eigen::Vector2d& p_world_m) {
+  const auto position_at = [&](const std::pair<int, int>& node) { return Eigen::Vector2d(start + step_m * Eigen::Vector2d(node.first, node.second)); };
+  const auto is_reachable = [&](const Eigen::Vector2d& p_world_m) {
     const Cell cell = map.surfaces.geometry().cell_at(p_world_m);
     return map.surfaces.contains(cell) && map.surfaces.at(cell) == kFree && clearance.distance_m(p_world_m) >= kClearance_m;
   };
 
-  std::set<std::pair<int, int>> seen = {{0, 0}};
-  for (std::deque<std::pair<int, int>> open = {{0, 0}}; !open.empty(); open.pop_front()) {
-    const auto [i, j] = open.front();
-    if (!can_stand(place_at({i, j}))) continue;
-    map.positions.push_back({.p_world_m = place_at({i, j}), .truth = oracle.at(place_at({i, j}))});
+  std::set<std::pair<int, int>> visited = {{0, 0}};
+  for (std::deque<std::pair<int, int>> frontier = {{0, 0}}; !frontier.empty(); frontier.pop_front()) {
+    const auto [i, j] = frontier.front();
+    if (!is_reachable(position_at({i, j}))) continue;
+    map.positions.push_back({.p_world_m = position_at({i, j}), .truth = oracle.at(position_at({i, j}))});
     for (const auto& next : {std::pair(i + 1, j), std::pair(i - 1, j), std::pair(i, j + 1), std::pair(i, j - 1)}) {
-      if (seen.insert(next).second) open.push_back(next);
+      if (visited.insert(next).second) frontier.push_back(next);
     }
   }
-  if (map.positions.empty()) throw InputError("the start lies nearer than 0.4 m to a surface: there is no place to look from");
+  if (map.positions.empty()) throw InputError("no reachable positions: start is within 0.4 m of a surface");
   return map;
 }
 

@@ -9,7 +9,7 @@
 namespace patrol::app {
 
 /// Localizability at one position that the robot could reach.
-struct LocalizablePlace {
+struct LocalizabilitySample {
   Eigen::Vector2d p_world_m = Eigen::Vector2d::Zero();
   score::Localizability truth;
 };
@@ -17,7 +17,7 @@ struct LocalizablePlace {
 struct LocalizabilityMap {
   OccupancyGrid surfaces;  ///< in world, at the lidar's height
   double step_m = 0.5;     ///< grid spacing of the positions
-  std::vector<LocalizablePlace> positions;
+  std::vector<LocalizabilitySample> positions;
 };
 
 /// Computes localizability at every reachable position on a grid of `step_m` that contains the surveyed start.

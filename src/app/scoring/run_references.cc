@@ -18,7 +18,7 @@ std::vector<score::LeakGroundTruth> true_leaks(const Scenario& scenario, const m
 
 std::vector<score::WaterGroundTruth> true_waters(const Scenario& scenario) {
   std::vector<score::WaterGroundTruth> bodies;
-  for (const sim::WaterBodySettings& body : scenario.water) {
+  for (const sim::WaterBodySettings& body : scenario.water_bodies) {
     bodies.push_back({.p_world_m = {body.x_m, body.y_m, body.z_m}, .radius_m = body.radius_m});
   }
   return bodies;
@@ -44,7 +44,7 @@ score::RunReferences run_references(const Scenario& scenario, const ScenarioFile
   if (files.route.lining) {
     references.lining = score::LiningGroundTruth{.design = *files.route.lining,
                          .invert_m = 0.0,
-                         .inward_m = [moves = scenario.lining](int ring, double clock_deg) { return sim::inward_m(moves, ring, clock_deg); }};
+                         .inward_m = [moves = scenario.lining_deformation](int ring, double clock_deg) { return sim::inward_m(moves, ring, clock_deg); }};
   }
   if (files.robot.antenna) references.p_body_antenna = files.robot.antenna->T_body_mount.position;
   for (const KidnapSettings& kidnap : scenario.kidnaps) references.kidnaps.push_back(from_seconds(kidnap.at_s));

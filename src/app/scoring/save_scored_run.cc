@@ -13,18 +13,18 @@ namespace patrol::app {
 namespace {
 
 void save_trajectories(const RunDirectory& directory, const RunRecord& record) {
-  io::save_tum(directory.estimate(), record.T_map_body, "base_link in map, as the stack believed");
-  io::save_tum(directory.truth(), record.T_world_body, "base_link in world, as it was");
-  io::save_tum(directory.odometry(), record.T_odom_body, "base_link in odom, by legs or tracks and IMU alone");
+  io::save_tum(directory.estimate(), record.T_map_body, "base_link in map, estimated by the stack");
+  io::save_tum(directory.truth(), record.T_world_body, "base_link in world, ground truth");
+  io::save_tum(directory.odometry(), record.T_odom_body, "base_link in odom, odometry only");
 }
 
 /// Saves the commands of a teleoperated drive, for repetition, and the goals that were saved.
 void save_drive(const RunDirectory& directory, const Scenario& scenario, const RunRecord& record) {
-  if (record.remote.empty()) return;
-  io::save_teleop(directory.remote(), record.remote);
+  if (record.teleop.empty()) return;
+  io::save_teleop(directory.teleop(), record.teleop);
   std::vector<SavedGoal> goals;
   for (const Event& event : record.events) {
-    if (event.kind != EventKind::kGoalMarked) continue;
+    if (event.kind != EventKind::kGoalSaved) continue;
     goals.push_back({.number = static_cast<int>(goals.size()) + 1,
                      .T_map_body = event.T_map_body,
                      .type = scenario.stack.tunnel_mission.goal_type(goals.size())});

@@ -163,7 +163,7 @@ io::Metrics to_json(const score::LiningScore& score) {
                                 {"is_found", ring.is_found},
                                 {"reported_mm", if_found(ring.is_found, 1e3 * ring.reported_m)},
                                 {"error_mm", if_found(ring.is_found, 1e3 * ring.error_m)},
-                                {"place_error_m", if_found(ring.is_found, ring.place_error_m)}});
+                                {"place_error_m", if_found(ring.is_found, ring.position_error_m)}});
   }
   return metrics;
 }

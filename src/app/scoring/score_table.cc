@@ -15,11 +15,11 @@ class Table {
  public:
   explicit Table(const std::vector<CheckedExpectation>& checks) : checks_(checks) {}
 
-  void add(const MetricLine& figure) {
+  void add(const MetricLine& metric) {
     const auto check = std::find_if(checks_.begin(), checks_.end(),
-                                    [&](const CheckedExpectation& candidate) { return candidate.metric == figure.path; });
-    text_ += line(figure.path, figure.text, check == checks_.end() ? nullptr : &*check);
-    shown_.insert(figure.path);
+                                    [&](const CheckedExpectation& candidate) { return candidate.metric == metric.path; });
+    text_ += line(metric.path, metric.text, check == checks_.end() ? nullptr : &*check);
+    shown_.insert(metric.path);
   }
 
   /// Adds the expectations of metrics without a line: not measured, or indexed in a list.
@@ -50,7 +50,7 @@ class Table {
 
 std::string score_table(const io::Metrics& metrics, const std::vector<CheckedExpectation>& checks) {
   Table table(checks);
-  for (const MetricLine& figure : metric_lines(metrics)) table.add(figure);
+  for (const MetricLine& metric : metric_lines(metrics)) table.add(metric);
   table.add_rest();
   return table.text();
 }

@@ -19,7 +19,7 @@ void LogMapper::map(const std::filesystem::path& log_mcap) {
   handlers.on<TrackTicks>([&](Time, const TrackTicks& ticks) { pipeline_.add(ticks, output_); });
   handlers.on<LaserScan>([&](Time, const LaserScan& scan) { handle(scan); });
   io::read_run_log(log_mcap, handlers);
-  if (T_map_body_.empty()) throw InputError(fmt::format("{}: no scan in it could be mapped", log_mcap.string()));
+  if (T_map_body_.empty()) throw InputError(fmt::format("{}: no scan could be mapped", log_mcap.string()));
 }
 
 void LogMapper::handle(const LaserScan& raw) {

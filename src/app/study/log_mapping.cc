@@ -17,13 +17,13 @@
 namespace patrol::app {
 namespace {
 
-constexpr std::size_t kScansBetweenLooks = 20;
+constexpr std::size_t kScansPerSample = 20;
 
 std::vector<Pose2> true_poses(const Trajectory& T_world_body, const std::vector<Time>& stamps, const std::vector<std::size_t>& scans) {
   std::vector<Pose2> poses;
   for (const std::size_t scan : scans) {
     const std::optional<Pose3> pose = pose_at(T_world_body, stamps[scan]);
-    if (!pose) throw InputError(fmt::format("the truth does not reach to the scan at {:.3f} s", to_seconds(stamps[scan])));
+    if (!pose) throw InputError(fmt::format("ground truth does not cover the scan at {:.3f} s", to_seconds(stamps[scan])));
     poses.push_back(to_pose2(*pose));
   }
   return poses;
@@ -34,7 +34,7 @@ std::vector<Pose2> true_poses(const Trajectory& T_world_body, const std::vector<
 MappedRun map_log_of(const StudyRun& run, const std::string& method) {
   slam::MapperSettings settings;
   settings.method = method;
-  const BoostedStumps neighbors = neighbours_for(method, find_data_root(""));
+  const BoostedStumps neighbors = load_neighbor_model(method, find_data_root(""));
   const std::unique_ptr<io::ScanLog> log = io::open_scan_log(run.log, {});
   MappedRun mapped;
   std::vector<Time> stamps;
@@ -46,7 +46,7 @@ MappedRun map_log_of(const StudyRun& run, const std::string& method) {
     mapper->update(slam::planar_scan(*recorded, {}), recorded->T_odom_body);
     mapped.seconds += thread_cpu_time_s() - start_s;
     stamps.push_back(recorded->scan.stamp);
-    if (stamps.size() % kScansBetweenLooks == 0) look();
+    if (stamps.size() % kScansPerSample == 0) look();
   }
   const double start_s = thread_cpu_time_s();
   mapper->finish();
@@ -55,7 +55,7 @@ MappedRun map_log_of(const StudyRun& run, const std::string& method) {
   look();
   const std::vector<Pose2> path = mapper->path();
   for (std::size_t i = 0; i < path.size(); ++i) mapped.T_map_body.push_back({stamps[i], to_pose3(path[i])});
-  mapped.loops = judge_loops(mapper->graph(), true_poses(run.record.T_world_body, stamps, mapper->node_scan_indices()));
+  mapped.loops = evaluate_loop_closures(mapper->graph(), true_poses(run.record.T_world_body, stamps, mapper->node_scan_indices()));
   return mapped;
 }
 

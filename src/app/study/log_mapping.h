@@ -13,7 +13,7 @@ namespace patrol::app {
 struct MappedRun {
   Trajectory T_map_body;
   OccupancyGrid map;
-  LoopTruth loops;
+  LoopClosureAccuracy loops;
   double seconds = 0.0;    ///< processor time without reading the log
   double memory_mb = 0.0;  ///< maximum growth of the heap, sampled after every 20th scan and at the end
 };

@@ -18,8 +18,8 @@ namespace {
 
 constexpr double kProblemCell_m = 0.05;
 constexpr double kPlanningCell_m = 0.2;
-constexpr double kFarShare = 1.0 / 3.0;  ///< fraction of the diagonal
-constexpr std::uint64_t kMaxDraws = 1000;
+constexpr double kMinDistanceFraction = 1.0 / 3.0;  ///< fraction of the diagonal
+constexpr std::uint64_t kMaxAttempts = 1000;
 
 constexpr std::array<std::pair<const char*, const char*>, 3> kScenarios = {
     {{"street", "worlds/street/scenarios/patrol.yaml"}, {"tunnel", "worlds/tunnel/scenarios/navigate.yaml"}, {"substation", "worlds/substation/scenarios/mapping.yaml"}}};
@@ -30,10 +30,10 @@ struct DrivableWorld {
 };
 
 DrivableWorld load_world(const std::string& name) {
-  const auto* const known = std::find_if(kScenarios.begin(), kScenarios.end(), [&](const auto& scenario) { return name == scenario.first; });
-  if (known == kScenarios.end()) throw InputError("there is no world '" + name + "' to plan in");
+  const auto* const found = std::find_if(kScenarios.begin(), kScenarios.end(), [&](const auto& scenario) { return name == scenario.first; });
+  if (found == kScenarios.end()) throw InputError("unknown world '" + name + "' (known: street, tunnel, substation)");
   const std::filesystem::path root = find_data_root("");
-  const Scenario scenario = load_scenario(root / known->second, {});
+  const Scenario scenario = load_scenario(root / found->second, {});
   const ScenarioFiles files = load_scenario_files(scenario, root);
   plan::CostmapSettings settings = scenario.stack.navigation.costmap;
   settings.resolution_m = kPlanningCell_m;
@@ -43,7 +43,7 @@ DrivableWorld load_world(const std::string& name) {
   DrivableWorld world{.costs = costmap.cost(), .reachable = {}};
   for (plan::Cost& cost : world.costs.values()) cost = cost == plan::kLethalCost ? plan::kLethalCost : plan::kFreeCost;
   const std::optional<Cell> start = plan::nearest_passable(world.costs, files.T_site_start.position(), 1.0);
-  if (!start) throw InputError("the robot of the world '" + name + "' starts in an obstacle");
+  if (!start) throw InputError("world '" + name + "': the robot starts in collision");
   world.reachable = plan::reachable_cells(world.costs, *start);
   return world;
 }
@@ -58,14 +58,14 @@ PlannerProblem generated_problem(const std::string& kind, int size_cells, std::u
 PlannerProblem world_problem(const std::string& world, std::uint64_t seed) {
   DrivableWorld drivable = load_world(world);
   const GridGeometry& grid = drivable.costs.geometry();
-  const double far = kFarShare * std::hypot(grid.width, grid.height);
+  const double far = kMinDistanceFraction * std::hypot(grid.width, grid.height);
   RandomSequence random(RandomStream(seed, "study/planners/" + world), 0);
-  for (std::uint64_t draw = 0; draw < kMaxDraws; ++draw) {
+  for (std::uint64_t attempt = 0; attempt < kMaxAttempts; ++attempt) {
     const Cell start = drivable.reachable[random.index(drivable.reachable.size())], goal = drivable.reachable[random.index(drivable.reachable.size())];
     if (std::hypot(goal.col - start.col, goal.row - start.row) < far) continue;
     return {.costs = std::move(drivable.costs), .start = start, .goal = goal};
   }
-  throw InputError("no two places of the world '" + world + "' are far enough apart");
+  throw InputError("world '" + world + "': no two positions are far enough apart");
 }
 
 }  // namespace patrol::app

@@ -17,7 +17,7 @@ namespace {
 
 using report::SeriesColor;
 
-constexpr double kNoPlannerFigure = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoPlannerMetric = std::numeric_limits<double>::quiet_NaN();
 constexpr int kMaxStepsMillions = 50;  // of ants, particles and episodes, per planning
 
 struct PlannerWorld {
@@ -48,10 +48,10 @@ struct PlannerMethod {
 
 /// Methods; all others are compared with the first. The last two are lower bounds, over eight neighbors and over all
 /// paths.
-constexpr std::array<PlannerMethod, 9> kPlannerMethods = {{{"improved ants (ours)", "ant_colony_li22", true, SeriesColor::kEstimate},
-                                                    {"ants of [Li22]", "ant_colony_li22", true, SeriesColor::kEvent, false},
-                                                    {"plain ants", "ant_system", true, SeriesColor::kOdometry},
-                                                    {"two swarms", "dual_swarm_pso", true, SeriesColor::kRanges},
+constexpr std::array<PlannerMethod, 9> kPlannerMethods = {{{"improved ant colony (this work)", "ant_colony_li22", true, SeriesColor::kEstimate},
+                                                    {"ant colony [Li22]", "ant_colony_li22", true, SeriesColor::kEvent, false},
+                                                    {"ant system", "ant_system", true, SeriesColor::kOdometry},
+                                                    {"dual swarm", "dual_swarm_pso", true, SeriesColor::kRanges},
                                                     {"Q-learning", "q_learning", true, SeriesColor::kAlarm},
                                                     {"Theta*", "theta_star", false, SeriesColor::kEvent},
                                                     {"Dijkstra", "dijkstra", false, SeriesColor::kTrust},
@@ -59,14 +59,14 @@ constexpr std::array<PlannerMethod, 9> kPlannerMethods = {{{"improved ants (ours
                                                     {"any-angle optimum", "visibility_graph", false, SeriesColor::kBound}}};
 constexpr std::size_t kAstar = 7, kOptimum = 8;
 
-const std::vector<studies::StudyFigure> kPlannerFigures = {{.name = "longer than A*", .unit = "%", .is_compared = true},
+const std::vector<studies::StudyMetric> kPlannerMetrics = {{.name = "longer than A*", .unit = "%", .is_compared = true},
                                            {.name = "iterations to 1 % of its final value", .unit = "", .is_compared = true},
                                            {.name = "iterations to A* + 3 %", .unit = ""},
                                            {.name = "found", .unit = "%"},
                                            {.name = "over any-angle", .unit = "%"},
                                            {.name = "clearance", .unit = "cells"},
                                            {.name = "steps", .unit = "1000"},
-                                           {.name = "time", .unit = "ms", .is_of_the_clock = true}};
+                                           {.name = "time", .unit = "ms", .is_processor_time = true}};
 
 struct Planned {
   plan::Route route;
@@ -89,25 +89,25 @@ double iterations_to_length(const std::vector<double>& history, double length) {
   for (std::size_t i = 0; i < history.size(); ++i) {
     if (history[i] <= length) return static_cast<double>(i + 1);
   }
-  return kNoPlannerFigure;
+  return kNoPlannerMetric;
 }
 
 std::vector<std::vector<double>> flatten_metrics(const std::array<Planned, kPlannerMethods.size()>& all) {
-  std::vector<std::vector<double>> figures;
+  std::vector<std::vector<double>> metrics;
   const double astar = all[kAstar].route.length, optimum = all[kOptimum].route.length;
   for (std::size_t m = 0; m < kPlannerMethods.size(); ++m) {
     const plan::Route& route = all[m].route;
     const bool is_found = route.status == plan::PlanStatus::kFound, iterates = kPlannerMethods[m].iterates && is_found;
-    figures.push_back({is_found ? 100.0 * (route.length / astar - 1.0) : kNoPlannerFigure,
-                       iterates ? plan::iterations_to_convergence(route.history, 0.01) : kNoPlannerFigure,
-                       iterates ? iterations_to_length(route.history, 1.03 * astar) : kNoPlannerFigure,
+    metrics.push_back({is_found ? 100.0 * (route.length / astar - 1.0) : kNoPlannerMetric,
+                       iterates ? plan::iterations_to_convergence(route.history, 0.01) : kNoPlannerMetric,
+                       iterates ? iterations_to_length(route.history, 1.03 * astar) : kNoPlannerMetric,
                        is_found ? 100.0 : 0.0,
-                       is_found ? 100.0 * (route.length / optimum - 1.0) : kNoPlannerFigure,
-                       is_found ? route.clearance : kNoPlannerFigure,
+                       is_found ? 100.0 * (route.length / optimum - 1.0) : kNoPlannerMetric,
+                       is_found ? route.clearance : kNoPlannerMetric,
                        1e-3 * static_cast<double>(route.num_expanded),
                        1e3 * all[m].seconds});
   }
-  return figures;
+  return metrics;
 }
 
 std::array<Planned, kPlannerMethods.size()> plan_all(const PlannerProblem& problem, std::uint64_t seed) {
@@ -119,7 +119,7 @@ std::array<Planned, kPlannerMethods.size()> plan_all(const PlannerProblem& probl
 studies::StudySample run_planners(const std::vector<PlannerWorld>& worlds, std::uint64_t seed) {
   studies::StudySample sample;
   for (const PlannerWorld& world : worlds) {
-    for (std::vector<double>& figures : flatten_metrics(plan_all(world.problem(seed), seed))) sample.push_back(std::move(figures));
+    for (std::vector<double>& metrics : flatten_metrics(plan_all(world.problem(seed), seed))) sample.push_back(std::move(metrics));
   }
   return sample;
 }
@@ -128,13 +128,13 @@ studies::StudySample run_planners(const std::vector<PlannerWorld>& worlds, std::
 report::LinePlot convergence(const std::array<Planned, kPlannerMethods.size()>& all, const std::string& world) {
   constexpr std::size_t kShown = 200;
   constexpr double kMost = 25.0;
-  report::LinePlot plot{.title = fmt::format("Longer than A*, best so far: {}", world), .unit = "%", .axis = {.label = "iteration", .max = kShown}, .max = kMost, .curves = {}, .marks = {}, .spans = {}};
+  report::LinePlot plot{.title = fmt::format("Excess length over A*, best so far: {}", world), .unit = "%", .axis = {.label = "iteration", .max = kShown}, .max = kMost, .curves = {}, .marks = {}, .spans = {}};
   for (std::size_t m = 0; m < kPlannerMethods.size(); ++m) {
     if (!kPlannerMethods[m].iterates) continue;
     report::Curve curve{.name = kPlannerMethods[m].title, .ink = kPlannerMethods[m].ink, .is_dashed = false, .points = {}};
     for (std::size_t i = 0; i < kShown; ++i) {
       const std::vector<double>& history = all[m].route.history;
-      const double excess = i < history.size() ? 100.0 * (history[i] / all[kAstar].route.length - 1.0) : kNoPlannerFigure;
+      const double excess = i < history.size() ? 100.0 * (history[i] / all[kAstar].route.length - 1.0) : kNoPlannerMetric;
       if (excess <= kMost) curve.points.emplace_back(static_cast<double>(i + 1), excess);
     }
     plot.curves.push_back(std::move(curve));
@@ -180,16 +180,21 @@ std::vector<report::Section> illustrate_planners(const std::vector<PlannerWorld>
 studies::Study planner_study() {
   std::vector<PlannerWorld> worlds = planner_worlds();
   studies::Study study{.name = "planners",
-              .title = "Planners of routes: ants of [Li22] and the others",
-              .source = "[Li22], figures 1 to 4, which carry no numbers that can be read",
-              .conditions = "Every seed draws each grid anew, or the ends on a world's map (its surfaces at the lidar's height in cells of 0.2 m, inflated by its robot's footprint). "
-                            "Eight neighbours, no corner cut; lengths in cells. Ants: 80 in 200 iterations; swarms: two of 40 in 200; Q-learning: 5000 episodes; none beyond 50 million "
-                            "steps. The improved ants are the paper's, whose routes are pulled tight before they count (ours). Over any-angle: than the shortest way there is, which touches corners. Default settings throughout, chosen on generated grids of other seeds. A planner that is improved later and one that is done at once both need few iterations to "
-                            "1 % of their own final value: iterations to A*'s length and 3 %, over the seeds that get there, tell them apart. Q-learning and swarms are of the kinds that the paper "
-                            "compares with; their papers are not known to us.",
+              .title = "Global planners compared with the ant colony of [Li22]",
+              .source = "[Li22], figures 1 to 4 (no readable values)",
+              .conditions = "Every seed generates new grids, or new start and goal positions on the map of a world (its surfaces "
+                            "at the height of the lidar in cells of 0.2 m, inflated by the footprint of its robot). Eight "
+                            "neighbors, no corner cutting; lengths in cells. Ant colonies: 80 ants, 200 iterations; dual swarm: "
+                            "two swarms of 40, 200 iterations; Q-learning: 5000 episodes; at most 50 million steps each. Improved "
+                            "ant colony: that of [Li22], with paths shortened before they are compared (this work). Over "
+                            "any-angle: excess over the shortest any-angle path, which touches corners. Default settings, chosen "
+                            "on generated grids of other seeds. A planner that improves late and one that converges at once both "
+                            "need few iterations to 1 % of their own final value. The iterations to 3 % above A* distinguish "
+                            "them, over the seeds that reach it. Q-learning and dual swarms are of the kinds that [Li22] compares "
+                            "with; their sources were not available.",
               .default_seeds = 30,
-              .compared_with = "the improved ants",
-              .figures = kPlannerFigures};
+              .compared_with = "the improved ant colony",
+              .metrics = kPlannerMetrics};
   for (const PlannerWorld& world : worlds) {
     const std::size_t reference = study.variants.size();
     for (const PlannerMethod& method : kPlannerMethods) study.variants.push_back({.world = world.name, .method = method.title, .particles = 0, .reference = reference});

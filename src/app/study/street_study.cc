@@ -15,7 +15,7 @@
 namespace patrol::app {
 namespace {
 
-constexpr double kNoStreetFigure = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoStreetMetric = std::numeric_limits<double>::quiet_NaN();
 constexpr int kSwarmParticles = 30;
 constexpr const char* kScenario = "worlds/street/scenarios/patrol.yaml";
 
@@ -33,16 +33,16 @@ const std::vector<GridMethod> kStreetMethods = {{.name = "FastSLAM", .particles 
                                           {.name = "SCSO", .particles = kSwarmParticles, .proposal = "motion", .optimizer = "scso"},
                                           {.name = "ISCSO", .particles = kSwarmParticles, .proposal = "motion", .optimizer = "iscso", .published = {0.92, 1.17, 1.18}},
                                           {.name = "IFA", .particles = kSwarmParticles, .proposal = "motion", .optimizer = "ifa"},
-                                          {.name = "scan matching (ours)", .particles = 8, .proposal = "scan_match", .optimizer = "none"},
-                                          {.name = "pose graph (ours, the default)", .particles = 1, .proposal = "scan_match", .optimizer = "none", .mapping = "graph"}};
+                                          {.name = "scan matching (this work)", .particles = 8, .proposal = "scan_match", .optimizer = "none"},
+                                          {.name = "pose graph (this work, default)", .particles = 1, .proposal = "scan_match", .optimizer = "none", .mapping = "graph"}};
 
-const std::vector<studies::StudyFigure> kStreetFigures = {{.name = "box 1", .unit = "m", .is_compared = true},
+const std::vector<studies::StudyMetric> kStreetMetrics = {{.name = "box 1", .unit = "m", .is_compared = true},
                                            {.name = "box 2", .unit = "m", .is_compared = true},
                                            {.name = "well 3", .unit = "m", .is_compared = true},
                                            {.name = "map to nearest surface", .unit = "m"},
                                            {.name = "pose RMSE", .unit = "m"},
-                                           {.name = "time", .unit = "s", .is_of_the_clock = true},
-                                           {.name = "memory", .unit = "MB", .is_of_the_clock = true}};
+                                           {.name = "time", .unit = "s", .is_processor_time = true},
+                                           {.name = "memory", .unit = "MB", .is_processor_time = true}};
 
 struct Mapped {
   Trajectory T_map_body;
@@ -64,16 +64,16 @@ Mapped map_by(const GridMethod& method, const StudyRun& patrol) {
 
 std::vector<double> flatten_metrics(const Mapped& mapped, const StudyRun& patrol) {
   const Pose2 T_world_map = score::align_at_start(mapped.T_map_body, patrol.record.T_world_body);
-  std::vector<double> figures;
+  std::vector<double> metrics;
   for (const score::StationError& station : score::station_errors(patrol.files.route, patrol.record.events, T_world_map, patrol.record.T_world_body, mapped.map, patrol.truth.reference)) {
-    figures.push_back(station.map_error_m.value_or(kNoStreetFigure));
+    metrics.push_back(station.map_error_m.value_or(kNoStreetMetric));
   }
-  figures.resize(3, kNoStreetFigure);
-  figures.push_back(score::map_error(mapped.map, T_world_map, patrol.truth.reference).nearest_mean_m);
-  figures.push_back(score::trajectory_error(mapped.T_map_body, T_world_map, patrol.record.T_world_body).ate_rmse_m);
-  figures.push_back(mapped.seconds);
-  figures.push_back(mapped.memory_mb);
-  return figures;
+  metrics.resize(3, kNoStreetMetric);
+  metrics.push_back(score::map_error(mapped.map, T_world_map, patrol.truth.reference).nearest_mean_m);
+  metrics.push_back(score::trajectory_error(mapped.T_map_body, T_world_map, patrol.record.T_world_body).ate_rmse_m);
+  metrics.push_back(mapped.seconds);
+  metrics.push_back(mapped.memory_mb);
+  return metrics;
 }
 
 studies::StudySample run_street(std::uint64_t seed) {
@@ -91,7 +91,7 @@ std::vector<report::Section> illustrate_street(std::uint64_t seed) {
   std::vector<report::Section> sections;
   for (const GridMethod& method : kStreetMethods) {
     const Mapped mapped = map_by(method, patrol);
-    sections.push_back({method.name, {mapped_block(mapped.map, mapped.T_map_body, patrol)}});
+    sections.push_back({method.name, {map_error_block(mapped.map, mapped.T_map_body, patrol)}});
   }
   return sections;
 }
@@ -100,13 +100,14 @@ std::vector<report::Section> illustrate_street(std::uint64_t seed) {
 
 studies::Study street_study() {
   studies::Study study{.name = "street-map",
-              .title = "The street, mapped with one proposal or another",
+              .title = "Mapping of the street with different proposals",
               .source = "[Wu25], table 2",
-              .conditions = "Each seed is one patrol in the twin (worlds/street/scenarios/patrol.yaml); its log is then mapped by every method, so that all hear the same. The paper's figures "
-                            "are of its own street, quadruped and lidar, and of one walk. box 1, box 2, well 3: how far the built map has the place from where it is.",
+              .conditions = "Each seed is one simulated patrol (worlds/street/scenarios/patrol.yaml), whose log is mapped by all "
+                            "methods. The published values are of another street, quadruped and lidar, and of one run. box 1, "
+                            "box 2, well 3: position error of the object in the built map.",
               .default_seeds = 5,
               .compared_with = "FastSLAM"};
-  study.figures = kStreetFigures;
+  study.metrics = kStreetMetrics;
   for (const GridMethod& method : kStreetMethods) {
     study.variants.push_back({.world = "street", .method = method.name, .particles = method.particles, .reference = 0, .published = method.published});
   }

@@ -25,15 +25,15 @@ StudyRun run_for_study(const std::string& scenario, const std::vector<std::strin
   all.push_back(fmt::format("seed={}", seed));
   StudyRun run{.scenario = load_scenario(root / scenario, all), .files = {}, .log = {}, .record = {}, .truth = {}};
   run.files = load_scenario_files(run.scenario, root);
-  Unobserved nobody;
-  run_once(run.scenario, "study", root, folder, nobody);
+  NullObserver observer;
+  run_once(run.scenario, "study", root, folder, observer);
   run.log = RunDirectory{folder}.log();
   run.record = read_run_record(run.log);
   run.truth = true_map(run.record, run.scenario, run.files);
   return run;
 }
 
-report::MapBlock mapped_block(const OccupancyGrid& map, const Trajectory& T_map_body, const StudyRun& run) {
+report::MapBlock map_error_block(const OccupancyGrid& map, const Trajectory& T_map_body, const StudyRun& run) {
   const Pose2 T_world_map = score::align_at_start(T_map_body, run.record.T_world_body);
   const std::vector<report::MapPath> paths = {{"true path", report::SeriesColor::kTruth, {positions_of(run.record.T_world_body, {})}},
                                               {"estimated path", report::SeriesColor::kEstimate, {positions_of(T_map_body, T_world_map)}}};

@@ -26,6 +26,6 @@ struct StudyRun {
 StudyRun run_for_study(const std::string& scenario, const std::vector<std::string>& overrides, std::uint64_t seed, const std::filesystem::path& folder);
 
 /// Map built from a run's log, colored by its errors, with estimated and true path.
-report::MapBlock mapped_block(const OccupancyGrid& map, const Trajectory& T_map_body, const StudyRun& run);
+report::MapBlock map_error_block(const OccupancyGrid& map, const Trajectory& T_map_body, const StudyRun& run);
 
 }  // namespace patrol::app

@@ -27,10 +27,10 @@ constexpr std::array<std::pair<const char*, studies::Study (*)()>, 8> kStudies =
 }  // namespace
 
 studies::Study make_study(const std::string& name) {
-  for (const auto& [known, make] : kStudies) {
-    if (name == known) return make();
+  for (const auto& [study_name, make] : kStudies) {
+    if (name == study_name) return make();
   }
-  throw InputError(fmt::format("there is no study '{}' (known: {})", name, fmt::join(study_names(), ", ")));
+  throw InputError(fmt::format("unknown study '{}' (known: {})", name, fmt::join(study_names(), ", ")));
 }
 
 std::vector<std::string> study_names() {

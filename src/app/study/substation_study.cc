@@ -29,10 +29,10 @@ constexpr double kMinute_s = 60.0, kGigabyte_mb = 1000.0;
 
 const std::vector<LogMethod> kSubstationMethods = {
     {.name = "improved RBPF (submap_rbpf)", .method = "submap_rbpf", .published = {0.1522, std::log10(0.1522), 0.0707, {}, {}, {}, {}, {}, 43.93 * kMinute_s, 0.9 * kGigabyte_mb}, .ink = report::SeriesColor::kEstimate},
-    {.name = "Cartographer's class (graph)", .method = "graph", .published = {0.3491, std::log10(0.3491), {}, {}, {}, {}, {}, {}, 51.35 * kMinute_s, 1.3 * kGigabyte_mb}, .ink = report::SeriesColor::kRanges},
+    {.name = "pose graph (graph)", .method = "graph", .published = {0.3491, std::log10(0.3491), {}, {}, {}, {}, {}, {}, 51.35 * kMinute_s, 1.3 * kGigabyte_mb}, .ink = report::SeriesColor::kRanges},
     {.name = "plain RBPF (rbpf)", .method = "rbpf", .published = {2.7605, std::log10(2.7605), {}, {}, {}, {}, {}, {}, 21.01 * kMinute_s, 1.4 * kGigabyte_mb}, .ink = report::SeriesColor::kOdometry}};
 
-const std::vector<studies::StudyFigure> kSubstationFigures = {{.name = "map to nearest surface", .unit = "m", .is_compared = true},
+const std::vector<studies::StudyMetric> kSubstationMetrics = {{.name = "map to nearest surface", .unit = "m", .is_compared = true},
                                            {.name = "its logarithm to base 10", .unit = "", .is_compared = true},
                                            {.name = "variance of that", .unit = "m^2", .is_compared = true},
                                            {.name = "95 % of it below", .unit = "m"},
@@ -40,8 +40,8 @@ const std::vector<studies::StudyFigure> kSubstationFigures = {{.name = "map to n
                                            {.name = "loop closures", .unit = ""},
                                            {.name = "loop precision", .unit = ""},
                                            {.name = "loop recall", .unit = ""},
-                                           {.name = "time", .unit = "s", .is_compared = true, .is_of_the_clock = true},
-                                           {.name = "memory", .unit = "MB", .is_compared = true, .is_of_the_clock = true}};
+                                           {.name = "time", .unit = "s", .is_compared = true, .is_processor_time = true},
+                                           {.name = "memory", .unit = "MB", .is_compared = true, .is_processor_time = true}};
 
 StudyRun drive(const char* scenario, std::uint64_t seed, const TemporaryFolder& folder) { return run_for_study(scenario, kWithoutOwnMapping, seed, folder.path()); }
 
@@ -95,9 +95,9 @@ std::vector<report::Section> illustrate_patrol(std::uint64_t seed) {
   constexpr std::size_t kPoints = 401;
   const TemporaryFolder folder(fmt::format("study-{}", seed));
   const StudyRun run = drive(kPatrol, seed, folder);
-  report::LinePlot curves{.title = fmt::format("Every map point's distance to the true map, sorted, seed {}", seed), .unit = "m", .axis = {.label = "% of the points", .max = 100.0},
+  report::LinePlot curves{.title = fmt::format("Distance of the map points to the true surfaces, sorted, seed {}", seed), .unit = "m", .axis = {.label = "% of the points", .max = 100.0},
                           .max = {}, .curves = {}, .marks = {}, .spans = {}};
-  report::BoxPlot boxes{.caption = "The same, as boxes", .unit = "m", .boxes = {}};
+  report::BoxPlot boxes{.caption = "Distance of the map points to the true surfaces", .unit = "m", .boxes = {}};
   std::vector<report::Section> maps;
   for (const LogMethod& method : kSubstationMethods) {
     const MappedRun mapped = map_log_of(run, method.method);
@@ -106,7 +106,7 @@ std::vector<report::Section> illustrate_patrol(std::uint64_t seed) {
     for (std::size_t i = 0; i < errors.size(); ++i) curve.points.emplace_back(100.0 * static_cast<double>(i) / (kPoints - 1), errors[i]);
     curves.curves.push_back(std::move(curve));
     boxes.boxes.push_back(report::box_of(method.name, errors, {.factor = 1.0, .name = "m"}));
-    maps.push_back({method.name, {mapped_block(mapped.map, mapped.T_map_body, run)}});
+    maps.push_back({method.name, {map_error_block(mapped.map, mapped.T_map_body, run)}});
   }
   std::vector<report::Section> sections = {{"Errors of the map's points (figure 6)", {curves, boxes}}};
   for (report::Section& map : maps) sections.push_back(std::move(map));
@@ -132,7 +132,7 @@ std::vector<report::Section> illustrate_row(std::uint64_t seed) {
   std::vector<report::Section> maps;
   for (const LogMethod& method : kSubstationMethods) {
     const MappedRun mapped = map_log_of(run, method.method);
-    maps.push_back({method.name, {mapped_block(mapped.map, mapped.T_map_body, run)}});
+    maps.push_back({method.name, {map_error_block(mapped.map, mapped.T_map_body, run)}});
   }
   return maps;
 }
@@ -141,15 +141,18 @@ std::vector<report::Section> illustrate_row(std::uint64_t seed) {
 
 studies::Study substation_study() {
   studies::Study study{.name = "substation",
-              .title = "The substation, mapped from the same logs by three methods",
+              .title = "Mapping of the substation with three methods",
               .source = "[Yu23], tables 1 and 2, figure 6",
-              .conditions = "Each seed is one patrol of 923 m in the twin (worlds/substation/scenarios/mapping.yaml, the paper's lidar); its log is then mapped by every method with its default "
-                            "settings. What the plain filter makes of it differs tenfold from seed to seed: so factors, that is logarithms, are compared too. Distances are from every occupied cell of the built map to the nearest surface of the true one, map and world joined at the start. The paper's figures "
-                            "are of its own substation, robot and machine, and of one drive of 964 m; its memory is the program's, ours the heap's. Closures are right within 0.3 m and 0.05 rad; "
-                            "recall: of the graph's nodes that came back within 5 m of an older one, those with a right closure.",
+              .conditions = "Each seed is one simulated patrol of 923 m (worlds/substation/scenarios/mapping.yaml, lidar of "
+                            "[Yu23]), whose log is mapped by all methods with their default settings. The error of the plain "
+                            "filter varies tenfold between seeds, so that logarithms are compared too. Distances: from every "
+                            "occupied cell of the built map to the nearest surface, map and world aligned at the start. The "
+                            "published values are of another substation, robot and computer, and of one drive of 964 m; the "
+                            "published memory is that of the process, here that of the heap. A loop closure is right within 0.3 m "
+                            "and 0.05 rad. Recall: fraction of the nodes within 5 m of an older node that have a right closure.",
               .default_seeds = 5,
               .compared_with = "plain RBPF"};
-  study.figures = kSubstationFigures;
+  study.metrics = kSubstationMetrics;
   for (const LogMethod& method : kSubstationMethods) {
     study.variants.push_back({.world = "substation", .method = method.name, .particles = 0, .reference = kSubstationMethods.size() - 1, .published = method.published});
   }
@@ -160,13 +163,14 @@ studies::Study substation_study() {
 
 studies::Study row_study() {
   studies::Study study{.name = "substation-row",
-              .title = "Past six identical bays, once: no closure may lead from one to another",
-              .source = "no paper: a trial of the closures of loops",
-              .conditions = "Each seed is one drive along the bays (worlds/substation/scenarios/row.yaml), which comes back nowhere. Closures between places that truly see the same are right within "
-                            "0.3 m and 0.05 rad; bays are 15 m apart.",
+              .title = "False loop closures among six identical bays",
+              .source = "no publication; test of loop closures",
+              .conditions = "Each seed is one drive along the bays (worlds/substation/scenarios/row.yaml) without revisits. A "
+                            "closure between poses that observe the same surfaces is right within 0.3 m and 0.05 rad; the bays "
+                            "are 15 m apart.",
               .default_seeds = 10,
               .compared_with = "plain RBPF"};
-  study.figures = {{.name = "false closures", .unit = ""}, {.name = "right closures", .unit = ""}, {.name = "pose RMSE", .unit = "m", .is_compared = true}};
+  study.metrics = {{.name = "false closures", .unit = ""}, {.name = "right closures", .unit = ""}, {.name = "pose RMSE", .unit = "m", .is_compared = true}};
   for (const LogMethod& method : kSubstationMethods) study.variants.push_back({.world = "row", .method = method.name, .particles = 0, .reference = kSubstationMethods.size() - 1});
   study.run = map_row;
   study.illustrate = illustrate_row;

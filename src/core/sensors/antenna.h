@@ -54,7 +54,7 @@ struct SensorTraits<AntennaState> {
                                       .topic = "/tem/antenna",
                                       .ros_type = "patrol_msgs/msg/AntennaState",
                                       .summary = "servos of the antenna mount",
-                                      .fault_matrix_exclusion_reason = "used only to sound for water, beyond the fault window of the matrix"};
+                                      .fault_matrix_exclusion_reason = "used only for TEM soundings, outside the fault window of the matrix"};
 
   static void add_to_reading(AntennaState& antenna, double offset_rad) { antenna.yaw_rad += offset_rad; }
 };

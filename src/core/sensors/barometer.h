@@ -25,11 +25,11 @@ struct BarometerSettings {
   double sea_level_pa = 101325.0;        ///< pressure at sea level
   double sea_level_temperature_c = 15.0; ///< air temperature at sea level
   double origin_altitude_m = 0.0;        ///< altitude of the world's origin above sea level
-  double noise_pa = 0.02;                ///< standard deviation of the noise, Pa
-  double offset_pa = 25.0;               ///< standard deviation, over sensors, of the constant offset, Pa
-  double drift_pa = 1.5;                 ///< standard deviation of the drift, a Gauss-Markov process, Pa
-  double drift_time_s = 600.0;           ///< correlation time of the drift
-  double temperature_coefficient_pa_per_k = 0.3;  ///< standard deviation, over sensors, of the change of the offset per
+  double noise_std_pa = 0.02;                ///< standard deviation of the noise, Pa
+  double offset_std_pa = 25.0;               ///< standard deviation, over sensors, of the constant offset, Pa
+  double drift_std_pa = 1.5;                 ///< standard deviation of the drift, a Gauss-Markov process, Pa
+  double drift_correlation_time_s = 600.0;           ///< correlation time of the drift
+  double temperature_coefficient_std_pa_per_k = 0.3;  ///< standard deviation, over sensors, of the change of the offset per
                                                   ///< kelvin
   double warming_k = 8.0;                ///< final rise of the sensor's temperature above that at power-up
   double warming_time_s = 300.0;         ///< time constant of the warming
@@ -43,11 +43,11 @@ struct BarometerSettings {
     visit("sea_level_pa", self.sea_level_pa, between(80000.0, 110000.0));
     visit("sea_level_temperature_c", self.sea_level_temperature_c, between(-60.0, 60.0));
     visit("origin_altitude_m", self.origin_altitude_m, between(-500.0, 9000.0));
-    visit("noise_pa", self.noise_pa, between(0.0, 1000.0));
-    visit("offset_pa", self.offset_pa, between(0.0, 10000.0));
-    visit("drift_pa", self.drift_pa, between(0.0, 1000.0));
-    visit("drift_time_s", self.drift_time_s, between(0.1, 1e6));
-    visit("temperature_coefficient_pa_per_k", self.temperature_coefficient_pa_per_k, between(0.0, 100.0));
+    visit("noise_std_pa", self.noise_std_pa, between(0.0, 1000.0));
+    visit("offset_std_pa", self.offset_std_pa, between(0.0, 10000.0));
+    visit("drift_std_pa", self.drift_std_pa, between(0.0, 1000.0));
+    visit("drift_correlation_time_s", self.drift_correlation_time_s, between(0.1, 1e6));
+    visit("temperature_coefficient_std_pa_per_k", self.temperature_coefficient_std_pa_per_k, between(0.0, 100.0));
     visit("warming_k", self.warming_k, between(0.0, 60.0));
     visit("warming_time_s", self.warming_time_s, between(0.1, 1e5));
     visit("resolution_pa", self.resolution_pa, between(0.0, 100.0));
@@ -66,7 +66,7 @@ struct SensorTraits<FluidPressure> {
                                       .ros_type = "sensor_msgs/msg/FluidPressure",
                                       .summary = "barometer",
                                       .timeout = SensorTimeout::kInstrument,
-                                      .fault = {.unit = "Pa", .drift_per_s = 5.0, .spike = 200.0}};
+                                      .fault = {.unit = "Pa", .drift_per_s = 5.0, .outlier = 200.0}};
 
   static void add_to_reading(FluidPressure& reading, double offset_pa) { reading.pressure_pa += offset_pa; }
   static std::vector<ErrorSource> error_sources() {

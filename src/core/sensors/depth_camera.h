@@ -34,15 +34,15 @@ struct DepthCameraSettings {
   double fov_deg = 70.0;           ///< horizontal field of view; pixels are square
   double range_min_m = 0.3;        ///< minimum depth along the optical axis
   double range_max_m = 8.0;
-  double depth_noise_per_m = 0.0026;  ///< standard deviation of the depth, divided by the squared depth
+  double depth_noise_std_per_m = 0.0026;  ///< standard deviation of the depth, divided by the squared depth
   double baseline_m = 0.05;        ///< distance between the left and the right imager; pixels occluded in the right
                                    ///< imager have no depth
-  double edge_step = 0.15;         ///< edge threshold: second difference of the inverse depth between pixels, relative
+  double edge_threshold = 0.15;         ///< edge threshold: second difference of the inverse depth between pixels, relative
                                    ///< to the inverse depth
-  double edge_loss = 0.5;          ///< dropout probability of pixels at edges
-  double dropout = 0.01;           ///< dropout probability of any pixel
-  double grazing_deg = 85.0;       ///< maximum angle of incidence; pixels beyond it are lost
-  double dark_range_m = 6.0;       ///< maximum range on a surface of 10 % reflectivity at normal incidence
+  double edge_dropout_probability = 0.5;          ///< dropout probability of pixels at edges
+  double dropout_probability = 0.01;           ///< dropout probability of any pixel
+  double max_incidence_deg = 85.0;       ///< maximum angle of incidence; pixels beyond it are lost
+  double max_range_10pct_m = 6.0;       ///< maximum range on a surface of 10 % reflectivity at normal incidence
   double latency_s = 0.05;
 
   template <typename Self, typename Visitor>
@@ -54,13 +54,13 @@ struct DepthCameraSettings {
     visit("fov_deg", self.fov_deg, between(5.0, 150.0));
     visit("range_min_m", self.range_min_m, between(0.05, 10.0));
     visit("range_max_m", self.range_max_m, between(0.1, 60.0));
-    visit("depth_noise_per_m", self.depth_noise_per_m, between(0.0, 1.0));
+    visit("depth_noise_std_per_m", self.depth_noise_std_per_m, between(0.0, 1.0));
     visit("baseline_m", self.baseline_m, between(0.0, 1.0));
-    visit("edge_step", self.edge_step, at_least(0.001));
-    visit("edge_loss", self.edge_loss, between(0.0, 1.0));
-    visit("dropout", self.dropout, between(0.0, 1.0));
-    visit("grazing_deg", self.grazing_deg, between(0.0, 90.0));
-    visit("dark_range_m", self.dark_range_m, at_least(0.01));
+    visit("edge_threshold", self.edge_threshold, at_least(0.001));
+    visit("edge_dropout_probability", self.edge_dropout_probability, between(0.0, 1.0));
+    visit("dropout_probability", self.dropout_probability, between(0.0, 1.0));
+    visit("max_incidence_deg", self.max_incidence_deg, between(0.0, 90.0));
+    visit("max_range_10pct_m", self.max_range_10pct_m, at_least(0.01));
     visit("latency_s", self.latency_s, between(0.0, 10.0));
   }
 };
@@ -76,7 +76,7 @@ struct SensorTraits<DepthImage> {
                                       .ros_type = "patrol_msgs/msg/DepthImage",
                                       .summary = "infrared stereo depth camera",
                                       .timeout = SensorTimeout::kLidar,
-                                      .fault = {.unit = "m", .drift_per_s = 0.02, .spike = 0.5}};
+                                      .fault = {.unit = "m", .drift_per_s = 0.02, .outlier = 0.5}};
 
   static void add_to_reading(DepthImage& image, double offset_m) {
     for (std::uint16_t& depth_mm : image.depth_mm) {

@@ -18,8 +18,8 @@ struct FootContacts {
 struct FootContactSettings {
   bool enabled = true;
   double rate_hz = 250.0;      ///< message rate; the firmware reads the sensor at every tick
-  double noise_n = 1.0;        ///< standard deviation of the noise
-  double offset_n = 1.0;       ///< standard deviation of the offset
+  double noise_std_n = 1.0;        ///< standard deviation of the noise
+  double offset_std_n = 1.0;       ///< standard deviation of the offset
   double resolution_n = 0.5;
   double range_n = 500.0;
   double latency_s = 0.0;
@@ -28,8 +28,8 @@ struct FootContactSettings {
   static void fields(Self& self, Visitor& visit) {
     visit("enabled", self.enabled);
     visit("rate_hz", self.rate_hz, between(1.0, 500.0));
-    visit("noise_n", self.noise_n, at_least(0.0));
-    visit("offset_n", self.offset_n, at_least(0.0));
+    visit("noise_std_n", self.noise_std_n, at_least(0.0));
+    visit("offset_std_n", self.offset_std_n, at_least(0.0));
     visit("resolution_n", self.resolution_n, at_least(0.0));
     visit("range_n", self.range_n, at_least(1.0));
     visit("latency_s", self.latency_s, between(0.0, 10.0));
@@ -49,7 +49,7 @@ struct SensorTraits<FootContacts> {
                                       .timeout = SensorTimeout::kMotion,
                                       .freeze_check = FreezeCheck::kCommand,
                                       .is_read_by_firmware = true,
-                                      .fault = {.unit = "N", .drift_per_s = 10.0, .spike = 100.0}};
+                                      .fault = {.unit = "N", .drift_per_s = 10.0, .outlier = 100.0}};
 
   /// Adds to the main reading, the force on the first foot.
   static void add_to_reading(FootContacts& contacts, double offset_n) {

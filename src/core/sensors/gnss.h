@@ -26,12 +26,12 @@ struct GnssFix {
 struct GnssSettings {
   bool enabled = true;
   double rate_hz = 5.0;
-  double fix_noise_m = 0.01;       ///< horizontal standard deviation; the vertical one is twice as large
-  double float_noise_m = 0.4;
-  double error_time_s = 20.0;      ///< correlation time of the position error
-  double fix_sky = 0.75;           ///< minimum fraction of visible sky for a fixed solution
-  double float_sky = 0.45;         ///< minimum fraction of visible sky for a float solution
-  double fix_delay_s = 5.0;        ///< time under open sky before a fixed solution returns
+  double fix_noise_std_m = 0.01;       ///< horizontal standard deviation; the vertical one is twice as large
+  double float_noise_std_m = 0.4;
+  double error_correlation_time_s = 20.0;      ///< correlation time of the position error
+  double min_open_sky_fix = 0.75;           ///< minimum fraction of visible sky for a fixed solution
+  double min_open_sky_float = 0.45;         ///< minimum fraction of visible sky for a float solution
+  double fix_reacquisition_time_s = 5.0;        ///< time under open sky before a fixed solution returns
   double datum_latitude_deg = 29.21;    ///< WGS 84 latitude of the world's origin
   double datum_longitude_deg = 119.46;
   double latency_s = 0.1;
@@ -40,12 +40,12 @@ struct GnssSettings {
   static void fields(Self& self, Visitor& visit) {
     visit("enabled", self.enabled);
     visit("rate_hz", self.rate_hz, between(0.1, 50.0));
-    visit("fix_noise_m", self.fix_noise_m, at_least(0.0));
-    visit("float_noise_m", self.float_noise_m, at_least(0.0));
-    visit("error_time_s", self.error_time_s, at_least(0.1));
-    visit("fix_sky", self.fix_sky, between(0.0, 1.0));
-    visit("float_sky", self.float_sky, between(0.0, 1.0));
-    visit("fix_delay_s", self.fix_delay_s, at_least(0.0));
+    visit("fix_noise_std_m", self.fix_noise_std_m, at_least(0.0));
+    visit("float_noise_std_m", self.float_noise_std_m, at_least(0.0));
+    visit("error_correlation_time_s", self.error_correlation_time_s, at_least(0.1));
+    visit("min_open_sky_fix", self.min_open_sky_fix, between(0.0, 1.0));
+    visit("min_open_sky_float", self.min_open_sky_float, between(0.0, 1.0));
+    visit("fix_reacquisition_time_s", self.fix_reacquisition_time_s, at_least(0.0));
     visit("datum_latitude_deg", self.datum_latitude_deg, between(-85.0, 85.0));
     visit("datum_longitude_deg", self.datum_longitude_deg, between(-180.0, 180.0));
     visit("latency_s", self.latency_s, between(0.0, 10.0));
@@ -63,7 +63,7 @@ struct SensorTraits<GnssFix> {
                                       .ros_type = "sensor_msgs/msg/NavSatFix",
                                       .summary = "RTK GNSS receiver",
                                       .timeout = SensorTimeout::kInstrument,
-                                      .fault = {.unit = "m", .drift_per_s = 0.2, .spike = 5.0}};
+                                      .fault = {.unit = "m", .drift_per_s = 0.2, .outlier = 5.0}};
 
   /// Adds to the main reading, the altitude.
   static void add_to_reading(GnssFix& fix, double offset_m) { fix.altitude_m += offset_m; }

@@ -23,21 +23,21 @@ struct TrackTicks {
 struct HallSettings {
   bool enabled = true;
   double rate_hz = 50.0;                ///< message rate; the firmware reads the sensor at every tick
-  int ticks_per_motor_turn = 24;
+  int counts_per_motor_revolution = 24;
   double gear_ratio = 30.0;             ///< motor revolutions per sprocket revolution
-  double missed_tick_probability = 0.0; ///< probability that an edge is not counted
+  double missed_edge_probability = 0.0; ///< probability that an edge is not counted
   double latency_s = 0.0;
 
   /// Returns the counts per radian of the sprocket.
-  double ticks_per_rad() const { return ticks_per_motor_turn * gear_ratio / (2.0 * std::numbers::pi); }
+  double ticks_per_rad() const { return counts_per_motor_revolution * gear_ratio / (2.0 * std::numbers::pi); }
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("enabled", self.enabled);
     visit("rate_hz", self.rate_hz, between(1.0, 500.0));
-    visit("ticks_per_motor_turn", self.ticks_per_motor_turn, between(1, 10000));
+    visit("counts_per_motor_revolution", self.counts_per_motor_revolution, between(1, 10000));
     visit("gear_ratio", self.gear_ratio, between(1.0, 1000.0));
-    visit("missed_tick_probability", self.missed_tick_probability, between(0.0, 1.0));
+    visit("missed_edge_probability", self.missed_edge_probability, between(0.0, 1.0));
     visit("latency_s", self.latency_s, between(0.0, 10.0));
   }
 };
@@ -56,7 +56,7 @@ struct SensorTraits<TrackTicks> {
                                       .freeze_check = FreezeCheck::kCommand,
                                       .is_required_to_drive = true,
                                       .is_read_by_firmware = true,
-                                      .fault = {.unit = "counts", .drift_per_s = 50.0, .spike = 500.0}};
+                                      .fault = {.unit = "counts", .drift_per_s = 50.0, .outlier = 500.0}};
 
   /// Adds to the main reading, the count of the left track.
   static void add_to_reading(TrackTicks& ticks, double offset_counts) { ticks.left += std::llround(offset_counts); }
@@ -65,7 +65,7 @@ struct SensorTraits<TrackTicks> {
   }
   static bool is_fitted(const RobotDescription& robot) { return robot.tracks.has_value(); }
   static std::vector<ErrorSource> error_sources() {
-    return {{"Hall ticks: missed", {"sensors.hall.missed_tick_probability=0"}}};
+    return {{"Hall counters: missed edges", {"sensors.hall.missed_tick_probability=0"}}};
   }
 };
 

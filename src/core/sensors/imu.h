@@ -19,14 +19,14 @@ struct Imu {
 struct ImuSettings {
   bool enabled = true;
   double rate_hz = 250.0;                         ///< message rate; the firmware reads the sensor at every tick
-  double gyro_noise_radps_rthz = 2.3e-4;          ///< angle random walk, 0.66 deg/sqrt(h) plus vibration
-  double gyro_bias_radps = 0.002;                 ///< standard deviation of the constant bias
-  double gyro_bias_walk_radps2_rthz = 1.0e-5;     ///< rate random walk
-  double accel_noise_mps2_rthz = 0.002;
-  double accel_bias_mps2 = 0.03;
-  double accel_bias_walk_mps3_rthz = 1.0e-4;
-  double scale_error = 0.001;                     ///< standard deviation of the scale factor of each axis
-  double misalignment_deg = 0.05;                 ///< standard deviation of the misalignment of each axis
+  double gyro_noise_density_radps_per_sqrt_hz = 2.3e-4;          ///< angle random walk, 0.66 deg/sqrt(h) plus vibration
+  double gyro_bias_std_radps = 0.002;                 ///< standard deviation of the constant bias
+  double gyro_bias_random_walk_radps_per_sqrt_s = 1.0e-5;     ///< rate random walk
+  double accel_noise_density_mps2_per_sqrt_hz = 0.002;
+  double accel_bias_std_mps2 = 0.03;
+  double accel_bias_random_walk_mps2_per_sqrt_s = 1.0e-4;
+  double scale_error_std = 0.001;                     ///< standard deviation of the scale factor of each axis
+  double misalignment_std_deg = 0.05;                 ///< standard deviation of the misalignment of each axis
   double gyro_range_radps = 17.4;
   double accel_range_mps2 = 176.0;
   double gyro_resolution_radps = 7.0e-4;
@@ -37,14 +37,14 @@ struct ImuSettings {
   static void fields(Self& self, Visitor& visit) {
     visit("enabled", self.enabled);
     visit("rate_hz", self.rate_hz, between(1.0, 500.0));
-    visit("gyro_noise_radps_rthz", self.gyro_noise_radps_rthz, at_least(0.0));
-    visit("gyro_bias_radps", self.gyro_bias_radps, at_least(0.0));
-    visit("gyro_bias_walk_radps2_rthz", self.gyro_bias_walk_radps2_rthz, at_least(0.0));
-    visit("accel_noise_mps2_rthz", self.accel_noise_mps2_rthz, at_least(0.0));
-    visit("accel_bias_mps2", self.accel_bias_mps2, at_least(0.0));
-    visit("accel_bias_walk_mps3_rthz", self.accel_bias_walk_mps3_rthz, at_least(0.0));
-    visit("scale_error", self.scale_error, between(0.0, 0.5));
-    visit("misalignment_deg", self.misalignment_deg, between(0.0, 10.0));
+    visit("gyro_noise_density_radps_per_sqrt_hz", self.gyro_noise_density_radps_per_sqrt_hz, at_least(0.0));
+    visit("gyro_bias_std_radps", self.gyro_bias_std_radps, at_least(0.0));
+    visit("gyro_bias_random_walk_radps_per_sqrt_s", self.gyro_bias_random_walk_radps_per_sqrt_s, at_least(0.0));
+    visit("accel_noise_density_mps2_per_sqrt_hz", self.accel_noise_density_mps2_per_sqrt_hz, at_least(0.0));
+    visit("accel_bias_std_mps2", self.accel_bias_std_mps2, at_least(0.0));
+    visit("accel_bias_random_walk_mps2_per_sqrt_s", self.accel_bias_random_walk_mps2_per_sqrt_s, at_least(0.0));
+    visit("scale_error_std", self.scale_error_std, between(0.0, 0.5));
+    visit("misalignment_std_deg", self.misalignment_std_deg, between(0.0, 10.0));
     visit("gyro_range_radps", self.gyro_range_radps, at_least(0.1));
     visit("accel_range_mps2", self.accel_range_mps2, at_least(1.0));
     visit("gyro_resolution_radps", self.gyro_resolution_radps, at_least(0.0));
@@ -62,11 +62,11 @@ struct SensorTraits<Imu> {
   static constexpr SensorInfo kInfo = {.name = "imu",
                                       .topic = "/imu/data",
                                       .ros_type = "sensor_msgs/msg/Imu",
-                                      .summary = "inertial measuring unit",
+                                      .summary = "inertial measurement unit",
                                       .timeout = SensorTimeout::kMotion,
                                       .freeze_check = FreezeCheck::kOdometry,
                                       .is_read_by_firmware = true,
-                                      .fault = {.unit = "rad/s", .drift_per_s = 0.005, .spike = 1.0}};
+                                      .fault = {.unit = "rad/s", .drift_per_s = 0.005, .outlier = 1.0}};
 
   /// Adds to the main reading, the yaw rate.
   static void add_to_reading(Imu& imu, double offset_radps) { imu.angular_velocity_radps.z() += offset_radps; }

@@ -20,16 +20,16 @@ struct JointState {
 struct JointEncoderSettings {
   bool enabled = true;
   double rate_hz = 250.0;          ///< message rate; the firmware reads the sensor at every tick
-  int counts_per_turn = 16384;
-  double speed_filter_s = 0.003;   ///< time constant of the velocity filter on count differences
+  int counts_per_revolution = 16384;
+  double velocity_filter_time_constant_s = 0.003;   ///< time constant of the velocity filter on count differences
   double latency_s = 0.0;
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("enabled", self.enabled);
     visit("rate_hz", self.rate_hz, between(1.0, 500.0));
-    visit("counts_per_turn", self.counts_per_turn, between(16, 1 << 24));
-    visit("speed_filter_s", self.speed_filter_s, between(0.0, 0.1));
+    visit("counts_per_revolution", self.counts_per_revolution, between(16, 1 << 24));
+    visit("velocity_filter_time_constant_s", self.velocity_filter_time_constant_s, between(0.0, 0.1));
     visit("latency_s", self.latency_s, between(0.0, 10.0));
   }
 };
@@ -48,7 +48,7 @@ struct SensorTraits<JointState> {
                                       .freeze_check = FreezeCheck::kCommand,
                                       .is_required_to_drive = true,
                                       .is_read_by_firmware = true,
-                                      .fault = {.unit = "rad", .drift_per_s = 0.01, .spike = 0.3}};
+                                      .fault = {.unit = "rad", .drift_per_s = 0.01, .outlier = 0.3}};
 
   /// Adds to the main reading, the position of the first joint.
   static void add_to_reading(JointState& joints, double offset_rad) {

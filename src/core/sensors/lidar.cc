@@ -9,14 +9,14 @@ LidarSettings LidarSettings::of_preset(const std::string& name, bool enabled) {
   s.preset = name;
   s.enabled = enabled;
   if (name == "utm30lx") {
-    s.rate_hz = 40.0, s.beams = 1081, s.fov_deg = 270.25, s.range_min_m = 0.1, s.range_resolution_m = 0.001;
+    s.rate_hz = 40.0, s.beams = 1081, s.fov_deg = 270.25, s.range_min_m = 0.1, s.range_quantization_m = 0.001;
     s.beam_width_deg = 0.25;
   } else if (name == "tim571") {
-    s.rate_hz = 15.0, s.beams = 811, s.fov_deg = 270.33, s.range_max_m = 25.0, s.dark_range_m = 8.0;
-    s.range_noise_m = 0.01, s.range_resolution_m = 0.001, s.beam_width_deg = 0.33;
+    s.rate_hz = 15.0, s.beams = 811, s.fov_deg = 270.33, s.range_max_m = 25.0, s.max_range_10pct_m = 8.0;
+    s.range_noise_std_m = 0.01, s.range_quantization_m = 0.001, s.beam_width_deg = 0.33;
   } else if (name == "vlp16") {
     s.rate_hz = 10.0, s.beams = 1800, s.rings = 16, s.elevation_min_deg = -15.0, s.elevation_max_deg = 15.0;
-    s.range_min_m = 0.5, s.range_max_m = 100.0, s.range_resolution_m = 0.002, s.dark_range_m = 50.0;
+    s.range_min_m = 0.5, s.range_max_m = 100.0, s.range_quantization_m = 0.002, s.max_range_10pct_m = 50.0;
     s.beam_width_deg = 0.17;
   }
   return s;
@@ -29,15 +29,15 @@ bool SensorTraits<LaserScan>::repeats(const LaserScan& now, const LaserScan& bef
     has_return = true;
     if (now.ranges_m[i] != before.ranges_m[i]) return false;
   }
-  return has_return;  // scans without returns are all alike: an empty field is no fault
+  return has_return;  // scans without returns are identical, which is not a fault
 }
 
 std::vector<ErrorSource> SensorTraits<LaserScan>::error_sources() {
   return {{"lidar: range noise", {"sensors.lidar.range_noise_m=0"}},
-          {"lidar: range steps", {"sensors.lidar.range_resolution_m=0"}},
-          {"lidar: beam direction", {"sensors.lidar.angle_noise_deg=0"}},
+          {"lidar: range quantization", {"sensors.lidar.range_resolution_m=0"}},
+          {"lidar: beam angle", {"sensors.lidar.angle_noise_deg=0"}},
           {"lidar: mixed pixels", {"sensors.lidar.beam_width_deg=0"}},
-          {"lidar: drop-outs", {"sensors.lidar.dropout=0", "sensors.lidar.grazing_deg=90", "sensors.lidar.dark_range_m=1000"}},
+          {"lidar: dropouts", {"sensors.lidar.dropout=0", "sensors.lidar.grazing_deg=90", "sensors.lidar.dark_range_m=1000"}},
           {"lidar: rain and dust", {"sensors.lidar.rain_rate=0", "sensors.dust.enabled=false"}},
           {"lidar: motion distortion", {"sensors.lidar.motion_distortion=false"}},
           {"lidar: tilt with the body", {"sensors.lidar.stabilized=true", "stack.leveling.stabilized=true"}}};

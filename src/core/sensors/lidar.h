@@ -34,15 +34,15 @@ struct LidarSettings {
   double elevation_max_deg = 0.0;  ///< elevation of the highest ring
   double range_min_m = 0.05;
   double range_max_m = 30.0;
-  double range_noise_m = 0.015;       ///< standard deviation of the range
-  double range_resolution_m = 0.013;  ///< quantization step of the range
-  double angle_noise_deg = 0.01;      ///< standard deviation of the beam azimuth
+  double range_noise_std_m = 0.015;       ///< standard deviation of the range
+  double range_quantization_m = 0.013;  ///< quantization step of the range
+  double angle_noise_std_deg = 0.01;      ///< standard deviation of the beam azimuth
   double beam_width_deg =
       0.12;                    ///< azimuthal width of the beam; causes mixed pixels at edges
-  double dropout = 0.002;      ///< dropout probability of a beam
-  double grazing_deg = 85.0;   ///< maximum angle of incidence; beams beyond it are lost
-  double dark_range_m = 10.0;  ///< maximum range on a surface of 10 % reflectivity
-  double rain_rate = 0.0;      ///< rate of returns from raindrops or dust grains, per meter of beam
+  double dropout_probability = 0.002;      ///< dropout probability of a beam
+  double max_incidence_deg = 85.0;   ///< maximum angle of incidence; beams beyond it are lost
+  double max_range_10pct_m = 10.0;  ///< maximum range on a surface of 10 % reflectivity
+  double false_return_rate_per_m = 0.0;      ///< rate of returns from raindrops or dust grains, per meter of beam
   double latency_s = 0.005;    ///< delay from the last beam to the message
   bool motion_distortion = true;  ///< false: all beams are fired from the pose at the end of the revolution
   bool stabilized = false;        ///< true: ideal gimbal that keeps the lidar level; requires stack.leveling.stabilized
@@ -68,14 +68,14 @@ struct LidarSettings {
     visit("elevation_max_deg", self.elevation_max_deg, between(-90.0, 90.0));
     visit("range_min_m", self.range_min_m, at_least(0.0));
     visit("range_max_m", self.range_max_m, between(0.1, 400.0));
-    visit("range_noise_m", self.range_noise_m, at_least(0.0));
-    visit("range_resolution_m", self.range_resolution_m, at_least(0.0));
-    visit("angle_noise_deg", self.angle_noise_deg, between(0.0, 10.0));
+    visit("range_noise_std_m", self.range_noise_std_m, at_least(0.0));
+    visit("range_quantization_m", self.range_quantization_m, at_least(0.0));
+    visit("angle_noise_std_deg", self.angle_noise_std_deg, between(0.0, 10.0));
     visit("beam_width_deg", self.beam_width_deg, between(0.0, 5.0));
-    visit("dropout", self.dropout, between(0.0, 1.0));
-    visit("grazing_deg", self.grazing_deg, between(0.0, 90.0));
-    visit("dark_range_m", self.dark_range_m, at_least(0.0));
-    visit("rain_rate", self.rain_rate, between(0.0, 1.0));
+    visit("dropout_probability", self.dropout_probability, between(0.0, 1.0));
+    visit("max_incidence_deg", self.max_incidence_deg, between(0.0, 90.0));
+    visit("max_range_10pct_m", self.max_range_10pct_m, at_least(0.0));
+    visit("false_return_rate_per_m", self.false_return_rate_per_m, between(0.0, 1.0));
     visit("latency_s", self.latency_s, between(0.0, 10.0));
     visit("motion_distortion", self.motion_distortion);
     visit("stabilized", self.stabilized);
@@ -95,7 +95,7 @@ struct SensorTraits<LaserScan> {
                                       .timeout = SensorTimeout::kLidar,
                                       .freeze_check = FreezeCheck::kOdometry,
                                       .is_required_to_drive = true,
-                                      .fault = {.unit = "m", .drift_per_s = 0.02, .spike = 1.0}};
+                                      .fault = {.unit = "m", .drift_per_s = 0.02, .outlier = 1.0}};
 
   static void add_to_reading(LaserScan& scan, double offset_m) {
     for (float& range_m : scan.ranges_m) range_m += static_cast<float>(offset_m);

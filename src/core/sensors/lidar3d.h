@@ -33,7 +33,7 @@ struct SensorTraits<PointCloud> {
                                       .ros_type = "sensor_msgs/msg/PointCloud2",
                                       .summary = "3D lidar",
                                       .timeout = SensorTimeout::kLidar,
-                                      .fault = {.unit = "m", .drift_per_s = 0.02, .spike = 1.0}};
+                                      .fault = {.unit = "m", .drift_per_s = 0.02, .outlier = 1.0}};
 
   static void add_to_reading(PointCloud& cloud, double offset_m) {
     for (CloudPoint& point : cloud.points) point.x += static_cast<float>(offset_m);

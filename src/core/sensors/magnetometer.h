@@ -27,9 +27,9 @@ struct MagnetometerSettings {
   double intensity_t = 4.87e-5;     ///< magnitude of the geomagnetic field, T
   double inclination_deg = 45.0;    ///< angle of the geomagnetic field below the horizon
   double declination_deg = -5.6;    ///< angle of the geomagnetic field from north (+y of world) toward east (+x)
-  double hard_iron_t = 1.0e-5;      ///< standard deviation, over robots, of the constant offset of each axis, T
-  double soft_iron = 0.03;          ///< standard deviation, over robots, of each entry of distortion matrix - identity
-  double noise_t = 4.1e-7;          ///< standard deviation of the noise of each axis, T
+  double hard_iron_std_t = 1.0e-5;      ///< standard deviation, over robots, of the constant offset of each axis, T
+  double soft_iron_std = 0.03;          ///< standard deviation, over robots, of each entry of distortion matrix - identity
+  double noise_std_t = 4.1e-7;          ///< standard deviation of the noise of each axis, T
   double resolution_t = 1.4616e-8;  ///< quantization step, T
   double range_t = 4.0e-4;          ///< full scale of each axis, T
   double steel_fill = 0.1;          ///< polarizable fraction of a steel geom's bounding box; 0: no disturbance
@@ -44,9 +44,9 @@ struct MagnetometerSettings {
     visit("intensity_t", self.intensity_t, between(0.0, 1.0e-3));
     visit("inclination_deg", self.inclination_deg, between(-90.0, 90.0));
     visit("declination_deg", self.declination_deg, between(-180.0, 180.0));
-    visit("hard_iron_t", self.hard_iron_t, between(0.0, 1.0e-3));
-    visit("soft_iron", self.soft_iron, between(0.0, 0.3));
-    visit("noise_t", self.noise_t, between(0.0, 1.0e-3));
+    visit("hard_iron_std_t", self.hard_iron_std_t, between(0.0, 1.0e-3));
+    visit("soft_iron_std", self.soft_iron_std, between(0.0, 0.3));
+    visit("noise_std_t", self.noise_std_t, between(0.0, 1.0e-3));
     visit("resolution_t", self.resolution_t, between(0.0, 1.0e-4));
     visit("range_t", self.range_t, between(1.0e-6, 1.0));
     visit("steel_fill", self.steel_fill, between(0.0, 1.0));
@@ -66,7 +66,7 @@ struct SensorTraits<MagneticField> {
                                       .ros_type = "sensor_msgs/msg/MagneticField",
                                       .summary = "three-axis magnetometer",
                                       .timeout = SensorTimeout::kInstrument,
-                                      .fault = {.unit = "T", .drift_per_s = 1.0e-6, .spike = 3.0e-5}};
+                                      .fault = {.unit = "T", .drift_per_s = 1.0e-6, .outlier = 3.0e-5}};
 
   /// Adds to the main reading, the field along x.
   static void add_to_reading(MagneticField& reading, double offset_t) { reading.field_t.x() += offset_t; }

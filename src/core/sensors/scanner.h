@@ -36,18 +36,18 @@ struct PanoramicScannerSettings {
   double duration_s = 30.0;          ///< duration of a scan
   double range_min_m = 0.6;
   double range_max_m = 70.0;
-  double black_range_m = 50.0;     ///< maximum range on a surface of 2 % reflectivity
-  double range_noise_m = 0.0003;   ///< standard deviation of the range on a bright surface
-  double grey_noise_m = 0.000255;  ///< additional standard deviation on 10 % reflectivity at 10 m, added in squares;
+  double max_range_2pct_m = 50.0;     ///< maximum range on a surface of 2 % reflectivity
+  double range_noise_std_m = 0.0003;   ///< standard deviation of the range on a bright surface
+  double gray_noise_std_m = 0.000255;  ///< additional standard deviation on 10 % reflectivity at 10 m, added in squares;
                                    ///< scales with sqrt(range) / light
   double range_offset_std_m = 0.0005;  ///< standard deviation of a range error that is constant within a scan
-  double angle_noise_deg = 0.0053;     ///< standard deviation of each beam's azimuth and elevation
-  double tilt_error_deg = 0.0053;      ///< standard deviation of the tilt residual of the compensator, about each of
+  double angle_noise_std_deg = 0.0053;     ///< standard deviation of each beam's azimuth and elevation
+  double tilt_error_std_deg = 0.0053;      ///< standard deviation of the tilt residual of the compensator, about each of
                                        ///< two axes
-  double beam_exit_m = 0.00212;        ///< beam diameter at the exit
-  double beam_spread_rad = 0.0003;     ///< beam divergence, half angle; 0 disables the beam width and mixed pixels
-  double grazing_deg = 85.0;  ///< maximum angle of incidence; beams beyond it are lost
-  double dropout = 0.001;     ///< dropout probability of a beam
+  double beam_exit_diameter_m = 0.00212;        ///< beam diameter at the exit
+  double beam_divergence_rad = 0.0003;     ///< beam divergence, half angle; 0 disables the beam width and mixed pixels
+  double max_incidence_deg = 85.0;  ///< maximum angle of incidence; beams beyond it are lost
+  double dropout_probability = 0.001;     ///< dropout probability of a beam
   double latency_s = 0.5;     ///< delay from the last point to the message
 
   template <typename Self, typename Visitor>
@@ -59,16 +59,16 @@ struct PanoramicScannerSettings {
     visit("duration_s", self.duration_s, between(0.1, 3600.0));
     visit("range_min_m", self.range_min_m, at_least(0.0));
     visit("range_max_m", self.range_max_m, between(1.0, 400.0));
-    visit("black_range_m", self.black_range_m, between(1.0, 400.0));
-    visit("range_noise_m", self.range_noise_m, between(0.0, 1.0));
-    visit("grey_noise_m", self.grey_noise_m, between(0.0, 1.0));
+    visit("max_range_2pct_m", self.max_range_2pct_m, between(1.0, 400.0));
+    visit("range_noise_std_m", self.range_noise_std_m, between(0.0, 1.0));
+    visit("gray_noise_std_m", self.gray_noise_std_m, between(0.0, 1.0));
     visit("range_offset_std_m", self.range_offset_std_m, between(0.0, 1.0));
-    visit("angle_noise_deg", self.angle_noise_deg, between(0.0, 1.0));
-    visit("tilt_error_deg", self.tilt_error_deg, between(0.0, 1.0));
-    visit("beam_exit_m", self.beam_exit_m, between(0.0, 0.1));
-    visit("beam_spread_rad", self.beam_spread_rad, between(0.0, 0.01));
-    visit("grazing_deg", self.grazing_deg, between(0.0, 90.0));
-    visit("dropout", self.dropout, between(0.0, 1.0));
+    visit("angle_noise_std_deg", self.angle_noise_std_deg, between(0.0, 1.0));
+    visit("tilt_error_std_deg", self.tilt_error_std_deg, between(0.0, 1.0));
+    visit("beam_exit_diameter_m", self.beam_exit_diameter_m, between(0.0, 0.1));
+    visit("beam_divergence_rad", self.beam_divergence_rad, between(0.0, 0.01));
+    visit("max_incidence_deg", self.max_incidence_deg, between(0.0, 90.0));
+    visit("dropout_probability", self.dropout_probability, between(0.0, 1.0));
     visit("latency_s", self.latency_s, between(0.0, 60.0));
   }
 };
@@ -84,7 +84,7 @@ struct SensorTraits<PanoramicScan> {
                                       .ros_type = "sensor_msgs/msg/PointCloud2",
                                       .summary = "terrestrial laser scanner, on command",
                                       .trigger = SensorTrigger::kScanStation,
-                                      .fault = {.unit = "m", .drift_per_s = 0.001, .spike = 0.05}};
+                                      .fault = {.unit = "m", .drift_per_s = 0.001, .outlier = 0.05}};
 
   /// Adds to the main reading, the ranges of all points.
   static void add_to_reading(PanoramicScan& scan, double offset_m) {

@@ -27,7 +27,7 @@ enum class SensorTrigger { kPeriodic, kScanStation, kTeleoperation };
 struct FaultMagnitudes {
   const char* unit = "";  ///< unit of the main reading
   double drift_per_s = 0.0;
-  double spike = 0.0;
+  double outlier = 0.0;
 };
 
 /// Registry entry of a sensor type.
@@ -62,7 +62,7 @@ struct ErrorSource {
 ///     };
 ///     static constexpr auto kSettings = &Settings::uwb;  // absent if `Settings` is empty
 ///     static constexpr SensorInfo kInfo = {...};
-///     static void add_to_reading(UwbRange& range, double offset);  // main reading, for drift and spikes
+///     static void add_to_reading(UwbRange& range, double offset);  // main reading, for drift and outliers
 ///     static bool repeats(const UwbRange& now, const UwbRange& before);  // only with a FreezeCheck
 ///     static bool is_fitted(const RobotDescription& robot);  // absent: on any robot
 ///     static std::vector<ErrorSource> error_sources();  // absent: none

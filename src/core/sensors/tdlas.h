@@ -20,8 +20,8 @@ struct GasReading {
 struct TdlasSettings {
   bool enabled = true;
   double rate_hz = 10.0;
-  double noise_ppm_m = 10.0;        ///< standard deviation of the additive noise
-  double relative_noise = 0.05;     ///< standard deviation of the noise, relative to the column
+  double noise_std_ppm_m = 10.0;        ///< standard deviation of the additive noise
+  double relative_noise_std = 0.05;     ///< standard deviation of the noise, relative to the column
   double background_ppm = 1.9;      ///< methane in clean air
   double resolution_ppm_m = 1.0;
   double max_column_ppm_m = 50000.0;
@@ -32,8 +32,8 @@ struct TdlasSettings {
   static void fields(Self& self, Visitor& visit) {
     visit("enabled", self.enabled);
     visit("rate_hz", self.rate_hz, between(0.1, 100.0));
-    visit("noise_ppm_m", self.noise_ppm_m, at_least(0.0));
-    visit("relative_noise", self.relative_noise, between(0.0, 1.0));
+    visit("noise_std_ppm_m", self.noise_std_ppm_m, at_least(0.0));
+    visit("relative_noise_std", self.relative_noise_std, between(0.0, 1.0));
     visit("background_ppm", self.background_ppm, at_least(0.0));
     visit("resolution_ppm_m", self.resolution_ppm_m, at_least(0.0));
     visit("max_column_ppm_m", self.max_column_ppm_m, at_least(1.0));
@@ -53,7 +53,7 @@ struct SensorTraits<GasReading> {
                                       .ros_type = "patrol_msgs/msg/GasReading",
                                       .summary = "open-path laser methane meter",
                                       .timeout = SensorTimeout::kInstrument,
-                                      .fault = {.unit = "ppm m", .drift_per_s = 20.0, .spike = 300.0}};
+                                      .fault = {.unit = "ppm m", .drift_per_s = 20.0, .outlier = 300.0}};
 
   static void add_to_reading(GasReading& gas, double offset_ppm_m) { gas.column_ppm_m += offset_ppm_m; }
 };

@@ -29,17 +29,17 @@ struct TemSettings {
   double first_gate_s = 2.0e-6;        ///< center of the first gate after the end of the ramp
   double last_gate_s = 3.0e-4;         ///< upper limit of the gate centers
   double gates_per_decade = 10.0;
-  double gate_width = 0.15;            ///< width of a gate relative to its center time
+  double relative_gate_width = 0.15;            ///< width of a gate relative to its center time
   double stacking_s = 1.0;             ///< stacking time of one sounding
-  double noise_tps = 3e-9;             ///< standard deviation at 1 ms of the mean over one second of stacking
-  double relative_noise = 0.01;        ///< relative standard deviation of each gate of a sounding
+  double noise_std_tps = 3e-9;             ///< standard deviation at 1 ms of the mean over one second of stacking
+  double relative_noise_std = 0.01;        ///< relative standard deviation of each gate of a sounding
   double gain_std = 0.02;              ///< standard deviation of the instrument gain, constant over all soundings
-  double current_std = 0.003;          ///< standard deviation of the moment, relative to the reported one, per sounding
+  double relative_moment_std = 0.003;          ///< standard deviation of the moment, relative to the reported one, per sounding
   double time_shift_std_s = 3e-8;      ///< standard deviation of the gate time shift, constant over all soundings
-  double steel_rate = 5e-9;            ///< median response at 10 us of steel arches, reinforcement and robot, T/s per A
+  double steel_response = 5e-9;            ///< median response at 10 us of steel arches, reinforcement and robot, T/s per A
                                        ///< m2
-  double steel_spread = 0.5;           ///< standard deviation of the logarithm of `steel_rate`, over runs
-  double steel_anisotropy = 0.2;       ///< standard deviation of the direction-dependent fraction of the steel response
+  double steel_log_std = 0.5;           ///< standard deviation of the logarithm of `steel_response`, over runs
+  double steel_anisotropy_std = 0.2;       ///< standard deviation of the direction-dependent fraction of the steel response
   double latency_s = 0.05;
 
   template <typename Self, typename Visitor>
@@ -50,16 +50,16 @@ struct TemSettings {
     visit("first_gate_s", self.first_gate_s, between(5e-7, 1e-3));
     visit("last_gate_s", self.last_gate_s, between(1e-6, 1e-2));
     visit("gates_per_decade", self.gates_per_decade, between(3.0, 30.0));
-    visit("gate_width", self.gate_width, between(0.01, 0.5));
+    visit("relative_gate_width", self.relative_gate_width, between(0.01, 0.5));
     visit("stacking_s", self.stacking_s, between(0.02, 60.0));
-    visit("noise_tps", self.noise_tps, at_least(0.0));
-    visit("relative_noise", self.relative_noise, between(0.0, 1.0));
+    visit("noise_std_tps", self.noise_std_tps, at_least(0.0));
+    visit("relative_noise_std", self.relative_noise_std, between(0.0, 1.0));
     visit("gain_std", self.gain_std, between(0.0, 0.3));
-    visit("current_std", self.current_std, between(0.0, 0.3));
+    visit("relative_moment_std", self.relative_moment_std, between(0.0, 0.3));
     visit("time_shift_std_s", self.time_shift_std_s, between(0.0, 1e-6));
-    visit("steel_rate", self.steel_rate, at_least(0.0));
-    visit("steel_spread", self.steel_spread, between(0.0, 2.0));
-    visit("steel_anisotropy", self.steel_anisotropy, between(0.0, 1.0));
+    visit("steel_response", self.steel_response, at_least(0.0));
+    visit("steel_log_std", self.steel_log_std, between(0.0, 2.0));
+    visit("steel_anisotropy_std", self.steel_anisotropy_std, between(0.0, 1.0));
     visit("latency_s", self.latency_s, between(0.0, 10.0));
   }
 };
@@ -74,7 +74,7 @@ struct SensorTraits<TemSounding> {
                                       .topic = "/tem/sounding",
                                       .ros_type = "patrol_msgs/msg/TemSounding",
                                       .summary = "transient-electromagnetic water detector, on command",
-                                      .fault_matrix_exclusion_reason = "used only to sound for water, beyond the fault window of the matrix"};
+                                      .fault_matrix_exclusion_reason = "used only for TEM soundings, outside the fault window of the matrix"};
 
   static void add_to_reading(TemSounding& sounding, double offset_tps) {
     for (double& rate_tps : sounding.rate_tps) rate_tps += offset_tps;

@@ -26,19 +26,19 @@ struct UltrasonicRange {
 struct UltrasonicSettings {
   bool enabled = false;
   double ping_rate_hz = 40.0;      ///< rate of ring slots; one transducer or one group fires in each slot
-  int fire_together = 1;           ///< transducers per group, spread over the ring; a group shortens the cycle and
+  int group_size = 1;           ///< transducers per group, spread over the ring; a group shortens the cycle and
                                    ///< causes crosstalk
   double fov_deg = 35.0;           ///< full opening angle of the cone
   double range_min_m = 0.2;
   double range_max_m = 4.0;
-  double range_noise_m = 0.005;    ///< standard deviation of the range
-  double range_resolution_m = 0.01;
-  double smooth_deg = 25.0;        ///< maximum angle of incidence for a specular echo of a smooth surface
-  double rough_echo = 0.37;        ///< echo strength of a rough surface relative to a smooth one, both at normal
+  double range_noise_std_m = 0.005;    ///< standard deviation of the range
+  double range_quantization_m = 0.01;
+  double specular_cutoff_deg = 25.0;        ///< maximum angle of incidence for a specular echo of a smooth surface
+  double rough_echo_ratio = 0.37;        ///< echo strength of a rough surface relative to a smooth one, both at normal
                                    ///< incidence
-  double least_echo = 0.02;        ///< detection threshold, relative to the echo of a smooth wall that fills the cone
-  double dropout = 0.02;           ///< dropout probability of a ping
-  double crosstalk = 0.5;          ///< probability that a receivable echo of another transducer is taken for the own
+  double detection_threshold = 0.02;        ///< detection threshold, relative to the echo of a smooth wall that fills the cone
+  double dropout_probability = 0.02;           ///< dropout probability of a ping
+  double crosstalk_probability = 0.5;          ///< probability that a receivable echo of another transducer is taken for the own
                                    ///< echo
   double air_temperature_c = 15.0;
   double assumed_temperature_c = 20.0;  ///< temperature for which the sensor's speed of sound is set
@@ -50,17 +50,17 @@ struct UltrasonicSettings {
   static void fields(Self& self, Visitor& visit) {
     visit("enabled", self.enabled);
     visit("ping_rate_hz", self.ping_rate_hz, between(0.1, 200.0));
-    visit("fire_together", self.fire_together, between(1, 64));
+    visit("group_size", self.group_size, between(1, 64));
     visit("fov_deg", self.fov_deg, between(1.0, 150.0));
     visit("range_min_m", self.range_min_m, at_least(0.0));
     visit("range_max_m", self.range_max_m, between(0.1, 20.0));
-    visit("range_noise_m", self.range_noise_m, at_least(0.0));
-    visit("range_resolution_m", self.range_resolution_m, at_least(0.0));
-    visit("smooth_deg", self.smooth_deg, between(0.0, 90.0));
-    visit("rough_echo", self.rough_echo, between(0.0, 1.0));
-    visit("least_echo", self.least_echo, between(0.0, 1.0));
-    visit("dropout", self.dropout, between(0.0, 1.0));
-    visit("crosstalk", self.crosstalk, between(0.0, 1.0));
+    visit("range_noise_std_m", self.range_noise_std_m, at_least(0.0));
+    visit("range_quantization_m", self.range_quantization_m, at_least(0.0));
+    visit("specular_cutoff_deg", self.specular_cutoff_deg, between(0.0, 90.0));
+    visit("rough_echo_ratio", self.rough_echo_ratio, between(0.0, 1.0));
+    visit("detection_threshold", self.detection_threshold, between(0.0, 1.0));
+    visit("dropout_probability", self.dropout_probability, between(0.0, 1.0));
+    visit("crosstalk_probability", self.crosstalk_probability, between(0.0, 1.0));
     visit("air_temperature_c", self.air_temperature_c, between(-40.0, 85.0));
     visit("assumed_temperature_c", self.assumed_temperature_c, between(-40.0, 85.0));
     visit("rough_names", self.rough_names);
@@ -79,7 +79,7 @@ struct SensorTraits<UltrasonicRange> {
                                       .ros_type = "sensor_msgs/msg/Range",
                                       .summary = "ultrasonic ring",
                                       .timeout = SensorTimeout::kInstrument,
-                                      .fault = {.unit = "m", .drift_per_s = 0.02, .spike = 0.5}};
+                                      .fault = {.unit = "m", .drift_per_s = 0.02, .outlier = 0.5}};
 
   static void add_to_reading(UltrasonicRange& range, double offset_m) { range.range_m += static_cast<float>(offset_m); }
 };

@@ -20,11 +20,11 @@ struct UwbSettings {
   bool enabled = false;
   double rate_hz = 30.0;            ///< total rate of polls; the anchors in range take turns
   double range_max_m = 60.0;        ///< maximum range; anchors farther away are neither polled nor answer
-  double range_noise_m = 0.07;      ///< standard deviation of the range in line of sight
+  double range_noise_std_m = 0.07;      ///< standard deviation of the range in line of sight
   double bias_scale = 1.0;          ///< factor on the distance-dependent bias; 0: corrected by the firmware
-  double loss = 0.02;               ///< loss probability of a poll at short distance
-  double blocked_loss = 0.3;        ///< additional loss probability off the line of sight
-  double blocked_excess_m = 0.4;    ///< mean of the exponential NLOS bias
+  double loss_probability = 0.02;               ///< loss probability of a poll at short distance
+  double nlos_loss_probability = 0.3;        ///< additional loss probability off the line of sight
+  double nlos_bias_m = 0.4;    ///< mean of the exponential NLOS bias
   double latency_s = 0.01;
 
   template <typename Self, typename Visitor>
@@ -32,11 +32,11 @@ struct UwbSettings {
     visit("enabled", self.enabled);
     visit("rate_hz", self.rate_hz, between(0.1, 500.0));
     visit("range_max_m", self.range_max_m, between(1.0, 1000.0));
-    visit("range_noise_m", self.range_noise_m, at_least(0.0));
+    visit("range_noise_std_m", self.range_noise_std_m, at_least(0.0));
     visit("bias_scale", self.bias_scale, between(-5.0, 5.0));
-    visit("loss", self.loss, between(0.0, 1.0));
-    visit("blocked_loss", self.blocked_loss, between(0.0, 1.0));
-    visit("blocked_excess_m", self.blocked_excess_m, at_least(0.0));
+    visit("loss_probability", self.loss_probability, between(0.0, 1.0));
+    visit("nlos_loss_probability", self.nlos_loss_probability, between(0.0, 1.0));
+    visit("nlos_bias_m", self.nlos_bias_m, at_least(0.0));
     visit("latency_s", self.latency_s, between(0.0, 10.0));
   }
 };
@@ -52,13 +52,13 @@ struct SensorTraits<UwbRange> {
                                       .ros_type = "patrol_msgs/msg/UwbRange",
                                       .summary = "ultra-wideband ranges to surveyed anchors",
                                       .timeout = SensorTimeout::kInstrument,
-                                      .fault = {.unit = "m", .drift_per_s = 0.05, .spike = 3.0}};
+                                      .fault = {.unit = "m", .drift_per_s = 0.05, .outlier = 3.0}};
 
   static void add_to_reading(UwbRange& range, double offset_m) { range.range_m += offset_m; }
   static std::vector<ErrorSource> error_sources() {
     return {{"UWB: range noise", {"sensors.uwb.range_noise_m=0"}},
-            {"UWB: bias by distance", {"sensors.uwb.bias_scale=0"}},
-            {"UWB: blocked paths", {"sensors.uwb.blocked_loss=0", "sensors.uwb.blocked_excess_m=0"}},
+            {"UWB: distance-dependent bias", {"sensors.uwb.bias_scale=0"}},
+            {"UWB: non-line-of-sight paths", {"sensors.uwb.blocked_loss=0", "sensors.uwb.blocked_excess_m=0"}},
             {"UWB: loss", {"sensors.uwb.loss=0"}}};
   }
 };

@@ -51,7 +51,7 @@ LiningResult LiningInspection::inspect(Time stamp, const std::string& station, c
   if (!lining) return result;
 
   const Registration coarse = register_cloud(target, source, T_map_scanner_guess, settings_.registration);
-  result.registration_share = coarse.inlier_ratio;
+  result.registration_inlier_ratio = coarse.inlier_ratio;
   result.registration_rms_m = coarse.rms_m;
   if (!coarse.converged || coarse.inlier_ratio < settings_.min_inlier_ratio) return result;
 

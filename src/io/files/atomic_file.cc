@@ -56,7 +56,7 @@ std::string load_text(const std::filesystem::path& file, std::uintmax_t max_byte
   const InputFile in(file);
   if (in.descriptor() < 0) {
     const bool is_missing = errno == ENOENT || errno == ENOTDIR;
-    throw refuse(is_missing ? "there is no such file" : fmt::format("cannot be read: {}", std::strerror(errno)));
+    throw refuse(is_missing ? "file not found" : fmt::format("cannot be read: {}", std::strerror(errno)));
   }
   struct stat status {};
   if (::fstat(in.descriptor(), &status) != 0) throw refuse("cannot be read");

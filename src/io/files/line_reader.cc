@@ -23,7 +23,7 @@ void LineReader::Close::operator()(gzFile_s* file) const { gzclose_r(file); }
 
 LineReader::LineReader(const std::filesystem::path& file) : file_(file), buffer_(2 * kReadBytes) {
   std::error_code error;
-  if (!std::filesystem::exists(file, error)) throw InputError(file.string() + ": there is no such file");
+  if (!std::filesystem::exists(file, error)) throw InputError(file.string() + ": file not found");
   const bool is_file = std::filesystem::is_regular_file(file, error);
   if (is_file) gzip_.reset(gzopen(file.c_str(), "rb"));
   if (!gzip_) throw InputError(file.string() + ": cannot be read");
@@ -54,7 +54,7 @@ bool LineReader::fill() {
   is_at_end_ = true;
   int error = Z_OK;
   gzerror(gzip_.get(), &error);
-  if (error == Z_ERRNO) throw InputError(fmt::format("{}:{}: cannot be read any further", file_.string(), number_ + 1));
+  if (error == Z_ERRNO) throw InputError(fmt::format("{}:{}: read error", file_.string(), number_ + 1));
   if (error == Z_BUF_ERROR) read_error_ = "the gzip data are cut off";
   else if (error != Z_OK) read_error_ = "the gzip data are damaged";
   return false;

@@ -109,7 +109,7 @@ std::int64_t LineTokenizer::integer(const char* what, std::int64_t min, std::int
   const std::string_view text = word(what);
   std::int64_t value = 0;
   if (!parse_all(text, value) || value < min || value > max) {
-    throw ParseError(fmt::format("{} {} must be a whole number in {} ... {}", what, quoted(text), min, max));
+    throw ParseError(fmt::format("{} {} must be an integer in [{}, {}]", what, quoted(text), min, max));
   }
   return value;
 }

@@ -32,13 +32,13 @@ void execute(sqlite3* database, const std::string& sql) {
   check(sqlite3_exec(database, sql.c_str(), nullptr, nullptr, nullptr) == SQLITE_OK, database);
 }
 
-int bind(sqlite3_stmt* statement, int place, const TableValue& cell) {
+int bind(sqlite3_stmt* statement, int index, const TableValue& cell) {
   if (const auto* text = std::get_if<std::string>(&cell)) {
-    return sqlite3_bind_text(statement, place, text->data(), static_cast<int>(text->size()), SQLITE_STATIC);
+    return sqlite3_bind_text(statement, index, text->data(), static_cast<int>(text->size()), SQLITE_STATIC);
   }
-  if (const auto* number = std::get_if<double>(&cell)) return sqlite3_bind_double(statement, place, *number);
-  if (const auto* number = std::get_if<std::int64_t>(&cell)) return sqlite3_bind_int64(statement, place, *number);
-  return sqlite3_bind_null(statement, place);
+  if (const auto* number = std::get_if<double>(&cell)) return sqlite3_bind_double(statement, index, *number);
+  if (const auto* number = std::get_if<std::int64_t>(&cell)) return sqlite3_bind_int64(statement, index, *number);
+  return sqlite3_bind_null(statement, index);
 }
 
 void write(sqlite3* database, const Table& table) {
@@ -46,8 +46,8 @@ void write(sqlite3* database, const Table& table) {
   for (const std::string& column : table.columns) columns.push_back(identifier(column));
   execute(database, fmt::format("CREATE TABLE {} ({})", identifier(table.name), fmt::join(columns, ", ")));
 
-  const std::vector<char> marks(table.columns.size(), '?');
-  const std::string sql = fmt::format("INSERT INTO {} VALUES ({})", identifier(table.name), fmt::join(marks, ", "));
+  const std::vector<char> placeholders(table.columns.size(), '?');
+  const std::string sql = fmt::format("INSERT INTO {} VALUES ({})", identifier(table.name), fmt::join(placeholders, ", "));
   sqlite3_stmt* raw = nullptr;
   check(sqlite3_prepare_v2(database, sql.c_str(), -1, &raw, nullptr) == SQLITE_OK, database);
   const Statement insert(raw, sqlite3_finalize);

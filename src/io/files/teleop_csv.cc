@@ -46,11 +46,11 @@ Row read_row(const std::string& line, const Refuse& refuse) {
 template <typename Refuse>
 TeleopCommand read_command(const std::string& line, std::optional<Time> since, const Refuse& refuse) {
   const auto [time_s, vx_mps, yaw_rate_radps, save_goal, hand_over] = read_row(line, refuse);
-  if (time_s < 0.0 || time_s > kMaxTeleopDuration_s) refuse(fmt::format("time_s = {}: must lie in 0 ... {}", time_s, kMaxTeleopDuration_s));
+  if (time_s < 0.0 || time_s > kMaxTeleopDuration_s) refuse(fmt::format("time_s = {}: must be in [0, {}]", time_s, kMaxTeleopDuration_s));
   const Time stamp = from_seconds(time_s);
   if (since && stamp <= *since) refuse(fmt::format("time_s = {}: must be later than in the line before", time_s));
   const auto check_speed = [&](const char* key, double value) {
-    if (std::abs(value) > kMaxTeleopSpeed) refuse(fmt::format("{} = {}: must lie in -{} ... {}", key, value, kMaxTeleopSpeed, kMaxTeleopSpeed));
+    if (std::abs(value) > kMaxTeleopSpeed) refuse(fmt::format("{} = {}: must be in [-{}, {}]", key, value, kMaxTeleopSpeed, kMaxTeleopSpeed));
   };
   const auto check_button = [&](const char* key, double value) {
     if (value != 0.0 && value != 1.0) refuse(fmt::format("{} = {}: must be 0 or 1", key, value));
@@ -80,7 +80,7 @@ std::vector<TeleopCommand> load_teleop(const std::filesystem::path& file) {
     commands.push_back(read_command(line, since, refuse));
     since = commands.back().stamp;
   }
-  if (commands.empty()) throw InputError(file.string() + ": holds no command");
+  if (commands.empty()) throw InputError(file.string() + ": contains no commands");
   return commands;
 }
 

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kMaxStations = 200;  // paths between all pairs are planned
 constexpr double kMaxDuration_s = 1e7;
-constexpr const char* kStationColumns = "name, x, y and, if wanted, service_s, earliest_s, latest_s, priority";
+constexpr const char* kStationColumns = "name, x, y and optionally service_s, earliest_s, latest_s, priority";
 
 /// Splits a line into cells. `refuse` does not return.
 template <typename Refuse>
@@ -63,7 +63,7 @@ class StationReader {
       else read_station(cells);
     }
     if (lines_.read_error()) throw InputError(fmt::format("{}: {}", lines_.file().string(), *lines_.read_error()));
-    if (stations_.empty()) throw InputError(fmt::format("{}: holds no station", lines_.file().string()));
+    if (stations_.empty()) throw InputError(fmt::format("{}: contains no stations", lines_.file().string()));
     return std::move(stations_);
   }
 
@@ -74,9 +74,9 @@ class StationReader {
     for (std::size_t i = 0; i < cells.size(); ++i) {
       const auto known = {"name", "x", "y", "service_s", "earliest_s", "latest_s", "priority"};
       if (std::find(known.begin(), known.end(), cells[i]) == known.end()) {
-        refuse(fmt::format("{}: is no column: the first line must name {}", cells[i], kStationColumns));
+        refuse(fmt::format("{}: unknown column: the first line must name {}", cells[i], kStationColumns));
       }
-      if (!columns_.emplace(cells[i], i).second) refuse(fmt::format("{}: stands there twice", cells[i]));
+      if (!columns_.emplace(cells[i], i).second) refuse(fmt::format("{}: duplicate column", cells[i]));
     }
     for (const char* column : {"name", "x", "y"}) {
       if (!columns_.contains(column)) refuse(fmt::format("{}: is missing: the first line must name {}", column, kStationColumns));
@@ -88,7 +88,7 @@ class StationReader {
     TourStation station{.name = cells[columns_.at("name")], .line = number_};
     if (station.name.empty()) refuse("name: is empty");
     if (std::any_of(stations_.begin(), stations_.end(), [&](const TourStation& other) { return other.name == station.name; })) {
-      refuse(fmt::format("name: {} stands there twice", station.name));
+      refuse(fmt::format("name: {}: duplicate", station.name));
     }
     for (const char* column : {"x", "y"}) {
       if (cells[columns_.at(column)].empty()) refuse(fmt::format("{}: is empty", column));
@@ -105,10 +105,10 @@ class StationReader {
     take("latest_s", station.latest_s, 0.0, kMaxDuration_s);
     double priority = 0.0;
     take("priority", priority, -1e6, 1e6);
-    if (priority != std::floor(priority)) refuse(fmt::format("priority: {}: must be a whole number", priority));
+    if (priority != std::floor(priority)) refuse(fmt::format("priority: {}: must be an integer", priority));
     station.priority = static_cast<int>(priority);
     if (station.latest_s < station.earliest_s) refuse(fmt::format("latest_s: {}: must not be before earliest_s = {}", station.latest_s, station.earliest_s));
-    if (stations_.size() == kMaxStations) refuse(fmt::format("is one station too many: at most {} are read", kMaxStations));
+    if (stations_.size() == kMaxStations) refuse(fmt::format("too many stations: at most {} are allowed", kMaxStations));
     stations_.push_back(station);
   }
 
@@ -116,7 +116,7 @@ class StationReader {
     double value = 0.0;
     const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || rest != text.data() + text.size() || !std::isfinite(value)) refuse(fmt::format("{}: {}: must be a number", column, text));
-    if (value < min || value > max) refuse(fmt::format("{}: {}: must lie in {} ... {}", column, text, min, max));
+    if (value < min || value > max) refuse(fmt::format("{}: {}: must be in [{}, {}]", column, text, min, max));
     return value;
   }
 

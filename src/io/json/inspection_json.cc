@@ -34,13 +34,13 @@ int count_of(const JsonObject& object, const char* key) {
 
 int ring_of(const JsonObject& object) {
   const int ring = object.integer("ring");
-  if (ring < 1 || ring > kMaxRings) object.fail(fmt::format("ring must lie in 1 ... {}", kMaxRings));
+  if (ring < 1 || ring > kMaxRings) object.fail(fmt::format("ring must be in [1, {}]", kMaxRings));
   return ring;
 }
 
 double clock_of(const JsonObject& object) {
   const double clock_deg = object.number("clock_deg");
-  if (clock_deg < 0.0 || clock_deg > 360.0) object.fail("clock_deg must lie in 0 ... 360");
+  if (clock_deg < 0.0 || clock_deg > 360.0) object.fail("clock_deg must be in [0, 360]");
   return clock_deg;
 }
 
@@ -50,7 +50,7 @@ WarningLevel level_of(const JsonObject& object) {
 
 Time stamp_of(const JsonObject& object) {
   const Json& stamp = object.member("stamp_ns");
-  if (!stamp.is_number_integer()) object.fail("stamp_ns must be a whole number");
+  if (!stamp.is_number_integer()) object.fail("stamp_ns must be an integer");
   return Time{stamp.get<std::int64_t>()};
 }
 
@@ -115,7 +115,7 @@ Json to_json(const LiningResult& result) {
                {"pose", to_json(result.T_map_body)},
                {"registered", result.is_registered},
                {"registration_rms_m", number_or_null(result.registration_rms_m)},
-               {"registration_share", number_or_null(result.registration_share)},
+               {"registration_inlier_ratio", number_or_null(result.registration_inlier_ratio)},
                {"correction_m", number_or_null(result.correction_m)},
                {"cells", Json::array()},
                {"lines", Json::array()},
@@ -134,14 +134,14 @@ Json to_json(const LiningResult& result) {
 }
 
 LiningResult lining_from_json(const std::string& place, const Json& json) {
-  const JsonObject object(place, json, {"stamp_ns", "station", "pose", "registered", "registration_rms_m", "registration_share", "correction_m", "cells", "lines", "findings"});
+  const JsonObject object(place, json, {"stamp_ns", "station", "pose", "registered", "registration_rms_m", "registration_inlier_ratio", "correction_m", "cells", "lines", "findings"});
   LiningResult result;
   result.stamp = stamp_of(object);
   result.station = object.string("station");
   result.T_map_body = pose_from_json(place + ".pose", object.member("pose"));
   result.is_registered = object.boolean("registered");
   result.registration_rms_m = read_non_negative(object, "registration_rms_m");
-  result.registration_share = read_non_negative(object, "registration_share");
+  result.registration_inlier_ratio = read_non_negative(object, "registration_inlier_ratio");
   result.correction_m = read_non_negative(object, "correction_m");
   result.cells = entries<LiningCell>(object, "cells", place, {"ring", "clock_deg", "inward_m", "std_m", "points"}, [](const JsonObject& cell) {
     return LiningCell{.ring = ring_of(cell), .clock_deg = clock_of(cell), .inward_m = read_number(cell, "inward_m"), .std_m = read_non_negative(cell, "std_m"), .points = count_of(cell, "points")};

@@ -38,7 +38,7 @@ class Checker final : public nlohmann::json_sax<Json> {
   bool key(std::string& key) override {
     Level& object = open_.back();
     object.key.clear();
-    if (!object.keys.insert(key).second) refuse(key + " stands there twice");
+    if (!object.keys.insert(key).second) refuse(key + ": duplicate key");
     object.key = key;
     return true;
   }
@@ -46,7 +46,7 @@ class Checker final : public nlohmann::json_sax<Json> {
   bool parse_error(std::size_t position, const std::string& token, const nlohmann::detail::exception& error) override {
     const std::size_t at = std::clamp<std::size_t>(position, 1, text_.size() + 1) - 1;
     const auto line = static_cast<int>(std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(at), '\n')) + 1;
-    if (error.id == kNumberOverflow) throw input_error(file_, line, token + " is too large a number");
+    if (error.id == kNumberOverflow) throw input_error(file_, line, token + ": number out of range");
     if (at >= text_.size()) throw input_error(file_, line, "is not JSON: ends too early");
     const std::size_t line_start = at == 0 ? 0 : text_.rfind('\n', at - 1) + 1;  // npos + 1 is 0
     throw input_error(file_, line, fmt::format("is not JSON at column {}", at - line_start + 1));
@@ -65,11 +65,11 @@ class Checker final : public nlohmann::json_sax<Json> {
     if (open_.empty() || !open_.back().is_list) return true;
     if (++open_.back().num_entries <= max_entries_) return true;
     open_.pop_back();
-    refuse(fmt::format("has more than {} entries", max_entries_));
+    refuse(fmt::format("more than {} entries", max_entries_));
   }
   bool open(Level level) {
     count();
-    if (open_.size() >= kMaxJsonDepth) refuse(fmt::format("lies more than {} levels deep", kMaxJsonDepth));
+    if (open_.size() >= kMaxJsonDepth) refuse(fmt::format("more than {} nested levels", kMaxJsonDepth));
     open_.push_back(std::move(level));
     return true;
   }

@@ -47,7 +47,7 @@ const Json& JsonObject::list(const char* key) const {
 
 int JsonObject::integer(const char* key) const {
   const Json& value = member(key);
-  if (!value.is_number_integer()) fail(fmt::format("{} must be a whole number", key));
+  if (!value.is_number_integer()) fail(fmt::format("{} must be an integer", key));
   const bool fits = value.is_number_unsigned() ? std::in_range<int>(value.get<std::uint64_t>())
                                                    : std::in_range<int>(value.get<std::int64_t>());
   if (!fits) fail(fmt::format("{} is too large", key));
@@ -61,7 +61,7 @@ double JsonObject::number(const char* key) const {
 
 std::string JsonObject::string(const char* key) const {
   const Json& value = member(key);
-  if (!value.is_string() || has_control_characters(value.get_ref<const std::string&>())) fail(fmt::format("{} must be a word", key));
+  if (!value.is_string() || has_control_characters(value.get_ref<const std::string&>())) fail(fmt::format("{} must be a string", key));
   return value.get<std::string>();
 }
 
@@ -90,7 +90,7 @@ Pose2 JsonObject::pose() const {
   const Eigen::Quaterniond rotation(q[3], q[0], q[1], q[2]);
   if (std::abs(rotation.norm() - 1.0) > 1e-3) fail("orientation must be a quaternion x, y, z, w of length 1");
   const double upright = (rotation * Eigen::Vector3d::UnitZ()).z();
-  if (upright < kMinUprightCosine) fail("orientation must stand upright, within 45 degrees: a quaternion x, y, z, w");
+  if (upright < kMinUprightCosine) fail("orientation must be upright within 45 degrees: a quaternion x, y, z, w");
   return {p[0], p[1], to_yaw(rotation)};
 }
 

@@ -33,7 +33,7 @@ std::vector<SavedGoal> load_nav(const std::filesystem::path& file) {
     const std::string place = fmt::format("{}: [{}]", name, i);
     goals.push_back(read_goal(place, json[i]));
     if (!numbers.insert(goals.back().number).second) {
-      throw InputError(fmt::format("{}: number {} stands there twice", place, goals.back().number));
+      throw InputError(fmt::format("{}: number {}: duplicate", place, goals.back().number));
     }
   }
   return goals;

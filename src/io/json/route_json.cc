@@ -39,7 +39,7 @@ void check_unique(const std::string& file, const std::vector<Station>& stations)
   std::set<int> numbers;
   for (std::size_t i = 0; i < stations.size(); ++i) {
     const auto refuse = [&](const std::string& what) {
-      throw InputError(fmt::format("{}: stations[{}]: {} stands there twice", file, i, what));
+      throw InputError(fmt::format("{}: stations[{}]: {}: duplicate", file, i, what));
     };
     if (!names.insert(stations[i].name).second) refuse("name " + stations[i].name);
     if (!numbers.insert(stations[i].number).second) refuse(fmt::format("number {}", stations[i].number));
@@ -57,7 +57,7 @@ std::vector<UwbAnchor> read_anchors(const std::string& place, const Json& json) 
     const JsonObject reader(fmt::format("{}: anchors[{}]", place, i), json[i], {"number", "position"});
     const std::vector<double> p = reader.numbers("position", 3);
     anchors.push_back({.number = reader.integer("number"), .p_m = {p[0], p[1], p[2]}});
-    if (!numbers.insert(anchors.back().number).second) reader.fail(fmt::format("number {} stands there twice", anchors.back().number));
+    if (!numbers.insert(anchors.back().number).second) reader.fail(fmt::format("number {}: duplicate", anchors.back().number));
   }
   return anchors;
 }
@@ -69,10 +69,10 @@ Dock read_dock(const std::string& place, const Json& json) {
 
 TunnelLining read_lining(const std::string& file, const Json& json) {
   const std::string place = file + ": lining";
-  const JsonObject reader(place, json, {"position", "orientation", "axis", "crown_radius", "crown_centre", "side_radius", "first_ring",
+  const JsonObject reader(place, json, {"position", "orientation", "axis", "crown_radius", "crown_center", "side_radius", "first_ring",
                                         "ring_length", "rings"});
   TunnelLining lining{.T_route_start = reader.pose(), .axis = {}, .crown_radius_m = reader.number("crown_radius"),
-                      .crown_center_m = reader.number("crown_centre"), .side_radius_m = reader.number("side_radius"),
+                      .crown_center_m = reader.number("crown_center"), .side_radius_m = reader.number("side_radius"),
                       .first_ring_m = reader.number("first_ring"), .ring_length_m = reader.number("ring_length"), .rings = reader.integer("rings")};
   const Json& axis = reader.list("axis");
   for (std::size_t i = 0; i < axis.size(); ++i) {

@@ -21,7 +21,7 @@ TeleopWaypoint read_waypoint(const std::string& place, const Json& json) {
   if (reader.has("mark_heading_deg")) {
     waypoint.is_goal = true;
     const double heading_deg = reader.number("mark_heading_deg");
-    if (std::abs(heading_deg) > 360.0) reader.fail("mark_heading_deg must lie in -360 ... 360");
+    if (std::abs(heading_deg) > 360.0) reader.fail("mark_heading_deg must be in [-360, 360]");
     waypoint.heading_rad = to_rad(heading_deg);
   }
   return waypoint;
@@ -40,7 +40,7 @@ TeleopRoute load_teleop_route(const std::filesystem::path& file) {
     const std::string place = fmt::format("{}: waypoints[{}]", file.string(), i);
     drive.push_back(read_waypoint(place, waypoints[i]));
     if (i > 0 && (drive[i].p_m - drive[i - 1].p_m).norm() > kMaxLeg_m) {
-      throw InputError(fmt::format("{}: position lies more than {} m from the one before", place, kMaxLeg_m));
+      throw InputError(fmt::format("{}: position is more than {} m from the one before", place, kMaxLeg_m));
     }
   }
   if (drive.size() < 2) root.fail("waypoints must be at least two");

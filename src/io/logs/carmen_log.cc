@@ -67,7 +67,7 @@ bool are_equal(const Pose2& a, const Pose2& b, double tol_m, double tol_rad) {
 CarmenLog::CarmenLog(const std::filesystem::path& file, const ScanLogOptions& options)
     : options_(options), lines_(file), laser_(options.carmen_laser.empty() ? choose_laser(file) : options.carmen_laser) {}
 
-std::string CarmenLog::place() const { return fmt::format("{}:{}: ", lines_.file().string(), line_); }
+std::string CarmenLog::location() const { return fmt::format("{}:{}: ", lines_.file().string(), line_); }
 
 std::optional<RecordedScan> CarmenLog::next() {
   while (true) {
@@ -88,25 +88,25 @@ bool CarmenLog::read_line() {
   try {
     read_message(*line);
   } catch (const ParseError& error) {
-    reject_or_skip(options_, "lines that cannot be read", place() + error.what());
+    reject_or_skip(options_, "unreadable lines", location() + error.what());
   }
   return true;
 }
 
 void CarmenLog::finish() {
   is_at_end_ = true;
-  if (lines_.read_error()) reject_or_skip(options_, "file ends too early", fmt::format("{}: {} after line {}", lines_.file().string(), *lines_.read_error(), line_));
+  if (lines_.read_error()) reject_or_skip(options_, "unexpected end of file", fmt::format("{}: {} after line {}", lines_.file().string(), *lines_.read_error(), line_));
   if (summary_.num_scans == 0 && sorter_.is_empty()) {
-    throw InputError(fmt::format("{}: holds no scan ({}): FLASER or ROBOTLASER1 are read", lines_.file().string(), counted(summary_)));
+    throw InputError(fmt::format("{}: contains no scan ({}): must contain FLASER, ROBOTLASER1 or RAWLASER1", lines_.file().string(), counted(summary_)));
   }
 }
 
 void CarmenLog::read_message(const LineReader::Line& line) {
-  if (line.is_cut) throw ParseError(fmt::format("the line is longer than {} bytes", LineReader::kMaxLineBytes));
+  if (line.is_cut) throw ParseError(fmt::format("line longer than {} bytes", LineReader::kMaxLineBytes));
   LineTokenizer words(line.text);
   if (words.is_empty() || line.text.front() == '#') return;
-  const std::string_view name = words.word("the message's name");
-  if (!is_message_name(name)) throw ParseError("does not begin with a message's name, as FLASER or ODOM");
+  const std::string_view name = words.word("message name");
+  if (!is_message_name(name)) throw ParseError("must begin with a message name such as FLASER or ODOM");
   const std::string_view contents = line.text.substr(static_cast<std::size_t>(name.data() - line.text.data()) + name.size());
   const std::optional<CarmenLaserFamily> family = carmen_laser_family(name);
   if (family && laser_.empty()) laser_ = name;
@@ -136,11 +136,11 @@ double CarmenLog::parameter(const std::string& name, double otherwise) const {
 
 void CarmenLog::add(CarmenScan scan) {
   if (!scan.T_odom_body) {
-    if (!odometry_) return count_skipped("scans before the first ODOM", place() + laser_ + ": has no pose, and no ODOM came before it");
+    if (!odometry_) return count_skipped("scans before the first ODOM", location() + laser_ + ": no pose and no preceding ODOM");
     scan.T_odom_body = odometry_->T_odom_body;
   }
   const Pose2 T_odom_body = *scan.T_odom_body, T_body_lidar = mount_of(scan);
-  sort_in(sorter_, {.scan = to_laser_scan(std::move(scan)), .T_odom_body = T_odom_body, .T_body_lidar = T_body_lidar}, options_, place() + laser_);
+  sort_in(sorter_, {.scan = to_laser_scan(std::move(scan)), .T_odom_body = T_odom_body, .T_body_lidar = T_body_lidar}, options_, location() + laser_);
 }
 
 /// Returns the mount of the lidar from the parameters. The rear lidar of CARMEN points backward, and its offset is
@@ -158,7 +158,7 @@ Pose2 CarmenLog::mount_of(const CarmenScan& scan) {
   const bool is_uninformative = are_equal(T_body_lidar, {}, kEqualPoses, kEqualPoses);
   if (!T_body_lidar_) T_body_lidar_ = is_uninformative || T_body_lidar.position().norm() > kMaxMount_m ? parameter_mount() : T_body_lidar;
   const bool is_elsewhere = !is_uninformative && !are_equal(T_body_lidar, *T_body_lidar_, kSameMount_m, kSameMountRad);
-  if (is_elsewhere) ++summary_.assumed["scans: the lidar is where the first scan has it"];
+  if (is_elsewhere) ++summary_.assumed["scans: lidar pose of the first scan"];
   return *T_body_lidar_;
 }
 

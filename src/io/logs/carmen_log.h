@@ -42,7 +42,7 @@ class CarmenLog : public ScanLog {
   double old_step_deg(std::size_t num_beams, std::size_t num_steps) const;
   LaserScan to_laser_scan(CarmenScan scan) const;
   double parameter(const std::string& name, double otherwise) const;
-  std::string place() const;
+  std::string location() const;
   void finish();
 
   ScanLogOptions options_;

@@ -18,7 +18,7 @@ constexpr double kMaxAngleRad = 7.0;         ///< one turn plus rounding
 /// Checks the number of remaining words before any of them is interpreted.
 void expect_word_count(const LineTokenizer& fields, std::size_t expected, const char* after) {
   const std::size_t words = fields.num_words();
-  if (words != expected) throw ParseError(fmt::format("holds {} words after its {}, must be {}: cut off, or wrongly counted", words, after, expected));
+  if (words != expected) throw ParseError(fmt::format("{} words after the {}: must be {}", words, after, expected));
 }
 
 std::size_t read_count(LineTokenizer& fields, const char* what, std::int64_t min) {
@@ -29,7 +29,7 @@ std::size_t read_count(LineTokenizer& fields, const char* what, std::int64_t min
 template <typename Number>
 std::vector<Number> read_numbers(LineTokenizer& fields, std::size_t count, const char* what) {
   const std::size_t words = fields.num_words();
-  if (count > words) throw ParseError(fmt::format("holds {} words after its {} {}s: cut off, or wrongly counted", words, count, what));
+  if (count > words) throw ParseError(fmt::format("{} words left for {} {}s: too few", words, count, what));
   std::vector<Number> numbers;
   numbers.reserve(count);
   for (std::size_t i = 0; i < count; ++i) numbers.push_back(static_cast<Number>(fields.any_number(what)));
@@ -37,8 +37,8 @@ std::vector<Number> read_numbers(LineTokenizer& fields, std::size_t count, const
 }
 
 void read_poses(LineTokenizer& fields, CarmenScan& scan) {
-  scan.T_odom_lidar = fields.pose("the laser's pose");
-  scan.T_odom_body = fields.pose("the robot's pose");
+  scan.T_odom_lidar = fields.pose("laser pose");
+  scan.T_odom_body = fields.pose("robot pose");
 }
 
 /// Returns a refined angle increment. Angles in the file have six decimal digits, whose rounding adds up to hundredths
@@ -58,7 +58,7 @@ double exact_increment(double step_rad, double field_of_view_rad, std::size_t nu
 void read_new_scan(LineTokenizer& fields, CarmenScan& scan) {
   const auto angle = [&](const char* what) {
     const double value = fields.number(what);
-    if (std::abs(value) > kMaxAngleRad) throw ParseError(fmt::format("{} of {} rad is more than a turn", what, value));
+    if (std::abs(value) > kMaxAngleRad) throw ParseError(fmt::format("{} = {} rad: exceeds one revolution", what, value));
     return value;
   };
   fields.number("laser_type");
@@ -101,7 +101,7 @@ CarmenScan parse_carmen_scan(CarmenLaserFamily family, std::string_view contents
     expect_word_count(fields, (has_poses ? 2 * kPoseWords + kDriveWords : 0) + kTailWords, "remissions");
     if (has_poses) {
       read_poses(fields, scan);
-      for (std::size_t i = 0; i < kDriveWords; ++i) fields.any_number("a number of the drive");
+      for (std::size_t i = 0; i < kDriveWords; ++i) fields.any_number("drive value");
     }
   }
   scan.stamp = fields.stamp("ipc_timestamp");
@@ -112,7 +112,7 @@ CarmenOdometry parse_carmen_odometry(std::string_view contents) {
   LineTokenizer fields(contents);
   expect_word_count(fields, kPoseWords + 3 + kTailWords, "name");
   CarmenOdometry odometry;
-  odometry.T_odom_body = fields.pose("the robot's pose");
+  odometry.T_odom_body = fields.pose("robot pose");
   for (const char* const what : {"tv", "rv", "accel"}) fields.any_number(what);
   odometry.stamp = fields.stamp("ipc_timestamp");
   return odometry;
@@ -120,8 +120,8 @@ CarmenOdometry parse_carmen_odometry(std::string_view contents) {
 
 CarmenParameter parse_carmen_parameter(std::string_view contents) {
   LineTokenizer fields(contents);
-  const std::string_view name = fields.word("the parameter's name");
-  return {.name = name, .value = fields.is_empty() ? std::string_view{} : fields.word("the parameter's value")};
+  const std::string_view name = fields.word("parameter name");
+  return {.name = name, .value = fields.is_empty() ? std::string_view{} : fields.word("parameter value")};
 }
 
 }  // namespace patrol::io

@@ -68,9 +68,9 @@ std::optional<LogDifference> first_difference(const std::filesystem::path& log, 
     if (const auto difference = message_difference(*was, *is)) return difference;
   }
   if (before.is_complete() != after.is_complete()) {
-    return LogDifference{"", {}, fmt::format("the same messages, but the {} was cut off", after.is_complete() ? "log" : "other log")};
+    return LogDifference{"", {}, fmt::format("identical messages, but the {} is truncated", after.is_complete() ? "log" : "other log")};
   }
-  return LogDifference{"", {}, "the same messages in another packing"};
+  return LogDifference{"", {}, "identical messages, packed differently"};
 }
 
 std::string describe(const LogDifference& difference) {

@@ -22,18 +22,18 @@ constexpr const char* kTfStaticSuffix = "/tf_static";
 
 void expect_pose(const Pose3& pose, const char* whose) {
   const bool is_pose = pose.position.allFinite() && pose.position.cwiseAbs().maxCoeff() <= kMaxPoseDistance_m && std::abs(pose.rotation.norm() - 1.0) <= kQuaternionTol;
-  if (!is_pose) throw DecodeError(fmt::format("{} is no pose: not finite, or its quaternion not of length 1", whose));
+  if (!is_pose) throw DecodeError(fmt::format("{}: invalid pose: must be finite, with a unit quaternion", whose));
 }
 
 Pose3 normalized(const Pose3& pose) { return {pose.position, pose.rotation.normalized()}; }
 
 void expect_scan(const LaserScan& scan) {
   const std::size_t num_beams = scan.ranges_m.size();
-  if (num_beams == 0 || num_beams > kMaxBeams) throw DecodeError(fmt::format("a scan of {} beams: must be 1 ... {}", num_beams, kMaxBeams));
+  if (num_beams == 0 || num_beams > kMaxBeams) throw DecodeError(fmt::format("scan with {} beams: must be in [1, {}]", num_beams, kMaxBeams));
   const double span_rad = std::abs(scan.angle_increment_rad) * static_cast<double>(num_beams);
   const bool has_angles = std::abs(scan.angle_min_rad) <= kMaxScanAngle_rad && span_rad <= kMaxScanAngle_rad;
-  if (!has_angles) throw DecodeError("a scan of more than a turn");
-  if (!std::isfinite(scan.time_increment_s) || !std::isfinite(scan.scan_time_s)) throw DecodeError("a scan whose times are not finite");
+  if (!has_angles) throw DecodeError("scan angles exceed one revolution");
+  if (!std::isfinite(scan.time_increment_s) || !std::isfinite(scan.scan_time_s)) throw DecodeError("scan times must be finite");
 }
 
 /// Returns the time of the last beam, or of the first if the scan has no plausible beam times.
@@ -67,7 +67,7 @@ McapScanLog::McapScanLog(const std::filesystem::path& file, const ScanLogOptions
       imu_topic_(options.imu_topic),
       gyro_(gyro_bias_radps) {}
 
-std::string McapScanLog::place(const McapMessage& message) const {
+std::string McapScanLog::location(const McapMessage& message) const {
   return fmt::format("{}: {} at {:.9f} s: ", file_.string(), message.channel.topic, to_seconds(message.log_time));
 }
 
@@ -98,7 +98,7 @@ std::optional<McapMessage> McapScanLog::next_message() {
     } catch (const InputError& error) {  // the message contains the byte offset
       if (damaged_at_ == reader_.progress()) return std::nullopt;
       damaged_at_ = reader_.progress();
-      reject_or_skip(options_, "damaged parts of the file", error.what());
+      reject_or_skip(options_, "damaged file sections", error.what());
     }
   }
 }
@@ -110,7 +110,7 @@ bool McapScanLog::read_message() {
   try {
     handle(*message);
   } catch (const DecodeError& error) {
-    reject_or_skip(options_, "messages that cannot be read", place(*message) + error.what());
+    reject_or_skip(options_, "unreadable messages", location(*message) + error.what());
   }
   return true;
 }
@@ -138,7 +138,7 @@ void McapScanLog::add_scan(const McapMessage& message) {
   waiting_.push_back(std::move(waiting));
   if (waiting_.size() > kMaxWaiting) {
     waiting_.pop_front();
-    count_skipped("scans without odometry", place(message) + "no odometry at the time of a scan long before it");
+    count_skipped("scans without odometry", location(message) + "no odometry at the stamp of an earlier scan");
   }
   resolve_waiting();
 }
@@ -157,15 +157,15 @@ void McapScanLog::add_odometry(const McapMessage& message) {
 
 void McapScanLog::add_imu(const McapMessage& message) {
   const Imu imu = decode<Imu>(message.cdr);
-  if (!(imu.angular_velocity_radps.norm() <= kMaxRateRadps)) throw DecodeError("an IMU whose rates are not finite, or no robot's");
+  if (!(imu.angular_velocity_radps.norm() <= kMaxRateRadps)) throw DecodeError("IMU rates not finite or implausible");
   const std::optional<Pose3> T_body_imu = sensor_pose_in_body(frame_id_of(message.cdr), imu.stamp);
-  if (!T_body_imu && options_.imu == "on") ++summary_.assumed["IMU messages: the IMU is level (no transform says how it sits)"];
+  if (!T_body_imu && options_.imu == "on") ++summary_.assumed["IMU messages: IMU mounted level (no transform)"];
   gyro_.add(imu.stamp, T_body_imu ? (T_body_imu->rotation * imu.angular_velocity_radps).z() : imu.angular_velocity_radps.z());
 }
 
 void McapScanLog::add_transforms(const McapMessage& message, bool is_static) {
   for (FrameTransform& transform : decode<TransformSet>(message.cdr).transforms) {
-    expect_pose(transform.T_parent_child, "a transform");
+    expect_pose(transform.T_parent_child, "transform");
     transform.T_parent_child = normalized(transform.T_parent_child);
     is_static ? frames_.add_static(transform) : frames_.add(transform);
   }
@@ -196,8 +196,8 @@ void McapScanLog::add_with_pose(WaitingScan waiting, const Pose2& T_odom_body, c
 }
 
 std::optional<Pose3> McapScanLog::sensor_pose_in_body(const std::string& frame, Time stamp) const {
-  const std::optional<Pose3> place = frames_.find(body_frame_.empty() ? frame_id::kBody : body_frame_, frame, stamp);
-  return place ? place : frames_.find(frame_id::kBody, frame, stamp);
+  const std::optional<Pose3> T_frame = frames_.find(body_frame_.empty() ? frame_id::kBody : body_frame_, frame, stamp);
+  return T_frame ? T_frame : frames_.find(frame_id::kBody, frame, stamp);
 }
 
 /// Returns the mount of the lidar. Reverses the beams of a lidar mounted upside down, so that the planar pose is
@@ -205,7 +205,7 @@ std::optional<Pose3> McapScanLog::sensor_pose_in_body(const std::string& frame, 
 Pose3 McapScanLog::mount_of(WaitingScan& waiting) {
   const std::optional<Pose3> T_body_lidar = sensor_pose_in_body(waiting.frame, waiting.scan.stamp);
   if (!T_body_lidar) {
-    ++summary_.assumed["scans: the lidar is at the body's origin (no transform says where)"];
+    ++summary_.assumed["scans: lidar at the body origin (no transform)"];
     return {};
   }
   const bool is_upside_down = (T_body_lidar->rotation * Eigen::Vector3d::UnitZ()).z() < 0.0;
@@ -220,23 +220,23 @@ void McapScanLog::report_gyro() {
   if (options_.imu != "on" || imu_topic_.empty() || is_gyro_reported_) return;
   is_gyro_reported_ = true;
   const std::optional<double> bias_radps = gyro_.bias_radps();
-  std::string how = bias_radps ? fmt::format("bias {:.5f} rad/s from {:.0f} s of standing", *bias_radps, gyro_.stationary_s()) : "the robot is not seen standing: its bias is taken as none";
-  if (bias_radps && gyro_.motion_without_bias_s() > 0.0) how += fmt::format(", the first {:.0f} s of way without it", gyro_.motion_without_bias_s());
-  if (gyro_.uncovered_s() > 0.0) how += fmt::format("; {:.1f} s that it does not cover turn by odometry", gyro_.uncovered_s());
-  add_found(fmt::format("odometry turns by the gyro of {}: {} (log.imu)", imu_topic_, how));
+  std::string how = bias_radps ? fmt::format("bias {:.5f} rad/s from {:.0f} s at rest", *bias_radps, gyro_.stationary_s()) : "robot never at rest: zero bias assumed";
+  if (bias_radps && gyro_.motion_without_bias_s() > 0.0) how += fmt::format(", first {:.0f} s of motion not corrected", gyro_.motion_without_bias_s());
+  if (gyro_.uncovered_s() > 0.0) how += fmt::format("; {:.1f} s without gyro data use odometry yaw", gyro_.uncovered_s());
+  add_found(fmt::format("odometry yaw replaced by the gyro of {}: {} (log.imu)", imu_topic_, how));
 }
 
 void McapScanLog::finish() {
   is_at_end_ = true;
   resolve_waiting();
-  if (!reader_.is_complete()) count_skipped("file ends too early", file_.string() + ": was cut off: read up to the cut");
+  if (!reader_.is_complete()) count_skipped("unexpected end of file", file_.string() + ": truncated; read up to the last complete record");
   const std::size_t without_odometry = waiting_.size();
   for (; !waiting_.empty(); waiting_.pop_front()) {
-    count_skipped("scans without odometry", fmt::format("{}: no odometry at the scan of {:.9f} s", file_.string(), to_seconds(waiting_.front().scan.stamp)));
+    count_skipped("scans without odometry", fmt::format("{}: no odometry at the stamp of the scan, {:.9f} s", file_.string(), to_seconds(waiting_.front().scan.stamp)));
   }
   if (summary_.num_scans > 0 || !sorter_.is_empty()) return;
-  const char* const what = without_odometry > 0 ? "holds no odometry at its scans' times: nav_msgs/msg/Odometry, or tf odom -> base_link, is read"
-                                                : "holds no scan: sensor_msgs/msg/LaserScan is read";
+  const char* const what = without_odometry > 0 ? "no odometry overlaps the scans: must contain nav_msgs/msg/Odometry or tf odom -> base_link"
+                                                : "contains no scan: must contain sensor_msgs/msg/LaserScan";
   throw InputError(fmt::format("{}: {} ({})", file_.string(), what, counted(summary_)));
 }
 

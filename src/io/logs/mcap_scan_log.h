@@ -55,7 +55,7 @@ class McapScanLog : public ScanLog {
   Pose3 mount_of(WaitingScan& waiting);
   void report_gyro();
   void finish();
-  std::string place(const McapMessage& message) const;
+  std::string location(const McapMessage& message) const;
 
   std::filesystem::path file_;
   ScanLogOptions options_;

@@ -44,7 +44,7 @@ struct FirstPass {
 
 /// Runs the first pass over a log. Errors in the file are ignored here and reported by the actual pass.
 FirstPass run_first_pass(const std::filesystem::path& file, ScanLogOptions options) {
-  options.skip_bad_lines = true;
+  options.skip_invalid = true;
   options.no_return_m = kMaxNoReturn_m;
   const std::unique_ptr<ScanLog> log = make_log(file, options, {});
   NoReturnDetector finder;
@@ -63,15 +63,15 @@ FirstPass run_first_pass(const std::filesystem::path& file, ScanLogOptions optio
 
 /// Returns the options changed by the results of the first pass, which are also described in `found`.
 ScanLogOptions apply_first_pass(const FirstPass& first_pass, ScanLogOptions options, std::vector<std::string>& found) {
-  if (options.finds_no_return && first_pass.no_return && first_pass.no_return->range_m <= options.no_return_m) {
+  if (options.detect_no_return && first_pass.no_return && first_pass.no_return->range_m <= options.no_return_m) {
     options.no_return_m = first_pass.no_return->range_m * (1.0 - 1e-6);  // margin for the rounded digits in the file
-    found.push_back(fmt::format("{:.4g} m is no return: {} readings from {} places are it to the bit (log.finds_no_return)", first_pass.no_return->range_m,
+    found.push_back(fmt::format("{:.4g} m encodes no return: {} identical readings at {} positions (log.detect_no_return)", first_pass.no_return->range_m,
                                 first_pass.no_return->num_readings, first_pass.no_return->num_positions));
   }
   if (options.imu != "auto") return options;
   options.imu = first_pass.gyro == GyroConsistency::kContradicts ? "on" : "off";
-  if (first_pass.gyro == GyroConsistency::kAgrees) found.push_back("odometry turns as the gyro does: it is kept (log.imu)");
-  if (first_pass.gyro == GyroConsistency::kUnrelated) found.push_back("odometry's turns and the gyro's have little in common: the gyro is not used (log.imu)");
+  if (first_pass.gyro == GyroConsistency::kAgrees) found.push_back("odometry yaw agrees with the gyro: odometry kept unchanged (log.imu)");
+  if (first_pass.gyro == GyroConsistency::kUnrelated) found.push_back("odometry yaw and gyro are uncorrelated: gyro not used (log.imu)");
   return options;
 }
 
@@ -83,7 +83,7 @@ void ScanLog::count_ignored(const std::string& name) {
 }
 
 void ScanLog::reject_or_skip(const ScanLogOptions& options, const std::string& reason, const std::string& warning) {
-  if (!options.skip_bad_lines) throw InputError(warning);
+  if (!options.skip_invalid) throw InputError(warning);
   count_skipped(reason, warning);
 }
 
@@ -92,13 +92,13 @@ void ScanLog::count_skipped(const std::string& reason, const std::string& warnin
   if (summary_.warnings.size() < kMaxWarnings) summary_.warnings.push_back(warning);
 }
 
-void ScanLog::sort_in(ScanSorter& sorter, RecordedScan scan, const ScanLogOptions& options, const std::string& place) {
+void ScanLog::sort_in(ScanSorter& sorter, RecordedScan scan, const ScanLogOptions& options, const std::string& location) {
   const Time stamp = scan.scan.stamp;
   const ScanSorter::Order order = sorter.add(std::move(scan));
   if (order == ScanSorter::Order::kReordered) ++summary_.num_reordered;
   if (order != ScanSorter::Order::kTooLate) return;
-  reject_or_skip(options, "scans whose time goes back",
-                 fmt::format("{}: time goes back to {:.6f} s, but {:.6f} s was {} scans ago: too late to put them in order", place, to_seconds(stamp),
+  reject_or_skip(options, "scans out of order",
+                 fmt::format("{}: stamp {:.6f} s after {:.6f} s, more than {} scans late: cannot be sorted", location, to_seconds(stamp),
                              to_seconds(*sorter.last_taken()), ScanSorter::kWindow));
 }
 
@@ -118,10 +118,10 @@ std::string counted(const ScanLogSummary& summary) {
 
 std::string to_text(const ScanLogSummary& summary) {
   std::string text = fmt::format("{} scans", summary.num_scans);
-  if (summary.num_reordered > 0) text += fmt::format(", {} put in order of time", summary.num_reordered);
-  if (summary.num_same_stamp > 0) text += fmt::format(", {} with the stamp of the one before", summary.num_same_stamp);
+  if (summary.num_reordered > 0) text += fmt::format(", {} sorted by stamp", summary.num_reordered);
+  if (summary.num_same_stamp > 0) text += fmt::format(", {} with the stamp of the previous scan", summary.num_same_stamp);
   text += "\n";
-  for (const std::string& what : summary.found) text += "found: " + what + "\n";
+  for (const std::string& what : summary.found) text += "detected: " + what + "\n";
   if (!summary.assumed.empty()) text += "assumed: " + counts(summary.assumed) + "\n";
   if (!summary.ignored.empty()) text += "ignored: " + counts(summary.ignored) + "\n";
   if (!summary.skipped.empty()) text += "skipped: " + counts(summary.skipped) + "\n";
@@ -131,7 +131,7 @@ std::string to_text(const ScanLogSummary& summary) {
 
 std::unique_ptr<ScanLog> open_scan_log(const std::filesystem::path& file, const ScanLogOptions& options) {
   validate(options, "log");
-  const bool needs_look = options.finds_no_return || options.imu != "off";
+  const bool needs_look = options.detect_no_return || options.imu != "off";
   const FirstPass first_pass = needs_look ? run_first_pass(file, options) : FirstPass{};
   std::vector<std::string> found;
   std::unique_ptr<ScanLog> log = make_log(file, apply_first_pass(first_pass, options, found), first_pass.gyro_bias_radps);

@@ -16,9 +16,9 @@
 namespace patrol::io {
 
 struct ScanLogOptions {
-  bool skip_bad_lines = false;   ///< count and skip unreadable records instead of throwing
+  bool skip_invalid = false;   ///< count and skip unreadable records instead of throwing
   double no_return_m = 80.0;     ///< ranges from here on, or from the maximum of the sensor, are "no return"
-  bool finds_no_return = true;   ///< detect a range value in the log that encodes "no return" (io/logs/no_return_detector.h)
+  bool detect_no_return = true;   ///< detect a range value in the log that encodes "no return" (io/logs/no_return_detector.h)
   std::string carmen_laser;      ///< message with the scans, e.g. "FLASER"; empty: the most informative one in the log
   std::string scan_topic;        ///< MCAP only; empty: topic of the first scan
   std::string odometry_topic;    ///< MCAP only; empty: topic of the first odometry message, or tf if there is none
@@ -29,9 +29,9 @@ struct ScanLogOptions {
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("skip_bad_lines", self.skip_bad_lines);
+    visit("skip_invalid", self.skip_invalid);
     visit("no_return_m", self.no_return_m, between(0.1, 1e4));
-    visit("finds_no_return", self.finds_no_return);
+    visit("detect_no_return", self.detect_no_return);
     visit("carmen_laser", self.carmen_laser, one_of({"", "ROBOTLASER1", "FLASER", "RAWLASER1", "RLASER", "ROBOTLASER2", "RAWLASER2"}));
     visit("scan_topic", self.scan_topic);
     visit("odometry_topic", self.odometry_topic);
@@ -54,7 +54,7 @@ struct ScanLogSummary {
   std::vector<std::string> warnings;           ///< first errors of skipped records, each with its position
 };
 
-/// Formats the statistics of a file without scans: "12 lines, 3 SYNC, 4 lines that cannot be read".
+/// Formats the statistics of a file without scans: "12 lines, 3 SYNC, 4 unreadable lines".
 std::string counted(const ScanLogSummary& summary);
 
 /// Formats the statistics in a few lines for a terminal.
@@ -87,12 +87,12 @@ class ScanLog {
 
  protected:
   void count_ignored(const std::string& name);
-  /// Throws InputError(complaint), or counts it if `skip_bad_lines` is set.
+  /// Throws InputError(complaint), or counts it if `skip_invalid` is set.
   void reject_or_skip(const ScanLogOptions& options, const std::string& reason, const std::string& warning);
   void count_skipped(const std::string& reason, const std::string& warning);
-  /// Adds a scan to the sorter; rejects or skips one that is too late for sorting. `place`: prefix of the error
+  /// Adds a scan to the sorter; rejects or skips one that is too late for sorting. `location`: prefix of the error
   /// message.
-  void sort_in(ScanSorter& sorter, RecordedScan scan, const ScanLogOptions& options, const std::string& place);
+  void sort_in(ScanSorter& sorter, RecordedScan scan, const ScanLogOptions& options, const std::string& location);
   void count_returned(const RecordedScan& scan);
 
   ScanLogSummary summary_;

@@ -67,12 +67,12 @@ Image load_pgm(const std::filesystem::path& file) {
   Image image{.width = pgm_number(in), .height = pgm_number(in), .pixels = {}};
   const int maximum = pgm_number(in);
   if ((magic != "P5" && magic != "P2") || maximum != kMaxPixelValue) refuse("is not an 8-bit PGM");
-  if (image.width <= 0 || image.height <= 0) refuse(fmt::format("is {} x {} pixels: holds no map", image.width, image.height));
+  if (image.width <= 0 || image.height <= 0) refuse(fmt::format("is {} x {} pixels: contains no map", image.width, image.height));
   // Each pixel takes at least one byte of the file: check the size before memory is allocated.
   const std::size_t count = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
   const std::string pixels = fmt::format("{} x {} pixels", image.width, image.height);
   if (count > size) refuse("ends too early for " + pixels);
-  if (count > kMaxPixels) refuse(fmt::format("has {}: at most {} are read", pixels, kMaxPixels));
+  if (count > kMaxPixels) refuse(fmt::format("has {}: at most {} are allowed", pixels, kMaxPixels));
   image.pixels.resize(count);
   in.get();
   if (magic == "P5") in.read(reinterpret_cast<char*>(image.pixels.data()), static_cast<std::streamsize>(count));
@@ -84,7 +84,7 @@ Image load_pgm(const std::filesystem::path& file) {
   }
   if (!in) refuse("ends too early for " + pixels);
   if (magic == "P2") in >> std::ws;
-  if (in.peek() != std::istringstream::traits_type::eof()) refuse("holds more than its " + pixels);
+  if (in.peek() != std::istringstream::traits_type::eof()) refuse("has data after its " + pixels);
   return image;
 }
 
@@ -123,11 +123,11 @@ MapFile load_map_file(const std::filesystem::path& file) {
   MapFile map;
   SettingsReader::read_section(file.string(), document, "", map);
   if (map.origin.size() != 3) refuse("origin", "must be three numbers: x, y, yaw");
-  if (map.origin[2] != 0.0) refuse("origin", "a turned map (yaw other than 0) is not read");
+  if (map.origin[2] != 0.0) refuse("origin", "rotated maps (yaw other than 0) are not supported");
   if (map.free_thresh > map.occupied_thresh) refuse("free_thresh", "must not be above occupied_thresh");
   const std::filesystem::path image = file.parent_path() / map.image;
   std::error_code ignored;  // error for an invalid name
-  if (!std::filesystem::is_regular_file(image, ignored)) refuse("image", "there is no file " + image.string());
+  if (!std::filesystem::is_regular_file(image, ignored)) refuse("image", "file not found: " + image.string());
   map.image = image.string();
   return map;
 }

@@ -76,12 +76,12 @@ GridHeader read_grid_header(Lines& lines) {
       } else {
         lines.refuse(fmt::format("{}: must be one of type, height, width, map", key));
       }
-      if (!fields.is_empty()) lines.refuse(fmt::format("{}: holds more than one value", key));
+      if (!fields.is_empty()) lines.refuse(fmt::format("{}: must be a single value", key));
     } catch (const ParseError& error) {
       lines.refuse(error.what());
     }
   }
-  lines.refuse_file("holds no map");
+  lines.refuse_file("contains no map");
 }
 
 std::vector<std::string_view> split_words(std::string_view text) {
@@ -99,7 +99,7 @@ std::vector<std::string_view> split_words(std::string_view text) {
 MovingAiProblem parse_problem(std::string_view text) {
   constexpr std::size_t kNumFields = 9;
   const std::vector<std::string_view> fields = split_words(text);
-  if (fields.size() != kNumFields) throw ParseError(fmt::format("holds {} fields", fields.size()));
+  if (fields.size() != kNumFields) throw ParseError(fmt::format("has {} fields", fields.size()));
   const auto integer = [&](std::size_t index, const char* what, int min, int max) {
     return static_cast<int>(LineTokenizer(fields[index]).integer(what, min, max));
   };
@@ -136,7 +136,7 @@ MovingAiMap load_moving_ai_map(const std::filesystem::path& file) {
   Lines lines(file);
   const GridHeader header = read_grid_header(lines);
   const auto width = static_cast<std::size_t>(header.width), height = static_cast<std::size_t>(header.height);
-  if (width * height > kMaxCells) lines.refuse(fmt::format("map: {} x {} cells, at most {} are read", width, height, kMaxCells));
+  if (width * height > kMaxCells) lines.refuse(fmt::format("map: {} x {} cells, at most {} are allowed", width, height, kMaxCells));
   std::vector<char> from_top;  // grows with the data, not with the size in the header
   for (std::size_t row = 0; row < height; ++row) {
     const auto text = lines.next();
@@ -144,7 +144,7 @@ MovingAiMap load_moving_ai_map(const std::filesystem::path& file) {
     if (text->size() != width) lines.refuse(fmt::format("row {}: has {} cells, must have {}", row, text->size(), width));
     for (const char terrain : *text) {
       if (is_one_of(terrain, kLand) || is_one_of(terrain, kWater) || is_one_of(terrain, kBlocked)) continue;
-      lines.refuse(fmt::format("row {}: holds the character {}, must be of . G S W @ O T", row, static_cast<int>(static_cast<unsigned char>(terrain))));
+      lines.refuse(fmt::format("row {}: invalid character {}, must be of . G S W @ O T", row, static_cast<int>(static_cast<unsigned char>(terrain))));
     }
     from_top.insert(from_top.end(), text->begin(), text->end());
   }
@@ -183,7 +183,7 @@ std::vector<MovingAiProblem> load_moving_ai_problems(const std::filesystem::path
       lines.refuse(fmt::format("{}: a problem is bucket, map, width, height, start x, y, goal x, y, optimal length", error.what()));
     }
   }
-  if (problems.empty()) lines.refuse_file("holds no problems");
+  if (problems.empty()) lines.refuse_file("contains no problems");
   return problems;
 }
 

@@ -11,7 +11,7 @@
 /// content (uint64) and the content. Numbers are little-endian; strings are preceded by their length (uint32).
 namespace patrol::io::mcap {
 
-static_assert(std::endian::native == std::endian::little, "numbers are copied as they lie in memory");
+static_assert(std::endian::native == std::endian::little, "numbers are copied in the byte order of the memory");
 
 inline constexpr std::string_view kMagic{"\x89MCAP0\r\n", 8};
 inline constexpr std::size_t kRecordHeadSize = 1 + 8;
@@ -69,7 +69,7 @@ class FormatError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Parser of the content of a record. Throws Damage if the content is too short.
+/// Parser of the content of a record. Throws FormatError if the content is too short.
 class RecordReader {
  public:
   explicit RecordReader(std::string_view bytes) : bytes_(bytes) {}

@@ -26,7 +26,7 @@ void expect_size(std::uint64_t size, const char* what) {
 std::string unpack_zstd(std::string_view packed, std::uint64_t size) {
   std::string unpacked(size, '\0');
   const std::size_t got = ZSTD_decompress(unpacked.data(), unpacked.size(), packed.data(), packed.size());
-  if (ZSTD_isError(got) != 0 || got != size) throw mcap::FormatError("a chunk cannot be unpacked");
+  if (ZSTD_isError(got) != 0 || got != size) throw mcap::FormatError("chunk cannot be decompressed");
   return unpacked;
 }
 
@@ -43,7 +43,7 @@ std::string unpack_lz4(std::string_view packed, std::uint64_t size) {
     written += room;
     done += taken;
   }
-  if (hint != 0 || written != size) throw mcap::FormatError("a chunk cannot be unpacked");
+  if (hint != 0 || written != size) throw mcap::FormatError("chunk cannot be decompressed");
   return unpacked;
 }
 
@@ -93,7 +93,7 @@ void McapReader::find_footer() {
 
 void McapReader::read_summary(std::uint64_t start, std::uint64_t end) {
   record_start_ = start;
-  if (start > end) throw mcap::FormatError("the summary lies outside the file");
+  if (start > end) throw mcap::FormatError("summary is outside the file");
   expect_size(end - start, "the summary");
   const std::string bytes = read_bytes(start, end - start);
   mcap::RecordReader records(bytes);
@@ -137,7 +137,7 @@ void McapReader::add_schema(mcap::RecordReader content) {
 void McapReader::add_channel(mcap::RecordReader content) {
   const auto id = content.number<std::uint16_t>();
   const auto schema = schemas_.find(content.number<std::uint16_t>());
-  if (schema == schemas_.end()) throw mcap::FormatError("a channel of an unknown schema");
+  if (schema == schemas_.end()) throw mcap::FormatError("channel with an unknown schema");
   channels_[id] = {.topic = content.text(), .type = schema->second.type, .definition = schema->second.definition};
 }
 
@@ -204,7 +204,7 @@ bool McapReader::read_record() {
 
 std::optional<McapMessage> McapReader::read_message(mcap::RecordReader content) {
   const auto channel = channels_.find(content.number<std::uint16_t>());
-  if (channel == channels_.end()) throw mcap::FormatError("a message of an unknown channel");
+  if (channel == channels_.end()) throw mcap::FormatError("message with an unknown channel");
   content.number<std::uint32_t>();  // sequence
   const Time log_time = to_time(content.number<std::uint64_t>());
   content.number<std::uint64_t>();  // publish time
@@ -224,10 +224,10 @@ std::string McapReader::unpack_chunk(mcap::RecordReader content) const {
   if (compression.empty()) unpacked = packed;
   else if (compression == "zstd") unpacked = unpack_zstd(packed, size);
   else if (compression == "lz4") unpacked = unpack_lz4(packed, size);
-  else throw mcap::FormatError("compression " + compression + " is not known (zstd and lz4 are)");
+  else throw mcap::FormatError("unknown compression '" + compression + "' (known: zstd, lz4)");
 
   const auto actual = crc32(0, reinterpret_cast<const Bytef*>(unpacked.data()), static_cast<uInt>(unpacked.size()));
-  if (crc != 0 && crc != actual) throw mcap::FormatError("a chunk's checksum is wrong");
+  if (crc != 0 && crc != actual) throw mcap::FormatError("wrong checksum of a chunk");
   return unpacked;
 }
 

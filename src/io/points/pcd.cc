@@ -13,8 +13,8 @@
 namespace patrol::io {
 namespace {
 
-constexpr std::int64_t kMostPcdPoints = 1'000'000'000;
-constexpr std::size_t kMostPcdFields = 1000;
+constexpr std::int64_t kMaxPcdPoints = 1'000'000'000;
+constexpr std::size_t kMaxPcdFields = 1000;
 constexpr std::int64_t kMaxFieldCount = 100'000;
 
 struct PcdHeader {
@@ -28,7 +28,7 @@ struct PcdHeader {
 
 void read_values(FileText& text, const std::string& key, LineTokenizer& fields, PcdHeader& header) {
   if (key == "FIELDS") {
-    if (fields.num_words() > kMostPcdFields) text.refuse(fmt::format("FIELDS has more than {} words", kMostPcdFields));
+    if (fields.num_words() > kMaxPcdFields) text.refuse(fmt::format("FIELDS has more than {} words", kMaxPcdFields));
     while (!fields.is_empty()) header.columns.push_back({.name = std::string(fields.word("name"))});
   } else if (key == "SIZE") {
     while (!fields.is_empty()) header.sizes.push_back(static_cast<std::size_t>(fields.integer("SIZE", 1, 8)));
@@ -40,15 +40,15 @@ void read_values(FileText& text, const std::string& key, LineTokenizer& fields, 
       header.columns[i].count = static_cast<std::size_t>(fields.integer("COUNT", 1, kMaxFieldCount));
     }
   } else if (key == "WIDTH") {
-    header.width = fields.integer("WIDTH", 0, kMostPcdPoints);
+    header.width = fields.integer("WIDTH", 0, kMaxPcdPoints);
   } else if (key == "HEIGHT") {
-    header.height = fields.integer("HEIGHT", 0, kMostPcdPoints);
+    header.height = fields.integer("HEIGHT", 0, kMaxPcdPoints);
   } else if (key == "POINTS") {
-    header.points = fields.integer("POINTS", 0, kMostPcdPoints);
+    header.points = fields.integer("POINTS", 0, kMaxPcdPoints);
   } else if (key == "DATA") {
     header.data = fields.word("DATA");
   } else if (key != "VERSION" && key != "VIEWPOINT") {
-    text.refuse("is no line of a PCD header");
+    text.refuse("is not a line of a PCD header");
   }
 }
 
@@ -69,7 +69,7 @@ void set_types(FileText& text, PcdHeader& header) {
   }
   for (std::size_t i = 0; i < header.columns.size(); ++i) {
     const auto type = type_of(header.types[i], header.sizes[i]);
-    if (!type) text.refuse(fmt::format("TYPE and SIZE of field {} do not go together", i + 1));
+    if (!type) text.refuse(fmt::format("TYPE and SIZE of field {} are inconsistent", i + 1));
     header.columns[i].type = *type;
   }
 }
@@ -90,7 +90,7 @@ PcdHeader read_pcd_header(FileText& text) {
   }
   set_types(text, header);
   if (header.data != "ascii" && header.data != "binary") text.refuse("DATA must be ascii or binary");
-  if (header.height > 0 && header.width > kMostPcdPoints / header.height) text.refuse("WIDTH x HEIGHT is too large");
+  if (header.height > 0 && header.width > kMaxPcdPoints / header.height) text.refuse("WIDTH x HEIGHT is too large");
   const std::int64_t points = header.width * header.height;
   if (header.points.value_or(points) != points) text.refuse(fmt::format("POINTS is {}, WIDTH x HEIGHT {}", *header.points, points));
   return header;

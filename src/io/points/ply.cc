@@ -12,8 +12,8 @@
 namespace patrol::io {
 namespace {
 
-constexpr std::int64_t kMostPlyPoints = 1'000'000'000;
-constexpr std::size_t kMostPlyProperties = 1000;
+constexpr std::int64_t kMaxPlyPoints = 1'000'000'000;
+constexpr std::size_t kMaxPlyProperties = 1000;
 
 const std::map<std::string_view, NumberType> kPlyTypes = {
     {"char", NumberType::kInt8},      {"int8", NumberType::kInt8},     {"uchar", NumberType::kUint8},   {"uint8", NumberType::kUint8},
@@ -30,15 +30,15 @@ struct PlyHeader {
 
 PointColumn read_property(FileText& text, LineTokenizer& fields) {
   const std::string type(fields.word("type"));
-  if (type == "list") text.refuse("a list among the properties of vertex is not read");
+  if (type == "list") text.refuse("list properties of vertex are not supported");
   const auto known = kPlyTypes.find(type);
-  if (known == kPlyTypes.end()) text.refuse("a property of a type that PLY does not know");
+  if (known == kPlyTypes.end()) text.refuse("property of unknown type");
   return {.name = std::string(fields.word("name")), .type = known->second};
 }
 
 void read_element(FileText& text, LineTokenizer& fields, PlyHeader& header) {
   const std::string_view name = fields.word("name");
-  const std::int64_t count = fields.integer("count", 0, kMostPlyPoints);
+  const std::int64_t count = fields.integer("count", 0, kMaxPlyPoints);
   if (header.num_elements++ > 0) return;
   if (name != "vertex") text.refuse("the first element must be vertex");
   header.num_points = static_cast<std::size_t>(count);
@@ -55,12 +55,12 @@ bool read_header_line(FileText& text, std::string_view line, PlyHeader& header) 
   } else if (key == "element") {
     read_element(text, fields, header);
   } else if (key == "property") {
-    if (header.num_elements == 0) text.refuse("a property of no element");
+    if (header.num_elements == 0) text.refuse("property before the first element");
     if (header.num_elements > 1) return false;
-    if (header.columns.size() >= kMostPlyProperties) text.refuse(fmt::format("vertex has more than {} properties", kMostPlyProperties));
+    if (header.columns.size() >= kMaxPlyProperties) text.refuse(fmt::format("vertex has more than {} properties", kMaxPlyProperties));
     header.columns.push_back(read_property(text, fields));
   } else if (key != "comment" && key != "obj_info") {
-    text.refuse("is no line of a PLY header");
+    text.refuse("is not a line of a PLY header");
   }
   return false;
 }
@@ -70,16 +70,16 @@ PlyHeader read_ply_header(FileText& text) {
   PlyHeader header;
   for (bool is_over = false; !is_over;) {
     const auto line = text.next_line();
-    if (!line) text.refuse("the header has no end");
+    if (!line) text.refuse("the header is incomplete");
     try {
       is_over = read_header_line(text, *line, header);
     } catch (const ParseError& error) {
       text.refuse(error.what());
     }
   }
-  if (header.num_elements == 0) text.refuse("the header names no element");
+  if (header.num_elements == 0) text.refuse("the header contains no element");
   if (header.format != "ascii" && header.format != "binary_little_endian") {
-    text.refuse("the format is not read (ascii and binary_little_endian are)");
+    text.refuse("unsupported format (known: ascii, binary_little_endian)");
   }
   return header;
 }

@@ -73,7 +73,7 @@ std::size_t bytes_of(NumberType type) {
 FileText::FileText(const std::filesystem::path& file) : file_(file.string()) {
   std::error_code is_no_file;  // set if there is no file; the size is then undefined
   if (const std::uintmax_t size = std::filesystem::file_size(file, is_no_file); !is_no_file && size > kMaxBytes) {
-    throw InputError(fmt::format("{}: is larger than {} bytes: not read", file_, kMaxBytes));
+    throw InputError(fmt::format("{}: is larger than {} bytes", file_, kMaxBytes));
   }
   text_ = load_text(file);
 }
@@ -95,7 +95,7 @@ PointTable::PointTable(FileText& text, std::vector<PointColumn> columns, std::si
   for (const PointColumn& column : columns_) {
     for (std::size_t i = 0; i < kNames.size(); ++i) {
       if (column.name != kNames[i]) continue;
-      if (sources_[i]) text_.refuse(fmt::format("{} stands there twice", column.name));
+      if (sources_[i]) text_.refuse(fmt::format("{}: duplicate column", column.name));
       sources_[i] = Source{.byte = row_bytes_, .number = row_numbers_, .type = column.type};
     }
     row_bytes_ += column.count * bytes_of(column.type);
@@ -141,7 +141,7 @@ std::vector<ScannerPoint> PointTable::read_ascii() {
           if (sources_[k] && sources_[k]->number == number) numbers[k] = value;
         }
       }
-      if (!fields.is_empty()) text_.refuse(fmt::format("holds more than {} numbers", row_numbers_));
+      if (!fields.is_empty()) text_.refuse(fmt::format("more than {} numbers", row_numbers_));
       if (!make_point(numbers, point)) text_.refuse("is not finite");
     } catch (const ParseError&) {
       text_.refuse(fmt::format("must be {} numbers", row_numbers_));
@@ -154,7 +154,7 @@ void PointTable::expect_end() const {
   const std::string_view rest = text_.rest().substr(num_bytes_read_);
   const bool is_binary = num_bytes_read_ > 0;
   if (is_binary ? !rest.empty() : rest.find_first_not_of(" \t\r\n") != std::string_view::npos) {
-    throw InputError(fmt::format("{}: holds more than its {} points", text_.file(), num_points_));
+    throw InputError(fmt::format("{}: has data after its {} points", text_.file(), num_points_));
   }
 }
 

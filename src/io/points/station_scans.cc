@@ -40,7 +40,7 @@ std::vector<Entry> load_index(const std::filesystem::path& folder) {
     const JsonObject reader(fmt::format("{}: [{}]", file.string(), i), json[i], {"station", "position", "orientation"});
     Entry entry{.station = reader.string("station"), .T_map_scanner = to_pose3(reader.pose(), reader.numbers("position", 3)[2])};
     if (!is_plain(entry.station)) reader.fail(fmt::format("station = {}: must be made of letters, digits and underlines", entry.station));
-    if (!stations.insert(entry.station).second) reader.fail(fmt::format("station {} stands there twice", entry.station));
+    if (!stations.insert(entry.station).second) reader.fail(fmt::format("station {}: duplicate", entry.station));
     entries.push_back(std::move(entry));
   }
   return entries;

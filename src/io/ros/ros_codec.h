@@ -12,13 +12,14 @@
 
 #include "io/ros/ros_messages.h"
 
-/// How ros_messages.h's encode and decode are made: for the files that describe messages, each in a function `describe(codec, message)` in this namespace.
+/// Building blocks of `encode` and `decode` (ros_messages.h), for the files that describe the fields of messages. Each
+/// message has a function `describe(codec, message)` in this namespace.
 namespace patrol::io::ros {
 
 using eprosima::fastcdr::Cdr;
 using eprosima::fastcdr::FastBuffer;
 
-/// One description of a message's fields serves both ways: `codec(field)` writes the field or fills it.
+/// Codec that writes: `codec(field)` serializes the field. One description of the fields serves Writer and Reader.
 struct Writer {
   Cdr& cdr;
   const RosNames& names;
@@ -27,6 +28,7 @@ struct Writer {
   void operator()(T& value) { cdr << value; }
 };
 
+/// Codec that reads: `codec(field)` fills the field.
 struct Reader {
   Cdr& cdr;
   RosNames names{};
@@ -51,7 +53,7 @@ void header(Codec& codec, Time& stamp, std::string frame) {
   codec(frame);
 }
 
-/// A double of ours that is a float32 in ROS.
+/// Field that is double in the program and float32 in ROS.
 template <typename Codec>
 void float_field(Codec& codec, double& value) {
   auto single = static_cast<float>(value);
@@ -82,7 +84,7 @@ void pose2(Codec& codec, Pose2& pose) {
   if constexpr (!Codec::kWrites) pose = to_pose2(spatial);
 }
 
-/// The covariance of x, y, yaw inside ROS's 6 x 6 of x, y, z, roll, pitch, yaw.
+/// Covariance of x, y, yaw within the 6 x 6 covariance of x, y, z, roll, pitch, yaw of ROS.
 template <typename Codec>
 void planar_covariance(Codec& codec, Eigen::Matrix3d& covariance) {
   constexpr std::array<std::size_t, 3> kRows = {0, 1, 5};
@@ -102,7 +104,7 @@ void twist3(Codec& codec, Twist3& twist) {
   vector3(codec, twist.angular);
 }
 
-/// ROS's variable-length lists of messages.
+/// List of messages of variable length.
 template <typename Codec, typename Element, typename Describe>
 void list(Codec& codec, std::vector<Element>& elements, const Describe& describe) {
   auto count = static_cast<std::uint32_t>(elements.size());
@@ -114,7 +116,7 @@ void list(Codec& codec, std::vector<Element>& elements, const Describe& describe
   }
 }
 
-/// A field of a sensor_msgs/PointCloud2.
+/// Field of a sensor_msgs/PointCloud2.
 struct CloudField {
   std::string name;
   std::uint32_t offset = 0;
@@ -123,7 +125,7 @@ struct CloudField {
 };
 inline constexpr std::uint8_t kFloat32 = 7, kUint16 = 4;
 
-/// What stands between a PointCloud2's header and its data.
+/// Fields of a PointCloud2 between its header and its data.
 template <typename Codec>
 void cloud_layout(Codec& codec, std::uint32_t num_points, const std::uint32_t step, std::vector<CloudField> fields) {
   std::uint32_t height = 1;
@@ -140,7 +142,7 @@ void cloud_layout(Codec& codec, std::uint32_t num_points, const std::uint32_t st
   codec(is_big_endian);
   codec(point_step);
   codec(row_step);
-  if (point_step != step) throw DecodeError("a point cloud of another layout than ours");
+  if (point_step != step) throw DecodeError("unsupported layout of a point cloud");
 }
 
 inline void read_head(Reader& reader, std::string& frame) {
@@ -149,7 +151,7 @@ inline void read_head(Reader& reader, std::string& frame) {
   reader(frame);
 }
 
-/// Hands the bytes to `read`. Throws DecodeError "not a <type>: ...".
+/// Calls `read` with a reader of the bytes. Throws DecodeError "not a <type>: ...".
 template <typename Read>
 void read_cdr(std::string_view bytes, const char* type, const Read& read) {
   try {
@@ -163,7 +165,7 @@ void read_cdr(std::string_view bytes, const char* type, const Read& read) {
   }
 }
 
-/// Returns how many bytes it has written.
+/// Serializes a message and returns the number of bytes written.
 template <typename Message>
 std::size_t serialize(Message& message, const RosNames& names, FastBuffer& buffer) {
   Cdr cdr(buffer, Cdr::LITTLE_ENDIANNESS, Cdr::DDS_CDR);
@@ -177,7 +179,7 @@ std::size_t serialize(Message& message, const RosNames& names, FastBuffer& buffe
 
 namespace patrol::io {
 
-// Twice: Fast-CDR leaves its padding as it finds it, so the bytes must be zero before, and to that end be counted.
+// Serialized twice: Fast-CDR does not write padding, so the buffer must be zero before, and its size must be known.
 template <typename Message>
 std::string encode(const Message& message, const RosNames& names) {
   Message copy = message;
@@ -197,12 +199,13 @@ Message decode(std::string_view bytes) {
 
 }  // namespace patrol::io
 
-/// Makes both for a message that is described above.
+/// Instantiates `encode` and `decode` of a message with a `describe` function above.
 #define PATROL_ROS_MESSAGE(Message)                                     \
   template std::string encode(const Message&, const RosNames&);         \
   template Message decode<Message>(std::string_view)
 
-/// Makes both for a sensor's message, with the fields of its ROS type; "" for a type of ros_definitions.cc.
+/// Instantiates `encode` and `decode` of a sensor message. `fields`: fields of its ROS type; "" for a type of
+/// ros_definitions.cc.
 #define PATROL_ROS_SENSOR(Message, fields)            \
   template <>                                         \
   std::string_view ros_message_fields<Message>() {    \

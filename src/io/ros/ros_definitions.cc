@@ -12,8 +12,8 @@
 namespace patrol::io {
 namespace {
 
-/// Fields of each type, as in ROS 2's common_interfaces; comments left out. Ours carry their units. Those of a sensor's own type are
-/// beside its codec (ros_message_fields).
+/// Fields of a type, as in common_interfaces of ROS 2, without comments; fields of patrol_msgs have units. The fields of
+/// sensor types are next to their codecs (ros_message_fields).
 struct Definition {
   std::string_view type, fields;
 };
@@ -53,44 +53,44 @@ constexpr Definition kDefinitions[] = {
     {"nav_msgs/Path", "std_msgs/Header header\ngeometry_msgs/PoseStamped[] poses\n"},
     {"nav2_msgs/Particle", "geometry_msgs/Pose pose\nfloat64 weight\n"},
     {"nav2_msgs/ParticleCloud", "std_msgs/Header header\nnav2_msgs/Particle[] particles\n"},
-    {"patrol_msgs/ScanCommand", "# One panoramic scan, now.\nstd_msgs/Header header\n"},
-    {"patrol_msgs/AntennaCommand", "# Turn the antenna there.\nstd_msgs/Header header\nfloat64 yaw_rad\nfloat64 pitch_rad\n"},
-    {"patrol_msgs/SoundingCommand", "# One sounding, now.\nstd_msgs/Header header\n"},
+    {"patrol_msgs/ScanCommand", "# Request for one panoramic scan.\nstd_msgs/Header header\n"},
+    {"patrol_msgs/AntennaCommand", "# Orientation of the antenna.\nstd_msgs/Header header\nfloat64 yaw_rad\nfloat64 pitch_rad\n"},
+    {"patrol_msgs/SoundingCommand", "# Request for one sounding.\nstd_msgs/Header header\n"},
     {"patrol_msgs/WarningCommand", "# Warning light and siren.\nstd_msgs/Header header\nbool light\nbool siren\n"},
     {"patrol_msgs/LiningCell",
-     "# A ring's lining in one direction, against the reference scan; inwards is positive.\n"
+     "# Displacement of one cell of a lining ring, relative to the reference scan; inward is positive.\n"
      "int32 ring\nfloat64 clock_deg\nfloat64 inward_m\nfloat64 std_m\nint32 points\n"},
-    {"patrol_msgs/ConvergenceLine", "# A chord between two marks of a ring; longer is positive.\nint32 ring\nstring name\nfloat64 change_m\nfloat64 std_m\n"},
+    {"patrol_msgs/ConvergenceLine", "# Change in length of a chord between two points of a ring; lengthening is positive.\nint32 ring\nstring name\nfloat64 change_m\nfloat64 std_m\n"},
     {"patrol_msgs/RingFinding",
      "uint8 NONE=0\nuint8 NOTICE=1\nuint8 WARNING=2\nuint8 ALARM=3\n"
-     "int32 ring\nfloat64 clock_deg\nfloat64 inward_m\nfloat64 std_m\nuint8 level\ngeometry_msgs/Point place\n"},
+     "int32 ring\nfloat64 clock_deg\nfloat64 inward_m\nfloat64 std_m\nuint8 level\ngeometry_msgs/Point position\n"},
     {"patrol_msgs/LiningResult",
-     "# The lining about a station, from one panoramic scan and the reference scan; pose of the body in map.\n"
+     "# Lining deformation around a station, from a panoramic scan and the reference scan; pose of the body in map.\n"
      "std_msgs/Header header\nstring station\ngeometry_msgs/Pose pose\nbool is_registered\nfloat64 registration_rms_m\n"
-     "float64 registration_share\nfloat64 correction_m\npatrol_msgs/LiningCell[] cells\npatrol_msgs/ConvergenceLine[] lines\n"
+     "float64 registration_inlier_ratio\nfloat64 correction_m\npatrol_msgs/LiningCell[] cells\npatrol_msgs/ConvergenceLine[] lines\n"
      "patrol_msgs/RingFinding[] findings\n"},
     {"patrol_msgs/WaterResult",
      "# Water ahead of the face, from the soundings of one station (src/core/inspection_result.h).\n"
      "uint8 NONE=0\nuint8 NOTICE=1\nuint8 WARNING=2\nuint8 ALARM=3\n"
      "std_msgs/Header header\nstring station\ngeometry_msgs/Pose pose\nint32 soundings\nfloat64 antenna_error_deg\nfloat64 rock_spm\n"
-     "float64 evidence\nbool is_found\nuint8 level\ngeometry_msgs/Point place\nfloat64[9] covariance_m2\nfloat64 distance_m\n"
+     "float64 evidence\nbool is_found\nuint8 level\ngeometry_msgs/Point position\nfloat64[9] covariance_m2\nfloat64 distance_m\n"
      "float64 distance_low_m\nfloat64 distance_high_m\nfloat64 azimuth_deg\nfloat64 elevation_deg\nfloat64 radius_m\n"
      "float64 radius_low_m\nfloat64 radius_high_m\n"},
-    {"patrol_msgs/LocalizationTrust",
-     "# trust 0 (lost) ... 1 (sure); standard deviation along the weakest direction, and that direction in map.\n"
-     "std_msgs/Header header\nfloat64 trust\nfloat64 weak_std_m\nfloat64 weak_direction_rad\nbool is_lost\n"},
+    {"patrol_msgs/LocalizationConfidence",
+     "# Confidence 0 (lost) ... 1 (certain); largest principal standard deviation of the position, and its direction in map.\n"
+     "std_msgs/Header header\nfloat64 confidence\nfloat64 max_std_m\nfloat64 max_std_direction_rad\nbool is_lost\n"},
     {"patrol_msgs/Event",
-     "# Something that happened in the mission; pose is where the robot believed it was, target where that is; in map.\n"
+     "# Event of the mission; pose: estimated pose of the robot, target: position of the object; in map.\n"
      "std_msgs/Header header\nstring kind\nstring subject\nstring text\nfloat64 value\ngeometry_msgs/Pose pose\n"
      "geometry_msgs/Point target\n"},
     {"patrol_msgs/SimState",
-     "# MuJoCo's qpos, and per mocap body x y z qw qx qy qz, for the replay.\n"
+     "# State of the simulator for the replay: qpos of MuJoCo, and x y z qw qx qy qz of each mocap body.\n"
      "std_msgs/Header header\nfloat64[] qpos\nfloat64[] mocap\n"},
     {"patrol_msgs/Collision",
-     "# The robot's geom `first` touched `second`.\nstd_msgs/Header header\nstring first\nstring second\n"},
+     "# Contact of geom `first` of the robot with geom `second`.\nstd_msgs/Header header\nstring first\nstring second\n"},
 };
 
-/// "sensor_msgs/msg/Imu" -> "sensor_msgs/Imu"; empty if it is no ROS 2 type name.
+/// Converts "sensor_msgs/msg/Imu" to "sensor_msgs/Imu"; empty if the text is not a ROS 2 type name.
 std::string short_type(const std::string& type) {
   const std::size_t middle = type.find("/msg/");
   return middle == std::string::npos ? "" : type.substr(0, middle) + type.substr(middle + 4);
@@ -108,7 +108,7 @@ std::string_view fields_of(std::string_view type) {
   return fields;
 }
 
-/// "sensor_msgs/Imu[]" -> "sensor_msgs/Imu"; empty for primitives.
+/// Converts "sensor_msgs/Imu[]" to "sensor_msgs/Imu"; empty for primitives.
 std::string used_type(const std::string& field_type) {
   const std::string type = field_type.substr(0, field_type.find('['));
   return type.find('/') == std::string::npos ? "" : type;

@@ -4,8 +4,8 @@
 
 namespace patrol::io {
 
-/// The full text of a ROS 2 message definition as MCAP wants it: the type's own, then those of everything it uses.
-/// `type` is written "sensor_msgs/msg/LaserScan". An unknown type is a mistake of ours: std::logic_error.
+/// Returns the text of a ROS 2 message definition in the format of MCAP: the definition of the type, then those of all
+/// types that it uses. `type`: e.g. "sensor_msgs/msg/LaserScan". Throws std::logic_error for an unknown type.
 std::string ros_definition(const std::string& type);
 
 }  // namespace patrol::io

@@ -22,11 +22,11 @@ enum class Count { kOne, kFixed, kSequence };
 struct Member {
   std::string type, name;
   Count count = Count::kOne;
-  std::size_t size = 1;  ///< of a fixed array
+  std::size_t size = 1;  ///< size of a fixed array
 };
 using Types = std::map<std::string, std::vector<Member>>;
 
-/// "float64[36] covariance" -> a member; constants and comments give none.
+/// Parses a line such as "float64[36] covariance" to a member; constants and comments are skipped.
 void parse_line(const std::string& line, std::vector<Member>& members) {
   const std::string code = line.substr(0, line.find('#'));
   if (code.find('=') != std::string::npos) return;
@@ -44,7 +44,7 @@ void parse_line(const std::string& line, std::vector<Member>& members) {
   members.push_back(std::move(member));
 }
 
-/// The definition's parts: its own type first, then "====" and "MSG: pkg/Type" before each type it uses.
+/// Parses a definition: the fields of its own type, then "====" and "MSG: pkg/Type" before the fields of each used type.
 Types parse_definition(const std::string& type, const std::string& definition) {
   Types types;
   std::string current = type;
@@ -67,7 +67,7 @@ class FieldReader {
 
   void read_message(const std::string& type, const std::string& prefix) {
     const auto members = types_.find(type);
-    if (members == types_.end()) throw InputError("the message definition does not say what " + type + " is");
+    if (members == types_.end()) throw InputError("message definition: type not found: " + type);
     for (const Member& member : members->second) {
       const std::string path = prefix.empty() ? member.name : prefix + "." + member.name;
       if (member.count == Count::kOne) {

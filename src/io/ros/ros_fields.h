@@ -6,14 +6,14 @@
 
 namespace patrol::io {
 
-/// One plain value inside a ROS 2 message: "header.stamp.sec" and "12", "ranges[417]" and "3.25".
+/// Primitive value in a ROS 2 message: "header.stamp.sec" and "12", "ranges[417]" and "3.25".
 struct RosField {
   std::string path;
   std::string value;
 };
 
-/// Every plain value of a CDR message, in order, by its definition alone (as MCAP carries it); `type` as "pkg/msg/Type".
-/// Throws InputError when the bytes do not fit the definition.
+/// Returns all primitive values of a CDR message in order, by its definition as in MCAP. `type`: "pkg/msg/Type".
+/// Throws InputError when the bytes do not match the definition.
 std::vector<RosField> ros_fields(const std::string& type, const std::string& definition, std::string_view cdr);
 
 }  // namespace patrol::io

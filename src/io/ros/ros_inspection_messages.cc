@@ -1,4 +1,4 @@
-// The inspection: its instruments, what is asked of them, and what was found.
+// Codecs of the inspection messages: instrument readings, instrument commands and results.
 #include <cstring>
 
 #include "io/ros/ros_codec.h"
@@ -64,7 +64,7 @@ void describe(Codec& codec, WarningCommand& command) {
 }
 
 template <typename Codec>
-void whole(Codec& codec, int& value) {
+void integer(Codec& codec, int& value) {
   auto number = static_cast<std::int32_t>(value);
   codec(number);
   value = number;
@@ -74,7 +74,7 @@ template <typename Codec>
 void level_field(Codec& codec, WarningLevel& level) {
   auto number = static_cast<std::uint8_t>(level);
   codec(number);
-  if (number > static_cast<std::uint8_t>(WarningLevel::kAlarm)) throw DecodeError("a warning level that is not known");
+  if (number > static_cast<std::uint8_t>(WarningLevel::kAlarm)) throw DecodeError("unknown warning level");
   level = static_cast<WarningLevel>(number);
 }
 
@@ -85,23 +85,23 @@ void describe(Codec& codec, LiningResult& result) {
   pose2(codec, result.T_map_body);
   codec(result.is_registered);
   codec(result.registration_rms_m);
-  codec(result.registration_share);
+  codec(result.registration_inlier_ratio);
   codec(result.correction_m);
   list(codec, result.cells, [&](LiningCell& cell) {
-    whole(codec, cell.ring);
+    integer(codec, cell.ring);
     codec(cell.clock_deg);
     codec(cell.inward_m);
     codec(cell.std_m);
-    whole(codec, cell.points);
+    integer(codec, cell.points);
   });
   list(codec, result.lines, [&](ConvergenceLine& line) {
-    whole(codec, line.ring);
+    integer(codec, line.ring);
     codec(line.name);
     codec(line.change_m);
     codec(line.std_m);
   });
   list(codec, result.findings, [&](RingFinding& finding) {
-    whole(codec, finding.ring);
+    integer(codec, finding.ring);
     codec(finding.clock_deg);
     codec(finding.inward_m);
     codec(finding.std_m);
@@ -115,7 +115,7 @@ void describe(Codec& codec, WaterResult& result) {
   header(codec, result.stamp, frame_id::kMap);
   codec(result.station);
   pose2(codec, result.T_map_body);
-  whole(codec, result.soundings);
+  integer(codec, result.soundings);
   codec(result.antenna_error_deg);
   codec(result.rock_spm);
   codec(result.evidence);
@@ -138,10 +138,10 @@ namespace patrol::io {
 
 PATROL_ROS_SENSOR(PanoramicScan, "");
 PATROL_ROS_SENSOR(AntennaState,
-                  "# What the servos of the antenna mount read back: to the left, then downwards.\n"
+                  "# Servo readings of the antenna mount: yaw, positive to the left, and pitch, positive downward.\n"
                   "std_msgs/Header header\nfloat64 yaw_rad\nfloat64 pitch_rad\n");
 PATROL_ROS_SENSOR(TemSounding,
-                  "# After the current is off: -dB/dt along the coil's axis, T/s, at the gates' middles, and its standard deviation.\n"
+                  "# -dB/dt along the coil axis after the turn-off of the current, T/s, at the gate centers, and its standard deviation.\n"
                   "std_msgs/Header header\nfloat64 moment_am2\nfloat64[] gate_s\nfloat64[] rate_tps\nfloat64[] std_tps\n");
 PATROL_ROS_MESSAGE(ScanCommand);
 PATROL_ROS_MESSAGE(AntennaCommand);

@@ -1,4 +1,4 @@
-// What the stack and the truth say, and what is read of messages without knowing them whole.
+// Codecs of the messages of the stack and of the ground truth, and readers of single fields of a message.
 #include "io/ros/ros_codec.h"
 
 #include <cmath>
@@ -81,10 +81,10 @@ void describe(Codec& codec, MapUpdate& update) {
   std::vector<std::int8_t> cells = update.map.values();
   codec(cells);
   if constexpr (!Codec::kWrites) {
-    // A float32 cannot hold 0.05: back to the tenth of a millimetre that was meant.
+    // A float32 cannot represent 0.05: round to the tenth of a millimeter.
     geometry = {.resolution_m = std::round(geometry.resolution_m * 1e4) / 1e4, .width = static_cast<int>(width),
                 .height = static_cast<int>(height), .origin_m = origin.position.head<2>()};
-    if (cells.size() != geometry.size()) throw DecodeError("a map whose cells do not fit its size");
+    if (cells.size() != geometry.size()) throw DecodeError("number of map cells does not match its size");
     update.map = OccupancyGrid(geometry);
     update.map.values() = std::move(cells);
   }

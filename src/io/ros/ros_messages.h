@@ -9,12 +9,12 @@
 #include "core/messages.h"
 #include "core/sensors/registry.h"
 
-/// Our messages as ROS 2 messages: the type that stands for each, and its CDR encoding (little-endian XCDR1 with its
-/// four-byte header). Every pair of `encode` and `decode` is one description of the fields, in ros_messages.cc,
+/// Conversion of messages to ROS 2 messages: the ROS type of each message and its CDR encoding (little-endian XCDR1 with
+/// its four-byte header). `encode` and `decode` share one description of the fields, in ros_messages.cc,
 /// ros_sensor_messages.cc, ros_inspection_messages.cc and, one file for each further sensor, sensors/<name>.cc.
 namespace patrol::io {
 
-/// A transform of /tf and /tf_static.
+/// Transform of /tf and /tf_static.
 struct FrameTransform {
   Time stamp{};
   std::string parent, child;
@@ -34,7 +34,7 @@ template <> inline constexpr const char* kRosType<SoundingCommand> = "patrol_msg
 template <> inline constexpr const char* kRosType<WarningCommand> = "patrol_msgs/msg/WarningCommand";
 template <> inline constexpr const char* kRosType<LiningResult> = "patrol_msgs/msg/LiningResult";
 template <> inline constexpr const char* kRosType<WaterResult> = "patrol_msgs/msg/WaterResult";
-template <> inline constexpr const char* kRosType<LocalizationConfidence> = "patrol_msgs/msg/LocalizationTrust";
+template <> inline constexpr const char* kRosType<LocalizationConfidence> = "patrol_msgs/msg/LocalizationConfidence";
 template <> inline constexpr const char* kRosType<OdometryEstimate> = "nav_msgs/msg/Odometry";
 template <> inline constexpr const char* kRosType<UwbPoseEstimate> = "geometry_msgs/msg/PoseWithCovarianceStamped";
 template <> inline constexpr const char* kRosType<PoseEstimate> = "geometry_msgs/msg/PoseWithCovarianceStamped";
@@ -48,7 +48,7 @@ template <> inline constexpr const char* kRosType<SimState> = "patrol_msgs/msg/S
 template <> inline constexpr const char* kRosType<Collision> = "patrol_msgs/msg/Collision";
 template <> inline constexpr const char* kRosType<TransformSet> = "tf2_msgs/msg/TFMessage";
 
-/// Names that ROS messages carry and ours do not.
+/// Names that ROS messages contain and messages of the program do not.
 struct RosNames {
   std::vector<std::string> joints;
 };
@@ -56,11 +56,12 @@ struct RosNames {
 template <typename Message>
 std::string encode(const Message& message, const RosNames& names = {});
 
-/// Fields of a sensor message's ROS type as in its .msg file, beside its codec; empty if ros_definitions.cc has them.
+/// Returns the fields of the ROS type of a sensor message, in the format of a .msg file; empty if ros_definitions.cc
+/// contains them.
 template <IsSensorMessage Message>
 std::string_view ros_message_fields();
 
-/// The bytes are not such a message.
+/// Bytes that are not a message of the expected type.
 class DecodeError : public InputError {
  public:
   using InputError::InputError;
@@ -70,10 +71,10 @@ class DecodeError : public InputError {
 template <typename Message>
 Message decode(std::string_view cdr);
 
-/// header.frame_id of a message that begins with a header. Throws DecodeError.
+/// Returns header.frame_id of a message that begins with a header. Throws DecodeError.
 std::string frame_id_of(std::string_view cdr);
 
-/// The frames of a nav_msgs/Odometry: header.frame_id and child_frame_id. Throws DecodeError.
+/// Frames of a nav_msgs/Odometry: header.frame_id and child_frame_id.
 struct OdometryFrames {
   std::string frame, child;
 };

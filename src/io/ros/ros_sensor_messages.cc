@@ -1,4 +1,4 @@
-// What sensors and the person at the remote control say.
+// Codecs of sensor messages and teleoperation commands.
 #include "io/ros/ros_codec.h"
 
 #include <cmath>
@@ -25,7 +25,7 @@ void describe(Codec& codec, LaserScan& scan) {
 template <typename Codec>
 void describe(Codec& codec, PointCloud& cloud) {
   header(codec, cloud.stamp, "lidar3d");
-  // Packed as LIO-SAM has it: x y z intensity (float32), ring (uint16), time (float32).
+  // Point layout of LIO-SAM: x y z intensity (float32), ring (uint16), time (float32).
   constexpr std::uint32_t kStep = 22;
   cloud_layout(codec, static_cast<std::uint32_t>(cloud.points.size()), kStep,
                {{"x", 0, kFloat32}, {"y", 4, kFloat32}, {"z", 8, kFloat32}, {"intensity", 12, kFloat32}, {"ring", 16, kUint16}, {"time", 18, kFloat32}});
@@ -144,7 +144,7 @@ void describe(Codec& codec, UltrasonicRange& range) {
   if constexpr (!Codec::kWrites) {
     const std::string number = frame.starts_with(prefix) ? frame.substr(prefix.size()) : "";
     if (number.empty() || number.size() > 4 || number.find_first_not_of("0123456789") != std::string::npos) {
-      throw DecodeError("a range of a frame that is not ultrasonic_<number>");
+      throw DecodeError("unknown frame of an ultrasonic range: must be ultrasonic_<number>");
     }
     range.transducer = std::stoi(number);
   }
@@ -172,7 +172,7 @@ void describe(Codec& codec, DepthImage& image) {
   if constexpr (Codec::kWrites) std::memcpy(bytes.data(), image.depth_mm.data(), bytes.size());
   codec(bytes);
   if constexpr (!Codec::kWrites) {
-    if (bytes.size() != std::size_t{2} * width * height) throw DecodeError("an image whose pixels do not fit its size");
+    if (bytes.size() != std::size_t{2} * width * height) throw DecodeError("number of pixels does not match the image size");
     image.width = static_cast<int>(width);
     image.height = static_cast<int>(height);
     image.depth_mm.resize(bytes.size() / 2);
@@ -210,7 +210,7 @@ PATROL_ROS_SENSOR(JointState,
 PATROL_ROS_SENSOR(FootContacts,
                   "# Force on each foot's sensor, N, in the order FL, FR, RL, RR.\nstd_msgs/Header header\nfloat64[] force_n\n");
 PATROL_ROS_SENSOR(GasReading,
-                  "# Open-path methane meter: column along the beam, length of the beam (inf: no echo), mean as mass of methane.\n"
+                  "# Open-path methane meter: column along the beam, length of the beam (inf: no return), mean as mass of methane.\n"
                   "std_msgs/Header header\nfloat64 column_ppm_m\nfloat64 path_length_m\nfloat64 mean_mg_m3\n");
 PATROL_ROS_SENSOR(GnssFix,
                   "std_msgs/Header header\nsensor_msgs/NavSatStatus status\nfloat64 latitude\nfloat64 longitude\nfloat64 altitude\n"
@@ -226,12 +226,12 @@ PATROL_ROS_SENSOR(UltrasonicRange,
                   "std_msgs/Header header\nuint8 ULTRASOUND=0\nuint8 INFRARED=1\nuint8 radiation_type\nfloat32 field_of_view\n"
                   "float32 min_range\nfloat32 max_range\nfloat32 range\n");
 PATROL_ROS_SENSOR(DepthImage,
-                  "# The fields of a sensor_msgs/Image (16UC1: depth along the optical axis, mm, 0 invalid), and the pinhole's, pixels.\n"
+                  "# The fields of a sensor_msgs/Image (16UC1: depth along the optical axis, mm, 0 invalid), and the pinhole parameters, pixels.\n"
                   "std_msgs/Header header\nuint32 height\nuint32 width\nstring encoding\nuint8 is_bigendian\nuint32 step\nuint8[] data\n"
                   "float64 fx_px\nfloat64 fy_px\nfloat64 cx_px\nfloat64 cy_px\n");
 PATROL_ROS_SENSOR(TeleopCommand,
-                  "# What the person at the remote control asks for. Buttons: this place is a goal; the robot goes on by itself.\n"
-                  "std_msgs/Header header\nfloat64 vx_mps\nfloat64 yaw_rate_radps\nbool mark\nbool hand_over\n");
+                  "# Teleoperation command. Buttons: save the current pose as a goal; switch to autonomous mode.\n"
+                  "std_msgs/Header header\nfloat64 vx_mps\nfloat64 yaw_rate_radps\nbool save_goal\nbool hand_over\n");
 
 }  // namespace patrol::io
 

@@ -46,7 +46,7 @@ class G2oReader {
       }
     }
     if (lines_.read_error()) throw InputError(fmt::format("{}: {}", lines_.file().string(), *lines_.read_error()));
-    if (graph_.T_map_node.empty()) throw InputError(lines_.file().string() + ": holds no VERTEX_SE2");
+    if (graph_.T_map_node.empty()) throw InputError(lines_.file().string() + ": contains no VERTEX_SE2");
     resolve_ids();
     return std::move(graph_);
   }
@@ -68,8 +68,8 @@ class G2oReader {
       if (tag == "VERTEX_SE2") read_vertex(fields);
       else if (tag == "EDGE_SE2") read_edge(fields);
       else if (tag == "FIX") read_fixed(fields);
-      else throw ParseError("is not read: VERTEX_SE2, EDGE_SE2 and FIX are");
-      if (!fields.is_empty()) throw ParseError("holds too many words");
+      else throw ParseError("unknown tag (known: VERTEX_SE2, EDGE_SE2, FIX)");
+      if (!fields.is_empty()) throw ParseError("too many words");
     } catch (const ParseError& error) {
       constexpr std::size_t kMaxShown = 24;
       throw ParseError(fmt::format("{}: {}", tag.substr(0, kMaxShown), error.what()));
@@ -78,7 +78,7 @@ class G2oReader {
 
   void read_vertex(LineTokenizer& fields) {
     const Id id = read_id(fields);
-    if (!node_of_.emplace(id, static_cast<int>(graph_.T_map_node.size())).second) throw ParseError(fmt::format("id {} is there twice", id));
+    if (!node_of_.emplace(id, static_cast<int>(graph_.T_map_node.size())).second) throw ParseError(fmt::format("id {}: duplicate", id));
     graph_.T_map_node.push_back(fields.pose("pose"));
   }
 
@@ -99,7 +99,7 @@ class G2oReader {
 
   int node(const Naming& naming) const {
     const auto found = node_of_.find(naming.id);
-    if (found == node_of_.end()) fail(naming.line, fmt::format("there is no VERTEX_SE2 {}", naming.id));
+    if (found == node_of_.end()) fail(naming.line, fmt::format("unknown VERTEX_SE2 {}", naming.id));
     return found->second;
   }
 

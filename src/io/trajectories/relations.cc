@@ -17,7 +17,7 @@ PoseRelation parse_relation(LineTokenizer fields) {
   relation.T_from_to.y = fields.number("y");
   for (const char* const what : {"z", "roll", "pitch"}) fields.number(what);
   relation.T_from_to.yaw = wrap_angle(fields.number("yaw"));
-  if (!fields.is_empty()) throw ParseError("holds more than eight numbers");
+  if (!fields.is_empty()) throw ParseError("more than eight numbers");
   return relation;
 }
 
@@ -37,7 +37,7 @@ std::vector<PoseRelation> load_relations(const std::filesystem::path& file) {
     }
   }
   if (lines.read_error()) throw InputError(fmt::format("{}: {}", file.string(), *lines.read_error()));
-  if (relations.empty()) throw InputError(file.string() + ": holds no relations");
+  if (relations.empty()) throw InputError(file.string() + ": contains no relations");
   return relations;
 }
 

@@ -46,13 +46,13 @@ Trajectory load_tum(const std::filesystem::path& file, SameStamps same_stamps) {
     entry.pose.rotation.normalize();
     if (!trajectory.empty() && entry.stamp <= trajectory.back().stamp) {
       if (same_stamps == SameStamps::kKeepFirst && entry.stamp == trajectory.back().stamp) continue;
-      throw input_error(file.string(), line->number, fmt::format("stamp {} does not follow {}: stamps must grow from line to line",
+      throw input_error(file.string(), line->number, fmt::format("stamp {} does not follow {}: stamps must increase",
                                                                  format_stamp(entry.stamp), format_stamp(trajectory.back().stamp)));
     }
     trajectory.push_back(entry);
   }
   if (lines.read_error()) throw InputError(fmt::format("{}: {}", file.string(), *lines.read_error()));
-  if (trajectory.empty()) throw InputError(file.string() + ": holds no poses");
+  if (trajectory.empty()) throw InputError(file.string() + ": contains no poses");
   return trajectory;
 }
 

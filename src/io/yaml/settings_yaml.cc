@@ -54,13 +54,13 @@ void apply_override(YAML::Node root, const std::string& override) {
       std::size_t index = 0;
       const auto [end, error] = std::from_chars(path[i].data(), path[i].data() + path[i].size(), index);
       if (error != std::errc() || end != path[i].data() + path[i].size()) {
-        throw InputError("--set " + override + ": " + path[i] + " must be a number: the place in a list");
+        throw InputError("--set " + override + ": " + path[i] + " must be a list index");
       }
       if (index >= node.size()) throw InputError(fmt::format("--set {}: the list has {} entries", override, node.size()));
       if (is_last) node[index] = value;
       else node.reset(node[index]);
     } else {
-      if (node.IsDefined() && !node.IsNull() && !node.IsMap()) throw InputError("--set " + override + ": " + path[i] + " lies below a plain value");
+      if (node.IsDefined() && !node.IsNull() && !node.IsMap()) throw InputError("--set " + override + ": " + path[i] + " is a child of a scalar");
       if (is_last) node[path[i]] = value;
       else {
         if (!node[path[i]].IsDefined()) node[path[i]] = YAML::Node(YAML::NodeType::Map);
@@ -77,11 +77,11 @@ int line_of(const YAML::Node& node) { return node.Mark().is_null() ? 0 : node.Ma
 
 std::string closest_match(const std::string& word, const std::vector<std::string>& known) {
   std::string nearest;
-  std::size_t least = std::max<std::size_t>(3, word.size() / 3 + 1);
+  std::size_t min_distance = std::max<std::size_t>(3, word.size() / 3 + 1);
   for (const std::string& candidate : known) {
     const std::size_t distance = edit_distance(word, candidate);
-    if (distance < least) {
-      least = distance;
+    if (distance < min_distance) {
+      min_distance = distance;
       nearest = candidate;
     }
   }
@@ -97,7 +97,7 @@ void SettingsReader::finish() const {
   std::set<std::string> seen;
   for (const auto& entry : node_) {
     const std::string name = entry.first.Scalar();
-    if (!seen.insert(name).second) fail(entry.first, key(name), "stands there twice");
+    if (!seen.insert(name).second) fail(entry.first, key(name), "duplicate key");
     if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
     if (const std::string now = renamed_setting(key(name)); now != key(name)) fail(entry.first, key(name), "renamed to " + now);
     const std::string nearest = closest_match(name, known_);
@@ -112,13 +112,13 @@ void SettingsReader::read_scalar(const YAML::Node& node, const std::string& key,
 
 void SettingsReader::read_scalar(const YAML::Node& node, const std::string& key, int& value) const {
   if (!node.IsScalar() || !YAML::convert<int>::decode(node, value)) {
-    fail(node, key, "must be a whole number" + (node.IsScalar() ? ", not " + node.Scalar() : ""));
+    fail(node, key, "must be an integer" + (node.IsScalar() ? ", not " + node.Scalar() : ""));
   }
 }
 
 void SettingsReader::read_scalar(const YAML::Node& node, const std::string& key, std::uint64_t& value) const {
   if (!node.IsScalar() || node.Scalar().starts_with('-') || !YAML::convert<std::uint64_t>::decode(node, value)) {
-    fail(node, key, "must be a whole number, not negative" + (node.IsScalar() ? ", not " + node.Scalar() : ""));
+    fail(node, key, "must be a non-negative integer" + (node.IsScalar() ? ", not " + node.Scalar() : ""));
   }
 }
 
@@ -130,7 +130,7 @@ void SettingsReader::read_scalar(const YAML::Node& node, const std::string& key,
 }
 
 void SettingsReader::read_scalar(const YAML::Node& node, const std::string& key, std::string& value) const {
-  if (!node.IsScalar()) fail(node, key, "must be a word");
+  if (!node.IsScalar()) fail(node, key, "must be a string");
   value = node.Scalar();
 }
 
@@ -174,7 +174,7 @@ void SettingsWriter::write_expectations(const Expectations& expectations) {
 YAML::Node load_document(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   YAML::Node document = load_yaml(file);
   if (!document.IsDefined() || document.IsNull()) {
-    throw InputError(file.string() + ": is empty: must be a map of keys and values, {} if it says nothing");
+    throw InputError(file.string() + ": is empty: must be a map of keys and values ({} if there are none)");
   }
   if (!document.IsMap()) throw InputError(file.string() + ": must be a map of keys and values");
   for (const std::string& override : overrides) apply_override(document, override);

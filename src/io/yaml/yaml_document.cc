@@ -16,10 +16,10 @@ namespace {
 /// Checks a stream of parser events against the limits, before any node is built.
 class LimitChecker final : public YAML::EventHandler {
  public:
-  LimitChecker(const std::string& place, bool has_lines) : place_(place), has_lines_(has_lines) {}
+  LimitChecker(const std::string& source, bool has_lines) : source_(source), has_lines_(has_lines) {}
 
   void OnDocumentStart(const YAML::Mark& mark) override {
-    if (++num_documents_ > 1) fail(mark, "holds more after its first YAML document: one document is allowed");
+    if (++num_documents_ > 1) fail(mark, "more than one YAML document: only one is allowed");
   }
   void OnDocumentEnd() override {}
   void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override { add_leaf(mark, anchor); }
@@ -52,7 +52,7 @@ class LimitChecker final : public YAML::EventHandler {
 
   void add(const YAML::Mark& mark, std::size_t num_nodes) {
     num_nodes_ += num_nodes;
-    if (num_nodes_ > kMaxYamlNodes) fail(mark, fmt::format("holds too many values: at most {} are read", kMaxYamlNodes));
+    if (num_nodes_ > kMaxYamlNodes) fail(mark, fmt::format("too many values: at most {} are allowed", kMaxYamlNodes));
   }
 
   void open(const YAML::Mark& mark, YAML::anchor_t anchor) {
@@ -66,10 +66,10 @@ class LimitChecker final : public YAML::EventHandler {
   }
 
   [[noreturn]] void fail(const YAML::Mark& mark, const std::string& what) const {
-    throw input_error(place_, has_lines_ ? mark.line + 1 : 0, what);
+    throw input_error(source_, has_lines_ ? mark.line + 1 : 0, what);
   }
 
-  const std::string& place_;
+  const std::string& source_;
   bool has_lines_;
   int num_documents_ = 0;
   std::size_t num_nodes_ = 0;  ///< with aliases expanded
@@ -79,16 +79,16 @@ class LimitChecker final : public YAML::EventHandler {
 
 }  // namespace
 
-YAML::Node parse_yaml(const std::string& place, const std::string& text, bool has_lines) {
+YAML::Node parse_yaml(const std::string& source, const std::string& text, bool has_lines) {
   try {
-    LimitChecker checker(place, has_lines);
+    LimitChecker checker(source, has_lines);
     std::istringstream stream(text);
     YAML::Parser parser(stream);
     while (parser.HandleNextDocument(checker)) {}
     return YAML::Load(text);
   } catch (const YAML::Exception& error) {
     const bool has_line = has_lines && !error.mark.is_null();
-    throw input_error(place, has_line ? error.mark.line + 1 : 0, "is not YAML: " + error.msg);
+    throw input_error(source, has_line ? error.mark.line + 1 : 0, "is not YAML: " + error.msg);
   }
 }
 

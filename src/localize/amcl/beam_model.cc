@@ -10,7 +10,7 @@
 namespace patrol::localize {
 namespace {
 
-constexpr double kFieldCap_m = 1.0;  // longest step along a ray
+constexpr double kFieldCap_m = 1.0;  // maximum step along a ray
 
 struct PolarBeam {
   double angle_rad, range_m;  ///< from the lidar; +Inf: no return

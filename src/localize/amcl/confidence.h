@@ -3,35 +3,9 @@
 #include <Eigen/Core>
 
 #include "core/messages.h"
-#include "core/settings.h"
+#include "localize/amcl/confidence_settings.h"
 
 namespace patrol::localize {
-
-struct ConfidenceSettings {
-  double std_at_confidence_1_m = 0.05;       ///< largest principal standard deviation up to which its factor is 1
-  double std_at_confidence_half_m = 0.25;   ///< standard deviation at which the factor is 0.5
-  double std_at_confidence_0_m = 1.0;    ///< standard deviation from which on the factor is 0
-  double full_confidence_fit = 0.6;          ///< inlier ratio of the scan from which on its factor is 1
-  double zero_confidence_fit = 0.3;           ///< inlier ratio of the scan up to which its factor is 0
-  double full_confidence_cluster_weight = 0.95;   ///< cluster weight from which on its factor is 1
-  double zero_confidence_cluster_weight = 0.5;  ///< cluster weight up to which its factor is 0
-  double lost_threshold = 0.1;        ///< the robot becomes lost below this confidence
-  /// A lost robot recovers above this confidence, if the cluster weight is at least full_confidence_cluster_weight.
-  double found_threshold = 0.2;
-
-  template <typename Self, typename Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("sure_std_m", self.std_at_confidence_1_m, between(0.0, 100.0));
-    visit("doubtful_std_m", self.std_at_confidence_half_m, between(0.0, 100.0));
-    visit("hopeless_std_m", self.std_at_confidence_0_m, between(0.0, 100.0));
-    visit("good_fit", self.full_confidence_fit, between(0.0, 1.0));
-    visit("bad_fit", self.zero_confidence_fit, between(0.0, 1.0));
-    visit("decided_weight", self.full_confidence_cluster_weight, between(0.0, 1.0));
-    visit("undecided_weight", self.zero_confidence_cluster_weight, between(0.0, 1.0));
-    visit("found_above", self.found_threshold, between(0.0, 1.0));
-    visit("lost_below", self.lost_threshold, between(0.0, 1.0));
-  }
-};
 
 /// Evidence for the confidence of a pose estimate.
 struct LocalizationEvidence {

@@ -1,31 +1,9 @@
 #pragma once
 
-#include "core/settings.h"
+#include "localize/amcl/divergence_monitor_settings.h"
+
 
 namespace patrol::localize {
-
-struct DivergenceMonitorSettings {
-  double alpha_slow = 0.02;        ///< filter constant of the long-term average of the scan likelihood, per update
-  double alpha_fast = 0.2;         ///< filter constant of the short-term average, per update
-  /// Injection begins if the short-term average is below the long-term average divided by this ratio.
-  double fast_over_slow = 1.5;
-  double alpha_range = 0.1;        ///< filter constant of the average range likelihood, per range
-  /// Inlier ratio of the scan below which particles are injected, regardless of the averages.
-  double min_scan_fit = 0.4;
-  double min_range_fit = 0.25;    ///< mean range likelihood below which particles are injected
-  double max_injection_fraction = 0.5;     ///< maximum fraction of injected particles
-
-  template <typename Self, typename Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("slow_rate", self.alpha_slow, between(1e-4, 1.0));
-    visit("fast_rate", self.alpha_fast, between(1e-3, 1.0));
-    visit("fast_over_slow", self.fast_over_slow, between(1.0, 10.0));
-    visit("range_rate", self.alpha_range, between(1e-3, 1.0));
-    visit("min_scan_fit", self.min_scan_fit, between(0.0, 1.0));
-    visit("min_range_fit", self.min_range_fit, between(0.0, 1.0));
-    visit("max_injection", self.max_injection_fraction, between(0.0, 1.0));
-  }
-};
 
 /// Monitors the measurement likelihood of the particles and computes the fraction of particles to replace.
 ///
@@ -40,7 +18,7 @@ class DivergenceMonitor {
   /// Adds the likelihood of a scan, averaged over the particles, relative to the maximum, 0 ... 1.
   void add_scan_likelihood(double likelihood);
   /// Adds the fraction of a scan on surfaces of the map, 0 ... 1.
-  void add_scan_fit(double share) { scan_fit_ += settings_.alpha_fast * (share - scan_fit_); }
+  void add_scan_fit(double fraction) { scan_fit_ += settings_.alpha_fast * (fraction - scan_fit_); }
   /// Adds the likelihood of a range relative to the maximum, 0 ... 1.
   void add_range(double likelihood) { range_fit_ += settings_.alpha_range * (likelihood - range_fit_); }
   /// Clears all averages after the pose was set externally.

@@ -21,7 +21,7 @@ std::size_t PoseBins::Hash::operator()(const Key& key) const {
   const auto mix = [](std::uint64_t hash, int value) {
     return (hash ^ static_cast<std::uint32_t>(value)) * 0x9E3779B97F4A7C15ULL;
   };
-  const std::uint64_t hash = mix(mix(mix(0, key.col), key.row), key.turn);
+  const std::uint64_t hash = mix(mix(mix(0, key.col), key.row), key.heading);
   return static_cast<std::size_t>(hash ^ (hash >> 32));
 }
 
@@ -30,9 +30,9 @@ PoseBins::PoseBins(const KldSettings& settings)
       num_headings_(std::max(1, static_cast<int>(std::lround(2.0 * std::numbers::pi / settings.bin_rad)))) {}
 
 PoseBins::Key PoseBins::key_of(const Pose2& pose) const {
-  const double turned = (wrap_angle(pose.yaw) / std::numbers::pi + 1.0) * 0.5 * num_headings_;
+  const double heading = (wrap_angle(pose.yaw) / std::numbers::pi + 1.0) * 0.5 * num_headings_;
   return {static_cast<int>(std::floor(pose.x * inverse_bin_m_)), static_cast<int>(std::floor(pose.y * inverse_bin_m_)),
-          static_cast<int>(turned) % num_headings_};
+          static_cast<int>(heading) % num_headings_};
 }
 
 std::size_t PoseBins::add(const Pose2& pose) {
@@ -51,7 +51,7 @@ std::vector<std::size_t> PoseBins::clusters() const {
   for (std::size_t bin = 0; bin < keys_.size(); ++bin) {
     for (int step = 0; step < 27; ++step) {
       const Key& key = keys_[bin];
-      const auto found = bins_.find({key.col + step % 3 - 1, key.row + step / 3 % 3 - 1, (key.turn + step / 9 - 1 + num_headings_) % num_headings_});
+      const auto found = bins_.find({key.col + step % 3 - 1, key.row + step / 3 % 3 - 1, (key.heading + step / 9 - 1 + num_headings_) % num_headings_});
       if (found == bins_.end()) continue;
       const std::size_t mine = root_of(bin), other = root_of(found->second);
       parent[std::max(mine, other)] = std::min(mine, other);

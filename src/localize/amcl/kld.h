@@ -6,29 +6,9 @@
 #include <vector>
 
 #include "core/frames.h"
-#include "core/settings.h"
+#include "localize/amcl/kld_settings.h"
 
 namespace patrol::localize {
-
-struct KldSettings {
-  double bin_m = 0.5;
-  double bin_rad = 0.1745;      ///< 10 degrees
-  double max_kl_divergence = 0.05;      ///< maximum Kullback-Leibler distance between particles and belief
-  /// Upper quantile of the normal distribution for the probability of keeping max_kl_divergence: 0.99.
-  double normal_quantile = 2.326;
-  int min_particles = 300;
-  int max_particles = 5000;
-
-  template <typename Self, typename Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("bin_m", self.bin_m, between(0.01, 10.0));
-    visit("bin_rad", self.bin_rad, between(0.01, 3.2));
-    visit("max_error", self.max_kl_divergence, between(1e-4, 1.0));
-    visit("quantile", self.normal_quantile, between(0.0, 6.0));
-    visit("min_particles", self.min_particles, between(1, 1000000));
-    visit("max_particles", self.max_particles, between(1, 1000000));
-  }
-};
 
 /// Number of particles that approximates a belief over `bins` bins to `max_kl_divergence`, within the limits of the settings
 /// [Fox03, equation 7]. The chi-square quantile is that of Wilson and Hilferty.
@@ -49,7 +29,7 @@ class PoseBins {
 
  private:
   struct Key {
-    int col, row, turn;
+    int col, row, heading;
     friend bool operator==(const Key&, const Key&) = default;
   };
   struct Hash {

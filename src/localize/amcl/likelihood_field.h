@@ -7,25 +7,11 @@
 #include <vector>
 
 #include "core/grid.h"
-#include "core/settings.h"
+#include "localize/amcl/likelihood_field_settings.h"
 #include "localize/amcl/line_field.h"
 #include "localize/amcl/sensor_model.h"
 
 namespace patrol::localize {
-
-struct LikelihoodFieldSettings {
-  /// Standard deviation of a beam's end from the nearest surface: range noise, map error and tilt.
-  double hit_std_m = 0.1;
-  double z_rand = 0.05;   ///< likelihood of an end far from all surfaces relative to one on a surface
-  int max_beams = 180;          ///< maximum number of evaluated beams; the cost is proportional to it
-
-  template <typename Self, typename Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("hit_std_m", self.hit_std_m, between(0.01, 2.0));
-    visit("random_share", self.z_rand, between(1e-4, 0.5));
-    visit("max_beams", self.max_beams, between(10, 10000));
-  }
-};
 
 /// End points of beams in level, m, with separate x and y arrays for vectorization.
 struct BeamEnds {
@@ -33,7 +19,7 @@ struct BeamEnds {
   std::size_t size() const { return x_m.size(); }
 };
 
-/// Selects at most `max_beams` hits, evenly spread over the scan.
+/// Selects at most `max_beams` hits, spread uniformly over the scan.
 BeamEnds select_beam_ends(const LevelScan& scan, int max_beams);
 
 /// Likelihood-field model [Thrun05, table 6.3]: the likelihood of a beam's end at distance d from the nearest surface

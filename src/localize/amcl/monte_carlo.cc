@@ -27,9 +27,9 @@ constexpr Time kRangesBeforeStart = std::chrono::seconds(2);  // maximum age of 
 
 const OccupancyGrid& checked(const OccupancyGrid& map) {
   const auto& cells = map.values();
-  if (cells.empty()) throw InputError("localisation: the map has no cells");
-  if (std::none_of(cells.begin(), cells.end(), is_free)) throw InputError("localisation: the map has no free cell to stand on");
-  if (std::none_of(cells.begin(), cells.end(), is_occupied)) throw InputError("localisation: the map has no occupied cell to see");
+  if (cells.empty()) throw InputError("localization: map: has no cells");
+  if (std::none_of(cells.begin(), cells.end(), is_free)) throw InputError("localization: map: has no free cell");
+  if (std::none_of(cells.begin(), cells.end(), is_occupied)) throw InputError("localization: map: has no occupied cell");
   return map;
 }
 
@@ -39,7 +39,6 @@ const MonteCarloSettings& checked(const MonteCarloSettings& settings) {
 }
 
 using Model = std::unique_ptr<SensorModel>;
-using SensorModelFactory = NamedFactory<Model(const MonteCarloSettings&, const OccupancyGrid&, const LineField&)>;
 
 constexpr std::array kSensorModels = std::to_array<SensorModelFactory>({
     {"likelihood_field", "Distance of each beam's end to the nearest surface of the map",
@@ -81,7 +80,7 @@ void MonteCarloLocalizer::set_initial_pose(const Pose2& T_map_body, const Eigen:
   while (cloud_.size() < static_cast<std::size_t>(kld_particles(bins.size(), settings_.kld))) {
     const std::array<double, 4> unit = start_noise_.normals(starts_, cloud_.size());
     const Pose2 pose = slam::perturbed(T_map_body, L * Eigen::Vector3d(unit[0], unit[1], unit[2]));
-    cloud_.add(pose, settings_.odometry.way_scale_std * unit[3]);
+    cloud_.add(pose, settings_.odometry.scale_std * unit[3]);
     bins.add(pose);
   }
 }
@@ -129,7 +128,7 @@ void MonteCarloLocalizer::start_from(const LevelScan& scan, const Pose2& T_odom_
   const auto count = static_cast<std::size_t>(std::max(settings_.kld.min_particles, settings_.kld.max_particles));
   const std::vector<Pose2> poses = sample_poses(global_localization(scan, T_odom_body), count, start_noise_, starts_);
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    cloud_.add(poses[i], settings_.odometry.way_scale_std * start_noise_.normals(starts_, count + i)[3]);
+    cloud_.add(poses[i], settings_.odometry.scale_std * start_noise_.normals(starts_, count + i)[3]);
   }
   is_globally_started_ = false;
   last_search_ = scan.stamp;
@@ -185,14 +184,14 @@ RefinedPose MonteCarloLocalizer::update_weights(const LevelScan& scan, const std
 
 int MonteCarloLocalizer::resample_and_inject(const LevelScan& scan, const Pose2& T_odom_body) {
   const bool may_search = !last_search_ || to_seconds(scan.stamp - *last_search_) >= settings_.search_period_s;
-  const double share = may_search ? divergence_monitor_.injection_fraction() : 0.0;
+  const double injected_fraction = may_search ? divergence_monitor_.injection_fraction() : 0.0;
   const std::vector<double> weights = normalized_weights(cloud_.log_weights);
   const auto count = static_cast<double>(cloud_.size());
   const std::size_t needed = particles_needed(weights);
   const bool is_wasteful = static_cast<double>(needed) < kMaxNeededFraction * count;
-  if (share > 0.0 || is_wasteful || effective_sample_size(weights) < settings_.resample_threshold * count) resample(weights, needed);
+  if (injected_fraction > 0.0 || is_wasteful || effective_sample_size(weights) < settings_.resample_threshold * count) resample(weights, needed);
 
-  const auto num_injected = static_cast<std::size_t>(share * static_cast<double>(cloud_.size()));
+  const auto num_injected = static_cast<std::size_t>(injected_fraction * static_cast<double>(cloud_.size()));
   if (num_injected == 0) return 0;
   last_search_ = scan.stamp;
   const std::vector<Pose2> poses = sample_poses(global_localization(scan, T_odom_body), num_injected, injection_noise_, updates_);
@@ -226,14 +225,14 @@ std::size_t MonteCarloLocalizer::particles_needed(const std::vector<double>& wei
   std::vector<double> cumulative(weights.size());
   std::partial_sum(weights.begin(), weights.end(), cumulative.begin());
   PoseBins bins(settings_.kld);
-  std::size_t drawn = 0;
-  while (drawn < static_cast<std::size_t>(kld_particles(bins.size(), settings_.kld))) {
-    const double pointer = resampling_noise_.uniform(updates_, ++drawn);
+  std::size_t num_samples = 0;
+  while (num_samples < static_cast<std::size_t>(kld_particles(bins.size(), settings_.kld))) {
+    const double pointer = resampling_noise_.uniform(updates_, ++num_samples);
     const auto parent = std::lower_bound(cumulative.begin(), cumulative.end() - 1, pointer) - cumulative.begin();
     bins.add(cloud_.T_map_body[static_cast<std::size_t>(parent)]);
   }
-  const auto least = static_cast<std::size_t>(is_lost_ ? settings_.min_particles_lost : 0);
-  return std::max(drawn, least);
+  const auto min_samples = static_cast<std::size_t>(is_lost_ ? settings_.min_particles_lost : 0);
+  return std::max(num_samples, min_samples);
 }
 
 GlobalSearch::Candidates MonteCarloLocalizer::global_localization(const LevelScan& scan, const Pose2& T_odom_body) const {

@@ -14,7 +14,7 @@ void propagate_particles(ParticleCloud& cloud, const Pose2& T_before_now, double
   const slam::PoseGaussian step = slam::predict_motion({}, T_before_now, dt_s, settings.noise);
   const Eigen::Matrix3d L = cholesky_factor(step.covariance);
   const double kept = std::exp(-T_before_now.position().norm() / settings.scale_correlation_length_m);
-  const double renewed = settings.way_scale_std * std::sqrt(1.0 - kept * kept);
+  const double renewed = settings.scale_std * std::sqrt(1.0 - kept * kept);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const std::array<double, 4> unit = noise.normals(tick, i);
     double& scale = cloud.odometry_scale[i];
@@ -32,7 +32,7 @@ slam::PoseGaussian predict(const slam::PoseGaussian& before, const Pose2& T_befo
   Eigen::Matrix3d swing = Eigen::Matrix3d::Identity();  // Jacobian: a heading error rotates the increment
   swing(0, 2) = -increment.y(), swing(1, 2) = increment.x();
   now.covariance += swing * before.covariance * swing.transpose();
-  now.covariance.topLeftCorner<2, 2>() += settings.way_scale_std * settings.way_scale_std * increment * increment.transpose();
+  now.covariance.topLeftCorner<2, 2>() += settings.scale_std * settings.scale_std * increment * increment.transpose();
   return now;
 }
 

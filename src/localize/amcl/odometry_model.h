@@ -4,26 +4,12 @@
 
 #include "core/frames.h"
 #include "core/random.h"
-#include "core/settings.h"
+#include "localize/amcl/odometry_model_settings.h"
 #include "localize/amcl/particle_cloud.h"
 #include "slam/motion_model.h"
 #include "slam/pose_gaussian.h"
 
 namespace patrol::localize {
-
-struct OdometryModelSettings {
-  /// Standard deviation of the persistent scale error of the distance: track wear, steady slip.
-  double way_scale_std = 0.02;
-  double scale_correlation_length_m = 50.0;   ///< correlation length of the scale error
-  slam::MotionModelSettings noise;    ///< independent error of each step
-
-  template <typename Self, typename Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("way_scale_std", self.way_scale_std, between(0.0, 0.5));
-    visit("way_scale_memory_m", self.scale_correlation_length_m, between(0.1, 1e6));
-    visit("noise", self.noise);
-  }
-};
 
 /// Propagates all particles by the odometry increment T_before_now over `dt_s`, with sampled errors.
 ///

@@ -21,7 +21,7 @@ struct ParticleCloud {
   }
 };
 
-/// Clusters of the particles (PoseBins::clumps): [particle] -> cluster number.
+/// Clusters of the particles (PoseBins::clusters): [particle] -> cluster number.
 std::vector<std::size_t> cluster_particles(const std::vector<Pose2>& T_map_body, const KldSettings& settings);
 
 struct DominantCluster {

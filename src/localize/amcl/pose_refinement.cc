@@ -22,7 +22,7 @@ struct Residual {
   double distance_m;
   double weight;           ///< inverse variance, reduced for outliers
   Eigen::Vector2d normal;  ///< normal of the line, in map
-  double turn;             ///< derivative of the distance with respect to yaw, m
+  double d_by_yaw;         ///< derivative of the distance with respect to yaw, m
 };
 
 /// Residuals of the points near a surface.
@@ -65,7 +65,7 @@ NormalEquations equations_of(const std::vector<Residual>& residuals, const PoseR
   for (const Residual& residual : residuals) {
     const double incidence_sine = residual.normal.dot(u);
     Eigen::Vector3d J;
-    J << (std::abs(incidence_sine) > settings.min_incidence_sine ? residual.normal : Eigen::Vector2d(residual.normal.dot(v) * v)), residual.turn;
+    J << (std::abs(incidence_sine) > settings.min_incidence_sine ? residual.normal : Eigen::Vector2d(residual.normal.dot(v) * v)), residual.d_by_yaw;
     sum.H += settings.likelihood_tempering * residual.weight * J * J.transpose();
     sum.b += settings.likelihood_tempering * residual.weight * residual.distance_m * J;
   }

@@ -4,42 +4,12 @@
 
 #include "core/frames.h"
 #include "core/messages.h"
-#include "core/settings.h"
 #include "localize/amcl/line_field.h"
+#include "localize/amcl/pose_refinement_settings.h"
 #include "slam/match_points.h"
 #include "slam/pose_gaussian.h"
 
 namespace patrol::localize {
-
-struct PoseRefinementSettings {
-  int max_points = 400;                 ///< maximum number of scan points matched to the map
-  double point_spacing_m = 0.1;         ///< consecutive beams that end within this distance are averaged
-  double point_std_m = 0.03;            ///< standard deviation of the range of a point and of the map cells
-  double point_angle_std_rad = 0.0015;  ///< standard deviation of the direction of a point
-  double kernel_m = 0.08;  ///< scale of the Cauchy kernel; residuals beyond it are down-weighted as outliers
-  double likelihood_tempering = 0.1;         ///< tempering factor: fraction of the points with independent errors
-  /// A line constrains the weak direction only if the sine of its angle to that direction is larger.
-  double min_incidence_sine = 0.15;
-  double map_std_m = 0.01;              ///< standard deviation of the map itself, which is not reduced by averaging
-  double map_std_rad = 0.001;
-  int max_iterations = 8;
-  double min_inlier_ratio = 0.3;       ///< matches with a smaller inlier ratio are rejected
-
-  template <typename Self, typename Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("max_points", self.max_points, between(10, 100000));
-    visit("point_spacing_m", self.point_spacing_m, between(0.0, 5.0));
-    visit("point_std_m", self.point_std_m, between(1e-4, 1.0));
-    visit("point_angle_std_rad", self.point_angle_std_rad, between(0.0, 0.1));
-    visit("kernel_m", self.kernel_m, between(1e-3, 10.0));
-    visit("likelihood_gain", self.likelihood_tempering, between(1e-4, 1.0));
-    visit("min_facing", self.min_incidence_sine, between(0.0, 0.9));
-    visit("map_std_m", self.map_std_m, between(0.0, 1.0));
-    visit("map_std_rad", self.map_std_rad, between(0.0, 0.1));
-    visit("max_iterations", self.max_iterations, between(1, 100));
-    visit("min_matched_share", self.min_inlier_ratio, between(0.0, 1.0));
-  }
-};
 
 struct RefinedPose {
   slam::PoseGaussian posterior;  ///< pose given the prior and the scan

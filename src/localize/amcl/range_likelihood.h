@@ -3,26 +3,9 @@
 #include <Eigen/Core>
 
 #include "core/frames.h"
-#include "core/settings.h"
+#include "localize/amcl/range_likelihood_settings.h"
 
 namespace patrol::localize {
-
-struct RangeLikelihoodSettings {
-  /// Standard deviation of a LOS range; larger than that of the radio, because consecutive ranges have correlated
-  /// errors.
-  double range_std_m = 0.15;
-  double nlos_probability = 0.1;     ///< likelihood of a marginal NLOS path relative to that of an exact range
-  double nlos_bias_m = 0.5;  ///< mean NLOS bias
-  double outlier_probability = 0.02;    ///< likelihood of any other range
-
-  template <typename Self, typename Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("range_std_m", self.range_std_m, between(0.005, 5.0));
-    visit("blocked_share", self.nlos_probability, between(0.0, 0.4));
-    visit("blocked_excess_m", self.nlos_bias_m, between(0.01, 10.0));
-    visit("outlier_share", self.outlier_probability, between(1e-6, 0.4));
-  }
-};
 
 /// Returns log(likelihood / maximum) of a range with innovation `innovation_m`. The mixture has a normal distribution, an
 /// exponential tail for the positive bias of NLOS paths, and a floor that bounds the influence of outliers. It is the

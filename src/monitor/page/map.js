@@ -8,7 +8,7 @@ const rgb = (color) => {
 const kSigmas = 2.448;  // half axes of the 95 % ellipse of a two-dimensional normal distribution
 
 /// Map image with occupied and free cells in the page's colors; unknown cells are transparent.
-async function coloured(url) {
+async function colorize(url) {
   const image = new Image();
   image.src = url;
   await image.decode();
@@ -17,9 +17,9 @@ async function coloured(url) {
   context.drawImage(image, 0, 0);
   const pixels = context.getImageData(0, 0, canvas.width, canvas.height), wall = rgb(ink('wall')), free = rgb(ink('free'));
   for (let i = 0; i < pixels.data.length; i += 4) {
-    const grey = pixels.data[i], color = grey < 100 ? wall : free;
+    const gray = pixels.data[i], color = gray < 100 ? wall : free;
     pixels.data.set(color, i);
-    pixels.data[i + 3] = grey < 100 || grey > 230 ? 255 : 0;
+    pixels.data[i + 3] = gray < 100 || gray > 230 ? 255 : 0;
   }
   context.putImageData(pixels, 0, 0);
   return canvas;
@@ -42,9 +42,9 @@ export class MapView {
     this.robots = [];
     this.cells = null;
     this.shown = null;  // {x, y, meters per pixel}; null: the whole map
-    const [nearer, further, whole] = section.querySelectorAll('.zoom button');
+    const [nearer, farther, whole] = section.querySelectorAll('.zoom button');
     nearer.addEventListener('click', () => this.zoom(0.6));
-    further.addEventListener('click', () => this.zoom(1 / 0.6));
+    farther.addEventListener('click', () => this.zoom(1 / 0.6));
     whole.addEventListener('click', () => { this.shown = null; this.draw(); });
     this.canvas.addEventListener('wheel', (event) => {
       if (!event.ctrlKey && !this.shown) return;  // scrolls the page
@@ -68,7 +68,7 @@ export class MapView {
     const map = this.details && this.details.map, url = map ? '/api/maps/' + map.seq : null;
     if (url !== this.mapUrl) {
       this.mapUrl = url;
-      const cells = url && await coloured(url).catch(() => null);
+      const cells = url && await colorize(url).catch(() => null);
       if (url !== this.mapUrl) return;
       this.cells = cells;
       this.cellsMap = map;
@@ -90,7 +90,7 @@ export class MapView {
   }
 
   zoom(factor, x = this.view.clientWidth / 2, y = this.view.clientHeight / 2) {
-    const from = this.place(), whole = this.whole();
+    const from = this.currentView(), whole = this.whole();
     const px = Math.min(Math.max(from.px * factor, 0.002), whole.px * 1.5);
     const dx = x - this.view.clientWidth / 2, dy = this.view.clientHeight / 2 - y;
     this.shown = { x: from.x + dx * (from.px - px), y: from.y + dy * (from.px - px), px };
@@ -99,7 +99,7 @@ export class MapView {
     this.draw();
   }
 
-  place() { return this.shown || this.whole(); }
+  currentView() { return this.shown || this.whole(); }
 
   /// View of all drawn objects with a margin.
   whole() {
@@ -118,10 +118,10 @@ export class MapView {
   draw() {
     const width = this.view.clientWidth, height = this.view.clientHeight, ratio = devicePixelRatio || 1;
     Object.assign(this.canvas, { width: width * ratio, height: height * ratio });
-    const context = this.canvas.getContext('2d'), at = this.place();
+    const context = this.canvas.getContext('2d'), at = this.currentView();
     context.scale(ratio, ratio);
     const to = ([x, y]) => [width / 2 + (x - at.x) / at.px, height / 2 - (y - at.y) / at.px];
-    this.empty.textContent = this.details ? '' : 'No robot has reported yet.';
+    this.empty.textContent = this.details ? '' : 'No robots yet.';
     if (!this.details) return this.drawScale(at.px);
     this.drawCells(context, to, at.px);
     this.drawTrack(context, to);
@@ -144,7 +144,7 @@ export class MapView {
 
   drawTrack(context, to) {
     context.beginPath();
-    this.details.track.forEach((place, i) => context[i ? 'lineTo' : 'moveTo'](...to(place)));
+    this.details.track.forEach((point, i) => context[i ? 'lineTo' : 'moveTo'](...to(point)));
     Object.assign(context, { strokeStyle: ink('track'), lineWidth: 1.75, lineJoin: 'round' });
     context.stroke();
   }
@@ -218,7 +218,7 @@ export class MapView {
   }
 
   drawScale(px) {
-    const most = 110 * px, power = 10 ** Math.floor(Math.log10(most)), length = [5, 2, 1].map((step) => step * power).find((one) => one <= most);
+    const max = 110 * px, power = 10 ** Math.floor(Math.log10(max)), length = [5, 2, 1].map((step) => step * power).find((one) => one <= max);
     this.scale.textContent = length >= 1 ? length + ' m' : length * 100 + ' cm';
     this.scale.style.width = length / px + 'px';
   }

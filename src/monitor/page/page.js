@@ -2,9 +2,9 @@
 // markup.
 import { MapView } from '/map.js';
 import { showGas, showLining, showWater } from '/site.js';
-import { $, clock, dayAndClock, make, plural, simulated, spoken } from '/words.js';
+import { $, clock, dayAndClock, make, plural, simulated, humanize } from '/format.js';
 
-const kPeriod_ms = 1000, kSilent_ms = 15000, kHistoryRows = 25;
+const kPeriod_ms = 1000, kTimeout_ms = 15000, kHistoryRows = 25;
 const state = { revision: 0, robots: new Map(), findings: new Map(), chosen: null, run: '', onlyOpen: true, skew_ms: 0, water: [], details: null, wanted: null, missed: new Set() };
 
 function age(ms) {
@@ -57,8 +57,8 @@ const attempt = (refresh) => { refresh().catch(() => state.missed.add(refresh));
 const kStates = { started: ['running', 'notice'], finished: ['finished', 'good'], failed: ['failed', 'warning'], interrupted: ['interrupted', 'warning'] };
 
 function stateOf(robot) {
-  const isSilent = robot.state === 'started' && Date.now() + state.skew_ms - robot.received_ms > kSilent_ms;
-  return isSilent ? ['silent', 'warning'] : kStates[robot.state] || [robot.state, 'none'];
+  const isTimedOut = robot.state === 'started' && Date.now() + state.skew_ms - robot.received_ms > kTimeout_ms;
+  return isTimedOut ? ['no data', 'warning'] : kStates[robot.state] || [robot.state, 'none'];
 }
 
 function showRobots() {
@@ -67,11 +67,11 @@ function showRobots() {
   $('.robots').replaceChildren(...list.map((robot) => {
     const [word, tone] = stateOf(robot);
     const button = make('button', { type: 'button', onclick: () => choose(robot.robot) }, make('b', { textContent: robot.robot }), make('span', { className: 'state ' + tone, textContent: word }),
-      make('span', { className: 'faint' }, `${robot.world}${robot.at ? ', at ' + spoken(robot.at) : ''} \u00b7 ${simulated(robot.time_s)} into the run \u00b7 `, ageOf(robot.received_ms)),
+      make('span', { className: 'faint' }, `${robot.world}${robot.at ? ', at ' + humanize(robot.at) : ''} \u00b7 ${simulated(robot.time_s)} simulated \u00b7 `, ageOf(robot.received_ms)),
       ...(robot.message && robot.state !== 'finished' ? [make('span', { className: 'faint', textContent: robot.message })] : []));
     button.setAttribute('aria-pressed', robot.robot === state.chosen);
     return make('li', {}, button);
-  }), ...(list.length ? [] : [make('li', { className: 'calm-note', textContent: 'None has reported yet.' })]));
+  }), ...(list.length ? [] : [make('li', { className: 'calm-note', textContent: 'No robots yet.' })]));
 }
 
 function choose(name) {
@@ -87,7 +87,7 @@ function choose(name) {
 function showAlarms() {
   const all = [...state.findings.values()].sort((a, b) => b.number - a.number);
   const shown = all.filter((one) => !state.onlyOpen || one.acknowledged_ms == null).slice(0, 200);
-  $('.alarms').replaceChildren(...shown.map(alarmRow), ...(shown.length ? [] : [make('li', { className: 'calm-note', textContent: state.onlyOpen ? 'Nothing is open.' : 'There was none.' })]));
+  $('.alarms').replaceChildren(...shown.map(alarmRow), ...(shown.length ? [] : [make('li', { className: 'calm-note', textContent: state.onlyOpen ? 'No open alarms.' : 'No alarms.' })]));
   for (const button of document.querySelectorAll('.choice button')) button.setAttribute('aria-pressed', String(state.onlyOpen === (button.dataset.open === '1')));
 }
 
@@ -96,14 +96,14 @@ function alarmRow(one) {
   const row = make('li', { className: one.level + (isDone ? ' done' : '') }, make('span', { className: 'level', textContent: one.level }));
   row.dataset.number = one.number;
   if (!isDone) row.append(make('button', { type: 'button', textContent: 'Acknowledge', onclick: () => openDialog(one) }));
-  row.append(make('p', { className: 'text', textContent: one.text || spoken(one.kind) }), make('p', { className: 'faint' }, `${one.robot} \u00b7 ${one.world} \u00b7 `, ageOf(one.received_ms)));
+  row.append(make('p', { className: 'text', textContent: one.text || humanize(one.kind) }), make('p', { className: 'faint' }, `${one.robot} \u00b7 ${one.world} \u00b7 `, ageOf(one.received_ms)));
   if (isDone) row.append(make('p', { className: 'faint', textContent: `Acknowledged by ${one.who}, ${dayAndClock(one.acknowledged_ms)}${one.note ? ': ' + one.note : ''}` }));
   return row;
 }
 
 function showCount(open) {
-  const words = ['alarm', 'warning'].filter((level) => open[level] > 0);
-  $('#count').replaceChildren(...(words.length ? words.map((level) => make('b', { className: level, textContent: plural(open[level], level) })) : [make('span', { className: 'calm', textContent: 'no open alarms' })]));
+  const levels = ['alarm', 'warning'].filter((level) => open[level] > 0);
+  $('#count').replaceChildren(...(levels.length ? levels.map((level) => make('b', { className: level, textContent: plural(open[level], level) })) : [make('span', { className: 'calm', textContent: 'no open alarms' })]));
   const sum = open.alarm + open.warning;
   document.title = (sum ? `(${sum}) ` : '') + 'Patrol';
 }
@@ -113,7 +113,7 @@ let asked = null;
 
 function openDialog(finding) {
   asked = finding;
-  $('.what', dialog).textContent = finding.text;
+  $('.finding', dialog).textContent = finding.text;
   $('.error', dialog).textContent = '';
   $('[name=note]', dialog).value = '';
   $('[name=who]', dialog).value = sessionStorage.getItem('who') || '';
@@ -136,7 +136,7 @@ $('form', dialog).addEventListener('submit', async (event) => {
     if (answer.status === 401) {
       sessionStorage.removeItem('token');
       needToken(true);
-      $('.error', dialog).textContent = 'This is not the token.';
+      $('.error', dialog).textContent = 'Invalid token.';
       return;
     }
     if (!answer.ok && answer.status !== 409) throw new Error((await answer.json()).error);
@@ -145,7 +145,7 @@ $('form', dialog).addEventListener('submit', async (event) => {
     dialog.close();
     await poll();
   } catch (error) {
-    $('.error', dialog).textContent = error.message || 'The platform does not answer.';
+    $('.error', dialog).textContent = error.message || 'Server not responding.';
   }
 });
 
@@ -172,7 +172,7 @@ function showMap() {
   map.show(details, state.water.filter((one) => one.run === details.run), isLive ? [robot, ...others] : []);
   const keys = [['track', '', 'track'], ['accent', 'dot', 'robot'], ['soft', 'ring', 'station']];
   if (details.findings.length) keys.push(['alarm', 'dot', 'finding']);
-  if (state.water.some((one) => one.run === details.run && one.data.found)) keys.push(['water', 'ring', 'water: its size, and dashed where its middle lies with 95 %']);
+  if (state.water.some((one) => one.run === details.run && one.data.found)) keys.push(['water', 'ring', 'water: size, and 95 % ellipse of its center (dashed)']);
   $('.legend').replaceChildren(...keys.map(([ink, shape, word]) => {
     const key = make('span', { className: shape, textContent: word });
     key.style.setProperty('--ink', `var(--${ink})`);
@@ -203,10 +203,10 @@ $('#run').addEventListener('change', (event) => {
 const pages = [0];  // `before` of each page up to this one
 
 function summary({ kind, data }) {
-  if (kind === 'event') return data.text || spoken(data.kind);
+  if (kind === 'event') return data.text || humanize(data.kind);
   if (kind === 'status') return `${kStates[data.state] ? kStates[data.state][0] : data.state}${data.message ? ': ' + data.message : ''}`;
-  if (kind === 'lining') return data.registered ? `Lining at ${spoken(data.station)}: ${plural(sizeOf(data.findings), 'ring')} moved` : `Lining at ${spoken(data.station)}: the scans could not be laid on each other`;
-  if (kind === 'water') return data.found ? `Water ${data.distance_m == null ? '?' : data.distance_m.toFixed(1)} m from the antenna` : `No water at ${spoken(data.station)}`;
+  if (kind === 'lining') return data.registered ? `Lining at ${humanize(data.station)}: ${plural(sizeOf(data.findings), 'ring')} moved` : `Lining at ${humanize(data.station)}: registration failed`;
+  if (kind === 'water') return data.found ? `Water ${data.distance_m == null ? '?' : data.distance_m.toFixed(1)} m from the antenna` : `No water at ${humanize(data.station)}`;
   if (kind === 'pose') return `x ${data.x.toFixed(2)} m, y ${data.y.toFixed(2)} m, heading ${(data.yaw * 180 / Math.PI).toFixed(0)}\u00b0`;
   return kind === 'map' ? `${data.width} x ${data.height} cells of ${data.resolution_m} m` : '';
 }
@@ -218,7 +218,7 @@ async function refreshHistory() {
   const { results, more } = await ask('/api/history', wanted);
   if (state.wanted !== wanted) return;  // another page was requested meanwhile
   $('#history tbody').replaceChildren(...results.map((one) => make('tr', {}, make('td', { textContent: dayAndClock(one.received_ms) }), make('td', { textContent: one.robot }),
-    make('td', { textContent: simulated(one.time_s), title: 'into the run ' + one.run }), make('td', { textContent: one.kind === 'event' ? spoken(one.data.kind) : one.kind }), make('td', { textContent: summary(one) }))));
+    make('td', { textContent: simulated(one.time_s), title: 'time of run ' + one.run }), make('td', { textContent: one.kind === 'event' ? humanize(one.data.kind) : one.kind }), make('td', { textContent: summary(one) }))));
   $('#newer').disabled = pages.length === 1;
   $('#older').disabled = !more;
   $('#older').onclick = () => { pages.push(results[results.length - 1].seq); attempt(refreshHistory); };
@@ -238,9 +238,9 @@ function showHistoryRobots() {
 
 function showLive(isOn) {
   const live = $('#live');
-  if (isOn) state.heard = Date.now();
+  if (isOn) state.lastResponse_ms = Date.now();
   live.className = isOn ? 'on' : 'off';
-  live.textContent = isOn ? 'live' : `no answer since ${state.heard ? clock(state.heard) : 'the start'}`;
+  live.textContent = isOn ? 'live' : `no response since ${state.lastResponse_ms ? clock(state.lastResponse_ms) : 'the start'}`;
 }
 
 async function poll() {

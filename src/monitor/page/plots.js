@@ -2,12 +2,12 @@
 const ink = (name) => getComputedStyle(document.documentElement).getPropertyValue('--' + name).trim();
 const kSeries = 6, kPlotHeight = 230;
 
-function mixed(from, to, share) {
-  return `color-mix(in srgb, ${to} ${Math.round(100 * share)}%, ${from})`;
+function mixed(from, to, fraction) {
+  return `color-mix(in srgb, ${to} ${Math.round(100 * fraction)}%, ${from})`;
 }
 
 /// Color of a displacement, inward or outward, from zero to the end of the scale.
-const colour = (inward_mm, end_mm) => mixed(ink('still'), ink(inward_mm > 0 ? 'inward' : 'outward'), Math.min(1, Math.abs(inward_mm) / end_mm));
+const displacementColor = (inward_mm, end_mm) => mixed(ink('still'), ink(inward_mm > 0 ? 'inward' : 'outward'), Math.min(1, Math.abs(inward_mm) / end_mm));
 
 /// Clock angle with the crown in the middle: -180 ... 180.
 const unrolled = (clock_deg) => (clock_deg > 180 ? clock_deg - 360 : clock_deg);
@@ -19,8 +19,8 @@ export class HeatMap {
     this.ramp = figure.querySelector('.ramp');
     this.cells = [];
     new ResizeObserver(() => this.draw()).observe(figure);
-    this.canvas.addEventListener('pointermove', (event) => this.say(event.offsetX, event.offsetY));
-    this.canvas.addEventListener('pointerdown', (event) => this.say(event.offsetX, event.offsetY));
+    this.canvas.addEventListener('pointermove', (event) => this.describe(event.offsetX, event.offsetY));
+    this.canvas.addEventListener('pointerdown', (event) => this.describe(event.offsetX, event.offsetY));
     this.canvas.addEventListener('pointerleave', () => { this.output.textContent = ''; });
   }
 
@@ -31,14 +31,14 @@ export class HeatMap {
     this.cells = scans.flatMap((scan) => scan.data.cells.filter((cell) => cell.inward_m != null && owner.get(cell.ring) === scan));
     this.rings = [...new Set(this.cells.map((cell) => cell.ring))].sort((a, b) => a - b);
     const clocks = [...new Set(this.cells.map((cell) => cell.clock_deg))].sort((a, b) => a - b);
-    this.step = clocks.slice(1).reduce((least, clock, i) => Math.min(least, clock - clocks[i]), 30);
-    const most = 1e3 * this.cells.reduce((a, cell) => Math.max(a, Math.abs(cell.inward_m)), 0);
-    this.end_mm = [3, 6, 10, 15, 20, 30, 50, 100].find((end) => end >= most) || Math.ceil(most);
+    this.step = clocks.slice(1).reduce((min, clock, i) => Math.min(min, clock - clocks[i]), 30);
+    const max_mm = 1e3 * this.cells.reduce((a, cell) => Math.max(a, Math.abs(cell.inward_m)), 0);
+    this.end_mm = [3, 6, 10, 15, 20, 30, 50, 100].find((end) => end >= max_mm) || Math.ceil(max_mm);
     this.draw();
     const gradient = ['outward', 'still', 'inward'].map(ink).join(', ');
     const bar = document.createElement('i');
     bar.style.background = `linear-gradient(to right, ${gradient})`;
-    this.ramp.replaceChildren(`${this.end_mm} mm outwards`, bar, `${this.end_mm} mm inwards`, ' \u2013 pale: within twice its standard deviation');
+    this.ramp.replaceChildren(`${this.end_mm} mm outward`, bar, `${this.end_mm} mm inward`, ' \u2013 pale: within twice its standard deviation');
   }
 
   /// Positions of the cells: rings in a row, with a gap at missing ring numbers.
@@ -61,9 +61,9 @@ export class HeatMap {
     const context = this.canvas.getContext('2d'), at = this.layout(), tall = this.step / 360 * at.height;
     context.scale(ratio, ratio);
     for (const cell of this.cells) {
-      const isSure = cell.std_m == null || Math.abs(cell.inward_m) >= 2 * cell.std_m;
-      context.globalAlpha = isSure ? 1 : 0.45;
-      context.fillStyle = colour(1e3 * cell.inward_m, this.end_mm);
+      const isSignificant = cell.std_m == null || Math.abs(cell.inward_m) >= 2 * cell.std_m;
+      context.globalAlpha = isSignificant ? 1 : 0.45;
+      context.fillStyle = displacementColor(1e3 * cell.inward_m, this.end_mm);
       const x = at.x(cell.ring), y = at.y(cell.clock_deg) - tall / 2;
       context.fillRect(x, y, Math.max(1, at.wide - (at.wide > 8 ? 1 : 0)), Math.max(1, tall - (tall > 5 ? 1 : 0)));
     }
@@ -81,7 +81,7 @@ export class HeatMap {
     }
   }
 
-  say(x, y) {
+  describe(x, y) {
     const at = this.layout(), tall = this.step / 360 * at.height;
     const cell = this.cells.find((one) => x >= at.x(one.ring) && x < at.x(one.ring) + at.wide && Math.abs(y - at.y(one.clock_deg)) <= tall / 2);
     this.output.textContent = cell ? `ring ${cell.ring}, ${Math.round(cell.clock_deg)}\u00b0: ${(1e3 * cell.inward_m).toFixed(1)} \u00b1 ${cell.std_m == null ? '?' : (1e3 * cell.std_m).toFixed(1)} mm` : '';
@@ -98,11 +98,11 @@ function timesOf(plot, splits) {
 
 /// Plot of curves over wall-clock time.
 export class TimePlot {
-  constructor(place, keys) {
-    this.place = place;
+  constructor(container, keys) {
+    this.container = container;
     this.keys = keys;
     this.plot = null;
-    new ResizeObserver(() => this.plot && this.plot.setSize({ width: this.place.clientWidth, height: kPlotHeight })).observe(place);
+    new ResizeObserver(() => this.plot && this.plot.setSize({ width: this.container.clientWidth, height: kPlotHeight })).observe(container);
     matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => this.series && this.show(this.series));
   }
 
@@ -124,10 +124,10 @@ export class TimePlot {
     const [first, end] = [data[0][0], data[0][data[0].length - 1]], margin = Math.max(30, 0.03 * (end - first));
     const span = (plot, from, to) => (from > first - margin && to < end + margin && to - from < end - first ? [from, to] : [first - margin, end + margin]);
     this.plot = new uPlot({
-      width: this.place.clientWidth || 300, height: kPlotHeight, legend: { show: false }, padding: [8, 8, 0, 0], cursor: { y: false, drag: { x: true, y: false } },
+      width: this.container.clientWidth || 300, height: kPlotHeight, legend: { show: false }, padding: [8, 8, 0, 0], cursor: { y: false, drag: { x: true, y: false } },
       scales: { x: { range: span }, y: isWide ? { distr: 3 } : { range: (plot, from, to) => [Math.min(0, 1.1 * from), 1.1 * to || 1] } },
       axes: [{ ...axis, space: 76, size: 26, values: timesOf }, { ...axis, size: 46, ...(isWide ? { filter: (plot, splits) => splits.map((one) => (Number.isInteger(Math.log10(one)) ? one : null)) } : {}) }],
       series: [{}, ...shown.map((one, i) => ({ stroke: ink(`series-${i + 1}`), width: 1.5, spanGaps: true, points: { show: true, size: 6, fill: ink(`series-${i + 1}`) } }))],
-    }, data, this.place);
+    }, data, this.container);
   }
 }

@@ -1,6 +1,6 @@
 // Findings at a site: lining, water ahead, gas.
 import { HeatMap, TimePlot } from '/plots.js';
-import { $, dayAndClock, make, mm, plural, spoken } from '/words.js';
+import { $, dayAndClock, make, mm, plural, humanize } from '/format.js';
 
 const kLines = 12;
 const heat = new HeatMap($('#lining .wide'));
@@ -21,7 +21,7 @@ const last = (curve) => curve.points[curve.points.length - 1][1];
 export function showLining({ scans, lines, rings }) {
   const section = $('#lining'), isEmpty = !scans.length;
   $('.content', section).hidden = isEmpty;
-  $(':scope > .empty', section).textContent = isEmpty ? 'No lining was scanned at this site.' : '';
+  $(':scope > .empty', section).textContent = isEmpty ? 'No lining scans at this site.' : '';
   $('#lining-when').textContent = isEmpty ? '' : `${plural(scans.length, 'station')}, newest scan ${dayAndClock(scans[0].made_ms)}`;
   if (isEmpty) return;
   heat.show(scans);
@@ -40,18 +40,18 @@ export function showLining({ scans, lines, rings }) {
 
 export function showWater(list) {
   const section = $('#water');
-  $('.empty', section).textContent = list.length ? '' : 'Nobody has sounded for water at this site.';
+  $('.empty', section).textContent = list.length ? '' : 'No TEM soundings at this site.';
   $('#water-when').textContent = list.length ? dayAndClock(list[0].made_ms) : '';
   $('.content', section).replaceChildren(...list.slice(0, 3).map(({ data, robot }) => {
-    const facts = [['Station', spoken(data.station)], ['By', `${robot}, ${plural(data.soundings, 'sounding')}`]];
+    const facts = [['Station', humanize(data.station)], ['By', `${robot}, ${plural(data.soundings, 'sounding')}`]];
     if (data.found) {
       const [near, far] = data.distance_interval_m, [thin, thick] = data.radius_interval_m;
       const side = data.azimuth_deg >= 0 ? 'left' : 'right', height = data.elevation_deg >= 0 ? 'up' : 'down';
       facts.unshift(['Distance', `${near.toFixed(1)} \u2026 ${far.toFixed(1)} m from the antenna`], ['Direction', `${Math.abs(data.azimuth_deg).toFixed(0)}\u00b0 to the ${side}, ${Math.abs(data.elevation_deg).toFixed(0)}\u00b0 ${height}`],
         ['Radius', `${data.radius_m == null ? '?' : data.radius_m.toFixed(1)} m (${thin.toFixed(1)} \u2026 ${thick.toFixed(1)} m)`]);
     }
-    if (data.evidence != null) facts.push(['Evidence', `${data.evidence.toFixed(1)} (natural logarithm, for a body against none)`]);
-    if (data.antenna_error_deg != null) facts.push(['Antenna', `${data.antenna_error_deg.toFixed(2)}\u00b0 off, root mean square`]);
+    if (data.evidence != null) facts.push(['Evidence', `${data.evidence.toFixed(1)} (log Bayes factor, water vs. no water)`]);
+    if (data.antenna_error_deg != null) facts.push(['Antenna', `${data.antenna_error_deg.toFixed(2)}\u00b0 RMS error`]);
     const word = data.found ? `Water, ${data.distance_m == null ? '?' : data.distance_m.toFixed(1)} m ahead` : 'No water found';
     return make('article', {}, make('p', { className: 'word ' + (data.found ? data.level : 'good'), textContent: word }),
       make('dl', {}, ...facts.flatMap(([name, value]) => [make('dt', { textContent: name }), make('dd', { textContent: value })])));
@@ -59,7 +59,7 @@ export function showWater(list) {
 }
 
 export function showGas(points) {
-  $('#gas .empty').textContent = points.length ? '' : 'No gas was measured at this site.';
-  gasPlot.show(curvesOf(points, spoken).sort((a, b) => last(b) - last(a)));
+  $('#gas .empty').textContent = points.length ? '' : 'No gas measurements at this site.';
+  gasPlot.show(curvesOf(points, humanize).sort((a, b) => last(b) - last(a)));
   $('#gas-plot').hidden = !points.length;
 }

@@ -51,28 +51,28 @@ std::optional<HighlightKind> moment_of(EventKind kind) {
 
 std::string title_of(const Event& event) {
   if (event.kind == EventKind::kGasAlarm) return fmt::format("Leak at {}: {:.0f} ppm m of methane", humanize(event.subject), event.value);
-  if (event.kind == EventKind::kRelocalized) return fmt::format("Knows where it is again, after {:.1f} s", event.value);
-  if (event.kind == EventKind::kLocalizationLost) return "Does not know where it is";
+  if (event.kind == EventKind::kRelocalized) return fmt::format("Localization recovered after {:.1f} s", event.value);
+  if (event.kind == EventKind::kLocalizationLost) return "Localization lost";
   return without_full_stop(event.text);
 }
 
-void add_events(const RunHistory& history, const Pose2& T_world_map, Highlights& moments) {
+void add_events(const RunHistory& history, const Pose2& T_world_map, Highlights& highlights) {
   for (const Event& event : history.events) {
     const std::optional<HighlightKind> kind = moment_of(event.kind);
     if (!kind) continue;
-    Highlight moment{.at = event.stamp, .kind = *kind, .title = title_of(event)};
-    if (*kind == HighlightKind::kAlarm) moment.p_world_subject = T_world_map * event.p_map_target;
-    moments.push_back(std::move(moment));
+    Highlight highlight{.at = event.stamp, .kind = *kind, .title = title_of(event)};
+    if (*kind == HighlightKind::kAlarm) highlight.p_world_subject = T_world_map * event.p_map_target;
+    highlights.push_back(std::move(highlight));
   }
 }
 
 /// Merges contacts less than 3 s apart into one collision.
-void add_collisions(const RunHistory& history, Highlights& moments) {
+void add_collisions(const RunHistory& history, Highlights& highlights) {
   constexpr Time kOneCollision = std::chrono::seconds(3);
   std::optional<Time> last;
   for (const Collision& collision : history.collisions) {
     if (!last || collision.stamp > *last + kOneCollision) {
-      moments.push_back({collision.stamp, HighlightKind::kCollision, "Collision with " + humanize(collision.second)});
+      highlights.push_back({collision.stamp, HighlightKind::kCollision, "Collision with " + humanize(collision.second)});
     }
     last = collision.stamp;
   }
@@ -93,44 +93,44 @@ std::vector<Approach> encounters(const std::vector<Approach>& approaches, double
   return met;
 }
 
-void add_near_misses(const RunHistory& history, const HighlightSettings& settings, Highlights& moments) {
+void add_near_misses(const RunHistory& history, const HighlightSettings& settings, Highlights& highlights) {
   std::vector<Approach> met = encounters(history.approaches, settings.near_miss_m);
   std::ranges::stable_sort(met, {}, &Approach::clearance_m);
   if (met.size() > static_cast<std::size_t>(settings.max_near_misses)) met.resize(static_cast<std::size_t>(settings.max_near_misses));
   for (const Approach& approach : met) {
-    moments.push_back({approach.at, HighlightKind::kNearMiss, fmt::format("{:.2f} m from {}", approach.clearance_m, humanize(approach.actor)),
+    highlights.push_back({approach.at, HighlightKind::kNearMiss, fmt::format("{:.2f} m from {}", approach.clearance_m, humanize(approach.actor)),
                        approach.p_world_actor});
   }
 }
 
-void add_max_error(const RunHistory& history, const HighlightSettings& settings, Highlights& moments) {
+void add_max_error(const RunHistory& history, const HighlightSettings& settings, Highlights& highlights) {
   const auto size_m = [](const EstimateError& error) { return error.error_in_world_m.norm(); };
   const auto largest = std::ranges::max_element(history.errors, {}, size_m);
   if (largest == history.errors.end() || size_m(*largest) < settings.min_error_m) return;
-  moments.push_back({largest->at, HighlightKind::kMaxError, fmt::format("Largest position error: {:.3f} m", size_m(*largest))});
+  highlights.push_back({largest->at, HighlightKind::kMaxError, fmt::format("Maximum position error: {:.3f} m", size_m(*largest))});
 }
 
 /// Adds steps of the true pose that the robot cannot make itself.
-void add_kidnaps(const RunHistory& history, const HighlightSettings& settings, Highlights& moments) {
+void add_kidnaps(const RunHistory& history, const HighlightSettings& settings, Highlights& highlights) {
   for (std::size_t i = 1; i < history.T_world_body.size(); ++i) {
     const double leap_m = (history.T_world_body[i].pose.position - history.T_world_body[i - 1].pose.position).norm();
     if (leap_m >= settings.kidnap_m) {
-      moments.push_back({history.T_world_body[i].stamp, HighlightKind::kKidnap, fmt::format("Lifted {:.0f} m away, and nobody tells it", leap_m)});
+      highlights.push_back({history.T_world_body[i].stamp, HighlightKind::kKidnap, fmt::format("Kidnapped: moved {:.0f} m", leap_m)});
     }
   }
 }
 
 /// Adds steps of the error that are not caused by a step of the true pose.
-void add_corrections(const RunHistory& history, const HighlightSettings& settings, Highlights& moments) {
+void add_corrections(const RunHistory& history, const HighlightSettings& settings, Highlights& highlights) {
   constexpr Time kAround = std::chrono::milliseconds(500);
-  const Highlights before = moments;
+  const Highlights before = highlights;
   const auto is_kidnap_near = [&](Time at) {
     return std::ranges::any_of(before, [&](const Highlight& m) { return m.kind == HighlightKind::kKidnap && m.at <= at + kAround && at <= m.at + kAround; });
   };
   for (std::size_t i = 1; i < history.errors.size(); ++i) {
     const double jump_m = (history.errors[i].error_in_world_m - history.errors[i - 1].error_in_world_m).norm();
     if (jump_m < settings.correction_m || is_kidnap_near(history.errors[i].at)) continue;
-    moments.push_back({history.errors[i].at, HighlightKind::kCorrection, fmt::format("The estimate jumps by {:.2f} m", jump_m)});
+    highlights.push_back({history.errors[i].at, HighlightKind::kCorrection, fmt::format("Estimate corrected by {:.2f} m", jump_m)});
   }
 }
 
@@ -138,16 +138,16 @@ void add_corrections(const RunHistory& history, const HighlightSettings& setting
 
 std::vector<Highlight> find_highlights(const RunHistory& history, const Pose2& T_world_map, std::vector<Highlight> announced,
                                  const HighlightSettings& settings) {
-  Highlights moments = std::move(announced);
-  add_events(history, T_world_map, moments);
-  add_collisions(history, moments);
-  add_near_misses(history, settings, moments);
-  add_max_error(history, settings, moments);
-  add_kidnaps(history, settings, moments);
-  add_corrections(history, settings, moments);
-  std::erase_if(moments, [&](const Highlight& moment) { return moment.at < history.begin || moment.at > history.end; });
-  std::ranges::stable_sort(moments, {}, &Highlight::at);
-  return moments;
+  Highlights highlights = std::move(announced);
+  add_events(history, T_world_map, highlights);
+  add_collisions(history, highlights);
+  add_near_misses(history, settings, highlights);
+  add_max_error(history, settings, highlights);
+  add_kidnaps(history, settings, highlights);
+  add_corrections(history, settings, highlights);
+  std::erase_if(highlights, [&](const Highlight& highlight) { return highlight.at < history.begin || highlight.at > history.end; });
+  std::ranges::stable_sort(highlights, {}, &Highlight::at);
+  return highlights;
 }
 
 }  // namespace patrol::render

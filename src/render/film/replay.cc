@@ -67,7 +67,7 @@ void prepare(mjModel& view, const ReplaySettings& settings) {
 }
 
 InputError no_states(const std::filesystem::path& log_mcap) {
-  return InputError(log_mcap.string() + ": the log has no states to replay (topic " + io::kTopic<SimState> +
+  return InputError(log_mcap.string() + ": contains no states (topic " + io::kTopic<SimState> +
                     ")");
 }
 
@@ -77,7 +77,7 @@ ReplaySummary replay(const std::filesystem::path& log_mcap, sim::AssembledModel 
                      const Pose2& T_world_map, const ReplaySettings& settings,
                      const std::filesystem::path& out_mp4, const ReplayProgress& progress) {
   if (!(settings.speed.fast > 0.0) || !(settings.speed.slow > 0.0) || !(settings.frames_per_second > 0.0)) {
-    throw InputError(fmt::format("speed = {}, slow = {}: must be greater than 0", settings.speed.fast, settings.speed.slow));
+    throw InputError(fmt::format("speed = {}, highlight speed = {}: must be greater than 0", settings.speed.fast, settings.speed.slow));
   }
   const mjModel& view = *model.view;
   prepare(*model.view, settings);

@@ -56,9 +56,9 @@ double ShotCamera::choose_bearing(const Pose3& T_world_body) const {
   double best_rad = ahead_rad + bearings_deg[0] * kDegree, best_fraction = 0.0;
   for (const double bearing_deg : bearings_deg) {
     const double bearing_rad = ahead_rad + bearing_deg * kDegree;
-    const double share = std::min(free_fraction(shot_.T_world_body, bearing_rad), free_fraction(T_world_body, bearing_rad));
-    if (share <= best_fraction) continue;
-    best_fraction = share;
+    const double fraction = std::min(free_fraction(shot_.T_world_body, bearing_rad), free_fraction(T_world_body, bearing_rad));
+    if (fraction <= best_fraction) continue;
+    best_fraction = fraction;
     best_rad = bearing_rad;
   }
   return best_rad;
@@ -69,9 +69,9 @@ View ShotCamera::from_above(const Pose3& T_world_body, const Eigen::Vector2d& p_
   const Eigen::Vector2d apart_m = p_world_estimate - T_world_body.position.head<2>();
   Eigen::Vector3d between = T_world_body.position;
   between.head<2>() += 0.5 * apart_m;
-  const double share = 1.0 - std::exp(-elapsed_s / kFollow_s);
-  focus_m_ += share * (between - focus_m_);
-  height_m_ += share * (std::clamp(kHeightPerApart * apart_m.norm(), kLowest_m, kHighest_m) - height_m_);
+  const double gain = 1.0 - std::exp(-elapsed_s / kFollow_s);
+  focus_m_ += gain * (between - focus_m_);
+  height_m_ += gain * (std::clamp(kHeightPerApart * apart_m.norm(), kLowest_m, kHighest_m) - height_m_);
   return look_down(focus_m_, height_m_, free_distance_);
 }
 

@@ -26,15 +26,15 @@ Scene scene_of(std::vector<Highlight>::const_iterator from, std::vector<Highligh
   std::ranges::stable_sort(main_highlights, {}, &Highlight::kind);
   if (main_highlights.size() > kMaxTitles) main_highlights.resize(kMaxTitles);
   std::ranges::stable_sort(main_highlights, {}, &Highlight::at);
-  for (const Highlight& moment : main_highlights) scene.titles.push_back(moment.title);
+  for (const Highlight& highlight : main_highlights) scene.titles.push_back(highlight.title);
   return scene;
 }
 
 /// Groups the highlights into scenes in order of time. Overlapping scenes are cut at the middle of the overlap.
-std::vector<Scene> scenes_of(const std::vector<Highlight>& moments, TimeSpan run, const ShotSettings& settings) {
+std::vector<Scene> scenes_of(const std::vector<Highlight>& highlights, TimeSpan run, const ShotSettings& settings) {
   std::vector<Scene> scenes;
-  for (auto from = moments.begin(), to = from; from != moments.end(); from = to) {
-    for (++to; to != moments.end() && to->at - (to - 1)->at < from_seconds(settings.same_scene_s);) ++to;
+  for (auto from = highlights.begin(), to = from; from != highlights.end(); from = to) {
+    for (++to; to != highlights.end() && to->at - (to - 1)->at < from_seconds(settings.same_scene_s);) ++to;
     Scene scene = scene_of(from, to, settings);
     scene.span = {std::max(scene.span.from, run.from), std::min(scene.span.to, run.to)};
     if (!scenes.empty() && scenes.back().span.to > scene.span.from) {
@@ -46,9 +46,9 @@ std::vector<Scene> scenes_of(const std::vector<Highlight>& moments, TimeSpan run
   return scenes;
 }
 
-ShotKind shot_kind(const Highlight& moment) {
-  if (moment.p_world_subject) return ShotKind::kTwoSubjects;
-  switch (moment.kind) {
+ShotKind shot_kind(const Highlight& highlight) {
+  if (highlight.p_world_subject) return ShotKind::kTwoSubjects;
+  switch (highlight.kind) {
     case HighlightKind::kKidnap:
     case HighlightKind::kLost:
     case HighlightKind::kRelocalized:
@@ -69,12 +69,12 @@ std::vector<Shot> shots_of(std::vector<Scene> scenes, const Trajectory& T_world_
   const Pose3 last = T_world_body.empty() ? Pose3{} : T_world_body.back().pose;
   std::vector<Shot> shots;
   for (const Scene& scene : scenes) {
-    const Highlight& moment = scene.main_highlight;
+    const Highlight& highlight = scene.main_highlight;
     shots.push_back({.span = scene.span,
-                     .kind = shot_kind(moment),
+                     .kind = shot_kind(highlight),
                      .caption = scene.titles,
-                     .T_world_body = pose_at(T_world_body, moment.at).value_or(last),
-                     .p_world_subject = moment.p_world_subject});
+                     .T_world_body = pose_at(T_world_body, highlight.at).value_or(last),
+                     .p_world_subject = highlight.p_world_subject});
   }
   return shots;
 }
@@ -102,13 +102,13 @@ std::vector<Chapter> chapters_of(const std::vector<Scene>& scenes, const SpeedPl
 FilmStyle parse_film_style(const std::string& name) {
   if (name == "story") return FilmStyle::kHighlights;
   if (name == "plain") return FilmStyle::kContinuous;
-  throw InputError("cut = " + name + ": must be one of story, plain");
+  throw InputError("style = " + name + ": must be one of highlights, continuous");
 }
 
-ShotPlan plan_shots(const RunHistory& history, const std::vector<Highlight>& moments, FilmStyle style, const SpeedSettings& speed,
+ShotPlan plan_shots(const RunHistory& history, const std::vector<Highlight>& highlights, FilmStyle style, const SpeedSettings& speed,
                     const ShotSettings& settings) {
   const TimeSpan run{history.begin, history.end};
-  const std::vector<Scene> scenes = scenes_of(moments, run, settings);
+  const std::vector<Scene> scenes = scenes_of(highlights, run, settings);
   std::vector<Shot> shots;
   if (style == FilmStyle::kHighlights) shots = shots_of(scenes, history.T_world_body, settings.max_shots);
   std::vector<TimeSpan> slow_spans;

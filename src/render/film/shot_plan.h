@@ -54,7 +54,7 @@ struct ShotPlan {
 };
 
 /// Plans the shots of a film. `moments` is the result of find_highlights. A plain film has chapters only.
-ShotPlan plan_shots(const RunHistory& history, const std::vector<Highlight>& moments, FilmStyle style, const SpeedSettings& speed,
+ShotPlan plan_shots(const RunHistory& history, const std::vector<Highlight>& highlights, FilmStyle style, const SpeedSettings& speed,
                     const ShotSettings& settings = {});
 
 }  // namespace patrol::render

@@ -183,7 +183,7 @@ int DepthRenderer::num_near_faces() const {
 }
 
 /// Sets the geom's pose from the pose of its body.
-void DepthRenderer::place(Shape& shape, const mjData& data) const {
+void DepthRenderer::update_pose(Shape& shape, const mjData& data) const {
   if (shape.body == 0) return;
   const Eigen::Map<const RowMajor3> R_world_body(data.xmat + 9 * shape.body);
   const Eigen::Vector3d position = Eigen::Map<const Eigen::Vector3d>(data.xpos + 3 * shape.body) + R_world_body * shape.position;
@@ -235,7 +235,7 @@ void DepthRenderer::draw(const mjData& data, const Pose3& T_world_camera, sim::I
   aim(camera);
   scene_.ngeom = 0;
   for (Shape& shape : shapes_) {
-    place(shape, data);
+    update_pose(shape, data);
     limit_infinite_plane(shape, camera);
     if (is_in_view(shape, camera)) scene_.geoms[scene_.ngeom++] = shape.drawn;
   }
@@ -247,9 +247,9 @@ void DepthRenderer::draw(const mjData& data, const Pose3& T_world_camera, sim::I
   image.reflectivity.resize(depth_.size());
   for (std::size_t pixel = 0; pixel < depth_.size(); ++pixel) {
     // Depth value: 1 at the near plane, 0 at the far plane, linear in the inverse depth.
-    const auto share = static_cast<double>(depth_[pixel]);
-    const bool is_something = share > 0.0;
-    image.depth_m[pixel] = is_something ? static_cast<float>(near_m_ * far_m_ / (near_m_ + share * (far_m_ - near_m_)))
+    const auto fraction = static_cast<double>(depth_[pixel]);
+    const bool is_something = fraction > 0.0;
+    image.depth_m[pixel] = is_something ? static_cast<float>(near_m_ * far_m_ / (near_m_ + fraction * (far_m_ - near_m_)))
                                         : std::numeric_limits<float>::infinity();
     const float red = static_cast<float>(colors_.bytes()[3 * pixel]);
     image.reflectivity[pixel] = is_something ? std::max(0.0f, red - 1.0f) / kBrightest : 0.0f;

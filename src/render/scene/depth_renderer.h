@@ -64,7 +64,7 @@ class DepthRenderer : public sim::DepthImager {
   void collect();
   void find_large_meshes();
   void upload_near(const Eigen::Vector3d& eye);
-  void place(Shape& shape, const mjData& data) const;
+  void update_pose(Shape& shape, const mjData& data) const;
   void limit_infinite_plane(Shape& shape, const Camera& camera) const;
   bool is_in_view(const Shape& shape, const Camera& camera) const;
   void aim(const Camera& camera);

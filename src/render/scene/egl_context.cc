@@ -73,16 +73,16 @@ class EglContext : public GlContext {
  public:
   explicit EglContext(const EglLibrary& egl) : egl_(egl), display_(open_graphics_card(egl)) {
     if (display_ == EGL_NO_DISPLAY) display_ = open_display(egl, EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY);
-    if (display_ == EGL_NO_DISPLAY) throw std::runtime_error("EGL has neither a graphics card nor a display without a screen");
+    if (display_ == EGL_NO_DISPLAY) throw std::runtime_error("EGL: no graphics card and no surfaceless display");
     constexpr EGLint kWanted[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
     EGLConfig config = nullptr;
     EGLint num_configs = 0;
     egl.function<decltype(&eglChooseConfig)>("eglChooseConfig")(display_, kWanted, &config, 1, &num_configs);
     if (num_configs < 1 || egl.function<decltype(&eglBindAPI)>("eglBindAPI")(EGL_OPENGL_API) != EGL_TRUE) {
-      throw std::runtime_error("EGL knows no OpenGL");
+      throw std::runtime_error("EGL: no OpenGL support");
     }
     context_ = egl.function<decltype(&eglCreateContext)>("eglCreateContext")(display_, config, EGL_NO_CONTEXT, nullptr);
-    if (context_ == EGL_NO_CONTEXT) throw std::runtime_error("EGL gives no OpenGL context");
+    if (context_ == EGL_NO_CONTEXT) throw std::runtime_error("EGL: cannot create an OpenGL context");
   }
   ~EglContext() override {
     make_current_(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
@@ -93,7 +93,7 @@ class EglContext : public GlContext {
 
   void make_current() override {
     if (make_current_(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_) != EGL_TRUE) {
-      throw std::runtime_error("EGL does not let its OpenGL context be used without a surface");
+      throw std::runtime_error("EGL: cannot make the OpenGL context current without a surface");
     }
   }
 

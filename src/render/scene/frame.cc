@@ -36,12 +36,12 @@ Frame load_png(const std::filesystem::path& file) {
   const std::string png = io::load_text(file);
   png_image image = rgb_image();
   if (png_image_begin_read_from_memory(&image, png.data(), png.size()) == 0) {
-    throw InputError(file.string() + ": cannot be read as a PNG: " + image.message);
+    throw InputError(file.string() + ": cannot read as a PNG: " + image.message);
   }
   image.format = PNG_FORMAT_RGB;
   Frame frame(static_cast<int>(image.width), static_cast<int>(image.height));
   if (png_image_finish_read(&image, nullptr, frame.bytes(), 0, nullptr) == 0) {
-    throw InputError(file.string() + ": cannot be read as a PNG: " + image.message);
+    throw InputError(file.string() + ": cannot read as a PNG: " + image.message);
   }
   return frame;
 }

@@ -50,9 +50,9 @@ void add_ghost(mjvScene& scene, const mjModel& model, const mjData& data, const 
     if (part.objtype != mjOBJ_GEOM || model.body_rootid[model.geom_bodyid[part.objid]] != model.body_rootid[robot]) continue;
     mjvGeom& ghost = scene.geoms[scene.ngeom++];
     ghost = part;
-    const Eigen::Vector2d place = T_there_here * Eigen::Vector2d(part.pos[0], part.pos[1]);
-    ghost.pos[0] = static_cast<float>(place.x());
-    ghost.pos[1] = static_cast<float>(place.y());
+    const Eigen::Vector2d p_ghost = T_there_here * Eigen::Vector2d(part.pos[0], part.pos[1]);
+    ghost.pos[0] = static_cast<float>(p_ghost.x());
+    ghost.pos[1] = static_cast<float>(p_ghost.y());
     Eigen::Map<RowMajor3f>(ghost.mat) = turn * Eigen::Map<const RowMajor3f>(part.mat);
     tint(ghost, opacity);
   }

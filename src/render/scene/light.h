@@ -8,11 +8,11 @@ namespace patrol::render {
 
 /// Brightness of a replay's pictures. No sensor depends on it: lidar and depth camera have their own infrared light.
 struct LightSettings {
-  double brightness_share = 1.0;  ///< fraction of the light of the world's lamps, sun and sky
+  double intensity = 1.0;  ///< fraction of the light of the world's lamps, sun and sky
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("brightness_share", self.brightness_share, between(0.0, 1.0));
+    visit("intensity", self.intensity, between(0.0, 1.0));
   }
 };
 

@@ -12,7 +12,7 @@ void put_state(const mjModel& model, const SimState& state, mjData& data) {
   const auto num_qpos = static_cast<std::size_t>(model.nq), num_mocap = static_cast<std::size_t>(model.nmocap);
   if (state.qpos.size() != num_qpos || state.mocap.size() != 7 * num_mocap) {
     throw InputError(fmt::format(
-        "a state of {} coordinates and {} poses was logged, the model has {} and {}: the log is of another "
+        "logged state has {} coordinates and {} poses, the model {} and {}: the log belongs to another "
         "world or robot",
         state.qpos.size(), state.mocap.size() / 7, num_qpos, num_mocap));
   }

@@ -10,7 +10,7 @@ namespace patrol::render {
 Offscreen::Offscreen(const mjModel& model, int width, int height, Renderer renderer)
     : gl_(make_gl_context(renderer)), viewport_{0, 0, width, height} {
   if (width < 1 || height < 1)
-    throw std::runtime_error(fmt::format("a frame of {}x{} has no pixels", width, height));
+    throw std::runtime_error(fmt::format("frame size {}x{}: must be at least 1x1", width, height));
   gl_->make_current();
   mjr_defaultContext(&context_);
   mjr_makeContext(&model, &context_, mjFONTSCALE_100);
@@ -23,7 +23,7 @@ Offscreen::Offscreen(const mjModel& model, int width, int height, Renderer rende
   const mjrRect largest = mjr_maxViewport(&context_);
   if (context_.currentBuffer != mjFB_OFFSCREEN || largest.width < width || largest.height < height) {
     mjr_freeContext(&context_);
-    throw std::runtime_error(fmt::format("OpenGL gives no off-screen buffer of {}x{}", width, height));
+    throw std::runtime_error(fmt::format("OpenGL: cannot create an off-screen buffer of {}x{}", width, height));
   }
 }
 

@@ -13,7 +13,7 @@ namespace {
 class OsmesaContext : public GlContext {
  public:
   OsmesaContext() : context_(OSMesaCreateContextExt(OSMESA_RGBA, 24, 8, 0, nullptr)) {
-    if (context_ == nullptr) throw std::runtime_error("OSMesa gives no OpenGL context");
+    if (context_ == nullptr) throw std::runtime_error("OSMesa: cannot create an OpenGL context");
   }
   ~OsmesaContext() override { OSMesaDestroyContext(context_); }
   OsmesaContext(const OsmesaContext&) = delete;
@@ -21,7 +21,7 @@ class OsmesaContext : public GlContext {
 
   void make_current() override {
     if (OSMesaMakeCurrent(context_, window_.data(), GL_UNSIGNED_BYTE, kSize, kSize) != GL_TRUE) {
-      throw std::runtime_error("OSMesa does not let its OpenGL context be used");
+      throw std::runtime_error("OSMesa: cannot make the OpenGL context current");
     }
   }
 

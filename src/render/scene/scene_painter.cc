@@ -18,7 +18,7 @@ namespace {
 Eigen::Vector3d to_eigen(const float v[3]) { return {v[0], v[1], v[2]}; }
 
 Color to_color(const float rgba[4]) {
-  const auto byte = [](float share) { return static_cast<std::uint8_t>(std::lround(255.0f * std::clamp(share, 0.0f, 1.0f))); };
+  const auto byte = [](float value) { return static_cast<std::uint8_t>(std::lround(255.0f * std::clamp(value, 0.0f, 1.0f))); };
   return {byte(rgba[0]), byte(rgba[1]), byte(rgba[2])};
 }
 
@@ -59,9 +59,9 @@ double shadow_weight(const mjvLight& lamp, const Eigen::Vector3d& focus, double 
   return smooth_step(kEdge_rad, kEdge_rad + kFade_rad, reach_rad - off_axis_rad) * smooth_step(0.0, kFade_m, second_nearest_m - ray.norm());
 }
 
-void scale_light(mjvLight& light, double share) {
+void scale_light(mjvLight& light, double weight) {
   for (float* color : {light.ambient, light.diffuse, light.specular}) {
-    for (int i = 0; i < 3; ++i) color[i] *= static_cast<float>(share);
+    for (int i = 0; i < 3; ++i) color[i] *= static_cast<float>(weight);
   }
 }
 
@@ -123,9 +123,9 @@ void SceneRenderer::center_light(const View& view) {
   if (sun == nullptr) return select_shadow_light(view);
   const Eigen::Vector3d rays = to_eigen(sun->dir);
   const Eigen::Vector3d on_ground(rays.x(), rays.y(), 0.0);
-  const Eigen::Vector3d place =
+  const Eigen::Vector3d p_light =
       view.focus - kSunDistance_m * rays - kTowardsSun * shadow_half_width_m_ * on_ground.normalized();
-  for (int axis = 0; axis < 3; ++axis) sun->pos[axis] = static_cast<float>(place[axis]);
+  for (int axis = 0; axis < 3; ++axis) sun->pos[axis] = static_cast<float>(p_light[axis]);
 }
 
 // Underground, shadows come from lamps. A frame has time for one shadow map: that of the nearest lamp. For partly dark
@@ -144,16 +144,16 @@ void SceneRenderer::select_shadow_light(const View& view) {
     if (other != lamp) second_m = std::min(second_m, away_m(*other));
   }
   const double reach_deg = static_cast<double>(lamp->cutoff * model_.vis.map.shadowscale);
-  double share = shadow_weight(*lamp, view.focus, to_rad(reach_deg), second_m);
+  double weight = shadow_weight(*lamp, view.focus, to_rad(reach_deg), second_m);
   const bool has_room = scene_.nlight < kMaxLights;
-  if (!has_room) share = std::round(share);
-  if (share == 0.0) return;
+  if (!has_room) weight = std::round(weight);
+  if (weight == 0.0) return;
   has_shadow_lamp_ = true;
-  if (share < 1.0) {
+  if (weight < 1.0) {
     mjvLight& rest = scene_.lights[scene_.nlight++];
     rest = *lamp;
-    scale_light(rest, 1.0 - share);
-    scale_light(*lamp, share);
+    scale_light(rest, 1.0 - weight);
+    scale_light(*lamp, weight);
   }
   lamp->castshadow = 1;
 }

@@ -17,14 +17,14 @@ double SprocketSpeedController::step(double requested_radps, std::int64_t count)
   last_angle_rad_ = angle_rad;
   last_requested_radps_ = requested_radps;
 
-  const double rest_nm = settings_.proportional_nms * (requested_radps - speed_radps_) +
-                         settings_.derivative_nms2 * (requested_radps2 - acceleration_radps2_);
-  const double requested_nm = rest_nm + settings_.integral_nm * lag_rad_;
+  const double rest_nm = settings_.kp_nms * (requested_radps - speed_radps_) +
+                         settings_.kd_nms2 * (requested_radps2 - acceleration_radps2_);
+  const double requested_nm = rest_nm + settings_.ki_nm * lag_rad_;
   const double torque_nm = motor_.feasible_torque_nm(requested_nm, speed_radps_);
   // Anti-windup: the integral never requests more than the motor's torque.
   const bool grows = (requested_nm - torque_nm) * lag_rad_ > 0.0;
-  if (grows && settings_.integral_nm > 0.0) {
-    const double useful_rad = (torque_nm - rest_nm) / settings_.integral_nm;
+  if (grows && settings_.ki_nm > 0.0) {
+    const double useful_rad = (torque_nm - rest_nm) / settings_.ki_nm;
     lag_rad_ = std::clamp(useful_rad, std::min(lag_rad_, 0.0), std::max(lag_rad_, 0.0));
   }
   return torque_nm;
@@ -40,7 +40,7 @@ void SprocketSpeedController::observe(double angle_rad) {
     has_started_ = true;
     angle_rad_ = last_angle_rad_ = angle_rad;
   }
-  const double w = settings_.observer_radps;
+  const double w = settings_.observer_bandwidth_radps;
   angle_rad_ += tick_s_ * speed_radps_;
   const double error_rad = angle_rad - angle_rad_;
   angle_rad_ += tick_s_ * 2.0 * w * error_rad;

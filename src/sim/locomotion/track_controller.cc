@@ -85,7 +85,7 @@ double TrackController::measured_yaw_rate(const Imu& imu) const {
 /// Returns the sprocket speeds, left and right, rad/s. If one track exceeds its limit, both are scaled to keep the
 /// curvature.
 std::array<double, 2> TrackController::sprocket_speeds(double speed_mps, double yaw_rate_radps) const {
-  const double half_gauge_m = settings_.gauge_factor * tracks_.gauge_m / 2.0;
+  const double half_gauge_m = settings_.effective_gauge_factor * tracks_.gauge_m / 2.0;
   const double left = speed_mps - yaw_rate_radps * half_gauge_m, right = speed_mps + yaw_rate_radps * half_gauge_m;
   const double scale = std::max({1.0, std::abs(left) / settings_.max_speed_mps, std::abs(right) / settings_.max_speed_mps});
   return {left / scale / tracks_.sprocket_radius_m, right / scale / tracks_.sprocket_radius_m};

@@ -12,16 +12,16 @@ struct TrackDriveSettings {
   double max_yaw_rate_radps = 0.8;
   double max_acceleration_mps2 = 0.8;
   double max_yaw_acceleration_radps2 = 1.5;
-  double gauge_factor = 1.41;                   ///< gauge in the firmware's kinematics relative to the geometric one;
+  double effective_gauge_factor = 1.41;                   ///< gauge in the firmware's kinematics relative to the geometric one;
                                                 ///< above 1 because of track slip in turns
   bool use_gyro = true;                         ///< true: the gyroscope corrects the yaw rate
   double gyro_gain = 0.3;                       ///< yaw rate correction per rad/s of yaw rate error
   double gyro_integral_per_s = 2.0;             ///< yaw rate correction per rad of heading error
   double max_gyro_correction_radps = 0.4;
-  double proportional_nms = 8.0;                ///< torque per rad/s of speed error
-  double integral_nm = 40.0;                    ///< torque per rad of lag angle
-  double derivative_nms2 = 0.02;                ///< torque per rad/s2 of acceleration error
-  double observer_radps = 100.0;                ///< bandwidth of the speed observer on the Hall counts
+  double kp_nms = 8.0;                ///< torque per rad/s of speed error
+  double ki_nm = 40.0;                    ///< torque per rad of lag angle
+  double kd_nms2 = 0.02;                ///< torque per rad/s2 of acceleration error
+  double observer_bandwidth_radps = 100.0;                ///< bandwidth of the speed observer on the Hall counts
   double stall_torque_nm = 120.0;               ///< stall torque of the motor at the sprocket, without its current
                                                 ///< limit
   double brake_torque_nm = 60.0;                ///< torque of the parking brake on each sprocket
@@ -34,15 +34,15 @@ struct TrackDriveSettings {
     visit("max_yaw_rate_radps", self.max_yaw_rate_radps, between(0.05, 3.0));
     visit("max_acceleration_mps2", self.max_acceleration_mps2, between(0.05, 5.0));
     visit("max_yaw_acceleration_radps2", self.max_yaw_acceleration_radps2, between(0.05, 10.0));
-    visit("gauge_factor", self.gauge_factor, between(1.0, 4.0));
+    visit("effective_gauge_factor", self.effective_gauge_factor, between(1.0, 4.0));
     visit("use_gyro", self.use_gyro);
     visit("gyro_gain", self.gyro_gain, between(0.0, 2.0));
     visit("gyro_integral_per_s", self.gyro_integral_per_s, between(0.0, 10.0));
     visit("max_gyro_correction_radps", self.max_gyro_correction_radps, between(0.0, 2.0));
-    visit("proportional_nms", self.proportional_nms, between(0.0, 30.0));
-    visit("integral_nm", self.integral_nm, between(0.0, 300.0));
-    visit("derivative_nms2", self.derivative_nms2, between(0.0, 1.0));
-    visit("observer_radps", self.observer_radps, between(5.0, 200.0));
+    visit("kp_nms", self.kp_nms, between(0.0, 30.0));
+    visit("ki_nm", self.ki_nm, between(0.0, 300.0));
+    visit("kd_nms2", self.kd_nms2, between(0.0, 1.0));
+    visit("observer_bandwidth_radps", self.observer_bandwidth_radps, between(5.0, 200.0));
     visit("stall_torque_nm", self.stall_torque_nm, at_least(1.0));
     visit("brake_torque_nm", self.brake_torque_nm, at_least(0.0));
     visit("brake_delay_s", self.brake_delay_s, between(0.0, 10.0));

@@ -17,24 +17,24 @@ double air_pressure_pa(const BarometerSettings& settings, double height_m) {
 
 Barometer::Barometer(const BarometerSettings& settings, std::uint64_t seed)
     : settings_(settings),
-      offset_pa_(settings.offset_pa * RandomStream(seed, "barometer/offset").normal(0)),
-      coefficient_pa_per_k_(settings.temperature_coefficient_pa_per_k *
+      offset_pa_(settings.offset_std_pa * RandomStream(seed, "barometer/offset").normal(0)),
+      coefficient_pa_per_k_(settings.temperature_coefficient_std_pa_per_k *
                             RandomStream(seed, "barometer/temperature").normal(0)),
-      correlation_(std::exp(-1.0 / (settings.rate_hz * settings.drift_time_s))),
+      correlation_(std::exp(-1.0 / (settings.rate_hz * settings.drift_correlation_time_s))),
       noise_(seed, "barometer/noise"),
       drift_(seed, "barometer/drift") {
   validate(settings, "sensors.barometer");
 }
 
 FluidPressure Barometer::read(double height_m, Time now, std::uint64_t index) {
-  const double step = settings_.drift_pa * drift_.normal(index);
+  const double step = settings_.drift_std_pa * drift_.normal(index);
   drift_pa_ = index == 0 ? step : correlation_ * drift_pa_ + std::sqrt(1.0 - correlation_ * correlation_) * step;
   const double warming_k = settings_.warming_k * (1.0 - std::exp(-to_seconds(now) / settings_.warming_time_s));
-  const double error_pa = offset_pa_ + coefficient_pa_per_k_ * warming_k + drift_pa_ + settings_.noise_pa * noise_.normal(index);
+  const double error_pa = offset_pa_ + coefficient_pa_per_k_ * warming_k + drift_pa_ + settings_.noise_std_pa * noise_.normal(index);
   const double step_pa = settings_.resolution_pa;
   double pressure_pa = air_pressure_pa(settings_, height_m) + error_pa;
   if (step_pa > 0.0) pressure_pa = step_pa * std::round(pressure_pa / step_pa);
-  return {.stamp = now, .pressure_pa = pressure_pa, .std_pa = settings_.noise_pa};
+  return {.stamp = now, .pressure_pa = pressure_pa, .std_pa = settings_.noise_std_pa};
 }
 
 namespace {

@@ -60,7 +60,7 @@ bool DepthCamera::is_occluded_in_right_imager(int u, int v) const {
 bool DepthCamera::is_at_edge(int u, int v) const {
   const double here = inverse_depth(u, v);
   const auto bends = [&](double before, double after) {
-    return std::abs(before - 2.0 * here + after) > settings_.edge_step * here;
+    return std::abs(before - 2.0 * here + after) > settings_.edge_threshold * here;
   };
   return (u > 0 && u + 1 < lens_.width_px && bends(inverse_depth(u - 1, v), inverse_depth(u + 1, v))) ||
          (v > 0 && v + 1 < lens_.height_px && bends(inverse_depth(u, v - 1), inverse_depth(u, v + 1)));
@@ -87,10 +87,10 @@ double DepthCamera::incidence_cosine(int u, int v) const {
 bool DepthCamera::is_visible(int u, int v) const {
   if (is_occluded_in_right_imager(u, v)) return false;
   const double cosine = incidence_cosine(u, v);
-  if (cosine < std::cos(settings_.grazing_deg * kDegree)) return false;
+  if (cosine < std::cos(settings_.max_incidence_deg * kDegree)) return false;
   const double reflectivity = std::max(kDarkest, static_cast<double>(ideal_.reflectivity[index_of(u, v)]));
   // as in lidar.cc
-  const double reach_m = settings_.dark_range_m * std::sqrt(reflectivity * std::sqrt(cosine) / 0.1);
+  const double reach_m = settings_.max_range_10pct_m * std::sqrt(reflectivity * std::sqrt(cosine) / 0.1);
   return dust_.equivalent_clear_distance_m(static_cast<double>(ideal_.depth_m[index_of(u, v)])) <= reach_m;
 }
 
@@ -110,9 +110,9 @@ DepthImage DepthCamera::take(const mjData& data, const Pose3& T_world_camera, Ti
       const std::size_t pixel = index_of(u, v);
       const auto true_m = static_cast<double>(ideal_.depth_m[pixel]);
       if (!(true_m <= settings_.range_max_m) || !is_visible(u, v)) continue;
-      if (dropout_.uniform(tick, pixel) < settings_.dropout) continue;
-      if (is_at_edge(u, v) && edge_.uniform(tick, pixel) < settings_.edge_loss) continue;
-      const double std_m = settings_.depth_noise_per_m * true_m * true_m * std::exp(2.0 * dust_.extinction_per_m() * true_m);
+      if (dropout_.uniform(tick, pixel) < settings_.dropout_probability) continue;
+      if (is_at_edge(u, v) && edge_.uniform(tick, pixel) < settings_.edge_dropout_probability) continue;
+      const double std_m = settings_.depth_noise_std_per_m * true_m * true_m * std::exp(2.0 * dust_.extinction_per_m() * true_m);
       const double depth_m = true_m + std_m * noise_.normal(tick, pixel);
       if (depth_m < settings_.range_min_m || depth_m > settings_.range_max_m) continue;
       image.depth_mm[pixel] = static_cast<std::uint16_t>(std::lround(1000.0 * depth_m));
@@ -148,7 +148,7 @@ std::unique_ptr<Sensor> make_sensor<DepthImage>(const SensorContext& context) {
   if (!settings.enabled) return nullptr;
   validate(settings, "sensors.depth_camera");
   context.robot.T_body("depth_camera");  // throws if the robot has no such frame
-  if (!context.make_depth_imager) throw InputError("sensors.depth_camera is enabled, but there is no renderer for it here");
+  if (!context.make_depth_imager) throw InputError("sensors.depth_camera.enabled = true: requires a renderer, which this command lacks");
   constexpr double kNear_m = 0.05;  // minimum distance; closer surfaces belong to the housing
   return std::make_unique<DepthCameraOnBody>(
       context, context.make_depth_imager(context.view, make_lens(settings), kNear_m, 1.1 * settings.range_max_m));

@@ -5,7 +5,7 @@
 namespace patrol::sim {
 namespace {
 
-constexpr double kSpikeProbability = 0.1;  // probability per message while the fault lasts
+constexpr double kOutlierProbability = 0.1;  // probability per message while the fault lasts
 
 void add_to_reading(SensorMessage& message, double offset) {
   const auto add = [&]<typename Message>(Message& content) { SensorTraits<Message>::add_to_reading(content, offset); };
@@ -19,7 +19,7 @@ void set_stamp(SensorMessage& message, Time stamp) {
 }  // namespace
 
 FaultInjector::FaultInjector(const std::vector<FaultSettings>& faults, std::uint64_t seed)
-    : spikes_(seed, "fault/spikes"), jitter_(seed, "fault/jitter") {
+    : outliers_(seed, "fault/spikes"), jitter_(seed, "fault/jitter") {
   for (const FaultSettings& fault : faults) reports_.push_back({.fault = fault});
 }
 
@@ -42,14 +42,14 @@ bool FaultInjector::apply(Time ready, Time& due, SensorMessage& message) {
 bool FaultInjector::change(FaultStatus& report, Time ready, Time& due, SensorMessage& message) {
   const FaultSettings& fault = report.fault;
   const std::optional<SensorMessage>& last_good = last_good_[message.index()];
-  const bool is_spiked = fault.kind == "spikes" && spikes_.uniform(spike_count_++) < kSpikeProbability;
-  report.was_triggered |= (fault.kind != "spikes" || is_spiked) && (fault.kind != "freeze" || last_good);
-  if (fault.kind == "silence") return false;
+  const bool is_outlier = fault.kind == "outliers" && outliers_.uniform(outlier_count_++) < kOutlierProbability;
+  report.was_triggered |= (fault.kind != "outliers" || is_outlier) && (fault.kind != "freeze" || last_good);
+  if (fault.kind == "dropout") return false;
   if (fault.kind == "delay") due += from_seconds(fault.magnitude);
   if (fault.kind == "jitter") due += from_seconds(std::abs(fault.magnitude * jitter_.normal(jitter_count_++)));
   if (fault.kind == "clock_offset") set_stamp(message, stamp_of(message) + from_seconds(fault.magnitude));
   if (fault.kind == "drift") add_to_reading(message, fault.magnitude * (to_seconds(ready) - fault.start_s));
-  if (is_spiked) add_to_reading(message, fault.magnitude);
+  if (is_outlier) add_to_reading(message, fault.magnitude);
   if (fault.kind == "freeze" && last_good) {
     const Time stamp = stamp_of(message);
     message = *last_good;

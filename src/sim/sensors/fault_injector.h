@@ -34,8 +34,8 @@ class FaultInjector {
   std::vector<FaultStatus> reports_;
   /// [sensor], last message before a freeze
   std::array<std::optional<SensorMessage>, std::variant_size_v<SensorMessage>> last_good_;
-  RandomStream spikes_, jitter_;
-  std::uint64_t spike_count_ = 0, jitter_count_ = 0;
+  RandomStream outliers_, jitter_;
+  std::uint64_t outlier_count_ = 0, jitter_count_ = 0;
 };
 
 }  // namespace patrol::sim

@@ -16,8 +16,8 @@ FootContactSensor::FootContactSensor(const FootContactSettings& settings, const 
   for (const LegGeometry& leg : legs) {
     const std::string name = leg.name + "_foot";
     const int geom = mj_name2id(&model, mjOBJ_GEOM, name.c_str());
-    if (geom < 0) throw InputError("the robot's model has no foot geom " + name);
-    offset_n_.push_back(settings.offset_n * offset.normal(0, foot_geoms_.size()));
+    if (geom < 0) throw InputError("robot model: foot geom not found: " + name);
+    offset_n_.push_back(settings.offset_std_n * offset.normal(0, foot_geoms_.size()));
     foot_geoms_.push_back(geom);
   }
 }
@@ -35,7 +35,7 @@ FootContacts FootContactSensor::read(const mjModel& model, const mjData& data, T
   }
   for (std::size_t leg = 0; leg < foot_geoms_.size(); ++leg) {
     double& force = contacts.force_n[leg];
-    force += offset_n_[leg] + settings_.noise_n * noise_.normal(tick, leg);
+    force += offset_n_[leg] + settings_.noise_std_n * noise_.normal(tick, leg);
     if (settings_.resolution_n > 0.0) force = settings_.resolution_n * std::round(force / settings_.resolution_n);
     force = std::clamp(force, -settings_.range_n, settings_.range_n);
   }

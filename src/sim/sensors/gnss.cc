@@ -34,20 +34,20 @@ double Gnss::open_sky_fraction(const LidarScene& scene, const Eigen::Vector3d& a
 
 GnssFix Gnss::read(const LidarScene& scene, const Eigen::Vector3d& p_world_antenna, Time now, std::uint64_t tick) {
   const double sky = open_sky_fraction(scene, p_world_antenna);
-  const bool is_open = sky >= settings_.fix_sky;
-  if (is_open && !was_open_) open_since_ = now + from_seconds(settings_.fix_delay_s);
+  const bool is_open = sky >= settings_.min_open_sky_fix;
+  if (is_open && !was_open_) open_since_ = now + from_seconds(settings_.fix_reacquisition_time_s);
   was_open_ = is_open;
 
   GnssFix fix{.stamp = now};
-  fix.status = is_open && now >= open_since_ ? GnssStatus::kFix : sky >= settings_.float_sky ? GnssStatus::kFloat : GnssStatus::kNone;
+  fix.status = is_open && now >= open_since_ ? GnssStatus::kFix : sky >= settings_.min_open_sky_float ? GnssStatus::kFloat : GnssStatus::kNone;
   // Use a Gauss-Markov error, so that averaging helps no more than with a real receiver.
-  const double correlation = std::exp(-1.0 / (settings_.rate_hz * settings_.error_time_s));
+  const double correlation = std::exp(-1.0 / (settings_.rate_hz * settings_.error_correlation_time_s));
   for (int axis = 0; axis < 3; ++axis) {
     error_[axis] = tick == 0 ? noise_.normal(0, static_cast<std::uint64_t>(axis))
                              : correlation * error_[axis] + std::sqrt(1.0 - correlation * correlation) * noise_.normal(tick, static_cast<std::uint64_t>(axis));
   }
   if (fix.status == GnssStatus::kNone) return fix;
-  const double std_m = fix.status == GnssStatus::kFix ? settings_.fix_noise_m : settings_.float_noise_m;
+  const double std_m = fix.status == GnssStatus::kFix ? settings_.fix_noise_std_m : settings_.float_noise_std_m;
   fix.position_std_m = Eigen::Vector3d(std_m, std_m, 2.0 * std_m);
   const Eigen::Vector3d enu = p_world_antenna + fix.position_std_m.cwiseProduct(error_);
   // Convert east and north to angles with the ellipsoid's radii at the datum: exact to a millimeter over a city block.

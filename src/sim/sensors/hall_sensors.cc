@@ -10,7 +10,7 @@ namespace {
 
 int address_of(const mjModel& model, const std::string& joint_name) {
   const int joint = mj_name2id(&model, mjOBJ_JOINT, joint_name.c_str());
-  if (joint < 0) throw InputError("the robot's model has no joint " + joint_name);
+  if (joint < 0) throw InputError("robot model: joint not found: " + joint_name);
   return model.jnt_qposadr[joint];
 }
 
@@ -35,7 +35,7 @@ std::int64_t HallSensors::advance(Counter& counter, std::uint64_t side, double a
   const auto edge = static_cast<std::int64_t>(std::floor(angle_rad * settings_.ticks_per_rad()));
   const std::int64_t step = edge > counter.edge ? 1 : -1;
   for (; counter.edge != edge; counter.edge += step, ++counter.passed) {
-    if (missed_.uniform(counter.passed, side) >= settings_.missed_tick_probability) counter.count += step;
+    if (missed_.uniform(counter.passed, side) >= settings_.missed_edge_probability) counter.count += step;
   }
   return counter.count;
 }

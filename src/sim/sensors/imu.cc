@@ -18,10 +18,10 @@ double quantized(double value, double resolution) {
 
 ImuSensor::ImuSensor(const ImuSettings& settings, const mjModel& model, std::uint64_t seed)
     : site_(mj_name2id(&model, mjOBJ_SITE, "imu")),
-      gyro_(make_triad(seed, "imu/gyro", settings, model.opt.timestep, settings.gyro_noise_radps_rthz, settings.gyro_bias_radps,
-                       settings.gyro_bias_walk_radps2_rthz, settings.gyro_range_radps, settings.gyro_resolution_radps)),
-      accel_(make_triad(seed, "imu/accel", settings, model.opt.timestep, settings.accel_noise_mps2_rthz,
-                        settings.accel_bias_mps2, settings.accel_bias_walk_mps3_rthz, settings.accel_range_mps2,
+      gyro_(make_triad(seed, "imu/gyro", settings, model.opt.timestep, settings.gyro_noise_density_radps_per_sqrt_hz, settings.gyro_bias_std_radps,
+                       settings.gyro_bias_random_walk_radps_per_sqrt_s, settings.gyro_range_radps, settings.gyro_resolution_radps)),
+      accel_(make_triad(seed, "imu/accel", settings, model.opt.timestep, settings.accel_noise_density_mps2_per_sqrt_hz,
+                        settings.accel_bias_std_mps2, settings.accel_bias_random_walk_mps2_per_sqrt_s, settings.accel_range_mps2,
                         settings.accel_resolution_mps2)) {
   validate(settings, "sensors.imu");
 }
@@ -38,12 +38,12 @@ ImuSensor::Triad ImuSensor::make_triad(std::uint64_t seed, const char* name, con
               .walk_std = walk * std::sqrt(tick_s),
               .range = range,
               .resolution = resolution};
-  const double misalignment_rad = to_rad(settings.misalignment_deg);
+  const double misalignment_rad = to_rad(settings.misalignment_std_deg);
   std::uint64_t draw = 0;
   for (int row = 0; row < 3; ++row) {
     triad.bias[row] = bias * constant.normal(0, draw++);
     for (int col = 0; col < 3; ++col) {
-      triad.distortion(row, col) += (row == col ? settings.scale_error : misalignment_rad) * constant.normal(0, draw++);
+      triad.distortion(row, col) += (row == col ? settings.scale_error_std : misalignment_rad) * constant.normal(0, draw++);
     }
   }
   return triad;

@@ -10,13 +10,13 @@ namespace patrol::sim {
 
 JointEncoders::JointEncoders(const JointEncoderSettings& settings, const mjModel& model,
                              const std::vector<std::string>& joint_names)
-    : step_rad_(2.0 * std::numbers::pi / settings.counts_per_turn),
+    : step_rad_(2.0 * std::numbers::pi / settings.counts_per_revolution),
       tick_s_(model.opt.timestep),
-      filter_gain_(tick_s_ / (settings.speed_filter_s + tick_s_)) {
+      filter_gain_(tick_s_ / (settings.velocity_filter_time_constant_s + tick_s_)) {
   validate(settings, "sensors.joint_encoders");
   for (const std::string& name : joint_names) {
     const int joint = mj_name2id(&model, mjOBJ_JOINT, name.c_str());
-    if (joint < 0) throw InputError("the robot's model has no joint " + name);
+    if (joint < 0) throw InputError("robot model: joint not found: " + name);
     qpos_.push_back(model.jnt_qposadr[joint]);
     dof_.push_back(model.jnt_dofadr[joint]);
   }

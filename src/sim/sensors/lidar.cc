@@ -37,7 +37,7 @@ Lidar::Lidar(const LidarSettings& settings, const LidarScene& scene, const Pose3
       mask_(kRayEverything & ~static_cast<std::uint32_t>(own_housing)),
       dust_(dust),
       surfaces_(surface_optics(scene.model())),
-      false_return_rate_per_m_(settings.rain_rate + dust.echo_share * dust.extinction_per_m()),
+      false_return_rate_per_m_(settings.false_return_rate_per_m + dust.backscatter_probability * dust.extinction_per_m()),
       range_noise_(seed, name + "/range"),
       angle_noise_(seed, name + "/angle"),
       dropout_(seed, name + "/dropout"),
@@ -50,9 +50,9 @@ Lidar::Lidar(const LidarSettings& settings, const LidarScene& scene, const Pose3
     azimuth_.emplace_back(std::cos(angle), std::sin(angle));
   }
   for (int ring = 0; ring < settings.rings; ++ring) {
-    const double share = settings.rings > 1 ? static_cast<double>(ring) / (settings.rings - 1) : 0.0;
+    const double fraction = settings.rings > 1 ? static_cast<double>(ring) / (settings.rings - 1) : 0.0;
     const double angle = kDegree * (settings.elevation_min_deg +
-                                    share * (settings.elevation_max_deg - settings.elevation_min_deg));
+                                    fraction * (settings.elevation_max_deg - settings.elevation_min_deg));
     elevation_.emplace_back(std::cos(angle), std::sin(angle));
   }
   begin_revolution();
@@ -141,8 +141,8 @@ void Lidar::fire(std::int64_t beam, const Pose3& T_world_lidar) {
 Lidar::Return Lidar::measure(std::uint64_t tick, std::uint64_t index, const Pose3& T_world_lidar,
                              const Eigen::Vector3d& direction, double& last_range_m) const {
   Eigen::Vector3d aimed = direction;
-  if (settings_.angle_noise_deg > 0.0) {
-    const double turn = settings_.angle_noise_deg * kDegree * angle_noise_.normal(tick, index);
+  if (settings_.angle_noise_std_deg > 0.0) {
+    const double turn = settings_.angle_noise_std_deg * kDegree * angle_noise_.normal(tick, index);
     aimed += turn * Eigen::Vector3d(-direction.y(), direction.x(), 0.0);
     aimed.normalize();
   }
@@ -157,13 +157,13 @@ Lidar::Return Lidar::measure(std::uint64_t tick, std::uint64_t index, const Pose
       got = {path_m * rain_range_.uniform(tick, index), 5.0};
     }
   }
-  if (settings_.dropout > 0.0 && dropout_.uniform(tick, index) < settings_.dropout)
+  if (settings_.dropout_probability > 0.0 && dropout_.uniform(tick, index) < settings_.dropout_probability)
     return {std::numeric_limits<double>::quiet_NaN(), 0.0};
   if (!std::isfinite(got.range_m)) return got;
   if (got.range_m < settings_.range_min_m) return {-kInfinity, got.intensity};
-  got.range_m += settings_.range_noise_m * range_noise_.normal(tick, index);
-  if (settings_.range_resolution_m > 0.0) {
-    got.range_m = settings_.range_resolution_m * std::round(got.range_m / settings_.range_resolution_m);
+  got.range_m += settings_.range_noise_std_m * range_noise_.normal(tick, index);
+  if (settings_.range_quantization_m > 0.0) {
+    got.range_m = settings_.range_quantization_m * std::round(got.range_m / settings_.range_quantization_m);
   }
   if (got.range_m > settings_.range_max_m) return {kInfinity, 0.0};
   return got;
@@ -184,8 +184,8 @@ Lidar::Return Lidar::mixed_pixel_return(const Pose3& T_world_lidar, const Eigen:
       settings_.beam_width_deg * kDegree * Eigen::Vector3d(-direction.y(), direction.x(), 0.0);
   double light = 0.0, light_range = 0.0, light_intensity = 0.0;
   for (int i = 0; i < kRays; ++i) {
-    const double share = (i + 0.5) / kRays - 0.5;
-    const Return part = trace(T_world_lidar, (direction + share * sideways).normalized());
+    const double fraction = (i + 0.5) / kRays - 0.5;
+    const Return part = trace(T_world_lidar, (direction + fraction * sideways).normalized());
     if (!(std::abs(part.range_m - middle.range_m) < kPulseLength_m)) continue;
     const double returned = part.intensity / (part.range_m * part.range_m);
     light += returned;
@@ -200,12 +200,12 @@ Lidar::Return Lidar::to_return(const RayHit& hit, const Eigen::Vector3d& directi
   const double cosine = std::abs(hit.normal.dot(direction));
   const SurfaceOptics& surface = surfaces_[static_cast<std::size_t>(hit.geom)];
   if (surface.is_transparent_at(cosine)) return {kInfinity, 0.0};
-  if (cosine < std::cos(settings_.grazing_deg * kDegree)) return {kInfinity, 0.0};
-  // The returned light falls with the square of the range. range_max_m is reached on white, dark_range_m on 10 %.
+  if (cosine < std::cos(settings_.max_incidence_deg * kDegree)) return {kInfinity, 0.0};
+  // The returned light falls with the square of the range. range_max_m is reached on white, max_range_10pct_m on 10 %.
   const double reflectivity = std::max(0.02, static_cast<double>(surface.reflectivity));
   const double reach_m = std::min(settings_.range_max_m,
-                                  settings_.dark_range_m * std::sqrt(reflectivity * std::sqrt(cosine) / 0.1));
-  if (settings_.dark_range_m > 0.0 && dust_.equivalent_clear_distance_m(range_m) > reach_m) return {kInfinity, 0.0};
+                                  settings_.max_range_10pct_m * std::sqrt(reflectivity * std::sqrt(cosine) / 0.1));
+  if (settings_.max_range_10pct_m > 0.0 && dust_.equivalent_clear_distance_m(range_m) > reach_m) return {kInfinity, 0.0};
   return {range_m, 255.0 * std::min(1.0, reflectivity * cosine)};
 }
 

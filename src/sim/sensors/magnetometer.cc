@@ -53,9 +53,9 @@ Magnetometer::Magnetometer(const MagnetometerSettings& settings, const mjModel& 
   }
   const RandomStream iron(seed, "magnetometer/iron");
   for (int row = 0; row < 3; ++row) {
-    hard_iron_t_[row] = settings.hard_iron_t * iron.normal(0, static_cast<std::uint64_t>(row));
+    hard_iron_t_[row] = settings.hard_iron_std_t * iron.normal(0, static_cast<std::uint64_t>(row));
     for (int column = 0; column <= row; ++column) {
-      const double entry = settings.soft_iron * iron.normal(1, static_cast<std::uint64_t>(3 * row + column));
+      const double entry = settings.soft_iron_std * iron.normal(1, static_cast<std::uint64_t>(3 * row + column));
       soft_iron_(row, column) += entry;
       if (column != row) soft_iron_(column, row) += entry;
     }
@@ -78,10 +78,10 @@ Eigen::Vector3d Magnetometer::field_t(const mjData& data, const Eigen::Vector3d&
 }
 
 MagneticField Magnetometer::measure(const Eigen::Vector3d& field_t, Time now, std::uint64_t index) const {
-  MagneticField reading{.stamp = now, .field_t = soft_iron_ * field_t + hard_iron_t_, .std_t = settings_.noise_t};
+  MagneticField reading{.stamp = now, .field_t = soft_iron_ * field_t + hard_iron_t_, .std_t = settings_.noise_std_t};
   for (int axis = 0; axis < 3; ++axis) {
     double& value_t = reading.field_t[axis];
-    value_t += settings_.noise_t * noise_.normal(index, static_cast<std::uint64_t>(axis));
+    value_t += settings_.noise_std_t * noise_.normal(index, static_cast<std::uint64_t>(axis));
     if (settings_.resolution_t > 0.0) value_t = settings_.resolution_t * std::round(value_t / settings_.resolution_t);
     value_t = std::clamp(value_t, -settings_.range_t, settings_.range_t);
   }

@@ -66,7 +66,7 @@ void PanoramicScanner::begin(Time now, const Pose3& T_world_body) {
   const std::uint64_t number = num_begun_++;
   const Eigen::Quaterniond R_world_scanner = T_world_body.rotation * T_body_scanner_.rotation;
   const auto tilt = tilt_error_.normals(number);
-  const double std_rad = settings_.tilt_error_deg * kDegree;
+  const double std_rad = settings_.tilt_error_std_deg * kDegree;
   scan_ = Scan{.start = now,
                .number = number,
                .R_level_scanner = quaternion_from_rpy(std_rad * tilt[0], std_rad * tilt[1], 0.0) *
@@ -113,23 +113,23 @@ void PanoramicScanner::fire_column(int column, const Pose3& T_world_scanner) {
   const std::size_t rows = elevation_.size();
   const auto beam = [&](std::size_t row) { return static_cast<std::uint64_t>(column) * rows + row; };
   std::vector<Eigen::Vector3d> aimed(rows);
-  std::vector<Return> seen(rows);
-  const double angle_std_rad = settings_.angle_noise_deg * kDegree;
+  std::vector<Return> ideal(rows);
+  const double angle_std_rad = settings_.angle_noise_std_deg * kDegree;
   for (std::size_t row = 0; row < rows; ++row) {
     const auto error = angle_noise_.normals(scan_->number, beam(row));
     aimed[row] = direction(column, row, angle_std_rad * error[0], angle_std_rad * error[1]);
-    seen[row] = trace(T_world_scanner, aimed[row]);
+    ideal[row] = trace(T_world_scanner, aimed[row]);
   }
   auto& [one_ago, two_ago] = scan_->before_m[static_cast<std::size_t>(column) < azimuth_.size() ? 0 : 1];
   for (std::size_t row = 0; row < rows; ++row) {
-    const double range_m = seen[row].range_m;
-    const double upwards = row == 0 || row + 1 == rows ? 0.0 : range_curvature_m(seen[row - 1].range_m, range_m, seen[row + 1].range_m);
+    const double range_m = ideal[row].range_m;
+    const double upwards = row == 0 || row + 1 == rows ? 0.0 : range_curvature_m(ideal[row - 1].range_m, range_m, ideal[row + 1].range_m);
     const double sideways = 2.0 * range_curvature_m(range_m, one_ago[row], two_ago[row]);
     two_ago[row] = std::exchange(one_ago[row], range_m);
-    const bool is_at_edge = settings_.beam_spread_rad > 0.0 && std::max(upwards, sideways) > min_edge_curvature_m(range_m);
-    const Return beam_return = is_at_edge ? mixed_pixel_return(T_world_scanner, aimed[row], range_m) : seen[row];
+    const bool is_at_edge = settings_.beam_divergence_rad > 0.0 && std::max(upwards, sideways) > min_edge_curvature_m(range_m);
+    const Return beam_return = is_at_edge ? mixed_pixel_return(T_world_scanner, aimed[row], range_m) : ideal[row];
     if (beam_return.range_m > settings_.range_max_m || beam_return.range_m < settings_.range_min_m) continue;
-    if (settings_.dropout > 0.0 && dropout_.uniform(scan_->number, beam(row)) < settings_.dropout) continue;
+    if (settings_.dropout_probability > 0.0 && dropout_.uniform(scan_->number, beam(row)) < settings_.dropout_probability) continue;
     const double measured_m = beam_return.range_m + scan_->range_offset_m + range_std_m(beam_return) * range_noise_.normal(scan_->number, beam(row));
     const Eigen::Vector3f point = (scan_->R_level_scanner * (measured_m * direction(column, row, 0.0, 0.0))).cast<float>();
     scan_->points.push_back({.x = point.x(), .y = point.y(), .z = point.z(), .intensity = static_cast<float>(255.0 * std::min(1.0, beam_return.light))});
@@ -144,26 +144,26 @@ PanoramicScanner::Return PanoramicScanner::trace(const Pose3& T_world_scanner, c
   if (!hit) return {kNoReturn, 0.0};
   const double cosine = std::abs(hit->normal.dot(ray));
   const SurfaceOptics& surface = surfaces_[static_cast<std::size_t>(hit->geom)];
-  if (surface.is_transparent_at(cosine) || cosine < std::cos(settings_.grazing_deg * kDegree)) return {kNoReturn, 0.0};
+  if (surface.is_transparent_at(cosine) || cosine < std::cos(settings_.max_incidence_deg * kDegree)) return {kNoReturn, 0.0};
   constexpr double kBlack = 0.02;
   const double light = std::max(kBlack, static_cast<double>(surface.reflectivity)) * cosine;
-  const double reach_m = settings_.black_range_m * std::sqrt(light / kBlack);
+  const double reach_m = settings_.max_range_2pct_m * std::sqrt(light / kBlack);
   if (dust_.equivalent_clear_distance_m(hit->distance_m) > reach_m) return {kNoReturn, 0.0};
   return {hit->distance_m, light};
 }
 
 /// Returns the mean over the beam width at this range, weighted by the returned light.
 PanoramicScanner::Return PanoramicScanner::mixed_pixel_return(const Pose3& T_world_scanner, const Eigen::Vector3d& direction, double range_m) const {
-  const double quarter_rad = (0.5 * settings_.beam_exit_m + settings_.beam_spread_rad * range_m) / (2.0 * range_m);
+  const double quarter_rad = (0.5 * settings_.beam_exit_diameter_m + settings_.beam_divergence_rad * range_m) / (2.0 * range_m);
   const Eigen::Vector3d aside = direction.unitOrthogonal(), across = direction.cross(aside);
   double returned = 0.0, range_sum = 0.0, light_sum = 0.0;
   for (const double i : {-1.0, 1.0}) {
     for (const double j : {-1.0, 1.0}) {
       const Return part = trace(T_world_scanner, (direction + quarter_rad * (i * aside + j * across)).normalized());
       if (!std::isfinite(part.range_m)) continue;
-      const double share = part.light / (part.range_m * part.range_m);
-      returned += share;
-      range_sum += share * part.range_m;
+      const double weight = part.light / (part.range_m * part.range_m);
+      returned += weight;
+      range_sum += weight * part.range_m;
       light_sum += 0.25 * part.light;
     }
   }
@@ -171,8 +171,8 @@ PanoramicScanner::Return PanoramicScanner::mixed_pixel_return(const Pose3& T_wor
 }
 
 double PanoramicScanner::range_std_m(const Return& beam_return) const {
-  const double gray_m = settings_.grey_noise_m * std::sqrt(dust_.equivalent_clear_distance_m(beam_return.range_m) / 10.0) * 0.1 / beam_return.light;
-  return std::hypot(settings_.range_noise_m, gray_m);
+  const double gray_m = settings_.gray_noise_std_m * std::sqrt(dust_.equivalent_clear_distance_m(beam_return.range_m) / 10.0) * 0.1 / beam_return.light;
+  return std::hypot(settings_.range_noise_std_m, gray_m);
 }
 
 namespace {

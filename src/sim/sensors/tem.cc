@@ -13,11 +13,11 @@ namespace {
 
 TemGateLayout reported_window(const TemSettings& settings) {
   validate(settings, "sensors.tem");
-  TemGateLayout window{.gate_s = {}, .ramp_s = settings.ramp_s, .gate_width = settings.gate_width};
+  TemGateLayout window{.gate_s = {}, .ramp_s = settings.ramp_s, .gate_width = settings.relative_gate_width};
   const double step = std::pow(10.0, 1.0 / settings.gates_per_decade);
   for (double gate_s = settings.first_gate_s; gate_s <= settings.last_gate_s; gate_s *= step) window.gate_s.push_back(gate_s);
   if (window.gate_s.size() < 3) {
-    throw InputError(fmt::format("sensors.tem.last_gate_s = {}: leaves fewer than three gates after first_gate_s", settings.last_gate_s));
+    throw InputError(fmt::format("sensors.tem.last_gate_s = {}: must leave at least three gates after first_gate_s", settings.last_gate_s));
   }
   return window;
 }
@@ -30,13 +30,13 @@ TemGateLayout shift(TemGateLayout window, double shift_s) {
 /// Returns the decay of the steel response, normalized to 1 at 10 us.
 double steel_decay(double time_s) {
   struct Part {
-    double share, tau_s;
+    double weight, tau_s;
   };
   constexpr std::array<Part, 3> kParts = {{{0.70, 15e-6}, {0.22, 60e-6}, {0.08, 250e-6}}};
   double now = 0.0, at_10us = 0.0;
   for (const Part& part : kParts) {
-    now += part.share * std::exp(-time_s / part.tau_s);
-    at_10us += part.share * std::exp(-10e-6 / part.tau_s);
+    now += part.weight * std::exp(-time_s / part.tau_s);
+    at_10us += part.weight * std::exp(-10e-6 / part.tau_s);
   }
   return now / at_10us;
 }
@@ -55,10 +55,10 @@ Tem::Tem(const TemSettings& settings, const RockSettings& rock, const std::vecto
       current_(seed, "tem/current") {
   validate(rock, "rock");
   const RandomStream steel(seed, "tem/steel");
-  steel_rate_ = settings.steel_rate * std::exp(settings.steel_spread * steel.normal(0));
+  steel_rate_ = settings.steel_response * std::exp(settings.steel_log_std * steel.normal(0));
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column <= row; ++column) {
-      const double entry = settings.steel_anisotropy * steel.normal(1, static_cast<std::uint64_t>(3 * row + column));
+      const double entry = settings.steel_anisotropy_std * steel.normal(1, static_cast<std::uint64_t>(3 * row + column));
       steel_form_(row, column) = steel_form_(column, row) = entry;
     }
   }
@@ -89,7 +89,7 @@ TemSounding Tem::sound(const Eigen::Vector3d& p_world, const Eigen::Matrix3d& ax
     const Eigen::Vector3d offset = Eigen::Vector3d(body.x_m, body.y_m, body.z_m) - p_world;
     const ConductiveSphere sphere{.distance_m = offset.norm(), .radius_m = body.radius_m, .conductivity_spm = body.conductivity_spm};
     if (sphere.distance_m <= 1.02 * sphere.radius_m) {
-      throw InputError(fmt::format("water: the body at ({}, {}, {}) reaches the antenna", body.x_m, body.y_m, body.z_m));
+      throw InputError(fmt::format("water_bodies: body at ({}, {}, {}): must not contain the antenna", body.x_m, body.y_m, body.z_m));
     }
     const GatedSphereResponse decay = gated_sphere_response(gates_, rock_.conductivity_spm, sphere);
     const double cos_squared = offset.dot(axes * offset) / offset.squaredNorm();
@@ -98,14 +98,14 @@ TemSounding Tem::sound(const Eigen::Vector3d& p_world, const Eigen::Matrix3d& ax
   const double steel = steel_rate_ * (1.0 + steel_form_.cwiseProduct(axes).sum());
 
   TemSounding sounding{.stamp = end, .moment_am2 = settings_.moment_am2, .gate_s = window_.gate_s, .rate_tps = {}, .std_tps = {}};
-  const double moment_am2 = settings_.moment_am2 * (1.0 + settings_.current_std * current_.normal(count));
+  const double moment_am2 = settings_.moment_am2 * (1.0 + settings_.relative_moment_std * current_.normal(count));
   for (std::size_t gate = 0; gate < window_.gate_s.size(); ++gate) {
     const double gate_s = window_.gate_s[gate];
     const double clean_tps = gain_ * moment_am2 * (rate[static_cast<Eigen::Index>(gate)] + steel * steel_decay(gate_s));
-    const double noise_tps = settings_.noise_tps / std::sqrt(settings_.stacking_s * gate_s / 1e-3);
-    const double relative_tps = settings_.relative_noise * clean_tps;
-    sounding.rate_tps.push_back(clean_tps + noise_tps * noise_.normal(count, gate) + relative_tps * relative_noise_.normal(count, gate));
-    sounding.std_tps.push_back(std::hypot(noise_tps, relative_tps));
+    const double noise_std_tps = settings_.noise_std_tps / std::sqrt(settings_.stacking_s * gate_s / 1e-3);
+    const double relative_tps = settings_.relative_noise_std * clean_tps;
+    sounding.rate_tps.push_back(clean_tps + noise_std_tps * noise_.normal(count, gate) + relative_tps * relative_noise_.normal(count, gate));
+    sounding.std_tps.push_back(std::hypot(noise_std_tps, relative_tps));
   }
   return sounding;
 }
@@ -116,7 +116,7 @@ class TemOnMount : public Sensor {
  public:
   explicit TemOnMount(const SensorContext& context)
       : coil_(mj_name2id(&context.physics, mjOBJ_BODY, "tem")),
-        tem_(context.settings.tem, context.subsurface.rock, context.subsurface.water, context.seed) {}
+        tem_(context.settings.tem, context.subsurface.rock, context.subsurface.water_bodies, context.seed) {}
 
   void step(const SensorTick& tick, std::vector<SensorMessage>& readings) override {
     if (!tem_.is_sounding()) return;
@@ -141,7 +141,7 @@ class TemOnMount : public Sensor {
 template <>
 std::unique_ptr<Sensor> make_sensor<TemSounding>(const SensorContext& context) {
   if (!context.settings.tem.enabled) return nullptr;
-  if (!context.robot.antenna) throw InputError("robot " + context.robot.name + ": there is no link named tem_mount");
+  if (!context.robot.antenna) throw InputError("robot " + context.robot.name + ": link not found: tem_mount");
   return std::make_unique<TemOnMount>(context);
 }
 

@@ -74,18 +74,19 @@ UltrasonicRing::UltrasonicRing(const UltrasonicSettings& settings, const LidarSc
       dropout_(seed, "ultrasonic/dropout"),
       crosstalk_(seed, "ultrasonic/crosstalk") {
   validate(settings, "sensors.ultrasonic");
-  const double fastest_hz = speed_of_sound(settings.air_temperature_c) / (2.0 * settings.range_max_m);
-  if (settings.ping_rate_hz > fastest_hz) {
-    throw InputError(fmt::format("sensors.ultrasonic.ping_rate_hz = {}: must be at most {:.1f}, or an echo from range_max_m = {} "
-                                 "comes after the next ping", settings.ping_rate_hz, fastest_hz, settings.range_max_m));
+  const double max_rate_hz = speed_of_sound(settings.air_temperature_c) / (2.0 * settings.range_max_m);
+  if (settings.ping_rate_hz > max_rate_hz) {
+    throw InputError(fmt::format("sensors.ultrasonic.ping_rate_hz = {}: must be at most {:.1f}, so that an echo from "
+                                 "range_max_m = {} returns before the next ping",
+                                 settings.ping_rate_hz, max_rate_hz, settings.range_max_m));
   }
   for (int geom = 0; geom < scene.model().ngeom; ++geom) is_rough_.push_back(is_rough(scene.model(), geom, settings.rough_names));
 }
 
 /// Returns the echo strength of a ray with this cosine of incidence on a geom.
 double UltrasonicRing::strength(int geom, double cosine) const {
-  if (is_rough_[static_cast<std::size_t>(geom)]) return settings_.rough_echo * cosine;
-  return cosine >= std::cos(settings_.smooth_deg * kDegree) ? 1.0 : 0.0;
+  if (is_rough_[static_cast<std::size_t>(geom)]) return settings_.rough_echo_ratio * cosine;
+  return cosine >= std::cos(settings_.specular_cutoff_deg * kDegree) ? 1.0 : 0.0;
 }
 
 UltrasonicRing::Echo UltrasonicRing::trace_ping(const Pose3& T_world_transducer, double turn_rad) const {
@@ -110,7 +111,7 @@ UltrasonicRing::Echo UltrasonicRing::trace_ping(const Pose3& T_world_transducer,
     const RayHit& hit = parts[last].hit;
     sum += parts[last].strength;
     for (; parts[first].hit.distance_m < hit.distance_m - kBurst_m; ++first) sum -= parts[first].strength;
-    if (sum < settings_.least_echo * kRays) continue;
+    if (sum < settings_.detection_threshold * kRays) continue;
     return {.distance_m = hit.distance_m,
             .p_world = T_world_transducer.position + hit.distance_m * parts[last].direction,
             .normal = hit.normal,
@@ -133,16 +134,16 @@ double UltrasonicRing::crosstalk_range_m(const Echo& echo, const Pose3& T_world_
 }
 
 float UltrasonicRing::reading(double distance_m, std::uint64_t tick, std::uint64_t transducer) const {
-  if (dropout_.uniform(tick, transducer) < settings_.dropout) return std::numeric_limits<float>::infinity();
+  if (dropout_.uniform(tick, transducer) < settings_.dropout_probability) return std::numeric_limits<float>::infinity();
   double range_m = scale_ * distance_m;
   if (range_m < settings_.range_min_m) return -std::numeric_limits<float>::infinity();
-  range_m += settings_.range_noise_m * noise_.normal(tick, transducer);
-  if (settings_.range_resolution_m > 0.0) range_m = settings_.range_resolution_m * std::round(range_m / settings_.range_resolution_m);
+  range_m += settings_.range_noise_std_m * noise_.normal(tick, transducer);
+  if (settings_.range_quantization_m > 0.0) range_m = settings_.range_quantization_m * std::round(range_m / settings_.range_quantization_m);
   return range_m > settings_.range_max_m ? std::numeric_limits<float>::infinity() : static_cast<float>(range_m);
 }
 
 std::vector<UltrasonicRange> UltrasonicRing::ping(const Pose3& T_world_body, Time now, std::uint64_t tick) const {
-  const std::size_t group = std::min(num_transducers(), static_cast<std::size_t>(settings_.fire_together));
+  const std::size_t group = std::min(num_transducers(), static_cast<std::size_t>(settings_.group_size));
   const std::size_t slots = (num_transducers() + group - 1) / group;
   std::vector<std::size_t> fired;
   std::vector<Pose3> frames;
@@ -157,7 +158,7 @@ std::vector<UltrasonicRange> UltrasonicRing::ping(const Pose3& T_world_body, Tim
     double distance_m = echoes[receiver].distance_m;
     for (std::size_t other = 0; other < fired.size(); ++other) {
       if (other == receiver) continue;
-      if (crosstalk_.uniform(tick, fired[receiver] * num_transducers() + fired[other]) >= settings_.crosstalk) continue;
+      if (crosstalk_.uniform(tick, fired[receiver] * num_transducers() + fired[other]) >= settings_.crosstalk_probability) continue;
       distance_m = std::min(distance_m, crosstalk_range_m(echoes[other], frames[other], frames[receiver]));
     }
     ranges.push_back({.stamp = now,

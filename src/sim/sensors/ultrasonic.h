@@ -17,8 +17,8 @@ namespace patrol::sim {
 /// Ring of transducers `ultrasonic_0`, `ultrasonic_1` ... that fire in turn.
 ///
 /// A ping is a bundle of rays over the cone, rotated about its axis by a random angle. Echo strength per ray: 1 for a
-/// smooth surface up to `smooth_deg` of incidence, 0 beyond; `rough_echo` times the cosine of incidence for a rough
-/// surface. The reading is the distance at which the strength summed over one pulse length reaches `least_echo`. This
+/// smooth surface up to `specular_cutoff_deg` of incidence, 0 beyond; `rough_echo_ratio` times the cosine of incidence for a rough
+/// surface. The reading is the distance at which the strength summed over one pulse length reaches `detection_threshold`. This
 /// detects distant walls and a bar of 6 cm at one meter, but not the ground that a level cone grazes.
 ///
 /// Transducers that fire together may receive each other's nearest echo and report half the path length. Not modeled:

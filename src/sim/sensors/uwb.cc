@@ -86,7 +86,7 @@ Uwb::Uwb(const UwbSettings& settings, const mjModel& view, std::uint64_t seed)
       nlos_loss_(seed, "uwb/blocked_loss"),
       nlos_bias_(seed, "uwb/excess") {
   validate(settings, "sensors.uwb");
-  if (anchors_.empty()) throw InputError("sensors.uwb is enabled, but the world has no site named uwb_anchor_<number>");
+  if (anchors_.empty()) throw InputError("sensors.uwb.enabled = true: requires a world site named uwb_anchor_<number>");
 }
 
 const UwbAnchor* Uwb::next_in_range(const Eigen::Vector3d& p_world_antenna) {
@@ -105,14 +105,14 @@ std::optional<UwbRange> Uwb::read(const LidarScene& scene, const Eigen::Vector3d
   const auto index = static_cast<std::uint64_t>(anchor->number);
   const double distance_m = (anchor->p_world - p_world_antenna).norm();
   // Assumption: the loss probability rises with the fourth power of the distance.
-  const double loss = settings_.loss + (1.0 - settings_.loss) * std::pow(distance_m / settings_.range_max_m, 4.0);
+  const double loss = settings_.loss_probability + (1.0 - settings_.loss_probability) * std::pow(distance_m / settings_.range_max_m, 4.0);
   if (loss_.uniform(tick, index) < loss) return std::nullopt;
 
   UwbRange range{.stamp = now, .anchor = anchor->number};
-  range.range_m = distance_m + settings_.bias_scale * uwb_range_bias_m(distance_m) + settings_.range_noise_m * noise_.normal(tick, index);
+  range.range_m = distance_m + settings_.bias_scale * uwb_range_bias_m(distance_m) + settings_.range_noise_std_m * noise_.normal(tick, index);
   if (is_uwb_path_nlos(scene, p_world_antenna, anchor->p_world)) {
-    if (nlos_loss_.uniform(tick, index) < settings_.blocked_loss) return std::nullopt;
-    range.range_m -= settings_.blocked_excess_m * std::log(nlos_bias_.uniform(tick, index));
+    if (nlos_loss_.uniform(tick, index) < settings_.nlos_loss_probability) return std::nullopt;
+    range.range_m -= settings_.nlos_bias_m * std::log(nlos_bias_.uniform(tick, index));
   }
   range.range_m = std::max(range.range_m, 0.0);
   return range;

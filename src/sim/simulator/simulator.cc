@@ -66,7 +66,8 @@ std::unique_ptr<Locomotion> make_locomotion(const SimulatorSettings& settings, c
 }
 
 AssembledModel assemble(const SimulatorSettings& settings) {
-  AssembledModel model = assemble_model(settings.world_xml, settings.robot_urdf, settings.T_world_start, settings.props);
+  AssembledModel model = assemble_model(settings.world_xml, settings.robot_urdf, settings.T_world_start,
+                                        settings.static_obstacles);
   deform_lining(settings.lining_deformations, settings.lining, *model.view);
   return model;
 }
@@ -87,9 +88,9 @@ Simulator::Simulator(const SimulatorSettings& settings, const RobotDescription& 
                GasPlume(*model_.view, settings.leaks, settings.wind), settings.faults, seed, make_depth_imager, settings.subsurface),
       recorded_(settings.recorded),
       tick_(from_seconds(model_.physics->opt.timestep)) {
-  if (!settings.drive.empty()) operator_.emplace(settings.driver, settings.drive, seed);
+  if (!settings.teleop_route.empty()) operator_.emplace(settings.teleop_operator, settings.teleop_route, seed);
   if (robot.antenna) antenna_.emplace(settings.sensors.antenna, *robot.antenna, *model_.physics, seed);
-  if (robot_body_ < 0) throw InputError(fmt::format("{}: no link named {}", settings.robot_urdf, frame_id::kBody));
+  if (robot_body_ < 0) throw InputError(fmt::format("{}: link not found: {}", settings.robot_urdf, frame_id::kBody));
   std::copy(model_.start_qpos.begin(), model_.start_qpos.end(), data_->qpos);
   actors_.advance(now_, {.p_world = settings.T_world_start.position(), .radius_m = robot_radius_m_}, *data_);
   mj_forward(model_.physics.get(), data_.get());
@@ -142,7 +143,7 @@ void Simulator::command(const InstrumentCommand& command) {
 
 // MuJoCo's friction is soft: a standing robot creeps by micrometers and millidegrees per second, up to 0.07 degrees
 // during a scan in the tunnel. A parked robot does not creep. So the solver removes the residual slip while an
-// instrument needs the robot to stand still.
+// instrument needs a stationary robot.
 void Simulator::suppress_slip() {
   constexpr int kNoSlipIterations = 3;
   const bool is_asked_to_stand = command_.vx_mps == 0.0 && command_.vy_mps == 0.0 && command_.yaw_rate_radps == 0.0;
@@ -197,11 +198,11 @@ void Simulator::record_collisions() {
     if (is_footing(model, *data_, contact, other, lowest_m)) continue;
 
     const Collision collision{.stamp = now_, .first = geom_name(model, robot_geom), .second = geom_name(model, other)};
-    const std::string& thing = collision.second;
+    const std::string& object = collision.second;
     const auto known = std::find_if(contacts_.begin(), contacts_.end(),
-                                    [&](const auto& touch) { return touch.first == thing; });
+                                    [&](const auto& contact_pair) { return contact_pair.first == object; });
     if (known == contacts_.end()) {
-      contacts_.emplace_back(thing, now_);
+      contacts_.emplace_back(object, now_);
       collisions_.push_back(collision);
     } else {
       if (now_ - known->second > kContactGap) collisions_.push_back(collision);
@@ -213,7 +214,7 @@ void Simulator::record_collisions() {
 void Simulator::throw_if_diverged() const {
   for (int i = 0; i < model_.physics->nq; ++i) {
     if (!std::isfinite(data_->qpos[i])) {
-      throw std::runtime_error(fmt::format("the physics diverged at {:.3f} s", to_seconds(now_)));
+      throw std::runtime_error(fmt::format("physics diverged at {:.3f} s", to_seconds(now_)));
     }
   }
 }

@@ -35,7 +35,7 @@ struct SimulatorSettings {
   SensorSuiteSettings sensors;
   LocomotionSettings locomotion;   ///< settings for a robot with legs
   TrackDriveSettings track_drive;  ///< settings for a robot with tracks
-  std::vector<StaticObstacleSettings> props;
+  std::vector<StaticObstacleSettings> static_obstacles;
   std::optional<TunnelLining> lining;            ///< lining of the world, in world
   std::vector<LiningDeformationSettings> lining_deformations;
   std::vector<ActorSettings> actors;
@@ -43,9 +43,9 @@ struct SimulatorSettings {
   WindSettings wind;
   Subsurface subsurface;
   std::vector<FaultSettings> faults;
-  TeleopRoute drive;                    ///< teleoperated route, in world; empty: no operator
-  TeleopOperatorSettings driver;
-  std::vector<TeleopCommand> recorded;  ///< recorded teleoperation commands, replayed instead of `drive`
+  TeleopRoute teleop_route;             ///< teleoperated route, in world; empty: no operator
+  TeleopOperatorSettings teleop_operator;
+  std::vector<TeleopCommand> recorded;  ///< recorded teleoperation commands, replayed instead of `teleop_route`
 };
 
 /// Simulator of robot, world, sensors and actors, advanced tick by tick. Takes velocity commands and returns sensor

@@ -123,15 +123,15 @@ class Calibrator {
   /// Uses only components that matching constrains better than odometry; elsewhere the tracker followed odometry, so
   /// the residual is too small.
   void estimate_noise() {
-    std::vector<double> moves, turns;
+    std::vector<double> translation_errors, rotation_errors;
     for (const MotionResidual& residual : residuals_) {
       for (Eigen::Index i = 0; i < 3; ++i) {
         if (residual.lidar_covariance(i, i) > residual.odometry_covariance(i, i)) continue;
-        (i < 2 ? moves : turns).push_back(std::abs(residual.error[i]) / std::sqrt(residual.odometry_covariance(i, i)));
+        (i < 2 ? translation_errors : rotation_errors).push_back(std::abs(residual.error[i]) / std::sqrt(residual.odometry_covariance(i, i)));
       }
     }
-    if (!moves.empty()) translation_noise_scale_ = std::max(kMinNoiseScale, kStdPerMedian * median(std::move(moves)));
-    if (!turns.empty()) rotation_noise_scale_ = std::max(kMinNoiseScale, kStdPerMedian * median(std::move(turns)));
+    if (!translation_errors.empty()) translation_noise_scale_ = std::max(kMinNoiseScale, kStdPerMedian * median(std::move(translation_errors)));
+    if (!rotation_errors.empty()) rotation_noise_scale_ = std::max(kMinNoiseScale, kStdPerMedian * median(std::move(rotation_errors)));
   }
 
   void update_weights(bool is_early) {
@@ -205,7 +205,7 @@ Calibration CalibrationResult::calibration() const {
 
 CalibrationResult calibrate(const std::vector<MotionSegment>& pairs, const Pose2& T_body_lidar_before, const CalibratorSettings& settings) {
   if (pairs.size() < static_cast<std::size_t>(settings.min_segments)) {
-    throw InputError(fmt::format("too little to calibrate from: {} stretches of the way, must be at least {}", pairs.size(), settings.min_segments));
+    throw InputError(fmt::format("calibration needs at least {} motion segments, got {}", settings.min_segments, pairs.size()));
   }
   const Vector6 before{T_body_lidar_before.x, T_body_lidar_before.y, T_body_lidar_before.yaw, 1.0, 1.0, 0.0};
   const Vector6 max_std{settings.max_std_lidar_m,        settings.max_std_lidar_m,    settings.max_std_lidar_rad,

@@ -32,15 +32,15 @@ struct CalibratorSettings {
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("min_stretches", self.min_segments, between(6, 1e6));
+    visit("min_segments", self.min_segments, between(6, 1e6));
     visit("odometry", self.odometry);
-    visit("outlier_std", self.outlier_sigma, between(3.0, 100.0));
+    visit("outlier_sigma", self.outlier_sigma, between(3.0, 100.0));
     visit("max_iterations", self.max_iterations, between(1, 10000));
     visit("max_std_lidar_m", self.max_std_lidar_m, at_least(0.0));
     visit("max_std_lidar_rad", self.max_std_lidar_rad, at_least(0.0));
     visit("max_std_distance_scale", self.max_std_distance_scale, at_least(0.0));
-    visit("max_std_turn_scale", self.max_std_rotation_scale, at_least(0.0));
-    visit("max_std_steering_rad_per_m", self.max_std_steering_bias_rad_per_m, at_least(0.0));
+    visit("max_std_rotation_scale", self.max_std_rotation_scale, at_least(0.0));
+    visit("max_std_steering_bias_rad_per_m", self.max_std_steering_bias_rad_per_m, at_least(0.0));
   }
 };
 
@@ -81,8 +81,8 @@ struct CalibrationResult {
 ///   no weight (wheel slip, logs with reversed direction). The scales of the translational and rotational odometry
 ///   noise are estimated in each iteration (median of the absolute residuals).
 /// - A parameter whose standard deviation exceeds the limit of the settings keeps its value and is excluded, the worst
-///   first. Without turns, the lever arm is unobservable. On a circle, steering and turn scale cannot be separated: the
-///   turn scale is then correct only if the steering is.
+///   first. Without rotation, the lever arm is unobservable. On a circle, steering and rotation scale cannot be separated: the
+///   rotation scale is then correct only if the steering is.
 /// - Standard deviations follow from the scores of groups of consecutive segments, and thus also hold for errors longer
 ///   than a segment (White's sandwich estimator, clustered). With fewer than twenty groups they follow from the
 ///   curvature alone. They do not cover odometry errors outside the model; in that case segments of other lengths give

@@ -12,7 +12,7 @@ namespace patrol::slam {
 /// For an odometry increment from scan to scan, m is its translation in the frame of its mean heading, so that the
 /// chord of an arc lies along x. The increment becomes
 ///
-///   translation  distance_scale * m      rotation  rotation_scale * turn + steering_bias_rad_per_m * m_x
+///   translation  distance_scale * m      rotation  rotation_scale * yaw_change + steering_bias_rad_per_m * m_x
 ///
 /// These are the three parameters of a differential drive with wrong wheel radii and wheel base [Censi13, eq. 1].
 /// Deviation from [Censi13]: the translation of unequal wheels during a turn in place is omitted. It cannot be
@@ -33,13 +33,13 @@ struct Calibration {
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("places_lidar", self.override_lidar_pose);
+    visit("override_lidar_pose", self.override_lidar_pose);
     visit("lidar_x_m", self.lidar_x_m, between(-100.0, 100.0));
     visit("lidar_y_m", self.lidar_y_m, between(-100.0, 100.0));
     visit("lidar_yaw_rad", self.lidar_yaw_rad, between(-7.0, 7.0));
     visit("distance_scale", self.distance_scale, between(0.01, 100.0));
-    visit("turn_scale", self.rotation_scale, between(0.01, 100.0));
-    visit("steering_rad_per_m", self.steering_bias_rad_per_m, between(-10.0, 10.0));
+    visit("rotation_scale", self.rotation_scale, between(0.01, 100.0));
+    visit("steering_bias_rad_per_m", self.steering_bias_rad_per_m, between(-10.0, 10.0));
   }
 };
 

@@ -26,9 +26,9 @@ Motion to_odometry_increment(const Motion& step, const Jet& distance_scale, cons
   const Jet half = 0.5 * step.yaw;
   const Jet c = cos(half), s = sin(half);
   const Jet ahead = (c * step.x + s * step.y) / distance_scale, left = (c * step.y - s * step.x) / distance_scale;
-  const Jet turn = (step.yaw - steering * ahead) / rotation_scale;
-  const Jet co = cos(0.5 * turn), so = sin(0.5 * turn);
-  return {co * ahead - so * left, so * ahead + co * left, turn};
+  const Jet rotation = (step.yaw - steering * ahead) / rotation_scale;
+  const Jet co = cos(0.5 * rotation), so = sin(0.5 * rotation);
+  return {co * ahead - so * left, so * ahead + co * left, rotation};
 }
 
 }  // namespace

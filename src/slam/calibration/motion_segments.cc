@@ -12,7 +12,7 @@ Eigen::Matrix3d match_covariance(const TrackedScan& tracked, const MotionSegment
   const auto square = [](double value) { return value * value; };
   const Eigen::Matrix3d loose = Eigen::Vector3d(1e-2, 1e-2, 1e-2).asDiagonal();
   const Eigen::Matrix3d systematic = Eigen::Vector3d(square(settings.match_std_m), square(settings.match_std_m), square(settings.match_std_rad)).asDiagonal();
-  return (settings.tracking.likelihood_tempering * tracked.match_information + loose).inverse() + systematic;
+  return (settings.scan_odometry.likelihood_tempering * tracked.match_information + loose).inverse() + systematic;
 }
 
 /// Covariance of b in the frame of a, for independent estimates of a and b in local.
@@ -29,7 +29,7 @@ Eigen::Matrix3d relative_covariance(const Pose2& T_local_a, const Eigen::Matrix3
 }  // namespace
 
 MotionSegmenter::MotionSegmenter(const MotionSegmentSettings& settings, const PlanarScanSettings& scan, const Calibration& prior)
-    : settings_(settings), scan_(scan), prior_(prior), tracker_(settings.tracking) {}
+    : settings_(settings), scan_(scan), prior_(prior), tracker_(settings.scan_odometry) {}
 
 void MotionSegmenter::begin(const ScanPose& scan_pose) {
   begin_ = scan_pose;

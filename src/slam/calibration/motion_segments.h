@@ -34,20 +34,20 @@ struct MotionSegmentSettings {
   /// Standard deviation of the systematic error of a match, independent of the number of points.
   double match_std_m = 0.002;
   double match_std_rad = 0.0005;
-  ScanTrackerSettings tracking;
+  ScanTrackerSettings scan_odometry;
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("stretch_m", self.length_m, between(0.01, 100.0));
-    visit("stretch_rad", self.rotation_rad, between(0.01, 3.0));
+    visit("length_m", self.length_m, between(0.01, 100.0));
+    visit("rotation_rad", self.rotation_rad, between(0.01, 3.0));
     visit("match_std_m", self.match_std_m, between(1e-5, 1.0));
     visit("match_std_rad", self.match_std_rad, between(1e-6, 1.0));
-    visit("tracking", self.tracking);
+    visit("scan_odometry", self.scan_odometry);
   }
 };
 
 /// Divides a log into segments. The lidar is tracked in its own frame by scan matching (scan_tracker.h), with odometry
-/// as initial guess, corrected by the prior calibration `known`. The covariance of a segment includes the matches only.
+/// as initial guess, corrected by the prior calibration `prior`. The covariance of a segment includes the matches only.
 /// Along a featureless corridor it is large, so that the odometry that the tracker follows there has no weight.
 class MotionSegmenter {
  public:

@@ -26,12 +26,12 @@ void LoopClosureStatistics::add(MatchFailure failure) {
 
 GraphSlam::GraphSlam(const GraphSlamSettings& settings)
     : settings_(settings),
-      rendering_{.resolution_m = settings.tracking.resolution_m, .max_extent_m = settings.tracking.max_extent_m, .integration = settings.tracking.integration},
-      tracker_(settings.tracking),
+      rendering_{.resolution_m = settings.scan_odometry.resolution_m, .max_extent_m = settings.scan_odometry.max_extent_m, .integration = settings.scan_odometry.integration},
+      tracker_(settings.scan_odometry),
       cache_(static_cast<std::size_t>(settings.cached_submaps)),
       incremental_map_(rendering_),
       ranges_(settings.ranges) {
-  validate(settings, "slam");
+  validate(settings, "slam.graph");
 }
 
 SlamUpdate GraphSlam::update(const LevelScan& input_scan, const Pose2& T_odom_body) {
@@ -57,7 +57,7 @@ void GraphSlam::add_keyframe(const LevelScan& scan, const TrackedScan& tracked) 
     const Keyframe& before = keyframes_.back();
     const Pose2 T_before_node = before.T_local_body.inverse() * tracked.T_local_body;
     graph_.T_map_node.push_back(graph_.T_map_node.back() * T_before_node);
-    const PoseGaussian motion = predict_motion({}, T_before_node, to_seconds(scan.stamp - before.scan.stamp), settings_.tracking.motion);
+    const PoseGaussian motion = predict_motion({}, T_before_node, to_seconds(scan.stamp - before.scan.stamp), settings_.scan_odometry.motion);
     graph_.edges.push_back({.from = node - 1, .to = node, .T_from_to = T_before_node, .information = motion.covariance.inverse(), .kind = PoseGraphEdge::Kind::kOdometry});
     if (tracked.inlier_ratio > 0.0) add_match_edge(tracked);
   }
@@ -85,14 +85,14 @@ Eigen::Matrix3d GraphSlam::match_edge_information(const Eigen::Matrix3d& match_i
 // Information along a degenerate direction is noise: project it out.
 Eigen::Matrix3d GraphSlam::observable_information(const Eigen::Matrix3d& match_information) const {
   const std::optional<Eigen::Vector2d> degenerate = degenerate_direction(match_information, settings_.min_eigenvalue_ratio);
-  return settings_.tracking.likelihood_tempering * (degenerate ? project_out(match_information, *degenerate) : match_information);
+  return settings_.scan_odometry.likelihood_tempering * (degenerate ? project_out(match_information, *degenerate) : match_information);
 }
 
 // Propagates the covariance with odometry and updates it with the match.
 void GraphSlam::update_estimate(const TrackedScan& tracked, Time stamp) {
   const Pose2 T_local_last = path_.empty() ? tracked.T_local_body : path_.back().T_local_body, T_map_now = T_map_body(tracked.T_local_body);
   if (!path_.empty()) {
-    const Eigen::Matrix3d step = predict_motion({}, T_local_last.inverse() * tracked.T_local_body, std::max(0.0, to_seconds(stamp - stamp_)), settings_.tracking.motion).covariance;
+    const Eigen::Matrix3d step = predict_motion({}, T_local_last.inverse() * tracked.T_local_body, std::max(0.0, to_seconds(stamp - stamp_)), settings_.scan_odometry.motion).covariance;
     now_.covariance = compose_covariance(now_, T_map_now, step);
     const Eigen::Matrix3d match = rotate_covariance(observable_information(tracked.match_information), T_map_now.yaw - tracked.T_local_body.yaw);
     now_.covariance = (now_.covariance.inverse() + match).inverse();
@@ -174,7 +174,7 @@ void GraphSlam::close_loops(int source) {
   bool has_closed = false;
   for (const int target : submaps_near(source, around)) {
     const PoseGaussian prediction = invert(around[static_cast<std::size_t>(target)]);  // pose of source in target
-    const SubmapMatchResult result = match_submaps(*rendered(target), *rendered(source), prediction, settings_.loops, settings_.tracking.matching);
+    const SubmapMatchResult result = match_submaps(*rendered(target), *rendered(source), prediction, settings_.loop_closure, settings_.scan_odometry.matching);
     loop_closure_statistics_.add(result.failure);
     if (!result.match) continue;
     has_closed = true;
@@ -218,9 +218,9 @@ std::vector<Pose2> GraphSlam::path() const {
       const Pose2 offset = keyframes_[k].T_local_body.inverse() * path_[i].T_local_body;
       return offset.position().norm() + std::abs(offset.yaw);
     };
-    const double to_before = distance(before), to_after = distance(after), share = to_before + to_after > 0.0 ? to_before / (to_before + to_after) : 0.0;
-    T_map_body.push_back({from_before.x + share * (from_after.x - from_before.x), from_before.y + share * (from_after.y - from_before.y),
-                          wrap_angle(from_before.yaw + share * wrap_angle(from_after.yaw - from_before.yaw))});
+    const double to_before = distance(before), to_after = distance(after), fraction = to_before + to_after > 0.0 ? to_before / (to_before + to_after) : 0.0;
+    T_map_body.push_back({from_before.x + fraction * (from_after.x - from_before.x), from_before.y + fraction * (from_after.y - from_before.y),
+                          wrap_angle(from_before.yaw + fraction * wrap_angle(from_after.yaw - from_before.yaw))});
   }
   return T_map_body;
 }

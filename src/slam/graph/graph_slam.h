@@ -7,7 +7,7 @@
 #include "core/grid.h"
 #include "core/messages.h"
 #include "core/pose_graph.h"
-#include "core/settings.h"
+#include "slam/graph/graph_slam_settings.h"
 #include "slam/graph/incremental_map.h"
 #include "slam/graph/range_factors.h"
 #include "slam/graph/pose_graph_solver.h"
@@ -17,64 +17,6 @@
 #include "slam/slam_update.h"
 
 namespace patrol::slam {
-
-struct GraphSlamSettings {
-  ScanTrackerSettings tracking;
-  // Odometry drift between consecutive submaps, for the prediction of loop closures.
-  double drift_std_m_per_m = 0.02;
-  double drift_std_rad_per_m = 0.004;
-  double drift_std_rad_per_rad = 0.01;
-  int max_loop_candidates = 4;  ///< maximum number of older submaps that each new one is matched with, nearest first
-  /// Maximum distance between the mean positions of two submaps, plus two standard deviations.
-  double max_loop_distance_m = 10.0;
-  SubmapMatcherSettings loops;
-  PoseGraphSolverSettings solver;
-  /// Standard deviation of the systematic error of a match, independent of the number of points.
-  double edge_std_m = 0.01;
-  double edge_std_rad = 0.001;
-  double min_eigenvalue_ratio = 0.02;  ///< a direction is degenerate if its information is below this fraction of the largest
-  /// Final optimization: number of passes that match every keyframe with the submaps around it.
-  int refinement_iterations = 2;
-  int max_refinement_submaps = 3;    ///< maximum number of submaps matched with each keyframe
-  double min_refinement_inlier_ratio = 0.6; ///< minimum inlier ratio of a keyframe in a submap
-  double max_refinement_m = 0.3;     ///< matches that move a keyframe farther are rejected
-  double max_refinement_rad = 0.1;
-  int cached_submaps = 16;           ///< maximum number of rendered submaps in the cache
-  int min_hits_occupied = 2;
-  double min_occupied_hit_ratio = 0.3;
-  // Online only.
-  double max_tilt_rad = 1.6;  ///< scans tilted by more are not used, for example on a ramp between inclined walls
-  double map_update_threshold_m = 0.03;      ///< the map is rendered again if a keyframe or its view at 10 m has moved by more
-  RangeUpdateSettings ranges;
-  int range_smoothing_period_keyframes = 4;           ///< run the fixed-lag smoothing with UWB ranges every N keyframes
-
-  template <typename Self, typename Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("tracking", self.tracking);
-    visit("drift_std_m_per_m", self.drift_std_m_per_m, at_least(0.0));
-    visit("drift_std_rad_per_m", self.drift_std_rad_per_m, at_least(0.0));
-    visit("drift_std_rad_per_rad", self.drift_std_rad_per_rad, at_least(0.0));
-    visit("max_loop_candidates", self.max_loop_candidates, between(0, 1000));
-    visit("max_loop_distance_m", self.max_loop_distance_m, at_least(0.0));
-    visit("loops", self.loops);
-    visit("solver", self.solver);
-    visit("edge_std_m", self.edge_std_m, between(1e-5, 1.0));
-    visit("edge_std_rad", self.edge_std_rad, between(1e-6, 1.0));
-    visit("open_share", self.min_eigenvalue_ratio, between(0.0, 1.0));
-    visit("refinement_rounds", self.refinement_iterations, between(0, 100));
-    visit("max_refinement_submaps", self.max_refinement_submaps, between(1, 100));
-    visit("min_refinement_share", self.min_refinement_inlier_ratio, between(0.0, 1.0));
-    visit("max_refinement_m", self.max_refinement_m, at_least(0.0));
-    visit("max_refinement_rad", self.max_refinement_rad, at_least(0.0));
-    visit("cached_submaps", self.cached_submaps, between(1, 10000));
-    visit("min_hits_occupied", self.min_hits_occupied, between(1, 1000));
-    visit("min_hit_share_occupied", self.min_occupied_hit_ratio, between(0.0, 1.0));
-    visit("max_tilt_rad", self.max_tilt_rad, between(0.0, 1.6));
-    visit("redraw_shift_m", self.map_update_threshold_m, at_least(0.0));
-    visit("ranges", self.ranges);
-    visit("range_keyframes", self.range_smoothing_period_keyframes, between(1, 1000));
-  }
-};
 
 /// Numbers of loop closure searches by result.
 struct LoopClosureStatistics {

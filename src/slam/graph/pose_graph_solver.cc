@@ -74,7 +74,7 @@ PoseGraphSolution solve(PoseGraph& graph, const PoseGraphSolverSettings& setting
   problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;  // one kernel for all residual blocks
   ceres::Problem problem(problem_options);
   const auto node = [&](int index) {
-    if (index < 0 || static_cast<std::size_t>(index) >= poses.size()) throw std::invalid_argument("an edge names node " + std::to_string(index) + ", which is not there");
+    if (index < 0 || static_cast<std::size_t>(index) >= poses.size()) throw std::invalid_argument("pose graph: edge to unknown node " + std::to_string(index));
     return poses[static_cast<std::size_t>(index)].data();
   };
   for (const PoseGraphEdge& edge : graph.edges) {

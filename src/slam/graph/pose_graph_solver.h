@@ -1,24 +1,10 @@
 #pragma once
 
 #include "core/pose_graph.h"
-#include "core/settings.h"
+#include "slam/graph/pose_graph_solver_settings.h"
 #include "slam/graph/range_factors.h"
 
 namespace patrol::slam {
-
-struct PoseGraphSolverSettings {
-  int max_iterations = 50;
-  bool robust_loop_closures = true;
-  /// Scale of the Cauchy kernel, in standard deviations; used for loop closures if robust_loop_closures, and always for ranges.
-  double loop_closure_loss_scale = 3.0;
-
-  template <typename Self, typename Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("max_iterations", self.max_iterations, between(1, 1000));
-    visit("doubts_loops", self.robust_loop_closures);
-    visit("loop_kernel", self.loop_closure_loss_scale, at_least(0.1));
-  }
-};
 
 struct PoseGraphSolution {
   double initial_cost = 0.0;  ///< half the sum of squared residuals, after the kernels

@@ -14,8 +14,8 @@ struct CovarianceEdge {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
 };
 
-/// Relative poses and covariances of all nodes in the frame of `place`, [place]. Each covariance is that along the path
-/// of least uncertainty, found by Dijkstra's search. It is an upper bound of the marginal covariance of the whole graph
+/// Relative poses and covariances of all nodes in the frame of `node`, [node]. Each covariance is that along the path
+/// of minimum uncertainty, found by Dijkstra's search. It is an upper bound of the marginal covariance of the whole graph
 /// [Olson08, section 4.2]. The uncertainty of a path counts one radian as ten meters. Unreachable nodes have infinite
 /// covariance.
 std::vector<PoseGaussian> shortest_path_distributions(int node, const std::vector<Pose2>& T_map_node, const std::vector<CovarianceEdge>& covariance_edges);

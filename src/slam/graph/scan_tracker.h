@@ -5,44 +5,12 @@
 
 #include "core/messages.h"
 #include "core/settings.h"
+#include "slam/graph/scan_tracker_settings.h"
 #include "slam/motion_model.h"
 #include "slam/scan_integration.h"
 #include "slam/scan_matcher.h"
 
 namespace patrol::slam {
-
-struct ScanTrackerSettings {
-  double resolution_m = 0.05;
-  double max_extent_m = 4000.0;          ///< side of the mapped square around the start
-  double keyframe_distance_m = 0.25;
-  double keyframe_angle_rad = 0.15;
-  int initial_keyframes = 10;            ///< the first N scans are all keyframes
-  int submap_keyframes = 60;             ///< number of keyframes per map; consecutive maps overlap by half
-  double likelihood_tempering = 0.2;          ///< tempering factor: fraction of the points with independent errors
-  MotionModelSettings motion{.longitudinal_std_m_per_m = 0.05,
-                             .lateral_std_m_per_m = 0.03,
-                             .yaw_std_rad_per_rad = 0.1,
-                             .yaw_std_rad_per_m = 0.03,
-                             .yaw_std_rad_per_s = 0.003,
-                             .min_std_m = 0.005,
-                             .min_std_rad = 0.005};  ///< for uncalibrated wheel odometry
-  ScanMatcherSettings matching;
-  ScanIntegrationSettings integration;
-
-  template <typename Self, typename Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("resolution_m", self.resolution_m, between(0.01, 1.0));
-    visit("max_extent_m", self.max_extent_m, between(1.0, 20000.0));
-    visit("keyframe_distance_m", self.keyframe_distance_m, between(0.0, 10.0));
-    visit("keyframe_angle_rad", self.keyframe_angle_rad, between(0.0, 3.2));
-    visit("initial_keyframes", self.initial_keyframes, between(1, 1000));
-    visit("submap_keyframes", self.submap_keyframes, between(4, 10000));
-    visit("likelihood_gain", self.likelihood_tempering, between(0.0, 1.0));
-    visit("motion", self.motion);
-    visit("matching", self.matching);
-    visit("integration", self.integration);
-  }
-};
 
 struct TrackedScan {
   Pose2 T_local_body;

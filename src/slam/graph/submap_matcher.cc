@@ -24,17 +24,17 @@ struct Overlap {
 
 Overlap measure_overlap(const GridMap& map, const RenderedSubmap& other, const Pose2& T_map_other) {
   const std::vector<MatchPoint>& points = other.surface_points();
-  int known = 0, matched = 0;
+  int num_observed = 0, matched = 0;
   for (const MatchPoint& point : points) {
     const Cell cell = map.cell_at(T_map_other * point.p_body);
     const bool is_matched = map.is_surface_within(cell, 2);
     const GridCell* there = map.find(cell);
     if (!is_matched && (!there || !there->is_observed())) continue;
-    ++known;
+    ++num_observed;
     matched += is_matched ? 1 : 0;
   }
-  return {.overlap_ratio = points.empty() ? 0.0 : static_cast<double>(known) / static_cast<double>(points.size()),
-          .inlier_ratio = known == 0 ? 0.0 : static_cast<double>(matched) / known,
+  return {.overlap_ratio = points.empty() ? 0.0 : static_cast<double>(num_observed) / static_cast<double>(points.size()),
+          .inlier_ratio = num_observed == 0 ? 0.0 : static_cast<double>(matched) / num_observed,
           .matched_length_m = matched * other.point_spacing_m()};
 }
 

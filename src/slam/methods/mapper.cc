@@ -5,6 +5,9 @@
 #include <utility>
 
 #include "core/named_table.h"
+#include "slam/graph/graph_slam.h"
+#include "slam/rbpf/scan_odometry_rbpf.h"
+#include "slam/submaps/submap_rbpf.h"
 
 namespace patrol::slam {
 namespace {

@@ -2,51 +2,17 @@
 
 #include <cstdint>
 #include <memory>
-#include <span>
-#include <string>
-#include <string_view>
 #include <vector>
 
 #include "core/boosted_stumps.h"
 #include "core/grid.h"
 #include "core/messages.h"
 #include "core/pose_graph.h"
-#include "core/settings.h"
-#include "slam/graph/graph_slam.h"
+#include "slam/methods/mapper_settings.h"
 #include "slam/range_update.h"
 #include "slam/slam_update.h"
-#include "slam/submaps/submap_rbpf.h"
-#include "slam/rbpf/scan_odometry_rbpf.h"
 
 namespace patrol::slam {
-
-class Mapper;
-struct MapperSettings;
-
-/// Row of the table of SLAM methods, for runs (`stack.slam.method`) and recorded logs (`patrol slam --method`).
-struct MappingMethod {
-  std::string_view name;     ///< text in settings and on the command line
-  std::string_view summary;  ///< one line of documentation
-  std::unique_ptr<Mapper> (*make)(const MapperSettings& settings, const BoostedStumps& neighbors, std::uint64_t seed);
-  bool needs_neighbor_model = false;  ///< whether it classifies pairs of submaps
-};
-
-std::span<const MappingMethod> mapping_methods();
-
-struct MapperSettings {
-  std::string method = "graph";
-  GraphSlamSettings graph;
-  ScanOdometryRbpfSettings rbpf;
-  SubmapRbpfSettings submap_rbpf;
-
-  template <typename Self, typename Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("method", self.method, one_of(mapping_methods()));
-    visit("graph", self.graph);
-    visit("rbpf", self.rbpf);
-    visit("submap_rbpf", self.submap_rbpf);
-  }
-};
 
 /// Interface of a 2D SLAM back end: online updates, plus a final optimization over all scans in `finish()`.
 class Mapper {
@@ -73,7 +39,7 @@ class Mapper {
   virtual std::vector<std::size_t> node_scan_indices() const = 0;
 };
 
-/// Builds the method of that name. `neighbours` classifies pairs of submaps, for methods that need it.
+/// Builds the method of that name. `neighbors` classifies pairs of submaps, for methods that need it.
 /// Throws InputError when a setting breaks its rule.
 std::unique_ptr<Mapper> make_mapper(const MapperSettings& settings, const BoostedStumps& neighbors, std::uint64_t seed);
 

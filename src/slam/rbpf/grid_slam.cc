@@ -14,9 +14,9 @@ namespace patrol::slam {
 namespace {
 
 ParticleFilterComponents components_from(const GridSlamSettings& settings) {
-  validate(settings, "slam");
+  validate(settings, "slam.rbpf");
   if (settings.optimizer != "none" && settings.proposal != "motion") {
-    throw InputError("slam.optimizer = " + settings.optimizer + ": moves what is drawn from odometry, which slam.proposal: motion asks for");
+    throw InputError("slam.rbpf.optimizer = " + settings.optimizer + ": must be none unless slam.rbpf.proposal = motion");
   }
   ParticleFilterSettings components = published_settings(settings.optimizer);
   components.resample_threshold = settings.resample_threshold;

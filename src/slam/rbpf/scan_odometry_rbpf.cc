@@ -18,7 +18,7 @@ GridSlamSettings default_filter_settings() {
 }
 
 ScanOdometryRbpf::ScanOdometryRbpf(const ScanOdometryRbpfSettings& settings, std::uint64_t seed) : filtered_(settings.filter, seed) {
-  if (row_named(kRbpfOdometries, settings.odometry, "rbpf.odometry").value == RbpfOdometry::kScanMatched) tracker_.emplace(settings.tracking);
+  if (row_named(kRbpfOdometries, settings.odometry, "slam.rbpf.odometry").value == RbpfOdometry::kScanMatched) tracker_.emplace(settings.scan_odometry);
 }
 
 void ScanOdometryRbpf::add(RangeMeasurement measurement) {

@@ -17,12 +17,12 @@ using Order = std::vector<std::size_t>;  ///< example indices in ascending order
 
 void check(const LabeledFeatures& training) {
   if (training.examples.size() != training.labels.size()) {
-    throw InputError(fmt::format("adaboost: there are {} examples and {} labels", training.examples.size(), training.labels.size()));
+    throw InputError(fmt::format("adaboost: {} examples and {} labels: numbers must be equal", training.examples.size(), training.labels.size()));
   }
   for (std::size_t i = 0; i < training.examples.size(); ++i) {
     const std::vector<double>& values = training.examples[i];
     if (values.size() != training.names.size()) {
-      throw InputError(fmt::format("adaboost: example {} has {} features: must have {}", i, values.size(), training.names.size()));
+      throw InputError(fmt::format("adaboost: example {}: {} features: must be {}", i, values.size(), training.names.size()));
     }
     for (std::size_t f = 0; f < values.size(); ++f) {
       if (!std::isfinite(values[f])) throw InputError(fmt::format("adaboost: example {}: {} = {}: must be finite", i, training.names[f], values[f]));
@@ -30,7 +30,7 @@ void check(const LabeledFeatures& training) {
     if (std::abs(training.labels[i]) != 1) throw InputError(fmt::format("adaboost: example {}: label = {}: must be +1 or -1", i, training.labels[i]));
   }
   for (const int label : {1, -1}) {
-    if (std::ranges::count(training.labels, label) == 0) throw InputError(fmt::format("adaboost: there is no example with label {}", label));
+    if (std::ranges::count(training.labels, label) == 0) throw InputError(fmt::format("adaboost: no example has label {}: both labels are required", label));
   }
 }
 

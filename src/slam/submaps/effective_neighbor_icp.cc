@@ -128,12 +128,12 @@ bool is_small(const Pose2& T_step, double tol_m) { return T_step.position().norm
 double effective_threshold(const std::vector<double>& sorted_distances) {
   const std::size_t n = sorted_distances.size();
   const double first = sorted_distances.front(), last = sorted_distances.back();
-  double most = 0.0, threshold = last;
+  double max_departure = 0.0, threshold = last;
   for (std::size_t k = 1; k + 1 < n; ++k) {
     const double chord = first + (last - first) * static_cast<double>(k) / static_cast<double>(n - 1);  // eq. 7
     const double departure = chord - sorted_distances[k];                                                // eq. 8
-    if (departure <= 0.0 || departure < most) continue;
-    most = departure;
+    if (departure <= 0.0 || departure < max_departure) continue;
+    max_departure = departure;
     threshold = sorted_distances[k];
   }
   return threshold;

@@ -48,8 +48,8 @@ GridGeometry covering_lattice(const std::vector<Eigen::Vector2d>& points, double
     high = high.cwiseMax(p);
   }
   const Eigen::Array2d first = (low.array() / spacing_m).floor(), last = (high.array() / spacing_m).floor() + 1.0;
-  const double most = (last - first).maxCoeff() + 1.0;
-  if (most > kMaxNodes) throw InputError(fmt::format("ndt: the points need {} nodes of {} m in a row: at most {}", most, spacing_m, kMaxNodes));
+  const double max_nodes = (last - first).maxCoeff() + 1.0;
+  if (max_nodes > kMaxNodes) throw InputError(fmt::format("ndt: lattice of {} nodes of {} m along an axis: must be at most {}", max_nodes, spacing_m, kMaxNodes));
   return {.resolution_m = spacing_m,
           .width = static_cast<int>(last.x() - first.x()) + 1,
           .height = static_cast<int>(last.y() - first.y()) + 1,
@@ -141,10 +141,10 @@ std::vector<NdtGrid> make_ndt(const std::vector<Eigen::Vector2d>& points_target,
 }
 
 std::vector<Eigen::Vector2d> subsample(const std::vector<Eigen::Vector2d>& points, int max_points) {
-  const std::size_t most = static_cast<std::size_t>(max_points);
-  if (points.size() <= most) return points;
-  std::vector<Eigen::Vector2d> kept(most);
-  for (std::size_t i = 0; i < most; ++i) kept[i] = points[i * points.size() / most];
+  const std::size_t max_count = static_cast<std::size_t>(max_points);
+  if (points.size() <= max_count) return points;
+  std::vector<Eigen::Vector2d> kept(max_count);
+  for (std::size_t i = 0; i < max_count; ++i) kept[i] = points[i * points.size() / max_count];
   return kept;
 }
 

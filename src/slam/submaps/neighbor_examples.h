@@ -26,7 +26,7 @@ struct NeighborExampleSettings {
     visit("min_prediction_std_m", self.min_prediction_std_m, between(0.001, 100.0));
     visit("max_prediction_std_m", self.max_prediction_std_m, between(0.001, 100.0));
     visit("prediction_rad_per_m", self.prediction_rad_per_m, between(1e-6, 1.0));
-    visit("blunder_share", self.outlier_probability, between(0.0, 1.0));
+    visit("outlier_probability", self.outlier_probability, between(0.0, 1.0));
     visit("max_match_m", self.max_match_m, between(0.001, 10.0));
     visit("max_match_rad", self.max_match_rad, between(1e-4, 3.2));
   }

@@ -80,14 +80,14 @@ double min_mutual_score(const SubmapDescriptor& target, const SubmapDescriptor& 
 
 /// Inlier ratio of points in the observed cells; 0 if too few points are in observed cells.
 double overlap_consistency_in(const ObservedCells& observed, const std::vector<Eigen::Vector2d>& points, const Pose2& T_observed_points) {
-  int known = 0, on_surface = 0;
+  int num_observed = 0, on_surface = 0;
   for (const Eigen::Vector2d& p : points) {
     const Eigen::Vector2d p_observed = T_observed_points * p;
     const bool is_met = observed.is_surface_near(p_observed);
-    known += is_met || observed.at(p_observed) != ObservedCells::State::kUnknown ? 1 : 0;
+    num_observed += is_met || observed.at(p_observed) != ObservedCells::State::kUnknown ? 1 : 0;
     on_surface += is_met ? 1 : 0;
   }
-  return known >= kMinObservedFraction * static_cast<double>(points.size()) && known > 0 ? static_cast<double>(on_surface) / known : 0.0;
+  return num_observed >= kMinObservedFraction * static_cast<double>(points.size()) && num_observed > 0 ? static_cast<double>(on_surface) / num_observed : 0.0;
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ Cloud checked(std::vector<Eigen::Vector2d> points) {
 
 void check_finite(const std::vector<Eigen::Vector2d>& points) {
   for (const Eigen::Vector2d& p : points) {
-    if (!p.allFinite()) throw InputError(fmt::format("a point is ({}, {}): must be finite", p.x(), p.y()));
+    if (!p.allFinite()) throw InputError(fmt::format("point ({}, {}): must be finite", p.x(), p.y()));
   }
 }
 

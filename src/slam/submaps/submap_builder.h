@@ -5,27 +5,11 @@
 #include <vector>
 
 #include "core/messages.h"
-#include "core/settings.h"
 #include "slam/rbpf/trajectory_rbpf.h"
 #include "slam/graph/submap.h"
+#include "slam/submaps/submap_builder_settings.h"
 
 namespace patrol::slam {
-
-struct SubmapBuilderSettings {
-  double max_distance_m = 12.0;  ///< distance traveled at which a submap is full
-  int max_keyframes = 150;  ///< number of keyframes at which a submap is full
-  GridSlamSettings filter = submap_filter_settings();
-
-  /// Filter settings for submaps of a few meters on scan-to-scan odometry: few particles and small motion noise.
-  static GridSlamSettings submap_filter_settings();
-
-  template <typename Self, typename Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("max_way_m", self.max_distance_m, between(1.0, 1000.0));
-    visit("max_keyframes", self.max_keyframes, between(2, 100000));
-    visit("filter", self.filter);
-  }
-};
 
 /// Builder of one submap with a particle filter of its own [Yu23, section 1], which keeps particles and their maps
 /// small. The frame `submap` is the body pose of the first scan.

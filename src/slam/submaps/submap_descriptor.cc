@@ -27,13 +27,13 @@ double radius_about(const Eigen::Vector2d& center, const std::vector<Eigen::Vect
 
 void normalize(std::vector<double>& histogram) {
   const double sum = std::accumulate(histogram.begin(), histogram.end(), 0.0);
-  for (double& share : histogram) share = sum > 0.0 ? share / sum : 1.0 / static_cast<double>(histogram.size());
+  for (double& bin : histogram) bin = sum > 0.0 ? bin / sum : 1.0 / static_cast<double>(histogram.size());
 }
 
-/// Distributes `weight` linearly over the two bins around `place`, which is in bins from the center of the first bin.
-void add_around_circle(std::vector<double>& histogram, double place, double weight) {
+/// Distributes `weight` linearly over the two bins around `position`, which is in bins from the center of the first bin.
+void add_around_circle(std::vector<double>& histogram, double position, double weight) {
   const auto count = static_cast<double>(histogram.size());
-  const double wrapped = place - count * std::floor(place / count);
+  const double wrapped = position - count * std::floor(position / count);
   const auto bin = static_cast<std::size_t>(wrapped);
   const double fraction = wrapped - static_cast<double>(bin);
   histogram[bin % histogram.size()] += (1.0 - fraction) * weight;
@@ -46,9 +46,9 @@ std::vector<double> distance_histogram(const std::vector<Eigen::Vector2d>& point
   for (std::size_t i = 0; i < points.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       // Linear distribution over two bins avoids jumps of whole counts by rounding.
-      const double place = std::min(last, (points[i] - points[j]).norm() / settings.distance_bin_m);
-      const auto bin = static_cast<std::size_t>(place);
-      const double fraction = place - static_cast<double>(bin);
+      const double position = std::min(last, (points[i] - points[j]).norm() / settings.distance_bin_m);
+      const auto bin = static_cast<std::size_t>(position);
+      const double fraction = position - static_cast<double>(bin);
       histogram[bin] += 1.0 - fraction;
       if (fraction > 0.0) histogram[bin + 1] += fraction;
     }
@@ -70,7 +70,7 @@ std::vector<double> direction_histogram(const std::vector<Eigen::Vector2d>& poin
 }  // namespace
 
 SubmapDescriptor describe_submap(const std::vector<Eigen::Vector2d>& points_submap, const GridMap& map, const SubmapDescriptorSettings& settings) {
-  if (points_submap.size() < 3) throw InputError(fmt::format("submap: has {} surface points: must have at least 3", points_submap.size()));
+  if (points_submap.size() < 3) throw InputError(fmt::format("submap: {} surface points: must be at least 3", points_submap.size()));
   const Eigen::Vector2d center = mean_of(points_submap);
   std::vector<Eigen::Vector2d> points = subsample(points_submap, settings.max_points);
   std::vector<double> distances = distance_histogram(points, settings);

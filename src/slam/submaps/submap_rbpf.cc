@@ -29,8 +29,8 @@ std::uint64_t seed_of_submap(std::uint64_t seed, std::size_t submap) {
 }  // namespace
 
 SubmapRbpf::SubmapRbpf(const SubmapRbpfSettings& settings, BoostedStumps neighbors, std::uint64_t seed)
-    : settings_(settings), neighbors_(std::move(neighbors)), seed_(seed), tracker_(settings.tracking) {
-  validate(settings, "slam");
+    : settings_(settings), neighbors_(std::move(neighbors)), seed_(seed), tracker_(settings.scan_odometry) {
+  validate(settings, "slam.submap_rbpf");
 }
 
 Pose2 SubmapRbpf::update(const LevelScan& scan, const Pose2& T_odom_body) {
@@ -132,7 +132,7 @@ std::vector<Pose2> SubmapRbpf::path() const {
 
 OccupancyGrid SubmapRbpf::map() const {
   const GridSlamSettings& filter = settings_.submaps.filter;
-  GridMap map(filter.resolution_m, settings_.tracking.max_extent_m);
+  GridMap map(filter.resolution_m, settings_.scan_odometry.max_extent_m);
   for (std::size_t s = 0; s < submaps_.size(); ++s) {
     for (const Keyframe& keyframe : submaps_[s].keyframes) integrate_scan(keyframe.scan, graph_.T_map_node[s] * keyframe.T_local_body, filter.integration, map);
   }

@@ -12,46 +12,9 @@
 #include "slam/graph/relative_covariance.h"
 #include "slam/submaps/submap_builder.h"
 #include "slam/submaps/submap_constraint_finder.h"
+#include "slam/submaps/submap_rbpf_settings.h"
 
 namespace patrol::slam {
-
-struct SubmapRbpfSettings {
-  ScanTrackerSettings tracking;
-  SubmapBuilderSettings submaps;
-  SubmapSurfaceSettings surfaces;
-  SubmapConstraintSettings constraints;
-  // Odometry drift over a submap, for the prediction of loop closures.
-  double drift_std_m_per_m = 0.003;
-  double drift_std_rad_per_m = 0.0005;
-  double drift_std_rad_per_rad = 0.005;
-  int max_candidates = 8;        ///< maximum number of older submaps compared with each new one, nearest first
-  double likelihood_tempering = 0.2;       ///< tempering factor: fraction of the matched points with independent errors
-  /// Standard deviation of the systematic error of a match, independent of the number of points.
-  double constraint_std_m = 0.02;
-  double constraint_std_rad = 0.002;
-  /// Narrow kernel: each submap has many constraints, of which only a few need to be inliers.
-  PoseGraphSolverSettings solver = {.max_iterations = 50, .robust_loop_closures = true, .loop_closure_loss_scale = 0.3};
-  int min_hits_occupied = 2;
-  double min_occupied_hit_ratio = 0.3;
-
-  template <typename Self, typename Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("tracking", self.tracking);
-    visit("submaps", self.submaps);
-    visit("surfaces", self.surfaces);
-    visit("joints", self.constraints);
-    visit("drift_std_m_per_m", self.drift_std_m_per_m, between(1e-6, 10.0));
-    visit("drift_std_rad_per_m", self.drift_std_rad_per_m, between(1e-6, 10.0));
-    visit("drift_std_rad_per_rad", self.drift_std_rad_per_rad, at_least(0.0));
-    visit("max_candidates", self.max_candidates, between(0, 10000));
-    visit("joint_gain", self.likelihood_tempering, between(0.0, 1.0));
-    visit("joint_std_m", self.constraint_std_m, between(1e-5, 1.0));
-    visit("joint_std_rad", self.constraint_std_rad, between(1e-6, 1.0));
-    visit("solver", self.solver);
-    visit("min_hits_occupied", self.min_hits_occupied, between(1, 1000));
-    visit("min_hit_share_occupied", self.min_occupied_hit_ratio, between(0.0, 1.0));
-  }
-};
 
 /// Mapping with submaps built by a particle filter [Yu23].
 ///
@@ -65,7 +28,7 @@ struct SubmapRbpfSettings {
 /// predicted correctly. Memory: the particle maps are freed with their submap; scans and surfaces are kept.
 class SubmapRbpf {
  public:
-  /// `neighbours` classifies submap pairs by their features (pair_features.h). Throws InputError if a setting is
+  /// `neighbors` classifies submap pairs by their features (pair_features.h). Throws InputError if a setting is
   /// invalid.
   SubmapRbpf(const SubmapRbpfSettings& settings, BoostedStumps neighbors, std::uint64_t seed);
 

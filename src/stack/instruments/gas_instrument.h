@@ -18,7 +18,7 @@ struct GasRules {
 /// Open-path methane meter: averages the column readings while the robot stands, and raises the alarm if the mean
 /// exceeds the threshold by two standard errors.
 ///
-/// Events: gas_measured (value: column, ppm m), alarm (value: column; target: the point of the beam nearest to the
+/// Events: gas_measured (value: column, ppm m), gas_alarm (value: column; target: the point of the beam nearest to the
 /// inspected object).
 class GasInstrument final : public Instrument {
  public:

@@ -18,7 +18,7 @@ using LiningReferences = std::map<std::string, inspect::LiningReference>;
 /// 3D scanner: takes a panoramic scan of the tunnel lining and compares it with the reference scan of the station.
 ///
 /// Events: scan_taken, reference_taken (no earlier scan of the station), lining_notice, lining_warning, lining_alarm
-/// (subject "ring_31", value m inward), lining_unmoved.
+/// (subject "ring_31", value m inward), lining_unchanged.
 class LiningInstrument final : public Instrument {
  public:
   LiningInstrument(const InspectionSettings& settings, const TunnelLining& lining_in_map, const Pose3& T_body_scanner,

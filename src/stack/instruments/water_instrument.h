@@ -14,7 +14,7 @@ namespace patrol::stack {
 /// Transient-electromagnetic water detector: takes soundings at a series of antenna poses and estimates a body of water
 /// ahead.
 ///
-/// Events: water_notice, water_warning, water_alarm (value: distance, m), no_water.
+/// Events: water_notice, water_warning, water_alarm (value: distance, m), water_not_found.
 class WaterInstrument final : public Instrument {
  public:
   WaterInstrument(const inspect::WaterSettings& settings, const AntennaGeometry& antenna, std::uint64_t seed);

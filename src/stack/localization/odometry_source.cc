@@ -5,7 +5,9 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "localize/body_estimator.h"
 #include "localize/map_pose_tracker.h"
+#include "localize/track_odometry.h"
 
 namespace patrol::stack {
 namespace {

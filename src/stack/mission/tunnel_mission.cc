@@ -114,7 +114,7 @@ void TunnelMission::teleoperate(const MissionInput& input, MissionOutput& output
   if (input.teleop && input.teleop->save_goal) {
     goals_.push_back({.number = static_cast<int>(goals_.size()) + 1, .T_map_body = T_map_body_, .type = settings_.goal_type(goals_.size())});
     goal_ = goals_.size() - 1;
-    output.events.push_back(event(EventKind::kGoalMarked, goal_name(), fmt::format("Saved {}.", goal_name())));
+    output.events.push_back(event(EventKind::kGoalSaved, goal_name(), fmt::format("Saved {}.", goal_name())));
   }
   const bool is_off = now_ - last_teleop_ > from_seconds(settings_.teleop_timeout_s);
   if (!is_off && !(input.teleop && input.teleop->hand_over)) return;

@@ -63,8 +63,8 @@ struct TunnelMissionSettings {
 /// the trestle bridge), requests soundings, drives it back and hands over control. If the mission makes its own map,
 /// the operator was present at the mapping drive, and R is treated as N.
 ///
-/// Events: goal_marked, mapping_done, navigation_started, goal_reached, goal_failed, inspection_failed,
-/// remote_requested, remote_ended, docked, dock_failed, lost, relocalized, cannot_localize. At the end
+/// Events: goal_saved, mapping_completed, navigation_started, goal_reached, goal_failed, inspection_failed,
+/// teleop_requested, teleop_ended, docked, dock_failed, localization_lost, relocalized, localization_failed. At the end
 /// mission_completed (every goal of every run reached, every inspection and docking done) or mission_failed. Subjects
 /// are "goal_2", "navigation_7", "sounding_1"; the value of a goal event is the number of its run.
 class TunnelMission final : public Mission {

@@ -46,7 +46,7 @@ struct SensorChange {
 /// Sensor monitor.
 ///
 /// Checks for each sensor that has ever published: messages arrive in time, stamps agree with the clock, readings
-/// change as the robot moves. Plausible errors (a drift, a spike) are not detected.
+/// change as the robot moves. Plausible errors (drift, outliers) are not detected.
 ///
 /// The robot must not drive without its lidar, the only sensor of obstacles ahead. It must not drive without its
 /// encoders either, since the IMU alone loses the pose within seconds. It can drive without all others, including IMU

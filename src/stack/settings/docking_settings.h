@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/settings.h"
-#include "localize/dock_detector.h"
+#include "localize/dock_detector_settings.h"
 #include "plan/control/docking.h"
 
 namespace patrol::stack {

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "core/settings.h"
-#include "localize/body_estimator.h"
-#include "localize/track_odometry.h"
+#include "localize/body_estimator_settings.h"
+#include "localize/track_odometry_settings.h"
 
 namespace patrol::stack {
 

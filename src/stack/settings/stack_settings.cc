@@ -1,12 +1,14 @@
 #include "stack/settings/stack_settings.h"
 
+#include "slam/methods/mapper.h"
+
 namespace patrol::stack {
 
 slam::GraphSlamSettings default_graph_settings() {
   slam::GraphSlamSettings settings;
-  settings.tracking.motion = {};
-  settings.tracking.keyframe_distance_m = 0.5;
-  settings.tracking.initial_keyframes = 25;
+  settings.scan_odometry.motion = {};
+  settings.scan_odometry.keyframe_distance_m = 0.5;
+  settings.scan_odometry.initial_keyframes = 25;
   settings.cached_submaps = 6;
   settings.min_occupied_hit_ratio = 0.5;
   settings.edge_std_m = 0.003;
@@ -14,7 +16,7 @@ slam::GraphSlamSettings default_graph_settings() {
   return settings;
 }
 
-slam::ScanOdometryRbpfSettings default_rbpf_settings() { return {.odometry = "given", .tracking = {}, .filter = {}}; }
+slam::ScanOdometryRbpfSettings default_rbpf_settings() { return {.odometry = "given", .scan_odometry = {}, .filter = {}}; }
 
 slam::MapperSettings default_slam_settings() {
   slam::MapperSettings settings;

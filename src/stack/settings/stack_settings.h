@@ -3,11 +3,11 @@
 #include <string>
 
 #include "core/settings.h"
-#include "localize/amcl/monte_carlo.h"
-#include "localize/range_filter.h"
-#include "localize/scan_leveler.h"
+#include "localize/amcl/monte_carlo_settings.h"
+#include "localize/range_filter_settings.h"
+#include "localize/scan_leveler_settings.h"
 #include "plan/navigation/navigator_settings.h"
-#include "slam/methods/mapper.h"
+#include "slam/methods/mapper_settings.h"
 #include "stack/instruments/inspection_settings.h"
 #include "stack/mission/gas_mission.h"
 #include "stack/mission/tunnel_mission.h"

@@ -68,7 +68,7 @@ BatchSolution solve_batch(const ControlMotion& motion, const RangeBearingNoise& 
     problem.AddResidualBlock(new ceres::AutoDiffCostFunction<MotionCost, 5, 3, 2, 3>(new MotionCost{motion, controls[k]}), nullptr, poses[k].data(),
                              errors[k].data(), poses[k + 1].data());
     for (const RangeBearing& observation : observations[k]) {
-      if (static_cast<std::size_t>(observation.landmark) >= landmarks.size()) throw std::invalid_argument("a batch needs a guess of every landmark that is seen");
+      if (static_cast<std::size_t>(observation.landmark) >= landmarks.size()) throw std::invalid_argument("batch: guess must contain every observed landmark");
       problem.AddResidualBlock(new ceres::AutoDiffCostFunction<ObservationCost, 2, 3, 2>(new ObservationCost{observation, noise}), nullptr, poses[k + 1].data(),
                                landmarks[static_cast<std::size_t>(observation.landmark)].data());
     }

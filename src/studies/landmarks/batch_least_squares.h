@@ -17,7 +17,7 @@ struct BatchSolution {
 /// Maximum a posteriori trajectory and landmarks given all controls and observations, including later ones: a lower
 /// bound for the average error of any filter. Unknowns are the poses, the control errors and the landmarks; the start
 /// pose is the origin of map. Gauss-Newton by Ceres from `guess`, which must contain every observed landmark
-/// (std::invalid_argument otherwise). `controls` [step], `seen` [step][observation]; known association.
+/// (std::invalid_argument otherwise). `controls` [step], `observations` [step][observation]; known association.
 BatchSolution solve_batch(const ControlMotion& motion, const RangeBearingNoise& noise, const std::vector<Control>& controls,
                           const std::vector<std::vector<RangeBearing>>& observations, const BatchSolution& guess);
 

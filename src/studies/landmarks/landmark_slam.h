@@ -23,7 +23,7 @@ class LandmarkSlam {
  public:
   virtual ~LandmarkSlam() = default;
 
-  /// Predicts one motion step and updates with the observations taken at its end; `seen` may be empty.
+  /// Predicts one motion step and updates with the observations taken at its end; `observations` may be empty.
   virtual LandmarkSlamEstimate step(const Control& control, const std::vector<RangeBearing>& observations) = 0;
 
   /// Landmark positions, [landmark]: by landmark number with known association, otherwise in order of discovery. None:

@@ -17,7 +17,7 @@ constexpr double kMinMassFraction = 1e-18;  // of the maximum mass; smaller mass
 ExactFilter::ExactFilter(const GrowthModel& model, const ExactFilterSettings& settings) : model_(model), cell_(settings.cell) {
   validate(settings, "exact_filter");
   if (model.settings().denominator_sign < 0) {
-    throw InputError("growth_model.denominator_sign is -1, but the exact filter needs 1: with -1 the state leaves every grid");
+    throw InputError("growth_model.denominator_sign = -1: must be 1 for the exact filter");
   }
   const int half = static_cast<int>(std::ceil(settings.half_width / cell_));
   for (int i = -half; i <= half; ++i) nodes_.push_back(i * cell_);

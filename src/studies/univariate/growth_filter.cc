@@ -48,7 +48,7 @@ class GrowthFilter::Step {
 
 GrowthFilter::GrowthFilter(int particles, const GrowthModel& model, slam::ParticleFilterComponents components, std::uint64_t seed)
     : model_(model), components_(std::move(components)), random_(seed, "slam/univariate/particles") {
-  if (particles < 1) throw InputError(fmt::format("growth_filter.particles is {}, but must be at least 1", particles));
+  if (particles < 1) throw InputError(fmt::format("growth_filter.particles = {}: must be at least 1", particles));
   particles_.assign(static_cast<std::size_t>(particles), model.settings().initial_state);
   log_weights_.assign(particles_.size(), 0.0);
 }

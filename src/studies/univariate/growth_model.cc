@@ -10,7 +10,7 @@ namespace patrol::studies {
 
 GrowthModel::GrowthModel(const GrowthModelSettings& settings) : settings_(settings) {
   validate(settings_, "growth_model");
-  if (settings_.denominator_sign == 0) throw InputError("growth_model.denominator_sign is 0, but must be 1 or -1");
+  if (settings_.denominator_sign == 0) throw InputError("growth_model.denominator_sign = 0: must be 1 or -1");
   log_normalizer_ = -0.5 * std::log(2.0 * std::numbers::pi * settings_.observation_var);
 }
 

@@ -20,7 +20,7 @@ struct QuasiFilterSettings {
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("particles", self.particles, between(1, 1'000'000));
-    visit("looks_ahead", self.use_auxiliary);
+    visit("use_auxiliary", self.use_auxiliary);
     visit("proposal_inflation", self.proposal_inflation, between(1.0, 10.0));
   }
 };

@@ -24,10 +24,10 @@ using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
 const OutputKind kKind = {.name = "survey",
-                          .unfinished = "Not yet.",
-                          .made = {"table.csv", "plot_*.png", "work/deep/*.txt", "work/*.part"},
-                          .proof = "table.csv",
-                          .kept = {"results"}};
+                          .marker_text = "Not yet.",
+                          .outputs = {"table.csv", "plot_*.png", "work/deep/*.txt", "work/*.part"},
+                          .required_file = "table.csv",
+                          .preserved = {"results"}};
 
 std::vector<std::string> names_in(const std::filesystem::path& folder) {
   std::vector<std::string> names;
@@ -56,7 +56,7 @@ TEST(OutputDirectory, OneThatHoldsAnythingElseIsRefusedAndLeftAsItWas) {
   const TemporaryFolder folder;
   for (const char* name : {"table.csv", "thesis.tex"}) test::write_bytes(folder / name, "mine");
   EXPECT_THAT([&] { (void)begin_output(folder.path(), kKind); },
-              ThrowsMessage<InputError>(HasSubstr("holds thesis.tex, which is not part of a survey")));
+              ThrowsMessage<InputError>(HasSubstr("contains 'thesis.tex', which is not an output of 'survey'")));
   EXPECT_THAT(names_in(folder.path()), ElementsAre("table.csv", "thesis.tex"));
 }
 
@@ -75,21 +75,21 @@ TEST(OutputDirectory, AUsersFilesInOurFoldersAndFoldersOfOurNamesStay) {
   std::filesystem::create_directories(folder / "work/deep");
   for (const char* name : {"table.csv", "work/deep/1.txt"}) test::write_bytes(folder / name, "ours");
   test::write_bytes(folder / "work/deep/thesis.tex", "mine");
-  EXPECT_THAT(complaint_about(folder.path()), HasSubstr("holds work/deep/thesis.tex, which is not part of a survey"));
+  EXPECT_THAT(complaint_about(folder.path()), HasSubstr("contains 'work/deep/thesis.tex', which is not an output of 'survey'"));
   EXPECT_EQ(test::read_bytes(folder / "work/deep/thesis.tex"), "mine");
   EXPECT_EQ(test::read_bytes(folder / "work/deep/1.txt"), "ours");
   std::filesystem::remove(folder / "work/deep/thesis.tex");
 
   std::filesystem::create_directories(folder / "plot_1.png");
   test::write_bytes(folder / "plot_1.png/mine", "mine");
-  EXPECT_THAT(complaint_about(folder.path()), HasSubstr("holds plot_1.png"));
+  EXPECT_THAT(complaint_about(folder.path()), HasSubstr("contains 'plot_1.png'"));
   std::filesystem::remove_all(folder / "plot_1.png");
 
   test::write_bytes(folder / "thesis.tex", "mine");
   const TemporaryFolder linking;
   for (const char* name : {"plot_1.png", "work"}) {
     std::filesystem::create_symlink(folder / "thesis.tex", linking / name);
-    EXPECT_THAT(complaint_about(linking.path()), HasSubstr(std::string("holds ") + name));
+    EXPECT_THAT(complaint_about(linking.path()), HasSubstr(std::string("contains '") + name));
     std::filesystem::remove(linking / name);
   }
   EXPECT_THAT(names_in(linking.path()), ElementsAre());
@@ -99,7 +99,7 @@ TEST(OutputDirectory, AUsersFilesInOurFoldersAndFoldersOfOurNamesStay) {
 TEST(OutputDirectory, FilesOfOurNamesWithoutSignOfAnEarlierOneStay) {
   const TemporaryFolder folder;
   test::write_bytes(folder / "plot_1.png", "mine");
-  EXPECT_THAT(complaint_about(folder.path()), HasSubstr("holds plot_1.png, but no table.csv of an earlier survey"));
+  EXPECT_THAT(complaint_about(folder.path()), HasSubstr("contains plot_1.png, but no table.csv of an earlier survey"));
   EXPECT_THAT(names_in(folder.path()), ElementsAre("plot_1.png"));
   test::write_bytes(incomplete_marker(folder.path()), "Not yet.\n");
   EXPECT_EQ(complaint_about(folder.path()), "");
@@ -150,7 +150,7 @@ class Writer {
 TEST(OutputDirectory, OneProcessAtATimeWritesThereAndAKilledOneDoesNotBlock) {
   const TemporaryFolder folder;
   Writer first(folder / "out");
-  EXPECT_THAT(complaint_about(folder / "out"), HasSubstr("another process writes a survey there"));
+  EXPECT_THAT(complaint_about(folder / "out"), HasSubstr("in use by another process that writes a survey"));
   EXPECT_EQ(test::read_bytes(folder / "out/table.csv"), "written");
   first.kill();
   EXPECT_EQ(complaint_about(folder / "out"), "");
@@ -159,7 +159,7 @@ TEST(OutputDirectory, OneProcessAtATimeWritesThereAndAKilledOneDoesNotBlock) {
 
 TEST(OutputDirectory, OneThatIsSharedTakesSeveral) {
   OutputKind shared = kKind;
-  shared.is_shared = true;
+  shared.is_concurrent = true;
   const TemporaryFolder folder;
   const Writer first(folder / "out", shared);
   const OutputLock lock = begin_output(folder / "out", shared);

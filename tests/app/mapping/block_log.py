@@ -49,7 +49,7 @@ def drive():
 
 
 def carmen_lines(poses, lidar=(0.0, 0.0, 0.0), way=1.03, turn=1.0, steering=0.01, max_range=80.0, no_return="81.83"):
-    """A log of a lidar at (x, y, yaw) in the body, and of wheels that count `way` times the way, `turn` times the turn, and `steering` rad more for each metre that they count."""
+    """A log of a lidar at (x, y, yaw) in the body, and of wheels that count `way` times the way, `turn` times the turn, and `steering` rad more for each meter that they count."""
     segments, odometry, last = walls(), (0.0, 0.0, 0.0), None
     lines = ["# CARMEN Logfile", "PARAM robot_frontlaser_offset 0.0 0.0 host 0.0"]
     for k, (x, y, yaw) in enumerate(poses):

@@ -56,14 +56,14 @@ class Calibrate(unittest.TestCase):
 
     def test_the_six_numbers_come_out_and_every_file_is_there(self):
         out, text = self.calibrate("whole")
-        self.assertEqual(sorted(file.name for file in out.iterdir()), ["calibration.yaml", "metrics.json", "settings.yaml", "stretches.csv"])
+        self.assertEqual(sorted(file.name for file in out.iterdir()), ["calibration.yaml", "metrics.json", "settings.yaml", "segments.csv"])
         metrics = json.loads((out / "metrics.json").read_text())
         for name, truth in TRUTH.items():
             found = metrics["calibration"][name]
             self.assertTrue(found["observable"], name)
             self.assertLess(abs(found["value"] - truth), max(4 * found["std"], 0.01 if name.endswith("_m") and "lidar" in name else 0.003), (name, found))
-        self.assertIn("true turn over odometry's", text)
-        self.assertEqual(len((out / "stretches.csv").read_text().splitlines()), 1 + metrics["stretches"]["count"])
+        self.assertIn("rotation scale", text)
+        self.assertEqual(len((out / "segments.csv").read_text().splitlines()), 1 + metrics["stretches"]["count"])
 
     def test_mapping_with_the_calibration_puts_odometry_right(self):
         out, _ = self.calibrate("used")
@@ -72,13 +72,13 @@ class Calibrate(unittest.TestCase):
         self.patrol("slam", self.log, "--out", plain)
         self.assertGreater(self.far_off_m(plain), 5.0)
         self.assertLess(self.far_off_m(mapped), 1.0)
-        self.assertIn("places_lidar: true", (mapped / "settings.yaml").read_text())
+        self.assertIn("override_lidar_pose: true", (mapped / "settings.yaml").read_text())
         self.patrol("slam", self.log, "--calibration", out / "calibration.yaml", "--set", "calibration.turn_scale=2", "--out", plain)
         self.assertGreater(self.far_off_m(plain), 5.0)
 
     def test_a_second_time_gives_the_same_bytes(self):
         (first, _), (second, _) = self.calibrate("first"), self.calibrate("second")
-        for name in ["calibration.yaml", "stretches.csv", "metrics.json"]:
+        for name in ["calibration.yaml", "segments.csv", "metrics.json"]:
             self.assertEqual((first / name).read_bytes(), (second / name).read_bytes(), name)
 
     def test_a_way_without_turns_says_what_it_does_not_tell(self):
@@ -102,12 +102,12 @@ class Calibrate(unittest.TestCase):
         short, damaged, wrong = self.folder / "short.log", self.folder / "damaged.log", self.folder / "wrong.yaml"
         short.write_text("\n".join(self.lines[:30]) + "\n")
         damaged.write_text("\n".join(self.lines[:40]) + "\n" + self.lines[40][:300] + "\n")
-        wrong.write_text("turn_scal: 1.1\n")
-        self.refuse("calibrate", short, says="short.log: too little to calibrate from")
+        wrong.write_text("rotation_scal: 1.1\n")
+        self.refuse("calibrate", short, says="short.log: calibration needs at least")
         self.refuse("calibrate", damaged, says="damaged.log:41")
         self.refuse("calibrate", self.folder / "absent.log", says="absent.log")
         self.refuse("calibrate", self.log, "--set", "passes=0", says="passes")
-        self.refuse("slam", self.log, "--calibration", wrong, says="turn_scale")
+        self.refuse("slam", self.log, "--calibration", wrong, says="rotation_scale")
         self.refuse("slam", self.log, "--calibration", self.folder / "absent.yaml", says="absent.yaml")
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""patrol train-neighbours on a short drive through the substation.
+"""patrol train-neighbors on a short drive through the substation.
 
 usage: train_test.py PATROL SOURCE_DIR
 """
@@ -27,17 +27,17 @@ class Train(unittest.TestCase):
         cls.folder_object.cleanup()
 
     def train(self, *arguments, code=0):
-        done = subprocess.run([PATROL, "train-neighbours", *map(str, arguments)], capture_output=True, text=True, timeout=200, cwd=SOURCE)
+        done = subprocess.run([PATROL, "train-neighbors", *map(str, arguments)], capture_output=True, text=True, timeout=200, cwd=SOURCE)
         self.assertEqual(done.returncode, code, done.stdout + done.stderr)
         return done
 
     def test_a_model_is_left_that_mapping_takes_and_the_second_is_the_same(self):
         first, second = self.folder / "first.json", self.folder / "second.json"
-        done = self.train(self.drive, "--held-out", self.drive, *SHORT_SUBMAPS, "--out", first)
-        self.assertIn("held out", done.stdout)
+        done = self.train(self.drive, "--validation", self.drive, *SHORT_SUBMAPS, "--out", first)
+        self.assertIn("validation", done.stdout)
         self.train(self.drive, *SHORT_SUBMAPS, "--out", second)
         self.assertEqual(first.read_bytes(), second.read_bytes())
-        self.assertEqual(json.loads(first.read_text())["features"], json.loads((SOURCE / "models/submap_neighbours.json").read_text())["features"])
+        self.assertEqual(json.loads(first.read_text())["features"], json.loads((SOURCE / "models/submap_neighbors.json").read_text())["features"])
 
     def test_what_is_no_run_is_refused_in_a_line_and_leaves_nothing(self):
         for runs in [[self.folder / "nowhere"], [self.drive, self.folder]]:

@@ -34,7 +34,7 @@ class LivePlatform {
   LivePlatform& operator=(const LivePlatform&) = delete;
 
   int port() const { return server_.port(); }
-  Platform address(const std::string& token = kToken) const { return {.url = {.host = "127.0.0.1", .port = std::to_string(port())}, .token = token}; }
+  MonitorServer monitor_server(const std::string& token = kToken) const { return {.url = {.host = "127.0.0.1", .port = std::to_string(port())}, .token = token}; }
 
  private:
   monitor::Store store_;
@@ -61,12 +61,12 @@ class DeliveryTo : public testing::Test {
 
 TEST_F(DeliveryTo, APlatformThatIsThereEmptiesTheOutbox) {
   {
-    const LivePlatform platform(data_.path());
-    Delivery delivery(outbox_, platform.address());
+    const LivePlatform server(data_.path());
+    Delivery delivery(outbox_, server.monitor_server());
     add(0, 30);
     delivery.wake();
     EXPECT_TRUE(delivery.wait_until_empty(20.0));
-    EXPECT_EQ(outbox_.num_waiting(), 0U);
+    EXPECT_EQ(outbox_.num_pending(), 0U);
   }
   EXPECT_EQ(num_kept(data_.path()), 30U);
 }
@@ -79,8 +79,8 @@ TEST_F(DeliveryTo, APlatformThatIsAwayGetsAllWhenItIsBack) {
     add(0, 30);
     delivery.wake();
     EXPECT_FALSE(delivery.wait_until_empty(0.6));
-    EXPECT_EQ(delivery.why_not(), "Connection refused");
-    EXPECT_EQ(outbox_.num_waiting(), 30U);
+    EXPECT_EQ(delivery.last_error(), "Connection refused");
+    EXPECT_EQ(outbox_.num_pending(), 30U);
     const LivePlatform back(data_.path(), port);
     EXPECT_TRUE(delivery.wait_until_empty(20.0));
   }
@@ -88,30 +88,30 @@ TEST_F(DeliveryTo, APlatformThatIsAwayGetsAllWhenItIsBack) {
 }
 
 TEST_F(DeliveryTo, ResultsWhoseAnswerWasLostAreKnown) {
-  const LivePlatform platform(data_.path());
+  const LivePlatform server(data_.path());
   add(0, 3);
-  Sender sender(outbox_, platform.address());
+  Sender sender(outbox_, server.monitor_server());
   const Outbox::Batch batch = outbox_.next(10, 10'000);
   EXPECT_EQ(sender.send_next(), Sender::Outcome::kSent);
   outbox_.mark_sent({.results = {}, .end = 0});  // as if the answer had never come
   EXPECT_EQ(sender.send_next(), Sender::Outcome::kSent);
   EXPECT_EQ(sender.send_next(), Sender::Outcome::kEmpty);
-  EXPECT_EQ(outbox_.num_refused(), 0U);
+  EXPECT_EQ(outbox_.num_rejected(), 0U);
   EXPECT_EQ(batch.results.size(), 3U);
 }
 
 TEST_F(DeliveryTo, AWrongTokenKeepsAllInTheOutbox) {
-  const LivePlatform platform(data_.path());
+  const LivePlatform server(data_.path());
   add(0, 3);
-  Sender sender(outbox_, platform.address("another-0123456789"));
-  EXPECT_EQ(sender.send_next(), Sender::Outcome::kRefusedToken);
-  EXPECT_EQ(sender.why(), "401 this is not the token");
-  EXPECT_EQ(outbox_.num_waiting(), 3U);
+  Sender sender(outbox_, server.monitor_server("another-0123456789"));
+  EXPECT_EQ(sender.send_next(), Sender::Outcome::kInvalidToken);
+  EXPECT_EQ(sender.last_error(), "401 invalid token");
+  EXPECT_EQ(outbox_.num_pending(), 3U);
 }
 
 TEST_F(DeliveryTo, WhatIsRefusedForGoodIsSetAsideAndTheRestArrives) {
   {
-    const LivePlatform platform(data_.path());
+    const LivePlatform server(data_.path());
     add(0, 5);
     monitor::Result wrong = pose_result(5);
     wrong.kind = "rumour";
@@ -119,33 +119,33 @@ TEST_F(DeliveryTo, WhatIsRefusedForGoodIsSetAsideAndTheRestArrives) {
     outbox_.add(event_result(6, "note", std::string(150, 'x')));
     outbox_.add(event_result(7, "note", std::string(15'000, 'x')));  // above this platform's limit
     add(8, 12);
-    Sender sender(outbox_, platform.address());
+    Sender sender(outbox_, server.monitor_server());
     for (int i = 0; i < 50 && sender.send_next() == Sender::Outcome::kSent; ++i) {
     }
-    EXPECT_EQ(outbox_.num_waiting(), 0U);
-    EXPECT_EQ(outbox_.num_refused(), 2U);
+    EXPECT_EQ(outbox_.num_pending(), 0U);
+    EXPECT_EQ(outbox_.num_rejected(), 2U);
   }
   EXPECT_EQ(num_kept(data_.path()), 10U);
 }
 
 TEST_F(DeliveryTo, AConflictIsSetAside) {
-  const LivePlatform platform(data_.path());
+  const LivePlatform server(data_.path());
   outbox_.add(pose_result(0, 1.0));
   outbox_.add(pose_result(0, 2.0));
-  Sender sender(outbox_, platform.address());
+  Sender sender(outbox_, server.monitor_server());
   while (sender.send_next() == Sender::Outcome::kSent) {
   }
-  EXPECT_EQ(outbox_.num_refused(), 1U);
+  EXPECT_EQ(outbox_.num_rejected(), 1U);
   EXPECT_EQ(nlohmann::json::parse(read_bytes(run_ / "outbox.refused.jsonl"))["data"]["x"], 2.0);
 }
 
 TEST(PlatformFrom, NeedsATokenThatIsOne) {
   ::unsetenv("PATROL_TOKEN");
-  EXPECT_THROW(platform_from("http://a", std::nullopt), InputError);
-  EXPECT_THROW(platform_from("http://a", "/absent/token"), InputError);
-  EXPECT_THROW(platform_from("a", std::nullopt), InputError);
+  EXPECT_THROW(make_monitor_server("http://a", std::nullopt), InputError);
+  EXPECT_THROW(make_monitor_server("http://a", "/absent/token"), InputError);
+  EXPECT_THROW(make_monitor_server("a", std::nullopt), InputError);
   ::setenv("PATROL_TOKEN", kToken, 1);
-  EXPECT_EQ(platform_from("http://a", std::nullopt).token, kToken);
+  EXPECT_EQ(make_monitor_server("http://a", std::nullopt).token, kToken);
   ::unsetenv("PATROL_TOKEN");
 }
 

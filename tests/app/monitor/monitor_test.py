@@ -44,7 +44,7 @@ class Refusals(PlatformCase):
         for body in ("", "{", "null", "7", "[[]]", "\x00", json.dumps(event(1))[:-1], json.dumps({**event(1), "extra": 1}), json.dumps([event(1), {**event(2), "time_s": "now"}])):
             self.refuse(400, "POST", "/api/results", body.encode(), token)
         self.refuse(400, "POST", "/api/results", b'{"id": "\xff\xfe"}', token)
-        self.refuse(400, "POST", "/api/results", json.dumps(event(1)).replace("640.0", "1e999"), token, says="too large a number")
+        self.refuse(400, "POST", "/api/results", json.dumps(event(1)).replace("640.0", "1e999"), token, says="number out of range")
         self.refuse(400, "POST", "/api/results", json.dumps([event(i) for i in range(1001)]), token, says="at most 1000 results")
 
     def test_an_oversized_body_with_and_without_its_size(self):
@@ -60,7 +60,7 @@ class Refusals(PlatformCase):
             self.refuse(405, method, path, token=self.platform.token)
 
     def test_a_parameter_that_is_no_number(self):
-        self.refuse(400, "GET", "/api/changes?since=x", says="since must be a whole number")
+        self.refuse(400, "GET", "/api/changes?since=x", says="since must be an integer")
         self.refuse(400, "GET", "/api/history?before=-1")
 
     def test_slow_clients_are_given_up_and_keep_nobody_waiting(self):
@@ -106,7 +106,7 @@ class Output(unittest.TestCase):
         with socket.socket() as free:
             free.bind(("127.0.0.1", 0))
             port = free.getsockname()[1]
-        command = f'exec "{PATROL}" monitor --port {port} --data "{self.path / "data"}" {redirection}'
+        command = f'exec "{PATROL}" monitor --port {port} --data-dir "{self.path / "data"}" {redirection}'
         process = subprocess.Popen(["sh", "-c", command], **more)
         self.addCleanup(lambda: (process.kill(), process.wait()))
         return process, port
@@ -161,13 +161,13 @@ class Lives(unittest.TestCase):
         self.addCleanup(lambda: self.platform.kill())
 
     def test_a_second_one_on_the_same_directory_is_refused(self):
-        done = subprocess.run([PATROL, "monitor", "--port", "0", "--data", self.path / "data"], capture_output=True, text=True, timeout=20)
+        done = subprocess.run([PATROL, "monitor", "--port", "0", "--data-dir", self.path / "data"], capture_output=True, text=True, timeout=20)
         self.assertEqual(done.returncode, 2, done.stderr)
-        self.assertIn("another patrol monitor serves this directory", done.stderr)
+        self.assertIn("in use by another patrol monitor", done.stderr)
         self.assertEqual(len(done.stderr.splitlines()), 1)
 
     def test_a_port_that_is_taken_is_refused(self):
-        done = subprocess.run([PATROL, "monitor", "--port", str(self.platform.port), "--data", self.path / "other"], capture_output=True, text=True, timeout=20)
+        done = subprocess.run([PATROL, "monitor", "--port", str(self.platform.port), "--data-dir", self.path / "other"], capture_output=True, text=True, timeout=20)
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertIn("Address already in use", done.stderr)
 

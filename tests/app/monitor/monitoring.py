@@ -24,7 +24,7 @@ class Platform:
         environment = {name: value for name, value in os.environ.items() if name != "PATROL_TOKEN"}
         with open(self.log, "a") as log:
             at = log.tell()
-            self.process = subprocess.Popen([self.patrol, "monitor", "--port", str(self.port), "--data", self.folder], stderr=log, env=environment)
+            self.process = subprocess.Popen([self.patrol, "monitor", "--port", str(self.port), "--data-dir", self.folder], stderr=log, env=environment)
         for _ in range(300):
             said = re.search(r"monitoring at http://127.0.0.1:(\d+)/", self.log.read_text()[at:])
             if said:
@@ -87,11 +87,11 @@ def to_utc(seconds):
 def result(sequence, kind="pose", data=None, robot="spot-1", run="run_1", world="street", **more):
     """One that the platform takes."""
     data = data if data is not None else {"x": 0.1 * sequence, "y": 0.0, "yaw": 0.0}
-    return {"schema": "patrol-result/1", "id": f"{robot}/{run}/{sequence}", "robot": robot, "run": run, "world": world, "sequence": sequence, "time_s": float(sequence),
+    return {"schema": "patrol-result/2", "id": f"{robot}/{run}/{sequence}", "robot": robot, "run": run, "world": world, "sequence": sequence, "time_s": float(sequence),
             "made_utc": to_utc(sequence), "kind": kind, "data": data, **more}
 
 
-def event(sequence, kind="alarm", subject="well_1", text="Leak at well_1.", value=640.0, **more):
+def event(sequence, kind="gas_alarm", subject="well_1", text="Leak at well_1.", value=640.0, **more):
     data = {"kind": kind, "subject": subject, "text": text, "value": value, "pose": {"x": 0.0, "y": 0.0, "yaw": 0.0}, "position_m": [1.0, 2.0]}
     return result(sequence, "event", data, **more)
 
@@ -100,7 +100,7 @@ def lining(sequence, pushed_mm=4.0, rings=12, **more):
     cells = [{"ring": ring, "clock_deg": 10.0 * i + 5.0, "inward_m": 1e-3 * (pushed_mm if ring == 3 and i == 6 else 0.1), "std_m": 0.0004, "points": 500}
              for ring in range(1, rings + 1) for i in range(24)]
     data = {"stamp_ns": sequence * 10**9, "station": f"station_{sequence // 500 % 4}", "pose": {"x": 0.0, "y": 0.0, "yaw": 0.0}, "registered": True, "registration_rms_m": 0.002,
-            "registration_share": 0.9, "correction_m": 0.03, "cells": cells, "lines": [{"ring": ring, "name": "9-3", "change_m": -0.001, "std_m": 0.0005} for ring in range(1, rings + 1)],
+            "registration_inlier_ratio": 0.9, "correction_m": 0.03, "cells": cells, "lines": [{"ring": ring, "name": "9-3", "change_m": -0.001, "std_m": 0.0005} for ring in range(1, rings + 1)],
             "findings": [{"ring": 3, "clock_deg": 65.0, "inward_m": 1e-3 * pushed_mm, "std_m": 0.0004, "level": "alarm" if pushed_mm >= 10 else "notice", "position_m": [4.0, -4.0, 3.0]}]}
     return result(sequence, "lining", data, world=more.pop("world", "tunnel"), **more)
 

@@ -39,10 +39,10 @@ class ReportedRun(unittest.TestCase):
         self.patrol("run", self.scenario, "--out", self.path / "silent")
         platform = Platform(PATROL, self.path / "data")
         self.addCleanup(lambda: platform.kill())
-        done = self.patrol("run", self.scenario, "--out", self.path / "told", "--report-to", platform.url, "--report-token-file", platform.token_file, "--robot-name", "Rex")
+        done = self.patrol("run", self.scenario, "--out", self.path / "told", "--monitor-url", platform.url, "--monitor-token-file", platform.token_file, "--robot-name", "Rex")
         self.assertEqual((self.path / "told/log.mcap").read_bytes(), (self.path / "silent/log.mcap").read_bytes())
         kinds = self.kinds(self.path / "told")
-        self.assertIn(f"{platform.url} has all {len(kinds)} results", done.stderr)
+        self.assertIn(f"{platform.url} received all {len(kinds)} results", done.stderr)
         self.assertEqual((kinds[0], kinds[-1]), ("status", "status"))
         self.assertTrue({"pose", "event", "map"} <= set(kinds), kinds)
         robot = platform.get("/api/robots")["robots"][0]
@@ -50,17 +50,17 @@ class ReportedRun(unittest.TestCase):
 
     def test_results_wait_while_the_platform_is_away_and_are_sent_later(self):
         run = self.path / "run"
-        done = self.patrol("run", self.scenario, "--out", run, "--report-to", AWAY)
+        done = self.patrol("run", self.scenario, "--out", run, "--monitor-url", AWAY)
         count = len(self.kinds(run))
-        self.assertIn(f"{count} results wait in {run}/outbox.jsonl (Connection refused); send them with: patrol send {run} --to {AWAY}", done.stderr)
+        self.assertIn(f"{count} results not delivered, kept in {run}/outbox.jsonl (Connection refused); upload with: patrol upload {run} --monitor-url {AWAY}", done.stderr)
         self.assertIn(f"{count} results of an earlier run wait there", self.patrol("run", self.scenario, "--out", run, code=2).stderr)
-        self.patrol("send", run, "--to", AWAY, "--limit-s", "1", code=3)
+        self.patrol("upload", run, "--monitor-url", AWAY, "--timeout-s", "1", code=3)
 
         platform = Platform(PATROL, self.path / "data")
         self.addCleanup(lambda: platform.kill())
-        self.assertIn("401", self.patrol("send", run, "--to", platform.url, code=2).stderr)
-        self.assertEqual(self.patrol("send", run, "--to", platform.url, "--token", platform.token_file).stdout, f"sent: {count} results to {platform.url}\n")
-        self.assertEqual(self.patrol("send", run, "--to", platform.url, "--token", platform.token_file).stdout, f"sent: 0 results to {platform.url}\n")
+        self.assertIn("401", self.patrol("upload", run, "--monitor-url", platform.url, code=2).stderr)
+        self.assertEqual(self.patrol("upload", run, "--monitor-url", platform.url, "--token-file", platform.token_file).stdout, f"uploaded: {count} results to {platform.url}\n")
+        self.assertEqual(self.patrol("upload", run, "--monitor-url", platform.url, "--token-file", platform.token_file).stdout, f"uploaded: 0 results to {platform.url}\n")
         self.assertEqual(platform.get("/api/robots")["robots"][0]["robot"], "quadruped-1")
         self.patrol("run", self.scenario, "--out", run)
         self.assertFalse((run / "outbox.jsonl").exists())
@@ -68,10 +68,10 @@ class ReportedRun(unittest.TestCase):
     def test_what_is_wrong_is_said_before_anything_runs(self):
         out = self.path / "run"
         nobody = {name: value for name, value in ENVIRONMENT.items() if name != "PATROL_TOKEN"}
-        self.assertIn("a token is needed", self.patrol("run", self.scenario, "--out", out, "--report-to", AWAY, code=2, environment=nobody).stderr)
-        self.assertIn("must be an address such as", self.patrol("run", self.scenario, "--out", out, "--report-to", "platform:8080", code=2).stderr)
-        self.assertIn("has no results to send", self.patrol("send", self.path, "--to", AWAY, code=2).stderr)
-        self.assertIn("at least 16 characters", self.patrol("monitor", "--port", "0", "--data", out, code=2, environment={**nobody, "PATROL_TOKEN": "short"}).stderr)
+        self.assertIn("access token required", self.patrol("run", self.scenario, "--out", out, "--monitor-url", AWAY, code=2, environment=nobody).stderr)
+        self.assertIn("must be a URL such as", self.patrol("run", self.scenario, "--out", out, "--monitor-url", "platform:8080", code=2).stderr)
+        self.assertIn("no results to upload", self.patrol("upload", self.path, "--monitor-url", AWAY, code=2).stderr)
+        self.assertIn("at least 16 characters", self.patrol("monitor", "--port", "0", "--data-dir", out, code=2, environment={**nobody, "PATROL_TOKEN": "short"}).stderr)
         self.assertFalse((out / "log.mcap").exists())
 
 

@@ -1,4 +1,4 @@
-/// A robot that only reports, for tests of the platform: the class that `patrol run --report-to` uses, told made-up messages. One of the
+/// A robot that only reports, for tests of the platform: the class that `patrol run --monitor-url` uses, with made-up messages. One of the
 /// tunnel scans the lining and sounds for water, any other measures gas.
 ///
 /// usage: reporting_robot URL TOKEN_FILE DIRECTORY ROBOT WORLD SECONDS RESULTS_PER_S
@@ -43,7 +43,7 @@ LiningResult lining_at(Time stamp, const std::string& station, int first_ring, d
   result.station = station;
   result.is_registered = true;
   result.registration_rms_m = 0.0021;
-  result.registration_share = 0.93;
+  result.registration_inlier_ratio = 0.93;
   result.correction_m = 0.034;
   for (int ring = first_ring; ring < first_ring + 12; ++ring) {
     for (int i = 0; i < 36; ++i) {
@@ -103,23 +103,23 @@ class Drive {
   void go_to(double now_s) {
     const Time stamp = from_seconds(now_s);
     const double along_m = kLength_m * std::min(1.0, now_s / seconds_);
-    reporter_.see(stack::StackMessage(PoseEstimate{.stamp = stamp, .T_map_body = place_at(along_m)}));
-    reporter_.see(stack::StackMessage(MapUpdate{.stamp = stamp, .map = street_map(along_m + 8.0)}));
+    reporter_.on_message(stack::StackMessage(PoseEstimate{.stamp = stamp, .T_map_body = place_at(along_m)}));
+    reporter_.on_message(stack::StackMessage(MapUpdate{.stamp = stamp, .map = street_map(along_m + 8.0)}));
     while (stations_ < 4 && along_m >= kLength_m / 4.0 * (stations_ + 1)) arrive(stamp, ++stations_, place_at(along_m));
   }
 
  private:
   void arrive(Time stamp, int number, const Pose2& at) {
     const std::string name = name_of_station(is_tunnel_, number);
-    reporter_.see(stack::StackMessage(event_at(stamp, EventKind::kStationReached, name, fmt::format("At {}.", name), 0.0, at)));
+    reporter_.on_message(stack::StackMessage(event_at(stamp, EventKind::kStationReached, name, fmt::format("At {}.", name), 0.0, at)));
     if (is_tunnel_) {
-      reporter_.see(stack::StackMessage(lining_at(stamp, name, 1 + 12 * (number - 1), 1.5 * number + 0.9 * (variant_ % 8))));
-      if (number == 4) reporter_.see(stack::StackMessage(water_at(stamp)));
+      reporter_.on_message(stack::StackMessage(lining_at(stamp, name, 1 + 12 * (number - 1), 1.5 * number + 0.9 * (variant_ % 8))));
+      if (number == 4) reporter_.on_message(stack::StackMessage(water_at(stamp)));
       return;
     }
     const double column = number == 3 ? 640.0 + 10.0 * variant_ : 4.0 + number + variant_ % 5;
-    reporter_.see(stack::StackMessage(event_at(stamp, EventKind::kGasMeasured, name, fmt::format("{}: {:.0f} ppm m of methane.", name, column), column, at)));
-    if (column > 200.0) reporter_.see(stack::StackMessage(event_at(stamp, EventKind::kGasAlarm, name, fmt::format("Leak at {}: {:.0f} ppm m of methane.", name, column), column, at)));
+    reporter_.on_message(stack::StackMessage(event_at(stamp, EventKind::kGasMeasured, name, fmt::format("{}: {:.0f} ppm m of methane.", name, column), column, at)));
+    if (column > 200.0) reporter_.on_message(stack::StackMessage(event_at(stamp, EventKind::kGasAlarm, name, fmt::format("Leak at {}: {:.0f} ppm m of methane.", name, column), column, at)));
   }
 
   app::Reporter& reporter_;
@@ -129,12 +129,12 @@ class Drive {
   int stations_ = 0;
 };
 
-int report(const std::string& address, const std::string& token, const std::filesystem::path& root, const std::string& robot, const std::string& world, double seconds, double rate_hz) {
+int report(const std::string& url, const std::string& token, const std::filesystem::path& root, const std::string& robot, const std::string& world, double seconds, double rate_hz) {
   const bool is_tunnel = world == "tunnel";
   const auto variant = static_cast<unsigned>(std::hash<std::string>()(robot + root.string()) % 97);
   std::filesystem::create_directories(root);
-  app::Reporter reporter(root, {.robot = robot, .run = app::new_run_name("made_up", variant), .world = world, .scenario = "made_up"}, app::platform_from(address, token),
-                         {.pose_period_s = 0.0, .map_period_s = seconds / 4.0, .drain_limit_s = 60.0});
+  app::Reporter reporter(root, {.robot = robot, .run = app::new_run_name("made_up", variant), .world = world, .scenario = "made_up"}, app::make_monitor_server(url, token),
+                         {.pose_period_s = 0.0, .map_period_s = seconds / 4.0, .drain_timeout_s = 60.0});
   reporter.begin(survey(is_tunnel));
   Drive drive(reporter, is_tunnel, seconds, variant);
   const auto start = std::chrono::steady_clock::now();
@@ -143,8 +143,8 @@ int report(const std::string& address, const std::string& token, const std::file
     drive.go_to(i / rate_hz);
   }
   reporter.finish("finished", "");
-  fmt::print("{} results, {} wait, {} refused\n", reporter.num_results(), reporter.num_waiting(), reporter.num_refused());
-  return reporter.num_waiting() == 0 && reporter.num_refused() == 0 ? 0 : 1;
+  fmt::print("{} results, {} wait, {} refused\n", reporter.num_results(), reporter.num_pending(), reporter.num_rejected());
+  return reporter.num_pending() == 0 && reporter.num_rejected() == 0 ? 0 : 1;
 }
 
 }  // namespace

@@ -63,7 +63,7 @@ class TwentyRobots(unittest.TestCase):
         kinds = [result["kind"] for result in sent.values()]
         self.assertEqual(poses, kinds.count("pose"))
         self.assertEqual(set(kinds), {"status", "pose", "map", "event", "lining", "water"})
-        alarms = sum(result["kind"] == "event" and result["data"]["kind"] == "alarm" for result in sent.values())
+        alarms = sum(result["kind"] == "event" and result["data"]["kind"] == "gas_alarm" for result in sent.values())
         found = sum(len(result["data"]["findings"]) for result in sent.values() if result["kind"] == "lining") + kinds.count("water")
         self.assertEqual(findings, alarms + found)
         print(f"{len(sent)} results of {ROBOTS} robots in {SECONDS:.0f} s, the platform killed twice: {len(kept)} kept")

@@ -23,7 +23,7 @@ TEST(PlanGrid, APointIsStoppedByOccupiedCellsAndByUnknownOnesAsItIsTold) {
   OccupancyGrid map({.resolution_m = 0.1, .width = 3, .height = 1}, kFree);
   map.at({1, 0}) = kUnknown;
   map.at({2, 0}) = kOccupied;
-  const PlanSetup careful = setup_of({.map = "m.yaml"}), bold = setup_of({.map = "m.yaml", .overrides = {"unknown=free"}});
+  const PlanSetup careful = setup_of({.map = "m.yaml"}), bold = setup_of({.map = "m.yaml", .overrides = {"allow_unknown=true"}});
   EXPECT_EQ(make_costs(map, careful.body, careful.settings.costmap).values(), (std::vector<plan::Cost>{0, 255, 255}));
   EXPECT_EQ(make_costs(map, bold.body, bold.settings.costmap).values(), (std::vector<plan::Cost>{0, 0, 255}));
 }
@@ -87,9 +87,9 @@ TEST(PlanGrid, SaysWhyNothingCanStandThere) {
   map.at({1, 0}) = kUnknown;
   map.at({2, 0}) = kOccupied;
   const plan::CostmapSettings careful{.allow_unknown = false}, bold{.allow_unknown = true};
-  EXPECT_STREQ(blocked_reason(map, careful, {0.5, 0.5}), "lies too near to an obstacle");
-  EXPECT_STREQ(blocked_reason(map, careful, {1.5, 0.5}), "is not known to the map");
-  EXPECT_STREQ(blocked_reason(map, bold, {1.5, 0.5}), "lies too near to an obstacle");
+  EXPECT_STREQ(blocked_reason(map, careful, {0.5, 0.5}), "is too close to an obstacle");
+  EXPECT_STREQ(blocked_reason(map, careful, {1.5, 0.5}), "is unknown in the map");
+  EXPECT_STREQ(blocked_reason(map, bold, {1.5, 0.5}), "is too close to an obstacle");
   EXPECT_STREQ(blocked_reason(map, careful, {2.5, 0.5}), "is occupied");
 }
 

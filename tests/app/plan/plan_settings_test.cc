@@ -45,7 +45,7 @@ TEST(PlanSettings, ARobotsAreThoseThatItDrivesWithUnderWhatIsSet) {
   EXPECT_EQ(setup.settings.costmap.allow_unknown, drives_with.costmap.allow_unknown);
   EXPECT_EQ(setup.settings.routes.cost_weight, drives_with.global_planner.family.cost_weight);
   EXPECT_EQ(setup.settings.speed_mps, drives_with.local_planner.dwa.max_speed_mps);
-  EXPECT_TRUE(load_plan_setup({.map = "m.yaml", .robot = "tracked", .overrides = {"unknown=free"}}).settings.costmap.allow_unknown);
+  EXPECT_TRUE(load_plan_setup({.map = "m.yaml", .robot = "tracked", .overrides = {"allow_unknown=true"}}).settings.costmap.allow_unknown);
 }
 
 TEST(PlanSettings, OptionsWinOverSet) {
@@ -59,14 +59,14 @@ TEST(PlanSettings, OptionsWinOverSet) {
 TEST(PlanSettings, WhatIsWrongIsNamed) {
   const std::string unknown_planner = complaint({.map = "m.yaml", .planner = "fly"});
   EXPECT_NE(unknown_planner.find("planner: fly is out of range: must be one of astar, dijkstra, theta_star"), std::string::npos) << unknown_planner;
-  EXPECT_EQ(complaint({.map = "m.yaml", .robot = "wheeled"}), "--robot: there is no robot 'wheeled' (known: quadruped, tracked)");
-  EXPECT_EQ(complaint({.map = "m.yaml", .robot = "tracked", .radius_m = 0.3}), "--robot and --radius-m: only one of them can be followed");
-  EXPECT_EQ(complaint({.map = "m.yaml", .radius_m = 0.0}), "--radius-m: 0: must lie in 0.01 ... 10");
-  EXPECT_EQ(complaint({.map = "m.yaml", .radius_m = std::nan("")}), "--radius-m: nan: must lie in 0.01 ... 10");
+  EXPECT_EQ(complaint({.map = "m.yaml", .robot = "wheeled"}), "--robot: unknown robot 'wheeled' (known: quadruped, tracked)");
+  EXPECT_EQ(complaint({.map = "m.yaml", .robot = "tracked", .radius_m = 0.3}), "--robot and --radius-m are mutually exclusive");
+  EXPECT_EQ(complaint({.map = "m.yaml", .radius_m = 0.0}), "--radius-m: 0: must be in [0.01, 10]");
+  EXPECT_EQ(complaint({.map = "m.yaml", .radius_m = std::nan("")}), "--radius-m: nan: must be in [0.01, 10]");
   EXPECT_EQ(complaint({.map = "m.yaml", .planner = "visibility_graph", .smooth = true}).substr(0, 9), "--smooth:");
   EXPECT_NE(complaint({.map = "m.yaml", .planner = "visibility_graph", .robot = "tracked"}).find("routes.cost_weight"), std::string::npos);
-  EXPECT_NE(complaint(options_of({"unknown=maybe"})).find("unknown: maybe"), std::string::npos) << complaint(options_of({"unknown=maybe"}));
-  EXPECT_EQ(complaint(options_of({"costmap.allow_unknown=true"})), "--set: costmap.allow_unknown: say it by unknown=lethal or unknown=free");
+  EXPECT_NE(complaint(options_of({"allow_unknown=maybe"})).find("allow_unknown: must be true or false"), std::string::npos) << complaint(options_of({"allow_unknown=maybe"}));
+  EXPECT_EQ(complaint(options_of({"costmap.crosses_unknown=true"})), "--set: costmap.allow_unknown: not supported: use allow_unknown=true or allow_unknown=false");
   EXPECT_NE(complaint(options_of({"routes.ant_colony.antz=3"})).find("routes.ant_colony.antz"), std::string::npos);
   EXPECT_NE(complaint(options_of({"speed_mps=0"})).find("speed_mps"), std::string::npos);
 }

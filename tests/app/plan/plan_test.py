@@ -212,14 +212,14 @@ class Plan(unittest.TestCase):
         self.assertTrue(passable[0] > passable[1] > passable[2] > 0, passable)
         plan = self.plan(TUNNEL, "--from", "-40,0", "--to", "-60,0", "--radius-m", 9, code=1)
         self.assertEqual((plan["grid"]["passable_cells"], plan["status"]), (0, "start blocked"))
-        self.assertIn("no cell of the map is free", self.printed)
+        self.assertIn("the map has no free cell", self.printed)
 
     def test_unknown_ground_is_crossed_only_if_it_is_allowed(self):
         self.write("m.pgm", "P2\n5 1\n255\n254 254 205 254 254\n")
         file = self.write("m.yaml", "image: m.pgm\nresolution: 0.1\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n")
         ends = ("--from", "0.05,0.05", "--to", "0.45,0.05")
         self.assertEqual(self.plan(file, *ends, code=1)["status"], "no route")
-        plan = self.plan(file, *ends, "--set", "unknown=free")
+        plan = self.plan(file, *ends, "--set", "allow_unknown=true")
         self.assertAlmostEqual(plan["route"]["length_m"], 0.4)
 
     # tours
@@ -253,7 +253,7 @@ class Plan(unittest.TestCase):
         self.assertEqual(plan["tour"]["unreachable"], ["in the wall"])
         self.assertEqual(len(plan["visits"]), 5)
         self.assertIn("UNREACHABLE  in the wall", self.printed)
-        self.assertIn("in the wall: -50.00, 3.40 is not known to the map; the nearest free cell is at", self.printed)
+        self.assertIn("in the wall: -50.00, 3.40 is unknown in the map; the nearest free cell is at", self.printed)
         plan = self.plan(TUNNEL, "--from", "0,0", "--stations", self.write("late.csv", "name,x,y,latest_s\nfar,-100,-2,5\n"), code=1)
         self.assertGreater(plan["tour"]["lateness_s"], 90.0)
         self.assertIn("1 window missed", self.printed)
@@ -275,7 +275,7 @@ class Plan(unittest.TestCase):
             ((self.path / "broken.map", "--from", "0,0", "--to", "1,1"), ["broken.map:6", "row 1"]),
             ((TUNNEL,), ["--from"]),
             ((TUNNEL, "--from", "0,0"), ["--to", "--stations"]),
-            ((TUNNEL, "--from", "400,3", "--to", "0,0"), ["--from: 400, 3 lies outside the map, which spans x -136.05 ... 22.20 m, y -11.75 ... 3.45 m"]),
+            ((TUNNEL, "--from", "400,3", "--to", "0,0"), ["--from: 400, 3 is outside the map, which spans x -136.05 ... 22.20 m, y -11.75 ... 3.45 m"]),
             ((TUNNEL, "--from", "0,0", "--to", "nan,3"), ["--to: nan,3"]),
             ((TUNNEL, "--from", "0", "--to", "1,3"), ["--from: 0:"]),
             ((TUNNEL, *there, "--planner", "crow"), ["crow", "theta_star"]),
@@ -287,8 +287,8 @@ class Plan(unittest.TestCase):
             ((TUNNEL, "--from", "0,0", "--stations", stations), ["s.csv:3", "x: one"]),
             ((TUNNEL, "--from", "0,0", "--stations", outside), ["far.csv:3", "b", "outside the map"]),
             ((TUNNEL, "--from", "0,0", "--stations", self.path / "gone.csv"), ["gone.csv"]),
-            ((self.path / "drawn.map", "--from", "0,0", "--to", "40,0"), ["--to: 40, 0 lies outside the map, which spans x 0 ... 39, y 0 ... 29 (cells)"]),
-            ((self.path / "drawn.map", "--from", "0.5,0", "--to", "1,0"), ["--from", "whole numbers"]),
+            ((self.path / "drawn.map", "--from", "0,0", "--to", "40,0"), ["--to: 40, 0 is outside the map, which spans x 0 ... 39, y 0 ... 29 (cells)"]),
+            ((self.path / "drawn.map", "--from", "0.5,0", "--to", "1,0"), ["--from", "integers"]),
             ((self.path / "drawn.map", "--from", "0,0", "--to", "1,0", "--robot", "tracked"), ["drawn.map", "--robot"]),
             ((problems, "--from", "0,0"), ["--from"]),
             ((lost,), ["lost.scen:2", "gone/lost.map"]),

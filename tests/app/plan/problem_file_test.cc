@@ -80,7 +80,7 @@ TEST_F(ProblemFile, AnAnyAngleRouteMayBeShorterButNotLonger) {
 
 TEST_F(ProblemFile, ARouteThatIsNotFoundFails) {
   const std::vector<SolvedProblem> solved = solve("1\ta.map\t5\t3\t0\t0\t4\t2\t4.00000000\n", "astar");  // into the water
-  EXPECT_EQ(solved[0].failure, "there is no route: the file says there is");
+  EXPECT_EQ(solved[0].failure, "no route found, but the file states a length");
   EXPECT_FALSE(solved[0].ratio());
 }
 
@@ -93,11 +93,11 @@ TEST_F(ProblemFile, AMapIsFoundByItsPathOrBesideTheFileByItsLastPart) {
   write_bytes(folder / "maps/b.map", "type octile\nheight 1\nwidth 2\nmap\n..\n");
   write_bytes(folder / "b.map", "type octile\nheight 1\nwidth 3\nmap\n...\n");
   EXPECT_EQ(solve("0\tmaps/b.map\t2\t1\t0\t0\t1\t0\t1\n0\tmaps/dao/a.map\t5\t3\t0\t0\t1\t0\t1\n", "astar").size(), 2u);
-  EXPECT_EQ(complaint("0\tx/c.map\t2\t1\t0\t0\t1\t0\t1\n"), "a.map.scen:2: x/c.map: there is neither x/c.map nor c.map");
+  EXPECT_EQ(complaint("0\tx/c.map\t2\t1\t0\t0\t1\t0\t1\n"), "a.map.scen:2: x/c.map: neither x/c.map nor c.map found");
 }
 
 TEST_F(ProblemFile, AMapOfAnotherSizeIsRefused) {
-  EXPECT_EQ(complaint(kRoundTheWall + "1\ta.map\t6\t3\t0\t2\t3\t0\t5\n"), "a.map.scen:3: a.map: is 5 x 3 cells, the problem's map is 6 x 3");
+  EXPECT_EQ(complaint(kRoundTheWall + "1\ta.map\t6\t3\t0\t2\t3\t0\t5\n"), "a.map.scen:3: a.map: has 5 x 3 cells, the problem's map 6 x 3");
 }
 
 TEST_F(ProblemFile, TheTableHasARowForEachProblemWithCellsAsTheFileNamesThem) {

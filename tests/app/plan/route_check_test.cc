@@ -19,37 +19,37 @@ plan::Route route_over(std::vector<Eigen::Vector2d> points) {
 
 TEST(RouteCheck, AStraightLinePastACornerMayNotTouchIt) {
   const Grid<plan::Cost> costs = draw({"..", "#."});  // the lethal cell's corner lies on the diagonal's middle
-  EXPECT_FALSE(find_fault(costs, route_over({{0.5, 1.5}, {1.5, 1.5}, {1.5, 0.5}}), {0, 1}, {1, 0}, false));
-  EXPECT_EQ(find_fault(costs, route_over({{0.5, 1.5}, {1.5, 0.5}}), {0, 1}, {1, 0}, false), "meets the lethal cell 0, 0");
-  EXPECT_FALSE(find_fault(costs, route_over({{0.5, 1.5}, {1.5, 0.5}}), {0, 1}, {1, 0}, true));
+  EXPECT_FALSE(validate_route(costs, route_over({{0.5, 1.5}, {1.5, 1.5}, {1.5, 0.5}}), {0, 1}, {1, 0}, false));
+  EXPECT_EQ(validate_route(costs, route_over({{0.5, 1.5}, {1.5, 0.5}}), {0, 1}, {1, 0}, false), "meets the lethal cell 0, 0");
+  EXPECT_FALSE(validate_route(costs, route_over({{0.5, 1.5}, {1.5, 0.5}}), {0, 1}, {1, 0}, true));
 }
 
 TEST(RouteCheck, ADiagonalSqueezeIsRefusedEvenWhereTouchingIsAllowed) {
   const Grid<plan::Cost> costs = draw({".#", "#."});
-  EXPECT_TRUE(find_fault(costs, route_over({{0.5, 1.5}, {1.5, 0.5}}), {0, 1}, {1, 0}, false));
-  EXPECT_EQ(find_fault(costs, route_over({{0.5, 1.5}, {1.5, 0.5}}), {0, 1}, {1, 0}, true), "passes between two lethal cells before 1.5, 0.5");
+  EXPECT_TRUE(validate_route(costs, route_over({{0.5, 1.5}, {1.5, 0.5}}), {0, 1}, {1, 0}, false));
+  EXPECT_EQ(validate_route(costs, route_over({{0.5, 1.5}, {1.5, 0.5}}), {0, 1}, {1, 0}, true), "passes between two lethal cells before 1.5, 0.5");
 }
 
 TEST(RouteCheck, AWayAlongTheSideBetweenTwoLethalCellsIsRefused) {
   const Grid<plan::Cost> costs = draw({".#.", ".#."});
-  EXPECT_TRUE(find_fault(costs, route_over({{0.5, 0.5}, {1.0, 1.0}, {2.0, 1.0}, {2.5, 0.5}}), {0, 0}, {2, 0}, true));
+  EXPECT_TRUE(validate_route(costs, route_over({{0.5, 0.5}, {1.0, 1.0}, {2.0, 1.0}, {2.5, 0.5}}), {0, 0}, {2, 0}, true));
 }
 
 TEST(RouteCheck, AWayAlongTheBorderPastALethalCellIsRefused) {
   const Grid<plan::Cost> costs = draw({".#."});
-  EXPECT_TRUE(find_fault(costs, route_over({{0.5, 0.5}, {1.0, 1.0}, {2.0, 1.0}, {2.5, 0.5}}), {0, 0}, {2, 0}, true));
+  EXPECT_TRUE(validate_route(costs, route_over({{0.5, 0.5}, {1.0, 1.0}, {2.0, 1.0}, {2.5, 0.5}}), {0, 0}, {2, 0}, true));
 }
 
 TEST(RouteCheck, ARouteMustLeadFromTheStartToTheGoalByCentresAndCorners) {
   const Grid<plan::Cost> costs = draw({"..."});
-  EXPECT_FALSE(find_fault(costs, route_over({{0.5, 0.5}, {2.5, 0.5}}), {0, 0}, {2, 0}, false));
-  EXPECT_TRUE(find_fault(costs, route_over({{0.5, 0.5}, {1.5, 0.5}}), {0, 0}, {2, 0}, false));
-  EXPECT_TRUE(find_fault(costs, route_over({{1.5, 0.5}, {2.5, 0.5}}), {0, 0}, {2, 0}, false));
-  EXPECT_TRUE(find_fault(costs, route_over({}), {0, 0}, {2, 0}, false));
-  EXPECT_TRUE(find_fault(costs, route_over({{0.5, 0.5}, {1.25, 0.5}, {2.5, 0.5}}), {0, 0}, {2, 0}, false));
-  EXPECT_TRUE(find_fault(costs, route_over({{0.5, 0.5}, {3.5, 0.5}, {2.5, 0.5}}), {0, 0}, {2, 0}, false));  // outside
-  EXPECT_FALSE(find_fault(costs, route_over({{1.5, 0.5}}), {1, 0}, {1, 0}, false));
-  EXPECT_TRUE(find_fault(draw({".#."}), route_over({{1.5, 0.5}}), {1, 0}, {1, 0}, false));
+  EXPECT_FALSE(validate_route(costs, route_over({{0.5, 0.5}, {2.5, 0.5}}), {0, 0}, {2, 0}, false));
+  EXPECT_TRUE(validate_route(costs, route_over({{0.5, 0.5}, {1.5, 0.5}}), {0, 0}, {2, 0}, false));
+  EXPECT_TRUE(validate_route(costs, route_over({{1.5, 0.5}, {2.5, 0.5}}), {0, 0}, {2, 0}, false));
+  EXPECT_TRUE(validate_route(costs, route_over({}), {0, 0}, {2, 0}, false));
+  EXPECT_TRUE(validate_route(costs, route_over({{0.5, 0.5}, {1.25, 0.5}, {2.5, 0.5}}), {0, 0}, {2, 0}, false));
+  EXPECT_TRUE(validate_route(costs, route_over({{0.5, 0.5}, {3.5, 0.5}, {2.5, 0.5}}), {0, 0}, {2, 0}, false));  // outside
+  EXPECT_FALSE(validate_route(costs, route_over({{1.5, 0.5}}), {1, 0}, {1, 0}, false));
+  EXPECT_TRUE(validate_route(draw({".#."}), route_over({{1.5, 0.5}}), {1, 0}, {1, 0}, false));
 }
 
 TEST(RouteCheck, FindsExactlyTheLinesThatMeetALethalSquareByTheirSeparatingAxes) {
@@ -59,7 +59,7 @@ TEST(RouteCheck, FindsExactlyTheLinesThatMeetALethalSquareByTheirSeparatingAxes)
     const auto [start, goal] = random_ends(costs, seed);
     const std::vector<Eigen::Vector2d> line = {{start.col + 0.5, start.row + 0.5}, {goal.col + 0.5, goal.row + 0.5}};
     const bool is_clear = keeps_clear(costs, line);
-    EXPECT_EQ(!find_fault(costs, route_over(line), start, goal, false), is_clear) << "seed " << seed;
+    EXPECT_EQ(!validate_route(costs, route_over(line), start, goal, false), is_clear) << "seed " << seed;
     (is_clear ? num_clear : num_blocked) += 1;
   }
   EXPECT_GT(num_clear, 500);
@@ -80,7 +80,7 @@ TEST(RouteCheck, WhereTouchingIsAllowedAgreesWithTheOptimumsLineOfSight) {
     const bool sees = plan::is_visible(costs, from, corner) && plan::is_visible(costs, corner, to);
     const auto is_lethal = [&](int col, int row) { return !costs.contains({col, row}) || costs.at({col, row}) == plan::kLethalCost; };
     const bool is_pinched = (is_lethal(x, y) && is_lethal(x - 1, y - 1)) || (is_lethal(x - 1, y) && is_lethal(x, y - 1));
-    EXPECT_EQ(!find_fault(costs, route, start, goal, true), sees && !is_pinched) << "seed " << seed;
+    EXPECT_EQ(!validate_route(costs, route, start, goal, true), sees && !is_pinched) << "seed " << seed;
     (sees && !is_pinched ? num_clear : num_blocked) += 1;
   }
   EXPECT_GT(num_clear, 200);
@@ -93,10 +93,10 @@ TEST(RouteCheck, PassesEveryRouteOfThetaStarAndOfTheOptimumOnThreeHundredGrids) 
     const auto [start, goal] = random_ends(costs, seed);
     const plan::Route theta = plan::ThetaStar().plan(costs, start, goal), optimum = plan::VisibilityGraphPlanner().plan(costs, start, goal);
     if (theta.status == plan::PlanStatus::kFound) {
-      EXPECT_EQ(find_fault(costs, theta, start, goal, false), std::nullopt) << "seed " << seed;
+      EXPECT_EQ(validate_route(costs, theta, start, goal, false), std::nullopt) << "seed " << seed;
     }
     if (optimum.status == plan::PlanStatus::kFound) {
-      EXPECT_EQ(find_fault(costs, optimum, start, goal, true), std::nullopt) << "seed " << seed;
+      EXPECT_EQ(validate_route(costs, optimum, start, goal, true), std::nullopt) << "seed " << seed;
     }
   }
 }

@@ -18,9 +18,9 @@ constexpr double kExactTol = 1e-9;
 TourStop stop(double x_m, double y_m, io::TourStation station = {}) { return {.station = std::move(station), .p_m = {x_m, y_m}}; }
 
 std::vector<std::size_t> places_of(const TourPlan& tour) {
-  std::vector<std::size_t> places;
-  for (const TourVisit& visit : tour.visits) places.push_back(visit.place);
-  return places;
+  std::vector<std::size_t> nodes;
+  for (const TourVisit& visit : tour.visits) nodes.push_back(visit.node);
+  return nodes;
 }
 
 // Along a corridor of cells of 1 m from 0.5: stations at 8.5, 2.5 and 5.5.
@@ -32,8 +32,8 @@ TEST(TourPlan, ARoundAlongACorridorIsThereAndBack) {
   ASSERT_TRUE(tour->order.is_found);
   EXPECT_NEAR(tour->order.completion, 16.0, kExactTol);  // 8 m there and back at 1 m/s
   EXPECT_TRUE(tour->order.is_exact);
-  EXPECT_EQ(tour->visits.front().place, 0u);
-  EXPECT_EQ(tour->visits.back().place, 0u);
+  EXPECT_EQ(tour->visits.front().node, 0u);
+  EXPECT_EQ(tour->visits.back().node, 0u);
   EXPECT_EQ(tour->num_routes, 6);  // of 4 places
 }
 

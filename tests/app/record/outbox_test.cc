@@ -31,7 +31,7 @@ TEST(Outbox, GivesTheOldestUntilTheyAreMarkedAsSent) {
   EXPECT_EQ(sequences_of(first), (std::vector{0, 1, 2}));
   EXPECT_EQ(sequences_of(outbox.next(3, 100'000)), (std::vector{0, 1, 2}));
   outbox.mark_sent(first);
-  EXPECT_EQ(outbox.num_waiting(), 2U);
+  EXPECT_EQ(outbox.num_pending(), 2U);
   EXPECT_EQ(sequences_of(outbox.next(3, 100'000)), (std::vector{3, 4}));
 }
 
@@ -72,7 +72,7 @@ TEST(Outbox, AHalfWrittenLastLineIsLeftOut) {
   EXPECT_EQ(sequences_of(batch), std::vector{0});
   again.mark_sent(batch);
   EXPECT_TRUE(again.next(10, 100'000).results.empty());
-  EXPECT_EQ(again.num_waiting(), 0U);
+  EXPECT_EQ(again.num_pending(), 0U);
 }
 
 TEST(Outbox, ARunDirectoryWhoseResultsWaitIsNotUsedAgain) {
@@ -81,7 +81,7 @@ TEST(Outbox, ARunDirectoryWhoseResultsWaitIsNotUsedAgain) {
   Outbox outbox(folder.path());
   outbox.add(pose_result(0));
   EXPECT_THROW(begin_run_directory(folder.path()), InputError);
-  EXPECT_EQ(outbox.num_waiting(), 1U);
+  EXPECT_EQ(outbox.num_pending(), 1U);
   outbox.mark_sent(outbox.next(1, 100'000));
   begin_run_directory(folder.path());
   EXPECT_FALSE(std::filesystem::exists(folder / "outbox.jsonl"));

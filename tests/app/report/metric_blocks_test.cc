@@ -8,18 +8,18 @@ namespace {
 using report::TableBlock;
 
 TEST(KeyMetrics, AreInTheUnitOfTheirSizeAndOnlyWhatWasMeasured) {
-  const report::KeyMetrics figures = key_figures(io::Metrics::parse(R"({"pose": {"ate_rmse_m": 0.0026, "ate_max_m": 0.023, "heading_rmse_deg": null},
+  const report::KeyMetrics metrics = key_metrics(io::Metrics::parse(R"({"pose": {"ate_rmse_m": 0.0026, "ate_max_m": 0.023, "heading_rmse_deg": null},
       "stations": [{"reached": true}, {"reached": false}], "goals": []})"));
-  ASSERT_EQ(figures.figures.size(), 2u);
-  EXPECT_EQ(figures.figures[0].value + figures.figures[0].unit, "2.6mm");
-  EXPECT_EQ(figures.figures[0].note, "at most 2.3 cm");
-  EXPECT_EQ(figures.figures[1].value, "1 of 2");
+  ASSERT_EQ(metrics.metrics.size(), 2u);
+  EXPECT_EQ(metrics.metrics[0].value + metrics.metrics[0].unit, "2.6mm");
+  EXPECT_EQ(metrics.metrics[0].note, "at most 2.3 cm");
+  EXPECT_EQ(metrics.metrics[1].value, "1 of 2");
 }
 
 TEST(AllMetrics, AreGroupedAndSayWhatWasExpected) {
   const report::CollapsibleTables all = all_metrics(io::Metrics::parse(R"({"mission": {"completed": true}, "pose": {"aligned": {"rmse_m": 0.5}, "poses": 3}})"),
                                                {{.metric = "pose.aligned.rmse_m", .wanted = "<= 0.1", .got = "0.5", .is_measured = true, .is_met = false}});
-  EXPECT_EQ(all.summary, "All 3 figures");
+  EXPECT_EQ(all.summary, "All 3 metrics");
   ASSERT_EQ(all.tables.size(), 2u);
   EXPECT_EQ(all.tables[1].caption, "pose");
   EXPECT_EQ(all.tables[1].rows[0][0].text, "aligned.rmse_m");
@@ -66,7 +66,7 @@ TEST(PerformanceBlocks, AreInOrderOfTimeWithTheRestLast) {
   const auto bars = std::get<report::BarBlock>(performance_blocks(metrics).at(0)).bars;
   ASSERT_EQ(bars.size(), 3u);
   EXPECT_EQ(bars[0].label, "physics");
-  EXPECT_EQ(bars[2].label, "the rest");
+  EXPECT_EQ(bars[2].label, "other");
   EXPECT_DOUBLE_EQ(bars[2].value, 3.0);
 }
 

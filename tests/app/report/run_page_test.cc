@@ -41,7 +41,7 @@ Event event_at(double at_s, EventKind kind) {
 TEST(RunPage, BeginsWithTheVerdict) {
   const report::Page page = run_page(small_run(), "report.html");
   EXPECT_TRUE(std::holds_alternative<report::VerdictBlock>(page.sections.front().blocks.front()));
-  EXPECT_THAT(titles_of(page), ElementsAre("", "Key figures", "Map", "Error over time", "Settings"));
+  EXPECT_THAT(titles_of(page), ElementsAre("", "Key metrics", "Map", "Error over time", "Settings"));
 }
 
 TEST(RunPage, IsTheSameBytesTwice) {
@@ -50,7 +50,7 @@ TEST(RunPage, IsTheSameBytesTwice) {
 
 TEST(RunPage, NamesAndEventsOfARunAreNoMarkup) {
   RunContents run = small_run();
-  run.name = run.made_by = run.scenario.mission = "<img src=x>";
+  run.name = run.origin_comment = run.scenario.mission = "<img src=x>";
   run.record.events = {event_at(1.0, EventKind::kForeign)};
   run.record.events[0].foreign_kind = "</script><b>";
   run.record.events[0].subject = run.record.events[0].text = "<img src=x>";
@@ -123,10 +123,10 @@ TEST(Occasions, HaveALaneForEachKindAndMarkTroublesOnTheCurves) {
   run.record.events = {event_at(1.0, EventKind::kStationReached), event_at(2.0, EventKind::kGasAlarm), event_at(3.0, EventKind::kStationReached), event_at(4.0, EventKind::kRecovery)};
   run.record.collisions = {{.stamp = from_seconds(5.0), .first = "trunk", .second = "wall"}};
   std::vector<std::string> names;
-  for (const auto& lane : lanes_of(run)) names.push_back(lane.name);
-  EXPECT_THAT(names, ElementsAre("station_reached", "alarm", "recovery", "collision"));
+  for (const auto& lane : make_lanes(run)) names.push_back(lane.name);
+  EXPECT_THAT(names, ElementsAre("station_reached", "gas_alarm", "recovery", "collision"));
   EXPECT_EQ(marks_of(run).size(), 3u);
-  EXPECT_EQ(lanes_of(run).back().marks[0].text, "trunk touched wall.");
+  EXPECT_EQ(make_lanes(run).back().marks[0].text, "trunk touched wall.");
 }
 
 TEST(MapBlocks, DrawThePathsInWorldAndBreakThemWhereTheRobotIsLifted) {

@@ -31,10 +31,10 @@ TEST(SettingsDifferences, AnotherPresetIsOneDifferenceAndItsOverridesAreMore) {
   Scenario scenario;
   scenario.sensors.lidar = LidarSettings::of_preset("utm30lx");
   EXPECT_EQ(settings_differences(Scenario{}, scenario), (Differences{{"sensors.lidar.preset", "rplidar_s2", "utm30lx"}}));
-  scenario.sensors.lidar.range_noise_m = 0.5;
+  scenario.sensors.lidar.range_noise_std_m = 0.5;
   const Differences differences = settings_differences(Scenario{}, scenario);
   ASSERT_EQ(differences.size(), 2u);
-  EXPECT_EQ(differences[1].path, "sensors.lidar.range_noise_m");
+  EXPECT_EQ(differences[1].path, "sensors.lidar.range_noise_std_m");
   EXPECT_EQ(differences[1].value, "0.5");
 }
 

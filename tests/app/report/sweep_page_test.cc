@@ -22,7 +22,7 @@ struct SmallSweep {
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
       manifest.seeds.push_back(seed);
       for (std::size_t variant = 0; variant < 2; ++variant) {
-        manifest.runs.push_back({.variant = variant, .seed = seed, .overrides = {}, .address = ""});
+        manifest.runs.push_back({.variant = variant, .seed = seed, .overrides = {}, .hash = ""});
         const double noise_m = 0.001 * static_cast<double>(seed % 2 == 0 ? 1 : -1) * static_cast<double>(variant);
         const double error_m = 0.05 + 0.01 * static_cast<double>(seed) + noise_m + shift_m * static_cast<double>(variant);
         rows.push_back(RunVerdict{.end = RunStatus::kDone,
@@ -33,7 +33,7 @@ struct SmallSweep {
       }
     }
   }
-  report::Page page() const { return sweep_page(manifest, rows, progress_of(manifest, rows)); }
+  report::Page page() const { return sweep_page(manifest, rows, evaluate_progress(manifest, rows)); }
   report::VerdictBlock verdict() const { return std::get<report::VerdictBlock>(page().sections.front().blocks.front()); }
 
   SweepManifest manifest;
@@ -77,12 +77,12 @@ TEST(SweepPage, AFaultMatrixSaysHowManyWereUnsafe) {
 
 TEST(SweepPage, ABudgetNamesTheOwnerAndItsWaterfallEndsAtTheIdeal) {
   SmallSweep budget(0.0, SweepKind::kBudget);
-  budget.manifest.variants = {{.name = "as it is", .overrides = {}}, {.name = "lidar: range noise", .overrides = {}}, {.name = "all ideal", .overrides = {}}};
+  budget.manifest.variants = {{.name = "baseline", .overrides = {}}, {.name = "lidar: range noise", .overrides = {}}, {.name = "all ideal", .overrides = {}}};
   budget.manifest.runs.clear();
   budget.rows.clear();
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     for (std::size_t variant = 0; variant < 3; ++variant) {
-      budget.manifest.runs.push_back({.variant = variant, .seed = seed, .overrides = {}, .address = ""});
+      budget.manifest.runs.push_back({.variant = variant, .seed = seed, .overrides = {}, .hash = ""});
       const double error_m = std::array{0.10, 0.04, 0.03}[variant] + 0.001 * static_cast<double>(seed * (variant + 1) % 3);
       budget.rows.push_back(RunVerdict{.end = RunStatus::kDone, .message = "", .metrics = {{"pose", {{"ate_rmse_m", error_m}}}}, .checks = {}, .events = {}});
     }
@@ -90,7 +90,7 @@ TEST(SweepPage, ABudgetNamesTheOwnerAndItsWaterfallEndsAtTheIdeal) {
   EXPECT_EQ(budget.verdict().word, "lidar: range noise");
   const report::Page page = budget.page();
   const auto& spans = std::get<report::WaterfallChart>(page.sections[1].blocks[0]).spans;
-  ASSERT_EQ(spans.size(), 4u);  // as it is, the share, the interaction, all ideal
+  ASSERT_EQ(spans.size(), 4u);  // baseline, the contribution, the interaction, all ideal
   EXPECT_NEAR(spans[1].from, spans[0].to, 1e-9);
   EXPECT_NEAR(spans[2].from, spans[1].to, 1e-9);
   EXPECT_NEAR(spans[2].to, spans[3].to, 1e-9);
@@ -98,9 +98,9 @@ TEST(SweepPage, ABudgetNamesTheOwnerAndItsWaterfallEndsAtTheIdeal) {
 
 TEST(SweepPage, VariantsAreNamedByTheLastPartOfTheirKeysUnlessTwoAreAlike) {
   SweepManifest manifest;
-  manifest.paths = {"sensors.lidar.range_noise_m", "stack.slam.particles"};
-  manifest.variants = {{.name = "long", .overrides = {"sensors.lidar.range_noise_m=0.01", "stack.slam.particles=20"}}};
-  EXPECT_EQ(short_names(manifest).front(), "range_noise_m=0.01, particles=20");
+  manifest.paths = {"sensors.lidar.range_noise_std_m", "stack.slam.particles"};
+  manifest.variants = {{.name = "long", .overrides = {"sensors.lidar.range_noise_std_m=0.01", "stack.slam.particles=20"}}};
+  EXPECT_EQ(short_names(manifest).front(), "range_noise_std_m=0.01, particles=20");
   manifest.paths = {"sensors.lidar.rate_hz", "sensors.imu.rate_hz"};
   manifest.variants = {{.name = "long", .overrides = {"sensors.lidar.rate_hz=5", "sensors.imu.rate_hz=100"}}};
   EXPECT_EQ(short_names(manifest).front(), "long");

@@ -57,29 +57,29 @@ TEST(Verdict, OfARunThatWasCutOffIsIncompleteAndJudgesNothing) {
   EXPECT_EQ(verdict.word, "INCOMPLETE");
   EXPECT_EQ(verdict.tone, Tone::kBad);
   EXPECT_THAT(verdict.reason, HasSubstr("10.0 s"));
-  EXPECT_EQ(row_of(verdict, "pose.ate_rmse_m").back(), "not known");
+  EXPECT_EQ(row_of(verdict, "pose.ate_rmse_m").back(), "unknown");
 }
 
 TEST(Verdict, SaysOfEachFaultWhatTheJunitSays) {
   RunContents run = small_run();
-  run.scenario.faults = {{.sensor = "imu", .kind = "freeze", .start_s = 2.0}, {.sensor = "uwb", .kind = "silence", .start_s = 3.0}, {.sensor = "gnss", .kind = "drift", .start_s = 4.0}};
+  run.scenario.faults = {{.sensor = "imu", .kind = "freeze", .start_s = 2.0}, {.sensor = "uwb", .kind = "dropout", .start_s = 3.0}, {.sensor = "gnss", .kind = "drift", .start_s = 4.0}};
   run.cases.push_back({.class_name = "small", .name = "fault imu freeze at 2 s", .message = "", .details = ""});
-  run.cases.push_back({.class_name = "small", .name = "fault uwb silence at 3 s", .result = io::JunitResult::kSkipped, .message = "NOT EXECUTED: no message was touched", .details = ""});
+  run.cases.push_back({.class_name = "small", .name = "fault uwb dropout at 3 s", .result = io::JunitResult::kSkipped, .message = "not triggered: no message was touched", .details = ""});
   const report::VerdictBlock verdict = verdict_of(run);
-  EXPECT_EQ(row_of(verdict, "fault imu freeze at 2 s").back(), "executed");
-  EXPECT_EQ(row_of(verdict, "fault uwb silence at 3 s").back(), "NOT EXECUTED");
-  EXPECT_EQ(row_of(verdict, "fault gnss drift at 4 s").back(), "not known");
+  EXPECT_EQ(row_of(verdict, "fault imu freeze at 2 s").back(), "triggered");
+  EXPECT_EQ(row_of(verdict, "fault uwb dropout at 3 s").back(), "not triggered");
+  EXPECT_EQ(row_of(verdict, "fault gnss drift at 4 s").back(), "unknown");
   EXPECT_EQ(verdict.word, "Passed");
-  EXPECT_THAT(verdict.reason, HasSubstr("One fault or kidnap was declared, but NOT EXECUTED."));
+  EXPECT_THAT(verdict.reason, HasSubstr("One fault or kidnap was declared, but not triggered."));
 }
 
 TEST(Verdict, SaysOfEachKidnapWhatTheTruthInTheLogShows) {
   RunContents run = small_run();
   run.scenario.kidnaps = {{.at_s = 4.0, .x_m = 9.1, .y_m = 6.0}, {.at_s = 6.0, .x_m = 50.0, .y_m = 6.0}, {.at_s = 60.0, .x_m = 9.1, .y_m = 6.0}};
   const report::VerdictBlock verdict = verdict_of(run);
-  EXPECT_EQ(row_of(verdict, "kidnap at 4 s").back(), "executed");
-  EXPECT_EQ(row_of(verdict, "kidnap at 6 s").back(), "NOT EXECUTED");  // it is elsewhere
-  EXPECT_EQ(row_of(verdict, "kidnap at 60 s").back(), "NOT EXECUTED");  // the run was over
+  EXPECT_EQ(row_of(verdict, "kidnap at 4 s").back(), "triggered");
+  EXPECT_EQ(row_of(verdict, "kidnap at 6 s").back(), "not triggered");  // it is elsewhere
+  EXPECT_EQ(row_of(verdict, "kidnap at 60 s").back(), "not triggered");  // the run was over
 }
 
 }  // namespace

@@ -83,12 +83,12 @@ TEST(RunJunit, ATimeLimitFailsAndSaysWhich) {
 // A fault that touched no message has tested nothing: neither green nor red.
 TEST(RunJunit, FaultsThatWereNotExecutedAreSkipped) {
   RunOutcome outcome;
-  outcome.faults = {{.fault = {.sensor = "lidar", .kind = "silence", .start_s = 10.0}, .was_triggered = true},
+  outcome.faults = {{.fault = {.sensor = "lidar", .kind = "dropout", .start_s = 10.0}, .was_triggered = true},
                     {.fault = {.sensor = "imu", .kind = "freeze", .start_s = 900.0}, .was_triggered = false}};
   const std::string xml = report(outcome, {});
   EXPECT_THAT(xml, HasSubstr("tests=\"3\" failures=\"0\" errors=\"0\" skipped=\"1\""));
-  EXPECT_THAT(xml, HasSubstr("name=\"fault lidar silence at 10 s\" time=\"0.000\"/>"));
-  EXPECT_THAT(xml, HasSubstr("<skipped message=\"NOT EXECUTED"));
+  EXPECT_THAT(xml, HasSubstr("name=\"fault lidar dropout at 10 s\" time=\"0.000\"/>"));
+  EXPECT_THAT(xml, HasSubstr("<skipped message=\"not triggered"));
 }
 
 TEST(RunJunit, NamesWhatIsNeededToRunItAgain) {

@@ -42,7 +42,7 @@ TEST(RunVerdict, KidnapsThatTheRunDidNotReachAreNotExecuted) {
   ASSERT_EQ(verdict.events.size(), 2u);
   EXPECT_TRUE(verdict.events[0].was_triggered);
   EXPECT_FALSE(verdict.events[1].was_triggered);
-  EXPECT_EQ(verdict.events[1].what, "kidnap at 900 s");
+  EXPECT_EQ(verdict.events[1].name, "kidnap at 900 s");
 }
 
 TEST(RunVerdict, ComesBackFromJson) {

@@ -35,7 +35,7 @@ class Watch(unittest.TestCase):
         self.assertEqual(process.wait(timeout=120), 0, screen[-2000:])
         text = screen.decode(errors="replace")
         self.assertGreater(text.count("\x1b[H"), 2)
-        self.assertIn("times real time", text)
+        self.assertIn("x real time", text)
         self.assertLess(text.index("\x1b[?1049h"), text.index("\x1b[?1049l"))
         self.assertIn("run directory", text[text.index("\x1b[?1049l"):])
         subprocess.run([PATROL, "run", self.scenario, "--out", self.path / "alone"], check=True, capture_output=True, cwd=SOURCE)

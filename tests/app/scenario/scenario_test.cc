@@ -110,10 +110,10 @@ TEST(Scenario, ResolvedAndReadAgainIsTheSame) {
 
 TEST(Scenario, TheLightIsAsTheWorldHasItUnlessOneDimsIt) {
   const std::filesystem::path file = kSource / "worlds/tunnel/scenarios/docking.yaml";
-  EXPECT_EQ(load_scenario(file).light.brightness_share, 1.0);
-  EXPECT_EQ(load_scenario(file, {"light.brightness_share=0.4"}).light.brightness_share, 0.4);
-  EXPECT_THAT([&] { load_scenario(file, {"light.brightness_share=1.5"}); },
-              ThrowsMessage<InputError>(AllOf(HasSubstr("light.brightness_share"), HasSubstr("1.5"), HasSubstr("0 ... 1"))));
+  EXPECT_EQ(load_scenario(file).light.intensity, 1.0);
+  EXPECT_EQ(load_scenario(file, {"light.intensity=0.4"}).light.intensity, 0.4);
+  EXPECT_THAT([&] { load_scenario(file, {"light.intensity=1.5"}); },
+              ThrowsMessage<InputError>(AllOf(HasSubstr("light.intensity"), HasSubstr("1.5"), HasSubstr("[0, 1]"))));
 }
 
 TEST(Scenario, AnOverrideOfAnUnknownKeyNamesTheNearest) {

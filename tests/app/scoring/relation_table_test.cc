@@ -19,7 +19,7 @@ TEST(RelationTable, HasTheFiguresInTheDigitsInWhichTheyArePublished) {
                                    .rot_median_deg = 0.25,
                                    .rot_max_deg = 12.345};
   EXPECT_EQ(relation_table(error),
-            "2984 relations between 3000 stamps: 2993 poses as they are, 7 interpolated (2 outside the estimate)\n"
+            "2984 relations between 3000 stamps: 2993 nearest poses, 7 interpolated (2 outside the estimate)\n"
             "\n"
             "                                 mean        std     median        max\n"
             "  translation, m               0.0229     0.0351     0.0151      0.765\n"

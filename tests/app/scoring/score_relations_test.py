@@ -37,18 +37,18 @@ class ScoreRelations(unittest.TestCase):
         words = [line.split() for line in done.stdout.splitlines()]
         self.assertIn(["translation,", "m", "0.2000", "0.1000", "0.3000", "0.300"], words)
         self.assertIn(["translation", "squared,", "m2", "0.0500", "0.0400"], words)
-        self.assertIn("3 poses as they are, 0 interpolated", done.stdout)
+        self.assertIn("3 nearest poses, 0 interpolated", done.stdout)
 
     def test_max_dt_says_which_poses_are_taken_as_they_are(self):
         relation = "976052857.322433 976052859.222433 2 0 0 0 0 0\n"
         self.assertIn("1 interpolated", self.score(relation).stdout)
-        self.assertIn("0 interpolated", self.score(relation, "--max-dt", "0.1").stdout)
+        self.assertIn("0 interpolated", self.score(relation, "--max-dt-s", "0.1").stdout)
 
     def test_bad_calls_and_files_are_2_with_one_line(self):
         good = "976052857 976052858 1 0 0 0 0 0\n"
         for done, says in ((self.score(good + "1 2 x\n"), "f.relations:2: x 'x' is not a finite number"),
-                           (self.score(good, "--max-dt", "-1"), "max_dt_s = -1: must lie in 0 ... 10"),
-                           (self.score("# nothing\n"), "holds no relations"),
+                           (self.score(good, "--max-dt-s", "-1"), "max_dt_s = -1: must be in [0, 10]"),
+                           (self.score("# nothing\n"), "contains no relations"),
                            (subprocess.run([PATROL, "score", "--relations", "f"], capture_output=True, text=True, timeout=60), "--estimate and --relations")):
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertIn(says, done.stderr)

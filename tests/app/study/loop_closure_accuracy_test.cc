@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patrol::app::loop_truth_test {
+namespace patrol::app::loop_closure_accuracy_test {
 namespace {
 
 /// Out 40 m and back, a node every 10 m: nodes 5 to 8 stand where 3 to 0 stood.
@@ -20,7 +20,7 @@ PoseGraphEdge edge(const std::vector<Pose2>& nodes, int from, int to, double err
 
 TEST(JudgeLoops, OfThreeClosuresOneFalseTheOthersAreTwoThirds) {
   const std::vector<Pose2> nodes = out_and_back();
-  const LoopTruth truth = judge_loops({.T_map_node = nodes, .edges = {edge(nodes, 1, 7), edge(nodes, 8, 0, 0.2), edge(nodes, 2, 6, 10.0)}}, nodes);
+  const LoopClosureAccuracy truth = evaluate_loop_closures({.T_map_node = nodes, .edges = {edge(nodes, 1, 7), edge(nodes, 8, 0, 0.2), edge(nodes, 2, 6, 10.0)}}, nodes);
   EXPECT_EQ(truth.right, 2U);
   EXPECT_EQ(truth.wrong, 1U);
   EXPECT_DOUBLE_EQ(truth.precision(), 2.0 / 3.0);
@@ -29,7 +29,7 @@ TEST(JudgeLoops, OfThreeClosuresOneFalseTheOthersAreTwoThirds) {
 // 6 came back 40 m after 2, 7 60 m after 1, 8 80 m after 0; 5 only 20 m after 3.
 TEST(JudgeLoops, RecallIsOfThoseWhoCameBackAfterAWhile) {
   const std::vector<Pose2> nodes = out_and_back();
-  const LoopTruth truth = judge_loops({.T_map_node = nodes, .edges = {edge(nodes, 1, 7), edge(nodes, 3, 5), edge(nodes, 2, 6, 10.0)}}, nodes);
+  const LoopClosureAccuracy truth = evaluate_loop_closures({.T_map_node = nodes, .edges = {edge(nodes, 1, 7), edge(nodes, 3, 5), edge(nodes, 2, 6, 10.0)}}, nodes);
   EXPECT_EQ(truth.returns, 3U);
   EXPECT_EQ(truth.closed, 1U);
   EXPECT_DOUBLE_EQ(truth.recall(), 1.0 / 3.0);
@@ -37,7 +37,7 @@ TEST(JudgeLoops, RecallIsOfThoseWhoCameBackAfterAWhile) {
 
 TEST(JudgeLoops, TheWayFromNodeToNodeIsNoClosure) {
   const std::vector<Pose2> nodes = out_and_back();
-  const LoopTruth truth = judge_loops({.T_map_node = nodes, .edges = {edge(nodes, 3, 4, 5.0), edge(nodes, 0, 8, 5.0, PoseGraphEdge::Kind::kMatch)}}, nodes);
+  const LoopClosureAccuracy truth = evaluate_loop_closures({.T_map_node = nodes, .edges = {edge(nodes, 3, 4, 5.0), edge(nodes, 0, 8, 5.0, PoseGraphEdge::Kind::kMatch)}}, nodes);
   EXPECT_EQ(truth.right + truth.wrong, 0U);
   EXPECT_EQ(truth.precision(), 1.0);
 }
@@ -46,8 +46,8 @@ TEST(JudgeLoops, ATurnedClosureIsWrong) {
   const std::vector<Pose2> nodes = out_and_back();
   PoseGraphEdge turned = edge(nodes, 1, 7);
   turned.T_from_to.yaw = wrap_angle(turned.T_from_to.yaw + 0.06);
-  EXPECT_EQ(judge_loops({.T_map_node = nodes, .edges = {turned}}, nodes).wrong, 1U);
+  EXPECT_EQ(evaluate_loop_closures({.T_map_node = nodes, .edges = {turned}}, nodes).wrong, 1U);
 }
 
 }  // namespace
-}  // namespace patrol::app::loop_truth_test
+}  // namespace patrol::app::loop_closure_accuracy_test

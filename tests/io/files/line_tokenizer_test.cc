@@ -68,8 +68,8 @@ TEST(LineTokenizer, NamesWhatIsNoNumber) {
   EXPECT_EQ(complaint_about("1,5", [](LineTokenizer& f) { f.any_number("range"); }), "range '1,5' is not a number");
   EXPECT_EQ(complaint_about("", [](LineTokenizer& f) { f.number("range"); }), "ends before range");
   EXPECT_EQ(complaint_about("1.5x", [](LineTokenizer& f) { f.stamp("t"); }), "t '1.5x' is not a time in seconds");
-  EXPECT_EQ(complaint_about("11", [](LineTokenizer& f) { f.integer("n", 0, 10); }), "n '11' must be a whole number in 0 ... 10");
-  EXPECT_EQ(complaint_about("1.0", [](LineTokenizer& f) { f.integer("n", 0, 10); }), "n '1.0' must be a whole number in 0 ... 10");
+  EXPECT_EQ(complaint_about("11", [](LineTokenizer& f) { f.integer("n", 0, 10); }), "n '11' must be an integer in [0, 10]");
+  EXPECT_EQ(complaint_about("1.0", [](LineTokenizer& f) { f.integer("n", 0, 10); }), "n '1.0' must be an integer in [0, 10]");
   EXPECT_EQ(complaint_about(std::string(100, 'x'), [](LineTokenizer& f) { f.number("n"); }), "n '" + std::string(24, 'x') + "...' is not a finite number");
 }
 

@@ -58,26 +58,26 @@ TEST(TourStations, NamesMayBeQuotedAndFilesMayComeFromASpreadsheet) {
 TEST(TourStations, WhatIsWrongIsNamedWithItsLineAndColumn) {
   const std::string header = "name,x,y,service_s,earliest_s,latest_s,priority\n";
   EXPECT_EQ(complaint("name,x\na,1\n").substr(0, 29), "stations.csv:1: y: is missing");
-  EXPECT_EQ(complaint("name,x,y,z\n").substr(0, 31), "stations.csv:1: z: is no column");
-  EXPECT_EQ(complaint("name,x,y,x\n"), "stations.csv:1: x: stands there twice");
+  EXPECT_EQ(complaint("name,x,y,z\n").substr(0, 33), "stations.csv:1: z: unknown column");
+  EXPECT_EQ(complaint("name,x,y,x\n"), "stations.csv:1: x: duplicate column");
   EXPECT_EQ(complaint("name,x,y\n\nb,1\n"), "stations.csv:3: has 2 cells, must have 3");
   EXPECT_EQ(complaint("name,x,y\nb,one,2\n"), "stations.csv:2: x: one: must be a number");
   EXPECT_EQ(complaint("name,x,y\nb,nan,2\n"), "stations.csv:2: x: nan: must be a number");
   EXPECT_EQ(complaint("name,x,y\nb,1,\n"), "stations.csv:2: y: is empty");
   EXPECT_EQ(complaint("name,x,y\n ,1,2\n"), "stations.csv:2: name: is empty");
-  EXPECT_EQ(complaint("name,x,y\nb,1,2\nb,3,4\n"), "stations.csv:3: name: b stands there twice");
+  EXPECT_EQ(complaint("name,x,y\nb,1,2\nb,3,4\n"), "stations.csv:3: name: b: duplicate");
   EXPECT_EQ(complaint("name,x,y\n\"b,1,2\n"), "stations.csv:2: a quotation mark is not closed");
-  EXPECT_EQ(complaint(header + "b,1,2,-1,,,\n"), "stations.csv:2: service_s: -1: must lie in 0 ... 10000000");
+  EXPECT_EQ(complaint(header + "b,1,2,-1,,,\n"), "stations.csv:2: service_s: -1: must be in [0, 10000000]");
   EXPECT_EQ(complaint(header + "b,1,2,,9,8,\n"), "stations.csv:2: latest_s: 8: must not be before earliest_s = 9");
-  EXPECT_EQ(complaint(header + "b,1,2,,,,1.5\n"), "stations.csv:2: priority: 1.5: must be a whole number");
-  EXPECT_EQ(complaint(header), "stations.csv: holds no station");
-  EXPECT_EQ(complaint(""), "stations.csv: holds no station");
+  EXPECT_EQ(complaint(header + "b,1,2,,,,1.5\n"), "stations.csv:2: priority: 1.5: must be an integer");
+  EXPECT_EQ(complaint(header), "stations.csv: contains no stations");
+  EXPECT_EQ(complaint(""), "stations.csv: contains no stations");
 }
 
 TEST(TourStations, MoreThanTwoHundredAreRefused) {
   std::string text = "name,x,y\n";
   for (int i = 0; i < 201; ++i) text += std::to_string(i) + ",0,0\n";
-  EXPECT_EQ(complaint(text), "stations.csv:202: is one station too many: at most 200 are read");
+  EXPECT_EQ(complaint(text), "stations.csv:202: too many stations: at most 200 are allowed");
 }
 
 }  // namespace

@@ -94,7 +94,7 @@ TEST(LoadBoostedStumps, EachWrongValueIsNamed) {
 TEST(LoadBoostedStumps, AMillionStumpsAreRefused) {
   std::string many = "{\"features\": [\"distance\", \"overlap\"], \"stumps\": [{}";
   for (int i = 1; i < 1000000; ++i) many += ",{}";
-  EXPECT_EQ(complaint_about(many + "]}"), "model.json: stumps: has more than 10000 entries");
+  EXPECT_EQ(complaint_about(many + "]}"), "model.json: stumps: more than 10000 entries");
 }
 
 }  // namespace

@@ -34,22 +34,22 @@ TEST(CheckJson, WhatEndsTooEarlyIsSaidToDoSo) {
   EXPECT_EQ(complaint_about("[1,\n{\"a\":"), "f.json:2: is not JSON: ends too early");
 }
 
-TEST(CheckJson, ANumberTooLargeIsQuoted) { EXPECT_EQ(complaint_about("[1,\n\n-1e400\n]"), "f.json:3: -1e400 is too large a number"); }
+TEST(CheckJson, ANumberTooLargeIsQuoted) { EXPECT_EQ(complaint_about("[1,\n\n-1e400\n]"), "f.json:3: -1e400: number out of range"); }
 
 TEST(CheckJson, AKeyTwiceInOneObjectIsNamedWithItsPlace) {
-  EXPECT_EQ(complaint_about(R"({"a": 1, "a": 2})"), "f.json: a stands there twice");
-  EXPECT_EQ(complaint_about(R"({"w": [1, {"b": 2, "a": 1, "b": 2}]})"), "f.json: w[1]: b stands there twice");
+  EXPECT_EQ(complaint_about(R"({"a": 1, "a": 2})"), "f.json: a: duplicate key");
+  EXPECT_EQ(complaint_about(R"({"w": [1, {"b": 2, "a": 1, "b": 2}]})"), "f.json: w[1]: b: duplicate key");
   EXPECT_EQ(complaint_about(R"([{"a": 1}, {"a": 1}])"), "");
 }
 
 TEST(CheckJson, TheFirstEntryTooManyIsRefused) {
-  EXPECT_EQ(complaint_about("[1, 2, 3, 4"), "f.json: has more than 3 entries") << "before the end is looked for";
-  EXPECT_EQ(complaint_about(R"({"w": [1, {"a": [1, [], {}, 4]}]})"), "f.json: w[1].a: has more than 3 entries");
+  EXPECT_EQ(complaint_about("[1, 2, 3, 4"), "f.json: more than 3 entries") << "before the end is looked for";
+  EXPECT_EQ(complaint_about(R"({"w": [1, {"a": [1, [], {}, 4]}]})"), "f.json: w[1].a: more than 3 entries");
 }
 
 TEST(CheckJson, TwentyLevelsAreDeepEnough) {
   EXPECT_EQ(complaint_about(std::string(20, '[') + std::string(20, ']')), "");
-  EXPECT_TRUE(complaint_about(std::string(1000000, '[')).ends_with("lies more than 20 levels deep"));
+  EXPECT_TRUE(complaint_about(std::string(1000000, '[')).ends_with("more than 20 nested levels"));
 }
 
 }  // namespace

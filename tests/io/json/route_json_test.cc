@@ -94,7 +94,7 @@ TEST(LoadRoute, NamesThePlaceOfWhatIsWrong) {
   EXPECT_EQ(complaint_after([](Json& r) { r["stations"][1].erase("name"); }),
             "r.json: stations[1]: name is missing");
   EXPECT_EQ(complaint_after([](Json& r) { r["stations"][1]["number"] = 1.5; }),
-            "r.json: stations[1]: number must be a whole number");
+            "r.json: stations[1]: number must be an integer");
   EXPECT_EQ(complaint_after([](Json& r) { r["stations"][0]["type"] = "look"; }),
             "r.json: stations[0]: type = look: must be one of inspect, pass, home");
   EXPECT_EQ(complaint_after([](Json& r) { r["stations"][0]["accuracy"] = 0.0; }),
@@ -144,7 +144,7 @@ TEST(LoadRoute, ReadsAnchorsAndDock) {
 TEST(LoadRoute, WrongAnchorsAndDocksAreNamed) {
   const Json anchor = Json::parse(R"({"number": 3, "position": [20.5, -5, 2.5]})");
   EXPECT_EQ(complaint_after([&](Json& r) { r["anchors"] = {anchor, anchor}; }),
-            "r.json: anchors[1]: number 3 stands there twice");
+            "r.json: anchors[1]: number 3: duplicate");
   EXPECT_EQ(complaint_after([&](Json& r) { r["anchors"] = {{{"number", 3}}}; }), "r.json: anchors[0]: position is missing");
   EXPECT_EQ(complaint_after([&](Json& r) { r["dock"] = {{"position", {0, 0, 0}}}; }), "r.json: dock: orientation is missing");
   EXPECT_EQ(complaint_after([&](Json& r) {
@@ -163,9 +163,9 @@ TEST(LoadRoute, UnknownKeysGetTheNearestSpelling) {
 // Both would let a robot stand at a station that is not told from another.
 TEST(LoadRoute, StationsWithTheSameNameOrNumberAreRefused) {
   EXPECT_EQ(complaint_after([](Json& r) { r["stations"][1]["name"] = "box_1"; }),
-            "r.json: stations[1]: name box_1 stands there twice");
+            "r.json: stations[1]: name box_1: duplicate");
   EXPECT_EQ(complaint_after([](Json& r) { r["stations"][1]["number"] = 1; }),
-            "r.json: stations[1]: number 1 stands there twice");
+            "r.json: stations[1]: number 1: duplicate");
 }
 
 TEST(LoadRoute, WhatIsNotJsonIsNamedByItsLine) {

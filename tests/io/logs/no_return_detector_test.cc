@@ -20,7 +20,7 @@ RecordedScan scan_at(double x_m, std::vector<float> ranges_m) {
   return {.scan = {.ranges_m = std::move(ranges_m), .intensities = {}}, .T_odom_body = {x_m, 0.0, 0.0}, .T_body_lidar = {}};
 }
 
-/// A corridor of 2 m, its end 27.9 m ahead of place 0, in which the robot sways by 15 cm; in centimetres as a SICK has it, and what is farther than 8 m is none.
+/// A corridor of 2 m, its end 27.9 m ahead of place 0, in which the robot sways by 15 cm; in centimeters as a SICK has it, and what is farther than 8 m is none.
 std::vector<float> corridor_cm(double x_m, float no_return_m) {
   std::vector<float> ranges_m;
   const double y_m = 0.15 * std::sin(x_m);
@@ -33,7 +33,7 @@ std::vector<float> corridor_cm(double x_m, float no_return_m) {
   return ranges_m;
 }
 
-TEST(NoReturn, EightMetresThatComeBackFromFortyPlacesAreNone) {
+TEST(NoReturn, EightMetersThatComeBackFromFortyPlacesAreNone) {
   NoReturnDetector finder;
   for (int place = 0; place < 40; ++place) finder.add(scan_at(0.3 * place, corridor_cm(0.3 * place, 8.0F)));
   const auto found = finder.find();
@@ -65,7 +65,7 @@ TEST(NoReturn, StandingBeforeAWallProvesNothing) {
   EXPECT_TRUE(finder.find()) << "ten places";
 }
 
-TEST(NoReturn, AWallAlongTheWayIsNoneAsItsNeighboursAreReadAsOften) {
+TEST(NoReturn, AWallAlongTheWayIsNoneAsItsNeighborsAreReadAsOften) {
   NoReturnDetector finder;
   for (int place = 0; place < 100; ++place) {
     std::vector<float> ranges_m;
@@ -75,7 +75,7 @@ TEST(NoReturn, AWallAlongTheWayIsNoneAsItsNeighboursAreReadAsOften) {
   EXPECT_FALSE(finder.find());
 }
 
-TEST(NoReturn, ALogThatSaysEightMetresForNoReturnIsReadAsSuchUnlessAskedNotTo) {
+TEST(NoReturn, ALogThatSaysEightMetersForNoReturnIsReadAsSuchUnlessAskedNotTo) {
   std::string text;
   for (int place = 0; place < 40; ++place) {
     text += "FLASER 180";
@@ -86,9 +86,9 @@ TEST(NoReturn, ALogThatSaysEightMetresForNoReturnIsReadAsSuchUnlessAskedNotTo) {
   const std::unique_ptr<ScanLog> log = open_scan_log(file.path());
   EXPECT_EQ(log->next()->scan.ranges_m[90], kInfinity);
   ASSERT_EQ(log->summary().found.size(), 1U);
-  EXPECT_TRUE(log->summary().found[0].starts_with("8 m is no return: ")) << log->summary().found[0];
+  EXPECT_TRUE(log->summary().found[0].starts_with("8 m encodes no return: ")) << log->summary().found[0];
   ScanLogOptions as_it_is;
-  as_it_is.finds_no_return = false;
+  as_it_is.detect_no_return = false;
   const std::unique_ptr<ScanLog> plain = open_scan_log(file.path(), as_it_is);
   EXPECT_EQ(plain->next()->scan.ranges_m[90], 8.0F);
   EXPECT_TRUE(plain->summary().found.empty());

@@ -219,7 +219,7 @@ TEST_F(RunLog, ACutOffLogIsNotEqualThoughItsMessagesAre) {
   write_walk(file, kNoChange);
   write_walk(folder / "again.mcap", kNoChange, 10, false);
   EXPECT_EQ(describe(*first_difference(file, folder / "again.mcap")),
-            "the same messages, but the other log was cut off");
+            "identical messages, but the other log is truncated");
 }
 
 TEST_F(RunLog, TheSameMessageAtAnotherTimeOrOnAnotherTopicIsADifference) {

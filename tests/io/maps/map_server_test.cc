@@ -106,11 +106,11 @@ TEST_F(MapServer, ThresholdsAreTheFiles) {
 TEST_F(MapServer, BrokenPicturesAreNamed) {
   EXPECT_EQ(complaint_about(good_yaml, std::string("P5\n3 2\n255\n") + "abcde"), "m.pgm: ends too early for 3 x 2 pixels");
   EXPECT_EQ(complaint_about(good_yaml, "P2\n3 2\n255\n0 0 0 0 0\n"), "m.pgm: ends too early for 3 x 2 pixels");
-  EXPECT_EQ(complaint_about(good_yaml, std::string("P5\n3 2\n255\n") + "abcdefg"), "m.pgm: holds more than its 3 x 2 pixels");
-  EXPECT_EQ(complaint_about(good_yaml, "P2\n1 1\n255\n0 0\n"), "m.pgm: holds more than its 1 x 1 pixels");
+  EXPECT_EQ(complaint_about(good_yaml, std::string("P5\n3 2\n255\n") + "abcdefg"), "m.pgm: has data after its 3 x 2 pixels");
+  EXPECT_EQ(complaint_about(good_yaml, "P2\n1 1\n255\n0 0\n"), "m.pgm: has data after its 1 x 1 pixels");
   EXPECT_EQ(complaint_about(good_yaml, "P5\n100000 100000\n255\n"), "m.pgm: ends too early for 100000 x 100000 pixels");
   EXPECT_EQ(complaint_about(good_yaml, "P2\n1 1\n255\n300\n"), "m.pgm: a pixel of 300 is brighter than 255");
-  EXPECT_EQ(complaint_about(good_yaml, "P5\n0 2\n255\n"), "m.pgm: is 0 x 2 pixels: holds no map");
+  EXPECT_EQ(complaint_about(good_yaml, "P5\n0 2\n255\n"), "m.pgm: is 0 x 2 pixels: contains no map");
   EXPECT_EQ(complaint_about(good_yaml, "P5\n2 2\n65535\n"), "m.pgm: is not an 8-bit PGM");
   EXPECT_EQ(complaint_about(good_yaml, "P6\n1 1\n255\nabc"), "m.pgm: is not an 8-bit PGM");
   EXPECT_EQ(complaint_about(good_yaml, ""), "m.pgm: is not an 8-bit PGM");
@@ -124,26 +124,26 @@ TEST_F(MapServer, WrongKeysAreNamedWithTheirLine) {
   EXPECT_EQ(complaint(image + "origin: [0, 0, 0]\n"), "m.yaml: resolution: is missing");
   EXPECT_EQ(complaint(image + "resolution: 1\n"), "m.yaml: origin: is missing");
   EXPECT_EQ(complaint("{}\n"), "m.yaml: image: is missing");
-  EXPECT_EQ(complaint(""), "m.yaml: is empty: must be a map of keys and values, {} if it says nothing");
+  EXPECT_EQ(complaint(""), "m.yaml: is empty: must be a map of keys and values ({} if there are none)");
   EXPECT_EQ(complaint(image + "resolution: .nan\norigin: [0, 0, 0]\n"), "m.yaml:2: resolution: must be a finite number, not .nan");
   EXPECT_EQ(complaint(image + "resolution: -1\norigin: [0, 0, 0]\n"),
-            "m.yaml:2: resolution: -1 is out of range: must lie in 0.001 ... 10");
+            "m.yaml:2: resolution: -1 is out of range: must be in [0.001, 10]");
   EXPECT_EQ(complaint(image + "resolution: 1\norigin: 0\n"), "m.yaml:3: origin: must be a list");
   EXPECT_EQ(complaint(image + "resolution: 1\norigin: [0]\n"), "m.yaml:3: origin: must be three numbers: x, y, yaw");
   EXPECT_EQ(complaint(image + "resolution: 1\norigin: [0, 0]\n"), "m.yaml:3: origin: must be three numbers: x, y, yaw");
   EXPECT_EQ(complaint(image + "resolution: 1\norigin: [0, north, 0]\n"), "m.yaml:3: origin.1: must be a number, not north");
   EXPECT_EQ(complaint(image + "resolution: 1\norigin: [0, 0, 0.5]\n"),
-            "m.yaml:3: origin: a turned map (yaw other than 0) is not read");
+            "m.yaml:3: origin: rotated maps (yaw other than 0) are not supported");
   EXPECT_EQ(complaint(good + "negate: 2\n"), "m.yaml:4: negate: 2 is out of range: must be one of 0, 1, false, true");
   EXPECT_EQ(complaint(good + "mode: raw\n"), "m.yaml:4: mode: raw is out of range: must be one of trinary");
   EXPECT_EQ(complaint(good + "free_thresh: 0.9\n"), "m.yaml:4: free_thresh: must not be above occupied_thresh");
-  EXPECT_EQ(complaint(good + "resolution: 2\n"), "m.yaml:4: resolution: stands there twice");
+  EXPECT_EQ(complaint(good + "resolution: 2\n"), "m.yaml:4: resolution: duplicate key");
   EXPECT_THAT(complaint(good + "occupied_tresh: 0.5\n"), HasSubstr("m.yaml:4: occupied_tresh: unknown key; did you mean occupied_thresh?"));
 }
 
 TEST_F(MapServer, AMissingPictureIsNamedWithTheLineThatNamesIt) {
   EXPECT_THAT(complaint_about("resolution: 1\nimage: n.pgm\norigin: [0, 0, 0]\n", ""),
-              AllOf(HasSubstr("m.yaml:2: image: there is no file "), EndsWith("n.pgm")));
+              AllOf(HasSubstr("m.yaml:2: image: file not found: "), EndsWith("n.pgm")));
 }
 
 TEST(MapErrors, ComeBackToAMillimetreUpTo254) {

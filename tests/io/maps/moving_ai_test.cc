@@ -73,20 +73,20 @@ TEST_F(MovingAi, MapsThatAreNoneAreRefusedInOneLineWithThePlace) {
   EXPECT_EQ(map_complaint("typ octile\n"), "a.map:1: typ: must be one of type, height, width, map");
   EXPECT_EQ(map_complaint("height 2\nwidth 3\nmap\n"), "a.map:3: map: must come after the type");
   EXPECT_EQ(map_complaint("type octile\nwidth 3\nmap\n"), "a.map:3: map: must come after height and width");
-  EXPECT_EQ(map_complaint("type octile\nheight 2 3\n"), "a.map:2: height: holds more than one value");
+  EXPECT_EQ(map_complaint("type octile\nheight 2 3\n"), "a.map:2: height: must be a single value");
   EXPECT_THAT(map_complaint("type octile\nheight -2\n"), ::testing::StartsWith("a.map:2: height"));
   EXPECT_EQ(map_complaint("type octile\nheight\n"), "a.map:2: ends before height");
   EXPECT_EQ(map_complaint("type octile\nheight 2\nwidth 3\nmap\n.GS\n@W\n"), "a.map:6: row 1: has 2 cells, must have 3");
-  EXPECT_EQ(map_complaint("type octile\nheight 2\nwidth 3\nmap\n.G?\n@WT\n"), "a.map:5: row 0: holds the character 63, must be of . G S W @ O T");
+  EXPECT_EQ(map_complaint("type octile\nheight 2\nwidth 3\nmap\n.G?\n@WT\n"), "a.map:5: row 0: invalid character 63, must be of . G S W @ O T");
   EXPECT_EQ(map_complaint("type octile\nheight 2\nwidth 3\nmap\n.GS\n"), "a.map: ends after 1 of 2 rows");
   EXPECT_EQ(map_complaint(good_map + "...\n"), "a.map:7: must hold no more than 2 rows");
-  EXPECT_EQ(map_complaint(""), "a.map: holds no map");
+  EXPECT_EQ(map_complaint(""), "a.map: contains no map");
   EXPECT_EQ(complaint([&] { load_moving_ai_map(folder / "b.map"); }).substr(0, 5), "b.map");
 }
 
 // A header of a million million cells is refused before a row is read; one that fits takes no memory until the rows come.
 TEST_F(MovingAi, AHugeHeaderFillsNoMemory) {
-  EXPECT_EQ(map_complaint("type octile\nheight 1000000\nwidth 1000000\nmap\n"), "a.map:4: map: 1000000 x 1000000 cells, at most 100000000 are read");
+  EXPECT_EQ(map_complaint("type octile\nheight 1000000\nwidth 1000000\nmap\n"), "a.map:4: map: 1000000 x 1000000 cells, at most 100000000 are allowed");
   EXPECT_EQ(map_complaint("type octile\nheight 100\nwidth 1000000\nmap\n.\n"), "a.map:5: row 0: has 1 cells, must have 1000000");
 }
 
@@ -116,13 +116,13 @@ TEST(MovingAiLength, IsRoundedToItsLastDigitOrToTheSixthWhereZerosMayBeDropped) 
 
 TEST_F(MovingAi, ProblemsThatAreNoneAreRefusedInOneLineWithThePlace) {
   const std::string rule = ": a problem is bucket, map, width, height, start x, y, goal x, y, optimal length";
-  EXPECT_EQ(problem_complaint("0 a.map 30 20 1 2 3 4"), "a.map.scen:2: holds 8 fields" + rule);
+  EXPECT_EQ(problem_complaint("0 a.map 30 20 1 2 3 4"), "a.map.scen:2: has 8 fields" + rule);
   EXPECT_THAT(problem_complaint("0 a.map 30 20 30 2 3 4 5"), ::testing::AllOf(::testing::StartsWith("a.map.scen:2: start x"), ::testing::EndsWith(rule)));
   EXPECT_THAT(problem_complaint("0 a.map 30 20 1 2 3 20 5"), ::testing::StartsWith("a.map.scen:2: goal y"));
   EXPECT_THAT(problem_complaint("0 a.map 30 20 1 2 3 4 five"), ::testing::StartsWith("a.map.scen:2: optimal length"));
   EXPECT_THAT(problem_complaint("0 a.map 30 20 1 2 3 4 -5"), ::testing::StartsWith("a.map.scen:2: optimal length: must be at least 0"));
   EXPECT_THAT(problem_complaint("0 a.map 30 20 1 2 3 4 nan"), ::testing::StartsWith("a.map.scen:2: optimal length"));
-  EXPECT_EQ(problem_complaint(""), "a.map.scen: holds no problems");
+  EXPECT_EQ(problem_complaint(""), "a.map.scen: contains no problems");
   EXPECT_EQ(complaint([&] { load_problems("version 2\n"); }), "a.map.scen:1: must be \"version 1\"");
   EXPECT_EQ(complaint([&] { load_problems(""); }), "a.map.scen: is empty");
 }

@@ -56,12 +56,12 @@ TEST(Pcd, FiguresAreRead) {
 }
 
 TEST(Pcd, WhatIsNoPcdIsRefusedWithItsLine) {
-  EXPECT_EQ(complaint_about("ply\n"), "c.pcd:1: is no line of a PCD header");
+  EXPECT_EQ(complaint_about("ply\n"), "c.pcd:1: is not a line of a PCD header");
   EXPECT_EQ(complaint_about("VERSION 0.7\n"), "c.pcd:1: the header has no line DATA");
   EXPECT_EQ(complaint_about(header(kOnePoint, "binary_compressed")), "c.pcd:11: DATA must be ascii or binary");
   EXPECT_EQ(complaint_about(header(kOnePoint, "ascii", "FIELDS x y\nSIZE 4 4\nTYPE F F\n")), "c.pcd:10: the points have no z");
   EXPECT_EQ(complaint_about(header(kOnePoint, "ascii", "FIELDS x y z\nSIZE 4 4\nTYPE F F F\n")), "c.pcd:10: FIELDS has 3 words, SIZE 2 and TYPE 3");
-  EXPECT_EQ(complaint_about(header(kOnePoint, "ascii", "FIELDS x y z\nSIZE 4 4 3\nTYPE F F F\n")), "c.pcd:10: TYPE and SIZE of field 3 do not go together");
+  EXPECT_EQ(complaint_about(header(kOnePoint, "ascii", "FIELDS x y z\nSIZE 4 4 3\nTYPE F F F\n")), "c.pcd:10: TYPE and SIZE of field 3 are inconsistent");
   EXPECT_EQ(complaint_about(header(kOnePoint, "ascii", "FIELDS x\nCOUNT 1 1\n")), "c.pcd:4: COUNT has more words than FIELDS");
 }
 
@@ -71,7 +71,7 @@ TEST(Pcd, WrongCountsAreRefusedWithoutFillingTheMemory) {
   EXPECT_EQ(complaint_about(header("WIDTH 1000000000\nHEIGHT 1000000000\n", "binary")), "c.pcd:10: WIDTH x HEIGHT is too large");
   EXPECT_EQ(complaint_about(header("WIDTH 1000000000\nHEIGHT 1\n", "binary") + point), "c.pcd: ends too early for 1000000000 points of 12 bytes");
   EXPECT_EQ(complaint_about(header(kOnePoint, "binary") + point.substr(2)), "c.pcd: ends too early for 1 points of 12 bytes");
-  EXPECT_EQ(complaint_about(header(kOnePoint, "binary") + point + point), "c.pcd: holds more than its 1 points");
+  EXPECT_EQ(complaint_about(header(kOnePoint, "binary") + point + point), "c.pcd: has data after its 1 points");
   EXPECT_EQ(complaint_about(header("WIDTH 9\nHEIGHT 1\n") + "1 2 3\n"), "c.pcd: ends too early for 9 points");
   EXPECT_NE(complaint_about(header("WIDTH -1\nHEIGHT 1\n")), "accepted");
 }

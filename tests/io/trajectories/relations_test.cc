@@ -39,14 +39,14 @@ TEST(LoadRelations, ReadsStampsToTheNanosecondAndThePlanarPose) {
 TEST(LoadRelations, WhatIsNoRelationIsNamedByItsLine) {
   const std::string good = "1 2 0 0 0 0 0 0\n", rule = ": a relation is t1 t2 x y z roll pitch yaw";
   EXPECT_EQ(complaint_about(good + "1 2 0 0 0 0 0\n"), "a.relations:2: ends before yaw" + rule);
-  EXPECT_EQ(complaint_about(good + "1 2 0 0 0 0 0 0 0\n"), "a.relations:2: holds more than eight numbers" + rule);
+  EXPECT_EQ(complaint_about(good + "1 2 0 0 0 0 0 0 0\n"), "a.relations:2: more than eight numbers" + rule);
   EXPECT_EQ(complaint_about("#\n1 2 nan 0 0 0 0 0\n"), "a.relations:2: x 'nan' is not a finite number" + rule);
   EXPECT_EQ(complaint_about("1 t2 0 0 0 0 0 0\n"), "a.relations:1: t2 't2' is not a time in seconds" + rule);
   EXPECT_EQ(complaint_about(std::string(2'000'000, '1')), "a.relations:1: is too long" + rule);
 }
 
 TEST(LoadRelations, AnEmptyOrMissingFileIsRefused) {
-  EXPECT_EQ(complaint_about("# none\n"), "a.relations: holds no relations");
+  EXPECT_EQ(complaint_about("# none\n"), "a.relations: contains no relations");
   EXPECT_THROW(load_relations("/nowhere/a.relations"), InputError);
 }
 

@@ -62,7 +62,7 @@ TEST(LoadTum, WhatIsNoPoseIsNamedByItsLine) {
 
 TEST(LoadTum, StampsMustGrow) {
   EXPECT_EQ(complaint_about("2 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n"),
-            "a.tum:2: stamp 2.000000000 does not follow 2.000000000: stamps must grow from line to line");
+            "a.tum:2: stamp 2.000000000 does not follow 2.000000000: stamps must increase");
   EXPECT_THAT(complaint_about("2 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n"), HasSubstr("a.tum:2: stamp 1.0"));
 }
 
@@ -92,7 +92,7 @@ TEST(LoadTum, AQuaternionOfLengthTwoIsRefusedAndFourDigitsAreEnough) {
 }
 
 TEST(LoadTum, AnEmptyOrMissingFileIsRefused) {
-  EXPECT_EQ(complaint_about("# nothing\n"), "a.tum: holds no poses");
+  EXPECT_EQ(complaint_about("# nothing\n"), "a.tum: contains no poses");
   const TemporaryFolder folder;
   EXPECT_THROW(load_tum(folder / "missing.tum"), InputError);
 }

@@ -8,7 +8,7 @@
 
 #include "localize/amcl/divergence_monitor.h"
 
-namespace patrol::localize::amcl_trust_test {
+namespace patrol::localize::confidence_test {
 namespace {
 
 /// Deviation `weak_m` along `direction_rad`, 1 cm across.
@@ -19,18 +19,18 @@ LocalizationEvidence evidence(double weak_m, double direction_rad = 0.0) {
   return evidence;
 }
 
-double trust_of(const LocalizationEvidence& evidence) { return assess_confidence({}, evidence, false, {}).confidence; }
+double confidence_of(const LocalizationEvidence& evidence) { return assess_confidence({}, evidence, false, {}).confidence; }
 
-TEST(Trust, IsOneToFiveCentimetresHalfAtTwentyFiveAndNothingAtOneMetre) {
-  EXPECT_NEAR(trust_of(evidence(0.03)), 1.0, 1e-9);
-  EXPECT_NEAR(trust_of(evidence(0.05)), 1.0, 1e-9);
-  EXPECT_NEAR(trust_of(evidence(0.15)), 0.75, 1e-9);
-  EXPECT_NEAR(trust_of(evidence(0.25)), 0.5, 1e-9);
-  EXPECT_NEAR(trust_of(evidence(0.625)), 0.25, 1e-9);
-  EXPECT_NEAR(trust_of(evidence(2.0)), 0.0, 1e-9);
+TEST(AssessConfidence, IsOneToFiveCentimetersHalfAtTwentyFiveAndNothingAtOneMeter) {
+  EXPECT_NEAR(confidence_of(evidence(0.03)), 1.0, 1e-9);
+  EXPECT_NEAR(confidence_of(evidence(0.05)), 1.0, 1e-9);
+  EXPECT_NEAR(confidence_of(evidence(0.15)), 0.75, 1e-9);
+  EXPECT_NEAR(confidence_of(evidence(0.25)), 0.5, 1e-9);
+  EXPECT_NEAR(confidence_of(evidence(0.625)), 0.25, 1e-9);
+  EXPECT_NEAR(confidence_of(evidence(2.0)), 0.0, 1e-9);
 }
 
-TEST(Trust, NamesTheWeakestDirectionAndItsDeviation) {
+TEST(AssessConfidence, NamesTheWeakestDirectionAndItsDeviation) {
   for (const double direction : {-1.2, 0.0, 0.5}) {
     const LocalizationConfidence confidence = assess_confidence({}, evidence(0.4, direction), false, {});
     EXPECT_NEAR(confidence.max_std_direction_rad, direction, 1e-9);
@@ -38,16 +38,16 @@ TEST(Trust, NamesTheWeakestDirectionAndItsDeviation) {
   }
 }
 
-TEST(Trust, FallsWithEveryDoubt) {
+TEST(AssessConfidence, FallsWithEveryDoubt) {
   LocalizationEvidence two_places = evidence(0.03), bad_scan = evidence(0.03), bad_ranges = evidence(0.03);
   two_places.cluster_weight = 0.5, bad_scan.scan_fit = 0.3, bad_ranges.range_fit = 0.0;
   for (const LocalizationEvidence& doubtful : {two_places, bad_scan, bad_ranges}) {
-    EXPECT_EQ(trust_of(doubtful), 0.0);
+    EXPECT_EQ(confidence_of(doubtful), 0.0);
     EXPECT_TRUE(assess_confidence({}, doubtful, false, {}).is_lost);
   }
 }
 
-TEST(Trust, WhoWasLostIsFoundOnlyWhenOnePlaceIsLeft) {
+TEST(AssessConfidence, WhoWasLostIsFoundOnlyWhenOnePlaceIsLeft) {
   LocalizationEvidence nearly = evidence(0.03);
   nearly.cluster_weight = 0.9;
   EXPECT_TRUE(assess_confidence({}, nearly, true, {}).is_lost);
@@ -55,7 +55,7 @@ TEST(Trust, WhoWasLostIsFoundOnlyWhenOnePlaceIsLeft) {
   EXPECT_FALSE(assess_confidence({}, evidence(0.03), true, {}).is_lost);
 }
 
-TEST(Trust, OfACovarianceThatIsNotANumberIsLost) {
+TEST(AssessConfidence, OfACovarianceThatIsNotANumberIsLost) {
   LocalizationEvidence broken = evidence(0.03);
   broken.covariance(0, 0) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(assess_confidence({}, broken, false, {}).is_lost);
@@ -92,4 +92,4 @@ TEST(DivergenceMonitor, RangesThatDoNotFitAreEnough) {
 }
 
 }  // namespace
-}  // namespace patrol::localize::amcl_trust_test
+}  // namespace patrol::localize::confidence_test

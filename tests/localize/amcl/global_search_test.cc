@@ -25,7 +25,7 @@ GlobalSearch::Candidates find(const Pose2& truth, const std::vector<AnchoredRang
   return tunnel_search().find(scan, ranges, {}, kBeams, 0.5);
 }
 
-/// Share of the weight within half a metre and 10 degrees.
+/// Share of the weight within half a meter and 10 degrees.
 double weight_near(const GlobalSearch::Candidates& candidates, const Pose2& pose) {
   double weight = 0.0;
   for (std::size_t i = 0; i < candidates.weights.size(); ++i) {

@@ -84,7 +84,7 @@ TEST(LikelihoodField, TheFastSumIsTheMeanOverTheEndsOneByOne) {
   EXPECT_NEAR(field.mean_log(ends, pose), sum / 150.0, 1e-3);  // a coordinate in single precision may fall into the next cell
 }
 
-// A third of the beams on a truck that the map does not know, half a metre or two metres in front of the wall: the pose that
+// A third of the beams on a truck that the map does not know, half a meter or two meters in front of the wall: the pose that
 // fits the wall loses the same.
 TEST(LikelihoodField, AnUnknownTruckCostsTheSameWhereverItStands) {
   const LikelihoodField field = make_field(make_map());

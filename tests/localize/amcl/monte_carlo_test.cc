@@ -23,7 +23,7 @@ constexpr double kStudySpeed_mps = 4.0;  // a scan every 0.4 m: half the scans, 
 const Pose3 kAntenna{{-0.2, 0.1, 0.3}, Eigen::Quaterniond::Identity()};
 const Eigen::Matrix3d kNearly = Eigen::Vector3d(0.01, 0.01, 0.0025).asDiagonal();  // 10 cm, 3 degrees
 
-/// A tunnel, a robot in it and its localiser; two metres a second, so that the tests are short.
+/// A tunnel, a robot in it and its localizer; two meters a second, so that the tests are short.
 struct Tour {
   explicit Tour(std::uint64_t seed, const Pose2& T_map_start, const MonteCarloSettings& settings = {}, double way_scale_error = 0.02,
                 double speed_mps = 2.0)
@@ -91,7 +91,7 @@ LinedStudy drive_through_lined_stretch(bool with_ranges) {
 
 // 50 m without a feature in sight, scale errors of 2 % (one sigma), 20 seeds. NEES: chi-square of 20 degrees of freedom, 95 %:
 // 9.591 ... 34.170, over 20.
-TEST(DegenerateTunnel, TrustFallsBelowHalfBeforeTheErrorPassesHalfAMetreAndTheCovarianceIsHonest) {
+TEST(DegenerateTunnel, TrustFallsBelowHalfBeforeTheErrorPassesHalfAMeterAndTheCovarianceIsHonest) {
   const LinedStudy seen = drive_through_lined_stretch(false);
   EXPECT_GT(seen.drifted, 3) << "the tunnel is not degenerate: nothing was shown";
   EXPECT_EQ(seen.trust_fell_late, 0);
@@ -100,7 +100,7 @@ TEST(DegenerateTunnel, TrustFallsBelowHalfBeforeTheErrorPassesHalfAMetreAndTheCo
   EXPECT_LT(seen.nees, 1.71);
 }
 
-TEST(DegenerateTunnel, WithRangesTheErrorStaysBelowFifteenCentimetresAndTrustStays) {
+TEST(DegenerateTunnel, WithRangesTheErrorStaysBelowFifteenCentimetersAndTrustStays) {
   const LinedStudy seen = drive_through_lined_stretch(true);
   std::printf("largest error with UWB, 20 seeds: %.3f m\n", seen.max_error_m);
   EXPECT_LT(seen.max_error_m, 0.15);
@@ -110,7 +110,7 @@ TEST(DegenerateTunnel, WithRangesTheErrorStaysBelowFifteenCentimetresAndTrustSta
 // Chi-square of 60 degrees of freedom, 95 %: 40.482 ... 83.298, over 20. The upper bound holds; the lower one does not: among
 // features of a flat world the filter is better than it says, because its covariance has room for the map's error and for
 // what this world has not (tilt, rubble). Printed, not asserted.
-TEST(MonteCarlo, AmongFeaturesItStandsToThreeCentimetresAndHalfADegreeAndIsNotSurerThanItMayBe) {
+TEST(MonteCarlo, AmongFeaturesItStandsToThreeCentimetersAndHalfADegreeAndIsNotSurerThanItMayBe) {
   double nees = 0.0, worst_m = 0.0, worst_rad = 0.0;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     Tour tour = nearly_started(seed);
@@ -142,7 +142,7 @@ std::optional<double> time_to_find(Tour& tour, bool with_ranges, int steps) {
   return std::nullopt;
 }
 
-TEST(Kidnap, OfTwentyMetresIsNoticedAndMendedWithinThirtySecondsByRanges) {
+TEST(Kidnap, OfTwentyMetersIsNoticedAndMendedWithinThirtySecondsByRanges) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     Tour tour(seed, {30.0, 0.0, 0.0});
     tour.localizer.set_initial_pose({30.0, 0.0, 0.0}, kNearly);
@@ -326,15 +326,15 @@ std::string complaint_about(const OccupancyGrid& map, const MonteCarloSettings& 
 }
 
 TEST(MonteCarlo, RefusesAMapThatIsNone) {
-  EXPECT_EQ(complaint_about({}), "localisation: the map has no cells");
-  EXPECT_EQ(complaint_about(OccupancyGrid({.width = 5, .height = 5}, kUnknown)), "localisation: the map has no free cell to stand on");
-  EXPECT_EQ(complaint_about(OccupancyGrid({.width = 5, .height = 5}, kFree)), "localisation: the map has no occupied cell to see");
+  EXPECT_EQ(complaint_about({}), "localization: map: has no cells");
+  EXPECT_EQ(complaint_about(OccupancyGrid({.width = 5, .height = 5}, kUnknown)), "localization: map: has no free cell");
+  EXPECT_EQ(complaint_about(OccupancyGrid({.width = 5, .height = 5}, kFree)), "localization: map: has no occupied cell");
 }
 
 TEST(MonteCarlo, RefusesSettingsOutOfRange) {
   MonteCarloSettings settings;
   settings.likelihood_field.hit_std_m = 0.0;
-  EXPECT_EQ(complaint_about(test::tunnel_map(), settings), "localization.likelihood_field.hit_std_m = 0: must lie in 0.01 ... 2");
+  EXPECT_EQ(complaint_about(test::tunnel_map(), settings), "localization.likelihood_field.hit_std_m = 0: must be in [0.01, 2]");
   settings = {};
   settings.sensor_model = "crystal_ball";
   EXPECT_EQ(complaint_about(test::tunnel_map(), settings), "localization.sensor_model = crystal_ball: must be one of likelihood_field, beam");

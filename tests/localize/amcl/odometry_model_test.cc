@@ -20,7 +20,7 @@ struct Spread {
 Spread spread_after(int steps, const OdometryModelSettings& settings) {
   const RandomStream noise(1, "test/motion"), start(2, "test/start");
   ParticleCloud cloud;
-  for (std::uint64_t i = 0; i < kParticles; ++i) cloud.add({}, settings.way_scale_std * start.normal(0, i));
+  for (std::uint64_t i = 0; i < kParticles; ++i) cloud.add({}, settings.scale_std * start.normal(0, i));
   for (int step = 0; step < steps; ++step) propagate_particles(cloud, kStep, 0.2, settings, noise, static_cast<std::uint64_t>(step));
   double sum = 0.0, squares = 0.0, scales = 0.0;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
@@ -53,7 +53,7 @@ TEST(OdometryModel, TheScaleKeepsItsDeviation) {
 
 TEST(OdometryModel, WithoutScaleTheSpreadGrowsWithTheRoot) {
   OdometryModelSettings settings = only_scale();
-  settings.way_scale_std = 0.0;
+  settings.scale_std = 0.0;
   settings.noise.longitudinal_std_m_per_m = 0.01;
   EXPECT_NEAR(spread_after(100, settings).along_std, 0.002 * std::sqrt(100.0), 0.02 * 4.0 / 63.2);
 }

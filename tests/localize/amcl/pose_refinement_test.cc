@@ -35,7 +35,7 @@ TEST(LineField, IsWhereTheWallIsAndNothingIsInTheMiddle) {
   EXPECT_NEAR(line->point_map.y(), 5.5, 0.03);
 }
 
-TEST(RefinePose, RecoversTenCentimetresAndTwoDegreesToTwoCentimetresAndATenthOfADegree) {
+TEST(RefinePose, RecoversTenCentimetersAndTwoDegreesToTwoCentimetersAndATenthOfADegree) {
   const test::Tunnel tunnel;
   const Pose2 truth{6.0, 0.4, 0.1};
   for (const double sign : {-1.0, 1.0}) {
@@ -53,7 +53,7 @@ TEST(RefinePose, LeavesTheDegenerateDirectionToThePrior) {
   const Pose2 truth{62.0, 0.2, 0.03};
   const Pose2 start{truth.x + 0.2, truth.y + 0.05, truth.yaw};
   const RefinedPose refined = refine_pose(tunnel_lines(), look(tunnel.world, truth), wide_about(start), start, {});
-  EXPECT_LT(refined.information(0, 0), 1.0);  // not even a metre
+  EXPECT_LT(refined.information(0, 0), 1.0);  // not even a meter
   EXPECT_NEAR(refined.posterior.mean.x, start.x, 1e-3);
   EXPECT_NEAR(std::sqrt(refined.posterior.covariance(0, 0)), 0.2, 0.01);
   EXPECT_NEAR(refined.posterior.mean.y, truth.y, 0.02);
@@ -61,7 +61,7 @@ TEST(RefinePose, LeavesTheDegenerateDirectionToThePrior) {
 }
 
 // A truck, 9 m by 2.4 m, that the map does not know hides a fifth of the scan.
-TEST(RefinePose, AnUnknownTruckPullsByLessThanOneCentimetre) {
+TEST(RefinePose, AnUnknownTruckPullsByLessThanOneCentimeter) {
   test::Tunnel tunnel;
   const Pose2 truth{6.0, 0.4, 0.1};
   const RefinedPose clear = refine_pose(tunnel_lines(), look(tunnel.world, truth), wide_about(truth), truth, {});

@@ -28,7 +28,7 @@ TEST(RangeLikelihood, NoOutlierCostsMoreThanItsFloor) {
 }
 
 // Anchor 4 m aside and 3 m up: 5 m to an antenna at the origin; the antenna is 1 m ahead of a body that looks along y.
-TEST(RangeExcess, CountsHeightAndLever) {
+TEST(NlosBias, CountsHeightAndLever) {
   const AnchoredRange range{.p_map_anchor = {4.0, 1.0, 3.5}, .p_body_antenna = {1.0, 0.0, 0.5}, .range_m = 5.2};
   EXPECT_NEAR(range_innovation_m(range, {0.0, 0.0, std::numbers::pi / 2.0}), 0.2, 1e-12);
 }

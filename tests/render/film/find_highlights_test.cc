@@ -22,10 +22,10 @@ RunHistory quiet_minute() {
   return history;
 }
 
-std::vector<Time> instants(const std::vector<Highlight>& moments, HighlightKind kind) {
+std::vector<Time> instants(const std::vector<Highlight>& highlights, HighlightKind kind) {
   std::vector<Time> at;
-  for (const Highlight& moment : moments) {
-    if (moment.kind == kind) at.push_back(moment.at);
+  for (const Highlight& highlight : highlights) {
+    if (highlight.kind == kind) at.push_back(highlight.at);
   }
   return at;
 }
@@ -40,18 +40,18 @@ TEST(FindMoments, TheLargestErrorIsOne) {
   RunHistory history = quiet_minute();
   history.errors[120].error_in_world_m = {0.0, 0.05};
   history.errors[300].error_in_world_m = {0.06, 0.08};
-  const std::vector<Highlight> moments = moments_of(history);
-  ASSERT_THAT(instants(moments, HighlightKind::kMaxError), ElementsAre(30s));
-  EXPECT_EQ(moments[0].title, "Largest position error: 0.100 m");
+  const std::vector<Highlight> highlights = moments_of(history);
+  ASSERT_THAT(instants(highlights, HighlightKind::kMaxError), ElementsAre(30s));
+  EXPECT_EQ(highlights[0].title, "Maximum position error: 0.100 m");
 }
 
 TEST(FindMoments, ALiningAlarmIsOneAndLooksAtTheRing) {
   RunHistory history = quiet_minute();
   history.events.push_back({.stamp = 20s, .kind = EventKind::kLiningAlarm, .subject = "ring_31", .text = "Ring 31 has moved inward by 12.0 mm.", .T_map_body = {}, .p_map_target = {3.0, 4.0}});
-  const std::vector<Highlight> moments = moments_of(history);
-  ASSERT_THAT(instants(moments, HighlightKind::kAlarm), ElementsAre(20s));
-  EXPECT_EQ(moments[0].title, "Ring 31 has moved inward by 12.0 mm");
-  EXPECT_EQ(moments[0].p_world_subject, Eigen::Vector2d(3.0, 4.0));
+  const std::vector<Highlight> highlights = moments_of(history);
+  ASSERT_THAT(instants(highlights, HighlightKind::kAlarm), ElementsAre(20s));
+  EXPECT_EQ(highlights[0].title, "Ring 31 has moved inward by 12.0 mm");
+  EXPECT_EQ(highlights[0].p_world_subject, Eigen::Vector2d(3.0, 4.0));
 }
 
 TEST(FindMoments, AnErrorThatNobodyWouldSeeIsNone) {
@@ -66,10 +66,10 @@ TEST(FindMoments, OfEachEncounterTheNearestInstantCounts) {
   for (int i = -5; i <= 5; ++i) meet(20s + i * 200ms, "pedestrian_1", 0.4 + 0.05 * std::abs(i));
   meet(40s, "car_1", 0.7);
   meet(50s, "car_1", 1.2);  // not near
-  const std::vector<Highlight> moments = moments_of(history);
-  ASSERT_THAT(instants(moments, HighlightKind::kNearMiss), ElementsAre(20s, 40s));
-  EXPECT_EQ(moments[0].title, "0.40 m from pedestrian 1");
-  EXPECT_EQ(*moments[0].p_world_subject, Eigen::Vector2d(1.0, 2.0));
+  const std::vector<Highlight> highlights = moments_of(history);
+  ASSERT_THAT(instants(highlights, HighlightKind::kNearMiss), ElementsAre(20s, 40s));
+  EXPECT_EQ(highlights[0].title, "0.40 m from pedestrian 1");
+  EXPECT_EQ(*highlights[0].p_world_subject, Eigen::Vector2d(1.0, 2.0));
 }
 
 TEST(FindMoments, OnlyTheNearestEncountersAreShown) {
@@ -81,9 +81,9 @@ TEST(FindMoments, OnlyTheNearestEncountersAreShown) {
 TEST(FindMoments, TouchesWithinSecondsAreOneCollision) {
   RunHistory history = quiet_minute();
   for (const Time at : {Time(10s), Time(11s), Time(13s), Time(30s)}) history.collisions.push_back({at, "trunk", "barrier_3"});
-  const std::vector<Highlight> moments = moments_of(history);
-  ASSERT_THAT(instants(moments, HighlightKind::kCollision), ElementsAre(10s, 30s));
-  EXPECT_EQ(moments[0].title, "Collision with barrier 3");
+  const std::vector<Highlight> highlights = moments_of(history);
+  ASSERT_THAT(instants(highlights, HighlightKind::kCollision), ElementsAre(10s, 30s));
+  EXPECT_EQ(highlights[0].title, "Collision with barrier 3");
 }
 
 TEST(FindMoments, ALeapOfTheTruthIsAKidnapAndNotACorrection) {
@@ -92,10 +92,10 @@ TEST(FindMoments, ALeapOfTheTruthIsAKidnapAndNotACorrection) {
     history.T_world_body[i].pose.position.x() = 22.0;
     history.errors[i].error_in_world_m = {i < 290 ? -22.0 : 0.0, 0.0};
   }
-  const std::vector<Highlight> moments = moments_of(history);
-  ASSERT_THAT(instants(moments, HighlightKind::kKidnap), ElementsAre(25s));
-  ASSERT_THAT(instants(moments, HighlightKind::kCorrection), ElementsAre(29s)) << "the robot finds back";
-  EXPECT_EQ(moments.back().title, "The estimate jumps by 22.00 m");
+  const std::vector<Highlight> highlights = moments_of(history);
+  ASSERT_THAT(instants(highlights, HighlightKind::kKidnap), ElementsAre(25s));
+  ASSERT_THAT(instants(highlights, HighlightKind::kCorrection), ElementsAre(29s)) << "the robot finds back";
+  EXPECT_EQ(highlights.back().title, "Estimate corrected by 22.00 m");
 }
 
 TEST(FindMoments, EventsComeWithTheirOwnWords) {
@@ -108,22 +108,22 @@ TEST(FindMoments, EventsComeWithTheirOwnWords) {
   say(25s, EventKind::kReplan, "", "Something stands on the path.", 0.0);
   say(30s, EventKind::kDocked, "", "Docked at the charging post.", 1.0);
   say(40s, EventKind::kLocalizationLost, "", "The robot does not know where it is.", 0.0);
-  const std::vector<Highlight> moments = find_highlights(history, {10.0, 0.0, 0.0});
+  const std::vector<Highlight> highlights = find_highlights(history, {10.0, 0.0, 0.0});
   std::vector<std::string> titles;
-  for (const Highlight& moment : moments) titles.push_back(moment.title);
-  EXPECT_THAT(titles, ElementsAre("At goal 1", "Leak at box 2: 4070 ppm m of methane", "Docked at the charging post", "Does not know where it is"));
-  EXPECT_EQ(*moments[1].p_world_subject, Eigen::Vector2d(13.0, 1.0)) << "a place in the map, brought to world";
+  for (const Highlight& highlight : highlights) titles.push_back(highlight.title);
+  EXPECT_THAT(titles, ElementsAre("At goal 1", "Leak at box 2: 4070 ppm m of methane", "Docked at the charging post", "Localization lost"));
+  EXPECT_EQ(*highlights[1].p_world_subject, Eigen::Vector2d(13.0, 1.0)) << "a place in the map, brought to world";
 }
 
 TEST(FindMoments, WhatIsAnnouncedTakesItsPlaceInTime) {
   RunHistory history = quiet_minute();
   history.collisions.push_back({10s, "trunk", "wall"});
-  const std::vector<Highlight> moments =
-      moments_of(history, {{20s, HighlightKind::kFault, "Fault: silence of lidar"}, {5s, HighlightKind::kFault, "early"}, {99s, HighlightKind::kFault, "after the end"}});
-  ASSERT_EQ(moments.size(), 3u);
-  EXPECT_EQ(moments[0].title, "early");
-  EXPECT_EQ(moments[1].kind, HighlightKind::kCollision);
-  EXPECT_EQ(moments[2].at, Time(20s));
+  const std::vector<Highlight> highlights =
+      moments_of(history, {{20s, HighlightKind::kFault, "Fault: dropout of lidar"}, {5s, HighlightKind::kFault, "early"}, {99s, HighlightKind::kFault, "after the end"}});
+  ASSERT_EQ(highlights.size(), 3u);
+  EXPECT_EQ(highlights[0].title, "early");
+  EXPECT_EQ(highlights[1].kind, HighlightKind::kCollision);
+  EXPECT_EQ(highlights[2].at, Time(20s));
 }
 
 }  // namespace

@@ -75,12 +75,12 @@ TEST_F(Replay, IsTheSameFilmEachTime) {
 TEST_F(Replay, OfAStoryIsSlowAtItsMomentsAndHasThemForChapters) {
   settings.style = FilmStyle::kHighlights;
   settings.speed = {.fast = 8.0, .slow = 2.0};
-  settings.announced = {{1s, HighlightKind::kFault, "Fault: silence of lidar"}};
+  settings.announced = {{1s, HighlightKind::kFault, "Fault: dropout of lidar"}};
   const ReplaySummary summary = replay(log, model(), {}, settings, film);
   EXPECT_EQ(summary.num_frames, 10);
   const VideoInfo info = inspect_video(film);
   ASSERT_EQ(info.chapters.size(), 1u);
-  EXPECT_EQ(info.chapters[0].title, "Largest position error: 0.050 m; Fault: silence of lidar");
+  EXPECT_EQ(info.chapters[0].title, "Maximum position error: 0.050 m; Fault: dropout of lidar");
   settings.style = FilmStyle::kContinuous;
   EXPECT_EQ(replay(log, model(), {}, settings, film).num_frames, 3);
 }
@@ -134,7 +134,7 @@ TEST_F(Replay, ShowsTheDustAndTheDimLightOfTheRun) {
   settings.dust = {.enabled = true, .visibility_m = 0.5};
   still(log, model(), {}, settings, 1s, folder / "dust.png");
   settings.dust.enabled = false;
-  settings.light.brightness_share = 0.5;
+  settings.light.intensity = 0.5;
   still(log, model(), {}, settings, 1s, folder / "dim.png");
   const Color clear = wall_color(load_png(folder / "clear.png")), dust = wall_color(load_png(folder / "dust.png")),
               dim = wall_color(load_png(folder / "dim.png"));

@@ -22,7 +22,7 @@ RunHistory two_minutes() {
   return history;
 }
 
-ShotPlan plan(const std::vector<Highlight>& moments, FilmStyle style = FilmStyle::kHighlights) { return plan_shots(two_minutes(), moments, style, kSpeeds, kHighlights); }
+ShotPlan plan(const std::vector<Highlight>& highlights, FilmStyle style = FilmStyle::kHighlights) { return plan_shots(two_minutes(), highlights, style, kSpeeds, kHighlights); }
 
 TEST(ShotPlan, ASceneBeginsBeforeItsMomentAndEndsAfterIt) {
   const ShotPlan one = plan({{60s, HighlightKind::kAlarm, "Leak", Eigen::Vector2d(61.0, 2.0)}});
@@ -56,9 +56,9 @@ TEST(ShotPlan, ScenesThatWouldOverlapMeetInTheMiddle) {
 }
 
 TEST(ShotPlan, TheLessNotableScenesAreChaptersOnly) {
-  std::vector<Highlight> moments;
-  for (int i = 1; i <= 5; ++i) moments.push_back({i * 20s, i % 2 == 0 ? HighlightKind::kCollision : HighlightKind::kGoal, "moment " + std::to_string(i)});
-  const ShotPlan some = plan(moments);
+  std::vector<Highlight> highlights;
+  for (int i = 1; i <= 5; ++i) highlights.push_back({i * 20s, i % 2 == 0 ? HighlightKind::kCollision : HighlightKind::kGoal, "moment " + std::to_string(i)});
+  const ShotPlan some = plan(highlights);
   ASSERT_EQ(some.shots.size(), 3u);  // both collisions, and the first of the goals
   EXPECT_EQ(some.shots[0].caption[0], "moment 1");
   EXPECT_EQ(some.shots[1].caption[0], "moment 2");
@@ -89,7 +89,7 @@ TEST(ShotPlan, KnowsTheNamesOfItsCuts) {
     parse_film_style("fast");
     FAIL() << "accepted";
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "cut = fast: must be one of story, plain");
+    EXPECT_STREQ(error.what(), "cut = fast: must be one of highlights, continuous");
   }
 }
 

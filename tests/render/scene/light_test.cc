@@ -21,9 +21,9 @@ constexpr const char* kCave = R"(
   <geom type="sphere" size="0.3" pos="2 -1 0.8" material="lamp"/>)";
 constexpr const char* kLamp = R"(<material name="lamp" rgba="0.6 0.6 0.4 1" emission="0.9" specular="0"/>)";
 
-Frame draw_at(double brightness_share) {
+Frame draw_at(double intensity) {
   const sim::ModelPtr model = small_scene(kCave, kLamp);
-  set_light(*model, {.brightness_share = brightness_share});
+  set_light(*model, {.intensity = intensity});
   SceneRenderer painter(*model, kWidth, kHeight);
   Frame frame;
   std::vector<float> depth;
@@ -48,10 +48,10 @@ TEST(Light, WithNoneOfItThePictureIsBlack) { EXPECT_EQ(draw_at(0.0), Frame(kWidt
 
 TEST(Light, LessThanNoneOfItIsRefused) {
   try {
-    validate(LightSettings{.brightness_share = -0.1}, "light");
+    validate(LightSettings{.intensity = -0.1}, "light");
     FAIL() << "accepted";
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "light.brightness_share = -0.1: must lie in 0 ... 1");
+    EXPECT_STREQ(error.what(), "light.intensity = -0.1: must be in [0, 1]");
   }
 }
 

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "core/geometry/angles.h"
-#include "tests/support/quadruped_twin.h"
+#include "tests/support/simulated_quadruped.h"
 
 namespace patrol::sim::quadruped_controller_test {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "core/geometry/angles.h"
 #include "sim/sensors/hall_sensors.h"
-#include "tests/support/tracked_twin.h"
+#include "tests/support/simulated_tracked_robot.h"
 
 namespace patrol::sim::track_controller_test {
 namespace {

@@ -13,7 +13,7 @@ namespace {
 
 BarometerSettings ideal() {
   BarometerSettings settings;
-  settings.noise_pa = settings.offset_pa = settings.drift_pa = settings.temperature_coefficient_pa_per_k = settings.resolution_pa = 0.0;
+  settings.noise_std_pa = settings.offset_std_pa = settings.drift_std_pa = settings.temperature_coefficient_std_pa_per_k = settings.resolution_pa = 0.0;
   return settings;
 }
 
@@ -46,7 +46,7 @@ TEST(Barometer, AltitudeOfTheOriginAndPressureAtSeaLevelShiftTheReading) {
 
 TEST(Barometer, NoiseOfTheDefaultsIs2HundredthsOfAPascalInStepsOf16Thousandths) {
   BarometerSettings settings;
-  settings.drift_pa = settings.offset_pa = settings.temperature_coefficient_pa_per_k = 0.0;
+  settings.drift_std_pa = settings.offset_std_pa = settings.temperature_coefficient_std_pa_per_k = 0.0;
   test::Moments moments;
   for (const double pressure_pa : record_pa(settings, 20000)) {
     moments.add(pressure_pa - 101325.0);
@@ -58,7 +58,7 @@ TEST(Barometer, NoiseOfTheDefaultsIs2HundredthsOfAPascalInStepsOf16Thousandths) 
 
 TEST(Barometer, OffsetAndTemperatureCoefficientOfTheDefaultsHaveTheirStandardDeviationsOverSensors) {
   BarometerSettings settings;
-  settings.noise_pa = settings.drift_pa = settings.resolution_pa = 0.0;
+  settings.noise_std_pa = settings.drift_std_pa = settings.resolution_pa = 0.0;
   test::Moments offset_pa, change_pa_per_k;
   for (std::uint64_t seed = 1; seed <= 3000; ++seed) {
     Barometer barometer(settings, seed);
@@ -72,7 +72,7 @@ TEST(Barometer, OffsetAndTemperatureCoefficientOfTheDefaultsHaveTheirStandardDev
 
 TEST(Barometer, TheWarmingOfTheDefaultsReaches63PercentAfterFiveMinutes) {
   BarometerSettings settings = ideal();
-  settings.temperature_coefficient_pa_per_k = 0.3;
+  settings.temperature_coefficient_std_pa_per_k = 0.3;
   Barometer barometer(settings, 1);
   const double cold_pa = barometer.read(0.0, Time{}, 0).pressure_pa, later_pa = barometer.read(0.0, from_seconds(300.0), 1).pressure_pa,
                warm_pa = barometer.read(0.0, from_seconds(1e5), 2).pressure_pa;
@@ -82,7 +82,7 @@ TEST(Barometer, TheWarmingOfTheDefaultsReaches63PercentAfterFiveMinutes) {
 // A Gauss-Markov process of standard deviation s and correlation time T changes by s sqrt(2 (1 - exp(-t / T))) over t.
 TEST(Barometer, TheDriftOfTheDefaultsIsAGaussMarkovProcessOf1AndAHalfPascalAndTenMinutes) {
   BarometerSettings settings = ideal();
-  settings.drift_pa = 1.5;
+  settings.drift_std_pa = 1.5;
   test::Moments level_pa, over_a_minute_pa, over_ten_minutes_pa;
   for (std::uint64_t seed = 1; seed <= 400; ++seed) {
     const std::vector<double> pressures = record_pa(settings, 3001, seed);

@@ -36,9 +36,9 @@ class Painted : public DepthImager {
 
 DepthCameraSettings ideal() {
   DepthCameraSettings settings;
-  settings.depth_noise_per_m = settings.baseline_m = settings.edge_loss = settings.dropout = 0.0;
-  settings.grazing_deg = 90.0;
-  settings.dark_range_m = 100.0;
+  settings.depth_noise_std_per_m = settings.baseline_m = settings.edge_dropout_probability = settings.dropout_probability = 0.0;
+  settings.max_incidence_deg = 90.0;
+  settings.max_range_10pct_m = 100.0;
   return settings;
 }
 
@@ -84,7 +84,7 @@ TEST(DepthCamera, TheLensOf70DegreesHas80PixelsAt57PixelsOfFocalLength) {
 
 TEST(DepthCamera, NoiseIs1CentimetreAt2MetresAnd4At4) {
   DepthCameraSettings settings = ideal();
-  settings.depth_noise_per_m = 0.0026;
+  settings.depth_noise_std_per_m = 0.0026;
   for (const auto& [depth_m, std_m] : {std::pair(2.0, 0.0104), std::pair(4.0, 0.0416)}) {
     const test::Moments errors = errors_m(take(settings, wall(depth_m)), depth_m);
     EXPECT_EQ(errors.count, kPixels);
@@ -103,7 +103,7 @@ TEST(DepthCamera, NearerThan30CentimetresFartherThan8MetresAndNothingAtAllAreInv
 
 TEST(DepthCamera, OnePixelIn100IsLostForNoReason) {
   DepthCameraSettings settings = ideal();
-  settings.dropout = 0.01;
+  settings.dropout_probability = 0.01;
   EXPECT_NEAR(lost(take(settings, wall(2.0))), 48.0, count_tolerance(0.01, kPixels));
 }
 
@@ -122,7 +122,7 @@ TEST(DepthCamera, FourPixelsLeftOfAThingAreHiddenFromTheOtherImager) {
 
 TEST(DepthCamera, HalfThePixelsAlongEdgesAreLostAndNoneOfASlope) {
   DepthCameraSettings settings = ideal();
-  settings.edge_loss = 0.5;
+  settings.edge_dropout_probability = 0.5;
   const DepthImage image = take(settings, thing_before_wall);
   int lost_at_edges = 0;
   for (int v = 0; v < kHeight; ++v) {
@@ -147,8 +147,8 @@ Painted::Depth ground(double height_m) {
 // A row sees the ground at atan(focal / (v - 29.5)) from its normal in the middle column; 80 degrees are (v - 29.5) = 10.07.
 TEST(DepthCamera, LevelGroundHasNoEdgesAndEndsWhereItIsMetAt80Degrees) {
   DepthCameraSettings settings = ideal();
-  settings.edge_loss = 1.0;
-  settings.grazing_deg = 80.0;
+  settings.edge_dropout_probability = 1.0;
+  settings.max_incidence_deg = 80.0;
   settings.range_max_m = 60.0;
   const DepthImage image = take(settings, ground(0.4));
   const auto depth_mm = [&](int v) { return image.depth_mm[static_cast<std::size_t>(v * kWidth + 40)]; };
@@ -159,7 +159,7 @@ TEST(DepthCamera, LevelGroundHasNoEdgesAndEndsWhereItIsMetAt80Degrees) {
 // Squarely, 6 m on 10 % is 6 sqrt(0.02 / 0.1) = 2.68 m on 2 %. The corners of the picture are met at 42 degrees.
 TEST(DepthCamera, BlackIsLostBeyond2_7MetresAndGreyIsNot) {
   DepthCameraSettings settings = ideal();
-  settings.dark_range_m = 6.0;
+  settings.max_range_10pct_m = 6.0;
   EXPECT_EQ(lost(take(settings, wall(2.2), 0.02)), 0);
   EXPECT_EQ(lost(take(settings, wall(2.7), 0.02)), kPixels);
   EXPECT_EQ(lost(take(settings, wall(2.7), 0.1)), 0);
@@ -171,20 +171,20 @@ TEST(DepthCamera, DustOf10MetresVisibilityTakesWhatLooksDimmerAndMakesNoiseTenTi
   dust.enabled = true;
   dust.visibility_m = 10.0;
   DepthCameraSettings settings = ideal();
-  settings.dark_range_m = 3.0;  // 9.49 m on white, squarely
+  settings.max_range_10pct_m = 3.0;  // 9.49 m on white, squarely
   EXPECT_EQ(lost(take(settings, wall(3.0), 1.0, dust)), kPixels);
   EXPECT_LT(lost(take(settings, wall(2.8), 1.0, dust)), kPixels);
   EXPECT_EQ(lost(take(settings, wall(3.0), 1.0)), 0);
 
   settings = ideal();
-  settings.depth_noise_per_m = 0.0026;
+  settings.depth_noise_std_per_m = 0.0026;
   const double std_m = 0.0026 * 9.0 * std::exp(2.0 * 3.0 * std::log(50.0) / 10.0);
   EXPECT_NEAR(errors_m(take(settings, wall(3.0), 1.0, dust), 3.0).std(), std_m, 4.0 * std_m / std::sqrt(2.0 * kPixels));
 }
 
 TEST(DepthCamera, WithoutNoiseTheSamePixelsAreLost) {
   DepthCameraSettings noisy, quiet;
-  quiet.depth_noise_per_m = 0.0;
+  quiet.depth_noise_std_per_m = 0.0;
   const DepthImage a = take(noisy, thing_before_wall), b = take(quiet, thing_before_wall);
   EXPECT_GT(lost(a), 50);
   for (std::size_t pixel = 0; pixel < kPixels; ++pixel) EXPECT_EQ(a.depth_mm[pixel] == 0, b.depth_mm[pixel] == 0);

@@ -8,7 +8,7 @@
 
 #include "io/urdf.h"
 #include "sim/sensors/sensor_suite.h"
-#include "tests/support/quadruped_twin.h"
+#include "tests/support/simulated_quadruped.h"
 
 namespace patrol::sim::fault_test {
 namespace {
@@ -111,7 +111,7 @@ TEST(SensorSuite, LatencyAloneChangesNoReading) {
 TEST(Fault, SilenceOfHalfASecondTakes125ImuMessagesAndNoOther) {
   HeldRobot robot;
   std::vector<FaultStatus> reports;
-  auto arrivals = robot.run({}, {fault("imu", "silence", 0.5, 0.5)}, 1.499, &reports);
+  auto arrivals = robot.run({}, {fault("imu", "dropout", 0.5, 0.5)}, 1.499, &reports);
   EXPECT_EQ(arrivals[SensorMessage(Imu{}).index()].size(), 375u - 125u);
   EXPECT_EQ(arrivals[SensorMessage(JointState{}).index()].size(), 375u);
   for (const Arrival& arrival : arrivals[SensorMessage(Imu{}).index()]) {
@@ -161,15 +161,15 @@ TEST(Fault, ADriftOf0_1RadiansPerSecondSquaredOnTheYawRateGrowsFromItsStartAndEn
 TEST(Fault, SpikesOf100NewtonsTouchOneFootMessageInTen) {
   HeldRobot robot;
   const auto good = robot.run_for<FootContacts>({}, {}, 8.0);
-  const auto bad = robot.run_for<FootContacts>({}, {fault("foot_contact", "spikes", 0.0, 10.0, 100.0)}, 8.0);
-  int spikes = 0;
+  const auto bad = robot.run_for<FootContacts>({}, {fault("foot_contact", "outliers", 0.0, 10.0, 100.0)}, 8.0);
+  int outliers = 0;
   for (std::size_t i = 0; i < good.size(); ++i) {
     const double difference = std::get<FootContacts>(bad[i].message).force_n[0] -
                               std::get<FootContacts>(good[i].message).force_n[0];
     EXPECT_TRUE(difference == 0.0 || std::abs(difference - 100.0) < 1e-9);
-    spikes += difference != 0.0;
+    outliers += difference != 0.0;
   }
-  EXPECT_NEAR(spikes, 200, 4.0 * std::sqrt(2000 * 0.1 * 0.9));
+  EXPECT_NEAR(outliers, 200, 4.0 * std::sqrt(2000 * 0.1 * 0.9));
 }
 
 TEST(Fault, ALidarsDriftMovesItsRangesAndGnssLosesItsHeight) {
@@ -191,7 +191,7 @@ TEST(Fault, ALidarsDriftMovesItsRangesAndGnssLosesItsHeight) {
 
 TEST(Fault, OneThatNeverComesIsReportedAsNotExecuted) {
   std::vector<FaultStatus> reports;
-  HeldRobot().run({}, {fault("imu", "silence", 100.0, 1.0), fault("lidar3d", "silence", 0.0, 1.0)}, 0.5,
+  HeldRobot().run({}, {fault("imu", "dropout", 100.0, 1.0), fault("lidar3d", "dropout", 0.0, 1.0)}, 0.5,
                   &reports);
   ASSERT_EQ(reports.size(), 2u);
   EXPECT_FALSE(reports[0].was_triggered);

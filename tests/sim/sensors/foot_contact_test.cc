@@ -24,7 +24,7 @@ std::vector<LegGeometry> two_legs() {
 
 FootContactSettings ideal() {
   FootContactSettings settings;
-  settings.noise_n = settings.offset_n = settings.resolution_n = 0.0;
+  settings.noise_std_n = settings.offset_std_n = settings.resolution_n = 0.0;
   return settings;
 }
 
@@ -46,7 +46,7 @@ TEST(FootContact, AFootOf3KilogramsAtRestReadsItsWeightAndOneInTheAirNothing) {
 TEST(FootContact, NoiseIs1NewtonOnEachFootApart) {
   const TwoFeet feet;
   FootContactSettings settings = ideal();
-  settings.noise_n = 1.0;
+  settings.noise_std_n = 1.0;
   const FootContactSensor sensor(settings, *feet.model, two_legs(), 1);
   test::Moments left, right;
   double together = 0.0;
@@ -65,7 +65,7 @@ TEST(FootContact, NoiseIs1NewtonOnEachFootApart) {
 TEST(FootContact, EachFootKeepsAnOffsetOf1NewtonForTheRun) {
   const TwoFeet feet;
   FootContactSettings settings = ideal();
-  settings.offset_n = 1.0;
+  settings.offset_std_n = 1.0;
   test::Moments offset;
   for (std::uint64_t seed = 1; seed <= 2000; ++seed) {
     const FootContactSensor sensor(settings, *feet.model, two_legs(), seed);
@@ -95,9 +95,9 @@ TEST(FootContact, ReadsHalfNewtonsAndStopsAtItsRange) {
 TEST(FootContact, SwitchingTheOffsetOffLeavesTheNoiseAsItWas) {
   const TwoFeet feet;
   FootContactSettings noisy = ideal();
-  noisy.noise_n = 1.0;
+  noisy.noise_std_n = 1.0;
   FootContactSettings both = noisy;
-  both.offset_n = 1.0;
+  both.offset_std_n = 1.0;
   const FootContactSensor a(both, *feet.model, two_legs(), 9), b(noisy, *feet.model, two_legs(), 9);
   const auto difference = [&](std::uint64_t tick) {
     return a.read(*feet.model, *feet.data, Time{}, tick).force_n[1] -

@@ -43,7 +43,7 @@ Eigen::Vector3d to_world(const GnssFix& fix, const GnssSettings& settings) {
 TEST(Gnss, WithoutNoiseItIsTheAntennaWithin2MillimetresOverTheBlock) {
   const SmallWorld world(kCourt);
   GnssSettings settings;
-  settings.fix_noise_m = 0.0;
+  settings.fix_noise_std_m = 0.0;
   Gnss gnss(settings, 1);
   std::uint64_t tick = 0;
   for (const Eigen::Vector3d& place :
@@ -80,7 +80,7 @@ Spread spread_at(const Eigen::Vector3d& place, const SmallWorld& world, GnssStat
 TEST(Gnss, FixNoiseIs1CentimetreAcrossAnd2CentimetresUp) {
   const SmallWorld world(kCourt);
   GnssSettings settings;
-  settings.error_time_s = 0.4;
+  settings.error_correlation_time_s = 0.4;
   const Spread spread = spread_at({30, 30, 1}, world, GnssStatus::kFix, settings);
   EXPECT_NEAR(spread.east.std(), 0.01, 0.0004);
   EXPECT_NEAR(spread.north.std(), 0.01, 0.0004);
@@ -97,7 +97,7 @@ TEST(Gnss, TheErrorIsCorrelatedOver20Seconds) {
 TEST(Gnss, BesideAHouseTheSolutionFloatsWith40CentimetresOfNoise) {
   const SmallWorld world(kHouse);
   GnssSettings settings;
-  settings.error_time_s = 0.4;
+  settings.error_correlation_time_s = 0.4;
   const Spread spread = spread_at({-3.5, 0, 1}, world, GnssStatus::kFloat, settings);
   EXPECT_NEAR(spread.east.std(), 0.4, 0.016);
   EXPECT_NEAR(spread.up.std(), 0.8, 0.032);

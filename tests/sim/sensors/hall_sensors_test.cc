@@ -56,7 +56,7 @@ TEST_F(TwoSprockets, NothingIsCountedWithinATick) {
 
 TEST_F(TwoSprockets, TenPercentOfTheEdgesOf100TurnsAreMissedToWithinFourStandardErrors) {
   HallSettings settings;
-  settings.missed_tick_probability = 0.1;
+  settings.missed_edge_probability = 0.1;
   HallSensors hall = sensors(settings);
   constexpr int kEdges = 100 * kTicksPerTurn;
   const double counted = static_cast<double>(read_at(hall, 100.0 * kTurn + 1e-6, 0.0).left);
@@ -67,7 +67,7 @@ TEST_F(TwoSprockets, TenPercentOfTheEdgesOf100TurnsAreMissedToWithinFourStandard
 
 TEST_F(TwoSprockets, TheSidesMissTheirOwnEdgesAndTheSameSeedTheSame) {
   HallSettings settings;
-  settings.missed_tick_probability = 0.1;
+  settings.missed_edge_probability = 0.1;
   HallSensors first = sensors(settings), again = sensors(settings), other = sensors(settings, 2);
   const TrackTicks a = read_at(first, 50.0, 50.0), b = read_at(again, 50.0, 50.0), c = read_at(other, 50.0, 50.0);
   EXPECT_NE(a.left, a.right);
@@ -78,9 +78,9 @@ TEST_F(TwoSprockets, TheSidesMissTheirOwnEdgesAndTheSameSeedTheSame) {
 
 TEST_F(TwoSprockets, AWrongSettingOrAMissingJointIsNamed) {
   HallSettings settings;
-  settings.missed_tick_probability = 1.5;
+  settings.missed_edge_probability = 1.5;
   EXPECT_THAT([&] { sensors(settings); }, testing::ThrowsMessage<InputError>(testing::HasSubstr(
-                                              "sensors.hall.missed_tick_probability = 1.5")));
+                                              "sensors.hall.missed_edge_probability = 1.5")));
   EXPECT_THAT([&] { HallSensors({}, *model_, {"left", "starboard"}, 1); },
               testing::ThrowsMessage<InputError>(testing::HasSubstr("starboard")));
 }

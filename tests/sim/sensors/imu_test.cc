@@ -17,9 +17,9 @@ const std::string kBox = R"(<body><freejoint/><geom size="0.1"/><site name="imu"
 
 ImuSettings ideal() {
   ImuSettings settings;
-  settings.gyro_noise_radps_rthz = settings.gyro_bias_radps = settings.gyro_bias_walk_radps2_rthz = 0.0;
-  settings.accel_noise_mps2_rthz = settings.accel_bias_mps2 = settings.accel_bias_walk_mps3_rthz = 0.0;
-  settings.scale_error = settings.misalignment_deg = 0.0;
+  settings.gyro_noise_density_radps_per_sqrt_hz = settings.gyro_bias_std_radps = settings.gyro_bias_random_walk_radps_per_sqrt_s = 0.0;
+  settings.accel_noise_density_mps2_per_sqrt_hz = settings.accel_bias_std_mps2 = settings.accel_bias_random_walk_mps2_per_sqrt_s = 0.0;
+  settings.scale_error_std = settings.misalignment_std_deg = 0.0;
   settings.gyro_resolution_radps = settings.accel_resolution_mps2 = 0.0;
   return settings;
 }
@@ -58,8 +58,8 @@ double allan_deviation(const std::vector<double>& rate, std::size_t window) {
 
 TEST(Imu, WhiteNoiseAloneHasAnAllanDeviationOfNOverRootTau) {
   ImuSettings settings = ideal();
-  settings.gyro_noise_radps_rthz = 2.3e-4;
-  settings.accel_noise_mps2_rthz = 0.002;
+  settings.gyro_noise_density_radps_per_sqrt_hz = 2.3e-4;
+  settings.accel_noise_density_mps2_per_sqrt_hz = 0.002;
   const Record record = record_at_rest(settings, 200000, 1);
   for (const std::size_t window : {5u, 50u, 500u}) {
     const double root_tau = std::sqrt(static_cast<double>(window) * kTick_s);
@@ -70,8 +70,8 @@ TEST(Imu, WhiteNoiseAloneHasAnAllanDeviationOfNOverRootTau) {
 
 TEST(Imu, TheBiasWalkAloneHasAnAllanDeviationOfKTimesRootTauOver3) {
   ImuSettings settings = ideal();
-  settings.gyro_bias_walk_radps2_rthz = 1.0e-5;
-  settings.accel_bias_walk_mps3_rthz = 1.0e-4;
+  settings.gyro_bias_random_walk_radps_per_sqrt_s = 1.0e-5;
+  settings.accel_bias_random_walk_mps2_per_sqrt_s = 1.0e-4;
   const Record record = record_at_rest(settings, 300000, 2);
   for (const std::size_t window : {250u, 1000u}) {
     const double root = std::sqrt(static_cast<double>(window) * kTick_s / 3.0);
@@ -82,7 +82,7 @@ TEST(Imu, TheBiasWalkAloneHasAnAllanDeviationOfKTimesRootTauOver3) {
 
 TEST(Imu, WithTheDefaultsNoiseRulesAt1SecondAndTheWalkCanBeSeenAt100) {
   ImuSettings settings;
-  settings.gyro_bias_walk_radps2_rthz = 1.0e-4;  // ten times the default, so that ten minutes show it
+  settings.gyro_bias_random_walk_radps_per_sqrt_s = 1.0e-4;  // ten times the default, so that ten minutes show it
   const Record record = record_at_rest(settings, 300000, 3);
   const double quantisation =
       settings.gyro_resolution_radps / std::sqrt(12.0) * std::sqrt(kTick_s);  // as white noise
@@ -106,8 +106,8 @@ test::Moments over_seeds(const ImuSettings& settings, const std::function<double
 
 TEST(Imu, TheConstantBiasOf2000SensorsSpreadsBy2MilliradiansAnd30MillimetresPerSquareSecond) {
   ImuSettings settings = ideal();
-  settings.gyro_bias_radps = 0.002;
-  settings.accel_bias_mps2 = 0.03;
+  settings.gyro_bias_std_radps = 0.002;
+  settings.accel_bias_std_mps2 = 0.03;
   const auto rest = [](ImuSensor& imu) { return imu.corrupt({0, 0, 0}, {0, 0, 0}, Time{}, 0); };
   const test::Moments gyro =
       over_seeds(settings, [&](ImuSensor& imu) { return rest(imu).angular_velocity_radps.z(); });
@@ -120,8 +120,8 @@ TEST(Imu, TheConstantBiasOf2000SensorsSpreadsBy2MilliradiansAnd30MillimetresPerS
 
 TEST(Imu, ScaleSpreadsBy1PerMilleAndMisalignmentBy0_05Degrees) {
   ImuSettings settings = ideal();
-  settings.scale_error = 0.001;
-  settings.misalignment_deg = 0.05;
+  settings.scale_error_std = 0.001;
+  settings.misalignment_std_deg = 0.05;
   const auto turned = [](ImuSensor& imu) { return imu.corrupt({1, 0, 0}, {10, 0, 0}, Time{}, 0); };
   const test::Moments scale =
       over_seeds(settings, [&](ImuSensor& imu) { return turned(imu).angular_velocity_radps.x() - 1.0; });
@@ -149,7 +149,7 @@ TEST(Imu, SwitchingTheBiasOffLeavesNoiseAndWalkAsTheyWere) {
   ImuSettings all;
   all.gyro_resolution_radps = all.accel_resolution_mps2 = 0.0;
   ImuSettings unbiased = all;
-  unbiased.gyro_bias_radps = unbiased.accel_bias_mps2 = 0.0;
+  unbiased.gyro_bias_std_radps = unbiased.accel_bias_std_mps2 = 0.0;
   const Record with = record_at_rest(all, 500, 6), without = record_at_rest(unbiased, 500, 6);
   for (std::size_t i = 0; i < with.gyro.size(); ++i) {
     EXPECT_NEAR(with.gyro[i] - without.gyro[i], with.gyro[0] - without.gyro[0], 1e-12);

@@ -33,7 +33,7 @@ TEST(JointEncoders, ReadWholeCountsOf16384WithAnErrorSpreadEvenlyOverOne) {
 TEST(JointEncoders, SpeedFollowsAStepByAFirstOrderFilterOf3Milliseconds) {
   SmallWorld world(kElbow);
   JointEncoderSettings settings;
-  settings.counts_per_turn = 1 << 24;
+  settings.counts_per_revolution = 1 << 24;
   JointEncoders encoders(settings, *world.model, {"elbow"});
   encoders.read(*world.data, Time{});
   for (int tick = 1; tick <= 20; ++tick) {

@@ -68,7 +68,7 @@ test::Moments range_errors(const SmallWorld& world, const LidarSettings& setting
 TEST(Lidar, RangeNoiseIs15MillimetresAndWithoutBias) {
   const SmallWorld world(kWallAt2m);
   LidarSettings settings = narrow();
-  settings.range_noise_m = 0.015;
+  settings.range_noise_std_m = 0.015;
   const test::Moments errors = range_errors(world, settings, 1.01, 2.0);
   EXPECT_GE(errors.count, 19000);
   EXPECT_NEAR(errors.std(), 0.015, 0.0003);
@@ -79,9 +79,9 @@ TEST(Lidar, RangesAreWholeStepsOf13MillimetresAndTheErrorIsThatOfAnEvenSpread) {
   const SmallWorld world(box("2.5 0 0", "0.5 20 5", kWhite + R"(euler="0 0 20")"));
   LidarSettings settings = narrow();
   settings.fov_deg = 20.0;
-  settings.range_resolution_m = 0.013;
+  settings.range_quantization_m = 0.013;
   const LaserScan coarse = scans_at_rest(world, settings, 0.03).front();
-  settings.range_resolution_m = 0.0;
+  settings.range_quantization_m = 0.0;
   const LaserScan exact = scans_at_rest(world, settings, 0.03).front();
   test::Moments errors;
   for (std::size_t beam = 0; beam < coarse.ranges_m.size(); ++beam) {
@@ -101,14 +101,14 @@ TEST(Lidar, Rep117TooCloseIsMinusInfinityNothingPlusInfinityLostNotANumber) {
   EXPECT_EQ(scans_at_rest(far, settings, 0.03).front().ranges_m.at(200), kInfinity);
   const SmallWorld just(box("30.4 0 0", "0.5 20 5"));
   EXPECT_NEAR(scans_at_rest(just, settings, 0.03).front().ranges_m.at(200), 29.9, 1e-3);
-  settings.dropout = 1.0;
+  settings.dropout_probability = 1.0;
   EXPECT_TRUE(std::isnan(scans_at_rest(just, settings, 0.03).front().ranges_m.at(200)));
 }
 
 TEST(Lidar, DropsTwoOfAThousandBeams) {
   const SmallWorld world(kWallAt2m);
   LidarSettings settings = narrow();
-  settings.dropout = 0.002;
+  settings.dropout_probability = 0.002;
   int lost = 0, all = 0;
   for (const LaserScan& scan : scans_at_rest(world, settings, 5.01)) {
     for (const float range : scan.ranges_m) lost += std::isnan(range), ++all;
@@ -121,7 +121,7 @@ TEST(Lidar, AngularJitterOfATenthOfADegreeIsReadOffAWallMetAt60Degrees) {
   // At 60 degrees to the normal of a wall 2 m away the range changes by r tan(60 deg) = 6.93 m per radian.
   const SmallWorld world(box("2.5 0 0", "0.5 20 5"));
   LidarSettings settings = narrow();
-  settings.angle_noise_deg = 0.1;
+  settings.angle_noise_std_deg = 0.1;
   Lidar lidar(settings, world.scene, {Eigen::Vector3d::Zero(), quaternion_from_yaw(60.0 * kDegree)},
               kRayLidar2d, 1, "lidar");
   test::Moments errors;
@@ -191,7 +191,7 @@ TEST(Lidar, StabilizedItMeasuresTheLevelRoomWhateverTheBodyDoes) {
 TEST(Lidar, SixteenRingsGiveACloudOverPlusMinus15DegreesWithTimesAndRings) {
   const SmallWorld world(kSquareRoom + R"(<geom type="plane" pos="0 0 -1" size="20 20 1" rgba="1 1 1 1"/>)");
   LidarSettings settings = LidarSettings::of_preset("vlp16");
-  settings.range_noise_m = settings.range_resolution_m = settings.angle_noise_deg = settings.dropout =
+  settings.range_noise_std_m = settings.range_quantization_m = settings.angle_noise_std_deg = settings.dropout_probability =
       settings.beam_width_deg = 0.0;
   Lidar lidar(settings, world.scene, {}, kRayLidar3d, 1, "lidar3d");
   std::vector<PointCloud> clouds;
@@ -214,14 +214,14 @@ TEST(Lidar, SixteenRingsGiveACloudOverPlusMinus15DegreesWithTimesAndRings) {
 TEST(Lidar, SwitchingOneImperfectionOffChangesNoOtherDraw) {
   const SmallWorld world(kWallAt2m);
   LidarSettings all = narrow();
-  all.range_noise_m = 0.015;
-  all.angle_noise_deg = 0.05;
-  all.dropout = 0.05;
-  all.rain_rate = 0.01;
+  all.range_noise_std_m = 0.015;
+  all.angle_noise_std_deg = 0.05;
+  all.dropout_probability = 0.05;
+  all.false_return_rate_per_m = 0.01;
   LidarSettings no_jitter = all, no_dropout = all, no_noise = all;
-  no_jitter.angle_noise_deg = 0.0;
-  no_dropout.dropout = 0.0;
-  no_noise.range_noise_m = 0.0;
+  no_jitter.angle_noise_std_deg = 0.0;
+  no_dropout.dropout_probability = 0.0;
+  no_noise.range_noise_std_m = 0.0;
   const LaserScan base = scans_at_rest(world, all, 0.03, 5).front(),
                   a = scans_at_rest(world, no_jitter, 0.03, 5).front(),
                   b = scans_at_rest(world, no_dropout, 0.03, 5).front(),
@@ -253,7 +253,7 @@ TEST(Lidar, TheSameSeedGivesTheSameScansAndAnotherSeedOthers) {
 TEST(Lidar, OutOfRangeSettingsAreRefused) {
   const SmallWorld world(kSquareRoom);
   LidarSettings settings;
-  settings.dropout = 1.5;
+  settings.dropout_probability = 1.5;
   EXPECT_THROW(Lidar(settings, world.scene, {}, kRayLidar2d, 1, "lidar"), InputError);
 }
 

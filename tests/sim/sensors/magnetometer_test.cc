@@ -18,7 +18,7 @@ constexpr std::uint64_t kReadings = 20000;
 
 MagnetometerSettings ideal() {
   MagnetometerSettings settings;
-  settings.hard_iron_t = settings.soft_iron = settings.noise_t = settings.resolution_t = 0.0;
+  settings.hard_iron_std_t = settings.soft_iron_std = settings.noise_std_t = settings.resolution_t = 0.0;
   return settings;
 }
 
@@ -62,7 +62,7 @@ TEST(Magnetometer, NoiseOfTheDefaultsIs410NanoteslaOnEachAxisAndIsStatedWithTheR
 TEST(Magnetometer, HardAndSoftIronOfTheDefaultsHaveTheirStandardDeviationsOverRobots) {
   const SmallWorld world("");
   MagnetometerSettings settings;
-  settings.noise_t = settings.resolution_t = 0.0;
+  settings.noise_std_t = settings.resolution_t = 0.0;
   test::Moments hard_t, diagonal, off_diagonal;
   for (std::uint64_t seed = 1; seed <= 2000; ++seed) {
     const Magnetometer magnetometer(settings, *world.model, seed);

@@ -39,9 +39,9 @@ PanoramicScannerSettings ideal() {
   PanoramicScannerSettings settings;
   settings.enabled = true;
   settings.step_deg = 2.0;
-  settings.range_noise_m = settings.grey_noise_m = settings.range_offset_std_m = settings.angle_noise_deg = 0.0;
-  settings.tilt_error_deg = settings.beam_spread_rad = settings.dropout = 0.0;
-  settings.grazing_deg = 90.0;
+  settings.range_noise_std_m = settings.gray_noise_std_m = settings.range_offset_std_m = settings.angle_noise_std_deg = 0.0;
+  settings.tilt_error_std_deg = settings.beam_divergence_rad = settings.dropout_probability = 0.0;
+  settings.max_incidence_deg = 90.0;
   settings.range_min_m = 0.0;
   return settings;
 }
@@ -134,8 +134,8 @@ TEST(PanoramicScanner, RangeNoiseIsThatOfTheSheetToItsLastDigit) {
     PanoramicScannerSettings settings = ideal();
     settings.step_deg = 0.36;
     settings.elevation_min_deg = -9.0;
-    settings.range_noise_m = PanoramicScannerSettings{}.range_noise_m;
-    settings.grey_noise_m = PanoramicScannerSettings{}.grey_noise_m;
+    settings.range_noise_std_m = PanoramicScannerSettings{}.range_noise_std_m;
+    settings.gray_noise_std_m = PanoramicScannerSettings{}.gray_noise_std_m;
     const test::Moments errors = range_errors(world, settings, 8.0);
     ASSERT_GT(errors.count, 1500);
     EXPECT_NEAR(1e3 * errors.std(), std_mm, 0.05 + 4.0 * std_mm / std::sqrt(2.0 * errors.count)) << reflectivity << " at " << range_m;
@@ -149,8 +149,8 @@ TEST(PanoramicScanner, ASurfaceMetAt60DegreesHasTheNoiseOfHalfItsLight) {
   PanoramicScannerSettings settings = ideal();
   settings.step_deg = 0.18;
   settings.elevation_min_deg = -3.0;
-  settings.range_noise_m = 0.0003;
-  settings.grey_noise_m = 0.000255;
+  settings.range_noise_std_m = 0.0003;
+  settings.gray_noise_std_m = 0.000255;
   const test::Moments errors = range_errors(world, settings, 2.0);
   ASSERT_GT(errors.count, 350);
   EXPECT_NEAR(1e3 * errors.std(), 0.592, 4.0 * 0.592 / std::sqrt(2.0 * errors.count));
@@ -183,7 +183,7 @@ TEST(PanoramicScanner, AzimuthAndElevationOfABeamAreEachOffBy19ArcSeconds) {
     PanoramicScannerSettings settings = ideal();
     settings.step_deg = 0.09;
     settings.elevation_min_deg = -1.5;
-    settings.angle_noise_deg = 19.0 / 3600.0;
+    settings.angle_noise_std_deg = 19.0 / 3600.0;
     const test::Moments errors = range_errors(world, settings, 1.0);
     ASSERT_GT(errors.count, 350);
     const double expected_m = 10.0 * std::tan(60.0 * kDegree) * 19.0 / 3600.0 * kDegree;  // 1.6 mm
@@ -198,7 +198,7 @@ std::vector<bool> dropouts(const std::string& epoch, std::uint64_t seed) {
   const SmallWorld world(kRoom);
   PanoramicScannerSettings settings = ideal();
   settings.epoch = epoch;
-  settings.dropout = 0.1;
+  settings.dropout_probability = 0.1;
   const auto complete = ranges_ahead(scan(world, ideal()), settings.step_deg, 60.0);
   const auto taken = ranges_ahead(scan(world, settings, seed), settings.step_deg, 60.0);
   std::vector<bool> is_lost;
@@ -230,13 +230,13 @@ TEST(PanoramicScanner, AllImperfectionsOfAReferenceDifferFromThoseOfAnInspection
     return position_of(scan(world, settings).points.at(1234)).norm();
   };
   const auto expect_apart = [&](auto set) { EXPECT_NE(first_range_m("inspection", set), first_range_m("reference", set)); };
-  expect_apart([](PanoramicScannerSettings& settings) { settings.range_noise_m = 0.001; });
+  expect_apart([](PanoramicScannerSettings& settings) { settings.range_noise_std_m = 0.001; });
   expect_apart([](PanoramicScannerSettings& settings) { settings.range_offset_std_m = 0.001; });
-  expect_apart([](PanoramicScannerSettings& settings) { settings.angle_noise_deg = 0.5; });
+  expect_apart([](PanoramicScannerSettings& settings) { settings.angle_noise_std_deg = 0.5; });
   const auto height_m = [&](const std::string& epoch) {
     PanoramicScannerSettings settings = ideal();
     settings.epoch = epoch;
-    settings.tilt_error_deg = 0.5;
+    settings.tilt_error_std_deg = 0.5;
     return scan(world, settings).points.at(1234).z;
   };
   EXPECT_NE(height_m("inspection"), height_m("reference"));
@@ -261,7 +261,7 @@ TEST(PanoramicScanner, TheCompensatorLeaves19ArcSecondsOfTiltAboutEachAxisFromSc
   const SmallWorld world(R"(<geom type="plane" pos="0 0 -2" size="500 500 1" rgba="1 1 1 1"/>)");
   PanoramicScannerSettings settings = ideal();
   settings.step_deg = 10.0;
-  settings.tilt_error_deg = 19.0 / 3600.0;
+  settings.tilt_error_std_deg = 19.0 / 3600.0;
   PanoramicScanner scanner(settings, world.scene, {}, 1);
   test::Moments about_x, about_y;
   for (int i = 0; i < 300; ++i) {
@@ -344,7 +344,7 @@ TEST(PanoramicScanner, AtAnEdgeSomeBeamsReturnARangeBetweenTheSurfacesUnlessThey
     return between;
   };
   EXPECT_EQ(count_between(), 0);
-  settings.beam_spread_rad = 0.0003;
+  settings.beam_divergence_rad = 0.0003;
   const int mixed = count_between();
   // The edge crosses some 500 rows; the four rays of a beam span half its width of 0.095 degrees there, of 0.18 from beam to beam.
   EXPECT_GT(mixed, 60);
@@ -374,7 +374,7 @@ TEST(PanoramicScanner, GrazingBeamsBeyond85DegreesAreLost) {
   const SmallWorld world(R"(<geom type="plane" pos="0 0 -1" size="200 200 1" rgba="1 1 1 1"/>)");
   PanoramicScannerSettings settings = ideal();
   settings.step_deg = 0.5;
-  settings.grazing_deg = 85.0;
+  settings.max_incidence_deg = 85.0;
   double farthest_m = 0.0;
   for (const ScannerPoint& point : scan(world, settings).points) farthest_m = std::max(farthest_m, position_of(point).norm());
   EXPECT_NEAR(farthest_m, 1.0 / std::sin(5.0 * kDegree), 0.01);
@@ -395,7 +395,7 @@ TEST(PanoramicScanner, OneInAThousandBeamsIsLost) {
   PanoramicScannerSettings settings = ideal();
   settings.step_deg = 0.5;
   const std::size_t all = scan(world, settings).points.size();
-  settings.dropout = 0.001;
+  settings.dropout_probability = 0.001;
   const double lost = static_cast<double>(all - scan(world, settings).points.size());
   EXPECT_NEAR(lost, 0.001 * static_cast<double>(all), 4.0 * std::sqrt(0.001 * static_cast<double>(all)));
 }
@@ -421,9 +421,9 @@ TEST(PanoramicScanner, WithoutRangeNoiseTheSameBeamsAreLostAndTheOthersPointsSta
   const SmallWorld world(kRoom);
   PanoramicScannerSettings settings;
   settings.step_deg = 3.0;
-  settings.dropout = 0.1;
+  settings.dropout_probability = 0.1;
   const PanoramicScan noisy = scan(world, settings);
-  settings.range_noise_m = settings.grey_noise_m = 0.0;
+  settings.range_noise_std_m = settings.gray_noise_std_m = 0.0;
   const PanoramicScan calm = scan(world, settings);
   ASSERT_EQ(noisy.points.size(), calm.points.size());
   for (std::size_t i = 0; i < calm.points.size(); ++i) ASSERT_LT((position_of(noisy.points[i]) - position_of(calm.points[i])).norm(), 0.0025);
@@ -437,7 +437,7 @@ TEST(PanoramicScanner, AStepOfNothingIsRefusedByItsName) {
     PanoramicScanner scanner(settings, world.scene, {}, 1);
     FAIL() << "accepted";
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "sensors.scanner.step_deg = 0: must lie in 0.09 ... 10");
+    EXPECT_STREQ(error.what(), "sensors.scanner.step_deg = 0: must be in [0.09, 10]");
   }
 }
 

@@ -100,23 +100,23 @@ SensorSuiteSettings with_uwb() {
   SensorSuiteSettings settings = quiet();
   settings.uwb.enabled = true;
   settings.uwb.rate_hz = 25.0;
-  settings.uwb.loss = 0.0;
+  settings.uwb.loss_probability = 0.0;
   settings.uwb.range_max_m = 100.0;
-  settings.uwb.blocked_loss = 0.0;
+  settings.uwb.nlos_loss_probability = 0.0;
   return settings;
 }
 
 SensorSuiteSettings with_ultrasonic() {
   SensorSuiteSettings settings = quiet();
   settings.ultrasonic.enabled = true;
-  settings.ultrasonic.dropout = 0.0;
+  settings.ultrasonic.dropout_probability = 0.0;
   return settings;
 }
 
 SensorSuiteSettings with_depth_camera() {
   SensorSuiteSettings settings = quiet();
   settings.depth_camera.enabled = true;
-  settings.depth_camera.dropout = 0.0;
+  settings.depth_camera.dropout_probability = 0.0;
   return settings;
 }
 
@@ -125,7 +125,7 @@ SensorSuiteSettings with_scanner() {
   settings.scanner.enabled = true;
   settings.scanner.step_deg = 5.0;
   settings.scanner.duration_s = 2.0;
-  settings.scanner.dropout = 0.0;
+  settings.scanner.dropout_probability = 0.0;
   return settings;
 }
 
@@ -183,15 +183,15 @@ TEST(SensorSuite, ADepthCameraWithoutARendererIsRefusedInASentence) {
     stand(with_depth_camera(), 0.0, {}, make_robot(), {});
     FAIL() << "accepted";
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "sensors.depth_camera is enabled, but there is no renderer for it here");
+    EXPECT_STREQ(error.what(), "sensors.depth_camera.enabled = true: requires a renderer, which this command lacks");
   }
 }
 
 TEST(SensorSuite, FaultsOfUltrasonicAndDepthCameraAreExecuted) {
   SensorSuiteSettings settings = with_ultrasonic();
   settings.depth_camera = with_depth_camera().depth_camera;
-  const Ride ride = stand(settings, 1.0, {fault("ultrasonic", "freeze", 0.1, 0.5), fault("depth_camera", "silence", 0.1, 0.5),
-                                          fault("depth_camera", "drift", 0.7, 0.3, 0.5), fault("uwb", "silence", 0.0, 1.0)});
+  const Ride ride = stand(settings, 1.0, {fault("ultrasonic", "freeze", 0.1, 0.5), fault("depth_camera", "dropout", 0.1, 0.5),
+                                          fault("depth_camera", "drift", 0.7, 0.3, 0.5), fault("uwb", "dropout", 0.0, 1.0)});
   EXPECT_TRUE(ride.faults[0].was_triggered);
   EXPECT_TRUE(ride.faults[1].was_triggered);
   EXPECT_TRUE(ride.faults[2].was_triggered);
@@ -219,7 +219,7 @@ TEST(SensorSuite, ItIsBusyFor2SecondsAScanAndWithoutAScannerNeverAndNothingComes
 
 TEST(SensorSuite, AScannersFaultsAreSilenceDelayAndADriftOfItsRanges) {
   const auto good = scans_of(with_scanner());
-  const auto silent = scans_of(with_scanner(), {fault("scanner", "silence", 0.0, 4.0)});
+  const auto silent = scans_of(with_scanner(), {fault("scanner", "dropout", 0.0, 4.0)});
   ASSERT_EQ(silent.size(), 1u);
   EXPECT_EQ(silent[0].stamp(), from_seconds(6.0));
   EXPECT_EQ(scans_of(with_scanner(), {fault("scanner", "delay", 0.0, 9.0, 1.5)})[0].at, from_seconds(5.0));
@@ -233,16 +233,16 @@ TEST(SensorSuite, AScannersFaultsAreSilenceDelayAndADriftOfItsRanges) {
 }
 
 TEST(SensorSuite, AnEnabledSensorWithoutItsFrameIsRefusedByName) {
-  EXPECT_EQ(error_response(with_scanner(), "scanner"), "robot carrier: there is no link named scanner");
-  EXPECT_EQ(error_response(with_uwb(), "uwb"), "robot carrier: there is no link named uwb");
-  EXPECT_EQ(error_response(with_ultrasonic(), "ultrasonic_0"), "robot carrier: there is no link named ultrasonic_0");
-  EXPECT_EQ(error_response(with_depth_camera(), "depth_camera"), "robot carrier: there is no link named depth_camera");
+  EXPECT_EQ(error_response(with_scanner(), "scanner"), "robot carrier: link not found: scanner");
+  EXPECT_EQ(error_response(with_uwb(), "uwb"), "robot carrier: link not found: uwb");
+  EXPECT_EQ(error_response(with_ultrasonic(), "ultrasonic_0"), "robot carrier: link not found: ultrasonic_0");
+  EXPECT_EQ(error_response(with_depth_camera(), "depth_camera"), "robot carrier: link not found: depth_camera");
 }
 
 TEST(SensorSuite, EveryFaultOfUwbIsExecutedAndOneOfASilentSensorIsNot) {
   const Ride ride = stand(with_uwb(), 2.0,
-                          {fault("uwb", "silence", 0.5, 0.1), fault("uwb", "drift", 1.0, 0.5), fault("hall", "silence", 0.0, 9.0),
-                           fault("uwb", "spikes", 1.0, 1.0), fault("remote", "silence", 0.0, 9.0)});
+                          {fault("uwb", "dropout", 0.5, 0.1), fault("uwb", "drift", 1.0, 0.5), fault("hall", "dropout", 0.0, 9.0),
+                           fault("uwb", "outliers", 1.0, 1.0), fault("teleop", "dropout", 0.0, 9.0)});
   ASSERT_EQ(ride.faults.size(), 5u);
   const std::vector<bool> executed = {true, true, false, true, false};
   for (std::size_t i = 0; i < executed.size(); ++i) EXPECT_EQ(ride.faults[i].was_triggered, executed[i]) << i;
@@ -280,7 +280,7 @@ TEST(SensorSuite, MagnetometerAndBarometerPublishAtTheirRatesWhenSwitchedOnAndAr
   SensorSuiteSettings settings = quiet();
   EXPECT_TRUE(stand(settings, 1.0).arrivals.empty());
   settings.magnetometer.enabled = settings.barometer.enabled = true;
-  const Ride ride = stand(settings, 1.999, {fault("barometer", "spikes", 0.0, 9.0, 1e6)});
+  const Ride ride = stand(settings, 1.999, {fault("barometer", "outliers", 0.0, 9.0, 1e6)});
   EXPECT_EQ(ride.of<MagneticField>().size(), 100u);
   EXPECT_EQ(ride.of<FluidPressure>().size(), 10u);
   EXPECT_EQ(ride.of<MagneticField>().front().at, from_seconds(0.01)) << "after its latency";

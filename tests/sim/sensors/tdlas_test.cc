@@ -15,7 +15,7 @@ const GasPlume kNoGas(Eigen::Vector3d::Zero(), 0.0, {});
 /// Nothing but the background and the leak.
 TdlasSettings ideal() {
   TdlasSettings settings;
-  settings.noise_ppm_m = settings.relative_noise = settings.resolution_ppm_m = 0.0;
+  settings.noise_std_ppm_m = settings.relative_noise_std = settings.resolution_ppm_m = 0.0;
   return settings;
 }
 
@@ -86,10 +86,10 @@ TEST(Tdlas, SwitchingTheRelativeNoiseOffLeavesTheOtherDrawsAsTheyWere) {
   const SmallWorld world(kWallAt10m);
   TdlasSettings absolute = ideal(), relative = ideal();
   absolute.background_ppm = relative.background_ppm = 100.0;
-  absolute.noise_ppm_m = 10.0;
-  relative.relative_noise = 0.05;
+  absolute.noise_std_ppm_m = 10.0;
+  relative.relative_noise_std = 0.05;
   TdlasSettings both = absolute;
-  both.relative_noise = 0.05;
+  both.relative_noise_std = 0.05;
   const auto error = [&](const TdlasSettings& settings, std::uint64_t tick) {
     return Tdlas(settings, 5).read(world.scene, kNoGas, eye(), Time{}, tick).column_ppm_m - 1000.0;
   };

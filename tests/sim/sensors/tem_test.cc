@@ -20,7 +20,7 @@ const Eigen::Vector3d kCoil(0.0, 0.0, 1.0);
 /// Nothing but rock and water.
 TemSettings ideal() {
   TemSettings settings;
-  settings.noise_tps = settings.relative_noise = settings.gain_std = settings.current_std = settings.time_shift_std_s = settings.steel_rate = 0.0;
+  settings.noise_std_tps = settings.relative_noise_std = settings.gain_std = settings.relative_moment_std = settings.time_shift_std_s = settings.steel_response = 0.0;
   return settings;
 }
 
@@ -78,7 +78,7 @@ test::Moments moments_of(const TemSettings& settings, std::size_t gate) {
 // 3 nT/s at 1 ms: at 20 us 3e-9 sqrt(50); four times the stack halves it.
 TEST(Tem, NoiseGrowsTowardsEarlyGatesAsTheRootOfTimeAndFallsAsTheRootOfTheStack) {
   TemSettings settings = ideal();
-  settings.noise_tps = 3e-9;
+  settings.noise_std_tps = 3e-9;
   const double expected = 3e-9 * std::sqrt(50.0), tol = 4.0 * expected / std::sqrt(2.0 * kDraws);
   EXPECT_NEAR(moments_of(settings, 10).std(), expected, tol);
   settings.stacking_s = 4.0;
@@ -88,7 +88,7 @@ TEST(Tem, NoiseGrowsTowardsEarlyGatesAsTheRootOfTimeAndFallsAsTheRootOfTheStack)
 
 TEST(Tem, RelativeNoiseIsOnePerCentOfTheReading) {
   TemSettings settings = ideal();
-  settings.relative_noise = 0.01;
+  settings.relative_noise_std = 0.01;
   const test::Moments moments = moments_of(settings, 0);
   EXPECT_NEAR(moments.std() / moments.mean(), 0.01, 4.0 * 0.01 / std::sqrt(2.0 * kDraws));
 }
@@ -111,7 +111,7 @@ TEST(Tem, AcrossRunsGainIsTwoPerCentAndTheShiftThirtyNanoseconds) {
 
 TEST(Tem, SteelDecaysSlowerThanRockAndDiffersByDirectionAndRun) {
   TemSettings settings = ideal();
-  settings.steel_rate = 5e-9;
+  settings.steel_response = 5e-9;
   const auto steel = [&](std::size_t gate, const Eigen::Vector3d& axis, std::uint64_t seed) {
     return sound(settings, {}, axis, seed).rate_tps[gate] - sound(ideal(), {}, axis).rate_tps[gate];
   };
@@ -159,13 +159,13 @@ std::string complaint(const TemSettings& settings, const WaterBodySettings& body
 TEST(Tem, RefusesABodyAboutTheAntennaAndGatesThatAreNone) {
   WaterBodySettings near = kBody;
   near.x_m = 6.0;
-  EXPECT_THAT(complaint({}, near), HasSubstr("reaches the antenna"));
+  EXPECT_THAT(complaint({}, near), HasSubstr("must not contain the antenna"));
   TemSettings settings;
   settings.last_gate_s = 2.2e-6;
   EXPECT_THAT(complaint(settings, kBody), HasSubstr("sensors.tem.last_gate_s = 2.2e-06"));
   settings = {};
-  settings.gate_width = 0.9;
-  EXPECT_THAT(complaint(settings, kBody), HasSubstr("sensors.tem.gate_width = 0.9"));
+  settings.relative_gate_width = 0.9;
+  EXPECT_THAT(complaint(settings, kBody), HasSubstr("sensors.tem.relative_gate_width = 0.9"));
 }
 
 }  // namespace

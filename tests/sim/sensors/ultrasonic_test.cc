@@ -32,7 +32,7 @@ RobotDescription make_ring(const std::vector<double>& y_m = {0.0}, const std::ve
 
 UltrasonicSettings ideal() {
   UltrasonicSettings settings;
-  settings.range_noise_m = settings.range_resolution_m = settings.dropout = 0.0;
+  settings.range_noise_std_m = settings.range_quantization_m = settings.dropout_probability = 0.0;
   settings.air_temperature_c = settings.assumed_temperature_c;
   return settings;
 }
@@ -78,13 +78,13 @@ TEST(Ultrasonic, AWallSquarelyAheadIsReadTo2Millimetres) {
 
 TEST(Ultrasonic, NoiseIs5Millimetres) {
   UltrasonicSettings settings = ideal();
-  settings.range_noise_m = 0.005;
+  settings.range_noise_std_m = 0.005;
   EXPECT_NEAR(listen(SmallWorld(wall(2.0)), settings).range_m.std(), 0.005, 4.0 * 0.005 / std::sqrt(2.0 * kPings));
 }
 
 TEST(Ultrasonic, ReadingsAreWholeCentimetres) {
   UltrasonicSettings settings;
-  settings.dropout = 0.0;
+  settings.dropout_probability = 0.0;
   const SmallWorld world(wall(1.237));
   const UltrasonicRing ring(settings, world.scene, make_ring(), 1);
   for (std::uint64_t tick = 0; tick < 100; ++tick) {
@@ -104,7 +104,7 @@ TEST(Ultrasonic, InAirOf15DegreesSetFor20EverythingReads0_86PercentFarther) {
 
 TEST(Ultrasonic, OnePingIn50IsLostForNoReason) {
   UltrasonicSettings settings = ideal();
-  settings.dropout = 0.02;
+  settings.dropout_probability = 0.02;
   EXPECT_NEAR(listen(SmallWorld(wall(2.0)), settings).share_silent(), 0.02, share_tolerance(0.02, kPings));
 }
 
@@ -201,7 +201,7 @@ TEST(Ultrasonic, FiredTogetherHalfThePingsTakeTheOthersEchoAndFiredInTurnNone) {
   const SmallWorld world(kPost);
   const RobotDescription robot = make_ring({0.0, -0.2}, {0.0, -22.0});
   UltrasonicSettings together = ideal();
-  together.fire_together = 2;
+  together.group_size = 2;
   const Heard crossed = listen(world, together, kPings, robot, 1);
   EXPECT_NEAR(1.0 - crossed.share_silent(), 0.5, share_tolerance(0.5, kPings));
   // From 0 to the post's front and back to 1: (1.0 + hypot(1.0, 0.2)) / 2 = 1.010, and some mm for the third ray.
@@ -213,9 +213,9 @@ TEST(Ultrasonic, FiredTogetherHalfThePingsTakeTheOthersEchoAndFiredInTurnNone) {
 TEST(Ultrasonic, TheRingOf8FiresInTurnAndInPairsAcross) {
   const SmallWorld world("");
   const RobotDescription robot = make_ring(std::vector<double>(8, 0.0), std::vector<double>(8, 0.0));
-  const auto fired_in = [&](int fire_together, std::uint64_t tick) {
+  const auto fired_in = [&](int group_size, std::uint64_t tick) {
     UltrasonicSettings settings = ideal();
-    settings.fire_together = fire_together;
+    settings.group_size = group_size;
     std::vector<int> fired;
     for (const auto& range : UltrasonicRing(settings, world.scene, robot, 1).ping({}, Time{}, tick)) fired.push_back(range.transducer);
     return fired;
@@ -230,7 +230,7 @@ TEST(Ultrasonic, TheRingOf8FiresInTurnAndInPairsAcross) {
 TEST(Ultrasonic, WithoutNoiseTheSamePingsAreLost) {
   const SmallWorld world(wall(2.0));
   UltrasonicSettings noisy, quiet;
-  quiet.range_noise_m = quiet.range_resolution_m = 0.0;
+  quiet.range_noise_std_m = quiet.range_quantization_m = 0.0;
   const UltrasonicRing a(noisy, world.scene, make_ring(), 9), b(quiet, world.scene, make_ring(), 9);
   const Pose3 T_world_body{{0, 0, 0.3}, {}};
   int lost = 0;
@@ -253,11 +253,11 @@ std::string error_response(const UltrasonicSettings& settings, const RobotDescri
 }
 
 TEST(Ultrasonic, ARobotWithoutTransducersAndSlotsTooShortAreRefusedInASentence) {
-  EXPECT_EQ(error_response({}, make_ring({}, {})), "robot carrier: there is no link named ultrasonic_0");
+  EXPECT_EQ(error_response({}, make_ring({}, {})), "robot carrier: link not found: ultrasonic_0");
   UltrasonicSettings fast;
   fast.ping_rate_hz = 50.0;
   EXPECT_EQ(error_response(fast, make_ring()),
-            "sensors.ultrasonic.ping_rate_hz = 50: must be at most 42.5, or an echo from range_max_m = 4 comes after the next ping");
+            "sensors.ultrasonic.ping_rate_hz = 50: must be at most 42.5, so that an echo from range_max_m = 4 returns before the next ping");
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ std::string anchor(int number, const std::string& pos) {
 UwbSettings ideal() {
   UwbSettings settings;
   settings.range_max_m = 1000.0;
-  settings.range_noise_m = settings.bias_scale = settings.loss = settings.blocked_loss = settings.blocked_excess_m = 0.0;
+  settings.range_noise_std_m = settings.bias_scale = settings.loss_probability = settings.nlos_loss_probability = settings.nlos_bias_m = 0.0;
   return settings;
 }
 
@@ -59,7 +59,7 @@ TEST(Uwb, AnIdealRangeIsTheDistanceBetweenAntennaAndAnchor) {
 
 TEST(Uwb, NoiseInSightIs7CentimetresAboutTheTruth) {
   UwbSettings settings = ideal();
-  settings.range_noise_m = 0.07;
+  settings.range_noise_std_m = 0.07;
   const Ranges ranges = poll(SmallWorld(anchor(1, "20 0 1")), settings);
   EXPECT_NEAR(ranges.error_m.mean(), 0.0, 4.0 * 0.07 / std::sqrt(kPolls));
   EXPECT_NEAR(ranges.error_m.std(), 0.07, 4.0 * 0.07 / std::sqrt(2.0 * kPolls));
@@ -81,7 +81,7 @@ TEST(Uwb, BiasFollowsTable2OfAps011ByTheSignalLevelInFreeSpace) {
 
 TEST(Uwb, OneIn50CloseByIsLostAndHalfAtFourFifthsOfTheReach) {
   UwbSettings settings = ideal();
-  settings.loss = 0.02;
+  settings.loss_probability = 0.02;
   settings.range_max_m = 60.0;
   const double close_by = 0.02 + 0.98 * std::pow(1.0 / 12.0, 4);  // 5 m
   const double far_away = 0.02 + 0.98 * std::pow(0.8, 4);         // 48 m: 0.42
@@ -92,8 +92,8 @@ TEST(Uwb, OneIn50CloseByIsLostAndHalfAtFourFifthsOfTheReach) {
 
 TEST(Uwb, BehindAWallTheExcessIsExponentialOf40CentimetresAndThreeInTenAreLost) {
   UwbSettings settings = ideal();
-  settings.blocked_excess_m = 0.4;
-  settings.blocked_loss = 0.3;
+  settings.nlos_bias_m = 0.4;
+  settings.nlos_loss_probability = 0.3;
   const SmallWorld world(anchor(1, "20 0 1") + R"(<geom type="box" pos="10 0 1" size="0.2 2 2"/>)");
   const Ranges ranges = poll(world, settings);
   EXPECT_NEAR(ranges.lost(), 0.3, share_tolerance(0.3, kPolls));
@@ -144,7 +144,7 @@ TEST(Uwb, AnchorsInReachTakeTurnsByNumber) {
 TEST(Uwb, WithoutNoiseBiasAndExcessTheSamePollsAreLost) {
   const SmallWorld world(anchor(1, "20 0 1") + R"(<geom type="box" pos="10 0 1" size="0.2 2 2"/>)");
   UwbSettings quiet;
-  quiet.range_noise_m = quiet.bias_scale = quiet.blocked_excess_m = 0.0;
+  quiet.range_noise_std_m = quiet.bias_scale = quiet.nlos_bias_m = 0.0;
   Uwb a({}, *world.model, 3), b(quiet, *world.model, 3);
   int lost = 0;
   for (std::uint64_t tick = 0; tick < 500; ++tick) {
@@ -161,7 +161,7 @@ TEST(Uwb, AWorldWithoutAnchorsIsRefusedInASentence) {
     Uwb uwb({}, *world.model, 1);
     FAIL() << "accepted";
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "sensors.uwb is enabled, but the world has no site named uwb_anchor_<number>");
+    EXPECT_STREQ(error.what(), "sensors.uwb.enabled = true: requires a world site named uwb_anchor_<number>");
   }
 }
 

@@ -13,29 +13,29 @@
 #include "core/error.h"
 #include "io/urdf.h"
 #include "tests/sim/rubble.h"
-#include "tests/support/tracked_twin.h"
-#include "tests/support/quadruped_twin.h"
+#include "tests/support/simulated_tracked_robot.h"
+#include "tests/support/simulated_quadruped.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::sim::twin_test {
+namespace patrol::sim::simulator_test {
 namespace {
 
-/// A twin of a robot in a small world, with no sensor but those that its firmware reads.
-class SmallTwin {
+/// A simulator of a robot in a small world, with no sensor but those that its firmware reads.
+class SmallSimulation {
  public:
-  SmallTwin(const std::string& urdf, const std::string& world, const SimulatorSettings& settings = {})
-      : file_("world.xml", world), twin_(make(urdf, settings)) {}
+  SmallSimulation(const std::string& urdf, const std::string& world, const SimulatorSettings& settings = {})
+      : file_("world.xml", world), simulator_(make(urdf, settings)) {}
 
-  Simulator& operator*() { return twin_; }
-  Simulator* operator->() { return &twin_; }
+  Simulator& operator*() { return simulator_; }
+  Simulator* operator->() { return &simulator_; }
 
   /// Messages that were delivered meanwhile.
   std::vector<SensorMessage> run(double vx_mps, double duration_s) {
-    twin_.set_command({.stamp = {}, .vx_mps = vx_mps, .vy_mps = 0.0, .yaw_rate_radps = 0.0});
+    simulator_.set_command({.stamp = {}, .vx_mps = vx_mps, .vy_mps = 0.0, .yaw_rate_radps = 0.0});
     std::vector<SensorMessage> all;
-    for (const Time end = twin_.now() + from_seconds(duration_s); twin_.now() < end;) {
-      twin_.step();
-      for (SensorMessage& message : twin_.take_messages()) all.push_back(std::move(message));
+    for (const Time end = simulator_.now() + from_seconds(duration_s); simulator_.now() < end;) {
+      simulator_.step();
+      for (SensorMessage& message : simulator_.take_messages()) all.push_back(std::move(message));
     }
     return all;
   }
@@ -49,7 +49,7 @@ class SmallTwin {
   }
 
   test::TemporaryFile file_;
-  Simulator twin_;
+  Simulator simulator_;
 };
 
 template <typename Message>
@@ -59,39 +59,39 @@ std::ptrdiff_t count(const std::vector<SensorMessage>& messages) {
 }
 
 TEST(Simulator, ATrackedRobotSends50TicksASecondAndNothingOfLegs) {
-  SmallTwin twin(kTrackedUrdf, make_flat_world());
-  const auto messages = twin.run(0.5, 2.0);
+  SmallSimulation simulator(kTrackedUrdf, make_flat_world());
+  const auto messages = simulator.run(0.5, 2.0);
   EXPECT_NEAR(static_cast<double>(count<TrackTicks>(messages)), 100.0, 1.0);
   EXPECT_EQ(count<JointState>(messages), 0);
   EXPECT_EQ(count<FootContacts>(messages), 0);
   EXPECT_GT(count<Imu>(messages), 0);
-  EXPECT_NEAR(twin->truth().T_world_body.position.x(), 0.5 * (2.0 - 0.3), 0.1);
+  EXPECT_NEAR(simulator->truth().T_world_body.position.x(), 0.5 * (2.0 - 0.3), 0.1);
 }
 
 TEST(Simulator, ARobotOnLegsSendsNoTicks) {
-  SmallTwin twin(kRobotUrdf, make_flat_world());
-  EXPECT_EQ(count<TrackTicks>(twin.run(0.0, 0.2)), 0);
+  SmallSimulation simulator(kRobotUrdf, make_flat_world());
+  EXPECT_EQ(count<TrackTicks>(simulator.run(0.0, 0.2)), 0);
 }
 
 TEST(Simulator, LiftedToAnotherPlaceEitherRobotStandsThereUprightAndItsCountersKnowNothingOfIt) {
   for (const std::string& urdf : {kTrackedUrdf, kRobotUrdf}) {
-    SmallTwin twin(urdf, make_flat_world(R"(<geom name="ground_stage" type="box" pos="6 2 0.1" size="1 1 0.1"/>)"));
-    twin.run(0.4, 2.0);
-    const SimState before = twin->state();
-    twin->teleport({6.0, 2.0, 2.0});
-    const SimState after = twin->state();
+    SmallSimulation simulator(urdf, make_flat_world(R"(<geom name="ground_stage" type="box" pos="6 2 0.1" size="1 1 0.1"/>)"));
+    simulator.run(0.4, 2.0);
+    const SimState before = simulator->state();
+    simulator->teleport({6.0, 2.0, 2.0});
+    const SimState after = simulator->state();
     if (urdf == kTrackedUrdf) {
       EXPECT_TRUE(std::equal(before.qpos.begin() + 7, before.qpos.end(), after.qpos.begin() + 7)) << "belts and springs";
     }
-    const GroundTruth at_once = twin->truth();
+    const GroundTruth at_once = simulator->truth();
     EXPECT_NEAR(at_once.T_world_body.position.x(), 6.0, 1e-9);
     EXPECT_NEAR(to_yaw(at_once.T_world_body.rotation), 2.0, 1e-9);
     EXPECT_EQ(at_once.twist.linear.norm(), 0.0);
-    twin.run(0.0, 3.0);
-    const Pose3 later = twin->truth().T_world_body;
+    simulator.run(0.0, 3.0);
+    const Pose3 later = simulator->truth().T_world_body;
     EXPECT_LT((later.position - Eigen::Vector3d(6.0, 2.0, later.position.z())).norm(), 0.1) << urdf;
     EXPECT_GT(later.position.z(), 0.2 + 0.1) << "on the stage of 0.2 m";
-    EXPECT_FALSE(twin->has_fallen()) << urdf;
+    EXPECT_FALSE(simulator->has_fallen()) << urdf;
   }
 }
 
@@ -101,15 +101,15 @@ TEST(Simulator, AScanOfTheTrackedRobotOnFlatGroundHasTheFloor85CentimetresBelowI
   settings.sensors.scanner.enabled = true;
   settings.sensors.scanner.step_deg = 2.0;
   settings.sensors.scanner.duration_s = 5.0;
-  SmallTwin twin(kTrackedUrdf, make_flat_world(), settings);
-  twin.run(0.0, 4.0);  // its springs come to rest
-  EXPECT_FALSE(twin->is_busy());
-  const Pose3 before = twin->truth().T_world_body;
-  twin->command(ScanCommand{twin->now()});
-  EXPECT_TRUE(twin->is_busy());
-  const auto messages = twin.run(0.0, 5.6);
-  EXPECT_FALSE(twin->is_busy());
-  EXPECT_LT((twin->truth().T_world_body.position - before.position).norm(), 0.5e-3);
+  SmallSimulation simulator(kTrackedUrdf, make_flat_world(), settings);
+  simulator.run(0.0, 4.0);  // its springs come to rest
+  EXPECT_FALSE(simulator->is_busy());
+  const Pose3 before = simulator->truth().T_world_body;
+  simulator->command(ScanCommand{simulator->now()});
+  EXPECT_TRUE(simulator->is_busy());
+  const auto messages = simulator.run(0.0, 5.6);
+  EXPECT_FALSE(simulator->is_busy());
+  EXPECT_LT((simulator->truth().T_world_body.position - before.position).norm(), 0.5e-3);
   ASSERT_EQ(count<PanoramicScan>(messages), 1);
   const auto is_scan = [](const SensorMessage& message) { return std::holds_alternative<PanoramicScan>(message); };
   const auto& scan = std::get<PanoramicScan>(*std::find_if(messages.begin(), messages.end(), is_scan));
@@ -133,18 +133,18 @@ TEST(Simulator, OnRoughGroundARobotThatCreepsStandsWithin5MicrometresAndAThousan
   SimulatorSettings settings;
   settings.sensors.scanner.enabled = true;
   settings.sensors.scanner.step_deg = 10.0;
-  SmallTwin twin(kTrackedUrdf, make_rubble_world(16.0, 6.0, 0.006, 0.003), settings);
-  twin.run(0.0, 4.0);
+  SmallSimulation simulator(kTrackedUrdf, make_rubble_world(16.0, 6.0, 0.006, 0.003), settings);
+  simulator.run(0.0, 4.0);
   const auto creep_of = [&](double duration_s) {
-    const Pose3 before = twin->truth().T_world_body;
-    twin.run(0.0, duration_s);
-    const Pose3 after = twin->truth().T_world_body;
+    const Pose3 before = simulator->truth().T_world_body;
+    simulator.run(0.0, duration_s);
+    const Pose3 after = simulator->truth().T_world_body;
     return std::pair((after.position - before.position).norm(), to_deg(before.rotation.angularDistance(after.rotation)));
   };
   const auto [free_m, free_deg] = creep_of(29.0);
-  twin->command(ScanCommand{twin->now()});
+  simulator->command(ScanCommand{simulator->now()});
   const auto [held_m, held_deg] = creep_of(29.0);
-  EXPECT_TRUE(twin->is_busy());
+  EXPECT_TRUE(simulator->is_busy());
   EXPECT_LT(held_m, 5e-6);
   EXPECT_LT(held_deg, 0.001);
   EXPECT_GT(free_m, 10.0 * held_m) << "the soft contact lets it creep, or there is nothing to be held";
@@ -153,8 +153,8 @@ TEST(Simulator, OnRoughGroundARobotThatCreepsStandsWithin5MicrometresAndAThousan
 TEST(Simulator, RingsOfAWorldWithoutALiningCannotBeMoved) {
   SimulatorSettings settings;
   settings.lining_deformations = {{.kind = "settlement", .first_ring = 2, .last_ring = 2, .inward_mm = 6.0}};
-  EXPECT_THAT([&] { SmallTwin(kTrackedUrdf, make_flat_world(), settings); },
-              testing::ThrowsMessage<InputError>("lining.0.first_ring = 2: the mission's file describes no lining"));
+  EXPECT_THAT([&] { SmallSimulation(kTrackedUrdf, make_flat_world(), settings); },
+              testing::ThrowsMessage<InputError>("lining_deformation.0.first_ring = 2: requires a lining in the mission file"));
 }
 
 std::string kerb(double x_m, double height_m, double half_length_m = 0.09) {
@@ -166,9 +166,9 @@ std::string kerb(double x_m, double height_m, double half_length_m = 0.09) {
 TEST(Simulator, ADriveAgainstTheSideOfACurbStoneThatIsHigherThanAStreetsIsACollision) {
   for (const std::string& urdf : {kTrackedUrdf, kRobotUrdf}) {
     for (const double height_m : {0.17, 0.22, 0.3}) {
-      SmallTwin twin(urdf, make_flat_world(kerb(1.0, height_m)));
-      twin.run(0.4, 4.0);
-      const auto collisions = twin->take_collisions();
+      SmallSimulation simulator(urdf, make_flat_world(kerb(1.0, height_m)));
+      simulator.run(0.4, 4.0);
+      const auto collisions = simulator->take_collisions();
       ASSERT_FALSE(collisions.empty()) << urdf << ", " << height_m << " m";
       EXPECT_EQ(collisions[0].second, "kerb_0");
     }
@@ -178,11 +178,11 @@ TEST(Simulator, ADriveAgainstTheSideOfACurbStoneThatIsHigherThanAStreetsIsAColli
 TEST(Simulator, WalkingAndDrivingOverALowCurbStoneIsNone) {
   for (const std::string& urdf : {kTrackedUrdf, kRobotUrdf}) {
     for (const double height_m : {0.05, 0.12}) {
-      SmallTwin twin(urdf, make_flat_world(kerb(1.0, height_m, 5.0)));
-      twin.run(0.4, 5.0);
-      EXPECT_THAT(twin->take_collisions(), testing::IsEmpty()) << urdf << ", " << height_m << " m";
+      SmallSimulation simulator(urdf, make_flat_world(kerb(1.0, height_m, 5.0)));
+      simulator.run(0.4, 5.0);
+      EXPECT_THAT(simulator->take_collisions(), testing::IsEmpty()) << urdf << ", " << height_m << " m";
       if (height_m < 0.1) {
-        EXPECT_GT(twin->truth().T_world_body.position.x(), 1.2) << urdf << ": it went over";
+        EXPECT_GT(simulator->truth().T_world_body.position.x(), 1.2) << urdf << ": it went over";
       }
     }
   }
@@ -190,26 +190,26 @@ TEST(Simulator, WalkingAndDrivingOverALowCurbStoneIsNone) {
 
 TEST(Simulator, StandingAndDrivingOnTopOfAHighCurbStoneIsNone) {
   for (const std::string& urdf : {kTrackedUrdf, kRobotUrdf}) {
-    SmallTwin twin(urdf, make_flat_world(kerb(2.0, 0.22, 5.0)));
-    twin->teleport({5.0, 0.0, 0.0});
-    twin.run(0.4, 2.0);
-    EXPECT_THAT(twin->take_collisions(), testing::IsEmpty()) << urdf;
+    SmallSimulation simulator(urdf, make_flat_world(kerb(2.0, 0.22, 5.0)));
+    simulator->teleport({5.0, 0.0, 0.0});
+    simulator.run(0.4, 2.0);
+    EXPECT_THAT(simulator->take_collisions(), testing::IsEmpty()) << urdf;
   }
 }
 
 TEST(Simulator, PutDownOnRubbleItDrivesOn) {
-  SmallTwin twin(kTrackedUrdf, make_rubble_world(16.0, 6.0));
-  twin.run(0.5, 1.0);
-  twin->teleport({-6.0, 1.0, 0.0});
-  twin.run(0.5, 4.0);
-  EXPECT_NEAR(twin->truth().T_world_body.position.x(), -6.0 + 0.5 * 3.7, 0.2);
+  SmallSimulation simulator(kTrackedUrdf, make_rubble_world(16.0, 6.0));
+  simulator.run(0.5, 1.0);
+  simulator->teleport({-6.0, 1.0, 0.0});
+  simulator.run(0.5, 4.0);
+  EXPECT_NEAR(simulator->truth().T_world_body.position.x(), -6.0 + 0.5 * 3.7, 0.2);
 }
 
 TEST(Simulator, WhereThereIsNoGroundItCannotBePut) {
-  SmallTwin twin(kTrackedUrdf, make_rubble_world(4.0, 4.0));
-  EXPECT_THAT([&] { twin->teleport({50.0, 0.0, 0.0}); },
-              testing::ThrowsMessage<InputError>(testing::HasSubstr("(50.00, 0.00): there is no ground below it")));
+  SmallSimulation simulator(kTrackedUrdf, make_rubble_world(4.0, 4.0));
+  EXPECT_THAT([&] { simulator->teleport({50.0, 0.0, 0.0}); },
+              testing::ThrowsMessage<InputError>(testing::HasSubstr("(50.00, 0.00): no ground below")));
 }
 
 }  // namespace
-}  // namespace patrol::sim::twin_test
+}  // namespace patrol::sim::simulator_test

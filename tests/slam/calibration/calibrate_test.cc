@@ -103,12 +103,12 @@ TEST(Calibrate, ACircleDoesNotTellSteeringFromTheScaleOfTurns) {
   EXPECT_THAT(not_observable(result), ::testing::AnyOf(::testing::Contains("steering_rad_per_m"), ::testing::Contains("turn_scale")));
 }
 
-TEST(Calibrate, FewerThanTwentyStretchesAreRefused) {
+TEST(Calibrate, FewerThanTwentySegmentsAreRefused) {
   try {
     calibrate(record(wandering(95), 5, kWorn, kNoise, 1), {}, {});
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "too little to calibrate from: 19 stretches of the way, must be at least 20");
+    EXPECT_STREQ(error.what(), "calibration needs at least 20 motion segments, got 19");
   }
 }
 

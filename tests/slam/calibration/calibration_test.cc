@@ -12,7 +12,7 @@ using test::Pose2Near;
 
 constexpr double kExactTol = 1e-12;
 
-TEST(CorrectedStep, AMetreOfSteeringByATenthBendsTheWayToAnArcOfTenMetres) {
+TEST(CorrectedStep, AMeterOfSteeringByATenthBendsTheWayToAnArcOfTenMeters) {
   const Pose2 arc{std::cos(0.05), std::sin(0.05), 0.1};  // a chord of 1 m
   EXPECT_THAT(corrected_step({1.0, 0.0, 0.0}, {.steering_bias_rad_per_m = 0.1}), Pose2Near(arc, kExactTol, kExactTol));
   const Pose2 back{-std::cos(0.05), std::sin(0.05), -0.1};

@@ -11,7 +11,7 @@
 
 namespace patrol::test {
 
-/// A lidar a quarter of a metre ahead of the body and turned by two degrees, on wheels whose way is 3 % too short and whose turn 10 % too large.
+/// A lidar a quarter of a meter ahead of the body and turned by two degrees, on wheels whose way is 3 % too short and whose turn 10 % too large.
 inline const slam::Calibration kWorn{.override_lidar_pose = true,
                                      .lidar_x_m = 0.25,
                                      .lidar_y_m = -0.04,

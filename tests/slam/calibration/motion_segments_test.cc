@@ -8,7 +8,7 @@
 #include "tests/slam/graph/office_world.h"
 #include "tests/support/pose_near.h"
 
-namespace patrol::slam::motion_pairs_test {
+namespace patrol::slam::motion_segments_test {
 namespace {
 
 /// What a lidar sees in a world of walls, all round.
@@ -47,7 +47,7 @@ std::vector<MotionSegment> pairs_of(const std::vector<RecordedScan>& log, const 
 
 const std::vector<Eigen::Vector2d> kRound = {{8.0, 4.2}, {20.0, 4.2}, {20.0, 3.9}, {30.0, 4.4}, {39.8, 4.2}, {39.8, 12.0}, {40.0, 25.8}, {30.0, 25.8}};
 
-TEST(MotionSegmenter, StretchesAreHalfAMetreOrAThirdOfARadianAndTheLidarsOwn) {
+TEST(MotionSegmenter, StretchesAreHalfAMeterOrAThirdOfARadianAndTheLidarsOwn) {
   const std::vector<RecordedScan> log = drive(test::make_office(), {{8.0, 4.2}, {14.0, 4.2}, {14.0, 4.8}}, test::kWorn, 1);
   const std::vector<MotionSegment> pairs = pairs_of(log, {});
   EXPECT_NEAR(static_cast<double>(pairs.size()), 6.0 / 0.6 + 1.57 / 0.36 + 1.0, 2.0);
@@ -60,7 +60,7 @@ TEST(MotionSegmenter, StretchesAreHalfAMetreOrAThirdOfARadianAndTheLidarsOwn) {
   EXPECT_NEAR(std::atan2(pairs[3].lidar().y, pairs[3].lidar().x), to_rad(-2.0), 0.005);
 }
 
-// The lidar's own motion from its first beam to its last is not the body's: a quarter of a metre ahead it moves sideways while the body turns on the spot.
+// The lidar's own motion from its first beam to its last is not the body's: a quarter of a meter ahead it moves sideways while the body turns on the spot.
 TEST(MotionSegmenter, BeamsThatWereFiredLaterAreSeenFromWhereTheLidarWas) {
   const test::RoomWorld office = test::make_office();
   Calibration worn;
@@ -101,7 +101,7 @@ TEST(MotionSegmenter, AlongABareCorridorTheLidarsMotionIsSaidToBeUnknown) {
   EXPECT_EQ(result.parameters[3].value, 1.0);
 }
 
-// From scans to the six numbers, the second pass with what the first found; errors in centimetres and thousandths, and in standard deviations: the root mean square of
+// From scans to the six numbers, the second pass with what the first found; errors in centimeters and thousandths, and in standard deviations: the root mean square of
 // 30 is 1 to about sqrt(1/60) = 0.13 where they are independent, which those of one drive are not.
 TEST(MotionSegmenter, ADriveThroughAnOfficeCalibratesItsLidarAndWheels) {
   const test::RoomWorld office = test::make_office();
@@ -133,4 +133,4 @@ TEST(MotionSegmenter, ADriveThroughAnOfficeCalibratesItsLidarAndWheels) {
 }
 
 }  // namespace
-}  // namespace patrol::slam::motion_pairs_test
+}  // namespace patrol::slam::motion_segments_test

@@ -19,7 +19,7 @@ Eigen::Matrix3d wall(double normal_rad, const Eigen::Vector2d& center, int count
   return sum;
 }
 
-TEST(OpenDirection, OfTwoParallelWallsIsAlongThem) {
+TEST(DegenerateDirection, OfTwoParallelWallsIsAlongThem) {
   const double heading = 0.7;  // of the walls
   const Eigen::Vector2d across(-std::sin(heading), std::cos(heading));
   const Eigen::Matrix3d corridor = wall(heading + M_PI / 2, across, 100) + wall(heading + M_PI / 2, -across, 100);
@@ -29,14 +29,14 @@ TEST(OpenDirection, OfTwoParallelWallsIsAlongThem) {
 }
 
 // An end wall of one point in fifty says a fiftieth of what the sides say: on either side of a threshold.
-TEST(OpenDirection, IsNoneWhereAnEndWallSaysEnough) {
+TEST(DegenerateDirection, IsNoneWhereAnEndWallSaysEnough) {
   const Eigen::Matrix3d sides = wall(M_PI / 2, {0.0, 1.0}, 100) + wall(M_PI / 2, {0.0, -1.0}, 100), end = wall(0.0, {5.0, 0.0}, 4);
   EXPECT_FALSE(degenerate_direction(sides + end, 0.015));
   EXPECT_TRUE(degenerate_direction(sides + end, 0.025));
   EXPECT_FALSE(degenerate_direction(Eigen::Matrix3d::Zero(), 0.02));
 }
 
-TEST(WithoutDirection, NothingIsLeftAlongItAndAllAcross) {
+TEST(ProjectOut, NothingIsLeftAlongItAndAllAcross) {
   const Eigen::Matrix3d information = wall(0.3, {4.0, 1.0}, 30) + wall(1.7, {-1.0, 3.0}, 20);
   const Eigen::Vector2d along(std::cos(0.4), std::sin(0.4)), across(-along.y(), along.x());
   const Eigen::Matrix3d rest = project_out(information, along);

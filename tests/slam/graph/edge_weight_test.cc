@@ -11,7 +11,7 @@ TEST(EdgeInformation, AMatchOfCountlessPointsIsAsSureAsItsSystematicError) {
   EXPECT_NEAR(information(2, 2), 1.0 / (0.002 * 0.002), 100.0);
 }
 
-TEST(EdgeInformation, WhereTheMatchSaysNothingTenMetresAreLeftOpen) {
+TEST(EdgeInformation, WhereTheMatchSaysNothingTenMetersAreLeftOpen) {
   Eigen::Matrix3d corridor = Eigen::Matrix3d::Zero();
   corridor(1, 1) = corridor(2, 2) = 1e6;
   const Eigen::Matrix3d information = edge_information(corridor, 0.02, 0.002);

@@ -31,15 +31,15 @@ double rms_error_m(const MappedDrive& mapped) {
   return std::sqrt(sum / static_cast<double>(path.size()));
 }
 
-// 125 m and a bit of corridor; odometry alone turns by a radian and ends tens of metres off.
-TEST(GraphSlam, ARoundOfTheOfficeClosesToThreeCentimetres) {
+// 125 m and a bit of corridor; odometry alone turns by a radian and ends tens of meters off.
+TEST(GraphSlam, ARoundOfTheOfficeClosesToThreeCentimeters) {
   const MappedDrive mapped = map_rounds(test::make_office(), test::office_rounds(1), {});
   EXPECT_LT(rms_error_m(mapped), 0.03);
   EXPECT_GE(mapped.slam.loop_closure_statistics().closed, 1);
   EXPECT_EQ(mapped.slam.path().size(), mapped.drive.size());
 }
 
-TEST(GraphSlam, EveryLoopThatItClosesIsTrueToFiveCentimetres) {
+TEST(GraphSlam, EveryLoopThatItClosesIsTrueToFiveCentimeters) {
   const MappedDrive mapped = map_rounds(test::make_office(), test::office_rounds(2), {});
   const std::vector<Pose2>& nodes = mapped.slam.graph().T_map_node;
   int loops = 0;
@@ -97,7 +97,7 @@ std::vector<SlamUpdate> follow_corridor(const GraphSlamSettings& settings, Graph
 }
 
 // Odometry alone is 1.2 m off at the end.
-TEST(GraphSlam, AlongASmoothCorridorRangesHoldItToTenCentimetresAndWithoutThemOdometryIsBelieved) {
+TEST(GraphSlam, AlongASmoothCorridorRangesHoldItToTenCentimetersAndWithoutThemOdometryIsBelieved) {
   for (const bool has_ranges : {true, false}) {
     GraphSlamSettings settings;
     settings.ranges.enabled = has_ranges;

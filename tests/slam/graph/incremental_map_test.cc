@@ -4,7 +4,7 @@
 
 #include "tests/slam/graph/office_world.h"
 
-namespace patrol::slam::live_map_test {
+namespace patrol::slam::incremental_map_test {
 namespace {
 
 /// Scans along a room of 8 m x 4 m.
@@ -65,8 +65,8 @@ TEST(IncrementalMap, IsDrawnAnewWhenAKeyframeHasMovedFartherThanIsBorne) {
   EXPECT_EQ(hits_in(moved), hits_in(IncrementalMap({}).render(drive.keyframes, drive.poses, 0.0)));
 }
 
-// A hundredth of a radian swings what is ten metres away by 0.1 m.
-TEST(IncrementalMap, ATurnCountsByWhatItMovesTenMetresAway) {
+// A hundredth of a radian swings what is ten meters away by 0.1 m.
+TEST(IncrementalMap, ATurnCountsByWhatItMovesTenMetersAway) {
   Drive drive;
   drive.go_to(0.0), drive.go_to(0.5);
   IncrementalMap live({});
@@ -84,4 +84,4 @@ TEST(IncrementalMap, ATurnCountsByWhatItMovesTenMetresAway) {
 }
 
 }  // namespace
-}  // namespace patrol::slam::live_map_test
+}  // namespace patrol::slam::incremental_map_test

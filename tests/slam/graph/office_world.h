@@ -21,7 +21,7 @@ inline RoomWorld make_office() {
   const RandomStream layout(7, "test/office");
   std::uint64_t draw = 0;
   const auto uniform = [&](double low, double high) { return low + (high - low) * layout.uniform(draw++); };
-  // A wall from `from` along `along`, with an office behind it (on the side of `out`) every four metres or so.
+  // A wall from `from` along `along`, with an office behind it (on the side of `out`) every four meters or so.
   const auto add_offices = [&](const Eigen::Vector2d& from, const Eigen::Vector2d& along, const Eigen::Vector2d& out, double length, double depth) {
     const auto at = [&](double a, double o) -> Eigen::Vector2d { return from + a * along + o * out; };
     for (double s = 0.0; s < length - 2.5;) {
@@ -44,7 +44,7 @@ inline RoomWorld make_office() {
   return office;
 }
 
-/// A corridor of 60 m with a door niche every three metres on both sides, all alike, closed at both ends.
+/// A corridor of 60 m with a door niche every three meters on both sides, all alike, closed at both ends.
 inline RoomWorld make_corridor_of_doors() {
   RoomWorld corridor;
   for (const double side : {-1.0, 1.0}) {
@@ -115,7 +115,7 @@ inline std::vector<Eigen::Vector2d> office_rounds(int rounds) {
   return corners;
 }
 
-/// As old laser scanners saw: a beam a degree, centimetre noise.
-inline constexpr RoomWorld::ScanOptions kOldLidar{.beams = 360, .range_max_m = 30.0, .no_return_free_m = 6.0, .range_std_m = 0.01};
+/// As old laser scanners saw: a beam a degree, centimeter noise.
+inline constexpr RoomWorld::ScanOptions kOldLidar{.beams = 360, .range_max_m = 30.0, .no_return_clearing_range_m = 6.0, .range_std_m = 0.01};
 
 }  // namespace patrol::test

@@ -58,7 +58,7 @@ TEST(SolvePoseGraph, ThreeMeasurementsShareTheirContradictionEqually) {
   EXPECT_NEAR(solution.final_cost, 0.5 * 3.0 * 0.1 * 0.1, 1e-9);
 }
 
-TEST(SolvePoseGraph, EdgesWithoutErrorBringARingOfFortyBackFromMetresOff) {
+TEST(SolvePoseGraph, EdgesWithoutErrorBringARingOfFortyBackFromMetersOff) {
   const PoseGraph truth = make_ring(40);
   PoseGraph graph = truth;
   graph.edges.push_back(true_edge(truth, 39, 0, Kind::kMatch));
@@ -79,7 +79,7 @@ TEST(SolvePoseGraph, TheFirstNodeStaysWhereItIs) {
 }
 
 // Five loop closures are right, one joins two places 20 m apart. As a plain edge it tears the ring apart.
-TEST(SolvePoseGraph, OneFalseClosureAmongSixMovesNoNodeByTwoCentimetresAndWithoutItsKernelByMetres) {
+TEST(SolvePoseGraph, OneFalseClosureAmongSixMovesNoNodeByTwoCentimetersAndWithoutItsKernelByMeters) {
   const PoseGraph truth = make_ring(40);
   for (const Kind kind : {Kind::kLoop, Kind::kMatch}) {
     PoseGraph graph = truth;
@@ -105,7 +105,7 @@ TEST(SolvePoseGraph, AnEdgeToANodeThatIsNotThereThrows) {
   EXPECT_THROW(solve(graph, {}), std::invalid_argument);
 }
 
-/// A metre apart along x; edges say `step_m`.
+/// A meter apart along x; edges say `step_m`.
 PoseGraph make_line(int num_nodes, double step_m) {
   PoseGraph graph;
   for (int i = 0; i < num_nodes; ++i) {
@@ -173,7 +173,7 @@ TEST(SolvePoseGraph, NodesBeforeTheFirstFreeOneStayAndTheOthersAreSolvedBesideTh
   for (int i = 5; i < 8; ++i) EXPECT_NEAR(graph.T_map_node[static_cast<std::size_t>(i)].x, 4.0 + 1.1 * (i - 4), 1e-6);
 }
 
-TEST(EdgeError, IsInTheFrameOfItsFirstNodeAndWrapsTheAngle) {
+TEST(EdgeResidual, IsInTheFrameOfItsFirstNodeAndWrapsTheAngle) {
   const std::vector<Pose2> nodes = {{1.0, 1.0, 0.5 * std::numbers::pi}, {1.0, 4.0, -3.0}};
   const PoseGraphEdge edge{.from = 0, .to = 1, .T_from_to = {2.5, 0.1, 1.7}, .information = Eigen::Vector3d(1.0, 4.0, 9.0).asDiagonal()};
   const Eigen::Vector3d error = edge_residual(edge, nodes);

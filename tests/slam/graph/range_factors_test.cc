@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patrol::slam::node_ranges_test {
+namespace patrol::slam::range_factors_test {
 namespace {
 
 const UwbAnchor kAnchor{.number = 3, .p_m = {10.0, 0.0, 1.0}};
@@ -40,4 +40,4 @@ TEST(RangeFactors, EveryNodeAndEveryAnchorHasItsOwn) {
 }
 
 }  // namespace
-}  // namespace patrol::slam::node_ranges_test
+}  // namespace patrol::slam::range_factors_test

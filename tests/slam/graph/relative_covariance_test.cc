@@ -8,14 +8,14 @@
 #include "core/random.h"
 #include "tests/support/pose_near.h"
 
-namespace patrol::slam::way_uncertainty_test {
+namespace patrol::slam::relative_covariance_test {
 namespace {
 
 constexpr double kExactTol = 1e-12;
 
 Eigen::Matrix3d diagonal(double x, double y, double yaw) { return Eigen::Vector3d(x, y, yaw).asDiagonal(); }
 
-/// Places a metre apart along x.
+/// Places a meter apart along x.
 std::vector<Pose2> make_line(int count) {
   std::vector<Pose2> line;
   for (int i = 0; i < count; ++i) line.push_back({static_cast<double>(i), 0.0, 0.0});
@@ -23,7 +23,7 @@ std::vector<Pose2> make_line(int count) {
 }
 
 // From the origin, looking along y, with a tenth of a radian of doubt: 2 m ahead that is 0.2 m to the left, along -x; the way's own 0.3 m is ahead, along y.
-TEST(CarriedOn, AHeadingsDoubtSwingsTheWayAndTheWaysOwnIsTurnedWithIt) {
+TEST(ComposeCovariance, AHeadingsDoubtSwingsTheWayAndTheWaysOwnIsTurnedWithIt) {
   const PoseGaussian here{.mean = {0.0, 0.0, 0.5 * std::numbers::pi}, .covariance = diagonal(0.0, 0.0, 0.01)};
   const Eigen::Matrix3d there = compose_covariance(here, {0.0, 2.0, 0.5 * std::numbers::pi}, diagonal(0.09, 0.0, 0.0));
   EXPECT_NEAR(there(0, 0), 0.04, kExactTol);
@@ -33,7 +33,7 @@ TEST(CarriedOn, AHeadingsDoubtSwingsTheWayAndTheWaysOwnIsTurnedWithIt) {
 }
 
 // Step i of n errs by a yaw that moves the end sideways by its rest: the variance is sigma^2 (1^2 + ... + (n-1)^2) + n q.
-TEST(PositionsFrom, AHeadingThatWandersOverTenMetresSpreadsTheEndAsTheSumOfSquares) {
+TEST(ShortestPathDistributions, AHeadingThatWandersOverTenMetersSpreadsTheEndAsTheSumOfSquares) {
   std::vector<CovarianceEdge> covariance_edges;
   for (int i = 0; i < 10; ++i) covariance_edges.push_back({i, i + 1, diagonal(0.01, 0.02, 0.001)});
   const PoseGaussian end = shortest_path_distributions(0, make_line(11), covariance_edges)[10];
@@ -44,7 +44,7 @@ TEST(PositionsFrom, AHeadingThatWandersOverTenMetresSpreadsTheEndAsTheSumOfSquar
   EXPECT_NEAR(end.covariance(1, 2), 0.001 * 45.0, kExactTol);
 }
 
-TEST(PositionsFrom, ALoopsShortCutIsTakenAndWhatNoWayLeadsToIsInfinitelyUncertain) {
+TEST(ShortestPathDistributions, ALoopsShortCutIsTakenAndWhatNoWayLeadsToIsInfinitelyUncertain) {
   std::vector<CovarianceEdge> covariance_edges;
   for (int i = 0; i < 9; ++i) covariance_edges.push_back({i, i + 1, diagonal(0.01, 0.01, 0.0)});
   covariance_edges.push_back({9, 1, diagonal(1e-4, 1e-4, 0.0)});
@@ -56,7 +56,7 @@ TEST(PositionsFrom, ALoopsShortCutIsTakenAndWhatNoWayLeadsToIsInfinitelyUncertai
 }
 
 // A thousand draws of T_b_a, each turned round.
-TEST(InverseOf, IsTheCovarianceOfPosesThatAreTurnedRound) {
+TEST(Invert, IsTheCovarianceOfPosesThatAreTurnedRound) {
   const PoseGaussian pose{.mean = {3.0, -2.0, 2.5}, .covariance = diagonal(4e-4, 1e-4, 2.5e-5)};
   const PoseGaussian inverse = invert(pose);
   const RandomStream draws(1, "test/inverse");
@@ -73,9 +73,9 @@ TEST(InverseOf, IsTheCovarianceOfPosesThatAreTurnedRound) {
   EXPECT_LT((invert(inverse).covariance - pose.covariance).norm(), kExactTol);
 }
 
-TEST(Turned, AQuarterTurnSwapsTheVariancesOfXAndY) {
+TEST(RotateCovariance, AQuarterTurnSwapsTheVariancesOfXAndY) {
   EXPECT_LT((rotate_covariance(diagonal(1.0, 4.0, 9.0), 0.5 * std::numbers::pi) - diagonal(4.0, 1.0, 9.0)).norm(), kExactTol);
 }
 
 }  // namespace
-}  // namespace patrol::slam::way_uncertainty_test
+}  // namespace patrol::slam::relative_covariance_test

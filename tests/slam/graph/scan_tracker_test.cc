@@ -40,13 +40,13 @@ const std::vector<test::DriveStep>& corridor_drive() {
   return drive;
 }
 
-TEST(ScanTracker, FollowsTwelveMetresToTwoCentimetresWithOdometryThatIsTenPercentTooLong) {
+TEST(ScanTracker, FollowsTwelveMetersToTwoCentimetersWithOdometryThatIsTenPercentTooLong) {
   const auto tracked = track(corridor_drive(), [](std::size_t, const Pose2& motion) { return Pose2{1.1 * motion.x, motion.y, motion.yaw + 0.002}; });
   EXPECT_LT(worst_error_m(corridor_drive(), tracked), 0.02);
 }
 
-// Twelve centimetres a scan: wheels that report forwards for backwards, that stand still, that spin.
-TEST(ScanTracker, OdometryThatLiesForTwoMetresCostsNoMoreThanThreeCentimetres) {
+// Twelve centimeters a scan: wheels that report forwards for backwards, that stand still, that spin.
+TEST(ScanTracker, OdometryThatLiesForTwoMetersCostsNoMoreThanThreeCentimeters) {
   const auto lies = [](std::size_t k) { return k >= 40 && k < 57; };
   for (const double factor : {-1.0, 0.0, 3.0}) {
     const auto tracked = track(corridor_drive(), [&](std::size_t k, const Pose2& motion) { return lies(k) ? Pose2{factor * motion.x, 0.0, motion.yaw} : motion; });
@@ -71,7 +71,7 @@ TEST(ScanTracker, AlongASmoothCorridorOdometryIsBelievedAndTheCovarianceSaysSo) 
   EXPECT_LT(std::sqrt(tracked.covariance(1, 1)), 0.003);
 }
 
-TEST(ScanTracker, KeyframesComeEveryQuarterMetreAndSubmapsEveryThirtyKeyframes) {
+TEST(ScanTracker, KeyframesComeEveryQuarterMeterAndSubmapsEveryThirtyKeyframes) {
   const auto tracked = track(corridor_drive(), [](std::size_t, const Pose2& motion) { return motion; });
   int keyframes = 0, submaps = 0;
   for (const TrackedScan& scan : tracked) {

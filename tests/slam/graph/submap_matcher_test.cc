@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/slam/graph/drawn_submap.h"
+#include "tests/slam/graph/rendered_submap.h"
 #include "tests/slam/graph/office_world.h"
 #include "tests/support/pose_near.h"
 
@@ -19,7 +19,7 @@ const Pose2 kThere{8.0, 4.2, 0.0};                          ///< where the first
 const Pose2 kBack{17.0, 4.3, std::numbers::pi};             ///< the second comes back
 const Pose2 kTruth = kThere.inverse() * kBack;
 
-TEST(MatchSubmaps, JoinsAWayAndItsReturnToTwoCentimetresFromAMetreAndElevenDegreesOff) {
+TEST(MatchSubmaps, JoinsAWayAndItsReturnToTwoCentimetersFromAMeterAndElevenDegreesOff) {
   const test::RoomWorld office = test::make_office();
   const RenderedSubmap target = drive_past(office, {{8.0, 4.2}, {16.0, 4.2}}, 1), source = drive_past(office, {{17.0, 4.3}, {9.0, 4.1}}, 2);
   const Pose2 off{kTruth.x + 0.8, kTruth.y - 0.6, kTruth.yaw + 0.2 - 0.025};  // the second way bears 0.025 rad to the left
@@ -38,7 +38,7 @@ TEST(MatchSubmaps, PlacesOnOppositeSidesOfTheBuildingAreNotJoinedWhereverTheyAre
   }
 }
 
-// Doors every 3 m, all alike: with a metre of doubt only one place fits, with three metres there are several, and none is taken.
+// Doors every 3 m, all alike: with a meter of doubt only one place fits, with three meters there are several, and none is taken.
 TEST(MatchSubmaps, AmongIdenticalDoorsAMatchIsTakenOnlyWhereNoOtherCanBeMeant) {
   const test::RoomWorld corridor = test::make_corridor_of_doors();
   const RenderedSubmap target = drive_past(corridor, {{22.0, 0.0}, {30.0, 0.0}}, 1), source = drive_past(corridor, {{23.0, 0.1}, {31.0, 0.1}}, 2);

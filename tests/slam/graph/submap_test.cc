@@ -6,7 +6,7 @@
 #include <set>
 #include <utility>
 
-#include "tests/slam/graph/drawn_submap.h"
+#include "tests/slam/graph/rendered_submap.h"
 
 namespace patrol::slam::submap_test {
 namespace {

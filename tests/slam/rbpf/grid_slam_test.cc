@@ -81,7 +81,7 @@ Outcome walk_street(std::uint64_t seed, const GridSlamSettings& settings = {},
 
 // 182 m. Over five seeds the errors were 0.020 ... 0.046 m RMS, 0.001 ... 0.008 m at the end, 0.01 ... 0.07
 // deg RMS, and 0.024 ... 0.039 m at the walls.
-TEST(GridSlam, WalksTheStreetAndBackToWithinSixCentimetresRms) {
+TEST(GridSlam, WalksTheStreetAndBackToWithinSixCentimetersRms) {
   const Outcome walk = walk_street(1);
   EXPECT_GT(walk.odometry_end_error_m, 4.0);
   EXPECT_LT(walk.rmse_m, 0.06);
@@ -89,12 +89,12 @@ TEST(GridSlam, WalksTheStreetAndBackToWithinSixCentimetresRms) {
   EXPECT_LT(walk.end_error_m, 0.03);
   EXPECT_LT(walk.heading_rmse_rad, 0.1 * kDegree);
   EXPECT_LT(walk.wall_mean_m, 0.05);
-  EXPECT_GT(walk.num_occupied, 7000U) << "about 440 m of walls seen, 20 cells a metre";
+  EXPECT_GT(walk.num_occupied, 7000U) << "about 440 m of walls seen, 20 cells a meter";
   EXPECT_TRUE(walk.resampled);
 }
 
 // 36 m. FastSLAM as the papers start from: the particles' own spread is the map's error.
-TEST(GridSlam, DrawnFromOdometryItMapsTheStreetToTwentyCentimetresWithAndWithoutASwarm) {
+TEST(GridSlam, DrawnFromOdometryItMapsTheStreetToTwentyCentimetersWithAndWithoutASwarm) {
   for (const char* optimizer : {"none", "iscso"}) {
     GridSlamSettings settings = with_particles(15);
     settings.proposal = "motion";
@@ -105,7 +105,7 @@ TEST(GridSlam, DrawnFromOdometryItMapsTheStreetToTwentyCentimetresWithAndWithout
   }
 }
 
-TEST(GridSlam, AnOptimiserWithNothingToMoveIsRefused) {
+TEST(GridSlam, AnOptimizerWithNothingToMoveIsRefused) {
   GridSlamSettings settings;
   settings.optimizer = "iscso";
   EXPECT_THROW(GridSlam(settings, 1), InputError);
@@ -124,11 +124,11 @@ TEST(GridSlam, SameSeedGivesTheSamePosesToTheLastBitAndAnotherSeedOthers) {
   EXPECT_FALSE(all_equal(once, other));
 }
 
-TEST(GridSlam, OneParticleStillTracksTwentyMetresToFiveCentimetres) {
+TEST(GridSlam, OneParticleStillTracksTwentyMetersToFiveCentimeters) {
   EXPECT_LT(walk_street(1, with_particles(1), 125).max_error_m, 0.05);
 }
 
-TEST(GridSlam, WritesKeyframesEveryHalfMetreAndAtTheStart) {
+TEST(GridSlam, WritesKeyframesEveryHalfMeterAndAtTheStart) {
   GridSlamSettings settings;
   settings.keyframe_distance_m = 0.5;
   settings.keyframe_angle_rad = 3.0;
@@ -233,7 +233,7 @@ TEST(GridSlam, RefusesASettingByName) {
     GridSlam slam(with_particles(0), 1);
     FAIL() << "accepted";
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "slam.particles = 0: must lie in 1 ... 10000");
+    EXPECT_STREQ(error.what(), "slam.rbpf.particles = 0: must be in [1, 10000]");
   }
 }
 

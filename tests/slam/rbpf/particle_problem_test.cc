@@ -9,7 +9,7 @@
 #include "slam/scan_integration.h"
 #include "tests/slam/street_walk.h"
 
-namespace patrol::slam::grid_step_test {
+namespace patrol::slam::particle_problem_test {
 namespace {
 
 /// A map of the street's first sights, and a scan from where the walk begins.
@@ -94,4 +94,4 @@ TEST(ScanLogLikelihood, IsGreatestNearTheTruthAndLeavingTheMapDoesNotPay) {
 }
 
 }  // namespace
-}  // namespace patrol::slam::grid_step_test
+}  // namespace patrol::slam::particle_problem_test

@@ -39,7 +39,7 @@ Proposal propose(const PoseGaussian& prediction, double gain) {
   return laplace_proposal(make_map(), look(), prediction.mean, prediction, gain, {});
 }
 
-TEST(ProposeFromScan, GoesToTheMatchAndIsSurerThanOdometry) {
+TEST(LaplaceProposal, GoesToTheMatchAndIsSurerThanOdometry) {
   const PoseGaussian prediction = around({kTruth.x + 0.05, kTruth.y - 0.03, kTruth.yaw + 0.02});
   const Proposal proposal = propose(prediction, 0.02);
   EXPECT_THAT(proposal.posterior.mean, Pose2Near(kTruth, 0.005, 0.002));
@@ -49,7 +49,7 @@ TEST(ProposeFromScan, GoesToTheMatchAndIsSurerThanOdometry) {
 }
 
 // Sigma^-1 = P^-1 + g H for two gains: the difference over the gains' is H, and at g = 0 only P is left.
-TEST(ProposeFromScan, InformationGrowsInProportionToTheGain) {
+TEST(LaplaceProposal, InformationGrowsInProportionToTheGain) {
   const PoseGaussian prediction = around(kTruth);
   const Eigen::Matrix3d P_inverse = prediction.covariance.inverse();
   const Eigen::Matrix3d once = propose(prediction, 0.01).posterior.covariance.inverse() - P_inverse;
@@ -58,7 +58,7 @@ TEST(ProposeFromScan, InformationGrowsInProportionToTheGain) {
   EXPECT_TRUE(propose(prediction, 0.0).posterior.covariance.isApprox(prediction.covariance, 1e-9));
 }
 
-TEST(ProposeFromScan, WithoutAMapStaysWithOdometry) {
+TEST(LaplaceProposal, WithoutAMapStaysWithOdometry) {
   const PoseGaussian prediction = around({0.5, 0.0, 0.0});
   const Proposal proposal =
       laplace_proposal(GridMap(0.05, 100.0), look(), prediction.mean, prediction, 0.02, {});
@@ -69,7 +69,7 @@ TEST(ProposeFromScan, WithoutAMapStaysWithOdometry) {
 }
 
 // Two predictions, one right and one 10 cm (one standard deviation) off: same match, weight lower by 1/2.
-TEST(ProposeFromScan, OneStandardDeviationOffCostsHalfANat) {
+TEST(LaplaceProposal, OneStandardDeviationOffCostsHalfANat) {
   const double right = propose(around(kTruth), 0.02).log_weight_increment;
   const double off = propose(around({kTruth.x + 0.1, kTruth.y, kTruth.yaw}), 0.02).log_weight_increment;
   EXPECT_NEAR(right - off, 0.5, 0.05);

@@ -8,7 +8,7 @@
 #include "tests/slam/graph/office_world.h"
 #include "tests/support/pose_near.h"
 
-namespace patrol::slam::tracked_rbpf_test {
+namespace patrol::slam::scan_odometry_rbpf_test {
 namespace {
 
 const std::vector<test::DriveStep>& short_drive() {
@@ -34,7 +34,7 @@ double worst_error_m(const std::vector<Pose2>& path) {
   return worst;
 }
 
-TEST(ScanOdometryRbpf, FollowsTenMetresToThreeCentimetresAndKeepsAPoseForEveryScan) {
+TEST(ScanOdometryRbpf, FollowsTenMetersToThreeCentimetersAndKeepsAPoseForEveryScan) {
   ScanOdometryRbpf rbpf({}, 1);
   map_drive(rbpf);
   EXPECT_EQ(rbpf.path().size(), short_drive().size());
@@ -44,7 +44,7 @@ TEST(ScanOdometryRbpf, FollowsTenMetresToThreeCentimetresAndKeepsAPoseForEverySc
 
 // With `odometry: given` the filter sees the odometry itself: no matching from scan to scan comes before.
 TEST(ScanOdometryRbpf, WithGivenOdometryIsTheFilterAlone) {
-  ScanOdometryRbpfSettings settings{.odometry = "given", .tracking = {}};
+  ScanOdometryRbpfSettings settings{.odometry = "given", .scan_odometry = {}};
   ScanOdometryRbpf rbpf(settings, 1);
   TrajectoryRbpf filter(settings.filter, 1);
   map_drive(rbpf);
@@ -55,7 +55,7 @@ TEST(ScanOdometryRbpf, WithGivenOdometryIsTheFilterAlone) {
   EXPECT_THROW(ScanOdometryRbpf(settings, 1), InputError);
 }
 
-TEST(MakeMapper, EveryMethodFollowsTenMetresToFourCentimetres) {
+TEST(MakeMapper, EveryMethodFollowsTenMetersToFourCentimeters) {
   for (const std::string& method : names_of(mapping_methods())) {
     MapperSettings settings;
     settings.method = method;
@@ -83,4 +83,4 @@ TEST(TrajectoryNode, AWayOfAMillionStepsIsLetGo) {
 }
 
 }  // namespace
-}  // namespace patrol::slam::tracked_rbpf_test
+}  // namespace patrol::slam::scan_odometry_rbpf_test

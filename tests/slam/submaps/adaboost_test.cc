@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kExactTol = 1e-12;  // algebra
 
-/// Points in the square of 2 m about the origin, labelled by a rule; `flips` of them wrongly.
+/// Points in the square of 2 m about the origin, labeled by a rule; `flips` of them wrongly.
 LabeledFeatures make_square(int count, const std::function<bool(double, double)>& is_positive, double flips = 0.0) {
   const RandomStream random(7, "test/adaboost");
   LabeledFeatures training{.names = {"x", "y"}, .examples = {}, .labels = {}};
@@ -57,7 +57,7 @@ TEST(AdaBoost, ThreeStumpsSeparateWhatNoneDoesAlone) {
   EXPECT_EQ(num_wrong(result.model, training), 0);
 }
 
-TEST(AdaBoost, ABoxInASquareIsLearntWithoutAMistakeByThirtyStumps) {
+TEST(AdaBoost, ABoxInASquareIsLearnedWithoutAMistakeByThirtyStumps) {
   const LabeledFeatures training = make_square(400, in_box);
   const BoostingResult result = train_adaboost(training, {.rounds = 30});
   EXPECT_EQ(result.training_error, 0.0);
@@ -172,12 +172,12 @@ TEST(AdaBoost, WrongExamplesAreRefusedByName) {
     }
     return "";
   };
-  EXPECT_EQ(complaint([](auto& t) { t.labels.pop_back(); }), "adaboost: there are 2 examples and 1 labels");
-  EXPECT_EQ(complaint([](auto& t) { t.examples[1] = {1.0}; }), "adaboost: example 1 has 1 features: must have 2");
+  EXPECT_EQ(complaint([](auto& t) { t.labels.pop_back(); }), "adaboost: 2 examples and 1 labels: numbers must be equal");
+  EXPECT_EQ(complaint([](auto& t) { t.examples[1] = {1.0}; }), "adaboost: example 1: 1 features: must be 2");
   EXPECT_EQ(complaint([](auto& t) { t.examples[1][1] = std::nan(""); }), "adaboost: example 1: y = nan: must be finite");
   EXPECT_EQ(complaint([](auto& t) { t.labels[0] = 0; }), "adaboost: example 0: label = 0: must be +1 or -1");
-  EXPECT_EQ(complaint([](auto& t) { t.labels[0] = -1; }), "adaboost: there is no example with label 1");
-  EXPECT_EQ(complaint([](auto& t) { t = {.names = {"x"}, .examples = {}, .labels = {}}; }), "adaboost: there is no example with label 1");
+  EXPECT_EQ(complaint([](auto& t) { t.labels[0] = -1; }), "adaboost: no example has label 1: both labels are required");
+  EXPECT_EQ(complaint([](auto& t) { t = {.names = {"x"}, .examples = {}, .labels = {}}; }), "adaboost: no example has label 1: both labels are required");
 }
 
 }  // namespace

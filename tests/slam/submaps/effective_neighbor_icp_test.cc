@@ -9,7 +9,7 @@
 #include "tests/support/pose_near.h"
 #include "tests/support/submap_points.h"
 
-namespace patrol::slam::effective_neighbour_icp_test {
+namespace patrol::slam::effective_neighbor_icp_test {
 namespace {
 
 using test::make_yard, test::Pose2Near, test::RoomWorld, test::sample_walls;
@@ -95,7 +95,7 @@ TEST(FitRigidMotion, IsTheLeastSquaresMotion) {
   }
 }
 
-TEST(AlignIcp, RecoversAMotionToANanometreWhereEveryPointHasItsPartner) {
+TEST(AlignIcp, RecoversAMotionToANanometerWhereEveryPointHasItsPartner) {
   const Points source = test::yard_source_right_of(-100.0);
   Points target;
   for (const auto& p : source) target.push_back(kTruth * p);
@@ -109,14 +109,14 @@ TEST(AlignIcp, RecoversAMotionToANanometreWhereEveryPointHasItsPartner) {
   }
 }
 
-// Where the target ends, the source's farther points pull plain ICP away by metres; the effective neighbours stay within a decimetre as the paper has
+// Where the target ends, the source's farther points pull plain ICP away by meters; the effective neighbors stay within a decimeter as the paper has
 // them, and within 2 cm with the lines.
 struct PartOverlap {
   double share, target_left_of_m;
 };
 class PartlyOverlapping : public ::testing::TestWithParam<PartOverlap> {};
 
-TEST_P(PartlyOverlapping, PlainIcpIsMetresOffAndEffectiveNeighboursAreNot) {
+TEST_P(PartlyOverlapping, PlainIcpIsMetersOffAndEffectiveNeighborsAreNot) {
   const Points target = test::yard_target_left_of(GetParam().target_left_of_m), source = test::yard_source_right_of(-3.0);
   const auto has_partner = [&](const auto& p) { return std::ranges::any_of(target, [&](const auto& q) { return (kTruth * p - q).norm() < 0.15; }); };
   ASSERT_NEAR(static_cast<double>(std::ranges::count_if(source, has_partner)) / static_cast<double>(source.size()), GetParam().share, 0.02);
@@ -205,4 +205,4 @@ TEST(AlignIcp, WithoutEnoughPointsThereIsNoMatch) {
 }
 
 }  // namespace
-}  // namespace patrol::slam::effective_neighbour_icp_test
+}  // namespace patrol::slam::effective_neighbor_icp_test

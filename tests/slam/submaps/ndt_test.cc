@@ -90,7 +90,7 @@ TEST(NdtGrid, TheScoreHasNoJumps) {
   const Points source = test::yard_source_right_of(-100.0);
   const NdtGrid grid(test::yard_target_left_of(100.0), 1.0, 0.15);
   double before = grid.score(source, kTruth).value;
-  for (int i = 1; i <= 2000; ++i) {  // 726 points; the steepest slope of a normal 0.15 m wide is 0.61 / 0.15 per metre, of a weight 2 per metre
+  for (int i = 1; i <= 2000; ++i) {  // 726 points; the steepest slope of a normal 0.15 m wide is 0.61 / 0.15 per meter, of a weight 2 per meter
     const double value = grid.score(source, {kTruth.x + 1e-3 * i, kTruth.y, kTruth.yaw}).value;
     EXPECT_LT(std::abs(value - before), 726 * 1e-3 * (0.61 / 0.15 + 2.0));
     before = value;
@@ -116,19 +116,19 @@ TEST(NdtGrid, PointsThatAreNotNumbersOrTooFarApartAreRefused) {
     }
     return "";
   };
-  EXPECT_EQ(complaint({{0.0, 0.0}, {std::nan(""), 1.0}}), "a point is (nan, 1): must be finite");
-  EXPECT_EQ(complaint({{0.0, 0.0}, {1e9, 1.0}}), "ndt: the points need 2000000002 nodes of 0.5 m in a row: at most 4000");
+  EXPECT_EQ(complaint({{0.0, 0.0}, {std::nan(""), 1.0}}), "point (nan, 1): must be finite");
+  EXPECT_EQ(complaint({{0.0, 0.0}, {1e9, 1.0}}), "ndt: lattice of 2000000002 nodes of 0.5 m along an axis: must be at most 4000");
 }
 
 // Positions to 5 cm, for walls sampled every 10 cm with 1 cm of noise.
-TEST(AlignNdt, TheBasinIsThreeMetresAndTwentyDegreesWhereAllOverlaps) {
+TEST(AlignNdt, TheBasinIsThreeMetersAndTwentyDegreesWhereAllOverlaps) {
   const Points target = test::yard_target_left_of(100.0), source = test::yard_source_right_of(-100.0);
   EXPECT_GT(overlap(target, source), 0.99);
   EXPECT_EQ(num_found(target, source, 3.0, 20.0 * kDegree), 18);
   EXPECT_LT(num_found(target, source, 6.0, 60.0 * kDegree), 9) << "it ends somewhere";
 }
 
-TEST(AlignNdt, TheBasinIsOneMetreAndTenDegreesWhereAThirdOverlapsAndMostlyTwoMetres) {
+TEST(AlignNdt, TheBasinIsOneMeterAndTenDegreesWhereAThirdOverlapsAndMostlyTwoMeters) {
   const Points target = test::yard_target_left_of(3.0), source = test::yard_source_right_of(-3.0);
   EXPECT_NEAR(overlap(target, source), 0.30, 0.01);
   EXPECT_EQ(num_found(target, source, 1.0, 10.0 * kDegree), 18);
@@ -182,11 +182,11 @@ TEST(NdtSettings, RefusesANonsenseSettingByName) {
     validate(settings, "ndt");
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "ndt.cells_m.1 = 0: must lie in 0.05 ... 100");
+    EXPECT_STREQ(error.what(), "ndt.cells_m.1 = 0: must be in [0.05, 100]");
   }
 }
 
-TEST(Thinned, KeepsEveryThirdOfThree) {
+TEST(Subsample, KeepsEveryThirdOfThree) {
   const Points points{{0, 0}, {1, 0}, {2, 0}, {3, 0}, {4, 0}, {5, 0}};
   EXPECT_EQ(subsample(points, 2), (Points{{0, 0}, {3, 0}}));
   EXPECT_EQ(subsample(points, 6), points);

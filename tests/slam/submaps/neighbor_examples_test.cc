@@ -7,7 +7,7 @@
 #include "slam/submaps/pair_features.h"
 #include "tests/slam/submaps/submap_drive.h"
 
-namespace patrol::slam::neighbour_examples_test {
+namespace patrol::slam::neighbor_examples_test {
 namespace {
 
 const test::SubmapDrive& office_drive() {
@@ -21,7 +21,7 @@ LabeledFeatures examples_of(const test::SubmapDrive& drive, const NeighborExampl
   return examples;
 }
 
-TEST(NeighbourExamples, AreOfBothKindsAndFinite) {
+TEST(NeighborExamples, AreOfBothKindsAndFinite) {
   const LabeledFeatures examples = examples_of(office_drive(), {});
   ASSERT_EQ(examples.examples.size(), examples.labels.size());
   EXPECT_GT(std::ranges::count(examples.labels, 1), 10);
@@ -32,7 +32,7 @@ TEST(NeighbourExamples, AreOfBothKindsAndFinite) {
   }
 }
 
-TEST(NeighbourExamples, WhatIsLearntOfOneRoundRecognisesNeighboursOnTheNextWithAPrecisionOf95Percent) {
+TEST(NeighborExamples, WhatIsLearnedOfOneRoundRecognizesNeighborsOnTheNextWithAPrecisionOf95Percent) {
   const BoostedStumps model = train_adaboost(examples_of(office_drive(), {}), {}).model;
   const test::SubmapDrive other = test::map_by_submaps(test::make_office(), test::office_rounds(1), {.speed_mps = 0.8, .odometry_scale = -0.02}, {}, {}, 2);
   const LabeledFeatures trial = examples_of(other, {.predictions = 2});
@@ -47,9 +47,9 @@ TEST(NeighbourExamples, WhatIsLearntOfOneRoundRecognisesNeighboursOnTheNextWithA
   EXPECT_GT(right, missed);
 }
 
-TEST(NeighbourExamples, TheSameSeedGivesTheSame) {
+TEST(NeighborExamples, TheSameSeedGivesTheSame) {
   EXPECT_EQ(examples_of(office_drive(), {.predictions = 1}).examples, examples_of(office_drive(), {.predictions = 1}).examples);
 }
 
 }  // namespace
-}  // namespace patrol::slam::neighbour_examples_test
+}  // namespace patrol::slam::neighbor_examples_test

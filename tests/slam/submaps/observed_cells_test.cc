@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace patrol::slam::seen_cells_test {
+namespace patrol::slam::observed_cells_test {
 namespace {
 
 using State = ObservedCells::State;
@@ -48,4 +48,4 @@ TEST(ObservedCells, VisitsWhatIsKnownAndNothingOfAnEmptyMap) {
 }
 
 }  // namespace
-}  // namespace patrol::slam::seen_cells_test
+}  // namespace patrol::slam::observed_cells_test

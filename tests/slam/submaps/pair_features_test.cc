@@ -80,7 +80,7 @@ TEST(PairFeatures, OfTwoSquaresAreWhatGeometrySays) {
 }
 
 // A heading's error moves what is far from the frame's origin: 10 m times 0.1 rad.
-TEST(PairFeatures, TheCentreIsAsUncertainAsItsArmIsLong) {
+TEST(PairFeatures, TheCenterIsAsUncertainAsItsArmIsLong) {
   Points far = square_outline();
   for (auto& p : far) p.x() += 10.0;
   const SubmapDescriptor near = describe_submap(square_outline(), GridMap(0.05, 100.0), {}), away = describe_submap(far, GridMap(0.05, 100.0), {});
@@ -88,7 +88,7 @@ TEST(PairFeatures, TheCentreIsAsUncertainAsItsArmIsLong) {
   EXPECT_NEAR(value(features, "center_std"), (away.center.norm() * 0.1) / (near.radius_m + away.radius_m), kExactTol);
 }
 
-TEST(PairFeatures, OfNeighboursSayThatTheyAre) {
+TEST(PairFeatures, OfNeighborsSayThatTheyAre) {
   const SubmapDescriptor target = describe_yard(kTarget, 1), source = describe_yard(kSource, 2);
   const auto features = pair_features(target, source, prediction_of({kTruth.x + 0.8, kTruth.y - 0.6, kTruth.yaw + 5.0 * kDegree}, 0.7, 4.0 * kDegree), {});
   EXPECT_GT(value(features, "hull_overlap"), 0.8);
@@ -106,7 +106,7 @@ TEST(PairFeatures, OfStrangersSayThatTheyAreNot) {
   for (int i = -3; i <= 0; ++i) hall.add_post(4.0 * i + 1.0, -2.0, 0.4).add_post(4.0 * i + 1.0, -7.5, 0.4);
   const SubmapDescriptor target = describe_yard(kTarget, 1), source = describe(see_submap(hall, kSource, short_walk(kSource), 2));
   const auto features = pair_features(target, source, prediction_of(kTruth, 0.7, 4.0 * kDegree), {});
-  EXPECT_GT(value(features, "hull_overlap"), 0.5) << "by the prediction alone they would be neighbours";
+  EXPECT_GT(value(features, "hull_overlap"), 0.5) << "by the prediction alone they would be neighbors";
   EXPECT_LT(value(features, "aligned_agreement"), 0.7);
 }
 
@@ -140,7 +140,7 @@ TEST(PairFeatures, DoNotDependOnWhereASubmapsFrameLies) {
   const Pose2 T_source_other{5.0, -5.0, 35.0 * kDegree};
   const SubmapDescriptor target = describe_yard(kTarget, 1), source = describe_yard(kSource, 2);
   const SubmapDescriptor other = describe(see_submap(make_yard(), kSource * T_source_other, short_walk(kSource), 2));
-  // The same place of the centre must be as uncertain, whatever the arm: no error of heading.
+  // The same place of the center must be as uncertain, whatever the arm: no error of heading.
   const auto features = pair_features(target, source, prediction_of(kTruth, 0.5, 0.0), {});
   const auto others = pair_features(target, other, prediction_of(kTruth * T_source_other, 0.5, 0.0), {});
   for (std::size_t i = 0; i < features.size(); ++i) {
@@ -186,7 +186,7 @@ RoomWorld make_site(std::uint64_t seed) {
   return site;
 }
 
-/// Pairs of submaps of a site, half of them neighbours; predictions are off by 1 m and 5 degrees (one standard deviation) and say all the same of strangers.
+/// Pairs of submaps of a site, half of them neighbors; predictions are off by 1 m and 5 degrees (one standard deviation) and say all the same of strangers.
 LabeledFeatures make_pairs(std::uint64_t seed, int num_pairs) {
   const RoomWorld site = make_site(seed);
   const RandomStream random(seed, "test/pairs");
@@ -196,19 +196,19 @@ LabeledFeatures make_pairs(std::uint64_t seed, int num_pairs) {
     const auto u = random.uniforms(tick), v = random.uniforms(tick, 1), error = random.normals(tick, 2);
     const Pose2 T_world_target{30.0 * u[0] - 15.0, 30.0 * u[1] - 15.0, 6.28 * u[2]};
     const Pose2 T_target_source{12.0 * v[0] - 6.0, 12.0 * v[1] - 6.0, 6.28 * v[2]};
-    const bool are_neighbours = i % 2 == 0;
-    const Pose2 T_world_source = are_neighbours ? T_world_target * T_target_source : Pose2{-T_world_target.x, -T_world_target.y, 6.28 * u[3]};
+    const bool are_neighbors = i % 2 == 0;
+    const Pose2 T_world_source = are_neighbors ? T_world_target * T_target_source : Pose2{-T_world_target.x, -T_world_target.y, 6.28 * u[3]};
     const SubmapDescriptor target = describe(see_submap(site, T_world_target, short_walk(T_world_target), 2 * tick)),
                       source = describe(see_submap(site, T_world_source, short_walk(T_world_source), 2 * tick + 1));
-    if (!are_neighbours && (T_world_target.position() - T_world_source.position()).norm() < 12.0) continue;
+    if (!are_neighbors && (T_world_target.position() - T_world_source.position()).norm() < 12.0) continue;
     const Pose2 predicted{T_target_source.x + error[0], T_target_source.y + error[1], wrap_angle(T_target_source.yaw + 5.0 * kDegree * error[2])};
     pairs.examples.push_back(pair_features(target, source, prediction_of(predicted, 1.0, 5.0 * kDegree), {}));
-    pairs.labels.push_back(are_neighbours ? 1 : -1);
+    pairs.labels.push_back(are_neighbors ? 1 : -1);
   }
   return pairs;
 }
 
-TEST(PairFeatures, AdaBoostTellsNeighboursFromStrangersOnASiteItHasNotSeen) {
+TEST(PairFeatures, AdaBoostTellsNeighborsFromStrangersOnASiteItHasNotSeen) {
   const LabeledFeatures training = make_pairs(1, 80), test = make_pairs(2, 80);
   const BoostingResult result = train_adaboost(training, {.rounds = 20});
   int missed = 0, mistaken = 0;
@@ -217,7 +217,7 @@ TEST(PairFeatures, AdaBoostTellsNeighboursFromStrangersOnASiteItHasNotSeen) {
     missed += !says_yes && test.labels[i] > 0 ? 1 : 0;
     mistaken += says_yes && test.labels[i] < 0 ? 1 : 0;
   }
-  EXPECT_LE(missed, 4) << "of 40 neighbours";
+  EXPECT_LE(missed, 4) << "of 40 neighbors";
   EXPECT_LE(mistaken, 2) << "of " << std::ranges::count(test.labels, -1) << " strangers";
   RecordProperty("missed", missed);
   RecordProperty("mistaken", mistaken);

@@ -53,7 +53,7 @@ TEST(PointTree, APointThatIsNoNumberIsRefused) {
     PointTree({{0.0, INFINITY}});
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "a point is (0, inf): must be finite");
+    EXPECT_STREQ(error.what(), "point (0, inf): must be finite");
   }
 }
 

@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "tests/support/submap_points.h"
 
-namespace patrol::slam::submap_shape_test {
+namespace patrol::slam::submap_descriptor_test {
 namespace {
 
 using test::make_yard, test::sample_walls;
@@ -47,7 +47,7 @@ TEST(SubmapDescriptor, WhatDoesNotDependOnTheFrameStaysWhenItMoves) {
 }
 
 TEST(SubmapDescriptor, DirectionsTurnWithTheFrame) {
-  const Points points = sample_walls(make_yard(), {}, {.spacing_m = 0.11});  // none just so far apart as a neighbourhood reaches
+  const Points points = sample_walls(make_yard(), {}, {.spacing_m = 0.11});  // none just so far apart as a neighborhood reaches
   const SubmapDescriptor here = describe_submap(points, kNoMap, {});
   // 25 degrees are five bins of 5.
   const SubmapDescriptor turned = describe_submap(moved(points, {1.0, 2.0, 25.0 * kDegree}), kNoMap, {});
@@ -72,7 +72,7 @@ TEST(SubmapDescriptor, OfTwoPointsIsRefused) {
     describe_submap({{0, 0}, {1, 1}}, kNoMap, {});
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "submap: has 2 surface points: must have at least 3");
+    EXPECT_STREQ(error.what(), "submap: 2 surface points: must be at least 3");
   }
 }
 
@@ -91,4 +91,4 @@ TEST(CircularCorrelation, FindsATurnAndSaysNothingOfEvenHistograms) {
 }
 
 }  // namespace
-}  // namespace patrol::slam::submap_shape_test
+}  // namespace patrol::slam::submap_descriptor_test

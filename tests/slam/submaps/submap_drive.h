@@ -8,8 +8,8 @@
 
 namespace patrol::test {
 
-/// Votes that need no training: whatever the matching lays together well, near to where it was predicted, are neighbours.
-inline BoostedStumps agreeing_neighbours() {
+/// Votes that need no training: whatever the matching lays together well, near to where it was predicted, are neighbors.
+inline BoostedStumps agreeing_neighbors() {
   return {.features = slam::pair_feature_names(),
           .stumps = {{.feature = 13, .threshold = 0.8, .sign_above = 1, .weight = 2.0},
                      {.feature = 12, .threshold = 3.0, .sign_above = -1, .weight = 2.0},

@@ -8,39 +8,39 @@
 namespace patrol::slam::submap_rbpf_test {
 namespace {
 
-using test::agreeing_neighbours, test::map_by_submaps, test::SubmapDrive;
+using test::agreeing_neighbors, test::map_by_submaps, test::SubmapDrive;
 
-int num_joints(const SubmapRbpf& slam, int min_apart) {
+int num_constraints(const SubmapRbpf& slam, int min_apart) {
   int constraints = 0;
   for (const SubmapRbpf::Comparison& comparison : slam.comparisons()) constraints += comparison.result.constraint && comparison.source - comparison.target >= min_apart ? 1 : 0;
   return constraints;
 }
 
-// 125 m and a bit of corridor; odometry alone turns by a radian and ends tens of metres off.
-TEST(SubmapRbpf, ARoundOfTheOfficeClosesToFiveCentimetres) {
-  const SubmapDrive mapped = map_by_submaps(test::make_office(), test::office_rounds(1), {}, {}, agreeing_neighbours());
+// 125 m and a bit of corridor; odometry alone turns by a radian and ends tens of meters off.
+TEST(SubmapRbpf, ARoundOfTheOfficeClosesToFiveCentimeters) {
+  const SubmapDrive mapped = map_by_submaps(test::make_office(), test::office_rounds(1), {}, {}, agreeing_neighbors());
   EXPECT_LT(mapped.rms_error_m(), 0.05);
-  EXPECT_GE(num_joints(mapped.slam, 8), 1);
+  EXPECT_GE(num_constraints(mapped.slam, 8), 1);
   EXPECT_EQ(mapped.slam.path().size(), mapped.drive.size());
   EXPECT_GT(mapped.slam.map().geometry().size(), 100'000U);
 }
 
-TEST(SubmapRbpf, EveryJointOfTwoRoundsIsTrueToADecimetre) {
-  const SubmapDrive mapped = map_by_submaps(test::make_office(), test::office_rounds(2), {}, {}, agreeing_neighbours());
+TEST(SubmapRbpf, EveryJointOfTwoRoundsIsTrueToADecimeter) {
+  const SubmapDrive mapped = map_by_submaps(test::make_office(), test::office_rounds(2), {}, {}, agreeing_neighbors());
   const std::vector<Pose2> T_world_submap = mapped.T_world_submap();
   for (const SubmapRbpf::Comparison& comparison : mapped.slam.comparisons()) {
     if (!comparison.result.constraint) continue;
     const Pose2 T_target_source = T_world_submap[static_cast<std::size_t>(comparison.target)].inverse() * T_world_submap[static_cast<std::size_t>(comparison.source)];
     EXPECT_THAT(comparison.result.constraint->T_target_source, test::Pose2Near(T_target_source, 0.1, 0.02)) << comparison.target << " " << comparison.source;
   }
-  EXPECT_GT(num_joints(mapped.slam, 8), 8);
+  EXPECT_GT(num_constraints(mapped.slam, 8), 8);
 }
 
-// Ten drives up and down among doors three metres apart: a false joint would shift by a door.
+// Ten drives up and down among doors three meters apart: a false joint would shift by a door.
 TEST(SubmapRbpf, AmongIdenticalDoorsNoFalseJointIsMadeInTenDrives) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     const SubmapDrive mapped = map_by_submaps(test::make_corridor_of_doors(), {{20.0, 0.0}, {40.0, 0.0}, {16.0, 0.0}, {20.0, 0.0}}, {.speed_mps = 1.0, .odometry_scale = 0.01}, {},
-                                              agreeing_neighbours(), seed);
+                                              agreeing_neighbors(), seed);
     const std::vector<Pose2> T_world_submap = mapped.T_world_submap();
     for (const SubmapRbpf::Comparison& comparison : mapped.slam.comparisons()) {
       if (!comparison.result.constraint) continue;
@@ -51,10 +51,10 @@ TEST(SubmapRbpf, AmongIdenticalDoorsNoFalseJointIsMadeInTenDrives) {
   }
 }
 
-TEST(SubmapRbpf, WithoutAModelNobodyIsANeighbour) {
+TEST(SubmapRbpf, WithoutAModelNobodyIsANeighbor) {
   const SubmapDrive mapped = map_by_submaps(test::make_office(), {{8.0, 4.2}, {30.0, 4.2}, {10.0, 4.2}}, {}, {}, {});
   EXPECT_GT(mapped.slam.comparisons().size(), 1U);
-  EXPECT_EQ(num_joints(mapped.slam, 0), 0);
+  EXPECT_EQ(num_constraints(mapped.slam, 0), 0);
 }
 
 TEST(SubmapRbpf, ASubmapIsClosedWhenTheWayIsFullAndTheNextBeginsThere) {
@@ -71,7 +71,7 @@ TEST(SubmapRbpf, ASubmapIsClosedWhenTheWayIsFullAndTheNextBeginsThere) {
 
 TEST(SubmapRbpf, TheSameScansGiveTheSamePathToTheBit) {
   const std::vector<Eigen::Vector2d> corners = {{8.0, 4.2}, {24.0, 4.2}, {8.0, 4.2}};
-  const auto path = [&] { return map_by_submaps(test::make_office(), corners, {}, {}, agreeing_neighbours()).slam.path(); };
+  const auto path = [&] { return map_by_submaps(test::make_office(), corners, {}, {}, agreeing_neighbors()).slam.path(); };
   const std::vector<Pose2> first = path(), second = path();
   ASSERT_EQ(first.size(), second.size());
   for (std::size_t k = 0; k < first.size(); ++k) EXPECT_EQ(first[k].vector(), second[k].vector()) << k;

@@ -10,8 +10,8 @@ using test::ackley, test::for_all, test::rosenbrock, test::run_trial, test::sphe
 const BatOptimizer kBats({.iterations = 50});
 
 // A bat judges only when it is loud enough for its draw: at most 20 x 51.
-TEST(BatOptimizer, FindsAShiftedSphereToTwoCentimetresInAtMost1020Judgements) {
-  EXPECT_LE(run_trial(kBats, for_all(sphere), 20, 1).num_judgements, 20 * 51);
+TEST(BatOptimizer, FindsAShiftedSphereToTwoCentimetersInAtMost1020Evaluations) {
+  EXPECT_LE(run_trial(kBats, for_all(sphere), 20, 1).num_evaluations, 20 * 51);
   EXPECT_LT(worst_distance(kBats, sphere), 0.02);
 }
 
@@ -24,15 +24,15 @@ TEST(BatOptimizer, FollowsRosenbrocksBentValleyInHalfOfTheSeeds) { EXPECT_GE(suc
 TEST(BatOptimizer, SilentBatsStay) {
   const test::Trial trial = run_trial(BatOptimizer({.iterations = 50, .loudness = 0.0}), for_all(sphere), 20, 1);
   EXPECT_EQ(trial.end.positions, trial.start.positions);
-  EXPECT_EQ(trial.num_judgements, 20);
+  EXPECT_EQ(trial.num_evaluations, 20);
 }
 
 // Loudness that falls to nothing at the first success: every bat betters itself once at most.
 TEST(BatOptimizer, LoudnessThatIsLostAtOnceAllowsOneStepEach) {
   const test::Trial once = run_trial(BatOptimizer({.iterations = 50, .loudness = 1.0, .loudness_decay = 0.0}), for_all(sphere), 20, 1);
   const test::Trial often = run_trial(BatOptimizer({.iterations = 50, .loudness = 1.0, .loudness_decay = 1.0}), for_all(sphere), 20, 1);
-  EXPECT_EQ(often.num_judgements, 20 * 51);
-  EXPECT_LT(once.num_judgements, often.num_judgements);
+  EXPECT_EQ(often.num_evaluations, 20 * 51);
+  EXPECT_LT(once.num_evaluations, often.num_evaluations);
   EXPECT_GT(once.distance(), often.distance());
 }
 
@@ -40,7 +40,7 @@ TEST(BatOptimizer, LeavesNobodyWorse) { test::expect_nobody_worse(kBats); }
 
 TEST(BatOptimizer, AFlatFitnessMovesNobody) { test::expect_flat_fitness_moves_nobody(kBats); }
 
-TEST(BatOptimizer, MembersAreAcceptedByTheirOwnJudge) { test::expect_own_judge(kBats); }
+TEST(BatOptimizer, MembersAreAcceptedByTheirOwnJudge) { test::expect_own_fitness(kBats); }
 
 TEST(BatOptimizer, SameSeedSameResult) { test::expect_same_seed_same_result(kBats); }
 

@@ -10,12 +10,12 @@ using test::ackley, test::for_all, test::rosenbrock, test::run_trial, test::sphe
 const FireflyOptimizer kFireflies({.iterations = 50});
 const ImprovedFireflyOptimizer kImproved({.iterations = 50});
 
-TEST(FireflyOptimizer, FindsAShiftedSphereToThreeCentimetresIn1020Judgements) {
-  EXPECT_EQ(run_trial(kFireflies, for_all(sphere), 20, 1).num_judgements, 20 * 51);
+TEST(FireflyOptimizer, FindsAShiftedSphereToThreeCentimetersIn1020Evaluations) {
+  EXPECT_EQ(run_trial(kFireflies, for_all(sphere), 20, 1).num_evaluations, 20 * 51);
   EXPECT_LT(worst_distance(kFireflies, sphere), 0.03);
 }
 
-// All fly to the brightest: where it is in the wrong bump, its step of half a metre at most does not lead out.
+// All fly to the brightest: where it is in the wrong bump, its step of half a meter at most does not lead out.
 TEST(FireflyOptimizer, FindsAckleysFunnelInSixOfTenSeeds) { EXPECT_GE(successes(kFireflies, ackley, 0.03), 6); }
 
 TEST(FireflyOptimizer, FollowsRosenbrocksBentValleyInHalfOfTheSeeds) { EXPECT_GE(successes(kFireflies, rosenbrock, 0.2), 5); }
@@ -44,12 +44,12 @@ TEST(FireflyOptimizer, LeavesNobodyWorse) { test::expect_nobody_worse(kFireflies
 
 TEST(FireflyOptimizer, AFlatFitnessMovesNobody) { test::expect_flat_fitness_moves_nobody(kFireflies); }
 
-TEST(FireflyOptimizer, MembersAreAcceptedByTheirOwnJudge) { test::expect_own_judge(kFireflies); }
+TEST(FireflyOptimizer, MembersAreAcceptedByTheirOwnJudge) { test::expect_own_fitness(kFireflies); }
 
 TEST(FireflyOptimizer, SameSeedSameResult) { test::expect_same_seed_same_result(kFireflies); }
 
-TEST(ImprovedFireflyOptimizer, FindsAShiftedSphereToThreeCentimetresIn1020Judgements) {
-  EXPECT_EQ(run_trial(kImproved, for_all(sphere), 20, 1).num_judgements, 20 * 51);
+TEST(ImprovedFireflyOptimizer, FindsAShiftedSphereToThreeCentimetersIn1020Evaluations) {
+  EXPECT_EQ(run_trial(kImproved, for_all(sphere), 20, 1).num_evaluations, 20 * 51);
   EXPECT_LT(worst_distance(kImproved, sphere), 0.03);
 }
 
@@ -74,7 +74,7 @@ TEST(ImprovedFireflyOptimizer, LeavesNobodyWorse) { test::expect_nobody_worse(kI
 
 TEST(ImprovedFireflyOptimizer, AFlatFitnessMovesNobody) { test::expect_flat_fitness_moves_nobody(kImproved); }
 
-TEST(ImprovedFireflyOptimizer, MembersAreAcceptedByTheirOwnJudge) { test::expect_own_judge(kImproved); }
+TEST(ImprovedFireflyOptimizer, MembersAreAcceptedByTheirOwnJudge) { test::expect_own_fitness(kImproved); }
 
 TEST(ImprovedFireflyOptimizer, SameSeedSameResult) { test::expect_same_seed_same_result(kImproved); }
 

@@ -10,8 +10,8 @@ using test::ackley, test::for_all, test::rosenbrock, test::run_trial, test::sphe
 const SandCatOptimizer kCats(50, false);
 const SandCatOptimizer kImproved(50, true);
 
-TEST(SandCatOptimizer, FindsAShiftedSphereToFiveCentimetresIn1020Judgements) {
-  EXPECT_EQ(run_trial(kCats, for_all(sphere), 20, 1).num_judgements, 20 * 51);
+TEST(SandCatOptimizer, FindsAShiftedSphereToFiveCentimetersIn1020Evaluations) {
+  EXPECT_EQ(run_trial(kCats, for_all(sphere), 20, 1).num_evaluations, 20 * 51);
   EXPECT_LT(worst_distance(kCats, sphere), 0.05);
 }
 
@@ -21,16 +21,16 @@ TEST(SandCatOptimizer, LeavesNobodyWorse) { test::expect_nobody_worse(kCats); }
 
 TEST(SandCatOptimizer, AFlatFitnessMovesNobody) { test::expect_flat_fitness_moves_nobody(kCats); }
 
-TEST(SandCatOptimizer, MembersAreAcceptedByTheirOwnJudge) { test::expect_own_judge(kCats); }
+TEST(SandCatOptimizer, MembersAreAcceptedByTheirOwnJudge) { test::expect_own_fitness(kCats); }
 
 TEST(SandCatOptimizer, SameSeedSameResult) { test::expect_same_seed_same_result(kCats); }
 
 // One for the mutation of each generation, and S = ceil(19 sin(pi t / 100)) for those who stand in.
-TEST(ImprovedSandCatOptimizer, FindsAShiftedSphereToFiveCentimetresIn1708Judgements) {
+TEST(ImprovedSandCatOptimizer, FindsAShiftedSphereToFiveCentimetersIn1708Evaluations) {
   int num_inherited = 0;
   for (int t = 1; t <= 50; ++t) num_inherited += static_cast<int>(std::ceil(19.0 * std::sin(std::numbers::pi * t / 100.0)));
   EXPECT_EQ(num_inherited, 638);
-  EXPECT_EQ(run_trial(kImproved, for_all(sphere), 20, 1).num_judgements, 20 * 51 + 50 + num_inherited);
+  EXPECT_EQ(run_trial(kImproved, for_all(sphere), 20, 1).num_evaluations, 20 * 51 + 50 + num_inherited);
   EXPECT_LT(worst_distance(kImproved, sphere), 0.05);
 }
 
@@ -50,7 +50,7 @@ TEST(ImprovedSandCatOptimizer, LeavesNobodyWorse) { test::expect_nobody_worse(kI
 
 TEST(ImprovedSandCatOptimizer, AFlatFitnessMovesNobody) { test::expect_flat_fitness_moves_nobody(kImproved); }
 
-TEST(ImprovedSandCatOptimizer, MembersAreAcceptedByTheirOwnJudge) { test::expect_own_judge(kImproved); }
+TEST(ImprovedSandCatOptimizer, MembersAreAcceptedByTheirOwnJudge) { test::expect_own_fitness(kImproved); }
 
 TEST(ImprovedSandCatOptimizer, SameSeedSameResult) { test::expect_same_seed_same_result(kImproved); }
 

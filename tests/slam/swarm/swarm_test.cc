@@ -42,7 +42,7 @@ TEST(MakeSwarm, JudgesEachMemberOnceByItsOwnJudge) {
 }
 
 // The trial's own functions: the optimum is where it is said to be, and worth nothing.
-TEST(TestFunctions, AreZeroAtTheOptimumAndLessATenthOfAMetreBeside) {
+TEST(TestFunctions, AreZeroAtTheOptimumAndLessATenthOfAMeterBeside) {
   for (const auto& function : {test::sphere, test::rosenbrock, test::ackley}) {
     EXPECT_NEAR(function(test::kOptimum), 0.0, 1e-12);
     for (const Eigen::Vector2d& aside : {Eigen::Vector2d(0.1, 0.0), Eigen::Vector2d(-0.1, 0.0), Eigen::Vector2d(0.0, 0.1), Eigen::Vector2d(0.0, -0.1)}) {

@@ -27,7 +27,7 @@ inline double rosenbrock(const Position& p) {
   return -(100.0 * (y - x * x) * (y - x * x) + (1.0 - x) * (1.0 - x));
 }
 
-/// A funnel with a bump about every metre (Ackley 1987).
+/// A funnel with a bump about every meter (Ackley 1987).
 inline double ackley(const Position& p) {
   const Eigen::Vector2d d = p - kOptimum;
   const double bumps = 0.5 * (std::cos(2.0 * std::numbers::pi * d.x()) + std::cos(2.0 * std::numbers::pi * d.y()));
@@ -44,7 +44,7 @@ inline std::vector<Position> spread_out(std::size_t members, std::uint64_t seed)
 
 struct Trial {
   Swarm start, end;
-  int num_judgements = 0;
+  int num_evaluations = 0;
 
   double distance() const { return (end.positions[end.best()] - kOptimum).norm(); }
 };
@@ -52,7 +52,7 @@ struct Trial {
 inline Trial run_trial(const SwarmOptimizer& optimizer, const Fitness& fitness, std::size_t members, std::uint64_t seed) {
   Trial trial;
   const Fitness counted = [&](std::size_t member, const Position& position) {
-    ++trial.num_judgements;
+    ++trial.num_evaluations;
     return fitness(member, position);
   };
   trial.start = trial.end = slam::make_swarm(spread_out(members, seed), counted);
@@ -83,7 +83,7 @@ int successes(const SwarmOptimizer& optimizer, Function function, double tol) {
   return count;
 }
 
-// What every optimiser promises.
+// What every optimizer promises.
 
 inline void expect_nobody_worse(const SwarmOptimizer& optimizer) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
@@ -99,11 +99,11 @@ inline void expect_flat_fitness_moves_nobody(const SwarmOptimizer& optimizer) {
   const Trial trial = run_trial(optimizer, for_all([](const Position&) { return -3.0; }), 12, 1);
   EXPECT_EQ(trial.end.positions, trial.start.positions);
   EXPECT_EQ(trial.end.fitness, trial.start.fitness);
-  EXPECT_GT(trial.num_judgements, 12);
+  EXPECT_GT(trial.num_evaluations, 12);
 }
 
-/// Member i likes the i-th of twelve places on a circle: nobody may take what only another one likes.
-inline void expect_own_judge(const SwarmOptimizer& optimizer) {
+/// Member i has its optimum at the i-th of twelve positions on a circle: no member may move to the optimum of another.
+inline void expect_own_fitness(const SwarmOptimizer& optimizer) {
   const Fitness fitness = [](std::size_t member, const Position& position) {
     const double angle = static_cast<double>(member) * std::numbers::pi / 6.0;
     return -(position - 3.0 * Eigen::Vector2d(std::cos(angle), std::sin(angle))).squaredNorm();

@@ -9,8 +9,8 @@ using test::ackley, test::for_all, test::rosenbrock, test::run_trial, test::sphe
 
 const WhaleOptimizer kWhales(50);
 
-TEST(WhaleOptimizer, FindsAShiftedSphereToAMillimetreIn1020Judgements) {
-  EXPECT_EQ(run_trial(kWhales, for_all(sphere), 20, 1).num_judgements, 20 * 51);
+TEST(WhaleOptimizer, FindsAShiftedSphereToAMillimeterIn1020Evaluations) {
+  EXPECT_EQ(run_trial(kWhales, for_all(sphere), 20, 1).num_evaluations, 20 * 51);
   EXPECT_LT(worst_distance(kWhales, sphere), 1e-3);
 }
 
@@ -57,7 +57,7 @@ TEST(WhaleOptimizer, LeavesNobodyWorse) { test::expect_nobody_worse(kWhales); }
 
 TEST(WhaleOptimizer, AFlatFitnessMovesNobody) { test::expect_flat_fitness_moves_nobody(kWhales); }
 
-TEST(WhaleOptimizer, MembersAreAcceptedByTheirOwnJudge) { test::expect_own_judge(kWhales); }
+TEST(WhaleOptimizer, MembersAreAcceptedByTheirOwnJudge) { test::expect_own_fitness(kWhales); }
 
 TEST(WhaleOptimizer, SameSeedSameResult) { test::expect_same_seed_same_result(kWhales); }
 

@@ -74,7 +74,7 @@ TEST(TunnelMission, MarksGoalsByRemoteControlThenDrivesToThemByItself) {
   robot.run(1.0, TeleopCommand{.hand_over = true});
   EXPECT_EQ(robot.maps, 1);
   robot.run(100.0);
-  EXPECT_EQ(robot.count(EventKind::kGoalMarked), 2);
+  EXPECT_EQ(robot.count(EventKind::kGoalSaved), 2);
   EXPECT_EQ(robot.count(EventKind::kGoalReached), 2);
   EXPECT_EQ(robot.count(EventKind::kDocked), 2);
   EXPECT_EQ(robot.count(EventKind::kMissionCompleted), 1);
@@ -187,7 +187,7 @@ TEST(TunnelMission, AtAGoalOfTypeRAPersonDrivesMarksAndHandsOverAgain) {
   robot.run(10.0, TeleopCommand{.vx_mps = 0.5});
   EXPECT_EQ(robot.output.task.motion, Motion::kTeleop);
   robot.run(60.0, TeleopCommand{.hand_over = true});
-  EXPECT_EQ(robot.count(EventKind::kGoalMarked), 0);
+  EXPECT_EQ(robot.count(EventKind::kGoalSaved), 0);
   EXPECT_EQ(robot.count(EventKind::kDocked), 1);
   EXPECT_EQ(robot.count(EventKind::kMissionCompleted), 1);
 }

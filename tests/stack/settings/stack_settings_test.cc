@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "slam/methods/mapper.h"
 #include "tests/support/room_world.h"
 
 namespace patrol::stack::stack_settings_test {

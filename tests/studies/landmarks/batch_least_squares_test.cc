@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "studies/landmarks/ekf_slam.h"
-#include "tests/slam/landmarks/circle_world.h"
+#include "tests/studies/landmarks/circle_world.h"
 #include "tests/support/pose_near.h"
 
 namespace patrol::studies::batch_least_squares_test {
@@ -39,7 +39,7 @@ void expect_truth(const CircleWorld& world, const Drive& measured, const BatchSo
 }
 
 // The guess is what odometry would tell that is 2 degrees per second, or 2 degrees of steering, off all the way.
-TEST(SolveBatch, RecoversTheTruthFromNoiselessDataAndAGuessMetresOff) {
+TEST(SolveBatch, RecoversTheTruthFromNoiselessDataAndAGuessMetersOff) {
   for (const Steering steering : {Steering::kYawRate, Steering::kAckermann}) {
     const CircleWorld world = world_of(steering);
     const Drive measured = drive(world, 1, 0.0);

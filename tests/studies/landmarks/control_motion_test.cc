@@ -46,7 +46,7 @@ TEST(ControlMotionJacobian, IsTheCentralDifferenceForBothSteeringsAndInParts) {
   }
 }
 
-TEST(ControlMotion, OneMetreStraightAheadIsOneMetre) {
+TEST(ControlMotion, OneMeterStraightAheadIsOneMeter) {
   for (const ControlMotion& motion : {kYawRateMotion, kCar}) {
     EXPECT_THAT(motion.move({1.0, 2.0, 0.5 * std::numbers::pi}, {10.0, 0.0}), Pose2Near((Pose2{1.0, 3.0, 0.5 * std::numbers::pi}), kExactTol, kExactTol));
   }

@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "core/geometry/angles.h"
-#include "tests/slam/landmarks/circle_world.h"
+#include "tests/studies/landmarks/circle_world.h"
 #include "tests/support/pose_near.h"
 
 namespace patrol::studies::ekf_slam_test {
@@ -79,7 +79,7 @@ class TextbookEkf {
 };
 
 // Rounding over 315 steps.
-TEST(EkfSlam, PlainIsTheTextbooksFilterToANanometreWithOneLandmarkAndWithEight) {
+TEST(EkfSlam, PlainIsTheTextbooksFilterToANanometerWithOneLandmarkAndWithEight) {
   for (const int num_landmarks : {1, 8}) {
     CircleWorld world;
     world.num_landmarks = num_landmarks;
@@ -129,7 +129,7 @@ TEST(EkfSlam, WithoutNoiseIsTheTruth) {
   }
 }
 
-/// Normalised squared error of the position, mean of 20 seeds, after each step. It is 2 for a filter that knows what it knows.
+/// Normalized squared error of the position, mean of 20 seeds, after each step. It is 2 for a filter that knows what it knows.
 std::vector<double> position_nees(const EkfSlamSettings& settings, const CircleWorld& world) {
   std::vector<double> nees(static_cast<std::size_t>(world.steps()));
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
@@ -181,7 +181,7 @@ LeastVariance least_heading_variance(const EkfSlamSettings& settings) {
   return all;
 }
 
-// Landmarks that were never seen before say nothing of where north is. The invariant filter knows; the plain one learns it from its own linearisation.
+// Landmarks that were never seen before say nothing of where north is. The invariant filter knows; the plain one learns it from its own linearization.
 TEST(EkfSlam, InvariantNeverLearnsAHeadingThatCannotBeSeen) { EXPECT_GE(least_heading_variance(kInvariant).worst, 1.0 - 1e-9); }
 
 TEST(EkfSlam, PlainBelievesHalfTheVarianceOfAHeadingThatCannotBeSeen) { EXPECT_LT(least_heading_variance(kPlain).best, 0.6); }

@@ -6,7 +6,7 @@
 
 #include "core/geometry/angles.h"
 #include "studies/landmarks/ekf_slam.h"
-#include "tests/slam/landmarks/circle_world.h"
+#include "tests/studies/landmarks/circle_world.h"
 #include "tests/support/pose_near.h"
 
 namespace patrol::studies::fast_slam_test {
@@ -40,7 +40,7 @@ CircleWorld biased_world() {
 
 // It believes 1 mm/s and 1 mrad/s: after 315 steps of 0.1 s a particle's heading has wandered by 1e-4 sqrt(315) = 1.8 mrad, which 5 m away is 9 mm; the
 // mean of 20 is four times better.
-TEST(FastSlam, WithoutNoiseRecoversPathAndLandmarksToFiveMillimetres) {
+TEST(FastSlam, WithoutNoiseRecoversPathAndLandmarksToFiveMillimeters) {
   for (const bool use_optimal_proposal : {false, true}) {
     CircleWorld world;
     const Drive measured = drive(world, 1, 0.0);

@@ -16,7 +16,7 @@ constexpr double kStep = 1e-6;           // of the central differences: their er
 constexpr double kDifferenceTol = 1e-9;
 
 // A 3-4-5 triangle, seen by a body that faces +y.
-TEST(PredictSight, ThreeAheadAndFourToTheRightIsFiveMetresAway) {
+TEST(PredictSight, ThreeAheadAndFourToTheRightIsFiveMetersAway) {
   const Eigen::Vector2d observation = predict_observation({1.0, 2.0, 0.5 * std::numbers::pi}, {5.0, 5.0}).observation;
   EXPECT_NEAR(observation.x(), 5.0, kExactTol);
   EXPECT_NEAR(observation.y(), -std::atan2(4.0, 3.0), kExactTol);
@@ -62,7 +62,7 @@ TEST(PredictSight, OfALandmarkAtTheBodyIsFinite) {
   EXPECT_NEAR(predicted.observation.x(), 0.0, 1e-5);
 }
 
-TEST(RangeBearingNoise, CovarianceIsTheSquaresOfHalfAMetreAndATenthOfARadian) {
+TEST(RangeBearingNoise, CovarianceIsTheSquaresOfHalfAMeterAndATenthOfARadian) {
   const Eigen::Matrix2d covariance = RangeBearingNoise{.range_std_m = 0.5, .bearing_std_rad = 0.1}.covariance();
   EXPECT_LT((covariance - Eigen::Matrix2d(Eigen::Vector2d(0.25, 0.01).asDiagonal())).norm(), kExactTol);
 }

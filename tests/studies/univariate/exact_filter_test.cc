@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "core/error.h"
-#include "tests/slam/univariate/growth_runs.h"
+#include "tests/studies/univariate/growth_runs.h"
 
 namespace patrol::studies::exact_filter_test {
 namespace {
@@ -99,7 +99,7 @@ TEST(ExactFilter, ErrorsOverTheirVarianceAreOneInTheMean) {
 TEST(ExactFilter, HasParticlesOfNoKind) { EXPECT_EQ(ExactFilter(GrowthModel()).step(3.0).effective_sample_size, 0.0); }
 
 TEST(ExactFilter, RefusesTheSignAsPrintedAndCellsOfZero) {
-  EXPECT_THAT([] { ExactFilter(GrowthModel({.denominator_sign = -1})); }, ThrowsMessage<InputError>(HasSubstr("growth_model.denominator_sign is -1")));
+  EXPECT_THAT([] { ExactFilter(GrowthModel({.denominator_sign = -1})); }, ThrowsMessage<InputError>(HasSubstr("growth_model.denominator_sign = -1")));
   EXPECT_THAT([] { ExactFilter(GrowthModel(), {.cell = 0.0}); }, ThrowsMessage<InputError>(HasSubstr("exact_filter.cell")));
   EXPECT_THAT([] { ExactFilter(GrowthModel(), {.half_width = 10.0}); }, ThrowsMessage<InputError>(HasSubstr("exact_filter.half_width")));
 }

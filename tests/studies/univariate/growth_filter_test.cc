@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "core/error.h"
-#include "tests/slam/univariate/growth_runs.h"
+#include "tests/studies/univariate/growth_runs.h"
 
 namespace patrol::studies::growth_filter_test {
 namespace {
@@ -111,7 +111,7 @@ TEST(GrowthFilter, StaysFiniteWhereTheModelExplodes) {
 }
 
 TEST(GrowthFilter, RefusesToHaveNoParticles) {
-  EXPECT_THAT([] { GrowthFilter(0, GrowthModel(), {}, 1); }, ThrowsMessage<InputError>(HasSubstr("growth_filter.particles is 0")));
+  EXPECT_THAT([] { GrowthFilter(0, GrowthModel(), {}, 1); }, ThrowsMessage<InputError>(HasSubstr("growth_filter.particles = 0")));
 }
 
 }  // namespace

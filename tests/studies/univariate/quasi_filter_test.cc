@@ -10,7 +10,7 @@
 #include "core/error.h"
 #include "studies/univariate/exact_filter.h"
 #include "studies/univariate/growth_filter.h"
-#include "tests/slam/univariate/growth_runs.h"
+#include "tests/studies/univariate/growth_runs.h"
 
 namespace patrol::studies::quasi_filter_test {
 namespace {

@@ -9,13 +9,13 @@
 
 namespace patrol::app {
 BatchSettings batch_settings(const BatchOptions& options) {
-  constexpr int kMostJobs = 1024;
-  if (options.jobs < 0 || options.jobs > kMostJobs) {
-    throw InputError(fmt::format("--jobs {}: must lie in 0 ... {}; 0: one for each core", options.jobs, kMostJobs));
+  constexpr int kMaxJobs = 1024;
+  if (options.jobs < 0 || options.jobs > kMaxJobs) {
+    throw InputError(fmt::format("--jobs {}: must be in [0, {}]; 0: one per core", options.jobs, kMaxJobs));
   }
-  if (!(options.run_limit_s > 0.0)) throw InputError("--run-limit-s: must be greater than 0");
+  if (!(options.run_timeout_s > 0.0)) throw InputError("--run-timeout-s: must be greater than 0");
   const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  return {.pool = {.num_processes = options.jobs > 0 ? options.jobs : cores, .limit_s = options.run_limit_s}, .keep = row_named(kKeepRuns, options.keep, "--keep").value};
+  return {.pool = {.num_processes = options.jobs > 0 ? options.jobs : cores, .timeout_s = options.run_timeout_s}, .keep = row_named(kKeepRuns, options.keep_runs, "--keep-runs").value};
 }
 
 }  // namespace patrol::app

@@ -28,14 +28,14 @@ using File = std::unique_ptr<std::FILE, decltype(&std::fclose)>;
 
 class Child {
  public:
-  Child(std::size_t number, double limit_s, const std::function<int(std::size_t)>& task)
-      : task_(number), words_(std::tmpfile(), std::fclose), deadline_(Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(limit_s))) {
-    if (!words_) throw std::runtime_error(fmt::format("no temporary file: {}", std::strerror(errno)));
+  Child(std::size_t number, double timeout_s, const std::function<int(std::size_t)>& task)
+      : task_(number), stderr_file_(std::tmpfile(), std::fclose), deadline_(Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(timeout_s))) {
+    if (!stderr_file_) throw std::runtime_error(fmt::format("cannot create a temporary file: {}", std::strerror(errno)));
     std::fflush(nullptr);  // otherwise both processes would write the buffer
     const pid_t parent = ::getpid();
     pid_ = ::fork();
-    if (pid_ < 0) throw std::runtime_error(fmt::format("no process: {}", std::strerror(errno)));
-    if (pid_ == 0) live(parent, task);
+    if (pid_ < 0) throw std::runtime_error(fmt::format("cannot start a process: {}", std::strerror(errno)));
+    if (pid_ == 0) run_child(parent, task);
     pidfd_ = static_cast<int>(::syscall(SYS_pidfd_open, pid_, 0));  // not pidfd_open: glibc 2.36 declares it for C only
   }
   ~Child() {
@@ -65,13 +65,13 @@ class Child {
            .exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 0,
            .signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0,
            .is_over_time = is_over_time_ && WIFSIGNALED(status),
-           .last_words = last_words()};
+           .last_stderr_line = last_stderr_line()};
     return true;
   }
 
  private:
   /// Code of the child process.
-  [[noreturn]] void live(pid_t parent, const std::function<int(std::size_t)>& task) {
+  [[noreturn]] void run_child(pid_t parent, const std::function<int(std::size_t)>& task) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (::getppid() != parent) std::_Exit(EXIT_FAILURE);  // the parent died before prctl
     std::signal(SIGINT, SIG_IGN);  // Ctrl-C reaches all processes; the parent decides
@@ -79,25 +79,25 @@ class Child {
     std::signal(SIGTERM, SIG_DFL);
     const rlimit no_core{0, 0};
     ::setrlimit(RLIMIT_CORE, &no_core);
-    ::dup2(::fileno(words_.get()), STDERR_FILENO);
-    ::dup2(::fileno(words_.get()), STDOUT_FILENO);
+    ::dup2(::fileno(stderr_file_.get()), STDERR_FILENO);
+    ::dup2(::fileno(stderr_file_.get()), STDOUT_FILENO);
     const int code = task(task_);
     std::fflush(nullptr);
     std::_Exit(code);
   }
 
-  std::string last_words() {
+  std::string last_stderr_line() {
     constexpr long kEnough = 4096;
-    std::fseek(words_.get(), 0, SEEK_END);
-    std::fseek(words_.get(), std::max(0L, std::ftell(words_.get()) - kEnough), SEEK_SET);
+    std::fseek(stderr_file_.get(), 0, SEEK_END);
+    std::fseek(stderr_file_.get(), std::max(0L, std::ftell(stderr_file_.get()) - kEnough), SEEK_SET);
     std::string text(kEnough, '\0');
-    text.resize(std::fread(text.data(), 1, text.size(), words_.get()));
+    text.resize(std::fread(text.data(), 1, text.size(), stderr_file_.get()));
     while (!text.empty() && (text.back() == '\n' || text.back() == '\r')) text.pop_back();
     return text.substr(text.find_last_of('\n') + 1);
   }
 
   std::size_t task_;
-  File words_;
+  File stderr_file_;
   Clock::time_point deadline_;
   pid_t pid_ = -1;
   int pidfd_ = -1;
@@ -106,10 +106,10 @@ class Child {
 
 /// Waits until a child ends, at most 0.2 s.
 void wait_for_any(const std::vector<std::unique_ptr<Child>>& children) {
-  constexpr int kLongest_ms = 200;
+  constexpr int kMaxWait_ms = 200;
   std::vector<pollfd> ends;
   for (const auto& child : children) ends.push_back({.fd = child->pidfd(), .events = POLLIN, .revents = 0});
-  ::poll(ends.data(), ends.size(), kLongest_ms);
+  ::poll(ends.data(), ends.size(), kMaxWait_ms);
 }
 
 }  // namespace
@@ -120,7 +120,7 @@ bool run_in_processes(std::size_t num_tasks, const ProcessPoolSettings& settings
   for (std::size_t next = 0; next < num_tasks || !children.empty();) {
     if (!keep_going()) return false;  // destructors kill the children
     while (next < num_tasks && static_cast<int>(children.size()) < settings.num_processes) {
-      children.push_back(std::make_unique<Child>(next++, settings.limit_s, task));
+      children.push_back(std::make_unique<Child>(next++, settings.timeout_s, task));
     }
     wait_for_any(children);
     for (auto child = children.begin(); child != children.end();) {

@@ -12,12 +12,12 @@ struct TaskEnd {
   int exit_code = 0;
   int signal = 0;             ///< signal that killed the process; 0 if it exited
   bool is_over_time = false;  ///< killed by the pool at the time limit
-  std::string last_words;     ///< last line of its standard error
+  std::string last_stderr_line;     ///< last line of its standard error
 };
 
 struct ProcessPoolSettings {
   int num_processes = 1;
-  double limit_s = 3600.0;  ///< wall-clock limit of a task
+  double timeout_s = 3600.0;  ///< wall-clock limit of a task
 };
 
 /// Runs tasks 0 ... num_tasks - 1, each in a process of its own that is forked from this one. Crashes, leaks, hangs and

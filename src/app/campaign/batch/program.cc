@@ -14,7 +14,7 @@ namespace patrol::app {
 
 ProgramResult run_program(const std::vector<std::string>& words) {
   std::array<int, 2> pipe{};
-  if (::pipe(pipe.data()) != 0) throw std::runtime_error(fmt::format("no pipe: {}", std::strerror(errno)));
+  if (::pipe(pipe.data()) != 0) throw std::runtime_error(fmt::format("cannot create a pipe: {}", std::strerror(errno)));
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, pipe[1], STDOUT_FILENO);
@@ -36,11 +36,11 @@ ProgramResult run_program(const std::vector<std::string>& words) {
     result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   }
   ::close(pipe[0]);
-  if (error != 0) throw std::runtime_error(fmt::format("{} cannot be started: {}", words.front(), std::strerror(error)));
+  if (error != 0) throw std::runtime_error(fmt::format("cannot start {}: {}", words.front(), std::strerror(error)));
   return result;
 }
 
-std::string shell_quoted(const std::string& word) {
+std::string quote_for_shell(const std::string& word) {
   std::string quoted = "'";
   for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return quoted + "'";

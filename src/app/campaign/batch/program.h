@@ -15,6 +15,6 @@ struct ProgramResult {
 ProgramResult run_program(const std::vector<std::string>& words);
 
 /// Quotes a word for the shell.
-std::string shell_quoted(const std::string& word);
+std::string quote_for_shell(const std::string& word);
 
 }  // namespace patrol::app

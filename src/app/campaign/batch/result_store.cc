@@ -7,24 +7,24 @@
 
 namespace patrol::app {
 
-std::optional<RunVerdict> ResultStore::load(const std::string& address) const {
-  if (!has(address)) return std::nullopt;
-  const io::Metrics json = io::load_metrics(file(address));
+std::optional<RunVerdict> ResultStore::load(const std::string& key) const {
+  if (!has(key)) return std::nullopt;
+  const io::Metrics json = io::load_metrics(file(key));
   try {
     return verdict_from_json(json);
   } catch (const std::exception& error) {
-    throw InputError(fmt::format("{}: is not a run's result: {}", file(address).string(), error.what()));
+    throw InputError(fmt::format("{}: invalid run result: {}", file(key).string(), error.what()));
   }
 }
 
-void ResultStore::save(const std::string& address, const RunVerdict& verdict) const {
+void ResultStore::save(const std::string& key, const RunVerdict& verdict) const {
   std::filesystem::create_directories(folder_);
-  io::save_metrics(file(address), to_json(verdict));
+  io::save_metrics(file(key), to_json(verdict));
 }
 
-void ResultStore::copy(const std::string& address, const ResultStore& from) const {
+void ResultStore::copy(const std::string& key, const ResultStore& from) const {
   std::filesystem::create_directories(folder_);
-  io::save_text(file(address), io::load_text(from.file(address)));
+  io::save_text(file(key), io::load_text(from.file(key)));
 }
 
 }  // namespace patrol::app

@@ -20,8 +20,8 @@ namespace {
 RunVerdict verdict_of_run(const BatchRun& run, const std::filesystem::path& work) {
   try {
     const Scenario scenario = load_scenario(run.scenario, run.overrides);
-    Unobserved nobody;
-    return run_once(scenario, run.scenario.stem().string(), find_data_root(run.scenario), work, nobody).value();
+    NullObserver observer;
+    return run_once(scenario, run.scenario.stem().string(), find_data_root(run.scenario), work, observer).value();
   } catch (const InputError& error) {
     return {.end = RunStatus::kWrongInput, .message = error.what(), .metrics = {}, .checks = {}, .events = {}};
   } catch (const std::exception& error) {
@@ -30,14 +30,14 @@ RunVerdict verdict_of_run(const BatchRun& run, const std::filesystem::path& work
 }
 
 /// Verdict on a run whose process died without one.
-RunVerdict verdict_of_death(const TaskEnd& end, double limit_s) {
+RunVerdict verdict_of_crash(const TaskEnd& end, double timeout_s) {
   if (end.is_over_time) {
-    return {.end = RunStatus::kWallTimeLimit, .message = fmt::format("after {:g} s", limit_s), .metrics = {}, .checks = {}, .events = {}};
+    return {.end = RunStatus::kWallTimeLimit, .message = fmt::format("after {:g} s", timeout_s), .metrics = {}, .checks = {}, .events = {}};
   }
   const std::string how = end.signal != 0 ? fmt::format("signal {} ({})", end.signal, ::strsignal(end.signal))
                                           : fmt::format("exit status {}", end.exit_code);
   return {.end = RunStatus::kCrashed,
-          .message = end.last_words.empty() ? how : how + ": " + end.last_words,
+          .message = end.last_stderr_line.empty() ? how : how + ": " + end.last_stderr_line,
           .metrics = {},
           .checks = {},
           .events = {}};
@@ -47,15 +47,15 @@ class Batch {
  public:
   Batch(const std::vector<BatchRun>& runs, const BatchSettings& settings, const std::filesystem::path& root)
       : runs_(runs), settings_(settings), work_(root), store_(runs_folder(root)) {
-    for (std::size_t i = 0; i < runs.size(); ++i) waiting_.push_back(i);
+    for (std::size_t i = 0; i < runs.size(); ++i) pending_.push_back(i);
   }
 
   bool run() {
-    while (!waiting_.empty()) {
-      const std::vector<std::size_t> round = std::exchange(waiting_, {});
+    while (!pending_.empty()) {
+      const std::vector<std::size_t> iteration = std::exchange(pending_, {});
       const bool is_through = run_in_processes(
-          round.size(), settings_.pool, [&](std::size_t i) { return live(runs_[round[i]]); },
-          [&](const TaskEnd& end) { handle(round[end.task], end); },
+          iteration.size(), settings_.pool, [&](std::size_t i) { return run_child(runs_[iteration[i]]); },
+          [&](const TaskEnd& end) { handle(iteration[end.task], end); },
           [&] {
             show();
             return !interrupt_.is_interrupted();
@@ -67,13 +67,13 @@ class Batch {
 
  private:
   /// Executes a run in the child process.
-  int live(const BatchRun& run) const {
-    const std::filesystem::path work = work_.of(run.address);
+  int run_child(const BatchRun& run) const {
+    const std::filesystem::path work = work_.path(run.key);
     RunVerdict verdict = verdict_of_run(run, work);
     std::string& message = verdict.message;  // must not depend on the work folder
     for (std::size_t at; (at = message.find(work.string())) != std::string::npos;) message.replace(at, work.string().size(), "RUN");
-    keep_or_remove(run.address, verdict.code());
-    store_.save(run.address, verdict);
+    keep_or_remove(run.key, verdict.code());
+    store_.save(run.key, verdict);
     return static_cast<int>(verdict.code());
   }
 
@@ -81,35 +81,35 @@ class Batch {
     const BatchRun& run = runs_[i];
     const bool is_killed_from_outside = end.signal == SIGKILL && !end.is_over_time;
     if (is_killed_from_outside && killed_once_.insert(i).second) {
-      waiting_.push_back(i);
+      pending_.push_back(i);
       return;
     }
-    if (!store_.has(run.address)) {
-      store_.save(run.address, verdict_of_death(end, settings_.pool.limit_s));
-      keep_or_remove(run.address, ExitCode::kProgramFailed);
+    if (!store_.has(run.key)) {
+      store_.save(run.key, verdict_of_crash(end, settings_.pool.timeout_s));
+      keep_or_remove(run.key, ExitCode::kProgramFailed);
     }
-    const RunVerdict verdict = store_.load(run.address).value();
+    const RunVerdict verdict = store_.load(run.key).value();
     ++num_done_;
     if (verdict.code() == ExitCode::kDone) return;
-    ++num_not_fine_;
-    bar_.say(fmt::format("{}: {}: {}", run.label, name_of(verdict.end), verdict.message));
+    ++num_failed_;
+    bar_.print_line(fmt::format("{}: {}: {}", run.label, name_of(verdict.end), verdict.message));
   }
 
-  void keep_or_remove(const std::string& address, ExitCode code) const {
-    const bool stays = settings_.keep == KeepRuns::kAll || (settings_.keep == KeepRuns::kFailed && code != ExitCode::kDone);
+  void keep_or_remove(const std::string& key, ExitCode code) const {
+    const bool is_kept = settings_.keep == KeepRuns::kAll || (settings_.keep == KeepRuns::kFailed && code != ExitCode::kDone);
     std::error_code ignored;
-    if (stays) {
+    if (is_kept) {
       std::filesystem::create_directories(store_.folder(), ignored);
-      std::filesystem::remove_all(store_.folder() / address, ignored);
-      std::filesystem::rename(work_.of(address), store_.folder() / address, ignored);
+      std::filesystem::remove_all(store_.folder() / key, ignored);
+      std::filesystem::rename(work_.path(key), store_.folder() / key, ignored);
     }
-    std::filesystem::remove_all(work_.of(address), ignored);
+    std::filesystem::remove_all(work_.path(key), ignored);
   }
 
   void show() {
     const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
     const double left_s = num_done_ == 0 ? 0.0 : elapsed_s / static_cast<double>(num_done_) * static_cast<double>(runs_.size() - num_done_);
-    bar_.show(fmt::format("{} of {} runs, {} not as expected{}", num_done_, runs_.size(), num_not_fine_,
+    bar_.show(fmt::format("{} of {} runs, {} failed{}", num_done_, runs_.size(), num_failed_,
                           num_done_ == 0 ? "" : fmt::format(", about {:.0f} min left", std::ceil(left_s / 60.0))));
   }
 
@@ -117,9 +117,9 @@ class Batch {
   BatchSettings settings_;
   WorkFolder work_;
   ResultStore store_;
-  std::vector<std::size_t> waiting_;
+  std::vector<std::size_t> pending_;
   std::set<std::size_t> killed_once_;
-  std::size_t num_done_ = 0, num_not_fine_ = 0;
+  std::size_t num_done_ = 0, num_failed_ = 0;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   ProgressBar bar_;
   InterruptGuard interrupt_;

@@ -15,11 +15,11 @@ namespace patrol::app {
 struct BatchRun {
   std::filesystem::path scenario;
   std::vector<std::string> overrides;
-  std::string address;  ///< content hash or name under which the result is stored
+  std::string key;  ///< content hash or name under which the result is stored
   std::string label;    ///< for display
 };
 
-/// Runs whose directories are kept as `runs/ADDRESS/` after scoring.
+/// Runs whose directories are kept as `runs/KEY/` after scoring.
 enum class KeepRuns { kNone, kFailed, kAll };
 
 inline constexpr std::array kKeepRuns = std::to_array<NamedValue<KeepRuns>>({

@@ -14,16 +14,16 @@ std::string build_id();
 /// Computes the content hash of a run from everything that determines its result. Inputs are the resolved scenario, the
 /// files of its world, its robot and those that it names, the program and its MuJoCo. Runs of equal hash give equal
 /// bytes; a new build changes all hashes.
-class RunAddresses {
+class RunHasher {
  public:
-  explicit RunAddresses(std::filesystem::path data_root);
+  explicit RunHasher(std::filesystem::path data_root);
 
   /// Content hash of a run, 20 hexadecimal digits of a SHA-256.
-  std::string of(const Scenario& scenario);
+  std::string hash(const Scenario& scenario);
 
  private:
-  const std::string& digest_of(const std::filesystem::path& folder, const std::string& except);
-  const std::string& digest_of_file(const std::filesystem::path& file);
+  const std::string& folder_digest(const std::filesystem::path& folder, const std::string& except);
+  const std::string& file_digest(const std::filesystem::path& file);
 
   std::filesystem::path data_root_;
   std::string program_;

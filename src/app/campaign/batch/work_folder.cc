@@ -22,7 +22,7 @@ std::string host_name() {
 }
 
 /// Removes the folders HOST-PID-... of this host that belong to the process `wanted` or to ended processes.
-void remove_left(const std::filesystem::path& folder, const std::string& host, pid_t wanted) {
+void remove_stale(const std::filesystem::path& folder, const std::string& host, pid_t wanted) {
   std::error_code ignored;
   for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
     const std::string name = entry.path().filename().string();
@@ -40,12 +40,12 @@ WorkFolder::WorkFolder(const std::filesystem::path& root)
     : folder_(root / "work"), prefix_(fmt::format("{}-{}-", host_name(), ::getpid())) {
   std::error_code error;
   std::filesystem::create_directories(folder_, error);
-  if (error) throw InputError(fmt::format("{}: cannot be made a directory: {}", folder_.string(), error.message()));
-  remove_left(folder_, host_name(), ::getpid());
+  if (error) throw InputError(fmt::format("{}: cannot create the directory: {}", folder_.string(), error.message()));
+  remove_stale(folder_, host_name(), ::getpid());
 }
 
 WorkFolder::~WorkFolder() {
-  remove_left(folder_, host_name(), ::getpid());
+  remove_stale(folder_, host_name(), ::getpid());
   std::error_code ignored;
   std::filesystem::remove(folder_, ignored);  // fails if another process works in it
 }

@@ -5,7 +5,7 @@
 
 namespace patrol::app {
 
-/// Folder of the active runs, `root/work/HOST-PID-ADDRESS`. Several processes on several hosts may work below one root.
+/// Folder of the active runs, `root/work/HOST-PID-KEY`. Several processes on several hosts may work below one root.
 /// The constructor removes what dead processes of this host left, the destructor what this process left.
 class WorkFolder {
  public:
@@ -14,7 +14,7 @@ class WorkFolder {
   WorkFolder(const WorkFolder&) = delete;
   WorkFolder& operator=(const WorkFolder&) = delete;
 
-  std::filesystem::path of(const std::string& address) const { return folder_ / (prefix_ + address); }
+  std::filesystem::path path(const std::string& key) const { return folder_ / (prefix_ + key); }
 
  private:
   std::filesystem::path folder_;

@@ -43,7 +43,7 @@ std::optional<std::vector<double>> arguments(const std::string& text, const std:
     double number = 0.0;
     const auto [rest, error] = std::from_chars(values.data() + begin, values.data() + end, number);
     if (error != std::errc() || rest != values.data() + end || !std::isfinite(number)) {
-      fail(text, fmt::format("'{}' is not a number; the form is {}:{}", values.substr(begin, end - begin), word, shape));
+      fail(text, fmt::format("'{}' is not a number: must be {}:{}", values.substr(begin, end - begin), word, shape));
     }
     numbers.push_back(number);
     begin = end + 1;
@@ -54,13 +54,13 @@ std::optional<std::vector<double>> arguments(const std::string& text, const std:
 
 std::vector<std::string> spaced(const std::string& text, const std::vector<double>& range, bool in_ratios) {
   const double from = range[0], to = range[1];
-  if (range[2] < 2.0 || range[2] > 10000.0 || range[2] != std::floor(range[2])) fail(text, "N must be a whole number in 2 ... 10000");
+  if (range[2] < 2.0 || range[2] > 10000.0 || range[2] != std::floor(range[2])) fail(text, "N must be an integer in [2, 10000]");
   if (in_ratios && (from <= 0.0 || to <= 0.0)) fail(text, "both ends must be greater than 0");
   const int count = static_cast<int>(range[2]);
   std::vector<std::string> values;
   for (int i = 0; i < count; ++i) {
-    const double share = static_cast<double>(i) / (count - 1);
-    const double value = in_ratios ? from * std::pow(to / from, share) : from + (to - from) * share;
+    const double fraction = static_cast<double>(i) / (count - 1);
+    const double value = in_ratios ? from * std::pow(to / from, fraction) : from + (to - from) * fraction;
     // Twelve digits: 0.3, not 0.30000000000000004.
     values.push_back(fmt::format("{:.12g}", i == 0 ? from : i + 1 == count ? to : value));
   }
@@ -69,7 +69,7 @@ std::vector<std::string> spaced(const std::string& text, const std::vector<doubl
 
 }  // namespace
 
-std::string Axis::draw(std::uint64_t seed) const {
+std::string Axis::sample(std::uint64_t seed) const {
   const RandomStream stream(seed, "sweep/" + path);
   double value = 0.0;
   if (kind == Kind::kUniform) value = first + (second - first) * stream.uniform(0);
@@ -84,36 +84,36 @@ Axis parse_axis(const std::string& text) {
   Axis axis;
   axis.path = text.substr(0, equals);
   const std::string values = text.substr(equals + 1);
-  if (values.empty()) fail(text, "has no values");
+  if (values.empty()) fail(text, "must have at least one value");
 
-  const auto drawn = [&](Axis::Kind kind, const std::vector<double>& numbers) {
+  const auto random = [&](Axis::Kind kind, const std::vector<double>& numbers) {
     axis.kind = kind;
     axis.first = numbers[0], axis.second = numbers[1];
-    if (kind == Axis::Kind::kNormal && axis.second < 0.0) fail(text, "the standard deviation is negative");
-    if (kind != Axis::Kind::kNormal && axis.second < axis.first) fail(text, "HIGH is less than LOW");
+    if (kind == Axis::Kind::kNormal && axis.second < 0.0) fail(text, "the standard deviation must not be negative");
+    if (kind != Axis::Kind::kNormal && axis.second < axis.first) fail(text, "HIGH must not be less than LOW");
     if (kind == Axis::Kind::kLogUniform && axis.first <= 0.0) fail(text, "LOW must be greater than 0");
   };
   if (const auto range = arguments(text, values, "range", 3, "FROM:TO:N")) axis.values = spaced(text, *range, false);
   else if (const auto ratios = arguments(text, values, "logrange", 3, "FROM:TO:N")) axis.values = spaced(text, *ratios, true);
-  else if (const auto limits = arguments(text, values, "uniform", 2, "LOW:HIGH")) drawn(Axis::Kind::kUniform, *limits);
-  else if (const auto logs = arguments(text, values, "loguniform", 2, "LOW:HIGH")) drawn(Axis::Kind::kLogUniform, *logs);
-  else if (const auto moments = arguments(text, values, "normal", 2, "MEAN:STANDARD_DEVIATION")) drawn(Axis::Kind::kNormal, *moments);
+  else if (const auto limits = arguments(text, values, "uniform", 2, "LOW:HIGH")) random(Axis::Kind::kUniform, *limits);
+  else if (const auto logs = arguments(text, values, "loguniform", 2, "LOW:HIGH")) random(Axis::Kind::kLogUniform, *logs);
+  else if (const auto parameters = arguments(text, values, "normal", 2, "MEAN:STANDARD_DEVIATION")) random(Axis::Kind::kNormal, *parameters);
   else axis.values = split_values(values);
 
   std::set<std::string> seen;
   for (const std::string& value : axis.values) {
-    if (value.empty()) fail(text, "a value is empty");
-    if (!seen.insert(value).second) fail(text, fmt::format("{} stands there twice", value));
+    if (value.empty()) fail(text, "empty value");
+    if (!seen.insert(value).second) fail(text, fmt::format("duplicate value '{}'", value));
   }
   return axis;
 }
 
-std::vector<Variant> cross(const std::vector<Axis>& axes) {
+std::vector<Variant> cartesian_product(const std::vector<Axis>& axes) {
   std::set<std::string> paths;
   std::vector<Variant> variants(1);
   for (const Axis& axis : axes) {
-    if (!paths.insert(axis.path).second) throw InputError(fmt::format("--vary {}: stands there twice", axis.path));
-    if (axis.is_drawn()) continue;
+    if (!paths.insert(axis.path).second) throw InputError(fmt::format("--vary {}: specified twice", axis.path));
+    if (axis.is_random()) continue;
     std::vector<Variant> longer;
     for (const Variant& variant : variants) {
       for (const std::string& value : axis.values) {
@@ -124,7 +124,7 @@ std::vector<Variant> cross(const std::vector<Axis>& axes) {
     variants = std::move(longer);
   }
   for (Variant& variant : variants) {
-    variant.name = variant.overrides.empty() ? "as it is" : fmt::format("{}", fmt::join(variant.overrides, ", "));
+    variant.name = variant.overrides.empty() ? "baseline" : fmt::format("{}", fmt::join(variant.overrides, ", "));
   }
   return variants;
 }

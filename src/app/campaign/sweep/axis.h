@@ -24,9 +24,9 @@ struct Axis {
   double first = 0.0;               ///< parameter of a distribution: LOW or MEAN
   double second = 0.0;              ///< HIGH or STANDARD_DEVIATION
 
-  bool is_drawn() const { return kind != Kind::kList; }
+  bool is_random() const { return kind != Kind::kList; }
   /// Override of a random axis for a seed: "path=value".
-  std::string draw(std::uint64_t seed) const;
+  std::string sample(std::uint64_t seed) const;
 };
 
 /// Parses an axis. Throws InputError with the option's text and the error.
@@ -34,12 +34,12 @@ Axis parse_axis(const std::string& text);
 
 /// Variant of the scenario in a sweep.
 struct Variant {
-  std::string name;                    ///< "path=a, other=b"; "as it is" without overrides
+  std::string name;                    ///< "path=a, other=b"; "baseline" without overrides
   std::vector<std::string> overrides;  ///< "path=value"
 };
 
 /// Cartesian product of the lists' values; the first axis varies slowest. Random axes make no variants. Throws
 /// InputError for a duplicate axis.
-std::vector<Variant> cross(const std::vector<Axis>& axes);
+std::vector<Variant> cartesian_product(const std::vector<Axis>& axes);
 
 }  // namespace patrol::app

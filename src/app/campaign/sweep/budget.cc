@@ -9,29 +9,29 @@ namespace patrol::app {
 namespace {
 
 /// Values of a metric, [seed][variant].
-using SeedFigures = std::vector<std::vector<std::optional<double>>>;
+using SeedValues = std::vector<std::vector<std::optional<double>>>;
 
-std::vector<double> column(const SeedFigures& figures, std::size_t variant) {
+std::vector<double> column(const SeedValues& seed_values, std::size_t variant) {
   std::vector<double> values;
-  for (const auto& of_seed : figures) {
+  for (const auto& of_seed : seed_values) {
     if (of_seed[variant]) values.push_back(*of_seed[variant]);
   }
   return values;
 }
 
-BudgetShare share_of(const SeedFigures& figures, std::size_t variant, const std::string& name) {
+Contribution contribution_of(const SeedValues& seed_values, std::size_t variant, const std::string& name) {
   std::vector<double> differences;
-  for (const auto& of_seed : figures) {
+  for (const auto& of_seed : seed_values) {
     if (of_seed[0] && of_seed[variant]) differences.push_back(*of_seed[0] - *of_seed[variant]);
   }
-  return {.name = name, .num_pairs = differences.size(), .share = score::mean_interval(differences)};
+  return {.name = name, .num_pairs = differences.size(), .value = score::mean_interval(differences)};
 }
 
 /// Adds sum and interaction, from the seeds with all values.
-void add_sums(const SeedFigures& figures, Budget& budget) {
+void add_sums(const SeedValues& seed_values, Budget& budget) {
   std::vector<double> sums, interactions;
-  for (const auto& of_seed : figures) {
-    if (!std::all_of(of_seed.begin(), of_seed.end(), [](const auto& figure) { return figure.has_value(); })) continue;
+  for (const auto& of_seed : seed_values) {
+    if (!std::all_of(of_seed.begin(), of_seed.end(), [](const auto& value) { return value.has_value(); })) continue;
     double sum = 0.0;
     for (std::size_t variant = 1; variant + 1 < of_seed.size(); ++variant) sum += *of_seed[0] - *of_seed[variant];
     sums.push_back(sum);
@@ -48,15 +48,15 @@ std::string numbers(const std::optional<score::Interval>& interval) {
 /// Text bar from `from` to `to` on a scale of `full`.
 std::string bar(double from, double to, double full) {
   constexpr double kWidth = 30.0;
-  const auto place = [&](double value) { return static_cast<std::size_t>(std::lround(kWidth * std::clamp(value / full, 0.0, 1.0))); };
-  const std::size_t begin = place(std::min(from, to)), end = std::max(place(std::max(from, to)), begin + 1);
+  const auto bar_cell = [&](double value) { return static_cast<std::size_t>(std::lround(kWidth * std::clamp(value / full, 0.0, 1.0))); };
+  const std::size_t begin = bar_cell(std::min(from, to)), end = std::max(bar_cell(std::max(from, to)), begin + 1);
   std::string text(begin, ' ');
   for (std::size_t i = begin; i < end; ++i) text += to <= from ? "█" : "▒";
   return text;
 }
 
-std::string line(const std::string& name, const std::optional<score::Interval>& interval, const std::string& drawn) {
-  return fmt::format("  {:<28} {:<40} {}\n", name, numbers(interval), drawn);
+std::string line(const std::string& name, const std::optional<score::Interval>& interval, const std::string& picture) {
+  return fmt::format("  {:<28} {:<40} {}\n", name, numbers(interval), picture);
 }
 
 }  // namespace
@@ -68,41 +68,41 @@ std::vector<Budget> make_budgets(const SweepManifest& manifest, const SweepRows&
 }
 
 Budget make_budget(const SweepManifest& manifest, const SweepRows& rows, const std::string& metric) {
-  const SeedFigures figures = flatten_metrics(manifest, rows, metric);
+  const SeedValues seed_values = flatten_metrics(manifest, rows, metric);
   Budget budget{.metric = metric,
-                .as_it_is = score::mean_interval(column(figures, 0)),
-                .ideal = score::mean_interval(column(figures, manifest.variants.size() - 1)),
-                .shares = {},
+                .baseline = score::mean_interval(column(seed_values, 0)),
+                .ideal = score::mean_interval(column(seed_values, manifest.variants.size() - 1)),
+                .contributions = {},
                 .sum = {},
                 .interaction = {}};
   for (std::size_t variant = 1; variant + 1 < manifest.variants.size(); ++variant) {
-    budget.shares.push_back(share_of(figures, variant, manifest.variants[variant].name));
+    budget.contributions.push_back(contribution_of(seed_values, variant, manifest.variants[variant].name));
   }
-  const auto center = [](const BudgetShare& share) { return share.share ? share.share->center : 0.0; };
-  std::stable_sort(budget.shares.begin(), budget.shares.end(), [&](const auto& a, const auto& b) { return center(a) > center(b); });
-  add_sums(figures, budget);
+  const auto center = [](const Contribution& contribution) { return contribution.value ? contribution.value->center : 0.0; };
+  std::stable_sort(budget.contributions.begin(), budget.contributions.end(), [&](const auto& a, const auto& b) { return center(a) > center(b); });
+  add_sums(seed_values, budget);
   return budget;
 }
 
 std::string budget_text(const Budget& budget) {
   std::string text = fmt::format("{}\n", budget.metric);
-  if (!budget.as_it_is || !budget.ideal || !budget.interaction) return text + "  too few runs gave it\n";
-  double highest = budget.as_it_is->center, level = highest;
-  for (const BudgetShare& share : budget.shares) {
-    level -= share.share ? share.share->center : 0.0;
+  if (!budget.baseline || !budget.ideal || !budget.interaction) return text + "  too few runs with this metric\n";
+  double highest = budget.baseline->center, level = highest;
+  for (const Contribution& contribution : budget.contributions) {
+    level -= contribution.value ? contribution.value->center : 0.0;
     highest = std::max(highest, level);
   }
-  level = budget.as_it_is->center;
-  text += line("as it is", budget.as_it_is, bar(0.0, level, highest));
-  for (const BudgetShare& share : budget.shares) {
-    const double next = level - (share.share ? share.share->center : 0.0);
-    const bool is_clear = share.share && !share.share->contains(0.0);
-    text += line(share.name, share.share, bar(level, next, highest) + (is_clear ? "" : "  interval holds zero"));
+  level = budget.baseline->center;
+  text += line("baseline", budget.baseline, bar(0.0, level, highest));
+  for (const Contribution& contribution : budget.contributions) {
+    const double next = level - (contribution.value ? contribution.value->center : 0.0);
+    const bool is_clear = contribution.value && !contribution.value->contains(0.0);
+    text += line(contribution.name, contribution.value, bar(level, next, highest) + (is_clear ? "" : "  interval contains zero"));
     level = next;
   }
   text += line("interaction", budget.interaction, bar(level, budget.ideal->center, highest));
   text += line("all ideal", budget.ideal, bar(0.0, budget.ideal->center, highest));
-  return text + fmt::format("  sum of the shares {}\n", numbers(budget.sum));
+  return text + fmt::format("  sum of the contributions {}\n", numbers(budget.sum));
 }
 
 io::Table budget_table(const std::vector<Budget>& budgets) {
@@ -119,8 +119,8 @@ io::Table budget_table(const std::vector<Budget>& budgets) {
       cells[4] = interval->low;
       cells[5] = interval->high;
     };
-    add("as it is", {}, budget.as_it_is);
-    for (const BudgetShare& share : budget.shares) add(share.name, share.num_pairs, share.share);
+    add("baseline", {}, budget.baseline);
+    for (const Contribution& contribution : budget.contributions) add(contribution.name, contribution.num_pairs, contribution.value);
     add("sum", {}, budget.sum);
     add("interaction", {}, budget.interaction);
     add("all ideal", {}, budget.ideal);

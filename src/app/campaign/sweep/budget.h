@@ -11,19 +11,19 @@
 namespace patrol::app {
 
 /// Contribution of one error source to a metric.
-struct BudgetShare {
+struct Contribution {
   std::string name;
   std::size_t num_pairs = 0;               ///< seeds for which the metric exists with and without the error source
-  std::optional<score::Interval> share;    ///< baseline minus metric without this error source; 95 %, paired by seed
+  std::optional<score::Interval> value;    ///< baseline minus metric without this error source; 95 %, paired by seed
 };
 
-/// Error budget of one metric. The manifest's first variant is the scenario as it is (baseline), the last one has every
+/// Error budget of one metric. The manifest's first variant is the unchanged scenario (baseline), the last one has every
 /// error source removed, the others one each.
 struct Budget {
   std::string metric;
-  std::optional<score::Interval> as_it_is;
+  std::optional<score::Interval> baseline;
   std::optional<score::Interval> ideal;        ///< with every error source removed
-  std::vector<BudgetShare> shares;             ///< largest first
+  std::vector<Contribution> contributions;             ///< largest first
   std::optional<score::Interval> sum;          ///< sum of the contributions
   std::optional<score::Interval> interaction;  ///< effect of removing all together minus the sum of the contributions
 };
@@ -35,7 +35,7 @@ Budget make_budget(const SweepManifest& manifest, const SweepRows& rows, const s
 /// Waterfall chart as text: from the baseline, contribution by contribution, to the ideal value.
 std::string budget_text(const Budget& budget);
 
-/// Table of all budgets: one row per contribution, and rows "as it is", "sum", "interaction", "all ideal".
+/// Table of all budgets: one row per contribution, and rows "baseline", "sum", "interaction", "all ideal".
 io::Table budget_table(const std::vector<Budget>& budgets);
 
 }  // namespace patrol::app

@@ -16,10 +16,10 @@ std::string verdict_of(const std::optional<score::Interval>& difference) {
   return difference->center < 0.0 ? "lower" : "higher";
 }
 
-bool is_decided(const VariantFigure& figure, double margin) {
-  if (!figure.difference) return false;
-  const bool is_equal = figure.difference->low > -margin && figure.difference->high < margin;
-  return is_equal || !figure.difference->contains(0.0);
+bool is_decided(const VariantMetric& entry, double margin) {
+  if (!entry.difference) return false;
+  const bool is_equal = entry.difference->low > -margin && entry.difference->high < margin;
+  return is_equal || !entry.difference->contains(0.0);
 }
 
 /// Collects the counted and the missing runs of an interim analysis. `num_seeds`: [variant], lower for variants that
@@ -35,18 +35,18 @@ void add_needed(const SweepManifest& manifest, const SweepRows& rows, const std:
 
 }  // namespace
 
-std::vector<VariantFigure> compare(const SweepManifest& manifest, const SweepRows& rows, const std::string& metric,
+std::vector<VariantMetric> compare(const SweepManifest& manifest, const SweepRows& rows, const std::string& metric,
                                    std::size_t num_seeds, double level) {
-  const auto figures = flatten_metrics(manifest, rows, metric);
-  std::vector<VariantFigure> compared;
+  const auto seed_values = flatten_metrics(manifest, rows, metric);
+  std::vector<VariantMetric> compared;
   for (std::size_t variant = 0; variant < manifest.variants.size(); ++variant) {
     std::vector<double> values, differences;
     for (std::size_t seed = 0; seed < num_seeds; ++seed) {
-      const std::optional<double>& value = figures[seed][variant];
+      const std::optional<double>& value = seed_values[seed][variant];
       if (value) values.push_back(*value);
-      if (value && figures[seed].front()) differences.push_back(*value - *figures[seed].front());
+      if (value && seed_values[seed].front()) differences.push_back(*value - *seed_values[seed].front());
     }
-    VariantFigure figure{.variant = variant,
+    VariantMetric entry{.variant = variant,
                          .num_runs = values.size(),
                          .mean = score::mean(values),
                          .interval = score::mean_interval(values),
@@ -54,45 +54,45 @@ std::vector<VariantFigure> compare(const SweepManifest& manifest, const SweepRow
                          .difference = {},
                          .verdict = ""};
     if (variant > 0) {
-      figure.difference = score::mean_interval(differences, level);
-      figure.verdict = verdict_of(figure.difference);
+      entry.difference = score::mean_interval(differences, level);
+      entry.verdict = verdict_of(entry.difference);
     }
-    compared.push_back(figure);
+    compared.push_back(entry);
   }
   return compared;
 }
 
-std::vector<std::size_t> looks_of(std::size_t num_seeds) {
-  std::vector<std::size_t> looks;
-  for (std::size_t look = 5; look < num_seeds; look *= 2) looks.push_back(look);
-  looks.push_back(num_seeds);
-  return looks;
+std::vector<std::size_t> interim_analyses(std::size_t num_seeds) {
+  std::vector<std::size_t> analyses;
+  for (std::size_t analysis = 5; analysis < num_seeds; analysis *= 2) analyses.push_back(analysis);
+  analyses.push_back(num_seeds);
+  return analyses;
 }
 
-double level_of(const SweepManifest& manifest) {
-  return 1.0 - kError / (manifest.stop.when_decided ? static_cast<double>(looks_of(manifest.seeds.size()).size()) : 1.0);
+double confidence_level(const SweepManifest& manifest) {
+  return 1.0 - kError / (manifest.stop.is_early ? static_cast<double>(interim_analyses(manifest.seeds.size()).size()) : 1.0);
 }
 
-SweepProgress progress_of(const SweepManifest& manifest, const SweepRows& rows) {
+SweepProgress evaluate_progress(const SweepManifest& manifest, const SweepRows& rows) {
   SweepProgress progress;
   const std::size_t all = manifest.seeds.size();
   std::vector<std::size_t> num_seeds(manifest.variants.size(), all);
-  if (!manifest.stop.when_decided) {
+  if (!manifest.stop.is_early) {
     add_needed(manifest, rows, num_seeds, progress);
     return progress;
   }
-  std::vector<bool> is_open(manifest.variants.size(), true);
-  for (const std::size_t look : looks_of(all)) {
+  std::vector<bool> is_undecided(manifest.variants.size(), true);
+  for (const std::size_t analysis : interim_analyses(all)) {
     for (std::size_t variant = 0; variant < num_seeds.size(); ++variant) {
-      if (is_open[variant]) num_seeds[variant] = look;
+      if (is_undecided[variant]) num_seeds[variant] = analysis;
     }
     progress = {};
     add_needed(manifest, rows, num_seeds, progress);
     if (!progress.needed.empty()) return progress;
-    for (const VariantFigure& figure : compare(manifest, rows, manifest.metrics.front(), look, level_of(manifest))) {
-      if (figure.variant > 0 && is_decided(figure, manifest.stop.margin)) is_open[figure.variant] = false;
+    for (const VariantMetric& entry : compare(manifest, rows, manifest.metrics.front(), analysis, confidence_level(manifest))) {
+      if (entry.variant > 0 && is_decided(entry, manifest.stop.equivalence_margin)) is_undecided[entry.variant] = false;
     }
-    if (std::none_of(is_open.begin() + 1, is_open.end(), [](bool open) { return open; })) return progress;
+    if (std::none_of(is_undecided.begin() + 1, is_undecided.end(), [](bool open) { return open; })) return progress;
   }
   return progress;
 }

@@ -11,7 +11,7 @@
 namespace patrol::app {
 
 /// Metric of one variant over the seeds, with its difference from the first variant.
-struct VariantFigure {
+struct VariantMetric {
   std::size_t variant = 0;
   std::size_t num_runs = 0;                    ///< runs with a value of the metric
   double mean = 0.0;
@@ -25,7 +25,7 @@ struct VariantFigure {
 /// Compares the variants over the runs of the first `num_seeds` seeds, [variant]. Equal seeds give equal noise in all
 /// variants, so that paired differences have less variance than differences of means. `level`: confidence level of the
 /// difference's interval.
-std::vector<VariantFigure> compare(const SweepManifest& manifest, const SweepRows& rows, const std::string& metric,
+std::vector<VariantMetric> compare(const SweepManifest& manifest, const SweepRows& rows, const std::string& metric,
                                    std::size_t num_seeds, double level = 0.95);
 
 /// Runs that a sweep still needs, and runs that count.
@@ -40,13 +40,13 @@ struct SweepProgress {
 /// zero, or lies within the margin. Each of the k analyses uses an interval of level 1 - 0.05 / k (Bonferroni), which
 /// limits the error probability of all together. The decisions depend on the rows alone, not on the order or the
 /// process of the runs.
-SweepProgress progress_of(const SweepManifest& manifest, const SweepRows& rows);
+SweepProgress evaluate_progress(const SweepManifest& manifest, const SweepRows& rows);
 
 /// Confidence level of the intervals of a sweep's differences: 0.95, or with early stopping that of each interim
 /// analysis.
-double level_of(const SweepManifest& manifest);
+double confidence_level(const SweepManifest& manifest);
 
 /// Numbers of seeds after which interim analyses are made.
-std::vector<std::size_t> looks_of(std::size_t num_seeds);
+std::vector<std::size_t> interim_analyses(std::size_t num_seeds);
 
 }  // namespace patrol::app

@@ -7,15 +7,15 @@
 namespace patrol::app {
 namespace {
 
-bool has_belts(const Scenario&, const ScenarioFiles& files) { return files.robot.tracks.has_value(); }
+bool has_tracks(const Scenario&, const ScenarioFiles& files) { return files.robot.tracks.has_value(); }
 
 template <IsSensorMessage Message>
 bool has_sensor(const Scenario& scenario, const ScenarioFiles& files) {
   return sim::is_enabled<Message>(scenario.sensors) && is_fitted<Message>(files.robot);
 }
 
-std::vector<Imperfection> imperfections_of_sensors() {
-  std::vector<Imperfection> all;
+std::vector<ScenarioErrorSource> sensor_error_sources() {
+  std::vector<ScenarioErrorSource> all;
   Sensors::for_each([&]<typename Message>(std::type_identity<Message>) {
     for (ErrorSource& source : error_sources<Message>()) {
       all.push_back({std::move(source.name), std::move(source.overrides), has_sensor<Message>});
@@ -37,23 +37,23 @@ std::vector<std::string> latency_overrides() {
   return overrides;
 }
 
-std::vector<Imperfection> other_imperfections() {
+std::vector<ScenarioErrorSource> other_error_sources() {
   return {
-      {"belts: slip (friction 2)", {"track_drive.friction=2"}, has_belts},
+      {"tracks: slip (friction 2)", {"track_drive.friction=2"}, has_tracks},
       {"latency of all sensors", latency_overrides()},
       {"people and vehicles", {"actors=[]"}},
       {"faults", {"faults=[]"}},
-      {"put down off the start", {"start.ahead_m=0", "start.left_m=0", "start.turn_deg=0"}},
-      {"map: cells of 5 cm (2.5 cm)", {"stack.slam.resolution_m=0.025", "stack.graph.tracking.resolution_m=0.025"}},
+      {"start pose error", {"start.ahead_m=0", "start.left_m=0", "start.turn_deg=0"}},
+      {"map resolution 5 cm (2.5 cm)", {"stack.slam.resolution_m=0.025", "stack.graph.tracking.resolution_m=0.025"}},
   };
 }
 
 }  // namespace
 
-const std::vector<Imperfection>& imperfections() {
-  static const std::vector<Imperfection> kAll = [] {
-    std::vector<Imperfection> all = imperfections_of_sensors();
-    for (Imperfection& imperfection : other_imperfections()) all.push_back(std::move(imperfection));
+const std::vector<ScenarioErrorSource>& scenario_error_sources() {
+  static const std::vector<ScenarioErrorSource> kAll = [] {
+    std::vector<ScenarioErrorSource> all = sensor_error_sources();
+    for (ScenarioErrorSource& source : other_error_sources()) all.push_back(std::move(source));
     return all;
   }();
   return kAll;

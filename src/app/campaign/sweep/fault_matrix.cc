@@ -41,13 +41,13 @@ std::vector<sim::FaultSettings> fault_matrix(const Scenario& scenario, const Sce
   Sensors::for_each([&]<typename Message>(std::type_identity<Message>) {
     if (!is_in_matrix<Message>(scenario, files)) return;
     constexpr SensorInfo kInfo = SensorTraits<Message>::kInfo;
-    const std::array<std::pair<const char*, double>, 7> kinds = {{{"silence", 1.0},
+    const std::array<std::pair<const char*, double>, 7> kinds = {{{"dropout", 1.0},
                                                                    {"freeze", 1.0},
                                                                    {"delay", kDelay_s},
                                                                    {"jitter", kJitter_s},
                                                                    {"clock_offset", kClockOffset_s},
                                                                    {"drift", kInfo.fault.drift_per_s},
-                                                                   {"spikes", kInfo.fault.spike}}};
+                                                                   {"outliers", kInfo.fault.outlier}}};
     for (const auto& [kind, magnitude] : kinds) {
       faults.push_back({.sensor = kInfo.name, .kind = kind, .start_s = start_s, .duration_s = duration_s, .magnitude = magnitude});
     }
@@ -57,7 +57,7 @@ std::vector<sim::FaultSettings> fault_matrix(const Scenario& scenario, const Sce
 
 std::string variant_name(const sim::FaultSettings& fault) { return fmt::format("{}{}{}", fault.sensor, kBetween, fault.kind); }
 
-FaultVariant fault_of(const std::string& variant_name) {
+FaultVariant parse_variant_name(const std::string& variant_name) {
   const std::size_t between = variant_name.find(kBetween);
   if (between == std::string::npos) return {.sensor = variant_name, .kind = ""};
   return {.sensor = variant_name.substr(0, between), .kind = variant_name.substr(between + kBetween.size())};

@@ -9,7 +9,7 @@
 namespace patrol::app {
 
 /// Faults of every kind for every registered sensor that the scenario uses, from `start_s` on for `duration_s`. The
-/// magnitudes of drift and spikes are in the registry (SensorInfo::fault), the others in fault_matrix.cc.
+/// magnitudes of drift and outliers are in the registry (SensorInfo::fault), the others in fault_matrix.cc.
 std::vector<sim::FaultSettings> fault_matrix(const Scenario& scenario, const ScenarioFiles& files, double start_s, double duration_s);
 
 /// Name of a fault's variant: "lidar: drift".
@@ -21,7 +21,7 @@ struct FaultVariant {
   std::string kind;    ///< empty without a fault
 };
 
-FaultVariant fault_of(const std::string& variant_name);
+FaultVariant parse_variant_name(const std::string& variant_name);
 
 /// Override that sets the fault: "faults=[{...}]".
 std::string fault_override(const sim::FaultSettings& fault);

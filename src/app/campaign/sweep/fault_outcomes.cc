@@ -32,26 +32,26 @@ std::vector<FaultRow> fault_rows(const SweepManifest& manifest, const SweepRows&
     const PlannedRun& run = manifest.runs[i];
     const RunVerdict& verdict = *rows[i];
     FaultRow& row = faults.emplace_back(FaultRow{.name = manifest.variants[run.variant].name,
-                                                 .fault = fault_of(manifest.variants[run.variant].name),
+                                                 .fault = parse_variant_name(manifest.variants[run.variant].name),
                                                  .seed = run.seed,
                                                  .was_triggered = was_triggered(verdict),
                                                  .outcome = outcome_of(verdict),
-                                                 .num_noticed = io::metric_at(verdict.metrics, "mission.sensor_faults_noticed"),
+                                                 .num_detected = io::metric_at(verdict.metrics, "mission.sensor_faults_noticed"),
                                                  .end = std::string(name_of(verdict.end)),
                                                  .message = verdict.message,
-                                                 .figures = {},
-                                                 .without = {}});
+                                                 .values = {},
+                                                 .baseline_values = {}});
     for (const std::string& metric : manifest.metrics) {
-      row.figures.push_back(io::metric_at(verdict.metrics, metric));
-      row.without.push_back(io::metric_at(rows[i - run.variant]->metrics, metric));
+      row.values.push_back(io::metric_at(verdict.metrics, metric));
+      row.baseline_values.push_back(io::metric_at(rows[i - run.variant]->metrics, metric));
     }
   }
   return faults;
 }
 
-std::string executed_text(const FaultRow& row) {
+std::string trigger_text(const FaultRow& row) {
   if (!row.was_triggered) return "";
-  return *row.was_triggered ? "executed" : "NOT EXECUTED";
+  return *row.was_triggered ? "triggered" : "not triggered";
 }
 
 std::string faults_summary(const std::vector<FaultRow>& rows) {
@@ -59,18 +59,18 @@ std::string faults_summary(const std::vector<FaultRow>& rows) {
   int num_not_executed = 0;
   for (const FaultRow& row : rows) {
     ++counts[row.outcome];
-    num_not_executed += row.is_not_executed();
+    num_not_executed += row.is_not_triggered();
   }
   std::vector<std::string> parts;
   for (const auto& [outcome, count] : counts) parts.push_back(fmt::format("{} {}", count, text_of(outcome)));
-  return fmt::format("{} runs: {}; {} faults NOT EXECUTED.", rows.size(), fmt::join(parts, ", "), num_not_executed);
+  return fmt::format("{} runs: {}; {} faults not triggered.", rows.size(), fmt::join(parts, ", "), num_not_executed);
 }
 
 std::string fault_legend() {
-  return "Survived: the mission was completed without fall or collision, and all that the scenario expects was met. Degraded: completed, with something missed. Stopped: "
-         "not completed, and the robot neither fell nor hit anything. UNSAFE: a fall or a "
-         "collision. NO RESULT: the run crashed, hung or came to no score. Noticed: how often the robot said of a sensor that it is silent, late, frozen or "
-         "has a wrong clock; it cannot tell a drift or a spike.";
+  return "Survived: mission completed without fall or collision, every expectation met. Degraded: completed, an expectation missed. Stopped: "
+         "not completed, no fall, no collision. UNSAFE: a fall or a "
+         "collision. NO RESULT: the run crashed, timed out or was not scored. Detected: number of reported timeouts, frozen readings and "
+         "clock errors; drift and outliers are not detectable.";
 }
 
 }  // namespace patrol::app

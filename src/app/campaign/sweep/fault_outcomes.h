@@ -25,7 +25,7 @@ inline constexpr std::array kFaultOutcomes = std::to_array<NamedValue<FaultOutco
     {FaultOutcome::kDegraded, "degraded", "Mission completed, an expectation missed"},
     {FaultOutcome::kStopped, "stopped", "Mission not completed, no fall, no collision"},
     {FaultOutcome::kUnsafe, "UNSAFE", "A fall or a collision"},
-    {FaultOutcome::kNoResult, "NO RESULT", "The run crashed, hung or came to no score"},
+    {FaultOutcome::kNoResult, "NO RESULT", "The run crashed, timed out or was not scored"},
 });
 static_assert(is_in_order(kFaultOutcomes));
 
@@ -40,17 +40,17 @@ struct FaultRow {
   std::uint64_t seed = 1;
   std::optional<bool> was_triggered;  ///< empty for the run without a fault
   FaultOutcome outcome = FaultOutcome::kNoResult;
-  std::optional<double> num_noticed;  ///< number of events in which the robot reported a faulty sensor
+  std::optional<double> num_detected;  ///< number of events in which the robot reported a faulty sensor
   std::string end, message;
-  std::vector<std::optional<double>> figures, without;  ///< [metric], this run and the run without fault of this seed
+  std::vector<std::optional<double>> values, baseline_values;  ///< [metric], this run and the run without fault of this seed
 
-  bool is_not_executed() const { return was_triggered.has_value() && !*was_triggered; }
+  bool is_not_triggered() const { return was_triggered.has_value() && !*was_triggered; }
 };
 
 std::vector<FaultRow> fault_rows(const SweepManifest& manifest, const SweepRows& rows);
 
-/// "executed" or "NOT EXECUTED"; empty for the run without a fault.
-std::string executed_text(const FaultRow& row);
+/// "triggered" or "not triggered"; empty for the run without a fault.
+std::string trigger_text(const FaultRow& row);
 
 /// Sentence with the number of runs by outcome.
 std::string faults_summary(const std::vector<FaultRow>& rows);

@@ -51,9 +51,9 @@ ExitCode worst_of(const SweepRows& rows, const SweepProgress& progress) {
 
 ExitCode finish_sweep(const SweepDirectory& directory, const SweepManifest& manifest) {
   const SweepRows rows = load_rows(manifest, directory.store());
-  const SweepProgress progress = progress_of(manifest, rows);
+  const SweepProgress progress = evaluate_progress(manifest, rows);
   if (!progress.needed.empty()) {
-    fmt::print("{}: {} of {} runs are still to do; `patrol collect` puts shards together\n", directory.root.string(),
+    fmt::print("{}: {} of {} runs are missing; merge shards with 'patrol merge'\n", directory.root.string(),
                progress.needed.size(), progress.counted.size());
     return ExitCode::kDone;
   }

@@ -16,7 +16,7 @@ namespace {
 
 using OrderedJson = nlohmann::ordered_json;
 
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 
 OrderedJson json_of(const SweepManifest& manifest) {
   OrderedJson json{{"version", kVersion},
@@ -25,8 +25,8 @@ OrderedJson json_of(const SweepManifest& manifest) {
             {"overrides", manifest.overrides},
             {"paths", manifest.paths},
             {"metrics", manifest.metrics},
-            {"stop_when_decided", manifest.stop.when_decided},
-            {"margin", manifest.stop.margin},
+            {"early_stop", manifest.stop.is_early},
+            {"equivalence_margin", manifest.stop.equivalence_margin},
             {"seeds", manifest.seeds},
             {"variants", OrderedJson::array()},
             {"runs", OrderedJson::array()}};
@@ -35,7 +35,7 @@ OrderedJson json_of(const SweepManifest& manifest) {
   }
   for (const PlannedRun& run : manifest.runs) {
     json["runs"].push_back(
-        {{"variant", run.variant}, {"seed", run.seed}, {"overrides", run.overrides}, {"address", run.address}});
+        {{"variant", run.variant}, {"seed", run.seed}, {"overrides", run.overrides}, {"hash", run.hash}});
   }
   return json;
 }
@@ -47,8 +47,8 @@ SweepManifest manifest_of(const OrderedJson& json) {
   json.at("overrides").get_to(manifest.overrides);
   json.at("paths").get_to(manifest.paths);
   json.at("metrics").get_to(manifest.metrics);
-  json.at("stop_when_decided").get_to(manifest.stop.when_decided);
-  json.at("margin").get_to(manifest.stop.margin);
+  json.at("early_stop").get_to(manifest.stop.is_early);
+  json.at("equivalence_margin").get_to(manifest.stop.equivalence_margin);
   json.at("seeds").get_to(manifest.seeds);
   for (const OrderedJson& variant : json.at("variants")) {
     manifest.variants.push_back({.name = variant.at("name"), .overrides = variant.at("overrides")});
@@ -57,14 +57,14 @@ SweepManifest manifest_of(const OrderedJson& json) {
     manifest.runs.push_back({.variant = run.at("variant"),
                              .seed = run.at("seed"),
                              .overrides = run.at("overrides"),
-                             .address = run.at("address")});
-    if (manifest.runs.back().variant >= manifest.variants.size()) throw InputError("a run names a variant that there is not");
+                             .hash = run.at("hash")});
+    if (manifest.runs.back().variant >= manifest.variants.size()) throw InputError("runs: unknown variant");
   }
   for (const auto& [key, is_empty] : {std::pair("metrics", manifest.metrics.empty()), std::pair("seeds", manifest.seeds.empty()),
                                       std::pair("variants", manifest.variants.empty())}) {
     if (is_empty) throw InputError(fmt::format("{}: is empty", key));
   }
-  if (manifest.runs.size() != manifest.variants.size() * manifest.seeds.size()) throw InputError("runs: must be one of each variant and seed");
+  if (manifest.runs.size() != manifest.variants.size() * manifest.seeds.size()) throw InputError("runs: must have one run per variant and seed");
   return manifest;
 }
 
@@ -85,10 +85,10 @@ SweepManifest load_manifest(const std::filesystem::path& file) {
   const std::string text = io::load_text(file);
   try {
     const OrderedJson json = OrderedJson::parse(text);
-    if (json.at("version") != kVersion) throw InputError("version: must be 1");
+    if (json.at("version") != kVersion) throw InputError("version: must be 2");
     return manifest_of(json);
   } catch (const std::exception& error) {
-    throw InputError(fmt::format("{}: is not what a sweep leaves: {}", file.string(), error.what()));
+    throw InputError(fmt::format("{}: invalid sweep manifest: {}", file.string(), error.what()));
   }
 }
 

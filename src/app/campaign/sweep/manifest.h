@@ -15,16 +15,16 @@ struct PlannedRun {
   std::size_t variant = 0;
   std::uint64_t seed = 1;
   std::vector<std::string> overrides;  ///< overrides of the variant, then those sampled for the seed: "path=value"
-  std::string address;                 ///< content hash of the result (run_address.h)
+  std::string hash;                 ///< content hash of the result (run_hash.h)
 };
 
 /// Condition for stopping before all seeds are run.
 struct EarlyStop {
-  bool when_decided = false;
-  double margin = 0.0;  ///< in units of the first metric: smaller differences are treated as equal
+  bool is_early = false;
+  double equivalence_margin = 0.0;  ///< in units of the first metric: smaller differences are treated as equal
 };
 
-/// Command of a sweep, which determines its variants. Budget: the first is the scenario as it is, the last has every
+/// Command of a sweep, which determines its variants. Budget: the first is the unchanged scenario, the last has every
 /// error source removed. Fault matrix: the first has no fault.
 enum class SweepKind { kSweep, kBudget, kFaults };
 

@@ -26,14 +26,14 @@ SweepManifest begin_manifest(SweepKind kind, const Options& options) {
 
 /// Adds the runs, ordered by seed, then by variant.
 void plan_runs(const std::filesystem::path& scenario, const std::vector<Axis>& axes, SweepManifest& manifest) {
-  RunAddresses addresses(find_data_root(scenario));
+  RunHasher hasher(find_data_root(scenario));
   for (const std::uint64_t seed : manifest.seeds) {
     for (std::size_t variant = 0; variant < manifest.variants.size(); ++variant) {
-      PlannedRun run{.variant = variant, .seed = seed, .overrides = manifest.variants[variant].overrides, .address = ""};
+      PlannedRun run{.variant = variant, .seed = seed, .overrides = manifest.variants[variant].overrides, .hash = ""};
       for (const Axis& axis : axes) {
-        if (axis.is_drawn()) run.overrides.push_back(axis.draw(seed));
+        if (axis.is_random()) run.overrides.push_back(axis.sample(seed));
       }
-      run.address = addresses.of(load_scenario(scenario, overrides_of(manifest, run)));
+      run.hash = hasher.hash(load_scenario(scenario, overrides_of(manifest, run)));
       manifest.runs.push_back(run);
     }
   }
@@ -45,36 +45,36 @@ SweepManifest plan_sweep(const SweepOptions& options) {
   std::vector<Axis> axes;
   for (const std::string& text : options.vary) axes.push_back(parse_axis(text));
   SweepManifest manifest = begin_manifest(SweepKind::kSweep, options);
-  manifest.variants = cross(axes);
-  manifest.stop = {.when_decided = options.stop_when_decided, .margin = options.margin};
+  manifest.variants = cartesian_product(axes);
+  manifest.stop = {.is_early = options.early_stop, .equivalence_margin = options.equivalence_margin};
   for (const Axis& axis : axes) manifest.paths.push_back(axis.path);
   plan_runs(options.scenario, axes, manifest);
   return manifest;
 }
 
-SweepManifest plan_budget(const BudgetOptions& options) {
+SweepManifest plan_error_budget(const ErrorBudgetOptions& options) {
   SweepManifest manifest = begin_manifest(SweepKind::kBudget, options);
-  manifest.variants.push_back({.name = "as it is", .overrides = {}});
-  if (manifest.seeds.size() < 2) throw InputError("--seeds: a budget needs two at least: one says nothing of the spread");
+  manifest.variants.push_back({.name = "baseline", .overrides = {}});
+  if (manifest.seeds.size() < 2) throw InputError("--seeds: an error budget needs at least two seeds");
   const Scenario scenario = load_scenario(options.scenario, options.overrides);
   const ScenarioFiles files = load_scenario_files(scenario, find_data_root(options.scenario));
-  const auto changes_it = [&](const Imperfection& imperfection) {
+  const auto changes_it = [&](const ScenarioErrorSource& source) {
     std::vector<std::string> overrides = options.overrides;
-    overrides.insert(overrides.end(), imperfection.overrides.begin(), imperfection.overrides.end());
+    overrides.insert(overrides.end(), source.overrides.begin(), source.overrides.end());
     return io::to_yaml(load_scenario(options.scenario, overrides)) != io::to_yaml(scenario);
   };
   Variant ideal{.name = "all ideal", .overrides = {}};
-  for (const Imperfection& imperfection : imperfections()) {
-    if (!imperfection.is_there(scenario, files) || !changes_it(imperfection)) continue;
-    manifest.variants.push_back({.name = imperfection.name, .overrides = imperfection.overrides});
-    ideal.overrides.insert(ideal.overrides.end(), imperfection.overrides.begin(), imperfection.overrides.end());
+  for (const ScenarioErrorSource& source : scenario_error_sources()) {
+    if (!source.applies(scenario, files) || !changes_it(source)) continue;
+    manifest.variants.push_back({.name = source.name, .overrides = source.overrides});
+    ideal.overrides.insert(ideal.overrides.end(), source.overrides.begin(), source.overrides.end());
   }
   manifest.variants.push_back(ideal);
   plan_runs(options.scenario, {}, manifest);
   return manifest;
 }
 
-SweepManifest plan_faults(const FaultsOptions& options) {
+SweepManifest plan_fault_matrix(const FaultMatrixOptions& options) {
   SweepManifest manifest = begin_manifest(SweepKind::kFaults, options);
   manifest.paths = {"faults"};
   manifest.variants.push_back({.name = "no fault", .overrides = {"faults=[]"}});

@@ -9,10 +9,10 @@ namespace patrol::app {
 /// reported before anything runs. These functions throw InputError.
 SweepManifest plan_sweep(const SweepOptions& options);
 
-/// Plans an error budget: the scenario as it is, without each of its error sources (imperfections.h), and without all.
-SweepManifest plan_budget(const BudgetOptions& options);
+/// Plans an error budget: the unchanged scenario (baseline), without each of its error sources (error_sources.h), and without all.
+SweepManifest plan_error_budget(const ErrorBudgetOptions& options);
 
-/// Plans a fault matrix: the scenario as it is, and with each fault of its sensors (fault_matrix.h).
-SweepManifest plan_faults(const FaultsOptions& options);
+/// Plans a fault matrix: the unchanged scenario, and with each fault of its sensors (fault_matrix.h).
+SweepManifest plan_fault_matrix(const FaultMatrixOptions& options);
 
 }  // namespace patrol::app

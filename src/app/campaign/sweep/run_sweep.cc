@@ -11,19 +11,19 @@ namespace patrol::app {
 void run_sweep(const std::filesystem::path& scenario, const SweepManifest& manifest, const SweepDirectory& directory, const Shard& shard,
                const BatchSettings& settings) {
   while (true) {
-    const SweepProgress progress = progress_of(manifest, load_rows(manifest, directory.store()));
+    const SweepProgress progress = evaluate_progress(manifest, load_rows(manifest, directory.store()));
     std::vector<BatchRun> runs;
     for (const std::size_t i : progress.needed) {
       const PlannedRun& run = manifest.runs[i];
-      if (!shard.holds(i)) continue;
+      if (!shard.contains(i)) continue;
       runs.push_back({.scenario = scenario,
                       .overrides = overrides_of(manifest, run),
-                      .address = run.address,
+                      .key = run.hash,
                       .label = fmt::format("{}, seed {}", manifest.variants[run.variant].name, run.seed)});
     }
     if (runs.empty()) return;
     if (!run_batch(runs, settings, directory.root)) {
-      throw std::runtime_error(fmt::format("interrupted; {} is incomplete, the same command goes on", directory.root.string()));
+      throw std::runtime_error(fmt::format("interrupted; {} is incomplete, repeat the command to continue", directory.root.string()));
     }
   }
 }

@@ -62,12 +62,12 @@ class SlurmJob {
 }  // namespace
 
 std::string shard_command(const SweepOptions& options, const std::filesystem::path& program, const std::string& shard) {
-  std::string command = fmt::format("{} sweep {} --seeds {} --jobs {} --keep {} --run-limit-s {} --out {} --shard {}",
-                                    shell_quoted(program.string()), shell_quoted(std::filesystem::absolute(options.scenario).string()),
-                                    shell_quoted(options.seeds), std::max(1, options.batch.jobs), options.batch.keep, options.batch.run_limit_s,
-                                    shell_quoted(std::filesystem::absolute(options.out).string()), shard);
+  std::string command = fmt::format("{} sweep {} --seeds {} --jobs {} --keep-runs {} --run-timeout-s {} --out {} --shard {}",
+                                    quote_for_shell(program.string()), quote_for_shell(std::filesystem::absolute(options.scenario).string()),
+                                    quote_for_shell(options.seeds), std::max(1, options.batch.jobs), options.batch.keep_runs, options.batch.run_timeout_s,
+                                    quote_for_shell(std::filesystem::absolute(options.out).string()), shard);
   const auto add = [&command](const char* option, const std::vector<std::string>& values) {
-    for (const std::string& value : values) command += fmt::format(" {} {}", option, shell_quoted(value));
+    for (const std::string& value : values) command += fmt::format(" {} {}", option, quote_for_shell(value));
   };
   add("--set", options.overrides);
   add("--vary", options.vary);
@@ -86,23 +86,23 @@ ExitCode sweep_on_slurm(const SweepOptions& options, const SweepDirectory& direc
   ProgressBar bar;
   const InterruptGuard interrupt;
   for (int submissions = 0; true;) {
-    const auto needed = [&] { return progress_of(manifest, load_rows(manifest, directory.store())).needed; };
+    const auto needed = [&] { return evaluate_progress(manifest, load_rows(manifest, directory.store())).needed; };
     while (job.is_in_queue()) {
       if (options.detach || interrupt.is_interrupted()) {
-        fmt::print("{}: job {} goes on; the same command waits for it\n", directory.root.string(), job.id());
+        fmt::print("{}: job {} is running; repeat the command to wait for it\n", directory.root.string(), job.id());
         return interrupt.is_interrupted() ? ExitCode::kProgramFailed : ExitCode::kDone;
       }
-      bar.show(fmt::format("job {}: {} of {} runs to do", job.id(), needed().size(), manifest.runs.size()));
+      bar.show(fmt::format("job {}: {} of {} runs missing", job.id(), needed().size(), manifest.runs.size()));
       std::this_thread::sleep_for(kPoll);
     }
     const std::vector<std::size_t> missing = needed();
     if (missing.empty()) return finish_sweep(directory, manifest);
     if (submissions == kMaxSubmissions) {
-      throw std::runtime_error(fmt::format("{}: {} runs are not done after {} submissions; what the tasks said lies in slurm/",
+      throw std::runtime_error(fmt::format("{}: {} runs are missing after {} submissions; see slurm/ for task logs",
                                            directory.root.string(), missing.size(), submissions));
     }
     job.submit(options, shards_with_work(missing, options.slurm_tasks));
-    bar.say(fmt::format("job {}: {} runs in shards {}", job.id(), missing.size(), shards_with_work(missing, options.slurm_tasks)));
+    bar.print_line(fmt::format("job {}: {} runs in shards {}", job.id(), missing.size(), shards_with_work(missing, options.slurm_tasks)));
     ++submissions;
   }
 }

@@ -16,8 +16,8 @@ struct SweepOptions {
   std::vector<std::string> vary;       ///< axis.h
   std::string seeds = "10";            ///< "N": 1 ... N; or "A..B"
   std::vector<std::string> metrics = {"pose.ate_rmse_m", "pose.heading_rmse_deg", "map.nearest_mean_m", "mission.completed"};
-  bool stop_when_decided = false;
-  double margin = 0.0;
+  bool early_stop = false;
+  double equivalence_margin = 0.0;
   BatchOptions batch;
   std::string shard;                   ///< "i/n"; empty: all
   std::string engine = "local";
@@ -27,8 +27,8 @@ struct SweepOptions {
   std::filesystem::path out = "out/sweep";
 };
 
-/// Options of `patrol budget`.
-struct BudgetOptions {
+/// Options of `patrol error-budget`.
+struct ErrorBudgetOptions {
   std::filesystem::path scenario;
   std::vector<std::string> overrides;
   std::string seeds = "5";
@@ -37,8 +37,8 @@ struct BudgetOptions {
   std::filesystem::path out = "out/budget";
 };
 
-/// Options of `patrol faults`.
-struct FaultsOptions {
+/// Options of `patrol fault-matrix`.
+struct FaultMatrixOptions {
   std::filesystem::path scenario;
   std::vector<std::string> overrides;
   std::string seeds = "1";
@@ -54,7 +54,7 @@ struct Shard {
   std::size_t index = 0;  ///< from 0
   std::size_t count = 1;
 
-  bool holds(std::size_t run) const { return run % count == index; }
+  bool contains(std::size_t run) const { return run % count == index; }
 };
 
 /// Parses the seeds. Throws InputError with the option's name.

@@ -20,7 +20,7 @@ io::TableValue value_of(const std::vector<std::string>& overrides, const std::st
   return {};
 }
 
-bool is_of_the_clock(const std::string& path) { return path.starts_with("performance."); }
+bool is_processor_time(const std::string& path) { return path.starts_with("performance."); }
 
 /// Path of every metric, in the order of the first run that has it.
 std::vector<std::string> paths_of(const SweepRows& rows, const std::vector<std::size_t>& counted) {
@@ -28,19 +28,19 @@ std::vector<std::string> paths_of(const SweepRows& rows, const std::vector<std::
   std::set<std::string> seen;
   for (const std::size_t i : counted) {
     for (const auto& [path, value] : io::flatten_metrics(rows[i]->metrics)) {
-      if (!is_of_the_clock(path) && seen.insert(path).second) paths.push_back(path);
+      if (!is_processor_time(path) && seen.insert(path).second) paths.push_back(path);
     }
   }
   return paths;
 }
 
 /// Comparison [metric][variant], each variant over the seeds that were run for it.
-std::vector<std::vector<VariantFigure>> comparisons(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress) {
-  std::vector<std::vector<VariantFigure>> all;
+std::vector<std::vector<VariantMetric>> comparisons(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress) {
+  std::vector<std::vector<VariantMetric>> all;
   for (const std::string& metric : manifest.metrics) {
-    std::vector<VariantFigure>& figures = all.emplace_back();
+    std::vector<VariantMetric>& values = all.emplace_back();
     for (std::size_t variant = 0; variant < manifest.variants.size(); ++variant) {
-      figures.push_back(compare(manifest, rows, metric, progress.num_seeds[variant], level_of(manifest))[variant]);
+      values.push_back(compare(manifest, rows, metric, progress.num_seeds[variant], confidence_level(manifest))[variant]);
     }
   }
   return all;
@@ -56,7 +56,7 @@ io::Table runs_table(const SweepManifest& manifest, const SweepRows& rows, const
   const std::vector<std::string> paths = paths_of(rows, progress.counted);
   io::Table table{.name = "runs", .columns = {"variant"}, .rows = {}};
   table.columns.insert(table.columns.end(), manifest.paths.begin(), manifest.paths.end());
-  for (const char* column : {"seed", "address", "end", "exit_code", "message"}) table.columns.emplace_back(column);
+  for (const char* column : {"seed", "hash", "end", "exit_code", "message"}) table.columns.emplace_back(column);
   table.columns.insert(table.columns.end(), paths.begin(), paths.end());
 
   for (const std::size_t i : progress.counted) {
@@ -66,15 +66,15 @@ io::Table runs_table(const SweepManifest& manifest, const SweepRows& rows, const
     row.emplace_back(manifest.variants[run.variant].name);
     for (const std::string& path : manifest.paths) row.push_back(value_of(run.overrides, path));
     row.push_back(static_cast<std::int64_t>(run.seed));
-    row.emplace_back(run.address);
+    row.emplace_back(run.hash);
     row.emplace_back(std::string(name_of(result.end)));
     row.push_back(static_cast<std::int64_t>(result.code()));
     row.emplace_back(result.message);
-    std::map<std::string, double> figures;
-    for (const auto& [path, value] : io::flatten_metrics(result.metrics)) figures[path] = value;
+    std::map<std::string, double> values;
+    for (const auto& [path, value] : io::flatten_metrics(result.metrics)) values[path] = value;
     for (const std::string& path : paths) {
-      const auto figure = figures.find(path);
-      row.push_back(figure == figures.end() ? io::TableValue{} : number(figure->second));
+      const auto entry = values.find(path);
+      row.push_back(entry == values.end() ? io::TableValue{} : number(entry->second));
     }
   }
   return table;
@@ -91,17 +91,17 @@ io::Table comparison_table(const SweepManifest& manifest, const SweepRows& rows,
   };
   const auto all = comparisons(manifest, rows, progress);
   for (std::size_t metric = 0; metric < all.size(); ++metric) {
-    for (const VariantFigure& figure : all[metric]) {
+    for (const VariantMetric& entry : all[metric]) {
       std::vector<io::TableValue>& row = table.rows.emplace_back();
       row.emplace_back(manifest.metrics[metric]);
-      row.emplace_back(manifest.variants[figure.variant].name);
-      row.push_back(whole(figure.num_runs));
-      row.push_back(figure.num_runs > 0 ? number(figure.mean) : io::TableValue{});
-      add_interval(row, figure.interval);
-      row.push_back(whole(figure.num_pairs));
-      row.push_back(figure.difference ? number(figure.difference->center) : io::TableValue{});
-      add_interval(row, figure.difference);
-      row.emplace_back(figure.verdict);
+      row.emplace_back(manifest.variants[entry.variant].name);
+      row.push_back(whole(entry.num_runs));
+      row.push_back(entry.num_runs > 0 ? number(entry.mean) : io::TableValue{});
+      add_interval(row, entry.interval);
+      row.push_back(whole(entry.num_pairs));
+      row.push_back(entry.difference ? number(entry.difference->center) : io::TableValue{});
+      add_interval(row, entry.difference);
+      row.emplace_back(entry.verdict);
     }
   }
   return table;
@@ -114,18 +114,18 @@ std::string comparison_text(const SweepManifest& manifest, const SweepRows& rows
   const auto all = comparisons(manifest, rows, progress);
   for (std::size_t metric = 0; metric < all.size(); ++metric) {
     text += fmt::format("{}\n  {:<{}}  {:>5}  {:>32}  {:>5}  {:>34}\n", manifest.metrics[metric], "variant", width, "runs",
-                        "mean [95 %]", "pairs", "difference to the first");
-    for (const VariantFigure& figure : all[metric]) {
-      const std::string mean = figure.interval ? fmt::format("{:.4g} [{:.4g}, {:.4g}]", figure.mean, figure.interval->low, figure.interval->high)
-                               : figure.num_runs > 0 ? fmt::format("{:.4g}", figure.mean) : "-";
-      text += fmt::format("  {:<{}}  {:>5}  {:>32}", manifest.variants[figure.variant].name, width, figure.num_runs, mean);
-      if (figure.variant > 0) text += fmt::format("  {:>5}  {:>34}  {}", figure.num_pairs, spread(figure.difference), figure.verdict);
+                        "mean [95 %]", "pairs", "difference from the first");
+    for (const VariantMetric& entry : all[metric]) {
+      const std::string mean = entry.interval ? fmt::format("{:.4g} [{:.4g}, {:.4g}]", entry.mean, entry.interval->low, entry.interval->high)
+                               : entry.num_runs > 0 ? fmt::format("{:.4g}", entry.mean) : "-";
+      text += fmt::format("  {:<{}}  {:>5}  {:>32}", manifest.variants[entry.variant].name, width, entry.num_runs, mean);
+      if (entry.variant > 0) text += fmt::format("  {:>5}  {:>34}  {}", entry.num_pairs, spread(entry.difference), entry.verdict);
       text += "\n";
     }
     text += "\n";
   }
-  if (manifest.stop.when_decided) {
-    text += fmt::format("differences: intervals for {} looks (Bonferroni)\n", looks_of(manifest.seeds.size()).size());
+  if (manifest.stop.is_early) {
+    text += fmt::format("differences: intervals for {} interim analyses (Bonferroni)\n", interim_analyses(manifest.seeds.size()).size());
   }
   return text;
 }

@@ -18,7 +18,7 @@ bool is_scenario(const std::filesystem::path& file) { return file.extension() ==
 std::vector<std::filesystem::path> files_of(const std::filesystem::path& scenarios) {
   std::error_code ignored;
   if (std::filesystem::is_regular_file(scenarios, ignored)) return {scenarios};
-  if (!std::filesystem::is_directory(scenarios, ignored)) throw InputError(fmt::format("{}: there is no such file or folder", scenarios.string()));
+  if (!std::filesystem::is_directory(scenarios, ignored)) throw InputError(fmt::format("{}: not found", scenarios.string()));
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(scenarios)) {  // follows no folder links
     if (entry.is_regular_file(ignored) && is_scenario(entry.path())) files.push_back(entry.path());
@@ -41,7 +41,7 @@ std::vector<std::pair<std::string, std::string>> properties_of(const std::filesy
 }
 
 /// Result name in characters that are valid in every file system.
-std::string address_of(std::size_t index, std::string name) {
+std::string key_of(std::size_t index, std::string name) {
   std::replace_if(name.begin(), name.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)) && c != '.' && c != '-'; }, '_');
   return fmt::format("{:04}_{}", index + 1, name);
 }
@@ -74,7 +74,7 @@ std::vector<TestedScenario> find_scenarios(const std::filesystem::path& scenario
     const std::string name = (is_alone ? file.filename() : file.lexically_relative(scenarios)).replace_extension().generic_string();
     tested.push_back({.name = name,
                       .file = file,
-                      .address = address_of(tested.size(), name),
+                      .key = key_of(tested.size(), name),
                       .properties = properties_of(file, overrides, build),
                       .verdict = {}});
   }
@@ -111,7 +111,7 @@ std::string tests_summary(const std::vector<TestedScenario>& tested) {
   const auto num_failed = static_cast<std::ptrdiff_t>(tested.size()) - num_passed;
   std::string text = num_failed == 0 ? fmt::format("# All {} scenarios passed\n", num_passed)
                                      : fmt::format("# {} of {} scenarios did not pass\n", num_failed, tested.size());
-  const std::string head = "\n| result | scenario | s | what |\n| --- | --- | ---: | --- |\n";
+  const std::string head = "\n| result | scenario | s | reason |\n| --- | --- | ---: | --- |\n";
   if (num_failed > 0) {
     text += head;
     for (const TestedScenario& one : tested) {

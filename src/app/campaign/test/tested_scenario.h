@@ -15,7 +15,7 @@ namespace patrol::app {
 struct TestedScenario {
   std::string name;            ///< path below the folder, without ".yaml"
   std::filesystem::path file;
-  std::string address;         ///< name of its result: "0007_street_patrol"
+  std::string key;         ///< name of its result: "0007_street_patrol"
   std::vector<std::pair<std::string, std::string>> properties;  ///< for JUnit: world, robot, seed, build
   std::optional<RunVerdict> verdict;  ///< none before the run
 };

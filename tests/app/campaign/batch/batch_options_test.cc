@@ -15,7 +15,7 @@ TEST(BatchOptions, NoNumberOfJobsIsOneForEachCore) {
 TEST(BatchOptions, WhatCannotBeIsRefused) {
   EXPECT_THROW(batch_settings({.jobs = -1}), InputError);
   EXPECT_THROW(batch_settings({.jobs = 2000}), InputError);
-  EXPECT_THROW(batch_settings({.run_limit_s = 0.0}), InputError);
+  EXPECT_THROW(batch_settings({.run_timeout_s = 0.0}), InputError);
   EXPECT_THROW(batch_settings({.keep = "some"}), InputError);
 }
 

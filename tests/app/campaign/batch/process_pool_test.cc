@@ -51,7 +51,7 @@ TEST(ProcessPool, ACrashIsOnesOwn) {
 }
 
 TEST(ProcessPool, AHangIsKilledAtItsLimit) {
-  const auto ends = run(2, {.num_processes = 2, .limit_s = 0.3}, [](std::size_t task) {
+  const auto ends = run(2, {.num_processes = 2, .timeout_s = 0.3}, [](std::size_t task) {
     if (task == 0) std::this_thread::sleep_for(milliseconds(60000));
     return 0;
   });
@@ -65,7 +65,7 @@ TEST(ProcessPool, LastWordsAreTheLastLineOfStandardError) {
     std::abort();
     return 0;
   });
-  EXPECT_EQ(ends.at(0).last_words, "the world has no floor");
+  EXPECT_EQ(ends.at(0).last_stderr_line, "the world has no floor");
   EXPECT_EQ(ends.at(0).signal, SIGABRT);
 }
 

@@ -15,7 +15,7 @@ TEST(Program, SaysItsOutputAndExitStatus) {
 
 TEST(Program, AQuotedWordComesBackFromTheShell) {
   const std::string word = "it's \"$HOME\" `a` \\ b";
-  EXPECT_EQ(run_program({"sh", "-c", "printf %s " + shell_quoted(word)}).output, word);
+  EXPECT_EQ(run_program({"sh", "-c", "printf %s " + quote_for_shell(word)}).output, word);
 }
 
 TEST(Program, OneThatThereIsNotIsAnError) { EXPECT_THROW(run_program({"patrol-no-such-program"}), std::runtime_error); }

@@ -14,7 +14,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-double drawn(const Axis& axis, std::uint64_t seed) { return std::stod(axis.draw(seed).substr(axis.path.size() + 1)); }
+double drawn(const Axis& axis, std::uint64_t seed) { return std::stod(axis.sample(seed).substr(axis.path.size() + 1)); }
 
 std::string message_of(const std::string& text) {
   try {
@@ -29,7 +29,7 @@ TEST(Axis, AListKeepsItsValuesAsTheyWereWritten) {
   const Axis axis = parse_axis("stack.slam.particles=10,20,50");
   EXPECT_EQ(axis.path, "stack.slam.particles");
   EXPECT_THAT(axis.values, ElementsAre("10", "20", "50"));
-  EXPECT_FALSE(axis.is_drawn());
+  EXPECT_FALSE(axis.is_random());
 }
 
 TEST(Axis, CommasInBracketsAndQuotesDoNotPart) {
@@ -65,7 +65,7 @@ TEST(Axis, ANormalDrawHasItsMeanAndStandardDeviation) {
 
 TEST(Axis, TheSameSeedDrawsTheSameAndAnotherPathAnother) {
   const Axis a = parse_axis("a=uniform:0:1"), b = parse_axis("b=uniform:0:1");
-  EXPECT_EQ(a.draw(7), a.draw(7));
+  EXPECT_EQ(a.sample(7), a.sample(7));
   EXPECT_NE(drawn(a, 7), drawn(a, 8));
   EXPECT_NE(drawn(a, 7), drawn(b, 7));
 }
@@ -86,18 +86,18 @@ TEST(Axis, WhatIsWrongIsSaid) {
   EXPECT_THAT(message_of("no_values"), HasSubstr("must be path=a,b,c"));
   EXPECT_THAT(message_of("a="), HasSubstr("no values"));
   EXPECT_THAT(message_of("a=1,,2"), HasSubstr("empty"));
-  EXPECT_THAT(message_of("a=1,2,1"), HasSubstr("1 stands there twice"));
+  EXPECT_THAT(message_of("a=1,2,1"), HasSubstr("duplicate value '1'"));
   EXPECT_THAT(message_of("a=range:0:1"), HasSubstr("range:FROM:TO:N"));
   EXPECT_THAT(message_of("a=range:0:x:3"), HasSubstr("'x' is not a number"));
-  EXPECT_THAT(message_of("a=range:0:1:1"), HasSubstr("2 ... 10000"));
+  EXPECT_THAT(message_of("a=range:0:1:1"), HasSubstr("[2, 10000]"));
   EXPECT_THAT(message_of("a=logrange:0:1:3"), HasSubstr("greater than 0"));
-  EXPECT_THAT(message_of("a=uniform:1:0"), HasSubstr("HIGH is less than LOW"));
+  EXPECT_THAT(message_of("a=uniform:1:0"), HasSubstr("HIGH must not be less than LOW"));
   EXPECT_THAT(message_of("a=loguniform:0:1"), HasSubstr("LOW must be greater than 0"));
   EXPECT_THAT(message_of("a=normal:0:-1"), HasSubstr("negative"));
 }
 
 TEST(Cross, TwoMethodsAndThreeNoisesAreSixVariantsTheFirstAxisSlowest) {
-  const std::vector<Variant> variants = cross({parse_axis("m=a,b"), parse_axis("n=1,2,3"), parse_axis("d=uniform:0:1")});
+  const std::vector<Variant> variants = cartesian_product({parse_axis("m=a,b"), parse_axis("n=1,2,3"), parse_axis("d=uniform:0:1")});
   ASSERT_EQ(variants.size(), 6u);
   EXPECT_EQ(variants[0].name, "m=a, n=1");
   EXPECT_EQ(variants[2].name, "m=a, n=3");
@@ -106,11 +106,11 @@ TEST(Cross, TwoMethodsAndThreeNoisesAreSixVariantsTheFirstAxisSlowest) {
 }
 
 TEST(Cross, NothingVariedIsOneVariant) {
-  ASSERT_EQ(cross({}).size(), 1u);
-  EXPECT_EQ(cross({}).front().name, "as it is");
+  ASSERT_EQ(cartesian_product({}).size(), 1u);
+  EXPECT_EQ(cartesian_product({}).front().name, "baseline");
 }
 
-TEST(Cross, AnAxisTwiceIsRefused) { EXPECT_THROW(cross({parse_axis("a=1,2"), parse_axis("a=3,4")}), InputError); }
+TEST(Cross, AnAxisTwiceIsRefused) { EXPECT_THROW(cartesian_product({parse_axis("a=1,2"), parse_axis("a=3,4")}), InputError); }
 
 }  // namespace
 }  // namespace patrol::app::axis_test

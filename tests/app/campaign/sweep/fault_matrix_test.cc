@@ -17,10 +17,10 @@ TEST(FaultMatrix, AFaultBecomesTheSettingThatDeclaresIt) {
 }
 
 TEST(FaultMatrix, AVariantsNameIsReadBackAsSensorAndKind) {
-  const FaultVariant fault = fault_of(variant_name({.sensor = "joint_encoders", .kind = "clock_offset", .start_s = 12.0, .duration_s = 8.0, .magnitude = 0.2}));
+  const FaultVariant fault = parse_variant_name(variant_name({.sensor = "joint_encoders", .kind = "clock_offset", .start_s = 12.0, .duration_s = 8.0, .magnitude = 0.2}));
   EXPECT_EQ(fault.sensor, "joint_encoders");
   EXPECT_EQ(fault.kind, "clock_offset");
-  EXPECT_EQ(fault_of("no fault").kind, "");
+  EXPECT_EQ(parse_variant_name("no fault").kind, "");
 }
 
 /// Switches every sensor on.
@@ -47,12 +47,12 @@ TEST(FaultMatrix, OnARobotWithEverythingItHasEverySensorOfTheRegistryThatGivesNo
   for (const SensorInfo& info : kSensorInfos) EXPECT_EQ(in_matrix.contains(info.name), *info.fault_matrix_exclusion_reason == '\0') << info.name;
 }
 
-TEST(FaultMatrix, WithoutStationsAndRemoteControlScannerAndRemoteAreNotInIt) {
+TEST(FaultMatrix, WithoutStationsAndTeleoperationScannerAndTeleopAreNotInIt) {
   Scenario scenario;
   enable_sensors(scenario.sensors);
   for (const sim::FaultSettings& fault : fault_matrix(scenario, {}, 12.0, 8.0)) {
     EXPECT_NE(fault.sensor, "scanner");
-    EXPECT_NE(fault.sensor, "remote");
+    EXPECT_NE(fault.sensor, "teleop");
     EXPECT_NE(fault.sensor, "hall") << "the robot has no tracks";
   }
 }

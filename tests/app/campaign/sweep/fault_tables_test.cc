@@ -16,16 +16,16 @@ TEST(FaultTables, SaysWhatBecameOfEachFaultAndWhatItCost) {
   manifest.variants = {{.name = "no fault", .overrides = {}}, {.name = "imu: drift", .overrides = {}}, {.name = "uwb: freeze", .overrides = {}}};
   manifest.seeds = {1};
   manifest.metrics = {"pose.ate_rmse_m"};
-  for (std::size_t i = 0; i < 3; ++i) manifest.runs.push_back({.variant = i, .seed = 1, .overrides = {}, .address = ""});
+  for (std::size_t i = 0; i < 3; ++i) manifest.runs.push_back({.variant = i, .seed = 1, .overrides = {}, .hash = ""});
   SweepRows rows = {fault_verdict(RunStatus::kDone, true, 0), fault_verdict(RunStatus::kTimeLimit, false, 0), fault_verdict(RunStatus::kDone, true, 0, false)};
   rows[0]->events.clear();
   rows[1]->metrics["pose"]["ate_rmse_m"] = 0.3;
 
   const io::Table table = faults_table(manifest, rows);
   EXPECT_EQ(table.rows[1][3], io::TableValue("stopped"));
-  EXPECT_EQ(table.rows[2][2], io::TableValue("NOT EXECUTED"));
+  EXPECT_EQ(table.rows[2][2], io::TableValue("not triggered"));
   EXPECT_NEAR(std::get<double>(table.rows[1].back()), 0.2, 1e-12);
-  EXPECT_THAT(faults_text(manifest, rows), HasSubstr("3 runs: 2 survived, 1 stopped; 1 faults NOT EXECUTED."));
+  EXPECT_THAT(faults_text(manifest, rows), HasSubstr("3 runs: 2 survived, 1 stopped; 1 faults not triggered."));
 }
 
 TEST(FaultTables, ADocumentHasSensorsDownKindsAcrossAndTheWorstOfTheSeeds) {
@@ -36,14 +36,14 @@ TEST(FaultTables, ADocumentHasSensorsDownKindsAcrossAndTheWorstOfTheSeeds) {
   SweepRows rows;
   for (std::uint64_t seed = 1; seed <= 2; ++seed) {
     for (std::size_t variant = 0; variant < 3; ++variant) {
-      manifest.runs.push_back({.variant = variant, .seed = seed, .overrides = {}, .address = ""});
+      manifest.runs.push_back({.variant = variant, .seed = seed, .overrides = {}, .hash = ""});
       rows.push_back(fault_verdict(RunStatus::kDone, true, 0));
     }
   }
   rows[4] = fault_verdict(RunStatus::kTimeLimit, false, 0);
   rows[4]->metrics["pose"]["ate_rmse_m"] = 0.3;
-  EXPECT_THAT(faults_markdown(manifest, rows), HasSubstr("| pose.ate_rmse_m | drift | freeze |\n| --- | --- | --- |\n| no fault: survived 0.1, noticed |\n"
-                                                         "| imu | **stopped** 0.2, noticed | survived 0.1, noticed |\n"));
+  EXPECT_THAT(faults_markdown(manifest, rows), HasSubstr("| pose.ate_rmse_m | drift | freeze |\n| --- | --- | --- |\n| no fault: survived 0.1, detected |\n"
+                                                         "| imu | **stopped** 0.2, detected | survived 0.1, detected |\n"));
 }
 
 }  // namespace

@@ -10,16 +10,16 @@
 namespace patrol::app::finish_sweep_test {
 namespace {
 
-/// Two seeds of "as it is", "no noise" and "all ideal", with results of their own.
+/// Two seeds of "baseline", "no noise" and "all ideal", with results of their own.
 SweepManifest small_budget(const std::string& scenario) {
   SweepManifest manifest;
   manifest.kind = SweepKind::kBudget;
   manifest.scenario = scenario;
-  manifest.variants = {{.name = "as it is", .overrides = {}}, {.name = "no noise", .overrides = {}}, {.name = "all ideal", .overrides = {}}};
+  manifest.variants = {{.name = "baseline", .overrides = {}}, {.name = "no noise", .overrides = {}}, {.name = "all ideal", .overrides = {}}};
   manifest.seeds = {1, 2};
   manifest.metrics = {"pose.ate_rmse_m"};
   for (std::size_t run = 0; run < 6; ++run) {
-    manifest.runs.push_back({.variant = run % 3, .seed = run / 3 + 1, .overrides = {}, .address = "run" + std::to_string(run)});
+    manifest.runs.push_back({.variant = run % 3, .seed = run / 3 + 1, .overrides = {}, .hash = "run" + std::to_string(run)});
   }
   return manifest;
 }
@@ -28,7 +28,7 @@ SweepDirectory finished(const std::filesystem::path& root, const SweepManifest& 
   const SweepDirectory directory = begin_sweep_directory(root, manifest);
   for (std::size_t run = 0; run < manifest.runs.size(); ++run) {
     const double error_m = 0.1 - 0.02 * static_cast<double>(run % 3) + 0.001 * static_cast<double>(run);
-    directory.store().save(manifest.runs[run].address, {.end = RunStatus::kDone,
+    directory.store().save(manifest.runs[run].hash, {.end = RunStatus::kDone,
                                                         .message = "",
                                                         .metrics = {{"pose", {{"ate_rmse_m", error_m}}}},
                                                         .checks = {},
@@ -42,7 +42,7 @@ TEST(FinishSweep, ABudgetsTableIsThereAndCollectWritesTheSameAgain) {
   const test::TemporaryFolder folder;
   const SweepDirectory directory = finished(folder / "budget", small_budget("a.yaml"));
   const std::string table = test::read_bytes(directory.table("budget")), sqlite = test::read_bytes(directory.sqlite());
-  EXPECT_EQ(collect_command(directory.root, {}), ExitCode::kDone);
+  EXPECT_EQ(merge_command(directory.root, {}), ExitCode::kDone);
   EXPECT_EQ(test::read_bytes(directory.table("budget")), table);
   EXPECT_EQ(test::read_bytes(directory.sqlite()), sqlite);
 }
@@ -51,8 +51,8 @@ TEST(FinishSweep, APartOfAnotherSweepIsRefusedAndWhatIsCompleteStaysSo) {
   const test::TemporaryFolder folder;
   const SweepDirectory directory = finished(folder / "budget", small_budget("a.yaml"));
   const SweepDirectory other = finished(folder / "other", small_budget("b.yaml"));
-  EXPECT_THROW(collect_command(directory.root, {other.root}), InputError);
-  EXPECT_THROW(collect_command(directory.root, {folder / "nowhere"}), InputError);
+  EXPECT_THROW(merge_command(directory.root, {other.root}), InputError);
+  EXPECT_THROW(merge_command(directory.root, {folder / "nowhere"}), InputError);
   EXPECT_TRUE(std::filesystem::exists(directory.table("budget")));
   EXPECT_FALSE(std::filesystem::exists(incomplete_marker(directory.root)));
 }

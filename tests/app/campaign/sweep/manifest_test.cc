@@ -19,8 +19,8 @@ SweepManifest small_manifest() {
           .variants = {{.name = "a=1", .overrides = {"a=1"}}, {.name = "a=2", .overrides = {"a=2"}}},
           .seeds = {1},
           .metrics = {"pose.ate_rmse_m"},
-          .stop = {.when_decided = true, .margin = 0.5},
-          .runs = {{.variant = 0, .seed = 1, .overrides = {"a=1"}, .address = "aa"}, {.variant = 1, .seed = 1, .overrides = {"a=2"}, .address = "bb"}}};
+          .stop = {.is_early = true, .equivalence_margin = 0.5},
+          .runs = {{.variant = 0, .seed = 1, .overrides = {"a=1"}, .hash = "aa"}, {.variant = 1, .seed = 1, .overrides = {"a=2"}, .hash = "bb"}}};
 }
 
 std::string message_of(const std::string& text) {
@@ -39,8 +39,8 @@ TEST(Manifest, ComesBackAsItWasSaved) {
   const SweepManifest read = load_manifest(folder / "a.json");
   save_manifest(folder / "b.json", read);
   EXPECT_EQ(test::read_bytes(folder / "a.json"), test::read_bytes(folder / "b.json"));
-  EXPECT_EQ(read.runs[1].address, "bb");
-  EXPECT_TRUE(read.stop.when_decided);
+  EXPECT_EQ(read.runs[1].hash, "bb");
+  EXPECT_TRUE(read.stop.is_early);
 }
 
 TEST(Manifest, ARunsOverridesAreTheCommonOnesItsOwnAndTheSeed) {

@@ -67,7 +67,7 @@ class Parallel(SweepCase):
                                *self.command(out, *self.vary), "--jobs", "1", "--shard", "{}/4", ":::", "1", "2", "3", "4"],
                               capture_output=True, text=True, timeout=280)
         self.assertEqual(done.returncode, 0, done.stderr)
-        collected = subprocess.run([PATROL, "collect", out], capture_output=True, text=True)
+        collected = subprocess.run([PATROL, "merge", out], capture_output=True, text=True)
         self.assertEqual(collected.returncode, 0, collected.stderr)
         self.assert_same_tables(out)
 

@@ -30,8 +30,8 @@ std::vector<std::string> variants_of(const SweepManifest& manifest) {
   return names;
 }
 
-BudgetOptions budget_of(const char* scenario) {
-  BudgetOptions options;
+ErrorBudgetOptions budget_of(const char* scenario) {
+  ErrorBudgetOptions options;
   options.scenario = std::string(PATROL_SOURCE_DIR "/worlds/") + scenario;
   options.seeds = "2";
   return options;
@@ -39,16 +39,16 @@ BudgetOptions budget_of(const char* scenario) {
 
 TEST(PlanSweep, EveryRunHasAnAddressOfItsOwnAndItIsTheSameNextTime) {
   const SweepManifest manifest = plan_sweep(street({"sensors.lidar.range_noise_m=0.01,0.03"}));
-  std::set<std::string> addresses;
-  for (const PlannedRun& run : manifest.runs) addresses.insert(run.address);
-  EXPECT_EQ(addresses.size(), 4u);
-  EXPECT_EQ(plan_sweep(street({"sensors.lidar.range_noise_m=0.01,0.03"})).runs[3].address, manifest.runs[3].address);
+  std::set<std::string> hashes;
+  for (const PlannedRun& run : manifest.runs) hashes.insert(run.hash);
+  EXPECT_EQ(hashes.size(), 4u);
+  EXPECT_EQ(plan_sweep(street({"sensors.lidar.range_noise_m=0.01,0.03"})).runs[3].hash, manifest.runs[3].hash);
 }
 
 TEST(PlanSweep, TheSameSettingsHaveTheSameAddressHoweverTheyAreSaid) {
   SweepOptions said = street({});
   said.overrides = {"sensors.lidar.range_noise_m=0.030"};
-  EXPECT_EQ(plan_sweep(said).runs[0].address, plan_sweep(street({"sensors.lidar.range_noise_m=0.03"})).runs[0].address);
+  EXPECT_EQ(plan_sweep(said).runs[0].hash, plan_sweep(street({"sensors.lidar.range_noise_m=0.03"})).runs[0].hash);
 }
 
 TEST(PlanSweep, ADrawIsCommonToTheVariantsOfASeed) {
@@ -69,10 +69,10 @@ TEST(PlanSweep, AMissionFromElsewhereIsKnownByWhatStandsInIt) {
   SweepOptions elsewhere = street({});
   elsewhere.overrides = {"mission=" + (folder / "mission.json").string()};
   io::save_text(folder / "mission.json", mission);
-  const std::string address = plan_sweep(elsewhere).runs[0].address;
-  EXPECT_EQ(plan_sweep(elsewhere).runs[0].address, address);
+  const std::string hash = plan_sweep(elsewhere).runs[0].hash;
+  EXPECT_EQ(plan_sweep(elsewhere).runs[0].hash, hash);
   io::save_text(folder / "mission.json", mission + " ");
-  EXPECT_NE(plan_sweep(elsewhere).runs[0].address, address);
+  EXPECT_NE(plan_sweep(elsewhere).runs[0].hash, hash);
 }
 
 TEST(PlanSweep, AMissionThatIsMissingIsRefusedBeforeAnythingRuns) {
@@ -80,42 +80,42 @@ TEST(PlanSweep, AMissionThatIsMissingIsRefusedBeforeAnythingRuns) {
 }
 
 TEST(PlanBudget, AQuadrupedHasNoBeltsAndNoUwbToLoseAnythingBy) {
-  const std::vector<std::string> variants = variants_of(plan_budget(budget_of("street/scenarios/short.yaml")));
+  const std::vector<std::string> variants = variants_of(plan_error_budget(budget_of("street/scenarios/short.yaml")));
   EXPECT_THAT(variants, Contains("foot contact: noise"));
   EXPECT_THAT(variants, Not(Contains(HasSubstr("UWB"))));
   EXPECT_THAT(variants, Not(Contains(HasSubstr("belts"))));
 }
 
 TEST(PlanBudget, ATrackedRobotHasNoLegs) {
-  const std::vector<std::string> variants = variants_of(plan_budget(budget_of("tunnel/scenarios/docking.yaml")));
-  EXPECT_THAT(variants, Contains("UWB: blocked paths"));
-  EXPECT_THAT(variants, Contains("belts: slip (friction 2)"));
+  const std::vector<std::string> variants = variants_of(plan_error_budget(budget_of("tunnel/scenarios/docking.yaml")));
+  EXPECT_THAT(variants, Contains("UWB: non-line-of-sight paths"));
+  EXPECT_THAT(variants, Contains("tracks: slip (friction 2)"));
   EXPECT_THAT(variants, Not(Contains("foot contact: noise")));
 }
 
 TEST(PlanBudget, WhatAScenarioDoesNotHaveIsNotTakenAway) {
-  BudgetOptions options = budget_of("street/scenarios/short.yaml");
+  ErrorBudgetOptions options = budget_of("street/scenarios/short.yaml");
   options.overrides = {"sensors.lidar.range_noise_m=0"};
-  EXPECT_THAT(variants_of(plan_budget(options)), Not(Contains("lidar: range noise")));
+  EXPECT_THAT(variants_of(plan_error_budget(options)), Not(Contains("lidar: range noise")));
 }
 
 TEST(PlanBudget, OneSeedSaysNothingOfTheSpread) {
-  BudgetOptions options = budget_of("street/scenarios/short.yaml");
+  ErrorBudgetOptions options = budget_of("street/scenarios/short.yaml");
   options.seeds = "1";
-  EXPECT_THROW(plan_budget(options), InputError);
+  EXPECT_THROW(plan_error_budget(options), InputError);
 }
 
-FaultsOptions faults_of(const char* scenario) {
-  FaultsOptions options;
+FaultMatrixOptions faults_of(const char* scenario) {
+  FaultMatrixOptions options;
   options.scenario = std::string(PATROL_SOURCE_DIR "/worlds/") + scenario;
   return options;
 }
 
 TEST(PlanFaults, EachOfTheSevenKindsForEachSensorAndOneRunWithout) {
   // lidar, IMU, joint encoders, foot sensors, gas meter, GNSS
-  EXPECT_EQ(plan_faults(faults_of("street/scenarios/short.yaml")).runs.size(), 1u + 6u * 7u);
+  EXPECT_EQ(plan_fault_matrix(faults_of("street/scenarios/short.yaml")).runs.size(), 1u + 6u * 7u);
   // lidar, IMU, Hall sensors, UWB, ultrasonic ring, depth camera
-  EXPECT_EQ(plan_faults(faults_of("tunnel/scenarios/docking.yaml")).runs.size(), 1u + 6u * 7u);
+  EXPECT_EQ(plan_fault_matrix(faults_of("tunnel/scenarios/docking.yaml")).runs.size(), 1u + 6u * 7u);
 }
 
 }  // namespace

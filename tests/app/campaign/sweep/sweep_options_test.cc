@@ -24,7 +24,7 @@ TEST(SweepOptions, AnyNumberOfShardsHoldsEveryRunOnce) {
     for (std::size_t i = 1; i <= count; ++i) {
       const Shard shard = parse_shard(std::to_string(i) + "/" + std::to_string(count));
       for (std::size_t run = 0; run < 20; ++run) {
-        if (shard.holds(run)) held.insert(run);
+        if (shard.contains(run)) held.insert(run);
       }
     }
     EXPECT_EQ(held.size(), 20u);

@@ -21,7 +21,7 @@ SweepManifest two_by_two() {
                          .runs = {}};
   for (const std::uint64_t seed : manifest.seeds) {
     for (std::size_t variant = 0; variant < 2; ++variant) {
-      manifest.runs.push_back({.variant = variant, .seed = seed, .overrides = {manifest.variants[variant].overrides[0], "drawn=0.5"}, .address = "x"});
+      manifest.runs.push_back({.variant = variant, .seed = seed, .overrides = {manifest.variants[variant].overrides[0], "drawn=0.5"}, .hash = "x"});
     }
   }
   return manifest;
@@ -38,10 +38,10 @@ TEST(RunsTable, IsTheSameWhateverTheClockSaid) {
   const SweepManifest manifest = two_by_two();
   const auto csv = [&](double wall_s) {
     const SweepRows rows = rows_taking(wall_s);
-    return io::to_csv(runs_table(manifest, rows, progress_of(manifest, rows)));
+    return io::to_csv(runs_table(manifest, rows, evaluate_progress(manifest, rows)));
   };
   EXPECT_EQ(csv(1.0), csv(2.0));
-  EXPECT_THAT(csv(1.0), HasSubstr("variant,a,drawn,seed,address,end,exit_code,message,mission.completed,pose.ate_rmse_m\r\n"
+  EXPECT_THAT(csv(1.0), HasSubstr("variant,a,drawn,seed,hash,end,exit_code,message,mission.completed,pose.ate_rmse_m\r\n"
                                   "a=1,1,0.5,1,x,done,0,,1,0.1\r\n"));
 }
 
@@ -49,19 +49,19 @@ TEST(RunsTable, ACrashedRunIsARowWithEmptyCells) {
   const SweepManifest manifest = two_by_two();
   SweepRows rows = rows_taking(1.0);
   rows[0] = RunVerdict{.end = RunStatus::kCrashed, .message = "signal 11", .metrics = {}, .checks = {}, .events = {}};
-  EXPECT_THAT(io::to_csv(runs_table(manifest, rows, progress_of(manifest, rows))), HasSubstr("a=1,1,0.5,1,x,crashed,3,signal 11,,\r\n"));
+  EXPECT_THAT(io::to_csv(runs_table(manifest, rows, evaluate_progress(manifest, rows))), HasSubstr("a=1,1,0.5,1,x,crashed,3,signal 11,,\r\n"));
 }
 
 TEST(ComparisonTable, SaysThePairedDifference) {
   // Differences 0.1 and 0.2: mean 0.15, standard deviation 0.0707, t(1) = 12.71: half width 0.635.
   const SweepManifest manifest = two_by_two();
   const SweepRows rows = rows_taking(1.0);
-  const io::Table table = comparison_table(manifest, rows, progress_of(manifest, rows));
+  const io::Table table = comparison_table(manifest, rows, evaluate_progress(manifest, rows));
   ASSERT_EQ(table.rows.size(), 2u);
   EXPECT_NEAR(std::get<double>(table.rows[1][7]), 0.15, 1e-12);
   EXPECT_NEAR(std::get<double>(table.rows[1][9]), 0.15 + 0.6353, 1e-4);
   EXPECT_EQ(std::get<std::string>(table.rows[1][10]), "no difference");
-  EXPECT_THAT(comparison_text(manifest, rows, progress_of(manifest, rows)), HasSubstr("no difference"));
+  EXPECT_THAT(comparison_text(manifest, rows, evaluate_progress(manifest, rows)), HasSubstr("no difference"));
 }
 
 }  // namespace

@@ -71,10 +71,10 @@ class Sweep(SweepCase):
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertIn("of 4 runs are still to do", done.stdout)
         out = self.path / "collected"
-        early = subprocess.run([PATROL, "collect", out, *parts[:2]], capture_output=True, text=True)
+        early = subprocess.run([PATROL, "merge", out, *parts[:2]], capture_output=True, text=True)
         self.assertEqual(early.returncode, 2)
         self.assertIn("1 of 4 runs have no result yet", early.stderr)
-        done = subprocess.run([PATROL, "collect", out, parts[2]], capture_output=True, text=True)
+        done = subprocess.run([PATROL, "merge", out, parts[2]], capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assert_same_tables(out)
 
@@ -97,7 +97,7 @@ class Sweep(SweepCase):
 
     def test_a_run_over_its_wall_time_is_a_row_and_4(self):
         out = self.path / "late"
-        done = self.sweep(out, "--seeds", "1", "--run-limit-s", "0.2")
+        done = self.sweep(out, "--seeds", "1", "--run-timeout-s", "0.2")
         self.assertEqual(done.returncode, 4, done.stderr)
         self.assertEqual(self.rows(out)[0]["end"], "wall time limit")
 
@@ -131,16 +131,16 @@ class Sweep(SweepCase):
 
     def test_kept_runs_can_be_scored_again(self):
         out = self.path / "kept"
-        self.assertEqual(self.sweep(out, "--seeds", "1", "--keep", "all").returncode, 0)
+        self.assertEqual(self.sweep(out, "--seeds", "1", "--keep-runs", "all").returncode, 0)
         kept = [path for path in (out / "runs").iterdir() if path.is_dir()]
-        self.assertEqual([path.name for path in kept], [self.rows(out)[0]["address"]])
+        self.assertEqual([path.name for path in kept], [self.rows(out)[0]["hash"]])
         self.assertEqual(subprocess.run([PATROL, "score", kept[0]], capture_output=True).returncode, 0)
 
     def test_a_wrong_call_is_2_in_one_line_and_writes_nothing(self):
         out = self.path / "wrong"
         for wrong in (["--seeds", "0"], ["--shard", "4/3"], ["--vary", "nothing"], ["--vary", "sensors.lidar.rang=1,2"],
-                      ["--keep", "some"], ["--engine", "cloud"], ["--jobs", "-1"], ["--run-limit-s", "0"],
-                      ["--stop-when-decided", "--shard", "1/2"], ["--margin", "-1"]):
+                      ["--keep-runs", "some"], ["--engine", "cloud"], ["--jobs", "-1"], ["--run-timeout-s", "0"],
+                      ["--early-stop", "--shard", "1/2"], ["--equivalence-margin", "-1"]):
             done = self.sweep(out, *wrong)
             self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1), (wrong, done.stderr))
             self.assertFalse(out.exists())

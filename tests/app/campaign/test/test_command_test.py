@@ -114,7 +114,7 @@ class TestCommand(unittest.TestCase):
         for i in range(NUM_SCENARIOS):
             self.add(f"{i:04}", "time_limit_s: 0.1\n" if i % 10 else "time_limit_s: 0.1\nwrold: x\n")
         with open(self.path / "said", "w") as said, open(self.path / "errors", "w") as errors:  # a pipe that nobody reads fills up
-            process = subprocess.Popen([PATROL, "test", self.scenarios, "--out", self.out, "--keep", "none"], stdout=said, stderr=errors, cwd=SOURCE)
+            process = subprocess.Popen([PATROL, "test", self.scenarios, "--out", self.out, "--keep-runs", "none"], stdout=said, stderr=errors, cwd=SOURCE)
         memory_kb, files = [], []
         folder = pathlib.Path(f"/proc/{process.pid}")
         while process.poll() is None:

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "core/settings.h"
+
+namespace patrol::localize {
+
+/// Weights of the mixture components, normalized by their sum, and their parameters.
+struct BeamModelSettings {
+  double z_hit = 0.75;
+  double z_short = 0.1;     ///< unmapped obstacle in front of the surface
+  double z_max = 0.1;       ///< no return
+  double z_rand = 0.05;
+  double hit_std_m = 0.1;
+  double short_mean_m = 5.0;    ///< mean of the exponential distribution of unmapped obstacles: 1 / lambda_short
+  double max_range_m = 30.0;
+  int max_beams = 60;
+
+  template <typename Self, typename Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("z_hit", self.z_hit, between(0.01, 1.0));
+    visit("z_short", self.z_short, between(0.0, 1.0));
+    visit("z_max", self.z_max, between(0.0, 1.0));
+    visit("z_rand", self.z_rand, between(1e-4, 1.0));
+    visit("hit_std_m", self.hit_std_m, between(0.01, 2.0));
+    visit("short_mean_m", self.short_mean_m, between(0.1, 1000.0));
+    visit("max_range_m", self.max_range_m, between(1.0, 1000.0));
+    visit("max_beams", self.max_beams, between(1, 10000));
+  }
+};
+
+}  // namespace patrol::localize

@@ -1,0 +1,60 @@
+#pragma once
+
+#include "core/settings.h"
+
+namespace patrol::localize {
+
+/// Settings of the legged odometry. The defaults fit a MEMS IMU of robotics grade and encoders at 250 Hz.
+struct BodyEstimatorSettings {
+  // IMU.
+  double gyro_noise_density_radps_per_sqrt_hz = 2e-4;
+  double gyro_bias_std_radps = 5e-3;  ///< standard deviation of the bias at power-on
+  double gyro_bias_random_walk_radps_per_sqrt_s = 1e-5;
+  double accel_noise_density_mps2_per_sqrt_hz = 0.1;  ///< includes the aliasing of walking shocks
+  double accel_bias_std_mps2 = 0.05;                  ///< standard deviation of the bias at power-on
+  double accel_bias_random_walk_mps2_per_sqrt_s = 1e-3;
+  // Legs.
+  double contact_on_force_n = 15.0;           ///< contact starts above this force
+  double contact_off_force_n = 8.0;           ///< contact ends below this force
+  double full_weight_force_n = 30.0;          ///< full weight above this force, proportional to the force below
+  double contact_settling_time_s = 0.012;     ///< time after touch-down before a foot is used
+  double foot_velocity_std_mps = 0.06;        ///< standard deviation of the velocity of a stance foot
+  double slip_speed_mps = 0.15;               ///< a foot with a larger difference from the IMU prediction is down-weighted
+  double stance_height_tolerance_m = 0.012;   ///< without foot sensors: feet up to this above the lowest are in stance
+  // Standstill.
+  double standstill_window_s = 1.0;     ///< window of one gyro bias measurement
+  double standstill_foot_std_m = 3e-5;  ///< standard deviation of a foot position at rest
+  // Errors that are not white noise of a reading.
+  double position_random_walk_m_per_sqrt_m = 0.01;
+  double yaw_random_walk_rad_per_sqrt_rad = 0.003;
+  // Faults.
+  double imu_timeout_s = 0.1;         ///< maximum delay of the IMU behind the joints before it is bridged
+  double buffer_s = 2.0;              ///< length of the motion history
+  double max_extrapolation_s = 0.15;  ///< maximum time after the newest IMU reading for which a pose is given
+
+  template <typename Self, typename Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("gyro_noise_density_radps_per_sqrt_hz", self.gyro_noise_density_radps_per_sqrt_hz, between(1e-7, 0.1));
+    visit("gyro_bias_std_radps", self.gyro_bias_std_radps, between(0.0, 0.5));
+    visit("gyro_bias_random_walk_radps_per_sqrt_s", self.gyro_bias_random_walk_radps_per_sqrt_s, between(0.0, 0.1));
+    visit("accel_noise_density_mps2_per_sqrt_hz", self.accel_noise_density_mps2_per_sqrt_hz, between(1e-5, 10.0));
+    visit("accel_bias_std_mps2", self.accel_bias_std_mps2, between(0.0, 5.0));
+    visit("accel_bias_random_walk_mps2_per_sqrt_s", self.accel_bias_random_walk_mps2_per_sqrt_s, between(0.0, 1.0));
+    visit("contact_on_force_n", self.contact_on_force_n, between(0.1, 200.0));
+    visit("contact_off_force_n", self.contact_off_force_n, between(0.1, 200.0));
+    visit("full_weight_force_n", self.full_weight_force_n, between(0.1, 1000.0));
+    visit("contact_settling_time_s", self.contact_settling_time_s, between(0.0, 0.2));
+    visit("foot_velocity_std_mps", self.foot_velocity_std_mps, between(1e-4, 1.0));
+    visit("slip_speed_mps", self.slip_speed_mps, between(1e-3, 10.0));
+    visit("stance_height_tolerance_m", self.stance_height_tolerance_m, between(0.0, 0.1));
+    visit("standstill_window_s", self.standstill_window_s, between(0.1, 10.0));
+    visit("standstill_foot_std_m", self.standstill_foot_std_m, between(1e-7, 0.01));
+    visit("position_random_walk_m_per_sqrt_m", self.position_random_walk_m_per_sqrt_m, between(0.0, 0.5));
+    visit("yaw_random_walk_rad_per_sqrt_rad", self.yaw_random_walk_rad_per_sqrt_rad, between(0.0, 0.5));
+    visit("imu_timeout_s", self.imu_timeout_s, between(0.01, 1.0));
+    visit("buffer_s", self.buffer_s, between(0.5, 60.0));
+    visit("max_extrapolation_s", self.max_extrapolation_s, between(0.0, 1.0));
+  }
+};
+
+}  // namespace patrol::localize
