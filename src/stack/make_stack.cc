@@ -36,13 +36,16 @@ void validate_goals(const std::vector<SavedGoal>& goals, const RobotDescription&
 
 std::unique_ptr<Mission> make_tunnel_mission(const StackSettings& settings, const RobotDescription& robot,
                                              const Route& site_in_map, const StackStart& start) {
-  auto mission = std::make_unique<TunnelMission>(settings.tunnel_mission, start.goals, start.has_teleop, start.map.has_value());
+  auto mission =
+      std::make_unique<TunnelMission>(settings.tunnel_mission, start.goals, start.has_teleop, start.map.has_value());
   validate_goals(start.goals, robot, site_in_map);
   if (!start.map && !start.has_teleop && settings.localizer == "automatic") {
     throw InputError("tunnel_mission: requires a map or a teleoperated mapping drive");
   }
-  const bool needs_dock = settings.tunnel_mission.dock_after_run || (settings.tunnel_mission.start_docked && !settings.tunnel_mission.start_at_survey);
-  if (needs_dock && !site_in_map.dock) throw InputError("tunnel_mission.dock_after_run: requires a dock in the site survey");
+  const bool needs_dock = settings.tunnel_mission.dock_after_run ||
+                          (settings.tunnel_mission.start_docked && !settings.tunnel_mission.start_at_survey);
+  if (needs_dock && !site_in_map.dock)
+    throw InputError("tunnel_mission.dock_after_run: requires a dock in the site survey");
   return mission;
 }
 

@@ -28,11 +28,11 @@ class MotionExecutor {
   void set_map(const OccupancyGrid& map) { navigator_.set_map(map); }
   /// Adds obstacles, and detects the charging post while the robot docks.
   void add(const LevelScan& scan, const ScanPose& pose);
-  void add(const UltrasonicRange& range, const StationPose& place) {
-    navigator_.add_range(range, place.T_level_body, place.T_map_body);
+  void add(const UltrasonicRange& range, const StationPose& station_pose) {
+    navigator_.add_range(range, station_pose.T_level_body, station_pose.T_map_body);
   }
-  void add(const DepthImage& image, const StationPose& place) {
-    navigator_.add_depth(image, place.T_level_body, place.T_map_body);
+  void add(const DepthImage& image, const StationPose& station_pose) {
+    navigator_.add_depth(image, station_pose.T_level_body, station_pose.T_map_body);
   }
   void add(const TeleopCommand& command) { last_teleop_ = command; }
 

@@ -24,11 +24,11 @@ void Stack::handle(const SensorMessage& message) {
   std::visit(Overloaded{
                  [&](const LaserScan& scan) { handle_scan(scan); },
                  [&](const UltrasonicRange& range) {
-                   if (const auto place = station_pose_at(range.stamp)) parts_.motion.add(range, *place);
+                   if (const auto station_pose = station_pose_at(range.stamp)) parts_.motion.add(range, *station_pose);
                  },
                  [&](const DepthImage& image) {
                    const auto timer = output_.time_stage("planning");
-                   if (const auto place = station_pose_at(image.stamp)) parts_.motion.add(image, *place);
+                   if (const auto station_pose = station_pose_at(image.stamp)) parts_.motion.add(image, *station_pose);
                  },
                  [&](const TeleopCommand& command) {
                    new_teleop_ = command;

@@ -6,7 +6,8 @@ namespace patrol::inspect {
 
 /// Settings of the coarse-to-fine registration of two point clouds.
 struct RegistrationSettings {
-  double initial_pair_distance_m = 1.0;  ///< initial maximum distance of pairs, halved each time the steps have become small
+  /// Initial maximum distance of pairs, halved each time the steps have become small.
+  double initial_pair_distance_m = 1.0;
   double final_pair_distance_m = 0.05;  ///< final maximum distance of pairs
   int sample = 6000;  ///< number of points of the new scan, balanced over the directions of the surface normals
   int max_iterations = 80;
@@ -31,7 +32,7 @@ struct LiningSettings {
   double lowest_clock_deg = 110.0;    ///< center of the lowest sector on each side; the ground is below
   /// Excluded on both sides of a ring joint, because localization and registration have axial errors.
   double joint_margin_m = 0.1;
-  double design_tolerance_m = 0.06;               ///< maximum distance of the lining from the design, including its displacement
+  double design_tolerance_m = 0.06;  ///< maximum distance of the lining from the design, including its displacement
   int min_points = 12;  ///< minimum number of downsampled points of a cell in both scans; other cells are not reported
   /// Standard deviation of a cell from errors that neither averaging nor scatter shows: facets, texture.
   double surface_std_m = 0.0001;

@@ -34,7 +34,8 @@ ReferenceLining::ReferenceLining(const LiningInMap& lining, const LiningGrid& gr
     std::vector<double> inward;
     for (const Point& point : cell.points) inward.push_back(point.inward_m);
     const double middle = median_of(inward), design_tolerance_m = std::max(kMinBand_m, 4.0 * mad_std(inward, middle));
-    std::erase_if(cell.points, [&](const Point& point) { return std::abs(point.inward_m - middle) > design_tolerance_m; });
+    std::erase_if(cell.points,
+                  [&](const Point& point) { return std::abs(point.inward_m - middle) > design_tolerance_m; });
     if (cell.points.empty()) continue;
     cell.radius_m = std::clamp(2.0 * std::sqrt(area_m2 / static_cast<double>(cell.points.size())), kMinRadius_m, kMaxRadius_m);
   }

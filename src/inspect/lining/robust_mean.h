@@ -10,7 +10,7 @@ double median_of(std::vector<double> values);
 /// Returns 1.4826 times the median absolute deviation from `middle`: the standard deviation for a normal distribution.
 double mad_std(const std::vector<double>& values, double middle);
 
-/// Returns the weight of Tukey's biweight: 1 at zero, 0 from the cutoff `reach` on.
+/// Returns the weight of Tukey's biweight: 1 at zero, 0 from `cutoff` on.
 inline double biweight(double residual, double cutoff) {
   const double ratio = residual / cutoff;
   return ratio * ratio >= 1.0 ? 0.0 : (1.0 - ratio * ratio) * (1.0 - ratio * ratio);

@@ -66,7 +66,8 @@ void check(const ScannerPoint& point) {
 
 }  // namespace
 
-std::vector<DownsampledPoint> downsample(const std::vector<ScannerPoint>& points, double spacing_m, double min_range_m) {
+std::vector<DownsampledPoint> downsample(const std::vector<ScannerPoint>& points, double spacing_m,
+                                         double min_range_m) {
   std::vector<Beam> beams;
   beams.reserve(points.size());
   for (const ScannerPoint& point : points) {

@@ -21,8 +21,8 @@ struct DownsampledPoint {
 };
 
 /// Downsamples points, given in the scanner frame, to about the spacing, but never across a range step larger than the
-/// spacing. Points closer than `min_range_m` are excluded. Throws InputError for points that are not finite or farther than
-/// 10 km.
+/// spacing. Points closer than `min_range_m` are excluded. Throws InputError for points that are not finite or farther
+/// than 10 km.
 std::vector<DownsampledPoint> downsample(const std::vector<ScannerPoint>& points, double spacing_m, double min_range_m = 0.0);
 
 /// Downsampled points with their local surfaces, in a k-d tree (nanoflann). Ties in distance are resolved

@@ -35,7 +35,7 @@ Body body_of(const Parameters& p) {
           .direction = Eigen::Vector3d(1.0, p[2], p[3]).normalized()};
 }
 
-Parameters draw(const WaterPriorSettings& prior, RandomSequence& random) {
+Parameters sample_prior(const WaterPriorSettings& prior, RandomSequence& random) {
   const auto between = [&](double low, double high) { return low + (high - low) * random.uniform(); };
   while (true) {
     const double cosine = between(std::cos(prior.max_angle_deg * kDegree), 1.0);
@@ -48,7 +48,7 @@ Parameters draw(const WaterPriorSettings& prior, RandomSequence& random) {
   }
 }
 
-/// Returns the logarithm of the density sampled by `draw`, up to a constant.
+/// Returns the logarithm of the density sampled by `sample_prior`, up to a constant.
 double log_prior(const WaterPriorSettings& prior, const Parameters& p) {
   if (p[0] < std::log(prior.min_rock_spm) || p[0] > std::log(prior.max_rock_spm)) return kNever;
   if (p[4] < std::log(prior.min_radius_m) || p[4] > std::log(prior.max_radius_m)) return kNever;
@@ -147,7 +147,7 @@ template <typename LogLikelihood>
 Posterior sample(const WaterSettings& settings, const LogLikelihood& log_likelihood, RandomSequence& random) {
   Posterior posterior;
   for (int i = 0; i < settings.particles; ++i) {
-    const Parameters p = draw(settings.prior, random);
+    const Parameters p = sample_prior(settings.prior, random);
     posterior.particles.push_back({p, log_prior(settings.prior, p), log_likelihood(p)});
   }
   for (double temperature = 0.0; temperature < 1.0;) {
@@ -208,19 +208,19 @@ void describe_body(const std::vector<Particle>& particles, const WaterSettings& 
   const Pose3 T_map_level = to_pose3(result.T_map_body);
   std::vector<double> distances_m, radii_m, nearest_m;
   Eigen::Vector3d p_coil_mean = Eigen::Vector3d::Zero();
-  std::vector<Eigen::Vector3d> places;
+  std::vector<Eigen::Vector3d> positions;
   result.rock_spm = 0.0;
   for (const Particle& particle : particles) {
     const Body body = body_of(particle.p);
-    places.push_back(body.sphere.distance_m * body.direction);
-    p_coil_mean += places.back() / count;
+    positions.push_back(body.sphere.distance_m * body.direction);
+    p_coil_mean += positions.back() / count;
     distances_m.push_back(body.sphere.distance_m);
     radii_m.push_back(body.sphere.radius_m);
     nearest_m.push_back(body.sphere.distance_m - body.sphere.radius_m);
     result.rock_spm += body.rock_spm / count;
   }
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  for (const Eigen::Vector3d& rank : places) covariance += (rank - p_coil_mean) * (rank - p_coil_mean).transpose() / count;
+  for (const Eigen::Vector3d& p : positions) covariance += (p - p_coil_mean) * (p - p_coil_mean).transpose() / count;
   // The misalignment of the antenna rotates the body position about it.
   const double across_std_m = settings.alignment_std_deg * kDegree * p_coil_mean.norm();
   const Eigen::Vector3d ahead = p_coil_mean.normalized();

@@ -16,8 +16,9 @@ double uniform_step(int index, int count, double max) { return count == 1 ? 0.0 
 
 void check_joint_limit(const char* name, double angle_deg, const JointLimit& limit) {
   if (-angle_deg * kDegree >= limit.lower_rad && angle_deg * kDegree <= limit.upper_rad) return;
-  throw InputError(fmt::format("stack.inspection.water.sounding.{} = {}: outside the range of the mount: must be in [{:.1f}, {:.1f}] deg", name, angle_deg,
-                               limit.lower_rad / kDegree, limit.upper_rad / kDegree));
+  throw InputError(fmt::format(
+      "stack.inspection.water.sounding.{} = {}: outside the range of the mount: must be in [{:.1f}, {:.1f}] deg", name,
+      angle_deg, limit.lower_rad / kDegree, limit.upper_rad / kDegree));
 }
 
 Eigen::Vector3d axis_of(const AntennaPose& pose) {

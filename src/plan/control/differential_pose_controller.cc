@@ -8,7 +8,7 @@ namespace patrol::plan {
 namespace {
 
 constexpr double kApproachFacing_rad = 0.1;     // heading error within which driving begins
-constexpr double kLost_rad = 0.6;       // heading error on the way that calls for another turn in place
+constexpr double kMaxHeadingError_rad = 0.6;       // heading error while driving that requires another turn in place
 constexpr double kMinBearingDistance_m = 0.15;  // distance below which the bearing of the goal is too noisy
 constexpr int kMaxChanges = 6;          // phase changes within one step
 
@@ -70,7 +70,8 @@ VelocityCommand DifferentialPoseController::step(const Pose2& T_map_body, const 
   return {};
 }
 
-DifferentialPoseController::Phase DifferentialPoseController::choose(const Pose2& T_goal_body, const NavigationGoal& goal) const {
+DifferentialPoseController::Phase DifferentialPoseController::choose(const Pose2& T_goal_body,
+                                                                     const NavigationGoal& goal) const {
   const double aim_m = settings_.tolerance_fraction * goal.position_tolerance_m;
   const double distance_m = T_goal_body.position().norm();
   if (!wants_heading(goal)) return distance_m <= goal.position_tolerance_m ? Phase::kDone : Phase::kTurnToPosition;
@@ -79,7 +80,8 @@ DifferentialPoseController::Phase DifferentialPoseController::choose(const Pose2
     return yaw_error <= goal.yaw_tolerance_rad ? Phase::kDone : Phase::kTurnToHeading;
   }
   const bool looks_along = yaw_error <= settings_.line.max_angle_rad;
-  const double remaining_lateral_error_m = lateral_error_after_m(settings_.line, T_goal_body.y, std::abs(T_goal_body.x));
+  const double remaining_lateral_error_m =
+      lateral_error_after_m(settings_.line, T_goal_body.y, std::abs(T_goal_body.x));
   if (looks_along && remaining_lateral_error_m <= aim_m) return Phase::kDriveLine;
   if (distance_m > settings_.lateral_correction_distance_m) return Phase::kTurnToPosition;
   return looks_along ? Phase::kBackOff : Phase::kTurnToHeading;
@@ -101,7 +103,7 @@ VelocityCommand DifferentialPoseController::drive_to_position(const Pose2& T_goa
     return {};
   }
   const bool is_far = distance_m > kMinBearingDistance_m;
-  if (is_far && std::abs(turn) > kLost_rad) {
+  if (is_far && std::abs(turn) > kMaxHeadingError_rad) {
     phase_ = Phase::kTurnToPosition;
     return {};
   }
@@ -121,7 +123,8 @@ VelocityCommand DifferentialPoseController::turn_to_heading(const Pose2& T_goal_
 VelocityCommand DifferentialPoseController::back_off(const Pose2& T_goal_body, const NavigationGoal& goal) {
   const double out_m = back_off_side_ * T_goal_body.x;  // distance from the goal toward that side
   const double remaining_lateral_error_m = lateral_error_after_m(settings_.line, T_goal_body.y, out_m);
-  const bool is_enough = out_m > 0.0 && remaining_lateral_error_m <= settings_.tolerance_fraction * goal.position_tolerance_m / 2.0;
+  const bool is_enough =
+      out_m > 0.0 && remaining_lateral_error_m <= settings_.tolerance_fraction * goal.position_tolerance_m / 2.0;
   if (is_enough || out_m >= settings_.max_back_off_m) {
     forward_ = -back_off_side_;
     phase_ = Phase::kDriveLine;

@@ -27,12 +27,12 @@ void DockPoseFilter::reset() { *this = DockPoseFilter(settings_); }
 
 void DockPoseFilter::drift(const Pose2& T_odom_body, double time_s) {
   const Pose2 motion = T_odom_before_.inverse() * T_odom_body;
-  const double way_m = motion.position().norm(), turn_rad = std::abs(motion.yaw);
-  const double way_std = settings_.position_std_m_per_m * way_m;
-  const double side_std = std::hypot(way_std, settings_.lateral_std_m_per_rad * turn_rad);
-  const double turn_std = std::hypot(settings_.yaw_std_rad_per_rad * turn_rad + settings_.yaw_std_rad_per_m * way_m,
+  const double distance_m = motion.position().norm(), turn_rad = std::abs(motion.yaw);
+  const double position_std = settings_.position_std_m_per_m * distance_m;
+  const double lateral_std = std::hypot(position_std, settings_.lateral_std_m_per_rad * turn_rad);
+  const double yaw_std = std::hypot(settings_.yaw_std_rad_per_rad * turn_rad + settings_.yaw_std_rad_per_m * distance_m,
                                      settings_.yaw_random_walk_rad_per_sqrt_s * std::sqrt(time_s));
-  const Eigen::Vector3d body_std(way_std, side_std, turn_std);
+  const Eigen::Vector3d body_std(position_std, lateral_std, yaw_std);
   const Eigen::Matrix3d J = body_motion_jacobian(T_odom_body, *T_odom_docked_);
   covariance_ += J * body_std.cwiseAbs2().asDiagonal() * J.transpose();
 }
@@ -46,8 +46,8 @@ void DockPoseFilter::add(const DockDetection& detection, const Pose2& T_odom_bod
        s, c, 0.0,
        0.0, 0.0, 1.0;
   Eigen::Matrix3d observed_covariance = R * detection.covariance * R.transpose();
-  const Eigen::Vector3d least(settings_.min_std_m, settings_.min_std_m, settings_.min_std_rad);
-  observed_covariance += least.cwiseAbs2().asDiagonal();
+  const Eigen::Vector3d min_std(settings_.min_std_m, settings_.min_std_m, settings_.min_std_rad);
+  observed_covariance += min_std.cwiseAbs2().asDiagonal();
 
   if (T_odom_docked_) drift(T_odom_body, to_seconds(detection.stamp - last_stamp_));
   T_odom_before_ = T_odom_body;

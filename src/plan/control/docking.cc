@@ -72,7 +72,8 @@ DockingStep Docking::step(Time now, const Pose2& T_odom_body) {
     const double detection_age_s = to_seconds(now - std::max(start_, pose_filter_.last_stamp()));
     if (detection_age_s > settings_.detection_timeout_s) {
       enter(Phase::kFailed, "Docking failed: charging post not detected.");
-    } else if (pose_filter_.num_detections() >= settings_.min_detections && detection_age_s <= settings_.max_detection_gap_s) {
+    } else if (pose_filter_.num_detections() >= settings_.min_detections &&
+               detection_age_s <= settings_.max_detection_gap_s) {
       const Pose2 T_docked_body = pose_filter_.T_odom_docked()->inverse() * T_odom_body;
       if (phase_ == Phase::kDetect) enter(Phase::kTurn, "Charging post detected.");
       if (phase_ == Phase::kTurn) command = turn_to_line(T_docked_body);
@@ -95,7 +96,8 @@ VelocityCommand Docking::turn_to_line(const Pose2& T_docked_body) {
 
 VelocityCommand Docking::drive_in(Time now, const Pose2& T_docked_body) {
   const double remaining_m = -T_docked_body.x;
-  if (std::abs(T_docked_body.y) > settings_.corridor_half_width_m + settings_.corridor_slope * std::max(0.0, remaining_m)) {
+  if (std::abs(T_docked_body.y) >
+      settings_.corridor_half_width_m + settings_.corridor_slope * std::max(0.0, remaining_m)) {
     retry();
     return {};
   }
@@ -105,7 +107,8 @@ VelocityCommand Docking::drive_in(Time now, const Pose2& T_docked_body) {
     return {};
   }
   LineFollowingSettings line = settings_.line;
-  if (remaining_m < settings_.heading_blend_distance_m) line.lateral_gain_per_m *= remaining_m / settings_.heading_blend_distance_m;
+  if (remaining_m < settings_.heading_blend_distance_m)
+    line.lateral_gain_per_m *= remaining_m / settings_.heading_blend_distance_m;
   const double speed = std::clamp(settings_.speed_gain_per_s * remaining_m, settings_.min_speed_mps, settings_.max_speed_mps);
   return follow_line(line, T_docked_body, speed);
 }
@@ -141,7 +144,8 @@ VelocityCommand Docking::back_up(const Pose2& T_docked_body) {
 
 VelocityCommand Docking::drive_out(const Pose2& T_odom_body) {
   const Pose2 T_left_body = T_odom_left_.inverse() * T_odom_body;
-  if (-T_left_body.x < settings_.undock_distance_m) return follow_line(settings_.line, T_left_body, -settings_.max_speed_mps);
+  if (-T_left_body.x < settings_.undock_distance_m)
+    return follow_line(settings_.line, T_left_body, -settings_.max_speed_mps);
   enter(Phase::kFree, "Left the charging post.");
   return {};
 }

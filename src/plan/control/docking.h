@@ -22,7 +22,7 @@ struct DockingSettings {
   double min_yaw_rate_radps = 0.06;
   double corridor_half_width_m = 0.02;          ///< half-width of the approach corridor at the docked pose
   double corridor_slope = 0.3;     ///< widening per meter before it; outside, the robot backs up and retries
-  double heading_blend_distance_m = 0.15;       ///< final distance over which the heading blends into the dock's heading
+  double heading_blend_distance_m = 0.15;  ///< final distance over which the heading blends into the dock's heading
   double position_tolerance_m = 0.012;   ///< position tolerance of the docked pose, by the robot's own estimate
   double yaw_tolerance_rad = 0.008;
   double settling_time_s = 1.0;           ///< stationary time before the docked pose is checked

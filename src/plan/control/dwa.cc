@@ -37,21 +37,21 @@ std::optional<VelocityCommand> DynamicWindow::choose(const Costmap& costmap, con
   const double speed_window = settings_.max_acceleration_mps2 * settings_.window_s;
   const double yaw_window = settings_.max_yaw_acceleration_radps2 * settings_.window_s;
   // Braking is always admissible, also from above a limit that has just fallen.
-  const double fastest = std::max(std::min(top_speed, speed + speed_window), std::max(0.0, speed - speed_window));
-  const double slowest = std::min(std::max(0.0, speed - speed_window), fastest);
+  const double max_reachable = std::max(std::min(top_speed, speed + speed_window), std::max(0.0, speed - speed_window));
+  const double min_reachable = std::min(std::max(0.0, speed - speed_window), max_reachable);
 
   // Progress is relative to the distance reachable now: to a robot at rest before a narrow passage, slow motion must
-  // not look as useless as standing.
+  // not be rated like standing still.
   const RolloutScene scene{.path = path,
                            .along_m = along_m,
-                           .reachable_distance_m = std::max(fastest, kMinReachableSpeed_mps) * settings_.horizon_s,
+                           .reachable_distance_m = std::max(max_reachable, kMinReachableSpeed_mps) * settings_.horizon_s,
                            .twist = twist,
                            .max_speed_mps = settings_.max_speed_mps,
                            .max_yaw_rate_radps = settings_.max_yaw_rate_radps};
   const double clearance_now = costmap.clearance_m(T_map_body);
   std::optional<VelocityCommand> best;
   double best_cost = std::numeric_limits<double>::infinity();
-  for (const double vx : samples(slowest, fastest, settings_.speed_samples)) {
+  for (const double vx : samples(min_reachable, max_reachable, settings_.speed_samples)) {
     for (const double yaw : samples(std::max(-settings_.max_yaw_rate_radps, yaw_rate - yaw_window),
                                     std::min(settings_.max_yaw_rate_radps, yaw_rate + yaw_window),
                                     settings_.yaw_rate_samples)) {

@@ -19,13 +19,13 @@ VelocityCommand follow_line(const LineFollowingSettings& settings, const Pose2& 
           .yaw_rate_radps = std::clamp(yaw_rate, -settings.max_yaw_rate_radps, settings.max_yaw_rate_radps)};
 }
 
-double lateral_error_after_m(const LineFollowingSettings& settings, double lateral_m, double way_m) {
+double lateral_error_after_m(const LineFollowingSettings& settings, double lateral_m, double distance_m) {
   const double slope = std::tan(settings.max_angle_rad);
   const double knee_m = slope / settings.lateral_gain_per_m;  // lateral error below which the angle is not limited
   const double straight_m = std::max(0.0, (std::abs(lateral_m) - knee_m) / slope);
-  if (way_m <= straight_m) return std::abs(lateral_m) - slope * way_m;
+  if (distance_m <= straight_m) return std::abs(lateral_m) - slope * distance_m;
   const double from_m = std::min(std::abs(lateral_m), knee_m);
-  return from_m * std::exp(-settings.lateral_gain_per_m * (way_m - straight_m));
+  return from_m * std::exp(-settings.lateral_gain_per_m * (distance_m - straight_m));
 }
 
 }  // namespace patrol::plan

@@ -29,7 +29,7 @@ VelocityCommand follow_line(const LineFollowingSettings& settings, const Pose2& 
 /// Heading setpoint of `follow_line` relative to the line.
 double line_heading_rad(const LineFollowingSettings& settings, double lateral_m, double speed_mps);
 
-/// Lateral error after driving `way_m` along the line: the law of `follow_line` with the limit on its angle.
-double lateral_error_after_m(const LineFollowingSettings& settings, double lateral_m, double way_m);
+/// Lateral error after driving `distance_m` along the line: the law of `follow_line` with the limit on its angle.
+double lateral_error_after_m(const LineFollowingSettings& settings, double lateral_m, double distance_m);
 
 }  // namespace patrol::plan

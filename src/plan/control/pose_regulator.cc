@@ -18,7 +18,8 @@ VelocityCommand regulate_pose(const PoseRegulatorSettings& settings, const Pose2
 
 bool is_reached(const Pose2& T_map_body, const NavigationGoal& goal) {
   const Pose2 T_body_goal = T_map_body.inverse() * goal.T_map_body;
-  return T_body_goal.position().norm() <= goal.position_tolerance_m && std::abs(T_body_goal.yaw) <= goal.yaw_tolerance_rad;
+  return T_body_goal.position().norm() <= goal.position_tolerance_m &&
+         std::abs(T_body_goal.yaw) <= goal.yaw_tolerance_rad;
 }
 
 }  // namespace patrol::plan

@@ -16,10 +16,10 @@ enum class NavigationStatus { kIdle, kDriving, kArrived, kBlocked, kRecovering, 
 /// Reason for which the robot makes no progress.
 enum class NavigationFailure { kNone, kStartBlocked, kGoalBlocked, kNoRoute, kNotFound, kPathBlocked, kNoProgress };
 
-/// Description of a trouble as one sentence; empty for kNone.
+/// Description of a failure as one sentence; empty for kNone.
 const char* describe(NavigationFailure failure);
 
-/// Trouble that corresponds to the status of a route search; kNone if it has found a route.
+/// Failure that corresponds to the status of a route search; kNone if it has found a route.
 NavigationFailure to_failure(PlanStatus status);
 
 /// Output of the navigator in one control period.
@@ -27,7 +27,7 @@ struct NavigationStep {
   VelocityCommand command;
   NavigationStatus status = NavigationStatus::kIdle;
   NavigationFailure failure = NavigationFailure::kNone;
-  std::string text;         ///< one sentence in the step in which the trouble begins or the goal is aborted; else empty
+  std::string text;         ///< one sentence in the step in which the failure begins or the goal is aborted; else empty
   std::string recovery;     ///< one sentence in the step in which a recovery begins; else empty
   bool replanned = false;
   bool is_detour = false;   ///< replanned because of an obstacle on the path

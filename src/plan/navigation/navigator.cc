@@ -46,8 +46,8 @@ void Navigator::add_depth(const DepthImage& image, const Pose3& T_level_body, co
 
 void Navigator::add_range(const UltrasonicRange& ping, const Pose3& T_level_body, const Pose2& T_map_body) {
   const Pose3 T_level_transducer = T_level_body * robot_.T_body("ultrasonic_" + std::to_string(ping.transducer));
-  const SonarCone cone =
-      inverse_sonar_model(settings_.sonar_obstacles, ping, T_level_transducer, body_height_m(robot_), settings_.costmap.resolution_m);
+  const SonarCone cone = inverse_sonar_model(settings_.sonar_obstacles, ping, T_level_transducer, body_height_m(robot_),
+                                             settings_.costmap.resolution_m);
   costmap_.add_ping(cone, ping.stamp, T_map_body);
 }
 
@@ -114,7 +114,8 @@ bool Navigator::is_at_goal(const Pose2& T_map_body) const {
 }
 
 bool Navigator::must_abort(Time now) const {
-  return recoveries_.is_exhausted() || (no_path_since_ && now - *no_path_since_ > from_seconds(settings_.no_path_timeout_s));
+  return recoveries_.is_exhausted() ||
+         (no_path_since_ && now - *no_path_since_ > from_seconds(settings_.no_path_timeout_s));
 }
 
 void Navigator::report(NavigationFailure failure) {
@@ -140,7 +141,8 @@ void Navigator::search_if_needed(Time now, const Pose2& T_map_body) {
   if (follower_.has_path()) {
     const double path_deviation_m = follower_.advance(T_map_body);
     is_blocked = follower_.is_blocked(costmap_);
-    if (is_blocked && settings_.new_obstacle_wait_s > 0.0 && follower_.is_blocked_by_new_obstacles_only(costmap_, now)) return;
+    if (is_blocked && settings_.new_obstacle_wait_s > 0.0 && follower_.is_blocked_by_new_obstacles_only(costmap_, now))
+      return;
     if (!is_blocked && !search_.is_outdated(now) && path_deviation_m <= settings_.max_path_deviation_m) return;
   }
   if (!search_.may_begin(now)) return;
@@ -186,13 +188,15 @@ NavigationStatus Navigator::drive(Time now, const Pose2& T_map_body, VelocityCom
 void Navigator::choose_approach(double goal_distance_m) {
   const bool was_approaching = state_ == State::kApproaching;
   if (!was_approaching) approach_.reset();
-  const bool is_approaching =
-      was_approaching ? goal_distance_m <= settings_.goal_approach_distance_m + settings_.goal_controller.differential.max_back_off_m
-                      : goal_distance_m <= settings_.goal_approach_distance_m && follower_.remaining_m() <= settings_.goal_approach_distance_m;
+  const bool is_approaching = was_approaching
+                                  ? goal_distance_m <= settings_.goal_approach_distance_m +
+                                                           settings_.goal_controller.differential.max_back_off_m
+                                  : goal_distance_m <= settings_.goal_approach_distance_m &&
+                                        follower_.remaining_m() <= settings_.goal_approach_distance_m;
   state_ = is_approaching ? State::kApproaching : State::kFollowing;
 }
 
-/// Drives the last meter of a differential robot. Without room, it tries the other way in, then begins a recovery.
+/// Drives the last meter of a differential robot. When blocked, it tries the other side, then begins a recovery.
 NavigationStatus Navigator::approach(Time now, const Pose2& T_map_body, VelocityCommand& command) {
   update_progress(T_map_body);
   command = approach_.step(T_map_body, *goal_);

@@ -12,13 +12,15 @@ namespace patrol::plan {
 std::unique_ptr<RecoveryBehavior> make_recovery(const std::string& name, const NavigatorSettings& settings) {
   if (name == "wait") return std::make_unique<Wait>(settings.blocked_timeout_s);
   if (name == "clear_costmap") return std::make_unique<ClearCostmap>();
-  if (name == "back_up") return std::make_unique<BackUp>(settings.recovery.back_up_duration_s, settings.recovery.back_up_speed_mps);
+  if (name == "back_up")
+    return std::make_unique<BackUp>(settings.recovery.back_up_duration_s, settings.recovery.back_up_speed_mps);
   if (name == "spin") return std::make_unique<Spin>(settings.turn_in_place_rate_radps);
   throw InputError("navigation.recovery.behaviors = " + name + ": must be one of wait, clear_costmap, back_up, spin");
 }
 
 RecoverySequence::RecoverySequence(const NavigatorSettings& settings) : max_attempts_(settings.recovery.max_attempts) {
-  if (settings.recovery.behaviors.empty()) throw InputError("navigation.recovery.behaviors: must name at least one behavior");
+  if (settings.recovery.behaviors.empty())
+    throw InputError("navigation.recovery.behaviors: must name at least one behavior");
   for (const std::string& name : settings.recovery.behaviors) behaviors_.push_back(make_recovery(name, settings));
 }
 

@@ -23,7 +23,7 @@ struct CellLattice {
   Cell to_lattice(Cell grid) const { return {grid.col + origin.col, grid.row + origin.row}; }
 };
 
-/// Whether a predicate holds for any cell at most `reach` columns and rows away.
+/// Whether a predicate holds for any cell at most `radius_cells` columns and rows away.
 template <typename Predicate>
 bool any_cell_near(Cell center, int radius_cells, const Predicate& predicate) {
   for (int row = center.row - radius_cells; row <= center.row + radius_cells; ++row) {

@@ -80,8 +80,8 @@ class PointImage {
 
 }  // namespace
 
-DepthPoints segment_obstacles(const DepthObstaclesSettings& settings, const DepthImage& image, const Pose3& T_level_camera,
-                              double body_height_m) {
+DepthPoints segment_obstacles(const DepthObstaclesSettings& settings, const DepthImage& image,
+                              const Pose3& T_level_camera, double body_height_m) {
   const PointImage points(image, T_level_camera, settings.max_range_m);
   std::vector<Point> ground(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
   const auto index = [&](int row, int col) {
@@ -104,11 +104,11 @@ DepthPoints segment_obstacles(const DepthObstaclesSettings& settings, const Dept
         const Point& q = ground[index(below, col)];
         rises = p.z - q.z > min_rise + max_slope * std::hypot(p.x - q.x, p.y - q.y);  // false if q is NaN
       }
-      const Eigen::Vector2d place(p.x, p.y);
-      const double range_m = (place - p_level_camera).norm();
+      const Eigen::Vector2d point(p.x, p.y);
+      const double range_m = (point - p_level_camera).norm();
       const double height_limit_m = settings.max_height_m + settings.max_slope * range_m - body_height_m;
-      if (rises && p.z < height_limit_m) result.obstacles_m.push_back(place);
-      if (!rises && row < last && range_m <= settings.clearing_range_m) result.ground_m.push_back(place);
+      if (rises && p.z < height_limit_m) result.obstacles_m.push_back(point);
+      if (!rises && row < last && range_m <= settings.clearing_range_m) result.ground_m.push_back(point);
     }
   }
   return result;

@@ -48,7 +48,7 @@ struct DepthPoints {
 ///
 /// `T_level_camera`: camera pose with x along the optical axis, tilt included. `body_height_m`: height of level's
 /// origin above the ground.
-DepthPoints segment_obstacles(const DepthObstaclesSettings& settings, const DepthImage& image, const Pose3& T_level_camera,
-                              double body_height_m);
+DepthPoints segment_obstacles(const DepthObstaclesSettings& settings, const DepthImage& image,
+                              const Pose3& T_level_camera, double body_height_m);
 
 }  // namespace patrol::plan

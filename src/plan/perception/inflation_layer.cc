@@ -13,23 +13,23 @@ namespace {
 
 /// Cap of the distance transform, cells: covers all distances with a cost, and all clearances of the robot's outline.
 int cap_of(const CostmapSettings& settings, const Footprint& footprint) {
-  const double reach_m = std::max(settings.inflation_radius_m, footprint.circumscribed_radius_m() + 0.3);
-  return std::clamp(static_cast<int>(std::ceil(reach_m / settings.resolution_m)) + 1, 2, DistanceTransform::kMaxCap_cells);
+  const double range_m = std::max(settings.inflation_radius_m, footprint.circumscribed_radius_m() + 0.3);
+  return std::clamp(static_cast<int>(std::ceil(range_m / settings.resolution_m)) + 1, 2, DistanceTransform::kMaxCap_cells);
 }
 
 /// Checks that the lethal distance is within the cap; otherwise cells at a lethal distance would be free.
-void check_reach(const CostmapSettings& settings, const Footprint& footprint, double lethal_m) {
-  const double reach_m = settings.resolution_m * (cap_of(settings, footprint) - 1);
-  if (lethal_m <= reach_m) return;
-  throw InputError(fmt::format("an outline and margins of {:.2f} m reach beyond the costmap's {:.2f} m: costmap.inflation_radius_m or "
-                               "costmap.resolution_m must be larger", lethal_m, reach_m));
+void check_cap(const CostmapSettings& settings, const Footprint& footprint, double lethal_m) {
+  const double range_m = settings.resolution_m * (cap_of(settings, footprint) - 1);
+  if (lethal_m <= range_m) return;
+  throw InputError(fmt::format("outline and margins of {:.2f} m exceed the costmap's range of {:.2f} m: "
+                               "costmap.inflation_radius_m or costmap.resolution_m must be larger", lethal_m, range_m));
 }
 
 }  // namespace
 
 InflationLayer::InflationLayer(const CostmapSettings& settings, const Footprint& footprint) : transform_(cap_of(settings, footprint)) {
   const double lethal_m = footprint.inscribed_radius_m() + settings.safety_margin_m + settings.route_margin_m;
-  check_reach(settings, footprint, lethal_m);
+  check_cap(settings, footprint, lethal_m);
   for (int squared = 0; squared <= transform_.beyond(); ++squared) {
     // The surface of an obstacle lies somewhere in its cell; half a cell is the mean.
     const double distance = std::max(0.0, settings.resolution_m * (std::sqrt(squared) - 0.5));

@@ -42,9 +42,9 @@ double KeepOutLayer::distance_m(const Eigen::Vector2d& p_map) const {
 
 void KeepOutLayer::raise_costs(Cell first, int count, Cost* cost) const {
   const float* distance_m = &distance_m_.at(first);
-  const auto margin_m = static_cast<float>(margin_m_), reach_m = static_cast<float>(margin_m_ + inflation_m_);
+  const auto margin_m = static_cast<float>(margin_m_), end_m = static_cast<float>(margin_m_ + inflation_m_);
   for (int i = 0; i < count; ++i) {
-    if (distance_m[i] >= reach_m) continue;
+    if (distance_m[i] >= end_m) continue;
     const bool is_lethal = distance_m[i] <= margin_m;
     cost[i] = std::max(cost[i], is_lethal ? kLethalCost : decaying_cost(distance_m[i] - margin_m, inflation_m_ / 3.0));
   }

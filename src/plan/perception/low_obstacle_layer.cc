@@ -40,9 +40,9 @@ CellBox LowObstacleLayer::add_image(const DepthPoints& points, Time stamp, const
   for (const Cell cell : obstacles) may_move.push_back(scan.has_obstacle_near(lattice_.to_grid(cell), kMoving_cells));
   // Cells with obstacle points of the same image are not ground.
   std::vector<Cell> ground;
-  const std::vector<Cell> doubtful = lattice_cells(points.obstacles_m, T_map_body, 1);
+  const std::vector<Cell> obstacle_cells = lattice_cells(points.obstacles_m, T_map_body, 1);
   for (const Cell cell : lattice_cells(points.ground_m, T_map_body, settings_.min_camera_points)) {
-    if (std::find(doubtful.begin(), doubtful.end(), cell) == doubtful.end()) ground.push_back(cell);
+    if (std::find(obstacle_cells.begin(), obstacle_cells.end(), cell) == obstacle_cells.end()) ground.push_back(cell);
   }
   low_.add_image(obstacles, ground, may_move, stamp);
   low_.clear_expired(stamp);
@@ -54,7 +54,8 @@ CellBox LowObstacleLayer::add_ping(const SonarCone& cone, Time stamp, const Pose
   std::vector<Cell> arc = lattice_cells(cone.arc_m, T_map_body, 1);
   const auto is_explained = [&](Cell lattice) {
     const Cell cell = lattice_.to_grid(lattice);
-    return scan.has_obstacle_near(cell, kExplainedDistance_cells) || map.has_obstacle_near(cell, kExplainedDistance_cells);
+    return scan.has_obstacle_near(cell, kExplainedDistance_cells) ||
+           map.has_obstacle_near(cell, kExplainedDistance_cells);
   };
   if (std::any_of(arc.begin(), arc.end(), is_explained)) arc.clear();
   low_.add_ping(arc, lattice_cells(cone.free_m, T_map_body, 1), stamp);

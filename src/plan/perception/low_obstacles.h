@@ -46,9 +46,9 @@ class LowObstacles {
   void add_ping(const std::vector<Cell>& arc, const std::vector<Cell>& free, Time now);
   /// Clears the sonar evidence of the cells for which the predicate is true.
   template <typename Predicate>
-  void clear_sonar_evidence(const Predicate& is_there) {
+  void clear_sonar_evidence(const Predicate& is_in_area) {
     for (auto& [key, evidence] : cells_) {
-      if (!is_there(to_cell(key))) continue;
+      if (!is_in_area(to_cell(key))) continue;
       evidence.sonar = 0;
       update_obstacle(key, evidence);
     }

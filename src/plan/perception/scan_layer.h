@@ -27,7 +27,7 @@ class ScanLayer {
   /// Whether a cell inside the grid is an obstacle.
   bool is_obstacle(Cell cell) const { return index_.at(cell) != 0; }
   bool contains_obstacle(Cell cell) const { return index_.contains(cell) && is_obstacle(cell); }
-  /// Whether an obstacle lies at most `reach` columns and rows from a cell, which may be outside the grid.
+  /// Whether an obstacle lies at most `radius_cells` columns and rows from a cell, which may be outside the grid.
   bool has_obstacle_near(Cell cell, int radius_cells) const;
   /// Time of the first observation of the oldest obstacle within a radius; none without obstacles.
   std::optional<Time> first_seen(const Eigen::Vector2d& p_map, double radius_m) const;

@@ -15,11 +15,11 @@ double ground_range_m(double height_m, double elevation_rad, double half_fov_rad
 
 /// Appends points at a range over a sector.
 void add_arc(const Eigen::Vector2d& center, double azimuth_rad, double half_rad, double range_m, double spacing_m,
-             std::vector<Eigen::Vector2d>& places) {
+             std::vector<Eigen::Vector2d>& points) {
   const int steps = std::max(1, static_cast<int>(std::ceil(2.0 * half_rad * range_m / (spacing_m / 2.0))));
   for (int i = 0; i <= steps; ++i) {
     const double angle = azimuth_rad + half_rad * (2.0 * i / steps - 1.0);
-    places.emplace_back(center + range_m * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
+    points.emplace_back(center + range_m * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
   }
 }
 

@@ -19,7 +19,7 @@ class StaticMapLayer {
   CellBox set_map(const OccupancyGrid& map);
 
   bool is_obstacle(Cell cell) const { return map_.at(cell) >= occupied_percent_; }
-  /// Whether an obstacle lies at most `reach` columns and rows from a cell, which may be outside the grid.
+  /// Whether an obstacle lies at most `radius_cells` columns and rows from a cell, which may be outside the grid.
   bool has_obstacle_near(Cell cell, int radius_cells) const;
   /// Cost of a cell that is unknown in the map.
   Cost unknown_cost() const { return unknown_cost_; }

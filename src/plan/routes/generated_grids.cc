@@ -43,10 +43,10 @@ void generate_rooms(const GeneratedGridSettings& settings, RandomSequence random
     for (int first = 0; first < size; first += room) {
       const int length = std::min(room - 1, size - first), width = std::min(door_width(first), length);
       for (const bool is_vertical : {true, false}) {
-        const int place = first + static_cast<int>(random.index(static_cast<std::size_t>(length - width + 1)));
+        const int position = first + static_cast<int>(random.index(static_cast<std::size_t>(length - width + 1)));
         if (random.uniform() >= kDoorProbability) continue;
-        if (is_vertical) fill(grid.costs, {wall, place}, 1, width, kFreeCost);
-        else fill(grid.costs, {place, wall}, width, 1, kFreeCost);
+        if (is_vertical) fill(grid.costs, {wall, position}, 1, width, kFreeCost);
+        else fill(grid.costs, {position, wall}, width, 1, kFreeCost);
       }
     }
   }

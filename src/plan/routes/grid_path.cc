@@ -19,7 +19,8 @@ std::size_t direction_of(int col, int row) {
 }
 
 /// Appends an unobstructed shortest path from a cell to another to `path`; returns its cost, or none if it is blocked.
-std::optional<double> append_open_path(const StepGraph& graph, std::uint32_t from, std::uint32_t to, Mix mix, GridPath& path) {
+std::optional<double> append_open_path(const StepGraph& graph, std::uint32_t from, std::uint32_t to, Mix mix,
+                                       GridPath& path) {
   const Cell a = graph.cell_of(from), b = graph.cell_of(to);
   const int dx = b.col - a.col, dy = b.row - a.row, longer = std::max(std::abs(dx), std::abs(dy)), shorter = std::min(std::abs(dx), std::abs(dy));
   const int sign_x = (dx > 0) - (dx < 0), sign_y = (dy > 0) - (dy < 0);
@@ -66,7 +67,8 @@ std::vector<Eigen::Vector2d> to_points(const StepGraph& graph, const GridPath& p
   return points;
 }
 
-GridPathBuilder::GridPathBuilder(const StepGraph& graph) : graph_(graph), visit_(graph.steps.size()), position_(graph.steps.size()) {}
+GridPathBuilder::GridPathBuilder(const StepGraph& graph)
+    : graph_(graph), visit_(graph.steps.size()), position_(graph.steps.size()) {}
 
 void GridPathBuilder::remove_loops(GridPath& path, std::uint32_t goal) {
   ++num_paths_;

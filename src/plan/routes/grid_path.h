@@ -43,9 +43,9 @@ class GridPathBuilder {
  public:
   explicit GridPathBuilder(const StepGraph& graph);
 
-  /// Builds a path from `start` to `goal`. `choose(cell, open)` picks one of the directions whose bits are set in `open`: those
-  /// into cells not yet visited. Without one, the path backtracks. Returns no cells if it backtracks from the start: no
-  /// route exists. The cost is left at 0.
+  /// Builds a path from `start` to `goal`. `choose(cell, open)` picks one of the directions whose bits are set in
+  /// `open`: those into cells not yet visited. Without one, the path backtracks. Returns no cells if it backtracks from
+  /// the start: no route exists. The cost is left at 0.
   template <typename Choose>
   GridPath build(std::uint32_t start, std::uint32_t goal, Choose choose) {
     ++num_paths_;
@@ -77,7 +77,7 @@ class GridPathBuilder {
   void remove_loops(GridPath& path, std::uint32_t goal);
 
   /// Shortens a path that enters no cell twice. Segments that cost at least as much as an unobstructed shortest path
-  /// between their ends are replaced by that path. Its diagonal and straight steps are evenly mixed, or one kind
+  /// between their ends are replaced by that path. Its diagonal and straight steps are uniformly mixed, or one kind
   /// precedes the other. The result depends on the side on which the path passes obstacles.
   void shorten(GridPath& path, std::uint32_t goal);
 

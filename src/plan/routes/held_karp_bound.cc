@@ -79,7 +79,7 @@ double travel_bound(const TourProblem& problem, double upper_bound, int iteratio
     return travel;
   }
   std::vector<double> weights(cost.size(), 0.0);
-  double best = 0.0, pace = 2.0;
+  double best = 0.0, step_scale = 2.0;
   for (int iteration = 0, stale = 0; iteration < iterations; ++iteration) {
     const OneTree tree = min_one_tree(cost, weights);
     double bound = tree.cost;
@@ -87,11 +87,11 @@ double travel_bound(const TourProblem& problem, double upper_bound, int iteratio
     if (!std::isfinite(bound)) return kNoBound;
     stale = bound > best + 1e-9 ? 0 : stale + 1;
     best = std::max(best, bound);
-    if (stale >= kStallIterations) pace *= 0.5, stale = 0;
+    if (stale >= kStallIterations) step_scale *= 0.5, stale = 0;
     double excess = 0.0;
     for (const int degree : tree.degrees) excess += (degree - 2) * (degree - 2);
     if (excess == 0.0) return best;  // the tree is a tour
-    const double step = pace * std::max(upper_bound - bound, 1e-6 * upper_bound) / excess;
+    const double step = step_scale * std::max(upper_bound - bound, 1e-6 * upper_bound) / excess;
     for (std::size_t i = 0; i < weights.size(); ++i) weights[i] += step * (tree.degrees[i] - 2);
   }
   return best;

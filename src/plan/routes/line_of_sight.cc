@@ -10,8 +10,8 @@ bool has_line_of_sight(const Grid<Cost>& costs, Cell from, Cell to) {
 
 std::optional<double> line_cost(const Grid<Cost>& costs, const std::array<double, 256>& factors, Cell from, Cell to) {
   double mean_factor = 0.0;
-  const bool is_clear = visit_line_cells(from, to, [&](Cell cell, double share) {
-    mean_factor += share * factors[costs.at(cell)];
+  const bool is_clear = visit_line_cells(from, to, [&](Cell cell, double fraction) {
+    mean_factor += fraction * factors[costs.at(cell)];
     return costs.at(cell) != kLethalCost;
   });
   if (!is_clear) return std::nullopt;

@@ -9,8 +9,8 @@
 
 namespace patrol::plan {
 
-/// Walks the straight line between two cell centers and calls `visit(cell, share)` for every cell whose closed square
-/// it meets, in order. `share` is the fraction of the line inside; 0 for cells that it only touches at a corner. Exact
+/// Follows the straight line between two cell centers and calls `visit(cell, fraction)` for every cell whose closed square
+/// it meets, in order. `fraction` is the part of the line inside; 0 for cells that it only touches at a corner. Exact
 /// in integers. Stops, and returns false, as soon as `visit` does.
 template <typename Visit>
 bool visit_line_cells(Cell from, Cell to, Visit&& visit) {

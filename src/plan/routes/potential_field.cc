@@ -8,10 +8,10 @@ namespace {
 
 /// Vector from the nearest lethal cell to this one; none within the range.
 std::optional<Eigen::Vector2d> from_nearest_obstacle(const Grid<Cost>& costs, Cell cell, double range) {
-  const int reach = static_cast<int>(range);
+  const int radius_cells = static_cast<int>(range);
   std::optional<Eigen::Vector2d> nearest;
-  for (int dy = -reach; dy <= reach; ++dy) {
-    for (int dx = -reach; dx <= reach; ++dx) {
+  for (int dy = -radius_cells; dy <= radius_cells; ++dy) {
+    for (int dx = -radius_cells; dx <= radius_cells; ++dx) {
       const Cell other{cell.col + dx, cell.row + dy};
       if (!costs.contains(other) || costs.at(other) != kLethalCost) continue;
       const Eigen::Vector2d from_obstacle(-dx, -dy);

@@ -78,7 +78,8 @@ void QLearning::search(const Grid<Cost>& costs, Cell start, Cell goal, Route& ro
   const std::uint32_t from = graph.index_of(start), to = graph.index_of(goal);
   if (graph.steps[from] == 0) return;  // no step out of the start
   QTable table(graph, to);
-  const auto max_steps = static_cast<std::int64_t>(settings_.max_steps_per_cell * static_cast<double>(graph.steps.size()));
+  const auto max_steps =
+      static_cast<std::int64_t>(settings_.max_steps_per_cell * static_cast<double>(graph.steps.size()));
   GridPath best;
   best.cost = std::numeric_limits<double>::infinity();
   for (int episode = 0; episode < settings_.episodes && !is_step_limit_reached(route); ++episode) {

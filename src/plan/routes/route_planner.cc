@@ -70,7 +70,8 @@ double compute_clearance(const Grid<Cost>& costs, const std::vector<Eigen::Vecto
     const int pieces = std::max(1, static_cast<int>(std::ceil((to - from).cwiseAbs().maxCoeff())));
     for (int k = 0; k < pieces; ++k) {
       const Eigen::Vector2d a = from + (to - from) * k / pieces, b = from + (to - from) * (k + 1) / pieces;
-      const Cell low = cell_of(a.cwiseMin(b).array() - min_distance), high = cell_of(a.cwiseMax(b).array() + min_distance);
+      const Cell low = cell_of(a.cwiseMin(b).array() - min_distance),
+                 high = cell_of(a.cwiseMax(b).array() + min_distance);
       for (int row = std::max(0, low.row); row <= std::min(costs.geometry().height - 1, high.row); ++row) {
         for (int col = std::max(0, low.col); col <= std::min(costs.geometry().width - 1, high.col); ++col) {
           if (costs.at({col, row}) != kLethalCost || gap(a, b, col, row) >= min_distance) continue;

@@ -35,8 +35,8 @@ struct Route {
 
 inline constexpr double kMaxClearance = 16.0;  ///< cells
 
-/// Iteration, counted from 1, from which the best cost is within the fraction `tolerance` of its final value; 0 without a
-/// route.
+/// Iteration, counted from 1, from which the best cost is within the fraction `tolerance` of its final value; 0 without
+/// a route.
 int iterations_to_convergence(const std::vector<double>& history, double tolerance);
 
 /// Cell that contains a point of a route; for a corner, the cell above and to the right.

@@ -237,7 +237,8 @@ TourOrder solve_station_order(const TourProblem& problem, const TourOrderSetting
   result.lateness = late;
   result.completion = completion;
   for (std::size_t k = 1; k < result.stations.size(); ++k) result.travel += tour.travel(result.stations[k - 1], result.stations[k]);
-  if (tour.is_closed_tour() && tour.size() > 1) result.travel += tour.travel(result.stations.back(), result.stations.front());
+  if (tour.is_closed_tour() && tour.size() > 1)
+    result.travel += tour.travel(result.stations.back(), result.stations.front());
   result.lower_bound = result.is_exact ? completion : held_karp_bound(problem, completion, settings.bound_iterations);
   return result;
 }

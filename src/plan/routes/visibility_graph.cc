@@ -77,7 +77,7 @@ class VisibilitySearch {
 
   void run(Route& route) {
     route.num_iterations = 1;
-    reach(start_, 0.0, start_);
+    relax(start_, 0.0, start_);
     while (!open_.empty()) {
       const HalfCellPoint point = open_.top().point;
       open_.pop();
@@ -140,7 +140,7 @@ class VisibilitySearch {
     return side;
   }
 
-  void reach(HalfCellPoint point, double length, HalfCellPoint parent) {
+  void relax(HalfCellPoint point, double length, HalfCellPoint parent) {
     Node& reached = node(point);
     if (length >= reached.length) return;
     reached.length = length;
@@ -160,7 +160,7 @@ class VisibilitySearch {
       const std::optional<HalfCellPoint> side = lethal_side(to);
       if (!side || ((to.x - from.x) * side->x > 0 && (to.y - from.y) * side->y > 0)) return;
     }
-    if (is_visible(costs_, from, to)) reach(to, length, from);
+    if (is_visible(costs_, from, to)) relax(to, length, from);
   }
 
   /// Spreads the cones row by row over the cells of a quadrant; each cell receives cones from below and from the left.

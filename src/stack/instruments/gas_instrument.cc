@@ -18,11 +18,13 @@ void GasInstrument::begin(const InspectionOrder& order, Time) {
 InspectionProgress GasInstrument::step(const InspectionContext& context) {
   const Time from = order_.not_before + from_seconds(rules_.settling_time_s);
   if (newest_ && newest_->stamp >= from) measurement_.add(*newest_);
-  if (context.now >= from + from_seconds(rules_.measurement_duration_s) && measurement_.count() >= rules_.min_readings) {
+  if (context.now >= from + from_seconds(rules_.measurement_duration_s) &&
+      measurement_.count() >= rules_.min_readings) {
     report(context);
     return {.feedback = InspectionFeedback::kDone};
   }
-  if (context.now < from + from_seconds(std::max(rules_.measurement_duration_s, rules_.measurement_timeout_s))) return {};
+  if (context.now < from + from_seconds(std::max(rules_.measurement_duration_s, rules_.measurement_timeout_s)))
+    return {};
   return {.feedback = InspectionFeedback::kFailed,
           .failure = fmt::format("Too few methane readings: {} at {}, at least {} required.", measurement_.count(),
                                  order_.station, rules_.min_readings)};
@@ -32,9 +34,9 @@ void GasInstrument::report(const InspectionContext& context) const {
   const double column = measurement_.mean_ppm_m();
   const std::string& station = order_.station;
   context.publish_event(EventKind::kGasMeasured, station, fmt::format("{}: {:.0f} ppm m of methane.", station, column),
-                        column, context.place.T_map_body.position());
+                        column, context.station_pose.T_map_body.position());
   if (column - 2.0 * measurement_.standard_error_ppm_m() <= rules_.alarm_column_ppm_m) return;
-  const Eigen::Vector2d p_map = closest_point_on_beam(context.place.T_map_body);
+  const Eigen::Vector2d p_map = closest_point_on_beam(context.station_pose.T_map_body);
   context.publish_event(EventKind::kGasAlarm, station,
                         fmt::format("Leak at {}: {:.0f} ppm m of methane, found at ({:.2f}, {:.2f}) m in the map.",
                                     station, column, p_map.x(), p_map.y()),

@@ -8,8 +8,8 @@ namespace patrol::stack {
 
 /// Settings of the tunnel instruments: panoramic scanner, siren, and the evaluation of lining and water.
 struct InspectionSettings {
-  double scan_settling_time_s = 4.0;      ///< settling time before a panoramic scan; a robot on springs oscillates after
-                                   ///< stopping
+  double scan_settling_time_s = 4.0;  ///< settling time before a panoramic scan; a robot on springs oscillates after
+                                      ///< stopping
   double scan_timeout_s = 600.0;  ///< timeout of a panoramic scan
   double siren_duration_s = 10.0;           ///< duration of the siren at an alarm; the light stays on
   inspect::LiningSettings lining;

@@ -17,7 +17,7 @@ using StationPoseLookup = std::function<std::optional<StationPose>(Time)>;
 /// State of the robot in a control period, and the outputs available to an instrument.
 struct InspectionContext {
   Time now{};
-  StationPose place;
+  StationPose station_pose;
   StackOutput& output;
   WarningLight& light;
 
@@ -29,7 +29,7 @@ struct InspectionContext {
                          .subject = subject,
                          .text = text,
                          .value = value,
-                         .T_map_body = place.T_map_body,
+                         .T_map_body = station_pose.T_map_body,
                          .p_map_target = p_map});
   }
 };

@@ -13,7 +13,7 @@ void InstrumentSet::add(const SensorMessage& message, const StationPoseLookup& s
 }
 
 InspectionProgress InstrumentSet::step(Time now, const std::optional<InspectionOrder>& order,
-                                       const StationPose& place, StackOutput& output) {
+                                       const StationPose& station_pose, StackOutput& output) {
   light_.step(now, output);
   if (order != order_) {
     if (Instrument* before = order_ ? find(order_->instrument) : nullptr) before->end();
@@ -23,7 +23,7 @@ InspectionProgress InstrumentSet::step(Time now, const std::optional<InspectionO
   if (!order) return {};
   Instrument* instrument = find(order->instrument);
   if (!instrument) return {.feedback = InspectionFeedback::kFailed};
-  return instrument->step({.now = now, .place = place, .output = output, .light = light_});
+  return instrument->step({.now = now, .station_pose = station_pose, .output = output, .light = light_});
 }
 
 Instrument* InstrumentSet::find(InstrumentKind kind) const {

@@ -16,7 +16,7 @@ class InstrumentSet {
   void add(const SensorMessage& message, const StationPoseLookup& station_pose_at);
   /// Executes `order` for a control period. A new order starts at once; nullopt ends the previous one. An order for an
   /// instrument that the robot does not have fails.
-  InspectionProgress step(Time now, const std::optional<InspectionOrder>& order, const StationPose& place,
+  InspectionProgress step(Time now, const std::optional<InspectionOrder>& order, const StationPose& station_pose,
                           StackOutput& output);
 
  private:

@@ -26,7 +26,7 @@ LiningInstrument::LiningInstrument(const InspectionSettings& settings, const Tun
 void LiningInstrument::add(const SensorMessage& message, const StationPoseLookup& station_pose_at) {
   const auto* scan = std::get_if<PanoramicScan>(&message);
   if (!scan || !is_active_) return;
-  if (const auto place = station_pose_at(scan->stamp)) new_scan_ = {*scan, *place};
+  if (const auto station_pose = station_pose_at(scan->stamp)) new_scan_ = {*scan, *station_pose};
 }
 
 void LiningInstrument::begin(const InspectionOrder& order, Time now) {
@@ -45,25 +45,25 @@ InspectionProgress LiningInstrument::step(const InspectionContext& context) {
   }
   if (now - order_start_ > from_seconds(settings_.scan_timeout_s)) return {.feedback = InspectionFeedback::kFailed};
   if (!new_scan_) return {};
-  const auto [scan, place] = *std::exchange(new_scan_, std::nullopt);
-  return {.feedback = evaluate(context, scan, place)};
+  const auto [scan, station_pose] = *std::exchange(new_scan_, std::nullopt);
+  return {.feedback = evaluate(context, scan, station_pose)};
 }
 
 InspectionFeedback LiningInstrument::evaluate(const InspectionContext& context, const PanoramicScan& scan,
-                                              const StationPose& place) {
-  const Eigen::Vector2d p_map = context.place.T_map_body.position();
+                                              const StationPose& station_pose) {
+  const Eigen::Vector2d p_map = context.station_pose.T_map_body.position();
   const auto num_points = scan.points.size();
   context.publish_event(EventKind::kScanTaken, station_, fmt::format("Panoramic scan of {} points.", num_points),
                         static_cast<double>(num_points), p_map);
   const auto reference = references_.find(station_);
   if (reference == references_.end()) {
-    references_.emplace(station_, inspect::make_reference(scan, place.T_map_scanner(T_body_scanner_)));
+    references_.emplace(station_, inspect::make_reference(scan, station_pose.T_map_scanner(T_body_scanner_)));
     context.publish_event(EventKind::kReferenceTaken, station_,
                           "First scan of the station: reference for later scans.", 0.0, p_map);
     return InspectionFeedback::kDone;
   }
   LiningResult result =
-      inspection_.inspect(context.now, station_, scan, reference->second, place.T_map_scanner(T_body_scanner_));
+      inspection_.inspect(context.now, station_, scan, reference->second, station_pose.T_map_scanner(T_body_scanner_));
   report(context, result);
   const bool is_registered = result.is_registered;
   context.output.publish(std::move(result));
@@ -81,7 +81,7 @@ void LiningInstrument::report(const InspectionContext& context, const LiningResu
   }
   if (result.findings.empty())
     context.publish_event(EventKind::kLiningUnchanged, station_, "No ring has moved.", 0.0,
-                          context.place.T_map_body.position());
+                          context.station_pose.T_map_body.position());
 }
 
 }  // namespace patrol::stack

@@ -6,7 +6,8 @@
 
 namespace patrol::stack {
 
-/// Warning light and siren. The light stays on from the first warning; the siren sounds for `siren_duration_s` at every alarm.
+/// Warning light and siren. The light stays on from the first warning; the siren sounds for `siren_duration_s` at every
+/// alarm.
 class WarningLight {
  public:
   explicit WarningLight(double siren_duration_s) : siren_s_(siren_duration_s) {}

@@ -34,11 +34,11 @@ InspectionProgress WaterInstrument::step(const InspectionContext& context) {
 }
 
 WaterResult WaterInstrument::estimate(const InspectionContext& context) const {
-  const StationPose& place = context.place;
+  const StationPose& station_pose = context.station_pose;
   AntennaGeometry antenna = geometry_;  // antenna with the tilt of the standing robot
-  antenna.T_body_mount = Pose3{Eigen::Vector3d::Zero(), place.T_level_body.rotation} * antenna.T_body_mount;
+  antenna.T_body_mount = Pose3{Eigen::Vector3d::Zero(), station_pose.T_level_body.rotation} * antenna.T_body_mount;
   WaterResult result =
-      inversion_.invert(sounding_->soundings(), antenna, place.T_map_body, sounding_->antenna_error_deg(), seed_);
+      inversion_.invert(sounding_->soundings(), antenna, station_pose.T_map_body, sounding_->antenna_error_deg(), seed_);
   result.stamp = context.now;
   result.station = station_;
   return result;
@@ -48,7 +48,7 @@ void WaterInstrument::report(const InspectionContext& context, const WaterResult
   if (!result.is_found) {
     context.publish_event(EventKind::kWaterNotFound, station_,
                           fmt::format("No water ahead: {} soundings.", result.soundings), 0.0,
-                          context.place.T_map_body.position());
+                          context.station_pose.T_map_body.position());
     return;
   }
   context.publish_event(water_event(result.level), station_,

@@ -15,7 +15,8 @@ namespace {
 /// Odometry from IMU, joint encoders and foot forces.
 class LeggedOdometry final : public OdometrySource {
  public:
-  LeggedOdometry(const RobotDescription& robot, const StackSettings& settings) : estimator_(robot, settings.odometry.legged) {}
+  LeggedOdometry(const RobotDescription& robot, const StackSettings& settings)
+      : estimator_(robot, settings.odometry.legged) {}
 
   void add(const SensorMessage& message) override {
     if (const auto* imu = std::get_if<Imu>(&message)) estimator_.add(*imu);

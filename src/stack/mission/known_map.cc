@@ -37,8 +37,8 @@ void validate_map(const std::string& file, const OccupancyGrid& map) {
 void validate_goals(const std::string& file, const std::vector<SavedGoal>& goals, const std::optional<OccupancyGrid>& map) {
   for (const SavedGoal& goal : goals) {
     const Eigen::Vector2d p_map = goal.T_map_body.position();
-    const std::string place = fmt::format("{}: goal {}: position {:.6g}, {:.6g} is", file, goal.number, p_map.x(), p_map.y());
-    const auto refuse = [&](const std::string& what) { throw InputError(place + " " + what); };
+    const std::string prefix = fmt::format("{}: goal {}: position {:.6g}, {:.6g} is", file, goal.number, p_map.x(), p_map.y());
+    const auto refuse = [&](const std::string& what) { throw InputError(prefix + " " + what); };
     if (map && !contains(map->geometry(), p_map)) refuse(fmt::format("outside the map ({})", extent_of(map->geometry())));
     if (!map && p_map.norm() > kMaxGoalDistance_m) refuse(fmt::format("more than {} m from the start", kMaxGoalDistance_m));
   }

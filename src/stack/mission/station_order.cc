@@ -53,14 +53,14 @@ StationOrder order_stations(const Route& route_in_map, const RobotDescription& r
   plan::Costmap costmap(navigation.costmap, plan::Footprint(robot.footprint_m, navigation.footprint_rows), route_in_map.keep_out_lines);
   costmap.set_map(OccupancyGrid({.resolution_m = navigation.costmap.resolution_m, .width = 1, .height = 1}, kUnknown));
   const std::vector<Eigen::Vector2d> positions = to_positions(route_in_map.stations);
-  for (const Eigen::Vector2d& place : positions) costmap.include(place, kMapMargin_m);
+  for (const Eigen::Vector2d& position : positions) costmap.include(position, kMapMargin_m);
   plan::GlobalPlanner planner(navigation.global_planner, seed);
   const plan::TourOrder order = plan::solve_station_order(problem_of(route_in_map.stations, lengths_between(positions, costmap, planner), mission), {}, seed);
   if (!order.is_found) return {.stations = route_in_map.stations, .text = "No order reaches all stations: given order kept."};
 
   StationOrder ordered;
-  for (const std::size_t place : order.stations) {
-    if (place > 0) ordered.stations.push_back(route_in_map.stations[place - 1]);
+  for (const std::size_t index : order.stations) {
+    if (index > 0) ordered.stations.push_back(route_in_map.stations[index - 1]);
   }
   ordered.text = fmt::format("Expected duration in this order: {:.0f} s{}; {}.", order.completion,
                              order.lateness > 0.0 ? fmt::format(", with an unavoidable delay of {:.0f} s", order.lateness) : "",

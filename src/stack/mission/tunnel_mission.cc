@@ -73,9 +73,10 @@ Task TunnelMission::task() const {
   const SavedGoal& goal = goals_[goal_];
   const bool stops = goal.type != GoalType::kVia;
   task.motion = Motion::kNavigate;
-  task.goal = {.T_map_body = goal.T_map_body,
-               .position_tolerance_m = stops ? std::min(settings_.position_tolerance_m, goal.accuracy_m) : goal.accuracy_m,
-               .yaw_tolerance_rad = stops ? settings_.yaw_tolerance_rad : std::numbers::pi};
+  task.goal = {
+      .T_map_body = goal.T_map_body,
+      .position_tolerance_m = stops ? std::min(settings_.position_tolerance_m, goal.accuracy_m) : goal.accuracy_m,
+      .yaw_tolerance_rad = stops ? settings_.yaw_tolerance_rad : std::numbers::pi};
   return task;
 }
 
@@ -100,7 +101,8 @@ bool TunnelMission::monitor_localization(const MissionInput& input, MissionOutpu
 }
 
 void TunnelMission::wait(MissionOutput& output) {
-  if (now_ < from_seconds(settings_.init_wait_s) || now_ < *first_step_ + from_seconds(settings_.first_scan_wait_s)) return;
+  if (now_ < from_seconds(settings_.init_wait_s) || now_ < *first_step_ + from_seconds(settings_.first_scan_wait_s))
+    return;
   if (!has_teleop_ || has_map_) return start_run(output);
   last_teleop_ = now_;
   enter(Phase::kTeleop);

@@ -20,8 +20,8 @@ struct TunnelMissionSettings {
                                   ///< and continues between runs without a restart
   bool dock_after_run = true;              ///< true: dock after the mapping drive and after each run
   double init_wait_s = 4.0;      ///< initial standing time, for sensors to settle and biases to be estimated
-  double first_scan_wait_s = 1.5;      ///< minimum of the initial standing time after the first step; the map's first scan
-                                  ///< is taken at rest
+  double first_scan_wait_s = 1.5;  ///< minimum of the initial standing time after the first step; the map's first scan
+                                   ///< is taken at rest
   double dwell_s = 1.0;           ///< standing time at a goal before it is reported
   double position_tolerance_m = 0.03;   ///< tolerance at a goal; the goal's own accuracy applies if tighter
   double yaw_tolerance_rad = 0.017;

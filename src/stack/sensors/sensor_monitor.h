@@ -17,7 +17,7 @@ struct SensorMonitorSettings {
   double lidar_timeout_s = 0.6;       ///< age limit of sensors with SensorTimeout::kLidar (core/sensors/registry.h)
   double proprioception_timeout_s = 0.15;     ///< age limit of sensors with SensorTimeout::kMotion
   double instrument_timeout_s = 5.0;  ///< age limit of sensors with SensorTimeout::kInstrument
-  double max_clock_lead_s = 0.05;         ///< a stamp further ahead of now indicates a wrong clock
+  double max_clock_lead_s = 0.05;         ///< a stamp further ahead of now indicates a clock error
   double frozen_path_m = 0.1;     ///< travel or rotation of the robot during which the readings are bitwise identical
   double frozen_turn_rad = 0.1;
   int frozen_repeats = 3;      ///< minimum number of repeated readings
@@ -64,7 +64,9 @@ class SensorMonitor {
 
   bool can_drive() const { return !halted_since_; }
   /// Returns whether the robot has been unable to drive for longer than `abort_timeout_s`.
-  bool must_abort(Time now) const { return halted_since_ && now - *halted_since_ > from_seconds(settings_.abort_timeout_s); }
+  bool must_abort(Time now) const {
+    return halted_since_ && now - *halted_since_ > from_seconds(settings_.abort_timeout_s);
+  }
 
  private:
   enum class State { kFine, kTimedOut, kWrongClock, kFrozen };

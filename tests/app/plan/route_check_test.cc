@@ -77,7 +77,7 @@ TEST(RouteCheck, WhereTouchingIsAllowedAgreesWithTheOptimumsLineOfSight) {
     const int x = static_cast<int>(stream.uniform(0) * (grid.width + 1)), y = static_cast<int>(stream.uniform(1) * (grid.height + 1));
     const plan::Route route = route_over({{start.col + 0.5, start.row + 0.5}, {x, y}, {goal.col + 0.5, goal.row + 0.5}});
     const plan::HalfCellPoint from{.x = 2 * start.col + 1, .y = 2 * start.row + 1}, corner{.x = 2 * x, .y = 2 * y}, to{.x = 2 * goal.col + 1, .y = 2 * goal.row + 1};
-    const bool sees = plan::can_see(costs, from, corner) && plan::can_see(costs, corner, to);
+    const bool sees = plan::is_visible(costs, from, corner) && plan::is_visible(costs, corner, to);
     const auto is_lethal = [&](int col, int row) { return !costs.contains({col, row}) || costs.at({col, row}) == plan::kLethalCost; };
     const bool is_pinched = (is_lethal(x, y) && is_lethal(x - 1, y - 1)) || (is_lethal(x - 1, y) && is_lethal(x, y - 1));
     EXPECT_EQ(!validate_route(costs, route, start, goal, true), sees && !is_pinched) << "seed " << seed;

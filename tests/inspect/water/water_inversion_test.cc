@@ -96,7 +96,8 @@ TEST(WaterInversion, RefusesPriorsThatLeaveNothingByName) {
   using ::testing::HasSubstr;
   WaterSettings settings;
   settings.prior.min_radius_m = 12.0;
-  EXPECT_THAT(complaint(settings), HasSubstr("stack.inspection.water.prior.min_radius_m = 12: must be below max_radius_m"));
+  EXPECT_THAT(complaint(settings),
+              HasSubstr("stack.inspection.water.prior.min_radius_m = 12: must be below max_radius_m"));
   settings = {};
   settings.prior.max_rock_spm = 1e-4;
   EXPECT_THAT(complaint(settings), HasSubstr("stack.inspection.water.prior.min_rock_spm"));

@@ -427,7 +427,7 @@ TEST(Costmap, RefusesAnOutlineThatReachesBeyondItsField) {
   settings.resolution_m = 0.02;
   const auto square = [](double half_m) { return Footprint({{half_m, half_m}, {-half_m, half_m}, {-half_m, -half_m}, {half_m, -half_m}}); };
   EXPECT_NO_THROW(Costmap(settings, square(1.5), {}));
-  EXPECT_THAT([&] { Costmap(settings, square(2.5), {}); }, ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("reach beyond the costmap's 1.98 m")));
+  EXPECT_THAT([&] { Costmap(settings, square(2.5), {}); }, ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("exceed the costmap's range of 1.98 m")));
 }
 
 }  // namespace

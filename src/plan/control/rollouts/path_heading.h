@@ -15,7 +15,8 @@ struct PathHeadingCost {
   double operator()(const Rollout& rollout, const RolloutScene& scene) const {
     const Pose2& end = rollout.T_map_body.back();
     const double along_m =
-        scene.path.project(end.position(), scene.along_m, scene.along_m + scene.reachable_distance_m).along_m + look_ahead_m;
+        scene.path.project(end.position(), scene.along_m, scene.along_m + scene.reachable_distance_m).along_m +
+        look_ahead_m;
     const Eigen::Vector2d ahead = scene.path.point_at(along_m) - end.position();
     if (ahead.norm() < 0.05) return 0.0;
     return std::abs(wrap_angle(std::atan2(ahead.y(), ahead.x()) - end.yaw)) / std::numbers::pi;

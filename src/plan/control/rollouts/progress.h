@@ -14,7 +14,8 @@ struct ProgressCost {
     if (remaining_m < 1e-6) return 0.0;
     const double from_m = std::max(0.0, scene.along_m - scene.reachable_distance_m);
     const double reached_m =
-        scene.path.project(rollout.T_map_body.back().position(), from_m, scene.along_m + scene.reachable_distance_m).along_m;
+        scene.path.project(rollout.T_map_body.back().position(), from_m, scene.along_m + scene.reachable_distance_m)
+            .along_m;
     return std::clamp(1.0 - (reached_m - scene.along_m) / remaining_m, 0.0, 2.0);
   }
 };

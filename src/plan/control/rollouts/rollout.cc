@@ -8,11 +8,11 @@ namespace patrol::plan {
 
 Pose2 follow_arc(const Pose2& T_map_body, double vx_mps, double yaw_rate_radps, double time_s) {
   const double turn = yaw_rate_radps * time_s;
-  const double way = vx_mps * time_s;
+  const double distance_m = vx_mps * time_s;
   // sin(turn)/turn and (1 - cos(turn))/turn, with their limits at 0.
   const bool is_straight = std::abs(turn) < 1e-6;
-  const double along = is_straight ? way : way * std::sin(turn) / turn;
-  const double aside = is_straight ? way * turn / 2.0 : way * (1.0 - std::cos(turn)) / turn;
+  const double along = is_straight ? distance_m : distance_m * std::sin(turn) / turn;
+  const double aside = is_straight ? distance_m * turn / 2.0 : distance_m * (1.0 - std::cos(turn)) / turn;
   return T_map_body * Pose2{along, aside, turn};
 }
 
