@@ -51,11 +51,11 @@ void Overlay::draw(Frame& frame, const std::vector<float>& depth, const View& vi
                    const std::optional<FilmNote>& note) {
   const Projector projector(view, frame.width(), frame.height());
   draw_puffs(frame, depth, projector, gas_.puffs(to_seconds(snapshot.state.stamp), note ? kDrift_mps * note->film_s : 0.0));
-  WorldOverlay color(frame, depth, projector);
-  color.polyline(snapshot.planned_path, 0.03, {kPlanColor, 0.85});
-  color.polyline(snapshot.true_path, 0.06, {kTruthColor, 0.85});
-  color.polyline(snapshot.estimated_path, 0.03, {kEstimateColor, 0.95});
-  color.dots(snapshot.scan, 0.02, {kScanColor, 0.9});
+  WorldOverlay overlay(frame, depth, projector);
+  overlay.polyline(snapshot.planned_path, 0.03, {kPlanColor, 0.85});
+  overlay.polyline(snapshot.true_path, 0.06, {kTruthColor, 0.85});
+  overlay.polyline(snapshot.estimated_path, 0.03, {kEstimateColor, 0.95});
+  overlay.dots(snapshot.scan, 0.02, {kScanColor, 0.9});
   inset_.draw(frame, snapshot);
   draw_figures(frame, snapshot, note);
   const int free_bottom = draw_legend(frame, snapshot);

@@ -7,7 +7,9 @@
 #include "core/error.h"
 #include "stack/instruments/gas_instrument.h"
 #include "stack/instruments/water_instrument.h"
+#include "stack/mission/gas_mission.h"
 #include "stack/mission/station_order.h"
+#include "stack/mission/tunnel_mission.h"
 
 namespace patrol::stack {
 namespace {

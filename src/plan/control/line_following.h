@@ -3,23 +3,9 @@
 #include "core/frames.h"
 #include "core/messages.h"
 #include "core/settings.h"
+#include "plan/control/line_following_settings.h"
 
 namespace patrol::plan {
-
-struct LineFollowingSettings {
-  double lateral_gain_per_m = 3.0;   ///< inverse of the distance over which the lateral error falls to 1/e
-  double max_angle_rad = 0.5;     ///< maximum angle toward the line
-  double yaw_gain_per_s = 2.0;
-  double max_yaw_rate_radps = 0.5;
-
-  template <typename Self, typename Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("lateral_gain_per_m", self.lateral_gain_per_m, between(0.1, 20.0));
-    visit("max_angle_rad", self.max_angle_rad, between(0.05, 1.2));
-    visit("yaw_gain_per_s", self.yaw_gain_per_s, between(0.1, 10.0));
-    visit("max_yaw_rate_radps", self.max_yaw_rate_radps, between(0.02, 3.0));
-  }
-};
 
 /// Drives a robot that cannot move sideways along the x axis of `line`, forward or backward (negative speed). The
 /// heading setpoint is tan(angle) = -gain y, so that dy/dx = -gain y. The lateral error falls with the distance driven,

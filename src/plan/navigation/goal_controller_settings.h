@@ -1,8 +1,8 @@
 #pragma once
 
 #include "core/settings.h"
-#include "plan/control/differential_pose_controller.h"
-#include "plan/control/pose_regulator.h"
+#include "plan/control/differential_pose_controller_settings.h"
+#include "plan/control/pose_regulator_settings.h"
 
 namespace patrol::plan {
 

@@ -2,6 +2,9 @@
 
 #include <array>
 
+#include "plan/control/dwa.h"
+#include "plan/control/dwa_liu21.h"
+
 namespace patrol::plan {
 namespace {
 

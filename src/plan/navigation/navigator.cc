@@ -3,6 +3,8 @@
 #include <cmath>
 #include <utility>
 
+#include "plan/control/pose_regulator.h"
+
 namespace patrol::plan {
 namespace {
 

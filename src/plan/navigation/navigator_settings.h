@@ -7,8 +7,8 @@
 #include "plan/navigation/local_planner_settings.h"
 #include "plan/navigation/recovery_settings.h"
 #include "plan/perception/costmap_settings.h"
-#include "plan/perception/depth_obstacles.h"
-#include "plan/perception/sonar_cone.h"
+#include "plan/perception/depth_obstacles_settings.h"
+#include "plan/perception/sonar_cone_settings.h"
 #include "plan/routes/global_planner.h"
 
 namespace patrol::plan {

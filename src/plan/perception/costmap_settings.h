@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/settings.h"
-#include "plan/perception/low_obstacles.h"
+#include "plan/perception/low_obstacles_settings.h"
 
 namespace patrol::plan {
 

@@ -2,7 +2,7 @@
 
 #include "core/settings.h"
 #include "localize/dock_detector_settings.h"
-#include "plan/control/docking.h"
+#include "plan/control/docking_settings.h"
 
 namespace patrol::stack {
 

@@ -9,9 +9,9 @@
 #include "plan/navigation/navigator_settings.h"
 #include "slam/methods/mapper_settings.h"
 #include "stack/instruments/inspection_settings.h"
-#include "stack/mission/gas_mission.h"
-#include "stack/mission/tunnel_mission.h"
-#include "stack/sensors/sensor_monitor.h"
+#include "stack/mission/gas_mission_settings.h"
+#include "stack/mission/tunnel_mission_settings.h"
+#include "stack/sensors/sensor_monitor_settings.h"
 #include "stack/settings/docking_settings.h"
 #include "stack/settings/odometry_settings.h"
 
