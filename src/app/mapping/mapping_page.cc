@@ -38,7 +38,7 @@ report::LinePlot plot_of(const MappingContents& contents, const std::string& col
 
 report::Page mapping_page(const MappingContents& contents) {
   const io::Metrics &log = contents.metrics["log"], &graph = contents.metrics["graph"], &performance = contents.metrics["performance"];
-  const report::KeyMetrics key_metrics{.figures = {{.label = "scans", .value = fmt::format("{}", log["scans"].get<std::size_t>()), .unit = "", .note = fmt::format("{:.0f} s", log["duration_s"].get<double>())},
+  const report::KeyMetrics key_metrics{.metrics = {{.label = "scans", .value = fmt::format("{}", log["scans"].get<std::size_t>()), .unit = "", .note = fmt::format("{:.0f} s", log["duration_s"].get<double>())},
                                                {.label = "trajectory length", .value = fmt::format("{:.0f}", contents.metrics["path"]["way_m"].get<double>()), .unit = "m",
                                                 .note = fmt::format("by odometry {:.0f} m", log["odometry_way_m"].get<double>())},
                                                {.label = "edges to other submaps", .value = fmt::format("{}", graph["cross_submap_edges"].get<std::size_t>()), .unit = "",
