@@ -69,9 +69,9 @@ void InertialFilter::coast(double dt_s, double yaw_rate_radps) {
 }
 
 void InertialFilter::add_dead_reckoning_noise(double dt_s) {
-  const double way_m = dt_s * motion_.v_body.norm();
+  const double distance_m = dt_s * motion_.v_body.norm();
   const double turn_rad = dt_s * std::abs(motion_.omega_body.z());
-  P_.diagonal().segment<3>(kPosition).array() += way_m * std::pow(settings_.position_random_walk_m_per_sqrt_m, 2);
+  P_.diagonal().segment<3>(kPosition).array() += distance_m * std::pow(settings_.position_random_walk_m_per_sqrt_m, 2);
   P_(kRotation + 2, kRotation + 2) += turn_rad * std::pow(settings_.yaw_random_walk_rad_per_sqrt_rad, 2);
 }
 

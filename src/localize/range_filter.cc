@@ -74,7 +74,7 @@ void RangeFilter::predict(Time stamp, const Pose3& T_odom_body, const Eigen::Vec
 RangeFilter::State RangeFilter::predicted(State state, Time stamp, const Pose3& T_odom_body, const Eigen::Vector3d& twist_std) const {
   const double dt_s = to_seconds(stamp - state.stamp);
   const Pose2 step = to_pose2(state.T_odom_body).inverse() * to_pose2(T_odom_body);
-  const double way_m = step.position().norm(), turn_rad = std::abs(step.yaw);
+  const double distance_m = step.position().norm(), turn_rad = std::abs(step.yaw);
 
   // Odometry increment, corrected by its estimated error.
   const Eigen::Vector3d drift_step = dt_s * twist_std.cwiseProduct(state.drift);
@@ -86,7 +86,7 @@ RangeFilter::State RangeFilter::predicted(State state, Time stamp, const Pose3& 
   state.stamp = stamp;
 
   const Eigen::Vector2d went = state.T_map_body.position() - before.position();
-  const Eigen::Vector3d keep(std::exp(-way_m / settings_.longitudinal_correlation_m), std::exp(-way_m / settings_.lateral_correlation_m),
+  const Eigen::Vector3d keep(std::exp(-distance_m / settings_.longitudinal_correlation_m), std::exp(-distance_m / settings_.lateral_correlation_m),
                              std::exp(-dt_s / settings_.yaw_correlation_s));
   Eigen::Matrix<double, kSize, kSize> F = Eigen::Matrix<double, kSize, kSize>::Identity();
   F(0, kYaw) = -went.y();
@@ -97,10 +97,10 @@ RangeFilter::State RangeFilter::predicted(State state, Time stamp, const Pose3& 
   state.drift = keep.cwiseProduct(state.drift);
 
   state.P = F * state.P * F.transpose();
-  state.P.diagonal().head<2>().array() += way_m * std::pow(settings_.position_random_walk_m_per_sqrt_m, 2);
+  state.P.diagonal().head<2>().array() += distance_m * std::pow(settings_.position_random_walk_m_per_sqrt_m, 2);
   state.P(kYaw, kYaw) += dt_s * std::pow(settings_.yaw_random_walk_rad_per_sqrt_s, 2) +
                          turn_rad * std::pow(settings_.yaw_random_walk_rad_per_sqrt_rad, 2);
-  state.P(kHeight, kHeight) += way_m * std::pow(settings_.height_std_m_per_sqrt_m, 2);
+  state.P(kHeight, kHeight) += distance_m * std::pow(settings_.height_std_m_per_sqrt_m, 2);
   state.P.diagonal().tail<3>().array() += 1.0 - keep.array().square();
   return state;
 }

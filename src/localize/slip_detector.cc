@@ -35,17 +35,17 @@ std::optional<SlipDetector::Sum> SlipDetector::sum_at(Time stamp) const {
   return *after;
 }
 
-std::optional<SlipEvidence> SlipDetector::add_speed(Time stamp, double belts_mps, double estimated_mps) {
+std::optional<SlipEvidence> SlipDetector::add_speed(Time stamp, double tracks_mps, double estimated_mps) {
   const std::optional<Sum> sum = sum_at(stamp);
   if (!sum) {
     reset();
     return std::nullopt;
   }
-  readings_.push_back({*sum, belts_mps, estimated_mps});
+  readings_.push_back({*sum, tracks_mps, estimated_mps});
   while (to_seconds(stamp - readings_.front().sum.stamp) > settings_.window_s) readings_.pop_front();
   const Reading& first = readings_.front();
   const double felt = sum->speed_mps - first.sum.speed_mps;
-  const double disagreement = (belts_mps - first.belts_mps) - felt;
+  const double disagreement = (tracks_mps - first.tracks_mps) - felt;
   const double rough_std = std::sqrt(sum->variance_m2ps2 - first.sum.variance_m2ps2);
   if (std::abs(disagreement) < settings_.threshold_mps + kSigmas * rough_std) return std::nullopt;
   return SlipEvidence{.forward_mps = first.estimated_mps + felt,

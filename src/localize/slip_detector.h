@@ -28,7 +28,7 @@ class SlipDetector {
   void add_acceleration(Time stamp, double dt_s, double acceleration_mps2);
   /// Adds a track reading, not newer than the newest acceleration: mean track speed and estimated body speed. Returns
   /// evidence if there is slip.
-  std::optional<SlipEvidence> add_speed(Time stamp, double belts_mps, double estimated_mps);
+  std::optional<SlipEvidence> add_speed(Time stamp, double tracks_mps, double estimated_mps);
   /// Starts a new window.
   void reset();
 
@@ -40,7 +40,7 @@ class SlipDetector {
   };
   struct Reading {
     Sum sum;
-    double belts_mps = 0.0;
+    double tracks_mps = 0.0;
     double estimated_mps = 0.0;
   };
   std::optional<Sum> sum_at(Time stamp) const;

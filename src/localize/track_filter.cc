@@ -80,14 +80,14 @@ void TrackFilter::coast(double dt_s, double yaw_rate_radps) {
 }
 
 // First-order Gauss-Markov process: the value decays by a, and (1 - a^2) of the stationary variance is added.
-void TrackFilter::propagate_slip(double way_m, double turn_rad, double slip_std) {
+void TrackFilter::propagate_slip(double distance_m, double turn_rad, double slip_std) {
   const auto decay = [this](int row, double& value, double a, double std) {
     value *= a;
     P_.row(row) *= a;
     P_.col(row) *= a;
     P_(row, row) += (1.0 - a * a) * std * std;
   };
-  decay(kSlip, slip_, std::exp(-way_m / settings_.slip_correlation_m), slip_std);
+  decay(kSlip, slip_, std::exp(-distance_m / settings_.slip_correlation_m), slip_std);
   const double a_turn = std::exp(-turn_rad / settings_.icr_correlation_rad);
   decay(kIcr, icr_m_.x(), a_turn, settings_.icr_x_std_m);
   decay(kIcr + 1, icr_m_.y(), a_turn, settings_.icr_y_std_m);
@@ -133,12 +133,12 @@ void TrackFilter::correct_gyro_bias(const Eigen::Vector3d& bias_radps, const Eig
   apply(W, S, bias_radps - gyro_bias_);
 }
 
-void TrackFilter::start_slip(double forward_mps, double way_std_m) {
+void TrackFilter::start_slip(double forward_mps, double position_std_m) {
   motion_.v_body.x() = forward_mps;
   decorrelate_pose();
   pose_correction_time_s_ = std::numeric_limits<double>::infinity();
   P_(Error::kVelocity, Error::kVelocity) += kLostSpeedStd_mps * kLostSpeedStd_mps;
-  const Eigen::Vector3d along = motion_.T_odom_body.rotation * Eigen::Vector3d(way_std_m, 0.0, 0.0);
+  const Eigen::Vector3d along = motion_.T_odom_body.rotation * Eigen::Vector3d(position_std_m, 0.0, 0.0);
   P_.block<3, 3>(Error::kPosition, Error::kPosition) += along * along.transpose();
 }
 

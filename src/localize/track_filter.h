@@ -47,7 +47,7 @@ class TrackFilter {
 
   /// Propagates slip and ICR over a track motion. `slip_std`: stationary standard deviation of slip on this
   /// ground in this maneuver.
-  void propagate_slip(double way_m, double turn_rad, double slip_std);
+  void propagate_slip(double distance_m, double turn_rad, double slip_std);
   /// Corrects with the track speed over `dt_s`, during which the body motion was `then`. `std_mps`: standard deviations
   /// of the velocity of the ICR, in body. An innovation beyond the 99.9 % bound is down-weighted instead of
   /// rejected.
@@ -56,9 +56,9 @@ class TrackFilter {
   void correct_velocity(const Eigen::Vector3d& v_body, double std_mps);
   void correct_gyro_bias(const Eigen::Vector3d& bias_radps, const Eigen::Vector3d& variance);
 
-  /// Starts a loss of traction: the body speed is set to the IMU estimate `forward_mps`. `way_std_m`: standard
+  /// Starts a loss of traction: the body speed is set to the IMU estimate `forward_mps`. `position_std_m`: standard
   /// deviation of the distance error accumulated so far.
-  void start_slip(double forward_mps, double way_std_m);
+  void start_slip(double forward_mps, double position_std_m);
   /// Ends a loss of traction, at rest or at this speed; resets the slip estimate.
   void end_slip(double track_mps, double slip_std);
   /// Resets odom: its origin and x axis become those of the present pose.

@@ -61,10 +61,10 @@ std::string text_of(asio::ip::address address) {
 
 Ends ends_of(const asio::ip::tcp::socket& socket) {
   Error error;
-  const auto remote = socket.remote_endpoint(error);
+  const auto peer = socket.remote_endpoint(error);
   if (error) return {.peer = "?", .local = {}};
   const auto local = socket.local_endpoint(error);
-  return {.peer = text_of(remote.address()), .local = error ? "" : text_of(local.address())};
+  return {.peer = text_of(peer.address()), .local = error ? "" : text_of(local.address())};
 }
 
 HttpRequest head_of(const Parser& parser, const Ends& ends) {
@@ -137,10 +137,10 @@ class HttpServer::Connections {
         bodies_(to_bytes(settings.max_bodies_mb)), responses_(to_bytes(settings.max_responses_mb)), context_(1), acceptor_(context_), signals_(context_, SIGINT, SIGTERM) {
     validate(settings, "monitor");
     try {
-      const asio::ip::tcp::endpoint place = endpoint_of(context_, settings);
-      acceptor_.open(place.protocol());
+      const asio::ip::tcp::endpoint endpoint = endpoint_of(context_, settings);
+      acceptor_.open(endpoint.protocol());
       acceptor_.set_option(asio::socket_base::reuse_address(true));
-      acceptor_.bind(place);
+      acceptor_.bind(endpoint);
       acceptor_.listen(asio::socket_base::max_listen_connections);
     } catch (const boost::system::system_error& error) {
       throw InputError(fmt::format("cannot listen at {}:{}: {}", settings.host, settings.port, error.code().message()));
@@ -160,18 +160,18 @@ class HttpServer::Connections {
   /// list.
   struct Connection : Ends {
     Connection(beast::tcp_stream&& accepted, std::list<Connection*>& busy)
-        : Ends(ends_of(accepted.socket())), stream(std::move(accepted)), place(busy.insert(busy.end(), this)), list(&busy) {}
-    ~Connection() { list->erase(place); }
+        : Ends(ends_of(accepted.socket())), stream(std::move(accepted)), entry(busy.insert(busy.end(), this)), list(&busy) {}
+    ~Connection() { list->erase(entry); }
     Connection(const Connection&) = delete;
     Connection& operator=(const Connection&) = delete;
 
     void move_to(std::list<Connection*>& other) {
-      other.splice(other.end(), *list, place);
+      other.splice(other.end(), *list, entry);
       list = &other;
     }
 
     beast::tcp_stream stream;
-    std::list<Connection*>::iterator place;
+    std::list<Connection*>::iterator entry;
     std::list<Connection*>* list;
   };
 

@@ -81,10 +81,10 @@ Json track_of(Database& database, std::int64_t run, std::int64_t num_poses) {
   Json track = Json::array();
   const std::int64_t step = num_poses / kMaxTrackPoints + 1;
   Statement row = database.prepare("SELECT x, y FROM poses WHERE run = ?1 AND place = ?2");
-  const auto add = [&](std::int64_t place) {
-    if (row.bind(run, place).step()) track.push_back({row.number(0), row.number(1)});
+  const auto add = [&](std::int64_t index) {
+    if (row.bind(run, index).step()) track.push_back({row.number(0), row.number(1)});
   };
-  for (std::int64_t place = 0; place < num_poses; place += step) add(place);
+  for (std::int64_t index = 0; index < num_poses; index += step) add(index);
   if (num_poses > 0 && (num_poses - 1) % step != 0) add(num_poses - 1);
   return track;
 }

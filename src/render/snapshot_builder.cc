@@ -49,9 +49,9 @@ SnapshotBuilder::SnapshotBuilder(const mjModel& view, const Pose2& T_world_map)
   snapshot_.T_world_map = T_world_map;
   snapshot_.is_driving = has_tracks(view);
   // Move actors away: paths are projected to the ground, not onto actors.
-  constexpr double kOutOfTheWay_m = -1000.0;
+  constexpr double kOutOfView_m = -1000.0;
   const sim::DataPtr data = sim::make_data(view);
-  for (int actor = 0; actor < view.nmocap; ++actor) data->mocap_pos[3 * actor + 2] = kOutOfTheWay_m;
+  for (int actor = 0; actor < view.nmocap; ++actor) data->mocap_pos[3 * actor + 2] = kOutOfView_m;
   mj_kinematics(&view, data.get());
   scenery_.update(*data);
 }

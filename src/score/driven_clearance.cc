@@ -50,12 +50,12 @@ DrivenClearance driven_clearance(const Trajectory& T_world_body, const std::vect
     if ((T_world.position() - last).norm() < spacing_m) continue;
     last = T_world.position();
     const Pose2 T_body_world = T_world.inverse();
-    double least_m = kMaxClearance_m;
+    double clearance_m = kMaxClearance_m;
     for (const Eigen::Vector2d& p : occupied) {
       const Eigen::Vector2d d = (p - last).cwiseAbs();
-      if (d.maxCoeff() < least_m + reach_m) least_m = std::min(least_m, distance_to_outline(T_body_world * p, footprint_m));
+      if (d.maxCoeff() < clearance_m + reach_m) clearance_m = std::min(clearance_m, distance_to_outline(T_body_world * p, footprint_m));
     }
-    clearances_m.push_back(least_m);
+    clearances_m.push_back(clearance_m);
   }
   return {.mean_m = mean(clearances_m),
           .p05_m = percentile(clearances_m, 0.05),

@@ -12,8 +12,8 @@ namespace patrol::score {
 namespace {
 
 double to_std_m(double information) {
-  constexpr double kLeast = 1.0 / (Localizability::kUnbounded_m * Localizability::kUnbounded_m);
-  return 1.0 / std::sqrt(std::max(information, kLeast));
+  constexpr double kMinInformation = 1.0 / (Localizability::kUnbounded_m * Localizability::kUnbounded_m);
+  return 1.0 / std::sqrt(std::max(information, kMinInformation));
 }
 
 /// Maps an angle to -pi/2 ... pi/2: a direction and its opposite are equivalent.

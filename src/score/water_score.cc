@@ -41,13 +41,13 @@ WaterScore water_score(const std::vector<WaterResult>& results, const std::vecto
     } else {
       found.insert(*finding.body);
       const WaterGroundTruth& body = bodies[*finding.body];
-      const Eigen::Vector3d error_m = p_world_m - body.p_world_m, way_m = body.p_world_m - *T_world_body_at_stamp * p_body_antenna;
+      const Eigen::Vector3d error_m = p_world_m - body.p_world_m, offset_m = body.p_world_m - *T_world_body_at_stamp * p_body_antenna;
       const Eigen::Matrix3d R = T_world_map_at_height.rotation.toRotationMatrix();
       const Eigen::Matrix3d covariance_m2 = R * result.covariance_m2 * R.transpose();
       finding.position_error_m = error_m.norm();
-      finding.ahead_error_m = error_m.dot(way_m.normalized());
+      finding.ahead_error_m = error_m.dot(offset_m.normalized());
       finding.radius_error_m = result.radius_m - body.radius_m;
-      finding.distance_in_interval = way_m.norm() >= result.distance_low_m && way_m.norm() <= result.distance_high_m;
+      finding.distance_in_interval = offset_m.norm() >= result.distance_low_m && offset_m.norm() <= result.distance_high_m;
       finding.radius_in_interval = body.radius_m >= result.radius_low_m && body.radius_m <= result.radius_high_m;
       finding.position_in_ellipsoid = error_m.dot(solve_symmetric(covariance_m2, error_m)) <= kChiSquared3;
     }

@@ -37,7 +37,7 @@ void check(const std::vector<LiningDeformationSettings>& moves, const std::optio
 }
 
 /// Tolerance for recognizing vertices of the intrados. The outer face is decimeters farther out.
-constexpr double kIntradosTol_m = 0.05;
+constexpr double kIntradosTolerance_m = 0.05;
 
 }  // namespace
 
@@ -65,7 +65,7 @@ void deform_lining(const std::vector<LiningDeformationSettings>& moves, const st
     const TunnelCoordinates coordinates = design->to_tunnel_coordinates(p_world);
     const double clock_deg = design->clock_deg(coordinates);
     const double radius_m = std::hypot(coordinates.left_m, coordinates.height_m - design->crown_center_m);
-    if (std::abs(radius_m - design->radius_at(clock_deg)) > kIntradosTol_m) continue;
+    if (std::abs(radius_m - design->radius_at(clock_deg)) > kIntradosTolerance_m) continue;
     const double inward = inward_m(moves, design->ring_at(coordinates.chainage_m), clock_deg);
     if (inward == 0.0) continue;
     const double scale = 1.0 - inward / radius_m;  // fraction of the distance from the half circle's center that remains

@@ -60,7 +60,7 @@ void set_shape(const urdf::Geometry& geometry, mjsGeom& geom) {
   }
 }
 
-void set_colour(const urdf::Material* material, mjsGeom& geom) {
+void set_color(const urdf::Material* material, mjsGeom& geom) {
   if (material == nullptr) return;
   geom.rgba[0] = material->color.r;
   geom.rgba[1] = material->color.g;
@@ -73,7 +73,7 @@ void add_visuals(const urdf::Link& link, mjsBody& body) {
     mjsGeom* geom = mjs_addGeom(&body, nullptr);
     set_pose(visual->origin, geom->pos, geom->quat);
     set_shape(*visual->geometry, *geom);
-    set_colour(visual->material.get(), *geom);
+    set_color(visual->material.get(), *geom);
     geom->contype = geom->conaffinity = 0;
     geom->group = kGroupRobotVisual;
     geom->density = 0.0;  // a link without <inertial> has no mass

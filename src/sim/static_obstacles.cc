@@ -66,8 +66,8 @@ mjsGeom* add_rod(mjsBody& body, const StaticObstacleSettings& obstacle, double r
   rod->pos[2] = height_m;
   // The axis of a capsule is z: rotate it to x, then by the object's angle.
   const double s = std::sqrt(0.5), w = std::cos(turn / 2.0), z = std::sin(turn / 2.0);
-  const double laid[4] = {w * s, -z * s, w * s, z * s};
-  std::copy_n(laid, 4, rod->quat);
+  const double rotated[4] = {w * s, -z * s, w * s, z * s};
+  std::copy_n(rotated, 4, rod->quat);
   rod->size[0] = radius_m;
   rod->size[1] = static_obstacle_size(obstacle.kind).length_m / 2.0 - radius_m;
   return rod;
@@ -98,8 +98,8 @@ void add_truck(mjsBody& body, const StaticObstacleSettings& obstacle, int number
     if (!is_wheel) continue;
     const double half = std::sqrt(0.5), w = geom->quat[0], z = geom->quat[3];  // the axis of a cylinder is z: rotate it
                                                                                // to y, then by the object's angle
-    const double laid[4] = {w * half, w * half, z * half, z * half};
-    std::copy_n(laid, 4, geom->quat);
+    const double rotated[4] = {w * half, w * half, z * half, z * half};
+    std::copy_n(rotated, 4, geom->quat);
   }
   add_block(body, obstacle, number, kGroupCollisionOnly, kStone);
 }

@@ -7,7 +7,7 @@ namespace patrol::slam {
 namespace {
 
 constexpr std::uint16_t kMaxCount = std::numeric_limits<std::uint16_t>::max();
-constexpr double kPassTolInCells = 0.2;  // a beam this close to the mean hit would have been stopped by a surface
+constexpr double kPassToleranceInCells = 0.2;  // a beam this close to the mean hit would have been stopped by a surface
 
 std::uint16_t add_saturated(std::uint16_t count, int more) {
   return static_cast<std::uint16_t>(std::min(static_cast<int>(kMaxCount), count + more));
@@ -65,7 +65,7 @@ void GridMap::add_free_ray(const Eigen::Vector2d& from_map, const Eigen::Vector2
   };
   double next_x = first_crossing(at.col, step_x, from_map.x(), direction.x());
   double next_y = first_crossing(at.row, step_y, from_map.y(), direction.y());
-  const double pass_tol_m = kPassTolInCells * resolution_m_;
+  const double pass_tolerance_m = kPassToleranceInCells * resolution_m_;
 
   GridTile* tile = nullptr;
   int tile_col = 0, tile_row = 0;
@@ -82,7 +82,7 @@ void GridMap::add_free_ray(const Eigen::Vector2d& from_map, const Eigen::Vector2
     } else {
       if (stop_at_surface && cell.is_surface()) return;
       const Eigen::Vector2d to_mean = center_of(at) + Eigen::Vector2d(cell.mean_x_m, cell.mean_y_m) - from_map;
-      if (std::abs(direction.x() * to_mean.y() - direction.y() * to_mean.x()) < pass_tol_m) {
+      if (std::abs(direction.x() * to_mean.y() - direction.y() * to_mean.x()) < pass_tolerance_m) {
         cell.passes = add_saturated(cell.passes, weight);
         tile->update_surface_bit(col, row);
       }

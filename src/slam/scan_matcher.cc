@@ -12,8 +12,8 @@
 namespace patrol::slam {
 namespace {
 
-constexpr double kStepTol_m = 2e-4;
-constexpr double kStepTol_rad = 1e-5;
+constexpr double kStepTolerance_m = 2e-4;
+constexpr double kStepTolerance_rad = 1e-5;
 constexpr int kMinPoints = 6;  // three points suffice for three unknowns; the margin is for noise
 
 /// Normal equations of the scan terms at a pose, without the prior.
@@ -109,7 +109,7 @@ std::optional<MatchResult> match_scan(const GridMap& map, const std::vector<Matc
     result.log_likelihood = sum.log_likelihood;
     result.inlier_ratio = inlier_ratio;
     result.num_matched = sum.num_matched;
-    result.converged = step.head<2>().norm() < kStepTol_m && std::abs(step.z()) < kStepTol_rad;
+    result.converged = step.head<2>().norm() < kStepTolerance_m && std::abs(step.z()) < kStepTolerance_rad;
     ++result.iterations;
   }
   return result;

@@ -17,7 +17,7 @@ DockingFeedback feedback_of(plan::DockingStatus status) {
     case plan::DockingStatus::kFailed:
       return DockingFeedback::kFailed;
     default:
-      return DockingFeedback::kUnderWay;
+      return DockingFeedback::kInProgress;
   }
 }
 
@@ -48,7 +48,7 @@ VelocityCommand MotionExecutor::step(Time now, const Task& task, const Pose2& T_
   const bool is_new = std::exchange(motion_, task.motion) != task.motion;
   if (is_new) {
     docking_.stop();
-    docking_feedback_ = DockingFeedback::kUnderWay;
+    docking_feedback_ = DockingFeedback::kInProgress;
   }
   if (motion_ == Motion::kNavigate) return navigate(now, task.goal, T_map_body, output);
   if (motion_ == Motion::kDock) return go_to_dock(now, T_map_body, T_odom_body, output);

@@ -60,7 +60,7 @@ class MotionExecutor {
   std::optional<TeleopCommand> last_teleop_;
   Motion motion_ = Motion::kStand;
   plan::NavigationStatus navigation_ = plan::NavigationStatus::kIdle;
-  DockingFeedback docking_feedback_ = DockingFeedback::kUnderWay;
+  DockingFeedback docking_feedback_ = DockingFeedback::kInProgress;
 };
 
 }  // namespace patrol::stack

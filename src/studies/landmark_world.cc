@@ -25,13 +25,13 @@ Eigen::Vector2d point_at(double angle_rad, double offset_m, bool is_circle) {
 std::vector<Pose2> lap(double step_m, bool is_circle) {
   constexpr double kFine_rad = 1e-5;
   std::vector<Eigen::Vector2d> points = {point_at(0.0, 0.0, is_circle)};
-  double way_m = 0.0;
+  double distance_m = 0.0;
   Eigen::Vector2d last = points.front();
   for (double angle = kFine_rad; angle < 2.0 * std::numbers::pi; angle += kFine_rad) {
     const Eigen::Vector2d point = point_at(angle, 0.0, is_circle);
-    way_m += (point - last).norm();
+    distance_m += (point - last).norm();
     last = point;
-    if (way_m < step_m * static_cast<double>(points.size())) continue;
+    if (distance_m < step_m * static_cast<double>(points.size())) continue;
     points.push_back(point);
   }
   std::vector<Pose2> poses;
@@ -81,8 +81,8 @@ std::vector<Control> drive_laps(const std::vector<Eigen::Vector2d>& waypoints_m,
     if (to_next.norm() < std::max(1.0, within_m)) next = (next + 1) % waypoints_m.size();
     const Eigen::Vector2d aim = waypoints_m[next] - T_map_body.position();
     const double wanted_rad = std::clamp(wrap_angle(std::atan2(aim.y(), aim.x()) - T_map_body.yaw), -kMaxSteering_rad, kMaxSteering_rad);
-    const double most_rad = kMaxRate_radps * motion.step_s;
-    steering_rad += std::clamp(wanted_rad - steering_rad, -most_rad, most_rad);
+    const double max_change_rad = kMaxRate_radps * motion.step_s;
+    steering_rad += std::clamp(wanted_rad - steering_rad, -max_change_rad, max_change_rad);
     controls.emplace_back(speed_mps, steering_rad);
     T_map_body = motion.move(T_map_body, controls.back());
   }
@@ -134,7 +134,7 @@ LandmarkWorld campus_world(bool is_biased, double speed_mps, int num_steps) {
 }
 
 LandmarkRun simulate(const LandmarkWorld& world, std::uint64_t seed) {
-  const RandomStream odometry(seed, "study/odometry"), sights(seed, "study/sights");
+  const RandomStream odometry(seed, "study/odometry"), observation_noise(seed, "study/sights");
   const auto substeps = static_cast<std::size_t>(world.motion.substeps);
   ControlMotion part = world.motion;
   part.step_s /= world.motion.substeps;
@@ -154,7 +154,7 @@ LandmarkRun simulate(const LandmarkWorld& world, std::uint64_t seed) {
     for (std::size_t i = 0; i < world.landmarks_m.size(); ++i) {
       const PredictedObservation observation = predict_observation(T_map_body, world.landmarks_m[i]);
       if (observation.observation.x() > world.max_range_m || std::abs(observation.observation.y()) > 0.5 * world.field_of_view_rad) continue;
-      const auto noise = sights.normals(k, i);
+      const auto noise = observation_noise.normals(k, i);
       observations.push_back({.landmark = static_cast<int>(i),
                       .range_m = observation.observation.x() + world.noise.range_std_m * noise[0],
                       .bearing_rad = wrap_angle(observation.observation.y() + world.noise.bearing_std_rad * noise[1])});

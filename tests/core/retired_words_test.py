@@ -87,7 +87,7 @@ RETIRED = {
             BOTH, "-ize", "localise"),
     "doubled l": (r"(?:travel|label|level|model|signal|tunnel|channel|cancel|fuel|marvel|panel|pencil)l(?:ed|ing|er|ers)", BOTH,
                   "traveled, labeled, leveling, modeling", "kLevelling_per_s"),
-    "other spelling": (r"analys(?:e|ed|es|ing)|catalogues?|programmes?|artefacts?|licence[sd]?|defence|aluminium|grams?mes?|tyres?|judgement",
+    "other spelling": (r"analys(?:e|ed|ing)|catalogues?|programmes?|artefacts?|licence[sd]?|defence|aluminium|grams?mes?|tyres?|judgement",
                        BOTH, "analyze, catalog, program, artifact, license", "analyse"),
 }
 PAPER = re.compile(r"paper[s]?[ _]?0" + "0", re.I)
@@ -101,15 +101,24 @@ ALLOWED = [
     ("doubt", "*", r"\bdoubted_(s|before_straying)$", CONTRACT),
     ("stray", "*", r"\b(strayed_s|doubted_before_straying)$", CONTRACT),
     ("share", "src/app/scoring/score_json.cc", r"^degenerate_share$", CONTRACT),
+    ("place", "src/app/*/*", r"^(max_)?place_error_m$", CONTRACT),
+    ("trust", "src/app/scoring/score_json.cc", r"^(min_trust|trust_rank_correlation|trust_detection)$", CONTRACT),
+    ("stretch", "src/app/cli/calibrate_command.cc", r"^stretches$", CONTRACT),
+    ("way", "src/app/plan/tour_output.cc", r"^(way_.*|num_ways)$", CONTRACT),
+    ("least", "src/app/plan/problem_output.cc", r"^least$", CONTRACT),
+    ("trust", "src/app/scoring/save_scored_run.cc", r"^trust$", "column of localizability.csv: contract"),
     ("way", "src/app/cli/slam_command.cc", r"^(odometry_)?way_m$", CONTRACT),
     ("way", "src/app/mapping/mapping_page.cc", r"^(odometry_)?way_m$", CONTRACT),
     ("remote", "src/sim/teleop_operator.cc", r"^remote/hand$", STREAM),
+    ("neighbour", "src/slam/submaps/neighbor_examples.cc", r"^slam/neighbour_examples$", STREAM),
+    ("sighting", "src/studies/landmark_world.cc", r"^study/sights$", STREAM),
     ("remote", "src/monitor/http_server.cc", r"^remote_endpoint$", "function of Boost.Asio"),
     ("share", "src/app/scenario/scenario.cc", r"^share/patrol$", "folder of the installed data"),
     ("share", "src/render/canvas.cc", r"^/usr/share/fonts/", "folder of the system's fonts"),
     ("place", "src/io/*/*", r"^place_?$", "position in a file, which an error message names"),
 ]
-SKIPPED = ("src/io/yaml/renamed_settings.cc",)  # lists old settings keys, which are refused with the new one
+# They list former settings keys and options, which are refused with the present name.
+SKIPPED = ("src/io/yaml/renamed_settings.cc", "src/app/cli/renamed_options.cc")
 
 TOKEN = re.compile(
     r"(?P<comment>//[^\n]*|/\*.*?\*/)"

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "plan/control/rollouts/rollout.h"
 #include "plan/navigation/navigator.h"
 #include "tests/support/room_world.h"
 

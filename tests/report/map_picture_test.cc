@@ -4,10 +4,13 @@
 
 #include <numbers>
 
+#include "render/scene/frame.h"
 #include "tests/support/temporary_file.h"
 
 namespace patrol::report::map_picture_test {
 namespace {
+
+using render::Frame;
 
 const Color kPaper{255, 255, 255};
 constexpr double kStepTol = 5.0;  // half a step of the palette is 2.6 mm, and the red grows by 1.7 a millimetre
@@ -15,7 +18,7 @@ constexpr double kStepTol = 5.0;  // half a step of the palette is 2.6 mm, and t
 Frame pixels_of(const MapPicture::Sheet& sheet) {
   const test::TemporaryFolder folder;
   test::write_bytes(folder / "map.png", sheet.png);
-  return load_png(folder / "map.png");
+  return render::load_png(folder / "map.png");
 }
 Frame pixels_of(const MapPicture& picture) { return pixels_of(picture.detail); }
 

@@ -63,8 +63,8 @@ Recognized recognized_at(double min_margin, const BoostedStumps& model, const sl
     wrong += is_taken && !is_neighbor ? 1 : 0;
     missed += !is_taken && is_neighbor ? 1 : 0;
   }
-  const auto share = [](int part, int rest) { return part + rest > 0 ? static_cast<double>(part) / (part + rest) : 1.0; };
-  return {.precision = share(right, wrong), .recall = share(right, missed)};
+  const auto ratio = [](int part, int rest) { return part + rest > 0 ? static_cast<double>(part) / (part + rest) : 1.0; };
+  return {.precision = ratio(right, wrong), .recall = ratio(right, missed)};
 }
 
 void print_recognition(const char* of, const BoostedStumps& model, const slam::LabeledFeatures& examples) {

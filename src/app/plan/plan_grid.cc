@@ -54,10 +54,10 @@ std::int64_t num_passable(const Grid<plan::Cost>& costs) {
 
 std::optional<Cell> nearest_free(const Grid<plan::Cost>& costs, const Eigen::Vector2d& p_m) {
   const GridGeometry& grid = costs.geometry();
-  const double farthest_m = grid.resolution_m * std::hypot(grid.width, grid.height);
+  const double diagonal_m = grid.resolution_m * std::hypot(grid.width, grid.height);
   for (double radius_m = 4.0 * grid.resolution_m;; radius_m *= 2.0) {
     const std::optional<Cell> cell = plan::nearest_passable(costs, p_m, radius_m);
-    if (cell || radius_m > farthest_m) return cell;
+    if (cell || radius_m > diagonal_m) return cell;
   }
 }
 

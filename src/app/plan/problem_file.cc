@@ -50,7 +50,7 @@ std::optional<std::string> failure_of(const SolvedProblem& solved, const plan::R
   if (!solved.is_found()) return "no route found, but the file states a length";
   if (const auto fault = validate_route(costs, route, problem.start, problem.goal, planner == "visibility_graph")) return "the route " + *fault;
   if (must_agree(planner) && !solved.agrees()) return fmt::format("is {:.6f} cells long, published {:.6f}", solved.length, problem.optimal_length);
-  if (is_any_angle(planner) && solved.length > problem.optimal_length + solved.published_tol()) {
+  if (is_any_angle(planner) && solved.length > problem.optimal_length + solved.published_tolerance()) {
     return fmt::format("is {:.6f} cells long, more than {:.6f} over eight neighbors", solved.length, problem.optimal_length);
   }
   return std::nullopt;

@@ -13,7 +13,7 @@
 namespace patrol::app {
 
 /// Tolerance of a published optimum in addition to the rounding of its digits, cells.
-inline constexpr double kPublishedTol = 1e-4;
+inline constexpr double kPublishedTolerance = 1e-4;
 
 /// Result of a planner for one problem of a .scen file.
 struct SolvedProblem {
@@ -27,8 +27,8 @@ struct SolvedProblem {
 
   bool is_found() const { return status == plan::PlanStatus::kFound; }
   /// Maximum difference from the published length that its digits allow, cells.
-  double published_tol() const { return kPublishedTol + problem.length_rounding; }
-  bool agrees() const { return is_found() && std::abs(length - problem.optimal_length) <= published_tol(); }
+  double published_tolerance() const { return kPublishedTolerance + problem.length_rounding; }
+  bool agrees() const { return is_found() && std::abs(length - problem.optimal_length) <= published_tolerance(); }
   /// Ratio to the published optimum; none if that is 0.
   std::optional<double> ratio() const {
     return is_found() && problem.optimal_length > 0.0 ? std::optional(length / problem.optimal_length) : std::nullopt;

@@ -127,15 +127,15 @@ studies::StudySample run_planners(const std::vector<PlannerWorld>& worlds, std::
 /// Figure 1: excess of the best route so far over A*'s length, in the first two hundred iterations.
 report::LinePlot convergence(const std::array<Planned, kPlannerMethods.size()>& all, const std::string& world) {
   constexpr std::size_t kShown = 200;
-  constexpr double kMost = 25.0;
-  report::LinePlot plot{.title = fmt::format("Excess length over A*, best so far: {}", world), .unit = "%", .axis = {.label = "iteration", .max = kShown}, .max = kMost, .curves = {}, .marks = {}, .spans = {}};
+  constexpr double kMaxExcess = 25.0;
+  report::LinePlot plot{.title = fmt::format("Excess length over A*, best route up to the iteration: {}", world), .unit = "%", .axis = {.label = "iteration", .max = kShown}, .max = kMaxExcess, .curves = {}, .marks = {}, .spans = {}};
   for (std::size_t m = 0; m < kPlannerMethods.size(); ++m) {
     if (!kPlannerMethods[m].iterates) continue;
     report::Curve curve{.name = kPlannerMethods[m].title, .color = kPlannerMethods[m].color, .is_dashed = false, .points = {}};
     for (std::size_t i = 0; i < kShown; ++i) {
       const std::vector<double>& history = all[m].route.history;
       const double excess = i < history.size() ? 100.0 * (history[i] / all[kAstar].route.length - 1.0) : kNoPlannerMetric;
-      if (excess <= kMost) curve.points.emplace_back(static_cast<double>(i + 1), excess);
+      if (excess <= kMaxExcess) curve.points.emplace_back(static_cast<double>(i + 1), excess);
     }
     plot.curves.push_back(std::move(curve));
   }

@@ -27,8 +27,8 @@ constexpr std::size_t kMinPairs = 30;
 /// Returns the bin of a normal, without sign: the three pairs of cube faces have 3 x 3 cells each.
 int direction_of(const Eigen::Vector3d& normal) {
   Eigen::Index axis = 0;
-  const double most = normal.cwiseAbs().maxCoeff(&axis);
-  const double u = normal[(axis + 1) % 3] / (most * (normal[axis] < 0.0 ? -1.0 : 1.0)), v = normal[(axis + 2) % 3] / (most * (normal[axis] < 0.0 ? -1.0 : 1.0));
+  const double largest = normal.cwiseAbs().maxCoeff(&axis);
+  const double u = normal[(axis + 1) % 3] / (largest * (normal[axis] < 0.0 ? -1.0 : 1.0)), v = normal[(axis + 2) % 3] / (largest * (normal[axis] < 0.0 ? -1.0 : 1.0));
   const auto third = [](double value) { return value < -1.0 / 3.0 ? 0 : value < 1.0 / 3.0 ? 1 : 2; };
   return static_cast<int>(axis) * 9 + third(u) * 3 + third(v);
 }

@@ -87,19 +87,19 @@ std::vector<SectorDisplacement> smoothed_ring(const LiningGrid& grid, const Adju
 std::vector<RingFinding> ring_findings(const LiningInMap& lining, const LiningGrid& grid, const Adjustment& adjustment, const LiningSettings& settings) {
   std::vector<RingFinding> findings;
   for (int ring = grid.first_ring; ring < grid.first_ring + grid.rings; ++ring) {
-    std::optional<RingFinding> most;
+    std::optional<RingFinding> largest;
     const std::vector<SectorDisplacement> sectors = smoothed_ring(grid, adjustment, ring);
     for (int sector = 0; sector < grid.sectors(); ++sector) {
       const SectorDisplacement& move = sectors[static_cast<std::size_t>(sector)];
-      if (!move.is_observed || (most && std::abs(move.inward_m) <= std::abs(most->inward_m))) continue;
+      if (!move.is_observed || (largest && std::abs(move.inward_m) <= std::abs(largest->inward_m))) continue;
       const double std_m = std_of(move.residual_var_m2, move.J, adjustment);
       const WarningLevel level = level_of(1000.0 * std::abs(move.inward_m), settings);
       if (level == WarningLevel::kNone || std::abs(move.inward_m) < settings.significance * std_m) continue;
-      most = RingFinding{.ring = ring, .clock_deg = grid.clock_deg(sector), .inward_m = move.inward_m, .std_m = std_m, .level = level};
+      largest = RingFinding{.ring = ring, .clock_deg = grid.clock_deg(sector), .inward_m = move.inward_m, .std_m = std_m, .level = level};
     }
-    if (!most) continue;
-    most->p_map = lining.intrados(lining.design.middle_of_ring_m(ring), most->clock_deg);
-    findings.push_back(*most);
+    if (!largest) continue;
+    largest->p_map = lining.intrados(lining.design.middle_of_ring_m(ring), largest->clock_deg);
+    findings.push_back(*largest);
   }
   return findings;
 }

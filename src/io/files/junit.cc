@@ -120,7 +120,7 @@ JunitSuite unfinished_junit(const std::string& suite) {
                      .name = "run",
                      .time_s = 0.0,
                      .result = JunitResult::kError,
-                     .message = "the run has not come to its end",
+                     .message = "incomplete run",
                      .details = ""}}};
 }
 

@@ -58,8 +58,8 @@ float to_range(double range_m, double no_return_m) {
   return range_m >= no_return_m ? std::numeric_limits<float>::infinity() : static_cast<float>(range_m);
 }
 
-bool are_equal(const Pose2& a, const Pose2& b, double tol_m, double tol_rad) {
-  return (a.position() - b.position()).norm() <= tol_m && std::abs(wrap_angle(a.yaw - b.yaw)) <= tol_rad;
+bool are_equal(const Pose2& a, const Pose2& b, double tolerance_m, double tolerance_rad) {
+  return (a.position() - b.position()).norm() <= tolerance_m && std::abs(wrap_angle(a.yaw - b.yaw)) <= tolerance_rad;
 }
 
 }  // namespace

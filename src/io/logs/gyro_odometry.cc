@@ -14,7 +14,7 @@ constexpr double kMaxBiasRadps = 0.05;       ///< maximum gyro rate of a standst
 constexpr double kMinStandstill_s = 1.0;
 /// Minimum sum of squared yaw increments for a verdict: three rad at 1 deg per step.
 constexpr double kMinSquaredYawRad2 = 0.05;
-constexpr double kSlopeTol = 0.02, kResidualTol = 0.05;  ///< limits for kAgrees
+constexpr double kSlopeTolerance = 0.02, kResidualTolerance = 0.05;  ///< limits for kAgrees
 constexpr double kSlopeLimit = 0.5, kResidualLimit = 0.5;  ///< limits for kUnrelated
 
 /// Replaces the yaw of a step and rotates its translation by half of the yaw change (midpoint rule).
@@ -110,7 +110,7 @@ GyroConsistency GyroOdometry::consistency() const {
   if (gg < kMinSquaredYawRad2) return GyroConsistency::kUnknown;
   const double slope = og / gg, residual = std::sqrt(std::max(0.0, oo - slope * og) / gg);
   if (slope < kSlopeLimit || slope > 1.0 / kSlopeLimit || residual > kResidualLimit) return GyroConsistency::kUnrelated;
-  return std::abs(slope - 1.0) < kSlopeTol && residual < kResidualTol ? GyroConsistency::kAgrees : GyroConsistency::kContradicts;
+  return std::abs(slope - 1.0) < kSlopeTolerance && residual < kResidualTolerance ? GyroConsistency::kAgrees : GyroConsistency::kContradicts;
 }
 
 }  // namespace patrol::io

@@ -14,14 +14,14 @@ namespace {
 
 constexpr std::size_t kMaxWaiting = 256;  ///< maximum number of waiting scans; later odometry is treated as missing
 constexpr std::size_t kMaxBeams = 10'000;
-constexpr double kQuaternionTol = 1e-3;          ///< tolerance of the norm of a quaternion
+constexpr double kQuaternionTolerance = 1e-3;          ///< tolerance of the norm of a quaternion
 constexpr double kMaxPoseDistance_m = 1e8;
 constexpr double kMaxScanAngle_rad = 7.0;       ///< one turn plus rounding
 constexpr double kMaxRateRadps = 1e3;      ///< maximum plausible rate
 constexpr const char* kTfStaticSuffix = "/tf_static";
 
 void expect_pose(const Pose3& pose, const char* whose) {
-  const bool is_pose = pose.position.allFinite() && pose.position.cwiseAbs().maxCoeff() <= kMaxPoseDistance_m && std::abs(pose.rotation.norm() - 1.0) <= kQuaternionTol;
+  const bool is_pose = pose.position.allFinite() && pose.position.cwiseAbs().maxCoeff() <= kMaxPoseDistance_m && std::abs(pose.rotation.norm() - 1.0) <= kQuaternionTolerance;
   if (!is_pose) throw DecodeError(fmt::format("{}: invalid pose: must be finite, with a unit quaternion", whose));
 }
 

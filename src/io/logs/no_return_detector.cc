@@ -38,9 +38,9 @@ bool NoReturnDetector::is_conclusive() const { return num_positions_ >= kMaxPosi
 std::optional<NoReturnValue> NoReturnDetector::find() const {
   if (counts_.empty()) return std::nullopt;
   const auto top = counts_.lower_bound(kMinCodeRatio * counts_.rbegin()->first);
-  std::uint64_t most_below = 0;
-  for (auto below = counts_.begin(); below != top; ++below) most_below = std::max(most_below, below->second.readings);
-  const std::uint64_t enough = std::max(kMinReadings, kMinCountRatio * most_below);
+  std::uint64_t max_below = 0;
+  for (auto below = counts_.begin(); below != top; ++below) max_below = std::max(max_below, below->second.readings);
+  const std::uint64_t enough = std::max(kMinReadings, kMinCountRatio * max_below);
   for (auto value = top; value != counts_.end(); ++value) {
     const Count& count = value->second;
     if (count.positions >= kMinPositions && count.readings >= enough) return NoReturnValue{.range_m = value->first, .num_readings = count.readings, .num_positions = count.positions};

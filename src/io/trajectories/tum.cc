@@ -12,7 +12,7 @@
 namespace patrol::io {
 namespace {
 
-constexpr double kUnitTol = 1e-3;  ///< tolerance of the norm of a quaternion: some files have only four digits
+constexpr double kUnitTolerance = 1e-3;  ///< tolerance of the norm of a quaternion: some files have only four digits
 
 StampedPose parse_pose(LineTokenizer fields) {
   StampedPose entry{.stamp = fields.stamp("t"), .pose = {}};
@@ -42,7 +42,7 @@ Trajectory load_tum(const std::filesystem::path& file, SameStamps same_stamps) {
     if (LineTokenizer(line->text).is_empty() || line->text.front() == '#') continue;
     StampedPose entry = read_pose(file.string(), *line);
     const double length = entry.pose.rotation.norm();
-    if (std::abs(length - 1.0) > kUnitTol) throw input_error(file.string(), line->number, fmt::format("the quaternion has length {:.4g}, must be 1", length));
+    if (std::abs(length - 1.0) > kUnitTolerance) throw input_error(file.string(), line->number, fmt::format("the quaternion has length {:.4g}, must be 1", length));
     entry.pose.rotation.normalize();
     if (!trajectory.empty() && entry.stamp <= trajectory.back().stamp) {
       if (same_stamps == SameStamps::kKeepFirst && entry.stamp == trajectory.back().stamp) continue;

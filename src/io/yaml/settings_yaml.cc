@@ -174,7 +174,7 @@ void SettingsWriter::write_expectations(const Expectations& expectations) {
 YAML::Node load_document(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   YAML::Node document = load_yaml(file);
   if (!document.IsDefined() || document.IsNull()) {
-    throw InputError(file.string() + ": is empty: must be a map of keys and values ({} if there are none)");
+    throw InputError(file.string() + ": is empty: must be a map of keys and values ({} for none)");
   }
   if (!document.IsMap()) throw InputError(file.string() + ": must be a map of keys and values");
   for (const std::string& override : overrides) apply_override(document, override);

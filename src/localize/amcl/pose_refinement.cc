@@ -12,8 +12,8 @@
 namespace patrol::localize {
 namespace {
 
-constexpr double kStepTol_m = 2e-4;
-constexpr double kStepTol_rad = 1e-5;
+constexpr double kStepTolerance_m = 2e-4;
+constexpr double kStepTolerance_rad = 1e-5;
 
 double squared(double value) { return value * value; }
 
@@ -72,8 +72,8 @@ NormalEquations equations_of(const std::vector<Residual>& residuals, const PoseR
   return sum;
 }
 
-double fraction_within(const std::vector<Residual>& residuals, double tol_m, std::size_t num_points) {
-  const auto count = std::count_if(residuals.begin(), residuals.end(), [&](const Residual& residual) { return std::abs(residual.distance_m) < tol_m; });
+double fraction_within(const std::vector<Residual>& residuals, double tolerance_m, std::size_t num_points) {
+  const auto count = std::count_if(residuals.begin(), residuals.end(), [&](const Residual& residual) { return std::abs(residual.distance_m) < tolerance_m; });
   return num_points > 0 ? static_cast<double>(count) / static_cast<double>(num_points) : 0.0;
 }
 
@@ -96,7 +96,7 @@ RefinedPose refine_pose(const LineField& lines, const LevelScan& scan, const sla
     const Eigen::Vector3d step = -(sum.H + prior_information).ldlt().solve(sum.b + prior_information * prior.residual_to_mean(pose));
     if (!step.allFinite()) return refined;
     pose = slam::perturbed(pose, step);
-    if (step.head<2>().norm() < kStepTol_m && std::abs(step.z()) < kStepTol_rad) break;
+    if (step.head<2>().norm() < kStepTolerance_m && std::abs(step.z()) < kStepTolerance_rad) break;
   }
   refined.is_matched = true;
   refined.information = sum.H;

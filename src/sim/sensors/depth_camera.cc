@@ -66,21 +66,21 @@ bool DepthCamera::is_at_edge(int u, int v) const {
          (v > 0 && v + 1 < lens_.height_px && bends(inverse_depth(u, v - 1), inverse_depth(u, v + 1)));
 }
 
-/// Returns the cosine of the angle between the line of sight and the surface normal.
+/// Returns the cosine of the angle between the line of ray and the surface normal.
 ///
 /// On the plane n . X = 1 with X = z (a, b, 1) the inverse depth is n . (a, b, 1); its slopes over the image give n.
 double DepthCamera::incidence_cosine(int u, int v) const {
   const double here = inverse_depth(u, v);
   const int left = std::max(u - 1, 0), right = std::min(u + 1, lens_.width_px - 1);
   const int up = std::max(v - 1, 0), down = std::min(v + 1, lens_.height_px - 1);
-  const Eigen::Vector3d sight((u - lens_.cx_px()) / lens_.focal_px, (v - lens_.cy_px()) / lens_.focal_px, 1.0);
+  const Eigen::Vector3d ray((u - lens_.cx_px()) / lens_.focal_px, (v - lens_.cy_px()) / lens_.focal_px, 1.0);
   Eigen::Vector3d n(lens_.focal_px * (left == u || right == u ? inverse_depth(right, v) - inverse_depth(left, v)
                                                               : smaller_difference(inverse_depth(left, v), here, inverse_depth(right, v))),
                     lens_.focal_px * (up == v || down == v ? inverse_depth(u, down) - inverse_depth(u, up)
                                                            : smaller_difference(inverse_depth(u, up), here, inverse_depth(u, down))),
                     0.0);
-  n.z() = here - n.dot(sight);
-  return here / (n.norm() * sight.norm());
+  n.z() = here - n.dot(ray);
+  return here / (n.norm() * ray.norm());
 }
 
 /// Returns whether enough of the pattern returns and both imagers observe it.

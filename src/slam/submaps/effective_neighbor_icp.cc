@@ -121,7 +121,7 @@ double largest_distance(const std::vector<Pair>& pairs) {
   return std::ranges::max(pairs, {}, &Pair::distance_m).distance_m;
 }
 
-bool is_small(const Pose2& T_step, double tol_m) { return T_step.position().norm() + kIcpTurnArm_m * std::abs(T_step.yaw) <= tol_m; }
+bool is_small(const Pose2& T_step, double tolerance_m) { return T_step.position().norm() + kIcpTurnArm_m * std::abs(T_step.yaw) <= tolerance_m; }
 
 }  // namespace
 

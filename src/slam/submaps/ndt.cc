@@ -166,7 +166,7 @@ Pose2 stepped(const Pose2& T_target_source, const Eigen::Vector3d& step) {
 ScoreMaximum maximize_score(const NdtGrid& grid, const std::vector<Eigen::Vector2d>& points, const Pose2& T_start, const NdtSettings& settings) {
   constexpr double kMaxDamping = 1e7;
   ScoreMaximum at{.T_target_source = T_start, .score = grid.score(points, T_start)};
-  const double step_tol = settings.step_tolerance_per_cell * grid.cell_m();
+  const double step_tolerance = settings.step_tolerance_per_cell * grid.cell_m();
   double damping = 1e-3;
   while (!at.converged && at.iterations < settings.max_iterations && at.score.value > 0.0) {
     ++at.iterations;
@@ -182,7 +182,7 @@ ScoreMaximum maximize_score(const NdtGrid& grid, const std::vector<Eigen::Vector
     } else {
       damping *= 10.0;
     }
-    at.converged = damping > kMaxDamping || (step.head<2>().norm() < step_tol && kNdtTurnArm_m * std::abs(step.z()) < step_tol);
+    at.converged = damping > kMaxDamping || (step.head<2>().norm() < step_tolerance && kNdtTurnArm_m * std::abs(step.z()) < step_tolerance);
   }
   return at;
 }

@@ -21,11 +21,11 @@ struct InspectionOrder {
   bool operator==(const InspectionOrder&) const = default;
 };
 
-enum class InspectionFeedback { kUnderWay, kDone, kFailed };
+enum class InspectionFeedback { kInProgress, kDone, kFailed };
 
 /// State of an order after a control period.
 struct InspectionProgress {
-  InspectionFeedback feedback = InspectionFeedback::kUnderWay;
+  InspectionFeedback feedback = InspectionFeedback::kInProgress;
   std::string failure = {};  ///< one sentence with kFailed if the instrument reports a reason; otherwise empty
 };
 

@@ -32,8 +32,8 @@ class LeggedOdometry final : public OdometrySource {
     const std::optional<OdometryEstimate> now = estimator_.estimate();
     if (!now) return Eigen::Vector3d::Zero();
     const double speed_mps = now->twist.linear.head<2>().norm(), yaw_rate_radps = std::abs(now->twist.angular.z());
-    const double way_std_mps = drift.position_std_m_per_m * speed_mps;
-    return {way_std_mps, way_std_mps,
+    const double position_std_mps = drift.position_std_m_per_m * speed_mps;
+    return {position_std_mps, position_std_mps,
             drift.yaw_std_rad_per_m * speed_mps + drift.yaw_std_rad_per_rad * yaw_rate_radps};
   }
 

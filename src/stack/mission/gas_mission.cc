@@ -92,7 +92,7 @@ void GasMission::drive(NavigationFeedback feedback, MissionOutput& output) {
 }
 
 void GasMission::measure(const InspectionProgress& progress, MissionOutput& output) {
-  if (progress.feedback == InspectionFeedback::kUnderWay) return;
+  if (progress.feedback == InspectionFeedback::kInProgress) return;
   if (progress.feedback == InspectionFeedback::kFailed) {
     ++num_failed_;
     output.events.push_back(event(EventKind::kStationFailed, station().name, progress.failure));

@@ -14,7 +14,7 @@ struct MissionInput {
   PoseEstimate pose;
   bool is_lost = false;  ///< true: localization has reported failure
   NavigationFeedback navigation = NavigationFeedback::kDriving;
-  DockingFeedback docking = DockingFeedback::kUnderWay;
+  DockingFeedback docking = DockingFeedback::kInProgress;
   InspectionProgress inspection = {};
   std::optional<TeleopCommand> teleop = {};  ///< command received since the last step
 };

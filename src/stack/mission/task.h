@@ -21,6 +21,6 @@ struct Task {
 enum class NavigationFeedback { kDriving, kArrived, kFailed };
 
 /// Result of kDock and kUndock.
-enum class DockingFeedback { kUnderWay, kDone, kFailed };
+enum class DockingFeedback { kInProgress, kDone, kFailed };
 
 }  // namespace patrol::stack

@@ -152,7 +152,7 @@ void TunnelMission::stand(MissionOutput& output) {
 }
 
 void TunnelMission::scan(const MissionInput& input, MissionOutput& output) {
-  if (now_ == phase_start_ || input.inspection.feedback == InspectionFeedback::kUnderWay) return;
+  if (now_ == phase_start_ || input.inspection.feedback == InspectionFeedback::kInProgress) return;
   if (input.inspection.feedback == InspectionFeedback::kFailed) {
     ++num_failed_;
     output.events.push_back(event(EventKind::kInspectionFailed, goal_name(), fmt::format("Lining measurement failed at {}.", goal_name()), run_));
@@ -175,7 +175,7 @@ void TunnelMission::await_teleop(const MissionInput& input, MissionOutput& outpu
 
 void TunnelMission::sound(const MissionInput& input, MissionOutput& output) {
   if (input.teleop) last_teleop_ = now_;
-  if (now_ == phase_start_ || input.inspection.feedback == InspectionFeedback::kUnderWay) return;
+  if (now_ == phase_start_ || input.inspection.feedback == InspectionFeedback::kInProgress) return;
   if (input.inspection.feedback == InspectionFeedback::kFailed) {
     ++num_failed_;
     output.events.push_back(event(EventKind::kInspectionFailed, sounding_name(), "TEM sounding failed.", run_));
@@ -184,7 +184,7 @@ void TunnelMission::sound(const MissionInput& input, MissionOutput& output) {
 }
 
 void TunnelMission::dock(const MissionInput& input, MissionOutput& output) {
-  if (now_ == phase_start_ || input.docking == DockingFeedback::kUnderWay) return;
+  if (now_ == phase_start_ || input.docking == DockingFeedback::kInProgress) return;
   is_docked_ = input.docking == DockingFeedback::kDone;
   if (is_docked_) {
     output.events.push_back(event(EventKind::kDocked, "", "Docked at the charging post.", run_));

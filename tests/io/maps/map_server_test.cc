@@ -124,7 +124,7 @@ TEST_F(MapServer, WrongKeysAreNamedWithTheirLine) {
   EXPECT_EQ(complaint(image + "origin: [0, 0, 0]\n"), "m.yaml: resolution: is missing");
   EXPECT_EQ(complaint(image + "resolution: 1\n"), "m.yaml: origin: is missing");
   EXPECT_EQ(complaint("{}\n"), "m.yaml: image: is missing");
-  EXPECT_EQ(complaint(""), "m.yaml: is empty: must be a map of keys and values ({} if there are none)");
+  EXPECT_EQ(complaint(""), "m.yaml: is empty: must be a map of keys and values ({} for none)");
   EXPECT_EQ(complaint(image + "resolution: .nan\norigin: [0, 0, 0]\n"), "m.yaml:2: resolution: must be a finite number, not .nan");
   EXPECT_EQ(complaint(image + "resolution: -1\norigin: [0, 0, 0]\n"),
             "m.yaml:2: resolution: -1 is out of range: must be in [0.001, 10]");

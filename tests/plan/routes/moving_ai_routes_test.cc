@@ -11,7 +11,7 @@
 namespace patrol::plan::moving_ai_routes_test {
 namespace {
 
-constexpr double kPublishedTol = 1e-4;  // what issue 8 asks for on the benchmark's .scen files
+constexpr double kPublishedTolerance = 1e-4;  // what issue 8 asks for on the benchmark's .scen files
 
 Grid<Cost> to_costs(const OccupancyGrid& occupancy) {
   Grid<Cost> costs(occupancy.geometry());
@@ -43,8 +43,8 @@ TEST(MovingAiRoutes, HaveTheLengthsWorkedOutByHandOnLandAndInWater) {
     const Grid<Cost> costs = to_costs(io::to_occupancy(map, problem.start));
     const Route route = astar.plan(costs, problem.start, problem.goal), any = ThetaStar().plan(costs, problem.start, problem.goal);
     ASSERT_EQ(route.status, PlanStatus::kFound);
-    EXPECT_NEAR(route.length, problem.optimal_length, kPublishedTol);
-    EXPECT_LE(any.length, problem.optimal_length + kPublishedTol);
+    EXPECT_NEAR(route.length, problem.optimal_length, kPublishedTolerance);
+    EXPECT_LE(any.length, problem.optimal_length + kPublishedTolerance);
     EXPECT_TRUE(test::keeps_clear(costs, any.points));
   }
 }

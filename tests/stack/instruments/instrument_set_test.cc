@@ -46,13 +46,13 @@ class InstrumentSetTest : public ::testing::Test {
 const InspectionOrder kFirst{.instrument = InstrumentKind::kWater, .station = "first"};
 
 TEST_F(InstrumentSetTest, CarriesOutAnOrderAndBeginsAnewWithTheNext) {
-  EXPECT_EQ(step(0.0, kFirst), InspectionFeedback::kUnderWay);
-  EXPECT_EQ(step(0.1, kFirst), InspectionFeedback::kUnderWay);
+  EXPECT_EQ(step(0.0, kFirst), InspectionFeedback::kInProgress);
+  EXPECT_EQ(step(0.1, kFirst), InspectionFeedback::kInProgress);
   EXPECT_EQ(step(0.2, kFirst), InspectionFeedback::kDone);
-  EXPECT_EQ(step(0.3, std::nullopt), InspectionFeedback::kUnderWay);
+  EXPECT_EQ(step(0.3, std::nullopt), InspectionFeedback::kInProgress);
   InspectionOrder second = kFirst;
   second.station = "second";
-  EXPECT_EQ(step(0.4, second), InspectionFeedback::kUnderWay);
+  EXPECT_EQ(step(0.4, second), InspectionFeedback::kInProgress);
   EXPECT_EQ(log_, (std::vector<std::string>{"begin first", "end", "begin second"}));
 }
 

@@ -145,7 +145,7 @@ std::vector<SavedGoal> inspection_goals() {
 
 TEST(TunnelMission, StandsAtAGoalOfTypeDUntilTheLiningIsScanned) {
   Robot robot(TunnelMission({.num_runs = 1}, inspection_goals(), false));
-  robot.inspection = InspectionFeedback::kUnderWay;
+  robot.inspection = InspectionFeedback::kInProgress;
   robot.run(60.0);
   EXPECT_EQ(robot.output.task.inspection.value().instrument, InstrumentKind::kLining);
   EXPECT_EQ(robot.output.task.inspection.value().station, "goal_1");
@@ -179,7 +179,7 @@ TEST(TunnelMission, AtAGoalOfTypeRAPersonDrivesMarksAndHandsOverAgain) {
   EXPECT_EQ(robot.count(EventKind::kTeleopRequested), 1);
   EXPECT_EQ(robot.output.task.motion, Motion::kTeleop);
   robot.run(10.0, TeleopCommand{.vx_mps = 0.5});
-  robot.inspection = InspectionFeedback::kUnderWay;
+  robot.inspection = InspectionFeedback::kInProgress;
   robot.run(10.0, TeleopCommand{.save_goal = true});
   EXPECT_EQ(robot.output.task.inspection.value().instrument, InstrumentKind::kWater);
   EXPECT_EQ(robot.output.task.inspection.value().station, "sounding_1");

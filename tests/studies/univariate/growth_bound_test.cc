@@ -41,7 +41,7 @@ TEST(GrowthBound, NoFilterIsSignificantlyBelowIt) {
   for (const int particles : {50, 150}) {
     EXPECT_FALSE(is_below_bound(swarm_errors(particles, {.resample_threshold = 1.0}), bound)) << "PF " << particles;
     EXPECT_FALSE(is_below_bound(swarm_errors(particles, {.optimizer = "ba", .optimizer_iterations = 1}), bound)) << "BA " << particles;
-    EXPECT_FALSE(is_below_bound(swarm_errors(particles, slam::published_ifa_settings()), bound)) << "IFA as printed " << particles;
+    EXPECT_FALSE(is_below_bound(swarm_errors(particles, published_ifa_settings()), bound)) << "IFA as printed " << particles;
     EXPECT_FALSE(is_below_bound(swarm_errors(particles, {.optimizer = "ifa", .optimizer_iterations = 1, .firefly_absorption = 1.0}), bound))
         << "IFA " << particles;
     EXPECT_FALSE(is_below_bound(quasi_errors(particles), bound)) << "quasi " << particles;
@@ -49,25 +49,25 @@ TEST(GrowthBound, NoFilterIsSignificantlyBelowIt) {
   EXPECT_FALSE(is_below_bound(swarm_errors(50, {.optimizer = "fa", .optimizer_iterations = 1, .firefly_absorption = 1.0}), bound)) << "FA 50";
 }
 
-/// "The newest state value" of eq. 2 read as the true one: every particle moves a share of the way to it.
-class LeakingOptimizer : public SwarmOptimizer {
+/// "The newest state value" of eq. 2 read as the true one: every particle moves a fraction of the distance to it.
+class LeakingOptimizer : public slam::SwarmOptimizer {
  public:
-  LeakingOptimizer(std::vector<double> true_states, double share) : true_states_(std::move(true_states)), share_(share) {}
+  LeakingOptimizer(std::vector<double> true_states, double fraction) : true_states_(std::move(true_states)), fraction_(fraction) {}
 
-  void move(Swarm& swarm, const Fitness&, RandomSequence&) const override {
+  void move(slam::Swarm& swarm, const slam::Fitness&, RandomSequence&) const override {
     const double truth = true_states_[step_++];
-    for (Position& position : swarm.positions) position[0] += share_ * (truth - position[0]);
+    for (slam::Position& position : swarm.positions) position[0] += fraction_ * (truth - position[0]);
   }
 
  private:
   std::vector<double> true_states_;
-  double share_;
+  double fraction_;
   mutable std::size_t step_ = 0;
 };
 
 TEST(GrowthBound, CatchesAFilterThatUsesATwentiethOfTheTrueState) {
   const auto leaking = [](std::uint64_t seed, const GrowthRun& run) {
-    ParticleFilterComponents parts = slam::make_components({.resample_threshold = 1.0});
+    slam::ParticleFilterComponents parts = slam::make_components({.resample_threshold = 1.0});
     parts.optimizer = std::make_shared<LeakingOptimizer>(run.states, 0.05);
     return std::make_unique<GrowthFilter>(150, GrowthModel(), parts, seed);
   };

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/app/sweep/fault_verdict.h"
+#include "tests/app/campaign/sweep/fault_verdict.h"
 
 namespace patrol::app::fault_outcomes_test {
 namespace {

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/app/sweep/fault_verdict.h"
+#include "tests/app/campaign/sweep/fault_verdict.h"
 
 namespace patrol::app::fault_tables_test {
 namespace {
