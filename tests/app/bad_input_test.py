@@ -69,8 +69,8 @@ class BadInput(unittest.TestCase):
 
     def test_a_second_document_or_text_after_the_first(self):
         file = self.scenario("world: street\n---\nworld: tunnel\n")
-        self.refuse_run(file, says=["scenario.yaml:2", "one document"])
-        self.refuse_run(SHORT, "--set", "leaks=[]x", says=["--set leaks=[]x", "one document"])
+        self.refuse_run(file, says=["scenario.yaml:2", "only one is allowed"])
+        self.refuse_run(SHORT, "--set", "leaks=[]x", says=["--set leaks=[]x", "only one is allowed"])
 
     def test_an_empty_scenario_or_calibration(self):
         file = self.scenario("# nothing\n")
@@ -141,7 +141,7 @@ class BadInput(unittest.TestCase):
         self.refuse_run(SHORT, "--set", "mission=routes/absent.json", says=["mission", "absent.json"])
 
     def test_unknown_override(self):
-        self.refuse_run(SHORT, "--set", "stack.slam.particels=3", says=["particels", "particles"])
+        self.refuse_run(SHORT, "--set", "stack.slam.rbpf.particels=3", says=["particels", "particles"])
 
     def test_start_inside_a_wall(self):
         self.refuse_run(SHORT, "--set", "start.left_m=10", says=["start"])

@@ -118,7 +118,7 @@ ALLOWED = [
     ("place", "src/io/*/*", r"^place_?$", "position in a file, which an error message names"),
 ]
 # They list former settings keys and options, which are refused with the present name.
-SKIPPED = ("src/io/yaml/renamed_settings.cc", "src/app/cli/renamed_options.cc")
+SKIPPED = ("src/io/yaml/renamed_scenario_keys.cc", "src/io/yaml/renamed_stack_keys.cc", "src/app/cli/renamed_options.cc")
 
 TOKEN = re.compile(
     r"(?P<comment>//[^\n]*|/\*.*?\*/)"

@@ -129,7 +129,7 @@ TEST(Tracked, TurnsItsAntennaAboutAPoint98CentimetresAboveTheGroundByTwoServosOf
 TEST(Tracked, AnAntennaWhoseAxesDoNotMeetOrThatCannotBeStowedIsRefused) {
   EXPECT_THAT(complaint_about_tracked("<origin xyz=\"0 0 0\"/>", "<origin xyz=\"0 0 0.1\"/>", "tem_pitch_joint"),
               HasSubstr("tem_pitch_joint: must have no <origin>"));
-  EXPECT_THAT(complaint_about_tracked("lower=\"-1.62\"", "lower=\"-1.5\"", "tem_pitch_joint"), HasSubstr("tem_pitch_joint: must reach -90 degrees"));
+  EXPECT_THAT(complaint_about_tracked("lower=\"-1.62\"", "lower=\"-1.5\"", "tem_pitch_joint"), HasSubstr("tem_pitch_joint: lower limit must reach -90 degrees"));
   EXPECT_THAT(complaint_about_tracked("<axis xyz=\"0 0 1\"/>", "<axis xyz=\"0 1 0\"/>", "tem_yaw_joint"), HasSubstr("tem_yaw_joint: must be revolute"));
 }
 
@@ -174,10 +174,10 @@ TEST(Tracked, CarriesItsSensorsWithTheLidar55CentimetresAboveTheGround) {
 TEST(Tracked, WhatIsWrongWithATrackIsNamed) {
   EXPECT_THAT(complaint_about_tracked("<cylinder radius=\"0.075\" length=\"0.15\"/>", "<sphere radius=\"0.075\"/>",
                                       "<collision name=\"left_wheel_0\""),
-              HasSubstr("left_track: the collision shapes of a track are the wheels"));
+              HasSubstr("left_track: collision shapes of a track must be its wheels"));
   EXPECT_THAT(complaint_about_tracked("rpy=\"1.571 0 0\"", "rpy=\"0 0 0\"", "<collision name=\"right_wheel_3\""),
-              HasSubstr("right_track: the collision shapes of a track are the wheels"));
-  EXPECT_THAT(complaint_about_tracked("xyz=\"0 0.275 0\"", "xyz=\"0 -0.275 0\""), HasSubstr("must lie to the left"));
+              HasSubstr("right_track: collision shapes of a track must be its wheels"));
+  EXPECT_THAT(complaint_about_tracked("xyz=\"0 0.275 0\"", "xyz=\"0 -0.275 0\""), HasSubstr("must be to the left"));
   EXPECT_THAT(complaint_about_tracked("effort=\"45\"", "effort=\"0\""),
               HasSubstr("left_sprocket_joint: limit effort and velocity must be positive"));
 }

@@ -165,7 +165,7 @@ TEST(LowObstacles, ARouteTooShortForThemIsRefusedWithItsLength) {
   } catch (const InputError& error) {
     EXPECT_STREQ(
         error.what(),
-        "low_obstacles.route is 60.0 m long: too short for 20 obstacles 3 m apart, 4 m clear at its ends");
+        "low_obstacles.route: length 60.0 m: too short for 20 obstacles with min_spacing_m = 3 and end_clearance_m = 4");
   }
 }
 

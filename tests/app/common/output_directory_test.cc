@@ -110,13 +110,13 @@ TEST(OutputDirectory, NothingIsWrittenThroughALinkedMark) {
   const TemporaryFolder folder, elsewhere;
   test::write_bytes(elsewhere / "precious", "mine");
   std::filesystem::create_symlink(elsewhere / "precious", incomplete_marker(folder.path()));
-  EXPECT_THAT(complaint_about(folder.path()), HasSubstr("INCOMPLETE: is not a plain file"));
+  EXPECT_THAT(complaint_about(folder.path()), HasSubstr("INCOMPLETE: must be a regular file"));
   std::filesystem::remove(incomplete_marker(folder.path()));
   std::filesystem::create_hard_link(elsewhere / "precious", incomplete_marker(folder.path()));
-  EXPECT_THAT(complaint_about(folder.path()), HasSubstr("INCOMPLETE: is not a plain file"));
+  EXPECT_THAT(complaint_about(folder.path()), HasSubstr("INCOMPLETE: must be a regular file"));
   std::filesystem::remove(incomplete_marker(folder.path()));
   std::filesystem::create_directory(incomplete_marker(folder.path()));
-  EXPECT_THAT(complaint_about(folder.path()), HasSubstr("INCOMPLETE: is not a plain file"));
+  EXPECT_THAT(complaint_about(folder.path()), HasSubstr("INCOMPLETE: must be a regular file"));
   EXPECT_EQ(test::read_bytes(elsewhere / "precious"), "mine");
 }
 

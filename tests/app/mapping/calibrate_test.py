@@ -56,7 +56,7 @@ class Calibrate(unittest.TestCase):
 
     def test_the_six_numbers_come_out_and_every_file_is_there(self):
         out, text = self.calibrate("whole")
-        self.assertEqual(sorted(file.name for file in out.iterdir()), ["calibration.yaml", "metrics.json", "settings.yaml", "segments.csv"])
+        self.assertEqual(sorted(file.name for file in out.iterdir()), ["calibration.yaml", "metrics.json", "segments.csv", "settings.yaml"])
         metrics = json.loads((out / "metrics.json").read_text())
         for name, truth in TRUTH.items():
             found = metrics["calibration"][name]
@@ -73,7 +73,7 @@ class Calibrate(unittest.TestCase):
         self.assertGreater(self.far_off_m(plain), 5.0)
         self.assertLess(self.far_off_m(mapped), 1.0)
         self.assertIn("override_lidar_pose: true", (mapped / "settings.yaml").read_text())
-        self.patrol("slam", self.log, "--calibration", out / "calibration.yaml", "--set", "calibration.turn_scale=2", "--out", plain)
+        self.patrol("slam", self.log, "--calibration", out / "calibration.yaml", "--set", "calibration.rotation_scale=2", "--out", plain)
         self.assertGreater(self.far_off_m(plain), 5.0)
 
     def test_a_second_time_gives_the_same_bytes(self):
@@ -89,7 +89,7 @@ class Calibrate(unittest.TestCase):
         for name in ["lidar_x_m", "lidar_y_m", "turn_scale"]:
             self.assertFalse(found[name]["observable"], name)
             self.assertEqual(found[name]["value"], found[name]["before"], name)
-        self.assertEqual(text.count("not observable: as it was"), sum(not entry["observable"] for entry in found.values()))
+        self.assertEqual(text.count("not observable: unchanged"), sum(not entry["observable"] for entry in found.values()))
 
     def refuse(self, *arguments, says):
         out = self.folder / "refused"

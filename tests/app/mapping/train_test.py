@@ -11,7 +11,7 @@ import tempfile
 import unittest
 
 PATROL, SOURCE = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
-SHORT_SUBMAPS = ["--set", "submap_rbpf.submaps.max_way_m=3", "--set", "examples.predictions=8"]
+SHORT_SUBMAPS = ["--set", "submap_rbpf.submaps.max_distance_m=3", "--set", "examples.predictions=8"]
 
 
 class Train(unittest.TestCase):

@@ -57,7 +57,7 @@ TEST_F(PlanMapTest, WhatLiesOutsideIsRefusedWithTheMapsExtent) {
   EXPECT_NE(complaint(metres, "1,3"), "");   // the right edge is not
   EXPECT_NE(complaint(metres, "1e300,3"), "");
   EXPECT_EQ(complaint(cells, "3,0"), "--from: 3, 0 is outside the map, which spans x 0 ... 2, y 0 ... 1 (cells)");
-  EXPECT_EQ(complaint(cells, "-1,0").substr(0, 31), "--from: -1, 0 lies outside the ");
+  EXPECT_EQ(complaint(cells, "-1,0").substr(0, 31), "--from: -1, 0 is outside the ma");
 }
 
 TEST_F(PlanMapTest, WhatIsNoPointIsRefused) {

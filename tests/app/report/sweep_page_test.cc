@@ -98,7 +98,7 @@ TEST(SweepPage, ABudgetNamesTheOwnerAndItsWaterfallEndsAtTheIdeal) {
 
 TEST(SweepPage, VariantsAreNamedByTheLastPartOfTheirKeysUnlessTwoAreAlike) {
   SweepManifest manifest;
-  manifest.paths = {"sensors.lidar.range_noise_std_m", "stack.slam.particles"};
+  manifest.paths = {"sensors.lidar.range_noise_std_m", "stack.slam.rbpf.particles"};
   manifest.variants = {{.name = "long", .overrides = {"sensors.lidar.range_noise_std_m=0.01", "stack.slam.rbpf.particles=20"}}};
   EXPECT_EQ(short_names(manifest).front(), "range_noise_std_m=0.01, particles=20");
   manifest.paths = {"sensors.lidar.rate_hz", "sensors.imu.rate_hz"};

@@ -71,7 +71,7 @@ class Study(unittest.TestCase):
         (self.path / "page/report.html").unlink()
         done = subprocess.run([PATROL, "report", self.path / "page"], capture_output=True, text=True, cwd=SOURCE)
         self.assertEqual(done.returncode, 2)
-        self.assertIn("has not come to its end", done.stderr)
+        self.assertIn("incomplete", done.stderr)
 
     def test_an_unknown_study_and_no_seeds_are_refused_and_nothing_is_written(self):
         for arguments, says in ((("golf",), "landmarks-circle"), (("ungm", "--seeds", "0"), "--seeds 0"), (("ungm", "--jobs", "-1"), "--jobs")):

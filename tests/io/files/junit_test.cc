@@ -71,7 +71,7 @@ TEST(SaveJunit, EscapesWhatXmlCannotHold) {
 TEST(UnfinishedJunit, IsRed) {
   const std::string xml = written({unfinished_junit("short")});
   EXPECT_THAT(xml, HasSubstr(R"(tests="1" failures="0" errors="1")"));
-  EXPECT_THAT(xml, HasSubstr(R"(<error message="the run has not come to its end"/>)"));
+  EXPECT_THAT(xml, HasSubstr(R"(<error message="incomplete run"/>)"));
 }
 
 TEST(SaveJunit, AFolderThatIsNotThereIsAnInputError) {

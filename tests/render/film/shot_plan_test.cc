@@ -84,12 +84,12 @@ TEST(ShotPlan, APlainCutIsEvenAndHasChaptersAllTheSame) {
 }
 
 TEST(ShotPlan, KnowsTheNamesOfItsCuts) {
-  EXPECT_EQ(parse_film_style("plain"), FilmStyle::kContinuous);
+  EXPECT_EQ(parse_film_style("continuous"), FilmStyle::kContinuous);
   try {
     parse_film_style("fast");
     FAIL() << "accepted";
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "cut = fast: must be one of highlights, continuous");
+    EXPECT_STREQ(error.what(), "style = fast: must be one of highlights, continuous");
   }
 }
 

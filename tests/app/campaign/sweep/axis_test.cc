@@ -27,7 +27,7 @@ std::string message_of(const std::string& text) {
 
 TEST(Axis, AListKeepsItsValuesAsTheyWereWritten) {
   const Axis axis = parse_axis("stack.slam.rbpf.particles=10,20,50");
-  EXPECT_EQ(axis.path, "stack.slam.particles");
+  EXPECT_EQ(axis.path, "stack.slam.rbpf.particles");
   EXPECT_THAT(axis.values, ElementsAre("10", "20", "50"));
   EXPECT_FALSE(axis.is_random());
 }
@@ -84,7 +84,7 @@ TEST(Axis, ALogUniformDrawStaysBetweenItsEnds) {
 
 TEST(Axis, WhatIsWrongIsSaid) {
   EXPECT_THAT(message_of("no_values"), HasSubstr("must be path=a,b,c"));
-  EXPECT_THAT(message_of("a="), HasSubstr("no values"));
+  EXPECT_THAT(message_of("a="), HasSubstr("at least one value"));
   EXPECT_THAT(message_of("a=1,,2"), HasSubstr("empty"));
   EXPECT_THAT(message_of("a=1,2,1"), HasSubstr("duplicate value '1'"));
   EXPECT_THAT(message_of("a=range:0:1"), HasSubstr("range:FROM:TO:N"));

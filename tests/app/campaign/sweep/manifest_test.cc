@@ -51,8 +51,8 @@ TEST(Manifest, ARunsOverridesAreTheCommonOnesItsOwnAndTheSeed) {
 TEST(Manifest, WhatIsNotOneIsRefusedByName) {
   EXPECT_THAT(message_of("{"), HasSubstr("sweep.json"));
   EXPECT_THAT(message_of("{}"), HasSubstr("version"));
-  EXPECT_THAT(message_of("{\"version\": 2}"), HasSubstr("must be 1"));
-  EXPECT_THAT(message_of("{\"version\": 1}"), HasSubstr("kind"));
+  EXPECT_THAT(message_of("{\"version\": 1}"), HasSubstr("must be 2"));
+  EXPECT_THAT(message_of("{\"version\": 2}"), HasSubstr("kind"));
 }
 
 TEST(Manifest, OneWithNothingToCompareIsRefused) {

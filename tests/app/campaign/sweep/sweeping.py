@@ -5,7 +5,7 @@ import sys
 import tempfile
 import unittest
 
-sys.path.insert(0, str(pathlib.Path(__file__).parent.parent))
+sys.path.insert(0, str(pathlib.Path(__file__).parent.parent.parent))
 from standing_still import PATROL, SOURCE, standing_still  # noqa: E402
 
 TABLES = ("runs.csv", "comparison.csv", "sweep.sqlite")

@@ -14,7 +14,7 @@ import time
 import unittest
 import xml.etree.ElementTree
 
-sys.path.insert(0, str(pathlib.Path(__file__).parent.parent))
+sys.path.insert(0, str(pathlib.Path(__file__).parent.parent.parent))
 from standing_still import PATROL, SOURCE, standing_still  # noqa: E402
 
 NUM_SCENARIOS = int(sys.argv[3]) if len(sys.argv) > 3 else 30
