@@ -13,7 +13,9 @@ struct DecisionStump {
   int sign_above = 1;   ///< +1 or -1: vote for values above the threshold
   double weight = 0.0;  ///< weight of the vote; positive
 
-  int vote(const std::vector<double>& features) const { return features[feature] > threshold ? sign_above : -sign_above; }
+  int vote(const std::vector<double>& features) const {
+    return features[feature] > threshold ? sign_above : -sign_above;
+  }
 
   friend bool operator==(const DecisionStump&, const DecisionStump&) = default;
 };

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
+
+#include <Eigen/Core>
 
 #include "core/frames.h"
 #include "core/inspection_result.h"
@@ -89,16 +89,17 @@ inline constexpr std::array kEventKinds = std::to_array<EventKindRow>({
     {EventKind::kStationFailed, "station_failed", "A station was not reached or not measured", EventClass::kTaskFailed,
      WarningLevel::kNotice},
     {EventKind::kGasMeasured, "gas_measured", "Methane was measured at a station; value: column, ppm m"},
-    {EventKind::kGasAlarm, "gas_alarm", "The methane column exceeds its threshold; value: column, ppm m; target: the leak",
-     EventClass::kHazard, WarningLevel::kAlarm},
+    {EventKind::kGasAlarm, "gas_alarm",
+     "The methane column exceeds its threshold; value: column, ppm m; target: the leak", EventClass::kHazard,
+     WarningLevel::kAlarm},
     {EventKind::kGoalSaved, "goal_saved", "The operator saved a goal during teleoperation"},
     {EventKind::kMappingCompleted, "mapping_completed", "The teleoperated mapping drive is over; the map is final"},
     {EventKind::kNavigationStarted, "navigation_started", "A run to all goals begins; value: its number"},
     {EventKind::kGoalReached, "goal_reached", "The robot is at a goal; value: number of the run"},
     {EventKind::kGoalFailed, "goal_failed", "A goal was not reached; value: number of the run", EventClass::kTaskFailed,
      WarningLevel::kNotice},
-    {EventKind::kInspectionFailed, "inspection_failed", "An instrument gave no result at its station", EventClass::kTaskFailed,
-     WarningLevel::kWarning},
+    {EventKind::kInspectionFailed, "inspection_failed", "An instrument gave no result at its station",
+     EventClass::kTaskFailed, WarningLevel::kWarning},
     {EventKind::kTeleopRequested, "teleop_requested", "The robot waits at a goal for teleoperation"},
     {EventKind::kTeleopEnded, "teleop_ended", "Teleoperation is over; the robot continues autonomously"},
     {EventKind::kDocked, "docked", "The robot is docked at its charging post; value: number of the run"},
@@ -121,20 +122,25 @@ inline constexpr std::array kEventKinds = std::to_array<EventKindRow>({
      EventClass::kInformation, WarningLevel::kNotice},
     {EventKind::kWaterWarning, "water_warning", "Water ahead, within the warning distance; value: distance, m",
      EventClass::kInformation, WarningLevel::kWarning},
-    {EventKind::kWaterAlarm, "water_alarm", "Water ahead, within the alarm distance; value: distance, m", EventClass::kHazard,
-     WarningLevel::kAlarm},
-    {EventKind::kLocalizationLost, "localization_lost", "Localization is lost: the robot stops and relocalizes", EventClass::kFault},
+    {EventKind::kWaterAlarm, "water_alarm", "Water ahead, within the alarm distance; value: distance, m",
+     EventClass::kHazard, WarningLevel::kAlarm},
+    {EventKind::kLocalizationLost, "localization_lost", "Localization is lost: the robot stops and relocalizes",
+     EventClass::kFault},
     {EventKind::kRelocalized, "relocalized", "Localization has recovered; value: time lost, s"},
-    {EventKind::kLocalizationFailed, "localization_failed", "Relocalization timed out", EventClass::kFault, WarningLevel::kWarning},
+    {EventKind::kLocalizationFailed, "localization_failed", "Relocalization timed out", EventClass::kFault,
+     WarningLevel::kWarning},
     {EventKind::kReplan, "replan", "The path is blocked and planned again"},
     {EventKind::kNavigation, "navigation", "Navigation to a goal failed, with its reason"},
     {EventKind::kRecovery, "recovery", "A recovery behavior begins"},
     {EventKind::kDocking, "docking", "Report of the docking controller"},
-    {EventKind::kSensorFault, "sensor_fault", "A sensor timed out, is frozen, or has a wrong clock; subject: the sensor",
-     EventClass::kFault, WarningLevel::kWarning},
+    {EventKind::kSensorFault, "sensor_fault",
+     "A sensor timed out, is frozen, or has a wrong clock; subject: the sensor", EventClass::kFault,
+     WarningLevel::kWarning},
     {EventKind::kSensorRecovered, "sensor_recovered", "A sensor has recovered; subject: the sensor"},
-    {EventKind::kSensorFailed, "sensor_failed", "A required sensor did not recover: the mission is aborted", EventClass::kFault},
-    {EventKind::kFall, "fall", "The robot fell or rolled over: the mission is aborted", EventClass::kFault, WarningLevel::kAlarm},
+    {EventKind::kSensorFailed, "sensor_failed", "A required sensor did not recover: the mission is aborted",
+     EventClass::kFault},
+    {EventKind::kFall, "fall", "The robot fell or rolled over: the mission is aborted", EventClass::kFault,
+     WarningLevel::kAlarm},
 });
 static_assert(is_in_order(kEventKinds));
 
@@ -152,13 +158,15 @@ constexpr EventKind event_kind_named(std::string_view name) {
 
 /// Returns the kind of the event that reports a lining displacement of this level; kForeign for `kNone`.
 constexpr EventKind lining_event(WarningLevel level) {
-  constexpr std::array kKinds = {EventKind::kForeign, EventKind::kLiningNotice, EventKind::kLiningWarning, EventKind::kLiningAlarm};
+  constexpr std::array kKinds = {EventKind::kForeign, EventKind::kLiningNotice, EventKind::kLiningWarning,
+                                 EventKind::kLiningAlarm};
   return kKinds[static_cast<std::size_t>(level)];
 }
 
 /// Returns the kind of the event that reports water ahead at this level; kForeign for `kNone`.
 constexpr EventKind water_event(WarningLevel level) {
-  constexpr std::array kKinds = {EventKind::kForeign, EventKind::kWaterNotice, EventKind::kWaterWarning, EventKind::kWaterAlarm};
+  constexpr std::array kKinds = {EventKind::kForeign, EventKind::kWaterNotice, EventKind::kWaterWarning,
+                                 EventKind::kWaterAlarm};
   return kKinds[static_cast<std::size_t>(level)];
 }
 
@@ -169,10 +177,10 @@ constexpr EventKind water_event(WarningLevel level) {
 struct Event {
   Time stamp{};
   EventKind kind = EventKind::kForeign;
-  std::string subject = {};  ///< object of the event, e.g. "regulator_box_2"
-  std::string text = {};     ///< one sentence for a person
-  double value = 0.0;        ///< value of the quantity that the kind reports, e.g. ppm m
-  Pose2 T_map_body = {};     ///< estimated pose of the robot
+  std::string subject = {};                                ///< object of the event, e.g. "regulator_box_2"
+  std::string text = {};                                   ///< one sentence for a person
+  double value = 0.0;                                      ///< value of the quantity that the kind reports, e.g. ppm m
+  Pose2 T_map_body = {};                                   ///< estimated pose of the robot
   Eigen::Vector2d p_map_target = Eigen::Vector2d::Zero();  ///< position of the object in map, m; the robot's position
                                                            ///< if the event has no object
   std::string foreign_kind = {};  ///< text of a kind that is not in the table; empty for all others

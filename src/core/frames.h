@@ -1,9 +1,9 @@
 #pragma once
 
-#include <Eigen/Geometry>
-
 #include <cmath>
 #include <numbers>
+
+#include <Eigen/Geometry>
 
 /// Coordinate frames and rigid transforms.
 ///
@@ -68,7 +68,7 @@ struct Pose2 {
 
 /// Pose in space.
 struct Pose3 {
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();               ///< m
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();            ///< m
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< unit quaternion
 
   Pose3 inverse() const { return {rotation.conjugate() * -position, rotation.conjugate()}; }
@@ -92,15 +92,12 @@ inline Eigen::Quaterniond quaternion_from_yaw(double yaw_rad) {
 
 /// Returns the rotation Rz(yaw) Ry(pitch) Rx(roll), the convention of URDF and REP 103.
 inline Eigen::Quaterniond quaternion_from_rpy(double roll_rad, double pitch_rad, double yaw_rad) {
-  return Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ()) *
-         Eigen::AngleAxisd(pitch_rad, Eigen::Vector3d::UnitY()) *
+  return Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ()) * Eigen::AngleAxisd(pitch_rad, Eigen::Vector3d::UnitY()) *
          Eigen::AngleAxisd(roll_rad, Eigen::Vector3d::UnitX());
 }
 
 /// Projects a pose onto the ground plane: keeps x, y and yaw.
-inline Pose2 to_pose2(const Pose3& T_a_b) {
-  return {T_a_b.position.x(), T_a_b.position.y(), to_yaw(T_a_b.rotation)};
-}
+inline Pose2 to_pose2(const Pose3& T_a_b) { return {T_a_b.position.x(), T_a_b.position.y(), to_yaw(T_a_b.rotation)}; }
 
 inline Pose3 to_pose3(const Pose2& T_a_b, double z_m = 0.0) {
   return {{T_a_b.x, T_a_b.y, z_m}, quaternion_from_yaw(T_a_b.yaw)};

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
+
+#include <Eigen/Core>
 
 namespace patrol {
 
@@ -24,9 +24,7 @@ struct GridGeometry {
   int height = 0;  ///< number of rows
   Eigen::Vector2d origin_m = Eigen::Vector2d::Zero();
 
-  bool contains(Cell cell) const {
-    return cell.col >= 0 && cell.row >= 0 && cell.col < width && cell.row < height;
-  }
+  bool contains(Cell cell) const { return cell.col >= 0 && cell.row >= 0 && cell.col < width && cell.row < height; }
   /// Returns the cell that contains p; it may be outside the grid.
   Cell cell_at(const Eigen::Vector2d& p_m) const {
     return {static_cast<int>(std::floor((p_m.x() - origin_m.x()) / resolution_m)),
@@ -43,7 +41,8 @@ template <typename Value>
 class Grid {
  public:
   Grid() = default;
-  explicit Grid(const GridGeometry& geometry, Value fill = Value{}) : geometry_(geometry), values_(geometry.size(), fill) {}
+  explicit Grid(const GridGeometry& geometry, Value fill = Value{})
+      : geometry_(geometry), values_(geometry.size(), fill) {}
 
   const GridGeometry& geometry() const { return geometry_; }
   bool contains(Cell cell) const { return geometry_.contains(cell); }
@@ -54,7 +53,8 @@ class Grid {
 
  private:
   std::size_t index(Cell cell) const {
-    return static_cast<std::size_t>(cell.row) * static_cast<std::size_t>(geometry_.width) + static_cast<std::size_t>(cell.col);
+    return static_cast<std::size_t>(cell.row) * static_cast<std::size_t>(geometry_.width) +
+           static_cast<std::size_t>(cell.col);
   }
 
   GridGeometry geometry_;

@@ -40,8 +40,8 @@ std::optional<Eigen::Vector3d> joint_angles(const LegGeometry& leg, const Eigen:
                           (2.0 * leg.thigh_m * leg.shank_m);
   if (std::abs(cos_knee) > 1.0) return std::nullopt;
   const double knee = -std::acos(cos_knee);
-  const double hip = std::atan2(-p.x(), -z) -
-                     std::atan2(leg.shank_m * std::sin(knee), leg.thigh_m + leg.shank_m * std::cos(knee));
+  const double hip =
+      std::atan2(-p.x(), -z) - std::atan2(leg.shank_m * std::sin(knee), leg.thigh_m + leg.shank_m * std::cos(knee));
   return Eigen::Vector3d(std::remainder(abduction, 2.0 * M_PI), hip, knee);
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <optional>
+
+#include <Eigen/Core>
 
 #include "core/robot_description.h"
 

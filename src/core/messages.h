@@ -1,11 +1,11 @@
 #pragma once
 
-#include <Eigen/Geometry>
-
 #include <cstdint>
 #include <string>
 #include <variant>
 #include <vector>
+
+#include <Eigen/Geometry>
 
 #include "core/event.h"
 #include "core/frames.h"
@@ -56,7 +56,7 @@ using InstrumentCommand = std::variant<ScanCommand, AntennaCommand, SoundingComm
 struct OdometryEstimate {
   Time stamp{};
   Pose3 T_odom_body;
-  Twist3 twist;  ///< twist of the body, in body
+  Twist3 twist;                                                 ///< twist of the body, in body
   Eigen::Matrix3d planar_covariance = Eigen::Matrix3d::Zero();  ///< covariance of x, y, yaw in odom; m, m, rad
 };
 
@@ -73,10 +73,10 @@ struct UwbPoseEstimate : PoseEstimate {};
 /// Self-assessment of the localization: its confidence and whether it is lost.
 struct LocalizationConfidence {
   Time stamp{};
-  double confidence = 0.0;          ///< confidence: 0 lost ... 1 certain
-  double max_std_m = 0.0;     ///< largest principal standard deviation of the position
+  double confidence = 0.0;             ///< confidence: 0 lost ... 1 certain
+  double max_std_m = 0.0;              ///< largest principal standard deviation of the position
   double max_std_direction_rad = 0.0;  ///< direction of `max_std_m`, in map, -pi/2 ... pi/2
-  bool is_lost = false;        ///< true when localization has reported failure
+  bool is_lost = false;                ///< true when localization has reported failure
 };
 
 struct ParticleSet {

@@ -8,8 +8,9 @@
 
 #include "core/error.h"
 
-/// Tables of named choices: enumerators with their texts, algorithms with their factories. Each family has one table. Parsing, JSON,
-/// settings validation (`one_of` of core/settings.h) and documentation (`patrol list`) derive from that table.
+/// Tables of named choices: enumerators with their texts, algorithms with their factories. Each family has one table.
+/// Parsing, JSON, settings validation (`one_of` of core/settings.h) and documentation (`patrol list`) derive from that
+/// table.
 namespace patrol {
 
 /// Row of a table of enumerators.
@@ -35,7 +36,8 @@ concept NamedTable = std::ranges::forward_range<const Table> && requires(const T
   { std::ranges::begin(table)->summary } -> std::convertible_to<std::string_view>;
 };
 
-/// Whether row i holds the enumerator of value i: precondition of `row_of`. For use in a static_assert next to the table.
+/// Whether row i holds the enumerator of value i: precondition of `row_of`. For use in a static_assert next to the
+/// table.
 template <NamedTable Table>
 constexpr bool is_in_order(const Table& table) {
   std::size_t index = 0;

@@ -25,7 +25,8 @@ std::vector<std::size_t> systematic_parents(const std::vector<double>& weights, 
   return systematic_parents(weights, uniform, weights.size());
 }
 
-std::vector<std::size_t> systematic_parents(const std::vector<double>& weights, double uniform, std::size_t num_children) {
+std::vector<std::size_t> systematic_parents(const std::vector<double>& weights, double uniform,
+                                            std::size_t num_children) {
   std::vector<std::size_t> parents(num_children);
   const double spacing = 1.0 / static_cast<double>(num_children);
   std::size_t parent = 0;

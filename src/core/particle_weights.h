@@ -17,6 +17,7 @@ double effective_sample_size(const std::vector<double>& weights);
 /// children.
 std::vector<std::size_t> systematic_parents(const std::vector<double>& weights, double uniform);
 /// Systematic resampling with a given number of new particles.
-std::vector<std::size_t> systematic_parents(const std::vector<double>& weights, double uniform, std::size_t num_children);
+std::vector<std::size_t> systematic_parents(const std::vector<double>& weights, double uniform,
+                                            std::size_t num_children);
 
 }  // namespace patrol

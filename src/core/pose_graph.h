@@ -1,9 +1,9 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <cstdint>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "core/frames.h"
 

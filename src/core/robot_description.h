@@ -1,13 +1,13 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <algorithm>
 #include <map>
 #include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "core/error.h"
 #include "core/frames.h"
@@ -17,9 +17,9 @@ namespace patrol {
 /// Geometry of a leg with three joints (abduction about x, hip about y, knee about y); all lengths are from the URDF.
 /// Left legs have positive `abduction_offset_m`.
 struct LegGeometry {
-  std::string name;                                             ///< "FL", "FR", "RL", "RR"
+  std::string name;                                       ///< "FL", "FR", "RL", "RR"
   Eigen::Vector3d hip_in_body = Eigen::Vector3d::Zero();  ///< position of the abduction axis in body, m
-  double abduction_offset_m = 0.0;  ///< distance from the abduction axis to the thigh along y
+  double abduction_offset_m = 0.0;                        ///< distance from the abduction axis to the thigh along y
   double thigh_m = 0.0;
   double shank_m = 0.0;
   double foot_radius_m = 0.0;
@@ -58,13 +58,13 @@ struct AntennaGeometry {
 struct RobotDescription {
   std::string name;
   double mass_kg = 0.0;
-  std::vector<LegGeometry> legs;          ///< FL, FR, RL, RR; empty for a robot without legs
-  std::optional<TrackGeometry> tracks;    ///< tracked robots only
-  std::optional<AntennaGeometry> antenna;    ///< robots with a link `tem_mount` only
+  std::vector<LegGeometry> legs;           ///< FL, FR, RL, RR; empty for a robot without legs
+  std::optional<TrackGeometry> tracks;     ///< tracked robots only
+  std::optional<AntennaGeometry> antenna;  ///< robots with a link `tem_mount` only
   /// Leg by leg: abduction, hip, knee; for tracked robots the sprockets: left, right.
   std::vector<std::string> joint_names;
-  std::vector<JointLimit> joint_limits;   ///< [joint]
-  std::vector<Eigen::Vector2d> footprint_m;    ///< convex hull of the collision shapes in level, counterclockwise
+  std::vector<JointLimit> joint_limits;      ///< [joint]
+  std::vector<Eigen::Vector2d> footprint_m;  ///< convex hull of the collision shapes in level, counterclockwise
   /// Poses of the fixed frames: "lidar", "lidar3d", "imu", "tdlas", "gnss", "uwb", "scanner", "tem_mount",
   /// "depth_camera", "ultrasonic_0", "ultrasonic_1" ...
   std::map<std::string, Pose3> T_body_sensor;

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -9,6 +7,8 @@
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "core/frames.h"
 #include "core/named_table.h"
@@ -48,9 +48,9 @@ struct Station {
   int number = 0;
   std::string name;  ///< e.g. "regulator_box_2"
   StationType type = StationType::kInspect;
-  Pose2 T_route_body;  ///< pose of the robot at the station
+  Pose2 T_route_body;                                        ///< pose of the robot at the station
   Eigen::Vector3d p_route_target = Eigen::Vector3d::Zero();  ///< target point of the instrument, m
-  double accuracy_m = 0.2;  ///< position tolerance at the station
+  double accuracy_m = 0.2;                                   ///< position tolerance at the station
   int priority = 0;         ///< lower values are visited first if the robot orders the stations itself
   double earliest_s = 0.0;  ///< start of the time window since mission start: no work before it
   /// End of the time window since mission start; a soft limit.

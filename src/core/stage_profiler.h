@@ -14,9 +14,7 @@ class StageProfiler {
   class ScopedTimer {
    public:
     explicit ScopedTimer(double& total_s) : total_s_(total_s), start_(std::chrono::steady_clock::now()) {}
-    ~ScopedTimer() {
-      total_s_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    }
+    ~ScopedTimer() { total_s_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
     ScopedTimer(const ScopedTimer&) = delete;
     ScopedTimer& operator=(const ScopedTimer&) = delete;
 

@@ -15,7 +15,8 @@ constexpr int kMaxOrder = 40;
 
 using Complex = std::complex<double>;
 
-// Modified spherical Bessel functions i_n (finite at the origin) and k_n (decaying, here with k_0 = e^-x / x), n = 0 ... order + 1.
+// Modified spherical Bessel functions i_n (finite at the origin) and k_n (decaying, here with k_0 = e^-x / x), n = 0
+// ... order + 1.
 using Orders = std::array<Complex, kMaxOrder + 2>;
 
 /// Computes i_n by downward recurrence (Miller), because upward recurrence loses all digits; scaled with i_0 = sinh(x)
@@ -80,8 +81,10 @@ Field sphere_field(double rock_spm, const ConductiveSphere& sphere, int order, C
     const double m = order_n;
     const Complex in2 = x2 * i2[n + 1], in1 = x1 * i1[n + 1], out1 = x1 * k1[n - 1];
     const Complex te = -(i1[n] * in2 - i2[n] * in1) / (k1[n] * (in2 + (2.0 * m + 1.0) * i2[n]) + i2[n] * out1);
-    const Complex slope_i1 = in1 + (m + 1.0) * i1[n], slope_i2 = in2 + (m + 1.0) * i2[n], slope_k1 = -out1 - m * k1[n];  // (x i_n)' ...
-    const Complex tm = -(i1[n] * slope_i2 * resistance - i2[n] * slope_i1) / (k1[n] * slope_i2 * resistance - i2[n] * slope_k1);
+    const Complex slope_i1 = in1 + (m + 1.0) * i1[n], slope_i2 = in2 + (m + 1.0) * i2[n],
+                  slope_k1 = -out1 - m * k1[n];  // (x i_n)' ...
+    const Complex tm =
+        -(i1[n] * slope_i2 * resistance - i2[n] * slope_i1) / (k1[n] * slope_i2 * resistance - i2[n] * slope_k1);
     const Complex slope_k = k[n - 1] + m * k[n] / x, k_squared = k[n] * k[n];
     field.axial += (2.0 * m + 1.0) * m * (m + 1.0) * te * k_squared;
     field.transverse += (m + 0.5) * (te * slope_k * slope_k - tm * k_squared);
@@ -116,7 +119,8 @@ std::array<ContourPoint, 6> talbot_contour() {
 struct Quadrature {
   double at, weight;
 };
-constexpr std::array<Quadrature, 3> kGauss3 = {{{0.11270166537925831, 5.0 / 18.0}, {0.5, 4.0 / 9.0}, {0.88729833462074169, 5.0 / 18.0}}};
+constexpr std::array<Quadrature, 3> kGauss3 = {
+    {{0.11270166537925831, 5.0 / 18.0}, {0.5, 4.0 / 9.0}, {0.88729833462074169, 5.0 / 18.0}}};
 constexpr std::array<Quadrature, 5> kGauss5 = {{{0.04691007703066800, 0.11846344252809454},
                                                 {0.23076534494715845, 0.23931433524968324},
                                                 {0.5, 0.28444444444444444},
@@ -161,8 +165,8 @@ TemGates::TemGates(const TemGateLayout& window) {
         for (int i = 0; i < 4; ++i) {
           double lagrange = 1.0;
           for (int j = 0; j < 4; ++j) lagrange *= i == j ? 1.0 : (position - base - j) / (i - j);
-          weights_(gate, base + i) +=
-              width.weight * ramp.weight * lagrange * std::pow(node_s_[static_cast<std::size_t>(base + i)] / time_s, 2.5);
+          weights_(gate, base + i) += width.weight * ramp.weight * lagrange *
+                                      std::pow(node_s_[static_cast<std::size_t>(base + i)] / time_s, 2.5);
         }
       }
     }
@@ -171,7 +175,8 @@ TemGates::TemGates(const TemGateLayout& window) {
 
 Eigen::VectorXd gated_whole_space_response(const TemGates& gates, double rock_spm) {
   Eigen::VectorXd rate(static_cast<Eigen::Index>(gates.node_s().size()));
-  for (Eigen::Index node = 0; node < rate.size(); ++node) rate[node] = whole_space_response(rock_spm, gates.node_s()[static_cast<std::size_t>(node)]);
+  for (Eigen::Index node = 0; node < rate.size(); ++node)
+    rate[node] = whole_space_response(rock_spm, gates.node_s()[static_cast<std::size_t>(node)]);
   return gates.gated(rate);
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <vector>
+
+#include <Eigen/Core>
 
 /// Response model of transient-electromagnetic (TEM) soundings of rock and water, used by the simulator and by the
 /// inversion. The coil is a magnetic dipole that transmits and receives at the same point. Its current, long since
@@ -44,7 +44,7 @@ SphereResponse sphere_response(double rock_spm, const ConductiveSphere& sphere, 
 struct TemGateLayout {
   std::vector<double> gate_s;  ///< [gate]: geometric mean of the gate limits, after the end of the ramp
   double ramp_s = 2.6e-6;
-  double gate_width = 0.15;    ///< ratio of gate width to gate center
+  double gate_width = 0.15;  ///< ratio of gate width to gate center
 };
 
 /// Gate averages as weighted sums over the decay at a few nodes. Evaluating the decay is expensive, and all gates share

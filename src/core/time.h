@@ -12,8 +12,6 @@ using Time = std::chrono::nanoseconds;
 
 constexpr double to_seconds(Time time) { return static_cast<double>(time.count()) * 1e-9; }
 
-inline Time from_seconds(double seconds) {
-  return Time{static_cast<std::int64_t>(std::llround(seconds * 1e9))};
-}
+inline Time from_seconds(double seconds) { return Time{static_cast<std::int64_t>(std::llround(seconds * 1e9))}; }
 
 }  // namespace patrol

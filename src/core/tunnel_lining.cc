@@ -57,7 +57,8 @@ TunnelCoordinates TunnelLining::to_tunnel_coordinates(const Eigen::Vector3d& p_r
       left_m = radius_m - sign * std::hypot(p.x(), radius_m - p.y());
     }
     const bool is_first = i == 0, is_last = i + 1 == axis.size();
-    const double before_m = is_first ? 0.0 : std::max(0.0, -distance_m), after_m = is_last ? 0.0 : std::max(0.0, distance_m - length_m);
+    const double before_m = is_first ? 0.0 : std::max(0.0, -distance_m),
+                 after_m = is_last ? 0.0 : std::max(0.0, distance_m - length_m);
     if (const double outside_m = before_m + after_m + std::abs(left_m) * 1e-9; outside_m < min_outside_m) {
       min_outside_m = outside_m;
       nearest.chainage_m = begin_m + distance_m;

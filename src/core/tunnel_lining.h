@@ -1,8 +1,8 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "core/frames.h"
 
@@ -27,14 +27,14 @@ struct TunnelCoordinates {
 /// Clock positions are for a viewer who looks along the axis. 0 deg is the crown (12 o'clock). 90 deg (3 o'clock) is
 /// the right wall at the height of the center of the half circle, 270 deg the left wall.
 struct TunnelLining {
-  Pose2 T_route_start;              ///< pose of the axis at chainage 0, x along the axis, in the frame of the route
-  std::vector<AxisElement> axis;    ///< extrapolated beyond both ends with the curvature there
+  Pose2 T_route_start;            ///< pose of the axis at chainage 0, x along the axis, in the frame of the route
+  std::vector<AxisElement> axis;  ///< extrapolated beyond both ends with the curvature there
   double crown_radius_m = 0.0;
-  double crown_center_m = 0.0;      ///< height of the center of the half circle
-  double side_radius_m = 0.0;       ///< radius of the side walls below the half circle
-  double first_ring_m = 0.0;        ///< chainage at the start of ring 1
+  double crown_center_m = 0.0;  ///< height of the center of the half circle
+  double side_radius_m = 0.0;   ///< radius of the side walls below the half circle
+  double first_ring_m = 0.0;    ///< chainage at the start of ring 1
   double ring_length_m = 0.0;
-  int rings = 0;                    ///< number of rings, numbered from 1
+  int rings = 0;  ///< number of rings, numbered from 1
 
   /// Returns the point at a chainage and an offset to the left, in the frame of the route.
   Eigen::Vector2d point_at(double chainage_m, double left_m) const;

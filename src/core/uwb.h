@@ -1,10 +1,10 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <algorithm>
 #include <cmath>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "core/frames.h"
 
@@ -45,13 +45,14 @@ inline UwbBias uwb_bias_at(const UwbCalibration& calibration, double distance_m)
 
 /// Returns the antenna position in `level`, raised by the height of the body above the origin of map. Roll and pitch
 /// are from odometry; the pose hypothesis provides x, y and yaw.
-inline Eigen::Vector3d uwb_antenna_in_level(const Eigen::Quaterniond& R_odom_body, const Pose3& T_body_uwb, double z_m) {
+inline Eigen::Vector3d uwb_antenna_in_level(const Eigen::Quaterniond& R_odom_body, const Pose3& T_body_uwb,
+                                            double z_m) {
   const Eigen::Quaterniond tilt = quaternion_from_yaw(-to_yaw(R_odom_body)) * R_odom_body;
   return tilt * T_body_uwb.position + Eigen::Vector3d(0.0, 0.0, z_m);
 }
 
 struct PredictedRange {
-  double range_m = 0.0;                               ///< predicted reading, including the bias
+  double range_m = 0.0;                              ///< predicted reading, including the bias
   Eigen::Vector3d H_pose = Eigen::Vector3d::Zero();  ///< gradient with respect to x, y (m/m) and yaw (m/rad)
   double H_z = 0.0;                                  ///< derivative with respect to the height of the body
 };

@@ -14,8 +14,8 @@
 #include <fmt/format.h>
 #include <urdf_parser/urdf_parser.h>
 
-#include "core/geometry/convex_polygon.h"
 #include "core/error.h"
+#include "core/geometry/convex_polygon.h"
 #include "core/leg_kinematics.h"
 #include "io/files/atomic_file.h"
 
@@ -174,11 +174,12 @@ void UrdfReader::check_inertias() const {
     const urdf::Inertial& i = *link->inertial;
     Eigen::Matrix3d inertia;
     inertia << i.ixx, i.ixy, i.ixz, i.ixy, i.iyy, i.iyz, i.ixz, i.iyz, i.izz;
-    const Eigen::Vector3d moments = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertia, Eigen::EigenvaluesOnly).eigenvalues();
+    const Eigen::Vector3d moments =
+        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertia, Eigen::EigenvaluesOnly).eigenvalues();
     constexpr double kRounding = 1e-4;  // files have few digits
     if (moments[0] > 0.0 && moments[2] <= (moments[0] + moments[1]) * (1.0 + kRounding)) continue;
-    fail(name, fmt::format("invalid inertia: principal moments {:.3g}, {:.3g} and {:.3g} kg m2", moments[0],
-                           moments[1], moments[2]));
+    fail(name, fmt::format("invalid inertia: principal moments {:.3g}, {:.3g} and {:.3g} kg m2", moments[0], moments[1],
+                           moments[2]));
   }
 }
 
@@ -290,7 +291,8 @@ std::vector<Eigen::Vector2d> UrdfReader::read_footprint(const RobotDescription& 
     if (!robot.tracks) break;
     for (const Wheel& wheel : read_wheels(track)) {
       for (const double x : {-wheel.radius_m, wheel.radius_m}) {
-        for (const double y : {-0.5, 0.5}) points.emplace_back(wheel.center_m.head<2>() + Eigen::Vector2d(x, y * wheel.width_m));
+        for (const double y : {-0.5, 0.5})
+          points.emplace_back(wheel.center_m.head<2>() + Eigen::Vector2d(x, y * wheel.width_m));
       }
     }
   }
@@ -309,7 +311,8 @@ void UrdfReader::read_legs(RobotDescription& robot) const {
 
 void UrdfReader::read_tracks(RobotDescription& robot) const {
   const std::vector<Wheel> left = read_wheels(kTrackNames[0]), right = read_wheels(kTrackNames[1]);
-  if (left.size() < 2 || left.size() != right.size()) fail(kTrackNames[0], "must have at least two wheels, as many as the other track");
+  if (left.size() < 2 || left.size() != right.size())
+    fail(kTrackNames[0], "must have at least two wheels, as many as the other track");
   for (const char* side : kSideNames) {
     robot.joint_names.push_back(side + std::string("_sprocket_joint"));
     robot.joint_limits.push_back(read_limit(robot.joint_names.back()));
@@ -327,15 +330,19 @@ AntennaGeometry UrdfReader::read_antenna() const {
   const auto check = [this](const char* name, const Eigen::Vector3d& axis) {
     const urdf::JointConstSharedPtr found = joint(name);
     const Eigen::Vector3d found_axis(found->axis.x, found->axis.y, found->axis.z);
-    if (found->type != urdf::Joint::REVOLUTE || (found_axis - axis).norm() > 1e-9) fail(name, "must be revolute, yaw about z, pitch about y");
+    if (found->type != urdf::Joint::REVOLUTE || (found_axis - axis).norm() > 1e-9)
+      fail(name, "must be revolute, yaw about z, pitch about y");
     const Pose3 origin = joint_origin(name);
-    if (origin.position.norm() > 1e-9 || origin.rotation.vec().norm() > 1e-9) fail(name, "must have no <origin>: the axes of the antenna intersect in the center of the coil");
+    if (origin.position.norm() > 1e-9 || origin.rotation.vec().norm() > 1e-9)
+      fail(name, "must have no <origin>: the axes of the antenna intersect in the center of the coil");
   };
   check("tem_yaw_joint", Eigen::Vector3d::UnitZ());
   check("tem_pitch_joint", Eigen::Vector3d::UnitY());
-  const AntennaGeometry mount{
-      .T_body_mount = joint_origin("tem_mount_joint"), .yaw = read_limit("tem_yaw_joint"), .pitch = read_limit("tem_pitch_joint")};
-  if (mount.pitch.lower_rad >= mount.stowed_pitch_rad) fail("tem_pitch_joint", "lower limit must reach -90 degrees, the stowed pitch");
+  const AntennaGeometry mount{.T_body_mount = joint_origin("tem_mount_joint"),
+                              .yaw = read_limit("tem_yaw_joint"),
+                              .pitch = read_limit("tem_pitch_joint")};
+  if (mount.pitch.lower_rad >= mount.stowed_pitch_rad)
+    fail("tem_pitch_joint", "lower limit must reach -90 degrees, the stowed pitch");
   return mount;
 }
 
@@ -347,11 +354,13 @@ RobotDescription UrdfReader::read() const {
     if (link->inertial && link->inertial->mass <= 0.0) fail(name, "mass must be positive");
     const bool moves = link->parent_joint && link->parent_joint->type != urdf::Joint::FIXED;
     if (moves && !link->inertial) fail(name, "<inertial> is missing: required for a moving link");
-    if (link->parent_joint && link->parent_joint->type == urdf::Joint::FIXED && link->parent_joint->parent_link_name == frame_id::kBody) {
+    if (link->parent_joint && link->parent_joint->type == urdf::Joint::FIXED &&
+        link->parent_joint->parent_link_name == frame_id::kBody) {
       robot.T_body_sensor[name] = to_pose(link->parent_joint->parent_to_joint_origin_transform);
     }
   }
-  if (!model_->getLink(frame_id::kBody)) throw InputError(fmt::format("{}: link not found: {}", path_, frame_id::kBody));
+  if (!model_->getLink(frame_id::kBody))
+    throw InputError(fmt::format("{}: link not found: {}", path_, frame_id::kBody));
   if (model_->getLink(kTrackNames[0])) {
     read_tracks(robot);
   } else {

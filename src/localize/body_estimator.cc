@@ -14,9 +14,9 @@ constexpr double kMovingJoint_radps = 0.2;
 constexpr Time kMaxContactAge = std::chrono::milliseconds(20);
 constexpr Time kContactTimeout = std::chrono::milliseconds(8);
 constexpr Time kLegTimeout = std::chrono::milliseconds(100);
-constexpr double kLegVelocityLimitStd_mps = 0.5;        // bound on the velocity error without legs
-constexpr double kGeometricWeight = 0.1;     // weight of a stance foot selected by its height
-constexpr double kHeightTime_s = 0.1;       // smoothing of the height above ground
+constexpr double kLegVelocityLimitStd_mps = 0.5;  // bound on the velocity error without legs
+constexpr double kGeometricWeight = 0.1;          // weight of a stance foot selected by its height
+constexpr double kHeightTime_s = 0.1;             // smoothing of the height above ground
 
 LegSample leg_sample(const JointState& joints) {
   LegSample sample{.stamp = joints.stamp};
@@ -55,11 +55,12 @@ const BodyEstimatorSettings& checked(const BodyEstimatorSettings& settings) {
 BodyEstimator::BodyEstimator(const RobotDescription& robot, const BodyEstimatorSettings& settings)
     : robot_(robot),
       settings_(checked(settings)),
-      imu_(imu_pose(robot), {.standstill = {.window_s = settings.standstill_window_s,
-                                            .gyro_noise_density_radps_per_sqrt_hz = settings.gyro_noise_density_radps_per_sqrt_hz,
-                                            .foot_std_m = settings.standstill_foot_std_m},
-                             .buffer_s = settings.buffer_s,
-                             .max_extrapolation_s = settings.max_extrapolation_s}),
+      imu_(imu_pose(robot),
+           {.standstill = {.window_s = settings.standstill_window_s,
+                           .gyro_noise_density_radps_per_sqrt_hz = settings.gyro_noise_density_radps_per_sqrt_hz,
+                           .foot_std_m = settings.standstill_foot_std_m},
+            .buffer_s = settings.buffer_s,
+            .max_extrapolation_s = settings.max_extrapolation_s}),
       contact_({.contact_on_n = settings.contact_on_force_n,
                 .contact_off_n = settings.contact_off_force_n,
                 .full_weight_n = settings.full_weight_force_n,
@@ -96,10 +97,9 @@ void BodyEstimator::add(const JointState& joints) {
 }
 
 void BodyEstimator::add(const FootContacts& contacts) {
-  const bool is_finite = std::all_of(contacts.force_n.begin(), contacts.force_n.end(),
-                                     [](double f) { return std::isfinite(f); });
-  if (contacts.force_n.size() != kNumLegs || !is_finite ||
-      (last_contacts_ && contacts.stamp <= *last_contacts_)) {
+  const bool is_finite =
+      std::all_of(contacts.force_n.begin(), contacts.force_n.end(), [](double f) { return std::isfinite(f); });
+  if (contacts.force_n.size() != kNumLegs || !is_finite || (last_contacts_ && contacts.stamp <= *last_contacts_)) {
     imu_.reject();
     return;
   }
@@ -118,7 +118,9 @@ void BodyEstimator::add(const FootContacts& contacts) {
 }
 
 void BodyEstimator::advance(Time stamp, const InertialSample& sample) {
-  const auto make_filter = [this](const InertialSample& first) { return InertialFilter(filter_settings(settings_), first); };
+  const auto make_filter = [this](const InertialSample& first) {
+    return InertialFilter(filter_settings(settings_), first);
+  };
   if (imu_.advance(stamp, sample, make_filter) == ImuFrontEnd<InertialFilter>::Step::kIgnored) return;
   imu_.remember();
   if (last_leg_update_ && imu_.now() - *last_leg_update_ > kLegTimeout) limit_velocity();
@@ -157,8 +159,8 @@ void BodyEstimator::use_legs(const LegSample& sample) {
   }
   contacts_timed_out_ = !sample.weights;
   const StanceFeet feet = stance_feet(sample);
-  const std::optional<LegVelocity> legs = fuse_feet(
-      feet, then->omega_body, then->v_body, settings_.foot_velocity_std_mps, settings_.slip_speed_mps);
+  const std::optional<LegVelocity> legs =
+      fuse_feet(feet, then->omega_body, then->v_body, settings_.foot_velocity_std_mps, settings_.slip_speed_mps);
   if (!legs) return;
   num_slips_ += static_cast<std::uint64_t>(legs->num_slipping);
   imu_.filter()->correct_velocity(legs->v_body - then->v_body, legs->p_contact, legs->variance);
@@ -202,8 +204,7 @@ StanceFeet BodyEstimator::lowest_feet(const LegSample& sample) const {
   return lowest;
 }
 
-void BodyEstimator::measure_standstill(const LegSample& sample, const TrunkMotion& then,
-                                       const StanceFeet& feet) {
+void BodyEstimator::measure_standstill(const LegSample& sample, const TrunkMotion& then, const StanceFeet& feet) {
   if (imu_.has_timed_out() || !sample.weights || feet.count < kNumLegs) {
     imu_.bias_estimator().reset();
     return;
@@ -217,7 +218,8 @@ void BodyEstimator::measure_standstill(const LegSample& sample, const TrunkMotio
 // The velocity of the IMU alone diverges; that of a walking robot is bounded.
 void BodyEstimator::limit_velocity() {
   if (!imu_.is_velocity_limit_due(kLegTimeout)) return;
-  imu_.filter()->correct_velocity(-imu_.filter()->motion().v_body, Eigen::Vector3d::Zero(), kLegVelocityLimitStd_mps * kLegVelocityLimitStd_mps);
+  imu_.filter()->correct_velocity(-imu_.filter()->motion().v_body, Eigen::Vector3d::Zero(),
+                                  kLegVelocityLimitStd_mps * kLegVelocityLimitStd_mps);
   imu_.remember();
 }
 

@@ -14,13 +14,13 @@ struct BodyEstimatorSettings {
   double accel_bias_std_mps2 = 0.05;                  ///< standard deviation of the bias at power-on
   double accel_bias_random_walk_mps2_per_sqrt_s = 1e-3;
   // Legs.
-  double contact_on_force_n = 15.0;           ///< contact starts above this force
-  double contact_off_force_n = 8.0;           ///< contact ends below this force
-  double full_weight_force_n = 30.0;          ///< full weight above this force, proportional to the force below
-  double contact_settling_time_s = 0.012;     ///< time after touch-down before a foot is used
-  double foot_velocity_std_mps = 0.06;        ///< standard deviation of the velocity of a stance foot
-  double slip_speed_mps = 0.15;               ///< a foot with a larger difference from the IMU prediction is down-weighted
-  double stance_height_tolerance_m = 0.012;   ///< without foot sensors: feet up to this above the lowest are in stance
+  double contact_on_force_n = 15.0;        ///< contact starts above this force
+  double contact_off_force_n = 8.0;        ///< contact ends below this force
+  double full_weight_force_n = 30.0;       ///< full weight above this force, proportional to the force below
+  double contact_settling_time_s = 0.012;  ///< time after touch-down before a foot is used
+  double foot_velocity_std_mps = 0.06;     ///< standard deviation of the velocity of a stance foot
+  double slip_speed_mps = 0.15;            ///< a foot with a larger difference from the IMU prediction is down-weighted
+  double stance_height_tolerance_m = 0.012;  ///< without foot sensors: feet up to this above the lowest are in stance
   // Standstill.
   double standstill_window_s = 1.0;     ///< window of one gyro bias measurement
   double standstill_foot_std_m = 3e-5;  ///< standard deviation of a foot position at rest

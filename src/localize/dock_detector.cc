@@ -1,14 +1,13 @@
 #include "localize/dock_detector.h"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/Geometry>
-#include <Eigen/LU>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <fmt/format.h>
 
 #include "core/error.h"
@@ -18,9 +17,9 @@
 namespace patrol::localize {
 namespace {
 
-constexpr double kCutoffSigma = 4.0;       // cutoff of a beam error in standard deviations
-constexpr double kCoarseWidth_m = 0.2;    // cutoff of the support during the coarse search
-constexpr int kCoarseSteps = 2;           // coarse steps to each side of the expected pose
+constexpr double kCutoffSigma = 4.0;    // cutoff of a beam error in standard deviations
+constexpr double kCoarseWidth_m = 0.2;  // cutoff of the support during the coarse search
+constexpr int kCoarseSteps = 2;         // coarse steps to each side of the expected pose
 constexpr std::size_t kNumCandidates = 4;
 constexpr double kFineStep_m = 0.02;
 constexpr double kFinest_m = 0.0005;
@@ -61,7 +60,9 @@ std::optional<DockDetection> DockDetector::detect(const LevelScan& scan, const P
   return detection;
 }
 
-double DockDetector::max_beam_distance_m() const { return radius_m_ + settings_.search_m * std::sqrt(2.0) + settings_.end_clearance_m; }
+double DockDetector::max_beam_distance_m() const {
+  return radius_m_ + settings_.search_m * std::sqrt(2.0) + settings_.end_clearance_m;
+}
 
 // Returns the beams that could hit the post anywhere in the search range, and those that pass its ends.
 std::vector<DockDetector::Beam> DockDetector::beams_about(const LevelScan& scan, const Pose2& T_level_expected) const {
@@ -74,7 +75,8 @@ std::vector<DockDetector::Beam> DockDetector::beams_about(const LevelScan& scan,
     const Eigen::Vector2d direction = along / range_m;
     const double ahead_m = direction.dot(to_post);
     const double aside_m = std::abs(direction.x() * to_post.y() - direction.y() * to_post.x());
-    if (ahead_m > -max_beam_distance_m() && aside_m < max_beam_distance_m()) beams.push_back({direction, range_m, beam.is_hit});
+    if (ahead_m > -max_beam_distance_m() && aside_m < max_beam_distance_m())
+      beams.push_back({direction, range_m, beam.is_hit});
   }
   return beams;
 }
@@ -105,8 +107,8 @@ double DockDetector::cast(const Eigen::Vector2d& origin, const Eigen::Vector2d& 
   return nearest;
 }
 
-double DockDetector::support(const std::vector<Beam>& beams, const Eigen::Vector2d& origin_m, const Pose2& T_level_docked,
-                             double width_m) const {
+double DockDetector::support(const std::vector<Beam>& beams, const Eigen::Vector2d& origin_m,
+                             const Pose2& T_level_docked, double width_m) const {
   const Pose2 T_docked_level = T_level_docked.inverse();
   const Eigen::Vector2d origin = T_docked_level * origin_m;
   const double c = std::cos(T_docked_level.yaw), s = std::sin(T_docked_level.yaw);
@@ -202,15 +204,14 @@ std::optional<Eigen::Matrix3d> DockDetector::covariance(const std::vector<Beam>&
   // Transform from search coordinates to x, y, yaw of the docked body: a rotation about the center moves it.
   const Eigen::Vector2d arm = fit.T_level_docked.position() - fit.T_level_docked * middle_m_;
   Eigen::Matrix3d J;
-  J << 1.0, 0.0, -kRadPerMeter * arm.y(),
-       0.0, 1.0, kRadPerMeter * arm.x(),
-       0.0, 0.0, kRadPerMeter;
+  J << 1.0, 0.0, -kRadPerMeter * arm.y(), 0.0, 1.0, kRadPerMeter * arm.x(), 0.0, 0.0, kRadPerMeter;
   return J * information.inverse() * J.transpose();
 }
 
 /// Evaluates a detection: inlier ratio over the predicted beams, with free space next to the post. Sets the quality
 /// fields and returns whether the detection is accepted.
-bool DockDetector::accept(const std::vector<Beam>& beams, const Eigen::Vector2d& origin_m, DockDetection& detection) const {
+bool DockDetector::accept(const std::vector<Beam>& beams, const Eigen::Vector2d& origin_m,
+                          DockDetection& detection) const {
   const Pose2 T_docked_level = detection.T_level_docked.inverse();
   const Eigen::Vector2d origin = T_docked_level * origin_m;
   const double width_m = kCutoffSigma * settings_.range_std_m;

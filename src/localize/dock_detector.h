@@ -49,7 +49,8 @@ class DockDetector {
   Pose2 step_pose(const Pose2& T_level_docked, int axis, double step_m) const;
   Fit search(const std::vector<Beam>& beams, const Eigen::Vector2d& origin_m, const Pose2& T_level_expected) const;
   Fit refine(const std::vector<Beam>& beams, const Eigen::Vector2d& origin_m, const Pose2& T_level_docked) const;
-  void climb(const std::vector<Beam>& beams, const Eigen::Vector2d& origin_m, double width_m, double step_m, Fit& fit) const;
+  void climb(const std::vector<Beam>& beams, const Eigen::Vector2d& origin_m, double width_m, double step_m,
+             Fit& fit) const;
   std::optional<Eigen::Matrix3d> covariance(const std::vector<Beam>& beams, const Eigen::Vector2d& origin_m,
                                             const Fit& fit) const;
   bool accept(const std::vector<Beam>& beams, const Eigen::Vector2d& origin_m, DockDetection& detection) const;

@@ -4,7 +4,8 @@
 
 namespace patrol::localize {
 
-/// Detects a sensor whose readings no longer change: noise never repeats a reading many times in a row while the robot moves.
+/// Detects a sensor whose readings no longer change: noise never repeats a reading many times in a row while the robot
+/// moves.
 template <int kSize>
 class FrozenReadings {
  public:

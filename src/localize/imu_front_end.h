@@ -114,14 +114,14 @@ class ImuFrontEnd {
   std::optional<Filter>& filter() { return filter_; }
   const std::optional<Filter>& filter() const { return filter_; }
   StationaryGyroBiasEstimator& bias_estimator() { return bias_estimator_; }
-  Time now() const { return now_; }              ///< stamp of the filter state
+  Time now() const { return now_; }                      ///< stamp of the filter state
   bool has_timed_out() const { return has_timed_out_; }  ///< the last step of the filter was without the IMU
 
   void reject() { ++num_rejected_messages_; }
   std::uint64_t num_rejected_messages() const { return num_rejected_messages_; }
 
  private:
-  static constexpr double kMaxStartAcceleration_mps2 = 1.0;  // the initial tilt is that of gravity alone
+  static constexpr double kMaxStartAcceleration_mps2 = 1.0;        // the initial tilt is that of gravity alone
   static constexpr Time kMaxStep = std::chrono::milliseconds(50);  // a longer gap is not integrated across
   static constexpr double kAssumedRate_hz = 1000.0;                // upper bound, for the size of the history
 

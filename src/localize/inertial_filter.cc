@@ -1,9 +1,9 @@
 #include "localize/inertial_filter.h"
 
+#include <cmath>
+
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-
-#include <cmath>
 
 namespace patrol::localize {
 namespace {
@@ -22,9 +22,7 @@ InertialFilter::InertialFilter(const Settings& settings, const InertialSample& f
     : settings_(settings), last_(first) {
   motion_.T_odom_body.rotation = tilt_from_gravity(first.force_mps2);
   motion_.omega_body = first.rate_radps;
-  const auto set_std = [this](int block, double std) {
-    P_.diagonal().segment<3>(block).setConstant(std * std);
-  };
+  const auto set_std = [this](int block, double std) { P_.diagonal().segment<3>(block).setConstant(std * std); };
   set_std(kRotation, kStartTiltStd_rad);
   P_(kRotation + 2, kRotation + 2) = 0.0;  // zero by definition of odom
   set_std(kVelocity, kStartVelocityStd_mps);
@@ -43,9 +41,7 @@ void InertialFilter::predict(double dt_s, const InertialSample& sample) {
   motion_.omega_body = sample.rate_radps - gyro_bias_;
 
   propagate_inertial_errors(P_, dt_s, step.R_odom_body, step.v_body, omega);
-  const auto add_variance = [this](int block, double variance) {
-    P_.diagonal().segment<3>(block).array() += variance;
-  };
+  const auto add_variance = [this](int block, double variance) { P_.diagonal().segment<3>(block).array() += variance; };
   add_variance(kRotation, dt_s * std::pow(settings_.gyro_noise_density_radps_per_sqrt_hz, 2));
   add_variance(kVelocity, dt_s * std::pow(settings_.accel_noise_density_mps2_per_sqrt_hz, 2));
   add_variance(kGyroBias, dt_s * std::pow(settings_.gyro_bias_random_walk_radps_per_sqrt_s, 2));
@@ -105,8 +101,7 @@ void InertialFilter::correct_gyro_bias(const Eigen::Vector3d& bias_radps, const 
   P_ = (0.5 * (P_ + P_.transpose())).eval();
 }
 
-void InertialFilter::apply(const Gain& W, const Eigen::Matrix3d& S_inverse,
-                           const Eigen::Vector3d& innovation) {
+void InertialFilter::apply(const Gain& W, const Eigen::Matrix3d& S_inverse, const Eigen::Vector3d& innovation) {
   const Gain K = W * S_inverse;
   apply_error(K * innovation);
   P_.noalias() -= K * W.transpose();

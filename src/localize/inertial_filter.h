@@ -21,9 +21,10 @@ class InertialFilter {
     double gyro_bias_std_radps;  ///< at power-on
     double gyro_bias_random_walk_radps_per_sqrt_s;
     double accel_noise_density_mps2_per_sqrt_hz;  ///< includes the aliasing of walking shocks
-    double accel_bias_std_mps2;           ///< at power-on
+    double accel_bias_std_mps2;                   ///< at power-on
     double accel_bias_random_walk_mps2_per_sqrt_s;
-    double position_random_walk_m_per_sqrt_m;       ///< position random walk: errors that are not white noise of the velocity
+    double
+        position_random_walk_m_per_sqrt_m;    ///< position random walk: errors that are not white noise of the velocity
     double yaw_random_walk_rad_per_sqrt_rad;  ///< yaw random walk during rotation
   };
 
@@ -45,9 +46,7 @@ class InertialFilter {
   const TrunkMotion& motion() const { return motion_; }
   const Eigen::Vector3d& gyro_bias_radps() const { return gyro_bias_; }
   const Eigen::Vector3d& accel_bias_mps2() const { return accel_bias_; }
-  Eigen::Vector3d up_in_body() const {
-    return motion_.T_odom_body.rotation.conjugate() * Eigen::Vector3d::UnitZ();
-  }
+  Eigen::Vector3d up_in_body() const { return motion_.T_odom_body.rotation.conjugate() * Eigen::Vector3d::UnitZ(); }
 
   /// Returns the yaw rate about the z axis of odom.
   double yaw_rate_radps() const { return (motion_.T_odom_body.rotation * motion_.omega_body).z(); }

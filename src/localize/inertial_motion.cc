@@ -17,11 +17,12 @@ Eigen::Quaterniond rotation_by(const Eigen::Vector3d& angle_rad) {
 }
 
 Eigen::Quaterniond tilt_from_gravity(const Eigen::Vector3d& force) {
-  return quaternion_from_rpy(std::atan2(force.y(), force.z()),
-                             std::atan2(-force.x(), std::hypot(force.y(), force.z())), 0.0);
+  return quaternion_from_rpy(std::atan2(force.y(), force.z()), std::atan2(-force.x(), std::hypot(force.y(), force.z())),
+                             0.0);
 }
 
-InertialStep integrate(const TrunkMotion& before, double dt_s, const Eigen::Vector3d& omega, const Eigen::Vector3d& force) {
+InertialStep integrate(const TrunkMotion& before, double dt_s, const Eigen::Vector3d& omega,
+                       const Eigen::Vector3d& force) {
   const Eigen::Quaterniond& rotation = before.T_odom_body.rotation;
   const Eigen::Vector3d& v_start = before.v_body;
   const Eigen::Quaterniond rotation_mid = rotation * rotation_by(0.5 * dt_s * omega);

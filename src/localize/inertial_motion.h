@@ -34,7 +34,7 @@ Eigen::Quaterniond tilt_from_gravity(const Eigen::Vector3d& force);
 
 /// Dead-reckoning step with its linearization point.
 struct InertialStep {
-  TrunkMotion after;  ///< its omega is the mean rate of the step
+  TrunkMotion after;                                          ///< its omega is the mean rate of the step
   Eigen::Matrix3d R_odom_body = Eigen::Matrix3d::Identity();  ///< at the middle of the step
   Eigen::Vector3d v_body = Eigen::Vector3d::Zero();           ///< at the middle of the step, m/s
 };

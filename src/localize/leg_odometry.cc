@@ -1,9 +1,9 @@
 #include "localize/leg_odometry.h"
 
-#include <Eigen/Geometry>
-
 #include <algorithm>
 #include <cmath>
+
+#include <Eigen/Geometry>
 
 #include "core/leg_kinematics.h"
 
@@ -21,8 +21,7 @@ ContactWeights ContactDetector::update(Time stamp, const std::array<double, kNum
   return weights;
 }
 
-StanceFoot stance_foot(const LegGeometry& leg, int index, const LegSample& sample,
-                       const Eigen::Vector3d& up_in_body) {
+StanceFoot stance_foot(const LegGeometry& leg, int index, const LegSample& sample, const Eigen::Vector3d& up_in_body) {
   const Eigen::Vector3d angle = sample.angle_rad.col(index);
   const Eigen::Vector3d speed = sample.speed_radps.col(index);
   const Eigen::Vector3d center_to_contact = -leg.foot_radius_m * up_in_body;
@@ -34,8 +33,7 @@ StanceFoot stance_foot(const LegGeometry& leg, int index, const LegSample& sampl
 }
 
 std::optional<LegVelocity> fuse_feet(const StanceFeet& feet, const Eigen::Vector3d& omega_body,
-                                     const Eigen::Vector3d& v_expected, double foot_std_mps,
-                                     double slip_mps) {
+                                     const Eigen::Vector3d& v_expected, double foot_std_mps, double slip_mps) {
   LegVelocity fused;
   double weight_sum = 0.0;
   for (const StanceFoot& foot : feet) {

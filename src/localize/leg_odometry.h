@@ -1,10 +1,10 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <array>
 #include <cstddef>
 #include <optional>
+
+#include <Eigen/Core>
 
 #include "core/robot_description.h"
 #include "core/time.h"
@@ -30,7 +30,7 @@ struct LegSample {
 class ContactDetector {
  public:
   struct Settings {
-    double contact_on_n;    ///< contact starts above this force
+    double contact_on_n;   ///< contact starts above this force
     double contact_off_n;  ///< contact ends below this force
     double full_weight_n;
     double settling_time_s;
@@ -71,8 +71,7 @@ struct StanceFeet {
 /// with the normal n (`up_in_body`) the contact is at center - r n; while the foot rolls, this point is at rest.
 /// Assuming the center to be at rest instead would lose r times the shank rotation in each step: 3 to 8 % of the
 /// distance.
-StanceFoot stance_foot(const LegGeometry& leg, int index, const LegSample& sample,
-                       const Eigen::Vector3d& up_in_body);
+StanceFoot stance_foot(const LegGeometry& leg, int index, const LegSample& sample, const Eigen::Vector3d& up_in_body);
 
 /// Velocity of the trunk from the stance feet.
 struct LegVelocity {

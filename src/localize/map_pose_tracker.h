@@ -19,8 +19,7 @@ class MapPoseTracker {
 
   /// Sets the SLAM pose at `stamp`, at which the odometry pose was `T_odom_body`. Corrections older than the last one
   /// are ignored.
-  void correct(Time stamp, const Pose2& T_odom_body, const Pose2& T_map_body,
-               const Eigen::Matrix3d& covariance);
+  void correct(Time stamp, const Pose2& T_odom_body, const Pose2& T_map_body, const Eigen::Matrix3d& covariance);
 
   /// Returns the pose and its covariance at `stamp`, at which the odometry pose is `T_odom_body`.
   PoseEstimate at(Time stamp, const Pose2& T_odom_body) const;

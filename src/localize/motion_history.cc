@@ -40,8 +40,7 @@ std::optional<TrunkMotion> MotionHistory::motion_at(Time stamp) const {
 std::optional<Pose3> MotionHistory::pose_at(Time stamp) const {
   const std::optional<Bracket> bracket = find(stamp);
   if (!bracket) return std::nullopt;
-  return interpolate(bracket->before.motion.T_odom_body, bracket->after.motion.T_odom_body,
-                     bracket->fraction);
+  return interpolate(bracket->before.motion.T_odom_body, bracket->after.motion.T_odom_body, bracket->fraction);
 }
 
 }  // namespace patrol::localize

@@ -17,8 +17,9 @@ const RangeFilterSettings& checked(const RangeFilterSettings& settings) {
   validate(settings, "uwb_filter");
   const std::vector<double>& distances = settings.bias_distance_m;
   if (distances.size() != settings.bias_m.size()) {
-    throw InputError(fmt::format("uwb_filter.bias_m: {} values: must be {}, one per entry of uwb_filter.bias_distance_m",
-                                 settings.bias_m.size(), distances.size()));
+    throw InputError(
+        fmt::format("uwb_filter.bias_m: {} values: must be {}, one per entry of uwb_filter.bias_distance_m",
+                    settings.bias_m.size(), distances.size()));
   }
   if (std::adjacent_find(distances.begin(), distances.end(), std::greater_equal<>()) != distances.end()) {
     throw InputError("uwb_filter.bias_distance_m: must be strictly increasing");
@@ -52,7 +53,8 @@ double nlos_density(double x, double std, double mean_bias) {
 RangeFilter::RangeFilter(const RangeFilterSettings& settings, const std::vector<UwbAnchor>& anchors_in_map,
                          const Pose3& T_body_uwb)
     : settings_(checked(settings)),
-      calibration_{.distance_m = settings.bias_distance_m, .bias_m = settings.bias_m, .range_std_m = settings.range_std_m},
+      calibration_{
+          .distance_m = settings.bias_distance_m, .bias_m = settings.bias_m, .range_std_m = settings.range_std_m},
       anchors_(by_number(anchors_in_map)),
       T_body_uwb_(T_body_uwb) {}
 
@@ -71,7 +73,8 @@ void RangeFilter::predict(Time stamp, const Pose3& T_odom_body, const Eigen::Vec
   twist_std_ = twist_std;
 }
 
-RangeFilter::State RangeFilter::predicted(State state, Time stamp, const Pose3& T_odom_body, const Eigen::Vector3d& twist_std) const {
+RangeFilter::State RangeFilter::predicted(State state, Time stamp, const Pose3& T_odom_body,
+                                          const Eigen::Vector3d& twist_std) const {
   const double dt_s = to_seconds(stamp - state.stamp);
   const Pose2 step = to_pose2(state.T_odom_body).inverse() * to_pose2(T_odom_body);
   const double distance_m = step.position().norm(), turn_rad = std::abs(step.yaw);
@@ -86,12 +89,14 @@ RangeFilter::State RangeFilter::predicted(State state, Time stamp, const Pose3& 
   state.stamp = stamp;
 
   const Eigen::Vector2d went = state.T_map_body.position() - before.position();
-  const Eigen::Vector3d keep(std::exp(-distance_m / settings_.longitudinal_correlation_m), std::exp(-distance_m / settings_.lateral_correlation_m),
+  const Eigen::Vector3d keep(std::exp(-distance_m / settings_.longitudinal_correlation_m),
+                             std::exp(-distance_m / settings_.lateral_correlation_m),
                              std::exp(-dt_s / settings_.yaw_correlation_s));
   Eigen::Matrix<double, kSize, kSize> F = Eigen::Matrix<double, kSize, kSize>::Identity();
   F(0, kYaw) = -went.y();
   F(1, kYaw) = went.x();
-  F.block<2, 2>(0, kDrift) = dt_s * Eigen::Rotation2Dd(before.yaw).toRotationMatrix() * twist_std.head<2>().asDiagonal();
+  F.block<2, 2>(0, kDrift) =
+      dt_s * Eigen::Rotation2Dd(before.yaw).toRotationMatrix() * twist_std.head<2>().asDiagonal();
   F(kYaw, kDrift + 2) = dt_s * twist_std.z();
   F.bottomRightCorner<3, 3>() = keep.asDiagonal();
   state.drift = keep.cwiseProduct(state.drift);
@@ -153,7 +158,8 @@ double RangeFilter::los_probability(double innovation_m, double std_m) const {
 }
 
 RangeStatus RangeFilter::classify(const RangeOutcome& outcome) const {
-  if (outcome.innovation_m < -settings_.negative_gate_sigma * std::sqrt(outcome.variance_m2)) return RangeStatus::kTooShort;
+  if (outcome.innovation_m < -settings_.negative_gate_sigma * std::sqrt(outcome.variance_m2))
+    return RangeStatus::kTooShort;
   return outcome.los_probability < settings_.min_los_probability ? RangeStatus::kTooLong : RangeStatus::kAccepted;
 }
 
@@ -182,7 +188,8 @@ void RangeFilter::count(bool is_accepted) {
 
 double RangeFilter::accepted_ratio() const {
   if (accepted_.empty()) return 1.0;
-  return static_cast<double>(std::count(accepted_.begin(), accepted_.end(), true)) / static_cast<double>(accepted_.size());
+  return static_cast<double>(std::count(accepted_.begin(), accepted_.end(), true)) /
+         static_cast<double>(accepted_.size());
 }
 
 PoseEstimate RangeFilter::estimate(Time stamp, const Pose3& T_odom_body) const {

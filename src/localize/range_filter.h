@@ -1,11 +1,11 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <cstdint>
 #include <deque>
 #include <map>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "core/messages.h"
 #include "core/sensors/registry.h"
@@ -23,9 +23,9 @@ enum class RangeStatus : std::uint8_t {
 
 struct RangeOutcome {
   RangeStatus status = RangeStatus::kUnusable;
-  double innovation_m = 0.0;        ///< measured minus predicted range
-  double variance_m2 = 0.0;         ///< variance of the innovation of a line-of-sight range
-  double los_probability = 0.0;   ///< posterior probability of line of sight
+  double innovation_m = 0.0;     ///< measured minus predicted range
+  double variance_m2 = 0.0;      ///< variance of the innovation of a line-of-sight range
+  double los_probability = 0.0;  ///< posterior probability of line of sight
 
   bool is_accepted() const { return status == RangeStatus::kAccepted; }
   /// Returns the normalized innovation squared: chi-square with one degree of freedom over the line-of-sight ranges of
@@ -47,7 +47,8 @@ class RangeFilter {
  public:
   /// Creates the filter. Throws InputError for settings out of range, bias tables of different lengths, or duplicate
   /// anchor numbers.
-  RangeFilter(const RangeFilterSettings& settings, const std::vector<UwbAnchor>& anchors_in_map, const Pose3& T_body_uwb);
+  RangeFilter(const RangeFilterSettings& settings, const std::vector<UwbAnchor>& anchors_in_map,
+              const Pose3& T_body_uwb);
 
   /// Starts at a pose, at which the odometry pose is `T_odom_body`; the height above the origin of map is `z_m`.
   void set_initial_pose(const PoseEstimate& start, const Pose3& T_odom_body, double z_m = 0.0);

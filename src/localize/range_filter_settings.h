@@ -11,13 +11,13 @@ struct RangeFilterSettings {
   // UWB ranges.
   /// Bias of a line-of-sight range at each distance of `bias_distance_m`.
   std::vector<double> bias_distance_m = UwbCalibration{}.distance_m;
-  std::vector<double> bias_m = UwbCalibration{}.bias_m;               ///< both lists empty: no bias
+  std::vector<double> bias_m = UwbCalibration{}.bias_m;  ///< both lists empty: no bias
   double range_std_m = 0.1;
-  double nlos_probability = 0.3;     ///< prior probability of a non-line-of-sight (NLOS) range
-  double nlos_bias_m = 0.5;  ///< mean bias of NLOS ranges
+  double nlos_probability = 0.3;  ///< prior probability of a non-line-of-sight (NLOS) range
+  double nlos_bias_m = 0.5;       ///< mean bias of NLOS ranges
   /// Ranges that are too long and have a smaller line-of-sight probability are rejected.
   double min_los_probability = 0.1;
-  double negative_gate_sigma = 3.3;       ///< ranges that are too short by more standard deviations are rejected: 99.9 %
+  double negative_gate_sigma = 3.3;  ///< ranges that are too short by more standard deviations are rejected: 99.9 %
   // Odometry. The standard deviations of its errors are part of its output; here are their correlation lengths and
   // white noise.
   double longitudinal_correlation_m = 8.0;  ///< scale, slip

@@ -16,9 +16,7 @@ struct Knot {
   Eigen::Vector3d p;
 };
 
-Time beam_time(const LaserScan& scan, double beam) {
-  return scan.stamp + from_seconds(beam * scan.time_increment_s);
-}
+Time beam_time(const LaserScan& scan, double beam) { return scan.stamp + from_seconds(beam * scan.time_increment_s); }
 
 }  // namespace
 
@@ -29,8 +27,7 @@ ScanLeveler::ScanLeveler(const Pose3& T_body_lidar, const ScanLevelerSettings& s
 
 std::optional<LevelScan> ScanLeveler::level(const LaserScan& scan, const BodyEstimator& odometry) const {
   return level(
-      scan, [&odometry](Time stamp) { return odometry.T_odom_body_at(stamp); },
-      odometry.height_above_ground_m());
+      scan, [&odometry](Time stamp) { return odometry.T_odom_body_at(stamp); }, odometry.height_above_ground_m());
 }
 
 std::optional<LevelScan> ScanLeveler::level(const LaserScan& scan, const PoseLookup& T_odom_body_at,
@@ -40,10 +37,11 @@ std::optional<LevelScan> ScanLeveler::level(const LaserScan& scan, const PoseLoo
   const double last_beam = static_cast<double>(num_beams - 1);
   const std::optional<Pose3> T_odom_body = T_odom_body_at(beam_time(scan, last_beam));
   if (!T_odom_body) return std::nullopt;
-  const Pose3 T_level_odom =
-      Pose3{T_odom_body->position, quaternion_from_yaw(to_yaw(T_odom_body->rotation))}.inverse();
+  const Pose3 T_level_odom = Pose3{T_odom_body->position, quaternion_from_yaw(to_yaw(T_odom_body->rotation))}.inverse();
 
-  const auto mounted = [this](const Pose3& T_level_lidar) { return settings_.gimbal_stabilized ? remove_tilt(T_level_lidar) : T_level_lidar; };
+  const auto mounted = [this](const Pose3& T_level_lidar) {
+    return settings_.gimbal_stabilized ? remove_tilt(T_level_lidar) : T_level_lidar;
+  };
   const std::size_t num_segments = std::min(kNumKnots - 1, num_beams);
   const auto knot_at = [&](std::size_t beam) -> std::optional<Knot> {
     const std::optional<Pose3> T = T_odom_body_at(beam_time(scan, static_cast<double>(beam)));
@@ -71,11 +69,9 @@ std::optional<LevelScan> ScanLeveler::level(const LaserScan& scan, const PoseLoo
     for (std::size_t beam = first; beam < end; ++beam, azimuth *= step) {
       const double fraction =
           next > first ? static_cast<double>(beam - first) / static_cast<double>(next - first) : 0.0;
-      const Eigen::Vector3d from_before =
-          before->R.col(0) * azimuth.real() + before->R.col(1) * azimuth.imag();
+      const Eigen::Vector3d from_before = before->R.col(0) * azimuth.real() + before->R.col(1) * azimuth.imag();
       const Eigen::Vector3d from_after = after->R.col(0) * azimuth.real() + after->R.col(1) * azimuth.imag();
-      const Ray ray{before->p + fraction * (after->p - before->p),
-                    from_before + fraction * (from_after - from_before)};
+      const Ray ray{before->p + fraction * (after->p - before->p), from_before + fraction * (from_after - from_before)};
       add_beam(ray, scan.ranges_m[beam], body_height_m, level);
     }
     before = after;

@@ -24,8 +24,7 @@ class ScanLeveler {
 
   /// Returns the compensated scan; nullopt if the poses do not cover the scan, or if it has no beams.
   std::optional<LevelScan> level(const LaserScan& scan, const BodyEstimator& odometry) const;
-  std::optional<LevelScan> level(const LaserScan& scan, const PoseLookup& T_odom_body_at,
-                                 double body_height_m) const;
+  std::optional<LevelScan> level(const LaserScan& scan, const PoseLookup& T_odom_body_at, double body_height_m) const;
 
  private:
   /// Beam in level: a point moves from `start` along `direction` (unit length).

@@ -6,14 +6,12 @@
 namespace patrol::localize {
 namespace {
 
-constexpr double kSigmas = 4.0;       // significance threshold for the roughness
+constexpr double kSigmas = 4.0;         // significance threshold for the roughness
 constexpr double kMaxLateness_s = 0.5;  // maximum delay of the tracks behind the IMU
 
 }  // namespace
 
-void SlipDetector::reset() {
-  readings_.clear();
-}
+void SlipDetector::reset() { readings_.clear(); }
 
 // Roughness: consecutive accelerations of a smooth ride are similar. Half their squared difference is the variance of
 // the rough part.
@@ -29,8 +27,8 @@ void SlipDetector::add_acceleration(Time stamp, double dt_s, double acceleration
 }
 
 std::optional<SlipDetector::Sum> SlipDetector::sum_at(Time stamp) const {
-  const auto after = std::lower_bound(sums_.begin(), sums_.end(), stamp,
-                                      [](const Sum& sum, Time when) { return sum.stamp < when; });
+  const auto after =
+      std::lower_bound(sums_.begin(), sums_.end(), stamp, [](const Sum& sum, Time when) { return sum.stamp < when; });
   if (after == sums_.end() || (after == sums_.begin() && after->stamp > stamp)) return std::nullopt;
   return *after;
 }

@@ -9,13 +9,14 @@ namespace patrol::localize {
 
 /// Evidence of slip: a speed change of the tracks that differs from that of the accelerometer, within about a second.
 struct SlipEvidence {
-  double forward_mps = 0.0;     ///< body speed: estimate at the start of the window plus integrated acceleration
+  double forward_mps = 0.0;       ///< body speed: estimate at the start of the window plus integrated acceleration
   double disagreement_mps = 0.0;  ///< tracks minus accelerometer
   double duration_s = 0.0;
 };
 
-/// Slip detector: compares the speed change of the tracks with the integrated IMU acceleration over a sliding window. An
-/// IMU cannot distinguish rest from steady motion. It does show whether the body accelerated together with the tracks.
+/// Slip detector: compares the speed change of the tracks with the integrated IMU acceleration over a sliding window.
+/// An IMU cannot distinguish rest from steady motion. It does show whether the body accelerated together with the
+/// tracks.
 class SlipDetector {
  public:
   struct Settings {
@@ -35,7 +36,7 @@ class SlipDetector {
  private:
   struct Sum {
     Time stamp{};
-    double speed_mps = 0.0;     ///< integrated acceleration
+    double speed_mps = 0.0;       ///< integrated acceleration
     double variance_m2ps2 = 0.0;  ///< accumulated variance of the integral, from the roughness of the acceleration
   };
   struct Reading {

@@ -1,9 +1,9 @@
 #include "localize/stationary_gyro_bias.h"
 
+#include <cmath>
+
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
-
-#include <cmath>
 
 #include "core/geometry/linear_algebra.h"
 #include "localize/inertial_motion.h"
@@ -11,7 +11,7 @@
 namespace patrol::localize {
 namespace {
 
-constexpr double kEndFraction = 0.2;          // fraction of the window that is averaged at each end
+constexpr double kEndFraction = 0.2;       // fraction of the window that is averaged at each end
 constexpr double kMaxGap_s = 0.02;         // maximum time between samples
 constexpr double kMaxSlip_m = 0.001;       // maximum residual of the rigid fit per foot
 constexpr double kMaxRotation_rad = 0.02;  // maximum rotation of a standing trunk
@@ -66,9 +66,8 @@ void StationaryGyroBiasEstimator::End::divide() {
 }
 
 std::optional<GyroBiasMeasurement> StationaryGyroBiasEstimator::add(Time stamp, const StanceFeet& all_feet,
-                                                        const Eigen::Vector3d& gyro_radps) {
-  if (all_feet.count != kNumLegs || (is_open_ && (stamp <= last_ || to_seconds(stamp - last_) > kMaxGap_s)))
-    reset();
+                                                                    const Eigen::Vector3d& gyro_radps) {
+  if (all_feet.count != kNumLegs || (is_open_ && (stamp <= last_ || to_seconds(stamp - last_) > kMaxGap_s))) reset();
   if (all_feet.count != kNumLegs) return std::nullopt;
   if (!is_open_) {
     is_open_ = true;
@@ -99,9 +98,9 @@ std::optional<GyroBiasMeasurement> StationaryGyroBiasEstimator::close() {
   const Eigen::Vector3d angle_var =
       2.0 * settings_.foot_std_m * settings_.foot_std_m * rotation.information.inverse().diagonal();
   const double gyro_var = std::pow(settings_.gyro_noise_density_radps_per_sqrt_hz, 2) / span_s;
-  return GyroBiasMeasurement{
-      .bias_radps = (final_.gyro_angle_rad - first_.gyro_angle_rad - rotation.angle_rad) / span_s,
-      .variance = (angle_var / (span_s * span_s)).array() + gyro_var};
+  return GyroBiasMeasurement{.bias_radps =
+                                 (final_.gyro_angle_rad - first_.gyro_angle_rad - rotation.angle_rad) / span_s,
+                             .variance = (angle_var / (span_s * span_s)).array() + gyro_var};
 }
 
 }  // namespace patrol::localize

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <array>
 #include <optional>
+
+#include <Eigen/Core>
 
 #include "core/time.h"
 #include "localize/leg_odometry.h"
@@ -31,8 +31,7 @@ class StationaryGyroBiasEstimator {
 
   /// Adds a sample: contact points of all feet in body, and the raw gyro rate. Returns a bias measurement at the end of
   /// each complete window.
-  std::optional<GyroBiasMeasurement> add(Time stamp, const StanceFeet& all_feet,
-                                     const Eigen::Vector3d& gyro_radps);
+  std::optional<GyroBiasMeasurement> add(Time stamp, const StanceFeet& all_feet, const Eigen::Vector3d& gyro_radps);
   /// Starts a new window, after a foot was lifted or data were missing.
   void reset() { is_open_ = false; }
 

@@ -19,10 +19,10 @@ struct TrackSpeed {
 struct EncoderInterval {
   Time start{}, end{};
   TrackSpeed speed{};
-  TrackSpeed smooth{};             ///< smoothed with a time constant of 0.1 s
+  TrackSpeed smooth{};  ///< smoothed with a time constant of 0.1 s
   /// Derivative of the smoothed mean speed, smoothed again; nearly free of quantization.
   double acceleration_mps2 = 0.0;
-  double step_mps = 0.0;           ///< speed of one tick in the interval
+  double step_mps = 0.0;  ///< speed of one tick in the interval
 
   double dt_s() const { return to_seconds(end - start); }
   Time middle() const { return start + (end - start) / 2; }

@@ -1,11 +1,11 @@
 #include "localize/track_filter.h"
 
-#include <Eigen/LU>
-
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <limits>
+
+#include <Eigen/LU>
 
 namespace patrol::localize {
 namespace {
@@ -14,10 +14,11 @@ using Error = InertialError;
 
 constexpr double kTrackStartTiltStd_rad = 0.05;
 constexpr double kTrackStartVelocityStd_mps = 0.05;
-constexpr double kTrackGate = 16.27;     // 99.9 % of chi-square, three degrees of freedom
+constexpr double kTrackGate = 16.27;  // 99.9 % of chi-square, three degrees of freedom
 constexpr double kLostSpeedStd_mps = 0.1;
 constexpr double kTrackSmoothing_s = 1.0;
-constexpr double kPoseCorrectionTime_s = 0.5;       // after a loss of traction; the first readings contain nearly all information
+constexpr double kPoseCorrectionTime_s =
+    0.5;  // after a loss of traction; the first readings contain nearly all information
 constexpr int kPoseRows[4] = {Error::kPosition, Error::kPosition + 1, Error::kPosition + 2, Error::kRotation + 2};
 // Process noise without an IMU.
 constexpr double kTrackCoastYawRateStd = 0.05;  // rad/sqrt(s): yaw rate from the tracks
@@ -98,11 +99,12 @@ void TrackFilter::propagate_slip(double distance_m, double turn_rad, double slip
 //
 // The speed u that multiplies slip must not share the noise of the reading. Encoder steps of 1 to 2 mm would otherwise
 // bias the scale by several percent. It is therefore smoothed over one second and predicted with the IMU in between.
-void TrackFilter::correct_speed(double dt_s, double track_mps, const TrunkMotion& then, const Eigen::Vector3d& std_mps) {
+void TrackFilter::correct_speed(double dt_s, double track_mps, const TrunkMotion& then,
+                                const Eigen::Vector3d& std_mps) {
   smooth_track_mps_ += std::min(1.0, dt_s / kTrackSmoothing_s) * (track_mps - smooth_track_mps_);
   const Eigen::Vector3d p(icr_m_.x(), icr_m_.y(), -settings_.height_m);
-  const Eigen::Vector3d innovation =
-      Eigen::Vector3d(track_mps - (scale_ + slip_) * smooth_track_mps_, 0.0, 0.0) - then.v_body - then.omega_body.cross(p);
+  const Eigen::Vector3d innovation = Eigen::Vector3d(track_mps - (scale_ + slip_) * smooth_track_mps_, 0.0, 0.0) -
+                                     then.v_body - then.omega_body.cross(p);
 
   Eigen::Matrix<double, 3, kSize> H = Eigen::Matrix<double, 3, kSize>::Zero();
   H.middleCols<3>(Error::kVelocity).setIdentity();

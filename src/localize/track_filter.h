@@ -15,10 +15,10 @@ namespace patrol::localize {
 ///                that moves straight ahead while the body rotates; Gauss-Markov process over rotation
 ///
 /// The tracks measure the velocity of the ICR p at ground level: v + omega x p = ((1 - scale - slip) u, 0, 0),
-/// with u the mean track speed. The yaw rate is that of the gyro, because the difference of the track speeds is dominated
-/// by scrub. Yaw and position are not measured, and later estimates do not correct them: odom must not jump. (After a
-/// kilometer a tiny change of scale would repeatedly shift the position by a centimeter.) Exception: the drift of the
-/// IMU during a loss of traction is corrected.
+/// with u the mean track speed. The yaw rate is that of the gyro, because the difference of the track speeds is
+/// dominated by scrub. Yaw and position are not measured, and later estimates do not correct them: odom must not jump.
+/// (After a kilometer a tiny change of scale would repeatedly shift the position by a centimeter.) Exception: the drift
+/// of the IMU during a loss of traction is corrected.
 class TrackFilter {
  public:
   struct Settings {
@@ -30,11 +30,11 @@ class TrackFilter {
     double accel_bias_random_walk_mps2_per_sqrt_s;
     double yaw_random_walk_rad_per_sqrt_rad;  ///< gyro scale factor and misalignment, during rotation
     double scale_std;
-    double slip_correlation_m;           ///< correlation length of slip, in track distance
-    double icr_x_std_m;     ///< longitudinal offset: lateral slip during rotation
-    double icr_y_std_m;     ///< lateral offset: different traction of the two sides
+    double slip_correlation_m;   ///< correlation length of slip, in track distance
+    double icr_x_std_m;          ///< longitudinal offset: lateral slip during rotation
+    double icr_y_std_m;          ///< lateral offset: different traction of the two sides
     double icr_correlation_rad;  ///< correlation angle of the ICR
-    double height_m;                ///< height of the body origin above the ground
+    double height_m;             ///< height of the body origin above the ground
   };
 
   /// Starts at the origin of odom with heading along x; tilt from gravity in the first sample.
@@ -103,8 +103,8 @@ class TrackFilter {
   Eigen::Vector2d icr_m_ = Eigen::Vector2d::Zero();
   InertialSample last_;
   double forward_acceleration_mps2_ = 0.0;
-  double pose_correction_time_s_ = 0.0;      ///< remaining time in which corrections also change position and yaw
-  double smooth_track_mps_ = 0.0;  ///< track speed, predicted with the IMU and slowly corrected by the encoders
+  double pose_correction_time_s_ = 0.0;  ///< remaining time in which corrections also change position and yaw
+  double smooth_track_mps_ = 0.0;        ///< track speed, predicted with the IMU and slowly corrected by the encoders
   Covariance P_ = Covariance::Zero();
 };
 

@@ -13,11 +13,11 @@ namespace {
 
 constexpr Time kEncoderTimeout = std::chrono::milliseconds(200);
 constexpr double kStandingStd_mps = 0.002;
-constexpr double kStandstillCreep_m = 1e-5;  // motion of the track ends over a window at rest
-constexpr double kMaxBiasSigmas = 5.0;       // a larger reading at rest is a rotation
-constexpr double kTrackVelocityLimitStd_mps = 0.5;         // bound on the velocity error without encoders
-constexpr double kSystematicLateral = 0.005;   // lateral per forward velocity, straight motion
-constexpr double kAgreement_mps = 0.15;      // maximum difference of tracks and IMU after slip,
+constexpr double kStandstillCreep_m = 1e-5;                  // motion of the track ends over a window at rest
+constexpr double kMaxBiasSigmas = 5.0;                       // a larger reading at rest is a rotation
+constexpr double kTrackVelocityLimitStd_mps = 0.5;           // bound on the velocity error without encoders
+constexpr double kSystematicLateral = 0.005;                 // lateral per forward velocity, straight motion
+constexpr double kAgreement_mps = 0.15;                      // maximum difference of tracks and IMU after slip,
 constexpr Time kAgreement = std::chrono::milliseconds(300);  // and its minimum duration
 
 const TrackOdometrySettings& checked(const TrackOdometrySettings& settings) {
@@ -26,7 +26,8 @@ const TrackOdometrySettings& checked(const TrackOdometrySettings& settings) {
 }
 
 const RobotDescription& checked(const RobotDescription& robot) {
-  if (!robot.tracks) throw InputError(fmt::format("robot {}: has no tracks: tracked odometry requires a tracked robot", robot.name));
+  if (!robot.tracks)
+    throw InputError(fmt::format("robot {}: has no tracks: tracked odometry requires a tracked robot", robot.name));
   return robot;
 }
 
@@ -63,11 +64,12 @@ TrackOdometry::TrackOdometry(const RobotDescription& robot, const TrackOdometryS
       settings_(checked(settings)),
       meters_per_tick_(2.0 * std::numbers::pi * robot.tracks->sprocket_radius_m / settings.ticks_per_sprocket_turn),
       track_ends_(track_ends(*robot.tracks)),
-      imu_(robot.T_body("imu"), {.standstill = {.window_s = settings.standstill_window_s,
-                                                .gyro_noise_density_radps_per_sqrt_hz = settings.gyro_noise_density_radps_per_sqrt_hz,
-                                                .foot_std_m = kStandstillCreep_m},
-                                 .buffer_s = settings.buffer_s,
-                                 .max_extrapolation_s = settings.max_extrapolation_s}),
+      imu_(robot.T_body("imu"),
+           {.standstill = {.window_s = settings.standstill_window_s,
+                           .gyro_noise_density_radps_per_sqrt_hz = settings.gyro_noise_density_radps_per_sqrt_hz,
+                           .foot_std_m = kStandstillCreep_m},
+            .buffer_s = settings.buffer_s,
+            .max_extrapolation_s = settings.max_extrapolation_s}),
       slip_detector_({.window_s = settings.slip_window_s, .threshold_mps = settings.slip_disagreement_mps}),
       encoders_({.meters_per_tick = meters_per_tick_, .max_acceleration_mps2 = settings.max_track_acceleration_mps2}) {}
 
@@ -79,7 +81,9 @@ void TrackOdometry::add(const Imu& imu) {
 }
 
 void TrackOdometry::add(const TrackTicks& ticks) {
-  const TrackTicks* newest = !pending_.is_empty() ? &pending_.newest() : encoders_.last() ? &*encoders_.last() : nullptr;
+  const TrackTicks* newest = !pending_.is_empty() ? &pending_.newest()
+                             : encoders_.last()   ? &*encoders_.last()
+                                                  : nullptr;
   if ((newest && ticks.stamp <= newest->stamp) || pending_.is_full()) {
     imu_.reject();
     return;
@@ -91,7 +95,9 @@ void TrackOdometry::add(const TrackTicks& ticks) {
 void TrackOdometry::advance(Time stamp, const InertialSample& sample) {
   using Step = ImuFrontEnd<TrackFilter>::Step;
   const Time before = imu_.now();
-  const auto make_filter = [this](const InertialSample& first) { return TrackFilter(filter_settings(settings_, *robot_.tracks), first); };
+  const auto make_filter = [this](const InertialSample& first) {
+    return TrackFilter(filter_settings(settings_, *robot_.tracks), first);
+  };
   const Step step = imu_.advance(stamp, sample, make_filter);
   if (step == Step::kIgnored) return;
   if (step == Step::kStarted) {
@@ -148,9 +154,11 @@ void TrackOdometry::use_ticks(const TrackTicks& ticks) {
 
   const double disagreement = yaw_rate_disagreement_radps(*interval, *then);
   const double yaw_rate = std::abs(then->omega_body.z());
-  imu_.filter()->propagate_slip(0.5 * (std::abs(interval->speed.left_mps) + std::abs(interval->speed.right_mps)) * interval->dt_s(),
-                  yaw_rate * interval->dt_s(), stationary_slip_std(yaw_rate, disagreement));
-  imu_.filter()->correct_speed(interval->dt_s(), interval->speed.mean_mps(), *then, speed_std(*interval, *then, disagreement));
+  imu_.filter()->propagate_slip(0.5 * (std::abs(interval->speed.left_mps) + std::abs(interval->speed.right_mps)) *
+                                    interval->dt_s(),
+                                yaw_rate * interval->dt_s(), stationary_slip_std(yaw_rate, disagreement));
+  imu_.filter()->correct_speed(interval->dt_s(), interval->speed.mean_mps(), *then,
+                               speed_std(*interval, *then, disagreement));
   last_speed_update_ = interval->end;
   last_speed_ = imu_.filter()->motion().v_body;
   imu_.remember();
@@ -249,7 +257,9 @@ Eigen::Vector3d TrackOdometry::twist_std() const {
   return {std::sqrt(variance.x()), std::hypot(std::sqrt(variance.y()), lateral_mps), std::sqrt(P(kBias, kBias))};
 }
 
-bool TrackOdometry::encoders_timed_out() const { return !last_speed_update_ || imu_.now() - *last_speed_update_ > kEncoderTimeout; }
+bool TrackOdometry::encoders_timed_out() const {
+  return !last_speed_update_ || imu_.now() - *last_speed_update_ > kEncoderTimeout;
+}
 
 TrackOdometryHealth TrackOdometry::health() const {
   TrackOdometryHealth health{.imu_timed_out = imu_.has_timed_out(),

@@ -6,10 +6,10 @@
 #include "core/messages.h"
 #include "core/robot_description.h"
 #include "core/sensors/registry.h"
-#include "localize/track_encoders.h"
 #include "localize/imu_front_end.h"
 #include "localize/pending_readings.h"
 #include "localize/slip_detector.h"
+#include "localize/track_encoders.h"
 #include "localize/track_filter.h"
 #include "localize/track_odometry_settings.h"
 

@@ -42,10 +42,10 @@ struct TrackOdometrySettings {
   double init_timeout_s = 6.0;       ///< time after which an estimate is published without any rest
   double standstill_window_s = 1.0;  ///< window of one gyro bias measurement
   // Faults.
-  double imu_timeout_s = 0.1;                ///< maximum delay of the IMU behind the encoders before it is bridged
+  double imu_timeout_s = 0.1;                 ///< maximum delay of the IMU behind the encoders before it is bridged
   double max_track_acceleration_mps2 = 10.0;  ///< encoder readings with larger accelerations are rejected
-  double buffer_s = 2.0;                     ///< length of the motion history
-  double max_extrapolation_s = 0.15;         ///< maximum time after the newest reading for which a pose is given
+  double buffer_s = 2.0;                      ///< length of the motion history
+  double max_extrapolation_s = 0.15;          ///< maximum time after the newest reading for which a pose is given
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

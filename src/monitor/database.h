@@ -26,7 +26,9 @@ class Statement {
   }
   /// Returns true when there is a row.
   bool step();
-  void run() { while (step()) {} }
+  void run() {
+    while (step()) {}
+  }
 
   std::int64_t integer(int column) const;
   double number(int column) const;

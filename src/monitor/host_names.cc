@@ -21,10 +21,12 @@ std::string plain_host(std::string_view host) {
     port = host.substr(colon);
     host = host.substr(0, colon);
   }
-  const bool is_port = port.empty() || (port[0] == ':' && port.find_first_not_of("0123456789", 1) == std::string_view::npos);
+  const bool is_port =
+      port.empty() || (port[0] == ':' && port.find_first_not_of("0123456789", 1) == std::string_view::npos);
   if (!is_port || host.find_first_of("/?#@ ") != std::string_view::npos) return "";
   std::string plain(host);
-  std::ranges::transform(plain, plain.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  std::ranges::transform(plain, plain.begin(),
+                         [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
   return plain;
 }
 
@@ -35,7 +37,8 @@ HostNames::HostNames(const std::vector<std::string>& names) : names_{"localhost"
     const bool is_bare_v6 = std::ranges::count(name, ':') > 1 && !name.starts_with('[');
     const std::string plain = plain_host(is_bare_v6 ? "[" + name + "]" : name);
     const bool has_port = !is_bare_v6 && name.find(':') != std::string::npos && !name.ends_with(']');
-    if (plain.empty() || has_port) throw InputError(fmt::format("{}: must be a host name or an address, without a port", name));
+    if (plain.empty() || has_port)
+      throw InputError(fmt::format("{}: must be a host name or an address, without a port", name));
     names_.push_back(plain);
   }
 }

@@ -22,7 +22,8 @@ namespace http = boost::beast::http;
 
 constexpr std::uint64_t kMaxResponseBytes = 16'000'000;
 
-asio::awaitable<HttpClientResponse> exchange(asio::io_context& context, const Url& url, const http::request<http::string_body>& request, double timeout_s) {
+asio::awaitable<HttpClientResponse> exchange(asio::io_context& context, const Url& url,
+                                             const http::request<http::string_body>& request, double timeout_s) {
   beast::tcp_stream stream(context);
   stream.expires_after(std::chrono::milliseconds(static_cast<std::int64_t>(1e3 * timeout_s)));
   asio::ip::tcp::resolver resolver(context);
@@ -36,13 +37,14 @@ asio::awaitable<HttpClientResponse> exchange(asio::io_context& context, const Ur
   http::response_parser<http::string_body> parser;
   parser.body_limit(kMaxResponseBytes);
   co_await http::async_read(stream, buffer, parser, asio::use_awaitable);
-  co_return HttpClientResponse{.status = static_cast<int>(parser.get().result_int()), .body = std::move(parser.get().body())};
+  co_return HttpClientResponse{.status = static_cast<int>(parser.get().result_int()),
+                               .body = std::move(parser.get().body())};
 }
 
 }  // namespace
 
-std::optional<HttpClientResponse> post_json(const Url& url, const std::string& path, const std::string& token, const std::string& body, double timeout_s,
-                                    std::string* reason) {
+std::optional<HttpClientResponse> post_json(const Url& url, const std::string& path, const std::string& token,
+                                            const std::string& body, double timeout_s, std::string* reason) {
   http::request<http::string_body> request(http::verb::post, path, 11);
   const std::string host = url.host.find(':') == std::string::npos ? url.host : "[" + url.host + "]";
   request.set(http::field::host, fmt::format("{}:{}", host, url.port));
@@ -54,17 +56,18 @@ std::optional<HttpClientResponse> post_json(const Url& url, const std::string& p
 
   asio::io_context context(1);
   std::optional<HttpClientResponse> answer;
-  asio::co_spawn(context, exchange(context, url, request, timeout_s), [&](std::exception_ptr failure, HttpClientResponse got) {
-    if (!failure) {
-      answer = std::move(got);
-      return;
-    }
-    try {
-      std::rethrow_exception(failure);
-    } catch (const boost::system::system_error& error) {
-      if (reason != nullptr) *reason = error.code().message();
-    }
-  });
+  asio::co_spawn(context, exchange(context, url, request, timeout_s),
+                 [&](std::exception_ptr failure, HttpClientResponse got) {
+                   if (!failure) {
+                     answer = std::move(got);
+                     return;
+                   }
+                   try {
+                     std::rethrow_exception(failure);
+                   } catch (const boost::system::system_error& error) {
+                     if (reason != nullptr) *reason = error.code().message();
+                   }
+                 });
   context.run();
   return answer;
 }

@@ -42,7 +42,9 @@ constexpr std::chrono::milliseconds kAcceptPause{100};  // after running out of 
 constexpr double kLingerLimit_s = 1.0;
 constexpr std::size_t kLingerBytes = 1 << 24;
 
-std::chrono::milliseconds milliseconds(double seconds) { return std::chrono::milliseconds(static_cast<std::int64_t>(1e3 * seconds)); }
+std::chrono::milliseconds milliseconds(double seconds) {
+  return std::chrono::milliseconds(static_cast<std::int64_t>(1e3 * seconds));
+}
 
 std::size_t to_bytes(double megabytes) { return static_cast<std::size_t>(1e6 * megabytes); }
 
@@ -55,7 +57,8 @@ struct Ends {
 };
 
 std::string text_of(asio::ip::address address) {
-  if (address.is_v6() && address.to_v6().is_v4_mapped()) address = asio::ip::make_address_v4(asio::ip::v4_mapped, address.to_v6());
+  if (address.is_v6() && address.to_v6().is_v4_mapped())
+    address = asio::ip::make_address_v4(asio::ip::v4_mapped, address.to_v6());
   return address.to_string();
 }
 
@@ -97,7 +100,8 @@ std::optional<HttpResponse> check_framing(const Parser& parser) {
   }
   const bool has_body = num_codings > 0 || parser.content_length().value_or(0) > 0;
   const bool is_read = message.method() == http::verb::get || message.method() == http::verb::head;
-  if (has_body && is_read) return error_response(400, fmt::format("a {} request must have no body", std::string(message.method_string())));
+  if (has_body && is_read)
+    return error_response(400, fmt::format("a {} request must have no body", std::string(message.method_string())));
   return std::nullopt;
 }
 
@@ -108,7 +112,8 @@ asio::ip::tcp::endpoint endpoint_of(asio::io_context& context, const HttpServerS
   if (!error) return {address, static_cast<unsigned short>(settings.port)};
   asio::ip::tcp::resolver resolver(context);
   const auto found = resolver.resolve(settings.host, std::to_string(settings.port), asio::ip::resolver_base::passive);
-  const auto v4 = std::find_if(found.begin(), found.end(), [](const auto& one) { return one.endpoint().address().is_v4(); });
+  const auto v4 =
+      std::find_if(found.begin(), found.end(), [](const auto& one) { return one.endpoint().address().is_v4(); });
   return v4 != found.end() ? v4->endpoint() : found.begin()->endpoint();
 }
 
@@ -133,8 +138,14 @@ HttpResponse error_response(int status, const std::string& reason) {
 class HttpServer::Connections {
  public:
   Connections(const HttpServerSettings& settings, HttpHandler& handler, Log log)
-      : settings_(settings), handler_(handler), log_(std::move(log)),
-        bodies_(to_bytes(settings.max_bodies_mb)), responses_(to_bytes(settings.max_responses_mb)), context_(1), acceptor_(context_), signals_(context_, SIGINT, SIGTERM) {
+      : settings_(settings),
+        handler_(handler),
+        log_(std::move(log)),
+        bodies_(to_bytes(settings.max_bodies_mb)),
+        responses_(to_bytes(settings.max_responses_mb)),
+        context_(1),
+        acceptor_(context_),
+        signals_(context_, SIGINT, SIGTERM) {
     validate(settings, "monitor");
     try {
       const asio::ip::tcp::endpoint endpoint = endpoint_of(context_, settings);
@@ -160,7 +171,10 @@ class HttpServer::Connections {
   /// list.
   struct Connection : Ends {
     Connection(beast::tcp_stream&& accepted, std::list<Connection*>& busy)
-        : Ends(ends_of(accepted.socket())), stream(std::move(accepted)), entry(busy.insert(busy.end(), this)), list(&busy) {}
+        : Ends(ends_of(accepted.socket())),
+          stream(std::move(accepted)),
+          entry(busy.insert(busy.end(), this)),
+          list(&busy) {}
     ~Connection() { list->erase(entry); }
     Connection(const Connection&) = delete;
     Connection& operator=(const Connection&) = delete;
@@ -214,7 +228,8 @@ class HttpServer::Connections {
   }
 
   static Connection* first_open(const std::list<Connection*>& list) {
-    const auto open = std::find_if(list.begin(), list.end(), [](Connection* one) { return one->stream.socket().is_open(); });
+    const auto open =
+        std::find_if(list.begin(), list.end(), [](Connection* one) { return one->stream.socket().is_open(); });
     return open == list.end() ? nullptr : *open;
   }
 
@@ -235,16 +250,20 @@ class HttpServer::Connections {
     parser.header_limit(static_cast<std::uint32_t>(settings_.max_header_kb) * 1024);
     parser.body_limit(to_bytes(settings_.max_body_mb));
     const Error error = co_await read_header(connection, buffer, parser, timeout_s);
-    if (error == http::error::end_of_stream || error == asio::error::connection_reset || error == asio::error::operation_aborted) co_return false;
+    if (error == http::error::end_of_stream || error == asio::error::connection_reset ||
+        error == asio::error::operation_aborted)
+      co_return false;
     if (error == beast::error::timeout) {
-      if (parser.got_some() || buffer.size() > 0) log("{}: request aborted: incomplete header after {} s", connection.peer, timeout_s);
+      if (parser.got_some() || buffer.size() > 0)
+        log("{}: request aborted: incomplete header after {} s", connection.peer, timeout_s);
       co_return false;
     }
     connection.stream.expires_after(milliseconds(settings_.request_timeout_s));
     HttpRequest request = head_of(parser, connection);
     std::optional<HttpResponse> error_reply = error ? to_error_response(error) : check_framing(parser);
     if (!error_reply) error_reply = handler_.refuse(request);
-    const std::size_t body_bytes = parser.chunked() ? to_bytes(settings_.max_body_mb) : parser.content_length().value_or(0);
+    const std::size_t body_bytes =
+        parser.chunked() ? to_bytes(settings_.max_body_mb) : parser.content_length().value_or(0);
     std::optional<ByteBudget::Claim> body_claim = bodies_.claim(error_reply ? 0 : body_bytes);
     if (!body_claim) error_reply = busy("too many request bodies");
     if (error_reply) {
@@ -261,7 +280,8 @@ class HttpServer::Connections {
     co_return is_sent;
   }
 
-  asio::awaitable<Error> read_header(Connection& connection, beast::flat_buffer& buffer, Parser& parser, double timeout_s) {
+  asio::awaitable<Error> read_header(Connection& connection, beast::flat_buffer& buffer, Parser& parser,
+                                     double timeout_s) {
     Error error;
     connection.move_to(waiting_);
     connection.stream.expires_after(milliseconds(timeout_s));
@@ -271,7 +291,8 @@ class HttpServer::Connections {
   }
 
   /// Reads the body into the request. Returns false at the end of the connection.
-  asio::awaitable<bool> read_body(Connection& connection, beast::flat_buffer& buffer, Parser& parser, HttpRequest& request) {
+  asio::awaitable<bool> read_body(Connection& connection, beast::flat_buffer& buffer, Parser& parser,
+                                  HttpRequest& request) {
     Error error;
     if (beast::iequals(parser.get()[http::field::expect], "100-continue")) {
       http::response<http::empty_body> go_on(http::status::continue_, parser.get().version());
@@ -279,9 +300,11 @@ class HttpServer::Connections {
     }
     if (!error) co_await http::async_read(connection.stream, buffer, parser, into(error));
     if (error == beast::error::timeout) {
-      log("{}: request aborted: {} {}: incomplete body after {} s", connection.peer, request.method, request.path, settings_.request_timeout_s);
+      log("{}: request aborted: {} {}: incomplete body after {} s", connection.peer, request.method, request.path,
+          settings_.request_timeout_s);
     }
-    if (error == http::error::body_limit || error == http::error::bad_chunk || error == http::error::bad_chunk_extension) {
+    if (error == http::error::body_limit || error == http::error::bad_chunk ||
+        error == http::error::bad_chunk_extension) {
       co_await refuse(connection, request, to_error_response(error));
     }
     request.body = std::move(parser.get().body());
@@ -289,7 +312,8 @@ class HttpServer::Connections {
   }
 
   /// Sends a response. Returns false at the end of the connection.
-  asio::awaitable<bool> send(Connection& connection, const HttpRequest& request, HttpResponse response, const Parser::value_type& asked) {
+  asio::awaitable<bool> send(Connection& connection, const HttpRequest& request, HttpResponse response,
+                             const Parser::value_type& asked) {
     std::optional<ByteBudget::Claim> claim = responses_.claim(response.body.size());
     if (!claim) {
       response = busy("too many unread responses");

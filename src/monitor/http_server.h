@@ -14,17 +14,17 @@ namespace patrol::monitor {
 
 /// Address and limits of the server.
 struct HttpServerSettings {
-  std::string host = "127.0.0.1";  ///< address or host name to listen on; the default accepts local connections only
-  int port = 8080;                 ///< 0: any free port
-  double header_timeout_s = 5.0;     ///< timeout from accepting a connection to the end of its first header
-  double request_timeout_s = 30.0;   ///< timeout from the end of the header to the end of the response
-  double idle_timeout_s = 15.0;      ///< timeout from a response to the end of the next header of the connection
+  std::string host = "127.0.0.1";   ///< address or host name to listen on; the default accepts local connections only
+  int port = 8080;                  ///< 0: any free port
+  double header_timeout_s = 5.0;    ///< timeout from accepting a connection to the end of its first header
+  double request_timeout_s = 30.0;  ///< timeout from the end of the header to the end of the response
+  double idle_timeout_s = 15.0;     ///< timeout from a response to the end of the next header of the connection
   /// simultaneous connections; a further one closes the one with the longest wait for its header
   int max_connections = 400;
   int max_header_kb = 16;
   double max_body_mb = 8.0;
   double max_bodies_mb = 64.0;     ///< request bodies of all connections; beyond it requests are refused with 503
-  double max_responses_mb = 64.0;    ///< unsent responses of all connections; beyond it responses are replaced by 503
+  double max_responses_mb = 64.0;  ///< unsent responses of all connections; beyond it responses are replaced by 503
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -43,13 +43,13 @@ struct HttpServerSettings {
 
 /// Parsed request.
 struct HttpRequest {
-  std::string peer;           ///< address of the client
-  std::string local;          ///< address of the server's end of the connection
-  std::string host;           ///< Host header; empty unless there is exactly one
-  std::string method;         ///< GET, POST, ...
-  std::string path;           ///< as sent, without the query
+  std::string peer;                                            ///< address of the client
+  std::string local;                                           ///< address of the server's end of the connection
+  std::string host;                                            ///< Host header; empty unless there is exactly one
+  std::string method;                                          ///< GET, POST, ...
+  std::string path;                                            ///< as sent, without the query
   std::map<std::string, std::string, std::less<>> parameters;  ///< decoded query parameters
-  std::string authorization;  ///< Authorization header
+  std::string authorization;                                   ///< Authorization header
   std::string body;
 };
 

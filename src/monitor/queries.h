@@ -35,7 +35,8 @@ std::string alarms(Database& database, const AlarmsPage& page);
 /// Data of a run for the map: {"run", "state", "stations", "next_station", "track", "map", "findings", "runs"}. An
 /// empty `run` selects the robot's newest run. At most 500 stations from number `station` on; `next_station` is the
 /// first number of the next page, or null.
-std::optional<std::string> run_details(Database& database, const std::string& robot, const std::string& run, std::int64_t station = 0);
+std::optional<std::string> run_details(Database& database, const std::string& robot, const std::string& run,
+                                       std::int64_t station = 0);
 
 /// Position in the three lists of a site's lining data.
 struct LiningPage {

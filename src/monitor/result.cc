@@ -29,7 +29,8 @@ constexpr int kMaxMapSide_px = 8192;  // per side of a map
 
 std::string text_of(const JsonObject& object, const char* key, std::size_t min_bytes, std::size_t max_bytes) {
   const std::string text = object.string(key);
-  if (text.size() < min_bytes || text.size() > max_bytes) object.fail(fmt::format("{} must have {} to {} bytes", key, min_bytes, max_bytes));
+  if (text.size() < min_bytes || text.size() > max_bytes)
+    object.fail(fmt::format("{} must have {} to {} bytes", key, min_bytes, max_bytes));
   return text;
 }
 
@@ -40,7 +41,8 @@ void check_point(const JsonObject& object, const char* key) { object.numbers(key
 void check_map(const std::string& location, const Json& data) {
   const JsonObject object(location, data, {"width", "height", "resolution_m", "origin_m", "png_base64"});
   for (const char* side : {"width", "height"}) {
-    if (object.integer(side) < 1 || object.integer(side) > kMaxMapSide_px) object.fail(fmt::format("{} must be in [1, {}]", side, kMaxMapSide_px));
+    if (object.integer(side) < 1 || object.integer(side) > kMaxMapSide_px)
+      object.fail(fmt::format("{} must be in [1, {}]", side, kMaxMapSide_px));
   }
   if (object.number("resolution_m") <= 0.0) object.fail("resolution_m must be positive");
   check_point(object, "origin_m");
@@ -48,7 +50,8 @@ void check_map(const std::string& location, const Json& data) {
   const auto size = bytes ? png_size(*bytes) : std::nullopt;
   if (!size) object.fail("png_base64 must be a PNG in base64");
   if (size->width != object.integer("width") || size->height != object.integer("height")) {
-    object.fail(fmt::format("png_base64 must have {} x {} pixels, it has {} x {}", object.integer("width"), object.integer("height"), size->width, size->height));
+    object.fail(fmt::format("png_base64 must have {} x {} pixels, it has {} x {}", object.integer("width"),
+                            object.integer("height"), size->width, size->height));
   }
 }
 
@@ -80,7 +83,8 @@ void check_status(const std::string& location, const Json& data) {
 }
 
 void check_length(const std::string& location, const std::string& text) {
-  if (text.size() > kMaxTextBytes) throw InputError(fmt::format("{} must have at most {} bytes", location, kMaxTextBytes));
+  if (text.size() > kMaxTextBytes)
+    throw InputError(fmt::format("{} must have at most {} bytes", location, kMaxTextBytes));
 }
 
 void check_lining(const std::string& location, const Json& data) {
@@ -99,10 +103,15 @@ void check_data(const std::string& location, const std::string& kind, const Json
 }
 
 Result parse_result(const std::string& location, const Json& json) {
-  const JsonObject object(location, json, {"schema", "id", "robot", "run", "world", "sequence", "time_s", "made_utc", "kind", "data"});
+  const JsonObject object(location, json,
+                          {"schema", "id", "robot", "run", "world", "sequence", "time_s", "made_utc", "kind", "data"});
   if (object.string("schema") != kResultSchema) object.fail(fmt::format("schema must be {}", kResultSchema));
-  Result result{.id = name_of(object, "id"), .robot = name_of(object, "robot"), .run = name_of(object, "run"), .world = name_of(object, "world"),
-                .kind = object.string("kind"), .data = {}};
+  Result result{.id = name_of(object, "id"),
+                .robot = name_of(object, "robot"),
+                .run = name_of(object, "run"),
+                .world = name_of(object, "world"),
+                .kind = object.string("kind"),
+                .data = {}};
   result.sequence = object.integer("sequence");
   if (result.sequence < 0) object.fail("sequence must not be negative");
   result.time_s = object.number("time_s");
@@ -123,8 +132,11 @@ Result parse_result(const std::string& location, const Json& json) {
 }  // namespace
 
 std::string to_json(const Result& result) {
-  const Json json = {{"schema", kResultSchema}, {"id", result.id}, {"robot", result.robot}, {"run", result.run}, {"world", result.world}, {"sequence", result.sequence},
-                     {"time_s", result.time_s}, {"made_utc", to_utc(result.created_ms)}, {"kind", result.kind}, {"data", Json::parse(result.data)}};
+  const Json json = {{"schema", kResultSchema}, {"id", result.id},
+                     {"robot", result.robot},   {"run", result.run},
+                     {"world", result.world},   {"sequence", result.sequence},
+                     {"time_s", result.time_s}, {"made_utc", to_utc(result.created_ms)},
+                     {"kind", result.kind},     {"data", Json::parse(result.data)}};
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
@@ -139,7 +151,9 @@ std::vector<Result> results_from_json(const std::string& text) {
 }
 
 std::string to_content(const Result& result) {
-  return Json({result.robot, result.run, result.world, result.sequence, result.time_s, result.created_ms, result.kind, result.data}).dump();
+  return Json({result.robot, result.run, result.world, result.sequence, result.time_s, result.created_ms, result.kind,
+               result.data})
+      .dump();
 }
 
 std::string to_summary(const Result& result) {
@@ -153,8 +167,10 @@ std::string to_summary(const Result& result) {
 }
 
 std::string to_utc(std::int64_t milliseconds) {
-  const std::chrono::sys_seconds seconds{std::chrono::floor<std::chrono::seconds>(std::chrono::milliseconds(milliseconds))};
-  return fmt::format("{:%Y-%m-%dT%H:%M:%S}.{:03}Z", fmt::gmtime(seconds.time_since_epoch().count()), ((milliseconds % 1000) + 1000) % 1000);
+  const std::chrono::sys_seconds seconds{
+      std::chrono::floor<std::chrono::seconds>(std::chrono::milliseconds(milliseconds))};
+  return fmt::format("{:%Y-%m-%dT%H:%M:%S}.{:03}Z", fmt::gmtime(seconds.time_since_epoch().count()),
+                     ((milliseconds % 1000) + 1000) % 1000);
 }
 
 std::int64_t from_utc(const std::string& text) {
@@ -163,17 +179,19 @@ std::int64_t from_utc(const std::string& text) {
   const auto matches = [](char form, char c) { return form == '0' ? c >= '0' && c <= '9' : c == form; };
   if (!std::equal(kForm.begin(), kForm.end(), text.begin(), text.end(), matches)) throw refuse();
   const auto number = [&](std::size_t at, std::size_t length) { return std::stoi(text.substr(at, length)); };
-  const int year = number(0, 4), month = number(5, 2), day = number(8, 2), hour = number(11, 2), minute = number(14, 2), second = number(17, 2);
+  const int year = number(0, 4), month = number(5, 2), day = number(8, 2), hour = number(11, 2), minute = number(14, 2),
+            second = number(17, 2);
   const std::chrono::year_month_day date{std::chrono::year(year), std::chrono::month(static_cast<unsigned>(month)),
                                          std::chrono::day(static_cast<unsigned>(day))};
   if (!date.ok() || year < 1970 || hour >= 24 || minute >= 60 || second >= 60) throw refuse();
-  const auto time = std::chrono::sys_days(date).time_since_epoch() + std::chrono::hours(hour) + std::chrono::minutes(minute) +
-                    std::chrono::seconds(second);
+  const auto time = std::chrono::sys_days(date).time_since_epoch() + std::chrono::hours(hour) +
+                    std::chrono::minutes(minute) + std::chrono::seconds(second);
   return std::chrono::milliseconds(time).count() + number(20, 3);
 }
 
 std::int64_t now_ms() {
-  return std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+  return std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::system_clock::now().time_since_epoch())
+      .count();
 }
 
 }  // namespace patrol::monitor

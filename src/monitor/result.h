@@ -12,15 +12,15 @@ inline constexpr const char* kResultSchema = "patrol-result/2";
 
 /// Result reported by a robot: envelope and data.
 struct Result {
-  std::string id;             ///< unique among all robots and runs
+  std::string id;  ///< unique among all robots and runs
   std::string robot;
   std::string run;
   std::string world;
-  std::int64_t sequence = 0;  ///< number in the run, from 0
-  double time_s = 0.0;        ///< simulated time since the start of the run
-  std::int64_t created_ms = 0;   ///< creation time by the robot's clock, ms since 1970, UTC
-  std::string kind;           ///< pose, map, event, lining, water or status
-  std::string data;           ///< JSON object of that kind, keys in fixed order
+  std::int64_t sequence = 0;    ///< number in the run, from 0
+  double time_s = 0.0;          ///< simulated time since the start of the run
+  std::int64_t created_ms = 0;  ///< creation time by the robot's clock, ms since 1970, UTC
+  std::string kind;             ///< pose, map, event, lining, water or status
+  std::string data;             ///< JSON object of that kind, keys in fixed order
 };
 
 /// Converts a result to one line of JSON.

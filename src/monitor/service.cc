@@ -18,10 +18,12 @@ namespace {
 
 using io::Json;
 
-constexpr std::string_view kAlarms = "/api/alarms/", kAcknowledge = "/acknowledge", kMaps = "/api/maps/", kResults = "/api/results";
+constexpr std::string_view kAlarms = "/api/alarms/", kAcknowledge = "/acknowledge", kMaps = "/api/maps/",
+                           kResults = "/api/results";
 constexpr std::size_t kMaxWhoBytes = 80, kMaxNoteBytes = 500, kMaxShownHost = 100;
-constexpr const char* kPolicy = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; connect-src 'self'; "
-                                "base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+constexpr const char* kPolicy =
+    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; connect-src 'self'; "
+    "base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
 struct Asset {
   std::string_view path, type, content;
@@ -71,7 +73,9 @@ std::int64_t count(const HttpRequest& request, const char* name, std::int64_t ot
   return *value;
 }
 
-int limit_of(const HttpRequest& request, int otherwise) { return static_cast<int>(std::min<std::int64_t>(count(request, "limit", otherwise), 1000)); }
+int limit_of(const HttpRequest& request, int otherwise) {
+  return static_cast<int>(std::min<std::int64_t>(count(request, "limit", otherwise), 1000));
+}
 
 HttpResponse fresh(std::string json) { return {.body = std::move(json), .headers = {{"Cache-Control", "no-store"}}}; }
 
@@ -79,16 +83,20 @@ HttpResponse fresh(std::string json) { return {.body = std::move(json), .headers
 std::string_view bearer_token(std::string_view header) {
   constexpr std::string_view kScheme = "bearer ";
   const auto is_same_letter = [](char a, char b) { return a == (b >= 'A' && b <= 'Z' ? b - 'A' + 'a' : b); };
-  if (header.size() < kScheme.size() || !std::equal(kScheme.begin(), kScheme.end(), header.begin(), is_same_letter)) return {};
+  if (header.size() < kScheme.size() || !std::equal(kScheme.begin(), kScheme.end(), header.begin(), is_same_letter))
+    return {};
   header.remove_prefix(kScheme.size());
   header.remove_prefix(std::min(header.find_first_not_of(' '), header.size()));
   return header;
 }
 
-bool is_post_path(std::string_view path) { return path == kResults || number_between(path, kAlarms, kAcknowledge).has_value(); }
+bool is_post_path(std::string_view path) {
+  return path == kResults || number_between(path, kAlarms, kAcknowledge).has_value();
+}
 
 bool is_get_path(std::string_view path) {
-  for (const char* known : {"/api/changes", "/api/robots", "/api/alarms", "/api/run", "/api/lining", "/api/water", "/api/gas", "/api/history"}) {
+  for (const char* known : {"/api/changes", "/api/robots", "/api/alarms", "/api/run", "/api/lining", "/api/water",
+                            "/api/gas", "/api/history"}) {
     if (path == known) return true;
   }
   return asset_at(path) != nullptr || number_between(path, kMaps, "").has_value();
@@ -97,16 +105,23 @@ bool is_get_path(std::string_view path) {
 HttpResponse get(Database& database, const HttpRequest& request) {
   const std::string& path = request.path;
   if (const Asset* asset = asset_at(path)) {
-    return {.type = std::string(asset->type), .body = std::string(asset->content),
-            .headers = {{"Cache-Control", "no-cache"}, {"Content-Security-Policy", kPolicy}, {"Referrer-Policy", "no-referrer"}}};
+    return {.type = std::string(asset->type),
+            .body = std::string(asset->content),
+            .headers = {{"Cache-Control", "no-cache"},
+                        {"Content-Security-Policy", kPolicy},
+                        {"Referrer-Policy", "no-referrer"}}};
   }
   if (path == "/api/changes") return fresh(changes(database, count(request, "since", 0), now_ms()));
-  if (path == "/api/robots") return fresh(robots(database, {.after = parameter(request, "after"), .limit = limit_of(request, 200)}));
+  if (path == "/api/robots")
+    return fresh(robots(database, {.after = parameter(request, "after"), .limit = limit_of(request, 200)}));
   if (path == "/api/alarms") {
-    return fresh(alarms(database, {.only_open = parameter(request, "open") == "1", .before = count(request, "before", 0), .limit = limit_of(request, 100)}));
+    return fresh(alarms(database, {.only_open = parameter(request, "open") == "1",
+                                   .before = count(request, "before", 0),
+                                   .limit = limit_of(request, 100)}));
   }
   if (path == "/api/run") {
-    const auto details = run_details(database, parameter(request, "robot"), parameter(request, "run"), count(request, "station", 0));
+    const auto details =
+        run_details(database, parameter(request, "robot"), parameter(request, "run"), count(request, "station", 0));
     return details ? fresh(*details) : error_response(404, "unknown robot or run");
   }
   if (path == "/api/lining") {
@@ -115,7 +130,9 @@ HttpResponse get(Database& database, const HttpRequest& request) {
   if (path == "/api/water") return fresh(water(database, parameter(request, "world")));
   if (path == "/api/gas") return fresh(gas(database, parameter(request, "world")));
   if (path == "/api/history") {
-    return fresh(history(database, {.robot = parameter(request, "robot"), .kind = parameter(request, "kind"), .before = count(request, "before", 0),
+    return fresh(history(database, {.robot = parameter(request, "robot"),
+                                    .kind = parameter(request, "kind"),
+                                    .before = count(request, "before", 0),
                                     .limit = limit_of(request, 25)}));
   }
   const auto image = map_image(database, *number_between(path, kMaps, ""));
@@ -131,7 +148,9 @@ Service::Service(Store& store, std::string token, HttpServer::Log log, HostNames
 std::optional<HttpResponse> Service::refuse(const HttpRequest& head) {
   if (!hosts_.allow(head.host, head.local)) {
     const std::string host = head.host.substr(0, kMaxShownHost);
-    return error_response(421, fmt::format("Host '{}': unknown: must be the server's address, localhost, or a name of --allow-host", host));
+    return error_response(
+        421,
+        fmt::format("Host '{}': unknown: must be the server's address, localhost, or a name of --allow-host", host));
   }
   const bool posts = is_post_path(head.path), gets = is_get_path(head.path);
   if (!posts && !gets) return error_response(404, "not found");
@@ -142,7 +161,8 @@ std::optional<HttpResponse> Service::refuse(const HttpRequest& head) {
     return no;
   }
   if (posts && !is_same_token(bearer_token(head.authorization), token_)) {
-    HttpResponse no = error_response(401, head.authorization.empty() ? "token required: Authorization: Bearer ..." : "invalid token");
+    HttpResponse no =
+        error_response(401, head.authorization.empty() ? "token required: Authorization: Bearer ..." : "invalid token");
     no.headers.emplace_back("WWW-Authenticate", "Bearer realm=\"patrol\"");
     return no;
   }
@@ -167,7 +187,10 @@ HttpResponse Service::take_results(const HttpRequest& request) {
   for (std::size_t i = 0; i < results.size(); ++i) {
     const bool is_conflict = stored[i] == StoreStatus::kConflict;
     has_conflict = has_conflict || is_conflict;
-    list.push_back({{"id", results[i].id}, {"status", is_conflict ? "conflict" : stored[i] == StoreStatus::kExisting ? "known" : "stored"}});
+    list.push_back({{"id", results[i].id},
+                    {"status", is_conflict                           ? "conflict"
+                               : stored[i] == StoreStatus::kExisting ? "known"
+                                                                     : "stored"}});
     if (is_conflict) log_(fmt::format("{} 409: duplicate id {} with a different result", request.peer, results[i].id));
   }
   Json answer = {{"results", list}};
@@ -184,9 +207,12 @@ HttpResponse Service::acknowledge(const HttpRequest& request) {
   if (note.size() > kMaxNoteBytes) object.fail(fmt::format("note must have at most {} bytes", kMaxNoteBytes));
   const std::int64_t number = *number_between(request.path, kAlarms, kAcknowledge);
   switch (store_.acknowledge(number, who, note, now_ms())) {
-    case AcknowledgeStatus::kUnknown: return error_response(404, "unknown alarm");
-    case AcknowledgeStatus::kAlready: return error_response(409, "alarm already acknowledged");
-    case AcknowledgeStatus::kDone: break;
+    case AcknowledgeStatus::kUnknown:
+      return error_response(404, "unknown alarm");
+    case AcknowledgeStatus::kAlready:
+      return error_response(409, "alarm already acknowledged");
+    case AcknowledgeStatus::kDone:
+      break;
   }
   log_(fmt::format("{} alarm {} acknowledged by {}", request.peer, number, who));
   return {.body = Json{{"number", number}}.dump(), .headers = {}};

@@ -46,23 +46,33 @@ StoreStatus Store::add_one(const Result& result, std::int64_t received_ms, std::
       "VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11) "
       "ON CONFLICT (id) DO NOTHING");
   insert
-      .bind(result.id, result.robot, result.run, result.world, result.sequence, result.time_s, result.created_ms, received_ms, result.kind,
-            to_summary(result), result.data)
+      .bind(result.id, result.robot, result.run, result.world, result.sequence, result.time_s, result.created_ms,
+            received_ms, result.kind, to_summary(result), result.data)
       .run();
   if (database_.changes() > 0) {
     update_views(database_, result, {.seq = database_.last_row(), .received_ms = received_ms, .revision = revision});
     return StoreStatus::kNew;
   }
-  Statement there = database_.prepare("SELECT robot, run, world, sequence, time_s, made_ms, kind, data FROM results WHERE id = ?1");
+  Statement there =
+      database_.prepare("SELECT robot, run, world, sequence, time_s, made_ms, kind, data FROM results WHERE id = ?1");
   there.bind(result.id).step();
-  const Result known{.id = result.id, .robot = there.text(0), .run = there.text(1), .world = there.text(2), .sequence = there.integer(3), .time_s = there.number(4),
-                     .created_ms = there.integer(5), .kind = there.text(6), .data = there.text(7)};
+  const Result known{.id = result.id,
+                     .robot = there.text(0),
+                     .run = there.text(1),
+                     .world = there.text(2),
+                     .sequence = there.integer(3),
+                     .time_s = there.number(4),
+                     .created_ms = there.integer(5),
+                     .kind = there.text(6),
+                     .data = there.text(7)};
   return to_content(known) == to_content(result) ? StoreStatus::kExisting : StoreStatus::kConflict;
 }
 
-AcknowledgeStatus Store::acknowledge(std::int64_t finding, const std::string& who, const std::string& note, std::int64_t now_ms) {
+AcknowledgeStatus Store::acknowledge(std::int64_t finding, const std::string& who, const std::string& note,
+                                     std::int64_t now_ms) {
   Transaction transaction(database_);
-  const auto is_done = database_.find_integer("SELECT acknowledged_ms IS NOT NULL FROM findings WHERE number = ?1", finding);
+  const auto is_done =
+      database_.find_integer("SELECT acknowledged_ms IS NOT NULL FROM findings WHERE number = ?1", finding);
   if (!is_done) return AcknowledgeStatus::kUnknown;
   if (*is_done != 0) return AcknowledgeStatus::kAlready;
   database_.prepare("UPDATE findings SET acknowledged_ms = ?2, who = ?3, note = ?4, revision = ?5 WHERE number = ?1")

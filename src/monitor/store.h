@@ -13,7 +13,7 @@ namespace patrol::monitor {
 /// Outcome of storing a result.
 enum class StoreStatus {
   kNew,
-  kExisting,     ///< an equal result exists
+  kExisting,  ///< an equal result exists
   kConflict,  ///< another result with the same id exists; nothing is changed
 };
 
@@ -31,7 +31,8 @@ class Store {
   std::vector<StoreStatus> add(const std::vector<Result>& results, std::int64_t received_ms);
 
   /// Acknowledges a warning or alarm with the user's name and note.
-  AcknowledgeStatus acknowledge(std::int64_t finding, const std::string& who, const std::string& note, std::int64_t now_ms);
+  AcknowledgeStatus acknowledge(std::int64_t finding, const std::string& who, const std::string& note,
+                                std::int64_t now_ms);
 
   /// Database for the queries of queries.h.
   Database& database() { return database_; }

@@ -14,7 +14,8 @@ std::string decoded(std::string_view text) {
   std::string plain;
   for (std::size_t i = 0; i < text.size(); ++i) {
     unsigned char code = 0;
-    const bool is_escape = text[i] == '%' && i + 2 < text.size() && std::from_chars(&text[i + 1], &text[i + 1] + 2, code, 16).ptr == &text[i + 1] + 2;
+    const bool is_escape = text[i] == '%' && i + 2 < text.size() &&
+                           std::from_chars(&text[i + 1], &text[i + 1] + 2, code, 16).ptr == &text[i + 1] + 2;
     if (is_escape) {
       plain += static_cast<char>(code);
       i += 2;
@@ -27,7 +28,8 @@ std::string decoded(std::string_view text) {
 
 }  // namespace
 
-void split_target(const std::string& target, std::string& path, std::map<std::string, std::string, std::less<>>& parameters) {
+void split_target(const std::string& target, std::string& path,
+                  std::map<std::string, std::string, std::less<>>& parameters) {
   const std::size_t question = target.find('?');
   path = target.substr(0, question);
   if (question == std::string::npos) return;
@@ -36,7 +38,8 @@ void split_target(const std::string& target, std::string& path, std::map<std::st
     const std::string_view pair = rest.substr(0, rest.find('&'));
     rest.remove_prefix(std::min(rest.size(), pair.size() + 1));
     const std::size_t equals = pair.find('=');
-    if (equals != std::string_view::npos) parameters.emplace(decoded(pair.substr(0, equals)), decoded(pair.substr(equals + 1)));
+    if (equals != std::string_view::npos)
+      parameters.emplace(decoded(pair.substr(0, equals)), decoded(pair.substr(equals + 1)));
   }
 }
 
@@ -49,7 +52,8 @@ Url parse_url(const std::string& text) {
   if (rest.ends_with('/')) rest.remove_suffix(1);
   const std::size_t colon = rest.rfind(':');
   const bool has_port = colon != std::string_view::npos && rest.find(']', colon) == std::string_view::npos;
-  Url url{.host = std::string(rest.substr(0, has_port ? colon : rest.size())), .port = has_port ? std::string(rest.substr(colon + 1)) : "80"};
+  Url url{.host = std::string(rest.substr(0, has_port ? colon : rest.size())),
+          .port = has_port ? std::string(rest.substr(colon + 1)) : "80"};
   if (url.host.starts_with('[') && url.host.ends_with(']')) url.host = url.host.substr(1, url.host.size() - 2);
   int port = 0;
   const auto [end, error] = std::from_chars(url.port.data(), url.port.data() + url.port.size(), port);

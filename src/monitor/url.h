@@ -8,7 +8,8 @@ namespace patrol::monitor {
 
 /// Splits a request target into the path as sent and the decoded query parameters (RFC 3986, 3.4). The first value of a
 /// repeated name is used.
-void split_target(const std::string& target, std::string& path, std::map<std::string, std::string, std::less<>>& parameters);
+void split_target(const std::string& target, std::string& path,
+                  std::map<std::string, std::string, std::less<>>& parameters);
 
 /// Host and port of a monitoring server.
 struct Url {

@@ -44,7 +44,8 @@ namespace {
 
 using io::Json;
 
-/// Level of an event for the findings page. Lining and water findings come with their own results, which hold their levels.
+/// Level of an event for the findings page. Lining and water findings come with their own results, which hold their
+/// levels.
 WarningLevel finding_level(EventKind kind) {
   switch (kind) {
     case EventKind::kLiningNotice:
@@ -67,7 +68,8 @@ std::int64_t ordering_ms(const Result& result, const RecordInfo& filed) {
 /// Adds one result to the tables.
 class Entry {
  public:
-  Entry(Database& database, const Result& result, const RecordInfo& filed) : database_(database), result_(result), filed_(filed), made_ms_(ordering_ms(result, filed)) {
+  Entry(Database& database, const Result& result, const RecordInfo& filed)
+      : database_(database), result_(result), filed_(filed), made_ms_(ordering_ms(result, filed)) {
     open_run();
   }
 
@@ -86,23 +88,38 @@ class Entry {
 
  private:
   void open_run() {
-    database_.prepared("INSERT INTO runs (robot, run, world, first_ms, last_ms) VALUES (?1, ?2, ?3, ?4, ?4) "
-                      "ON CONFLICT (robot, run) DO UPDATE SET first_ms = min(first_ms, ?4), last_ms = max(last_ms, ?4)")
+    database_
+        .prepared(
+            "INSERT INTO runs (robot, run, world, first_ms, last_ms) VALUES (?1, ?2, ?3, ?4, ?4) "
+            "ON CONFLICT (robot, run) DO UPDATE SET first_ms = min(first_ms, ?4), last_ms = max(last_ms, ?4)")
         .bind(result_.robot, result_.run, result_.world, made_ms_)
         .run();
-    run_ = database_.find_integer("SELECT number FROM runs WHERE robot = ?1 AND run = ?2", result_.robot, result_.run).value();
+    run_ = database_.find_integer("SELECT number FROM runs WHERE robot = ?1 AND run = ?2", result_.robot, result_.run)
+               .value();
   }
 
   /// Updates the robot's state. Late results of an earlier run do not change it.
   bool update_robot(bool is_mark) {
-    database_.prepared("INSERT INTO robots (robot, run, made_ms, received_ms, time_s, revision) VALUES (?1, ?2, ?3, ?4, ?5, ?6) ON CONFLICT (robot) DO NOTHING")
+    database_
+        .prepared(
+            "INSERT INTO robots (robot, run, made_ms, received_ms, time_s, revision) VALUES (?1, ?2, ?3, ?4, ?5, ?6) "
+            "ON CONFLICT (robot) DO NOTHING")
         .bind(result_.robot, run_, made_ms_, filed_.received_ms, result_.time_s, filed_.revision)
         .run();
-    if (is_mark) database_.prepared("UPDATE robots SET mark_revision = ?2, revision = ?2 WHERE robot = ?1").bind(result_.robot, filed_.revision).run();
-    database_.prepared("UPDATE robots SET x = NULL, y = NULL, yaw = NULL, at = '', run = ?2 WHERE robot = ?1 AND run != ?2 AND made_ms <= ?3")
+    if (is_mark)
+      database_.prepared("UPDATE robots SET mark_revision = ?2, revision = ?2 WHERE robot = ?1")
+          .bind(result_.robot, filed_.revision)
+          .run();
+    database_
+        .prepared(
+            "UPDATE robots SET x = NULL, y = NULL, yaw = NULL, at = '', run = ?2 WHERE robot = ?1 AND run != ?2 AND "
+            "made_ms <= ?3")
         .bind(result_.robot, run_, made_ms_)
         .run();
-    database_.prepared("UPDATE robots SET made_ms = ?2, received_ms = ?3, time_s = ?4, revision = ?5 WHERE robot = ?1 AND run = ?6 AND made_ms <= ?2")
+    database_
+        .prepared(
+            "UPDATE robots SET made_ms = ?2, received_ms = ?3, time_s = ?4, revision = ?5 WHERE robot = ?1 AND run = "
+            "?6 AND made_ms <= ?2")
         .bind(result_.robot, made_ms_, filed_.received_ms, result_.time_s, filed_.revision, run_)
         .run();
     return database_.changes() > 0;
@@ -111,9 +128,11 @@ class Entry {
   void enter_status(const Json& data) {
     const std::string state = data["state"], scenario = data["scenario"], message = data["message"];
     // A late start message does not reopen a finished run.
-    database_.prepared("UPDATE runs SET scenario = ?2, state = CASE WHEN ?3 = 'started' THEN state ELSE ?3 END, "
-                      "message = CASE WHEN ?3 = 'started' THEN message ELSE ?4 END, "
-                      "stations = CASE WHEN ?3 = 'started' THEN ?5 ELSE stations END WHERE number = ?1")
+    database_
+        .prepared(
+            "UPDATE runs SET scenario = ?2, state = CASE WHEN ?3 = 'started' THEN state ELSE ?3 END, "
+            "message = CASE WHEN ?3 = 'started' THEN message ELSE ?4 END, "
+            "stations = CASE WHEN ?3 = 'started' THEN ?5 ELSE stations END WHERE number = ?1")
         .bind(run_, scenario, state, message, data["stations"].dump())
         .run();
   }
@@ -121,12 +140,20 @@ class Entry {
   void enter_pose(const Json& data, bool is_newest) {
     const double x = data["x"], y = data["y"], yaw = data["yaw"];
     database_.prepared("UPDATE runs SET poses = poses + 1 WHERE number = ?1").bind(run_).run();
-    database_.prepared("INSERT INTO poses SELECT ?1, poses - 1, ?2, ?3 FROM runs WHERE number = ?1").bind(run_, x, y).run();
-    if (is_newest) database_.prepared("UPDATE robots SET x = ?2, y = ?3, yaw = ?4 WHERE robot = ?1").bind(result_.robot, x, y, yaw).run();
+    database_.prepared("INSERT INTO poses SELECT ?1, poses - 1, ?2, ?3 FROM runs WHERE number = ?1")
+        .bind(run_, x, y)
+        .run();
+    if (is_newest)
+      database_.prepared("UPDATE robots SET x = ?2, y = ?3, yaw = ?4 WHERE robot = ?1")
+          .bind(result_.robot, x, y, yaw)
+          .run();
   }
 
   void enter_map() {
-    database_.prepared("UPDATE runs SET map_seq = ?2, map_time_s = ?3 WHERE number = ?1 AND (map_time_s IS NULL OR map_time_s <= ?3)")
+    database_
+        .prepared(
+            "UPDATE runs SET map_seq = ?2, map_time_s = ?3 WHERE number = ?1 AND (map_time_s IS NULL OR map_time_s <= "
+            "?3)")
         .bind(run_, filed_.seq, result_.time_s)
         .run();
   }
@@ -142,8 +169,10 @@ class Entry {
           .run();
     }
     if (kind == EventKind::kGoalSaved) {
-      database_.prepared("UPDATE runs SET stations = json_insert(stations, '$[#]', "
-                        "json_object('name', ?2, 'type', 'marked', 'position_m', json_array(?3, ?4))) WHERE number = ?1")
+      database_
+          .prepared(
+              "UPDATE runs SET stations = json_insert(stations, '$[#]', "
+              "json_object('name', ?2, 'type', 'marked', 'position_m', json_array(?3, ?4))) WHERE number = ?1")
           .bind(run_, subject, p_map.x(), p_map.y())
           .run();
     }
@@ -170,14 +199,18 @@ class Entry {
     }
     for (const ConvergenceLine& line : lining.lines) {
       if (!std::isfinite(line.change_m)) continue;
-      database_.prepared("INSERT INTO lines VALUES (?1, ?2, ?3, ?4, ?5, ?6, NULL) "
-                        "ON CONFLICT DO UPDATE SET before_m = change_m, made_ms = ?4, change_m = ?5, std_m = ?6 WHERE made_ms <= ?4")
+      database_
+          .prepared(
+              "INSERT INTO lines VALUES (?1, ?2, ?3, ?4, ?5, ?6, NULL) "
+              "ON CONFLICT DO UPDATE SET before_m = change_m, made_ms = ?4, change_m = ?5, std_m = ?6 WHERE made_ms <= "
+              "?4")
           .bind(result_.world, line.ring, line.name, made_ms_, line.change_m, line.std_m)
           .run();
     }
     for (const RingFinding& finding : lining.findings) {
-      const std::string text = fmt::format("Ring {} moved {:.1f} mm inward (standard deviation {:.1f} mm) at {:.0f} degrees.", finding.ring,
-                                           1e3 * finding.inward_m, 1e3 * finding.std_m, finding.clock_deg);
+      const std::string text =
+          fmt::format("Ring {} moved {:.1f} mm inward (standard deviation {:.1f} mm) at {:.0f} degrees.", finding.ring,
+                      1e3 * finding.inward_m, 1e3 * finding.std_m, finding.clock_deg);
       add_finding(finding.level, "lining", fmt::format("ring {}", finding.ring), text, finding.p_map.head<2>());
     }
   }
@@ -185,24 +218,32 @@ class Entry {
   void enter_water(const WaterResult& water) {
     enter_newest(water.station);
     if (!water.is_found) return;
-    const std::string text = fmt::format("Water ahead: {:.1f} m from the antenna ({:.1f} ... {:.1f} m), {:.0f} degrees to the {}, {:.0f} {}.",
-                                         water.distance_m, water.distance_low_m, water.distance_high_m, std::abs(water.azimuth_deg),
-                                         water.azimuth_deg >= 0.0 ? "left" : "right", std::abs(water.elevation_deg),
-                                         water.elevation_deg >= 0.0 ? "up" : "down");
+    const std::string text = fmt::format(
+        "Water ahead: {:.1f} m from the antenna ({:.1f} ... {:.1f} m), {:.0f} degrees to the {}, {:.0f} {}.",
+        water.distance_m, water.distance_low_m, water.distance_high_m, std::abs(water.azimuth_deg),
+        water.azimuth_deg >= 0.0 ? "left" : "right", std::abs(water.elevation_deg),
+        water.elevation_deg >= 0.0 ? "up" : "down");
     add_finding(water.level, "water", water.station, text, water.p_map.head<2>());
   }
 
   void enter_newest(const std::string& station) {
-    database_.prepared("INSERT INTO newest VALUES (?1, ?2, ?3, ?4, ?5) ON CONFLICT DO UPDATE SET made_ms = ?4, seq = ?5 WHERE made_ms <= ?4")
+    database_
+        .prepared(
+            "INSERT INTO newest VALUES (?1, ?2, ?3, ?4, ?5) ON CONFLICT DO UPDATE SET made_ms = ?4, seq = ?5 WHERE "
+            "made_ms <= ?4")
         .bind(result_.world, result_.kind, station, made_ms_, filed_.seq)
         .run();
   }
 
-  void add_finding(WarningLevel level, const std::string& kind, const std::string& subject, const std::string& text, const Eigen::Vector2d& p_map) {
+  void add_finding(WarningLevel level, const std::string& kind, const std::string& subject, const std::string& text,
+                   const Eigen::Vector2d& p_map) {
     if (level == WarningLevel::kNone) return;
-    database_.prepared("INSERT INTO findings (run, time_s, made_ms, received_ms, level, kind, subject, text, x, y, revision) "
-                      "VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11)")
-        .bind(run_, result_.time_s, result_.created_ms, filed_.received_ms, static_cast<int>(level), kind, subject, text, p_map.x(), p_map.y(), filed_.revision)
+    database_
+        .prepared(
+            "INSERT INTO findings (run, time_s, made_ms, received_ms, level, kind, subject, text, x, y, revision) "
+            "VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11)")
+        .bind(run_, result_.time_s, result_.created_ms, filed_.received_ms, static_cast<int>(level), kind, subject,
+              text, p_map.x(), p_map.y(), filed_.revision)
         .run();
   }
 
@@ -215,6 +256,8 @@ class Entry {
 
 }  // namespace
 
-void update_views(Database& database, const Result& result, const RecordInfo& filed) { Entry(database, result, filed).enter(); }
+void update_views(Database& database, const Result& result, const RecordInfo& filed) {
+  Entry(database, result, filed).enter();
+}
 
 }  // namespace patrol::monitor

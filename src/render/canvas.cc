@@ -22,8 +22,7 @@ std::filesystem::path font_file(bool is_bold) {
     const std::filesystem::path file = std::filesystem::path(folder) / name;
     if (std::filesystem::exists(file)) return file;
   }
-  throw InputError(std::string(name) +
-                   " is not installed (package fonts-dejavu-core): required by replay");
+  throw InputError(std::string(name) + " is not installed (package fonts-dejavu-core): required by replay");
 }
 
 /// Decodes the character at `at` of valid UTF-8 and advances `at` past it.
@@ -39,8 +38,7 @@ char32_t next_character(const std::string& text, std::size_t& at) {
 
 /// Calls `shade(x, y, distance)` for the pixels around a line segment.
 template <typename Shade>
-void around_segment(const Frame& frame, const Eigen::Vector2d& a, const Eigen::Vector2d& b, double reach,
-                    Shade shade) {
+void around_segment(const Frame& frame, const Eigen::Vector2d& a, const Eigen::Vector2d& b, double reach, Shade shade) {
   const Eigen::Vector2d low = a.cwiseMin(b).array() - reach, high = a.cwiseMax(b).array() + reach;
   if (!(high.x() >= 0.0 && high.y() >= 0.0 && low.x() <= frame.width() && low.y() <= frame.height())) return;
   const int left = static_cast<int>(std::max(0.0, low.x())), top = static_cast<int>(std::max(0.0, low.y()));
@@ -74,8 +72,7 @@ struct Font::Face {
 
 Font::Font(int height_px, bool is_bold) : face_(std::make_unique<Face>()), height_px_(height_px) {
   const std::filesystem::path file = font_file(is_bold);
-  if (FT_Init_FreeType(&face_->library) != 0 ||
-      FT_New_Face(face_->library, file.c_str(), 0, &face_->face) != 0 ||
+  if (FT_Init_FreeType(&face_->library) != 0 || FT_New_Face(face_->library, file.c_str(), 0, &face_->face) != 0 ||
       FT_Set_Pixel_Sizes(face_->face, 0, static_cast<FT_UInt>(height_px)) != 0) {
     throw std::runtime_error(file.string() + ": FreeType cannot use this font");
   }

@@ -3,8 +3,8 @@
 #include <memory>
 #include <utility>
 
-#include "render/scene/antialias.h"
 #include "render/overlay.h"
+#include "render/scene/antialias.h"
 #include "render/scene/scene_painter.h"
 
 namespace patrol::render {
@@ -28,8 +28,11 @@ auto create_or_report(std::promise<void>& is_ready, Make make) -> decltype(make(
 FrameRenderer::FrameRenderer(const mjModel& view, const FrameSettings& settings) {
   std::promise<void> can_draw, can_finish;
   std::future<void> readiness[] = {can_draw.get_future(), can_finish.get_future()};
-  world_thread_ = std::thread([this, &view, settings, ready = std::move(can_draw)]() mutable { run_world_thread(view, settings, std::move(ready)); });
-  overlay_thread_ = std::thread([this, settings, ready = std::move(can_finish)]() mutable { run_overlay_thread(settings, std::move(ready)); });
+  world_thread_ = std::thread([this, &view, settings, ready = std::move(can_draw)]() mutable {
+    run_world_thread(view, settings, std::move(ready));
+  });
+  overlay_thread_ = std::thread(
+      [this, settings, ready = std::move(can_finish)]() mutable { run_overlay_thread(settings, std::move(ready)); });
   try {
     for (std::future<void>& ready : readiness) ready.get();
   } catch (...) {
@@ -48,7 +51,8 @@ void FrameRenderer::stop() {
 }
 
 std::future<Frame> FrameRenderer::paint(RunSnapshot snapshot, const View& view, std::optional<FilmNote> note) {
-  FrameRequest order{.snapshot = std::move(snapshot), .view = view, .note = std::move(note), .frame = {}, .depth = {}, .result = {}};
+  FrameRequest order{
+      .snapshot = std::move(snapshot), .view = view, .note = std::move(note), .frame = {}, .depth = {}, .result = {}};
   std::future<Frame> frame = order.result.get_future();
   queued_.put(std::move(order));
   return frame;
@@ -56,7 +60,8 @@ std::future<Frame> FrameRenderer::paint(RunSnapshot snapshot, const View& view, 
 
 void FrameRenderer::run_world_thread(const mjModel& view, const FrameSettings& settings, std::promise<void> is_ready) {
   const auto painter = create_or_report(is_ready, [&] {
-    return std::make_unique<SceneRenderer>(view, settings.width, settings.height, settings.extinction_per_m, settings.renderer);
+    return std::make_unique<SceneRenderer>(view, settings.width, settings.height, settings.extinction_per_m,
+                                           settings.renderer);
   });
   if (!painter) return;
   while (std::optional<FrameRequest> order = queued_.take()) {
@@ -72,7 +77,8 @@ void FrameRenderer::run_world_thread(const mjModel& view, const FrameSettings& s
 }
 
 void FrameRenderer::run_overlay_thread(const FrameSettings& settings, std::promise<void> is_ready) {
-  const auto overlay = create_or_report(is_ready, [&] { return std::make_unique<Overlay>(settings.height, settings.gas); });
+  const auto overlay =
+      create_or_report(is_ready, [&] { return std::make_unique<Overlay>(settings.height, settings.gas); });
   if (!overlay) return;
   while (std::optional<FrameRequest> order = drawn_.take()) {
     try {

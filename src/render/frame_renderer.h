@@ -4,12 +4,12 @@
 #include <optional>
 #include <thread>
 
-#include "render/scene/camera.h"
 #include "render/film_note.h"
-#include "render/scene/frame.h"
 #include "render/gas_puffs.h"
-#include "render/scene/gl_context.h"
 #include "render/run_snapshot.h"
+#include "render/scene/camera.h"
+#include "render/scene/frame.h"
+#include "render/scene/gl_context.h"
 #include "render/work_queue.h"
 #include "sim/mujoco.h"
 

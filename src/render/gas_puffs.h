@@ -14,7 +14,7 @@ namespace patrol::render {
 /// Gaussian ball of gas.
 struct Puff {
   Eigen::Vector3d p_world_m;
-  double radius_m;    ///< standard deviation of the density
+  double radius_m;      ///< standard deviation of the density
   double column_ppm_m;  ///< methane column through the center
 };
 
@@ -44,6 +44,7 @@ class GasCloud {
 /// Draws puffs on a finished frame, occluded by objects in front of them. `depth` as in Offscreen::read_depth. A column
 /// of kVeilColumn_ppm_m transmits 37 % of the background.
 inline constexpr double kVeilColumn_ppm_m = 4000.0;
-void draw_puffs(Frame& frame, const std::vector<float>& depth, const Projector& projector, const std::vector<Puff>& puffs);
+void draw_puffs(Frame& frame, const std::vector<float>& depth, const Projector& projector,
+                const std::vector<Puff>& puffs);
 
 }  // namespace patrol::render

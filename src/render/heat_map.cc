@@ -22,10 +22,12 @@ class Sheet {
     shown_.min().array() -= kMargin_m;
     shown_.max().array() += kMargin_m;
     constexpr double kMaxHeight_px = 1100.0;
-    px_per_m_ = std::min({max_width_px / shown_.sizes().x(), kMaxHeight_px / shown_.sizes().y(), 1.0 / map.surfaces.geometry().resolution_m});
+    px_per_m_ = std::min({max_width_px / shown_.sizes().x(), kMaxHeight_px / shown_.sizes().y(),
+                          1.0 / map.surfaces.geometry().resolution_m});
     picture_height_px_ = static_cast<int>(std::ceil(px_per_m_ * shown_.sizes().y()));
     constexpr int kMinWidth_px = 640;  // minimum width for the color scale
-    frame_ = Frame(std::max(static_cast<int>(std::ceil(px_per_m_ * shown_.sizes().x())), kMinWidth_px), picture_height_px_ + kFooter_px, kPaper);
+    frame_ = Frame(std::max(static_cast<int>(std::ceil(px_per_m_ * shown_.sizes().x())), kMinWidth_px),
+                   picture_height_px_ + kFooter_px, kPaper);
   }
 
   Frame draw() {
@@ -45,7 +47,8 @@ class Sheet {
     const int side_px = std::max(1, static_cast<int>(std::ceil(px_per_m_ * map_.step_m)));
     for (const HeatMap::Sample& sample : map_.positions) {
       const Eigen::Vector2d corner = pixel_of(sample.p_m + 0.5 * map_.step_m * Eigen::Vector2d(-1.0, 1.0));
-      fill_rectangle(frame_, static_cast<int>(std::lround(corner.x())), static_cast<int>(std::lround(corner.y())), side_px, side_px, {heat_color(sample.color_fraction)});
+      fill_rectangle(frame_, static_cast<int>(std::lround(corner.x())), static_cast<int>(std::lround(corner.y())),
+                     side_px, side_px, {heat_color(sample.color_fraction)});
     }
   }
 
@@ -64,7 +67,8 @@ class Sheet {
   void draw_strokes() {
     for (const HeatMap::Sample& sample : map_.positions) {
       if (!sample.has_stroke) continue;
-      const Eigen::Vector2d half = 0.42 * map_.step_m * Eigen::Vector2d(std::cos(sample.stroke_rad), std::sin(sample.stroke_rad));
+      const Eigen::Vector2d half =
+          0.42 * map_.step_m * Eigen::Vector2d(std::cos(sample.stroke_rad), std::sin(sample.stroke_rad));
       draw_line(frame_, pixel_of(sample.p_m - half), pixel_of(sample.p_m + half), 1.4, {kStroke});
     }
   }
@@ -76,12 +80,14 @@ class Sheet {
     title.draw(frame_, kEdge_px, top + 20, map_.title, {kWriting});
     small.draw(frame_, kEdge_px, top + 38, small.fitted(map_.note, frame_.width() - 2 * kEdge_px), {kWriting});
     for (int x = 0; x < kBarWidth_px; ++x) {
-      fill_rectangle(frame_, kEdge_px + x, top + kBarTop_px, 1, kBarHeight_px, {heat_color(static_cast<double>(x) / (kBarWidth_px - 1))});
+      fill_rectangle(frame_, kEdge_px + x, top + kBarTop_px, 1, kBarHeight_px,
+                     {heat_color(static_cast<double>(x) / (kBarWidth_px - 1))});
     }
     for (const HeatMap::Tick& tick : map_.scale) {
       const int x = kEdge_px + static_cast<int>(std::lround(tick.color_fraction * (kBarWidth_px - 1)));
       fill_rectangle(frame_, x, top + kBarTop_px + kBarHeight_px, 1, 4, {kWriting});
-      small.draw(frame_, std::max(kEdge_px, x - small.width_px(tick.text) / 2), top + kBarTop_px + kBarHeight_px + 18, tick.text, {kWriting});
+      small.draw(frame_, std::max(kEdge_px, x - small.width_px(tick.text) / 2), top + kBarTop_px + kBarHeight_px + 18,
+                 tick.text, {kWriting});
     }
   }
 
@@ -98,12 +104,14 @@ Color heat_color(double color_fraction) {
   struct Stop {
     double r, g, b;
   };
-  static constexpr std::array<Stop, 5> kStops = {{{38, 42, 92}, {36, 104, 142}, {44, 160, 132}, {134, 204, 84}, {252, 230, 60}}};
+  static constexpr std::array<Stop, 5> kStops = {
+      {{38, 42, 92}, {36, 104, 142}, {44, 160, 132}, {134, 204, 84}, {252, 230, 60}}};
   const double position = std::clamp(color_fraction, 0.0, 1.0) * (kStops.size() - 1);
   const auto below = std::min(static_cast<std::size_t>(position), kStops.size() - 2);
   const double fraction = position - static_cast<double>(below);
   const auto mix = [&](double a, double b) { return static_cast<std::uint8_t>(std::lround(a + fraction * (b - a))); };
-  return {mix(kStops[below].r, kStops[below + 1].r), mix(kStops[below].g, kStops[below + 1].g), mix(kStops[below].b, kStops[below + 1].b)};
+  return {mix(kStops[below].r, kStops[below + 1].r), mix(kStops[below].g, kStops[below + 1].g),
+          mix(kStops[below].b, kStops[below + 1].b)};
 }
 
 Frame draw_heat_map(const HeatMap& map, int max_width_px) { return Sheet(map, max_width_px).draw(); }

@@ -76,9 +76,11 @@ void MapInset::draw(Frame& frame, const RunSnapshot& snapshot) {
   draw_robot(to_pose2(snapshot.T_world_body), 1.25 * scale, kTruthColor);
   draw_robot(snapshot.T_world_map * snapshot.T_map_body, scale, kRobotColor);
 
-  const int margin = static_cast<int>(std::lround(16 * scale)), border = std::max(1, static_cast<int>(std::lround(2 * scale)));
+  const int margin = static_cast<int>(std::lround(16 * scale)),
+            border = std::max(1, static_cast<int>(std::lround(2 * scale)));
   const int left = frame.width() - inset.width() - margin, top = frame.height() - inset.height() - margin;
-  fill_rectangle(frame, left - border, top - border, inset.width() + 2 * border, inset.height() + 2 * border, {kBorderColor, 0.8});
+  fill_rectangle(frame, left - border, top - border, inset.width() + 2 * border, inset.height() + 2 * border,
+                 {kBorderColor, 0.8});
   paste(frame, left, top, inset);
 }
 

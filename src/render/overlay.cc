@@ -25,9 +25,9 @@ std::string clock_text(Time time) {
 
 std::string values_text(const RunSnapshot& snapshot) {
   return fmt::format("{}    position error {:.3f} m    heading error {:.2f}°    {} {:.1f} m",
-                                 clock_text(snapshot.state.stamp), snapshot.T_true_estimate.position().norm(),
-                                 to_deg(std::abs(snapshot.T_true_estimate.yaw)),
-                                 snapshot.is_driving ? "driven" : "walked", snapshot.traveled_m);
+                     clock_text(snapshot.state.stamp), snapshot.T_true_estimate.position().norm(),
+                     to_deg(std::abs(snapshot.T_true_estimate.yaw)), snapshot.is_driving ? "driven" : "walked",
+                     snapshot.traveled_m);
 }
 
 /// Reading of the methane meter and playback speed.
@@ -50,7 +50,8 @@ Overlay::Overlay(int frame_height, GasCloud gas)
 void Overlay::draw(Frame& frame, const std::vector<float>& depth, const View& view, const RunSnapshot& snapshot,
                    const std::optional<FilmNote>& note) {
   const Projector projector(view, frame.width(), frame.height());
-  draw_puffs(frame, depth, projector, gas_.puffs(to_seconds(snapshot.state.stamp), note ? kDrift_mps * note->film_s : 0.0));
+  draw_puffs(frame, depth, projector,
+             gas_.puffs(to_seconds(snapshot.state.stamp), note ? kDrift_mps * note->film_s : 0.0));
   WorldOverlay overlay(frame, depth, projector);
   overlay.polyline(snapshot.planned_path, 0.03, {kPlanColor, 0.85});
   overlay.polyline(snapshot.true_path, 0.06, {kTruthColor, 0.85});
@@ -90,7 +91,8 @@ int Overlay::draw_legend(Frame& frame, const RunSnapshot& snapshot) {
   for (const auto& [name, color] : entries) width = std::max(width, texts_.width_px(name));
   int baseline = frame.height() - line / 2 - line * static_cast<int>(entries.size() - 1);
   const int top = baseline - line;
-  fill_rectangle(frame, left / 2, top, text_left + width, line * static_cast<int>(entries.size()) + line / 2, {kPanelColor, 0.5});
+  fill_rectangle(frame, left / 2, top, text_left + width, line * static_cast<int>(entries.size()) + line / 2,
+                 {kPanelColor, 0.5});
   for (const auto& [name, color] : entries) {
     const double y = baseline - 0.35 * texts_.height_px();
     draw_line(frame, {left, y}, {left + 1.2 * texts_.height_px(), y}, 4.0 * scale_, {color, 1.0});
@@ -103,7 +105,8 @@ int Overlay::draw_legend(Frame& frame, const RunSnapshot& snapshot) {
 void Overlay::draw_caption(Frame& frame, const std::vector<std::string>& lines, int bottom) {
   if (lines.empty()) return;
   const int pad = title_.height_px() / 2, left = texts_.height_px() * 3 / 4, bar = std::max(2, title_.height_px() / 5);
-  const int line = title_.height_px() * 5 / 4, height = line * static_cast<int>(lines.size()) + pad, top = bottom - height - pad;
+  const int line = title_.height_px() * 5 / 4, height = line * static_cast<int>(lines.size()) + pad,
+            top = bottom - height - pad;
   int width = 0;
   for (const std::string& text : lines) width = std::max(width, title_.width_px(text));
   width = std::min(width, frame.width() - 2 * (left + bar + pad));
@@ -124,7 +127,8 @@ void Overlay::draw_timeline(Frame& frame, const FilmNote& note) {
   };
   fill_rectangle(frame, 0, top, frame.width(), height, {kPanelColor, 0.8});
   fill_rectangle(frame, 0, top, at(note.film_s), height, {kTextColor, 0.8});
-  for (const double mark_s : note.marks_s) fill_rectangle(frame, at(mark_s) - height / 2, top - height / 2, height, 2 * height, {kEstimateColor, 1.0});
+  for (const double mark_s : note.marks_s)
+    fill_rectangle(frame, at(mark_s) - height / 2, top - height / 2, height, 2 * height, {kEstimateColor, 1.0});
 }
 
 }  // namespace patrol::render

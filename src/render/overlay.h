@@ -3,12 +3,12 @@
 #include <optional>
 #include <vector>
 
-#include "render/scene/camera.h"
 #include "render/canvas.h"
 #include "render/film_note.h"
 #include "render/gas_puffs.h"
 #include "render/map_inset.h"
 #include "render/run_snapshot.h"
+#include "render/scene/camera.h"
 
 namespace patrol::render {
 

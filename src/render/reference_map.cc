@@ -39,8 +39,8 @@ bool lidar_can_hit(const mjModel& model, int geom) {
 Bounds bounds_in_world(const mjModel& model, const mjData& data, int geom) {
   const mjtNum* local = model.geom_aabb + 6 * geom;  // center, half sizes
   const Eigen::Map<const Eigen::Matrix<mjtNum, 3, 3, Eigen::RowMajor>> R(data.geom_xmat + 9 * geom);
-  const Eigen::Vector3d center = Eigen::Map<const Eigen::Vector3d>(data.geom_xpos + 3 * geom) +
-                                 R * Eigen::Map<const Eigen::Vector3d>(local);
+  const Eigen::Vector3d center =
+      Eigen::Map<const Eigen::Vector3d>(data.geom_xpos + 3 * geom) + R * Eigen::Map<const Eigen::Vector3d>(local);
   const Eigen::Vector3d half = R.cwiseAbs() * Eigen::Map<const Eigen::Vector3d>(local + 3);
   return {center - half, center + half};
 }
@@ -93,8 +93,8 @@ class SliceScene {
   }
 
   /// Renders the depth: rows from high y to low y, columns along the camera's right (+x looking down, -x looking up).
-  void render(Offscreen& offscreen, const Eigen::Vector3d& center_m, double width_m, double depth_m,
-              bool looks_down, bool front_faces_only, std::vector<float>& depth) {
+  void render(Offscreen& offscreen, const Eigen::Vector3d& center_m, double width_m, double depth_m, bool looks_down,
+              bool front_faces_only, std::vector<float>& depth) {
     constexpr float kNear_m = 1.0f;
     const float ahead = looks_down ? -1.0f : 1.0f;
     const auto half_height = static_cast<float>(0.5 * width_m * offscreen.height() / offscreen.width());
@@ -138,7 +138,7 @@ Grid<std::uint8_t> render_solid(const mjModel& model, const mjData& data, const 
       const Eigen::Vector2d low = geometry.origin_m + geometry.resolution_m * Eigen::Vector2d(col0, row0);
       const Eigen::Vector2d size = geometry.resolution_m * Eigen::Vector2d(tile_width, tile_height);
       const Bounds tile(Eigen::Vector3d(low.x(), low.y(), height_m),
-                     Eigen::Vector3d(low.x() + size.x(), low.y() + size.y(), height_m));
+                        Eigen::Vector3d(low.x() + size.x(), low.y() + size.y(), height_m));
       scene.clear();
       bool is_empty = true;
       for (const CutGeom& geom : cut) {
@@ -165,9 +165,7 @@ Grid<std::uint8_t> render_solid(const mjModel& model, const mjData& data, const 
   return solid;
 }
 
-bool is_solid(const Grid<std::uint8_t>& solid, Cell cell) {
-  return solid.contains(cell) && solid.at(cell) != 0;
-}
+bool is_solid(const Grid<std::uint8_t>& solid, Cell cell) { return solid.contains(cell) && solid.at(cell) != 0; }
 
 OccupancyGrid surface_of(const Grid<std::uint8_t>& solid) {
   OccupancyGrid map(solid.geometry(), kFree);
@@ -224,9 +222,7 @@ bool any_near(Cell cell, Predicate holds) {
 
 ReferenceMapCheck check_and_complete(OccupancyGrid& map, const Grid<std::uint8_t>& hit) {
   const OccupancyGrid rendered = map;
-  const auto is_surface = [&](Cell cell) {
-    return rendered.contains(cell) && rendered.at(cell) == kOccupied;
-  };
+  const auto is_surface = [&](Cell cell) { return rendered.contains(cell) && rendered.at(cell) == kOccupied; };
   const auto is_hit = [&](Cell cell) { return hit.contains(cell) && hit.at(cell) != 0; };
   ReferenceMapCheck check;
   for (int row = 0; row < map.geometry().height; ++row) {
@@ -254,8 +250,7 @@ ReferenceMap reference_map(const mjModel& view, const ReferenceMapSettings& sett
   mj_kinematics(&view, data.get());
   const std::vector<CutGeom> cut = geoms_cut_at(view, *data, settings.height_m);
   if (cut.empty()) {
-    throw InputError(fmt::format("reference map: no geom intersects the slice at {:.2f} m",
-                                 settings.height_m));
+    throw InputError(fmt::format("reference map: no geom intersects the slice at {:.2f} m", settings.height_m));
   }
   Bounds bounds;
   for (const CutGeom& geom : cut) bounds.extend(geom.bounds);
@@ -263,8 +258,7 @@ ReferenceMap reference_map(const mjModel& view, const ReferenceMapSettings& sett
 
   ReferenceMap reference;
   reference.map = surface_of(render_solid(view, *data, cut, geometry, settings.height_m));
-  reference.check =
-      check_and_complete(reference.map, cast_surfaces(view, *data, geometry, settings.height_m));
+  reference.check = check_and_complete(reference.map, cast_surfaces(view, *data, geometry, settings.height_m));
   return reference;
 }
 

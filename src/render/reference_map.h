@@ -22,15 +22,13 @@ struct ReferenceMapCheck {
   std::size_t num_added = 0;     ///< objects thinner than a cell: found by rays only and added to the map
 
   double agreement_ratio() const {
-    return num_checked == 0 ? 1.0
-                              : static_cast<double>(num_agreeing) / static_cast<double>(num_checked);
+    return num_checked == 0 ? 1.0 : static_cast<double>(num_agreeing) / static_cast<double>(num_checked);
   }
 };
 
 /// True map of a world with its verification.
 struct ReferenceMap {
-  OccupancyGrid
-      map;  ///< in world: occupied at surfaces of solid objects, unknown inside, free elsewhere
+  OccupancyGrid map;  ///< in world: occupied at surfaces of solid objects, unknown inside, free elsewhere
   ReferenceMapCheck check;
 };
 

@@ -7,8 +7,8 @@
 
 #include <Eigen/Core>
 
-#include "core/ground_truth.h"
 #include "core/grid.h"
+#include "core/ground_truth.h"
 #include "core/sensors/registry.h"
 
 namespace patrol::render {
@@ -28,10 +28,10 @@ struct RunSnapshot {
   std::shared_ptr<const OccupancyGrid> map;     ///< in map; null before the first map
   Pose2 T_true_estimate;  ///< newest estimate of the level body relative to its true pose at that stamp
   double traveled_m = 0.0;
-  std::optional<GasReading> gas;                ///< newest reading; none without a methane meter
-  bool is_driving = false;  ///< tracked robot, not a walking one
-  std::string event;      ///< text of the newest event
-  bool is_alarm = false;  ///< the newest event is an alarm
+  std::optional<GasReading> gas;  ///< newest reading; none without a methane meter
+  bool is_driving = false;        ///< tracked robot, not a walking one
+  std::string event;              ///< text of the newest event
+  bool is_alarm = false;          ///< the newest event is an alarm
 };
 
 }  // namespace patrol::render

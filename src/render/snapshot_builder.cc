@@ -10,7 +10,8 @@ namespace {
 
 constexpr double kPathStep_m = 0.05;  // minimum distance between points of a drawn path
 constexpr double kAboveGround_m = 0.01;
-constexpr double kMinKidnapStep_m = 0.5;  // a larger step between two true poses is a kidnapping, not a motion of the robot
+constexpr double kMinKidnapStep_m =
+    0.5;  // a larger step between two true poses is a kidnapping, not a motion of the robot
 
 void extend(std::vector<Eigen::Vector3d>& path, const Eigen::Vector3d& point) {
   if (path.empty() || (point - path.back()).head<2>().norm() >= kPathStep_m) path.push_back(point);
@@ -23,11 +24,9 @@ std::optional<Pose3> sensor_on_body(const mjModel& model, const char* name) {
   const sim::DataPtr data = sim::make_data(model);
   mj_kinematics(&model, data.get());
   const int body = mj_name2id(&model, mjOBJ_BODY, frame_id::kBody);
-  const Eigen::Map<const Eigen::Matrix<mjtNum, 3, 3, Eigen::RowMajor>> R_world_sensor(data->site_xmat +
-                                                                                      9 * site);
+  const Eigen::Map<const Eigen::Matrix<mjtNum, 3, 3, Eigen::RowMajor>> R_world_sensor(data->site_xmat + 9 * site);
   const mjtNum* q = data->xquat + 4 * body;
-  const Pose3 T_world_body{Eigen::Map<const Eigen::Vector3d>(data->xpos + 3 * body),
-                           {q[0], q[1], q[2], q[3]}};
+  const Pose3 T_world_body{Eigen::Map<const Eigen::Vector3d>(data->xpos + 3 * body), {q[0], q[1], q[2], q[3]}};
   const Pose3 T_world_sensor{Eigen::Map<const Eigen::Vector3d>(data->site_xpos + 3 * site),
                              Eigen::Quaterniond(Eigen::Matrix3d(R_world_sensor))};
   return T_world_body.inverse() * T_world_sensor;
@@ -97,7 +96,7 @@ void SnapshotBuilder::add(const GroundTruth& truth) {
 }
 
 double SnapshotBuilder::free_distance_m(const Eigen::Vector3d& from_m, const Eigen::Vector3d& direction,
-                                    double max_m) const {
+                                        double max_m) const {
   const auto hit = scenery_.cast(from_m, direction, max_m, sim::kRayScenery);
   return hit ? hit->distance_m : max_m;
 }
@@ -120,8 +119,7 @@ void SnapshotBuilder::transform_scan(const PoseEstimate& estimate) {
   const std::optional<Pose3> T_odom_estimate = pose_at(odometry, estimate.stamp);
   Pose3 T_world_odom;  // gravity-aligned; odometry's height replaced by the true one
   if (T_odom_estimate) {
-    T_world_odom =
-        T_world_estimate * to_pose3(to_pose2(*T_odom_estimate), T_odom_estimate->position.z()).inverse();
+    T_world_odom = T_world_estimate * to_pose3(to_pose2(*T_odom_estimate), T_odom_estimate->position.z()).inverse();
   }
   snapshot_.scan.clear();
   const LaserScan& scan = *scan_;
@@ -130,12 +128,11 @@ void SnapshotBuilder::transform_scan(const PoseEstimate& estimate) {
     if (!std::isfinite(range)) continue;
     const auto index = static_cast<double>(beam);
     const std::optional<Pose3> T_odom_body =
-        T_odom_estimate ? pose_at(odometry, scan.stamp + from_seconds(index * scan.time_increment_s))
-                        : std::nullopt;
+        T_odom_estimate ? pose_at(odometry, scan.stamp + from_seconds(index * scan.time_increment_s)) : std::nullopt;
     const Pose3 T_world_body = T_odom_body ? T_world_odom * *T_odom_body : T_world_estimate;
     const double angle = scan.angle_min_rad + index * scan.angle_increment_rad;
-    snapshot_.scan.push_back(T_world_body * (T_body_lidar_ * Eigen::Vector3d(range * std::cos(angle),
-                                                                             range * std::sin(angle), 0.0)));
+    snapshot_.scan.push_back(T_world_body *
+                             (T_body_lidar_ * Eigen::Vector3d(range * std::cos(angle), range * std::sin(angle), 0.0)));
   }
 }
 

@@ -44,7 +44,8 @@ constexpr AVRational kMillisecond{1, 1000};
 /// Allocates the chapters with libav's allocator, because libav frees them with the container.
 void add_chapters(AVFormatContext& container, const std::vector<Chapter>& chapters) {
   if (chapters.empty()) return;
-  container.chapters = not_null(static_cast<AVChapter**>(av_calloc(chapters.size(), sizeof(AVChapter*))), "memory for chapters");
+  container.chapters =
+      not_null(static_cast<AVChapter**>(av_calloc(chapters.size(), sizeof(AVChapter*))), "memory for chapters");
   for (const Chapter& chapter : chapters) {
     AVChapter* mark = not_null(static_cast<AVChapter*>(av_mallocz(sizeof(AVChapter))), "memory for a chapter");
     container.chapters[container.nb_chapters++] = mark;
@@ -66,15 +67,14 @@ void use_bt709(AVCodecContext& codec) {
 
 void use_bt709(SwsContext* scaler) {
   constexpr int kFullRange = 1, kVideoRange = 0, kUnchanged = 1 << 16;
-  sws_setColorspaceDetails(scaler, sws_getCoefficients(SWS_CS_DEFAULT), kFullRange, sws_getCoefficients(SWS_CS_ITU709), kVideoRange,
-                           0, kUnchanged, kUnchanged);
+  sws_setColorspaceDetails(scaler, sws_getCoefficients(SWS_CS_DEFAULT), kFullRange, sws_getCoefficients(SWS_CS_ITU709),
+                           kVideoRange, 0, kUnchanged, kUnchanged);
 }
 
 }  // namespace
 
 struct VideoWriter::Encoder {
-  explicit Encoder(std::filesystem::path target)
-      : file(std::move(target)), temporary(file.string() + ".part") {}
+  explicit Encoder(std::filesystem::path target) : file(std::move(target)), temporary(file.string() + ".part") {}
   ~Encoder() {
     av_packet_free(&packet);
     av_frame_free(&picture);
@@ -106,7 +106,8 @@ struct VideoWriter::Encoder {
 };
 
 void VideoWriter::Encoder::open_codec(int width, int height, double frames_per_second) {
-  checked(avformat_alloc_output_context2(&container, nullptr, "mp4", temporary.c_str()), "cannot create the MP4 writer");
+  checked(avformat_alloc_output_context2(&container, nullptr, "mp4", temporary.c_str()),
+          "cannot create the MP4 writer");
   container->flags |= AVFMT_FLAG_BITEXACT;
   const AVCodec* kind = avcodec_find_encoder_by_name("libx264");
   const bool is_h264 = kind != nullptr;
@@ -149,8 +150,8 @@ void VideoWriter::Encoder::open_container(int width, int height, const std::vect
   checked(code, "file header");
 
   scaler = not_null(sws_getContext(width, height, AV_PIX_FMT_RGB24, width, height, AV_PIX_FMT_YUV420P,
-                               SWS_POINT | SWS_ACCURATE_RND | SWS_BITEXACT, nullptr, nullptr, nullptr),
-                "color conversion");
+                                   SWS_POINT | SWS_ACCURATE_RND | SWS_BITEXACT, nullptr, nullptr, nullptr),
+                    "color conversion");
   use_bt709(scaler);
   picture = not_null(av_frame_alloc(), "picture");
   picture->format = AV_PIX_FMT_YUV420P;
@@ -193,8 +194,7 @@ void VideoWriter::add(const Frame& frame) {
   checked(av_frame_make_writable(encoder.picture), "cannot allocate a picture");
   const std::uint8_t* rows[1] = {frame.bytes()};
   const int stride[1] = {3 * frame.width()};
-  sws_scale(encoder.scaler, rows, stride, 0, frame.height(), encoder.picture->data,
-            encoder.picture->linesize);
+  sws_scale(encoder.scaler, rows, stride, 0, frame.height(), encoder.picture->data, encoder.picture->linesize);
   encoder.picture->pts = encoder.num_frames++;
   encoder.encode(encoder.picture);
 }
@@ -217,8 +217,7 @@ VideoInfo inspect_video(const std::filesystem::path& file) {
   const auto close = [](AVFormatContext* context) { avformat_close_input(&context); };
   const std::unique_ptr<AVFormatContext, decltype(close)> container(opened, close);
   checked(avformat_find_stream_info(opened, nullptr), "no stream");
-  const int index =
-      checked(av_find_best_stream(opened, AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0), "no picture");
+  const int index = checked(av_find_best_stream(opened, AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0), "no picture");
   const AVStream* stream = opened->streams[index];
   VideoInfo info{.width = stream->codecpar->width,
                  .height = stream->codecpar->height,
@@ -232,8 +231,7 @@ VideoInfo inspect_video(const std::filesystem::path& file) {
                              .title = title != nullptr ? title->value : ""});
   }
   const auto free_packet = [](AVPacket* packet) { av_packet_free(&packet); };
-  const std::unique_ptr<AVPacket, decltype(free_packet)> packet(not_null(av_packet_alloc(), "packet"),
-                                                                free_packet);
+  const std::unique_ptr<AVPacket, decltype(free_packet)> packet(not_null(av_packet_alloc(), "packet"), free_packet);
   while (av_read_frame(opened, packet.get()) >= 0) {
     if (packet->stream_index == index) ++info.num_frames;
     av_packet_unref(packet.get());

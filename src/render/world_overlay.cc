@@ -35,8 +35,7 @@ void WorldOverlay::dots(std::span<const Eigen::Vector3d> points_m, double radius
   blend_in(brush);
 }
 
-void WorldOverlay::stroke(const Eigen::Vector3d& from_in_camera, const Eigen::Vector3d& to_in_camera,
-                      double width_m) {
+void WorldOverlay::stroke(const Eigen::Vector3d& from_in_camera, const Eigen::Vector3d& to_in_camera, double width_m) {
   Eigen::Vector3d a = from_in_camera, b = to_in_camera;
   const double near_m = projector_.near_m();
   if (a.z() < near_m && b.z() < near_m) return;
@@ -86,8 +85,7 @@ void WorldOverlay::cover(const Stroke& stroke) {
       const auto pixel = static_cast<std::size_t>(y * frame_.width() + x);
       const auto covered = static_cast<std::uint8_t>(255.0 * coverage + 0.5);
       if (covered <= coverage_[pixel]) continue;
-      if (is_hidden(pixel, 1.0 / (stroke.inverse_from + t * (stroke.inverse_to - stroke.inverse_from))))
-        continue;
+      if (is_hidden(pixel, 1.0 / (stroke.inverse_from + t * (stroke.inverse_to - stroke.inverse_from)))) continue;
       coverage_[pixel] = covered;
     }
   }

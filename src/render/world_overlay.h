@@ -6,8 +6,8 @@
 
 #include <Eigen/Core>
 
-#include "render/scene/camera.h"
 #include "render/canvas.h"
+#include "render/scene/camera.h"
 #include "render/scene/frame.h"
 
 namespace patrol::render {

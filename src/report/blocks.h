@@ -1,12 +1,12 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <optional>
 #include <string>
 #include <utility>
 #include <variant>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "report/map_picture.h"
 
@@ -169,8 +169,8 @@ struct VideoBlock {
   std::string caption;
 };
 
-using Block = std::variant<TextBlock, VerdictBlock, KeyMetrics, TableBlock, CollapsibleTables, BarBlock, BoxPlot, WaterfallChart, LinePlot, EventTimeline,
-                           MapBlock, VideoBlock>;
+using Block = std::variant<TextBlock, VerdictBlock, KeyMetrics, TableBlock, CollapsibleTables, BarBlock, BoxPlot,
+                           WaterfallChart, LinePlot, EventTimeline, MapBlock, VideoBlock>;
 
 /// Section of a page. Consecutive line plots form a grid.
 struct Section {
@@ -179,7 +179,7 @@ struct Section {
 };
 
 struct Page {
-  std::string kind;   ///< e.g. "run"
+  std::string kind;  ///< e.g. "run"
   std::string title;
   std::vector<std::pair<std::string, std::string>> facts;  ///< label and value in the page's header
   std::vector<Section> sections;

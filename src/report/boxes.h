@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "report/quantity.h"
 #include "report/blocks.h"
+#include "report/quantity.h"
 #include "score/statistics.h"
 
 namespace patrol::report {

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <cstddef>
 #include <vector>
+
+#include <Eigen/Core>
 
 namespace patrol::report {
 

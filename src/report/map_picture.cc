@@ -1,10 +1,10 @@
 #include "report/map_picture.h"
 
-#include <png.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
+
+#include <png.h>
 
 #include "core/error.h"
 
@@ -26,7 +26,8 @@ std::string to_png(const PaletteImage& image) {
   palette[kNothing] = {255, 255, 255};
   palette[kFreePixel] = kMapFree;
   palette[kTruthPixel] = kMapTruth;
-  for (int i = 0; i < kNumErrors; ++i) palette[static_cast<std::size_t>(kFirstError + i)] = map_error_color(kMapErrorEnd_m * i / (kNumErrors - 1));
+  for (int i = 0; i < kNumErrors; ++i)
+    palette[static_cast<std::size_t>(kFirstError + i)] = map_error_color(kMapErrorEnd_m * i / (kNumErrors - 1));
 
   png_image header{};
   header.version = PNG_IMAGE_VERSION;
@@ -58,14 +59,17 @@ class Picture {
     image_.pixels.assign(static_cast<std::size_t>(image_.width) * static_cast<std::size_t>(image_.height), kNothing);
   }
 
-  MapPicture::Sheet sheet() const { return {.png = to_png(image_), .size_m = pixel_m_ * Eigen::Vector2d(image_.width, image_.height)}; }
+  MapPicture::Sheet sheet() const {
+    return {.png = to_png(image_), .size_m = pixel_m_ * Eigen::Vector2d(image_.width, image_.height)};
+  }
 
   /// Sets every pixel to `value_at` of its center in world.
   template <typename ValueAt>
   void fill(const ValueAt& value_at) {
     for (int row = 0; row < image_.height; ++row) {
       for (int col = 0; col < image_.width; ++col) {
-        image_.pixels[index(col, row)] = value_at(Eigen::Vector2d(left_m_ + pixel_m_ * (col + 0.5), top_m_ - pixel_m_ * (row + 0.5)));
+        image_.pixels[index(col, row)] =
+            value_at(Eigen::Vector2d(left_m_ + pixel_m_ * (col + 0.5), top_m_ - pixel_m_ * (row + 0.5)));
       }
     }
   }
@@ -120,7 +124,8 @@ std::uint8_t error_pixel(float error_m) {
 }
 
 std::uint8_t built_pixel(const MapLayers& layers, Cell cell) {
-  if (is_occupied(layers.built, cell)) return layers.error_m.values().empty() ? kFirstError : error_pixel(layers.error_m.at(cell));
+  if (is_occupied(layers.built, cell))
+    return layers.error_m.values().empty() ? kFirstError : error_pixel(layers.error_m.at(cell));
   return layers.built.at(cell) == kUnknown ? kNothing : kFreePixel;
 }
 
@@ -138,7 +143,8 @@ void paint(const MapLayers& layers, Picture& picture) {
   }
   // Draw the cells as well: pixel centers can miss a wall of one cell.
   for_each_cell(layers.built, [&](Cell cell) {
-    if (is_occupied(layers.built, cell)) picture.draw_max(layers.T_world_map * geometry.center_of(cell), built_pixel(layers, cell));
+    if (is_occupied(layers.built, cell))
+      picture.draw_max(layers.T_world_map * geometry.center_of(cell), built_pixel(layers, cell));
   });
 }
 
@@ -149,13 +155,16 @@ Color map_error_color(double error_m) {
   struct Stop {
     double fraction, r, g, b;
   };
-  static constexpr std::array<Stop, 4> kStops = {{{0.0, 22, 34, 48}, {0.35, 92, 52, 150}, {0.7, 210, 48, 104}, {1.0, 250, 96, 46}}};
+  static constexpr std::array<Stop, 4> kStops = {
+      {{0.0, 22, 34, 48}, {0.35, 92, 52, 150}, {0.7, 210, 48, 104}, {1.0, 250, 96, 46}}};
   const double fraction = std::clamp(error_m / kMapErrorEnd_m, 0.0, 1.0);
   std::size_t upper = 1;
   while (upper + 1 < kStops.size() && fraction > kStops[upper].fraction) ++upper;
   const Stop &a = kStops[upper - 1], &b = kStops[upper];
   const double offset = (fraction - a.fraction) / (b.fraction - a.fraction);
-  const auto mix = [&](double from, double to) { return static_cast<std::uint8_t>(std::lround(from + offset * (to - from))); };
+  const auto mix = [&](double from, double to) {
+    return static_cast<std::uint8_t>(std::lround(from + offset * (to - from)));
+  };
   return {mix(a.r, b.r), mix(a.g, b.g), mix(a.b, b.b)};
 }
 
@@ -173,7 +182,10 @@ MapPicture map_picture(const MapLayers& layers, Eigen::AlignedBox2d shown) {
   Picture overview(shown, overview_m, 2), detail(shown, detail_m, 1);
   paint(layers, overview);
   paint(layers, detail);
-  return {.overview = overview.sheet(), .detail = detail.sheet(), .low_m = shown.min(), .high_m = shown.max(),
+  return {.overview = overview.sheet(),
+          .detail = detail.sheet(),
+          .low_m = shown.min(),
+          .high_m = shown.max(),
           .has_errors = !layers.error_m.values().empty()};
 }
 

@@ -1,14 +1,14 @@
 #pragma once
 
-#include <Eigen/Geometry>
-
 #include <optional>
 #include <string>
 #include <vector>
 
+#include <Eigen/Geometry>
+
+#include "core/color.h"
 #include "core/frames.h"
 #include "core/grid.h"
-#include "core/color.h"
 
 namespace patrol::report {
 

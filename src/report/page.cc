@@ -13,20 +13,24 @@
 namespace patrol::report {
 namespace {
 
-constexpr const char* kGridEnd =
-    "</div>\n<p class=\"note hint\">Drag to zoom all plots; double-click to reset.</p>\n";
+constexpr const char* kGridEnd = "</div>\n<p class=\"note hint\">Drag to zoom all plots; double-click to reset.</p>\n";
 constexpr const char* kPolicy =
-    "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:; media-src data: 'self' file:";
+    "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:; media-src data: 'self' "
+    "file:";
 
 /// Anchor of a section: "Error over time" -> "error-over-time".
 std::string anchor_of(const std::string& title) {
   std::string anchor;
-  for (const char c : title) anchor += std::isalnum(static_cast<unsigned char>(c)) ? static_cast<char>(std::tolower(static_cast<unsigned char>(c))) : '-';
+  for (const char c : title)
+    anchor += std::isalnum(static_cast<unsigned char>(c))
+                  ? static_cast<char>(std::tolower(static_cast<unsigned char>(c)))
+                  : '-';
   return anchor;
 }
 
 std::string header_html(const Page& page) {
-  std::string html = fmt::format("<header><p class=\"kind\">Patrol: {}</p><h1>{}</h1>\n<dl class=\"facts\">", io::escaped_markup(page.kind), io::escaped_markup(page.title));
+  std::string html = fmt::format("<header><p class=\"kind\">Patrol: {}</p><h1>{}</h1>\n<dl class=\"facts\">",
+                                 io::escaped_markup(page.kind), io::escaped_markup(page.title));
   for (const auto& [label, value] : page.facts) {
     html += fmt::format("<div><dt>{}</dt><dd>{}</dd></div>", io::escaped_markup(label), io::escaped_markup(value));
   }
@@ -36,7 +40,8 @@ std::string header_html(const Page& page) {
 std::string navigation_html(const Page& page) {
   std::string html = "<nav>";
   for (const Section& section : page.sections) {
-    if (!section.title.empty()) html += fmt::format("<a href=\"#{}\">{}</a>", anchor_of(section.title), io::escaped_markup(section.title));
+    if (!section.title.empty())
+      html += fmt::format("<a href=\"#{}\">{}</a>", anchor_of(section.title), io::escaped_markup(section.title));
   }
   return html + "</nav>\n";
 }
@@ -56,14 +61,16 @@ std::string blocks_html(const std::vector<Block>& blocks) {
 
 std::string section_html(const Section& section) {
   if (section.title.empty()) return fmt::format("<section>\n{}</section>\n", blocks_html(section.blocks));
-  return fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n{}</section>\n", anchor_of(section.title), io::escaped_markup(section.title),
-                     blocks_html(section.blocks));
+  return fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n{}</section>\n", anchor_of(section.title),
+                     io::escaped_markup(section.title), blocks_html(section.blocks));
 }
 
 /// uPlot reads the pixel ratio from a name that is shadowed here. A ratio of at least three gives sharp plots in print.
 std::string scripts_html() {
-  return fmt::format("<script>(function(devicePixelRatio){{\n{}\nwindow.uPlot=uPlot;}})(Math.max(3,window.devicePixelRatio));</script>\n<script>\n{}</script>\n",
-                     kPlotLibrary, kReportScript);
+  return fmt::format(
+      "<script>(function(devicePixelRatio){{\n{}\nwindow.uPlot=uPlot;}})(Math.max(3,window.devicePixelRatio));</"
+      "script>\n<script>\n{}</script>\n",
+      kPlotLibrary, kReportScript);
 }
 
 }  // namespace
@@ -77,7 +84,9 @@ std::string to_html(const Page& page) {
       kPolicy, io::escaped_markup(page.title), kPlotStyle, kReportStyle);
   html += header_html(page) + navigation_html(page) + "<main>\n";
   for (const Section& section : page.sections) html += section_html(section);
-  html += fmt::format("</main>\n<footer>{}</footer>\n<noscript><p class=\"note\">Plots require JavaScript.</p></noscript>\n", io::escaped_markup(page.footer));
+  html += fmt::format(
+      "</main>\n<footer>{}</footer>\n<noscript><p class=\"note\">Plots require JavaScript.</p></noscript>\n",
+      io::escaped_markup(page.footer));
   return html + scripts_html() + "</body></html>\n";
 }
 

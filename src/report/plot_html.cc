@@ -16,14 +16,18 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kNumSegments = 600;  // segments of a decimated curve, more than a screen shows
-constexpr double kLogFrom = 50.0;           // ratio of peak to median above which the axis is logarithmic
+constexpr double kLogFrom = 50.0;          // ratio of peak to median above which the axis is logarithmic
 
 /// Rounds to four digits, the resolution of a plot.
 double shortened(double value) { return std::strtod(fmt::format("{:.4g}", value).c_str(), nullptr); }
 double shortened_x(double x) { return std::round(1e3 * x) / 1e3; }
 
 Json curve_json(const Curve& curve) {
-  Json json = {{"name", curve.name}, {"ink", css_class(curve.color)}, {"dashed", curve.is_dashed}, {"x", Json::array()}, {"y", Json::array()}};
+  Json json = {{"name", curve.name},
+               {"ink", css_class(curve.color)},
+               {"dashed", curve.is_dashed},
+               {"x", Json::array()},
+               {"y", Json::array()}};
   for (const Eigen::Vector2d& point : decimate(curve.points, kNumSegments)) {
     json["x"].push_back(shortened_x(point.x()));
     json["y"].push_back(shortened(point.y()));
@@ -33,7 +37,8 @@ Json curve_json(const Curve& curve) {
 
 Json marks_json(const std::vector<PlotMark>& marks) {
   Json json = Json::array();
-  for (const PlotMark& mark : marks) json.push_back({{"x", shortened_x(mark.x)}, {"text", mark.text}, {"ink", css_class(mark.color)}});
+  for (const PlotMark& mark : marks)
+    json.push_back({{"x", shortened_x(mark.x)}, {"text", mark.text}, {"ink", css_class(mark.color)}});
   return json;
 }
 
@@ -45,7 +50,8 @@ Json spans_json(const std::vector<PlotSpan>& spans) {
 
 /// True for curves with negative values; these have no logarithmic axis.
 bool has_sign(const Curve& curve) {
-  return std::any_of(curve.points.begin(), curve.points.end(), [](const Eigen::Vector2d& point) { return point.y() < 0.0; });
+  return std::any_of(curve.points.begin(), curve.points.end(),
+                     [](const Eigen::Vector2d& point) { return point.y() < 0.0; });
 }
 
 bool has_far_peak(const Curve& curve) {
@@ -60,7 +66,8 @@ bool has_far_peak(const Curve& curve) {
 std::string legend_html(const std::vector<Curve>& curves) {
   std::string html;
   for (const Curve& curve : curves) {
-    html += fmt::format("<span class=\"key {} {}\">{}</span>", css_class(curve.color), curve.is_dashed ? "dashed" : "", io::escaped_markup(curve.name));
+    html += fmt::format("<span class=\"key {} {}\">{}</span>", css_class(curve.color), curve.is_dashed ? "dashed" : "",
+                        io::escaped_markup(curve.name));
   }
   return html;
 }
@@ -70,14 +77,16 @@ std::string decimation_note(const std::vector<Curve>& curves) {
   std::size_t max_samples = 0;
   for (const Curve& curve : curves) max_samples = std::max(max_samples, curve.points.size());
   if (max_samples <= 2 * kNumSegments) return "";
-  return fmt::format("<span class=\"thinned\" title=\"Minimum and maximum of each of {} segments\">min/max of {} samples</span>",
-                     kNumSegments, max_samples);
+  return fmt::format(
+      "<span class=\"thinned\" title=\"Minimum and maximum of each of {} segments\">min/max of {} samples</span>",
+      kNumSegments, max_samples);
 }
 
 std::string plot_html(const char* kind, const std::string& title, const std::string& legend, const Json& data) {
-  return fmt::format("<figure class=\"plot {}\"><figcaption><b>{}</b>{}</figcaption><div class=\"drawing\"></div>"
-                     "<script type=\"application/json\">{}</script></figure>\n",
-                     kind, io::escaped_markup(title), legend, script_json(data));
+  return fmt::format(
+      "<figure class=\"plot {}\"><figcaption><b>{}</b>{}</figcaption><div class=\"drawing\"></div>"
+      "<script type=\"application/json\">{}</script></figure>\n",
+      kind, io::escaped_markup(title), legend, script_json(data));
 }
 
 }  // namespace
@@ -96,7 +105,8 @@ std::string to_html(const LinePlot& block) {
 
 std::string to_html(const EventTimeline& block) {
   Json data = {{"label", block.axis.label}, {"end", block.axis.max}, {"lanes", Json::array()}};
-  for (const EventTimeline::Lane& lane : block.lanes) data["lanes"].push_back({{"name", lane.name}, {"marks", marks_json(lane.marks)}});
+  for (const EventTimeline::Lane& lane : block.lanes)
+    data["lanes"].push_back({{"name", lane.name}, {"marks", marks_json(lane.marks)}});
   data["spans"] = spans_json(block.spans);
   return plot_html("lanes", block.title, "<output></output>", data);
 }

@@ -35,6 +35,8 @@ inline Unit unit_of(const std::string& metric) {
   return {};
 }
 
-inline Quantity angle(double angle_deg) { return {fmt::format("{:.{}f}", angle_deg, std::abs(angle_deg) < 10.0 ? 2 : 1), "°"}; }
+inline Quantity angle(double angle_deg) {
+  return {fmt::format("{:.{}f}", angle_deg, std::abs(angle_deg) < 10.0 ? 2 : 1), "°"};
+}
 
 }  // namespace patrol::report

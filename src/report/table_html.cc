@@ -17,7 +17,8 @@ std::string breakable_html(const std::string& text) {
   std::string html;
   for (std::size_t i = 0; i < text.size(); ++i) {
     html += io::escaped_markup(std::string_view(text).substr(i, 1));
-    const bool is_part = text[i] == '.' && i + 1 < text.size() && std::isalpha(static_cast<unsigned char>(text[i + 1])) != 0;
+    const bool is_part =
+        text[i] == '.' && i + 1 < text.size() && std::isalpha(static_cast<unsigned char>(text[i + 1])) != 0;
     if (text[i] == '_' || text[i] == '/' || is_part) html += "<wbr>";
   }
   return html;
@@ -25,7 +26,8 @@ std::string breakable_html(const std::string& text) {
 
 std::string cell_html(const TableCell& cell, const Column& column) {
   const std::string classes = fmt::format("{}{}", column.is_number ? "number " : "", css_class(cell.tone));
-  return fmt::format("<td class=\"{}\">{}</td>", classes, column.is_number ? io::escaped_markup(cell.text) : breakable_html(cell.text));
+  return fmt::format("<td class=\"{}\">{}</td>", classes,
+                     column.is_number ? io::escaped_markup(cell.text) : breakable_html(cell.text));
 }
 
 std::string head_html(const std::vector<Column>& columns) {
@@ -78,19 +80,23 @@ std::string ticks_html(const Scale& scale, const std::string& unit) {
 std::string box_html(const Box& box, const Scale& scale) {
   const auto [min, max] = std::minmax_element(box.values.begin(), box.values.end());
   const auto span = [&](const char* name, double from, double to) {
-    return fmt::format("<i class=\"{}\" style=\"left:{:.3f}%;width:{:.3f}%\"></i>", name, scale.percent(from), scale.width(from, to));
+    return fmt::format("<i class=\"{}\" style=\"left:{:.3f}%;width:{:.3f}%\"></i>", name, scale.percent(from),
+                       scale.width(from, to));
   };
   std::string html = span("whisker", *min, *max) + span("box", box.lower_quartile, box.upper_quartile);
-  for (const double value : box.values) html += fmt::format("<i class=\"dot\" style=\"left:{:.3f}%\"></i>", scale.percent(value));
+  for (const double value : box.values)
+    html += fmt::format("<i class=\"dot\" style=\"left:{:.3f}%\"></i>", scale.percent(value));
   return html + fmt::format("<i class=\"median\" style=\"left:{:.3f}%\"></i>", scale.percent(box.median));
 }
 
 std::string span_html(const Span& span, const Scale& scale) {
   const double low = std::min(span.from, span.to), high = std::max(span.from, span.to);
-  std::string html = fmt::format("<i class=\"zero\" style=\"left:{:.3f}%\"></i><i class=\"span {}\" style=\"left:{:.3f}%;width:{:.3f}%\"></i>", scale.percent(0.0),
-                                 css_class(span.tone), scale.percent(low), scale.width(low, high));
+  std::string html = fmt::format(
+      "<i class=\"zero\" style=\"left:{:.3f}%\"></i><i class=\"span {}\" style=\"left:{:.3f}%;width:{:.3f}%\"></i>",
+      scale.percent(0.0), css_class(span.tone), scale.percent(low), scale.width(low, high));
   if (!span.interval) return html;
-  return html + fmt::format("<i class=\"whisker\" style=\"left:{:.3f}%;width:{:.3f}%\"></i>", scale.percent(span.interval->first),
+  return html + fmt::format("<i class=\"whisker\" style=\"left:{:.3f}%;width:{:.3f}%\"></i>",
+                            scale.percent(span.interval->first),
                             scale.width(span.interval->first, span.interval->second));
 }
 
@@ -102,15 +108,16 @@ std::string to_html(const TableBlock& block) {
   html += head_html(block.columns) + "<tbody>\n";
   for (const std::vector<TableCell>& row : block.rows) {
     html += "<tr>";
-    for (std::size_t i = 0; i < row.size() && i < block.columns.size(); ++i) html += cell_html(row[i], block.columns[i]);
+    for (std::size_t i = 0; i < row.size() && i < block.columns.size(); ++i)
+      html += cell_html(row[i], block.columns[i]);
     html += "</tr>\n";
   }
   return html + "</tbody></table></div>\n";
 }
 
 std::string to_html(const CollapsibleTables& block) {
-  std::string html = fmt::format("<details><summary>{}</summary>\n<div class=\"{}\">\n", io::escaped_markup(block.summary),
-                                 block.tables.size() > 1 ? "columns" : "single");
+  std::string html = fmt::format("<details><summary>{}</summary>\n<div class=\"{}\">\n",
+                                 io::escaped_markup(block.summary), block.tables.size() > 1 ? "columns" : "single");
   for (const TableBlock& table : block.tables) html += to_html(table);
   return html + "</div></details>\n";
 }
@@ -118,11 +125,13 @@ std::string to_html(const CollapsibleTables& block) {
 std::string to_html(const BarBlock& block) {
   double max = 0.0;
   for (const Bar& bar : block.bars) max = std::max(max, bar.value);
-  std::string html = fmt::format("<table class=\"chart bars\"><caption>{}</caption><tbody>\n", io::escaped_markup(block.caption));
+  std::string html =
+      fmt::format("<table class=\"chart bars\"><caption>{}</caption><tbody>\n", io::escaped_markup(block.caption));
   for (const Bar& bar : block.bars) {
     const double percent = max > 0.0 ? 100.0 * std::max(bar.value, 0.0) / max : 0.0;
-    html += fmt::format("<tr><th>{}</th><td><i class=\"bar\" style=\"width:{:.3f}%\"></i></td><td class=\"number\">{}</td></tr>\n",
-                        io::escaped_markup(bar.label), percent, io::escaped_markup(bar.text));
+    html += fmt::format(
+        "<tr><th>{}</th><td><i class=\"bar\" style=\"width:{:.3f}%\"></i></td><td class=\"number\">{}</td></tr>\n",
+        io::escaped_markup(bar.label), percent, io::escaped_markup(bar.text));
   }
   return html + "</tbody></table>\n";
 }
@@ -135,10 +144,11 @@ std::string to_html(const WaterfallChart& block) {
     max = std::max({max, span.from, span.to, high});
   }
   const Scale scale(min, max);
-  std::string html = fmt::format("<table class=\"chart spans\"><caption>{}</caption><tbody>\n", io::escaped_markup(block.caption));
+  std::string html =
+      fmt::format("<table class=\"chart spans\"><caption>{}</caption><tbody>\n", io::escaped_markup(block.caption));
   for (const Span& span : block.spans) {
-    html += fmt::format("<tr><th>{}</th><td><div class=\"track\">{}</div></td><td class=\"number\">{}</td></tr>\n", io::escaped_markup(span.label),
-                        span_html(span, scale), io::escaped_markup(span.text));
+    html += fmt::format("<tr><th>{}</th><td><div class=\"track\">{}</div></td><td class=\"number\">{}</td></tr>\n",
+                        io::escaped_markup(span.label), span_html(span, scale), io::escaped_markup(span.text));
   }
   return html + ticks_html(scale, block.unit) + "</tbody></table>\n";
 }
@@ -149,11 +159,12 @@ std::string to_html(const BoxPlot& block) {
     for (const double value : box.values) min = std::min(min, value), max = std::max(max, value);
   }
   const Scale scale(min, max);
-  std::string html = fmt::format("<table class=\"chart boxes\"><caption>{}</caption><tbody>\n", io::escaped_markup(block.caption));
+  std::string html =
+      fmt::format("<table class=\"chart boxes\"><caption>{}</caption><tbody>\n", io::escaped_markup(block.caption));
   for (const Box& box : block.boxes) {
     if (box.values.empty()) continue;
-    html += fmt::format("<tr><th>{}</th><td><div class=\"track\">{}</div></td><td class=\"number\">{}</td></tr>\n", io::escaped_markup(box.label),
-                        box_html(box, scale), io::escaped_markup(box.text));
+    html += fmt::format("<tr><th>{}</th><td><div class=\"track\">{}</div></td><td class=\"number\">{}</td></tr>\n",
+                        io::escaped_markup(box.label), box_html(box, scale), io::escaped_markup(box.text));
   }
   return html + ticks_html(scale, block.unit) + "</tbody></table>\n";
 }

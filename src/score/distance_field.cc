@@ -16,7 +16,8 @@ constexpr std::int8_t kOccupiedPercent = 65;
 DistanceField::DistanceField(const Grid<std::uint8_t>& occupied)
     : geometry_(occupied.geometry()),
       distance_m_(geometry_.size()),
-      is_empty_(std::all_of(occupied.values().begin(), occupied.values().end(), [](auto value) { return value == 0; })) {
+      is_empty_(
+          std::all_of(occupied.values().begin(), occupied.values().end(), [](auto value) { return value == 0; })) {
   const std::vector<double> squared_cells = squared_distances(occupied.values(), geometry_.width, geometry_.height);
   const auto resolution_m = static_cast<float>(geometry_.resolution_m);
   std::transform(squared_cells.begin(), squared_cells.end(), distance_m_.begin(),
@@ -27,8 +28,10 @@ DistanceField::GridPosition DistanceField::to_tunnel_coordinates(const Eigen::Ve
   const Eigen::Vector2d last(geometry_.width - 1, geometry_.height - 1);
   const Eigen::Vector2d q = (p_m - geometry_.origin_m) / geometry_.resolution_m - Eigen::Vector2d(0.5, 0.5);
   const Eigen::Vector2d inside = q.cwiseMax(0.0).cwiseMin(last);
-  const auto col = std::min(static_cast<std::size_t>(inside.x()), static_cast<std::size_t>(std::max(0, geometry_.width - 2)));
-  const auto row = std::min(static_cast<std::size_t>(inside.y()), static_cast<std::size_t>(std::max(0, geometry_.height - 2)));
+  const auto col =
+      std::min(static_cast<std::size_t>(inside.x()), static_cast<std::size_t>(std::max(0, geometry_.width - 2)));
+  const auto row =
+      std::min(static_cast<std::size_t>(inside.y()), static_cast<std::size_t>(std::max(0, geometry_.height - 2)));
   const auto width = static_cast<std::size_t>(geometry_.width);
   const std::size_t right = geometry_.width > 1 ? 1 : 0, up = geometry_.height > 1 ? width : 0;
   const std::size_t at = row * width + col;

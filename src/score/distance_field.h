@@ -1,9 +1,9 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <array>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "core/grid.h"
 
@@ -27,7 +27,7 @@ class DistanceField {
   struct GridPosition {
     /// distances at the lower left, lower right, upper left and upper right center, m
     std::array<double, 4> corners;
-    Eigen::Vector2d fraction;       ///< fraction of the step from the lower left center along x and y, 0 ... 1
+    Eigen::Vector2d fraction;  ///< fraction of the step from the lower left center along x and y, 0 ... 1
     /// offset of the point from the outermost cell centers, in cells; zero inside the grid
     Eigen::Vector2d offset_to_grid;
   };

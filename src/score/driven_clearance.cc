@@ -37,8 +37,8 @@ double distance_to_outline(const Eigen::Vector2d& p, const std::vector<Eigen::Ve
 
 }  // namespace
 
-DrivenClearance driven_clearance(const Trajectory& T_world_body, const std::vector<Eigen::Vector2d>& footprint_m, const OccupancyGrid& map_in_world,
-                                 double spacing_m) {
+DrivenClearance driven_clearance(const Trajectory& T_world_body, const std::vector<Eigen::Vector2d>& footprint_m,
+                                 const OccupancyGrid& map_in_world, double spacing_m) {
   if (T_world_body.empty() || footprint_m.size() < 3) return {};
   const std::vector<Eigen::Vector2d> occupied = occupied_centers(map_in_world);
   double reach_m = 0.0;
@@ -53,7 +53,8 @@ DrivenClearance driven_clearance(const Trajectory& T_world_body, const std::vect
     double clearance_m = kMaxClearance_m;
     for (const Eigen::Vector2d& p : occupied) {
       const Eigen::Vector2d d = (p - last).cwiseAbs();
-      if (d.maxCoeff() < clearance_m + reach_m) clearance_m = std::min(clearance_m, distance_to_outline(T_body_world * p, footprint_m));
+      if (d.maxCoeff() < clearance_m + reach_m)
+        clearance_m = std::min(clearance_m, distance_to_outline(T_body_world * p, footprint_m));
     }
     clearances_m.push_back(clearance_m);
   }

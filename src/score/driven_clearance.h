@@ -1,9 +1,9 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <cstddef>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "core/grid.h"
 #include "core/trajectory.h"
@@ -13,8 +13,8 @@ namespace patrol::score {
 /// Clearance between the robot's outline and the nearest obstacle along the driven path.
 struct DrivenClearance {
   double mean_m = 0.0;
-  double p05_m = 0.0;  ///< 5th percentile
-  double min_m = 0.0;  ///< minimum; 0 at a collision
+  double p05_m = 0.0;             ///< 5th percentile
+  double min_m = 0.0;             ///< minimum; 0 at a collision
   std::size_t num_positions = 0;  ///< number of evaluated path positions
 };
 
@@ -23,7 +23,7 @@ inline constexpr double kMaxClearance_m = 3.0;  ///< upper limit; larger clearan
 /// Distance from the outline to the center of the nearest occupied cell, at path positions at least `spacing_m` apart.
 /// The outline is convex and counterclockwise, in the level body frame. Moving obstacles are not considered. Returns
 /// zeros for an empty path or an outline with fewer than three corners.
-DrivenClearance driven_clearance(const Trajectory& T_world_body, const std::vector<Eigen::Vector2d>& footprint_m, const OccupancyGrid& map_in_world,
-                                 double spacing_m = 0.1);
+DrivenClearance driven_clearance(const Trajectory& T_world_body, const std::vector<Eigen::Vector2d>& footprint_m,
+                                 const OccupancyGrid& map_in_world, double spacing_m = 0.1);
 
 }  // namespace patrol::score

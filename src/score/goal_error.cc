@@ -21,7 +21,7 @@ Arrival arrival(int navigation, const Pose2& T_world_goal, const Pose2& T_world_
 
 /// True pose of each goal in world, by goal name.
 std::map<std::string, Pose2> goal_poses(const std::vector<Event>& events, const std::vector<SavedGoal>& given,
-                                          const Pose2& T_world_map, const Trajectory& T_world_body) {
+                                        const Pose2& T_world_map, const Trajectory& T_world_body) {
   std::map<std::string, Pose2> wanted;
   for (const SavedGoal& goal : given) wanted["goal_" + std::to_string(goal.number)] = T_world_map * goal.T_map_body;
   for (const Event& event : events) {

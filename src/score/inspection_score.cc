@@ -12,10 +12,10 @@ InspectionScore inspection_score(const std::vector<Event>& events, const Pose2& 
   for (const Event& event : events) {
     if (event.kind != EventKind::kGasAlarm) continue;
     ScoredAlarm finding{.station = event.subject,
-                    .column_ppm_m = event.value,
-                    .p_world_m = T_world_map * event.p_map_target,
-                    .leak = "",
-                    .error_m = max_distance_m};
+                        .column_ppm_m = event.value,
+                        .p_world_m = T_world_map * event.p_map_target,
+                        .leak = "",
+                        .error_m = max_distance_m};
     for (const LeakGroundTruth& leak : leaks) {
       const double distance_m = (finding.p_world_m - leak.p_world_m).norm();
       if (distance_m > finding.error_m) continue;

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <string>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "core/frames.h"
 #include "core/messages.h"
@@ -19,10 +19,10 @@ struct LeakGroundTruth {
 /// Gas alarm of the robot with the leak that it is assigned to.
 struct ScoredAlarm {
   std::string station;
-  double column_ppm_m = 0.0;  ///< measured methane column
+  double column_ppm_m = 0.0;                            ///< measured methane column
   Eigen::Vector2d p_world_m = Eigen::Vector2d::Zero();  ///< position reported by the robot
-  std::string leak;      ///< name of the leak; empty for a false alarm
-  double error_m = 0.0;  ///< distance from the leak
+  std::string leak;                                     ///< name of the leak; empty for a false alarm
+  double error_m = 0.0;                                 ///< distance from the leak
 };
 
 /// Number of leaks found and of false alarms, with all findings.

@@ -16,9 +16,11 @@ double true_peak_m(const LiningGroundTruth& truth, int ring) {
   return peak_m;
 }
 
-RingScore found_ring(const RingFinding& finding, const LiningGroundTruth& truth, const Pose3& T_world_map, const std::string& station, double peak_m) {
+RingScore found_ring(const RingFinding& finding, const LiningGroundTruth& truth, const Pose3& T_world_map,
+                     const std::string& station, double peak_m) {
   const TunnelLining& design = truth.design;
-  const Eigen::Vector3d p_world = design.intrados(design.middle_of_ring_m(finding.ring), finding.clock_deg) + Eigen::Vector3d(0.0, 0.0, truth.invert_m);
+  const Eigen::Vector3d p_world = design.intrados(design.middle_of_ring_m(finding.ring), finding.clock_deg) +
+                                  Eigen::Vector3d(0.0, 0.0, truth.invert_m);
   return {.station = station,
           .ring = finding.ring,
           .true_peak_m = peak_m,
@@ -29,7 +31,8 @@ RingScore found_ring(const RingFinding& finding, const LiningGroundTruth& truth,
           .position_error_m = (T_world_map * finding.p_map - p_world).norm()};
 }
 
-void add_rings(const LiningResult& result, const LiningGroundTruth& truth, const Pose3& T_world_map, double displacement_m, double still_m, LiningScore& score) {
+void add_rings(const LiningResult& result, const LiningGroundTruth& truth, const Pose3& T_world_map,
+               double displacement_m, double still_m, LiningScore& score) {
   std::set<int> in_view;
   for (const LiningCell& cell : result.cells) in_view.insert(cell.ring);
   for (const RingFinding& finding : result.findings) in_view.insert(finding.ring);
@@ -54,7 +57,8 @@ void add_rings(const LiningResult& result, const LiningGroundTruth& truth, const
 
 }  // namespace
 
-LiningScore lining_score(const std::vector<LiningResult>& results, const LiningGroundTruth& truth, const Pose3& T_world_map, double displacement_m, double still_m) {
+LiningScore lining_score(const std::vector<LiningResult>& results, const LiningGroundTruth& truth,
+                         const Pose3& T_world_map, double displacement_m, double still_m) {
   LiningScore score;
   double squares = 0.0;
   int held = 0;

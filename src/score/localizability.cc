@@ -57,20 +57,24 @@ LocalizabilityScore localizability_score(const std::vector<LocalizabilitySample>
       is_degenerate_with_confidence.push_back(sample.truth.is_degenerate());
     }
     if (sample.truth.is_degenerate()) {
-      const double error_rad = std::abs(wrap_half_turn(sample.reported_direction_rad - sample.truth.max_std_direction_rad));
+      const double error_rad =
+          std::abs(wrap_half_turn(sample.reported_direction_rad - sample.truth.max_std_direction_rad));
       direction_errors_deg.push_back(to_deg(error_rad));
     }
   }
   LocalizabilityScore score{.num_poses = samples.size(),
                             .max_std_median_m = percentile(truth, 0.5),
                             .max_std_max_m = maximum(truth),
-                            .degenerate_fraction = samples.empty() ? 0.0 : static_cast<double>(direction_errors_deg.size()) / static_cast<double>(samples.size()),
+                            .degenerate_fraction = samples.empty() ? 0.0
+                                                                   : static_cast<double>(direction_errors_deg.size()) /
+                                                                         static_cast<double>(samples.size()),
                             .covariance_rank_correlation = rank_correlation(claimed, truth),
                             .confidence_rank_correlation = {},
                             .covariance_detection = roc_auc(claimed, is_degenerate),
                             .confidence_detection = roc_auc(negated_confidence, is_degenerate_with_confidence),
                             .max_std_direction_error_deg = {}};
-  if (const auto correlation = rank_correlation(negated_confidence, truth_with_confidence)) score.confidence_rank_correlation = -*correlation;
+  if (const auto correlation = rank_correlation(negated_confidence, truth_with_confidence))
+    score.confidence_rank_correlation = -*correlation;
   if (!direction_errors_deg.empty()) score.max_std_direction_error_deg = mean(direction_errors_deg);
   return score;
 }

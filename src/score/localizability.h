@@ -1,9 +1,9 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <optional>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "core/beam_return.h"
 
@@ -41,7 +41,7 @@ struct LocalizabilitySample {
   Localizability truth;
   double reported_std_m = 0.0;          ///< standard deviation along the weakest direction of the stack's covariance
   double reported_direction_rad = 0.0;  ///< weakest direction of the stack's covariance, in world
-  std::optional<double> confidence;         ///< confidence, 0 lost ... 1 certain; none when the stack does not report one
+  std::optional<double> confidence;     ///< confidence, 0 lost ... 1 certain; none when the stack does not report one
 };
 
 /// Agreement of the stack's reported uncertainty with the Cramer-Rao bound. Values that need degenerate poses, or lists
@@ -50,7 +50,7 @@ struct LocalizabilityScore {
   std::size_t num_poses = 0;
   double max_std_median_m = 0.0;
   double max_std_max_m = 0.0;
-  double degenerate_fraction = 0.0;                      ///< fraction of poses that are degenerate
+  double degenerate_fraction = 0.0;  ///< fraction of poses that are degenerate
   /// Spearman's correlation of the reported with the true standard deviation
   std::optional<double> covariance_rank_correlation;
   /// Spearman's correlation of the confidence with the true standard deviation; -1 is best

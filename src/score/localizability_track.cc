@@ -19,7 +19,8 @@ std::optional<double> confidence_at(const std::vector<LocalizationConfidence>& c
 
 }  // namespace
 
-std::vector<TrackedLocalizability> track_localizability(const RunRecord& record, const Pose2& T_world_map, const LocalizabilityOracle& oracle) {
+std::vector<TrackedLocalizability> track_localizability(const RunRecord& record, const Pose2& T_world_map,
+                                                        const LocalizabilityOracle& oracle) {
   std::vector<TrackedLocalizability> track;
   for (std::size_t i = 0; i < record.T_map_body.size(); ++i) {
     const Time stamp = record.T_map_body[i].stamp;

@@ -21,7 +21,8 @@ struct TrackedLocalizability {
 };
 
 /// At most two samples a second, at stamps of the stack's estimates.
-std::vector<TrackedLocalizability> track_localizability(const RunRecord& record, const Pose2& T_world_map, const LocalizabilityOracle& oracle);
+std::vector<TrackedLocalizability> track_localizability(const RunRecord& record, const Pose2& T_world_map,
+                                                        const LocalizabilityOracle& oracle);
 
 LocalizabilityScore score_of(const std::vector<TrackedLocalizability>& track);
 

@@ -13,25 +13,30 @@ constexpr Time kStablePeriod = std::chrono::seconds(5);
 
 /// Newest confidence up to `stamp`, null before the first one.
 const LocalizationConfidence* newest_confidence(const std::vector<LocalizationConfidence>& confidences, Time stamp) {
-  const auto after = std::upper_bound(confidences.begin(), confidences.end(), stamp,
-                                      [](Time time, const LocalizationConfidence& confidence) { return time < confidence.stamp; });
+  const auto after =
+      std::upper_bound(confidences.begin(), confidences.end(), stamp,
+                       [](Time time, const LocalizationConfidence& confidence) { return time < confidence.stamp; });
   return after == confidences.begin() ? nullptr : &*std::prev(after);
 }
 
 }  // namespace
 
-LocalizationScore localization_score(const std::vector<MatchedPose>& matched, const std::vector<LocalizationConfidence>& confidences) {
+LocalizationScore localization_score(const std::vector<MatchedPose>& matched,
+                                     const std::vector<LocalizationConfidence>& confidences) {
   LocalizationScore score;
   for (std::size_t i = 0; i < confidences.size(); ++i) {
     score.min_confidence = std::min(score.min_confidence, confidences[i].confidence);
-    if (confidences[i].confidence < kLowConfidence && !score.low_confidence_at_s) score.low_confidence_at_s = to_seconds(confidences[i].stamp);
-    if (confidences[i].is_lost && i + 1 < confidences.size()) score.lost_s += to_seconds(confidences[i + 1].stamp - confidences[i].stamp);
+    if (confidences[i].confidence < kLowConfidence && !score.low_confidence_at_s)
+      score.low_confidence_at_s = to_seconds(confidences[i].stamp);
+    if (confidences[i].is_lost && i + 1 < confidences.size())
+      score.lost_s += to_seconds(confidences[i + 1].stamp - confidences[i].stamp);
   }
   for (const MatchedPose& pose : matched) {
     const LocalizationConfidence* confidence = newest_confidence(confidences, pose.stamp);
     if (confidence == nullptr || confidence->is_lost) continue;
     score.max_error_m = std::max(score.max_error_m, pose.position_error_m());
-    if (pose.position_error_m() > kMaxAcceptedError_m && !score.error_exceeded_at_s) score.error_exceeded_at_s = to_seconds(pose.stamp);
+    if (pose.position_error_m() > kMaxAcceptedError_m && !score.error_exceeded_at_s)
+      score.error_exceeded_at_s = to_seconds(pose.stamp);
   }
   return score;
 }

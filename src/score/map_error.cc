@@ -78,7 +78,8 @@ MapError map_error(const OccupancyGrid& built, const Pose2& T_world_map, const R
 
   const std::vector<double> nearest_m = distances_m(DistanceField(reference_occupied), T_world_map, built_points);
   const Pose2 T_map_world = T_world_map.inverse();
-  const std::vector<double> recall_distances_m = distances_m(DistanceField(built_occupied), T_map_world, observable_points);
+  const std::vector<double> recall_distances_m =
+      distances_m(DistanceField(built_occupied), T_map_world, observable_points);
   return {.num_occupied = built_points.size(),
           .nearest_mean_m = mean(nearest_m),
           .nearest_var_m2 = variance(nearest_m),

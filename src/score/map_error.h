@@ -1,8 +1,8 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "core/frames.h"
 #include "core/grid.h"

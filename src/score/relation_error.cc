@@ -4,8 +4,8 @@
 #include <cmath>
 #include <map>
 
-#include "core/geometry/angles.h"
 #include "core/error.h"
+#include "core/geometry/angles.h"
 #include "score/statistics.h"
 
 namespace patrol::score {
@@ -15,7 +15,9 @@ namespace {
 class PoseLookup {
  public:
   PoseLookup(const Trajectory& T_map_body, const RelationSettings& settings)
-      : trajectory_(T_map_body), max_dt_(from_seconds(settings.max_dt_s)), T_body_reference_{settings.reference_x_m, 0.0, 0.0} {}
+      : trajectory_(T_map_body),
+        max_dt_(from_seconds(settings.max_dt_s)),
+        T_body_reference_{settings.reference_x_m, 0.0, 0.0} {}
 
   const Pose2& T_map_reference(Time stamp) {
     const auto known = found_.find(stamp);
@@ -32,9 +34,11 @@ class PoseLookup {
   Pose2 reference_at(const StampedPose& entry) const { return to_pose2(entry.pose) * T_body_reference_; }
 
   Pose2 find(Time stamp) {
-    const auto after = std::lower_bound(trajectory_.begin(), trajectory_.end(), stamp, [](const StampedPose& entry, Time t) { return entry.stamp < t; });
+    const auto after = std::lower_bound(trajectory_.begin(), trajectory_.end(), stamp,
+                                        [](const StampedPose& entry, Time t) { return entry.stamp < t; });
     const auto before = after == trajectory_.begin() ? after : after - 1;
-    const bool after_is_nearer = after != trajectory_.end() && after->stamp - stamp < std::chrono::abs(stamp - before->stamp);
+    const bool after_is_nearer =
+        after != trajectory_.end() && after->stamp - stamp < std::chrono::abs(stamp - before->stamp);
     const StampedPose& nearest = after_is_nearer ? *after : *before;
     if (std::chrono::abs(nearest.stamp - stamp) <= max_dt_) return reference_at(nearest);
     ++num_interpolated_;
@@ -48,7 +52,8 @@ class PoseLookup {
   Pose2 between(const StampedPose& before, const StampedPose& after, Time stamp) const {
     const Pose2 a = reference_at(before), b = reference_at(after);
     const double fraction = to_seconds(stamp - before.stamp) / to_seconds(after.stamp - before.stamp);
-    return {a.x + fraction * (b.x - a.x), a.y + fraction * (b.y - a.y), wrap_angle(a.yaw + fraction * wrap_angle(b.yaw - a.yaw))};
+    return {a.x + fraction * (b.x - a.x), a.y + fraction * (b.y - a.y),
+            wrap_angle(a.yaw + fraction * wrap_angle(b.yaw - a.yaw))};
   }
 
   const Trajectory& trajectory_;
@@ -78,7 +83,8 @@ double upper_median(std::vector<double> values) {
 
 }  // namespace
 
-RelationError relation_error(const Trajectory& T_map_body, const std::vector<PoseRelation>& relations, const RelationSettings& settings) {
+RelationError relation_error(const Trajectory& T_map_body, const std::vector<PoseRelation>& relations,
+                             const RelationSettings& settings) {
   validate(settings, "relations");
   if (T_map_body.empty()) throw InputError("estimate: no poses");
   if (relations.empty()) throw InputError("relations: none to score");

@@ -13,7 +13,7 @@ namespace patrol::score {
 struct RelationSettings {
   /// maximum distance in time at which the nearest pose is used; beyond it the pose is interpolated
   double max_dt_s = 0.02;
-  double reference_x_m = 0.0;    ///< x offset of the relations' reference point in the trajectory's body frame
+  double reference_x_m = 0.0;  ///< x offset of the relations' reference point in the trajectory's body frame
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -45,6 +45,7 @@ struct RelationError {
 /// Compares est(t1)^-1 est(t2) with each relation: distance of the translations and difference of the headings. The
 /// metric is that of [Kuemmerle09] with translation and rotation apart. With an even number of relations the median is
 /// the upper one. Throws InputError when the trajectory or the list of relations is empty.
-RelationError relation_error(const Trajectory& T_map_body, const std::vector<PoseRelation>& relations, const RelationSettings& settings = {});
+RelationError relation_error(const Trajectory& T_map_body, const std::vector<PoseRelation>& relations,
+                             const RelationSettings& settings = {});
 
 }  // namespace patrol::score

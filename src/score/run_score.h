@@ -22,12 +22,12 @@ namespace patrol::score {
 
 /// Ground truth and survey that a run is evaluated against.
 struct RunReferences {
-  ReferenceMap map;                           ///< in world
-  double map_agreement = 0.0;                 ///< ratio of the reference's cells that an independent rendering confirms
-  std::optional<Pose2> T_world_map;           ///< pose of a given map's frame; none: the map begins at the robot's true start
-  Route route;                                ///< survey, in world
-  std::vector<SavedGoal> goals;              ///< given goals, in map
-  std::vector<Eigen::Vector2d> footprint_m;   ///< outline of the robot
+  ReferenceMap map;                  ///< in world
+  double map_agreement = 0.0;        ///< ratio of the reference's cells that an independent rendering confirms
+  std::optional<Pose2> T_world_map;  ///< pose of a given map's frame; none: the map begins at the robot's true start
+  Route route;                       ///< survey, in world
+  std::vector<SavedGoal> goals;      ///< given goals, in map
+  std::vector<Eigen::Vector2d> footprint_m;  ///< outline of the robot
   std::vector<LeakGroundTruth> leaks;
   std::optional<LiningGroundTruth> lining;
   std::vector<WaterGroundTruth> waters;
@@ -70,12 +70,12 @@ struct EstimateScore {
   NavigationScore navigation;
   std::vector<StationError> stations;
   std::vector<GoalError> goals;
-  std::optional<GoalError> docking;             ///< with a dock in the survey
-  std::optional<TrajectoryError> range_pose;    ///< with an estimate by odometry and UWB ranges
-  std::optional<KnownMapScore> known_map;       ///< with a confidence in the log
+  std::optional<GoalError> docking;           ///< with a dock in the survey
+  std::optional<TrajectoryError> range_pose;  ///< with an estimate by odometry and UWB ranges
+  std::optional<KnownMapScore> known_map;     ///< with a confidence in the log
   InspectionScore inspection;
-  std::optional<LiningScore> lining;            ///< with a result in the log
-  std::optional<WaterScore> water;              ///< with a result in the log
+  std::optional<LiningScore> lining;  ///< with a result in the log
+  std::optional<WaterScore> water;    ///< with a result in the log
 };
 
 struct RunScore {

@@ -1,10 +1,10 @@
 #include "score/station_error.h"
 
-#include <Eigen/Dense>
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+
+#include <Eigen/Dense>
 
 #include "core/geometry/angles.h"
 #include "core/geometry/linear_algebra.h"
@@ -14,25 +14,25 @@
 namespace patrol::score {
 namespace {
 
-constexpr double kMaxDistance_m = 0.5;    // cells farther from every true surface are not used
-constexpr double kRobust_m = 0.05;        // scale of the Cauchy weight
+constexpr double kMaxDistance_m = 0.5;  // cells farther from every true surface are not used
+constexpr double kRobust_m = 0.05;      // scale of the Cauchy weight
 constexpr int kMinPoints = 30;
 constexpr int kIterations = 20;
 // directions below this fraction of the largest information eigenvalue are not moved
 constexpr double kDegenerateRatio = 0.03;
 
 // Search for displacements outside the convergence basin of the fit from the identity.
-constexpr double kSearch_m = 3.0;         // maximum along either axis
+constexpr double kSearch_m = 3.0;  // maximum along either axis
 constexpr double kSearchStep_m = 0.1;
-constexpr double kSearchRobust_m = 0.1;   // scale of the Cauchy weight during the search, wider to bridge the steps
-constexpr double kSearchYawStep_deg = 2.0;   // step of the yaw
+constexpr double kSearchRobust_m = 0.1;     // scale of the Cauchy weight during the search, wider to bridge the steps
+constexpr double kSearchYawStep_deg = 2.0;  // step of the yaw
 constexpr int kSearchYawSteps = 2;
 constexpr std::size_t kMaxSearchPoints = 300;
 // the smaller of two motions counts when its score is at least this fraction of the other's
 constexpr double kEquivalentScoreRatio = 0.9;
 
-std::vector<Eigen::Vector2d> points_near(const OccupancyGrid& built, const Pose2& T_world_map, const Eigen::Vector2d& center,
-                                          double radius_m) {
+std::vector<Eigen::Vector2d> points_near(const OccupancyGrid& built, const Pose2& T_world_map,
+                                         const Eigen::Vector2d& center, double radius_m) {
   std::vector<Eigen::Vector2d> near;
   for (const Eigen::Vector2d& p_map : occupied_points(built)) {
     const Eigen::Vector2d p_world = T_world_map * p_map;
@@ -42,8 +42,8 @@ std::vector<Eigen::Vector2d> points_near(const OccupancyGrid& built, const Pose2
 }
 
 /// One Gauss-Newton step of a motion about `center`: x, y in m, rotation as arc length at `radius_m`.
-Eigen::Vector3d step(const DistanceField& field, const std::vector<Eigen::Vector2d>& points, const Eigen::Vector2d& center,
-                     const Pose2& motion, double radius_m) {
+Eigen::Vector3d step(const DistanceField& field, const std::vector<Eigen::Vector2d>& points,
+                     const Eigen::Vector2d& center, const Pose2& motion, double radius_m) {
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
   for (const Eigen::Vector2d& point : points) {
@@ -67,8 +67,8 @@ Eigen::Vector3d step(const DistanceField& field, const std::vector<Eigen::Vector
   return result;
 }
 
-Pose2 refine(const DistanceField& field, const std::vector<Eigen::Vector2d>& points, const Eigen::Vector2d& center, Pose2 motion,
-             double radius_m) {
+Pose2 refine(const DistanceField& field, const std::vector<Eigen::Vector2d>& points, const Eigen::Vector2d& center,
+             Pose2 motion, double radius_m) {
   for (int i = 0; i < kIterations; ++i) {
     const Eigen::Vector3d change = step(field, points, center, motion, radius_m);
     motion = {motion.x + change.x(), motion.y + change.y(), motion.yaw + change.z() / radius_m};
@@ -78,8 +78,8 @@ Pose2 refine(const DistanceField& field, const std::vector<Eigen::Vector2d>& poi
 }
 
 /// Mean weight of the moved points: 1 when all lie on surfaces, near 0 when all are much farther than `robust_m`.
-double mean_weight(const DistanceField& field, const std::vector<Eigen::Vector2d>& points, const Eigen::Vector2d& center,
-                const Pose2& motion, double robust_m) {
+double mean_weight(const DistanceField& field, const std::vector<Eigen::Vector2d>& points,
+                   const Eigen::Vector2d& center, const Pose2& motion, double robust_m) {
   double sum = 0.0;
   for (const Eigen::Vector2d& point : points) {
     const double ratio = field.distance_m(center + motion * point) / robust_m;
@@ -88,9 +88,10 @@ double mean_weight(const DistanceField& field, const std::vector<Eigen::Vector2d
   return sum / static_cast<double>(points.size());
 }
 
-/// Smallest motion of a grid whose score is within `kEquivalentScoreRatio` of the best. Along a straight wall many motions fit
-/// equally well; the smallest is the one across the wall.
-Pose2 search(const DistanceField& field, const std::vector<Eigen::Vector2d>& all, const Eigen::Vector2d& center, double radius_m) {
+/// Smallest motion of a grid whose score is within `kEquivalentScoreRatio` of the best. Along a straight wall many
+/// motions fit equally well; the smallest is the one across the wall.
+Pose2 search(const DistanceField& field, const std::vector<Eigen::Vector2d>& all, const Eigen::Vector2d& center,
+             double radius_m) {
   std::vector<Eigen::Vector2d> points;
   const std::size_t stride = all.size() / kMaxSearchPoints + 1;
   for (std::size_t i = 0; i < all.size(); i += stride) points.push_back(all[i]);
@@ -143,8 +144,7 @@ std::vector<StationError> station_errors(const Route& route_in_world, const std:
   for (const Station& station : route_in_world.stations) {
     StationError error;
     error.name = station.name;
-    error.map_error_m =
-        map_displacement_m(built, T_world_map, reference, station.p_route_target.head<2>());
+    error.map_error_m = map_displacement_m(built, T_world_map, reference, station.p_route_target.head<2>());
     for (const Event& event : events) {
       if (event.kind != EventKind::kStationReached || event.subject != station.name) continue;
       const std::optional<Pose3> truth = pose_at(T_world_body, event.stamp);
@@ -152,8 +152,7 @@ std::vector<StationError> station_errors(const Route& route_in_world, const std:
       const Pose2 T_world_truth = to_pose2(*truth), T_world_estimate = T_world_map * event.T_map_body;
       error.is_reached = true;
       error.position_error_m = (T_world_estimate.position() - T_world_truth.position()).norm();
-      error.heading_error_deg =
-          to_deg(std::abs(wrap_angle(T_world_estimate.yaw - T_world_truth.yaw)));
+      error.heading_error_deg = to_deg(std::abs(wrap_angle(T_world_estimate.yaw - T_world_truth.yaw)));
       error.goal_position_error_m = (T_world_truth.position() - station.T_route_body.position()).norm();
     }
     errors.push_back(error);

@@ -75,7 +75,8 @@ double confidence_95(const std::vector<double>& values) {
 std::optional<Interval> mean_interval(const std::vector<double>& values, double level) {
   if (values.size() < 2) return std::nullopt;
   const double center = mean(values);
-  const double half = student_t(values.size() - 1, level) * std::sqrt(variance(values) / static_cast<double>(values.size()));
+  const double half =
+      student_t(values.size() - 1, level) * std::sqrt(variance(values) / static_cast<double>(values.size()));
   return Interval{.center = center, .low = center - half, .high = center + half};
 }
 

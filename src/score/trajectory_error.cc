@@ -4,8 +4,8 @@
 
 #include <Eigen/Dense>
 
-#include "core/geometry/angles.h"
 #include "core/error.h"
+#include "core/geometry/angles.h"
 #include "score/statistics.h"
 
 namespace patrol::score {
@@ -24,8 +24,8 @@ struct RelativeError {
 RelativeError relative_error(const std::vector<MatchedPose>& poses) {
   std::vector<double> traveled_m(poses.size(), 0.0);
   for (std::size_t i = 1; i < poses.size(); ++i) {
-    traveled_m[i] = traveled_m[i - 1] +
-               (poses[i].T_world_truth.position() - poses[i - 1].T_world_truth.position()).norm();
+    traveled_m[i] =
+        traveled_m[i - 1] + (poses[i].T_world_truth.position() - poses[i - 1].T_world_truth.position()).norm();
   }
   RelativeError error;
   for (std::size_t begin = 0, end = 0; begin < poses.size(); ++begin) {
@@ -106,7 +106,7 @@ Pose2 align_at_start(const Trajectory& T_map_body, const Trajectory& T_world_bod
 }
 
 std::vector<MatchedPose> pair_poses(const Trajectory& T_map_body, const Pose2& T_world_map,
-                                     const Trajectory& T_world_body) {
+                                    const Trajectory& T_world_body) {
   std::vector<MatchedPose> matches;
   matches.reserve(T_map_body.size());
   for (const StampedPose& entry : T_map_body) {

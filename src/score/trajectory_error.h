@@ -14,9 +14,7 @@ struct MatchedPose {
   Pose2 T_world_estimate;
   Pose2 T_world_truth;
 
-  double position_error_m() const {
-    return (T_world_estimate.position() - T_world_truth.position()).norm();
-  }
+  double position_error_m() const { return (T_world_estimate.position() - T_world_truth.position()).norm(); }
   double heading_error_rad() const { return wrap_angle(T_world_estimate.yaw - T_world_truth.yaw); }
 };
 
@@ -27,7 +25,7 @@ Pose2 align_at_start(const Trajectory& T_map_body, const Trajectory& T_world_bod
 
 /// Matches every pose of the estimate within the time range of the ground truth, interpolated to the pose's stamp.
 std::vector<MatchedPose> pair_poses(const Trajectory& T_map_body, const Pose2& T_world_map,
-                                     const Trajectory& T_world_body);
+                                    const Trajectory& T_world_body);
 
 /// Trajectory error without any fit of the estimate to the ground truth.
 struct TrajectoryError {
@@ -36,7 +34,7 @@ struct TrajectoryError {
   double ate_mean_m = 0.0;
   double ate_max_m = 0.0;
   double heading_rmse_deg = 0.0;
-  double rpe_trans_1m_m = 0.0;   ///< relative pose error: RMS over all segments with 1 m of true distance
+  double rpe_trans_1m_m = 0.0;  ///< relative pose error: RMS over all segments with 1 m of true distance
   double rpe_rot_1m_deg = 0.0;  ///< RMS relative rotation error over those segments
 };
 

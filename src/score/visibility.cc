@@ -16,7 +16,8 @@ class CellWalk {
     const Eigen::Vector2d q = (from_m - geometry.origin_m) / geometry.resolution_m;
     for (int axis = 0; axis < 2; ++axis) {
       const double speed = std::abs(direction[axis]);
-      const double to_border = direction[axis] > 0.0 ? std::floor(q[axis]) + 1.0 - q[axis] : q[axis] - std::floor(q[axis]);
+      const double to_border =
+          direction[axis] > 0.0 ? std::floor(q[axis]) + 1.0 - q[axis] : q[axis] - std::floor(q[axis]);
       const bool moves = speed > 1e-12;
       stride_[axis] = moves ? geometry.resolution_m / speed : std::numeric_limits<double>::infinity();
       next_[axis] = moves ? to_border * geometry.resolution_m / speed : std::numeric_limits<double>::infinity();
@@ -78,7 +79,8 @@ void mark_ray(ReferenceMap& reference, const Eigen::Vector2d& from_m, double ang
 
 }  // namespace
 
-ReferenceMap mark_observable(OccupancyGrid reference, const Trajectory& T_world_body, double max_range_m, double spacing_m) {
+ReferenceMap mark_observable(OccupancyGrid reference, const Trajectory& T_world_body, double max_range_m,
+                             double spacing_m) {
   const GridGeometry geometry = reference.geometry();
   ReferenceMap marked{std::move(reference), Grid<std::uint8_t>(geometry)};
   // Adjacent rays are two cells apart at full range; `mark_neighborhood` fills the gap.

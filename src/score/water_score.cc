@@ -1,8 +1,8 @@
 #include "score/water_score.h"
 
-#include <Eigen/Cholesky>
-
 #include <set>
+
+#include <Eigen/Cholesky>
 
 #include "core/geometry/linear_algebra.h"
 
@@ -12,7 +12,8 @@ namespace {
 /// 95 % quantile of the chi-squared distribution with three degrees of freedom.
 constexpr double kChiSquared3 = 7.815;
 
-std::optional<std::size_t> nearest_body(const std::vector<WaterGroundTruth>& bodies, const Eigen::Vector3d& p_world_m, double max_distance_m) {
+std::optional<std::size_t> nearest_body(const std::vector<WaterGroundTruth>& bodies, const Eigen::Vector3d& p_world_m,
+                                        double max_distance_m) {
   std::optional<std::size_t> nearest;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const double distance_m = (bodies[i].p_world_m - p_world_m).norm();
@@ -25,8 +26,9 @@ std::optional<std::size_t> nearest_body(const std::vector<WaterGroundTruth>& bod
 
 }  // namespace
 
-WaterScore water_score(const std::vector<WaterResult>& results, const std::vector<WaterGroundTruth>& bodies, const Pose2& T_world_map,
-                       const Trajectory& T_world_body, const Eigen::Vector3d& p_body_antenna, double max_distance_m) {
+WaterScore water_score(const std::vector<WaterResult>& results, const std::vector<WaterGroundTruth>& bodies,
+                       const Pose2& T_world_map, const Trajectory& T_world_body, const Eigen::Vector3d& p_body_antenna,
+                       double max_distance_m) {
   WaterScore score{.bodies = static_cast<int>(bodies.size()), .findings = {}};
   std::set<std::size_t> found;
   for (const WaterResult& result : results) {
@@ -41,13 +43,15 @@ WaterScore water_score(const std::vector<WaterResult>& results, const std::vecto
     } else {
       found.insert(*finding.body);
       const WaterGroundTruth& body = bodies[*finding.body];
-      const Eigen::Vector3d error_m = p_world_m - body.p_world_m, offset_m = body.p_world_m - *T_world_body_at_stamp * p_body_antenna;
+      const Eigen::Vector3d error_m = p_world_m - body.p_world_m,
+                            offset_m = body.p_world_m - *T_world_body_at_stamp * p_body_antenna;
       const Eigen::Matrix3d R = T_world_map_at_height.rotation.toRotationMatrix();
       const Eigen::Matrix3d covariance_m2 = R * result.covariance_m2 * R.transpose();
       finding.position_error_m = error_m.norm();
       finding.ahead_error_m = error_m.dot(offset_m.normalized());
       finding.radius_error_m = result.radius_m - body.radius_m;
-      finding.distance_in_interval = offset_m.norm() >= result.distance_low_m && offset_m.norm() <= result.distance_high_m;
+      finding.distance_in_interval =
+          offset_m.norm() >= result.distance_low_m && offset_m.norm() <= result.distance_high_m;
       finding.radius_in_interval = body.radius_m >= result.radius_low_m && body.radius_m <= result.radius_high_m;
       finding.position_in_ellipsoid = error_m.dot(solve_symmetric(covariance_m2, error_m)) <= kChiSquared3;
     }

@@ -13,14 +13,14 @@
 namespace patrol::sim {
 namespace {
 
-constexpr double kCorner_m = 0.4;       // the heading is smoothed over this length on both sides of a corner
+constexpr double kCorner_m = 0.4;  // the heading is smoothed over this length on both sides of a corner
 constexpr double kGroundStep_m = 0.1;
 constexpr double kAcceleration_mps2 = 1.5;
-constexpr double kHipWidth_m = 0.09;    // lateral offset of each hip from the center
+constexpr double kHipWidth_m = 0.09;  // lateral offset of each hip from the center
 constexpr double kThigh_m = 0.43, kShank_m = 0.43;
-constexpr double kStep_m = 0.65;        // length of a step; a stride is two steps
+constexpr double kStep_m = 0.65;  // length of a step; a stride is two steps
 
-constexpr double kPredictionHorizon_s = 1.5;    // prediction horizon for the robot's position
+constexpr double kPredictionHorizon_s = 1.5;  // prediction horizon for the robot's position
 constexpr double kPredictionStep_s = 0.25;
 
 /// Half extents of an actor along and across its course; the lateral one includes a comfort margin.
@@ -141,14 +141,17 @@ Actors::Actors(const mjModel& model, const std::vector<ActorSettings>& settings)
     if (mocap_of(model, name) < 0) {
       throw InputError(fmt::format("actors: unknown name '{}' (known: {})", name, known_actors(model)));
     }
-    if (actor_settings.path.size() < 2) throw InputError(fmt::format("actors.{}.path: must have at least two points", name));
+    if (actor_settings.path.size() < 2)
+      throw InputError(fmt::format("actors.{}.path: must have at least two points", name));
     Actor actor{.settings = actor_settings,
                 .path = ActorPath(actor_settings.path),
-                .mocap = {mocap_of(model, name), mocap_of(model, name + "_thigh_left"), mocap_of(model, name + "_shank_left"),
-                          mocap_of(model, name + "_thigh_right"), mocap_of(model, name + "_shank_right")},
+                .mocap = {mocap_of(model, name), mocap_of(model, name + "_thigh_left"),
+                          mocap_of(model, name + "_shank_left"), mocap_of(model, name + "_thigh_right"),
+                          mocap_of(model, name + "_shank_right")},
                 .base_height_m = 0.0,
                 .ground_m = {}};
-    if (actor.path.length_m() <= 0.0) throw InputError(fmt::format("actors.{}.path: length is zero: must be positive", name));
+    if (actor.path.length_m() <= 0.0)
+      throw InputError(fmt::format("actors.{}.path: length is zero: must be positive", name));
     const Eigen::Vector3d placed(model.body_pos + 3 * body);
     actor.base_height_m = placed.z() - ground_at(model, *data, placed.head<2>(), 0.0);
     double ground = 0.0;
@@ -187,7 +190,8 @@ bool Actors::must_yield(const Actor& actor, const ObservedRobot& robot) {
     const double min_gap_m = in_s > 0.0 ? robot.radius_m : -extent.half_length_m;  // an actor closer than this clears
                                                                                    // the robot's path sooner by walking
                                                                                    // on
-    if (gap_m > min_gap_m && gap_m < actor.settings.yield_distance_m && across_m < extent.half_width_m + robot.radius_m) return true;
+    if (gap_m > min_gap_m && gap_m < actor.settings.yield_distance_m && across_m < extent.half_width_m + robot.radius_m)
+      return true;
   }
   return false;
 }
@@ -218,7 +222,8 @@ void Actors::write_pose(const Actor& actor, mjData& data) const {
   const double heading = actor.path.heading_rad(along) + (is_facing_back ? std::numbers::pi : 0.0);
   // Average the ground height so that the hip rises at curbs over a step length instead of at once.
   const auto ground_at_index = [&](double at) {
-    const auto i = static_cast<std::size_t>(std::clamp(at / kGroundStep_m, 0.0, static_cast<double>(actor.ground_m.size() - 1)));
+    const auto i =
+        static_cast<std::size_t>(std::clamp(at / kGroundStep_m, 0.0, static_cast<double>(actor.ground_m.size() - 1)));
     return actor.ground_m[i];
   };
   const double ground = (ground_at_index(along - 0.2) + ground_at_index(along) + ground_at_index(along + 0.2)) / 3.0;
@@ -243,7 +248,8 @@ void Actors::write_leg_poses(const Actor& actor, const Eigen::Vector3d& hip, dou
     const Eigen::Quaterniond q_thigh = yaw * Eigen::AngleAxisd(-thigh, Eigen::Vector3d::UnitY());
     const Eigen::Quaterniond q_shank = yaw * Eigen::AngleAxisd(knee - thigh, Eigen::Vector3d::UnitY());
     set_pose(data, actor.mocap[static_cast<std::size_t>(1 + 2 * side)], top, q_thigh);
-    set_pose(data, actor.mocap[static_cast<std::size_t>(2 + 2 * side)], top + q_thigh * Eigen::Vector3d(0.0, 0.0, -kThigh_m), q_shank);
+    set_pose(data, actor.mocap[static_cast<std::size_t>(2 + 2 * side)],
+             top + q_thigh * Eigen::Vector3d(0.0, 0.0, -kThigh_m), q_shank);
   }
 }
 

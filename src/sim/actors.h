@@ -1,12 +1,11 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <array>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
 #include <mujoco/mujoco.h>
 
 #include "core/settings.h"
@@ -27,14 +26,14 @@ struct WaypointSettings {
 
 /// Settings of a pedestrian or car that moves along a path and stops for the robot.
 struct ActorSettings {
-  std::string name;                     ///< name of the world's mocap body, e.g. "pedestrian_1"
+  std::string name;  ///< name of the world's mocap body, e.g. "pedestrian_1"
   std::string kind = "pedestrian";
   std::vector<WaypointSettings> path;
   double speed_mps = 1.2;
   double start_s = 0.0;
-  bool loop = true;                     ///< true: moves back and forth along the path (a car reverses); false: stops at
-                                        ///< the end
-  double yield_distance_m = 1.5;        ///< stops while the robot's center is within this distance ahead
+  bool loop = true;               ///< true: moves back and forth along the path (a car reverses); false: stops at
+                                  ///< the end
+  double yield_distance_m = 1.5;  ///< stops while the robot's center is within this distance ahead
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -94,10 +93,10 @@ class Actors {
   struct Actor {
     ActorSettings settings;
     ActorPath path;
-    std::array<int, 5> mocap;  ///< mocap ids: body, left thigh, left shank, right thigh, right shank; -1 if absent
-    double base_height_m;      ///< height of the body's origin above its ground in the world file
+    std::array<int, 5> mocap;      ///< mocap ids: body, left thigh, left shank, right thigh, right shank; -1 if absent
+    double base_height_m;          ///< height of the body's origin above its ground in the world file
     std::vector<double> ground_m;  ///< ground height at every kGroundStep_m of the path
-    double walked_m = 0.0;     ///< total distance walked
+    double walked_m = 0.0;         ///< total distance walked
     double speed_mps = 0.0;
   };
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <string>
 
-#include "core/geometry/angles.h"
 #include "core/error.h"
+#include "core/geometry/angles.h"
 
 namespace patrol::sim {
 namespace {
@@ -25,7 +25,8 @@ double braking_speed(double distance_rad, double acceleration_radps2) {
 
 }  // namespace
 
-AntennaMount::AntennaMount(const AntennaSettings& settings, const AntennaGeometry& mount, const mjModel& physics, std::uint64_t seed)
+AntennaMount::AntennaMount(const AntennaSettings& settings, const AntennaGeometry& mount, const mjModel& physics,
+                           std::uint64_t seed)
     : settings_(settings) {
   validate(settings, "sensors.antenna");
   const RandomStream alignment(seed, "antenna/alignment");
@@ -60,16 +61,20 @@ void AntennaMount::step(const mjModel& physics, mjData& data) {
   const double tick_s = physics.opt.timestep;
   for (Servo& servo : servos_) {
     const double distance_rad = servo.target_rad - servo.setpoint_rad;
-    const double limit_radps = std::min(settings_.max_speed_radps, std::abs(braking_speed(distance_rad, settings_.max_acceleration_radps2)));
+    const double limit_radps =
+        std::min(settings_.max_speed_radps, std::abs(braking_speed(distance_rad, settings_.max_acceleration_radps2)));
     const double max_change_radps = settings_.max_acceleration_radps2 * tick_s;
     const double wanted_radps = std::clamp(distance_rad / tick_s, -limit_radps, limit_radps);
-    servo.speed_radps = std::clamp(wanted_radps, servo.speed_radps - max_change_radps, servo.speed_radps + max_change_radps);
+    servo.speed_radps =
+        std::clamp(wanted_radps, servo.speed_radps - max_change_radps, servo.speed_radps + max_change_radps);
     if (std::abs(distance_rad) <= std::abs(servo.speed_radps) * tick_s) servo.speed_radps = distance_rad / tick_s;
     servo.setpoint_rad += servo.speed_radps * tick_s;
-    if (servo.speed_radps != 0.0) servo.backlash_rad = std::copysign(settings_.backlash_deg / 2.0 * kDegree, servo.speed_radps);
+    if (servo.speed_radps != 0.0)
+      servo.backlash_rad = std::copysign(settings_.backlash_deg / 2.0 * kDegree, servo.speed_radps);
 
     const double error_rad = servo.setpoint_rad - encoder_rad(servo, data);
-    const bool is_within_dead_band = servo.speed_radps == 0.0 && std::abs(error_rad) < settings_.dead_band_deg * kDegree;
+    const bool is_within_dead_band =
+        servo.speed_radps == 0.0 && std::abs(error_rad) < settings_.dead_band_deg * kDegree;
     const double spring_nm = is_within_dead_band ? 0.0 : settings_.stiffness_nm_per_rad * error_rad;
     const double torque_nm = spring_nm + settings_.damping_nms_per_rad * (servo.speed_radps - data.qvel[servo.dof]);
     data.ctrl[servo.motor] = std::clamp(torque_nm, -servo.limit.effort_nm, servo.limit.effort_nm);
@@ -79,13 +84,15 @@ void AntennaMount::step(const mjModel& physics, mjData& data) {
 std::optional<AntennaState> AntennaMount::read(const mjData& data, Time now) {
   if (now < from_seconds(static_cast<double>(count_) / settings_.rate_hz)) return std::nullopt;
   ++count_;
-  return AntennaState{.stamp = now, .yaw_rad = encoder_rad(servos_[0], data), .pitch_rad = encoder_rad(servos_[1], data)};
+  return AntennaState{
+      .stamp = now, .yaw_rad = encoder_rad(servos_[0], data), .pitch_rad = encoder_rad(servos_[1], data)};
 }
 
 bool AntennaMount::is_deployed(const mjData& data) const {
   constexpr double kStowed_rad = 3.0 * kDegree;
-  return std::any_of(servos_.begin(), servos_.end(),
-                     [&](const Servo& servo) { return std::abs(encoder_rad(servo, data) - servo.stowed_rad) > kStowed_rad; });
+  return std::any_of(servos_.begin(), servos_.end(), [&](const Servo& servo) {
+    return std::abs(encoder_rad(servo, data) - servo.stowed_rad) > kStowed_rad;
+  });
 }
 
 void stow_antenna(const mjModel& model, mjtNum* qpos) {

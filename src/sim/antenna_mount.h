@@ -21,7 +21,8 @@ namespace patrol::sim {
 class AntennaMount {
  public:
   /// Throws InputError when the model has no such joints.
-  AntennaMount(const AntennaSettings& settings, const AntennaGeometry& mount, const mjModel& physics, std::uint64_t seed);
+  AntennaMount(const AntennaSettings& settings, const AntennaGeometry& mount, const mjModel& physics,
+               std::uint64_t seed);
 
   /// Sets the target direction, clamped to the joint limits.
   void command(const AntennaCommand& command);

@@ -8,10 +8,10 @@
 namespace patrol::sim {
 namespace {
 
-constexpr double kRobotExtent_m = 0.8;    // maximum extent of a robot from its origin, lying on its side with its legs
-                                    // stretched
-constexpr double kRebuildDistance_m = 0.2;   // travel after which the tree is rebuilt
-constexpr double kMotionMargin_m = 0.05;  // exceeds the motion of any body in one tick
+constexpr double kRobotExtent_m = 0.8;  // maximum extent of a robot from its origin, lying on its side with its legs
+                                        // stretched
+constexpr double kRebuildDistance_m = 0.2;  // travel after which the tree is rebuilt
+constexpr double kMotionMargin_m = 0.05;    // exceeds the motion of any body in one tick
 
 }  // namespace
 
@@ -34,8 +34,8 @@ CollisionCuller::CollisionCuller(mjModel& physics)
                 .radius_m = 0.0};
     for (int i = 0; i < physics.body_geomnum[body]; ++i) {
       const int geom = physics.body_geomadr[body] + i;
-      actor.radius_m = std::max(
-          actor.radius_m, Eigen::Vector3d(physics.geom_pos + 3 * geom).norm() + physics.geom_rbound[geom]);
+      actor.radius_m =
+          std::max(actor.radius_m, Eigen::Vector3d(physics.geom_pos + 3 * geom).norm() + physics.geom_rbound[geom]);
     }
     actors_.push_back(actor);
   }

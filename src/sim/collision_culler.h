@@ -1,9 +1,8 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <vector>
 
+#include <Eigen/Core>
 #include <mujoco/mujoco.h>
 
 namespace patrol::sim {

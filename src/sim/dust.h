@@ -12,7 +12,8 @@ struct DustSettings {
   bool enabled = false;
   double visibility_m = 50.0;  ///< meteorological range: distance at which the contrast of black against the sky falls
                                ///< to 2 %
-  double backscatter_probability = 0.05;    ///< probability that extinguished light causes a return that a lidar takes for a surface
+  double backscatter_probability =
+      0.05;  ///< probability that extinguished light causes a return that a lidar takes for a surface
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -26,7 +27,9 @@ struct DustSettings {
 
   /// Returns the distance in clear air from which a surface returns as little light as from `distance_m` in dust. Both
   /// fall with the square of the distance, in dust also with exp(-extinction) each way.
-  double equivalent_clear_distance_m(double distance_m) const { return distance_m * std::exp(extinction_per_m() * distance_m); }
+  double equivalent_clear_distance_m(double distance_m) const {
+    return distance_m * std::exp(extinction_per_m() * distance_m);
+  }
 };
 
 }  // namespace patrol::sim

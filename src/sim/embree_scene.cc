@@ -53,8 +53,7 @@ void intersect_round(const RTCIntersectFunctionNArguments* arguments) {
   const mjtNum origin[3] = {ray.org_x, ray.org_y, ray.org_z};
   const mjtNum direction[3] = {ray.dir_x, ray.dir_y, ray.dir_z};
   mjtNum normal[3];
-  const mjtNum distance =
-      mju_rayGeom(geom.position, geom.rotation, geom.size, origin, direction, geom.type, normal);
+  const mjtNum distance = mju_rayGeom(geom.position, geom.rotation, geom.size, origin, direction, geom.type, normal);
   if (distance < ray.tnear || distance >= ray.tfar || distance < 0.0) return;
   ray.tfar = static_cast<float>(distance);
   RTCHit& hit = ray_hit.hit;
@@ -184,9 +183,10 @@ Triangles triangles_of(const mjModel& model, const PlacedGeom& placed) {
     case mjGEOM_HFIELD:
       return HeightFieldTriangles(model, model.geom_dataid[placed.geom]).make();
     default:
-      throw InputError(fmt::format("geom {}: shape type not supported by the lidar: must be one of sphere, capsule, cylinder, "
-                                   "ellipsoid, box, plane, mesh, height field",
-                                   placed.geom));
+      throw InputError(
+          fmt::format("geom {}: shape type not supported by the lidar: must be one of sphere, capsule, cylinder, "
+                      "ellipsoid, box, plane, mesh, height field",
+                      placed.geom));
   }
 }
 
@@ -207,14 +207,12 @@ RTCRayHit make_query(const Eigen::Vector3d& origin, const Eigen::Vector3d& direc
 }  // namespace
 
 bool is_analytic(int type) {
-  return type == mjGEOM_SPHERE || type == mjGEOM_CAPSULE || type == mjGEOM_CYLINDER ||
-         type == mjGEOM_ELLIPSOID;
+  return type == mjGEOM_SPHERE || type == mjGEOM_CAPSULE || type == mjGEOM_CYLINDER || type == mjGEOM_ELLIPSOID;
 }
 
 bool is_asset(int type) { return !is_analytic(type) && type != mjGEOM_BOX && type != mjGEOM_PLANE; }
 
-EmbreeScene::EmbreeScene(RTCDevice device, RTCBuildQuality quality)
-    : device_(device), scene_(rtcNewScene(device)) {
+EmbreeScene::EmbreeScene(RTCDevice device, RTCBuildQuality quality) : device_(device), scene_(rtcNewScene(device)) {
   rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
   rtcSetSceneBuildQuality(scene_, quality);
 }
@@ -238,10 +236,9 @@ std::optional<RayHit> EmbreeScene::cast(const Eigen::Vector3d& origin, const Eig
   RTCRayHit query = make_query(origin, direction, max_range_m);
   rtcIntersect1(scene_, &context, &query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
-  return RayHit{
-      .distance_m = query.ray.tfar,
-      .geom = geoms_[query.hit.geomID],
-      .normal = Eigen::Vector3f(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z).normalized().cast<double>()};
+  return RayHit{.distance_m = query.ray.tfar,
+                .geom = geoms_[query.hit.geomID],
+                .normal = Eigen::Vector3f(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z).normalized().cast<double>()};
 }
 
 RTCGeometry EmbreeScene::make_round(const PlacedGeom& placed) {
@@ -266,8 +263,8 @@ RTCGeometry EmbreeScene::make_triangles(const mjModel& model, const PlacedGeom& 
     in_scene = (p + R * corner.cast<double>()).cast<float>();
     coordinates += 3;
   }
-  void* faces = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                        3 * sizeof(unsigned), triangles.faces.size());
+  void* faces = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned),
+                                        triangles.faces.size());
   std::memcpy(faces, triangles.faces.data(), triangles.faces.size() * sizeof(triangles.faces[0]));
   return geometry;
 }

@@ -1,12 +1,11 @@
 #pragma once
 
-#include <Eigen/Core>
-#include <embree3/rtcore.h>
-
 #include <memory>
 #include <optional>
 #include <vector>
 
+#include <Eigen/Core>
+#include <embree3/rtcore.h>
 #include <mujoco/mujoco.h>
 
 #include "sim/lidar_scene.h"
@@ -45,8 +44,7 @@ class EmbreeScene {
   void build();
 
   /// Returns the first hit within `max_range_m`. Its normal is not yet oriented toward the origin.
-  std::optional<RayHit> cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
-                             double max_range_m) const;
+  std::optional<RayHit> cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double max_range_m) const;
 
   RTCScene handle() const { return scene_; }
 

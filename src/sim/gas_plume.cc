@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "core/geometry/angles.h"
 #include "core/error.h"
+#include "core/geometry/angles.h"
 
 namespace patrol::sim {
 namespace {

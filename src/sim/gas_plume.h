@@ -1,10 +1,9 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
 #include <mujoco/mujoco.h>
 
 #include "core/settings.h"
@@ -13,7 +12,7 @@ namespace patrol::sim {
 
 /// Methane leak at a site of the world.
 struct LeakSettings {
-  std::string at;           ///< name of the site, e.g. "regulator_box_2"
+  std::string at;  ///< name of the site, e.g. "regulator_box_2"
   double rate_g_s = 1.0;
   double start_s = 0.0;
 
@@ -61,7 +60,8 @@ class GasPlume {
 
   /// Returns the integral of the volume fraction along a beam, ppm m. Sampled every 2 cm near a leak, coarser away from
   /// it.
-  double column_ppm_m(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double length_m, double now_s) const;
+  double column_ppm_m(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double length_m,
+                      double now_s) const;
 
   bool is_empty() const { return leaks_.empty(); }
 

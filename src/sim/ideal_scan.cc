@@ -7,7 +7,8 @@
 
 namespace patrol::sim {
 
-std::vector<BeamReturn> ideal_scan(const LidarScene& scene, const Eigen::Vector3d& p_world_m, const IdealScanSettings& settings) {
+std::vector<BeamReturn> ideal_scan(const LidarScene& scene, const Eigen::Vector3d& p_world_m,
+                                   const IdealScanSettings& settings) {
   const double min_cosine = std::cos(to_rad(settings.max_incidence_deg));
   std::vector<BeamReturn> returns;
   for (int beam = 0; beam < settings.beams; ++beam) {

@@ -16,6 +16,7 @@ struct IdealScanSettings {
 
 /// Returns the hits of an ideal lidar at `p_world_m`, on static and moving objects of `scene`. Beams without a hit are
 /// omitted.
-std::vector<BeamReturn> ideal_scan(const LidarScene& scene, const Eigen::Vector3d& p_world_m, const IdealScanSettings& settings);
+std::vector<BeamReturn> ideal_scan(const LidarScene& scene, const Eigen::Vector3d& p_world_m,
+                                   const IdealScanSettings& settings);
 
 }  // namespace patrol::sim

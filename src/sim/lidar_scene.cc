@@ -19,8 +19,7 @@ namespace {
 bool is_visible_to_lidar(const mjModel& model, int geom) {
   const int group = model.geom_group[geom];
   const bool is_transparent = model.geom_rgba[4 * geom + 3] <= 0.0f;
-  return group == kGroupLidarOnly ||
-         ((group == kGroupSolid || group == kGroupRobotVisual) && !is_transparent);
+  return group == kGroupLidarOnly || ((group == kGroupSolid || group == kGroupRobotVisual) && !is_transparent);
 }
 
 std::uint32_t mask_of(const mjModel& model, int body) {
@@ -45,7 +44,7 @@ struct MovingPart {
 
 /// Returns whether the ray enters the box before `reach_m` or starts inside it.
 bool intersects(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
-           double reach_m) {
+                double reach_m) {
   const Eigen::Array3d inverse = direction.array().inverse();
   const Eigen::Array3d to_lower = (box.min() - origin).array() * inverse,
                        to_upper = (box.max() - origin).array() * inverse;
@@ -74,26 +73,20 @@ class Boxes {
   /// Calls `visit` with the index of every box that the ray may enter before `reach_m` or starts inside.
   template <typename Visit>
   void visit_intersected(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float reach_m,
-                 Visit visit) const {
+                         Visit visit) const {
     // Replace zero components by a tiny value, so that the inverse is finite and no product below is 0 x infinity.
-    const Eigen::Array3f inverse =
-        (direction.array().abs() < 1e-12f).select(1e-12f, direction.array()).inverse();
+    const Eigen::Array3f inverse = (direction.array().abs() < 1e-12f).select(1e-12f, direction.array()).inverse();
     constexpr std::size_t kChunk = 64;
     std::array<float, kChunk> stay;  // length of the ray inside the box; negative if it misses
     for (std::size_t begin = 0; begin < lower_[0].size(); begin += kChunk) {
       const std::size_t count = std::min(kChunk, lower_[0].size() - begin);
       for (std::size_t k = 0; k < count; ++k) {
         const std::size_t i = begin + k;
-        const float x0 = (lower_[0][i] - origin.x()) * inverse.x(),
-                    x1 = (upper_[0][i] - origin.x()) * inverse.x();
-        const float y0 = (lower_[1][i] - origin.y()) * inverse.y(),
-                    y1 = (upper_[1][i] - origin.y()) * inverse.y();
-        const float z0 = (lower_[2][i] - origin.z()) * inverse.z(),
-                    z1 = (upper_[2][i] - origin.z()) * inverse.z();
-        const float enter =
-            std::max(std::max(std::min(x0, x1), std::min(y0, y1)), std::max(std::min(z0, z1), 0.0f));
-        const float leave =
-            std::min(std::min(std::max(x0, x1), std::max(y0, y1)), std::min(std::max(z0, z1), reach_m));
+        const float x0 = (lower_[0][i] - origin.x()) * inverse.x(), x1 = (upper_[0][i] - origin.x()) * inverse.x();
+        const float y0 = (lower_[1][i] - origin.y()) * inverse.y(), y1 = (upper_[1][i] - origin.y()) * inverse.y();
+        const float z0 = (lower_[2][i] - origin.z()) * inverse.z(), z1 = (upper_[2][i] - origin.z()) * inverse.z();
+        const float enter = std::max(std::max(std::min(x0, x1), std::min(y0, y1)), std::max(std::min(z0, z1), 0.0f));
+        const float leave = std::min(std::min(std::max(x0, x1), std::max(y0, y1)), std::min(std::max(z0, z1), reach_m));
         stay[k] = leave - enter;
       }
       for (std::size_t k = 0; k < count; ++k) {
@@ -137,8 +130,7 @@ struct LidarScene::Impl {
     const int body = model.body_weldid[model.geom_bodyid[geom]];
     PlacedGeom placed{.geom = geom, .type = type, .position = {}, .rotation = {}, .size = {}};
     std::copy_n(model.geom_size + 3 * geom, 3, placed.size);
-    const Eigen::Map<const Matrix3> R_world_body(data.xmat + 9 * body),
-        R_world_geom(data.geom_xmat + 9 * geom);
+    const Eigen::Map<const Matrix3> R_world_body(data.xmat + 9 * body), R_world_geom(data.geom_xmat + 9 * geom);
     const Eigen::Map<const Eigen::Vector3d> p_body(data.xpos + 3 * body), p_geom(data.geom_xpos + 3 * geom);
     Eigen::Map<Eigen::Vector3d>(placed.position) = R_world_body.transpose() * (p_geom - p_body);
     Eigen::Map<Matrix3>(placed.rotation) = R_world_body.transpose() * R_world_geom;
@@ -157,15 +149,13 @@ struct LidarScene::Impl {
     for (MovingPart& part : parts) {
       if (part.body == body && part.mask == mask) return part;
     }
-    return parts.emplace_back(
-        MovingPart{.body = body, .mask = mask, .geoms = {}, .assets = nullptr, .box = {}});
+    return parts.emplace_back(MovingPart{.body = body, .mask = mask, .geoms = {}, .assets = nullptr, .box = {}});
   }
 
   /// Computes the bounding box of a part.
   void enclose(MovingPart& part) const {
     for (const PlacedGeom& placed : part.geoms) {
-      const Eigen::Map<const Eigen::Vector3d> position(placed.position),
-          middle(model.geom_aabb + 6 * placed.geom);
+      const Eigen::Map<const Eigen::Vector3d> position(placed.position), middle(model.geom_aabb + 6 * placed.geom);
       const Eigen::Map<const Matrix3> rotation(placed.rotation);
       const Eigen::Vector3d half =
           rotation.cwiseAbs() * Eigen::Map<const Eigen::Vector3d>(model.geom_aabb + 6 * placed.geom + 3);
@@ -186,7 +176,7 @@ struct LidarScene::Impl {
 
   /// Replaces `best` by the hit on a part if it is nearer than `reach_m`, and reduces `reach_m`.
   static void cast_at_part(const MovingPart& part, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
-                      double& reach_m, std::optional<RayHit>& best) {
+                           double& reach_m, std::optional<RayHit>& best) {
     const Eigen::Vector3d from = part.rotation.transpose() * (origin - part.position);
     const Eigen::Vector3d along = part.rotation.transpose() * direction;
     if (!intersects(part.box, from, along, reach_m)) return;
@@ -201,8 +191,8 @@ struct LidarScene::Impl {
     for (const PlacedGeom& geom : part.geoms) {
       if (is_asset(geom.type)) continue;
       Eigen::Vector3d normal;
-      const double distance_m = mju_rayGeom(geom.position, geom.rotation, geom.size, from.data(),
-                                            along.data(), geom.type, normal.data());
+      const double distance_m =
+          mju_rayGeom(geom.position, geom.rotation, geom.size, from.data(), along.data(), geom.type, normal.data());
       if (distance_m < 0.0 || distance_m >= reach_m) continue;
       best = RayHit{.distance_m = distance_m, .geom = geom.geom, .normal = normal};
       reach_m = distance_m;
@@ -211,15 +201,15 @@ struct LidarScene::Impl {
     if (is_nearer) best->normal = part.rotation * best->normal;
   }
 
-  std::optional<RayHit> cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
-                             double max_range_m, std::uint32_t mask) const {
+  std::optional<RayHit> cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double max_range_m,
+                             std::uint32_t mask) const {
     std::optional<RayHit> best;
     if (mask & kRayScenery) best = static_scene->cast(origin, direction, max_range_m);
     double reach_m = best ? best->distance_m : max_range_m;
     boxes.visit_intersected(origin.cast<float>(), direction.cast<float>(), static_cast<float>(reach_m),
-                    [&](std::size_t i) {
-                      if (parts[i].mask & mask) cast_at_part(parts[i], origin, direction, reach_m, best);
-                    });
+                            [&](std::size_t i) {
+                              if (parts[i].mask & mask) cast_at_part(parts[i], origin, direction, reach_m, best);
+                            });
     if (best && best->normal.dot(direction) > 0.0) best->normal = -best->normal;
     return best;
   }

@@ -1,13 +1,12 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
 #include <mujoco/mujoco.h>
 
 struct RTCSceneTy;
@@ -50,8 +49,8 @@ class LidarScene {
   void update(const mjData& data);
 
   /// Returns the first hit along the unit vector `direction`, both in world; none beyond `max_range_m`.
-  std::optional<RayHit> cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
-                             double max_range_m, std::uint32_t mask) const;
+  std::optional<RayHit> cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double max_range_m,
+                             std::uint32_t mask) const;
 
   const mjModel& model() const;
   /// Returns Embree's scene of the static geometry, for benchmarks.

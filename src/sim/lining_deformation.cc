@@ -7,8 +7,8 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
-#include "core/geometry/angles.h"
 #include "core/error.h"
+#include "core/geometry/angles.h"
 
 namespace patrol::sim {
 namespace {
@@ -18,7 +18,9 @@ double fraction_at(const LiningDeformationSettings& move, double clock_deg) {
   if (move.kind == "settlement") return std::max(0.0, std::cos(clock_deg * kDegree));
   if (move.kind == "bulge") {
     const double offset_deg = std::abs(std::remainder(clock_deg - move.clock_deg, 360.0));
-    return offset_deg < move.half_width_deg ? std::pow(std::cos(0.5 * std::numbers::pi * offset_deg / move.half_width_deg), 2.0) : 0.0;
+    return offset_deg < move.half_width_deg
+               ? std::pow(std::cos(0.5 * std::numbers::pi * offset_deg / move.half_width_deg), 2.0)
+               : 0.0;
   }
   return 1.0;
 }
@@ -31,8 +33,11 @@ void check(const std::vector<LiningDeformationSettings>& moves, const std::optio
       throw InputError(fmt::format("lining_deformation.{}.{} = {}: {}", i, field, ring, why));
     };
     if (!design) refuse("first_ring", move.first_ring, "requires a lining in the mission file");
-    if (move.last_ring < move.first_ring) refuse("last_ring", move.last_ring, fmt::format("must be at least first_ring, {}", move.first_ring));
-    if (move.last_ring > design->rings) refuse("last_ring", move.last_ring, fmt::format("must be at most {}, the last ring of the lining", design->rings));
+    if (move.last_ring < move.first_ring)
+      refuse("last_ring", move.last_ring, fmt::format("must be at least first_ring, {}", move.first_ring));
+    if (move.last_ring > design->rings)
+      refuse("last_ring", move.last_ring,
+             fmt::format("must be at most {}, the last ring of the lining", design->rings));
   }
 }
 
@@ -44,12 +49,14 @@ constexpr double kIntradosTolerance_m = 0.05;
 double inward_m(const std::vector<LiningDeformationSettings>& moves, int ring, double clock_deg) {
   double inward = 0.0;
   for (const LiningDeformationSettings& move : moves) {
-    if (ring >= move.first_ring && ring <= move.last_ring) inward += 1e-3 * move.inward_mm * fraction_at(move, clock_deg);
+    if (ring >= move.first_ring && ring <= move.last_ring)
+      inward += 1e-3 * move.inward_mm * fraction_at(move, clock_deg);
   }
   return inward;
 }
 
-void deform_lining(const std::vector<LiningDeformationSettings>& moves, const std::optional<TunnelLining>& design, mjModel& view) {
+void deform_lining(const std::vector<LiningDeformationSettings>& moves, const std::optional<TunnelLining>& design,
+                   mjModel& view) {
   check(moves, design);
   if (moves.empty()) return;
   const int geom = mj_name2id(&view, mjOBJ_GEOM, "lining");
@@ -68,9 +75,11 @@ void deform_lining(const std::vector<LiningDeformationSettings>& moves, const st
     if (std::abs(radius_m - design->radius_at(clock_deg)) > kIntradosTolerance_m) continue;
     const double inward = inward_m(moves, design->ring_at(coordinates.chainage_m), clock_deg);
     if (inward == 0.0) continue;
-    const double scale = 1.0 - inward / radius_m;  // fraction of the distance from the half circle's center that remains
+    const double scale =
+        1.0 - inward / radius_m;  // fraction of the distance from the half circle's center that remains
     const Eigen::Vector2d deformed = design->point_at(coordinates.chainage_m, scale * coordinates.left_m);
-    const Eigen::Vector3d p_deformed(deformed.x(), deformed.y(), design->crown_center_m + scale * (coordinates.height_m - design->crown_center_m));
+    const Eigen::Vector3d p_deformed(deformed.x(), deformed.y(),
+                                     design->crown_center_m + scale * (coordinates.height_m - design->crown_center_m));
     in_mesh = (T_world_mesh.inverse() * p_deformed).cast<float>();
   }
 }

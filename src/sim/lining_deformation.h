@@ -22,8 +22,8 @@ struct LiningDeformationSettings {
   std::string kind = "convergence";
   int first_ring = 1;
   int last_ring = 1;
-  double inward_mm = 0.0;  ///< negative: outward
-  double clock_deg = 0.0;         ///< center of a bulge
+  double inward_mm = 0.0;        ///< negative: outward
+  double clock_deg = 0.0;        ///< center of a bulge
   double half_width_deg = 20.0;  ///< half width of a bulge
 
   template <typename Self, typename Visitor>
@@ -44,7 +44,9 @@ double inward_m(const std::vector<LiningDeformationSettings>& moves, int ring, d
 /// Deforms the inner face of the mesh of geom `lining`, whose vertices are on both sides of every joint between rings.
 ///
 /// Precondition: no scene and no renderer has been made of `view`. `design` is in world. Throws InputError naming
-/// `lining_deformation.<index>.<field>` when a setting is out of range, the ring does not exist, or the world has no lining.
-void deform_lining(const std::vector<LiningDeformationSettings>& moves, const std::optional<TunnelLining>& design, mjModel& view);
+/// `lining_deformation.<index>.<field>` when a setting is out of range, the ring does not exist, or the world has no
+/// lining.
+void deform_lining(const std::vector<LiningDeformationSettings>& moves, const std::optional<TunnelLining>& design,
+                   mjModel& view);
 
 }  // namespace patrol::sim

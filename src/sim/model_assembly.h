@@ -5,16 +5,16 @@
 
 #include "core/frames.h"
 #include "sim/mujoco.h"
-#include "sim/static_obstacles.h"
 #include "sim/robot_model.h"
+#include "sim/static_obstacles.h"
 
 namespace patrol::sim {
 
 /// World and robot as two MuJoCo models with identical bodies, joints and mocap bodies in the same order. A state of
 /// one model is a state of the other.
 struct AssembledModel {
-  ModelPtr physics;  ///< collision geometry only, so that scenery costs no physics time
-  ModelPtr view;     ///< complete geometry, for rendering and lidar
+  ModelPtr physics;                ///< collision geometry only, so that scenery costs no physics time
+  ModelPtr view;                   ///< complete geometry, for rendering and lidar
   std::vector<double> start_qpos;  ///< joint positions with the robot standing at the start pose
   Stance stance;                   ///< stance of `start_qpos`
 };
@@ -25,8 +25,8 @@ AssembledModel assemble_model(const std::string& world_xml, const std::string& r
                               const std::vector<StaticObstacleSettings>& obstacles = {});
 
 /// Returns the ground height below the robot with its base at `T_world_body`, m: the highest collision surface below
-/// `max_ground_height_m` under any support point of its stance. The robot itself is ignored. Throws InputError if there is
-/// none.
+/// `max_ground_height_m` under any support point of its stance. The robot itself is ignored. Throws InputError if there
+/// is none.
 double ground_height_m(const mjModel& model, const mjData& data, const Stance& stance, const Pose2& T_world_body,
                        double max_ground_height_m);
 

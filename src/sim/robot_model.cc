@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 #include <urdf_parser/urdf_parser.h>
 
-#include "core/geometry/angles.h"
 #include "core/error.h"
+#include "core/geometry/angles.h"
 #include "sim/track_model.h"
 
 namespace patrol::sim {
@@ -204,7 +204,9 @@ urdf::ModelInterfaceSharedPtr parse(const std::string& path) {
 }
 
 /// Returns the stance on feet: two links of 0.213 m at 0.8 rad, plus the foot.
-Stance stance_on_feet() { return {.height_m = 0.322, .support_points_m = {Eigen::Vector2d::Zero()}, .max_ground_height_m = 0.3}; }
+Stance stance_on_feet() {
+  return {.height_m = 0.322, .support_points_m = {Eigen::Vector2d::Zero()}, .max_ground_height_m = 0.3};
+}
 
 bool has_tracks(const urdf::ModelInterface& model) { return model.getLink("left_track") != nullptr; }
 

@@ -10,7 +10,7 @@
 namespace patrol::sim {
 
 /// Groups of geoms (README, "Worlds").
-inline constexpr int kGroupSolid = 0;        ///< scenery visible to cameras and lidar
+inline constexpr int kGroupSolid = 0;  ///< scenery visible to cameras and lidar
 inline constexpr int kGroupVisualOnly = 1;
 inline constexpr int kGroupLidarOnly = 2;
 inline constexpr int kGroupCollisionOnly = 3;
@@ -23,7 +23,7 @@ inline constexpr int kRobotConaffinity = 1;
 
 /// Placement of a robot, upright on level ground.
 struct Stance {
-  double height_m = 0.0;                   ///< height of the base above the ground
+  double height_m = 0.0;                          ///< height of the base above the ground
   std::vector<Eigen::Vector2d> support_points_m;  ///< points at which the ground height is sampled, in level
   double max_ground_height_m = 0.0;               ///< surfaces above this height, in world, are not ground at the start
 };

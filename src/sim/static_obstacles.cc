@@ -8,8 +8,8 @@
 #include <Eigen/Core>
 #include <fmt/format.h>
 
-#include "core/geometry/angles.h"
 #include "core/error.h"
+#include "core/geometry/angles.h"
 #include "core/random.h"
 #include "sim/robot_model.h"
 #include "sim/truck_obstacle.h"
@@ -57,8 +57,8 @@ void add_block(mjsBody& body, const StaticObstacleSettings& obstacle, int number
 }
 
 /// Adds a rod along the object's long side, `aside_m` to its left.
-mjsGeom* add_rod(mjsBody& body, const StaticObstacleSettings& obstacle, double radius_m, double aside_m, double height_m,
-                 const Color& color) {
+mjsGeom* add_rod(mjsBody& body, const StaticObstacleSettings& obstacle, double radius_m, double aside_m,
+                 double height_m, const Color& color) {
   mjsGeom* rod = add_geom(body, mjGEOM_CAPSULE, obstacle, color);
   const double turn = to_rad(obstacle.yaw_deg);
   rod->pos[0] -= aside_m * std::sin(turn);
@@ -147,7 +147,8 @@ StaticObstacleSize static_obstacle_size(const std::string& kind) {
   if (kind == "hose") return {.length_m = 1.6, .width_m = 0.10, .height_m = 0.10};
   if (kind == "brick") return {.length_m = 0.25, .width_m = 0.12, .height_m = 0.14};
   if (kind == "truck") return {.length_m = 7.6, .width_m = 2.5, .height_m = 3.0};
-  throw InputError(fmt::format("static_obstacles.kind = {}: must be one of {}, truck", kind, fmt::join(kLowKinds, ", ")));
+  throw InputError(
+      fmt::format("static_obstacles.kind = {}: must be one of {}, truck", kind, fmt::join(kLowKinds, ", ")));
 }
 
 void add_static_obstacles(mjSpec& world, const std::vector<StaticObstacleSettings>& obstacles) {
@@ -163,9 +164,10 @@ std::vector<StaticObstacleSettings> scatter_low_obstacles(const LowObstacleSetti
   if (settings.count == 0) return {};
   const double part = (length_m(settings.route) - 2.0 * settings.end_clearance_m) / settings.count;
   if (!(part > settings.min_spacing_m)) {
-    throw InputError(fmt::format(
-        "low_obstacles.route: length {:.1f} m: too short for {} obstacles with min_spacing_m = {} and end_clearance_m = {}",
-        length_m(settings.route), settings.count, settings.min_spacing_m, settings.end_clearance_m));
+    throw InputError(
+        fmt::format("low_obstacles.route: length {:.1f} m: too short for {} obstacles with min_spacing_m = {} and "
+                    "end_clearance_m = {}",
+                    length_m(settings.route), settings.count, settings.min_spacing_m, settings.end_clearance_m));
   }
   const RandomStream random(seed, "low_obstacles");
   std::vector<StaticObstacleSettings> obstacles;

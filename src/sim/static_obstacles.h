@@ -38,9 +38,9 @@ struct StaticObstacleSize {
 /// hose; brick: two bricks, stacked; truck: a dump truck with its nose along x (sim/truck_obstacle.h).
 StaticObstacleSize static_obstacle_size(const std::string& kind);
 
-/// Adds the objects to a world. Each is one collision geom `static_obstacle_<number>`, from 1, in group 0. A rebar bundle and a
-/// truck have a hull in group 3 and visual parts. Objects lie at z = 0, within centimeters of the ground of tunnel and
-/// street. Throws InputError naming `static_obstacles.<index>.<field>` when a setting is out of range.
+/// Adds the objects to a world. Each is one collision geom `static_obstacle_<number>`, from 1, in group 0. A rebar
+/// bundle and a truck have a hull in group 3 and visual parts. Objects lie at z = 0, within centimeters of the ground
+/// of tunnel and street. Throws InputError naming `static_obstacles.<index>.<field>` when a setting is out of range.
 void add_static_obstacles(mjSpec& world, const std::vector<StaticObstacleSettings>& obstacles);
 
 /// Low obstacles along a robot's route. The route is divided into `count` equal parts, each with one obstacle at a
@@ -48,9 +48,9 @@ void add_static_obstacles(mjSpec& world, const std::vector<StaticObstacleSetting
 struct LowObstacleSettings {
   int count = 0;
   std::vector<WaypointSettings> route;
-  double end_clearance_m = 4.0;  ///< length at both ends of the route that stays free of obstacles
-  double max_lateral_offset_m = 0.5;      ///< maximum lateral offset of the centers from the route
-  double min_spacing_m = 2.0;       ///< minimum distance between the centers of neighbors along the route
+  double end_clearance_m = 4.0;       ///< length at both ends of the route that stays free of obstacles
+  double max_lateral_offset_m = 0.5;  ///< maximum lateral offset of the centers from the route
+  double min_spacing_m = 2.0;         ///< minimum distance between the centers of neighbors along the route
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -7,14 +7,14 @@ namespace patrol::sim {
 namespace {
 
 constexpr double kLookAhead_m = 1.2;
-constexpr double kAtGoal_m = 0.08;     // distance to a goal waypoint at which to stop
-constexpr double kPassed_m = 0.6;      // distance to any other waypoint at which to continue with the next
+constexpr double kAtGoal_m = 0.08;  // distance to a goal waypoint at which to stop
+constexpr double kPassed_m = 0.6;   // distance to any other waypoint at which to continue with the next
 constexpr double kAligned_rad = 0.03;
-constexpr double kTurnFirst_rad = 0.9; // direction error above which to turn in place
-constexpr double kGoalPause_s = 1.5;        // standstill before and after the button press
-constexpr double kMeeting_m = 1.5;     // distance within which the robot has arrived at the operator
-constexpr double kStationary_m = 0.02;     // maximum motion of a robot that stands still
-constexpr double kStationary_s = 4.0;      // required duration of the standstill
+constexpr double kTurnFirst_rad = 0.9;  // direction error above which to turn in place
+constexpr double kGoalPause_s = 1.5;    // standstill before and after the button press
+constexpr double kMeeting_m = 1.5;      // distance within which the robot has arrived at the operator
+constexpr double kStationary_m = 0.02;  // maximum motion of a robot that stands still
+constexpr double kStationary_s = 4.0;   // required duration of the standstill
 
 /// Returns the speed at a distance before a stop.
 double speed_before_stop(double left_m) { return std::clamp(0.6 * left_m, 0.08, 10.0); }
@@ -29,13 +29,15 @@ TeleopOperator::TeleopOperator(const TeleopOperatorSettings& settings, TeleopRou
 
 std::optional<TeleopCommand> TeleopOperator::step(Time now, const Pose2& T_world_body,
                                                   const std::vector<Eigen::Vector2d>& p_world_people, bool is_busy) {
-  if (phase_ == Phase::kDone || now < from_seconds(static_cast<double>(count_) / settings_.rate_hz)) return std::nullopt;
+  if (phase_ == Phase::kDone || now < from_seconds(static_cast<double>(count_) / settings_.rate_hz))
+    return std::nullopt;
   if (phase_ == Phase::kWaiting && !robot_has_arrived(now, T_world_body)) {
     ++count_;
     return std::nullopt;
   }
   observed_.emplace_back(now, T_world_body);
-  while (observed_.size() > 1 && observed_[1].first <= now - from_seconds(settings_.reaction_time_s)) observed_.pop_front();
+  while (observed_.size() > 1 && observed_[1].first <= now - from_seconds(settings_.reaction_time_s))
+    observed_.pop_front();
   TeleopCommand command = decide(now, observed_.front().second, p_world_people, is_busy);
   command.stamp = now;
   ++count_;
@@ -44,7 +46,8 @@ std::optional<TeleopCommand> TeleopOperator::step(Time now, const Pose2& T_world
 
 bool TeleopOperator::robot_has_arrived(Time now, const Pose2& T_world_body) {
   const bool is_here = (T_world_body.position() - drive_.front().p_m).norm() < kMeeting_m;
-  if (!is_here || !stationary_since_ || (T_world_body.position() - stationary_since_->second.position()).norm() > kStationary_m) {
+  if (!is_here || !stationary_since_ ||
+      (T_world_body.position() - stationary_since_->second.position()).norm() > kStationary_m) {
     stationary_since_.reset();
     if (is_here) stationary_since_ = {now, T_world_body};
     return false;
@@ -74,7 +77,8 @@ TeleopCommand TeleopOperator::decide(Time now, const Pose2& T_world_body,
       break;
     case Phase::kTurning:
       rotate_to(waypoint().heading_rad, T_world_body, command);
-      if (std::abs(wrap_angle(waypoint().heading_rad - T_world_body.yaw)) < kAligned_rad) command = {}, enter(Phase::kLooking);
+      if (std::abs(wrap_angle(waypoint().heading_rad - T_world_body.yaw)) < kAligned_rad)
+        command = {}, enter(Phase::kLooking);
       break;
     case Phase::kLooking:
       if (now - phase_start_ < from_seconds(kGoalPause_s)) break;
@@ -112,8 +116,9 @@ void TeleopOperator::drive(const Pose2& T_world_body, TeleopCommand& command) {
   }
   const double curvature = 2.0 * std::sin(bearing) / std::max(towards.norm(), 0.3);
   command.vx_mps = sign * speed / (1.0 + std::abs(curvature));
-  command.yaw_rate_radps = std::clamp(command.vx_mps * sign * curvature, -settings_.yaw_rate_radps, settings_.yaw_rate_radps) +
-                           settings_.steering_noise_std_radps * steering_noise_.normal(count_);
+  command.yaw_rate_radps =
+      std::clamp(command.vx_mps * sign * curvature, -settings_.yaw_rate_radps, settings_.yaw_rate_radps) +
+      settings_.steering_noise_std_radps * steering_noise_.normal(count_);
 }
 
 void TeleopOperator::rotate_to(double yaw_rad, const Pose2& T_world_body, TeleopCommand& command) const {
@@ -130,7 +135,8 @@ bool TeleopOperator::has_passed_waypoint(const Pose2& T_world_body) const {
   return leg.norm() > 0.1 && to_waypoint.dot(leg) < 0.0 && to_waypoint.norm() < 2.0 * kPassed_m;
 }
 
-bool TeleopOperator::is_pedestrian_ahead(const Pose2& T_world_body, const std::vector<Eigen::Vector2d>& p_world_people) const {
+bool TeleopOperator::is_pedestrian_ahead(const Pose2& T_world_body,
+                                         const std::vector<Eigen::Vector2d>& p_world_people) const {
   const double sign = waypoint().is_reverse ? -1.0 : 1.0;
   return std::any_of(p_world_people.begin(), p_world_people.end(), [&](const Eigen::Vector2d& p_world) {
     const Eigen::Vector2d p_body = T_world_body.inverse() * p_world;

@@ -1,28 +1,28 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <cstdint>
 #include <deque>
 #include <optional>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "core/random.h"
-#include "core/teleop_route.h"
 #include "core/sensors/registry.h"
 #include "core/settings.h"
+#include "core/teleop_route.h"
 
 namespace patrol::sim {
 
 struct TeleopOperatorSettings {
   double speed_mps = 0.8;
-  double yaw_rate_radps = 0.6;         ///< yaw rate of a turn in place
+  double yaw_rate_radps = 0.6;              ///< yaw rate of a turn in place
   double reaction_time_s = 0.25;            ///< delay from an observation to the resulting command
-  double steering_noise_std_radps = 0.03;  ///< standard deviation of the steering noise added to each command
-  double pedestrian_stop_distance_m = 2.0;      ///< stops while a person is within this distance ahead of the robot
+  double steering_noise_std_radps = 0.03;   ///< standard deviation of the steering noise added to each command
+  double pedestrian_stop_distance_m = 2.0;  ///< stops while a person is within this distance ahead of the robot
   double rate_hz = 10.0;
-  bool wait_for_robot = false;            ///< true: waits at the first waypoint until the robot has arrived and stands
-                                       ///< still
+  bool wait_for_robot = false;  ///< true: waits at the first waypoint until the robot has arrived and stands
+                                ///< still
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -48,14 +48,15 @@ class TeleopOperator {
 
   /// Returns a command when one is due. Call at every tick. Returns nothing before operator and robot have met and
   /// after the handover.
-  std::optional<TeleopCommand> step(Time now, const Pose2& T_world_body, const std::vector<Eigen::Vector2d>& p_world_people,
-                                    bool is_busy = false);
+  std::optional<TeleopCommand> step(Time now, const Pose2& T_world_body,
+                                    const std::vector<Eigen::Vector2d>& p_world_people, bool is_busy = false);
 
  private:
   enum class Phase { kWaiting, kDriving, kTurning, kLooking, kSaved, kDone };
 
   bool robot_has_arrived(Time now, const Pose2& T_world_body);
-  TeleopCommand decide(Time now, const Pose2& T_world_body, const std::vector<Eigen::Vector2d>& p_world_people, bool is_busy);
+  TeleopCommand decide(Time now, const Pose2& T_world_body, const std::vector<Eigen::Vector2d>& p_world_people,
+                       bool is_busy);
   void drive(const Pose2& T_world_body, TeleopCommand& command);
   void rotate_to(double yaw_rad, const Pose2& T_world_body, TeleopCommand& command) const;
   bool has_passed_waypoint(const Pose2& T_world_body) const;
@@ -71,7 +72,7 @@ class TeleopOperator {
   Eigen::Vector2d leg_start_m_ = Eigen::Vector2d::Zero();
   bool has_started_ = false;
   std::optional<std::pair<Time, Pose2>> stationary_since_;  ///< start of the present standstill, while waiting for the
-                                                        ///< robot
+                                                            ///< robot
   Time phase_start_{};
   std::uint64_t count_ = 0;
   std::deque<std::pair<Time, Pose2>> observed_;

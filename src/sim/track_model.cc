@@ -24,7 +24,8 @@ constexpr double kSprocketArmature_kgm2 = 0.25;
 void set(double* to, std::initializer_list<double> values) { std::copy(values.begin(), values.end(), to); }
 
 const urdf::Cylinder& wheel_shape(const urdf::Collision& wheel) {
-  if (wheel.geometry->type != urdf::Geometry::CYLINDER) throw InputError(wheel.name + ": wheels of a track must be cylinders");
+  if (wheel.geometry->type != urdf::Geometry::CYLINDER)
+    throw InputError(wheel.name + ": wheels of a track must be cylinders");
   return static_cast<const urdf::Cylinder&>(*wheel.geometry);
 }
 

@@ -49,7 +49,8 @@ void GridMap::add_hit(const Eigen::Vector2d& p_map) {
 }
 
 // Voxel traversal [Amanatides87].
-void GridMap::add_free_ray(const Eigen::Vector2d& from_map, const Eigen::Vector2d& to_map, int weight, bool stop_at_surface) {
+void GridMap::add_free_ray(const Eigen::Vector2d& from_map, const Eigen::Vector2d& to_map, int weight,
+                           bool stop_at_surface) {
   const Eigen::Vector2d ray = to_map - from_map;
   const double length_m = ray.norm();
   if (!(length_m > 0.0)) return;
@@ -140,7 +141,8 @@ void GridMap::grow_to_include(int tile_col, int tile_row) {
 }
 
 std::size_t GridMap::num_tiles() const {
-  return static_cast<std::size_t>(std::count_if(tiles_.begin(), tiles_.end(), [](const auto& tile) { return tile != nullptr; }));
+  return static_cast<std::size_t>(
+      std::count_if(tiles_.begin(), tiles_.end(), [](const auto& tile) { return tile != nullptr; }));
 }
 
 std::size_t GridMap::num_unshared_tiles() const {

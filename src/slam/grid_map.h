@@ -1,7 +1,5 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -10,6 +8,8 @@
 #include <cstdint>
 #include <memory>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "core/grid.h"
 
@@ -57,9 +57,7 @@ class GridMap {
     return {static_cast<int>(std::floor(p_map.x() * inverse_resolution_)),
             static_cast<int>(std::floor(p_map.y() * inverse_resolution_))};
   }
-  Eigen::Vector2d center_of(Cell cell) const {
-    return resolution_m_ * Eigen::Vector2d(cell.col + 0.5, cell.row + 0.5);
-  }
+  Eigen::Vector2d center_of(Cell cell) const { return resolution_m_ * Eigen::Vector2d(cell.col + 0.5, cell.row + 0.5); }
 
   /// Returns null in tiles without observations.
   const GridCell* find(Cell cell) const;
@@ -104,7 +102,7 @@ class GridMap {
 
   double resolution_m_;
   double inverse_resolution_;
-  int max_tile_;  ///< tiles from -max_tile_ to max_tile_ - 1 exist
+  int max_tile_;                                                     ///< tiles from -max_tile_ to max_tile_ - 1 exist
   int first_col_ = 0, first_row_ = 0, num_cols_ = 0, num_rows_ = 0;  ///< tile rectangle
   std::vector<std::shared_ptr<GridTile>> tiles_;                     ///< [row][col]
   bool has_surface_ = false;
@@ -124,7 +122,8 @@ bool GridMap::visit_surface(Cell cell, int radius, Visitor&& visit) const {
       if (const GridTile* tile = tile_at(tile_col, tile_row)) {
         const std::uint32_t window = (~0U >> (31 - (last_col - col))) << local(col);
         for (int r = row; r <= last_row; ++r) {
-          for (std::uint32_t bits = tile->surface_bits[static_cast<std::size_t>(local(r))] & window; bits != 0; bits &= bits - 1) {
+          for (std::uint32_t bits = tile->surface_bits[static_cast<std::size_t>(local(r))] & window; bits != 0;
+               bits &= bits - 1) {
             const int c = std::countr_zero(bits);
             if (visit(*tile, c, local(r), Cell{tile_col * GridTile::kSize + c, r})) return true;
           }

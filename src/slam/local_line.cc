@@ -30,8 +30,8 @@ std::optional<LocalLine> fit_local_line(const GridMap& map, const Eigen::Vector2
   const double min_along = 0.25 * map.resolution_m() * map.resolution_m();
   if (along < min_along) return std::nullopt;
   // (cxy, across - cxx) and (across - cyy, cxy) are both parallel to the eigenvector; the longer is better conditioned.
-  Eigen::Vector2d normal =
-      half_difference > 0.0 ? Eigen::Vector2d(cxy, -half_difference - root) : Eigen::Vector2d(half_difference - root, cxy);
+  Eigen::Vector2d normal = half_difference > 0.0 ? Eigen::Vector2d(cxy, -half_difference - root)
+                                                 : Eigen::Vector2d(half_difference - root, cxy);
   const double length = normal.norm();
   if (!(length > 0.0)) return std::nullopt;
   normal /= length;

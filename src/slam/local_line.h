@@ -1,8 +1,8 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <optional>
+
+#include <Eigen/Core>
 
 #include "slam/grid_map.h"
 
@@ -12,8 +12,8 @@ namespace patrol::slam {
 struct LocalLine {
   Eigen::Vector2d point_map;   ///< weighted mean of the mean hits of the cells
   Eigen::Vector2d normal_map;  ///< unit normal, on either side
-  double normal_var_m2;     ///< variance across the line
-  double linearity;         ///< linearity: 1 for a straight wall; 0 if as wide as long (corner, bush)
+  double normal_var_m2;        ///< variance across the line
+  double linearity;            ///< linearity: 1 for a straight wall; 0 if as wide as long (corner, bush)
   int num_hits;                ///< number of hits in the fit
 
   double distance_m(const Eigen::Vector2d& p_map) const { return normal_map.dot(p_map - point_map); }

@@ -9,7 +9,7 @@
 namespace patrol::slam {
 namespace {
 
-constexpr int kThinningRadius = 2;        // cells
+constexpr int kThinningRadius = 2;     // cells
 constexpr double kMinLinearity = 0.6;  // below it, hits are rendered without projection
 
 /// Projects the mean hit of a cell onto the local line, if the surface is linear.
@@ -59,8 +59,8 @@ OccupancyGrid render_map(const GridMap& map, int min_hits, double min_hit_ratio)
         const int col = std::countr_zero(bits);
         const GridCell& cell = tile.at(col, row);
         if (cell.hits < min_hits || cell.hits < min_hit_ratio * (cell.hits + cell.passes)) continue;
-        const Eigen::Vector2d mean = map.center_of({first.col + col, first.row + row}) +
-                                     Eigen::Vector2d(cell.mean_x_m, cell.mean_y_m);
+        const Eigen::Vector2d mean =
+            map.center_of({first.col + col, first.row + row}) + Eigen::Vector2d(cell.mean_x_m, cell.mean_y_m);
         const Cell at = to_grid(map.cell_at(surface_point(map, mean)));
         if (grid.contains(at)) grid.at(at) = kOccupied;
       }

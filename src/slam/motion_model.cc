@@ -15,14 +15,16 @@ PoseGaussian predict_motion(const Pose2& T_map_before, const Pose2& T_before_now
 
   // Unit vectors along and across the motion, in map.
   const Eigen::Rotation2Dd R_map_before(T_map_before.yaw);
-  const Eigen::Vector2d along = distance_m > 0.0 ? Eigen::Vector2d(R_map_before * (move_body / distance_m)) : Eigen::Vector2d::UnitX();
+  const Eigen::Vector2d along =
+      distance_m > 0.0 ? Eigen::Vector2d(R_map_before * (move_body / distance_m)) : Eigen::Vector2d::UnitX();
   const Eigen::Vector2d across(-along.y(), along.x());
   PoseGaussian predicted{.mean = T_map_before * T_before_now};
-  predicted.covariance.topLeftCorner<2, 2>() =
-      square(settings.min_std_m) * Eigen::Matrix2d::Identity() + square(along_std) * along * along.transpose() +
-      square(across_std) * across * across.transpose();
+  predicted.covariance.topLeftCorner<2, 2>() = square(settings.min_std_m) * Eigen::Matrix2d::Identity() +
+                                               square(along_std) * along * along.transpose() +
+                                               square(across_std) * across * across.transpose();
   predicted.covariance(2, 2) = square(settings.min_std_rad) + square(settings.yaw_std_rad_per_rad * rotation_rad) +
-                               square(settings.yaw_std_rad_per_m * distance_m) + square(settings.yaw_std_rad_per_s * dt_s);
+                               square(settings.yaw_std_rad_per_m * distance_m) +
+                               square(settings.yaw_std_rad_per_s * dt_s);
   return predicted;
 }
 

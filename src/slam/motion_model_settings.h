@@ -7,11 +7,11 @@ namespace patrol::slam {
 struct MotionModelSettings {
   /// Standard deviation of the distance along the motion; for leg odometry: scale error.
   double longitudinal_std_m_per_m = 0.01;
-  double lateral_std_m_per_m = 0.01;        ///< standard deviation across the motion: lateral slip
-  double yaw_std_rad_per_rad = 0.04;      ///< standard deviation of the yaw change per yaw change
-  double yaw_std_rad_per_m = 0.003;       ///< standard deviation of yaw per distance traveled
-  double yaw_std_rad_per_s = 0.0015;      ///< standard deviation of yaw per time: gyro bias
-  double min_std_m = 0.003;                ///< minimum standard deviation of the position: sway of the trunk
+  double lateral_std_m_per_m = 0.01;  ///< standard deviation across the motion: lateral slip
+  double yaw_std_rad_per_rad = 0.04;  ///< standard deviation of the yaw change per yaw change
+  double yaw_std_rad_per_m = 0.003;   ///< standard deviation of yaw per distance traveled
+  double yaw_std_rad_per_s = 0.0015;  ///< standard deviation of yaw per time: gyro bias
+  double min_std_m = 0.003;           ///< minimum standard deviation of the position: sway of the trunk
   double min_std_rad = 0.002;
 
   template <typename Self, typename Visitor>

@@ -13,7 +13,8 @@ namespace patrol::slam {
 
 /// Set of particles at one step of an estimation problem, with the state to be estimated and the newest observation.
 template <typename Problem>
-concept ParticleProblem = requires(Problem problem, const Problem& const_problem, std::size_t particle, const Position& position, RandomSequence& random,
+concept ParticleProblem = requires(Problem problem, const Problem& const_problem, std::size_t particle,
+                                   const Position& position, RandomSequence& random,
                                    const std::vector<Offspring>& offspring) {
   { const_problem.size() } -> std::convertible_to<std::size_t>;
   /// Sample of the particle's proposal distribution.
@@ -27,12 +28,15 @@ concept ParticleProblem = requires(Problem problem, const Problem& const_problem
 
 /// Samples, optimizes and weights every particle. `log_weights` [particle] are accumulated from step to step.
 template <ParticleProblem Problem>
-void propagate_and_weight(Problem& problem, const ParticleFilterComponents& components, RandomSequence& random, std::vector<double>& log_weights) {
+void propagate_and_weight(Problem& problem, const ParticleFilterComponents& components, RandomSequence& random,
+                          std::vector<double>& log_weights) {
   std::vector<Position> positions;
   positions.reserve(problem.size());
   for (std::size_t i = 0; i < problem.size(); ++i) positions.push_back(problem.sample(i, random));
   if (components.optimizer) {
-    const Fitness fitness_of = [&](std::size_t particle, const Position& position) { return problem.log_fitness(particle, position); };
+    const Fitness fitness_of = [&](std::size_t particle, const Position& position) {
+      return problem.log_fitness(particle, position);
+    };
     Swarm swarm = make_swarm(std::move(positions), fitness_of);
     components.optimizer->move(swarm, fitness_of, random);
     positions = std::move(swarm.positions);
@@ -43,9 +47,11 @@ void propagate_and_weight(Problem& problem, const ParticleFilterComponents& comp
 /// Resamples if the effective sample size is below the threshold; returns whether it did. `weights` are the normalized
 /// weights that correspond to `log_weights`, which are reset to zero.
 template <ParticleProblem Problem>
-bool resample_if_depleted(Problem& problem, const ParticleFilterComponents& components, const std::vector<double>& weights, RandomSequence& random,
-                     std::vector<double>& log_weights) {
-  if (effective_sample_size(weights) >= components.resample_threshold * static_cast<double>(weights.size())) return false;
+bool resample_if_depleted(Problem& problem, const ParticleFilterComponents& components,
+                          const std::vector<double>& weights, RandomSequence& random,
+                          std::vector<double>& log_weights) {
+  if (effective_sample_size(weights) >= components.resample_threshold * static_cast<double>(weights.size()))
+    return false;
   problem.apply_resampling(components.resample(weights, random));
   std::fill(log_weights.begin(), log_weights.end(), 0.0);
   return true;

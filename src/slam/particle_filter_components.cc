@@ -20,14 +20,18 @@ Optimizer make_improved_firefly(const Settings& s) {
 }
 
 constexpr std::array kOptimizers = std::to_array<OptimizerRow>({
-    {"none", "Particles stay where the proposal drew them", "systematic", [](const Settings&) -> Optimizer { return nullptr; }},
+    {"none", "Particles stay where the proposal drew them", "systematic",
+     [](const Settings&) -> Optimizer { return nullptr; }},
     {"woa", "Whale optimization", "systematic",
      [](const Settings& s) -> Optimizer { return std::make_shared<WhaleOptimizer>(s.optimizer_iterations); }},
     {"ba", "Bat algorithm", "systematic",
-     [](const Settings& s) -> Optimizer { return std::make_shared<BatOptimizer>(BatSettings{.iterations = s.optimizer_iterations}); }},
+     [](const Settings& s) -> Optimizer {
+       return std::make_shared<BatOptimizer>(BatSettings{.iterations = s.optimizer_iterations});
+     }},
     {"fa", "Firefly algorithm", "systematic",
      [](const Settings& s) -> Optimizer {
-       return std::make_shared<FireflyOptimizer>(FireflySettings{.iterations = s.optimizer_iterations, .absorption = s.firefly_absorption});
+       return std::make_shared<FireflyOptimizer>(
+           FireflySettings{.iterations = s.optimizer_iterations, .absorption = s.firefly_absorption});
      }},
     {"ifa", "Improved firefly algorithm of [Cui21], with its stepwise resampling", "stepwise", make_improved_firefly},
     {"scso", "Sand cat swarm optimization", "systematic",
@@ -38,7 +42,8 @@ constexpr std::array kOptimizers = std::to_array<OptimizerRow>({
 
 constexpr std::array kResamplers = std::to_array<ResamplerRow>({
     {"multinomial", "One independent sample for each new particle", resample_multinomial},
-    {"systematic", "One random offset for all new particles, at equal steps of the cumulative weight", resample_systematic},
+    {"systematic", "One random offset for all new particles, at equal steps of the cumulative weight",
+     resample_systematic},
     {"residual", "Integer parts of the expected counts for certain, the rest sampled", resample_residual},
     {"low_weight", "Low-weight optimization of [Wu25]; biased", optimize_low_weights},
     {"stepwise", "Stepwise resampling of [Cui21]; biased",

@@ -36,7 +36,7 @@ std::span<const ResamplerRow> resamplers();
 struct ParticleFilterSettings {
   std::string optimizer = "none";
   int optimizer_iterations = 5;
-  double firefly_absorption = 0.01;       ///< gamma, per square of the unit of the positions
+  double firefly_absorption = 0.01;  ///< gamma, per square of the unit of the positions
   std::string resampler = "systematic";
   /// Resample if the effective sample size is below this fraction of the number of particles.
   double resample_threshold = 0.5;

@@ -7,7 +7,9 @@ namespace patrol::slam {
 namespace {
 
 /// Fraction of a small motion at constant velocity.
-Pose2 interpolate_motion(const Pose2& motion, double fraction) { return {fraction * motion.x, fraction * motion.y, fraction * motion.yaw}; }
+Pose2 interpolate_motion(const Pose2& motion, double fraction) {
+  return {fraction * motion.x, fraction * motion.y, fraction * motion.yaw};
+}
 
 }  // namespace
 
@@ -21,11 +23,14 @@ LevelScan planar_scan(const RecordedScan& recorded, const PlanarScanSettings& se
     const double range = scan.ranges_m[beam];
     if (std::isnan(range) || range < settings.min_range_m) continue;
     const bool is_hit = range <= settings.max_range_m;
-    const double length = is_hit ? range : std::isinf(range) ? settings.no_return_clearing_range_m : settings.max_range_m;
+    const double length = is_hit              ? range
+                          : std::isinf(range) ? settings.no_return_clearing_range_m
+                                              : settings.max_range_m;
     if (!(length > 0.0)) continue;
     const double angle = scan.angle_min_rad + static_cast<double>(beam) * scan.angle_increment_rad;
     const Pose2 T_body_then = interpolate_motion(recorded.T_begin_end, static_cast<double>(beam) / last_beam);
-    const Eigen::Vector2d end = T_body_then * (recorded.T_body_lidar * Eigen::Vector2d(length * std::cos(angle), length * std::sin(angle)));
+    const Eigen::Vector2d end =
+        T_body_then * (recorded.T_body_lidar * Eigen::Vector2d(length * std::cos(angle), length * std::sin(angle)));
     level.beams.push_back({end.cast<float>(), is_hit});
   }
   return level;

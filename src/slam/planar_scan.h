@@ -7,7 +7,7 @@
 namespace patrol::slam {
 
 struct PlanarScanSettings {
-  double min_range_m = 0.05;      ///< nearer returns are from the robot itself
+  double min_range_m = 0.05;  ///< nearer returns are from the robot itself
   /// Beams that end farther away clear free space up to here; their end points are too sparse for walls.
   double max_range_m = 40.0;
   /// Distance cleared by a beam without a return; small, since glass and black fabric give no return either.

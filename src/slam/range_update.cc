@@ -8,12 +8,15 @@ namespace patrol::slam {
 RangeInnovation range_innovation(const PoseGaussian& now, const Pose2& T_odom_body, const RangeMeasurement& measurement,
                                  const RangeUpdateSettings& settings) {
   const Pose2 T_map_then = now.mean * (T_odom_body.inverse() * measurement.T_odom_body);
-  const PredictedRange predicted = predict_uwb_range(measurement.anchor, T_map_then, measurement.p_level_antenna, settings.calibration);
+  const PredictedRange predicted =
+      predict_uwb_range(measurement.anchor, T_map_then, measurement.p_level_antenna, settings.calibration);
   const Eigen::Vector2d back = T_map_then.position() - now.mean.position();
-  RangeInnovation innovation{.innovation_m = measurement.range_m - predicted.range_m, .variance_m2 = 0.0, .H_pose = predicted.H_pose};
+  RangeInnovation innovation{
+      .innovation_m = measurement.range_m - predicted.range_m, .variance_m2 = 0.0, .H_pose = predicted.H_pose};
   // lever arm: rotating the current pose moves the earlier one
   innovation.H_pose.z() += predicted.H_pose.y() * back.x() - predicted.H_pose.x() * back.y();
-  innovation.variance_m2 = innovation.H_pose.dot(now.covariance * innovation.H_pose) + settings.range_std_m * settings.range_std_m;
+  innovation.variance_m2 =
+      innovation.H_pose.dot(now.covariance * innovation.H_pose) + settings.range_std_m * settings.range_std_m;
   return innovation;
 }
 

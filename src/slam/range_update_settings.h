@@ -7,9 +7,9 @@ namespace patrol::slam {
 
 struct RangeUpdateSettings {
   bool enabled = true;
-  double range_std_m = 0.15;   ///< standard deviation of a LOS range: radio noise and residual calibration bias
-  double gate_sigma = 3.0;       ///< ranges shorter than predicted by more standard deviations are rejected
-  double nlos_gate_sigma = 2.0;  ///< ranges longer than predicted by more standard deviations are rejected as NLOS
+  double range_std_m = 0.15;        ///< standard deviation of a LOS range: radio noise and residual calibration bias
+  double gate_sigma = 3.0;          ///< ranges shorter than predicted by more standard deviations are rejected
+  double nlos_gate_sigma = 2.0;     ///< ranges longer than predicted by more standard deviations are rejected as NLOS
   UwbCalibration calibration = {};  ///< bias calibration of the radio; not a scenario setting
 
   template <typename Self, typename Visitor>

@@ -33,7 +33,8 @@ std::vector<std::size_t> order_by_descending_weight(const std::vector<double>& w
 
 std::vector<Offspring> resample_multinomial(const std::vector<double>& weights, RandomSequence& random) {
   std::vector<Offspring> children;
-  for (std::size_t i = 0; i < weights.size(); ++i) children.push_back({.parent = sample_index(weights, random.uniform())});
+  for (std::size_t i = 0; i < weights.size(); ++i)
+    children.push_back({.parent = sample_index(weights, random.uniform())});
   return children;
 }
 
@@ -48,7 +49,8 @@ std::vector<Offspring> resample_residual(const std::vector<double>& weights, Ran
   std::vector<double> rests;
   for (std::size_t i = 0; i < weights.size(); ++i) {
     const double expected = weights[i] * static_cast<double>(weights.size());
-    for (int copies = static_cast<int>(expected); copies > 0 && children.size() < weights.size(); --copies) children.push_back({.parent = i});
+    for (int copies = static_cast<int>(expected); copies > 0 && children.size() < weights.size(); --copies)
+      children.push_back({.parent = i});
     rests.push_back(expected - std::floor(expected));
   }
   while (children.size() < weights.size()) children.push_back({.parent = sample_index(rests, random.uniform())});
@@ -57,7 +59,8 @@ std::vector<Offspring> resample_residual(const std::vector<double>& weights, Ran
 
 std::vector<Offspring> optimize_low_weights(const std::vector<double>& weights, RandomSequence& random) {
   const double num_effective = effective_sample_size(weights);
-  const auto num_high = static_cast<std::size_t>(std::clamp(std::ceil(num_effective) - 1.0, 1.0, static_cast<double>(weights.size())));
+  const auto num_high =
+      static_cast<std::size_t>(std::clamp(std::ceil(num_effective) - 1.0, 1.0, static_cast<double>(weights.size())));
   const std::vector<std::size_t> order = order_by_descending_weight(weights);
   std::vector<Offspring> children;
   for (std::size_t rank = 0; rank < order.size(); ++rank) {
@@ -71,7 +74,8 @@ std::vector<Offspring> optimize_low_weights(const std::vector<double>& weights, 
   return children;
 }
 
-std::vector<Offspring> resample_stepwise(const std::vector<double>& weights, RandomSequence& random, const StepwiseResampling& settings) {
+std::vector<Offspring> resample_stepwise(const std::vector<double>& weights, RandomSequence& random,
+                                         const StepwiseResampling& settings) {
   const std::vector<std::size_t> order = order_by_descending_weight(weights);
   double average = 0.0, power = 1.0, sum = 0.0;
   for (const std::size_t i : order) {
@@ -85,13 +89,15 @@ std::vector<Offspring> resample_stepwise(const std::vector<double>& weights, Ran
   for (const std::size_t i : order) {
     if (!(weights[i] >= delta)) break;
     survivors.push_back(i);
-    for (int copies = static_cast<int>(std::ceil(weights[i] / delta - 2.0 * kRounding)); copies > 0 && children.size() < weights.size(); --copies) {
+    for (int copies = static_cast<int>(std::ceil(weights[i] / delta - 2.0 * kRounding));
+         copies > 0 && children.size() < weights.size(); --copies) {
       children.push_back({.parent = i});
     }
   }
   if (survivors.empty()) survivors.push_back(order.front());
   for (std::size_t i = 0; children.size() < weights.size(); ++i) {
-    children.push_back({.parent = survivors[i % survivors.size()], .mutation = settings.mutation_std * random.normal()});
+    children.push_back(
+        {.parent = survivors[i % survivors.size()], .mutation = settings.mutation_std * random.normal()});
   }
   return children;
 }

@@ -11,9 +11,9 @@ namespace patrol::slam {
 /// Recipe of a new particle: a copy of `parent`, optionally moved toward another particle or perturbed.
 struct Offspring {
   std::size_t parent = 0;
-  std::size_t attractor = 0;     ///< index of the attracting particle; state = parent + attraction (attractor - parent)
+  std::size_t attractor = 0;  ///< index of the attracting particle; state = parent + attraction (attractor - parent)
   double attraction = 0.0;
-  double mutation = 0.0;      ///< relative perturbation: the state, or its increment, is multiplied by 1 + mutation
+  double mutation = 0.0;  ///< relative perturbation: the state, or its increment, is multiplied by 1 + mutation
 };
 
 /// Function that maps weights, which sum to one, to an equal number of offspring [new particle] of equal weight.
@@ -35,8 +35,8 @@ std::vector<Offspring> resample_residual(const std::vector<double>& weights, Ran
 std::vector<Offspring> optimize_low_weights(const std::vector<double>& weights, RandomSequence& random);
 
 struct StepwiseResampling {
-  double averaging = 0.8;       ///< beta of [Cui21, eq. 7]
-  double mutation_std = 0.01;   ///< mu of [Cui21, eq. 8]
+  double averaging = 0.8;      ///< beta of [Cui21, eq. 7]
+  double mutation_std = 0.01;  ///< mu of [Cui21, eq. 8]
 };
 
 /// Stepwise resampling of [Cui21, eqs. 7, 8]. The weights in descending order are averaged exponentially: v_i = beta
@@ -45,6 +45,7 @@ struct StepwiseResampling {
 /// of the survivors in turn, perturbed by a Gaussian (eq. 8). Biased: particles with w < delta never survive, and the
 /// number of copies is rounded up.
 /// Deviation from [Cui21]: eq. 7 prints delta on both sides, which would apply the bias correction repeatedly.
-std::vector<Offspring> resample_stepwise(const std::vector<double>& weights, RandomSequence& random, const StepwiseResampling& settings = {});
+std::vector<Offspring> resample_stepwise(const std::vector<double>& weights, RandomSequence& random,
+                                         const StepwiseResampling& settings = {});
 
 }  // namespace patrol::slam

@@ -4,7 +4,8 @@
 
 namespace patrol::slam {
 
-void integrate_scan(const LevelScan& scan, const Pose2& T_map_body, const ScanIntegrationSettings& settings, GridMap& map) {
+void integrate_scan(const LevelScan& scan, const Pose2& T_map_body, const ScanIntegrationSettings& settings,
+                    GridMap& map) {
   const Eigen::Vector2d origin = T_map_body * scan.origin_m;
   const auto stride = static_cast<std::size_t>(settings.free_ray_stride);
   for (std::size_t beam = 0; beam < scan.beams.size(); beam += stride) {

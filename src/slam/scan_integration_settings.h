@@ -5,9 +5,9 @@
 namespace patrol::slam {
 
 struct ScanIntegrationSettings {
-  int free_ray_stride = 6;          ///< one of every N beams is traced through free space, with weight N
-  double free_margin_m = 0.15;      ///< free rays end this far before the hit, so that they do not clear the wall
-  double max_free_range_m = 30.0;   ///< maximum range of free-space updates
+  int free_ray_stride = 6;         ///< one of every N beams is traced through free space, with weight N
+  double free_margin_m = 0.15;     ///< free rays end this far before the hit, so that they do not clear the wall
+  double max_free_range_m = 30.0;  ///< maximum range of free-space updates
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

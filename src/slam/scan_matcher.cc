@@ -1,10 +1,10 @@
 #include "slam/scan_matcher.h"
 
-#include <Eigen/Cholesky>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include <Eigen/Cholesky>
 
 #include "core/geometry/linear_algebra.h"
 #include "slam/local_line.h"
@@ -21,8 +21,8 @@ struct NormalEquations {
   Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
   double log_likelihood = 0.0;
-  int num_observed = 0;    ///< points in observed cells
-  int num_matched = 0;  ///< points near a surface, out of num_observed
+  int num_observed = 0;  ///< points in observed cells
+  int num_matched = 0;   ///< points near a surface, out of num_observed
 };
 
 double squared(double value) { return value * value; }
@@ -36,7 +36,8 @@ struct PointTerm {
 };
 
 /// Returns none in unobserved cells.
-std::optional<PointTerm> to_term(const GridMap& map, const MatchPoint& point, const Eigen::Matrix2d& R, const Eigen::Vector2d& t, const ScanMatcherSettings& settings) {
+std::optional<PointTerm> to_term(const GridMap& map, const MatchPoint& point, const Eigen::Matrix2d& R,
+                                 const Eigen::Vector2d& t, const ScanMatcherSettings& settings) {
   const double kernel_var = squared(settings.kernel_m);
   PointTerm term{.line = {}, .arm = R * point.p_body};
   const Eigen::Vector2d p_map = t + term.arm;
@@ -45,7 +46,8 @@ std::optional<PointTerm> to_term(const GridMap& map, const MatchPoint& point, co
   if (!term.line) {
     const GridCell* cell = map.find(map.cell_at(p_map));
     if (!cell || !cell->is_observed()) return std::nullopt;
-    term.log_likelihood = -0.5 * kernel_var / point_var * std::log1p(squared(settings.surface_radius_cells * map.resolution_m()) / kernel_var);
+    term.log_likelihood = -0.5 * kernel_var / point_var *
+                          std::log1p(squared(settings.surface_radius_cells * map.resolution_m()) / kernel_var);
     return term;
   }
   // Cauchy: loss = kernel^2 log(1 + (r/kernel)^2), weight = 1 / (1 + (r/kernel)^2).
@@ -86,8 +88,9 @@ int count_on_surface(const GridMap& map, const std::vector<Eigen::Vector2d>& rot
 
 }  // namespace
 
-std::optional<MatchResult> match_scan(const GridMap& map, const std::vector<MatchPoint>& points, const Pose2& T_map_start,
-                                      const std::optional<PoseGaussian>& prior, const ScanMatcherSettings& settings) {
+std::optional<MatchResult> match_scan(const GridMap& map, const std::vector<MatchPoint>& points,
+                                      const Pose2& T_map_start, const std::optional<PoseGaussian>& prior,
+                                      const ScanMatcherSettings& settings) {
   MatchResult result{.T_map_body = T_map_start};
   Eigen::Matrix3d prior_information = Eigen::Matrix3d::Zero();
   if (prior) prior_information = prior->covariance.inverse();
@@ -115,7 +118,8 @@ std::optional<MatchResult> match_scan(const GridMap& map, const std::vector<Matc
   return result;
 }
 
-double scan_log_likelihood(const GridMap& map, const std::vector<MatchPoint>& points, const Pose2& T_map_body, const ScanMatcherSettings& settings) {
+double scan_log_likelihood(const GridMap& map, const std::vector<MatchPoint>& points, const Pose2& T_map_body,
+                           const ScanMatcherSettings& settings) {
   const NormalEquations sum = linearize(map, points, T_map_body, settings);
   const double kernel_var = squared(settings.kernel_m);
   const double outlier_loss = std::log1p(squared(settings.surface_radius_cells * map.resolution_m()) / kernel_var);
@@ -123,7 +127,8 @@ double scan_log_likelihood(const GridMap& map, const std::vector<MatchPoint>& po
   return sum.log_likelihood - 0.5 * num_unknown * kernel_var / squared(settings.point_std_m) * outlier_loss;
 }
 
-std::vector<double> point_log_likelihoods(const GridMap& map, const std::vector<MatchPoint>& points, const Pose2& T_map_body, const ScanMatcherSettings& settings) {
+std::vector<double> point_log_likelihoods(const GridMap& map, const std::vector<MatchPoint>& points,
+                                          const Pose2& T_map_body, const ScanMatcherSettings& settings) {
   const Eigen::Matrix2d R = Eigen::Rotation2Dd(T_map_body.yaw).toRotationMatrix();
   std::vector<double> log_likelihoods;
   log_likelihoods.reserve(points.size());

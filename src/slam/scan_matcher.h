@@ -1,9 +1,9 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <optional>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "slam/grid_map.h"
 #include "slam/match_points.h"
@@ -18,7 +18,7 @@ struct MatchResult {
   /// that the map leaves degenerate, for example along a corridor.
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   double log_likelihood = 0.0;  ///< log likelihood of the scan at the pose, up to a constant
-  double inlier_ratio = 0.0;   ///< inlier ratio: points near a surface / points in observed cells
+  double inlier_ratio = 0.0;    ///< inlier ratio: points near a surface / points in observed cells
   int num_matched = 0;
   int iterations = 0;
   bool converged = false;
@@ -35,16 +35,19 @@ struct MatchResult {
 ///
 /// With a `prior`, its squared Mahalanobis distance is part of the sum, so that odometry constrains the direction along
 /// a corridor. Returns none if too few points matched a surface.
-std::optional<MatchResult> match_scan(const GridMap& map, const std::vector<MatchPoint>& points, const Pose2& T_map_start,
-                                      const std::optional<PoseGaussian>& prior, const ScanMatcherSettings& settings);
+std::optional<MatchResult> match_scan(const GridMap& map, const std::vector<MatchPoint>& points,
+                                      const Pose2& T_map_start, const std::optional<PoseGaussian>& prior,
+                                      const ScanMatcherSettings& settings);
 
 /// Log likelihood of a scan at a pose, up to a constant. Unlike in match_scan, points in unobserved cells have the loss
 /// of points far from all surfaces; otherwise a search would prefer poses outside the map.
-double scan_log_likelihood(const GridMap& map, const std::vector<MatchPoint>& points, const Pose2& T_map_body, const ScanMatcherSettings& settings);
+double scan_log_likelihood(const GridMap& map, const std::vector<MatchPoint>& points, const Pose2& T_map_body,
+                           const ScanMatcherSettings& settings);
 
 /// Log likelihood of each point, [point]; NaN in unobserved cells. Compare two poses by the points that are not NaN at
 /// both.
-std::vector<double> point_log_likelihoods(const GridMap& map, const std::vector<MatchPoint>& points, const Pose2& T_map_body, const ScanMatcherSettings& settings);
+std::vector<double> point_log_likelihoods(const GridMap& map, const std::vector<MatchPoint>& points,
+                                          const Pose2& T_map_body, const ScanMatcherSettings& settings);
 
 /// Correlative scan matching on one level [Olson09]. Returns the pose in the window around `T_map_center` with the most
 /// points on or next to a surface cell. Used after odometry slip; the result is within the convergence range of

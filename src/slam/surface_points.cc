@@ -14,7 +14,8 @@ std::vector<Eigen::Vector2d> surface_points(const GridMap& map) {
         const GridCell& cell = tile.at(col, row);
         if (!cell.is_surface() || cell.hits < 2) continue;
         const Cell at{first.col + col, first.row + row};
-        auto& [sum, weight] = squares.try_emplace({at.row >> 1, at.col >> 1}, Eigen::Vector2d::Zero(), 0.0).first->second;
+        auto& [sum, weight] =
+            squares.try_emplace({at.row >> 1, at.col >> 1}, Eigen::Vector2d::Zero(), 0.0).first->second;
         sum += cell.hits * (map.center_of(at) + Eigen::Vector2d(cell.mean_x_m, cell.mean_y_m));
         weight += cell.hits;
       }
@@ -26,7 +27,8 @@ std::vector<Eigen::Vector2d> surface_points(const GridMap& map) {
   return points;
 }
 
-std::vector<Eigen::Vector2d> estimate_free_space_normals(const std::vector<Eigen::Vector2d>& points, const GridMap& map, double radius_m) {
+std::vector<Eigen::Vector2d> estimate_free_space_normals(const std::vector<Eigen::Vector2d>& points, const GridMap& map,
+                                                         double radius_m) {
   constexpr double kMinOneSidedness = 0.3;  // 0.64 for a half disc
   const int reach = static_cast<int>(std::ceil(radius_m / map.resolution_m()));
   std::vector<Eigen::Vector2d> free_space_normals;
@@ -46,7 +48,8 @@ std::vector<Eigen::Vector2d> estimate_free_space_normals(const std::vector<Eigen
       }
     }
     const double one_sided = free > 0 ? sum.norm() / free : 0.0;
-    free_space_normals.push_back(one_sided < kMinOneSidedness ? Eigen::Vector2d(0.0, 0.0) : Eigen::Vector2d(sum.normalized()));
+    free_space_normals.push_back(one_sided < kMinOneSidedness ? Eigen::Vector2d(0.0, 0.0)
+                                                              : Eigen::Vector2d(sum.normalized()));
   }
   return free_space_normals;
 }

@@ -19,7 +19,8 @@ bool is_tunnel(const StackSettings& settings) { return settings.mission_type == 
 std::unique_ptr<Mission> make_gas_mission(const StackSettings& settings, const RobotDescription& robot,
                                           Route route_in_map, std::uint64_t seed) {
   const auto& stations = route_in_map.stations;
-  if (std::any_of(stations.begin(), stations.end(), [](const Station& station) { return station.type == StationType::kInspect; }))
+  if (std::any_of(stations.begin(), stations.end(),
+                  [](const Station& station) { return station.type == StationType::kInspect; }))
     robot.T_body("tdlas");
   std::string order_text;
   if (settings.gas_mission.station_order == "optimized" && !route_in_map.stations.empty()) {
@@ -31,7 +32,8 @@ std::unique_ptr<Mission> make_gas_mission(const StackSettings& settings, const R
 }
 
 void validate_goals(const std::vector<SavedGoal>& goals, const RobotDescription& robot, const Route& site_in_map) {
-  if (std::none_of(goals.begin(), goals.end(), [](const SavedGoal& goal) { return goal.type == GoalType::kScan; })) return;
+  if (std::none_of(goals.begin(), goals.end(), [](const SavedGoal& goal) { return goal.type == GoalType::kScan; }))
+    return;
   if (!site_in_map.lining) throw InputError("tunnel_mission: goal of type D requires a lining in the site survey");
   robot.T_body("scanner");
 }
@@ -81,7 +83,8 @@ Stack make_stack(const StackSettings& settings, const RobotDescription& robot, c
   MotionExecutor motion(settings, robot, site_in_map, start.seed);
   std::unique_ptr<Mission> mission = make_mission(settings, robot, site_in_map, start);
   InstrumentSet instruments = make_instruments(settings, robot, site_in_map, start);
-  LocalizerStart localizer{.map = std::move(start.map), .has_mapping_drive = is_tunnel(settings) && start.has_teleop,
+  LocalizerStart localizer{.map = std::move(start.map),
+                           .has_mapping_drive = is_tunnel(settings) && start.has_teleop,
                            .neighbor_model = std::move(start.neighbor_model)};
   return Stack({.pose = PosePipeline(settings, robot, site_in_map, std::move(localizer), start.seed),
                 .motion = std::move(motion),

@@ -16,11 +16,10 @@ namespace patrol::stack {
 /// Initial data of a stack besides the survey; all in map.
 struct StackStart {
   std::optional<OccupancyGrid> map = {};  ///< none: the robot makes its own map
-  std::vector<SavedGoal> goals =
-      {};  ///< none: saved during teleoperation, or the mission visits the route's stations
-  LiningReferences references = {};  ///< scans of an earlier inspection run
+  std::vector<SavedGoal> goals = {};  ///< none: saved during teleoperation, or the mission visits the route's stations
+  LiningReferences references = {};   ///< scans of an earlier inspection run
   BoostedStumps neighbor_model = {};  ///< classifier of submap pairs, for SLAM methods that need it
-  bool has_teleop = false;           ///< true: an operator can drive the robot by teleoperation
+  bool has_teleop = false;            ///< true: an operator can drive the robot by teleoperation
   double map_period_s = 5.0;
   std::uint64_t seed = 0;
 };

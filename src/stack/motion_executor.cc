@@ -6,8 +6,7 @@
 namespace patrol::stack {
 namespace {
 
-constexpr Time kTeleopCommandValidity =
-    std::chrono::milliseconds(500);  // validity of a teleoperation command
+constexpr Time kTeleopCommandValidity = std::chrono::milliseconds(500);  // validity of a teleoperation command
 
 DockingFeedback feedback_of(plan::DockingStatus status) {
   switch (status) {
@@ -64,8 +63,7 @@ VelocityCommand MotionExecutor::navigate(Time now, const std::optional<Navigatio
   navigator_.set_goal(goal);
   plan::NavigationStep step = navigator_.step(now, T_map_body);
   if (step.replanned) output.publish(Path{now, step.path});
-  if (step.is_detour)
-    output.publish_event(now, T_map_body, EventKind::kReplan, "Path blocked: replanning.");
+  if (step.is_detour) output.publish_event(now, T_map_body, EventKind::kReplan, "Path blocked: replanning.");
   if (!step.text.empty()) output.publish_event(now, T_map_body, EventKind::kNavigation, step.text);
   if (!step.recovery.empty()) output.publish_event(now, T_map_body, EventKind::kRecovery, step.recovery);
   navigation_ = step.status;

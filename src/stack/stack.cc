@@ -92,8 +92,8 @@ void Stack::monitor_sensors(Time now, const Pose2& T_odom_body) {
                           change.text, change.sensor);
   }
   if (!parts_.sensor_monitor.must_abort(now) || mission_is_over()) return;
-  output_.publish(parts_.mission->abort(now, EventKind::kSensorFailed,
-                                        "Required sensor did not recover: mission aborted."));
+  output_.publish(
+      parts_.mission->abort(now, EventKind::kSensorFailed, "Required sensor did not recover: mission aborted."));
 }
 
 VelocityCommand Stack::control(const Period& period) {
@@ -134,7 +134,7 @@ void Stack::relocalize(Relocalization how, const OdometryEstimate& odometry) {
 void Stack::inspect(const Period& period) {
   const auto timer = output_.time_stage("inspection");
   const StationPose here = parts_.pose.station_pose_at(period.odometry.stamp)
-                                 .value_or(StationPose{.T_level_body = {}, .T_map_body = period.pose.T_map_body});
+                               .value_or(StationPose{.T_level_body = {}, .T_map_body = period.pose.T_map_body});
   inspection_ = parts_.instruments.step(period.now, task_.inspection, here, output_);
 }
 

@@ -7,12 +7,12 @@
 
 #include "core/messages.h"
 #include "core/sensors/registry.h"
-#include "stack/sensors/sensor_monitor.h"
 #include "stack/instruments/instrument_set.h"
 #include "stack/localization/pose_pipeline.h"
 #include "stack/mission/mission.h"
 #include "stack/motion_executor.h"
 #include "stack/output/stack_output.h"
+#include "stack/sensors/sensor_monitor.h"
 
 namespace patrol::stack {
 

@@ -8,8 +8,8 @@
 
 #include <fmt/format.h>
 
-#include "report/boxes.h"
 #include "core/thread_cpu_time.h"
+#include "report/boxes.h"
 #include "studies/univariate/exact_filter.h"
 #include "studies/univariate/growth_filter.h"
 #include "studies/univariate/quasi_filter.h"
@@ -29,8 +29,12 @@ struct GrowthMethod {
   std::function<std::unique_ptr<UnivariateFilter>(const GrowthModel& model, std::uint64_t seed)> make;
 };
 
-GrowthMethod particle_filter(const std::string& name, int particles, const slam::ParticleFilterSettings& settings, std::optional<double> published = {}) {
-  return {.name = name, .particles = particles, .published = {published}, .make = [=](const GrowthModel& model, std::uint64_t seed) {
+GrowthMethod particle_filter(const std::string& name, int particles, const slam::ParticleFilterSettings& settings,
+                             std::optional<double> published = {}) {
+  return {.name = name,
+          .particles = particles,
+          .published = {published},
+          .make = [=](const GrowthModel& model, std::uint64_t seed) {
             return std::make_unique<GrowthFilter>(particles, model, slam::make_components(settings), seed);
           }};
 }
@@ -50,7 +54,9 @@ std::vector<GrowthMethod> methods_of(int particles, const std::array<double, 4>&
           particle_filter("FA", particles, published_settings("fa"), published[2]),
           particle_filter("IFA", particles, published_ifa_settings(), published[3]),
           particle_filter("IFA, unbiased resampling", particles, published_settings("ifa")),
-          {.name = "quasi-Monte Carlo (this work)", .particles = particles, .make = [=](const GrowthModel& model, std::uint64_t seed) {
+          {.name = "quasi-Monte Carlo (this work)",
+           .particles = particles,
+           .make = [=](const GrowthModel& model, std::uint64_t seed) {
              return std::make_unique<QuasiFilter>(QuasiFilterSettings{.particles = particles}, model, seed);
            }}};
 }
@@ -63,13 +69,20 @@ struct GrowthTrial {
 };
 
 std::vector<GrowthTrial> growth_trials() {
-  std::vector<GrowthTrial> trials = {{.world = "1 + x² in the denominator", .model = GrowthModel(), .methods = {}}, {.world = "1 − x², as eq. 9 prints it", .model = GrowthModel({.denominator_sign = -1}), .methods = {}}};
-  trials[0].methods.push_back({.name = "exact Bayes filter (the bound)", .make = [](const GrowthModel& model, std::uint64_t) { return std::make_unique<ExactFilter>(model); }});
-  const std::array<std::pair<int, std::array<double, 4>>, 3> table_1 = {{{50, {4.2216, 3.6631, 3.2270, 2.9783}}, {100, {3.0043, 2.5799, 2.4075, 1.8843}}, {150, {2.4415, 1.8336, 1.6815, 1.2885}}}};
+  std::vector<GrowthTrial> trials = {
+      {.world = "1 + x² in the denominator", .model = GrowthModel(), .methods = {}},
+      {.world = "1 − x², as eq. 9 prints it", .model = GrowthModel({.denominator_sign = -1}), .methods = {}}};
+  trials[0].methods.push_back(
+      {.name = "exact Bayes filter (the bound)",
+       .make = [](const GrowthModel& model, std::uint64_t) { return std::make_unique<ExactFilter>(model); }});
+  const std::array<std::pair<int, std::array<double, 4>>, 3> table_1 = {{{50, {4.2216, 3.6631, 3.2270, 2.9783}},
+                                                                         {100, {3.0043, 2.5799, 2.4075, 1.8843}},
+                                                                         {150, {2.4415, 1.8336, 1.6815, 1.2885}}}};
   for (const auto& [particles, published] : table_1) {
     for (const GrowthMethod& method : methods_of(particles, published)) trials[0].methods.push_back(method);
   }
-  trials[1].methods = {particle_filter("PF", 100, published_settings("none")), particle_filter("IFA", 100, published_ifa_settings())};
+  trials[1].methods = {particle_filter("PF", 100, published_settings("none")),
+                       particle_filter("IFA", 100, published_ifa_settings())};
   return trials;
 }
 
@@ -96,7 +109,8 @@ std::vector<double> flatten_metrics(const GrowthMethod& method, const GrowthTrac
     num_effective += estimate.effective_sample_size;
   }
   const auto steps = static_cast<double>(run.states.size());
-  return {std::sqrt(squares / steps), nees / steps, method.particles > 0 ? num_effective / steps : kNoGrowthMetric, 1e3 * track.seconds};
+  return {std::sqrt(squares / steps), nees / steps, method.particles > 0 ? num_effective / steps : kNoGrowthMetric,
+          1e3 * track.seconds};
 }
 
 StudySample run_growth_trials(const std::vector<GrowthTrial>& trials, std::uint64_t seed) {
@@ -118,7 +132,11 @@ std::vector<StudyVariant> growth_variants(const std::vector<GrowthTrial>& trials
     const bool has_bound = trial.methods.front().particles == 0;
     for (const GrowthMethod& method : trial.methods) {
       const std::size_t reference = has_bound ? first : variants.size();
-      variants.push_back({.world = trial.world, .method = method.name, .particles = method.particles, .reference = reference, .published = method.published});
+      variants.push_back({.world = trial.world,
+                          .method = method.name,
+                          .particles = method.particles,
+                          .reference = reference,
+                          .published = method.published});
     }
   }
   return variants;
@@ -133,12 +151,23 @@ report::Curve curve_of(const std::string& name, SeriesColor color, const std::ve
 /// Figures 1 to 4: states and errors over time, and the particles at step 25; N = 100.
 std::vector<report::Section> illustrate_growth(const GrowthTrial& trial, std::uint64_t seed) {
   constexpr int kParticles = 100, kShownStep = 25;
-  constexpr std::array kColors = {SeriesColor::kOdometry, SeriesColor::kRanges, SeriesColor::kConfidence, SeriesColor::kAlarm, SeriesColor::kEvent, SeriesColor::kEstimate};
+  constexpr std::array kColors = {SeriesColor::kOdometry, SeriesColor::kRanges, SeriesColor::kConfidence,
+                                  SeriesColor::kAlarm,    SeriesColor::kEvent,  SeriesColor::kEstimate};
   const GrowthRun run = trial.model.simulate(seed);
   const report::PlotAxis axis = {.label = "step", .max = static_cast<double>(run.states.size())};
-  report::LinePlot states{.title = fmt::format("State, seed {}, N = {}", seed, kParticles), .unit = "", .axis = axis, .max = {}, .curves = {}, .marks = {}, .spans = {}};
-  report::LinePlot errors{.title = "Absolute error", .unit = "", .axis = axis, .max = {}, .curves = {}, .marks = {}, .spans = {}};
-  report::BoxPlot spread{.caption = fmt::format("Particles at step {}; the true state is {:.2f}", kShownStep, run.states[kShownStep - 1]), .unit = "", .boxes = {}};
+  report::LinePlot states{.title = fmt::format("State, seed {}, N = {}", seed, kParticles),
+                          .unit = "",
+                          .axis = axis,
+                          .max = {},
+                          .curves = {},
+                          .marks = {},
+                          .spans = {}};
+  report::LinePlot errors{
+      .title = "Absolute error", .unit = "", .axis = axis, .max = {}, .curves = {}, .marks = {}, .spans = {}};
+  report::BoxPlot spread{
+      .caption = fmt::format("Particles at step {}; the true state is {:.2f}", kShownStep, run.states[kShownStep - 1]),
+      .unit = "",
+      .boxes = {}};
   states.curves.push_back(curve_of("true state", SeriesColor::kTruth, run.states));
   std::size_t num_shown = 0;
   for (const GrowthMethod& method : trial.methods) {
@@ -164,18 +193,23 @@ std::vector<report::Section> illustrate_growth(const GrowthTrial& trial, std::ui
 
 Study growth_study() {
   std::vector<GrowthTrial> trials = growth_trials();
-  Study study{.name = "ungm",
-              .title = "Particle filters on the univariate growth model",
-              .source = "[Cui21], table 1 and figures 1 to 4",
-              .conditions = "100 steps, variances 1, known initial state 0. On average no filter has a smaller mean squared "
-                            "error than the exact one, so that published values below it (BA, FA, IFA for most N) cannot be "
-                            "reached. They would be reached with the true state as \"the newest state value\" of eq. 2, which is "
-                            "not available to a filter. IFA as published, with stepwise resampling (eqs. 7, 8), and with unbiased "
-                            "resampling instead. Published times for N = 100, 30 runs: 0.31 s (PF), 0.70 s (BA), 0.75 s (FA), "
-                            "0.64 s (IFA). NEES: 1 is consistent, more is overconfident.",
-              .default_seeds = 500,
-              .compared_with = "the bound"};
-  study.metrics = {{.name = "RMSE", .unit = "", .is_compared = true}, {.name = "NEES", .unit = ""}, {.name = "N_eff", .unit = ""}, {.name = "time", .unit = "ms", .is_processor_time = true}};
+  Study study{
+      .name = "ungm",
+      .title = "Particle filters on the univariate growth model",
+      .source = "[Cui21], table 1 and figures 1 to 4",
+      .conditions =
+          "100 steps, variances 1, known initial state 0. On average no filter has a smaller mean squared "
+          "error than the exact one, so that published values below it (BA, FA, IFA for most N) cannot be "
+          "reached. They would be reached with the true state as \"the newest state value\" of eq. 2, which is "
+          "not available to a filter. IFA as published, with stepwise resampling (eqs. 7, 8), and with unbiased "
+          "resampling instead. Published times for N = 100, 30 runs: 0.31 s (PF), 0.70 s (BA), 0.75 s (FA), "
+          "0.64 s (IFA). NEES: 1 is consistent, more is overconfident.",
+      .default_seeds = 500,
+      .compared_with = "the bound"};
+  study.metrics = {{.name = "RMSE", .unit = "", .is_compared = true},
+                   {.name = "NEES", .unit = ""},
+                   {.name = "N_eff", .unit = ""},
+                   {.name = "time", .unit = "ms", .is_processor_time = true}};
   study.variants = growth_variants(trials);
   study.illustrate = [trial = trials.front()](std::uint64_t seed) { return illustrate_growth(trial, seed); };
   study.run = [trials = std::move(trials)](std::uint64_t seed) { return run_growth_trials(trials, seed); };

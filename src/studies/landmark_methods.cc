@@ -9,7 +9,8 @@
 namespace patrol::studies {
 namespace {
 
-LandmarkMethod particle_method(const std::string& name, const FastSlamSettings& settings, const slam::ParticleFilterSettings& filter) {
+LandmarkMethod particle_method(const std::string& name, const FastSlamSettings& settings,
+                               const slam::ParticleFilterSettings& filter) {
   return {.name = name, .particles = settings.particles, .make = [=](const LandmarkWorld& world, std::uint64_t seed) {
             return std::make_unique<FastSlam>(settings, world.motion, world.noise, slam::make_components(filter), seed);
           }};
@@ -28,7 +29,9 @@ LandmarkMethod fast_slam_1(int particles, double noise_scale) {
   return particle_method(name, {.particles = particles, .noise_scale = noise_scale}, {});
 }
 
-LandmarkMethod fast_slam_2(int particles) { return particle_method("FastSLAM 2", {.particles = particles, .use_optimal_proposal = true}, {}); }
+LandmarkMethod fast_slam_2(int particles) {
+  return particle_method("FastSLAM 2", {.particles = particles, .use_optimal_proposal = true}, {});
+}
 
 LandmarkMethod swarm_slam(const std::string& optimizer, int particles) {
   std::string name;
@@ -37,7 +40,8 @@ LandmarkMethod swarm_slam(const std::string& optimizer, int particles) {
 }
 
 LandmarkMethod iscso_plus(int particles) {
-  return particle_method("ISCSO+", {.particles = particles, .bias = {.std = 0.2}, .prior_weight = 0.05}, {.optimizer = "iscso"});
+  return particle_method("ISCSO+", {.particles = particles, .bias = {.std = 0.2}, .prior_weight = 0.05},
+                         {.optimizer = "iscso"});
 }
 
 LandmarkMethod ekf_slam() { return gaussian_method("EKF-SLAM", {.bias = {.std = 0.0}, .is_invariant = false}); }

@@ -10,11 +10,13 @@ std::vector<Pose2> LandmarkTrack::poses() const {
   return poses;
 }
 
-LandmarkTrack follow(const LandmarkMethod& method, const LandmarkWorld& world, const LandmarkRun& run, std::uint64_t seed) {
+LandmarkTrack follow(const LandmarkMethod& method, const LandmarkWorld& world, const LandmarkRun& run,
+                     std::uint64_t seed) {
   const std::unique_ptr<LandmarkSlam> slam = method.make(world, seed);
   LandmarkTrack track;
   const double start_s = thread_cpu_time_s();
-  for (std::size_t k = 0; k < run.odometry.size(); ++k) track.estimates.push_back(slam->step(run.odometry[k], run.observations[k]));
+  for (std::size_t k = 0; k < run.odometry.size(); ++k)
+    track.estimates.push_back(slam->step(run.odometry[k], run.observations[k]));
   track.landmarks = slam->landmarks();
   track.seconds = thread_cpu_time_s() - start_s;
   return track;

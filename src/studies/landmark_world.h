@@ -1,10 +1,10 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <cstdint>
 #include <string>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "studies/landmarks/control_motion.h"
 #include "studies/landmarks/range_bearing.h"
@@ -15,19 +15,19 @@ namespace patrol::studies {
 /// trajectory exactly; its odometry and its observations are noisy.
 struct LandmarkWorld {
   std::string name;
-  ControlMotion motion;                    ///< `std`: noise of the odometry
+  ControlMotion motion;                                     ///< `std`: noise of the odometry
   Eigen::Vector2d odometry_bias = Eigen::Vector2d::Zero();  ///< odometry bias, unknown to the filters
   RangeBearingNoise noise;
   double max_range_m = 10.0;
-  double field_of_view_rad = 6.3;                ///< centered straight ahead
-  std::vector<Eigen::Vector2d> landmarks_m;      ///< in map: the robot starts at its origin, along x
-  std::vector<Control> controls;           ///< [part of a step], ground truth
+  double field_of_view_rad = 6.3;            ///< centered straight ahead
+  std::vector<Eigen::Vector2d> landmarks_m;  ///< in map: the robot starts at its origin, along x
+  std::vector<Control> controls;             ///< [part of a step], ground truth
 };
 
 /// Measurements of one run with the ground truth.
 struct LandmarkRun {
-  std::vector<Control> odometry;                  ///< [step]
-  std::vector<std::vector<RangeBearing>> observations;    ///< [step][observation]
+  std::vector<Control> odometry;                        ///< [step]
+  std::vector<std::vector<RangeBearing>> observations;  ///< [step][observation]
   std::vector<Pose2> truth;                             ///< [step], after its motion
 };
 

@@ -13,18 +13,18 @@ namespace patrol::studies {
 /// Metric that a study computes for every variant and seed.
 struct StudyMetric {
   std::string name;
-  std::string unit;               ///< empty: dimensionless
-  bool is_compared = false;       ///< compared with the published value, and with the variant's reference
-  bool is_processor_time = false;   ///< processor time: not reproducible
+  std::string unit;                ///< empty: dimensionless
+  bool is_compared = false;        ///< compared with the published value, and with the variant's reference
+  bool is_processor_time = false;  ///< processor time: not reproducible
 };
 
 /// Method in a world.
 struct StudyVariant {
   std::string world;
   std::string method;
-  int particles = 0;                                ///< 0 for methods without particles
-  std::size_t reference = 0;                        ///< variant for the paired comparison
-  std::vector<std::optional<double>> published{};   ///< [metric], published values; may be shorter
+  int particles = 0;                               ///< 0 for methods without particles
+  std::size_t reference = 0;                       ///< variant for the paired comparison
+  std::vector<std::optional<double>> published{};  ///< [metric], published values; may be shorter
 };
 
 /// Metrics of one seed, [variant][metric]; NaN where a variant has no such metric.

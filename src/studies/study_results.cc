@@ -23,17 +23,22 @@ std::string with_interval(const std::optional<score::Interval>& interval, double
   return interval ? fmt::format("{} [{}, {}]", text(mean), text(interval->low), text(interval->high)) : text(mean);
 }
 
-std::string title_of(const StudyMetric& metric) { return metric.unit.empty() ? metric.name : fmt::format("{}, {}", metric.name, metric.unit); }
+std::string title_of(const StudyMetric& metric) {
+  return metric.unit.empty() ? metric.name : fmt::format("{}, {}", metric.name, metric.unit);
+}
 
 /// Tables of one world: one per compared metric; the first one also has all metrics without comparison.
 std::vector<report::TableBlock> tables_of(const Study& study, const StudyResults& results, const std::string& world) {
   // Columns without any value are omitted.
-  const bool has_particles = std::any_of(study.variants.begin(), study.variants.end(), [](const StudyVariant& variant) { return variant.particles > 0; });
-  const bool has_published = std::any_of(study.variants.begin(), study.variants.end(), [](const StudyVariant& variant) { return !variant.published.empty(); });
+  const bool has_particles = std::any_of(study.variants.begin(), study.variants.end(),
+                                         [](const StudyVariant& variant) { return variant.particles > 0; });
+  const bool has_published = std::any_of(study.variants.begin(), study.variants.end(),
+                                         [](const StudyVariant& variant) { return !variant.published.empty(); });
   std::vector<report::TableBlock> tables;
   for (std::size_t f = 0; f < study.metrics.size(); ++f) {
     if (!study.metrics[f].is_compared) continue;
-    report::TableBlock& table = tables.emplace_back(report::TableBlock{.caption = title_of(study.metrics[f]), .columns = {{"method"}}, .rows = {}});
+    report::TableBlock& table = tables.emplace_back(
+        report::TableBlock{.caption = title_of(study.metrics[f]), .columns = {{"method"}}, .rows = {}});
     if (has_particles) table.columns.push_back({"N", true});
     if (has_published) table.columns.push_back({"published", true});
     table.columns.push_back({has_published ? "this work" : "mean", true});
@@ -50,7 +55,8 @@ std::vector<report::TableBlock> tables_of(const Study& study, const StudyResults
       std::vector<report::TableCell>& row = table.rows.emplace_back();
       row.push_back({variant.method});
       if (has_particles) row.push_back({variant.particles > 0 ? std::to_string(variant.particles) : ""});
-      if (has_published) row.push_back({published_value ? fmt::format("{:.4g}", *published_value) : "–", report::Tone::kFaint});
+      if (has_published)
+        row.push_back({published_value ? fmt::format("{:.4g}", *published_value) : "–", report::Tone::kFaint});
       row.push_back({result.num_seeds > 0 ? with_interval(result.interval, result.mean, "") : "–"});
       row.push_back({result.difference ? with_interval(result.difference, result.difference->center, "+") : "",
                      verdict_of(result) == "no difference" ? report::Tone::kFaint : report::Tone::kPlain});
@@ -77,7 +83,8 @@ std::string label_of(const StudyVariant& variant) {
 
 /// Display width of a text; the few non-ASCII characters in use take one column each.
 std::size_t width_of(const std::string& text) {
-  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
 
 /// Formats a table in aligned columns, numbers right-aligned.
@@ -113,8 +120,12 @@ StudyResults summarize(const Study& study, const std::vector<StudySample>& sampl
         if (std::isfinite(value) && std::isfinite(reference)) differences.push_back(value - reference);
       }
       StudyResult& result = results[v][f];
-      result = {.mean = score::mean(values), .interval = score::mean_interval(values), .difference = {}, .num_seeds = values.size()};
-      if (study.metrics[f].is_compared && study.variants[v].reference != v) result.difference = score::mean_interval(differences);
+      result = {.mean = score::mean(values),
+                .interval = score::mean_interval(values),
+                .difference = {},
+                .num_seeds = values.size()};
+      if (study.metrics[f].is_compared && study.variants[v].reference != v)
+        result.difference = score::mean_interval(differences);
     }
   }
   return results;
@@ -128,40 +139,44 @@ std::string verdict_of(const StudyResult& result) {
 
 io::Table results_table(const Study& study, const StudyResults& results) {
   io::Table table{.name = "results",
-                  .columns = {"world", "method", "particles", "figure", "unit", "published", "seeds", "mean", "mean_low", "mean_high", "difference",
-                              "difference_low", "difference_high", "verdict"},
+                  .columns = {"world", "method", "particles", "figure", "unit", "published", "seeds", "mean",
+                              "mean_low", "mean_high", "difference", "difference_low", "difference_high", "verdict"},
                   .rows = {}};
   for (std::size_t v = 0; v < study.variants.size(); ++v) {
     const StudyVariant& variant = study.variants[v];
     for (std::size_t f = 0; f < study.metrics.size(); ++f) {
       const StudyResult& result = results[v][f];
       if (study.metrics[f].is_processor_time || result.num_seeds == 0) continue;
-      const auto part = [](const std::optional<score::Interval>& interval, double score::Interval::* end) {
+      const auto part = [](const std::optional<score::Interval>& interval, double score::Interval::*end) {
         return interval ? io::TableValue{(*interval).*end} : io::TableValue{};
       };
-      table.rows.push_back({variant.world, variant.method, static_cast<std::int64_t>(variant.particles), study.metrics[f].name, study.metrics[f].unit,
-                            number(published(variant, f)), static_cast<std::int64_t>(result.num_seeds), result.mean,
-                            part(result.interval, &score::Interval::low), part(result.interval, &score::Interval::high),
-                            part(result.difference, &score::Interval::center), part(result.difference, &score::Interval::low),
-                            part(result.difference, &score::Interval::high), verdict_of(result)});
+      table.rows.push_back(
+          {variant.world, variant.method, static_cast<std::int64_t>(variant.particles), study.metrics[f].name,
+           study.metrics[f].unit, number(published(variant, f)), static_cast<std::int64_t>(result.num_seeds),
+           result.mean, part(result.interval, &score::Interval::low), part(result.interval, &score::Interval::high),
+           part(result.difference, &score::Interval::center), part(result.difference, &score::Interval::low),
+           part(result.difference, &score::Interval::high), verdict_of(result)});
     }
   }
   return table;
 }
 
 io::Table performance_table(const Study& study, const StudyResults& results) {
-  io::Table table{.name = "performance", .columns = {"world", "method", "particles", "figure", "unit", "mean"}, .rows = {}};
+  io::Table table{
+      .name = "performance", .columns = {"world", "method", "particles", "figure", "unit", "mean"}, .rows = {}};
   for (std::size_t v = 0; v < study.variants.size(); ++v) {
     for (std::size_t f = 0; f < study.metrics.size(); ++f) {
       if (!study.metrics[f].is_processor_time || results[v][f].num_seeds == 0) continue;
-      table.rows.push_back({study.variants[v].world, study.variants[v].method, static_cast<std::int64_t>(study.variants[v].particles),
-                            study.metrics[f].name, study.metrics[f].unit, results[v][f].mean});
+      table.rows.push_back({study.variants[v].world, study.variants[v].method,
+                            static_cast<std::int64_t>(study.variants[v].particles), study.metrics[f].name,
+                            study.metrics[f].unit, results[v][f].mean});
     }
   }
   return table;
 }
 
-io::Table samples_table(const Study& study, const std::vector<std::uint64_t>& seeds, const std::vector<StudySample>& samples) {
+io::Table samples_table(const Study& study, const std::vector<std::uint64_t>& seeds,
+                        const std::vector<StudySample>& samples) {
   io::Table table{.name = "runs", .columns = {"seed", "world", "method", "particles"}, .rows = {}};
   for (const StudyMetric& metric : study.metrics) {
     if (!metric.is_processor_time) table.columns.push_back(title_of(metric));
@@ -185,12 +200,14 @@ io::Table samples_table(const Study& study, const std::vector<std::uint64_t>& se
 std::string results_text(const Study& study, const StudyResults& results) {
   std::string text;
   for (const std::string& world : worlds_of(study)) {
-    for (const report::TableBlock& table : tables_of(study, results, world)) text += fmt::format("{}: {}\n{}\n", world, table.caption, aligned(table));
+    for (const report::TableBlock& table : tables_of(study, results, world))
+      text += fmt::format("{}: {}\n{}\n", world, table.caption, aligned(table));
   }
   return text;
 }
 
-report::Page study_page(const Study& study, const std::vector<std::uint64_t>& seeds, const std::vector<StudySample>& samples, const StudyResults& results) {
+report::Page study_page(const Study& study, const std::vector<std::uint64_t>& seeds,
+                        const std::vector<StudySample>& samples, const StudyResults& results) {
   report::Page page{.kind = "study",
                     .title = study.title,
                     .facts = {{"source", study.source}, {"seeds", fmt::format("{} … {}", seeds.front(), seeds.back())}},
@@ -201,14 +218,16 @@ report::Page study_page(const Study& study, const std::vector<std::uint64_t>& se
     report::Section section{world, {}};
     for (report::TableBlock& table : tables_of(study, results, world)) section.blocks.emplace_back(std::move(table));
     const StudyMetric& first = study.metrics.front();
-    report::BoxPlot boxes{.caption = fmt::format("{}: every seed, median and quartiles", first.name), .unit = first.unit, .boxes = {}};
+    report::BoxPlot boxes{
+        .caption = fmt::format("{}: every seed, median and quartiles", first.name), .unit = first.unit, .boxes = {}};
     for (std::size_t v = 0; v < study.variants.size(); ++v) {
       if (study.variants[v].world != world) continue;
       std::vector<double> values;
       for (const StudySample& sample : samples) {
         if (std::isfinite(sample[v].front())) values.push_back(sample[v].front());
       }
-      if (!values.empty()) boxes.boxes.push_back(report::box_of(label_of(study.variants[v]), values, {.factor = 1.0, .name = first.unit}));
+      if (!values.empty())
+        boxes.boxes.push_back(report::box_of(label_of(study.variants[v]), values, {.factor = 1.0, .name = first.unit}));
     }
     section.blocks.emplace_back(std::move(boxes));
     page.sections.push_back(std::move(section));

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "studies/study.h"
 #include "io/files/table.h"
 #include "score/statistics.h"
+#include "studies/study.h"
 
 namespace patrol::studies {
 
@@ -32,12 +32,14 @@ io::Table results_table(const Study& study, const StudyResults& results);
 /// Table of the metrics of processor time, which are not reproducible.
 io::Table performance_table(const Study& study, const StudyResults& results);
 /// Table with one row per seed and variant.
-io::Table samples_table(const Study& study, const std::vector<std::uint64_t>& seeds, const std::vector<StudySample>& samples);
+io::Table samples_table(const Study& study, const std::vector<std::uint64_t>& seeds,
+                        const std::vector<StudySample>& samples);
 
 /// Results as text for a terminal, one table per world.
 std::string results_text(const Study& study, const StudyResults& results);
 
 /// Report page: tables by world, box plots of the first metric, and the study's own figures.
-report::Page study_page(const Study& study, const std::vector<std::uint64_t>& seeds, const std::vector<StudySample>& samples, const StudyResults& results);
+report::Page study_page(const Study& study, const std::vector<std::uint64_t>& seeds,
+                        const std::vector<StudySample>& samples, const StudyResults& results);
 
 }  // namespace patrol::studies

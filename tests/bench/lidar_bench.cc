@@ -2,8 +2,7 @@
 //   tests/bench/lidar_bench
 // AgainstMjMultiRay: `speed_up` is to be at least 10. AgainstBareEmbree: `ratio` is to be at most 1.5.
 
-#include <benchmark/benchmark.h>
-#include <embree3/rtcore.h>
+#include "sim/sensors/lidar.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,10 +11,12 @@
 #include <string_view>
 #include <vector>
 
+#include <benchmark/benchmark.h>
+#include <embree3/rtcore.h>
+
 #include "io/urdf.h"
 #include "sim/lidar_scene.h"
 #include "sim/robot_model.h"
-#include "sim/sensors/lidar.h"
 #include "tests/bench/ratio.h"
 #include "tests/support/simulated_quadruped.h"
 
@@ -59,8 +60,7 @@ struct Street {
 double cast_all(const Street& street) {
   double sum = 0.0;
   for (const Eigen::Vector3d& direction : street.directions) {
-    const auto hit =
-        street.scene.cast(street.origin, direction, kRange_m, sim::kRayEverything & ~sim::kRayLidar2d);
+    const auto hit = street.scene.cast(street.origin, direction, kRange_m, sim::kRayEverything & ~sim::kRayLidar2d);
     if (hit) sum += hit->distance_m;
   }
   return sum;
@@ -77,8 +77,8 @@ void RaysAgainstMjMultiRay(benchmark::State& state) {
   Ratio ratio;
   for (auto _ : state) {
     ratio.reference([&] {
-      mj_multiRay(&view, street.data.get(), street.origin.data(), street.directions.front().data(), seen, 1,
-                  -1, geoms.data(), distances.data(), nullptr, kBeams, kRange_m);
+      mj_multiRay(&view, street.data.get(), street.origin.data(), street.directions.front().data(), seen, 1, -1,
+                  geoms.data(), distances.data(), nullptr, kBeams, kRange_m);
     });
     state.SetIterationTime(ratio.subject([&] { benchmark::DoNotOptimize(cast_all(street)); }));
   }
@@ -93,8 +93,7 @@ sim::ModelPtr freeze(const Street& street) {
   std::copy_n(street.robot.state().qpos, frozen->nq, frozen->qpos0);
   for (int geom = 0; geom < frozen->ngeom; ++geom) {
     const char* body = mj_id2name(frozen.get(), mjOBJ_BODY, frozen->geom_bodyid[geom]);
-    if (body != nullptr && std::string_view(body) == "lidar")
-      frozen->geom_group[geom] = sim::kGroupRobotCollision;
+    if (body != nullptr && std::string_view(body) == "lidar") frozen->geom_group[geom] = sim::kGroupRobotCollision;
   }
   std::fill_n(frozen->body_weldid, frozen->nbody, 0);
   return frozen;
@@ -134,8 +133,8 @@ BENCHMARK(RaysAgainstBareEmbree)->UseManualTime()->Unit(benchmark::kMicrosecond)
 /// What a tick of 2 ms costs with everything: bodies moved, 64 beams fired, noise drawn.
 void LidarTick(benchmark::State& state) {
   Street street;
-  sim::Lidar lidar(LidarSettings::of_preset("rplidar_s2"), street.scene, street.T_body_lidar,
-                   sim::kRayLidar2d, 1, "lidar");
+  sim::Lidar lidar(LidarSettings::of_preset("rplidar_s2"), street.scene, street.T_body_lidar, sim::kRayLidar2d, 1,
+                   "lidar");
   double update_s = 0.0, all_s = 0.0;
   Time now{};
   constexpr Time kTick = std::chrono::milliseconds(2);

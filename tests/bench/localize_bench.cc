@@ -5,10 +5,10 @@
 // field. The subject is the whole update: motion, ranges, scan, clumps, pose refinement, trust, KLD and resampling.
 // `ratio` is to be at most 1.3.
 
-#include <benchmark/benchmark.h>
-
 #include <cmath>
 #include <vector>
+
+#include <benchmark/benchmark.h>
 
 #include "localize/amcl/distance_to_occupied.h"
 #include "localize/amcl/monte_carlo.h"
@@ -45,7 +45,8 @@ class PlainField {
   float sum(const BeamEnds& ends, const Pose2& pose) const {
     const GridGeometry& geometry = log_likelihood_.geometry();
     const auto c = static_cast<float>(std::cos(pose.yaw)), s = static_cast<float>(std::sin(pose.yaw));
-    const auto x = static_cast<float>(pose.x - geometry.origin_m.x()), y = static_cast<float>(pose.y - geometry.origin_m.y());
+    const auto x = static_cast<float>(pose.x - geometry.origin_m.x()),
+               y = static_cast<float>(pose.y - geometry.origin_m.y());
     const auto inverse_resolution = static_cast<float>(1.0 / geometry.resolution_m);
     float total = 0.0F;
     for (std::size_t i = 0; i < ends.size(); ++i) {
@@ -82,13 +83,20 @@ void UpdateAgainstBareFieldLoop(benchmark::State& state) {
     ratio.reference([&] {
       for (const Pose2& pose : poses) sum += static_cast<double>(field.sum(ends, pose));
     });
-    state.SetIterationTime(ratio.subject([&] { sum += localizer.update(scan, drive.T_odom_body()).estimate.T_map_body.x; }));
+    state.SetIterationTime(
+        ratio.subject([&] { sum += localizer.update(scan, drive.T_odom_body()).estimate.T_map_body.x; }));
     benchmark::DoNotOptimize(sum);
   }
   ratio.report(state);
   state.counters["particles"] = static_cast<double>(localizer.particles().size());
 }
-BENCHMARK(UpdateAgainstBareFieldLoop)->Arg(0)->Arg(1)->ArgName("ranges")->UseManualTime()->Iterations(500)->Unit(benchmark::kMicrosecond);
+BENCHMARK(UpdateAgainstBareFieldLoop)
+    ->Arg(0)
+    ->Arg(1)
+    ->ArgName("ranges")
+    ->UseManualTime()
+    ->Iterations(500)
+    ->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace patrol::bench

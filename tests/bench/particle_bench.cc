@@ -1,14 +1,15 @@
 // One step of FastSLAM 1.0 against the loop that it cannot do without.
 //   tests/bench/particle_bench
-// Both go once round the same circle with the same odometry and sights, N particles and eight landmarks of which all are seen. The reference is a bare loop on
-// plain arrays as anybody would write it: for every particle draw two normals from the same stream, move, and for every landmark predict range and
-// bearing, add up the logarithm of the Gaussian likelihood, and update mean and covariance of the landmark. The subject is the whole step: also weights,
-// estimate, association and resampling. `ratio` is to be at most 1.3; `particles_per_second` is to be the same for all N.
-
-#include <benchmark/benchmark.h>
+// Both go once round the same circle with the same odometry and sights, N particles and eight landmarks of which all
+// are seen. The reference is a bare loop on plain arrays as anybody would write it: for every particle draw two normals
+// from the same stream, move, and for every landmark predict range and bearing, add up the logarithm of the Gaussian
+// likelihood, and update mean and covariance of the landmark. The subject is the whole step: also weights, estimate,
+// association and resampling. `ratio` is to be at most 1.3; `particles_per_second` is to be the same for all N.
 
 #include <cmath>
 #include <vector>
+
+#include <benchmark/benchmark.h>
 
 #include "core/random.h"
 #include "studies/landmarks/fast_slam.h"
@@ -30,15 +31,27 @@ test::CircleWorld bench_world() {
 class BareLoop {
  public:
   BareLoop(const test::CircleWorld& world, std::size_t particles)
-      : world_(world), landmarks_(static_cast<std::size_t>(world.num_landmarks)), x_(particles), y_(particles), yaw_(particles), log_weight_(particles),
-        mx_(particles * landmarks_), my_(mx_), pxx_(mx_), pxy_(mx_), pyy_(mx_), is_seen_(mx_.size(), 0) {}
+      : world_(world),
+        landmarks_(static_cast<std::size_t>(world.num_landmarks)),
+        x_(particles),
+        y_(particles),
+        yaw_(particles),
+        log_weight_(particles),
+        mx_(particles * landmarks_),
+        my_(mx_),
+        pxx_(mx_),
+        pxy_(mx_),
+        pyy_(mx_),
+        is_seen_(mx_.size(), 0) {}
 
   double step(const studies::Control& control, const std::vector<RangeBearing>& seen) {
     RandomSequence random(stream_, steps_++);
-    const double dt = world_.motion.step_s, R0 = std::pow(world_.noise.range_std_m, 2), R1 = std::pow(world_.noise.bearing_std_rad, 2);
+    const double dt = world_.motion.step_s, R0 = std::pow(world_.noise.range_std_m, 2),
+                 R1 = std::pow(world_.noise.bearing_std_rad, 2);
     double sum = 0.0;
     for (std::size_t i = 0; i < x_.size(); ++i) {
-      const double v = control.x() + world_.motion.std.x() * random.normal(), w = control.y() + world_.motion.std.y() * random.normal();
+      const double v = control.x() + world_.motion.std.x() * random.normal(),
+                   w = control.y() + world_.motion.std.y() * random.normal();
       x_[i] += v * dt * std::cos(yaw_[i] + 0.5 * w * dt);
       y_[i] += v * dt * std::sin(yaw_[i] + 0.5 * w * dt);
       yaw_[i] = wrap_angle(yaw_[i] + w * dt);
@@ -61,7 +74,8 @@ class BareLoop {
     const double s00 = h00 * a00 + h01 * a10 + R0, s01 = h00 * a01 + h01 * a11, s11 = h10 * a01 + h11 * a11 + R1;
     const double det = s00 * s11 - s01 * s01, i00 = s11 / det, i01 = -s01 / det, i11 = s00 / det;
     log_weight_[i] -= 0.5 * (nu0 * (i00 * nu0 + i01 * nu1) + nu1 * (i01 * nu0 + i11 * nu1) + std::log(det));
-    const double k00 = a00 * i00 + a01 * i01, k01 = a00 * i01 + a01 * i11, k10 = a10 * i00 + a11 * i01, k11 = a10 * i01 + a11 * i11;
+    const double k00 = a00 * i00 + a01 * i01, k01 = a00 * i01 + a01 * i11, k10 = a10 * i00 + a11 * i01,
+                 k11 = a10 * i01 + a11 * i11;
     mx_[k] += k00 * nu0 + k01 * nu1;
     my_[k] += k10 * nu0 + k11 * nu1;
     pxx_[k] -= k00 * a00 + k01 * a01;
@@ -70,7 +84,8 @@ class BareLoop {
   }
 
   void begin(std::size_t i, std::size_t k, const RangeBearing& sight, double R0, double R1) {
-    const double c = std::cos(yaw_[i] + sight.bearing_rad), s = std::sin(yaw_[i] + sight.bearing_rad), across = sight.range_m * sight.range_m * R1;
+    const double c = std::cos(yaw_[i] + sight.bearing_rad), s = std::sin(yaw_[i] + sight.bearing_rad),
+                 across = sight.range_m * sight.range_m * R1;
     mx_[k] = x_[i] + sight.range_m * c;
     my_[k] = y_[i] + sight.range_m * s;
     pxx_[k] = c * c * R0 + s * s * across;
@@ -96,7 +111,8 @@ void StepAgainstBareLoop(benchmark::State& state) {
   std::size_t num_steps = 0;
   for (auto _ : state) {  // one round
     BareLoop bare(world, particles);
-    studies::FastSlam slam({.particles = static_cast<int>(particles)}, world.motion, world.noise, slam::make_components({}), 1);
+    studies::FastSlam slam({.particles = static_cast<int>(particles)}, world.motion, world.noise,
+                           slam::make_components({}), 1);
     double round_s = 0.0;
     for (std::size_t k = 0; k < drive.controls.size(); ++k, ++num_steps) {
       ratio.reference([&] { sum += bare.step(drive.controls[k], drive.observations[k]); });
@@ -109,7 +125,13 @@ void StepAgainstBareLoop(benchmark::State& state) {
   ratio.report(state);
   state.counters["particles_per_second"] = static_cast<double>(particles * num_steps) / subject_s;
 }
-BENCHMARK(StepAgainstBareLoop)->Arg(10)->Arg(100)->Arg(1000)->ArgName("particles")->UseManualTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(StepAgainstBareLoop)
+    ->Arg(10)
+    ->Arg(100)
+    ->Arg(1000)
+    ->ArgName("particles")
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace patrol::bench

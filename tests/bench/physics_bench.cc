@@ -1,14 +1,14 @@
 // What scenery costs physics: a step of the walking robot in the street against the same robot on a bare
-// plane. And what tracks cost: a tick of the tracked robot on rubble, firmware, belts and all, against a bare mj_step of the same
-// model under the same orders.
+// plane. And what tracks cost: a tick of the tracked robot on rubble, firmware, belts and all, against a bare mj_step
+// of the same model under the same orders.
 //   tests/bench/physics_bench                       `ratio` is to be at most 1.2
 
 #include <benchmark/benchmark.h>
 
 #include "tests/bench/ratio.h"
 #include "tests/sim/rubble.h"
-#include "tests/support/simulated_tracked_robot.h"
 #include "tests/support/simulated_quadruped.h"
+#include "tests/support/simulated_tracked_robot.h"
 
 namespace patrol::bench {
 namespace {
@@ -18,10 +18,8 @@ using sim::WalkingRobot;
 constexpr int kTicksPerTurn = 25;
 
 void StreetAgainstBarePlane(benchmark::State& state) {
-  const VelocityCommand walk{.stamp = {},
-                             .vx_mps = static_cast<double>(state.range(0)) / 100.0,
-                             .vy_mps = 0.0,
-                             .yaw_rate_radps = 0.0};
+  const VelocityCommand walk{
+      .stamp = {}, .vx_mps = static_cast<double>(state.range(0)) / 100.0, .vy_mps = 0.0, .yaw_rate_radps = 0.0};
   WalkingRobot in_street(sim::assemble_model(sim::kStreetXml, sim::kRobotUrdf, sim::kStreetStart));
   WalkingRobot on_plane(sim::make_flat_world(), sim::kStreetStart);
   in_street.stand(1.0);
@@ -37,8 +35,7 @@ void StreetAgainstBarePlane(benchmark::State& state) {
     }
     state.SetIterationTime(street_s / kTicksPerTurn);
   }
-  if (in_street.controller().has_fallen() || on_plane.controller().has_fallen())
-    state.SkipWithError("the robot fell");
+  if (in_street.controller().has_fallen() || on_plane.controller().has_fallen()) state.SkipWithError("the robot fell");
   ratio.report(state);
 }
 BENCHMARK(StreetAgainstBarePlane)

@@ -1,11 +1,10 @@
 // A* of the route planners against a bare one, and the ants' colony over their number.
 //   tests/bench/plan_bench
-// AstarAgainstBareHeap: both search the same grid of free and lethal cells from corner to corner. The reference is A* as anybody would write it: a binary heap
-// (std::priority_queue) of floats and indices, flat arrays for cost so far, parent and closed, the octile distance, eight neighbours, no corners cut. The
-// subject is GridSearch with the whole result: exact prices, points, length, clearance. `ratio` is to be at most 1.5.
-// AntsInIteration: `ants_per_second` is to be the same for all numbers of ants; with threads = 2 the time on the wall is to be about half.
-
-#include <benchmark/benchmark.h>
+// AstarAgainstBareHeap: both search the same grid of free and lethal cells from corner to corner. The reference is A*
+// as anybody would write it: a binary heap (std::priority_queue) of floats and indices, flat arrays for cost so far,
+// parent and closed, the octile distance, eight neighbours, no corners cut. The subject is GridSearch with the whole
+// result: exact prices, points, length, clearance. `ratio` is to be at most 1.5. AntsInIteration: `ants_per_second` is
+// to be the same for all numbers of ants; with threads = 2 the time on the wall is to be about half.
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +13,8 @@
 #include <queue>
 #include <utility>
 #include <vector>
+
+#include <benchmark/benchmark.h>
 
 #include "plan/routes/ant_colony.h"
 #include "plan/routes/generated_grids.h"
@@ -50,7 +51,10 @@ float bare_astar(const std::vector<char>& is_lethal, int width, int height, int 
         if ((dx == 0 && dy == 0) || x + dx < 0 || y + dy < 0 || x + dx >= width || y + dy >= height) continue;
         const int next = here + dy * width + dx;
         if (is_lethal[static_cast<std::size_t>(next)] != 0) continue;
-        if (dx != 0 && dy != 0 && (is_lethal[static_cast<std::size_t>(here + dx)] != 0 || is_lethal[static_cast<std::size_t>(here + dy * width)] != 0)) continue;
+        if (dx != 0 && dy != 0 &&
+            (is_lethal[static_cast<std::size_t>(here + dx)] != 0 ||
+             is_lethal[static_cast<std::size_t>(here + dy * width)] != 0))
+          continue;
         const float there = length[static_cast<std::size_t>(here)] + (dx != 0 && dy != 0 ? root2 : 1.0F);
         if (there >= length[static_cast<std::size_t>(next)]) continue;
         length[static_cast<std::size_t>(next)] = there;
@@ -64,7 +68,8 @@ float bare_astar(const std::vector<char>& is_lethal, int width, int height, int 
 }
 
 void AstarAgainstBareHeap(benchmark::State& state, const char* kind) {
-  const plan::GeneratedGrid grid = plan::generate_grid({.kind = kind, .size_cells = static_cast<int>(state.range(0)), .room_cells = 40, .door_cells = 4}, 1);
+  const plan::GeneratedGrid grid = plan::generate_grid(
+      {.kind = kind, .size_cells = static_cast<int>(state.range(0)), .room_cells = 40, .door_cells = 4}, 1);
   const int width = grid.costs.geometry().width;
   std::vector<char> is_lethal;
   for (const plan::Cost cost : grid.costs.values()) is_lethal.push_back(cost == plan::kLethalCost);
@@ -73,25 +78,49 @@ void AstarAgainstBareHeap(benchmark::State& state, const char* kind) {
   float bare = 0.0F;
   plan::Route route;
   for (auto _ : state) {
-    ratio.reference([&] { bare = bare_astar(is_lethal, width, width, grid.start.row * width + grid.start.col, grid.goal.row * width + grid.goal.col); });
+    ratio.reference([&] {
+      bare = bare_astar(is_lethal, width, width, grid.start.row * width + grid.start.col,
+                        grid.goal.row * width + grid.goal.col);
+    });
     state.SetIterationTime(ratio.subject([&] { route = astar.plan(grid.costs, grid.start, grid.goal); }));
   }
-  if (std::abs(route.length - static_cast<double>(bare)) > 1e-3 * route.length) state.SkipWithError("the two lengths differ");
+  if (std::abs(route.length - static_cast<double>(bare)) > 1e-3 * route.length)
+    state.SkipWithError("the two lengths differ");
   ratio.report(state);
   state.counters["expanded"] = static_cast<double>(route.num_expanded);
 }
-BENCHMARK_CAPTURE(AstarAgainstBareHeap, random, "random")->Arg(500)->Arg(2000)->ArgName("cells")->UseManualTime()->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(AstarAgainstBareHeap, rooms, "rooms")->Arg(500)->Arg(2000)->ArgName("cells")->UseManualTime()->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(AstarAgainstBareHeap, maze, "maze")->Arg(500)->Arg(2000)->ArgName("cells")->UseManualTime()->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(AstarAgainstBareHeap, random, "random")
+    ->Arg(500)
+    ->Arg(2000)
+    ->ArgName("cells")
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(AstarAgainstBareHeap, rooms, "rooms")
+    ->Arg(500)
+    ->Arg(2000)
+    ->ArgName("cells")
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(AstarAgainstBareHeap, maze, "maze")
+    ->Arg(500)
+    ->Arg(2000)
+    ->ArgName("cells")
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
 
 void AntsInIteration(benchmark::State& state) {
   const plan::GeneratedGrid grid = plan::generate_grid({.size_cells = 100}, 1);
   const int ants = static_cast<int>(state.range(0));
-  plan::AntColony colony({.ants = ants, .iterations = 10, .threads = static_cast<int>(state.range(1))}, plan::ImprovedColonySettings{}, 0.0, 1);
+  plan::AntColony colony({.ants = ants, .iterations = 10, .threads = static_cast<int>(state.range(1))},
+                         plan::ImprovedColonySettings{}, 0.0, 1);
   for (auto _ : state) benchmark::DoNotOptimize(colony.plan(grid.costs, grid.start, grid.goal));
   state.counters["ants_per_second"] = benchmark::Counter(10.0 * ants, benchmark::Counter::kIsIterationInvariantRate);
 }
-BENCHMARK(AntsInIteration)->ArgsProduct({{50, 200, 800}, {1, 2}})->ArgNames({"ants", "threads"})->UseRealTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(AntsInIteration)
+    ->ArgsProduct({{50, 200, 800}, {1, 2}})
+    ->ArgNames({"ants", "threads"})
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace patrol::bench

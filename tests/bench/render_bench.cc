@@ -4,17 +4,17 @@
 // And what a frame of the depth camera costs at places along the street, wall time: to be at most 4 ms.
 // Processor time of all threads: the software renderer's own are most of it.
 
-#include <benchmark/benchmark.h>
-
 #include <cmath>
 #include <ctime>
 #include <numbers>
 #include <string>
 #include <vector>
 
+#include <benchmark/benchmark.h>
+
+#include "render/overlay.h"
 #include "render/scene/antialias.h"
 #include "render/scene/depth_renderer.h"
-#include "render/overlay.h"
 #include "render/scene/scene_painter.h"
 #include "sim/model_assembly.h"
 
@@ -47,10 +47,8 @@ RunSnapshot busy_snapshot(const mjModel& model, std::vector<double> qpos, double
   snapshot.state.qpos = std::move(qpos);
   for (int body = 0; body < model.nbody; ++body) {
     if (model.body_mocapid[body] < 0) continue;
-    snapshot.state.mocap.insert(snapshot.state.mocap.end(), model.body_pos + 3 * body,
-                                model.body_pos + 3 * body + 3);
-    snapshot.state.mocap.insert(snapshot.state.mocap.end(), model.body_quat + 4 * body,
-                                model.body_quat + 4 * body + 4);
+    snapshot.state.mocap.insert(snapshot.state.mocap.end(), model.body_pos + 3 * body, model.body_pos + 3 * body + 3);
+    snapshot.state.mocap.insert(snapshot.state.mocap.end(), model.body_quat + 4 * body, model.body_quat + 4 * body + 4);
   }
   snapshot.T_world_body = {{11.0, y_m, 0.32}, quaternion_from_yaw(std::numbers::pi / 2.0)};
   snapshot.T_world_map = {11.0, 8.0, std::numbers::pi / 2.0};
@@ -82,8 +80,7 @@ void ReplayFrameAgainstBareRender(benchmark::State& state) {
   std::vector<RunSnapshot> snapshots;
   const GridGeometry block{.resolution_m = 0.05, .width = 2000, .height = 1200, .origin_m = {-10.0, -50.0}};
   const auto map = std::make_shared<const OccupancyGrid>(block, kFree);
-  for (const double y_m : kPlacesY_m)
-    snapshots.push_back(busy_snapshot(*model.view, model.start_qpos, y_m, map));
+  for (const double y_m : kPlacesY_m) snapshots.push_back(busy_snapshot(*model.view, model.start_qpos, y_m, map));
 
   Frame frame;
   std::vector<float> depth;
@@ -118,8 +115,10 @@ void ReplayFrameAgainstBareRender(benchmark::State& state) {
 }
 BENCHMARK(ReplayFrameAgainstBareRender)->UseManualTime()->Iterations(5)->Unit(benchmark::kMillisecond);
 
-/// Of a camera 0.4 m up that looks 27 degrees down and drives at 1 m/s, 8 m from each place. Wall time; `cpu_ms` of all threads.
-void DepthFrame(benchmark::State& state, const std::string& world, const std::string& robot, const std::vector<Pose2>& places) {
+/// Of a camera 0.4 m up that looks 27 degrees down and drives at 1 m/s, 8 m from each place. Wall time; `cpu_ms` of all
+/// threads.
+void DepthFrame(benchmark::State& state, const std::string& world, const std::string& robot,
+                const std::vector<Pose2>& places) {
   const std::string root = PATROL_SOURCE_DIR;
   const sim::AssembledModel model =
       sim::assemble_model(root + "/worlds/" + world, root + "/models/" + robot, places.front());
@@ -144,10 +143,14 @@ void DepthFrame(benchmark::State& state, const std::string& world, const std::st
 constexpr double kNorth = std::numbers::pi / 2.0;
 BENCHMARK_CAPTURE(DepthFrame, street, "street/street.xml", "quadruped/quadruped.urdf",
                   {{11.0, 10.0, kNorth}, {11.0, 35.0, kNorth}, {11.0, 60.0, kNorth}})
-    ->Unit(benchmark::kMillisecond)->UseRealTime()->Iterations(240);
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime()
+    ->Iterations(240);
 BENCHMARK_CAPTURE(DepthFrame, tunnel, "tunnel/tunnel.xml", "tracked/tracked.urdf",
                   {{6.0, -2.0, 0.0}, {60.0, 0.0, 0.0}, {120.0, 3.0, 0.3}})
-    ->Unit(benchmark::kMillisecond)->UseRealTime()->Iterations(240);
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime()
+    ->Iterations(240);
 
 }  // namespace
 }  // namespace patrol::bench

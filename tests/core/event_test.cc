@@ -25,8 +25,10 @@ TEST(EventKinds, OfFindingsFollowTheirLevel) {
 }
 
 TEST(EventKinds, FailuresAreHazardsFailedTasksAndFaults) {
-  for (const EventKind kind : {EventKind::kGasAlarm, EventKind::kGoalFailed, EventKind::kLocalizationLost}) EXPECT_TRUE(is_failure(kind));
-  for (const EventKind kind : {EventKind::kGoalReached, EventKind::kRecovery, EventKind::kForeign}) EXPECT_FALSE(is_failure(kind));
+  for (const EventKind kind : {EventKind::kGasAlarm, EventKind::kGoalFailed, EventKind::kLocalizationLost})
+    EXPECT_TRUE(is_failure(kind));
+  for (const EventKind kind : {EventKind::kGoalReached, EventKind::kRecovery, EventKind::kForeign})
+    EXPECT_FALSE(is_failure(kind));
 }
 
 TEST(Event, KeepsTheTextOfAForeignKind) {

@@ -1,9 +1,9 @@
 #include "core/frames.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <numbers>
+
+#include <gtest/gtest.h>
 
 #include "tests/support/pose_near.h"
 
@@ -72,8 +72,7 @@ TEST(Pose2, CompositionActsAsOneAfterTheOtherAndWraps) {
 
 TEST(Pose3, AgreesWithPose2InThePlane) {
   const Pose2 T_a_b{1.0, 2.0, 3.0}, T_b_c{-4.0, 0.5, 2.0};
-  EXPECT_THAT(to_pose2(to_pose3(T_a_b, 0.3) * to_pose3(T_b_c)),
-              Pose2Near(T_a_b * T_b_c, kExactTol, kExactTol));
+  EXPECT_THAT(to_pose2(to_pose3(T_a_b, 0.3) * to_pose3(T_b_c)), Pose2Near(T_a_b * T_b_c, kExactTol, kExactTol));
   EXPECT_THAT(to_pose2(to_pose3(T_a_b).inverse()), Pose2Near(T_a_b.inverse(), kExactTol, kExactTol));
   EXPECT_DOUBLE_EQ((to_pose3(T_a_b, 0.3) * to_pose3(T_b_c)).position.z(), 0.3);
 }
@@ -105,8 +104,7 @@ TEST(Interpolate, HalfwayHalvesWayAndTurn) {
   const Pose3 a, b{{2.0, 4.0, -6.0}, quaternion_from_yaw(1.0)};
   EXPECT_THAT(interpolate(a, b, 0.0), Pose3Near(a, 0.0, 1e-7));
   EXPECT_THAT(interpolate(a, b, 1.0), Pose3Near(b, kExactTol, 1e-7));
-  EXPECT_THAT(interpolate(a, b, 0.5),
-              Pose3Near((Pose3{{1.0, 2.0, -3.0}, quaternion_from_yaw(0.5)}), kExactTol, 1e-7));
+  EXPECT_THAT(interpolate(a, b, 0.5), Pose3Near((Pose3{{1.0, 2.0, -3.0}, quaternion_from_yaw(0.5)}), kExactTol, 1e-7));
 }
 
 TEST(Interpolate, TurnsTheShortWayAcrossTheHalfTurn) {

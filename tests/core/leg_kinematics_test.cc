@@ -1,8 +1,8 @@
 #include "core/leg_kinematics.h"
 
-#include <gtest/gtest.h>
-
 #include <numbers>
+
+#include <gtest/gtest.h>
 
 #include "core/random.h"
 #include "tests/support/pose_near.h"
@@ -35,31 +35,26 @@ TEST(FootPosition, StretchedLegHangsSevenBelowTheHip) {
 
 TEST(FootPosition, KneeBentARightAngleBackMakesThreeByFour) {
   // Thigh straight down, shank turned by -90 degrees about y: from -z to +x.
-  EXPECT_THAT(foot_position(kLeft, {0.0, 0.0, -kPi / 2.0}),
-              VectorNear(Eigen::Vector3d(6.0, 2.0, -3.0), kExactTol));
+  EXPECT_THAT(foot_position(kLeft, {0.0, 0.0, -kPi / 2.0}), VectorNear(Eigen::Vector3d(6.0, 2.0, -3.0), kExactTol));
 }
 
 TEST(FootPosition, PositiveHipSwingsTheLegBack) {
-  EXPECT_THAT(foot_position(kLeft, {0.0, kPi / 2.0, 0.0}),
-              VectorNear(Eigen::Vector3d(-5.0, 2.0, 0.0), kExactTol));
+  EXPECT_THAT(foot_position(kLeft, {0.0, kPi / 2.0, 0.0}), VectorNear(Eigen::Vector3d(-5.0, 2.0, 0.0), kExactTol));
 }
 
 TEST(FootPosition, AbductionOfARightAngleTurnsTheLegAboutX) {
   // About +x, y goes to z and -z to y: the offset 1 up, the leg 7 outwards.
-  EXPECT_THAT(foot_position(kLeft, {kPi / 2.0, 0.0, 0.0}),
-              VectorNear(Eigen::Vector3d(2.0, 8.0, 1.0), kExactTol));
+  EXPECT_THAT(foot_position(kLeft, {kPi / 2.0, 0.0, 0.0}), VectorNear(Eigen::Vector3d(2.0, 8.0, 1.0), kExactTol));
 }
 
 TEST(FootPosition, LeftAndRightAreMirrorImages) {
-  const Eigen::Vector3d left = foot_position(kLeft, {0.3, 0.8, -1.6}),
-                        right = foot_position(kRight, {-0.3, 0.8, -1.6});
+  const Eigen::Vector3d left = foot_position(kLeft, {0.3, 0.8, -1.6}), right = foot_position(kRight, {-0.3, 0.8, -1.6});
   EXPECT_THAT(right, VectorNear(Eigen::Vector3d(left.x(), -left.y(), left.z()), kExactTol));
 }
 
 /// A posture of a real leg: abduction within 0.8, hip within -0.8 ... 2.5, knee -2.7 ... -0.3 rad.
 Eigen::Vector3d random_posture(const RandomStream& stream, std::uint64_t i) {
-  return {1.6 * stream.uniform(i, 0) - 0.8, 3.3 * stream.uniform(i, 1) - 0.8,
-          -2.4 * stream.uniform(i, 2) - 0.3};
+  return {1.6 * stream.uniform(i, 0) - 0.8, 3.3 * stream.uniform(i, 1) - 0.8, -2.4 * stream.uniform(i, 2) - 0.3};
 }
 
 TEST(FootJacobian, IsTheNumericalDerivativeToOneMicrometrePerRadian) {
@@ -71,8 +66,7 @@ TEST(FootJacobian, IsTheNumericalDerivativeToOneMicrometrePerRadian) {
       const Eigen::Matrix3d J = foot_jacobian(leg, q);
       for (int joint = 0; joint < 3; ++joint) {
         const Eigen::Vector3d dq = kStep * Eigen::Vector3d::Unit(joint);
-        const Eigen::Vector3d numeric =
-            (foot_position(leg, q + dq) - foot_position(leg, q - dq)) / (2.0 * kStep);
+        const Eigen::Vector3d numeric = (foot_position(leg, q + dq) - foot_position(leg, q - dq)) / (2.0 * kStep);
         EXPECT_THAT(Eigen::Vector3d(J.col(joint)), VectorNear(numeric, 1e-6)) << "joint " << joint;
       }
     }

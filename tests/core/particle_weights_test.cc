@@ -1,9 +1,9 @@
 #include "core/particle_weights.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <numeric>
+
+#include <gtest/gtest.h>
 
 #include "core/random.h"
 

@@ -1,12 +1,12 @@
 #include "core/random.h"
 
-#include <gtest/gtest.h>
-
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
 #include <set>
+
+#include <gtest/gtest.h>
 
 namespace patrol::random_test {
 namespace {
@@ -30,12 +30,11 @@ double unit(std::uint64_t bits) { return (static_cast<double>(bits >> 11) + 0.5)
 
 // Known answers from Random123's own file of test vectors.
 TEST(Philox, GivesThePublishedAnswersForZerosAndForPi) {
-  EXPECT_EQ(philox({0, 0, 0, 0}, {0, 0}), (Block{0x16554d9eca36314cULL, 0xdb20fe9d672d0fdcULL,
-                                                 0xd7e772cee186176bULL, 0x7e68b68aec7ba23bULL}));
-  EXPECT_EQ(
-      philox({0x243f6a8885a308d3ULL, 0x13198a2e03707344ULL, 0xa4093822299f31d0ULL, 0x082efa98ec4e6c89ULL},
-             {0x452821e638d01377ULL, 0xbe5466cf34e90c6cULL}),
-      (Block{0xa528f45403e61d95ULL, 0x38c72dbd566e9788ULL, 0xa5a1610e72fd18b5ULL, 0x57bd43b5e52b7fe6ULL}));
+  EXPECT_EQ(philox({0, 0, 0, 0}, {0, 0}),
+            (Block{0x16554d9eca36314cULL, 0xdb20fe9d672d0fdcULL, 0xd7e772cee186176bULL, 0x7e68b68aec7ba23bULL}));
+  EXPECT_EQ(philox({0x243f6a8885a308d3ULL, 0x13198a2e03707344ULL, 0xa4093822299f31d0ULL, 0x082efa98ec4e6c89ULL},
+                   {0x452821e638d01377ULL, 0xbe5466cf34e90c6cULL}),
+            (Block{0xa528f45403e61d95ULL, 0x38c72dbd566e9788ULL, 0xa5a1610e72fd18b5ULL, 0x57bd43b5e52b7fe6ULL}));
 }
 
 // "foobar" has the FNV-1a hash 85944171f73967e8 (Noll's test vectors).
@@ -45,8 +44,8 @@ TEST(RandomStream, IsPhiloxOfTickAndIndexKeyedBySeedAndNameHash) {
     for (const std::uint64_t index : {0ULL, 7ULL}) {
       const Block bits = philox({tick, index, 0, 0}, {42, 0x85944171f73967e8ULL});
       EXPECT_DOUBLE_EQ(stream.uniform(tick, index), unit(bits[0]));
-      EXPECT_DOUBLE_EQ(stream.normal(tick, index), std::sqrt(-2.0 * std::log(unit(bits[0]))) *
-                                                       std::cos(2.0 * std::numbers::pi * unit(bits[1])));
+      EXPECT_DOUBLE_EQ(stream.normal(tick, index),
+                       std::sqrt(-2.0 * std::log(unit(bits[0]))) * std::cos(2.0 * std::numbers::pi * unit(bits[1])));
     }
   }
 }
@@ -64,8 +63,7 @@ TEST(RandomStream, SeedNameTickAndIndexEachMakeANewNumber) {
   for (const std::uint64_t seed : {1ULL, 2ULL}) {
     for (const char* name : {"pedestrian/1", "pedestrian/2", ""}) {
       for (const std::uint64_t tick : {0ULL, 1ULL}) {
-        for (const std::uint64_t index : {0ULL, 1ULL})
-          values.insert(RandomStream(seed, name).uniform(tick, index));
+        for (const std::uint64_t index : {0ULL, 1ULL}) values.insert(RandomStream(seed, name).uniform(tick, index));
       }
     }
   }

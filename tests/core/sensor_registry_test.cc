@@ -1,10 +1,10 @@
-#include "core/sensors/registry.h"
-
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <set>
 #include <string>
+
+#include <gtest/gtest.h>
+
+#include "core/sensors/registry.h"
 
 namespace patrol::sensor_registry_test {
 namespace {
@@ -38,7 +38,8 @@ TEST(SensorRegistry, ASensorThatDrivingNeedsIsMonitored) {
 TEST(SensorRegistry, AFreezeCheckComesWithAComparisonOfReadings) {
   Sensors::for_each([]<typename Message>(std::type_identity<Message>) {
     constexpr bool kCompares = requires(const Message& message) { SensorTraits<Message>::repeats(message, message); };
-    EXPECT_EQ(kCompares, SensorTraits<Message>::kInfo.freeze_check != FreezeCheck::kNone) << SensorTraits<Message>::kInfo.name;
+    EXPECT_EQ(kCompares, SensorTraits<Message>::kInfo.freeze_check != FreezeCheck::kNone)
+        << SensorTraits<Message>::kInfo.name;
   });
 }
 

@@ -53,16 +53,13 @@ TEST(Validate, NamesFieldValueAndRule) {
 }
 
 TEST(Validate, WalksIntoSectionsAndLists) {
-  EXPECT_EQ(complaint_about({.spare = {.radius_m = 2.0}}, "cart"),
-            "cart.spare.radius_m = 2: must be in [0.01, 1]");
-  EXPECT_EQ(complaint_about({.wheels = {{}, {.radius_m = 0.0}}}),
-            "wheels.1.radius_m = 0: must be in [0.01, 1]");
+  EXPECT_EQ(complaint_about({.spare = {.radius_m = 2.0}}, "cart"), "cart.spare.radius_m = 2: must be in [0.01, 1]");
+  EXPECT_EQ(complaint_about({.wheels = {{}, {.radius_m = 0.0}}}), "wheels.1.radius_m = 0: must be in [0.01, 1]");
   EXPECT_EQ(complaint_about({.loads_kg = {0.0, -1.0}}), "loads_kg.1 = -1: must be at least 0");
 }
 
 TEST(Validate, RefusesWhatIsNotFiniteEvenWithoutARule) {
-  const double nan = std::numeric_limits<double>::quiet_NaN(),
-               infinity = std::numeric_limits<double>::infinity();
+  const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
   EXPECT_THAT(complaint_about({.loads_kg = {nan}}), ::testing::StartsWith("loads_kg.0 = nan: "));
   EXPECT_THAT(complaint_about({.loads_kg = {infinity}}), ::testing::StartsWith("loads_kg.0 = inf: "));
   EXPECT_FALSE(allows(any(), nan));

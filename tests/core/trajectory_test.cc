@@ -17,8 +17,7 @@ StampedPose at(Time stamp, double x, double y, double z, double yaw = 0.0) {
 const Trajectory kWalk = {at(1s, 0, 0, 0), at(3s, 4, 0, 1, 1.0), at(4s, 4, 3, 9, 1.0)};
 
 TEST(PoseAt, GivesTheKnotsThemselves) {
-  for (const StampedPose& knot : kWalk)
-    EXPECT_THAT(*pose_at(kWalk, knot.stamp), Pose3Near(knot.pose, 0.0, 1e-7));
+  for (const StampedPose& knot : kWalk) EXPECT_THAT(*pose_at(kWalk, knot.stamp), Pose3Near(knot.pose, 0.0, 1e-7));
 }
 
 TEST(PoseAt, AQuarterOfTheTimeIsAQuarterOfTheWayAndTurn) {

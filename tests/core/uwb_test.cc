@@ -1,8 +1,8 @@
 #include "core/uwb.h"
 
-#include <gtest/gtest.h>
-
 #include <numbers>
+
+#include <gtest/gtest.h>
 
 namespace patrol::uwb_test {
 namespace {
@@ -41,7 +41,8 @@ TEST(Uwb, GradientIsTheDifferenceQuotient) {
   const Eigen::Vector3d antenna(-0.3, 0.2, 0.6);
   const Pose2 pose{1.0, 2.0, 0.7};
   const auto range = [&](double dx, double dy, double dyaw, double dz) {
-    return predict_uwb_range(anchor, {pose.x + dx, pose.y + dy, pose.yaw + dyaw}, antenna + Eigen::Vector3d(0, 0, dz), calibration)
+    return predict_uwb_range(anchor, {pose.x + dx, pose.y + dy, pose.yaw + dyaw}, antenna + Eigen::Vector3d(0, 0, dz),
+                             calibration)
         .range_m;
   };
   const PredictedRange predicted = predict_uwb_range(anchor, pose, antenna, calibration);

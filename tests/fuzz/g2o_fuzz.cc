@@ -18,6 +18,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     require(edge.from >= 0 && edge.to >= 0 && edge.from < num_nodes && edge.to < num_nodes, "edges lie between nodes");
   }
   const std::string text = patrol::io::to_g2o(*graph);
-  require(patrol::io::to_g2o(patrol::io::load_g2o(MemoryFile(text).path())) == text, "what was read can be written and read again");
+  require(patrol::io::to_g2o(patrol::io::load_g2o(MemoryFile(text).path())) == text,
+          "what was read can be written and read again");
   return 0;
 }

@@ -12,9 +12,9 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::vector<patrol::ScannerPoint> points = patrol::io::load_pcd(file.path());
     require(points.size() <= size, "each point takes a byte at least");
     for (const auto& [x, y, z, intensity] : points) {
-      require(std::isfinite(x) && std::isfinite(y) && std::isfinite(z) && std::isfinite(intensity), "points are finite");
+      require(std::isfinite(x) && std::isfinite(y) && std::isfinite(z) && std::isfinite(intensity),
+              "points are finite");
     }
-  } catch (const patrol::InputError&) {
-  }
+  } catch (const patrol::InputError&) {}
   return 0;
 }

@@ -13,7 +13,6 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
       require(std::isfinite(relation.T_from_to.x) && std::isfinite(relation.T_from_to.y), "positions are finite");
       require(std::abs(relation.T_from_to.yaw) <= 3.15, "headings are wrapped");
     }
-  } catch (const patrol::InputError&) {
-  }
+  } catch (const patrol::InputError&) {}
   return 0;
 }

@@ -9,14 +9,18 @@
 
 namespace patrol::test {
 
-inline bool is_finite(const Pose2& pose) { return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.yaw); }
+inline bool is_finite(const Pose2& pose) {
+  return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.yaw);
+}
 
 inline void check_scan(const RecordedScan& recorded) {
   const LaserScan& scan = recorded.scan;
   require(is_finite(recorded.T_odom_body), "odometry is finite");
   require(is_finite(recorded.T_body_lidar), "the lidar's place is finite");
   require(!scan.ranges_m.empty() && scan.ranges_m.size() <= 10'000, "1 ... 10000 beams");
-  require(scan.intensities.empty() || scan.intensities.size() == scan.ranges_m.size() || scan.intensities.size() <= 10'000, "no endless intensities");
+  require(scan.intensities.empty() || scan.intensities.size() == scan.ranges_m.size() ||
+              scan.intensities.size() <= 10'000,
+          "no endless intensities");
   require(std::isfinite(scan.angle_min_rad) && std::isfinite(scan.angle_increment_rad), "angles are finite");
   require(std::isfinite(scan.range_max_m) && scan.range_max_m > 0.0, "there is a maximum range");
   for (const float range_m : scan.ranges_m) {
@@ -52,7 +56,8 @@ std::optional<std::size_t> read_all(const std::filesystem::path& file, bool skip
 /// What is read without complaint is read the same when bad lines are skipped.
 template <typename Log>
 void check_log(const MemoryFile& file) {
-  const std::optional<std::size_t> strict = read_all<Log>(file.path(), false), skipping = read_all<Log>(file.path(), true);
+  const std::optional<std::size_t> strict = read_all<Log>(file.path(), false),
+                                   skipping = read_all<Log>(file.path(), true);
   require(!strict || strict == skipping, "skipping bad lines changes nothing where there are none");
 }
 

@@ -12,11 +12,11 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     try {
       const patrol::Trajectory trajectory = patrol::io::load_tum(file.path(), same_stamps);
       for (std::size_t i = 0; i < trajectory.size(); ++i) {
-        require(trajectory[i].pose.position.allFinite() && std::abs(trajectory[i].pose.rotation.norm() - 1.0) < 1e-9, "poses are poses");
+        require(trajectory[i].pose.position.allFinite() && std::abs(trajectory[i].pose.rotation.norm() - 1.0) < 1e-9,
+                "poses are poses");
         require(i == 0 || trajectory[i - 1].stamp < trajectory[i].stamp, "stamps grow");
       }
-    } catch (const patrol::InputError&) {
-    }
+    } catch (const patrol::InputError&) {}
   }
   return 0;
 }

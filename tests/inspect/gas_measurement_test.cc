@@ -1,9 +1,9 @@
 #include "inspect/gas_measurement.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <limits>
+
+#include <gtest/gtest.h>
 
 #include "core/random.h"
 
@@ -36,8 +36,7 @@ TEST(GasMeasurement, OfNormalReadingsFindsMeanAndStandardError) {
   constexpr double kMean = 180.0, kStd = 25.0;
   const RandomStream stream(5, "test/gas");
   GasMeasurement gas;
-  for (int i = 0; i < kReadings; ++i)
-    gas.add(reading(i, kMean + kStd * stream.normal(static_cast<std::uint64_t>(i))));
+  for (int i = 0; i < kReadings; ++i) gas.add(reading(i, kMean + kStd * stream.normal(static_cast<std::uint64_t>(i))));
   const double standard_error = kStd / std::sqrt(kReadings);
   EXPECT_NEAR(gas.mean_ppm_m(), kMean, 4.0 * standard_error);
   EXPECT_NEAR(gas.standard_error_ppm_m(), standard_error, 4.0 * standard_error / std::sqrt(2.0 * kReadings));

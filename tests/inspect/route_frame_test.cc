@@ -1,8 +1,8 @@
 #include "inspect/route_frame.h"
 
-#include <gtest/gtest.h>
-
 #include <numbers>
+
+#include <gtest/gtest.h>
 
 #include "core/random.h"
 #include "tests/support/pose_near.h"
@@ -69,8 +69,7 @@ TEST(RouteFrame, KeepsWhatHasNoPlace) {
 TEST(RouteFrame, ThereAndBackIsTheRouteAgain) {
   for (std::uint64_t i = 0; i < 50; ++i) {
     const RandomStream stream(i, "test/start");
-    const Pose2 T_site_start{20.0 * stream.normal(0), 20.0 * stream.normal(1),
-                             6.28 * stream.uniform(2) - 3.14};
+    const Pose2 T_site_start{20.0 * stream.normal(0), 20.0 * stream.normal(1), 6.28 * stream.uniform(2) - 3.14};
     const Route before = make_route(), after = to_map(to_map(before, T_site_start), T_site_start.inverse());
     const Station &a = before.stations[0], &b = after.stations[0];
     EXPECT_THAT(b.T_route_body, Pose2Near(a.T_route_body, 1e-9, 1e-9));

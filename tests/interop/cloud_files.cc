@@ -14,7 +14,8 @@ std::vector<patrol::ScannerPoint> sample() {
   std::vector<patrol::ScannerPoint> points;
   for (int i = 0; i < 1000; ++i) {
     const auto t = static_cast<float>(i);
-    points.push_back({.x = 0.125F * t, .y = -1.5F * t, .z = 1.0F / (1.0F + t), .intensity = static_cast<float>(i % 256)});
+    points.push_back(
+        {.x = 0.125F * t, .y = -1.5F * t, .z = 1.0F / (1.0F + t), .intensity = static_cast<float>(i % 256)});
   }
   return points;
 }

@@ -13,7 +13,8 @@
 /// Point clouds and complaints, for the tests of PLY and PCD.
 namespace patrol::io {
 
-inline const std::vector<ScannerPoint> kThreePoints = {{1.5F, -2.25F, 0.125F, 200.0F}, {0.1F, 1e-7F, -70.0F, 0.0F}, {3e5F, -1.0F, 1.0F, 255.0F}};
+inline const std::vector<ScannerPoint> kThreePoints = {
+    {1.5F, -2.25F, 0.125F, 200.0F}, {0.1F, 1e-7F, -70.0F, 0.0F}, {3e5F, -1.0F, 1.0F, 255.0F}};
 
 inline void expect_same(const std::vector<ScannerPoint>& a, const std::vector<ScannerPoint>& b) {
   ASSERT_EQ(a.size(), b.size());

@@ -13,7 +13,8 @@
 /// What other people's robots record, and the MCAP file that they record it in.
 namespace patrol::test {
 
-inline io::FrameTransform placed(const std::string& parent, const std::string& child, const Pose3& T_parent_child, Time stamp = {}) {
+inline io::FrameTransform placed(const std::string& parent, const std::string& child, const Pose3& T_parent_child,
+                                 Time stamp = {}) {
   return {.stamp = stamp, .parent = parent, .child = child, .T_parent_child = T_parent_child};
 }
 

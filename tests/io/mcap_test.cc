@@ -1,10 +1,9 @@
-#include <gtest/gtest.h>
-
 #include <cstdlib>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
+#include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "io/mcap/mcap_reader.h"
@@ -121,8 +120,7 @@ TEST_F(Mcap, EveryInstantIsFoundByItself) {
   write_log(file, entries);
   for (int i = 0; i < 100; ++i) {
     const Time instant = i * 100ms;
-    ASSERT_EQ(read_log(file, {.topics = {}, .from = instant, .to = instant}).size(), i % 10 == 0 ? 2U : 1U)
-        << i;
+    ASSERT_EQ(read_log(file, {.topics = {}, .from = instant, .to = instant}).size(), i % 10 == 0 ? 2U : 1U) << i;
   }
 }
 
@@ -185,8 +183,7 @@ TEST_F(Mcap, AFlippedBitNamesTheByteOfItsRecord) {
     bytes[at] = static_cast<char>(bytes[at] ^ 0x10);
     write_bytes(damaged, bytes);
     const std::string complaint = complaint_about(damaged);
-    ASSERT_TRUE(complaint.starts_with(damaged.string() + ": byte "))
-        << "byte " << at << ": '" << complaint << "'";
+    ASSERT_TRUE(complaint.starts_with(damaged.string() + ": byte ")) << "byte " << at << ": '" << complaint << "'";
     EXPECT_EQ(byte_named_in(complaint), first_chunk);
     ++in_chunk;
   }

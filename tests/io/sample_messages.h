@@ -32,15 +32,11 @@ inline PointCloud sample_cloud() {
           .points = {{1.0F, 2.0F, 3.0F, 4.0F, 0.5F, 15}, {-1.5F, 0.25F, 9.0F, 255.0F, 0.75F, 65535}}};
 }
 inline Imu sample_imu() {
-  return {.stamp = kSampleStamp,
-          .angular_velocity_radps = {0.1, -0.2, 0.3},
-          .linear_acceleration_mps2 = {1.0, -2.0, 9.81}};
+  return {
+      .stamp = kSampleStamp, .angular_velocity_radps = {0.1, -0.2, 0.3}, .linear_acceleration_mps2 = {1.0, -2.0, 9.81}};
 }
 inline JointState sample_joints() {
-  return {.stamp = kSampleStamp,
-          .position_rad = {0.1, 0.8},
-          .velocity_radps = {1.0, -2.0},
-          .effort_nm = {3.5, 4.5}};
+  return {.stamp = kSampleStamp, .position_rad = {0.1, 0.8}, .velocity_radps = {1.0, -2.0}, .effort_nm = {3.5, 4.5}};
 }
 inline FootContacts sample_contacts() { return {.stamp = kSampleStamp, .force_n = {10.0, 0.0, 20.5, 30.25}}; }
 inline GasReading sample_gas() {
@@ -85,7 +81,11 @@ inline PanoramicScan sample_panorama() {
 }
 inline AntennaState sample_antenna() { return {.stamp = kSampleStamp, .yaw_rad = 0.5, .pitch_rad = -0.25}; }
 inline TemSounding sample_sounding() {
-  return {.stamp = kSampleStamp, .moment_am2 = 240.0, .gate_s = {4e-6, 8e-6}, .rate_tps = {2e-5, -1e-6}, .std_tps = {1e-8, 2e-8}};
+  return {.stamp = kSampleStamp,
+          .moment_am2 = 240.0,
+          .gate_s = {4e-6, 8e-6},
+          .rate_tps = {2e-5, -1e-6},
+          .std_tps = {1e-8, 2e-8}};
 }
 inline LiningResult sample_lining() {
   return {.stamp = kSampleStamp,
@@ -97,13 +97,32 @@ inline LiningResult sample_lining() {
           .correction_m = 0.04,
           .cells = {{.ring = 12, .clock_deg = 95.0, .inward_m = 0.003, .std_m = 0.0002, .points = 340}},
           .lines = {{.ring = 12, .name = "9-3", .change_m = -0.006, .std_m = 0.0003}},
-          .findings = {{.ring = 12, .clock_deg = 95.0, .inward_m = 0.003, .std_m = 0.0002, .level = WarningLevel::kWarning, .p_map = {3.0, -4.0, 1.5}}}};
+          .findings = {{.ring = 12,
+                        .clock_deg = 95.0,
+                        .inward_m = 0.003,
+                        .std_m = 0.0002,
+                        .level = WarningLevel::kWarning,
+                        .p_map = {3.0, -4.0, 1.5}}}};
 }
 inline WaterResult sample_water() {
-  WaterResult water{.stamp = kSampleStamp, .station = "goal_4", .T_map_body = {1.0, 2.0, 0.5}, .soundings = 35, .antenna_error_deg = 0.4,
-                    .rock_spm = 0.002, .evidence = 120.0, .is_found = true, .level = WarningLevel::kAlarm, .p_map = {-170.0, 3.0, 2.0},
-                    .distance_m = 18.0, .distance_low_m = 16.5, .distance_high_m = 19.5, .azimuth_deg = 10.0, .elevation_deg = -5.0,
-                    .radius_m = 5.0, .radius_low_m = 4.5, .radius_high_m = 5.5};
+  WaterResult water{.stamp = kSampleStamp,
+                    .station = "goal_4",
+                    .T_map_body = {1.0, 2.0, 0.5},
+                    .soundings = 35,
+                    .antenna_error_deg = 0.4,
+                    .rock_spm = 0.002,
+                    .evidence = 120.0,
+                    .is_found = true,
+                    .level = WarningLevel::kAlarm,
+                    .p_map = {-170.0, 3.0, 2.0},
+                    .distance_m = 18.0,
+                    .distance_low_m = 16.5,
+                    .distance_high_m = 19.5,
+                    .azimuth_deg = 10.0,
+                    .elevation_deg = -5.0,
+                    .radius_m = 5.0,
+                    .radius_low_m = 4.5,
+                    .radius_high_m = 5.5};
   water.covariance_m2 << 1.0, 0.25, 0.5, 0.25, 2.0, -0.125, 0.5, -0.125, 3.0;
   return water;
 }
@@ -129,16 +148,14 @@ inline ParticleSet sample_particles() {
   return {.stamp = kSampleStamp, .T_map_body = {{1.0, 2.0, 0.5}, {3.0, 4.0, -0.5}}, .weights = {0.25, 0.75}};
 }
 inline MapUpdate sample_map() {
-  MapUpdate update{.stamp = kSampleStamp,
-                   .map = OccupancyGrid(
-                       {.resolution_m = 0.05, .width = 3, .height = 2, .origin_m = {-1.0, 2.5}}, kUnknown)};
+  MapUpdate update{
+      .stamp = kSampleStamp,
+      .map = OccupancyGrid({.resolution_m = 0.05, .width = 3, .height = 2, .origin_m = {-1.0, 2.5}}, kUnknown)};
   update.map.at({2, 0}) = kOccupied;
   update.map.at({0, 1}) = kFree;
   return update;
 }
-inline Path sample_path() {
-  return {.stamp = kSampleStamp, .T_map_body = {{1.0, 2.0, 0.5}, {3.0, 4.0, -0.5}}};
-}
+inline Path sample_path() { return {.stamp = kSampleStamp, .T_map_body = {{1.0, 2.0, 0.5}, {3.0, 4.0, -0.5}}}; }
 inline VelocityCommand sample_command() {
   return {.stamp = kSampleStamp, .vx_mps = 0.5, .vy_mps = -0.25, .yaw_rate_radps = 1.0};
 }
@@ -152,28 +169,24 @@ inline Event sample_event() {
           .p_map_target = {3.0, -4.0}};
 }
 inline GroundTruth sample_truth() {
-  return {
-      .stamp = kSampleStamp, .T_world_body = sample_pose(), .twist = {{0.5, 0.1, -0.1}, {0.01, 0.02, 0.03}}};
+  return {.stamp = kSampleStamp, .T_world_body = sample_pose(), .twist = {{0.5, 0.1, -0.1}, {0.01, 0.02, 0.03}}};
 }
-inline SimState sample_state() {
-  return {.stamp = kSampleStamp, .qpos = {1.0, 2.0, 3.0}, .mocap = {4.0, 5.0}};
-}
-inline Collision sample_collision() {
-  return {.stamp = kSampleStamp, .first = "FL_shank", .second = "house_7"};
-}
+inline SimState sample_state() { return {.stamp = kSampleStamp, .qpos = {1.0, 2.0, 3.0}, .mocap = {4.0, 5.0}}; }
+inline Collision sample_collision() { return {.stamp = kSampleStamp, .first = "FL_shank", .second = "house_7"}; }
 inline io::TransformSet sample_transforms() {
   return {{{.stamp = kSampleStamp, .parent = "map", .child = "odom", .T_parent_child = sample_pose()},
            {.stamp = 1s, .parent = "odom", .child = "base_link", .T_parent_child = {}}}};
 }
 
 inline auto all_samples() {
-  return std::tuple(sample_scan(), sample_cloud(), sample_imu(), sample_joints(), sample_contacts(),
-                    sample_gas(), sample_fix(), sample_ticks(), sample_uwb(),
-                    sample_ultrasonic(), sample_depth(), sample_teleop(), sample_panorama(),
-                    sample_antenna(), sample_sounding(), ScanCommand{kSampleStamp}, AntennaCommand{kSampleStamp, 0.5, -0.25},
-                    SoundingCommand{kSampleStamp}, WarningCommand{kSampleStamp, true, false}, sample_lining(), sample_water(), sample_trust(), sample_odometry(), sample_estimate(), UwbPoseEstimate{sample_estimate()}, sample_particles(),
-                    sample_map(), sample_path(), sample_command(), sample_event(), sample_truth(),
-                    sample_state(), sample_collision(), sample_transforms());
+  return std::tuple(sample_scan(), sample_cloud(), sample_imu(), sample_joints(), sample_contacts(), sample_gas(),
+                    sample_fix(), sample_ticks(), sample_uwb(), sample_ultrasonic(), sample_depth(), sample_teleop(),
+                    sample_panorama(), sample_antenna(), sample_sounding(), ScanCommand{kSampleStamp},
+                    AntennaCommand{kSampleStamp, 0.5, -0.25}, SoundingCommand{kSampleStamp},
+                    WarningCommand{kSampleStamp, true, false}, sample_lining(), sample_water(), sample_trust(),
+                    sample_odometry(), sample_estimate(), UwbPoseEstimate{sample_estimate()}, sample_particles(),
+                    sample_map(), sample_path(), sample_command(), sample_event(), sample_truth(), sample_state(),
+                    sample_collision(), sample_transforms());
 }
 
 }  // namespace patrol::test

@@ -1,13 +1,12 @@
-#include "core/sensors/registry.h"
+#include <string>
 
 #include <gtest/gtest.h>
 
-#include <string>
-
+#include "core/sensors/registry.h"
+#include "io/logs/run_log.h"
 #include "io/ros/ros_definitions.h"
 #include "io/ros/ros_fields.h"
 #include "io/ros/ros_messages.h"
-#include "io/logs/run_log.h"
 
 namespace patrol::io::sensor_registry_test {
 namespace {

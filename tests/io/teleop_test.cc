@@ -1,10 +1,10 @@
-#include <gtest/gtest.h>
-
 #include <numbers>
 
+#include <gtest/gtest.h>
+
 #include "core/error.h"
-#include "io/json/teleop_route_json.h"
 #include "io/files/teleop_csv.h"
+#include "io/json/teleop_route_json.h"
 #include "tests/support/temporary_file.h"
 
 namespace patrol::io::teleop_test {
@@ -51,7 +51,8 @@ TEST(LoadTeleopRoute, NamesTheWaypointAndTheKey) {
             "d.json: waypoints[1]: position must be a list of 2 numbers");
   EXPECT_EQ(drive_complaint(R"([{"position": [1, 2], "revers": true}])"),
             "d.json: waypoints[0]: unknown key revers; did you mean reverse?");
-  EXPECT_EQ(drive_complaint(R"([{"position": [1, 2], "reverse": 1}])"), "d.json: waypoints[0]: reverse must be true or false");
+  EXPECT_EQ(drive_complaint(R"([{"position": [1, 2], "reverse": 1}])"),
+            "d.json: waypoints[0]: reverse must be true or false");
   EXPECT_EQ(drive_complaint(R"([{"position": [1, 2], "mark_heading_deg": 361}])"),
             "d.json: waypoints[0]: mark_heading_deg must be in [-360, 360]");
   EXPECT_EQ(drive_complaint(R"([{"position": [1, 2]}, {"position": [1e300, 2]}])"),
@@ -76,7 +77,8 @@ TEST(LoadTeleop, NamesTheLine) {
   EXPECT_EQ(complaint("r.csv", "t,v\n", load_teleop),
             "r.csv:1: the first line must be time_s,vx_mps,yaw_rate_radps,mark,hand_over");
   EXPECT_EQ(remote_complaint(""), "r.csv: contains no commands");
-  EXPECT_EQ(remote_complaint("0,1,2,0\n"), "r.csv:2: must be 5 numbers with commas between, time_s,vx_mps,yaw_rate_radps,mark,hand_over");
+  EXPECT_EQ(remote_complaint("0,1,2,0\n"),
+            "r.csv:2: must be 5 numbers with commas between, time_s,vx_mps,yaw_rate_radps,mark,hand_over");
   EXPECT_EQ(remote_complaint("0,1,nan,0,0\n"), "r.csv:2: yaw_rate_radps = nan: must be a number");
   EXPECT_EQ(remote_complaint("0,fast,0,0,0\n"), "r.csv:2: vx_mps = fast: must be a number");
   EXPECT_EQ(remote_complaint("0,1e400,0,0,0\n"), "r.csv:2: vx_mps = 1e400: must be a number");
@@ -89,7 +91,8 @@ TEST(LoadTeleop, NamesTheLine) {
 
 TEST(LoadTeleop, NumbersBeyondAnyDriveAreRefused) {
   EXPECT_EQ(remote_complaint("-1,0,0,0,0\n"), "r.csv:2: time_s = -1: must be in [0, 86400]");
-  EXPECT_EQ(remote_complaint("1e300,0,0,0,0\n"), "r.csv:2: time_s = 1e+300: must be in [0, 86400]") << "no integer of nanoseconds";
+  EXPECT_EQ(remote_complaint("1e300,0,0,0,0\n"), "r.csv:2: time_s = 1e+300: must be in [0, 86400]")
+      << "no integer of nanoseconds";
   EXPECT_EQ(remote_complaint("0,1e300,0,0,0\n"), "r.csv:2: vx_mps = 1e+300: must be in [-100, 100]");
   EXPECT_EQ(remote_complaint("0,0,-101,0,0\n"), "r.csv:2: yaw_rate_radps = -101: must be in [-100, 100]");
 }

@@ -1,10 +1,10 @@
 #include "io/urdf.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <set>
 #include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "core/leg_kinematics.h"
@@ -24,10 +24,8 @@ std::string changed(const std::string& old, const std::string& by, const std::st
   std::string text = test::read_bytes(kQuadruped);
   const std::size_t from = text.find(after);
   const std::size_t at = text.find(old, from);
-  if (from == std::string::npos || at == std::string::npos)
-    ADD_FAILURE() << "the URDF no longer holds " << old;
-  else
-    text.replace(at, old.size(), by);
+  if (from == std::string::npos || at == std::string::npos) ADD_FAILURE() << "the URDF no longer holds " << old;
+  else text.replace(at, old.size(), by);
   return text;
 }
 
@@ -58,8 +56,7 @@ TEST(Quadruped, HasFourLegsOfThreeJointsInOrder) {
     const LegGeometry& geometry = robot.legs[leg];
     const double front = leg < 2 ? 1.0 : -1.0, left = leg % 2 == 0 ? 1.0 : -1.0;
     EXPECT_EQ(geometry.name, names[leg]);
-    EXPECT_THAT(geometry.hip_in_body,
-                VectorNear(Eigen::Vector3d(front * 0.376 / 2, left * 0.0935 / 2, 0.0), 1e-3));
+    EXPECT_THAT(geometry.hip_in_body, VectorNear(Eigen::Vector3d(front * 0.376 / 2, left * 0.0935 / 2, 0.0), 1e-3));
     EXPECT_NEAR(geometry.abduction_offset_m, left * 0.08, 1e-9);
     EXPECT_NEAR(geometry.thigh_m, 0.213, 1e-9);
     EXPECT_NEAR(geometry.shank_m, 0.213, 1e-9);
@@ -90,8 +87,7 @@ TEST(Quadruped, StandsOnFeetWithinItsFootprint) {
 
 TEST(Quadruped, CarriesItsSensors) {
   const auto sensors = load_robot_description(kQuadruped).T_body_sensor;
-  for (const char* name : {"lidar", "lidar3d", "imu", "tdlas", "gnss"})
-    EXPECT_TRUE(sensors.contains(name)) << name;
+  for (const char* name : {"lidar", "lidar3d", "imu", "tdlas", "gnss"}) EXPECT_TRUE(sensors.contains(name)) << name;
   EXPECT_THAT(sensors.at("lidar3d").position, VectorNear(Eigen::Vector3d(0.1, 0.0, 0.098), 1e-12));
 }
 
@@ -129,8 +125,10 @@ TEST(Tracked, TurnsItsAntennaAboutAPoint98CentimetresAboveTheGroundByTwoServosOf
 TEST(Tracked, AnAntennaWhoseAxesDoNotMeetOrThatCannotBeStowedIsRefused) {
   EXPECT_THAT(complaint_about_tracked("<origin xyz=\"0 0 0\"/>", "<origin xyz=\"0 0 0.1\"/>", "tem_pitch_joint"),
               HasSubstr("tem_pitch_joint: must have no <origin>"));
-  EXPECT_THAT(complaint_about_tracked("lower=\"-1.62\"", "lower=\"-1.5\"", "tem_pitch_joint"), HasSubstr("tem_pitch_joint: lower limit must reach -90 degrees"));
-  EXPECT_THAT(complaint_about_tracked("<axis xyz=\"0 0 1\"/>", "<axis xyz=\"0 1 0\"/>", "tem_yaw_joint"), HasSubstr("tem_yaw_joint: must be revolute"));
+  EXPECT_THAT(complaint_about_tracked("lower=\"-1.62\"", "lower=\"-1.5\"", "tem_pitch_joint"),
+              HasSubstr("tem_pitch_joint: lower limit must reach -90 degrees"));
+  EXPECT_THAT(complaint_about_tracked("<axis xyz=\"0 0 1\"/>", "<axis xyz=\"0 1 0\"/>", "tem_yaw_joint"),
+              HasSubstr("tem_yaw_joint: must be revolute"));
 }
 
 TEST(Tracked, HasTracks55CentimetresApartWith60CentimetresOnTheGround) {
@@ -183,19 +181,16 @@ TEST(Tracked, WhatIsWrongWithATrackIsNamed) {
 }
 
 TEST(Urdf, AMissingLinkIsNamedWithItsLine) {
-  EXPECT_THAT(
-      complaint_about(changed("<child link=\"imu\"/>", "<child link=\"gyro\"/>")),
-      MatchesRegex("q.urdf:[0-9]+: gyro: unknown link: child of a joint"));
-  EXPECT_THAT(
-      complaint_about(changed("<parent link=\"base_link\"/>", "<parent link=\"trunk\"/>")),
-      MatchesRegex("q.urdf:[0-9]+: trunk: unknown link: parent of a joint"));
+  EXPECT_THAT(complaint_about(changed("<child link=\"imu\"/>", "<child link=\"gyro\"/>")),
+              MatchesRegex("q.urdf:[0-9]+: gyro: unknown link: child of a joint"));
+  EXPECT_THAT(complaint_about(changed("<parent link=\"base_link\"/>", "<parent link=\"trunk\"/>")),
+              MatchesRegex("q.urdf:[0-9]+: trunk: unknown link: parent of a joint"));
 }
 
 TEST(Urdf, NotANumberAndInfinityAreNamedWithTheirLine) {
   for (const char* bad : {"nan", "NaN", "inf", "-inf", "Infinity"}) {
-    EXPECT_THAT(
-        complaint_about(changed("<mass value=\"5.2\"/>", std::string("<mass value=\"") + bad + "\"/>")),
-        MatchesRegex("q.urdf:[0-9]+: .*: must be finite numbers"))
+    EXPECT_THAT(complaint_about(changed("<mass value=\"5.2\"/>", std::string("<mass value=\"") + bad + "\"/>")),
+                MatchesRegex("q.urdf:[0-9]+: .*: must be finite numbers"))
         << bad;
     EXPECT_THAT(complaint_about(changed("xyz=\"0.1 0 0.098\"", std::string("xyz=\"0.1 ") + bad + " 0.098\"")),
                 MatchesRegex("q.urdf:[0-9]+: .*: must be finite numbers"))
@@ -204,8 +199,7 @@ TEST(Urdf, NotANumberAndInfinityAreNamedWithTheirLine) {
 }
 
 TEST(Urdf, WordsThatOnlyBeginLikeNanOrInfAreNoNumbers) {
-  EXPECT_EQ(complaint_about(changed("<robot name=\"quadruped\">", "<robot name=\"nancy in information\">")),
-            "");
+  EXPECT_EQ(complaint_about(changed("<robot name=\"quadruped\">", "<robot name=\"nancy in information\">")), "");
 }
 
 TEST(Urdf, MassesMustBePositive) {

@@ -1,12 +1,12 @@
 #include "localize/body_estimator.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <limits>
 
-#include "core/geometry/angles.h"
+#include <gtest/gtest.h>
+
 #include "core/error.h"
+#include "core/geometry/angles.h"
 #include "tests/support/walking_robot.h"
 
 namespace patrol::localize::body_estimator_test {
@@ -34,8 +34,7 @@ void run(WalkingRobot& robot, BodyEstimator& estimator, double until_s, const Ou
 }
 
 double yaw_error(const BodyEstimator& estimator, const WalkingRobot& robot) {
-  return wrap_angle(to_yaw(estimator.estimate()->T_odom_body.rotation) -
-                    to_yaw(robot.T_world_body().rotation));
+  return wrap_angle(to_yaw(estimator.estimate()->T_odom_body.rotation) - to_yaw(robot.T_world_body().rotation));
 }
 
 double tilt_error(const BodyEstimator& estimator, const WalkingRobot& robot) {
@@ -61,16 +60,17 @@ TEST(BodyEstimator, HasNoEstimateBeforeImuAndLegReadings) {
 
 TEST(BodyEstimator, DoesNotTakeItsTiltFromARobotInFreeFall) {
   BodyEstimator estimator(make_quadruped(), {});
-  estimator.add(Imu{.stamp = Time{0}, .angular_velocity_radps = {0, 0, 0}, .linear_acceleration_mps2 = {0.05, 0.03, 0.08}});
+  estimator.add(
+      Imu{.stamp = Time{0}, .angular_velocity_radps = {0, 0, 0}, .linear_acceleration_mps2 = {0.05, 0.03, 0.08}});
   EXPECT_FALSE(estimator.filter());
-  estimator.add(Imu{.stamp = from_seconds(0.004), .angular_velocity_radps = {0, 0, 0}, .linear_acceleration_mps2 = {0, 0, 9.81}});
+  estimator.add(
+      Imu{.stamp = from_seconds(0.004), .angular_velocity_radps = {0, 0, 0}, .linear_acceleration_mps2 = {0, 0, 9.81}});
   ASSERT_TRUE(estimator.filter());
   EXPECT_LT(std::acos(estimator.filter()->up_in_body().z()), 0.1 * kDegree);
 }
 
 TEST(BodyEstimator, WithoutNoiseWalkOfTwentyMetersIsExactToOnePerMille) {
-  WalkingRobot robot(make_quadruped(), stand_then_walk(1.0, {.vx_mps = 0.8}),
-                     WalkingRobotSettings::without_noise(), 1);
+  WalkingRobot robot(make_quadruped(), stand_then_walk(1.0, {.vx_mps = 0.8}), WalkingRobotSettings::without_noise(), 1);
   BodyEstimator estimator(make_quadruped(), {});
   run(robot, estimator, 26.5);
   EXPECT_NEAR(robot.way_m(), 20.0, 0.01);
@@ -81,8 +81,7 @@ TEST(BodyEstimator, WithoutNoiseWalkOfTwentyMetersIsExactToOnePerMille) {
 TEST(BodyEstimator, IgnoringThatFeetRollWouldLoseFourPercent) {
   RobotDescription points = make_quadruped();
   for (LegGeometry& leg : points.legs) leg.foot_radius_m = 0.0;
-  WalkingRobot robot(make_quadruped(), stand_then_walk(1.0, {.vx_mps = 0.8}),
-                     WalkingRobotSettings::without_noise(), 1);
+  WalkingRobot robot(make_quadruped(), stand_then_walk(1.0, {.vx_mps = 0.8}), WalkingRobotSettings::without_noise(), 1);
   BodyEstimator estimator(points, {});
   run(robot, estimator, 11.5);
   const double share = estimator.estimate()->T_odom_body.position.x() / robot.T_world_body().position.x();
@@ -102,13 +101,13 @@ TEST(BodyEstimator, NoisyMinuteOfWalkingErrsLessThanOnePercentAndHalfADegree) {
 }
 
 TEST(BodyEstimator, CurvedWalkEndsWhereItShould) {
-  WalkingRobot robot(make_quadruped(),
-                     stand_then_walk(4.0, {.vx_mps = 0.6, .vy_mps = 0.1, .yaw_rate_radps = 0.5}), {}, 4);
+  WalkingRobot robot(make_quadruped(), stand_then_walk(4.0, {.vx_mps = 0.6, .vy_mps = 0.1, .yaw_rate_radps = 0.5}), {},
+                     4);
   BodyEstimator estimator(make_quadruped(), {});
   run(robot, estimator, 40.0);
   EXPECT_LT(position_error(estimator, robot).norm(), 0.01 * robot.way_m());
-  // Odom does not jump back for the bias of the first second (0.002 rad/s, two standard deviations), learnt only at its end;
-  // the rest is half a per mille of the 18 rad turned.
+  // Odom does not jump back for the bias of the first second (0.002 rad/s, two standard deviations), learnt only at its
+  // end; the rest is half a per mille of the 18 rad turned.
   EXPECT_LT(std::abs(yaw_error(estimator, robot)), 2.0 * 0.002 * 1.0 + 0.0005 * 18.0);
 }
 
@@ -271,8 +270,8 @@ TEST(BodyEstimator, TiltedImuMountIsUndone) {
     robot.step();
     Imu imu = robot.imu();
     const Eigen::Vector3d rate = imu.angular_velocity_radps, lever = T_body_imu.position;
-    const Eigen::Vector3d at_mount = imu.linear_acceleration_mps2 + rate.cross(rate.cross(lever)) +
-                                     ((rate - last_rate) / 0.004).cross(lever);
+    const Eigen::Vector3d at_mount =
+        imu.linear_acceleration_mps2 + rate.cross(rate.cross(lever)) + ((rate - last_rate) / 0.004).cross(lever);
     last_rate = rate;
     imu.angular_velocity_radps = T_body_imu.rotation.conjugate() * rate;
     imu.linear_acceleration_mps2 = T_body_imu.rotation.conjugate() * at_mount;
@@ -290,8 +289,7 @@ TEST(BodyEstimator, ErrorsAreConsistentWithTheCovariance) {
   // stands for slip and terrain, which this robot does not have, so the filter is too modest here.
   double sum = 0.0;
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
-    WalkingRobot robot(make_quadruped(), stand_then_walk(2.0, {.vx_mps = 0.7, .yaw_rate_radps = 0.2}), {},
-                       seed);
+    WalkingRobot robot(make_quadruped(), stand_then_walk(2.0, {.vx_mps = 0.7, .yaw_rate_radps = 0.2}), {}, seed);
     BodyEstimator estimator(make_quadruped(), {});
     run(robot, estimator, 30.0);
     const Eigen::Vector2d position = position_error(estimator, robot);

@@ -1,12 +1,12 @@
 #include "localize/dock_detector.h"
 
+#include <cmath>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
-
-#include "core/geometry/angles.h"
 #include "core/error.h"
+#include "core/geometry/angles.h"
 #include "tests/support/dock_world.h"
 #include "tests/support/pose_near.h"
 
@@ -27,8 +27,8 @@ RoomWorld make_portal(const Pose2& T_world_docked) {
 }
 
 std::optional<DockDetection> look(const RoomWorld& world, const Pose2& T_world_body, const Pose2& T_level_expected,
-                                 std::uint64_t tick = 0, double range_std_m = kStd_m,
-                                 const std::vector<Eigen::Vector2d>& profile_m = make_dock_profile()) {
+                                  std::uint64_t tick = 0, double range_std_m = kStd_m,
+                                  const std::vector<Eigen::Vector2d>& profile_m = make_dock_profile()) {
   const RandomStream noise(5, "test/lidar");
   const LevelScan scan = test::scan_from_mast(world, T_world_body, Time{}, range_std_m, noise, tick);
   return DockDetector({}, profile_m).detect(scan, T_level_expected);
@@ -46,9 +46,9 @@ TEST(DockDetector, WithoutNoiseFindsThePostToThreeMillimetersFromThirtyCentimete
   }
 }
 
-// 300 looks from between 1.4 m before the docked pose and there. Ratio of squared error to covariance: 3 on average if the
-// covariance were exact (chi squared of three degrees of freedom, standard error of the mean sqrt(6 / 300) = 0.14); beams quantise the
-// edges, so half and double are allowed.
+// 300 looks from between 1.4 m before the docked pose and there. Ratio of squared error to covariance: 3 on average if
+// the covariance were exact (chi squared of three degrees of freedom, standard error of the mean sqrt(6 / 300) = 0.14);
+// beams quantise the edges, so half and double are allowed.
 TEST(DockDetector, ErrorsAreConsistentWithTheCovariance) {
   double squares = 0.0, worst_m = 0.0, worst_rad = 0.0;
   constexpr int kLooks = 300;
@@ -59,7 +59,8 @@ TEST(DockDetector, ErrorsAreConsistentWithTheCovariance) {
     const Pose2 expected{T_level_docked.x + 0.1, T_level_docked.y - 0.1, T_level_docked.yaw + 0.05};
     const auto detection = look(make_portal({}), T_world_body, expected, i);
     ASSERT_TRUE(detection) << i;
-    const Eigen::Vector3d error(detection->T_level_docked.x - T_level_docked.x, detection->T_level_docked.y - T_level_docked.y,
+    const Eigen::Vector3d error(detection->T_level_docked.x - T_level_docked.x,
+                                detection->T_level_docked.y - T_level_docked.y,
                                 wrap_angle(detection->T_level_docked.yaw - T_level_docked.yaw));
     squares += error.dot(detection->covariance.inverse() * error);
     worst_m = std::max(worst_m, error.head<2>().norm());
@@ -81,17 +82,18 @@ TEST(DockDetector, FindsTheMiddleOfAFlatFaceByItsEdges) {
   EXPECT_THAT(detection->T_level_docked, Pose2Near(T_world_body.inverse(), 0.02, 2.0 * kDegree));
 }
 
-// The notches look alike, 0.36 m apart: from the whole search it must not take one for the other. A single look errs by up to
-// 5 cm and 4 degrees (ItsErrorsAreAsLargeAsItsCovarianceSays).
+// The notches look alike, 0.36 m apart: from the whole search it must not take one for the other. A single look errs by
+// up to 5 cm and 4 degrees (ItsErrorsAreAsLargeAsItsCovarianceSays).
 TEST(DockDetector, IsNotMistakenByOneNotchOfTwo) {
   const Pose2 T_world_body{-1.35, 0.02, 0.03};
   const Pose2 T_level_docked = T_world_body.inverse();
   for (std::uint64_t i = 0; i < 40; ++i) {
     const RandomStream stream(i, "test/expected");
-    const Pose2 expected{T_level_docked.x + 0.5 * (stream.uniform(0) - 0.5), T_level_docked.y + 0.6 * (stream.uniform(1) - 0.5),
+    const Pose2 expected{T_level_docked.x + 0.5 * (stream.uniform(0) - 0.5),
+                         T_level_docked.y + 0.6 * (stream.uniform(1) - 0.5),
                          T_level_docked.yaw + 0.3 * (stream.uniform(2) - 0.5)};
-    const auto detection = look(make_dock_world({}, test::make_notched_dock_profile()), T_world_body, expected, i, kStd_m,
-                               test::make_notched_dock_profile());
+    const auto detection = look(make_dock_world({}, test::make_notched_dock_profile()), T_world_body, expected, i,
+                                kStd_m, test::make_notched_dock_profile());
     ASSERT_TRUE(detection) << i;
     EXPECT_THAT(detection->T_level_docked, Pose2Near(T_level_docked, 0.05, 4.0 * kDegree)) << i;
   }
@@ -142,8 +144,11 @@ TEST(DockDetector, NoDetectionFromTooFarAndInAnEmptyScan) {
 }
 
 TEST(DockDetector, RefusesAProfileOfOnePointAndSettingsThatBreakTheirRule) {
-  EXPECT_THAT([] { DockDetector({}, {{0.5, 0.0}}); },
-              ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("dock profile: 1 points")));
+  EXPECT_THAT(
+      [] {
+        DockDetector({}, {{0.5, 0.0}});
+      },
+      ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("dock profile: 1 points")));
   EXPECT_THAT([] { DockDetector({.min_inlier_ratio = 2.0}, make_dock_profile()); },
               ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("docking.detector.min_inlier_ratio = 2")));
 }

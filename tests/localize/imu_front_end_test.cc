@@ -1,8 +1,8 @@
 #include "localize/imu_front_end.h"
 
-#include <gtest/gtest.h>
-
 #include <limits>
+
+#include <gtest/gtest.h>
 
 #include "localize/inertial_filter.h"
 
@@ -25,7 +25,10 @@ InertialFilter make_filter(const InertialSample& first) {
 }
 
 FrontEnd make_front_end() {
-  return {{}, {.standstill = {.window_s = 1.0, .gyro_noise_density_radps_per_sqrt_hz = 2e-4, .foot_std_m = 3e-5}, .buffer_s = 2.0, .max_extrapolation_s = 0.15}};
+  return {{},
+          {.standstill = {.window_s = 1.0, .gyro_noise_density_radps_per_sqrt_hz = 2e-4, .foot_std_m = 3e-5},
+           .buffer_s = 2.0,
+           .max_extrapolation_s = 0.15}};
 }
 
 /// Reading at rest; `noise` makes it differ from others.

@@ -1,9 +1,9 @@
 #include "localize/imu_mount.h"
 
-#include <gtest/gtest.h>
-
 #include <limits>
 #include <numbers>
+
+#include <gtest/gtest.h>
 
 namespace patrol::localize::imu_mount_test {
 namespace {
@@ -11,8 +11,8 @@ namespace {
 TEST(ImuMount, OnASpinningBodyTheCentripetalForceOfTheLeverIsTakenOff) {
   ImuMount mount({{0.5, 0.0, 0.0}, Eigen::Quaterniond::Identity()});
   // 2 rad/s at 0.5 m: 2 m/s2 towards the axis.
-  const InertialSample sample =
-      mount.to_body({.stamp = Time{0}, .angular_velocity_radps = {0, 0, 2.0}, .linear_acceleration_mps2 = {-2.0, 0, 9.81}});
+  const InertialSample sample = mount.to_body(
+      {.stamp = Time{0}, .angular_velocity_radps = {0, 0, 2.0}, .linear_acceleration_mps2 = {-2.0, 0, 9.81}});
   EXPECT_LT((sample.force_mps2 - Eigen::Vector3d(0, 0, 9.81)).norm(), 1e-12);
 }
 

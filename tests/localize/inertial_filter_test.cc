@@ -1,12 +1,11 @@
 #include "localize/inertial_filter.h"
 
-#include <gtest/gtest.h>
+#include <cmath>
+#include <numbers>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
-
-#include <cmath>
-#include <numbers>
+#include <gtest/gtest.h>
 
 namespace patrol::localize::inertial_filter_test {
 namespace {
@@ -33,8 +32,7 @@ TEST(InertialFilter, StartsWithTheTiltOfGravity) {
 
 TEST(InertialFilter, HalfATurnPerSecondEndsAtHalfATurn) {
   InertialFilter filter(quiet(), {.rate_radps = {0, 0, std::numbers::pi}, .force_mps2 = kAtRest});
-  for (int i = 0; i < 250; ++i)
-    filter.predict(kDt, {.rate_radps = {0, 0, std::numbers::pi}, .force_mps2 = kAtRest});
+  for (int i = 0; i < 250; ++i) filter.predict(kDt, {.rate_radps = {0, 0, std::numbers::pi}, .force_mps2 = kAtRest});
   EXPECT_NEAR(std::abs(to_yaw(filter.motion().T_odom_body.rotation)), std::numbers::pi, 1e-6);
 }
 
@@ -42,8 +40,7 @@ TEST(InertialFilter, ConstantAccelerationGrowsAsHalfATSquared) {
   const Eigen::Vector3d force = kAtRest + Eigen::Vector3d(0.5, 0, 0);
   InertialFilter filter(quiet(), {.force_mps2 = kAtRest});
   filter.predict(kDt, {.force_mps2 = kAtRest + 2.0 * Eigen::Vector3d(0.5, 0, 0)});  // the mean of both is 0.5
-  for (int i = 1; i < 500; ++i)
-    filter.predict(kDt, {.force_mps2 = i == 1 ? Eigen::Vector3d(kAtRest) : force});
+  for (int i = 1; i < 500; ++i) filter.predict(kDt, {.force_mps2 = i == 1 ? Eigen::Vector3d(kAtRest) : force});
   // 2 s at 0.5 m/s2, less two half steps of the trapezoid (0.002 s each at the start).
   EXPECT_NEAR(filter.motion().T_odom_body.position.x(), 0.5 * 0.5 * 2.0 * 2.0, 0.01);
   EXPECT_NEAR(filter.motion().v_body.x(), 1.0, 0.005);
@@ -94,7 +91,8 @@ TEST(InertialFilter, BiasReadingMovesNeitherPositionNorHeading) {
   EXPECT_NEAR(filter.gyro_bias_radps().z(), 0.01, 1e-4);
   EXPECT_LT((filter.motion().T_odom_body.position - before.position).norm(), 1e-12);
   EXPECT_LT(std::abs(to_yaw(filter.motion().T_odom_body.rotation) - to_yaw(before.rotation)), 1e-6);
-  EXPECT_NEAR(filter.planar_covariance()(2, 2), covariance(2, 2), 1e-3 * covariance(2, 2)) << "nor does it grow surer of them";
+  EXPECT_NEAR(filter.planar_covariance()(2, 2), covariance(2, 2), 1e-3 * covariance(2, 2))
+      << "nor does it grow surer of them";
 }
 
 TEST(InertialFilter, VelocityCorrectionsDoNotConstrainYaw) {
@@ -112,8 +110,7 @@ TEST(InertialFilter, CovarianceStaysSymmetricAndPositive) {
   InertialFilter filter(quiet(), {.force_mps2 = kAtRest});
   for (int i = 0; i < 5000; ++i) {
     const double t = kDt * i;
-    filter.predict(
-        kDt, {.rate_radps = {0.3 * std::sin(9 * t), 0.4 * std::cos(17 * t), 0.5}, .force_mps2 = kAtRest});
+    filter.predict(kDt, {.rate_radps = {0.3 * std::sin(9 * t), 0.4 * std::cos(17 * t), 0.5}, .force_mps2 = kAtRest});
     filter.correct_velocity(Eigen::Vector3d(0.8, 0, 0) - filter.motion().v_body, {0.01, 0, -0.3}, 2e-3);
   }
   const auto& P = filter.covariance();

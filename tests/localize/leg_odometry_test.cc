@@ -1,8 +1,8 @@
 #include "localize/leg_odometry.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "tests/support/walking_robot.h"
 
@@ -18,7 +18,8 @@ LegSample standing_pose() {
 }
 
 TEST(ContactDetector, CountsAFootOnceItsTouchDownIsOverAndUntilItIsReleased) {
-  ContactDetector detector({.contact_on_n = 15.0, .contact_off_n = 8.0, .full_weight_n = 40.0, .settling_time_s = 0.010});
+  ContactDetector detector(
+      {.contact_on_n = 15.0, .contact_off_n = 8.0, .full_weight_n = 40.0, .settling_time_s = 0.010});
   const auto at = [&](int ms, double force) {
     return detector.update(std::chrono::milliseconds(ms), {force, 0.0, 0.0, 0.0})[0];
   };
@@ -87,8 +88,8 @@ TEST(HeightFromFeet, IsTheLegsLengthAndTheFootsRadius) {
   const RobotDescription robot = test::make_quadruped();
   StanceFeet feet;
   for (int leg = 0; leg < kNumLegs; ++leg) {
-    feet.push_back(stance_foot(robot.legs[static_cast<std::size_t>(leg)], leg, standing_pose(),
-                               Eigen::Vector3d::UnitZ()));
+    feet.push_back(
+        stance_foot(robot.legs[static_cast<std::size_t>(leg)], leg, standing_pose(), Eigen::Vector3d::UnitZ()));
   }
   EXPECT_NEAR(*height_from_feet(feet, Eigen::Vector3d::UnitZ()), 2.0 * 0.213 * std::cos(0.8) + 0.02, kExactTol);
 }

@@ -1,8 +1,8 @@
 #include "localize/map_pose_tracker.h"
 
-#include <gtest/gtest.h>
-
 #include <numbers>
+
+#include <gtest/gtest.h>
 
 namespace patrol::localize::map_pose_tracker_test {
 namespace {

@@ -1,8 +1,8 @@
 #include "localize/pending_readings.h"
 
-#include <gtest/gtest.h>
-
 #include <vector>
+
+#include <gtest/gtest.h>
 
 #include "localize/frozen_readings.h"
 
@@ -18,7 +18,8 @@ struct Reading {
 
 TEST(PendingReadings, AreInOrderOfStampsAndOfArrivalWithinAStamp) {
   PendingReadings<Reading> pending;
-  for (const Reading& reading : {Reading{3s, 0}, Reading{1s, 1}, Reading{3s, 2}, Reading{2s, 3}}) pending.insert(reading);
+  for (const Reading& reading : {Reading{3s, 0}, Reading{1s, 1}, Reading{3s, 2}, Reading{2s, 3}})
+    pending.insert(reading);
   EXPECT_EQ(pending.newest().id, 2);
   std::vector<int> ids;
   for (; !pending.is_empty(); pending.pop_oldest()) ids.push_back(pending.oldest().id);

@@ -1,12 +1,11 @@
 #include "localize/range_filter.h"
 
-#include <gtest/gtest.h>
-
-#include <Eigen/LU>
-
 #include <algorithm>
 #include <cmath>
 #include <memory>
+
+#include <Eigen/LU>
+#include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "localize/track_odometry.h"
@@ -68,8 +67,10 @@ TunnelRun drive_tunnel(std::uint64_t seed, const TunnelSetting& setting) {
       start.stamp = estimate->stamp;
       // The start is known as well as it claims to be.
       const RandomStream draw(seed, "start");
-      start.T_map_body = {setting.start_error_m + kStartStd_m * draw.normal(0), kStartStd_m * draw.normal(1), kStartStd_rad * draw.normal(2)};
-      start.covariance.diagonal() << kStartStd_m * kStartStd_m, kStartStd_m * kStartStd_m, kStartStd_rad * kStartStd_rad;
+      start.T_map_body = {setting.start_error_m + kStartStd_m * draw.normal(0), kStartStd_m * draw.normal(1),
+                          kStartStd_rad * draw.normal(2)};
+      start.covariance.diagonal() << kStartStd_m * kStartStd_m, kStartStd_m * kStartStd_m,
+          kStartStd_rad * kStartStd_rad;
       filter.set_initial_pose(start, estimate->T_odom_body);
     }
     filter.predict(estimate->stamp, estimate->T_odom_body, odometry.twist_std());
@@ -87,10 +88,12 @@ TunnelRun drive_tunnel(std::uint64_t seed, const TunnelSetting& setting) {
     }
     const PoseEstimate pose = filter.estimate(drive.now(), estimate->T_odom_body);
     const Pose2 truth = to_pose2(T_map_body);
-    const Eigen::Vector3d error(pose.T_map_body.x - truth.x, pose.T_map_body.y - truth.y, wrap_angle(pose.T_map_body.yaw - truth.yaw));
+    const Eigen::Vector3d error(pose.T_map_body.x - truth.x, pose.T_map_body.y - truth.y,
+                                wrap_angle(pose.T_map_body.yaw - truth.yaw));
     result.max_error_m = std::max(result.max_error_m, error.head<2>().norm());
     result.end_error_m = error.head<2>().norm();
-    result.max_odometry_error_m = std::max(result.max_odometry_error_m, (estimate->T_odom_body.position - T_map_body.position).head<2>().norm());
+    result.max_odometry_error_m =
+        std::max(result.max_odometry_error_m, (estimate->T_odom_body.position - T_map_body.position).head<2>().norm());
     if (to_seconds(drive.now()) >= seconds + 10.0) {
       ++seconds;
       result.end_nees = error.dot(pose.covariance.inverse() * error);
@@ -138,7 +141,8 @@ TEST(RangeFilter, NeesAndNisOverTwentySeedsLieWithinTheirBounds) {
 
 TEST(RangeFilter, WithBlockedRangesTheNeesStaysWithinItsBounds) {
   double end_nees = 0.0;
-  for (std::uint64_t seed = 1; seed <= 20; ++seed) end_nees += drive_tunnel(seed, {.nlos_probability = 0.3, .until_s = 63.0}).end_nees;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed)
+    end_nees += drive_tunnel(seed, {.nlos_probability = 0.3, .until_s = 63.0}).end_nees;
   EXPECT_GT(end_nees / 20.0, kLowNees);
   EXPECT_LT(end_nees / 20.0, kHighNees);
 }
@@ -159,7 +163,8 @@ struct Standing {
   explicit Standing(double std_m) {
     settings.bias_distance_m = settings.bias_m = {};
     settings.start_height_std_m = 0.0;
-    filter = std::make_unique<RangeFilter>(settings, std::vector<UwbAnchor>{{.number = 3, .p_m = {10.0, 0.0, 0.0}}}, Pose3{});
+    filter = std::make_unique<RangeFilter>(settings, std::vector<UwbAnchor>{{.number = 3, .p_m = {10.0, 0.0, 0.0}}},
+                                           Pose3{});
     PoseEstimate start;
     start.stamp = now;
     start.covariance.diagonal() << std_m * std_m, 1.0, 1e-4;
@@ -214,7 +219,8 @@ TEST(RangeFilter, UnusableRangesChangeNothing) {
   RangeFilter& filter = *standing.filter;
   const Time later = standing.now + std::chrono::milliseconds(10);
   EXPECT_EQ(filter.add({.stamp = later, .anchor = 99, .range_m = 9.9}, Pose3{}).status, RangeStatus::kUnusable);
-  EXPECT_EQ(filter.add({.stamp = standing.now, .anchor = 3, .range_m = 9.9}, Pose3{}).status, RangeStatus::kUnusable) << "heard";
+  EXPECT_EQ(filter.add({.stamp = standing.now, .anchor = 3, .range_m = 9.9}, Pose3{}).status, RangeStatus::kUnusable)
+      << "heard";
   EXPECT_EQ(filter.add({.stamp = later, .anchor = 3, .range_m = std::nan("")}, Pose3{}).status, RangeStatus::kUnusable);
   EXPECT_EQ(filter.add({.stamp = later, .anchor = 3, .range_m = -1.0}, Pose3{}).status, RangeStatus::kUnusable);
   EXPECT_EQ(filter.estimate(standing.now, Pose3{}).T_map_body.vector(), before.T_map_body.vector());
@@ -241,8 +247,8 @@ TEST(RangeFilter, ALateRangeIsMeasuredFromWhereTheBodyWas) {
   RangeFilter& filter = *standing.filter;
   const Pose3 now_in_odom = to_pose3({0.5, 0.0, 0.0});
   filter.predict(standing.now + std::chrono::milliseconds(500), now_in_odom, Eigen::Vector3d::Zero());
-  const RangeOutcome outcome = filter.add({.stamp = standing.now + std::chrono::milliseconds(200), .anchor = 3, .range_m = 9.8},
-                                          to_pose3({0.2, 0.0, 0.0}));
+  const RangeOutcome outcome = filter.add(
+      {.stamp = standing.now + std::chrono::milliseconds(200), .anchor = 3, .range_m = 9.8}, to_pose3({0.2, 0.0, 0.0}));
   EXPECT_NEAR(outcome.innovation_m, 0.0, 1e-9);
 }
 

@@ -1,11 +1,11 @@
 #include "localize/scan_leveler.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+
+#include <gtest/gtest.h>
 
 #include "core/geometry/angles.h"
 #include "core/trajectory.h"
@@ -36,8 +36,7 @@ double range_in_room(const Eigen::Vector3d& from, const Eigen::Vector3d& directi
 /// at 2.8 Hz.
 Pose3 wobbling(Time stamp) {
   const double t = to_seconds(stamp);
-  return {{t - 0.5, 0.2 * t, 0.0},
-          quaternion_from_rpy(0.035 * std::sin(17.5 * t), 0.052 * std::sin(35.0 * t), t)};
+  return {{t - 0.5, 0.2 * t, 0.0}, quaternion_from_rpy(0.035 * std::sin(17.5 * t), 0.052 * std::sin(35.0 * t), t)};
 }
 
 LaserScan scan_room(const PoseLookup& T_odom_body_at, Time start, int beams, double floor_z_m) {
@@ -80,9 +79,8 @@ TEST(ScanLeveler, WallsOfARoomAreExactToAMillimeterWhileWalkingAndTurning) {
     const LaserScan scan = scan_room(wobbling, from_seconds(start_s), 3200, -10.0);
     const auto level = leveler.level(scan, PoseLookup(wobbling), 0.3);
     ASSERT_TRUE(level);
-    EXPECT_GT(
-        std::count_if(level->beams.begin(), level->beams.end(), [](const auto& beam) { return beam.is_hit; }),
-        2500);
+    EXPECT_GT(std::count_if(level->beams.begin(), level->beams.end(), [](const auto& beam) { return beam.is_hit; }),
+              2500);
     EXPECT_LT(worst_wall_error(*level), 0.001);
   }
 }
@@ -98,9 +96,12 @@ TEST(ScanLeveler, WithoutTheMotionTheSameWallsAreHalfAMeterOff) {
 
 TEST(ScanLeveler, ScansOfAStabilizedLidarAreExactWithTheSetting) {
   // What a lidar on a gimbal sees: from where the wobbling body carries it, but level.
-  const auto level_lidar = [](Time stamp) { return std::optional(remove_tilt(wobbling(stamp) * kLidar) * kLidar.inverse()); };
+  const auto level_lidar = [](Time stamp) {
+    return std::optional(remove_tilt(wobbling(stamp) * kLidar) * kLidar.inverse());
+  };
   const LaserScan scan = scan_room(level_lidar, Time{0}, 3200, -10.0);
-  EXPECT_LT(worst_wall_error(*ScanLeveler(kLidar, {.gimbal_stabilized = true}).level(scan, PoseLookup(wobbling), 0.3)), 0.001);
+  EXPECT_LT(worst_wall_error(*ScanLeveler(kLidar, {.gimbal_stabilized = true}).level(scan, PoseLookup(wobbling), 0.3)),
+            0.001);
   EXPECT_GT(worst_wall_error(*ScanLeveler(kLidar, {}).level(scan, PoseLookup(wobbling), 0.3)), 0.001);
 }
 
@@ -120,11 +121,9 @@ TEST(ScanLeveler, GroundInFrontOfATippedRobotIsNoObstacleAndFreeUpToTheBand) {
   const LaserScan scan = scan_room(tipped, Time{0}, 720, -0.3);
   const auto level = ScanLeveler(kLidar, {.tilt_margin_rad = 0.0}).level(scan, tipped, 0.3);
   ASSERT_TRUE(level);
-  const auto front =
-      std::min_element(level->beams.begin(), level->beams.end(), [](const auto& a, const auto& b) {
-        return std::abs(std::atan2(a.end_m.y(), a.end_m.x())) <
-               std::abs(std::atan2(b.end_m.y(), b.end_m.x()));
-      });
+  const auto front = std::min_element(level->beams.begin(), level->beams.end(), [](const auto& a, const auto& b) {
+    return std::abs(std::atan2(a.end_m.y(), a.end_m.x())) < std::abs(std::atan2(b.end_m.y(), b.end_m.x()));
+  });
   EXPECT_FALSE(front->is_hit);
   const double lidar_x = 0.175 * std::sin(pitch) - 0.02 * std::cos(pitch);
   const double lidar_z = 0.3 + 0.175 * std::cos(pitch) + 0.02 * std::sin(pitch);
@@ -141,8 +140,7 @@ TEST(ScanLeveler, KerbOfTwelveCentimetersIsNoObstacleAndAWallOfTwentyIs) {
   const auto level_hit_at_height = [&](double height_m) {
     const Eigen::Vector3d lidar = quaternion_from_rpy(0, pitch, 0) * kLidar.position;
     const double range = (0.3 + lidar.z() - height_m) / std::sin(pitch);
-    const LaserScan scan{
-        .time_increment_s = 1e-4, .ranges_m = {static_cast<float>(range)}, .intensities = {}};
+    const LaserScan scan{.time_increment_s = 1e-4, .ranges_m = {static_cast<float>(range)}, .intensities = {}};
     return ScanLeveler(kLidar, {.tilt_margin_rad = 0.005}).level(scan, tipped, 0.3)->beams.at(0).is_hit;
   };
   EXPECT_FALSE(level_hit_at_height(0.12));
@@ -161,7 +159,9 @@ TEST(ScanLeveler, BeamThatClimbsAboveTheBandIsFreeUpToThere) {
 TEST(ScanLeveler, ReportsATiltOf12DegreesInAnyDirection) {
   const LaserScan scan{.time_increment_s = 1e-4, .ranges_m = {1.0F, 2.0F}, .intensities = {}};
   for (const double heading : {0.0, 2.0}) {
-    const PoseLookup on_a_ramp = [=](Time) { return Pose3{{1.0, 2.0, 0.5}, quaternion_from_rpy(0.12, -0.173, heading)}; };
+    const PoseLookup on_a_ramp = [=](Time) {
+      return Pose3{{1.0, 2.0, 0.5}, quaternion_from_rpy(0.12, -0.173, heading)};
+    };
     const double tilt = std::acos(std::cos(0.12) * std::cos(0.173));
     EXPECT_NEAR(ScanLeveler(kLidar, {}).level(scan, on_a_ramp, 0.3)->tilt_rad, tilt, 1e-9);
   }

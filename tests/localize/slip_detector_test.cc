@@ -1,8 +1,8 @@
 #include "localize/slip_detector.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 namespace patrol::localize::slip_detector_test {
 namespace {
@@ -16,7 +16,8 @@ struct Drive {
   Drive() : watch({.window_s = 1.0, .threshold_mps = 0.2}) {}
 
   /// Belts and body speed up for a time; the first evidence.
-  std::optional<SlipEvidence> speed_up(double belts_mps2, double body_mps2, double duration_s, double rough_mps2 = 0.0) {
+  std::optional<SlipEvidence> speed_up(double belts_mps2, double body_mps2, double duration_s,
+                                       double rough_mps2 = 0.0) {
     std::optional<SlipEvidence> evidence;
     double belts = 0.0;
     for (double t = 0.0; t < duration_s && !evidence; t += kDt) {

@@ -39,7 +39,8 @@ TEST(TrackEncoders, AJumpIsDisbelievedAndASpeedThatLastsIsNot) {
   EXPECT_FALSE(counters.add({milliseconds(40), 100010, 100010})) << "5000 m/s";
   EXPECT_TRUE(counters.add({milliseconds(60), 100020, 100020}));
   int refused = 0;
-  for (int i = 4; i < 40; ++i) refused += counters.add({milliseconds(20 * i), 100020 + 100 * i, 100020 + 100 * i}) ? 0 : 1;
+  for (int i = 4; i < 40; ++i)
+    refused += counters.add({milliseconds(20 * i), 100020 + 100 * i, 100020 + 100 * i}) ? 0 : 1;
   EXPECT_EQ(refused, 14) << "for 0.3 s a leap to 5 m/s";
 }
 

@@ -1,10 +1,9 @@
 #include "localize/track_filter.h"
 
-#include <gtest/gtest.h>
+#include <cmath>
 
 #include <Eigen/Eigenvalues>
-
-#include <cmath>
+#include <gtest/gtest.h>
 
 namespace patrol::localize::track_filter_test {
 namespace {
@@ -52,7 +51,8 @@ TEST(TrackFilter, DecorrelatingSlipGrowsWithTheRootOfTheDistance) {
   TrackFilter filter(settings, kAtRest);
   filter.set_origin();
   drive(filter, 0.5, 80.0, 0.03);
-  // The integral of a Gauss-Markov process over a way s much longer than its length L: sigma sqrt(2 L (s - L)), and heading's.
+  // The integral of a Gauss-Markov process over a way s much longer than its length L: sigma sqrt(2 L (s - L)), and
+  // heading's.
   const double way = filter.motion().T_odom_body.position.x();
   EXPECT_NEAR(std::sqrt(filter.covariance()(0, 0)), 0.03 * std::sqrt(2.0 * 2.0 * (way - 2.0)), 0.03);
 }
@@ -68,7 +68,8 @@ TEST(TrackFilter, AStandstillsBiasMovesNeitherPositionNorHeading) {
   EXPECT_NEAR(filter.gyro_bias_radps().z(), 0.0008, 1e-6);
 }
 
-// After 500 m each reading of the belts still tells a little of scale and slip. A hundred-thousandth of the way would be 5 mm.
+// After 500 m each reading of the belts still tells a little of scale and slip. A hundred-thousandth of the way would
+// be 5 mm.
 TEST(TrackFilter, NoTrackReadingMovesThePositionAtAnyDistance) {
   TrackFilter filter(quiet(), kAtRest);
   filter.set_origin();
@@ -80,7 +81,8 @@ TEST(TrackFilter, NoTrackReadingMovesThePositionAtAnyDistance) {
   EXPECT_EQ(filter.motion().T_odom_body.position, before.position);
 }
 
-// By the IMU alone it has gone 0.2 m/s for a second, and slid 0.3 m/s in truth: the belts that hold again put the 10 cm right.
+// By the IMU alone it has gone 0.2 m/s for a second, and slid 0.3 m/s in truth: the belts that hold again put the 10 cm
+// right.
 TEST(TrackFilter, TheImuDriftDuringSlipIsCorrected) {
   TrackFilter filter(quiet(), kAtRest);
   filter.set_origin();

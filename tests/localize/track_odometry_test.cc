@@ -1,9 +1,5 @@
 #include "localize/track_odometry.h"
 
-#include <gtest/gtest.h>
-
-#include <Eigen/LU>
-
 #include <array>
 #include <cmath>
 #include <deque>
@@ -11,8 +7,11 @@
 #include <limits>
 #include <numbers>
 
-#include "core/geometry/angles.h"
+#include <Eigen/LU>
+#include <gtest/gtest.h>
+
 #include "core/error.h"
+#include "core/geometry/angles.h"
 #include "tests/support/tracked_drive.h"
 
 namespace patrol::localize::track_odometry_test {
@@ -51,14 +50,15 @@ double nees(const TrackOdometry& odometry, const TrackedDrive& drive) {
 }
 
 /// Dead reckoning by the counters alone, as wheeled robots do it: heading by the belts' difference over the gauge.
-Pose2 by_counters_alone(const Pose2& before, const TrackTicks& last, const TrackTicks& now, double meters_per_tick, double gauge_m) {
+Pose2 by_counters_alone(const Pose2& before, const TrackTicks& last, const TrackTicks& now, double meters_per_tick,
+                        double gauge_m) {
   const double left = meters_per_tick * static_cast<double>(now.left - last.left);
   const double right = meters_per_tick * static_cast<double>(now.right - last.right);
   return before * Pose2{0.5 * (left + right), 0.0, (right - left) / gauge_m};
 }
 
-/// Mean of 20 values of chi-square with three degrees of freedom: 95 % lie between these (chi-square of 60, 2.5 % and 97.5 %,
-/// over 20).
+/// Mean of 20 values of chi-square with three degrees of freedom: 95 % lie between these (chi-square of 60, 2.5 %
+/// and 97.5 %, over 20).
 constexpr double kLowNees = 40.48 / 20.0, kHighNees = 83.30 / 20.0;
 
 TEST(TrackOdometry, NeesOverTwentySeedsIsWithinItsBoundsAfter30And60And120Seconds) {
@@ -136,7 +136,12 @@ TEST(TrackOdometry, HasNoEstimateBeforeRestAndStartsAtTheOrigin) {
 }
 
 TEST(TrackOdometry, WithoutRestAnEstimateIsGivenAfterSixSeconds) {
-  TrackedDrive drive(make_tracked_robot(), [](double, const Pose3&) { return test::Belts{0.3, 0.3}; }, {}, 4);
+  TrackedDrive drive(
+      make_tracked_robot(),
+      [](double, const Pose3&) {
+        return test::Belts{0.3, 0.3};
+      },
+      {}, 4);
   TrackOdometry odometry(make_tracked_robot(), {});
   run(drive, odometry, 5.9);
   EXPECT_FALSE(odometry.estimate());

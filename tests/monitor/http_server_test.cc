@@ -1,7 +1,5 @@
 #include "monitor/http_server.h"
 
-#include <gtest/gtest.h>
-
 #include <arpa/inet.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -13,6 +11,8 @@
 #include <mutex>
 #include <stdexcept>
 #include <thread>
+
+#include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "monitor/http_client.h"
@@ -49,13 +49,16 @@ class Peer {
     place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     const timeval limit{.tv_sec = 5, .tv_usec = 0};
     ::setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
-    if (::connect(socket_, reinterpret_cast<const sockaddr*>(&place), sizeof place) != 0) throw std::runtime_error("cannot connect");
+    if (::connect(socket_, reinterpret_cast<const sockaddr*>(&place), sizeof place) != 0)
+      throw std::runtime_error("cannot connect");
   }
   ~Peer() { ::close(socket_); }
   Peer(const Peer&) = delete;
   Peer& operator=(const Peer&) = delete;
 
-  bool send(const std::string& text) { return ::send(socket_, text.data(), text.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(text.size()); }
+  bool send(const std::string& text) {
+    return ::send(socket_, text.data(), text.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(text.size());
+  }
   /// All until the other side hangs up.
   std::string rest() {
     std::string text;
@@ -108,7 +111,12 @@ class Server : public testing::Test {
   bool is_log_broken_ = false;
 };
 
-constexpr HttpServerSettings kSmall{.header_timeout_s = 0.3, .request_timeout_s = 0.6, .idle_timeout_s = 0.5, .max_connections = 20, .max_header_kb = 4, .max_body_mb = 0.01};
+constexpr HttpServerSettings kSmall{.header_timeout_s = 0.3,
+                                    .request_timeout_s = 0.6,
+                                    .idle_timeout_s = 0.5,
+                                    .max_connections = 20,
+                                    .max_header_kb = 4,
+                                    .max_body_mb = 0.01};
 
 TEST_F(Server, AnswersAndKeepsTheConnection) {
   start({});
@@ -149,7 +157,8 @@ TEST_F(Server, AHeaderAboveTheLimitIs431) {
 
 TEST_F(Server, WhatIsNoHttpIs400) {
   start(kSmall);
-  for (const char* text : {"hello\r\n\r\n", "GET / HTTP/9.9\r\n\r\n", "POST / HTTP/1.1\r\nContent-Length: -5\r\n\r\n", "\x16\x03\x01\x02\r\n\r\n"}) {
+  for (const char* text : {"hello\r\n\r\n", "GET / HTTP/9.9\r\n\r\n", "POST / HTTP/1.1\r\nContent-Length: -5\r\n\r\n",
+                           "\x16\x03\x01\x02\r\n\r\n"}) {
     Peer peer(port());
     peer.send(text);
     EXPECT_EQ(peer.rest().find("HTTP/1.1 400 "), 0U) << text;
@@ -169,11 +178,13 @@ TEST_F(Server, AThrowingHandlerIs500AndTheServerGoesOn) {
 
 TEST_F(Server, WhoTricklesAHeaderOrABodyIsGivenUpInTime) {
   start(kSmall);
-  for (const char* begin : {"GET / HTTP/1.1\r\n", "POST / HTTP/1.1\r\nAuthorization: Bearer key\r\nContent-Length: 5000\r\n\r\n"}) {
+  for (const char* begin :
+       {"GET / HTTP/1.1\r\n", "POST / HTTP/1.1\r\nAuthorization: Bearer key\r\nContent-Length: 5000\r\n\r\n"}) {
     Peer peer(port());
     const auto from = Clock::now();
     peer.send(begin);
-    while (peer.send("A: b\r\n") && Clock::now() - from < std::chrono::seconds(5)) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    while (peer.send("A: b\r\n") && Clock::now() - from < std::chrono::seconds(5))
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
     EXPECT_LT(Clock::now() - from, std::chrono::seconds(3));
   }
   EXPECT_NE(log().find("incomplete header after 0.3 s"), std::string::npos);
@@ -211,7 +222,8 @@ TEST_F(Server, BodiesOnTheirWayTogetherHaveALimit) {
   start(settings);
   const std::string head = "POST / HTTP/1.1\r\nHost: x\r\nAuthorization: Bearer key\r\n";
   std::vector<std::unique_ptr<Peer>> unfinished;
-  for (const char* length : {"Content-Length: 9000\r\n\r\n", "Content-Length: 9000\r\n\r\n", "Transfer-Encoding: chunked\r\n\r\n"}) {
+  for (const char* length :
+       {"Content-Length: 9000\r\n\r\n", "Content-Length: 9000\r\n\r\n", "Transfer-Encoding: chunked\r\n\r\n"}) {
     unfinished.push_back(std::make_unique<Peer>(port()));
     unfinished.back()->send(head + length);
   }
@@ -243,7 +255,8 @@ TEST_F(Server, AnswersThatNobodyReadsTogetherHaveALimit) {
 
 TEST_F(Server, AGetRequestHasNoBody) {
   start(kSmall);
-  for (const char* length : {"Content-Length: 5\r\n\r\nhello", "Transfer-Encoding: chunked\r\n\r\n5\r\nhello\r\n0\r\n\r\n"}) {
+  for (const char* length :
+       {"Content-Length: 5\r\n\r\nhello", "Transfer-Encoding: chunked\r\n\r\n5\r\nhello\r\n0\r\n\r\n"}) {
     for (const char* method : {"GET", "HEAD"}) {
       Peer peer(port());
       peer.send(std::string(method) + " / HTTP/1.1\r\nHost: x\r\n" + length);
@@ -257,8 +270,8 @@ TEST_F(Server, AGetRequestHasNoBody) {
 
 TEST_F(Server, AnUnknownTransferCodingIsRefusedAndItsBodyIsNoSecondRequest) {
   start(kSmall);
-  for (const char* coding : {"xchunked", "gzip, chunked", "chunked, chunked", "identity", "chunked;a=b", "chunked\r\nTransfer-Encoding: chunked",
-                             "chunked\r\nContent-Length: 5"}) {
+  for (const char* coding : {"xchunked", "gzip, chunked", "chunked, chunked", "identity", "chunked;a=b",
+                             "chunked\r\nTransfer-Encoding: chunked", "chunked\r\nContent-Length: 5"}) {
     Peer peer(port());
     peer.send(std::string("POST / HTTP/1.1\r\nHost: x\r\nAuthorization: Bearer key\r\nTransfer-Encoding: ") + coding +
               "\r\n\r\nGET /second HTTP/1.1\r\nHost: x\r\n\r\n");

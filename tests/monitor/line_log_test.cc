@@ -1,12 +1,12 @@
 #include "monitor/line_log.h"
 
-#include <gtest/gtest.h>
-
 #include <fcntl.h>
 #include <unistd.h>
 
 #include <array>
 #include <csignal>
+
+#include <gtest/gtest.h>
 
 namespace patrol::monitor::line_log_test {
 namespace {

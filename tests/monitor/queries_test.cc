@@ -1,9 +1,9 @@
 #include "monitor/queries.h"
 
-#include <gtest/gtest.h>
-
 #include <map>
 #include <set>
+
+#include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "monitor/store.h"
@@ -29,7 +29,8 @@ class Queries : public testing::Test {
 };
 
 TEST_F(Queries, ARobotIsWhereItsNewestPoseHasIt) {
-  add({status_result(0, "started"), pose_result(1, 1.0), pose_result(2, 2.5), event_result(3, "station_reached", "well_1")});
+  add({status_result(0, "started"), pose_result(1, 1.0), pose_result(2, 2.5),
+       event_result(3, "station_reached", "well_1")});
   const Json robot = Json::parse(robots(database()))["robots"][0];
   EXPECT_EQ(robot["x"], 2.5);
   EXPECT_EQ(robot["at"], "well_1");
@@ -51,7 +52,8 @@ TEST_F(Queries, AStampOfTheFutureDoesNotFreezeARobot) {
   Result ahead = pose_result(1, 9.0), lining_ahead = lining_result(2, 4.0, "run_0");
   ahead.created_ms = lining_ahead.created_ms = kNoon_ms + 1'000'000'000'000;
   add({ahead, lining_ahead});
-  Result later = result_of("pose", {{"x", 3.0}, {"y", 2.0}, {"yaw", 0.5}}, 4, "run_2"), later_lining = lining_result(5, 12.0, "run_2");
+  Result later = result_of("pose", {{"x", 3.0}, {"y", 2.0}, {"yaw", 0.5}}, 4, "run_2"),
+         later_lining = lining_result(5, 12.0, "run_2");
   later.created_ms = later_lining.created_ms = kNoon_ms + 60'000;
   store_.add({later, later_lining}, kNoon_ms + 60'000);
   const Json robot = Json::parse(robots(database()))["robots"][0];
@@ -123,7 +125,8 @@ TEST_F(Queries, ALiningHasItsRingsOverTimeAndItsNewestScan) {
 }
 
 TEST_F(Queries, RobotsComeInPagesByName) {
-  for (int i = 0; i < 450; ++i) add({result_of("pose", {{"x", 1.0}, {"y", 0.0}, {"yaw", 0.0}}, 1, "run_1", fmt::format("r{:03}", i))});
+  for (int i = 0; i < 450; ++i)
+    add({result_of("pose", {{"x", 1.0}, {"y", 0.0}, {"yaw", 0.0}}, 1, "run_1", fmt::format("r{:03}", i))});
   std::set<std::string> names;
   std::string after;
   int num_pages = 0;
@@ -142,7 +145,8 @@ TEST_F(Queries, RobotsComeInPagesByName) {
 
 TEST_F(Queries, StationsOfARunComeInPages) {
   Json stations = Json::array();
-  for (int i = 0; i < 1200; ++i) stations.push_back({{"name", fmt::format("s{}", i)}, {"type", "inspect"}, {"position_m", {1.0, 2.0}}});
+  for (int i = 0; i < 1200; ++i)
+    stations.push_back({{"name", fmt::format("s{}", i)}, {"type", "inspect"}, {"position_m", {1.0, 2.0}}});
   add({result_of("status", {{"state", "started"}, {"scenario", "short"}, {"message", ""}, {"stations", stations}}, 0)});
   Json all = Json::array();
   for (Json next = 0; !next.is_null();) {
@@ -185,7 +189,9 @@ TEST_F(Queries, ALongLiningComesInPages) {
     const Json page = Json::parse(text);
     for (const Json& scan : page["scans"]) {
       num_cells[scan["seq"].get<std::int64_t>()] += scan["data"]["cells"].size();
-      if (scan["data"]["station"] == "a") for (const Json& cell : scan["data"]["cells"]) cells.emplace(cell["ring"].get<int>(), cell["clock_deg"].get<int>());
+      if (scan["data"]["station"] == "a")
+        for (const Json& cell : scan["data"]["cells"])
+          cells.emplace(cell["ring"].get<int>(), cell["clock_deg"].get<int>());
     }
     num_lines += page["lines"].size();
     for (const Json& ring : page["rings"]) rings.insert(ring[0].get<int>());
@@ -197,7 +203,8 @@ TEST_F(Queries, ALongLiningComesInPages) {
   EXPECT_EQ(cells.size(), 10'000U);
   EXPECT_EQ(num_lines, 900U);
   EXPECT_EQ(rings.size(), 200U);
-  for (const char* wrong : {"x", "1", "1.2.3", "1.2.3.4.5", "-1.0.0.0", "1.2.3.x", "9999999999.0.0.0", "1..2.3"}) EXPECT_THROW(parse_lining_page(wrong), InputError) << wrong;
+  for (const char* wrong : {"x", "1", "1.2.3", "1.2.3.4.5", "-1.0.0.0", "1.2.3.x", "9999999999.0.0.0", "1..2.3"})
+    EXPECT_THROW(parse_lining_page(wrong), InputError) << wrong;
 }
 
 TEST_F(Queries, ALineOfAnOlderScanThatComesLateDoesNotReplaceTheNewer) {
@@ -221,7 +228,9 @@ TEST_F(Queries, HistoryIsPagedFromTheNewestAndFiltered) {
   const Json first = Json::parse(history(database(), {.robot = "", .kind = ""}));
   ASSERT_EQ(first["results"].size(), 25U);
   EXPECT_TRUE(first["more"].get<bool>());
-  const Json third = Json::parse(history(database(), {.robot = "spot-1", .kind = "event", .before = first["results"][24]["seq"].get<std::int64_t>(), .limit = 50}));
+  const Json third = Json::parse(history(
+      database(),
+      {.robot = "spot-1", .kind = "event", .before = first["results"][24]["seq"].get<std::int64_t>(), .limit = 50}));
   EXPECT_EQ(third["results"].size(), 35U);
   EXPECT_FALSE(third["more"].get<bool>());
   EXPECT_EQ(Json::parse(history(database(), {.robot = "nobody", .kind = ""}))["results"].size(), 0U);

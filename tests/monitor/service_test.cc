@@ -16,8 +16,16 @@ constexpr const char* kToken = "0123456789abcdef";
 class RunningService : public testing::Test {
  protected:
   /// As the server does it: the head first.
-  HttpResponse ask(const std::string& method, const std::string& path, const std::string& body = "", const std::string& authorization = std::string("Bearer ") + kToken) {
-    HttpRequest request{.peer = "10.0.0.7", .local = "10.0.0.5", .host = host_, .method = method, .path = path, .parameters = {}, .authorization = authorization, .body = {}};
+  HttpResponse ask(const std::string& method, const std::string& path, const std::string& body = "",
+                   const std::string& authorization = std::string("Bearer ") + kToken) {
+    HttpRequest request{.peer = "10.0.0.7",
+                        .local = "10.0.0.5",
+                        .host = host_,
+                        .method = method,
+                        .path = path,
+                        .parameters = {},
+                        .authorization = authorization,
+                        .body = {}};
     if (auto error_reply = service_.refuse(request)) return *error_reply;
     request.body = body;
     return service_.answer(request);
@@ -26,7 +34,8 @@ class RunningService : public testing::Test {
   TemporaryFolder folder_;
   Store store_{folder_.path()};
   std::string log_, host_ = "10.0.0.5:8080";
-  Service service_{store_, kToken, [this](const std::string& line) { log_ += line + "\n"; }, HostNames({"tunnel-office"})};
+  Service service_{store_, kToken, [this](const std::string& line) { log_ += line + "\n"; },
+                   HostNames({"tunnel-office"})};
 };
 
 TEST_F(RunningService, TakesResultsAndSaysOfEachWhatBecameOfIt) {
@@ -48,7 +57,9 @@ TEST_F(RunningService, AnotherContentUnderTheSameIdIs409AndLogged) {
 
 TEST_F(RunningService, ChangesNeedTheToken) {
   for (const char* path : {"/api/results", "/api/alarms/1/acknowledge"}) {
-    for (const char* shown : {"", "Bearer", "Bearer ", "Bearer 0123456789abcdeg", "Basic 0123456789abcdef", "0123456789abcdef"}) EXPECT_EQ(ask("POST", path, "", shown).status, 401) << shown;
+    for (const char* shown :
+         {"", "Bearer", "Bearer ", "Bearer 0123456789abcdeg", "Basic 0123456789abcdef", "0123456789abcdef"})
+      EXPECT_EQ(ask("POST", path, "", shown).status, 401) << shown;
   }
   EXPECT_EQ(Json::parse(ask("GET", "/api/robots", "", "").body)["robots"].size(), 0U);
 }
@@ -65,8 +76,9 @@ TEST_F(RunningService, AnotherHostNameIs421InOneLineForReadingAndWriting) {
     EXPECT_EQ(ask("POST", "/api/results", "[]").status, 421) << other;
   }
   host_ = "evil.example";
-  EXPECT_EQ(ask("GET", "/").body,
-            R"({"error":"Host 'evil.example': unknown: must be the server's address, localhost, or a name of --allow-host"})");
+  EXPECT_EQ(
+      ask("GET", "/").body,
+      R"({"error":"Host 'evil.example': unknown: must be the server's address, localhost, or a name of --allow-host"})");
 }
 
 TEST_F(RunningService, TheSchemeOfTheTokenHasNoCase) {
@@ -77,7 +89,8 @@ TEST_F(RunningService, TheSchemeOfTheTokenHasNoCase) {
 }
 
 TEST_F(RunningService, UnknownPathsAre404AndOtherMethods405) {
-  for (const char* path : {"/..", "/../token", "/%2e%2e/token", "/token", "/page.css/..", "/api", "/api/results/", "/api/maps/", "/api/maps/-1", "/api/maps/x", "/api/alarms/x/acknowledge", "//", ""}) {
+  for (const char* path : {"/..", "/../token", "/%2e%2e/token", "/token", "/page.css/..", "/api", "/api/results/",
+                           "/api/maps/", "/api/maps/-1", "/api/maps/x", "/api/alarms/x/acknowledge", "//", ""}) {
     EXPECT_EQ(ask("GET", path).status, 404) << path;
   }
   EXPECT_EQ(ask("GET", "/api/results").status, 405);
@@ -107,17 +120,25 @@ TEST_F(RunningService, AnAlarmIsAcknowledgedByNameAndNote) {
 
 TEST_F(RunningService, APageFetchesNothingFromElsewhere) {
   const HttpResponse page = ask("GET", "/");
-  const auto policy = std::find_if(page.headers.begin(), page.headers.end(), [](const auto& header) { return header.first == "Content-Security-Policy"; });
+  const auto policy = std::find_if(page.headers.begin(), page.headers.end(),
+                                   [](const auto& header) { return header.first == "Content-Security-Policy"; });
   ASSERT_NE(policy, page.headers.end());
   EXPECT_EQ(policy->second.find("default-src 'none'"), 0U);
   EXPECT_EQ(page.body.find("http://"), std::string::npos);
   EXPECT_EQ(page.body.find("https://"), std::string::npos);
-  for (const char* part : {"/page.css", "/page.js", "/site.js", "/format.js", "/map.js", "/plots.js", "/uplot.js", "/uplot.css", "/schema"}) EXPECT_GT(ask("GET", part).body.size(), 100U) << part;
+  for (const char* part : {"/page.css", "/page.js", "/site.js", "/format.js", "/map.js", "/plots.js", "/uplot.js",
+                           "/uplot.css", "/schema"})
+    EXPECT_GT(ask("GET", part).body.size(), 100U) << part;
 }
 
 TEST_F(RunningService, AMapComesBackAsThePngThatWasSent) {
-  const char* kTwoByOne = "iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAAAAADRSSBWAAAAC0lEQVR4nGP4xwAAAf8A/5ijSg0AAAAASUVORK5CYII=";
-  ask("POST", "/api/results", to_json(result_of("map", {{"width", 2}, {"height", 1}, {"resolution_m", 0.1}, {"origin_m", {0.0, 0.0}}, {"png_base64", kTwoByOne}}, 1)));
+  const char* kTwoByOne =
+      "iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAAAAADRSSBWAAAAC0lEQVR4nGP4xwAAAf8A/5ijSg0AAAAASUVORK5CYII=";
+  ask("POST", "/api/results",
+      to_json(result_of(
+          "map",
+          {{"width", 2}, {"height", 1}, {"resolution_m", 0.1}, {"origin_m", {0.0, 0.0}}, {"png_base64", kTwoByOne}},
+          1)));
   const HttpResponse image = ask("GET", "/api/maps/1");
   EXPECT_EQ(image.type, "image/png");
   EXPECT_EQ(image.body.substr(1, 3), "PNG");

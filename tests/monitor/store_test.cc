@@ -1,8 +1,8 @@
 #include "monitor/store.h"
 
-#include <gtest/gtest.h>
-
 #include <sys/stat.h>
+
+#include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "tests/monitor/sample_results.h"
@@ -33,7 +33,8 @@ TEST(Store, AnotherOneOfTheSameIdChangesNothing) {
   const TemporaryFolder folder;
   Store store(folder.path());
   store.add({pose_result(1, 1.0)}, kNoon_ms);
-  EXPECT_EQ(store.add({pose_result(1, 9.0), pose_result(2, 3.0)}, kNoon_ms), (std::vector{StoreStatus::kConflict, StoreStatus::kNew}));
+  EXPECT_EQ(store.add({pose_result(1, 9.0), pose_result(2, 3.0)}, kNoon_ms),
+            (std::vector{StoreStatus::kConflict, StoreStatus::kNew}));
   Statement row = store.database().prepare("SELECT data FROM results WHERE id = 'spot-1/run_1/1'");
   ASSERT_TRUE(row.step());
   EXPECT_EQ(row.text(0), R"({"x":1.0,"y":2.0,"yaw":0.5})");
@@ -66,7 +67,7 @@ TEST(Store, ItsFilesAreReadableByTheirOwnerOnly) {
   ::umask(mask);
   int num_files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
-    struct stat info{};
+    struct stat info {};
     ASSERT_EQ(::stat(entry.path().c_str(), &info), 0);
     EXPECT_EQ(info.st_mode & 0777U, 0600U) << entry.path();
     ++num_files;

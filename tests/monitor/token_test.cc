@@ -1,8 +1,8 @@
 #include "monitor/token.h"
 
-#include <gtest/gtest.h>
-
 #include <sys/stat.h>
+
+#include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "tests/support/temporary_file.h"
@@ -15,7 +15,7 @@ TEST(Token, IsMadeOnceForItsOwnersEyesAlone) {
   const std::string token = load_or_create_token(folder.path());
   EXPECT_EQ(token.size(), 64U);
   EXPECT_EQ(load_or_create_token(folder.path()), token);
-  struct stat info{};
+  struct stat info {};
   ASSERT_EQ(::stat((folder / "token").c_str(), &info), 0);
   EXPECT_EQ(info.st_mode & 0777U, 0600U);
 }
@@ -25,12 +25,14 @@ TEST(Token, IsItsOwnersAloneAlthoughAnotherFileWasLeftInItsPlace) {
   test::write_bytes(folder / "token.part", "");
   ASSERT_EQ(::chmod((folder / "token.part").c_str(), 0644), 0);
   load_or_create_token(folder.path());
-  struct stat info{};
+  struct stat info {};
   ASSERT_EQ(::stat((folder / "token").c_str(), &info), 0);
   EXPECT_EQ(info.st_mode & 0777U, 0600U);
 }
 
-TEST(Token, OfAFileIsItsFirstLine) { EXPECT_EQ(load_token(test::TemporaryFile("token", "0123456789abcdef\r\nmore\n").path()), "0123456789abcdef"); }
+TEST(Token, OfAFileIsItsFirstLine) {
+  EXPECT_EQ(load_token(test::TemporaryFile("token", "0123456789abcdef\r\nmore\n").path()), "0123456789abcdef");
+}
 
 TEST(Token, TooShortOrNotPlainIsRefused) {
   EXPECT_THROW(load_token(test::TemporaryFile("token", "short\n").path()), InputError);
@@ -40,7 +42,8 @@ TEST(Token, TooShortOrNotPlainIsRefused) {
 
 TEST(Token, OnlyTheWholeIsTheSame) {
   EXPECT_TRUE(is_same_token("0123456789abcdef", "0123456789abcdef"));
-  for (const char* other : {"", "0", "0123456789abcdeg", "0123456789abcdef0", "0123456789abcde"}) EXPECT_FALSE(is_same_token(other, "0123456789abcdef")) << other;
+  for (const char* other : {"", "0", "0123456789abcdeg", "0123456789abcdef0", "0123456789abcde"})
+    EXPECT_FALSE(is_same_token(other, "0123456789abcdef")) << other;
   EXPECT_FALSE(is_same_token("", ""));
 }
 

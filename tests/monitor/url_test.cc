@@ -15,7 +15,8 @@ TEST(Url, HasHostAndPort) {
 }
 
 TEST(Url, AnythingElseIsRefused) {
-  for (const char* wrong : {"", "localhost:8080", "https://a", "http://", "http://:80", "http://a:0", "http://a:65536", "http://a:b", "http://a/b", "http://me@a"}) {
+  for (const char* wrong : {"", "localhost:8080", "https://a", "http://", "http://:80", "http://a:0", "http://a:65536",
+                            "http://a:b", "http://a/b", "http://me@a"}) {
     EXPECT_THROW(parse_url(wrong), InputError) << wrong;
   }
 }

@@ -31,9 +31,7 @@ inline RobotDescription make_tracked_robot() {
 
 /// Between the robot's outline and the nearest wall; 0 if they cross.
 inline double gap_m(const test::RoomWorld& world, const RobotDescription& robot, const Pose2& T_map_body) {
-  const auto cross = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-    return a.x() * b.y() - a.y() * b.x();
-  };
+  const auto cross = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); };
   const auto to_segment = [](const Eigen::Vector2d& p, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
     const double along = std::clamp((p - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
     return (p - a - along * (b - a)).norm();
@@ -43,12 +41,11 @@ inline double gap_m(const test::RoomWorld& world, const RobotDescription& robot,
     const Eigen::Vector2d p = T_map_body * robot.footprint_m[i];
     const Eigen::Vector2d q = T_map_body * robot.footprint_m[(i + 1) % robot.footprint_m.size()];
     for (const test::Segment& wall : world.walls()) {
-      const bool is_apart_of_wall =
-          cross(wall.b - wall.a, p - wall.a) * cross(wall.b - wall.a, q - wall.a) > 0.0;
+      const bool is_apart_of_wall = cross(wall.b - wall.a, p - wall.a) * cross(wall.b - wall.a, q - wall.a) > 0.0;
       const bool is_apart_of_edge = cross(q - p, wall.a - p) * cross(q - p, wall.b - p) > 0.0;
       if (!is_apart_of_wall && !is_apart_of_edge) return 0.0;
-      gap = std::min({gap, to_segment(p, wall.a, wall.b), to_segment(q, wall.a, wall.b),
-                      to_segment(wall.a, p, q), to_segment(wall.b, p, q)});
+      gap = std::min({gap, to_segment(p, wall.a, wall.b), to_segment(q, wall.a, wall.b), to_segment(wall.a, p, q),
+                      to_segment(wall.b, p, q)});
     }
   }
   return gap;
@@ -56,8 +53,7 @@ inline double gap_m(const test::RoomWorld& world, const RobotDescription& robot,
 
 /// The occupancy grid of an empty rectangle with walls: known free inside, occupied where a wall passes
 /// through a cell.
-inline OccupancyGrid draw_map(const test::RoomWorld& world, double x_min, double y_min, double x_max,
-                              double y_max) {
+inline OccupancyGrid draw_map(const test::RoomWorld& world, double x_min, double y_min, double x_max, double y_max) {
   constexpr double kResolution_m = 0.05;
   OccupancyGrid map({.resolution_m = kResolution_m,
                      .width = static_cast<int>(std::lround((x_max - x_min) / kResolution_m)),
@@ -80,10 +76,10 @@ struct DriveRecord {
   double time_s = 0.0;
   double way_m = 0.0;
   double min_gap_m = std::numeric_limits<double>::infinity();
-  double max_lateral_speed_mps = 0.0;   ///< asked for
+  double max_lateral_speed_mps = 0.0;  ///< asked for
   int num_plans = 0;
   int num_detours = 0;
-  double turned_rad = 0.0;           ///< to both sides
+  double turned_rad = 0.0;                               ///< to both sides
   NavigationFailure failure = NavigationFailure::kNone;  ///< at the end
   std::vector<std::string> texts, recoveries;
   Pose2 T_map_body;                  ///< at the end
@@ -96,9 +92,9 @@ using WorldAt = std::function<test::RoomWorld(double time_s)>;
 /// Closed loop: the navigator steps at 20 Hz and sees an ideal scan at 10 Hz, until it arrives, gives up or
 /// the time is over. The world is map's frame. The robot's velocity follows its command with a lag of the
 /// first order; without one, at once. Tracks lose a share of the yaw rate.
-inline DriveRecord drive(Navigator& navigator, const WorldAt& world_at, Pose2 T_map_body,
-                         const NavigationGoal& goal, double time_limit_s, double lag_s = 0.0,
-                         const RobotDescription& robot = make_robot(), double turn_slip = 0.0) {
+inline DriveRecord drive(Navigator& navigator, const WorldAt& world_at, Pose2 T_map_body, const NavigationGoal& goal,
+                         double time_limit_s, double lag_s = 0.0, const RobotDescription& robot = make_robot(),
+                         double turn_slip = 0.0) {
   constexpr double kPeriod_s = 0.05;
   DriveRecord record;
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  // ahead, left, yaw
@@ -129,8 +125,8 @@ inline DriveRecord drive(Navigator& navigator, const WorldAt& world_at, Pose2 T_
     const Eigen::Vector3d asked(step.command.vx_mps, step.command.vy_mps,
                                 (1.0 - turn_slip) * step.command.yaw_rate_radps);
     velocity += (asked - velocity) * (lag_s > 0.0 ? 1.0 - std::exp(-kPeriod_s / lag_s) : 1.0);
-    const Pose2 next = follow_arc(T_map_body, velocity[0], velocity[2], kPeriod_s) *
-                       Pose2{0.0, kPeriod_s * velocity[1], 0.0};
+    const Pose2 next =
+        follow_arc(T_map_body, velocity[0], velocity[2], kPeriod_s) * Pose2{0.0, kPeriod_s * velocity[1], 0.0};
     record.turned_rad += std::abs(wrap_angle(next.yaw - T_map_body.yaw));
     record.way_m += (next.position() - T_map_body.position()).norm();
     T_map_body = next;

@@ -8,8 +8,8 @@
 
 namespace patrol::plan {
 
-/// A skid-steered robot as the planner meets it: commands take effect late, the tracks slip ahead and more so in turning, and
-/// it turns about a point that is not the body's origin.
+/// A skid-steered robot as the planner meets it: commands take effect late, the tracks slip ahead and more so in
+/// turning, and it turns about a point that is not the body's origin.
 struct TrackedPlant {
   double turn_slip = 0.25;     ///< share of the yaw rate that is lost
   double way_slip = 0.03;      ///< share of the speed that is lost

@@ -1,9 +1,9 @@
 #include "render/canvas.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <numbers>
+
+#include <gtest/gtest.h>
 
 #include "render/scene/antialias.h"
 
@@ -30,8 +30,7 @@ TEST(Canvas, ALineCoversItsLengthTimesItsWidth) {
 
 TEST(Canvas, ASlantedLineCoversAsMuchAsALevelOne) {
   Frame frame(100, 100);
-  draw_line(frame, {20.0, 20.0}, {20.0 + 50.0 / std::numbers::sqrt2, 20.0 + 50.0 / std::numbers::sqrt2}, 4.0,
-            kWhite);
+  draw_line(frame, {20.0, 20.0}, {20.0 + 50.0 / std::numbers::sqrt2, 20.0 + 50.0 / std::numbers::sqrt2}, 4.0, kWhite);
   EXPECT_NEAR(painted_area(frame), 50.0 * 4.0 + std::numbers::pi * 4.0, 4.0);
 }
 
@@ -82,16 +81,15 @@ TEST(SmoothEdges, MakesTheStairsOfASlantedEdgeShallower) {
   for (int x = 0; x < 64; ++x) {
     for (int y = 0; y < 10 + x / 8; ++y) frame.at(x, y) = {255, 255, 255};
   }
-  const auto roughness =
-      [](const Frame& of) {  // squared distance of each column's painted height from the true slope
-        double sum = 0.0;
-        for (int x = 8; x < 56; ++x) {
-          double painted = 0.0;
-          for (int y = 0; y < 32; ++y) painted += of.at(x, y).r / 255.0;
-          sum += std::pow(painted - (9.5 + (x + 0.5) / 8.0), 2);
-        }
-        return sum;
-      };
+  const auto roughness = [](const Frame& of) {  // squared distance of each column's painted height from the true slope
+    double sum = 0.0;
+    for (int x = 8; x < 56; ++x) {
+      double painted = 0.0;
+      for (int y = 0; y < 32; ++y) painted += of.at(x, y).r / 255.0;
+      sum += std::pow(painted - (9.5 + (x + 0.5) / 8.0), 2);
+    }
+    return sum;
+  };
   const double before = roughness(frame);
   smooth_edges(frame);
   EXPECT_LT(roughness(frame), 0.75 * before);

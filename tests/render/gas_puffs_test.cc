@@ -1,8 +1,8 @@
 #include "render/gas_puffs.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
+
+#include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "render/scene/palette.h"
@@ -27,7 +27,8 @@ TEST(GasCloud, LiesDownwindAndIsAsDenseAsThePlume) {
   EXPECT_LT(upwind, 0.01 * downwind);
 }
 
-// What the simulated meter would read along a line across the plume, 1.5 m downwind: the puffs along that line add up to it.
+// What the simulated meter would read along a line across the plume, 1.5 m downwind: the puffs along that line add up
+// to it.
 TEST(GasCloud, ItsPuffsAddUpToTheSimulatedColumn) {
   const sim::GasPlume plume(Eigen::Vector3d(0.0, 0.0, 0.5), 1.0, kWestWind);
   const double column_ppm_m = plume.column_ppm_m({1.5, -4.0, 0.5}, Eigen::Vector3d::UnitY(), 8.0, 10.0);
@@ -36,7 +37,8 @@ TEST(GasCloud, ItsPuffsAddUpToTheSimulatedColumn) {
   for (int i = 0; i < kDrifts; ++i) {
     for (const Puff& puff : leak_at_origin().puffs(10.0, 0.01 * i)) {
       const double off_line_m = (puff.p_world_m - Eigen::Vector3d(1.5, puff.p_world_m.y(), 0.5)).norm();
-      mean_ppm_m += puff.column_ppm_m * std::exp(-0.5 * off_line_m * off_line_m / (puff.radius_m * puff.radius_m)) / kDrifts;
+      mean_ppm_m +=
+          puff.column_ppm_m * std::exp(-0.5 * off_line_m * off_line_m / (puff.radius_m * puff.radius_m)) / kDrifts;
     }
   }
   EXPECT_NEAR(mean_ppm_m / column_ppm_m, 1.0, 0.25);  // a few puffs for a smooth plume

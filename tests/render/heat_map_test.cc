@@ -18,7 +18,13 @@ TEST(HeatMap, LightnessGrowsWithTheFigure) {
 TEST(HeatMap, APlaceHasItsColourAndASurfaceIsDark) {
   OccupancyGrid surfaces({.resolution_m = 0.1, .width = 100, .height = 100, .origin_m = {0.0, 0.0}}, kFree);
   for (int row = 0; row < 100; ++row) surfaces.at({80, row}) = kOccupied;
-  const HeatMap map{.surfaces = surfaces, .step_m = 1.0, .positions = {{.p_m = {5.0, 5.0}, .color_fraction = 1.0}, {.p_m = {7.0, 5.0}, .color_fraction = 0.0}}, .title = "", .note = "", .scale = {}};
+  const HeatMap map{
+      .surfaces = surfaces,
+      .step_m = 1.0,
+      .positions = {{.p_m = {5.0, 5.0}, .color_fraction = 1.0}, {.p_m = {7.0, 5.0}, .color_fraction = 0.0}},
+      .title = "",
+      .note = "",
+      .scale = {}};
   const Frame frame = draw_heat_map(map);
   // The picture begins 1.5 m beside the places: 10 pixels a metre, x from 3.5 m, y down from 6.5 m.
   EXPECT_EQ(frame.at(15, 15), heat_color(1.0));

@@ -1,8 +1,8 @@
 #include "render/map_inset.h"
 
-#include <gtest/gtest.h>
-
 #include <numbers>
+
+#include <gtest/gtest.h>
 
 #include "render/scene/palette.h"
 
@@ -11,8 +11,7 @@ namespace {
 
 /// 10 m x 10 m of free floor in map, with a wall along its +x side.
 RunSnapshot snapshot_with_map() {
-  OccupancyGrid map({.resolution_m = 0.05, .width = 400, .height = 400, .origin_m = {-10.0, -10.0}},
-                    kUnknown);
+  OccupancyGrid map({.resolution_m = 0.05, .width = 400, .height = 400, .origin_m = {-10.0, -10.0}}, kUnknown);
   for (int row = 100; row < 300; ++row) {
     for (int col = 100; col < 300; ++col) map.at({col, row}) = col == 299 ? kOccupied : kFree;
   }

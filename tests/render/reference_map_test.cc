@@ -1,12 +1,12 @@
 #include "render/reference_map.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 
-#include "core/geometry/angles.h"
+#include <gtest/gtest.h>
+
 #include "core/error.h"
+#include "core/geometry/angles.h"
 #include "tests/render/small_scene.h"
 
 namespace patrol::render::reference_map_test {
@@ -42,8 +42,7 @@ TEST(ReferenceMapTest, ABoxIsItsOutlineWithTheUnknownInside) {
   // 1 m x 0.5 m from (2.01, 1.01): 40 x 20 cells of 2.5 cm, of which 2 * 40 + 2 * 18 are the outline.
   const auto model = small_scene(R"(<geom type="box" size="0.5 0.25 0.5" pos="2.51 1.26 0.5"/>)");
   const ReferenceMap reference = reference_map(*model);
-  EXPECT_EQ(num_wrong(reference.map,
-                      [](double x, double y) { return x > 2.01 && x < 3.01 && y > 1.01 && y < 1.51; }),
+  EXPECT_EQ(num_wrong(reference.map, [](double x, double y) { return x > 2.01 && x < 3.01 && y > 1.01 && y < 1.51; }),
             0);
   EXPECT_EQ(num_occupied(reference.map), 2u * 40 + 2 * 18);
   EXPECT_EQ(reference.check.agreement_ratio(), 1.0);
@@ -51,8 +50,7 @@ TEST(ReferenceMapTest, ABoxIsItsOutlineWithTheUnknownInside) {
 }
 
 TEST(ReferenceMapTest, SurfaceCellsLieBehindTheSurfaceByLessThanACell) {
-  const auto model =
-      small_scene(R"(<geom type="box" size="0.5 0.5 0.5" pos="0.013 0.004 0.5" euler="0 0 27"/>)");
+  const auto model = small_scene(R"(<geom type="box" size="0.5 0.5 0.5" pos="0.013 0.004 0.5" euler="0 0 27"/>)");
   const OccupancyGrid map = reference_map(*model).map;
   const double c = std::cos(to_rad(27.0)), s = std::sin(to_rad(27.0));
   for (int row = 0; row < map.geometry().height; ++row) {
@@ -80,17 +78,15 @@ TEST(ReferenceMapTest, ASphereIsCutAtTheHeightThatWasAsked) {
 }
 
 /// A ridge along y: its height rises evenly from 0 at x = -2.01 m to 1 m at x = -0.01 m and falls again.
-constexpr const char* kRidge =
-    R"(<hfield name="ridge" nrow="2" ncol="3" size="2 1 1 0.3" elevation="0 1 0 0 1 0"/>)";
+constexpr const char* kRidge = R"(<hfield name="ridge" nrow="2" ncol="3" size="2 1 1 0.3" elevation="0 1 0 0 1 0"/>)";
 
 TEST(ReferenceMapTest, AHeightFieldIsCutWhereItsGroundIsHigherThanTheLidar) {
   // Higher than 0.4 m within 0.6 * 2 m of the ridge.
-  const auto model =
-      small_scene(R"(<geom type="hfield" hfield="ridge" pos="-0.01 0.01 0" group="2"/>)", kRidge);
+  const auto model = small_scene(R"(<geom type="hfield" hfield="ridge" pos="-0.01 0.01 0" group="2"/>)", kRidge);
   const ReferenceMap reference = reference_map(*model, {.height_m = 0.4});
-  EXPECT_EQ(num_wrong(reference.map,
-                      [](double x, double y) { return std::abs(x + 0.01) < 1.2 && y > -0.99 && y < 1.01; }),
-            0);
+  EXPECT_EQ(
+      num_wrong(reference.map, [](double x, double y) { return std::abs(x + 0.01) < 1.2 && y > -0.99 && y < 1.01; }),
+      0);
   EXPECT_EQ(reference.check.agreement_ratio(), 1.0);
 }
 
@@ -161,8 +157,7 @@ TEST(ReferenceMapTest, IsSeamlessAcrossRenderedTiles) {
   // 40 m of wall are 1600 cells: more than one tile.
   const auto model = small_scene(R"(<geom type="box" size="20 0.15 0.5" pos="20.01 0.16 0.5"/>)");
   const ReferenceMap reference = reference_map(*model);
-  EXPECT_EQ(num_wrong(reference.map,
-                      [](double x, double y) { return x > 0.01 && x < 40.01 && y > 0.01 && y < 0.31; }),
+  EXPECT_EQ(num_wrong(reference.map, [](double x, double y) { return x > 0.01 && x < 40.01 && y > 0.01 && y < 0.31; }),
             0);
 }
 

@@ -15,7 +15,9 @@ inline sim::ModelPtr small_scene(const std::string& body, const std::string& ass
       "<visual><headlight ambient=\"0.5 0.5 0.5\" diffuse=\"0.1 0.1 0.1\" specular=\"0 0 0\"/>"
       "<map znear=\"0.003\" zfar=\"6\" fogstart=\"4\" fogend=\"6\"/></visual>"
       "<asset><texture type=\"skybox\" builtin=\"gradient\" rgb1=\"0.4 0.6 1\" rgb2=\"0.4 0.6 1\" "
-      "width=\"32\" height=\"192\"/>" + asset + "</asset>"
+      "width=\"32\" height=\"192\"/>" +
+      asset +
+      "</asset>"
       "<worldbody>" +
       body + "</worldbody></mujoco>";
   return sim::compile(*sim::parse_spec(xml), "small scene");

@@ -1,9 +1,9 @@
 #include "render/snapshot_builder.h"
 
-#include <gtest/gtest.h>
-
 #include <limits>
 #include <numbers>
+
+#include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "tests/render/small_scene.h"
@@ -95,10 +95,8 @@ TEST_F(RunFollowerTest, BeamsAreFreedOfTheRobotsTurningAndLeaning) {
   const Eigen::Quaterniond lean_left = quaternion_from_rpy(0.1, 0.0, std::numbers::pi / 2.0 + 0.05);
   const Eigen::Vector3d body(10.0, 20.0, 0.3);
   ASSERT_EQ(follower.snapshot().scan.size(), 2u);
-  EXPECT_THAT(follower.snapshot().scan[0],
-              VectorNear(body + lean_ahead * Eigen::Vector3d(2.0, 0.0, 0.1), 1e-6));
-  EXPECT_THAT(follower.snapshot().scan[1],
-              VectorNear(body + lean_left * Eigen::Vector3d(0.0, 3.0, 0.1), 1e-6));
+  EXPECT_THAT(follower.snapshot().scan[0], VectorNear(body + lean_ahead * Eigen::Vector3d(2.0, 0.0, 0.1), 1e-6));
+  EXPECT_THAT(follower.snapshot().scan[1], VectorNear(body + lean_left * Eigen::Vector3d(0.0, 3.0, 0.1), 1e-6));
 }
 
 TEST_F(RunFollowerTest, TellsTheNewestEventAndWhetherItIsAnAlarm) {
@@ -115,16 +113,14 @@ TEST_F(RunFollowerTest, TellsTheNewestEventAndWhetherItIsAnAlarm) {
 
 TEST_F(RunFollowerTest, BeamsWithoutAReturnAreNotDrawn) {
   follower.add(truth_at(0s, 10.0, 20.0, 0.0));
-  follower.add(
-      two_beams(0s, std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()));
+  follower.add(two_beams(0s, std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()));
   follower.add(estimate_at(0s, {}));
   EXPECT_TRUE(follower.snapshot().scan.empty());
 }
 
 TEST(RunFollowerAmong, ActorsDrawsPathsOnTheGroundAndNotOnThem) {
-  const auto model =
-      small_scene(std::string(kRobotBeforeWall) +
-                  R"(<body pos="1 0 0.1" mocap="true"><geom type="box" size="0.3 0.3 0.1"/></body>)");
+  const auto model = small_scene(std::string(kRobotBeforeWall) +
+                                 R"(<body pos="1 0 0.1" mocap="true"><geom type="box" size="0.3 0.3 0.1"/></body>)");
   SnapshotBuilder follower(*model, {});
   follower.add(truth_at(0s, 1.0, 0.0, 0.0));
   EXPECT_THAT(follower.snapshot().true_path.back(), VectorNear(Eigen::Vector3d(1.0, 0.0, 0.01), 1e-4));
@@ -133,7 +129,8 @@ TEST(RunFollowerAmong, ActorsDrawsPathsOnTheGroundAndNotOnThem) {
 }
 
 TEST(RunFollowerBefore, ABridgeDrawsThePlanOnItsDeckAndNotUnderIt) {
-  const auto model = small_scene(std::string(kRobotBeforeWall) + R"(<geom type="box" size="0.5 1 0.05" pos="2 0 0.45"/>)");
+  const auto model =
+      small_scene(std::string(kRobotBeforeWall) + R"(<geom type="box" size="0.5 1 0.05" pos="2 0 0.45"/>)");
   SnapshotBuilder follower(*model, {});
   follower.add(truth_at(0s, 0.0, 0.0, 0.0));
   follower.add(Path{.stamp = 0s, .T_map_body = {{0.0, 0.0, 0.0}, {2.0, 0.0, 0.0}}});

@@ -1,4 +1,5 @@
-// Paints a small world with shadows by the renderer named: still_with RENDERER OUT.png. Exit code 1 where it is not to be had.
+// Paints a small world with shadows by the renderer named: still_with RENDERER OUT.png. Exit code 1 where it is not to
+// be had.
 #include <cstdio>
 #include <exception>
 #include <vector>

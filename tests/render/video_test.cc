@@ -1,9 +1,9 @@
 #include "render/video.h"
 
-#include <gtest/gtest.h>
-
 #include <filesystem>
 #include <string>
+
+#include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "tests/support/temporary_file.h"

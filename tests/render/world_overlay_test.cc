@@ -57,8 +57,7 @@ TEST_F(WorldInkTest, WhatRunsPastTheEyeIsCutAtTheNearPlane) {
 }
 
 TEST_F(WorldInkTest, AThinInkDoesNotAddUpWhereALineMeetsItself) {
-  const std::vector<Eigen::Vector3d> there_and_back = {
-      {2.0, -1.0, 0.01}, {2.0, 1.0, 0.01}, {2.0, -1.0, 0.01}};
+  const std::vector<Eigen::Vector3d> there_and_back = {{2.0, -1.0, 0.01}, {2.0, 1.0, 0.01}, {2.0, -1.0, 0.01}};
   const Color ground = color_at({2.0, 0.0, 0.01});
   WorldOverlay(frame, depth, Projector(view, kWidth, kHeight)).polyline(there_and_back, 0.05, {kPink, 0.5});
   EXPECT_EQ(color_at({2.0, 0.0, 0.01}), blend(ground, kPink, 0.5));

@@ -1,9 +1,9 @@
 #include "report/decimation.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 namespace patrol::report::decimation_test {
 namespace {
@@ -35,7 +35,8 @@ TEST(Decimated, KeepsBothEndsAndTheOrder) {
 
 TEST(Decimated, HoldsNoPointThatTheCurveDoesNotHave) {
   const Points curve = line_of(5001);
-  for (const Eigen::Vector2d& point : decimate(curve, 100)) EXPECT_NE(std::find(curve.begin(), curve.end(), point), curve.end());
+  for (const Eigen::Vector2d& point : decimate(curve, 100))
+    EXPECT_NE(std::find(curve.begin(), curve.end(), point), curve.end());
 }
 
 TEST(Decimated, LeavesAShortCurveAsItIs) {
@@ -46,17 +47,20 @@ TEST(Decimated, LeavesAShortCurveAsItIs) {
 TEST(Simplified, StaysWithinItsToleranceOfEveryPointOfACircle) {
   constexpr double kTolerance = 0.01;
   Points circle;
-  for (int i = 0; i <= 3600; ++i) circle.emplace_back(5.0 * std::cos(i * M_PI / 1800.0), 5.0 * std::sin(i * M_PI / 1800.0));
+  for (int i = 0; i <= 3600; ++i)
+    circle.emplace_back(5.0 * std::cos(i * M_PI / 1800.0), 5.0 * std::sin(i * M_PI / 1800.0));
   const Points kept = simplify_path(circle, kTolerance);
   // A chord that stays within h of a circle of radius r is sqrt(8 r h) = 0.63 m long: 50 of them.
   EXPECT_GE(kept.size(), 50u);
   EXPECT_LE(kept.size(), 130u);
-  for (std::size_t i = 1; i < kept.size(); ++i) EXPECT_GE((0.5 * (kept[i] + kept[i - 1])).norm(), 5.0 - kTolerance - 1e-9);
+  for (std::size_t i = 1; i < kept.size(); ++i)
+    EXPECT_GE((0.5 * (kept[i] + kept[i - 1])).norm(), 5.0 - kTolerance - 1e-9);
 }
 
 TEST(Simplified, KeepsTheCornersOfASquareAndNothingElse) {
   Points square;
-  for (const Eigen::Vector2d& side : {Eigen::Vector2d(1, 0), Eigen::Vector2d(0, 1), Eigen::Vector2d(-1, 0), Eigen::Vector2d(0, -1)}) {
+  for (const Eigen::Vector2d& side :
+       {Eigen::Vector2d(1, 0), Eigen::Vector2d(0, 1), Eigen::Vector2d(-1, 0), Eigen::Vector2d(0, -1)}) {
     for (int i = 0; i < 10; ++i) square.push_back((square.empty() ? Eigen::Vector2d(0, 0) : square.back()) + side);
   }
   EXPECT_EQ(simplify_path(square, 0.01), (Points{{1, 0}, {10, 0}, {10, 10}, {0, 10}, {0, 0}}));

@@ -15,9 +15,7 @@ TEST(ScriptJson, CannotEndTheScriptThatHoldsIt) {
   EXPECT_EQ(nlohmann::ordered_json::parse(json)["text"], "</script><script>alert(1)</script><!--");
 }
 
-TEST(ScriptJson, TakesBytesThatAreNotUtf8) {
-  EXPECT_EQ(script_json({{"text", "\xff"}}), R"({"text":"\ufffd"})");
-}
+TEST(ScriptJson, TakesBytesThatAreNotUtf8) { EXPECT_EQ(script_json({{"text", "\xff"}}), R"({"text":"\ufffd"})"); }
 
 // RFC 4648, section 10.
 TEST(DataUri, IsTheStandardsOwnExamples) {

@@ -1,8 +1,8 @@
 #include "report/map_picture.h"
 
-#include <gtest/gtest.h>
-
 #include <numbers>
+
+#include <gtest/gtest.h>
 
 #include "render/scene/frame.h"
 #include "tests/support/temporary_file.h"
@@ -24,13 +24,15 @@ Frame pixels_of(const MapPicture& picture) { return pixels_of(picture.detail); }
 
 Color color_at(const MapPicture& picture, const Frame& frame, double x_m, double y_m) {
   const double pixel_m = picture.detail.size_m.x() / frame.width();
-  return frame.at(static_cast<int>((x_m - picture.low_m.x()) / pixel_m), static_cast<int>((picture.high_m.y() - y_m) / pixel_m));
+  return frame.at(static_cast<int>((x_m - picture.low_m.x()) / pixel_m),
+                  static_cast<int>((picture.high_m.y() - y_m) / pixel_m));
 }
 
 /// 4 m x 2 m of free floor in map, with one occupied cell at (3.05, 1.05) and its error.
 MapLayers small_map(float error_m) {
   const GridGeometry geometry{.resolution_m = 0.1, .width = 40, .height = 20, .origin_m = {0.0, 0.0}};
-  MapLayers layers{.built = OccupancyGrid(geometry, kFree), .T_world_map = {}, .truth = {}, .error_m = Grid<float>(geometry)};
+  MapLayers layers{
+      .built = OccupancyGrid(geometry, kFree), .T_world_map = {}, .truth = {}, .error_m = Grid<float>(geometry)};
   layers.built.at({30, 10}) = kOccupied;
   layers.error_m.at({30, 10}) = error_m;
   return layers;
@@ -87,7 +89,8 @@ TEST(MapPicture, ShowsTrueSurfacesWhereNothingWasMapped) {
 
 TEST(MapPicture, DrawsAWallBroadlyInTheOverview) {
   MapLayers layers = small_map(0.2F);
-  const MapPicture picture = map_picture(layers, Eigen::AlignedBox2d(Eigen::Vector2d(0, 0), Eigen::Vector2d(400, 300)));  // 0.4 m a pixel
+  const MapPicture picture =
+      map_picture(layers, Eigen::AlignedBox2d(Eigen::Vector2d(0, 0), Eigen::Vector2d(400, 300)));  // 0.4 m a pixel
   const Frame frame = pixels_of(picture.overview);
   EXPECT_LE(frame.width(), 1150);
   EXPECT_LE(frame.height(), 750);
@@ -101,7 +104,8 @@ TEST(MapPicture, DrawsAWallBroadlyInTheOverview) {
 TEST(MapPicture, HasAtMostEightMillionPixels) {
   const GridGeometry geometry{.resolution_m = 0.05, .width = 4, .height = 4, .origin_m = {0.0, 0.0}};
   const MapLayers layers{.built = OccupancyGrid(geometry, kFree), .T_world_map = {}, .truth = {}, .error_m = {}};
-  const Frame frame = pixels_of(map_picture(layers, Eigen::AlignedBox2d(Eigen::Vector2d(0, 0), Eigen::Vector2d(1000, 500))));
+  const Frame frame =
+      pixels_of(map_picture(layers, Eigen::AlignedBox2d(Eigen::Vector2d(0, 0), Eigen::Vector2d(1000, 500))));
   EXPECT_LE(frame.width() * frame.height(), 8'020'000);
 }
 

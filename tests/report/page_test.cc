@@ -1,9 +1,9 @@
 #include "report/page.h"
 
+#include <regex>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include <regex>
 
 namespace patrol::report::page_test {
 namespace {
@@ -27,18 +27,23 @@ Page page_of_everything(const std::string& text) {
   const PlotSpan span{.from = 1.0, .to = 2.0, .text = text};
   Curve curve = long_curve();
   curve.name = text;
-  return {.kind = text,
-          .title = text,
-          .facts = {{text, text}},
-          .sections = {{.title = "", .blocks = {VerdictBlock{text, Tone::kBad, text, table}}},
-                       {.title = text,
-                        .blocks = {TextBlock{text}, KeyMetrics{{{text, text, text, text}}}, table, CollapsibleTables{text, {table}},
-                                   BarBlock{text, {{text, 1.0, text}}}, BoxPlot{text, text, {{text, {1.0, 2.0, 4.0}, 1.5, 2.0, 3.0, text}}},
-                                   WaterfallChart{text, text, {{text, -1.0, 2.0, std::pair(1.5, 2.5), Tone::kBad, text}}},
-                                   LinePlot{text, text, axis, {}, {curve}, {mark}, {span}}, EventTimeline{text, axis, {{text, {mark}}}, {span}},
-                                   MapBlock{map_picture({}, {}), {{text, SeriesColor::kTruth, {{{0, 0}, {1, 1}}}}}, {{text, SeriesColor::kEvent, {0, 0}}}},
-                                   VideoBlock{text, "", text}, VideoBlock{"", text, text}}}},
-          .footer = text};
+  return {
+      .kind = text,
+      .title = text,
+      .facts = {{text, text}},
+      .sections = {{.title = "", .blocks = {VerdictBlock{text, Tone::kBad, text, table}}},
+                   {.title = text,
+                    .blocks = {TextBlock{text}, KeyMetrics{{{text, text, text, text}}}, table,
+                               CollapsibleTables{text, {table}}, BarBlock{text, {{text, 1.0, text}}},
+                               BoxPlot{text, text, {{text, {1.0, 2.0, 4.0}, 1.5, 2.0, 3.0, text}}},
+                               WaterfallChart{text, text, {{text, -1.0, 2.0, std::pair(1.5, 2.5), Tone::kBad, text}}},
+                               LinePlot{text, text, axis, {}, {curve}, {mark}, {span}},
+                               EventTimeline{text, axis, {{text, {mark}}}, {span}},
+                               MapBlock{map_picture({}, {}),
+                                        {{text, SeriesColor::kTruth, {{{0, 0}, {1, 1}}}}},
+                                        {{text, SeriesColor::kEvent, {0, 0}}}},
+                               VideoBlock{text, "", text}, VideoBlock{"", text, text}}}},
+      .footer = text};
 }
 
 std::string html_of(const Block& block) {
@@ -67,9 +72,7 @@ TEST(ReportPage, NoTextOfARunBecomesMarkup) {
   EXPECT_EQ(count(hostile, "<") - count(hostile, "<wbr>"), count(harmless, "<"));
 }
 
-TEST(ReportPage, IsTheSameBytesTwice) {
-  EXPECT_EQ(to_html(page_of_everything("x")), to_html(page_of_everything("x")));
-}
+TEST(ReportPage, IsTheSameBytesTwice) { EXPECT_EQ(to_html(page_of_everything("x")), to_html(page_of_everything("x"))); }
 
 TEST(ReportPage, NamesNothingThatWouldBeFetched) {
   const std::string html = to_html(page_of_everything("x"));
@@ -116,7 +119,14 @@ TEST(LinePlot, GoesLogarithmicWhenThePeakDwarfsTheRest) {
 }
 
 TEST(BoxPlot, StandsOnAScaleOfRoundTicks) {
-  const BoxPlot plot{.caption = "c", .unit = "cm", .boxes = {{.label = "goal_1", .values = {1.0, 2.0, 3.7}, .lower_quartile = 1.5, .median = 2.0, .upper_quartile = 2.85, .text = "2.00"}}};
+  const BoxPlot plot{.caption = "c",
+                     .unit = "cm",
+                     .boxes = {{.label = "goal_1",
+                                .values = {1.0, 2.0, 3.7},
+                                .lower_quartile = 1.5,
+                                .median = 2.0,
+                                .upper_quartile = 2.85,
+                                .text = "2.00"}}};
   const std::string html = html_of(plot);
   EXPECT_THAT(html, HasSubstr("left:100.000%\">4 cm"));  // ticks 0, 1, 2, 3, 4
   EXPECT_THAT(html, HasSubstr("class=\"median\" style=\"left:50.000%\""));
@@ -126,8 +136,11 @@ TEST(BoxPlot, StandsOnAScaleOfRoundTicks) {
 }
 
 TEST(WaterfallChart, HasAScaleWithZeroAndNegativeValuesInIt) {
-  const std::string html = html_of(WaterfallChart{"", "cm", {{.label = "a", .from = 0.0, .to = -2.0, .interval = std::pair(-3.0, -1.0), .text = ""},
-                                                         {.label = "b", .from = 0.0, .to = 1.0, .text = ""}}});
+  const std::string html =
+      html_of(WaterfallChart{"",
+                             "cm",
+                             {{.label = "a", .from = 0.0, .to = -2.0, .interval = std::pair(-3.0, -1.0), .text = ""},
+                              {.label = "b", .from = 0.0, .to = 1.0, .text = ""}}});
   // -3 ... 1 in steps of 1: zero at three quarters; a from -2 to 0, its interval from -3 to -1.
   EXPECT_THAT(html, HasSubstr("zero\" style=\"left:75.000%"));
   EXPECT_THAT(html, HasSubstr("span plain\" style=\"left:25.000%;width:50.000%"));

@@ -1,10 +1,10 @@
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <cstdint>
 #include <string>
 #include <variant>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 #include "core/geometry/angles.h"
 #include "io/urdf.h"
@@ -33,16 +33,17 @@ Leg go(double duration_s, double vx_mps, double yaw_rate_radps = 0.0) {
 }
 
 struct OdometryReport {
-  double way_m = 0.0;           ///< true
-  double scale = 0.0;           ///< estimated way over true way
+  double way_m = 0.0;  ///< true
+  double scale = 0.0;  ///< estimated way over true way
   double end_error_m = 0.0;
   double max_yaw_error_rad = 0.0;
   double tilt_rms_rad = 0.0;
-  double height_rms_m = 0.0;    ///< of the height above ground
+  double height_rms_m = 0.0;  ///< of the height above ground
   double velocity_rms_mps = 0.0;
 };
 
-OdometryReport walk(const std::vector<Leg>& legs, std::uint64_t seed, const localize::BodyEstimatorSettings& settings = {}) {
+OdometryReport walk(const std::vector<Leg>& legs, std::uint64_t seed,
+                    const localize::BodyEstimatorSettings& settings = {}) {
   const test::TemporaryFile world("flat.xml", kFlatWorld);
   const RobotDescription robot = io::load_robot_description(kRobotUrdf);
   sim::SimulatorSettings simulator_settings;
@@ -76,7 +77,8 @@ OdometryReport walk(const std::vector<Leg>& legs, std::uint64_t seed, const loca
       const double yaw_error = wrap_angle(to_yaw(estimate->T_odom_body.rotation) - to_yaw(T_odom_body.rotation));
       report.max_yaw_error_rad = std::max(report.max_yaw_error_rad, std::abs(yaw_error));
       const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
-      const double cos_tilt = (T_odom_body.rotation.conjugate() * up).dot(estimate->T_odom_body.rotation.conjugate() * up);
+      const double cos_tilt =
+          (T_odom_body.rotation.conjugate() * up).dot(estimate->T_odom_body.rotation.conjugate() * up);
       report.tilt_rms_rad += std::pow(std::acos(std::min(1.0, cos_tilt)), 2);
       report.height_rms_m += std::pow(estimator.height_above_ground_m() - truth.T_world_body.position.z(), 2);
       report.velocity_rms_mps += (estimate->twist.linear - truth.twist.linear).squaredNorm();

@@ -1,17 +1,16 @@
 // The tracked robot on MuJoCo's contacts against closed forms of what tracks do.
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
+#include <gtest/gtest.h>
 
 #include "core/geometry/angles.h"
 #include "tests/sim/rubble.h"
-#include "tests/support/simulated_tracked_robot.h"
 #include "tests/support/simulated_quadruped.h"
+#include "tests/support/simulated_tracked_robot.h"
 
 namespace patrol::sim::tracks_test {
 namespace {
@@ -39,10 +38,11 @@ std::string make_ramp() {
   const double a = to_rad(15.0), run = 3.0 * std::cos(a), rise = 3.0 * std::sin(a), t = 0.1;
   const double x_up = 1.5 + run / 2.0 + t * std::sin(a), x_down = 1.5 + run + 2.0 + run / 2.0 - t * std::sin(a);
   const double z = rise / 2.0 - t * std::cos(a);
-  return make_flat_world(fmt::format(R"(<geom name="ground_up" type="box" size="1.5 1 0.1" pos="{} 0 {}" euler="0 -15 0"/>
+  return make_flat_world(
+      fmt::format(R"(<geom name="ground_up" type="box" size="1.5 1 0.1" pos="{} 0 {}" euler="0 -15 0"/>
     <geom name="ground_top" type="box" size="1 1 0.1" pos="{} 0 {}"/>
     <geom name="ground_down" type="box" size="1.5 1 0.1" pos="{} 0 {}" euler="0 15 0"/>)",
-                                     x_up, z, 1.5 + run + 1.0, rise - t, x_down, z));
+                  x_up, z, 1.5 + run + 1.0, rise - t, x_down, z));
 }
 
 /// A wall as slippery as wet ice 1 m before the robot's front.
@@ -55,15 +55,17 @@ double turned_over_kinematic(const DriveReport& turn) {
   return turn.moved.yaw / ((turn.right_belt_m - turn.left_belt_m) / kGauge_m);
 }
 
-/// Turning on the spot with evenly loaded road wheels at x_i and Coulomb friction. With the belts at -+u and the robot at yaw
-/// rate w, wheel i of the right track slides over the ground at (s, w x_i), s = w B/2 - u, so the ground pushes it with mu N along
+/// Turning on the spot with evenly loaded road wheels at x_i and Coulomb friction. With the belts at -+u and the robot
+/// at yaw rate w, wheel i of the right track slides over the ground at (s, w x_i), s = w B/2 - u, so the ground pushes
+/// it with mu N along
 /// -(s, w x_i). No moment is left over in a steady turn:
 ///   sum_i (B/2 k - x_i^2) / sqrt(k^2 + x_i^2) = 0,   k = -s / w,
-/// which gives k whatever mu and w are: the centres of rotation of the tracks lie B/2 + k beside the robot's middle, as Martinez
-/// et al. (IJRR 2005) find for real tracks, and the robot turns by (B/2) / (B/2 + k) of what the belts and the gauge say.
+/// which gives k whatever mu and w are: the centres of rotation of the tracks lie B/2 + k beside the robot's middle, as
+/// Martinez et al. (IJRR 2005) find for real tracks, and the robot turns by (B/2) / (B/2 + k) of what the belts and the
+/// gauge say.
 struct ScrubTurn {
-  double ratio;              ///< true over kinematic yaw
-  double sum_of_cosines;     ///< of the angle between each wheel's friction and x
+  double ratio;           ///< true over kinematic yaw
+  double sum_of_cosines;  ///< of the angle between each wheel's friction and x
 };
 ScrubTurn closed_form() {
   const std::vector<double> wheels_m = {-0.30, -0.15, 0.0, 0.15, 0.30};
@@ -103,7 +105,8 @@ TEST(Tracks, TenMetresStraightSlipByLessThanHalfAPercent) {
 TEST(Tracks, TurningOnTheSpotIsWithin2PercentOfTheCoulombScrubRatioAtThreeRates) {
   for (const double rate : {0.2, 0.4, 0.8}) {
     TrackedRobot robot(make_flat_world(), {}, open_loop());
-    EXPECT_NEAR(turned_over_kinematic(turn_around(robot, rate)), closed_form().ratio, 0.02 * closed_form().ratio) << rate;
+    EXPECT_NEAR(turned_over_kinematic(turn_around(robot, rate)), closed_form().ratio, 0.02 * closed_form().ratio)
+        << rate;
   }
 }
 
@@ -112,9 +115,10 @@ TEST(Tracks, OnHalfTheFrictionTheTurningRatioIsTheSameToWithin2Percent) {
   EXPECT_NEAR(turned_over_kinematic(turn_around(robot, 0.4)), closed_form().ratio, 0.02 * closed_form().ratio);
 }
 
-// In a curve the two tracks' friction along x must cancel as well, so both slip alike, one ahead and one behind: k is that of the turn
-// on the spot, and the middle goes as fast as the mean of the belts. Centres of rotation that do not depend on the curve are what Mandow
-// et al. (IROS 2007) measure on real skid-steering vehicles. Left out is v w / (mu g), 2 % of the friction at most.
+// In a curve the two tracks' friction along x must cancel as well, so both slip alike, one ahead and one behind: k is
+// that of the turn on the spot, and the middle goes as fast as the mean of the belts. Centres of rotation that do not
+// depend on the curve are what Mandow et al. (IROS 2007) measure on real skid-steering vehicles. Left out is v w / (mu
+// g), 2 % of the friction at most.
 TEST(Tracks, InCurvesOf1And2MetresTheScrubRatioIsThatOfATurnOnTheSpotTo3PercentAndTheMiddleSlipsByLessThan1Percent) {
   for (const double radius_m : {1.0, 2.0}) {
     TrackedRobot robot(make_flat_world(), {}, open_loop());
@@ -131,8 +135,9 @@ TEST(Tracks, InCurvesOf1And2MetresTheScrubRatioIsThatOfATurnOnTheSpotTo3PercentA
   }
 }
 
-// mu N of five wheels along x, at the pitch line, and the gear's friction: 15.1 N m. Under a pyramidal cone sliding at an angle a
-// to its axes costs mu N max(|cos a|, |sin a|), which is 2 sqrt(2) / pi = 90 % of mu N on average over a turn: 13.7 N m.
+// mu N of five wheels along x, at the pitch line, and the gear's friction: 15.1 N m. Under a pyramidal cone sliding at
+// an angle a to its axes costs mu N max(|cos a|, |sin a|), which is 2 sqrt(2) / pi = 90 % of mu N on average over a
+// turn: 13.7 N m.
 TEST(Tracks, TurningTakesTheTorqueOfTheScrubUnderThePyramidalConeToWithin6Percent) {
   TrackedRobot robot(make_flat_world(), {}, open_loop());
   const DriveReport turn = turn_around(robot, 0.4);
@@ -160,7 +165,8 @@ TEST(Tracks, WithItsGyroscopeItTurnsAsAskedToWithin2PercentOnTheFlatAnd5PercentO
   EXPECT_NEAR(on_rubble.drive(0.0, 0.4, 10.0).moved.yaw, 4.0, 0.20);
 }
 
-// While the belts slide, mu g is all that moves the robot, whatever the belts do: they are at 0.5 m/s after 0.63 s, it after 1.02 s.
+// While the belts slide, mu g is all that moves the robot, whatever the belts do: they are at 0.5 m/s after 0.63 s, it
+// after 1.02 s.
 TEST(Tracks, PullingAwayOnIceItIsSpedUpByCoulombFrictionTo3PercentWhileTheBeltsRunAheadAndThenSlipsNoMore) {
   TrackedRobot robot(make_flat_world(), {}, open_loop(0.05));
   const DriveReport first = robot.drive(0.5, 0.0, 0.2);

@@ -1,13 +1,14 @@
-// Water ahead of the face, instrument and inversion together: the simulator's TEM (sim/sensors/tem.h), its gains, shift, steel and noise, on a mount whose
-// angles are off, against the robot's inversion, which knows none of them. Without physics: the antenna is where it is put.
+// Water ahead of the face, instrument and inversion together: the simulator's TEM (sim/sensors/tem.h), its gains,
+// shift, steel and noise, on a mount whose angles are off, against the robot's inversion, which knows none of them.
+// Without physics: the antenna is where it is put.
 //
-// Rock of 0.002 to 0.005 S/m, a body of 5 to 7 m in radius 12 to 20 m from the antenna, up to 20 degrees aside and 12 up or down, of a conductivity drawn
-// from what the robot believes (0.6 S/m, 20 %).
-
-#include <gtest/gtest.h>
+// Rock of 0.002 to 0.005 S/m, a body of 5 to 7 m in radius 12 to 20 m from the antenna, up to 20 degrees aside and 12
+// up or down, of a conductivity drawn from what the robot believes (0.6 S/m, 20 %).
 
 #include <cmath>
 #include <cstdio>
+
+#include <gtest/gtest.h>
 
 #include "core/geometry/angles.h"
 #include "inspect/water/water_inversion.h"
@@ -28,7 +29,8 @@ struct Truth {
 Truth draw_truth(const inspect::WaterPriorSettings& prior, std::uint64_t seed) {
   RandomSequence random(RandomStream(seed, "test/truth"), 0);
   const auto between = [&](double low, double high) { return low + (high - low) * random.uniform(); };
-  Truth truth{.rock_spm = between(0.002, 0.005), .sphere = {.distance_m = between(12.0, 20.0), .radius_m = between(5.0, 7.0)}};
+  Truth truth{.rock_spm = between(0.002, 0.005),
+              .sphere = {.distance_m = between(12.0, 20.0), .radius_m = between(5.0, 7.0)}};
   truth.sphere.conductivity_spm = prior.water_spm * std::exp(prior.water_log_std * random.normal());
   const double azimuth = between(-20.0, 20.0) * kDegree, elevation = between(-12.0, 12.0) * kDegree;
   const Eigen::Vector3d towards = quaternion_from_rpy(0.0, -elevation, azimuth) * Eigen::Vector3d::UnitX();
@@ -36,7 +38,8 @@ Truth draw_truth(const inspect::WaterPriorSettings& prior, std::uint64_t seed) {
   return truth;
 }
 
-/// The robot's soundings: the coil is off by 0.3 deg all the time and by 0.2 deg from pose to pose; the servos read what was asked.
+/// The robot's soundings: the coil is off by 0.3 deg all the time and by 0.2 deg from pose to pose; the servos read
+/// what was asked.
 WaterResult sound_and_invert(const Truth& truth, bool has_water, std::uint64_t seed) {
   // Half of the robot's own particles and moves, for the sake of the test's seconds.
   inspect::WaterSettings settings;
@@ -45,7 +48,8 @@ WaterResult sound_and_invert(const Truth& truth, bool has_water, std::uint64_t s
   const AntennaGeometry antenna = test::antenna_mount();
   std::vector<sim::WaterBodySettings> water;
   if (has_water) {
-    water.push_back({truth.p_body.x(), truth.p_body.y(), truth.p_body.z(), truth.sphere.radius_m, truth.sphere.conductivity_spm});
+    water.push_back(
+        {truth.p_body.x(), truth.p_body.y(), truth.p_body.z(), truth.sphere.radius_m, truth.sphere.conductivity_spm});
   }
   const sim::Tem tem({}, {.conductivity_spm = truth.rock_spm}, water, seed);
   RandomSequence error(RandomStream(seed, "test/angles"), 0);
@@ -56,7 +60,8 @@ WaterResult sound_and_invert(const Truth& truth, bool has_water, std::uint64_t s
                                                  pose.pitch_rad + pitch_off + 0.2 * kDegree * error.normal());
     const Eigen::Vector3d axis = T_world_tem.rotation * Eigen::Vector3d::UnitX();
     const auto count = static_cast<std::uint64_t>(soundings.size());
-    soundings.push_back({pose, tem.sound(T_world_tem.position, axis * axis.transpose(), count, from_seconds(static_cast<double>(count)))});
+    soundings.push_back({pose, tem.sound(T_world_tem.position, axis * axis.transpose(), count,
+                                         from_seconds(static_cast<double>(count)))});
   }
   return inspect::WaterInversion(settings).invert(soundings, antenna, {}, 0.0, seed);
 }
@@ -68,11 +73,15 @@ TEST(WaterAhead, IsLocatedWithinTwoMetresInNineOfTenSeedsAndTheIntervalsHoldTheT
     const WaterResult result = sound_and_invert(truth, true, seed);
     const double error_m = (result.p_map - truth.p_body).norm();
     located += result.is_found && error_m < 2.0 ? 1 : 0;
-    distance_in_interval += truth.sphere.distance_m >= result.distance_low_m && truth.sphere.distance_m <= result.distance_high_m ? 1 : 0;
-    radius_in_interval += truth.sphere.radius_m >= result.radius_low_m && truth.sphere.radius_m <= result.radius_high_m ? 1 : 0;
-    std::printf("seed %2d: evidence %6.1f, %5.2f m from the truth; distance %5.2f m (%5.2f ... %5.2f), radius %4.2f m (%4.2f ... %4.2f)\n",
-                static_cast<int>(seed), result.evidence, error_m, truth.sphere.distance_m, result.distance_low_m, result.distance_high_m,
-                truth.sphere.radius_m, result.radius_low_m, result.radius_high_m);
+    distance_in_interval +=
+        truth.sphere.distance_m >= result.distance_low_m && truth.sphere.distance_m <= result.distance_high_m ? 1 : 0;
+    radius_in_interval +=
+        truth.sphere.radius_m >= result.radius_low_m && truth.sphere.radius_m <= result.radius_high_m ? 1 : 0;
+    std::printf(
+        "seed %2d: evidence %6.1f, %5.2f m from the truth; distance %5.2f m (%5.2f ... %5.2f), radius %4.2f m (%4.2f "
+        "... %4.2f)\n",
+        static_cast<int>(seed), result.evidence, error_m, truth.sphere.distance_m, result.distance_low_m,
+        result.distance_high_m, truth.sphere.radius_m, result.radius_low_m, result.radius_high_m);
   }
   EXPECT_GE(located, 9);
   // Of ten intervals of 95 %, fewer than eight hold in 1 of 90 such tests.

@@ -1,9 +1,9 @@
 #include "score/distance_field.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "core/random.h"
 #include "tests/support/pose_near.h"
@@ -19,8 +19,7 @@ constexpr double kFloatTol = 1e-6;  // distances are kept as float
 Grid<std::uint8_t> make_random(int width, int height, double sparsity, std::uint64_t seed) {
   Grid<std::uint8_t> grid({.resolution_m = 0.1, .width = width, .height = height, .origin_m = {-2.0, 5.0}});
   const RandomStream stream(seed, "test/grid");
-  for (std::size_t i = 0; i < grid.values().size(); ++i)
-    grid.values()[i] = stream.uniform(i) * sparsity < 1.0 ? 1 : 0;
+  for (std::size_t i = 0; i < grid.values().size(); ++i) grid.values()[i] = stream.uniform(i) * sparsity < 1.0 ? 1 : 0;
   grid.values()[grid.values().size() / 2] = 1;  // never none
   return grid;
 }
@@ -29,8 +28,7 @@ double brute_force_m(const Grid<std::uint8_t>& grid, const Eigen::Vector2d& p) {
   double nearest = std::numeric_limits<double>::infinity();
   for (int row = 0; row < grid.geometry().height; ++row) {
     for (int col = 0; col < grid.geometry().width; ++col) {
-      if (grid.at({col, row}) != 0)
-        nearest = std::min(nearest, (grid.geometry().center_of({col, row}) - p).norm());
+      if (grid.at({col, row}) != 0) nearest = std::min(nearest, (grid.geometry().center_of({col, row}) - p).norm());
     }
   }
   return nearest;
@@ -38,8 +36,7 @@ double brute_force_m(const Grid<std::uint8_t>& grid, const Eigen::Vector2d& p) {
 
 TEST(DistanceField, IsExactAtEveryCellCentre) {
   for (const double sparsity : {2.0, 20.0, 1e9}) {
-    for (const auto& [width, height] :
-         {std::pair{40, 25}, std::pair{1, 30}, std::pair{30, 1}, std::pair{1, 1}}) {
+    for (const auto& [width, height] : {std::pair{40, 25}, std::pair{1, 30}, std::pair{30, 1}, std::pair{1, 1}}) {
       const Grid<std::uint8_t> grid = make_random(width, height, sparsity, 1);
       const DistanceField field(grid);
       for (int row = 0; row < height; ++row) {
@@ -75,8 +72,7 @@ TEST(DistanceField, OutsideAddsTheWayToTheGrid) {
 }
 
 TEST(DistanceField, WithoutAnyOccupiedCellIsInfinite) {
-  EXPECT_TRUE(
-      std::isinf(DistanceField(Grid<std::uint8_t>({.width = 3, .height = 2})).distance_m({0.0, 0.0})));
+  EXPECT_TRUE(std::isinf(DistanceField(Grid<std::uint8_t>({.width = 3, .height = 2})).distance_m({0.0, 0.0})));
   EXPECT_TRUE(std::isinf(DistanceField(Grid<std::uint8_t>()).distance_m({0.0, 0.0})));
 }
 
@@ -86,8 +82,7 @@ TEST(DistanceField, GradientPointsAwayFromTheWallWithSlopeOne) {
   const DistanceField field(grid);
   EXPECT_THAT(field.gradient({2.03, 1.77}), VectorNear(Eigen::Vector2d(1.0, 0.0), 1e-5));
   EXPECT_THAT(field.gradient({0.42, 1.77}), VectorNear(Eigen::Vector2d(-1.0, 0.0), 1e-5));
-  EXPECT_THAT(field.gradient({1.051, 1.77}), VectorNear(Eigen::Vector2d(1.0, 0.0), 1e-5))
-      << "a millimetre from it too";
+  EXPECT_THAT(field.gradient({1.051, 1.77}), VectorNear(Eigen::Vector2d(1.0, 0.0), 1e-5)) << "a millimetre from it too";
 }
 
 TEST(DistanceField, GradientIsTheNumericalDerivativeInsideAndOutside) {
@@ -100,8 +95,7 @@ TEST(DistanceField, GradientIsTheNumericalDerivativeInsideAndOutside) {
     const Eigen::Vector2d dx(kStep_m, 0.0), dy(0.0, kStep_m);
     const Eigen::Vector2d numeric(field.distance_m(p + dx) - field.distance_m(p - dx),
                                   field.distance_m(p + dy) - field.distance_m(p - dy));
-    EXPECT_THAT(field.gradient(p), VectorNear(Eigen::Vector2d(numeric / (2.0 * kStep_m)), 1e-4))
-        << p.transpose();
+    EXPECT_THAT(field.gradient(p), VectorNear(Eigen::Vector2d(numeric / (2.0 * kStep_m)), 1e-4)) << p.transpose();
   }
 }
 

@@ -1,8 +1,8 @@
 #include "score/driven_clearance.h"
 
-#include <gtest/gtest.h>
-
 #include <numbers>
+
+#include <gtest/gtest.h>
 
 namespace patrol::score::driven_clearance_test {
 namespace {
@@ -21,7 +21,8 @@ OccupancyGrid map_with(const std::vector<Cell>& occupied) {
 
 Trajectory drive_along_x(double y_m, double yaw, double from_m, double to_m) {
   Trajectory way;
-  for (int i = 0; i <= 100; ++i) way.push_back({from_seconds(0.1 * i), to_pose3(Pose2{from_m + (to_m - from_m) * i / 100.0, y_m, yaw})});
+  for (int i = 0; i <= 100; ++i)
+    way.push_back({from_seconds(0.1 * i), to_pose3(Pose2{from_m + (to_m - from_m) * i / 100.0, y_m, yaw})});
   return way;
 }
 
@@ -31,7 +32,8 @@ TEST(DrivenClearance, IsFromTheOutlinesSideToACellsCentre) {
   EXPECT_NEAR(along.min_m, 1.05 - 0.2, kExactTol);
   EXPECT_GT(along.mean_m, along.p05_m);
   EXPECT_GE(along.p05_m, along.min_m);
-  const DrivenClearance across = driven_clearance(drive_along_x(5.0, std::numbers::pi / 2.0, 1.0, 9.0), kOutline, map_with({{50, 60}}));
+  const DrivenClearance across =
+      driven_clearance(drive_along_x(5.0, std::numbers::pi / 2.0, 1.0, 9.0), kOutline, map_with({{50, 60}}));
   EXPECT_NEAR(across.min_m, 1.05 - 0.3, kExactTol);
 }
 
@@ -43,8 +45,11 @@ TEST(DrivenClearance, IsNoughtWhereItTouchesAndThreeMetresWhereNothingIsNear) {
 }
 
 TEST(DrivenClearance, CountsPlacesATenthOfAMetreApart) {
-  EXPECT_NEAR(static_cast<double>(driven_clearance(drive_along_x(5.0, 0.0, 1.0, 9.0), kOutline, map_with({})).num_positions), 8.0 / 0.16 + 1.0, 1.0);  // steps of 0.08 m: every other
-  EXPECT_EQ(driven_clearance(drive_along_x(5.0, 0.0, 1.0, 1.0), kOutline, map_with({})).num_positions, 1u);  // standing still
+  EXPECT_NEAR(
+      static_cast<double>(driven_clearance(drive_along_x(5.0, 0.0, 1.0, 9.0), kOutline, map_with({})).num_positions),
+      8.0 / 0.16 + 1.0, 1.0);  // steps of 0.08 m: every other
+  EXPECT_EQ(driven_clearance(drive_along_x(5.0, 0.0, 1.0, 1.0), kOutline, map_with({})).num_positions,
+            1u);  // standing still
 }
 
 TEST(DrivenClearance, OfNoWayOrNoOutlineIsNothing) {

@@ -20,12 +20,14 @@ Event event(EventKind kind, const char* subject, Time stamp, double value = 0.0)
 
 /// At 1 s at (10, 0), at 2 s 3 cm ahead and 4 cm beside of it and turned by 2 degrees, at 3 s exactly there.
 Trajectory truth() {
-  return {{1s, to_pose3({10.0, 0.0, 0.0})}, {2s, to_pose3({10.03, 0.04, 2.0 * kDegree})}, {3s, to_pose3({10.0, 0.0, 0.0})}};
+  return {
+      {1s, to_pose3({10.0, 0.0, 0.0})}, {2s, to_pose3({10.03, 0.04, 2.0 * kDegree})}, {3s, to_pose3({10.0, 0.0, 0.0})}};
 }
 
 TEST(GoalErrors, AMarkedGoalIsMetWhereTheRobotTrulyStoodAtTheMark) {
-  const std::vector<Event> events = {event(EventKind::kGoalSaved, "goal_1", 1s), event(EventKind::kGoalReached, "goal_1", 2s, 1),
-                                     event(EventKind::kGoalReached, "goal_1", 3s, 2), event(EventKind::kGoalFailed, "goal_1", 3s, 3)};
+  const std::vector<Event> events = {
+      event(EventKind::kGoalSaved, "goal_1", 1s), event(EventKind::kGoalReached, "goal_1", 2s, 1),
+      event(EventKind::kGoalReached, "goal_1", 3s, 2), event(EventKind::kGoalFailed, "goal_1", 3s, 3)};
   const std::vector<GoalError> errors = goal_errors(events, {}, {}, truth());
   ASSERT_EQ(errors.size(), 1u);
   EXPECT_EQ(errors[0].name, "goal_1");
@@ -39,13 +41,15 @@ TEST(GoalErrors, AMarkedGoalIsMetWhereTheRobotTrulyStoodAtTheMark) {
 
 TEST(GoalErrors, AGivenGoalIsMetWhereTheMapLiesInTheWorld) {
   const SavedGoal goal{.number = 4, .T_map_body = {8.0, 0.0, 0.0}};
-  const std::vector<GoalError> errors = goal_errors({event(EventKind::kGoalReached, "goal_4", 1s, 1)}, {goal}, {1.0, 0.0, 0.0}, truth());
+  const std::vector<GoalError> errors =
+      goal_errors({event(EventKind::kGoalReached, "goal_4", 1s, 1)}, {goal}, {1.0, 0.0, 0.0}, truth());
   ASSERT_EQ(errors.size(), 1u);
   EXPECT_NEAR(errors[0].arrivals[0].position_error_m, 1.0, 1e-12);
 }
 
 TEST(DockingError, CountsDockingsAndFailures) {
-  const GoalError error = docking_error({event(EventKind::kDocked, "", 2s, 1), event(EventKind::kDockFailed, "", 3s)}, {10.03, 0.0, 0.0}, truth());
+  const GoalError error = docking_error({event(EventKind::kDocked, "", 2s, 1), event(EventKind::kDockFailed, "", 3s)},
+                                        {10.03, 0.0, 0.0}, truth());
   EXPECT_EQ(error.num_failed, 1);
   ASSERT_EQ(error.arrivals.size(), 1u);
   EXPECT_NEAR(error.arrivals[0].position_error_m, 0.04, 1e-12);

@@ -1,8 +1,8 @@
 #include "score/inspection_score.h"
 
-#include <gtest/gtest.h>
-
 #include <numbers>
+
+#include <gtest/gtest.h>
 
 namespace patrol::score::inspection_score_test {
 namespace {
@@ -49,8 +49,7 @@ TEST(InspectionScore, TheNearestOfTwoLeaksIsMeant) {
 }
 
 TEST(InspectionScore, PlacesAreTakenFromMapToWorld) {
-  const InspectionScore score =
-      inspection_score({alarm_at(0.0, -9.0)}, {1.0, 0.0, std::numbers::pi / 2.0}, kLeaks);
+  const InspectionScore score = inspection_score({alarm_at(0.0, -9.0)}, {1.0, 0.0, std::numbers::pi / 2.0}, kLeaks);
   EXPECT_NEAR(score.findings[0].error_m, 0.0, 1e-9);
 }
 

@@ -7,7 +7,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-MatchedPose off_by(Time stamp, double error_m) { return {.stamp = stamp, .T_world_estimate = {error_m, 0.0, 0.0}, .T_world_truth = {}}; }
+MatchedPose off_by(Time stamp, double error_m) {
+  return {.stamp = stamp, .T_world_estimate = {error_m, 0.0, 0.0}, .T_world_truth = {}};
+}
 
 LocalizationConfidence confidence(Time stamp, double value, bool is_lost = false) {
   return {.stamp = stamp, .confidence = value, .is_lost = is_lost};
@@ -24,17 +26,20 @@ TEST(LocalizationScore, SaysWhenItDoubtedAndWhenItStrayed) {
 }
 
 TEST(LocalizationScore, WhatItSaysItDoesNotKnowIsNotHeldAgainstIt) {
-  const LocalizationScore score = localization_score({off_by(1s, 0.1), off_by(2s, 9.0), off_by(4s, 0.2)},
-                                                     {confidence(1s, 0.9), confidence(2s, 0.0, true), confidence(4s, 0.9)});
+  const LocalizationScore score =
+      localization_score({off_by(1s, 0.1), off_by(2s, 9.0), off_by(4s, 0.2)},
+                         {confidence(1s, 0.9), confidence(2s, 0.0, true), confidence(4s, 0.9)});
   EXPECT_DOUBLE_EQ(score.max_error_m, 0.2);
   EXPECT_FALSE(score.error_exceeded_at_s.has_value());
   EXPECT_DOUBLE_EQ(score.lost_s, 2.0);
 }
 
 TEST(RelocalizationScore, CountsFromTheKidnapToThePlaceThatItKeeps) {
-  const std::vector<LocalizationConfidence> confidences = {confidence(9s, 1.0), confidence(11s, 0.0, true), confidence(13s, 0.9)};
+  const std::vector<LocalizationConfidence> confidences = {confidence(9s, 1.0), confidence(11s, 0.0, true),
+                                                           confidence(13s, 0.9)};
   std::vector<MatchedPose> matched = {off_by(9s, 0.0), off_by(10s, 20.0), off_by(12s, 0.1)};
-  for (int second = 13; second < 25; ++second) matched.push_back(off_by(std::chrono::seconds(second), second == 14 ? 3.0 : 0.1));
+  for (int second = 13; second < 25; ++second)
+    matched.push_back(off_by(std::chrono::seconds(second), second == 14 ? 3.0 : 0.1));
   const RelocalizationScore score = relocalization_score(10s, matched, confidences);
   EXPECT_DOUBLE_EQ(score.displacement_m, 20.0);
   EXPECT_DOUBLE_EQ(*score.time_to_detect_s, 1.0);
@@ -42,7 +47,8 @@ TEST(RelocalizationScore, CountsFromTheKidnapToThePlaceThatItKeeps) {
 }
 
 TEST(RelocalizationScore, ARobotThatNeverFindsItsPlaceHasNone) {
-  const RelocalizationScore score = relocalization_score(1s, {off_by(2s, 20.0), off_by(9s, 20.0)}, {confidence(1s, 1.0)});
+  const RelocalizationScore score =
+      relocalization_score(1s, {off_by(2s, 20.0), off_by(9s, 20.0)}, {confidence(1s, 1.0)});
   EXPECT_FALSE(score.relocalized_s.has_value());
   EXPECT_FALSE(score.time_to_detect_s.has_value());
 }

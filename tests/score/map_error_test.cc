@@ -1,9 +1,9 @@
 #include "score/map_error.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "core/error.h"
 
@@ -27,9 +27,7 @@ OccupancyGrid make_room(double resolution_m, double width_m, double height_m) {
   return map;
 }
 
-ReferenceMap all_seeable(const OccupancyGrid& cells) {
-  return {cells, Grid<std::uint8_t>(cells.geometry(), 1)};
-}
+ReferenceMap all_seeable(const OccupancyGrid& cells) { return {cells, Grid<std::uint8_t>(cells.geometry(), 1)}; }
 
 TEST(MapError, OfThePerfectMapIsNone) {
   const OccupancyGrid room = make_room(0.05, 8.0, 6.0);
@@ -94,8 +92,7 @@ TEST(MapError, OfAPerfectMapOfLargerCellsIsOnePointSixCentimetres) {
   double sum = 0.0;
   for (int i = 0; i < kPlaces; ++i) {  // the built map's grid lies anywhere against the wall
     const double origin_y = 0.5 + r * (i + 0.5) / kPlaces;
-    OccupancyGrid built({.resolution_m = r, .width = 20, .height = 20, .origin_m = {0.5 + q / 2.0, origin_y}},
-                        kFree);
+    OccupancyGrid built({.resolution_m = r, .width = 20, .height = 20, .origin_m = {0.5 + q / 2.0, origin_y}}, kFree);
     const int row = built.geometry().cell_at({0.6, surface_m}).row;
     for (int col = 0; col < 20; ++col) built.at({col, row}) = kOccupied;
     sum += map_error(built, {}, all_seeable(reference)).nearest_mean_m / kPlaces;

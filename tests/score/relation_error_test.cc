@@ -1,12 +1,12 @@
 #include "score/relation_error.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <numbers>
 
-#include "core/geometry/angles.h"
+#include <gtest/gtest.h>
+
 #include "core/error.h"
+#include "core/geometry/angles.h"
 
 namespace patrol::score::relation_error_test {
 namespace {
@@ -15,7 +15,9 @@ using namespace std::chrono_literals;
 
 constexpr double kTol = 1e-12;
 
-StampedPose pose_at(Time stamp, double x, double y = 0.0, double yaw = 0.0) { return {stamp, to_pose3(Pose2{x, y, yaw})}; }
+StampedPose pose_at(Time stamp, double x, double y = 0.0, double yaw = 0.0) {
+  return {stamp, to_pose3(Pose2{x, y, yaw})};
+}
 
 /// Along x at 1 m/s, once a second.
 Trajectory straight() {
@@ -25,8 +27,9 @@ Trajectory straight() {
 }
 
 TEST(RelationError, IsNoneWhereTheTrajectoryKeepsTheRelation) {
-  const RelationError error = relation_error({pose_at(1s, 5.0, 5.0, std::numbers::pi / 2.0), pose_at(2s, 4.0, 7.0, std::numbers::pi)},
-                                             {{1s, 2s, {2.0, 1.0, std::numbers::pi / 2.0}}});
+  const RelationError error =
+      relation_error({pose_at(1s, 5.0, 5.0, std::numbers::pi / 2.0), pose_at(2s, 4.0, 7.0, std::numbers::pi)},
+                     {{1s, 2s, {2.0, 1.0, std::numbers::pi / 2.0}}});
   EXPECT_NEAR(error.trans_m.mean, 0.0, kTol);
   EXPECT_NEAR(error.rot_deg.mean, 0.0, 1e-10);
   EXPECT_EQ(error.num_relations, 1U);
@@ -45,11 +48,13 @@ TEST(RelationError, DoesNotChangeWhenTheWholeTrajectoryIsMoved) {
 
 TEST(RelationError, MeanAndDeviationOfErrorsAndTheirSquaresAreThoseOfTheList) {
   // Errors 1, 2 and 6 m: mean 3, variance (4 + 1 + 9) / 3; squares 1, 4, 36: mean 41/3.
-  const RelationError error = relation_error(straight(), {{0s, 1s, {2.0, 0.0, 0.0}}, {0s, 1s, {1.0, 2.0, 0.0}}, {0s, 1s, {1.0, -6.0, 0.0}}});
+  const RelationError error =
+      relation_error(straight(), {{0s, 1s, {2.0, 0.0, 0.0}}, {0s, 1s, {1.0, 2.0, 0.0}}, {0s, 1s, {1.0, -6.0, 0.0}}});
   EXPECT_NEAR(error.trans_m.mean, 3.0, kTol);
   EXPECT_NEAR(error.trans_m.std, std::sqrt(14.0 / 3.0), kTol);
   EXPECT_NEAR(error.squared_trans_m2.mean, 41.0 / 3.0, kTol);
-  EXPECT_NEAR(error.squared_trans_m2.std, std::sqrt((38.0 * 38.0 + 29.0 * 29.0 + 67.0 * 67.0) / 27.0), 1e-10) << "thirds of a metre: -38, -29, 67";
+  EXPECT_NEAR(error.squared_trans_m2.std, std::sqrt((38.0 * 38.0 + 29.0 * 29.0 + 67.0 * 67.0) / 27.0), 1e-10)
+      << "thirds of a metre: -38, -29, 67";
   EXPECT_NEAR(error.trans_median_m, 2.0, kTol);
   EXPECT_NEAR(error.trans_max_m, 6.0, kTol);
 }
@@ -62,7 +67,8 @@ TEST(RelationError, TheMedianOfAnEvenNumberIsTheUpperOne) {
 TEST(RelationError, HeadingsAreComparedTheShortWayInDegrees) {
   const Trajectory turned = {pose_at(0s, 0.0, 0.0, 3.0), pose_at(1s, 0.0, 0.0, -3.0)};
   const double turn = 2.0 * std::numbers::pi - 6.0;
-  const RelationError error = relation_error(turned, {{0s, 1s, {0.0, 0.0, turn + 0.1}}, {0s, 1s, {0.0, 0.0, turn - 0.3}}});
+  const RelationError error =
+      relation_error(turned, {{0s, 1s, {0.0, 0.0, turn + 0.1}}, {0s, 1s, {0.0, 0.0, turn - 0.3}}});
   EXPECT_NEAR(error.rot_deg.mean, 0.2 * kDegPerRad, 1e-10);
   EXPECT_NEAR(error.rot_deg.std, 0.1 * kDegPerRad, 1e-10);
   EXPECT_NEAR(error.rot_max_deg, 0.3 * kDegPerRad, 1e-10);
@@ -79,7 +85,8 @@ TEST(RelationError, APoseWithinMaxDtIsTakenAsItIs) {
 
 TEST(RelationError, FurtherOffItIsInterpolatedAndCountedOnceAStamp) {
   const RelationSettings settings{.max_dt_s = 0.1};
-  const RelationError error = relation_error(straight(), {{250ms, 3s, {2.75, 0.0, 0.0}}, {250ms, 4s, {3.75, 0.0, 0.0}}}, settings);
+  const RelationError error =
+      relation_error(straight(), {{250ms, 3s, {2.75, 0.0, 0.0}}, {250ms, 4s, {3.75, 0.0, 0.0}}}, settings);
   EXPECT_NEAR(error.trans_max_m, 0.0, kTol);
   EXPECT_EQ(error.num_stamps, 3U);
   EXPECT_EQ(error.num_interpolated, 1U);
@@ -111,7 +118,8 @@ TEST(RelationError, StampsSinceNineteenSeventyDoNotLoseTheirMicroseconds) {
   // A microsecond at 1000 km/s is a metre: doubles of such stamps would be good to 0.1 m only.
   const Time start(976'052'857'000'000'000);
   const Trajectory fast = {pose_at(start, 0.0), pose_at(start + 1s, 1e6)};
-  const RelationError error = relation_error(fast, {{start + 300'000us, start + 300'001us, {1.0, 0.0, 0.0}}}, {.max_dt_s = 0.0});
+  const RelationError error =
+      relation_error(fast, {{start + 300'000us, start + 300'001us, {1.0, 0.0, 0.0}}}, {.max_dt_s = 0.0});
   EXPECT_NEAR(error.trans_m.mean, 0.0, 1e-9);
 }
 

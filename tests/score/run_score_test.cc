@@ -65,7 +65,8 @@ TEST(RunRecord, HasAnEstimateWithThreePosesOdometryAndAMap) {
 
 TEST(EstimateScore, OfAPerfectRunHasNoErrorAndOnlyThePartsThatTheLogHas) {
   RunRecord record = perfect_run();
-  record.events = {event_of(EventKind::kReplan, 1s), event_of(EventKind::kRecovery, 2s), event_of(EventKind::kRecovery, 3s)};
+  record.events = {event_of(EventKind::kReplan, 1s), event_of(EventKind::kRecovery, 2s),
+                   event_of(EventKind::kRecovery, 3s)};
   const EstimateScore score = estimate_score(record, wall_references());
   EXPECT_NEAR(score.pose.ate_rmse_m, 0.0, 1e-9);
   EXPECT_NEAR(score.odometry.ate_rmse_m, 0.0, 1e-9);
@@ -85,7 +86,8 @@ TEST(EstimateScore, PlacesAGivenMapWhereTheSurveySays) {
 
 TEST(EstimateScore, ScoresLocalizationOnAKnownMapAndEachKidnap) {
   RunRecord record = perfect_run();
-  for (const StampedPose& pose : record.T_map_body) record.confidences.push_back({.stamp = pose.stamp, .confidence = 0.9});
+  for (const StampedPose& pose : record.T_map_body)
+    record.confidences.push_back({.stamp = pose.stamp, .confidence = 0.9});
   RunReferences references = wall_references();
   references.kidnaps = {1s, 2s};
   const EstimateScore score = estimate_score(record, references);

@@ -1,8 +1,8 @@
 #include "score/station_error.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "core/geometry/angles.h"
 
@@ -22,9 +22,7 @@ OccupancyGrid make_walls(bool has_corner = true) {
   return map;
 }
 
-ReferenceMap all_seeable(const OccupancyGrid& cells) {
-  return {cells, Grid<std::uint8_t>(cells.geometry(), 1)};
-}
+ReferenceMap all_seeable(const OccupancyGrid& cells) { return {cells, Grid<std::uint8_t>(cells.geometry(), 1)}; }
 
 const Eigen::Vector2d kTarget(4.8, 4.8);
 
@@ -35,8 +33,7 @@ TEST(MapDisplacement, OfTheTrueMapIsNone) {
 }
 
 TEST(MapDisplacement, OfAMapTenCentimetresOffIsTenToTwoMillimetres) {
-  const auto displacement =
-      map_displacement_m(make_walls(), {0.06, -0.08, 0.0}, all_seeable(make_walls()), kTarget);
+  const auto displacement = map_displacement_m(make_walls(), {0.06, -0.08, 0.0}, all_seeable(make_walls()), kTarget);
   ASSERT_TRUE(displacement);
   EXPECT_NEAR(*displacement, 0.10, 0.002);
 }
@@ -55,9 +52,10 @@ TEST(MapDisplacement, OfATurnedMapIsThatOfTheTarget) {
 TEST(MapDisplacement, OfAMapUpToTwoMetersOffIsThatAlongEitherAxisAndDiagonally) {
   const double half = std::sqrt(0.5);
   for (const double off_m : {0.3, 0.5, 0.8, 1.0, 1.3, 1.6, 2.0}) {
-    for (const Eigen::Vector2d& direction : {Eigen::Vector2d(1.0, 0.0), Eigen::Vector2d(-1.0, 0.0), Eigen::Vector2d(0.0, 1.0),
-                                             Eigen::Vector2d(0.0, -1.0), Eigen::Vector2d(half, half), Eigen::Vector2d(-half, half),
-                                             Eigen::Vector2d(half, -half), Eigen::Vector2d(-half, -half)}) {
+    for (const Eigen::Vector2d& direction :
+         {Eigen::Vector2d(1.0, 0.0), Eigen::Vector2d(-1.0, 0.0), Eigen::Vector2d(0.0, 1.0), Eigen::Vector2d(0.0, -1.0),
+          Eigen::Vector2d(half, half), Eigen::Vector2d(-half, half), Eigen::Vector2d(half, -half),
+          Eigen::Vector2d(-half, -half)}) {
       const Pose2 T_world_map{off_m * direction.x(), off_m * direction.y(), 0.0};
       const auto displacement = map_displacement_m(make_walls(), T_world_map, all_seeable(make_walls()), kTarget);
       ASSERT_TRUE(displacement);
@@ -77,7 +75,8 @@ TEST(MapDisplacement, OfAMapThatIsFarOffAndTurnedIsThatOfTheTarget) {
 }
 
 TEST(MapDisplacement, AcrossASingleWallAMeterIsAMeterAndAlongItNothing) {
-  const auto displacement = map_displacement_m(make_walls(false), {0.2, 1.0, 0.0}, all_seeable(make_walls(false)), {2.5, 4.8}, 1.5);
+  const auto displacement =
+      map_displacement_m(make_walls(false), {0.2, 1.0, 0.0}, all_seeable(make_walls(false)), {2.5, 4.8}, 1.5);
   ASSERT_TRUE(displacement);
   EXPECT_NEAR(*displacement, 1.0, 0.01);
 }
@@ -89,8 +88,8 @@ TEST(MapDisplacement, OfAReferenceWithoutSurfacesThereIsNone) {
 
 TEST(MapDisplacement, AlongASingleWallNothingIsSaid) {
   const Eigen::Vector2d before_the_middle(2.5, 4.8);
-  const auto displacement = map_displacement_m(make_walls(false), {0.2, 0.05, 0.0},
-                                               all_seeable(make_walls(false)), before_the_middle, 1.5);
+  const auto displacement =
+      map_displacement_m(make_walls(false), {0.2, 0.05, 0.0}, all_seeable(make_walls(false)), before_the_middle, 1.5);
   ASSERT_TRUE(displacement);
   EXPECT_NEAR(*displacement, 0.05, 0.002) << "across only";
 }
@@ -130,15 +129,16 @@ Event reached(const std::string& name, Time stamp, const Pose2& T_map_body) {
 }
 
 TEST(StationErrors, TellBeliefTruthAndSurveyApart) {
-  const Route route{
-      .stations = {make_station("box_1", {2.0, 1.0, 0.0}), make_station("box_2", {9.0, 1.0, 0.0})},
-      .keep_out_lines = {}, .anchors = {}, .dock = {}};
+  const Route route{.stations = {make_station("box_1", {2.0, 1.0, 0.0}), make_station("box_2", {9.0, 1.0, 0.0})},
+                    .keep_out_lines = {},
+                    .anchors = {},
+                    .dock = {}};
   // At 1 s the robot stands at (2, 1.1) heading 3 degrees; it believes (2.03, 1.14) and 5 degrees.
   const Trajectory truth = {{Time(0s), to_pose3({1.0, 1.1, 3.0 * kDegree})},
                             {Time(2s), to_pose3({3.0, 1.1, 3.0 * kDegree})}};
   const Pose2 T_world_map{0.5, 0.0, 0.0};
-  const auto errors = station_errors(route, {reached("box_1", 1s, {1.53, 1.14, 5.0 * kDegree})}, T_world_map,
-                                     truth, make_walls(), all_seeable(make_walls()));
+  const auto errors = station_errors(route, {reached("box_1", 1s, {1.53, 1.14, 5.0 * kDegree})}, T_world_map, truth,
+                                     make_walls(), all_seeable(make_walls()));
   ASSERT_EQ(errors.size(), 2U);
   EXPECT_EQ(errors[0].name, "box_1");
   EXPECT_TRUE(errors[0].is_reached);

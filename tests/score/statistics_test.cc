@@ -1,9 +1,9 @@
 #include "score/statistics.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <numeric>
+
+#include <gtest/gtest.h>
 
 namespace patrol::score::statistics_test {
 namespace {
@@ -79,7 +79,9 @@ TEST(RankCorrelation, IsOneForAnyGrowingRelationAndMinusOneForAFallingOne) {
 }
 
 // Ranks 1, 2.5, 2.5, 4 and 1, 2, 3, 4: 4.5 / sqrt(4.5 * 5).
-TEST(RankCorrelation, TiesShareTheirMeanRank) { EXPECT_NEAR(*rank_correlation({10, 20, 20, 30}, {1, 2, 3, 4}), 4.5 / std::sqrt(22.5), 1e-12); }
+TEST(RankCorrelation, TiesShareTheirMeanRank) {
+  EXPECT_NEAR(*rank_correlation({10, 20, 20, 30}, {1, 2, 3, 4}), 4.5 / std::sqrt(22.5), 1e-12);
+}
 
 TEST(ChanceOfOrder, CountsPairsAndTiesHalf) {
   EXPECT_DOUBLE_EQ(*roc_auc({1, 2, 3, 4}, {false, false, true, true}), 1.0);

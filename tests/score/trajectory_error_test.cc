@@ -1,13 +1,13 @@
 #include "score/trajectory_error.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <functional>
 #include <numbers>
 
-#include "core/geometry/angles.h"
+#include <gtest/gtest.h>
+
 #include "core/error.h"
+#include "core/geometry/angles.h"
 #include "tests/support/pose_near.h"
 
 namespace patrol::score::trajectory_error_test {
@@ -19,8 +19,7 @@ using test::Pose2Near, test::Pose3Near;
 constexpr double kExactTol = 1e-9;
 
 /// Steps of a quarter of a metre, ten a second, each pose changed by `change(i, pose)`.
-Trajectory make_trajectory(const std::vector<Pose2>& poses,
-                           const std::function<Pose2(int, const Pose2&)>& change) {
+Trajectory make_trajectory(const std::vector<Pose2>& poses, const std::function<Pose2(int, const Pose2&)>& change) {
   Trajectory trajectory;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const int index = static_cast<int>(i);
@@ -99,8 +98,7 @@ TEST(TrajectoryError, HeadingsOnBothSidesOfTheHalfTurnAreTwoDegreesApart) {
   const auto turned = [](double yaw) {
     return make_trajectory(straight(4), [yaw](int, const Pose2& p) { return Pose2{p.x, p.y, yaw}; });
   };
-  EXPECT_NEAR(trajectory_error(turned(179.0 * kDegree), {}, turned(-179.0 * kDegree)).heading_rmse_deg, 2.0,
-              kExactTol);
+  EXPECT_NEAR(trajectory_error(turned(179.0 * kDegree), {}, turned(-179.0 * kDegree)).heading_rmse_deg, 2.0, kExactTol);
 }
 
 TEST(TrajectoryError, AWalkOfLessThanAMetreHasNoRelativeError) {
@@ -110,13 +108,11 @@ TEST(TrajectoryError, AWalkOfLessThanAMetreHasNoRelativeError) {
 
 TEST(MatchPoses, InterpolatesTheTruthAndLeavesOutWhatLiesOutside) {
   const Trajectory truth = make_trajectory(straight(10));
-  const Trajectory estimate = {
-      {Time(-1ms), {}}, {Time(150ms), to_pose3({1.0, 0.0, 0.0})}, {Time(1001ms), {}}};
+  const Trajectory estimate = {{Time(-1ms), {}}, {Time(150ms), to_pose3({1.0, 0.0, 0.0})}, {Time(1001ms), {}}};
   const auto matches = pair_poses(estimate, {0.0, 0.0, std::numbers::pi / 2.0}, truth);
   ASSERT_EQ(matches.size(), 1U);
   EXPECT_THAT(matches[0].T_world_truth, Pose2Near((Pose2{2.375, 3.0, 0.0}), kExactTol, kExactTol));
-  EXPECT_THAT(matches[0].T_world_estimate,
-              Pose2Near((Pose2{0.0, 1.0, std::numbers::pi / 2.0}), kExactTol, kExactTol));
+  EXPECT_THAT(matches[0].T_world_estimate, Pose2Near((Pose2{0.0, 1.0, std::numbers::pi / 2.0}), kExactTol, kExactTol));
 }
 
 TEST(JoinAtStart, MakesTheFirstCommonInstantExactAndFitsNothingAfterwards) {

@@ -1,9 +1,9 @@
 #include "score/visibility.h"
 
-#include <gtest/gtest.h>
-
 #include <string>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 namespace patrol::score::visibility_test {
 namespace {
@@ -13,9 +13,8 @@ using namespace std::chrono_literals;
 /// A map drawn with its highest row first: '#' occupied, '.' free, ' ' unknown (inside of solid things).
 /// Cells of 1 m.
 OccupancyGrid draw(const std::vector<std::string>& rows) {
-  OccupancyGrid map({.resolution_m = 1.0,
-                     .width = static_cast<int>(rows.front().size()),
-                     .height = static_cast<int>(rows.size())});
+  OccupancyGrid map(
+      {.resolution_m = 1.0, .width = static_cast<int>(rows.front().size()), .height = static_cast<int>(rows.size())});
   for (int row = 0; row < map.geometry().height; ++row) {
     for (int col = 0; col < map.geometry().width; ++col) {
       const char c = rows[rows.size() - 1 - static_cast<std::size_t>(row)][static_cast<std::size_t>(col)];
@@ -53,8 +52,8 @@ const std::vector<std::string> kRoom = {"###########", "#....#....#", "#....#...
 
 TEST(MarkSeeable, AnInnerWallHidesWhatIsBehindIt) {
   const ReferenceMap seen = mark_observable(draw(kRoom), at({{2.5, 3.5}}), 30.0);
-  EXPECT_EQ(drawing_of(seen), (std::vector<std::string>{"#######????", "#....#?????", "#....#?????",
-                                                        "#....#?????", "#......????", "########???"}));
+  EXPECT_EQ(drawing_of(seen), (std::vector<std::string>{"#######????", "#....#?????", "#....#?????", "#....#?????",
+                                                        "#......????", "########???"}));
 }
 
 TEST(MarkSeeable, TwoPlacesSeeWhatEitherSees) {
@@ -63,8 +62,7 @@ TEST(MarkSeeable, TwoPlacesSeeWhatEitherSees) {
 }
 
 TEST(MarkSeeable, NothingBeyondTheRangeIsSeen) {
-  const std::vector<std::string> corridor = {"####################", "#..................#",
-                                             "####################"};
+  const std::vector<std::string> corridor = {"####################", "#..................#", "####################"};
   const ReferenceMap seen = mark_observable(draw(corridor), at({{1.5, 1.5}}), 5.0);
   EXPECT_EQ(seen.is_observable.at({6, 1}), 1);  // entered after 4.5 m
   EXPECT_EQ(seen.is_observable.at({7, 1}), 0);

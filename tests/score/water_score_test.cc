@@ -1,8 +1,8 @@
 #include "score/water_score.h"
 
-#include <gtest/gtest.h>
-
 #include <numbers>
+
+#include <gtest/gtest.h>
 
 namespace patrol::score::water_score_test {
 namespace {
@@ -40,13 +40,14 @@ TEST(WaterScore, ABodyReportedOneMetreTooFarIsFoundWithThatError) {
   EXPECT_NEAR(finding.position_error_m, 1.0, 1e-12);
   EXPECT_NEAR(finding.ahead_error_m, 1.0, 1e-12);
   EXPECT_NEAR(finding.radius_error_m, -0.5, 1e-12);
-  EXPECT_TRUE(finding.distance_in_interval);  // 20 m in 19 ... 22
-  EXPECT_FALSE(finding.radius_in_interval);   // 6 m in 5.0 ... 5.9
+  EXPECT_TRUE(finding.distance_in_interval);   // 20 m in 19 ... 22
+  EXPECT_FALSE(finding.radius_in_interval);    // 6 m in 5.0 ... 5.9
   EXPECT_TRUE(finding.position_in_ellipsoid);  // 1 / 1 < 7.8
 }
 
 TEST(WaterScore, AnErrorOfTwoMetresAcrossLeavesTheEllipsoidOfHalfAMetre) {
-  const WaterFinding finding = water_score({found_at({20.0, 2.0, 1.0})}, kBody, {}, standing(), kAntenna).findings.at(0);
+  const WaterFinding finding =
+      water_score({found_at({20.0, 2.0, 1.0})}, kBody, {}, standing(), kAntenna).findings.at(0);
   EXPECT_NEAR(finding.position_error_m, 2.0, 1e-12);
   EXPECT_NEAR(finding.ahead_error_m, 0.0, 1e-12);
   EXPECT_FALSE(finding.position_in_ellipsoid);  // 4 / 0.25 = 16 > 7.8
@@ -55,7 +56,8 @@ TEST(WaterScore, AnErrorOfTwoMetresAcrossLeavesTheEllipsoidOfHalfAMetre) {
 TEST(WaterScore, TheMapsFrameTurnsPositionAndCovariance) {
   const Pose2 T_world_map{0.0, 0.0, std::numbers::pi / 2.0};  // x of map is y of world
   const std::vector<WaterGroundTruth> body = {{.p_world_m = {0.0, 20.0, 1.5}, .radius_m = 6.0}};
-  const WaterFinding finding = water_score({found_at({22.0, 0.0, 1.0})}, body, T_world_map, standing(), kAntenna).findings.at(0);
+  const WaterFinding finding =
+      water_score({found_at({22.0, 0.0, 1.0})}, body, T_world_map, standing(), kAntenna).findings.at(0);
   EXPECT_NEAR(finding.ahead_error_m, 2.0, 1e-12);
   EXPECT_TRUE(finding.position_in_ellipsoid);  // 4 / 1: along x of map the interval is wide
 }

@@ -1,13 +1,12 @@
 #include "sim/actors.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <Eigen/Geometry>
-
 #include <cmath>
 #include <functional>
 #include <numbers>
+
+#include <Eigen/Geometry>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "tests/sim/small_world.h"
@@ -33,8 +32,7 @@ struct Traffic : SmallWorld {
   explicit Traffic(const std::string& more = "", const std::string& asset = "") : SmallWorld(kTraffic + more, asset) {}
 
   Eigen::Vector3d place_of(const char* name) const {
-    return Eigen::Vector3d(data->mocap_pos +
-                           3 * model->body_mocapid[mj_name2id(model.get(), mjOBJ_BODY, name)]);
+    return Eigen::Vector3d(data->mocap_pos + 3 * model->body_mocapid[mj_name2id(model.get(), mjOBJ_BODY, name)]);
   }
   Eigen::Quaterniond rotation_of(const char* name) const {
     const mjtNum* q = data->mocap_quat + 4 * model->body_mocapid[mj_name2id(model.get(), mjOBJ_BODY, name)];
@@ -46,13 +44,11 @@ struct Traffic : SmallWorld {
   }
 };
 
-ActorSettings walker(std::vector<WaypointSettings> path) {
-  return {.name = "walker", .path = std::move(path)};
-}
+ActorSettings walker(std::vector<WaypointSettings> path) { return {.name = "walker", .path = std::move(path)}; }
 
 /// Calls `look` at every tick of `seconds`. The robot keeps its velocity.
-void run(Traffic& traffic, const ActorSettings& settings, double seconds,
-         const std::function<void(double)>& look, ObservedRobot robot = kFarAway) {
+void run(Traffic& traffic, const ActorSettings& settings, double seconds, const std::function<void(double)>& look,
+         ObservedRobot robot = kFarAway) {
   Actors actors(*traffic.model, {settings});
   for (Time now{}; now <= from_seconds(seconds); now += kTick) {
     actors.advance(now, robot, *traffic.data);
@@ -91,9 +87,8 @@ TEST(Actors, TheFootThatStandsStaysWhereItIsAndOneFootAlwaysStands) {
     if (!is_first && now > 1.0) {
       const double moved = std::min((feet[0] - last[0]).norm(), (feet[1] - last[1]).norm());
       changes += moved > 1e-6;
-      EXPECT_LT(moved, 0.003) << now;  // a swinging foot goes as far in a tick
-      EXPECT_NEAR(std::min(feet[0].z(), feet[1].z()), 0.012, 1e-6)
-          << now;  // the ankle's height with the hip at 0.86 m
+      EXPECT_LT(moved, 0.003) << now;                                       // a swinging foot goes as far in a tick
+      EXPECT_NEAR(std::min(feet[0].z(), feet[1].z()), 0.012, 1e-6) << now;  // the ankle's height with the hip at 0.86 m
     }
     last[0] = feet[0], last[1] = feet[1];
     is_first = false;
@@ -114,8 +109,8 @@ TEST(Actors, TheHipBobs6CentimetresOverAStepOf65) {
 TEST(Actors, KneesJoinThighAndShank) {
   Traffic traffic;
   run(traffic, walker({{.x_m = 0, .y_m = 0}, {.x_m = 6, .y_m = 3}}), 4.0, [&](double now) {
-    const Eigen::Vector3d knee = traffic.place_of("walker_thigh_left") +
-                                 traffic.rotation_of("walker_thigh_left") * Eigen::Vector3d(0, 0, -0.43);
+    const Eigen::Vector3d knee =
+        traffic.place_of("walker_thigh_left") + traffic.rotation_of("walker_thigh_left") * Eigen::Vector3d(0, 0, -0.43);
     EXPECT_NEAR((knee - traffic.place_of("walker_shank_left")).norm(), 0.0, 1e-9) << now;
   });
 }
@@ -182,7 +177,8 @@ TEST(Actors, WaitsForARobotInItsWayAndNotForOneBesideIt) {
   EXPECT_GT(traffic.place_of("walker").x(), 6.0);
 }
 
-// A metre long and at a metre per second, from the side, at every time of crossing: never nearer than its outline and a shoulder.
+// A metre long and at a metre per second, from the side, at every time of crossing: never nearer than its outline and a
+// shoulder.
 TEST(Actors, ARobotThatCrossesAtOneMetrePerSecondIsNeverTouched) {
   for (double from_m = -10.0; from_m <= 1.0; from_m += 0.25) {
     for (const double side : {-1.0, 1.0}) {
@@ -190,7 +186,8 @@ TEST(Actors, ARobotThatCrossesAtOneMetrePerSecondIsNeverTouched) {
       ObservedRobot robot{.p_world = {4.0, side * from_m}, .v_world_mps = {0.0, side}, .radius_m = 0.6};
       const Eigen::Vector2d start = robot.p_world, velocity = robot.v_world_mps;
       double nearest_m = 100.0;
-      run(traffic, walker({{.x_m = 0, .y_m = 0}, {.x_m = 30, .y_m = 0}}), 14.0,
+      run(
+          traffic, walker({{.x_m = 0, .y_m = 0}, {.x_m = 30, .y_m = 0}}), 14.0,
           [&](double now_s) {
             const Eigen::Vector2d p_robot = start + now_s * velocity;
             nearest_m = std::min(nearest_m, (traffic.place_of("walker").head<2>() - p_robot).norm());
@@ -204,8 +201,7 @@ TEST(Actors, ARobotThatCrossesAtOneMetrePerSecondIsNeverTouched) {
 
 TEST(Actors, ACarKeepsTheHeightAtWhichTheWorldPutsItAndLooksAlongItsWay) {
   Traffic traffic;
-  run(traffic,
-      {.name = "cart", .kind = "car", .path = {{.x_m = 0, .y_m = 5}, {.x_m = 0, .y_m = 9}}, .speed_mps = 2.0},
+  run(traffic, {.name = "cart", .kind = "car", .path = {{.x_m = 0, .y_m = 5}, {.x_m = 0, .y_m = 9}}, .speed_mps = 2.0},
       1.5, [&](double) { EXPECT_NEAR(traffic.place_of("cart").z(), 0.5, 1e-9); });
   EXPECT_NEAR((traffic.rotation_of("cart") * Eigen::Vector3d::UnitX()).y(), 1.0, 1e-9);
 }

@@ -1,17 +1,17 @@
 #include "sim/antenna_mount.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <optional>
 
-#include "core/geometry/angles.h"
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
 #include "core/error.h"
+#include "core/geometry/angles.h"
 #include "sim/simulator/simulator.h"
 #include "tests/support/simulated_quadruped.h"
-#include "tests/support/temporary_file.h"
 #include "tests/support/simulated_tracked_robot.h"
+#include "tests/support/temporary_file.h"
 
 namespace patrol::sim::antenna_mount_test {
 namespace {
@@ -28,7 +28,8 @@ SimulatorSettings settings_for(const test::TemporaryFile& world) {
 /// The tracked robot on level ground, its TEM switched on.
 class AntennaOnTheRobot : public testing::Test {
  protected:
-  AntennaOnTheRobot() : file_("world.xml", make_flat_world()), simulator_(settings_for(file_), tracked_description(), 1) {}
+  AntennaOnTheRobot()
+      : file_("world.xml", make_flat_world()), simulator_(settings_for(file_), tracked_description(), 1) {}
 
   void run(double duration_s) {
     for (const Time end = simulator_.now() + from_seconds(duration_s); simulator_.now() < end;) {
@@ -42,11 +43,13 @@ class AntennaOnTheRobot : public testing::Test {
     }
   }
   void turn(double yaw_deg, double pitch_deg) {
-    simulator_.command(AntennaCommand{.stamp = simulator_.now(), .yaw_rad = yaw_deg * kDegree, .pitch_rad = pitch_deg * kDegree});
+    simulator_.command(
+        AntennaCommand{.stamp = simulator_.now(), .yaw_rad = yaw_deg * kDegree, .pitch_rad = pitch_deg * kDegree});
   }
   /// The truth.
   double joint(const char* name) const {
-    return simulator_.state().qpos[static_cast<std::size_t>(simulator_.physics().jnt_qposadr[mj_name2id(&simulator_.physics(), mjOBJ_JOINT, name)])];
+    return simulator_.state().qpos[static_cast<std::size_t>(
+        simulator_.physics().jnt_qposadr[mj_name2id(&simulator_.physics(), mjOBJ_JOINT, name)])];
   }
 
   test::TemporaryFile file_;
@@ -108,7 +111,8 @@ TEST_F(AntennaOnTheRobot, ApproachedFromBothSidesItStandsApartByTheBacklash) {
   run(4.0);
   turn(20.0, 0.0);
   run(4.0);
-  EXPECT_NEAR(joint("tem_yaw_joint") - from_right, 0.33 * kDegree, 0.2 * kDegree);  // dead band of 0.1 deg on both sides
+  EXPECT_NEAR(joint("tem_yaw_joint") - from_right, 0.33 * kDegree,
+              0.2 * kDegree);  // dead band of 0.1 deg on both sides
 }
 
 TEST_F(AntennaOnTheRobot, ASoundingComesASecondAfterItIsAskedForAndTheRobotStaysWhereItIs) {

@@ -1,16 +1,16 @@
 #include "sim/collision_culler.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <tuple>
 #include <vector>
 
+#include <gtest/gtest.h>
+
 #include "core/random.h"
 #include "tests/sim/rubble.h"
-#include "tests/support/simulated_tracked_robot.h"
 #include "tests/support/simulated_quadruped.h"
+#include "tests/support/simulated_tracked_robot.h"
 
 namespace patrol::sim::nearby_scenery_test {
 namespace {
@@ -61,7 +61,8 @@ TEST(CollisionCuller, At600PlacesOfTheStreetAndAnyPostureTheContactsAreThoseOfTh
 TEST(CollisionCuller, OnRubbleWithStonesTheTrackedRobotDrivesAsInTheWholeWorldToTheLastBit) {
   const auto drive = [](bool spare) {
     std::string world = make_rubble_world(10.0, 4.0);
-    const std::string stone = R"(<geom name="ground_stone" type="sphere" size="0.2" pos="0.4 0.25 -0.1" contype="1" conaffinity="2"/>)";
+    const std::string stone =
+        R"(<geom name="ground_stone" type="sphere" size="0.2" pos="0.4 0.25 -0.1" contype="1" conaffinity="2"/>)";
     world.insert(world.find("</worldbody>"), stone);
     TrackedRobot robot(world, {-2.0, 0.0, 0.0}, {}, tracked_description(), 1, spare);
     robot.drive(0.5, 0.0, 6.0);

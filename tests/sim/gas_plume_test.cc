@@ -1,13 +1,13 @@
 #include "sim/gas_plume.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <numbers>
 
-#include "core/geometry/angles.h"
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
 #include "core/error.h"
+#include "core/geometry/angles.h"
 #include "tests/sim/small_world.h"
 
 namespace patrol::sim::gas_plume_test {
@@ -40,8 +40,7 @@ TEST(GasPlume, CarriesItsWholeRateThroughEveryPlaneDownwind) {
     constexpr double kCell = 0.02;
     for (double y = -6.0 * sigma_y(x); y < 6.0 * sigma_y(x); y += kCell * sigma_y(x)) {
       for (double z = 0.5 * kCell * sigma_z(x); z < 0.8 + 6.0 * sigma_z(x); z += kCell * sigma_z(x)) {
-        flux_kgps +=
-            2.0 * plume().concentration_kgpm3({x, y, z}, 0.0) * kCell * sigma_y(x) * kCell * sigma_z(x);
+        flux_kgps += 2.0 * plume().concentration_kgpm3({x, y, z}, 0.0) * kCell * sigma_y(x) * kCell * sigma_z(x);
       }
     }
     EXPECT_NEAR(flux_kgps * 1000.0, kRate_gps, 0.002 * kRate_gps) << x;
@@ -85,9 +84,7 @@ TEST(GasPlume, WindFrom240DegreesDrivesTheGasTo60DegreesFromNorth) {
   EXPECT_EQ(strongest_deg, 60.0);
 }
 
-TEST(GasPlume, NothingGoesHalfAMetreUpwind) {
-  EXPECT_EQ(plume().concentration_kgpm3({-0.5, 0.0, 0.8}, 0.0), 0.0);
-}
+TEST(GasPlume, NothingGoesHalfAMetreUpwind) { EXPECT_EQ(plume().concentration_kgpm3({-0.5, 0.0, 0.8}, 0.0), 0.0); }
 
 TEST(GasPlume, StableAirKeepsTheGasTogetherUnstableAirSpreadsIt) {
   double last = 0.0;
@@ -106,9 +103,9 @@ TEST(GasPlume, IsNeverMoreThanPureMethane) {
 
 TEST(GasPlume, TwoLeaksAddAndEachBeginsAtItsTime) {
   const SmallWorld world(R"(<site name="box" pos="0 0 0.8"/><site name="well" pos="3 1 0.2"/>)");
-  const GasPlume both(
-      *world.model, {{.at = "box", .rate_g_s = kRate_gps}, {.at = "well", .rate_g_s = 0.5, .start_s = 10.0}},
-      west_wind());
+  const GasPlume both(*world.model,
+                      {{.at = "box", .rate_g_s = kRate_gps}, {.at = "well", .rate_g_s = 0.5, .start_s = 10.0}},
+                      west_wind());
   const GasPlume well({3, 1, 0.2}, 0.5, west_wind());
   const Eigen::Vector3d point(8.0, 0.5, 0.6);
   const double box_only = plume().concentration_kgpm3(point, 0.0);

@@ -29,7 +29,8 @@ inline std::string box(const std::string& position, const std::string& size, con
 inline LidarSettings ideal() {
   LidarSettings settings;
   settings.beams = 720;
-  settings.range_noise_std_m = settings.range_quantization_m = settings.angle_noise_std_deg = settings.dropout_probability = 0.0;
+  settings.range_noise_std_m = settings.range_quantization_m = settings.angle_noise_std_deg =
+      settings.dropout_probability = 0.0;
   settings.max_incidence_deg = 90.0;
   settings.max_range_10pct_m = 0.0;
   settings.beam_width_deg = 0.0;
@@ -38,8 +39,8 @@ inline LidarSettings ideal() {
 
 /// The scans of `seconds` from a lidar that is carried by `pose(now)`.
 template <typename PoseAt>
-std::vector<LaserScan> scans_along(const SmallWorld& world, const LidarSettings& settings, double seconds,
-                                   PoseAt pose, std::uint64_t seed = 1) {
+std::vector<LaserScan> scans_along(const SmallWorld& world, const LidarSettings& settings, double seconds, PoseAt pose,
+                                   std::uint64_t seed = 1) {
   Lidar lidar(settings, world.scene, {}, kRayLidar2d, seed, "lidar");
   std::vector<LaserScan> scans;
   for (Time now{}; now < from_seconds(seconds); now += kTick) {
@@ -49,8 +50,10 @@ std::vector<LaserScan> scans_along(const SmallWorld& world, const LidarSettings&
   return scans;
 }
 
-inline std::vector<LaserScan> scans_at_rest(const SmallWorld& world, const LidarSettings& settings, double seconds, std::uint64_t seed = 1) {
-  return scans_along(world, settings, seconds, [](double) { return Pose3{}; }, seed);
+inline std::vector<LaserScan> scans_at_rest(const SmallWorld& world, const LidarSettings& settings, double seconds,
+                                            std::uint64_t seed = 1) {
+  return scans_along(
+      world, settings, seconds, [](double) { return Pose3{}; }, seed);
 }
 
 inline double angle_of(const LaserScan& scan, std::size_t beam) {

@@ -1,9 +1,9 @@
 #include "sim/lidar_scene.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <numbers>
+
+#include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "core/random.h"
@@ -25,11 +25,11 @@ const std::string kShapes = R"(<geom type="box" pos="3 0 0.5" size="0.3 0.5 0.6"
   <geom type="cylinder" pos="1 -3 0.6" size="0.3 0.7" euler="0 75 40"/>
   <geom type="ellipsoid" pos="-2 -3 0.8" size="0.2 0.5 0.8" euler="30 30 0"/>
   <geom type="mesh" mesh="wedge" pos="-4 -2 0.2" euler="0 0 50"/>)";
-const std::string kEveryShape =
-    R"(<geom type="plane" size="50 50 1"/>)" + kShapes + R"(<body pos="2 6 1" euler="5 0 0"><freejoint/>)" +
-    kShapes + "</body>" + R"(<body name="actor" mocap="true" pos="-7 2 0.5" euler="0 0 100">)" + kShapes +
-    "</body>" + R"(<body pos="4 -7 0"><joint name="turn" axis="0 0 1"/>)" + kShapes +
-    R"(<body pos="0 0 1"><joint axis="0 1 0"/>)" + kShapes + "</body></body>";
+const std::string kEveryShape = R"(<geom type="plane" size="50 50 1"/>)" + kShapes +
+                                R"(<body pos="2 6 1" euler="5 0 0"><freejoint/>)" + kShapes + "</body>" +
+                                R"(<body name="actor" mocap="true" pos="-7 2 0.5" euler="0 0 100">)" + kShapes +
+                                "</body>" + R"(<body pos="4 -7 0"><joint name="turn" axis="0 0 1"/>)" + kShapes +
+                                R"(<body pos="0 0 1"><joint axis="0 1 0"/>)" + kShapes + "</body></body>";
 
 Eigen::Vector3d random_direction(const RandomStream& random, std::uint64_t ray) {
   return Eigen::Vector3d(random.normal(ray, 0), random.normal(ray, 1), random.normal(ray, 2)).normalized();
@@ -45,9 +45,8 @@ double mujoco_range(const mjModel& model, const mjData& data, const Eigen::Vecto
 
 struct Agreement {
   int hits = 0;
-  int beyond_1_mm = 0;  ///< rays whose ranges differ by more
-  int unexplained =
-      0;  ///< of those, the ones that MuJoCo's ray a tenth of a millimetre beside does not give either
+  int beyond_1_mm = 0;     ///< rays whose ranges differ by more
+  int unexplained = 0;     ///< of those, the ones that MuJoCo's ray a tenth of a millimetre beside does not give either
   int other_geom = 0;      ///< ranges agree, but another geom is named
   double largest_m = 0.0;  ///< among those that agree
 };
@@ -170,8 +169,8 @@ TEST(LidarScene, NormalsAreThoseOfMuJoCoAndLookTowardsTheRaysOrigin) {
     const std::optional<RayHit> hit = world.scene.cast(origin, direction, kRange_m, kRayEverything);
     mjtNum normal[3];
     int geom = -1;
-    const mjtNum distance = mj_ray(world.model.get(), world.data.get(), origin.data(), direction.data(),
-                                   kSeen, 1, -1, &geom, normal);
+    const mjtNum distance =
+        mj_ray(world.model.get(), world.data.get(), origin.data(), direction.data(), kSeen, 1, -1, &geom, normal);
     if (!hit || distance < 0.0 || geom != hit->geom) continue;
     EXPECT_LE(hit->normal.dot(direction), 0.0);
     if (std::abs(Eigen::Vector3d(normal).dot(direction)) < 0.05)
@@ -186,9 +185,7 @@ TEST(LidarScene, AMaskHidesTheRobotOrOneOfItsLidars) {
   const SmallWorld world(R"(<geom type="box" pos="5 0 0" size="0.5 1 1"/>
     <body name="base_link" pos="2 0 0"><freejoint/><geom group="4" size="0.1"/>
       <body name="lidar" pos="-1 0 0"><geom group="4" size="0.1"/></body></body>)");
-  const auto range = [&](std::uint32_t mask) {
-    return world.scene.cast({0, 0, 0}, {1, 0, 0}, 30.0, mask)->distance_m;
-  };
+  const auto range = [&](std::uint32_t mask) { return world.scene.cast({0, 0, 0}, {1, 0, 0}, 30.0, mask)->distance_m; };
   EXPECT_NEAR(range(kRayEverything), 0.9, 1e-6);
   EXPECT_NEAR(range(kRayEverything & ~kRayLidar2d), 1.9, 1e-6);
   EXPECT_NEAR(range(kRayScenery), 4.5, 1e-6);
@@ -225,8 +222,7 @@ TEST(LidarScene, AHeightFieldIsHitWithin1MillimetreOfMjRayFromAboveBesideBelowAn
   for (std::uint64_t ray = 0; ray < 20000; ++ray) {
     const Eigen::Vector3d origin(16.0 * random.uniform(ray, 10) - 8.0, 10.0 * random.uniform(ray, 11) - 5.0,
                                  5.0 * random.uniform(ray, 12) - 1.5);
-    const Eigen::Vector3d target(1.0 + 5.0 * random.normal(ray, 13), -0.5 + 2.0 * random.normal(ray, 14),
-                                 0.6);
+    const Eigen::Vector3d target(1.0 + 5.0 * random.normal(ray, 13), -0.5 + 2.0 * random.normal(ray, 14), 0.6);
     compare(world.scene, *world.model, *world.data, origin, (target - origin).normalized(), agreement);
   }
   EXPECT_GT(agreement.hits, 10000);
@@ -257,7 +253,8 @@ TEST(LidarScene, AShapeWithoutSurfaceToCastAtIsRefusedByItsNumber) {
     FAIL() << "a signed distance field was taken";
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(),
-                 "geom 0: shape type not supported by the lidar: must be one of sphere, capsule, cylinder, ellipsoid, box, plane, "
+                 "geom 0: shape type not supported by the lidar: must be one of sphere, capsule, cylinder, ellipsoid, "
+                 "box, plane, "
                  "mesh, height field");
   }
 }

@@ -1,7 +1,7 @@
 // What surfaces, weather and edges do to the lidar's beams.
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "tests/sim/lidar_scans.h"
 
@@ -75,8 +75,8 @@ LaserScan scan_in_dust(double wall_m, const DustSettings& dust, const LidarSetti
   }
 }
 
-// White is seen to 30 m in clear air. Light falls by ln 50 / 20 m = 0.1956 / m: at 9 m it is as from 9 exp(1.760) = 52.3 m, at
-// 7 m as from 7 exp(1.369) = 27.5 m.
+// White is seen to 30 m in clear air. Light falls by ln 50 / 20 m = 0.1956 / m: at 9 m it is as from 9 exp(1.760)
+// = 52.3 m, at 7 m as from 7 exp(1.369) = 27.5 m.
 TEST(LidarSurfaces, InDustOf20MetresVisibilityAWhiteWallIsSeenAt7MetresAndNotAt9) {
   LidarSettings settings = narrow();
   settings.max_range_10pct_m = 10.0;
@@ -95,7 +95,8 @@ TEST(LidarSurfaces, DustGivesEchoesOfItsOwnByBeersLaw) {
   const LaserScan scan = scan_in_dust(5.0, dust, settings);
   int echoes = 0;
   for (const float range : scan.ranges_m) echoes += range < 4.99f;
-  const double expected = 1.0 - std::exp(-0.1 * std::log(50.0) / 20.0 * 5.0);  // 9.3 %; those in the last centimetre look right
+  const double expected =
+      1.0 - std::exp(-0.1 * std::log(50.0) / 20.0 * 5.0);  // 9.3 %; those in the last centimetre look right
   EXPECT_NEAR(echoes / 20000.0, expected * (1.0 - 0.01 / 5.0), 4.0 * std::sqrt(expected / 20000.0));
 }
 

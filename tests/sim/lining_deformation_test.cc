@@ -1,13 +1,13 @@
 #include "sim/lining_deformation.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <string>
 
-#include "core/geometry/angles.h"
+#include <gtest/gtest.h>
+
 #include "core/error.h"
+#include "core/geometry/angles.h"
 #include "io/json/route_json.h"
 #include "sim/lidar_scene.h"
 #include "sim/mujoco.h"
@@ -22,9 +22,16 @@ TunnelLining tunnel_lining() { return *io::load_route(PATROL_SOURCE_DIR "/worlds
 LiningDeformationSettings convergence(int first, int last, double mm) {
   return {.kind = "convergence", .first_ring = first, .last_ring = last, .inward_mm = mm};
 }
-LiningDeformationSettings settlement(int ring, double mm) { return {.kind = "settlement", .first_ring = ring, .last_ring = ring, .inward_mm = mm}; }
+LiningDeformationSettings settlement(int ring, double mm) {
+  return {.kind = "settlement", .first_ring = ring, .last_ring = ring, .inward_mm = mm};
+}
 LiningDeformationSettings bulge(int ring, double mm, double clock_deg, double half_width_deg) {
-  return {.kind = "bulge", .first_ring = ring, .last_ring = ring, .inward_mm = mm, .clock_deg = clock_deg, .half_width_deg = half_width_deg};
+  return {.kind = "bulge",
+          .first_ring = ring,
+          .last_ring = ring,
+          .inward_mm = mm,
+          .clock_deg = clock_deg,
+          .half_width_deg = half_width_deg};
 }
 
 TEST(LiningMoves, AConvergenceIsTheSameAllRoundItsRingsAndNothingElsewhere) {
@@ -40,7 +47,8 @@ TEST(LiningMoves, ASettlementOf12MillimetresIs12InwardsAtTheCrown6At2OClockAndNo
   EXPECT_DOUBLE_EQ(inward_m({settlement(9, 12.0)}, 9, 0.0), 0.012);
   EXPECT_NEAR(inward_m({settlement(9, 12.0)}, 9, 60.0), 0.006, 1e-12);
   EXPECT_NEAR(inward_m({settlement(9, 12.0)}, 9, 300.0), 0.006, 1e-12);
-  for (const double clock_deg : {90.0, 110.0, 180.0, 269.0}) EXPECT_NEAR(inward_m({settlement(9, 12.0)}, 9, clock_deg), 0.0, 1e-12);
+  for (const double clock_deg : {90.0, 110.0, 180.0, 269.0})
+    EXPECT_NEAR(inward_m({settlement(9, 12.0)}, 9, clock_deg), 0.0, 1e-12);
 }
 
 // cos^2 of half way to the edge is a half.
@@ -62,11 +70,13 @@ class MovedTunnel : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     lining_ = new TunnelLining(tunnel_lining());
-    moves_ = {convergence(5, 5, 12.0), settlement(20, 6.0), bulge(35, 12.0, 60.0, 25.0), convergence(44, 45, -3.0), bulge(46, 6.0, 270.0, 30.0)};
+    moves_ = {convergence(5, 5, 12.0), settlement(20, 6.0), bulge(35, 12.0, 60.0, 25.0), convergence(44, 45, -3.0),
+              bulge(46, 6.0, 270.0, 30.0)};
     before_ = load_spec(kTunnelXml), after_ = load_spec(kTunnelXml);
     before_model_ = compile(*before_, kTunnelXml), after_model_ = compile(*after_, kTunnelXml);
     deform_lining(moves_, *lining_, *after_model_);
-    for (const ModelPtr* model : {&before_model_, &after_model_}) lining_id_ = mj_name2id(model->get(), mjOBJ_GEOM, "lining");
+    for (const ModelPtr* model : {&before_model_, &after_model_})
+      lining_id_ = mj_name2id(model->get(), mjOBJ_GEOM, "lining");
     before_scene_ = new LidarScene(*before_model_), after_scene_ = new LidarScene(*after_model_);
   }
   static void TearDownTestSuite() {
@@ -93,7 +103,8 @@ class MovedTunnel : public testing::Test {
   }
 
   static bool has_moved(int ring) {
-    return std::any_of(moves_.begin(), moves_.end(), [ring](const auto& move) { return ring >= move.first_ring && ring <= move.last_ring; });
+    return std::any_of(moves_.begin(), moves_.end(),
+                       [ring](const auto& move) { return ring >= move.first_ring && ring <= move.last_ring; });
   }
 
   static inline TunnelLining* lining_;
@@ -113,10 +124,12 @@ TEST_F(MovedTunnel, EveryRingIsMovedByWhatItsMovesSayWithinAFifthOfAMillimetreAn
       for (double clock_deg = 3.0; clock_deg < 360.0; clock_deg += 7.3) {
         if (clock_deg > 112.0 && clock_deg < 248.0) continue;  // below the invert
         const double chainage_m = lining_->middle_of_ring_m(ring) + into_ring_m;
-        const double before_m = seen_radius_m(*before_scene_, chainage_m, clock_deg), after_m = seen_radius_m(*after_scene_, chainage_m, clock_deg);
+        const double before_m = seen_radius_m(*before_scene_, chainage_m, clock_deg),
+                     after_m = seen_radius_m(*after_scene_, chainage_m, clock_deg);
         if (before_m < 0.0 || after_m < 0.0) continue;
         ++looked;
-        EXPECT_NEAR(before_m - after_m, inward_m(moves_, ring, clock_deg), kFacetTol_m) << "ring " << ring << " at " << clock_deg;
+        EXPECT_NEAR(before_m - after_m, inward_m(moves_, ring, clock_deg), kFacetTol_m)
+            << "ring " << ring << " at " << clock_deg;
         if (!has_moved(ring)) {
           EXPECT_NEAR(before_m, after_m, 1e-5) << "ring " << ring << " at " << clock_deg;
         }
@@ -136,7 +149,8 @@ TEST_F(MovedTunnel, TheIntradosIsWithinAMillimetreOfTheDesign) {
   }
 }
 
-std::string error_response(const LiningDeformationSettings& move, const std::optional<TunnelLining>& design, const std::string& world = "<mujoco/>") {
+std::string error_response(const LiningDeformationSettings& move, const std::optional<TunnelLining>& design,
+                           const std::string& world = "<mujoco/>") {
   const SpecPtr spec = parse_spec(world);
   const ModelPtr model = compile(*spec, "world");
   try {
@@ -148,11 +162,16 @@ std::string error_response(const LiningDeformationSettings& move, const std::opt
 }
 
 TEST(LiningMoves, WhatCannotBeMovedIsRefusedByItsPlaceInTheList) {
-  EXPECT_EQ(error_response(convergence(2, 51, 3.0), tunnel_lining()), "lining_deformation.1.last_ring = 51: must be at most 50, the last ring of the lining");
-  EXPECT_EQ(error_response(convergence(7, 5, 3.0), tunnel_lining()), "lining_deformation.1.last_ring = 5: must be at least first_ring, 7");
-  EXPECT_EQ(error_response(bulge(2, 3.0, 0.0, 0.0), tunnel_lining()), "lining_deformation.1.half_width_deg = 0: must be in [1, 180]");
-  EXPECT_EQ(error_response(convergence(2, 2, 3.0), std::nullopt), "lining_deformation.0.first_ring = 1: requires a lining in the mission file");
-  EXPECT_EQ(error_response(convergence(2, 2, 3.0), tunnel_lining()), "lining_deformation.0.first_ring: requires a world with a mesh named lining");
+  EXPECT_EQ(error_response(convergence(2, 51, 3.0), tunnel_lining()),
+            "lining_deformation.1.last_ring = 51: must be at most 50, the last ring of the lining");
+  EXPECT_EQ(error_response(convergence(7, 5, 3.0), tunnel_lining()),
+            "lining_deformation.1.last_ring = 5: must be at least first_ring, 7");
+  EXPECT_EQ(error_response(bulge(2, 3.0, 0.0, 0.0), tunnel_lining()),
+            "lining_deformation.1.half_width_deg = 0: must be in [1, 180]");
+  EXPECT_EQ(error_response(convergence(2, 2, 3.0), std::nullopt),
+            "lining_deformation.0.first_ring = 1: requires a lining in the mission file");
+  EXPECT_EQ(error_response(convergence(2, 2, 3.0), tunnel_lining()),
+            "lining_deformation.0.first_ring: requires a world with a mesh named lining");
 }
 
 TEST(LiningMoves, WithoutMovesAnyWorldIsGood) {

@@ -1,19 +1,19 @@
 #include "sim/model_assembly.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <fstream>
 #include <memory>
 #include <regex>
 #include <sstream>
 
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
 #include "core/error.h"
 #include "io/urdf.h"
 #include "sim/robot_model.h"
 #include "tests/sim/rubble.h"
-#include "tests/support/simulated_tracked_robot.h"
 #include "tests/support/simulated_quadruped.h"
+#include "tests/support/simulated_tracked_robot.h"
 #include "tests/support/temporary_file.h"
 
 namespace patrol::sim::model_assembly_test {
@@ -119,8 +119,7 @@ TEST_F(StreetAssembly, StripsNoMassFromActorsAndNoFrictionFromTheGround) {
     EXPECT_EQ(physics.geom_friction[3 * geom], view.geom_friction[3 * view_geom]) << name;
     EXPECT_EQ(physics.geom_type[geom], view.geom_type[view_geom]) << name;
     EXPECT_EQ(physics.geom_condim[geom], view.geom_condim[view_geom]) << name;
-    for (int i = 0; i < 3; ++i)
-      EXPECT_EQ(physics.geom_size[3 * geom + i], view.geom_size[3 * view_geom + i]) << name;
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(physics.geom_size[3 * geom + i], view.geom_size[3 * view_geom + i]) << name;
   }
 }
 
@@ -181,8 +180,8 @@ TEST(ModelAssembly, TheTrackedRobotStartsAHandsBreadthAboveRubbleAndAboveAKerbUn
 
 TEST(ModelAssembly, PropsAreThereToBeTouchedAndSeen) {
   const test::TemporaryFile file("world.xml", make_flat_world());
-  const AssembledModel model =
-      assemble_model(file.path(), kTrackedUrdf, {}, {StaticObstacleSettings{.kind = "kerb", .x_m = 2.0, .y_m = 0.0, .yaw_deg = 0.0}});
+  const AssembledModel model = assemble_model(
+      file.path(), kTrackedUrdf, {}, {StaticObstacleSettings{.kind = "kerb", .x_m = 2.0, .y_m = 0.0, .yaw_deg = 0.0}});
   EXPECT_GE(mj_name2id(model.physics.get(), mjOBJ_GEOM, "static_obstacle_1"), 0);
   EXPECT_GE(mj_name2id(model.view.get(), mjOBJ_GEOM, "static_obstacle_1"), 0);
 }
@@ -196,8 +195,7 @@ TEST(ModelAssembly, AStartInsideAWallIsRefusedWithTheWallsName) {
 }
 
 TEST(ModelAssembly, AStartOverNothingIsRefused) {
-  const test::TemporaryFile world("world.xml",
-                                  make_world(R"(<geom type="box" pos="0 0 -0.1" size="1 1 0.1"/>)"));
+  const test::TemporaryFile world("world.xml", make_world(R"(<geom type="box" pos="0 0 -0.1" size="1 1 0.1"/>)"));
   EXPECT_THAT(error_response([&] {
                 assemble_model(world.path(), kRobotUrdf, {20.0, 0.0, 0.0});
               }),
@@ -207,8 +205,7 @@ TEST(ModelAssembly, AStartOverNothingIsRefused) {
 TEST(ModelAssembly, AMissingOrBrokenFileIsRefusedByName) {
   EXPECT_THAT(error_response([] { assemble_model("no/such/world.xml", kRobotUrdf, {}); }),
               HasSubstr("no/such/world.xml"));
-  const test::TemporaryFile broken("broken.xml",
-                                   "<mujoco><worldbody><geom tipe=\"box\"/></worldbody></mujoco>");
+  const test::TemporaryFile broken("broken.xml", "<mujoco><worldbody><geom tipe=\"box\"/></worldbody></mujoco>");
   EXPECT_THAT(error_response([&] { assemble_model(broken.path(), kRobotUrdf, {}); }), HasSubstr("broken.xml"));
   const test::TemporaryFile world("world.xml", make_flat_world());
   EXPECT_THAT(error_response([&] { assemble_model(world.path(), "no/such/robot.urdf", {}); }),

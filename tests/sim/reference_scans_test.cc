@@ -1,10 +1,10 @@
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <optional>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 #include "core/geometry/angles.h"
 #include "core/random.h"
@@ -19,14 +19,15 @@ constexpr std::uint64_t kInspectionSeed = 1;  // of worlds/tunnel/scenarios/insp
 /// Grid of the default scanner, and the beams that single points of a scan come from.
 class BeamGrid {
  public:
-  /// Number of the beam in direction `p` of the scanner, as PanoramicScanner counts; none where it lies off the grid by more than
-  /// `tol_deg` along either angle, as means of several beams do.
+  /// Number of the beam in direction `p` of the scanner, as PanoramicScanner counts; none where it lies off the grid by
+  /// more than `tol_deg` along either angle, as means of several beams do.
   std::optional<std::uint64_t> beam_at(const Eigen::Vector3d& p, double tol_deg) const {
     const double up = (std::asin(p.z() / p.norm()) / kDegree - settings_.elevation_min_deg) / settings_.step_deg;
     const double about = (std::atan2(p.y(), p.x()) / kDegree + 90.0) / settings_.step_deg;
     const double row = std::round(up), column = std::round(about);
     const double tol = tol_deg / settings_.step_deg;
-    if (std::abs(up - row) > tol || std::abs(about - column) * std::cos(std::asin(p.z() / p.norm())) > tol) return std::nullopt;
+    if (std::abs(up - row) > tol || std::abs(about - column) * std::cos(std::asin(p.z() / p.norm())) > tol)
+      return std::nullopt;
     const auto wrapped = (static_cast<std::int64_t>(column) + kColumns) % kColumns;
     return static_cast<std::uint64_t>(wrapped) * kRows + static_cast<std::uint64_t>(row);
   }
@@ -42,8 +43,8 @@ Eigen::Matrix3d tilt_from_gravity(double roll_deg, double pitch_deg) {
   return quaternion_from_rpy(roll_deg * kDegree, pitch_deg * kDegree, 0.0).toRotationMatrix();
 }
 
-/// Beams of single points of a reference. The tilt of the scanner, which the scan's points do not have any more, is that under which
-/// most points lie on the grid.
+/// Beams of single points of a reference. The tilt of the scanner, which the scan's points do not have any more, is
+/// that under which most points lie on the grid.
 std::vector<std::uint64_t> single_beams(const io::StationScan& scan) {
   const Eigen::Matrix3d R_level_map = scan.T_map_scanner.rotation.toRotationMatrix().transpose();
   std::vector<Eigen::Vector3d> points;
@@ -60,7 +61,8 @@ std::vector<std::uint64_t> single_beams(const io::StationScan& scan) {
       for (double pitch = pitch_from; pitch <= pitch_from + 2.0 * reach_deg; pitch += step_deg) {
         const Eigen::Matrix3d R_scanner_level = tilt_from_gravity(roll, pitch).transpose();
         int on_grid = 0;
-        for (std::size_t i = 0; i < points.size(); i += stride) on_grid += grid.beam_at(R_scanner_level * points[i], step_deg).has_value();
+        for (std::size_t i = 0; i < points.size(); i += stride)
+          on_grid += grid.beam_at(R_scanner_level * points[i], step_deg).has_value();
         if (on_grid > most) most = on_grid, roll_deg = roll, pitch_deg = pitch;
       }
     }
@@ -70,12 +72,14 @@ std::vector<std::uint64_t> single_beams(const io::StationScan& scan) {
   search(0.004, 0.0008, points.size() / 4000);
   std::vector<std::uint64_t> beams;
   for (const Eigen::Vector3d& p : points) {
-    if (const auto beam = grid.beam_at(tilt_from_gravity(roll_deg, pitch_deg).transpose() * p, 0.004)) beams.push_back(*beam);
+    if (const auto beam = grid.beam_at(tilt_from_gravity(roll_deg, pitch_deg).transpose() * p, 0.004))
+      beams.push_back(*beam);
   }
   return beams;
 }
 
-// A thousandth of an inspection's beams drop out. Were a reference made from the same draws, none of its beams would be among them.
+// A thousandth of an inspection's beams drop out. Were a reference made from the same draws, none of its beams would be
+// among them.
 TEST(ReferenceScans, OfTheTunnelAreIndependentOfTheDropoutsOfTheInspection) {
   const std::vector<io::StationScan> scans = io::load_station_scans(PATROL_SOURCE_DIR "/worlds/tunnel/round/scans");
   ASSERT_EQ(scans.size(), 3u);

@@ -11,8 +11,8 @@
 
 namespace patrol::sim {
 
-/// MJCF of ground of rubble, a height field of 0.1 m cells about the origin, `length_m` along x: heights are white noise of
-/// `grain_std_m` on swells of `swell_std_m` about 0.4 m across.
+/// MJCF of ground of rubble, a height field of 0.1 m cells about the origin, `length_m` along x: heights are white
+/// noise of `grain_std_m` on swells of `swell_std_m` about 0.4 m across.
 inline std::string make_rubble_world(double length_m = 16.0, double width_m = 6.0, double swell_std_m = 0.02,
                                      double grain_std_m = 0.012) {
   constexpr double kCell_m = 0.1;
@@ -35,10 +35,11 @@ inline std::string make_rubble_world(double length_m = 16.0, double width_m = 6.
   const double low_m = *lowest, range_m = *highest - low_m;
   std::string elevation;
   for (const double h : height_m) elevation += fmt::format("{:.4f} ", (h - low_m) / range_m);
-  return fmt::format(R"(<mujoco><option timestep="0.002"/><asset><hfield name="rubble" nrow="{}" ncol="{}" size="{} {} {} 0.1"
+  return fmt::format(
+      R"(<mujoco><option timestep="0.002"/><asset><hfield name="rubble" nrow="{}" ncol="{}" size="{} {} {} 0.1"
     elevation="{}"/></asset><worldbody><geom name="ground" type="hfield" hfield="rubble" pos="0 0 {}" contype="1"
     conaffinity="2"/></worldbody></mujoco>)",
-                     rows, columns, length_m / 2.0, width_m / 2.0, range_m, elevation, low_m);
+      rows, columns, length_m / 2.0, width_m / 2.0, range_m, elevation, low_m);
 }
 
 }  // namespace patrol::sim

@@ -14,8 +14,8 @@ namespace patrol::sim {
 struct SmallWorld {
   /// `body` is what stands inside <worldbody>, `asset` what stands inside <asset>.
   explicit SmallWorld(const std::string& body, const std::string& asset = "")
-      : model(compile(*parse_spec("<mujoco><option timestep=\"0.002\"/><asset>" + asset +
-                                  "</asset><worldbody>" + body + "</worldbody></mujoco>"),
+      : model(compile(*parse_spec("<mujoco><option timestep=\"0.002\"/><asset>" + asset + "</asset><worldbody>" + body +
+                                  "</worldbody></mujoco>"),
                       "small world")),
         data(make_data(*model)),
         scene(*model) {

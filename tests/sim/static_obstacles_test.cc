@@ -1,10 +1,10 @@
 #include "sim/static_obstacles.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <numbers>
 #include <set>
+
+#include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "sim/lidar_scene.h"
@@ -163,9 +163,9 @@ TEST(LowObstacles, ARouteTooShortForThemIsRefusedWithItsLength) {
     scatter_low_obstacles(settings, 1);
     FAIL() << "20 obstacles 3 m apart in 52 m";
   } catch (const InputError& error) {
-    EXPECT_STREQ(
-        error.what(),
-        "low_obstacles.route: length 60.0 m: too short for 20 obstacles with min_spacing_m = 3 and end_clearance_m = 4");
+    EXPECT_STREQ(error.what(),
+                 "low_obstacles.route: length 60.0 m: too short for 20 obstacles with min_spacing_m = 3 and "
+                 "end_clearance_m = 4");
   }
 }
 

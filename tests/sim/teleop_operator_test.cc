@@ -1,9 +1,9 @@
 #include "sim/teleop_operator.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <numbers>
+
+#include <gtest/gtest.h>
 
 #include "core/geometry/angles.h"
 
@@ -17,12 +17,13 @@ struct Driven {
   std::vector<Pose2> marks;
   std::optional<Time> handed_over;
   Pose2 T_world_body;
-  double nearest_m = 1e9;  ///< that it came to `p_watched`
-  double way_back_m = 0.0; ///< driven in reverse
+  double nearest_m = 1e9;   ///< that it came to `p_watched`
+  double way_back_m = 0.0;  ///< driven in reverse
 };
 
-Driven drive(const TeleopRoute& way, const Pose2& start, const TeleopOperatorSettings& settings = {}, double seconds = 120.0,
-             const std::vector<Eigen::Vector2d>& people = {}, const Eigen::Vector2d& p_watched = {0.0, 0.0}) {
+Driven drive(const TeleopRoute& way, const Pose2& start, const TeleopOperatorSettings& settings = {},
+             double seconds = 120.0, const std::vector<Eigen::Vector2d>& people = {},
+             const Eigen::Vector2d& p_watched = {0.0, 0.0}) {
   TeleopOperator person(settings, way, 7);
   Driven driven{.marks = {}, .handed_over = {}, .T_world_body = start};
   TeleopCommand command;
@@ -39,10 +40,8 @@ Driven drive(const TeleopRoute& way, const Pose2& start, const TeleopOperatorSet
 }
 
 TEST(TeleopOperator, MarksWithinTenCentimetresAndThreeDegreesAndHandsOverAtTheEnd) {
-  const Driven driven = drive({{.p_m = {6.0, 0.0}},
-                               {.p_m = {12.0, 2.0}, .is_goal = true, .heading_rad = 1.0},
-                               {.p_m = {4.0, 3.0}}},
-                              {});
+  const Driven driven =
+      drive({{.p_m = {6.0, 0.0}}, {.p_m = {12.0, 2.0}, .is_goal = true, .heading_rad = 1.0}, {.p_m = {4.0, 3.0}}}, {});
   ASSERT_EQ(driven.marks.size(), 1u);
   EXPECT_LT((driven.marks[0].position() - Eigen::Vector2d(12.0, 2.0)).norm(), 0.10);
   EXPECT_LT(std::abs(wrap_angle(driven.marks[0].yaw - 1.0)), to_rad(3.0));
@@ -76,7 +75,8 @@ TEST(TeleopOperator, WaitsAtAMarkWhileTheRobotIsBusy) {
 }
 
 TEST(TeleopOperator, BacksOutOfTheDock) {
-  const Driven driven = drive({{.p_m = {2.0, 0.0}, .is_reverse = true}, {.p_m = {8.0, 0.0}}}, {0.0, 0.0, std::numbers::pi});
+  const Driven driven =
+      drive({{.p_m = {2.0, 0.0}, .is_reverse = true}, {.p_m = {8.0, 0.0}}}, {0.0, 0.0, std::numbers::pi});
   EXPECT_GT(driven.way_back_m, 1.2);
   EXPECT_TRUE(driven.handed_over.has_value());
 }

@@ -1,11 +1,11 @@
 #include "slam/grid_map.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <set>
 #include <utility>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 #include "core/random.h"
 #include "tests/support/pose_near.h"
@@ -169,8 +169,7 @@ TEST(GridMap, FindsSurfaceNearbyAsASearchCellByCellDoes) {
               expected.push_back(map.center_of({c, r}) + Eigen::Vector2d(cell.mean_x_m, cell.mean_y_m));
           }
         }
-        map.for_each_surface_near({col, row}, radius,
-                                  [&](const Eigen::Vector2d& mean, int) { found.push_back(mean); });
+        map.for_each_surface_near({col, row}, radius, [&](const Eigen::Vector2d& mean, int) { found.push_back(mean); });
         const auto by_place = [](const auto& a, const auto& b) {
           return a.y() < b.y() || (a.y() == b.y() && a.x() < b.x());
         };

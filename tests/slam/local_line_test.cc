@@ -1,8 +1,8 @@
 #include "slam/local_line.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "core/geometry/angles.h"
 #include "core/random.h"
@@ -32,8 +32,7 @@ TEST(FitLocalLine, MeasuresThreeCentimetersFromAWallAtAnyAngleToATenthOfAMillime
     const Eigen::Vector2d across(-std::sin(angle), std::cos(angle));
     const auto line = fit_local_line(map, Eigen::Vector2d(0.312, -0.457) + 0.03 * across, 3);
     ASSERT_TRUE(line) << degrees;
-    EXPECT_NEAR(std::abs(line->distance_m(Eigen::Vector2d(0.312, -0.457) + 0.03 * across)), 0.03, 1e-4)
-        << degrees;
+    EXPECT_NEAR(std::abs(line->distance_m(Eigen::Vector2d(0.312, -0.457) + 0.03 * across)), 0.03, 1e-4) << degrees;
     EXPECT_NEAR(std::abs(line->normal_map.dot(across)), 1.0, 1e-3) << degrees;
     EXPECT_GT(line->linearity, 0.99) << degrees;
     EXPECT_LT(line->normal_var_m2, 1e-6) << degrees;

@@ -1,8 +1,8 @@
 #include "slam/map_rendering.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
+
+#include <gtest/gtest.h>
 
 #include "core/random.h"
 #include "tests/support/pose_near.h"
@@ -63,13 +63,11 @@ TEST(RenderMap, ACellThatMoreBeamsPassedThanHitHasMovedOn) {
 TEST(RenderMap, ANoisyWallIsOneCellThickInItsCell) {
   GridMap map(0.05, 100.0);
   const RandomStream noise(1, "test/wall");
-  for (std::uint64_t i = 0; i < 40'000; ++i)
-    map.add_hit({10.0 * noise.uniform(i, 1), 0.48 + 0.02 * noise.normal(i)});
+  for (std::uint64_t i = 0; i < 40'000; ++i) map.add_hit({10.0 * noise.uniform(i, 1), 0.48 + 0.02 * noise.normal(i)});
   const OccupancyGrid grid = render_map(map, 2);
   const Cell wall = grid.geometry().cell_at({0.025, 0.48});
   int in_row = 0;
-  for (int col = 0; col < grid.geometry().width; ++col)
-    in_row += grid.at({col, wall.row}) == kOccupied ? 1 : 0;
+  for (int col = 0; col < grid.geometry().width; ++col) in_row += grid.at({col, wall.row}) == kOccupied ? 1 : 0;
   EXPECT_GE(in_row, 195);  // of 200
   EXPECT_LE(count_of(grid, kOccupied) - in_row, 5);
 }

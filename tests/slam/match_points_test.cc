@@ -1,8 +1,8 @@
 #include "slam/match_points.h"
 
-#include <gtest/gtest.h>
-
 #include <limits>
+
+#include <gtest/gtest.h>
 
 #include "tests/support/pose_near.h"
 
@@ -18,8 +18,7 @@ LevelScan scan_of(const std::vector<Eigen::Vector2f>& ends, bool are_hits = true
 }
 
 TEST(DownsampleScan, NeighborsWithinTheSpacingBecomeTheirMean) {
-  const auto points =
-      downsample_scan(scan_of({{1.0F, 0.0F}, {1.0F, 0.04F}, {1.0F, 0.08F}, {1.0F, 0.2F}}), 0.1, 100);
+  const auto points = downsample_scan(scan_of({{1.0F, 0.0F}, {1.0F, 0.04F}, {1.0F, 0.08F}, {1.0F, 0.2F}}), 0.1, 100);
   ASSERT_EQ(points.size(), 2U);
   EXPECT_THAT(points[0].p_body, VectorNear(Eigen::Vector2d(1.0, 0.04), 1e-6));
   EXPECT_THAT(points[1].p_body, VectorNear(Eigen::Vector2d(1.0, 0.2), 1e-6));
@@ -32,8 +31,7 @@ TEST(DownsampleScan, RangesCountFromTheLidar) {
 }
 
 TEST(DownsampleScan, TakeNoBeamsWithoutEchoAndNoInvalidOnes) {
-  const float nan = std::numeric_limits<float>::quiet_NaN(),
-              infinity = std::numeric_limits<float>::infinity();
+  const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
   EXPECT_TRUE(downsample_scan(scan_of({{1.0F, 0.0F}, {2.0F, 0.0F}}, false), 0.1, 100).empty());
   EXPECT_EQ(downsample_scan(scan_of({{nan, 0.0F}, {1.0F, infinity}, {2.0F, 0.0F}}), 0.1, 100).size(), 1U);
   EXPECT_TRUE(downsample_scan({}, 0.1, 100).empty());
@@ -44,8 +42,7 @@ TEST(DownsampleScan, KeepEveryTenthOfAThousandWhenAHundredAreAllowed) {
   for (int i = 0; i < 1000; ++i) ends.emplace_back(static_cast<float>(i), 0.0F);
   const auto points = downsample_scan(scan_of(ends), 0.1, 100);
   ASSERT_EQ(points.size(), 100U);
-  for (std::size_t i = 0; i < points.size(); ++i)
-    EXPECT_DOUBLE_EQ(points[i].p_body.x(), 10.0 * static_cast<double>(i));
+  for (std::size_t i = 0; i < points.size(); ++i) EXPECT_DOUBLE_EQ(points[i].p_body.x(), 10.0 * static_cast<double>(i));
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
 #include "slam/motion_model.h"
 
-#include <gtest/gtest.h>
-
 #include <numbers>
+
+#include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "core/random.h"
@@ -74,8 +74,7 @@ TEST(ProposalSample, HasTheMomentsOfItsPosterior) {
   for (int i = 0; i < 3; ++i) {
     EXPECT_NEAR(mean[i], 0.0, 4.0 * std::sqrt(P(i, i) / kDraws)) << i;
     for (int j = 0; j < 3; ++j) {
-      EXPECT_NEAR(covariance(i, j), P(i, j),
-                  4.0 * std::sqrt((P(i, i) * P(j, j) + P(i, j) * P(i, j)) / kDraws))
+      EXPECT_NEAR(covariance(i, j), P(i, j), 4.0 * std::sqrt((P(i, i) * P(j, j) + P(i, j) * P(i, j)) / kDraws))
           << i << j;
     }
   }

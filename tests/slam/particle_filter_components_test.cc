@@ -53,7 +53,8 @@ TEST(MakeComponents, EachOfFiveNamesIsItsResampler) {
   const std::vector<double> weights = {0.7, 0.1, 0.1, 0.1};
   const auto same = [&](const char* name, const Resampler& expected) {
     RandomSequence random(RandomStream(1, "test/parts"), 0), again(RandomStream(1, "test/parts"), 0);
-    const std::vector<Offspring> got = make_components({.resampler = name}).resample(weights, random), want = expected(weights, again);
+    const std::vector<Offspring> got = make_components({.resampler = name}).resample(weights, random),
+                                 want = expected(weights, again);
     for (std::size_t i = 0; i < want.size(); ++i) {
       EXPECT_EQ(got[i].parent, want[i].parent) << name;
       EXPECT_EQ(got[i].attractor, want[i].attractor) << name;
@@ -66,7 +67,10 @@ TEST(MakeComponents, EachOfFiveNamesIsItsResampler) {
   same("systematic", resample_systematic);
   same("residual", resample_residual);
   EXPECT_GT(same("low_weight", optimize_low_weights).back().attraction, 0.0);
-  EXPECT_NE(same("stepwise", [](const auto& w, RandomSequence& random) { return resample_stepwise(w, random); }).back().mutation, 0.0);
+  EXPECT_NE(same("stepwise", [](const auto& w, RandomSequence& random) { return resample_stepwise(w, random); })
+                .back()
+                .mutation,
+            0.0);
 }
 
 TEST(MakeComponents, RefusesUnknownNamesAndValuesOutOfRange) {

@@ -1,17 +1,18 @@
 #include "slam/particle_filter.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <memory>
+
+#include <gtest/gtest.h>
 
 #include "slam/swarm/whale.h"
 
 namespace patrol::slam::particle_filter_test {
 namespace {
 
-/// A number that wanders and is measured: x' = a x + b + q w, z = x + r v. All is normal, so that the Kalman filter is exact.
+/// A number that wanders and is measured: x' = a x + b + q w, z = x + r v. All is normal, so that the Kalman filter is
+/// exact.
 struct Walk {
   double a = 0.9, b = 1.0, q = 0.5, r = 0.8;
 };
@@ -22,8 +23,12 @@ class WalkProblem {
   WalkProblem(const Walk& walk, double z, std::vector<double>& states) : walk_(walk), z_(z), states_(states) {}
 
   std::size_t size() const { return states_.size(); }
-  Position sample(std::size_t i, RandomSequence& random) const { return at(walk_.a * states_[i] + walk_.b + walk_.q * random.normal()); }
-  double log_fitness(std::size_t, const Position& position) const { return -0.5 * std::pow((z_ - position(0)) / walk_.r, 2); }
+  Position sample(std::size_t i, RandomSequence& random) const {
+    return at(walk_.a * states_[i] + walk_.b + walk_.q * random.normal());
+  }
+  double log_fitness(std::size_t, const Position& position) const {
+    return -0.5 * std::pow((z_ - position(0)) / walk_.r, 2);
+  }
   double commit(std::size_t i, const Position& position) {
     states_[i] = position(0);
     return log_fitness(i, position);
@@ -58,7 +63,8 @@ Gaussian kalman(const Walk& walk, const Gaussian& before, double z) {
 Gaussian moments_of(const std::vector<double>& states, const std::vector<double>& weights) {
   Gaussian moments{0.0, 0.0};
   for (std::size_t i = 0; i < states.size(); ++i) moments.mean += weights[i] * states[i];
-  for (std::size_t i = 0; i < states.size(); ++i) moments.variance += weights[i] * std::pow(states[i] - moments.mean, 2);
+  for (std::size_t i = 0; i < states.size(); ++i)
+    moments.variance += weights[i] * std::pow(states[i] - moments.mean, 2);
   return moments;
 }
 
@@ -84,14 +90,18 @@ void compare(const ParticleFilterComponents& components, std::size_t particles, 
   }
 }
 
-// Four standard errors. Of a weighted mean they are sqrt(P / N_eff), of a variance sqrt(2 P^2 / N_eff); twice the variance, since the error before comes on top:
-// it is multiplied by (a (1 - gain))^2 < 1 / 4 in each step, and resampling adds P / N.
+// Four standard errors. Of a weighted mean they are sqrt(P / N_eff), of a variance sqrt(2 P^2 / N_eff); twice the
+// variance, since the error before comes on top: it is multiplied by (a (1 - gain))^2 < 1 / 4 in each step, and
+// resampling adds P / N.
 TEST(ParticleFilter, FiveThousandParticlesAgreeWithTheKalmanFilter) {
   for (const char* resampler : {"multinomial", "systematic", "residual"}) {
-    compare(make_components({.resampler = resampler}), 5000, [&](int step, const Gaussian& exact, const Gaussian& particles, double n) {
-      EXPECT_NEAR(particles.mean, exact.mean, 4.0 * std::sqrt(2.0 * exact.variance / n)) << resampler << ", step " << step;
-      EXPECT_NEAR(particles.variance, exact.variance, 4.0 * exact.variance * std::sqrt(2.0 * 2.0 / n)) << resampler << ", step " << step;
-    });
+    compare(make_components({.resampler = resampler}), 5000,
+            [&](int step, const Gaussian& exact, const Gaussian& particles, double n) {
+              EXPECT_NEAR(particles.mean, exact.mean, 4.0 * std::sqrt(2.0 * exact.variance / n))
+                  << resampler << ", step " << step;
+              EXPECT_NEAR(particles.variance, exact.variance, 4.0 * exact.variance * std::sqrt(2.0 * 2.0 / n))
+                  << resampler << ", step " << step;
+            });
   }
 }
 
@@ -129,7 +139,8 @@ Renewal renew(std::vector<double> log_weights, double threshold) {
   RandomSequence random(RandomStream(1, "test/filter"), 0);
   ParticleFilterComponents components;
   components.resample_threshold = threshold;
-  const bool is_renewed = resample_if_depleted(problem, components, normalized_weights(log_weights), random, log_weights);
+  const bool is_renewed =
+      resample_if_depleted(problem, components, normalized_weights(log_weights), random, log_weights);
   return {is_renewed, problem.num_renewals, states, log_weights};
 }
 

@@ -1,10 +1,10 @@
 #include "slam/planar_scan.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <limits>
 #include <numbers>
+
+#include <gtest/gtest.h>
 
 #include "tests/support/pose_near.h"
 
@@ -13,7 +13,8 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// Beams to the right, ahead and to the left of a lidar that stands 0.5 m before the body and looks a quarter turn to the left.
+/// Beams to the right, ahead and to the left of a lidar that stands 0.5 m before the body and looks a quarter turn to
+/// the left.
 RecordedScan make_scan(const std::vector<float>& ranges_m) {
   RecordedScan recorded;
   recorded.scan.stamp = from_seconds(3.5);
@@ -41,13 +42,15 @@ TEST(PlanarScan, BeamsAreInTheFrameOfTheFirstOne) {
   recorded.T_begin_end = {0.4, 0.0, 0.2};
   const LevelScan scan = planar_scan(recorded, {});
   EXPECT_THAT(scan.beams[0].end_m, test::VectorNear(Eigen::Vector2f(1.5F, 0.0F), 1e-6));
-  const Eigen::Vector2d second = Pose2{0.2, 0.0, 0.1} * Eigen::Vector2d(0.5, 2.0), third = recorded.T_begin_end * Eigen::Vector2d(-2.5, 0.0);
+  const Eigen::Vector2d second = Pose2{0.2, 0.0, 0.1} * Eigen::Vector2d(0.5, 2.0),
+                        third = recorded.T_begin_end * Eigen::Vector2d(-2.5, 0.0);
   EXPECT_THAT(scan.beams[1].end_m, test::VectorNear(Eigen::Vector2f(second.cast<float>()), 1e-6));
   EXPECT_THAT(scan.beams[2].end_m, test::VectorNear(Eigen::Vector2f(third.cast<float>()), 1e-6));
 }
 
 TEST(PlanarScan, FarReturnsClearUpToTheLimitAndInvalidOrNearOnesAreDropped) {
-  const LevelScan scan = planar_scan(make_scan({50.0F, std::numeric_limits<float>::quiet_NaN(), 0.01F}), {.max_range_m = 10.0});
+  const LevelScan scan =
+      planar_scan(make_scan({50.0F, std::numeric_limits<float>::quiet_NaN(), 0.01F}), {.max_range_m = 10.0});
   ASSERT_EQ(scan.beams.size(), 1U);
   EXPECT_FALSE(scan.beams[0].is_hit);
   EXPECT_THAT(scan.beams[0].end_m, test::VectorNear(Eigen::Vector2f(10.5F, 0.0F), 1e-5));
@@ -55,7 +58,8 @@ TEST(PlanarScan, FarReturnsClearUpToTheLimitAndInvalidOrNearOnesAreDropped) {
 
 TEST(PlanarScan, ABeamWithoutReturnIsFreeOnlyAsFarAsIsAskedFor) {
   EXPECT_TRUE(planar_scan(make_scan({kInfinity, kInfinity, -kInfinity}), {}).beams.empty());
-  const LevelScan scan = planar_scan(make_scan({kInfinity, kInfinity, -kInfinity}), {.no_return_clearing_range_m = 6.0});
+  const LevelScan scan =
+      planar_scan(make_scan({kInfinity, kInfinity, -kInfinity}), {.no_return_clearing_range_m = 6.0});
   ASSERT_EQ(scan.beams.size(), 2U);
   EXPECT_FALSE(scan.beams[0].is_hit);
   EXPECT_THAT(scan.beams[0].end_m, test::VectorNear(Eigen::Vector2f(6.5F, 0.0F), 1e-6));

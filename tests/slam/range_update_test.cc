@@ -1,8 +1,8 @@
 #include "slam/range_update.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "core/random.h"
 
@@ -57,7 +57,9 @@ TEST(RangeUpdate, InnovationsOf500RangesAreConsistent) {
   constexpr int kCount = 500;
   for (std::uint64_t i = 0; i < kCount; ++i) {
     const Pose2 truth{1.0, -2.0, 0.4};
-    PoseGaussian now = belief(perturbed(truth, {0.2 * stream.normal(i, 0), 0.2 * stream.normal(i, 1), 0.02 * stream.normal(i, 2)}), 0.2, 0.02);
+    PoseGaussian now =
+        belief(perturbed(truth, {0.2 * stream.normal(i, 0), 0.2 * stream.normal(i, 1), 0.02 * stream.normal(i, 2)}),
+               0.2, 0.02);
     RangeMeasurement measurement = measurement_at(truth, {});
     measurement.range_m += 0.15 * stream.normal(i, 3);
     const RangeInnovation innovation = range_innovation(now, {}, measurement, {.range_std_m = 0.15});

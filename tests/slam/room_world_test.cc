@@ -1,12 +1,11 @@
 #include "tests/support/room_world.h"
 
-#include <gtest/gtest.h>
-
-#include <Eigen/LU>
-
 #include <cmath>
 #include <limits>
 #include <numbers>
+
+#include <Eigen/LU>
+#include <gtest/gtest.h>
 
 namespace patrol::test::room_world_test {
 namespace {

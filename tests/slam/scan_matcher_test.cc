@@ -1,8 +1,7 @@
 #include "slam/scan_matcher.h"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Eigenvalues>
+#include <gtest/gtest.h>
 
 #include "core/geometry/angles.h"
 #include "slam/match_points.h"
@@ -69,8 +68,7 @@ TEST(MatchScan, RecoversTenCentimetersAndThreeDegreesToFiveMillimetersAndATenthO
 TEST(MatchScan, CovarianceIsConsistentToAFactorOfTwo) {
   const RoomWorld room = make_room();
   const GridMap map = make_map(room);
-  const ScanMatcherSettings settings{
-      .max_points = 400, .point_spacing_m = 0.0, .point_std_m = kNoisyLidar.range_std_m};
+  const ScanMatcherSettings settings{.max_points = 400, .point_spacing_m = 0.0, .point_std_m = kNoisyLidar.range_std_m};
   double squared = 0.0;  // Mahalanobis distance: 3 on average if the covariance is right
   constexpr int kLooks = 40;
   for (std::uint64_t i = 0; i < kLooks; ++i) {
@@ -118,8 +116,8 @@ TEST(MatchScan, FarOffThereIsNoMatchRatherThanAWrongOne) {
   const RoomWorld room = make_room();
   ScanMatcherSettings settings;
   settings.min_inlier_ratio = 0.9;
-  EXPECT_FALSE(match_scan(make_map(room), look(room, kTruth),
-                          {kTruth.x + 0.7, kTruth.y - 0.6, kTruth.yaw + 0.5}, std::nullopt, settings));
+  EXPECT_FALSE(match_scan(make_map(room), look(room, kTruth), {kTruth.x + 0.7, kTruth.y - 0.6, kTruth.yaw + 0.5},
+                          std::nullopt, settings));
 }
 
 TEST(MatchScan, AThirdOfThePointsOnAPersonMovesItByLessThanFiveMillimeters) {
@@ -127,8 +125,7 @@ TEST(MatchScan, AThirdOfThePointsOnAPersonMovesItByLessThanFiveMillimeters) {
   const GridMap map = make_map(room);
   RoomWorld crowded = room;
   crowded.add_wall(1.2, -0.8, 1.9, 1.6);  // not in the map
-  const auto match =
-      match_scan(map, look(crowded, kTruth), {kTruth.x + 0.05, kTruth.y, kTruth.yaw}, std::nullopt, {});
+  const auto match = match_scan(map, look(crowded, kTruth), {kTruth.x + 0.05, kTruth.y, kTruth.yaw}, std::nullopt, {});
   ASSERT_TRUE(match);
   EXPECT_LT(match->inlier_ratio, 0.95);
   EXPECT_THAT(match->T_map_body, Pose2Near(kTruth, 0.005, 0.1 * kDegree));

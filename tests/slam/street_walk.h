@@ -5,8 +5,8 @@
 #include <numbers>
 #include <vector>
 
-#include "core/geometry/angles.h"
 #include "core/frames.h"
+#include "core/geometry/angles.h"
 #include "core/messages.h"
 #include "core/random.h"
 #include "core/time.h"
@@ -14,8 +14,8 @@
 
 namespace patrol::test {
 
-/// A right-angle street of 60 m x 100 m: along x = 10 from y = 0, then along y = 77 to x = 60, both 14 m between the house
-/// fronts, with recessed doors, alleys, a ragged hedge, lamp posts, trees, parked cars and bins.
+/// A right-angle street of 60 m x 100 m: along x = 10 from y = 0, then along y = 77 to x = 60, both 14 m between the
+/// house fronts, with recessed doors, alleys, a ragged hedge, lamp posts, trees, parked cars and bins.
 inline RoomWorld make_street() {
   RoomWorld street;
   const RandomStream layout(1, "test/street");
@@ -28,17 +28,19 @@ inline RoomWorld make_street() {
     for (double s = 0.0; s < length - 5.0;) {
       const double width = std::min(uniform(7.0, 11.0), length - s), set_back = uniform(-0.4, 0.4);
       const double door = uniform(1.5, width - 3.0), recess = uniform(0.15, 0.4), window = uniform(0.05, 0.1);
-      const auto at = [&](double a, double o) -> Eigen::Vector2d { return from + (s + a) * along + (o + set_back) * out; };
-      street.add_polyline({at(0, -depth), at(0, 0), at(door, 0), at(door, -recess), at(door + 1.0, -recess), at(door + 1.0, 0),
-                           at(width - 1.2, 0), at(width - 1.2, -window), at(width - 0.3, -window), at(width - 0.3, 0),
-                           at(width, 0), at(width, -depth)});
+      const auto at = [&](double a, double o) -> Eigen::Vector2d {
+        return from + (s + a) * along + (o + set_back) * out;
+      };
+      street.add_polyline({at(0, -depth), at(0, 0), at(door, 0), at(door, -recess), at(door + 1.0, -recess),
+                           at(door + 1.0, 0), at(width - 1.2, 0), at(width - 1.2, -window), at(width - 0.3, -window),
+                           at(width - 0.3, 0), at(width, 0), at(width, -depth)});
       s += width + uniform(0.8, 2.0);
     }
   };
-  add_row({3, 0}, {0, 1}, {1, 0}, 84);     // west side
-  add_row({17, 0}, {0, 1}, {-1, 0}, 70);   // east side
-  add_row({3, 84}, {1, 0}, {0, -1}, 57);   // north side
-  add_row({17, 70}, {1, 0}, {0, 1}, 43);   // south side
+  add_row({3, 0}, {0, 1}, {1, 0}, 84);    // west side
+  add_row({17, 0}, {0, 1}, {-1, 0}, 70);  // east side
+  add_row({3, 84}, {1, 0}, {0, -1}, 57);  // north side
+  add_row({17, 70}, {1, 0}, {0, 1}, 43);  // south side
   street.add_wall(3, -2, 17, -2).add_wall(61, 70, 61, 84);
 
   for (double s = 6.0; s < 70.0; s += 14.0) street.add_post(13.6, s, 0.08).add_post(6.3, s + 7.0, 0.15);
@@ -84,12 +86,12 @@ struct WalkOptions {
   double speed_mps = 0.8;
   double north_m = 65.0;  ///< out and back
   double east_m = 30.0;
-  double odometry_scale = 0.02;       ///< legs overrate the way
+  double odometry_scale = 0.02;  ///< legs overrate the way
   double odometry_drift_degpmin = 1.5;
 };
 
-/// North, a bend, east, a stop of five seconds, a turn in place, and the same way back. The trunk sways with the gait. Odometry
-/// has a scale error, a constant yaw drift, sideways slip and white noise.
+/// North, a bend, east, a stop of five seconds, a turn in place, and the same way back. The trunk sways with the gait.
+/// Odometry has a scale error, a constant yaw drift, sideways slip and white noise.
 inline std::vector<WalkStep> make_walk(const WalkOptions& options, std::uint64_t seed) {
   const RandomStream noise(seed, "test/odometry");
   const double pi = std::numbers::pi, radius = 4.0, turn_rate = 0.8;
@@ -113,7 +115,8 @@ inline std::vector<WalkStep> make_walk(const WalkOptions& options, std::uint64_t
       pose = on_line(std::max(0.0, length - options.speed_mps * std::max(0.0, t - walk_s - stop_s - turn_s)));
       pose.yaw = wrap_angle(pose.yaw + turned);
     }
-    if (walks && t > 1.0) pose = pose * Pose2{0.0, 0.01 * std::sin(2 * pi * 1.7 * t), 0.02 * std::sin(2 * pi * 2.5 * t)};
+    if (walks && t > 1.0)
+      pose = pose * Pose2{0.0, 0.01 * std::sin(2 * pi * 1.7 * t), 0.02 * std::sin(2 * pi * 2.5 * t)};
     return pose;
   };
 

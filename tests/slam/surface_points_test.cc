@@ -34,7 +34,8 @@ TEST(SurfacePoints, ASingleHitIsNoSurface) {
 
 TEST(FreeSpaceNormals, AWallNormalPointsToTheObservers) {
   const GridMap map = wall_from_below();
-  const std::vector<Eigen::Vector2d> points = surface_points(map), free_space_normals = estimate_free_space_normals(points, map, 0.3);
+  const std::vector<Eigen::Vector2d> points = surface_points(map),
+                                     free_space_normals = estimate_free_space_normals(points, map, 0.3);
   for (std::size_t i = 3; i + 3 < points.size(); ++i) {
     EXPECT_NEAR(free_space_normals[i].norm(), 1.0, 1e-9);
     EXPECT_LT(free_space_normals[i].y(), -0.99) << points[i].transpose();

@@ -15,8 +15,11 @@ using ::testing::ThrowsMessage;
 
 Route route_with_a_station() {
   Route route;
-  route.stations = {
-      {.number = 1, .name = "here", .type = StationType::kInspect, .T_route_body = {}, .p_route_target = {2.0, 0.0, 0.3}}};
+  route.stations = {{.number = 1,
+                     .name = "here",
+                     .type = StationType::kInspect,
+                     .T_route_body = {},
+                     .p_route_target = {2.0, 0.0, 0.3}}};
   return route;
 }
 

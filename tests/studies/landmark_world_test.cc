@@ -1,9 +1,9 @@
 #include "studies/landmark_world.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <numbers>
+
+#include <gtest/gtest.h>
 
 #include "core/geometry/angles.h"
 #include "tests/support/moments.h"
@@ -13,7 +13,8 @@ namespace {
 
 double distance_m(const LandmarkRun& run) {
   double way = 0.0;
-  for (std::size_t k = 1; k < run.truth.size(); ++k) way += (run.truth[k].position() - run.truth[k - 1].position()).norm();
+  for (std::size_t k = 1; k < run.truth.size(); ++k)
+    way += (run.truth[k].position() - run.truth[k - 1].position()).norm();
   return way;
 }
 
@@ -50,7 +51,8 @@ TEST(GardenWorld, EveryObservationIsOfALandmarkWithin10MetersAndErrsByHalfAMeter
   test::Moments range, bearing;
   for (std::size_t k = 0; k < run.observations.size(); ++k) {
     for (const RangeBearing& sight : run.observations[k]) {
-      const PredictedObservation truth = predict_observation(run.truth[k], world.landmarks_m[static_cast<std::size_t>(sight.landmark)]);
+      const PredictedObservation truth =
+          predict_observation(run.truth[k], world.landmarks_m[static_cast<std::size_t>(sight.landmark)]);
       EXPECT_LE(truth.observation.x(), 10.0);
       range.add(sight.range_m - truth.observation.x());
       bearing.add(wrap_angle(sight.bearing_rad - truth.observation.y()));
@@ -89,12 +91,14 @@ TEST(CampusWorld, ThePathStaysWithin100By80MetersAndIsClockwise) {
 }
 
 TEST(LandmarkWorld, TheSameSeedGivesTheSameRunAndSwitchingTheBiasOffChangesNoOtherSample) {
-  const LandmarkRun with = simulate(campus_world(true, 3.0, 800), 7), without = simulate(campus_world(false, 3.0, 800), 7);
+  const LandmarkRun with = simulate(campus_world(true, 3.0, 800), 7),
+                    without = simulate(campus_world(false, 3.0, 800), 7);
   for (std::size_t k = 0; k < with.odometry.size(); ++k) {
     EXPECT_NEAR(with.odometry[k].x() - without.odometry[k].x(), 0.3, 1e-12);
     EXPECT_NEAR(with.odometry[k].y() - without.odometry[k].y(), 2.0 * kDegree, 1e-12);
     ASSERT_EQ(with.observations[k].size(), without.observations[k].size());
-    for (std::size_t i = 0; i < with.observations[k].size(); ++i) EXPECT_EQ(with.observations[k][i].range_m, without.observations[k][i].range_m);
+    for (std::size_t i = 0; i < with.observations[k].size(); ++i)
+      EXPECT_EQ(with.observations[k][i].range_m, without.observations[k][i].range_m);
   }
 }
 

@@ -1,9 +1,9 @@
 #include "studies/study_results.h"
 
+#include <limits>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include <limits>
 
 #include "io/files/csv.h"
 
@@ -18,13 +18,20 @@ constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 /// Two methods, of which the second is always 1 better, with noise that both share.
 Study two_methods() {
   Study study{.name = "two", .title = "Two methods", .source = "a paper", .conditions = "None."};
-  study.metrics = {{.name = "RMSE", .unit = "m", .is_compared = true}, {.name = "NEES", .unit = ""}, {.name = "time", .unit = "s", .is_processor_time = true}};
-  study.variants = {{.world = "flat", .method = "old", .particles = 10, .reference = 0, .published = {3.5}}, {.world = "flat", .method = "new", .particles = 10, .reference = 0}};
+  study.metrics = {{.name = "RMSE", .unit = "m", .is_compared = true},
+                   {.name = "NEES", .unit = ""},
+                   {.name = "time", .unit = "s", .is_processor_time = true}};
+  study.variants = {{.world = "flat", .method = "old", .particles = 10, .reference = 0, .published = {3.5}},
+                    {.world = "flat", .method = "new", .particles = 10, .reference = 0}};
   study.illustrate = [](std::uint64_t) { return std::vector<report::Section>{}; };
   return study;
 }
 
-std::vector<StudySample> samples() { return {{{2.0, 5.0, 0.1}, {1.0, kNothing, 0.2}}, {{4.0, 7.0, 0.3}, {3.1, kNothing, 0.4}}, {{6.0, 9.0, 0.5}, {4.9, kNothing, 0.6}}}; }
+std::vector<StudySample> samples() {
+  return {{{2.0, 5.0, 0.1}, {1.0, kNothing, 0.2}},
+          {{4.0, 7.0, 0.3}, {3.1, kNothing, 0.4}},
+          {{6.0, 9.0, 0.5}, {4.9, kNothing, 0.6}}};
+}
 
 TEST(StudyResults, DifferencesArePairedBySeedSoThatSharedNoiseFallsOut) {
   const StudyResults results = summarize(two_methods(), samples());
@@ -40,7 +47,8 @@ TEST(StudyResults, DifferencesArePairedBySeedSoThatSharedNoiseFallsOut) {
 
 TEST(StudyResults, ZeroWithinTheIntervalIsNoDifferenceAndTheReferenceIsNotCompared) {
   std::vector<StudySample> level = samples();
-  for (std::size_t seed = 0; seed < level.size(); ++seed) level[seed][1][0] = level[seed][0][0] + (seed == 0 ? 0.1 : -0.05);
+  for (std::size_t seed = 0; seed < level.size(); ++seed)
+    level[seed][1][0] = level[seed][0][0] + (seed == 0 ? 0.1 : -0.05);
   const StudyResults results = summarize(two_methods(), level);
   EXPECT_EQ(verdict_of(results[1][0]), "no difference");
   EXPECT_EQ(verdict_of(results[0][0]), "");

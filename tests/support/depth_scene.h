@@ -1,7 +1,5 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -9,13 +7,16 @@
 #include <limits>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "core/frames.h"
 #include "core/random.h"
 #include "core/sensors/registry.h"
 
 namespace patrol::test {
 
-/// Ground of any height and boxes on it, seen by a depth camera of 80 by 60 pixels, 74 by 59 degrees, no noise of its own.
+/// Ground of any height and boxes on it, seen by a depth camera of 80 by 60 pixels, 74 by 59 degrees, no noise of its
+/// own.
 class DepthScene {
  public:
   using Height = std::function<double(double x, double y)>;
@@ -28,7 +29,13 @@ class DepthScene {
   double ground_m(double x, double y) const { return ground_m_(x, y); }
 
   DepthImage look(const Pose3& T_world_camera, Time stamp = {}) const {
-    DepthImage image{.stamp = stamp, .width = 80, .height = 60, .fx_px = 53.0, .fy_px = 53.0, .cx_px = 39.5, .cy_px = 29.5,
+    DepthImage image{.stamp = stamp,
+                     .width = 80,
+                     .height = 60,
+                     .fx_px = 53.0,
+                     .fy_px = 53.0,
+                     .cx_px = 39.5,
+                     .cy_px = 29.5,
                      .depth_mm = {}};
     for (int row = 0; row < image.height; ++row) {
       for (int col = 0; col < image.width; ++col) {

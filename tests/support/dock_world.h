@@ -6,7 +6,8 @@
 
 namespace patrol::test {
 
-/// A post 0.5 m wide with a keel to the robot, in the docked body's frame: its nearest part is 0.65 m ahead of the body.
+/// A post 0.5 m wide with a keel to the robot, in the docked body's frame: its nearest part is 0.65 m ahead of the
+/// body.
 inline std::vector<Eigen::Vector2d> make_dock_profile() {
   return {{0.9, -0.25}, {0.75, -0.25}, {0.75, -0.1}, {0.65, 0.0}, {0.75, 0.1}, {0.75, 0.25}, {0.9, 0.25}};
 }

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <Eigen/Core>
-#include <Eigen/Geometry>
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -10,16 +7,19 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/angles.h"
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
 #include "core/frames.h"
+#include "core/geometry/angles.h"
 #include "core/random.h"
 #include "core/sensors/registry.h"
 #include "core/tunnel_lining.h"
 
 namespace patrol::test {
 
-/// A lined tunnel for a panoramic scanner, in the route's frame with z = 0 at the invert: the analytic lining, whose rings can be
-/// moved, level ground, walls across it at both ends, and boxes that stand along the tunnel.
+/// A lined tunnel for a panoramic scanner, in the route's frame with z = 0 at the invert: the analytic lining, whose
+/// rings can be moved, level ground, walls across it at both ends, and boxes that stand along the tunnel.
 struct LinedTunnel {
   struct Box {
     Eigen::Vector3d low, high;  ///< along x of the tunnel at chainage 0
@@ -37,11 +37,12 @@ struct LinedTunnel {
   double begin_m = -30.0, end_m = 160.0;  ///< of the walls across
   std::function<double(int ring, double clock_deg)> inward_m = [](int, double) { return 0.0; };
 
-  /// Boxes beside the wall as they stand in a tunnel: cabinets every 10 m on the right, signs every 14 m on the left, a lamp
-  /// every 8 m under the crown; none of them at equal distances.
+  /// Boxes beside the wall as they stand in a tunnel: cabinets every 10 m on the right, signs every 14 m on the left, a
+  /// lamp every 8 m under the crown; none of them at equal distances.
   LinedTunnel& furnish() {
     for (int i = 0; i < 16; ++i) {
-      const double s = 4.0 + 10.0 * i + 1.3 * std::sin(2.1 * i), t = 2.0 + 14.0 * i + 1.7 * std::sin(1.3 * i), u = 8.0 * i + 0.9 * std::sin(i);
+      const double s = 4.0 + 10.0 * i + 1.3 * std::sin(2.1 * i), t = 2.0 + 14.0 * i + 1.7 * std::sin(1.3 * i),
+                   u = 8.0 * i + 0.9 * std::sin(i);
       boxes.push_back({{s, -5.1, 0.3}, {s + 0.6, -4.7, 1.8}});
       boxes.push_back({{t, 4.9, 2.5}, {t + 0.1, 5.4, 3.1}});
       boxes.push_back({{u, -0.1, 7.6}, {u + 1.2, 0.1, 7.75}});
@@ -62,7 +63,8 @@ struct LinedTunnel {
     if (towards.z() < 0.0) take(-from.z() / towards.z());
     if (towards.x() != 0.0) take(((towards.x() > 0.0 ? end_m : begin_m) - from.x()) / towards.x());
     for (const Box& box : boxes) {
-      const Eigen::Array3d a = (box.low - from).array() / towards.array(), b = (box.high - from).array() / towards.array();
+      const Eigen::Array3d a = (box.low - from).array() / towards.array(),
+                           b = (box.high - from).array() / towards.array();
       const double in = a.min(b).maxCoeff(), out = a.max(b).minCoeff();
       if (in < out) take(in);
     }
@@ -91,7 +93,8 @@ struct LinedTunnel {
         const Eigen::Vector3d ray = ray_to(a + options.angle_std_rad * draw[1], e + options.angle_std_rad * draw[2]);
         const double range = range_m(T_route_scanner.position, T_route_scanner.rotation * ray);
         if (!(range < options.end_m)) continue;
-        const Eigen::Vector3f p = ((range + options.range_offset_m + options.range_std_m * draw[0]) * ray_to(a, e)).cast<float>();
+        const Eigen::Vector3f p =
+            ((range + options.range_offset_m + options.range_std_m * draw[0]) * ray_to(a, e)).cast<float>();
         scan.points.push_back({p.x(), p.y(), p.z(), 100.0F});
       }
     }
@@ -100,14 +103,16 @@ struct LinedTunnel {
 
  private:
   static Eigen::Vector3d ray_to(double azimuth_rad, double elevation_rad) {
-    return {std::cos(elevation_rad) * std::cos(azimuth_rad), std::cos(elevation_rad) * std::sin(azimuth_rad), std::sin(elevation_rad)};
+    return {std::cos(elevation_rad) * std::cos(azimuth_rad), std::cos(elevation_rad) * std::sin(azimuth_rad),
+            std::sin(elevation_rad)};
   }
 
   /// How far inside the lining a point is, radially.
   double inside_m(const Eigen::Vector3d& p) const {
     const TunnelCoordinates place = lining.to_tunnel_coordinates(p);
     const double clock_deg = lining.clock_deg(place);
-    return lining.radius_at(clock_deg) - inward_m(lining.ring_at(place.chainage_m), clock_deg) - std::hypot(place.left_m, place.height_m - lining.crown_center_m);
+    return lining.radius_at(clock_deg) - inward_m(lining.ring_at(place.chainage_m), clock_deg) -
+           std::hypot(place.left_m, place.height_m - lining.crown_center_m);
   }
   /// In steps of about the way to the wall, then halved about it.
   double lining_range_m(const Eigen::Vector3d& from, const Eigen::Vector3d& towards, double limit_m) const {

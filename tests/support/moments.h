@@ -9,8 +9,7 @@ namespace patrol::test {
 /// Mean, spread and extremes of a stream of numbers.
 struct Moments {
   double sum = 0.0, squares = 0.0;
-  double smallest = std::numeric_limits<double>::infinity(),
-         largest = -std::numeric_limits<double>::infinity();
+  double smallest = std::numeric_limits<double>::infinity(), largest = -std::numeric_limits<double>::infinity();
   int count = 0;
 
   void add(double value) {

@@ -1,10 +1,9 @@
 #pragma once
 
-#include <gmock/gmock.h>
+#include <ostream>
 
 #include <Eigen/Core>
-
-#include <ostream>
+#include <gmock/gmock.h>
 
 #include "core/frames.h"
 
@@ -15,8 +14,8 @@ inline void PrintTo(const Pose2& pose, std::ostream* out) {
   *out << '(' << pose.x << ", " << pose.y << ", " << pose.yaw << " rad)";
 }
 inline void PrintTo(const Pose3& pose, std::ostream* out) {
-  *out << '(' << pose.position.transpose() << "; " << pose.rotation.w() << ' '
-       << pose.rotation.vec().transpose() << ')';
+  *out << '(' << pose.position.transpose() << "; " << pose.rotation.w() << ' ' << pose.rotation.vec().transpose()
+       << ')';
 }
 
 }  // namespace patrol
@@ -36,8 +35,8 @@ MATCHER_P2(VectorNear, expected, tol,
 }
 
 MATCHER_P3(Pose2Near, expected, tol_m, tol_rad,
-           "is within " + ::testing::PrintToString(tol_m) + " m and " + ::testing::PrintToString(tol_rad) +
-               " rad of " + ::testing::PrintToString(expected)) {
+           "is within " + ::testing::PrintToString(tol_m) + " m and " + ::testing::PrintToString(tol_rad) + " rad of " +
+               ::testing::PrintToString(expected)) {
   const double distance_m = (arg.position() - expected.position()).norm();
   const double angle_rad = std::abs(wrap_angle(arg.yaw - expected.yaw));
   *result_listener << "which is " << distance_m << " m and " << angle_rad << " rad away";
@@ -45,8 +44,8 @@ MATCHER_P3(Pose2Near, expected, tol_m, tol_rad,
 }
 
 MATCHER_P3(Pose3Near, expected, tol_m, tol_rad,
-           "is within " + ::testing::PrintToString(tol_m) + " m and " + ::testing::PrintToString(tol_rad) +
-               " rad of " + ::testing::PrintToString(expected)) {
+           "is within " + ::testing::PrintToString(tol_m) + " m and " + ::testing::PrintToString(tol_rad) + " rad of " +
+               ::testing::PrintToString(expected)) {
   const double distance_m = (arg.position - expected.position).norm();
   const double angle_rad = angle_between_rad(arg.rotation, expected.rotation);
   *result_listener << "which is " << distance_m << " m and " << angle_rad << " rad away";

@@ -1,13 +1,13 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <numbers>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "core/frames.h"
 #include "core/messages.h"

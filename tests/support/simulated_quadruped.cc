@@ -67,8 +67,7 @@ void WalkingRobot::advance() {
 }
 
 WalkReport WalkingRobot::walk(double vx_mps, double vy_mps, double yaw_rate_radps, double duration_s) {
-  const VelocityCommand command{
-      .stamp = {}, .vx_mps = vx_mps, .vy_mps = vy_mps, .yaw_rate_radps = yaw_rate_radps};
+  const VelocityCommand command{.stamp = {}, .vx_mps = vx_mps, .vy_mps = vy_mps, .yaw_rate_radps = yaw_rate_radps};
   const Pose2 start = to_pose2(T_world_body());
   const auto ticks = static_cast<int>(std::lround(duration_s / model_.physics->opt.timestep));
   WalkReport report;
@@ -90,8 +89,7 @@ WalkReport WalkingRobot::walk(double vx_mps, double vy_mps, double yaw_rate_radp
     pitch.add(-std::asin(R(2, 0)));
     report.max_tilt_rad = std::max(report.max_tilt_rad, std::acos(std::min(1.0, R(2, 2))));
     report.min_height_m = std::min(report.min_height_m, pose.position.z());
-    report.max_torque_nm =
-        std::max(report.max_torque_nm, Eigen::Map<JointTorques>(data_->ctrl).cwiseAbs().maxCoeff());
+    report.max_torque_nm = std::max(report.max_torque_nm, Eigen::Map<JointTorques>(data_->ctrl).cwiseAbs().maxCoeff());
     error_x.add(controller_.trunk().velocity_mps.x() - velocity.x());
     error_y.add(controller_.trunk().velocity_mps.y() - velocity.y());
     for (int leg = 0; leg < kNumLegs; ++leg) {

@@ -9,9 +9,9 @@
 #include "core/messages.h"
 #include "core/robot_description.h"
 #include "core/sensors/registry.h"
+#include "sim/collision_culler.h"
 #include "sim/locomotion/quadruped_controller.h"
 #include "sim/model_assembly.h"
-#include "sim/collision_culler.h"
 #include "sim/sensors/foot_contact.h"
 #include "sim/sensors/imu.h"
 #include "sim/sensors/joint_encoders.h"
@@ -51,8 +51,7 @@ class WalkingRobot {
   /// `world` is MJCF.
   explicit WalkingRobot(const std::string& world, const Pose2& T_world_start = {}, std::uint64_t seed = 1,
                         const LocomotionSettings& settings = {});
-  explicit WalkingRobot(AssembledModel model, std::uint64_t seed = 1,
-                        const LocomotionSettings& settings = {});
+  explicit WalkingRobot(AssembledModel model, std::uint64_t seed = 1, const LocomotionSettings& settings = {});
 
   WalkReport walk(double vx_mps, double vy_mps, double yaw_rate_radps, double duration_s);
   WalkReport stand(double duration_s) { return walk(0.0, 0.0, 0.0, duration_s); }

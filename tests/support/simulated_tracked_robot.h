@@ -8,9 +8,9 @@
 #include "core/messages.h"
 #include "core/robot_description.h"
 #include "core/sensors/registry.h"
+#include "sim/collision_culler.h"
 #include "sim/locomotion/track_drive.h"
 #include "sim/model_assembly.h"
-#include "sim/collision_culler.h"
 #include "sim/sensors/hall_sensors.h"
 #include "sim/sensors/imu.h"
 
@@ -23,11 +23,11 @@ RobotDescription tracked_description();
 
 /// How a drive went, by the simulator's truth and by the robot's own counters.
 struct DriveReport {
-  Pose2 moved;                   ///< end in the start's frame; the yaw is unwrapped
+  Pose2 moved;  ///< end in the start's frame; the yaw is unwrapped
   double climbed_m = 0.0;
-  double left_belt_m = 0.0;      ///< by ticks
+  double left_belt_m = 0.0;  ///< by ticks
   double right_belt_m = 0.0;
-  double mean_left_nm = 0.0;     ///< of the motors' torques
+  double mean_left_nm = 0.0;  ///< of the motors' torques
   double mean_right_nm = 0.0;
   double max_tilt_rad = 0.0;
   double mean_contacts = 0.0;
@@ -38,9 +38,9 @@ struct DriveReport {
 class TrackedRobot {
  public:
   /// `world` is MJCF. The robot has settled when this returns.
-  explicit TrackedRobot(const std::string& world, const Pose2& T_world_start = {}, const TrackDriveSettings& settings = {},
-                        const RobotDescription& robot = tracked_description(), std::uint64_t seed = 1,
-                        bool uses_nearby_scenery = true);
+  explicit TrackedRobot(const std::string& world, const Pose2& T_world_start = {},
+                        const TrackDriveSettings& settings = {}, const RobotDescription& robot = tracked_description(),
+                        std::uint64_t seed = 1, bool uses_nearby_scenery = true);
 
   DriveReport drive(double vx_mps, double yaw_rate_radps, double duration_s);
   DriveReport stand(double duration_s) { return drive(0.0, 0.0, duration_s); }

@@ -6,8 +6,8 @@
 
 namespace patrol::test {
 
-/// Ten seconds along x at 1 m/s, for whom the estimate, 10 cm to the left, is a map that starts at (5, 6) in world; met its one
-/// expectation.
+/// Ten seconds along x at 1 m/s, for whom the estimate, 10 cm to the left, is a map that starts at (5, 6) in world; met
+/// its one expectation.
 inline app::RunContents small_run() {
   app::RunContents run;
   run.directory = {"absent"};
@@ -27,7 +27,8 @@ inline app::RunContents small_run() {
   run.record.map = OccupancyGrid(geometry, kFree);
   for (int col = 0; col < 120; ++col) run.record.map.at({col, 19}) = kOccupied;
   run.scenario.expect = {{"pose.ate_rmse_m", {.max = 0.15}}};
-  run.metrics = io::Metrics::parse(R"({"mission": {"completed": true, "collisions": 0, "distance_m": 10, "duration_s": 10}, "pose": {"ate_rmse_m": 0.1, "ate_max_m": 0.1}})");
+  run.metrics = io::Metrics::parse(
+      R"({"mission": {"completed": true, "collisions": 0, "distance_m": 10, "duration_s": 10}, "pose": {"ate_rmse_m": 0.1, "ate_max_m": 0.1}})");
   run.cases = {{.class_name = "small", .name = "run", .message = "", .details = ""}};
   return run;
 }

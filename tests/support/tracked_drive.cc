@@ -1,11 +1,11 @@
 #include "tests/support/tracked_drive.h"
 
-#include <Eigen/Geometry>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
+
+#include <Eigen/Geometry>
 
 namespace patrol::test {
 namespace {
@@ -17,7 +17,8 @@ Eigen::Matrix3d draw_distortion(const RandomStream& constants, std::uint64_t tri
   Eigen::Matrix3d distortion = Eigen::Matrix3d::Identity();
   std::uint64_t index = 0;
   for (int row = 0; row < 3; ++row) {
-    for (int col = 0; col < 3; ++col) distortion(row, col) += (row == col ? scale : misalignment) * constants.normal(triad, index++);
+    for (int col = 0; col < 3; ++col)
+      distortion(row, col) += (row == col ? scale : misalignment) * constants.normal(triad, index++);
   }
   return distortion;
 }
@@ -39,7 +40,8 @@ RobotDescription make_tracked_robot() {
   RobotDescription robot;
   robot.name = "tracked";
   robot.mass_kg = 85.0;
-  robot.tracks = TrackGeometry{.gauge_m = 0.55, .width_m = 0.15, .contact_length_m = 0.7, .sprocket_radius_m = 0.1, .body_height_m = 0.25};
+  robot.tracks = TrackGeometry{
+      .gauge_m = 0.55, .width_m = 0.15, .contact_length_m = 0.7, .sprocket_radius_m = 0.1, .body_height_m = 0.25};
   robot.T_body_sensor["imu"] = {{0.05, 0.03, 0.1}, Eigen::Quaterniond::Identity()};
   robot.T_body_sensor["uwb"] = {{-0.3, 0.1, 0.5}, Eigen::Quaterniond::Identity()};
   return robot;
@@ -145,7 +147,8 @@ void TrackedDrive::run_belts(double dt_s) {
 
 void TrackedDrive::slip_and_turn(double dt_s) {
   const double tilt = (T_world_body_.rotation * Eigen::Vector3d::UnitZ()).head<2>().norm();
-  const double slip_std = std::hypot(settings_.slip, settings_.slip_per_radps * yaw_rate_radps_, settings_.slip_per_tilt * tilt);
+  const double slip_std =
+      std::hypot(settings_.slip, settings_.slip_per_radps * yaw_rate_radps_, settings_.slip_per_tilt * tilt);
   slip_left_.go(std::abs(contact_.left_mps) * dt_s / settings_.slip_length_m, slip_std, draw(0));
   slip_right_.go(std::abs(contact_.right_mps) * dt_s / settings_.slip_length_m, slip_std, draw(1));
   crab_.go(std::abs(ahead_mps_) * dt_s / settings_.slip_length_m, settings_.crab, draw(5));
@@ -189,8 +192,10 @@ void TrackedDrive::measure_imu(const Eigen::Vector3d& omega_body, const Eigen::V
   const double root_s = std::sqrt(settings_.imu_period_s);
   gyro_bias_ += draw_vector(imu_noise_, tick, 0, settings_.gyro_bias_random_walk_radps_per_sqrt_s * root_s);
   accel_bias_ += draw_vector(imu_noise_, tick, 3, settings_.accel_bias_random_walk_mps2_per_sqrt_s * root_s);
-  const double vibration = settings_.vibration_mps2_rthz / root_s * std::abs(0.5 * (contact_.left_mps + contact_.right_mps));
-  Eigen::Vector3d rate = gyro_distortion_ * omega_body + gyro_bias_ + draw_vector(imu_noise_, tick, 6, settings_.gyro_noise_radps);
+  const double vibration =
+      settings_.vibration_mps2_rthz / root_s * std::abs(0.5 * (contact_.left_mps + contact_.right_mps));
+  Eigen::Vector3d rate =
+      gyro_distortion_ * omega_body + gyro_bias_ + draw_vector(imu_noise_, tick, 6, settings_.gyro_noise_radps);
   Eigen::Vector3d force = accel_distortion_ * force_body + accel_bias_ +
                           draw_vector(imu_noise_, tick, 9, std::hypot(settings_.accel_noise_mps2, vibration));
   for (int axis = 0; axis < 3; ++axis) {
@@ -201,7 +206,8 @@ void TrackedDrive::measure_imu(const Eigen::Vector3d& omega_body, const Eigen::V
 }
 
 TrackTicks TrackedDrive::ticks() const {
-  const double meters_per_tick = 2.0 * std::numbers::pi * robot_.tracks->sprocket_radius_m / settings_.ticks_per_sprocket_turn;
+  const double meters_per_tick =
+      2.0 * std::numbers::pi * robot_.tracks->sprocket_radius_m / settings_.ticks_per_sprocket_turn;
   return {.stamp = now(),
           .left = static_cast<std::int64_t>(std::floor(belt_way_m_.x() / meters_per_tick)),
           .right = static_cast<std::int64_t>(std::floor(belt_way_m_.y() / meters_per_tick))};

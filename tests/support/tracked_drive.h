@@ -1,9 +1,9 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <cstdint>
 #include <functional>
+
+#include <Eigen/Core>
 
 #include "core/random.h"
 #include "core/robot_description.h"
@@ -29,27 +29,28 @@ BeltProgram stand_then_drive(const Belts& belts);
 /// Stands 3 s, then follows the line y = 1.5 m sin(2 pi x / 60 m) to +x at 0.5 m/s, by sight.
 BeltProgram stand_then_weave();
 
-/// What is wrong with the world. Every figure is a standard deviation unless it says otherwise; the constants are drawn once.
+/// What is wrong with the world. Every figure is a standard deviation unless it says otherwise; the constants are drawn
+/// once.
 struct TrackedDriveSettings {
   double imu_period_s = 0.004;
   double tick_period_s = 0.02;
   double max_belt_acceleration_mps2 = 1.0;
   double ticks_per_sprocket_turn = 720.0;
   // Ground.
-  double scale = 0.01;          ///< of both belts, constant
-  double slip = 0.02;           ///< of each belt, share of its way, wanders
-  double slip_per_radps = 0.07; ///< more of it on turns,
-  double slip_per_tilt = 0.14;  ///< and on slopes, by the sine of the tilt
+  double scale = 0.01;           ///< of both belts, constant
+  double slip = 0.02;            ///< of each belt, share of its way, wanders
+  double slip_per_radps = 0.07;  ///< more of it on turns,
+  double slip_per_tilt = 0.14;   ///< and on slopes, by the sine of the tilt
   double slip_length_m = 3.0;
-  double crab = 0.005;          ///< sideways, share of the way; wanders over the same length
-  double turn_ratio = 1.5;      ///< mean: distance of the tracks' centers of rotation over the gauge
+  double crab = 0.005;      ///< sideways, share of the way; wanders over the same length
+  double turn_ratio = 1.5;  ///< mean: distance of the tracks' centers of rotation over the gauge
   double turn_ratio_std = 0.15;
   double icr_x_m = 0.05;
   double icr_y_m = 0.02;
   double turn_length_rad = 2.0;
-  double pitch_rad = 0.03;      ///< amplitude of the ground's waves
+  double pitch_rad = 0.03;  ///< amplitude of the ground's waves
   double roll_rad = 0.02;
-  double vibration_mps2_rthz = 0.03;  ///< of the accelerometer while the belts run at 1 m/s
+  double vibration_mps2_rthz = 0.03;                        ///< of the accelerometer while the belts run at 1 m/s
   std::function<double(double time_s)> friction = nullptr;  ///< coefficient; 0.8 if none
   // IMU: the defaults of sim/sensors/imu.h, sampled every other tick of 2 ms.
   double gyro_noise_radps = 2.3e-4 / 0.0447213595;
@@ -66,13 +67,15 @@ struct TrackedDriveSettings {
   static TrackedDriveSettings without_noise();
 };
 
-/// A tracked robot by kinematics alone, for tests of odometry. Each belt slips by a share of its way that wanders; the body turns
-/// about the tracks' instantaneous centers of rotation (Mandow et al., IROS 2007):
-///   yaw rate = (r - l) / D,  ahead = (l y_l - r y_r) / (y_l - y_r) with y_l - y_r = D,  left = -x yaw rate, and a little crabbing.
+/// A tracked robot by kinematics alone, for tests of odometry. Each belt slips by a share of its way that wanders; the
+/// body turns about the tracks' instantaneous centers of rotation (Mandow et al., IROS 2007):
+///   yaw rate = (r - l) / D,  ahead = (l y_l - r y_r) / (y_l - y_r) with y_l - y_r = D,  left = -x yaw rate, and a
+///   little crabbing.
 /// The ground waves gently under it. Friction below what the belts ask for limits what the body can follow.
 class TrackedDrive {
  public:
-  TrackedDrive(const RobotDescription& robot, BeltProgram program, const TrackedDriveSettings& settings, std::uint64_t seed);
+  TrackedDrive(const RobotDescription& robot, BeltProgram program, const TrackedDriveSettings& settings,
+               std::uint64_t seed);
 
   /// One IMU period on.
   void step();
@@ -109,7 +112,7 @@ class TrackedDrive {
   std::int64_t steps_per_ticks_;
 
   std::int64_t imu_steps_ = 0;
-  Belts contact_;                                                ///< as they run
+  Belts contact_;                                         ///< as they run
   Eigen::Vector2d belt_way_m_ = Eigen::Vector2d::Zero();  ///< left, right
   double scale_;
   Wanderer slip_left_, slip_right_, crab_, turn_ratio_, turn_x_, turn_y_;

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <cmath>
 #include <cstdint>
 #include <map>
 #include <utility>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "core/frames.h"
 #include "core/grid.h"
@@ -21,8 +21,8 @@
 
 namespace patrol::test {
 
-/// A tunnel as the lidar sees it, along x, in map: portal with some containers, a straight lined stretch without any feature, bare
-/// rock with a trolley, and the face.
+/// A tunnel as the lidar sees it, along x, in map: portal with some containers, a straight lined stretch without any
+/// feature, bare rock with a trolley, and the face.
 struct Tunnel {
   double half_width_m = 5.5;
   double lined_from_m = 12.0, lined_to_m = 112.0, face_m = 140.0;
@@ -57,9 +57,11 @@ struct Tunnel {
   }
 };
 
-inline constexpr RoomWorld::ScanOptions kTunnelLidar{.beams = 720, .range_max_m = 25.0, .no_return_clearing_range_m = 10.0, .range_std_m = 0.02};
+inline constexpr RoomWorld::ScanOptions kTunnelLidar{
+    .beams = 720, .range_max_m = 25.0, .no_return_clearing_range_m = 10.0, .range_std_m = 0.02};
 
-/// The map that a robot makes which always knows where it is: scans with noise every half metre from x_begin to x_end, 5 cm cells.
+/// The map that a robot makes which always knows where it is: scans with noise every half metre from x_begin to x_end,
+/// 5 cm cells.
 inline OccupancyGrid survey(const RoomWorld& world, double x_begin_m, double x_end_m) {
   slam::GridMap map(0.05, 400.0);
   const RandomStream noise(11, "test/survey");
@@ -79,10 +81,10 @@ inline const OccupancyGrid& tunnel_map() {
 
 struct DriveSettings {
   double speed_mps = 1.0;
-  double way_scale_error = 0.0;     ///< odometry's way is this much longer than the true one
-  double step_std_m_per_m = 0.01;   ///< and errs anew in every step
+  double way_scale_error = 0.0;    ///< odometry's way is this much longer than the true one
+  double step_std_m_per_m = 0.01;  ///< and errs anew in every step
   double yaw_std_rad_per_m = 0.002;
-  double range_std_m = 0.08;        ///< of UWB
+  double range_std_m = 0.08;  ///< of UWB
   double range_reach_m = 35.0;
 };
 
@@ -91,8 +93,14 @@ class TunnelDrive {
  public:
   TunnelDrive(const RoomWorld& world, std::vector<UwbAnchor> anchors, const Pose3& T_body_uwb, const Pose2& T_map_start,
               const DriveSettings& settings, std::uint64_t seed)
-      : world_(world), anchors_(std::move(anchors)), T_body_uwb_(T_body_uwb), settings_(settings), T_map_body_(T_map_start),
-        odometry_noise_(seed, "test/odometry"), lidar_noise_(seed, "test/lidar"), uwb_noise_(seed, "test/uwb") {}
+      : world_(world),
+        anchors_(std::move(anchors)),
+        T_body_uwb_(T_body_uwb),
+        settings_(settings),
+        T_map_body_(T_map_start),
+        odometry_noise_(seed, "test/odometry"),
+        lidar_noise_(seed, "test/lidar"),
+        uwb_noise_(seed, "test/uwb") {}
 
   static constexpr double kPeriod_s = 0.1;
 
@@ -101,13 +109,15 @@ class TunnelDrive {
     ++tick_;
     stamp_ += std::chrono::milliseconds(100);
     const double way = settings_.speed_mps * kPeriod_s;
-    const double turn = direction_ * 0.02 * std::cos(0.3 * driven_m_) * way - 0.3 * way * wrap_angle(T_map_body_.yaw - heading_) -
-                        0.02 * way * T_map_body_.y * direction_;
+    const double turn = direction_ * 0.02 * std::cos(0.3 * driven_m_) * way -
+                        0.3 * way * wrap_angle(T_map_body_.yaw - heading_) - 0.02 * way * T_map_body_.y * direction_;
     const Pose2 T_before_now{way, 0.0, turn};
     driven_m_ += way;
     T_map_body_ = T_map_body_ * T_before_now;
-    const double along = (1.0 + settings_.way_scale_error) * way + settings_.step_std_m_per_m * way * odometry_noise_.normal(tick_, 0);
-    T_odom_body_ = T_odom_body_ * Pose2{along, 0.0, turn + settings_.yaw_std_rad_per_m * way * odometry_noise_.normal(tick_, 1)};
+    const double along =
+        (1.0 + settings_.way_scale_error) * way + settings_.step_std_m_per_m * way * odometry_noise_.normal(tick_, 0);
+    T_odom_body_ =
+        T_odom_body_ * Pose2{along, 0.0, turn + settings_.yaw_std_rad_per_m * way * odometry_noise_.normal(tick_, 1)};
   }
   void turn_back() { heading_ = wrap_angle(heading_ + M_PI), direction_ = -direction_; }
   /// Somebody carries the robot away, and odometry does not notice.
@@ -120,14 +130,19 @@ class TunnelDrive {
   const Pose2& T_odom_body() const { return T_odom_body_; }
 
   LevelScan scan() const { return scan_of(world_); }
-  LevelScan scan_of(const RoomWorld& world) const { return world.scan(T_map_body_, stamp_, kTunnelLidar, lidar_noise_, tick_); }
+  LevelScan scan_of(const RoomWorld& world) const {
+    return world.scan(T_map_body_, stamp_, kTunnelLidar, lidar_noise_, tick_);
+  }
   std::vector<UwbRange> ranges() const {
     std::vector<UwbRange> heard;
     const Eigen::Vector3d antenna = to_pose3(T_map_body_) * T_body_uwb_.position;
     for (const UwbAnchor& anchor : anchors_) {
       const double way = (anchor.p_m - antenna).norm();
       if (way > settings_.range_reach_m) continue;
-      heard.push_back({stamp_, anchor.number, way + uwb_bias_at({}, way).bias_m + settings_.range_std_m * uwb_noise_.normal(tick_, static_cast<std::uint64_t>(anchor.number))});
+      heard.push_back(
+          {stamp_, anchor.number,
+           way + uwb_bias_at({}, way).bias_m +
+               settings_.range_std_m * uwb_noise_.normal(tick_, static_cast<std::uint64_t>(anchor.number))});
     }
     return heard;
   }

@@ -14,8 +14,8 @@
 namespace patrol::test {
 
 /// Anchors every `spacing_m` along x, on alternating walls, from `from_m` to `to_m`; in `map`.
-inline std::vector<UwbAnchor> make_tunnel_anchors(double from_m, double to_m, double spacing_m = 20.0, double wall_m = 5.0,
-                                                  double height_m = 2.5) {
+inline std::vector<UwbAnchor> make_tunnel_anchors(double from_m, double to_m, double spacing_m = 20.0,
+                                                  double wall_m = 5.0, double height_m = 2.5) {
   std::vector<UwbAnchor> anchors;
   for (double x = from_m; x <= to_m; x += spacing_m) {
     const int number = static_cast<int>(anchors.size()) + 1;
@@ -37,7 +37,8 @@ struct UwbPolls {
   double range_max_m = 50.0;
 
   /// Poll number `tick`: the anchors within reach take turns; none if there is none.
-  std::optional<Poll> poll(std::uint64_t seed, std::uint64_t tick, Time now, const Pose3& T_map_body, const Pose3& T_body_uwb) const {
+  std::optional<Poll> poll(std::uint64_t seed, std::uint64_t tick, Time now, const Pose3& T_map_body,
+                           const Pose3& T_body_uwb) const {
     const Eigen::Vector3d antenna = (T_map_body * T_body_uwb).position;
     std::vector<UwbAnchor> near;
     std::copy_if(anchors.begin(), anchors.end(), std::back_inserter(near),

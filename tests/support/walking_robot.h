@@ -1,10 +1,10 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <array>
 #include <cstdint>
 #include <functional>
+
+#include <Eigen/Core>
 
 #include "core/random.h"
 #include "core/robot_description.h"
@@ -53,8 +53,7 @@ struct WalkingRobotSettings {
 /// ground is z = 0.
 class WalkingRobot {
  public:
-  WalkingRobot(const RobotDescription& robot, Walk walk, const WalkingRobotSettings& settings,
-               std::uint64_t seed);
+  WalkingRobot(const RobotDescription& robot, Walk walk, const WalkingRobotSettings& settings, std::uint64_t seed);
 
   /// One sensor period on.
   void step();

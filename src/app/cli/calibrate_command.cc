@@ -5,10 +5,10 @@
 #include <fmt/format.h>
 
 #include "app/cli/commands.h"
-#include "app/mapping/read_scans.h"
 #include "app/common/output_directory.h"
-#include "core/geometry/angles.h"
+#include "app/mapping/read_scans.h"
 #include "core/error.h"
+#include "core/geometry/angles.h"
 #include "io/files/csv.h"
 #include "io/json/metrics_json.h"
 #include "io/logs/scan_log.h"
@@ -51,7 +51,8 @@ struct CalibratedLog {
 };
 
 /// Calibrates in one pass over the log; none if interrupted.
-std::optional<CalibratedLog> calibrate_once(const std::filesystem::path& file, const LogCalibrationSettings& settings, const slam::Calibration& prior, const std::string& name) {
+std::optional<CalibratedLog> calibrate_once(const std::filesystem::path& file, const LogCalibrationSettings& settings,
+                                            const slam::Calibration& prior, const std::string& name) {
   const InterruptGuard guard;
   ProgressBar bar;
   const std::unique_ptr<io::ScanLog> log = io::open_scan_log(file, settings.log);
@@ -62,7 +63,8 @@ std::optional<CalibratedLog> calibrate_once(const std::filesystem::path& file, c
     pairs.add(recorded);
   });
   if (!is_whole) return std::nullopt;
-  CalibratedLog calibrated{.summary = log->summary(), .T_body_lidar = *T_body_lidar, .pairs = pairs.pairs(), .result = {}};
+  CalibratedLog calibrated{
+      .summary = log->summary(), .T_body_lidar = *T_body_lidar, .pairs = pairs.pairs(), .result = {}};
   try {
     calibrated.result = slam::calibrate(calibrated.pairs, calibrated.T_body_lidar, settings.calibrator);
   } catch (const InputError& error) {
@@ -74,12 +76,14 @@ std::optional<CalibratedLog> calibrate_once(const std::filesystem::path& file, c
 /// Table of the motion of each segment by odometry and by scan matching, with its error, which shows rejected segments.
 io::Table segment_table(const CalibratedLog& log) {
   io::Table table{.name = "segments",
-                  .columns = {"begin_s", "end_s", "odometry_x_m", "odometry_y_m", "odometry_yaw_rad", "lidar_x_m", "lidar_y_m", "lidar_yaw_rad", "error_std"},
+                  .columns = {"begin_s", "end_s", "odometry_x_m", "odometry_y_m", "odometry_yaw_rad", "lidar_x_m",
+                              "lidar_y_m", "lidar_yaw_rad", "error_std"},
                   .rows = {}};
   for (std::size_t k = 0; k < log.pairs.size(); ++k) {
     const slam::MotionSegment& pair = log.pairs[k];
     const Pose2 lidar = pair.lidar();
-    table.rows.push_back({to_seconds(pair.begin), to_seconds(pair.end), pair.odometry.x, pair.odometry.y, pair.odometry.yaw, lidar.x, lidar.y, lidar.yaw, log.result.errors[k]});
+    table.rows.push_back({to_seconds(pair.begin), to_seconds(pair.end), pair.odometry.x, pair.odometry.y,
+                          pair.odometry.yaw, lidar.x, lidar.y, lidar.yaw, log.result.errors[k]});
   }
   return table;
 }
@@ -88,12 +92,17 @@ io::Metrics metrics_of(const CalibratedLog& log) {
   io::Metrics metrics;
   const slam::CalibrationResult& result = log.result;
   metrics["log"] = {{"scans", log.summary.num_scans}};
-  metrics["stretches"] = {{"count", result.num_segments}, {"rejected", result.num_rejected}, {"move_noise", result.translation_noise_scale}, {"turn_noise", result.rotation_noise_scale}};
+  metrics["stretches"] = {{"count", result.num_segments},
+                          {"rejected", result.num_rejected},
+                          {"move_noise", result.translation_noise_scale},
+                          {"turn_noise", result.rotation_noise_scale}};
   metrics["converged"] = result.converged;
   for (std::size_t i = 0; i < result.parameters.size(); ++i) {
     const slam::CalibratedParameter& parameter = result.parameters[i];
-    metrics["calibration"][slam::kCalibrationParameters[i]] = {
-        {"before", parameter.before}, {"value", parameter.value}, {"std", parameter.std}, {"observable", parameter.is_observable}};
+    metrics["calibration"][slam::kCalibrationParameters[i]] = {{"before", parameter.before},
+                                                               {"value", parameter.value},
+                                                               {"std", parameter.std},
+                                                               {"observable", parameter.is_observable}};
   }
   return metrics;
 }
@@ -116,7 +125,8 @@ std::string table_text(const slam::CalibrationResult& result) {
     const Row& row = kRows[i];
     const slam::CalibratedParameter& parameter = result.parameters[i];
     const auto number = [&](double value) { return fmt::format("{:.{}f}", row.factor * value, row.decimals); };
-    text += fmt::format("{:<26} {:>10} {:>11} {:>9} {}\n", row.name, number(parameter.before), parameter.is_observable ? number(parameter.value) : "-", number(parameter.std),
+    text += fmt::format("{:<26} {:>10} {:>11} {:>9} {}\n", row.name, number(parameter.before),
+                        parameter.is_observable ? number(parameter.value) : "-", number(parameter.std),
                         parameter.is_observable ? row.unit : fmt::format("{} not observable: unchanged", row.unit));
   }
   return text;
@@ -131,7 +141,8 @@ ExitCode calibrate_command(const CalibrateOptions& options) {
   std::optional<CalibratedLog> log;
   for (int pass = 1; pass <= settings.passes; ++pass) {
     const slam::Calibration prior = log ? log->result.calibration() : slam::Calibration{};
-    log = calibrate_once(options.log, settings, prior, fmt::format("{}, {} of {}", options.log.filename().string(), pass, settings.passes));
+    log = calibrate_once(options.log, settings, prior,
+                         fmt::format("{}, {} of {}", options.log.filename().string(), pass, settings.passes));
     if (!log) break;
   }
   const OutputLock lock = begin_output(options.out, kCalibrating);  // not earlier: a damaged log must leave no output
@@ -140,14 +151,17 @@ ExitCode calibrate_command(const CalibrateOptions& options) {
     return ExitCode::kProgramFailed;
   }
   const slam::CalibrationResult& result = log->result;
-  io::save_settings(options.out / "calibration.yaml", result.calibration(), "from " + options.log.filename().string() + "; for patrol slam --calibration");
+  io::save_settings(options.out / "calibration.yaml", result.calibration(),
+                    "from " + options.log.filename().string() + "; for patrol slam --calibration");
   io::save_csv(options.out / "segments.csv", segment_table(*log));
   io::save_metrics(options.out / "metrics.json", metrics_of(*log));
   io::save_settings(options.out / "settings.yaml", settings);
   complete_output(options.out);
 
-  fmt::print("{}{} segments, {} of them rejected (wheel slip, odometry error or wrong match){}\n{}{}\n", io::to_text(log->summary), result.num_segments,
-             result.num_rejected, result.converged ? "" : "; not converged", table_text(result), (options.out / "calibration.yaml").string());
+  fmt::print("{}{} segments, {} of them rejected (wheel slip, odometry error or wrong match){}\n{}{}\n",
+             io::to_text(log->summary), result.num_segments, result.num_rejected,
+             result.converged ? "" : "; not converged", table_text(result),
+             (options.out / "calibration.yaml").string());
   return result.converged ? ExitCode::kDone : ExitCode::kExpectationMissed;
 }
 

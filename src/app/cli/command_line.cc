@@ -110,7 +110,8 @@ void add_replay(CLI::App& app, Call& call) {
       ->capture_default_str();
   command->add_option("--highlight-speed", replay.highlight_speed, "Playback speed during highlights")
       ->capture_default_str();
-  command->add_option("--renderer", replay.renderer, "OpenGL implementation: auto, egl or osmesa")->capture_default_str();
+  command->add_option("--renderer", replay.renderer, "OpenGL implementation: auto, egl or osmesa")
+      ->capture_default_str();
   command->add_option("--size", replay.size, "Width x height, pixels")->capture_default_str();
   command->add_option("--still", replay.still_s, "Time of a single image (PNG) instead of a video, s");
   command->add_option("--out", replay.out, "Output file");
@@ -119,7 +120,8 @@ void add_replay(CLI::App& app, Call& call) {
 
 void add_report(CLI::App& app, Call& call) {
   CLI::App* command = app.add_subcommand("report", "Generate a self-contained HTML report");
-  command->add_option("directory", call.report.directory, "Directory of a run, a sweep, an error budget or a fault matrix")
+  command
+      ->add_option("directory", call.report.directory, "Directory of a run, a sweep, an error budget or a fault matrix")
       ->required();
   command->add_option("--out", call.report.out, "Output file (default: report.html in the directory)");
   command->callback([&] { call.chosen = [&] { return report_command(call.report); }; });
@@ -134,7 +136,8 @@ void add_verify(CLI::App& app, Call& call) {
 void add_batch(CLI::App& command, BatchOptions& batch) {
   command.add_option("--jobs", batch.jobs, "Parallel runs (0: one per core)")->capture_default_str();
   command.add_option("--run-timeout-s", batch.run_timeout_s, "Wall-clock timeout per run, s")->capture_default_str();
-  command.add_option("--keep-runs", batch.keep_runs, "Run directories to keep: none, failed, all")->capture_default_str();
+  command.add_option("--keep-runs", batch.keep_runs, "Run directories to keep: none, failed, all")
+      ->capture_default_str();
 }
 
 /// Adds the options that sweep, error-budget and fault-matrix have in common. `metrics`: help text of --metric.
@@ -152,9 +155,10 @@ void add_sweep(CLI::App& app, Call& call) {
   SweepOptions& sweep = call.sweep;
   CLI::App* command = app.add_subcommand("sweep", "Run variants of a scenario and compare them");
   add_variants(*command, sweep, "Metric to compare (repeatable)");
-  command->add_option("--vary", sweep.vary,
-                      "Parameter axis (repeatable): path=a,b,c or path=range:FROM:TO:N or logrange:..., one variant per "
-                      "value; path=uniform:LOW:HIGH, loguniform:LOW:HIGH or normal:MEAN:STD, one sample per seed")
+  command
+      ->add_option("--vary", sweep.vary,
+                   "Parameter axis (repeatable): path=a,b,c or path=range:FROM:TO:N or logrange:..., one variant per "
+                   "value; path=uniform:LOW:HIGH, loguniform:LOW:HIGH or normal:MEAN:STD, one sample per seed")
       ->take_all();
   command->add_flag("--early-stop", sweep.early_stop, "Stop a variant once its difference is significant");
   command->add_option("--equivalence-margin", sweep.equivalence_margin, "Differences below this are treated as equal")
@@ -163,7 +167,9 @@ void add_sweep(CLI::App& app, Call& call) {
   command->add_option("--engine", sweep.engine, "Execution engine: local or slurm")->capture_default_str();
   command->add_option("--slurm-tasks", sweep.slurm_tasks, "Tasks of the Slurm job array, one shard each")
       ->capture_default_str();
-  command->add_option("--slurm-option", sweep.slurm_options, "Option for sbatch (repeatable): --slurm-option=--partition=long")
+  command
+      ->add_option("--slurm-option", sweep.slurm_options,
+                   "Option for sbatch (repeatable): --slurm-option=--partition=long")
       ->take_all();
   command->add_flag("--detach", sweep.detach, "Submit to Slurm without waiting");
   command->callback([&] { call.chosen = [&] { return sweep_command(call.sweep); }; });
@@ -376,16 +382,19 @@ int run_command_line(int argc, const char* const* argv) {
   app.require_subcommand(1);
 
   Call call;
-  for (const auto add : {add_run, add_score, add_localizability, add_replay, add_report, add_verify, add_sweep, add_merge,
-                         add_error_budget, add_fault_matrix, add_slam, add_calibrate, add_train, add_solve, add_plan,
-                         add_study, add_test, add_monitor, add_upload, add_list}) {
+  for (const auto add :
+       {add_run,   add_score,        add_localizability, add_replay,  add_report,    add_verify, add_sweep,
+        add_merge, add_error_budget, add_fault_matrix,   add_slam,    add_calibrate, add_train,  add_solve,
+        add_plan,  add_study,        add_test,           add_monitor, add_upload,    add_list}) {
     add(app, call);
   }
   add_number_checks(app);
 
   const int code = run_parsed(app, call, argc, argv);
   const bool is_written = std::cout.flush().good() && std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
-  if (is_written || code == static_cast<int>(ExitCode::kWrongInput) || code == static_cast<int>(ExitCode::kProgramFailed)) return code;
+  if (is_written || code == static_cast<int>(ExitCode::kWrongInput) ||
+      code == static_cast<int>(ExitCode::kProgramFailed))
+    return code;
   return report(fmt::format("cannot write standard output: {}", std::strerror(errno)), ExitCode::kProgramFailed);
 }
 

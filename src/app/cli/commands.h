@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "app/campaign/sweep/sweep_options.h"
+#include "app/campaign/test/test_options.h"
 #include "app/common/exit_code.h"
 #include "app/monitor/monitor_options.h"
 #include "app/plan/plan_options.h"
-#include "app/campaign/sweep/sweep_options.h"
-#include "app/campaign/test/test_options.h"
 #include "score/relation_error.h"
 
 /// Functions of the program's commands, one each. Results are printed to standard output, messages to standard error.
@@ -105,7 +105,7 @@ struct CalibrateOptions {
 ExitCode calibrate_command(const CalibrateOptions& options);
 
 struct TrainOptions {
-  std::vector<std::filesystem::path> runs;      ///< run directories for training
+  std::vector<std::filesystem::path> runs;        ///< run directories for training
   std::vector<std::filesystem::path> validation;  ///< run directories for validation
   std::vector<std::string> overrides;
   std::filesystem::path out = "submap_neighbors.json";
@@ -114,8 +114,8 @@ struct TrainOptions {
 ExitCode train_command(const TrainOptions& options);
 
 struct SolveOptions {
-  std::filesystem::path graph;  ///< g2o
-  bool robust_loop_closures = false;    ///< robust loss on edges that are not odometry
+  std::filesystem::path graph;        ///< g2o
+  bool robust_loop_closures = false;  ///< robust loss on edges that are not odometry
   std::filesystem::path out = "out/solved.g2o";
 };
 /// Optimizes a pose graph.
@@ -128,7 +128,7 @@ struct StudyOptions {
   std::string name;
   std::optional<std::string> seeds;  ///< "N": 1001 ... 1000 + N, which were not used for tuning; or "A..B"
   int jobs = 0;                      ///< parallel seeds; 0: one per core
-  double seed_timeout_s = 3600.0;      ///< wall-clock limit per seed
+  double seed_timeout_s = 3600.0;    ///< wall-clock limit per seed
   std::filesystem::path out = "out/study";
 };
 /// Reproduces a published experiment and compares the results.

@@ -25,7 +25,8 @@ std::vector<std::string> files_below(const std::filesystem::path& root, const st
   std::vector<std::string> found;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(root / folder)) {
     std::error_code ignored;  // a link to itself
-    if (entry.is_regular_file(ignored) && keep(entry.path())) found.push_back(std::filesystem::relative(entry.path(), root).string());
+    if (entry.is_regular_file(ignored) && keep(entry.path()))
+      found.push_back(std::filesystem::relative(entry.path(), root).string());
   }
   std::sort(found.begin(), found.end());
   return found;
@@ -81,7 +82,8 @@ void print_data() {
     fmt::print("scenarios, worlds, robots\n  none: {}\n", error.what());
     return;
   }
-  print("scenarios", files_below(root, "worlds", [](const auto& file) { return file.parent_path().filename() == "scenarios"; }));
+  print("scenarios",
+        files_below(root, "worlds", [](const auto& file) { return file.parent_path().filename() == "scenarios"; }));
   print("worlds", files_below(root, "worlds", [](const auto& file) {
           return file.extension() == ".xml" && file.stem() == file.parent_path().filename();
         }));
@@ -104,7 +106,8 @@ ExitCode list_command() {
   print_table("particle resamplers", slam::resamplers());
   print("localization methods", {"Monte Carlo localization with KLD sampling (stack.localization)"});
   print_table("sensor models of localization (stack.localization.sensor_model)", localize::sensor_models());
-  print_table("global planners (stack.navigation.global_planner.method; patrol plan --planner)", plan::route_planners());
+  print_table("global planners (stack.navigation.global_planner.method; patrol plan --planner)",
+              plan::route_planners());
   print_table("local planners (stack.navigation.local_planner.method)", plan::local_planners());
   print_table("station types (mission)", kStationTypes);
   print_table("goal types (goals; stack.tunnel_mission.goal_types)", kGoalTypes);

@@ -6,8 +6,8 @@
 #include "app/cli/commands.h"
 #include "app/common/output_directory.h"
 #include "app/scoring/localizability_map.h"
-#include "core/geometry/angles.h"
 #include "core/error.h"
+#include "core/geometry/angles.h"
 #include "io/files/csv.h"
 #include "render/heat_map.h"
 #include "score/statistics.h"
@@ -25,27 +25,31 @@ const OutputKind kLocalizability = {.name = "localizability map",
 double to_color_scale(double std_m) { return std::log10(std::clamp(std_m, 1e-4, 1.0)) / 4.0 + 1.0; }
 
 io::Table table_of(const LocalizabilityMap& map) {
-  io::Table table{.name = "localizability", .columns = {"x_m", "y_m", "weak_std_m", "weak_direction_deg", "strong_std_m", "returns"}, .rows = {}};
+  io::Table table{.name = "localizability",
+                  .columns = {"x_m", "y_m", "weak_std_m", "weak_direction_deg", "strong_std_m", "returns"},
+                  .rows = {}};
   for (const LocalizabilitySample& sample : map.positions) {
-    table.rows.push_back({sample.p_world_m.x(), sample.p_world_m.y(), sample.truth.max_std_m, to_deg(sample.truth.max_std_direction_rad),
-                          sample.truth.min_std_m, static_cast<std::int64_t>(sample.truth.num_returns)});
+    table.rows.push_back({sample.p_world_m.x(), sample.p_world_m.y(), sample.truth.max_std_m,
+                          to_deg(sample.truth.max_std_direction_rad), sample.truth.min_std_m,
+                          static_cast<std::int64_t>(sample.truth.num_returns)});
   }
   return table;
 }
 
 render::Frame picture_of(const LocalizabilityMap& map, const std::string& where) {
-  render::HeatMap heat{.surfaces = map.surfaces,
-                       .step_m = map.step_m,
-                       .positions = {},
-                       .title = fmt::format("{}: bound of a single scan", where),
-                       .note = fmt::format("maximum standard deviation; strokes: its direction, above {:g} cm",
-                                           100.0 * score::Localizability::kDegenerate_m),
-                       .scale = {{0.0, "0.1 mm"}, {0.25, "1 mm"}, {0.5, "1 cm"}, {0.75, "10 cm"}, {1.0, "1 m or more"}}};
+  render::HeatMap heat{
+      .surfaces = map.surfaces,
+      .step_m = map.step_m,
+      .positions = {},
+      .title = fmt::format("{}: bound of a single scan", where),
+      .note = fmt::format("maximum standard deviation; strokes: its direction, above {:g} cm",
+                          100.0 * score::Localizability::kDegenerate_m),
+      .scale = {{0.0, "0.1 mm"}, {0.25, "1 mm"}, {0.5, "1 cm"}, {0.75, "10 cm"}, {1.0, "1 m or more"}}};
   for (const LocalizabilitySample& sample : map.positions) {
     heat.positions.push_back({.p_m = sample.p_world_m,
-                           .color_fraction = to_color_scale(sample.truth.max_std_m),
-                           .has_stroke = sample.truth.is_degenerate(),
-                           .stroke_rad = sample.truth.max_std_direction_rad});
+                              .color_fraction = to_color_scale(sample.truth.max_std_m),
+                              .has_stroke = sample.truth.is_degenerate(),
+                              .stroke_rad = sample.truth.max_std_direction_rad});
   }
   return render::draw_heat_map(heat);
 }
@@ -53,9 +57,11 @@ render::Frame picture_of(const LocalizabilityMap& map, const std::string& where)
 }  // namespace
 
 ExitCode localizability_command(const LocalizabilityOptions& options) {
-  if (!(options.grid_step_m >= 0.05 && options.grid_step_m <= 10.0)) throw InputError(fmt::format("--grid-step-m {}: must be in [0.05, 10]", options.grid_step_m));
+  if (!(options.grid_step_m >= 0.05 && options.grid_step_m <= 10.0))
+    throw InputError(fmt::format("--grid-step-m {}: must be in [0.05, 10]", options.grid_step_m));
   const Scenario scenario = load_scenario(options.scenario, options.overrides);
-  const LocalizabilityMap map = map_localizability(scenario, load_scenario_files(scenario, find_data_root(options.scenario)), options.grid_step_m);
+  const LocalizabilityMap map = map_localizability(
+      scenario, load_scenario_files(scenario, find_data_root(options.scenario)), options.grid_step_m);
   const OutputLock lock = begin_output(options.out, kLocalizability);
   io::save_csv(options.out / "localizability.csv", table_of(map));
   render::save_png(options.out / "localizability.png", picture_of(map, scenario.world));
@@ -63,10 +69,14 @@ ExitCode localizability_command(const LocalizabilityOptions& options) {
 
   std::vector<double> max_std_m;
   for (const LocalizabilitySample& sample : map.positions) max_std_m.push_back(sample.truth.max_std_m);
-  const auto num_degenerate = std::count_if(map.positions.begin(), map.positions.end(), [](const auto& sample) { return sample.truth.is_degenerate(); });
-  fmt::print("{} positions, spacing {:g} m: maximum standard deviation of one scan {:.4f} m (median), {:.4f} m (95th percentile);\n",
-             map.positions.size(), options.grid_step_m, score::percentile(max_std_m, 0.5), score::percentile(max_std_m, 0.95));
-  fmt::print("{:.1f} % are degenerate (more than {} m).\n{}\n", 100.0 * static_cast<double>(num_degenerate) / static_cast<double>(map.positions.size()),
+  const auto num_degenerate = std::count_if(map.positions.begin(), map.positions.end(),
+                                            [](const auto& sample) { return sample.truth.is_degenerate(); });
+  fmt::print(
+      "{} positions, spacing {:g} m: maximum standard deviation of one scan {:.4f} m (median), {:.4f} m (95th "
+      "percentile);\n",
+      map.positions.size(), options.grid_step_m, score::percentile(max_std_m, 0.5), score::percentile(max_std_m, 0.95));
+  fmt::print("{:.1f} % are degenerate (more than {} m).\n{}\n",
+             100.0 * static_cast<double>(num_degenerate) / static_cast<double>(map.positions.size()),
              score::Localizability::kDegenerate_m, (options.out / "localizability.png").string());
   return ExitCode::kDone;
 }

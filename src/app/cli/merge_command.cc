@@ -1,15 +1,17 @@
 #include <fmt/format.h>
 
-#include "app/cli/commands.h"
 #include "app/campaign/sweep/comparison.h"
 #include "app/campaign/sweep/finish_sweep.h"
+#include "app/cli/commands.h"
 #include "core/error.h"
 #include "io/files/atomic_file.h"
 
 namespace patrol::app {
 namespace {
 
-std::string load_request(const SweepDirectory& directory) { return io::load_text(open_sweep_directory(directory.root).manifest()); }
+std::string load_request(const SweepDirectory& directory) {
+  return io::load_text(open_sweep_directory(directory.root).manifest());
+}
 
 }  // namespace
 
@@ -32,8 +34,8 @@ ExitCode merge_command(const std::filesystem::path& root, const std::vector<std:
   }
   const SweepProgress progress = evaluate_progress(manifest, load_rows(manifest, directory.store()));
   if (!progress.needed.empty()) {
-    throw InputError(fmt::format("{}: {} of {} runs are missing", root.string(), progress.needed.size(),
-                                 progress.counted.size()));
+    throw InputError(
+        fmt::format("{}: {} of {} runs are missing", root.string(), progress.needed.size(), progress.counted.size()));
   }
   return finish_sweep(directory, manifest);
 }

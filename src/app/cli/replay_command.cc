@@ -5,8 +5,8 @@
 #include "app/cli/commands.h"
 #include "app/common/progress_bar.h"
 #include "app/record/run_directory.h"
-#include "app/run/run_loop.h"
 #include "app/record/run_record.h"
+#include "app/run/run_loop.h"
 #include "core/error.h"
 #include "render/film/replay.h"
 #include "score/trajectory_error.h"
@@ -22,10 +22,12 @@ std::pair<int, int> parse_size(const std::string& text) {
   const char* end = text.data() + text.size();
   const auto [cross, bad_width] = std::from_chars(text.data(), end, width);
   const bool has_cross = bad_width == std::errc{} && cross != end && *cross == 'x';
-  const auto [rest, bad_height] = has_cross ? std::from_chars(cross + 1, end, height) : std::from_chars_result{cross, bad_width};
+  const auto [rest, bad_height] =
+      has_cross ? std::from_chars(cross + 1, end, height) : std::from_chars_result{cross, bad_width};
   const auto is_fine = [](int value) { return value >= kMinSize && value <= kMaxSize && value % 2 == 0; };
   if (!has_cross || bad_height != std::errc{} || rest != end || !is_fine(width) || !is_fine(height)) {
-    throw InputError(fmt::format("--size {}: must be WIDTHxHEIGHT, even numbers of pixels in [{}, {}]", text, kMinSize, kMaxSize));
+    throw InputError(
+        fmt::format("--size {}: must be WIDTHxHEIGHT, even numbers of pixels in [{}, {}]", text, kMinSize, kMaxSize));
   }
   return {width, height};
 }
@@ -50,9 +52,10 @@ render::ReplaySettings replay_settings(const ReplayOptions& options) {
 std::vector<render::Highlight> fault_highlights(const std::vector<sim::FaultSettings>& faults) {
   std::vector<render::Highlight> highlights;
   for (const sim::FaultSettings& fault : faults) {
-    highlights.push_back({.at = from_seconds(fault.start_s),
-                       .kind = render::HighlightKind::kFault,
-                       .title = fmt::format("Fault: {} of {} for {:g} s", fault.kind, fault.sensor, fault.duration_s)});
+    highlights.push_back(
+        {.at = from_seconds(fault.start_s),
+         .kind = render::HighlightKind::kFault,
+         .title = fmt::format("Fault: {} of {} for {:g} s", fault.kind, fault.sensor, fault.duration_s)});
   }
   return highlights;
 }
@@ -74,9 +77,8 @@ ExitCode replay_command(const ReplayOptions& options) {
   if (!record.has_estimate()) throw InputError(fmt::format("{}: contains no pose estimate", directory.log().string()));
   const Pose2 T_world_map =
       files.map ? files.T_site_start : score::align_at_start(record.T_map_body, record.T_world_body);
-  sim::AssembledModel model =
-      sim::assemble_model(files.world_xml.string(), files.robot_urdf.string(), start_in_world(scenario, files),
-                          all_static_obstacles(scenario));
+  sim::AssembledModel model = sim::assemble_model(files.world_xml.string(), files.robot_urdf.string(),
+                                                  start_in_world(scenario, files), all_static_obstacles(scenario));
 
   if (options.still_s) {
     const Time at = from_seconds(*options.still_s);
@@ -93,16 +95,17 @@ ExitCode replay_command(const ReplayOptions& options) {
   const std::filesystem::path out = options.out.value_or(directory.root / "replay.mp4");
   ProgressBar bar;
   const InterruptGuard interrupt;
-  const render::ReplaySummary summary = render::replay(directory.log(), std::move(model), T_world_map, settings, out, [&](double done) {
-    bar.show(fmt::format("replay  {:3.0f} %", 100.0 * done));
-    return !interrupt.is_interrupted();
-  });
+  const render::ReplaySummary summary =
+      render::replay(directory.log(), std::move(model), T_world_map, settings, out, [&](double done) {
+        bar.show(fmt::format("replay  {:3.0f} %", 100.0 * done));
+        return !interrupt.is_interrupted();
+      });
   if (summary.is_interrupted) {
     fmt::print(stderr, "patrol: interrupted; no video written\n");
     return ExitCode::kProgramFailed;
   }
-  fmt::print("{}: {} frames, {} chapters, {:.1f} s of the run{}\n", out.string(), summary.num_frames, summary.num_chapters,
-             to_seconds(summary.end), summary.log_is_complete ? "" : ", incomplete log");
+  fmt::print("{}: {} frames, {} chapters, {:.1f} s of the run{}\n", out.string(), summary.num_frames,
+             summary.num_chapters, to_seconds(summary.end), summary.log_is_complete ? "" : ", incomplete log");
   return ExitCode::kDone;
 }
 

@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
+#include "app/campaign/sweep/sweep_directory.h"
 #include "app/cli/commands.h"
 #include "app/report/run_page.h"
 #include "app/report/sweep_page.h"
-#include "app/campaign/sweep/sweep_directory.h"
 #include "core/error.h"
 #include "io/files/atomic_file.h"
 #include "report/page.h"
@@ -14,7 +14,8 @@ namespace {
 /// Loads the page of a study or of a mapped log, which is generated with its results.
 std::string load_page(const std::filesystem::path& root) {
   const std::filesystem::path page = root / "report.html";
-  if (!std::filesystem::exists(page)) throw InputError(fmt::format("{}: incomplete: no report can be generated", root.string()));
+  if (!std::filesystem::exists(page))
+    throw InputError(fmt::format("{}: incomplete: no report can be generated", root.string()));
   return io::load_text(page);
 }
 
@@ -25,7 +26,8 @@ report::Page page_of(const std::filesystem::path& root, const std::filesystem::p
   const SweepRows rows = load_rows(manifest, directory.store());
   const SweepProgress progress = evaluate_progress(manifest, rows);
   if (progress.needed.empty()) return sweep_page(manifest, rows, progress);
-  throw InputError(fmt::format("{}: {} of {} runs are missing; finish the sweep first", root.string(), progress.needed.size(), progress.counted.size()));
+  throw InputError(fmt::format("{}: {} of {} runs are missing; finish the sweep first", root.string(),
+                               progress.needed.size(), progress.counted.size()));
 }
 
 }  // namespace
@@ -34,7 +36,8 @@ ExitCode report_command(const ReportOptions& options) {
   const std::filesystem::path out = options.out.value_or(options.directory / "report.html");
   std::string html;
   try {
-    const bool is_generated = std::filesystem::exists(options.directory / "study.json") || std::filesystem::exists(options.directory / "pose_graph.g2o");
+    const bool is_generated = std::filesystem::exists(options.directory / "study.json") ||
+                              std::filesystem::exists(options.directory / "pose_graph.g2o");
     html = is_generated ? load_page(options.directory) : report::to_html(page_of(options.directory, out));
   } catch (const io::Metrics::exception& error) {
     throw InputError(fmt::format("{}: metrics.json: invalid: {}", options.directory.string(), error.what()));

@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 
 #include "app/cli/commands.h"
-#include "app/monitor/reporter.h"
 #include "app/common/progress_bar.h"
+#include "app/monitor/reporter.h"
 #include "app/run/run_once.h"
 #include "app/run/terminal_view.h"
 #include "app/scoring/goal_table.h"
@@ -47,9 +47,15 @@ class ObserverGroup final : public RunObserver {
  public:
   explicit ObserverGroup(std::vector<RunObserver*> observers) : observers_(std::move(observers)) {}
 
-  void begin(const ScenarioFiles& files) override { for (RunObserver* one : observers_) one->begin(files); }
-  void on_message(const stack::StackMessage& message) override { for (RunObserver* one : observers_) one->on_message(message); }
-  void on_ground_truth(const GroundTruth& truth) override { for (RunObserver* one : observers_) one->on_ground_truth(truth); }
+  void begin(const ScenarioFiles& files) override {
+    for (RunObserver* one : observers_) one->begin(files);
+  }
+  void on_message(const stack::StackMessage& message) override {
+    for (RunObserver* one : observers_) one->on_message(message);
+  }
+  void on_ground_truth(const GroundTruth& truth) override {
+    for (RunObserver* one : observers_) one->on_ground_truth(truth);
+  }
   bool keep_running(Time now, double distance_m) override {
     bool keeps_running = true;
     for (RunObserver* one : observers_) keeps_running = one->keep_running(now, distance_m) && keeps_running;
@@ -65,7 +71,8 @@ std::unique_ptr<RunObserver> observer_of(const RunOptions& options, const std::s
   return std::make_unique<ProgressLine>(name);
 }
 
-std::unique_ptr<Reporter> reporter_of(const RunOptions& options, const Scenario& scenario, const std::string& name, const std::filesystem::path& root) {
+std::unique_ptr<Reporter> reporter_of(const RunOptions& options, const Scenario& scenario, const std::string& name,
+                                      const std::filesystem::path& root) {
   if (!options.monitor_url) return nullptr;
   const ReportedRun run{.robot = options.robot_name.value_or(fmt::format("{}-{}", scenario.robot, scenario.seed)),
                         .run = new_run_name(name, scenario.seed),
@@ -74,15 +81,17 @@ std::unique_ptr<Reporter> reporter_of(const RunOptions& options, const Scenario&
   return std::make_unique<Reporter>(root, run, make_monitor_server(*options.monitor_url, options.monitor_token_file));
 }
 
-std::optional<RunVerdict> run_reported(const RunOptions& options, const Scenario& scenario, const std::string& name, const std::filesystem::path& root,
-                                      Reporter* reporter, RunObserver& screen) {
+std::optional<RunVerdict> run_reported(const RunOptions& options, const Scenario& scenario, const std::string& name,
+                                       const std::filesystem::path& root, Reporter* reporter, RunObserver& screen) {
   const std::filesystem::path data_root = find_data_root(options.scenario);
   if (reporter == nullptr) return run_once(scenario, name, data_root, root, screen);
   ObserverGroup observers({&screen, reporter});
   try {
     std::optional<RunVerdict> verdict = run_once(scenario, name, data_root, root, observers);
     if (!verdict) reporter->finish("interrupted", "interrupted by user");
-    else reporter->finish(verdict->code() == ExitCode::kDone ? "finished" : "failed", verdict->message.empty() ? std::string(name_of(verdict->end)) : verdict->message);
+    else
+      reporter->finish(verdict->code() == ExitCode::kDone ? "finished" : "failed",
+                       verdict->message.empty() ? std::string(name_of(verdict->end)) : verdict->message);
     return verdict;
   } catch (const std::exception& error) {
     reporter->finish("failed", error.what());
@@ -92,11 +101,13 @@ std::optional<RunVerdict> run_reported(const RunOptions& options, const Scenario
 
 void report_delivery(const Reporter& reporter, const std::string& to, const std::filesystem::path& root) {
   if (reporter.num_rejected() > 0) {
-    fmt::print(stderr, "patrol: {} rejected {} results, kept in {}\n", to, reporter.num_rejected(), (root / "outbox.refused.jsonl").string());
+    fmt::print(stderr, "patrol: {} rejected {} results, kept in {}\n", to, reporter.num_rejected(),
+               (root / "outbox.refused.jsonl").string());
   }
   if (const std::size_t num_pending = reporter.num_pending(); num_pending > 0) {
-    fmt::print(stderr, "patrol: {} results not delivered, kept in {} ({}); upload with: patrol upload {} --monitor-url {}\n", num_pending,
-               (root / "outbox.jsonl").string(), reporter.last_error(), root.string(), to);
+    fmt::print(stderr,
+               "patrol: {} results not delivered, kept in {} ({}); upload with: patrol upload {} --monitor-url {}\n",
+               num_pending, (root / "outbox.jsonl").string(), reporter.last_error(), root.string(), to);
   } else {
     fmt::print(stderr, "patrol: {} received all {} results\n", to, reporter.num_results());
   }
@@ -121,7 +132,8 @@ ExitCode run_command(const RunOptions& options) {
 
   fmt::print("{}\n", score_table(verdict->metrics, verdict->checks));
   if (const std::string goals = goal_table(verdict->metrics); !goals.empty()) fmt::print("{}\n", goals);
-  for (const InjectedEvent& event : verdict->events) fmt::print("{}: {}\n", event.name, event.was_triggered ? "triggered" : "not triggered");
+  for (const InjectedEvent& event : verdict->events)
+    fmt::print("{}: {}\n", event.name, event.was_triggered ? "triggered" : "not triggered");
   fmt::print("run directory: {}\n", root.string());
   return verdict->code();
 }

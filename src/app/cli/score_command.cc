@@ -45,18 +45,22 @@ ExitCode score_command(const ScoreOptions& options) {
   if (!options.run.empty()) return score_directory(options.run);
   if (is_relations) {
     const Trajectory estimate = io::load_tum(options.estimate, io::SameStamps::kKeepFirst);
-    fmt::print("{}", relation_table(score::relation_error(estimate, io::load_relations(options.relations), options.relation_settings)));
+    fmt::print("{}", relation_table(score::relation_error(estimate, io::load_relations(options.relations),
+                                                          options.relation_settings)));
     return ExitCode::kDone;
   }
   if (is_pair_of_trajectories) {
-    fmt::print("{}", score_table(score_trajectories(io::load_tum(options.estimate), io::load_tum(options.reference)), {}));
+    fmt::print("{}",
+               score_table(score_trajectories(io::load_tum(options.estimate), io::load_tum(options.reference)), {}));
     return ExitCode::kDone;
   }
   if (is_pair_of_maps) {
     fmt::print("{}", score_table(score_maps(io::load_map(options.map), io::load_map(options.reference_map)), {}));
     return ExitCode::kDone;
   }
-  throw InputError("score: needs a run directory, or --estimate and --reference, or --estimate and --relations, or --map and --reference-map");
+  throw InputError(
+      "score: needs a run directory, or --estimate and --reference, or --estimate and --relations, or --map and "
+      "--reference-map");
 }
 
 }  // namespace patrol::app

@@ -6,21 +6,21 @@
 #include <fmt/format.h>
 
 #include "app/cli/commands.h"
-#include "app/mapping/mapping_page.h"
-#include "app/scenario/neighbor_model.h"
-#include "app/mapping/read_scans.h"
 #include "app/common/output_directory.h"
 #include "app/common/process_cost.h"
+#include "app/mapping/mapping_page.h"
+#include "app/mapping/read_scans.h"
+#include "app/scenario/neighbor_model.h"
 #include "app/scenario/scenario.h"
 #include "core/thread_cpu_time.h"
 #include "io/files/atomic_file.h"
 #include "io/files/csv.h"
-#include "io/trajectories/g2o.h"
-#include "io/maps/map_server.h"
 #include "io/json/metrics_json.h"
 #include "io/logs/scan_log.h"
-#include "io/yaml/settings_yaml.h"
+#include "io/maps/map_server.h"
+#include "io/trajectories/g2o.h"
 #include "io/trajectories/tum.h"
+#include "io/yaml/settings_yaml.h"
 #include "report/page.h"
 #include "slam/calibration/calibration.h"
 #include "slam/methods/mapper.h"
@@ -31,7 +31,8 @@ namespace {
 
 const OutputKind kMapping = {.name = "mapping of a log",
                              .marker_text = "The log is not completely mapped.",
-                             .outputs = {"estimate.tum", "odometry.tum", "map.yaml", "map.pgm", "pose_graph.g2o", "performance.csv", "metrics.json", "settings.yaml", "report.html"},
+                             .outputs = {"estimate.tum", "odometry.tum", "map.yaml", "map.pgm", "pose_graph.g2o",
+                                         "performance.csv", "metrics.json", "settings.yaml", "report.html"},
                              .required_file = "settings.yaml",
                              .preserved = {"*.part"}};
 
@@ -82,7 +83,8 @@ struct MappedLog {
 };
 
 /// Maps a log; false if interrupted.
-bool map_log(io::ScanLog& log, const LogMappingSettings& settings, const std::string& name, slam::Mapper& mapper, MappedLog& mapped) {
+bool map_log(io::ScanLog& log, const LogMappingSettings& settings, const std::string& name, slam::Mapper& mapper,
+             MappedLog& mapped) {
   InterruptGuard guard;
   ProgressBar bar;
   slam::CalibratedScans calibrated(settings.calibration);
@@ -110,14 +112,21 @@ Trajectory trajectory_of(const std::vector<Time>& stamps, const std::vector<Pose
   return trajectory;
 }
 
-io::Metrics metrics_of(const io::ScanLogSummary& summary, const MappedLog& mapped, const Trajectory& estimate, const PoseGraph& graph) {
+io::Metrics metrics_of(const io::ScanLogSummary& summary, const MappedLog& mapped, const Trajectory& estimate,
+                       const PoseGraph& graph) {
   std::size_t num_cross_submap = 0;  // loop closures, and after finish() every keyframe's matches with nearby submaps
   for (const PoseGraphEdge& edge : graph.edges) num_cross_submap += edge.kind == PoseGraphEdge::Kind::kLoop ? 1 : 0;
   std::uint64_t num_skipped = 0;
   for (const auto& [reason, count] : summary.skipped) num_skipped += count;
-  return {{"log", {{"scans", mapped.stamps.size()}, {"skipped", num_skipped}, {"duration_s", mapped.duration_s()}, {"odometry_way_m", mapped.way_m}}},
-          {"path", {{"poses", estimate.size()}, {"way_m", planar_length_m(estimate)}}},
-          {"graph", {{"nodes", graph.T_map_node.size()}, {"edges", graph.edges.size()}, {"cross_submap_edges", num_cross_submap}}}};
+  return {
+      {"log",
+       {{"scans", mapped.stamps.size()},
+        {"skipped", num_skipped},
+        {"duration_s", mapped.duration_s()},
+        {"odometry_way_m", mapped.way_m}}},
+      {"path", {{"poses", estimate.size()}, {"way_m", planar_length_m(estimate)}}},
+      {"graph",
+       {{"nodes", graph.T_map_node.size()}, {"edges", graph.edges.size()}, {"cross_submap_edges", num_cross_submap}}}};
 }
 
 }  // namespace
@@ -132,7 +141,8 @@ ExitCode slam_command(const SlamOptions& options) {
   io::SettingsReader::read_section("--set", io::parse_overrides(overrides), "", settings);
   const std::unique_ptr<io::ScanLog> log = io::open_scan_log(options.log, settings.log);
   BoostedStumps neighbors;
-  if (needs_neighbor_model(settings.slam.method)) neighbors = load_neighbor_model(settings.slam.method, find_data_root(""));
+  if (needs_neighbor_model(settings.slam.method))
+    neighbors = load_neighbor_model(settings.slam.method, find_data_root(""));
   const std::unique_ptr<slam::Mapper> mapper = slam::make_mapper(settings.slam, neighbors, settings.seed);
 
   const double wall_s = wall_seconds(), thread_s = thread_cpu_time_s();
@@ -146,7 +156,8 @@ ExitCode slam_command(const SlamOptions& options) {
   const Trajectory estimate = trajectory_of(mapped.stamps, mapper->path());
   const PoseGraph graph = mapper->graph();
   io::save_tum(options.out / "estimate.tum", estimate, "T_map_body by " + settings.slam.method);
-  io::save_tum(options.out / "odometry.tum", trajectory_of(mapped.stamps, mapped.T_odom_body), "T_odom_body, from the first scan");
+  io::save_tum(options.out / "odometry.tum", trajectory_of(mapped.stamps, mapped.T_odom_body),
+               "T_odom_body, from the first scan");
   const OccupancyGrid map = mapper->map();
   io::save_map(options.out / "map.yaml", map);
   io::save_g2o(options.out / "pose_graph.g2o", graph);
@@ -154,15 +165,26 @@ ExitCode slam_command(const SlamOptions& options) {
   io::save_csv(options.out / "performance.csv", mapped.cost.table());
   io::Metrics metrics = metrics_of(log->summary(), mapped, estimate, graph);
   const double took_s = wall_seconds() - wall_s;
-  metrics["performance"] = {{"wall_s", took_s}, {"processor_s", thread_cpu_time_s() - thread_s}, {"real_time_factor", mapped.duration_s() / std::max(1e-9, took_s)}, {"peak_memory_mb", peak_memory_mb()}};
+  metrics["performance"] = {{"wall_s", took_s},
+                            {"processor_s", thread_cpu_time_s() - thread_s},
+                            {"real_time_factor", mapped.duration_s() / std::max(1e-9, took_s)},
+                            {"peak_memory_mb", peak_memory_mb()}};
   io::save_metrics(options.out / "metrics.json", metrics);
-  const MappingContents contents{.log = options.log.filename().string(), .method = settings.slam.method, .map = map, .estimate = estimate, .cost = mapped.cost.table(), .metrics = metrics};
+  const MappingContents contents{.log = options.log.filename().string(),
+                                 .method = settings.slam.method,
+                                 .map = map,
+                                 .estimate = estimate,
+                                 .cost = mapped.cost.table(),
+                                 .metrics = metrics};
   io::save_text(options.out / "report.html", report::to_html(mapping_page(contents)));
   complete_output(options.out);
 
-  fmt::print("{}{} scans, {:.0f} m by odometry, mapped by {} in {:.1f} s ({:.0f} times real time), {:.0f} MB\n{} keyframes, {} edges, {} of them to other submaps\n{}\n",
-             io::to_text(log->summary()), mapped.stamps.size(), mapped.way_m, settings.slam.method, took_s, mapped.duration_s() / std::max(1e-9, took_s), peak_memory_mb(),
-             graph.T_map_node.size(), graph.edges.size(), metrics["graph"]["cross_submap_edges"].get<std::size_t>(), (options.out / "map.yaml").string());
+  fmt::print(
+      "{}{} scans, {:.0f} m by odometry, mapped by {} in {:.1f} s ({:.0f} times real time), {:.0f} MB\n{} keyframes, "
+      "{} edges, {} of them to other submaps\n{}\n",
+      io::to_text(log->summary()), mapped.stamps.size(), mapped.way_m, settings.slam.method, took_s,
+      mapped.duration_s() / std::max(1e-9, took_s), peak_memory_mb(), graph.T_map_node.size(), graph.edges.size(),
+      metrics["graph"]["cross_submap_edges"].get<std::size_t>(), (options.out / "map.yaml").string());
   return ExitCode::kDone;
 }
 

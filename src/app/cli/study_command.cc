@@ -13,21 +13,22 @@
 #include "app/common/output_directory.h"
 #include "app/common/progress_bar.h"
 #include "app/study/study_table.h"
-#include "studies/study_results.h"
 #include "core/error.h"
 #include "io/files/atomic_file.h"
 #include "io/files/csv.h"
 #include "io/json/metrics_json.h"
 #include "report/page.h"
+#include "studies/study_results.h"
 
 namespace patrol::app {
 namespace {
 
-const OutputKind kStudy = {.name = "study",
-                           .marker_text = "Not all seeds have run; the tables follow at the end. Rerun the same command to continue.",
-                           .outputs = {"results.csv", "runs.csv", "performance.csv", "report.html"},
-                           .required_file = "study.json",
-                           .preserved = {"study.json", "seeds", "*.part"}};
+const OutputKind kStudy = {
+    .name = "study",
+    .marker_text = "Not all seeds have run; the tables follow at the end. Rerun the same command to continue.",
+    .outputs = {"results.csv", "runs.csv", "performance.csv", "report.html"},
+    .required_file = "study.json",
+    .preserved = {"study.json", "seeds", "*.part"}};
 
 /// Parses seeds. "N": the first N after those used for tuning; or "A..B".
 std::vector<std::uint64_t> evaluation_seeds(const std::string& text) {
@@ -42,18 +43,21 @@ std::vector<std::uint64_t> evaluation_seeds(const std::string& text) {
 /// Samples by seed, one file each, written atomically; those of another study or build are ignored.
 class SampleStore {
  public:
-  SampleStore(std::filesystem::path folder, const studies::Study& study) : folder_(std::move(folder)), study_(study), build_(build_id()) {
+  SampleStore(std::filesystem::path folder, const studies::Study& study)
+      : folder_(std::move(folder)), study_(study), build_(build_id()) {
     std::filesystem::create_directories(folder_);
   }
 
   std::optional<studies::StudySample> load(std::uint64_t seed) const {
     if (!std::filesystem::exists(file(seed))) return std::nullopt;
     const io::Metrics json = io::load_metrics(file(seed));
-    if (json.value("study", "") != study_.name || json.value("build", "") != build_ || !json.contains("figures")) return std::nullopt;
+    if (json.value("study", "") != study_.name || json.value("build", "") != build_ || !json.contains("figures"))
+      return std::nullopt;
     studies::StudySample sample;
     for (const io::Metrics& variant : json["figures"]) {
       std::vector<double>& metrics = sample.emplace_back();
-      for (const io::Metrics& metric : variant) metrics.push_back(metric.is_number() ? metric.get<double>() : std::numeric_limits<double>::quiet_NaN());
+      for (const io::Metrics& metric : variant)
+        metrics.push_back(metric.is_number() ? metric.get<double>() : std::numeric_limits<double>::quiet_NaN());
     }
     return sample;
   }
@@ -71,7 +75,8 @@ class SampleStore {
 };
 
 /// Runs the missing seeds; false if interrupted.
-bool run_seeds(const studies::Study& study, const std::vector<std::uint64_t>& seeds, const SampleStore& store, const ProcessPoolSettings& pool) {
+bool run_seeds(const studies::Study& study, const std::vector<std::uint64_t>& seeds, const SampleStore& store,
+               const ProcessPoolSettings& pool) {
   std::vector<std::uint64_t> missing;
   for (const std::uint64_t seed : seeds) {
     if (!store.load(seed)) missing.push_back(seed);
@@ -85,7 +90,8 @@ bool run_seeds(const studies::Study& study, const std::vector<std::uint64_t>& se
   };
   const auto on_end = [&](const TaskEnd& end) {
     if (end.exit_code != 0 || end.signal != 0) {
-      throw std::runtime_error(fmt::format("study {}: seed {} failed: {}", study.name, missing[end.task], end.last_stderr_line));
+      throw std::runtime_error(
+          fmt::format("study {}: seed {} failed: {}", study.name, missing[end.task], end.last_stderr_line));
     }
     bar.show(fmt::format("study {}: {} of {} seeds", study.name, ++num_done, seeds.size()));
   };
@@ -96,23 +102,29 @@ bool run_seeds(const studies::Study& study, const std::vector<std::uint64_t>& se
 
 ExitCode study_command(const StudyOptions& options) {
   const studies::Study study = make_study(options.name);
-  const std::vector<std::uint64_t> seeds = evaluation_seeds(options.seeds.value_or(std::to_string(study.default_seeds)));
-  const BatchSettings settings = batch_settings({.jobs = options.jobs, .run_timeout_s = options.seed_timeout_s, .keep_runs = "none"});
+  const std::vector<std::uint64_t> seeds =
+      evaluation_seeds(options.seeds.value_or(std::to_string(study.default_seeds)));
+  const BatchSettings settings =
+      batch_settings({.jobs = options.jobs, .run_timeout_s = options.seed_timeout_s, .keep_runs = "none"});
 
   const OutputLock lock = begin_output(options.out, kStudy);
   io::save_metrics(options.out / "study.json", {{"study", study.name}, {"seeds", seeds}});
   const SampleStore store(options.out / "seeds", study);
-  if (!run_seeds(study, seeds, store, settings.pool)) throw std::runtime_error(fmt::format("interrupted; {} is incomplete; rerun the same command to continue", options.out.string()));
+  if (!run_seeds(study, seeds, store, settings.pool))
+    throw std::runtime_error(
+        fmt::format("interrupted; {} is incomplete; rerun the same command to continue", options.out.string()));
 
   std::vector<studies::StudySample> samples;
   for (const std::uint64_t seed : seeds) samples.push_back(store.load(seed).value());
   const studies::StudyResults results = studies::summarize(study, samples);
-  for (const io::Table& table : {studies::results_table(study, results), studies::samples_table(study, seeds, samples), studies::performance_table(study, results)}) {
+  for (const io::Table& table : {studies::results_table(study, results), studies::samples_table(study, seeds, samples),
+                                 studies::performance_table(study, results)}) {
     io::save_csv(options.out / (table.name + ".csv"), table);
   }
   io::save_text(options.out / "report.html", report::to_html(studies::study_page(study, seeds, samples, results)));
   complete_output(options.out);
-  fmt::print("{}\nsource: {}\n{}\n\n{}{}\n", study.title, study.source, study.conditions, studies::results_text(study, results), (options.out / "report.html").string());
+  fmt::print("{}\nsource: {}\n{}\n\n{}{}\n", study.title, study.source, study.conditions,
+             studies::results_text(study, results), (options.out / "report.html").string());
   return ExitCode::kDone;
 }
 

@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
-#include "app/cli/commands.h"
 #include "app/campaign/sweep/finish_sweep.h"
 #include "app/campaign/sweep/plan.h"
 #include "app/campaign/sweep/run_sweep.h"
 #include "app/campaign/sweep/slurm_engine.h"
+#include "app/cli/commands.h"
 #include "core/error.h"
 
 namespace patrol::app {
@@ -12,18 +12,21 @@ namespace {
 
 /// Checks options that have no check of their own. Throws InputError.
 void check(const SweepOptions& options) {
-  if (options.engine != "local" && options.engine != "slurm") throw InputError(fmt::format("--engine {}: must be local or slurm", options.engine));
+  if (options.engine != "local" && options.engine != "slurm")
+    throw InputError(fmt::format("--engine {}: must be local or slurm", options.engine));
   if (options.early_stop && (!options.shard.empty() || options.engine == "slurm")) {
     throw InputError("--early-stop: not compatible with --shard and --engine slurm: decisions depend on all results");
   }
-  if (options.engine == "slurm" && !options.shard.empty()) throw InputError("--shard: not compatible with --engine slurm, which has --slurm-tasks");
+  if (options.engine == "slurm" && !options.shard.empty())
+    throw InputError("--shard: not compatible with --engine slurm, which has --slurm-tasks");
   if (options.metrics.empty()) throw InputError("--metric: at least one is required");
   if (!(options.equivalence_margin >= 0.0)) throw InputError("--equivalence-margin: must not be negative");
-  if (options.slurm_tasks < 1 || options.slurm_tasks > 100'000) throw InputError("--slurm-tasks: must be in [1, 100000]");
+  if (options.slurm_tasks < 1 || options.slurm_tasks > 100'000)
+    throw InputError("--slurm-tasks: must be in [1, 100000]");
 }
 
-ExitCode perform(const std::filesystem::path& scenario, const SweepManifest& manifest, const Shard& shard, const BatchSettings& settings,
-                 const std::filesystem::path& out) {
+ExitCode perform(const std::filesystem::path& scenario, const SweepManifest& manifest, const Shard& shard,
+                 const BatchSettings& settings, const std::filesystem::path& out) {
   const SweepDirectory directory = begin_sweep_directory(out, manifest);
   run_sweep(scenario, manifest, directory, shard, settings);
   return finish_sweep(directory, manifest);

@@ -4,10 +4,10 @@
 
 #include "app/campaign/batch/result_store.h"
 #include "app/campaign/batch/run_batch.h"
+#include "app/campaign/test/tested_scenario.h"
 #include "app/cli/commands.h"
 #include "app/common/output_directory.h"
 #include "app/report/test_page.h"
-#include "app/campaign/test/tested_scenario.h"
 #include "io/files/atomic_file.h"
 #include "io/files/csv.h"
 #include "report/page.h"
@@ -17,7 +17,8 @@ namespace {
 
 const OutputKind kTest = {.name = "test",
                           .marker_text = "Incomplete: not every scenario has ended.",
-                          .outputs = {"junit.xml", "tests.csv", "summary.md", "report.html", "runs/[0-9][0-9][0-9][0-9]_*", "work/*-*-*", "*.part"},
+                          .outputs = {"junit.xml", "tests.csv", "summary.md", "report.html",
+                                      "runs/[0-9][0-9][0-9][0-9]_*", "work/*-*-*", "*.part"},
                           .required_file = "junit.xml",
                           .preserved = {}};
 
@@ -32,7 +33,8 @@ std::vector<BatchRun> runs_of(const std::vector<TestedScenario>& tested, const T
 void print_verdicts(const std::vector<TestedScenario>& tested) {
   for (const TestedScenario& one : tested) {
     const RunVerdict& verdict = *one.verdict;
-    fmt::print("{:<20} {}  {}\n", verdict.code() == ExitCode::kDone ? "passed" : name_of(verdict.end), one.name, verdict.message);
+    fmt::print("{:<20} {}  {}\n", verdict.code() == ExitCode::kDone ? "passed" : name_of(verdict.end), one.name,
+               verdict.message);
   }
 }
 

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "app/cli/commands.h"
-#include "app/mapping/submap_track.h"
 #include "app/common/progress_bar.h"
+#include "app/mapping/submap_track.h"
 #include "io/json/adaboost_json.h"
 #include "io/yaml/settings_yaml.h"
 #include "slam/submaps/neighbor_examples.h"
@@ -35,7 +35,8 @@ struct TrainingSettings {
 };
 
 /// Labeled pairs of submaps from the runs; none if interrupted.
-std::optional<slam::LabeledFeatures> examples_of(const std::vector<std::filesystem::path>& runs, const TrainingSettings& settings, const InterruptGuard& guard) {
+std::optional<slam::LabeledFeatures> examples_of(const std::vector<std::filesystem::path>& runs,
+                                                 const TrainingSettings& settings, const InterruptGuard& guard) {
   slam::SubmapRbpfSettings apart = settings.submap_rbpf;
   apart.max_candidates = 0;  // no submap constraints: the classifier does not exist yet
   slam::LabeledFeatures examples{.names = slam::pair_feature_names(), .examples = {}, .labels = {}};
@@ -44,9 +45,12 @@ std::optional<slam::LabeledFeatures> examples_of(const std::vector<std::filesyst
     const std::optional<SubmapTrack> track = build_submaps(run, settings.scan, apart, {}, settings.seed, bar, guard);
     if (!track) return std::nullopt;
     const std::size_t before = examples.labels.size();
-    slam::add_neighbor_examples(track->slam, track->T_world_submap, settings.submap_rbpf.surfaces, settings.examples, settings.seed + before, examples);
-    const auto joinable = std::count(examples.labels.begin() + static_cast<std::ptrdiff_t>(before), examples.labels.end(), 1);
-    bar.print_line(fmt::format("{}: {} submaps, {} examples, {} of them neighbors", run.string(), track->T_world_submap.size(), examples.labels.size() - before, joinable));
+    slam::add_neighbor_examples(track->slam, track->T_world_submap, settings.submap_rbpf.surfaces, settings.examples,
+                                settings.seed + before, examples);
+    const auto joinable =
+        std::count(examples.labels.begin() + static_cast<std::ptrdiff_t>(before), examples.labels.end(), 1);
+    bar.print_line(fmt::format("{}: {} submaps, {} examples, {} of them neighbors", run.string(),
+                               track->T_world_submap.size(), examples.labels.size() - before, joinable));
   }
   return examples;
 }
@@ -63,7 +67,9 @@ Recognized recognized_at(double min_margin, const BoostedStumps& model, const sl
     wrong += is_taken && !is_neighbor ? 1 : 0;
     missed += !is_taken && is_neighbor ? 1 : 0;
   }
-  const auto ratio = [](int part, int rest) { return part + rest > 0 ? static_cast<double>(part) / (part + rest) : 1.0; };
+  const auto ratio = [](int part, int rest) {
+    return part + rest > 0 ? static_cast<double>(part) / (part + rest) : 1.0;
+  };
   return {.precision = ratio(right, wrong), .recall = ratio(right, missed)};
 }
 
@@ -81,15 +87,16 @@ ExitCode train_command(const TrainOptions& options) {
   const auto settings = io::parse_settings<TrainingSettings>(options.overrides);
   const InterruptGuard guard;
   const std::optional<slam::LabeledFeatures> training = examples_of(options.runs, settings, guard);
-  const std::optional<slam::LabeledFeatures> held_out = training ? examples_of(options.validation, settings, guard) : std::nullopt;
+  const std::optional<slam::LabeledFeatures> held_out =
+      training ? examples_of(options.validation, settings, guard) : std::nullopt;
   if (!training || !held_out) {
     fmt::print(stderr, "patrol: interrupted; nothing written\n");
     return ExitCode::kProgramFailed;
   }
   const slam::BoostingResult boosted = slam::train_adaboost(*training, settings.boosting);
   io::save_boosted_stumps(options.out, boosted.model);
-  fmt::print("{} stumps; training error {:.2f} %, bound {:.2f} %\n", boosted.model.stumps.size(), 100.0 * boosted.training_error,
-             100.0 * std::min(1.0, boosted.error_bound));
+  fmt::print("{} stumps; training error {:.2f} %, bound {:.2f} %\n", boosted.model.stumps.size(),
+             100.0 * boosted.training_error, 100.0 * std::min(1.0, boosted.error_bound));
   print_recognition("training", boosted.model, *training);
   if (!held_out->labels.empty()) print_recognition("validation", boosted.model, *held_out);
   fmt::print("{}\n", options.out.string());

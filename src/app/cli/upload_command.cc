@@ -4,15 +4,16 @@
 #include <fmt/format.h>
 
 #include "app/cli/commands.h"
-#include "app/monitor/delivery.h"
 #include "app/common/process_cost.h"
 #include "app/common/progress_bar.h"
+#include "app/monitor/delivery.h"
 #include "core/error.h"
 
 namespace patrol::app {
 
 ExitCode upload_command(const UploadOptions& options) {
-  if (!std::filesystem::exists(options.run / "outbox.jsonl")) throw InputError(fmt::format("{}: no results to upload: outbox.jsonl not found", options.run.string()));
+  if (!std::filesystem::exists(options.run / "outbox.jsonl"))
+    throw InputError(fmt::format("{}: no results to upload: outbox.jsonl not found", options.run.string()));
   Outbox outbox(options.run);
   Sender sender(outbox, make_monitor_server(options.monitor_url, options.token_file));
   const std::size_t num_rejected_before = outbox.num_rejected(), num_before = outbox.num_pending();
@@ -35,9 +36,12 @@ ExitCode upload_command(const UploadOptions& options) {
   }
 
   const std::size_t num_pending = outbox.num_pending(), num_rejected = outbox.num_rejected() - num_rejected_before;
-  if (num_rejected > 0) fmt::print(stderr, "patrol: {} rejected {} results, kept in {}\n", options.monitor_url, num_rejected, (options.run / "outbox.refused.jsonl").string());
+  if (num_rejected > 0)
+    fmt::print(stderr, "patrol: {} rejected {} results, kept in {}\n", options.monitor_url, num_rejected,
+               (options.run / "outbox.refused.jsonl").string());
   if (num_pending > 0) {
-    fmt::print(stderr, "patrol: {} results pending in {}: {}\n", num_pending, outbox.file().string(), sender.last_error());
+    fmt::print(stderr, "patrol: {} results pending in {}: {}\n", num_pending, outbox.file().string(),
+               sender.last_error());
     return ExitCode::kProgramFailed;
   }
   fmt::print("uploaded: {} results to {}\n", num_before - num_rejected, options.monitor_url);

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include "app/cli/commands.h"
+#include "app/common/temporary_folder.h"
 #include "app/record/run_directory.h"
 #include "app/run/run_loop.h"
-#include "app/common/temporary_folder.h"
 #include "io/logs/log_compare.h"
 
 namespace patrol::app {

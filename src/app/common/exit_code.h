@@ -16,11 +16,16 @@ enum class ExitCode : int {
 inline ExitCode worse(ExitCode a, ExitCode b) {
   const auto severity = [](ExitCode code) {
     switch (code) {
-      case ExitCode::kProgramFailed: return 4;
-      case ExitCode::kWrongInput: return 3;
-      case ExitCode::kTimeLimit: return 2;
-      case ExitCode::kExpectationMissed: return 1;
-      default: return 0;
+      case ExitCode::kProgramFailed:
+        return 4;
+      case ExitCode::kWrongInput:
+        return 3;
+      case ExitCode::kTimeLimit:
+        return 2;
+      case ExitCode::kExpectationMissed:
+        return 1;
+      default:
+        return 0;
     }
   };
   return severity(b) > severity(a) ? b : a;

@@ -25,13 +25,15 @@ struct EarlierOutput {
 };
 
 bool is_among(const std::string& name, const std::vector<std::string>& patterns) {
-  return std::any_of(patterns.begin(), patterns.end(), [&](const std::string& pattern) { return ::fnmatch(pattern.c_str(), name.c_str(), 0) == 0; });
+  return std::any_of(patterns.begin(), patterns.end(),
+                     [&](const std::string& pattern) { return ::fnmatch(pattern.c_str(), name.c_str(), 0) == 0; });
 }
 
 /// Whether files below the folder can match one of `patterns`.
 bool is_folder_of(const std::string& name, const std::vector<std::string>& patterns) {
   const std::string top = name.substr(0, name.find('/')) + "/";
-  return std::any_of(patterns.begin(), patterns.end(), [&](const std::string& pattern) { return pattern.starts_with(top); });
+  return std::any_of(patterns.begin(), patterns.end(),
+                     [&](const std::string& pattern) { return pattern.starts_with(top); });
 }
 
 InputError cannot_be_written(const std::filesystem::path& root, int error) {
@@ -54,14 +56,19 @@ EarlierOutput earlier_output(const std::filesystem::path& root, const OutputKind
     } else if (type == std::filesystem::file_type::regular && is_among(name, kind.outputs)) {
       earlier.files.push_back(entry->path());
     } else if (entry->path() != incomplete_marker(root)) {  // checked when it is opened
-      throw InputError(fmt::format("{}: contains '{}', which is not an output of '{}'; choose an empty or new directory", root.string(), name, kind.name));
+      throw InputError(
+          fmt::format("{}: contains '{}', which is not an output of '{}'; choose an empty or new directory",
+                      root.string(), name, kind.name));
     }
   }
   if (error) throw InputError(fmt::format("{}: cannot read: {}", root.string(), error.message()));
-  const auto exists = [&](const std::filesystem::path& file) { return std::filesystem::is_regular_file(std::filesystem::symlink_status(file)); };
+  const auto exists = [&](const std::filesystem::path& file) {
+    return std::filesystem::is_regular_file(std::filesystem::symlink_status(file));
+  };
   if (!earlier.files.empty() && !exists(incomplete_marker(root)) && !exists(root / kind.required_file)) {
-    throw InputError(fmt::format("{}: contains {}, but no {} of an earlier {}; choose an empty or new directory", root.string(),
-                                 earlier.files.front().lexically_relative(root).generic_string(), kind.required_file, kind.name));
+    throw InputError(fmt::format("{}: contains {}, but no {} of an earlier {}; choose an empty or new directory",
+                                 root.string(), earlier.files.front().lexically_relative(root).generic_string(),
+                                 kind.required_file, kind.name));
   }
   return earlier;
 }
@@ -73,16 +80,19 @@ OutputLock open_marker(const std::filesystem::path& root, int& descriptor) {
   if (descriptor < 0 && errno != ELOOP && errno != EISDIR && errno != ENXIO) throw cannot_be_written(root, errno);
   OutputLock lock(descriptor);
   struct stat status {};
-  const bool is_plain = descriptor >= 0 && ::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode) && status.st_nlink <= 1;
-  if (!is_plain) throw InputError(fmt::format("{}: must be a regular file; remove it or choose another directory", marker.string()));
+  const bool is_plain =
+      descriptor >= 0 && ::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode) && status.st_nlink <= 1;
+  if (!is_plain)
+    throw InputError(fmt::format("{}: must be a regular file; remove it or choose another directory", marker.string()));
   return lock;
 }
 
 /// Whether the open marker still has its name; the process that held it may have removed it.
 bool has_marker_name(const std::filesystem::path& root, int descriptor) {
-  struct stat opened {}, named {};
-  return ::fstat(descriptor, &opened) == 0 && ::lstat(incomplete_marker(root).c_str(), &named) == 0 && opened.st_dev == named.st_dev &&
-         opened.st_ino == named.st_ino;
+  struct stat opened {
+  }, named{};
+  return ::fstat(descriptor, &opened) == 0 && ::lstat(incomplete_marker(root).c_str(), &named) == 0 &&
+         opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
 }
 
 /// Opens the marker, and locks it unless it is shared. The lock of a killed process is released by the system.
@@ -96,7 +106,8 @@ OutputLock take_marker(const std::filesystem::path& root, const OutputKind& kind
     whole.l_whence = SEEK_SET;
     if (::fcntl(descriptor, F_SETLK, &whole) != 0) {
       if (errno != EACCES && errno != EAGAIN) throw cannot_be_written(root, errno);
-      throw InputError(fmt::format("{}: in use by another process that writes a {}; wait or choose another directory", root.string(), kind.name));
+      throw InputError(fmt::format("{}: in use by another process that writes a {}; wait or choose another directory",
+                                   root.string(), kind.name));
     }
     if (has_marker_name(root, descriptor)) return lock;
   }
@@ -105,7 +116,8 @@ OutputLock take_marker(const std::filesystem::path& root, const OutputKind& kind
 
 void write_marker(const std::filesystem::path& root, const OutputKind& kind, int descriptor) {
   const std::string text = kind.marker_text + "\n";
-  const bool is_written = ::ftruncate(descriptor, 0) == 0 && ::pwrite(descriptor, text.data(), text.size(), 0) == static_cast<ssize_t>(text.size());
+  const bool is_written = ::ftruncate(descriptor, 0) == 0 &&
+                          ::pwrite(descriptor, text.data(), text.size(), 0) == static_cast<ssize_t>(text.size());
   if (!is_written) throw cannot_be_written(root, errno);
 }
 
@@ -132,7 +144,8 @@ OutputLock begin_output(const std::filesystem::path& root, const OutputKind& kin
   write_marker(root, kind, descriptor);
   const EarlierOutput earlier = earlier_output(root, kind);  // again, now under the lock
   for (const std::filesystem::path& file : earlier.files) std::filesystem::remove(file, error);
-  for (auto folder = earlier.folders.rbegin(); folder != earlier.folders.rend(); ++folder) std::filesystem::remove(*folder, error);
+  for (auto folder = earlier.folders.rbegin(); folder != earlier.folders.rend(); ++folder)
+    std::filesystem::remove(*folder, error);
   return lock;
 }
 

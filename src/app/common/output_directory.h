@@ -34,10 +34,10 @@ class OutputLock {
   int descriptor_ = -1;
 };
 
-/// Creates the directory, locks it unless `kind.is_concurrent`, marks it incomplete, and removes the regular files of an
-/// earlier command of this kind. Throws InputError, and leaves the directory unchanged, if it contains other entries,
-/// if another process writes to it, or if it is not writable. Other entries are unknown names, links, a folder or a
-/// device in place of a file, or files of these names without the required file.
+/// Creates the directory, locks it unless `kind.is_concurrent`, marks it incomplete, and removes the regular files of
+/// an earlier command of this kind. Throws InputError, and leaves the directory unchanged, if it contains other
+/// entries, if another process writes to it, or if it is not writable. Other entries are unknown names, links, a folder
+/// or a device in place of a file, or files of these names without the required file.
 [[nodiscard]] OutputLock begin_output(const std::filesystem::path& root, const OutputKind& kind);
 
 /// Removes the marker: the directory is complete.

@@ -10,7 +10,9 @@
 namespace patrol::app {
 
 /// Time of a steady clock; only differences have a meaning.
-inline double wall_seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+inline double wall_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 /// CPU time of all threads of this process.
 inline double process_seconds() {

@@ -14,7 +14,8 @@ namespace patrol::app {
 class TemporaryFolder {
  public:
   /// `purpose` distinguishes the folders of one process.
-  explicit TemporaryFolder(const std::string& purpose) : path_(std::filesystem::temp_directory_path() / fmt::format("patrol-{}-{}", purpose, ::getpid())) {
+  explicit TemporaryFolder(const std::string& purpose)
+      : path_(std::filesystem::temp_directory_path() / fmt::format("patrol-{}-{}", purpose, ::getpid())) {
     std::filesystem::create_directories(path_);
   }
   ~TemporaryFolder() {

@@ -19,39 +19,66 @@ report::MapBlock map_block(const MappingContents& contents) {
     shown.extend(path.back());
   }
   const report::MapLayers layers{.built = contents.map, .T_world_map = {}, .truth = {}, .error_m = {}};
-  return {.picture = report::map_picture(layers, shown), .paths = {{"estimated path", report::SeriesColor::kEstimate, {std::move(path)}}}, .marks = {}};
+  return {.picture = report::map_picture(layers, shown),
+          .paths = {{"estimated path", report::SeriesColor::kEstimate, {std::move(path)}}},
+          .marks = {}};
 }
 
 /// Plot of one cost column, by its name, over the scans.
-report::LinePlot plot_of(const MappingContents& contents, const std::string& column, const std::string& title, const std::string& unit) {
+report::LinePlot plot_of(const MappingContents& contents, const std::string& column, const std::string& title,
+                         const std::string& unit) {
   const auto index_of = [&](const std::string& name) {
     return static_cast<std::size_t>(std::ranges::find(contents.cost.columns, name) - contents.cost.columns.begin());
   };
   const std::size_t scans = index_of("scans"), value = index_of(column);
   report::Curve curve{.name = title, .color = report::SeriesColor::kEstimate, .is_dashed = false, .points = {}};
-  for (const auto& row : contents.cost.rows) curve.points.emplace_back(std::get<double>(row[scans]), std::get<double>(row[value]));
+  for (const auto& row : contents.cost.rows)
+    curve.points.emplace_back(std::get<double>(row[scans]), std::get<double>(row[value]));
   const double last = curve.points.empty() ? 1.0 : curve.points.back().x();
-  return {.title = title, .unit = unit, .axis = {.label = "scans", .max = last}, .max = {}, .curves = {std::move(curve)}, .marks = {}, .spans = {}};
+  return {.title = title,
+          .unit = unit,
+          .axis = {.label = "scans", .max = last},
+          .max = {},
+          .curves = {std::move(curve)},
+          .marks = {},
+          .spans = {}};
 }
 
 }  // namespace
 
 report::Page mapping_page(const MappingContents& contents) {
-  const io::Metrics &log = contents.metrics["log"], &graph = contents.metrics["graph"], &performance = contents.metrics["performance"];
-  const report::KeyMetrics key_metrics{.metrics = {{.label = "scans", .value = fmt::format("{}", log["scans"].get<std::size_t>()), .unit = "", .note = fmt::format("{:.0f} s", log["duration_s"].get<double>())},
-                                               {.label = "trajectory length", .value = fmt::format("{:.0f}", contents.metrics["path"]["way_m"].get<double>()), .unit = "m",
-                                                .note = fmt::format("by odometry {:.0f} m", log["odometry_way_m"].get<double>())},
-                                               {.label = "edges to other submaps", .value = fmt::format("{}", graph["cross_submap_edges"].get<std::size_t>()), .unit = "",
-                                                .note = fmt::format("of {}, between {} nodes", graph["edges"].get<std::size_t>(), graph["nodes"].get<std::size_t>())},
-                                               {.label = "time", .value = fmt::format("{:.1f}", performance["wall_s"].get<double>()), .unit = "s",
-                                                .note = fmt::format("{:.0f} times real time", performance["real_time_factor"].get<double>())},
-                                               {.label = "memory", .value = fmt::format("{:.0f}", performance["peak_memory_mb"].get<double>()), .unit = "MB", .note = "peak of the process"}}};
+  const io::Metrics &log = contents.metrics["log"], &graph = contents.metrics["graph"],
+                    &performance = contents.metrics["performance"];
+  const report::KeyMetrics key_metrics{
+      .metrics = {{.label = "scans",
+                   .value = fmt::format("{}", log["scans"].get<std::size_t>()),
+                   .unit = "",
+                   .note = fmt::format("{:.0f} s", log["duration_s"].get<double>())},
+                  {.label = "trajectory length",
+                   .value = fmt::format("{:.0f}", contents.metrics["path"]["way_m"].get<double>()),
+                   .unit = "m",
+                   .note = fmt::format("by odometry {:.0f} m", log["odometry_way_m"].get<double>())},
+                  {.label = "edges to other submaps",
+                   .value = fmt::format("{}", graph["cross_submap_edges"].get<std::size_t>()),
+                   .unit = "",
+                   .note = fmt::format("of {}, between {} nodes", graph["edges"].get<std::size_t>(),
+                                       graph["nodes"].get<std::size_t>())},
+                  {.label = "time",
+                   .value = fmt::format("{:.1f}", performance["wall_s"].get<double>()),
+                   .unit = "s",
+                   .note = fmt::format("{:.0f} times real time", performance["real_time_factor"].get<double>())},
+                  {.label = "memory",
+                   .value = fmt::format("{:.0f}", performance["peak_memory_mb"].get<double>()),
+                   .unit = "MB",
+                   .note = "peak of the process"}}};
   return {.kind = "mapping",
           .title = fmt::format("{}, mapped by {}", contents.log, contents.method),
           .facts = {},
           .sections = {{"", {key_metrics}},
                        {"Map", {map_block(contents)}},
-                       {"Computation time per scan", {plot_of(contents, "ms_per_scan", "CPU time per scan", "ms"), plot_of(contents, "peak_memory_mb", "Peak memory", "MB")}}},
+                       {"Computation time per scan",
+                        {plot_of(contents, "ms_per_scan", "CPU time per scan", "ms"),
+                         plot_of(contents, "peak_memory_mb", "Peak memory", "MB")}}},
           .footer = "Generated by patrol slam; all settings are in settings.yaml."};
 }
 

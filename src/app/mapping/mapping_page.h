@@ -4,8 +4,8 @@
 
 #include "core/grid.h"
 #include "core/trajectory.h"
-#include "io/json/metrics_json.h"
 #include "io/files/table.h"
+#include "io/json/metrics_json.h"
 #include "report/blocks.h"
 
 namespace patrol::app {
@@ -14,8 +14,8 @@ namespace patrol::app {
 struct MappingContents {
   std::string log, method;
   OccupancyGrid map;
-  Trajectory estimate;   ///< T_map_body
-  io::Table cost;        ///< scans, way_m, ms_per_scan, peak_memory_mb
+  Trajectory estimate;  ///< T_map_body
+  io::Table cost;       ///< scans, way_m, ms_per_scan, peak_memory_mb
   io::Metrics metrics;
 };
 

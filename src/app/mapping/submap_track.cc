@@ -12,8 +12,9 @@
 
 namespace patrol::app {
 
-std::optional<SubmapTrack> build_submaps(const std::filesystem::path& run, const slam::PlanarScanSettings& scan, const slam::SubmapRbpfSettings& settings,
-                                         const BoostedStumps& neighbors, std::uint64_t seed, ProgressBar& bar, const InterruptGuard& guard) {
+std::optional<SubmapTrack> build_submaps(const std::filesystem::path& run, const slam::PlanarScanSettings& scan,
+                                         const slam::SubmapRbpfSettings& settings, const BoostedStumps& neighbors,
+                                         std::uint64_t seed, ProgressBar& bar, const InterruptGuard& guard) {
   const RunDirectory directory = open_run_directory(run);
   const Trajectory T_world_body = io::load_tum(directory.truth());
   const std::unique_ptr<io::ScanLog> log = io::open_scan_log(directory.log(), {});
@@ -22,7 +23,8 @@ std::optional<SubmapTrack> build_submaps(const std::filesystem::path& run, const
     if (guard.is_interrupted()) return std::nullopt;
     track.slam.update(slam::planar_scan(*recorded, scan), recorded->T_odom_body);
     track.stamps.push_back(recorded->scan.stamp);
-    bar.show(fmt::format("{}  {:3.0f} %  {} submaps", run.string(), 100.0 * log->progress(), track.slam.first_scans().size()));
+    bar.show(fmt::format("{}  {:3.0f} %  {} submaps", run.string(), 100.0 * log->progress(),
+                         track.slam.first_scans().size()));
   }
   track.slam.finish();
   for (const std::size_t first : track.slam.first_scans()) {

@@ -15,7 +15,9 @@
 namespace patrol::app {
 namespace {
 
-std::chrono::milliseconds milliseconds(double seconds) { return std::chrono::milliseconds(static_cast<std::int64_t>(1e3 * seconds)); }
+std::chrono::milliseconds milliseconds(double seconds) {
+  return std::chrono::milliseconds(static_cast<std::int64_t>(1e3 * seconds));
+}
 
 /// Error message of a response, one line.
 std::string error_of(const monitor::HttpClientResponse& response) {
@@ -34,7 +36,8 @@ MonitorServer make_monitor_server(const std::string& url, const std::optional<st
     server.token = token;
     monitor::check_token("PATROL_TOKEN", server.token);
   } else {
-    throw InputError(fmt::format("{}: access token required: name its file (DIR/token of the monitoring server) or set PATROL_TOKEN", url));
+    throw InputError(fmt::format(
+        "{}: access token required: name its file (DIR/token of the monitoring server) or set PATROL_TOKEN", url));
   }
   return server;
 }
@@ -46,7 +49,8 @@ Sender::Outcome Sender::send_next() {
   const Outbox::Batch batch = outbox_.next(batch_limit_, settings_.batch_bytes);
   if (batch.results.empty()) return Outcome::kEmpty;
   const std::string body = fmt::format("[{}]", fmt::join(batch.results, ","));
-  const auto response = monitor::post_json(server_.url, "/api/results", server_.token, body, settings_.request_timeout_s, &last_error_);
+  const auto response =
+      monitor::post_json(server_.url, "/api/results", server_.token, body, settings_.request_timeout_s, &last_error_);
   if (!response) return Outcome::kUnreachable;
   if (response->status == 200 || response->status == 409) {
     if (response->status == 409) set_aside_conflicts(batch, response->body);

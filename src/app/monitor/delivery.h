@@ -23,11 +23,11 @@ struct MonitorServer {
 MonitorServer make_monitor_server(const std::string& url, const std::optional<std::filesystem::path>& token_file);
 
 struct DeliverySettings {
-  std::size_t batch_results = 200;   ///< maximum number of results in one request
+  std::size_t batch_results = 200;  ///< maximum number of results in one request
   std::size_t batch_bytes = 4'000'000;
-  double gather_s = 0.1;             ///< delay from the first waiting result to its request, to collect others
+  double gather_s = 0.1;  ///< delay from the first waiting result to its request, to collect others
   double request_timeout_s = 10.0;
-  double first_pause_s = 0.25;       ///< pause after a failed request; doubled for each further one
+  double first_pause_s = 0.25;  ///< pause after a failed request; doubled for each further one
   double max_pause_s = 5.0;
 };
 

@@ -12,9 +12,9 @@
 #include "core/overloaded.h"
 #include "inspect/route_frame.h"
 #include "io/files/base64.h"
+#include "io/files/one_line.h"
 #include "io/json/inspection_json.h"
 #include "io/maps/map_png.h"
-#include "io/files/one_line.h"
 
 namespace patrol::app {
 namespace {
@@ -36,13 +36,17 @@ Json event_json(const Event& event) {
 
 Json map_json(const OccupancyGrid& map) {
   const GridGeometry& geometry = map.geometry();
-  return {{"width", geometry.width}, {"height", geometry.height}, {"resolution_m", geometry.resolution_m}, {"origin_m", point(geometry.origin_m)},
+  return {{"width", geometry.width},
+          {"height", geometry.height},
+          {"resolution_m", geometry.resolution_m},
+          {"origin_m", point(geometry.origin_m)},
           {"png_base64", io::to_base64(io::map_png(map))}};
 }
 
 bool is_same(const OccupancyGrid& a, const OccupancyGrid& b) {
   const GridGeometry &one = a.geometry(), &other = b.geometry();
-  return one.width == other.width && one.height == other.height && one.origin_m == other.origin_m && a.values() == b.values();
+  return one.width == other.width && one.height == other.height && one.origin_m == other.origin_m &&
+         a.values() == b.values();
 }
 
 /// Stations and goals of the mission as JSON.
@@ -53,7 +57,8 @@ Json stations_of(const ScenarioFiles& files) {
   };
   const Route route = inspect::to_map(files.route, files.T_site_start);
   for (const Station& station : route.stations) add(station.name, name_of(station.type), station.T_route_body);
-  for (const SavedGoal& goal : files.goals) add(fmt::format("goal_{}", goal.number), name_of(goal.type), goal.T_map_body);
+  for (const SavedGoal& goal : files.goals)
+    add(fmt::format("goal_{}", goal.number), name_of(goal.type), goal.T_map_body);
   if (route.dock) add("dock", "dock", route.dock->T_route_docked);
   return list;
 }
@@ -62,7 +67,8 @@ Json stations_of(const ScenarioFiles& files) {
 
 std::string new_run_name(const std::string& scenario, std::uint64_t seed) {
   const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
-  return fmt::format("{}-seed{}-{:%Y%m%dT%H%M%SZ}-{:04x}", scenario, seed, fmt::gmtime(std::chrono::system_clock::to_time_t(now)), std::random_device()() & 0xffffU);
+  return fmt::format("{}-seed{}-{:%Y%m%dT%H%M%SZ}-{:04x}", scenario, seed,
+                     fmt::gmtime(std::chrono::system_clock::to_time_t(now)), std::random_device()() & 0xffffU);
 }
 
 Reporter::Reporter(std::filesystem::path root, ReportedRun run, MonitorServer server, const ReporterSettings& settings)
@@ -127,7 +133,8 @@ void Reporter::report_map(const MapUpdate& update) {
 }
 
 void Reporter::report_status(const char* state, const std::string& message, std::string stations) {
-  const Json json = {{"state", state}, {"scenario", run_.scenario}, {"message", message}, {"stations", Json::parse(stations)}};
+  const Json json = {
+      {"state", state}, {"scenario", run_.scenario}, {"message", message}, {"stations", Json::parse(stations)}};
   report(newest_, "status", text_of(json));
 }
 

@@ -15,7 +15,7 @@ namespace patrol::app {
 /// Identification of a run on the monitoring server.
 struct ReportedRun {
   std::string robot;
-  std::string run;       ///< unique name of the run
+  std::string run;  ///< unique name of the run
   std::string world;
   std::string scenario;
 };
@@ -24,8 +24,8 @@ struct ReportedRun {
 std::string new_run_name(const std::string& scenario, std::uint64_t seed);
 
 struct ReporterSettings {
-  double pose_period_s = 1.0;   ///< simulated
-  double map_period_s = 10.0;   ///< simulated; an unchanged map is not sent again
+  double pose_period_s = 1.0;     ///< simulated
+  double map_period_s = 10.0;     ///< simulated; an unchanged map is not sent again
   double drain_timeout_s = 10.0;  ///< time limit at the end of the run for pending results
 };
 

@@ -12,14 +12,16 @@ Grid<plan::Cost> costs_of_point(const OccupancyGrid& occupancy, const plan::Cost
   Grid<plan::Cost> costs(occupancy.geometry(), plan::kFreeCost);
   for (std::size_t i = 0; i < costs.values().size(); ++i) {
     const std::int8_t value = occupancy.values()[i];
-    if (value == kUnknown ? !settings.allow_unknown : value >= settings.occupied_percent) costs.values()[i] = plan::kLethalCost;
+    if (value == kUnknown ? !settings.allow_unknown : value >= settings.occupied_percent)
+      costs.values()[i] = plan::kLethalCost;
   }
   return costs;
 }
 
 }  // namespace
 
-Grid<plan::Cost> make_costs(const OccupancyGrid& occupancy, const PlanBody& body, const plan::CostmapSettings& settings) {
+Grid<plan::Cost> make_costs(const OccupancyGrid& occupancy, const PlanBody& body,
+                            const plan::CostmapSettings& settings) {
   if (!body.footprint) return costs_of_point(occupancy, settings);
   plan::CostmapSettings drives_with = settings;
   drives_with.resolution_m = std::max(settings.resolution_m, occupancy.geometry().resolution_m);
@@ -34,7 +36,8 @@ Grid<plan::Cost> make_costs(const OccupancyGrid& occupancy, const PlanBody& body
   plan::Costmap costmap(drives_with, *body.footprint, {});
   costmap.set_map(moved_map);
 
-  const Eigen::Array2d end = (moved.origin_m + moved.resolution_m * Eigen::Vector2d(moved.width, moved.height)).array() / cell_m;
+  const Eigen::Array2d end =
+      (moved.origin_m + moved.resolution_m * Eigen::Vector2d(moved.width, moved.height)).array() / cell_m;
   constexpr double kRounding = 1e-6;  // cells
   Grid<plan::Cost> costs({.resolution_m = cell_m,
                           .width = static_cast<int>(std::ceil(end.x() - kRounding)),
@@ -49,7 +52,8 @@ Grid<plan::Cost> make_costs(const OccupancyGrid& occupancy, const PlanBody& body
 }
 
 std::int64_t num_passable(const Grid<plan::Cost>& costs) {
-  return std::count_if(costs.values().begin(), costs.values().end(), [](plan::Cost cost) { return cost != plan::kLethalCost; });
+  return std::count_if(costs.values().begin(), costs.values().end(),
+                       [](plan::Cost cost) { return cost != plan::kLethalCost; });
 }
 
 std::optional<Cell> nearest_free(const Grid<plan::Cost>& costs, const Eigen::Vector2d& p_m) {
@@ -61,7 +65,8 @@ std::optional<Cell> nearest_free(const Grid<plan::Cost>& costs, const Eigen::Vec
   }
 }
 
-const char* blocked_reason(const OccupancyGrid& occupancy, const plan::CostmapSettings& settings, const Eigen::Vector2d& p_m) {
+const char* blocked_reason(const OccupancyGrid& occupancy, const plan::CostmapSettings& settings,
+                           const Eigen::Vector2d& p_m) {
   const std::int8_t value = occupancy.at(occupancy.geometry().cell_at(p_m));
   if (value >= settings.occupied_percent) return "is occupied";
   if (value == kUnknown && !settings.allow_unknown) return "is unknown in the map";

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <filesystem>
 #include <optional>
 #include <string>
+
+#include <Eigen/Core>
 
 #include "core/grid.h"
 #include "io/maps/moving_ai.h"
@@ -21,7 +21,9 @@ class PlanMap {
 
   bool is_moving_ai() const { return moving_ai_.has_value(); }
   const char* unit() const { return is_moving_ai() ? "cells" : "m"; }
-  const GridGeometry& geometry() const { return is_moving_ai() ? moving_ai_->terrain.geometry() : occupancy_.geometry(); }
+  const GridGeometry& geometry() const {
+    return is_moving_ai() ? moving_ai_->terrain.geometry() : occupancy_.geometry();
+  }
   /// Occupancy for a robot at a position; on a MovingAI map it depends on whether the position is in water or on land.
   OccupancyGrid occupancy_from(const Eigen::Vector2d& p_m) const;
 

@@ -10,8 +10,8 @@
 
 #include "app/scenario/scenario.h"
 #include "core/error.h"
-#include "io/yaml/settings_yaml.h"
 #include "io/urdf.h"
+#include "io/yaml/settings_yaml.h"
 #include "plan/routes/global_planner.h"
 
 namespace patrol::app {
@@ -54,7 +54,8 @@ void set_robot(const std::string& robot, const std::filesystem::path& data_root,
 }
 
 void set_disc(double radius_m, PlanSetup& setup) {
-  if (!(radius_m >= 0.01 && radius_m <= 10.0)) throw InputError(fmt::format("--radius-m: {}: must be in [0.01, 10]", radius_m));
+  if (!(radius_m >= 0.01 && radius_m <= 10.0))
+    throw InputError(fmt::format("--radius-m: {}: must be in [0.01, 10]", radius_m));
   setup.body = {.name = fmt::format("a disc of {} m", radius_m), .footprint = outline_of_disc(radius_m)};
   setup.settings.routes.cost_weight = plan::GlobalPlannerSettings().family.cost_weight;
 }
@@ -64,8 +65,10 @@ void set_disc(double radius_m, PlanSetup& setup) {
 PlanSetup load_plan_setup(const PlanOptions& options) {
   if (options.robot && options.radius_m) throw InputError("--robot and --radius-m are mutually exclusive");
   for (const std::string& entry : options.overrides) {
-    const bool sets_unknown = entry.starts_with("costmap.crosses_unknown") || entry.starts_with("costmap.allow_unknown");
-    if (sets_unknown) throw InputError("--set: costmap.allow_unknown: not supported: use allow_unknown=true or allow_unknown=false");
+    const bool sets_unknown =
+        entry.starts_with("costmap.crosses_unknown") || entry.starts_with("costmap.allow_unknown");
+    if (sets_unknown)
+      throw InputError("--set: costmap.allow_unknown: not supported: use allow_unknown=true or allow_unknown=false");
   }
   PlanSetup setup;
   PlanSettings& settings = setup.settings;

@@ -14,18 +14,18 @@
 namespace patrol::app {
 
 /// Settings of `patrol plan --set`. The defaults are those of a point. For a disc, routes.cost_weight is that of the
-/// robots (plan/routes/global_planner.h). For a robot, costmap, allow_unknown, routes and speed_mps come from its profile
-/// (models/<robot>/<robot>.yaml: stack.navigation).
+/// robots (plan/routes/global_planner.h). For a robot, costmap, allow_unknown, routes and speed_mps come from its
+/// profile (models/<robot>/<robot>.yaml: stack.navigation).
 struct PlanSettings {
   std::string planner = "theta_star";  ///< plan/routes/planners.h
   std::uint64_t seed = 1;              ///< seed of stochastic planners and station orders
   bool allow_unknown = false;          ///< unknown cells are passable, otherwise lethal
   bool smooth = false;
-  double min_clearance_m = 0.3;        ///< smoothing keeps this or the route's clearance; MovingAI: cells
-  /// Maximum number of passable cells for the any-angle optimum, which took up to 8 s. The limit for all cells is 8 times
-  /// as high.
+  double min_clearance_m = 0.3;  ///< smoothing keeps this or the route's clearance; MovingAI: cells
+  /// Maximum number of passable cells for the any-angle optimum, which took up to 8 s. The limit for all cells is 8
+  /// times as high.
   int max_any_angle_cells = 150'000;
-  double speed_mps = 1.0;              ///< speed on a tour; on MovingAI maps cells/s
+  double speed_mps = 1.0;  ///< speed on a tour; on MovingAI maps cells/s
   plan::CostmapSettings costmap;
   plan::RoutePlannerSettings routes;
   plan::TourOrderSettings tour;

@@ -6,11 +6,11 @@
 
 #include <fmt/format.h>
 
+#include "app/common/process_cost.h"
+#include "app/common/progress_bar.h"
 #include "app/plan/plan_grid.h"
 #include "app/plan/route_check.h"
 #include "app/plan/route_metrics.h"
-#include "app/common/process_cost.h"
-#include "app/common/progress_bar.h"
 #include "core/error.h"
 
 namespace patrol::app {
@@ -29,12 +29,14 @@ class Grids {
     const GridGeometry& size = map->second.terrain.geometry();
     if (size.width != problem.width || size.height != problem.height) {
       throw input_error(file_.string(), problem.line,
-                        fmt::format("{}: has {} x {} cells, the problem's map {} x {}", problem.map, size.width, size.height, problem.width, problem.height));
+                        fmt::format("{}: has {} x {} cells, the problem's map {} x {}", problem.map, size.width,
+                                    size.height, problem.width, problem.height));
     }
     const bool swims = map->second.terrain.at(problem.start) == 'W';
     const auto key = std::pair(problem.map, swims);
     auto grid = grids_.find(key);
-    if (grid == grids_.end()) grid = grids_.emplace(key, make_costs(io::to_occupancy(map->second, problem.start), {}, {})).first;
+    if (grid == grids_.end())
+      grid = grids_.emplace(key, make_costs(io::to_occupancy(map->second, problem.start), {}, {})).first;
     return grid->second;
   }
 
@@ -44,14 +46,18 @@ class Grids {
   std::map<std::pair<std::string, bool>, Grid<plan::Cost>> grids_;
 };
 
-std::optional<std::string> failure_of(const SolvedProblem& solved, const plan::Route& route, const Grid<plan::Cost>& costs, const std::string& planner) {
+std::optional<std::string> failure_of(const SolvedProblem& solved, const plan::Route& route,
+                                      const Grid<plan::Cost>& costs, const std::string& planner) {
   const io::MovingAiProblem& problem = solved.problem;
   if (solved.status == plan::PlanStatus::kNotFound) return "no route found";
   if (!solved.is_found()) return "no route found, but the file states a length";
-  if (const auto fault = validate_route(costs, route, problem.start, problem.goal, planner == "visibility_graph")) return "the route " + *fault;
-  if (must_agree(planner) && !solved.agrees()) return fmt::format("is {:.6f} cells long, published {:.6f}", solved.length, problem.optimal_length);
+  if (const auto fault = validate_route(costs, route, problem.start, problem.goal, planner == "visibility_graph"))
+    return "the route " + *fault;
+  if (must_agree(planner) && !solved.agrees())
+    return fmt::format("is {:.6f} cells long, published {:.6f}", solved.length, problem.optimal_length);
   if (is_any_angle(planner) && solved.length > problem.optimal_length + solved.published_tolerance()) {
-    return fmt::format("is {:.6f} cells long, more than {:.6f} over eight neighbors", solved.length, problem.optimal_length);
+    return fmt::format("is {:.6f} cells long, more than {:.6f} over eight neighbors", solved.length,
+                       problem.optimal_length);
   }
   return std::nullopt;
 }
@@ -61,17 +67,22 @@ std::optional<std::string> failure_of(const SolvedProblem& solved, const plan::R
 bool must_agree(const std::string& planner) { return planner == "astar" || planner == "dijkstra"; }
 
 std::filesystem::path find_map(const std::filesystem::path& file, const io::MovingAiProblem& problem) {
-  const std::filesystem::path as_written = file.parent_path() / problem.map, in_same_folder = file.parent_path() / std::filesystem::path(problem.map).filename();
+  const std::filesystem::path as_written = file.parent_path() / problem.map,
+                              in_same_folder = file.parent_path() / std::filesystem::path(problem.map).filename();
   for (const std::filesystem::path& map : {as_written, in_same_folder}) {
     std::error_code ignored;  // an invalid file name
     if (std::filesystem::is_regular_file(map, ignored)) return map;
   }
-  throw input_error(file.string(), problem.line, fmt::format("{}: neither {} nor {} found", problem.map, as_written.string(), in_same_folder.string()));
+  throw input_error(
+      file.string(), problem.line,
+      fmt::format("{}: neither {} nor {} found", problem.map, as_written.string(), in_same_folder.string()));
 }
 
-std::optional<std::vector<SolvedProblem>> solve_problems(const std::filesystem::path& file, const PlanSettings& settings) {
+std::optional<std::vector<SolvedProblem>> solve_problems(const std::filesystem::path& file,
+                                                         const PlanSettings& settings) {
   const std::vector<io::MovingAiProblem> problems = io::load_moving_ai_problems(file);
-  const std::unique_ptr<plan::RoutePlanner> planner = plan::make_route_planner(settings.planner, settings.routes, settings.seed);
+  const std::unique_ptr<plan::RoutePlanner> planner =
+      plan::make_route_planner(settings.planner, settings.routes, settings.seed);
   Grids grids(file);
   InterruptGuard guard;
   ProgressBar bar;
@@ -81,8 +92,12 @@ std::optional<std::vector<SolvedProblem>> solve_problems(const std::filesystem::
     const Grid<plan::Cost>& costs = grids.of(problem);
     const double processor_s = process_seconds();
     const plan::Route route = planner->plan(costs, problem.start, problem.goal);
-    SolvedProblem solved{.problem = problem, .status = route.status, .length = route.length, .num_turns = count_turns(route.points),
-                         .num_expanded = route.num_expanded, .processor_s = process_seconds() - processor_s};
+    SolvedProblem solved{.problem = problem,
+                         .status = route.status,
+                         .length = route.length,
+                         .num_turns = count_turns(route.points),
+                         .num_expanded = route.num_expanded,
+                         .processor_s = process_seconds() - processor_s};
     solved.failure = failure_of(solved, route, costs, settings.planner);
     all.push_back(std::move(solved));
     if (guard.is_interrupted()) return std::nullopt;

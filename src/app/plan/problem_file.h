@@ -46,6 +46,7 @@ std::filesystem::path find_map(const std::filesystem::path& file, const io::Movi
 /// found; the lengths of A* and Dijkstra must equal the published ones, those of Theta* and of the any-angle optimum
 /// must not exceed them. Shows progress in a terminal; none if interrupted. Throws InputError with the file and the
 /// line.
-std::optional<std::vector<SolvedProblem>> solve_problems(const std::filesystem::path& file, const PlanSettings& settings);
+std::optional<std::vector<SolvedProblem>> solve_problems(const std::filesystem::path& file,
+                                                         const PlanSettings& settings);
 
 }  // namespace patrol::app

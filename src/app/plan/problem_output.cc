@@ -27,7 +27,8 @@ Summary to_summary(const ProblemReport& report) {
     if (!solved.is_found()) continue;
     ++summary.num_found;
     summary.num_agree += solved.agrees();
-    summary.worst_difference = std::max(summary.worst_difference, std::abs(solved.length - solved.problem.optimal_length));
+    summary.worst_difference =
+        std::max(summary.worst_difference, std::abs(solved.length - solved.problem.optimal_length));
     if (solved.ratio()) summary.ratios.push_back(*solved.ratio());
   }
   return summary;
@@ -49,19 +50,24 @@ std::size_t num_failed(const ProblemReport& report) {
 std::string to_text(const ProblemReport& report) {
   const Summary summary = to_summary(report);
   const std::size_t count = report.solved.size(), failed = num_failed(report);
-  std::string text = fmt::format("{}: {} problems by {}\nroutes             {} found, each checked against every lethal cell\n", report.file_name, count,
-                                 report.settings.planner, summary.num_found);
-  text += fmt::format("published lengths  {} agree to the last digit{}, worst difference {:.3g} cells\n", summary.num_agree,
-                      must_agree(report.settings.planner) ? "" : " (not expected)", summary.worst_difference);
+  std::string text =
+      fmt::format("{}: {} problems by {}\nroutes             {} found, each checked against every lethal cell\n",
+                  report.file_name, count, report.settings.planner, summary.num_found);
+  text +=
+      fmt::format("published lengths  {} agree to the last digit{}, worst difference {:.3g} cells\n", summary.num_agree,
+                  must_agree(report.settings.planner) ? "" : " (not expected)", summary.worst_difference);
   if (!summary.ratios.empty()) {
-    text += fmt::format("length / optimum   mean {:.6f}, median {:.6f}, minimum {:.6f}, maximum {:.6f}\n", mean_of(summary.ratios),
-                        score::percentile(summary.ratios, 0.5), *std::min_element(summary.ratios.begin(), summary.ratios.end()), *std::max_element(summary.ratios.begin(), summary.ratios.end()));
+    text += fmt::format("length / optimum   mean {:.6f}, median {:.6f}, minimum {:.6f}, maximum {:.6f}\n",
+                        mean_of(summary.ratios), score::percentile(summary.ratios, 0.5),
+                        *std::min_element(summary.ratios.begin(), summary.ratios.end()),
+                        *std::max_element(summary.ratios.begin(), summary.ratios.end()));
   }
   text += fmt::format("processor time     {:.3f} ms per problem, {:.2f} s in total\nchecks failed      {}\n",
                       1e3 * summary.processor_s / static_cast<double>(count), summary.processor_s, failed);
   std::size_t num_printed = 0;
   for (const SolvedProblem& solved : report.solved) {
-    if (solved.failure && num_printed++ < kMaxFailuresPrinted) text += fmt::format("  {}:{}: {}\n", report.file_name, solved.problem.line, *solved.failure);
+    if (solved.failure && num_printed++ < kMaxFailuresPrinted)
+      text += fmt::format("  {}:{}: {}\n", report.file_name, solved.problem.line, *solved.failure);
   }
   if (failed > kMaxFailuresPrinted) text += fmt::format("  and {} more\n", failed - kMaxFailuresPrinted);
   return text;
@@ -85,22 +91,25 @@ io::Metrics to_json(const ProblemReport& report) {
             {"least", ratio(ratios.empty() ? 0.0 : *std::min_element(ratios.begin(), ratios.end()))},
             {"worst", ratio(ratios.empty() ? 0.0 : *std::max_element(ratios.begin(), ratios.end()))}}},
           {"performance",
-           {{"processor_s", summary.processor_s}, {"processor_s_per_problem", summary.processor_s / static_cast<double>(report.solved.size())}}}};
+           {{"processor_s", summary.processor_s},
+            {"processor_s_per_problem", summary.processor_s / static_cast<double>(report.solved.size())}}}};
 }
 
 io::Table problem_table(const ProblemReport& report) {
   io::Table table{.name = "problems",
-                  .columns = {"line", "bucket", "start_x", "start_y", "goal_x", "goal_y", "published_cells", "status", "length_cells", "ratio", "turns",
-                              "expanded_cells", "failure"},
+                  .columns = {"line", "bucket", "start_x", "start_y", "goal_x", "goal_y", "published_cells", "status",
+                              "length_cells", "ratio", "turns", "expanded_cells", "failure"},
                   .rows = {}};
   for (const SolvedProblem& solved : report.solved) {
     const io::MovingAiProblem& problem = solved.problem;
     const auto whole = [](std::int64_t value) { return io::TableValue(value); };
     const auto from_top = [&](Cell cell) { return whole(problem.height - 1 - cell.row); };
-    table.rows.push_back({whole(problem.line), whole(problem.bucket), whole(problem.start.col), from_top(problem.start), whole(problem.goal.col),
-                          from_top(problem.goal), problem.optimal_length, std::string(status_name(solved.status)),
-                          solved.is_found() ? io::TableValue(solved.length) : io::TableValue(), solved.ratio() ? io::TableValue(*solved.ratio()) : io::TableValue(),
-                          whole(solved.num_turns), whole(solved.num_expanded), solved.failure.value_or("")});
+    table.rows.push_back({whole(problem.line), whole(problem.bucket), whole(problem.start.col), from_top(problem.start),
+                          whole(problem.goal.col), from_top(problem.goal), problem.optimal_length,
+                          std::string(status_name(solved.status)),
+                          solved.is_found() ? io::TableValue(solved.length) : io::TableValue(),
+                          solved.ratio() ? io::TableValue(*solved.ratio()) : io::TableValue(), whole(solved.num_turns),
+                          whole(solved.num_expanded), solved.failure.value_or("")});
   }
   return table;
 }

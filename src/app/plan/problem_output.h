@@ -6,8 +6,8 @@
 
 #include "app/plan/plan_settings.h"
 #include "app/plan/problem_file.h"
-#include "io/json/metrics_json.h"
 #include "io/files/table.h"
+#include "io/json/metrics_json.h"
 
 namespace patrol::app {
 

@@ -32,7 +32,8 @@ long ceil_div(long a, long b) { return -floor_div(-a, b); }
 
 class Leg {
  public:
-  Leg(const Grid<plan::Cost>& costs, Point from, Point to) : costs_(costs), low_(from.y <= to.y ? from : to), high_(from.y <= to.y ? to : from) {}
+  Leg(const Grid<plan::Cost>& costs, Point from, Point to)
+      : costs_(costs), low_(from.y <= to.y ? from : to), high_(from.y <= to.y ? to : from) {}
 
   /// Lethal cell whose closed square the leg meets; with `is_open`, whose inside.
   std::optional<Cell> lethal_cell(bool is_open) const {
@@ -70,7 +71,8 @@ class Leg {
     const auto is_beside = [&](long along, long side) { return is_lethal(low_.x / 2 + side, along); };
     if (low_.x == high_.x && low_.x % 2 == 0 && runs_between(low_.y, high_.y, is_beside)) return true;
     for (long y = low_.y + low_.y % 2; y <= high_.y; y += 2) {
-      const long x_parts = low_.x * (high_.y - low_.y) + (high_.x - low_.x) * (y - low_.y), corner = 2 * (high_.y - low_.y);
+      const long x_parts = low_.x * (high_.y - low_.y) + (high_.x - low_.x) * (y - low_.y),
+                 corner = 2 * (high_.y - low_.y);
       if (x_parts % corner == 0 && is_pinched(x_parts / corner, y / 2)) return true;
     }
     return false;
@@ -98,18 +100,22 @@ class Leg {
 
 }  // namespace
 
-std::optional<std::string> validate_route(const Grid<plan::Cost>& costs, const plan::Route& route, Cell start, Cell goal, bool may_touch) {
+std::optional<std::string> validate_route(const Grid<plan::Cost>& costs, const plan::Route& route, Cell start,
+                                          Cell goal, bool may_touch) {
   std::vector<Point> points;
   for (const Eigen::Vector2d& p : route.points) {
     const std::optional<Point> point = to_half_cell_point(p);
     if (!point) return fmt::format("turns at {}, {}: must be a cell center or corner", p.x(), p.y());
     points.push_back(*point);
   }
-  if (points.empty() || points.front() != center_of(start) || points.back() != center_of(goal)) return "does not lead from the start to the goal";
+  if (points.empty() || points.front() != center_of(start) || points.back() != center_of(goal))
+    return "does not lead from the start to the goal";
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Leg leg(costs, points[i == 0 ? 0 : i - 1], points[i]);
-    if (const std::optional<Cell> cell = leg.lethal_cell(may_touch)) return fmt::format("meets the lethal cell {}, {}", cell->col, cell->row);
-    if (may_touch && leg.passes_between_cells()) return fmt::format("passes between two lethal cells before {}, {}", route.points[i].x(), route.points[i].y());
+    if (const std::optional<Cell> cell = leg.lethal_cell(may_touch))
+      return fmt::format("meets the lethal cell {}, {}", cell->col, cell->row);
+    if (may_touch && leg.passes_between_cells())
+      return fmt::format("passes between two lethal cells before {}, {}", route.points[i].x(), route.points[i].y());
   }
   return std::nullopt;
 }

@@ -14,6 +14,7 @@ namespace patrol::app {
 ///
 /// `may_touch`, for the any-angle optimum: the route may touch squares, but not pass between two that meet; outside of
 /// the grid everything is lethal.
-std::optional<std::string> validate_route(const Grid<plan::Cost>& costs, const plan::Route& route, Cell start, Cell goal, bool may_touch);
+std::optional<std::string> validate_route(const Grid<plan::Cost>& costs, const plan::Route& route, Cell start,
+                                          Cell goal, bool may_touch);
 
 }  // namespace patrol::app

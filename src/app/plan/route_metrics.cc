@@ -3,24 +3,27 @@
 #include <cstdint>
 #include <memory>
 
-#include "app/plan/plan_grid.h"
 #include "app/common/process_cost.h"
-#include "plan/routes/visibility_graph.h"
+#include "app/plan/plan_grid.h"
 #include "plan/routes/grid_search.h"
 #include "plan/routes/line_of_sight.h"
 #include "plan/routes/smooth_route.h"
+#include "plan/routes/visibility_graph.h"
 
 namespace patrol::app {
 namespace {
 
 void smooth(const Grid<plan::Cost>& costs, const PlanSettings& settings, plan::Route& route) {
   const double cost_weight = settings.routes.cost_weight;
-  route.points = plan::smooth_route(costs, cost_weight, settings.min_clearance_m / costs.geometry().resolution_m, route.points);
+  route.points =
+      plan::smooth_route(costs, cost_weight, settings.min_clearance_m / costs.geometry().resolution_m, route.points);
   route.clearance = plan::compute_clearance(costs, route.points);
   route.length = route.cost = 0.0;
   for (std::size_t i = 1; i < route.points.size(); ++i) {
     route.length += (route.points[i] - route.points[i - 1]).norm();
-    route.cost += plan::line_cost(costs, plan::cost_factors(cost_weight), plan::cell_of(route.points[i - 1]), plan::cell_of(route.points[i])).value();
+    route.cost += plan::line_cost(costs, plan::cost_factors(cost_weight), plan::cell_of(route.points[i - 1]),
+                                  plan::cell_of(route.points[i]))
+                      .value();
   }
 }
 
@@ -39,14 +42,16 @@ int count_turns(const std::vector<Eigen::Vector2d>& points) {
   return num_turns;
 }
 
-plan::Route plan_route(plan::RoutePlanner& planner, const Grid<plan::Cost>& costs, Cell start, Cell goal, const PlanSettings& settings) {
+plan::Route plan_route(plan::RoutePlanner& planner, const Grid<plan::Cost>& costs, Cell start, Cell goal,
+                       const PlanSettings& settings) {
   plan::Route route = planner.plan(costs, start, goal);
   if (settings.smooth && route.status == plan::PlanStatus::kFound) smooth(costs, settings, route);
   return route;
 }
 
 RouteMetrics evaluate_route(const Grid<plan::Cost>& costs, Cell start, Cell goal, const PlanSettings& settings) {
-  const std::unique_ptr<plan::RoutePlanner> planner = plan::make_route_planner(settings.planner, settings.routes, settings.seed);
+  const std::unique_ptr<plan::RoutePlanner> planner =
+      plan::make_route_planner(settings.planner, settings.routes, settings.seed);
   RouteMetrics metrics;
   const double processor_s = process_seconds(), wall_s = wall_seconds();
   metrics.route = plan_route(*planner, costs, start, goal, settings);
@@ -59,7 +64,8 @@ RouteMetrics evaluate_route(const Grid<plan::Cost>& costs, Cell start, Cell goal
   if (octile.status != plan::PlanStatus::kFound) return metrics;
   metrics.octile_length = octile.length;
   const double cost_weight = settings.routes.cost_weight;
-  if (cost_weight > 0.0) metrics.octile_cost = GridSearch(GridSearch::Method::kAstar, cost_weight).plan(costs, start, goal).cost;
+  if (cost_weight > 0.0)
+    metrics.octile_cost = GridSearch(GridSearch::Method::kAstar, cost_weight).plan(costs, start, goal).cost;
   if (settings.planner == "visibility_graph") metrics.any_angle_length = metrics.route.length;
   else if (is_too_large(costs, settings.max_any_angle_cells)) metrics.is_any_angle_skipped = true;
   else metrics.any_angle_length = plan::VisibilityGraphPlanner().plan(costs, start, goal).length;

@@ -1,16 +1,16 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <string>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "app/common/output_directory.h"
 #include "app/plan/plan_map.h"
 #include "app/plan/plan_settings.h"
 #include "app/plan/route_metrics.h"
-#include "io/json/metrics_json.h"
 #include "io/files/table.h"
+#include "io/json/metrics_json.h"
 
 namespace patrol::app {
 
@@ -31,7 +31,8 @@ struct RouteReport {
 const char* status_name(plan::PlanStatus status);
 
 /// Summary line: "tunnel.yaml: 1363 x 233 cells of 0.1 m, 21345 passable, tracked".
-std::string grid_text(const std::string& map_name, const PlanMap& map, const Grid<plan::Cost>& costs, const PlanBody& body);
+std::string grid_text(const std::string& map_name, const PlanMap& map, const Grid<plan::Cost>& costs,
+                      const PlanBody& body);
 
 std::string route_title(const RouteReport& report);
 /// Report for standard output.

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <string>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "core/grid.h"
 #include "plan/perception/costmap.h"
@@ -19,7 +19,7 @@ struct RoutePicture {
     Color color;
   };
   const OccupancyGrid& occupancy;
-  const Grid<plan::Cost>& costs;  ///< in the frame of `occupancy`
+  const Grid<plan::Cost>& costs;        ///< in the frame of `occupancy`
   std::vector<Eigen::Vector2d> line_m;  ///< empty without a route
   std::vector<Mark> marks;
   std::string title, note;

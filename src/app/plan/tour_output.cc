@@ -29,9 +29,11 @@ double length_m(const TourPlan& tour) {
 }
 
 std::string windows_text(const TourPlan& tour) {
-  const auto num_late = std::count_if(tour.visits.begin(), tour.visits.end(), [](const TourVisit& visit) { return visit.late_s > 0.0; });
+  const auto num_late =
+      std::count_if(tour.visits.begin(), tour.visits.end(), [](const TourVisit& visit) { return visit.late_s > 0.0; });
   if (num_late == 0) return "every window kept";
-  return fmt::format("{} window{} missed, by {:.1f} s in total", num_late, num_late == 1 ? "" : "s", tour.order.lateness);
+  return fmt::format("{} window{} missed, by {:.1f} s in total", num_late, num_late == 1 ? "" : "s",
+                     tour.order.lateness);
 }
 
 double waiting_s(const TourPlan& tour) {
@@ -44,13 +46,15 @@ double waiting_s(const TourPlan& tour) {
 std::string visits_text(const TourReport& report) {
   std::size_t width = 5;
   for (const TourStop& stop : report.stops) width = std::clamp(stop.station.name.size(), width, std::size_t{32});
-  std::string text = fmt::format("     {:<{}}  {:>10}  {:>10}  {:>10}  {:>10}  {:>10}\n", "", width, fmt::format("path, {}", report.map.unit()),
-                                 "arrives, s", "waits, s", "leaves, s", "late, s");
+  std::string text =
+      fmt::format("     {:<{}}  {:>10}  {:>10}  {:>10}  {:>10}  {:>10}\n", "", width,
+                  fmt::format("path, {}", report.map.unit()), "arrives, s", "waits, s", "leaves, s", "late, s");
   std::size_t number = 0;
   for (const TourVisit& visit : report.tour.visits) {
     const std::string late = visit.late_s > 0.0 ? fmt::format("{:.1f}", visit.late_s) : "";
-    const std::string line = fmt::format("{:>3}  {:<{}}  {:>10.2f}  {:>10.1f}  {:>10.1f}  {:>10.1f}  {:>10}", number++, node_name(report, visit.node),
-                                         width, visit.leg_m, visit.arrives_s, visit.waits_s, visit.leaves_s, late);
+    const std::string line = fmt::format("{:>3}  {:<{}}  {:>10.2f}  {:>10.1f}  {:>10.1f}  {:>10.1f}  {:>10}", number++,
+                                         node_name(report, visit.node), width, visit.leg_m, visit.arrives_s,
+                                         visit.waits_s, visit.leaves_s, late);
     text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
   }
   return text;
@@ -65,29 +69,36 @@ std::string node_name(const TourReport& report, std::size_t node) {
 
 std::string tour_title(const TourReport& report) {
   const TourPlan& tour = report.tour;
-  if (!tour.order.is_found) return fmt::format("{}: no tour of {} stations", report.setup.settings.planner, report.stops.size());
+  if (!tour.order.is_found)
+    return fmt::format("{}: no tour of {} stations", report.setup.settings.planner, report.stops.size());
   // All unreachable places are stations: without a path to the end there is no order.
-  return fmt::format("{}: {} of {} stations in {:.2f} {}, {:.1f} s", report.setup.settings.planner, report.stops.size() - tour.unreachable.size(),
-                     report.stops.size(), length_m(tour), report.map.unit(), tour.order.completion);
+  return fmt::format("{}: {} of {} stations in {:.2f} {}, {:.1f} s", report.setup.settings.planner,
+                     report.stops.size() - tour.unreachable.size(), report.stops.size(), length_m(tour),
+                     report.map.unit(), tour.order.completion);
 }
 
 std::string to_text(const TourReport& report) {
   const TourPlan& tour = report.tour;
   const char* unit = report.map.unit();
-  std::string text = fmt::format("{}\n{}\n", tour_title(report), grid_text(report.map_name, report.map, report.costs, report.setup.body));
+  std::string text = fmt::format("{}\n{}\n", tour_title(report),
+                                 grid_text(report.map_name, report.map, report.costs, report.setup.body));
   if (tour.order.is_found) {
     text += visits_text(report);
-    text += fmt::format("completion   {:.1f} s at {} {}/s: {:.1f} s of it waiting; {}\n", tour.order.completion, report.setup.settings.speed_mps, unit,
-                        waiting_s(tour), windows_text(tour));
-    text += tour.order.is_exact ? fmt::format("order        optimal, by exact search (lower bound {:.1f} s)\n", tour.order.lower_bound)
-                                : fmt::format("order        by local search: at most {:.2f} % above the optimum, lower bound {:.1f} s\n",
-                                              100.0 * tour.order.gap(), tour.order.lower_bound);
+    text += fmt::format("completion   {:.1f} s at {} {}/s: {:.1f} s of it waiting; {}\n", tour.order.completion,
+                        report.setup.settings.speed_mps, unit, waiting_s(tour), windows_text(tour));
+    text +=
+        tour.order.is_exact
+            ? fmt::format("order        optimal, by exact search (lower bound {:.1f} s)\n", tour.order.lower_bound)
+            : fmt::format("order        by local search: at most {:.2f} % above the optimum, lower bound {:.1f} s\n",
+                          100.0 * tour.order.gap(), tour.order.lower_bound);
   } else if (tour.unreachable.size() + 1 < report.stops.size() + 1 + report.p_end_m.has_value()) {
     text += "no order: some stations are not connected\n";
   }
-  text += fmt::format("paths        {} planned, {:.2f} ms each\n", tour.num_routes, 1e3 * tour.processor_s / std::max(1, tour.num_routes));
+  text += fmt::format("paths        {} planned, {:.2f} ms each\n", tour.num_routes,
+                      1e3 * tour.processor_s / std::max(1, tour.num_routes));
   if (!tour.unreachable.empty()) {
-    text += fmt::format("UNREACHABLE  {}{}\n", fmt::join(unreachable_names(report), ", "), tour.is_proven ? "" : ": this planner is not complete");
+    text += fmt::format("UNREACHABLE  {}{}\n", fmt::join(unreachable_names(report), ", "),
+                        tour.is_proven ? "" : ": this planner is not complete");
   }
   return text;
 }
@@ -104,7 +115,9 @@ io::Metrics to_json(const TourReport& report) {
                       {"leaves_s", visit.leaves_s},
                       {"late_s", visit.late_s}});
   }
-  const auto value_or_null = [&](double value) { return tour.order.is_found ? io::Metrics(value) : io::Metrics(nullptr); };
+  const auto value_or_null = [&](double value) {
+    return tour.order.is_found ? io::Metrics(value) : io::Metrics(nullptr);
+  };
   return {{"map", report.map_name},
           {"grid", grid_json(report.map, report.costs, report.setup.body)},
           {"planner", report.setup.settings.planner},
@@ -126,10 +139,14 @@ io::Metrics to_json(const TourReport& report) {
 
 io::Table tour_table(const TourReport& report) {
   const std::string unit = report.map.unit();
-  io::Table table{.name = "tour", .columns = {"name", "x_" + unit, "y_" + unit, "way_" + unit, "arrives_s", "waits_s", "leaves_s", "late_s"}, .rows = {}};
+  io::Table table{
+      .name = "tour",
+      .columns = {"name", "x_" + unit, "y_" + unit, "way_" + unit, "arrives_s", "waits_s", "leaves_s", "late_s"},
+      .rows = {}};
   for (const TourVisit& visit : report.tour.visits) {
     const Eigen::Vector2d p = report.map.to_user(node_position(report, visit.node));
-    table.rows.push_back({node_name(report, visit.node), p.x(), p.y(), visit.leg_m, visit.arrives_s, visit.waits_s, visit.leaves_s, visit.late_s});
+    table.rows.push_back({node_name(report, visit.node), p.x(), p.y(), visit.leg_m, visit.arrives_s, visit.waits_s,
+                          visit.leaves_s, visit.late_s});
   }
   return table;
 }
@@ -141,7 +158,8 @@ std::vector<RoutePicture::Mark> marks_of(const TourReport& report) {
     if (node == 0 || node > report.stops.size()) continue;
     marks.push_back({node_position(report, node), fmt::format("{} {}", k, node_name(report, node)), kStopColor});
   }
-  for (const std::size_t node : report.tour.unreachable) marks.push_back({node_position(report, node), node_name(report, node) + ": no path", kGoalColor});
+  for (const std::size_t node : report.tour.unreachable)
+    marks.push_back({node_position(report, node), node_name(report, node) + ": no path", kGoalColor});
   const bool is_end_reached = report.tour.unreachable.empty() || report.tour.unreachable.back() <= report.stops.size();
   if (report.p_end_m && is_end_reached) marks.push_back({*report.p_end_m, "end", kGoalColor});
   return marks;

@@ -1,16 +1,16 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <optional>
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "app/plan/plan_map.h"
 #include "app/plan/route_picture.h"
 #include "app/plan/tour_plan.h"
-#include "io/json/metrics_json.h"
 #include "io/files/table.h"
+#include "io/json/metrics_json.h"
 
 namespace patrol::app {
 

@@ -9,9 +9,9 @@
 
 #include <fmt/format.h>
 
-#include "app/plan/route_metrics.h"
 #include "app/common/process_cost.h"
 #include "app/common/progress_bar.h"
+#include "app/plan/route_metrics.h"
 
 namespace patrol::app {
 namespace {
@@ -22,7 +22,10 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 class PairwisePaths {
  public:
   PairwisePaths(const Grid<plan::Cost>& costs, std::vector<Cell> nodes, const PlanSettings& settings)
-      : costs_(costs), nodes_(std::move(nodes)), settings_(settings), planner_(plan::make_route_planner(settings.planner, settings.routes, settings.seed)) {}
+      : costs_(costs),
+        nodes_(std::move(nodes)),
+        settings_(settings),
+        planner_(plan::make_route_planner(settings.planner, settings.routes, settings.seed)) {}
 
   std::size_t size() const { return nodes_.size(); }
 
@@ -37,7 +40,9 @@ class PairwisePaths {
     return path.status == plan::PlanStatus::kFound ? costs_.geometry().resolution_m * path.length : kInfinite;
   }
   /// Whether the existence or absence of a path is proven.
-  bool is_proven(std::size_t from, std::size_t to) const { return paths_.at(std::minmax(from, to)).status != plan::PlanStatus::kNotFound; }
+  bool is_proven(std::size_t from, std::size_t to) const {
+    return paths_.at(std::minmax(from, to)).status != plan::PlanStatus::kNotFound;
+  }
   std::vector<Eigen::Vector2d> points_m(std::size_t from, std::size_t to) const {
     std::vector<Eigen::Vector2d> points_m = plan::to_meters(costs_.geometry(), paths_.at(std::minmax(from, to)).points);
     if (from > to) std::reverse(points_m.begin(), points_m.end());
@@ -53,7 +58,8 @@ class PairwisePaths {
 };
 
 /// Plans all `pairs`; false if interrupted.
-bool plan_paths(PairwisePaths& paths, const std::vector<std::pair<std::size_t, std::size_t>>& pairs, const InterruptGuard& guard, ProgressBar& bar) {
+bool plan_paths(PairwisePaths& paths, const std::vector<std::pair<std::size_t, std::size_t>>& pairs,
+                const InterruptGuard& guard, ProgressBar& bar) {
   double shown_s = 0.0;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     paths.plan(pairs[i].first, pairs[i].second);
@@ -67,24 +73,30 @@ bool plan_paths(PairwisePaths& paths, const std::vector<std::pair<std::size_t, s
 }
 
 /// Tour problem of the reachable places; `places[i]` is its station i.
-plan::TourProblem problem_of(const PairwisePaths& paths, const std::vector<std::size_t>& nodes, const std::vector<TourStop>& stops, bool has_end, double speed_mps) {
+plan::TourProblem problem_of(const PairwisePaths& paths, const std::vector<std::size_t>& nodes,
+                             const std::vector<TourStop>& stops, bool has_end, double speed_mps) {
   plan::TourProblem problem{.start = 0, .end = has_end ? nodes.size() - 1 : 0};
   for (const std::size_t from : nodes) {
     problem.travel.emplace_back();
     for (const std::size_t to : nodes) problem.travel.back().push_back(paths.length_m(from, to) / speed_mps);
     const bool is_stop = from > 0 && from <= stops.size();
     const io::TourStation station = is_stop ? stops[from - 1].station : io::TourStation{};
-    problem.stations.push_back({.service = station.service_s, .earliest = station.earliest_s, .latest = station.latest_s, .priority = station.priority});
+    problem.stations.push_back({.service = station.service_s,
+                                .earliest = station.earliest_s,
+                                .latest = station.latest_s,
+                                .priority = station.priority});
   }
   return problem;
 }
 
-std::vector<TourVisit> visits_of(const PairwisePaths& paths, const std::vector<std::size_t>& route, const std::vector<TourStop>& stops, double speed_mps) {
+std::vector<TourVisit> visits_of(const PairwisePaths& paths, const std::vector<std::size_t>& route,
+                                 const std::vector<TourStop>& stops, double speed_mps) {
   std::vector<TourVisit> visits;
   double now_s = 0.0;
   for (std::size_t k = 0; k < route.size(); ++k) {
     TourVisit visit{.node = route[k], .leg_m = k == 0 ? 0.0 : paths.length_m(route[k - 1], route[k])};
-    const io::TourStation station = route[k] > 0 && route[k] <= stops.size() ? stops[route[k] - 1].station : io::TourStation{};
+    const io::TourStation station =
+        route[k] > 0 && route[k] <= stops.size() ? stops[route[k] - 1].station : io::TourStation{};
     visit.arrives_s = now_s + visit.leg_m / speed_mps;
     visit.waits_s = std::max(0.0, station.earliest_s - visit.arrives_s);
     visit.late_s = std::max(0.0, visit.arrives_s - station.latest_s);
@@ -97,8 +109,9 @@ std::vector<TourVisit> visits_of(const PairwisePaths& paths, const std::vector<s
 
 }  // namespace
 
-std::optional<TourPlan> plan_tour(const Grid<plan::Cost>& costs, const Eigen::Vector2d& p_start_m, const std::vector<TourStop>& stops,
-                                  const std::optional<Eigen::Vector2d>& p_end_m, const PlanSettings& settings) {
+std::optional<TourPlan> plan_tour(const Grid<plan::Cost>& costs, const Eigen::Vector2d& p_start_m,
+                                  const std::vector<TourStop>& stops, const std::optional<Eigen::Vector2d>& p_end_m,
+                                  const PlanSettings& settings) {
   std::vector<Cell> cells = {costs.geometry().cell_at(p_start_m)};
   for (const TourStop& stop : stops) cells.push_back(costs.geometry().cell_at(stop.p_m));
   if (p_end_m) cells.push_back(costs.geometry().cell_at(*p_end_m));
@@ -129,7 +142,8 @@ std::optional<TourPlan> plan_tour(const Grid<plan::Cost>& costs, const Eigen::Ve
   tour.processor_s = process_seconds() - processor_s;
 
   bar.show("the order of the stations");
-  tour.order = plan::solve_station_order(problem_of(paths, nodes, stops, has_end, settings.speed_mps), settings.tour, settings.seed);
+  tour.order = plan::solve_station_order(problem_of(paths, nodes, stops, has_end, settings.speed_mps), settings.tour,
+                                         settings.seed);
   if (!tour.order.is_found) return tour;
   std::vector<std::size_t> route;
   for (const std::size_t station : tour.order.stations) route.push_back(nodes[station]);

@@ -52,7 +52,8 @@ void Outbox::add(const monitor::Result& result) {
   const ssize_t count = ::write(file_, line.data(), line.size());
   if (count != static_cast<ssize_t>(line.size())) {
     const bool is_cut_back = ::ftruncate(file_, static_cast<off_t>(written_.load())) == 0;
-    throw std::runtime_error(fmt::format("{}: cannot write{}", file().string(), is_cut_back ? "" : ", and the last line is incomplete"));
+    throw std::runtime_error(
+        fmt::format("{}: cannot write{}", file().string(), is_cut_back ? "" : ", and the last line is incomplete"));
   }
   written_ += line.size();
 }
@@ -88,11 +89,15 @@ void Outbox::mark_sent(const Batch& batch) {
   io::save_text(sent_file(root_), fmt::format("{}\n", sent_));
 }
 
-void Outbox::set_aside(const std::string& result) { std::ofstream(refused_file(root_), std::ios::binary | std::ios::app) << result << "\n"; }
+void Outbox::set_aside(const std::string& result) {
+  std::ofstream(refused_file(root_), std::ios::binary | std::ios::app) << result << "\n";
+}
 
 std::size_t Outbox::num_pending() const { return num_pending_results(root_); }
 std::size_t Outbox::num_rejected() const { return num_lines(refused_file(root_), 0); }
 
-std::size_t num_pending_results(const std::filesystem::path& root) { return num_lines(root / "outbox.jsonl", sent_bytes(root)); }
+std::size_t num_pending_results(const std::filesystem::path& root) {
+  return num_lines(root / "outbox.jsonl", sent_bytes(root));
+}
 
 }  // namespace patrol::app

@@ -2,21 +2,23 @@
 
 #include <fmt/format.h>
 
-#include "app/record/outbox.h"
 #include "app/common/output_directory.h"
+#include "app/record/outbox.h"
 #include "core/error.h"
 
 namespace patrol::app {
 namespace {
 
-const OutputKind kRun = {
-    .name = "run",
-    .marker_text = "Incomplete run: these files are not a result.",
-    .outputs = {"scenario.yaml", "log.mcap", "metrics.json", "junit.xml", "estimate.tum", "truth.tum", "odometry.tum", "map.yaml", "map.pgm",
-             "truth_map.yaml", "truth_map.pgm", "report.html", "replay.mp4", "nav.json", "teleop.csv", "scans/scans.json", "scans/*.ply", "map_errors.pgm", "localizability.csv", "still_*.png", "outbox.jsonl", "outbox.sent",
-             "outbox.refused.jsonl", "*.part"},
-    .required_file = "scenario.yaml",
-    .preserved = {}};
+const OutputKind kRun = {.name = "run",
+                         .marker_text = "Incomplete run: these files are not a result.",
+                         .outputs = {"scenario.yaml", "log.mcap",       "metrics.json",         "junit.xml",
+                                     "estimate.tum",  "truth.tum",      "odometry.tum",         "map.yaml",
+                                     "map.pgm",       "truth_map.yaml", "truth_map.pgm",        "report.html",
+                                     "replay.mp4",    "nav.json",       "teleop.csv",           "scans/scans.json",
+                                     "scans/*.ply",   "map_errors.pgm", "localizability.csv",   "still_*.png",
+                                     "outbox.jsonl",  "outbox.sent",    "outbox.refused.jsonl", "*.part"},
+                         .required_file = "scenario.yaml",
+                         .preserved = {}};
 
 }  // namespace
 
@@ -26,7 +28,10 @@ bool RunDirectory::is_complete() const {
 
 RunDirectory begin_run_directory(const std::filesystem::path& root) {
   if (const std::size_t num_pending = num_pending_results(root); num_pending > 0) {
-    throw InputError(fmt::format("{}: contains {} undelivered results of an earlier run; upload them with 'patrol upload' or choose another --out directory", root.string(), num_pending));
+    throw InputError(
+        fmt::format("{}: contains {} undelivered results of an earlier run; upload them with 'patrol upload' or choose "
+                    "another --out directory",
+                    root.string(), num_pending));
   }
   return {.root = root, .lock = std::make_shared<const OutputLock>(begin_output(root, kRun))};
 }

@@ -28,11 +28,13 @@ RunRecord read_run_record(const std::filesystem::path& log_mcap) {
   handlers.on<OdometryEstimate>([&](Time, const OdometryEstimate& odometry) {
     append(record.T_odom_body, odometry.stamp, odometry.T_odom_body);
   });
-  handlers.on<GroundTruth>([&](Time, const GroundTruth& truth) { append(record.T_world_body, truth.stamp, truth.T_world_body); });
+  handlers.on<GroundTruth>(
+      [&](Time, const GroundTruth& truth) { append(record.T_world_body, truth.stamp, truth.T_world_body); });
   handlers.on<Event>([&](Time, const Event& event) { record.events.push_back(event); });
   handlers.on<Path>([&](Time, const Path&) { ++record.num_paths; });
   handlers.on<Collision>([&](Time, const Collision& collision) { record.collisions.push_back(collision); });
-  handlers.on<LocalizationConfidence>([&](Time, const LocalizationConfidence& confidence) { record.confidences.push_back(confidence); });
+  handlers.on<LocalizationConfidence>(
+      [&](Time, const LocalizationConfidence& confidence) { record.confidences.push_back(confidence); });
   handlers.on<TeleopCommand>([&](Time, const TeleopCommand& command) { record.teleop.push_back(command); });
   handlers.on<LiningResult>([&](Time, const LiningResult& result) { record.linings.push_back(result); });
   handlers.on<WaterResult>([&](Time, const WaterResult& result) { record.waters.push_back(result); });

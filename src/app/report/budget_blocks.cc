@@ -16,20 +16,22 @@ class Waterfall {
 
   /// Adds a bar from zero.
   void total(const std::string& label, const score::Interval& value) {
-    add(label, 0.0, value.center, value, Tone::kPlain, fmt::format("{:.3g} {}", unit_.factor * value.center, unit_.name));
+    add(label, 0.0, value.center, value, Tone::kPlain,
+        fmt::format("{:.3g} {}", unit_.factor * value.center, unit_.name));
   }
   /// Adds a bar down from the end of the previous step.
   void step(const std::string& label, const score::Interval& contribution) {
     const double next = level_ - contribution.center;
     const Tone tone = contribution.contains(0.0) ? Tone::kFaint : contribution.center > 0.0 ? Tone::kBad : Tone::kGood;
-    add(label, level_, next, {.center = next, .low = level_ - contribution.high, .high = level_ - contribution.low}, tone,
-        fmt::format("{:+.3g} {}", -unit_.factor * contribution.center, unit_.name));
+    add(label, level_, next, {.center = next, .low = level_ - contribution.high, .high = level_ - contribution.low},
+        tone, fmt::format("{:+.3g} {}", -unit_.factor * contribution.center, unit_.name));
     level_ = next;
   }
   report::WaterfallChart chart() && { return std::move(chart_); }
 
  private:
-  void add(const std::string& label, double from, double to, const score::Interval& about, Tone tone, const std::string& text) {
+  void add(const std::string& label, double from, double to, const score::Interval& about, Tone tone,
+           const std::string& text) {
     chart_.spans.push_back({.label = label,
                             .from = unit_.factor * from,
                             .to = unit_.factor * to,
@@ -47,7 +49,8 @@ class Waterfall {
 bool is_whole(const Budget& budget) { return budget.baseline && budget.ideal && budget.sum && budget.interaction; }
 
 std::string with_interval(const score::Interval& value, const report::Unit& unit) {
-  return fmt::format("{:+.3g} [{:+.3g}, {:+.3g}]", unit.factor * value.center, unit.factor * value.low, unit.factor * value.high);
+  return fmt::format("{:+.3g} [{:+.3g}, {:+.3g}]", unit.factor * value.center, unit.factor * value.low,
+                     unit.factor * value.high);
 }
 
 }  // namespace
@@ -57,12 +60,17 @@ std::vector<report::Block> budget_blocks(const Budget& budget) {
   const report::Unit unit = report::unit_of(budget.metric);
   Waterfall waterfall(budget);
   waterfall.total("baseline", *budget.baseline);
-  report::TableBlock table{.caption = "", .columns = {{"error source"}, {"seeds", true}, {fmt::format("contribution, {}", unit.name), true}, {""}}, .rows = {}};
+  report::TableBlock table{
+      .caption = "",
+      .columns = {{"error source"}, {"seeds", true}, {fmt::format("contribution, {}", unit.name), true}, {""}},
+      .rows = {}};
   for (const Contribution& contribution : budget.contributions) {
     if (!contribution.value) continue;
     waterfall.step(contribution.name, *contribution.value);
     const bool is_clear = !contribution.value->contains(0.0);
-    table.rows.push_back({{contribution.name}, {std::to_string(contribution.num_pairs)}, {with_interval(*contribution.value, unit)},
+    table.rows.push_back({{contribution.name},
+                          {std::to_string(contribution.num_pairs)},
+                          {with_interval(*contribution.value, unit)},
                           {is_clear ? "" : "interval contains zero", Tone::kFaint}});
   }
   waterfall.step("interaction", *budget.interaction);
@@ -70,17 +78,21 @@ std::vector<report::Block> budget_blocks(const Budget& budget) {
   table.rows.push_back({{"sum of the contributions"}, {""}, {with_interval(*budget.sum, unit)}, {""}});
   table.rows.push_back({{"interaction"}, {""}, {with_interval(*budget.interaction, unit)}, {""}});
   return {std::move(waterfall).chart(), table,
-          report::TextBlock{"Contribution: baseline minus the metric without this error source, paired by seed, with 95 % interval. Interaction: "
+          report::TextBlock{"Contribution: baseline minus the metric without this error source, paired by seed, with "
+                            "95 % interval. Interaction: "
                             "effect of removing all minus the sum of the contributions."}};
 }
 
 std::string budget_finding(const Budget& budget) {
-  if (!is_whole(budget) || budget.contributions.empty() || !budget.contributions.front().value) return fmt::format("{}: too few runs with this metric.", budget.metric);
+  if (!is_whole(budget) || budget.contributions.empty() || !budget.contributions.front().value)
+    return fmt::format("{}: too few runs with this metric.", budget.metric);
   const report::Unit unit = report::unit_of(budget.metric);
   const Contribution& first = budget.contributions.front();
   const std::string whole = fmt::format("{:.3g} {}", unit.factor * budget.baseline->center, unit.name);
-  if (first.value->contains(0.0)) return fmt::format("{}: no error source contributes significantly to {} (95 %).", budget.metric, whole);
-  return fmt::format("{}: {}: {} contributes {:.3g} {}.", budget.metric, whole, first.name, unit.factor * first.value->center, unit.name);
+  if (first.value->contains(0.0))
+    return fmt::format("{}: no error source contributes significantly to {} (95 %).", budget.metric, whole);
+  return fmt::format("{}: {}: {} contributes {:.3g} {}.", budget.metric, whole, first.name,
+                     unit.factor * first.value->center, unit.name);
 }
 
 }  // namespace patrol::app

@@ -20,7 +20,9 @@ report::TableCell verdict_cell(const VariantMetric& entry) {
 
 std::string interval_text(const std::optional<score::Interval>& interval, const report::Unit& unit, const char* sign) {
   if (!interval) return "–";
-  const auto number = [&](double value) { return fmt::format(fmt::runtime(fmt::format("{{:{}.4g}}", sign)), unit.factor * value); };
+  const auto number = [&](double value) {
+    return fmt::format(fmt::runtime(fmt::format("{{:{}.4g}}", sign)), unit.factor * value);
+  };
   return fmt::format("{} [{}, {}]", number(interval->center), number(interval->low), number(interval->high));
 }
 
@@ -45,32 +47,37 @@ std::vector<std::string> short_names(const SweepManifest& manifest) {
   return names;
 }
 
-std::vector<report::Block> comparison_blocks(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress, const std::string& metric) {
+std::vector<report::Block> comparison_blocks(const SweepManifest& manifest, const SweepRows& rows,
+                                             const SweepProgress& progress, const std::string& metric) {
   const report::Unit unit = report::unit_of(metric);
   const auto seed_values = flatten_metrics(manifest, rows, metric);
   const std::vector<std::string> names = short_names(manifest);
   report::BoxPlot boxes{.caption = "Every run, median and quartiles", .unit = unit.name, .boxes = {}};
-  report::WaterfallChart differences{.caption = fmt::format("Difference from {}, paired by seed, {:g} % intervals", names.front(), 100.0 * confidence_level(manifest)),
-                                .unit = unit.name,
-                                .spans = {}};
-  report::TableBlock table{.caption = "",
-                           .columns = {{"variant"}, {"runs", true}, {"mean, " + unit.name, true}, {"difference, " + unit.name, true}, {""}},
-                           .rows = {}};
+  report::WaterfallChart differences{.caption = fmt::format("Difference from {}, paired by seed, {:g} % intervals",
+                                                            names.front(), 100.0 * confidence_level(manifest)),
+                                     .unit = unit.name,
+                                     .spans = {}};
+  report::TableBlock table{
+      .caption = "",
+      .columns = {{"variant"}, {"runs", true}, {"mean, " + unit.name, true}, {"difference, " + unit.name, true}, {""}},
+      .rows = {}};
   for (std::size_t variant = 0; variant < manifest.variants.size(); ++variant) {
     const std::string& name = names[variant];
-    const VariantMetric entry = compare(manifest, rows, metric, progress.num_seeds[variant], confidence_level(manifest))[variant];
+    const VariantMetric entry =
+        compare(manifest, rows, metric, progress.num_seeds[variant], confidence_level(manifest))[variant];
     std::vector<double> values;
     for (std::size_t seed = 0; seed < progress.num_seeds[variant]; ++seed) {
       if (seed_values[seed][variant]) values.push_back(*seed_values[seed][variant]);
     }
     if (!values.empty()) boxes.boxes.push_back(report::box_of(name, values, unit));
     if (entry.difference) {
-      differences.spans.push_back({.label = name,
-                                   .from = 0.0,
-                                   .to = unit.factor * entry.difference->center,
-                                   .interval = std::pair(unit.factor * entry.difference->low, unit.factor * entry.difference->high),
-                                   .tone = entry.difference->contains(0.0) ? Tone::kFaint : Tone::kPlain,
-                                   .text = entry.verdict});
+      differences.spans.push_back(
+          {.label = name,
+           .from = 0.0,
+           .to = unit.factor * entry.difference->center,
+           .interval = std::pair(unit.factor * entry.difference->low, unit.factor * entry.difference->high),
+           .tone = entry.difference->contains(0.0) ? Tone::kFaint : Tone::kPlain,
+           .text = entry.verdict});
     }
     table.rows.push_back({{name},
                           {std::to_string(entry.num_runs)},
@@ -85,18 +92,21 @@ std::vector<report::Block> comparison_blocks(const SweepManifest& manifest, cons
   return blocks;
 }
 
-report::CollapsibleTables run_table(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress) {
+report::CollapsibleTables run_table(const SweepManifest& manifest, const SweepRows& rows,
+                                    const SweepProgress& progress) {
   const std::vector<std::string> names = short_names(manifest);
-  report::TableBlock table{.caption = "", .columns = {{"variant"}, {"seed", true}, {"end"}, {"exit code", true}, {"reason"}}, .rows = {}};
+  report::TableBlock table{
+      .caption = "", .columns = {{"variant"}, {"seed", true}, {"end"}, {"exit code", true}, {"reason"}}, .rows = {}};
   std::vector<std::size_t> order = progress.counted;
   std::stable_partition(order.begin(), order.end(), [&](std::size_t i) { return rows[i]->code() != ExitCode::kDone; });
   for (const std::size_t i : order) {
     const RunVerdict& verdict = *rows[i];
-    table.rows.push_back({{names[manifest.runs[i].variant]},
-                          {std::to_string(manifest.runs[i].seed)},
-                          {std::string(name_of(verdict.end)), verdict.code() == ExitCode::kDone ? Tone::kGood : Tone::kBad},
-                          {std::to_string(static_cast<int>(verdict.code()))},
-                          {verdict.message}});
+    table.rows.push_back(
+        {{names[manifest.runs[i].variant]},
+         {std::to_string(manifest.runs[i].seed)},
+         {std::string(name_of(verdict.end)), verdict.code() == ExitCode::kDone ? Tone::kGood : Tone::kBad},
+         {std::to_string(static_cast<int>(verdict.code()))},
+         {verdict.message}});
   }
   return {.summary = fmt::format("All {} runs", order.size()), .tables = {table}};
 }

@@ -10,9 +10,11 @@ namespace patrol::app {
 std::vector<std::string> short_names(const SweepManifest& manifest);
 
 /// Box plot of one metric by variant, differences from the first variant, and a table of both.
-std::vector<report::Block> comparison_blocks(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress, const std::string& metric);
+std::vector<report::Block> comparison_blocks(const SweepManifest& manifest, const SweepRows& rows,
+                                             const SweepProgress& progress, const std::string& metric);
 
 /// Table of how each run ended, incomplete runs first.
-report::CollapsibleTables run_table(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress);
+report::CollapsibleTables run_table(const SweepManifest& manifest, const SweepRows& rows,
+                                    const SweepProgress& progress);
 
 }  // namespace patrol::app

@@ -10,18 +10,20 @@ namespace patrol::app {
 namespace {
 
 using report::Curve;
-using report::SeriesColor;
 using report::LinePlot;
+using report::SeriesColor;
 
 Curve position_curve(const std::string& name, SeriesColor color, const std::vector<score::MatchedPose>& poses) {
   Curve curve{.name = name, .color = color, .points = {}};
-  for (const score::MatchedPose& pose : poses) curve.points.emplace_back(to_seconds(pose.stamp), pose.position_error_m());
+  for (const score::MatchedPose& pose : poses)
+    curve.points.emplace_back(to_seconds(pose.stamp), pose.position_error_m());
   return curve;
 }
 
 Curve heading_curve(const std::string& name, SeriesColor color, const std::vector<score::MatchedPose>& poses) {
   Curve curve{.name = name, .color = color, .points = {}};
-  for (const score::MatchedPose& pose : poses) curve.points.emplace_back(to_seconds(pose.stamp), kDegPerRad * std::abs(pose.heading_error_rad()));
+  for (const score::MatchedPose& pose : poses)
+    curve.points.emplace_back(to_seconds(pose.stamp), kDegPerRad * std::abs(pose.heading_error_rad()));
   return curve;
 }
 
@@ -39,13 +41,20 @@ Curve bound_curve(const std::string& name, const RunRecord& record, const Deviat
 /// Plots on a common time axis.
 class Plots {
  public:
-  explicit Plots(const RunContents& run) : axis_{.label = "time, s", .max = run.end_s()}, marks_(marks_of(run)), spans_(spans_of(run)) {}
+  explicit Plots(const RunContents& run)
+      : axis_{.label = "time, s", .max = run.end_s()}, marks_(marks_of(run)), spans_(spans_of(run)) {}
 
   report::EventTimeline lanes(const RunContents& run) const {
     return {.title = "Events", .axis = axis_, .lanes = make_lanes(run), .spans = spans_};
   }
   LinePlot lines(const std::string& title, const std::string& unit, std::vector<Curve> curves) const {
-    return {.title = title, .unit = unit, .axis = axis_, .max = {}, .curves = std::move(curves), .marks = marks_, .spans = spans_};
+    return {.title = title,
+            .unit = unit,
+            .axis = axis_,
+            .max = {},
+            .curves = std::move(curves),
+            .marks = marks_,
+            .spans = spans_};
   }
 
  private:
@@ -56,7 +65,8 @@ class Plots {
 
 LinePlot confidence_plot(const Plots& plots, const std::vector<LocalizationConfidence>& confidences) {
   Curve confidence{.name = "0: lost, 1: certain", .color = SeriesColor::kConfidence, .points = {}};
-  for (const LocalizationConfidence& one : confidences) confidence.points.emplace_back(to_seconds(one.stamp), one.confidence);
+  for (const LocalizationConfidence& one : confidences)
+    confidence.points.emplace_back(to_seconds(one.stamp), one.confidence);
   LinePlot plot = plots.lines("Localization confidence", "", {confidence});
   plot.max = 1.05;
   return plot;
@@ -65,10 +75,12 @@ LinePlot confidence_plot(const Plots& plots, const std::vector<LocalizationConfi
 LinePlot unaided_plot(const Plots& plots, const RunContents& run) {
   const RunRecord& record = run.record;
   const Pose2 T_world_odom = score::align_at_start(record.T_odom_body, record.T_world_body);
-  std::vector<Curve> curves = {position_curve("odometry", SeriesColor::kOdometry, score::pair_poses(record.T_odom_body, T_world_odom, record.T_world_body))};
+  std::vector<Curve> curves = {position_curve(
+      "odometry", SeriesColor::kOdometry, score::pair_poses(record.T_odom_body, T_world_odom, record.T_world_body))};
   if (!record.T_map_body_by_ranges.empty()) {
-    curves.push_back(position_curve("odometry and UWB ranges", SeriesColor::kRanges,
-                                    score::pair_poses(record.T_map_body_by_ranges, run.T_world_map, record.T_world_body)));
+    curves.push_back(
+        position_curve("odometry and UWB ranges", SeriesColor::kRanges,
+                       score::pair_poses(record.T_map_body_by_ranges, run.T_world_map, record.T_world_body)));
   }
   return plots.lines("Without map and lidar", "m", std::move(curves));
 }
@@ -80,17 +92,28 @@ std::vector<report::Block> error_blocks(const RunContents& run) {
   const Plots plots(run);
   std::vector<report::Block> blocks;
   if (!record.events.empty() || !record.collisions.empty()) blocks.emplace_back(plots.lanes(run));
-  if (!overlap(record.T_map_body, record.T_world_body) || !overlap(record.T_odom_body, record.T_world_body)) return blocks;
-  const std::vector<score::MatchedPose> estimate = score::pair_poses(record.T_map_body, run.T_world_map, record.T_world_body);
-  const auto position_std_m = [](const Eigen::Matrix3d& covariance) { return std::sqrt(covariance(0, 0) + covariance(1, 1)); };
-  const auto heading_std_deg = [](const Eigen::Matrix3d& covariance) { return kDegPerRad * std::sqrt(covariance(2, 2)); };
-  blocks.emplace_back(plots.lines("Position error", "m", {position_curve("estimate", SeriesColor::kEstimate, estimate), bound_curve("estimated 2σ", record, position_std_m)}));
+  if (!overlap(record.T_map_body, record.T_world_body) || !overlap(record.T_odom_body, record.T_world_body))
+    return blocks;
+  const std::vector<score::MatchedPose> estimate =
+      score::pair_poses(record.T_map_body, run.T_world_map, record.T_world_body);
+  const auto position_std_m = [](const Eigen::Matrix3d& covariance) {
+    return std::sqrt(covariance(0, 0) + covariance(1, 1));
+  };
+  const auto heading_std_deg = [](const Eigen::Matrix3d& covariance) {
+    return kDegPerRad * std::sqrt(covariance(2, 2));
+  };
+  blocks.emplace_back(plots.lines("Position error", "m",
+                                  {position_curve("estimate", SeriesColor::kEstimate, estimate),
+                                   bound_curve("estimated 2σ", record, position_std_m)}));
   blocks.emplace_back(unaided_plot(plots, run));
-  blocks.emplace_back(plots.lines("Heading error", "°", {heading_curve("estimate", SeriesColor::kEstimate, estimate), bound_curve("estimated 2σ", record, heading_std_deg)}));
+  blocks.emplace_back(plots.lines("Heading error", "°",
+                                  {heading_curve("estimate", SeriesColor::kEstimate, estimate),
+                                   bound_curve("estimated 2σ", record, heading_std_deg)}));
   if (!record.confidences.empty()) blocks.emplace_back(confidence_plot(plots, record.confidences));
   report::TextBlock note;
-  note.text = "Map and world are aligned at the start only. 2σ of the position: twice the root of the sum of both variances. "
-              "Lines: failures, recoveries, relocalizations. Shaded: faults, reported delocalization.";
+  note.text =
+      "Map and world are aligned at the start only. 2σ of the position: twice the root of the sum of both variances. "
+      "Lines: failures, recoveries, relocalizations. Shaded: faults, reported delocalization.";
   blocks.emplace_back(note);
   return blocks;
 }

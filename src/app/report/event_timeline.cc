@@ -10,14 +10,15 @@
 namespace patrol::app {
 namespace {
 
-using report::SeriesColor;
 using report::PlotMark;
+using report::SeriesColor;
 
 const std::string kLostText = "Localization reported lost.";
 
 /// Whether the marks of this lane are also shown in error curves.
 bool is_marked_in_plots(const report::EventTimeline::Lane& lane) {
-  return lane.marks.front().color == SeriesColor::kAlarm || lane.name == name_of(EventKind::kRecovery) || lane.name == name_of(EventKind::kRelocalized);
+  return lane.marks.front().color == SeriesColor::kAlarm || lane.name == name_of(EventKind::kRecovery) ||
+         lane.name == name_of(EventKind::kRelocalized);
 }
 
 report::EventTimeline::Lane& lane_named(std::vector<report::EventTimeline::Lane>& lanes, const std::string& name) {
@@ -36,14 +37,17 @@ std::vector<report::EventTimeline::Lane> make_lanes(const RunContents& run) {
     lane_named(lanes, lane).marks.push_back({.x = at_s, .text = text, .color = color});
   };
   for (const Event& event : run.record.events) {
-    add(kind_text(event), is_failure(event.kind) ? SeriesColor::kAlarm : SeriesColor::kEvent, to_seconds(event.stamp), text_of(event));
+    add(kind_text(event), is_failure(event.kind) ? SeriesColor::kAlarm : SeriesColor::kEvent, to_seconds(event.stamp),
+        text_of(event));
   }
   for (const Collision& collision : run.record.collisions) {
-    add("collision", SeriesColor::kAlarm, to_seconds(collision.stamp), fmt::format("{} touched {}.", collision.first, collision.second));
+    add("collision", SeriesColor::kAlarm, to_seconds(collision.stamp),
+        fmt::format("{} touched {}.", collision.first, collision.second));
   }
   for (const KidnapSettings& kidnap : run.scenario.kidnaps) {
     if (!was_triggered(kidnap, run.record.T_world_body)) continue;
-    add("kidnap", SeriesColor::kAlarm, kidnap.at_s, fmt::format("Kidnapped to ({:.1f}, {:.1f}) m.", kidnap.x_m, kidnap.y_m));
+    add("kidnap", SeriesColor::kAlarm, kidnap.at_s,
+        fmt::format("Kidnapped to ({:.1f}, {:.1f}) m.", kidnap.x_m, kidnap.y_m));
   }
   return lanes;
 }
@@ -67,7 +71,8 @@ std::vector<report::PlotSpan> spans_of(const RunContents& run) {
     if (!confidences[i].is_lost) continue;
     const std::size_t first = i;
     while (i + 1 < confidences.size() && confidences[i].is_lost) ++i;
-    spans.push_back({.from = to_seconds(confidences[first].stamp), .to = to_seconds(confidences[i].stamp), .text = kLostText});
+    spans.push_back(
+        {.from = to_seconds(confidences[first].stamp), .to = to_seconds(confidences[i].stamp), .text = kLostText});
   }
   return spans;
 }
@@ -76,7 +81,8 @@ report::CollapsibleTables event_table(const RunContents& run) {
   report::TableBlock table{.caption = "", .columns = {{"s", true}, {"event"}, {"about"}, {"text"}}, .rows = {}};
   for (const Event& event : run.record.events) {
     const report::Tone tone = is_failure(event.kind) ? report::Tone::kBad : report::Tone::kPlain;
-    table.rows.push_back({{fmt::format("{:.1f}", to_seconds(event.stamp))}, {kind_text(event), tone}, {event.subject}, {event.text}});
+    table.rows.push_back(
+        {{fmt::format("{:.1f}", to_seconds(event.stamp))}, {kind_text(event), tone}, {event.subject}, {event.text}});
   }
   return {.summary = fmt::format("All {} events", table.rows.size()), .tables = {table}};
 }

@@ -36,38 +36,50 @@ class KeyMetricTable {
 
 void add_accuracy(KeyMetricTable& table) {
   if (const auto rmse_m = table.at("pose.ate_rmse_m")) {
-    table.add("Position error, RMS", report::length(*rmse_m), "at most " + report::length(table.at("pose.ate_max_m").value_or(0.0)).text());
+    table.add("Position error, RMS", report::length(*rmse_m),
+              "at most " + report::length(table.at("pose.ate_max_m").value_or(0.0)).text());
   }
-  if (const auto rmse_deg = table.at("pose.heading_rmse_deg")) table.add("Heading error, RMS", report::angle(*rmse_deg), "");
+  if (const auto rmse_deg = table.at("pose.heading_rmse_deg"))
+    table.add("Heading error, RMS", report::angle(*rmse_deg), "");
   if (const auto mean_m = table.at("map.nearest_mean_m")) {
-    table.add("Map to nearest surface", report::length(*mean_m), fmt::format("{:.0f} % of the observable surfaces mapped", 100.0 * table.at("map.coverage").value_or(0.0)));
+    table.add(
+        "Map to nearest surface", report::length(*mean_m),
+        fmt::format("{:.0f} % of the observable surfaces mapped", 100.0 * table.at("map.coverage").value_or(0.0)));
   }
-  if (const auto rmse_m = table.at("odometry.ate_rmse_m")) table.add("Odometry alone, RMS", report::length(*rmse_m), "without map");
+  if (const auto rmse_m = table.at("odometry.ate_rmse_m"))
+    table.add("Odometry alone, RMS", report::length(*rmse_m), "without map");
 }
 
 void add_goals(KeyMetricTable& table) {
   const auto is_reached = [](const io::Metrics& station) { return station.value("reached", false); };
   table.add_count("Stations reached", "stations", is_reached, "");
-  const auto is_always_reached = [](const io::Metrics& goal) { return goal.value("arrivals", 0) > 0 && goal.value("failed", 0) == 0; };
+  const auto is_always_reached = [](const io::Metrics& goal) {
+    return goal.value("arrivals", 0) > 0 && goal.value("failed", 0) == 0;
+  };
   table.add_count("Goals always reached", "goals", is_always_reached, "");
   const double dockings = table.at("docking.arrivals").value_or(0.0), failed = table.at("docking.failed").value_or(0.0);
   if (dockings + failed > 0.0) {
     const auto worst_m = table.at("docking.position_error_m.max");
-    table.add("Dockings", {fmt::format("{:.0f} of {:.0f}", dockings, dockings + failed), ""}, worst_m ? "at most " + report::length(*worst_m).text() + " off" : "");
+    table.add("Dockings", {fmt::format("{:.0f} of {:.0f}", dockings, dockings + failed), ""},
+              worst_m ? "at most " + report::length(*worst_m).text() + " off" : "");
   }
 }
 
 void add_mission(KeyMetricTable& table) {
-  const double leaks = table.at("inspection.leaks").value_or(0.0), alarms = table.at("inspection.false_alarms").value_or(0.0);
+  const double leaks = table.at("inspection.leaks").value_or(0.0),
+               alarms = table.at("inspection.false_alarms").value_or(0.0);
   if (leaks + alarms > 0.0) {
-    table.add("Leaks found", {fmt::format("{:.0f} of {:.0f}", table.at("inspection.leaks_found").value_or(0.0), leaks), ""},
-                fmt::format("{:.0f} false alarms", alarms));
+    table.add("Leaks found",
+              {fmt::format("{:.0f} of {:.0f}", table.at("inspection.leaks_found").value_or(0.0), leaks), ""},
+              fmt::format("{:.0f} false alarms", alarms));
   }
   if (const auto collisions = table.at("mission.collisions")) {
-    table.add("Collisions", {fmt::format("{:.0f}", *collisions), ""}, table.at("mission.fell").value_or(0.0) > 0.5 ? "and the robot fell" : "");
+    table.add("Collisions", {fmt::format("{:.0f}", *collisions), ""},
+              table.at("mission.fell").value_or(0.0) > 0.5 ? "and the robot fell" : "");
   }
   if (const auto distance_m = table.at("mission.distance_m")) {
-    table.add("Distance", report::length(*distance_m), fmt::format("in {:.1f} s", table.at("mission.duration_s").value_or(0.0)));
+    table.add("Distance", report::length(*distance_m),
+              fmt::format("in {:.1f} s", table.at("mission.duration_s").value_or(0.0)));
   }
   if (const auto factor = table.at("performance.real_time_factor")) {
     table.add("Simulated s per wall s", {fmt::format("{:.1f}", *factor), ""}, "");

@@ -31,7 +31,9 @@ void read_junit(RunContents& run) {
 /// Pose of map in world as scored. Without a score, or with an older one, the trajectories are aligned at their first
 /// common pose.
 Pose2 map_in_world(const RunContents& run) {
-  const auto value = [&](const char* name) { return io::metric_at(run.metrics, fmt::format("map.origin_in_world.{}", name)); };
+  const auto value = [&](const char* name) {
+    return io::metric_at(run.metrics, fmt::format("map.origin_in_world.{}", name));
+  };
   const auto x_m = value("x_m"), y_m = value("y_m"), yaw_rad = value("yaw_rad");
   if (x_m && y_m && yaw_rad) return {*x_m, *y_m, *yaw_rad};
   if (!overlap(run.record.T_map_body, run.record.T_world_body)) return {};

@@ -16,8 +16,8 @@ namespace patrol::app {
 struct RunContents {
   RunDirectory directory;
   bool is_complete = false;
-  std::string name;     ///< name of the scenario
-  std::string version;  ///< version of the program that ran it
+  std::string name;            ///< name of the scenario
+  std::string version;         ///< version of the program that ran it
   std::string origin_comment;  ///< first comment line of the resolved scenario
   Scenario scenario;
   RunRecord record;

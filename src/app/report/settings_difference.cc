@@ -12,7 +12,9 @@ template <typename Value>
 concept Scalar = std::is_arithmetic_v<Value> || std::is_same_v<Value, std::string>;
 
 template <typename Value>
-concept List = !Scalar<Value> && requires(const Value& value) { value.begin(); };
+concept List = !Scalar<Value> && requires(const Value& value) {
+  value.begin();
+};
 
 template <typename Value>
 std::string text_of(const Value& value);

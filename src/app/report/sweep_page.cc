@@ -4,9 +4,9 @@
 
 #include <fmt/format.h>
 
+#include "app/campaign/sweep/fault_outcomes.h"
 #include "app/report/budget_blocks.h"
 #include "app/report/comparison_blocks.h"
-#include "app/campaign/sweep/fault_outcomes.h"
 
 namespace patrol::app {
 namespace {
@@ -14,17 +14,20 @@ namespace {
 using report::Tone;
 
 std::string not_done(const SweepRows& rows, const SweepProgress& progress) {
-  const auto num = std::count_if(progress.counted.begin(), progress.counted.end(), [&](std::size_t i) { return rows[i]->code() != ExitCode::kDone; });
+  const auto num = std::count_if(progress.counted.begin(), progress.counted.end(),
+                                 [&](std::size_t i) { return rows[i]->code() != ExitCode::kDone; });
   return num == 0 ? fmt::format(" All {} runs ended as expected.", progress.counted.size())
                   : fmt::format(" {} of {} runs did not end as expected.", num, progress.counted.size());
 }
 
-report::VerdictBlock sweep_verdict(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress) {
+report::VerdictBlock sweep_verdict(const SweepManifest& manifest, const SweepRows& rows,
+                                   const SweepProgress& progress) {
   const std::string& metric = manifest.metrics.front();
   const std::vector<std::string> names = short_names(manifest);
   std::vector<std::string> better, worse;
   for (std::size_t variant = 1; variant < manifest.variants.size(); ++variant) {
-    const VariantMetric entry = compare(manifest, rows, metric, progress.num_seeds[variant], confidence_level(manifest))[variant];
+    const VariantMetric entry =
+        compare(manifest, rows, metric, progress.num_seeds[variant], confidence_level(manifest))[variant];
     if (entry.verdict == "lower") better.push_back(names[variant]);
     if (entry.verdict == "higher") worse.push_back(names[variant]);
   }
@@ -46,9 +49,12 @@ report::VerdictBlock sweep_verdict(const SweepManifest& manifest, const SweepRow
   return verdict;
 }
 
-report::VerdictBlock budget_verdict(const std::vector<Budget>& budgets, const SweepRows& rows, const SweepProgress& progress) {
+report::VerdictBlock budget_verdict(const std::vector<Budget>& budgets, const SweepRows& rows,
+                                    const SweepProgress& progress) {
   report::VerdictBlock verdict;
-  const bool is_significant = !budgets.empty() && !budgets.front().contributions.empty() && budgets.front().contributions.front().value && !budgets.front().contributions.front().value->contains(0.0);
+  const bool is_significant = !budgets.empty() && !budgets.front().contributions.empty() &&
+                              budgets.front().contributions.front().value &&
+                              !budgets.front().contributions.front().value->contains(0.0);
   verdict.word = is_significant ? budgets.front().contributions.front().name : "No significant contribution";
   for (const Budget& budget : budgets) verdict.reason += budget_finding(budget) + " ";
   verdict.reason += not_done(rows, progress);
@@ -57,24 +63,30 @@ report::VerdictBlock budget_verdict(const std::vector<Budget>& budgets, const Sw
 
 Tone tone_of(FaultOutcome outcome) {
   switch (outcome) {
-    case FaultOutcome::kSurvived: return Tone::kGood;
+    case FaultOutcome::kSurvived:
+      return Tone::kGood;
     case FaultOutcome::kDegraded:
-    case FaultOutcome::kStopped: return Tone::kWarning;
-    default: return Tone::kBad;
+    case FaultOutcome::kStopped:
+      return Tone::kWarning;
+    default:
+      return Tone::kBad;
   }
 }
 
 /// Table of faults.csv, ordered by fault.
 report::TableBlock fault_table(const SweepManifest& manifest, const std::vector<FaultRow>& rows) {
-  report::TableBlock table{.caption = "", .columns = {{"fault"}, {"seed", true}, {"triggered"}, {"outcome"}, {"detected", true}, {"end"}}, .rows = {}};
+  report::TableBlock table{
+      .caption = "",
+      .columns = {{"fault"}, {"seed", true}, {"triggered"}, {"outcome"}, {"detected", true}, {"end"}},
+      .rows = {}};
   for (const std::string& metric : manifest.metrics) table.columns.push_back({metric, true});
   for (const FaultRow& row : rows) {
     std::vector<report::TableCell> cells = {{row.name},
-                                       {std::to_string(row.seed)},
-                                       {trigger_text(row), row.is_not_triggered() ? Tone::kWarning : Tone::kPlain},
-                                       {std::string(text_of(row.outcome)), tone_of(row.outcome)},
-                                       {row.num_detected ? fmt::format("{:.0f}", *row.num_detected) : "–"},
-                                       {row.end}};
+                                            {std::to_string(row.seed)},
+                                            {trigger_text(row), row.is_not_triggered() ? Tone::kWarning : Tone::kPlain},
+                                            {std::string(text_of(row.outcome)), tone_of(row.outcome)},
+                                            {row.num_detected ? fmt::format("{:.0f}", *row.num_detected) : "–"},
+                                            {row.end}};
     for (const auto& entry : row.values) cells.push_back({entry ? fmt::format("{:.4g}", *entry) : "–"});
     table.rows.push_back(cells);
   }
@@ -82,7 +94,9 @@ report::TableBlock fault_table(const SweepManifest& manifest, const std::vector<
 }
 
 report::VerdictBlock faults_verdict(const std::vector<FaultRow>& rows) {
-  const auto count = [&](FaultOutcome outcome) { return std::count_if(rows.begin(), rows.end(), [&](const FaultRow& row) { return row.outcome == outcome; }); };
+  const auto count = [&](FaultOutcome outcome) {
+    return std::count_if(rows.begin(), rows.end(), [&](const FaultRow& row) { return row.outcome == outcome; });
+  };
   const auto num_bad = count(FaultOutcome::kUnsafe) + count(FaultOutcome::kNoResult);
   report::VerdictBlock verdict;
   verdict.word = num_bad == 0 ? "No fault was unsafe" : fmt::format("{} of {} runs unsafe", num_bad, rows.size());
@@ -93,28 +107,37 @@ report::VerdictBlock faults_verdict(const std::vector<FaultRow>& rows) {
 
 const char* kind_of(SweepKind kind) {
   switch (kind) {
-    case SweepKind::kBudget: return "error budget";
-    case SweepKind::kFaults: return "fault matrix";
-    default: return "sweep";
+    case SweepKind::kBudget:
+      return "error budget";
+    case SweepKind::kFaults:
+      return "fault matrix";
+    default:
+      return "sweep";
   }
 }
 
-void add_comparisons(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress, report::Page& page) {
-  for (const std::string& metric : manifest.metrics) page.sections.push_back({metric, comparison_blocks(manifest, rows, progress, metric)});
+void add_comparisons(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress,
+                     report::Page& page) {
+  for (const std::string& metric : manifest.metrics)
+    page.sections.push_back({metric, comparison_blocks(manifest, rows, progress, metric)});
 }
 
 }  // namespace
 
 report::Page sweep_page(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress) {
   const std::string scenario = manifest.scenario.substr(0, manifest.scenario.rfind('.'));
-  report::Page page{.kind = fmt::format("report of {} {}", manifest.kind == SweepKind::kBudget ? "an" : "a", kind_of(manifest.kind)),
-                    .title = scenario,
-                    .facts = {{"variants", std::to_string(manifest.variants.size())},
-                              {"seeds", manifest.seeds.size() == 1 ? std::to_string(manifest.seeds.front()) : fmt::format("{} … {}", manifest.seeds.front(), manifest.seeds.back())},
-                              {"runs", std::to_string(progress.counted.size())}},
-                    .sections = {},
-                    .footer = fmt::format("Generated by patrol report {} from sweep.json and the results in runs/.", PATROL_VERSION)};
-  if (!manifest.overrides.empty()) page.facts.emplace_back("set in every run", fmt::format("{}", fmt::join(manifest.overrides, ", ")));
+  report::Page page{
+      .kind = fmt::format("report of {} {}", manifest.kind == SweepKind::kBudget ? "an" : "a", kind_of(manifest.kind)),
+      .title = scenario,
+      .facts = {{"variants", std::to_string(manifest.variants.size())},
+                {"seeds", manifest.seeds.size() == 1
+                              ? std::to_string(manifest.seeds.front())
+                              : fmt::format("{} … {}", manifest.seeds.front(), manifest.seeds.back())},
+                {"runs", std::to_string(progress.counted.size())}},
+      .sections = {},
+      .footer = fmt::format("Generated by patrol report {} from sweep.json and the results in runs/.", PATROL_VERSION)};
+  if (!manifest.overrides.empty())
+    page.facts.emplace_back("set in every run", fmt::format("{}", fmt::join(manifest.overrides, ", ")));
   switch (manifest.kind) {
     case SweepKind::kSweep:
       page.sections.push_back({"", {sweep_verdict(manifest, rows, progress)}});

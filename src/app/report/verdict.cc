@@ -13,7 +13,8 @@ namespace {
 using report::Tone;
 
 const io::JunitCase* case_named(const RunContents& run, const std::string& name) {
-  const auto found = std::find_if(run.cases.begin(), run.cases.end(), [&](const io::JunitCase& test) { return test.name == name; });
+  const auto found =
+      std::find_if(run.cases.begin(), run.cases.end(), [&](const io::JunitCase& test) { return test.name == name; });
   return found == run.cases.end() ? nullptr : &*found;
 }
 
@@ -23,17 +24,23 @@ std::string early_end(const RunContents& run) {
   return end == nullptr || end->result == io::JunitResult::kPassed ? "" : end->message;
 }
 
-report::TableCell trigger_cell(bool was_triggered) { return was_triggered ? report::TableCell{"triggered", Tone::kGood} : report::TableCell{"not triggered", Tone::kWarning}; }
+report::TableCell trigger_cell(bool was_triggered) {
+  return was_triggered ? report::TableCell{"triggered", Tone::kGood}
+                       : report::TableCell{"not triggered", Tone::kWarning};
+}
 
 std::vector<report::TableCell> expectation_row(const CheckedExpectation& check, bool is_complete) {
-  const report::TableCell result = check.is_met ? report::TableCell{"met", Tone::kGood} : report::TableCell{"MISSED", Tone::kBad};
-  return {{check.metric}, {check.wanted}, {check.got}, is_complete ? result : report::TableCell{"unknown", Tone::kFaint}};
+  const report::TableCell result =
+      check.is_met ? report::TableCell{"met", Tone::kGood} : report::TableCell{"MISSED", Tone::kBad};
+  return {
+      {check.metric}, {check.wanted}, {check.got}, is_complete ? result : report::TableCell{"unknown", Tone::kFaint}};
 }
 
 std::vector<report::TableCell> fault_row(const RunContents& run, const sim::FaultSettings& fault) {
   const std::string name = name_of(fault);
   const io::JunitCase* test = case_named(run, name);
-  const report::TableCell result = test == nullptr ? report::TableCell{"unknown", Tone::kFaint} : trigger_cell(test->result == io::JunitResult::kPassed);
+  const report::TableCell result = test == nullptr ? report::TableCell{"unknown", Tone::kFaint}
+                                                   : trigger_cell(test->result == io::JunitResult::kPassed);
   return {{name}, {fmt::format("{} s long", fault.duration_s)}, {test == nullptr ? "" : test->message}, result};
 }
 
@@ -54,7 +61,8 @@ std::string missed_text(const std::vector<CheckedExpectation>& checks) {
 }
 
 /// Fills in verdict, tone and reason of a complete run.
-void fill_verdict(const RunContents& run, const std::vector<CheckedExpectation>& checks, report::VerdictBlock& verdict) {
+void fill_verdict(const RunContents& run, const std::vector<CheckedExpectation>& checks,
+                  report::VerdictBlock& verdict) {
   const std::string end = early_end(run), misses = missed_text(checks);
   const bool is_passed = end.empty() && status_of(RunEnd::kMissionOver, checks) == RunStatus::kDone;
   verdict.word = is_passed ? "Passed" : "Missed";
@@ -68,15 +76,20 @@ void fill_verdict(const RunContents& run, const std::vector<CheckedExpectation>&
 }
 
 void add_untriggered(report::VerdictBlock& verdict) {
-  const auto is_untriggered = [](const std::vector<report::TableCell>& row) { return row.back().tone == Tone::kWarning; };
+  const auto is_untriggered = [](const std::vector<report::TableCell>& row) {
+    return row.back().tone == Tone::kWarning;
+  };
   const auto num = std::count_if(verdict.checks.rows.begin(), verdict.checks.rows.end(), is_untriggered);
-  if (num > 0) verdict.reason += fmt::format(" {} declared, but not triggered.", num == 1 ? "One fault or kidnap was" : fmt::format("{} faults and kidnaps were", num));
+  if (num > 0)
+    verdict.reason +=
+        fmt::format(" {} declared, but not triggered.",
+                    num == 1 ? "One fault or kidnap was" : fmt::format("{} faults and kidnaps were", num));
 }
 
 }  // namespace
 
 bool was_triggered(const KidnapSettings& kidnap, const Trajectory& T_world_body) {
-  constexpr double kNear_m = 0.5;             // the robot may fall or roll a little
+  constexpr double kNear_m = 0.5;                         // the robot may fall or roll a little
   constexpr Time kAfter = std::chrono::milliseconds(50);  // a few samples of the ground truth
   const std::optional<Pose3> truth = pose_at(T_world_body, from_seconds(kidnap.at_s) + kAfter);
   return truth && (truth->position.head<2>() - Eigen::Vector2d(kidnap.x_m, kidnap.y_m)).norm() < kNear_m;
@@ -94,7 +107,8 @@ report::VerdictBlock verdict_of(const RunContents& run) {
   } else {
     verdict.word = "INCOMPLETE";
     verdict.tone = Tone::kBad;
-    verdict.reason = fmt::format("Incomplete run: the log ends after {:.1f} s. Partial data only; not a valid result.", run.end_s());
+    verdict.reason =
+        fmt::format("Incomplete run: the log ends after {:.1f} s. Partial data only; not a valid result.", run.end_s());
   }
   add_untriggered(verdict);
   return verdict;

@@ -6,8 +6,12 @@ namespace patrol::app {
 namespace {
 
 io::JunitCase end_case(const std::string& name, const RunVerdict& verdict, double time_s) {
-  io::JunitCase test{.class_name = name, .name = "run", .time_s = time_s, .result = io::JunitResult::kPassed,
-                     .message = "", .details = ""};
+  io::JunitCase test{.class_name = name,
+                     .name = "run",
+                     .time_s = time_s,
+                     .result = io::JunitResult::kPassed,
+                     .message = "",
+                     .details = ""};
   if (verdict.end == RunStatus::kDone || verdict.end == RunStatus::kExpectationMissed) return test;  // own cases
   const bool came_to_a_score = !verdict.metrics.empty();
   test.result = came_to_a_score ? io::JunitResult::kFailure : io::JunitResult::kError;
@@ -43,13 +47,15 @@ std::vector<std::pair<std::string, std::string>> junit_properties(const Scenario
           {"version", PATROL_VERSION}};
 }
 
-io::JunitSuite unfinished_suite(const std::string& name, const std::vector<std::pair<std::string, std::string>>& properties) {
+io::JunitSuite unfinished_suite(const std::string& name,
+                                const std::vector<std::pair<std::string, std::string>>& properties) {
   io::JunitSuite suite = io::unfinished_junit(name);
   suite.properties = properties;
   return suite;
 }
 
-io::JunitSuite junit_suite(const std::string& name, const std::vector<std::pair<std::string, std::string>>& properties, const RunVerdict& verdict) {
+io::JunitSuite junit_suite(const std::string& name, const std::vector<std::pair<std::string, std::string>>& properties,
+                           const RunVerdict& verdict) {
   const double wall_s = io::metric_at(verdict.metrics, "performance.wall_s").value_or(0.0);
   io::JunitSuite suite{.name = name, .time_s = wall_s, .properties = properties, .cases = {}};
   suite.cases.push_back(end_case(name, verdict, wall_s));

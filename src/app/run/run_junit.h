@@ -14,10 +14,12 @@ namespace patrol::app {
 std::vector<std::pair<std::string, std::string>> junit_properties(const Scenario& scenario);
 
 /// Report of a failure, written before the run and replaced at its end.
-io::JunitSuite unfinished_suite(const std::string& name, const std::vector<std::pair<std::string, std::string>>& properties);
+io::JunitSuite unfinished_suite(const std::string& name,
+                                const std::vector<std::pair<std::string, std::string>>& properties);
 
 /// JUnit suite with one case for the end of the run, one per expectation, and one per declared event (skipped if NOT
 /// EXECUTED).
-io::JunitSuite junit_suite(const std::string& name, const std::vector<std::pair<std::string, std::string>>& properties, const RunVerdict& verdict);
+io::JunitSuite junit_suite(const std::string& name, const std::vector<std::pair<std::string, std::string>>& properties,
+                           const RunVerdict& verdict);
 
 }  // namespace patrol::app

@@ -59,7 +59,8 @@ sim::SimulatorSettings simulator_settings(const Scenario& scenario, const Scenar
 stack::LiningReferences references_of(const ScenarioFiles& files) {
   stack::LiningReferences references;
   for (const io::StationScan& scan : files.references) {
-    references.emplace(scan.station, inspect::LiningReference{.T_map_scanner = scan.T_map_scanner, .points = scan.points});
+    references.emplace(scan.station,
+                       inspect::LiningReference{.T_map_scanner = scan.T_map_scanner, .points = scan.points});
   }
   return references;
 }
@@ -194,13 +195,13 @@ class ClosedLoop {
 }  // namespace
 
 Pose2 start_in_world(const Scenario& scenario, const ScenarioFiles& files) {
-  return files.T_site_start * Pose2{scenario.start.ahead_m, scenario.start.left_m,
-                                    to_rad(scenario.start.yaw_deg)};
+  return files.T_site_start * Pose2{scenario.start.ahead_m, scenario.start.left_m, to_rad(scenario.start.yaw_deg)};
 }
 
 std::vector<sim::StaticObstacleSettings> all_static_obstacles(const Scenario& scenario) {
   std::vector<sim::StaticObstacleSettings> obstacles = scenario.static_obstacles;
-  const std::vector<sim::StaticObstacleSettings> scattered = sim::scatter_low_obstacles(scenario.low_obstacles, scenario.seed);
+  const std::vector<sim::StaticObstacleSettings> scattered =
+      sim::scatter_low_obstacles(scenario.low_obstacles, scenario.seed);
   obstacles.insert(obstacles.end(), scattered.begin(), scattered.end());
   return obstacles;
 }
@@ -220,8 +221,8 @@ stack::Stack make_stack(const Scenario& scenario, const ScenarioFiles& files) {
                             .seed = scenario.seed});
 }
 
-RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::Simulator& simulator, stack::Stack& stack,
-                    const std::filesystem::path& log_mcap, RunObserver& observer) {
+RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::Simulator& simulator,
+                    stack::Stack& stack, const std::filesystem::path& log_mcap, RunObserver& observer) {
   return ClosedLoop(scenario, files, simulator, stack, log_mcap, observer).run(files);
 }
 

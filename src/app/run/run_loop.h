@@ -17,12 +17,12 @@ enum class RunEnd { kMissionOver, kFall, kTimeLimit, kInterrupted };
 /// Outcome of a run beyond its log.
 struct RunOutcome {
   RunEnd end = RunEnd::kMissionOver;
-  Time duration{};                                   ///< simulated time
+  Time duration{};  ///< simulated time
   double wall_s = 0.0;
   double cpu_s = 0.0;
-  std::map<std::string, double> seconds_by_stage;     ///< wall time by stage
+  std::map<std::string, double> seconds_by_stage;  ///< wall time by stage
   std::vector<sim::FaultStatus> faults;
-  std::size_t num_kidnaps = 0;                       ///< number of declared kidnaps, in order, that were triggered
+  std::size_t num_kidnaps = 0;  ///< number of declared kidnaps, in order, that were triggered
 };
 
 /// Observer of a running simulation. Must not influence the run; may stop it by returning false from `keep_running`.
@@ -55,7 +55,7 @@ sim::Simulator make_simulator(const Scenario& scenario, const ScenarioFiles& fil
 stack::Stack make_stack(const Scenario& scenario, const ScenarioFiles& files);
 
 /// Runs simulator and stack in a closed loop until the mission ends, and writes everything to `log_mcap`.
-RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::Simulator& simulator, stack::Stack& stack,
-                    const std::filesystem::path& log_mcap, RunObserver& observer);
+RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::Simulator& simulator,
+                    stack::Stack& stack, const std::filesystem::path& log_mcap, RunObserver& observer);
 
 }  // namespace patrol::app

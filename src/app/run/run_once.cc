@@ -30,8 +30,9 @@ io::Metrics performance_of(const RunOutcome& outcome) {
 
 }  // namespace
 
-std::optional<RunVerdict> run_once(const Scenario& scenario, const std::string& name, const std::filesystem::path& data_root,
-                                  const std::filesystem::path& root, RunObserver& observer) {
+std::optional<RunVerdict> run_once(const Scenario& scenario, const std::string& name,
+                                   const std::filesystem::path& data_root, const std::filesystem::path& root,
+                                   RunObserver& observer) {
   const ScenarioFiles files = load_scenario_files(scenario, data_root);
   sim::Simulator simulator = make_simulator(scenario, files);  // these throw InputError before anything is written
   stack::Stack stack = make_stack(scenario, files);

@@ -12,7 +12,8 @@ namespace patrol::app {
 /// Runs a scenario, scores it, and writes a complete run directory at `root`. Returns none if `observer` stopped the
 /// run: the directory stays marked incomplete. Throws InputError, before anything is written, if a file of the scenario
 /// is missing or its settings are inconsistent.
-std::optional<RunVerdict> run_once(const Scenario& scenario, const std::string& name, const std::filesystem::path& data_root,
-                                  const std::filesystem::path& root, RunObserver& observer);
+std::optional<RunVerdict> run_once(const Scenario& scenario, const std::string& name,
+                                   const std::filesystem::path& data_root, const std::filesystem::path& root,
+                                   RunObserver& observer);
 
 }  // namespace patrol::app

@@ -18,7 +18,9 @@ std::vector<InjectedEvent> events_of(const RunOutcome& outcome, const std::vecto
 
 }  // namespace
 
-std::string name_of(const sim::FaultSettings& fault) { return fmt::format("fault {} {} at {} s", fault.sensor, fault.kind, fault.start_s); }
+std::string name_of(const sim::FaultSettings& fault) {
+  return fmt::format("fault {} {} at {} s", fault.sensor, fault.kind, fault.start_s);
+}
 std::string name_of(const KidnapSettings& kidnap) { return fmt::format("kidnap at {} s", kidnap.at_s); }
 
 RunStatus status_of(RunEnd end, const std::vector<CheckedExpectation>& checks) {
@@ -29,7 +31,10 @@ RunStatus status_of(RunEnd end, const std::vector<CheckedExpectation>& checks) {
 
 RunVerdict verdict_of(const RunOutcome& outcome, const std::vector<KidnapSettings>& kidnaps, io::Metrics metrics,
                       std::vector<CheckedExpectation> checks) {
-  RunVerdict verdict{.end = status_of(outcome.end, checks), .message = "", .metrics = std::move(metrics), .checks = std::move(checks),
+  RunVerdict verdict{.end = status_of(outcome.end, checks),
+                     .message = "",
+                     .metrics = std::move(metrics),
+                     .checks = std::move(checks),
                      .events = events_of(outcome, kidnaps)};
   for (const CheckedExpectation& check : verdict.checks) {
     if (!check.is_met) verdict.message += (verdict.message.empty() ? "" : "; ") + describe_missed(check);
@@ -47,12 +52,9 @@ std::string describe_missed(const CheckedExpectation& check) {
 }
 
 io::Metrics to_json(const RunVerdict& verdict) {
-  io::Metrics json{{"end", name_of(verdict.end)},
-                   {"exit_code", static_cast<int>(verdict.code())},
-                   {"message", verdict.message},
-                   {"expectations", io::Metrics::array()},
-                   {"events", io::Metrics::array()},
-                   {"metrics", verdict.metrics}};
+  io::Metrics json{{"end", name_of(verdict.end)},    {"exit_code", static_cast<int>(verdict.code())},
+                   {"message", verdict.message},     {"expectations", io::Metrics::array()},
+                   {"events", io::Metrics::array()}, {"metrics", verdict.metrics}};
   for (const CheckedExpectation& check : verdict.checks) {
     json["expectations"].push_back({{"metric", check.metric},
                                     {"wanted", check.wanted},

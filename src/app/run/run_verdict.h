@@ -16,12 +16,21 @@ namespace patrol::app {
 
 /// Event declared by a scenario: a fault or a kidnap.
 struct InjectedEvent {
-  std::string name;          ///< "fault imu freeze at 12 s"
+  std::string name;  ///< "fault imu freeze at 12 s"
   bool was_triggered = false;
 };
 
 /// Status of a completed run.
-enum class RunStatus : std::uint8_t { kDone, kExpectationMissed, kFall, kTimeLimit, kWrongInput, kFailed, kCrashed, kWallTimeLimit };
+enum class RunStatus : std::uint8_t {
+  kDone,
+  kExpectationMissed,
+  kFall,
+  kTimeLimit,
+  kWrongInput,
+  kFailed,
+  kCrashed,
+  kWallTimeLimit
+};
 
 /// Row of the table of run statuses.
 struct RunStatusRow {
@@ -33,13 +42,16 @@ struct RunStatusRow {
 
 inline constexpr std::array kRunStatuses = std::to_array<RunStatusRow>({
     {RunStatus::kDone, "done", "The run ended and every expectation was met", ExitCode::kDone},
-    {RunStatus::kExpectationMissed, "expectation missed", "The run ended and an expectation was missed", ExitCode::kExpectationMissed},
+    {RunStatus::kExpectationMissed, "expectation missed", "The run ended and an expectation was missed",
+     ExitCode::kExpectationMissed},
     {RunStatus::kFall, "fall", "The robot fell", ExitCode::kExpectationMissed},
     {RunStatus::kTimeLimit, "time limit", "The simulated time reached its limit", ExitCode::kTimeLimit},
-    {RunStatus::kWrongInput, "wrong input", "No score: the scenario or one of its files is invalid", ExitCode::kWrongInput},
+    {RunStatus::kWrongInput, "wrong input", "No score: the scenario or one of its files is invalid",
+     ExitCode::kWrongInput},
     {RunStatus::kFailed, "failed", "No score: the simulation or the program failed", ExitCode::kProgramFailed},
     {RunStatus::kCrashed, "crashed", "No score: the process of the run crashed", ExitCode::kProgramFailed},
-    {RunStatus::kWallTimeLimit, "wall time limit", "No score: the process of the run reached its wall-clock timeout", ExitCode::kTimeLimit},
+    {RunStatus::kWallTimeLimit, "wall time limit", "No score: the process of the run reached its wall-clock timeout",
+     ExitCode::kTimeLimit},
 });
 static_assert(is_in_order(kRunStatuses));
 

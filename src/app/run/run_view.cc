@@ -21,16 +21,22 @@ enum class Layer { kNothing, kWall, kDriven, kPath, kTruth, kRobot };
 
 const char* color_of(Layer layer) {
   switch (layer) {
-    case Layer::kDriven: return "\033[38;5;172m";
-    case Layer::kPath: return "\033[38;5;75m";
-    case Layer::kTruth: return "\033[1;32m";
-    case Layer::kRobot: return "\033[1;38;5;208m";
-    default: return "\033[0m";
+    case Layer::kDriven:
+      return "\033[38;5;172m";
+    case Layer::kPath:
+      return "\033[38;5;75m";
+    case Layer::kTruth:
+      return "\033[1;32m";
+    case Layer::kRobot:
+      return "\033[1;38;5;208m";
+    default:
+      return "\033[0m";
   }
 }
 
 std::string utf8(int code) {
-  return {static_cast<char>(0xe0 | code >> 12), static_cast<char>(0x80 | (code >> 6 & 0x3f)), static_cast<char>(0x80 | (code & 0x3f))};
+  return {static_cast<char>(0xe0 | code >> 12), static_cast<char>(0x80 | (code >> 6 & 0x3f)),
+          static_cast<char>(0x80 | (code & 0x3f))};
 }
 
 /// Grid of braille characters. Each has the color of the highest layer that set a dot in it.
@@ -47,7 +53,8 @@ class DotMap {
     Cell* cell = cell_at(x, y);
     if (cell == nullptr) return;
     // Braille dots 1, 2, 3, 7 are in the left column, 4, 5, 6, 8 in the right one.
-    static constexpr std::array<std::array<int, kDotsDown>, kDotsAcross> kBits = {{{0x01, 0x02, 0x04, 0x40}, {0x08, 0x10, 0x20, 0x80}}};
+    static constexpr std::array<std::array<int, kDotsDown>, kDotsAcross> kBits = {
+        {{0x01, 0x02, 0x04, 0x40}, {0x08, 0x10, 0x20, 0x80}}};
     cell->dots |= kBits[static_cast<std::size_t>(x % kDotsAcross)][static_cast<std::size_t>(y % kDotsDown)];
     cell->layer = std::max(cell->layer, layer);
   }
@@ -80,7 +87,8 @@ class DotMap {
   };
 
   std::pair<int, int> dot_of(const Eigen::Vector2d& p_m) const {
-    return {static_cast<int>(std::floor((p_m.x() - corner_m_.x()) / kDot_m)), static_cast<int>(std::floor((corner_m_.y() - p_m.y()) / kDot_m))};
+    return {static_cast<int>(std::floor((p_m.x() - corner_m_.x()) / kDot_m)),
+            static_cast<int>(std::floor((corner_m_.y() - p_m.y()) / kDot_m))};
   }
   Cell* cell_at(int x, int y) {
     if (x < 0 || y < 0 || x >= columns_ * kDotsAcross || y >= rows_ * kDotsDown) return nullptr;
@@ -113,9 +121,11 @@ std::string map_text(const RunView& run, int columns, int rows) {
     }
   }
   for (const Eigen::Vector2d& p_m : run.traveled_m) dots.put(p_m, Layer::kDriven);
-  for (std::size_t i = 1; i < run.path.size(); ++i) put_line(dots, run.path[i - 1].position(), run.path[i].position(), Layer::kPath);
+  for (std::size_t i = 1; i < run.path.size(); ++i)
+    put_line(dots, run.path[i - 1].position(), run.path[i].position(), Layer::kPath);
   if (run.truth) dots.put_sign(run.truth->position(), Layer::kTruth, "◆");
-  if (run.estimate) dots.put_sign(run.estimate->T_map_body.position(), Layer::kRobot, arrow_of(run.estimate->T_map_body.yaw));
+  if (run.estimate)
+    dots.put_sign(run.estimate->T_map_body.position(), Layer::kRobot, arrow_of(run.estimate->T_map_body.yaw));
   return dots.text();
 }
 
@@ -124,32 +134,35 @@ std::string values_text(const RunView& run) {
   if (run.estimate && run.truth) {
     const Pose2 error = run.truth->inverse() * run.estimate->T_map_body;
     const Eigen::Matrix3d& covariance = run.estimate->covariance;
-    text += fmt::format("   error {:.3f} m {:.2f}°   estimated 2σ {:.3f} m", error.position().norm(), to_deg(std::abs(error.yaw)),
-                        2.0 * std::sqrt(covariance(0, 0) + covariance(1, 1)));
+    text += fmt::format("   error {:.3f} m {:.2f}°   estimated 2σ {:.3f} m", error.position().norm(),
+                        to_deg(std::abs(error.yaw)), 2.0 * std::sqrt(covariance(0, 0) + covariance(1, 1)));
   }
-  if (run.confidence) text += fmt::format("   confidence {:.2f}{}", run.confidence->confidence, run.confidence->is_lost ? " LOST" : "");
+  if (run.confidence)
+    text += fmt::format("   confidence {:.2f}{}", run.confidence->confidence, run.confidence->is_lost ? " LOST" : "");
   return text;
 }
 
 }  // namespace
 
 std::string render_run_view(const RunView& run, int columns, int rows) {
-  std::string text = fmt::format("\033[1m{}\033[0m   {:.1f} s simulated, {:.1f}x real time   {:.1f} m{}{}{}", run.name, to_seconds(run.now),
-                                 run.real_time_factor, run.distance_m, kLineEnd, values_text(run), kLineEnd);
+  std::string text =
+      fmt::format("\033[1m{}\033[0m   {:.1f} s simulated, {:.1f}x real time   {:.1f} m{}{}{}", run.name,
+                  to_seconds(run.now), run.real_time_factor, run.distance_m, kLineEnd, values_text(run), kLineEnd);
   text += map_text(run, columns, std::max(1, rows - 2 - kNumEvents - 1));
   for (int i = 0; i < kNumEvents; ++i) {
     const std::size_t first = run.events.size() > kNumEvents ? run.events.size() - kNumEvents : 0;
     const std::size_t at = first + static_cast<std::size_t>(i);
     if (at < run.events.size()) {
       const Event& event = run.events[at];
-      std::string line = fmt::format("{:7.1f} s  {}", to_seconds(event.stamp), event.text.empty() ? kind_text(event) : event.text);
+      std::string line =
+          fmt::format("{:7.1f} s  {}", to_seconds(event.stamp), event.text.empty() ? kind_text(event) : event.text);
       if (line.size() > static_cast<std::size_t>(columns)) line.resize(static_cast<std::size_t>(columns));
       text += line;
     }
     text += kLineEnd;
   }
-  return text + fmt::format("{}→ estimate {}◆ truth {}⠒ planned {}⠒ traveled\033[0m\033[K", color_of(Layer::kRobot), color_of(Layer::kTruth), color_of(Layer::kPath),
-                            color_of(Layer::kDriven));
+  return text + fmt::format("{}→ estimate {}◆ truth {}⠒ planned {}⠒ traveled\033[0m\033[K", color_of(Layer::kRobot),
+                            color_of(Layer::kTruth), color_of(Layer::kPath), color_of(Layer::kDriven));
 }
 
 }  // namespace patrol::app

@@ -19,11 +19,11 @@ struct RunView {
   OccupancyGrid map;
   std::optional<PoseEstimate> estimate;
   std::optional<Pose2> truth;
-  std::vector<Pose2> path;              ///< planned path
+  std::vector<Pose2> path;                  ///< planned path
   std::vector<Eigen::Vector2d> traveled_m;  ///< trajectory, by the robot's own estimate
   std::optional<LocalizationConfidence> confidence;
   VelocityCommand command;
-  std::deque<Event> events;             ///< newest last
+  std::deque<Event> events;  ///< newest last
 };
 
 /// Renders the state for a terminal, `columns` x `rows` characters, with ANSI colors: values, the map around the robot,

@@ -48,7 +48,8 @@ void TerminalView::on_message(const stack::StackMessage& message) {
                    run_.estimate = estimate;
                    if (!T_world_map_ && T_world_body_) T_world_map_ = *T_world_body_ * estimate.T_map_body.inverse();
                    const Eigen::Vector2d p_m = estimate.T_map_body.position();
-                   if (run_.traveled_m.empty() || (p_m - run_.traveled_m.back()).norm() > kDrivenSpacing_m) run_.traveled_m.push_back(p_m);
+                   if (run_.traveled_m.empty() || (p_m - run_.traveled_m.back()).norm() > kDrivenSpacing_m)
+                     run_.traveled_m.push_back(p_m);
                  },
                  [&](const MapUpdate& update) { run_.map = update.map; },
                  [&](const Path& path) { run_.path = path.T_map_body; },

@@ -7,7 +7,9 @@
 
 namespace patrol::app {
 
-bool needs_neighbor_model(const std::string& method) { return row_named(slam::mapping_methods(), method, "slam.method").needs_neighbor_model; }
+bool needs_neighbor_model(const std::string& method) {
+  return row_named(slam::mapping_methods(), method, "slam.method").needs_neighbor_model;
+}
 
 BoostedStumps load_neighbor_model(const std::string& method, const std::filesystem::path& data_root) {
   if (!needs_neighbor_model(method)) return {};

@@ -9,15 +9,15 @@
 #include <fmt/format.h>
 
 #include "app/scenario/neighbor_model.h"
-#include "core/geometry/angles.h"
 #include "core/error.h"
+#include "core/geometry/angles.h"
+#include "io/files/teleop_csv.h"
+#include "io/json/nav_json.h"
+#include "io/json/route_json.h"
 #include "io/json/teleop_route_json.h"
 #include "io/maps/map_server.h"
-#include "io/json/nav_json.h"
-#include "io/files/teleop_csv.h"
-#include "io/json/route_json.h"
-#include "io/yaml/settings_yaml.h"
 #include "io/urdf.h"
+#include "io/yaml/settings_yaml.h"
 #include "stack/mission/known_map.h"
 
 namespace patrol::app {
@@ -25,7 +25,8 @@ namespace {
 
 bool contains_data(const std::filesystem::path& root) {
   std::error_code ignored;
-  return std::filesystem::is_directory(root / "worlds", ignored) && std::filesystem::is_directory(root / "models", ignored);
+  return std::filesystem::is_directory(root / "worlds", ignored) &&
+         std::filesystem::is_directory(root / "models", ignored);
 }
 
 /// Data folder of the program's own installation (bin/patrol and share/patrol) or of the source tree of its build
@@ -52,11 +53,12 @@ std::string folders_in(const std::filesystem::path& parent) {
 }
 
 /// Path <root>/<kind>/<name>/<name><extension>. Throws InputError if it does not exist.
-std::filesystem::path find_definition(const std::filesystem::path& root, const std::string& kind, const std::string& key,
-                                      const std::string& name, const std::string& extension) {
+std::filesystem::path find_definition(const std::filesystem::path& root, const std::string& kind,
+                                      const std::string& key, const std::string& name, const std::string& extension) {
   const std::filesystem::path file = root / kind / name / (name + extension);
   if (!std::filesystem::exists(file)) {
-    throw InputError(fmt::format("{} = {}: {} not found (known: {})", key, name, file.string(), folders_in(root / kind)));
+    throw InputError(
+        fmt::format("{} = {}: {} not found (known: {})", key, name, file.string(), folders_in(root / kind)));
   }
   return file;
 }
@@ -65,7 +67,8 @@ std::filesystem::path find_definition(const std::filesystem::path& root, const s
 std::filesystem::path find_named_file(const std::filesystem::path& world, const char* key, const std::string& name) {
   const std::filesystem::path file = world / name;
   if (!std::filesystem::exists(file)) throw InputError(fmt::format("{} = {}: {} not found", key, name, file.string()));
-  if (std::filesystem::is_directory(file)) throw InputError(fmt::format("{} = {}: {} is a folder", key, name, file.string()));
+  if (std::filesystem::is_directory(file))
+    throw InputError(fmt::format("{} = {}: {} is a folder", key, name, file.string()));
   return file;
 }
 
@@ -73,11 +76,12 @@ std::filesystem::path find_named_file(const std::filesystem::path& world, const 
 void add_mounts(RobotDescription& robot, const std::vector<MountSettings>& mounts) {
   for (std::size_t i = 0; i < mounts.size(); ++i) {
     const MountSettings& mount = mounts[i];
-    const Pose3 T_body_mount{{mount.x_m, mount.y_m, mount.z_m},
-                             quaternion_from_rpy(kDegree * mount.roll_deg, kDegree * mount.pitch_deg, kDegree * mount.yaw_deg)};
+    const Pose3 T_body_mount{
+        {mount.x_m, mount.y_m, mount.z_m},
+        quaternion_from_rpy(kDegree * mount.roll_deg, kDegree * mount.pitch_deg, kDegree * mount.yaw_deg)};
     if (robot.T_body_sensor.emplace(mount.frame, T_body_mount).second) continue;
-    throw InputError(fmt::format("mounts.{}.frame = {}: duplicate frame of the robot {}: must be a new name", i, mount.frame,
-                                 robot.name));
+    throw InputError(fmt::format("mounts.{}.frame = {}: duplicate frame of the robot {}: must be a new name", i,
+                                 mount.frame, robot.name));
   }
 }
 
@@ -110,24 +114,29 @@ void save_scenario(const std::filesystem::path& file, const Scenario& scenario, 
 std::filesystem::path find_data_root(const std::filesystem::path& scenario) {
   if (const char* named = std::getenv("PATROL_DATA"); named != nullptr && *named != '\0') {
     if (!contains_data(named)) {
-      throw InputError(fmt::format("PATROL_DATA = {}: must be a folder that contains the folders worlds and models", named));
+      throw InputError(
+          fmt::format("PATROL_DATA = {}: must be a folder that contains the folders worlds and models", named));
     }
     return std::filesystem::absolute(named);
   }
-  std::filesystem::path folder = scenario.empty() ? std::filesystem::current_path() : std::filesystem::absolute(scenario).parent_path();
+  std::filesystem::path folder =
+      scenario.empty() ? std::filesystem::current_path() : std::filesystem::absolute(scenario).parent_path();
   for (; folder != folder.parent_path(); folder = folder.parent_path()) {
     if (contains_data(folder)) return folder;
   }
   if (contains_data(std::filesystem::current_path())) return std::filesystem::current_path();
   if (const std::filesystem::path found = data_root_of_program(); !found.empty()) return found;
   if (contains_data(PATROL_SOURCE_DIR)) return PATROL_SOURCE_DIR;
-  throw InputError("folders worlds and models not found near the scenario or the program: set PATROL_DATA to the folder that "
-                   "contains them");
+  throw InputError(
+      "folders worlds and models not found near the scenario or the program: set PATROL_DATA to the folder that "
+      "contains them");
 }
 
 std::vector<std::filesystem::path> named_files(const Scenario& scenario, const std::filesystem::path& data_root) {
   const std::filesystem::path world = data_root / "worlds" / scenario.world;
-  const std::pair<const char*, const std::string&> named[] = {{"mission", scenario.mission}, {"map", scenario.map}, {"goals", scenario.goals},
+  const std::pair<const char*, const std::string&> named[] = {{"mission", scenario.mission},
+                                                              {"map", scenario.map},
+                                                              {"goals", scenario.goals},
                                                               {"teleop.route", scenario.teleop.route},
                                                               {"teleop.recorded", scenario.teleop.recorded}};
   std::vector<std::filesystem::path> files;
@@ -148,7 +157,9 @@ ScenarioFiles load_scenario_files(const Scenario& scenario, const std::filesyste
   files.robot_urdf = find_definition(data_root, "models", "robot", scenario.robot, ".urdf");
   files.robot = io::load_robot_description(files.robot_urdf.string());
   add_mounts(files.robot, scenario.mounts);
-  const auto named_file = [&](const char* key, const std::string& name) { return find_named_file(files.world_xml.parent_path(), key, name); };
+  const auto named_file = [&](const char* key, const std::string& name) {
+    return find_named_file(files.world_xml.parent_path(), key, name);
+  };
   const io::RouteFile route = io::load_route(named_file("mission", scenario.mission));
   files.route = route.route;
   files.T_site_start = route.T_site_start;
@@ -163,19 +174,21 @@ ScenarioFiles load_scenario_files(const Scenario& scenario, const std::filesyste
     stack::validate_goals(file.string(), files.goals, files.map);
   }
   files.neighbor_model = load_neighbor_model(scenario.stack.slam.method, data_root);
-  if (!scenario.references.empty()) files.references = io::load_station_scans(files.world_xml.parent_path() / scenario.references);
+  if (!scenario.references.empty())
+    files.references = io::load_station_scans(files.world_xml.parent_path() / scenario.references);
   const TeleopSettings& teleop = scenario.teleop;
   if (!teleop.route.empty() && !teleop.recorded.empty()) {
     throw InputError("teleop: route and recorded are mutually exclusive: only one of them is allowed");
   }
   if (!teleop.route.empty()) files.teleop_route = io::load_teleop_route(named_file("teleop.route", teleop.route));
   if (!teleop.recorded.empty()) files.recorded = io::load_teleop(named_file("teleop.recorded", teleop.recorded));
-  const bool has_operator_goal =
-      std::any_of(files.goals.begin(), files.goals.end(), [](const SavedGoal& goal) { return goal.type == GoalType::kOperator; });
+  const bool has_operator_goal = std::any_of(files.goals.begin(), files.goals.end(),
+                                             [](const SavedGoal& goal) { return goal.type == GoalType::kOperator; });
   if (files.map && files.has_teleop() && !has_operator_goal) {
-    throw InputError(fmt::format("map = {}: map and teleop are mutually exclusive, because a teleoperated run builds a new map: both are "
-                                 "allowed only with a goal of type R",
-                                 scenario.map));
+    throw InputError(fmt::format(
+        "map = {}: map and teleop are mutually exclusive, because a teleoperated run builds a new map: both are "
+        "allowed only with a goal of type R",
+        scenario.map));
   }
   return files;
 }

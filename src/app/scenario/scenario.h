@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "core/boosted_stumps.h"
-#include "core/teleop_route.h"
 #include "core/route.h"
 #include "core/settings.h"
-#include "io/yaml/expectations.h"
+#include "core/teleop_route.h"
 #include "io/points/station_scans.h"
+#include "io/yaml/expectations.h"
 #include "render/scene/light.h"
 #include "sim/simulator/simulator.h"
 #include "stack/settings/stack_settings.h"
@@ -34,8 +34,8 @@ struct StartOffsetSettings {
 
 /// Source of teleoperation commands while the map is built and goals are saved. At most one of `route` and `recorded`.
 struct TeleopSettings {
-  std::string route;     ///< route of the simulated operator, below the world's folder
-  std::string recorded;  ///< table of recorded commands, below the world's folder
+  std::string route;                            ///< route of the simulated operator, below the world's folder
+  std::string recorded;                         ///< table of recorded commands, below the world's folder
   sim::TeleopOperatorSettings teleop_operator;  ///< key `operator`, which is a keyword of C++
 
   template <typename Self, typename Visitor>
@@ -64,8 +64,8 @@ struct KidnapSettings {
 
 /// Sensor mounted for this scenario: an additional frame of the robot, with neither mass nor shape.
 struct MountSettings {
-  std::string frame;  ///< name of the sensor frame, e.g. "tdlas"
-  double x_m = 0.0, y_m = 0.0, z_m = 0.0;                    ///< in body
+  std::string frame;                       ///< name of the sensor frame, e.g. "tdlas"
+  double x_m = 0.0, y_m = 0.0, z_m = 0.0;  ///< in body
   double roll_deg = 0.0, pitch_deg = 0.0, yaw_deg = 0.0;
 
   template <typename Self, typename Visitor>
@@ -101,17 +101,17 @@ struct Scenario {
   std::string world = "street";
   std::string robot = "quadruped";
   std::uint64_t seed = 1;
-  double time_limit_s = 900.0;  ///< limit of the simulated time
+  double time_limit_s = 900.0;                         ///< limit of the simulated time
   std::string mission = "routes/boxes_and_well.json";  ///< below the world's folder
-  std::string map;    ///< map_server YAML below the world's folder, in map; empty: the robot builds a map
-  std::string goals;  ///< nav.json below the world's folder; empty: goals are saved during teleoperation
+  std::string map;         ///< map_server YAML below the world's folder, in map; empty: the robot builds a map
+  std::string goals;       ///< nav.json below the world's folder; empty: goals are saved during teleoperation
   std::string references;  ///< folder below the world's folder with scans of an earlier run (io/points/station_scans.h)
   TeleopSettings teleop;
   StartOffsetSettings start;
-  std::vector<MountSettings> mounts;       ///< sensors in addition to those of the robot's URDF
+  std::vector<MountSettings> mounts;  ///< sensors in addition to those of the robot's URDF
   sim::SensorSuiteSettings sensors;
-  sim::LocomotionSettings locomotion;      ///< locomotion of a legged robot
-  sim::TrackDriveSettings track_drive;     ///< drive of a tracked robot
+  sim::LocomotionSettings locomotion;   ///< locomotion of a legged robot
+  sim::TrackDriveSettings track_drive;  ///< drive of a tracked robot
   stack::StackSettings stack;
   std::vector<sim::StaticObstacleSettings> static_obstacles;
   sim::LowObstacleSettings low_obstacles;  ///< random obstacles by the seed, in addition to the static obstacles
@@ -121,7 +121,7 @@ struct Scenario {
   sim::WindSettings wind;
   sim::RockSettings rock;
   std::vector<sim::WaterBodySettings> water_bodies;  ///< water bodies ahead of the tunnel face
-  render::LightSettings light;  ///< light of the replay; for dust see sensors.dust
+  render::LightSettings light;                       ///< light of the replay; for dust see sensors.dust
   std::vector<sim::FaultSettings> faults;
   std::vector<KidnapSettings> kidnaps;
   LogSettings log;
@@ -201,8 +201,8 @@ struct ScenarioFiles {
   std::filesystem::path world_xml;
   std::filesystem::path robot_urdf;
   RobotDescription robot;
-  Route route;          ///< in site
-  Pose2 T_site_start;   ///< surveyed start
+  Route route;                          ///< in site
+  Pose2 T_site_start;                   ///< surveyed start
   TeleopRoute teleop_route;             ///< in site
   std::vector<TeleopCommand> recorded;  ///< recorded teleoperation commands
   std::vector<SavedGoal> goals;         ///< in map

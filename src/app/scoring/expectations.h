@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "io/yaml/expectations.h"
 #include "io/json/metrics_json.h"
+#include "io/yaml/expectations.h"
 
 namespace patrol::app {
 

@@ -23,10 +23,13 @@ LocalizabilityMap map_localizability(const Scenario& scenario, const ScenarioFil
   const score::DistanceField clearance(score::occupied_cells(map.surfaces));
   const LocalizabilityOracle oracle(*world.world, scenario.sensors.lidar, world.lidar_height_m);
   const Eigen::Vector2d start = files.T_site_start.position();
-  const auto position_at = [&](const std::pair<int, int>& node) { return Eigen::Vector2d(start + step_m * Eigen::Vector2d(node.first, node.second)); };
+  const auto position_at = [&](const std::pair<int, int>& node) {
+    return Eigen::Vector2d(start + step_m * Eigen::Vector2d(node.first, node.second));
+  };
   const auto is_reachable = [&](const Eigen::Vector2d& p_world_m) {
     const Cell cell = map.surfaces.geometry().cell_at(p_world_m);
-    return map.surfaces.contains(cell) && map.surfaces.at(cell) == kFree && clearance.distance_m(p_world_m) >= kClearance_m;
+    return map.surfaces.contains(cell) && map.surfaces.at(cell) == kFree &&
+           clearance.distance_m(p_world_m) >= kClearance_m;
   };
 
   std::set<std::pair<int, int>> visited = {{0, 0}};

@@ -12,7 +12,8 @@ namespace {
 score::BeamNoise noise_of(const LidarSettings& lidar, int num_rays) {
   constexpr double kMinStd_m = 0.001;
   const double quantum_m = lidar.range_quantization_m;
-  const double range_std_m = std::sqrt(lidar.range_noise_std_m * lidar.range_noise_std_m + quantum_m * quantum_m / 12.0);
+  const double range_std_m =
+      std::sqrt(lidar.range_noise_std_m * lidar.range_noise_std_m + quantum_m * quantum_m / 12.0);
   const double beams_per_ray = lidar.beams * 360.0 / lidar.fov_deg / num_rays;
   return {.range_std_m = std::max(range_std_m, kMinStd_m) / std::sqrt(beams_per_ray),
           .direction_std_rad = to_rad(lidar.angle_noise_std_deg) / std::sqrt(beams_per_ray)};

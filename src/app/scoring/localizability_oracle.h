@@ -8,9 +8,9 @@
 
 namespace patrol::app {
 
-/// Localizability of a single lidar scan, anywhere in a static world without static obstacles, pedestrians and vehicles. The lidar
-/// is assumed level, with a full field of view and a return from every surface within its range. Its noise is that of
-/// the sensor model, but at least 1 mm.
+/// Localizability of a single lidar scan, anywhere in a static world without static obstacles, pedestrians and
+/// vehicles. The lidar is assumed level, with a full field of view and a return from every surface within its range.
+/// Its noise is that of the sensor model, but at least 1 mm.
 class LocalizabilityOracle {
  public:
   /// `world` must outlive the object. `height_m`: height of the lidar, in world.

@@ -13,12 +13,16 @@ std::string spread_text(const char* name, const score::ErrorSpread& spread, int 
 }  // namespace
 
 std::string relation_table(const score::RelationError& error) {
-  std::string table = fmt::format("{} relations between {} stamps: {} nearest poses, {} interpolated ({} outside the estimate)\n\n", error.num_relations,
-                                  error.num_stamps, error.num_stamps - error.num_interpolated, error.num_interpolated, error.num_outside);
+  std::string table =
+      fmt::format("{} relations between {} stamps: {} nearest poses, {} interpolated ({} outside the estimate)\n\n",
+                  error.num_relations, error.num_stamps, error.num_stamps - error.num_interpolated,
+                  error.num_interpolated, error.num_outside);
   table += fmt::format("  {:<24} {:>10} {:>10} {:>10} {:>10}\n", "", "mean", "std", "median", "max");
-  table += spread_text("translation, m", error.trans_m, 4) + fmt::format(" {:>10.4f} {:>10.3f}\n", error.trans_median_m, error.trans_max_m);
+  table += spread_text("translation, m", error.trans_m, 4) +
+           fmt::format(" {:>10.4f} {:>10.3f}\n", error.trans_median_m, error.trans_max_m);
   table += spread_text("translation squared, m2", error.squared_trans_m2, 4) + "\n";
-  table += spread_text("rotation, deg", error.rot_deg, 3) + fmt::format(" {:>10.3f} {:>10.2f}\n", error.rot_median_deg, error.rot_max_deg);
+  table += spread_text("rotation, deg", error.rot_deg, 3) +
+           fmt::format(" {:>10.3f} {:>10.2f}\n", error.rot_median_deg, error.rot_max_deg);
   table += spread_text("rotation squared, deg2", error.squared_rot_deg2, 3) + "\n";
   return table;
 }

@@ -27,24 +27,29 @@ std::vector<score::WaterGroundTruth> true_waters(const Scenario& scenario) {
 }  // namespace
 
 score::RunReferences run_references(const Scenario& scenario, const ScenarioFiles& files, const TrueMap& truth) {
-  const auto oracle = std::make_shared<LocalizabilityOracle>(*truth.world, scenario.sensors.lidar, truth.lidar_height_m);
-  score::RunReferences references{.map = truth.reference,
-                                  .map_agreement = truth.reference_agreement,
-                                  .T_world_map = {},
-                                  .route = files.route,
-                                  .goals = files.goals,
-                                  .footprint_m = files.robot.footprint_m,
-                                  .leaks = true_leaks(scenario, *truth.world),
-                                  .lining = {},
-                                  .waters = true_waters(scenario),
-                                  .p_body_antenna = {},
-                                  .kidnaps = {},
-                                  .localizability = [oracle](const Eigen::Vector2d& p_world_m) { return oracle->at(p_world_m); }};
+  const auto oracle =
+      std::make_shared<LocalizabilityOracle>(*truth.world, scenario.sensors.lidar, truth.lidar_height_m);
+  score::RunReferences references{
+      .map = truth.reference,
+      .map_agreement = truth.reference_agreement,
+      .T_world_map = {},
+      .route = files.route,
+      .goals = files.goals,
+      .footprint_m = files.robot.footprint_m,
+      .leaks = true_leaks(scenario, *truth.world),
+      .lining = {},
+      .waters = true_waters(scenario),
+      .p_body_antenna = {},
+      .kidnaps = {},
+      .localizability = [oracle](const Eigen::Vector2d& p_world_m) { return oracle->at(p_world_m); }};
   if (files.map) references.T_world_map = files.T_site_start;
   if (files.route.lining) {
-    references.lining = score::LiningGroundTruth{.design = *files.route.lining,
-                         .invert_m = 0.0,
-                         .inward_m = [moves = scenario.lining_deformation](int ring, double clock_deg) { return sim::inward_m(moves, ring, clock_deg); }};
+    references.lining =
+        score::LiningGroundTruth{.design = *files.route.lining,
+                                 .invert_m = 0.0,
+                                 .inward_m = [moves = scenario.lining_deformation](int ring, double clock_deg) {
+                                   return sim::inward_m(moves, ring, clock_deg);
+                                 }};
   }
   if (files.robot.antenna) references.p_body_antenna = files.robot.antenna->T_body_mount.position;
   for (const KidnapSettings& kidnap : scenario.kidnaps) references.kidnaps.push_back(from_seconds(kidnap.at_s));

@@ -4,9 +4,9 @@
 #include "app/scoring/score_run.h"
 #include "core/geometry/angles.h"
 #include "io/files/csv.h"
-#include "io/maps/map_server.h"
-#include "io/json/nav_json.h"
 #include "io/files/teleop_csv.h"
+#include "io/json/nav_json.h"
+#include "io/maps/map_server.h"
 #include "io/trajectories/tum.h"
 
 namespace patrol::app {
@@ -33,15 +33,18 @@ void save_drive(const RunDirectory& directory, const Scenario& scenario, const R
 }
 
 /// Saves one row per sample: s, m, degrees in world.
-void save_localizability(const std::filesystem::path& file_csv, const std::vector<score::TrackedLocalizability>& track) {
+void save_localizability(const std::filesystem::path& file_csv,
+                         const std::vector<score::TrackedLocalizability>& track) {
   io::Table table{.name = "localizability",
-                  .columns = {"time_s", "x_m", "y_m", "weak_std_m", "weak_direction_deg", "strong_std_m", "claimed_std_m", "claimed_direction_deg", "trust"},
+                  .columns = {"time_s", "x_m", "y_m", "weak_std_m", "weak_direction_deg", "strong_std_m",
+                              "claimed_std_m", "claimed_direction_deg", "trust"},
                   .rows = {}};
   for (const score::TrackedLocalizability& at : track) {
     const score::LocalizabilitySample& sample = at.sample;
     const double claimed_deg = kDegPerRad * std::remainder(sample.reported_direction_rad, std::numbers::pi);
     table.rows.push_back({to_seconds(at.stamp), at.p_world_m.x(), at.p_world_m.y(), sample.truth.max_std_m,
-                          kDegPerRad * sample.truth.max_std_direction_rad, sample.truth.min_std_m, sample.reported_std_m, claimed_deg,
+                          kDegPerRad * sample.truth.max_std_direction_rad, sample.truth.min_std_m,
+                          sample.reported_std_m, claimed_deg,
                           sample.confidence ? io::TableValue{*sample.confidence} : io::TableValue{}});
   }
   io::save_csv(file_csv, table);

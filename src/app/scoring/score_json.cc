@@ -112,7 +112,10 @@ io::Metrics to_json(const score::LocalizationScore& score) {
   metrics["min_trust"] = score.min_confidence;
   metrics["doubted_s"] = optional_json(score.low_confidence_at_s);
   metrics["strayed_s"] = optional_json(score.error_exceeded_at_s);
-  metrics["doubted_before_straying"] = score.error_exceeded_at_s ? io::Metrics(score.low_confidence_at_s && *score.low_confidence_at_s < *score.error_exceeded_at_s) : io::Metrics();
+  metrics["doubted_before_straying"] =
+      score.error_exceeded_at_s
+          ? io::Metrics(score.low_confidence_at_s && *score.low_confidence_at_s < *score.error_exceeded_at_s)
+          : io::Metrics();
   metrics["lost_s"] = score.lost_s;
   return metrics;
 }
@@ -180,14 +183,15 @@ io::Metrics to_json(const score::WaterScore& score) {
   for (const score::WaterFinding& finding : score.findings) {
     const bool is_true = finding.body.has_value();
     if (is_true) worst_m = std::max(worst_m, finding.position_error_m);
-    metrics["findings"].push_back({{"name", finding.station},
-                                   {"is_true", is_true},
-                                   {"position_error_m", if_found(is_true, finding.position_error_m)},
-                                   {"ahead_error_m", if_found(is_true, finding.ahead_error_m)},
-                                   {"radius_error_m", if_found(is_true, finding.radius_error_m)},
-                                   {"distance_holds", is_true ? io::Metrics(finding.distance_in_interval) : io::Metrics()},
-                                   {"position_holds", is_true ? io::Metrics(finding.position_in_ellipsoid) : io::Metrics()},
-                                   {"radius_holds", is_true ? io::Metrics(finding.radius_in_interval) : io::Metrics()}});
+    metrics["findings"].push_back(
+        {{"name", finding.station},
+         {"is_true", is_true},
+         {"position_error_m", if_found(is_true, finding.position_error_m)},
+         {"ahead_error_m", if_found(is_true, finding.ahead_error_m)},
+         {"radius_error_m", if_found(is_true, finding.radius_error_m)},
+         {"distance_holds", is_true ? io::Metrics(finding.distance_in_interval) : io::Metrics()},
+         {"position_holds", is_true ? io::Metrics(finding.position_in_ellipsoid) : io::Metrics()},
+         {"radius_holds", is_true ? io::Metrics(finding.radius_in_interval) : io::Metrics()}});
   }
   metrics["position_error_m"] = if_found(score.found > 0, worst_m);
   return metrics;
@@ -196,12 +200,9 @@ io::Metrics to_json(const score::WaterScore& score) {
 namespace {
 
 io::Metrics mission_json(const score::MissionScore& mission) {
-  return {{"completed", mission.is_completed},
-          {"fell", mission.has_fallen},
-          {"collisions", mission.num_collisions},
-          {"sensor_faults_noticed", mission.num_sensor_faults},
-          {"duration_s", mission.duration_s},
-          {"distance_m", mission.distance_m}};
+  return {{"completed", mission.is_completed},    {"fell", mission.has_fallen},
+          {"collisions", mission.num_collisions}, {"sensor_faults_noticed", mission.num_sensor_faults},
+          {"duration_s", mission.duration_s},     {"distance_m", mission.distance_m}};
 }
 
 io::Metrics navigation_json(const score::NavigationScore& navigation) {
@@ -228,7 +229,8 @@ void add_localization(const score::EstimateScore& score, io::Metrics& metrics) {
   if (score.range_pose) metrics["range_pose"] = to_json(*score.range_pose);
   if (!score.known_map) return;
   metrics["localization"] = to_json(score.known_map->localization);
-  for (const score::RelocalizationScore& kidnap : score.known_map->kidnaps) metrics["localization"]["kidnaps"].push_back(to_json(kidnap));
+  for (const score::RelocalizationScore& kidnap : score.known_map->kidnaps)
+    metrics["localization"]["kidnaps"].push_back(to_json(kidnap));
 }
 
 }  // namespace

@@ -16,8 +16,9 @@ class Table {
   explicit Table(const std::vector<CheckedExpectation>& checks) : checks_(checks) {}
 
   void add(const MetricLine& metric) {
-    const auto check = std::find_if(checks_.begin(), checks_.end(),
-                                    [&](const CheckedExpectation& candidate) { return candidate.metric == metric.path; });
+    const auto check = std::find_if(checks_.begin(), checks_.end(), [&](const CheckedExpectation& candidate) {
+      return candidate.metric == metric.path;
+    });
     text_ += line(metric.path, metric.text, check == checks_.end() ? nullptr : &*check);
     shown_.insert(metric.path);
   }
@@ -36,7 +37,8 @@ class Table {
     const std::string group = path.substr(0, path.find('.'));
     const std::string gap = group == group_ ? "" : "\n";
     group_ = group;
-    const std::string verdict = check == nullptr ? "" : fmt::format("  {:<14} {}", check->wanted, check->is_met ? "met" : "MISSED");
+    const std::string verdict =
+        check == nullptr ? "" : fmt::format("  {:<14} {}", check->wanted, check->is_met ? "met" : "MISSED");
     return fmt::format("{}  {:<44} {:>12}{}\n", gap, path, value, verdict);
   }
 

@@ -17,8 +17,11 @@ double mean_lidar_height_m(const RunRecord& record, const ScenarioFiles& files) 
 
 TrueMap true_map(const RunRecord& record, const Scenario& scenario, const ScenarioFiles& files) {
   const sim::SpecPtr spec = sim::load_spec(files.world_xml.string());
-  TrueMap truth{.world = sim::compile(*spec, files.world_xml.string()), .lidar_height_m = mean_lidar_height_m(record, files), .reference = {}};
-  const render::ReferenceMap map = render::reference_map(*truth.world, {.height_m = truth.lidar_height_m, .resolution_m = kReferenceResolution_m});
+  TrueMap truth{.world = sim::compile(*spec, files.world_xml.string()),
+                .lidar_height_m = mean_lidar_height_m(record, files),
+                .reference = {}};
+  const render::ReferenceMap map =
+      render::reference_map(*truth.world, {.height_m = truth.lidar_height_m, .resolution_m = kReferenceResolution_m});
   truth.reference_agreement = map.check.agreement_ratio();
   truth.reference = score::mark_observable(map.map, record.T_world_body, scenario.sensors.lidar.range_max_m);
   return truth;

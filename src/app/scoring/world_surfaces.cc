@@ -9,7 +9,8 @@ namespace patrol::app {
 namespace {
 
 double lidar_height_m(const ScenarioFiles& files) {
-  const sim::AssembledModel assembled = sim::assemble_model(files.world_xml.string(), files.robot_urdf.string(), files.T_site_start);
+  const sim::AssembledModel assembled =
+      sim::assemble_model(files.world_xml.string(), files.robot_urdf.string(), files.T_site_start);
   const sim::DataPtr data = sim::make_data(*assembled.physics);
   std::copy(assembled.start_qpos.begin(), assembled.start_qpos.end(), data->qpos);
   mj_kinematics(assembled.physics.get(), data.get());
@@ -21,8 +22,11 @@ double lidar_height_m(const ScenarioFiles& files) {
 
 WorldSurfaces world_surfaces(const ScenarioFiles& files, double resolution_m) {
   const sim::SpecPtr spec = sim::load_spec(files.world_xml.string());
-  WorldSurfaces seen{.world = sim::compile(*spec, files.world_xml.string()), .lidar_height_m = lidar_height_m(files), .surfaces = {}};
-  seen.surfaces = render::reference_map(*seen.world, {.height_m = seen.lidar_height_m, .resolution_m = resolution_m, .margin_m = 0.0}).map;
+  WorldSurfaces seen{
+      .world = sim::compile(*spec, files.world_xml.string()), .lidar_height_m = lidar_height_m(files), .surfaces = {}};
+  seen.surfaces = render::reference_map(
+                      *seen.world, {.height_m = seen.lidar_height_m, .resolution_m = resolution_m, .margin_m = 0.0})
+                      .map;
   return seen;
 }
 

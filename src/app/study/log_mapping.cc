@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
-#include "app/scenario/neighbor_model.h"
 #include "app/common/process_cost.h"
+#include "app/scenario/neighbor_model.h"
 #include "app/scenario/scenario.h"
 #include "core/error.h"
 #include "core/thread_cpu_time.h"
@@ -19,11 +19,13 @@ namespace {
 
 constexpr std::size_t kScansPerSample = 20;
 
-std::vector<Pose2> true_poses(const Trajectory& T_world_body, const std::vector<Time>& stamps, const std::vector<std::size_t>& scans) {
+std::vector<Pose2> true_poses(const Trajectory& T_world_body, const std::vector<Time>& stamps,
+                              const std::vector<std::size_t>& scans) {
   std::vector<Pose2> poses;
   for (const std::size_t scan : scans) {
     const std::optional<Pose3> pose = pose_at(T_world_body, stamps[scan]);
-    if (!pose) throw InputError(fmt::format("ground truth does not cover the scan at {:.3f} s", to_seconds(stamps[scan])));
+    if (!pose)
+      throw InputError(fmt::format("ground truth does not cover the scan at {:.3f} s", to_seconds(stamps[scan])));
     poses.push_back(to_pose2(*pose));
   }
   return poses;
@@ -55,7 +57,8 @@ MappedRun map_log_of(const StudyRun& run, const std::string& method) {
   look();
   const std::vector<Pose2> path = mapper->path();
   for (std::size_t i = 0; i < path.size(); ++i) mapped.T_map_body.push_back({stamps[i], to_pose3(path[i])});
-  mapped.loops = evaluate_loop_closures(mapper->graph(), true_poses(run.record.T_world_body, stamps, mapper->node_scan_indices()));
+  mapped.loops =
+      evaluate_loop_closures(mapper->graph(), true_poses(run.record.T_world_body, stamps, mapper->node_scan_indices()));
   return mapped;
 }
 

@@ -11,7 +11,8 @@ constexpr double kRight_m = 0.3, kRight_rad = 0.05;
 constexpr double kReturn_m = 5.0, kMinPath_m = 30.0;
 
 bool is_right(const PoseGraphEdge& edge, const std::vector<Pose2>& T_world_node) {
-  const Pose2 T_from_to = T_world_node[static_cast<std::size_t>(edge.from)].inverse() * T_world_node[static_cast<std::size_t>(edge.to)];
+  const Pose2 T_from_to =
+      T_world_node[static_cast<std::size_t>(edge.from)].inverse() * T_world_node[static_cast<std::size_t>(edge.to)];
   const Pose2 off = T_from_to.inverse() * edge.T_from_to;
   return off.position().norm() < kRight_m && std::abs(off.yaw) < kRight_rad;
 }
@@ -20,12 +21,15 @@ bool is_right(const PoseGraphEdge& edge, const std::vector<Pose2>& T_world_node)
 std::vector<double> distances_traveled(const std::vector<Pose2>& T_world_node) {
   std::vector<double> traveled_m;
   for (std::size_t i = 0; i < T_world_node.size(); ++i) {
-    traveled_m.push_back(i == 0 ? 0.0 : traveled_m.back() + (T_world_node[i].position() - T_world_node[i - 1].position()).norm());
+    traveled_m.push_back(
+        i == 0 ? 0.0 : traveled_m.back() + (T_world_node[i].position() - T_world_node[i - 1].position()).norm());
   }
   return traveled_m;
 }
 
-double ratio_or_one(std::size_t part, std::size_t whole) { return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 1.0; }
+double ratio_or_one(std::size_t part, std::size_t whole) {
+  return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 1.0;
+}
 
 }  // namespace
 
@@ -43,12 +47,14 @@ LoopClosureAccuracy evaluate_loop_closures(const PoseGraph& graph, const std::ve
       continue;
     }
     ++accuracy.right;
-    const auto older = static_cast<std::size_t>(std::min(edge.from, edge.to)), newer = static_cast<std::size_t>(std::max(edge.from, edge.to));
+    const auto older = static_cast<std::size_t>(std::min(edge.from, edge.to)),
+               newer = static_cast<std::size_t>(std::max(edge.from, edge.to));
     if (traveled_m[newer] - traveled_m[older] > kMinPath_m) is_closed[newer] = true;
   }
   for (std::size_t newer = 0; newer < T_world_node.size(); ++newer) {
     bool has_returned = false;
-    for (std::size_t older = 0; older < newer && traveled_m[newer] - traveled_m[older] > kMinPath_m && !has_returned; ++older) {
+    for (std::size_t older = 0; older < newer && traveled_m[newer] - traveled_m[older] > kMinPath_m && !has_returned;
+         ++older) {
       has_returned = (T_world_node[newer].position() - T_world_node[older].position()).norm() < kReturn_m;
     }
     accuracy.returns += has_returned ? 1 : 0;

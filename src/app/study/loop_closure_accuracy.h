@@ -9,8 +9,8 @@ namespace patrol::app {
 
 /// Accuracy of a graph's loop closures compared with the ground truth.
 struct LoopClosureAccuracy {
-  std::size_t right = 0, wrong = 0;          ///< closures by correctness; right: within 0.3 m and 0.05 rad
-  std::size_t returns = 0, closed = 0;       ///< revisits within 5 m after 30 m of path; those with a right closure
+  std::size_t right = 0, wrong = 0;     ///< closures by correctness; right: within 0.3 m and 0.05 rad
+  std::size_t returns = 0, closed = 0;  ///< revisits within 5 m after 30 m of path; those with a right closure
 
   double precision() const;  ///< 1 without closures
   double recall() const;     ///< 1 without returns

@@ -22,7 +22,9 @@ constexpr double kMinDistanceFraction = 1.0 / 3.0;  ///< fraction of the diagona
 constexpr std::uint64_t kMaxAttempts = 1000;
 
 constexpr std::array<std::pair<const char*, const char*>, 3> kScenarios = {
-    {{"street", "worlds/street/scenarios/patrol.yaml"}, {"tunnel", "worlds/tunnel/scenarios/navigate.yaml"}, {"substation", "worlds/substation/scenarios/mapping.yaml"}}};
+    {{"street", "worlds/street/scenarios/patrol.yaml"},
+     {"tunnel", "worlds/tunnel/scenarios/navigate.yaml"},
+     {"substation", "worlds/substation/scenarios/mapping.yaml"}}};
 
 struct DrivableWorld {
   Grid<plan::Cost> costs;
@@ -30,7 +32,8 @@ struct DrivableWorld {
 };
 
 DrivableWorld load_world(const std::string& name) {
-  const auto* const found = std::find_if(kScenarios.begin(), kScenarios.end(), [&](const auto& scenario) { return name == scenario.first; });
+  const auto* const found =
+      std::find_if(kScenarios.begin(), kScenarios.end(), [&](const auto& scenario) { return name == scenario.first; });
   if (found == kScenarios.end()) throw InputError("unknown world '" + name + "' (known: street, tunnel, substation)");
   const std::filesystem::path root = find_data_root("");
   const Scenario scenario = load_scenario(root / found->second, {});
@@ -38,7 +41,8 @@ DrivableWorld load_world(const std::string& name) {
   plan::CostmapSettings settings = scenario.stack.navigation.costmap;
   settings.resolution_m = kPlanningCell_m;
   settings.allow_unknown = false;
-  plan::Costmap costmap(settings, plan::Footprint(files.robot.footprint_m, scenario.stack.navigation.footprint_rows), files.route.keep_out_lines);
+  plan::Costmap costmap(settings, plan::Footprint(files.robot.footprint_m, scenario.stack.navigation.footprint_rows),
+                        files.route.keep_out_lines);
   costmap.set_map(world_surfaces(files, kProblemCell_m).surfaces);
   DrivableWorld world{.costs = costmap.cost(), .reachable = {}};
   for (plan::Cost& cost : world.costs.values()) cost = cost == plan::kLethalCost ? plan::kLethalCost : plan::kFreeCost;
@@ -61,7 +65,8 @@ PlannerProblem world_problem(const std::string& world, std::uint64_t seed) {
   const double far = kMinDistanceFraction * std::hypot(grid.width, grid.height);
   RandomSequence random(RandomStream(seed, "study/planners/" + world), 0);
   for (std::uint64_t attempt = 0; attempt < kMaxAttempts; ++attempt) {
-    const Cell start = drivable.reachable[random.index(drivable.reachable.size())], goal = drivable.reachable[random.index(drivable.reachable.size())];
+    const Cell start = drivable.reachable[random.index(drivable.reachable.size())],
+               goal = drivable.reachable[random.index(drivable.reachable.size())];
     if (std::hypot(goal.col - start.col, goal.row - start.row) < far) continue;
     return {.costs = std::move(drivable.costs), .start = start, .goal = goal};
   }

@@ -29,7 +29,8 @@ std::vector<PlannerWorld> planner_worlds() {
   std::vector<PlannerWorld> worlds;
   for (const char* const kind : {"random", "rooms", "maze"}) {
     for (const int size : {50, 100, 200}) {
-      worlds.push_back({fmt::format("{} {} x {}", kind, size, size), [=](std::uint64_t seed) { return generated_problem(kind, size, seed); }});
+      worlds.push_back({fmt::format("{} {} x {}", kind, size, size),
+                        [=](std::uint64_t seed) { return generated_problem(kind, size, seed); }});
     }
   }
   for (const char* const world : {"street", "tunnel", "substation"}) {
@@ -48,25 +49,27 @@ struct PlannerMethod {
 
 /// Methods; all others are compared with the first. The last two are lower bounds, over eight neighbors and over all
 /// paths.
-constexpr std::array<PlannerMethod, 9> kPlannerMethods = {{{"improved ant colony (this work)", "ant_colony_li22", true, SeriesColor::kEstimate},
-                                                    {"ant colony [Li22]", "ant_colony_li22", true, SeriesColor::kEvent, false},
-                                                    {"ant system", "ant_system", true, SeriesColor::kOdometry},
-                                                    {"dual swarm", "dual_swarm_pso", true, SeriesColor::kRanges},
-                                                    {"Q-learning", "q_learning", true, SeriesColor::kAlarm},
-                                                    {"Theta*", "theta_star", false, SeriesColor::kEvent},
-                                                    {"Dijkstra", "dijkstra", false, SeriesColor::kConfidence},
-                                                    {"A*", "astar", false, SeriesColor::kTruth},
-                                                    {"any-angle optimum", "visibility_graph", false, SeriesColor::kBound}}};
+constexpr std::array<PlannerMethod, 9> kPlannerMethods = {
+    {{"improved ant colony (this work)", "ant_colony_li22", true, SeriesColor::kEstimate},
+     {"ant colony [Li22]", "ant_colony_li22", true, SeriesColor::kEvent, false},
+     {"ant system", "ant_system", true, SeriesColor::kOdometry},
+     {"dual swarm", "dual_swarm_pso", true, SeriesColor::kRanges},
+     {"Q-learning", "q_learning", true, SeriesColor::kAlarm},
+     {"Theta*", "theta_star", false, SeriesColor::kEvent},
+     {"Dijkstra", "dijkstra", false, SeriesColor::kConfidence},
+     {"A*", "astar", false, SeriesColor::kTruth},
+     {"any-angle optimum", "visibility_graph", false, SeriesColor::kBound}}};
 constexpr std::size_t kAstar = 7, kOptimum = 8;
 
-const std::vector<studies::StudyMetric> kPlannerMetrics = {{.name = "longer than A*", .unit = "%", .is_compared = true},
-                                           {.name = "iterations to 1 % of its final value", .unit = "", .is_compared = true},
-                                           {.name = "iterations to A* + 3 %", .unit = ""},
-                                           {.name = "found", .unit = "%"},
-                                           {.name = "over any-angle", .unit = "%"},
-                                           {.name = "clearance", .unit = "cells"},
-                                           {.name = "steps", .unit = "1000"},
-                                           {.name = "time", .unit = "ms", .is_processor_time = true}};
+const std::vector<studies::StudyMetric> kPlannerMetrics = {
+    {.name = "longer than A*", .unit = "%", .is_compared = true},
+    {.name = "iterations to 1 % of its final value", .unit = "", .is_compared = true},
+    {.name = "iterations to A* + 3 %", .unit = ""},
+    {.name = "found", .unit = "%"},
+    {.name = "over any-angle", .unit = "%"},
+    {.name = "clearance", .unit = "cells"},
+    {.name = "steps", .unit = "1000"},
+    {.name = "time", .unit = "ms", .is_processor_time = true}};
 
 struct Planned {
   plan::Route route;
@@ -101,10 +104,8 @@ std::vector<std::vector<double>> flatten_metrics(const std::array<Planned, kPlan
     metrics.push_back({is_found ? 100.0 * (route.length / astar - 1.0) : kNoPlannerMetric,
                        iterates ? plan::iterations_to_convergence(route.history, 0.01) : kNoPlannerMetric,
                        iterates ? iterations_to_length(route.history, 1.03 * astar) : kNoPlannerMetric,
-                       is_found ? 100.0 : 0.0,
-                       is_found ? 100.0 * (route.length / optimum - 1.0) : kNoPlannerMetric,
-                       is_found ? route.clearance : kNoPlannerMetric,
-                       1e-3 * static_cast<double>(route.num_expanded),
+                       is_found ? 100.0 : 0.0, is_found ? 100.0 * (route.length / optimum - 1.0) : kNoPlannerMetric,
+                       is_found ? route.clearance : kNoPlannerMetric, 1e-3 * static_cast<double>(route.num_expanded),
                        1e3 * all[m].seconds});
   }
   return metrics;
@@ -119,7 +120,8 @@ std::array<Planned, kPlannerMethods.size()> plan_all(const PlannerProblem& probl
 studies::StudySample run_planners(const std::vector<PlannerWorld>& worlds, std::uint64_t seed) {
   studies::StudySample sample;
   for (const PlannerWorld& world : worlds) {
-    for (std::vector<double>& metrics : flatten_metrics(plan_all(world.problem(seed), seed))) sample.push_back(std::move(metrics));
+    for (std::vector<double>& metrics : flatten_metrics(plan_all(world.problem(seed), seed)))
+      sample.push_back(std::move(metrics));
   }
   return sample;
 }
@@ -128,13 +130,21 @@ studies::StudySample run_planners(const std::vector<PlannerWorld>& worlds, std::
 report::LinePlot convergence(const std::array<Planned, kPlannerMethods.size()>& all, const std::string& world) {
   constexpr std::size_t kShown = 200;
   constexpr double kMaxExcess = 25.0;
-  report::LinePlot plot{.title = fmt::format("Excess length over A*, best route up to the iteration: {}", world), .unit = "%", .axis = {.label = "iteration", .max = kShown}, .max = kMaxExcess, .curves = {}, .marks = {}, .spans = {}};
+  report::LinePlot plot{.title = fmt::format("Excess length over A*, best route up to the iteration: {}", world),
+                        .unit = "%",
+                        .axis = {.label = "iteration", .max = kShown},
+                        .max = kMaxExcess,
+                        .curves = {},
+                        .marks = {},
+                        .spans = {}};
   for (std::size_t m = 0; m < kPlannerMethods.size(); ++m) {
     if (!kPlannerMethods[m].iterates) continue;
-    report::Curve curve{.name = kPlannerMethods[m].title, .color = kPlannerMethods[m].color, .is_dashed = false, .points = {}};
+    report::Curve curve{
+        .name = kPlannerMethods[m].title, .color = kPlannerMethods[m].color, .is_dashed = false, .points = {}};
     for (std::size_t i = 0; i < kShown; ++i) {
       const std::vector<double>& history = all[m].route.history;
-      const double excess = i < history.size() ? 100.0 * (history[i] / all[kAstar].route.length - 1.0) : kNoPlannerMetric;
+      const double excess =
+          i < history.size() ? 100.0 * (history[i] / all[kAstar].route.length - 1.0) : kNoPlannerMetric;
       if (excess <= kMaxExcess) curve.points.emplace_back(static_cast<double>(i + 1), excess);
     }
     plot.curves.push_back(std::move(curve));
@@ -154,7 +164,8 @@ report::MapBlock routes_on(const PlannerProblem& problem, const std::array<Plann
   block.picture = report::map_picture({.built = map, .T_world_map = {}, .truth = {}, .error_m = {}}, shown);
   for (std::size_t m = 0; m < kPlannerMethods.size(); ++m) {
     if (m != kOptimum && !kPlannerMethods[m].iterates) continue;
-    block.paths.push_back({kPlannerMethods[m].title, kPlannerMethods[m].color, {plan::to_meters(grid, all[m].route.points)}});
+    block.paths.push_back(
+        {kPlannerMethods[m].title, kPlannerMethods[m].color, {plan::to_meters(grid, all[m].route.points)}});
   }
   for (const auto& [label, cell] : {std::pair("start", problem.start), std::pair("goal", problem.goal)}) {
     block.marks.push_back({.label = label, .color = SeriesColor::kTruth, .p_m = grid.center_of(cell)});
@@ -179,25 +190,28 @@ std::vector<report::Section> illustrate_planners(const std::vector<PlannerWorld>
 
 studies::Study planner_study() {
   std::vector<PlannerWorld> worlds = planner_worlds();
-  studies::Study study{.name = "planners",
-              .title = "Global planners compared with the ant colony of [Li22]",
-              .source = "[Li22], figures 1 to 4 (no readable values)",
-              .conditions = "Every seed generates new grids, or new start and goal positions on the map of a world (its surfaces "
-                            "at the height of the lidar in cells of 0.2 m, inflated by the footprint of its robot). Eight "
-                            "neighbors, no corner cutting; lengths in cells. Ant colonies: 80 ants, 200 iterations; dual swarm: "
-                            "two swarms of 40, 200 iterations; Q-learning: 5000 episodes; at most 50 million steps each. Improved "
-                            "ant colony: that of [Li22], with paths shortened before they are compared (this work). Over "
-                            "any-angle: excess over the shortest any-angle path, which touches corners. Default settings, chosen "
-                            "on generated grids of other seeds. A planner that improves late and one that converges at once both "
-                            "need few iterations to 1 % of their own final value. The iterations to 3 % above A* distinguish "
-                            "them, over the seeds that reach it. Q-learning and dual swarms are of the kinds that [Li22] compares "
-                            "with; their sources were not available.",
-              .default_seeds = 30,
-              .compared_with = "the improved ant colony",
-              .metrics = kPlannerMetrics};
+  studies::Study study{
+      .name = "planners",
+      .title = "Global planners compared with the ant colony of [Li22]",
+      .source = "[Li22], figures 1 to 4 (no readable values)",
+      .conditions =
+          "Every seed generates new grids, or new start and goal positions on the map of a world (its surfaces "
+          "at the height of the lidar in cells of 0.2 m, inflated by the footprint of its robot). Eight "
+          "neighbors, no corner cutting; lengths in cells. Ant colonies: 80 ants, 200 iterations; dual swarm: "
+          "two swarms of 40, 200 iterations; Q-learning: 5000 episodes; at most 50 million steps each. Improved "
+          "ant colony: that of [Li22], with paths shortened before they are compared (this work). Over "
+          "any-angle: excess over the shortest any-angle path, which touches corners. Default settings, chosen "
+          "on generated grids of other seeds. A planner that improves late and one that converges at once both "
+          "need few iterations to 1 % of their own final value. The iterations to 3 % above A* distinguish "
+          "them, over the seeds that reach it. Q-learning and dual swarms are of the kinds that [Li22] compares "
+          "with; their sources were not available.",
+      .default_seeds = 30,
+      .compared_with = "the improved ant colony",
+      .metrics = kPlannerMetrics};
   for (const PlannerWorld& world : worlds) {
     const std::size_t reference = study.variants.size();
-    for (const PlannerMethod& method : kPlannerMethods) study.variants.push_back({.world = world.name, .method = method.title, .particles = 0, .reference = reference});
+    for (const PlannerMethod& method : kPlannerMethods)
+      study.variants.push_back({.world = world.name, .method = method.title, .particles = 0, .reference = reference});
   }
   study.illustrate = [worlds](std::uint64_t seed) { return illustrate_planners(worlds, seed); };
   study.run = [worlds = std::move(worlds)](std::uint64_t seed) { return run_planners(worlds, seed); };

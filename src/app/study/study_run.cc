@@ -19,7 +19,8 @@ std::vector<Eigen::Vector2d> positions_of(const Trajectory& trajectory, const Po
 
 }  // namespace
 
-StudyRun run_for_study(const std::string& scenario, const std::vector<std::string>& overrides, std::uint64_t seed, const std::filesystem::path& folder) {
+StudyRun run_for_study(const std::string& scenario, const std::vector<std::string>& overrides, std::uint64_t seed,
+                       const std::filesystem::path& folder) {
   const std::filesystem::path root = find_data_root("");
   std::vector<std::string> all = overrides;
   all.push_back(fmt::format("seed={}", seed));
@@ -35,11 +36,14 @@ StudyRun run_for_study(const std::string& scenario, const std::vector<std::strin
 
 report::MapBlock map_error_block(const OccupancyGrid& map, const Trajectory& T_map_body, const StudyRun& run) {
   const Pose2 T_world_map = score::align_at_start(T_map_body, run.record.T_world_body);
-  const std::vector<report::MapPath> paths = {{"true path", report::SeriesColor::kTruth, {positions_of(run.record.T_world_body, {})}},
-                                              {"estimated path", report::SeriesColor::kEstimate, {positions_of(T_map_body, T_world_map)}}};
+  const std::vector<report::MapPath> paths = {
+      {"true path", report::SeriesColor::kTruth, {positions_of(run.record.T_world_body, {})}},
+      {"estimated path", report::SeriesColor::kEstimate, {positions_of(T_map_body, T_world_map)}}};
   Eigen::AlignedBox2d shown;
   for (const Eigen::Vector2d& p_m : paths.front().pieces_m.front()) shown.extend(p_m);
-  const report::MapLayers layers{.built = map, .T_world_map = T_world_map, .truth = score::observable_part(run.truth.reference),
+  const report::MapLayers layers{.built = map,
+                                 .T_world_map = T_world_map,
+                                 .truth = score::observable_part(run.truth.reference),
                                  .error_m = score::map_error(map, T_world_map, run.truth.reference).cells_m};
   return {.picture = report::map_picture(layers, shown), .paths = paths, .marks = {}};
 }

@@ -23,7 +23,8 @@ struct StudyRun {
 };
 
 /// Runs `scenario`, a path below the data root; its files are written to `folder`. Throws InputError like run_once.
-StudyRun run_for_study(const std::string& scenario, const std::vector<std::string>& overrides, std::uint64_t seed, const std::filesystem::path& folder);
+StudyRun run_for_study(const std::string& scenario, const std::vector<std::string>& overrides, std::uint64_t seed,
+                       const std::filesystem::path& folder);
 
 /// Map built from a run's log, colored by its errors, with estimated and true path.
 report::MapBlock map_error_block(const OccupancyGrid& map, const Trajectory& T_map_body, const StudyRun& run);

@@ -5,24 +5,25 @@
 
 #include <fmt/format.h>
 
-#include "studies/growth_study.h"
-#include "studies/landmark_study.h"
 #include "app/study/planner_study.h"
 #include "app/study/street_study.h"
 #include "app/study/substation_study.h"
 #include "core/error.h"
+#include "studies/growth_study.h"
+#include "studies/landmark_study.h"
 
 namespace patrol::app {
 namespace {
 
-constexpr std::array<std::pair<const char*, studies::Study (*)()>, 8> kStudies = {{{"ungm", studies::growth_study},
-                                                                         {"landmarks-circle", studies::circle_study},
-                                                                         {"landmarks-noncircular", studies::noncircular_study},
-                                                                         {"landmarks-100x80", studies::campus_study},
-                                                                         {"street-map", street_study},
-                                                                         {"substation", substation_study},
-                                                                         {"substation-row", row_study},
-                                                                         {"planners", planner_study}}};
+constexpr std::array<std::pair<const char*, studies::Study (*)()>, 8> kStudies = {
+    {{"ungm", studies::growth_study},
+     {"landmarks-circle", studies::circle_study},
+     {"landmarks-noncircular", studies::noncircular_study},
+     {"landmarks-100x80", studies::campus_study},
+     {"street-map", street_study},
+     {"substation", substation_study},
+     {"substation-row", row_study},
+     {"planners", planner_study}}};
 
 }  // namespace
 

@@ -29,7 +29,8 @@ ConvexPolygon clip_left_of(const ConvexPolygon& polygon, const Eigen::Vector2d& 
     const Eigen::Vector2d &p = polygon[i], &next = polygon[(i + 1) % polygon.size()];
     const double at_p = turn(a, b, p), at_next = turn(a, b, next);
     if (at_p >= 0.0) kept.push_back(p);
-    if ((at_p < 0.0 && at_next > 0.0) || (at_p > 0.0 && at_next < 0.0)) kept.push_back(p + at_p / (at_p - at_next) * (next - p));
+    if ((at_p < 0.0 && at_next > 0.0) || (at_p > 0.0 && at_next < 0.0))
+      kept.push_back(p + at_p / (at_p - at_next) * (next - p));
   }
   return kept;
 }
@@ -37,7 +38,8 @@ ConvexPolygon clip_left_of(const ConvexPolygon& polygon, const Eigen::Vector2d& 
 }  // namespace
 
 ConvexPolygon convex_hull(std::vector<Eigen::Vector2d> points) {
-  std::ranges::sort(points, [](const auto& a, const auto& b) { return std::pair(a.x(), a.y()) < std::pair(b.x(), b.y()); });
+  std::ranges::sort(points,
+                    [](const auto& a, const auto& b) { return std::pair(a.x(), a.y()) < std::pair(b.x(), b.y()); });
   const auto rest = std::ranges::unique(points);
   points.erase(rest.begin(), rest.end());
   if (points.size() < 3) return points;

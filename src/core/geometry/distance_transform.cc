@@ -8,7 +8,8 @@
 namespace patrol {
 namespace {
 
-/// Squared distances along one row; `square(d)` is the value of a distance of d cells, `far` the largest distance that counts.
+/// Squared distances along one row; `square(d)` is the value of a distance of d cells, `far` the largest distance that
+/// counts.
 template <typename Value, typename Square>
 void transform_row(const std::uint8_t* is_obstacle, int width, int far, const Square& square, Value* squared) {
   int distance = far;
@@ -71,13 +72,16 @@ class LowerEnvelope {
 
 DistanceTransform::DistanceTransform(int cap_cells) : cap_(cap_cells) { assert(cap_ >= 1 && cap_ <= kMaxCap_cells); }
 
-void DistanceTransform::compute(const std::vector<std::uint8_t>& is_obstacle, int width, int height, SquaredDistances& result) {
+void DistanceTransform::compute(const std::vector<std::uint8_t>& is_obstacle, int width, int height,
+                                SquaredDistances& result) {
   const auto columns = static_cast<std::size_t>(width);
   const auto rows = static_cast<std::size_t>(height);
   assert(is_obstacle.size() == columns * rows);
   along_rows_.resize(columns * rows);
   row_is_empty_.resize(rows);
-  const auto square = [this](int distance) { return distance > cap_ ? beyond() : static_cast<std::int16_t>(distance * distance); };
+  const auto square = [this](int distance) {
+    return distance > cap_ ? beyond() : static_cast<std::int16_t>(distance * distance);
+  };
   for (std::size_t row = 0; row < rows; ++row) {
     const std::uint8_t* obstacles = is_obstacle.data() + row * columns;
     row_is_empty_[row] = std::find(obstacles, obstacles + columns, 1) == obstacles + columns;
@@ -106,7 +110,9 @@ std::vector<double> squared_distances(const std::vector<std::uint8_t>& is_obstac
   assert(is_obstacle.size() == columns * rows);
   std::vector<double> squared(columns * rows);
   if (squared.empty()) return squared;
-  const auto square = [width](int distance) { return distance > width ? kNoObstacle : static_cast<double>(distance) * distance; };
+  const auto square = [width](int distance) {
+    return distance > width ? kNoObstacle : static_cast<double>(distance) * distance;
+  };
   for (std::size_t row = 0; row < rows; ++row) {
     transform_row(is_obstacle.data() + row * columns, width, width + 1, square, squared.data() + row * columns);
   }

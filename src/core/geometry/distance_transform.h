@@ -7,9 +7,10 @@ namespace patrol {
 
 /// Exact Euclidean distance transform of a binary grid, in squared cells from cell center to cell center.
 ///
-/// The transform is separable [Felzenszwalb12]: two sweeps give the distance along each row, the lower envelope of parabolas
-/// along the columns the rest. Up to a cap of cells the envelope is taken by brute force over the 2 cap + 1 rows within the cap,
-/// whole rows at a time, a handful of vector instructions per eight cells. Without a cap it is built column by column.
+/// The transform is separable [Felzenszwalb12]: two sweeps give the distance along each row, the lower envelope of
+/// parabolas along the columns the rest. Up to a cap of cells the envelope is taken by brute force over the 2 cap + 1
+/// rows within the cap, whole rows at a time, a handful of vector instructions per eight cells. Without a cap it is
+/// built column by column.
 class DistanceTransform {
  public:
   /// [row * width + column]; `beyond()` where no obstacle lies within the cap.

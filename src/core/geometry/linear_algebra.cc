@@ -32,8 +32,12 @@ bool is_positive_definite(const Eigen::Matrix3d& A) {
   return root.info() == Eigen::Success && root.matrixLLT().allFinite();
 }
 
-SymmetricEigen<2> symmetric_eigen(const Eigen::Matrix2d& A) { return eigen_of<2>(Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(A)); }
-SymmetricEigen<3> symmetric_eigen(const Eigen::Matrix3d& A) { return eigen_of<3>(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(A)); }
+SymmetricEigen<2> symmetric_eigen(const Eigen::Matrix2d& A) {
+  return eigen_of<2>(Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(A));
+}
+SymmetricEigen<3> symmetric_eigen(const Eigen::Matrix3d& A) {
+  return eigen_of<3>(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(A));
+}
 
 SymmetricEigen<2> symmetric_eigen_direct(const Eigen::Matrix2d& A) { return eigen_direct<2>(A); }
 SymmetricEigen<3> symmetric_eigen_direct(const Eigen::Matrix3d& A) { return eigen_direct<3>(A); }

@@ -2,15 +2,15 @@
 
 #include <Eigen/Core>
 
-/// Decompositions of small symmetric matrices by Eigen, compiled once: as templates they dominate the compile time of the files
-/// that instantiate them.
+/// Decompositions of small symmetric matrices by Eigen, compiled once: as templates they dominate the compile time of
+/// the files that instantiate them.
 namespace patrol {
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
-/// Solution x of A x = b for a symmetric, positive or negative semidefinite A, by a pivoted LDLT decomposition. A pivot that is zero
-/// or not a number contributes nothing: callers check finite input themselves.
+/// Solution x of A x = b for a symmetric, positive or negative semidefinite A, by a pivoted LDLT decomposition. A pivot
+/// that is zero or not a number contributes nothing: callers check finite input themselves.
 Eigen::Vector2d solve_symmetric(const Eigen::Matrix2d& A, const Eigen::Vector2d& b);
 Eigen::Vector3d solve_symmetric(const Eigen::Matrix3d& A, const Eigen::Vector3d& b);
 Vector6d solve_symmetric(const Matrix6d& A, const Vector6d& b);
@@ -33,8 +33,8 @@ struct SymmetricEigen {
 SymmetricEigen<2> symmetric_eigen(const Eigen::Matrix2d& A);
 SymmetricEigen<3> symmetric_eigen(const Eigen::Matrix3d& A);
 
-/// Eigendecomposition in closed form: several times faster than symmetric_eigen, with errors up to the square root of the
-/// rounding error for nearly equal eigenvalues.
+/// Eigendecomposition in closed form: several times faster than symmetric_eigen, with errors up to the square root of
+/// the rounding error for nearly equal eigenvalues.
 SymmetricEigen<2> symmetric_eigen_direct(const Eigen::Matrix2d& A);
 SymmetricEigen<3> symmetric_eigen_direct(const Eigen::Matrix3d& A);
 

@@ -1,19 +1,21 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <cmath>
 #include <numbers>
+
+#include <Eigen/Core>
 
 namespace patrol {
 
 /// Principal axes of a symmetric 2 x 2 matrix, for example of a covariance or an information matrix.
 struct PrincipalAxes {
-  double large = 0.0;            ///< larger eigenvalue
+  double large = 0.0;  ///< larger eigenvalue
   double small = 0.0;
   double large_direction_rad = 0.0;  ///< direction of the eigenvector of `large`, in [-pi/2, pi/2]
 
-  double small_direction_rad() const { return std::remainder(large_direction_rad + std::numbers::pi / 2.0, std::numbers::pi); }
+  double small_direction_rad() const {
+    return std::remainder(large_direction_rad + std::numbers::pi / 2.0, std::numbers::pi);
+  }
   static Eigen::Vector2d along(double direction_rad) { return {std::cos(direction_rad), std::sin(direction_rad)}; }
 };
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <algorithm>
+
+#include <Eigen/Core>
 
 namespace patrol {
 

@@ -17,16 +17,16 @@ struct AntennaState {
 /// Two digital servos with the data of Robotis' MX-64R (emanual.robotis.com): RS-485, 12-bit contactless encoder,
 /// backlash of 20 arcmin, 6.0 N m. The torque limit is in the URDF. Alignment, gains and low speed are assumptions.
 struct AntennaSettings {
-  double rate_hz = 10.0;                  ///< rate of the servo readings
-  double max_speed_radps = 1.0;           ///< commanded speed limit; low because a loop on a post oscillates
+  double rate_hz = 10.0;         ///< rate of the servo readings
+  double max_speed_radps = 1.0;  ///< commanded speed limit; low because a loop on a post oscillates
   double max_acceleration_radps2 = 2.0;
-  double stiffness_nm_per_rad = 60.0;     ///< stiffness of the position loop
+  double stiffness_nm_per_rad = 60.0;  ///< stiffness of the position loop
   double damping_nms_per_rad = 6.0;
-  double dead_band_deg = 0.1;             ///< dead band: a servo at rest exerts no position torque below this error
+  double dead_band_deg = 0.1;  ///< dead band: a servo at rest exerts no position torque below this error
   double resolution_deg = 0.088;
-  double backlash_deg = 0.33;             ///< total backlash between encoder and coil
-  double alignment_std_deg = 0.3;         ///< standard deviation of the alignment of a servo on its bracket, constant
-                                          ///< over a run
+  double backlash_deg = 0.33;      ///< total backlash between encoder and coil
+  double alignment_std_deg = 0.3;  ///< standard deviation of the alignment of a servo on its bracket, constant
+                                   ///< over a run
   double latency_s = 0.02;
 
   template <typename Self, typename Visitor>
@@ -51,10 +51,11 @@ struct SensorTraits<AntennaState> {
   };
   static constexpr auto kSettings = &Settings::antenna;
   static constexpr SensorInfo kInfo = {.name = "antenna",
-                                      .topic = "/tem/antenna",
-                                      .ros_type = "patrol_msgs/msg/AntennaState",
-                                      .summary = "servos of the antenna mount",
-                                      .fault_matrix_exclusion_reason = "used only for TEM soundings, outside the fault window of the matrix"};
+                                       .topic = "/tem/antenna",
+                                       .ros_type = "patrol_msgs/msg/AntennaState",
+                                       .summary = "servos of the antenna mount",
+                                       .fault_matrix_exclusion_reason =
+                                           "used only for TEM soundings, outside the fault window of the matrix"};
 
   static void add_to_reading(AntennaState& antenna, double offset_rad) { antenna.yaw_rad += offset_rad; }
 };

@@ -22,18 +22,18 @@ struct FluidPressure {
 struct BarometerSettings {
   bool enabled = false;
   double rate_hz = 5.0;
-  double sea_level_pa = 101325.0;        ///< pressure at sea level
-  double sea_level_temperature_c = 15.0; ///< air temperature at sea level
-  double origin_altitude_m = 0.0;        ///< altitude of the world's origin above sea level
-  double noise_std_pa = 0.02;                ///< standard deviation of the noise, Pa
-  double offset_std_pa = 25.0;               ///< standard deviation, over sensors, of the constant offset, Pa
-  double drift_std_pa = 1.5;                 ///< standard deviation of the drift, a Gauss-Markov process, Pa
-  double drift_correlation_time_s = 600.0;           ///< correlation time of the drift
-  double temperature_coefficient_std_pa_per_k = 0.3;  ///< standard deviation, over sensors, of the change of the offset per
-                                                  ///< kelvin
-  double warming_k = 8.0;                ///< final rise of the sensor's temperature above that at power-up
-  double warming_time_s = 300.0;         ///< time constant of the warming
-  double resolution_pa = 0.016;          ///< quantization step, Pa
+  double sea_level_pa = 101325.0;                     ///< pressure at sea level
+  double sea_level_temperature_c = 15.0;              ///< air temperature at sea level
+  double origin_altitude_m = 0.0;                     ///< altitude of the world's origin above sea level
+  double noise_std_pa = 0.02;                         ///< standard deviation of the noise, Pa
+  double offset_std_pa = 25.0;                        ///< standard deviation, over sensors, of the constant offset, Pa
+  double drift_std_pa = 1.5;                          ///< standard deviation of the drift, a Gauss-Markov process, Pa
+  double drift_correlation_time_s = 600.0;            ///< correlation time of the drift
+  double temperature_coefficient_std_pa_per_k = 0.3;  ///< standard deviation, over sensors, of the change of the offset
+                                                      ///< per kelvin
+  double warming_k = 8.0;                             ///< final rise of the sensor's temperature above that at power-up
+  double warming_time_s = 300.0;                      ///< time constant of the warming
+  double resolution_pa = 0.016;                       ///< quantization step, Pa
   double latency_s = 0.05;
 
   template <typename Self, typename Visitor>
@@ -62,11 +62,11 @@ struct SensorTraits<FluidPressure> {
   };
   static constexpr auto kSettings = &Settings::barometer;
   static constexpr SensorInfo kInfo = {.name = "barometer",
-                                      .topic = "/imu/pressure",
-                                      .ros_type = "sensor_msgs/msg/FluidPressure",
-                                      .summary = "barometer",
-                                      .timeout = SensorTimeout::kInstrument,
-                                      .fault = {.unit = "Pa", .drift_per_s = 5.0, .outlier = 200.0}};
+                                       .topic = "/imu/pressure",
+                                       .ros_type = "sensor_msgs/msg/FluidPressure",
+                                       .summary = "barometer",
+                                       .timeout = SensorTimeout::kInstrument,
+                                       .fault = {.unit = "Pa", .drift_per_s = 5.0, .outlier = 200.0}};
 
   static void add_to_reading(FluidPressure& reading, double offset_pa) { reading.pressure_pa += offset_pa; }
   static std::vector<ErrorSource> error_sources() {

@@ -31,18 +31,18 @@ struct DepthCameraSettings {
   double rate_hz = 5.0;
   int width_px = 80;
   int height_px = 60;
-  double fov_deg = 70.0;           ///< horizontal field of view; pixels are square
-  double range_min_m = 0.3;        ///< minimum depth along the optical axis
+  double fov_deg = 70.0;     ///< horizontal field of view; pixels are square
+  double range_min_m = 0.3;  ///< minimum depth along the optical axis
   double range_max_m = 8.0;
   double depth_noise_std_per_m = 0.0026;  ///< standard deviation of the depth, divided by the squared depth
-  double baseline_m = 0.05;        ///< distance between the left and the right imager; pixels occluded in the right
-                                   ///< imager have no depth
-  double edge_threshold = 0.15;         ///< edge threshold: second difference of the inverse depth between pixels, relative
-                                   ///< to the inverse depth
-  double edge_dropout_probability = 0.5;          ///< dropout probability of pixels at edges
-  double dropout_probability = 0.01;           ///< dropout probability of any pixel
-  double max_incidence_deg = 85.0;       ///< maximum angle of incidence; pixels beyond it are lost
-  double max_range_10pct_m = 6.0;       ///< maximum range on a surface of 10 % reflectivity at normal incidence
+  double baseline_m = 0.05;      ///< distance between the left and the right imager; pixels occluded in the right
+                                 ///< imager have no depth
+  double edge_threshold = 0.15;  ///< edge threshold: second difference of the inverse depth between pixels, relative
+                                 ///< to the inverse depth
+  double edge_dropout_probability = 0.5;  ///< dropout probability of pixels at edges
+  double dropout_probability = 0.01;      ///< dropout probability of any pixel
+  double max_incidence_deg = 85.0;        ///< maximum angle of incidence; pixels beyond it are lost
+  double max_range_10pct_m = 6.0;         ///< maximum range on a surface of 10 % reflectivity at normal incidence
   double latency_s = 0.05;
 
   template <typename Self, typename Visitor>
@@ -72,11 +72,11 @@ struct SensorTraits<DepthImage> {
   };
   static constexpr auto kSettings = &Settings::depth_camera;
   static constexpr SensorInfo kInfo = {.name = "depth_camera",
-                                      .topic = "/depth",
-                                      .ros_type = "patrol_msgs/msg/DepthImage",
-                                      .summary = "infrared stereo depth camera",
-                                      .timeout = SensorTimeout::kLidar,
-                                      .fault = {.unit = "m", .drift_per_s = 0.02, .outlier = 0.5}};
+                                       .topic = "/depth",
+                                       .ros_type = "patrol_msgs/msg/DepthImage",
+                                       .summary = "infrared stereo depth camera",
+                                       .timeout = SensorTimeout::kLidar,
+                                       .fault = {.unit = "m", .drift_per_s = 0.02, .outlier = 0.5}};
 
   static void add_to_reading(DepthImage& image, double offset_m) {
     for (std::uint16_t& depth_mm : image.depth_mm) {

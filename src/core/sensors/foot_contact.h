@@ -17,9 +17,9 @@ struct FootContacts {
 /// Force sensors in the feet: strain gauges with an offset per foot that is constant over a run.
 struct FootContactSettings {
   bool enabled = true;
-  double rate_hz = 250.0;      ///< message rate; the firmware reads the sensor at every tick
-  double noise_std_n = 1.0;        ///< standard deviation of the noise
-  double offset_std_n = 1.0;       ///< standard deviation of the offset
+  double rate_hz = 250.0;     ///< message rate; the firmware reads the sensor at every tick
+  double noise_std_n = 1.0;   ///< standard deviation of the noise
+  double offset_std_n = 1.0;  ///< standard deviation of the offset
   double resolution_n = 0.5;
   double range_n = 500.0;
   double latency_s = 0.0;
@@ -43,13 +43,13 @@ struct SensorTraits<FootContacts> {
   };
   static constexpr auto kSettings = &Settings::foot_contact;
   static constexpr SensorInfo kInfo = {.name = "foot_contact",
-                                      .topic = "/foot_contacts",
-                                      .ros_type = "patrol_msgs/msg/FootContacts",
-                                      .summary = "force sensors of the feet",
-                                      .timeout = SensorTimeout::kMotion,
-                                      .freeze_check = FreezeCheck::kCommand,
-                                      .is_read_by_firmware = true,
-                                      .fault = {.unit = "N", .drift_per_s = 10.0, .outlier = 100.0}};
+                                       .topic = "/foot_contacts",
+                                       .ros_type = "patrol_msgs/msg/FootContacts",
+                                       .summary = "force sensors of the feet",
+                                       .timeout = SensorTimeout::kMotion,
+                                       .freeze_check = FreezeCheck::kCommand,
+                                       .is_read_by_firmware = true,
+                                       .fault = {.unit = "N", .drift_per_s = 10.0, .outlier = 100.0}};
 
   /// Adds to the main reading, the force on the first foot.
   static void add_to_reading(FootContacts& contacts, double offset_n) {
@@ -59,7 +59,8 @@ struct SensorTraits<FootContacts> {
   static bool is_fitted(const RobotDescription& robot) { return !robot.legs.empty(); }
   static std::vector<ErrorSource> error_sources() {
     return {{"foot contact: noise",
-             {"sensors.foot_contact.noise_std_n=0", "sensors.foot_contact.offset_std_n=0", "sensors.foot_contact.resolution_n=0"}}};
+             {"sensors.foot_contact.noise_std_n=0", "sensors.foot_contact.offset_std_n=0",
+              "sensors.foot_contact.resolution_n=0"}}};
   }
 };
 

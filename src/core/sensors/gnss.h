@@ -1,8 +1,8 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <cstdint>
+
+#include <Eigen/Core>
 
 #include "core/sensors/sensor_traits.h"
 #include "core/settings.h"
@@ -26,13 +26,13 @@ struct GnssFix {
 struct GnssSettings {
   bool enabled = true;
   double rate_hz = 5.0;
-  double fix_noise_std_m = 0.01;       ///< horizontal standard deviation; the vertical one is twice as large
+  double fix_noise_std_m = 0.01;  ///< horizontal standard deviation; the vertical one is twice as large
   double float_noise_std_m = 0.4;
-  double error_correlation_time_s = 20.0;      ///< correlation time of the position error
-  double min_open_sky_fix = 0.75;           ///< minimum fraction of visible sky for a fixed solution
-  double min_open_sky_float = 0.45;         ///< minimum fraction of visible sky for a float solution
-  double fix_reacquisition_time_s = 5.0;        ///< time under open sky before a fixed solution returns
-  double datum_latitude_deg = 29.21;    ///< WGS 84 latitude of the world's origin
+  double error_correlation_time_s = 20.0;  ///< correlation time of the position error
+  double min_open_sky_fix = 0.75;          ///< minimum fraction of visible sky for a fixed solution
+  double min_open_sky_float = 0.45;        ///< minimum fraction of visible sky for a float solution
+  double fix_reacquisition_time_s = 5.0;   ///< time under open sky before a fixed solution returns
+  double datum_latitude_deg = 29.21;       ///< WGS 84 latitude of the world's origin
   double datum_longitude_deg = 119.46;
   double latency_s = 0.1;
 
@@ -59,11 +59,11 @@ struct SensorTraits<GnssFix> {
   };
   static constexpr auto kSettings = &Settings::gnss;
   static constexpr SensorInfo kInfo = {.name = "gnss",
-                                      .topic = "/gnss/fix",
-                                      .ros_type = "sensor_msgs/msg/NavSatFix",
-                                      .summary = "RTK GNSS receiver",
-                                      .timeout = SensorTimeout::kInstrument,
-                                      .fault = {.unit = "m", .drift_per_s = 0.2, .outlier = 5.0}};
+                                       .topic = "/gnss/fix",
+                                       .ros_type = "sensor_msgs/msg/NavSatFix",
+                                       .summary = "RTK GNSS receiver",
+                                       .timeout = SensorTimeout::kInstrument,
+                                       .fault = {.unit = "m", .drift_per_s = 0.2, .outlier = 5.0}};
 
   /// Adds to the main reading, the altitude.
   static void add_to_reading(GnssFix& fix, double offset_m) { fix.altitude_m += offset_m; }

@@ -22,10 +22,10 @@ struct TrackTicks {
 /// brushless motors of this class (e.g. maxon EC flat) list 7 to 11 pole pairs and 3 sensors; the default is coarser.
 struct HallSettings {
   bool enabled = true;
-  double rate_hz = 50.0;                ///< message rate; the firmware reads the sensor at every tick
+  double rate_hz = 50.0;  ///< message rate; the firmware reads the sensor at every tick
   int counts_per_motor_revolution = 24;
-  double gear_ratio = 30.0;             ///< motor revolutions per sprocket revolution
-  double missed_edge_probability = 0.0; ///< probability that an edge is not counted
+  double gear_ratio = 30.0;              ///< motor revolutions per sprocket revolution
+  double missed_edge_probability = 0.0;  ///< probability that an edge is not counted
   double latency_s = 0.0;
 
   /// Returns the counts per radian of the sprocket.
@@ -49,14 +49,14 @@ struct SensorTraits<TrackTicks> {
   };
   static constexpr auto kSettings = &Settings::hall;
   static constexpr SensorInfo kInfo = {.name = "hall",
-                                      .topic = "/track_ticks",
-                                      .ros_type = "patrol_msgs/msg/TrackTicks",
-                                      .summary = "Hall counters of the drive motors",
-                                      .timeout = SensorTimeout::kMotion,
-                                      .freeze_check = FreezeCheck::kCommand,
-                                      .is_required_to_drive = true,
-                                      .is_read_by_firmware = true,
-                                      .fault = {.unit = "counts", .drift_per_s = 50.0, .outlier = 500.0}};
+                                       .topic = "/track_ticks",
+                                       .ros_type = "patrol_msgs/msg/TrackTicks",
+                                       .summary = "Hall counters of the drive motors",
+                                       .timeout = SensorTimeout::kMotion,
+                                       .freeze_check = FreezeCheck::kCommand,
+                                       .is_required_to_drive = true,
+                                       .is_read_by_firmware = true,
+                                       .fault = {.unit = "counts", .drift_per_s = 50.0, .outlier = 500.0}};
 
   /// Adds to the main reading, the count of the left track.
   static void add_to_reading(TrackTicks& ticks, double offset_counts) { ticks.left += std::llround(offset_counts); }

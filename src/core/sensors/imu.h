@@ -18,15 +18,15 @@ struct Imu {
 /// Inertial measurement unit (error model of IEEE Std 952). Defaults: Analog Devices ADIS16448 data sheet, rounded.
 struct ImuSettings {
   bool enabled = true;
-  double rate_hz = 250.0;                         ///< message rate; the firmware reads the sensor at every tick
-  double gyro_noise_density_radps_per_sqrt_hz = 2.3e-4;          ///< angle random walk, 0.66 deg/sqrt(h) plus vibration
-  double gyro_bias_std_radps = 0.002;                 ///< standard deviation of the constant bias
-  double gyro_bias_random_walk_radps_per_sqrt_s = 1.0e-5;     ///< rate random walk
+  double rate_hz = 250.0;                                ///< message rate; the firmware reads the sensor at every tick
+  double gyro_noise_density_radps_per_sqrt_hz = 2.3e-4;  ///< angle random walk, 0.66 deg/sqrt(h) plus vibration
+  double gyro_bias_std_radps = 0.002;                    ///< standard deviation of the constant bias
+  double gyro_bias_random_walk_radps_per_sqrt_s = 1.0e-5;  ///< rate random walk
   double accel_noise_density_mps2_per_sqrt_hz = 0.002;
   double accel_bias_std_mps2 = 0.03;
   double accel_bias_random_walk_mps2_per_sqrt_s = 1.0e-4;
-  double scale_error_std = 0.001;                     ///< standard deviation of the scale factor of each axis
-  double misalignment_std_deg = 0.05;                 ///< standard deviation of the misalignment of each axis
+  double scale_error_std = 0.001;      ///< standard deviation of the scale factor of each axis
+  double misalignment_std_deg = 0.05;  ///< standard deviation of the misalignment of each axis
   double gyro_range_radps = 17.4;
   double accel_range_mps2 = 176.0;
   double gyro_resolution_radps = 7.0e-4;
@@ -60,26 +60,27 @@ struct SensorTraits<Imu> {
   };
   static constexpr auto kSettings = &Settings::imu;
   static constexpr SensorInfo kInfo = {.name = "imu",
-                                      .topic = "/imu/data",
-                                      .ros_type = "sensor_msgs/msg/Imu",
-                                      .summary = "inertial measurement unit",
-                                      .timeout = SensorTimeout::kMotion,
-                                      .freeze_check = FreezeCheck::kOdometry,
-                                      .is_read_by_firmware = true,
-                                      .fault = {.unit = "rad/s", .drift_per_s = 0.005, .outlier = 1.0}};
+                                       .topic = "/imu/data",
+                                       .ros_type = "sensor_msgs/msg/Imu",
+                                       .summary = "inertial measurement unit",
+                                       .timeout = SensorTimeout::kMotion,
+                                       .freeze_check = FreezeCheck::kOdometry,
+                                       .is_read_by_firmware = true,
+                                       .fault = {.unit = "rad/s", .drift_per_s = 0.005, .outlier = 1.0}};
 
   /// Adds to the main reading, the yaw rate.
   static void add_to_reading(Imu& imu, double offset_radps) { imu.angular_velocity_radps.z() += offset_radps; }
   static bool repeats(const Imu& now, const Imu& before) {
-    return now.angular_velocity_radps == before.angular_velocity_radps && now.linear_acceleration_mps2 == before.linear_acceleration_mps2;
+    return now.angular_velocity_radps == before.angular_velocity_radps &&
+           now.linear_acceleration_mps2 == before.linear_acceleration_mps2;
   }
   static std::vector<ErrorSource> error_sources() {
     return {{"gyro",
-             {"sensors.imu.gyro_noise_density_radps_per_sqrt_hz=0", "sensors.imu.gyro_bias_std_radps=0", "sensors.imu.gyro_bias_random_walk_radps_per_sqrt_s=0",
-              "sensors.imu.gyro_resolution_radps=0"}},
+             {"sensors.imu.gyro_noise_density_radps_per_sqrt_hz=0", "sensors.imu.gyro_bias_std_radps=0",
+              "sensors.imu.gyro_bias_random_walk_radps_per_sqrt_s=0", "sensors.imu.gyro_resolution_radps=0"}},
             {"accelerometer",
-             {"sensors.imu.accel_noise_density_mps2_per_sqrt_hz=0", "sensors.imu.accel_bias_std_mps2=0", "sensors.imu.accel_bias_random_walk_mps2_per_sqrt_s=0",
-              "sensors.imu.accel_resolution_mps2=0"}},
+             {"sensors.imu.accel_noise_density_mps2_per_sqrt_hz=0", "sensors.imu.accel_bias_std_mps2=0",
+              "sensors.imu.accel_bias_random_walk_mps2_per_sqrt_s=0", "sensors.imu.accel_resolution_mps2=0"}},
             {"IMU: scale and alignment", {"sensors.imu.scale_error_std=0", "sensors.imu.misalignment_std_deg=0"}}};
   }
 };

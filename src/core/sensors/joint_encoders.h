@@ -19,9 +19,9 @@ struct JointState {
 /// Absolute magnetic encoders on the joints, 14 bit. The motor drive filters the velocity.
 struct JointEncoderSettings {
   bool enabled = true;
-  double rate_hz = 250.0;          ///< message rate; the firmware reads the sensor at every tick
+  double rate_hz = 250.0;  ///< message rate; the firmware reads the sensor at every tick
   int counts_per_revolution = 16384;
-  double velocity_filter_time_constant_s = 0.003;   ///< time constant of the velocity filter on count differences
+  double velocity_filter_time_constant_s = 0.003;  ///< time constant of the velocity filter on count differences
   double latency_s = 0.0;
 
   template <typename Self, typename Visitor>
@@ -41,20 +41,22 @@ struct SensorTraits<JointState> {
   };
   static constexpr auto kSettings = &Settings::joint_encoders;
   static constexpr SensorInfo kInfo = {.name = "joint_encoders",
-                                      .topic = "/joint_states",
-                                      .ros_type = "sensor_msgs/msg/JointState",
-                                      .summary = "joint encoders of the legs",
-                                      .timeout = SensorTimeout::kMotion,
-                                      .freeze_check = FreezeCheck::kCommand,
-                                      .is_required_to_drive = true,
-                                      .is_read_by_firmware = true,
-                                      .fault = {.unit = "rad", .drift_per_s = 0.01, .outlier = 0.3}};
+                                       .topic = "/joint_states",
+                                       .ros_type = "sensor_msgs/msg/JointState",
+                                       .summary = "joint encoders of the legs",
+                                       .timeout = SensorTimeout::kMotion,
+                                       .freeze_check = FreezeCheck::kCommand,
+                                       .is_required_to_drive = true,
+                                       .is_read_by_firmware = true,
+                                       .fault = {.unit = "rad", .drift_per_s = 0.01, .outlier = 0.3}};
 
   /// Adds to the main reading, the position of the first joint.
   static void add_to_reading(JointState& joints, double offset_rad) {
     if (!joints.position_rad.empty()) joints.position_rad.front() += offset_rad;
   }
-  static bool repeats(const JointState& now, const JointState& before) { return now.position_rad == before.position_rad; }
+  static bool repeats(const JointState& now, const JointState& before) {
+    return now.position_rad == before.position_rad;
+  }
   static bool is_fitted(const RobotDescription& robot) { return !robot.legs.empty(); }
   static std::vector<ErrorSource> error_sources() {
     return {{"joint encoders: counts", {"sensors.joint_encoders.counts_per_revolution=1000000"}}};

@@ -33,14 +33,17 @@ bool SensorTraits<LaserScan>::repeats(const LaserScan& now, const LaserScan& bef
 }
 
 std::vector<ErrorSource> SensorTraits<LaserScan>::error_sources() {
-  return {{"lidar: range noise", {"sensors.lidar.range_noise_std_m=0"}},
-          {"lidar: range quantization", {"sensors.lidar.range_quantization_m=0"}},
-          {"lidar: beam angle", {"sensors.lidar.angle_noise_std_deg=0"}},
-          {"lidar: mixed pixels", {"sensors.lidar.beam_width_deg=0"}},
-          {"lidar: dropouts", {"sensors.lidar.dropout_probability=0", "sensors.lidar.max_incidence_deg=90", "sensors.lidar.max_range_10pct_m=1000"}},
-          {"lidar: rain and dust", {"sensors.lidar.false_return_rate_per_m=0", "sensors.dust.enabled=false"}},
-          {"lidar: motion distortion", {"sensors.lidar.motion_distortion=false"}},
-          {"lidar: tilt with the body", {"sensors.lidar.stabilized=true", "stack.scan_leveling.gimbal_stabilized=true"}}};
+  return {
+      {"lidar: range noise", {"sensors.lidar.range_noise_std_m=0"}},
+      {"lidar: range quantization", {"sensors.lidar.range_quantization_m=0"}},
+      {"lidar: beam angle", {"sensors.lidar.angle_noise_std_deg=0"}},
+      {"lidar: mixed pixels", {"sensors.lidar.beam_width_deg=0"}},
+      {"lidar: dropouts",
+       {"sensors.lidar.dropout_probability=0", "sensors.lidar.max_incidence_deg=90",
+        "sensors.lidar.max_range_10pct_m=1000"}},
+      {"lidar: rain and dust", {"sensors.lidar.false_return_rate_per_m=0", "sensors.dust.enabled=false"}},
+      {"lidar: motion distortion", {"sensors.lidar.motion_distortion=false"}},
+      {"lidar: tilt with the body", {"sensors.lidar.stabilized=true", "stack.scan_leveling.gimbal_stabilized=true"}}};
 }
 
 }  // namespace patrol

@@ -11,7 +11,7 @@ namespace patrol {
 
 /// Revolution of a 2D lidar. Ranges follow REP 117: -Inf too close, +Inf no return, NaN invalid.
 struct LaserScan {
-  Time stamp{};  ///< instant of beam 0
+  Time stamp{};                      ///< instant of beam 0
   double angle_min_rad = 0.0;        ///< angle of beam 0, in `lidar`, about z
   double angle_increment_rad = 0.0;  ///< angle between consecutive beams
   double time_increment_s = 0.0;     ///< time between consecutive beams
@@ -34,18 +34,18 @@ struct LidarSettings {
   double elevation_max_deg = 0.0;  ///< elevation of the highest ring
   double range_min_m = 0.05;
   double range_max_m = 30.0;
-  double range_noise_std_m = 0.015;       ///< standard deviation of the range
-  double range_quantization_m = 0.013;  ///< quantization step of the range
-  double angle_noise_std_deg = 0.01;      ///< standard deviation of the beam azimuth
-  double beam_width_deg =
-      0.12;                    ///< azimuthal width of the beam; causes mixed pixels at edges
-  double dropout_probability = 0.002;      ///< dropout probability of a beam
-  double max_incidence_deg = 85.0;   ///< maximum angle of incidence; beams beyond it are lost
-  double max_range_10pct_m = 10.0;  ///< maximum range on a surface of 10 % reflectivity
-  double false_return_rate_per_m = 0.0;      ///< rate of returns from raindrops or dust grains, per meter of beam
-  double latency_s = 0.005;    ///< delay from the last beam to the message
-  bool motion_distortion = true;  ///< false: all beams are fired from the pose at the end of the revolution
-  bool stabilized = false;        ///< true: ideal gimbal that keeps the lidar level; requires stack.scan_leveling.gimbal_stabilized
+  double range_noise_std_m = 0.015;      ///< standard deviation of the range
+  double range_quantization_m = 0.013;   ///< quantization step of the range
+  double angle_noise_std_deg = 0.01;     ///< standard deviation of the beam azimuth
+  double beam_width_deg = 0.12;          ///< azimuthal width of the beam; causes mixed pixels at edges
+  double dropout_probability = 0.002;    ///< dropout probability of a beam
+  double max_incidence_deg = 85.0;       ///< maximum angle of incidence; beams beyond it are lost
+  double max_range_10pct_m = 10.0;       ///< maximum range on a surface of 10 % reflectivity
+  double false_return_rate_per_m = 0.0;  ///< rate of returns from raindrops or dust grains, per meter of beam
+  double latency_s = 0.005;              ///< delay from the last beam to the message
+  bool motion_distortion = true;         ///< false: all beams are fired from the pose at the end of the revolution
+  bool stabilized =
+      false;  ///< true: ideal gimbal that keeps the lidar level; requires stack.scan_leveling.gimbal_stabilized
 
   /// Returns the settings of a preset, from public data sheets. "rplidar_s2": Slamtec RPLIDAR S2 (10 Hz, 32,000
   /// samples/s, 0.05-30 m, 10 m on 10 %, +-30 mm, 13 mm steps). "utm30lx": Hokuyo UTM-30LX (40 Hz, 0.25 deg over 270
@@ -89,13 +89,13 @@ struct SensorTraits<LaserScan> {
   };
   static constexpr auto kSettings = &Settings::lidar;
   static constexpr SensorInfo kInfo = {.name = "lidar",
-                                      .topic = "/scan",
-                                      .ros_type = "sensor_msgs/msg/LaserScan",
-                                      .summary = "2D lidar",
-                                      .timeout = SensorTimeout::kLidar,
-                                      .freeze_check = FreezeCheck::kOdometry,
-                                      .is_required_to_drive = true,
-                                      .fault = {.unit = "m", .drift_per_s = 0.02, .outlier = 1.0}};
+                                       .topic = "/scan",
+                                       .ros_type = "sensor_msgs/msg/LaserScan",
+                                       .summary = "2D lidar",
+                                       .timeout = SensorTimeout::kLidar,
+                                       .freeze_check = FreezeCheck::kOdometry,
+                                       .is_required_to_drive = true,
+                                       .fault = {.unit = "m", .drift_per_s = 0.02, .outlier = 1.0}};
 
   static void add_to_reading(LaserScan& scan, double offset_m) {
     for (float& range_m : scan.ranges_m) range_m += static_cast<float>(offset_m);

@@ -10,9 +10,9 @@
 namespace patrol {
 
 struct CloudPoint {
-  float x, y, z;     ///< position, m, in `lidar3d`
-  float intensity;   ///< intensity, 0 ... 255
-  float time_s;      ///< time after the cloud's stamp
+  float x, y, z;    ///< position, m, in `lidar3d`
+  float intensity;  ///< intensity, 0 ... 255
+  float time_s;     ///< time after the cloud's stamp
   std::uint16_t ring;
 };
 
@@ -29,11 +29,11 @@ struct SensorTraits<PointCloud> {
   };
   static constexpr auto kSettings = &Settings::lidar3d;
   static constexpr SensorInfo kInfo = {.name = "lidar3d",
-                                      .topic = "/points",
-                                      .ros_type = "sensor_msgs/msg/PointCloud2",
-                                      .summary = "3D lidar",
-                                      .timeout = SensorTimeout::kLidar,
-                                      .fault = {.unit = "m", .drift_per_s = 0.02, .outlier = 1.0}};
+                                       .topic = "/points",
+                                       .ros_type = "sensor_msgs/msg/PointCloud2",
+                                       .summary = "3D lidar",
+                                       .timeout = SensorTimeout::kLidar,
+                                       .fault = {.unit = "m", .drift_per_s = 0.02, .outlier = 1.0}};
 
   static void add_to_reading(PointCloud& cloud, double offset_m) {
     for (CloudPoint& point : cloud.points) point.x += static_cast<float>(offset_m);

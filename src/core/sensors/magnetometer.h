@@ -1,9 +1,9 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <string>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "core/sensors/sensor_traits.h"
 #include "core/settings.h"
@@ -27,9 +27,9 @@ struct MagnetometerSettings {
   double intensity_t = 4.87e-5;     ///< magnitude of the geomagnetic field, T
   double inclination_deg = 45.0;    ///< angle of the geomagnetic field below the horizon
   double declination_deg = -5.6;    ///< angle of the geomagnetic field from north (+y of world) toward east (+x)
-  double hard_iron_std_t = 1.0e-5;      ///< standard deviation, over robots, of the constant offset of each axis, T
-  double soft_iron_std = 0.03;          ///< standard deviation, over robots, of each entry of distortion matrix - identity
-  double noise_std_t = 4.1e-7;          ///< standard deviation of the noise of each axis, T
+  double hard_iron_std_t = 1.0e-5;  ///< standard deviation, over robots, of the constant offset of each axis, T
+  double soft_iron_std = 0.03;      ///< standard deviation, over robots, of each entry of distortion matrix - identity
+  double noise_std_t = 4.1e-7;      ///< standard deviation of the noise of each axis, T
   double resolution_t = 1.4616e-8;  ///< quantization step, T
   double range_t = 4.0e-4;          ///< full scale of each axis, T
   double steel_fill = 0.1;          ///< polarizable fraction of a steel geom's bounding box; 0: no disturbance
@@ -62,11 +62,11 @@ struct SensorTraits<MagneticField> {
   };
   static constexpr auto kSettings = &Settings::magnetometer;
   static constexpr SensorInfo kInfo = {.name = "magnetometer",
-                                      .topic = "/imu/mag",
-                                      .ros_type = "sensor_msgs/msg/MagneticField",
-                                      .summary = "three-axis magnetometer",
-                                      .timeout = SensorTimeout::kInstrument,
-                                      .fault = {.unit = "T", .drift_per_s = 1.0e-6, .outlier = 3.0e-5}};
+                                       .topic = "/imu/mag",
+                                       .ros_type = "sensor_msgs/msg/MagneticField",
+                                       .summary = "three-axis magnetometer",
+                                       .timeout = SensorTimeout::kInstrument,
+                                       .fault = {.unit = "T", .drift_per_s = 1.0e-6, .outlier = 3.0e-5}};
 
   /// Adds to the main reading, the field along x.
   static void add_to_reading(MagneticField& reading, double offset_t) { reading.field_t.x() += offset_t; }

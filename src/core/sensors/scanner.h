@@ -30,25 +30,26 @@ struct PanoramicScan {
 /// "+-" is read as two standard deviations, a plain value as one.
 struct PanoramicScannerSettings {
   bool enabled = false;
-  std::string epoch = "inspection";  ///< measurement epoch of a scan: "reference" or "inspection"; independent noise in each
-  double step_deg = 0.36;            ///< angle between beams, horizontal and vertical; default: 1000 columns of 417
+  std::string epoch =
+      "inspection";        ///< measurement epoch of a scan: "reference" or "inspection"; independent noise in each
+  double step_deg = 0.36;  ///< angle between beams, horizontal and vertical; default: 1000 columns of 417
   double elevation_min_deg = -60.0;  ///< lowest elevation; below it the instrument's own tripod blocks the beams
   double duration_s = 30.0;          ///< duration of a scan
   double range_min_m = 0.6;
   double range_max_m = 70.0;
-  double max_range_2pct_m = 50.0;     ///< maximum range on a surface of 2 % reflectivity
-  double range_noise_std_m = 0.0003;   ///< standard deviation of the range on a bright surface
-  double gray_noise_std_m = 0.000255;  ///< additional standard deviation on 10 % reflectivity at 10 m, added in squares;
-                                   ///< scales with sqrt(range) / light
-  double range_offset_std_m = 0.0005;  ///< standard deviation of a range error that is constant within a scan
-  double angle_noise_std_deg = 0.0053;     ///< standard deviation of each beam's azimuth and elevation
-  double tilt_error_std_deg = 0.0053;      ///< standard deviation of the tilt residual of the compensator, about each of
-                                       ///< two axes
-  double beam_exit_diameter_m = 0.00212;        ///< beam diameter at the exit
-  double beam_divergence_rad = 0.0003;     ///< beam divergence, half angle; 0 disables the beam width and mixed pixels
-  double max_incidence_deg = 85.0;  ///< maximum angle of incidence; beams beyond it are lost
+  double max_range_2pct_m = 50.0;         ///< maximum range on a surface of 2 % reflectivity
+  double range_noise_std_m = 0.0003;      ///< standard deviation of the range on a bright surface
+  double gray_noise_std_m = 0.000255;     ///< additional standard deviation on 10 % reflectivity at 10 m, added in
+                                          ///< squares; scales with sqrt(range) / light
+  double range_offset_std_m = 0.0005;     ///< standard deviation of a range error that is constant within a scan
+  double angle_noise_std_deg = 0.0053;    ///< standard deviation of each beam's azimuth and elevation
+  double tilt_error_std_deg = 0.0053;     ///< standard deviation of the tilt residual of the compensator, about each of
+                                          ///< two axes
+  double beam_exit_diameter_m = 0.00212;  ///< beam diameter at the exit
+  double beam_divergence_rad = 0.0003;    ///< beam divergence, half angle; 0 disables the beam width and mixed pixels
+  double max_incidence_deg = 85.0;        ///< maximum angle of incidence; beams beyond it are lost
   double dropout_probability = 0.001;     ///< dropout probability of a beam
-  double latency_s = 0.5;     ///< delay from the last point to the message
+  double latency_s = 0.5;                 ///< delay from the last point to the message
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -80,11 +81,11 @@ struct SensorTraits<PanoramicScan> {
   };
   static constexpr auto kSettings = &Settings::scanner;
   static constexpr SensorInfo kInfo = {.name = "scanner",
-                                      .topic = "/scanner/points",
-                                      .ros_type = "sensor_msgs/msg/PointCloud2",
-                                      .summary = "terrestrial laser scanner, on command",
-                                      .trigger = SensorTrigger::kScanStation,
-                                      .fault = {.unit = "m", .drift_per_s = 0.001, .outlier = 0.05}};
+                                       .topic = "/scanner/points",
+                                       .ros_type = "sensor_msgs/msg/PointCloud2",
+                                       .summary = "terrestrial laser scanner, on command",
+                                       .trigger = SensorTrigger::kScanStation,
+                                       .fault = {.unit = "m", .drift_per_s = 0.001, .outlier = 0.05}};
 
   /// Adds to the main reading, the ranges of all points.
   static void add_to_reading(PanoramicScan& scan, double offset_m) {

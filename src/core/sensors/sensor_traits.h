@@ -38,10 +38,10 @@ struct SensorInfo {
   const char* summary;   ///< line of documentation in `patrol list`
   SensorTimeout timeout = SensorTimeout::kNone;
   FreezeCheck freeze_check = FreezeCheck::kNone;
-  bool is_required_to_drive = false;     ///< true: the robot stops while the sensor monitor reports a fault of this
-                                       ///< sensor
-  bool is_read_by_firmware = false;    ///< true: the locomotion firmware reads the sensor at every tick; stepped before
-                                       ///< the others
+  bool is_required_to_drive = false;  ///< true: the robot stops while the sensor monitor reports a fault of this
+                                      ///< sensor
+  bool is_read_by_firmware = false;   ///< true: the locomotion firmware reads the sensor at every tick; stepped before
+                                      ///< the others
   SensorTrigger trigger = SensorTrigger::kPeriodic;
   FaultMagnitudes fault = {};
   const char* fault_matrix_exclusion_reason = "";  ///< reason for exclusion from the fault matrix; empty: included
@@ -72,11 +72,15 @@ struct SensorTraits;
 
 /// Message of a registered sensor.
 template <typename Message>
-concept IsSensorMessage = requires { SensorTraits<Message>::kInfo; };
+concept IsSensorMessage = requires {
+  SensorTraits<Message>::kInfo;
+};
 
 /// Sensor with settings.
 template <typename Message>
-concept HasSensorSettings = requires { SensorTraits<Message>::kSettings; };
+concept HasSensorSettings = requires {
+  SensorTraits<Message>::kSettings;
+};
 
 /// Returns whether this kind of robot can carry the sensor.
 template <IsSensorMessage Message>

@@ -9,10 +9,10 @@ namespace patrol {
 /// Reading of the open-path laser methane meter (TDLAS), which measures the gas column along its beam.
 struct GasReading {
   Time stamp{};
-  double column_ppm_m = 0.0;     ///< concentration integrated along the beam
-  double path_length_m = 0.0;    ///< path length to the backscattering surface; +Inf if there is none
-  double mean_mg_m3 = 0.0;       ///< mean concentration: column divided by path length, as mass of methane at 20 degC
-                                 ///< and 1 atm
+  double column_ppm_m = 0.0;   ///< concentration integrated along the beam
+  double path_length_m = 0.0;  ///< path length to the backscattering surface; +Inf if there is none
+  double mean_mg_m3 = 0.0;     ///< mean concentration: column divided by path length, as mass of methane at 20 degC
+                               ///< and 1 atm
 };
 
 /// Open-path laser methane meter with its beam along x. Defaults after the data sheet of Tokyo Gas Engineering's
@@ -20,9 +20,9 @@ struct GasReading {
 struct TdlasSettings {
   bool enabled = true;
   double rate_hz = 10.0;
-  double noise_std_ppm_m = 10.0;        ///< standard deviation of the additive noise
-  double relative_noise_std = 0.05;     ///< standard deviation of the noise, relative to the column
-  double background_ppm = 1.9;      ///< methane in clean air
+  double noise_std_ppm_m = 10.0;     ///< standard deviation of the additive noise
+  double relative_noise_std = 0.05;  ///< standard deviation of the noise, relative to the column
+  double background_ppm = 1.9;       ///< methane in clean air
   double resolution_ppm_m = 1.0;
   double max_column_ppm_m = 50000.0;
   double range_m = 30.0;
@@ -49,11 +49,11 @@ struct SensorTraits<GasReading> {
   };
   static constexpr auto kSettings = &Settings::tdlas;
   static constexpr SensorInfo kInfo = {.name = "tdlas",
-                                      .topic = "/gas",
-                                      .ros_type = "patrol_msgs/msg/GasReading",
-                                      .summary = "open-path laser methane meter",
-                                      .timeout = SensorTimeout::kInstrument,
-                                      .fault = {.unit = "ppm m", .drift_per_s = 20.0, .outlier = 300.0}};
+                                       .topic = "/gas",
+                                       .ros_type = "patrol_msgs/msg/GasReading",
+                                       .summary = "open-path laser methane meter",
+                                       .timeout = SensorTimeout::kInstrument,
+                                       .fault = {.unit = "ppm m", .drift_per_s = 20.0, .outlier = 300.0}};
 
   static void add_to_reading(GasReading& gas, double offset_ppm_m) { gas.column_ppm_m += offset_ppm_m; }
 };

@@ -18,11 +18,11 @@ template <>
 struct SensorTraits<TeleopCommand> {
   struct Settings {};
   static constexpr SensorInfo kInfo = {.name = "teleop",
-                                      .topic = "/teleop",
-                                      .ros_type = "patrol_msgs/msg/TeleopCommand",
-                                      .summary = "teleoperation commands of an operator",
-                                      .trigger = SensorTrigger::kTeleoperation,
-                                      .fault = {.unit = "m/s", .drift_per_s = 0.02, .outlier = 0.3}};
+                                       .topic = "/teleop",
+                                       .ros_type = "patrol_msgs/msg/TeleopCommand",
+                                       .summary = "teleoperation commands of an operator",
+                                       .trigger = SensorTrigger::kTeleoperation,
+                                       .fault = {.unit = "m/s", .drift_per_s = 0.02, .outlier = 0.3}};
 
   static void add_to_reading(TeleopCommand& command, double offset_mps) { command.vx_mps += offset_mps; }
 };

@@ -13,7 +13,7 @@ namespace patrol {
 /// frame.
 struct UltrasonicRange {
   Time stamp{};
-  int transducer = 0;  ///< number of the transducer; its frame is `ultrasonic_<transducer>`
+  int transducer = 0;              ///< number of the transducer; its frame is `ultrasonic_<transducer>`
   double field_of_view_rad = 0.0;  ///< full opening angle of the cone
   double range_min_m = 0.0;
   double range_max_m = 0.0;
@@ -25,26 +25,27 @@ struct UltrasonicRange {
 /// [Leonard92]: at a wavelength of 8 mm walls are mirrors. The two values of the echo strength are assumptions.
 struct UltrasonicSettings {
   bool enabled = false;
-  double ping_rate_hz = 40.0;      ///< rate of ring slots; one transducer or one group fires in each slot
-  int group_size = 1;           ///< transducers per group, spread over the ring; a group shortens the cycle and
-                                   ///< causes crosstalk
-  double fov_deg = 35.0;           ///< full opening angle of the cone
+  double ping_rate_hz = 40.0;  ///< rate of ring slots; one transducer or one group fires in each slot
+  int group_size = 1;          ///< transducers per group, spread over the ring; a group shortens the cycle and
+                               ///< causes crosstalk
+  double fov_deg = 35.0;       ///< full opening angle of the cone
   double range_min_m = 0.2;
   double range_max_m = 4.0;
-  double range_noise_std_m = 0.005;    ///< standard deviation of the range
+  double range_noise_std_m = 0.005;  ///< standard deviation of the range
   double range_quantization_m = 0.01;
-  double specular_cutoff_deg = 25.0;        ///< maximum angle of incidence for a specular echo of a smooth surface
-  double rough_echo_ratio = 0.37;        ///< echo strength of a rough surface relative to a smooth one, both at normal
-                                   ///< incidence
-  double detection_threshold = 0.02;        ///< detection threshold, relative to the echo of a smooth wall that fills the cone
-  double dropout_probability = 0.02;           ///< dropout probability of a ping
-  double crosstalk_probability = 0.5;          ///< probability that a receivable echo of another transducer is taken for the own
-                                   ///< echo
+  double specular_cutoff_deg = 25.0;  ///< maximum angle of incidence for a specular echo of a smooth surface
+  double rough_echo_ratio = 0.37;     ///< echo strength of a rough surface relative to a smooth one, both at normal
+                                      ///< incidence
+  double detection_threshold =
+      0.02;  ///< detection threshold, relative to the echo of a smooth wall that fills the cone
+  double dropout_probability = 0.02;   ///< dropout probability of a ping
+  double crosstalk_probability = 0.5;  ///< probability that a receivable echo of another transducer is taken for the
+                                       ///< own echo
   double air_temperature_c = 15.0;
   double assumed_temperature_c = 20.0;  ///< temperature for which the sensor's speed of sound is set
   /// Substrings of the names of rough geoms or of their materials. Height fields are always rough.
   std::vector<std::string> rough_names = {"rock", "rubble", "gravel", "soil", "shotcrete", "muck"};
-  double latency_s = 0.03;         ///< delay that covers the echo from maximum range
+  double latency_s = 0.03;  ///< delay that covers the echo from maximum range
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -75,11 +76,11 @@ struct SensorTraits<UltrasonicRange> {
   };
   static constexpr auto kSettings = &Settings::ultrasonic;
   static constexpr SensorInfo kInfo = {.name = "ultrasonic",
-                                      .topic = "/ultrasonic",
-                                      .ros_type = "sensor_msgs/msg/Range",
-                                      .summary = "ultrasonic ring",
-                                      .timeout = SensorTimeout::kInstrument,
-                                      .fault = {.unit = "m", .drift_per_s = 0.02, .outlier = 0.5}};
+                                       .topic = "/ultrasonic",
+                                       .ros_type = "sensor_msgs/msg/Range",
+                                       .summary = "ultrasonic ring",
+                                       .timeout = SensorTimeout::kInstrument,
+                                       .fault = {.unit = "m", .drift_per_s = 0.02, .outlier = 0.5}};
 
   static void add_to_reading(UltrasonicRange& range, double offset_m) { range.range_m += static_cast<float>(offset_m); }
 };

@@ -18,13 +18,13 @@ struct UwbRange {
 /// (LOS); an exponential NLOS bias is added off it [Alsindi09], [Bellusci09]. Loss probabilities are assumptions.
 struct UwbSettings {
   bool enabled = false;
-  double rate_hz = 30.0;            ///< total rate of polls; the anchors in range take turns
-  double range_max_m = 60.0;        ///< maximum range; anchors farther away are neither polled nor answer
-  double range_noise_std_m = 0.07;      ///< standard deviation of the range in line of sight
-  double bias_scale = 1.0;          ///< factor on the distance-dependent bias; 0: corrected by the firmware
-  double loss_probability = 0.02;               ///< loss probability of a poll at short distance
-  double nlos_loss_probability = 0.3;        ///< additional loss probability off the line of sight
-  double nlos_bias_m = 0.4;    ///< mean of the exponential NLOS bias
+  double rate_hz = 30.0;               ///< total rate of polls; the anchors in range take turns
+  double range_max_m = 60.0;           ///< maximum range; anchors farther away are neither polled nor answer
+  double range_noise_std_m = 0.07;     ///< standard deviation of the range in line of sight
+  double bias_scale = 1.0;             ///< factor on the distance-dependent bias; 0: corrected by the firmware
+  double loss_probability = 0.02;      ///< loss probability of a poll at short distance
+  double nlos_loss_probability = 0.3;  ///< additional loss probability off the line of sight
+  double nlos_bias_m = 0.4;            ///< mean of the exponential NLOS bias
   double latency_s = 0.01;
 
   template <typename Self, typename Visitor>
@@ -48,11 +48,11 @@ struct SensorTraits<UwbRange> {
   };
   static constexpr auto kSettings = &Settings::uwb;
   static constexpr SensorInfo kInfo = {.name = "uwb",
-                                      .topic = "/uwb/range",
-                                      .ros_type = "patrol_msgs/msg/UwbRange",
-                                      .summary = "ultra-wideband ranges to surveyed anchors",
-                                      .timeout = SensorTimeout::kInstrument,
-                                      .fault = {.unit = "m", .drift_per_s = 0.05, .outlier = 3.0}};
+                                       .topic = "/uwb/range",
+                                       .ros_type = "patrol_msgs/msg/UwbRange",
+                                       .summary = "ultra-wideband ranges to surveyed anchors",
+                                       .timeout = SensorTimeout::kInstrument,
+                                       .fault = {.unit = "m", .drift_per_s = 0.05, .outlier = 3.0}};
 
   static void add_to_reading(UwbRange& range, double offset_m) { range.range_m += offset_m; }
   static std::vector<ErrorSource> error_sources() {

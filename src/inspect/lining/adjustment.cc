@@ -1,12 +1,12 @@
 #include "inspect/lining/adjustment.h"
 
-#include <Eigen/Cholesky>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <map>
 #include <tuple>
+
+#include <Eigen/Cholesky>
 
 #include "core/geometry/angles.h"
 #include "inspect/lining/registration.h"
@@ -15,18 +15,18 @@
 namespace patrol::inspect {
 namespace {
 
-constexpr int kMaxAssociations = 6;               // maximum number of patch associations
+constexpr int kMaxAssociations = 6;  // maximum number of patch associations
 // Convergence limit of a step, and the distance at which its rotation counts.
 constexpr double kConverged_m = 2e-5, kFar_m = 10.0;
-constexpr double kMinCutoff_m = 0.003;    // minimum cutoff within a cell, because a bulge is not flat
-constexpr double kPatch_m = 0.5;         // patch size of surfaces other than the lining
-constexpr double kFixtureDistance_m = 0.1;        // points closer to the design are the lining or flat fixtures on it
+constexpr double kMinCutoff_m = 0.003;      // minimum cutoff within a cell, because a bulge is not flat
+constexpr double kPatch_m = 0.5;            // patch size of surfaces other than the lining
+constexpr double kFixtureDistance_m = 0.1;  // points closer to the design are the lining or flat fixtures on it
 constexpr double kPartner_m = 0.15, kFixtureBand_m = 0.03, kFacing = 0.8;
 constexpr int kMinPatchPoints = 5;
 // Normal components along the tunnel up to this value are treated as noise and removed. Otherwise thousands of wall
 // points would constrain the position along the tunnel with that noise.
 constexpr double kMinAlong = 0.3;
-constexpr double kMaxCount = 8.0;        // more points do not improve a mean: the remaining error is texture
+constexpr double kMaxCount = 8.0;  // more points do not improve a mean: the remaining error is texture
 
 struct Samples {
   std::vector<double> offsets_m, weights;
@@ -70,9 +70,16 @@ PatchKey patch_key(const Eigen::Vector3d& p, const Eigen::Vector3d& normal) {
 
 class Adjuster {
  public:
-  Adjuster(const LiningInMap& lining, const LiningGrid& grid, const ReferenceLining& reference, const SurfaceCloud& target_map,
-           const SurfaceCloud& source, const Pose3& guess, const LiningSettings& settings)
-      : lining_(lining), grid_(grid), reference_(reference), target_(target_map), source_(source), guess_(guess), settings_(settings) {
+  Adjuster(const LiningInMap& lining, const LiningGrid& grid, const ReferenceLining& reference,
+           const SurfaceCloud& target_map, const SurfaceCloud& source, const Pose3& guess,
+           const LiningSettings& settings)
+      : lining_(lining),
+        grid_(grid),
+        reference_(reference),
+        target_(target_map),
+        source_(source),
+        guess_(guess),
+        settings_(settings) {
     const double heading = lining.design.heading_at(lining.design.to_tunnel_coordinates(guess.position).chainage_m);
     axis_map_ = {std::cos(heading), std::sin(heading), 0.0};
   }
@@ -85,13 +92,15 @@ class Adjuster {
       const Eigen::Vector3d arm = T_map_scanner.rotation * (sample.p - range_offset_m * sample.p.normalized());
       const Eigen::Vector3d p = T_map_scanner.position + arm;
       const LiningPoint point = lining_point(lining_, p);
-      const bool is_near_lining = std::abs(point.inward_m) < kFixtureDistance_m && std::abs(point.clock_deg) < (grid_.half_sectors + 0.5) * grid_.sector_deg;
+      const bool is_near_lining = std::abs(point.inward_m) < kFixtureDistance_m &&
+                                  std::abs(point.clock_deg) < (grid_.half_sectors + 0.5) * grid_.sector_deg;
       if (is_near_lining) {
         const int cell = grid_.cell_at(point);
         if (cell < 0) continue;
         const auto before_m = reference_.inward_m(point, cell);
         if (!before_m || std::abs(point.inward_m - *before_m) > settings_.design_tolerance_m) continue;
-        cells[static_cast<std::size_t>(cell)].add(point.inward_m - *before_m, derivative(point.gradient, arm), sample.count);
+        cells[static_cast<std::size_t>(cell)].add(point.inward_m - *before_m, derivative(point.gradient, arm),
+                                                  sample.count);
       } else {
         add_other(i, p, arm, T_map_scanner, others);
       }
@@ -134,7 +143,8 @@ class Adjuster {
   }
 
  private:
-  void add_other(std::size_t i, const Eigen::Vector3d& p, const Eigen::Vector3d& arm, const Pose3& T_map_scanner, std::map<PatchKey, Samples>& others) const {
+  void add_other(std::size_t i, const Eigen::Vector3d& p, const Eigen::Vector3d& arm, const Pose3& T_map_scanner,
+                 std::map<PatchKey, Samples>& others) const {
     const Eigen::Vector3d normal = T_map_scanner.rotation * source_.surfaces()[i].normal;
     if (normal.isZero()) return;
     const auto near = target_.nearest(p, 1);
@@ -144,16 +154,20 @@ class Adjuster {
     if (std::abs(surface.normal.dot(normal)) < kFacing || std::abs(offset_m) > kFixtureBand_m) return;
     const double side = surface.normal.dot(arm) > 0.0 ? -1.0 : 1.0;  // toward the scanner
     const double along = surface.normal.dot(axis_map_);
-    const Eigen::Vector3d held = std::abs(along) < kMinAlong ? Eigen::Vector3d(surface.normal - along * axis_map_) : surface.normal;
-    others[patch_key(surface.mean, surface.normal)].add(side * offset_m, derivative(side * held, arm), source_.points()[i].count);
+    const Eigen::Vector3d held =
+        std::abs(along) < kMinAlong ? Eigen::Vector3d(surface.normal - along * axis_map_) : surface.normal;
+    others[patch_key(surface.mean, surface.normal)].add(side * offset_m, derivative(side * held, arm),
+                                                        source_.points()[i].count);
   }
 
   std::vector<Patch> means(const std::vector<Samples>& cells, const std::map<PatchKey, Samples>& others) const {
     std::vector<Patch> patches;
     for (int cell = 0; cell < grid_.cells(); ++cell) {
       const Samples& samples = cells[static_cast<std::size_t>(cell)];
-      if (static_cast<int>(samples.J.size()) < settings_.min_points || reference_.points(cell) < settings_.min_points) continue;
-      patches.push_back(patch_of(samples, cell, reference_.var_m2(cell) + settings_.surface_std_m * settings_.surface_std_m));
+      if (static_cast<int>(samples.J.size()) < settings_.min_points || reference_.points(cell) < settings_.min_points)
+        continue;
+      patches.push_back(
+          patch_of(samples, cell, reference_.var_m2(cell) + settings_.surface_std_m * settings_.surface_std_m));
     }
     for (const auto& [key, samples] : others) {
       if (static_cast<int>(samples.J.size()) < kMinPatchPoints) continue;
@@ -190,8 +204,9 @@ double rms_of(const Adjustment& result) {
 
 }  // namespace
 
-Adjustment adjust(const LiningInMap& lining, const LiningGrid& grid, const ReferenceLining& reference, const SurfaceCloud& target_map,
-                  const SurfaceCloud& source, const Pose3& T_map_scanner_start, const Pose3& T_map_scanner_guess, const LiningSettings& settings) {
+Adjustment adjust(const LiningInMap& lining, const LiningGrid& grid, const ReferenceLining& reference,
+                  const SurfaceCloud& target_map, const SurfaceCloud& source, const Pose3& T_map_scanner_start,
+                  const Pose3& T_map_scanner_guess, const LiningSettings& settings) {
   const Adjuster adjuster(lining, grid, reference, target_map, source, T_map_scanner_guess, settings);
   Adjustment result;
   result.T_map_scanner = T_map_scanner_start;
@@ -199,7 +214,9 @@ Adjustment adjust(const LiningInMap& lining, const LiningGrid& grid, const Refer
     result.patches = adjuster.patches(result.T_map_scanner, result.range_offset_m);
     const Vector7 step = adjuster.solve(result.patches, result);
     // Leave the loop before the pose changes: the final patches belong to the final pose.
-    if (association == kMaxAssociations || step.head<3>().norm() + kFar_m * step.segment<3>(3).norm() + std::abs(step[6]) < kConverged_m) break;
+    if (association == kMaxAssociations ||
+        step.head<3>().norm() + kFar_m * step.segment<3>(3).norm() + std::abs(step[6]) < kConverged_m)
+      break;
     result.T_map_scanner = apply_step(result.T_map_scanner, step.head<6>());
     result.range_offset_m += step[6];
   }

@@ -10,9 +10,9 @@
 namespace patrol::inspect {
 namespace {
 
-constexpr double kMinAxialCosine = 0.7;   // minimum cosine between a normal and the axis
+constexpr double kMinAxialCosine = 0.7;  // minimum cosine between a normal and the axis
 constexpr double kOverlapPairDistance_m = 0.15, kOverlapBand_m = 0.03;
-constexpr double kMinExcessRange_m = 0.3;     // a beam that is longer by this has passed the point
+constexpr double kMinExcessRange_m = 0.3;  // a beam that is longer by this has passed the point
 constexpr int kColumns = 180, kRows = 90;
 
 /// Minimum range of a scan per direction cell of 2 x 2 degrees.
@@ -46,7 +46,8 @@ class NearestRanges {
 
 }  // namespace
 
-AxialOverlap axial_overlap(const ScanView& one, const ScanView& other, const Pose3& T_other_one, const Eigen::Vector3d& axis_one) {
+AxialOverlap axial_overlap(const ScanView& one, const ScanView& other, const Pose3& T_other_one,
+                           const Eigen::Vector3d& axis_one) {
   const NearestRanges ranges(other);
   AxialOverlap found;
   for (std::size_t i = 0; i < one.cloud.points().size(); ++i) {
@@ -57,7 +58,8 @@ AxialOverlap axial_overlap(const ScanView& one, const ScanView& other, const Pos
     const auto near = other.cloud.nearest(p, 1);
     if (near.count > 0 && near.squared_m2[0] < kOverlapPairDistance_m * kOverlapPairDistance_m) {
       const SurfaceCloud::Surface& surface = other.cloud.surfaces()[near.index[0]];
-      const bool is_same = std::abs(surface.normal.dot(T_other_one.rotation * normal)) > kMinAxialCosine && std::abs(surface.normal.dot(p - surface.mean)) < kOverlapBand_m;
+      const bool is_same = std::abs(surface.normal.dot(T_other_one.rotation * normal)) > kMinAxialCosine &&
+                           std::abs(surface.normal.dot(p - surface.mean)) < kOverlapBand_m;
       found.num_common += is_same ? 1 : 0;
     } else if (ranges.looks_through(p)) {
       ++found.num_missing;

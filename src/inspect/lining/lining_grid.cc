@@ -1,10 +1,10 @@
 #include "inspect/lining/lining_grid.h"
 
-#include <Eigen/Cholesky>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include <Eigen/Cholesky>
 
 #include "core/geometry/angles.h"
 #include "core/geometry/linear_algebra.h"
@@ -13,7 +13,8 @@ namespace patrol::inspect {
 namespace {
 
 /// Returns the design shifted to the left, rotated about the scanner and raised.
-LiningInMap shift_design(const LiningInMap& lining, const Eigen::Vector2d& about, const Eigen::Vector2d& left, const Eigen::Vector3d& step) {
+LiningInMap shift_design(const LiningInMap& lining, const Eigen::Vector2d& about, const Eigen::Vector2d& left,
+                         const Eigen::Vector3d& step) {
   LiningInMap result = lining;
   const Pose2 T_map_pivot{about.x(), about.y(), 0.0};
   const Pose2 turn = T_map_pivot * Pose2{0.0, 0.0, step[1]} * T_map_pivot.inverse();
@@ -25,12 +26,15 @@ LiningInMap shift_design(const LiningInMap& lining, const Eigen::Vector2d& about
 }
 
 /// Returns the height of the invert from the crown above the scanner, using the outermost points there.
-std::optional<double> invert_by_crown(const TunnelLining& design, const std::vector<DownsampledPoint>& points, const Eigen::Vector3d& scanner) {
+std::optional<double> invert_by_crown(const TunnelLining& design, const std::vector<DownsampledPoint>& points,
+                                      const Eigen::Vector3d& scanner) {
   const double here_m = design.to_tunnel_coordinates(scanner).chainage_m;
   std::vector<double> heights;
   for (const DownsampledPoint& point : points) {
     const TunnelCoordinates coordinates = design.to_tunnel_coordinates(point.p);
-    if (std::abs(coordinates.chainage_m - here_m) < 3.0 && std::abs(coordinates.left_m) < 1.0 && point.p.z() > scanner.z() + 1.0) heights.push_back(point.p.z());
+    if (std::abs(coordinates.chainage_m - here_m) < 3.0 && std::abs(coordinates.left_m) < 1.0 &&
+        point.p.z() > scanner.z() + 1.0)
+      heights.push_back(point.p.z());
   }
   if (heights.size() < 20) return std::nullopt;
   const auto high = heights.begin() + static_cast<std::ptrdiff_t>(0.9 * static_cast<double>(heights.size()));
@@ -46,10 +50,12 @@ Eigen::Vector3d LiningInMap::intrados(double chainage_m, double clock_deg) const
 
 LiningPoint lining_point(const LiningInMap& lining, const Eigen::Vector3d& p_map) {
   const TunnelLining& design = lining.design;
-  const TunnelCoordinates coordinates = design.to_tunnel_coordinates({p_map.x(), p_map.y(), p_map.z() - lining.invert_m});
+  const TunnelCoordinates coordinates =
+      design.to_tunnel_coordinates({p_map.x(), p_map.y(), p_map.z() - lining.invert_m});
   const double clock_deg = design.clock_deg(coordinates), up_m = coordinates.height_m - design.crown_center_m;
   const double radius_m = std::hypot(coordinates.left_m, up_m);
-  LiningPoint point{.chainage_m = coordinates.chainage_m, .clock_deg = clock_deg > 180.0 ? clock_deg - 360.0 : clock_deg};
+  LiningPoint point{.chainage_m = coordinates.chainage_m,
+                    .clock_deg = clock_deg > 180.0 ? clock_deg - 360.0 : clock_deg};
   if (!(radius_m > 0.0)) return point;
   point.inward_m = design.radius_at(clock_deg) - radius_m;
   // Inward normal of the surface. Above the center of the half circle it is radial. Below, it points to the center of
@@ -87,14 +93,17 @@ double LiningGrid::clock_deg(int sector) const {
 int LiningGrid::cell_at(const LiningPoint& point) const {
   const double ring_coordinate = (point.chainage_m - first_ring_m) / ring_length_m;
   const double ring = std::floor(ring_coordinate) + 1.0, margin = joint_margin_m / ring_length_m;
-  if (ring < first_ring || ring >= first_ring + rings || ring_coordinate - std::floor(ring_coordinate) < margin || ring_coordinate - std::floor(ring_coordinate) > 1.0 - margin) return -1;
+  if (ring < first_ring || ring >= first_ring + rings || ring_coordinate - std::floor(ring_coordinate) < margin ||
+      ring_coordinate - std::floor(ring_coordinate) > 1.0 - margin)
+    return -1;
   const double sector = std::round(point.clock_deg / sector_deg) + half_sectors;
   if (sector < 0.0 || sector >= sectors()) return -1;
   return (static_cast<int>(ring) - first_ring) * sectors() + static_cast<int>(sector);
 }
 
-std::optional<LiningInMap> fit_design(const TunnelLining& design_in_map, const std::vector<DownsampledPoint>& points_map, const Eigen::Vector3d& p_map_scanner,
-                       const LiningSettings& settings) {
+std::optional<LiningInMap> fit_design(const TunnelLining& design_in_map,
+                                      const std::vector<DownsampledPoint>& points_map,
+                                      const Eigen::Vector3d& p_map_scanner, const LiningSettings& settings) {
   constexpr double kFirstKernel_m = 0.4, kLastKernel_m = 0.02;
   constexpr int kMinPoints = 100;
   const auto invert_m = invert_by_crown(design_in_map, points_map, p_map_scanner);
@@ -114,10 +123,13 @@ std::optional<LiningInMap> fit_design(const TunnelLining& design_in_map, const s
     for (const DownsampledPoint& sample : points_map) {
       const LiningPoint point = lining_point(lining, sample.p);
       const double ratio = point.inward_m / kernel_m;
-      if (std::abs(point.chainage_m - here_m) > settings.comparison_range_m || std::abs(point.clock_deg) > max_deg || std::abs(ratio) >= 1.0) continue;
+      if (std::abs(point.chainage_m - here_m) > settings.comparison_range_m || std::abs(point.clock_deg) > max_deg ||
+          std::abs(ratio) >= 1.0)
+        continue;
       const Eigen::Vector2d arm = sample.p.head<2>() - about;
       // Moving the design has the opposite effect of moving the point.
-      const Eigen::Vector3d J(-point.gradient.head<2>().dot(left), -(point.gradient.y() * arm.x() - point.gradient.x() * arm.y()), -point.gradient.z());
+      const Eigen::Vector3d J(-point.gradient.head<2>().dot(left),
+                              -(point.gradient.y() * arm.x() - point.gradient.x() * arm.y()), -point.gradient.z());
       const double weight = (1.0 - ratio * ratio) * (1.0 - ratio * ratio);
       H += weight * J * J.transpose();
       b += weight * point.inward_m * J;

@@ -18,13 +18,15 @@ namespace {
 std::vector<DownsampledPoint> to_downsampled(const LiningReference& reference) {
   std::vector<DownsampledPoint> points;
   points.reserve(reference.points.size());
-  for (const ScannerPoint& point : reference.points) points.push_back({{point.x, point.y, point.z}, point.intensity, 1});
+  for (const ScannerPoint& point : reference.points)
+    points.push_back({{point.x, point.y, point.z}, point.intensity, 1});
   return points;
 }
 
 /// Returns whether the two scans are of one position: the position along the tunnel is constrained, and axial surfaces
 /// overlap. One scan may contain a truck that the other does not, so the larger of both overlap ratios is tested.
-bool is_same_position(const ScanView& source, const ScanView& target_map, const Adjustment& fine, const Eigen::Vector3d& axis_map, const LiningSettings& settings) {
+bool is_same_position(const ScanView& source, const ScanView& target_map, const Adjustment& fine,
+                      const Eigen::Vector3d& axis_map, const LiningSettings& settings) {
   const Eigen::Matrix3d covariance_m2 = fine.covariance.topLeftCorner<3, 3>();
   if (std::sqrt(axis_map.dot(covariance_m2 * axis_map)) > settings.max_along_std_m) return false;
   const Pose3 T_source_map = fine.T_map_scanner.inverse();
@@ -35,18 +37,20 @@ bool is_same_position(const ScanView& source, const ScanView& target_map, const 
 
 }  // namespace
 
-LiningInspection::LiningInspection(const LiningSettings& settings, const TunnelLining& design_in_map, const Pose3& T_body_scanner)
+LiningInspection::LiningInspection(const LiningSettings& settings, const TunnelLining& design_in_map,
+                                   const Pose3& T_body_scanner)
     : settings_(settings), design_(design_in_map), T_scanner_body_(to_pose2(T_body_scanner).inverse()) {
   validate(settings, "lining");
 }
 
-LiningResult LiningInspection::inspect(Time stamp, const std::string& station, const PanoramicScan& scan, const LiningReference& reference,
-                                       const Pose3& T_map_scanner_guess) const {
+LiningResult LiningInspection::inspect(Time stamp, const std::string& station, const PanoramicScan& scan,
+                                       const LiningReference& reference, const Pose3& T_map_scanner_guess) const {
   LiningResult result;
   result.stamp = stamp;
   result.station = station;
   result.T_map_body = to_pose2(T_map_scanner_guess) * T_scanner_body_;
-  const SurfaceCloud target(to_downsampled(reference)), source(downsample(scan.points, settings_.spacing_m, settings_.min_range_m));
+  const SurfaceCloud target(to_downsampled(reference)),
+      source(downsample(scan.points, settings_.spacing_m, settings_.min_range_m));
   const auto lining = fit_design(design_, target.points(), reference.T_map_scanner.position, settings_);
   if (!lining) return result;
 
@@ -57,13 +61,17 @@ LiningResult LiningInspection::inspect(Time stamp, const std::string& station, c
 
   const LiningGrid grid(*lining, coarse.T_target_source.position, settings_);
   const ReferenceLining surface(*lining, grid, target.points(), settings_);
-  const Adjustment fine = adjust(*lining, grid, surface, target, source, coarse.T_target_source, T_map_scanner_guess, settings_);
+  const Adjustment fine =
+      adjust(*lining, grid, surface, target, source, coarse.T_target_source, T_map_scanner_guess, settings_);
 
-  const double heading = lining->design.heading_at(lining->design.to_tunnel_coordinates(fine.T_map_scanner.position).chainage_m);
+  const double heading =
+      lining->design.heading_at(lining->design.to_tunnel_coordinates(fine.T_map_scanner.position).chainage_m);
   result.registration_rms_m = fine.rms_m;
   result.correction_m = (fine.T_map_scanner.position - T_map_scanner_guess.position).norm();
   if (result.correction_m > settings_.max_correction_m) return result;
-  if (!is_same_position({source}, {target, reference.T_map_scanner.position}, fine, {std::cos(heading), std::sin(heading), 0.0}, settings_)) return result;
+  if (!is_same_position({source}, {target, reference.T_map_scanner.position}, fine,
+                        {std::cos(heading), std::sin(heading), 0.0}, settings_))
+    return result;
 
   result.is_registered = true;
   result.T_map_body = to_pose2(fine.T_map_scanner) * T_scanner_body_;

@@ -23,8 +23,8 @@ class LiningInspection {
   LiningInspection(const LiningSettings& settings, const TunnelLining& design_in_map, const Pose3& T_body_scanner);
 
   /// Compares a scan with the reference scan of the station. `T_map_scanner_guess`: pose estimate of the robot.
-  LiningResult inspect(Time stamp, const std::string& station, const PanoramicScan& scan, const LiningReference& reference,
-                       const Pose3& T_map_scanner_guess) const;
+  LiningResult inspect(Time stamp, const std::string& station, const PanoramicScan& scan,
+                       const LiningReference& reference, const Pose3& T_map_scanner_guess) const;
 
  private:
   LiningSettings settings_;

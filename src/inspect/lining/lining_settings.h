@@ -11,7 +11,7 @@ struct RegistrationSettings {
   double final_pair_distance_m = 0.05;  ///< final maximum distance of pairs
   int sample = 6000;  ///< number of points of the new scan, balanced over the directions of the surface normals
   int max_iterations = 80;
-  double step_tolerance_m = 2e-4;       ///< convergence limit of a step, for points 10 m away
+  double step_tolerance_m = 2e-4;  ///< convergence limit of a step, for points 10 m away
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -25,32 +25,32 @@ struct RegistrationSettings {
 
 /// Assumptions and thresholds of the comparison of two scans.
 struct LiningSettings {
-  double min_range_m = 1.5;                ///< points closer to the scanner are excluded as parts of the robot
-  double spacing_m = 0.08;            ///< averaging distance of the points
-  double comparison_range_m = 16.0;              ///< comparison range along the tunnel, to both sides of the scanner
-  double sector_deg = 10.0;           ///< angular width of a cell; a cell is the part of a ring in one sector
-  double lowest_clock_deg = 110.0;    ///< center of the lowest sector on each side; the ground is below
+  double min_range_m = 1.5;          ///< points closer to the scanner are excluded as parts of the robot
+  double spacing_m = 0.08;           ///< averaging distance of the points
+  double comparison_range_m = 16.0;  ///< comparison range along the tunnel, to both sides of the scanner
+  double sector_deg = 10.0;          ///< angular width of a cell; a cell is the part of a ring in one sector
+  double lowest_clock_deg = 110.0;   ///< center of the lowest sector on each side; the ground is below
   /// Excluded on both sides of a ring joint, because localization and registration have axial errors.
   double joint_margin_m = 0.1;
   double design_tolerance_m = 0.06;  ///< maximum distance of the lining from the design, including its displacement
   int min_points = 12;  ///< minimum number of downsampled points of a cell in both scans; other cells are not reported
   /// Standard deviation of a cell from errors that neither averaging nor scatter shows: facets, texture.
   double surface_std_m = 0.0001;
-  double fixture_std_m = 0.003;       ///< standard deviation of a 0.5 m patch of any surface other than the lining
+  double fixture_std_m = 0.003;  ///< standard deviation of a 0.5 m patch of any surface other than the lining
   /// Standard deviation of the range offset between scans, common to all ranges; estimated with the pose.
   double range_offset_std_m = 0.001;
-  double prior_std_m = 0.3;           ///< standard deviation of the pose estimate of the robot
+  double prior_std_m = 0.3;  ///< standard deviation of the pose estimate of the robot
   double prior_std_deg = 2.0;
-  double min_inlier_ratio = 0.5;             ///< minimum inlier ratio of the registration
+  double min_inlier_ratio = 0.5;  ///< minimum inlier ratio of the registration
   /// Maximum correction of the pose estimate of the robot; larger ones indicate a registration to another position.
   double max_correction_m = 0.8;
   /// Maximum standard deviation of the registered position along the tunnel; larger ones indicate degeneracy.
   double max_along_std_m = 0.005;
-  double min_axial_overlap = 0.4;        ///< minimum axial overlap: agreement of surfaces that face along the tunnel
+  double min_axial_overlap = 0.4;  ///< minimum axial overlap: agreement of surfaces that face along the tunnel
   double notice_mm = 2.0;
   double warning_mm = 5.0;
   double alarm_mm = 10.0;
-  double significance = 4.5;          ///< minimum ratio of a finding to its standard deviation
+  double significance = 4.5;  ///< minimum ratio of a finding to its standard deviation
   RegistrationSettings registration;
 
   template <typename Self, typename Visitor>

@@ -4,7 +4,8 @@
 
 namespace patrol::inspect {
 
-LiningReference make_reference(const PanoramicScan& scan, const Pose3& T_map_scanner, const ReferenceSettings& settings) {
+LiningReference make_reference(const PanoramicScan& scan, const Pose3& T_map_scanner,
+                               const ReferenceSettings& settings) {
   LiningReference reference{.T_map_scanner = T_map_scanner, .points = {}};
   for (const DownsampledPoint& point : downsample(scan.points, settings.spacing_m, settings.min_range_m)) {
     if (point.p.norm() > settings.max_range_m) continue;

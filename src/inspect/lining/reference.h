@@ -14,12 +14,13 @@ struct LiningReference {
 };
 
 struct ReferenceSettings {
-  double spacing_m = 0.1;  ///< averaging distance of the points
-  double min_range_m = 1.5;     ///< points closer to the scanner are excluded as parts of the robot
-  double max_range_m = 30.0;     ///< points farther away are excluded: too sparse for surfaces
+  double spacing_m = 0.1;     ///< averaging distance of the points
+  double min_range_m = 1.5;   ///< points closer to the scanner are excluded as parts of the robot
+  double max_range_m = 30.0;  ///< points farther away are excluded: too sparse for surfaces
 };
 
 /// Creates a reference from a scan and its pose.
-LiningReference make_reference(const PanoramicScan& scan, const Pose3& T_map_scanner, const ReferenceSettings& settings = {});
+LiningReference make_reference(const PanoramicScan& scan, const Pose3& T_map_scanner,
+                               const ReferenceSettings& settings = {});
 
 }  // namespace patrol::inspect

@@ -1,9 +1,9 @@
 #include "inspect/lining/reference_lining.h"
 
-#include <Eigen/Cholesky>
-
 #include <algorithm>
 #include <cmath>
+
+#include <Eigen/Cholesky>
 
 #include "core/geometry/angles.h"
 #include "core/geometry/linear_algebra.h"
@@ -21,13 +21,17 @@ constexpr double kSlopePrior_m2 = 0.002 * 0.002 / (0.01 * 0.01);
 
 }  // namespace
 
-ReferenceLining::ReferenceLining(const LiningInMap& lining, const LiningGrid& grid, const std::vector<DownsampledPoint>& points_map, const LiningSettings& settings)
-    : grid_(grid), arc_per_deg_m_(to_rad(lining.design.crown_radius_m)), cells_(static_cast<std::size_t>(grid.cells())) {
+ReferenceLining::ReferenceLining(const LiningInMap& lining, const LiningGrid& grid,
+                                 const std::vector<DownsampledPoint>& points_map, const LiningSettings& settings)
+    : grid_(grid),
+      arc_per_deg_m_(to_rad(lining.design.crown_radius_m)),
+      cells_(static_cast<std::size_t>(grid.cells())) {
   for (const DownsampledPoint& sample : points_map) {
     const LiningPoint point = lining_point(lining, sample.p);
     const int cell = grid.cell_at(point);
     if (cell < 0 || std::abs(point.inward_m) > settings.design_tolerance_m) continue;
-    cells_[static_cast<std::size_t>(cell)].points.push_back({point.chainage_m, point.clock_deg * arc_per_deg_m_, point.inward_m});
+    cells_[static_cast<std::size_t>(cell)].points.push_back(
+        {point.chainage_m, point.clock_deg * arc_per_deg_m_, point.inward_m});
   }
   const double area_m2 = (grid.ring_length_m - 2.0 * grid.joint_margin_m) * grid.sector_deg * arc_per_deg_m_;
   for (Cell& cell : cells_) {
@@ -37,7 +41,8 @@ ReferenceLining::ReferenceLining(const LiningInMap& lining, const LiningGrid& gr
     std::erase_if(cell.points,
                   [&](const Point& point) { return std::abs(point.inward_m - middle) > design_tolerance_m; });
     if (cell.points.empty()) continue;
-    cell.radius_m = std::clamp(2.0 * std::sqrt(area_m2 / static_cast<double>(cell.points.size())), kMinRadius_m, kMaxRadius_m);
+    cell.radius_m =
+        std::clamp(2.0 * std::sqrt(area_m2 / static_cast<double>(cell.points.size())), kMinRadius_m, kMaxRadius_m);
   }
   for (int index = 0; index < grid.cells(); ++index) {
     Cell& cell = cells_[static_cast<std::size_t>(index)];
@@ -58,11 +63,13 @@ std::optional<double> ReferenceLining::inward_m(const LiningPoint& point, int ce
 }
 
 std::optional<double> ReferenceLining::inward_m(double chainage_m, double arc_m, int cell, const Point* without) const {
-  const double radius_m2 = cells_[static_cast<std::size_t>(cell)].radius_m * cells_[static_cast<std::size_t>(cell)].radius_m;
+  const double radius_m2 =
+      cells_[static_cast<std::size_t>(cell)].radius_m * cells_[static_cast<std::size_t>(cell)].radius_m;
   Eigen::Matrix3d H = Eigen::Vector3d(0.0, kSlopePrior_m2, kSlopePrior_m2).asDiagonal();
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
   int neighbors = 0;
-  const int sector = grid_.sector_of(cell), low = std::max(0, sector - 1), high = std::min(grid_.sectors() - 1, sector + 1);
+  const int sector = grid_.sector_of(cell), low = std::max(0, sector - 1),
+            high = std::min(grid_.sectors() - 1, sector + 1);
   for (int other = cell - sector + low; other <= cell - sector + high; ++other) {
     for (const Point& point : cells_[static_cast<std::size_t>(other)].points) {
       const double x = point.chainage_m - chainage_m, y = point.arc_m - arc_m, ratio = (x * x + y * y) / radius_m2;

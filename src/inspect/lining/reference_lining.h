@@ -13,7 +13,8 @@ namespace patrol::inspect {
 /// clock position. Each ring is a separate surface; there is no interpolation across ring joints.
 class ReferenceLining {
  public:
-  ReferenceLining(const LiningInMap& lining, const LiningGrid& grid, const std::vector<DownsampledPoint>& points_map, const LiningSettings& settings);
+  ReferenceLining(const LiningInMap& lining, const LiningGrid& grid, const std::vector<DownsampledPoint>& points_map,
+                  const LiningSettings& settings);
 
   /// Returns the inward offset at a point, from a plane fitted to the points around it. The slope has a prior near the
   /// design. Returns nullopt if there are too few points.

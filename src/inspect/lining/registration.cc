@@ -1,7 +1,5 @@
 #include "inspect/lining/registration.h"
 
-#include <Eigen/Cholesky>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +7,8 @@
 #include <numeric>
 #include <optional>
 #include <vector>
+
+#include <Eigen/Cholesky>
 
 #include "core/geometry/linear_algebra.h"
 
@@ -18,8 +18,8 @@ namespace {
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-constexpr double kRegistrationArm_m = 10.0;         // distance at which the rotation of a step counts
-constexpr double kPairCosine = 0.8;         // minimum cosine between the normals of a pair
+constexpr double kRegistrationArm_m = 10.0;  // distance at which the rotation of a step counts
+constexpr double kPairCosine = 0.8;          // minimum cosine between the normals of a pair
 // Point spacing on a surface: the distance of a pair exceeds that of its surfaces by up to this.
 constexpr double kSpacing_m = 0.1;
 constexpr std::size_t kMinPairs = 30;
@@ -28,7 +28,8 @@ constexpr std::size_t kMinPairs = 30;
 int direction_of(const Eigen::Vector3d& normal) {
   Eigen::Index axis = 0;
   const double largest = normal.cwiseAbs().maxCoeff(&axis);
-  const double u = normal[(axis + 1) % 3] / (largest * (normal[axis] < 0.0 ? -1.0 : 1.0)), v = normal[(axis + 2) % 3] / (largest * (normal[axis] < 0.0 ? -1.0 : 1.0));
+  const double u = normal[(axis + 1) % 3] / (largest * (normal[axis] < 0.0 ? -1.0 : 1.0)),
+               v = normal[(axis + 2) % 3] / (largest * (normal[axis] < 0.0 ? -1.0 : 1.0));
   const auto third = [](double value) { return value < -1.0 / 3.0 ? 0 : value < 1.0 / 3.0 ? 1 : 2; };
   return static_cast<int>(axis) * 9 + third(u) * 3 + third(v);
 }
@@ -57,14 +58,18 @@ struct Pair {
   double residual_m = 0.0;
 };
 
-std::optional<Pair> pair_of(const SurfaceCloud& target, const SurfaceCloud& source, std::size_t i, const Pose3& T_target_source, double distance_m) {
+std::optional<Pair> pair_of(const SurfaceCloud& target, const SurfaceCloud& source, std::size_t i,
+                            const Pose3& T_target_source, double distance_m) {
   const Eigen::Vector3d p = T_target_source * source.points()[i].p;
   const auto near = target.nearest(p, 1);
   const double max_pair_distance_m = distance_m + kSpacing_m;
   if (near.count == 0 || near.squared_m2[0] > max_pair_distance_m * max_pair_distance_m) return std::nullopt;
   const SurfaceCloud::Surface& surface = target.surfaces()[near.index[0]];
-  if (std::abs(surface.normal.dot(T_target_source.rotation * source.surfaces()[i].normal)) < kPairCosine) return std::nullopt;
-  return Pair{.normal = surface.normal, .arm = p - T_target_source.position, .residual_m = surface.normal.dot(p - surface.mean)};
+  if (std::abs(surface.normal.dot(T_target_source.rotation * source.surfaces()[i].normal)) < kPairCosine)
+    return std::nullopt;
+  return Pair{.normal = surface.normal,
+              .arm = p - T_target_source.position,
+              .residual_m = surface.normal.dot(p - surface.mean)};
 }
 
 }  // namespace
@@ -72,7 +77,8 @@ std::optional<Pair> pair_of(const SurfaceCloud& target, const SurfaceCloud& sour
 Pose3 apply_step(const Pose3& T_target_source, const Vector6& step) {
   const Eigen::Vector3d turn = step.tail<3>();
   const double angle = turn.norm();
-  const Eigen::Quaterniond rotation = angle > 0.0 ? Eigen::Quaterniond(Eigen::AngleAxisd(angle, turn / angle)) : Eigen::Quaterniond::Identity();
+  const Eigen::Quaterniond rotation =
+      angle > 0.0 ? Eigen::Quaterniond(Eigen::AngleAxisd(angle, turn / angle)) : Eigen::Quaterniond::Identity();
   return {T_target_source.position + step.head<3>(), (rotation * T_target_source.rotation).normalized()};
 }
 
@@ -104,7 +110,8 @@ Registration register_cloud(const SurfaceCloud& target, const SurfaceCloud& sour
     const double length_m = step.head<3>().norm() + kRegistrationArm_m * step.tail<3>().norm();
     const bool is_last = distance_m <= settings.final_pair_distance_m;
     if (is_last) result.converged = length_m < settings.step_tolerance_m;
-    else if (length_m < std::max(settings.step_tolerance_m, 0.02 * distance_m)) distance_m = std::max(settings.final_pair_distance_m, 0.5 * distance_m);
+    else if (length_m < std::max(settings.step_tolerance_m, 0.02 * distance_m))
+      distance_m = std::max(settings.final_pair_distance_m, 0.5 * distance_m);
   }
   double squares = 0.0;
   std::size_t kept = 0;

@@ -10,7 +10,7 @@ namespace patrol::inspect {
 
 struct Registration {
   Pose3 T_target_source;
-  double rms_m = 0.0;   ///< root mean square distance of the final pairs from the target surfaces
+  double rms_m = 0.0;  ///< root mean square distance of the final pairs from the target surfaces
   /// Inlier ratio: fraction of the sampled points with a pair at most `final_pair_distance_m` off its surface.
   double inlier_ratio = 0.0;
   int iterations = 0;

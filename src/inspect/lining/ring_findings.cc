@@ -14,7 +14,9 @@ namespace {
 constexpr std::array kParabola{-3.0 / 35.0, 12.0 / 35.0, 17.0 / 35.0, 12.0 / 35.0, -3.0 / 35.0};
 
 /// Applies the squared patch scale, which the covariance already includes and the patch variances do not.
-double residual_variance(const Patch& patch, const Adjustment& adjustment) { return patch.var_m2 * adjustment.scale * adjustment.scale; }
+double residual_variance(const Patch& patch, const Adjustment& adjustment) {
+  return patch.var_m2 * adjustment.scale * adjustment.scale;
+}
 
 double std_of(double residual_var_m2, const Vector7& J, const Adjustment& adjustment) {
   return std::sqrt(residual_var_m2 + J.dot(adjustment.covariance * J));
@@ -24,8 +26,11 @@ std::vector<SectorDisplacement> ring_of(const LiningGrid& grid, const Adjustment
   std::vector<SectorDisplacement> sectors(static_cast<std::size_t>(grid.sectors()));
   for (const Patch& patch : adjustment.patches) {
     if (patch.cell < 0 || grid.ring_of(patch.cell) != ring) continue;
-    sectors[static_cast<std::size_t>(grid.sector_of(patch.cell))] = {
-        .is_observed = true, .inward_m = patch.offset_m, .residual_var_m2 = residual_variance(patch, adjustment), .J = patch.J};
+    sectors[static_cast<std::size_t>(grid.sector_of(patch.cell))] = {.is_observed = true,
+                                                                     .inward_m = patch.offset_m,
+                                                                     .residual_var_m2 =
+                                                                         residual_variance(patch, adjustment),
+                                                                     .J = patch.J};
   }
   return sectors;
 }
@@ -40,12 +45,15 @@ struct Line {
   const char* name;
   double from_deg, to_deg;  ///< clock positions of the ends
 };
-constexpr std::array kChords{Line{"9-3", 270.0, 90.0}, Line{"10-2", 300.0, 60.0}, Line{"12-9", 0.0, 270.0}, Line{"12-3", 0.0, 90.0}};
+constexpr std::array kChords{Line{"9-3", 270.0, 90.0}, Line{"10-2", 300.0, 60.0}, Line{"12-9", 0.0, 270.0},
+                             Line{"12-3", 0.0, 90.0}};
 
-std::optional<SectorDisplacement> displacement_at(const LiningGrid& grid, const std::vector<SectorDisplacement>& ring, double clock_deg) {
+std::optional<SectorDisplacement> displacement_at(const LiningGrid& grid, const std::vector<SectorDisplacement>& ring,
+                                                  double clock_deg) {
   const double turned_deg = clock_deg > 180.0 ? clock_deg - 360.0 : clock_deg;
   const int sector = static_cast<int>(std::lround(turned_deg / grid.sector_deg)) + grid.half_sectors;
-  if (sector < 0 || sector >= grid.sectors() || !ring[static_cast<std::size_t>(sector)].is_observed) return std::nullopt;
+  if (sector < 0 || sector >= grid.sectors() || !ring[static_cast<std::size_t>(sector)].is_observed)
+    return std::nullopt;
   return ring[static_cast<std::size_t>(sector)];
 }
 
@@ -84,7 +92,8 @@ std::vector<SectorDisplacement> smoothed_ring(const LiningGrid& grid, const Adju
   return smooth;
 }
 
-std::vector<RingFinding> ring_findings(const LiningInMap& lining, const LiningGrid& grid, const Adjustment& adjustment, const LiningSettings& settings) {
+std::vector<RingFinding> ring_findings(const LiningInMap& lining, const LiningGrid& grid, const Adjustment& adjustment,
+                                       const LiningSettings& settings) {
   std::vector<RingFinding> findings;
   for (int ring = grid.first_ring; ring < grid.first_ring + grid.rings; ++ring) {
     std::optional<RingFinding> largest;
@@ -95,7 +104,8 @@ std::vector<RingFinding> ring_findings(const LiningInMap& lining, const LiningGr
       const double std_m = std_of(move.residual_var_m2, move.J, adjustment);
       const WarningLevel level = level_of(1000.0 * std::abs(move.inward_m), settings);
       if (level == WarningLevel::kNone || std::abs(move.inward_m) < settings.significance * std_m) continue;
-      largest = RingFinding{.ring = ring, .clock_deg = grid.clock_deg(sector), .inward_m = move.inward_m, .std_m = std_m, .level = level};
+      largest = RingFinding{
+          .ring = ring, .clock_deg = grid.clock_deg(sector), .inward_m = move.inward_m, .std_m = std_m, .level = level};
     }
     if (!largest) continue;
     largest->p_map = lining.intrados(lining.design.middle_of_ring_m(ring), largest->clock_deg);
@@ -104,25 +114,32 @@ std::vector<RingFinding> ring_findings(const LiningInMap& lining, const LiningGr
   return findings;
 }
 
-std::vector<ConvergenceLine> convergence_lines(const LiningInMap& lining, const LiningGrid& grid, const Adjustment& adjustment) {
+std::vector<ConvergenceLine> convergence_lines(const LiningInMap& lining, const LiningGrid& grid,
+                                               const Adjustment& adjustment) {
   std::vector<ConvergenceLine> lines;
   for (int ring = grid.first_ring; ring < grid.first_ring + grid.rings; ++ring) {
     const std::vector<SectorDisplacement> sectors = smoothed_ring(grid, adjustment, ring);
     for (const Line& line : kChords) {
       const auto from = displacement_at(grid, sectors, line.from_deg), to = displacement_at(grid, sectors, line.to_deg);
       if (!from || !to) continue;
-      const Eigen::Vector2d chord = lining.design.radius_at(line.to_deg) * outwards(line.to_deg) - lining.design.radius_at(line.from_deg) * outwards(line.from_deg);
+      const Eigen::Vector2d chord = lining.design.radius_at(line.to_deg) * outwards(line.to_deg) -
+                                    lining.design.radius_at(line.from_deg) * outwards(line.from_deg);
       // An inward displacement of an end is opposite to its outward direction. The chord grows by the separation of its
       // ends.
-      const double from_part = chord.normalized().dot(outwards(line.from_deg)), to_part = -chord.normalized().dot(outwards(line.to_deg));
-      const double residual_var_m2 = from_part * from_part * from->residual_var_m2 + to_part * to_part * to->residual_var_m2;
+      const double from_part = chord.normalized().dot(outwards(line.from_deg)),
+                   to_part = -chord.normalized().dot(outwards(line.to_deg));
+      const double residual_var_m2 =
+          from_part * from_part * from->residual_var_m2 + to_part * to_part * to->residual_var_m2;
       lines.push_back({.ring = ring,
                        .name = line.name,
                        .change_m = from_part * from->inward_m + to_part * to->inward_m,
                        .std_m = std_of(residual_var_m2, from_part * from->J + to_part * to->J, adjustment)});
     }
     if (const auto crown = displacement_at(grid, sectors, 0.0)) {
-      lines.push_back({.ring = ring, .name = "12-", .change_m = -crown->inward_m, .std_m = std_of(crown->residual_var_m2, crown->J, adjustment)});
+      lines.push_back({.ring = ring,
+                       .name = "12-",
+                       .change_m = -crown->inward_m,
+                       .std_m = std_of(crown->residual_var_m2, crown->J, adjustment)});
     }
   }
   return lines;

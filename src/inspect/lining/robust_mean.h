@@ -20,9 +20,9 @@ inline constexpr double kBiweightCutoff = 4.685;
 
 struct RobustMean {
   double mean = 0.0;
-  double var = 0.0;               ///< variance of the mean, from the scatter
-  std::vector<double> weights;    ///< [value], including the biweight; normalized to sum 1
-  int kept = 0;                   ///< number of values with positive weight
+  double var = 0.0;             ///< variance of the mean, from the scatter
+  std::vector<double> weights;  ///< [value], including the biweight; normalized to sum 1
+  int kept = 0;                 ///< number of values with positive weight
 };
 
 /// Returns the mean with Tukey's biweight around the median. Values are excluded if they deviate by more than 4.7

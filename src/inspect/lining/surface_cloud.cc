@@ -1,13 +1,12 @@
 #include "inspect/lining/surface_cloud.h"
 
-#include <Eigen/Eigenvalues>
-
 #include <algorithm>
 #include <cmath>
 #include <compare>
 #include <numbers>
 #include <utility>
 
+#include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 #include <nanoflann.hpp>
 
@@ -26,7 +25,9 @@ struct Cloud {
   std::vector<DownsampledPoint> points;
 
   std::size_t kdtree_get_point_count() const { return points.size(); }
-  double kdtree_get_pt(std::size_t index, std::size_t axis) const { return points[index].p[static_cast<Eigen::Index>(axis)]; }
+  double kdtree_get_pt(std::size_t index, std::size_t axis) const {
+    return points[index].p[static_cast<Eigen::Index>(axis)];
+  }
   template <typename Box>
   bool kdtree_get_bbox(Box&) const {
     return false;
@@ -46,20 +47,26 @@ struct Beam {
 };
 
 Beam beam_of(const ScannerPoint& point, std::uint32_t index, double spacing_m) {
-  const double across = std::hypot(static_cast<double>(point.x), static_cast<double>(point.y)), range = std::hypot(across, static_cast<double>(point.z));
+  const double across = std::hypot(static_cast<double>(point.x), static_cast<double>(point.y)),
+               range = std::hypot(across, static_cast<double>(point.z));
   const int octave = std::clamp(static_cast<int>(std::lround(std::log2(std::max(range, kMinRange_m)))), -8, 14);
   const double angle = spacing_m / std::exp2(octave);
   const double row = std::floor((std::atan2(static_cast<double>(point.z), across) + 0.5 * std::numbers::pi) / angle);
-  const double columns = std::max(1.0, std::ceil(2.0 * std::numbers::pi * std::cos((row + 0.5) * angle - 0.5 * std::numbers::pi) / angle));
-  const double turn = (std::atan2(static_cast<double>(point.y), static_cast<double>(point.x)) / std::numbers::pi + 1.0) / 2.0;
+  const double columns =
+      std::max(1.0, std::ceil(2.0 * std::numbers::pi * std::cos((row + 0.5) * angle - 0.5 * std::numbers::pi) / angle));
+  const double turn =
+      (std::atan2(static_cast<double>(point.y), static_cast<double>(point.x)) / std::numbers::pi + 1.0) / 2.0;
   const auto bits = [](double value) { return static_cast<std::uint64_t>(value); };
-  return {.cell = bits(octave + 8) << 56U | bits(row) << 28U | bits(turn * columns), .range_m = static_cast<float>(range), .point = index};
+  return {.cell = bits(octave + 8) << 56U | bits(row) << 28U | bits(turn * columns),
+          .range_m = static_cast<float>(range),
+          .point = index};
 }
 
 void check(const ScannerPoint& point) {
   for (const float value : {point.x, point.y, point.z}) {
     if (!(std::abs(value) <= kMaxRange_m)) {
-      throw InputError(fmt::format("scan point ({}, {}, {}): must be finite and within {} m", point.x, point.y, point.z, kMaxRange_m));
+      throw InputError(fmt::format("scan point ({}, {}, {}): must be finite and within {} m", point.x, point.y, point.z,
+                                   kMaxRange_m));
     }
   }
 }
@@ -79,7 +86,9 @@ std::vector<DownsampledPoint> downsample(const std::vector<ScannerPoint>& points
   std::vector<DownsampledPoint> downsampled;
   for (std::size_t begin = 0, end = 0; begin < beams.size(); begin = end) {
     DownsampledPoint mean;
-    for (; end < beams.size() && beams[end].cell == beams[begin].cell && beams[end].range_m - beams[begin].range_m <= static_cast<float>(spacing_m); ++end) {
+    for (; end < beams.size() && beams[end].cell == beams[begin].cell &&
+           beams[end].range_m - beams[begin].range_m <= static_cast<float>(spacing_m);
+         ++end) {
       const ScannerPoint& point = points[beams[end].point];
       mean.p += Eigen::Vector3d(point.x, point.y, point.z);
       mean.intensity += point.intensity;
@@ -102,7 +111,8 @@ namespace {
 
 SurfaceCloud::Surface surface_of(const std::vector<DownsampledPoint>& points, const SurfaceCloud::Neighbors& near) {
   SurfaceCloud::Surface surface;
-  for (std::size_t i = 0; i < near.count; ++i) surface.mean += points[near.index[i]].p / static_cast<double>(near.count);
+  for (std::size_t i = 0; i < near.count; ++i)
+    surface.mean += points[near.index[i]].p / static_cast<double>(near.count);
   if (near.count < 5) return surface;
   Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
   for (std::size_t i = 0; i < near.count; ++i) {
@@ -119,7 +129,8 @@ SurfaceCloud::Surface surface_of(const std::vector<DownsampledPoint>& points, co
 
 SurfaceCloud::SurfaceCloud(std::vector<DownsampledPoint> points) : index_(std::make_unique<Index>(std::move(points))) {
   surfaces_.reserve(this->points().size());
-  for (const DownsampledPoint& point : this->points()) surfaces_.push_back(surface_of(this->points(), nearest(point.p, kNumNeighbors)));
+  for (const DownsampledPoint& point : this->points())
+    surfaces_.push_back(surface_of(this->points(), nearest(point.p, kNumNeighbors)));
 }
 SurfaceCloud::~SurfaceCloud() = default;
 SurfaceCloud::SurfaceCloud(SurfaceCloud&&) noexcept = default;
@@ -130,7 +141,8 @@ const std::vector<DownsampledPoint>& SurfaceCloud::points() const { return index
 SurfaceCloud::Neighbors SurfaceCloud::nearest(const Eigen::Vector3d& p, std::size_t count) const {
   Neighbors found;
   if (points().empty()) return found;
-  found.count = index_->tree.knnSearch(p.data(), std::min(count, kNumNeighbors), found.index.data(), found.squared_m2.data());
+  found.count =
+      index_->tree.knnSearch(p.data(), std::min(count, kNumNeighbors), found.index.data(), found.squared_m2.data());
   return found;
 }
 

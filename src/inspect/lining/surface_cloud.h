@@ -1,12 +1,12 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "core/sensors/registry.h"
 
@@ -23,7 +23,8 @@ struct DownsampledPoint {
 /// Downsamples points, given in the scanner frame, to about the spacing, but never across a range step larger than the
 /// spacing. Points closer than `min_range_m` are excluded. Throws InputError for points that are not finite or farther
 /// than 10 km.
-std::vector<DownsampledPoint> downsample(const std::vector<ScannerPoint>& points, double spacing_m, double min_range_m = 0.0);
+std::vector<DownsampledPoint> downsample(const std::vector<ScannerPoint>& points, double spacing_m,
+                                         double min_range_m = 0.0);
 
 /// Downsampled points with their local surfaces, in a k-d tree (nanoflann). Ties in distance are resolved
 /// deterministically.
@@ -36,7 +37,7 @@ class SurfaceCloud {
 
   static constexpr std::size_t kNumNeighbors = 10;
   struct Surface {
-    Eigen::Vector3d mean = Eigen::Vector3d::Zero();    ///< mean of the nearest points
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();  ///< mean of the nearest points
     /// Unit vector of either sign; zero if the points do not form a surface.
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   };

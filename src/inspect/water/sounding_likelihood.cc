@@ -21,9 +21,11 @@ TemGateLayout gate_layout(const SoundingErrorSettings& settings, const std::vect
   const std::vector<double>& gate_s = soundings.front().sounding.gate_s;
   for (const OrientedSounding& oriented : soundings) {
     const TemSounding& sounding = oriented.sounding;
-    if (sounding.gate_s != gate_s || sounding.rate_tps.size() != gate_s.size() || sounding.std_tps.size() != gate_s.size() ||
-        gate_s.size() < 3 || !(sounding.moment_am2 > 0.0)) {
-      throw InputError(fmt::format("water sounding at {:.3f} s: gates differ from those of the first sounding: must be equal", to_seconds(sounding.stamp)));
+    if (sounding.gate_s != gate_s || sounding.rate_tps.size() != gate_s.size() ||
+        sounding.std_tps.size() != gate_s.size() || gate_s.size() < 3 || !(sounding.moment_am2 > 0.0)) {
+      throw InputError(
+          fmt::format("water sounding at {:.3f} s: gates differ from those of the first sounding: must be equal",
+                      to_seconds(sounding.stamp)));
     }
   }
   return {.gate_s = gate_s, .ramp_s = settings.ramp_s, .gate_width = settings.gate_width};
@@ -38,11 +40,13 @@ Eigen::Matrix<double, 6, 1> products(const Eigen::Vector3d& a) {
 /// significant. Errors proportional to the signal must be scaled with this estimate and not with the readings.
 /// Otherwise a gain that shrinks all readings would shrink their errors too and become more likely (Peelle's puzzle
 /// [DAgostini94]). `rate`, `std`: [gate][sounding].
-Eigen::MatrixXd fit_quadratic_form(const Eigen::MatrixXd& rate, const Eigen::MatrixXd& std, const std::vector<Eigen::Vector3d>& axes) {
+Eigen::MatrixXd fit_quadratic_form(const Eigen::MatrixXd& rate, const Eigen::MatrixXd& std,
+                                   const std::vector<Eigen::Vector3d>& axes) {
   constexpr Eigen::Index kEnough = 12;
   const Eigen::Index count = rate.cols();
   Eigen::MatrixXd form = Eigen::MatrixXd::Ones(count, count < kEnough ? 1 : 6);
-  for (Eigen::Index i = 0; i < count && count >= kEnough; ++i) form.row(i) = products(axes[static_cast<std::size_t>(i)]).transpose();
+  for (Eigen::Index i = 0; i < count && count >= kEnough; ++i)
+    form.row(i) = products(axes[static_cast<std::size_t>(i)]).transpose();
   const Eigen::MatrixXd fit = form.completeOrthogonalDecomposition().solve(rate.transpose());
   Eigen::MatrixXd smooth = (form * fit).transpose();
   constexpr double kClear = 3.0;
@@ -61,27 +65,33 @@ Eigen::VectorXd log_slopes(const std::vector<double>& gate_s, const Eigen::Vecto
     const Eigen::Index before = std::max<Eigen::Index>(gate - 1, 0), after = std::min(gate + 1, gates - 1);
     const double dt_s = gate_s[static_cast<std::size_t>(after)] - gate_s[static_cast<std::size_t>(before)];
     const bool is_clear = mean[before] > 0.0 && mean[after] > 0.0;
-    slopes[gate] = is_clear ? std::log(mean[after] / mean[before]) / dt_s : -2.5 / gate_s[static_cast<std::size_t>(gate)];
+    slopes[gate] =
+        is_clear ? std::log(mean[after] / mean[before]) / dt_s : -2.5 / gate_s[static_cast<std::size_t>(gate)];
   }
   return slopes;
 }
 
 }  // namespace
 
-SoundingLikelihood::SoundingLikelihood(const SoundingErrorSettings& settings, const std::vector<OrientedSounding>& soundings)
-    : gates_(gate_layout(settings, soundings)), num_gates_(static_cast<Eigen::Index>(soundings.front().sounding.gate_s.size())) {
+SoundingLikelihood::SoundingLikelihood(const SoundingErrorSettings& settings,
+                                       const std::vector<OrientedSounding>& soundings)
+    : gates_(gate_layout(settings, soundings)),
+      num_gates_(static_cast<Eigen::Index>(soundings.front().sounding.gate_s.size())) {
   const auto count = static_cast<Eigen::Index>(soundings.size());
   const std::vector<double>& gate_s = soundings.front().sounding.gate_s;
   Eigen::MatrixXd rate(num_gates_, count), std(num_gates_, count);
   for (Eigen::Index i = 0; i < count; ++i) {
     const OrientedSounding& oriented = soundings[static_cast<std::size_t>(i)];
-    axes_.push_back(quaternion_from_rpy(0.0, oriented.pose.pitch_rad, oriented.pose.yaw_rad) * Eigen::Vector3d::UnitX());
+    axes_.push_back(quaternion_from_rpy(0.0, oriented.pose.pitch_rad, oriented.pose.yaw_rad) *
+                    Eigen::Vector3d::UnitX());
     for (Eigen::Index gate = 0; gate < num_gates_; ++gate) {
       const auto g = static_cast<std::size_t>(gate);
       rate(gate, i) = oriented.sounding.rate_tps[g] / oriented.sounding.moment_am2;
       std(gate, i) = oriented.sounding.std_tps[g] / oriented.sounding.moment_am2;
       if (!std::isfinite(rate(gate, i)) || !(std(gate, i) > 0.0)) {
-        throw InputError(fmt::format("water sounding at {:.3f} s: gate {} is invalid: must be finite with a positive standard deviation", to_seconds(oriented.sounding.stamp), gate));
+        throw InputError(fmt::format(
+            "water sounding at {:.3f} s: gate {} is invalid: must be finite with a positive standard deviation",
+            to_seconds(oriented.sounding.stamp), gate));
       }
     }
   }
@@ -106,8 +116,9 @@ SoundingLikelihood::SoundingLikelihood(const SoundingErrorSettings& settings, co
       nuisances_(row, 2 + kSteel + i) = settings.sounding_gain_std * signal;
       Eigen::Index column = 2;
       for (const double decay_s : kSteelDecay_s) {
-        const double steel =
-            settings.steel_response * std::exp((kSteelReferenceTime_s - gate_s[static_cast<std::size_t>(gate)]) / decay_s) * inverse_std_[row];
+        const double steel = settings.steel_response *
+                             std::exp((kSteelReferenceTime_s - gate_s[static_cast<std::size_t>(gate)]) / decay_s) *
+                             inverse_std_[row];
         nuisances_(row, column++) = steel;
         nuisances_.block<1, 6>(row, column) = settings.steel_anisotropy * steel * products(axis).transpose();
         column += 6;
@@ -126,17 +137,21 @@ double SoundingLikelihood::log_likelihood_residual(const Eigen::VectorXd& whiten
 
 double SoundingLikelihood::log_likelihood_rock(double rock_spm) const {
   const Eigen::VectorXd rock = gated_whole_space_response(gates_, rock_spm);
-  return log_likelihood_residual(data_ - rock.replicate(static_cast<Eigen::Index>(axes_.size()), 1).cwiseProduct(inverse_std_));
+  return log_likelihood_residual(data_ -
+                                 rock.replicate(static_cast<Eigen::Index>(axes_.size()), 1).cwiseProduct(inverse_std_));
 }
 
-double SoundingLikelihood::log_likelihood_body(double rock_spm, const ConductiveSphere& sphere, const Eigen::Vector3d& direction) const {
+double SoundingLikelihood::log_likelihood_body(double rock_spm, const ConductiveSphere& sphere,
+                                               const Eigen::Vector3d& direction) const {
   const GatedSphereResponse body = gated_sphere_response(gates_, rock_spm, sphere);
-  const Eigen::VectorXd across = gated_whole_space_response(gates_, rock_spm) + body.transverse, along = body.axial - body.transverse;
+  const Eigen::VectorXd across = gated_whole_space_response(gates_, rock_spm) + body.transverse,
+                        along = body.axial - body.transverse;
   Eigen::VectorXd whitened = data_;
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     const Eigen::Index row = static_cast<Eigen::Index>(i) * num_gates_;
     const double cosine = axes_[i].dot(direction);
-    whitened.segment(row, num_gates_) -= (across + cosine * cosine * along).cwiseProduct(inverse_std_.segment(row, num_gates_));
+    whitened.segment(row, num_gates_) -=
+        (across + cosine * cosine * along).cwiseProduct(inverse_std_.segment(row, num_gates_));
   }
   return log_likelihood_residual(whitened);
 }

@@ -1,9 +1,9 @@
 #pragma once
 
+#include <vector>
+
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
-
-#include <vector>
 
 #include "core/tem_response.h"
 #include "inspect/water/water_settings.h"

@@ -9,8 +9,8 @@
 #include <Eigen/Cholesky>
 #include <fmt/format.h>
 
-#include "core/geometry/angles.h"
 #include "core/error.h"
+#include "core/geometry/angles.h"
 #include "core/particle_weights.h"
 #include "core/random.h"
 #include "inspect/water/sounding_likelihood.h"
@@ -42,8 +42,9 @@ Parameters sample_prior(const WaterPriorSettings& prior, RandomSequence& random)
     const double turn = between(0.0, 2.0 * std::numbers::pi), tangent = std::sqrt(1.0 - cosine * cosine) / cosine;
     Parameters p;
     p << between(std::log(prior.min_rock_spm), std::log(prior.max_rock_spm)),
-        std::log(prior.max_distance_m) + std::log(random.uniform()) / 3.0, tangent * std::cos(turn), tangent * std::sin(turn),
-        between(std::log(prior.min_radius_m), std::log(prior.max_radius_m)), std::log(prior.water_spm) + prior.water_log_std * random.normal();
+        std::log(prior.max_distance_m) + std::log(random.uniform()) / 3.0, tangent * std::cos(turn),
+        tangent * std::sin(turn), between(std::log(prior.min_radius_m), std::log(prior.max_radius_m)),
+        std::log(prior.water_spm) + prior.water_log_std * random.normal();
     if (std::exp(p[1]) > std::exp(p[4]) + prior.min_clearance_m) return p;
   }
 }
@@ -102,10 +103,12 @@ double next_step(const std::vector<Particle>& particles, double left) {
 }
 
 /// Systematic resampling by weights e^(step ln L); `log_weights` are step ln L.
-std::vector<Particle> resampled(const std::vector<Particle>& particles, const std::vector<double>& log_weights, double offset) {
+std::vector<Particle> resampled(const std::vector<Particle>& particles, const std::vector<double>& log_weights,
+                                double offset) {
   std::vector<Particle> chosen;
   chosen.reserve(particles.size());
-  for (const std::size_t parent : systematic_parents(normalized_weights(log_weights), offset)) chosen.push_back(particles[parent]);
+  for (const std::size_t parent : systematic_parents(normalized_weights(log_weights), offset))
+    chosen.push_back(particles[parent]);
   return chosen;
 }
 
@@ -123,8 +126,8 @@ Eigen::Matrix<double, 6, 6> covariance_factor(const std::vector<Particle>& parti
 
 /// Applies Metropolis steps of several widths to each particle: no single width suits a curved posterior.
 template <typename LogLikelihood>
-void move(std::vector<Particle>& particles, double temperature, const WaterSettings& settings, const LogLikelihood& log_likelihood,
-          RandomSequence& random) {
+void move(std::vector<Particle>& particles, double temperature, const WaterSettings& settings,
+          const LogLikelihood& log_likelihood, RandomSequence& random) {
   // Factors on the Cholesky factor; 2.38 / sqrt(6) = 0.97 is optimal for a normal posterior.
   constexpr double kWidths[] = {1.6, 0.8, 0.3};
   const Eigen::Matrix<double, 6, 6> factor = covariance_factor(particles);
@@ -203,7 +206,8 @@ WarningLevel level_of(const WaterSettings& settings, double nearest_m) {
 }
 
 /// Computes the body fields of the result from the particles.
-void describe_body(const std::vector<Particle>& particles, const WaterSettings& settings, const AntennaGeometry& antenna, WaterResult& result) {
+void describe_body(const std::vector<Particle>& particles, const WaterSettings& settings,
+                   const AntennaGeometry& antenna, WaterResult& result) {
   const double count = static_cast<double>(particles.size());
   const Pose3 T_map_level = to_pose3(result.T_map_body);
   std::vector<double> distances_m, radii_m, nearest_m;
@@ -241,13 +245,18 @@ void describe_body(const std::vector<Particle>& particles, const WaterSettings& 
 
 void check(const WaterPriorSettings& prior) {
   if (prior.min_rock_spm >= prior.max_rock_spm) {
-    throw InputError(fmt::format("stack.inspection.water.prior.min_rock_spm = {}: must be below max_rock_spm", prior.min_rock_spm));
+    throw InputError(
+        fmt::format("stack.inspection.water.prior.min_rock_spm = {}: must be below max_rock_spm", prior.min_rock_spm));
   }
   if (prior.min_radius_m >= prior.max_radius_m) {
-    throw InputError(fmt::format("stack.inspection.water.prior.min_radius_m = {}: must be below max_radius_m", prior.min_radius_m));
+    throw InputError(
+        fmt::format("stack.inspection.water.prior.min_radius_m = {}: must be below max_radius_m", prior.min_radius_m));
   }
   if (prior.max_distance_m <= prior.max_radius_m + prior.min_clearance_m) {
-    throw InputError(fmt::format("stack.inspection.water.prior.max_distance_m = {}: must exceed the distance that a body of max_radius_m requires", prior.max_distance_m));
+    throw InputError(
+        fmt::format("stack.inspection.water.prior.max_distance_m = {}: must exceed the distance that a body of "
+                    "max_radius_m requires",
+                    prior.max_distance_m));
   }
 }
 
@@ -258,8 +267,8 @@ WaterInversion::WaterInversion(const WaterSettings& settings) : settings_(settin
   check(settings.prior);
 }
 
-WaterResult WaterInversion::invert(const std::vector<OrientedSounding>& soundings, const AntennaGeometry& antenna, const Pose2& T_map_body,
-                                   double antenna_error_deg, std::uint64_t seed) const {
+WaterResult WaterInversion::invert(const std::vector<OrientedSounding>& soundings, const AntennaGeometry& antenna,
+                                   const Pose2& T_map_body, double antenna_error_deg, std::uint64_t seed) const {
   WaterResult result;
   result.T_map_body = T_map_body;
   result.soundings = static_cast<int>(soundings.size());

@@ -26,8 +26,8 @@ class WaterInversion {
   /// Estimates the water body. `T_map_body`: pose of the robot. `antenna_error_deg` is copied to the result. The result
   /// is a deterministic function of soundings and seed. Throws InputError for inconsistent soundings. Without soundings
   /// the result contains only their number, zero.
-  WaterResult invert(const std::vector<OrientedSounding>& soundings, const AntennaGeometry& antenna, const Pose2& T_map_body,
-                     double antenna_error_deg, std::uint64_t seed) const;
+  WaterResult invert(const std::vector<OrientedSounding>& soundings, const AntennaGeometry& antenna,
+                     const Pose2& T_map_body, double antenna_error_deg, std::uint64_t seed) const;
 
  private:
   WaterSettings settings_;

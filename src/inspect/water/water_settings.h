@@ -9,14 +9,14 @@ namespace patrol::inspect {
 /// steel and noise.
 struct WaterSoundingSettings {
   int yaws = 7;
-  double max_yaw_deg = 60.0;    ///< -60 to 60 in steps of 20
+  double max_yaw_deg = 60.0;  ///< -60 to 60 in steps of 20
   int pitches = 5;
-  double max_pitch_deg = 30.0;  ///< -30 to 30 in steps of 15
-  double settled_tolerance_deg = 0.5;     ///< maximum angle error of a settled antenna, which must also have stopped
+  double max_pitch_deg = 30.0;         ///< -30 to 30 in steps of 15
+  double settled_tolerance_deg = 0.5;  ///< maximum angle error of a settled antenna, which must also have stopped
   double settling_time_s = 0.4;        ///< minimum duration of the settled state
   double orientation_timeout_s = 8.0;  ///< the pose is skipped after this time
   double sounding_timeout_s = 5.0;
-  int max_consecutive_failures = 3;        ///< maximum number of consecutively skipped poses
+  int max_consecutive_failures = 3;  ///< maximum number of consecutively skipped poses
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -34,14 +34,14 @@ struct WaterSoundingSettings {
 
 /// Instrument parameters (data sheet) and standard deviations of the errors of instrument, mount and model.
 struct SoundingErrorSettings {
-  double ramp_s = 2.6e-6;             ///< ramp time of the current
-  double gate_width = 0.15;           ///< ratio of gate width to gate center
-  double model_std = 0.02;            ///< relative model error of a gate
-  double gain_std = 0.03;             ///< relative gain error common to all soundings
-  double sounding_gain_std = 0.01;    ///< relative gain error of each sounding: current and coil angle
-  double time_shift_std_s = 5e-8;     ///< time shift of the gates, common to all soundings
-  double steel_response = 1e-8;           ///< response of nearby steel at 10 us, T/s per A m2
-  double steel_anisotropy = 0.3;      ///< anisotropic part of the steel response, relative to `steel_response`
+  double ramp_s = 2.6e-6;           ///< ramp time of the current
+  double gate_width = 0.15;         ///< ratio of gate width to gate center
+  double model_std = 0.02;          ///< relative model error of a gate
+  double gain_std = 0.03;           ///< relative gain error common to all soundings
+  double sounding_gain_std = 0.01;  ///< relative gain error of each sounding: current and coil angle
+  double time_shift_std_s = 5e-8;   ///< time shift of the gates, common to all soundings
+  double steel_response = 1e-8;     ///< response of nearby steel at 10 us, T/s per A m2
+  double steel_anisotropy = 0.3;    ///< anisotropic part of the steel response, relative to `steel_response`
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -58,17 +58,17 @@ struct SoundingErrorSettings {
 
 /// Prior of rock and water.
 struct WaterPriorSettings {
-  double min_rock_spm = 3e-4;       ///< limits of the rock conductivity, uniform in its logarithm
+  double min_rock_spm = 3e-4;  ///< limits of the rock conductivity, uniform in its logarithm
   double max_rock_spm = 0.03;
   double water_spm = 0.6;  ///< median conductivity of water or mud, as measured by a probe in the seepage of the face
-  double water_log_std = 0.2;       ///< standard deviation of the logarithm of the conductivity
-  double min_radius_m = 2.0;        ///< limits of the radius, uniform in its logarithm
+  double water_log_std = 0.2;  ///< standard deviation of the logarithm of the conductivity
+  double min_radius_m = 2.0;   ///< limits of the radius, uniform in its logarithm
   double max_radius_m = 10.0;
   /// Maximum distance to the center of the body, which is uniform in a cone ahead; behind the robot it would be
   /// indistinguishable.
   double max_distance_m = 40.0;
-  double max_angle_deg = 50.0;      ///< half angle of the cone around the x axis of the robot
-  double min_clearance_m = 1.0;     ///< minimum distance from the antenna to the nearest point of the body
+  double max_angle_deg = 50.0;   ///< half angle of the cone around the x axis of the robot
+  double min_clearance_m = 1.0;  ///< minimum distance from the antenna to the nearest point of the body
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -88,9 +88,9 @@ struct WaterSettings {
   WaterSoundingSettings sounding;
   SoundingErrorSettings errors;
   WaterPriorSettings prior;
-  int particles = 400;               ///< number of posterior particles
-  int mcmc_steps = 6;                     ///< Metropolis steps per particle and temperature
-  double min_evidence = 5.0;         ///< minimum logarithm of the Bayes factor for a detection: 150 to 1
+  int particles = 400;        ///< number of posterior particles
+  int mcmc_steps = 6;         ///< Metropolis steps per particle and temperature
+  double min_evidence = 5.0;  ///< minimum logarithm of the Bayes factor for a detection: 150 to 1
   /// Standard deviation of the antenna axis on the robot, in addition to the encoder errors.
   double alignment_std_deg = 0.4;
   /// A body is a warning if the near limit of its nearest point is within this distance.

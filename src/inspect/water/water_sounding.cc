@@ -5,14 +5,16 @@
 
 #include <fmt/format.h>
 
-#include "core/geometry/angles.h"
 #include "core/error.h"
+#include "core/geometry/angles.h"
 
 namespace patrol::inspect {
 namespace {
 
 /// Returns element `index` of `count` uniform values from -max to max; 0 for a single value.
-double uniform_step(int index, int count, double max) { return count == 1 ? 0.0 : max * (2.0 * index / (count - 1) - 1.0); }
+double uniform_step(int index, int count, double max) {
+  return count == 1 ? 0.0 : max * (2.0 * index / (count - 1) - 1.0);
+}
 
 void check_joint_limit(const char* name, double angle_deg, const JointLimit& limit) {
   if (-angle_deg * kDegree >= limit.lower_rad && angle_deg * kDegree <= limit.upper_rad) return;
@@ -67,7 +69,8 @@ void WaterSounding::on_antenna_state(const AntennaState& state) {
 
 /// Returns whether the antenna is settled. Readings before the command are ignored.
 bool WaterSounding::is_settled(Time now) const {
-  return steady_since_ && state_->stamp > since_ && now - std::max(*steady_since_, since_) >= from_seconds(settings_.settling_time_s);
+  return steady_since_ && state_->stamp > since_ &&
+         now - std::max(*steady_since_, since_) >= from_seconds(settings_.settling_time_s);
 }
 
 InstrumentCommand WaterSounding::command_pose(const AntennaPose& pose, Phase phase, Time now) {
@@ -107,7 +110,8 @@ std::optional<InstrumentCommand> WaterSounding::step(Time now, const std::option
       since_ = now;
       return SoundingCommand{.stamp = now};
     case Phase::kSounding:
-      if (!sounding || sounding->stamp <= since_) return waited_s > settings_.sounding_timeout_s ? skip_pose(now) : std::nullopt;
+      if (!sounding || sounding->stamp <= since_)
+        return waited_s > settings_.sounding_timeout_s ? skip_pose(now) : std::nullopt;
       soundings_.push_back({.pose = pose_of(*state_), .sounding = *sounding});
       sum_squared_error_rad2_ += std::pow(angle_between(commanded_, pose_of(*state_)), 2);
       num_skipped_in_a_row_ = 0;
@@ -123,7 +127,8 @@ std::optional<InstrumentCommand> WaterSounding::step(Time now, const std::option
 }
 
 double WaterSounding::antenna_error_deg() const {
-  return soundings_.empty() ? 0.0 : std::sqrt(sum_squared_error_rad2_ / static_cast<double>(soundings_.size())) / kDegree;
+  return soundings_.empty() ? 0.0
+                            : std::sqrt(sum_squared_error_rad2_ / static_cast<double>(soundings_.size())) / kDegree;
 }
 
 }  // namespace patrol::inspect

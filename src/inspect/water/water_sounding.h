@@ -32,7 +32,8 @@ class WaterSounding {
   WaterSounding(const WaterSoundingSettings& settings, const AntennaGeometry& antenna, Time start);
 
   /// Advances the sequence and returns the next command, if any. Call at a few hertz or more with the latest messages.
-  std::optional<InstrumentCommand> step(Time now, const std::optional<AntennaState>& antenna, const std::optional<TemSounding>& sounding);
+  std::optional<InstrumentCommand> step(Time now, const std::optional<AntennaState>& antenna,
+                                        const std::optional<TemSounding>& sounding);
 
   bool is_over() const { return phase_ == Phase::kOver; }
   /// Returns whether the encoders confirm the stowed pose; valid when the sequence is over. If not, the robot should

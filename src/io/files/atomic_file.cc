@@ -21,8 +21,11 @@ namespace {
 /// Descriptor of a file opened for reading; negative on failure. Opening a pipe does not wait for a writer.
 class InputFile {
  public:
-  explicit InputFile(const std::filesystem::path& file) : descriptor_(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {}
-  ~InputFile() { if (descriptor_ >= 0) ::close(descriptor_); }
+  explicit InputFile(const std::filesystem::path& file)
+      : descriptor_(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {}
+  ~InputFile() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+  }
   InputFile(const InputFile&) = delete;
   InputFile& operator=(const InputFile&) = delete;
 

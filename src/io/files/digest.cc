@@ -23,7 +23,8 @@ std::string sha256_of_file(const std::filesystem::path& file) { return sha256(lo
 std::string sha256_of_folder(const std::filesystem::path& folder, const std::string& except) {
   std::vector<std::filesystem::path> files;
   std::error_code ignored;  // symbolic link loop
-  for (auto entry = std::filesystem::recursive_directory_iterator(folder); entry != std::filesystem::end(entry); ++entry) {
+  for (auto entry = std::filesystem::recursive_directory_iterator(folder); entry != std::filesystem::end(entry);
+       ++entry) {
     const std::string name = entry->path().filename().string();
     const bool is_left_out = name.starts_with('.') || (entry.depth() == 0 && name == except);
     if (is_left_out && entry->is_directory(ignored)) entry.disable_recursion_pending();

@@ -28,7 +28,8 @@ std::string outcome(const JunitCase& test) {
                         : test.result == JunitResult::kError ? "error"
                                                              : "skipped";
   if (test.details.empty()) return fmt::format("      <{} message=\"{}\"/>\n", element, escaped_markup(test.message));
-  return fmt::format("      <{0} message=\"{1}\">{2}</{0}>\n", element, escaped_markup(test.message), escaped_markup(test.details));
+  return fmt::format("      <{0} message=\"{1}\">{2}</{0}>\n", element, escaped_markup(test.message),
+                     escaped_markup(test.details));
 }
 
 std::string to_xml(const JunitCase& test) {
@@ -39,7 +40,8 @@ std::string to_xml(const JunitCase& test) {
 }
 
 std::string to_xml(const JunitSuite& suite) {
-  std::string xml = fmt::format("  <testsuite name=\"{}\" {}>\n", escaped_markup(suite.name), tally(suite.cases, suite.time_s));
+  std::string xml =
+      fmt::format("  <testsuite name=\"{}\" {}>\n", escaped_markup(suite.name), tally(suite.cases, suite.time_s));
   if (!suite.properties.empty()) {
     xml += "    <properties>\n";
     for (const auto& [name, value] : suite.properties) {
@@ -57,9 +59,15 @@ std::string text_of(const tinyxml2::XMLElement& element, const char* attribute) 
 }
 
 JunitCase case_of(const tinyxml2::XMLElement& element) {
-  JunitCase test{.class_name = text_of(element, "classname"), .name = text_of(element, "name"), .time_s = element.DoubleAttribute("time"),
-                 .result = JunitResult::kPassed, .message = "", .details = ""};
-  for (const auto& [name, result] : {std::pair("failure", JunitResult::kFailure), {"error", JunitResult::kError}, {"skipped", JunitResult::kSkipped}}) {
+  JunitCase test{.class_name = text_of(element, "classname"),
+                 .name = text_of(element, "name"),
+                 .time_s = element.DoubleAttribute("time"),
+                 .result = JunitResult::kPassed,
+                 .message = "",
+                 .details = ""};
+  for (const auto& [name, result] : {std::pair("failure", JunitResult::kFailure),
+                                     {"error", JunitResult::kError},
+                                     {"skipped", JunitResult::kSkipped}}) {
     const tinyxml2::XMLElement* outcome = element.FirstChildElement(name);
     if (outcome == nullptr) continue;
     test.result = result;
@@ -70,13 +78,16 @@ JunitCase case_of(const tinyxml2::XMLElement& element) {
 }
 
 JunitSuite suite_of(const tinyxml2::XMLElement& element) {
-  JunitSuite suite{.name = text_of(element, "name"), .time_s = element.DoubleAttribute("time"), .properties = {}, .cases = {}};
+  JunitSuite suite{
+      .name = text_of(element, "name"), .time_s = element.DoubleAttribute("time"), .properties = {}, .cases = {}};
   if (const tinyxml2::XMLElement* list = element.FirstChildElement("properties")) {
-    for (const auto* property = list->FirstChildElement("property"); property != nullptr; property = property->NextSiblingElement("property")) {
+    for (const auto* property = list->FirstChildElement("property"); property != nullptr;
+         property = property->NextSiblingElement("property")) {
       suite.properties.emplace_back(text_of(*property, "name"), text_of(*property, "value"));
     }
   }
-  for (const auto* test = element.FirstChildElement("testcase"); test != nullptr; test = test->NextSiblingElement("testcase")) {
+  for (const auto* test = element.FirstChildElement("testcase"); test != nullptr;
+       test = test->NextSiblingElement("testcase")) {
     suite.cases.push_back(case_of(*test));
   }
   return suite;
@@ -93,7 +104,8 @@ std::vector<JunitSuite> load_junit(const std::filesystem::path& file) {
   const tinyxml2::XMLElement* root = document.FirstChildElement("testsuites");
   if (root == nullptr) throw InputError(file.string() + ": is not JUnit XML: it has no testsuites");
   std::vector<JunitSuite> suites;
-  for (const auto* suite = root->FirstChildElement("testsuite"); suite != nullptr; suite = suite->NextSiblingElement("testsuite")) {
+  for (const auto* suite = root->FirstChildElement("testsuite"); suite != nullptr;
+       suite = suite->NextSiblingElement("testsuite")) {
     suites.push_back(suite_of(*suite));
   }
   return suites;
@@ -108,8 +120,9 @@ void save_junit(const std::filesystem::path& file, const std::vector<JunitSuite>
     time_s += suite.time_s;
     body += to_xml(suite);
   }
-  save_text(file, fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"patrol\" {}>\n{}</testsuites>\n",
-                              tally(all, time_s), body));
+  save_text(file, fmt::format(
+                      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"patrol\" {}>\n{}</testsuites>\n",
+                      tally(all, time_s), body));
 }
 
 JunitSuite unfinished_junit(const std::string& suite) {

@@ -61,7 +61,8 @@ std::optional<Time> parse_stamp(std::string_view text) {
 
 std::string format_stamp(Time stamp) {
   const std::int64_t count = std::abs(stamp.count());
-  return fmt::format("{}{}.{:09}", stamp < Time{} ? "-" : "", count / kNanosecondsPerSecond, count % kNanosecondsPerSecond);
+  return fmt::format("{}{}.{:09}", stamp < Time{} ? "-" : "", count / kNanosecondsPerSecond,
+                     count % kNanosecondsPerSecond);
 }
 
 void LineTokenizer::skip_blanks() {
@@ -101,7 +102,8 @@ double LineTokenizer::any_number(const char* what) {
 double LineTokenizer::number(const char* what) {
   const std::string_view text = word(what);
   double value = 0.0;
-  if (!parse_all(text, value) || !std::isfinite(value)) throw ParseError(fmt::format("{} {} is not a finite number", what, quoted(text)));
+  if (!parse_all(text, value) || !std::isfinite(value))
+    throw ParseError(fmt::format("{} {} is not a finite number", what, quoted(text)));
   return value;
 }
 
@@ -123,7 +125,8 @@ Time LineTokenizer::stamp(const char* what) {
 
 Pose2 LineTokenizer::pose(const char* what) {
   const double x = number(what), y = number(what), yaw = number(what);
-  if (std::abs(x) > kMaxDistance_m || std::abs(y) > kMaxDistance_m) throw ParseError(fmt::format("{} ({:.4g} m, {:.4g} m) is off the earth", what, x, y));
+  if (std::abs(x) > kMaxDistance_m || std::abs(y) > kMaxDistance_m)
+    throw ParseError(fmt::format("{} ({:.4g} m, {:.4g} m) is off the earth", what, x, y));
   return {x, y, wrap_angle(yaw)};
 }
 

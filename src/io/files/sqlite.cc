@@ -47,12 +47,14 @@ void write(sqlite3* database, const Table& table) {
   execute(database, fmt::format("CREATE TABLE {} ({})", identifier(table.name), fmt::join(columns, ", ")));
 
   const std::vector<char> placeholders(table.columns.size(), '?');
-  const std::string sql = fmt::format("INSERT INTO {} VALUES ({})", identifier(table.name), fmt::join(placeholders, ", "));
+  const std::string sql =
+      fmt::format("INSERT INTO {} VALUES ({})", identifier(table.name), fmt::join(placeholders, ", "));
   sqlite3_stmt* raw = nullptr;
   check(sqlite3_prepare_v2(database, sql.c_str(), -1, &raw, nullptr) == SQLITE_OK, database);
   const Statement insert(raw, sqlite3_finalize);
   for (const std::vector<TableValue>& row : table.rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) check(bind(raw, static_cast<int>(i) + 1, row[i]) == SQLITE_OK, database);
+    for (std::size_t i = 0; i < row.size(); ++i)
+      check(bind(raw, static_cast<int>(i) + 1, row[i]) == SQLITE_OK, database);
     check(sqlite3_step(raw) == SQLITE_DONE && sqlite3_reset(raw) == SQLITE_OK, database);
   }
 }

@@ -79,15 +79,18 @@ class StationReader {
       if (!columns_.emplace(cells[i], i).second) refuse(fmt::format("{}: duplicate column", cells[i]));
     }
     for (const char* column : {"name", "x", "y"}) {
-      if (!columns_.contains(column)) refuse(fmt::format("{}: is missing: the first line must name {}", column, kStationColumns));
+      if (!columns_.contains(column))
+        refuse(fmt::format("{}: is missing: the first line must name {}", column, kStationColumns));
     }
   }
 
   void read_station(const std::vector<std::string>& cells) {
-    if (cells.size() != columns_.size()) refuse(fmt::format("has {} cells, must have {}", cells.size(), columns_.size()));
+    if (cells.size() != columns_.size())
+      refuse(fmt::format("has {} cells, must have {}", cells.size(), columns_.size()));
     TourStation station{.name = cells[columns_.at("name")], .line = number_};
     if (station.name.empty()) refuse("name: is empty");
-    if (std::any_of(stations_.begin(), stations_.end(), [&](const TourStation& other) { return other.name == station.name; })) {
+    if (std::any_of(stations_.begin(), stations_.end(),
+                    [&](const TourStation& other) { return other.name == station.name; })) {
       refuse(fmt::format("name: {}: duplicate", station.name));
     }
     for (const char* column : {"x", "y"}) {
@@ -95,7 +98,8 @@ class StationReader {
     }
     const auto take = [&](const char* column, double& value, double min, double max) {
       const auto index = columns_.find(column);
-      if (index != columns_.end() && !cells[index->second].empty()) value = number(column, cells[index->second], min, max);
+      if (index != columns_.end() && !cells[index->second].empty())
+        value = number(column, cells[index->second], min, max);
     };
     constexpr double kMaxCoordinate = 1e8;
     take("x", station.x, -kMaxCoordinate, kMaxCoordinate);
@@ -107,15 +111,18 @@ class StationReader {
     take("priority", priority, -1e6, 1e6);
     if (priority != std::floor(priority)) refuse(fmt::format("priority: {}: must be an integer", priority));
     station.priority = static_cast<int>(priority);
-    if (station.latest_s < station.earliest_s) refuse(fmt::format("latest_s: {}: must not be before earliest_s = {}", station.latest_s, station.earliest_s));
-    if (stations_.size() == kMaxStations) refuse(fmt::format("too many stations: at most {} are allowed", kMaxStations));
+    if (station.latest_s < station.earliest_s)
+      refuse(fmt::format("latest_s: {}: must not be before earliest_s = {}", station.latest_s, station.earliest_s));
+    if (stations_.size() == kMaxStations)
+      refuse(fmt::format("too many stations: at most {} are allowed", kMaxStations));
     stations_.push_back(station);
   }
 
   double number(const char* column, const std::string& text, double min, double max) const {
     double value = 0.0;
     const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || rest != text.data() + text.size() || !std::isfinite(value)) refuse(fmt::format("{}: {}: must be a number", column, text));
+    if (error != std::errc() || rest != text.data() + text.size() || !std::isfinite(value))
+      refuse(fmt::format("{}: {}: must be a number", column, text));
     if (value < min || value > max) refuse(fmt::format("{}: {}: must be in [{}, {}]", column, text, min, max));
     return value;
   }

@@ -14,8 +14,8 @@ struct TourStation {
   double service_s = 0.0;   ///< time spent at the station
   /// Time window for the start of the service, since the start of the tour.
   double earliest_s = 0.0, latest_s = std::numeric_limits<double>::infinity();
-  int priority = 0;         ///< stations with lower values are all visited first
-  int line = 0;             ///< line number in the file
+  int priority = 0;  ///< stations with lower values are all visited first
+  int line = 0;      ///< line number in the file
 };
 
 /// Reads stations from CSV (RFC 4180). Columns, in any order: name, x, y and optionally service_s, earliest_s,

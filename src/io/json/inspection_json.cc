@@ -44,9 +44,7 @@ double clock_of(const JsonObject& object) {
   return clock_deg;
 }
 
-WarningLevel level_of(const JsonObject& object) {
-  return object.choice("level", kWarningLevels);
-}
+WarningLevel level_of(const JsonObject& object) { return object.choice("level", kWarningLevels); }
 
 Time stamp_of(const JsonObject& object) {
   const Json& stamp = object.member("stamp_ns");
@@ -63,9 +61,11 @@ Eigen::Vector3d point_of(const JsonObject& object, const char* key) {
 
 /// Reads each entry of a list with `read(JsonObject)`.
 template <typename Entry, typename Read>
-std::vector<Entry> entries(const JsonObject& object, const char* list, const std::string& place, const std::vector<std::string>& keys, Read read) {
+std::vector<Entry> entries(const JsonObject& object, const char* list, const std::string& place,
+                           const std::vector<std::string>& keys, Read read) {
   std::vector<Entry> all;
-  for (const Json& json : object.list(list)) all.push_back(read(JsonObject(fmt::format("{}.{}[{}]", place, list, all.size()), json, keys)));
+  for (const Json& json : object.list(list))
+    all.push_back(read(JsonObject(fmt::format("{}.{}[{}]", place, list, all.size()), json, keys)));
   return all;
 }
 
@@ -89,7 +89,8 @@ void read_body(const JsonObject& object, WaterResult& result) {
     const Json wrapped = {{"covariance_m2", rows[static_cast<std::size_t>(row)]}};
     result.covariance_m2.row(row) = point_of(JsonObject("covariance_m2", wrapped, {"covariance_m2"}), "covariance_m2");
   }
-  const std::vector<double> distance_m = object.numbers("distance_interval_m", 2), radius_m = object.numbers("radius_interval_m", 2);
+  const std::vector<double> distance_m = object.numbers("distance_interval_m", 2),
+                            radius_m = object.numbers("radius_interval_m", 2);
   result.distance_m = read_non_negative(object, "distance_m");
   result.distance_low_m = distance_m[0];
   result.distance_high_m = distance_m[1];
@@ -121,20 +122,33 @@ Json to_json(const LiningResult& result) {
                {"lines", Json::array()},
                {"findings", Json::array()}};
   for (const LiningCell& cell : result.cells) {
-    json["cells"].push_back({{"ring", cell.ring}, {"clock_deg", cell.clock_deg}, {"inward_m", number_or_null(cell.inward_m)}, {"std_m", number_or_null(cell.std_m)}, {"points", cell.points}});
+    json["cells"].push_back({{"ring", cell.ring},
+                             {"clock_deg", cell.clock_deg},
+                             {"inward_m", number_or_null(cell.inward_m)},
+                             {"std_m", number_or_null(cell.std_m)},
+                             {"points", cell.points}});
   }
   for (const ConvergenceLine& line : result.lines) {
-    json["lines"].push_back({{"ring", line.ring}, {"name", line.name}, {"change_m", number_or_null(line.change_m)}, {"std_m", number_or_null(line.std_m)}});
+    json["lines"].push_back({{"ring", line.ring},
+                             {"name", line.name},
+                             {"change_m", number_or_null(line.change_m)},
+                             {"std_m", number_or_null(line.std_m)}});
   }
   for (const RingFinding& finding : result.findings) {
-    json["findings"].push_back({{"ring", finding.ring}, {"clock_deg", finding.clock_deg}, {"inward_m", number_or_null(finding.inward_m)}, {"std_m", number_or_null(finding.std_m)},
-                                {"level", name_of(finding.level)}, {"position_m", point(finding.p_map)}});
+    json["findings"].push_back({{"ring", finding.ring},
+                                {"clock_deg", finding.clock_deg},
+                                {"inward_m", number_or_null(finding.inward_m)},
+                                {"std_m", number_or_null(finding.std_m)},
+                                {"level", name_of(finding.level)},
+                                {"position_m", point(finding.p_map)}});
   }
   return json;
 }
 
 LiningResult lining_from_json(const std::string& place, const Json& json) {
-  const JsonObject object(place, json, {"stamp_ns", "station", "pose", "registered", "registration_rms_m", "registration_inlier_ratio", "correction_m", "cells", "lines", "findings"});
+  const JsonObject object(place, json,
+                          {"stamp_ns", "station", "pose", "registered", "registration_rms_m",
+                           "registration_inlier_ratio", "correction_m", "cells", "lines", "findings"});
   LiningResult result;
   result.stamp = stamp_of(object);
   result.station = object.string("station");
@@ -143,16 +157,31 @@ LiningResult lining_from_json(const std::string& place, const Json& json) {
   result.registration_rms_m = read_non_negative(object, "registration_rms_m");
   result.registration_inlier_ratio = read_non_negative(object, "registration_inlier_ratio");
   result.correction_m = read_non_negative(object, "correction_m");
-  result.cells = entries<LiningCell>(object, "cells", place, {"ring", "clock_deg", "inward_m", "std_m", "points"}, [](const JsonObject& cell) {
-    return LiningCell{.ring = ring_of(cell), .clock_deg = clock_of(cell), .inward_m = read_number(cell, "inward_m"), .std_m = read_non_negative(cell, "std_m"), .points = count_of(cell, "points")};
-  });
-  result.lines = entries<ConvergenceLine>(object, "lines", place, {"ring", "name", "change_m", "std_m"}, [](const JsonObject& line) {
-    return ConvergenceLine{.ring = ring_of(line), .name = line.string("name"), .change_m = read_number(line, "change_m"), .std_m = read_non_negative(line, "std_m")};
-  });
-  result.findings = entries<RingFinding>(object, "findings", place, {"ring", "clock_deg", "inward_m", "std_m", "level", "position_m"}, [](const JsonObject& finding) {
-    return RingFinding{.ring = ring_of(finding), .clock_deg = clock_of(finding), .inward_m = read_number(finding, "inward_m"), .std_m = read_non_negative(finding, "std_m"),
-                       .level = level_of(finding), .p_map = point_of(finding, "position_m")};
-  });
+  result.cells = entries<LiningCell>(object, "cells", place, {"ring", "clock_deg", "inward_m", "std_m", "points"},
+                                     [](const JsonObject& cell) {
+                                       return LiningCell{.ring = ring_of(cell),
+                                                         .clock_deg = clock_of(cell),
+                                                         .inward_m = read_number(cell, "inward_m"),
+                                                         .std_m = read_non_negative(cell, "std_m"),
+                                                         .points = count_of(cell, "points")};
+                                     });
+  result.lines = entries<ConvergenceLine>(object, "lines", place, {"ring", "name", "change_m", "std_m"},
+                                          [](const JsonObject& line) {
+                                            return ConvergenceLine{.ring = ring_of(line),
+                                                                   .name = line.string("name"),
+                                                                   .change_m = read_number(line, "change_m"),
+                                                                   .std_m = read_non_negative(line, "std_m")};
+                                          });
+  result.findings =
+      entries<RingFinding>(object, "findings", place, {"ring", "clock_deg", "inward_m", "std_m", "level", "position_m"},
+                           [](const JsonObject& finding) {
+                             return RingFinding{.ring = ring_of(finding),
+                                                .clock_deg = clock_of(finding),
+                                                .inward_m = read_number(finding, "inward_m"),
+                                                .std_m = read_non_negative(finding, "std_m"),
+                                                .level = level_of(finding),
+                                                .p_map = point_of(finding, "position_m")};
+                           });
   return result;
 }
 
@@ -171,11 +200,13 @@ Json to_json(const WaterResult& result) {
 }
 
 WaterResult water_from_json(const std::string& place, const Json& json) {
-  std::vector<std::string> keys = {"stamp_ns", "station", "pose", "soundings", "antenna_error_deg", "rock_spm", "evidence", "found", "level"};
+  std::vector<std::string> keys = {"stamp_ns", "station",  "pose",  "soundings", "antenna_error_deg",
+                                   "rock_spm", "evidence", "found", "level"};
   WaterResult result;
   result.is_found = json.is_object() && json.contains("found") && json["found"] == true;
   if (result.is_found) {
-    keys.insert(keys.end(), {"position_m", "covariance_m2", "distance_m", "distance_interval_m", "azimuth_deg", "elevation_deg", "radius_m", "radius_interval_m"});
+    keys.insert(keys.end(), {"position_m", "covariance_m2", "distance_m", "distance_interval_m", "azimuth_deg",
+                             "elevation_deg", "radius_m", "radius_interval_m"});
   }
   const JsonObject object(place, json, keys);
   result.stamp = stamp_of(object);

@@ -45,7 +45,8 @@ class Checker final : public nlohmann::json_sax<Json> {
 
   bool parse_error(std::size_t position, const std::string& token, const nlohmann::detail::exception& error) override {
     const std::size_t at = std::clamp<std::size_t>(position, 1, text_.size() + 1) - 1;
-    const auto line = static_cast<int>(std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(at), '\n')) + 1;
+    const auto line =
+        static_cast<int>(std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(at), '\n')) + 1;
     if (error.id == kNumberOverflow) throw input_error(file_, line, token + ": number out of range");
     if (at >= text_.size()) throw input_error(file_, line, "is not JSON: ends too early");
     const std::size_t line_start = at == 0 ? 0 : text_.rfind('\n', at - 1) + 1;  // npos + 1 is 0

@@ -8,14 +8,15 @@
 
 #include "core/error.h"
 #include "io/files/atomic_file.h"
-#include "io/json/json_check.h"
 #include "io/files/one_line.h"
+#include "io/json/json_check.h"
 #include "io/yaml/settings_yaml.h"
 
 namespace patrol::io {
 namespace {
 
-constexpr double kMinUprightCosine = 0.707;  // cosine of the maximum tilt; also catches quaternions written as w, x, y, z
+constexpr double kMinUprightCosine =
+    0.707;  // cosine of the maximum tilt; also catches quaternions written as w, x, y, z
 
 }  // namespace
 
@@ -49,19 +50,21 @@ int JsonObject::integer(const char* key) const {
   const Json& value = member(key);
   if (!value.is_number_integer()) fail(fmt::format("{} must be an integer", key));
   const bool fits = value.is_number_unsigned() ? std::in_range<int>(value.get<std::uint64_t>())
-                                                   : std::in_range<int>(value.get<std::int64_t>());
+                                               : std::in_range<int>(value.get<std::int64_t>());
   if (!fits) fail(fmt::format("{} is too large", key));
   return value.get<int>();
 }
 
 double JsonObject::number(const char* key) const {
-  if (!member(key).is_number() || !std::isfinite(member(key).get<double>())) fail(fmt::format("{} must be a number", key));
+  if (!member(key).is_number() || !std::isfinite(member(key).get<double>()))
+    fail(fmt::format("{} must be a number", key));
   return member(key).get<double>();
 }
 
 std::string JsonObject::string(const char* key) const {
   const Json& value = member(key);
-  if (!value.is_string() || has_control_characters(value.get_ref<const std::string&>())) fail(fmt::format("{} must be a string", key));
+  if (!value.is_string() || has_control_characters(value.get_ref<const std::string&>()))
+    fail(fmt::format("{} must be a string", key));
   return value.get<std::string>();
 }
 

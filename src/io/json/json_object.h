@@ -28,7 +28,7 @@ class JsonObject {
   const Json& member(const char* key) const;
   const Json& list(const char* key) const;
   int integer(const char* key) const;
-  double number(const char* key) const;  ///< finite
+  double number(const char* key) const;       ///< finite
   std::string string(const char* key) const;  ///< without control characters (C0, DEL, C1)
   /// Value of the table's row of that name.
   template <NamedTable Table>
@@ -47,7 +47,8 @@ class JsonObject {
   [[noreturn]] void fail(const std::string& what) const;
 
  private:
-  [[noreturn]] void fail_choice(const char* key, const std::string& name, const std::vector<std::string>& allowed) const;
+  [[noreturn]] void fail_choice(const char* key, const std::string& name,
+                                const std::vector<std::string>& allowed) const;
   std::vector<double> numbers_of(const Json& json, const std::string& what, std::size_t count) const;
 
   std::string place_;

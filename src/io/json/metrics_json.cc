@@ -52,7 +52,9 @@ std::vector<std::pair<std::string, double>> flatten_metrics(const Metrics& metri
   return values;
 }
 
-void save_metrics(const std::filesystem::path& file, const Metrics& metrics) { save_text(file, metrics.dump(2) + "\n"); }
+void save_metrics(const std::filesystem::path& file, const Metrics& metrics) {
+  save_text(file, metrics.dump(2) + "\n");
+}
 
 Metrics load_metrics(const std::filesystem::path& file) {
   try {

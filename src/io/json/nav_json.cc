@@ -16,7 +16,10 @@ constexpr std::size_t kMaxGoals = 1000;
 
 SavedGoal read_goal(const std::string& place, const Json& json) {
   const JsonObject reader(place, json, {"number", "position", "orientation", "type", "accuracy"});
-  SavedGoal goal{.number = reader.integer("number"), .T_map_body = reader.pose(), .type = reader.choice("type", kGoalTypes), .accuracy_m = reader.number("accuracy")};
+  SavedGoal goal{.number = reader.integer("number"),
+                 .T_map_body = reader.pose(),
+                 .type = reader.choice("type", kGoalTypes),
+                 .accuracy_m = reader.number("accuracy")};
   if (goal.accuracy_m <= 0.0) reader.fail("accuracy must be positive");
   return goal;
 }

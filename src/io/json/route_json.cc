@@ -11,9 +11,14 @@ namespace patrol::io {
 namespace {
 
 Station read_station(const std::string& place, const Json& json) {
-  const JsonObject reader(place, json, {"number", "name", "type", "position", "orientation", "target", "accuracy", "priority", "window"});
-  Station station{.number = reader.integer("number"), .name = reader.string("name"), .type = reader.choice("type", kStationTypes),
-                  .T_route_body = reader.pose(), .p_route_target = {}, .accuracy_m = reader.number("accuracy")};
+  const JsonObject reader(
+      place, json, {"number", "name", "type", "position", "orientation", "target", "accuracy", "priority", "window"});
+  Station station{.number = reader.integer("number"),
+                  .name = reader.string("name"),
+                  .type = reader.choice("type", kStationTypes),
+                  .T_route_body = reader.pose(),
+                  .p_route_target = {},
+                  .accuracy_m = reader.number("accuracy")};
   if (station.accuracy_m <= 0.0) reader.fail("accuracy must be positive");
   if (reader.has("target")) {
     const std::vector<double> target = reader.numbers("target", 3);
@@ -57,7 +62,8 @@ std::vector<UwbAnchor> read_anchors(const std::string& place, const Json& json) 
     const JsonObject reader(fmt::format("{}: anchors[{}]", place, i), json[i], {"number", "position"});
     const std::vector<double> p = reader.numbers("position", 3);
     anchors.push_back({.number = reader.integer("number"), .p_m = {p[0], p[1], p[2]}});
-    if (!numbers.insert(anchors.back().number).second) reader.fail(fmt::format("number {}: duplicate", anchors.back().number));
+    if (!numbers.insert(anchors.back().number).second)
+      reader.fail(fmt::format("number {}: duplicate", anchors.back().number));
   }
   return anchors;
 }
@@ -69,11 +75,17 @@ Dock read_dock(const std::string& place, const Json& json) {
 
 TunnelLining read_lining(const std::string& file, const Json& json) {
   const std::string place = file + ": lining";
-  const JsonObject reader(place, json, {"position", "orientation", "axis", "crown_radius", "crown_center", "side_radius", "first_ring",
-                                        "ring_length", "rings"});
-  TunnelLining lining{.T_route_start = reader.pose(), .axis = {}, .crown_radius_m = reader.number("crown_radius"),
-                      .crown_center_m = reader.number("crown_center"), .side_radius_m = reader.number("side_radius"),
-                      .first_ring_m = reader.number("first_ring"), .ring_length_m = reader.number("ring_length"), .rings = reader.integer("rings")};
+  const JsonObject reader(place, json,
+                          {"position", "orientation", "axis", "crown_radius", "crown_center", "side_radius",
+                           "first_ring", "ring_length", "rings"});
+  TunnelLining lining{.T_route_start = reader.pose(),
+                      .axis = {},
+                      .crown_radius_m = reader.number("crown_radius"),
+                      .crown_center_m = reader.number("crown_center"),
+                      .side_radius_m = reader.number("side_radius"),
+                      .first_ring_m = reader.number("first_ring"),
+                      .ring_length_m = reader.number("ring_length"),
+                      .rings = reader.integer("rings")};
   const Json& axis = reader.list("axis");
   for (std::size_t i = 0; i < axis.size(); ++i) {
     const JsonObject element(fmt::format("{}: axis[{}]", place, i), axis[i], {"length", "curvature"});
@@ -96,7 +108,9 @@ RouteFile load_route(const std::filesystem::path& file) {
   const JsonObject root(name, json, {"version", "frame", "start", "stations", "keep_out", "anchors", "dock", "lining"});
   if (root.integer("version") != 1) root.fail("version must be 1");
   if (root.string("frame") != "site") root.fail("frame must be site");
-  RouteFile route{.route = {}, .T_site_start = JsonObject(name + ": start", root.member("start"), {"position", "orientation"}).pose()};
+  RouteFile route{.route = {},
+                  .T_site_start =
+                      JsonObject(name + ": start", root.member("start"), {"position", "orientation"}).pose()};
   const Json& stations = root.list("stations");
   for (std::size_t i = 0; i < stations.size(); ++i) {
     route.route.stations.push_back(read_station(fmt::format("{}: stations[{}]", name, i), stations[i]));

@@ -7,8 +7,8 @@
 namespace patrol::io {
 
 struct RouteFile {
-  Route route;          ///< in site
-  Pose2 T_site_start;   ///< surveyed start pose of the robot
+  Route route;         ///< in site
+  Pose2 T_site_start;  ///< surveyed start pose of the robot
 };
 
 /// Reads a mission file: {"version": 1, "frame": "site", "start": {"position": [x, y, z], "orientation": [x, y, z, w]},

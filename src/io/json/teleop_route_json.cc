@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
-#include "core/geometry/angles.h"
 #include "core/error.h"
+#include "core/geometry/angles.h"
 #include "io/json/json_object.h"
 
 namespace patrol::io {

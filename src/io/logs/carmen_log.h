@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "io/logs/carmen_message.h"
 #include "io/files/line_reader.h"
+#include "io/logs/carmen_message.h"
 #include "io/logs/scan_log.h"
 #include "io/logs/scan_sorter.h"
 

@@ -10,10 +10,10 @@
 namespace patrol::io {
 namespace {
 
-constexpr std::size_t kTailWords = 3;        ///< ipc_timestamp ipc_hostname logger_timestamp
+constexpr std::size_t kTailWords = 3;  ///< ipc_timestamp ipc_hostname logger_timestamp
 constexpr std::size_t kPoseWords = 3;
 constexpr std::size_t kDriveWords = 5;  ///< words of ROBOTLASERn: tv rv forward_safety_dist side_safety_dist turn_axis
-constexpr double kMaxAngleRad = 7.0;         ///< one turn plus rounding
+constexpr double kMaxAngleRad = 7.0;    ///< one turn plus rounding
 
 /// Checks the number of remaining words before any of them is interpreted.
 void expect_word_count(const LineTokenizer& fields, std::size_t expected, const char* after) {
@@ -58,7 +58,8 @@ double exact_increment(double step_rad, double field_of_view_rad, std::size_t nu
 void read_new_scan(LineTokenizer& fields, CarmenScan& scan) {
   const auto angle = [&](const char* what) {
     const double value = fields.number(what);
-    if (std::abs(value) > kMaxAngleRad) throw ParseError(fmt::format("{} = {} rad: exceeds one revolution", what, value));
+    if (std::abs(value) > kMaxAngleRad)
+      throw ParseError(fmt::format("{} = {} rad: exceeds one revolution", what, value));
     return value;
   };
   fields.number("laser_type");
@@ -70,7 +71,8 @@ void read_new_scan(LineTokenizer& fields, CarmenScan& scan) {
   fields.number("remission_mode");
   const std::size_t num_beams = read_count(fields, "num_readings", 1);
   scan.angle_increment_rad = exact_increment(step_rad, field_of_view_rad, num_beams);
-  if (num_beams > 1 && *scan.angle_increment_rad == 0.0) *scan.angle_increment_rad = field_of_view_rad / static_cast<double>(num_beams - 1);
+  if (num_beams > 1 && *scan.angle_increment_rad == 0.0)
+    *scan.angle_increment_rad = field_of_view_rad / static_cast<double>(num_beams - 1);
   scan.ranges_m = read_numbers<double>(fields, num_beams, "range");
   scan.remissions = read_numbers<float>(fields, read_count(fields, "num_remissions", 0), "remission");
   if (scan.remissions.size() != scan.ranges_m.size()) scan.remissions.clear();

@@ -15,13 +15,13 @@ namespace patrol::io {
 /// Lidar message. Old formats: FLASER (front) and RLASER (rear). New formats: RAWLASERn and ROBOTLASERn (1 front, 2
 /// rear).
 struct CarmenScan {
-  Time stamp{};  ///< ipc_timestamp
-  std::vector<double> ranges_m;         ///< [beam], m, unmodified
-  std::vector<float> remissions;        ///< [beam]; may be empty
+  Time stamp{};                   ///< ipc_timestamp
+  std::vector<double> ranges_m;   ///< [beam], m, unmodified
+  std::vector<float> remissions;  ///< [beam]; may be empty
   /// Beam angles in the lidar frame; not part of the old messages (see carmen_log.cc).
   std::optional<double> angle_min_rad, angle_increment_rad;
-  std::optional<double> range_max_m;    ///< new messages only, if positive
-  std::optional<Pose2> T_odom_lidar;    ///< neither pose is part of RAWLASERn
+  std::optional<double> range_max_m;  ///< new messages only, if positive
+  std::optional<Pose2> T_odom_lidar;  ///< neither pose is part of RAWLASERn
   std::optional<Pose2> T_odom_body;
 };
 

@@ -7,15 +7,16 @@ namespace patrol::io {
 namespace {
 
 constexpr Time kMaxGyroGap = std::chrono::milliseconds(500);  ///< maximum time between gyro messages
-constexpr Time kBufferLength = std::chrono::seconds(300);  ///< buffer length; must exceed the delay of scans behind the gyro
+constexpr Time kBufferLength =
+    std::chrono::seconds(300);  ///< buffer length; must exceed the delay of scans behind the gyro
 constexpr std::size_t kMaxHeadings = 300'000;
 constexpr double kStationarySpeed_mps = 0.005, kStationaryRateRadps = 0.005;  ///< standstill thresholds of the odometry
-constexpr double kMaxBiasRadps = 0.05;       ///< maximum gyro rate of a standstill, whatever the wheels report
+constexpr double kMaxBiasRadps = 0.05;  ///< maximum gyro rate of a standstill, whatever the wheels report
 constexpr double kMinStandstill_s = 1.0;
 /// Minimum sum of squared yaw increments for a verdict: three rad at 1 deg per step.
 constexpr double kMinSquaredYawRad2 = 0.05;
 constexpr double kSlopeTolerance = 0.02, kResidualTolerance = 0.05;  ///< limits for kAgrees
-constexpr double kSlopeLimit = 0.5, kResidualLimit = 0.5;  ///< limits for kUnrelated
+constexpr double kSlopeLimit = 0.5, kResidualLimit = 0.5;            ///< limits for kUnrelated
 
 /// Replaces the yaw of a step and rotates its translation by half of the yaw change (midpoint rule).
 Pose2 with_yaw(const Pose2& step, double turn_rad) {
@@ -39,12 +40,14 @@ void GyroOdometry::add(Time stamp, double yaw_rate_radps) {
 }
 
 std::optional<double> GyroOdometry::heading_at(Time stamp) const {
-  const auto after = std::lower_bound(headings_.begin(), headings_.end(), stamp, [](const Heading& heading, Time t) { return heading.stamp < t; });
+  const auto after = std::lower_bound(headings_.begin(), headings_.end(), stamp,
+                                      [](const Heading& heading, Time t) { return heading.stamp < t; });
   if (after == headings_.end()) return std::nullopt;
   if (after->stamp == stamp) return after->yaw_rad;
   if (after == headings_.begin()) return std::nullopt;
   const Heading& before = *(after - 1);
-  return before.yaw_rad + to_seconds(stamp - before.stamp) / to_seconds(after->stamp - before.stamp) * (after->yaw_rad - before.yaw_rad);
+  return before.yaw_rad +
+         to_seconds(stamp - before.stamp) / to_seconds(after->stamp - before.stamp) * (after->yaw_rad - before.yaw_rad);
 }
 
 std::optional<double> GyroOdometry::bias_radps() const {
@@ -60,7 +63,8 @@ Pose2 GyroOdometry::fuse(Time stamp, const Pose2& T_odom_body) {
     const double dt_s = to_seconds(stamp - *last_stamp_);
     const bool is_covered = heading_rad && last_heading_rad_;
     if (!is_covered) uncovered_s_ += dt_s;
-    const double turn_rad = fused_yaw(step, dt_s, is_covered ? std::optional(*heading_rad - *last_heading_rad_) : std::nullopt);
+    const double turn_rad =
+        fused_yaw(step, dt_s, is_covered ? std::optional(*heading_rad - *last_heading_rad_) : std::nullopt);
     T_fused_last_ = T_fused_last_ * with_yaw(step, turn_rad);
   }
   last_stamp_ = stamp;
@@ -71,13 +75,17 @@ Pose2 GyroOdometry::fuse(Time stamp, const Pose2& T_odom_body) {
 
 Pose2 GyroOdometry::replace_rotation(const Pose2& motion, Time begin, Time end) const {
   const std::optional<double> begin_rad = heading_at(begin), end_rad = heading_at(end);
-  return begin_rad && end_rad ? with_yaw(motion, *end_rad - *begin_rad - bias_radps().value_or(0.0) * to_seconds(end - begin)) : motion;
+  return begin_rad && end_rad
+             ? with_yaw(motion, *end_rad - *begin_rad - bias_radps().value_or(0.0) * to_seconds(end - begin))
+             : motion;
 }
 
 double GyroOdometry::fused_yaw(const Pose2& step, double dt_s, std::optional<double> gyro_rad) {
   if (!gyro_rad || dt_s <= 0.0) return step.yaw;
   compare(step.yaw, *gyro_rad, dt_s);
-  const bool is_stationary = step.position().norm() < kStationarySpeed_mps * dt_s && std::abs(step.yaw) < kStationaryRateRadps * dt_s && std::abs(*gyro_rad) < kMaxBiasRadps * dt_s;
+  const bool is_stationary = step.position().norm() < kStationarySpeed_mps * dt_s &&
+                             std::abs(step.yaw) < kStationaryRateRadps * dt_s &&
+                             std::abs(*gyro_rad) < kMaxBiasRadps * dt_s;
   if (!is_stationary) {
     standstill_s_ = pending_s_ = pending_rad_ = 0.0;
     if (!bias_radps()) without_bias_s_ += dt_s;
@@ -110,7 +118,8 @@ GyroConsistency GyroOdometry::consistency() const {
   if (gg < kMinSquaredYawRad2) return GyroConsistency::kUnknown;
   const double slope = og / gg, residual = std::sqrt(std::max(0.0, oo - slope * og) / gg);
   if (slope < kSlopeLimit || slope > 1.0 / kSlopeLimit || residual > kResidualLimit) return GyroConsistency::kUnrelated;
-  return std::abs(slope - 1.0) < kSlopeTolerance && residual < kResidualTolerance ? GyroConsistency::kAgrees : GyroConsistency::kContradicts;
+  return std::abs(slope - 1.0) < kSlopeTolerance && residual < kResidualTolerance ? GyroConsistency::kAgrees
+                                                                                  : GyroConsistency::kContradicts;
 }
 
 }  // namespace patrol::io

@@ -41,7 +41,7 @@ class GyroOdometry {
   std::optional<double> bias_radps() const;
   double stationary_s() const { return stationary_s_; }
   double motion_without_bias_s() const { return without_bias_s_; }  ///< duration of motion before a bias was available
-  double uncovered_s() const { return uncovered_s_; }            ///< duration without gyro messages
+  double uncovered_s() const { return uncovered_s_; }               ///< duration without gyro messages
 
  private:
   struct Heading {
@@ -58,8 +58,8 @@ class GyroOdometry {
   std::optional<Time> last_stamp_;  ///< stamp of the previous scan
   std::optional<double> last_heading_rad_;
   Pose2 T_odom_last_, T_fused_last_;
-  double standstill_s_ = 0.0;                     ///< duration of the current standstill
-  double pending_s_ = 0.0, pending_rad_ = 0.0;    ///< part of the current standstill that is not yet in the bias
+  double standstill_s_ = 0.0;                         ///< duration of the current standstill
+  double pending_s_ = 0.0, pending_rad_ = 0.0;        ///< part of the current standstill that is not yet in the bias
   double stationary_s_ = 0.0, stationary_rad_ = 0.0;  ///< sums over all standstills, for the bias
   double without_bias_s_ = 0.0, uncovered_s_ = 0.0;
   /// Sums for the least-squares fit odometry = slope * gyro + offset * time.

@@ -18,7 +18,8 @@ bool same_bytes(const std::filesystem::path& a, const std::filesystem::path& b) 
   std::error_code ignored;
   if (std::filesystem::file_size(a, ignored) != std::filesystem::file_size(b, ignored)) return false;
   std::ifstream first(a, std::ios::binary), second(b, std::ios::binary);
-  return first && second && std::equal(std::istreambuf_iterator<char>(first), {}, std::istreambuf_iterator<char>(second), {});
+  return first && second &&
+         std::equal(std::istreambuf_iterator<char>(first), {}, std::istreambuf_iterator<char>(second), {});
 }
 
 std::string byte_difference(std::string_view was, std::string_view is) {
@@ -45,11 +46,13 @@ std::string content_difference(const McapMessage& was, const McapMessage& is) {
 
 std::optional<LogDifference> message_difference(const McapMessage& was, const McapMessage& is) {
   if (was.channel.topic != is.channel.topic || was.log_time != is.log_time) {
-    return LogDifference{was.channel.topic, was.log_time,
-                         fmt::format("the other log has {} at {:.9f} s here", is.channel.topic, to_seconds(is.log_time))};
+    return LogDifference{
+        was.channel.topic, was.log_time,
+        fmt::format("the other log has {} at {:.9f} s here", is.channel.topic, to_seconds(is.log_time))};
   }
   if (was.channel.type != is.channel.type) {
-    return LogDifference{was.channel.topic, was.log_time, fmt::format("is a {}, was a {}", is.channel.type, was.channel.type)};
+    return LogDifference{was.channel.topic, was.log_time,
+                         fmt::format("is a {}, was a {}", is.channel.type, was.channel.type)};
   }
   if (was.cdr == is.cdr) return std::nullopt;
   return LogDifference{was.channel.topic, was.log_time, content_difference(was, is)};
@@ -68,7 +71,8 @@ std::optional<LogDifference> first_difference(const std::filesystem::path& log, 
     if (const auto difference = message_difference(*was, *is)) return difference;
   }
   if (before.is_complete() != after.is_complete()) {
-    return LogDifference{"", {}, fmt::format("identical messages, but the {} is truncated", after.is_complete() ? "log" : "other log")};
+    return LogDifference{
+        "", {}, fmt::format("identical messages, but the {} is truncated", after.is_complete() ? "log" : "other log")};
   }
   return LogDifference{"", {}, "identical messages, packed differently"};
 }

@@ -12,7 +12,7 @@ namespace patrol::io {
 struct LogDifference {
   std::string topic;  ///< empty if the difference is not in a message
   Time log_time{};
-  std::string what;   ///< phrase such as "ranges[417] is 3.26, was 3.25"
+  std::string what;  ///< phrase such as "ranges[417] is 3.26, was 3.25"
 };
 
 /// Returns the first message of `again` that is not byte-identical to that of `log`; nullopt if the files are equal.

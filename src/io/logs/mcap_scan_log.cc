@@ -14,14 +14,15 @@ namespace {
 
 constexpr std::size_t kMaxWaiting = 256;  ///< maximum number of waiting scans; later odometry is treated as missing
 constexpr std::size_t kMaxBeams = 10'000;
-constexpr double kQuaternionTolerance = 1e-3;          ///< tolerance of the norm of a quaternion
+constexpr double kQuaternionTolerance = 1e-3;  ///< tolerance of the norm of a quaternion
 constexpr double kMaxPoseDistance_m = 1e8;
-constexpr double kMaxScanAngle_rad = 7.0;       ///< one turn plus rounding
+constexpr double kMaxScanAngle_rad = 7.0;  ///< one turn plus rounding
 constexpr double kMaxRateRadps = 1e3;      ///< maximum plausible rate
 constexpr const char* kTfStaticSuffix = "/tf_static";
 
 void expect_pose(const Pose3& pose, const char* whose) {
-  const bool is_pose = pose.position.allFinite() && pose.position.cwiseAbs().maxCoeff() <= kMaxPoseDistance_m && std::abs(pose.rotation.norm() - 1.0) <= kQuaternionTolerance;
+  const bool is_pose = pose.position.allFinite() && pose.position.cwiseAbs().maxCoeff() <= kMaxPoseDistance_m &&
+                       std::abs(pose.rotation.norm() - 1.0) <= kQuaternionTolerance;
   if (!is_pose) throw DecodeError(fmt::format("{}: invalid pose: must be finite, with a unit quaternion", whose));
 }
 
@@ -29,11 +30,13 @@ Pose3 normalized(const Pose3& pose) { return {pose.position, pose.rotation.norma
 
 void expect_scan(const LaserScan& scan) {
   const std::size_t num_beams = scan.ranges_m.size();
-  if (num_beams == 0 || num_beams > kMaxBeams) throw DecodeError(fmt::format("scan with {} beams: must be in [1, {}]", num_beams, kMaxBeams));
+  if (num_beams == 0 || num_beams > kMaxBeams)
+    throw DecodeError(fmt::format("scan with {} beams: must be in [1, {}]", num_beams, kMaxBeams));
   const double span_rad = std::abs(scan.angle_increment_rad) * static_cast<double>(num_beams);
   const bool has_angles = std::abs(scan.angle_min_rad) <= kMaxScanAngle_rad && span_rad <= kMaxScanAngle_rad;
   if (!has_angles) throw DecodeError("scan angles exceed one revolution");
-  if (!std::isfinite(scan.time_increment_s) || !std::isfinite(scan.scan_time_s)) throw DecodeError("scan times must be finite");
+  if (!std::isfinite(scan.time_increment_s) || !std::isfinite(scan.scan_time_s))
+    throw DecodeError("scan times must be finite");
 }
 
 /// Returns the time of the last beam, or of the first if the scan has no plausible beam times.
@@ -58,7 +61,8 @@ void tidy_ranges(LaserScan& scan, double no_return_m) {
 
 }  // namespace
 
-McapScanLog::McapScanLog(const std::filesystem::path& file, const ScanLogOptions& options, std::optional<double> gyro_bias_radps)
+McapScanLog::McapScanLog(const std::filesystem::path& file, const ScanLogOptions& options,
+                         std::optional<double> gyro_bias_radps)
     : file_(file),
       options_(options),
       reader_(file, {.topics = {}, .use_summary = false}),
@@ -151,7 +155,10 @@ void McapScanLog::add_odometry(const McapMessage& message) {
   expect_pose(odometry.T_odom_body, "odometry");
   odometry_topic_ = message.channel.topic;
   if (body_frame_.empty()) body_frame_ = names.child.empty() ? frame_id::kBody : names.child;
-  odometry_.add({.stamp = odometry.stamp, .parent = frame_id::kOdom, .child = frame_id::kBody, .T_parent_child = normalized(odometry.T_odom_body)});
+  odometry_.add({.stamp = odometry.stamp,
+                 .parent = frame_id::kOdom,
+                 .child = frame_id::kBody,
+                 .T_parent_child = normalized(odometry.T_odom_body)});
   resolve_waiting();
 }
 
@@ -160,7 +167,8 @@ void McapScanLog::add_imu(const McapMessage& message) {
   if (!(imu.angular_velocity_radps.norm() <= kMaxRateRadps)) throw DecodeError("IMU rates not finite or implausible");
   const std::optional<Pose3> T_body_imu = sensor_pose_in_body(frame_id_of(message.cdr), imu.stamp);
   if (!T_body_imu && options_.imu == "on") ++summary_.assumed["IMU messages: IMU mounted level (no transform)"];
-  gyro_.add(imu.stamp, T_body_imu ? (T_body_imu->rotation * imu.angular_velocity_radps).z() : imu.angular_velocity_radps.z());
+  gyro_.add(imu.stamp,
+            T_body_imu ? (T_body_imu->rotation * imu.angular_velocity_radps).z() : imu.angular_velocity_radps.z());
 }
 
 void McapScanLog::add_transforms(const McapMessage& message, bool is_static) {
@@ -181,8 +189,10 @@ std::optional<Pose3> McapScanLog::odometry_at(Time stamp) const {
 void McapScanLog::resolve_waiting() {
   std::deque<WaitingScan> still_waiting;
   for (WaitingScan& waiting : waiting_) {
-    const std::optional<Pose3> T_odom_first = odometry_at(waiting.scan.stamp), T_odom_last = odometry_at(last_beam(waiting.scan));
-    if (T_odom_first && (T_odom_last || is_at_end_)) add_with_pose(std::move(waiting), to_pose2(*T_odom_first), to_pose2(T_odom_last.value_or(*T_odom_first)));
+    const std::optional<Pose3> T_odom_first = odometry_at(waiting.scan.stamp),
+                               T_odom_last = odometry_at(last_beam(waiting.scan));
+    if (T_odom_first && (T_odom_last || is_at_end_))
+      add_with_pose(std::move(waiting), to_pose2(*T_odom_first), to_pose2(T_odom_last.value_or(*T_odom_first)));
     else still_waiting.push_back(std::move(waiting));
   }
   waiting_ = std::move(still_waiting);
@@ -191,8 +201,12 @@ void McapScanLog::resolve_waiting() {
 void McapScanLog::add_with_pose(WaitingScan waiting, const Pose2& T_odom_body, const Pose2& T_odom_last) {
   if (odometry_topic_.empty()) uses_tf_ = true;  // from now on use tf only: two sources may differ
   const Pose2 T_body_lidar = to_pose2(mount_of(waiting));
-  sort_in(sorter_, {.scan = std::move(waiting.scan), .T_odom_body = T_odom_body, .T_body_lidar = T_body_lidar, .T_begin_end = T_odom_body.inverse() * T_odom_last}, options_,
-          fmt::format("{}: {}", file_.string(), scan_topic_));
+  sort_in(sorter_,
+          {.scan = std::move(waiting.scan),
+           .T_odom_body = T_odom_body,
+           .T_body_lidar = T_body_lidar,
+           .T_begin_end = T_odom_body.inverse() * T_odom_last},
+          options_, fmt::format("{}: {}", file_.string(), scan_topic_));
 }
 
 std::optional<Pose3> McapScanLog::sensor_pose_in_body(const std::string& frame, Time stamp) const {
@@ -220,23 +234,31 @@ void McapScanLog::report_gyro() {
   if (options_.imu != "on" || imu_topic_.empty() || is_gyro_reported_) return;
   is_gyro_reported_ = true;
   const std::optional<double> bias_radps = gyro_.bias_radps();
-  std::string how = bias_radps ? fmt::format("bias {:.5f} rad/s from {:.0f} s at rest", *bias_radps, gyro_.stationary_s()) : "robot never at rest: zero bias assumed";
-  if (bias_radps && gyro_.motion_without_bias_s() > 0.0) how += fmt::format(", first {:.0f} s of motion not corrected", gyro_.motion_without_bias_s());
-  if (gyro_.uncovered_s() > 0.0) how += fmt::format("; {:.1f} s without gyro data use odometry yaw", gyro_.uncovered_s());
+  std::string how = bias_radps
+                        ? fmt::format("bias {:.5f} rad/s from {:.0f} s at rest", *bias_radps, gyro_.stationary_s())
+                        : "robot never at rest: zero bias assumed";
+  if (bias_radps && gyro_.motion_without_bias_s() > 0.0)
+    how += fmt::format(", first {:.0f} s of motion not corrected", gyro_.motion_without_bias_s());
+  if (gyro_.uncovered_s() > 0.0)
+    how += fmt::format("; {:.1f} s without gyro data use odometry yaw", gyro_.uncovered_s());
   add_found(fmt::format("odometry yaw replaced by the gyro of {}: {} (log.imu)", imu_topic_, how));
 }
 
 void McapScanLog::finish() {
   is_at_end_ = true;
   resolve_waiting();
-  if (!reader_.is_complete()) count_skipped("unexpected end of file", file_.string() + ": truncated; read up to the last complete record");
+  if (!reader_.is_complete())
+    count_skipped("unexpected end of file", file_.string() + ": truncated; read up to the last complete record");
   const std::size_t without_odometry = waiting_.size();
   for (; !waiting_.empty(); waiting_.pop_front()) {
-    count_skipped("scans without odometry", fmt::format("{}: no odometry at the stamp of the scan, {:.9f} s", file_.string(), to_seconds(waiting_.front().scan.stamp)));
+    count_skipped("scans without odometry", fmt::format("{}: no odometry at the stamp of the scan, {:.9f} s",
+                                                        file_.string(), to_seconds(waiting_.front().scan.stamp)));
   }
   if (summary_.num_scans > 0 || !sorter_.is_empty()) return;
-  const char* const what = without_odometry > 0 ? "no odometry overlaps the scans: must contain nav_msgs/msg/Odometry or tf odom -> base_link"
-                                                : "contains no scan: must contain sensor_msgs/msg/LaserScan";
+  const char* const what =
+      without_odometry > 0
+          ? "no odometry overlaps the scans: must contain nav_msgs/msg/Odometry or tf odom -> base_link"
+          : "contains no scan: must contain sensor_msgs/msg/LaserScan";
   throw InputError(fmt::format("{}: {} ({})", file_.string(), what, counted(summary_)));
 }
 

@@ -4,10 +4,10 @@
 #include <optional>
 #include <string>
 
-#include "io/logs/transform_buffer.h"
-#include "io/mcap/mcap_reader.h"
 #include "io/logs/scan_log.h"
 #include "io/logs/scan_sorter.h"
+#include "io/logs/transform_buffer.h"
+#include "io/mcap/mcap_reader.h"
 
 namespace patrol::io {
 
@@ -29,7 +29,8 @@ namespace patrol::io {
 class McapScanLog : public ScanLog {
  public:
   /// Opens a log. `gyro_bias_radps`: gyro bias from an earlier pass over the file.
-  McapScanLog(const std::filesystem::path& file, const ScanLogOptions& options, std::optional<double> gyro_bias_radps = {});
+  McapScanLog(const std::filesystem::path& file, const ScanLogOptions& options,
+              std::optional<double> gyro_bias_radps = {});
 
   std::optional<RecordedScan> next() override;
   double progress() const override { return is_at_end_ ? 1.0 : reader_.progress(); }

@@ -8,8 +8,8 @@ namespace {
 
 constexpr double kMove_m = 0.2, kTurnRad = 0.2;  ///< motion to a new position
 constexpr std::uint64_t kMaxPositions = 500, kMaxReadings = 1'000'000;
-constexpr float kMinCodeRatio = 0.98F;       ///< codes for no return are above this fraction of the maximum range
-constexpr float kMinComparedRatio = 0.75F; ///< lower bound of the ranges compared with the codes
+constexpr float kMinCodeRatio = 0.98F;      ///< codes for no return are above this fraction of the maximum range
+constexpr float kMinComparedRatio = 0.75F;  ///< lower bound of the ranges compared with the codes
 constexpr std::uint64_t kMinPositions = 10, kMinReadings = 20, kMinCountRatio = 5;
 
 }  // namespace
@@ -30,10 +30,13 @@ void NoReturnDetector::add(const RecordedScan& recorded) {
     if (count.last_position != num_positions_) ++count.positions;
     count.last_position = num_positions_;
   }
-  if (!counts_.empty()) counts_.erase(counts_.begin(), counts_.lower_bound(kMinComparedRatio * counts_.rbegin()->first));
+  if (!counts_.empty())
+    counts_.erase(counts_.begin(), counts_.lower_bound(kMinComparedRatio * counts_.rbegin()->first));
 }
 
-bool NoReturnDetector::is_conclusive() const { return num_positions_ >= kMaxPositions || num_readings_ >= kMaxReadings; }
+bool NoReturnDetector::is_conclusive() const {
+  return num_positions_ >= kMaxPositions || num_readings_ >= kMaxReadings;
+}
 
 std::optional<NoReturnValue> NoReturnDetector::find() const {
   if (counts_.empty()) return std::nullopt;
@@ -43,7 +46,8 @@ std::optional<NoReturnValue> NoReturnDetector::find() const {
   const std::uint64_t enough = std::max(kMinReadings, kMinCountRatio * max_below);
   for (auto value = top; value != counts_.end(); ++value) {
     const Count& count = value->second;
-    if (count.positions >= kMinPositions && count.readings >= enough) return NoReturnValue{.range_m = value->first, .num_readings = count.readings, .num_positions = count.positions};
+    if (count.positions >= kMinPositions && count.readings >= enough)
+      return NoReturnValue{.range_m = value->first, .num_readings = count.readings, .num_positions = count.positions};
   }
   return std::nullopt;
 }

@@ -12,8 +12,8 @@ namespace patrol::io {
 /// Range that a lidar reports instead of "no return".
 struct NoReturnValue {
   double range_m = 0.0;
-  std::uint64_t num_readings = 0;  ///< number of readings with this value in the examined scans
-  std::uint64_t num_positions = 0;    ///< number of robot positions with such readings
+  std::uint64_t num_readings = 0;   ///< number of readings with this value in the examined scans
+  std::uint64_t num_positions = 0;  ///< number of robot positions with such readings
 };
 
 /// Detector of the range that encodes "no return" in the first scans of a log. Examples: 81.83 m and 8.19 m (SICK), 50

@@ -21,7 +21,8 @@ RunLogWriter::RunLogWriter(const std::filesystem::path& log_mcap, const RobotDes
     : writer_(log_mcap), names_{.joints = robot.joint_names} {
   TransformSet mounts;
   for (const auto& [frame, T_body_sensor] : robot.T_body_sensor) {
-    mounts.transforms.push_back({.stamp = {}, .parent = frame_id::kBody, .child = frame, .T_parent_child = T_body_sensor});
+    mounts.transforms.push_back(
+        {.stamp = {}, .parent = frame_id::kBody, .child = frame, .T_parent_child = T_body_sensor});
   }
   writer_.write(channel<TransformSet>(kTfStatic), Time{}, encode(mounts, names_));
 }
@@ -38,7 +39,8 @@ void RunLogWriter::write_frames(Time log_time, const OdometryEstimate& odometry)
       {odometry.stamp, frame_id::kLevel, frame_id::kBody, T_odom_level.inverse() * odometry.T_odom_body},
   }};
   writer_.write(channel<TransformSet>(kTf), log_time, encode(frames, names_));
-  if (odometry_.empty() || odometry_.back().stamp < odometry.stamp) odometry_.push_back({odometry.stamp, odometry.T_odom_body});
+  if (odometry_.empty() || odometry_.back().stamp < odometry.stamp)
+    odometry_.push_back({odometry.stamp, odometry.T_odom_body});
   if (odometry.stamp - odometry_.front().stamp > 2 * kOdometryMemory) {
     std::erase_if(odometry_, [&](const StampedPose& old) { return odometry.stamp - old.stamp > kOdometryMemory; });
   }

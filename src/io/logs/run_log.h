@@ -23,24 +23,42 @@ template <typename Message>
 inline constexpr const char* kTopic = nullptr;
 template <IsSensorMessage Message>
 inline constexpr const char* kTopic<Message> = SensorTraits<Message>::kInfo.topic;
-template <> inline constexpr const char* kTopic<ScanCommand> = "/scanner/command";
-template <> inline constexpr const char* kTopic<AntennaCommand> = "/tem/antenna_command";
-template <> inline constexpr const char* kTopic<SoundingCommand> = "/tem/command";
-template <> inline constexpr const char* kTopic<WarningCommand> = "/warning";
-template <> inline constexpr const char* kTopic<LiningResult> = "/inspection/lining";
-template <> inline constexpr const char* kTopic<WaterResult> = "/inspection/water";
-template <> inline constexpr const char* kTopic<LocalizationConfidence> = "/localization_confidence";
-template <> inline constexpr const char* kTopic<OdometryEstimate> = "/odom";
-template <> inline constexpr const char* kTopic<PoseEstimate> = "/pose";
-template <> inline constexpr const char* kTopic<UwbPoseEstimate> = "/uwb_odometry/pose";
-template <> inline constexpr const char* kTopic<ParticleSet> = "/particles";
-template <> inline constexpr const char* kTopic<MapUpdate> = "/map";
-template <> inline constexpr const char* kTopic<Path> = "/plan";
-template <> inline constexpr const char* kTopic<VelocityCommand> = "/cmd_vel";
-template <> inline constexpr const char* kTopic<Event> = "/events";
-template <> inline constexpr const char* kTopic<GroundTruth> = "/ground_truth/odom";
-template <> inline constexpr const char* kTopic<SimState> = "/sim/state";
-template <> inline constexpr const char* kTopic<Collision> = "/ground_truth/collisions";
+template <>
+inline constexpr const char* kTopic<ScanCommand> = "/scanner/command";
+template <>
+inline constexpr const char* kTopic<AntennaCommand> = "/tem/antenna_command";
+template <>
+inline constexpr const char* kTopic<SoundingCommand> = "/tem/command";
+template <>
+inline constexpr const char* kTopic<WarningCommand> = "/warning";
+template <>
+inline constexpr const char* kTopic<LiningResult> = "/inspection/lining";
+template <>
+inline constexpr const char* kTopic<WaterResult> = "/inspection/water";
+template <>
+inline constexpr const char* kTopic<LocalizationConfidence> = "/localization_confidence";
+template <>
+inline constexpr const char* kTopic<OdometryEstimate> = "/odom";
+template <>
+inline constexpr const char* kTopic<PoseEstimate> = "/pose";
+template <>
+inline constexpr const char* kTopic<UwbPoseEstimate> = "/uwb_odometry/pose";
+template <>
+inline constexpr const char* kTopic<ParticleSet> = "/particles";
+template <>
+inline constexpr const char* kTopic<MapUpdate> = "/map";
+template <>
+inline constexpr const char* kTopic<Path> = "/plan";
+template <>
+inline constexpr const char* kTopic<VelocityCommand> = "/cmd_vel";
+template <>
+inline constexpr const char* kTopic<Event> = "/events";
+template <>
+inline constexpr const char* kTopic<GroundTruth> = "/ground_truth/odom";
+template <>
+inline constexpr const char* kTopic<SimState> = "/sim/state";
+template <>
+inline constexpr const char* kTopic<Collision> = "/ground_truth/collisions";
 
 /// Writes log.mcap: every message on its topic, and the frames on /tf and /tf_static.
 class RunLogWriter {
@@ -93,14 +111,16 @@ class LogHandlers {
 
   std::vector<std::string> topics() const;
   /// Decodes a message of one of the topics. Throws DecodeError.
-  void handle(const std::string& topic, Time log_time, std::string_view cdr) const { by_topic_.at(topic)(log_time, cdr); }
+  void handle(const std::string& topic, Time log_time, std::string_view cdr) const {
+    by_topic_.at(topic)(log_time, cdr);
+  }
 
  private:
   std::map<std::string, std::function<void(Time, std::string_view)>> by_topic_;
 };
 
-/// Reads a log in order, from one log time to another (both included); returns whether the log is complete: one that was
-/// cut off by a crash is read up to the cut. Throws InputError, naming file and place, when it is damaged.
+/// Reads a log in order, from one log time to another (both included); returns whether the log is complete: one that
+/// was cut off by a crash is read up to the cut. Throws InputError, naming file and place, when it is damaged.
 bool read_run_log(const std::filesystem::path& log_mcap, const LogHandlers& handlers, Time from = Time::min(),
                   Time to = Time::max());
 

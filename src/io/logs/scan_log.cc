@@ -6,9 +6,9 @@
 
 #include "core/error.h"
 #include "io/logs/carmen_log.h"
-#include "io/mcap/mcap_format.h"
 #include "io/logs/mcap_scan_log.h"
 #include "io/logs/no_return_detector.h"
+#include "io/mcap/mcap_format.h"
 
 namespace patrol::io {
 namespace {
@@ -31,7 +31,8 @@ bool is_mcap(const std::filesystem::path& file) {
   return head == mcap::kMagic;
 }
 
-std::unique_ptr<ScanLog> make_log(const std::filesystem::path& file, const ScanLogOptions& options, std::optional<double> gyro_bias_radps) {
+std::unique_ptr<ScanLog> make_log(const std::filesystem::path& file, const ScanLogOptions& options,
+                                  std::optional<double> gyro_bias_radps) {
   if (is_mcap(file)) return std::make_unique<McapScanLog>(file, options, gyro_bias_radps);
   return std::make_unique<CarmenLog>(file, options);
 }
@@ -55,8 +56,7 @@ FirstPass run_first_pass(const std::filesystem::path& file, ScanLogOptions optio
       if (!recorded) break;
       finder.add(*recorded);
     }
-  } catch (const InputError&) {
-  }
+  } catch (const InputError&) {}
   if (!log->gyro()) return {.no_return = finder.find(), .gyro_bias_radps = {}};
   return {.no_return = finder.find(), .gyro = log->gyro()->consistency(), .gyro_bias_radps = log->gyro()->bias_radps()};
 }
@@ -65,13 +65,16 @@ FirstPass run_first_pass(const std::filesystem::path& file, ScanLogOptions optio
 ScanLogOptions apply_first_pass(const FirstPass& first_pass, ScanLogOptions options, std::vector<std::string>& found) {
   if (options.detect_no_return && first_pass.no_return && first_pass.no_return->range_m <= options.no_return_m) {
     options.no_return_m = first_pass.no_return->range_m * (1.0 - 1e-6);  // margin for the rounded digits in the file
-    found.push_back(fmt::format("{:.4g} m encodes no return: {} identical readings at {} positions (log.detect_no_return)", first_pass.no_return->range_m,
-                                first_pass.no_return->num_readings, first_pass.no_return->num_positions));
+    found.push_back(fmt::format(
+        "{:.4g} m encodes no return: {} identical readings at {} positions (log.detect_no_return)",
+        first_pass.no_return->range_m, first_pass.no_return->num_readings, first_pass.no_return->num_positions));
   }
   if (options.imu != "auto") return options;
   options.imu = first_pass.gyro == GyroConsistency::kContradicts ? "on" : "off";
-  if (first_pass.gyro == GyroConsistency::kAgrees) found.push_back("odometry yaw agrees with the gyro: odometry kept unchanged (log.imu)");
-  if (first_pass.gyro == GyroConsistency::kUnrelated) found.push_back("odometry yaw and gyro are uncorrelated: gyro not used (log.imu)");
+  if (first_pass.gyro == GyroConsistency::kAgrees)
+    found.push_back("odometry yaw agrees with the gyro: odometry kept unchanged (log.imu)");
+  if (first_pass.gyro == GyroConsistency::kUnrelated)
+    found.push_back("odometry yaw and gyro are uncorrelated: gyro not used (log.imu)");
   return options;
 }
 
@@ -92,14 +95,15 @@ void ScanLog::count_skipped(const std::string& reason, const std::string& warnin
   if (summary_.warnings.size() < kMaxWarnings) summary_.warnings.push_back(warning);
 }
 
-void ScanLog::sort_in(ScanSorter& sorter, RecordedScan scan, const ScanLogOptions& options, const std::string& location) {
+void ScanLog::sort_in(ScanSorter& sorter, RecordedScan scan, const ScanLogOptions& options,
+                      const std::string& location) {
   const Time stamp = scan.scan.stamp;
   const ScanSorter::Order order = sorter.add(std::move(scan));
   if (order == ScanSorter::Order::kReordered) ++summary_.num_reordered;
   if (order != ScanSorter::Order::kTooLate) return;
   reject_or_skip(options, "scans out of order",
-                 fmt::format("{}: stamp {:.6f} s after {:.6f} s, more than {} scans late: cannot be sorted", location, to_seconds(stamp),
-                             to_seconds(*sorter.last_taken()), ScanSorter::kWindow));
+                 fmt::format("{}: stamp {:.6f} s after {:.6f} s, more than {} scans late: cannot be sorted", location,
+                             to_seconds(stamp), to_seconds(*sorter.last_taken()), ScanSorter::kWindow));
 }
 
 void ScanLog::count_returned(const RecordedScan& scan) {
@@ -119,7 +123,8 @@ std::string counted(const ScanLogSummary& summary) {
 std::string to_text(const ScanLogSummary& summary) {
   std::string text = fmt::format("{} scans", summary.num_scans);
   if (summary.num_reordered > 0) text += fmt::format(", {} sorted by stamp", summary.num_reordered);
-  if (summary.num_same_stamp > 0) text += fmt::format(", {} with the stamp of the previous scan", summary.num_same_stamp);
+  if (summary.num_same_stamp > 0)
+    text += fmt::format(", {} with the stamp of the previous scan", summary.num_same_stamp);
   text += "\n";
   for (const std::string& what : summary.found) text += "detected: " + what + "\n";
   if (!summary.assumed.empty()) text += "assumed: " + counts(summary.assumed) + "\n";
@@ -134,7 +139,8 @@ std::unique_ptr<ScanLog> open_scan_log(const std::filesystem::path& file, const 
   const bool needs_look = options.detect_no_return || options.imu != "off";
   const FirstPass first_pass = needs_look ? run_first_pass(file, options) : FirstPass{};
   std::vector<std::string> found;
-  std::unique_ptr<ScanLog> log = make_log(file, apply_first_pass(first_pass, options, found), first_pass.gyro_bias_radps);
+  std::unique_ptr<ScanLog> log =
+      make_log(file, apply_first_pass(first_pass, options, found), first_pass.gyro_bias_radps);
   for (const std::string& what : found) log->add_found(what);
   return log;
 }

@@ -16,23 +16,25 @@
 namespace patrol::io {
 
 struct ScanLogOptions {
-  bool skip_invalid = false;   ///< count and skip unreadable records instead of throwing
-  double no_return_m = 80.0;     ///< ranges from here on, or from the maximum of the sensor, are "no return"
-  bool detect_no_return = true;   ///< detect a range value in the log that encodes "no return" (io/logs/no_return_detector.h)
-  std::string carmen_laser;      ///< message with the scans, e.g. "FLASER"; empty: the most informative one in the log
-  std::string scan_topic;        ///< MCAP only; empty: topic of the first scan
-  std::string odometry_topic;    ///< MCAP only; empty: topic of the first odometry message, or tf if there is none
-  /// MCAP only; on: yaw increments from the gyro (io/logs/gyro_odometry.h), auto: only if the first scans show that gyro and
-  /// odometry disagree, off: never.
+  bool skip_invalid = false;  ///< count and skip unreadable records instead of throwing
+  double no_return_m = 80.0;  ///< ranges from here on, or from the maximum of the sensor, are "no return"
+  bool detect_no_return =
+      true;  ///< detect a range value in the log that encodes "no return" (io/logs/no_return_detector.h)
+  std::string carmen_laser;    ///< message with the scans, e.g. "FLASER"; empty: the most informative one in the log
+  std::string scan_topic;      ///< MCAP only; empty: topic of the first scan
+  std::string odometry_topic;  ///< MCAP only; empty: topic of the first odometry message, or tf if there is none
+  /// MCAP only; on: yaw increments from the gyro (io/logs/gyro_odometry.h), auto: only if the first scans show that
+  /// gyro and odometry disagree, off: never.
   std::string imu = "auto";
-  std::string imu_topic = "";    ///< MCAP only; empty: topic of the first IMU message
+  std::string imu_topic = "";  ///< MCAP only; empty: topic of the first IMU message
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("skip_invalid", self.skip_invalid);
     visit("no_return_m", self.no_return_m, between(0.1, 1e4));
     visit("detect_no_return", self.detect_no_return);
-    visit("carmen_laser", self.carmen_laser, one_of({"", "ROBOTLASER1", "FLASER", "RAWLASER1", "RLASER", "ROBOTLASER2", "RAWLASER2"}));
+    visit("carmen_laser", self.carmen_laser,
+          one_of({"", "ROBOTLASER1", "FLASER", "RAWLASER1", "RLASER", "ROBOTLASER2", "RAWLASER2"}));
     visit("scan_topic", self.scan_topic);
     visit("odometry_topic", self.odometry_topic);
     visit("imu", self.imu, one_of({"auto", "on", "off"}));
@@ -42,16 +44,16 @@ struct ScanLogOptions {
 
 /// Statistics of a log up to the current position.
 struct ScanLogSummary {
-  std::uint64_t num_read = 0;       ///< number of lines or messages read
-  std::uint64_t num_scans = 0;      ///< number of scans returned
-  std::uint64_t num_reordered = 0;  ///< number of these that were preceded by a later scan in the file
-  std::uint64_t num_same_stamp = 0;  ///< number of these with the same stamp as the previous scan
+  std::uint64_t num_read = 0;                    ///< number of lines or messages read
+  std::uint64_t num_scans = 0;                   ///< number of scans returned
+  std::uint64_t num_reordered = 0;               ///< number of these that were preceded by a later scan in the file
+  std::uint64_t num_same_stamp = 0;              ///< number of these with the same stamp as the previous scan
   std::map<std::string, std::uint64_t> ignored;  ///< number by message name: not selected, or of unknown type
   std::vector<std::string> found;                ///< properties detected in the log and applied
   /// Number of scans by assumption: the file has no or conflicting information.
   std::map<std::string, std::uint64_t> assumed;
   std::map<std::string, std::uint64_t> skipped;  ///< number by reason: needed, but unusable
-  std::vector<std::string> warnings;           ///< first errors of skipped records, each with its position
+  std::vector<std::string> warnings;             ///< first errors of skipped records, each with its position
 };
 
 /// Formats the statistics of a file without scans: "12 lines, 3 SYNC, 4 unreadable lines".
@@ -64,8 +66,8 @@ std::string to_text(const ScanLogSummary& summary);
 /// 117: +Inf no return, NaN invalid (0 or less in the file).
 ///
 /// Stamps never decrease from scan to scan but may repeat; scans with equal stamps keep the order of the file. Records
-/// may be out of order: they are sorted within a window of a few scans (io/logs/scan_sorter.h). A scan that arrives later
-/// than that is an error or is skipped.
+/// may be out of order: they are sorted within a window of a few scans (io/logs/scan_sorter.h). A scan that arrives
+/// later than that is an error or is skipped.
 class ScanLog {
  public:
   virtual ~ScanLog() = default;

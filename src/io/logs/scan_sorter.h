@@ -22,7 +22,8 @@ class ScanSorter {
   Order add(RecordedScan scan) {
     const Time stamp = scan.scan.stamp;
     if (last_taken_ && stamp < *last_taken_) return Order::kTooLate;
-    const auto position = std::upper_bound(pending_.begin(), pending_.end(), stamp, [](Time t, const RecordedScan& pending) { return t < pending.scan.stamp; });
+    const auto position = std::upper_bound(pending_.begin(), pending_.end(), stamp,
+                                           [](Time t, const RecordedScan& pending) { return t < pending.scan.stamp; });
     const Order order = position == pending_.end() ? Order::kInOrder : Order::kReordered;
     pending_.insert(position, std::move(scan));
     return order;

@@ -11,12 +11,14 @@ constexpr std::size_t kMaxTreeDepth = 64;  ///< maximum depth of the tree; also 
 std::string plain(const std::string& frame) { return frame.starts_with('/') ? frame.substr(1) : frame; }
 
 std::optional<Pose3> pose_at_stamp(const std::deque<StampedPose>& poses, Time stamp) {
-  const auto after = std::lower_bound(poses.begin(), poses.end(), stamp, [](const StampedPose& entry, Time t) { return entry.stamp < t; });
+  const auto after = std::lower_bound(poses.begin(), poses.end(), stamp,
+                                      [](const StampedPose& entry, Time t) { return entry.stamp < t; });
   if (after == poses.end()) return std::nullopt;
   if (after->stamp == stamp) return after->pose;
   if (after == poses.begin()) return std::nullopt;
   const StampedPose& before = *(after - 1);
-  return interpolate(before.pose, after->pose, to_seconds(stamp - before.stamp) / to_seconds(after->stamp - before.stamp));
+  return interpolate(before.pose, after->pose,
+                     to_seconds(stamp - before.stamp) / to_seconds(after->stamp - before.stamp));
 }
 
 }  // namespace
@@ -54,7 +56,8 @@ std::vector<TransformBuffer::Ancestor> TransformBuffer::ancestors(const std::str
     const auto link = links_.find(line.back().frame);
     if (link == links_.end()) break;
     const auto& poses = link->second.T_parent_child;
-    const std::optional<Pose3> T_parent_child = link->second.is_static ? poses.front().pose : pose_at_stamp(poses, stamp);
+    const std::optional<Pose3> T_parent_child =
+        link->second.is_static ? poses.front().pose : pose_at_stamp(poses, stamp);
     if (!T_parent_child) break;
     line.push_back({link->second.parent, *T_parent_child * line.back().T_frame_child});
   }
@@ -64,7 +67,8 @@ std::vector<TransformBuffer::Ancestor> TransformBuffer::ancestors(const std::str
 std::optional<Pose3> TransformBuffer::find(const std::string& parent, const std::string& child, Time stamp) const {
   const std::vector<Ancestor> of_parent = ancestors(parent, stamp), of_child = ancestors(child, stamp);
   for (const Ancestor& above : of_child) {
-    const auto common = std::find_if(of_parent.begin(), of_parent.end(), [&](const Ancestor& other) { return other.frame == above.frame; });
+    const auto common = std::find_if(of_parent.begin(), of_parent.end(),
+                                     [&](const Ancestor& other) { return other.frame == above.frame; });
     if (common != of_parent.end()) return common->T_frame_child.inverse() * above.T_frame_child;
   }
   return std::nullopt;

@@ -19,7 +19,7 @@ namespace patrol::io {
 class TransformBuffer {
  public:
   static constexpr Time kBufferLength = std::chrono::seconds(10);  ///< buffer length of moving transforms
-  static constexpr std::size_t kMaxPoses = 2'000;           ///< maximum number of buffered transforms per frame
+  static constexpr std::size_t kMaxPoses = 2'000;                  ///< maximum number of buffered transforms per frame
   /// Maximum number of frames; more than any robot has, further frames are ignored.
   static constexpr std::size_t kMaxFrames = 1'000;
 

@@ -30,7 +30,8 @@ std::string map_png(const OccupancyGrid& map) {
   image.height = static_cast<png_uint_32>(geometry.height);
   png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
   std::string png(size, '\0');
-  if (png_image_write_to_memory(&image, png.data(), &size, 0, pixels.data(), 0, nullptr) == 0) throw std::runtime_error(image.message);
+  if (png_image_write_to_memory(&image, png.data(), &size, 0, pixels.data(), 0, nullptr) == 0)
+    throw std::runtime_error(image.message);
   png.resize(size);
   return png;
 }

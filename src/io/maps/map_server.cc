@@ -25,7 +25,9 @@ constexpr unsigned char kMaxError = 254, kNoError = 255;  // mm
 
 unsigned char pixel_of(std::int8_t occupancy) {
   if (occupancy < 0) return kUnknownPixel;
-  return occupancy >= 100.0 * kOccupiedThreshold ? kOccupiedPixel : occupancy <= 100.0 * kFreeThreshold ? kFreePixel : kUnknownPixel;
+  return occupancy >= 100.0 * kOccupiedThreshold ? kOccupiedPixel
+         : occupancy <= 100.0 * kFreeThreshold   ? kFreePixel
+                                                 : kUnknownPixel;
 }
 
 unsigned char error_pixel(float error_m) {
@@ -67,7 +69,8 @@ Image load_pgm(const std::filesystem::path& file) {
   Image image{.width = pgm_number(in), .height = pgm_number(in), .pixels = {}};
   const int maximum = pgm_number(in);
   if ((magic != "P5" && magic != "P2") || maximum != kMaxPixelValue) refuse("is not an 8-bit PGM");
-  if (image.width <= 0 || image.height <= 0) refuse(fmt::format("is {} x {} pixels: contains no map", image.width, image.height));
+  if (image.width <= 0 || image.height <= 0)
+    refuse(fmt::format("is {} x {} pixels: contains no map", image.width, image.height));
   // Each pixel takes at least one byte of the file: check the size before memory is allocated.
   const std::size_t count = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
   const std::string pixels = fmt::format("{} x {} pixels", image.width, image.height);
@@ -140,8 +143,8 @@ void save_map(const std::filesystem::path& file, const OccupancyGrid& map) {
   save_text(image_file, to_pgm(map, pixel_of));
   save_text(file, fmt::format("image: {}\nmode: trinary\nresolution: {}\norigin: [{}, {}, 0.0]\nnegate: 0\n"
                               "occupied_thresh: {}\nfree_thresh: {}\n",
-                              image_file.filename().string(), geometry.resolution_m, geometry.origin_m.x(), geometry.origin_m.y(),
-                              kOccupiedThreshold, kFreeThreshold));
+                              image_file.filename().string(), geometry.resolution_m, geometry.origin_m.x(),
+                              geometry.origin_m.y(), kOccupiedThreshold, kFreeThreshold));
 }
 
 std::filesystem::path map_image(const std::filesystem::path& file) { return load_map_file(file).image; }
@@ -151,7 +154,8 @@ OccupancyGrid load_map(const std::filesystem::path& file) {
   const Image image = load_pgm(about.image);
   const bool negate = about.negate == "1" || about.negate == "true";
   const Eigen::Vector2d origin_m(about.origin[0], about.origin[1]);
-  OccupancyGrid map({.resolution_m = about.resolution, .width = image.width, .height = image.height, .origin_m = origin_m}, kUnknown);
+  OccupancyGrid map(
+      {.resolution_m = about.resolution, .width = image.width, .height = image.height, .origin_m = origin_m}, kUnknown);
   for (std::size_t i = 0; i < image.pixels.size(); ++i) {
     const double value = image.pixels[i];
     const double p = (negate ? value : kMaxPixelValue - value) / kMaxPixelValue;
@@ -162,17 +166,22 @@ OccupancyGrid load_map(const std::filesystem::path& file) {
   return map;
 }
 
-void save_map_errors(const std::filesystem::path& file_pgm, const Grid<float>& errors_m) { save_text(file_pgm, to_pgm(errors_m, error_pixel)); }
+void save_map_errors(const std::filesystem::path& file_pgm, const Grid<float>& errors_m) {
+  save_text(file_pgm, to_pgm(errors_m, error_pixel));
+}
 
 Grid<float> load_map_errors(const std::filesystem::path& file_pgm, const GridGeometry& geometry) {
   const Image image = load_pgm(file_pgm);
   if (image.width != geometry.width || image.height != geometry.height) {
-    throw InputError(fmt::format("{}: is {} x {} pixels, its map {} x {}", file_pgm.string(), image.width, image.height, geometry.width, geometry.height));
+    throw InputError(fmt::format("{}: is {} x {} pixels, its map {} x {}", file_pgm.string(), image.width, image.height,
+                                 geometry.width, geometry.height));
   }
   Grid<float> errors_m(geometry, std::numeric_limits<float>::quiet_NaN());
   for (int row = 0; row < image.height; ++row) {
     for (int col = 0; col < image.width; ++col) {
-      const unsigned char pixel = image.pixels[static_cast<std::size_t>(image.height - 1 - row) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(col)];
+      const unsigned char pixel =
+          image.pixels[static_cast<std::size_t>(image.height - 1 - row) * static_cast<std::size_t>(image.width) +
+                       static_cast<std::size_t>(col)];
       if (pixel != kNoError) errors_m.at({col, row}) = 1e-3F * static_cast<float>(pixel);
     }
   }

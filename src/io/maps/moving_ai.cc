@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "io/files/line_tokenizer.h"
 #include "io/files/line_reader.h"
+#include "io/files/line_tokenizer.h"
 
 namespace patrol::io {
 namespace {
@@ -42,7 +42,9 @@ class Lines {
 
   int number() const { return number_; }
   [[noreturn]] void refuse(const std::string& what) const { throw input_error(reader_.file().string(), number_, what); }
-  [[noreturn]] void refuse_file(const std::string& what) const { throw InputError(fmt::format("{}: {}", reader_.file().string(), what)); }
+  [[noreturn]] void refuse_file(const std::string& what) const {
+    throw InputError(fmt::format("{}: {}", reader_.file().string(), what));
+  }
 
  private:
   LineReader reader_;
@@ -67,7 +69,8 @@ GridHeader read_grid_header(Lines& lines) {
         return header;
       }
       if (key == "type") {
-        if (const std::string_view type = fields.word("type"); type != "octile") lines.refuse(fmt::format("type: is {}, must be octile", type));
+        if (const std::string_view type = fields.word("type"); type != "octile")
+          lines.refuse(fmt::format("type: is {}, must be octile", type));
         has_type = true;
       } else if (key == "height") {
         header.height = static_cast<int>(fields.integer("height", 1, kMaxSide));
@@ -103,7 +106,8 @@ MovingAiProblem parse_problem(std::string_view text) {
   const auto integer = [&](std::size_t index, const char* what, int min, int max) {
     return static_cast<int>(LineTokenizer(fields[index]).integer(what, min, max));
   };
-  MovingAiProblem problem{.bucket = integer(0, "bucket", 0, std::numeric_limits<int>::max()), .map = std::string(fields[1])};
+  MovingAiProblem problem{.bucket = integer(0, "bucket", 0, std::numeric_limits<int>::max()),
+                          .map = std::string(fields[1])};
   problem.width = integer(2, "width", 1, kMaxSide);
   problem.height = integer(3, "height", 1, kMaxSide);
   const auto cell = [&](std::size_t index, const char* x, const char* y) {
@@ -127,7 +131,8 @@ double rounding_of(std::string_view length) {
   const std::string_view mantissa = length.substr(0, length.find_first_of("eE"));
   const std::size_t first = std::min(mantissa.find_first_of("123456789"), mantissa.size());
   const std::string_view significant = mantissa.substr(first);
-  const auto given = static_cast<int>(std::count_if(significant.begin(), significant.end(), [](char c) { return c != '.'; }));
+  const auto given =
+      static_cast<int>(std::count_if(significant.begin(), significant.end(), [](char c) { return c != '.'; }));
   const double exponent_of_first = std::floor(std::log10(std::abs(value)));
   return 0.5 * std::pow(10.0, exponent_of_first - std::max(given, kMinDigits) + 1);
 }
@@ -136,15 +141,18 @@ MovingAiMap load_moving_ai_map(const std::filesystem::path& file) {
   Lines lines(file);
   const GridHeader header = read_grid_header(lines);
   const auto width = static_cast<std::size_t>(header.width), height = static_cast<std::size_t>(header.height);
-  if (width * height > kMaxCells) lines.refuse(fmt::format("map: {} x {} cells, at most {} are allowed", width, height, kMaxCells));
+  if (width * height > kMaxCells)
+    lines.refuse(fmt::format("map: {} x {} cells, at most {} are allowed", width, height, kMaxCells));
   std::vector<char> from_top;  // grows with the data, not with the size in the header
   for (std::size_t row = 0; row < height; ++row) {
     const auto text = lines.next();
     if (!text) lines.refuse_file(fmt::format("ends after {} of {} rows", row, height));
-    if (text->size() != width) lines.refuse(fmt::format("row {}: has {} cells, must have {}", row, text->size(), width));
+    if (text->size() != width)
+      lines.refuse(fmt::format("row {}: has {} cells, must have {}", row, text->size(), width));
     for (const char terrain : *text) {
       if (is_one_of(terrain, kLand) || is_one_of(terrain, kWater) || is_one_of(terrain, kBlocked)) continue;
-      lines.refuse(fmt::format("row {}: invalid character {}, must be of . G S W @ O T", row, static_cast<int>(static_cast<unsigned char>(terrain))));
+      lines.refuse(fmt::format("row {}: invalid character {}, must be of . G S W @ O T", row,
+                               static_cast<int>(static_cast<unsigned char>(terrain))));
     }
     from_top.insert(from_top.end(), text->begin(), text->end());
   }
@@ -180,7 +188,8 @@ std::vector<MovingAiProblem> load_moving_ai_problems(const std::filesystem::path
       problems.push_back(parse_problem(*text));
       problems.back().line = lines.number();
     } catch (const ParseError& error) {
-      lines.refuse(fmt::format("{}: a problem is bucket, map, width, height, start x, y, goal x, y, optimal length", error.what()));
+      lines.refuse(fmt::format("{}: a problem is bucket, map, width, height, start x, y, goal x, y, optimal length",
+                               error.what()));
     }
   }
   if (problems.empty()) lines.refuse_file("contains no problems");

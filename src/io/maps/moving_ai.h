@@ -27,14 +27,14 @@ OccupancyGrid to_occupancy(const MovingAiMap& map, Cell start);
 /// Path problem: one line of a .scen file.
 struct MovingAiProblem {
   int bucket = 0;
-  std::string map;              ///< map name in the file
-  int width = 0, height = 0;    ///< size of the map in cells
+  std::string map;            ///< map name in the file
+  int width = 0, height = 0;  ///< size of the map in cells
   Cell start = {}, goal = {};
   /// Optimal path length, cells: 8-connected, sqrt 2 per diagonal step, no step past the corner of a blocked cell.
   double optimal_length = 0.0;
   /// Maximum rounding error of `optimal_length`, cells, from the number of digits in the file.
   double length_rounding = 0.0;
-  int line = 0;                 ///< line number in the file
+  int line = 0;  ///< line number in the file
 };
 
 /// Returns the maximum rounding error of a length as written: half a unit of its last significant digit, or of the

@@ -42,8 +42,7 @@ McapWriter::McapWriter(const std::filesystem::path& path)
 McapWriter::~McapWriter() {
   try {
     if (!is_closed_) flush_chunk();
-  } catch (const std::exception&) {
-  }
+  } catch (const std::exception&) {}
 }
 
 void McapWriter::put(std::string_view bytes) {
@@ -213,9 +212,9 @@ mcap::RecordWriter McapWriter::chunk_indexes() const {
 void McapWriter::write_summary() {
   const std::uint64_t start = offset_;
   const std::pair<mcap::Opcode, mcap::RecordWriter> groups[] = {{mcap::kSchema, schemas_},
-                                                         {mcap::kChannel, channels_},
-                                                         {mcap::kStatistics, statistics()},
-                                                         {mcap::kChunkIndex, chunk_indexes()}};
+                                                                {mcap::kChannel, channels_},
+                                                                {mcap::kStatistics, statistics()},
+                                                                {mcap::kChunkIndex, chunk_indexes()}};
   mcap::RecordWriter summary, offsets;
   for (const auto& [opcode, group] : groups) {
     if (group.is_empty()) continue;

@@ -63,7 +63,7 @@ class McapWriter {
   std::string packed_;
 
   std::vector<std::string> schema_types_;     ///< [schema id - 1]
-  mcap::RecordWriter schemas_, channels_;            ///< records for the summary
+  mcap::RecordWriter schemas_, channels_;     ///< records for the summary
   std::vector<std::uint32_t> message_count_;  ///< [channel id - 1]
   std::uint64_t total_count_ = 0;
   std::uint64_t first_time_ = 0, last_time_ = 0;

@@ -53,7 +53,10 @@ void read_values(FileText& text, const std::string& key, LineTokenizer& fields, 
 }
 
 std::optional<NumberType> type_of(char type, std::size_t bytes) {
-  if (type == 'F') return bytes == 4 ? std::optional(NumberType::kFloat32) : bytes == 8 ? std::optional(NumberType::kFloat64) : std::nullopt;
+  if (type == 'F')
+    return bytes == 4   ? std::optional(NumberType::kFloat32)
+           : bytes == 8 ? std::optional(NumberType::kFloat64)
+                        : std::nullopt;
   if (type != 'I' && type != 'U') return std::nullopt;
   for (const NumberType known : {NumberType::kInt8, NumberType::kInt16, NumberType::kInt32, NumberType::kInt64}) {
     if (bytes_of(known) != bytes) continue;
@@ -65,7 +68,8 @@ std::optional<NumberType> type_of(char type, std::size_t bytes) {
 
 void set_types(FileText& text, PcdHeader& header) {
   if (header.sizes.size() != header.columns.size() || header.types.size() != header.columns.size()) {
-    text.refuse(fmt::format("FIELDS has {} words, SIZE {} and TYPE {}", header.columns.size(), header.sizes.size(), header.types.size()));
+    text.refuse(fmt::format("FIELDS has {} words, SIZE {} and TYPE {}", header.columns.size(), header.sizes.size(),
+                            header.types.size()));
   }
   for (std::size_t i = 0; i < header.columns.size(); ++i) {
     const auto type = type_of(header.types[i], header.sizes[i]);
@@ -92,7 +96,8 @@ PcdHeader read_pcd_header(FileText& text) {
   if (header.data != "ascii" && header.data != "binary") text.refuse("DATA must be ascii or binary");
   if (header.height > 0 && header.width > kMaxPcdPoints / header.height) text.refuse("WIDTH x HEIGHT is too large");
   const std::int64_t points = header.width * header.height;
-  if (header.points.value_or(points) != points) text.refuse(fmt::format("POINTS is {}, WIDTH x HEIGHT {}", *header.points, points));
+  if (header.points.value_or(points) != points)
+    text.refuse(fmt::format("POINTS is {}, WIDTH x HEIGHT {}", *header.points, points));
   return header;
 }
 
@@ -100,7 +105,8 @@ PcdHeader read_pcd_header(FileText& text) {
 
 void save_pcd(const std::filesystem::path& file, const std::vector<ScannerPoint>& points) {
   const std::string header = fmt::format(
-      "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z intensity\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 1\n"
+      "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z intensity\nSIZE 4 4 4 4\nTYPE F F F "
+      "F\nCOUNT 1 1 1 1\n"
       "WIDTH {0}\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS {0}\nDATA binary\n",
       points.size());
   save_text(file, header + to_rows(points));

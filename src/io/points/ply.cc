@@ -16,10 +16,12 @@ constexpr std::int64_t kMaxPlyPoints = 1'000'000'000;
 constexpr std::size_t kMaxPlyProperties = 1000;
 
 const std::map<std::string_view, NumberType> kPlyTypes = {
-    {"char", NumberType::kInt8},      {"int8", NumberType::kInt8},     {"uchar", NumberType::kUint8},   {"uint8", NumberType::kUint8},
-    {"short", NumberType::kInt16},    {"int16", NumberType::kInt16},   {"ushort", NumberType::kUint16}, {"uint16", NumberType::kUint16},
-    {"int", NumberType::kInt32},      {"int32", NumberType::kInt32},   {"uint", NumberType::kUint32},   {"uint32", NumberType::kUint32},
-    {"float", NumberType::kFloat32},  {"float32", NumberType::kFloat32}, {"double", NumberType::kFloat64}, {"float64", NumberType::kFloat64}};
+    {"char", NumberType::kInt8},      {"int8", NumberType::kInt8},       {"uchar", NumberType::kUint8},
+    {"uint8", NumberType::kUint8},    {"short", NumberType::kInt16},     {"int16", NumberType::kInt16},
+    {"ushort", NumberType::kUint16},  {"uint16", NumberType::kUint16},   {"int", NumberType::kInt32},
+    {"int32", NumberType::kInt32},    {"uint", NumberType::kUint32},     {"uint32", NumberType::kUint32},
+    {"float", NumberType::kFloat32},  {"float32", NumberType::kFloat32}, {"double", NumberType::kFloat64},
+    {"float64", NumberType::kFloat64}};
 
 struct PlyHeader {
   std::string format;
@@ -57,7 +59,8 @@ bool read_header_line(FileText& text, std::string_view line, PlyHeader& header) 
   } else if (key == "property") {
     if (header.num_elements == 0) text.refuse("property before the first element");
     if (header.num_elements > 1) return false;
-    if (header.columns.size() >= kMaxPlyProperties) text.refuse(fmt::format("vertex has more than {} properties", kMaxPlyProperties));
+    if (header.columns.size() >= kMaxPlyProperties)
+      text.refuse(fmt::format("vertex has more than {} properties", kMaxPlyProperties));
     header.columns.push_back(read_property(text, fields));
   } else if (key != "comment" && key != "obj_info") {
     text.refuse("is not a line of a PLY header");
@@ -89,7 +92,9 @@ PlyHeader read_ply_header(FileText& text) {
 void save_ply(const std::filesystem::path& file, const std::vector<ScannerPoint>& points, const std::string& comment) {
   std::string text = "ply\nformat binary_little_endian 1.0\n";
   if (!comment.empty()) text += fmt::format("comment {}\n", comment);
-  text += fmt::format("element vertex {}\nproperty float x\nproperty float y\nproperty float z\nproperty float intensity\nend_header\n", points.size());
+  text += fmt::format(
+      "element vertex {}\nproperty float x\nproperty float y\nproperty float z\nproperty float intensity\nend_header\n",
+      points.size());
   save_text(file, text + to_rows(points));
 }
 

@@ -10,7 +10,8 @@
 namespace patrol::io {
 
 /// Writes binary little-endian PLY: x, y, z in meters and intensity, as floats. `comment` is one line.
-void save_ply(const std::filesystem::path& file, const std::vector<ScannerPoint>& points, const std::string& comment = "");
+void save_ply(const std::filesystem::path& file, const std::vector<ScannerPoint>& points,
+              const std::string& comment = "");
 
 /// Reads the properties x, y, z and intensity (0 if missing), of any type, of the first element, `vertex`; ascii or
 /// binary little-endian. Data after the vertices are ignored. Throws InputError for an invalid file. Memory is bounded

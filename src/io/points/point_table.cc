@@ -59,7 +59,8 @@ bool make_point(const std::array<double, 4>& numbers, ScannerPoint& point) {
   for (const double number : numbers) {
     if (!(std::abs(number) < kMaxValue)) return false;
   }
-  point = {static_cast<float>(numbers[0]), static_cast<float>(numbers[1]), static_cast<float>(numbers[2]), static_cast<float>(numbers[3])};
+  point = {static_cast<float>(numbers[0]), static_cast<float>(numbers[1]), static_cast<float>(numbers[2]),
+           static_cast<float>(numbers[3])};
   return true;
 }
 
@@ -109,7 +110,8 @@ PointTable::PointTable(FileText& text, std::vector<PointColumn> columns, std::si
 std::vector<ScannerPoint> PointTable::read_binary() {
   const std::string_view rows = text_.rest();
   if (num_points_ > rows.size() / row_bytes_) {
-    throw InputError(fmt::format("{}: ends too early for {} points of {} bytes", text_.file(), num_points_, row_bytes_));
+    throw InputError(
+        fmt::format("{}: ends too early for {} points of {} bytes", text_.file(), num_points_, row_bytes_));
   }
   std::vector<ScannerPoint> points(num_points_);
   for (std::size_t i = 0; i < num_points_; ++i) {
@@ -117,7 +119,8 @@ std::vector<ScannerPoint> PointTable::read_binary() {
     for (std::size_t k = 0; k < numbers.size(); ++k) {
       if (sources_[k]) numbers[k] = number_at(rows.data() + i * row_bytes_ + sources_[k]->byte, sources_[k]->type);
     }
-    if (!make_point(numbers, points[i])) throw InputError(fmt::format("{}: point {} is not finite", text_.file(), i + 1));
+    if (!make_point(numbers, points[i]))
+      throw InputError(fmt::format("{}: point {} is not finite", text_.file(), i + 1));
   }
   num_bytes_read_ = num_points_ * row_bytes_;
   return points;

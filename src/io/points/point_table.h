@@ -13,7 +13,18 @@
 /// Common part of PLY and PCD: a header of text lines, followed by a table of numbers whose columns it names.
 namespace patrol::io {
 
-enum class NumberType : std::uint8_t { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kInt64, kUint64, kFloat32, kFloat64 };
+enum class NumberType : std::uint8_t {
+  kInt8,
+  kUint8,
+  kInt16,
+  kUint16,
+  kInt32,
+  kUint32,
+  kInt64,
+  kUint64,
+  kFloat32,
+  kFloat64
+};
 
 std::size_t bytes_of(NumberType type);
 

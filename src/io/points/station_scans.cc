@@ -22,11 +22,15 @@ struct Entry {
 
 std::filesystem::path index_file(const std::filesystem::path& folder) { return folder / "scans.json"; }
 
-std::filesystem::path cloud_file(const std::filesystem::path& folder, const std::string& station) { return folder / (station + ".ply"); }
+std::filesystem::path cloud_file(const std::filesystem::path& folder, const std::string& station) {
+  return folder / (station + ".ply");
+}
 
 /// Returns whether a name is usable as a file name: letters, digits and underscores, at most 64.
 bool is_plain(const std::string& name) {
-  const auto plain = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_'; };
+  const auto plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+  };
   return !name.empty() && name.size() <= 64 && std::all_of(name.begin(), name.end(), plain);
 }
 
@@ -38,8 +42,10 @@ std::vector<Entry> load_index(const std::filesystem::path& folder) {
   std::set<std::string> stations;
   for (std::size_t i = 0; i < json.size(); ++i) {
     const JsonObject reader(fmt::format("{}: [{}]", file.string(), i), json[i], {"station", "position", "orientation"});
-    Entry entry{.station = reader.string("station"), .T_map_scanner = to_pose3(reader.pose(), reader.numbers("position", 3)[2])};
-    if (!is_plain(entry.station)) reader.fail(fmt::format("station = {}: must be made of letters, digits and underlines", entry.station));
+    Entry entry{.station = reader.string("station"),
+                .T_map_scanner = to_pose3(reader.pose(), reader.numbers("position", 3)[2])};
+    if (!is_plain(entry.station))
+      reader.fail(fmt::format("station = {}: must be made of letters, digits and underlines", entry.station));
     if (!stations.insert(entry.station).second) reader.fail(fmt::format("station {}: duplicate", entry.station));
     entries.push_back(std::move(entry));
   }
@@ -55,7 +61,9 @@ void save_station_scans(const std::filesystem::path& folder, const std::vector<S
     save_ply(cloud_file(folder, scan.station), scan.points, "panoramic scan of " + scan.station + ", in map");
     const Eigen::Vector3d& p = scan.T_map_scanner.position;
     const Eigen::Quaterniond& q = scan.T_map_scanner.rotation;
-    json.push_back({{"station", scan.station}, {"position", {p.x(), p.y(), p.z()}}, {"orientation", {q.x(), q.y(), q.z(), q.w()}}});
+    json.push_back({{"station", scan.station},
+                    {"position", {p.x(), p.y(), p.z()}},
+                    {"orientation", {q.x(), q.y(), q.z(), q.w()}}});
   }
   save_text(index_file(folder), json.dump(1) + "\n");
 }
@@ -63,7 +71,8 @@ void save_station_scans(const std::filesystem::path& folder, const std::vector<S
 std::vector<StationScan> load_station_scans(const std::filesystem::path& folder) {
   std::vector<StationScan> scans;
   for (const auto& [station, T_map_scanner] : load_index(folder)) {
-    scans.push_back({.station = station, .T_map_scanner = T_map_scanner, .points = load_ply(cloud_file(folder, station))});
+    scans.push_back(
+        {.station = station, .T_map_scanner = T_map_scanner, .points = load_ply(cloud_file(folder, station))});
   }
   return scans;
 }

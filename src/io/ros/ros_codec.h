@@ -25,7 +25,9 @@ struct Writer {
   const RosNames& names;
   static constexpr bool kWrites = true;
   template <typename T>
-  void operator()(T& value) { cdr << value; }
+  void operator()(T& value) {
+    cdr << value;
+  }
 };
 
 /// Codec that reads: `codec(field)` fills the field.
@@ -34,7 +36,9 @@ struct Reader {
   RosNames names{};
   static constexpr bool kWrites = false;
   template <typename T>
-  void operator()(T& value) { cdr >> value; }
+  void operator()(T& value) {
+    cdr >> value;
+  }
 };
 
 template <typename Codec>
@@ -90,11 +94,13 @@ void planar_covariance(Codec& codec, Eigen::Matrix3d& covariance) {
   constexpr std::array<std::size_t, 3> kRows = {0, 1, 5};
   std::array<double, 36> full{};
   for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) full[6 * kRows[static_cast<std::size_t>(i)] + kRows[static_cast<std::size_t>(j)]] = covariance(i, j);
+    for (int j = 0; j < 3; ++j)
+      full[6 * kRows[static_cast<std::size_t>(i)] + kRows[static_cast<std::size_t>(j)]] = covariance(i, j);
   }
   codec(full);
   for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) covariance(i, j) = full[6 * kRows[static_cast<std::size_t>(i)] + kRows[static_cast<std::size_t>(j)]];
+    for (int j = 0; j < 3; ++j)
+      covariance(i, j) = full[6 * kRows[static_cast<std::size_t>(i)] + kRows[static_cast<std::size_t>(j)]];
   }
 }
 
@@ -200,15 +206,15 @@ Message decode(std::string_view bytes) {
 }  // namespace patrol::io
 
 /// Instantiates `encode` and `decode` of a message with a `describe` function above.
-#define PATROL_ROS_MESSAGE(Message)                                     \
-  template std::string encode(const Message&, const RosNames&);         \
+#define PATROL_ROS_MESSAGE(Message)                             \
+  template std::string encode(const Message&, const RosNames&); \
   template Message decode<Message>(std::string_view)
 
 /// Instantiates `encode` and `decode` of a sensor message. `fields`: fields of its ROS type; "" for a type of
 /// ros_definitions.cc.
-#define PATROL_ROS_SENSOR(Message, fields)            \
-  template <>                                         \
-  std::string_view ros_message_fields<Message>() {    \
-    return fields;                                    \
-  }                                                   \
+#define PATROL_ROS_SENSOR(Message, fields)         \
+  template <>                                      \
+  std::string_view ros_message_fields<Message>() { \
+    return fields;                                 \
+  }                                                \
   PATROL_ROS_MESSAGE(Message)

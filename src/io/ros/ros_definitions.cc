@@ -12,8 +12,8 @@
 namespace patrol::io {
 namespace {
 
-/// Fields of a type, as in common_interfaces of ROS 2, without comments; fields of patrol_msgs have units. The fields of
-/// sensor types are next to their codecs (ros_message_fields).
+/// Fields of a type, as in common_interfaces of ROS 2, without comments; fields of patrol_msgs have units. The fields
+/// of sensor types are next to their codecs (ros_message_fields).
 struct Definition {
   std::string_view type, fields;
 };
@@ -43,41 +43,50 @@ constexpr Definition kDefinitions[] = {
      "uint32 point_step\nuint32 row_step\nuint8[] data\nbool is_dense\n"},
     {"sensor_msgs/NavSatStatus",
      "int8 STATUS_NO_FIX=-1\nint8 STATUS_FIX=0\nint8 STATUS_SBAS_FIX=1\nint8 STATUS_GBAS_FIX=2\nint8 status\n"
-     "uint16 SERVICE_GPS=1\nuint16 SERVICE_GLONASS=2\nuint16 SERVICE_COMPASS=4\nuint16 SERVICE_GALILEO=8\nuint16 service\n"},
+     "uint16 SERVICE_GPS=1\nuint16 SERVICE_GLONASS=2\nuint16 SERVICE_COMPASS=4\nuint16 SERVICE_GALILEO=8\nuint16 "
+     "service\n"},
     {"nav_msgs/Odometry",
      "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/PoseWithCovariance pose\n"
      "geometry_msgs/TwistWithCovariance twist\n"},
     {"nav_msgs/MapMetaData",
-     "builtin_interfaces/Time map_load_time\nfloat32 resolution\nuint32 width\nuint32 height\ngeometry_msgs/Pose origin\n"},
+     "builtin_interfaces/Time map_load_time\nfloat32 resolution\nuint32 width\nuint32 height\ngeometry_msgs/Pose "
+     "origin\n"},
     {"nav_msgs/OccupancyGrid", "std_msgs/Header header\nnav_msgs/MapMetaData info\nint8[] data\n"},
     {"nav_msgs/Path", "std_msgs/Header header\ngeometry_msgs/PoseStamped[] poses\n"},
     {"nav2_msgs/Particle", "geometry_msgs/Pose pose\nfloat64 weight\n"},
     {"nav2_msgs/ParticleCloud", "std_msgs/Header header\nnav2_msgs/Particle[] particles\n"},
     {"patrol_msgs/ScanCommand", "# Request for one panoramic scan.\nstd_msgs/Header header\n"},
-    {"patrol_msgs/AntennaCommand", "# Orientation of the antenna.\nstd_msgs/Header header\nfloat64 yaw_rad\nfloat64 pitch_rad\n"},
+    {"patrol_msgs/AntennaCommand",
+     "# Orientation of the antenna.\nstd_msgs/Header header\nfloat64 yaw_rad\nfloat64 pitch_rad\n"},
     {"patrol_msgs/SoundingCommand", "# Request for one sounding.\nstd_msgs/Header header\n"},
     {"patrol_msgs/WarningCommand", "# Warning light and siren.\nstd_msgs/Header header\nbool light\nbool siren\n"},
     {"patrol_msgs/LiningCell",
      "# Displacement of one cell of a lining ring, relative to the reference scan; inward is positive.\n"
      "int32 ring\nfloat64 clock_deg\nfloat64 inward_m\nfloat64 std_m\nint32 points\n"},
-    {"patrol_msgs/ConvergenceLine", "# Change in length of a chord between two points of a ring; lengthening is positive.\nint32 ring\nstring name\nfloat64 change_m\nfloat64 std_m\n"},
+    {"patrol_msgs/ConvergenceLine",
+     "# Change in length of a chord between two points of a ring; lengthening is positive.\nint32 ring\nstring "
+     "name\nfloat64 change_m\nfloat64 std_m\n"},
     {"patrol_msgs/RingFinding",
      "uint8 NONE=0\nuint8 NOTICE=1\nuint8 WARNING=2\nuint8 ALARM=3\n"
      "int32 ring\nfloat64 clock_deg\nfloat64 inward_m\nfloat64 std_m\nuint8 level\ngeometry_msgs/Point position\n"},
     {"patrol_msgs/LiningResult",
      "# Lining deformation around a station, from a panoramic scan and the reference scan; pose of the body in map.\n"
      "std_msgs/Header header\nstring station\ngeometry_msgs/Pose pose\nbool is_registered\nfloat64 registration_rms_m\n"
-     "float64 registration_inlier_ratio\nfloat64 correction_m\npatrol_msgs/LiningCell[] cells\npatrol_msgs/ConvergenceLine[] lines\n"
+     "float64 registration_inlier_ratio\nfloat64 correction_m\npatrol_msgs/LiningCell[] "
+     "cells\npatrol_msgs/ConvergenceLine[] lines\n"
      "patrol_msgs/RingFinding[] findings\n"},
     {"patrol_msgs/WaterResult",
      "# Water ahead of the face, from the soundings of one station (src/core/inspection_result.h).\n"
      "uint8 NONE=0\nuint8 NOTICE=1\nuint8 WARNING=2\nuint8 ALARM=3\n"
-     "std_msgs/Header header\nstring station\ngeometry_msgs/Pose pose\nint32 soundings\nfloat64 antenna_error_deg\nfloat64 rock_spm\n"
-     "float64 evidence\nbool is_found\nuint8 level\ngeometry_msgs/Point position\nfloat64[9] covariance_m2\nfloat64 distance_m\n"
+     "std_msgs/Header header\nstring station\ngeometry_msgs/Pose pose\nint32 soundings\nfloat64 "
+     "antenna_error_deg\nfloat64 rock_spm\n"
+     "float64 evidence\nbool is_found\nuint8 level\ngeometry_msgs/Point position\nfloat64[9] covariance_m2\nfloat64 "
+     "distance_m\n"
      "float64 distance_low_m\nfloat64 distance_high_m\nfloat64 azimuth_deg\nfloat64 elevation_deg\nfloat64 radius_m\n"
      "float64 radius_low_m\nfloat64 radius_high_m\n"},
     {"patrol_msgs/LocalizationConfidence",
-     "# Confidence 0 (lost) ... 1 (certain); largest principal standard deviation of the position, and its direction in map.\n"
+     "# Confidence 0 (lost) ... 1 (certain); largest principal standard deviation of the position, and its direction "
+     "in map.\n"
      "std_msgs/Header header\nfloat64 confidence\nfloat64 max_std_m\nfloat64 max_std_direction_rad\nbool is_lost\n"},
     {"patrol_msgs/Event",
      "# Event of the mission; pose: estimated pose of the robot, target: position of the object; in map.\n"
@@ -87,7 +96,8 @@ constexpr Definition kDefinitions[] = {
      "# State of the simulator for the replay: qpos of MuJoCo, and x y z qw qx qy qz of each mocap body.\n"
      "std_msgs/Header header\nfloat64[] qpos\nfloat64[] mocap\n"},
     {"patrol_msgs/Collision",
-     "# Contact of geom `first` of the robot with geom `second`.\nstd_msgs/Header header\nstring first\nstring second\n"},
+     "# Contact of geom `first` of the robot with geom `second`.\nstd_msgs/Header header\nstring first\nstring "
+     "second\n"},
 };
 
 /// Converts "sensor_msgs/msg/Imu" to "sensor_msgs/Imu"; empty if the text is not a ROS 2 type name.

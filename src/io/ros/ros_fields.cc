@@ -44,7 +44,8 @@ void parse_line(const std::string& line, std::vector<Member>& members) {
   members.push_back(std::move(member));
 }
 
-/// Parses a definition: the fields of its own type, then "====" and "MSG: pkg/Type" before the fields of each used type.
+/// Parses a definition: the fields of its own type, then "====" and "MSG: pkg/Type" before the fields of each used
+/// type.
 Types parse_definition(const std::string& type, const std::string& definition) {
   Types types;
   std::string current = type;
@@ -102,7 +103,8 @@ class FieldReader {
     if (type == "float64") read_plain<double>(path);
     else if (type == "float32") read_plain<float>(path);
     else if (type == "int8") fields_.push_back({path, fmt::format("{}", static_cast<int>(take<std::int8_t>()))});
-    else if (type == "uint8" || type == "byte") fields_.push_back({path, fmt::format("{}", static_cast<int>(take<std::uint8_t>()))});
+    else if (type == "uint8" || type == "byte")
+      fields_.push_back({path, fmt::format("{}", static_cast<int>(take<std::uint8_t>()))});
     else if (type == "int16") read_plain<std::int16_t>(path);
     else if (type == "uint16") read_plain<std::uint16_t>(path);
     else if (type == "int32") read_plain<std::int32_t>(path);

@@ -11,7 +11,8 @@ void describe(Codec& codec, PanoramicScan& scan) {
   constexpr std::uint32_t kStep = sizeof(ScannerPoint);
   static_assert(kStep == 16);
   const auto num_points = static_cast<std::uint32_t>(scan.points.size());
-  cloud_layout(codec, num_points, kStep, {{"x", 0, kFloat32}, {"y", 4, kFloat32}, {"z", 8, kFloat32}, {"intensity", 12, kFloat32}});
+  cloud_layout(codec, num_points, kStep,
+               {{"x", 0, kFloat32}, {"y", 4, kFloat32}, {"z", 8, kFloat32}, {"intensity", 12, kFloat32}});
   std::vector<std::uint8_t> data(std::size_t{kStep} * num_points);
   if (Codec::kWrites && num_points > 0) std::memcpy(data.data(), scan.points.data(), data.size());
   codec(data);
@@ -126,8 +127,8 @@ void describe(Codec& codec, WaterResult& result) {
   std::memcpy(covariance.data(), result.covariance_m2.data(), sizeof covariance);  // symmetric: rows or columns
   codec(covariance);
   std::memcpy(result.covariance_m2.data(), covariance.data(), sizeof covariance);
-  for (double* value : {&result.distance_m, &result.distance_low_m, &result.distance_high_m, &result.azimuth_deg, &result.elevation_deg,
-                        &result.radius_m, &result.radius_low_m, &result.radius_high_m}) {
+  for (double* value : {&result.distance_m, &result.distance_low_m, &result.distance_high_m, &result.azimuth_deg,
+                        &result.elevation_deg, &result.radius_m, &result.radius_low_m, &result.radius_high_m}) {
     codec(*value);
   }
 }
@@ -140,9 +141,11 @@ PATROL_ROS_SENSOR(PanoramicScan, "");
 PATROL_ROS_SENSOR(AntennaState,
                   "# Servo readings of the antenna mount: yaw, positive to the left, and pitch, positive downward.\n"
                   "std_msgs/Header header\nfloat64 yaw_rad\nfloat64 pitch_rad\n");
-PATROL_ROS_SENSOR(TemSounding,
-                  "# -dB/dt along the coil axis after the turn-off of the current, T/s, at the gate centers, and its standard deviation.\n"
-                  "std_msgs/Header header\nfloat64 moment_am2\nfloat64[] gate_s\nfloat64[] rate_tps\nfloat64[] std_tps\n");
+PATROL_ROS_SENSOR(
+    TemSounding,
+    "# -dB/dt along the coil axis after the turn-off of the current, T/s, at the gate centers, and its standard "
+    "deviation.\n"
+    "std_msgs/Header header\nfloat64 moment_am2\nfloat64[] gate_s\nfloat64[] rate_tps\nfloat64[] std_tps\n");
 PATROL_ROS_MESSAGE(ScanCommand);
 PATROL_ROS_MESSAGE(AntennaCommand);
 PATROL_ROS_MESSAGE(SoundingCommand);
@@ -151,4 +154,3 @@ PATROL_ROS_MESSAGE(LiningResult);
 PATROL_ROS_MESSAGE(WaterResult);
 
 }  // namespace patrol::io
-

@@ -1,9 +1,9 @@
 // Codecs of the messages of the stack and of the ground truth, and readers of single fields of a message.
-#include "io/ros/ros_codec.h"
-
 #include <cmath>
 #include <cstring>
 #include <utility>
+
+#include "io/ros/ros_codec.h"
 
 namespace patrol::io::ros {
 
@@ -17,7 +17,8 @@ void describe(Codec& codec, LocalizationConfidence& confidence) {
 }
 
 template <typename Codec>
-void odometry_fields(Codec& codec, Time& stamp, const char* frame, Pose3& pose, Eigen::Matrix3d& covariance, Twist3& twist) {
+void odometry_fields(Codec& codec, Time& stamp, const char* frame, Pose3& pose, Eigen::Matrix3d& covariance,
+                     Twist3& twist) {
   header(codec, stamp, frame);
   std::string child = frame_id::kBody;
   codec(child);
@@ -30,7 +31,8 @@ void odometry_fields(Codec& codec, Time& stamp, const char* frame, Pose3& pose, 
 
 template <typename Codec>
 void describe(Codec& codec, OdometryEstimate& odometry) {
-  odometry_fields(codec, odometry.stamp, frame_id::kOdom, odometry.T_odom_body, odometry.planar_covariance, odometry.twist);
+  odometry_fields(codec, odometry.stamp, frame_id::kOdom, odometry.T_odom_body, odometry.planar_covariance,
+                  odometry.twist);
 }
 
 template <typename Codec>
@@ -54,7 +56,8 @@ void describe(Codec& codec, ParticleSet& particles) {
     double weight = 0.0;
   };
   std::vector<Particle> rows;
-  for (std::size_t i = 0; i < particles.weights.size(); ++i) rows.push_back({particles.T_map_body[i], particles.weights[i]});
+  for (std::size_t i = 0; i < particles.weights.size(); ++i)
+    rows.push_back({particles.T_map_body[i], particles.weights[i]});
   list(codec, rows, [&](Particle& particle) {
     pose2(codec, particle.pose);
     codec(particle.weight);
@@ -82,8 +85,10 @@ void describe(Codec& codec, MapUpdate& update) {
   codec(cells);
   if constexpr (!Codec::kWrites) {
     // A float32 cannot represent 0.05: round to the tenth of a millimeter.
-    geometry = {.resolution_m = std::round(geometry.resolution_m * 1e4) / 1e4, .width = static_cast<int>(width),
-                .height = static_cast<int>(height), .origin_m = origin.position.head<2>()};
+    geometry = {.resolution_m = std::round(geometry.resolution_m * 1e4) / 1e4,
+                .width = static_cast<int>(width),
+                .height = static_cast<int>(height),
+                .origin_m = origin.position.head<2>()};
     if (cells.size() != geometry.size()) throw DecodeError("number of map cells does not match its size");
     update.map = OccupancyGrid(geometry);
     update.map.values() = std::move(cells);
@@ -183,4 +188,3 @@ PATROL_ROS_MESSAGE(Collision);
 PATROL_ROS_MESSAGE(TransformSet);
 
 }  // namespace patrol::io
-

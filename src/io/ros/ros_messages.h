@@ -9,8 +9,8 @@
 #include "core/messages.h"
 #include "core/sensors/registry.h"
 
-/// Conversion of messages to ROS 2 messages: the ROS type of each message and its CDR encoding (little-endian XCDR1 with
-/// its four-byte header). `encode` and `decode` share one description of the fields, in ros_messages.cc,
+/// Conversion of messages to ROS 2 messages: the ROS type of each message and its CDR encoding (little-endian XCDR1
+/// with its four-byte header). `encode` and `decode` share one description of the fields, in ros_messages.cc,
 /// ros_sensor_messages.cc, ros_inspection_messages.cc and, one file for each further sensor, sensors/<name>.cc.
 namespace patrol::io {
 
@@ -28,25 +28,44 @@ template <typename Message>
 inline constexpr const char* kRosType = nullptr;
 template <IsSensorMessage Message>
 inline constexpr const char* kRosType<Message> = SensorTraits<Message>::kInfo.ros_type;
-template <> inline constexpr const char* kRosType<ScanCommand> = "patrol_msgs/msg/ScanCommand";
-template <> inline constexpr const char* kRosType<AntennaCommand> = "patrol_msgs/msg/AntennaCommand";
-template <> inline constexpr const char* kRosType<SoundingCommand> = "patrol_msgs/msg/SoundingCommand";
-template <> inline constexpr const char* kRosType<WarningCommand> = "patrol_msgs/msg/WarningCommand";
-template <> inline constexpr const char* kRosType<LiningResult> = "patrol_msgs/msg/LiningResult";
-template <> inline constexpr const char* kRosType<WaterResult> = "patrol_msgs/msg/WaterResult";
-template <> inline constexpr const char* kRosType<LocalizationConfidence> = "patrol_msgs/msg/LocalizationConfidence";
-template <> inline constexpr const char* kRosType<OdometryEstimate> = "nav_msgs/msg/Odometry";
-template <> inline constexpr const char* kRosType<UwbPoseEstimate> = "geometry_msgs/msg/PoseWithCovarianceStamped";
-template <> inline constexpr const char* kRosType<PoseEstimate> = "geometry_msgs/msg/PoseWithCovarianceStamped";
-template <> inline constexpr const char* kRosType<ParticleSet> = "nav2_msgs/msg/ParticleCloud";
-template <> inline constexpr const char* kRosType<MapUpdate> = "nav_msgs/msg/OccupancyGrid";
-template <> inline constexpr const char* kRosType<Path> = "nav_msgs/msg/Path";
-template <> inline constexpr const char* kRosType<VelocityCommand> = "geometry_msgs/msg/TwistStamped";
-template <> inline constexpr const char* kRosType<Event> = "patrol_msgs/msg/Event";
-template <> inline constexpr const char* kRosType<GroundTruth> = "nav_msgs/msg/Odometry";
-template <> inline constexpr const char* kRosType<SimState> = "patrol_msgs/msg/SimState";
-template <> inline constexpr const char* kRosType<Collision> = "patrol_msgs/msg/Collision";
-template <> inline constexpr const char* kRosType<TransformSet> = "tf2_msgs/msg/TFMessage";
+template <>
+inline constexpr const char* kRosType<ScanCommand> = "patrol_msgs/msg/ScanCommand";
+template <>
+inline constexpr const char* kRosType<AntennaCommand> = "patrol_msgs/msg/AntennaCommand";
+template <>
+inline constexpr const char* kRosType<SoundingCommand> = "patrol_msgs/msg/SoundingCommand";
+template <>
+inline constexpr const char* kRosType<WarningCommand> = "patrol_msgs/msg/WarningCommand";
+template <>
+inline constexpr const char* kRosType<LiningResult> = "patrol_msgs/msg/LiningResult";
+template <>
+inline constexpr const char* kRosType<WaterResult> = "patrol_msgs/msg/WaterResult";
+template <>
+inline constexpr const char* kRosType<LocalizationConfidence> = "patrol_msgs/msg/LocalizationConfidence";
+template <>
+inline constexpr const char* kRosType<OdometryEstimate> = "nav_msgs/msg/Odometry";
+template <>
+inline constexpr const char* kRosType<UwbPoseEstimate> = "geometry_msgs/msg/PoseWithCovarianceStamped";
+template <>
+inline constexpr const char* kRosType<PoseEstimate> = "geometry_msgs/msg/PoseWithCovarianceStamped";
+template <>
+inline constexpr const char* kRosType<ParticleSet> = "nav2_msgs/msg/ParticleCloud";
+template <>
+inline constexpr const char* kRosType<MapUpdate> = "nav_msgs/msg/OccupancyGrid";
+template <>
+inline constexpr const char* kRosType<Path> = "nav_msgs/msg/Path";
+template <>
+inline constexpr const char* kRosType<VelocityCommand> = "geometry_msgs/msg/TwistStamped";
+template <>
+inline constexpr const char* kRosType<Event> = "patrol_msgs/msg/Event";
+template <>
+inline constexpr const char* kRosType<GroundTruth> = "nav_msgs/msg/Odometry";
+template <>
+inline constexpr const char* kRosType<SimState> = "patrol_msgs/msg/SimState";
+template <>
+inline constexpr const char* kRosType<Collision> = "patrol_msgs/msg/Collision";
+template <>
+inline constexpr const char* kRosType<TransformSet> = "tf2_msgs/msg/TFMessage";
 
 /// Names that ROS messages contain and messages of the program do not.
 struct RosNames {

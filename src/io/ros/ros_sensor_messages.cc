@@ -1,9 +1,9 @@
 // Codecs of sensor messages and teleoperation commands.
-#include "io/ros/ros_codec.h"
-
 #include <cmath>
 #include <cstring>
 #include <utility>
+
+#include "io/ros/ros_codec.h"
 
 namespace patrol::io::ros {
 
@@ -11,7 +11,8 @@ template <typename Codec>
 void describe(Codec& codec, LaserScan& scan) {
   header(codec, scan.stamp, "lidar");
   float_field(codec, scan.angle_min_rad);
-  double angle_max_rad = scan.angle_min_rad + scan.angle_increment_rad * (static_cast<double>(scan.ranges_m.size()) - 1.0);
+  double angle_max_rad =
+      scan.angle_min_rad + scan.angle_increment_rad * (static_cast<double>(scan.ranges_m.size()) - 1.0);
   float_field(codec, angle_max_rad);
   float_field(codec, scan.angle_increment_rad);
   float_field(codec, scan.time_increment_s);
@@ -28,7 +29,12 @@ void describe(Codec& codec, PointCloud& cloud) {
   // Point layout of LIO-SAM: x y z intensity (float32), ring (uint16), time (float32).
   constexpr std::uint32_t kStep = 22;
   cloud_layout(codec, static_cast<std::uint32_t>(cloud.points.size()), kStep,
-               {{"x", 0, kFloat32}, {"y", 4, kFloat32}, {"z", 8, kFloat32}, {"intensity", 12, kFloat32}, {"ring", 16, kUint16}, {"time", 18, kFloat32}});
+               {{"x", 0, kFloat32},
+                {"y", 4, kFloat32},
+                {"z", 8, kFloat32},
+                {"intensity", 12, kFloat32},
+                {"ring", 16, kUint16},
+                {"time", 18, kFloat32}});
   std::vector<std::uint8_t> data(std::size_t{kStep} * cloud.points.size());
   for (std::size_t i = 0; Codec::kWrites && i < cloud.points.size(); ++i) {
     const CloudPoint& point = cloud.points[i];
@@ -110,7 +116,8 @@ void describe(Codec& codec, GnssFix& fix) {
   codec(fix.longitude_deg);
   codec(fix.altitude_m);
   std::array<double, 9> covariance{};
-  for (std::size_t i = 0; i < 3; ++i) covariance[4 * i] = fix.position_std_m[static_cast<int>(i)] * fix.position_std_m[static_cast<int>(i)];
+  for (std::size_t i = 0; i < 3; ++i)
+    covariance[4 * i] = fix.position_std_m[static_cast<int>(i)] * fix.position_std_m[static_cast<int>(i)];
   codec(covariance);
   if constexpr (!Codec::kWrites) {
     for (std::size_t i = 0; i < 3; ++i) fix.position_std_m[static_cast<int>(i)] = std::sqrt(covariance[4 * i]);
@@ -172,7 +179,8 @@ void describe(Codec& codec, DepthImage& image) {
   if constexpr (Codec::kWrites) std::memcpy(bytes.data(), image.depth_mm.data(), bytes.size());
   codec(bytes);
   if constexpr (!Codec::kWrites) {
-    if (bytes.size() != std::size_t{2} * width * height) throw DecodeError("number of pixels does not match the image size");
+    if (bytes.size() != std::size_t{2} * width * height)
+      throw DecodeError("number of pixels does not match the image size");
     image.width = static_cast<int>(width);
     image.height = static_cast<int>(height);
     image.depth_mm.resize(bytes.size() / 2);
@@ -197,9 +205,10 @@ void describe(Codec& codec, TeleopCommand& command) {
 
 namespace patrol::io {
 
-PATROL_ROS_SENSOR(LaserScan,
-                  "std_msgs/Header header\nfloat32 angle_min\nfloat32 angle_max\nfloat32 angle_increment\nfloat32 time_increment\n"
-                  "float32 scan_time\nfloat32 range_min\nfloat32 range_max\nfloat32[] ranges\nfloat32[] intensities\n");
+PATROL_ROS_SENSOR(
+    LaserScan,
+    "std_msgs/Header header\nfloat32 angle_min\nfloat32 angle_max\nfloat32 angle_increment\nfloat32 time_increment\n"
+    "float32 scan_time\nfloat32 range_min\nfloat32 range_max\nfloat32[] ranges\nfloat32[] intensities\n");
 PATROL_ROS_SENSOR(PointCloud, "");
 PATROL_ROS_SENSOR(Imu,
                   "std_msgs/Header header\ngeometry_msgs/Quaternion orientation\nfloat64[9] orientation_covariance\n"
@@ -207,31 +216,36 @@ PATROL_ROS_SENSOR(Imu,
                   "geometry_msgs/Vector3 linear_acceleration\nfloat64[9] linear_acceleration_covariance\n");
 PATROL_ROS_SENSOR(JointState,
                   "std_msgs/Header header\nstring[] name\nfloat64[] position\nfloat64[] velocity\nfloat64[] effort\n");
-PATROL_ROS_SENSOR(FootContacts,
-                  "# Force on each foot's sensor, N, in the order FL, FR, RL, RR.\nstd_msgs/Header header\nfloat64[] force_n\n");
-PATROL_ROS_SENSOR(GasReading,
-                  "# Open-path methane meter: column along the beam, length of the beam (inf: no return), mean as mass of methane.\n"
-                  "std_msgs/Header header\nfloat64 column_ppm_m\nfloat64 path_length_m\nfloat64 mean_mg_m3\n");
-PATROL_ROS_SENSOR(GnssFix,
-                  "std_msgs/Header header\nsensor_msgs/NavSatStatus status\nfloat64 latitude\nfloat64 longitude\nfloat64 altitude\n"
-                  "float64[9] position_covariance\nuint8 COVARIANCE_TYPE_UNKNOWN=0\nuint8 COVARIANCE_TYPE_APPROXIMATED=1\n"
-                  "uint8 COVARIANCE_TYPE_DIAGONAL_KNOWN=2\nuint8 COVARIANCE_TYPE_KNOWN=3\nuint8 position_covariance_type\n");
+PATROL_ROS_SENSOR(
+    FootContacts,
+    "# Force on each foot's sensor, N, in the order FL, FR, RL, RR.\nstd_msgs/Header header\nfloat64[] force_n\n");
+PATROL_ROS_SENSOR(
+    GasReading,
+    "# Open-path methane meter: column along the beam, length of the beam (inf: no return), mean as mass of methane.\n"
+    "std_msgs/Header header\nfloat64 column_ppm_m\nfloat64 path_length_m\nfloat64 mean_mg_m3\n");
+PATROL_ROS_SENSOR(
+    GnssFix,
+    "std_msgs/Header header\nsensor_msgs/NavSatStatus status\nfloat64 latitude\nfloat64 longitude\nfloat64 altitude\n"
+    "float64[9] position_covariance\nuint8 COVARIANCE_TYPE_UNKNOWN=0\nuint8 COVARIANCE_TYPE_APPROXIMATED=1\n"
+    "uint8 COVARIANCE_TYPE_DIAGONAL_KNOWN=2\nuint8 COVARIANCE_TYPE_KNOWN=3\nuint8 position_covariance_type\n");
 PATROL_ROS_SENSOR(TrackTicks,
                   "# Counts of the drive motors' Hall sensors since power-up; forwards is positive.\n"
                   "std_msgs/Header header\nint64 left\nint64 right\n");
 PATROL_ROS_SENSOR(UwbRange,
                   "# Two-way range, m, from the robot's antenna to the anchor of that number.\n"
                   "std_msgs/Header header\nint32 anchor\nfloat64 range_m\n");
-PATROL_ROS_SENSOR(UltrasonicRange,
-                  "std_msgs/Header header\nuint8 ULTRASOUND=0\nuint8 INFRARED=1\nuint8 radiation_type\nfloat32 field_of_view\n"
-                  "float32 min_range\nfloat32 max_range\nfloat32 range\n");
+PATROL_ROS_SENSOR(
+    UltrasonicRange,
+    "std_msgs/Header header\nuint8 ULTRASOUND=0\nuint8 INFRARED=1\nuint8 radiation_type\nfloat32 field_of_view\n"
+    "float32 min_range\nfloat32 max_range\nfloat32 range\n");
 PATROL_ROS_SENSOR(DepthImage,
-                  "# The fields of a sensor_msgs/Image (16UC1: depth along the optical axis, mm, 0 invalid), and the pinhole parameters, pixels.\n"
-                  "std_msgs/Header header\nuint32 height\nuint32 width\nstring encoding\nuint8 is_bigendian\nuint32 step\nuint8[] data\n"
+                  "# The fields of a sensor_msgs/Image (16UC1: depth along the optical axis, mm, 0 invalid), and the "
+                  "pinhole parameters, pixels.\n"
+                  "std_msgs/Header header\nuint32 height\nuint32 width\nstring encoding\nuint8 is_bigendian\nuint32 "
+                  "step\nuint8[] data\n"
                   "float64 fx_px\nfloat64 fy_px\nfloat64 cx_px\nfloat64 cy_px\n");
 PATROL_ROS_SENSOR(TeleopCommand,
                   "# Teleoperation command. Buttons: save the current pose as a goal; switch to autonomous mode.\n"
                   "std_msgs/Header header\nfloat64 vx_mps\nfloat64 yaw_rate_radps\nbool save_goal\nbool hand_over\n");
 
 }  // namespace patrol::io
-

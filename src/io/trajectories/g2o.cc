@@ -11,8 +11,8 @@
 #include "core/error.h"
 #include "core/geometry/linear_algebra.h"
 #include "io/files/atomic_file.h"
-#include "io/files/line_tokenizer.h"
 #include "io/files/line_reader.h"
+#include "io/files/line_tokenizer.h"
 
 namespace patrol::io {
 namespace {
@@ -58,7 +58,9 @@ class G2oReader {
     int line;
   };
 
-  [[noreturn]] void fail(int line, const std::string& what) const { throw input_error(lines_.file().string(), line, what); }
+  [[noreturn]] void fail(int line, const std::string& what) const {
+    throw input_error(lines_.file().string(), line, what);
+  }
 
   void read_line(LineTokenizer fields) {
     if (fields.is_empty()) return;
@@ -78,7 +80,8 @@ class G2oReader {
 
   void read_vertex(LineTokenizer& fields) {
     const Id id = read_id(fields);
-    if (!node_of_.emplace(id, static_cast<int>(graph_.T_map_node.size())).second) throw ParseError(fmt::format("id {}: duplicate", id));
+    if (!node_of_.emplace(id, static_cast<int>(graph_.T_map_node.size())).second)
+      throw ParseError(fmt::format("id {}: duplicate", id));
     graph_.T_map_node.push_back(fields.pose("pose"));
   }
 
@@ -129,12 +132,13 @@ PoseGraph load_g2o(const std::filesystem::path& file) { return G2oReader(file).r
 
 std::string to_g2o(const PoseGraph& graph) {
   std::string text;
-  for (std::size_t i = 0; i < graph.T_map_node.size(); ++i) text += fmt::format("VERTEX_SE2 {} {}\n", i, pose_text(graph.T_map_node[i]));
+  for (std::size_t i = 0; i < graph.T_map_node.size(); ++i)
+    text += fmt::format("VERTEX_SE2 {} {}\n", i, pose_text(graph.T_map_node[i]));
   if (!graph.T_map_node.empty()) text += "FIX 0\n";
   for (const PoseGraphEdge& edge : graph.edges) {
     const Eigen::Matrix3d& I = edge.information;
-    text += fmt::format("EDGE_SE2 {} {} {} {} {} {} {} {} {}\n", edge.from, edge.to, pose_text(edge.T_from_to), I(0, 0), I(0, 1), I(0, 2),
-                        I(1, 1), I(1, 2), I(2, 2));
+    text += fmt::format("EDGE_SE2 {} {} {} {} {} {} {} {} {}\n", edge.from, edge.to, pose_text(edge.T_from_to), I(0, 0),
+                        I(0, 1), I(0, 2), I(1, 1), I(1, 2), I(2, 2));
   }
   return text;
 }

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "io/files/line_tokenizer.h"
 #include "io/files/line_reader.h"
+#include "io/files/line_tokenizer.h"
 
 namespace patrol::io {
 namespace {
@@ -33,7 +33,8 @@ std::vector<PoseRelation> load_relations(const std::filesystem::path& file) {
       if (line->is_cut) throw ParseError("is too long");
       relations.push_back(parse_relation(fields));
     } catch (const ParseError& error) {
-      throw input_error(file.string(), line->number, fmt::format("{}: a relation is t1 t2 x y z roll pitch yaw", error.what()));
+      throw input_error(file.string(), line->number,
+                        fmt::format("{}: a relation is t1 t2 x y z roll pitch yaw", error.what()));
     }
   }
   if (lines.read_error()) throw InputError(fmt::format("{}: {}", file.string(), *lines.read_error()));

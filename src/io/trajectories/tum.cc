@@ -6,8 +6,8 @@
 
 #include "core/error.h"
 #include "io/files/atomic_file.h"
-#include "io/files/line_tokenizer.h"
 #include "io/files/line_reader.h"
+#include "io/files/line_tokenizer.h"
 
 namespace patrol::io {
 namespace {
@@ -42,12 +42,15 @@ Trajectory load_tum(const std::filesystem::path& file, SameStamps same_stamps) {
     if (LineTokenizer(line->text).is_empty() || line->text.front() == '#') continue;
     StampedPose entry = read_pose(file.string(), *line);
     const double length = entry.pose.rotation.norm();
-    if (std::abs(length - 1.0) > kUnitTolerance) throw input_error(file.string(), line->number, fmt::format("the quaternion has length {:.4g}, must be 1", length));
+    if (std::abs(length - 1.0) > kUnitTolerance)
+      throw input_error(file.string(), line->number,
+                        fmt::format("the quaternion has length {:.4g}, must be 1", length));
     entry.pose.rotation.normalize();
     if (!trajectory.empty() && entry.stamp <= trajectory.back().stamp) {
       if (same_stamps == SameStamps::kKeepFirst && entry.stamp == trajectory.back().stamp) continue;
-      throw input_error(file.string(), line->number, fmt::format("stamp {} does not follow {}: stamps must increase",
-                                                                 format_stamp(entry.stamp), format_stamp(trajectory.back().stamp)));
+      throw input_error(file.string(), line->number,
+                        fmt::format("stamp {} does not follow {}: stamps must increase", format_stamp(entry.stamp),
+                                    format_stamp(trajectory.back().stamp)));
     }
     trajectory.push_back(entry);
   }
@@ -61,7 +64,8 @@ void save_tum(const std::filesystem::path& file, const Trajectory& trajectory, c
   for (const auto& [stamp, pose] : trajectory) {
     const Eigen::Vector3d& p = pose.position;
     const Eigen::Quaterniond& q = pose.rotation;
-    text += fmt::format("{} {:.9f} {:.9f} {:.9f} {:.12f} {:.12f} {:.12f} {:.12f}\n", format_stamp(stamp), p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w());
+    text += fmt::format("{} {:.9f} {:.9f} {:.9f} {:.12f} {:.12f} {:.12f} {:.12f}\n", format_stamp(stamp), p.x(), p.y(),
+                        p.z(), q.x(), q.y(), q.z(), q.w());
   }
   save_text(file, text);
 }

@@ -6,7 +6,8 @@
 
 namespace patrol::io {
 
-/// Treatment of a pose with the stamp of the previous one: a log may have several scans with one stamp (io/logs/scan_log.h).
+/// Treatment of a pose with the stamp of the previous one: a log may have several scans with one stamp
+/// (io/logs/scan_log.h).
 enum class SameStamps { kRefuse, kKeepFirst };
 
 /// Read and write TUM trajectories [Sturm12]: "seconds x y z qx qy qz qw", one pose per line, increasing stamps; '#'

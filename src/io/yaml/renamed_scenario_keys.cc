@@ -1,6 +1,6 @@
-#include "io/yaml/renamed_keys.h"
-
 #include <array>
+
+#include "io/yaml/renamed_keys.h"
 
 namespace patrol::io {
 namespace {

@@ -1,6 +1,6 @@
-#include "io/yaml/renamed_keys.h"
-
 #include <array>
+
+#include "io/yaml/renamed_keys.h"
 
 namespace patrol::io {
 namespace {
@@ -125,7 +125,8 @@ constexpr auto kRenamedStackKeys = std::to_array<RenamedKey>({
     {"stack.slam.tracking", "stack.slam.rbpf.scan_odometry"},
     {"stack.slam.likelihood_gain", "stack.slam.rbpf.likelihood_tempering"},
     {"stack.slam.min_hit_share_occupied", "stack.slam.rbpf.min_occupied_hit_ratio"},
-    // The same settings below `stack.slam` of a scenario, `slam` of patrol slam, `submap_rbpf` of patrol train-neighbors
+    // The same settings below `stack.slam` of a scenario, `slam` of patrol slam, `submap_rbpf` of patrol
+    // train-neighbors
     // and `segments` of patrol calibrate.
     {"*.tracking", "*.scan_odometry"},
     {"*.likelihood_gain", "*.likelihood_tempering"},
@@ -208,8 +209,7 @@ constexpr auto kRenamedStackKeys = std::to_array<RenamedKey>({
      "stack.navigation.local_planner.dwa_liu21.max_yaw_acceleration_radps2"},
     {"stack.navigation.local_planner.dwa_liu21.max_yaw_decel_radps2",
      "stack.navigation.local_planner.dwa_liu21.max_yaw_deceleration_radps2"},
-    {"stack.navigation.local_planner.dwa_liu21.target_ahead_m",
-     "stack.navigation.local_planner.dwa_liu21.lookahead_m"},
+    {"stack.navigation.local_planner.dwa_liu21.target_ahead_m", "stack.navigation.local_planner.dwa_liu21.lookahead_m"},
     {"stack.navigation.approach", "stack.navigation.goal_controller.holonomic"},
     {"stack.navigation.goal_controller.holonomic.max_side_speed_mps",
      "stack.navigation.goal_controller.holonomic.max_lateral_speed_mps"},

@@ -56,11 +56,13 @@ void apply_override(YAML::Node root, const std::string& override) {
       if (error != std::errc() || end != path[i].data() + path[i].size()) {
         throw InputError("--set " + override + ": " + path[i] + " must be a list index");
       }
-      if (index >= node.size()) throw InputError(fmt::format("--set {}: the list has {} entries", override, node.size()));
+      if (index >= node.size())
+        throw InputError(fmt::format("--set {}: the list has {} entries", override, node.size()));
       if (is_last) node[index] = value;
       else node.reset(node[index]);
     } else {
-      if (node.IsDefined() && !node.IsNull() && !node.IsMap()) throw InputError("--set " + override + ": " + path[i] + " is a child of a scalar");
+      if (node.IsDefined() && !node.IsNull() && !node.IsMap())
+        throw InputError("--set " + override + ": " + path[i] + " is a child of a scalar");
       if (is_last) node[path[i]] = value;
       else {
         if (!node[path[i]].IsDefined()) node[path[i]] = YAML::Node(YAML::NodeType::Map);
@@ -99,10 +101,12 @@ void SettingsReader::finish() const {
     const std::string name = entry.first.Scalar();
     if (!seen.insert(name).second) fail(entry.first, key(name), "duplicate key");
     if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
-    if (const std::string now = renamed_setting(key(name)); now != key(name)) fail(entry.first, key(name), "renamed to " + now);
+    if (const std::string now = renamed_setting(key(name)); now != key(name))
+      fail(entry.first, key(name), "renamed to " + now);
     const std::string nearest = closest_match(name, known_);
     fail(entry.first, key(name),
-         fmt::format("unknown key{} (known: {})", nearest.empty() ? "" : "; did you mean " + nearest + "?", fmt::join(known_, ", ")));
+         fmt::format("unknown key{} (known: {})", nearest.empty() ? "" : "; did you mean " + nearest + "?",
+                     fmt::join(known_, ", ")));
   }
 }
 

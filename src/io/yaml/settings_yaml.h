@@ -22,7 +22,8 @@ namespace patrol::io {
 /// Reads a YAML document into a struct, field by field, and rejects remaining keys.
 class SettingsReader {
  public:
-  SettingsReader(std::string file, YAML::Node node, std::string path) : file_(std::move(file)), node_(std::move(node)), path_(std::move(path)) {
+  SettingsReader(std::string file, YAML::Node node, std::string path)
+      : file_(std::move(file)), node_(std::move(node)), path_(std::move(path)) {
     if (node_ && !node_.IsNull() && !node_.IsMap()) fail(node_, path_, "must be a section of keys and values");
   }
 
@@ -38,7 +39,8 @@ class SettingsReader {
   void finish() const;
 
   template <typename Settings>
-  static void read_section(const std::string& file, const YAML::Node& node, const std::string& path, Settings& settings) {
+  static void read_section(const std::string& file, const YAML::Node& node, const std::string& path,
+                           Settings& settings) {
     SettingsReader reader(file, node, path);
     if constexpr (requires { Settings::of_preset(std::string()); }) {
       if (node.IsMap() && node["preset"].IsDefined()) {

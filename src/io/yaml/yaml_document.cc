@@ -23,17 +23,21 @@ class LimitChecker final : public YAML::EventHandler {
   }
   void OnDocumentEnd() override {}
   void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override { add_leaf(mark, anchor); }
-  void OnScalar(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor, const std::string&) override { add_leaf(mark, anchor); }
+  void OnScalar(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor, const std::string&) override {
+    add_leaf(mark, anchor);
+  }
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     const auto anchored = nodes_by_anchor_.find(anchor);
     if (anchored == nodes_by_anchor_.end()) fail(mark, "an alias refers to a node that contains it");
     add(mark, anchored->second);
   }
-  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor, YAML::EmitterStyle::value) override {
+  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
+                       YAML::EmitterStyle::value) override {
     open(mark, anchor);
   }
   void OnSequenceEnd() override { close(); }
-  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor, YAML::EmitterStyle::value) override {
+  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
+                  YAML::EmitterStyle::value) override {
     open(mark, anchor);
   }
   void OnMapEnd() override { close(); }
@@ -92,6 +96,8 @@ YAML::Node parse_yaml(const std::string& source, const std::string& text, bool h
   }
 }
 
-YAML::Node load_yaml(const std::filesystem::path& file) { return parse_yaml(file.string(), load_text(file, kMaxYamlBytes), true); }
+YAML::Node load_yaml(const std::filesystem::path& file) {
+  return parse_yaml(file.string(), load_text(file, kMaxYamlBytes), true);
+}
 
 }  // namespace patrol::io

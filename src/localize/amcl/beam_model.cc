@@ -44,7 +44,9 @@ double beam_log_likelihood(double range_m, double expected_m, const BeamModelSet
   const double in_range = normal_cdf((max_m - expected_m) / sigma) - normal_cdf(-expected_m / sigma);
   const double hit = std::exp(-0.5 * ratio * ratio) / (sigma * std::sqrt(2.0 * std::numbers::pi) * in_range);
   const double lambda = 1.0 / settings.short_mean_m;
-  const double in_front = range_m <= expected_m && expected_m > 0.0 ? lambda * std::exp(-lambda * range_m) / -std::expm1(-lambda * expected_m) : 0.0;
+  const double in_front = range_m <= expected_m && expected_m > 0.0
+                              ? lambda * std::exp(-lambda * range_m) / -std::expm1(-lambda * expected_m)
+                              : 0.0;
   return std::log((settings.z_hit * hit + settings.z_short * in_front + settings.z_rand / max_m) / sum);
 }
 
@@ -54,7 +56,8 @@ BeamModel::BeamModel(const BeamModelSettings& settings, const OccupancyGrid& map
 ScanLikelihoods BeamModel::evaluate(const LevelScan& scan, const std::vector<Pose2>& T_map_body) const {
   const std::vector<PolarBeam> beams = polar_beams(scan, settings_.max_beams);
   const double best = beam_log_likelihood(1.0, 1.0, settings_);
-  ScanLikelihoods result{.mean_log = std::vector<double>(T_map_body.size(), 0.0), .num_beams = static_cast<int>(beams.size())};
+  ScanLikelihoods result{.mean_log = std::vector<double>(T_map_body.size(), 0.0),
+                         .num_beams = static_cast<int>(beams.size())};
   if (beams.empty()) return result;
   for (std::size_t i = 0; i < T_map_body.size(); ++i) {
     const Eigen::Vector2d origin = T_map_body[i] * scan.origin_m;

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <cstdint>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "core/grid.h"
 #include "localize/amcl/beam_model_settings.h"

@@ -7,11 +7,11 @@ namespace patrol::localize {
 /// Weights of the mixture components, normalized by their sum, and their parameters.
 struct BeamModelSettings {
   double z_hit = 0.75;
-  double z_short = 0.1;     ///< unmapped obstacle in front of the surface
-  double z_max = 0.1;       ///< no return
+  double z_short = 0.1;  ///< unmapped obstacle in front of the surface
+  double z_max = 0.1;    ///< no return
   double z_rand = 0.05;
   double hit_std_m = 0.1;
-  double short_mean_m = 5.0;    ///< mean of the exponential distribution of unmapped obstacles: 1 / lambda_short
+  double short_mean_m = 5.0;  ///< mean of the exponential distribution of unmapped obstacles: 1 / lambda_short
   double max_range_m = 30.0;
   int max_beams = 60;
 

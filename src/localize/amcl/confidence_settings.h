@@ -5,14 +5,14 @@
 namespace patrol::localize {
 
 struct ConfidenceSettings {
-  double std_at_confidence_1_m = 0.05;       ///< largest principal standard deviation up to which its factor is 1
-  double std_at_confidence_half_m = 0.25;   ///< standard deviation at which the factor is 0.5
-  double std_at_confidence_0_m = 1.0;    ///< standard deviation from which on the factor is 0
-  double full_confidence_fit = 0.6;          ///< inlier ratio of the scan from which on its factor is 1
-  double zero_confidence_fit = 0.3;           ///< inlier ratio of the scan up to which its factor is 0
-  double full_confidence_cluster_weight = 0.95;   ///< cluster weight from which on its factor is 1
-  double zero_confidence_cluster_weight = 0.5;  ///< cluster weight up to which its factor is 0
-  double lost_threshold = 0.1;        ///< the robot becomes lost below this confidence
+  double std_at_confidence_1_m = 0.05;           ///< largest principal standard deviation up to which its factor is 1
+  double std_at_confidence_half_m = 0.25;        ///< standard deviation at which the factor is 0.5
+  double std_at_confidence_0_m = 1.0;            ///< standard deviation from which on the factor is 0
+  double full_confidence_fit = 0.6;              ///< inlier ratio of the scan from which on its factor is 1
+  double zero_confidence_fit = 0.3;              ///< inlier ratio of the scan up to which its factor is 0
+  double full_confidence_cluster_weight = 0.95;  ///< cluster weight from which on its factor is 1
+  double zero_confidence_cluster_weight = 0.5;   ///< cluster weight up to which its factor is 0
+  double lost_threshold = 0.1;                   ///< the robot becomes lost below this confidence
   /// A lost robot recovers above this confidence, if the cluster weight is at least full_confidence_cluster_weight.
   double found_threshold = 0.2;
 

@@ -14,8 +14,11 @@ Grid<float> distance_to_occupied(const OccupancyGrid& map, double cap_m) {
   std::transform(map.values().begin(), map.values().end(), is_obstacle.begin(),
                  [](std::int8_t percent) { return static_cast<std::uint8_t>(is_occupied(percent)); });
   const double cap_cells = cap_m / geometry.resolution_m;
-  const auto squared_cap = static_cast<float>(cap_cells * cap_cells), resolution_m = static_cast<float>(geometry.resolution_m);
-  const auto to_distance = [=](auto squared) { return resolution_m * std::sqrt(std::min(squared_cap, static_cast<float>(squared))); };
+  const auto squared_cap = static_cast<float>(cap_cells * cap_cells),
+             resolution_m = static_cast<float>(geometry.resolution_m);
+  const auto to_distance = [=](auto squared) {
+    return resolution_m * std::sqrt(std::min(squared_cap, static_cast<float>(squared)));
+  };
 
   Grid<float> distance_m(geometry);
   if (cap_cells < DistanceTransform::kMaxCap_cells) {

@@ -20,7 +20,8 @@ double DivergenceMonitor::range_confidence() const { return 1.0 - shortfall(rang
 
 double DivergenceMonitor::injection_fraction() const {
   const double sudden = slow_ > 0.0 ? shortfall(settings_.fast_over_slow * fast_, slow_) : 0.0;
-  const double worst = std::max({sudden, shortfall(scan_fit_, settings_.min_scan_fit), shortfall(range_fit_, settings_.min_range_fit)});
+  const double worst =
+      std::max({sudden, shortfall(scan_fit_, settings_.min_scan_fit), shortfall(range_fit_, settings_.min_range_fit)});
   return std::min(worst, settings_.max_injection_fraction);
 }
 

@@ -2,7 +2,6 @@
 
 #include "localize/amcl/divergence_monitor_settings.h"
 
-
 namespace patrol::localize {
 
 /// Monitors the measurement likelihood of the particles and computes the fraction of particles to replace.

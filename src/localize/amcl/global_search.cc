@@ -13,8 +13,8 @@ namespace {
 
 // difference in log likelihood to the best position beyond which positions are skipped
 constexpr double kNegligible = 12.0;
-constexpr int kFineSteps = 4;         // fine steps per coarse step along x and y
-constexpr int kFineHeadings = 5;         // fine steps per coarse step in heading
+constexpr int kFineSteps = 4;     // fine steps per coarse step along x and y
+constexpr int kFineHeadings = 5;  // fine steps per coarse step in heading
 
 /// Center of part `i` of `parts` equal parts of a step centered on 0.
 double part_of_step(int i, int parts, double step) { return ((i + 0.5) / parts - 0.5) * step; }
@@ -24,7 +24,8 @@ RangeLikelihoodSettings widen(RangeLikelihoodSettings settings, double step_m) {
   return settings;
 }
 
-double log_likelihood_of(const std::vector<AnchoredRange>& ranges, const Pose2& pose, const RangeLikelihoodSettings& settings) {
+double log_likelihood_of(const std::vector<AnchoredRange>& ranges, const Pose2& pose,
+                         const RangeLikelihoodSettings& settings) {
   double sum = 0.0;
   for (const AnchoredRange& range : ranges) sum += range_log_likelihood(range_innovation_m(range, pose), settings);
   return sum;
@@ -32,10 +33,12 @@ double log_likelihood_of(const std::vector<AnchoredRange>& ranges, const Pose2& 
 
 }  // namespace
 
-GlobalSearch::GlobalSearch(const GlobalSearchSettings& settings, const LikelihoodFieldSettings& field, const OccupancyGrid& map,
-                           const LineField& lines)
+GlobalSearch::GlobalSearch(const GlobalSearchSettings& settings, const LikelihoodFieldSettings& field,
+                           const OccupancyGrid& map, const LineField& lines)
     : settings_(settings),
-      coarse_({.hit_std_m = std::hypot(field.hit_std_m, settings.step_m), .z_rand = field.z_rand, .max_beams = settings.max_beams},
+      coarse_({.hit_std_m = std::hypot(field.hit_std_m, settings.step_m),
+               .z_rand = field.z_rand,
+               .max_beams = settings.max_beams},
               map, lines),
       fine_(field, map, lines) {
   const GridGeometry& geometry = map.geometry();
@@ -56,8 +59,8 @@ GlobalSearch::GlobalSearch(const GlobalSearchSettings& settings, const Likelihoo
 }
 
 // Ignores the lever arm of the antenna, which is shorter than the coarse step.
-std::vector<GlobalSearch::CandidatePosition> GlobalSearch::filter_positions_by_range(const std::vector<AnchoredRange>& ranges,
-                                                               const RangeLikelihoodSettings& settings) const {
+std::vector<GlobalSearch::CandidatePosition> GlobalSearch::filter_positions_by_range(
+    const std::vector<AnchoredRange>& ranges, const RangeLikelihoodSettings& settings) const {
   std::vector<CandidatePosition> positions;
   double best = -std::numeric_limits<double>::infinity();
   for (const Eigen::Vector2d& p_map : free_positions_) {
@@ -73,18 +76,21 @@ GlobalSearch::Candidates GlobalSearch::find(const LevelScan& scan, const std::ve
                                             double uniform) const {
   const BeamEnds ends = select_beam_ends(scan, settings_.max_beams);
   const double scan_gain = std::min(effective_beams, static_cast<double>(ends.size()));
-  const std::vector<CandidatePosition> positions = filter_positions_by_range(ranges, widen(range_settings, settings_.step_m));
+  const std::vector<CandidatePosition> positions =
+      filter_positions_by_range(ranges, widen(range_settings, settings_.step_m));
   if (positions.empty()) return {};
   const int num_headings = static_cast<int>(std::ceil(2.0 * std::numbers::pi / settings_.step_rad));
   const double step_rad = 2.0 * std::numbers::pi / num_headings;
   const auto coarse_pose = [&](std::size_t i) {
     const CandidatePosition& position = positions[i / static_cast<std::size_t>(num_headings)];
-    return Pose2{position.p_map.x(), position.p_map.y(), wrap_angle(static_cast<double>(i % static_cast<std::size_t>(num_headings)) * step_rad)};
+    return Pose2{position.p_map.x(), position.p_map.y(),
+                 wrap_angle(static_cast<double>(i % static_cast<std::size_t>(num_headings)) * step_rad)};
   };
 
   std::vector<double> log_coarse(positions.size() * static_cast<std::size_t>(num_headings));
   for (std::size_t i = 0; i < log_coarse.size(); ++i) {
-    log_coarse[i] = positions[i / static_cast<std::size_t>(num_headings)].log_ranges + scan_gain * coarse_.mean_log(ends, coarse_pose(i));
+    log_coarse[i] = positions[i / static_cast<std::size_t>(num_headings)].log_ranges +
+                    scan_gain * coarse_.mean_log(ends, coarse_pose(i));
   }
   const std::vector<double> coarse = normalized_weights(log_coarse);
   const auto samples = static_cast<std::size_t>(settings_.coarse_samples);
@@ -99,14 +105,17 @@ GlobalSearch::Candidates GlobalSearch::find(const LevelScan& scan, const std::ve
     std::size_t end = first;
     while (end < chosen.size() && chosen[end] == cell) ++end;
     // Importance weight of the sampled cell: number of samples relative to the expected number.
-    const double log_importance_weight = std::log(static_cast<double>(end - first) / (static_cast<double>(samples) * coarse[cell]));
+    const double log_importance_weight =
+        std::log(static_cast<double>(end - first) / (static_cast<double>(samples) * coarse[cell]));
     const Pose2 center = coarse_pose(cell);
     for (int part = 0; part < kFineSteps * kFineSteps * kFineHeadings; ++part) {
-      const Pose2 pose{center.x + part_of_step(part % kFineSteps, kFineSteps, settings_.step_m),
-                       center.y + part_of_step(part / kFineSteps % kFineSteps, kFineSteps, settings_.step_m),
-                       wrap_angle(center.yaw + part_of_step(part / (kFineSteps * kFineSteps), kFineHeadings, step_rad))};
+      const Pose2 pose{
+          center.x + part_of_step(part % kFineSteps, kFineSteps, settings_.step_m),
+          center.y + part_of_step(part / kFineSteps % kFineSteps, kFineSteps, settings_.step_m),
+          wrap_angle(center.yaw + part_of_step(part / (kFineSteps * kFineSteps), kFineHeadings, step_rad))};
       candidates.T_map_body.push_back(pose);
-      log_fine.push_back(log_importance_weight + scan_gain * fine_.mean_log(ends, pose) + log_likelihood_of(ranges, pose, range_settings));
+      log_fine.push_back(log_importance_weight + scan_gain * fine_.mean_log(ends, pose) +
+                         log_likelihood_of(ranges, pose, range_settings));
     }
     first = end;
   }
@@ -114,13 +123,16 @@ GlobalSearch::Candidates GlobalSearch::find(const LevelScan& scan, const std::ve
   return candidates;
 }
 
-std::vector<Pose2> sample_poses(const GlobalSearch::Candidates& candidates, std::size_t count, const RandomStream& noise, std::uint64_t tick) {
+std::vector<Pose2> sample_poses(const GlobalSearch::Candidates& candidates, std::size_t count,
+                                const RandomStream& noise, std::uint64_t tick) {
   if (candidates.weights.empty() || count == 0) return {};
   std::vector<Pose2> poses;
   const std::vector<std::size_t> parents = systematic_parents(candidates.weights, noise.uniform(tick, 0), count);
   for (std::size_t i = 0; i < count; ++i) {
     const Pose2& pose = candidates.T_map_body[parents[i]];
-    const auto jitter = [&](std::uint64_t axis, double half) { return half * (2.0 * noise.uniform(tick, 1 + 3 * i + axis) - 1.0); };
+    const auto jitter = [&](std::uint64_t axis, double half) {
+      return half * (2.0 * noise.uniform(tick, 1 + 3 * i + axis) - 1.0);
+    };
     poses.push_back({pose.x + jitter(0, candidates.half_step_m), pose.y + jitter(1, candidates.half_step_m),
                      wrap_angle(pose.yaw + jitter(2, candidates.half_step_rad))});
   }

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <cstdint>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "core/grid.h"
 #include "core/messages.h"
@@ -22,24 +22,26 @@ namespace patrol::localize {
 /// belief stays multimodal.
 class GlobalSearch {
  public:
-  GlobalSearch(const GlobalSearchSettings& settings, const LikelihoodFieldSettings& field, const OccupancyGrid& map, const LineField& lines);
+  GlobalSearch(const GlobalSearchSettings& settings, const LikelihoodFieldSettings& field, const OccupancyGrid& map,
+               const LineField& lines);
 
   struct Candidates {
     std::vector<Pose2> T_map_body;
-    std::vector<double> weights;  ///< sum 1
+    std::vector<double> weights;                    ///< sum 1
     double half_step_m = 0.0, half_step_rad = 0.0;  ///< half width of the cell that each candidate represents
   };
   /// Searches the map. `effective_beams` is the tempering factor: the effective number of independent beams of a
   /// scan. Returns no candidates if the map has no free cell.
-  Candidates find(const LevelScan& scan, const std::vector<AnchoredRange>& ranges, const RangeLikelihoodSettings& range_settings,
-                  double effective_beams, double uniform) const;
+  Candidates find(const LevelScan& scan, const std::vector<AnchoredRange>& ranges,
+                  const RangeLikelihoodSettings& range_settings, double effective_beams, double uniform) const;
 
  private:
   struct CandidatePosition {
     Eigen::Vector2d p_map;
     double log_ranges;
   };
-  std::vector<CandidatePosition> filter_positions_by_range(const std::vector<AnchoredRange>& ranges, const RangeLikelihoodSettings& settings) const;
+  std::vector<CandidatePosition> filter_positions_by_range(const std::vector<AnchoredRange>& ranges,
+                                                           const RangeLikelihoodSettings& settings) const;
 
   GlobalSearchSettings settings_;
   LikelihoodField coarse_, fine_;
@@ -47,6 +49,7 @@ class GlobalSearch {
 };
 
 /// Samples `count` poses from the candidates, uniform within the cell of each candidate.
-std::vector<Pose2> sample_poses(const GlobalSearch::Candidates& candidates, std::size_t count, const RandomStream& noise, std::uint64_t tick);
+std::vector<Pose2> sample_poses(const GlobalSearch::Candidates& candidates, std::size_t count,
+                                const RandomStream& noise, std::uint64_t tick);
 
 }  // namespace patrol::localize

@@ -14,7 +14,8 @@ int kld_particles(std::size_t bins, const KldSettings& settings) {
   const double a = 2.0 / (9.0 * degrees);
   const double root = 1.0 - a + std::sqrt(a) * settings.normal_quantile;
   const double wanted = std::ceil(degrees / (2.0 * settings.max_kl_divergence) * root * root * root);
-  return static_cast<int>(std::clamp(wanted, static_cast<double>(settings.min_particles), static_cast<double>(max_particles)));
+  return static_cast<int>(
+      std::clamp(wanted, static_cast<double>(settings.min_particles), static_cast<double>(max_particles)));
 }
 
 std::size_t PoseBins::Hash::operator()(const Key& key) const {
@@ -51,7 +52,8 @@ std::vector<std::size_t> PoseBins::clusters() const {
   for (std::size_t bin = 0; bin < keys_.size(); ++bin) {
     for (int step = 0; step < 27; ++step) {
       const Key& key = keys_[bin];
-      const auto found = bins_.find({key.col + step % 3 - 1, key.row + step / 3 % 3 - 1, (key.heading + step / 9 - 1 + num_headings_) % num_headings_});
+      const auto found = bins_.find({key.col + step % 3 - 1, key.row + step / 3 % 3 - 1,
+                                     (key.heading + step / 9 - 1 + num_headings_) % num_headings_});
       if (found == bins_.end()) continue;
       const std::size_t mine = root_of(bin), other = root_of(found->second);
       parent[std::max(mine, other)] = std::min(mine, other);

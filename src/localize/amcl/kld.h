@@ -10,8 +10,8 @@
 
 namespace patrol::localize {
 
-/// Number of particles that approximates a belief over `bins` bins to `max_kl_divergence`, within the limits of the settings
-/// [Fox03, equation 7]. The chi-square quantile is that of Wilson and Hilferty.
+/// Number of particles that approximates a belief over `bins` bins to `max_kl_divergence`, within the limits of the
+/// settings [Fox03, equation 7]. The chi-square quantile is that of Wilson and Hilferty.
 int kld_particles(std::size_t bins, const KldSettings& settings);
 
 /// Set of occupied bins of position and heading.

@@ -6,8 +6,8 @@ namespace patrol::localize {
 
 struct KldSettings {
   double bin_m = 0.5;
-  double bin_rad = 0.1745;      ///< 10 degrees
-  double max_kl_divergence = 0.05;      ///< maximum Kullback-Leibler distance between particles and belief
+  double bin_rad = 0.1745;          ///< 10 degrees
+  double max_kl_divergence = 0.05;  ///< maximum Kullback-Leibler distance between particles and belief
   /// Upper quantile of the normal distribution for the probability of keeping max_kl_divergence: 0.99.
   double normal_quantile = 2.326;
   int min_particles = 300;

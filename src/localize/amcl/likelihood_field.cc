@@ -15,7 +15,8 @@ constexpr double kMinLinearity = 0.6;  // below it, the distance to the cells is
 
 /// Distance from the center of a cell to the surface, m. Beyond the end of a wall, where its line continues, the
 /// distance to the cells bounds it from below.
-double distance_to_surface(const Eigen::Vector2d& center, double to_cells_m, double resolution_m, const LineField& lines) {
+double distance_to_surface(const Eigen::Vector2d& center, double to_cells_m, double resolution_m,
+                           const LineField& lines) {
   const SurfaceLine* line = lines.find(center);
   if (!line || line->linearity < kMinLinearity) return to_cells_m;
   return std::max(std::abs(line->normal_map.dot(center - line->point_map)), to_cells_m - resolution_m);
@@ -38,7 +39,8 @@ BeamEnds select_beam_ends(const LevelScan& scan, int max_beams) {
   return ends;
 }
 
-LikelihoodField::LikelihoodField(const LikelihoodFieldSettings& settings, const OccupancyGrid& map, const LineField& lines)
+LikelihoodField::LikelihoodField(const LikelihoodFieldSettings& settings, const OccupancyGrid& map,
+                                 const LineField& lines)
     : settings_(settings), inverse_resolution_(1.0 / map.geometry().resolution_m) {
   const GridGeometry& geometry = map.geometry();
   const double random = settings.z_rand, sigma = settings.hit_std_m;
@@ -52,7 +54,8 @@ LikelihoodField::LikelihoodField(const LikelihoodFieldSettings& settings, const 
   for (int row = 0; row < geometry.height; ++row) {
     for (int col = 0; col < geometry.width; ++col) {
       const auto to_cells_m = static_cast<double>(distance_m.at({col, row}));
-      const double ratio = distance_to_surface(geometry.center_of({col, row}), to_cells_m, geometry.resolution_m, lines) / sigma;
+      const double ratio =
+          distance_to_surface(geometry.center_of({col, row}), to_cells_m, geometry.resolution_m, lines) / sigma;
       const double log_likelihood = std::log((1.0 - random) * std::exp(-0.5 * ratio * ratio) + random);
       level_[static_cast<std::size_t>(row + 1) * stride_ + static_cast<std::size_t>(col + 1)] =
           static_cast<std::uint8_t>(std::lround(-log_likelihood / level_step_));
@@ -93,7 +96,9 @@ double LikelihoodField::mean_log(const BeamEnds& ends, const Pose2& T_map_body) 
 
 double LikelihoodField::log_at(const Eigen::Vector2d& p_map) const {
   const Eigen::Vector2d cell = inverse_resolution_ * (p_map - corner_m_);
-  const auto index = [](double value, float max) { return static_cast<int>(std::clamp(value, 0.0, static_cast<double>(max))); };
+  const auto index = [](double value, float max) {
+    return static_cast<int>(std::clamp(value, 0.0, static_cast<double>(max)));
+  };
   return -level_step_ * level_at(index(cell.x(), max_col_), index(cell.y(), max_row_));
 }
 

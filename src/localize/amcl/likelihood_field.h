@@ -1,10 +1,10 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <cstddef>
 #include <cstdint>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "core/grid.h"
 #include "localize/amcl/likelihood_field_settings.h"
@@ -44,14 +44,16 @@ class LikelihoodField final : public SensorModel {
   double log_at(const Eigen::Vector2d& p_map) const;
 
  private:
-  int level_at(int col, int row) const { return level_[static_cast<std::size_t>(row) * stride_ + static_cast<std::size_t>(col)]; }
+  int level_at(int col, int row) const {
+    return level_[static_cast<std::size_t>(row) * stride_ + static_cast<std::size_t>(col)];
+  }
 
   LikelihoodFieldSettings settings_;
   double inverse_resolution_;
   Eigen::Vector2d corner_m_;  ///< lower left corner of level_[0], in map
   float max_col_, max_row_;   ///< indices of the last column and row, including the frame
   std::size_t stride_;
-  double level_step_;                 ///< log likelihood = -level * step
+  double level_step_;  ///< log likelihood = -level * step
   /// [row * stride + col], with a frame of one cell around the map that represents everything outside
   std::vector<std::uint8_t> level_;
 };

@@ -7,8 +7,8 @@ namespace patrol::localize {
 struct LikelihoodFieldSettings {
   /// Standard deviation of a beam's end from the nearest surface: range noise, map error and tilt.
   double hit_std_m = 0.1;
-  double z_rand = 0.05;   ///< likelihood of an end far from all surfaces relative to one on a surface
-  int max_beams = 180;          ///< maximum number of evaluated beams; the cost is proportional to it
+  double z_rand = 0.05;  ///< likelihood of an end far from all surfaces relative to one on a surface
+  int max_beams = 180;   ///< maximum number of evaluated beams; the cost is proportional to it
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

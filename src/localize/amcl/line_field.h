@@ -1,9 +1,9 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <cstdint>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "core/grid.h"
 
@@ -13,8 +13,8 @@ namespace patrol::localize {
 struct SurfaceLine {
   Eigen::Vector2d point_map;
   Eigen::Vector2d normal_map;  ///< unit normal, on either side
-  double normal_var_m2;     ///< variance of the cells across the line
-  double linearity;         ///< linearity: 1 for a straight wall ... 0 if as wide as long
+  double normal_var_m2;        ///< variance of the cells across the line
+  double linearity;            ///< linearity: 1 for a straight wall ... 0 if as wide as long
 };
 
 /// Precomputed local lines of a static map: for every cell near a surface, the line through the surrounding occupied

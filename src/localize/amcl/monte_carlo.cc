@@ -1,13 +1,13 @@
 #include "localize/amcl/monte_carlo.h"
 
-#include <Eigen/Cholesky>
-
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
 #include <numeric>
 #include <utility>
+
+#include <Eigen/Cholesky>
 
 #include "core/error.h"
 #include "core/geometry/linear_algebra.h"
@@ -20,7 +20,7 @@ namespace {
 // Pose resolution of the particles, limited by the likelihood tolerance and their number.
 const Eigen::Vector3d kMinStd(0.02, 0.02, 0.003);
 constexpr int kLineRadius_cells = 6;
-constexpr int kMinPoints = 10;           // minimum number of scan points for the scan fit
+constexpr int kMinPoints = 10;   // minimum number of scan points for the scan fit
 constexpr double kNear_m = 3.0;  // maximum distance from the pose within which the scan match applies to a particle
 constexpr double kMaxNeededFraction = 0.67;  // resample if fewer than this fraction of the particles suffices
 constexpr Time kRangesBeforeStart = std::chrono::seconds(2);  // maximum age of ranges used in the first particle update
@@ -29,7 +29,8 @@ const OccupancyGrid& checked(const OccupancyGrid& map) {
   const auto& cells = map.values();
   if (cells.empty()) throw InputError("localization: map: has no cells");
   if (std::none_of(cells.begin(), cells.end(), is_free)) throw InputError("localization: map: has no free cell");
-  if (std::none_of(cells.begin(), cells.end(), is_occupied)) throw InputError("localization: map: has no occupied cell");
+  if (std::none_of(cells.begin(), cells.end(), is_occupied))
+    throw InputError("localization: map: has no occupied cell");
   return map;
 }
 
@@ -56,11 +57,13 @@ constexpr std::array kSensorModels = std::to_array<SensorModelFactory>({
 std::span<const SensorModelFactory> sensor_models() { return kSensorModels; }
 
 MonteCarloLocalizer::MonteCarloLocalizer(const MonteCarloSettings& settings, const OccupancyGrid& map,
-                                         const std::vector<UwbAnchor>& anchors_in_map, const Pose3& T_body_uwb, std::uint64_t seed)
+                                         const std::vector<UwbAnchor>& anchors_in_map, const Pose3& T_body_uwb,
+                                         std::uint64_t seed)
     : settings_(checked(settings)),
       ranges_(anchors_in_map, T_body_uwb),
       lines_(checked(map), kLineRadius_cells),
-      sensor_model_(row_named(kSensorModels, settings.sensor_model, "localization.sensor_model").make(settings, map, lines_)),
+      sensor_model_(
+          row_named(kSensorModels, settings.sensor_model, "localization.sensor_model").make(settings, map, lines_)),
       search_(settings.global_localization, settings.likelihood_field, map, lines_),
       start_noise_(seed, "localize/start"),
       motion_noise_(seed, "localize/motion"),
@@ -95,7 +98,8 @@ void MonteCarloLocalizer::start_global_localization() {
 }
 
 LocalizationUpdate MonteCarloLocalizer::update(const LevelScan& input_scan, const Pose2& T_odom_body) {
-  const LevelScan without_beams{.stamp = input_scan.stamp, .origin_m = input_scan.origin_m, .tilt_rad = input_scan.tilt_rad, .beams = {}};
+  const LevelScan without_beams{
+      .stamp = input_scan.stamp, .origin_m = input_scan.origin_m, .tilt_rad = input_scan.tilt_rad, .beams = {}};
   const LevelScan& scan = !is_lost_ && input_scan.tilt_rad > settings_.max_tilt_rad ? without_beams : input_scan;
   if (is_globally_started_) start_from(scan, T_odom_body);
   const bool is_first = !T_odom_last_;
@@ -135,12 +139,14 @@ void MonteCarloLocalizer::start_from(const LevelScan& scan, const Pose2& T_odom_
 }
 
 bool MonteCarloLocalizer::is_due(const Pose2& T_before_now, Time stamp) const {
-  return T_before_now.position().norm() >= settings_.update_distance_m || std::abs(T_before_now.yaw) >= settings_.update_angle_rad ||
+  return T_before_now.position().norm() >= settings_.update_distance_m ||
+         std::abs(T_before_now.yaw) >= settings_.update_angle_rad ||
          (is_lost_ && to_seconds(stamp - last_update_stamp_) >= settings_.update_period_s);
 }
 
 // The variance of the predicted pose is added to that of the range.
-void MonteCarloLocalizer::update_range_fit(const std::vector<AnchoredRange>& ranges, const slam::PoseGaussian& prediction) {
+void MonteCarloLocalizer::update_range_fit(const std::vector<AnchoredRange>& ranges,
+                                           const slam::PoseGaussian& prediction) {
   for (const AnchoredRange& range : ranges) {
     const Eigen::Vector2d to_anchor = (range.p_map_anchor.head<2>() - prediction.mean.position()).stableNormalized();
     const double prediction_var = to_anchor.dot(prediction.covariance.topLeftCorner<2, 2>() * to_anchor);
@@ -189,12 +195,14 @@ int MonteCarloLocalizer::resample_and_inject(const LevelScan& scan, const Pose2&
   const auto count = static_cast<double>(cloud_.size());
   const std::size_t needed = particles_needed(weights);
   const bool is_wasteful = static_cast<double>(needed) < kMaxNeededFraction * count;
-  if (injected_fraction > 0.0 || is_wasteful || effective_sample_size(weights) < settings_.resample_threshold * count) resample(weights, needed);
+  if (injected_fraction > 0.0 || is_wasteful || effective_sample_size(weights) < settings_.resample_threshold * count)
+    resample(weights, needed);
 
   const auto num_injected = static_cast<std::size_t>(injected_fraction * static_cast<double>(cloud_.size()));
   if (num_injected == 0) return 0;
   last_search_ = scan.stamp;
-  const std::vector<Pose2> poses = sample_poses(global_localization(scan, T_odom_body), num_injected, injection_noise_, updates_);
+  const std::vector<Pose2> poses =
+      sample_poses(global_localization(scan, T_odom_body), num_injected, injection_noise_, updates_);
   for (std::size_t i = 0; i < poses.size(); ++i) cloud_.T_map_body[i * cloud_.size() / poses.size()] = poses[i];
   return static_cast<int>(poses.size());
 }
@@ -235,7 +243,8 @@ std::size_t MonteCarloLocalizer::particles_needed(const std::vector<double>& wei
   return std::max(num_samples, min_samples);
 }
 
-GlobalSearch::Candidates MonteCarloLocalizer::global_localization(const LevelScan& scan, const Pose2& T_odom_body) const {
+GlobalSearch::Candidates MonteCarloLocalizer::global_localization(const LevelScan& scan,
+                                                                  const Pose2& T_odom_body) const {
   const Time since = scan.stamp - from_seconds(settings_.range_buffer_s);
   return search_.find(scan, ranges_.ranges_since(since, T_odom_body), settings_.ranges, settings_.effective_beams,
                       injection_noise_.uniform(updates_, 0));
@@ -244,9 +253,14 @@ GlobalSearch::Candidates MonteCarloLocalizer::global_localization(const LevelSca
 LocalizationUpdate MonteCarloLocalizer::describe(const LevelScan& scan, const RefinedPose& refined) {
   if (refined.num_points >= kMinPoints) divergence_monitor_.add_scan_fit(refined.inlier_ratio);
   LocalizationUpdate update;
-  update.estimate = {.stamp = scan.stamp, .T_map_body = refined.posterior.mean, .covariance = refined.posterior.covariance};
-  update.confidence = assess_confidence(scan.stamp, {.covariance = refined.posterior.covariance, .cluster_weight = cluster_weight_,
-                                           .scan_fit = divergence_monitor_.scan_fit(), .range_fit = divergence_monitor_.range_confidence()}, is_lost_, settings_.confidence);
+  update.estimate = {
+      .stamp = scan.stamp, .T_map_body = refined.posterior.mean, .covariance = refined.posterior.covariance};
+  update.confidence = assess_confidence(scan.stamp,
+                                        {.covariance = refined.posterior.covariance,
+                                         .cluster_weight = cluster_weight_,
+                                         .scan_fit = divergence_monitor_.scan_fit(),
+                                         .range_fit = divergence_monitor_.range_confidence()},
+                                        is_lost_, settings_.confidence);
   update.num_particles = static_cast<int>(cloud_.size());
   update.cluster_weight = cluster_weight_;
   update.inlier_ratio = refined.inlier_ratio;

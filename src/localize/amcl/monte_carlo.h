@@ -1,13 +1,13 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "core/grid.h"
 #include "core/messages.h"
@@ -16,6 +16,7 @@
 #include "core/sensors/registry.h"
 #include "core/uwb.h"
 #include "localize/amcl/beam_model.h"
+#include "localize/amcl/confidence.h"
 #include "localize/amcl/divergence_monitor.h"
 #include "localize/amcl/global_search.h"
 #include "localize/amcl/kld.h"
@@ -25,10 +26,9 @@
 #include "localize/amcl/odometry_model.h"
 #include "localize/amcl/particle_cloud.h"
 #include "localize/amcl/pose_refinement.h"
-#include "localize/amcl/range_likelihood.h"
 #include "localize/amcl/range_buffer.h"
+#include "localize/amcl/range_likelihood.h"
 #include "localize/amcl/sensor_model.h"
-#include "localize/amcl/confidence.h"
 
 namespace patrol::localize {
 
@@ -38,10 +38,10 @@ struct LocalizationUpdate {
   /// True: the particles were updated; false: only the pose was predicted and matched to the map.
   bool particles_updated = false;
   std::optional<ParticleSet> particles;  ///< regular subset of the updated particles, for the log
-  int num_particles = 0;       ///< current number of particles
-  int num_injected = 0;        ///< number of particles replaced by samples of a global search
-  double cluster_weight = 0.0;   ///< weight of the particle cluster behind the estimate
-  double inlier_ratio = 0.0;  ///< fraction of the scan points on surfaces of the map
+  int num_particles = 0;                 ///< current number of particles
+  int num_injected = 0;                  ///< number of particles replaced by samples of a global search
+  double cluster_weight = 0.0;           ///< weight of the particle cluster behind the estimate
+  double inlier_ratio = 0.0;             ///< fraction of the scan points on surfaces of the map
 };
 
 /// Adaptive Monte Carlo localization on a known map [Thrun05, chapter 8] with KLD sampling [Fox03]. UWB ranges enter as
@@ -57,8 +57,8 @@ class MonteCarloLocalizer {
  public:
   /// Anchors are in map, with heights above the body origin, for level ground. Throws InputError if a setting is
   /// invalid, or if the map is empty or has no free or no occupied cell.
-  MonteCarloLocalizer(const MonteCarloSettings& settings, const OccupancyGrid& map, const std::vector<UwbAnchor>& anchors_in_map,
-                      const Pose3& T_body_uwb, std::uint64_t seed);
+  MonteCarloLocalizer(const MonteCarloSettings& settings, const OccupancyGrid& map,
+                      const std::vector<UwbAnchor>& anchors_in_map, const Pose3& T_body_uwb, std::uint64_t seed);
 
   /// Sets the initial pose; covariance of x, y, yaw in map.
   void set_initial_pose(const Pose2& T_map_body, const Eigen::Matrix3d& covariance);

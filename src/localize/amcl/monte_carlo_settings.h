@@ -37,15 +37,15 @@ struct MonteCarloSettings {
   double effective_beams = 20.0;
   /// Tolerance of the mean log likelihood per beam for errors of map and model: 3 cm for a standard deviation of 0.1 m.
   double scan_fit_tolerance = 0.05;
-  double update_distance_m = 0.2;      ///< distance traveled between particle updates
-  double update_angle_rad = 0.05;      ///< yaw change between particle updates
-  double update_period_s = 1.0;        ///< maximum time between particle updates while lost
+  double update_distance_m = 0.2;  ///< distance traveled between particle updates
+  double update_angle_rad = 0.05;  ///< yaw change between particle updates
+  double update_period_s = 1.0;    ///< maximum time between particle updates while lost
   double max_tilt_rad = 0.1;  ///< scans tilted by more, for example on a ramp, are not used unless the robot is lost
   /// Resample if the effective sample size is below this fraction of the number of particles.
   double resample_threshold = 0.5;
   int min_particles_lost = 2000;  ///< with few particles, hypotheses would disappear by chance
-  double range_buffer_s = 2.0;         ///< maximum age of ranges used in a global search
-  double search_period_s = 1.0;        ///< minimum time between global searches
+  double range_buffer_s = 2.0;    ///< maximum age of ranges used in a global search
+  double search_period_s = 1.0;   ///< minimum time between global searches
   int max_logged_particles = 300;
   OdometryModelSettings odometry;
   LikelihoodFieldSettings likelihood_field;

@@ -17,11 +17,12 @@ namespace patrol::localize {
 /// featureless corridor the standard deviation must therefore grow with the distance, not with its square root. Each
 /// particle therefore has its own scale error (a Gauss-Markov process over the distance), which ranges and features
 /// also estimate.
-void propagate_particles(ParticleCloud& cloud, const Pose2& T_before_now, double dt_s, const OdometryModelSettings& settings,
-                    const RandomStream& noise, std::uint64_t tick);
+void propagate_particles(ParticleCloud& cloud, const Pose2& T_before_now, double dt_s,
+                         const OdometryModelSettings& settings, const RandomStream& noise, std::uint64_t tick);
 
 /// Propagates a normally distributed pose by an odometry increment, with the stationary distribution of the scale
 /// error.
-slam::PoseGaussian predict(const slam::PoseGaussian& before, const Pose2& T_before_now, double dt_s, const OdometryModelSettings& settings);
+slam::PoseGaussian predict(const slam::PoseGaussian& before, const Pose2& T_before_now, double dt_s,
+                           const OdometryModelSettings& settings);
 
 }  // namespace patrol::localize

@@ -8,8 +8,8 @@ namespace patrol::localize {
 struct OdometryModelSettings {
   /// Standard deviation of the persistent scale error of the distance: track wear, steady slip.
   double scale_std = 0.02;
-  double scale_correlation_length_m = 50.0;   ///< correlation length of the scale error
-  slam::MotionModelSettings noise;    ///< independent error of each step
+  double scale_correlation_length_m = 50.0;  ///< correlation length of the scale error
+  slam::MotionModelSettings noise;           ///< independent error of each step
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

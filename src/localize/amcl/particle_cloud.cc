@@ -23,7 +23,7 @@ DominantCluster find_dominant_cluster(const std::vector<std::size_t>& clusters, 
 }
 
 slam::PoseGaussian cluster_gaussian(const std::vector<Pose2>& T_map_body, const std::vector<double>& weights,
-                               const std::vector<std::size_t>& clusters, std::size_t cluster) {
+                                    const std::vector<std::size_t>& clusters, std::size_t cluster) {
   const auto for_each_member = [&](auto&& visit) {
     for (std::size_t i = 0; i < T_map_body.size(); ++i) {
       if (clusters[i] == cluster) visit(T_map_body[i], weights[i]);

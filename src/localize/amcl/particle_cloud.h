@@ -12,8 +12,8 @@ namespace patrol::localize {
 /// Set of weighted pose hypotheses. The arrays are parallel, [particle].
 struct ParticleCloud {
   std::vector<Pose2> T_map_body;
-  std::vector<double> odometry_scale;    ///< scale error of the odometry distance: true / measured - 1
-  std::vector<double> log_weights;  ///< up to a constant common to all particles
+  std::vector<double> odometry_scale;  ///< scale error of the odometry distance: true / measured - 1
+  std::vector<double> log_weights;     ///< up to a constant common to all particles
 
   std::size_t size() const { return T_map_body.size(); }
   void add(const Pose2& pose, double scale, double log_weight = 0.0) {
@@ -33,6 +33,6 @@ DominantCluster find_dominant_cluster(const std::vector<std::size_t>& clusters, 
 
 /// Mean and covariance of the particles of one cluster. The mean heading is a circular mean.
 slam::PoseGaussian cluster_gaussian(const std::vector<Pose2>& T_map_body, const std::vector<double>& weights,
-                               const std::vector<std::size_t>& clusters, std::size_t cluster);
+                                    const std::vector<std::size_t>& clusters, std::size_t cluster);
 
 }  // namespace patrol::localize

@@ -1,11 +1,11 @@
 #include "localize/amcl/pose_refinement.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
-
 #include <algorithm>
 #include <cmath>
 #include <vector>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
 
 #include "core/geometry/principal_axes.h"
 
@@ -26,8 +26,8 @@ struct Residual {
 };
 
 /// Residuals of the points near a surface.
-std::vector<Residual> residuals_at(const LineField& lines, const std::vector<slam::MatchPoint>& points, const Pose2& T_map_body,
-                                   const PoseRefinementSettings& settings) {
+std::vector<Residual> residuals_at(const LineField& lines, const std::vector<slam::MatchPoint>& points,
+                                   const Pose2& T_map_body, const PoseRefinementSettings& settings) {
   std::vector<Residual> residuals;
   residuals.reserve(points.size());
   const Eigen::Matrix2d R = Eigen::Rotation2Dd(T_map_body.yaw).toRotationMatrix();
@@ -65,7 +65,9 @@ NormalEquations equations_of(const std::vector<Residual>& residuals, const PoseR
   for (const Residual& residual : residuals) {
     const double incidence_sine = residual.normal.dot(u);
     Eigen::Vector3d J;
-    J << (std::abs(incidence_sine) > settings.min_incidence_sine ? residual.normal : Eigen::Vector2d(residual.normal.dot(v) * v)), residual.d_by_yaw;
+    J << (std::abs(incidence_sine) > settings.min_incidence_sine ? residual.normal
+                                                                 : Eigen::Vector2d(residual.normal.dot(v) * v)),
+        residual.d_by_yaw;
     sum.H += settings.likelihood_tempering * residual.weight * J * J.transpose();
     sum.b += settings.likelihood_tempering * residual.weight * residual.distance_m * J;
   }
@@ -73,16 +75,19 @@ NormalEquations equations_of(const std::vector<Residual>& residuals, const PoseR
 }
 
 double fraction_within(const std::vector<Residual>& residuals, double tolerance_m, std::size_t num_points) {
-  const auto count = std::count_if(residuals.begin(), residuals.end(), [&](const Residual& residual) { return std::abs(residual.distance_m) < tolerance_m; });
+  const auto count = std::count_if(residuals.begin(), residuals.end(), [&](const Residual& residual) {
+    return std::abs(residual.distance_m) < tolerance_m;
+  });
   return num_points > 0 ? static_cast<double>(count) / static_cast<double>(num_points) : 0.0;
 }
 
 }  // namespace
 
-RefinedPose refine_pose(const LineField& lines, const LevelScan& scan, const slam::PoseGaussian& prior, const Pose2& T_map_start,
-                        const PoseRefinementSettings& settings) {
+RefinedPose refine_pose(const LineField& lines, const LevelScan& scan, const slam::PoseGaussian& prior,
+                        const Pose2& T_map_start, const PoseRefinementSettings& settings) {
   RefinedPose refined{.posterior = prior};
-  const std::vector<slam::MatchPoint> points = slam::downsample_scan(scan, settings.point_spacing_m, settings.max_points);
+  const std::vector<slam::MatchPoint> points =
+      slam::downsample_scan(scan, settings.point_spacing_m, settings.max_points);
   refined.num_points = static_cast<int>(points.size());
   const Eigen::Matrix3d prior_information = prior.covariance.inverse();
   Pose2 pose = T_map_start;
@@ -93,7 +98,8 @@ RefinedPose refine_pose(const LineField& lines, const LevelScan& scan, const sla
     if (refined.inlier_ratio < settings.min_inlier_ratio) return refined;
 
     sum = equations_of(residuals, settings);
-    const Eigen::Vector3d step = -(sum.H + prior_information).ldlt().solve(sum.b + prior_information * prior.residual_to_mean(pose));
+    const Eigen::Vector3d step =
+        -(sum.H + prior_information).ldlt().solve(sum.b + prior_information * prior.residual_to_mean(pose));
     if (!step.allFinite()) return refined;
     pose = slam::perturbed(pose, step);
     if (step.head<2>().norm() < kStepTolerance_m && std::abs(step.z()) < kStepTolerance_rad) break;
@@ -101,12 +107,14 @@ RefinedPose refine_pose(const LineField& lines, const LevelScan& scan, const sla
   refined.is_matched = true;
   refined.information = sum.H;
   Eigen::Matrix3d covariance = (refined.information + prior_information).inverse();
-  covariance.diagonal() += Eigen::Vector3d(squared(settings.map_std_m), squared(settings.map_std_m), squared(settings.map_std_rad));
+  covariance.diagonal() +=
+      Eigen::Vector3d(squared(settings.map_std_m), squared(settings.map_std_m), squared(settings.map_std_rad));
   refined.posterior = {.mean = pose, .covariance = 0.5 * (covariance + covariance.transpose())};
   return refined;
 }
 
-ScanProposal::ScanProposal(const RefinedPose& refined, const Eigen::Matrix3d& spread) : matched_(refined.posterior.mean) {
+ScanProposal::ScanProposal(const RefinedPose& refined, const Eigen::Matrix3d& spread)
+    : matched_(refined.posterior.mean) {
   const Eigen::Matrix3d covariance = (spread.inverse() + refined.information).inverse();
   gain_ = covariance * refined.information;
   root_ = Eigen::Matrix3d(0.5 * (covariance + covariance.transpose())).llt().matrixL();

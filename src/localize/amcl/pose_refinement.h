@@ -15,9 +15,9 @@ struct RefinedPose {
   slam::PoseGaussian posterior;  ///< pose given the prior and the scan
   /// Information of the scan alone for x, y, yaw in map, tempered; zero in degenerate directions.
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
-  int num_points = 0;            ///< number of matched scan points
-  double inlier_ratio = 0.0;    ///< inlier ratio: fraction of these within twice the kernel of a surface
-  bool is_matched = false;       ///< false: the posterior is the prior
+  int num_points = 0;         ///< number of matched scan points
+  double inlier_ratio = 0.0;  ///< inlier ratio: fraction of these within twice the kernel of a surface
+  bool is_matched = false;    ///< false: the posterior is the prior
 };
 
 /// Gaussian posterior of a prior and a scan matched to a known map. Gauss-Newton on the distances of the points to the
@@ -28,8 +28,8 @@ struct RefinedPose {
 /// therefore constrains the weaker direction only if it clearly faces it. In a featureless tunnel no line does, and
 /// that direction keeps the prior (solution remapping [Zhang16]).
 /// Deviation from [Zhang16]: the projection is applied per line, not per eigenvalue.
-RefinedPose refine_pose(const LineField& lines, const LevelScan& scan, const slam::PoseGaussian& prior, const Pose2& T_map_start,
-                        const PoseRefinementSettings& settings);
+RefinedPose refine_pose(const LineField& lines, const LevelScan& scan, const slam::PoseGaussian& prior,
+                        const Pose2& T_map_start, const PoseRefinementSettings& settings);
 
 /// Proposal distribution given a particle and the scan match, both normally distributed. It is the improved proposal of
 /// [Grisetti07], with one scan match for all particles near it. Along degenerate directions a particle is unchanged

@@ -9,14 +9,14 @@ struct PoseRefinementSettings {
   double point_spacing_m = 0.1;         ///< consecutive beams that end within this distance are averaged
   double point_std_m = 0.03;            ///< standard deviation of the range of a point and of the map cells
   double point_angle_std_rad = 0.0015;  ///< standard deviation of the direction of a point
-  double kernel_m = 0.08;  ///< scale of the Cauchy kernel; residuals beyond it are down-weighted as outliers
-  double likelihood_tempering = 0.1;         ///< tempering factor: fraction of the points with independent errors
+  double kernel_m = 0.08;             ///< scale of the Cauchy kernel; residuals beyond it are down-weighted as outliers
+  double likelihood_tempering = 0.1;  ///< tempering factor: fraction of the points with independent errors
   /// A line constrains the weak direction only if the sine of its angle to that direction is larger.
   double min_incidence_sine = 0.15;
-  double map_std_m = 0.01;              ///< standard deviation of the map itself, which is not reduced by averaging
+  double map_std_m = 0.01;  ///< standard deviation of the map itself, which is not reduced by averaging
   double map_std_rad = 0.001;
   int max_iterations = 8;
-  double min_inlier_ratio = 0.3;       ///< matches with a smaller inlier ratio are rejected
+  double min_inlier_ratio = 0.3;  ///< matches with a smaller inlier ratio are rejected
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

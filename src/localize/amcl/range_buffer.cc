@@ -4,7 +4,8 @@
 
 namespace patrol::localize {
 
-RangeBuffer::RangeBuffer(const std::vector<UwbAnchor>& anchors_in_map, const Pose3& T_body_uwb) : T_body_uwb_(T_body_uwb) {
+RangeBuffer::RangeBuffer(const std::vector<UwbAnchor>& anchors_in_map, const Pose3& T_body_uwb)
+    : T_body_uwb_(T_body_uwb) {
   for (const UwbAnchor& anchor : anchors_in_map) p_map_anchor_[anchor.number] = anchor.p_m;
 }
 
@@ -22,7 +23,8 @@ std::vector<AnchoredRange> RangeBuffer::ranges_since(Time since, const Pose2& T_
   std::vector<AnchoredRange> ranges;
   for (const auto& [number, buffered] : newest_) {
     if (buffered.stamp <= since) continue;
-    const Eigen::Vector2d antenna = (T_odom_now.inverse() * buffered.T_odom_body) * buffered.p_level_antenna.head<2>().eval();
+    const Eigen::Vector2d antenna =
+        (T_odom_now.inverse() * buffered.T_odom_body) * buffered.p_level_antenna.head<2>().eval();
     ranges.push_back({.p_map_anchor = p_map_anchor_.at(number),
                       .p_body_antenna = {antenna.x(), antenna.y(), buffered.p_level_antenna.z()},
                       .range_m = buffered.distance_m});

@@ -7,7 +7,8 @@ namespace patrol::localize {
 double range_log_likelihood(double innovation_m, const RangeLikelihoodSettings& settings) {
   const double ratio = innovation_m / settings.range_std_m;
   const double los_probability = 1.0 - settings.nlos_probability - settings.outlier_probability;
-  const double nlos = innovation_m > 0.0 ? settings.nlos_probability * std::exp(-innovation_m / settings.nlos_bias_m) : 0.0;
+  const double nlos =
+      innovation_m > 0.0 ? settings.nlos_probability * std::exp(-innovation_m / settings.nlos_bias_m) : 0.0;
   return std::log(los_probability * std::exp(-0.5 * ratio * ratio) + nlos + settings.outlier_probability);
 }
 

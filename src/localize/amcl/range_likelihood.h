@@ -7,14 +7,14 @@
 
 namespace patrol::localize {
 
-/// Returns log(likelihood / maximum) of a range with innovation `innovation_m`. The mixture has a normal distribution, an
-/// exponential tail for the positive bias of NLOS paths, and a floor that bounds the influence of outliers. It is the
-/// beam model's mixture [Thrun05, section 6.3] with the short returns replaced by long ones.
+/// Returns log(likelihood / maximum) of a range with innovation `innovation_m`. The mixture has a normal distribution,
+/// an exponential tail for the positive bias of NLOS paths, and a floor that bounds the influence of outliers. It is
+/// the beam model's mixture [Thrun05, section 6.3] with the short returns replaced by long ones.
 double range_log_likelihood(double innovation_m, const RangeLikelihoodSettings& settings);
 
 /// Range with its geometry relative to the current body.
 struct AnchoredRange {
-  Eigen::Vector3d p_map_anchor = Eigen::Vector3d::Zero();   ///< m
+  Eigen::Vector3d p_map_anchor = Eigen::Vector3d::Zero();  ///< m
   /// Position of the antenna at the stamp of the range, in the current level body frame, m.
   Eigen::Vector3d p_body_antenna = Eigen::Vector3d::Zero();
   double range_m = 0.0;

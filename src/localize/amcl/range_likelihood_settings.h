@@ -8,9 +8,9 @@ struct RangeLikelihoodSettings {
   /// Standard deviation of a LOS range; larger than that of the radio, because consecutive ranges have correlated
   /// errors.
   double range_std_m = 0.15;
-  double nlos_probability = 0.1;     ///< likelihood of a marginal NLOS path relative to that of an exact range
-  double nlos_bias_m = 0.5;  ///< mean NLOS bias
-  double outlier_probability = 0.02;    ///< likelihood of any other range
+  double nlos_probability = 0.1;      ///< likelihood of a marginal NLOS path relative to that of an exact range
+  double nlos_bias_m = 0.5;           ///< mean NLOS bias
+  double outlier_probability = 0.02;  ///< likelihood of any other range
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

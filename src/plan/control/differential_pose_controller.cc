@@ -8,9 +8,9 @@ namespace patrol::plan {
 namespace {
 
 constexpr double kApproachFacing_rad = 0.1;     // heading error within which driving begins
-constexpr double kMaxHeadingError_rad = 0.6;       // heading error while driving that requires another turn in place
+constexpr double kMaxHeadingError_rad = 0.6;    // heading error while driving that requires another turn in place
 constexpr double kMinBearingDistance_m = 0.15;  // distance below which the bearing of the goal is too noisy
-constexpr int kMaxChanges = 6;          // phase changes within one step
+constexpr int kMaxChanges = 6;                  // phase changes within one step
 
 /// Bearing of the goal position in body, from the bow; from the stern when driving backward.
 double bearing_rad(const Pose2& T_goal_body, double forward) {

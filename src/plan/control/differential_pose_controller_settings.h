@@ -6,14 +6,14 @@
 namespace patrol::plan {
 
 struct DifferentialPoseControllerSettings {
-  double speed_gain_per_s = 1.0;    ///< speed per meter of remaining distance
+  double speed_gain_per_s = 1.0;  ///< speed per meter of remaining distance
   double max_speed_mps = 0.3;
-  double min_speed_mps = 0.04;      ///< minimum speed that the tracks follow smoothly
-  double min_yaw_rate_radps = 0.08; ///< minimum yaw rate that the tracks follow smoothly
-  double tolerance_fraction = 0.5;           ///< fraction of the goal's tolerances that a pass aims at
+  double min_speed_mps = 0.04;          ///< minimum speed that the tracks follow smoothly
+  double min_yaw_rate_radps = 0.08;     ///< minimum yaw rate that the tracks follow smoothly
+  double tolerance_fraction = 0.5;      ///< fraction of the goal's tolerances that a pass aims at
   double max_reverse_distance_m = 1.0;  ///< maximum distance of a goal behind the robot that is approached in reverse
   double lateral_correction_distance_m = 0.25;  ///< distance below which lateral errors are corrected by backing up
-  double max_back_off_m = 0.8;      ///< maximum distance of one backing-up maneuver
+  double max_back_off_m = 0.8;                  ///< maximum distance of one backing-up maneuver
   LineFollowingSettings line;
 
   template <typename Self, typename Visitor>

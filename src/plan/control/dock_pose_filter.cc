@@ -1,9 +1,9 @@
 #include "plan/control/dock_pose_filter.h"
 
-#include <Eigen/LU>
-
 #include <algorithm>
 #include <cmath>
+
+#include <Eigen/LU>
 
 namespace patrol::plan {
 namespace {
@@ -15,9 +15,7 @@ Eigen::Matrix3d body_motion_jacobian(const Pose2& T_odom_body, const Pose2& T_od
   const double c = std::cos(T_odom_body.yaw), s = std::sin(T_odom_body.yaw);
   const Eigen::Vector2d arm = T_odom_observed.position() - T_odom_body.position();
   Eigen::Matrix3d J;
-  J << c, -s, -arm.y(),
-       s, c, arm.x(),
-       0.0, 0.0, 1.0;
+  J << c, -s, -arm.y(), s, c, arm.x(), 0.0, 0.0, 1.0;
   return J;
 }
 
@@ -31,7 +29,7 @@ void DockPoseFilter::drift(const Pose2& T_odom_body, double time_s) {
   const double position_std = settings_.position_std_m_per_m * distance_m;
   const double lateral_std = std::hypot(position_std, settings_.lateral_std_m_per_rad * turn_rad);
   const double yaw_std = std::hypot(settings_.yaw_std_rad_per_rad * turn_rad + settings_.yaw_std_rad_per_m * distance_m,
-                                     settings_.yaw_random_walk_rad_per_sqrt_s * std::sqrt(time_s));
+                                    settings_.yaw_random_walk_rad_per_sqrt_s * std::sqrt(time_s));
   const Eigen::Vector3d body_std(position_std, lateral_std, yaw_std);
   const Eigen::Matrix3d J = body_motion_jacobian(T_odom_body, *T_odom_docked_);
   covariance_ += J * body_std.cwiseAbs2().asDiagonal() * J.transpose();
@@ -42,9 +40,7 @@ void DockPoseFilter::add(const DockDetection& detection, const Pose2& T_odom_bod
   const Pose2 seen = T_odom_body * detection.T_level_docked;
   const double c = std::cos(T_odom_body.yaw), s = std::sin(T_odom_body.yaw);
   Eigen::Matrix3d R;  // level to odom
-  R << c, -s, 0.0,
-       s, c, 0.0,
-       0.0, 0.0, 1.0;
+  R << c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0;
   Eigen::Matrix3d observed_covariance = R * detection.covariance * R.transpose();
   const Eigen::Vector3d min_std(settings_.min_std_m, settings_.min_std_m, settings_.min_std_rad);
   observed_covariance += min_std.cwiseAbs2().asDiagonal();
@@ -68,8 +64,8 @@ void DockPoseFilter::add(const DockDetection& detection, const Pose2& T_odom_bod
   }
   const Eigen::Matrix3d gain = covariance_ * inverse;
   const Eigen::Vector3d step = gain * innovation;
-  T_odom_docked_ = Pose2{T_odom_docked_->x + step.x(), T_odom_docked_->y + step.y(),
-                         wrap_angle(T_odom_docked_->yaw + step.z())};
+  T_odom_docked_ =
+      Pose2{T_odom_docked_->x + step.x(), T_odom_docked_->y + step.y(), wrap_angle(T_odom_docked_->yaw + step.z())};
   covariance_ = (Eigen::Matrix3d::Identity() - gain) * covariance_;
   covariance_ = 0.5 * (covariance_ + covariance_.transpose()).eval();
   num_outliers_ = 0;

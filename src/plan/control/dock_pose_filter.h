@@ -1,8 +1,8 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <optional>
+
+#include <Eigen/Core>
 
 #include "core/dock_detection.h"
 #include "core/settings.h"

@@ -109,7 +109,8 @@ VelocityCommand Docking::drive_in(Time now, const Pose2& T_docked_body) {
   LineFollowingSettings line = settings_.line;
   if (remaining_m < settings_.heading_blend_distance_m)
     line.lateral_gain_per_m *= remaining_m / settings_.heading_blend_distance_m;
-  const double speed = std::clamp(settings_.speed_gain_per_s * remaining_m, settings_.min_speed_mps, settings_.max_speed_mps);
+  const double speed =
+      std::clamp(settings_.speed_gain_per_s * remaining_m, settings_.min_speed_mps, settings_.max_speed_mps);
   return follow_line(line, T_docked_body, speed);
 }
 
@@ -137,7 +138,8 @@ VelocityCommand Docking::correct(Time now, const Pose2& T_docked_body) {
 }
 
 VelocityCommand Docking::back_up(const Pose2& T_docked_body) {
-  if (-T_docked_body.x < settings_.staging_distance_m) return follow_line(settings_.line, T_docked_body, -settings_.max_speed_mps);
+  if (-T_docked_body.x < settings_.staging_distance_m)
+    return follow_line(settings_.line, T_docked_body, -settings_.max_speed_mps);
   enter(Phase::kTurn, "");
   return {};
 }
@@ -151,7 +153,8 @@ VelocityCommand Docking::drive_out(const Pose2& T_odom_body) {
 }
 
 void Docking::retry() {
-  if (++num_attempts_ > settings_.max_attempts) return enter(Phase::kFailed, "Docking failed: no alignment with the charging post.");
+  if (++num_attempts_ > settings_.max_attempts)
+    return enter(Phase::kFailed, "Docking failed: no alignment with the charging post.");
   enter(Phase::kBackUp, "Docking: outside the approach corridor, backing up to retry.");
 }
 

@@ -69,7 +69,7 @@ class Docking {
   std::string text_;
   Time start_{};
   Time stationary_since_{};
-  Pose2 T_odom_left_;    ///< body pose at the start of undocking
+  Pose2 T_odom_left_;  ///< body pose at the start of undocking
   int num_attempts_ = 0;
 };
 

@@ -23,8 +23,9 @@ DynamicWindow::DynamicWindow(const DwaSettings& settings)
     : settings_(settings), clearance_{.comfortable_m = settings.comfortable_clearance_m} {}
 
 double DynamicWindow::cost(const Rollout& rollout, const RolloutScene& scene) const {
-  return settings_.path_weight * path_distance_(rollout, scene) + settings_.progress_weight * progress_(rollout, scene) +
-         settings_.heading_weight * heading_(rollout, scene) + settings_.clearance_weight * clearance_(rollout, scene) +
+  return settings_.path_weight * path_distance_(rollout, scene) +
+         settings_.progress_weight * progress_(rollout, scene) + settings_.heading_weight * heading_(rollout, scene) +
+         settings_.clearance_weight * clearance_(rollout, scene) +
          settings_.command_change_weight * change_(rollout, scene);
 }
 
@@ -44,7 +45,8 @@ std::optional<VelocityCommand> DynamicWindow::choose(const Costmap& costmap, con
   // not be rated like standing still.
   const RolloutScene scene{.path = path,
                            .along_m = along_m,
-                           .reachable_distance_m = std::max(max_reachable, kMinReachableSpeed_mps) * settings_.horizon_s,
+                           .reachable_distance_m =
+                               std::max(max_reachable, kMinReachableSpeed_mps) * settings_.horizon_s,
                            .twist = twist,
                            .max_speed_mps = settings_.max_speed_mps,
                            .max_yaw_rate_radps = settings_.max_yaw_rate_radps};
@@ -52,11 +54,12 @@ std::optional<VelocityCommand> DynamicWindow::choose(const Costmap& costmap, con
   std::optional<VelocityCommand> best;
   double best_cost = std::numeric_limits<double>::infinity();
   for (const double vx : samples(min_reachable, max_reachable, settings_.speed_samples)) {
-    for (const double yaw : samples(std::max(-settings_.max_yaw_rate_radps, yaw_rate - yaw_window),
-                                    std::min(settings_.max_yaw_rate_radps, yaw_rate + yaw_window),
-                                    settings_.yaw_rate_samples)) {
+    for (const double yaw :
+         samples(std::max(-settings_.max_yaw_rate_radps, yaw_rate - yaw_window),
+                 std::min(settings_.max_yaw_rate_radps, yaw_rate + yaw_window), settings_.yaw_rate_samples)) {
       const Rollout rollout = roll_out(costmap, T_map_body, vx, yaw, settings_.horizon_s, settings_.steps);
-      const bool leads_away = clearance_now < 0.0 && costmap.clearance_m(rollout.T_map_body.back()) > clearance_now + 0.02 &&
+      const bool leads_away = clearance_now < 0.0 &&
+                              costmap.clearance_m(rollout.T_map_body.back()) > clearance_now + 0.02 &&
                               rollout.min_clearance_m > clearance_now - 0.02;
       if (rollout.min_clearance_m <= 0.0 && !leads_away) continue;
       const double total = cost(rollout, scene);

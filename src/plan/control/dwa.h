@@ -24,7 +24,8 @@ class DynamicWindow final : public LocalPlanner {
   explicit DynamicWindow(const DwaSettings& settings);
 
   std::optional<VelocityCommand> choose(const Costmap& costmap, const PlannedPath& path, double along_m,
-                                        const Pose2& T_map_body, const Twist3& twist, double speed_limit_mps) const override;
+                                        const Pose2& T_map_body, const Twist3& twist,
+                                        double speed_limit_mps) const override;
 
  private:
   double cost(const Rollout& rollout, const RolloutScene& scene) const;

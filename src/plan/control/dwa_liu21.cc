@@ -52,7 +52,8 @@ void normalize(std::vector<double>& values) {
 DwaLiu21::DwaLiu21(const DwaLiu21Settings& settings) : settings_(settings) { validate(settings_, "dwa_liu21"); }
 
 /// Velocity pairs of V_s, each with its trajectory.
-std::vector<Rollout> DwaLiu21::admissible(const Costmap& costmap, const Pose2& T_map_body, const VelocityWindow& window) const {
+std::vector<Rollout> DwaLiu21::admissible(const Costmap& costmap, const Pose2& T_map_body,
+                                          const VelocityWindow& window) const {
   const auto sample = [](double low, double high, int i, int count) { return low + (high - low) * i / (count - 1); };
   std::vector<Rollout> rollouts;
   for (int i = 0; i < settings_.speed_samples; ++i) {
@@ -67,7 +68,8 @@ std::vector<Rollout> DwaLiu21::admissible(const Costmap& costmap, const Pose2& T
 }
 
 std::optional<VelocityCommand> DwaLiu21::choose(const Costmap& costmap, const PlannedPath& path, double along_m,
-                                                const Pose2& T_map_body, const Twist3& twist, double speed_limit_mps) const {
+                                                const Pose2& T_map_body, const Twist3& twist,
+                                                double speed_limit_mps) const {
   VelocityWindow limits = speed_window(settings_);
   limits.max_speed_mps = std::max(limits.min_speed_mps, std::min(limits.max_speed_mps, speed_limit_mps));
   const VelocityWindow window = intersect(limits, reachable_window(settings_, twist.linear.x(), twist.angular.z()));
@@ -95,10 +97,8 @@ std::optional<VelocityCommand> DwaLiu21::choose(const Costmap& costmap, const Pl
     best = i;
     best_value = value;
   }
-  return VelocityCommand{.stamp = {},
-                         .vx_mps = rollouts[best].vx_mps,
-                         .vy_mps = 0.0,
-                         .yaw_rate_radps = rollouts[best].yaw_rate_radps};
+  return VelocityCommand{
+      .stamp = {}, .vx_mps = rollouts[best].vx_mps, .vy_mps = 0.0, .yaw_rate_radps = rollouts[best].yaw_rate_radps};
 }
 
 }  // namespace patrol::plan

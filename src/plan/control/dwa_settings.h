@@ -12,9 +12,9 @@ struct DwaSettings {
   double max_acceleration_mps2 = 0.8;
   double max_yaw_acceleration_radps2 = 2.5;
   // Sampled commands.
-  double window_s = 0.3;    ///< time in which a sampled command is reachable
-  double horizon_s = 2.0;   ///< prediction horizon
-  int steps = 8;            ///< poses along the horizon
+  double window_s = 0.3;   ///< time in which a sampled command is reachable
+  double horizon_s = 2.0;  ///< prediction horizon
+  int steps = 8;           ///< poses along the horizon
   int speed_samples = 6;
   int yaw_rate_samples = 15;
   // Weights of the cost terms.

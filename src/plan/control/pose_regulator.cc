@@ -5,7 +5,8 @@
 
 namespace patrol::plan {
 
-VelocityCommand regulate_pose(const PoseRegulatorSettings& settings, const Pose2& T_map_body, const NavigationGoal& goal) {
+VelocityCommand regulate_pose(const PoseRegulatorSettings& settings, const Pose2& T_map_body,
+                              const NavigationGoal& goal) {
   const Pose2 T_body_goal = T_map_body.inverse() * goal.T_map_body;
   const auto limited = [](double value, double limit) { return std::clamp(value, -limit, limit); };
   const bool any_yaw = goal.yaw_tolerance_rad > 3.0;

@@ -8,8 +8,8 @@ namespace patrol::plan {
 
 /// Settings of the controllers of the last meter to a goal; `kinematics` of the navigation selects one.
 struct GoalControllerSettings {
-  PoseRegulatorSettings holonomic;                    ///< omnidirectional robot
-  DifferentialPoseControllerSettings differential;    ///< differential robot
+  PoseRegulatorSettings holonomic;                  ///< omnidirectional robot
+  DifferentialPoseControllerSettings differential;  ///< differential robot
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

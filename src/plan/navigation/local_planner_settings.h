@@ -6,8 +6,8 @@
 
 #include "core/named_table.h"
 #include "core/settings.h"
-#include "plan/control/dwa_settings.h"
 #include "plan/control/dwa_liu21_settings.h"
+#include "plan/control/dwa_settings.h"
 #include "plan/control/local_planner.h"
 
 namespace patrol::plan {

@@ -27,8 +27,8 @@ struct NavigationStep {
   VelocityCommand command;
   NavigationStatus status = NavigationStatus::kIdle;
   NavigationFailure failure = NavigationFailure::kNone;
-  std::string text;         ///< one sentence in the step in which the failure begins or the goal is aborted; else empty
-  std::string recovery;     ///< one sentence in the step in which a recovery begins; else empty
+  std::string text;      ///< one sentence in the step in which the failure begins or the goal is aborted; else empty
+  std::string recovery;  ///< one sentence in the step in which a recovery begins; else empty
   bool replanned = false;
   bool is_detour = false;   ///< replanned because of an obstacle on the path
   std::vector<Pose2> path;  ///< path in map; filled if replanned

@@ -8,8 +8,8 @@
 namespace patrol::plan {
 namespace {
 
-constexpr double kPathStep_m = 0.25;    // spacing of the poses of the published path
-constexpr double kLookAhead_s = 0.5;    // time for which a command of the approach must be safe
+constexpr double kPathStep_m = 0.25;  // spacing of the poses of the published path
+constexpr double kLookAhead_s = 0.5;  // time for which a command of the approach must be safe
 
 /// Height of the body's origin above the ground; 0 for legged robots, which have no sensors that need it.
 double body_height_m(const RobotDescription& robot) { return robot.tracks ? robot.tracks->body_height_m : 0.0; }
@@ -29,7 +29,8 @@ Navigator::Navigator(const NavigatorSettings& settings, const RobotDescription& 
                      std::vector<Polyline> keep_out_lines_in_map, std::uint64_t seed)
     : settings_(checked(settings)),
       robot_(robot),
-      costmap_(settings.costmap, Footprint(robot.footprint_m, settings.footprint_rows), std::move(keep_out_lines_in_map)),
+      costmap_(settings.costmap, Footprint(robot.footprint_m, settings.footprint_rows),
+               std::move(keep_out_lines_in_map)),
       search_(settings, seed),
       follower_(settings),
       approach_(settings.goal_controller.differential),
@@ -43,7 +44,8 @@ void Navigator::set_map(const OccupancyGrid& map) {
 
 void Navigator::add_depth(const DepthImage& image, const Pose3& T_level_body, const Pose2& T_map_body) {
   const Pose3 T_level_camera = T_level_body * robot_.T_body("depth_camera");
-  costmap_.add_image(segment_obstacles(settings_.depth_obstacles, image, T_level_camera, body_height_m(robot_)), image.stamp, T_map_body);
+  costmap_.add_image(segment_obstacles(settings_.depth_obstacles, image, T_level_camera, body_height_m(robot_)),
+                     image.stamp, T_map_body);
 }
 
 void Navigator::add_range(const UltrasonicRange& ping, const Pose3& T_level_body, const Pose2& T_map_body) {
@@ -249,7 +251,8 @@ NavigationStatus Navigator::continue_recovery(Time now, const Pose2& T_map_body,
 
 void Navigator::update_progress(const Pose2& T_map_body) {
   const double goal_distance_m = (goal_->T_map_body.position() - T_map_body.position()).norm();
-  if (progress_.has_progressed(goal_distance_m + follower_.path().length_m() - follower_.along_m())) recoveries_.reset();
+  if (progress_.has_progressed(goal_distance_m + follower_.path().length_m() - follower_.along_m()))
+    recoveries_.reset();
 }
 
 }  // namespace patrol::plan

@@ -28,7 +28,8 @@ class Navigator {
  public:
   /// `seed`: random seed of the stochastic global planners. Throws InputError if a setting breaks its rule or the robot
   /// has no footprint.
-  Navigator(const NavigatorSettings& settings, const RobotDescription& robot, std::vector<Polyline> keep_out_lines_in_map, std::uint64_t seed = 0);
+  Navigator(const NavigatorSettings& settings, const RobotDescription& robot,
+            std::vector<Polyline> keep_out_lines_in_map, std::uint64_t seed = 0);
 
   void set_map(const OccupancyGrid& map);
   void add_scan(const LevelScan& scan, const Pose2& T_map_body) { costmap_.add_scan(scan, T_map_body); }
@@ -43,7 +44,9 @@ class Navigator {
   NavigationStep step(Time now, const Pose2& T_map_body);
 
   /// Whether the robot can move at a velocity for half a second without collision in the costmap.
-  bool is_free(const Pose2& T_map_body, const VelocityCommand& command) const { return is_motion_safe(costmap_, T_map_body, command, 0.5); }
+  bool is_free(const Pose2& T_map_body, const VelocityCommand& command) const {
+    return is_motion_safe(costmap_, T_map_body, command, 0.5);
+  }
 
   const Costmap& costmap() const { return costmap_; }
   const PlannedPath& path() const { return follower_.path(); }
@@ -85,11 +88,11 @@ class Navigator {
 
   State state_ = State::kIdle;
   std::optional<NavigationGoal> goal_;
-  VelocityCommand last_;               ///< command of the previous control period
+  VelocityCommand last_;  ///< command of the previous control period
   std::optional<Time> blocked_since_;
   std::optional<Time> no_path_since_;
   NavigationFailure failure_ = NavigationFailure::kNone;
-  std::string text_, recovery_text_;   ///< sentences for the next step
+  std::string text_, recovery_text_;  ///< sentences for the next step
 };
 
 }  // namespace patrol::plan

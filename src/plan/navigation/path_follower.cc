@@ -47,8 +47,8 @@ bool PathFollower::is_blocked(const Costmap& costmap) const {
 
 bool PathFollower::is_blocked_by_new_obstacles_only(const Costmap& costmap, Time now) const {
   const CostmapSettings& settings = costmap.settings();
-  const double radius_m = costmap.footprint().inscribed_radius_m() + settings.safety_margin_m + settings.route_margin_m +
-                         2.0 * settings.resolution_m;
+  const double radius_m = costmap.footprint().inscribed_radius_m() + settings.safety_margin_m +
+                          settings.route_margin_m + 2.0 * settings.resolution_m;
   const double to_m = ahead_end_m();
   for (double along_m = along_m_; along_m < to_m; along_m += settings.resolution_m) {
     const Eigen::Vector2d p_map = path_.point_at(along_m);
@@ -59,13 +59,15 @@ bool PathFollower::is_blocked_by_new_obstacles_only(const Costmap& costmap, Time
   return true;
 }
 
-VelocityCommand PathFollower::command(const Costmap& costmap, const Pose2& T_map_body, const VelocityCommand& last) const {
+VelocityCommand PathFollower::command(const Costmap& costmap, const Pose2& T_map_body,
+                                      const VelocityCommand& last) const {
   if (const std::optional<VelocityCommand> turn = turn_in_place(costmap, T_map_body, last)) return *turn;
   const double braking_mps = std::sqrt(2.0 * settings_.approach_deceleration_mps2 * std::max(0.0, remaining_m()));
   double speed_limit_mps = std::max(kMinSpeed_mps, braking_mps);
   if (is_unmapped_obstacle_ahead(costmap, T_map_body))
     speed_limit_mps = std::min(speed_limit_mps, settings_.unmapped_obstacle_max_speed_mps);
-  return local_planner_->choose(costmap, path_, along_m_, T_map_body, twist_of(last), speed_limit_mps).value_or(VelocityCommand{});
+  return local_planner_->choose(costmap, path_, along_m_, T_map_body, twist_of(last), speed_limit_mps)
+      .value_or(VelocityCommand{});
 }
 
 bool PathFollower::is_unmapped_obstacle_ahead(const Costmap& costmap, const Pose2& T_map_body) const {

@@ -36,7 +36,8 @@ class PathFollower {
  private:
   double ahead_end_m() const;
   bool is_unmapped_obstacle_ahead(const Costmap& costmap, const Pose2& T_map_body) const;
-  std::optional<VelocityCommand> turn_in_place(const Costmap& costmap, const Pose2& T_map_body, const VelocityCommand& last) const;
+  std::optional<VelocityCommand> turn_in_place(const Costmap& costmap, const Pose2& T_map_body,
+                                               const VelocityCommand& last) const;
 
   NavigatorSettings settings_;
   std::unique_ptr<LocalPlanner> local_planner_;

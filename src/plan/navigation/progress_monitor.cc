@@ -17,7 +17,8 @@ void ProgressMonitor::restart_time(Time now) {
 }
 
 bool ProgressMonitor::is_stuck(Time now, const Pose2& T_map_body) {
-  if (!anchor_ || (T_map_body.position() - anchor_->p_map).norm() > kProgress_m) anchor_ = Anchor{T_map_body.position(), now};
+  if (!anchor_ || (T_map_body.position() - anchor_->p_map).norm() > kProgress_m)
+    anchor_ = Anchor{T_map_body.position(), now};
   return now - anchor_->since > from_seconds(no_progress_timeout_s_);
 }
 

@@ -31,7 +31,8 @@ class RouteSearch {
   /// Whether no search is running and the minimum period since the last one has passed.
   bool may_begin(Time now) const;
   /// Begins a search; the costmap grows to contain start and goal.
-  void begin(Time now, Costmap& costmap, const Eigen::Vector2d& p_map_start, const Eigen::Vector2d& p_map_goal, bool is_detour);
+  void begin(Time now, Costmap& costmap, const Eigen::Vector2d& p_map_start, const Eigen::Vector2d& p_map_goal,
+             bool is_detour);
   /// Result of the running search when its computation time has passed; else none.
   std::optional<Result> take(Time now);
 

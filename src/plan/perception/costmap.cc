@@ -21,7 +21,8 @@ const CostmapSettings& checked(const CostmapSettings& settings) {
 
 }  // namespace
 
-Costmap::Costmap(const CostmapSettings& settings, const Footprint& footprint, std::vector<Polyline> keep_out_lines_in_map)
+Costmap::Costmap(const CostmapSettings& settings, const Footprint& footprint,
+                 std::vector<Polyline> keep_out_lines_in_map)
     : settings_(checked(settings)),
       footprint_(footprint),
       static_map_(settings),

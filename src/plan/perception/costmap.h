@@ -53,7 +53,9 @@ class Costmap {
   Cost cost_at(const Eigen::Vector2d& p_map) const;
   bool is_scan_obstacle(Cell cell) const { return scan_.contains_obstacle(cell); }
   /// Time of the first observation of the oldest scan obstacle within a radius; none without obstacles.
-  std::optional<Time> obstacle_first_seen(const Eigen::Vector2d& p_map, double radius_m) const { return scan_.first_seen(p_map, radius_m); }
+  std::optional<Time> obstacle_first_seen(const Eigen::Vector2d& p_map, double radius_m) const {
+    return scan_.first_seen(p_map, radius_m);
+  }
   std::size_t num_scan_obstacles() const { return scan_.num_obstacles(); }
   bool is_low_obstacle(Cell cell) const { return low_.contains_obstacle(cell); }
   std::size_t num_low_obstacles() const { return low_.num_obstacles(); }

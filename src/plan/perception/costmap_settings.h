@@ -12,11 +12,11 @@ struct CostmapSettings {
   double safety_margin_m = 0.05;        ///< minimum distance between obstacles and the robot's outline
   double route_margin_m = 0.0;          ///< additional margin of global paths: for disc overhang and control error
   double unknown_cost = 0.15;           ///< cost of an unobserved cell, as a fraction of the highest passable cost
-  bool allow_unknown = true;          ///< false: unknown cells are impassable, for a robot with a complete map
+  bool allow_unknown = true;            ///< false: unknown cells are impassable, for a robot with a complete map
   int occupied_percent = 65;            ///< minimum occupancy of an obstacle cell of the map, percent
   double obstacle_range_m = 8.0;        ///< maximum range of lidar hits that become obstacles of the scan layer
   double obstacle_persistence_s = 8.0;  ///< persistence of an obstacle of the scan layer that is not observed again
-  int map_match_tolerance_cells = 0;              ///< hits at most this far from a map obstacle belong to it (noise)
+  int map_match_tolerance_cells = 0;    ///< hits at most this far from a map obstacle belong to it (noise)
   double keep_out_margin_m = 0.2;       ///< minimum distance between a keep-out line and the body's origin
   double keep_out_inflation_m = 0.25;   ///< range beyond the margin within which a keep-out line has a cost
   LowObstaclesSettings low = {};

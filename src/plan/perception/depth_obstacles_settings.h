@@ -6,11 +6,11 @@ namespace patrol::plan {
 
 struct DepthObstaclesSettings {
   double max_range_m = 1.6;       ///< maximum range of obstacles: beyond, an image row covers too much ground
-  double clearing_range_m = 1.3;     ///< maximum range at which observed ground clears a cell
+  double clearing_range_m = 1.3;  ///< maximum range at which observed ground clears a cell
   double min_rise_m = 0.04;       ///< minimum height step of an obstacle; rubble is lower
   double max_slope = 0.32;        ///< maximum drivable slope, rise over run (0.32: 17.7 degrees)
   double max_height_m = 0.8;      ///< maximum height above the ground plane; the lidar sees higher objects
-  int ground_search_rows = 8;             ///< rows below a pixel in which its reference ground is searched
+  int ground_search_rows = 8;     ///< rows below a pixel in which its reference ground is searched
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -1,11 +1,10 @@
 #include "plan/perception/footprint.h"
 
-#include <Eigen/Geometry>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "core/error.h"

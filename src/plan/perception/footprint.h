@@ -1,8 +1,8 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <vector>
+
+#include <Eigen/Core>
 
 namespace patrol::plan {
 

@@ -14,20 +14,24 @@ namespace {
 /// Cap of the distance transform, cells: covers all distances with a cost, and all clearances of the robot's outline.
 int cap_of(const CostmapSettings& settings, const Footprint& footprint) {
   const double range_m = std::max(settings.inflation_radius_m, footprint.circumscribed_radius_m() + 0.3);
-  return std::clamp(static_cast<int>(std::ceil(range_m / settings.resolution_m)) + 1, 2, DistanceTransform::kMaxCap_cells);
+  return std::clamp(static_cast<int>(std::ceil(range_m / settings.resolution_m)) + 1, 2,
+                    DistanceTransform::kMaxCap_cells);
 }
 
 /// Checks that the lethal distance is within the cap; otherwise cells at a lethal distance would be free.
 void check_cap(const CostmapSettings& settings, const Footprint& footprint, double lethal_m) {
   const double range_m = settings.resolution_m * (cap_of(settings, footprint) - 1);
   if (lethal_m <= range_m) return;
-  throw InputError(fmt::format("outline and margins of {:.2f} m exceed the costmap's range of {:.2f} m: "
-                               "costmap.inflation_radius_m or costmap.resolution_m must be larger", lethal_m, range_m));
+  throw InputError(
+      fmt::format("outline and margins of {:.2f} m exceed the costmap's range of {:.2f} m: "
+                  "costmap.inflation_radius_m or costmap.resolution_m must be larger",
+                  lethal_m, range_m));
 }
 
 }  // namespace
 
-InflationLayer::InflationLayer(const CostmapSettings& settings, const Footprint& footprint) : transform_(cap_of(settings, footprint)) {
+InflationLayer::InflationLayer(const CostmapSettings& settings, const Footprint& footprint)
+    : transform_(cap_of(settings, footprint)) {
   const double lethal_m = footprint.inscribed_radius_m() + settings.safety_margin_m + settings.route_margin_m;
   check_cap(settings, footprint, lethal_m);
   for (int squared = 0; squared <= transform_.beyond(); ++squared) {
@@ -40,21 +44,23 @@ InflationLayer::InflationLayer(const CostmapSettings& settings, const Footprint&
   }
 }
 
-void InflationLayer::resize(const CellLattice& lattice) { squared_ = Grid<std::int16_t>(lattice.geometry, transform_.beyond()); }
+void InflationLayer::resize(const CellLattice& lattice) {
+  squared_ = Grid<std::int16_t>(lattice.geometry, transform_.beyond());
+}
 
 void InflationLayer::update_distances(const CellBox& window, const CellBox& target) {
   transform_.compute(is_obstacle_, window.width(), window.height(), window_squared_);
   for (int row = target.min.row; row <= target.max.row; ++row) {
-    const std::int16_t* squared = window_squared_.data() + static_cast<std::ptrdiff_t>(row - window.min.row) * window.width() +
+    const std::int16_t* squared = window_squared_.data() +
+                                  static_cast<std::ptrdiff_t>(row - window.min.row) * window.width() +
                                   (target.min.col - window.min.col);
     std::copy(squared, squared + target.width(), &squared_.at({target.min.col, row}));
   }
 }
 
 double InflationLayer::distance_m(const Eigen::Vector2d& p_map) const {
-  return interpolate_bilinear(squared_.geometry(), p_map, [this](Cell cell) {
-    return distance_of_[static_cast<std::size_t>(squared_.at(cell))];
-  });
+  return interpolate_bilinear(squared_.geometry(), p_map,
+                              [this](Cell cell) { return distance_of_[static_cast<std::size_t>(squared_.at(cell))]; });
 }
 
 void InflationLayer::set_costs(Cell first, int count, Cost* cost) const {

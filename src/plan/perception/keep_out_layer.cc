@@ -37,7 +37,8 @@ void KeepOutLayer::rasterize(const Eigen::Vector2d& a, const Eigen::Vector2d& b)
 }
 
 double KeepOutLayer::distance_m(const Eigen::Vector2d& p_map) const {
-  return interpolate_bilinear(distance_m_.geometry(), p_map, [this](Cell cell) { return static_cast<double>(distance_m_.at(cell)); });
+  return interpolate_bilinear(distance_m_.geometry(), p_map,
+                              [this](Cell cell) { return static_cast<double>(distance_m_.at(cell)); });
 }
 
 void KeepOutLayer::raise_costs(Cell first, int count, Cost* cost) const {

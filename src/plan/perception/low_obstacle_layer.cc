@@ -7,7 +7,7 @@
 namespace patrol::plan {
 namespace {
 
-constexpr int kMoving_cells = 3;     ///< a low obstacle this near to one of the scan may be a pedestrian's foot
+constexpr int kMoving_cells = 3;             ///< a low obstacle this near to one of the scan may be a pedestrian's foot
 constexpr int kExplainedDistance_cells = 2;  ///< an echo this near to an obstacle of the scan or the map comes from it
 
 }  // namespace
@@ -34,7 +34,8 @@ std::vector<Cell> LowObstacleLayer::lattice_cells(const std::vector<Eigen::Vecto
   return cells;
 }
 
-CellBox LowObstacleLayer::add_image(const DepthPoints& points, Time stamp, const Pose2& T_map_body, const ScanLayer& scan) {
+CellBox LowObstacleLayer::add_image(const DepthPoints& points, Time stamp, const Pose2& T_map_body,
+                                    const ScanLayer& scan) {
   const std::vector<Cell> obstacles = lattice_cells(points.obstacles_m, T_map_body, settings_.min_camera_points);
   std::vector<bool> may_move;
   for (const Cell cell : obstacles) may_move.push_back(scan.has_obstacle_near(lattice_.to_grid(cell), kMoving_cells));

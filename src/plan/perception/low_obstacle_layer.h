@@ -24,7 +24,8 @@ class LowObstacleLayer {
   CellBox add_image(const DepthPoints& points, Time stamp, const Pose2& T_map_body, const ScanLayer& scan);
   /// Adds a ping, in level at its stamp; returns the cells that change. Echoes near obstacles of the other layers are
   /// ignored.
-  CellBox add_ping(const SonarCone& cone, Time stamp, const Pose2& T_map_body, const ScanLayer& scan, const StaticMapLayer& map);
+  CellBox add_ping(const SonarCone& cone, Time stamp, const Pose2& T_map_body, const ScanLayer& scan,
+                   const StaticMapLayer& map);
   /// Discards the evidence of sonar within a radius; returns the cells that change.
   CellBox clear_sonar(const Eigen::Vector2d& p_map, double radius_m);
 
@@ -35,7 +36,8 @@ class LowObstacleLayer {
 
  private:
   /// Lattice cells inside the grid with at least `min_count` of the points.
-  std::vector<Cell> lattice_cells(const std::vector<Eigen::Vector2d>& p_level, const Pose2& T_map_body, int min_count) const;
+  std::vector<Cell> lattice_cells(const std::vector<Eigen::Vector2d>& p_level, const Pose2& T_map_body,
+                                  int min_count) const;
   CellBox apply_changes();
 
   LowObstaclesSettings settings_;

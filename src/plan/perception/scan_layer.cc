@@ -39,7 +39,8 @@ class ObservedRange {
 void ScanLayer::resize(const CellLattice& lattice) {
   lattice_ = lattice;
   index_ = Grid<std::uint32_t>(lattice.geometry, 0);
-  for (std::size_t i = 0; i < obstacles_.size(); ++i) index_.at(to_cell(obstacles_[i])) = static_cast<std::uint32_t>(i + 1);
+  for (std::size_t i = 0; i < obstacles_.size(); ++i)
+    index_.at(to_cell(obstacles_[i])) = static_cast<std::uint32_t>(i + 1);
 }
 
 CellBox ScanLayer::add_scan(const LevelScan& scan, const Pose2& T_map_body, const StaticMapLayer& map) {
@@ -49,7 +50,8 @@ CellBox ScanLayer::add_scan(const LevelScan& scan, const Pose2& T_map_body, cons
   return changed;
 }
 
-void ScanLayer::clear_passed(const LevelScan& scan, const Pose2& T_map_body, const StaticMapLayer& map, CellBox& changed) {
+void ScanLayer::clear_passed(const LevelScan& scan, const Pose2& T_map_body, const StaticMapLayer& map,
+                             CellBox& changed) {
   const ObservedRange seen(scan);
   const Pose2 T_body_map = T_map_body.inverse();
   const Time memory = from_seconds(settings_.obstacle_persistence_s);

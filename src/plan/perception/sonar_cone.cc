@@ -25,8 +25,8 @@ void add_arc(const Eigen::Vector2d& center, double azimuth_rad, double half_rad,
 
 }  // namespace
 
-SonarCone inverse_sonar_model(const SonarConeSettings& settings, const UltrasonicRange& ping, const Pose3& T_level_transducer,
-                          double body_height_m, double spacing_m) {
+SonarCone inverse_sonar_model(const SonarConeSettings& settings, const UltrasonicRange& ping,
+                              const Pose3& T_level_transducer, double body_height_m, double spacing_m) {
   SonarCone cone;
   const auto measured = static_cast<double>(ping.range_m);
   if (std::isnan(measured)) return cone;

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "core/frames.h"
 #include "core/sensors/registry.h"
@@ -22,7 +22,7 @@ struct SonarCone {
 /// arc, nothing lies nearer. A reading without echo clears the cone up to `max_range_m`. A reading below the minimum
 /// range puts the arc at the minimum range; NaN yields no points. `body_height_m`: height of level's origin above the
 /// ground.
-SonarCone inverse_sonar_model(const SonarConeSettings& settings, const UltrasonicRange& ping, const Pose3& T_level_transducer,
-                          double body_height_m, double spacing_m);
+SonarCone inverse_sonar_model(const SonarConeSettings& settings, const UltrasonicRange& ping,
+                              const Pose3& T_level_transducer, double body_height_m, double spacing_m);
 
 }  // namespace patrol::plan

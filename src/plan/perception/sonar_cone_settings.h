@@ -5,9 +5,9 @@
 namespace patrol::plan {
 
 struct SonarConeSettings {
-  double max_range_m = 1.2;     ///< maximum range of an echo: beyond, the arc is too wide to be useful
-  double fov_fraction = 0.7;       ///< fraction of the cone's width in which the echo is assumed to lie
-  double ground_range_fraction = 0.85;   ///< fraction of the range to level ground from which an echo may be ground
+  double max_range_m = 1.2;             ///< maximum range of an echo: beyond, the arc is too wide to be useful
+  double fov_fraction = 0.7;            ///< fraction of the cone's width in which the echo is assumed to lie
+  double ground_range_fraction = 0.85;  ///< fraction of the range to level ground from which an echo may be ground
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -9,7 +9,8 @@ namespace patrol::plan {
 
 StaticMapLayer::StaticMapLayer(const CostmapSettings& settings)
     : occupied_percent_(settings.occupied_percent),
-      unknown_cost_(settings.allow_unknown ? static_cast<Cost>(std::lround(settings.unknown_cost * kMaxPassableCost)) : kLethalCost) {}
+      unknown_cost_(settings.allow_unknown ? static_cast<Cost>(std::lround(settings.unknown_cost * kMaxPassableCost))
+                                           : kLethalCost) {}
 
 void StaticMapLayer::resize(const CellLattice& lattice) {
   OccupancyGrid map(lattice.geometry, kUnknown);
@@ -32,7 +33,8 @@ OccupancyGrid StaticMapLayer::pooled(const OccupancyGrid& map) const {
   for (int row = 0; row < source.height; ++row) {
     std::int8_t* cells = &result.at({0, target.cell_at(source.center_of({0, row})).row});
     const std::int8_t* values = &map.at({0, row});
-    for (std::size_t col = 0; col < col_of.size(); ++col) cells[col_of[col]] = std::max(cells[col_of[col]], values[col]);
+    for (std::size_t col = 0; col < col_of.size(); ++col)
+      cells[col_of[col]] = std::max(cells[col_of[col]], values[col]);
   }
   return result;
 }

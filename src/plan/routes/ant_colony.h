@@ -14,13 +14,13 @@ namespace patrol::plan {
 struct AntColonySettings {
   int ants = 80;
   int iterations = 200;
-  double alpha = 1.0;         ///< exponent of the pheromone [Li22, eq. 10]
-  double beta = 7.0;          ///< exponent of 1 / distance to the goal
-  double evaporation = 0.1;   ///< fraction of the pheromone lost in an iteration, rho of eq. 11
-  double deposit = 1.0;       ///< Q of eq. 13, relative to the straight-line cost; pheromone starts at 1
-  double elite = 20.0;        ///< pheromone of the best route so far, in ants per iteration; extension
-  bool remove_loops = true;        ///< whether steps between neighboring cells of a route replace detours; extension
-  int threads = 0;            ///< 0: one per core; has no influence on the result
+  double alpha = 1.0;        ///< exponent of the pheromone [Li22, eq. 10]
+  double beta = 7.0;         ///< exponent of 1 / distance to the goal
+  double evaporation = 0.1;  ///< fraction of the pheromone lost in an iteration, rho of eq. 11
+  double deposit = 1.0;      ///< Q of eq. 13, relative to the straight-line cost; pheromone starts at 1
+  double elite = 20.0;       ///< pheromone of the best route so far, in ants per iteration; extension
+  bool remove_loops = true;  ///< whether steps between neighboring cells of a route replace detours; extension
+  int threads = 0;           ///< 0: one per core; has no influence on the result
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -71,7 +71,8 @@ struct ImprovedColonySettings {
 class AntColony : public RoutePlanner {
  public:
   /// Constructs the plain colony without `improved`.
-  AntColony(const AntColonySettings& settings, const std::optional<ImprovedColonySettings>& improved, double cost_weight, std::uint64_t seed);
+  AntColony(const AntColonySettings& settings, const std::optional<ImprovedColonySettings>& improved,
+            double cost_weight, std::uint64_t seed);
 
   bool is_complete() const override { return true; }
 

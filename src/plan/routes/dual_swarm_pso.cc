@@ -23,8 +23,12 @@ struct Swarm {
   double inertia;
   std::vector<Particle> particles;
 
-  std::size_t best() const { return extreme([](double a, double b) { return a < b; }); }
-  std::size_t worst() const { return extreme([](double a, double b) { return a > b; }); }
+  std::size_t best() const {
+    return extreme([](double a, double b) { return a < b; });
+  }
+  std::size_t worst() const {
+    return extreme([](double a, double b) { return a > b; });
+  }
 
  private:
   template <typename Better>
@@ -38,7 +42,8 @@ struct Swarm {
 };
 
 /// For every cell, the nearest cell reachable from the start, in the chessboard metric across lethal cells.
-std::vector<std::uint32_t> nearest_reachable(const StepGraph& graph, const GridGeometry& geometry, std::uint32_t start) {
+std::vector<std::uint32_t> nearest_reachable(const StepGraph& graph, const GridGeometry& geometry,
+                                             std::uint32_t start) {
   constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
   std::vector<std::uint32_t> nearest(graph.steps.size(), kNone), reached{start};
   nearest[start] = start;
@@ -63,8 +68,14 @@ std::vector<std::uint32_t> nearest_reachable(const StepGraph& graph, const GridG
 
 class Flight {
  public:
-  Flight(const DualSwarmPsoSettings& settings, const Grid<Cost>& costs, const std::array<double, 256>& factors, Cell start, Cell goal)
-      : settings_(settings), geometry_(costs.geometry()), start_(start), goal_(goal), graph_(costs, factors), path_builder_(graph_),
+  Flight(const DualSwarmPsoSettings& settings, const Grid<Cost>& costs, const std::array<double, 256>& factors,
+         Cell start, Cell goal)
+      : settings_(settings),
+        geometry_(costs.geometry()),
+        start_(start),
+        goal_(goal),
+        graph_(costs, factors),
+        path_builder_(graph_),
         nearest_(nearest_reachable(graph_, geometry_, graph_.index_of(start))) {}
 
   const StepGraph& graph() const { return graph_; }
@@ -77,7 +88,8 @@ class Flight {
     for (std::size_t i = 0; i <= via.size(); i += 2) {
       const Cell at = i < via.size() ? Cell{static_cast<int>(via[i]), static_cast<int>(via[i + 1])} : goal_;
       const std::uint32_t target = nearest_[graph_.index_of(at)];
-      const GridPath leg = path_builder_.build(here, target, [&](std::uint32_t cell, unsigned open) { return step_toward(target, cell, open); });
+      const GridPath leg = path_builder_.build(
+          here, target, [&](std::uint32_t cell, unsigned open) { return step_toward(target, cell, open); });
       route.cells.insert(route.cells.end(), leg.cells.begin(), leg.cells.end());
       route.directions.insert(route.directions.end(), leg.directions.begin(), leg.directions.end());
       route.num_steps += leg.num_steps;
@@ -94,8 +106,10 @@ class Flight {
     Particle particle;
     for (int i = 0; i < settings_.via_points; ++i) {
       const double along = (i + 1.0) / (settings_.via_points + 1.0);
-      particle.at.push_back(keep_x(start_.col + 0.5 + along * (goal_.col - start_.col) + spread * longer_side() * (random.uniform() - 0.5)));
-      particle.at.push_back(keep_y(start_.row + 0.5 + along * (goal_.row - start_.row) + spread * longer_side() * (random.uniform() - 0.5)));
+      particle.at.push_back(keep_x(start_.col + 0.5 + along * (goal_.col - start_.col) +
+                                   spread * longer_side() * (random.uniform() - 0.5)));
+      particle.at.push_back(keep_y(start_.row + 0.5 + along * (goal_.row - start_.row) +
+                                   spread * longer_side() * (random.uniform() - 0.5)));
     }
     particle.velocity.assign(particle.at.size(), 0.0);
     particle.best_at = particle.at;
@@ -108,7 +122,8 @@ class Flight {
       const double own = settings_.cognitive_weight * random.uniform() * (particle.best_at[i] - particle.at[i]);
       const double others = settings_.social_weight * random.uniform() * (swarm_best[i] - particle.at[i]);
       particle.velocity[i] = std::clamp(inertia * particle.velocity[i] + own + others, -max_speed, max_speed);
-      particle.at[i] = i % 2 == 0 ? keep_x(particle.at[i] + particle.velocity[i]) : keep_y(particle.at[i] + particle.velocity[i]);
+      particle.at[i] =
+          i % 2 == 0 ? keep_x(particle.at[i] + particle.velocity[i]) : keep_y(particle.at[i] + particle.velocity[i]);
     }
   }
 
@@ -164,7 +179,8 @@ void DualSwarmPso::search(const Grid<Cost>& costs, Cell start, Cell goal, Route&
   };
 
   constexpr double kExploringSpread = 1.0, kRefiningSpread = 0.3;
-  std::array<Swarm, 2> swarms = {Swarm{.inertia = settings_.exploring_inertia, .particles = {}}, Swarm{.inertia = settings_.refining_inertia, .particles = {}}};
+  std::array<Swarm, 2> swarms = {Swarm{.inertia = settings_.exploring_inertia, .particles = {}},
+                                 Swarm{.inertia = settings_.refining_inertia, .particles = {}}};
   RandomSequence first(stream_, 0);
   for (Swarm& swarm : swarms) {
     for (int i = 0; i < settings_.particles; ++i) {

@@ -21,7 +21,8 @@ bool are_connected(const Grid<Cost>& costs, Cell start, Cell goal) {
 
 void fill(Grid<Cost>& costs, Cell first, int width, int height, Cost cost) {
   for (int row = first.row; row < std::min(first.row + height, costs.geometry().height); ++row) {
-    for (int col = first.col; col < std::min(first.col + width, costs.geometry().width); ++col) costs.at({col, row}) = cost;
+    for (int col = first.col; col < std::min(first.col + width, costs.geometry().width); ++col)
+      costs.at({col, row}) = cost;
   }
 }
 
@@ -54,7 +55,8 @@ void generate_rooms(const GeneratedGridSettings& settings, RandomSequence random
 
 /// Depth-first carving: from the last corridor cell with an uncarved neighbor, to a random one of these.
 void generate_maze(const GeneratedGridSettings& settings, RandomSequence random, GeneratedGrid& grid) {
-  const int corridor = settings.corridor_cells, pitch = corridor + 1, count = std::max(1, (settings.size_cells + 1) / pitch);
+  const int corridor = settings.corridor_cells, pitch = corridor + 1,
+            count = std::max(1, (settings.size_cells + 1) / pitch);
   fill(grid.costs, {0, 0}, settings.size_cells, settings.size_cells, kLethalCost);
   Grid<std::uint8_t> is_carved({.resolution_m = 1.0, .width = count, .height = count}, 0);
   std::vector<Cell> path{{0, 0}};
@@ -74,7 +76,8 @@ void generate_maze(const GeneratedGridSettings& settings, RandomSequence random,
     const GridStep step = open[random.index(open.size())];
     const Cell next{here.col + step.col, here.row + step.row};
     const Cell first{pitch * std::min(here.col, next.col), pitch * std::min(here.row, next.row)};
-    fill(grid.costs, first, step.col != 0 ? corridor + pitch : corridor, step.row != 0 ? corridor + pitch : corridor, kFreeCost);
+    fill(grid.costs, first, step.col != 0 ? corridor + pitch : corridor, step.row != 0 ? corridor + pitch : corridor,
+         kFreeCost);
     is_carved.at(next) = 1;
     path.push_back(next);
   }
@@ -98,7 +101,8 @@ GeneratedGrid generate_grid(const GeneratedGridSettings& settings, std::uint64_t
     else generate_maze(settings, random, grid);
     if (are_connected(grid.costs, grid.start, grid.goal)) return grid;
   }
-  throw InputError(fmt::format("grid: corners not connected in {} samples of {} x {} cells, {}", kMaxSamples, size, size, settings.kind));
+  throw InputError(fmt::format("grid: corners not connected in {} samples of {} x {} cells, {}", kMaxSamples, size,
+                               size, settings.kind));
 }
 
 }  // namespace patrol::plan

@@ -9,12 +9,12 @@
 namespace patrol::plan {
 
 struct GeneratedGridSettings {
-  std::string kind = "random";  ///< random: independent lethal cells; rooms: walls with doors; maze: corridor tree
-  int size_cells = 50;          ///< side of the square grid
-  double lethal_fraction = 0.25;   ///< probability of a lethal cell, kind random
-  int room_cells = 10;          ///< size of a room, from wall to wall
-  int door_cells = 2;           ///< width of the doors of rooms
-  int corridor_cells = 1;       ///< width of the corridors of a maze
+  std::string kind = "random";    ///< random: independent lethal cells; rooms: walls with doors; maze: corridor tree
+  int size_cells = 50;            ///< side of the square grid
+  double lethal_fraction = 0.25;  ///< probability of a lethal cell, kind random
+  int room_cells = 10;            ///< size of a room, from wall to wall
+  int door_cells = 2;             ///< width of the doors of rooms
+  int corridor_cells = 1;         ///< width of the corridors of a maze
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

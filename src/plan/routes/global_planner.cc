@@ -35,7 +35,8 @@ GlobalPlanner::GlobalPlanner(const GlobalPlannerSettings& settings, std::uint64_
   planner_ = make_route_planner(settings_.method, settings_.family, seed);
 }
 
-PlanResult GlobalPlanner::plan(const Grid<Cost>& costs, const Eigen::Vector2d& p_map_start, const Eigen::Vector2d& p_map_goal) {
+PlanResult GlobalPlanner::plan(const Grid<Cost>& costs, const Eigen::Vector2d& p_map_start,
+                               const Eigen::Vector2d& p_map_goal) {
   const GridGeometry& grid = costs.geometry();
   PlanResult result;
   const std::optional<Cell> start = nearest_passable(costs, p_map_start, settings_.start_tolerance_m);
@@ -55,10 +56,12 @@ PlanResult GlobalPlanner::plan(const Grid<Cost>& costs, const Eigen::Vector2d& p
   if (route.status != PlanStatus::kFound) return result;
 
   result.cost_m = grid.resolution_m * route.cost;
-  result.points_m = to_meters(grid, smooth_route(costs, settings_.family.cost_weight, settings_.min_clearance_m / grid.resolution_m, route.points));
+  result.points_m = to_meters(grid, smooth_route(costs, settings_.family.cost_weight,
+                                                 settings_.min_clearance_m / grid.resolution_m, route.points));
   result.points_m.insert(result.points_m.begin(), p_map_start);
   if (!result.is_goal_moved) result.points_m.push_back(p_map_goal);
-  for (std::size_t i = 1; i < result.points_m.size(); ++i) result.length_m += (result.points_m[i] - result.points_m[i - 1]).norm();
+  for (std::size_t i = 1; i < result.points_m.size(); ++i)
+    result.length_m += (result.points_m[i] - result.points_m[i - 1]).norm();
   return result;
 }
 

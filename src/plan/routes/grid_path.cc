@@ -14,7 +14,8 @@ namespace {
 enum class Mix { kEven, kDiagonalFirst, kStraightFirst };
 
 std::size_t direction_of(int col, int row) {
-  const auto found = std::find_if(kGridSteps.begin(), kGridSteps.end(), [&](GridStep step) { return step.col == col && step.row == row; });
+  const auto found = std::find_if(kGridSteps.begin(), kGridSteps.end(),
+                                  [&](GridStep step) { return step.col == col && step.row == row; });
   return static_cast<std::size_t>(found - kGridSteps.begin());
 }
 
@@ -22,7 +23,8 @@ std::size_t direction_of(int col, int row) {
 std::optional<double> append_open_path(const StepGraph& graph, std::uint32_t from, std::uint32_t to, Mix mix,
                                        GridPath& path) {
   const Cell a = graph.cell_of(from), b = graph.cell_of(to);
-  const int dx = b.col - a.col, dy = b.row - a.row, longer = std::max(std::abs(dx), std::abs(dy)), shorter = std::min(std::abs(dx), std::abs(dy));
+  const int dx = b.col - a.col, dy = b.row - a.row, longer = std::max(std::abs(dx), std::abs(dy)),
+            shorter = std::min(std::abs(dx), std::abs(dy));
   const int sign_x = (dx > 0) - (dx < 0), sign_y = (dy > 0) - (dy < 0);
   const std::size_t diagonal = direction_of(sign_x, sign_y);
   const std::size_t straight = std::abs(dx) >= std::abs(dy) ? direction_of(sign_x, 0) : direction_of(0, sign_y);
@@ -31,7 +33,8 @@ std::optional<double> append_open_path(const StepGraph& graph, std::uint32_t fro
   for (int i = 0; i < longer; ++i) {
     bool is_diagonal = i < shorter;
     if (mix == Mix::kStraightFirst) is_diagonal = i >= longer - shorter;
-    if (mix == Mix::kEven) is_diagonal = (2 * i * shorter + longer) / (2 * longer) != (2 * (i + 1) * shorter + longer) / (2 * longer);
+    if (mix == Mix::kEven)
+      is_diagonal = (2 * i * shorter + longer) / (2 * longer) != (2 * (i + 1) * shorter + longer) / (2 * longer);
     const std::size_t direction = is_diagonal ? diagonal : straight;
     if (!graph.has_step(here, direction)) return std::nullopt;
     cost += graph.step_cost(here, direction);
@@ -44,13 +47,16 @@ std::optional<double> append_open_path(const StepGraph& graph, std::uint32_t fro
 
 }  // namespace
 
-StepGraph::StepGraph(const Grid<Cost>& costs, const std::array<double, 256>& factors) : width(costs.geometry().width), steps(costs.geometry().size()) {
-  for (std::size_t direction = 0; direction < 8; ++direction) offsets[direction] = kGridSteps[direction].row * width + kGridSteps[direction].col;
+StepGraph::StepGraph(const Grid<Cost>& costs, const std::array<double, 256>& factors)
+    : width(costs.geometry().width), steps(costs.geometry().size()) {
+  for (std::size_t direction = 0; direction < 8; ++direction)
+    offsets[direction] = kGridSteps[direction].row * width + kGridSteps[direction].col;
   for (const Cost cost : costs.values()) cell_factors.push_back(factors[cost]);
   for (std::uint32_t cell = 0; cell < steps.size(); ++cell) {
     if (costs.values()[cell] == kLethalCost) continue;
     for (std::size_t direction = 0; direction < 8; ++direction) {
-      if (is_valid_step(costs, cell_of(cell), kGridSteps[direction])) steps[cell] = static_cast<std::uint8_t>(steps[cell] | 1u << direction);
+      if (is_valid_step(costs, cell_of(cell), kGridSteps[direction]))
+        steps[cell] = static_cast<std::uint8_t>(steps[cell] | 1u << direction);
     }
   }
 }
@@ -62,7 +68,8 @@ double StepGraph::step_cost(std::uint32_t cell, std::size_t direction) const {
 
 std::vector<Eigen::Vector2d> to_points(const StepGraph& graph, const GridPath& path, Cell goal) {
   std::vector<Eigen::Vector2d> points;
-  for (const std::uint32_t index : path.cells) points.emplace_back(graph.cell_of(index).col + 0.5, graph.cell_of(index).row + 0.5);
+  for (const std::uint32_t index : path.cells)
+    points.emplace_back(graph.cell_of(index).col + 0.5, graph.cell_of(index).row + 0.5);
   points.emplace_back(goal.col + 0.5, goal.row + 0.5);
   return points;
 }
@@ -73,7 +80,9 @@ GridPathBuilder::GridPathBuilder(const StepGraph& graph)
 void GridPathBuilder::remove_loops(GridPath& path, std::uint32_t goal) {
   ++num_paths_;
   const auto size = static_cast<std::uint32_t>(path.cells.size());
-  const auto mark = [&](std::uint32_t cell, std::uint32_t position) { visit_[cell] = num_paths_, position_[cell] = position; };
+  const auto mark = [&](std::uint32_t cell, std::uint32_t position) {
+    visit_[cell] = num_paths_, position_[cell] = position;
+  };
   for (std::uint32_t i = 0; i < size; ++i) mark(path.cells[i], i);
   mark(goal, size);
   GridPath without_loops{.cells = {}, .directions = {}, .cost = 0.0, .num_steps = path.num_steps};
@@ -98,7 +107,8 @@ void GridPathBuilder::shorten(GridPath& path, std::uint32_t goal) {
   constexpr double kLess = 1e-9;
   const std::size_t count = path.cells.size() + 1;  // including the goal
   std::vector<double> cost_to{0.0};                 // [cell of the path], cost from the start
-  for (std::size_t i = 0; i + 1 < count; ++i) cost_to.push_back(cost_to.back() + graph_.step_cost(path.cells[i], path.directions[i]));
+  for (std::size_t i = 0; i + 1 < count; ++i)
+    cost_to.push_back(cost_to.back() + graph_.step_cost(path.cells[i], path.directions[i]));
   const auto cell = [&](std::size_t i) { return i + 1 < count ? path.cells[i] : goal; };
   GridPath segment;
   const auto is_better = [&](std::size_t from, std::size_t to) {
@@ -113,8 +123,10 @@ void GridPathBuilder::shorten(GridPath& path, std::uint32_t goal) {
   const std::vector<std::size_t> kept = join_points(count, is_better);
   for (std::size_t k = 1; k < kept.size(); ++k) {
     if (kept[k] == kept[k - 1] + 1 || !is_better(kept[k - 1], kept[k])) {
-      segment.cells.assign(path.cells.begin() + static_cast<std::ptrdiff_t>(kept[k - 1]), path.cells.begin() + static_cast<std::ptrdiff_t>(kept[k]));
-      segment.directions.assign(path.directions.begin() + static_cast<std::ptrdiff_t>(kept[k - 1]), path.directions.begin() + static_cast<std::ptrdiff_t>(kept[k]));
+      segment.cells.assign(path.cells.begin() + static_cast<std::ptrdiff_t>(kept[k - 1]),
+                           path.cells.begin() + static_cast<std::ptrdiff_t>(kept[k]));
+      segment.directions.assign(path.directions.begin() + static_cast<std::ptrdiff_t>(kept[k - 1]),
+                                path.directions.begin() + static_cast<std::ptrdiff_t>(kept[k]));
     }
     shortened.cells.insert(shortened.cells.end(), segment.cells.begin(), segment.cells.end());
     shortened.directions.insert(shortened.directions.end(), segment.directions.begin(), segment.directions.end());

@@ -54,7 +54,8 @@ class GridPathBuilder {
     for (std::uint32_t here = start; here != goal; ++path.num_steps) {
       unsigned open = graph_.steps[here];
       for (std::size_t direction = 0; direction < 8; ++direction) {
-        if ((open >> direction & 1u) != 0 && visit_[graph_.next(here, direction)] == num_paths_) open &= ~(1u << direction);
+        if ((open >> direction & 1u) != 0 && visit_[graph_.next(here, direction)] == num_paths_)
+          open &= ~(1u << direction);
       }
       if (open == 0) {
         if (path.cells.empty()) return path;

@@ -22,13 +22,13 @@ class GridSearch : public RoutePlanner {
  private:
   using PathCost = std::uint64_t;
   struct Node {
-    PathCost path_cost;              ///< cost from the start
-    std::uint32_t search;     ///< number of the search that last updated this node
-    std::uint8_t came_by;     ///< index of the step to this node from its parent
+    PathCost path_cost;    ///< cost from the start
+    std::uint32_t search;  ///< number of the search that last updated this node
+    std::uint8_t came_by;  ///< index of the step to this node from its parent
     bool is_closed;
   };
   struct Open {
-    PathCost estimate;           ///< estimated cost of the whole route
+    PathCost estimate;        ///< estimated cost of the whole route
     std::uint32_t remaining;  ///< estimated cost to the goal, in 2^-8 cells; breaks ties
     std::uint32_t index;
     /// Order for a heap with the best node on top.

@@ -24,7 +24,8 @@ Matrix to_closed_tour(const TourProblem& problem) {
   const std::size_t first = is_closed_tour ? 0 : 1;  // node of station 0
   Matrix cost(count + first, std::vector<double>(count + first, kNoBound));
   for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t j = 0; j < count; ++j) cost[i + first][j + first] = std::min(problem.travel[i][j], problem.travel[j][i]);
+    for (std::size_t j = 0; j < count; ++j)
+      cost[i + first][j + first] = std::min(problem.travel[i][j], problem.travel[j][i]);
     if (is_closed_tour) continue;
     const bool may_begin = !problem.start || problem.start == i, may_end = !problem.end || problem.end == i;
     if (may_begin || may_end) cost[0][i + 1] = cost[i + 1][0] = 0.0;
@@ -45,7 +46,7 @@ OneTree min_one_tree(const Matrix& cost, const std::vector<double>& weights) {
   std::vector<std::size_t> by(count, 1);
   std::vector<char> is_in(count, 0);
   is_in[1] = 1;
-  for (std::size_t added = 1;; ) {
+  for (std::size_t added = 1;;) {
     for (std::size_t j = 1; j < count; ++j) {
       if (is_in[j] == 0 && edge(added, j) < nearest[j]) nearest[j] = edge(added, j), by[j] = added;
     }
@@ -61,7 +62,8 @@ OneTree min_one_tree(const Matrix& cost, const std::vector<double>& weights) {
   }
   std::vector<std::size_t> others;
   for (std::size_t j = 1; j < count; ++j) others.push_back(j);
-  std::partial_sort(others.begin(), others.begin() + 2, others.end(), [&](std::size_t a, std::size_t b) { return edge(0, a) < edge(0, b); });
+  std::partial_sort(others.begin(), others.begin() + 2, others.end(),
+                    [&](std::size_t a, std::size_t b) { return edge(0, a) < edge(0, b); });
   for (std::size_t k = 0; k < 2; ++k) {
     tree.cost += edge(0, others[k]);
     ++tree.degrees[0], ++tree.degrees[others[k]];

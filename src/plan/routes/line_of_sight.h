@@ -9,9 +9,9 @@
 
 namespace patrol::plan {
 
-/// Follows the straight line between two cell centers and calls `visit(cell, fraction)` for every cell whose closed square
-/// it meets, in order. `fraction` is the part of the line inside; 0 for cells that it only touches at a corner. Exact
-/// in integers. Stops, and returns false, as soon as `visit` does.
+/// Follows the straight line between two cell centers and calls `visit(cell, fraction)` for every cell whose closed
+/// square it meets, in order. `fraction` is the part of the line inside; 0 for cells that it only touches at a corner.
+/// Exact in integers. Stops, and returns false, as soon as `visit` does.
 template <typename Visit>
 bool visit_line_cells(Cell from, Cell to, Visit&& visit) {
   const int step_col = to.col > from.col ? 1 : -1, step_row = to.row > from.row ? 1 : -1;
@@ -22,13 +22,15 @@ bool visit_line_cells(Cell from, Cell to, Visit&& visit) {
     // The next side crossed is at the fraction (2 i + 1) / (2 dx) of the line for columns, (2 j + 1) / (2 dy) for
     // rows.
     const long along_col = (2 * i + 1) * dy, along_row = (2 * j + 1) * dx;
-    const bool crosses_col = dx > 0 && (dy == 0 || along_col <= along_row), crosses_row = dy > 0 && (dx == 0 || along_row <= along_col);
+    const bool crosses_col = dx > 0 && (dy == 0 || along_col <= along_row),
+               crosses_row = dy > 0 && (dx == 0 || along_row <= along_col);
     const double next = crosses_col ? (2.0 * static_cast<double>(i) + 1.0) / (2.0 * static_cast<double>(dx))
                                     : (2.0 * static_cast<double>(j) + 1.0) / (2.0 * static_cast<double>(dy));
     if (!visit(cell, next - done)) return false;
     done = next;
     if (crosses_col && crosses_row) {
-      if (!visit(Cell{cell.col + step_col, cell.row}, 0.0) || !visit(Cell{cell.col, cell.row + step_row}, 0.0)) return false;
+      if (!visit(Cell{cell.col + step_col, cell.row}, 0.0) || !visit(Cell{cell.col, cell.row + step_row}, 0.0))
+        return false;
     }
     if (crosses_col) cell.col += step_col, ++i;
     if (crosses_row) cell.row += step_row, ++j;

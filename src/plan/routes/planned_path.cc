@@ -64,7 +64,8 @@ std::vector<Pose2> PlannedPath::sample(double step_m) const {
   return poses;
 }
 
-std::vector<std::size_t> join_points(std::size_t count, const std::function<bool(std::size_t from, std::size_t to)>& may_join) {
+std::vector<std::size_t> join_points(std::size_t count,
+                                     const std::function<bool(std::size_t from, std::size_t to)>& may_join) {
   std::vector<std::size_t> kept{0};
   for (std::size_t from = 0; from + 1 < count;) {
     // Search for the farthest point that can be joined: the stride doubles on success, then halves.

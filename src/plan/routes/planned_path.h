@@ -1,10 +1,10 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <cstddef>
 #include <functional>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "core/frames.h"
 
@@ -44,6 +44,7 @@ class PlannedPath {
 /// Indices of the points of a route of `count` points that remain after shortening. Straight lines replace segments for
 /// which `may_join` is true. From each point, doubling and halving strides search for the farthest one. The first and
 /// the last point always remain.
-std::vector<std::size_t> join_points(std::size_t count, const std::function<bool(std::size_t from, std::size_t to)>& may_join);
+std::vector<std::size_t> join_points(std::size_t count,
+                                     const std::function<bool(std::size_t from, std::size_t to)>& may_join);
 
 }  // namespace patrol::plan

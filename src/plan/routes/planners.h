@@ -8,17 +8,17 @@
 
 #include "core/settings.h"
 #include "plan/routes/ant_colony.h"
+#include "plan/routes/dual_swarm_pso.h"
 #include "plan/routes/q_learning.h"
 #include "plan/routes/route_planner.h"
-#include "plan/routes/dual_swarm_pso.h"
 
 namespace patrol::plan {
 
 /// Settings of all global planners; each planner uses its own section.
 struct RoutePlannerSettings {
-  int max_steps_millions = 0;            ///< limit of RoutePlanner::limit_steps, 10^6 steps; 0: none
-  double cost_weight = 0.0;              ///< a cell at the highest passable cost counts as 1 + this number of cells
-  AntColonySettings ant_colony = {};     ///< ant system, plain and improved
+  int max_steps_millions = 0;         ///< limit of RoutePlanner::limit_steps, 10^6 steps; 0: none
+  double cost_weight = 0.0;           ///< a cell at the highest passable cost counts as 1 + this number of cells
+  AntColonySettings ant_colony = {};  ///< ant system, plain and improved
   ImprovedColonySettings improved_colony = {};  ///< improved colony only [Li22]
   DualSwarmPsoSettings dual_swarm_pso = {};
   QLearningSettings q_learning = {};
@@ -49,6 +49,7 @@ std::span<const RoutePlannerRow> drivable_route_planners();
 
 /// Creates a planner by name. Throws InputError for an unknown name or an invalid setting. Also throws for the
 /// any-angle optimum with a cost weight, which it does not support.
-std::unique_ptr<RoutePlanner> make_route_planner(const std::string& name, const RoutePlannerSettings& settings, std::uint64_t seed);
+std::unique_ptr<RoutePlanner> make_route_planner(const std::string& name, const RoutePlannerSettings& settings,
+                                                 std::uint64_t seed);
 
 }  // namespace patrol::plan

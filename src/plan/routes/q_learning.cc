@@ -14,7 +14,8 @@ constexpr double kNever = -std::numeric_limits<double>::infinity();
 /// Values of steps, [cell * 8 + direction]: expected return, in cells, all negative.
 class QTable {
  public:
-  QTable(const StepGraph& graph, std::uint32_t goal) : graph_(graph), goal_(goal), values_(8 * graph.steps.size(), 0.0) {
+  QTable(const StepGraph& graph, std::uint32_t goal)
+      : graph_(graph), goal_(goal), values_(8 * graph.steps.size(), 0.0) {
     for (std::uint32_t cell = 0; cell < graph.steps.size(); ++cell) {
       for (std::size_t direction = 0; direction < 8; ++direction) {
         if (!graph.has_step(cell, direction)) values_[8 * std::size_t{cell} + direction] = kNever;
@@ -34,7 +35,9 @@ class QTable {
   }
 
   /// Value of a cell; zero at the goal.
-  double value(std::uint32_t cell) const { return cell == goal_ ? 0.0 : values_[8 * std::size_t{cell} + best_step(cell)]; }
+  double value(std::uint32_t cell) const {
+    return cell == goal_ ? 0.0 : values_[8 * std::size_t{cell} + best_step(cell)];
+  }
 
   /// Path along the best steps; none if they form a loop.
   std::optional<GridPath> follow(std::uint32_t start) const {
@@ -90,7 +93,8 @@ void QLearning::search(const Grid<Cost>& costs, Cell start, Cell goal, Route& ro
       const std::size_t direction = random.uniform() < epsilon ? any_step(graph, here, random) : table.best_step(here);
       const std::uint32_t next = graph.next(here, direction);
       double& value = table.at(here, direction);
-      value += settings_.learning_rate * (settings_.discount * table.value(next) - graph.step_cost(here, direction) - value);
+      value +=
+          settings_.learning_rate * (settings_.discount * table.value(next) - graph.step_cost(here, direction) - value);
       here = next;
     }
     if (std::optional<GridPath> path = table.follow(from); path && path->cost < best.cost) best = std::move(*path);

@@ -10,10 +10,10 @@ namespace patrol::plan {
 
 struct QLearningSettings {
   int episodes = 5000;
-  double learning_rate = 1.0;     ///< alpha
-  double discount = 1.0;          ///< gamma
-  double exploration = 0.1;       ///< epsilon, probability of a random step; falls from this value to 0
-  double max_steps_per_cell = 4.0;   ///< steps after which an episode ends, as a multiple of the number of cells
+  double learning_rate = 1.0;       ///< alpha
+  double discount = 1.0;            ///< gamma
+  double exploration = 0.1;         ///< epsilon, probability of a random step; falls from this value to 0
+  double max_steps_per_cell = 4.0;  ///< steps after which an episode ends, as a multiple of the number of cells
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

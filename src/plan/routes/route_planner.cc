@@ -1,12 +1,11 @@
 #include "plan/routes/route_planner.h"
 
-#include <Eigen/Geometry>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "core/error.h"
@@ -34,7 +33,8 @@ double length_of(const std::vector<Eigen::Vector2d>& points) {
 double distance_to_box(const Eigen::Vector2d& from, const Eigen::Vector2d& to, const Eigen::AlignedBox2d& box) {
   double min_distance = std::min(box.exteriorDistance(from), box.exteriorDistance(to));
   for (int corner = 0; corner < 4; ++corner) {
-    min_distance = std::min(min_distance, distance_to_segment(box.corner(static_cast<Eigen::AlignedBox2d::CornerType>(corner)), from, to));
+    min_distance = std::min(
+        min_distance, distance_to_segment(box.corner(static_cast<Eigen::AlignedBox2d::CornerType>(corner)), from, to));
   }
   return min_distance;
 }
@@ -48,12 +48,16 @@ double gap(const Eigen::Vector2d& from, const Eigen::Vector2d& to, int col, int 
 
 }  // namespace
 
-Cell cell_of(const Eigen::Vector2d& point) { return {static_cast<int>(std::floor(point.x())), static_cast<int>(std::floor(point.y()))}; }
+Cell cell_of(const Eigen::Vector2d& point) {
+  return {static_cast<int>(std::floor(point.x())), static_cast<int>(std::floor(point.y()))};
+}
 
 int iterations_to_convergence(const std::vector<double>& history, double tolerance) {
   if (history.empty() || !std::isfinite(history.back())) return 0;
   const double enough = history.back() * (1.0 + tolerance);
-  return 1 + static_cast<int>(std::find_if(history.begin(), history.end(), [&](double cost) { return cost <= enough; }) - history.begin());
+  return 1 +
+         static_cast<int>(std::find_if(history.begin(), history.end(), [&](double cost) { return cost <= enough; }) -
+                          history.begin());
 }
 
 std::vector<Eigen::Vector2d> to_meters(const GridGeometry& geometry, const std::vector<Eigen::Vector2d>& points) {
@@ -75,7 +79,8 @@ double compute_clearance(const Grid<Cost>& costs, const std::vector<Eigen::Vecto
       for (int row = std::max(0, low.row); row <= std::min(costs.geometry().height - 1, high.row); ++row) {
         for (int col = std::max(0, low.col); col <= std::min(costs.geometry().width - 1, high.col); ++col) {
           if (costs.at({col, row}) != kLethalCost || gap(a, b, col, row) >= min_distance) continue;
-          min_distance = std::min(min_distance, distance_to_box(a, b, {Eigen::Vector2d(col, row), Eigen::Vector2d(col + 1, row + 1)}));
+          min_distance = std::min(
+              min_distance, distance_to_box(a, b, {Eigen::Vector2d(col, row), Eigen::Vector2d(col + 1, row + 1)}));
         }
       }
     }
@@ -86,7 +91,8 @@ double compute_clearance(const Grid<Cost>& costs, const std::vector<Eigen::Vecto
 bool is_valid_step(const Grid<Cost>& costs, Cell from, GridStep step) {
   const Cell to{from.col + step.col, from.row + step.row};
   if (!costs.contains(to) || costs.at(to) == kLethalCost) return false;
-  return step.col == 0 || step.row == 0 || (costs.at({to.col, from.row}) != kLethalCost && costs.at({from.col, to.row}) != kLethalCost);
+  return step.col == 0 || step.row == 0 ||
+         (costs.at({to.col, from.row}) != kLethalCost && costs.at({from.col, to.row}) != kLethalCost);
 }
 
 std::vector<Cell> reachable_cells(const Grid<Cost>& costs, Cell start) {
@@ -110,7 +116,8 @@ std::array<double, 256> cost_factors(double cost_weight) {
   }
   std::array<double, 256> factors;
   for (std::size_t cost = 0; cost < factors.size(); ++cost) {
-    factors[cost] = 1.0 + cost_weight * std::min<double>(static_cast<double>(cost), kMaxPassableCost) / kMaxPassableCost;
+    factors[cost] =
+        1.0 + cost_weight * std::min<double>(static_cast<double>(cost), kMaxPassableCost) / kMaxPassableCost;
   }
   return factors;
 }

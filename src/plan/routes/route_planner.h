@@ -1,11 +1,11 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <array>
 #include <cstdint>
 #include <limits>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "core/grid.h"
 #include "plan/perception/costmap.h"
@@ -16,7 +16,7 @@ enum class PlanStatus {
   kFound,
   kStartBlocked,
   kGoalBlocked,
-  kNoRoute,    ///< no route exists
+  kNoRoute,   ///< no route exists
   kNotFound,  ///< no route found; one may exist, because the planner is incomplete or was stopped
 };
 
@@ -24,13 +24,13 @@ enum class PlanStatus {
 /// comparable.
 struct Route {
   PlanStatus status = PlanStatus::kNoRoute;
-  std::vector<Eigen::Vector2d> points;       ///< start ... goal, cells from the lower-left corner; cell centers at .5
-  double length = 0.0;                       ///< cells; straight and diagonal steps are counted exactly
-  double cost = 0.0;                         ///< cells, weighted by the costs of the cells crossed
-  int num_iterations = 0;                    ///< iterations of ants, particles or episodes; 1 for a search
-  std::vector<double> history;               ///< [iteration], cost of the best route so far; infinite before the first
-  std::int64_t num_expanded = 0;             ///< expanded cells; for a swarm, steps taken
-  double clearance = 0.0;                    ///< distance to the nearest lethal cell, cells; at most kMaxClearance
+  std::vector<Eigen::Vector2d> points;  ///< start ... goal, cells from the lower-left corner; cell centers at .5
+  double length = 0.0;                  ///< cells; straight and diagonal steps are counted exactly
+  double cost = 0.0;                    ///< cells, weighted by the costs of the cells crossed
+  int num_iterations = 0;               ///< iterations of ants, particles or episodes; 1 for a search
+  std::vector<double> history;          ///< [iteration], cost of the best route so far; infinite before the first
+  std::int64_t num_expanded = 0;        ///< expanded cells; for a swarm, steps taken
+  double clearance = 0.0;               ///< distance to the nearest lethal cell, cells; at most kMaxClearance
 };
 
 inline constexpr double kMaxClearance = 16.0;  ///< cells
@@ -47,7 +47,8 @@ std::vector<Eigen::Vector2d> to_meters(const GridGeometry& geometry, const std::
 
 /// Distance from the polyline to the nearest lethal cell's square, cells, at most `at_most`. The grid's border is no
 /// obstacle.
-double compute_clearance(const Grid<Cost>& costs, const std::vector<Eigen::Vector2d>& points, double at_most = kMaxClearance);
+double compute_clearance(const Grid<Cost>& costs, const std::vector<Eigen::Vector2d>& points,
+                         double at_most = kMaxClearance);
 
 /// Cost factors by cell cost: 1 + cost weight * cost / kMaxPassableCost. Throws InputError unless the weight is in [0,
 /// 50].
@@ -57,7 +58,8 @@ std::array<double, 256> cost_factors(double cost_weight);
 struct GridStep {
   int col, row;
 };
-inline constexpr std::array<GridStep, 8> kGridSteps = {{{1, 0}, {0, 1}, {-1, 0}, {0, -1}, {1, 1}, {-1, 1}, {-1, -1}, {1, -1}}};
+inline constexpr std::array<GridStep, 8> kGridSteps = {
+    {{1, 0}, {0, 1}, {-1, 0}, {0, -1}, {1, 1}, {-1, 1}, {-1, -1}, {1, -1}}};
 inline constexpr std::size_t kFirstDiagonal = 4;
 
 /// Whether a step stays on the grid and outside of lethal cells. A diagonal step needs both adjacent cells free, as in

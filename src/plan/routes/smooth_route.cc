@@ -10,7 +10,8 @@
 
 namespace patrol::plan {
 
-std::vector<Eigen::Vector2d> smooth_route(const Grid<Cost>& costs, double cost_weight, double min_clearance, const std::vector<Eigen::Vector2d>& points) {
+std::vector<Eigen::Vector2d> smooth_route(const Grid<Cost>& costs, double cost_weight, double min_clearance,
+                                          const std::vector<Eigen::Vector2d>& points) {
   constexpr double kRounding = 1e-9;
   if (points.size() < 3) return points;
   const std::array<double, 256> factors = cost_factors(cost_weight);
@@ -23,7 +24,8 @@ std::vector<Eigen::Vector2d> smooth_route(const Grid<Cost>& costs, double cost_w
     const std::optional<double> line = line_cost(costs, factors, cell_of(points[from]), cell_of(points[to]));
     if (!line || *line > (cost_to[to] - cost_to[from]) * (1.0 + kRounding)) return false;
     const auto leg = [&](std::size_t i) { return clearance.begin() + static_cast<std::ptrdiff_t>(i); };
-    return compute_clearance(costs, {points[from], points[to]}, min_clearance) >= *std::min_element(leg(from), leg(to)) - kRounding;
+    return compute_clearance(costs, {points[from], points[to]}, min_clearance) >=
+           *std::min_element(leg(from), leg(to)) - kRounding;
   };
   std::vector<Eigen::Vector2d> smooth;
   for (const std::size_t i : join_points(points.size(), may_join)) smooth.push_back(points[i]);

@@ -22,16 +22,21 @@ void check(const TourProblem& problem) {
   const auto refuse = [](const std::string& what) { throw InputError("tour: " + what); };
   if (count == 0) refuse("no stations: must be at least 1");
   for (std::size_t i = 0; i < count; ++i) {
-    if (problem.travel[i].size() != count) refuse(fmt::format("row {} of travel has {} values: must be {}", i, problem.travel[i].size(), count));
+    if (problem.travel[i].size() != count)
+      refuse(fmt::format("row {} of travel has {} values: must be {}", i, problem.travel[i].size(), count));
     for (std::size_t j = 0; j < count; ++j) {
-      if (!(problem.travel[i][j] >= 0.0)) refuse(fmt::format("travel from {} to {} is {}: must be at least 0", i, j, problem.travel[i][j]));
+      if (!(problem.travel[i][j] >= 0.0))
+        refuse(fmt::format("travel from {} to {} is {}: must be at least 0", i, j, problem.travel[i][j]));
     }
   }
-  if (!problem.stations.empty() && problem.stations.size() != count) refuse(fmt::format("{} station descriptions: must be {}", problem.stations.size(), count));
+  if (!problem.stations.empty() && problem.stations.size() != count)
+    refuse(fmt::format("{} station descriptions: must be {}", problem.stations.size(), count));
   for (std::size_t i = 0; i < problem.stations.size(); ++i) {
     const TourProblem::Station& station = problem.stations[i];
-    if (!(station.service >= 0.0) || !(station.earliest >= 0.0) || !std::isfinite(station.service + station.earliest) || !(station.latest >= station.earliest)) {
-      refuse(fmt::format("station {} has service {} and window [{}, {}]: must be at least 0 and in order", i, station.service, station.earliest, station.latest));
+    if (!(station.service >= 0.0) || !(station.earliest >= 0.0) || !std::isfinite(station.service + station.earliest) ||
+        !(station.latest >= station.earliest)) {
+      refuse(fmt::format("station {} has service {} and window [{}, {}]: must be at least 0 and in order", i,
+                         station.service, station.earliest, station.latest));
     }
   }
   for (const auto& end : {problem.start, problem.end}) {
@@ -42,7 +47,9 @@ void check(const TourProblem& problem) {
 /// Problem with defaults filled in.
 class Tour {
  public:
-  explicit Tour(const TourProblem& problem) : problem_(problem), stations_(problem.stations) { stations_.resize(problem.travel.size()); }
+  explicit Tour(const TourProblem& problem) : problem_(problem), stations_(problem.stations) {
+    stations_.resize(problem.travel.size());
+  }
 
   std::size_t size() const { return stations_.size(); }
   bool is_closed_tour() const { return problem_.start && problem_.start == problem_.end; }
@@ -52,8 +59,12 @@ class Tour {
   double travel(std::size_t from, std::size_t to) const { return problem_.travel[from][to]; }
   int priority(std::size_t i) const { return stations_[i].priority; }
   /// Departure time from a station that is reached at `reached`.
-  double departure(std::size_t i, double reached) const { return std::max(reached, stations_[i].earliest) + stations_[i].service; }
-  double lateness(std::size_t i, double reached) const { return std::max(0.0, reached - stations_[i].latest - kRounding); }
+  double departure(std::size_t i, double reached) const {
+    return std::max(reached, stations_[i].earliest) + stations_[i].service;
+  }
+  double lateness(std::size_t i, double reached) const {
+    return std::max(0.0, reached - stations_[i].latest - kRounding);
+  }
 
   /// Impossible legs, priority inversions, lateness, completion, compared in this order; lower is better.
   using Score = std::tuple<int, int, double, double>;
@@ -96,7 +107,8 @@ std::vector<std::size_t> exact_order(const Tour& tour) {
       const bool by_priority = !tour.is_fixed(i) && !tour.is_fixed(j) && tour.priority(j) < tour.priority(i);
       if (i != j && (by_priority || tour.is_end(i) || tour.is_start(j))) must_precede[i] |= std::size_t{1} << j;
     }
-    if (must_precede[i] == 0 && tour.lateness(i, 0.0) == 0.0) best[(std::size_t{1} << i) * size + i] = tour.departure(i, 0.0);
+    if (must_precede[i] == 0 && tour.lateness(i, 0.0) == 0.0)
+      best[(std::size_t{1} << i) * size + i] = tour.departure(i, 0.0);
   }
   for (std::size_t set = 1; set < all; ++set) {
     for (std::size_t last = 0; last < size; ++last) {
@@ -107,7 +119,8 @@ std::vector<std::size_t> exact_order(const Tour& tour) {
         const double reached = left + tour.travel(last, next);
         if (std::isinf(reached) || tour.lateness(next, reached) > 0.0) continue;
         const std::size_t there = (set | std::size_t{1} << next) * size + next;
-        if (tour.departure(next, reached) < best[there]) best[there] = tour.departure(next, reached), before[there] = static_cast<std::uint8_t>(last);
+        if (tour.departure(next, reached) < best[there])
+          best[there] = tour.departure(next, reached), before[there] = static_cast<std::uint8_t>(last);
       }
     }
   }
@@ -135,11 +148,11 @@ std::vector<std::size_t> exact_order(const Tour& tour) {
 /// Or-opt and 2-opt until neither improves: segments of one to three stations are moved, or any segment is reversed.
 class LocalSearch {
  public:
-  LocalSearch(const Tour& tour, std::vector<std::size_t> order) : tour_(tour), order_(std::move(order)), score_(tour.score(order_)) {}
+  LocalSearch(const Tour& tour, std::vector<std::size_t> order)
+      : tour_(tour), order_(std::move(order)), score_(tour.score(order_)) {}
 
   void run() {
-    while (improve()) {
-    }
+    while (improve()) {}
   }
   const std::vector<std::size_t>& order() const { return order_; }
   const Tour::Score& score() const { return score_; }
@@ -154,17 +167,23 @@ class LocalSearch {
       }
       for (std::size_t length = 1; length <= 3 && from + length <= end; ++length) {
         for (std::size_t to = first; to < from; ++to) {
-          is_better |= attempt([&](std::vector<std::size_t>& order) { std::rotate(at(order, to), at(order, from), at(order, from + length)); });
+          is_better |= attempt([&](std::vector<std::size_t>& order) {
+            std::rotate(at(order, to), at(order, from), at(order, from + length));
+          });
         }
         for (std::size_t to = from + length + 1; to <= end; ++to) {
-          is_better |= attempt([&](std::vector<std::size_t>& order) { std::rotate(at(order, from), at(order, from + length), at(order, to)); });
+          is_better |= attempt([&](std::vector<std::size_t>& order) {
+            std::rotate(at(order, from), at(order, from + length), at(order, to));
+          });
         }
       }
     }
     return is_better;
   }
 
-  static std::vector<std::size_t>::iterator at(std::vector<std::size_t>& order, std::size_t i) { return order.begin() + static_cast<std::ptrdiff_t>(i); }
+  static std::vector<std::size_t>::iterator at(std::vector<std::size_t>& order, std::size_t i) {
+    return order.begin() + static_cast<std::ptrdiff_t>(i);
+  }
 
   template <typename Change>
   bool attempt(Change change) {
@@ -174,8 +193,10 @@ class LocalSearch {
     const auto& [impossible, inverted, late, completion] = score;
     const auto& [impossible_now, inverted_now, late_now, completion_now] = score_;
     // The improvement must exceed rounding, otherwise the search might cycle.
-    if (!(std::tuple(impossible, inverted, late + kRounding, 0.0) < std::tuple(impossible_now, inverted_now, late_now, 0.0)) &&
-        !(std::tuple(impossible, inverted) == std::tuple(impossible_now, inverted_now) && late <= late_now && completion < completion_now * (1.0 - kRounding))) {
+    if (!(std::tuple(impossible, inverted, late + kRounding, 0.0) <
+          std::tuple(impossible_now, inverted_now, late_now, 0.0)) &&
+        !(std::tuple(impossible, inverted) == std::tuple(impossible_now, inverted_now) && late <= late_now &&
+          completion < completion_now * (1.0 - kRounding))) {
       return false;
     }
     order_.swap(candidate_);
@@ -193,7 +214,9 @@ std::vector<std::size_t> random_order(const Tour& tour, RandomSequence random) {
   std::vector<std::size_t> order(tour.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random.index(i)]);
-  const auto rank = [&](std::size_t i) { return std::tuple(!tour.is_start(i), tour.is_end(i), tour.is_fixed(i) ? 0 : tour.priority(i)); };
+  const auto rank = [&](std::size_t i) {
+    return std::tuple(!tour.is_start(i), tour.is_end(i), tour.is_fixed(i) ? 0 : tour.priority(i));
+  };
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return rank(a) < rank(b); });
   return order;
 }
@@ -204,7 +227,8 @@ std::vector<std::size_t> nearest_order(const Tour& tour, std::vector<std::size_t
   for (std::size_t k = 1; k < end; ++k) {
     const auto rank = [&](std::size_t i) { return std::tuple(tour.priority(i), tour.travel(order[k - 1], i)); };
     const auto left = order.begin() + static_cast<std::ptrdiff_t>(k);
-    std::iter_swap(left, std::min_element(left, order.begin() + static_cast<std::ptrdiff_t>(end), [&](std::size_t a, std::size_t b) { return rank(a) < rank(b); }));
+    std::iter_swap(left, std::min_element(left, order.begin() + static_cast<std::ptrdiff_t>(end),
+                                          [&](std::size_t a, std::size_t b) { return rank(a) < rank(b); }));
   }
   return order;
 }
@@ -213,7 +237,8 @@ std::vector<std::size_t> searched_order(const Tour& tour, int restarts, std::uin
   const RandomStream stream(seed, "plan/routes/tour");
   std::optional<LocalSearch> best;
   for (int restart = 0; restart < restarts; ++restart) {
-    const std::vector<std::size_t> sampled = random_order(tour, RandomSequence(stream, static_cast<std::uint64_t>(restart)));
+    const std::vector<std::size_t> sampled =
+        random_order(tour, RandomSequence(stream, static_cast<std::uint64_t>(restart)));
     LocalSearch search(tour, restart % 2 == 0 ? nearest_order(tour, sampled) : sampled);
     search.run();
     if (!best || search.score() < best->score()) best.emplace(search);
@@ -236,7 +261,8 @@ TourOrder solve_station_order(const TourProblem& problem, const TourOrderSetting
   result.is_found = impossible == 0 && inverted == 0;
   result.lateness = late;
   result.completion = completion;
-  for (std::size_t k = 1; k < result.stations.size(); ++k) result.travel += tour.travel(result.stations[k - 1], result.stations[k]);
+  for (std::size_t k = 1; k < result.stations.size(); ++k)
+    result.travel += tour.travel(result.stations[k - 1], result.stations[k]);
   if (tour.is_closed_tour() && tour.size() > 1)
     result.travel += tour.travel(result.stations.back(), result.stations.front());
   result.lower_bound = result.is_exact ? completion : held_karp_bound(problem, completion, settings.bound_iterations);

@@ -27,25 +27,25 @@ struct TourOrderSettings {
 /// windows, else seconds.
 struct TourProblem {
   struct Station {
-    double service = 0.0;   ///< service time or equivalent length
-    double earliest = 0.0;  ///< earliest begin of the service; the robot waits for it
+    double service = 0.0;                                     ///< service time or equivalent length
+    double earliest = 0.0;                                    ///< earliest begin of the service; the robot waits for it
     double latest = std::numeric_limits<double>::infinity();  ///< latest begin of the service; a soft limit
-    int priority = 0;       ///< stations of a lower number come first; does not apply to the fixed start and end
+    int priority = 0;  ///< stations of a lower number come first; does not apply to the fixed start and end
   };
 
   std::vector<std::vector<double>> travel = {};     ///< [from][to]; infinite without a path; need not be symmetric
   std::vector<Station> stations = {};               ///< same number as `travel`, or empty for no requirements
-  std::optional<std::size_t> start = {}, end = {};   ///< free if not given; if equal, a closed tour
+  std::optional<std::size_t> start = {}, end = {};  ///< free if not given; if equal, a closed tour
 };
 
 struct TourOrder {
-  bool is_found = false;               ///< an order without impossible legs and priority inversions
-  std::vector<std::size_t> stations;   ///< in order; the start of a closed tour is not repeated at its end
-  double completion = 0.0;             ///< end of the last service or of the closed tour, from a start at 0
+  bool is_found = false;              ///< an order without impossible legs and priority inversions
+  std::vector<std::size_t> stations;  ///< in order; the start of a closed tour is not repeated at its end
+  double completion = 0.0;            ///< end of the last service or of the closed tour, from a start at 0
   double travel = 0.0;
-  double lateness = 0.0;               ///< sum over the stations: 0 if all windows are met
-  double lower_bound = 0.0;            ///< lower bound of the completion over all orders
-  bool is_exact = false;               ///< whether the completion is proven optimal
+  double lateness = 0.0;     ///< sum over the stations: 0 if all windows are met
+  double lower_bound = 0.0;  ///< lower bound of the completion over all orders
+  bool is_exact = false;     ///< whether the completion is proven optimal
 
   /// Maximum relative excess of the completion over the optimum, from the lower bound.
   double gap() const { return is_exact || lower_bound <= 0.0 ? 0.0 : completion / lower_bound - 1.0; }

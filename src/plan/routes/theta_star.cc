@@ -52,7 +52,10 @@ void ThetaStar::expand(const Grid<Cost>& costs, Cell cell, Cell goal) {
     const bool is_new = node.search != num_searches_;
     if (!is_new && node.is_closed) continue;
 
-    Node reached{.cost = here.cost + *line_cost(costs, factors(), cell, next), .parent = cell, .search = num_searches_, .is_closed = false};
+    Node reached{.cost = here.cost + *line_cost(costs, factors(), cell, next),
+                 .parent = cell,
+                 .search = num_searches_,
+                 .is_closed = false};
     // With cost weights the line may cost more than the path through the neighbors; without weights it never does.
     const double at_least = nodes_.at(here.parent).cost + distance(here.parent, next);
     if (here.parent != cell && (is_new || at_least < node.cost)) {

@@ -21,7 +21,7 @@ class ThetaStar : public RoutePlanner {
 
  private:
   struct Node {
-    double cost;          ///< cost from the start, cells
+    double cost;  ///< cost from the start, cells
     Cell parent;
     std::uint32_t search;  ///< number of the search that last updated this node
     bool is_closed;
@@ -30,7 +30,9 @@ class ThetaStar : public RoutePlanner {
     double estimate, cost;  ///< estimated cost of the whole route; cost so far
     Cell cell;
     /// Order for a heap with the best node on top; of equal estimates, the one with the higher cost so far.
-    bool operator<(const Open& other) const { return estimate != other.estimate ? estimate > other.estimate : cost < other.cost; }
+    bool operator<(const Open& other) const {
+      return estimate != other.estimate ? estimate > other.estimate : cost < other.cost;
+    }
   };
 
   void search(const Grid<Cost>& costs, Cell start, Cell goal, Route& route) override;

@@ -72,7 +72,10 @@ bool is_visible_up_right(const Quadrant& quadrant, HalfCellPoint to) {
 class VisibilitySearch {
  public:
   VisibilitySearch(const Grid<Cost>& costs, Cell start, Cell goal)
-      : costs_(costs), start_(center(start)), goal_(center(goal)), width_(2 * costs.geometry().width + 1),
+      : costs_(costs),
+        start_(center(start)),
+        goal_(center(goal)),
+        width_(2 * costs.geometry().width + 1),
         nodes_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(2 * costs.geometry().height + 1)) {}
 
   void run(Route& route) {
@@ -125,7 +128,9 @@ class VisibilitySearch {
   Node& node(HalfCellPoint p) {
     return nodes_[static_cast<std::size_t>(p.y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(p.x)];
   }
-  bool is_lethal(int col, int row) const { return !costs_.contains({col, row}) || costs_.at({col, row}) == kLethalCost; }
+  bool is_lethal(int col, int row) const {
+    return !costs_.contains({col, row}) || costs_.at({col, row}) == kLethalCost;
+  }
 
   /// Direction of the single lethal cell at a corner; none unless there is exactly one, because paths turn only there.
   std::optional<HalfCellPoint> lethal_side(HalfCellPoint corner) const {
@@ -233,15 +238,19 @@ bool is_visible(const Grid<Cost>& costs, HalfCellPoint from, HalfCellPoint to) {
   const int col = quadrant.first_col(), row = quadrant.first_row();
   if (dy == 0) {
     const int between = origin.y % 2 == 0;  // else the line runs through cells, which are on both sides
-    return is_visible_along_axis(col, end.x, [&](int along, int side) { return quadrant.is_free(along, row + between * side); });
+    return is_visible_along_axis(col, end.x,
+                                 [&](int along, int side) { return quadrant.is_free(along, row + between * side); });
   }
   if (dx == 0) {
     const int between = origin.x % 2 == 0;
-    return is_visible_along_axis(row, end.y, [&](int along, int side) { return quadrant.is_free(col + between * side, along); });
+    return is_visible_along_axis(row, end.y,
+                                 [&](int along, int side) { return quadrant.is_free(col + between * side, along); });
   }
   return is_visible_up_right(quadrant, end);
 }
 
-void VisibilityGraphPlanner::search(const Grid<Cost>& costs, Cell start, Cell goal, Route& route) { VisibilitySearch(costs, start, goal).run(route); }
+void VisibilityGraphPlanner::search(const Grid<Cost>& costs, Cell start, Cell goal, Route& route) {
+  VisibilitySearch(costs, start, goal).run(route);
+}
 
 }  // namespace patrol::plan

@@ -39,7 +39,8 @@ std::optional<Approach> ApproachFinder::nearest(const SimState& state) {
   const Part* who = nullptr;
   for (const Part& part : actors_) {
     for (const int geom : robot_) {
-      const double distance_bound_m = (place_of(*data_, part.geom) - place_of(*data_, geom)).norm() - model_.geom_rbound[part.geom] - model_.geom_rbound[geom];
+      const double distance_bound_m = (place_of(*data_, part.geom) - place_of(*data_, geom)).norm() -
+                                      model_.geom_rbound[part.geom] - model_.geom_rbound[geom];
       if (distance_bound_m >= nearest_m) continue;
       const double clearance_m = mj_geomDistance(&model_, data_.get(), geom, part.geom, nearest_m, nullptr);
       if (clearance_m >= nearest_m) continue;
@@ -49,7 +50,10 @@ std::optional<Approach> ApproachFinder::nearest(const SimState& state) {
   }
   if (who == nullptr) return std::nullopt;
   const double* p_world_actor = data_->xpos + 3 * who->actor;
-  return Approach{.at = state.stamp, .actor = std::string(name_of(model_, who->actor)), .clearance_m = nearest_m, .p_world_actor = {p_world_actor[0], p_world_actor[1]}};
+  return Approach{.at = state.stamp,
+                  .actor = std::string(name_of(model_, who->actor)),
+                  .clearance_m = nearest_m,
+                  .p_world_actor = {p_world_actor[0], p_world_actor[1]}};
 }
 
 }  // namespace patrol::render

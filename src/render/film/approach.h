@@ -12,7 +12,7 @@ namespace patrol::render {
 /// Closest moving actor near the robot at one time.
 struct Approach {
   Time at{};
-  std::string actor;  ///< name of the actor's body, e.g. "pedestrian_1"
+  std::string actor;         ///< name of the actor's body, e.g. "pedestrian_1"
   double clearance_m = 0.0;  ///< true distance between the surfaces of robot and actor
   Eigen::Vector2d p_world_actor = Eigen::Vector2d::Zero();
 };
@@ -37,7 +37,7 @@ class ApproachFinder {
   };
   const mjModel& model_;
   sim::DataPtr data_;
-  std::vector<int> robot_;   ///< geom ids
+  std::vector<int> robot_;  ///< geom ids
   std::vector<Part> actors_;
 };
 

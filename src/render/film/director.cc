@@ -5,7 +5,8 @@
 namespace patrol::render {
 
 const Shot* Director::shot_at(Time now) const {
-  const auto shot = std::ranges::find_if(plan_.shots, [&](const Shot& s) { return now >= s.span.from && now <= s.span.to; });
+  const auto shot =
+      std::ranges::find_if(plan_.shots, [&](const Shot& s) { return now >= s.span.from && now <= s.span.to; });
   return shot == plan_.shots.end() ? nullptr : &*shot;
 }
 

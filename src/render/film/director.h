@@ -3,11 +3,11 @@
 #include <optional>
 #include <utility>
 
-#include "render/scene/camera.h"
-#include "render/film_note.h"
 #include "render/film/shot_camera.h"
 #include "render/film/shot_plan.h"
+#include "render/film_note.h"
 #include "render/run_snapshot.h"
+#include "render/scene/camera.h"
 
 namespace patrol::render {
 

@@ -50,7 +50,8 @@ std::optional<HighlightKind> moment_of(EventKind kind) {
 }
 
 std::string title_of(const Event& event) {
-  if (event.kind == EventKind::kGasAlarm) return fmt::format("Leak at {}: {:.0f} ppm m of methane", humanize(event.subject), event.value);
+  if (event.kind == EventKind::kGasAlarm)
+    return fmt::format("Leak at {}: {:.0f} ppm m of methane", humanize(event.subject), event.value);
   if (event.kind == EventKind::kRelocalized) return fmt::format("Localization recovered after {:.1f} s", event.value);
   if (event.kind == EventKind::kLocalizationLost) return "Localization lost";
   return without_full_stop(event.text);
@@ -72,7 +73,8 @@ void add_collisions(const RunHistory& history, Highlights& highlights) {
   std::optional<Time> last;
   for (const Collision& collision : history.collisions) {
     if (!last || collision.stamp > *last + kOneCollision) {
-      highlights.push_back({collision.stamp, HighlightKind::kCollision, "Collision with " + humanize(collision.second)});
+      highlights.push_back(
+          {collision.stamp, HighlightKind::kCollision, "Collision with " + humanize(collision.second)});
     }
     last = collision.stamp;
   }
@@ -96,10 +98,12 @@ std::vector<Approach> encounters(const std::vector<Approach>& approaches, double
 void add_near_misses(const RunHistory& history, const HighlightSettings& settings, Highlights& highlights) {
   std::vector<Approach> met = encounters(history.approaches, settings.near_miss_m);
   std::ranges::stable_sort(met, {}, &Approach::clearance_m);
-  if (met.size() > static_cast<std::size_t>(settings.max_near_misses)) met.resize(static_cast<std::size_t>(settings.max_near_misses));
+  if (met.size() > static_cast<std::size_t>(settings.max_near_misses))
+    met.resize(static_cast<std::size_t>(settings.max_near_misses));
   for (const Approach& approach : met) {
-    highlights.push_back({approach.at, HighlightKind::kNearMiss, fmt::format("{:.2f} m from {}", approach.clearance_m, humanize(approach.actor)),
-                       approach.p_world_actor});
+    highlights.push_back({approach.at, HighlightKind::kNearMiss,
+                          fmt::format("{:.2f} m from {}", approach.clearance_m, humanize(approach.actor)),
+                          approach.p_world_actor});
   }
 }
 
@@ -107,7 +111,8 @@ void add_max_error(const RunHistory& history, const HighlightSettings& settings,
   const auto size_m = [](const EstimateError& error) { return error.error_in_world_m.norm(); };
   const auto largest = std::ranges::max_element(history.errors, {}, size_m);
   if (largest == history.errors.end() || size_m(*largest) < settings.min_error_m) return;
-  highlights.push_back({largest->at, HighlightKind::kMaxError, fmt::format("Maximum position error: {:.3f} m", size_m(*largest))});
+  highlights.push_back(
+      {largest->at, HighlightKind::kMaxError, fmt::format("Maximum position error: {:.3f} m", size_m(*largest))});
 }
 
 /// Adds steps of the true pose that the robot cannot make itself.
@@ -115,7 +120,8 @@ void add_kidnaps(const RunHistory& history, const HighlightSettings& settings, H
   for (std::size_t i = 1; i < history.T_world_body.size(); ++i) {
     const double leap_m = (history.T_world_body[i].pose.position - history.T_world_body[i - 1].pose.position).norm();
     if (leap_m >= settings.kidnap_m) {
-      highlights.push_back({history.T_world_body[i].stamp, HighlightKind::kKidnap, fmt::format("Kidnapped: moved {:.0f} m", leap_m)});
+      highlights.push_back(
+          {history.T_world_body[i].stamp, HighlightKind::kKidnap, fmt::format("Kidnapped: moved {:.0f} m", leap_m)});
     }
   }
 }
@@ -125,19 +131,22 @@ void add_corrections(const RunHistory& history, const HighlightSettings& setting
   constexpr Time kAround = std::chrono::milliseconds(500);
   const Highlights before = highlights;
   const auto is_kidnap_near = [&](Time at) {
-    return std::ranges::any_of(before, [&](const Highlight& m) { return m.kind == HighlightKind::kKidnap && m.at <= at + kAround && at <= m.at + kAround; });
+    return std::ranges::any_of(before, [&](const Highlight& m) {
+      return m.kind == HighlightKind::kKidnap && m.at <= at + kAround && at <= m.at + kAround;
+    });
   };
   for (std::size_t i = 1; i < history.errors.size(); ++i) {
     const double jump_m = (history.errors[i].error_in_world_m - history.errors[i - 1].error_in_world_m).norm();
     if (jump_m < settings.correction_m || is_kidnap_near(history.errors[i].at)) continue;
-    highlights.push_back({history.errors[i].at, HighlightKind::kCorrection, fmt::format("Estimate corrected by {:.2f} m", jump_m)});
+    highlights.push_back(
+        {history.errors[i].at, HighlightKind::kCorrection, fmt::format("Estimate corrected by {:.2f} m", jump_m)});
   }
 }
 
 }  // namespace
 
-std::vector<Highlight> find_highlights(const RunHistory& history, const Pose2& T_world_map, std::vector<Highlight> announced,
-                                 const HighlightSettings& settings) {
+std::vector<Highlight> find_highlights(const RunHistory& history, const Pose2& T_world_map,
+                                       std::vector<Highlight> announced, const HighlightSettings& settings) {
   Highlights highlights = std::move(announced);
   add_events(history, T_world_map, highlights);
   add_collisions(history, highlights);
@@ -145,7 +154,8 @@ std::vector<Highlight> find_highlights(const RunHistory& history, const Pose2& T
   add_max_error(history, settings, highlights);
   add_kidnaps(history, settings, highlights);
   add_corrections(history, settings, highlights);
-  std::erase_if(highlights, [&](const Highlight& highlight) { return highlight.at < history.begin || highlight.at > history.end; });
+  std::erase_if(highlights,
+                [&](const Highlight& highlight) { return highlight.at < history.begin || highlight.at > history.end; });
   std::ranges::stable_sort(highlights, {}, &Highlight::at);
   return highlights;
 }

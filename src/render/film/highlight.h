@@ -21,17 +21,17 @@ enum class HighlightKind {
   kFailure,      ///< failure of a sensor, an inspection, a goal, a station, a docking or the mission
   kNearMiss,
   kMaxError,
-  kCorrection,   ///< jump of the estimate: loop closure or change of hypothesis
+  kCorrection,  ///< jump of the estimate: loop closure or change of hypothesis
   kDocking,
-  kGoal,         ///< goal or station reached
-  kMission,      ///< start or end of the mission
+  kGoal,     ///< goal or station reached
+  kMission,  ///< start or end of the mission
 };
 
 /// Highlight of a run.
 struct Highlight {
   Time at{};
   HighlightKind kind{};
-  std::string title;  ///< short description
+  std::string title;                                    ///< short description
   std::optional<Eigen::Vector2d> p_world_subject = {};  ///< position of the highlight, m; none if it is the robot's own
 };
 

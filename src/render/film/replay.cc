@@ -12,8 +12,8 @@
 #include "render/film/find_highlights.h"
 #include "render/film/run_history.h"
 #include "render/frame_renderer.h"
-#include "render/snapshot_builder.h"
 #include "render/scene/scene_painter.h"
+#include "render/snapshot_builder.h"
 
 namespace patrol::render {
 namespace {
@@ -67,23 +67,24 @@ void prepare(mjModel& view, const ReplaySettings& settings) {
 }
 
 InputError no_states(const std::filesystem::path& log_mcap) {
-  return InputError(log_mcap.string() + ": contains no states (topic " + io::kTopic<SimState> +
-                    ")");
+  return InputError(log_mcap.string() + ": contains no states (topic " + io::kTopic<SimState> + ")");
 }
 
 }  // namespace
 
-ReplaySummary replay(const std::filesystem::path& log_mcap, sim::AssembledModel model,
-                     const Pose2& T_world_map, const ReplaySettings& settings,
-                     const std::filesystem::path& out_mp4, const ReplayProgress& progress) {
+ReplaySummary replay(const std::filesystem::path& log_mcap, sim::AssembledModel model, const Pose2& T_world_map,
+                     const ReplaySettings& settings, const std::filesystem::path& out_mp4,
+                     const ReplayProgress& progress) {
   if (!(settings.speed.fast > 0.0) || !(settings.speed.slow > 0.0) || !(settings.frames_per_second > 0.0)) {
-    throw InputError(fmt::format("speed = {}, highlight speed = {}: must be greater than 0", settings.speed.fast, settings.speed.slow));
+    throw InputError(fmt::format("speed = {}, highlight speed = {}: must be greater than 0", settings.speed.fast,
+                                 settings.speed.slow));
   }
   const mjModel& view = *model.view;
   prepare(*model.view, settings);
   const RunHistory history = read_run_history(log_mcap, view, T_world_map);
   if (history.num_states == 0) throw no_states(log_mcap);
-  ShotPlan plan = plan_shots(history, find_highlights(history, T_world_map, settings.announced), settings.style, settings.speed);
+  ShotPlan plan =
+      plan_shots(history, find_highlights(history, T_world_map, settings.announced), settings.style, settings.speed);
   const double length_s = std::max(plan.speed.length_s(), 1e-9);
   ReplaySummary summary{.end = history.end, .num_chapters = static_cast<int>(plan.chapters.size())};
 
@@ -94,7 +95,8 @@ ReplaySummary replay(const std::filesystem::path& log_mcap, sim::AssembledModel 
   try {
     summary.log_is_complete = io::read_run_log(log_mcap, handlers_for(follower, [&](Time) {
                                                  film.add_snapshot(follower.snapshot());
-                                                 if (progress && !progress(std::min(1.0, film.length_s() / length_s))) throw Interrupted();
+                                                 if (progress && !progress(std::min(1.0, film.length_s() / length_s)))
+                                                   throw Interrupted();
                                                }));
   } catch (const Interrupted&) {
     summary.is_interrupted = true;
@@ -112,9 +114,7 @@ void still(const std::filesystem::path& log_mcap, sim::AssembledModel model, con
   if (settings.map) follower.add(MapUpdate{.stamp = {}, .map = *settings.map});
   CameraRig rig = camera_on(follower, settings.camera);
   std::optional<View> view;
-  const auto follow = [&](Time) {
-    view = rig.follow(follower.snapshot().T_world_body, 0.02 / settings.speed.fast);
-  };
+  const auto follow = [&](Time) { view = rig.follow(follower.snapshot().T_world_body, 0.02 / settings.speed.fast); };
   io::read_run_log(log_mcap, handlers_for(follower, follow), Time::min(), at);
   if (!view) throw no_states(log_mcap);
   FrameRenderer painter(*model.view, frame_settings(settings, *model.view));

@@ -7,9 +7,9 @@
 #include "core/frames.h"
 #include "core/grid.h"
 #include "core/time.h"
-#include "render/scene/camera.h"
 #include "render/film/highlight.h"
 #include "render/film/shot_plan.h"
+#include "render/scene/camera.h"
 #include "render/scene/gl_context.h"
 #include "render/scene/light.h"
 #include "sim/dust.h"
@@ -27,8 +27,8 @@ struct ReplaySettings {
   int height = 720;
   double frames_per_second = 30.0;
   Renderer renderer = Renderer::kAuto;
-  std::optional<OccupancyGrid> map = {};  ///< map that the robot was given, in map; none for a mapping run
-  sim::DustSettings dust = {};  ///< dust of the run
+  std::optional<OccupancyGrid> map = {};      ///< map that the robot was given, in map; none for a mapping run
+  sim::DustSettings dust = {};                ///< dust of the run
   std::vector<sim::LeakSettings> leaks = {};  ///< gas leaks of the run
   sim::WindSettings wind = {};
   LightSettings light = {};
@@ -50,9 +50,9 @@ struct ReplaySummary {
 /// Renders a film of a logged run. Reads the log twice: once for the highlights, once for the frames. `T_world_map` is
 /// the start pose, at which map and world are aligned. Sets the model's render quality. Throws InputError when the log
 /// cannot be read, has no states, or belongs to another world.
-ReplaySummary replay(const std::filesystem::path& log_mcap, sim::AssembledModel model,
-                     const Pose2& T_world_map, const ReplaySettings& settings,
-                     const std::filesystem::path& out_mp4, const ReplayProgress& progress = {});
+ReplaySummary replay(const std::filesystem::path& log_mcap, sim::AssembledModel model, const Pose2& T_world_map,
+                     const ReplaySettings& settings, const std::filesystem::path& out_mp4,
+                     const ReplayProgress& progress = {});
 
 /// Renders one picture of the last state up to `at`.
 void still(const std::filesystem::path& log_mcap, sim::AssembledModel model, const Pose2& T_world_map,

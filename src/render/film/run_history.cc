@@ -23,7 +23,8 @@ RunHistory read_run_history(const std::filesystem::path& log_mcap, const mjModel
   handlers.on<PoseEstimate>([&](Time, const PoseEstimate& estimate) {
     const std::optional<Pose3> truth = pose_at(history.T_world_body, estimate.stamp);
     if (!truth) return;
-    history.errors.push_back({estimate.stamp, T_world_map * estimate.T_map_body.position() - truth->position.head<2>()});
+    history.errors.push_back(
+        {estimate.stamp, T_world_map * estimate.T_map_body.position() - truth->position.head<2>()});
   });
   handlers.on<Event>([&](Time, const Event& event) { history.events.push_back(event); });
   handlers.on<Collision>([&](Time, const Collision& collision) { history.collisions.push_back(collision); });

@@ -56,7 +56,8 @@ double ShotCamera::choose_bearing(const Pose3& T_world_body) const {
   double best_rad = ahead_rad + bearings_deg[0] * kDegree, best_fraction = 0.0;
   for (const double bearing_deg : bearings_deg) {
     const double bearing_rad = ahead_rad + bearing_deg * kDegree;
-    const double fraction = std::min(free_fraction(shot_.T_world_body, bearing_rad), free_fraction(T_world_body, bearing_rad));
+    const double fraction =
+        std::min(free_fraction(shot_.T_world_body, bearing_rad), free_fraction(T_world_body, bearing_rad));
     if (fraction <= best_fraction) continue;
     best_fraction = fraction;
     best_rad = bearing_rad;
@@ -88,10 +89,13 @@ View ShotCamera::follow(const Pose3& T_world_body, const Eigen::Vector2d& p_worl
     const double free_m = free_distance_(focus_m_, offset.normalized(), offset.norm() + kClearance_m);
     distance_fraction = std::clamp((free_m - kClearance_m) / offset.norm(), 0.3, 1.0);
   }
-  distance_fraction_ = std::min(distance_fraction, distance_fraction_ + (1.0 - std::exp(-elapsed_s / kReturn_s)) * (distance_fraction - distance_fraction_));
+  distance_fraction_ = std::min(distance_fraction, distance_fraction_ + (1.0 - std::exp(-elapsed_s / kReturn_s)) *
+                                                                            (distance_fraction - distance_fraction_));
   // Aim slightly right of and below the focus: the map inset covers that part of the picture, and the caption.
-  const Eigen::Vector3d to_right = Eigen::Vector3d::UnitZ().cross(offset), down = -offset.norm() * Eigen::Vector3d::UnitZ();
-  return look_at(focus_m_ + distance_fraction_ * offset, focus_m_ + distance_fraction_ * (kAside * to_right + kBelow * down));
+  const Eigen::Vector3d to_right = Eigen::Vector3d::UnitZ().cross(offset),
+                        down = -offset.norm() * Eigen::Vector3d::UnitZ();
+  return look_at(focus_m_ + distance_fraction_ * offset,
+                 focus_m_ + distance_fraction_ * (kAside * to_right + kBelow * down));
 }
 
 }  // namespace patrol::render

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "render/scene/camera.h"
 #include "render/film/shot_plan.h"
+#include "render/scene/camera.h"
 
 namespace patrol::render {
 
@@ -25,10 +25,10 @@ class ShotCamera {
 
   Shot shot_;
   FreeDistance free_distance_;
-  Eigen::Vector3d focus_m_;  ///< low-pass filtered
-  double bearing_rad_;       ///< from the focus to the camera, in world
-  double distance_fraction_ = 1.0;       ///< fraction of the full camera distance, low-pass filtered; 1 without obstacles
-  double height_m_ = 10.0;   ///< height of an overhead shot, low-pass filtered
+  Eigen::Vector3d focus_m_;         ///< low-pass filtered
+  double bearing_rad_;              ///< from the focus to the camera, in world
+  double distance_fraction_ = 1.0;  ///< fraction of the full camera distance, low-pass filtered; 1 without obstacles
+  double height_m_ = 10.0;          ///< height of an overhead shot, low-pass filtered
 };
 
 }  // namespace patrol::render

@@ -11,17 +11,19 @@ namespace {
 
 /// Highlights that are close in time, shown in one shot.
 struct Scene {
-  TimeSpan span;          ///< run time
+  TimeSpan span;  ///< run time
   std::vector<std::string> titles;
   Highlight main_highlight;
 };
 
 /// Builds a scene from the highlights [`from`, `to`), which are ordered by time.
-Scene scene_of(std::vector<Highlight>::const_iterator from, std::vector<Highlight>::const_iterator to, const ShotSettings& settings) {
+Scene scene_of(std::vector<Highlight>::const_iterator from, std::vector<Highlight>::const_iterator to,
+               const ShotSettings& settings) {
   constexpr std::size_t kMaxTitles = 3;
   Scene scene{.span = {from->at - from_seconds(settings.lead_s), (to - 1)->at + from_seconds(settings.lag_s)},
               .titles = {},
-              .main_highlight = *std::min_element(from, to, [](const Highlight& a, const Highlight& b) { return a.kind < b.kind; })};
+              .main_highlight =
+                  *std::min_element(from, to, [](const Highlight& a, const Highlight& b) { return a.kind < b.kind; })};
   std::vector<Highlight> main_highlights(from, to);
   std::ranges::stable_sort(main_highlights, {}, &Highlight::kind);
   if (main_highlights.size() > kMaxTitles) main_highlights.resize(kMaxTitles);
@@ -62,7 +64,9 @@ ShotKind shot_kind(const Highlight& highlight) {
 /// Shots of the scenes with the highest priority, in order of time.
 std::vector<Shot> shots_of(std::vector<Scene> scenes, const Trajectory& T_world_body, int max_shots) {
   const auto kind = [](const Scene& scene) { return scene.main_highlight.kind; };
-  std::erase_if(scenes, [&](const Scene& scene) { return kind(scene) == HighlightKind::kMission || scene.span.to <= scene.span.from; });
+  std::erase_if(scenes, [&](const Scene& scene) {
+    return kind(scene) == HighlightKind::kMission || scene.span.to <= scene.span.from;
+  });
   std::ranges::stable_sort(scenes, {}, kind);
   if (scenes.size() > static_cast<std::size_t>(max_shots)) scenes.resize(static_cast<std::size_t>(max_shots));
   std::ranges::sort(scenes, {}, [](const Scene& scene) { return scene.span.from; });
@@ -105,8 +109,8 @@ FilmStyle parse_film_style(const std::string& name) {
   throw InputError("style = " + name + ": must be one of highlights, continuous");
 }
 
-ShotPlan plan_shots(const RunHistory& history, const std::vector<Highlight>& highlights, FilmStyle style, const SpeedSettings& speed,
-                    const ShotSettings& settings) {
+ShotPlan plan_shots(const RunHistory& history, const std::vector<Highlight>& highlights, FilmStyle style,
+                    const SpeedSettings& speed, const ShotSettings& settings) {
   const TimeSpan run{history.begin, history.end};
   const std::vector<Scene> scenes = scenes_of(highlights, run, settings);
   std::vector<Shot> shots;

@@ -26,11 +26,14 @@ SpeedPlan::SpeedPlan(TimeSpan run, std::vector<TimeSpan> slow_spans, const Speed
   const double ramp_s = 2.0 * settings.ramp_s / (fast_pace + slow_pace);
   const double begin_s = to_seconds(run.from), end_s = to_seconds(run.to);
   // A ramp cut by the end of the run keeps its slope.
-  const auto ramp_pace = [&](double away_s) { return std::max(fast_pace, slow_pace - away_s / ramp_s * (slow_pace - fast_pace)); };
+  const auto ramp_pace = [&](double away_s) {
+    return std::max(fast_pace, slow_pace - away_s / ramp_s * (slow_pace - fast_pace));
+  };
   const auto add = [&](double run_s, double pace) {
     if (nodes_.empty()) return nodes_.push_back({run_s, pace, 0.0});
     const Node& last = nodes_.back();
-    if (run_s > last.run_s) nodes_.push_back({run_s, pace, last.film_s + 0.5 * (last.pace + pace) * (run_s - last.run_s)});
+    if (run_s > last.run_s)
+      nodes_.push_back({run_s, pace, last.film_s + 0.5 * (last.pace + pace) * (run_s - last.run_s)});
   };
   const std::vector<TimeSpan> spans = merge_spans(std::move(slow_spans), run, from_seconds(ramp_s));
   const double first_s = spans.empty() ? end_s : to_seconds(spans.front().from);
@@ -68,7 +71,8 @@ Time SpeedPlan::run_time(double film_s) const {
   const Node& node = node_before(&Node::film_s, film_s);
   const double slope = pace_after(node, node.run_s + 1.0) - node.pace;
   const double missing_s = film_s - node.film_s;
-  const double x = 2.0 * missing_s / (node.pace + std::sqrt(std::max(0.0, node.pace * node.pace + 2.0 * slope * missing_s)));
+  const double x =
+      2.0 * missing_s / (node.pace + std::sqrt(std::max(0.0, node.pace * node.pace + 2.0 * slope * missing_s)));
   return from_seconds(node.run_s + x);
 }
 

@@ -13,8 +13,8 @@ struct TimeSpan {
 
 /// Playback speeds of a film.
 struct SpeedSettings {
-  double fast = 8.0;  ///< playback speed: run time / film time
-  double slow = 2.0;  ///< playback speed of the slow spans; limited to `fast`
+  double fast = 8.0;     ///< playback speed: run time / film time
+  double slow = 2.0;     ///< playback speed of the slow spans; limited to `fast`
   double ramp_s = 1.25;  ///< film time of a transition between the speeds
 };
 

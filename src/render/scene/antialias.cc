@@ -31,14 +31,11 @@ Tint sample(const Frame& frame, float x, float y) {
   return {mix(a.r, b.r, c.r, d.r), mix(a.g, b.g, c.g, d.g), mix(a.b, b.b, c.b, d.b)};
 }
 
-Tint mean(const Tint& a, const Tint& b) {
-  return {0.5f * (a.r + b.r), 0.5f * (a.g + b.g), 0.5f * (a.b + b.b)};
-}
+Tint mean(const Tint& a, const Tint& b) { return {0.5f * (a.r + b.r), 0.5f * (a.g + b.g), 0.5f * (a.b + b.b)}; }
 
 /// Brightness of each pixel, 0 ... 255.
 std::vector<std::int16_t> brightness_of(const Frame& frame) {
-  std::vector<std::int16_t> light(static_cast<std::size_t>(frame.width()) *
-                                  static_cast<std::size_t>(frame.height()));
+  std::vector<std::int16_t> light(static_cast<std::size_t>(frame.width()) * static_cast<std::size_t>(frame.height()));
   const std::uint8_t* rgb = frame.bytes();
   for (std::size_t i = 0; i < light.size(); ++i) {
     light[i] = static_cast<std::int16_t>((77 * rgb[3 * i] + 150 * rgb[3 * i + 1] + 29 * rgb[3 * i + 2]) >> 8);
@@ -51,19 +48,19 @@ std::vector<std::int16_t> brightness_of(const Frame& frame) {
 void mark_edges(const std::int16_t* above, const std::int16_t* here, const std::int16_t* below, int width,
                 std::int16_t* is_edge) {
   for (int x = 1; x + 1 < width; ++x) {
-    const auto darkest = std::min(
-        std::min(std::min(above[x - 1], above[x + 1]), std::min(below[x - 1], below[x + 1])), here[x]);
-    const auto brightest = std::max(
-        std::max(std::max(above[x - 1], above[x + 1]), std::max(below[x - 1], below[x + 1])), here[x]);
+    const auto darkest =
+        std::min(std::min(std::min(above[x - 1], above[x + 1]), std::min(below[x - 1], below[x + 1])), here[x]);
+    const auto brightest =
+        std::max(std::max(std::max(above[x - 1], above[x + 1]), std::max(below[x - 1], below[x + 1])), here[x]);
     const int contrast = brightest - darkest;
-    is_edge[x] = static_cast<std::int16_t>((contrast >= kMinContrast) &
-                                           (kBrightnessPerContrast * contrast >= brightest));
+    is_edge[x] =
+        static_cast<std::int16_t>((contrast >= kMinContrast) & (kBrightnessPerContrast * contrast >= brightest));
   }
 }
 
 /// Color of a pixel after blurring along its edge, perpendicular to the brightness gradient.
-Color blurred_along_edge(const Frame& sharp, int x, int y, const std::int16_t* above,
-                         const std::int16_t* here, const std::int16_t* below) {
+Color blurred_along_edge(const Frame& sharp, int x, int y, const std::int16_t* above, const std::int16_t* here,
+                         const std::int16_t* below) {
   const float nw = above[x - 1], ne = above[x + 1], sw = below[x - 1], se = below[x + 1];
   float dx = (sw + se) - (nw + ne), dy = (nw + sw) - (ne + se);
   const float scale = 1.0f / (std::min(std::abs(dx), std::abs(dy)) + 0.03125f * (nw + ne + sw + se) + 0.5f);
@@ -76,8 +73,7 @@ Color blurred_along_edge(const Frame& sharp, int x, int y, const std::int16_t* a
   // A value outside the range of the neighborhood was sampled beyond the edge: use the shorter blur.
   const float light = (77.0f * both.r + 150.0f * both.g + 29.0f * both.b) / 256.0f;
   const float middle = here[x];
-  const bool is_beyond =
-      light < std::min({nw, ne, sw, se, middle}) || light > std::max({nw, ne, sw, se, middle});
+  const bool is_beyond = light < std::min({nw, ne, sw, se, middle}) || light > std::max({nw, ne, sw, se, middle});
   const Tint& chosen = is_beyond ? near : both;
   const auto rounded = [](float value) { return static_cast<std::uint8_t>(value + 0.5f); };
   return {rounded(chosen.r), rounded(chosen.g), rounded(chosen.b)};

@@ -14,7 +14,8 @@ namespace {
 std::optional<double> roof_height_m(const Eigen::Vector3d& p_world_body, const FreeDistance& free_distance) {
   constexpr double kMastHeight_m = 0.6, kHighest_m = 12.0;
   if (!free_distance) return std::nullopt;
-  const double free_m = free_distance(p_world_body + kMastHeight_m * Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitZ(), kHighest_m);
+  const double free_m =
+      free_distance(p_world_body + kMastHeight_m * Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitZ(), kHighest_m);
   if (free_m >= kHighest_m) return std::nullopt;
   return kMastHeight_m + free_m;
 }
@@ -116,8 +117,10 @@ View CameraRig::chase(double elapsed_s) {
     const double free_m = free_distance_(over_robot, back.normalized(), wanted_m);
     distance_fraction = std::clamp((free_m - kClearance_m) / back.norm(), 0.2, 1.0);
   }
-  distance_fraction_ = std::min(distance_fraction, distance_fraction_ + (1.0 - std::exp(-elapsed_s / kReturn_s)) * (distance_fraction - distance_fraction_));
-  roof_weight_ += (1.0 - std::exp(-elapsed_s / kRoof_s)) * ((roof_height_m(*focus_m_, free_distance_) ? 1.0 : 0.0) - roof_weight_);
+  distance_fraction_ = std::min(distance_fraction, distance_fraction_ + (1.0 - std::exp(-elapsed_s / kReturn_s)) *
+                                                                            (distance_fraction - distance_fraction_));
+  roof_weight_ +=
+      (1.0 - std::exp(-elapsed_s / kRoof_s)) * ((roof_height_m(*focus_m_, free_distance_) ? 1.0 : 0.0) - roof_weight_);
   return look_at(over_robot + distance_fraction_ * back, T_world_rig * Eigen::Vector3d(0.9, 0.0, kUp_m * roof_weight_));
 }
 

@@ -29,7 +29,7 @@ struct View {
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();       ///< unit vector orthogonal to `forward`
   /// point of interest in world, m; light and shadows are centered there
   Eigen::Vector3d focus = Eigen::Vector3d::Zero();
-  double field_of_view_rad = 0.9;                      ///< vertical opening angle
+  double field_of_view_rad = 0.9;  ///< vertical opening angle
   double near_m = 0.05;
   double far_m = 200.0;
 };
@@ -52,9 +52,7 @@ class Projector {
   Projector(const View& view, int width, int height);
 
   /// Transforms a point from world to the camera frame: right, up, ahead.
-  Eigen::Vector3d to_camera(const Eigen::Vector3d& point_m) const {
-    return R_camera_world_ * (point_m - eye_m_);
-  }
+  Eigen::Vector3d to_camera(const Eigen::Vector3d& point_m) const { return R_camera_world_ * (point_m - eye_m_); }
   /// Projects a point of the camera frame that lies ahead of the camera.
   Projected project_camera(const Eigen::Vector3d& in_camera_m) const {
     const double scale = focal_px_ / in_camera_m.z();
@@ -108,7 +106,7 @@ class CameraRig {
   std::optional<Eigen::Vector3d> focus_m_;  ///< low-pass filtered
   double heading_rad_ = 0.0;                ///< low-pass filtered
   double distance_fraction_ = 1.0;  ///< fraction of the full camera distance, low-pass filtered; 1 without obstacles
-  double roof_weight_ = 0.0;                     ///< low-pass filtered; 1 under a roof
+  double roof_weight_ = 0.0;        ///< low-pass filtered; 1 under a roof
 };
 
 }  // namespace patrol::render

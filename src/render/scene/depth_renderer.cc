@@ -43,7 +43,8 @@ bool is_housing(const mjModel& model, int geom) {
 bool is_drawn(const mjModel& model, int geom) {
   constexpr float kSeeThrough = 0.5f;
   const int group = model.geom_group[geom];
-  const bool is_visible_group = group == sim::kGroupSolid || group == sim::kGroupVisualOnly || group == sim::kGroupRobotVisual;
+  const bool is_visible_group =
+      group == sim::kGroupSolid || group == sim::kGroupVisualOnly || group == sim::kGroupRobotVisual;
   const float alpha = std::min(model.geom_rgba[4 * geom + 3], rgba_of(model, geom)[3]);
   return is_visible_group && alpha > kSeeThrough && !is_housing(model, geom);
 }
@@ -75,8 +76,8 @@ struct DepthRenderer::Camera {
   Camera(const Pose3& T_world_camera, const sim::PinholeLens& lens)
       : eye(T_world_camera.position), R(T_world_camera.rotation.toRotationMatrix()) {
     const double half_width = 0.5 * lens.width_px / lens.focal_px, half_height = 0.5 * lens.height_px / lens.focal_px;
-    sides = {Eigen::Vector3d(half_width, 1.0, 0.0), Eigen::Vector3d(half_width, -1.0, 0.0), Eigen::Vector3d(half_height, 0.0, 1.0),
-             Eigen::Vector3d(half_height, 0.0, -1.0)};
+    sides = {Eigen::Vector3d(half_width, 1.0, 0.0), Eigen::Vector3d(half_width, -1.0, 0.0),
+             Eigen::Vector3d(half_height, 0.0, 1.0), Eigen::Vector3d(half_height, 0.0, -1.0)};
     for (Eigen::Vector3d& side : sides) side = R * side.normalized();
   }
   Eigen::Vector3d forward() const { return R.col(0); }
@@ -88,7 +89,11 @@ struct DepthRenderer::Camera {
 };
 
 DepthRenderer::DepthRenderer(const mjModel& view, const sim::PinholeLens& lens, double near_m, double far_m)
-    : lens_(lens), near_m_(near_m), far_m_(far_m), model_(strip_appearance(view, lens)), offscreen_(*model_, lens.width_px, lens.height_px) {
+    : lens_(lens),
+      near_m_(near_m),
+      far_m_(far_m),
+      model_(strip_appearance(view, lens)),
+      offscreen_(*model_, lens.width_px, lens.height_px) {
   offscreen_.context().readDepthMap = mjDEPTH_ZEROFAR;  // as stored by OpenGL, with the best resolution far away
   collect();
   find_large_meshes();
@@ -114,7 +119,8 @@ void DepthRenderer::collect() {
                 .is_infinite = {view.geom_size[3 * geom] <= 0.0, view.geom_size[3 * geom + 1] <= 0.0},
                 .drawn = {}};
     const RowMajor3 R = shape.rotation;
-    mjv_initGeom(&shape.drawn, view.geom_type[geom], view.geom_size + 3 * geom, shape.position.data(), R.data(), kWhite);
+    mjv_initGeom(&shape.drawn, view.geom_type[geom], view.geom_size + 3 * geom, shape.position.data(), R.data(),
+                 kWhite);
     if (view.geom_type[geom] == mjGEOM_MESH) shape.drawn.dataid = 2 * view.geom_dataid[geom];
     if (view.geom_type[geom] == mjGEOM_HFIELD) shape.drawn.dataid = view.geom_dataid[geom];
     use_square_section(shape.drawn);
@@ -142,7 +148,9 @@ void DepthRenderer::find_large_meshes() {
       std::copy_n(model.mesh_facenormal + 3 * face, 3, indices.begin() + 3);
       std::copy_n(model.mesh_facetexcoord + 3 * face, 3, indices.begin() + 6);
       Eigen::Matrix3d corners;
-      for (int k = 0; k < 3; ++k) corners.col(k) = Eigen::Map<const Eigen::Vector3f>(vertices + 3 * indices[static_cast<std::size_t>(k)]).cast<double>();
+      for (int k = 0; k < 3; ++k)
+        corners.col(k) =
+            Eigen::Map<const Eigen::Vector3f>(vertices + 3 * indices[static_cast<std::size_t>(k)]).cast<double>();
       const Eigen::Vector3d middle = corners.rowwise().mean();
       large.face_middles.push_back(shape.position + shape.rotation * middle);
       large.face_radii_m.push_back((corners.colwise() - middle).colwise().norm().maxCoeff());
@@ -159,7 +167,10 @@ void DepthRenderer::upload_near(const Eigen::Vector3d& eye) {
   if (large_meshes_.empty() || (uploaded_about_ && (eye - *uploaded_about_).norm() < kStep_m)) return;
   uploaded_about_ = eye;
   // The corners of the picture are farther from the camera than the far plane.
-  const double reach_m = kStep_m + far_m_ * Eigen::Vector3d(1.0, 0.5 * lens_.width_px / lens_.focal_px, 0.5 * lens_.height_px / lens_.focal_px).norm();
+  const double reach_m =
+      kStep_m +
+      far_m_ *
+          Eigen::Vector3d(1.0, 0.5 * lens_.width_px / lens_.focal_px, 0.5 * lens_.height_px / lens_.focal_px).norm();
   mjModel& model = *model_;
   for (const LargeMesh& large : large_meshes_) {
     int face = model.mesh_faceadr[large.mesh];
@@ -186,7 +197,8 @@ int DepthRenderer::num_near_faces() const {
 void DepthRenderer::update_pose(Shape& shape, const mjData& data) const {
   if (shape.body == 0) return;
   const Eigen::Map<const RowMajor3> R_world_body(data.xmat + 9 * shape.body);
-  const Eigen::Vector3d position = Eigen::Map<const Eigen::Vector3d>(data.xpos + 3 * shape.body) + R_world_body * shape.position;
+  const Eigen::Vector3d position =
+      Eigen::Map<const Eigen::Vector3d>(data.xpos + 3 * shape.body) + R_world_body * shape.position;
   const RowMajor3 R = R_world_body * shape.rotation;
   for (int i = 0; i < 3; ++i) shape.drawn.pos[i] = static_cast<float>(position[i]);
   for (int i = 0; i < 9; ++i) shape.drawn.mat[i] = static_cast<float>(R.data()[i]);
@@ -210,7 +222,8 @@ bool DepthRenderer::is_in_view(const Shape& shape, const Camera& camera) const {
   const Eigen::Vector3d to_shape = Eigen::Map<const Eigen::Vector3f>(shape.drawn.pos).cast<double>() - camera.eye;
   const double ahead_m = camera.forward().dot(to_shape);
   if (ahead_m < near_m_ - shape.radius_m || ahead_m > far_m_ + shape.radius_m) return false;
-  return std::ranges::all_of(camera.sides, [&](const Eigen::Vector3d& side) { return side.dot(to_shape) > -shape.radius_m; });
+  return std::ranges::all_of(camera.sides,
+                             [&](const Eigen::Vector3d& side) { return side.dot(to_shape) > -shape.radius_m; });
 }
 
 void DepthRenderer::aim(const Camera& camera) {
@@ -249,14 +262,16 @@ void DepthRenderer::draw(const mjData& data, const Pose3& T_world_camera, sim::I
     // Depth value: 1 at the near plane, 0 at the far plane, linear in the inverse depth.
     const auto fraction = static_cast<double>(depth_[pixel]);
     const bool is_something = fraction > 0.0;
-    image.depth_m[pixel] = is_something ? static_cast<float>(near_m_ * far_m_ / (near_m_ + fraction * (far_m_ - near_m_)))
-                                        : std::numeric_limits<float>::infinity();
+    image.depth_m[pixel] = is_something
+                               ? static_cast<float>(near_m_ * far_m_ / (near_m_ + fraction * (far_m_ - near_m_)))
+                               : std::numeric_limits<float>::infinity();
     const float red = static_cast<float>(colors_.bytes()[3 * pixel]);
     image.reflectivity[pixel] = is_something ? std::max(0.0f, red - 1.0f) / kBrightest : 0.0f;
   }
 }
 
-std::unique_ptr<sim::DepthImager> make_depth_renderer(const mjModel& view, const sim::PinholeLens& lens, double near_m, double far_m) {
+std::unique_ptr<sim::DepthImager> make_depth_renderer(const mjModel& view, const sim::PinholeLens& lens, double near_m,
+                                                      double far_m) {
   return std::make_unique<DepthRenderer>(view, lens, near_m, far_m);
 }
 

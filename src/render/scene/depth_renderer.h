@@ -45,10 +45,10 @@ class DepthRenderer : public sim::DepthImager {
   /// Drawable geom with its pose relative to its body.
   struct Shape {
     int geom;
-    int body;                  ///< body id; 0: world
-    Eigen::Vector3d position;  ///< in the body frame
-    Eigen::Matrix3d rotation;  ///< R_body_geom
-    double radius_m;           ///< radius of the bounding sphere about `position`; 0 for a plane
+    int body;                         ///< body id; 0: world
+    Eigen::Vector3d position;         ///< in the body frame
+    Eigen::Matrix3d rotation;         ///< R_body_geom
+    double radius_m;                  ///< radius of the bounding sphere about `position`; 0 for a plane
     std::array<bool, 2> is_infinite;  ///< plane without end along its x, y
     mjvGeom drawn;
   };
@@ -56,7 +56,7 @@ class DepthRenderer : public sim::DepthImager {
   /// Static mesh of which only the faces near the camera are uploaded.
   struct LargeMesh {
     int mesh;
-    std::vector<Eigen::Vector3d> face_middles;     ///< centroids in world
+    std::vector<Eigen::Vector3d> face_middles;  ///< centroids in world
     std::vector<double> face_radii_m;
     std::vector<std::array<int, 9>> face_indices;  ///< indices of vertices, normals and texture coordinates
   };
@@ -83,6 +83,7 @@ class DepthRenderer : public sim::DepthImager {
 };
 
 /// Implements sim::DepthImagerFactory.
-std::unique_ptr<sim::DepthImager> make_depth_renderer(const mjModel& view, const sim::PinholeLens& lens, double near_m, double far_m);
+std::unique_ptr<sim::DepthImager> make_depth_renderer(const mjModel& view, const sim::PinholeLens& lens, double near_m,
+                                                      double far_m);
 
 }  // namespace patrol::render

@@ -1,8 +1,8 @@
+#include <dlfcn.h>
+
 #include <stdexcept>
 #include <string_view>
 #include <vector>
-
-#include <dlfcn.h>
 
 #define EGL_NO_X11
 #include <EGL/egl.h>
@@ -59,12 +59,15 @@ EGLDisplay open_display(const EglLibrary& egl, EGLenum platform, void* device) {
   if (get_display == nullptr) return EGL_NO_DISPLAY;
   const EGLDisplay display = get_display(platform, device, nullptr);
   if (display == EGL_NO_DISPLAY) return display;
-  return egl.function<decltype(&eglInitialize)>("eglInitialize")(display, nullptr, nullptr) == EGL_TRUE ? display : EGL_NO_DISPLAY;
+  return egl.function<decltype(&eglInitialize)>("eglInitialize")(display, nullptr, nullptr) == EGL_TRUE
+             ? display
+             : EGL_NO_DISPLAY;
 }
 
 EGLDisplay open_graphics_card(const EglLibrary& egl) {
   for (const EGLDeviceEXT device : graphics_cards(egl)) {
-    if (const EGLDisplay display = open_display(egl, EGL_PLATFORM_DEVICE_EXT, device); display != EGL_NO_DISPLAY) return display;
+    if (const EGLDisplay display = open_display(egl, EGL_PLATFORM_DEVICE_EXT, device); display != EGL_NO_DISPLAY)
+      return display;
   }
   return EGL_NO_DISPLAY;
 }

@@ -19,7 +19,7 @@ Pose2 level_pose(const mjData& data, int body) {
 
 void tint(mjvGeom& geom, double opacity) {
   constexpr double kMaxOpacity = 0.32;  // MuJoCo 3.17 blends translucent geoms twice
-  geom.category = mjCAT_DECOR;  // casts no shadow
+  geom.category = mjCAT_DECOR;          // casts no shadow
   geom.matid = -1;
   geom.emission = 0.4f;
   geom.specular = geom.shininess = geom.reflectance = 0.0f;
@@ -47,7 +47,8 @@ void add_ghost(mjvScene& scene, const mjModel& model, const mjData& data, const 
   const RowMajor3f turn = quaternion_from_yaw(T_there_here.yaw).toRotationMatrix().cast<float>();
   for (int i = 0, num_true = scene.ngeom; i < num_true && scene.ngeom < scene.maxgeom; ++i) {
     const mjvGeom& part = scene.geoms[i];
-    if (part.objtype != mjOBJ_GEOM || model.body_rootid[model.geom_bodyid[part.objid]] != model.body_rootid[robot]) continue;
+    if (part.objtype != mjOBJ_GEOM || model.body_rootid[model.geom_bodyid[part.objid]] != model.body_rootid[robot])
+      continue;
     mjvGeom& ghost = scene.geoms[scene.ngeom++];
     ghost = part;
     const Eigen::Vector2d p_ghost = T_there_here * Eigen::Vector2d(part.pos[0], part.pos[1]);

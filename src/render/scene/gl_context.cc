@@ -14,7 +14,9 @@ constexpr bool kHasOsmesa = false;
 }  // namespace
 
 #ifndef PATROL_HAS_OSMESA
-std::unique_ptr<GlContext> make_osmesa_context() { throw InputError("renderer = osmesa: this program was built without OSMesa"); }
+std::unique_ptr<GlContext> make_osmesa_context() {
+  throw InputError("renderer = osmesa: this program was built without OSMesa");
+}
 #endif
 
 Renderer parse_renderer(const std::string& name) {

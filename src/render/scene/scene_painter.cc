@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <cstdint>
+#include <limits>
 #include <numbers>
 
 #include "core/geometry/angles.h"
@@ -18,7 +18,9 @@ namespace {
 Eigen::Vector3d to_eigen(const float v[3]) { return {v[0], v[1], v[2]}; }
 
 Color to_color(const float rgba[4]) {
-  const auto byte = [](float value) { return static_cast<std::uint8_t>(std::lround(255.0f * std::clamp(value, 0.0f, 1.0f))); };
+  const auto byte = [](float value) {
+    return static_cast<std::uint8_t>(std::lround(255.0f * std::clamp(value, 0.0f, 1.0f)));
+  };
   return {byte(rgba[0]), byte(rgba[1]), byte(rgba[2])};
 }
 
@@ -39,8 +41,7 @@ std::array<Eigen::Vector3d, 4> sides_of(const View& view, double aspect) {
   const auto side = [&](const Eigen::Vector3d& across, double half_angle) -> Eigen::Vector3d {
     return std::sin(half_angle) * view.forward + std::cos(half_angle) * across;
   };
-  return {side(right, half_width), side(-right, half_width), side(view.up, half_height),
-          side(-view.up, half_height)};
+  return {side(right, half_width), side(-right, half_width), side(view.up, half_height), side(-view.up, half_height)};
 }
 
 /// Smooth step: 0 for `x` <= from, 1 for `x` >= to.
@@ -56,7 +57,8 @@ double shadow_weight(const mjvLight& lamp, const Eigen::Vector3d& focus, double 
   constexpr double kEdge_rad = 0.09, kFade_rad = 0.22, kFade_m = 2.0;
   const Eigen::Vector3d ray = focus - to_eigen(lamp.pos);
   const double off_axis_rad = std::acos(std::clamp(ray.normalized().dot(to_eigen(lamp.dir).normalized()), -1.0, 1.0));
-  return smooth_step(kEdge_rad, kEdge_rad + kFade_rad, reach_rad - off_axis_rad) * smooth_step(0.0, kFade_m, second_nearest_m - ray.norm());
+  return smooth_step(kEdge_rad, kEdge_rad + kFade_rad, reach_rad - off_axis_rad) *
+         smooth_step(0.0, kFade_m, second_nearest_m - ray.norm());
 }
 
 void scale_light(mjvLight& light, double weight) {
@@ -173,8 +175,7 @@ bool SceneRenderer::may_cast_shadow(const View& view, const Eigen::Vector3d& cen
 void SceneRenderer::cull_geoms(const View& view) {
   const auto sides = sides_of(view, static_cast<double>(offscreen_.width()) / offscreen_.height());
   const auto is_in_view = [&](const Eigen::Vector3d& center, double radius) {
-    return std::ranges::all_of(sides,
-                               [&](const Eigen::Vector3d& n) { return n.dot(center - view.eye) > -radius; });
+    return std::ranges::all_of(sides, [&](const Eigen::Vector3d& n) { return n.dot(center - view.eye) > -radius; });
   };
   constexpr double kTooSmall_px = 1.2;  // bounding radius
   const double focal_px = 0.5 * offscreen_.height() / std::tan(0.5 * view.field_of_view_rad);

@@ -22,7 +22,8 @@ class SceneRenderer {
  public:
   /// `view` is a render model (sim/model_assembly.h) and must outlive the painter. `extinction_per_m` is that of the
   /// dust, drawn in the color of the world's fog. Throws std::runtime_error without OpenGL.
-  SceneRenderer(const mjModel& view, int width, int height, double extinction_per_m = 0.0, Renderer renderer = software_renderer());
+  SceneRenderer(const mjModel& view, int width, int height, double extinction_per_m = 0.0,
+                Renderer renderer = software_renderer());
   ~SceneRenderer();
   SceneRenderer(const SceneRenderer&) = delete;
   SceneRenderer& operator=(const SceneRenderer&) = delete;
@@ -53,7 +54,7 @@ class SceneRenderer {
   Haze dust_;
   Pose2 T_true_estimate_;
   bool has_shadow_lamp_ = false;  ///< a lamp casts shadows in the last scene
-  double shadow_half_width_m_;  ///< half of the side of the square that the shadow map covers
+  double shadow_half_width_m_;    ///< half of the side of the square that the shadow map covers
 };
 
 }  // namespace patrol::render

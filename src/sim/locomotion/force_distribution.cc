@@ -1,9 +1,9 @@
 #include "sim/locomotion/force_distribution.h"
 
+#include <algorithm>
+
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
-
-#include <algorithm>
 
 #include "core/geometry/linear_algebra.h"
 

@@ -1,15 +1,15 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <array>
+
+#include <Eigen/Core>
 
 #include "sim/locomotion/gait.h"
 
 namespace patrol::sim {
 
 using FootVectors = std::array<Eigen::Vector3d, kNumLegs>;  ///< vectors, [leg]
-using FootFlags = std::array<bool, kNumLegs>;              ///< flags, [leg]
+using FootFlags = std::array<bool, kNumLegs>;               ///< flags, [leg]
 
 struct FrictionLimits {
   double coefficient = 0.6;

@@ -21,7 +21,8 @@ class Locomotion {
   virtual ~Locomotion() = default;
 
   /// Sets the motors for the next tick. Called after the physics is evaluated and before it is stepped.
-  virtual void step(const FirmwareReadings& readings, const VelocityCommand& command, mjModel& physics, mjData& data) = 0;
+  virtual void step(const FirmwareReadings& readings, const VelocityCommand& command, mjModel& physics,
+                    mjData& data) = 0;
 
   /// Restarts the firmware.
   virtual void restart() = 0;

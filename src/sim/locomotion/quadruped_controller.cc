@@ -1,9 +1,9 @@
 #include "sim/locomotion/quadruped_controller.h"
 
-#include <Eigen/Cholesky>
-
 #include <algorithm>
 #include <cmath>
+
+#include <Eigen/Cholesky>
 
 #include "core/frames.h"
 #include "core/geometry/linear_algebra.h"
@@ -16,20 +16,20 @@ constexpr double kGravity = 9.81;  // m/s2
 
 // Virtual model of the trunk. Translation: stiffness and damping per kg of robot mass. Rotation: per kg m2 of trunk
 // inertia.
-constexpr double kHeightStiffness = 120.0, kHeightDamping = 14.0;   // 1/s2, 1/s
-constexpr double kVelocityGain = 5.0, kVelocityIntegral = 3.0;      // 1/s, 1/s2
-constexpr double kTiltStiffness = 400.0, kTiltDamping = 40.0;       // 1/s2, 1/s
-constexpr double kYawStiffness = 80.0, kYawDamping = 14.0;          // 1/s2, 1/s
-const Eigen::Vector3d kInertiaPerKg(0.008, 0.024, 0.028);           // inertia of the whole robot about roll, pitch and
-                                                                    // yaw, divided by its mass, m2
+constexpr double kHeightStiffness = 120.0, kHeightDamping = 14.0;  // 1/s2, 1/s
+constexpr double kVelocityGain = 5.0, kVelocityIntegral = 3.0;     // 1/s, 1/s2
+constexpr double kTiltStiffness = 400.0, kTiltDamping = 40.0;      // 1/s2, 1/s
+constexpr double kYawStiffness = 80.0, kYawDamping = 14.0;         // 1/s2, 1/s
+const Eigen::Vector3d kInertiaPerKg(0.008, 0.024, 0.028);          // inertia of the whole robot about roll, pitch and
+                                                                   // yaw, divided by its mass, m2
 
 // Impedance of a swing foot about its trajectory.
 constexpr double kSwingStiffness = 700.0, kSwingDamping = 16.0;  // N/m, N s/m
 constexpr double kCaptureTime_s = 0.06;  // lead of the foot placement per m/s of velocity error [Raibert86]
 constexpr double kSearchSpeed_mps = 0.35, kMaxSearch_m = 0.10;
-constexpr double kWakeUp_s = 0.5;        // initial standing time, for the estimator to settle
-constexpr double kGroundTime_s = 0.15;   // time constant of the ground estimate below the feet
-constexpr double kEarlyTouch = 0.55;     // swing fraction from which a contact counts as touch-down
+constexpr double kWakeUp_s = 0.5;       // initial standing time, for the estimator to settle
+constexpr double kGroundTime_s = 0.15;  // time constant of the ground estimate below the feet
+constexpr double kEarlyTouch = 0.55;    // swing fraction from which a contact counts as touch-down
 constexpr double kStandSpeed_mps = 0.02, kStandRate_radps = 0.03;
 
 double approach(double value, double target, double max_change) {
@@ -38,7 +38,8 @@ double approach(double value, double target, double max_change) {
 
 }  // namespace
 
-QuadrupedController::QuadrupedController(const RobotDescription& robot, const LocomotionSettings& settings, double tick_s)
+QuadrupedController::QuadrupedController(const RobotDescription& robot, const LocomotionSettings& settings,
+                                         double tick_s)
     : robot_(robot),
       settings_(settings),
       gait_{.period_s = settings.gait_period_s, .duty = settings.gait_duty},
@@ -62,7 +63,8 @@ JointTorques QuadrupedController::step(const LegSensors& sensors, const Velocity
   const FootVectors stance = stance_forces(trunk);
   JointTorques torques;
   for (int leg = 0; leg < kNumLegs; ++leg) {
-    const Eigen::Vector3d force_on_ground = is_stance_[leg] && !is_searching_[leg] ? stance[leg] : -swing_force(trunk, leg);
+    const Eigen::Vector3d force_on_ground =
+        is_stance_[leg] && !is_searching_[leg] ? stance[leg] : -swing_force(trunk, leg);
     torques.segment<3>(3 * leg) = -trunk.jacobian[leg].transpose() * force_on_ground;
     for (int k = 0; k < 3; ++k) {
       const double limit = robot_.joint_limits[static_cast<std::size_t>(3 * leg + k)].effort_nm;
@@ -90,7 +92,8 @@ void QuadrupedController::follow_command(const VelocityCommand& command) {
 
 // Walks while a velocity is requested and for one more period; then stands.
 void QuadrupedController::choose_mode(const TrunkState& trunk) {
-  const bool is_moving_commanded = velocity_mps_.norm() > kStandSpeed_mps || std::abs(yaw_rate_radps_) > kStandRate_radps;
+  const bool is_moving_commanded =
+      velocity_mps_.norm() > kStandSpeed_mps || std::abs(yaw_rate_radps_) > kStandRate_radps;
   idle_s_ = is_moving_commanded ? 0.0 : idle_s_ + tick_s_;
   if (is_moving_commanded && !is_walking_) {
     is_walking_ = true;
@@ -165,9 +168,11 @@ Eigen::Vector3d QuadrupedController::touch_down(const TrunkState& trunk, int leg
   const Eigen::Vector2d hip = geometry.hip_in_body.head<2>() + Eigen::Vector2d(0.0, geometry.abduction_offset_m);
   const Eigen::Vector2d turning = trunk.rate_radps.z() * Eigen::Vector2d(-hip.y(), hip.x());
   const Eigen::Vector2d velocity = trunk.velocity_mps.head<2>();
-  const Eigen::Vector2d step = (velocity + turning) * gait_.stance_s() / 2.0 + kCaptureTime_s * (velocity - velocity_mps_);
+  const Eigen::Vector2d step =
+      (velocity + turning) * gait_.stance_s() / 2.0 + kCaptureTime_s * (velocity - velocity_mps_);
   // In a turn the ground pushes the feet sideways; this outward offset prevents the trunk from rolling over.
-  const Eigen::Vector2d outwards = -settings_.trunk_height_m / kGravity * yaw_rate_radps_ * Eigen::Vector2d(-velocity.y(), velocity.x());
+  const Eigen::Vector2d outwards =
+      -settings_.trunk_height_m / kGravity * yaw_rate_radps_ * Eigen::Vector2d(-velocity.y(), velocity.x());
   const Eigen::Vector2d foot = hip + outwards + step.cwiseMax(-0.2).cwiseMin(0.2);
   return {foot.x(), foot.y(), ground_offset_m_ + slope_.dot(foot)};
 }
@@ -180,7 +185,8 @@ Eigen::Vector3d QuadrupedController::swing_force(const TrunkState& trunk, int le
     wanted.position.z() -= kSearchSpeed_mps * search_s_[leg];
     wanted.velocity = Eigen::Vector3d(0.0, 0.0, -kSearchSpeed_mps);
   }
-  return kSwingStiffness * (wanted.position - trunk.foot_m[leg]) + kSwingDamping * (wanted.velocity - trunk.foot_velocity_mps[leg]);
+  return kSwingStiffness * (wanted.position - trunk.foot_m[leg]) +
+         kSwingDamping * (wanted.velocity - trunk.foot_velocity_mps[leg]);
 }
 
 FootVectors QuadrupedController::stance_forces(const TrunkState& trunk) {
@@ -205,11 +211,12 @@ FootVectors QuadrupedController::stance_forces(const TrunkState& trunk) {
   const double wanted_roll = settings_.slope_following * std::atan(slope_.y());
   const Eigen::Vector3d tilt_error(wanted_roll - trunk.roll_rad, wanted_pitch - trunk.pitch_rad,
                                    wrap_angle(yaw_rad_ - trunk.yaw_rad));
-  const Eigen::Vector3d rate_error(-trunk.rate_radps.x(), -trunk.rate_radps.y(), yaw_rate_radps_ - trunk.rate_radps.z());
+  const Eigen::Vector3d rate_error(-trunk.rate_radps.x(), -trunk.rate_radps.y(),
+                                   yaw_rate_radps_ - trunk.rate_radps.z());
   const Eigen::Vector3d stiffness(kTiltStiffness, kTiltStiffness, kYawStiffness);
   const Eigen::Vector3d damping(kTiltDamping, kTiltDamping, kYawDamping);
   const Eigen::Vector3d moment = robot_.mass_kg * kInertiaPerKg.cwiseProduct(stiffness.cwiseProduct(tilt_error) +
-                                                                            damping.cwiseProduct(rate_error));
+                                                                             damping.cwiseProduct(rate_error));
   FootFlags is_loaded;
   for (int leg = 0; leg < kNumLegs; ++leg) is_loaded[leg] = is_stance_[leg] && !is_searching_[leg];
   return distribute_wrench(force, moment, trunk.foot_m, is_loaded, {});

@@ -16,15 +16,15 @@ namespace patrol::sim {
 struct LocomotionSettings {
   double gait_period_s = 0.36;
   double gait_duty = 0.6;
-  double trunk_height_m = 0.30;       ///< height of the trunk above the feet
-  double swing_clearance_m = 0.09;    ///< clearance of a swing foot above the higher end of its trajectory
+  double trunk_height_m = 0.30;     ///< height of the trunk above the feet
+  double swing_clearance_m = 0.09;  ///< clearance of a swing foot above the higher end of its trajectory
   double max_forward_mps = 1.0;
   double max_backward_mps = 0.3;
   double max_sideways_mps = 0.3;
   double max_yaw_rate_radps = 1.0;
   double max_acceleration_mps2 = 0.8;
   double max_yaw_acceleration_radps2 = 2.0;
-  double slope_following = 0.6;       ///< 0 keeps the trunk level on a slope, 1 parallel to the ground
+  double slope_following = 0.6;  ///< 0 keeps the trunk level on a slope, 1 parallel to the ground
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -96,10 +96,10 @@ class QuadrupedController {
   double cycle_ = 0.0;
   std::array<LegPhase, kNumLegs> phase_;
   FootFlags is_stance_;
-  FootFlags is_searching_{};                 ///< true: the stance has begun but the foot has no ground contact
+  FootFlags is_searching_{};  ///< true: the stance has begun but the foot has no ground contact
   std::array<double, kNumLegs> search_s_{};
-  double awake_s_ = 0.0;                     ///< time since switch-on
-  FootVectors lift_off_m_;                   ///< foot position at lift-off, in level
+  double awake_s_ = 0.0;    ///< time since switch-on
+  FootVectors lift_off_m_;  ///< foot position at lift-off, in level
 
   // Ground plane of the four last footholds: z = offset + slope . (x, y), in level.
   FootVectors foothold_m_;

@@ -4,8 +4,8 @@
 
 namespace patrol::sim {
 
-SprocketSpeedController::SprocketSpeedController(const TrackDriveSettings& settings, const TrackMotor& motor, double ticks_per_rad,
-                                     double tick_s)
+SprocketSpeedController::SprocketSpeedController(const TrackDriveSettings& settings, const TrackMotor& motor,
+                                                 double ticks_per_rad, double tick_s)
     : settings_(settings), motor_(motor), ticks_per_rad_(ticks_per_rad), tick_s_(tick_s) {}
 
 double SprocketSpeedController::step(double requested_radps, std::int64_t count) {

@@ -12,7 +12,8 @@ namespace patrol::sim {
 /// estimates speed and acceleration.
 class SprocketSpeedController {
  public:
-  SprocketSpeedController(const TrackDriveSettings& settings, const TrackMotor& motor, double ticks_per_rad, double tick_s);
+  SprocketSpeedController(const TrackDriveSettings& settings, const TrackMotor& motor, double ticks_per_rad,
+                          double tick_s);
 
   /// Returns the torque for one tick, N m at the sprocket, within the limits of the motor.
   double step(double requested_radps, std::int64_t count);

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include <Eigen/Core>
 
 namespace patrol::sim {
 
@@ -28,7 +28,7 @@ inline FootMotion swing_foot(const Eigen::Vector3d& lift_off, const Eigen::Vecto
 
   constexpr double kUp = 0.4, kDown = 0.6;
   const double apex = std::max(lift_off.z(), touch_down.z()) + clearance_m;
-  const bool rises = s < kUp, falls = s > kDown;
+  const bool rises = s<kUp, falls = s> kDown;
   const double from = rises ? lift_off.z() : touch_down.z();
   const double raised = rises ? s / kUp : falls ? (1.0 - s) / (1.0 - kDown) : 1.0;  // phase of the cosine, 0 ... 1
   const double raised_rate = rises ? 1.0 / kUp : falls ? -1.0 / (1.0 - kDown) : 0.0;

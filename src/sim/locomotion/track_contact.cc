@@ -34,7 +34,8 @@ TrackContact::TrackContact(const RobotDescription& robot, double friction, mjMod
   }
   for (std::size_t side = 0; side < sprocket_dofs_.size(); ++side) {
     const int joint = mj_name2id(&physics, mjOBJ_JOINT, robot.joint_names.at(side).c_str());
-    if (joint < 0 || wheels_.empty()) throw InputError("robot " + robot.name + ": physics model lacks the robot's tracks");
+    if (joint < 0 || wheels_.empty())
+      throw InputError("robot " + robot.name + ": physics model lacks the robot's tracks");
     sprocket_dofs_[side] = physics.jnt_dofadr[joint];
   }
   physics.flg_surfacevel = 1;

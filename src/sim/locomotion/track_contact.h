@@ -1,10 +1,9 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <array>
 #include <vector>
 
+#include <Eigen/Core>
 #include <mujoco/mujoco.h>
 
 #include "core/robot_description.h"
@@ -34,9 +33,9 @@ class TrackContact {
  private:
   struct Wheel {
     int geom;
-    std::size_t side;                 ///< 0 left, 1 right
-    Eigen::Vector3d rate_per_radps;   ///< angular velocity of the surface per rad/s of the sprocket, in the geom's
-                                      ///< frame
+    std::size_t side;                ///< 0 left, 1 right
+    Eigen::Vector3d rate_per_radps;  ///< angular velocity of the surface per rad/s of the sprocket, in the geom's
+                                     ///< frame
   };
 
   std::vector<Wheel> wheels_;

@@ -8,11 +8,11 @@
 namespace patrol::sim {
 namespace {
 
-constexpr double kRestSpeed_mps = 0.005, kRestRate_radps = 0.005;   // smaller commands are treated as zero
-constexpr double kRestSprocket_radps = 0.5;  // a single count back and forth appears as 0.3
-constexpr double kBiasTime_s = 5.0;          // averaging time of the gyroscope bias at rest
-constexpr double kLevelingRate_per_s = 0.5;   // rate of the accelerometer correction of the attitude
-constexpr double kLevelSettling_s = 0.5;        // time after switch-on with the accelerometer only
+constexpr double kRestSpeed_mps = 0.005, kRestRate_radps = 0.005;  // smaller commands are treated as zero
+constexpr double kRestSprocket_radps = 0.5;                        // a single count back and forth appears as 0.3
+constexpr double kBiasTime_s = 5.0;                                // averaging time of the gyroscope bias at rest
+constexpr double kLevelingRate_per_s = 0.5;  // rate of the accelerometer correction of the attitude
+constexpr double kLevelSettling_s = 0.5;     // time after switch-on with the accelerometer only
 const double kFallenCosine = std::cos(to_rad(60.0));
 
 double approach_speed(double value, double target, double max_change) {
@@ -20,19 +20,22 @@ double approach_speed(double value, double target, double max_change) {
 }
 
 TrackMotor motor_of(const JointLimit& limit, const TrackDriveSettings& settings) {
-  return {.max_torque_nm = limit.effort_nm, .stall_torque_nm = settings.stall_torque_nm, .no_load_radps = limit.velocity_radps};
+  return {.max_torque_nm = limit.effort_nm,
+          .stall_torque_nm = settings.stall_torque_nm,
+          .no_load_radps = limit.velocity_radps};
 }
 
 }  // namespace
 
-TrackController::TrackController(const RobotDescription& robot, const TrackDriveSettings& settings, double ticks_per_rad,
-                                 double tick_s)
+TrackController::TrackController(const RobotDescription& robot, const TrackDriveSettings& settings,
+                                 double ticks_per_rad, double tick_s)
     : settings_(settings),
       tracks_(robot.tracks.value()),
       tick_s_(tick_s),
       R_body_imu_(robot.T_body("imu").rotation.toRotationMatrix()),
-      speed_controllers_{SprocketSpeedController(settings, motor_of(robot.joint_limits[0], settings), ticks_per_rad, tick_s),
-                  SprocketSpeedController(settings, motor_of(robot.joint_limits[1], settings), ticks_per_rad, tick_s)} {
+      speed_controllers_{
+          SprocketSpeedController(settings, motor_of(robot.joint_limits[0], settings), ticks_per_rad, tick_s),
+          SprocketSpeedController(settings, motor_of(robot.joint_limits[1], settings), ticks_per_rad, tick_s)} {
   validate(settings, "track_drive");
 }
 
@@ -41,7 +44,7 @@ TrackDriveCommand TrackController::step(const Imu& imu, const TrackTicks& ticks,
   follow_command(command);
   const std::array<double, 2> requested_radps = sprocket_speeds(speed_mps_, corrected_yaw_rate(imu));
   TrackDriveCommand drive_command{.torque_nm = {speed_controllers_[0].step(requested_radps[0], ticks.left),
-                                   speed_controllers_[1].step(requested_radps[1], ticks.right)}};
+                                                speed_controllers_[1].step(requested_radps[1], ticks.right)}};
   update_brake();
   if (is_brake_closed_) {
     for (SprocketSpeedController& regulator : speed_controllers_) regulator.reset();
@@ -87,7 +90,8 @@ double TrackController::measured_yaw_rate(const Imu& imu) const {
 std::array<double, 2> TrackController::sprocket_speeds(double speed_mps, double yaw_rate_radps) const {
   const double half_gauge_m = settings_.effective_gauge_factor * tracks_.gauge_m / 2.0;
   const double left = speed_mps - yaw_rate_radps * half_gauge_m, right = speed_mps + yaw_rate_radps * half_gauge_m;
-  const double scale = std::max({1.0, std::abs(left) / settings_.max_speed_mps, std::abs(right) / settings_.max_speed_mps});
+  const double scale =
+      std::max({1.0, std::abs(left) / settings_.max_speed_mps, std::abs(right) / settings_.max_speed_mps});
   return {left / scale / tracks_.sprocket_radius_m, right / scale / tracks_.sprocket_radius_m};
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <Eigen/Geometry>
-
 #include <array>
+
+#include <Eigen/Geometry>
 
 #include "core/messages.h"
 #include "core/robot_description.h"
@@ -48,7 +48,7 @@ class TrackController {
   double tick_s_;
   Eigen::Matrix3d R_body_imu_;
   std::array<SprocketSpeedController, 2> speed_controllers_;  ///< left, right
-  double speed_mps_ = 0.0, yaw_rate_radps_ = 0.0;  ///< rate-limited command
+  double speed_mps_ = 0.0, yaw_rate_radps_ = 0.0;             ///< rate-limited command
   double yaw_lag_rad_ = 0.0;
   double gyro_bias_radps_ = 0.0, bias_averaging_s_ = 0.0;  ///< estimated at rest
   double idle_s_ = 0.0;

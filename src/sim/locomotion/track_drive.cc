@@ -2,7 +2,8 @@
 
 namespace patrol::sim {
 
-TrackDrive::TrackDrive(const RobotDescription& robot, const TrackDriveSettings& settings, double ticks_per_rad, mjModel& physics)
+TrackDrive::TrackDrive(const RobotDescription& robot, const TrackDriveSettings& settings, double ticks_per_rad,
+                       mjModel& physics)
     : initial_(robot, settings, ticks_per_rad, physics.opt.timestep),
       controller_(initial_),
       contact_(robot, settings.friction, physics),
@@ -13,7 +14,8 @@ TrackDrive::TrackDrive(const RobotDescription& robot, const TrackDriveSettings& 
   }
 }
 
-void TrackDrive::step(const FirmwareReadings& readings, const VelocityCommand& command, mjModel& physics, mjData& data) {
+void TrackDrive::step(const FirmwareReadings& readings, const VelocityCommand& command, mjModel& physics,
+                      mjData& data) {
   const TrackDriveCommand drive_command = controller_.step(readings.imu, readings.ticks, command);
   const std::array<double, 2> contact_torque_nm = contact_.contact_torque_nm(physics, data);
   for (std::size_t side = 0; side < motors_.size(); ++side) {

@@ -8,9 +8,9 @@ namespace patrol::sim {
 /// Geared brushless motor at the sprocket. The current limits the torque; with rising speed the battery voltage reduces
 /// it along the straight speed-torque line of a direct-current motor.
 struct TrackMotor {
-  double max_torque_nm = 0.0;     ///< torque at the current limit
-  double stall_torque_nm = 0.0;   ///< torque of the line at zero speed, without current limit
-  double no_load_radps = 0.0;     ///< speed of the line at zero torque
+  double max_torque_nm = 0.0;    ///< torque at the current limit
+  double stall_torque_nm = 0.0;  ///< torque of the line at zero speed, without current limit
+  double no_load_radps = 0.0;    ///< speed of the line at zero torque
 
   /// Returns the feasible torque nearest to the requested one. Against its motion the motor brakes with up to the full
   /// current.

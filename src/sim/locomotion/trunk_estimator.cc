@@ -1,8 +1,8 @@
 #include "sim/locomotion/trunk_estimator.h"
 
-#include <Eigen/Geometry>
-
 #include <cmath>
+
+#include <Eigen/Geometry>
 
 #include "core/leg_kinematics.h"
 
@@ -10,12 +10,12 @@ namespace patrol::sim {
 namespace {
 
 constexpr double kTrunkGravity_mps2 = 9.81;
-constexpr double kAttitudeTime_s = 2.0;    // time constant of the accelerometer in roll and pitch
-constexpr double kSettlingTime_s = 0.1;    // time constant of the accelerometer in the first second, before the
-                                           // estimate has converged
+constexpr double kAttitudeTime_s = 2.0;  // time constant of the accelerometer in roll and pitch
+constexpr double kSettlingTime_s = 0.1;  // time constant of the accelerometer in the first second, before the
+                                         // estimate has converged
 constexpr double kSettling_s = 1.0;
-constexpr double kVelocityTime_s = 0.02;   // time constant of the stance feet in the velocity
-constexpr double kTouch_n = 12.0;          // force threshold of a contact
+constexpr double kVelocityTime_s = 0.02;  // time constant of the stance feet in the velocity
+constexpr double kTouch_n = 12.0;         // force threshold of a contact
 
 }  // namespace
 
@@ -58,8 +58,10 @@ void TrunkEstimator::update_attitude(const Imu& imu) {
 void TrunkEstimator::update_feet(const Imu& imu, const JointState& joints, const FootContacts& contacts) {
   for (int leg = 0; leg < kNumLegs; ++leg) {
     const auto joint = static_cast<std::size_t>(3 * leg);
-    const Eigen::Vector3d angle(joints.position_rad[joint], joints.position_rad[joint + 1], joints.position_rad[joint + 2]);
-    const Eigen::Vector3d speed(joints.velocity_radps[joint], joints.velocity_radps[joint + 1], joints.velocity_radps[joint + 2]);
+    const Eigen::Vector3d angle(joints.position_rad[joint], joints.position_rad[joint + 1],
+                                joints.position_rad[joint + 2]);
+    const Eigen::Vector3d speed(joints.velocity_radps[joint], joints.velocity_radps[joint + 1],
+                                joints.velocity_radps[joint + 2]);
     const LegGeometry& geometry = robot_.legs[static_cast<std::size_t>(leg)];
     state_.foot_m[leg] = state_.R_level_body * foot_position(geometry, angle);
     state_.jacobian[leg] = state_.R_level_body * foot_jacobian(geometry, angle);

@@ -13,14 +13,14 @@ struct TrunkState {
   Eigen::Matrix3d R_level_body = Eigen::Matrix3d::Identity();
   double roll_rad = 0.0;
   double pitch_rad = 0.0;
-  double yaw_rad = 0.0;                                       ///< yaw since switch-on, drifting with the gyro
-  Eigen::Vector3d rate_radps = Eigen::Vector3d::Zero();       ///< angular rate, in level
-  Eigen::Vector3d velocity_mps = Eigen::Vector3d::Zero();     ///< velocity, in level
-  FootVectors foot_m;                                         ///< center of each foot relative to the trunk's origin,
-                                                              ///< in level
-  FootVectors foot_velocity_mps;                              ///< velocity relative to the trunk, in level
-  std::array<Eigen::Matrix3d, kNumLegs> jacobian;             ///< derivative of foot_m with respect to the joints, in
-                                                              ///< level
+  double yaw_rad = 0.0;                                    ///< yaw since switch-on, drifting with the gyro
+  Eigen::Vector3d rate_radps = Eigen::Vector3d::Zero();    ///< angular rate, in level
+  Eigen::Vector3d velocity_mps = Eigen::Vector3d::Zero();  ///< velocity, in level
+  FootVectors foot_m;                                      ///< center of each foot relative to the trunk's origin,
+                                                           ///< in level
+  FootVectors foot_velocity_mps;                           ///< velocity relative to the trunk, in level
+  std::array<Eigen::Matrix3d, kNumLegs> jacobian;          ///< derivative of foot_m with respect to the joints, in
+                                                           ///< level
   FootFlags is_touching{};
 };
 

@@ -30,7 +30,8 @@ FluidPressure Barometer::read(double height_m, Time now, std::uint64_t index) {
   const double step = settings_.drift_std_pa * drift_.normal(index);
   drift_pa_ = index == 0 ? step : correlation_ * drift_pa_ + std::sqrt(1.0 - correlation_ * correlation_) * step;
   const double warming_k = settings_.warming_k * (1.0 - std::exp(-to_seconds(now) / settings_.warming_time_s));
-  const double error_pa = offset_pa_ + coefficient_pa_per_k_ * warming_k + drift_pa_ + settings_.noise_std_pa * noise_.normal(index);
+  const double error_pa =
+      offset_pa_ + coefficient_pa_per_k_ * warming_k + drift_pa_ + settings_.noise_std_pa * noise_.normal(index);
   const double step_pa = settings_.resolution_pa;
   double pressure_pa = air_pressure_pa(settings_, height_m) + error_pa;
   if (step_pa > 0.0) pressure_pa = step_pa * std::round(pressure_pa / step_pa);

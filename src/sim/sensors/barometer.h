@@ -23,7 +23,7 @@ class Barometer {
  private:
   BarometerSettings settings_;
   double offset_pa_, coefficient_pa_per_k_;  ///< constants of this sensor
-  double correlation_;                              ///< correlation of the drift between consecutive readings
+  double correlation_;                       ///< correlation of the drift between consecutive readings
   double drift_pa_ = 0.0;
   RandomStream noise_, drift_;
 };

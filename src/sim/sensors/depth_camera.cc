@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "core/geometry/angles.h"
 #include "core/error.h"
+#include "core/geometry/angles.h"
 #include "sim/sensors/sensor.h"
 
 namespace patrol::sim {
@@ -27,8 +27,8 @@ PinholeLens make_lens(const DepthCameraSettings& settings) {
           .focal_px = 0.5 * settings.width_px / std::tan(0.5 * settings.fov_deg * kDegree)};
 }
 
-DepthCamera::DepthCamera(const DepthCameraSettings& settings, const DustSettings& dust, std::unique_ptr<DepthImager> imager,
-                         std::uint64_t seed)
+DepthCamera::DepthCamera(const DepthCameraSettings& settings, const DustSettings& dust,
+                         std::unique_ptr<DepthImager> imager, std::uint64_t seed)
     : settings_(settings),
       dust_(dust),
       lens_(make_lens(settings)),
@@ -74,10 +74,12 @@ double DepthCamera::incidence_cosine(int u, int v) const {
   const int left = std::max(u - 1, 0), right = std::min(u + 1, lens_.width_px - 1);
   const int up = std::max(v - 1, 0), down = std::min(v + 1, lens_.height_px - 1);
   const Eigen::Vector3d ray((u - lens_.cx_px()) / lens_.focal_px, (v - lens_.cy_px()) / lens_.focal_px, 1.0);
-  Eigen::Vector3d n(lens_.focal_px * (left == u || right == u ? inverse_depth(right, v) - inverse_depth(left, v)
-                                                              : smaller_difference(inverse_depth(left, v), here, inverse_depth(right, v))),
-                    lens_.focal_px * (up == v || down == v ? inverse_depth(u, down) - inverse_depth(u, up)
-                                                           : smaller_difference(inverse_depth(u, up), here, inverse_depth(u, down))),
+  Eigen::Vector3d n(lens_.focal_px * (left == u || right == u
+                                          ? inverse_depth(right, v) - inverse_depth(left, v)
+                                          : smaller_difference(inverse_depth(left, v), here, inverse_depth(right, v))),
+                    lens_.focal_px * (up == v || down == v
+                                          ? inverse_depth(u, down) - inverse_depth(u, up)
+                                          : smaller_difference(inverse_depth(u, up), here, inverse_depth(u, down))),
                     0.0);
   n.z() = here - n.dot(ray);
   return here / (n.norm() * ray.norm());
@@ -112,7 +114,8 @@ DepthImage DepthCamera::take(const mjData& data, const Pose3& T_world_camera, Ti
       if (!(true_m <= settings_.range_max_m) || !is_visible(u, v)) continue;
       if (dropout_.uniform(tick, pixel) < settings_.dropout_probability) continue;
       if (is_at_edge(u, v) && edge_.uniform(tick, pixel) < settings_.edge_dropout_probability) continue;
-      const double std_m = settings_.depth_noise_std_per_m * true_m * true_m * std::exp(2.0 * dust_.extinction_per_m() * true_m);
+      const double std_m =
+          settings_.depth_noise_std_per_m * true_m * true_m * std::exp(2.0 * dust_.extinction_per_m() * true_m);
       const double depth_m = true_m + std_m * noise_.normal(tick, pixel);
       if (depth_m < settings_.range_min_m || depth_m > settings_.range_max_m) continue;
       image.depth_mm[pixel] = static_cast<std::uint16_t>(std::lround(1000.0 * depth_m));
@@ -148,7 +151,8 @@ std::unique_ptr<Sensor> make_sensor<DepthImage>(const SensorContext& context) {
   if (!settings.enabled) return nullptr;
   validate(settings, "sensors.depth_camera");
   context.robot.T_body("depth_camera");  // throws if the robot has no such frame
-  if (!context.make_depth_imager) throw InputError("sensors.depth_camera.enabled = true: requires a renderer, which this command lacks");
+  if (!context.make_depth_imager)
+    throw InputError("sensors.depth_camera.enabled = true: requires a renderer, which this command lacks");
   constexpr double kNear_m = 0.05;  // minimum distance; closer surfaces belong to the housing
   return std::make_unique<DepthCameraOnBody>(
       context, context.make_depth_imager(context.view, make_lens(settings), kNear_m, 1.1 * settings.range_max_m));

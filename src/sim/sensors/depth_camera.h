@@ -42,8 +42,8 @@ class DepthImager {
 };
 
 /// Factory of the imager of a view model, which must outlive it, for depths from `near_m` to `far_m`.
-using DepthImagerFactory =
-    std::function<std::unique_ptr<DepthImager>(const mjModel& view, const PinholeLens& lens, double near_m, double far_m)>;
+using DepthImagerFactory = std::function<std::unique_ptr<DepthImager>(const mjModel& view, const PinholeLens& lens,
+                                                                      double near_m, double far_m)>;
 
 /// Depth camera model: adds sensor errors to ideal images. Each error source has its own random stream, indexed by
 /// frame and pixel.
@@ -53,7 +53,8 @@ using DepthImagerFactory =
 /// within a frame.
 class DepthCamera {
  public:
-  DepthCamera(const DepthCameraSettings& settings, const DustSettings& dust, std::unique_ptr<DepthImager> imager, std::uint64_t seed);
+  DepthCamera(const DepthCameraSettings& settings, const DustSettings& dust, std::unique_ptr<DepthImager> imager,
+              std::uint64_t seed);
 
   /// Takes frame number `tick`.
   DepthImage take(const mjData& data, const Pose3& T_world_camera, Time now, std::uint64_t tick);

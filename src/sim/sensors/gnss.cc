@@ -9,7 +9,7 @@
 namespace patrol::sim {
 namespace {
 
-constexpr double kEarthRadius_m = 6378137.0;             // equatorial radius of WGS 84
+constexpr double kEarthRadius_m = 6378137.0;  // equatorial radius of WGS 84
 constexpr double kEccentricitySquared = 6.69437999014e-3;
 
 }  // namespace
@@ -25,7 +25,8 @@ double Gnss::open_sky_fraction(const LidarScene& scene, const Eigen::Vector3d& a
   for (const double elevation : {15.0 * kDegree, 45.0 * kDegree, 75.0 * kDegree}) {
     for (int i = 0; i < kAzimuths; ++i, ++all) {
       const double azimuth = 2.0 * std::numbers::pi * i / kAzimuths + elevation;
-      const Eigen::Vector3d direction(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
+      const Eigen::Vector3d direction(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
+                                      std::sin(elevation));
       if (!scene.cast(antenna, direction, 100.0, kRayScenery)) ++open;
     }
   }
@@ -39,12 +40,15 @@ GnssFix Gnss::read(const LidarScene& scene, const Eigen::Vector3d& p_world_anten
   was_open_ = is_open;
 
   GnssFix fix{.stamp = now};
-  fix.status = is_open && now >= open_since_ ? GnssStatus::kFix : sky >= settings_.min_open_sky_float ? GnssStatus::kFloat : GnssStatus::kNone;
+  fix.status = is_open && now >= open_since_         ? GnssStatus::kFix
+               : sky >= settings_.min_open_sky_float ? GnssStatus::kFloat
+                                                     : GnssStatus::kNone;
   // Use a Gauss-Markov error, so that averaging helps no more than with a real receiver.
   const double correlation = std::exp(-1.0 / (settings_.rate_hz * settings_.error_correlation_time_s));
   for (int axis = 0; axis < 3; ++axis) {
     error_[axis] = tick == 0 ? noise_.normal(0, static_cast<std::uint64_t>(axis))
-                             : correlation * error_[axis] + std::sqrt(1.0 - correlation * correlation) * noise_.normal(tick, static_cast<std::uint64_t>(axis));
+                             : correlation * error_[axis] + std::sqrt(1.0 - correlation * correlation) *
+                                                                noise_.normal(tick, static_cast<std::uint64_t>(axis));
   }
   if (fix.status == GnssStatus::kNone) return fix;
   const double std_m = fix.status == GnssStatus::kFix ? settings_.fix_noise_std_m : settings_.float_noise_std_m;

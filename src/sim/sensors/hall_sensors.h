@@ -26,9 +26,9 @@ class HallSensors {
  private:
   struct Counter {
     int qpos;
-    std::int64_t edge = 0;    ///< last edge that passed
-    std::int64_t count = 0;   ///< counter value
-    std::uint64_t passed = 0; ///< passed edges in both directions; index of the next random number
+    std::int64_t edge = 0;     ///< last edge that passed
+    std::int64_t count = 0;    ///< counter value
+    std::uint64_t passed = 0;  ///< passed edges in both directions; index of the next random number
   };
   std::int64_t advance(Counter& counter, std::uint64_t side, double angle_rad);
 

@@ -18,11 +18,12 @@ double quantized(double value, double resolution) {
 
 ImuSensor::ImuSensor(const ImuSettings& settings, const mjModel& model, std::uint64_t seed)
     : site_(mj_name2id(&model, mjOBJ_SITE, "imu")),
-      gyro_(make_triad(seed, "imu/gyro", settings, model.opt.timestep, settings.gyro_noise_density_radps_per_sqrt_hz, settings.gyro_bias_std_radps,
-                       settings.gyro_bias_random_walk_radps_per_sqrt_s, settings.gyro_range_radps, settings.gyro_resolution_radps)),
+      gyro_(make_triad(seed, "imu/gyro", settings, model.opt.timestep, settings.gyro_noise_density_radps_per_sqrt_hz,
+                       settings.gyro_bias_std_radps, settings.gyro_bias_random_walk_radps_per_sqrt_s,
+                       settings.gyro_range_radps, settings.gyro_resolution_radps)),
       accel_(make_triad(seed, "imu/accel", settings, model.opt.timestep, settings.accel_noise_density_mps2_per_sqrt_hz,
-                        settings.accel_bias_std_mps2, settings.accel_bias_random_walk_mps2_per_sqrt_s, settings.accel_range_mps2,
-                        settings.accel_resolution_mps2)) {
+                        settings.accel_bias_std_mps2, settings.accel_bias_random_walk_mps2_per_sqrt_s,
+                        settings.accel_range_mps2, settings.accel_resolution_mps2)) {
   validate(settings, "sensors.imu");
 }
 
@@ -43,7 +44,8 @@ ImuSensor::Triad ImuSensor::make_triad(std::uint64_t seed, const char* name, con
   for (int row = 0; row < 3; ++row) {
     triad.bias[row] = bias * constant.normal(0, draw++);
     for (int col = 0; col < 3; ++col) {
-      triad.distortion(row, col) += (row == col ? settings.scale_error_std : misalignment_rad) * constant.normal(0, draw++);
+      triad.distortion(row, col) +=
+          (row == col ? settings.scale_error_std : misalignment_rad) * constant.normal(0, draw++);
     }
   }
   return triad;
@@ -60,7 +62,8 @@ Eigen::Vector3d ImuSensor::measure(Triad& triad, const Eigen::Vector3d& truth, s
   return reading;
 }
 
-Imu ImuSensor::corrupt(const Eigen::Vector3d& rate_radps, const Eigen::Vector3d& force_mps2, Time now, std::uint64_t tick) {
+Imu ImuSensor::corrupt(const Eigen::Vector3d& rate_radps, const Eigen::Vector3d& force_mps2, Time now,
+                       std::uint64_t tick) {
   return {.stamp = now,
           .angular_velocity_radps = measure(gyro_, rate_radps, tick),
           .linear_acceleration_mps2 = measure(accel_, force_mps2, tick)};
@@ -80,7 +83,9 @@ namespace {
 class ImuOnBody : public Sensor {
  public:
   explicit ImuOnBody(const SensorContext& context)
-      : is_enabled_(context.settings.imu.enabled), schedule_(context.settings.imu.rate_hz), imu_(context.settings.imu, context.physics, context.seed) {}
+      : is_enabled_(context.settings.imu.enabled),
+        schedule_(context.settings.imu.rate_hz),
+        imu_(context.settings.imu, context.physics, context.seed) {}
 
   void step(const SensorTick& tick, std::vector<SensorMessage>& readings) override {
     tick.newest.imu = imu_.read(tick.physics, tick.data, tick.now, tick.count);

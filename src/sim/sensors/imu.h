@@ -30,8 +30,8 @@ class ImuSensor {
     Eigen::Vector3d bias;
     double noise_std, walk_std, range, resolution;
   };
-  static Triad make_triad(std::uint64_t seed, const char* name, const ImuSettings& settings, double tick_s, double noise,
-                          double bias, double walk, double range, double resolution);
+  static Triad make_triad(std::uint64_t seed, const char* name, const ImuSettings& settings, double tick_s,
+                          double noise, double bias, double walk, double range, double resolution);
   static Eigen::Vector3d measure(Triad& triad, const Eigen::Vector3d& truth, std::uint64_t tick);
 
   int site_;

@@ -13,7 +13,8 @@ namespace patrol::sim {
 
 class JointEncoders {
  public:
-  JointEncoders(const JointEncoderSettings& settings, const mjModel& model, const std::vector<std::string>& joint_names);
+  JointEncoders(const JointEncoderSettings& settings, const mjModel& model,
+                const std::vector<std::string>& joint_names);
 
   /// Takes the reading of one tick. Call at every tick.
   JointState read(const mjData& data, Time now);

@@ -5,8 +5,8 @@
 #include <limits>
 #include <utility>
 
-#include "core/geometry/angles.h"
 #include "core/error.h"
+#include "core/geometry/angles.h"
 #include "sim/sensors/sensor.h"
 
 namespace patrol::sim {
@@ -29,15 +29,16 @@ Pose3 move_between(const Pose3& a, const Pose3& b, double fraction) {
 
 }  // namespace
 
-Lidar::Lidar(const LidarSettings& settings, const LidarScene& scene, const Pose3& T_body_lidar,
-             RayMask own_housing, std::uint64_t seed, const std::string& name, const DustSettings& dust)
+Lidar::Lidar(const LidarSettings& settings, const LidarScene& scene, const Pose3& T_body_lidar, RayMask own_housing,
+             std::uint64_t seed, const std::string& name, const DustSettings& dust)
     : settings_(settings),
       scene_(scene),
       T_body_lidar_(T_body_lidar),
       mask_(kRayEverything & ~static_cast<std::uint32_t>(own_housing)),
       dust_(dust),
       surfaces_(surface_optics(scene.model())),
-      false_return_rate_per_m_(settings.false_return_rate_per_m + dust.backscatter_probability * dust.extinction_per_m()),
+      false_return_rate_per_m_(settings.false_return_rate_per_m +
+                               dust.backscatter_probability * dust.extinction_per_m()),
       range_noise_(seed, name + "/range"),
       angle_noise_(seed, name + "/angle"),
       dropout_(seed, name + "/dropout"),
@@ -51,8 +52,8 @@ Lidar::Lidar(const LidarSettings& settings, const LidarScene& scene, const Pose3
   }
   for (int ring = 0; ring < settings.rings; ++ring) {
     const double fraction = settings.rings > 1 ? static_cast<double>(ring) / (settings.rings - 1) : 0.0;
-    const double angle = kDegree * (settings.elevation_min_deg +
-                                    fraction * (settings.elevation_max_deg - settings.elevation_min_deg));
+    const double angle =
+        kDegree * (settings.elevation_min_deg + fraction * (settings.elevation_max_deg - settings.elevation_min_deg));
     elevation_.emplace_back(std::cos(angle), std::sin(angle));
   }
   begin_revolution();
@@ -96,8 +97,7 @@ void Lidar::advance(Time from, Time to, const Pose3& T_world_body_from, const Po
     if (settings_.motion_distortion) {
       fire(next_beam_, T_world_lidar);
     } else if (is_last) {
-      for (std::int64_t beam = next_beam_ - settings_.beams + 1; beam <= next_beam_; ++beam)
-        fire(beam, T_world_lidar);
+      for (std::int64_t beam = next_beam_ - settings_.beams + 1; beam <= next_beam_; ++beam) fire(beam, T_world_lidar);
     }
     ++next_beam_;
     if (!is_last) continue;
@@ -178,7 +178,7 @@ Lidar::Return Lidar::trace(const Pose3& T_world_lidar, const Eigen::Vector3d& di
 
 /// Returns the mean over the beam width, weighted by the returned light, of surfaces within one pulse length only.
 Lidar::Return Lidar::mixed_pixel_return(const Pose3& T_world_lidar, const Eigen::Vector3d& direction,
-                                    const Return& middle) const {
+                                        const Return& middle) const {
   constexpr int kRays = 4;
   const Eigen::Vector3d sideways =
       settings_.beam_width_deg * kDegree * Eigen::Vector3d(-direction.y(), direction.x(), 0.0);
@@ -203,9 +203,10 @@ Lidar::Return Lidar::to_return(const RayHit& hit, const Eigen::Vector3d& directi
   if (cosine < std::cos(settings_.max_incidence_deg * kDegree)) return {kInfinity, 0.0};
   // The returned light falls with the square of the range. range_max_m is reached on white, max_range_10pct_m on 10 %.
   const double reflectivity = std::max(0.02, static_cast<double>(surface.reflectivity));
-  const double reach_m = std::min(settings_.range_max_m,
-                                  settings_.max_range_10pct_m * std::sqrt(reflectivity * std::sqrt(cosine) / 0.1));
-  if (settings_.max_range_10pct_m > 0.0 && dust_.equivalent_clear_distance_m(range_m) > reach_m) return {kInfinity, 0.0};
+  const double reach_m =
+      std::min(settings_.range_max_m, settings_.max_range_10pct_m * std::sqrt(reflectivity * std::sqrt(cosine) / 0.1));
+  if (settings_.max_range_10pct_m > 0.0 && dust_.equivalent_clear_distance_m(range_m) > reach_m)
+    return {kInfinity, 0.0};
   return {range_m, 255.0 * std::min(1.0, reflectivity * cosine)};
 }
 
@@ -214,7 +215,8 @@ namespace {
 class LidarOnBody : public Sensor {
  public:
   LidarOnBody(const SensorContext& context, const LidarSettings& settings, const std::string& frame, RayMask housing)
-      : lidar_(settings, context.scene, context.robot.T_body(frame), housing, context.seed, frame, context.settings.dust) {}
+      : lidar_(settings, context.scene, context.robot.T_body(frame), housing, context.seed, frame,
+               context.settings.dust) {}
 
   void step(const SensorTick& tick, std::vector<SensorMessage>& readings) override {
     if (tick.is_first()) return;

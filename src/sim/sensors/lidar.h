@@ -24,8 +24,8 @@ class Lidar {
  public:
   /// One ring yields scans, several yield clouds. `name` is the prefix of the random streams; `own_housing` is the
   /// housing that contains the beam origin and is ignored. Dust reduces the range and causes false returns.
-  Lidar(const LidarSettings& settings, const LidarScene& scene, const Pose3& T_body_lidar,
-        RayMask own_housing, std::uint64_t seed, const std::string& name, const DustSettings& dust = {});
+  Lidar(const LidarSettings& settings, const LidarScene& scene, const Pose3& T_body_lidar, RayMask own_housing,
+        std::uint64_t seed, const std::string& name, const DustSettings& dust = {});
 
   /// Fires the beams whose instants are in (from, to]; the body pose is interpolated in between.
   void advance(Time from, Time to, const Pose3& T_world_body_from, const Pose3& T_world_body_to);
@@ -42,11 +42,10 @@ class Lidar {
 
   Time instant_of(std::int64_t beam) const;
   void fire(std::int64_t beam, const Pose3& T_world_lidar);
-  Return measure(std::uint64_t tick, std::uint64_t index, const Pose3& T_world_lidar,
-                 const Eigen::Vector3d& direction, double& last_range_m) const;
+  Return measure(std::uint64_t tick, std::uint64_t index, const Pose3& T_world_lidar, const Eigen::Vector3d& direction,
+                 double& last_range_m) const;
   Return trace(const Pose3& T_world_lidar, const Eigen::Vector3d& direction) const;
-  Return mixed_pixel_return(const Pose3& T_world_lidar, const Eigen::Vector3d& direction,
-                        const Return& middle) const;
+  Return mixed_pixel_return(const Pose3& T_world_lidar, const Eigen::Vector3d& direction, const Return& middle) const;
   Return to_return(const RayHit& hit, const Eigen::Vector3d& direction, double range_m) const;
   void begin_revolution();
 
@@ -56,7 +55,7 @@ class Lidar {
   std::uint32_t mask_;
   DustSettings dust_;
   std::vector<SurfaceOptics> surfaces_;  ///< [geom] of the view model
-  double false_return_rate_per_m_;  ///< rate of false returns from rain and dust
+  double false_return_rate_per_m_;       ///< rate of false returns from rain and dust
   RandomStream range_noise_, angle_noise_, dropout_, rain_, rain_range_;
   std::int64_t next_beam_ = 0;              ///< number of the next beam since the start
   std::vector<Eigen::Vector2d> azimuth_;    ///< [beam], cosine and sine of the azimuth

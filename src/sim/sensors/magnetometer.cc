@@ -14,15 +14,16 @@ namespace {
 Eigen::Vector3d geomagnetic_field_t(const MagnetometerSettings& settings) {
   const double inclination = settings.inclination_deg * kDegree, declination = settings.declination_deg * kDegree;
   const double horizontal = std::cos(inclination);
-  return settings.intensity_t *
-         Eigen::Vector3d(horizontal * std::sin(declination), horizontal * std::cos(declination), -std::sin(inclination));
+  return settings.intensity_t * Eigen::Vector3d(horizontal * std::sin(declination), horizontal * std::cos(declination),
+                                                -std::sin(inclination));
 }
 
 bool has_word(const char* name, const std::vector<std::string>& words) {
   if (name == nullptr) return false;
   const std::string_view text = name;
-  return std::any_of(words.begin(), words.end(),
-                     [&](const std::string& word) { return !word.empty() && text.find(word) != std::string_view::npos; });
+  return std::any_of(words.begin(), words.end(), [&](const std::string& word) {
+    return !word.empty() && text.find(word) != std::string_view::npos;
+  });
 }
 
 bool is_steel(const mjModel& model, int geom, const std::vector<std::string>& words) {

@@ -1,10 +1,9 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <cstdint>
 #include <vector>
 
+#include <Eigen/Core>
 #include <mujoco/mujoco.h>
 
 #include "core/random.h"

@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include "core/geometry/angles.h"
-
 #include "sim/sensors/sensor.h"
 
 namespace patrol::sim {
@@ -36,8 +35,8 @@ RandomStream stream_of(const PanoramicScannerSettings& settings, std::uint64_t s
 
 }  // namespace
 
-PanoramicScanner::PanoramicScanner(const PanoramicScannerSettings& settings, const LidarScene& scene, const Pose3& T_body_scanner,
-                                   std::uint64_t seed, const DustSettings& dust)
+PanoramicScanner::PanoramicScanner(const PanoramicScannerSettings& settings, const LidarScene& scene,
+                                   const Pose3& T_body_scanner, std::uint64_t seed, const DustSettings& dust)
     : settings_(settings),
       scene_(scene),
       T_body_scanner_(T_body_scanner),
@@ -98,9 +97,11 @@ void PanoramicScanner::advance(Time from, Time to, const Pose3& T_world_body_fro
 }
 
 /// Returns the direction of a beam, in `scanner`; first order in the errors.
-Eigen::Vector3d PanoramicScanner::direction(int column, std::size_t row, double azimuth_error_rad, double elevation_error_rad) const {
+Eigen::Vector3d PanoramicScanner::direction(int column, std::size_t row, double azimuth_error_rad,
+                                            double elevation_error_rad) const {
   const auto pair = static_cast<std::size_t>(column) % azimuth_.size();
-  const Eigen::Vector2d ahead = static_cast<std::size_t>(column) == pair ? azimuth_[pair] : Eigen::Vector2d(-azimuth_[pair]);
+  const Eigen::Vector2d ahead =
+      static_cast<std::size_t>(column) == pair ? azimuth_[pair] : Eigen::Vector2d(-azimuth_[pair]);
   const double c = elevation_[row].x(), s = elevation_[row].y();
   const Eigen::Vector3d exact(c * ahead.x(), c * ahead.y(), s);
   const Eigen::Vector3d aside(-c * ahead.y(), c * ahead.x(), 0.0), up(-s * ahead.x(), -s * ahead.y(), c);
@@ -123,16 +124,25 @@ void PanoramicScanner::fire_column(int column, const Pose3& T_world_scanner) {
   auto& [one_ago, two_ago] = scan_->before_m[static_cast<std::size_t>(column) < azimuth_.size() ? 0 : 1];
   for (std::size_t row = 0; row < rows; ++row) {
     const double range_m = ideal[row].range_m;
-    const double upwards = row == 0 || row + 1 == rows ? 0.0 : range_curvature_m(ideal[row - 1].range_m, range_m, ideal[row + 1].range_m);
+    const double upwards =
+        row == 0 || row + 1 == rows ? 0.0 : range_curvature_m(ideal[row - 1].range_m, range_m, ideal[row + 1].range_m);
     const double sideways = 2.0 * range_curvature_m(range_m, one_ago[row], two_ago[row]);
     two_ago[row] = std::exchange(one_ago[row], range_m);
-    const bool is_at_edge = settings_.beam_divergence_rad > 0.0 && std::max(upwards, sideways) > min_edge_curvature_m(range_m);
+    const bool is_at_edge =
+        settings_.beam_divergence_rad > 0.0 && std::max(upwards, sideways) > min_edge_curvature_m(range_m);
     const Return beam_return = is_at_edge ? mixed_pixel_return(T_world_scanner, aimed[row], range_m) : ideal[row];
     if (beam_return.range_m > settings_.range_max_m || beam_return.range_m < settings_.range_min_m) continue;
-    if (settings_.dropout_probability > 0.0 && dropout_.uniform(scan_->number, beam(row)) < settings_.dropout_probability) continue;
-    const double measured_m = beam_return.range_m + scan_->range_offset_m + range_std_m(beam_return) * range_noise_.normal(scan_->number, beam(row));
-    const Eigen::Vector3f point = (scan_->R_level_scanner * (measured_m * direction(column, row, 0.0, 0.0))).cast<float>();
-    scan_->points.push_back({.x = point.x(), .y = point.y(), .z = point.z(), .intensity = static_cast<float>(255.0 * std::min(1.0, beam_return.light))});
+    if (settings_.dropout_probability > 0.0 &&
+        dropout_.uniform(scan_->number, beam(row)) < settings_.dropout_probability)
+      continue;
+    const double measured_m = beam_return.range_m + scan_->range_offset_m +
+                              range_std_m(beam_return) * range_noise_.normal(scan_->number, beam(row));
+    const Eigen::Vector3f point =
+        (scan_->R_level_scanner * (measured_m * direction(column, row, 0.0, 0.0))).cast<float>();
+    scan_->points.push_back({.x = point.x(),
+                             .y = point.y(),
+                             .z = point.z(),
+                             .intensity = static_cast<float>(255.0 * std::min(1.0, beam_return.light))});
   }
 }
 
@@ -144,7 +154,8 @@ PanoramicScanner::Return PanoramicScanner::trace(const Pose3& T_world_scanner, c
   if (!hit) return {kNoReturn, 0.0};
   const double cosine = std::abs(hit->normal.dot(ray));
   const SurfaceOptics& surface = surfaces_[static_cast<std::size_t>(hit->geom)];
-  if (surface.is_transparent_at(cosine) || cosine < std::cos(settings_.max_incidence_deg * kDegree)) return {kNoReturn, 0.0};
+  if (surface.is_transparent_at(cosine) || cosine < std::cos(settings_.max_incidence_deg * kDegree))
+    return {kNoReturn, 0.0};
   constexpr double kBlack = 0.02;
   const double light = std::max(kBlack, static_cast<double>(surface.reflectivity)) * cosine;
   const double reach_m = settings_.max_range_2pct_m * std::sqrt(light / kBlack);
@@ -153,8 +164,10 @@ PanoramicScanner::Return PanoramicScanner::trace(const Pose3& T_world_scanner, c
 }
 
 /// Returns the mean over the beam width at this range, weighted by the returned light.
-PanoramicScanner::Return PanoramicScanner::mixed_pixel_return(const Pose3& T_world_scanner, const Eigen::Vector3d& direction, double range_m) const {
-  const double quarter_rad = (0.5 * settings_.beam_exit_diameter_m + settings_.beam_divergence_rad * range_m) / (2.0 * range_m);
+PanoramicScanner::Return PanoramicScanner::mixed_pixel_return(const Pose3& T_world_scanner,
+                                                              const Eigen::Vector3d& direction, double range_m) const {
+  const double quarter_rad =
+      (0.5 * settings_.beam_exit_diameter_m + settings_.beam_divergence_rad * range_m) / (2.0 * range_m);
   const Eigen::Vector3d aside = direction.unitOrthogonal(), across = direction.cross(aside);
   double returned = 0.0, range_sum = 0.0, light_sum = 0.0;
   for (const double i : {-1.0, 1.0}) {
@@ -171,7 +184,9 @@ PanoramicScanner::Return PanoramicScanner::mixed_pixel_return(const Pose3& T_wor
 }
 
 double PanoramicScanner::range_std_m(const Return& beam_return) const {
-  const double gray_m = settings_.gray_noise_std_m * std::sqrt(dust_.equivalent_clear_distance_m(beam_return.range_m) / 10.0) * 0.1 / beam_return.light;
+  const double gray_m = settings_.gray_noise_std_m *
+                        std::sqrt(dust_.equivalent_clear_distance_m(beam_return.range_m) / 10.0) * 0.1 /
+                        beam_return.light;
   return std::hypot(settings_.range_noise_std_m, gray_m);
 }
 
@@ -180,7 +195,8 @@ namespace {
 class ScannerOnBody : public Sensor {
  public:
   explicit ScannerOnBody(const SensorContext& context)
-      : scanner_(context.settings.scanner, context.scene, context.robot.T_body("scanner"), context.seed, context.settings.dust) {}
+      : scanner_(context.settings.scanner, context.scene, context.robot.T_body("scanner"), context.seed,
+                 context.settings.dust) {}
 
   void step(const SensorTick& tick, std::vector<SensorMessage>& readings) override {
     if (!scanner_.is_busy()) return;

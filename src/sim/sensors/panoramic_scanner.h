@@ -34,8 +34,8 @@ namespace patrol::sim {
 class PanoramicScanner {
  public:
   /// Dust reduces the light.
-  PanoramicScanner(const PanoramicScannerSettings& settings, const LidarScene& scene, const Pose3& T_body_scanner, std::uint64_t seed,
-                   const DustSettings& dust = {});
+  PanoramicScanner(const PanoramicScannerSettings& settings, const LidarScene& scene, const Pose3& T_body_scanner,
+                   std::uint64_t seed, const DustSettings& dust = {});
 
   /// Starts a scan at the given body pose; does nothing during a scan.
   void begin(Time now, const Pose3& T_world_body);
@@ -58,7 +58,7 @@ class PanoramicScanner {
   };
   struct Scan {
     Time start;
-    std::uint64_t number;               ///< number of the scan, from 0
+    std::uint64_t number;                ///< number of the scan, from 0
     Eigen::Quaterniond R_level_scanner;  ///< attitude measured by the compensator
     double range_offset_m;
     int next_pair = 0;

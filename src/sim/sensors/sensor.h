@@ -7,9 +7,9 @@
 #include <mujoco/mujoco.h>
 
 #include "core/messages.h"
-#include "core/stage_profiler.h"
 #include "core/robot_description.h"
 #include "core/sensors/registry.h"
+#include "core/stage_profiler.h"
 #include "sim/gas_plume.h"
 #include "sim/lidar_scene.h"
 #include "sim/sensors/depth_camera.h"
@@ -46,7 +46,7 @@ struct SensorTick {
   std::uint64_t count;  ///< ticks before this one
   Time now;
   Pose3 T_world_body;
-  Time last;                 ///< instant of the previous tick; `now` at the first one
+  Time last;                ///< instant of the previous tick; `now` at the first one
   Pose3 T_world_body_last;  ///< body pose at `last`
   NewestReadings& newest;
   StageProfiler& clock;  ///< timer of sensors that report their computing time separately

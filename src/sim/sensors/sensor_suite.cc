@@ -16,7 +16,10 @@ Pose3 body_pose(const mjData& data, int body) {
 SensorSuite::SensorSuite(const SensorSuiteSettings& settings, const RobotDescription& robot, const mjModel& physics,
                          const mjModel& view, const GasPlume& plume, const std::vector<FaultSettings>& faults,
                          std::uint64_t seed, const DepthImagerFactory& make_depth_imager, const Subsurface& subsurface)
-    : settings_(settings), body_(mj_name2id(&physics, mjOBJ_BODY, frame_id::kBody)), scene_(view), faults_(faults, seed) {
+    : settings_(settings),
+      body_(mj_name2id(&physics, mjOBJ_BODY, frame_id::kBody)),
+      scene_(view),
+      faults_(faults, seed) {
   validate(settings.dust, "sensors.dust");
   const SensorContext context{.settings = settings_,
                               .robot = robot,

@@ -8,9 +8,9 @@
 #include <mujoco/mujoco.h>
 
 #include "core/messages.h"
-#include "core/stage_profiler.h"
 #include "core/robot_description.h"
 #include "core/sensors/registry.h"
+#include "core/stage_profiler.h"
 #include "sim/gas_plume.h"
 #include "sim/lidar_scene.h"
 #include "sim/sensors/delivery_queue.h"

@@ -25,8 +25,10 @@ GasReading Tdlas::read(const LidarScene& scene, const GasPlume& plume, const Pos
   const double length_m = hit->distance_m;
   double column = settings_.background_ppm * length_m;
   if (!plume.is_empty()) column += plume.column_ppm_m(T_world_tdlas.position, direction, length_m, to_seconds(now));
-  column += settings_.noise_std_ppm_m * noise_.normal(tick) + settings_.relative_noise_std * column * relative_noise_.normal(tick);
-  if (settings_.resolution_ppm_m > 0.0) column = settings_.resolution_ppm_m * std::round(column / settings_.resolution_ppm_m);
+  column += settings_.noise_std_ppm_m * noise_.normal(tick) +
+            settings_.relative_noise_std * column * relative_noise_.normal(tick);
+  if (settings_.resolution_ppm_m > 0.0)
+    column = settings_.resolution_ppm_m * std::round(column / settings_.resolution_ppm_m);
   reading.column_ppm_m = std::clamp(column, 0.0, settings_.max_column_ppm_m);
   reading.path_length_m = length_m;
   // ppm x kg/m3 = mg/m3

@@ -15,9 +15,11 @@ TemGateLayout reported_window(const TemSettings& settings) {
   validate(settings, "sensors.tem");
   TemGateLayout window{.gate_s = {}, .ramp_s = settings.ramp_s, .gate_width = settings.relative_gate_width};
   const double step = std::pow(10.0, 1.0 / settings.gates_per_decade);
-  for (double gate_s = settings.first_gate_s; gate_s <= settings.last_gate_s; gate_s *= step) window.gate_s.push_back(gate_s);
+  for (double gate_s = settings.first_gate_s; gate_s <= settings.last_gate_s; gate_s *= step)
+    window.gate_s.push_back(gate_s);
   if (window.gate_s.size() < 3) {
-    throw InputError(fmt::format("sensors.tem.last_gate_s = {}: must leave at least three gates after first_gate_s", settings.last_gate_s));
+    throw InputError(fmt::format("sensors.tem.last_gate_s = {}: must leave at least three gates after first_gate_s",
+                                 settings.last_gate_s));
   }
   return window;
 }
@@ -43,7 +45,8 @@ double steel_decay(double time_s) {
 
 }  // namespace
 
-Tem::Tem(const TemSettings& settings, const RockSettings& rock, const std::vector<WaterBodySettings>& bodies, std::uint64_t seed)
+Tem::Tem(const TemSettings& settings, const RockSettings& rock, const std::vector<WaterBodySettings>& bodies,
+         std::uint64_t seed)
     : settings_(settings),
       rock_(rock),
       bodies_(bodies),
@@ -58,7 +61,8 @@ Tem::Tem(const TemSettings& settings, const RockSettings& rock, const std::vecto
   steel_rate_ = settings.steel_response * std::exp(settings.steel_log_std * steel.normal(0));
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column <= row; ++column) {
-      const double entry = settings.steel_anisotropy_std * steel.normal(1, static_cast<std::uint64_t>(3 * row + column));
+      const double entry =
+          settings.steel_anisotropy_std * steel.normal(1, static_cast<std::uint64_t>(3 * row + column));
       steel_form_(row, column) = steel_form_(column, row) = entry;
     }
   }
@@ -83,13 +87,16 @@ std::optional<TemSounding> Tem::step(const Pose3& T_world_tem, Time now) {
   return sound(sum_p_ / ticks_, sum_axes_ / ticks_, count_++, now);
 }
 
-TemSounding Tem::sound(const Eigen::Vector3d& p_world, const Eigen::Matrix3d& axes, std::uint64_t count, Time end) const {
+TemSounding Tem::sound(const Eigen::Vector3d& p_world, const Eigen::Matrix3d& axes, std::uint64_t count,
+                       Time end) const {
   Eigen::VectorXd rate = gated_whole_space_response(gates_, rock_.conductivity_spm);
   for (const WaterBodySettings& body : bodies_) {
     const Eigen::Vector3d offset = Eigen::Vector3d(body.x_m, body.y_m, body.z_m) - p_world;
-    const ConductiveSphere sphere{.distance_m = offset.norm(), .radius_m = body.radius_m, .conductivity_spm = body.conductivity_spm};
+    const ConductiveSphere sphere{
+        .distance_m = offset.norm(), .radius_m = body.radius_m, .conductivity_spm = body.conductivity_spm};
     if (sphere.distance_m <= 1.02 * sphere.radius_m) {
-      throw InputError(fmt::format("water_bodies: body at ({}, {}, {}): must not contain the antenna", body.x_m, body.y_m, body.z_m));
+      throw InputError(fmt::format("water_bodies: body at ({}, {}, {}): must not contain the antenna", body.x_m,
+                                   body.y_m, body.z_m));
     }
     const GatedSphereResponse decay = gated_sphere_response(gates_, rock_.conductivity_spm, sphere);
     const double cos_squared = offset.dot(axes * offset) / offset.squaredNorm();
@@ -97,14 +104,16 @@ TemSounding Tem::sound(const Eigen::Vector3d& p_world, const Eigen::Matrix3d& ax
   }
   const double steel = steel_rate_ * (1.0 + steel_form_.cwiseProduct(axes).sum());
 
-  TemSounding sounding{.stamp = end, .moment_am2 = settings_.moment_am2, .gate_s = window_.gate_s, .rate_tps = {}, .std_tps = {}};
+  TemSounding sounding{
+      .stamp = end, .moment_am2 = settings_.moment_am2, .gate_s = window_.gate_s, .rate_tps = {}, .std_tps = {}};
   const double moment_am2 = settings_.moment_am2 * (1.0 + settings_.relative_moment_std * current_.normal(count));
   for (std::size_t gate = 0; gate < window_.gate_s.size(); ++gate) {
     const double gate_s = window_.gate_s[gate];
     const double clean_tps = gain_ * moment_am2 * (rate[static_cast<Eigen::Index>(gate)] + steel * steel_decay(gate_s));
     const double noise_std_tps = settings_.noise_std_tps / std::sqrt(settings_.stacking_s * gate_s / 1e-3);
     const double relative_tps = settings_.relative_noise_std * clean_tps;
-    sounding.rate_tps.push_back(clean_tps + noise_std_tps * noise_.normal(count, gate) + relative_tps * relative_noise_.normal(count, gate));
+    sounding.rate_tps.push_back(clean_tps + noise_std_tps * noise_.normal(count, gate) +
+                                relative_tps * relative_noise_.normal(count, gate));
     sounding.std_tps.push_back(std::hypot(noise_std_tps, relative_tps));
   }
   return sounding;

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <cstdint>
 #include <optional>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "core/frames.h"
 #include "core/random.h"
@@ -24,7 +24,8 @@ namespace patrol::sim {
 class Tem {
  public:
   /// Throws InputError for fewer than three gates.
-  Tem(const TemSettings& settings, const RockSettings& rock, const std::vector<WaterBodySettings>& bodies, std::uint64_t seed);
+  Tem(const TemSettings& settings, const RockSettings& rock, const std::vector<WaterBodySettings>& bodies,
+      std::uint64_t seed);
 
   /// Starts a sounding unless one is in progress.
   void start(Time now);
@@ -43,7 +44,7 @@ class Tem {
   RockSettings rock_;
   std::vector<WaterBodySettings> bodies_;
   TemGateLayout window_;  ///< reported gates
-  TemGates gates_;    ///< actual gates, with the time shift
+  TemGates gates_;        ///< actual gates, with the time shift
   double gain_ = 1.0, steel_rate_ = 0.0;
   Eigen::Matrix3d steel_form_ = Eigen::Matrix3d::Zero();
   RandomStream noise_, relative_noise_, current_;

@@ -10,8 +10,8 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
-#include "core/geometry/angles.h"
 #include "core/error.h"
+#include "core/geometry/angles.h"
 #include "sim/sensors/sensor.h"
 
 namespace patrol::sim {
@@ -62,8 +62,8 @@ bool is_rough(const mjModel& model, int geom, const std::vector<std::string>& wo
 
 }  // namespace
 
-UltrasonicRing::UltrasonicRing(const UltrasonicSettings& settings, const LidarScene& scene, const RobotDescription& robot,
-                               std::uint64_t seed)
+UltrasonicRing::UltrasonicRing(const UltrasonicSettings& settings, const LidarScene& scene,
+                               const RobotDescription& robot, std::uint64_t seed)
     : settings_(settings),
       scene_(scene),
       T_body_transducer_(transducers_of(robot)),
@@ -76,11 +76,13 @@ UltrasonicRing::UltrasonicRing(const UltrasonicSettings& settings, const LidarSc
   validate(settings, "sensors.ultrasonic");
   const double max_rate_hz = speed_of_sound(settings.air_temperature_c) / (2.0 * settings.range_max_m);
   if (settings.ping_rate_hz > max_rate_hz) {
-    throw InputError(fmt::format("sensors.ultrasonic.ping_rate_hz = {}: must be at most {:.1f}, so that an echo from "
-                                 "range_max_m = {} returns before the next ping",
-                                 settings.ping_rate_hz, max_rate_hz, settings.range_max_m));
+    throw InputError(
+        fmt::format("sensors.ultrasonic.ping_rate_hz = {}: must be at most {:.1f}, so that an echo from "
+                    "range_max_m = {} returns before the next ping",
+                    settings.ping_rate_hz, max_rate_hz, settings.range_max_m));
   }
-  for (int geom = 0; geom < scene.model().ngeom; ++geom) is_rough_.push_back(is_rough(scene.model(), geom, settings.rough_names));
+  for (int geom = 0; geom < scene.model().ngeom; ++geom)
+    is_rough_.push_back(is_rough(scene.model(), geom, settings.rough_names));
 }
 
 /// Returns the echo strength of a ray with this cosine of incidence on a geom.
@@ -95,7 +97,8 @@ UltrasonicRing::Echo UltrasonicRing::trace_ping(const Pose3& T_world_transducer,
     double strength;
     Eigen::Vector3d direction;
   };
-  const Eigen::Matrix3d R = (T_world_transducer.rotation * Eigen::AngleAxisd(turn_rad, Eigen::Vector3d::UnitX())).toRotationMatrix();
+  const Eigen::Matrix3d R =
+      (T_world_transducer.rotation * Eigen::AngleAxisd(turn_rad, Eigen::Vector3d::UnitX())).toRotationMatrix();
   std::vector<Part> parts;
   for (const Eigen::Vector3d& ray : rays_) {
     const Eigen::Vector3d direction = R * ray;
@@ -104,7 +107,8 @@ UltrasonicRing::Echo UltrasonicRing::trace_ping(const Pose3& T_world_transducer,
     const double returned = strength(hit->geom, std::abs(hit->normal.dot(direction)));
     if (returned > 0.0) parts.push_back({*hit, returned, direction});
   }
-  std::sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.hit.distance_m < b.hit.distance_m; });
+  std::sort(parts.begin(), parts.end(),
+            [](const Part& a, const Part& b) { return a.hit.distance_m < b.hit.distance_m; });
 
   double sum = 0.0;  // echo strength within one pulse length
   for (std::size_t first = 0, last = 0; last < parts.size(); ++last) {
@@ -122,13 +126,15 @@ UltrasonicRing::Echo UltrasonicRing::trace_ping(const Pose3& T_world_transducer,
 
 /// Returns the range at which a transducer reports the echo of another's ping: half the path length. +Inf beyond twice
 /// the cone, or when the surface reflects the sound elsewhere.
-double UltrasonicRing::crosstalk_range_m(const Echo& echo, const Pose3& T_world_other, const Pose3& T_world_transducer) const {
+double UltrasonicRing::crosstalk_range_m(const Echo& echo, const Pose3& T_world_other,
+                                         const Pose3& T_world_transducer) const {
   if (!std::isfinite(echo.distance_m)) return kNoEcho;
   const Eigen::Vector3d offset = T_world_transducer.position - echo.p_world;
   const Eigen::Vector3d axis = T_world_transducer.rotation * Eigen::Vector3d::UnitX();
   const double off_axis = std::acos(std::clamp(-offset.normalized().dot(axis), -1.0, 1.0));
   if (off_axis > settings_.fov_deg * kDegree) return kNoEcho;
-  const Eigen::Vector3d middle = (offset.normalized() + (T_world_other.position - echo.p_world).normalized()).normalized();
+  const Eigen::Vector3d middle =
+      (offset.normalized() + (T_world_other.position - echo.p_world).normalized()).normalized();
   if (strength(echo.geom, std::abs(middle.dot(echo.normal))) <= 0.0) return kNoEcho;
   return 0.5 * (echo.distance_m + offset.norm());
 }
@@ -138,7 +144,8 @@ float UltrasonicRing::reading(double distance_m, std::uint64_t tick, std::uint64
   double range_m = scale_ * distance_m;
   if (range_m < settings_.range_min_m) return -std::numeric_limits<float>::infinity();
   range_m += settings_.range_noise_std_m * noise_.normal(tick, transducer);
-  if (settings_.range_quantization_m > 0.0) range_m = settings_.range_quantization_m * std::round(range_m / settings_.range_quantization_m);
+  if (settings_.range_quantization_m > 0.0)
+    range_m = settings_.range_quantization_m * std::round(range_m / settings_.range_quantization_m);
   return range_m > settings_.range_max_m ? std::numeric_limits<float>::infinity() : static_cast<float>(range_m);
 }
 
@@ -158,7 +165,9 @@ std::vector<UltrasonicRange> UltrasonicRing::ping(const Pose3& T_world_body, Tim
     double distance_m = echoes[receiver].distance_m;
     for (std::size_t other = 0; other < fired.size(); ++other) {
       if (other == receiver) continue;
-      if (crosstalk_.uniform(tick, fired[receiver] * num_transducers() + fired[other]) >= settings_.crosstalk_probability) continue;
+      if (crosstalk_.uniform(tick, fired[receiver] * num_transducers() + fired[other]) >=
+          settings_.crosstalk_probability)
+        continue;
       distance_m = std::min(distance_m, crosstalk_range_m(echoes[other], frames[other], frames[receiver]));
     }
     ranges.push_back({.stamp = now,

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <cstdint>
 #include <string>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "core/random.h"
 #include "core/robot_description.h"
@@ -17,9 +17,10 @@ namespace patrol::sim {
 /// Ring of transducers `ultrasonic_0`, `ultrasonic_1` ... that fire in turn.
 ///
 /// A ping is a bundle of rays over the cone, rotated about its axis by a random angle. Echo strength per ray: 1 for a
-/// smooth surface up to `specular_cutoff_deg` of incidence, 0 beyond; `rough_echo_ratio` times the cosine of incidence for a rough
-/// surface. The reading is the distance at which the strength summed over one pulse length reaches `detection_threshold`. This
-/// detects distant walls and a bar of 6 cm at one meter, but not the ground that a level cone grazes.
+/// smooth surface up to `specular_cutoff_deg` of incidence, 0 beyond; `rough_echo_ratio` times the cosine of incidence
+/// for a rough surface. The reading is the distance at which the strength summed over one pulse length reaches
+/// `detection_threshold`. This detects distant walls and a bar of 6 cm at one meter, but not the ground that a level
+/// cone grazes.
 ///
 /// Transducers that fire together may receive each other's nearest echo and report half the path length. Not modeled:
 /// the robot's own shapes (a ring is mounted clear of them), double reflections, dust (far smaller than the
@@ -28,7 +29,8 @@ class UltrasonicRing {
  public:
   /// Throws InputError when the robot has no frame `ultrasonic_0`, or when slots are too short for the echo from
   /// maximum range.
-  UltrasonicRing(const UltrasonicSettings& settings, const LidarScene& scene, const RobotDescription& robot, std::uint64_t seed);
+  UltrasonicRing(const UltrasonicSettings& settings, const LidarScene& scene, const RobotDescription& robot,
+                 std::uint64_t seed);
 
   /// Returns the readings of the transducers that fire in slot number `tick`.
   std::vector<UltrasonicRange> ping(const Pose3& T_world_body, Time now, std::uint64_t tick) const;

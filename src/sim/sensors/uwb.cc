@@ -52,14 +52,15 @@ double uwb_range_bias_m(double distance_m) {
                                   0.021,  0.035,  0.042,  0.049,  0.062,  0.071,  0.076,  0.081};
   constexpr double kSent_dbm = -14.3;  // -41.3 dBm/MHz over 500 MHz
   constexpr double kChannel2_hz = 3993.6e6, kLight_mps = 299792458.0;
-  const double path_loss_db = 20.0 * std::log10(4.0 * std::numbers::pi * kChannel2_hz * std::max(distance_m, 0.01) / kLight_mps);
+  const double path_loss_db =
+      20.0 * std::log10(4.0 * std::numbers::pi * kChannel2_hz * std::max(distance_m, 0.01) / kLight_mps);
   const double row = std::clamp((kStrongest_dbm - (kSent_dbm - path_loss_db)) / kStep_db, 0.0, kBias_m.size() - 1.0);
   const auto above = static_cast<std::size_t>(std::min(row, kBias_m.size() - 2.0));
   return kBias_m[above] + (row - static_cast<double>(above)) * (kBias_m[above + 1] - kBias_m[above]);
 }
 
 bool is_uwb_path_nlos(const LidarScene& scene, const Eigen::Vector3d& p_world_antenna,
-                         const Eigen::Vector3d& p_world_anchor) {
+                      const Eigen::Vector3d& p_world_anchor) {
   constexpr double kHousing_m = 0.1;     // radius of the housings of antenna and anchor; objects inside are ignored
   constexpr double kPathRadius_m = 0.1;  // radius of the bundle halfway; thinner objects are passed by diffraction
   constexpr int kLines = 6;              // lines around the direct one
@@ -105,11 +106,13 @@ std::optional<UwbRange> Uwb::read(const LidarScene& scene, const Eigen::Vector3d
   const auto index = static_cast<std::uint64_t>(anchor->number);
   const double distance_m = (anchor->p_world - p_world_antenna).norm();
   // Assumption: the loss probability rises with the fourth power of the distance.
-  const double loss = settings_.loss_probability + (1.0 - settings_.loss_probability) * std::pow(distance_m / settings_.range_max_m, 4.0);
+  const double loss = settings_.loss_probability +
+                      (1.0 - settings_.loss_probability) * std::pow(distance_m / settings_.range_max_m, 4.0);
   if (loss_.uniform(tick, index) < loss) return std::nullopt;
 
   UwbRange range{.stamp = now, .anchor = anchor->number};
-  range.range_m = distance_m + settings_.bias_scale * uwb_range_bias_m(distance_m) + settings_.range_noise_std_m * noise_.normal(tick, index);
+  range.range_m = distance_m + settings_.bias_scale * uwb_range_bias_m(distance_m) +
+                  settings_.range_noise_std_m * noise_.normal(tick, index);
   if (is_uwb_path_nlos(scene, p_world_antenna, anchor->p_world)) {
     if (nlos_loss_.uniform(tick, index) < settings_.nlos_loss_probability) return std::nullopt;
     range.range_m -= settings_.nlos_bias_m * std::log(nlos_bias_.uniform(tick, index));

@@ -1,11 +1,10 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <cstdint>
 #include <optional>
 #include <vector>
 
+#include <Eigen/Core>
 #include <mujoco/mujoco.h>
 
 #include "core/random.h"
@@ -55,6 +54,6 @@ class Uwb {
 
 /// Returns whether the path between antenna and anchor is non-line-of-sight.
 bool is_uwb_path_nlos(const LidarScene& scene, const Eigen::Vector3d& p_world_antenna,
-                         const Eigen::Vector3d& p_world_anchor);
+                      const Eigen::Vector3d& p_world_anchor);
 
 }  // namespace patrol::sim

@@ -21,7 +21,8 @@ namespace {
 constexpr Time kContactGap = std::chrono::milliseconds(500);
 
 bool begins_with_one_of(std::string_view name, std::initializer_list<std::string_view> prefixes) {
-  return std::any_of(prefixes.begin(), prefixes.end(), [&](std::string_view prefix) { return name.starts_with(prefix); });
+  return std::any_of(prefixes.begin(), prefixes.end(),
+                     [&](std::string_view prefix) { return name.starts_with(prefix); });
 }
 
 std::string_view name_of(const mjModel& model, int geom) {
@@ -60,14 +61,15 @@ std::string geom_name(const mjModel& model, int geom) {
   return fmt::format("geom {} of {}", geom, body == nullptr ? "?" : body);
 }
 
-std::unique_ptr<Locomotion> make_locomotion(const SimulatorSettings& settings, const RobotDescription& robot, mjModel& physics) {
+std::unique_ptr<Locomotion> make_locomotion(const SimulatorSettings& settings, const RobotDescription& robot,
+                                            mjModel& physics) {
   if (!robot.tracks) return std::make_unique<QuadrupedDrive>(robot, settings.locomotion);
   return std::make_unique<TrackDrive>(robot, settings.track_drive, settings.sensors.hall.ticks_per_rad(), physics);
 }
 
 AssembledModel assemble(const SimulatorSettings& settings) {
-  AssembledModel model = assemble_model(settings.world_xml, settings.robot_urdf, settings.T_world_start,
-                                        settings.static_obstacles);
+  AssembledModel model =
+      assemble_model(settings.world_xml, settings.robot_urdf, settings.T_world_start, settings.static_obstacles);
   deform_lining(settings.lining_deformations, settings.lining, *model.view);
   return model;
 }
@@ -75,7 +77,7 @@ AssembledModel assemble(const SimulatorSettings& settings) {
 }  // namespace
 
 Simulator::Simulator(const SimulatorSettings& settings, const RobotDescription& robot, std::uint64_t seed,
-           const DepthImagerFactory& make_depth_imager)
+                     const DepthImagerFactory& make_depth_imager)
     : model_(assemble(settings)),
       data_(make_data(*model_.physics)),
       culler_(*model_.physics),
@@ -85,7 +87,8 @@ Simulator::Simulator(const SimulatorSettings& settings, const RobotDescription& 
       locomotion_(make_locomotion(settings, robot, *model_.physics)),
       actors_(*model_.physics, settings.actors),
       sensors_(settings.sensors, robot, *model_.physics, *model_.view,
-               GasPlume(*model_.view, settings.leaks, settings.wind), settings.faults, seed, make_depth_imager, settings.subsurface),
+               GasPlume(*model_.view, settings.leaks, settings.wind), settings.faults, seed, make_depth_imager,
+               settings.subsurface),
       recorded_(settings.recorded),
       tick_(from_seconds(model_.physics->opt.timestep)) {
   if (!settings.teleop_route.empty()) operator_.emplace(settings.teleop_operator, settings.teleop_route, seed);
@@ -104,8 +107,8 @@ void Simulator::step() {
   {
     const auto timer = clock_.time_stage("locomotion");
     const NewestReadings& newest = sensors_.newest();
-    locomotion_->step({.imu = newest.imu, .joints = newest.joints, .feet = newest.feet, .ticks = newest.ticks}, command_,
-                      *model_.physics, *data_);
+    locomotion_->step({.imu = newest.imu, .joints = newest.joints, .feet = newest.feet, .ticks = newest.ticks},
+                      command_, *model_.physics, *data_);
     if (antenna_) antenna_->step(*model_.physics, *data_);
   }
   {
@@ -227,7 +230,8 @@ GroundTruth Simulator::truth() const {
   mjtNum velocity[6];  // angular, then linear part, in the body's frame
   mj_objectVelocity(model_.physics.get(), data_.get(), mjOBJ_XBODY, robot_body_, velocity, 1);
   return {.stamp = now_,
-          .T_world_body = {Eigen::Vector3d(position), Eigen::Quaterniond(rotation[0], rotation[1], rotation[2], rotation[3])},
+          .T_world_body = {Eigen::Vector3d(position),
+                           Eigen::Quaterniond(rotation[0], rotation[1], rotation[2], rotation[3])},
           .twist = {.linear = Eigen::Vector3d(velocity + 3), .angular = Eigen::Vector3d(velocity)}};
 }
 

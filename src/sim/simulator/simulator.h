@@ -8,22 +8,22 @@
 
 #include "core/ground_truth.h"
 #include "core/messages.h"
-#include "core/stage_profiler.h"
 #include "core/robot_description.h"
 #include "core/sensors/registry.h"
+#include "core/stage_profiler.h"
 #include "sim/actors.h"
 #include "sim/antenna_mount.h"
+#include "sim/collision_culler.h"
 #include "sim/gas_plume.h"
 #include "sim/lining_deformation.h"
 #include "sim/locomotion/locomotion.h"
 #include "sim/locomotion/quadruped_controller.h"
 #include "sim/locomotion/track_drive_settings.h"
 #include "sim/model_assembly.h"
-#include "sim/collision_culler.h"
-#include "sim/static_obstacles.h"
-#include "sim/teleop_operator.h"
 #include "sim/sensors/sensor_suite.h"
+#include "sim/static_obstacles.h"
 #include "sim/subsurface.h"
+#include "sim/teleop_operator.h"
 
 namespace patrol::sim {
 
@@ -36,14 +36,14 @@ struct SimulatorSettings {
   LocomotionSettings locomotion;   ///< settings for a robot with legs
   TrackDriveSettings track_drive;  ///< settings for a robot with tracks
   std::vector<StaticObstacleSettings> static_obstacles;
-  std::optional<TunnelLining> lining;            ///< lining of the world, in world
+  std::optional<TunnelLining> lining;  ///< lining of the world, in world
   std::vector<LiningDeformationSettings> lining_deformations;
   std::vector<ActorSettings> actors;
   std::vector<LeakSettings> leaks;
   WindSettings wind;
   Subsurface subsurface;
   std::vector<FaultSettings> faults;
-  TeleopRoute teleop_route;             ///< teleoperated route, in world; empty: no operator
+  TeleopRoute teleop_route;  ///< teleoperated route, in world; empty: no operator
   TeleopOperatorSettings teleop_operator;
   std::vector<TeleopCommand> recorded;  ///< recorded teleoperation commands, replayed instead of `teleop_route`
 };
@@ -54,7 +54,7 @@ class Simulator {
  public:
   /// A depth camera requires `make_depth_imager` (render/scene/depth_renderer.h).
   Simulator(const SimulatorSettings& settings, const RobotDescription& robot, std::uint64_t seed,
-       const DepthImagerFactory& make_depth_imager = {});
+            const DepthImagerFactory& make_depth_imager = {});
 
   /// Advances the simulation by one physics tick (2 ms).
   void step();

@@ -1,13 +1,13 @@
 #include "slam/calibration/calibrate.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <fmt/format.h>
 
 #include "core/error.h"
 #include "slam/calibration/motion_residual.h"
@@ -19,8 +19,8 @@ constexpr std::size_t kNumParameters = kCalibrationParameters.size();
 using Vector6 = CalibrationVector;
 using Matrix6 = Eigen::Matrix<double, kNumParameters, kNumParameters>;
 
-constexpr double kStdPerMedian = 1.4826;    ///< ratio of standard deviation to median absolute value of a Gaussian
-constexpr double kMinNoiseScale = 1e-6;     ///< lower bound of the noise scales, for logs without noise
+constexpr double kStdPerMedian = 1.4826;  ///< ratio of standard deviation to median absolute value of a Gaussian
+constexpr double kMinNoiseScale = 1e-6;   ///< lower bound of the noise scales, for logs without noise
 constexpr double kCauchy = 2.5;  ///< scale of the Cauchy weights in standard deviations, for the first iterations
 constexpr int kCauchyIterations = 15;
 constexpr std::size_t kGroups = 60, kMinGroups = 20, kSegmentsPerGroup = 4;
@@ -72,7 +72,9 @@ class Calibrator {
   }
 
   /// Covariance from the curvature, and from the scores of groups of segments (sandwich estimator).
-  Matrix6 curvature_covariance(const std::array<bool, kNumParameters>& is_fixed) const { return inverse_without_fixed(curvature(false), is_fixed); }
+  Matrix6 curvature_covariance(const std::array<bool, kNumParameters>& is_fixed) const {
+    return inverse_without_fixed(curvature(false), is_fixed);
+  }
   Matrix6 covariance(const std::array<bool, kNumParameters>& is_fixed) const {
     const std::size_t runs = std::min(kGroups, pairs_.size() / kSegmentsPerGroup);
     if (runs < kMinGroups) return curvature_covariance(is_fixed);
@@ -117,7 +119,8 @@ class Calibrator {
 
   void evaluate() {
     residuals_.clear();
-    for (const MotionSegment& pair : pairs_) residuals_.push_back(motion_residual(pair, parameters_, settings_.odometry));
+    for (const MotionSegment& pair : pairs_)
+      residuals_.push_back(motion_residual(pair, parameters_, settings_.odometry));
   }
 
   /// Uses only components that matching constrains better than odometry; elsewhere the tracker followed odometry, so
@@ -127,11 +130,14 @@ class Calibrator {
     for (const MotionResidual& residual : residuals_) {
       for (Eigen::Index i = 0; i < 3; ++i) {
         if (residual.lidar_covariance(i, i) > residual.odometry_covariance(i, i)) continue;
-        (i < 2 ? translation_errors : rotation_errors).push_back(std::abs(residual.error[i]) / std::sqrt(residual.odometry_covariance(i, i)));
+        (i < 2 ? translation_errors : rotation_errors)
+            .push_back(std::abs(residual.error[i]) / std::sqrt(residual.odometry_covariance(i, i)));
       }
     }
-    if (!translation_errors.empty()) translation_noise_scale_ = std::max(kMinNoiseScale, kStdPerMedian * median(std::move(translation_errors)));
-    if (!rotation_errors.empty()) rotation_noise_scale_ = std::max(kMinNoiseScale, kStdPerMedian * median(std::move(rotation_errors)));
+    if (!translation_errors.empty())
+      translation_noise_scale_ = std::max(kMinNoiseScale, kStdPerMedian * median(std::move(translation_errors)));
+    if (!rotation_errors.empty())
+      rotation_noise_scale_ = std::max(kMinNoiseScale, kStdPerMedian * median(std::move(rotation_errors)));
   }
 
   void update_weights(bool is_early) {
@@ -159,7 +165,8 @@ class Calibrator {
 
   Vector6 gradient(std::size_t begin, std::size_t end) const {
     Vector6 g = Vector6::Zero();
-    for (std::size_t k = begin; k < end; ++k) g += weights_[k].weight * residuals_[k].jacobian.transpose() * (information_[k] * residuals_[k].error);
+    for (std::size_t k = begin; k < end; ++k)
+      g += weights_[k].weight * residuals_[k].jacobian.transpose() * (information_[k] * residuals_[k].error);
     return g;
   }
 
@@ -169,7 +176,7 @@ class Calibrator {
   double translation_noise_scale_ = 1.0, rotation_noise_scale_ = 1.0;
   int iterations_ = 0;
   bool converged_ = false;
-  std::vector<MotionResidual> residuals_;           ///< [segment]
+  std::vector<MotionResidual> residuals_;     ///< [segment]
   std::vector<Eigen::Matrix3d> information_;  ///< [segment]
   std::vector<double> distances_;             ///< [segment], standard deviations
   std::vector<Weight> weights_;               ///< [segment]
@@ -177,7 +184,8 @@ class Calibrator {
 
 /// Returns the free parameter with the largest ratio of standard deviation to limit, if the ratio exceeds 1; otherwise
 /// none.
-std::optional<std::size_t> find_worst(const Matrix6& covariance, const Vector6& max_std, const std::array<bool, kNumParameters>& is_fixed) {
+std::optional<std::size_t> find_worst(const Matrix6& covariance, const Vector6& max_std,
+                                      const std::array<bool, kNumParameters>& is_fixed) {
   std::optional<std::size_t> worst;
   double worst_ratio = 1.0;
   for (std::size_t i = 0; i < kNumParameters; ++i) {
@@ -203,13 +211,16 @@ Calibration CalibrationResult::calibration() const {
           .steering_bias_rad_per_m = p[5].value};
 }
 
-CalibrationResult calibrate(const std::vector<MotionSegment>& pairs, const Pose2& T_body_lidar_before, const CalibratorSettings& settings) {
+CalibrationResult calibrate(const std::vector<MotionSegment>& pairs, const Pose2& T_body_lidar_before,
+                            const CalibratorSettings& settings) {
   if (pairs.size() < static_cast<std::size_t>(settings.min_segments)) {
-    throw InputError(fmt::format("calibration needs at least {} motion segments, got {}", settings.min_segments, pairs.size()));
+    throw InputError(
+        fmt::format("calibration needs at least {} motion segments, got {}", settings.min_segments, pairs.size()));
   }
   const Vector6 before{T_body_lidar_before.x, T_body_lidar_before.y, T_body_lidar_before.yaw, 1.0, 1.0, 0.0};
-  const Vector6 max_std{settings.max_std_lidar_m,        settings.max_std_lidar_m,    settings.max_std_lidar_rad,
-                        settings.max_std_distance_scale, settings.max_std_rotation_scale, settings.max_std_steering_bias_rad_per_m};
+  const Vector6 max_std{settings.max_std_lidar_m,        settings.max_std_lidar_m,
+                        settings.max_std_lidar_rad,      settings.max_std_distance_scale,
+                        settings.max_std_rotation_scale, settings.max_std_steering_bias_rad_per_m};
   Calibrator calibrator(pairs, before, settings);
   CalibrationResult result;
   std::array<bool, kNumParameters> is_fixed{};
@@ -232,7 +243,8 @@ CalibrationResult calibrate(const std::vector<MotionSegment>& pairs, const Pose2
   }
   result.num_segments = static_cast<int>(pairs.size());
   result.errors = calibrator.distances();
-  result.num_rejected = static_cast<int>(std::count_if(result.errors.begin(), result.errors.end(), [&](double error) { return error >= settings.outlier_sigma; }));
+  result.num_rejected = static_cast<int>(std::count_if(result.errors.begin(), result.errors.end(),
+                                                       [&](double error) { return error >= settings.outlier_sigma; }));
   result.translation_noise_scale = calibrator.translation_noise_scale();
   result.rotation_noise_scale = calibrator.rotation_noise_scale();
   result.iterations = calibrator.iterations();

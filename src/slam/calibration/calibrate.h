@@ -1,9 +1,9 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <array>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "core/settings.h"
 #include "slam/calibration/motion_segments.h"
@@ -45,8 +45,8 @@ struct CalibratorSettings {
 };
 
 /// Parameter names as in Calibration, in the order of CalibrationResult::parameters.
-inline constexpr std::array<const char*, 6> kCalibrationParameters = {"lidar_x_m",      "lidar_y_m",  "lidar_yaw_rad",
-                                                                      "distance_scale", "turn_scale", "steering_rad_per_m"};
+inline constexpr std::array<const char*, 6> kCalibrationParameters = {
+    "lidar_x_m", "lidar_y_m", "lidar_yaw_rad", "distance_scale", "turn_scale", "steering_rad_per_m"};
 
 struct CalibratedParameter {
   double before = 0.0;  ///< value in the log
@@ -60,9 +60,10 @@ struct CalibrationResult {
   /// Covariance of the observable parameters; zero elsewhere.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
   int num_segments = 0;
-  int num_rejected = 0;          ///< number of rejected segments: odometry outliers or wrong matches
-  std::vector<double> errors;    ///< [segment], standard deviations
-  double translation_noise_scale = 0.0;       ///< scale of the translational odometry noise relative to CalibratorSettings::odometry
+  int num_rejected = 0;        ///< number of rejected segments: odometry outliers or wrong matches
+  std::vector<double> errors;  ///< [segment], standard deviations
+  double translation_noise_scale =
+      0.0;  ///< scale of the translational odometry noise relative to CalibratorSettings::odometry
   double rotation_noise_scale = 0.0;
   int iterations = 0;
   bool converged = false;
@@ -81,8 +82,8 @@ struct CalibrationResult {
 ///   no weight (wheel slip, logs with reversed direction). The scales of the translational and rotational odometry
 ///   noise are estimated in each iteration (median of the absolute residuals).
 /// - A parameter whose standard deviation exceeds the limit of the settings keeps its value and is excluded, the worst
-///   first. Without rotation, the lever arm is unobservable. On a circle, steering and rotation scale cannot be separated: the
-///   rotation scale is then correct only if the steering is.
+///   first. Without rotation, the lever arm is unobservable. On a circle, steering and rotation scale cannot be
+///   separated: the rotation scale is then correct only if the steering is.
 /// - Standard deviations follow from the scores of groups of consecutive segments, and thus also hold for errors longer
 ///   than a segment (White's sandwich estimator, clustered). With fewer than twenty groups they follow from the
 ///   curvature alone. They do not cover odometry errors outside the model; in that case segments of other lengths give
@@ -92,6 +93,7 @@ struct CalibrationResult {
 /// clocks. At constant speed, scans stamped late by dt are equivalent to a lidar mounted speed * dt farther back.
 ///
 /// Throws InputError for fewer than `min_segments` segments.
-CalibrationResult calibrate(const std::vector<MotionSegment>& pairs, const Pose2& T_body_lidar_before, const CalibratorSettings& settings);
+CalibrationResult calibrate(const std::vector<MotionSegment>& pairs, const Pose2& T_body_lidar_before,
+                            const CalibratorSettings& settings);
 
 }  // namespace patrol::slam

@@ -13,7 +13,9 @@ void CalibratedScans::correct(RecordedScan& recorded) {
   if (calibration_.override_lidar_pose) recorded.T_body_lidar = calibration_.T_body_lidar();
   if (!calibration_.changes_odometry()) return;  // keep the log bit-identical
   const Pose2 T_odom_now = recorded.T_odom_body;
-  T_corrected_last_ = T_odom_last_ ? T_corrected_last_ * corrected_step(T_odom_last_->inverse() * T_odom_now, calibration_) : T_odom_now;
+  T_corrected_last_ = T_odom_last_
+                          ? T_corrected_last_ * corrected_step(T_odom_last_->inverse() * T_odom_now, calibration_)
+                          : T_odom_now;
   T_odom_last_ = T_odom_now;
   recorded.T_odom_body = T_corrected_last_;
   recorded.T_begin_end = corrected_step(recorded.T_begin_end, calibration_);

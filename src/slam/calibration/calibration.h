@@ -20,16 +20,18 @@ namespace patrol::slam {
 /// reports. On a tracked vehicle, which turns about its instantaneous center of rotation, that point differs slightly
 /// from the body origin.
 struct Calibration {
-  bool override_lidar_pose = false;        ///< true: the following lidar pose replaces that of the log
-  double lidar_x_m = 0.0;           ///< lidar pose in body
+  bool override_lidar_pose = false;  ///< true: the following lidar pose replaces that of the log
+  double lidar_x_m = 0.0;            ///< lidar pose in body
   double lidar_y_m = 0.0;
   double lidar_yaw_rad = 0.0;
-  double distance_scale = 1.0;      ///< true distance / odometry distance
-  double rotation_scale = 1.0;          ///< true yaw change / odometry yaw change
+  double distance_scale = 1.0;           ///< true distance / odometry distance
+  double rotation_scale = 1.0;           ///< true yaw change / odometry yaw change
   double steering_bias_rad_per_m = 0.0;  ///< unmeasured yaw change to the left per meter of odometry
 
   Pose2 T_body_lidar() const { return {lidar_x_m, lidar_y_m, lidar_yaw_rad}; }
-  bool changes_odometry() const { return distance_scale != 1.0 || rotation_scale != 1.0 || steering_bias_rad_per_m != 0.0; }
+  bool changes_odometry() const {
+    return distance_scale != 1.0 || rotation_scale != 1.0 || steering_bias_rad_per_m != 0.0;
+  }
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

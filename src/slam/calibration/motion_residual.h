@@ -27,6 +27,7 @@ struct MotionResidual {
 
 /// Predicts the odometry of a segment from the lidar motion. X L X^-1 is the body motion, with L the lidar motion and X
 /// the lidar pose. The inverse of the odometry correction is applied step by step. `odometry` is the noise model.
-MotionResidual motion_residual(const MotionSegment& pair, const CalibrationVector& parameters, const MotionModelSettings& odometry);
+MotionResidual motion_residual(const MotionSegment& pair, const CalibrationVector& parameters,
+                               const MotionModelSettings& odometry);
 
 }  // namespace patrol::slam

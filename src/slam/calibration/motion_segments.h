@@ -1,9 +1,9 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <optional>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "core/sensors/recorded_scan.h"
 #include "core/settings.h"
@@ -29,8 +29,8 @@ struct MotionSegment {
 };
 
 struct MotionSegmentSettings {
-  double length_m = 0.5;      ///< a segment ends when lidar or odometry has moved by this distance
-  double rotation_rad = 0.35;   ///< or rotated by this angle
+  double length_m = 0.5;       ///< a segment ends when lidar or odometry has moved by this distance
+  double rotation_rad = 0.35;  ///< or rotated by this angle
   /// Standard deviation of the systematic error of a match, independent of the number of points.
   double match_std_m = 0.002;
   double match_std_rad = 0.0005;

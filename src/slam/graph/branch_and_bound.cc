@@ -22,8 +22,8 @@ struct Candidate {
 
 class Search {
  public:
-  Search(const LikelihoodPyramid& map, const std::vector<Eigen::Vector2d>& points, const SearchWindow& window, int best_sum,
-         const std::optional<SearchExclusion>& exclusion)
+  Search(const LikelihoodPyramid& map, const std::vector<Eigen::Vector2d>& points, const SearchWindow& window,
+         int best_sum, const std::optional<SearchExclusion>& exclusion)
       : map_(map), exclusion_(exclusion), best_sum_(best_sum), cell_m_(map.resolution_m()) {
     double far_m = cell_m_;
     for (const Eigen::Vector2d& point : points) far_m = std::max(far_m, point.norm());
@@ -52,18 +52,22 @@ class Search {
     }
     descend(candidates, top);
     if (!best_) return std::nullopt;
-    return SearchResult{.T_map_points = pose_of(*best_), .score = best_sum_ / (static_cast<double>(LikelihoodPyramid::kOnSurface) * static_cast<double>(rotated_[0].cells.size()))};
+    return SearchResult{.T_map_points = pose_of(*best_),
+                        .score = best_sum_ / (static_cast<double>(LikelihoodPyramid::kOnSurface) *
+                                              static_cast<double>(rotated_[0].cells.size()))};
   }
 
  private:
   void add(int rotation, int col, int row, int level, std::vector<Candidate>& candidates) const {
     int sum = 0;
-    for (const Cell& cell : rotated_[static_cast<std::size_t>(rotation)].cells) sum += map_.value(level, cell.col + col, cell.row + row);
+    for (const Cell& cell : rotated_[static_cast<std::size_t>(rotation)].cells)
+      sum += map_.value(level, cell.col + col, cell.row + row);
     if (sum > best_sum_) candidates.push_back({rotation, col, row, sum});
   }
 
   void descend(std::vector<Candidate>& candidates, int level) {
-    std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) { return a.bound > b.bound; });
+    std::stable_sort(candidates.begin(), candidates.end(),
+                     [](const Candidate& a, const Candidate& b) { return a.bound > b.bound; });
     for (const Candidate& candidate : candidates) {
       if (candidate.bound <= best_sum_) return;
       if (is_excluded(candidate, level)) continue;
@@ -84,7 +88,8 @@ class Search {
   }
 
   Pose2 pose_of(const Candidate& candidate) const {
-    return {corner_m_.x() + candidate.col * cell_m_, corner_m_.y() + candidate.row * cell_m_, rotated_[static_cast<std::size_t>(candidate.rotation)].yaw_rad};
+    return {corner_m_.x() + candidate.col * cell_m_, corner_m_.y() + candidate.row * cell_m_,
+            rotated_[static_cast<std::size_t>(candidate.rotation)].yaw_rad};
   }
 
   /// Returns whether all translations of the candidate are excluded.
@@ -92,7 +97,8 @@ class Search {
     if (!exclusion_) return false;
     const Pose2 pose = pose_of(candidate);
     const double half_m = 0.5 * ((1 << level) - 1) * cell_m_;
-    const Eigen::Vector2d offset = pose.position() + Eigen::Vector2d::Constant(half_m) - exclusion_->T_map_center.position();
+    const Eigen::Vector2d offset =
+        pose.position() + Eigen::Vector2d::Constant(half_m) - exclusion_->T_map_center.position();
     return (offset.cwiseAbs() + Eigen::Vector2d::Constant(half_m)).norm() <= exclusion_->radius_m &&
            std::abs(wrap_angle(pose.yaw - exclusion_->T_map_center.yaw)) <= exclusion_->angle_rad;
   }
@@ -109,10 +115,12 @@ class Search {
 
 }  // namespace
 
-std::optional<SearchResult> search_window(const LikelihoodPyramid& map, const std::vector<Eigen::Vector2d>& points, const SearchWindow& window,
-                                          double min_score, const std::optional<SearchExclusion>& exclusion) {
+std::optional<SearchResult> search_window(const LikelihoodPyramid& map, const std::vector<Eigen::Vector2d>& points,
+                                          const SearchWindow& window, double min_score,
+                                          const std::optional<SearchExclusion>& exclusion) {
   if (points.empty()) return std::nullopt;
-  const int min_sum = static_cast<int>(std::floor(min_score * LikelihoodPyramid::kOnSurface * static_cast<double>(points.size())));
+  const int min_sum =
+      static_cast<int>(std::floor(min_score * LikelihoodPyramid::kOnSurface * static_cast<double>(points.size())));
   return Search(map, points, window, min_sum, exclusion).run();
 }
 

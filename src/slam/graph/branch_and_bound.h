@@ -1,9 +1,9 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <optional>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "core/frames.h"
 #include "slam/graph/likelihood_pyramid.h"
@@ -33,7 +33,8 @@ struct SearchResult {
 /// nested squares of positions [Hess16, algorithm 3]. The step is one cell of the finest level in position, and in
 /// angle the rotation that moves the farthest point by one cell. Returns none if no pose qualifies or there are no
 /// points.
-std::optional<SearchResult> search_window(const LikelihoodPyramid& map, const std::vector<Eigen::Vector2d>& points, const SearchWindow& window,
-                                          double min_score, const std::optional<SearchExclusion>& exclusion = std::nullopt);
+std::optional<SearchResult> search_window(const LikelihoodPyramid& map, const std::vector<Eigen::Vector2d>& points,
+                                          const SearchWindow& window, double min_score,
+                                          const std::optional<SearchExclusion>& exclusion = std::nullopt);
 
 }  // namespace patrol::slam

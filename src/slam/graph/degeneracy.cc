@@ -8,7 +8,8 @@ std::optional<Eigen::Vector2d> degenerate_direction(const Eigen::Matrix3d& infor
   if (information(2, 2) <= 0.0) return std::nullopt;
   // Information of the position with free heading (Schur complement).
   const Eigen::Vector2d with_yaw = information.topRightCorner<2, 1>();
-  const Eigen::Matrix2d position = information.topLeftCorner<2, 2>() - with_yaw * with_yaw.transpose() / information(2, 2);
+  const Eigen::Matrix2d position =
+      information.topLeftCorner<2, 2>() - with_yaw * with_yaw.transpose() / information(2, 2);
   const SymmetricEigen<2> axes = symmetric_eigen(position);  // the smaller eigenvalue first
   if (axes.values[0] >= min_eigenvalue_ratio * axes.values[1]) return std::nullopt;
   return Eigen::Vector2d(axes.vectors.col(0));

@@ -1,14 +1,14 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <optional>
+
+#include <Eigen/Core>
 
 namespace patrol::slam {
 
 /// Returns the degenerate direction of a match, for example along a smooth wall [Zhang16]. A direction is degenerate if
-/// its information, with free heading, is below `min_eigenvalue_ratio` of that in the best direction. Result: unit vector in the
-/// frame of `information`, which is for x, y, yaw; none if both directions are constrained.
+/// its information, with free heading, is below `min_eigenvalue_ratio` of that in the best direction. Result: unit
+/// vector in the frame of `information`, which is for x, y, yaw; none if both directions are constrained.
 ///
 /// Deviation from [Zhang16]: a ratio of eigenvalues instead of an absolute threshold.
 std::optional<Eigen::Vector2d> degenerate_direction(const Eigen::Matrix3d& information, double min_eigenvalue_ratio);

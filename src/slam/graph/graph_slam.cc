@@ -1,9 +1,9 @@
 #include "slam/graph/graph_slam.h"
 
-#include <Eigen/LU>
-
 #include <algorithm>
 #include <cmath>
+
+#include <Eigen/LU>
 
 #include "slam/graph/degeneracy.h"
 #include "slam/graph/edge_weight.h"
@@ -16,17 +16,29 @@ namespace patrol::slam {
 void LoopClosureStatistics::add(MatchFailure failure) {
   ++searched;
   switch (failure) {
-    case MatchFailure::kNone: ++closed; break;
-    case MatchFailure::kNotFound: ++not_found; break;
-    case MatchFailure::kAmbiguous: ++ambiguous; break;
-    case MatchFailure::kNoOverlap: ++no_overlap; break;
-    case MatchFailure::kMismatch: ++mismatched; break;
+    case MatchFailure::kNone:
+      ++closed;
+      break;
+    case MatchFailure::kNotFound:
+      ++not_found;
+      break;
+    case MatchFailure::kAmbiguous:
+      ++ambiguous;
+      break;
+    case MatchFailure::kNoOverlap:
+      ++no_overlap;
+      break;
+    case MatchFailure::kMismatch:
+      ++mismatched;
+      break;
   }
 }
 
 GraphSlam::GraphSlam(const GraphSlamSettings& settings)
     : settings_(settings),
-      rendering_{.resolution_m = settings.scan_odometry.resolution_m, .max_extent_m = settings.scan_odometry.max_extent_m, .integration = settings.scan_odometry.integration},
+      rendering_{.resolution_m = settings.scan_odometry.resolution_m,
+                 .max_extent_m = settings.scan_odometry.max_extent_m,
+                 .integration = settings.scan_odometry.integration},
       tracker_(settings.scan_odometry),
       cache_(static_cast<std::size_t>(settings.cached_submaps)),
       incremental_map_(rendering_),
@@ -41,13 +53,20 @@ SlamUpdate GraphSlam::update(const LevelScan& input_scan, const Pose2& T_odom_bo
   if (tracked.is_keyframe) add_keyframe(scan, tracked);
   update_estimate(tracked, scan.stamp);
   gate_ranges(tracked, T_odom_body);
-  if (tracked.is_keyframe && !ranges_.ranges().empty() && ranges_.ranges().back().node >= smoothed_until_ + settings_.range_smoothing_period_keyframes) smooth_with_ranges(tracked.submap);
+  if (tracked.is_keyframe && !ranges_.ranges().empty() &&
+      ranges_.ranges().back().node >= smoothed_until_ + settings_.range_smoothing_period_keyframes)
+    smooth_with_ranges(tracked.submap);
   path_.push_back({static_cast<int>(keyframes_.size()) - 1, tracked.T_local_body});
   now_.mean = T_map_body(tracked.T_local_body);
-  return {.T_map_body = now_.mean, .covariance = now_.covariance, .is_keyframe = tracked.is_keyframe, .match_score = tracked.inlier_ratio};
+  return {.T_map_body = now_.mean,
+          .covariance = now_.covariance,
+          .is_keyframe = tracked.is_keyframe,
+          .match_score = tracked.inlier_ratio};
 }
 
-Pose2 GraphSlam::T_map_body(const Pose2& T_local_body) const { return graph_.T_map_node.back() * (keyframes_.back().T_local_body.inverse() * T_local_body); }
+Pose2 GraphSlam::T_map_body(const Pose2& T_local_body) const {
+  return graph_.T_map_node.back() * (keyframes_.back().T_local_body.inverse() * T_local_body);
+}
 
 void GraphSlam::add_keyframe(const LevelScan& scan, const TrackedScan& tracked) {
   const int node = static_cast<int>(keyframes_.size());
@@ -57,8 +76,13 @@ void GraphSlam::add_keyframe(const LevelScan& scan, const TrackedScan& tracked) 
     const Keyframe& before = keyframes_.back();
     const Pose2 T_before_node = before.T_local_body.inverse() * tracked.T_local_body;
     graph_.T_map_node.push_back(graph_.T_map_node.back() * T_before_node);
-    const PoseGaussian motion = predict_motion({}, T_before_node, to_seconds(scan.stamp - before.scan.stamp), settings_.scan_odometry.motion);
-    graph_.edges.push_back({.from = node - 1, .to = node, .T_from_to = T_before_node, .information = motion.covariance.inverse(), .kind = PoseGraphEdge::Kind::kOdometry});
+    const PoseGaussian motion =
+        predict_motion({}, T_before_node, to_seconds(scan.stamp - before.scan.stamp), settings_.scan_odometry.motion);
+    graph_.edges.push_back({.from = node - 1,
+                            .to = node,
+                            .T_from_to = T_before_node,
+                            .information = motion.covariance.inverse(),
+                            .kind = PoseGraphEdge::Kind::kOdometry});
     if (tracked.inlier_ratio > 0.0) add_match_edge(tracked);
   }
   keyframes_.push_back({scan, tracked.T_local_body});
@@ -69,13 +93,15 @@ void GraphSlam::add_keyframe(const LevelScan& scan, const TrackedScan& tracked) 
 
 // Adds an edge between the newest node and its matched submap.
 void GraphSlam::add_match_edge(const TrackedScan& tracked) {
-  const int first = submaps_[static_cast<std::size_t>(tracked.submap)].first, node = static_cast<int>(graph_.T_map_node.size()) - 1;
+  const int first = submaps_[static_cast<std::size_t>(tracked.submap)].first,
+            node = static_cast<int>(graph_.T_map_node.size()) - 1;
   const Pose2& T_local_first = keyframes_[static_cast<std::size_t>(first)].T_local_body;
-  graph_.edges.push_back({.from = first,
-                          .to = node,
-                          .T_from_to = T_local_first.inverse() * tracked.T_local_body,
-                          .information = match_edge_information(rotate_covariance(tracked.match_information, -T_local_first.yaw)),
-                          .kind = PoseGraphEdge::Kind::kMatch});
+  graph_.edges.push_back(
+      {.from = first,
+       .to = node,
+       .T_from_to = T_local_first.inverse() * tracked.T_local_body,
+       .information = match_edge_information(rotate_covariance(tracked.match_information, -T_local_first.yaw)),
+       .kind = PoseGraphEdge::Kind::kMatch});
 }
 
 Eigen::Matrix3d GraphSlam::match_edge_information(const Eigen::Matrix3d& match_information) const {
@@ -84,17 +110,24 @@ Eigen::Matrix3d GraphSlam::match_edge_information(const Eigen::Matrix3d& match_i
 
 // Information along a degenerate direction is noise: project it out.
 Eigen::Matrix3d GraphSlam::observable_information(const Eigen::Matrix3d& match_information) const {
-  const std::optional<Eigen::Vector2d> degenerate = degenerate_direction(match_information, settings_.min_eigenvalue_ratio);
-  return settings_.scan_odometry.likelihood_tempering * (degenerate ? project_out(match_information, *degenerate) : match_information);
+  const std::optional<Eigen::Vector2d> degenerate =
+      degenerate_direction(match_information, settings_.min_eigenvalue_ratio);
+  return settings_.scan_odometry.likelihood_tempering *
+         (degenerate ? project_out(match_information, *degenerate) : match_information);
 }
 
 // Propagates the covariance with odometry and updates it with the match.
 void GraphSlam::update_estimate(const TrackedScan& tracked, Time stamp) {
-  const Pose2 T_local_last = path_.empty() ? tracked.T_local_body : path_.back().T_local_body, T_map_now = T_map_body(tracked.T_local_body);
+  const Pose2 T_local_last = path_.empty() ? tracked.T_local_body : path_.back().T_local_body,
+              T_map_now = T_map_body(tracked.T_local_body);
   if (!path_.empty()) {
-    const Eigen::Matrix3d step = predict_motion({}, T_local_last.inverse() * tracked.T_local_body, std::max(0.0, to_seconds(stamp - stamp_)), settings_.scan_odometry.motion).covariance;
+    const Eigen::Matrix3d step =
+        predict_motion({}, T_local_last.inverse() * tracked.T_local_body, std::max(0.0, to_seconds(stamp - stamp_)),
+                       settings_.scan_odometry.motion)
+            .covariance;
     now_.covariance = compose_covariance(now_, T_map_now, step);
-    const Eigen::Matrix3d match = rotate_covariance(observable_information(tracked.match_information), T_map_now.yaw - tracked.T_local_body.yaw);
+    const Eigen::Matrix3d match =
+        rotate_covariance(observable_information(tracked.match_information), T_map_now.yaw - tracked.T_local_body.yaw);
     now_.covariance = (now_.covariance.inverse() + match).inverse();
   }
   now_.mean = T_map_now;
@@ -105,12 +138,15 @@ void GraphSlam::gate_ranges(const TrackedScan& tracked, const Pose2& T_odom_body
   std::vector<RangeMeasurement> measurements;
   measurements.swap(new_ranges_);
   const bool is_matched = tracked.inlier_ratio > 0.0;
-  const std::optional<Eigen::Vector2d> degenerate = degenerate_direction(rotate_covariance(tracked.match_information, now_.mean.yaw - tracked.T_local_body.yaw), settings_.min_eigenvalue_ratio);
+  const std::optional<Eigen::Vector2d> degenerate =
+      degenerate_direction(rotate_covariance(tracked.match_information, now_.mean.yaw - tracked.T_local_body.yaw),
+                           settings_.min_eigenvalue_ratio);
   if (!settings_.ranges.enabled || (is_matched && !degenerate)) return;
   const Pose2 T_node_body = keyframes_.back().T_local_body.inverse() * tracked.T_local_body;
   for (const RangeMeasurement& measurement : measurements) {
     if (!passes_gate(range_innovation(now_, T_odom_body, measurement, settings_.ranges), settings_.ranges)) continue;
-    ranges_.add(static_cast<int>(keyframes_.size()) - 1, graph_.T_map_node.back(), T_node_body * (T_odom_body.inverse() * measurement.T_odom_body), measurement, degenerate);
+    ranges_.add(static_cast<int>(keyframes_.size()) - 1, graph_.T_map_node.back(),
+                T_node_body * (T_odom_body.inverse() * measurement.T_odom_body), measurement, degenerate);
     PoseGaussian updated = now_;
     update_with_ranges({measurement}, T_odom_body, settings_.ranges, updated);
     now_.covariance = updated.covariance;
@@ -119,7 +155,8 @@ void GraphSlam::gate_ranges(const TrackedScan& tracked, const Pose2& T_odom_body
 
 // Fixed-lag smoothing: free nodes begin at the submap before the matched one.
 void GraphSlam::smooth_with_ranges(int submap) {
-  solve(graph_, settings_.solver, ranges_, std::max(1, submaps_[static_cast<std::size_t>(std::max(0, submap - 1))].first));
+  solve(graph_, settings_.solver, ranges_,
+        std::max(1, submaps_[static_cast<std::size_t>(std::max(0, submap - 1))].first));
   smoothed_until_ = static_cast<int>(keyframes_.size()) - 1;
 }
 
@@ -135,9 +172,12 @@ std::vector<PoseGaussian> GraphSlam::relative_pose_distributions(int submap) con
   std::vector<Pose2> T_map_submaps;
   for (int s = 0; s < finished_submaps_; ++s) T_map_submaps.push_back(T_map_submap(s));
   std::vector<CovarianceEdge> covariance_edges;
-  for (int s = 0; s + 1 < finished_submaps_; ++s) covariance_edges.push_back({.from = s, .to = s + 1, .covariance = odometry_drift_covariance(s)});
+  for (int s = 0; s + 1 < finished_submaps_; ++s)
+    covariance_edges.push_back({.from = s, .to = s + 1, .covariance = odometry_drift_covariance(s)});
   for (const LoopEdge& loop : loops_) {
-    covariance_edges.push_back({.from = loop.target, .to = loop.source, .covariance = graph_.edges[static_cast<std::size_t>(loop.edge)].information.inverse()});
+    covariance_edges.push_back({.from = loop.target,
+                                .to = loop.source,
+                                .covariance = graph_.edges[static_cast<std::size_t>(loop.edge)].information.inverse()});
   }
   return shortest_path_distributions(submap, T_map_submaps, covariance_edges);
 }
@@ -145,12 +185,15 @@ std::vector<PoseGaussian> GraphSlam::relative_pose_distributions(int submap) con
 // Covariance of the next submap's pose in this submap's frame.
 Eigen::Matrix3d GraphSlam::odometry_drift_covariance(int submap) const {
   double length_m = 0.0, turn_rad = 0.0;
-  for (int k = submaps_[static_cast<std::size_t>(submap)].first; k < submaps_[static_cast<std::size_t>(submap) + 1].first; ++k) {
-    const Pose2 step = keyframes_[static_cast<std::size_t>(k)].T_local_body.inverse() * keyframes_[static_cast<std::size_t>(k) + 1].T_local_body;
+  for (int k = submaps_[static_cast<std::size_t>(submap)].first;
+       k < submaps_[static_cast<std::size_t>(submap) + 1].first; ++k) {
+    const Pose2 step = keyframes_[static_cast<std::size_t>(k)].T_local_body.inverse() *
+                       keyframes_[static_cast<std::size_t>(k) + 1].T_local_body;
     length_m += step.position().norm();
     turn_rad += std::abs(step.yaw);
   }
-  const double std_m = settings_.drift_std_m_per_m * length_m, std_rad = settings_.drift_std_rad_per_m * length_m + settings_.drift_std_rad_per_rad * turn_rad;
+  const double std_m = settings_.drift_std_m_per_m * length_m,
+               std_rad = settings_.drift_std_rad_per_m * length_m + settings_.drift_std_rad_per_rad * turn_rad;
   return Eigen::Vector3d(std_m * std_m, std_m * std_m, std_rad * std_rad).asDiagonal();
 }
 
@@ -162,7 +205,8 @@ std::vector<int> GraphSlam::submaps_near(int source, const std::vector<PoseGauss
     // overlapping submaps
     if (submaps_[static_cast<std::size_t>(target)].last >= submaps_[static_cast<std::size_t>(source)].first) continue;
     const Eigen::Matrix3d& covariance = around[static_cast<std::size_t>(target)].covariance;
-    const double search_radius_m = settings_.max_loop_distance_m + 2.0 * std::sqrt(std::max(covariance(0, 0), covariance(1, 1)));
+    const double search_radius_m =
+        settings_.max_loop_distance_m + 2.0 * std::sqrt(std::max(covariance(0, 0), covariance(1, 1)));
     const double distance_m = (submap_center(target) - center).norm();
     if (distance_m < search_radius_m) near.push_back({distance_m, target});
   }
@@ -174,7 +218,8 @@ void GraphSlam::close_loops(int source) {
   bool has_closed = false;
   for (const int target : submaps_near(source, around)) {
     const PoseGaussian prediction = invert(around[static_cast<std::size_t>(target)]);  // pose of source in target
-    const SubmapMatchResult result = match_submaps(*rendered(target), *rendered(source), prediction, settings_.loop_closure, settings_.scan_odometry.matching);
+    const SubmapMatchResult result = match_submaps(*rendered(target), *rendered(source), prediction,
+                                                   settings_.loop_closure, settings_.scan_odometry.matching);
     loop_closure_statistics_.add(result.failure);
     if (!result.match) continue;
     has_closed = true;
@@ -190,7 +235,8 @@ void GraphSlam::close_loops(int source) {
 
 std::shared_ptr<const RenderedSubmap> GraphSlam::rendered(int submap) {
   return cache_.get(submap, [&] {
-    return std::make_shared<const RenderedSubmap>(submaps_[static_cast<std::size_t>(submap)], keyframes_, graph_.T_map_node, rendering_);
+    return std::make_shared<const RenderedSubmap>(submaps_[static_cast<std::size_t>(submap)], keyframes_,
+                                                  graph_.T_map_node, rendering_);
   });
 }
 
@@ -207,26 +253,31 @@ std::vector<Pose2> GraphSlam::path() const {
   std::vector<Pose2> T_map_body;
   for (std::size_t i = 0; i < path_.size(); ++i) {
     const auto before = static_cast<std::size_t>(path_[i].keyframe);
-    const Pose2 from_before = graph_.T_map_node[before] * (keyframes_[before].T_local_body.inverse() * path_[i].T_local_body);
+    const Pose2 from_before =
+        graph_.T_map_node[before] * (keyframes_[before].T_local_body.inverse() * path_[i].T_local_body);
     const std::size_t after = before + 1;
     if (after >= keyframes_.size()) {
       T_map_body.push_back(from_before);
       continue;
     }
-    const Pose2 from_after = graph_.T_map_node[after] * (keyframes_[after].T_local_body.inverse() * path_[i].T_local_body);
+    const Pose2 from_after =
+        graph_.T_map_node[after] * (keyframes_[after].T_local_body.inverse() * path_[i].T_local_body);
     const auto distance = [&](std::size_t k) {
       const Pose2 offset = keyframes_[k].T_local_body.inverse() * path_[i].T_local_body;
       return offset.position().norm() + std::abs(offset.yaw);
     };
-    const double to_before = distance(before), to_after = distance(after), fraction = to_before + to_after > 0.0 ? to_before / (to_before + to_after) : 0.0;
-    T_map_body.push_back({from_before.x + fraction * (from_after.x - from_before.x), from_before.y + fraction * (from_after.y - from_before.y),
+    const double to_before = distance(before), to_after = distance(after),
+                 fraction = to_before + to_after > 0.0 ? to_before / (to_before + to_after) : 0.0;
+    T_map_body.push_back({from_before.x + fraction * (from_after.x - from_before.x),
+                          from_before.y + fraction * (from_after.y - from_before.y),
                           wrap_angle(from_before.yaw + fraction * wrap_angle(from_after.yaw - from_before.yaw))});
   }
   return T_map_body;
 }
 
 OccupancyGrid GraphSlam::map() {
-  const GridMap& map = incremental_map_.render(keyframes_, graph_.T_map_node, is_finished_ ? 0.0 : settings_.map_update_threshold_m);
+  const GridMap& map =
+      incremental_map_.render(keyframes_, graph_.T_map_node, is_finished_ ? 0.0 : settings_.map_update_threshold_m);
   return render_map(map, settings_.min_hits_occupied, settings_.min_occupied_hit_ratio);
 }
 

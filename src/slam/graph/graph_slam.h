@@ -9,8 +9,8 @@
 #include "core/pose_graph.h"
 #include "slam/graph/graph_slam_settings.h"
 #include "slam/graph/incremental_map.h"
-#include "slam/graph/range_factors.h"
 #include "slam/graph/pose_graph_solver.h"
+#include "slam/graph/range_factors.h"
 #include "slam/graph/scan_tracker.h"
 #include "slam/graph/submap.h"
 #include "slam/graph/submap_matcher.h"
@@ -86,10 +86,13 @@ class GraphSlam {
   std::vector<int> submaps_near(int source, const std::vector<PoseGaussian>& around) const;
   std::vector<std::vector<int>> keyframes_around_submaps() const;
   void refine();
-  std::optional<MatchResult> refined(const RenderedSubmap& submap, const Keyframe& keyframe, const Pose2& T_submap_body) const;
+  std::optional<MatchResult> refined(const RenderedSubmap& submap, const Keyframe& keyframe,
+                                     const Pose2& T_submap_body) const;
   Eigen::Matrix3d observable_information(const Eigen::Matrix3d& match_information) const;
   Eigen::Matrix3d match_edge_information(const Eigen::Matrix3d& match_information) const;
-  Pose2 T_map_submap(int submap) const { return graph_.T_map_node[static_cast<std::size_t>(submaps_[static_cast<std::size_t>(submap)].first)]; }
+  Pose2 T_map_submap(int submap) const {
+    return graph_.T_map_node[static_cast<std::size_t>(submaps_[static_cast<std::size_t>(submap)].first)];
+  }
   Eigen::Vector2d submap_center(int submap) const;
 
   GraphSlamSettings settings_;

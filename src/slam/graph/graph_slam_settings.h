@@ -22,21 +22,23 @@ struct GraphSlamSettings {
   /// Standard deviation of the systematic error of a match, independent of the number of points.
   double edge_std_m = 0.01;
   double edge_std_rad = 0.001;
-  double min_eigenvalue_ratio = 0.02;  ///< a direction is degenerate if its information is below this fraction of the largest
+  double min_eigenvalue_ratio =
+      0.02;  ///< a direction is degenerate if its information is below this fraction of the largest
   /// Final optimization: number of passes that match every keyframe with the submaps around it.
   int refinement_iterations = 2;
-  int max_refinement_submaps = 3;    ///< maximum number of submaps matched with each keyframe
-  double min_refinement_inlier_ratio = 0.6; ///< minimum inlier ratio of a keyframe in a submap
-  double max_refinement_m = 0.3;     ///< matches that move a keyframe farther are rejected
+  int max_refinement_submaps = 3;            ///< maximum number of submaps matched with each keyframe
+  double min_refinement_inlier_ratio = 0.6;  ///< minimum inlier ratio of a keyframe in a submap
+  double max_refinement_m = 0.3;             ///< matches that move a keyframe farther are rejected
   double max_refinement_rad = 0.1;
-  int cached_submaps = 16;           ///< maximum number of rendered submaps in the cache
+  int cached_submaps = 16;  ///< maximum number of rendered submaps in the cache
   int min_hits_occupied = 2;
   double min_occupied_hit_ratio = 0.3;
   // Online only.
   double max_tilt_rad = 1.6;  ///< scans tilted by more are not used, for example on a ramp between inclined walls
-  double map_update_threshold_m = 0.03;      ///< the map is rendered again if a keyframe or its view at 10 m has moved by more
+  double map_update_threshold_m =
+      0.03;  ///< the map is rendered again if a keyframe or its view at 10 m has moved by more
   RangeUpdateSettings ranges;
-  int range_smoothing_period_keyframes = 4;           ///< run the fixed-lag smoothing with UWB ranges every N keyframes
+  int range_smoothing_period_keyframes = 4;  ///< run the fixed-lag smoothing with UWB ranges every N keyframes
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

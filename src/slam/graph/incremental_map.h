@@ -11,11 +11,13 @@ namespace patrol::slam {
 /// earlier ones have moved.
 class IncrementalMap {
  public:
-  explicit IncrementalMap(const MapRenderingSettings& rendering) : rendering_(rendering), map_(rendering.resolution_m, rendering.max_extent_m) {}
+  explicit IncrementalMap(const MapRenderingSettings& rendering)
+      : rendering_(rendering), map_(rendering.resolution_m, rendering.max_extent_m) {}
 
-  /// Returns the map of all keyframes. It is rendered again if a keyframe has moved by more than `max_displacement_m`, which
-  /// includes the effect of its yaw at 10 m.
-  const GridMap& render(const std::vector<Keyframe>& keyframes, const std::vector<Pose2>& T_map_node, double max_displacement_m);
+  /// Returns the map of all keyframes. It is rendered again if a keyframe has moved by more than `max_displacement_m`,
+  /// which includes the effect of its yaw at 10 m.
+  const GridMap& render(const std::vector<Keyframe>& keyframes, const std::vector<Pose2>& T_map_node,
+                        double max_displacement_m);
 
  private:
   MapRenderingSettings rendering_;

@@ -10,21 +10,26 @@ namespace {
 constexpr int kMargin_cells = 2;  ///< radius in cells around a surface with nonzero likelihood
 
 /// Value at a squared distance, in cells, from a surface.
-int near_surface(int squared_distance) { return static_cast<int>(std::lround(LikelihoodPyramid::kOnSurface * std::exp(-0.5 * squared_distance))); }
+int near_surface(int squared_distance) {
+  return static_cast<int>(std::lround(LikelihoodPyramid::kOnSurface * std::exp(-0.5 * squared_distance)));
+}
 
 }  // namespace
 
-LikelihoodPyramid::LikelihoodPyramid(const GridMap& map, double resolution_m, int num_levels) : resolution_m_(resolution_m) {
+LikelihoodPyramid::LikelihoodPyramid(const GridMap& map, double resolution_m, int num_levels)
+    : resolution_m_(resolution_m) {
   levels_.push_back(rasterize_finest(map));
   for (int l = 1; l < num_levels; ++l) levels_.push_back(halved(levels_.back(), l == 1));
 }
 
 Cell LikelihoodPyramid::cell_of(const Eigen::Vector2d& p_map) const {
-  return {static_cast<int>(std::floor(p_map.x() / resolution_m_)), static_cast<int>(std::floor(p_map.y() / resolution_m_))};
+  return {static_cast<int>(std::floor(p_map.x() / resolution_m_)),
+          static_cast<int>(std::floor(p_map.y() / resolution_m_))};
 }
 
-// Returns an empty level that covers all tiles, plus a margin of `kMargin_cells` cells. Mean hits are up to half a map cell
-// from the cell centers, and slightly more after rounding to float. The extent of the centers alone would be too small.
+// Returns an empty level that covers all tiles, plus a margin of `kMargin_cells` cells. Mean hits are up to half a map
+// cell from the cell centers, and slightly more after rounding to float. The extent of the centers alone would be too
+// small.
 LikelihoodPyramid::Level LikelihoodPyramid::empty_level(const GridMap& map) const {
   constexpr int kMax = std::numeric_limits<int>::max();
   int low_col = kMax, low_row = kMax, high_col = -kMax, high_row = -kMax;
@@ -77,7 +82,8 @@ LikelihoodPyramid::Level LikelihoodPyramid::rasterize_finest(const GridMap& map)
 LikelihoodPyramid::Level LikelihoodPyramid::halved(const Level& fine, bool is_from_finest) {
   Level coarse;
   coarse.first_col = (fine.first_col >> 1) - 1, coarse.first_row = (fine.first_row >> 1) - 1;
-  coarse.width = ((fine.first_col + fine.width) >> 1) + 1 - coarse.first_col, coarse.height = ((fine.first_row + fine.height) >> 1) + 1 - coarse.first_row;
+  coarse.width = ((fine.first_col + fine.width) >> 1) + 1 - coarse.first_col,
+  coarse.height = ((fine.first_row + fine.height) >> 1) + 1 - coarse.first_row;
   coarse.clear();
   const int step = is_from_finest ? 1 : 2;
   for (int row = coarse.first_row; row < coarse.first_row + coarse.height; ++row) {

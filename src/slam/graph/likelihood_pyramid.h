@@ -1,9 +1,9 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <cstdint>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "core/grid.h"
 #include "slam/grid_map.h"
@@ -36,7 +36,9 @@ class LikelihoodPyramid {
     std::vector<std::int8_t> values;  ///< [row][col]
 
     void clear() { values.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0); }
-    std::int8_t& at(int col, int row) { return values[static_cast<std::size_t>((row - first_row) * width + col - first_col)]; }
+    std::int8_t& at(int col, int row) {
+      return values[static_cast<std::size_t>((row - first_row) * width + col - first_col)];
+    }
     /// Returns 0 outside the level.
     int find(int col, int row) const {
       const int c = col - first_col, r = row - first_row;

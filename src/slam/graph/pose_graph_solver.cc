@@ -1,12 +1,12 @@
 #include "slam/graph/pose_graph_solver.h"
 
-#include <Eigen/Cholesky>
-#include <ceres/ceres.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <stdexcept>
+
+#include <Eigen/Cholesky>
+#include <ceres/ceres.h>
 
 namespace patrol::slam {
 namespace {
@@ -19,7 +19,8 @@ class EdgeCost : public ceres::SizedCostFunction<3, 3, 3> {
   bool Evaluate(const double* const* poses, double* residuals, double** jacobians) const override {
     const double *from = poses[0], *to = poses[1];
     const double c = std::cos(from[2]), s = std::sin(from[2]), dx = to[0] - from[0], dy = to[1] - from[1];
-    const Eigen::Vector3d error(c * dx + s * dy - T_from_to_.x, -s * dx + c * dy - T_from_to_.y, wrap_angle(to[2] - from[2] - T_from_to_.yaw));
+    const Eigen::Vector3d error(c * dx + s * dy - T_from_to_.x, -s * dx + c * dy - T_from_to_.y,
+                                wrap_angle(to[2] - from[2] - T_from_to_.yaw));
     Eigen::Map<Eigen::Vector3d>(residuals).noalias() = root_ * error;
     if (!jacobians) return true;
     using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
@@ -44,11 +45,13 @@ class EdgeCost : public ceres::SizedCostFunction<3, 3, 3> {
 /// Residual of a range: (predicted range - range) / standard deviation.
 class RangeCost : public ceres::SizedCostFunction<1, 3> {
  public:
-  RangeCost(const RangeFactor& range, double std_m, const UwbCalibration& calibration) : range_(range), std_m_(std_m), calibration_(calibration) {}
+  RangeCost(const RangeFactor& range, double std_m, const UwbCalibration& calibration)
+      : range_(range), std_m_(std_m), calibration_(calibration) {}
 
   bool Evaluate(const double* const* poses, double* residuals, double** jacobians) const override {
     const Pose2 T_map_constrained = range_.T_map_constrained({poses[0][0], poses[0][1], poses[0][2]});
-    const PredictedRange predicted = predict_uwb_range(range_.anchor, T_map_constrained, range_.p_level_antenna, calibration_);
+    const PredictedRange predicted =
+        predict_uwb_range(range_.anchor, T_map_constrained, range_.p_level_antenna, calibration_);
     residuals[0] = (predicted.range_m - range_.range_m) / std_m_;
     if (!jacobians || !jacobians[0]) return true;
     Eigen::Vector3d H_pose = predicted.H_pose;
@@ -65,7 +68,8 @@ class RangeCost : public ceres::SizedCostFunction<1, 3> {
 
 }  // namespace
 
-PoseGraphSolution solve(PoseGraph& graph, const PoseGraphSolverSettings& settings, const RangeFactors& ranges, int num_fixed_nodes) {
+PoseGraphSolution solve(PoseGraph& graph, const PoseGraphSolverSettings& settings, const RangeFactors& ranges,
+                        int num_fixed_nodes) {
   std::vector<std::array<double, 3>> poses;
   for (const Pose2& pose : graph.T_map_node) poses.push_back({pose.x, pose.y, pose.yaw});
 
@@ -74,7 +78,8 @@ PoseGraphSolution solve(PoseGraph& graph, const PoseGraphSolverSettings& setting
   problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;  // one kernel for all residual blocks
   ceres::Problem problem(problem_options);
   const auto node = [&](int index) {
-    if (index < 0 || static_cast<std::size_t>(index) >= poses.size()) throw std::invalid_argument("pose graph: edge to unknown node " + std::to_string(index));
+    if (index < 0 || static_cast<std::size_t>(index) >= poses.size())
+      throw std::invalid_argument("pose graph: edge to unknown node " + std::to_string(index));
     return poses[static_cast<std::size_t>(index)].data();
   };
   for (const PoseGraphEdge& edge : graph.edges) {
@@ -84,7 +89,9 @@ PoseGraphSolution solve(PoseGraph& graph, const PoseGraphSolverSettings& setting
     problem.AddResidualBlock(new EdgeCost(edge), is_robust ? &kernel : nullptr, from, to);
   }
   for (const RangeFactor& range : ranges.ranges()) {
-    if (range.node >= num_fixed_nodes) problem.AddResidualBlock(new RangeCost(range, ranges.std_m(range), ranges.calibration()), &kernel, node(range.node));
+    if (range.node >= num_fixed_nodes)
+      problem.AddResidualBlock(new RangeCost(range, ranges.std_m(range), ranges.calibration()), &kernel,
+                               node(range.node));
   }
   for (std::size_t i = 0; i < std::min(poses.size(), static_cast<std::size_t>(num_fixed_nodes)); ++i) {
     if (problem.HasParameterBlock(poses[i].data())) problem.SetParameterBlockConstant(poses[i].data());
@@ -99,7 +106,8 @@ PoseGraphSolution solve(PoseGraph& graph, const PoseGraphSolverSettings& setting
   options.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
-  for (std::size_t i = static_cast<std::size_t>(num_fixed_nodes); i < poses.size(); ++i) graph.T_map_node[i] = {poses[i][0], poses[i][1], wrap_angle(poses[i][2])};
+  for (std::size_t i = static_cast<std::size_t>(num_fixed_nodes); i < poses.size(); ++i)
+    graph.T_map_node[i] = {poses[i][0], poses[i][1], wrap_angle(poses[i][2])};
   return {.initial_cost = summary.initial_cost,
           .final_cost = summary.final_cost,
           .iterations = summary.num_successful_steps,
@@ -109,7 +117,8 @@ PoseGraphSolution solve(PoseGraph& graph, const PoseGraphSolverSettings& setting
 Eigen::Vector3d edge_residual(const PoseGraphEdge& edge, const std::vector<Pose2>& T_map_node) {
   const Pose2& T_map_from = T_map_node[static_cast<std::size_t>(edge.from)];
   const Pose2 T_from_to = T_map_from.inverse() * T_map_node[static_cast<std::size_t>(edge.to)];
-  return {T_from_to.x - edge.T_from_to.x, T_from_to.y - edge.T_from_to.y, wrap_angle(T_from_to.yaw - edge.T_from_to.yaw)};
+  return {T_from_to.x - edge.T_from_to.x, T_from_to.y - edge.T_from_to.y,
+          wrap_angle(T_from_to.yaw - edge.T_from_to.yaw)};
 }
 
 double squared_residual(const PoseGraphEdge& edge, const std::vector<Pose2>& T_map_node) {

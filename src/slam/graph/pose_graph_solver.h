@@ -13,10 +13,12 @@ struct PoseGraphSolution {
   bool converged = false;
 };
 
-/// Optimizes the poses of all nodes from `num_fixed_nodes` on, with the edges and the ranges to fixed anchors in map. Sparse
-/// nonlinear least squares with Cauchy kernels on ranges and, if `robust_loop_closures` is set, on loop closures. Nodes before
-/// `num_fixed_nodes` are fixed. Throws std::invalid_argument if an edge refers to an unknown node.
-PoseGraphSolution solve(PoseGraph& graph, const PoseGraphSolverSettings& settings, const RangeFactors& ranges = {}, int num_fixed_nodes = 1);
+/// Optimizes the poses of all nodes from `num_fixed_nodes` on, with the edges and the ranges to fixed anchors in map.
+/// Sparse nonlinear least squares with Cauchy kernels on ranges and, if `robust_loop_closures` is set, on loop
+/// closures. Nodes before `num_fixed_nodes` are fixed. Throws std::invalid_argument if an edge refers to an unknown
+/// node.
+PoseGraphSolution solve(PoseGraph& graph, const PoseGraphSolverSettings& settings, const RangeFactors& ranges = {},
+                        int num_fixed_nodes = 1);
 
 /// Residual of an edge: (x, y, yaw) of the relative pose of its nodes minus the measurement, in the frame of `from`.
 Eigen::Vector3d edge_residual(const PoseGraphEdge& edge, const std::vector<Pose2>& T_map_node);

@@ -7,7 +7,8 @@ namespace patrol::slam {
 struct PoseGraphSolverSettings {
   int max_iterations = 50;
   bool robust_loop_closures = true;
-  /// Scale of the Cauchy kernel, in standard deviations; used for loop closures if robust_loop_closures, and always for ranges.
+  /// Scale of the Cauchy kernel, in standard deviations; used for loop closures if robust_loop_closures, and always for
+  /// ranges.
   double loop_closure_loss_scale = 3.0;
 
   template <typename Self, typename Visitor>

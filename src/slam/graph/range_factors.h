@@ -1,9 +1,9 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <optional>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "core/frames.h"
 #include "core/uwb.h"
@@ -38,7 +38,8 @@ class RangeFactors {
   /// range is reduced to the node by the difference of the predicted ranges at the current node pose. The error of the
   /// reduction is 1 to 10 mm for a node error of 10 cm, 10 m from the anchor and 1 m from the node. `direction`, in
   /// map: see RangeFactor.
-  void add(int node, const Pose2& T_map_node, const Pose2& T_node_then, const RangeMeasurement& measurement, const std::optional<Eigen::Vector2d>& direction = {});
+  void add(int node, const Pose2& T_map_node, const Pose2& T_node_then, const RangeMeasurement& measurement,
+           const std::optional<Eigen::Vector2d>& direction = {});
 
   const std::vector<RangeFactor>& ranges() const { return ranges_; }  ///< in ascending node order
   const UwbCalibration& calibration() const { return settings_.calibration; }

@@ -1,22 +1,25 @@
 #include "slam/graph/relative_covariance.h"
 
-#include <Eigen/Geometry>
-
 #include <cmath>
 #include <limits>
 #include <queue>
 #include <utility>
+
+#include <Eigen/Geometry>
 
 namespace patrol::slam {
 namespace {
 
 constexpr double kMetersPerRadian = 10.0;
 
-double uncertainty(const Eigen::Matrix3d& covariance) { return covariance(0, 0) + covariance(1, 1) + kMetersPerRadian * kMetersPerRadian * covariance(2, 2); }
+double uncertainty(const Eigen::Matrix3d& covariance) {
+  return covariance(0, 0) + covariance(1, 1) + kMetersPerRadian * kMetersPerRadian * covariance(2, 2);
+}
 
 }  // namespace
 
-Eigen::Matrix3d compose_covariance(const PoseGaussian& here, const Pose2& there, const Eigen::Matrix3d& edge_covariance) {
+Eigen::Matrix3d compose_covariance(const PoseGaussian& here, const Pose2& there,
+                                   const Eigen::Matrix3d& edge_covariance) {
   Eigen::Matrix3d F = Eigen::Matrix3d::Identity();
   F(0, 2) = -(there.y - here.mean.y);
   F(1, 2) = there.x - here.mean.x;
@@ -36,7 +39,8 @@ PoseGaussian invert(const PoseGaussian& T_b_a) {
   return {.mean = inverse, .covariance = J * T_b_a.covariance * J.transpose()};
 }
 
-std::vector<PoseGaussian> shortest_path_distributions(int node, const std::vector<Pose2>& T_map_node, const std::vector<CovarianceEdge>& covariance_edges) {
+std::vector<PoseGaussian> shortest_path_distributions(int node, const std::vector<Pose2>& T_map_node,
+                                                      const std::vector<CovarianceEdge>& covariance_edges) {
   std::vector<std::vector<std::pair<int, const Eigen::Matrix3d*>>> next(T_map_node.size());
   for (const CovarianceEdge& edge : covariance_edges) {
     next[static_cast<std::size_t>(edge.from)].emplace_back(edge.to, &edge.covariance);
@@ -45,7 +49,8 @@ std::vector<PoseGaussian> shortest_path_distributions(int node, const std::vecto
   const double infinity = std::numeric_limits<double>::infinity();
   const Pose2 T_node_map = T_map_node[static_cast<std::size_t>(node)].inverse();
   std::vector<PoseGaussian> found;
-  for (const Pose2& T_map_there : T_map_node) found.push_back({.mean = T_node_map * T_map_there, .covariance = Eigen::Vector3d::Constant(infinity).asDiagonal()});
+  for (const Pose2& T_map_there : T_map_node)
+    found.push_back({.mean = T_node_map * T_map_there, .covariance = Eigen::Vector3d::Constant(infinity).asDiagonal()});
   found[static_cast<std::size_t>(node)].covariance.setZero();
 
   using Entry = std::pair<double, int>;

@@ -1,9 +1,9 @@
 #include "slam/graph/scan_tracker.h"
 
-#include <Eigen/LU>
-
 #include <algorithm>
 #include <cmath>
+
+#include <Eigen/LU>
 
 namespace patrol::slam {
 namespace {
@@ -18,10 +18,13 @@ constexpr double kGoodInlierRatio = 0.6;
 
 double log_student_t(const PoseGaussian& prediction, const Pose2& pose) {
   const Eigen::Vector3d offset = prediction.residual_to_mean(pose);
-  return -0.5 * (kStudentDegreesOfFreedom + 3.0) * std::log1p(offset.dot(prediction.covariance.inverse() * offset) / kStudentDegreesOfFreedom);
+  return -0.5 * (kStudentDegreesOfFreedom + 3.0) *
+         std::log1p(offset.dot(prediction.covariance.inverse() * offset) / kStudentDegreesOfFreedom);
 }
 
-bool is_distinct(const Pose2& a, const Pose2& b) { return (a.position() - b.position()).norm() > 0.03 || std::abs(wrap_angle(a.yaw - b.yaw)) > 0.02; }
+bool is_distinct(const Pose2& a, const Pose2& b) {
+  return (a.position() - b.position()).norm() > 0.03 || std::abs(wrap_angle(a.yaw - b.yaw)) > 0.02;
+}
 
 /// Scales a motion to another duration at constant velocity.
 Pose2 scaled(const Pose2& motion, double factor) { return {factor * motion.x, factor * motion.y, factor * motion.yaw}; }
@@ -29,7 +32,9 @@ Pose2 scaled(const Pose2& motion, double factor) { return {factor * motion.x, fa
 }  // namespace
 
 ScanTracker::ScanTracker(const ScanTrackerSettings& settings)
-    : settings_(settings), older_(settings.resolution_m, settings.max_extent_m), newer_(settings.resolution_m, settings.max_extent_m) {}
+    : settings_(settings),
+      older_(settings.resolution_m, settings.max_extent_m),
+      newer_(settings.resolution_m, settings.max_extent_m) {}
 
 TrackedScan ScanTracker::update(const LevelScan& scan, const Pose2& T_odom_body) {
   if (!stamp_) {
@@ -37,11 +42,12 @@ TrackedScan ScanTracker::update(const LevelScan& scan, const Pose2& T_odom_body)
     stamp_ = matched_.stamp = scan.stamp;
   }
   const Step step{.seconds = to_seconds(scan.stamp - *stamp_), .T_last_odom = T_odom_last_.inverse() * T_odom_body};
-  PoseGaussian prediction =
-      predict_motion(matched_.T_local_body, matched_.T_odom_body.inverse() * T_odom_body, std::max(0.0, to_seconds(scan.stamp - matched_.stamp)), settings_.motion);
+  PoseGaussian prediction = predict_motion(matched_.T_local_body, matched_.T_odom_body.inverse() * T_odom_body,
+                                           std::max(0.0, to_seconds(scan.stamp - matched_.stamp)), settings_.motion);
   prediction.covariance *= odometry_variance_scale_;
   const bool can_be_matched = older_.has_surface();
-  const Hypothesis best = track(downsample_scan(scan, settings_.matching.point_spacing_m, settings_.matching.max_points), step, prediction);
+  const Hypothesis best =
+      track(downsample_scan(scan, settings_.matching.point_spacing_m, settings_.matching.max_points), step, prediction);
   inflate_odometry_covariance(prediction, best.T_local_body);
   TrackedScan tracked = to_tracked_scan(best, prediction);
   tracked.is_keyframe = is_keyframe_due(tracked.T_local_body);
@@ -51,12 +57,14 @@ TrackedScan ScanTracker::update(const LevelScan& scan, const Pose2& T_odom_body)
   T_local_last_ = tracked.T_local_body;
   T_odom_last_ = T_odom_body;
   stamp_ = scan.stamp;
-  if (best.match || !can_be_matched) matched_ = {.stamp = scan.stamp, .T_local_body = tracked.T_local_body, .T_odom_body = T_odom_body};
+  if (best.match || !can_be_matched)
+    matched_ = {.stamp = scan.stamp, .T_local_body = tracked.T_local_body, .T_odom_body = T_odom_body};
   return tracked;
 }
 
 // Matches from the odometry prediction and from alternative start poses.
-ScanTracker::Hypothesis ScanTracker::track(const std::vector<MatchPoint>& points, const Step& step, const PoseGaussian& prediction) const {
+ScanTracker::Hypothesis ScanTracker::track(const std::vector<MatchPoint>& points, const Step& step,
+                                           const PoseGaussian& prediction) const {
   if (!older_.has_surface() || points.empty()) return {.T_local_body = prediction.mean, .match = {}};
   Hypothesis best = match_from(prediction.mean, points, prediction, true);
   const auto consider = [&](const Pose2& start) {
@@ -64,12 +72,14 @@ ScanTracker::Hypothesis ScanTracker::track(const std::vector<MatchPoint>& points
     if (other.match && (!best.match || is_better(other, best))) best = other;
   };
   const double factor = last_step_s_ > 1e-3 ? std::clamp(step.seconds / last_step_s_, 0.0, 2.0) : 1.0;
-  const Pose2 as_before = scaled(T_last_now_, factor), none{0.0, 0.0, step.T_last_odom.yaw}, opposite{-step.T_last_odom.x, -step.T_last_odom.y, step.T_last_odom.yaw};
+  const Pose2 as_before = scaled(T_last_now_, factor), none{0.0, 0.0, step.T_last_odom.yaw},
+              opposite{-step.T_last_odom.x, -step.T_last_odom.y, step.T_last_odom.yaw};
   for (const Pose2& T_last_now : {as_before, none, opposite}) {
     const Pose2 start = T_local_last_ * T_last_now;
     if (is_distinct(start, prediction.mean) && is_distinct(start, best.T_local_body)) consider(start);
   }
-  if (!best.match || best.match->inlier_ratio < kGoodInlierRatio) consider(search_pose(older_, points, prediction.mean, settings_.matching));
+  if (!best.match || best.match->inlier_ratio < kGoodInlierRatio)
+    consider(search_pose(older_, points, prediction.mean, settings_.matching));
   return best;
 }
 
@@ -77,7 +87,9 @@ void ScanTracker::inflate_odometry_covariance(const PoseGaussian& prediction, co
   const Eigen::Vector3d offset = prediction.residual_to_mean(T_local_body);
   // 3 on average if the variance is correct
   const double squared = offset.dot(prediction.covariance.inverse() * offset);
-  odometry_variance_scale_ = std::clamp(std::max(kVarianceScaleDecay * odometry_variance_scale_, odometry_variance_scale_ * squared / 3.0), 1.0, kMaxVarianceScale);
+  odometry_variance_scale_ =
+      std::clamp(std::max(kVarianceScaleDecay * odometry_variance_scale_, odometry_variance_scale_ * squared / 3.0),
+                 1.0, kMaxVarianceScale);
 }
 
 TrackedScan ScanTracker::to_tracked_scan(const Hypothesis& best, const PoseGaussian& prediction) const {
@@ -94,19 +106,21 @@ TrackedScan ScanTracker::to_tracked_scan(const Hypothesis& best, const PoseGauss
 
 bool ScanTracker::is_keyframe_due(const Pose2& T_local_body) const {
   const Pose2 T_keyframe_body = T_local_keyframe_.inverse() * T_local_body;
-  return keyframes_ < settings_.initial_keyframes || T_keyframe_body.position().norm() >= settings_.keyframe_distance_m ||
+  return keyframes_ < settings_.initial_keyframes ||
+         T_keyframe_body.position().norm() >= settings_.keyframe_distance_m ||
          std::abs(T_keyframe_body.yaw) >= settings_.keyframe_angle_rad;
 }
 
-ScanTracker::Hypothesis ScanTracker::match_from(const Pose2& T_local_start, const std::vector<MatchPoint>& points, const PoseGaussian& prediction,
-                                              bool is_odometry) const {
+ScanTracker::Hypothesis ScanTracker::match_from(const Pose2& T_local_start, const std::vector<MatchPoint>& points,
+                                                const PoseGaussian& prediction, bool is_odometry) const {
   // A wide prior keeps degenerate directions bounded when odometry has failed.
   PoseGaussian prior = prediction;
   if (!is_odometry) {
     prior.mean = T_local_start;
     prior.covariance *= 25.0;
   }
-  Hypothesis hypothesis{.T_local_body = prediction.mean, .match = match_scan(older_, points, T_local_start, prior, settings_.matching)};
+  Hypothesis hypothesis{.T_local_body = prediction.mean,
+                        .match = match_scan(older_, points, T_local_start, prior, settings_.matching)};
   if (!hypothesis.match) return hypothesis;
   hypothesis.T_local_body = hypothesis.match->T_map_body;
   hypothesis.log_prior = log_student_t(prediction, hypothesis.T_local_body);

@@ -66,7 +66,8 @@ class ScanTracker {
   TrackedScan to_tracked_scan(const Hypothesis& best, const PoseGaussian& prediction) const;
   bool is_keyframe_due(const Pose2& T_local_body) const;
   bool is_better(const Hypothesis& a, const Hypothesis& b) const;
-  Hypothesis match_from(const Pose2& T_local_start, const std::vector<MatchPoint>& points, const PoseGaussian& prediction, bool is_odometry) const;
+  Hypothesis match_from(const Pose2& T_local_start, const std::vector<MatchPoint>& points,
+                        const PoseGaussian& prediction, bool is_odometry) const;
   void integrate(const LevelScan& scan, const Pose2& T_local_body, TrackedScan& tracked);
 
   ScanTrackerSettings settings_;

@@ -9,12 +9,12 @@ namespace patrol::slam {
 
 struct ScanTrackerSettings {
   double resolution_m = 0.05;
-  double max_extent_m = 4000.0;          ///< side of the mapped square around the start
+  double max_extent_m = 4000.0;  ///< side of the mapped square around the start
   double keyframe_distance_m = 0.25;
   double keyframe_angle_rad = 0.15;
-  int initial_keyframes = 10;            ///< the first N scans are all keyframes
-  int submap_keyframes = 60;             ///< number of keyframes per map; consecutive maps overlap by half
-  double likelihood_tempering = 0.2;          ///< tempering factor: fraction of the points with independent errors
+  int initial_keyframes = 10;         ///< the first N scans are all keyframes
+  int submap_keyframes = 60;          ///< number of keyframes per map; consecutive maps overlap by half
+  double likelihood_tempering = 0.2;  ///< tempering factor: fraction of the points with independent errors
   MotionModelSettings motion{.longitudinal_std_m_per_m = 0.05,
                              .lateral_std_m_per_m = 0.03,
                              .yaw_std_rad_per_rad = 0.1,

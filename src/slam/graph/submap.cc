@@ -8,7 +8,8 @@ namespace {
 constexpr double kPyramidCell_m = 0.1;
 constexpr int kSubmapPyramidLevels = 7;
 
-GridMap render_submap(const Submap& submap, const std::vector<Keyframe>& keyframes, const std::vector<Pose2>& T_map_node, const MapRenderingSettings& rendering) {
+GridMap render_submap(const Submap& submap, const std::vector<Keyframe>& keyframes,
+                      const std::vector<Pose2>& T_map_node, const MapRenderingSettings& rendering) {
   GridMap map(rendering.resolution_m, rendering.max_extent_m);
   const Pose2 T_first_map = T_map_node[static_cast<std::size_t>(submap.first)].inverse();
   for (int k = submap.first; k <= submap.last; ++k) {
@@ -26,7 +27,8 @@ std::vector<MatchPoint> surface_points_of(const GridMap& map) {
 
 }  // namespace
 
-RenderedSubmap::RenderedSubmap(const Submap& submap, const std::vector<Keyframe>& keyframes, const std::vector<Pose2>& T_map_node, const MapRenderingSettings& rendering)
+RenderedSubmap::RenderedSubmap(const Submap& submap, const std::vector<Keyframe>& keyframes,
+                               const std::vector<Pose2>& T_map_node, const MapRenderingSettings& rendering)
     : map_(render_submap(submap, keyframes, T_map_node, rendering)),
       surface_points_(surface_points_of(map_)),
       pyramid_(map_, kPyramidCell_m, kSubmapPyramidLevels) {}

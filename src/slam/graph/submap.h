@@ -1,9 +1,9 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <memory>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "core/messages.h"
 #include "slam/graph/likelihood_pyramid.h"
@@ -36,7 +36,8 @@ struct MapRenderingSettings {
 class RenderedSubmap {
  public:
   /// Renders the keyframes of `submap` at `T_map_node` [keyframe].
-  RenderedSubmap(const Submap& submap, const std::vector<Keyframe>& keyframes, const std::vector<Pose2>& T_map_node, const MapRenderingSettings& rendering);
+  RenderedSubmap(const Submap& submap, const std::vector<Keyframe>& keyframes, const std::vector<Pose2>& T_map_node,
+                 const MapRenderingSettings& rendering);
 
   const GridMap& map() const { return map_; }
   /// Downsampled surfaces (surface_points.h), used to match this submap with another.

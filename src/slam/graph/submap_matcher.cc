@@ -33,26 +33,34 @@ Overlap measure_overlap(const GridMap& map, const RenderedSubmap& other, const P
     ++num_observed;
     matched += is_matched ? 1 : 0;
   }
-  return {.overlap_ratio = points.empty() ? 0.0 : static_cast<double>(num_observed) / static_cast<double>(points.size()),
+  return {.overlap_ratio =
+              points.empty() ? 0.0 : static_cast<double>(num_observed) / static_cast<double>(points.size()),
           .inlier_ratio = num_observed == 0 ? 0.0 : static_cast<double>(matched) / num_observed,
           .matched_length_m = matched * other.point_spacing_m()};
 }
 
 }  // namespace
 
-SubmapMatchResult match_submaps(const RenderedSubmap& target, const RenderedSubmap& source, const PoseGaussian& prediction,
-                                const SubmapMatcherSettings& settings, const ScanMatcherSettings& matching) {
-  const std::vector<Eigen::Vector2d> points = subsample(source.surface_points(), static_cast<std::size_t>(settings.search_points));
-  const double std_m = std::sqrt(std::max(prediction.covariance(0, 0), prediction.covariance(1, 1))), std_rad = std::sqrt(prediction.covariance(2, 2));
+SubmapMatchResult match_submaps(const RenderedSubmap& target, const RenderedSubmap& source,
+                                const PoseGaussian& prediction, const SubmapMatcherSettings& settings,
+                                const ScanMatcherSettings& matching) {
+  const std::vector<Eigen::Vector2d> points =
+      subsample(source.surface_points(), static_cast<std::size_t>(settings.search_points));
+  const double std_m = std::sqrt(std::max(prediction.covariance(0, 0), prediction.covariance(1, 1))),
+               std_rad = std::sqrt(prediction.covariance(2, 2));
   const SearchWindow window{.T_map_center = prediction.mean,
                             .half_width_m = std::min(settings.max_window_m, 3.0 * std_m + 0.3),
                             .half_angle_rad = std::min(settings.max_window_rad, 3.0 * std_rad + 0.05)};
   const std::optional<SearchResult> found = search_window(target.pyramid(), points, window, settings.min_search_score);
   if (!found) return {.match = {}, .failure = MatchFailure::kNotFound};
-  const SearchExclusion exclusion{.T_map_center = found->T_map_points, .radius_m = settings.min_second_best_distance_m, .angle_rad = settings.min_second_best_angle_rad};
-  if (search_window(target.pyramid(), points, window, settings.max_second_best_ratio * found->score, exclusion)) return {.match = {}, .failure = MatchFailure::kAmbiguous};
+  const SearchExclusion exclusion{.T_map_center = found->T_map_points,
+                                  .radius_m = settings.min_second_best_distance_m,
+                                  .angle_rad = settings.min_second_best_angle_rad};
+  if (search_window(target.pyramid(), points, window, settings.max_second_best_ratio * found->score, exclusion))
+    return {.match = {}, .failure = MatchFailure::kAmbiguous};
 
-  const std::optional<MatchResult> fine = match_scan(target.map(), source.surface_points(), found->T_map_points, match_prior(found->T_map_points), matching);
+  const std::optional<MatchResult> fine = match_scan(target.map(), source.surface_points(), found->T_map_points,
+                                                     match_prior(found->T_map_points), matching);
   if (!fine) return {.match = {}, .failure = MatchFailure::kMismatch};
   const Overlap forth = measure_overlap(target.map(), source, fine->T_map_body);
   const Overlap back = measure_overlap(source.map(), target, fine->T_map_body.inverse());
@@ -61,7 +69,8 @@ SubmapMatchResult match_submaps(const RenderedSubmap& target, const RenderedSubm
                           .score = found->score,
                           .overlap_ratio = std::min(forth.overlap_ratio, back.overlap_ratio),
                           .inlier_ratio = std::min(forth.inlier_ratio, back.inlier_ratio)};
-  if (match.overlap_ratio < settings.min_overlap_ratio || forth.matched_length_m < settings.min_matched_length_m) return {.match = {}, .failure = MatchFailure::kNoOverlap};
+  if (match.overlap_ratio < settings.min_overlap_ratio || forth.matched_length_m < settings.min_matched_length_m)
+    return {.match = {}, .failure = MatchFailure::kNoOverlap};
   if (match.inlier_ratio < settings.min_inlier_ratio) return {.match = {}, .failure = MatchFailure::kMismatch};
   return {.match = match, .failure = MatchFailure::kNone};
 }

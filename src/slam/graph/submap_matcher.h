@@ -14,8 +14,8 @@ struct SubmapMatch {
   /// Information of x, y, yaw in target, with independent points.
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   double score = 0.0;          ///< score of the search
-  double overlap_ratio = 0.0;    ///< overlap ratio, minimum of both directions
-  double inlier_ratio = 0.0;  ///< inlier ratio, minimum of both directions
+  double overlap_ratio = 0.0;  ///< overlap ratio, minimum of both directions
+  double inlier_ratio = 0.0;   ///< inlier ratio, minimum of both directions
 };
 
 /// Reason for rejecting a submap match.
@@ -34,7 +34,8 @@ inline PoseGaussian match_prior(const Pose2& T_submap_start) {
 /// Matches two submaps within three standard deviations of the prediction. A branch-and-bound search gives the coarse
 /// pose, a second one checks for an ambiguous match, and Gauss-Newton on lines refines the pose. Finally, the surfaces
 /// of each submap must lie on surfaces of the other wherever the other has observed cells.
-SubmapMatchResult match_submaps(const RenderedSubmap& target, const RenderedSubmap& source, const PoseGaussian& prediction,
-                                const SubmapMatcherSettings& settings, const ScanMatcherSettings& matching);
+SubmapMatchResult match_submaps(const RenderedSubmap& target, const RenderedSubmap& source,
+                                const PoseGaussian& prediction, const SubmapMatcherSettings& settings,
+                                const ScanMatcherSettings& matching);
 
 }  // namespace patrol::slam

@@ -5,8 +5,8 @@
 namespace patrol::slam {
 
 struct SubmapMatcherSettings {
-  double min_search_score = 0.35;     ///< minimum mean likelihood of the points in the search
-  double max_window_m = 15.0;         ///< maximum half width of the search window
+  double min_search_score = 0.35;  ///< minimum mean likelihood of the points in the search
+  double max_window_m = 15.0;      ///< maximum half width of the search window
   double max_window_rad = 0.8;
   int search_points = 300;
   /// Minimum overlap ratio: points in observed cells of the other map, in both directions.

@@ -64,7 +64,8 @@ constexpr std::array kMethods = std::to_array<MappingMethod>({
 
 std::span<const MappingMethod> mapping_methods() { return kMethods; }
 
-std::unique_ptr<Mapper> make_mapper(const MapperSettings& settings, const BoostedStumps& neighbors, std::uint64_t seed) {
+std::unique_ptr<Mapper> make_mapper(const MapperSettings& settings, const BoostedStumps& neighbors,
+                                    std::uint64_t seed) {
   validate(settings, "slam");
   return row_named(mapping_methods(), settings.method, "slam.method").make(settings, neighbors, seed);
 }

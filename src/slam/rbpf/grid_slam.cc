@@ -6,9 +6,9 @@
 
 #include "core/error.h"
 #include "core/particle_weights.h"
-#include "slam/rbpf/particle_problem.h"
 #include "slam/map_rendering.h"
 #include "slam/particle_filter.h"
+#include "slam/rbpf/particle_problem.h"
 
 namespace patrol::slam {
 namespace {
@@ -16,7 +16,8 @@ namespace {
 ParticleFilterComponents components_from(const GridSlamSettings& settings) {
   validate(settings, "slam.rbpf");
   if (settings.optimizer != "none" && settings.proposal != "motion") {
-    throw InputError("slam.rbpf.optimizer = " + settings.optimizer + ": must be none unless slam.rbpf.proposal = motion");
+    throw InputError("slam.rbpf.optimizer = " + settings.optimizer +
+                     ": must be none unless slam.rbpf.proposal = motion");
   }
   ParticleFilterSettings components = published_settings(settings.optimizer);
   components.resample_threshold = settings.resample_threshold;
@@ -48,7 +49,8 @@ SlamUpdate GridSlam::update(const LevelScan& scan, const Pose2& T_odom_body) {
     T_map_last_ = best.posterior.mean;
     const bool is_by_match = settings_.proposal == "scan_match" || particles_.size() == 1;
     const double tracked_inlier_ratio = best.inlier_ratio;
-    best = is_by_match ? move_by_scan_match(points, T_odom_body, scan.stamp, update) : move_by_odometry(points, T_odom_body, scan.stamp, update);
+    best = is_by_match ? move_by_scan_match(points, T_odom_body, scan.stamp, update)
+                       : move_by_odometry(points, T_odom_body, scan.stamp, update);
     if (!is_by_match) best.inlier_ratio = tracked_inlier_ratio;
     integrate(scan);
     T_odom_keyframe_ = T_odom_body, keyframe_stamp_ = scan.stamp;
@@ -62,7 +64,8 @@ SlamUpdate GridSlam::update(const LevelScan& scan, const Pose2& T_odom_body) {
   return update;
 }
 
-Proposal GridSlam::move_by_scan_match(const std::vector<MatchPoint>& points, const Pose2& T_odom_body, Time stamp, SlamUpdate& update) {
+Proposal GridSlam::move_by_scan_match(const std::vector<MatchPoint>& points, const Pose2& T_odom_body, Time stamp,
+                                      SlamUpdate& update) {
   const std::vector<Proposal> proposals = propose(points, T_odom_body, stamp);
   sample_particles(proposals);
   update.effective_sample_size = choose_best();
@@ -71,7 +74,8 @@ Proposal GridSlam::move_by_scan_match(const std::vector<MatchPoint>& points, con
   return best;
 }
 
-Proposal GridSlam::move_by_odometry(const std::vector<MatchPoint>& points, const Pose2& T_odom_body, Time stamp, SlamUpdate& update) {
+Proposal GridSlam::move_by_odometry(const std::vector<MatchPoint>& points, const Pose2& T_odom_body, Time stamp,
+                                    SlamUpdate& update) {
   std::vector<PoseGaussian> predictions;
   std::vector<double> log_weights;
   for (const Particle& particle : particles_) {
@@ -90,9 +94,13 @@ Proposal GridSlam::move_by_odometry(const std::vector<MatchPoint>& points, const
   for (std::size_t i = 0; i < particles_.size(); ++i) particles_[i].log_weight = log_weights[i];
   if (update.resampled) {
     // After resampling, the trajectory of the best particle continues in the nearest one.
-    const auto distance_m = [&](const Particle& particle) { return (particle.T_map_body.position() - best.posterior.mean.position()).norm(); };
-    best_ = static_cast<std::size_t>(std::min_element(particles_.begin(), particles_.end(), [&](const Particle& a, const Particle& b) { return distance_m(a) < distance_m(b); }) -
-                                     particles_.begin());
+    const auto distance_m = [&](const Particle& particle) {
+      return (particle.T_map_body.position() - best.posterior.mean.position()).norm();
+    };
+    best_ = static_cast<std::size_t>(
+        std::min_element(particles_.begin(), particles_.end(),
+                         [&](const Particle& a, const Particle& b) { return distance_m(a) < distance_m(b); }) -
+        particles_.begin());
   }
   return best;
 }
@@ -123,7 +131,8 @@ Proposal GridSlam::track(const std::vector<MatchPoint>& points, const Pose2& T_o
   const PoseGaussian prediction = predict(particle, T_odom_body, stamp).pose;
   const Pose2 T_map_start = T_map_last_ * (T_odom_last_.inverse() * T_odom_body);
   const auto match_from = [&](const Pose2& start) {
-    return laplace_proposal(particle.map, points, start, prediction, settings_.likelihood_tempering, settings_.matching);
+    return laplace_proposal(particle.map, points, start, prediction, settings_.likelihood_tempering,
+                            settings_.matching);
   };
   Proposal tracked = match_from(T_map_start);
   if (tracked.inlier_ratio > 0.0 || points.empty() || !particle.map.has_surface()) return tracked;
@@ -139,13 +148,14 @@ bool GridSlam::is_keyframe_due(const Pose2& T_map_body) const {
 }
 
 // The match of each particle starts from the best particle's motion since the keyframe, which is closer than odometry.
-std::vector<Proposal> GridSlam::propose(const std::vector<MatchPoint>& points, const Pose2& T_odom_body, Time stamp) const {
+std::vector<Proposal> GridSlam::propose(const std::vector<MatchPoint>& points, const Pose2& T_odom_body,
+                                        Time stamp) const {
   const Pose2 T_keyframe_body = particles_[best_].T_map_body.inverse() * T_map_last_;
   std::vector<Proposal> proposals;
   for (const Particle& particle : particles_) {
     const Prediction prediction = predict(particle, T_odom_body, stamp);
     proposals.push_back(laplace_proposal(particle.map, points, particle.T_map_body * T_keyframe_body, prediction.pose,
-                                          settings_.likelihood_tempering, settings_.matching));
+                                         settings_.likelihood_tempering, settings_.matching));
     proposals.back().log_weight_increment += prediction.log_density;
   }
   return proposals;
@@ -196,11 +206,14 @@ void GridSlam::integrate(const LevelScan& scan) {
   }
 }
 
-OccupancyGrid GridSlam::map() const { return render_map(particles_[best_].map, settings_.min_hits_occupied, settings_.min_occupied_hit_ratio); }
+OccupancyGrid GridSlam::map() const {
+  return render_map(particles_[best_].map, settings_.min_hits_occupied, settings_.min_occupied_hit_ratio);
+}
 
 std::vector<Pose2> GridSlam::best_path() const {
   std::vector<Pose2> T_map_body;
-  for (const TrajectoryNode* step = particles_[best_].path.get(); step; step = step->before.get()) T_map_body.push_back(step->T_map_body);
+  for (const TrajectoryNode* step = particles_[best_].path.get(); step; step = step->before.get())
+    T_map_body.push_back(step->T_map_body);
   std::reverse(T_map_body.begin(), T_map_body.end());
   return T_map_body;
 }

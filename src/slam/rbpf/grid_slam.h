@@ -8,11 +8,11 @@
 #include "core/random.h"
 #include "core/settings.h"
 #include "slam/motion_model.h"
+#include "slam/particle_filter_components.h"
+#include "slam/range_update.h"
 #include "slam/rbpf/grid_slam_settings.h"
 #include "slam/rbpf/particle.h"
-#include "slam/particle_filter_components.h"
 #include "slam/rbpf/proposal.h"
-#include "slam/range_update.h"
 #include "slam/scan_integration.h"
 #include "slam/scan_matcher.h"
 #include "slam/slam_update.h"
@@ -68,8 +68,10 @@ class GridSlam {
   bool is_keyframe_due(const Pose2& T_map_body) const;
   std::vector<Proposal> propose(const std::vector<MatchPoint>& points, const Pose2& T_odom_body, Time stamp) const;
   void sample_particles(const std::vector<Proposal>& proposals);
-  Proposal move_by_scan_match(const std::vector<MatchPoint>& points, const Pose2& T_odom_body, Time stamp, SlamUpdate& update);
-  Proposal move_by_odometry(const std::vector<MatchPoint>& points, const Pose2& T_odom_body, Time stamp, SlamUpdate& update);
+  Proposal move_by_scan_match(const std::vector<MatchPoint>& points, const Pose2& T_odom_body, Time stamp,
+                              SlamUpdate& update);
+  Proposal move_by_odometry(const std::vector<MatchPoint>& points, const Pose2& T_odom_body, Time stamp,
+                            SlamUpdate& update);
   double choose_best();
   bool resample_if_needed(double num_effective);
   void integrate(const LevelScan& scan);

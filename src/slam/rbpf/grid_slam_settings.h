@@ -14,8 +14,8 @@ namespace patrol::slam {
 struct GridSlamSettings {
   // Map representation.
   double resolution_m = 0.05;
-  double max_extent_m = 400.0;            ///< side of the mapped square around the origin
-  int min_hits_occupied = 2;              ///< published map only: cells with fewer hits are treated as outliers
+  double max_extent_m = 400.0;  ///< side of the mapped square around the origin
+  int min_hits_occupied = 2;    ///< published map only: cells with fewer hits are treated as outliers
   /// Published map only: minimum ratio of hits to hits plus passes; below it the cell was occupied by a moving object.
   double min_occupied_hit_ratio = 0.5;
   // Map updates.
@@ -27,7 +27,7 @@ struct GridSlamSettings {
   // Filter; the cost is proportional to the number of particles.
   int particles = 8;
   double likelihood_tempering = 0.2;  ///< tempering factor: fraction of the points with independent errors (proposal.h)
-  std::string proposal = "scan_match";    ///< scan_match; or motion: sample from odometry only, as in FastSLAM
+  std::string proposal = "scan_match";  ///< scan_match; or motion: sample from odometry only, as in FastSLAM
   /// Optimizer applied to the odometry samples, with the resampler of its source; only with `proposal: motion`.
   std::string optimizer = "none";
   /// Resample if the effective sample size is below this fraction of the number of particles.

@@ -13,7 +13,8 @@ struct TrajectoryNode {
   Pose2 T_map_body;
   std::shared_ptr<TrajectoryNode> before;
 
-  TrajectoryNode(const Pose2& pose, std::shared_ptr<TrajectoryNode> earlier) : T_map_body(pose), before(std::move(earlier)) {}
+  TrajectoryNode(const Pose2& pose, std::shared_ptr<TrajectoryNode> earlier)
+      : T_map_body(pose), before(std::move(earlier)) {}
   TrajectoryNode(const TrajectoryNode&) = delete;
   TrajectoryNode& operator=(const TrajectoryNode&) = delete;
   /// Frees the list in a loop: recursion over a trajectory of 100,000 steps would overflow the stack.

@@ -1,16 +1,21 @@
 #include "slam/rbpf/particle_problem.h"
 
-#include <Eigen/Cholesky>
-
 #include <utility>
+
+#include <Eigen/Cholesky>
 
 #include "core/geometry/linear_algebra.h"
 
 namespace patrol::slam {
 
-RbpfParticleProblem::RbpfParticleProblem(std::vector<Particle>& particles, std::vector<PoseGaussian> predictions, const std::vector<MatchPoint>& points, double likelihood_tempering,
-                   const ScanMatcherSettings& settings)
-    : particles_(particles), predictions_(std::move(predictions)), points_(points), likelihood_tempering_(likelihood_tempering), settings_(settings),
+RbpfParticleProblem::RbpfParticleProblem(std::vector<Particle>& particles, std::vector<PoseGaussian> predictions,
+                                         const std::vector<MatchPoint>& points, double likelihood_tempering,
+                                         const ScanMatcherSettings& settings)
+    : particles_(particles),
+      predictions_(std::move(predictions)),
+      points_(points),
+      likelihood_tempering_(likelihood_tempering),
+      settings_(settings),
       positions_(particles.size()) {
   for (const PoseGaussian& prediction : predictions_) roots_.push_back(cholesky_factor(prediction.covariance));
 }
@@ -21,7 +26,8 @@ Position RbpfParticleProblem::sample(std::size_t, RandomSequence& random) const 
 }
 
 double RbpfParticleProblem::log_fitness(std::size_t particle, const Position& position) const {
-  return likelihood_tempering_ * scan_log_likelihood(particles_[particle].map, points_, pose_at(particle, position), settings_);
+  return likelihood_tempering_ *
+         scan_log_likelihood(particles_[particle].map, points_, pose_at(particle, position), settings_);
 }
 
 double RbpfParticleProblem::commit(std::size_t particle, const Position& position) {
@@ -37,7 +43,8 @@ void RbpfParticleProblem::apply_resampling(const std::vector<Offspring>& offspri
     Particle& particle = children.emplace_back(particles_[source]);
     if (child.attraction == 0.0 && child.mutation == 0.0) continue;
     const Position own = positions_[child.parent];
-    particle.T_map_body = pose_at(source, (1.0 + child.mutation) * (own + child.attraction * (positions_[source] - own)));
+    particle.T_map_body =
+        pose_at(source, (1.0 + child.mutation) * (own + child.attraction * (positions_[source] - own)));
   }
   particles_ = std::move(children);
 }

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "slam/match_points.h"
-#include "slam/rbpf/particle.h"
 #include "slam/pose_gaussian.h"
+#include "slam/rbpf/particle.h"
 #include "slam/resampling.h"
 #include "slam/scan_matcher.h"
 #include "slam/swarm/swarm.h"
@@ -19,8 +19,9 @@ namespace patrol::slam {
 class RbpfParticleProblem {
  public:
   /// `predictions` [particle]. `particles`, `points` and `settings` must outlive this object.
-  RbpfParticleProblem(std::vector<Particle>& particles, std::vector<PoseGaussian> predictions, const std::vector<MatchPoint>& points, double likelihood_tempering,
-           const ScanMatcherSettings& settings);
+  RbpfParticleProblem(std::vector<Particle>& particles, std::vector<PoseGaussian> predictions,
+                      const std::vector<MatchPoint>& points, double likelihood_tempering,
+                      const ScanMatcherSettings& settings);
 
   std::size_t size() const { return particles_.size(); }
   Position sample(std::size_t particle, RandomSequence& random) const;
@@ -31,7 +32,9 @@ class RbpfParticleProblem {
   void apply_resampling(const std::vector<Offspring>& offspring);
 
  private:
-  Pose2 pose_at(std::size_t particle, const Position& position) const { return perturbed(predictions_[particle].mean, roots_[particle] * position); }
+  Pose2 pose_at(std::size_t particle, const Position& position) const {
+    return perturbed(predictions_[particle].mean, roots_[particle] * position);
+  }
 
   std::vector<Particle>& particles_;
   std::vector<PoseGaussian> predictions_;

@@ -17,13 +17,16 @@ GridSlamSettings default_filter_settings() {
   return settings;
 }
 
-ScanOdometryRbpf::ScanOdometryRbpf(const ScanOdometryRbpfSettings& settings, std::uint64_t seed) : filtered_(settings.filter, seed) {
-  if (row_named(kRbpfOdometries, settings.odometry, "slam.rbpf.odometry").value == RbpfOdometry::kScanMatched) tracker_.emplace(settings.scan_odometry);
+ScanOdometryRbpf::ScanOdometryRbpf(const ScanOdometryRbpfSettings& settings, std::uint64_t seed)
+    : filtered_(settings.filter, seed) {
+  if (row_named(kRbpfOdometries, settings.odometry, "slam.rbpf.odometry").value == RbpfOdometry::kScanMatched)
+    tracker_.emplace(settings.scan_odometry);
 }
 
 void ScanOdometryRbpf::add(RangeMeasurement measurement) {
   if (tracker_ && !newest_) return;
-  if (tracker_) measurement.T_odom_body = newest_->T_local_body * (newest_->T_odom_body.inverse() * measurement.T_odom_body);
+  if (tracker_)
+    measurement.T_odom_body = newest_->T_local_body * (newest_->T_odom_body.inverse() * measurement.T_odom_body);
   filtered_.add(measurement);
 }
 

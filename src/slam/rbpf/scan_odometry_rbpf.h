@@ -11,11 +11,11 @@
 
 namespace patrol::slam {
 
-/// Rao-Blackwellized particle filter on grids (grid_slam.h), the method `rbpf` of runs and of recorded logs. Gmapping's filter; loops are closed only by
-/// particles that return to the right pose.
+/// Rao-Blackwellized particle filter on grids (grid_slam.h), the method `rbpf` of runs and of recorded logs. Gmapping's
+/// filter; loops are closed only by particles that return to the right pose.
 ///
-/// With `odometry: scan_matched`, matching from scan to scan corrects the odometry before the filter uses it: the particles have only its small errors to
-/// correct, and wrong wheel odometry does not mislead all of them.
+/// With `odometry: scan_matched`, matching from scan to scan corrects the odometry before the filter uses it: the
+/// particles have only its small errors to correct, and wrong wheel odometry does not mislead all of them.
 class ScanOdometryRbpf {
  public:
   ScanOdometryRbpf(const ScanOdometryRbpfSettings& settings, std::uint64_t seed);

@@ -29,7 +29,7 @@ static_assert(is_in_order(kRbpfOdometries));
 /// odometry as given and fewer particles.
 struct ScanOdometryRbpfSettings {
   std::string odometry = "scan_matched";  ///< odometry that predicts the particles (`kRbpfOdometries`)
-  ScanTrackerSettings scan_odometry;           ///< matching from scan to scan, with `odometry: scan_matched`
+  ScanTrackerSettings scan_odometry;      ///< matching from scan to scan, with `odometry: scan_matched`
   GridSlamSettings filter = default_filter_settings();
 
   template <typename Self, typename Visitor>

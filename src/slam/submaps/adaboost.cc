@@ -17,20 +17,25 @@ using Order = std::vector<std::size_t>;  ///< example indices in ascending order
 
 void check(const LabeledFeatures& training) {
   if (training.examples.size() != training.labels.size()) {
-    throw InputError(fmt::format("adaboost: {} examples and {} labels: numbers must be equal", training.examples.size(), training.labels.size()));
+    throw InputError(fmt::format("adaboost: {} examples and {} labels: numbers must be equal", training.examples.size(),
+                                 training.labels.size()));
   }
   for (std::size_t i = 0; i < training.examples.size(); ++i) {
     const std::vector<double>& values = training.examples[i];
     if (values.size() != training.names.size()) {
-      throw InputError(fmt::format("adaboost: example {}: {} features: must be {}", i, values.size(), training.names.size()));
+      throw InputError(
+          fmt::format("adaboost: example {}: {} features: must be {}", i, values.size(), training.names.size()));
     }
     for (std::size_t f = 0; f < values.size(); ++f) {
-      if (!std::isfinite(values[f])) throw InputError(fmt::format("adaboost: example {}: {} = {}: must be finite", i, training.names[f], values[f]));
+      if (!std::isfinite(values[f]))
+        throw InputError(fmt::format("adaboost: example {}: {} = {}: must be finite", i, training.names[f], values[f]));
     }
-    if (std::abs(training.labels[i]) != 1) throw InputError(fmt::format("adaboost: example {}: label = {}: must be +1 or -1", i, training.labels[i]));
+    if (std::abs(training.labels[i]) != 1)
+      throw InputError(fmt::format("adaboost: example {}: label = {}: must be +1 or -1", i, training.labels[i]));
   }
   for (const int label : {1, -1}) {
-    if (std::ranges::count(training.labels, label) == 0) throw InputError(fmt::format("adaboost: no example has label {}: both labels are required", label));
+    if (std::ranges::count(training.labels, label) == 0)
+      throw InputError(fmt::format("adaboost: no example has label {}: both labels are required", label));
   }
 }
 
@@ -48,7 +53,8 @@ std::vector<double> first_weights(const std::vector<int>& labels, bool balance_c
   const auto count = static_cast<double>(labels.size());
   const auto positive = static_cast<double>(std::ranges::count(labels, 1));
   std::vector<double> weights;
-  for (const int label : labels) weights.push_back(!balance_classes ? 1.0 / count : 0.5 / (label > 0 ? positive : count - positive));
+  for (const int label : labels)
+    weights.push_back(!balance_classes ? 1.0 / count : 0.5 / (label > 0 ? positive : count - positive));
   return weights;
 }
 
@@ -59,7 +65,8 @@ struct StumpCandidate {
 };
 
 /// Tries all thresholds in ascending order; `wrong` is the weighted error of the vote "+1 above".
-StumpCandidate best_of_feature(std::size_t feature, const Order& order, const LabeledFeatures& training, const std::vector<double>& weights) {
+StumpCandidate best_of_feature(std::size_t feature, const Order& order, const LabeledFeatures& training,
+                               const std::vector<double>& weights) {
   StumpCandidate best;
   double wrong = 0.0, all = 0.0;
   for (const std::size_t i : order) {
@@ -69,7 +76,8 @@ StumpCandidate best_of_feature(std::size_t feature, const Order& order, const La
   const auto consider = [&](double threshold) {
     for (const int sign : {1, -1}) {
       const double error = sign > 0 ? wrong / all : 1.0 - wrong / all;
-      if (error < best.error) best = {.stump = {.feature = feature, .threshold = threshold, .sign_above = sign}, .error = error};
+      if (error < best.error)
+        best = {.stump = {.feature = feature, .threshold = threshold, .sign_above = sign}, .error = error};
     }
   };
   const auto value = [&](std::size_t rank) { return training.examples[order[rank]][feature]; };
@@ -83,7 +91,8 @@ StumpCandidate best_of_feature(std::size_t feature, const Order& order, const La
   return best;
 }
 
-StumpCandidate best_stump(const std::vector<Order>& orders, const LabeledFeatures& training, const std::vector<double>& weights) {
+StumpCandidate best_stump(const std::vector<Order>& orders, const LabeledFeatures& training,
+                          const std::vector<double>& weights) {
   StumpCandidate best;
   for (std::size_t f = 0; f < orders.size(); ++f) {
     const StumpCandidate candidate = best_of_feature(f, orders[f], training, weights);
@@ -107,17 +116,22 @@ double weighted_error(const DecisionStump& stump, const LabeledFeatures& trainin
 }
 
 /// Scales the weights so that the misclassified examples have half of the total.
-void scale_example_weights(const DecisionStump& stump, double error, const LabeledFeatures& training, std::vector<double>& weights) {
-  for (std::size_t i = 0; i < weights.size(); ++i) weights[i] *= 0.5 / (is_wrong(stump, training, i) ? error : 1.0 - error);
+void scale_example_weights(const DecisionStump& stump, double error, const LabeledFeatures& training,
+                           std::vector<double>& weights) {
+  for (std::size_t i = 0; i < weights.size(); ++i)
+    weights[i] *= 0.5 / (is_wrong(stump, training, i) ? error : 1.0 - error);
 }
 
 double total_weight(const BoostedStumps& model) {
-  return std::accumulate(model.stumps.begin(), model.stumps.end(), 0.0, [](double sum, const DecisionStump& stump) { return sum + stump.weight; });
+  return std::accumulate(model.stumps.begin(), model.stumps.end(), 0.0,
+                         [](double sum, const DecisionStump& stump) { return sum + stump.weight; });
 }
 
-double training_error_of(const BoostedStumps& model, const LabeledFeatures& training, const std::vector<double>& weights) {
+double training_error_of(const BoostedStumps& model, const LabeledFeatures& training,
+                         const std::vector<double>& weights) {
   double error = 0.0;
-  for (std::size_t i = 0; i < weights.size(); ++i) error += model.margin(training.examples[i]) * training.labels[i] > 0.0 ? 0.0 : weights[i];
+  for (std::size_t i = 0; i < weights.size(); ++i)
+    error += model.margin(training.examples[i]) * training.labels[i] > 0.0 ? 0.0 : weights[i];
   return error;
 }
 

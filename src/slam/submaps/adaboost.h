@@ -20,17 +20,17 @@ struct AdaBoostSettings {
 
 /// Training set of labeled feature vectors.
 struct LabeledFeatures {
-  std::vector<std::string> names;            ///< [feature]
-  std::vector<std::vector<double>> examples; ///< [example][feature], finite
-  std::vector<int> labels;                   ///< [example], +1 or -1, each at least once
+  std::vector<std::string> names;             ///< [feature]
+  std::vector<std::vector<double>> examples;  ///< [example][feature], finite
+  std::vector<int> labels;                    ///< [example], +1 or -1, each at least once
 };
 
 struct BoostingResult {
   BoostedStumps model;
-  std::vector<double> errors;   ///< [stump], weighted error in its boosting round; below 1/2
+  std::vector<double> errors;  ///< [stump], weighted error in its boosting round; below 1/2
   /// Weighted fraction of examples misclassified by the model, with the initial weights; ties are errors.
   double training_error = 0.0;
-  double error_bound = 1.0;     ///< upper bound of the training error: product over the stumps of 2 sqrt(e (1 - e))
+  double error_bound = 1.0;  ///< upper bound of the training error: product over the stumps of 2 sqrt(e (1 - e))
 };
 
 /// Discrete AdaBoost over decision stumps; the error bound is theorem 6 of [Freund97]. Each round selects the stump of

@@ -1,10 +1,10 @@
 #include "slam/submaps/effective_neighbor_icp.h"
 
-#include <Eigen/Cholesky>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include <Eigen/Cholesky>
 
 #include "core/geometry/linear_algebra.h"
 
@@ -20,17 +20,21 @@ struct Pair {
   double distance_m = 0.0;
 };
 
-bool have_compatible_normals(const Eigen::Vector2d& normal_target, const Eigen::Vector2d& normal_source, double yaw_rad) {
+bool have_compatible_normals(const Eigen::Vector2d& normal_target, const Eigen::Vector2d& normal_source,
+                             double yaw_rad) {
   return normal_target.dot(Pose2{0.0, 0.0, yaw_rad} * normal_source) >= 0.0;  // zero: normal unknown
 }
 
 /// Pairs each source point with the nearest target point whose normal is not opposite, within `max_threshold_m` if it
 /// is not the nearest of all.
-std::vector<Pair> nearest_pairs(const IcpPoints& target, const IcpPoints& source, const Pose2& T_target_source, const IcpSettings& settings) {
+std::vector<Pair> nearest_pairs(const IcpPoints& target, const IcpPoints& source, const Pose2& T_target_source,
+                                const IcpSettings& settings) {
   std::vector<Pair> pairs;
   pairs.reserve(source.points().size());
   const auto add = [&](std::size_t i, const PointTree::Neighbor& found) {
-    if (!have_compatible_normals(target.free_space_normals()[found.index], source.free_space_normals()[i], T_target_source.yaw)) return false;
+    if (!have_compatible_normals(target.free_space_normals()[found.index], source.free_space_normals()[i],
+                                 T_target_source.yaw))
+      return false;
     pairs.push_back({.source = i, .target = found.index, .distance_m = std::sqrt(found.squared_distance_m2)});
     return true;
   };
@@ -51,7 +55,9 @@ double threshold_of(const std::vector<Pair>& pairs, const IcpSettings& settings,
   distances.reserve(pairs.size());
   for (const Pair& pair : pairs) distances.push_back(pair.distance_m);
   std::ranges::sort(distances);
-  return std::clamp(effective_threshold(distances), settings.min_threshold_m, std::max(settings.min_threshold_m, is_point_to_line ? settings.line_threshold_m : settings.max_threshold_m));
+  return std::clamp(
+      effective_threshold(distances), settings.min_threshold_m,
+      std::max(settings.min_threshold_m, is_point_to_line ? settings.line_threshold_m : settings.max_threshold_m));
 }
 
 std::vector<Pair> effective_pairs(std::vector<Pair> pairs, const IcpSettings& settings, bool is_point_to_line) {
@@ -60,7 +66,8 @@ std::vector<Pair> effective_pairs(std::vector<Pair> pairs, const IcpSettings& se
   return pairs;
 }
 
-Pose2 motion_of(const std::vector<Pair>& pairs, const std::vector<Eigen::Vector2d>& points_target, const std::vector<Eigen::Vector2d>& points_source) {
+Pose2 motion_of(const std::vector<Pair>& pairs, const std::vector<Eigen::Vector2d>& points_target,
+                const std::vector<Eigen::Vector2d>& points_source) {
   std::vector<Eigen::Vector2d> p, q;
   p.reserve(pairs.size());
   q.reserve(pairs.size());
@@ -78,18 +85,22 @@ struct PointToLineEquations {
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
 };
 
-PointToLineEquations linearize(const std::vector<Pair>& pairs, const IcpPoints& target, const std::vector<Eigen::Vector2d>& points_source,
-                        const Pose2& T_target_source, const IcpSettings& settings) {
+PointToLineEquations linearize(const std::vector<Pair>& pairs, const IcpPoints& target,
+                               const std::vector<Eigen::Vector2d>& points_source, const Pose2& T_target_source,
+                               const IcpSettings& settings) {
   PointToLineEquations sum;
   for (const Pair& pair : pairs) {
     const SurfaceNormal& surface = target.normals()[pair.target];
     const Eigen::Vector2d& n = surface.normal;
-    const Eigen::Vector2d p_target = T_target_source * points_source[pair.source], arm = p_target - T_target_source.position();
+    const Eigen::Vector2d p_target = T_target_source * points_source[pair.source],
+                          arm = p_target - T_target_source.position();
     const Eigen::Vector3d J(n.x(), n.y(), n.y() * arm.x() - n.x() * arm.y());
     const Eigen::Vector2d error = p_target - target.points()[pair.target];
-    const double straight = surface.linearity * surface.linearity, round = (1.0 - surface.linearity) * (1.0 - surface.linearity);
+    const double straight = surface.linearity * surface.linearity,
+                 round = (1.0 - surface.linearity) * (1.0 - surface.linearity);
     const double squared_m2 = straight * std::pow(n.dot(error), 2) + round * error.squaredNorm();
-    const double weight = 1.0 / (1.0 + squared_m2 / (settings.line_kernel_m * settings.line_kernel_m)) / (settings.point_std_m * settings.point_std_m);
+    const double weight = 1.0 / (1.0 + squared_m2 / (settings.line_kernel_m * settings.line_kernel_m)) /
+                          (settings.point_std_m * settings.point_std_m);
     sum.H += weight * straight * J * J.transpose();
     sum.b -= weight * straight * n.dot(error) * J;
     Eigen::Matrix<double, 2, 3> K;
@@ -121,7 +132,9 @@ double largest_distance(const std::vector<Pair>& pairs) {
   return std::ranges::max(pairs, {}, &Pair::distance_m).distance_m;
 }
 
-bool is_small(const Pose2& T_step, double tolerance_m) { return T_step.position().norm() + kIcpTurnArm_m * std::abs(T_step.yaw) <= tolerance_m; }
+bool is_small(const Pose2& T_step, double tolerance_m) {
+  return T_step.position().norm() + kIcpTurnArm_m * std::abs(T_step.yaw) <= tolerance_m;
+}
 
 }  // namespace
 
@@ -131,7 +144,7 @@ double effective_threshold(const std::vector<double>& sorted_distances) {
   double max_departure = 0.0, threshold = last;
   for (std::size_t k = 1; k + 1 < n; ++k) {
     const double chord = first + (last - first) * static_cast<double>(k) / static_cast<double>(n - 1);  // eq. 7
-    const double departure = chord - sorted_distances[k];                                                // eq. 8
+    const double departure = chord - sorted_distances[k];                                               // eq. 8
     if (departure <= 0.0 || departure < max_departure) continue;
     max_departure = departure;
     threshold = sorted_distances[k];
@@ -139,7 +152,8 @@ double effective_threshold(const std::vector<double>& sorted_distances) {
   return threshold;
 }
 
-Pose2 fit_rigid_motion(const std::vector<Eigen::Vector2d>& points_target, const std::vector<Eigen::Vector2d>& points_source) {
+Pose2 fit_rigid_motion(const std::vector<Eigen::Vector2d>& points_target,
+                       const std::vector<Eigen::Vector2d>& points_source) {
   const auto count = static_cast<double>(points_target.size());
   Eigen::Vector2d mu_p = Eigen::Vector2d::Zero(), mu_q = Eigen::Vector2d::Zero();  // eq. 10
   for (std::size_t i = 0; i < points_target.size(); ++i) {
@@ -158,15 +172,18 @@ Pose2 fit_rigid_motion(const std::vector<Eigen::Vector2d>& points_target, const 
   return {t.x(), t.y(), yaw};
 }
 
-std::optional<IcpResult> align_icp(const IcpPoints& target, const IcpPoints& source, const Pose2& T_start, const IcpSettings& settings) {
+std::optional<IcpResult> align_icp(const IcpPoints& target, const IcpPoints& source, const Pose2& T_start,
+                                   const IcpSettings& settings) {
   if (target.points().empty() || source.points().empty()) return std::nullopt;
   IcpResult result{.T_target_source = T_start};
   bool is_point_to_line = false;
   while (!result.converged && result.iterations < settings.max_iterations) {
-    const std::vector<Pair> pairs = effective_pairs(nearest_pairs(target, source, result.T_target_source, settings), settings, is_point_to_line);
+    const std::vector<Pair> pairs =
+        effective_pairs(nearest_pairs(target, source, result.T_target_source, settings), settings, is_point_to_line);
     if (pairs.size() < static_cast<std::size_t>(settings.min_pairs)) return std::nullopt;
     const PointToLineEquations lines = linearize(pairs, target, source.points(), result.T_target_source, settings);
-    const Pose2 T_next = is_point_to_line ? point_to_line_step(lines, result.T_target_source) : motion_of(pairs, target.points(), source.points());
+    const Pose2 T_next = is_point_to_line ? point_to_line_step(lines, result.T_target_source)
+                                          : motion_of(pairs, target.points(), source.points());
     const bool is_still = is_small(result.T_target_source.inverse() * T_next, settings.step_tolerance_m);
     result = {.T_target_source = T_next,
               .information = lines.H,

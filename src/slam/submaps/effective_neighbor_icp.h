@@ -1,9 +1,9 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <optional>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "core/frames.h"
 #include "slam/submaps/effective_neighbor_icp_settings.h"
@@ -15,8 +15,11 @@ namespace patrol::slam {
 class IcpPoints {
  public:
   /// `facings` [point]: free-space normals (surface_points.h); empty: pairs are not gated by normals.
-  IcpPoints(std::vector<Eigen::Vector2d> points, const IcpSettings& settings, std::vector<Eigen::Vector2d> free_space_normals = {})
-      : tree_(std::move(points)), normals_(surface_normals(tree_, settings.normal_radius_m)), free_space_normals_(std::move(free_space_normals)) {
+  IcpPoints(std::vector<Eigen::Vector2d> points, const IcpSettings& settings,
+            std::vector<Eigen::Vector2d> free_space_normals = {})
+      : tree_(std::move(points)),
+        normals_(surface_normals(tree_, settings.normal_radius_m)),
+        free_space_normals_(std::move(free_space_normals)) {
     free_space_normals_.resize(tree_.points().size(), Eigen::Vector2d::Zero());
   }
 
@@ -56,7 +59,8 @@ double effective_threshold(const std::vector<double>& sorted_distances);
 
 /// Rigid motion that minimizes the sum of squared distances of point pairs, in closed form [Yu23, eqs. 9 to 12]. Both
 /// sets are centered, then the rotation is estimated, then T = mu_p - R mu_q. At least one pair is required.
-Pose2 fit_rigid_motion(const std::vector<Eigen::Vector2d>& points_target, const std::vector<Eigen::Vector2d>& points_source);
+Pose2 fit_rigid_motion(const std::vector<Eigen::Vector2d>& points_target,
+                       const std::vector<Eigen::Vector2d>& points_source);
 
 /// ICP [Besl92] on effective neighbors [Yu23, section 2.2]. In every iteration, each source point is paired with its
 /// nearest target point, and pairs beyond the threshold are dropped. Points outside the overlap thus have no influence.
@@ -71,6 +75,7 @@ Pose2 fit_rigid_motion(const std::vector<Eigen::Vector2d>& points_target, const 
 /// - Final steps use distances to lines where the target is linear and to points elsewhere (Generalized-ICP in the
 ///   plane [Segal09]). Near pairs have larger weights, because the points of two submaps are different samples of the
 ///   walls and would otherwise lock onto each other's pattern.
-std::optional<IcpResult> align_icp(const IcpPoints& target, const IcpPoints& source, const Pose2& T_start, const IcpSettings& settings);
+std::optional<IcpResult> align_icp(const IcpPoints& target, const IcpPoints& source, const Pose2& T_start,
+                                   const IcpSettings& settings);
 
 }  // namespace patrol::slam

@@ -1,13 +1,12 @@
 #include "slam/submaps/ndt.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
 
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 
 #include "core/error.h"
@@ -17,9 +16,9 @@
 namespace patrol::slam {
 namespace {
 
-constexpr double kMaxNodes = 4000.0;  // along either axis
-constexpr double kNdtTurnArm_m = 10.0;        // distance at which the rotation of a step is evaluated
-constexpr double kMinWeight = 1e-6;    // a cell whose points are all on its border has no covariance
+constexpr double kMaxNodes = 4000.0;    // along either axis
+constexpr double kNdtTurnArm_m = 10.0;  // distance at which the rotation of a step is evaluated
+constexpr double kMinWeight = 1e-6;     // a cell whose points are all on its border has no covariance
 
 /// One of the four nodes around a point, with its bilinear weight.
 struct NodeWeight {
@@ -49,7 +48,9 @@ GridGeometry covering_lattice(const std::vector<Eigen::Vector2d>& points, double
   }
   const Eigen::Array2d first = (low.array() / spacing_m).floor(), last = (high.array() / spacing_m).floor() + 1.0;
   const double max_nodes = (last - first).maxCoeff() + 1.0;
-  if (max_nodes > kMaxNodes) throw InputError(fmt::format("ndt: lattice of {} nodes of {} m along an axis: must be at most {}", max_nodes, spacing_m, kMaxNodes));
+  if (max_nodes > kMaxNodes)
+    throw InputError(fmt::format("ndt: lattice of {} nodes of {} m along an axis: must be at most {}", max_nodes,
+                                 spacing_m, kMaxNodes));
   return {.resolution_m = spacing_m,
           .width = static_cast<int>(last.x() - first.x()) + 1,
           .height = static_cast<int>(last.y() - first.y()) + 1,
@@ -72,7 +73,8 @@ Eigen::Matrix2d floored_information(const Eigen::Matrix2d& covariance, double mi
 
 }  // namespace
 
-NdtGrid::NdtGrid(const std::vector<Eigen::Vector2d>& points_target, double cell_m, double min_std_m) : node_spacing_m_(0.5 * cell_m) {
+NdtGrid::NdtGrid(const std::vector<Eigen::Vector2d>& points_target, double cell_m, double min_std_m)
+    : node_spacing_m_(0.5 * cell_m) {
   const GridGeometry lattice = covering_lattice(points_target, node_spacing_m_);
   origin_m_ = lattice.origin_m;
   cell_of_node_ = Grid<int>(lattice, -1);
@@ -85,7 +87,8 @@ NdtGrid::NdtGrid(const std::vector<Eigen::Vector2d>& points_target, double cell_
       if (cell < 0) {
         cell = static_cast<int>(sums.size());
         sums.emplace_back();
-        cells_.push_back({.mean = origin_m_ + node_spacing_m_ * Eigen::Vector2d(node_weight.node.col, node_weight.node.row)});
+        cells_.push_back(
+            {.mean = origin_m_ + node_spacing_m_ * Eigen::Vector2d(node_weight.node.col, node_weight.node.row)});
       }
       CellSums& sum = sums[static_cast<std::size_t>(cell)];
       const Eigen::Vector2d from_node = p - cells_[static_cast<std::size_t>(cell)].mean;
@@ -136,7 +139,8 @@ NdtScore NdtGrid::score(const std::vector<Eigen::Vector2d>& points_source, const
 std::vector<NdtGrid> make_ndt(const std::vector<Eigen::Vector2d>& points_target, const NdtSettings& settings) {
   std::vector<NdtGrid> levels;
   levels.reserve(settings.cells_m.size());
-  for (const double cell_m : settings.cells_m) levels.emplace_back(points_target, cell_m, settings.min_std_per_cell * cell_m);
+  for (const double cell_m : settings.cells_m)
+    levels.emplace_back(points_target, cell_m, settings.min_std_per_cell * cell_m);
   return levels;
 }
 
@@ -163,7 +167,8 @@ Pose2 stepped(const Pose2& T_target_source, const Eigen::Vector3d& step) {
 }
 
 /// Levenberg-Marquardt: the damping decreases after accepted steps and increases after rejected ones.
-ScoreMaximum maximize_score(const NdtGrid& grid, const std::vector<Eigen::Vector2d>& points, const Pose2& T_start, const NdtSettings& settings) {
+ScoreMaximum maximize_score(const NdtGrid& grid, const std::vector<Eigen::Vector2d>& points, const Pose2& T_start,
+                            const NdtSettings& settings) {
   constexpr double kMaxDamping = 1e7;
   ScoreMaximum at{.T_target_source = T_start, .score = grid.score(points, T_start)};
   const double step_tolerance = settings.step_tolerance_per_cell * grid.cell_m();
@@ -182,7 +187,8 @@ ScoreMaximum maximize_score(const NdtGrid& grid, const std::vector<Eigen::Vector
     } else {
       damping *= 10.0;
     }
-    at.converged = damping > kMaxDamping || (step.head<2>().norm() < step_tolerance && kNdtTurnArm_m * std::abs(step.z()) < step_tolerance);
+    at.converged = damping > kMaxDamping ||
+                   (step.head<2>().norm() < step_tolerance && kNdtTurnArm_m * std::abs(step.z()) < step_tolerance);
   }
   return at;
 }
@@ -191,12 +197,14 @@ ScoreMaximum maximize_score(const NdtGrid& grid, const std::vector<Eigen::Vector
 bool is_near_any(const Pose2& T_target_source, const std::vector<ScoreMaximum>& maxima, double cell_m) {
   return std::ranges::any_of(maxima, [&](const ScoreMaximum& other) {
     const Pose2& T = other.T_target_source;
-    return (T.position() - T_target_source.position()).norm() < 0.01 * cell_m && kNdtTurnArm_m * std::abs(wrap_angle(T.yaw - T_target_source.yaw)) < 0.01 * cell_m;
+    return (T.position() - T_target_source.position()).norm() < 0.01 * cell_m &&
+           kNdtTurnArm_m * std::abs(wrap_angle(T.yaw - T_target_source.yaw)) < 0.01 * cell_m;
   });
 }
 
 /// Negative Hessian of the score by central differences of the gradient over half a node, made positive semidefinite.
-Eigen::Matrix3d measured_information(const NdtGrid& grid, const std::vector<Eigen::Vector2d>& points, const Pose2& T_target_source) {
+Eigen::Matrix3d measured_information(const NdtGrid& grid, const std::vector<Eigen::Vector2d>& points,
+                                     const Pose2& T_target_source) {
   const double step_m = 0.25 * grid.cell_m();
   const Eigen::Vector3d steps(step_m, step_m, step_m / kNdtTurnArm_m);
   Eigen::Matrix3d fall;
@@ -212,7 +220,8 @@ Eigen::Matrix3d measured_information(const NdtGrid& grid, const std::vector<Eige
 
 }  // namespace
 
-std::optional<NdtResult> align_ndt(const std::vector<NdtGrid>& target, const std::vector<Eigen::Vector2d>& points_source, const Pose2& T_start,
+std::optional<NdtResult> align_ndt(const std::vector<NdtGrid>& target,
+                                   const std::vector<Eigen::Vector2d>& points_source, const Pose2& T_start,
                                    const NdtSettings& settings) {
   const std::vector<Eigen::Vector2d> points = subsample(points_source, settings.max_points);
   if (points.empty()) return std::nullopt;

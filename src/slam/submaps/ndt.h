@@ -1,10 +1,10 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <cstddef>
 #include <optional>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "core/frames.h"
 #include "core/grid.h"
@@ -14,8 +14,8 @@ namespace patrol::slam {
 
 /// Score of points at a pose, with derivatives with respect to x, y, yaw of T_target_source.
 struct NdtScore {
-  double value = 0.0;                                   ///< sum over the points, each 0 ... 1
-  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();   ///< exact gradient
+  double value = 0.0;                                  ///< sum over the points, each 0 ... 1
+  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();  ///< exact gradient
   /// Gauss-Newton approximation of the Hessian of -value, positive semidefinite
   Eigen::Matrix3d curvature = Eigen::Matrix3d::Zero();
 };
@@ -73,7 +73,8 @@ struct NdtResult {
 /// damping; steps that lower the score are rejected. Every level starts from `T_start` and from all results of the
 /// coarser level: wide cells have a large capture range but are biased in partial overlaps. The result with the highest
 /// score on the finest level is returned. Returns none if no cell responds to any source point.
-std::optional<NdtResult> align_ndt(const std::vector<NdtGrid>& target, const std::vector<Eigen::Vector2d>& points_source, const Pose2& T_start,
+std::optional<NdtResult> align_ndt(const std::vector<NdtGrid>& target,
+                                   const std::vector<Eigen::Vector2d>& points_source, const Pose2& T_start,
                                    const NdtSettings& settings);
 
 /// Regular subset of at most `max_points` points.

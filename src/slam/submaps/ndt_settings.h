@@ -10,8 +10,8 @@ struct NdtSettings {
   std::vector<double> cells_m = {8.0, 4.0, 2.0, 1.0, 0.5};  ///< cell sizes of the levels, coarse to fine
   /// Minimum standard deviation of a cell's normal, relative to the cell size; determines the capture range of a wall.
   double min_std_per_cell = 0.15;
-  int max_points = 800;            ///< maximum number of source points; a regular subset of more points is used
-  int max_iterations = 60;         ///< maximum number of iterations per level
+  int max_points = 800;     ///< maximum number of source points; a regular subset of more points is used
+  int max_iterations = 60;  ///< maximum number of iterations per level
   /// Convergence of a level: displacement by a step at 10 m from the origin, relative to the cell size.
   double step_tolerance_per_cell = 5e-4;
 

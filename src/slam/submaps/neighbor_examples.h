@@ -10,14 +10,14 @@
 namespace patrol::slam {
 
 struct NeighborExampleSettings {
-  int predictions = 3;                ///< number of predictions per submap pair
+  int predictions = 3;  ///< number of predictions per submap pair
   /// Standard deviation of the predicted position, sampled between these bounds, uniform in the logarithm.
   double min_prediction_std_m = 0.05;
   double max_prediction_std_m = 3.0;
   /// Standard deviation of the predicted heading per standard deviation of the position.
   double prediction_rad_per_m = 0.05;
-  double outlier_probability = 0.2;         ///< fraction of gross errors: predictions with four times the stated error
-  double max_match_m = 0.15;          ///< maximum distance of a correct match from ground truth
+  double outlier_probability = 0.2;  ///< fraction of gross errors: predictions with four times the stated error
+  double max_match_m = 0.15;         ///< maximum distance of a correct match from ground truth
   double max_match_rad = 0.02;
 
   template <typename Self, typename Visitor>
@@ -38,7 +38,8 @@ struct NeighborExampleSettings {
 ///
 /// Predictions are ground truth plus an error as large as stated or, for a fraction of them, four times as large. Pairs
 /// too far apart to be candidates are skipped. `T_world_submap` [full submap].
-void add_neighbor_examples(const SubmapRbpf& built, const std::vector<Pose2>& T_world_submap, const SubmapSurfaceSettings& surfaces, const NeighborExampleSettings& settings,
-                            std::uint64_t seed, LabeledFeatures& examples);
+void add_neighbor_examples(const SubmapRbpf& built, const std::vector<Pose2>& T_world_submap,
+                           const SubmapSurfaceSettings& surfaces, const NeighborExampleSettings& settings,
+                           std::uint64_t seed, LabeledFeatures& examples);
 
 }  // namespace patrol::slam

@@ -42,7 +42,8 @@ ObservedCells::ObservedCells(const GridMap& map, double cell_m) : cells_(geometr
     State& coarse = cells_.at(cells_.geometry().cell_at(center));
     coarse = std::max(coarse, cell.is_surface() ? State::kSurface : State::kFree);
   });
-  num_observed_ = static_cast<int>(std::ranges::count_if(cells_.values(), [](State coarse) { return coarse != State::kUnknown; }));
+  num_observed_ =
+      static_cast<int>(std::ranges::count_if(cells_.values(), [](State coarse) { return coarse != State::kUnknown; }));
 }
 
 ObservedCells::State ObservedCells::at(const Eigen::Vector2d& p_map) const {

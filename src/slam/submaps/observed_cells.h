@@ -1,8 +1,8 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <cstdint>
+
+#include <Eigen/Core>
 
 #include "core/grid.h"
 #include "slam/grid_map.h"

@@ -1,12 +1,12 @@
 #include "slam/submaps/pair_features.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 
 #include "core/geometry/linear_algebra.h"
 
@@ -32,7 +32,9 @@ Eigen::Matrix2d center_covariance(const SubmapDescriptor& source, const PoseGaus
   return J * T_target_source.covariance * J.transpose();
 }
 
-double largest_variance(const Eigen::Matrix2d& covariance) { return std::max(0.0, symmetric_eigen(covariance).values[1]); }
+double largest_variance(const Eigen::Matrix2d& covariance) {
+  return std::max(0.0, symmetric_eigen(covariance).values[1]);
+}
 
 double hull_overlap(const SubmapDescriptor& target, const SubmapDescriptor& source, const Pose2& T_target_source) {
   ConvexPolygon moved;
@@ -74,12 +76,15 @@ double score_on(const NdtGrid& grid, const std::vector<Eigen::Vector2d>& points,
 }
 
 /// NDT score on one level, minimum of both directions.
-double min_mutual_score(const SubmapDescriptor& target, const SubmapDescriptor& source, const Pose2& T_target_source, std::size_t level) {
-  return std::min(score_on(target.ndt[level], source.points, T_target_source), score_on(source.ndt[level], target.points, T_target_source.inverse()));
+double min_mutual_score(const SubmapDescriptor& target, const SubmapDescriptor& source, const Pose2& T_target_source,
+                        std::size_t level) {
+  return std::min(score_on(target.ndt[level], source.points, T_target_source),
+                  score_on(source.ndt[level], target.points, T_target_source.inverse()));
 }
 
 /// Inlier ratio of points in the observed cells; 0 if too few points are in observed cells.
-double overlap_consistency_in(const ObservedCells& observed, const std::vector<Eigen::Vector2d>& points, const Pose2& T_observed_points) {
+double overlap_consistency_in(const ObservedCells& observed, const std::vector<Eigen::Vector2d>& points,
+                              const Pose2& T_observed_points) {
   int num_observed = 0, on_surface = 0;
   for (const Eigen::Vector2d& p : points) {
     const Eigen::Vector2d p_observed = T_observed_points * p;
@@ -87,23 +92,30 @@ double overlap_consistency_in(const ObservedCells& observed, const std::vector<E
     num_observed += is_met || observed.at(p_observed) != ObservedCells::State::kUnknown ? 1 : 0;
     on_surface += is_met ? 1 : 0;
   }
-  return num_observed >= kMinObservedFraction * static_cast<double>(points.size()) && num_observed > 0 ? static_cast<double>(on_surface) / num_observed : 0.0;
+  return num_observed >= kMinObservedFraction * static_cast<double>(points.size()) && num_observed > 0
+             ? static_cast<double>(on_surface) / num_observed
+             : 0.0;
 }
 
 }  // namespace
 
-double mutual_overlap_consistency(const SubmapDescriptor& target, const SubmapDescriptor& source, const Pose2& T_target_source) {
-  return std::min(overlap_consistency_in(target.observed, source.points, T_target_source), overlap_consistency_in(source.observed, target.points, T_target_source.inverse()));
+double mutual_overlap_consistency(const SubmapDescriptor& target, const SubmapDescriptor& source,
+                                  const Pose2& T_target_source) {
+  return std::min(overlap_consistency_in(target.observed, source.points, T_target_source),
+                  overlap_consistency_in(source.observed, target.points, T_target_source.inverse()));
 }
 
-bool may_be_neighbors(const SubmapDescriptor& target, const SubmapDescriptor& source, const PoseGaussian& T_target_source) {
+bool may_be_neighbors(const SubmapDescriptor& target, const SubmapDescriptor& source,
+                      const PoseGaussian& T_target_source) {
   const double distance_m = (T_target_source.mean * source.center - target.center).norm();
-  return distance_m - 2.0 * std::sqrt(largest_variance(center_covariance(source, T_target_source))) < target.radius_m + source.radius_m;
+  return distance_m - 2.0 * std::sqrt(largest_variance(center_covariance(source, T_target_source))) <
+         target.radius_m + source.radius_m;
 }
 
 std::vector<std::string> pair_feature_names() { return {kPairFeatures.begin(), kPairFeatures.end()}; }
 
-SubmapComparison compare_submaps(const SubmapDescriptor& target, const SubmapDescriptor& source, const PoseGaussian& T_target_source, const NdtSettings& settings) {
+SubmapComparison compare_submaps(const SubmapDescriptor& target, const SubmapDescriptor& source,
+                                 const PoseGaussian& T_target_source, const NdtSettings& settings) {
   const Pose2& T_predicted = T_target_source.mean;
   const double radii_m = std::max(1e-6, target.radius_m + source.radius_m);
   const Eigen::Vector2d between = T_predicted * source.center - target.center;
@@ -111,7 +123,9 @@ SubmapComparison compare_submaps(const SubmapDescriptor& target, const SubmapDes
 
   const std::optional<NdtResult> aligned = align_ndt(target.ndt, source.points, T_predicted, settings);
   const Pose2 T_aligned = aligned ? aligned->T_target_source : T_predicted;
-  const double deviations = aligned ? mahalanobis<3>(T_target_source.residual_to_mean(T_aligned), T_target_source.covariance) : kMaxDeviations;
+  const double deviations =
+      aligned ? mahalanobis<3>(T_target_source.residual_to_mean(T_aligned), T_target_source.covariance)
+              : kMaxDeviations;
   std::vector<double> features = {
       between.norm() / radii_m,
       mahalanobis<2>(between, covariance),

@@ -32,18 +32,21 @@ namespace patrol::slam {
 ///   aligned_mahalanobis    distance of the NDT result from the prediction, in standard deviations; at most 30
 ///   aligned_agreement      mutual_overlap_consistency at the NDT result
 inline constexpr std::array<const char*, 14> kPairFeatures = {
-    "center_distance",     "center_mahalanobis", "center_std",   "hull_overlap",    "seen_overlap",  "distance_difference", "direction_correlation",
-    "direction_predicted", "point_ratio",        "radius_ratio", "score_predicted", "score_aligned", "aligned_mahalanobis", "aligned_agreement"};
+    "center_distance",     "center_mahalanobis",    "center_std",          "hull_overlap",     "seen_overlap",
+    "distance_difference", "direction_correlation", "direction_predicted", "point_ratio",      "radius_ratio",
+    "score_predicted",     "score_aligned",         "aligned_mahalanobis", "aligned_agreement"};
 
 std::vector<std::string> pair_feature_names();
 
 /// Inlier ratio of two submaps: points on a surface of the other / points in observed cells of the other, minimum of
 /// both directions. 0 if fewer than a tenth of the points of either are in observed cells of the other.
-double mutual_overlap_consistency(const SubmapDescriptor& target, const SubmapDescriptor& source, const Pose2& T_target_source);
+double mutual_overlap_consistency(const SubmapDescriptor& target, const SubmapDescriptor& source,
+                                  const Pose2& T_target_source);
 
 /// Returns whether the distance of the centers, minus two standard deviations of the prediction, is below the sum of
 /// the radii.
-bool may_be_neighbors(const SubmapDescriptor& target, const SubmapDescriptor& source, const PoseGaussian& T_target_source);
+bool may_be_neighbors(const SubmapDescriptor& target, const SubmapDescriptor& source,
+                      const PoseGaussian& T_target_source);
 
 struct SubmapComparison {
   std::vector<double> features;      ///< [feature] in the order of kPairFeatures, all finite
@@ -51,6 +54,7 @@ struct SubmapComparison {
 };
 
 /// Computes the features of a pair with one NDT alignment. `T_target_source` is predicted by odometry or the graph.
-SubmapComparison compare_submaps(const SubmapDescriptor& target, const SubmapDescriptor& source, const PoseGaussian& T_target_source, const NdtSettings& settings);
+SubmapComparison compare_submaps(const SubmapDescriptor& target, const SubmapDescriptor& source,
+                                 const PoseGaussian& T_target_source, const NdtSettings& settings);
 
 }  // namespace patrol::slam

@@ -1,11 +1,10 @@
 #include "slam/submaps/point_tree.h"
 
-#include <Eigen/Eigenvalues>
-
 #include <algorithm>
 #include <cassert>
 #include <utility>
 
+#include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 #include <nanoflann.hpp>
 
@@ -20,7 +19,9 @@ struct Cloud {
   std::vector<Eigen::Vector2d> points;
 
   std::size_t kdtree_get_point_count() const { return points.size(); }
-  double kdtree_get_pt(std::size_t index, std::size_t axis) const { return points[index][static_cast<Eigen::Index>(axis)]; }
+  double kdtree_get_pt(std::size_t index, std::size_t axis) const {
+    return points[index][static_cast<Eigen::Index>(axis)];
+  }
   template <typename Box>
   bool kdtree_get_bbox(Box&) const {
     return false;

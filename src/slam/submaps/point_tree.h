@@ -1,10 +1,10 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <cstddef>
 #include <memory>
 #include <vector>
+
+#include <Eigen/Core>
 
 namespace patrol::slam {
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/messages.h"
-#include "slam/rbpf/trajectory_rbpf.h"
 #include "slam/graph/submap.h"
+#include "slam/rbpf/trajectory_rbpf.h"
 #include "slam/submaps/submap_builder_settings.h"
 
 namespace patrol::slam {
@@ -15,11 +15,14 @@ namespace patrol::slam {
 /// small. The frame `submap` is the body pose of the first scan.
 class SubmapBuilder {
  public:
-  SubmapBuilder(const SubmapBuilderSettings& settings, std::uint64_t seed) : settings_(settings), filtered_(settings.filter, seed) {}
+  SubmapBuilder(const SubmapBuilderSettings& settings, std::uint64_t seed)
+      : settings_(settings), filtered_(settings.filter, seed) {}
 
   /// Processes a scan and returns the body pose in submap.
   Pose2 update(const LevelScan& scan, const Pose2& T_odom_body);
-  bool is_full() const { return distance_m_ >= settings_.max_distance_m || static_cast<int>(scans_.size()) >= settings_.max_keyframes; }
+  bool is_full() const {
+    return distance_m_ >= settings_.max_distance_m || static_cast<int>(scans_.size()) >= settings_.max_keyframes;
+  }
 
   /// Distance traveled and sum of absolute yaw changes by odometry.
   double distance_m() const { return distance_m_; }

@@ -7,7 +7,7 @@ namespace patrol::slam {
 
 struct SubmapBuilderSettings {
   double max_distance_m = 12.0;  ///< distance traveled at which a submap is full
-  int max_keyframes = 150;  ///< number of keyframes at which a submap is full
+  int max_keyframes = 150;       ///< number of keyframes at which a submap is full
   GridSlamSettings filter = submap_filter_settings();
 
   /// Filter settings for submaps of a few meters on scan-to-scan odometry: few particles and small motion noise.

@@ -15,19 +15,20 @@ namespace patrol::slam {
 enum class ConstraintRejection {
   kNone,
   kNotNeighbors,  ///< not recognized as neighbors
-  kMismatch,   ///< coarse and fine matching disagree, or the inlier ratio is too small
-  kAmbiguous,  ///< a second-best match has a similar score
+  kMismatch,      ///< coarse and fine matching disagree, or the inlier ratio is too small
+  kAmbiguous,     ///< a second-best match has a similar score
 };
 
 /// Features and relative poses of a submap pair.
 struct SurfaceMatch {
-  std::vector<double> features;          ///< features of pair_features.h
+  std::vector<double> features;  ///< features of pair_features.h
   std::optional<NdtResult> coarse;
-  std::optional<IcpResult> fine;         ///< refined from `coarse`
+  std::optional<IcpResult> fine;  ///< refined from `coarse`
 };
 
 /// Matches coarsely by normal distributions from the prediction, then finely on effective neighbors [Yu23, section 2].
-SurfaceMatch match_surfaces(const SubmapSurfaces& target, const SubmapSurfaces& source, const PoseGaussian& T_target_source, const SubmapSurfaceSettings& settings);
+SurfaceMatch match_surfaces(const SubmapSurfaces& target, const SubmapSurfaces& source,
+                            const PoseGaussian& T_target_source, const SubmapSurfaceSettings& settings);
 
 struct SubmapConstraint {
   Pose2 T_target_source;
@@ -49,7 +50,8 @@ struct ConstraintResult {
 /// - the fine match must stay near the coarse match;
 /// - both submaps must agree on free and occupied cells;
 /// - no other pose within three standard deviations of the prediction may score similarly.
-ConstraintResult find_constraint(const SubmapSurfaces& target, const SubmapSurfaces& source, const PoseGaussian& T_target_source, const BoostedStumps& model,
-                        const SubmapSurfaceSettings& surfaces, const SubmapConstraintSettings& settings);
+ConstraintResult find_constraint(const SubmapSurfaces& target, const SubmapSurfaces& source,
+                                 const PoseGaussian& T_target_source, const BoostedStumps& model,
+                                 const SubmapSurfaceSettings& surfaces, const SubmapConstraintSettings& settings);
 
 }  // namespace patrol::slam

@@ -5,15 +5,16 @@
 namespace patrol::slam {
 
 struct SubmapConstraintSettings {
-  double min_margin = 0.2;         ///< minimum classifier margin (-1 ... 1) of neighbors
+  double min_margin = 0.2;  ///< minimum classifier margin (-1 ... 1) of neighbors
   /// The match is rejected if fine matching moves a submap farther from the coarse pose.
   double max_fine_shift_m = 0.5;
   double max_fine_shift_rad = 0.1;
-  double min_overlap_consistency = 0.6;      ///< minimum inlier ratio (mutual_overlap_consistency)
-  double max_window_m = 15.0;      ///< maximum half width of the search for a second-best match around the prediction
+  double min_overlap_consistency = 0.6;  ///< minimum inlier ratio (mutual_overlap_consistency)
+  double max_window_m = 15.0;  ///< maximum half width of the search for a second-best match around the prediction
   double max_window_rad = 0.8;
-  double max_second_best_ratio = 0.9;  ///< the match is rejected if a distinct pose scores more than this fraction of its score
-  double min_second_best_distance_m = 0.8;   ///< poses at least this far from the match are distinct
+  double max_second_best_ratio =
+      0.9;  ///< the match is rejected if a distinct pose scores more than this fraction of its score
+  double min_second_best_distance_m = 0.8;  ///< poses at least this far from the match are distinct
   double min_second_best_angle_rad = 0.35;
 
   template <typename Self, typename Visitor>

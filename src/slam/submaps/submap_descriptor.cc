@@ -30,7 +30,8 @@ void normalize(std::vector<double>& histogram) {
   for (double& bin : histogram) bin = sum > 0.0 ? bin / sum : 1.0 / static_cast<double>(histogram.size());
 }
 
-/// Distributes `weight` linearly over the two bins around `position`, which is in bins from the center of the first bin.
+/// Distributes `weight` linearly over the two bins around `position`, which is in bins from the center of the first
+/// bin.
 void add_around_circle(std::vector<double>& histogram, double position, double weight) {
   const auto count = static_cast<double>(histogram.size());
   const double wrapped = position - count * std::floor(position / count);
@@ -40,7 +41,8 @@ void add_around_circle(std::vector<double>& histogram, double position, double w
   histogram[(bin + 1) % histogram.size()] += fraction * weight;
 }
 
-std::vector<double> distance_histogram(const std::vector<Eigen::Vector2d>& points, const SubmapDescriptorSettings& settings) {
+std::vector<double> distance_histogram(const std::vector<Eigen::Vector2d>& points,
+                                       const SubmapDescriptorSettings& settings) {
   std::vector<double> histogram(static_cast<std::size_t>(settings.distance_bins), 0.0);
   const double last = static_cast<double>(settings.distance_bins - 1);
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -57,11 +59,13 @@ std::vector<double> distance_histogram(const std::vector<Eigen::Vector2d>& point
   return histogram;
 }
 
-std::vector<double> direction_histogram(const std::vector<Eigen::Vector2d>& points, const SubmapDescriptorSettings& settings) {
+std::vector<double> direction_histogram(const std::vector<Eigen::Vector2d>& points,
+                                        const SubmapDescriptorSettings& settings) {
   std::vector<double> histogram(static_cast<std::size_t>(settings.direction_bins), 0.0);
   for (const SurfaceNormal& surface : surface_normals(PointTree(points), settings.normal_radius_m)) {
     const double direction = std::atan2(surface.normal.y(), surface.normal.x()) + 0.5 * std::numbers::pi;
-    add_around_circle(histogram, direction / std::numbers::pi * settings.direction_bins, surface.linearity * surface.linearity);
+    add_around_circle(histogram, direction / std::numbers::pi * settings.direction_bins,
+                      surface.linearity * surface.linearity);
   }
   normalize(histogram);
   return histogram;
@@ -69,8 +73,10 @@ std::vector<double> direction_histogram(const std::vector<Eigen::Vector2d>& poin
 
 }  // namespace
 
-SubmapDescriptor describe_submap(const std::vector<Eigen::Vector2d>& points_submap, const GridMap& map, const SubmapDescriptorSettings& settings) {
-  if (points_submap.size() < 3) throw InputError(fmt::format("submap: {} surface points: must be at least 3", points_submap.size()));
+SubmapDescriptor describe_submap(const std::vector<Eigen::Vector2d>& points_submap, const GridMap& map,
+                                 const SubmapDescriptorSettings& settings) {
+  if (points_submap.size() < 3)
+    throw InputError(fmt::format("submap: {} surface points: must be at least 3", points_submap.size()));
   const Eigen::Vector2d center = mean_of(points_submap);
   std::vector<Eigen::Vector2d> points = subsample(points_submap, settings.max_points);
   std::vector<double> distances = distance_histogram(points, settings);
@@ -93,10 +99,12 @@ double histogram_difference(const std::vector<double>& a, const std::vector<doub
 
 double circular_correlation(const std::vector<double>& a, const std::vector<double>& b, int shift) {
   const int bins = static_cast<int>(a.size());
-  const double mean_a = std::accumulate(a.begin(), a.end(), 0.0) / bins, mean_b = std::accumulate(b.begin(), b.end(), 0.0) / bins;
+  const double mean_a = std::accumulate(a.begin(), a.end(), 0.0) / bins,
+               mean_b = std::accumulate(b.begin(), b.end(), 0.0) / bins;
   double aa = 0.0, ab = 0.0, bb = 0.0;
   for (int bin = 0; bin < bins; ++bin) {
-    const double u = a[static_cast<std::size_t>(bin)] - mean_a, v = b[static_cast<std::size_t>(((bin - shift) % bins + bins) % bins)] - mean_b;
+    const double u = a[static_cast<std::size_t>(bin)] - mean_a,
+                 v = b[static_cast<std::size_t>(((bin - shift) % bins + bins) % bins)] - mean_b;
     aa += u * u;
     ab += u * v;
     bb += v * v;

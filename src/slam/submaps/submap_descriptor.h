@@ -1,9 +1,9 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <cstddef>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "core/geometry/convex_polygon.h"
 #include "slam/grid_map.h"
@@ -15,12 +15,12 @@ namespace patrol::slam {
 
 /// Descriptor of a submap for comparison with others, computed once. All coordinates are in submap.
 struct SubmapDescriptor {
-  std::vector<Eigen::Vector2d> points;  ///< downsampled surface points
-  std::size_t num_points = 0;           ///< before downsampling
+  std::vector<Eigen::Vector2d> points;               ///< downsampled surface points
+  std::size_t num_points = 0;                        ///< before downsampling
   Eigen::Vector2d center = Eigen::Vector2d::Zero();  ///< mean of the points
-  double radius_m = 0.0;                ///< root mean square distance of the points from the center
-  ConvexPolygon hull;                   ///< convex hull of the points
-  std::vector<double> distances;        ///< [bin], fractions of all pairs of points: shape distribution D2 [Osada02]
+  double radius_m = 0.0;                             ///< root mean square distance of the points from the center
+  ConvexPolygon hull;                                ///< convex hull of the points
+  std::vector<double> distances;  ///< [bin], fractions of all pairs of points: shape distribution D2 [Osada02]
   /// [bin] over half a turn from x on, fractions of the wall directions; points off straight walls have small weights
   std::vector<double> directions;
   ObservedCells observed;
@@ -29,7 +29,8 @@ struct SubmapDescriptor {
 
 /// Computes the descriptor of a submap. `points_submap` must be at least three finite points; throws InputError
 /// otherwise.
-SubmapDescriptor describe_submap(const std::vector<Eigen::Vector2d>& points_submap, const GridMap& map, const SubmapDescriptorSettings& settings);
+SubmapDescriptor describe_submap(const std::vector<Eigen::Vector2d>& points_submap, const GridMap& map,
+                                 const SubmapDescriptorSettings& settings);
 
 /// Difference of two histograms with equal numbers of bins, each of sum 1: 0 equal ... 1 disjoint.
 double histogram_difference(const std::vector<double>& a, const std::vector<double>& b);

@@ -1,10 +1,10 @@
 #include "slam/submaps/submap_rbpf.h"
 
-#include <Eigen/LU>
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
+
+#include <Eigen/LU>
 
 #include "core/random.h"
 #include "slam/graph/edge_weight.h"
@@ -17,7 +17,8 @@ namespace {
 /// Covariance of the next submap's first scan in the frame of the previous submap.
 Eigen::Matrix3d drift_over(const SubmapBuilder& submap, const SubmapRbpfSettings& settings) {
   const double std_m = settings.drift_std_m_per_m * submap.distance_m() + 1e-3;
-  const double std_rad = settings.drift_std_rad_per_m * submap.distance_m() + settings.drift_std_rad_per_rad * submap.rotation_rad() + 1e-4;
+  const double std_rad = settings.drift_std_rad_per_m * submap.distance_m() +
+                         settings.drift_std_rad_per_rad * submap.rotation_rad() + 1e-4;
   return Eigen::Vector3d(std_m * std_m, std_m * std_m, std_rad * std_rad).asDiagonal();
 }
 
@@ -56,7 +57,9 @@ void SubmapRbpf::begin_submap() {
 
 void SubmapRbpf::close_submap() {
   add_odometry_edge(*builder_);
-  Submap closed{.keyframes = {}, .T_submap_body = builder_->path(), .surfaces = describe_surfaces(builder_->map(), settings_.surfaces)};
+  Submap closed{.keyframes = {},
+                .T_submap_body = builder_->path(),
+                .surfaces = describe_surfaces(builder_->map(), settings_.surfaces)};
   closed.keyframes = builder_->take_keyframes();
   builder_.reset();
   submaps_.push_back(std::move(closed));
@@ -69,11 +72,17 @@ void SubmapRbpf::add_odometry_edge(const SubmapBuilder& before) {
   const Pose2 T_submap_next = before.path().back();
   const Eigen::Matrix3d drift = drift_over(before, settings_);
   graph_.T_map_node.push_back(graph_.T_map_node.back() * T_submap_next);
-  graph_.edges.push_back({.from = from, .to = from + 1, .T_from_to = T_submap_next, .information = drift.inverse(), .kind = PoseGraphEdge::Kind::kOdometry});
+  graph_.edges.push_back({.from = from,
+                          .to = from + 1,
+                          .T_from_to = T_submap_next,
+                          .information = drift.inverse(),
+                          .kind = PoseGraphEdge::Kind::kOdometry});
   covariance_edges_.push_back({.from = from, .to = from + 1, .covariance = drift});
 }
 
-std::vector<PoseGaussian> SubmapRbpf::relative_pose_distributions(int submap) const { return shortest_path_distributions(submap, graph_.T_map_node, covariance_edges_); }
+std::vector<PoseGaussian> SubmapRbpf::relative_pose_distributions(int submap) const {
+  return shortest_path_distributions(submap, graph_.T_map_node, covariance_edges_);
+}
 
 // Returns the nearest older submaps that may be neighbors.
 std::vector<int> SubmapRbpf::candidates_for(int source, const std::vector<PoseGaussian>& around) const {
@@ -87,7 +96,8 @@ std::vector<int> SubmapRbpf::candidates_for(int source, const std::vector<PoseGa
   }
   std::sort(near.begin(), near.end());
   std::vector<int> candidates;
-  for (std::size_t i = 0; i < std::min(near.size(), static_cast<std::size_t>(settings_.max_candidates)); ++i) candidates.push_back(near[i].second);
+  for (std::size_t i = 0; i < std::min(near.size(), static_cast<std::size_t>(settings_.max_candidates)); ++i)
+    candidates.push_back(near[i].second);
   return candidates;
 }
 
@@ -97,12 +107,19 @@ void SubmapRbpf::add_loop_closures(int source) {
   bool has_constraint = false;
   for (const int target : candidates_for(source, around)) {
     const PoseGaussian prediction = invert(around[static_cast<std::size_t>(target)]);
-    const ConstraintResult result = find_constraint(*surfaces_of(target), *surfaces_of(source), prediction, neighbors_, settings_.surfaces, settings_.constraints);
+    const ConstraintResult result = find_constraint(*surfaces_of(target), *surfaces_of(source), prediction, neighbors_,
+                                                    settings_.surfaces, settings_.constraints);
     comparisons_.push_back({.target = target, .source = source, .T_target_source = prediction, .result = result});
     if (!result.constraint) continue;
     has_constraint = true;
-    const Eigen::Matrix3d information = edge_information(settings_.likelihood_tempering * result.constraint->information, settings_.constraint_std_m, settings_.constraint_std_rad);
-    graph_.edges.push_back({.from = target, .to = source, .T_from_to = result.constraint->T_target_source, .information = information, .kind = PoseGraphEdge::Kind::kLoop});
+    const Eigen::Matrix3d information =
+        edge_information(settings_.likelihood_tempering * result.constraint->information, settings_.constraint_std_m,
+                         settings_.constraint_std_rad);
+    graph_.edges.push_back({.from = target,
+                            .to = source,
+                            .T_from_to = result.constraint->T_target_source,
+                            .information = information,
+                            .kind = PoseGraphEdge::Kind::kLoop});
     covariance_edges_.push_back({.from = target, .to = source, .covariance = information.inverse()});
   }
   if (has_constraint) solve(graph_, settings_.solver);
@@ -112,8 +129,10 @@ void SubmapRbpf::finish() {
   if (!builder_) return;
   close_submap();
   graph_.T_map_node.pop_back();  // remove the node of a next submap
-  graph_.edges.erase(std::remove_if(graph_.edges.begin(), graph_.edges.end(), [&](const PoseGraphEdge& edge) { return edge.to == static_cast<int>(graph_.T_map_node.size()); }),
-                     graph_.edges.end());
+  graph_.edges.erase(
+      std::remove_if(graph_.edges.begin(), graph_.edges.end(),
+                     [&](const PoseGraphEdge& edge) { return edge.to == static_cast<int>(graph_.T_map_node.size()); }),
+      graph_.edges.end());
 }
 
 // A scan that ends one submap and begins the next is assigned to the next.
@@ -134,7 +153,8 @@ OccupancyGrid SubmapRbpf::map() const {
   const GridSlamSettings& filter = settings_.submaps.filter;
   GridMap map(filter.resolution_m, settings_.scan_odometry.max_extent_m);
   for (std::size_t s = 0; s < submaps_.size(); ++s) {
-    for (const Keyframe& keyframe : submaps_[s].keyframes) integrate_scan(keyframe.scan, graph_.T_map_node[s] * keyframe.T_local_body, filter.integration, map);
+    for (const Keyframe& keyframe : submaps_[s].keyframes)
+      integrate_scan(keyframe.scan, graph_.T_map_node[s] * keyframe.T_local_body, filter.integration, map);
   }
   return render_map(map, settings_.min_hits_occupied, settings_.min_occupied_hit_ratio);
 }

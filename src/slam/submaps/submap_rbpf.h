@@ -8,8 +8,8 @@
 #include "core/grid.h"
 #include "core/pose_graph.h"
 #include "slam/graph/pose_graph_solver.h"
-#include "slam/graph/scan_tracker.h"
 #include "slam/graph/relative_covariance.h"
+#include "slam/graph/scan_tracker.h"
 #include "slam/submaps/submap_builder.h"
 #include "slam/submaps/submap_constraint_finder.h"
 #include "slam/submaps/submap_rbpf_settings.h"
@@ -54,7 +54,9 @@ class SubmapRbpf {
   /// Index of the first scan of each submap, [submap].
   const std::vector<std::size_t>& first_scans() const { return first_scans_; }
   /// Surfaces of a full submap; none if too few surface points were observed.
-  const std::optional<SubmapSurfaces>& surfaces_of(int submap) const { return submaps_[static_cast<std::size_t>(submap)].surfaces; }
+  const std::optional<SubmapSurfaces>& surfaces_of(int submap) const {
+    return submaps_[static_cast<std::size_t>(submap)].surfaces;
+  }
 
  private:
   /// Full submap, rigid from then on.

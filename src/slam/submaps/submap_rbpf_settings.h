@@ -18,8 +18,8 @@ struct SubmapRbpfSettings {
   double drift_std_m_per_m = 0.003;
   double drift_std_rad_per_m = 0.0005;
   double drift_std_rad_per_rad = 0.005;
-  int max_candidates = 8;        ///< maximum number of older submaps compared with each new one, nearest first
-  double likelihood_tempering = 0.2;       ///< tempering factor: fraction of the matched points with independent errors
+  int max_candidates = 8;             ///< maximum number of older submaps compared with each new one, nearest first
+  double likelihood_tempering = 0.2;  ///< tempering factor: fraction of the matched points with independent errors
   /// Standard deviation of the systematic error of a match, independent of the number of points.
   double constraint_std_m = 0.02;
   double constraint_std_rad = 0.002;

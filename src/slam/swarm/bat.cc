@@ -18,7 +18,8 @@ void BatOptimizer::move(Swarm& swarm, const Fitness& fitness_of, RandomSequence&
         candidate = best;
         for (double& coordinate : candidate) coordinate += settings_.local_step * loudness[i] * random.normal();
       }
-      if (random.uniform() < loudness[i] && swarm.accept(i, candidate, fitness_of)) loudness[i] *= settings_.loudness_decay;
+      if (random.uniform() < loudness[i] && swarm.accept(i, candidate, fitness_of))
+        loudness[i] *= settings_.loudness_decay;
     }
   }
 }

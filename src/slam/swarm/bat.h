@@ -6,12 +6,12 @@ namespace patrol::slam {
 
 struct BatSettings {
   int iterations = 5;
-  double max_frequency = 1.0;     ///< maximum attraction to the best bat
-  double loudness = 0.9;          ///< initial probability of accepting an improvement
-  double loudness_decay = 0.9;    ///< factor per accepted improvement
-  double pulse_rate = 0.5;        ///< final probability of a local search around the best bat
+  double max_frequency = 1.0;   ///< maximum attraction to the best bat
+  double loudness = 0.9;        ///< initial probability of accepting an improvement
+  double loudness_decay = 0.9;  ///< factor per accepted improvement
+  double pulse_rate = 0.5;      ///< final probability of a local search around the best bat
   double pulse_growth = 0.9;
-  double local_step = 0.1;        ///< step of the local search, in the unit of the positions
+  double local_step = 0.1;  ///< step of the local search, in the unit of the positions
 };
 
 /// Bat algorithm [Yang10, eqs. 2-6]: bats move with velocities relative to the best one, or search around it.

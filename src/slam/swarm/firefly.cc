@@ -23,7 +23,8 @@ void FireflyOptimizer::move(Swarm& swarm, const Fitness& fitness_of, RandomSeque
     for (std::size_t rank = 0; rank < ranking.size(); ++rank) {
       Position candidate = before.positions[ranking[rank]];
       for (std::size_t brighter = rank; brighter-- > 0;) {
-        candidate += attraction_step(candidate, before.positions[ranking[brighter]], settings_.attractiveness, settings_.absorption);
+        candidate += attraction_step(candidate, before.positions[ranking[brighter]], settings_.attractiveness,
+                                     settings_.absorption);
       }
       add_random_step(candidate, settings_.step, random);
       swarm.accept(ranking[rank], candidate, fitness_of);
@@ -36,12 +37,16 @@ void ImprovedFireflyOptimizer::move(Swarm& swarm, const Fitness& fitness_of, Ran
     const Swarm before = swarm;
     const std::vector<std::size_t> ranking = before.ranking();
     const double brightest = before.fitness[ranking.front()];
-    const auto brightness = [&](std::size_t member) { return 1.0 / (1.0 + std::sqrt(2.0 * (brightest - before.fitness[member]))); };
+    const auto brightness = [&](std::size_t member) {
+      return 1.0 / (1.0 + std::sqrt(2.0 * (brightest - before.fitness[member])));
+    };
     for (std::size_t rank = 0; rank < ranking.size(); ++rank) {
       const std::size_t member = ranking[rank], neighbor = ranking[rank > 0 ? rank - 1 : 0];
       Position candidate = before.positions[member];
-      candidate += attraction_step(candidate, before.positions[neighbor], settings_.attractiveness, settings_.absorption);
-      add_random_step(candidate, std::exp(-settings_.noise_variance * brightness(member) / brightness(neighbor)), random);
+      candidate +=
+          attraction_step(candidate, before.positions[neighbor], settings_.attractiveness, settings_.absorption);
+      add_random_step(candidate, std::exp(-settings_.noise_variance * brightness(member) / brightness(neighbor)),
+                      random);
       swarm.accept(member, candidate, fitness_of);
     }
   }

@@ -25,7 +25,8 @@ void SandCatOptimizer::move(Swarm& swarm, const Fitness& fitness_of, RandomSeque
   }
 }
 
-void SandCatOptimizer::search_and_attack(int iteration, Swarm& swarm, const Fitness& fitness_of, RandomSequence& random) const {
+void SandCatOptimizer::search_and_attack(int iteration, Swarm& swarm, const Fitness& fitness_of,
+                                         RandomSequence& random) const {
   const double sensitivity = 2.0 - 2.0 * iteration / iterations_;  // r_G
   const Position best = swarm.positions[swarm.best()];
   for (std::size_t i = 0; i < swarm.size(); ++i) {
@@ -43,11 +44,13 @@ void SandCatOptimizer::search_and_attack(int iteration, Swarm& swarm, const Fitn
   }
 }
 
-void SandCatOptimizer::replace_worst(int iteration, const Swarm& before, Swarm& swarm, const Fitness& fitness_of) const {
+void SandCatOptimizer::replace_worst(int iteration, const Swarm& before, Swarm& swarm,
+                                     const Fitness& fitness_of) const {
   const double replaced_fraction = std::sin(std::numbers::pi * iteration / (2.0 * iterations_));
   const auto num_kept = static_cast<std::size_t>(std::ceil(static_cast<double>(swarm.size() - 1) * replaced_fraction));
   const std::vector<std::size_t> old_ranking = before.ranking(), ranking = swarm.ranking();
-  for (std::size_t i = 0; i < num_kept; ++i) swarm.accept(ranking[ranking.size() - 1 - i], before.positions[old_ranking[i]], fitness_of);
+  for (std::size_t i = 0; i < num_kept; ++i)
+    swarm.accept(ranking[ranking.size() - 1 - i], before.positions[old_ranking[i]], fitness_of);
 }
 
 }  // namespace patrol::slam

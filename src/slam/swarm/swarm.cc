@@ -6,7 +6,9 @@
 
 namespace patrol::slam {
 
-std::size_t Swarm::best() const { return static_cast<std::size_t>(std::max_element(fitness.begin(), fitness.end()) - fitness.begin()); }
+std::size_t Swarm::best() const {
+  return static_cast<std::size_t>(std::max_element(fitness.begin(), fitness.end()) - fitness.begin());
+}
 
 std::vector<std::size_t> Swarm::ranking() const {
   std::vector<std::size_t> order(size());

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <cstddef>
 #include <functional>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "core/random.h"
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <string>
+
+#include <Eigen/Core>
 
 #include "core/time.h"
 

@@ -10,8 +10,8 @@ namespace patrol::stack {
 struct InspectionSettings {
   double scan_settling_time_s = 4.0;  ///< settling time before a panoramic scan; a robot on springs oscillates after
                                       ///< stopping
-  double scan_timeout_s = 600.0;  ///< timeout of a panoramic scan
-  double siren_duration_s = 10.0;           ///< duration of the siren at an alarm; the light stays on
+  double scan_timeout_s = 600.0;      ///< timeout of a panoramic scan
+  double siren_duration_s = 10.0;     ///< duration of the siren at an alarm; the light stays on
   inspect::LiningSettings lining;
   inspect::WaterSettings water;
 

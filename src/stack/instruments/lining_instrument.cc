@@ -58,8 +58,8 @@ InspectionFeedback LiningInstrument::evaluate(const InspectionContext& context, 
   const auto reference = references_.find(station_);
   if (reference == references_.end()) {
     references_.emplace(station_, inspect::make_reference(scan, station_pose.T_map_scanner(T_body_scanner_)));
-    context.publish_event(EventKind::kReferenceTaken, station_,
-                          "First scan of the station: reference for later scans.", 0.0, p_map);
+    context.publish_event(EventKind::kReferenceTaken, station_, "First scan of the station: reference for later scans.",
+                          0.0, p_map);
     return InspectionFeedback::kDone;
   }
   LiningResult result =

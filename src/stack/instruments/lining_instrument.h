@@ -31,7 +31,8 @@ class LiningInstrument final : public Instrument {
   void end() override { is_active_ = false; }
 
  private:
-  InspectionFeedback evaluate(const InspectionContext& context, const PanoramicScan& scan, const StationPose& station_pose);
+  InspectionFeedback evaluate(const InspectionContext& context, const PanoramicScan& scan,
+                              const StationPose& station_pose);
   void report(const InspectionContext& context, const LiningResult& result) const;
 
   InspectionSettings settings_;

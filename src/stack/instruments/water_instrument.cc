@@ -37,8 +37,8 @@ WaterResult WaterInstrument::estimate(const InspectionContext& context) const {
   const StationPose& station_pose = context.station_pose;
   AntennaGeometry antenna = geometry_;  // antenna with the tilt of the standing robot
   antenna.T_body_mount = Pose3{Eigen::Vector3d::Zero(), station_pose.T_level_body.rotation} * antenna.T_body_mount;
-  WaterResult result =
-      inversion_.invert(sounding_->soundings(), antenna, station_pose.T_map_body, sounding_->antenna_error_deg(), seed_);
+  WaterResult result = inversion_.invert(sounding_->soundings(), antenna, station_pose.T_map_body,
+                                         sounding_->antenna_error_deg(), seed_);
   result.stamp = context.now;
   result.station = station_;
   return result;

@@ -38,8 +38,8 @@ std::unique_ptr<Localizer> make_localizer(const StackSettings& settings, const R
   const auto refuse = [&](const char* why) { throw InputError(fmt::format("stack.localizer = {}: {}", method, why)); };
   const std::optional<Pose3> T_body_uwb = antenna_of(robot);
   const auto make_on_map = [settings = settings.localization,
-                       anchors = anchors_above_body(site_in_map.anchors, start.height_above_ground_m), T_body_uwb,
-                       seed](OccupancyGrid map) -> std::unique_ptr<Localizer> {
+                            anchors = anchors_above_body(site_in_map.anchors, start.height_above_ground_m), T_body_uwb,
+                            seed](OccupancyGrid map) -> std::unique_ptr<Localizer> {
     return std::make_unique<KnownMapLocalizer>(settings, std::move(map), anchors, T_body_uwb.value_or(Pose3{}), seed);
   };
   if (method == "monte_carlo") {
@@ -47,7 +47,8 @@ std::unique_ptr<Localizer> make_localizer(const StackSettings& settings, const R
     return make_on_map(*start.map);
   }
   if (start.map) refuse("would replace the given map: remove the key map, or select monte_carlo");
-  auto slam = std::make_unique<SlamLocalizer>(slam::make_mapper(settings.slam, start.neighbor_model, seed), site_in_map.anchors, T_body_uwb);
+  auto slam = std::make_unique<SlamLocalizer>(slam::make_mapper(settings.slam, start.neighbor_model, seed),
+                                              site_in_map.anchors, T_body_uwb);
   if (method == "slam") return slam;
   if (!start.has_mapping_drive) refuse("requires a teleoperated mapping drive: select slam");
   return std::make_unique<MapThenLocalize>(std::move(slam), make_on_map);

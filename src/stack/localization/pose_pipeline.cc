@@ -68,7 +68,7 @@ void PosePipeline::publish_range_pose(const OdometryEstimate& odometry, const Po
   if (!range_pose_->has_started()) {
     if (!localizer_->has_pose()) return;
     range_pose_->set_initial_pose(odometry, odometry_->height_above_ground_m(), pose.T_map_body,
-                          localizer_->is_mapping() ? surveyed_covariance() : pose.covariance);
+                                  localizer_->is_mapping() ? surveyed_covariance() : pose.covariance);
   }
   const UwbPoseEstimate estimate = range_pose_->predict(odometry, odometry_->twist_std());
   if (has_settled(odometry.stamp)) output.publish(estimate);
@@ -79,7 +79,7 @@ std::optional<StationPose> PosePipeline::station_pose_at(Time stamp) const {
   if (!T_odom_body) return std::nullopt;
   const Eigen::Quaterniond tilt = quaternion_from_yaw(-to_yaw(T_odom_body->rotation)) * T_odom_body->rotation;
   return StationPose{.T_level_body = {{0.0, 0.0, odometry_->height_above_ground_m()}, tilt},
-                       .T_map_body = tracker_.at(stamp, to_pose2(*T_odom_body)).T_map_body};
+                     .T_map_body = tracker_.at(stamp, to_pose2(*T_odom_body)).T_map_body};
 }
 
 void PosePipeline::restart_at(const Pose2& T_map_body, const OdometryEstimate& odometry) {

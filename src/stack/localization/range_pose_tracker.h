@@ -20,9 +20,9 @@ class RangePoseTracker {
   bool has_anchors() const { return has_anchors_; }
   bool has_started() const { return filter_.has_started(); }
   void set_initial_pose(const OdometryEstimate& odometry, double height_above_ground_m, const Pose2& T_map_body,
-                const Eigen::Matrix3d& covariance) {
+                        const Eigen::Matrix3d& covariance) {
     filter_.set_initial_pose({.stamp = odometry.stamp, .T_map_body = T_map_body, .covariance = covariance},
-                     odometry.T_odom_body, height_above_ground_m);
+                             odometry.T_odom_body, height_above_ground_m);
   }
   void add(const UwbRange& range, const Pose3& T_odom_body) { filter_.add(range, T_odom_body); }
   UwbPoseEstimate predict(const OdometryEstimate& odometry, const Eigen::Vector3d& twist_std) {

@@ -69,7 +69,8 @@ void GasMission::wait(MissionOutput& output) {
   std::vector<std::string> names;
   for (const Station& station : route_.stations) names.push_back(station.name);
   const std::string stations = fmt::format("Mission started: {} stations, {}.", names.size(), fmt::join(names, ", "));
-  output.events.push_back(event(EventKind::kMissionStarted, "", order_text_.empty() ? stations : stations + " " + order_text_));
+  output.events.push_back(
+      event(EventKind::kMissionStarted, "", order_text_.empty() ? stations : stations + " " + order_text_));
   phase_ = Phase::kDriving;
   phase_start_ = now_;
 }
@@ -78,13 +79,15 @@ void GasMission::drive(NavigationFeedback feedback, MissionOutput& output) {
   if (now_ == phase_start_) return;  // the feedback is for the previous goal
   if (feedback == NavigationFeedback::kFailed) {
     ++num_failed_;
-    output.events.push_back(event(EventKind::kStationFailed, station().name, fmt::format("{} is unreachable.", station().name)));
+    output.events.push_back(
+        event(EventKind::kStationFailed, station().name, fmt::format("{} is unreachable.", station().name)));
     return next_station(output);
   }
   if (feedback != NavigationFeedback::kArrived) return;
   output.events.push_back(event(EventKind::kStationReached, station().name, fmt::format("At {}.", station().name)));
   if (const double late_s = to_seconds(now_) - station().latest_s; late_s > 0.0) {
-    output.events.push_back(event(EventKind::kStationLate, station().name, fmt::format("{:.0f} s late at {}.", late_s, station().name), late_s));
+    output.events.push_back(event(EventKind::kStationLate, station().name,
+                                  fmt::format("{:.0f} s late at {}.", late_s, station().name), late_s));
   }
   if (station().type != StationType::kInspect) return next_station(output);
   phase_ = Phase::kMeasuring;
@@ -111,7 +114,8 @@ void GasMission::next_station(MissionOutput& output) {
   if (num_failed_ == 0) {
     output.events.push_back(event(EventKind::kMissionCompleted, "", "Every station was inspected."));
   } else {
-    output.events.push_back(event(EventKind::kMissionFailed, "", fmt::format("{} of {} stations were skipped.", num_failed_, route_.stations.size())));
+    output.events.push_back(event(EventKind::kMissionFailed, "",
+                                  fmt::format("{} of {} stations were skipped.", num_failed_, route_.stations.size())));
   }
 }
 
@@ -127,7 +131,12 @@ NavigationGoal GasMission::goal_at(const Station& station) const {
 }
 
 Event GasMission::event(EventKind kind, const std::string& subject, const std::string& text, double value) const {
-  return {.stamp = now_, .kind = kind, .subject = subject, .text = text, .value = value, .T_map_body = T_map_body_,
+  return {.stamp = now_,
+          .kind = kind,
+          .subject = subject,
+          .text = text,
+          .value = value,
+          .T_map_body = T_map_body_,
           .p_map_target = T_map_body_.position()};
 }
 

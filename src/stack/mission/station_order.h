@@ -22,7 +22,8 @@ struct StationOrder {
 /// Stations of a lower priority value precede all others, time windows are respected if possible, and the route ends at
 /// home. Paths are planned like the navigator's, on a map with the survey's keep-out lines only, at the mission's
 /// expected speed. Returns the given order if a station cannot be reached.
-StationOrder order_stations(const Route& route_in_map, const RobotDescription& robot, const plan::NavigatorSettings& navigation, const GasMissionSettings& mission,
+StationOrder order_stations(const Route& route_in_map, const RobotDescription& robot,
+                            const plan::NavigatorSettings& navigation, const GasMissionSettings& mission,
                             std::uint64_t seed);
 
 }  // namespace patrol::stack

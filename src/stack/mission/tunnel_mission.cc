@@ -11,11 +11,17 @@ namespace patrol::stack {
 GoalType TunnelMissionSettings::goal_type(std::size_t index) const {
   if (index >= goal_types.size()) return GoalType::kStop;
   if (const auto* row = find_named(kGoalTypes, std::string_view(goal_types).substr(index, 1))) return row->value;
-  throw InputError(fmt::format("tunnel_mission.goal_types = {}: must consist of the letters {}", goal_types, fmt::join(names_of(kGoalTypes), ", ")));
+  throw InputError(fmt::format("tunnel_mission.goal_types = {}: must consist of the letters {}", goal_types,
+                               fmt::join(names_of(kGoalTypes), ", ")));
 }
 
-TunnelMission::TunnelMission(const TunnelMissionSettings& settings, std::vector<SavedGoal> goals, bool has_teleop, bool has_map)
-    : settings_(settings), goals_(std::move(goals)), has_teleop_(has_teleop), has_map_(has_map), is_docked_(settings.start_docked && !settings.start_at_survey) {
+TunnelMission::TunnelMission(const TunnelMissionSettings& settings, std::vector<SavedGoal> goals, bool has_teleop,
+                             bool has_map)
+    : settings_(settings),
+      goals_(std::move(goals)),
+      has_teleop_(has_teleop),
+      has_map_(has_map),
+      is_docked_(settings.start_docked && !settings.start_at_survey) {
   validate(settings, "tunnel_mission");
   for (std::size_t i = 0; i < settings.goal_types.size(); ++i) settings.goal_type(i);
   if (goals_.empty() && !has_teleop) throw InputError("tunnel_mission: requires goals or teleoperation to save them");
@@ -67,16 +73,18 @@ Task TunnelMission::task() const {
   if (phase_ == Phase::kTeleop || phase_ == Phase::kTeleopAtGoal) task.motion = Motion::kTeleop;
   if (phase_ == Phase::kUndocking) task.motion = Motion::kUndock;
   if (phase_ == Phase::kDocking) task.motion = Motion::kDock;
-  if (phase_ == Phase::kScanning) task.inspection = InspectionOrder{.instrument = InstrumentKind::kLining, .station = goal_name()};
-  if (phase_ == Phase::kSounding) task.inspection = InspectionOrder{.instrument = InstrumentKind::kWater, .station = sounding_name()};
+  if (phase_ == Phase::kScanning)
+    task.inspection = InspectionOrder{.instrument = InstrumentKind::kLining, .station = goal_name()};
+  if (phase_ == Phase::kSounding)
+    task.inspection = InspectionOrder{.instrument = InstrumentKind::kWater, .station = sounding_name()};
   if (phase_ != Phase::kDriving) return task;
   const SavedGoal& goal = goals_[goal_];
   const bool stops = goal.type != GoalType::kVia;
   task.motion = Motion::kNavigate;
-  task.goal = {
-      .T_map_body = goal.T_map_body,
-      .position_tolerance_m = stops ? std::min(settings_.position_tolerance_m, goal.accuracy_m) : goal.accuracy_m,
-      .yaw_tolerance_rad = stops ? settings_.yaw_tolerance_rad : std::numbers::pi};
+  task.goal = {.T_map_body = goal.T_map_body,
+               .position_tolerance_m =
+                   stops ? std::min(settings_.position_tolerance_m, goal.accuracy_m) : goal.accuracy_m,
+               .yaw_tolerance_rad = stops ? settings_.yaw_tolerance_rad : std::numbers::pi};
   return task;
 }
 
@@ -84,7 +92,8 @@ Task TunnelMission::task() const {
 bool TunnelMission::monitor_localization(const MissionInput& input, MissionOutput& output) {
   const bool needs_pose = phase_ == Phase::kDriving || phase_ == Phase::kStanding || phase_ == Phase::kDocking;
   if (!input.is_lost || !needs_pose) {
-    if (lost_since_) output.events.push_back(event(EventKind::kRelocalized, "", "Relocalized.", to_seconds(now_ - *lost_since_)));
+    if (lost_since_)
+      output.events.push_back(event(EventKind::kRelocalized, "", "Relocalized.", to_seconds(now_ - *lost_since_)));
     lost_since_.reset();
     return false;
   }
@@ -92,8 +101,9 @@ bool TunnelMission::monitor_localization(const MissionInput& input, MissionOutpu
     lost_since_ = now_;
     output.events.push_back(event(EventKind::kLocalizationLost, "", "Localization lost: robot stopped, relocalizing."));
   } else if (now_ - *lost_since_ > from_seconds(settings_.relocalization_timeout_s)) {
-    output.events.push_back(event(EventKind::kLocalizationFailed, "", fmt::format("Relocalization failed after {:.0f} s.",
-                                                                     settings_.relocalization_timeout_s)));
+    output.events.push_back(
+        event(EventKind::kLocalizationFailed, "",
+              fmt::format("Relocalization failed after {:.0f} s.", settings_.relocalization_timeout_s)));
     ++num_failed_;
     finish(output);
   }
@@ -112,14 +122,17 @@ void TunnelMission::teleoperate(const MissionInput& input, MissionOutput& output
   is_docked_ = false;
   if (input.teleop) last_teleop_ = now_;
   if (input.teleop && input.teleop->save_goal) {
-    goals_.push_back({.number = static_cast<int>(goals_.size()) + 1, .T_map_body = T_map_body_, .type = settings_.goal_type(goals_.size())});
+    goals_.push_back({.number = static_cast<int>(goals_.size()) + 1,
+                      .T_map_body = T_map_body_,
+                      .type = settings_.goal_type(goals_.size())});
     goal_ = goals_.size() - 1;
     output.events.push_back(event(EventKind::kGoalSaved, goal_name(), fmt::format("Saved {}.", goal_name())));
   }
   const bool is_off = now_ - last_teleop_ > from_seconds(settings_.teleop_timeout_s);
   if (!is_off && !(input.teleop && input.teleop->hand_over)) return;
   output.is_map_complete = true;
-  output.events.push_back(event(EventKind::kMappingCompleted, "", fmt::format("Mapping completed: {} goals saved.", goals_.size())));
+  output.events.push_back(
+      event(EventKind::kMappingCompleted, "", fmt::format("Mapping completed: {} goals saved.", goals_.size())));
   end_run(output);
 }
 
@@ -133,7 +146,8 @@ void TunnelMission::drive(const MissionInput& input, MissionOutput& output) {
   if (now_ == phase_start_) return;  // the feedback is for the previous goal
   if (input.navigation == NavigationFeedback::kFailed) {
     ++num_failed_;
-    output.events.push_back(event(EventKind::kGoalFailed, goal_name(), fmt::format("{} is unreachable.", goal_name()), run_));
+    output.events.push_back(
+        event(EventKind::kGoalFailed, goal_name(), fmt::format("{} is unreachable.", goal_name()), run_));
     return next_goal(output);
   }
   if (input.navigation != NavigationFeedback::kArrived) return;
@@ -155,7 +169,8 @@ void TunnelMission::scan(const MissionInput& input, MissionOutput& output) {
   if (now_ == phase_start_ || input.inspection.feedback == InspectionFeedback::kInProgress) return;
   if (input.inspection.feedback == InspectionFeedback::kFailed) {
     ++num_failed_;
-    output.events.push_back(event(EventKind::kInspectionFailed, goal_name(), fmt::format("Lining measurement failed at {}.", goal_name()), run_));
+    output.events.push_back(event(EventKind::kInspectionFailed, goal_name(),
+                                  fmt::format("Lining measurement failed at {}.", goal_name()), run_));
   }
   next_goal(output);
 }
@@ -169,7 +184,9 @@ void TunnelMission::await_teleop(const MissionInput& input, MissionOutput& outpu
   const bool is_over = input.teleop && input.teleop->hand_over;
   if (!is_over && now_ - last_teleop_ <= from_seconds(settings_.operator_timeout_s)) return;
   if (!is_over) ++num_failed_;
-  output.events.push_back(event(EventKind::kTeleopEnded, goal_name(), is_over ? "Teleoperation ended: resuming autonomous mode." : "Teleoperation timeout: resuming autonomous mode."));
+  output.events.push_back(event(EventKind::kTeleopEnded, goal_name(),
+                                is_over ? "Teleoperation ended: resuming autonomous mode."
+                                        : "Teleoperation timeout: resuming autonomous mode."));
   next_goal(output);
 }
 
@@ -201,8 +218,7 @@ void TunnelMission::start_run(MissionOutput& output) {
   goal_ = 0;
   output.relocalization = relocalization();
   output.events.push_back(event(EventKind::kNavigationStarted, fmt::format("navigation_{}", run_),
-                                fmt::format("Run {} of {}: {} goals.", run_, settings_.num_runs, goals_.size()),
-                                run_));
+                                fmt::format("Run {} of {}: {} goals.", run_, settings_.num_runs, goals_.size()), run_));
   enter(is_docked_ ? Phase::kUndocking : Phase::kDriving);
 }
 
@@ -243,7 +259,12 @@ void TunnelMission::enter(Phase phase) {
 }
 
 Event TunnelMission::event(EventKind kind, const std::string& subject, const std::string& text, double value) const {
-  return {.stamp = now_, .kind = kind, .subject = subject, .text = text, .value = value, .T_map_body = T_map_body_,
+  return {.stamp = now_,
+          .kind = kind,
+          .subject = subject,
+          .text = text,
+          .value = value,
+          .T_map_body = T_map_body_,
           .p_map_target = T_map_body_.position()};
 }
 

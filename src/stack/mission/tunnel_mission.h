@@ -32,7 +32,8 @@ class TunnelMission final : public Mission {
   /// `goals`: in map; empty: they are saved during teleoperation. Without a map, teleoperation comes first, to make
   /// one; with a map, it is only used at goals of type R. Throws InputError when there are neither goals nor
   /// teleoperation.
-  TunnelMission(const TunnelMissionSettings& settings, std::vector<SavedGoal> goals, bool has_teleop, bool has_map = false);
+  TunnelMission(const TunnelMissionSettings& settings, std::vector<SavedGoal> goals, bool has_teleop,
+                bool has_map = false);
 
   MissionOutput step(Time now, const MissionInput& input) override;
   bool is_over() const override { return phase_ == Phase::kOver; }
@@ -42,7 +43,18 @@ class TunnelMission final : public Mission {
   const std::vector<SavedGoal>& goals() const { return goals_; }
 
  private:
-  enum class Phase { kWaiting, kTeleop, kUndocking, kDriving, kStanding, kScanning, kTeleopAtGoal, kSounding, kDocking, kOver };
+  enum class Phase {
+    kWaiting,
+    kTeleop,
+    kUndocking,
+    kDriving,
+    kStanding,
+    kScanning,
+    kTeleopAtGoal,
+    kSounding,
+    kDocking,
+    kOver
+  };
 
   void wait(MissionOutput& output);
   void teleoperate(const MissionInput& input, MissionOutput& output);
@@ -74,7 +86,7 @@ class TunnelMission final : public Mission {
   std::optional<Time> first_step_;
   Time phase_start_{};
   Time last_teleop_{};
-  int run_ = 0;        ///< number of the present run, from 1
+  int run_ = 0;  ///< number of the present run, from 1
   std::size_t goal_ = 0;
   int num_soundings_ = 0;
   int num_failed_ = 0;

@@ -11,7 +11,9 @@ namespace {
 
 /// Returns whether the message repeats the reading of `before`, which is of the same sensor.
 bool repeats_reading(const SensorMessage& message, const SensorMessage& before) {
-  const auto repeats_before = [&]<typename Message>(const Message& now) { return repeats(now, std::get<Message>(before)); };
+  const auto repeats_before = [&]<typename Message>(const Message& now) {
+    return repeats(now, std::get<Message>(before));
+  };
   return std::visit(repeats_before, message);
 }
 
@@ -54,13 +56,23 @@ std::vector<SensorChange> SensorMonitor::step(Time now, const Pose2& T_odom_body
     if (info.is_required_to_drive && state != State::kFine) can_drive = false;
     if (std::exchange(sensor.state, state) == state) continue;
     const auto add = [&](const char* what) {
-      changes.push_back({.sensor = info.name, .has_recovered = state == State::kFine, .text = fmt::format("Sensor {} {}.", info.name, what)});
+      changes.push_back({.sensor = info.name,
+                         .has_recovered = state == State::kFine,
+                         .text = fmt::format("Sensor {} {}.", info.name, what)});
     };
     switch (state) {
-      case State::kFine: add("has recovered"); break;
-      case State::kTimedOut: add("timed out"); break;
-      case State::kWrongClock: add("has timestamps in the future"); break;
-      case State::kFrozen: add("is frozen (repeated readings)"); break;
+      case State::kFine:
+        add("has recovered");
+        break;
+      case State::kTimedOut:
+        add("timed out");
+        break;
+      case State::kWrongClock:
+        add("has timestamps in the future");
+        break;
+      case State::kFrozen:
+        add("is frozen (repeated readings)");
+        break;
     }
   }
   if (can_drive) halted_since_.reset();
@@ -68,7 +80,8 @@ std::vector<SensorChange> SensorMonitor::step(Time now, const Pose2& T_odom_body
   return changes;
 }
 
-SensorMonitor::State SensorMonitor::state_of(std::size_t kind, const Sensor& sensor, Time now, const Pose2& T_odom_body) const {
+SensorMonitor::State SensorMonitor::state_of(std::size_t kind, const Sensor& sensor, Time now,
+                                             const Pose2& T_odom_body) const {
   if (sensor.has_future_stamp) return State::kWrongClock;
   if (now - sensor.stamp > from_seconds(timeout_s(kind))) return State::kTimedOut;
   return is_frozen(kind, sensor, T_odom_body) ? State::kFrozen : State::kFine;
@@ -86,9 +99,12 @@ bool SensorMonitor::is_frozen(std::size_t kind, const Sensor& sensor, const Pose
 
 double SensorMonitor::timeout_s(std::size_t kind) const {
   switch (kSensorInfos[kind].timeout) {
-    case SensorTimeout::kLidar: return settings_.lidar_timeout_s;
-    case SensorTimeout::kMotion: return settings_.proprioception_timeout_s;
-    default: return settings_.instrument_timeout_s;
+    case SensorTimeout::kLidar:
+      return settings_.lidar_timeout_s;
+    case SensorTimeout::kMotion:
+      return settings_.proprioception_timeout_s;
+    default:
+      return settings_.instrument_timeout_s;
   }
 }
 

@@ -52,11 +52,11 @@ class SensorMonitor {
   struct Sensor {
     Time stamp{};  ///< stamp of the newest message; zero: none received yet
     SensorMessage reading;
-    bool has_future_stamp = false;     ///< true: the newest message has a stamp in the future
-    int num_repeats = 0;       ///< repetitions of the newest reading
-    bool has_changed = true;   ///< true: the reading has changed since the reference below was taken
-    Pose2 T_odom_changed;      ///< body pose when the reading last changed
-    double commanded_m = 0.0;  ///< commanded distance since then
+    bool has_future_stamp = false;  ///< true: the newest message has a stamp in the future
+    int num_repeats = 0;            ///< repetitions of the newest reading
+    bool has_changed = true;        ///< true: the reading has changed since the reference below was taken
+    Pose2 T_odom_changed;           ///< body pose when the reading last changed
+    double commanded_m = 0.0;       ///< commanded distance since then
     double commanded_rad = 0.0;
     State state = State::kFine;
   };

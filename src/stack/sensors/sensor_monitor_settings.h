@@ -6,14 +6,14 @@ namespace patrol::stack {
 
 /// Settings of the sensor monitor. The age of a reading is counted from its stamp, so late readings count as missing.
 struct SensorMonitorSettings {
-  double lidar_timeout_s = 0.6;       ///< age limit of sensors with SensorTimeout::kLidar (core/sensors/registry.h)
-  double proprioception_timeout_s = 0.15;     ///< age limit of sensors with SensorTimeout::kMotion
-  double instrument_timeout_s = 5.0;  ///< age limit of sensors with SensorTimeout::kInstrument
-  double max_clock_lead_s = 0.05;         ///< a stamp further ahead of now indicates a clock error
-  double frozen_path_m = 0.1;     ///< travel or rotation of the robot during which the readings are bitwise identical
+  double lidar_timeout_s = 0.6;  ///< age limit of sensors with SensorTimeout::kLidar (core/sensors/registry.h)
+  double proprioception_timeout_s = 0.15;  ///< age limit of sensors with SensorTimeout::kMotion
+  double instrument_timeout_s = 5.0;       ///< age limit of sensors with SensorTimeout::kInstrument
+  double max_clock_lead_s = 0.05;          ///< a stamp further ahead of now indicates a clock error
+  double frozen_path_m = 0.1;  ///< travel or rotation of the robot during which the readings are bitwise identical
   double frozen_turn_rad = 0.1;
-  int frozen_repeats = 3;      ///< minimum number of repeated readings
-  double abort_timeout_s = 60.0;        ///< time unable to drive after which the mission is aborted
+  int frozen_repeats = 3;         ///< minimum number of repeated readings
+  double abort_timeout_s = 60.0;  ///< time unable to drive after which the mission is aborted
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -16,7 +16,9 @@ slam::GraphSlamSettings default_graph_settings() {
   return settings;
 }
 
-slam::ScanOdometryRbpfSettings default_rbpf_settings() { return {.odometry = "given", .scan_odometry = {}, .filter = {}}; }
+slam::ScanOdometryRbpfSettings default_rbpf_settings() {
+  return {.odometry = "given", .scan_odometry = {}, .filter = {}};
+}
 
 slam::MapperSettings default_slam_settings() {
   slam::MapperSettings settings;

@@ -4,7 +4,8 @@
 
 namespace patrol::studies {
 
-std::vector<int> associate(const LandmarkMap& map, const Pose2& T_map_body, const std::vector<RangeBearing>& observations, const RangeBearingNoise& noise,
+std::vector<int> associate(const LandmarkMap& map, const Pose2& T_map_body,
+                           const std::vector<RangeBearing>& observations, const RangeBearingNoise& noise,
                            const AssociationSettings& settings) {
   std::vector<int> matches;
   matches.reserve(observations.size());

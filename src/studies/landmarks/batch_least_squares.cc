@@ -1,10 +1,10 @@
 #include "studies/landmarks/batch_least_squares.h"
 
-#include <ceres/ceres.h>
-
 #include <array>
 #include <cmath>
 #include <stdexcept>
+
+#include <ceres/ceres.h>
 
 namespace patrol::studies {
 namespace {
@@ -52,12 +52,14 @@ struct ObservationCost {
 
 }  // namespace
 
-BatchSolution solve_batch(const ControlMotion& motion, const RangeBearingNoise& noise, const std::vector<Control>& controls,
+BatchSolution solve_batch(const ControlMotion& motion, const RangeBearingNoise& noise,
+                          const std::vector<Control>& controls,
                           const std::vector<std::vector<RangeBearing>>& observations, const BatchSolution& guess) {
   std::vector<std::array<double, 3>> poses = {{0.0, 0.0, 0.0}};
   for (const Pose2& pose : guess.T_map_body) poses.push_back({pose.x, pose.y, pose.yaw});
   std::vector<std::array<double, 2>> landmarks;
-  for (const auto& landmark : guess.landmarks) landmarks.push_back(landmark ? std::array{landmark->x(), landmark->y()} : std::array{0.0, 0.0});
+  for (const auto& landmark : guess.landmarks)
+    landmarks.push_back(landmark ? std::array{landmark->x(), landmark->y()} : std::array{0.0, 0.0});
 
   std::vector<std::array<double, 2>> errors(controls.size(), {0.0, 0.0});
 
@@ -65,12 +67,15 @@ BatchSolution solve_batch(const ControlMotion& motion, const RangeBearingNoise& 
   problem.AddParameterBlock(poses[0].data(), 3);
   problem.SetParameterBlockConstant(poses[0].data());
   for (std::size_t k = 0; k < controls.size(); ++k) {
-    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<MotionCost, 5, 3, 2, 3>(new MotionCost{motion, controls[k]}), nullptr, poses[k].data(),
-                             errors[k].data(), poses[k + 1].data());
+    problem.AddResidualBlock(
+        new ceres::AutoDiffCostFunction<MotionCost, 5, 3, 2, 3>(new MotionCost{motion, controls[k]}), nullptr,
+        poses[k].data(), errors[k].data(), poses[k + 1].data());
     for (const RangeBearing& observation : observations[k]) {
-      if (static_cast<std::size_t>(observation.landmark) >= landmarks.size()) throw std::invalid_argument("batch: guess must contain every observed landmark");
-      problem.AddResidualBlock(new ceres::AutoDiffCostFunction<ObservationCost, 2, 3, 2>(new ObservationCost{observation, noise}), nullptr, poses[k + 1].data(),
-                               landmarks[static_cast<std::size_t>(observation.landmark)].data());
+      if (static_cast<std::size_t>(observation.landmark) >= landmarks.size())
+        throw std::invalid_argument("batch: guess must contain every observed landmark");
+      problem.AddResidualBlock(
+          new ceres::AutoDiffCostFunction<ObservationCost, 2, 3, 2>(new ObservationCost{observation, noise}), nullptr,
+          poses[k + 1].data(), landmarks[static_cast<std::size_t>(observation.landmark)].data());
     }
   }
   ceres::Solver::Options options;
@@ -79,8 +84,10 @@ BatchSolution solve_batch(const ControlMotion& motion, const RangeBearingNoise& 
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
 
-  BatchSolution solution{.T_map_body = {}, .landmarks = guess.landmarks, .has_converged = summary.termination_type == ceres::CONVERGENCE};
-  for (std::size_t k = 1; k < poses.size(); ++k) solution.T_map_body.push_back({poses[k][0], poses[k][1], wrap_angle(poses[k][2])});
+  BatchSolution solution{
+      .T_map_body = {}, .landmarks = guess.landmarks, .has_converged = summary.termination_type == ceres::CONVERGENCE};
+  for (std::size_t k = 1; k < poses.size(); ++k)
+    solution.T_map_body.push_back({poses[k][0], poses[k][1], wrap_angle(poses[k][2])});
   for (std::size_t i = 0; i < landmarks.size(); ++i) {
     if (solution.landmarks[i]) solution.landmarks[i] = Eigen::Vector2d(landmarks[i][0], landmarks[i][1]);
   }

@@ -18,7 +18,8 @@ struct BatchSolution {
 /// bound for the average error of any filter. Unknowns are the poses, the control errors and the landmarks; the start
 /// pose is the origin of map. Gauss-Newton by Ceres from `guess`, which must contain every observed landmark
 /// (std::invalid_argument otherwise). `controls` [step], `observations` [step][observation]; known association.
-BatchSolution solve_batch(const ControlMotion& motion, const RangeBearingNoise& noise, const std::vector<Control>& controls,
+BatchSolution solve_batch(const ControlMotion& motion, const RangeBearingNoise& noise,
+                          const std::vector<Control>& controls,
                           const std::vector<std::vector<RangeBearing>>& observations, const BatchSolution& guess);
 
 }  // namespace patrol::studies

@@ -17,7 +17,7 @@ using Control = Eigen::Vector2d;
 
 struct ControlMotion {
   Steering steering = Steering::kYawRate;
-  double wheelbase_m = 2.0;                           ///< wheelbase of a car
+  double wheelbase_m = 2.0;  ///< wheelbase of a car
   double step_s = 0.1;
   int substeps = 1;  ///< number of substeps of the integration; a turning car follows an arc
   /// Standard deviation of each control's error in a step, in its unit.
@@ -36,7 +36,8 @@ void move_in_place(const ControlMotion& motion, const Scalar* control, Scalar* p
   using std::cos, std::sin;
   const Scalar length_m = control[0] * (motion.step_s / motion.substeps);
   const bool is_car = motion.steering == Steering::kAckermann;
-  const Scalar yaw_change_rad = is_car ? Scalar(length_m * sin(control[1]) / motion.wheelbase_m) : Scalar(control[1] * (motion.step_s / motion.substeps));
+  const Scalar yaw_change_rad = is_car ? Scalar(length_m * sin(control[1]) / motion.wheelbase_m)
+                                       : Scalar(control[1] * (motion.step_s / motion.substeps));
   const Scalar bend_rad = is_car ? control[1] : Scalar(0.5 * yaw_change_rad);
   for (int substep = 0; substep < motion.substeps; ++substep) {
     const Scalar direction = pose[2] + bend_rad;

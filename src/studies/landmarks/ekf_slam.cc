@@ -1,8 +1,8 @@
 #include "studies/landmarks/ekf_slam.h"
 
-#include <Eigen/LU>
-
 #include <cmath>
+
+#include <Eigen/LU>
 
 namespace patrol::studies {
 namespace {
@@ -13,14 +13,19 @@ const Eigen::Matrix2d kQuarterRotation = (Eigen::Matrix2d() << 0.0, -1.0, 1.0, 0
 /// Transforms p by the exponential of (dtheta, dp) on SE(2).
 Eigen::Vector2d transformed(const Eigen::Vector2d& p, double dtheta, const Eigen::Vector2d& dp) {
   const double s = std::sin(dtheta), c = std::cos(dtheta);
-  const double a = std::abs(dtheta) < 1e-9 ? 1.0 : s / dtheta, b = std::abs(dtheta) < 1e-9 ? 0.5 * dtheta : (1.0 - c) / dtheta;
+  const double a = std::abs(dtheta) < 1e-9 ? 1.0 : s / dtheta,
+               b = std::abs(dtheta) < 1e-9 ? 0.5 * dtheta : (1.0 - c) / dtheta;
   return {c * p.x() - s * p.y() + a * dp.x() - b * dp.y(), s * p.x() + c * p.y() + b * dp.x() + a * dp.y()};
 }
 
 }  // namespace
 
 EkfSlam::EkfSlam(const EkfSlamSettings& settings, const ControlMotion& motion, const RangeBearingNoise& noise)
-    : settings_(settings), motion_(motion), noise_(noise), bias_(settings.bias), P_(Eigen::MatrixXd::Zero(kLandmarks, kLandmarks)) {
+    : settings_(settings),
+      motion_(motion),
+      noise_(noise),
+      bias_(settings.bias),
+      P_(Eigen::MatrixXd::Zero(kLandmarks, kLandmarks)) {
   motion_.std *= settings_.noise_scale;
   P_.block<2, 2>(kBias, kBias) = bias_.covariance;
 }
@@ -45,7 +50,8 @@ LandmarkSlamEstimate EkfSlam::step(const Control& control, const std::vector<Ran
 void EkfSlam::predict(const Control& control) {
   const Control corrected = control + motion_.std.cwiseProduct(bias_.mean);
   const Eigen::Vector2d p_before = T_map_body_.position();
-  const Eigen::Matrix<double, 3, 2> d_by_noise = jacobian_of(motion_, T_map_body_, corrected).control * motion_.std.asDiagonal();
+  const Eigen::Matrix<double, 3, 2> d_by_noise =
+      jacobian_of(motion_, T_map_body_, corrected).control * motion_.std.asDiagonal();
   T_map_body_ = motion_.move(T_map_body_, corrected);
   const Eigen::Vector2d p = T_map_body_.position();
 
@@ -55,7 +61,8 @@ void EkfSlam::predict(const Control& control) {
   if (settings_.is_invariant) {
     G.middleRows<2>(kPosition) -= kQuarterRotation * p * d_by_noise.row(2);
     for (std::size_t i = 0; i < landmarks_.size(); ++i) {
-      G.middleRows<2>(kLandmarks + 2 * static_cast<Eigen::Index>(i)) = -kQuarterRotation * landmarks_[i] * d_by_noise.row(2);
+      G.middleRows<2>(kLandmarks + 2 * static_cast<Eigen::Index>(i)) =
+          -kQuarterRotation * landmarks_[i] * d_by_noise.row(2);
     }
   } else {
     const Eigen::Vector2d d_by_yaw = kQuarterRotation * (p - p_before);
@@ -76,7 +83,8 @@ void EkfSlam::correct(const RangeBearing& observation) {
   const PredictedObservation predicted = predict_observation(T_map_body_, landmarks_[index]);
   Eigen::MatrixXd PHt = (P_.middleCols<2>(row) - P_.middleCols<2>(kPosition)) * predicted.H_landmark.transpose();
   if (!settings_.is_invariant) PHt += P_.col(kYaw) * predicted.H_pose.col(2).transpose();
-  Eigen::Matrix2d S = predicted.H_landmark * (PHt.middleRows<2>(row) - PHt.middleRows<2>(kPosition)) + noise_.covariance();
+  Eigen::Matrix2d S =
+      predicted.H_landmark * (PHt.middleRows<2>(row) - PHt.middleRows<2>(kPosition)) + noise_.covariance();
   if (!settings_.is_invariant) S += predicted.H_pose.col(2) * PHt.row(kYaw);
   const Eigen::MatrixXd K = PHt * S.inverse();
   apply(K * innovation_of(observation, predicted));
@@ -92,7 +100,8 @@ void EkfSlam::apply(const Eigen::VectorXd& error) {
   };
   const Eigen::Vector2d p = corrected(T_map_body_.position(), kPosition);
   T_map_body_ = {p.x(), p.y(), wrap_angle(T_map_body_.yaw + dtheta)};
-  for (std::size_t i = 0; i < landmarks_.size(); ++i) landmarks_[i] = corrected(landmarks_[i], kLandmarks + 2 * static_cast<Eigen::Index>(i));
+  for (std::size_t i = 0; i < landmarks_.size(); ++i)
+    landmarks_[i] = corrected(landmarks_[i], kLandmarks + 2 * static_cast<Eigen::Index>(i));
 }
 
 void EkfSlam::add_landmark(const RangeBearing& observation) {
@@ -107,7 +116,8 @@ void EkfSlam::add_landmark(const RangeBearing& observation) {
   d_by_state.middleCols<2>(kPosition).setIdentity();
   if (!settings_.is_invariant) d_by_state.col(kYaw) = kQuarterRotation * (landmarks_.back() - T_map_body_.position());
   const Eigen::Matrix2Xd cross = d_by_state * P_;
-  const Eigen::Matrix2d own = cross * d_by_state.transpose() + d_by_observation * noise_.covariance() * d_by_observation.transpose();
+  const Eigen::Matrix2d own =
+      cross * d_by_state.transpose() + d_by_observation * noise_.covariance() * d_by_observation.transpose();
   P_.conservativeResize(n + 2, n + 2);
   P_.bottomLeftCorner(2, n) = cross;
   P_.topRightCorner(n, 2) = cross.transpose();

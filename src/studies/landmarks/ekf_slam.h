@@ -9,7 +9,7 @@ namespace patrol::studies {
 /// Settings of EkfSlam. The defaults are the recommended method for landmarks (patrol study landmarks-circle,
 /// landmarks-100x80): no other method is more accurate, and its covariance is consistent.
 struct EkfSlamSettings {
-  double noise_scale = 1.0;                  ///< scale factor of the stated standard deviations of odometry
+  double noise_scale = 1.0;  ///< scale factor of the stated standard deviations of odometry
   /// The bias is part of the state: about half of the noise of one step; 0: no bias.
   OdometryBiasSettings bias{.std = 0.4};
   bool is_invariant = true;

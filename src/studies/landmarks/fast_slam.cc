@@ -1,11 +1,11 @@
 #include "studies/landmarks/fast_slam.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
 
 #include "core/geometry/linear_algebra.h"
 #include "slam/particle_filter.h"
@@ -15,14 +15,16 @@ namespace patrol::studies {
 /// Particles at one step, as a ParticleProblem.
 class FastSlam::Step {
  public:
-  Step(FastSlam& slam, const Control& control, const std::vector<RangeBearing>& observations) : slam_(slam), control_(control), observations_(observations) {
+  Step(FastSlam& slam, const Control& control, const std::vector<RangeBearing>& observations)
+      : slam_(slam), control_(control), observations_(observations) {
     for (Particle& particle : slam_.particles_) {
       particle.T_map_before = particle.T_map_body;
       if (matches_.empty() || !slam_.settings_.association.is_known) {
         const Pose2 expected = slam_.motion_.move_with_noise(particle.T_map_before, control_, particle.bias.mean);
         matches_.push_back(associate(particle.map, expected, observations_, slam_.noise_, slam_.settings_.association));
       }
-      if (slam_.settings_.use_optimal_proposal) proposals_.push_back(slam_.propose(particle, control_, observations_, matches_.back()));
+      if (slam_.settings_.use_optimal_proposal)
+        proposals_.push_back(slam_.propose(particle, control_, observations_, matches_.back()));
     }
   }
 
@@ -39,7 +41,9 @@ class FastSlam::Step {
   double log_fitness(std::size_t i, const slam::Position& position) const {
     const Particle& particle = slam_.particles_[i];
     const double likelihood = slam_.log_likelihood(particle, pose_at(particle, position), observations_, matches(i));
-    return slam_.settings_.prior_weight > 0.0 ? likelihood + slam_.settings_.prior_weight * log_prior(particle, position) : likelihood;
+    return slam_.settings_.prior_weight > 0.0
+               ? likelihood + slam_.settings_.prior_weight * log_prior(particle, position)
+               : likelihood;
   }
 
   double commit(std::size_t i, const slam::Position& position) {
@@ -49,10 +53,12 @@ class FastSlam::Step {
     double log_weight = 0.0;
     const std::vector<int>& numbers = matches(i);
     for (std::size_t k = 0; k < observations_.size(); ++k) {
-      if (numbers[k] != kUnmatched) log_weight += particle.map.update(numbers[k], particle.T_map_body, observations_[k], slam_.noise_);
+      if (numbers[k] != kUnmatched)
+        log_weight += particle.map.update(numbers[k], particle.T_map_body, observations_[k], slam_.noise_);
     }
     if (slam_.settings_.use_optimal_proposal) {
-      const Eigen::Vector2d unit = proposals_[i].root.triangularView<Eigen::Lower>().solve(position - proposals_[i].mean);
+      const Eigen::Vector2d unit =
+          proposals_[i].root.triangularView<Eigen::Lower>().solve(position - proposals_[i].mean);
       log_weight += log_prior(particle, position) - (proposals_[i].log_normalizer - 0.5 * unit.squaredNorm());
     }
     if (slam_.settings_.bias.std > 0.0) particle.bias.add_increment(position, slam_.settings_.bias);
@@ -64,7 +70,9 @@ class FastSlam::Step {
  private:
   const std::vector<int>& matches(std::size_t i) const { return matches_[matches_.size() == 1 ? 0 : i]; }
 
-  Pose2 pose_at(const Particle& particle, const slam::Position& position) const { return slam_.motion_.move_with_noise(particle.T_map_before, control_, position); }
+  Pose2 pose_at(const Particle& particle, const slam::Position& position) const {
+    return slam_.motion_.move_with_noise(particle.T_map_before, control_, position);
+  }
 
   static double log_prior(const Particle& particle, const slam::Position& position) {
     const Eigen::Matrix2d covariance = particle.bias.increment_covariance();
@@ -79,12 +87,20 @@ class FastSlam::Step {
   std::vector<Proposal> proposals_;        ///< [particle], for FastSLAM 2.0
 };
 
-FastSlam::FastSlam(const FastSlamSettings& settings, const ControlMotion& motion, const RangeBearingNoise& noise, slam::ParticleFilterComponents components,
-                   std::uint64_t seed)
-    : settings_(settings), motion_(motion), noise_(noise), components_(std::move(components)), random_(seed, "slam/landmarks/particles") {
+FastSlam::FastSlam(const FastSlamSettings& settings, const ControlMotion& motion, const RangeBearingNoise& noise,
+                   slam::ParticleFilterComponents components, std::uint64_t seed)
+    : settings_(settings),
+      motion_(motion),
+      noise_(noise),
+      components_(std::move(components)),
+      random_(seed, "slam/landmarks/particles") {
   motion_.std *= settings_.noise_scale;
   const auto num = static_cast<std::size_t>(settings_.particles);
-  particles_.assign(num, {.T_map_body = {}, .T_map_before = {}, .increment = Eigen::Vector2d::Zero(), .bias = OdometryBias(settings_.bias), .map = {}});
+  particles_.assign(num, {.T_map_body = {},
+                          .T_map_before = {},
+                          .increment = Eigen::Vector2d::Zero(),
+                          .bias = OdometryBias(settings_.bias),
+                          .map = {}});
   log_weights_.assign(num, 0.0);
 }
 
@@ -100,17 +116,19 @@ LandmarkSlamEstimate FastSlam::step(const Control& control, const std::vector<Ra
   return estimate;
 }
 
-double FastSlam::log_likelihood(const Particle& particle, const Pose2& T_map_body, const std::vector<RangeBearing>& observations,
-                                const std::vector<int>& matches) const {
+double FastSlam::log_likelihood(const Particle& particle, const Pose2& T_map_body,
+                                const std::vector<RangeBearing>& observations, const std::vector<int>& matches) const {
   ObservationLikelihood likelihood(T_map_body, noise_);
   for (std::size_t k = 0; k < observations.size(); ++k) {
-    if (matches[k] != kUnmatched && particle.map.has(matches[k])) likelihood.add(particle.map.at(matches[k]), observations[k]);
+    if (matches[k] != kUnmatched && particle.map.has(matches[k]))
+      likelihood.add(particle.map.at(matches[k]), observations[k]);
   }
   return likelihood.log_density();
 }
 
 // Gauss-Newton from the odometry prediction; newly observed landmarks do not constrain the pose.
-FastSlam::Proposal FastSlam::propose(const Particle& particle, const Control& control, const std::vector<RangeBearing>& observations,
+FastSlam::Proposal FastSlam::propose(const Particle& particle, const Control& control,
+                                     const std::vector<RangeBearing>& observations,
                                      const std::vector<int>& matches) const {
   constexpr int kIterations = 2;
   const Eigen::Matrix2d prior_information = particle.bias.increment_covariance().inverse();
@@ -119,7 +137,8 @@ FastSlam::Proposal FastSlam::propose(const Particle& particle, const Control& co
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     const Control corrected = control + motion_.std.cwiseProduct(mean);
     const Pose2 pose = motion_.move(particle.T_map_before, corrected);
-    const Eigen::Matrix<double, 3, 2> d_by_increment = jacobian_of(motion_, particle.T_map_before, corrected).control * motion_.std.asDiagonal();
+    const Eigen::Matrix<double, 3, 2> d_by_increment =
+        jacobian_of(motion_, particle.T_map_before, corrected).control * motion_.std.asDiagonal();
     information = prior_information;
     Eigen::Vector2d gradient = prior_information * (particle.bias.mean - mean);
     for (std::size_t k = 0; k < observations.size(); ++k) {
@@ -181,7 +200,8 @@ std::vector<std::optional<Eigen::Vector2d>> FastSlam::landmarks() const {
     means[i] = particles_[best].map.landmarks()[i].mean_m;
     if (!settings_.association.is_known) continue;
     means[i]->setZero();
-    for (std::size_t p = 0; p < particles_.size(); ++p) *means[i] += weights[p] * particles_[p].map.landmarks()[i].mean_m;
+    for (std::size_t p = 0; p < particles_.size(); ++p)
+      *means[i] += weights[p] * particles_[p].map.landmarks()[i].mean_m;
   }
   return means;
 }

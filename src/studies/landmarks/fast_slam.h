@@ -4,11 +4,11 @@
 #include <optional>
 #include <vector>
 
+#include "slam/particle_filter_components.h"
 #include "studies/landmarks/association.h"
 #include "studies/landmarks/landmark_map.h"
 #include "studies/landmarks/landmark_slam.h"
 #include "studies/landmarks/odometry_bias.h"
-#include "slam/particle_filter_components.h"
 
 namespace patrol::studies {
 
@@ -17,7 +17,7 @@ struct FastSlamSettings {
   /// Scale factor of the stated standard deviations of odometry; larger values cover unmodeled errors.
   double noise_scale = 1.0;
   bool use_optimal_proposal = false;  ///< true: FastSLAM 2.0; false: 1.0
-  OdometryBiasSettings bias{};       ///< bias estimated by each particle; off by default
+  OdometryBiasSettings bias{};        ///< bias estimated by each particle; off by default
   double prior_weight = 0.0;          ///< lambda: weight of the odometry prior in the optimizer's fitness (1: Bayesian)
   AssociationSettings association{};
 };
@@ -38,8 +38,8 @@ struct FastSlamSettings {
 class FastSlam : public LandmarkSlam {
  public:
   /// `motion.std` and `noise` are the assumed noise of odometry and sensor.
-  FastSlam(const FastSlamSettings& settings, const ControlMotion& motion, const RangeBearingNoise& noise, slam::ParticleFilterComponents components,
-           std::uint64_t seed);
+  FastSlam(const FastSlamSettings& settings, const ControlMotion& motion, const RangeBearingNoise& noise,
+           slam::ParticleFilterComponents components, std::uint64_t seed);
 
   LandmarkSlamEstimate step(const Control& control, const std::vector<RangeBearing>& observations) override;
   std::vector<std::optional<Eigen::Vector2d>> landmarks() const override;
@@ -63,9 +63,10 @@ class FastSlam : public LandmarkSlam {
   };
   class Step;
 
-  Proposal propose(const Particle& particle, const Control& control, const std::vector<RangeBearing>& observations, const std::vector<int>& matches) const;
-  double log_likelihood(const Particle& particle, const Pose2& T_map_body, const std::vector<RangeBearing>& observations,
-                        const std::vector<int>& matches) const;
+  Proposal propose(const Particle& particle, const Control& control, const std::vector<RangeBearing>& observations,
+                   const std::vector<int>& matches) const;
+  double log_likelihood(const Particle& particle, const Pose2& T_map_body,
+                        const std::vector<RangeBearing>& observations, const std::vector<int>& matches) const;
   void apply_resampling(const Control& control, const std::vector<slam::Offspring>& offspring);
   LandmarkSlamEstimate summary() const;
 

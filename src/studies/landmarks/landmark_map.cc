@@ -4,7 +4,8 @@
 
 namespace patrol::studies {
 
-double LandmarkMap::update(int index, const Pose2& T_map_body, const RangeBearing& observations, const RangeBearingNoise& noise) {
+double LandmarkMap::update(int index, const Pose2& T_map_body, const RangeBearing& observations,
+                           const RangeBearingNoise& noise) {
   if (static_cast<std::size_t>(index) >= landmarks_.size()) landmarks_.resize(static_cast<std::size_t>(index) + 1);
   Landmark& landmark = landmarks_[static_cast<std::size_t>(index)];
   if (!landmark.is_observed) {
@@ -15,8 +16,10 @@ double LandmarkMap::update(int index, const Pose2& T_map_body, const RangeBearin
     return 0.0;
   }
   const LandmarkInnovation fit = landmark_innovation(T_map_body, landmark, observations, noise);
-  const double K00 = (fit.PH00 * fit.S11 - fit.PH01 * fit.S01) / fit.det, K01 = (fit.PH01 * fit.S00 - fit.PH00 * fit.S01) / fit.det;
-  const double K10 = (fit.PH10 * fit.S11 - fit.PH11 * fit.S01) / fit.det, K11 = (fit.PH11 * fit.S00 - fit.PH10 * fit.S01) / fit.det;
+  const double K00 = (fit.PH00 * fit.S11 - fit.PH01 * fit.S01) / fit.det,
+               K01 = (fit.PH01 * fit.S00 - fit.PH00 * fit.S01) / fit.det;
+  const double K10 = (fit.PH10 * fit.S11 - fit.PH11 * fit.S01) / fit.det,
+               K11 = (fit.PH11 * fit.S00 - fit.PH10 * fit.S01) / fit.det;
   landmark.mean_m.x() += K00 * fit.range + K01 * fit.bearing;
   landmark.mean_m.y() += K10 * fit.range + K11 * fit.bearing;
   Eigen::Matrix2d& P = landmark.covariance;

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <algorithm>
 #include <cmath>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "studies/landmarks/range_bearing.h"
 
@@ -21,21 +21,24 @@ struct Landmark {
 /// because this is the innermost loop of every swarm. With u the direction to the landmark and n perpendicular to it, H
 /// = [u^T; n^T / r].
 struct LandmarkInnovation {
-  double range, bearing;       ///< innovation, m and rad
-  double ux, uy, r;            ///< direction and distance of the landmark, m
-  double PH00, PH01;           ///< P H^T, cross covariance of landmark position and observation
+  double range, bearing;  ///< innovation, m and rad
+  double ux, uy, r;       ///< direction and distance of the landmark, m
+  double PH00, PH01;      ///< P H^T, cross covariance of landmark position and observation
   double PH10, PH11;
-  double S00, S01, S11, det;   ///< S = H P H^T + R, and its determinant
-  double squared_distance;     ///< squared Mahalanobis distance
+  double S00, S01, S11, det;  ///< S = H P H^T + R, and its determinant
+  double squared_distance;    ///< squared Mahalanobis distance
 
   /// Log density of the observation without the log 2 pi term.
   double log_density() const { return -0.5 * (squared_distance + std::log(det)); }
   Eigen::Vector2d innovation() const { return {range, bearing}; }
   Eigen::Matrix2d S_inverse() const { return (Eigen::Matrix2d() << S11, -S01, -S01, S00).finished() / det; }
-  Eigen::Matrix<double, 2, 3> H_pose() const { return (Eigen::Matrix<double, 2, 3>() << -ux, -uy, 0.0, uy / r, -ux / r, -1.0).finished(); }
+  Eigen::Matrix<double, 2, 3> H_pose() const {
+    return (Eigen::Matrix<double, 2, 3>() << -ux, -uy, 0.0, uy / r, -ux / r, -1.0).finished();
+  }
 };
 
-inline LandmarkInnovation landmark_innovation(const Pose2& T_map_body, const Landmark& landmark, const RangeBearing& observations, const RangeBearingNoise& noise) {
+inline LandmarkInnovation landmark_innovation(const Pose2& T_map_body, const Landmark& landmark,
+                                              const RangeBearing& observations, const RangeBearingNoise& noise) {
   LandmarkInnovation fit;
   const double dx = landmark.mean_m.x() - T_map_body.x, dy = landmark.mean_m.y() - T_map_body.y;
   fit.r = std::sqrt(std::max(dx * dx + dy * dy, 1e-12));
@@ -53,14 +56,17 @@ inline LandmarkInnovation landmark_innovation(const Pose2& T_map_body, const Lan
   fit.S01 = fit.ux * fit.PH01 + fit.uy * fit.PH11;
   fit.S11 = nx * fit.PH01 + ny * fit.PH11 + noise.bearing_std_rad * noise.bearing_std_rad;
   fit.det = fit.S00 * fit.S11 - fit.S01 * fit.S01;
-  fit.squared_distance = (fit.S11 * fit.range * fit.range - 2.0 * fit.S01 * fit.range * fit.bearing + fit.S00 * fit.bearing * fit.bearing) / fit.det;
+  fit.squared_distance = (fit.S11 * fit.range * fit.range - 2.0 * fit.S01 * fit.range * fit.bearing +
+                          fit.S00 * fit.bearing * fit.bearing) /
+                         fit.det;
   return fit;
 }
 
 /// Joint log density of several observations with a single logarithm.
 class ObservationLikelihood {
  public:
-  ObservationLikelihood(const Pose2& T_map_body, const RangeBearingNoise& noise) : T_map_body_(T_map_body), noise_(noise) {}
+  ObservationLikelihood(const Pose2& T_map_body, const RangeBearingNoise& noise)
+      : T_map_body_(T_map_body), noise_(noise) {}
 
   void add(const Landmark& landmark, const RangeBearing& observations) {
     const LandmarkInnovation fit = landmark_innovation(T_map_body_, landmark, observations, noise_);
@@ -88,7 +94,10 @@ class LandmarkMap {
  public:
   const std::vector<Landmark>& landmarks() const { return landmarks_; }
   std::vector<Landmark>& landmarks() { return landmarks_; }
-  bool has(int index) const { return static_cast<std::size_t>(index) < landmarks_.size() && landmarks_[static_cast<std::size_t>(index)].is_observed; }
+  bool has(int index) const {
+    return static_cast<std::size_t>(index) < landmarks_.size() &&
+           landmarks_[static_cast<std::size_t>(index)].is_observed;
+  }
   const Landmark& at(int index) const { return landmarks_[static_cast<std::size_t>(index)]; }
 
   /// Updates a landmark with an observation; a new landmark is initialized at the observed position. `index` may be one

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <optional>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "studies/landmarks/control_motion.h"
 #include "studies/landmarks/range_bearing.h"

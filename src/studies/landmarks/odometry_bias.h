@@ -1,9 +1,9 @@
 #pragma once
 
+#include <cmath>
+
 #include <Eigen/Core>
 #include <Eigen/LU>
-
-#include <cmath>
 
 namespace patrol::studies {
 
@@ -20,7 +20,9 @@ struct OdometryBias {
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
 
-  explicit OdometryBias(const OdometryBiasSettings& settings = {}) { covariance.diagonal().setConstant(settings.std * settings.std); }
+  explicit OdometryBias(const OdometryBiasSettings& settings = {}) {
+    covariance.diagonal().setConstant(settings.std * settings.std);
+  }
 
   /// Covariance of the next increment: bias plus noise of unit variance.
   Eigen::Matrix2d increment_covariance() const { return covariance + Eigen::Matrix2d::Identity(); }

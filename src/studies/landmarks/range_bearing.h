@@ -1,9 +1,9 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include <algorithm>
 #include <cmath>
+
+#include <Eigen/Core>
 
 #include "core/frames.h"
 
@@ -22,14 +22,16 @@ struct RangeBearingNoise {
   double range_std_m = 0.5;
   double bearing_std_rad = 0.0873;  ///< 5 degrees
 
-  Eigen::Matrix2d covariance() const { return Eigen::Vector2d(range_std_m * range_std_m, bearing_std_rad * bearing_std_rad).asDiagonal(); }
+  Eigen::Matrix2d covariance() const {
+    return Eigen::Vector2d(range_std_m * range_std_m, bearing_std_rad * bearing_std_rad).asDiagonal();
+  }
 };
 
 /// Predicted observation of a landmark at `p_map`, with derivatives.
 struct PredictedObservation {
-  Eigen::Vector2d observation;                 ///< range, bearing
-  Eigen::Matrix2d H_landmark;           ///< derivative with respect to x, y of the landmark
-  Eigen::Matrix<double, 2, 3> H_pose;   ///< derivative with respect to x, y, yaw of the body
+  Eigen::Vector2d observation;         ///< range, bearing
+  Eigen::Matrix2d H_landmark;          ///< derivative with respect to x, y of the landmark
+  Eigen::Matrix<double, 2, 3> H_pose;  ///< derivative with respect to x, y, yaw of the body
 };
 
 inline PredictedObservation predict_observation(const Pose2& T_map_body, const Eigen::Vector2d& p_map) {
@@ -45,13 +47,15 @@ inline PredictedObservation predict_observation(const Pose2& T_map_body, const E
 
 /// Observed minus predicted range and bearing; the bearing is wrapped.
 inline Eigen::Vector2d innovation_of(const RangeBearing& observations, const PredictedObservation& predicted) {
-  return {observations.range_m - predicted.observation.x(), wrap_angle(observations.bearing_rad - predicted.observation.y())};
+  return {observations.range_m - predicted.observation.x(),
+          wrap_angle(observations.bearing_rad - predicted.observation.y())};
 }
 
 /// Position of the landmark given by an observation.
 inline Eigen::Vector2d invert_observation(const Pose2& T_map_body, const RangeBearing& observations) {
   const double direction = T_map_body.yaw + observations.bearing_rad;
-  return {T_map_body.x + observations.range_m * std::cos(direction), T_map_body.y + observations.range_m * std::sin(direction)};
+  return {T_map_body.x + observations.range_m * std::cos(direction),
+          T_map_body.y + observations.range_m * std::sin(direction)};
 }
 
 }  // namespace patrol::studies

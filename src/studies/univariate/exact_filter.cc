@@ -9,12 +9,13 @@
 namespace patrol::studies {
 namespace {
 
-constexpr double kCutoffSigmas = 8.0;        // standard deviations of the process noise; exp(-8^2 / 2) = 1e-14
+constexpr double kCutoffSigmas = 8.0;       // standard deviations of the process noise; exp(-8^2 / 2) = 1e-14
 constexpr double kMinMassFraction = 1e-18;  // of the maximum mass; smaller masses are not propagated
 
 }  // namespace
 
-ExactFilter::ExactFilter(const GrowthModel& model, const ExactFilterSettings& settings) : model_(model), cell_(settings.cell) {
+ExactFilter::ExactFilter(const GrowthModel& model, const ExactFilterSettings& settings)
+    : model_(model), cell_(settings.cell) {
   validate(settings, "exact_filter");
   if (model.settings().denominator_sign < 0) {
     throw InputError("growth_model.denominator_sign = -1: must be 1 for the exact filter");
@@ -64,7 +65,8 @@ std::vector<double> ExactFilter::predict() const {
 UnivariateEstimate ExactFilter::step(double observation) {
   ++steps_;
   std::vector<double> log_density = predict();
-  for (std::size_t i = 0; i < nodes_.size(); ++i) log_density[i] = std::log(log_density[i]) + model_.log_likelihood(observation, nodes_[i]);
+  for (std::size_t i = 0; i < nodes_.size(); ++i)
+    log_density[i] = std::log(log_density[i]) + model_.log_likelihood(observation, nodes_[i]);
   density_ = normalized_weights(log_density);
   UnivariateEstimate estimate = summarize(nodes_, density_);
   estimate.effective_sample_size = 0.0;

@@ -15,16 +15,21 @@ namespace patrol::studies {
 class GrowthFilter::Step {
  public:
   Step(GrowthFilter& filter, double observation)
-      : filter_(filter), observation_(observation), forcing_(filter.model_.forcing(filter.steps_)),
+      : filter_(filter),
+        observation_(observation),
+        forcing_(filter.model_.forcing(filter.steps_)),
         process_std_(std::sqrt(filter.model_.settings().process_var)) {}
 
   std::size_t size() const { return filter_.particles_.size(); }
 
   slam::Position sample(std::size_t i, RandomSequence& random) const {
-    return slam::Position::Constant(1, filter_.model_.drift(filter_.particles_[i]) + forcing_ + process_std_ * random.normal());
+    return slam::Position::Constant(1, filter_.model_.drift(filter_.particles_[i]) + forcing_ +
+                                           process_std_ * random.normal());
   }
 
-  double log_fitness(std::size_t, const slam::Position& position) const { return filter_.model_.log_likelihood(observation_, position[0]); }
+  double log_fitness(std::size_t, const slam::Position& position) const {
+    return filter_.model_.log_likelihood(observation_, position[0]);
+  }
 
   double commit(std::size_t i, const slam::Position& position) {
     filter_.particles_[i] = position[0];
@@ -46,7 +51,8 @@ class GrowthFilter::Step {
   double observation_, forcing_, process_std_;
 };
 
-GrowthFilter::GrowthFilter(int particles, const GrowthModel& model, slam::ParticleFilterComponents components, std::uint64_t seed)
+GrowthFilter::GrowthFilter(int particles, const GrowthModel& model, slam::ParticleFilterComponents components,
+                           std::uint64_t seed)
     : model_(model), components_(std::move(components)), random_(seed, "slam/univariate/particles") {
   if (particles < 1) throw InputError(fmt::format("growth_filter.particles = {}: must be at least 1", particles));
   particles_.assign(static_cast<std::size_t>(particles), model.settings().initial_state);
@@ -65,7 +71,11 @@ UnivariateEstimate GrowthFilter::step(double observation) {
 }
 
 slam::ParticleFilterSettings published_ifa_settings() {
-  return {.optimizer = "ifa", .optimizer_iterations = 1, .firefly_absorption = 1.0, .resampler = "stepwise", .resample_threshold = 1.0};
+  return {.optimizer = "ifa",
+          .optimizer_iterations = 1,
+          .firefly_absorption = 1.0,
+          .resampler = "stepwise",
+          .resample_threshold = 1.0};
 }
 
 }  // namespace patrol::studies

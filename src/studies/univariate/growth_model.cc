@@ -14,7 +14,9 @@ GrowthModel::GrowthModel(const GrowthModelSettings& settings) : settings_(settin
   log_normalizer_ = -0.5 * std::log(2.0 * std::numbers::pi * settings_.observation_var);
 }
 
-double GrowthModel::drift(double state) const { return 0.5 * state + 25.0 * state / (1.0 + settings_.denominator_sign * state * state); }
+double GrowthModel::drift(double state) const {
+  return 0.5 * state + 25.0 * state / (1.0 + settings_.denominator_sign * state * state);
+}
 
 double GrowthModel::forcing(int step) const { return 8.0 * std::cos(1.2 * (step - 1)); }
 

@@ -1,12 +1,12 @@
 #include "studies/univariate/quasi_filter.h"
 
-#include <boost/math/special_functions/erf.hpp>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+
+#include <boost/math/special_functions/erf.hpp>
 
 #include "core/particle_weights.h"
 
@@ -73,7 +73,8 @@ QuasiFilter::Branch QuasiFilter::make_branch(double expected, double observation
   const double evidence_var = R + square_of(expected / 10.0) * Q + Q * Q / 200.0;
   const double surprise = observation - (expected * expected + Q) / 20.0;
   const auto variance_at = [&](double state) { return 1.0 / (1.0 / Q + square_of(state / 10.0) / R); };
-  const double mean = expected + variance_at(expected) * expected / 10.0 / R * (observation - model_.mean_observation(expected));
+  const double mean =
+      expected + variance_at(expected) * expected / 10.0 / R * (observation - model_.mean_observation(expected));
   return {.expected = expected,
           .proposal_mean = mean,
           .proposal_std = std::sqrt(settings_.proposal_inflation * variance_at(mean)),
@@ -83,7 +84,8 @@ QuasiFilter::Branch QuasiFilter::make_branch(double expected, double observation
 /// Log of p(y | x) p(x | parent) / (q(x) p(y | parent)); without looking ahead, of p(y | x).
 double QuasiFilter::log_weight(const Branch& branch, double state, double observation) const {
   const double log_prior = -0.5 * square_of(state - branch.expected) / model_.settings().process_var;
-  const double log_proposal = -0.5 * square_of((state - branch.proposal_mean) / branch.proposal_std) - std::log(branch.proposal_std);
+  const double log_proposal =
+      -0.5 * square_of((state - branch.proposal_mean) / branch.proposal_std) - std::log(branch.proposal_std);
   return model_.log_likelihood(observation, state) + log_prior - log_proposal - branch.log_evidence;
 }
 

@@ -55,10 +55,10 @@ class QuasiFilter : public UnivariateFilter {
  private:
   /// Parent candidate with the proposal distribution of its offspring.
   struct Branch {
-    double expected = 0.0;                            ///< f(parent)
+    double expected = 0.0;  ///< f(parent)
     double proposal_mean = 0.0, proposal_std = 1.0;
-    double log_evidence = 0.0;                        ///< approximation of log p(y | parent)
-    double weight = 0.0;                              ///< selection probability of the parent
+    double log_evidence = 0.0;  ///< approximation of log p(y | parent)
+    double weight = 0.0;        ///< selection probability of the parent
   };
 
   Branch make_branch(double expected, double observation) const;

@@ -5,7 +5,7 @@
 namespace patrol::studies {
 
 struct UnivariateEstimate {
-  double mean = 0.0;                   ///< posterior mean of the state given all observations
+  double mean = 0.0;  ///< posterior mean of the state given all observations
   double variance = 0.0;
   double effective_sample_size = 0.0;  ///< effective number of particles; 0 for the exact filter
 };

@@ -31,7 +31,8 @@ const OutputKind kKind = {.name = "survey",
 
 std::vector<std::string> names_in(const std::filesystem::path& folder) {
   std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) names.push_back(entry.path().filename().string());
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    names.push_back(entry.path().filename().string());
   std::sort(names.begin(), names.end());
   return names;
 }
@@ -47,7 +48,8 @@ TEST(OutputDirectory, IsMadeWithItsParentsAndMarkedUntilItIsComplete) {
 TEST(OutputDirectory, WhatIsMadeAnewGoesAndWhatIsKeptStays) {
   const TemporaryFolder folder;
   std::filesystem::create_directories(folder / "work/deep");
-  for (const char* name : {"table.csv", "plot_1.png", "results", "work/deep/1.txt"}) test::write_bytes(folder / name, "old");
+  for (const char* name : {"table.csv", "plot_1.png", "results", "work/deep/1.txt"})
+    test::write_bytes(folder / name, "old");
   const OutputLock lock = begin_output(folder.path(), kKind);
   EXPECT_THAT(names_in(folder.path()), ElementsAre("INCOMPLETE", "results"));
 }
@@ -75,7 +77,8 @@ TEST(OutputDirectory, AUsersFilesInOurFoldersAndFoldersOfOurNamesStay) {
   std::filesystem::create_directories(folder / "work/deep");
   for (const char* name : {"table.csv", "work/deep/1.txt"}) test::write_bytes(folder / name, "ours");
   test::write_bytes(folder / "work/deep/thesis.tex", "mine");
-  EXPECT_THAT(complaint_about(folder.path()), HasSubstr("contains 'work/deep/thesis.tex', which is not an output of 'survey'"));
+  EXPECT_THAT(complaint_about(folder.path()),
+              HasSubstr("contains 'work/deep/thesis.tex', which is not an output of 'survey'"));
   EXPECT_EQ(test::read_bytes(folder / "work/deep/thesis.tex"), "mine");
   EXPECT_EQ(test::read_bytes(folder / "work/deep/1.txt"), "ours");
   std::filesystem::remove(folder / "work/deep/thesis.tex");

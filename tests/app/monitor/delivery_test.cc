@@ -1,9 +1,8 @@
 #include "app/monitor/delivery.h"
 
-#include <gtest/gtest.h>
-
 #include <thread>
 
+#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
@@ -25,7 +24,10 @@ constexpr const char* kToken = "0123456789abcdef";
 class LivePlatform {
  public:
   explicit LivePlatform(const std::filesystem::path& folder, int port = 0)
-      : store_(folder), service_(store_, kToken, [](const std::string&) {}), server_({.port = port, .max_body_mb = 0.01}, service_, [](const std::string&) {}), thread_([this] { server_.run(); }) {}
+      : store_(folder),
+        service_(store_, kToken, [](const std::string&) {}),
+        server_({.port = port, .max_body_mb = 0.01}, service_, [](const std::string&) {}),
+        thread_([this] { server_.run(); }) {}
   ~LivePlatform() {
     server_.stop();
     thread_.join();
@@ -34,7 +36,9 @@ class LivePlatform {
   LivePlatform& operator=(const LivePlatform&) = delete;
 
   int port() const { return server_.port(); }
-  MonitorServer monitor_server(const std::string& token = kToken) const { return {.url = {.host = "127.0.0.1", .port = std::to_string(port())}, .token = token}; }
+  MonitorServer monitor_server(const std::string& token = kToken) const {
+    return {.url = {.host = "127.0.0.1", .port = std::to_string(port())}, .token = token};
+  }
 
  private:
   monitor::Store store_;
@@ -120,8 +124,7 @@ TEST_F(DeliveryTo, WhatIsRefusedForGoodIsSetAsideAndTheRestArrives) {
     outbox_.add(event_result(7, "note", std::string(15'000, 'x')));  // above this platform's limit
     add(8, 12);
     Sender sender(outbox_, server.monitor_server());
-    for (int i = 0; i < 50 && sender.send_next() == Sender::Outcome::kSent; ++i) {
-    }
+    for (int i = 0; i < 50 && sender.send_next() == Sender::Outcome::kSent; ++i) {}
     EXPECT_EQ(outbox_.num_pending(), 0U);
     EXPECT_EQ(outbox_.num_rejected(), 2U);
   }
@@ -133,8 +136,7 @@ TEST_F(DeliveryTo, AConflictIsSetAside) {
   outbox_.add(pose_result(0, 1.0));
   outbox_.add(pose_result(0, 2.0));
   Sender sender(outbox_, server.monitor_server());
-  while (sender.send_next() == Sender::Outcome::kSent) {
-  }
+  while (sender.send_next() == Sender::Outcome::kSent) {}
   EXPECT_EQ(outbox_.num_rejected(), 1U);
   EXPECT_EQ(nlohmann::json::parse(read_bytes(run_ / "outbox.refused.jsonl"))["data"]["x"], 2.0);
 }

@@ -1,10 +1,9 @@
 #include "app/monitor/reporter.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <sstream>
 
+#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "tests/support/temporary_file.h"
@@ -35,11 +34,15 @@ class Reported : public testing::Test {
 
   test::TemporaryFolder folder_;
   ScenarioFiles files_;
-  Reporter reporter_{folder_.path(), {.robot = "spot-1", .run = "run_1", .world = "street", .scenario = "short"},
-                     {.url = {.host = "127.0.0.1", .port = "1"}, .token = "0123456789abcdef"}, {.drain_timeout_s = 0.01}};
+  Reporter reporter_{folder_.path(),
+                     {.robot = "spot-1", .run = "run_1", .world = "street", .scenario = "short"},
+                     {.url = {.host = "127.0.0.1", .port = "1"}, .token = "0123456789abcdef"},
+                     {.drain_timeout_s = 0.01}};
 };
 
-OccupancyGrid map_with(std::int8_t value) { return OccupancyGrid({.resolution_m = 0.1, .width = 2, .height = 2, .origin_m = {0.0, 0.0}}, value); }
+OccupancyGrid map_with(std::int8_t value) {
+  return OccupancyGrid({.resolution_m = 0.1, .width = 2, .height = 2, .origin_m = {0.0, 0.0}}, value);
+}
 
 TEST_F(Reported, ARunBeginsWithItsStationsAndEndsWithWhatBecameOfIt) {
   reporter_.begin(files_);
@@ -65,7 +68,11 @@ TEST_F(Reported, PosesAreThinnedToOneASecond) {
 
 TEST_F(Reported, AMapIsSentWhenItChangedAtMostEveryTenSecondsAndAtTheEnd) {
   reporter_.begin(files_);
-  for (int s = 0; s <= 30; ++s) on_message(stack::StackMessage(MapUpdate{.stamp = std::chrono::seconds(s), .map = map_with(s < 15 ? kUnknown : s < 27 ? kFree : kOccupied)}));
+  for (int s = 0; s <= 30; ++s)
+    on_message(stack::StackMessage(MapUpdate{.stamp = std::chrono::seconds(s),
+                                             .map = map_with(s < 15   ? kUnknown
+                                                             : s < 27 ? kFree
+                                                                      : kOccupied)}));
   std::vector<long> times;
   for (const Json& map : results("map")) times.push_back(std::lround(map["time_s"].get<double>()));
   EXPECT_EQ(times, (std::vector{0L, 15L, 27L}));

@@ -1,5 +1,5 @@
-/// A robot that only reports, for tests of the platform: the class that `patrol run --monitor-url` uses, with made-up messages. One of the
-/// tunnel scans the lining and sounds for water, any other measures gas.
+/// A robot that only reports, for tests of the platform: the class that `patrol run --monitor-url` uses, with made-up
+/// messages. One of the tunnel scans the lining and sounds for water, any other measures gas.
 ///
 /// usage: reporting_robot URL TOKEN_FILE DIRECTORY ROBOT WORLD SECONDS RESULTS_PER_S
 #include <chrono>
@@ -50,22 +50,47 @@ LiningResult lining_at(Time stamp, const std::string& station, int first_ring, d
       const double clock_deg = 10.0 * i + 5.0, away_deg = std::abs(std::remainder(clock_deg - 60.0, 360.0));
       if (clock_deg > 130.0 && clock_deg < 230.0) continue;
       const double push_mm = ring == first_ring + 5 ? pushed_mm * std::exp(-0.5 * std::pow(away_deg / 40.0, 2)) : 0.0;
-      result.cells.push_back({.ring = ring, .clock_deg = clock_deg, .inward_m = 1e-3 * (push_mm + 0.4 * std::sin(7.0 * ring + 3.0 * i)), .std_m = 0.0004, .points = 800});
+      result.cells.push_back({.ring = ring,
+                              .clock_deg = clock_deg,
+                              .inward_m = 1e-3 * (push_mm + 0.4 * std::sin(7.0 * ring + 3.0 * i)),
+                              .std_m = 0.0004,
+                              .points = 800});
     }
-    result.lines.push_back({.ring = ring, .name = "9-3", .change_m = ring == first_ring + 5 ? -1e-3 * pushed_mm : 2e-4 * std::cos(ring), .std_m = 0.0005});
-    result.lines.push_back({.ring = ring, .name = "12-3", .change_m = ring == first_ring + 5 ? -6e-4 * pushed_mm : 1e-4 * std::sin(ring), .std_m = 0.0005});
+    result.lines.push_back({.ring = ring,
+                            .name = "9-3",
+                            .change_m = ring == first_ring + 5 ? -1e-3 * pushed_mm : 2e-4 * std::cos(ring),
+                            .std_m = 0.0005});
+    result.lines.push_back({.ring = ring,
+                            .name = "12-3",
+                            .change_m = ring == first_ring + 5 ? -6e-4 * pushed_mm : 1e-4 * std::sin(ring),
+                            .std_m = 0.0005});
   }
   if (pushed_mm >= 3.0) {
-    const WarningLevel level = pushed_mm >= 10.0 ? WarningLevel::kAlarm : pushed_mm >= 5.0 ? WarningLevel::kWarning : WarningLevel::kNotice;
+    const WarningLevel level = pushed_mm >= 10.0  ? WarningLevel::kAlarm
+                               : pushed_mm >= 5.0 ? WarningLevel::kWarning
+                                                  : WarningLevel::kNotice;
     const Pose2 at = place_at(1.5 * (first_ring + 5));
-    result.findings.push_back({.ring = first_ring + 5, .clock_deg = 60.0, .inward_m = 1e-3 * pushed_mm, .std_m = 0.0004, .level = level, .p_map = {at.x, at.y - kHalfWidth_m, 3.0}});
+    result.findings.push_back({.ring = first_ring + 5,
+                               .clock_deg = 60.0,
+                               .inward_m = 1e-3 * pushed_mm,
+                               .std_m = 0.0004,
+                               .level = level,
+                               .p_map = {at.x, at.y - kHalfWidth_m, 3.0}});
   }
   return result;
 }
 
 WaterResult water_at(Time stamp) {
-  WaterResult result{.stamp = stamp, .station = "sounding_1", .T_map_body = place_at(kLength_m), .soundings = 35, .antenna_error_deg = 0.12, .rock_spm = 0.002, .evidence = 41.5,
-                     .is_found = true, .level = WarningLevel::kWarning, .p_map = {kLength_m + 14.0, 3.0, 2.0}};
+  WaterResult result{.stamp = stamp,
+                     .station = "sounding_1",
+                     .T_map_body = place_at(kLength_m),
+                     .soundings = 35,
+                     .antenna_error_deg = 0.12,
+                     .rock_spm = 0.002,
+                     .evidence = 41.5,
+                     .is_found = true,
+                     .level = WarningLevel::kWarning,
+                     .p_map = {kLength_m + 14.0, 3.0, 2.0}};
   result.covariance_m2.diagonal() << 0.6, 0.35, 0.4;
   result.distance_m = 14.6;
   result.distance_low_m = 13.1;
@@ -78,10 +103,19 @@ WaterResult water_at(Time stamp) {
   return result;
 }
 
-std::string name_of_station(bool is_tunnel, int number) { return fmt::format("{}_{}", is_tunnel ? "station" : "valve_well", number); }
+std::string name_of_station(bool is_tunnel, int number) {
+  return fmt::format("{}_{}", is_tunnel ? "station" : "valve_well", number);
+}
 
-Event event_at(Time stamp, EventKind kind, const std::string& subject, const std::string& text, double value, const Pose2& at) {
-  return {.stamp = stamp, .kind = kind, .subject = subject, .text = text, .value = value, .T_map_body = at, .p_map_target = at.position() + Eigen::Vector2d(0.5, 2.5)};
+Event event_at(Time stamp, EventKind kind, const std::string& subject, const std::string& text, double value,
+               const Pose2& at) {
+  return {.stamp = stamp,
+          .kind = kind,
+          .subject = subject,
+          .text = text,
+          .value = value,
+          .T_map_body = at,
+          .p_map_target = at.position() + Eigen::Vector2d(0.5, 2.5)};
 }
 
 app::ScenarioFiles survey(bool is_tunnel) {
@@ -98,7 +132,8 @@ app::ScenarioFiles survey(bool is_tunnel) {
 /// What happens between two instants, in the robot's own seconds.
 class Drive {
  public:
-  Drive(app::Reporter& reporter, bool is_tunnel, double seconds, unsigned variant) : reporter_(reporter), is_tunnel_(is_tunnel), seconds_(seconds), variant_(variant) {}
+  Drive(app::Reporter& reporter, bool is_tunnel, double seconds, unsigned variant)
+      : reporter_(reporter), is_tunnel_(is_tunnel), seconds_(seconds), variant_(variant) {}
 
   void go_to(double now_s) {
     const Time stamp = from_seconds(now_s);
@@ -111,15 +146,21 @@ class Drive {
  private:
   void arrive(Time stamp, int number, const Pose2& at) {
     const std::string name = name_of_station(is_tunnel_, number);
-    reporter_.on_message(stack::StackMessage(event_at(stamp, EventKind::kStationReached, name, fmt::format("At {}.", name), 0.0, at)));
+    reporter_.on_message(
+        stack::StackMessage(event_at(stamp, EventKind::kStationReached, name, fmt::format("At {}.", name), 0.0, at)));
     if (is_tunnel_) {
-      reporter_.on_message(stack::StackMessage(lining_at(stamp, name, 1 + 12 * (number - 1), 1.5 * number + 0.9 * (variant_ % 8))));
+      reporter_.on_message(
+          stack::StackMessage(lining_at(stamp, name, 1 + 12 * (number - 1), 1.5 * number + 0.9 * (variant_ % 8))));
       if (number == 4) reporter_.on_message(stack::StackMessage(water_at(stamp)));
       return;
     }
     const double column = number == 3 ? 640.0 + 10.0 * variant_ : 4.0 + number + variant_ % 5;
-    reporter_.on_message(stack::StackMessage(event_at(stamp, EventKind::kGasMeasured, name, fmt::format("{}: {:.0f} ppm m of methane.", name, column), column, at)));
-    if (column > 200.0) reporter_.on_message(stack::StackMessage(event_at(stamp, EventKind::kGasAlarm, name, fmt::format("Leak at {}: {:.0f} ppm m of methane.", name, column), column, at)));
+    reporter_.on_message(stack::StackMessage(event_at(
+        stamp, EventKind::kGasMeasured, name, fmt::format("{}: {:.0f} ppm m of methane.", name, column), column, at)));
+    if (column > 200.0)
+      reporter_.on_message(
+          stack::StackMessage(event_at(stamp, EventKind::kGasAlarm, name,
+                                       fmt::format("Leak at {}: {:.0f} ppm m of methane.", name, column), column, at)));
   }
 
   app::Reporter& reporter_;
@@ -129,12 +170,15 @@ class Drive {
   int stations_ = 0;
 };
 
-int report(const std::string& url, const std::string& token, const std::filesystem::path& root, const std::string& robot, const std::string& world, double seconds, double rate_hz) {
+int report(const std::string& url, const std::string& token, const std::filesystem::path& root,
+           const std::string& robot, const std::string& world, double seconds, double rate_hz) {
   const bool is_tunnel = world == "tunnel";
   const auto variant = static_cast<unsigned>(std::hash<std::string>()(robot + root.string()) % 97);
   std::filesystem::create_directories(root);
-  app::Reporter reporter(root, {.robot = robot, .run = app::new_run_name("made_up", variant), .world = world, .scenario = "made_up"}, app::make_monitor_server(url, token),
-                         {.pose_period_s = 0.0, .map_period_s = seconds / 4.0, .drain_timeout_s = 60.0});
+  app::Reporter reporter(
+      root, {.robot = robot, .run = app::new_run_name("made_up", variant), .world = world, .scenario = "made_up"},
+      app::make_monitor_server(url, token),
+      {.pose_period_s = 0.0, .map_period_s = seconds / 4.0, .drain_timeout_s = 60.0});
   reporter.begin(survey(is_tunnel));
   Drive drive(reporter, is_tunnel, seconds, variant);
   const auto start = std::chrono::steady_clock::now();
@@ -143,7 +187,8 @@ int report(const std::string& url, const std::string& token, const std::filesyst
     drive.go_to(i / rate_hz);
   }
   reporter.finish("finished", "");
-  fmt::print("{} results, {} wait, {} refused\n", reporter.num_results(), reporter.num_pending(), reporter.num_rejected());
+  fmt::print("{} results, {} wait, {} refused\n", reporter.num_results(), reporter.num_pending(),
+             reporter.num_rejected());
   return reporter.num_pending() == 0 && reporter.num_rejected() == 0 ? 0 : 1;
 }
 

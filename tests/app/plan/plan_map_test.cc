@@ -12,7 +12,8 @@ namespace {
 class PlanMapTest : public ::testing::Test {
  protected:
   PlanMapTest() {
-    io::save_map(folder / "m.yaml", OccupancyGrid({.resolution_m = 0.5, .width = 4, .height = 2, .origin_m = {-1.0, 3.0}}, kFree));
+    io::save_map(folder / "m.yaml",
+                 OccupancyGrid({.resolution_m = 0.5, .width = 4, .height = 2, .origin_m = {-1.0, 3.0}}, kFree));
     test::write_bytes(folder / "m.map", "type octile\nheight 2\nwidth 3\nmap\n..W\n@..\n");
   }
   static std::string complaint(const PlanMap& map, const std::string& text) {
@@ -52,7 +53,8 @@ TEST_F(PlanMapTest, WhoStandsInWaterSwims) {
 
 TEST_F(PlanMapTest, WhatLiesOutsideIsRefusedWithTheMapsExtent) {
   const PlanMap metres(folder / "m.yaml"), cells(folder / "m.map");
-  EXPECT_EQ(complaint(metres, "400,3"), "--from: 400, 3 is outside the map, which spans x -1.00 ... 1.00 m, y 3.00 ... 4.00 m");
+  EXPECT_EQ(complaint(metres, "400,3"),
+            "--from: 400, 3 is outside the map, which spans x -1.00 ... 1.00 m, y 3.00 ... 4.00 m");
   EXPECT_EQ(complaint(metres, "-1,3"), "");  // the lower-left corner is in
   EXPECT_NE(complaint(metres, "1,3"), "");   // the right edge is not
   EXPECT_NE(complaint(metres, "1e300,3"), "");
@@ -65,7 +67,8 @@ TEST_F(PlanMapTest, WhatIsNoPointIsRefused) {
   for (const char* text : {"nan,3", "1", "1,", ",1", "", "1,2,3", "1;2", "inf,0", "1e999,0", "0x1,3", "a,b"}) {
     EXPECT_EQ(complaint(metres, text), std::string("--from: ") + text + ": must be two numbers, X,Y");
   }
-  EXPECT_EQ(complaint(cells, "1.5,0"), "--from: 1.5, 0: must be integers, column and row of a cell from the upper left");
+  EXPECT_EQ(complaint(cells, "1.5,0"),
+            "--from: 1.5, 0: must be integers, column and row of a cell from the upper left");
 }
 
 }  // namespace

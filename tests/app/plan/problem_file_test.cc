@@ -26,7 +26,8 @@ class ProblemFile : public ::testing::Test {
       solve(problems, "astar");
     } catch (const InputError& error) {
       std::string what = error.what();
-      for (std::size_t at; (at = what.find(folder.path().string() + "/")) != std::string::npos;) what.erase(at, folder.path().string().size() + 1);
+      for (std::size_t at; (at = what.find(folder.path().string() + "/")) != std::string::npos;)
+        what.erase(at, folder.path().string().size() + 1);
       return what;
     }
     return "";
@@ -36,7 +37,8 @@ class ProblemFile : public ::testing::Test {
   PlanSettings settings;
 };
 
-// From below the wall's left end straight up, round it, and to the right: over eight neighbours 1 + 1 + 3 (its corners may not be cut).
+// From below the wall's left end straight up, round it, and to the right: over eight neighbours 1 + 1 + 3 (its corners
+// may not be cut).
 const std::string kRoundTheWall = "1\ta.map\t5\t3\t0\t2\t3\t0\t5.00000000\n";
 
 TEST_F(ProblemFile, APublishedLengthThatIsRightAgrees) {
@@ -57,14 +59,17 @@ TEST_F(ProblemFile, APublishedLengthThatIsWrongIsNamedByItsLine) {
   EXPECT_NE(to_text(report).find("\n  a.map.scen:3: is 5.000000 cells long"), std::string::npos);
 }
 
-// A strip of 129 columns: from the start three rows down aslant, then straight on: 125 + 3 sqrt 2 = 129.242641. Six digits: 129.243.
+// A strip of 129 columns: from the start three rows down aslant, then straight on: 125 + 3 sqrt 2 = 129.242641. Six
+// digits: 129.243.
 TEST_F(ProblemFile, ALengthAgreesWithinTheRoundingOfItsPublishedDigits) {
   const std::string row(129, '.');
-  write_bytes(folder / "strip.map", "type octile\nheight 4\nwidth 129\nmap\n" + row + "\n" + row + "\n" + row + "\n" + row + "\n");
+  write_bytes(folder / "strip.map",
+              "type octile\nheight 4\nwidth 129\nmap\n" + row + "\n" + row + "\n" + row + "\n" + row + "\n");
   const auto fails = [&](const std::string& length, const std::string& planner) {
     return solve("32\tstrip.map\t129\t4\t0\t0\t128\t3\t" + length + "\n", planner)[0].failure.has_value();
   };
-  for (const std::string length : {"129.243", "129.24264", "129.24264069"}) EXPECT_FALSE(fails(length, "astar")) << length;
+  for (const std::string length : {"129.243", "129.24264", "129.24264069"})
+    EXPECT_FALSE(fails(length, "astar")) << length;
   for (const std::string length : {"129.113", "129.372", "129.242", "129.244", "129.24300000", "129", "129.2"}) {
     EXPECT_TRUE(fails(length, "astar")) << length;
   }
@@ -73,20 +78,26 @@ TEST_F(ProblemFile, ALengthAgreesWithinTheRoundingOfItsPublishedDigits) {
 }
 
 TEST_F(ProblemFile, AnAnyAngleRouteMayBeShorterButNotLonger) {
-  const std::vector<SolvedProblem> theta = solve("1\ta.map\t5\t3\t0\t0\t3\t1\t4.00000000\n1\ta.map\t5\t3\t0\t2\t3\t0\t2.00000000\n", "theta_star");
+  const std::vector<SolvedProblem> theta =
+      solve("1\ta.map\t5\t3\t0\t0\t3\t1\t4.00000000\n1\ta.map\t5\t3\t0\t2\t3\t0\t2.00000000\n", "theta_star");
   EXPECT_FALSE(theta[0].failure);
   EXPECT_TRUE(theta[1].failure);
 }
 
 TEST_F(ProblemFile, ARouteThatIsNotFoundFails) {
-  const std::vector<SolvedProblem> solved = solve("1\ta.map\t5\t3\t0\t0\t4\t2\t4.00000000\n", "astar");  // into the water
+  const std::vector<SolvedProblem> solved =
+      solve("1\ta.map\t5\t3\t0\t0\t4\t2\t4.00000000\n", "astar");  // into the water
   EXPECT_EQ(solved[0].failure, "no route found, but the file states a length");
   EXPECT_FALSE(solved[0].ratio());
 }
 
-TEST_F(ProblemFile, WhoStartsInWaterStaysThere) { EXPECT_FALSE(solve("0\ta.map\t5\t3\t3\t2\t4\t2\t1.00000000\n", "astar")[0].failure); }
+TEST_F(ProblemFile, WhoStartsInWaterStaysThere) {
+  EXPECT_FALSE(solve("0\ta.map\t5\t3\t3\t2\t4\t2\t1.00000000\n", "astar")[0].failure);
+}
 
-TEST_F(ProblemFile, AProblemWithoutWayHasNoRatio) { EXPECT_FALSE(solve("0\ta.map\t5\t3\t3\t1\t3\t1\t0\n", "astar")[0].ratio()); }
+TEST_F(ProblemFile, AProblemWithoutWayHasNoRatio) {
+  EXPECT_FALSE(solve("0\ta.map\t5\t3\t3\t1\t3\t1\t0\n", "astar")[0].ratio());
+}
 
 TEST_F(ProblemFile, AMapIsFoundByItsPathOrBesideTheFileByItsLastPart) {
   std::filesystem::create_directories(folder / "maps");
@@ -97,7 +108,8 @@ TEST_F(ProblemFile, AMapIsFoundByItsPathOrBesideTheFileByItsLastPart) {
 }
 
 TEST_F(ProblemFile, AMapOfAnotherSizeIsRefused) {
-  EXPECT_EQ(complaint(kRoundTheWall + "1\ta.map\t6\t3\t0\t2\t3\t0\t5\n"), "a.map.scen:3: a.map: has 5 x 3 cells, the problem's map 6 x 3");
+  EXPECT_EQ(complaint(kRoundTheWall + "1\ta.map\t6\t3\t0\t2\t3\t0\t5\n"),
+            "a.map.scen:3: a.map: has 5 x 3 cells, the problem's map 6 x 3");
 }
 
 TEST_F(ProblemFile, TheTableHasARowForEachProblemWithCellsAsTheFileNamesThem) {

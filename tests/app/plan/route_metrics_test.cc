@@ -1,8 +1,8 @@
 #include "app/plan/route_metrics.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "app/plan/route_check.h"
 #include "tests/plan/routes/drawn_grid.h"
@@ -40,12 +40,16 @@ TEST(RouteMetrics, NoRouteHasNoReferences) {
 TEST(RouteMetrics, TheVisibilityGraphPlannerIsLeftOutOfLargeGrids) {
   PlanSettings settings;
   settings.max_any_angle_cells = 15;
-  const auto metrics_on = [&](const std::vector<std::string>& drawing) { return evaluate_route(draw(drawing), {0, 0}, {4, 0}, settings); };
+  const auto metrics_on = [&](const std::vector<std::string>& drawing) {
+    return evaluate_route(draw(drawing), {0, 0}, {4, 0}, settings);
+  };
   EXPECT_FALSE(metrics_on({".....", ".....", "....."}).is_any_angle_skipped);
   EXPECT_TRUE(metrics_on({"......", "......", "......"}).is_any_angle_skipped);
-  EXPECT_TRUE(metrics_on({"....." + std::string(200, '#')}).is_any_angle_skipped);  // few passable, but more than 8 * 15 in all
+  EXPECT_TRUE(
+      metrics_on({"....." + std::string(200, '#')}).is_any_angle_skipped);  // few passable, but more than 8 * 15 in all
   settings.planner = "visibility_graph";
-  EXPECT_NEAR(metrics_on({"......", "......", "......"}).any_angle_length.value(), 4.0, kExactTol);  // it is there anyway
+  EXPECT_NEAR(metrics_on({"......", "......", "......"}).any_angle_length.value(), 4.0,
+              kExactTol);  // it is there anyway
 }
 
 // On ground without costs what A* makes of a wall is straightened, and its figures are those of the points that remain.
@@ -58,7 +62,8 @@ TEST(RouteMetrics, OfASmoothRouteAreItsOwnAndItKeepsClearOfLethalCells) {
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     const Grid<plan::Cost> costs = random_grid(seed, 24, 0.3, true);
     const auto [start, goal] = random_ends(costs, seed);
-    const RouteMetrics rough = evaluate_route(costs, start, goal, plain), straight = evaluate_route(costs, start, goal, smooth);
+    const RouteMetrics rough = evaluate_route(costs, start, goal, plain),
+                       straight = evaluate_route(costs, start, goal, smooth);
     ASSERT_EQ(rough.route.status, straight.route.status);
     if (rough.route.status != plan::PlanStatus::kFound) continue;
     EXPECT_EQ(validate_route(costs, straight.route, start, goal, false), std::nullopt) << "seed " << seed;

@@ -1,21 +1,23 @@
 #include "app/plan/tour_plan.h"
 
+#include <cmath>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include <cmath>
 
 #include "tests/plan/routes/drawn_grid.h"
 
 namespace patrol::app::tour_plan_test {
 namespace {
 
-using ::testing::ElementsAre;
 using test::draw;
+using ::testing::ElementsAre;
 
 constexpr double kExactTol = 1e-9;
 
-TourStop stop(double x_m, double y_m, io::TourStation station = {}) { return {.station = std::move(station), .p_m = {x_m, y_m}}; }
+TourStop stop(double x_m, double y_m, io::TourStation station = {}) {
+  return {.station = std::move(station), .p_m = {x_m, y_m}};
+}
 
 std::vector<std::size_t> places_of(const TourPlan& tour) {
   std::vector<std::size_t> nodes;
@@ -49,7 +51,8 @@ TEST(TourPlan, WithAnEndTheOrderIsByTheWayThereAtTheSpeed) {
 
 // At 5.5 from 7 s on, for 3 s; at 8.5 no later than 12 s, which it misses by 1 s: the priority is not to be broken.
 TEST(TourPlan, TimesAreThoseOfWaitingServiceAndMissedWindows) {
-  const std::vector<TourStop> stops = {stop(5.5, 0.5, {.service_s = 3.0, .earliest_s = 7.0}), stop(8.5, 0.5, {.latest_s = 12.0, .priority = 1})};
+  const std::vector<TourStop> stops = {stop(5.5, 0.5, {.service_s = 3.0, .earliest_s = 7.0}),
+                                       stop(8.5, 0.5, {.latest_s = 12.0, .priority = 1})};
   const std::optional<TourPlan> tour = plan_tour(kCorridor, {0.5, 0.5}, stops, {}, PlanSettings());
   EXPECT_THAT(places_of(*tour), ElementsAre(0u, 1u, 2u, 0u));
   EXPECT_NEAR(tour->visits[1].arrives_s, 5.0, kExactTol);
@@ -63,10 +66,12 @@ TEST(TourPlan, TimesAreThoseOfWaitingServiceAndMissedWindows) {
 
 TEST(TourPlan, WhatCannotBeReachedIsLeftOutAndNamed) {
   const Grid<plan::Cost> costs = draw({"......#..."});
-  const std::optional<TourPlan> tour = plan_tour(costs, {0.5, 0.5}, {stop(8.5, 0.5), stop(2.5, 0.5), stop(6.5, 0.5)}, {}, PlanSettings());
+  const std::optional<TourPlan> tour =
+      plan_tour(costs, {0.5, 0.5}, {stop(8.5, 0.5), stop(2.5, 0.5), stop(6.5, 0.5)}, {}, PlanSettings());
   EXPECT_THAT(tour->unreachable, ElementsAre(1u, 3u));
   EXPECT_THAT(places_of(*tour), ElementsAre(0u, 2u, 0u));
-  const std::optional<TourPlan> none = plan_tour(costs, {0.5, 0.5}, {stop(2.5, 0.5)}, Eigen::Vector2d(9.5, 0.5), PlanSettings());
+  const std::optional<TourPlan> none =
+      plan_tour(costs, {0.5, 0.5}, {stop(2.5, 0.5)}, Eigen::Vector2d(9.5, 0.5), PlanSettings());
   EXPECT_THAT(none->unreachable, ElementsAre(2u));
   EXPECT_FALSE(none->order.is_found);
 }
@@ -78,7 +83,8 @@ TEST(TourPlan, FromABlockedStartNothingIsReached) {
 }
 
 TEST(TourPlan, StationsInOneCellAndAtTheStartAreNoWayApart) {
-  const std::optional<TourPlan> tour = plan_tour(kCorridor, {0.5, 0.5}, {stop(0.5, 0.5), stop(3.5, 0.5), stop(3.2, 0.2)}, {}, PlanSettings());
+  const std::optional<TourPlan> tour =
+      plan_tour(kCorridor, {0.5, 0.5}, {stop(0.5, 0.5), stop(3.5, 0.5), stop(3.2, 0.2)}, {}, PlanSettings());
   ASSERT_TRUE(tour->order.is_found);
   EXPECT_NEAR(tour->order.completion, 6.0, kExactTol);
 }
@@ -86,7 +92,8 @@ TEST(TourPlan, StationsInOneCellAndAtTheStartAreNoWayApart) {
 // The whole way is one piece: each leg begins where the one before ended, whichever way it was planned.
 TEST(TourPlan, TheWholeWayIsOnePieceAndAsLongAsItsLegs) {
   const Grid<plan::Cost> costs = draw({"........", ".######.", ".#......", "...##.#.", "........"});
-  const std::optional<TourPlan> tour = plan_tour(costs, {0.5, 0.5}, {stop(7.5, 4.5), stop(2.5, 2.5), stop(5.5, 0.5), stop(0.5, 4.5)}, {}, PlanSettings());
+  const std::optional<TourPlan> tour = plan_tour(
+      costs, {0.5, 0.5}, {stop(7.5, 4.5), stop(2.5, 2.5), stop(5.5, 0.5), stop(0.5, 4.5)}, {}, PlanSettings());
   ASSERT_TRUE(tour->order.is_found);
   double legs_m = 0.0;
   for (const TourVisit& visit : tour->visits) legs_m += visit.leg_m;

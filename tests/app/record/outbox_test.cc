@@ -1,9 +1,8 @@
 #include "app/record/outbox.h"
 
-#include <gtest/gtest.h>
-
 #include <fstream>
 
+#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "app/record/run_directory.h"

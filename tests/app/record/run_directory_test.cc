@@ -1,10 +1,9 @@
 #include "app/record/run_directory.h"
 
-#include "app/common/output_directory.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "app/common/output_directory.h"
 #include "core/error.h"
 #include "tests/support/temporary_file.h"
 
@@ -55,8 +54,7 @@ TEST(RunDirectory, AFolderThatHoldsSomethingElseIsRefusedAndLeftAsItWas) {
   const TemporaryFolder folder;
   test::write_bytes(folder / "thesis.tex", "three years of work");
   test::write_bytes(folder / "metrics.json", "mine");
-  EXPECT_THAT([&] { (void)begin_run_directory(folder.path()); },
-              ThrowsMessage<InputError>(HasSubstr("thesis.tex")));
+  EXPECT_THAT([&] { (void)begin_run_directory(folder.path()); }, ThrowsMessage<InputError>(HasSubstr("thesis.tex")));
   EXPECT_EQ(test::read_bytes(folder / "thesis.tex"), "three years of work");
   EXPECT_EQ(test::read_bytes(folder / "metrics.json"), "mine");
   EXPECT_FALSE(std::filesystem::exists(folder / "INCOMPLETE"));
@@ -68,7 +66,8 @@ TEST(RunDirectory, AnEarlierRunsScansAreRemovedAndAUsersFilesAreNot) {
   std::filesystem::create_directory(folder / "scans");
   test::write_bytes(folder / "scans/scans.json", "old");
   test::write_bytes(folder / "scans/notes.txt", "mine");
-  EXPECT_THAT([&] { (void)begin_run_directory(folder.path()); }, ThrowsMessage<InputError>(HasSubstr("scans/notes.txt")));
+  EXPECT_THAT([&] { (void)begin_run_directory(folder.path()); },
+              ThrowsMessage<InputError>(HasSubstr("scans/notes.txt")));
   EXPECT_EQ(test::read_bytes(folder / "scans/notes.txt"), "mine");
   std::filesystem::remove(folder / "scans/notes.txt");
   const RunDirectory run = begin_run_directory(folder.path());

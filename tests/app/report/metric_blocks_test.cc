@@ -8,7 +8,8 @@ namespace {
 using report::TableBlock;
 
 TEST(KeyMetrics, AreInTheUnitOfTheirSizeAndOnlyWhatWasMeasured) {
-  const report::KeyMetrics metrics = key_metrics(io::Metrics::parse(R"({"pose": {"ate_rmse_m": 0.0026, "ate_max_m": 0.023, "heading_rmse_deg": null},
+  const report::KeyMetrics metrics =
+      key_metrics(io::Metrics::parse(R"({"pose": {"ate_rmse_m": 0.0026, "ate_max_m": 0.023, "heading_rmse_deg": null},
       "stations": [{"reached": true}, {"reached": false}], "goals": []})"));
   ASSERT_EQ(metrics.metrics.size(), 2u);
   EXPECT_EQ(metrics.metrics[0].value + metrics.metrics[0].unit, "2.6mm");
@@ -17,8 +18,9 @@ TEST(KeyMetrics, AreInTheUnitOfTheirSizeAndOnlyWhatWasMeasured) {
 }
 
 TEST(AllMetrics, AreGroupedAndSayWhatWasExpected) {
-  const report::CollapsibleTables all = all_metrics(io::Metrics::parse(R"({"mission": {"completed": true}, "pose": {"aligned": {"rmse_m": 0.5}, "poses": 3}})"),
-                                               {{.metric = "pose.aligned.rmse_m", .wanted = "<= 0.1", .got = "0.5", .is_measured = true, .is_met = false}});
+  const report::CollapsibleTables all = all_metrics(
+      io::Metrics::parse(R"({"mission": {"completed": true}, "pose": {"aligned": {"rmse_m": 0.5}, "poses": 3}})"),
+      {{.metric = "pose.aligned.rmse_m", .wanted = "<= 0.1", .got = "0.5", .is_measured = true, .is_met = false}});
   EXPECT_EQ(all.summary, "All 3 metrics");
   ASSERT_EQ(all.tables.size(), 2u);
   EXPECT_EQ(all.tables[1].caption, "pose");
@@ -29,7 +31,11 @@ TEST(AllMetrics, AreGroupedAndSayWhatWasExpected) {
 
 io::Metrics goal(const std::string& name, const std::vector<double>& each_m, int failed) {
   const io::Metrics spread = {{"mean", 0.02}, {"std", 0.001}, {"max", 0.03}, {"each", each_m}};
-  return {{"name", name}, {"arrivals", each_m.size()}, {"failed", failed}, {"position_error_m", spread}, {"heading_error_deg", spread}};
+  return {{"name", name},
+          {"arrivals", each_m.size()},
+          {"failed", failed},
+          {"position_error_m", spread},
+          {"heading_error_deg", spread}};
 }
 
 TEST(GoalBlocks, AreATableInCentimetresAndABoxOfEveryArrival) {
@@ -62,7 +68,8 @@ TEST(InspectionBlocks, TellLeaksFromFalseAlarms) {
 }
 
 TEST(PerformanceBlocks, AreInOrderOfTimeWithTheRestLast) {
-  const io::Metrics metrics = io::Metrics::parse(R"({"performance": {"wall_s": 10, "parts_s": {"lidar": 2, "physics": 5}}})");
+  const io::Metrics metrics =
+      io::Metrics::parse(R"({"performance": {"wall_s": 10, "parts_s": {"lidar": 2, "physics": 5}}})");
   const auto bars = std::get<report::BarBlock>(performance_blocks(metrics).at(0)).bars;
   ASSERT_EQ(bars.size(), 3u);
   EXPECT_EQ(bars[0].label, "physics");

@@ -14,10 +14,10 @@
 namespace patrol::app::run_page_test {
 namespace {
 
+using test::small_run;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
-using test::small_run;
 
 template <typename Wanted>
 std::vector<Wanted> blocks_of(const std::vector<report::Block>& blocks) {
@@ -45,7 +45,8 @@ TEST(RunPage, BeginsWithTheVerdict) {
 }
 
 TEST(RunPage, IsTheSameBytesTwice) {
-  EXPECT_EQ(report::to_html(run_page(small_run(), "report.html")), report::to_html(run_page(small_run(), "report.html")));
+  EXPECT_EQ(report::to_html(run_page(small_run(), "report.html")),
+            report::to_html(run_page(small_run(), "report.html")));
 }
 
 TEST(RunPage, NamesAndEventsOfARunAreNoMarkup) {
@@ -93,7 +94,8 @@ TEST(RunPage, EmbedsASmallReplayAndPlaysALargeOneFromTheFileNextToThePage) {
   EXPECT_EQ(replays(folder / "report.html").at(0).mp4, "film");
   std::filesystem::resize_file(folder / "replay.mp4", 7 << 20);
   EXPECT_EQ(replays(folder / "report.html").at(0).url, "replay.mp4");
-  EXPECT_THAT(report::to_html(run_page(run, folder / "report.html")), HasSubstr("<video controls preload=\"metadata\" src=\"replay.mp4\">"));
+  EXPECT_THAT(report::to_html(run_page(run, folder / "report.html")),
+              HasSubstr("<video controls preload=\"metadata\" src=\"replay.mp4\">"));
   EXPECT_TRUE(replays(folder / "elsewhere/report.html").empty());
 }
 
@@ -110,7 +112,9 @@ TEST(ErrorBlocks, ShowTheEstimatesErrorItsBoundAndOdometrys) {
 TEST(ErrorBlocks, ShadeFaultsAndWhereTheRobotSaysThatItIsLost) {
   RunContents run = small_run();
   run.scenario.faults = {{.sensor = "imu", .kind = "freeze", .start_s = 2.0, .duration_s = 100.0}};
-  run.record.confidences = {{.stamp = from_seconds(3.0), .confidence = 1.0}, {.stamp = from_seconds(4.0), .is_lost = true}, {.stamp = from_seconds(5.0), .confidence = 1.0}};
+  run.record.confidences = {{.stamp = from_seconds(3.0), .confidence = 1.0},
+                            {.stamp = from_seconds(4.0), .is_lost = true},
+                            {.stamp = from_seconds(5.0), .confidence = 1.0}};
   const std::vector<report::PlotSpan> spans = spans_of(run);
   ASSERT_EQ(spans.size(), 2u);
   EXPECT_EQ(spans[0].to, 10.0);  // the run's end
@@ -120,7 +124,8 @@ TEST(ErrorBlocks, ShadeFaultsAndWhereTheRobotSaysThatItIsLost) {
 
 TEST(Occasions, HaveALaneForEachKindAndMarkTroublesOnTheCurves) {
   RunContents run = small_run();
-  run.record.events = {event_at(1.0, EventKind::kStationReached), event_at(2.0, EventKind::kGasAlarm), event_at(3.0, EventKind::kStationReached), event_at(4.0, EventKind::kRecovery)};
+  run.record.events = {event_at(1.0, EventKind::kStationReached), event_at(2.0, EventKind::kGasAlarm),
+                       event_at(3.0, EventKind::kStationReached), event_at(4.0, EventKind::kRecovery)};
   run.record.collisions = {{.stamp = from_seconds(5.0), .first = "trunk", .second = "wall"}};
   std::vector<std::string> names;
   for (const auto& lane : make_lanes(run)) names.push_back(lane.name);
@@ -131,7 +136,8 @@ TEST(Occasions, HaveALaneForEachKindAndMarkTroublesOnTheCurves) {
 
 TEST(MapBlocks, DrawThePathsInWorldAndBreakThemWhereTheRobotIsLifted) {
   RunContents run = small_run();
-  for (std::size_t i = 50; i < run.record.T_world_body.size(); ++i) run.record.T_world_body[i].pose.position.y() += 20.0;
+  for (std::size_t i = 50; i < run.record.T_world_body.size(); ++i)
+    run.record.T_world_body[i].pose.position.y() += 20.0;
   const report::MapBlock map = blocks_of<report::MapBlock>(map_blocks(run)).at(0);
   EXPECT_EQ(map.paths[0].pieces_m.size(), 2u);
   EXPECT_EQ(map.paths[1].pieces_m.size(), 1u);
@@ -142,7 +148,8 @@ TEST(MapBlocks, DrawThePathsInWorldAndBreakThemWhereTheRobotIsLifted) {
 
 TEST(MapBlocks, MarkAPlaceOnceAndJoinWhatLiesTogether) {
   RunContents run = small_run();
-  run.record.events = {event_at(0.5, EventKind::kStationReached), event_at(8.0, EventKind::kDocked), event_at(8.1, EventKind::kDocked)};
+  run.record.events = {event_at(0.5, EventKind::kStationReached), event_at(8.0, EventKind::kDocked),
+                       event_at(8.1, EventKind::kDocked)};
   const std::vector<report::MapMark> marks = blocks_of<report::MapBlock>(map_blocks(run)).at(0).marks;
   ASSERT_EQ(marks.size(), 2u);
   EXPECT_EQ(marks[0].label, "start, box");

@@ -4,8 +4,12 @@
 
 namespace patrol::app {
 
-bool operator==(const SettingDifference& a, const SettingDifference& b) { return a.path == b.path && a.standard == b.standard && a.value == b.value; }
-void PrintTo(const SettingDifference& difference, std::ostream* out) { *out << difference.path << ": " << difference.standard << " -> " << difference.value; }
+bool operator==(const SettingDifference& a, const SettingDifference& b) {
+  return a.path == b.path && a.standard == b.standard && a.value == b.value;
+}
+void PrintTo(const SettingDifference& difference, std::ostream* out) {
+  *out << difference.path << ": " << difference.standard << " -> " << difference.value;
+}
 
 namespace {
 
@@ -23,14 +27,18 @@ TEST(SettingsDifferences, NamePathDefaultAndValue) {
   scenario.map = "map/map.yaml";
   const std::string particles = std::to_string(Scenario{}.stack.slam.rbpf.filter.particles);
   EXPECT_EQ(settings_differences(Scenario{}, scenario),
-            (Differences{{"seed", "1", "7"}, {"map", "–", "map/map.yaml"}, {"sensors.imu.enabled", "true", "false"},
-                         {"stack.slam.rbpf.particles", particles, std::to_string(scenario.stack.slam.rbpf.filter.particles)}}));
+            (Differences{
+                {"seed", "1", "7"},
+                {"map", "–", "map/map.yaml"},
+                {"sensors.imu.enabled", "true", "false"},
+                {"stack.slam.rbpf.particles", particles, std::to_string(scenario.stack.slam.rbpf.filter.particles)}}));
 }
 
 TEST(SettingsDifferences, AnotherPresetIsOneDifferenceAndItsOverridesAreMore) {
   Scenario scenario;
   scenario.sensors.lidar = LidarSettings::of_preset("utm30lx");
-  EXPECT_EQ(settings_differences(Scenario{}, scenario), (Differences{{"sensors.lidar.preset", "rplidar_s2", "utm30lx"}}));
+  EXPECT_EQ(settings_differences(Scenario{}, scenario),
+            (Differences{{"sensors.lidar.preset", "rplidar_s2", "utm30lx"}}));
   scenario.sensors.lidar.range_noise_std_m = 0.5;
   const Differences differences = settings_differences(Scenario{}, scenario);
   ASSERT_EQ(differences.size(), 2u);
@@ -56,8 +64,10 @@ TEST(SettingsDifferences, ExpectationsAreNotSettings) {
 TEST(SettingsDifferences, ARobotsOwnFileIsItsStandard) {
   const std::filesystem::path docking = kSource / "worlds/tunnel/scenarios/docking.yaml";
   const Differences differences = settings_differences(default_scenario("tracked", kSource), load_scenario(docking));
-  for (const SettingDifference& difference : differences) EXPECT_FALSE(difference.path.starts_with("sensors.")) << difference.path;
-  EXPECT_NE(std::find(differences.begin(), differences.end(), SettingDifference{"world", "street", "tunnel"}), differences.end());
+  for (const SettingDifference& difference : differences)
+    EXPECT_FALSE(difference.path.starts_with("sensors.")) << difference.path;
+  EXPECT_NE(std::find(differences.begin(), differences.end(), SettingDifference{"world", "street", "tunnel"}),
+            differences.end());
 }
 
 }  // namespace

@@ -1,9 +1,9 @@
 #include "app/report/sweep_page.h"
 
+#include <array>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include <array>
 
 #include "app/report/comparison_blocks.h"
 
@@ -24,17 +24,21 @@ struct SmallSweep {
       for (std::size_t variant = 0; variant < 2; ++variant) {
         manifest.runs.push_back({.variant = variant, .seed = seed, .overrides = {}, .hash = ""});
         const double noise_m = 0.001 * static_cast<double>(seed % 2 == 0 ? 1 : -1) * static_cast<double>(variant);
-        const double error_m = 0.05 + 0.01 * static_cast<double>(seed) + noise_m + shift_m * static_cast<double>(variant);
-        rows.push_back(RunVerdict{.end = RunStatus::kDone,
-                                  .message = "",
-                                  .metrics = {{"pose", {{"ate_rmse_m", error_m}}}, {"mission", {{"completed", true}, {"collisions", 0}}}},
-                                  .checks = {},
-                                  .events = {}});
+        const double error_m =
+            0.05 + 0.01 * static_cast<double>(seed) + noise_m + shift_m * static_cast<double>(variant);
+        rows.push_back(RunVerdict{
+            .end = RunStatus::kDone,
+            .message = "",
+            .metrics = {{"pose", {{"ate_rmse_m", error_m}}}, {"mission", {{"completed", true}, {"collisions", 0}}}},
+            .checks = {},
+            .events = {}});
       }
     }
   }
   report::Page page() const { return sweep_page(manifest, rows, evaluate_progress(manifest, rows)); }
-  report::VerdictBlock verdict() const { return std::get<report::VerdictBlock>(page().sections.front().blocks.front()); }
+  report::VerdictBlock verdict() const {
+    return std::get<report::VerdictBlock>(page().sections.front().blocks.front());
+  }
 
   SweepManifest manifest;
   SweepRows rows;
@@ -77,14 +81,21 @@ TEST(SweepPage, AFaultMatrixSaysHowManyWereUnsafe) {
 
 TEST(SweepPage, ABudgetNamesTheOwnerAndItsWaterfallEndsAtTheIdeal) {
   SmallSweep budget(0.0, SweepKind::kBudget);
-  budget.manifest.variants = {{.name = "baseline", .overrides = {}}, {.name = "lidar: range noise", .overrides = {}}, {.name = "all ideal", .overrides = {}}};
+  budget.manifest.variants = {{.name = "baseline", .overrides = {}},
+                              {.name = "lidar: range noise", .overrides = {}},
+                              {.name = "all ideal", .overrides = {}}};
   budget.manifest.runs.clear();
   budget.rows.clear();
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     for (std::size_t variant = 0; variant < 3; ++variant) {
       budget.manifest.runs.push_back({.variant = variant, .seed = seed, .overrides = {}, .hash = ""});
-      const double error_m = std::array{0.10, 0.04, 0.03}[variant] + 0.001 * static_cast<double>(seed * (variant + 1) % 3);
-      budget.rows.push_back(RunVerdict{.end = RunStatus::kDone, .message = "", .metrics = {{"pose", {{"ate_rmse_m", error_m}}}}, .checks = {}, .events = {}});
+      const double error_m =
+          std::array{0.10, 0.04, 0.03}[variant] + 0.001 * static_cast<double>(seed * (variant + 1) % 3);
+      budget.rows.push_back(RunVerdict{.end = RunStatus::kDone,
+                                       .message = "",
+                                       .metrics = {{"pose", {{"ate_rmse_m", error_m}}}},
+                                       .checks = {},
+                                       .events = {}});
     }
   }
   EXPECT_EQ(budget.verdict().word, "lidar: range noise");
@@ -99,7 +110,8 @@ TEST(SweepPage, ABudgetNamesTheOwnerAndItsWaterfallEndsAtTheIdeal) {
 TEST(SweepPage, VariantsAreNamedByTheLastPartOfTheirKeysUnlessTwoAreAlike) {
   SweepManifest manifest;
   manifest.paths = {"sensors.lidar.range_noise_std_m", "stack.slam.rbpf.particles"};
-  manifest.variants = {{.name = "long", .overrides = {"sensors.lidar.range_noise_std_m=0.01", "stack.slam.rbpf.particles=20"}}};
+  manifest.variants = {
+      {.name = "long", .overrides = {"sensors.lidar.range_noise_std_m=0.01", "stack.slam.rbpf.particles=20"}}};
   EXPECT_EQ(short_names(manifest).front(), "range_noise_std_m=0.01, particles=20");
   manifest.paths = {"sensors.lidar.rate_hz", "sensors.imu.rate_hz"};
   manifest.variants = {{.name = "long", .overrides = {"sensors.lidar.rate_hz=5", "sensors.imu.rate_hz=100"}}};

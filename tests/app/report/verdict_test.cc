@@ -8,9 +8,9 @@
 namespace patrol::app::verdict_test {
 namespace {
 
-using ::testing::HasSubstr;
 using report::Tone;
 using test::small_run;
+using ::testing::HasSubstr;
 
 /// The cells of the row that begins with `name`; empty if there is none.
 std::vector<std::string> row_of(const report::VerdictBlock& verdict, const std::string& name) {
@@ -37,7 +37,9 @@ TEST(Verdict, NamesWhatWasMissedWithWantedAndGot) {
   run.scenario.expect["map.iou"].min = 0.5;
   const report::VerdictBlock verdict = verdict_of(run);
   EXPECT_EQ(verdict.word, "Missed");
-  EXPECT_EQ(verdict.reason, "2 of 2 expectations missed: map.iou is not measured, expected >= 0.5; pose.ate_rmse_m is 0.1, expected <= 0.05.");
+  EXPECT_EQ(verdict.reason,
+            "2 of 2 expectations missed: map.iou is not measured, expected >= 0.5; pose.ate_rmse_m is 0.1, expected <= "
+            "0.05.");
   EXPECT_EQ(row_of(verdict, "pose.ate_rmse_m").back(), "MISSED");
 }
 
@@ -62,9 +64,15 @@ TEST(Verdict, OfARunThatWasCutOffIsIncompleteAndJudgesNothing) {
 
 TEST(Verdict, SaysOfEachFaultWhatTheJunitSays) {
   RunContents run = small_run();
-  run.scenario.faults = {{.sensor = "imu", .kind = "freeze", .start_s = 2.0}, {.sensor = "uwb", .kind = "dropout", .start_s = 3.0}, {.sensor = "gnss", .kind = "drift", .start_s = 4.0}};
+  run.scenario.faults = {{.sensor = "imu", .kind = "freeze", .start_s = 2.0},
+                         {.sensor = "uwb", .kind = "dropout", .start_s = 3.0},
+                         {.sensor = "gnss", .kind = "drift", .start_s = 4.0}};
   run.cases.push_back({.class_name = "small", .name = "fault imu freeze at 2 s", .message = "", .details = ""});
-  run.cases.push_back({.class_name = "small", .name = "fault uwb dropout at 3 s", .result = io::JunitResult::kSkipped, .message = "not triggered: no message was touched", .details = ""});
+  run.cases.push_back({.class_name = "small",
+                       .name = "fault uwb dropout at 3 s",
+                       .result = io::JunitResult::kSkipped,
+                       .message = "not triggered: no message was touched",
+                       .details = ""});
   const report::VerdictBlock verdict = verdict_of(run);
   EXPECT_EQ(row_of(verdict, "fault imu freeze at 2 s").back(), "triggered");
   EXPECT_EQ(row_of(verdict, "fault uwb dropout at 3 s").back(), "not triggered");
@@ -75,10 +83,12 @@ TEST(Verdict, SaysOfEachFaultWhatTheJunitSays) {
 
 TEST(Verdict, SaysOfEachKidnapWhatTheTruthInTheLogShows) {
   RunContents run = small_run();
-  run.scenario.kidnaps = {{.at_s = 4.0, .x_m = 9.1, .y_m = 6.0}, {.at_s = 6.0, .x_m = 50.0, .y_m = 6.0}, {.at_s = 60.0, .x_m = 9.1, .y_m = 6.0}};
+  run.scenario.kidnaps = {{.at_s = 4.0, .x_m = 9.1, .y_m = 6.0},
+                          {.at_s = 6.0, .x_m = 50.0, .y_m = 6.0},
+                          {.at_s = 60.0, .x_m = 9.1, .y_m = 6.0}};
   const report::VerdictBlock verdict = verdict_of(run);
   EXPECT_EQ(row_of(verdict, "kidnap at 4 s").back(), "triggered");
-  EXPECT_EQ(row_of(verdict, "kidnap at 6 s").back(), "not triggered");  // it is elsewhere
+  EXPECT_EQ(row_of(verdict, "kidnap at 6 s").back(), "not triggered");   // it is elsewhere
   EXPECT_EQ(row_of(verdict, "kidnap at 60 s").back(), "not triggered");  // the run was over
 }
 

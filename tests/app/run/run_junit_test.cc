@@ -100,7 +100,8 @@ TEST(RunJunit, NamesWhatIsNeededToRunItAgain) {
 }
 
 TEST(RunJunit, ARunThatCrashedIsAnErrorAndNotAFailure) {
-  const RunVerdict verdict{.end = RunStatus::kCrashed, .message = "signal 11", .metrics = {}, .checks = {}, .events = {}};
+  const RunVerdict verdict{
+      .end = RunStatus::kCrashed, .message = "signal 11", .metrics = {}, .checks = {}, .events = {}};
   const std::string xml = saved(junit_suite("short", {}, verdict));
   EXPECT_THAT(xml, HasSubstr("failures=\"0\" errors=\"1\""));
   EXPECT_THAT(xml, HasSubstr("crashed: signal 11"));

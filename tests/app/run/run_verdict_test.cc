@@ -6,7 +6,11 @@ namespace patrol::app::run_verdict_test {
 namespace {
 
 CheckedExpectation make_check(bool is_met) {
-  return {.metric = "pose.ate_rmse_m", .wanted = "<= 0.08", .got = is_met ? "0.05" : "0.21", .is_measured = true, .is_met = is_met};
+  return {.metric = "pose.ate_rmse_m",
+          .wanted = "<= 0.08",
+          .got = is_met ? "0.05" : "0.21",
+          .is_measured = true,
+          .is_met = is_met};
 }
 
 RunOutcome ended(RunEnd end, double duration_s) {
@@ -24,7 +28,8 @@ TEST(RunVerdict, DoneWhenTheMissionIsOverAndEverythingIsMet) {
 }
 
 TEST(RunVerdict, AMissedExpectationIsSaidWithWhatItGot) {
-  const RunVerdict verdict = verdict_of(ended(RunEnd::kMissionOver, 60.0), {}, {}, {make_check(true), make_check(false), make_check(false)});
+  const RunVerdict verdict =
+      verdict_of(ended(RunEnd::kMissionOver, 60.0), {}, {}, {make_check(true), make_check(false), make_check(false)});
   EXPECT_EQ(verdict.end, RunStatus::kExpectationMissed);
   EXPECT_EQ(verdict.code(), ExitCode::kExpectationMissed);
   EXPECT_EQ(verdict.message, "pose.ate_rmse_m is 0.21, expected <= 0.08; pose.ate_rmse_m is 0.21, expected <= 0.08");

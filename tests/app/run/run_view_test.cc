@@ -1,10 +1,10 @@
 #include "app/run/run_view.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <numbers>
 #include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 namespace patrol::app::watch_frame_test {
 namespace {
@@ -19,16 +19,21 @@ RunView in_a_field() {
   RunView run;
   run.name = "field";
   run.map = OccupancyGrid({.resolution_m = 0.05, .width = 120, .height = 120, .origin_m = {-3.0, -3.0}}, kFree);
-  run.estimate = PoseEstimate{.stamp = {}, .T_map_body = {0.0, 0.0, 0.0}, .covariance = Eigen::Vector3d(0.0004, 0.0005, 0.0).asDiagonal()};
+  run.estimate = PoseEstimate{
+      .stamp = {}, .T_map_body = {0.0, 0.0, 0.0}, .covariance = Eigen::Vector3d(0.0004, 0.0005, 0.0).asDiagonal()};
   return run;
 }
 
-std::size_t lines_of(const std::string& frame) { return static_cast<std::size_t>(std::count(frame.begin(), frame.end(), '\n')) + 1; }
+std::size_t lines_of(const std::string& frame) {
+  return static_cast<std::size_t>(std::count(frame.begin(), frame.end(), '\n')) + 1;
+}
 
 TEST(WatchFrame, FillsTheTerminalExactly) {
   RunView run = in_a_field();
   EXPECT_EQ(lines_of(render_run_view(run, kColumns, kRows)), static_cast<std::size_t>(kRows));
-  for (int i = 0; i < 30; ++i) run.events.push_back({.stamp = {}, .kind = EventKind::kGasAlarm, .subject = "", .text = std::string(200, 'x'), .T_map_body = {}});
+  for (int i = 0; i < 30; ++i)
+    run.events.push_back(
+        {.stamp = {}, .kind = EventKind::kGasAlarm, .subject = "", .text = std::string(200, 'x'), .T_map_body = {}});
   EXPECT_EQ(lines_of(render_run_view(run, kColumns, kRows)), static_cast<std::size_t>(kRows));
 }
 

@@ -1,10 +1,10 @@
 #include "io/yaml/renamed_keys.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <set>
 #include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include "app/scenario/scenario.h"
 #include "core/error.h"
@@ -65,7 +65,8 @@ TEST(RenamedKeys, AFormerKeyIsRefusedWithItsPresentPath) {
   EXPECT_THAT([&] { load_scenario(file, {"stack.plan.patience_s=3"}); },
               ThrowsMessage<InputError>(EndsWith("stack.plan: renamed to stack.navigation")));
   EXPECT_THAT([&] { load_scenario(file, {"stack.navigation.patience_s=3"}); },
-              ThrowsMessage<InputError>(EndsWith("stack.navigation.patience_s: renamed to stack.navigation.blocked_timeout_s")));
+              ThrowsMessage<InputError>(
+                  EndsWith("stack.navigation.patience_s: renamed to stack.navigation.blocked_timeout_s")));
   EXPECT_THAT([&] { load_scenario(file, {"stack.slam.particles=3"}); },
               ThrowsMessage<InputError>(EndsWith("stack.slam.particles: renamed to stack.slam.rbpf.particles")));
 }

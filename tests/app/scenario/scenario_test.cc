@@ -24,7 +24,8 @@ TEST(Scenario, EveryOneOfEveryWorldIsReadFindsItsFilesAndExpectsSomething) {
     const Scenario scenario = load_scenario(entry.path());
     const ScenarioFiles files = load_scenario_files(scenario, find_data_root(entry.path()));
     EXPECT_TRUE(std::filesystem::exists(files.world_xml)) << entry.path();
-    EXPECT_FALSE(files.route.stations.empty() && files.goals.empty() && !files.has_teleop()) << entry.path() << " leads nowhere";
+    EXPECT_FALSE(files.route.stations.empty() && files.goals.empty() && !files.has_teleop())
+        << entry.path() << " leads nowhere";
     EXPECT_FALSE(scenario.expect.empty()) << entry.path() << " expects nothing";
   }
   EXPECT_GE(num_scenarios, 10);
@@ -40,9 +41,8 @@ TEST(Scenario, FindsTheQuadrupedByItsName) {
 TEST(Scenario, AnUnknownWorldOrRobotNamesTheKnownOnes) {
   Scenario scenario;
   scenario.world = "moon";
-  EXPECT_THAT(
-      [&] { load_scenario_files(scenario, kSource); },
-      ThrowsMessage<InputError>(AllOf(HasSubstr("world = moon"), HasSubstr("known: "), HasSubstr("street"))));
+  EXPECT_THAT([&] { load_scenario_files(scenario, kSource); },
+              ThrowsMessage<InputError>(AllOf(HasSubstr("world = moon"), HasSubstr("known: "), HasSubstr("street"))));
   scenario.world = "street";
   scenario.robot = "hexapod";
   EXPECT_THAT([&] { load_scenario_files(scenario, kSource); },
@@ -53,8 +53,7 @@ TEST(Scenario, AMissingMissionIsNamed) {
   Scenario scenario;
   scenario.mission = "routes/absent.json";
   EXPECT_THAT([&] { load_scenario_files(scenario, kSource); },
-              ThrowsMessage<InputError>(
-                  AllOf(HasSubstr("mission = routes/absent.json"), HasSubstr("worlds/street"))));
+              ThrowsMessage<InputError>(AllOf(HasSubstr("mission = routes/absent.json"), HasSubstr("worlds/street"))));
 }
 
 // <folder>/worlds and <folder>/models, the scenario two folders down.
@@ -83,7 +82,8 @@ TEST(Scenario, ElsewhereItTakesTheWorkingDirectoryOrTheSourceTree) {
 
 TEST(Scenario, DataLieWhereTheEnvironmentSays) {
   const TemporaryFolder folder;
-  for (const char* name : {"worlds", "models", "other/worlds", "other/models", "empty"}) std::filesystem::create_directories(folder / name);
+  for (const char* name : {"worlds", "models", "other/worlds", "other/models", "empty"})
+    std::filesystem::create_directories(folder / name);
   ::setenv("PATROL_DATA", (folder / "other").c_str(), 1);
   const std::filesystem::path named = find_data_root(folder / "worlds/my.yaml");
   ::setenv("PATROL_DATA", (folder / "empty").c_str(), 1);

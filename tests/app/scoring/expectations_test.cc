@@ -27,9 +27,7 @@ io::Expectation at_least(double min) {
 
 io::Expectation band(double min, double max) { return {.min = min, .max = max}; }
 
-io::Expectation boolean(bool value) {
-  return {.min = value ? 1.0 : 0.0, .max = value ? 1.0 : 0.0, .is_boolean = true};
-}
+io::Expectation boolean(bool value) { return {.min = value ? 1.0 : 0.0, .max = value ? 1.0 : 0.0, .is_boolean = true}; }
 
 CheckedExpectation check(const std::string& metric, const io::Expectation& expectation) {
   const std::vector<CheckedExpectation> checks = check_expectations({{metric, expectation}}, make_metrics());
@@ -66,8 +64,7 @@ TEST(Expectations, BooleansMustBeThatValue) {
 }
 
 TEST(Expectations, WhatWasNotMeasuredIsNotMet) {
-  for (const char* metric :
-       {"pose.absent_m", "pose.drift_percent", "nothing", "stations.7.map_error_m", "pose"}) {
+  for (const char* metric : {"pose.absent_m", "pose.drift_percent", "nothing", "stations.7.map_error_m", "pose"}) {
     const CheckedExpectation missing = check(metric, band(-1e9, 1e9));
     EXPECT_FALSE(missing.is_measured) << metric;
     EXPECT_FALSE(missing.is_met) << metric;

@@ -1,9 +1,9 @@
 #include "app/scoring/score_table.h"
 
+#include <sstream>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include <sstream>
 
 namespace patrol::app::score_table_test {
 namespace {
@@ -40,11 +40,7 @@ TEST(ScoreTable, HasOneLineForEachFigure) {
 
 TEST(ScoreTable, SaysOfEachExpectationWhetherItWasMet) {
   const std::vector<CheckedExpectation> checks = {
-      {.metric = "pose.ate_rmse_m",
-       .wanted = "<= 0.08",
-       .got = "0.07123",
-       .is_measured = true,
-       .is_met = true},
+      {.metric = "pose.ate_rmse_m", .wanted = "<= 0.08", .got = "0.07123", .is_measured = true, .is_met = true},
       {.metric = "mission.collisions", .wanted = "= 1", .got = "0", .is_measured = true, .is_met = false}};
   const std::string table = score_table(make_metrics(), checks);
   EXPECT_EQ(line_of(table, "pose.ate_rmse_m"), (Words{"pose.ate_rmse_m", "0.07123", "<=", "0.08", "met"}));
@@ -52,13 +48,10 @@ TEST(ScoreTable, SaysOfEachExpectationWhetherItWasMet) {
 }
 
 TEST(ScoreTable, WhatWasExpectedAndNotMeasuredStandsThereToo) {
-  const std::string table = score_table(make_metrics(), {{.metric = "map.coverage",
-                                                          .wanted = ">= 0.9",
-                                                          .got = "not measured",
-                                                          .is_measured = false,
-                                                          .is_met = false}});
-  EXPECT_EQ(line_of(table, "map.coverage"),
-            (Words{"map.coverage", "not", "measured", ">=", "0.9", "MISSED"}));
+  const std::string table = score_table(
+      make_metrics(),
+      {{.metric = "map.coverage", .wanted = ">= 0.9", .got = "not measured", .is_measured = false, .is_met = false}});
+  EXPECT_EQ(line_of(table, "map.coverage"), (Words{"map.coverage", "not", "measured", ">=", "0.9", "MISSED"}));
 }
 
 TEST(ScoreTable, GroupsStandApart) {
@@ -70,7 +63,8 @@ TEST(ScoreTable, GroupsStandApart) {
 TEST(ScoreTable, OfNothingIsEmpty) { EXPECT_EQ(score_table(io::Metrics::object(), {}), ""); }
 
 TEST(ScoreTable, LeavesOutListsOfPlainNumbers) {
-  const std::string table = score_table(io::Metrics::parse(R"({"docking": {"position_error_m": {"mean": 0.02, "each": [0.01, 0.03]}}})"), {});
+  const std::string table =
+      score_table(io::Metrics::parse(R"({"docking": {"position_error_m": {"mean": 0.02, "each": [0.01, 0.03]}}})"), {});
   EXPECT_EQ(line_of(table, "docking.position_error_m.mean"), (Words{"docking.position_error_m.mean", "0.02"}));
   EXPECT_EQ(table.find("each"), std::string::npos);
 }

@@ -13,14 +13,20 @@ std::vector<Pose2> out_and_back() {
   return nodes;
 }
 
-PoseGraphEdge edge(const std::vector<Pose2>& nodes, int from, int to, double error_m = 0.0, PoseGraphEdge::Kind kind = PoseGraphEdge::Kind::kLoop) {
+PoseGraphEdge edge(const std::vector<Pose2>& nodes, int from, int to, double error_m = 0.0,
+                   PoseGraphEdge::Kind kind = PoseGraphEdge::Kind::kLoop) {
   const Pose2 T_from_to = nodes[static_cast<std::size_t>(from)].inverse() * nodes[static_cast<std::size_t>(to)];
-  return {.from = from, .to = to, .T_from_to = Pose2{T_from_to.x + error_m, T_from_to.y, T_from_to.yaw}, .information = Eigen::Matrix3d::Identity(), .kind = kind};
+  return {.from = from,
+          .to = to,
+          .T_from_to = Pose2{T_from_to.x + error_m, T_from_to.y, T_from_to.yaw},
+          .information = Eigen::Matrix3d::Identity(),
+          .kind = kind};
 }
 
 TEST(EvaluateLoopClosures, OfThreeClosuresOneFalseTheOthersAreTwoThirds) {
   const std::vector<Pose2> nodes = out_and_back();
-  const LoopClosureAccuracy truth = evaluate_loop_closures({.T_map_node = nodes, .edges = {edge(nodes, 1, 7), edge(nodes, 8, 0, 0.2), edge(nodes, 2, 6, 10.0)}}, nodes);
+  const LoopClosureAccuracy truth = evaluate_loop_closures(
+      {.T_map_node = nodes, .edges = {edge(nodes, 1, 7), edge(nodes, 8, 0, 0.2), edge(nodes, 2, 6, 10.0)}}, nodes);
   EXPECT_EQ(truth.right, 2U);
   EXPECT_EQ(truth.wrong, 1U);
   EXPECT_DOUBLE_EQ(truth.precision(), 2.0 / 3.0);
@@ -29,7 +35,8 @@ TEST(EvaluateLoopClosures, OfThreeClosuresOneFalseTheOthersAreTwoThirds) {
 // 6 came back 40 m after 2, 7 60 m after 1, 8 80 m after 0; 5 only 20 m after 3.
 TEST(EvaluateLoopClosures, RecallIsOfTheNodesThatReturned) {
   const std::vector<Pose2> nodes = out_and_back();
-  const LoopClosureAccuracy truth = evaluate_loop_closures({.T_map_node = nodes, .edges = {edge(nodes, 1, 7), edge(nodes, 3, 5), edge(nodes, 2, 6, 10.0)}}, nodes);
+  const LoopClosureAccuracy truth = evaluate_loop_closures(
+      {.T_map_node = nodes, .edges = {edge(nodes, 1, 7), edge(nodes, 3, 5), edge(nodes, 2, 6, 10.0)}}, nodes);
   EXPECT_EQ(truth.returns, 3U);
   EXPECT_EQ(truth.closed, 1U);
   EXPECT_DOUBLE_EQ(truth.recall(), 1.0 / 3.0);
@@ -37,7 +44,9 @@ TEST(EvaluateLoopClosures, RecallIsOfTheNodesThatReturned) {
 
 TEST(EvaluateLoopClosures, AnOdometryEdgeIsNoClosure) {
   const std::vector<Pose2> nodes = out_and_back();
-  const LoopClosureAccuracy truth = evaluate_loop_closures({.T_map_node = nodes, .edges = {edge(nodes, 3, 4, 5.0), edge(nodes, 0, 8, 5.0, PoseGraphEdge::Kind::kMatch)}}, nodes);
+  const LoopClosureAccuracy truth = evaluate_loop_closures(
+      {.T_map_node = nodes, .edges = {edge(nodes, 3, 4, 5.0), edge(nodes, 0, 8, 5.0, PoseGraphEdge::Kind::kMatch)}},
+      nodes);
   EXPECT_EQ(truth.right + truth.wrong, 0U);
   EXPECT_EQ(truth.precision(), 1.0);
 }

@@ -1,8 +1,8 @@
 #include "app/study/planner_problem.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "plan/routes/grid_search.h"
@@ -18,7 +18,8 @@ TEST(PlannerProblem, OfEveryWorldHasAPathBetweenDistantEnds) {
       const PlannerProblem problem = world_problem(world, seed);
       const plan::Route route = GridSearch(GridSearch::Method::kAstar).plan(problem.costs, problem.start, problem.goal);
       EXPECT_EQ(route.status, plan::PlanStatus::kFound) << world << " " << seed;
-      EXPECT_GE(route.length, std::hypot(problem.costs.geometry().width, problem.costs.geometry().height) / 3.0) << world << " " << seed;
+      EXPECT_GE(route.length, std::hypot(problem.costs.geometry().width, problem.costs.geometry().height) / 3.0)
+          << world << " " << seed;
       EXPECT_GT(problem.costs.geometry().size(), 5000u) << world;
     }
   }

@@ -20,7 +20,8 @@ TEST(StudyTable, AnUnknownOneIsRefusedWithTheKnownNames) {
 TEST(StudyTable, EveryVariantsReferenceLiesInItsOwnWorld) {
   for (const std::string& name : study_names()) {
     const studies::Study study = make_study(name);
-    for (const studies::StudyVariant& variant : study.variants) EXPECT_EQ(study.variants[variant.reference].world, variant.world) << name << ": " << variant.method;
+    for (const studies::StudyVariant& variant : study.variants)
+      EXPECT_EQ(study.variants[variant.reference].world, variant.world) << name << ": " << variant.method;
   }
 }
 

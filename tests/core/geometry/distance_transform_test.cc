@@ -1,9 +1,9 @@
 #include "core/geometry/distance_transform.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <tuple>
+
+#include <gtest/gtest.h>
 
 #include "core/random.h"
 
@@ -50,13 +50,11 @@ TEST(DistanceTransform, EqualsBruteForceOnRandomGrids) {
   std::uint64_t seed = 0;
   for (const double sparsity : {1.5, 20.0, 300.0}) {
     for (const int cap : {1, 2, 5, 13, 100}) {
-      for (const auto& [width, height] :
-           {std::pair{37, 23}, std::pair{1, 40}, std::pair{40, 1}, std::pair{1, 1}}) {
+      for (const auto& [width, height] : {std::pair{37, 23}, std::pair{1, 40}, std::pair{40, 1}, std::pair{1, 1}}) {
         const std::vector<std::uint8_t> cells = make_random(width, height, sparsity, ++seed);
         SquaredDistances squared;
         DistanceTransform(cap).compute(cells, width, height, squared);
-        ASSERT_EQ(squared, brute_force(cells, width, height, cap))
-            << width << 'x' << height << " cap " << cap;
+        ASSERT_EQ(squared, brute_force(cells, width, height, cap)) << width << 'x' << height << " cap " << cap;
       }
     }
   }

@@ -58,7 +58,8 @@ Eigen::Matrix3d turned_ellipsoid(double angle_rad) {
 }
 
 TEST(SymmetricEigen, SortsTheAxesOfATurnedEllipsoid) {
-  for (const SymmetricEigen<3>& eigen : {symmetric_eigen(turned_ellipsoid(0.3)), symmetric_eigen_direct(turned_ellipsoid(0.3))}) {
+  for (const SymmetricEigen<3>& eigen :
+       {symmetric_eigen(turned_ellipsoid(0.3)), symmetric_eigen_direct(turned_ellipsoid(0.3))}) {
     EXPECT_TRUE(eigen.values.isApprox(Eigen::Vector3d(1.0, 4.0, 9.0), 1e-9));
     EXPECT_NEAR(std::abs(eigen.vectors.col(0).dot(Eigen::Vector3d(-std::sin(0.3), std::cos(0.3), 0.0))), 1.0, 1e-9);
     EXPECT_NEAR(std::abs(eigen.vectors.col(1).dot(Eigen::Vector3d(std::cos(0.3), std::sin(0.3), 0.0))), 1.0, 1e-9);

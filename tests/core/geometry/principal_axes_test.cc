@@ -1,8 +1,7 @@
 #include "core/geometry/principal_axes.h"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Eigenvalues>
+#include <gtest/gtest.h>
 
 #include "core/random.h"
 
@@ -19,8 +18,14 @@ TEST(PrincipalAxes, AreEigensOfTwoHundredRandomMatrices) {
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(matrix);
     EXPECT_NEAR(axes.large, solver.eigenvalues()[1], 1e-12 * axes.large);
     EXPECT_NEAR(axes.small, solver.eigenvalues()[0], 1e-9 * axes.large);
-    EXPECT_LT((matrix * PrincipalAxes::along(axes.large_direction_rad) - axes.large * PrincipalAxes::along(axes.large_direction_rad)).norm(), 1e-12 * axes.large);
-    EXPECT_LT((matrix * PrincipalAxes::along(axes.small_direction_rad()) - axes.small * PrincipalAxes::along(axes.small_direction_rad())).norm(), 1e-12 * axes.large);
+    EXPECT_LT((matrix * PrincipalAxes::along(axes.large_direction_rad) -
+               axes.large * PrincipalAxes::along(axes.large_direction_rad))
+                  .norm(),
+              1e-12 * axes.large);
+    EXPECT_LT((matrix * PrincipalAxes::along(axes.small_direction_rad()) -
+               axes.small * PrincipalAxes::along(axes.small_direction_rad()))
+                  .norm(),
+              1e-12 * axes.large);
   }
 }
 

@@ -1,9 +1,9 @@
 #include "inspect/lining/adjustment.h"
 
+#include <cmath>
+
 #include <Eigen/Cholesky>
 #include <gtest/gtest.h>
-
-#include <cmath>
 
 #include "tests/support/lining_station.h"
 
@@ -12,17 +12,22 @@ namespace {
 
 std::vector<DownsampledPoint> points_of(const LiningReference& reference) {
   std::vector<DownsampledPoint> points;
-  for (const ScannerPoint& point : reference.points) points.push_back({.p = {point.x, point.y, point.z}, .intensity = 0.0, .count = 1});
+  for (const ScannerPoint& point : reference.points)
+    points.push_back({.p = {point.x, point.y, point.z}, .intensity = 0.0, .count = 1});
   return points;
 }
 
 /// From 3 mm and 0.3 mrad off, as the registration leaves it.
 Adjustment adjusted(const test::LiningStation& station, const LiningSettings& settings = {}) {
-  const SurfaceCloud target(points_of(station.reference)), source(downsample(station.scan.points, settings.spacing_m, settings.min_range_m));
-  const auto lining = fit_design(station.design_in_map, target.points(), station.reference.T_map_scanner.position, settings);
+  const SurfaceCloud target(points_of(station.reference)),
+      source(downsample(station.scan.points, settings.spacing_m, settings.min_range_m));
+  const auto lining =
+      fit_design(station.design_in_map, target.points(), station.reference.T_map_scanner.position, settings);
   const LiningGrid grid(*lining, station.T_map_scanner.position, settings);
-  const Pose3 start{station.T_map_scanner.position + Eigen::Vector3d(0.003, -0.002, 0.001), quaternion_from_yaw(3e-4) * station.T_map_scanner.rotation};
-  return adjust(*lining, grid, ReferenceLining(*lining, grid, target.points(), settings), target, source, start, station.T_map_scanner_guess, settings);
+  const Pose3 start{station.T_map_scanner.position + Eigen::Vector3d(0.003, -0.002, 0.001),
+                    quaternion_from_yaw(3e-4) * station.T_map_scanner.rotation};
+  return adjust(*lining, grid, ReferenceLining(*lining, grid, target.points(), settings), target, source, start,
+                station.T_map_scanner_guess, settings);
 }
 
 Eigen::Matrix<double, 6, 1> error_of(const Adjustment& adjustment, const Pose3& truth) {
@@ -46,8 +51,8 @@ TEST(Adjustment, CovarianceHoldsThePoseOver5SeedsWithRingsPushedBy3And12mm) {
     const Eigen::Matrix<double, 6, 6> covariance = adjustment.covariance.topLeftCorner<6, 6>();
     nees += error.dot(covariance.ldlt().solve(error)) / 5.0;
   }
-  // Six degrees of freedom: 6 on average, of five with a standard deviation of sqrt(12 / 5) = 1.5. It errs on the safe side, since both scans' scatter
-  // is counted with the planes' own, but not tenfold.
+  // Six degrees of freedom: 6 on average, of five with a standard deviation of sqrt(12 / 5) = 1.5. It errs on the safe
+  // side, since both scans' scatter is counted with the planes' own, but not tenfold.
   EXPECT_LT(nees, 6.0 + 3.0 * 1.5);
   EXPECT_GT(nees, 0.6);
 }

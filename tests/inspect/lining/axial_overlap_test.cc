@@ -8,10 +8,14 @@ namespace patrol::inspect::grip_test {
 namespace {
 
 SurfaceCloud scan(const test::LinedTunnel& tunnel, double chainage_m, std::uint64_t seed) {
-  return SurfaceCloud(downsample(tunnel.scan({{chainage_m, -2.0, 0.85}, Eigen::Quaterniond::Identity()}, {.step_deg = 1.0}, seed).points, 0.1, 1.5));
+  return SurfaceCloud(downsample(
+      tunnel.scan({{chainage_m, -2.0, 0.85}, Eigen::Quaterniond::Identity()}, {.step_deg = 1.0}, seed).points, 0.1,
+      1.5));
 }
 
-AxialOverlap between(const SurfaceCloud& one, const SurfaceCloud& other) { return axial_overlap({.cloud = one}, {.cloud = other}, {}, Eigen::Vector3d::UnitX()); }
+AxialOverlap between(const SurfaceCloud& one, const SurfaceCloud& other) {
+  return axial_overlap({.cloud = one}, {.cloud = other}, {}, Eigen::Vector3d::UnitX());
+}
 
 TEST(AxialOverlap, SamePlaceAgreesAndAnother5mOnDoesNot) {
   const test::LinedTunnel tunnel = test::LinedTunnel().furnish();

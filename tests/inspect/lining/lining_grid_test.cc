@@ -1,9 +1,9 @@
 #include "inspect/lining/lining_grid.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 #include "core/geometry/angles.h"
 #include "core/random.h"
@@ -33,7 +33,8 @@ TEST(LiningPoint, GradientIsThatOfTheInwardDistance) {
       for (int axis = 0; axis < 3; ++axis) {
         constexpr double kStep_m = 1e-5;
         const Eigen::Vector3d step = kStep_m * Eigen::Vector3d::Unit(axis);
-        const double slope = (lining_point(lining, p + step).inward_m - lining_point(lining, p - step).inward_m) / (2.0 * kStep_m);
+        const double slope =
+            (lining_point(lining, p + step).inward_m - lining_point(lining, p - step).inward_m) / (2.0 * kStep_m);
         EXPECT_NEAR(point.gradient[axis], slope, 1e-4) << clock_deg << " " << axis;
       }
     }
@@ -73,7 +74,8 @@ std::vector<DownsampledPoint> seen(const LiningInMap& lining, double chainage_m)
   const RandomStream draw(5, "test/seen");
   std::vector<DownsampledPoint> points;
   for (std::uint64_t i = 0; i < 6000; ++i) {
-    const double s = chainage_m + 14.0 * (2.0 * draw.uniform(i, 0) - 1.0), clock_deg = 360.0 + 115.0 * (2.0 * draw.uniform(i, 1) - 1.0);
+    const double s = chainage_m + 14.0 * (2.0 * draw.uniform(i, 0) - 1.0),
+                 clock_deg = 360.0 + 115.0 * (2.0 * draw.uniform(i, 1) - 1.0);
     const Eigen::Vector3d p = lining.intrados(s, std::fmod(clock_deg, 360.0));
     const double inward_m = (i % 3 == 0 ? 0.3 : 0.0) + 0.002 * draw.normal(i, 2);
     points.push_back({.p = p + inward_m * lining_point(lining, p).gradient, .intensity = 0.0, .count = 1});
@@ -86,7 +88,8 @@ TEST(FitDesign, FindsTheLiningThatTheMapHas200mmAsideAnd1DegreeTurned) {
   const Eigen::Vector3d scanner(85.0, 1.0, 0.5);
   const std::vector<DownsampledPoint> points = seen(lining, 85.0);
   TunnelLining wrong = lining.design;
-  wrong.T_route_start = Pose2{0.0, 0.2, 0.0} * Pose2{85.0, 0.0, 0.0} * Pose2{0.0, 0.0, kDegree} * Pose2{-85.0, 0.0, 0.0} * wrong.T_route_start;
+  wrong.T_route_start = Pose2{0.0, 0.2, 0.0} * Pose2{85.0, 0.0, 0.0} * Pose2{0.0, 0.0, kDegree} *
+                        Pose2{-85.0, 0.0, 0.0} * wrong.T_route_start;
   const auto fitted = fit_design(wrong, points, scanner, {});
   ASSERT_TRUE(fitted.has_value());
   EXPECT_NEAR(fitted->invert_m, -0.3, 0.001);
@@ -101,7 +104,8 @@ TEST(FitDesign, OfAHallThatIsNoTunnelThereIsNone) {
   // A ceiling 12 m up, over 10 m by 10 m.
   std::vector<DownsampledPoint> points;
   for (int i = 0; i < 100; ++i) {
-    for (int k = 0; k < 100; ++k) points.push_back({.p = {80.0 + 0.1 * i, 0.1 * k - 5.0, 12.0}, .intensity = 0.0, .count = 1});
+    for (int k = 0; k < 100; ++k)
+      points.push_back({.p = {80.0 + 0.1 * i, 0.1 * k - 5.0, 12.0}, .intensity = 0.0, .count = 1});
   }
   LiningSettings settings;
   EXPECT_FALSE(fit_design(lining_in_map().design, {}, {85.0, 0.0, 0.5}, settings).has_value());

@@ -1,10 +1,10 @@
 #include "inspect/lining/lining_inspection.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "tests/support/lining_station.h"
@@ -15,12 +15,16 @@ namespace {
 const Pose3 kT_body_scanner{{-0.2, 0.0, 0.5}, quaternion_from_yaw(0.0)};
 
 LiningResult inspect(const test::LiningStation& station, const LiningSettings& settings = {}) {
-  return LiningInspection(settings, station.design_in_map, kT_body_scanner).inspect(Time{}, "D1", station.scan, station.reference, station.T_map_scanner_guess);
+  return LiningInspection(settings, station.design_in_map, kT_body_scanner)
+      .inspect(Time{}, "D1", station.scan, station.reference, station.T_map_scanner_guess);
 }
 
 /// Rings 15, 20 and 22 pushed inwards by 3, 6 and 12 mm, ring 17 bulging by 12 mm at 40 degrees, 40 to both sides.
 double moved_m(int ring, double clock_deg) {
-  if (ring == 17) return std::abs(clock_deg - 40.0) < 40.0 ? 0.012 * std::pow(std::cos(std::numbers::pi * (clock_deg - 40.0) / 80.0), 2) : 0.0;
+  if (ring == 17)
+    return std::abs(clock_deg - 40.0) < 40.0
+               ? 0.012 * std::pow(std::cos(std::numbers::pi * (clock_deg - 40.0) / 80.0), 2)
+               : 0.0;
   return ring == 15 ? 0.003 : ring == 20 ? 0.006 : ring == 22 ? 0.012 : 0.0;
 }
 double peak_m(int ring) { return moved_m(ring, 40.0); }
@@ -43,7 +47,8 @@ TEST_P(LiningSeeds, PushesOf3And6And12mmAndABulgeAreFoundTo1500MicrometresBeside
     EXPECT_NEAR(finding.inward_m, moved_m(finding.ring, finding.clock_deg), 0.0015) << finding.ring;
   }
   int held = 0;
-  for (const LiningCell& cell : result.cells) held += std::abs(cell.inward_m - moved_m(cell.ring, cell.clock_deg)) < 1.96 * cell.std_m ? 1 : 0;
+  for (const LiningCell& cell : result.cells)
+    held += std::abs(cell.inward_m - moved_m(cell.ring, cell.clock_deg)) < 1.96 * cell.std_m ? 1 : 0;
   EXPECT_GT(result.cells.size(), 250U);
   EXPECT_GT(held, 0.93 * static_cast<double>(result.cells.size()));
   for (const ConvergenceLine& line : result.lines) {
@@ -64,7 +69,8 @@ class StillSeeds : public testing::TestWithParam<int> {};
 TEST_P(StillSeeds, WhereNothingHasMovedNothingIsFound) {
   const test::LinedTunnel tunnel = test::LinedTunnel().furnish();
   for (int seed = 5 * GetParam(); seed < 5 * GetParam() + 5; ++seed) {
-    const LiningResult result = inspect(test::scan_twice(tunnel, tunnel, 84.0, 2.2, static_cast<std::uint64_t>(100 + seed), 0.7));
+    const LiningResult result =
+        inspect(test::scan_twice(tunnel, tunnel, 84.0, 2.2, static_cast<std::uint64_t>(100 + seed), 0.7));
     EXPECT_TRUE(result.is_registered) << seed;
     EXPECT_GT(result.cells.size(), 200U) << seed;
     EXPECT_TRUE(result.findings.empty()) << seed;
@@ -132,7 +138,8 @@ TEST(LiningReference, IsThinnedAndStandsInMap) {
   for (int i = 0; i < 100; ++i) scan.points.push_back({5.0F, 0.001F * static_cast<float>(i) + 0.01F, 0.01F, 40.0F});
   scan.points.push_back({1.0F, 0.0F, 0.0F, 0.0F});   // the robot itself
   scan.points.push_back({50.0F, 0.0F, 0.0F, 0.0F});  // too far
-  const LiningReference reference = make_reference(scan, {{10.0, 0.0, 0.0}, quaternion_from_yaw(std::numbers::pi / 2.0)});
+  const LiningReference reference =
+      make_reference(scan, {{10.0, 0.0, 0.0}, quaternion_from_yaw(std::numbers::pi / 2.0)});
   ASSERT_GE(reference.points.size(), 1U);
   ASSERT_LE(reference.points.size(), 3U);
   for (const ScannerPoint& point : reference.points) {

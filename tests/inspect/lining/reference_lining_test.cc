@@ -1,9 +1,9 @@
 #include "inspect/lining/reference_lining.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 #include "core/random.h"
 #include "tests/support/lined_tunnel.h"
@@ -24,7 +24,8 @@ std::vector<DownsampledPoint> ring_18(double noise_std_m) {
     for (int k = -25; k <= 25; ++k) {
       const double s = 34.0 + 0.08 * i, clock_deg = std::fmod(360.0 + 0.8 * k, 360.0);
       const Eigen::Vector3d p = kLining.intrados(s, clock_deg);
-      const double inward_m = as_built_m(s) + noise_std_m * noise.normal(static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(k + 100));
+      const double inward_m = as_built_m(s) + noise_std_m * noise.normal(static_cast<std::uint64_t>(i),
+                                                                         static_cast<std::uint64_t>(k + 100));
       points.push_back({.p = p + inward_m * lining_point(kLining, p).gradient, .intensity = 0.0, .count = 1});
     }
   }
@@ -43,7 +44,9 @@ TEST(ReferenceLining, LeaningRingIsFollowedToATenthOfAMillimetre) {
 
 TEST(ReferenceLining, CableThatHangs30mmBeforeTheWallIsNotTheLining) {
   std::vector<DownsampledPoint> points = ring_18(0.001);
-  for (int i = 0; i < 100; ++i) points.push_back({.p = kLining.intrados(34.0 + 0.02 * i, 2.0) - Eigen::Vector3d(0.0, 0.0, 0.03), .intensity = 0.0, .count = 1});
+  for (int i = 0; i < 100; ++i)
+    points.push_back(
+        {.p = kLining.intrados(34.0 + 0.02 * i, 2.0) - Eigen::Vector3d(0.0, 0.0, 0.03), .intensity = 0.0, .count = 1});
   const ReferenceLining reference(kLining, kGrid, points, {});
   const LiningPoint point{.chainage_m = 35.0, .clock_deg = 2.0};
   EXPECT_NEAR(reference.inward_m(point, kGrid.cell_at(point)).value(), as_built_m(35.0), 0.001);
@@ -54,7 +57,8 @@ TEST(ReferenceLining, MeanOf200PointsWith2mmOfNoiseHasAStandardDeviationOf140Mic
   const int cell = kGrid.cell_at({.chainage_m = 35.0, .clock_deg = 0.0});
   const double expected_m = 0.002 / std::sqrt(reference.points(cell));
   EXPECT_GT(reference.points(cell), 200);
-  // Planes through few neighbours have noise of their own, which is counted too: never less than the truth, at most half as much again.
+  // Planes through few neighbours have noise of their own, which is counted too: never less than the truth, at most
+  // half as much again.
   EXPECT_GT(std::sqrt(reference.var_m2(cell)), 0.9 * expected_m);
   EXPECT_LT(std::sqrt(reference.var_m2(cell)), 1.5 * expected_m);
 }

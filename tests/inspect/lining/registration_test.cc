@@ -15,11 +15,13 @@ SurfaceCloud scan_from(const test::LinedTunnel& tunnel, const Pose3& T_route_sca
 /// 0.3 m along and aside, 6 cm up and 2 degrees off, to either side.
 TEST(Registration, Start300mmAnd2DegreesOffEndsWithin10mm) {
   const test::LinedTunnel tunnel = test::LinedTunnel().furnish();
-  const Pose3 T_route_first{{35.0, -2.2, 0.85}, quaternion_from_yaw(0.1)}, T_route_second{{35.1, -2.0, 0.85}, quaternion_from_yaw(-0.1)};
+  const Pose3 T_route_first{{35.0, -2.2, 0.85}, quaternion_from_yaw(0.1)},
+      T_route_second{{35.1, -2.0, 0.85}, quaternion_from_yaw(-0.1)};
   const SurfaceCloud target = scan_from(tunnel, T_route_first, 1), source = scan_from(tunnel, T_route_second, 2);
   const Pose3 truth = T_route_first.inverse() * T_route_second;
   for (const double sign : {-1.0, 1.0}) {
-    const Pose3 start{truth.position + sign * Eigen::Vector3d(0.3, 0.3, 0.06), quaternion_from_yaw(2.0 * kDegree * sign) * truth.rotation};
+    const Pose3 start{truth.position + sign * Eigen::Vector3d(0.3, 0.3, 0.06),
+                      quaternion_from_yaw(2.0 * kDegree * sign) * truth.rotation};
     const Registration found = register_cloud(target, source, start, {});
     EXPECT_TRUE(found.converged);
     EXPECT_GT(found.inlier_ratio, 0.85);
@@ -31,14 +33,16 @@ TEST(Registration, Start300mmAnd2DegreesOffEndsWithin10mm) {
 TEST(Registration, TruckInOneScanDoesNotPullByMoreThan10mm) {
   test::LinedTunnel tunnel = test::LinedTunnel().furnish();
   const Pose3 T_route_scanner{{35.0, -2.2, 0.85}, quaternion_from_yaw(0.0)};
-  const SurfaceCloud target = scan_from(tunnel, T_route_scanner, 1), source = scan_from(tunnel.park_truck(39.0, 1.5), T_route_scanner, 2);
+  const SurfaceCloud target = scan_from(tunnel, T_route_scanner, 1),
+                     source = scan_from(tunnel.park_truck(39.0, 1.5), T_route_scanner, 2);
   const Registration found = register_cloud(target, source, {{0.2, -0.1, 0.03}, quaternion_from_yaw(kDegree)}, {});
   EXPECT_TRUE(found.converged);
   EXPECT_LT(found.T_target_source.position.norm(), 0.01);
 }
 
 TEST(Registration, OfNothingFails) {
-  const SurfaceCloud nothing({}), cloud = scan_from(test::LinedTunnel(), {{35.0, 0.0, 0.85}, Eigen::Quaterniond::Identity()}, 1);
+  const SurfaceCloud nothing({}),
+      cloud = scan_from(test::LinedTunnel(), {{35.0, 0.0, 0.85}, Eigen::Quaterniond::Identity()}, 1);
   EXPECT_FALSE(register_cloud(nothing, cloud, {}, {}).converged);
   EXPECT_FALSE(register_cloud(cloud, nothing, {}, {}).converged);
 }

@@ -1,10 +1,10 @@
 #include "inspect/lining/ring_findings.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <functional>
 #include <numbers>
+
+#include <gtest/gtest.h>
 
 #include "core/geometry/angles.h"
 #include "tests/support/lined_tunnel.h"
@@ -15,7 +15,8 @@ namespace {
 const LiningInMap kLining{.design = test::LinedTunnel().lining, .invert_m = -0.3};
 const LiningGrid kGrid(kLining, {35.0, 0.0, 0.5}, {});
 
-/// What is measured in ring 18, by the clock, to 0.2 mm; all other rings are still; the registration is perfect but for `along_j`.
+/// What is measured in ring 18, by the clock, to 0.2 mm; all other rings are still; the registration is perfect but for
+/// `along_j`.
 Adjustment ring_18(const std::function<double(double clock_deg)>& inward_m, double std_m = 2e-4) {
   Adjustment adjustment;
   adjustment.covariance = Matrix7::Zero();
@@ -41,7 +42,9 @@ double line(const std::vector<ConvergenceLine>& lines, const std::string& name) 
 
 TEST(RingFindings, Bulge12mmHighKeepsItsHeightAndItsPlace) {
   const auto bulge = [](double clock_deg) {
-    return std::abs(clock_deg - 40.0) < 40.0 ? 0.012 * std::pow(std::cos(std::numbers::pi * (clock_deg - 40.0) / 80.0), 2) : 0.0;
+    return std::abs(clock_deg - 40.0) < 40.0
+               ? 0.012 * std::pow(std::cos(std::numbers::pi * (clock_deg - 40.0) / 80.0), 2)
+               : 0.0;
   };
   const auto findings = ring_findings(kLining, kGrid, ring_18(bulge), {});
   ASSERT_EQ(findings.size(), 1U);
@@ -75,7 +78,8 @@ TEST(RingFindings, WhatTheRegistrationLeavesOpenCountsToo) {
   Adjustment adjustment = ring_18([](double) { return 0.003; });
   adjustment.covariance(2, 2) = 0.001 * 0.001;
   EXPECT_TRUE(ring_findings(kLining, kGrid, adjustment, {}).empty());
-  for (const LiningCell& cell : lining_cells(kGrid, adjustment)) EXPECT_NEAR(cell.std_m, std::hypot(0.0002, 0.001), 1e-9);
+  for (const LiningCell& cell : lining_cells(kGrid, adjustment))
+    EXPECT_NEAR(cell.std_m, std::hypot(0.0002, 0.001), 1e-9);
 }
 
 TEST(ConvergenceLines, RingPushedInwardsBy6mmAllRoundShortensTheSpringlineBy12AndLowersTheCrownBy6) {
@@ -106,7 +110,8 @@ TEST(ConvergenceLines, CommonErrorOfTheRegistrationHardlyTouchesAChord) {
 
 TEST(ConvergenceLines, LineWithoutItsMarkIsLeftOut) {
   Adjustment adjustment = ring_18([](double) { return 0.0; });
-  std::erase_if(adjustment.patches, [](const Patch& patch) { return kGrid.clock_deg(kGrid.sector_of(patch.cell)) == 270.0; });
+  std::erase_if(adjustment.patches,
+                [](const Patch& patch) { return kGrid.clock_deg(kGrid.sector_of(patch.cell)) == 270.0; });
   for (const ConvergenceLine& found : convergence_lines(kLining, kGrid, adjustment)) {
     EXPECT_NE(found.name, "9-3");
     EXPECT_NE(found.name, "12-9");

@@ -1,9 +1,9 @@
 #include "inspect/lining/robust_mean.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 #include "core/random.h"
 
@@ -14,7 +14,8 @@ TEST(RobustMean, SpreadOfANormalDistributionIsItsStandardDeviation) {
   const RandomStream noise(1, "test/spread");
   std::vector<double> values;
   for (std::uint64_t i = 0; i < 10000; ++i) values.push_back(3.0 + 0.5 * noise.normal(i));
-  EXPECT_NEAR(mad_std(values, median_of(values)), 0.5, 0.5 * 4.0 * 1.17 / std::sqrt(10000.0));  // its own: 1.17 / sqrt(n)
+  EXPECT_NEAR(mad_std(values, median_of(values)), 0.5,
+              0.5 * 4.0 * 1.17 / std::sqrt(10000.0));  // its own: 1.17 / sqrt(n)
 }
 
 TEST(RobustMean, TenthThatLies30mmOffDoesNotPull) {

@@ -1,10 +1,10 @@
 #include "inspect/lining/surface_cloud.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <limits>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "core/random.h"
@@ -19,7 +19,8 @@ std::vector<ScannerPoint> wall(double noise_std_m = 0.0) {
   for (int i = 0; i < 200; ++i) {
     for (int k = 0; k < 200; ++k) {
       const double y = 4.0 + noise_std_m * noise.normal(static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(k));
-      points.push_back({static_cast<float>(0.01 * i - 1.0), static_cast<float>(y), static_cast<float>(0.01 * k - 1.0), 50.0F});
+      points.push_back(
+          {static_cast<float>(0.01 * i - 1.0), static_cast<float>(y), static_cast<float>(0.01 * k - 1.0), 50.0F});
     }
   }
   return points;
@@ -39,8 +40,8 @@ TEST(Thin, WallOf4SquareMetresAt10cmKeepsAbout400PointsAndEveryBeamCounts) {
 }
 
 TEST(Thin, MeansAreNotBiasedByNoiseWhereverTheWallStands) {
-  // Cells in space would sort a wall's points by their noise. The mean of means has a standard deviation of 0.002 / sqrt(40000) = 0.01 mm, somewhat
-  // more as cells differ in size.
+  // Cells in space would sort a wall's points by their noise. The mean of means has a standard deviation of 0.002 /
+  // sqrt(40000) = 0.01 mm, somewhat more as cells differ in size.
   double sum = 0.0;
   const auto thinned = downsample(wall(0.002), 0.1);
   for (const DownsampledPoint& point : thinned) sum += point.p.y() - 4.0;
@@ -77,9 +78,7 @@ TEST(SurfaceCloud, RowOfPointsIsNoSurface) {
   for (const SurfaceCloud::Surface& surface : cloud.surfaces()) EXPECT_TRUE(surface.normal.isZero());
 }
 
-TEST(SurfaceCloud, OfNothingNothingIsNearest) {
-  EXPECT_EQ(SurfaceCloud({}).nearest({0.0, 0.0, 0.0}, 1).count, 0U);
-}
+TEST(SurfaceCloud, OfNothingNothingIsNearest) { EXPECT_EQ(SurfaceCloud({}).nearest({0.0, 0.0, 0.0}, 1).count, 0U); }
 
 }  // namespace
 }  // namespace patrol::inspect::surface_cloud_test

@@ -1,9 +1,9 @@
 #include "inspect/water/sounding_likelihood.h"
 
+#include <numbers>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include <numbers>
 
 #include "core/error.h"
 #include "tests/support/soundings.h"
@@ -27,12 +27,15 @@ TEST(SoundingLikelihood, IsLargestNearTheRockThatWasThere) {
 
 TEST(SoundingLikelihood, OfABodyTooSmallToSeeIsThatOfTheRock) {
   const SoundingLikelihood likelihood({}, soundings(kNone));
-  EXPECT_NEAR(likelihood.log_likelihood_body(0.003, {.distance_m = 30.0, .radius_m = 0.2, .conductivity_spm = 0.6}, kAhead), likelihood.log_likelihood_rock(0.003), 1e-3);
+  EXPECT_NEAR(
+      likelihood.log_likelihood_body(0.003, {.distance_m = 30.0, .radius_m = 0.2, .conductivity_spm = 0.6}, kAhead),
+      likelihood.log_likelihood_rock(0.003), 1e-3);
 }
 
 TEST(SoundingLikelihood, AheadAndBehindAreAlike) {
   const SoundingLikelihood likelihood({}, soundings(kBody));
-  EXPECT_NEAR(likelihood.log_likelihood_body(0.003, kBody, kAhead), likelihood.log_likelihood_body(0.003, kBody, -kAhead), 1e-9);
+  EXPECT_NEAR(likelihood.log_likelihood_body(0.003, kBody, kAhead),
+              likelihood.log_likelihood_body(0.003, kBody, -kAhead), 1e-9);
 }
 
 // Turning body and antenna together about z changes nothing: steel is alike in all directions, and so is the noise.
@@ -41,8 +44,10 @@ TEST(SoundingLikelihood, TurningBodyAndAntennaTogetherChangesNothing) {
   constexpr double kTurn_rad = 0.3;
   for (OrientedSounding& aimed : turned) aimed.pose.yaw_rad += kTurn_rad;
   const double before = SoundingLikelihood({}, soundings(kBody)).log_likelihood_body(0.003, kBody, kAhead);
-  const double after = SoundingLikelihood({}, turned).log_likelihood_body(0.003, kBody, quaternion_from_yaw(kTurn_rad) * kAhead);
-  // The prior of steel's share by direction is independent in the six entries of its form, which a turn mixes: hence a little.
+  const double after =
+      SoundingLikelihood({}, turned).log_likelihood_body(0.003, kBody, quaternion_from_yaw(kTurn_rad) * kAhead);
+  // The prior of steel's share by direction is independent in the six entries of its form, which a turn mixes: hence a
+  // little.
   EXPECT_NEAR(after, before, 0.5);
 }
 
@@ -61,12 +66,15 @@ TEST(SoundingLikelihood, AGainOfFivePerCentAndASmallShiftOfTimeCostLittleAndTwen
   EXPECT_GT(scaled(1.0) - scaled(1.3), 8.0);
 }
 
-// Peelle's puzzle: were gains sized by the noisy readings, a world in which all signals are smaller would beat the true one.
+// Peelle's puzzle: were gains sized by the noisy readings, a world in which all signals are smaller would beat the true
+// one.
 TEST(SoundingLikelihood, TheTruthIsNotBeatenByAWeakerWorld) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const SoundingLikelihood likelihood({}, soundings(kBody, seed));
     const double truth = likelihood.log_likelihood_body(0.003, kBody, kAhead);
-    EXPECT_GT(truth + 4.0, likelihood.log_likelihood_body(0.0026, {.distance_m = 17.2, .radius_m = 6.0, .conductivity_spm = 0.6}, kAhead)) << seed;
+    EXPECT_GT(truth + 4.0, likelihood.log_likelihood_body(
+                               0.0026, {.distance_m = 17.2, .radius_m = 6.0, .conductivity_spm = 0.6}, kAhead))
+        << seed;
   }
 }
 

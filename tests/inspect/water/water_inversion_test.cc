@@ -1,9 +1,9 @@
 #include "inspect/water/water_inversion.h"
 
+#include <numbers>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include <numbers>
 
 #include "core/error.h"
 #include "tests/support/soundings.h"
@@ -22,10 +22,12 @@ WaterSettings quick() {
   return settings;
 }
 
-WaterResult invert(const ConductiveSphere& body, const WaterSettings& settings = quick(), const Pose2& T_map_body = {}) {
+WaterResult invert(const ConductiveSphere& body, const WaterSettings& settings = quick(),
+                   const Pose2& T_map_body = {}) {
   const AntennaGeometry antenna = test::antenna_mount();
-  return WaterInversion(settings).invert(test::make_soundings(0.003, body, kTowards, antenna_poses(settings.sounding, antenna), 1), antenna, T_map_body,
-                                         0.1, 1);
+  return WaterInversion(settings).invert(
+      test::make_soundings(0.003, body, kTowards, antenna_poses(settings.sounding, antenna), 1), antenna, T_map_body,
+      0.1, 1);
 }
 
 TEST(WaterInversion, ABodySixteenMetresAheadIsPutWithinAMetreAndAHalfAndWarnedOf) {
@@ -61,7 +63,8 @@ TEST(WaterInversion, WhereTheRobotStoodTurnsAndMovesTheBodyInTheMap) {
   EXPECT_EQ(here.azimuth_deg, there.azimuth_deg);
 }
 
-// Strength a^3 / R^6 and decay time sigma a^2 are what is measured: twice as sure of sigma, and the distance's interval shrinks.
+// Strength a^3 / R^6 and decay time sigma a^2 are what is measured: twice as sure of sigma, and the distance's interval
+// shrinks.
 TEST(WaterInversion, TheLessIsKnownOfTheWaterTheWiderTheIntervals) {
   WaterSettings sure = quick(), unsure = quick();
   sure.prior.water_log_std = 0.05, unsure.prior.water_log_std = 0.4;

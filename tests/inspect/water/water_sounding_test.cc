@@ -1,13 +1,13 @@
 #include "inspect/water/water_sounding.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <set>
 
-#include "core/geometry/angles.h"
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
 #include "core/error.h"
+#include "core/geometry/angles.h"
 
 namespace patrol::inspect::water_sounding_test {
 namespace {
@@ -22,9 +22,9 @@ AntennaGeometry mount() {
 /// Servos that turn at 1 rad/s to what they are told, 0.1 deg short of the yaw, and an instrument that takes a second.
 class Bench {
  public:
-  double stuck_from_s = 1e9;       ///< from then on the servos do not turn
-  double deaf_from_s = 1e9;        ///< from then on no sounding is made
-  double silent_from_s = 1e9;      ///< from then on the servos say nothing
+  double stuck_from_s = 1e9;   ///< from then on the servos do not turn
+  double deaf_from_s = 1e9;    ///< from then on no sounding is made
+  double silent_from_s = 1e9;  ///< from then on the servos say nothing
 
   /// Until the soundings are over, at most 400 s. How long it took.
   double run(WaterSounding& water) {
@@ -39,7 +39,8 @@ class Bench {
         told_ = state_;
       }
       if (sounding_due_ && *sounding_due_ <= now) {
-        sounding_ = TemSounding{.stamp = now, .moment_am2 = 34.0, .gate_s = {1e-5}, .rate_tps = {1e-6}, .std_tps = {1e-8}};
+        sounding_ =
+            TemSounding{.stamp = now, .moment_am2 = 34.0, .gate_s = {1e-5}, .rate_tps = {1e-6}, .std_tps = {1e-8}};
         true_yaws_rad_.push_back(state_.yaw_rad);
         sounding_due_.reset();
       }
@@ -47,7 +48,8 @@ class Bench {
       if (water.is_over()) return 0.02 * tick;
       if (!order) continue;
       if (const auto* antenna = std::get_if<AntennaCommand>(&*order)) asked_ = *antenna;
-      if (std::holds_alternative<SoundingCommand>(*order) && 0.02 * tick < deaf_from_s) sounding_due_ = now + from_seconds(1.0);
+      if (std::holds_alternative<SoundingCommand>(*order) && 0.02 * tick < deaf_from_s)
+        sounding_due_ = now + from_seconds(1.0);
     }
     ADD_FAILURE() << "never over";
     return 400.0;
@@ -71,7 +73,8 @@ TEST(AntennaPoses, Are35DifferentOnesFrom60DegreesRightTo60LeftAnd30UpTo30Down) 
   std::set<std::pair<int, int>> different;
   double longest_turn_rad = 0.0;
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    different.emplace(static_cast<int>(std::lround(poses[i].yaw_rad / kDegree)), static_cast<int>(std::lround(poses[i].pitch_rad / kDegree)));
+    different.emplace(static_cast<int>(std::lround(poses[i].yaw_rad / kDegree)),
+                      static_cast<int>(std::lround(poses[i].pitch_rad / kDegree)));
     if (i > 0) longest_turn_rad = std::max(longest_turn_rad, std::abs(poses[i].yaw_rad - poses[i - 1].yaw_rad));
   }
   EXPECT_EQ(different.size(), 35U);
@@ -86,7 +89,8 @@ TEST(AntennaPoses, WhatTheMountDoesNotReachIsRefusedByName) {
     antenna_poses(settings, mount());
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), ::testing::HasSubstr("stack.inspection.water.sounding.max_yaw_deg = 70: outside the range of the mount: must be in [-68.8, 68.8] deg"));
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("stack.inspection.water.sounding.max_yaw_deg = 70: outside the "
+                                                   "range of the mount: must be in [-68.8, 68.8] deg"));
   }
 }
 
@@ -98,12 +102,14 @@ TEST(WaterSounding, Takes35SoundingsWhereTheServosReadAndStowsTheAntenna) {
   EXPECT_EQ(water.num_skipped(), 0);
   EXPECT_TRUE(water.is_stowed());
   EXPECT_NEAR(bench.state().pitch_rad, -90.0 * kDegree, 1e-9);
-  for (std::size_t i = 0; i < 35; ++i) EXPECT_NEAR(water.soundings()[i].pose.yaw_rad, bench.true_yaws_rad()[i], 1e-9) << "still while sounding";
+  for (std::size_t i = 0; i < 35; ++i)
+    EXPECT_NEAR(water.soundings()[i].pose.yaw_rad, bench.true_yaws_rad()[i], 1e-9) << "still while sounding";
   EXPECT_GT(took_s, 35.0 * 1.4);
   EXPECT_LT(took_s, 100.0);
 }
 
-// 0.1 deg short in yaw is 0.1 cos(pitch) deg of axis: 30, 15, 0, 15, 30 deg give the root of (2 * 0.75 + 2 * 0.933 + 1) / 5 = 0.934.
+// 0.1 deg short in yaw is 0.1 cos(pitch) deg of axis: 30, 15, 0, 15, 30 deg give the root of (2 * 0.75 + 2 * 0.933 + 1)
+// / 5 = 0.934.
 TEST(WaterSounding, SaysTheErrorBetweenWhatWasAskedAndWhatWasRead) {
   WaterSounding water({}, mount(), Time{});
   Bench bench;

@@ -3,9 +3,9 @@
 #include <filesystem>
 
 #include "inspect/route_frame.h"
-#include "io/maps/map_server.h"
 #include "io/json/route_json.h"
 #include "io/logs/run_log.h"
+#include "io/maps/map_server.h"
 #include "io/urdf.h"
 #include "stack/make_stack.h"
 

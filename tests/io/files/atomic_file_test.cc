@@ -3,9 +3,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
+
+#include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "io/files/bounded_read.h"
@@ -29,7 +29,9 @@ TEST(SaveText, ReplacesTheFileAndLeavesNothingBeside) {
 }
 
 /// Where the new file grows.
-std::filesystem::path part_of(const std::filesystem::path& file) { return file.string() + "." + std::to_string(::getpid()) + ".part"; }
+std::filesystem::path part_of(const std::filesystem::path& file) {
+  return file.string() + "." + std::to_string(::getpid()) + ".part";
+}
 
 TEST(SaveText, WhenWritingFailsTheOldFileStandsUntouched) {
   const TemporaryFolder folder;

@@ -18,12 +18,7 @@ std::string written(const std::vector<JunitSuite>& suites) {
 }
 
 JunitCase make_case(const std::string& name, JunitResult result, const std::string& message = "") {
-  return {.class_name = "short",
-          .name = name,
-          .time_s = 1.5,
-          .result = result,
-          .message = message,
-          .details = ""};
+  return {.class_name = "short", .name = name, .time_s = 1.5, .result = result, .message = message, .details = ""};
 }
 
 TEST(SaveJunit, IsThisDocument) {
@@ -52,11 +47,9 @@ TEST(SaveJunit, AddsTheSuitesUp) {
                        .time_s = 1.0,
                        .properties = {},
                        .cases = {make_case("x", JunitResult::kError), make_case("y", JunitResult::kSkipped)}};
-  const JunitSuite two{
-      .name = "b", .time_s = 2.5, .properties = {}, .cases = {make_case("x", JunitResult::kPassed)}};
-  EXPECT_THAT(
-      written({one, two}),
-      HasSubstr(R"(<testsuites name="patrol" tests="3" failures="0" errors="1" skipped="1" time="3.500">)"));
+  const JunitSuite two{.name = "b", .time_s = 2.5, .properties = {}, .cases = {make_case("x", JunitResult::kPassed)}};
+  EXPECT_THAT(written({one, two}),
+              HasSubstr(R"(<testsuites name="patrol" tests="3" failures="0" errors="1" skipped="1" time="3.500">)"));
 }
 
 TEST(SaveJunit, EscapesWhatXmlCannotHold) {
@@ -82,12 +75,16 @@ TEST(LoadJunit, ReadsBackWhatWasSaved) {
   const test::TemporaryFolder folder;
   JunitCase failed = make_case("pose.ate_rmse_m <= 0.1", JunitResult::kFailure, "is 0.2, \"expected\" <= 0.1 & less");
   failed.details = "at 12 s";
-  save_junit(folder / "junit.xml", {{.name = "a<b", .time_s = 3.0, .properties = {{"seed", "7"}, {"version", "0.1.0"}},
-                                     .cases = {make_case("run", JunitResult::kPassed), failed, make_case("fault", JunitResult::kSkipped, "NOT EXECUTED")}}});
+  save_junit(folder / "junit.xml", {{.name = "a<b",
+                                     .time_s = 3.0,
+                                     .properties = {{"seed", "7"}, {"version", "0.1.0"}},
+                                     .cases = {make_case("run", JunitResult::kPassed), failed,
+                                               make_case("fault", JunitResult::kSkipped, "NOT EXECUTED")}}});
   const std::vector<JunitSuite> suites = load_junit(folder / "junit.xml");
   ASSERT_EQ(suites.size(), 1u);
   EXPECT_EQ(suites[0].name, "a<b");
-  EXPECT_EQ(suites[0].properties, (std::vector<std::pair<std::string, std::string>>{{"seed", "7"}, {"version", "0.1.0"}}));
+  EXPECT_EQ(suites[0].properties,
+            (std::vector<std::pair<std::string, std::string>>{{"seed", "7"}, {"version", "0.1.0"}}));
   ASSERT_EQ(suites[0].cases.size(), 3u);
   EXPECT_EQ(suites[0].cases[0].result, JunitResult::kPassed);
   EXPECT_EQ(suites[0].cases[0].time_s, 1.5);
@@ -104,7 +101,8 @@ TEST(LoadJunit, AnUnfinishedRunIsAnError) {
 }
 
 TEST(LoadJunit, RefusesWhatIsNotJunitAndNamesTheFile) {
-  const test::TemporaryFile broken("junit.xml", "<testsuites>\n<testsuite"), other("junit.xml", "<html/>"), empty("junit.xml", "");
+  const test::TemporaryFile broken("junit.xml", "<testsuites>\n<testsuite"), other("junit.xml", "<html/>"),
+      empty("junit.xml", "");
   for (const auto* file : {&broken, &other, &empty}) {
     EXPECT_THAT([&] { load_junit(file->path()); }, ::testing::ThrowsMessage<InputError>(HasSubstr("junit.xml")));
   }

@@ -1,8 +1,9 @@
 #include "io/files/line_reader.h"
 
+#include <sys/resource.h>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
 #include "core/error.h"
 #include "tests/support/gzip_file.h"
@@ -66,7 +67,8 @@ TEST(LineReader, AQuarterOfAGigabyteWithoutALineEndTakesTenMegabytesOfMemory) {
   LineReader reader(folder / "zeros");
   EXPECT_TRUE(reader.next()->is_cut);
   EXPECT_FALSE(reader.next());
-  EXPECT_EQ(reader.read_error(), "more than 67108864 bytes have no line's end, nothing is read") << "after 64 MB it is given up";
+  EXPECT_EQ(reader.read_error(), "more than 67108864 bytes have no line's end, nothing is read")
+      << "after 64 MB it is given up";
   getrusage(RUSAGE_SELF, &after);
   EXPECT_LT(after.ru_maxrss - before.ru_maxrss, 10'000) << "KiB";
 }

@@ -1,8 +1,8 @@
 #include "io/files/line_tokenizer.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 namespace patrol::io::line_fields_test {
 namespace {
@@ -38,7 +38,8 @@ TEST(ParseStamp, OtherWaysToWriteANumberAreReadToo) {
 }
 
 TEST(ParseStamp, WhatIsNoTimeOfUseIsNone) {
-  for (const char* const text : {"", ".", "-", "1.2.3", "1.5s", "nan", "inf", "1e300", "99999999999", "99999999999999999999999", "0x10", "1.-5"}) {
+  for (const char* const text : {"", ".", "-", "1.2.3", "1.5s", "nan", "inf", "1e300", "99999999999",
+                                 "99999999999999999999999", "0x10", "1.-5"}) {
     EXPECT_EQ(parse_stamp(text), std::nullopt) << text;
   }
 }
@@ -68,9 +69,12 @@ TEST(LineTokenizer, NamesWhatIsNoNumber) {
   EXPECT_EQ(complaint_about("1,5", [](LineTokenizer& f) { f.any_number("range"); }), "range '1,5' is not a number");
   EXPECT_EQ(complaint_about("", [](LineTokenizer& f) { f.number("range"); }), "ends before range");
   EXPECT_EQ(complaint_about("1.5x", [](LineTokenizer& f) { f.stamp("t"); }), "t '1.5x' is not a time in seconds");
-  EXPECT_EQ(complaint_about("11", [](LineTokenizer& f) { f.integer("n", 0, 10); }), "n '11' must be an integer in [0, 10]");
-  EXPECT_EQ(complaint_about("1.0", [](LineTokenizer& f) { f.integer("n", 0, 10); }), "n '1.0' must be an integer in [0, 10]");
-  EXPECT_EQ(complaint_about(std::string(100, 'x'), [](LineTokenizer& f) { f.number("n"); }), "n '" + std::string(24, 'x') + "...' is not a finite number");
+  EXPECT_EQ(complaint_about("11", [](LineTokenizer& f) { f.integer("n", 0, 10); }),
+            "n '11' must be an integer in [0, 10]");
+  EXPECT_EQ(complaint_about("1.0", [](LineTokenizer& f) { f.integer("n", 0, 10); }),
+            "n '1.0' must be an integer in [0, 10]");
+  EXPECT_EQ(complaint_about(std::string(100, 'x'), [](LineTokenizer& f) { f.number("n"); }),
+            "n '" + std::string(24, 'x') + "...' is not a finite number");
 }
 
 TEST(LineTokenizer, APoseIsWrappedAndOnTheEarth) {
@@ -79,7 +83,8 @@ TEST(LineTokenizer, APoseIsWrappedAndOnTheEarth) {
   EXPECT_EQ(pose.x, 1.0);
   EXPECT_EQ(pose.y, 2.0);
   EXPECT_NEAR(pose.yaw, 7.0 - 2.0 * std::numbers::pi, 1e-15);
-  EXPECT_EQ(complaint_about("1e300 0 0", [](LineTokenizer& f) { f.pose("pose"); }), "pose (1e+300 m, 0 m) is off the earth");
+  EXPECT_EQ(complaint_about("1e300 0 0", [](LineTokenizer& f) { f.pose("pose"); }),
+            "pose (1e+300 m, 0 m) is off the earth");
 }
 
 }  // namespace

@@ -8,10 +8,16 @@ namespace {
 TEST(OneLine, ControlCharactersAreWrittenOut) { EXPECT_EQ(on_one_line("a\nb\x1b[31m\x7f"), "a\\nb\\x1b[31m\\x7f"); }
 
 TEST(OneLine, C1ControlsAndBytesThatAreNotUtf8AreWrittenOut) {
-  EXPECT_EQ(on_one_line("a\xc2\x9b" "31m\xc2\x85"), "a\\x9b31m\\x85");
-  EXPECT_EQ(on_one_line("a\x9b" "31m\xff\xc3"), "a\\x9b31m\\xff\\xc3");
+  EXPECT_EQ(on_one_line("a\xc2\x9b"
+                        "31m\xc2\x85"),
+            "a\\x9b31m\\x85");
+  EXPECT_EQ(on_one_line("a\x9b"
+                        "31m\xff\xc3"),
+            "a\\x9b31m\\xff\\xc3");
   EXPECT_TRUE(has_control_characters("a\xc2\x9b"));
-  EXPECT_FALSE(has_control_characters("Gr\xc3\xb6\xc3\x9f" "e \xe2\x82\xac"));
+  EXPECT_FALSE(
+      has_control_characters("Gr\xc3\xb6\xc3\x9f"
+                             "e \xe2\x82\xac"));
 }
 
 TEST(OneLine, LettersBeyondAsciiStay) { EXPECT_EQ(on_one_line("Größe 5 µm"), "Größe 5 µm"); }

@@ -1,9 +1,8 @@
 #include "io/files/sqlite.h"
 
-#include <sqlite3.h>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sqlite3.h>
 
 #include "core/error.h"
 #include "tests/support/temporary_file.h"
@@ -13,7 +12,8 @@ namespace {
 
 using ::testing::ElementsAre;
 
-const Table kRuns{.name = "runs", .columns = {"variant", "pose.ate_rmse_m", "seed"},
+const Table kRuns{.name = "runs",
+                  .columns = {"variant", "pose.ate_rmse_m", "seed"},
                   .rows = {{std::string("a=\"1\""), 0.25, std::int64_t{1}}, {std::string("b"), {}, std::int64_t{2}}}};
 
 /// The first column of every row that `sql` gives.
@@ -33,8 +33,10 @@ std::vector<std::string> ask(const std::filesystem::path& file, const std::strin
 TEST(Sqlite, AnswersQuestionsAboutItsRows) {
   const test::TemporaryFolder folder;
   save_sqlite(folder / "a.sqlite", {kRuns});
-  EXPECT_THAT(ask(folder / "a.sqlite", "SELECT variant FROM runs WHERE \"pose.ate_rmse_m\" < 0.3"), ElementsAre("a=\"1\""));
-  EXPECT_THAT(ask(folder / "a.sqlite", "SELECT \"pose.ate_rmse_m\" FROM runs ORDER BY seed"), ElementsAre("0.25", "NULL"));
+  EXPECT_THAT(ask(folder / "a.sqlite", "SELECT variant FROM runs WHERE \"pose.ate_rmse_m\" < 0.3"),
+              ElementsAre("a=\"1\""));
+  EXPECT_THAT(ask(folder / "a.sqlite", "SELECT \"pose.ate_rmse_m\" FROM runs ORDER BY seed"),
+              ElementsAre("0.25", "NULL"));
 }
 
 TEST(Sqlite, TheSameTablesGiveTheSameBytes) {

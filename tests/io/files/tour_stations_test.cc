@@ -1,9 +1,9 @@
 #include "io/files/tour_stations.h"
 
+#include <cmath>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include <cmath>
 
 #include "core/error.h"
 #include "tests/support/temporary_file.h"
@@ -39,7 +39,8 @@ TEST(TourStations, ColumnsComeInAnyOrderAndFourMayBeMissing) {
 }
 
 TEST(TourStations, EmptyCellsAreDefaultsAndTheRestIsRead) {
-  const std::vector<TourStation> stations = load("name,x,y,service_s,earliest_s,latest_s,priority\na,0,0,10,60,120,-2\nb,1,1,,,,\n");
+  const std::vector<TourStation> stations =
+      load("name,x,y,service_s,earliest_s,latest_s,priority\na,0,0,10,60,120,-2\nb,1,1,,,,\n");
   EXPECT_EQ(stations[0].service_s, 10.0);
   EXPECT_EQ(stations[0].earliest_s, 60.0);
   EXPECT_EQ(stations[0].latest_s, 120.0);

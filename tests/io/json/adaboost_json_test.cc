@@ -1,10 +1,9 @@
 #include "io/json/adaboost_json.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <functional>
 
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
@@ -66,27 +65,36 @@ TEST(LoadBoostedStumps, AModelOfOtherFeaturesIsRefused) {
   const std::string complaint = "model.json: features must be distance, overlap: the model was trained for others";
   EXPECT_EQ(complaint_after([](Json& model) { model["features"] = {"overlap", "distance"}; }), complaint);
   EXPECT_EQ(complaint_after([](Json& model) { model["features"] = {"distance"}; }), complaint);
-  EXPECT_EQ(complaint_after([](Json& model) { model["features"] = {1, 2}; }), "model.json: features must be a list of words");
+  EXPECT_EQ(complaint_after([](Json& model) {
+              model["features"] = {1, 2};
+            }),
+            "model.json: features must be a list of words");
 }
 
 TEST(LoadBoostedStumps, EachMissingFieldIsNamed) {
   for (const char* key : {"features", "stumps"}) {
-    EXPECT_EQ(complaint_after([&](Json& model) { model.erase(key); }), std::string("model.json: ") + key + " is missing");
+    EXPECT_EQ(complaint_after([&](Json& model) { model.erase(key); }),
+              std::string("model.json: ") + key + " is missing");
   }
   for (const char* key : {"feature", "threshold", "sign_above", "weight"}) {
-    EXPECT_EQ(complaint_after([&](Json& model) { model["stumps"][1].erase(key); }), std::string("model.json: stumps[1]: ") + key + " is missing");
+    EXPECT_EQ(complaint_after([&](Json& model) { model["stumps"][1].erase(key); }),
+              std::string("model.json: stumps[1]: ") + key + " is missing");
   }
 }
 
 TEST(LoadBoostedStumps, EachWrongValueIsNamed) {
-  EXPECT_EQ(complaint_after([](Json& model) { model["stumps"] = Json::array(); }), "model.json: stumps must be a list of at least one stump");
+  EXPECT_EQ(complaint_after([](Json& model) { model["stumps"] = Json::array(); }),
+            "model.json: stumps must be a list of at least one stump");
   EXPECT_EQ(complaint_after([](Json& model) { model["stumps"] = 3; }), "model.json: stumps must be a list");
   EXPECT_EQ(complaint_after([](Json& model) { model["stumps"][0] = 3; }), "model.json: stumps[0]: must be an object");
   EXPECT_EQ(complaint_after([](Json& model) { model["stumps"][0]["feature"] = "length"; }),
             "model.json: stumps[0]: feature = length: is not one of the features");
-  EXPECT_EQ(complaint_after([](Json& model) { model["stumps"][0]["threshold"] = nullptr; }), "model.json: stumps[0]: threshold must be a number");
-  EXPECT_EQ(complaint_after([](Json& model) { model["stumps"][0]["sign_above"] = 0; }), "model.json: stumps[0]: sign_above = 0: must be 1 or -1");
-  EXPECT_EQ(complaint_after([](Json& model) { model["stumps"][0]["weight"] = 0; }), "model.json: stumps[0]: weight must be positive");
+  EXPECT_EQ(complaint_after([](Json& model) { model["stumps"][0]["threshold"] = nullptr; }),
+            "model.json: stumps[0]: threshold must be a number");
+  EXPECT_EQ(complaint_after([](Json& model) { model["stumps"][0]["sign_above"] = 0; }),
+            "model.json: stumps[0]: sign_above = 0: must be 1 or -1");
+  EXPECT_EQ(complaint_after([](Json& model) { model["stumps"][0]["weight"] = 0; }),
+            "model.json: stumps[0]: weight must be positive");
   EXPECT_EQ(complaint_after([](Json& model) { model["version"] = 1; }), "model.json: unknown key version");
   EXPECT_EQ(complaint_about("{\"features\": "), "model.json:1: is not JSON: ends too early");
 }

@@ -1,10 +1,9 @@
 #include "io/json/inspection_json.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <limits>
 
+#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
@@ -15,10 +14,21 @@ namespace {
 using Json = nlohmann::json;
 
 LiningResult small_lining() {
-  return {.stamp = Time{1'500'000'001}, .station = "station_2", .T_map_body = {1.0, -2.0, 0.5}, .is_registered = true, .registration_rms_m = 0.002, .registration_inlier_ratio = 0.9,
-          .correction_m = 0.03, .cells = {{.ring = 7, .clock_deg = 355.0, .inward_m = -0.0004, .std_m = 0.0003, .points = 12}},
+  return {.stamp = Time{1'500'000'001},
+          .station = "station_2",
+          .T_map_body = {1.0, -2.0, 0.5},
+          .is_registered = true,
+          .registration_rms_m = 0.002,
+          .registration_inlier_ratio = 0.9,
+          .correction_m = 0.03,
+          .cells = {{.ring = 7, .clock_deg = 355.0, .inward_m = -0.0004, .std_m = 0.0003, .points = 12}},
           .lines = {{.ring = 7, .name = "9-3", .change_m = -0.006, .std_m = 0.0005}},
-          .findings = {{.ring = 7, .clock_deg = 60.0, .inward_m = 0.012, .std_m = 0.0004, .level = WarningLevel::kAlarm, .p_map = {10.0, -4.0, 3.0}}}};
+          .findings = {{.ring = 7,
+                        .clock_deg = 60.0,
+                        .inward_m = 0.012,
+                        .std_m = 0.0004,
+                        .level = WarningLevel::kAlarm,
+                        .p_map = {10.0, -4.0, 3.0}}}};
 }
 
 WaterResult small_water() {
@@ -98,8 +108,10 @@ TEST(InspectionJson, WhatIsWrongIsNamedWithItsPlaceAndRule) {
   EXPECT_EQ(broken("/cells/0/ring", 0), "result.data.cells[0]: ring must be in [1, 100000]");
   EXPECT_EQ(broken("/cells/0/clock_deg", 361), "result.data.cells[0]: clock_deg must be in [0, 360]");
   EXPECT_EQ(broken("/cells/0/std_m", -1), "result.data.cells[0]: std_m must not be negative");
-  EXPECT_EQ(broken("/findings/0/level", "red"), "result.data.findings[0]: level = red: must be one of none, notice, warning, alarm");
-  EXPECT_EQ(broken("/findings/0/position_m", {1, 2}), "result.data.findings[0]: position_m must be a list of 3 numbers");
+  EXPECT_EQ(broken("/findings/0/level", "red"),
+            "result.data.findings[0]: level = red: must be one of none, notice, warning, alarm");
+  EXPECT_EQ(broken("/findings/0/position_m", {1, 2}),
+            "result.data.findings[0]: position_m must be a list of 3 numbers");
   EXPECT_EQ(broken("/lines", "none"), "result.data: lines must be a list");
   EXPECT_EQ(broken("/registered", 1), "result.data: registered must be true or false");
   EXPECT_EQ(broken("/stamp_ns", 1.5), "result.data: stamp_ns must be an integer");

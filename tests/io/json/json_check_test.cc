@@ -34,7 +34,9 @@ TEST(CheckJson, WhatEndsTooEarlyIsSaidToDoSo) {
   EXPECT_EQ(complaint_about("[1,\n{\"a\":"), "f.json:2: is not JSON: ends too early");
 }
 
-TEST(CheckJson, ANumberTooLargeIsQuoted) { EXPECT_EQ(complaint_about("[1,\n\n-1e400\n]"), "f.json:3: -1e400: number out of range"); }
+TEST(CheckJson, ANumberTooLargeIsQuoted) {
+  EXPECT_EQ(complaint_about("[1,\n\n-1e400\n]"), "f.json:3: -1e400: number out of range");
+}
 
 TEST(CheckJson, AKeyTwiceInOneObjectIsNamedWithItsPlace) {
   EXPECT_EQ(complaint_about(R"({"a": 1, "a": 2})"), "f.json: a: duplicate key");

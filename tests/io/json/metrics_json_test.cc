@@ -1,8 +1,8 @@
 #include "io/json/metrics_json.h"
 
-#include <gtest/gtest.h>
-
 #include <limits>
+
+#include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "tests/support/temporary_file.h"
@@ -30,9 +30,8 @@ TEST(MetricAt, TruthsCountAsOneAndZero) {
 
 TEST(MetricAt, WhatIsNoFigureIsNone) {
   const Metrics metrics = make_metrics();
-  for (const char* path :
-       {"", "pose", "pose.", "pose.ate", "pose.note", "pose.none", "pose.ate_rmse_m.x", "stations",
-        "stations.2.map_error_m", "stations.-1.map_error_m", "stations.box_3.map_error_m"}) {
+  for (const char* path : {"", "pose", "pose.", "pose.ate", "pose.note", "pose.none", "pose.ate_rmse_m.x", "stations",
+                           "stations.2.map_error_m", "stations.-1.map_error_m", "stations.box_3.map_error_m"}) {
     EXPECT_FALSE(metric_at(metrics, path)) << path;
   }
 }

@@ -1,11 +1,10 @@
 #include "io/json/nav_json.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <functional>
 #include <limits>
 
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
@@ -63,33 +62,45 @@ TEST(LoadNav, WhatWasSavedIsReadBack) {
 
 TEST(LoadNav, EachMissingFieldIsNamed) {
   for (const char* key : {"number", "position", "orientation", "type", "accuracy"}) {
-    EXPECT_EQ(complaint_after([&](Json& goal) { goal.erase(key); }), std::string("nav.json: [1]: ") + key + " is missing");
+    EXPECT_EQ(complaint_after([&](Json& goal) { goal.erase(key); }),
+              std::string("nav.json: [1]: ") + key + " is missing");
   }
 }
 
 TEST(LoadNav, EachWrongTypeIsNamed) {
   EXPECT_EQ(complaint_after([](Json& goal) { goal["number"] = 1.5; }), "nav.json: [1]: number must be an integer");
   EXPECT_EQ(complaint_after([](Json& goal) { goal["number"] = 1e300; }), "nav.json: [1]: number must be an integer");
-  EXPECT_EQ(complaint_after([](Json& goal) { goal["number"] = 9007199254740993; }), "nav.json: [1]: number is too large");
-  EXPECT_EQ(complaint_after([](Json& goal) { goal["number"] = 18446744073709551615u; }), "nav.json: [1]: number is too large")
+  EXPECT_EQ(complaint_after([](Json& goal) { goal["number"] = 9007199254740993; }),
+            "nav.json: [1]: number is too large");
+  EXPECT_EQ(complaint_after([](Json& goal) { goal["number"] = 18446744073709551615u; }),
+            "nav.json: [1]: number is too large")
       << "2^64 - 1 is no -1";
   EXPECT_EQ(complaint_after([](Json& goal) { goal["number"] = std::numeric_limits<std::int64_t>::min(); }),
             "nav.json: [1]: number is too large");
-  EXPECT_EQ(complaint_after([](Json& goal) { goal["position"] = {1, 2}; }),
+  EXPECT_EQ(complaint_after([](Json& goal) {
+              goal["position"] = {1, 2};
+            }),
             "nav.json: [1]: position must be a list of 3 numbers");
   EXPECT_EQ(complaint_after([](Json& goal) { goal["orientation"] = "north"; }),
             "nav.json: [1]: orientation must be a list of 4 numbers");
   EXPECT_EQ(complaint_after([](Json& goal) { goal["type"] = 7; }), "nav.json: [1]: type must be a string");
-  EXPECT_EQ(complaint_after([](Json& goal) { goal["type"] = std::string("N\0", 2); }), "nav.json: [1]: type must be a string");
+  EXPECT_EQ(complaint_after([](Json& goal) { goal["type"] = std::string("N\0", 2); }),
+            "nav.json: [1]: type must be a string");
   EXPECT_EQ(complaint_after([](Json& goal) { goal["accuracy"] = "0.1"; }), "nav.json: [1]: accuracy must be a number");
 }
 
 TEST(LoadNav, NumbersThatMeanNothingAreRefused) {
-  EXPECT_EQ(complaint_after([](Json& goal) { goal["position"] = {1, nullptr, 0}; }),  // how JSON writes NaN
+  EXPECT_EQ(complaint_after([](Json& goal) {
+              goal["position"] = {1, nullptr, 0};
+            }),  // how JSON writes NaN
             "nav.json: [1]: position must be a list of 3 numbers");
-  EXPECT_EQ(complaint_after([](Json& goal) { goal["orientation"] = {0, 0, 0, 0}; }),
+  EXPECT_EQ(complaint_after([](Json& goal) {
+              goal["orientation"] = {0, 0, 0, 0};
+            }),
             "nav.json: [1]: orientation must be a quaternion x, y, z, w of length 1");
-  EXPECT_EQ(complaint_after([](Json& goal) { goal["orientation"] = {1, 0, 0, 0}; }),  // w first: on its head
+  EXPECT_EQ(complaint_after([](Json& goal) {
+              goal["orientation"] = {1, 0, 0, 0};
+            }),  // w first: on its head
             "nav.json: [1]: orientation must be upright within 45 degrees: a quaternion x, y, z, w");
   EXPECT_EQ(complaint_after([](Json& goal) { goal["accuracy"] = 0; }), "nav.json: [1]: accuracy must be positive");
   EXPECT_EQ(complaint_after([](Json& goal) { goal["type"] = "X"; }),

@@ -1,12 +1,11 @@
 #include "io/json/route_json.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <nlohmann/json.hpp>
-
 #include <functional>
 #include <numbers>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "core/error.h"
 #include "tests/support/pose_near.h"
@@ -74,9 +73,18 @@ TEST(LoadRoute, ReadsPriorityAndWindowWhichNobodyMustGive) {
   EXPECT_EQ(stations[0].latest_s, 90.5);
   EXPECT_EQ(stations[1].priority, 0);
   EXPECT_EQ(stations[1].latest_s, std::numeric_limits<double>::infinity());
-  EXPECT_EQ(complaint_after([](Json& r) { r["stations"][0]["window"] = {90, 60}; }), "r.json: stations[0]: window must be two times in s, from 0 to 1e7 and in order");
-  EXPECT_EQ(complaint_after([](Json& r) { r["stations"][0]["window"] = {0, 1e300}; }), "r.json: stations[0]: window must be two times in s, from 0 to 1e7 and in order");
-  EXPECT_EQ(complaint_after([](Json& r) { r["stations"][0]["window"] = {-1, 60}; }), "r.json: stations[0]: window must be two times in s, from 0 to 1e7 and in order");
+  EXPECT_EQ(complaint_after([](Json& r) {
+              r["stations"][0]["window"] = {90, 60};
+            }),
+            "r.json: stations[0]: window must be two times in s, from 0 to 1e7 and in order");
+  EXPECT_EQ(complaint_after([](Json& r) {
+              r["stations"][0]["window"] = {0, 1e300};
+            }),
+            "r.json: stations[0]: window must be two times in s, from 0 to 1e7 and in order");
+  EXPECT_EQ(complaint_after([](Json& r) {
+              r["stations"][0]["window"] = {-1, 60};
+            }),
+            "r.json: stations[0]: window must be two times in s, from 0 to 1e7 and in order");
 }
 
 TEST(LoadRoute, TheStreetsRoutesAreGood) {
@@ -91,8 +99,7 @@ TEST(LoadRoute, NamesThePlaceOfWhatIsWrong) {
   EXPECT_EQ(complaint_after([](Json& r) { r["version"] = 2; }), "r.json: version must be 1");
   EXPECT_EQ(complaint_after([](Json& r) { r["frame"] = "map"; }), "r.json: frame must be site");
   EXPECT_EQ(complaint_after([](Json& r) { r.erase("start"); }), "r.json: start is missing");
-  EXPECT_EQ(complaint_after([](Json& r) { r["stations"][1].erase("name"); }),
-            "r.json: stations[1]: name is missing");
+  EXPECT_EQ(complaint_after([](Json& r) { r["stations"][1].erase("name"); }), "r.json: stations[1]: name is missing");
   EXPECT_EQ(complaint_after([](Json& r) { r["stations"][1]["number"] = 1.5; }),
             "r.json: stations[1]: number must be an integer");
   EXPECT_EQ(complaint_after([](Json& r) { r["stations"][0]["type"] = "look"; }),
@@ -115,14 +122,10 @@ TEST(LoadRoute, NamesThePlaceOfWhatIsWrong) {
               r["keep_out"][0]["line"] = {{9, 4}};
             }),
             "r.json: keep_out[0]: line must have at least two points");
-  EXPECT_EQ(complaint_after([](Json& r) { r["stations"] = 3; }),
-            "r.json: stations must be a list");
+  EXPECT_EQ(complaint_after([](Json& r) { r["stations"] = 3; }), "r.json: stations must be a list");
   EXPECT_EQ(complaint_after([](Json& r) { r["stations"][0] = 3; }), "r.json: stations[0]: must be an object");
   EXPECT_EQ(complaint_after([](Json& r) { r["keep_out"] = 3; }), "r.json: keep_out must be a list");
-  EXPECT_EQ(complaint_after([](Json& r) {
-              r["keep_out"] = {{"name", "x"}};
-            }),
-            "r.json: keep_out must be a list");
+  EXPECT_EQ(complaint_after([](Json& r) { r["keep_out"] = {{"name", "x"}}; }), "r.json: keep_out must be a list");
 }
 
 TEST(LoadRoute, ReadsAnchorsAndDock) {
@@ -143,10 +146,18 @@ TEST(LoadRoute, ReadsAnchorsAndDock) {
 
 TEST(LoadRoute, WrongAnchorsAndDocksAreNamed) {
   const Json anchor = Json::parse(R"({"number": 3, "position": [20.5, -5, 2.5]})");
-  EXPECT_EQ(complaint_after([&](Json& r) { r["anchors"] = {anchor, anchor}; }),
+  EXPECT_EQ(complaint_after([&](Json& r) {
+              r["anchors"] = {anchor, anchor};
+            }),
             "r.json: anchors[1]: number 3: duplicate");
-  EXPECT_EQ(complaint_after([&](Json& r) { r["anchors"] = {{{"number", 3}}}; }), "r.json: anchors[0]: position is missing");
-  EXPECT_EQ(complaint_after([&](Json& r) { r["dock"] = {{"position", {0, 0, 0}}}; }), "r.json: dock: orientation is missing");
+  EXPECT_EQ(complaint_after([&](Json& r) {
+              r["anchors"] = {{{"number", 3}}};
+            }),
+            "r.json: anchors[0]: position is missing");
+  EXPECT_EQ(complaint_after([&](Json& r) {
+              r["dock"] = {{"position", {0, 0, 0}}};
+            }),
+            "r.json: dock: orientation is missing");
   EXPECT_EQ(complaint_after([&](Json& r) {
               r["dock"] = {{"position", {0, 0, 0}}, {"orientation", {0, 0, 0, 1}}, {"profile", {{1, 2}}}};
             }),

@@ -1,15 +1,14 @@
 #include "io/logs/carmen_log.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <numbers>
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
-#include "core/geometry/angles.h"
 #include "core/error.h"
+#include "core/geometry/angles.h"
 #include "tests/support/gzip_file.h"
 #include "tests/support/pose_near.h"
 #include "tests/support/temporary_file.h"
@@ -19,7 +18,8 @@ namespace {
 
 using namespace std::chrono_literals;
 using test::gzipped, test::Pose2Near, test::TemporaryFile, test::TemporaryFolder;
-using ::testing::ElementsAre, ::testing::EndsWith, ::testing::HasSubstr, ::testing::Pair, ::testing::StartsWith, ::testing::UnorderedElementsAre;
+using ::testing::ElementsAre, ::testing::EndsWith, ::testing::HasSubstr, ::testing::Pair, ::testing::StartsWith,
+    ::testing::UnorderedElementsAre;
 
 constexpr double kExactTol = 1e-12;
 constexpr double kRoundedPi = 3.141593;  // as logs write it
@@ -37,8 +37,10 @@ std::string flaser(const std::string& stamp, const std::string& laser = "1 2 0.5
   return "FLASER " + ranges + " " + laser + " " + robot + " " + stamp + " host 0.5\n";
 }
 
-std::string robotlaser(const std::string& geometry, int num_beams, const std::string& poses = "1 2 0.5 1 2 0.5", const std::string& remissions = "0") {
-  return fmt::format("ROBOTLASER1 {} {}{} {} {} 0.1 0.2 0.3 0.4 0.5 10.25 host 3\n", geometry, num_beams, repeated("1.5", num_beams), remissions, poses);
+std::string robotlaser(const std::string& geometry, int num_beams, const std::string& poses = "1 2 0.5 1 2 0.5",
+                       const std::string& remissions = "0") {
+  return fmt::format("ROBOTLASER1 {} {}{} {} {} 0.1 0.2 0.3 0.4 0.5 10.25 host 3\n", geometry, num_beams,
+                     repeated("1.5", num_beams), remissions, poses);
 }
 
 struct Read {
@@ -109,15 +111,18 @@ TEST(CarmenLog, AnOddNumberOfOldBeamsEndsAtNinety) {
 
 TEST(CarmenLog, TheResolutionParameterNarrowsTheFieldOfView) {
   // A SICK LMS at 0.25 deg has 401 beams over 100 deg.
-  const LaserScan scan = read_one("PARAM laser_front_laser_resolution 0.25 0 host 0\n" + flaser("1", "0 0 0", "0 0 0", "401" + repeated("1", 401))).scan;
+  const LaserScan scan = read_one("PARAM laser_front_laser_resolution 0.25 0 host 0\n" +
+                                  flaser("1", "0 0 0", "0 0 0", "401" + repeated("1", 401)))
+                             .scan;
   EXPECT_NEAR(scan.angle_increment_rad, 0.25 * kDegree, kExactTol);
   EXPECT_NEAR(scan.angle_min_rad, -50.0 * kDegree, kExactTol);
 }
 
 TEST(CarmenLog, AnImpossibleResolutionParameterIsNotFollowed) {
   for (const char* const resolution : {"0", "-1", "4"}) {  // 180 beams at 4 deg: two turns
-    const LaserScan scan =
-        read_one(fmt::format("PARAM laser_front_laser_resolution {}\n", resolution) + flaser("1", "0 0 0", "0 0 0", "180" + repeated("1", 180))).scan;
+    const LaserScan scan = read_one(fmt::format("PARAM laser_front_laser_resolution {}\n", resolution) +
+                                    flaser("1", "0 0 0", "0 0 0", "180" + repeated("1", 180)))
+                               .scan;
     EXPECT_NEAR(scan.angle_increment_rad, kDegree, kExactTol) << resolution;
   }
 }
@@ -133,19 +138,23 @@ TEST(CarmenLog, ReadsRobotlaserWithItsOwnAngles) {
   EXPECT_EQ(scan.scan.stamp, 10s + 250ms);
   EXPECT_EQ(scan.scan.ranges_m.size(), 181U);
   EXPECT_NEAR(scan.scan.angle_min_rad, -1.570796, kExactTol);
-  EXPECT_NEAR(scan.scan.angle_increment_rad, kRoundedPi / 180.0, kExactTol) << "exact where the field of view says more than six digits";
+  EXPECT_NEAR(scan.scan.angle_increment_rad, kRoundedPi / 180.0, kExactTol)
+      << "exact where the field of view says more than six digits";
   EXPECT_TRUE(scan.scan.intensities.empty());
 }
 
 TEST(CarmenLog, RobotlasersFieldOfViewMayCountBeamsOrGapsOrNeither) {
-  EXPECT_NEAR(read_one(robotlaser("0 -1.570796 3.141593 0.017453 80 0 0", 180)).scan.angle_increment_rad, kRoundedPi / 180.0, kExactTol);
+  EXPECT_NEAR(read_one(robotlaser("0 -1.570796 3.141593 0.017453 80 0 0", 180)).scan.angle_increment_rad,
+              kRoundedPi / 180.0, kExactTol);
   EXPECT_NEAR(read_one(robotlaser("0 -1 2 0.01 80 0 0", 10)).scan.angle_increment_rad, 0.01, kExactTol);
   EXPECT_NEAR(read_one(robotlaser("0 -1 2 0 80 0 0", 11)).scan.angle_increment_rad, 0.2, kExactTol);
 }
 
 TEST(CarmenLog, RobotlasersRemissionsAreIntensities) {
-  EXPECT_THAT(read_one(robotlaser("0 -1 2 1 80 0 0", 3, "0 0 0 0 0 0", "3 7 8 9.5")).scan.intensities, ElementsAre(7.0F, 8.0F, 9.5F));
-  EXPECT_TRUE(read_one(robotlaser("0 -1 2 1 80 0 0", 3, "0 0 0 0 0 0", "2 7 8")).scan.intensities.empty()) << "not one a beam";
+  EXPECT_THAT(read_one(robotlaser("0 -1 2 1 80 0 0", 3, "0 0 0 0 0 0", "3 7 8 9.5")).scan.intensities,
+              ElementsAre(7.0F, 8.0F, 9.5F));
+  EXPECT_TRUE(read_one(robotlaser("0 -1 2 1 80 0 0", 3, "0 0 0 0 0 0", "2 7 8")).scan.intensities.empty())
+      << "not one a beam";
 }
 
 TEST(CarmenLog, RangesFromTheSensorsMaximumOnAreNoReturns) {
@@ -154,44 +163,54 @@ TEST(CarmenLog, RangesFromTheSensorsMaximumOnAreNoReturns) {
   EXPECT_EQ(old[0], 79.99F);
   for (const std::size_t beam : {1U, 2U, 3U, 4U}) EXPECT_EQ(old[beam], inf);
   for (const std::size_t beam : {5U, 6U, 7U}) EXPECT_TRUE(std::isnan(old[beam]));
-  const LaserScan short_range = read_one("ROBOTLASER1 0 -1 2 1 8.1 0 0 3 8.09 8.1 50 0 0 0 0 0 0 0 0 0 0 0 0 1 host 1\n").scan;
+  const LaserScan short_range =
+      read_one("ROBOTLASER1 0 -1 2 1 8.1 0 0 3 8.09 8.1 50 0 0 0 0 0 0 0 0 0 0 0 0 1 host 1\n").scan;
   EXPECT_THAT(short_range.ranges_m, ElementsAre(8.09F, inf, inf));
   EXPECT_EQ(short_range.range_max_m, 8.1);
-  EXPECT_EQ(read_one("ROBOTLASER1 0 -1 2 1 0 0 0 3 8.09 8.1 50 0 0 0 0 0 0 0 0 0 0 0 0 1 host 1\n").scan.range_max_m, 80.0) << "a maximum of 0 says nothing";
+  EXPECT_EQ(read_one("ROBOTLASER1 0 -1 2 1 0 0 0 3 8.09 8.1 50 0 0 0 0 0 0 0 0 0 0 0 0 1 host 1\n").scan.range_max_m,
+            80.0)
+      << "a maximum of 0 says nothing";
 }
 
 TEST(CarmenLog, TheLidarPoseIsRelativeToTheRobotPose) {
   // The robot at (1, 2) looks along y; the lidar 0.3 m before it.
   const RecordedScan scan = read_one(flaser("1", "1 2.3 1.570796", "1 2 1.570796"));
-  EXPECT_THAT(scan.T_odom_body, Pose2Near(Pose2{1.0, 2.0, 1.570796}, kExactTol, kExactTol)) << "the second pose is the robot's";
+  EXPECT_THAT(scan.T_odom_body, Pose2Near(Pose2{1.0, 2.0, 1.570796}, kExactTol, kExactTol))
+      << "the second pose is the robot's";
   EXPECT_THAT(scan.T_body_lidar, Pose2Near(Pose2{0.3, 0.0, 0.0}, 1e-6, kExactTol));
 }
 
 TEST(CarmenLog, WithEqualPosesTheParameterGivesTheLidarPose) {
   const std::string parameters =
-      "PARAM robot_frontlaser_offset 0.08 0 host 0\nPARAM robot_frontlaser_side_offset -0.02\nPARAM robot_frontlaser_angular_offset 0.01\n";
-  EXPECT_THAT(read_one(parameters + flaser("1")).T_body_lidar, Pose2Near(Pose2{0.08, -0.02, 0.01}, kExactTol, kExactTol));
+      "PARAM robot_frontlaser_offset 0.08 0 host 0\nPARAM robot_frontlaser_side_offset -0.02\nPARAM "
+      "robot_frontlaser_angular_offset 0.01\n";
+  EXPECT_THAT(read_one(parameters + flaser("1")).T_body_lidar,
+              Pose2Near(Pose2{0.08, -0.02, 0.01}, kExactTol, kExactTol));
 }
 
 TEST(CarmenLog, ACorrectedFirstPoseIsNotFollowed) {
   // The second pose is the odometry; the first was corrected afterwards and wanders off.
-  const Read result = read(flaser("1", "0 0 0", "0 0 0") + flaser("2", "1 0 0", "1.5 0 0.1") + flaser("3", "2 1 0", "3 0 0.2"));
+  const Read result =
+      read(flaser("1", "0 0 0", "0 0 0") + flaser("2", "1 0 0", "1.5 0 0.1") + flaser("3", "2 1 0", "3 0 0.2"));
   for (const RecordedScan& scan : result.scans) EXPECT_THAT(scan.T_body_lidar, Pose2Near(Pose2{}, 0.0, 0.0));
   EXPECT_THAT(result.scans[2].T_odom_body, Pose2Near(Pose2{3.0, 0.0, 0.2}, kExactTol, kExactTol));
   EXPECT_THAT(result.summary.assumed, ElementsAre(Pair("scans: lidar pose of the first scan", 2U)));
-  EXPECT_THAT(read_one(flaser("1", "50 0 0", "0 0 0")).T_body_lidar, Pose2Near(Pose2{}, 0.0, 0.0)) << "no lidar sits 50 m before its robot";
+  EXPECT_THAT(read_one(flaser("1", "50 0 0", "0 0 0")).T_body_lidar, Pose2Near(Pose2{}, 0.0, 0.0))
+      << "no lidar sits 50 m before its robot";
 }
 
 TEST(CarmenLog, TheRearLidarLooksBackAndItsOffsetCountsBackwards) {
   std::string line = flaser("1");
   line.front() = 'R';
-  EXPECT_THAT(read_one("PARAM robot_rearlaser_offset 0.2 0 host 0\n" + line).T_body_lidar, Pose2Near(Pose2{-0.2, 0.0, std::numbers::pi}, kExactTol, kExactTol));
+  EXPECT_THAT(read_one("PARAM robot_rearlaser_offset 0.2 0 host 0\n" + line).T_body_lidar,
+              Pose2Near(Pose2{-0.2, 0.0, std::numbers::pi}, kExactTol, kExactTol));
 }
 
 TEST(CarmenLog, RawlaserTakesTheNewestOdomBeforeIt) {
   const std::string raw = "RAWLASER1 0 -1 2 1 80 0 0 3 1 2 3 0 {} host 1\n";
-  const std::string text = fmt::format(fmt::runtime(raw), 1) + "ODOM 1 2 0.5 0 0 0 1.5 host 1\n" + fmt::format(fmt::runtime(raw), 2) +
-                           "ODOM 3 4 0.6 0 0 0 2.5 host 1\n" + fmt::format(fmt::runtime(raw), 3);
+  const std::string text = fmt::format(fmt::runtime(raw), 1) + "ODOM 1 2 0.5 0 0 0 1.5 host 1\n" +
+                           fmt::format(fmt::runtime(raw), 2) + "ODOM 3 4 0.6 0 0 0 2.5 host 1\n" +
+                           fmt::format(fmt::runtime(raw), 3);
   const Read result = read(text);
   ASSERT_EQ(result.scans.size(), 2U);
   EXPECT_THAT(result.scans[0].T_odom_body, Pose2Near(Pose2{1.0, 2.0, 0.5}, kExactTol, kExactTol));
@@ -202,17 +221,20 @@ TEST(CarmenLog, RawlaserTakesTheNewestOdomBeforeIt) {
 TEST(CarmenLog, OfSeveralLidarsTheMostInformativeOrTheSelectedOneIsUsed) {
   std::string rear = flaser("3");
   rear.front() = 'R';
-  const std::string text = "ODOM 9 9 0 0 0 0 0 host 0\nRAWLASER1 0 -1 2 1 80 0 0 3 1 2 3 0 5 host 1\n" + rear + flaser("1") + robotlaser("0 -1 2 1 80 0 0", 3);
+  const std::string text = "ODOM 9 9 0 0 0 0 0 host 0\nRAWLASER1 0 -1 2 1 80 0 0 3 1 2 3 0 5 host 1\n" + rear +
+                           flaser("1") + robotlaser("0 -1 2 1 80 0 0", 3);
   EXPECT_EQ(read_one(text).scan.stamp, 10s + 250ms);
   ScanLogOptions options;
   options.carmen_laser = "RLASER";
   const Read result = read(text, options);
   EXPECT_EQ(result.scans.front().scan.stamp, 3s);
-  EXPECT_THAT(result.summary.ignored, UnorderedElementsAre(Pair("ODOM", 1U), Pair("RAWLASER1", 1U), Pair("FLASER", 1U), Pair("ROBOTLASER1", 1U)));
+  EXPECT_THAT(result.summary.ignored, UnorderedElementsAre(Pair("ODOM", 1U), Pair("RAWLASER1", 1U), Pair("FLASER", 1U),
+                                                           Pair("ROBOTLASER1", 1U)));
 }
 
 TEST(CarmenLog, OtherMessagesAreIgnoredAndCounted) {
-  const Read result = read("SYNC start 1 host 1\n" + flaser("1") + "TRUEPOS 0 0 0 0 0 0 1 host 1\n\n# c\nSYNC end 2 host 2\nWIFI-SCAN what ever\n\r\n");
+  const Read result = read("SYNC start 1 host 1\n" + flaser("1") +
+                           "TRUEPOS 0 0 0 0 0 0 1 host 1\n\n# c\nSYNC end 2 host 2\nWIFI-SCAN what ever\n\r\n");
   EXPECT_THAT(result.summary.ignored, ElementsAre(Pair("SYNC", 2U), Pair("TRUEPOS", 1U), Pair("WIFI-SCAN", 1U)));
   EXPECT_TRUE(result.summary.skipped.empty());
   EXPECT_EQ(result.summary.num_read, 8U);
@@ -237,7 +259,8 @@ TEST(CarmenLog, AScanTooLateToPutInOrderIsRefusedOrSkipped) {
   std::string text;
   for (int i = 0; i < 40; ++i) text += flaser(std::to_string(100 + i));
   text += flaser("1");
-  EXPECT_EQ(complaint_about(text), "a.log:41: FLASER: stamp 1.000000 s after 107.000000 s, more than 32 scans late: cannot be sorted");
+  EXPECT_EQ(complaint_about(text),
+            "a.log:41: FLASER: stamp 1.000000 s after 107.000000 s, more than 32 scans late: cannot be sorted");
   const Read result = read(text, kSkip);
   EXPECT_EQ(result.scans.size(), 40U);
   EXPECT_THAT(result.summary.skipped, ElementsAre(Pair("scans out of order", 1U)));
@@ -247,21 +270,27 @@ TEST(CarmenLog, UnreadableLinesAreNamed) {
   const std::string good = flaser("1");
   const auto complaint = [&](const std::string& bad) { return complaint_about(good + bad); };
   EXPECT_EQ(complaint("FLASER 4 1 2 3\n"), "a.log:2: FLASER: 3 words after the number of readings: must be 13");
-  EXPECT_EQ(complaint(flaser("2", "1 2 0", "1 2 0", "5 1 2 3 4")), "a.log:2: FLASER: 13 words after the number of readings: must be 14");
-  EXPECT_EQ(complaint(flaser("2", "1 2 0", "1 2 0", "3 1 2 3 4")), "a.log:2: FLASER: 13 words after the number of readings: must be 12");
+  EXPECT_EQ(complaint(flaser("2", "1 2 0", "1 2 0", "5 1 2 3 4")),
+            "a.log:2: FLASER: 13 words after the number of readings: must be 14");
+  EXPECT_EQ(complaint(flaser("2", "1 2 0", "1 2 0", "3 1 2 3 4")),
+            "a.log:2: FLASER: 13 words after the number of readings: must be 12");
   EXPECT_EQ(complaint(flaser("2", "1 2 0", "1 2 0", "4 1 2 x 4")), "a.log:2: FLASER: range 'x' is not a number");
   EXPECT_EQ(complaint(flaser("2", "1 2 nan", "1 2 0")), "a.log:2: FLASER: laser pose 'nan' is not a finite number");
   EXPECT_EQ(complaint(flaser("2", "1 2 0", "1 inf 0")), "a.log:2: FLASER: robot pose 'inf' is not a finite number");
   EXPECT_EQ(complaint(flaser("nan")), "a.log:2: FLASER: ipc_timestamp 'nan' is not a time in seconds");
   EXPECT_EQ(complaint("FLASER\n"), "a.log:2: FLASER: ends before num_readings");
-  EXPECT_EQ(complaint("FLASER 0 1 2 0 1 2 0 1 h 1\n"), "a.log:2: FLASER: num_readings '0' must be an integer in [1, 10000]");
-  EXPECT_EQ(complaint("FLASER 10001" + repeated("1", 10010) + "\n"), "a.log:2: FLASER: num_readings '10001' must be an integer in [1, 10000]");
+  EXPECT_EQ(complaint("FLASER 0 1 2 0 1 2 0 1 h 1\n"),
+            "a.log:2: FLASER: num_readings '0' must be an integer in [1, 10000]");
+  EXPECT_EQ(complaint("FLASER 10001" + repeated("1", 10010) + "\n"),
+            "a.log:2: FLASER: num_readings '10001' must be an integer in [1, 10000]");
   EXPECT_EQ(complaint("FLASER -3 1\n"), "a.log:2: FLASER: num_readings '-3' must be an integer in [1, 10000]");
   EXPECT_EQ(complaint("ODOM 1 2 nan 0 0 0 1 h 1\n"), "a.log:2: ODOM: robot pose 'nan' is not a finite number");
   EXPECT_EQ(complaint("ODOM 1 2\n"), "a.log:2: ODOM: 2 words after the name: must be 9");
-  EXPECT_EQ(complaint("PARAM robot_frontlaser_offset far\n"), "a.log:2: PARAM: robot_frontlaser_offset 'far' is not a finite number");
+  EXPECT_EQ(complaint("PARAM robot_frontlaser_offset far\n"),
+            "a.log:2: PARAM: robot_frontlaser_offset 'far' is not a finite number");
   EXPECT_EQ(complaint("PARAM\n"), "a.log:2: PARAM: ends before parameter name");
-  EXPECT_EQ(complaint(std::string("\x01\x00\xff garbage\n", 11)), "a.log:2: must begin with a message name such as FLASER or ODOM");
+  EXPECT_EQ(complaint(std::string("\x01\x00\xff garbage\n", 11)),
+            "a.log:2: must begin with a message name such as FLASER or ODOM");
   EXPECT_EQ(complaint("1.07 1.08 1.09\n"), "a.log:2: must begin with a message name such as FLASER or ODOM");
   EXPECT_EQ(complaint("FLASER " + std::string(2'000'000, '1') + "\n"), "a.log:2: line longer than 1048576 bytes");
 }
@@ -272,14 +301,18 @@ TEST(CarmenLog, UnreadableNewMessagesAreNamed) {
             "a.log:1: ROBOTLASER1: 13 words after the remissions: must be 14");
   EXPECT_EQ(complaint_about(laser + "300 1 2 3 0\n"), "a.log:1: ROBOTLASER1: 4 words left for 300 ranges: too few");
   EXPECT_EQ(complaint_about(laser + "3 1 2 3 9 1\n"), "a.log:1: ROBOTLASER1: 1 words left for 9 remissions: too few");
-  EXPECT_EQ(complaint_about("ROBOTLASER1 0 -180 180 1 80 0 0 1 1 0\n"), "a.log:1: ROBOTLASER1: start_angle = -180 rad: exceeds one revolution");
-  EXPECT_EQ(complaint_about("ROBOTLASER1 0 -1 nan 1 80 0 0 1 1 0\n"), "a.log:1: ROBOTLASER1: field_of_view 'nan' is not a finite number");
-  EXPECT_EQ(complaint_about("RAWLASER1 0 -1 2 1 80 0 0 1 1 0 1 h\n"), "a.log:1: RAWLASER1: 2 words after the remissions: must be 3");
+  EXPECT_EQ(complaint_about("ROBOTLASER1 0 -180 180 1 80 0 0 1 1 0\n"),
+            "a.log:1: ROBOTLASER1: start_angle = -180 rad: exceeds one revolution");
+  EXPECT_EQ(complaint_about("ROBOTLASER1 0 -1 nan 1 80 0 0 1 1 0\n"),
+            "a.log:1: ROBOTLASER1: field_of_view 'nan' is not a finite number");
+  EXPECT_EQ(complaint_about("RAWLASER1 0 -1 2 1 80 0 0 1 1 0 1 h\n"),
+            "a.log:1: RAWLASER1: 2 words after the remissions: must be 3");
 }
 
 TEST(CarmenLog, WithSkipInvalidReadableLinesAreUsedAndOthersCounted) {
   const std::string zeros(3'000'000, '\0');
-  const std::string text = flaser("1") + "FLASER 4 1 2\n" + flaser("2", "1 2 nan", "1 2 0") + zeros + "\n" + flaser("3") + "FLASER 4 1 2 3 4 1";
+  const std::string text = flaser("1") + "FLASER 4 1 2\n" + flaser("2", "1 2 nan", "1 2 0") + zeros + "\n" +
+                           flaser("3") + "FLASER 4 1 2 3 4 1";
   const Read result = read(text, kSkip);
   ASSERT_EQ(result.scans.size(), 2U);
   EXPECT_EQ(result.scans[1].scan.stamp, 3s);
@@ -303,8 +336,10 @@ TEST(CarmenLog, ACutOffGzipIsRefusedOrReadUpToTheCut) {
 
 TEST(CarmenLog, AFileWithoutScansIsReportedWithItsContents) {
   EXPECT_EQ(complaint_about(""), "a.log: contains no scan (0 read): must contain FLASER, ROBOTLASER1 or RAWLASER1");
-  EXPECT_EQ(complaint_about("SYNC a 1 h 1\nODOM 1 2 0 0 0 0 1 h 1\n"), "a.log: contains no scan (2 read, 1 ODOM, 1 SYNC): must contain FLASER, ROBOTLASER1 or RAWLASER1");
-  EXPECT_EQ(complaint_about("FLASER 4 1\n", kSkip), "a.log: contains no scan (1 read, 1 unreadable lines): must contain FLASER, ROBOTLASER1 or RAWLASER1");
+  EXPECT_EQ(complaint_about("SYNC a 1 h 1\nODOM 1 2 0 0 0 0 1 h 1\n"),
+            "a.log: contains no scan (2 read, 1 ODOM, 1 SYNC): must contain FLASER, ROBOTLASER1 or RAWLASER1");
+  EXPECT_EQ(complaint_about("FLASER 4 1\n", kSkip),
+            "a.log: contains no scan (1 read, 1 unreadable lines): must contain FLASER, ROBOTLASER1 or RAWLASER1");
 }
 
 TEST(CarmenLog, TenGigabytesOfZeroBytesAreRefusedAtOnce) {

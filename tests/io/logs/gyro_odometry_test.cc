@@ -1,8 +1,8 @@
 #include "io/logs/gyro_odometry.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "tests/support/pose_near.h"
 
@@ -14,13 +14,14 @@ using namespace std::chrono_literals;
 constexpr double kBias = 0.02;
 
 struct Drive {
-  double slope = 1.0;          ///< odometry's turn over the true one
+  double slope = 1.0;  ///< odometry's turn over the true one
   double gyro_factor = 1.0;
-  double stationary_s = 5.0;     ///< at the start
-  bool has_gap = false;        ///< of the gyro, from 20 s to 22 s
+  double stationary_s = 5.0;  ///< at the start
+  bool has_gap = false;       ///< of the gyro, from 20 s to 22 s
 };
 
-/// 60 s at 0.5 m/s, turning by 0.5 sin(t) rad/s: the gyro 100 times a second, a scan every 0.2 s. Gives what is made of the last scan, and the truth.
+/// 60 s at 0.5 m/s, turning by 0.5 sin(t) rad/s: the gyro 100 times a second, a scan every 0.2 s. Gives what is made of
+/// the last scan, and the truth.
 struct Driven {
   GyroOdometry gyro;
   Pose2 T_odom, T_fused, T_true;
@@ -34,14 +35,16 @@ Driven drive(const Drive& how) {
     const double turn = t > 0.0 ? 0.01 * 0.5 * std::sin(t - 0.005) : 0.0, way = t > 0.0 ? 0.005 : 0.0;
     if (tick > 0) {
       driven.T_true = driven.T_true * Pose2{way * std::cos(0.5 * turn), way * std::sin(0.5 * turn), turn};
-      driven.T_odom = driven.T_odom * Pose2{way * std::cos(0.5 * how.slope * turn), way * std::sin(0.5 * how.slope * turn), how.slope * turn};
+      driven.T_odom = driven.T_odom * Pose2{way * std::cos(0.5 * how.slope * turn),
+                                            way * std::sin(0.5 * how.slope * turn), how.slope * turn};
     }
     if (tick % 20 == 0) driven.T_fused = driven.gyro.fuse(now, driven.T_odom);
   }
   return driven;
 }
 
-// The chord of a step of 0.1 m that odometry turns by 0.12 rad instead of 0.1 is 0.1 * (0.12^2 - 0.1^2) / 24 = 0.018 mm too short: 5 mm in 275 steps.
+// The chord of a step of 0.1 m that odometry turns by 0.12 rad instead of 0.1 is 0.1 * (0.12^2 - 0.1^2) / 24 = 0.018 mm
+// too short: 5 mm in 275 steps.
 TEST(GyroOdometry, RotatesByTheGyroWithoutTheBiasMeasuredAtRest) {
   const Driven driven = drive({.slope = 1.2});
   EXPECT_GT((driven.T_odom.position() - driven.T_true.position()).norm(), 0.5);
@@ -89,8 +92,10 @@ TEST(GyroOdometry, RotatesWithinAScanToo) {
   GyroOdometry gyro(0.1);
   for (int tick = 0; tick <= 10; ++tick) gyro.add(tick * 10ms, 1.1);
   const Pose2 replace_rotation = gyro.replace_rotation({0.05, 0.0, 0.0}, 20ms, 70ms);
-  EXPECT_THAT(replace_rotation, test::Pose2Near(Pose2{0.05 * std::cos(0.025), 0.05 * std::sin(0.025), 0.05}, 1e-12, 1e-12));
-  EXPECT_THAT(gyro.replace_rotation({0.05, 0.0, 0.01}, 70ms, 120ms), test::Pose2Near(Pose2{0.05, 0.0, 0.01}, 0.0, 0.0)) << "not covered";
+  EXPECT_THAT(replace_rotation,
+              test::Pose2Near(Pose2{0.05 * std::cos(0.025), 0.05 * std::sin(0.025), 0.05}, 1e-12, 1e-12));
+  EXPECT_THAT(gyro.replace_rotation({0.05, 0.0, 0.01}, 70ms, 120ms), test::Pose2Near(Pose2{0.05, 0.0, 0.01}, 0.0, 0.0))
+      << "not covered";
 }
 
 TEST(GyroOdometry, StampsThatDoNotGrowAreDropped) {

@@ -1,10 +1,10 @@
 #include "io/logs/mcap_scan_log.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <numbers>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "io/logs/run_log.h"
@@ -86,8 +86,10 @@ TEST_F(McapScans, WhereBeamsHaveTimesTheMotionFromTheFirstToTheLastIsGiven) {
 
 TEST_F(McapScans, WithoutAnOdometryTopicTfIsTakenOverItsFramesBetween) {
   for (const Time t : {1s, 2s}) {
-    writer.write("/tf", t, TransformSet{{placed("odom", "base_footprint", {{to_seconds(t), 0.0, 0.0}, quaternion_from_yaw(0.5)}, t),
-                                         placed("base_footprint", "base_link", {{0.0, 0.0, 0.4}, Eigen::Quaterniond::Identity()}, t)}});
+    writer.write(
+        "/tf", t,
+        TransformSet{{placed("odom", "base_footprint", {{to_seconds(t), 0.0, 0.0}, quaternion_from_yaw(0.5)}, t),
+                      placed("base_footprint", "base_link", {{0.0, 0.0, 0.4}, Eigen::Quaterniond::Identity()}, t)}});
     if (t == 1s) writer.write("/scan", 1500ms, scan_at(1500ms));
   }
   writer.close();
@@ -112,19 +114,24 @@ TEST_F(McapScans, TheFirstSourceIsKept) {
 }
 
 TEST_F(McapScans, TheLidarPoseIsThePlanarPartOfTfStatic) {
-  writer.write("/tf_static", 0s, TransformSet{{placed("base_link", "plate", {{0.1, 0.0, 0.5}, quaternion_from_yaw(std::numbers::pi / 2.0)}),
-                                               placed("plate", "lidar", {{0.2, 0.0, 0.0}, Eigen::Quaterniond::Identity()})}});
+  writer.write(
+      "/tf_static", 0s,
+      TransformSet{{placed("base_link", "plate", {{0.1, 0.0, 0.5}, quaternion_from_yaw(std::numbers::pi / 2.0)}),
+                    placed("plate", "lidar", {{0.2, 0.0, 0.0}, Eigen::Quaterniond::Identity()})}});
   writer.write("/odom", 0s, odometry_at(0s));
   writer.write("/scan", 1s, scan_at(500ms));
   writer.write("/odom", 1s, odometry_at(1s));
   writer.close();
   const Read result = read();
-  EXPECT_THAT(result.scans.at(0).T_body_lidar, Pose2Near(Pose2{0.1, 0.2, std::numbers::pi / 2.0}, kExactTol, kExactTol));
+  EXPECT_THAT(result.scans.at(0).T_body_lidar,
+              Pose2Near(Pose2{0.1, 0.2, std::numbers::pi / 2.0}, kExactTol, kExactTol));
   EXPECT_TRUE(result.summary.assumed.empty());
 }
 
 TEST_F(McapScans, ALidarUpsideDownRotatesTheOppositeWay) {
-  writer.write("/tf_static", 0s, TransformSet{{placed("base_link", "lidar", {{0.1, 0.0, 0.5}, quaternion_from_rpy(std::numbers::pi, 0.0, 0.25)})}});
+  writer.write("/tf_static", 0s,
+               TransformSet{{placed("base_link", "lidar",
+                                    {{0.1, 0.0, 0.5}, quaternion_from_rpy(std::numbers::pi, 0.0, 0.25)})}});
   writer.write("/odom", 0s, odometry_at(0s));
   writer.write("/scan", 1s, scan_at(500ms));
   writer.write("/odom", 1s, odometry_at(1s));
@@ -137,7 +144,9 @@ TEST_F(McapScans, ALidarUpsideDownRotatesTheOppositeWay) {
 
 TEST_F(McapScans, TheGroundTruthIsNotTheRobotsOdometry) {
   for (const Time t : {0s, 1s}) {
-    writer.write("/ground_truth/odom", t, GroundTruth{.stamp = t, .T_world_body = {{99.0, 0.0, 0.0}, Eigen::Quaterniond::Identity()}, .twist = {}});
+    writer.write(
+        "/ground_truth/odom", t,
+        GroundTruth{.stamp = t, .T_world_body = {{99.0, 0.0, 0.0}, Eigen::Quaterniond::Identity()}, .twist = {}});
     writer.write("/odom", t, odometry_at(t));
     if (t == 0s) writer.write("/scan", t, scan_at(500ms));
   }
@@ -199,7 +208,8 @@ TEST_F(McapScans, PatrolsOwnRunLogsAreRead) {
   RunLogWriter run(run_log, robot);
   for (int i = 0; i < 100; ++i) {
     const Time now = i * 100ms;
-    run.write(now, GroundTruth{.stamp = now, .T_world_body = {{50.0, 0.0, 0.0}, Eigen::Quaterniond::Identity()}, .twist = {}});
+    run.write(now, GroundTruth{
+                       .stamp = now, .T_world_body = {{50.0, 0.0, 0.0}, Eigen::Quaterniond::Identity()}, .twist = {}});
     run.write(now, odometry_at(now));
     run.write(now, scan_at(now + 50ms));
   }
@@ -215,10 +225,13 @@ TEST_F(McapScans, PatrolsOwnRunLogsAreRead) {
   EXPECT_EQ(count, 99) << "the last has no odometry after it";
 }
 
-/// A robot stands for 3 s and then turns on the spot by 0.5 rad/s for 12 s, of which its odometry makes `odometry_scale` times as much. Its gyro hangs upside
-/// down and has a bias of 0.03 rad/s about its own axis.
+/// A robot stands for 3 s and then turns on the spot by 0.5 rad/s for 12 s, of which its odometry makes
+/// `odometry_scale` times as much. Its gyro hangs upside down and has a bias of 0.03 rad/s about its own axis.
 void turn_with_gyro(MessageFile& writer, double odometry_scale, bool has_place = true) {
-  if (has_place) writer.write("/tf_static", 0s, TransformSet{{placed("base_link", "imu", {{0.0, 0.0, 0.0}, quaternion_from_rpy(std::numbers::pi, 0.0, 0.0)})}});
+  if (has_place)
+    writer.write(
+        "/tf_static", 0s,
+        TransformSet{{placed("base_link", "imu", {{0.0, 0.0, 0.0}, quaternion_from_rpy(std::numbers::pi, 0.0, 0.0)})}});
   for (int tick = 0; tick <= 1500; ++tick) {
     const Time now = tick * 10ms;
     const double rate = tick >= 300 ? 0.5 : 0.0, yaw = std::max(0.0, 0.5 * (to_seconds(now) - 3.0));
@@ -247,7 +260,9 @@ TEST_F(McapScans, OdometryThatContradictsTheGyroUsesTheGyroYawWithoutItsBias) {
   turn_with_gyro(writer, 1.2);
   const Read result = read(with_imu("auto"));
   EXPECT_NEAR(wrap_angle(result.scans.back().T_odom_body.yaw - kLastScanTurnRad), 0.0, 0.003);
-  EXPECT_THAT(result.summary.found, ElementsAre("odometry yaw replaced by the gyro of /imu/data: bias -0.03000 rad/s from 3 s at rest (log.imu)"));
+  EXPECT_THAT(
+      result.summary.found,
+      ElementsAre("odometry yaw replaced by the gyro of /imu/data: bias -0.03000 rad/s from 3 s at rest (log.imu)"));
   const Read wheels = read(with_imu("off"));
   EXPECT_NEAR(wrap_angle(wheels.scans.back().T_odom_body.yaw - 1.2 * kLastScanTurnRad), 0.0, 1e-6);
   EXPECT_THAT(wheels.summary.ignored, ElementsAre(Pair("/imu/data", 1501U)));
@@ -288,7 +303,8 @@ TEST_F(McapScans, AScanTooLateToPutInOrderIsRefusedOrSkipped) {
   for (int i = 1; i <= 40; ++i) writer.write("/scan", 5s, scan_at(i * 100ms));
   writer.write("/scan", 6s, scan_at(50ms));
   writer.close();
-  EXPECT_EQ(complaint(), "log.mcap: /scan: stamp 0.050000 s after 0.800000 s, more than 32 scans late: cannot be sorted");
+  EXPECT_EQ(complaint(),
+            "log.mcap: /scan: stamp 0.050000 s after 0.800000 s, more than 32 scans late: cannot be sorted");
   ScanLogOptions options;
   options.skip_invalid = true;
   EXPECT_EQ(read(options).scans.size(), 40U);
@@ -331,13 +347,16 @@ TEST_F(McapScans, ScansAndPosesThatAreNoneAreNamed) {
   lost.T_odom_body.position.x() = NAN;
   OdometryEstimate unturned = odometry_at(0s);
   unturned.T_odom_body.rotation.coeffs().setZero();
-  EXPECT_EQ(complaint_about("/scan", scan_at(0s, {})), "bad.mcap: /scan at 1.000000000 s: scan with 0 beams: must be in [1, 10000]");
+  EXPECT_EQ(complaint_about("/scan", scan_at(0s, {})),
+            "bad.mcap: /scan at 1.000000000 s: scan with 0 beams: must be in [1, 10000]");
   EXPECT_EQ(complaint_about("/scan", scan_at(0s, std::vector<float>(10'001, 1.0F))),
             "bad.mcap: /scan at 1.000000000 s: scan with 10001 beams: must be in [1, 10000]");
   EXPECT_EQ(complaint_about("/scan", wide), "bad.mcap: /scan at 1.000000000 s: scan angles exceed one revolution");
   EXPECT_EQ(complaint_about("/scan", timeless), "bad.mcap: /scan at 1.000000000 s: scan times must be finite");
-  EXPECT_EQ(complaint_about("/odom", lost), "bad.mcap: /odom at 1.000000000 s: odometry: invalid pose: must be finite, with a unit quaternion");
-  EXPECT_EQ(complaint_about("/odom", unturned), "bad.mcap: /odom at 1.000000000 s: odometry: invalid pose: must be finite, with a unit quaternion");
+  EXPECT_EQ(complaint_about("/odom", lost),
+            "bad.mcap: /odom at 1.000000000 s: odometry: invalid pose: must be finite, with a unit quaternion");
+  EXPECT_EQ(complaint_about("/odom", unturned),
+            "bad.mcap: /odom at 1.000000000 s: odometry: invalid pose: must be finite, with a unit quaternion");
   EXPECT_EQ(complaint_about("/tf", TransformSet{{placed("a", "b", unturned.T_odom_body)}}),
             "bad.mcap: /tf at 1.000000000 s: transform: invalid pose: must be finite, with a unit quaternion");
 }
@@ -369,7 +388,8 @@ TEST_F(McapScans, ADamagedChunkIsRefusedOrLeftOut) {
   ScanLogOptions skip;
   skip.skip_invalid = true;
   const Read result = read(skip);
-  EXPECT_THAT(result.scans.size(), ::testing::AllOf(::testing::Ge(360U), ::testing::Lt(400U))) << "no more than two chunks of 20 scans are lost";
+  EXPECT_THAT(result.scans.size(), ::testing::AllOf(::testing::Ge(360U), ::testing::Lt(400U)))
+      << "no more than two chunks of 20 scans are lost";
   EXPECT_EQ(result.scans.back().scan.stamp, 399 * 50ms);
   EXPECT_GE(result.summary.skipped.at("damaged file sections"), 1U);
 }
@@ -397,7 +417,8 @@ TEST_F(McapScans, AFileWithoutScansOrOdometryIsReported) {
   for (int i = 0; i < 300; ++i) other.write("/scan", i * 100ms, scan_at(i * 100ms));
   other.close();
   EXPECT_EQ(complaint(),
-            "log.mcap: no odometry overlaps the scans: must contain nav_msgs/msg/Odometry or tf odom -> base_link (300 read, 300 scans without odometry)");
+            "log.mcap: no odometry overlaps the scans: must contain nav_msgs/msg/Odometry or tf odom -> base_link (300 "
+            "read, 300 scans without odometry)");
 }
 
 TEST_F(McapScans, ARecordLargerThanAQuarterOfAGigabyteIsDamageNotData) {

@@ -1,15 +1,14 @@
 #include "io/logs/no_return_detector.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <limits>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
 
 #include "core/geometry/angles.h"
 #include "io/logs/scan_log.h"
 #include "tests/support/temporary_file.h"
-
-#include <fmt/format.h>
 
 namespace patrol::io::no_return_test {
 namespace {
@@ -17,16 +16,19 @@ namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 RecordedScan scan_at(double x_m, std::vector<float> ranges_m) {
-  return {.scan = {.ranges_m = std::move(ranges_m), .intensities = {}}, .T_odom_body = {x_m, 0.0, 0.0}, .T_body_lidar = {}};
+  return {
+      .scan = {.ranges_m = std::move(ranges_m), .intensities = {}}, .T_odom_body = {x_m, 0.0, 0.0}, .T_body_lidar = {}};
 }
 
-/// A corridor of 2 m, its end 27.9 m ahead of place 0, in which the robot sways by 15 cm; in centimeters as a SICK has it, and what is farther than 8 m is none.
+/// A corridor of 2 m, its end 27.9 m ahead of place 0, in which the robot sways by 15 cm; in centimeters as a SICK has
+/// it, and what is farther than 8 m is none.
 std::vector<float> corridor_cm(double x_m, float no_return_m) {
   std::vector<float> ranges_m;
   const double y_m = 0.15 * std::sin(x_m);
   for (int beam = 0; beam < 180; ++beam) {
     const double angle = to_rad(beam - 90);
-    const double side_m = (1.0 + (beam > 90 ? y_m : -y_m)) / std::max(1e-9, std::abs(std::sin(angle))), end_m = (27.9 - x_m) / std::max(1e-9, std::cos(angle));
+    const double side_m = (1.0 + (beam > 90 ? y_m : -y_m)) / std::max(1e-9, std::abs(std::sin(angle))),
+                 end_m = (27.9 - x_m) / std::max(1e-9, std::cos(angle));
     const double range_m = std::min(side_m, end_m);
     ranges_m.push_back(range_m < 8.0 ? static_cast<float>(std::round(range_m * 100.0) / 100.0) : no_return_m);
   }
@@ -45,7 +47,8 @@ TEST(NoReturn, EightMetersReturnedAtFortyPositionsAreNone) {
 
 TEST(NoReturn, OfSeveralCodesTheLowestIsFound) {
   NoReturnDetector finder;
-  for (int place = 0; place < 40; ++place) finder.add(scan_at(0.3 * place, corridor_cm(0.3 * place, place % 2 == 0 ? 8.191F : 8.183F)));
+  for (int place = 0; place < 40; ++place)
+    finder.add(scan_at(0.3 * place, corridor_cm(0.3 * place, place % 2 == 0 ? 8.191F : 8.183F)));
   ASSERT_TRUE(finder.find());
   EXPECT_FLOAT_EQ(static_cast<float>(finder.find()->range_m), 8.183F);
 }
@@ -69,7 +72,9 @@ TEST(NoReturn, AWallAlongThePathIsNoneAsNeighboringValuesAreAsFrequent) {
   NoReturnDetector finder;
   for (int place = 0; place < 100; ++place) {
     std::vector<float> ranges_m;
-    for (int beam = 0; beam < 40; ++beam) ranges_m.push_back(std::round(500.0F / std::cos(0.01F * static_cast<float>(beam))) / 100.0F);  // 5.00, 5.00, 5.00, 5.01 ...
+    for (int beam = 0; beam < 40; ++beam)
+      ranges_m.push_back(std::round(500.0F / std::cos(0.01F * static_cast<float>(beam))) /
+                         100.0F);  // 5.00, 5.00, 5.00, 5.01 ...
     finder.add(scan_at(0.3 * place, ranges_m));
   }
   EXPECT_FALSE(finder.find());

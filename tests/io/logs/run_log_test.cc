@@ -1,8 +1,8 @@
 #include "io/logs/run_log.h"
 
-#include <gtest/gtest.h>
-
 #include <map>
+
+#include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "io/logs/log_compare.h"
@@ -35,8 +35,7 @@ std::vector<FrameTransform> transforms_of(const std::filesystem::path& file, con
   std::vector<FrameTransform> all;
   read_mcap(file,
             [&](const McapMessage& message) {
-              for (const FrameTransform& one : decode<TransformSet>(message.cdr).transforms)
-                all.push_back(one);
+              for (const FrameTransform& one : decode<TransformSet>(message.cdr).transforms) all.push_back(one);
             },
             {.topics = {topic}});
   return all;
@@ -48,8 +47,7 @@ TEST_F(RunLog, BringsEveryMessageToItsHandlerAtItsTime) {
   std::apply(
       [&](const auto&... message) {
         const auto write = [&](const auto& one) {
-          if constexpr (!std::is_same_v<std::decay_t<decltype(one)>, TransformSet>)
-            writer.write(++written * 1s, one);
+          if constexpr (!std::is_same_v<std::decay_t<decltype(one)>, TransformSet>) writer.write(++written * 1s, one);
         };
         (write(message), ...);
       },
@@ -137,8 +135,7 @@ TEST_F(RunLog, FramesChainFromMapToBodyAtTheEstimatesStamp) {
   odometry.stamp = 1100ms;
   odometry.T_odom_body = {{9.0, 9.0, 9.0}, quaternion_from_yaw(2.0)};
   writer.write(1100ms, odometry);
-  writer.write(1200ms,
-               PoseEstimate{.stamp = 1s, .T_map_body = T_map_body});  // comes later than what it is about
+  writer.write(1200ms, PoseEstimate{.stamp = 1s, .T_map_body = T_map_body});  // comes later than what it is about
   writer.close();
   const auto frames = transforms_of(file, "/tf");
   ASSERT_EQ(frames.size(), 5U);
@@ -147,14 +144,12 @@ TEST_F(RunLog, FramesChainFromMapToBodyAtTheEstimatesStamp) {
   EXPECT_EQ(frames[4].parent + " " + frames[4].child, "map odom");
   EXPECT_THAT(frames[0].T_parent_child * frames[1].T_parent_child, Pose3Near(T_odom_body, 1e-12, 1e-7));
   EXPECT_NEAR((frames[0].T_parent_child.rotation * Eigen::Vector3d::UnitZ()).z(), 1.0, 1e-12) << "level";
-  EXPECT_THAT(to_pose2(frames[4].T_parent_child * frames[0].T_parent_child),
-              Pose2Near(T_map_body, 1e-12, 1e-12));
+  EXPECT_THAT(to_pose2(frames[4].T_parent_child * frames[0].T_parent_child), Pose2Near(T_map_body, 1e-12, 1e-12));
 }
 
 /// A log of ten seconds; `change` may alter one scan.
 template <typename Change>
-void write_walk(const std::filesystem::path& file, const Change& change, int seconds = 10,
-                bool close = true) {
+void write_walk(const std::filesystem::path& file, const Change& change, int seconds = 10, bool close = true) {
   RunLogWriter writer(file, make_robot());
   for (int i = 0; i < 10 * seconds; ++i) {
     LaserScan scan = test::sample_scan();
@@ -225,10 +220,8 @@ TEST_F(RunLog, ACutOffLogIsNotEqualThoughItsMessagesAre) {
 TEST_F(RunLog, TheSameMessageAtAnotherTimeOrOnAnotherTopicIsADifference) {
   const auto write = [&](const char* name, Time log_time, bool is_scan) {
     RunLogWriter writer(folder / name, make_robot());
-    if (is_scan)
-      writer.write(log_time, test::sample_scan());
-    else
-      writer.write(log_time, test::sample_imu());
+    if (is_scan) writer.write(log_time, test::sample_scan());
+    else writer.write(log_time, test::sample_imu());
     writer.close();
     return folder / name;
   };

@@ -1,9 +1,9 @@
 #include "io/logs/scan_sorter.h"
 
+#include <vector>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include <vector>
 
 namespace patrol::io::scan_sorter_test {
 namespace {
@@ -18,7 +18,9 @@ RecordedScan scan_at(int second, double x = 0.0) {
   return scan;
 }
 
-long second_of(const RecordedScan& scan) { return std::chrono::duration_cast<std::chrono::seconds>(scan.scan.stamp).count(); }
+long second_of(const RecordedScan& scan) {
+  return std::chrono::duration_cast<std::chrono::seconds>(scan.scan.stamp).count();
+}
 
 std::vector<long> taken(ScanSorter& sorter) {
   std::vector<long> seconds;

@@ -13,32 +13,39 @@ using test::Pose3Near;
 
 constexpr double kExactTol = 1e-12;
 
-FrameTransform placed(const std::string& parent, const std::string& child, double x, Time stamp = {}, double yaw = 0.0) {
+FrameTransform placed(const std::string& parent, const std::string& child, double x, Time stamp = {},
+                      double yaw = 0.0) {
   return test::placed(parent, child, {{x, 0.0, 0.0}, quaternion_from_yaw(yaw)}, stamp);
 }
 
-TEST(TransformBuffer, AnUnknownFrameRelativeToItselfIsTheIdentity) { EXPECT_THAT(*TransformBuffer().find("a", "a", 5s), Pose3Near(Pose3{}, 0.0, 0.0)); }
+TEST(TransformBuffer, AnUnknownFrameRelativeToItselfIsTheIdentity) {
+  EXPECT_THAT(*TransformBuffer().find("a", "a", 5s), Pose3Near(Pose3{}, 0.0, 0.0));
+}
 
 TEST(TransformBuffer, ChainsUpwardsAndBack) {
   TransformBuffer tree;
   tree.add_static(placed("base_link", "plate", 1.0));
   tree.add_static(placed("plate", "lidar", 0.25));
-  EXPECT_THAT(*tree.find("base_link", "lidar", 0s), Pose3Near((Pose3{{1.25, 0.0, 0.0}, {1.0, 0.0, 0.0, 0.0}}), kExactTol, kExactTol));
-  EXPECT_THAT(*tree.find("lidar", "base_link", 0s), Pose3Near((Pose3{{-1.25, 0.0, 0.0}, {1.0, 0.0, 0.0, 0.0}}), kExactTol, kExactTol));
+  EXPECT_THAT(*tree.find("base_link", "lidar", 0s),
+              Pose3Near((Pose3{{1.25, 0.0, 0.0}, {1.0, 0.0, 0.0, 0.0}}), kExactTol, kExactTol));
+  EXPECT_THAT(*tree.find("lidar", "base_link", 0s),
+              Pose3Near((Pose3{{-1.25, 0.0, 0.0}, {1.0, 0.0, 0.0, 0.0}}), kExactTol, kExactTol));
 }
 
 TEST(TransformBuffer, JoinsBranchesAtTheirCommonFrame) {
   TransformBuffer tree;
   tree.add_static(placed("base_link", "lidar", 1.0));
   tree.add_static(placed("base_link", "imu", -2.0));
-  EXPECT_THAT(*tree.find("imu", "lidar", 0s), Pose3Near((Pose3{{3.0, 0.0, 0.0}, {1.0, 0.0, 0.0, 0.0}}), kExactTol, kExactTol));
+  EXPECT_THAT(*tree.find("imu", "lidar", 0s),
+              Pose3Near((Pose3{{3.0, 0.0, 0.0}, {1.0, 0.0, 0.0, 0.0}}), kExactTol, kExactTol));
 }
 
 TEST(TransformBuffer, MovingFramesAreInterpolatedWithinTheirTimeOnly) {
   TransformBuffer tree;
   tree.add(placed("odom", "base_link", 1.0, 1s, 0.0));
   tree.add(placed("odom", "base_link", 3.0, 2s, 0.4));
-  EXPECT_THAT(*tree.find("odom", "base_link", 1500ms), Pose3Near((Pose3{{2.0, 0.0, 0.0}, quaternion_from_yaw(0.2)}), kExactTol, 1e-7));
+  EXPECT_THAT(*tree.find("odom", "base_link", 1500ms),
+              Pose3Near((Pose3{{2.0, 0.0, 0.0}, quaternion_from_yaw(0.2)}), kExactTol, 1e-7));
   EXPECT_FALSE(tree.find("odom", "base_link", 999ms));
   EXPECT_FALSE(tree.find("odom", "base_link", 2001ms));
 }
@@ -65,7 +72,8 @@ TEST(TransformBuffer, StampsThatDoNotGrowAreDropped) {
   tree.add(placed("odom", "base_link", 1.0, 2s));
   tree.add(placed("odom", "base_link", 5.0, 2s));
   tree.add(placed("odom", "base_link", 6.0, 1s));
-  EXPECT_THAT(*tree.find("odom", "base_link", 2s), Pose3Near((Pose3{{1.0, 0.0, 0.0}, {1.0, 0.0, 0.0, 0.0}}), kExactTol, kExactTol));
+  EXPECT_THAT(*tree.find("odom", "base_link", 2s),
+              Pose3Near((Pose3{{1.0, 0.0, 0.0}, {1.0, 0.0, 0.0, 0.0}}), kExactTol, kExactTol));
   EXPECT_FALSE(tree.find("odom", "base_link", 1s));
 }
 

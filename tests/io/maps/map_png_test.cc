@@ -1,10 +1,9 @@
 #include "io/maps/map_png.h"
 
-#include <gtest/gtest.h>
-
 #include <cstdint>
 #include <vector>
 
+#include <gtest/gtest.h>
 #include <png.h>
 
 namespace patrol::io::map_png_test {

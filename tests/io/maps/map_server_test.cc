@@ -1,10 +1,10 @@
 #include "io/maps/map_server.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "tests/support/temporary_file.h"
@@ -58,8 +58,7 @@ TEST_F(MapServer, ThereAndBackKeepsCellsAndFrame) {
 
 TEST_F(MapServer, TheImageBeginsWithTheHighestRow) {
   save_map(folder / "map.yaml", make_map());
-  EXPECT_EQ(read_bytes(folder / "map.pgm"),
-            std::string("P5\n3 2\n255\n") + std::string("\x00\x00\xfe\xfe\x00\xcd", 6))
+  EXPECT_EQ(read_bytes(folder / "map.pgm"), std::string("P5\n3 2\n255\n") + std::string("\x00\x00\xfe\xfe\x00\xcd", 6))
       << "occupied 0, free 254, unknown 205";
 }
 
@@ -104,9 +103,11 @@ TEST_F(MapServer, ThresholdsAreTheFiles) {
 }
 
 TEST_F(MapServer, BrokenPicturesAreNamed) {
-  EXPECT_EQ(complaint_about(good_yaml, std::string("P5\n3 2\n255\n") + "abcde"), "m.pgm: ends too early for 3 x 2 pixels");
+  EXPECT_EQ(complaint_about(good_yaml, std::string("P5\n3 2\n255\n") + "abcde"),
+            "m.pgm: ends too early for 3 x 2 pixels");
   EXPECT_EQ(complaint_about(good_yaml, "P2\n3 2\n255\n0 0 0 0 0\n"), "m.pgm: ends too early for 3 x 2 pixels");
-  EXPECT_EQ(complaint_about(good_yaml, std::string("P5\n3 2\n255\n") + "abcdefg"), "m.pgm: has data after its 3 x 2 pixels");
+  EXPECT_EQ(complaint_about(good_yaml, std::string("P5\n3 2\n255\n") + "abcdefg"),
+            "m.pgm: has data after its 3 x 2 pixels");
   EXPECT_EQ(complaint_about(good_yaml, "P2\n1 1\n255\n0 0\n"), "m.pgm: has data after its 1 x 1 pixels");
   EXPECT_EQ(complaint_about(good_yaml, "P5\n100000 100000\n255\n"), "m.pgm: ends too early for 100000 x 100000 pixels");
   EXPECT_EQ(complaint_about(good_yaml, "P2\n1 1\n255\n300\n"), "m.pgm: a pixel of 300 is brighter than 255");
@@ -125,20 +126,23 @@ TEST_F(MapServer, WrongKeysAreNamedWithTheirLine) {
   EXPECT_EQ(complaint(image + "resolution: 1\n"), "m.yaml: origin: is missing");
   EXPECT_EQ(complaint("{}\n"), "m.yaml: image: is missing");
   EXPECT_EQ(complaint(""), "m.yaml: is empty: must be a map of keys and values ({} for none)");
-  EXPECT_EQ(complaint(image + "resolution: .nan\norigin: [0, 0, 0]\n"), "m.yaml:2: resolution: must be a finite number, not .nan");
+  EXPECT_EQ(complaint(image + "resolution: .nan\norigin: [0, 0, 0]\n"),
+            "m.yaml:2: resolution: must be a finite number, not .nan");
   EXPECT_EQ(complaint(image + "resolution: -1\norigin: [0, 0, 0]\n"),
             "m.yaml:2: resolution: -1 is out of range: must be in [0.001, 10]");
   EXPECT_EQ(complaint(image + "resolution: 1\norigin: 0\n"), "m.yaml:3: origin: must be a list");
   EXPECT_EQ(complaint(image + "resolution: 1\norigin: [0]\n"), "m.yaml:3: origin: must be three numbers: x, y, yaw");
   EXPECT_EQ(complaint(image + "resolution: 1\norigin: [0, 0]\n"), "m.yaml:3: origin: must be three numbers: x, y, yaw");
-  EXPECT_EQ(complaint(image + "resolution: 1\norigin: [0, north, 0]\n"), "m.yaml:3: origin.1: must be a number, not north");
+  EXPECT_EQ(complaint(image + "resolution: 1\norigin: [0, north, 0]\n"),
+            "m.yaml:3: origin.1: must be a number, not north");
   EXPECT_EQ(complaint(image + "resolution: 1\norigin: [0, 0, 0.5]\n"),
             "m.yaml:3: origin: rotated maps (yaw other than 0) are not supported");
   EXPECT_EQ(complaint(good + "negate: 2\n"), "m.yaml:4: negate: 2 is out of range: must be one of 0, 1, false, true");
   EXPECT_EQ(complaint(good + "mode: raw\n"), "m.yaml:4: mode: raw is out of range: must be one of trinary");
   EXPECT_EQ(complaint(good + "free_thresh: 0.9\n"), "m.yaml:4: free_thresh: must not be above occupied_thresh");
   EXPECT_EQ(complaint(good + "resolution: 2\n"), "m.yaml:4: resolution: duplicate key");
-  EXPECT_THAT(complaint(good + "occupied_tresh: 0.5\n"), HasSubstr("m.yaml:4: occupied_tresh: unknown key; did you mean occupied_thresh?"));
+  EXPECT_THAT(complaint(good + "occupied_tresh: 0.5\n"),
+              HasSubstr("m.yaml:4: occupied_tresh: unknown key; did you mean occupied_thresh?"));
 }
 
 TEST_F(MapServer, AMissingPictureIsNamedWithTheLineThatNamesIt) {
@@ -148,7 +152,8 @@ TEST_F(MapServer, AMissingPictureIsNamedWithTheLineThatNamesIt) {
 
 TEST(MapErrors, ComeBackToAMillimetreUpTo254) {
   const test::TemporaryFolder folder;
-  Grid<float> errors_m({.resolution_m = 0.05, .width = 3, .height = 2, .origin_m = {1.0, 2.0}}, std::numeric_limits<float>::quiet_NaN());
+  Grid<float> errors_m({.resolution_m = 0.05, .width = 3, .height = 2, .origin_m = {1.0, 2.0}},
+                       std::numeric_limits<float>::quiet_NaN());
   errors_m.at({0, 0}) = 0.0F;
   errors_m.at({2, 0}) = 0.0237F;
   errors_m.at({1, 1}) = 7.0F;
@@ -162,8 +167,11 @@ TEST(MapErrors, ComeBackToAMillimetreUpTo254) {
 
 TEST(MapErrors, OfAnotherMapsSizeAreRefused) {
   const test::TemporaryFolder folder;
-  save_map_errors(folder / "map_errors.pgm", Grid<float>({.resolution_m = 0.05, .width = 3, .height = 2, .origin_m = {0.0, 0.0}}));
-  EXPECT_THROW(load_map_errors(folder / "map_errors.pgm", {.resolution_m = 0.05, .width = 2, .height = 3, .origin_m = {0.0, 0.0}}), InputError);
+  save_map_errors(folder / "map_errors.pgm",
+                  Grid<float>({.resolution_m = 0.05, .width = 3, .height = 2, .origin_m = {0.0, 0.0}}));
+  EXPECT_THROW(load_map_errors(folder / "map_errors.pgm",
+                               {.resolution_m = 0.05, .width = 2, .height = 3, .origin_m = {0.0, 0.0}}),
+               InputError);
 }
 
 }  // namespace

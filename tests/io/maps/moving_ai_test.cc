@@ -1,9 +1,9 @@
 #include "io/maps/moving_ai.h"
 
+#include <algorithm>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include <algorithm>
 
 #include "core/error.h"
 #include "tests/support/temporary_file.h"
@@ -55,9 +55,13 @@ TEST_F(MovingAi, TheFilesLastRowIsTheLowest) {
   EXPECT_THAT(map.terrain.values(), ElementsAre('@', 'W', 'T', '.', 'G', 'S'));
 }
 
-TEST_F(MovingAi, OnLandGroundAndSwampAreFree) { EXPECT_THAT(to_occupancy(load_map(good_map), {0, 1}).values(), ElementsAre(X, X, X, F, F, F)); }
+TEST_F(MovingAi, OnLandGroundAndSwampAreFree) {
+  EXPECT_THAT(to_occupancy(load_map(good_map), {0, 1}).values(), ElementsAre(X, X, X, F, F, F));
+}
 
-TEST_F(MovingAi, InWaterOnlyWaterIs) { EXPECT_THAT(to_occupancy(load_map(good_map), {1, 0}).values(), ElementsAre(X, F, X, X, X, X)); }
+TEST_F(MovingAi, InWaterOnlyWaterIs) {
+  EXPECT_THAT(to_occupancy(load_map(good_map), {1, 0}).values(), ElementsAre(X, F, X, X, X, X));
+}
 
 TEST_F(MovingAi, OutsideAndWhereNobodyStandsTheMapIsLands) {
   EXPECT_EQ(to_occupancy(load_map(good_map), {-1, 7}).values(), to_occupancy(load_map(good_map), {0, 1}).values());
@@ -65,7 +69,8 @@ TEST_F(MovingAi, OutsideAndWhereNobodyStandsTheMapIsLands) {
 }
 
 TEST_F(MovingAi, ReadsCarriageReturnsAWidthBeforeTheHeightAndNoLastLineEnd) {
-  EXPECT_EQ(load_map("type octile\r\nwidth 3\r\nheight 2\r\nmap\r\n.GS\r\n@WT").terrain.values(), load_map(good_map).terrain.values());
+  EXPECT_EQ(load_map("type octile\r\nwidth 3\r\nheight 2\r\nmap\r\n.GS\r\n@WT").terrain.values(),
+            load_map(good_map).terrain.values());
 }
 
 TEST_F(MovingAi, MapsThatAreNoneAreRefusedInOneLineWithThePlace) {
@@ -76,22 +81,28 @@ TEST_F(MovingAi, MapsThatAreNoneAreRefusedInOneLineWithThePlace) {
   EXPECT_EQ(map_complaint("type octile\nheight 2 3\n"), "a.map:2: height: must be a single value");
   EXPECT_THAT(map_complaint("type octile\nheight -2\n"), ::testing::StartsWith("a.map:2: height"));
   EXPECT_EQ(map_complaint("type octile\nheight\n"), "a.map:2: ends before height");
-  EXPECT_EQ(map_complaint("type octile\nheight 2\nwidth 3\nmap\n.GS\n@W\n"), "a.map:6: row 1: has 2 cells, must have 3");
-  EXPECT_EQ(map_complaint("type octile\nheight 2\nwidth 3\nmap\n.G?\n@WT\n"), "a.map:5: row 0: invalid character 63, must be of . G S W @ O T");
+  EXPECT_EQ(map_complaint("type octile\nheight 2\nwidth 3\nmap\n.GS\n@W\n"),
+            "a.map:6: row 1: has 2 cells, must have 3");
+  EXPECT_EQ(map_complaint("type octile\nheight 2\nwidth 3\nmap\n.G?\n@WT\n"),
+            "a.map:5: row 0: invalid character 63, must be of . G S W @ O T");
   EXPECT_EQ(map_complaint("type octile\nheight 2\nwidth 3\nmap\n.GS\n"), "a.map: ends after 1 of 2 rows");
   EXPECT_EQ(map_complaint(good_map + "...\n"), "a.map:7: must hold no more than 2 rows");
   EXPECT_EQ(map_complaint(""), "a.map: contains no map");
   EXPECT_EQ(complaint([&] { load_moving_ai_map(folder / "b.map"); }).substr(0, 5), "b.map");
 }
 
-// A header of a million million cells is refused before a row is read; one that fits takes no memory until the rows come.
+// A header of a million million cells is refused before a row is read; one that fits takes no memory until the rows
+// come.
 TEST_F(MovingAi, AHugeHeaderFillsNoMemory) {
-  EXPECT_EQ(map_complaint("type octile\nheight 1000000\nwidth 1000000\nmap\n"), "a.map:4: map: 1000000 x 1000000 cells, at most 100000000 are allowed");
-  EXPECT_EQ(map_complaint("type octile\nheight 100\nwidth 1000000\nmap\n.\n"), "a.map:5: row 0: has 1 cells, must have 1000000");
+  EXPECT_EQ(map_complaint("type octile\nheight 1000000\nwidth 1000000\nmap\n"),
+            "a.map:4: map: 1000000 x 1000000 cells, at most 100000000 are allowed");
+  EXPECT_EQ(map_complaint("type octile\nheight 100\nwidth 1000000\nmap\n.\n"),
+            "a.map:5: row 0: has 1 cells, must have 1000000");
 }
 
 TEST_F(MovingAi, AProblemsRowsCountFromTheTopOfTheFile) {
-  const std::vector<MovingAiProblem> problems = load_problems("version 1\n0\ta map.map\t30\t20\t1\t2\t29\t19\t31.04163056\n3 b.map 30 20 0 0 0 0 0\n");
+  const std::vector<MovingAiProblem> problems =
+      load_problems("version 1\n0\ta map.map\t30\t20\t1\t2\t29\t19\t31.04163056\n3 b.map 30 20 0 0 0 0 0\n");
   ASSERT_EQ(problems.size(), 2u);
   EXPECT_EQ(problems[0].map, "a map.map");
   EXPECT_EQ(problems[0].start, (Cell{1, 17}));
@@ -117,10 +128,12 @@ TEST(MovingAiLength, IsRoundedToItsLastDigitOrToTheSixthWhereZerosMayBeDropped) 
 TEST_F(MovingAi, ProblemsThatAreNoneAreRefusedInOneLineWithThePlace) {
   const std::string rule = ": a problem is bucket, map, width, height, start x, y, goal x, y, optimal length";
   EXPECT_EQ(problem_complaint("0 a.map 30 20 1 2 3 4"), "a.map.scen:2: has 8 fields" + rule);
-  EXPECT_THAT(problem_complaint("0 a.map 30 20 30 2 3 4 5"), ::testing::AllOf(::testing::StartsWith("a.map.scen:2: start x"), ::testing::EndsWith(rule)));
+  EXPECT_THAT(problem_complaint("0 a.map 30 20 30 2 3 4 5"),
+              ::testing::AllOf(::testing::StartsWith("a.map.scen:2: start x"), ::testing::EndsWith(rule)));
   EXPECT_THAT(problem_complaint("0 a.map 30 20 1 2 3 20 5"), ::testing::StartsWith("a.map.scen:2: goal y"));
   EXPECT_THAT(problem_complaint("0 a.map 30 20 1 2 3 4 five"), ::testing::StartsWith("a.map.scen:2: optimal length"));
-  EXPECT_THAT(problem_complaint("0 a.map 30 20 1 2 3 4 -5"), ::testing::StartsWith("a.map.scen:2: optimal length: must be at least 0"));
+  EXPECT_THAT(problem_complaint("0 a.map 30 20 1 2 3 4 -5"),
+              ::testing::StartsWith("a.map.scen:2: optimal length: must be at least 0"));
   EXPECT_THAT(problem_complaint("0 a.map 30 20 1 2 3 4 nan"), ::testing::StartsWith("a.map.scen:2: optimal length"));
   EXPECT_EQ(problem_complaint(""), "a.map.scen: contains no problems");
   EXPECT_EQ(complaint([&] { load_problems("version 2\n"); }), "a.map.scen:1: must be \"version 1\"");

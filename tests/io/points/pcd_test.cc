@@ -1,8 +1,8 @@
 #include "io/points/pcd.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "tests/io/cloud_samples.h"
 
@@ -21,7 +21,8 @@ std::string complaint_about(const std::string& content) { return complaint("c.pc
 
 std::string header(const std::string& size, const std::string& data = "ascii",
                    const std::string& fields = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\n") {
-  return "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\n" + fields + size + "VIEWPOINT 0 0 0 1 0 0 0\nDATA " + data + "\n";
+  return "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\n" + fields + size +
+         "VIEWPOINT 0 0 0 1 0 0 0\nDATA " + data + "\n";
 }
 
 const std::string kOnePoint = "WIDTH 1\nHEIGHT 1\nPOINTS 1\n";
@@ -38,7 +39,8 @@ TEST(Pcd, AFileOfOursIsItsHeaderAnd16BytesAPoint) {
   const TemporaryFolder folder;
   save_pcd(folder / "c.pcd", kThreePoints);
   const std::string expected =
-      "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z intensity\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 1\n"
+      "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z intensity\nSIZE 4 4 4 4\nTYPE F F F "
+      "F\nCOUNT 1 1 1 1\n"
       "WIDTH 3\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 3\nDATA binary\n";
   const std::string content = read_bytes(folder / "c.pcd");
   EXPECT_EQ(content.substr(0, expected.size()), expected);
@@ -46,38 +48,50 @@ TEST(Pcd, AFileOfOursIsItsHeaderAnd16BytesAPoint) {
 }
 
 TEST(Pcd, OthersFieldsAreReadWithDescriptorsAndPaddingBetween) {
-  const std::string fields = "FIELDS x y z _ normal intensity _\nSIZE 4 4 4 1 4 2 1\nTYPE F F F U F U U\nCOUNT 1 1 1 4 3 1 2\n";
-  const std::string row = bytes(1.5F) + bytes(-2.0F) + bytes(3.0F) + "pad:" + bytes(0.0F) + bytes(0.0F) + bytes(1.0F) + bytes(std::uint16_t{300}) + "..";
-  expect_same(load(header("WIDTH 1\nHEIGHT 2\n", "binary", fields) + row + row), {{1.5F, -2.0F, 3.0F, 300.0F}, {1.5F, -2.0F, 3.0F, 300.0F}});
+  const std::string fields =
+      "FIELDS x y z _ normal intensity _\nSIZE 4 4 4 1 4 2 1\nTYPE F F F U F U U\nCOUNT 1 1 1 4 3 1 2\n";
+  const std::string row = bytes(1.5F) + bytes(-2.0F) + bytes(3.0F) + "pad:" + bytes(0.0F) + bytes(0.0F) + bytes(1.0F) +
+                          bytes(std::uint16_t{300}) + "..";
+  expect_same(load(header("WIDTH 1\nHEIGHT 2\n", "binary", fields) + row + row),
+              {{1.5F, -2.0F, 3.0F, 300.0F}, {1.5F, -2.0F, 3.0F, 300.0F}});
 }
 
 TEST(Pcd, FiguresAreRead) {
-  expect_same(load(header("WIDTH 2\nHEIGHT 1\nPOINTS 2\n") + "1 2 3\n-0.5 0 2e-3\n"), {{1, 2, 3, 0}, {-0.5F, 0, 2e-3F, 0}});
+  expect_same(load(header("WIDTH 2\nHEIGHT 1\nPOINTS 2\n") + "1 2 3\n-0.5 0 2e-3\n"),
+              {{1, 2, 3, 0}, {-0.5F, 0, 2e-3F, 0}});
 }
 
 TEST(Pcd, WhatIsNoPcdIsRefusedWithItsLine) {
   EXPECT_EQ(complaint_about("ply\n"), "c.pcd:1: is not a line of a PCD header");
   EXPECT_EQ(complaint_about("VERSION 0.7\n"), "c.pcd:1: the header has no line DATA");
   EXPECT_EQ(complaint_about(header(kOnePoint, "binary_compressed")), "c.pcd:11: DATA must be ascii or binary");
-  EXPECT_EQ(complaint_about(header(kOnePoint, "ascii", "FIELDS x y\nSIZE 4 4\nTYPE F F\n")), "c.pcd:10: the points have no z");
-  EXPECT_EQ(complaint_about(header(kOnePoint, "ascii", "FIELDS x y z\nSIZE 4 4\nTYPE F F F\n")), "c.pcd:10: FIELDS has 3 words, SIZE 2 and TYPE 3");
-  EXPECT_EQ(complaint_about(header(kOnePoint, "ascii", "FIELDS x y z\nSIZE 4 4 3\nTYPE F F F\n")), "c.pcd:10: TYPE and SIZE of field 3 are inconsistent");
-  EXPECT_EQ(complaint_about(header(kOnePoint, "ascii", "FIELDS x\nCOUNT 1 1\n")), "c.pcd:4: COUNT has more words than FIELDS");
+  EXPECT_EQ(complaint_about(header(kOnePoint, "ascii", "FIELDS x y\nSIZE 4 4\nTYPE F F\n")),
+            "c.pcd:10: the points have no z");
+  EXPECT_EQ(complaint_about(header(kOnePoint, "ascii", "FIELDS x y z\nSIZE 4 4\nTYPE F F F\n")),
+            "c.pcd:10: FIELDS has 3 words, SIZE 2 and TYPE 3");
+  EXPECT_EQ(complaint_about(header(kOnePoint, "ascii", "FIELDS x y z\nSIZE 4 4 3\nTYPE F F F\n")),
+            "c.pcd:10: TYPE and SIZE of field 3 are inconsistent");
+  EXPECT_EQ(complaint_about(header(kOnePoint, "ascii", "FIELDS x\nCOUNT 1 1\n")),
+            "c.pcd:4: COUNT has more words than FIELDS");
 }
 
 TEST(Pcd, WrongCountsAreRefusedWithoutFillingTheMemory) {
   const std::string point = bytes(1.0F) + bytes(2.0F) + bytes(3.0F);
   EXPECT_EQ(complaint_about(header("WIDTH 2\nHEIGHT 3\nPOINTS 5\n")), "c.pcd:11: POINTS is 5, WIDTH x HEIGHT 6");
-  EXPECT_EQ(complaint_about(header("WIDTH 1000000000\nHEIGHT 1000000000\n", "binary")), "c.pcd:10: WIDTH x HEIGHT is too large");
-  EXPECT_EQ(complaint_about(header("WIDTH 1000000000\nHEIGHT 1\n", "binary") + point), "c.pcd: ends too early for 1000000000 points of 12 bytes");
-  EXPECT_EQ(complaint_about(header(kOnePoint, "binary") + point.substr(2)), "c.pcd: ends too early for 1 points of 12 bytes");
+  EXPECT_EQ(complaint_about(header("WIDTH 1000000000\nHEIGHT 1000000000\n", "binary")),
+            "c.pcd:10: WIDTH x HEIGHT is too large");
+  EXPECT_EQ(complaint_about(header("WIDTH 1000000000\nHEIGHT 1\n", "binary") + point),
+            "c.pcd: ends too early for 1000000000 points of 12 bytes");
+  EXPECT_EQ(complaint_about(header(kOnePoint, "binary") + point.substr(2)),
+            "c.pcd: ends too early for 1 points of 12 bytes");
   EXPECT_EQ(complaint_about(header(kOnePoint, "binary") + point + point), "c.pcd: has data after its 1 points");
   EXPECT_EQ(complaint_about(header("WIDTH 9\nHEIGHT 1\n") + "1 2 3\n"), "c.pcd: ends too early for 9 points");
   EXPECT_NE(complaint_about(header("WIDTH -1\nHEIGHT 1\n")), "accepted");
 }
 
 TEST(Pcd, NumbersThatAreNoneAreRefusedWithTheirPlace) {
-  EXPECT_EQ(complaint_about(header(kOnePoint, "binary") + bytes(1.0F) + bytes(std::nanf("")) + bytes(1.0F)), "c.pcd: point 1 is not finite");
+  EXPECT_EQ(complaint_about(header(kOnePoint, "binary") + bytes(1.0F) + bytes(std::nanf("")) + bytes(1.0F)),
+            "c.pcd: point 1 is not finite");
   EXPECT_EQ(complaint_about(header(kOnePoint) + "1 inf 3\n"), "c.pcd:12: is not finite");
   EXPECT_EQ(complaint_about(header(kOnePoint) + "1 2    \n"), "c.pcd:12: must be 3 numbers");
 }

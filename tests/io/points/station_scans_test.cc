@@ -11,8 +11,12 @@ namespace patrol::io::station_scans_test {
 namespace {
 
 std::vector<StationScan> two_scans() {
-  return {{.station = "goal_1", .T_map_scanner = to_pose3(Pose2{-31.0, 0.25, 3.0}, 0.75), .points = {{1.0F, -2.0F, 0.5F, 120.0F}, {-4.0F, 0.25F, 5.5F, 7.0F}}},
-          {.station = "goal_2", .T_map_scanner = to_pose3(Pose2{-60.0, 0.5, -1.5}, 0.75), .points = {{8.0F, 9.0F, 1.5F, 0.0F}}}};
+  return {{.station = "goal_1",
+           .T_map_scanner = to_pose3(Pose2{-31.0, 0.25, 3.0}, 0.75),
+           .points = {{1.0F, -2.0F, 0.5F, 120.0F}, {-4.0F, 0.25F, 5.5F, 7.0F}}},
+          {.station = "goal_2",
+           .T_map_scanner = to_pose3(Pose2{-60.0, 0.5, -1.5}, 0.75),
+           .points = {{8.0F, 9.0F, 1.5F, 0.0F}}}};
 }
 
 std::string error_response(const std::filesystem::path& folder) {
@@ -40,9 +44,11 @@ TEST(StationScans, ComeBackWithTheirPlacesAndPoints) {
 TEST(StationScans, AStationThatLeadsOutOfTheFolderIsRefused) {
   const test::TemporaryFolder folder;
   save_station_scans(folder.path(), two_scans());
-  save_text(folder.path() / "scans.json", R"([{"station": "../goal_1", "position": [0, 0, 1], "orientation": [0, 0, 0, 1]}])");
+  save_text(folder.path() / "scans.json",
+            R"([{"station": "../goal_1", "position": [0, 0, 1], "orientation": [0, 0, 0, 1]}])");
   EXPECT_EQ(error_response(folder.path()),
-            (folder.path() / "scans.json").string() + ": [0]: station = ../goal_1: must be made of letters, digits and underlines");
+            (folder.path() / "scans.json").string() +
+                ": [0]: station = ../goal_1: must be made of letters, digits and underlines");
 }
 
 TEST(StationScans, ACloudThatIsNotThereIsNamed) {

@@ -1,9 +1,9 @@
 #include "io/ros/ros_messages.h"
 
-#include <gtest/gtest.h>
-
 #include <cstring>
 #include <map>
+
+#include <gtest/gtest.h>
 
 #include "io/ros/ros_definitions.h"
 #include "io/ros/ros_fields.h"
@@ -38,9 +38,7 @@ std::map<std::string, std::string> fields_of(const Message& message, const RosNa
 // padding to 8 counted from after the encapsulation; six doubles.
 TEST(Encode, LaysAVelocityCommandOutByteForByte) {
   std::string expected("\x00\x01\x00\x00", 4);
-  const auto append = [&](const auto& value) {
-    expected.append(reinterpret_cast<const char*>(&value), sizeof(value));
-  };
+  const auto append = [&](const auto& value) { expected.append(reinterpret_cast<const char*>(&value), sizeof(value)); };
   append(std::int32_t{12});
   append(std::uint32_t{345'678'901});
   append(std::uint32_t{15});  // "base_footprint" and its zero: 12 + 15 = 27 bytes so far
@@ -118,18 +116,16 @@ TEST(Decode, PointCloudKeepsEveryPoint) {
   EXPECT_EQ(is.stamp, was.stamp);
   ASSERT_EQ(is.points.size(), was.points.size());
   for (std::size_t i = 0; i < was.points.size(); ++i) {
-    EXPECT_EQ(std::tie(is.points[i].x, is.points[i].y, is.points[i].z, is.points[i].intensity,
-                       is.points[i].time_s, is.points[i].ring),
-              std::tie(was.points[i].x, was.points[i].y, was.points[i].z, was.points[i].intensity,
-                       was.points[i].time_s, was.points[i].ring));
+    EXPECT_EQ(std::tie(is.points[i].x, is.points[i].y, is.points[i].z, is.points[i].intensity, is.points[i].time_s,
+                       is.points[i].ring),
+              std::tie(was.points[i].x, was.points[i].y, was.points[i].z, was.points[i].intensity, was.points[i].time_s,
+                       was.points[i].ring));
   }
 }
 
 TEST(Decode, SensorsKeepTheirReadings) {
-  EXPECT_EQ(there_and_back(test::sample_imu()).angular_velocity_radps,
-            test::sample_imu().angular_velocity_radps);
-  EXPECT_EQ(there_and_back(test::sample_imu()).linear_acceleration_mps2,
-            test::sample_imu().linear_acceleration_mps2);
+  EXPECT_EQ(there_and_back(test::sample_imu()).angular_velocity_radps, test::sample_imu().angular_velocity_radps);
+  EXPECT_EQ(there_and_back(test::sample_imu()).linear_acceleration_mps2, test::sample_imu().linear_acceleration_mps2);
   EXPECT_EQ(there_and_back(test::sample_joints()).position_rad, test::sample_joints().position_rad);
   EXPECT_EQ(there_and_back(test::sample_joints()).velocity_radps, test::sample_joints().velocity_radps);
   EXPECT_EQ(there_and_back(test::sample_joints()).effort_nm, test::sample_joints().effort_nm);
@@ -190,8 +186,7 @@ TEST(Decode, CommandsEventsAndTruthKeepEveryField) {
   EXPECT_EQ(water.radius_high_m, 5.5);
   EXPECT_EQ(water.level, WarningLevel::kAlarm);
   const VelocityCommand command = there_and_back(test::sample_command());
-  EXPECT_EQ(std::tie(command.vx_mps, command.vy_mps, command.yaw_rate_radps),
-            std::make_tuple(0.5, -0.25, 1.0));
+  EXPECT_EQ(std::tie(command.vx_mps, command.vy_mps, command.yaw_rate_radps), std::make_tuple(0.5, -0.25, 1.0));
   const Event was = test::sample_event(), is = there_and_back(was);
   EXPECT_EQ(std::tie(is.stamp, is.kind, is.subject, is.text, is.value),
             std::tie(was.stamp, was.kind, was.subject, was.text, was.value));
@@ -200,16 +195,14 @@ TEST(Decode, CommandsEventsAndTruthKeepEveryField) {
   Event foreign = was;
   set_kind(foreign, "elevator_called");
   EXPECT_EQ(kind_text(there_and_back(foreign)), "elevator_called");
-  EXPECT_THAT(there_and_back(test::sample_truth()).T_world_body,
-              Pose3Near(test::sample_pose(), 0.0, kQuaternionTol));
+  EXPECT_THAT(there_and_back(test::sample_truth()).T_world_body, Pose3Near(test::sample_pose(), 0.0, kQuaternionTol));
   EXPECT_EQ(there_and_back(test::sample_truth()).twist.angular, test::sample_truth().twist.angular);
   EXPECT_EQ(there_and_back(test::sample_state()).qpos, test::sample_state().qpos);
   EXPECT_EQ(there_and_back(test::sample_state()).mocap, test::sample_state().mocap);
   EXPECT_EQ(there_and_back(test::sample_collision()).first, "FL_shank");
   EXPECT_EQ(there_and_back(test::sample_collision()).second, "house_7");
   EXPECT_EQ(there_and_back(test::sample_path()).T_map_body.size(), 2U);
-  EXPECT_THAT(there_and_back(test::sample_path()).T_map_body[1],
-              Pose2Near((Pose2{3.0, 4.0, -0.5}), 0.0, kExactTol));
+  EXPECT_THAT(there_and_back(test::sample_path()).T_map_body[1], Pose2Near((Pose2{3.0, 4.0, -0.5}), 0.0, kExactTol));
 }
 
 TEST(Decode, EmptyListsStayEmpty) {
@@ -259,8 +252,8 @@ TEST(RosFields, BytesThatDoNotFitTheDefinitionAreRefused) {
 
 TEST(RosDefinition, CarriesEveryTypeItUsesOnce) {
   const std::string text = ros_definition("nav_msgs/msg/Odometry");
-  for (const char* used : {"MSG: std_msgs/Header\n", "MSG: geometry_msgs/PoseWithCovariance\n",
-                           "MSG: geometry_msgs/Vector3\n"}) {
+  for (const char* used :
+       {"MSG: std_msgs/Header\n", "MSG: geometry_msgs/PoseWithCovariance\n", "MSG: geometry_msgs/Vector3\n"}) {
     const std::size_t at = text.find(used);
     ASSERT_NE(at, std::string::npos) << used;
     EXPECT_EQ(text.find(used, at + 1), std::string::npos) << used;

@@ -27,7 +27,8 @@ std::string complaint_about(const std::string& text) {
 }
 
 TEST(LoadG2o, ReadsVerticesAndEdgesWithTheWholeInformation) {
-  const PoseGraph graph = read("# a graph\nVERTEX_SE2 0 0 0 0\n\nVERTEX_SE2 1 1.5 -2 0.25\r\nEDGE_SE2 0 1 1.4 -2.1 0.3 10 1 2 20 3 30\n");
+  const PoseGraph graph =
+      read("# a graph\nVERTEX_SE2 0 0 0 0\n\nVERTEX_SE2 1 1.5 -2 0.25\r\nEDGE_SE2 0 1 1.4 -2.1 0.3 10 1 2 20 3 30\n");
   ASSERT_EQ(graph.T_map_node.size(), 2U);
   EXPECT_THAT(graph.T_map_node[1], Pose2Near(Pose2{1.5, -2.0, 0.25}, 0.0, 0.0));
   ASSERT_EQ(graph.edges.size(), 1U);
@@ -46,7 +47,8 @@ TEST(LoadG2o, IdsNeedNotBeInOrderNorBeforeTheirEdges) {
 
 TEST(LoadG2o, AnEdgeToTheNextNodeIsOdometryEveryOtherALoop) {
   const std::string three_nodes = std::string(kTwoNodes) + "VERTEX_SE2 2 2 0 0\n";
-  const PoseGraph graph = read(three_nodes + "EDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\nEDGE_SE2 0 2 1 0 0 1 0 0 1 0 1\nEDGE_SE2 1 0 1 0 0 1 0 0 1 0 1\n");
+  const PoseGraph graph = read(
+      three_nodes + "EDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\nEDGE_SE2 0 2 1 0 0 1 0 0 1 0 1\nEDGE_SE2 1 0 1 0 0 1 0 0 1 0 1\n");
   EXPECT_EQ(graph.edges[0].kind, PoseGraphEdge::Kind::kOdometry);
   EXPECT_EQ(graph.edges[1].kind, PoseGraphEdge::Kind::kLoop);
   EXPECT_EQ(graph.edges[2].kind, PoseGraphEdge::Kind::kLoop);
@@ -57,7 +59,8 @@ TEST(LoadG2o, WhatCannotBeReadIsNamedByItsLine) {
   EXPECT_EQ(complaint("VERTEX_SE2 2 1 0\n"), "a.g2o:3: VERTEX_SE2: ends before pose");
   EXPECT_EQ(complaint("VERTEX_SE2 2 1 0 nan\n"), "a.g2o:3: VERTEX_SE2: pose 'nan' is not a finite number");
   EXPECT_EQ(complaint("VERTEX_SE2 2 1 0 0 5\n"), "a.g2o:3: VERTEX_SE2: too many words");
-  EXPECT_EQ(complaint("VERTEX_SE2 -2 1 0 0\n"), "a.g2o:3: VERTEX_SE2: id '-2' must be an integer in [0, 9223372036854775807]");
+  EXPECT_EQ(complaint("VERTEX_SE2 -2 1 0 0\n"),
+            "a.g2o:3: VERTEX_SE2: id '-2' must be an integer in [0, 9223372036854775807]");
   EXPECT_EQ(complaint("VERTEX_SE2 1 1 0 0\n"), "a.g2o:3: VERTEX_SE2: id 1: duplicate");
   EXPECT_EQ(complaint("EDGE_SE2 0 1 1 0 0 1 0 0 1 0\n"), "a.g2o:3: EDGE_SE2: ends before information");
   EXPECT_EQ(complaint("EDGE_SE2 0 1 1 0 0 1 0 0 -1 0 1\n"), "a.g2o:3: EDGE_SE2: information is not positive definite");
@@ -66,7 +69,8 @@ TEST(LoadG2o, WhatCannotBeReadIsNamedByItsLine) {
   EXPECT_EQ(complaint("\nEDGE_SE2 0 5 1 0 0 1 0 0 1 0 1\n"), "a.g2o:4: unknown VERTEX_SE2 5");
   EXPECT_EQ(complaint("FIX 5\n"), "a.g2o:3: unknown VERTEX_SE2 5");
   EXPECT_EQ(complaint("FIX\n"), "a.g2o:3: FIX: ends before id");
-  EXPECT_EQ(complaint("VERTEX_SE3:QUAT 2 0 0 0 0 0 0 1\n"), "a.g2o:3: VERTEX_SE3:QUAT: unknown tag (known: VERTEX_SE2, EDGE_SE2, FIX)");
+  EXPECT_EQ(complaint("VERTEX_SE3:QUAT 2 0 0 0 0 0 0 1\n"),
+            "a.g2o:3: VERTEX_SE3:QUAT: unknown tag (known: VERTEX_SE2, EDGE_SE2, FIX)");
   EXPECT_EQ(complaint(std::string(2'000'000, 'x')), "a.g2o:3: is too long");
 }
 
@@ -76,9 +80,11 @@ TEST(LoadG2o, AnEmptyOrMissingFileIsRefused) {
 }
 
 TEST(ToG2o, WritesIdsByPlaceAndFixesTheFirst) {
-  PoseGraph graph{.T_map_node = {{}, {1.0, 0.5, -0.25}}, .edges = {{.from = 0, .to = 1, .T_from_to = {1.0, 0.5, -0.25}}}};
+  PoseGraph graph{.T_map_node = {{}, {1.0, 0.5, -0.25}},
+                  .edges = {{.from = 0, .to = 1, .T_from_to = {1.0, 0.5, -0.25}}}};
   graph.edges[0].information(0, 1) = graph.edges[0].information(1, 0) = 0.5;
-  EXPECT_EQ(to_g2o(graph), "VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 1 0.5 -0.25\nFIX 0\nEDGE_SE2 0 1 1 0.5 -0.25 1 0.5 0 1 0 1\n");
+  EXPECT_EQ(to_g2o(graph),
+            "VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 1 0.5 -0.25\nFIX 0\nEDGE_SE2 0 1 1 0.5 -0.25 1 0.5 0 1 0 1\n");
 }
 
 TEST(SaveG2o, ThereAndBackIsTheSameToTheBit) {

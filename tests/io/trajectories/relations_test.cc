@@ -25,15 +25,17 @@ std::string complaint_about(const std::string& text) {
 }
 
 TEST(LoadRelations, ReadsStampsToTheNanosecondAndThePlanarPose) {
-  const TemporaryFile file("a.relations",
-                           "# t1 t2 x y z roll pitch yaw\n\n976052905.167303 976052911.885496 -0.056990 -0.128430 9 8 7 -1.682210\r\n"
-                           "2 1 0 0 0 0 0 7\n");
+  const TemporaryFile file(
+      "a.relations",
+      "# t1 t2 x y z roll pitch yaw\n\n976052905.167303 976052911.885496 -0.056990 -0.128430 9 8 7 -1.682210\r\n"
+      "2 1 0 0 0 0 0 7\n");
   const std::vector<PoseRelation> relations = load_relations(file.path());
   ASSERT_EQ(relations.size(), 2U);
   EXPECT_EQ(relations[0].from, Time(976'052'905'167'303'000));
   EXPECT_EQ(relations[0].to, Time(976'052'911'885'496'000));
   EXPECT_THAT(relations[0].T_from_to, Pose2Near(Pose2{-0.05699, -0.12843, -1.68221}, 0.0, 0.0));
-  EXPECT_NEAR(relations[1].T_from_to.yaw, 7.0 - 2.0 * std::numbers::pi, 1e-15) << "wrapped; and the second may be the earlier";
+  EXPECT_NEAR(relations[1].T_from_to.yaw, 7.0 - 2.0 * std::numbers::pi, 1e-15)
+      << "wrapped; and the second may be the earlier";
 }
 
 TEST(LoadRelations, WhatIsNoRelationIsNamedByItsLine) {

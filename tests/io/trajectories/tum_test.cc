@@ -26,8 +26,7 @@ std::string complaint_about(const std::string& text) {
 }
 
 TEST(LoadTum, ReadsPosesAndSkipsComments) {
-  const TemporaryFile file(
-      "a.tum", "# t x y z qx qy qz qw\n\n1.5 1 2 3 0 0 0 1\r\n  2.000000001 -1e1 0 0 0 0 1 0  \n");
+  const TemporaryFile file("a.tum", "# t x y z qx qy qz qw\n\n1.5 1 2 3 0 0 0 1\r\n  2.000000001 -1e1 0 0 0 0 1 0  \n");
   const Trajectory trajectory = load_tum(file.path());
   ASSERT_EQ(trajectory.size(), 2U);
   EXPECT_EQ(trajectory[0].stamp, Time(1500ms));
@@ -78,7 +77,8 @@ TEST(LoadTum, OfPosesOfOneStampTheFirstMayBeKept) {
 
 TEST(SaveTum, SecondsSinceNineteenSeventyComeBackToTheNanosecond) {
   const TemporaryFolder folder;
-  const Trajectory was = {{Time(-1'500'000'000), {}}, {Time(976'052'857'222'433'000), {}}, {Time(976'052'857'222'433'001), {}}};
+  const Trajectory was = {
+      {Time(-1'500'000'000), {}}, {Time(976'052'857'222'433'000), {}}, {Time(976'052'857'222'433'001), {}}};
   save_tum(folder / "a.tum", was, "c");
   EXPECT_THAT(test::read_bytes(folder / "a.tum"), HasSubstr("\n-1.500000000 0.0"));
   EXPECT_THAT(test::read_bytes(folder / "a.tum"), HasSubstr("\n976052857.222433000 0.0"));

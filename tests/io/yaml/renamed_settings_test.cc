@@ -40,7 +40,8 @@ TEST(RenamedSettings, ParticleFilterAndLeggedOdometryMoveOneLevelDown) {
 
 TEST(RenamedSettings, KeysMoveBetweenSections) {
   EXPECT_EQ(renamed_setting("stack.plan.recoveries"), "stack.navigation.recovery.behaviors");
-  EXPECT_EQ(renamed_setting("stack.plan.paper_local.target_ahead_m"), "stack.navigation.local_planner.dwa_liu21.lookahead_m");
+  EXPECT_EQ(renamed_setting("stack.plan.paper_local.target_ahead_m"),
+            "stack.navigation.local_planner.dwa_liu21.lookahead_m");
   EXPECT_EQ(renamed_setting("stack.dock_detector.range_std_m"), "stack.docking.detector.range_std_m");
   EXPECT_EQ(renamed_setting("routes.two_swarms.own_pull"), "routes.dual_swarm_pso.cognitive_weight");
 }

@@ -111,7 +111,8 @@ TEST(LoadSettings, TakesWhatIsSaidAndLeavesTheDefaults) {
 
 TEST(LoadSettings, AnEmptyMapIsAllDefaultsAndAnEmptyFileIsRefused) {
   EXPECT_EQ(load("{}\n").seed, 1U);
-  for (const char* empty : {"", "\n", "# nothing\n", "---\n"}) EXPECT_THAT(complaint_about(empty), StartsWith("a.yaml: is empty")) << empty;
+  for (const char* empty : {"", "\n", "# nothing\n", "---\n"})
+    EXPECT_THAT(complaint_about(empty), StartsWith("a.yaml: is empty")) << empty;
 }
 
 TEST(LoadSettings, ASecondDocumentIsRefused) {
@@ -153,8 +154,7 @@ TEST(LoadSettings, APresetSetsWhatIsNotSaidBesideIt) {
 
 TEST(LoadSettings, ExpectationsAreTruthsNumbersOrBands) {
   const Expectations expect =
-      load("expect:\n  mission.completed: true\n  mission.collisions: 0\n  pose.ate_rmse_m: {max: 0.15}\n")
-          .expect;
+      load("expect:\n  mission.completed: true\n  mission.collisions: 0\n  pose.ate_rmse_m: {max: 0.15}\n").expect;
   EXPECT_TRUE(expect.at("mission.completed").is_boolean);
   EXPECT_EQ(expect.at("mission.completed").min, 1.0);
   EXPECT_EQ(expect.at("mission.collisions").max, 0.0);
@@ -165,8 +165,7 @@ TEST(LoadSettings, ExpectationsAreTruthsNumbersOrBands) {
 TEST(LoadSettings, UnknownKeyGivesFileLineAndNearestSpelling) {
   EXPECT_THAT(complaint_about("world: street\nsensors:\n  lidar: {range_nois_m: 0.03}\n"),
               StartsWith("a.yaml:3: sensors.lidar.range_nois_m: unknown key; did you mean range_noise_m?"));
-  EXPECT_THAT(complaint_about("\n\nsede: 3\n"),
-              StartsWith("a.yaml:3: sede: unknown key; did you mean seed?"));
+  EXPECT_THAT(complaint_about("\n\nsede: 3\n"), StartsWith("a.yaml:3: sede: unknown key; did you mean seed?"));
   EXPECT_THAT(complaint_about("quaternion: 3\n"),
               StartsWith("a.yaml:1: quaternion: unknown key (known: world, seed, "));
 }
@@ -182,8 +181,7 @@ TEST(LoadSettings, AUnitBehindTheNumberIsNoNumber) {
 }
 
 TEST(LoadSettings, WrongTypesAreNamedWithWhatTheyMustBe) {
-  EXPECT_EQ(complaint_about("seed: many\n"),
-            "a.yaml:1: seed: must be a non-negative integer, not many");
+  EXPECT_EQ(complaint_about("seed: many\n"), "a.yaml:1: seed: must be a non-negative integer, not many");
   EXPECT_EQ(complaint_about("seed: -1\n"), "a.yaml:1: seed: must be a non-negative integer, not -1");
   EXPECT_EQ(complaint_about("seed: 1.5\n"), "a.yaml:1: seed: must be a non-negative integer, not 1.5");
   EXPECT_EQ(complaint_about("sensors: {lidar: {beams: 10.5}}\n"),
@@ -206,8 +204,7 @@ TEST(LoadSettings, NotANumberAndInfinityAreRefused) {
 TEST(LoadSettings, OutOfRangeNamesTheRule) {
   EXPECT_EQ(complaint_about("sensors: {lidar: {range_noise_m: -1}}\n"),
             "a.yaml:1: sensors.lidar.range_noise_m: -1 is out of range: must be at least 0");
-  EXPECT_EQ(complaint_about("wind_mps: [0, 51]\n"),
-            "a.yaml:1: wind_mps.1: 51 is out of range: must be in [-50, 50]");
+  EXPECT_EQ(complaint_about("wind_mps: [0, 51]\n"), "a.yaml:1: wind_mps.1: 51 is out of range: must be in [-50, 50]");
   EXPECT_EQ(complaint_about("sensors:\n  lidar:\n    preset: rplidar_s3\n"),
             "a.yaml:3: sensors.lidar.preset: rplidar_s3 is out of range: must be one of rplidar_s2, utm30lx");
   EXPECT_EQ(complaint_about("leaks:\n- {at: a, rate_g_s: 1}\n- {at: b, rate_g_s: -1}\n"),
@@ -239,9 +236,8 @@ TEST(LoadSettings, WrongExpectationsAreNamed) {
 }
 
 TEST(Overrides, ReachSectionsAndListsAndMakeSections) {
-  const Scenario scenario =
-      load("leaks: [{at: a}, {at: b}]\n",
-           {"leaks.1.rate_g_s=2.5", "sensors.lidar.beams=400", "seed=9", "wind_mps=[3, 4]"});
+  const Scenario scenario = load("leaks: [{at: a}, {at: b}]\n",
+                                 {"leaks.1.rate_g_s=2.5", "sensors.lidar.beams=400", "seed=9", "wind_mps=[3, 4]"});
   EXPECT_EQ(scenario.leaks[1].rate_g_s, 2.5);
   EXPECT_EQ(scenario.sensors.lidar.beams, 400);
   EXPECT_EQ(scenario.seed, 9U);
@@ -256,12 +252,11 @@ TEST(Overrides, AreComplainedAboutLikeTheFile) {
   EXPECT_THAT(complaint_about("{}", {"seed"}), HasSubstr("--set seed: must be path=value"));
   EXPECT_THAT(complaint_about("leaks: [{at: a}]\n", {"leaks.1.at=b"}),
               HasSubstr("--set leaks.1.at=b: the list has 1 entries"));
-  EXPECT_THAT(complaint_about("leaks: [{at: a}]\n", {"leaks.first.at=b"}),
-              HasSubstr("must be a list index"));
-  EXPECT_THAT(complaint_about("leaks: [{at: a}]\n", {"leaks.0x.at=b"}),
-              HasSubstr("must be a list index"));
+  EXPECT_THAT(complaint_about("leaks: [{at: a}]\n", {"leaks.first.at=b"}), HasSubstr("must be a list index"));
+  EXPECT_THAT(complaint_about("leaks: [{at: a}]\n", {"leaks.0x.at=b"}), HasSubstr("must be a list index"));
   EXPECT_THAT(complaint_about("seed: 1\n", {"seed.x=b"}), HasSubstr("is a child of a scalar"));
-  EXPECT_EQ(complaint_about("seed: 1\n", {"leaks=[]x"}), "--set leaks=[]x: more than one YAML document: only one is allowed");
+  EXPECT_EQ(complaint_about("seed: 1\n", {"leaks=[]x"}),
+            "--set leaks=[]x: more than one YAML document: only one is allowed");
 }
 
 TEST(SaveSettings, WritesEveryDefaultAndReadsBackTheSame) {

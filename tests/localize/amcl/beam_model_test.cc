@@ -1,10 +1,10 @@
 #include "localize/amcl/beam_model.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <limits>
 #include <numbers>
+
+#include <gtest/gtest.h>
 
 namespace patrol::localize::amcl_beam_model_test {
 namespace {
@@ -19,13 +19,15 @@ OccupancyGrid make_room() {
   return map;
 }
 
-// The hit's part is scaled by what of it lies in range, so the density over the ranges and the share of no echo are all.
+// The hit's part is scaled by what of it lies in range, so the density over the ranges and the share of no echo are
+// all.
 TEST(BeamModel, IsAProbabilityOverRangesAndNoEcho) {
   const BeamModelSettings settings;
   for (const double expected_m : {0.5, 4.0, 29.9}) {
     constexpr double kStep = 1e-3;
     double sum = 0.0;
-    for (double range_m = 0.5 * kStep; range_m < settings.max_range_m; range_m += kStep) sum += kStep * std::exp(beam_log_likelihood(range_m, expected_m, settings));
+    for (double range_m = 0.5 * kStep; range_m < settings.max_range_m; range_m += kStep)
+      sum += kStep * std::exp(beam_log_likelihood(range_m, expected_m, settings));
     const double no_echo = settings.z_max / (settings.z_hit + settings.z_short + settings.z_max + settings.z_rand);
     EXPECT_NEAR(sum + no_echo, 1.0, 1e-3) << expected_m;
   }
@@ -51,7 +53,8 @@ TEST(BeamModel, RaysEndWithinACellOfTheWall) {
   const Eigen::Vector2d origin(3.0, 2.0);
   for (int i = 0; i < 90; ++i) {
     const double angle = 2.0 * std::numbers::pi * i / 90.0, c = std::cos(angle), s = std::sin(angle);
-    const double to_x = c > 0.0 ? (9.95 - 3.0) / c : (0.05 - 3.0) / c, to_y = s > 0.0 ? (5.95 - 2.0) / s : (0.05 - 2.0) / s;
+    const double to_x = c > 0.0 ? (9.95 - 3.0) / c : (0.05 - 3.0) / c,
+                 to_y = s > 0.0 ? (5.95 - 2.0) / s : (0.05 - 2.0) / s;
     const double true_m = std::min(c != 0.0 ? to_x : kNoEcho, s != 0.0 ? to_y : kNoEcho);
     EXPECT_NEAR(model.expected_range_m(origin, angle), true_m, 0.05) << angle;
   }
@@ -70,7 +73,8 @@ TEST(BeamModel, ThePoseThatTheScanWasTakenFromFitsBest) {
     const double range_m = model.expected_range_m({3.0, 2.0}, angle);
     scan.beams.push_back({(range_m * Eigen::Vector2d(std::cos(angle), std::sin(angle))).cast<float>(), true});
   }
-  const ScanLikelihoods fits = model.evaluate(scan, {{3.0, 2.0, 0.0}, {3.2, 2.0, 0.0}, {3.0, 2.2, 0.0}, {3.0, 2.0, 0.1}});
+  const ScanLikelihoods fits =
+      model.evaluate(scan, {{3.0, 2.0, 0.0}, {3.2, 2.0, 0.0}, {3.0, 2.2, 0.0}, {3.0, 2.0, 0.1}});
   EXPECT_GT(fits.mean_log[0], -0.1);
   for (const std::size_t other : {1U, 2U, 3U}) EXPECT_LT(fits.mean_log[other], fits.mean_log[0] - 0.3);
 }

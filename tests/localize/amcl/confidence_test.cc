@@ -1,10 +1,10 @@
 #include "localize/amcl/confidence.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <limits>
 #include <numbers>
+
+#include <gtest/gtest.h>
 
 #include "localize/amcl/divergence_monitor.h"
 
@@ -19,7 +19,9 @@ LocalizationEvidence evidence(double weak_m, double direction_rad = 0.0) {
   return evidence;
 }
 
-double confidence_of(const LocalizationEvidence& evidence) { return assess_confidence({}, evidence, false, {}).confidence; }
+double confidence_of(const LocalizationEvidence& evidence) {
+  return assess_confidence({}, evidence, false, {}).confidence;
+}
 
 TEST(AssessConfidence, IsOneToFiveCentimetersHalfAtTwentyFiveAndNothingAtOneMeter) {
   EXPECT_NEAR(confidence_of(evidence(0.03)), 1.0, 1e-9);
@@ -63,17 +65,20 @@ TEST(AssessConfidence, OfACovarianceThatIsNotANumberIsLost) {
 
 TEST(DivergenceMonitor, InjectsNothingWhileAllIsAsItWas) {
   DivergenceMonitor monitor({});
-  for (int i = 0; i < 100; ++i) monitor.add_scan_likelihood(i % 2 == 0 ? 0.7 : 0.9), monitor.add_scan_fit(0.9), monitor.add_range(0.6);
+  for (int i = 0; i < 100; ++i)
+    monitor.add_scan_likelihood(i % 2 == 0 ? 0.7 : 0.9), monitor.add_scan_fit(0.9), monitor.add_range(0.6);
   EXPECT_EQ(monitor.injection_fraction(), 0.0);
   EXPECT_EQ(monitor.range_confidence(), 1.0);
 }
 
-// The short average is at 0.8^n of the step after n scans: at 0.2 + 0.7 * 0.8^5 = 0.43 after five; the long one at 0.83.
+// The short average is at 0.8^n of the step after n scans: at 0.2 + 0.7 * 0.8^5 = 0.43 after five; the long one at
+// 0.83.
 TEST(DivergenceMonitor, InjectsWhenTheScanSuddenlyFitsLess) {
   DivergenceMonitor monitor({});
   for (int i = 0; i < 50; ++i) monitor.add_scan_likelihood(0.9);
   for (int i = 0; i < 5; ++i) monitor.add_scan_likelihood(0.2);
-  EXPECT_NEAR(monitor.injection_fraction(), 1.0 - 1.5 * (0.2 + 0.7 * std::pow(0.8, 5)) / (0.2 + 0.7 * std::pow(0.98, 5)), 1e-9);
+  EXPECT_NEAR(monitor.injection_fraction(),
+              1.0 - 1.5 * (0.2 + 0.7 * std::pow(0.8, 5)) / (0.2 + 0.7 * std::pow(0.98, 5)), 1e-9);
 }
 
 TEST(DivergenceMonitor, ABadFitIsNotForgottenHoweverLongItLasts) {

@@ -1,10 +1,10 @@
 #include "localize/amcl/global_search.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include <gtest/gtest.h>
 
 #include "tests/support/tunnel_world.h"
 
@@ -30,7 +30,8 @@ double weight_near(const GlobalSearch::Candidates& candidates, const Pose2& pose
   double weight = 0.0;
   for (std::size_t i = 0; i < candidates.weights.size(); ++i) {
     const Pose2& candidate = candidates.T_map_body[i];
-    const bool is_near = (candidate.position() - pose.position()).norm() < 0.5 && std::abs(wrap_angle(candidate.yaw - pose.yaw)) < 0.17;
+    const bool is_near =
+        (candidate.position() - pose.position()).norm() < 0.5 && std::abs(wrap_angle(candidate.yaw - pose.yaw)) < 0.17;
     if (is_near) weight += candidates.weights[i];
   }
   return weight;
@@ -60,7 +61,8 @@ TEST(GlobalSearch, StaysUndecidedInTheLinedStretch) {
 TEST(GlobalSearch, RangesDecideWhereTheScanCannot) {
   const Pose2 truth{62.0, 0.3, 0.0};
   std::vector<AnchoredRange> ranges;
-  for (const Eigen::Vector3d& anchor : {Eigen::Vector3d(45.0, 5.5, 2.5), Eigen::Vector3d(60.0, -5.5, 2.5), Eigen::Vector3d(75.0, 5.5, 2.5)}) {
+  for (const Eigen::Vector3d& anchor :
+       {Eigen::Vector3d(45.0, 5.5, 2.5), Eigen::Vector3d(60.0, -5.5, 2.5), Eigen::Vector3d(75.0, 5.5, 2.5)}) {
     ranges.push_back({anchor, Eigen::Vector3d::Zero(), (anchor - Eigen::Vector3d(truth.x, truth.y, 0.0)).norm()});
   }
   const GlobalSearch::Candidates candidates = find(truth, ranges);
@@ -71,7 +73,8 @@ TEST(GlobalSearch, SamplesTheRequestedNumberOfPosesNearTheCandidates) {
   const GlobalSearch::Candidates candidates = find({6.0, 0.4, 0.1});
   const std::vector<Pose2> poses = sample_poses(candidates, 200, RandomStream(1, "test/draw"), 0);
   ASSERT_EQ(poses.size(), 200U);
-  const auto near = std::count_if(poses.begin(), poses.end(), [](const Pose2& pose) { return std::hypot(pose.x - 6.0, pose.y - 0.4) < 0.6; });
+  const auto near = std::count_if(poses.begin(), poses.end(),
+                                  [](const Pose2& pose) { return std::hypot(pose.x - 6.0, pose.y - 0.4) < 0.6; });
   EXPECT_GT(near, 180);
   EXPECT_TRUE(sample_poses({}, 200, RandomStream(1, "test/draw"), 0).empty());
 }

@@ -1,8 +1,8 @@
 #include "localize/amcl/kld.h"
 
-#include <gtest/gtest.h>
-
 #include <numbers>
+
+#include <gtest/gtest.h>
 
 #include "localize/amcl/particle_cloud.h"
 #include "tests/support/pose_near.h"
@@ -12,8 +12,8 @@ namespace {
 
 constexpr KldSettings kFree{.min_particles = 1, .max_particles = 1000000};
 
-// Twice max_kl_divergence times the particles is the chi-square quantile of bins - 1 degrees of freedom. Tables: 0.99 quantiles 23.209
-// (10), 76.154 (50), 135.807 (100); Wilson and Hilferty come within one percent.
+// Twice max_kl_divergence times the particles is the chi-square quantile of bins - 1 degrees of freedom. Tables: 0.99
+// quantiles 23.209 (10), 76.154 (50), 135.807 (100); Wilson and Hilferty come within one percent.
 TEST(KldParticles, AreTheChiSquareQuantileOverTwiceTheError) {
   EXPECT_NEAR(kld_particles(11, kFree), 23.209 / 0.1, 3.0);
   EXPECT_NEAR(kld_particles(51, kFree), 76.154 / 0.1, 3.0);
@@ -57,7 +57,7 @@ TEST(ParticleCloud, TheDominantClusterIsDescribedAndNotTheOthers) {
   EXPECT_NEAR(dominant.weight, 0.6, 1e-12);
   const slam::PoseGaussian gaussian = cluster_gaussian(poses, weights, clusters, dominant.number);
   EXPECT_THAT(gaussian.mean, test::Pose2Near((Pose2{0.1, 0.0, std::numbers::pi}), 1e-9, 1e-9));
-  EXPECT_NEAR(gaussian.covariance(0, 0), 0.01, 1e-12);                               // 0.1^2 either side
+  EXPECT_NEAR(gaussian.covariance(0, 0), 0.01, 1e-12);  // 0.1^2 either side
   EXPECT_NEAR(gaussian.covariance(2, 2), std::pow(std::numbers::pi - 3.1, 2), 1e-9);
 }
 

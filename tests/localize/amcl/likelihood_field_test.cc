@@ -1,9 +1,9 @@
 #include "localize/amcl/likelihood_field.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <limits>
+
+#include <gtest/gtest.h>
 
 #include "localize/amcl/distance_to_occupied.h"
 
@@ -39,7 +39,8 @@ TEST(DistanceToOccupied, IsThatOfEveryPairOfCellsTakenOneByOne) {
   for (int row = 0; row < 9; ++row) {
     for (int col = 0; col < 12; ++col) {
       double nearest = 0.5;
-      for (const Cell wall : {Cell{3, 2}, Cell{4, 2}, Cell{9, 7}}) nearest = std::min(nearest, kRes * std::hypot(col - wall.col, row - wall.row));
+      for (const Cell wall : {Cell{3, 2}, Cell{4, 2}, Cell{9, 7}})
+        nearest = std::min(nearest, kRes * std::hypot(col - wall.col, row - wall.row));
       EXPECT_NEAR((distance_m.at({col, row})), nearest, 1e-6) << col << ' ' << row;
     }
   }
@@ -64,7 +65,8 @@ TEST(LikelihoodField, IsAGaussianOfTheDistanceOverAFloor) {
 
 TEST(LikelihoodField, OutsideOfTheMapIsAsFarAsCanBe) {
   const LikelihoodField field = make_field(make_map());
-  for (const Eigen::Vector2d& p : {Eigen::Vector2d(1.05, 50.0), Eigen::Vector2d(-1e6, 0.5), Eigen::Vector2d(1e6, -1e6)}) {
+  for (const Eigen::Vector2d& p :
+       {Eigen::Vector2d(1.05, 50.0), Eigen::Vector2d(-1e6, 0.5), Eigen::Vector2d(1e6, -1e6)}) {
     EXPECT_NEAR(field.log_at(p), std::log(0.05), kLevelTol);
     const BeamEnds end{{static_cast<float>(p.x())}, {static_cast<float>(p.y())}};
     EXPECT_NEAR(field.mean_log(end, {}), std::log(0.05), kLevelTol);
@@ -76,21 +78,21 @@ TEST(LikelihoodField, TheFastSumIsTheMeanOverTheEndsOneByOne) {
   const LikelihoodField field = make_field(make_map());
   BeamEnds ends;
   for (int i = 0; i < 150; ++i) {
-    ends.x_m.push_back(0.013F * static_cast<float>(i)), ends.y_m.push_back(0.4F * std::sin(0.3F * static_cast<float>(i)));
+    ends.x_m.push_back(0.013F * static_cast<float>(i)),
+        ends.y_m.push_back(0.4F * std::sin(0.3F * static_cast<float>(i)));
   }
   const Pose2 pose{0.2137, 0.3119, 0.37};
   double sum = 0.0;
   for (std::size_t i = 0; i < ends.size(); ++i) sum += field.log_at(pose * Eigen::Vector2d(ends.x_m[i], ends.y_m[i]));
-  EXPECT_NEAR(field.mean_log(ends, pose), sum / 150.0, 1e-3);  // a coordinate in single precision may fall into the next cell
+  EXPECT_NEAR(field.mean_log(ends, pose), sum / 150.0,
+              1e-3);  // a coordinate in single precision may fall into the next cell
 }
 
-// A third of the beams on a truck that the map does not know, half a meter or two meters in front of the wall: the pose that
-// fits the wall loses the same.
+// A third of the beams on a truck that the map does not know, half a meter or two meters in front of the wall: the pose
+// that fits the wall loses the same.
 TEST(LikelihoodField, AnUnmappedTruckCostsTheSameEverywhere) {
   const LikelihoodField field = make_field(make_map());
-  const auto with_truck_at = [&](float x) {
-    return field.mean_log({{1.05F, 1.05F, x}, {0.1F, 0.3F, 0.5F}}, {});
-  };
+  const auto with_truck_at = [&](float x) { return field.mean_log({{1.05F, 1.05F, x}, {0.1F, 0.3F, 0.5F}}, {}); };
   EXPECT_NEAR(with_truck_at(0.5F), std::log(0.05) / 3.0, kLevelTol);
   EXPECT_NEAR(with_truck_at(-0.9F), with_truck_at(0.5F), kLevelTol);
 }

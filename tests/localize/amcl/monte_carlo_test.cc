@@ -1,15 +1,14 @@
 #include "localize/amcl/monte_carlo.h"
 
-#include <gtest/gtest.h>
-
-#include <Eigen/LU>
-
 #include <cmath>
 #include <cstdio>
 #include <optional>
 
-#include "core/geometry/angles.h"
+#include <Eigen/LU>
+#include <gtest/gtest.h>
+
 #include "core/error.h"
+#include "core/geometry/angles.h"
 #include "tests/support/pose_near.h"
 #include "tests/support/tunnel_world.h"
 
@@ -25,10 +24,11 @@ const Eigen::Matrix3d kNearly = Eigen::Vector3d(0.01, 0.01, 0.0025).asDiagonal()
 
 /// A tunnel, a robot in it and its localizer; two meters a second, so that the tests are short.
 struct Tour {
-  explicit Tour(std::uint64_t seed, const Pose2& T_map_start, const MonteCarloSettings& settings = {}, double way_scale_error = 0.02,
-                double speed_mps = 2.0)
+  explicit Tour(std::uint64_t seed, const Pose2& T_map_start, const MonteCarloSettings& settings = {},
+                double way_scale_error = 0.02, double speed_mps = 2.0)
       : localizer(settings, test::tunnel_map(), tunnel.anchors(), kAntenna, seed),
-        drive(tunnel.world, tunnel.anchors(), kAntenna, T_map_start, {.speed_mps = speed_mps, .way_scale_error = way_scale_error}, seed) {}
+        drive(tunnel.world, tunnel.anchors(), kAntenna, T_map_start,
+              {.speed_mps = speed_mps, .way_scale_error = way_scale_error}, seed) {}
 
   LocalizationUpdate step(bool with_ranges) {
     drive.step();
@@ -81,7 +81,8 @@ LinedStudy drive_through_lined_stretch(bool with_ranges) {
       const double error_m = tour.error_m(update);
       is_robust = is_robust || update.confidence.confidence < 0.5;
       if (error_m > 0.5 && !has_drifted) has_drifted = true, seen.trust_fell_late += is_robust ? 0 : 1;
-      seen.max_error_m = std::max(seen.max_error_m, error_m), seen.min_confidence = std::min(seen.min_confidence, update.confidence.confidence);
+      seen.max_error_m = std::max(seen.max_error_m, error_m),
+      seen.min_confidence = std::min(seen.min_confidence, update.confidence.confidence);
       if (i == 200) seen.nees += std::pow(tour.error(update).x(), 2) / update.estimate.covariance(0, 0) / kSeeds;
     }
     seen.drifted += has_drifted ? 1 : 0;
@@ -89,13 +90,14 @@ LinedStudy drive_through_lined_stretch(bool with_ranges) {
   return seen;
 }
 
-// 50 m without a feature in sight, scale errors of 2 % (one sigma), 20 seeds. NEES: chi-square of 20 degrees of freedom, 95 %:
-// 9.591 ... 34.170, over 20.
+// 50 m without a feature in sight, scale errors of 2 % (one sigma), 20 seeds. NEES: chi-square of 20 degrees of
+// freedom, 95 %: 9.591 ... 34.170, over 20.
 TEST(DegenerateTunnel, ConfidenceFallsBelowHalfBeforeTheErrorExceedsHalfAMeterWithConsistentCovariance) {
   const LinedStudy seen = drive_through_lined_stretch(false);
   EXPECT_GT(seen.drifted, 3) << "the tunnel is not degenerate: nothing was shown";
   EXPECT_EQ(seen.trust_fell_late, 0);
-  std::printf("%d of 20 drives drifted by more than 0.5 m; NEES of x after the lined stretch: %.2f (0.48 ... 1.71)\n", seen.drifted, seen.nees);
+  std::printf("%d of 20 drives drifted by more than 0.5 m; NEES of x after the lined stretch: %.2f (0.48 ... 1.71)\n",
+              seen.drifted, seen.nees);
   EXPECT_GT(seen.nees, 0.48);
   EXPECT_LT(seen.nees, 1.71);
 }
@@ -107,9 +109,9 @@ TEST(DegenerateTunnel, WithRangesTheErrorStaysBelowFifteenCentimetersAndConfiden
   EXPECT_GT(seen.min_confidence, 0.5);
 }
 
-// Chi-square of 60 degrees of freedom, 95 %: 40.482 ... 83.298, over 20. The upper bound holds; the lower one does not: among
-// features of a flat world the filter is better than it says, because its covariance has room for the map's error and for
-// what this world has not (tilt, rubble). Printed, not asserted.
+// Chi-square of 60 degrees of freedom, 95 %: 40.482 ... 83.298, over 20. The upper bound holds; the lower one does not:
+// among features of a flat world the filter is better than it says, because its covariance has room for the map's error
+// and for what this world has not (tilt, rubble). Printed, not asserted.
 TEST(MonteCarlo, AmongFeaturesItErrsLessThanThreeCentimetersAndHalfADegreeWithConsistentCovariance) {
   double nees = 0.0, worst_m = 0.0, worst_rad = 0.0;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
@@ -173,7 +175,8 @@ TEST(Kidnap, WithoutRangesItReportsLostUntilAFeatureIsInRange) {
     double wrong_s = 0.0;
     for (int i = 1; i <= 150; ++i) {
       const LocalizationUpdate update = tour.step(false);
-      if (!update.confidence.is_lost && update.confidence.confidence > 0.5 && tour.error_m(update) > 0.5) wrong_s += TunnelDrive::kPeriod_s;
+      if (!update.confidence.is_lost && update.confidence.confidence > 0.5 && tour.error_m(update) > 0.5)
+        wrong_s += TunnelDrive::kPeriod_s;
     }
     EXPECT_LT(wrong_s, 2.0) << "s of being wrong and sure, seed " << seed;
   }
@@ -283,7 +286,8 @@ TEST(MonteCarlo, AnEmptyScanLeavesThePoseToOdometry) {
   Tour tour(1, {6.0, 0.0, 0.0});
   tour.localizer.set_initial_pose({6.0, 0.0, 0.0}, kNearly);
   tour.look(false);
-  const LocalizationUpdate update = tour.localizer.update({.stamp = Time{1}, .beams = {}}, tour.drive.T_odom_body() * Pose2{0.5, 0.0, 0.0});
+  const LocalizationUpdate update =
+      tour.localizer.update({.stamp = Time{1}, .beams = {}}, tour.drive.T_odom_body() * Pose2{0.5, 0.0, 0.0});
   EXPECT_NEAR(update.estimate.T_map_body.x, 6.5, 0.05);
   EXPECT_TRUE(update.estimate.covariance.allFinite());
 }
@@ -328,16 +332,19 @@ std::string complaint_about(const OccupancyGrid& map, const MonteCarloSettings& 
 TEST(MonteCarlo, RefusesAMapThatIsNone) {
   EXPECT_EQ(complaint_about({}), "localization: map: has no cells");
   EXPECT_EQ(complaint_about(OccupancyGrid({.width = 5, .height = 5}, kUnknown)), "localization: map: has no free cell");
-  EXPECT_EQ(complaint_about(OccupancyGrid({.width = 5, .height = 5}, kFree)), "localization: map: has no occupied cell");
+  EXPECT_EQ(complaint_about(OccupancyGrid({.width = 5, .height = 5}, kFree)),
+            "localization: map: has no occupied cell");
 }
 
 TEST(MonteCarlo, RefusesSettingsOutOfRange) {
   MonteCarloSettings settings;
   settings.likelihood_field.hit_std_m = 0.0;
-  EXPECT_EQ(complaint_about(test::tunnel_map(), settings), "localization.likelihood_field.hit_std_m = 0: must be in [0.01, 2]");
+  EXPECT_EQ(complaint_about(test::tunnel_map(), settings),
+            "localization.likelihood_field.hit_std_m = 0: must be in [0.01, 2]");
   settings = {};
   settings.sensor_model = "crystal_ball";
-  EXPECT_EQ(complaint_about(test::tunnel_map(), settings), "localization.sensor_model = crystal_ball: must be one of likelihood_field, beam");
+  EXPECT_EQ(complaint_about(test::tunnel_map(), settings),
+            "localization.sensor_model = crystal_ball: must be one of likelihood_field, beam");
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
 #include "localize/amcl/odometry_model.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "tests/support/pose_near.h"
 
@@ -21,10 +21,12 @@ Spread spread_after(int steps, const OdometryModelSettings& settings) {
   const RandomStream noise(1, "test/motion"), start(2, "test/start");
   ParticleCloud cloud;
   for (std::uint64_t i = 0; i < kParticles; ++i) cloud.add({}, settings.scale_std * start.normal(0, i));
-  for (int step = 0; step < steps; ++step) propagate_particles(cloud, kStep, 0.2, settings, noise, static_cast<std::uint64_t>(step));
+  for (int step = 0; step < steps; ++step)
+    propagate_particles(cloud, kStep, 0.2, settings, noise, static_cast<std::uint64_t>(step));
   double sum = 0.0, squares = 0.0, scales = 0.0;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    sum += cloud.T_map_body[i].x, squares += cloud.T_map_body[i].x * cloud.T_map_body[i].x, scales += cloud.odometry_scale[i] * cloud.odometry_scale[i];
+    sum += cloud.T_map_body[i].x, squares += cloud.T_map_body[i].x * cloud.T_map_body[i].x,
+        scales += cloud.odometry_scale[i] * cloud.odometry_scale[i];
   }
   return {std::sqrt(squares / kParticles - std::pow(sum / kParticles, 2)), std::sqrt(scales / kParticles)};
 }
@@ -35,8 +37,8 @@ OdometryModelSettings only_scale() {
   return settings;
 }
 
-// Gauss-Markov scale s of deviation S and memory L: var of the way D is 2 S^2 L (D - L (1 - exp(-D / L))). For S = 2 %, L = 50 m
-// that is 0.375 m after 20 m and 0.707 m after 40 m: nearly twice as much for twice the way.
+// Gauss-Markov scale s of deviation S and memory L: var of the way D is 2 S^2 L (D - L (1 - exp(-D / L))). For S = 2 %,
+// L = 50 m that is 0.375 m after 20 m and 0.707 m after 40 m: nearly twice as much for twice the way.
 TEST(OdometryModel, ASystematicScaleErrorSpreadsTheParticlesWithTheDistanceAndNotWithItsRoot) {
   const auto expected = [](double way_m) {
     return 0.02 * std::sqrt(2.0 * 50.0 * (way_m - 50.0 * (1.0 - std::exp(-way_m / 50.0))));

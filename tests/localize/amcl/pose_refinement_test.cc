@@ -1,8 +1,8 @@
 #include "localize/amcl/pose_refinement.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "core/geometry/angles.h"
 #include "tests/support/pose_near.h"
@@ -74,7 +74,8 @@ TEST(RefinePose, AnUnknownTruckPullsByLessThanOneCentimeter) {
 TEST(RefinePose, WhereNothingFitsThePriorStays) {
   const test::Tunnel tunnel;
   const Pose2 start{30.0, 3.0, 0.8};
-  const RefinedPose refined = refine_pose(tunnel_lines(), look(tunnel.world, {6.0, 0.4, 0.1}), wide_about(start), start, {});
+  const RefinedPose refined =
+      refine_pose(tunnel_lines(), look(tunnel.world, {6.0, 0.4, 0.1}), wide_about(start), start, {});
   EXPECT_FALSE(refined.is_matched);
   EXPECT_EQ(refined.posterior.mean.vector(), start.vector());
   EXPECT_EQ(refined.posterior.covariance, kWide.covariance);

@@ -1,10 +1,10 @@
 #include "localize/amcl/range_likelihood.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <limits>
 #include <numbers>
+
+#include <gtest/gtest.h>
 
 #include "localize/amcl/range_buffer.h"
 
@@ -14,7 +14,8 @@ namespace {
 constexpr RangeLikelihoodSettings kSettings{};
 
 TEST(RangeLikelihood, FallsAsAGaussianNearTheExpectedRange) {
-  const double at_0 = std::exp(range_log_likelihood(-1e-12, kSettings)), at_1 = std::exp(range_log_likelihood(-0.15, kSettings));
+  const double at_0 = std::exp(range_log_likelihood(-1e-12, kSettings)),
+               at_1 = std::exp(range_log_likelihood(-0.15, kSettings));
   EXPECT_NEAR(at_0, 0.88 + 0.02, 1e-9);
   EXPECT_NEAR(at_1, 0.88 * std::exp(-0.5) + 0.02, 1e-9);
 }
@@ -24,7 +25,8 @@ TEST(RangeLikelihood, ARangeTooLongIsLikelierThanOneTooShort) {
 }
 
 TEST(RangeLikelihood, NoOutlierCostsMoreThanItsFloor) {
-  for (const double innovation_m : {-100.0, 30.0}) EXPECT_NEAR(range_log_likelihood(innovation_m, kSettings), std::log(0.02), 1e-6);
+  for (const double innovation_m : {-100.0, 30.0})
+    EXPECT_NEAR(range_log_likelihood(innovation_m, kSettings), std::log(0.02), 1e-6);
 }
 
 // Anchor 4 m aside and 3 m up: 5 m to an antenna at the origin; the antenna is 1 m ahead of a body that looks along y.

@@ -1,9 +1,9 @@
 #include "plan/control/differential_pose_controller.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <numbers>
+
+#include <gtest/gtest.h>
 
 #include "core/geometry/angles.h"
 #include "core/random.h"
@@ -31,7 +31,8 @@ ApproachRecord approach(TrackedPlant plant, const NavigationGoal& goal, double t
   int ticks_after = 0;
   const auto ticks = static_cast<std::uint64_t>(timeout_s / kPeriod_s);
   for (std::uint64_t tick = 0; tick < ticks && ticks_after < 20; ++tick) {
-    const Pose2 error{pose_std_m * noise.normal(tick, 0), pose_std_m * noise.normal(tick, 1), pose_std_m * noise.normal(tick, 2)};
+    const Pose2 error{pose_std_m * noise.normal(tick, 0), pose_std_m * noise.normal(tick, 1),
+                      pose_std_m * noise.normal(tick, 2)};
     const VelocityCommand command = regulator.step(plant.T_map_body * error, goal);
     EXPECT_EQ(command.vy_mps, 0.0);
     const Eigen::Vector2d before = plant.T_map_body.position();
@@ -54,7 +55,8 @@ NavigationGoal make_goal(const Pose2& T_map_body) {
 constexpr double kPositionTol_m = 0.02 + 0.002;
 constexpr double kYawTol_rad = 1.0 * kDegree + 0.004;
 
-// Anywhere within 0.8 m, any heading; slip 10-40 % in turning, turning about up to 5 cm from the body's origin, 50 ms late.
+// Anywhere within 0.8 m, any heading; slip 10-40 % in turning, turning about up to 5 cm from the body's origin, 50 ms
+// late.
 TEST(DifferentialPoseController, ReachesTwoHundredGoalsToTwoCentimetresAndOneDegreeInSpiteOfSlip) {
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     const RandomStream stream(seed, "test/goal");
@@ -90,8 +92,8 @@ TEST(DifferentialPoseController, AGoalStraightBehindIsDrivenToBackwards) {
   EXPECT_LT(record.time_s, 8.0);
 }
 
-// 5 cm aside with the right heading: back along the axis and in again. ln(5 / 0.5) / 3 = 0.77 m each way is what the law needs
-// to leave half a centimetre.
+// 5 cm aside with the right heading: back along the axis and in again. ln(5 / 0.5) / 3 = 0.77 m each way is what the
+// law needs to leave half a centimetre.
 TEST(DifferentialPoseController, AFewCentimetresAsideAreTakenOffByBackingUp) {
   const ApproachRecord record = approach({}, make_goal({0.0, 0.05, 0.0}), 60.0);
   EXPECT_TRUE(record.is_done);

@@ -1,8 +1,8 @@
 #include "plan/control/dock_pose_filter.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "core/random.h"
 #include "tests/support/pose_near.h"
@@ -37,7 +37,8 @@ TEST(DockPoseFilter, AHundredLooksFromOnePlaceAreTenTimesAsGoodAsOne) {
   EXPECT_THAT(*track.T_odom_docked(), Pose2Near(Pose2{1.0, 0.0, 0.0}, 0.004, 0.004));
 }
 
-// 1 m driven adds (3 cm)^2 along; a turn by 1 rad adds 0.05 rad, which at 1 m moves the dock aside by 5 cm, and 3 cm of skid.
+// 1 m driven adds (3 cm)^2 along; a turn by 1 rad adds 0.05 rad, which at 1 m moves the dock aside by 5 cm, and 3 cm of
+// skid.
 TEST(DockPoseFilter, OdometryThatHasMovedIsTrustedLess) {
   DockPoseFilterSettings settings;
   settings.yaw_random_walk_rad_per_sqrt_s = 0.0;

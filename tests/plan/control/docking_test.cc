@@ -1,13 +1,13 @@
 #include "plan/control/docking.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <numbers>
 
-#include "core/geometry/angles.h"
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
 #include "core/error.h"
+#include "core/geometry/angles.h"
 #include "core/random.h"
 #include "localize/dock_detector.h"
 #include "tests/plan/tracked_plant.h"
@@ -44,7 +44,7 @@ struct DockRun {
 };
 
 struct DockCase {
-  Pose2 T_docked_body;         ///< at the start
+  Pose2 T_docked_body;  ///< at the start
   TrackedPlant plant;
   Odometry odometry;
   double range_std_m = 0.025;
@@ -71,8 +71,8 @@ DockRun run_docking(DockCase c, const DockingSettings& settings = {}, double tim
     const Time now = from_seconds(time_s);
     if (tick % 2 == 0) {
       const bool is_hidden = time_s >= c.hidden_from_s && time_s < c.hidden_to_s;
-      const LevelScan scan = test::scan_from_mast(is_hidden ? hidden : post, c.plant.T_map_body, now, c.range_std_m, noise,
-                                                  static_cast<std::uint64_t>(tick));
+      const LevelScan scan = test::scan_from_mast(is_hidden ? hidden : post, c.plant.T_map_body, now, c.range_std_m,
+                                                  noise, static_cast<std::uint64_t>(tick));
       // Before the first look the map says where the post is, 10 cm and 3 degrees off.
       const Pose2 by_map = Pose2{0.1, -0.1, 0.05} * c.T_docked_body.inverse();
       const Pose2 expected = docking.T_level_docked(c.odometry.T_odom_body).value_or(by_map);
@@ -113,7 +113,8 @@ TEST(Docking, FiftySeedsEndWithinTwoCentimetresAndOneDegree) {
     c.odometry.way_scale = 1.0 + 0.03 * stream.normal(6);
     c.odometry.turn_scale = 1.0 + 0.01 * stream.normal(7);
     const DockRun run = run_docking(c);
-    ASSERT_EQ(run.status, DockingStatus::kDocked) << "seed " << seed << ": " << (run.texts.empty() ? "" : run.texts.back());
+    ASSERT_EQ(run.status, DockingStatus::kDocked)
+        << "seed " << seed << ": " << (run.texts.empty() ? "" : run.texts.back());
     EXPECT_LE(run.T_docked_body.position().norm(), 0.02) << "seed " << seed;
     EXPECT_LE(std::abs(run.T_docked_body.yaw), kDegree) << "seed " << seed;
     worst_m = std::max(worst_m, run.T_docked_body.position().norm());
@@ -125,7 +126,8 @@ TEST(Docking, FiftySeedsEndWithinTwoCentimetresAndOneDegree) {
   EXPECT_LT(worst_s, 90.0);
 }
 
-// 0.06 degrees a second, more than minutes without a stop leave: docked at the first try all the same, within two centimetres.
+// 0.06 degrees a second, more than minutes without a stop leave: docked at the first try all the same, within two
+// centimetres.
 TEST(Docking, AGyroBiasOfAThousandthOfARadianPerSecondDoesNotMakeItMiss) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     DockCase c{.T_docked_body = {-1.36, -0.03, 0.04}, .plant = {}, .odometry = {}, .seed = seed};
@@ -139,7 +141,8 @@ TEST(Docking, AGyroBiasOfAThousandthOfARadianPerSecondDoesNotMakeItMiss) {
 
 TEST(Docking, NeverDrivesFartherThanTwoCentimetresPastTheDockedPose) {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
-    EXPECT_LE(run_docking({.T_docked_body = {-1.3, 0.05, 0.1}, .plant = {}, .odometry = {}, .seed = seed}).farthest_m, 0.02)
+    EXPECT_LE(run_docking({.T_docked_body = {-1.3, 0.05, 0.1}, .plant = {}, .odometry = {}, .seed = seed}).farthest_m,
+              0.02)
         << "seed " << seed;
   }
 }

@@ -1,10 +1,10 @@
 #include "plan/control/dwa_liu21.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <numbers>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include "core/error.h"
 
@@ -23,11 +23,14 @@ TEST(DwaLiu21, Equation2IsTheRectangleOfTheRobotsLimits) {
   EXPECT_EQ(window.max_yaw_rate_radps, 0.7);
 }
 
-// From 0.4 m/s and 0.1 rad/s within 0.5 s: braking at 0.6, driving off at 0.2 m/s^2; 1 and 2 rad/s^2. The paper prints a minus in
-// the upper bounds too, which would end the window below where it begins.
+// From 0.4 m/s and 0.1 rad/s within 0.5 s: braking at 0.6, driving off at 0.2 m/s^2; 1 and 2 rad/s^2. The paper prints
+// a minus in the upper bounds too, which would end the window below where it begins.
 TEST(DwaLiu21, Equation3ReachesFromBrakingToDrivingOff) {
-  const DwaLiu21Settings settings{.max_deceleration_mps2 = 0.6, .max_acceleration_mps2 = 0.2, .max_yaw_deceleration_radps2 = 1.0,
-                                  .max_yaw_acceleration_radps2 = 2.0, .window_s = 0.5};
+  const DwaLiu21Settings settings{.max_deceleration_mps2 = 0.6,
+                                  .max_acceleration_mps2 = 0.2,
+                                  .max_yaw_deceleration_radps2 = 1.0,
+                                  .max_yaw_acceleration_radps2 = 2.0,
+                                  .window_s = 0.5};
   const VelocityWindow window = reachable_window(settings, 0.4, 0.1);
   EXPECT_NEAR(window.min_speed_mps, 0.4 - 0.6 * 0.5, kExactTol);
   EXPECT_NEAR(window.max_speed_mps, 0.4 + 0.2 * 0.5, kExactTol);
@@ -62,7 +65,9 @@ TEST(DwaLiu21, Equation6FallsFromOneAheadToZeroBehind) {
   EXPECT_NEAR(heading_term(2.0 * pi + 0.3), 1.0 - 0.3 / pi, kExactTol);
 }
 
-TEST(DwaLiu21, Equation7IsTheShareOfTheTopSpeed) { EXPECT_NEAR(velocity_term({.max_speed_mps = 0.8}, 0.2), 0.25, kExactTol); }
+TEST(DwaLiu21, Equation7IsTheShareOfTheTopSpeed) {
+  EXPECT_NEAR(velocity_term({.max_speed_mps = 0.8}, 0.2), 0.25, kExactTol);
+}
 
 TEST(DwaLiu21, NormalisedTermsSumToOne) {
   std::vector<double> values{1.0, 3.0, 4.0}, zeros{0.0, 0.0};
@@ -87,7 +92,8 @@ Twist3 moving(double vx_mps, double yaw_rate_radps = 0.0) {
   return {.linear = {vx_mps, 0.0, 0.0}, .angular = {0.0, 0.0, yaw_rate_radps}};
 }
 
-// Free ground, path and robot straight on: every term but the heading favours the fastest, and straight on is best for that.
+// Free ground, path and robot straight on: every term but the heading favours the fastest, and straight on is best for
+// that.
 TEST(DwaLiu21, OnAFreeStraightPathDrivesStraightOnAsFastAsItCan) {
   const Costmap costmap = make_costmap(0.0, 0.0, 0.0, 0.0);
   const PlannedPath path({{-4.0, 0.0}, {5.0, 0.0}});
@@ -109,8 +115,7 @@ TEST(DwaLiu21, TurnsToATargetOnEitherSide) {
 
 TEST(DwaLiu21, KeepsTheSpeedLimit) {
   const Costmap costmap = make_costmap(0.0, 0.0, 0.0, 0.0);
-  const auto command =
-      DwaLiu21({}).choose(costmap, PlannedPath({{0.0, 0.0}, {4.0, 0.0}}), 0.0, {}, moving(0.2), 0.25);
+  const auto command = DwaLiu21({}).choose(costmap, PlannedPath({{0.0, 0.0}, {4.0, 0.0}}), 0.0, {}, moving(0.2), 0.25);
   ASSERT_TRUE(command);
   EXPECT_LE(command->vx_mps, 0.25 + kExactTol);
 }

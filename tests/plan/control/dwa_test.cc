@@ -1,9 +1,9 @@
 #include "plan/control/dwa.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <numbers>
+
+#include <gtest/gtest.h>
 
 #include "tests/support/pose_near.h"
 
@@ -35,8 +35,7 @@ TEST(FollowArc, BackwardsIsTheWayBack) {
 TEST(FollowArc, WithoutTurningIsStraightAndWithoutSpeedTurnsInPlace) {
   EXPECT_THAT(follow_arc({1.0, 2.0, pi / 2.0}, 0.5, 0.0, 4.0),
               Pose2Near(Pose2{1.0, 4.0, pi / 2.0}, kExactTol, kExactTol));
-  EXPECT_THAT(follow_arc({1.0, 2.0, 3.0}, 0.0, 0.5, 1.0),
-              Pose2Near(Pose2{1.0, 2.0, 3.5}, kExactTol, kExactTol));
+  EXPECT_THAT(follow_arc({1.0, 2.0, 3.0}, 0.0, 0.5, 1.0), Pose2Near(Pose2{1.0, 2.0, 3.5}, kExactTol, kExactTol));
 }
 
 TEST(FollowArc, IsSmoothWhereTheTurnVanishes) {
@@ -88,13 +87,10 @@ Pose2 drive(const DynamicWindow& window, const Costmap& costmap, const PlannedPa
   double along_m = 0.0;
   for (double t = 0.0; t < time_s; t += kControlPeriod_s) {
     along_m = path.project(T_map_body.position(), along_m, along_m + 1.0).along_m;
-    command =
-        window
-            .choose(costmap, path, along_m, T_map_body, moving(command.vx_mps, command.yaw_rate_radps), 10.0)
-            .value_or(VelocityCommand{});
+    command = window.choose(costmap, path, along_m, T_map_body, moving(command.vx_mps, command.yaw_rate_radps), 10.0)
+                  .value_or(VelocityCommand{});
     T_map_body = follow_arc(T_map_body, command.vx_mps, command.yaw_rate_radps, kControlPeriod_s);
-    if (min_clearance_m != nullptr)
-      *min_clearance_m = std::min(*min_clearance_m, costmap.clearance_m(T_map_body));
+    if (min_clearance_m != nullptr) *min_clearance_m = std::min(*min_clearance_m, costmap.clearance_m(T_map_body));
   }
   return T_map_body;
 }
@@ -134,8 +130,7 @@ TEST(DynamicWindow, KeepsTheSpeedLimitOrBrakesTowardsIt) {
 TEST(DynamicWindow, TurnsTowardsAPathThatBendsEitherWay) {
   const Costmap costmap = Ground().costmap();
   const DynamicWindow window({});
-  const auto left =
-      window.choose(costmap, make_path({{0.0, 0.0}, {0.3, 0.0}, {0.3, 5.0}}), 0.0, {}, moving(0.4), 10.0);
+  const auto left = window.choose(costmap, make_path({{0.0, 0.0}, {0.3, 0.0}, {0.3, 5.0}}), 0.0, {}, moving(0.4), 10.0);
   const auto right =
       window.choose(costmap, make_path({{0.0, 0.0}, {0.3, 0.0}, {0.3, -5.0}}), 0.0, {}, moving(0.4), 10.0);
   ASSERT_TRUE(left && right);
@@ -145,8 +140,7 @@ TEST(DynamicWindow, TurnsTowardsAPathThatBendsEitherWay) {
 
 TEST(DynamicWindow, ReturnsToAPathHalfAMetreAside) {
   const Costmap costmap = Ground().costmap();
-  const Pose2 end =
-      drive(DynamicWindow({}), costmap, make_path({{-5.0, 0.0}, {5.5, 0.0}}), {-4.0, 0.5, 0.0}, 10.0);
+  const Pose2 end = drive(DynamicWindow({}), costmap, make_path({{-5.0, 0.0}, {5.5, 0.0}}), {-4.0, 0.5, 0.0}, 10.0);
   EXPECT_NEAR(end.y, 0.0, 0.08);
   EXPECT_GT(end.x, 1.0);
 }
@@ -155,16 +149,15 @@ TEST(DynamicWindow, ReturnsToAPathHalfAMetreAside) {
 TEST(DynamicWindow, StopsBeforeAWallAcrossThePath) {
   const Costmap costmap = Ground().add_block(2.0, -6.0, 2.3, 6.0).costmap();
   double min_clearance_m = 1.0;
-  const Pose2 end = drive(DynamicWindow({}), costmap, make_path({{-5.0, 0.0}, {5.0, 0.0}}), {-1.0, 0.0, 0.0},
-                          12.0, &min_clearance_m);
+  const Pose2 end =
+      drive(DynamicWindow({}), costmap, make_path({{-5.0, 0.0}, {5.0, 0.0}}), {-1.0, 0.0, 0.0}, 12.0, &min_clearance_m);
   EXPECT_LT(end.x + 0.35, 2.0);
   EXPECT_GT(min_clearance_m, -0.01);
 }
 
 TEST(DynamicWindow, FollowsAPathAroundABlockWithoutTouchingIt) {
   const Costmap costmap = Ground().add_block(-0.5, -0.5, 0.5, 0.5).costmap();
-  const PlannedPath path =
-      make_path({{-4.0, 0.0}, {-1.5, 0.0}, {-0.8, 1.0}, {0.8, 1.0}, {1.5, 0.0}, {5.0, 0.0}});
+  const PlannedPath path = make_path({{-4.0, 0.0}, {-1.5, 0.0}, {-0.8, 1.0}, {0.8, 1.0}, {1.5, 0.0}, {5.0, 0.0}});
   double min_clearance_m = 1.0;
   const Pose2 end = drive(DynamicWindow({}), costmap, path, {-3.5, 0.0, 0.0}, 15.0, &min_clearance_m);
   EXPECT_GT(end.x, 2.0);
@@ -178,8 +171,8 @@ TEST(DynamicWindow, AtRestBeforeANarrowPlaceMovesOn) {
   const PlannedPath path = make_path({{-0.3, -0.6}, {0.95, -0.05}, {1.65, -0.05}, {3.0, -0.6}});
   for (const double x : {0.0, 0.1, 0.2, 0.3, 0.4}) {
     const Pose2 start{x, -0.55 + 0.4 * (x + 0.3), 0.3};
-    const auto command = DynamicWindow({}).choose(
-        costmap, path, path.project(start.position(), 0.0, 2.0).along_m, start, {}, 10.0);
+    const auto command =
+        DynamicWindow({}).choose(costmap, path, path.project(start.position(), 0.0, 2.0).along_m, start, {}, 10.0);
     ASSERT_TRUE(command) << x;
     EXPECT_GT(command->vx_mps, 0.1) << x;
   }

@@ -1,9 +1,9 @@
 #include "plan/control/line_following.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <numbers>
+
+#include <gtest/gtest.h>
 
 #include "tests/plan/tracked_plant.h"
 
@@ -38,7 +38,8 @@ TEST(LineFollowing, TurnedAwayByARightAngleTurnsBeforeItDrives) {
   EXPECT_EQ(command.yaw_rate_radps, -LineFollowingSettings{}.max_yaw_rate_radps);
 }
 
-// With a heading loop much faster than the drive, 0.1 m aside becomes 0.1 exp(-3 x 0.6) m after 0.6 m, whatever the speed.
+// With a heading loop much faster than the drive, 0.1 m aside becomes 0.1 exp(-3 x 0.6) m after 0.6 m, whatever the
+// speed.
 TEST(LineFollowing, TheSideErrorFallsWithTheWayDriven) {
   const LineFollowingSettings settings{.lateral_gain_per_m = 3.0, .yaw_gain_per_s = 10.0, .max_yaw_rate_radps = 3.0};
   for (const double speed : {0.05, 0.1, -0.05}) {
@@ -51,15 +52,16 @@ TEST(LineFollowing, TheSideErrorFallsWithTheWayDriven) {
   }
 }
 
-// tan(0.5) = 0.546, so from the limit's knee at 0.182 m on the error falls exponentially. From 0.5 m: (0.5 - 0.182) / 0.546
-// = 0.582 m straight, then exp(-3 x 0.418).
+// tan(0.5) = 0.546, so from the limit's knee at 0.182 m on the error falls exponentially. From 0.5 m: (0.5 - 0.182) /
+// 0.546 = 0.582 m straight, then exp(-3 x 0.418).
 TEST(LineFollowing, ForeseesTheSideErrorThatIsLeft) {
   const LineFollowingSettings settings;
   const double knee = std::tan(0.5) / 3.0;
   EXPECT_NEAR(lateral_error_after_m(settings, 0.1, 0.5), 0.1 * std::exp(-1.5), kExactTol);
   EXPECT_NEAR(lateral_error_after_m(settings, -0.1, 0.0), 0.1, kExactTol);
   EXPECT_NEAR(lateral_error_after_m(settings, 0.5, 0.2), 0.5 - 0.2 * std::tan(0.5), kExactTol);
-  EXPECT_NEAR(lateral_error_after_m(settings, 0.5, 1.0), knee * std::exp(-3.0 * (1.0 - (0.5 - knee) / std::tan(0.5))), kExactTol);
+  EXPECT_NEAR(lateral_error_after_m(settings, 0.5, 1.0), knee * std::exp(-3.0 * (1.0 - (0.5 - knee) / std::tan(0.5))),
+              kExactTol);
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
 #include "plan/control/pose_regulator.h"
 
-#include <gtest/gtest.h>
-
 #include <numbers>
+
+#include <gtest/gtest.h>
 
 #include "core/random.h"
 #include "tests/support/pose_near.h"
@@ -24,8 +24,7 @@ TEST(PoseRegulator, CommandsGainTimesErrorInTheBodyFrame) {
 }
 
 TEST(PoseRegulator, KeepsItsLimitsInEveryDirection) {
-  const PoseRegulatorSettings settings{
-      .max_speed_mps = 0.25, .max_lateral_speed_mps = 0.15, .max_yaw_rate_radps = 0.6};
+  const PoseRegulatorSettings settings{.max_speed_mps = 0.25, .max_lateral_speed_mps = 0.15, .max_yaw_rate_radps = 0.6};
   const VelocityCommand plus = regulate_pose(settings, {}, {.T_map_body = {9.0, 9.0, 3.0}});
   EXPECT_EQ(plus.vx_mps, 0.25);
   EXPECT_EQ(plus.vy_mps, 0.15);
@@ -66,8 +65,7 @@ TEST(PoseRegulator, ReachesAHundredRandomGoalsToACentimetre) {
     Pose2 T_map_body;
     for (int step = 0; step < 200 && !is_reached(T_map_body, goal); ++step) {
       const VelocityCommand command = regulate_pose({}, T_map_body, goal);
-      T_map_body =
-          T_map_body * Pose2{0.05 * command.vx_mps, 0.05 * command.vy_mps, 0.05 * command.yaw_rate_radps};
+      T_map_body = T_map_body * Pose2{0.05 * command.vx_mps, 0.05 * command.vy_mps, 0.05 * command.yaw_rate_radps};
     }
     ASSERT_TRUE(is_reached(T_map_body, goal)) << "goal " << i << ", at " << T_map_body.vector().transpose();
   }

@@ -1,7 +1,7 @@
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <numbers>
+
+#include <gtest/gtest.h>
 
 #include "plan/control/rollouts/clearance.h"
 #include "plan/control/rollouts/command_change.h"

@@ -1,10 +1,10 @@
 #include "plan/navigation/navigator.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <numbers>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "core/random.h"
@@ -97,8 +97,7 @@ TEST(Navigator, DrivesAmongBoxesThatTheMapDoesNotKnow) {
     for (std::uint64_t box = 0; box < 7; ++box) {
       const Eigen::Vector2d center(7.0 * stream.uniform(0, box) - 3.5, 10.0 * stream.uniform(1, box) - 5.0);
       const Eigen::Vector2d half(0.15 + 0.4 * stream.uniform(2, box), 0.15 + 0.4 * stream.uniform(3, box));
-      room.add_box(center.x() - half.x(), center.y() - half.y(), center.x() + half.x(),
-                   center.y() + half.y());
+      room.add_box(center.x() - half.x(), center.y() - half.y(), center.x() + half.x(), center.y() + half.y());
     }
     const Pose2 start{-5.0, 8.0 * stream.uniform(4) - 4.0, 6.28 * stream.uniform(5)};
     const Pose2 goal{5.0, 8.0 * stream.uniform(6) - 4.0, 6.28 * stream.uniform(7)};
@@ -214,8 +213,7 @@ TEST(Navigator, TellsAGoalInAWallFromOneWithoutARoute) {
   EXPECT_EQ(in_wall.end, NavigationStatus::kFailed);
   EXPECT_EQ(in_wall.failure, NavigationFailure::kGoalBlocked);
   EXPECT_THAT(in_wall.texts,
-              ::testing::ElementsAre("Goal pose is in collision.",
-                                     "Navigation aborted: Goal pose is in collision."));
+              ::testing::ElementsAre("Goal pose is in collision.", "Navigation aborted: Goal pose is in collision."));
   EXPECT_NEAR(in_wall.time_s, 5.0, 1.0);
   const DriveRecord behind = drive(navigator, room, {-2.0, 0.0, 0.0}, make_goal({3.0, 0.0, 0.0}), 30.0);
   EXPECT_EQ(behind.end, NavigationStatus::kFailed);
@@ -327,11 +325,14 @@ TEST(Navigator, HasARouteOnlyWhenItsComputerWouldHaveFoundIt) {
   Navigator navigator = make_navigator(map_of_room(room), settings);
   navigator.set_goal(make_goal({4.0, 0.0, 0.0}));
   const Pose2 start{-4.0, 0.0, 0.0};
-  const std::int64_t num_expanded = GlobalPlanner(settings.global_planner, 0).plan(navigator.costmap().cost(), start.position(), {4.0, 0.0}).num_expanded;
+  const std::int64_t num_expanded = GlobalPlanner(settings.global_planner, 0)
+                                        .plan(navigator.costmap().cost(), start.position(), {4.0, 0.0})
+                                        .num_expanded;
   const double expected_s = static_cast<double>(num_expanded) / 1000.0;
   ASSERT_GT(expected_s, 0.05);
   double found_s = 0.0;
-  for (NavigationStep step = navigator.step(Time{}, start); !step.replanned; step = navigator.step(from_seconds(found_s), start)) {
+  for (NavigationStep step = navigator.step(Time{}, start); !step.replanned;
+       step = navigator.step(from_seconds(found_s), start)) {
     EXPECT_EQ(step.status, NavigationStatus::kDriving);
     EXPECT_EQ(step.command.vx_mps, 0.0);
     found_s += 0.01;

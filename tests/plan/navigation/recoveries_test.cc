@@ -1,7 +1,7 @@
+#include <numbers>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include <numbers>
 
 #include "core/error.h"
 #include "plan/navigation/recovery_sequence.h"
@@ -73,7 +73,8 @@ TEST(Recoveries, SpinEndsAfterOneTurnOrItsTimeout) {
     spin->begin(10s, {}, costmap);
     double time_s = 10.0;
     while (spin->step(from_seconds(time_s), {0.0, 0.0, wrap_angle(rate_radps * (time_s - 10.0))})) {
-      EXPECT_EQ(spin->step(from_seconds(time_s), {0.0, 0.0, wrap_angle(rate_radps * (time_s - 10.0))})->yaw_rate_radps, 0.5);
+      EXPECT_EQ(spin->step(from_seconds(time_s), {0.0, 0.0, wrap_angle(rate_radps * (time_s - 10.0))})->yaw_rate_radps,
+                0.5);
       time_s += 0.05;
       ASSERT_LT(time_s, 60.0);
     }
@@ -86,8 +87,8 @@ TEST(RecoverySequence, TakesTheBehaviorsInTurnUpToItsLimit) {
   RecoverySequence sequence(make_settings({"wait", "back_up"}));
   std::vector<std::string> sentences;
   for (int i = 0; i < 4; ++i) sentences.push_back(sequence.begin_next(10s, {}, costmap));
-  EXPECT_THAT(sentences, ::testing::ElementsAre("Recovery: waiting.", "Recovery: backing up.",
-                                                "Recovery: waiting.", "Recovery: backing up."));
+  EXPECT_THAT(sentences, ::testing::ElementsAre("Recovery: waiting.", "Recovery: backing up.", "Recovery: waiting.",
+                                                "Recovery: backing up."));
   EXPECT_FALSE(sequence.is_exhausted());
   sequence.begin_next(10s, {}, costmap);
   EXPECT_TRUE(sequence.is_exhausted());
@@ -106,8 +107,9 @@ TEST(RecoverySequence, EndsARecoveryThatHasNoRoom) {
 }
 
 TEST(Recoveries, UnknownNamesAreRefusedWithThoseAllowed) {
-  EXPECT_THAT([] { make_recovery("jump", make_settings({})); },
-              ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("must be one of wait, clear_costmap, back_up, spin")));
+  EXPECT_THAT(
+      [] { make_recovery("jump", make_settings({})); },
+      ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("must be one of wait, clear_costmap, back_up, spin")));
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "core/geometry/angles.h"
 #include "core/random.h"
@@ -85,8 +85,8 @@ RoomWorld make_gap(double width_m) {
   return hall;
 }
 
-// What A* plans through, the dynamic window passes: of every width of gap the robot either passes it without touching and without
-// a recovery, or there is no route: 0.7 m wide, margins of 5 and 8 cm on each side, and cells of 10 cm.
+// What A* plans through, the dynamic window passes: of every width of gap the robot either passes it without touching
+// and without a recovery, or there is no route: 0.7 m wide, margins of 5 and 8 cm on each side, and cells of 10 cm.
 TEST(TrackedNavigation, PassesEveryGapThatItPlansThrough) {
   const NavigationGoal goal{.T_map_body = {4.0, 0.3, 0.0}, .position_tolerance_m = 0.1, .yaw_tolerance_rad = 0.1};
   for (double width_m = 0.70; width_m < 1.31; width_m += 0.05) {

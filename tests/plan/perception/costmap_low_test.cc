@@ -1,6 +1,6 @@
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "core/geometry/angles.h"
 #include "plan/perception/costmap.h"
@@ -41,9 +41,7 @@ class Looker {
   }
   Costmap& costmap() { return costmap_; }
   std::size_t most_points() const { return most_; }
-  bool has_obstacle_at(double x, double y) {
-    return costmap_.is_low_obstacle(costmap_.geometry().cell_at({x, y}));
-  }
+  bool has_obstacle_at(double x, double y) { return costmap_.is_low_obstacle(costmap_.geometry().cell_at({x, y})); }
 
  private:
   DepthScene scene_;
@@ -123,8 +121,12 @@ TEST(CostmapLow, TheLayerSurvivesTheCostmapsGrowth) {
 }
 
 SonarCone cone_to(double range_m) {
-  const UltrasonicRange ping{.stamp = {}, .transducer = 0, .field_of_view_rad = 0.6, .range_min_m = 0.2,
-                             .range_max_m = 4.0, .range_m = static_cast<float>(range_m)};
+  const UltrasonicRange ping{.stamp = {},
+                             .transducer = 0,
+                             .field_of_view_rad = 0.6,
+                             .range_min_m = 0.2,
+                             .range_max_m = 4.0,
+                             .range_m = static_cast<float>(range_m)};
   return inverse_sonar_model({}, ping, {{0.45, 0.0, 0.1}, Eigen::Quaterniond::Identity()}, kBodyHeight_m, 0.1);
 }
 

@@ -1,9 +1,9 @@
 #include "plan/perception/costmap.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <numbers>
+
+#include <gtest/gtest.h>
 
 #include "core/random.h"
 #include "tests/support/pose_near.h"
@@ -21,8 +21,8 @@ Footprint make_robot() { return Footprint({{-0.4, -0.2}, {0.4, -0.2}, {0.4, 0.2}
 /// Known free ground, 10 m by 10 m about the origin.
 OccupancyGrid make_free_map(double resolution_m = 0.1) {
   const int cells = static_cast<int>(std::lround(10.0 / resolution_m));
-  return OccupancyGrid(
-      {.resolution_m = resolution_m, .width = cells, .height = cells, .origin_m = {-5.0, -5.0}}, kFree);
+  return OccupancyGrid({.resolution_m = resolution_m, .width = cells, .height = cells, .origin_m = {-5.0, -5.0}},
+                       kFree);
 }
 
 void occupy(OccupancyGrid& map, const Eigen::Vector2d& p) { map.at(map.geometry().cell_at(p)) = kOccupied; }
@@ -52,8 +52,7 @@ LevelScan one_beam(const Pose2& T_map_body, const Eigen::Vector2d& p_map, double
 // An obstacle's surface lies, for all we know, half a cell before its centre. Lethal within 0.2 m (inscribed)
 // + 0.06 m (margin), then 252 exp(-(distance - 0.26) / decay), nothing beyond the inflation radius.
 TEST(Costmap, InflationFallsExponentiallyFromTheLethalDistance) {
-  const CostmapSettings settings{
-      .inflation_radius_m = 0.8, .inflation_decay_m = 0.3, .safety_margin_m = 0.06};
+  const CostmapSettings settings{.inflation_radius_m = 0.8, .inflation_decay_m = 0.3, .safety_margin_m = 0.06};
   OccupancyGrid map = make_free_map();
   occupy(map, {0.05, 0.05});
   const Costmap costmap = make_costmap(map, settings);
@@ -61,9 +60,7 @@ TEST(Costmap, InflationFallsExponentiallyFromTheLethalDistance) {
     for (int row = -12; row <= 12; ++row) {
       const double surface_m = std::max(0.0, 0.1 * std::hypot(col, row) - 0.05);
       const double decayed = kMaxPassableCost * std::exp(-(surface_m - 0.26) / 0.3);
-      const double expected = surface_m <= 0.26  ? kLethalCost
-                              : surface_m <= 0.8 ? std::round(decayed)
-                                                 : kFreeCost;
+      const double expected = surface_m <= 0.26 ? kLethalCost : surface_m <= 0.8 ? std::round(decayed) : kFreeCost;
       EXPECT_EQ(costmap.cost_at({0.05 + 0.1 * col, 0.05 + 0.1 * row}), expected) << col << ' ' << row;
     }
   }
@@ -118,8 +115,7 @@ TEST(Costmap, ABlockedCellThatTheMapFreesIsFreeAgain) {
   occupy(map, {1.05, 1.05});
   Costmap costmap = make_costmap(map);
   costmap.set_map(make_free_map());
-  for (const Cost cost : costmap.cost().values())
-    ASSERT_TRUE(cost == kFreeCost || cost == 38);  // 0.15 x 252: unknown
+  for (const Cost cost : costmap.cost().values()) ASSERT_TRUE(cost == kFreeCost || cost == 38);  // 0.15 x 252: unknown
   EXPECT_EQ(costmap.cost_at({1.05, 1.05}), kFreeCost);
 }
 
@@ -360,8 +356,7 @@ TEST(Costmap, ObstacleDistanceToAWallIsExactToTwoCentimetres) {
   OccupancyGrid map = make_free_map();
   for (double y = -4.95; y < 5.0; y += 0.1) occupy(map, {2.05, y});
   const Costmap costmap = make_costmap(map);
-  for (double x = 1.2; x < 1.9; x += 0.01)
-    EXPECT_NEAR(costmap.obstacle_distance_m({x, 0.3}), 2.0 - x, 0.02) << x;
+  for (double x = 1.2; x < 1.9; x += 0.01) EXPECT_NEAR(costmap.obstacle_distance_m({x, 0.3}), 2.0 - x, 0.02) << x;
   EXPECT_NEAR(costmap.obstacle_distance_m({-3.0, 0.0}), costmap.max_distance_m(), 1e-12);
 }
 
@@ -400,8 +395,7 @@ TEST(Costmap, ClearanceNeverSaysFreeWhereTheOutlineTouches) {
     }
     const Costmap costmap = make_costmap(map);
     for (std::uint64_t i = 0; i < 500; ++i) {
-      const Pose2 pose{8.0 * stream.uniform(i, 2) - 4.0, 8.0 * stream.uniform(i, 3) - 4.0,
-                       6.28 * stream.uniform(i, 4)};
+      const Pose2 pose{8.0 * stream.uniform(i, 2) - 4.0, 8.0 * stream.uniform(i, 3) - 4.0, 6.28 * stream.uniform(i, 4)};
       bool touches = false;
       for (const Eigen::Vector2d& center : centers) {
         const Eigen::Vector2d p = pose.inverse() * center;
@@ -425,9 +419,12 @@ TEST(Costmap, RefusesSettingsThatBreakTheirRule) {
 TEST(Costmap, RefusesAnOutlineThatReachesBeyondItsField) {
   CostmapSettings settings;
   settings.resolution_m = 0.02;
-  const auto square = [](double half_m) { return Footprint({{half_m, half_m}, {-half_m, half_m}, {-half_m, -half_m}, {half_m, -half_m}}); };
+  const auto square = [](double half_m) {
+    return Footprint({{half_m, half_m}, {-half_m, half_m}, {-half_m, -half_m}, {half_m, -half_m}});
+  };
   EXPECT_NO_THROW(Costmap(settings, square(1.5), {}));
-  EXPECT_THAT([&] { Costmap(settings, square(2.5), {}); }, ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("exceed the costmap's range of 1.98 m")));
+  EXPECT_THAT([&] { Costmap(settings, square(2.5), {}); },
+              ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("exceed the costmap's range of 1.98 m")));
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
 #include "plan/perception/depth_obstacles.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "core/geometry/angles.h"
 #include "tests/support/depth_scene.h"
@@ -51,10 +51,12 @@ TEST(DepthPoints, RubbleOfThreeCentimetresIsGround) {
   EXPECT_TRUE(look(scene, 0, 0.0).obstacles_m.empty());
 }
 
-// Its foot is 0.9 m ahead; then 15 degrees up. And the robot on the ramp: the camera's tilt is known, the ground is not level.
+// Its foot is 0.9 m ahead; then 15 degrees up. And the robot on the ramp: the camera's tilt is known, the ground is not
+// level.
 TEST(DepthPoints, ARampOfFifteenDegreesIsGroundFromItsFootOn) {
   const double slope = std::tan(15.0 * kDegree);
-  EXPECT_TRUE(look(DepthScene([=](double x, double) { return std::max(0.0, slope * (x - 0.9)); }), 0, 0.0).obstacles_m.empty());
+  EXPECT_TRUE(
+      look(DepthScene([=](double x, double) { return std::max(0.0, slope * (x - 0.9)); }), 0, 0.0).obstacles_m.empty());
 
   const DepthScene ramp([=](double x, double) { return slope * x; });
   const Pose3 T_level_body{Eigen::Vector3d::Zero(), quaternion_from_rpy(0.0, -15.0 * kDegree, 0.0)};
@@ -65,7 +67,8 @@ TEST(DepthPoints, ARampOfFifteenDegreesIsGroundFromItsFootOn) {
 
 TEST(DepthPoints, TheCrestOfARampIsGround) {
   const double slope = std::tan(15.0 * kDegree);
-  EXPECT_TRUE(look(DepthScene([=](double x, double) { return std::min(0.0, slope * (1.0 - x)); }), 0, 0.0).obstacles_m.empty());
+  EXPECT_TRUE(
+      look(DepthScene([=](double x, double) { return std::min(0.0, slope * (1.0 - x)); }), 0, 0.0).obstacles_m.empty());
 }
 
 // Overhead: a duct 1.2 m above the ground.
@@ -85,7 +88,8 @@ TEST(DepthPoints, AnImageWithoutDepthsSaysNothing) {
 
 // A thing of one pixel is noise.
 TEST(DepthPoints, ASinglePixelIsFilteredAway) {
-  DepthImage image = DepthScene().look(Pose3{{0.0, 0.0, kBodyHeight_m}, Eigen::Quaterniond::Identity()} * body_camera());
+  DepthImage image =
+      DepthScene().look(Pose3{{0.0, 0.0, kBodyHeight_m}, Eigen::Quaterniond::Identity()} * body_camera());
   image.depth_mm[40 * 80 + 40] = 400;
   EXPECT_TRUE(segment_obstacles({}, image, body_camera(), kBodyHeight_m).obstacles_m.empty());
 }

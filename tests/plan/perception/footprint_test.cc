@@ -1,11 +1,11 @@
 #include "plan/perception/footprint.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "core/random.h"
@@ -29,8 +29,7 @@ std::vector<Eigen::Vector2d> make_random_polygon(std::uint64_t seed) {
   for (int i = 0; i < corners; ++i) {
     const double angle =
         2.0 * std::numbers::pi * (i + 0.4 * stream.uniform(5, static_cast<std::uint64_t>(i))) / corners;
-    polygon.emplace_back(offset +
-                         Eigen::Vector2d(half_length * std::cos(angle), half_width * std::sin(angle)));
+    polygon.emplace_back(offset + Eigen::Vector2d(half_length * std::cos(angle), half_width * std::sin(angle)));
   }
   return polygon;
 }
@@ -45,8 +44,7 @@ bool is_inside(const std::vector<Eigen::Vector2d>& polygon, const Eigen::Vector2
 
 double distance_outside_discs(const Footprint& footprint, const Eigen::Vector2d& p) {
   double nearest = std::numeric_limits<double>::infinity();
-  for (const Disc& disc : footprint.discs())
-    nearest = std::min(nearest, (p - disc.center_m).norm() - disc.radius_m);
+  for (const Disc& disc : footprint.discs()) nearest = std::min(nearest, (p - disc.center_m).norm() - disc.radius_m);
   return nearest;
 }
 
@@ -63,8 +61,7 @@ TEST(Footprint, DiscsCoverEveryPointOfTwoHundredPolygons) {
       const Eigen::Vector2d p(2.0 * stream.uniform(i, 0) - 1.0, 1.2 * stream.uniform(i, 1) - 0.6);
       if (!is_inside(footprint.polygon_m(), p)) continue;
       ++num_inside;
-      ASSERT_LE(distance_outside_discs(footprint, p), kExactTol)
-          << "seed " << seed << " at " << p.transpose();
+      ASSERT_LE(distance_outside_discs(footprint, p), kExactTol) << "seed " << seed << " at " << p.transpose();
     }
   }
   EXPECT_GT(num_inside, 10000);
@@ -93,8 +90,8 @@ TEST(Footprint, FourDiscsOnALongRobot) {
   EXPECT_EQ(Footprint(make_box(-0.4, 0.4, -0.15, 0.15), 1, 0.051).discs().size(), 3u);
 }
 
-// 1.0 by 0.7 m. One row: pieces of 0.25 m in discs of hypot(0.125, 0.35) = 0.372 m, 0.247 m beyond the ends. Two rows: pieces
-// of 0.2 m by 0.35 m in discs of 0.2016 m, 0.102 m beyond them.
+// 1.0 by 0.7 m. One row: pieces of 0.25 m in discs of hypot(0.125, 0.35) = 0.372 m, 0.247 m beyond the ends. Two rows:
+// pieces of 0.2 m by 0.35 m in discs of 0.2016 m, 0.102 m beyond them.
 TEST(Footprint, ASecondRowTakesFifteenCentimetresOffWhatSticksOutAtTheEnds) {
   const auto excess_m = [](int rows) {
     const Footprint footprint(make_box(-0.5, 0.5, -0.35, 0.35), rows);

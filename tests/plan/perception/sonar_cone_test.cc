@@ -1,10 +1,10 @@
 #include "plan/perception/sonar_cone.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <limits>
 #include <numbers>
+
+#include <gtest/gtest.h>
 
 namespace patrol::plan::sonar_cone_test {
 namespace {
@@ -13,7 +13,11 @@ constexpr double kSpacing_m = 0.1;
 constexpr double kFov_rad = 0.6;
 
 UltrasonicRange ping(float range_m) {
-  return {.stamp = {}, .transducer = 0, .field_of_view_rad = kFov_rad, .range_min_m = 0.2, .range_max_m = 4.0,
+  return {.stamp = {},
+          .transducer = 0,
+          .field_of_view_rad = kFov_rad,
+          .range_min_m = 0.2,
+          .range_max_m = 4.0,
           .range_m = range_m};
 }
 
@@ -36,7 +40,8 @@ TEST(SonarCone, AnEchoLiesOnAnArcAtItsRangeWithinTheBelievedPartOfTheCone) {
 TEST(SonarCone, GroundNearerThanTheEchoIsFreeUpToASpacingBeforeIt) {
   const SonarCone cone = inverse_sonar_model({}, ping(0.8F), transducer(), 0.15, kSpacing_m);
   double farthest_m = 0.0;
-  for (const Eigen::Vector2d& p : cone.free_m) farthest_m = std::max(farthest_m, (p - Eigen::Vector2d(0.5, 0.2)).norm());
+  for (const Eigen::Vector2d& p : cone.free_m)
+    farthest_m = std::max(farthest_m, (p - Eigen::Vector2d(0.5, 0.2)).norm());
   EXPECT_LT(farthest_m, 0.7 + 1e-6);  // the range is a float
   EXPECT_GT(farthest_m, 0.6);
 }
@@ -57,13 +62,14 @@ TEST(SonarCone, SomethingTooNearToMeasureIsPutAtTheLeastRange) {
 }
 
 TEST(SonarCone, AnInvalidReadingSaysNothing) {
-  const SonarCone cone = inverse_sonar_model({}, ping(std::numeric_limits<float>::quiet_NaN()), transducer(), 0.15, kSpacing_m);
+  const SonarCone cone =
+      inverse_sonar_model({}, ping(std::numeric_limits<float>::quiet_NaN()), transducer(), 0.15, kSpacing_m);
   EXPECT_TRUE(cone.arc_m.empty());
   EXPECT_TRUE(cone.free_m.empty());
 }
 
-// A level transducer 0.25 m up: the lower edge of a cone of 0.6 rad meets the ground at 0.25 / sin(0.3) = 0.846 m, and 0.85 of
-// that is 0.719 m. Looking down by 0.2 rad it is 0.25 / sin(0.5) = 0.521 m, and 0.443 m.
+// A level transducer 0.25 m up: the lower edge of a cone of 0.6 rad meets the ground at 0.25 / sin(0.3) = 0.846 m, and
+// 0.85 of that is 0.719 m. Looking down by 0.2 rad it is 0.25 / sin(0.5) = 0.521 m, and 0.443 m.
 TEST(SonarCone, AnEchoThatMayBeTheGroundMarksNothing) {
   const Pose3 level{{0.4, 0.0, 0.10}, Eigen::Quaterniond::Identity()};
   EXPECT_FALSE(inverse_sonar_model({}, ping(0.71F), level, 0.15, kSpacing_m).arc_m.empty());

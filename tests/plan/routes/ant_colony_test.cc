@@ -27,8 +27,14 @@ TEST(AntColony, SettlesForTheShorterOfTwoWays) {
                                        "........."});
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     const double optimum = test::lengths_from(costs, {0, 3}).at({8, 3});
-    EXPECT_NEAR(AntColony({.ants = 10, .iterations = 30}, std::nullopt, 0.0, seed).plan(costs, {0, 3}, {8, 3}).length, optimum, kExactTol) << "seed " << seed;
-    EXPECT_NEAR(AntColony({.ants = 10, .iterations = 30}, ImprovedColonySettings{}, 0.0, seed).plan(costs, {0, 3}, {8, 3}).length, optimum, kExactTol) << "seed " << seed;
+    EXPECT_NEAR(AntColony({.ants = 10, .iterations = 30}, std::nullopt, 0.0, seed).plan(costs, {0, 3}, {8, 3}).length,
+                optimum, kExactTol)
+        << "seed " << seed;
+    EXPECT_NEAR(AntColony({.ants = 10, .iterations = 30}, ImprovedColonySettings{}, 0.0, seed)
+                    .plan(costs, {0, 3}, {8, 3})
+                    .length,
+                optimum, kExactTol)
+        << "seed " << seed;
   }
 }
 
@@ -37,7 +43,10 @@ TEST(AntColony, OfPaper003IsWithinThreePercentOfTheOptimumOnSixtyCellsAtRandom) 
   constexpr int kGrids = 4;
   for (std::uint64_t seed = 1; seed <= kGrids; ++seed) {
     const GeneratedGrid grid = generate_grid({.size_cells = 60}, seed);
-    mean += gap_to_optimum(AntColony({}, ImprovedColonySettings{.shorten_paths = false}, 0.0, seed).plan(grid.costs, grid.start, grid.goal), grid) / kGrids;
+    mean += gap_to_optimum(AntColony({}, ImprovedColonySettings{.shorten_paths = false}, 0.0, seed)
+                               .plan(grid.costs, grid.start, grid.goal),
+                           grid) /
+            kGrids;
   }
   EXPECT_LT(mean, 0.03);
 }
@@ -45,7 +54,8 @@ TEST(AntColony, OfPaper003IsWithinThreePercentOfTheOptimumOnSixtyCellsAtRandom) 
 TEST(AntColony, WhoseRoutesArePulledTightIsWithinAHundredthOfAPercentOfTheOptimumOnRoomsOfAHundredCells) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     const GeneratedGrid grid = generate_grid({.kind = "rooms", .size_cells = 100}, seed);
-    const Route route = AntColony({.ants = 40, .iterations = 60}, ImprovedColonySettings{}, 0.0, seed).plan(grid.costs, grid.start, grid.goal);
+    const Route route = AntColony({.ants = 40, .iterations = 60}, ImprovedColonySettings{}, 0.0, seed)
+                            .plan(grid.costs, grid.start, grid.goal);
     EXPECT_LT(gap_to_optimum(route, grid), 1e-4) << "seed " << seed;
   }
 }
@@ -67,8 +77,11 @@ TEST(AntColony, TheForceHalvesTheExcessOfTheFirstIteration) {
   double plain = 0.0, guided = 0.0;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     const GeneratedGrid grid = generate_grid({.size_cells = 60}, seed);
-    plain += gap_to_optimum(AntColony({.iterations = 1}, std::nullopt, 0.0, seed).plan(grid.costs, grid.start, grid.goal), grid);
-    guided += gap_to_optimum(AntColony({.iterations = 1}, ImprovedColonySettings{.shorten_paths = false}, 0.0, seed).plan(grid.costs, grid.start, grid.goal), grid);
+    plain += gap_to_optimum(
+        AntColony({.iterations = 1}, std::nullopt, 0.0, seed).plan(grid.costs, grid.start, grid.goal), grid);
+    guided += gap_to_optimum(AntColony({.iterations = 1}, ImprovedColonySettings{.shorten_paths = false}, 0.0, seed)
+                                 .plan(grid.costs, grid.start, grid.goal),
+                             grid);
   }
   EXPECT_LT(guided, 0.5 * plain);
 }
@@ -77,14 +90,21 @@ TEST(AntColony, WithoutTheCoefficientTheForceChangesNothing) {
   const GeneratedGrid grid = generate_grid({.size_cells = 30}, 5);
   const AntColonySettings settings{.ants = 10, .iterations = 5};
   const Route plain = AntColony(settings, std::nullopt, 0.0, 1).plan(grid.costs, grid.start, grid.goal);
-  EXPECT_EQ(AntColony(settings, ImprovedColonySettings{.coefficient = 0.0, .shorten_paths = false}, 0.0, 1).plan(grid.costs, grid.start, grid.goal).points, plain.points);
-  EXPECT_NE(AntColony(settings, ImprovedColonySettings{.shorten_paths = false}, 0.0, 1).plan(grid.costs, grid.start, grid.goal).points, plain.points);
+  EXPECT_EQ(AntColony(settings, ImprovedColonySettings{.coefficient = 0.0, .shorten_paths = false}, 0.0, 1)
+                .plan(grid.costs, grid.start, grid.goal)
+                .points,
+            plain.points);
+  EXPECT_NE(AntColony(settings, ImprovedColonySettings{.shorten_paths = false}, 0.0, 1)
+                .plan(grid.costs, grid.start, grid.goal)
+                .points,
+            plain.points);
 }
 
 TEST(AntColony, SevenThreadsGiveTheRouteOfOne) {
   const GeneratedGrid grid = generate_grid({.kind = "rooms", .size_cells = 40}, 2);
   const auto plan = [&](int threads) {
-    return AntColony({.ants = 23, .iterations = 10, .threads = threads}, ImprovedColonySettings{}, 0.0, 1).plan(grid.costs, grid.start, grid.goal);
+    return AntColony({.ants = 23, .iterations = 10, .threads = threads}, ImprovedColonySettings{}, 0.0, 1)
+        .plan(grid.costs, grid.start, grid.goal);
   };
   const Route one = plan(1), seven = plan(7);
   EXPECT_EQ(seven.points, one.points);
@@ -95,16 +115,21 @@ TEST(AntColony, SevenThreadsGiveTheRouteOfOne) {
 TEST(AntColony, AnotherSeedGivesAnotherHistory) {
   const GeneratedGrid grid = generate_grid({.size_cells = 40}, 2);
   const auto history = [&](std::uint64_t seed) {
-    return AntColony({.ants = 10, .iterations = 5}, ImprovedColonySettings{}, 0.0, seed).plan(grid.costs, grid.start, grid.goal).history;
+    return AntColony({.ants = 10, .iterations = 5}, ImprovedColonySettings{}, 0.0, seed)
+        .plan(grid.costs, grid.start, grid.goal)
+        .history;
   };
   EXPECT_NE(history(1), history(2));
 }
 
 TEST(AntColony, RefusesNoAntsAndAnEvaporationAboveOne) {
   using ::testing::HasSubstr, ::testing::ThrowsMessage;
-  EXPECT_THAT([] { AntColony({.ants = 0}, std::nullopt, 0.0, 0); }, ThrowsMessage<InputError>(HasSubstr("ant_colony.ants = 0")));
-  EXPECT_THAT([] { AntColony({.evaporation = 1.5}, std::nullopt, 0.0, 0); }, ThrowsMessage<InputError>(HasSubstr("ant_colony.evaporation = 1.5")));
-  EXPECT_THAT([] { AntColony({}, ImprovedColonySettings{.half_angle_deg = 200.0}, 0.0, 0); }, ThrowsMessage<InputError>(HasSubstr("improved_colony.half_angle_deg = 200")));
+  EXPECT_THAT([] { AntColony({.ants = 0}, std::nullopt, 0.0, 0); },
+              ThrowsMessage<InputError>(HasSubstr("ant_colony.ants = 0")));
+  EXPECT_THAT([] { AntColony({.evaporation = 1.5}, std::nullopt, 0.0, 0); },
+              ThrowsMessage<InputError>(HasSubstr("ant_colony.evaporation = 1.5")));
+  EXPECT_THAT([] { AntColony({}, ImprovedColonySettings{.half_angle_deg = 200.0}, 0.0, 0); },
+              ThrowsMessage<InputError>(HasSubstr("improved_colony.half_angle_deg = 200")));
 }
 
 }  // namespace

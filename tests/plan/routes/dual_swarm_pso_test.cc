@@ -17,7 +17,8 @@ TEST(DualSwarmPso, OnFreeGroundComesWithinOnePercentOfTheOctileDistance) {
   EXPECT_LT(route.length, 1.01 * test::lengths_from(costs, {2, 3}).at({35, 30}));
 }
 
-// The way straight at the goal ends in a trap; walking back out of it and round is spliced, but a via point that leads round at once is shorter.
+// The way straight at the goal ends in a trap; walking back out of it and round is spliced, but a via point that leads
+// round at once is shorter.
 TEST(DualSwarmPso, ImproveOnTheFirstParticles) {
   int num_better = 0;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
@@ -30,7 +31,8 @@ TEST(DualSwarmPso, ImproveOnTheFirstParticles) {
 }
 
 TEST(DualSwarmPso, RefusesNoParticles) {
-  EXPECT_THAT([] { DualSwarmPso({.particles = 0}, 0.0, 0); }, ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("dual_swarm_pso.particles = 0")));
+  EXPECT_THAT([] { DualSwarmPso({.particles = 0}, 0.0, 0); },
+              ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("dual_swarm_pso.particles = 0")));
 }
 
 }  // namespace

@@ -1,11 +1,11 @@
 #include "plan/routes/global_planner.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <limits>
 #include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "core/random.h"
@@ -15,8 +15,8 @@
 namespace patrol::plan::global_planner_test {
 namespace {
 
-using test::draw, test::random_ends, test::random_grid;
 using ::patrol::test::VectorNear;
+using test::draw, test::random_ends, test::random_grid;
 
 constexpr double kExactTol = 1e-9;
 
@@ -26,7 +26,8 @@ GlobalPlanner astar(GlobalPlannerSettings settings = {}) {
   return GlobalPlanner(settings, 1);
 }
 
-/// By far the closest that a point of the polyline, looked at every hundredth of a cell, comes to a lethal cell's square; -1 inside of one.
+/// By far the closest that a point of the polyline, looked at every hundredth of a cell, comes to a lethal cell's
+/// square; -1 inside of one.
 double sampled_clearance(const Grid<Cost>& costs, const std::vector<Eigen::Vector2d>& points, double at_most) {
   double least = at_most;
   for (std::size_t i = 1; i < points.size(); ++i) {
@@ -36,7 +37,8 @@ double sampled_clearance(const Grid<Cost>& costs, const std::vector<Eigen::Vecto
       for (int row = 0; row < costs.geometry().height; ++row) {
         for (int col = 0; col < costs.geometry().width; ++col) {
           if (costs.at({col, row}) != kLethalCost) continue;
-          const double dx = std::max({col - p.x(), p.x() - col - 1.0, 0.0}), dy = std::max({row - p.y(), p.y() - row - 1.0, 0.0});
+          const double dx = std::max({col - p.x(), p.x() - col - 1.0, 0.0}),
+                       dy = std::max({row - p.y(), p.y() - row - 1.0, 0.0});
           least = std::min(least, dx == 0.0 && dy == 0.0 ? -1.0 : std::hypot(dx, dy));
         }
       }
@@ -46,7 +48,8 @@ double sampled_clearance(const Grid<Cost>& costs, const std::vector<Eigen::Vecto
 }
 
 TEST(GlobalPlanner, OnFreeGroundGoesStraightFromTheExactPlaceToTheExactPlace) {
-  const PlanResult plan = astar().plan(draw(std::vector<std::string>(10, std::string(10, '.'))), {1.12, 1.71}, {8.38, 5.99});
+  const PlanResult plan =
+      astar().plan(draw(std::vector<std::string>(10, std::string(10, '.'))), {1.12, 1.71}, {8.38, 5.99});
   ASSERT_EQ(plan.status, PlanStatus::kFound);
   ASSERT_EQ(plan.points_m.size(), 4u);  // by the centres of both ends' cells
   EXPECT_THAT(plan.points_m[0], VectorNear(Eigen::Vector2d(1.12, 1.71), kExactTol));
@@ -65,14 +68,16 @@ TEST(GlobalPlanner, FromAPlaceToItselfIsNoWayButByTheCellsCentre) {
 }
 
 TEST(GlobalPlanner, LeavesABlockedStartByTheNearestFreeCell) {
-  const PlanResult plan = astar({.start_tolerance_m = 3.0}).plan(draw({"......", "##....", "##....", "##...."}), {1.5, 0.5}, {5.5, 0.5});
+  const PlanResult plan =
+      astar({.start_tolerance_m = 3.0}).plan(draw({"......", "##....", "##....", "##...."}), {1.5, 0.5}, {5.5, 0.5});
   ASSERT_EQ(plan.status, PlanStatus::kFound);
   EXPECT_THAT(plan.points_m[0], VectorNear(Eigen::Vector2d(1.5, 0.5), kExactTol));
   EXPECT_THAT(plan.points_m[1], VectorNear(Eigen::Vector2d(2.5, 0.5), kExactTol));
 }
 
 TEST(GlobalPlanner, ABlockedGoalIsMovedToTheNearestFreeCell) {
-  const PlanResult plan = astar({.goal_tolerance_m = 3.0}).plan(draw({"......", "....##", "....##", "....##"}), {0.5, 0.5}, {4.5, 0.5});
+  const PlanResult plan =
+      astar({.goal_tolerance_m = 3.0}).plan(draw({"......", "....##", "....##", "....##"}), {0.5, 0.5}, {4.5, 0.5});
   ASSERT_EQ(plan.status, PlanStatus::kFound);
   EXPECT_TRUE(plan.is_goal_moved);
   EXPECT_THAT(plan.points_m.back(), VectorNear(Eigen::Vector2d(3.5, 0.5), kExactTol));
@@ -89,8 +94,8 @@ TEST(GlobalPlanner, SaysWhichEndIsBlockedAndThatThereIsNoRoute) {
   EXPECT_TRUE(cut.points_m.empty());
 }
 
-// Eight columns on. With weight 4 a cell of the block counts 5: round it, up two rows and down again, are 4 diagonal steps and 4 straight ones. The line that
-// smoothing may draw costs no more than that.
+// Eight columns on. With weight 4 a cell of the block counts 5: round it, up two rows and down again, are 4 diagonal
+// steps and 4 straight ones. The line that smoothing may draw costs no more than that.
 TEST(GlobalPlanner, GoesRoundWhatCostsMoreThanTheDetour) {
   const Grid<Cost> costs = draw({".........",  //
                                  "...999...",  //
@@ -103,11 +108,14 @@ TEST(GlobalPlanner, GoesRoundWhatCostsMoreThanTheDetour) {
 }
 
 class DrivenBy : public ::testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(GlobalPlanner, DrivenBy, ::testing::Values("astar", "dijkstra", "theta_star", "ant_system", "ant_colony_li22", "dual_swarm_pso", "q_learning"),
+INSTANTIATE_TEST_SUITE_P(GlobalPlanner, DrivenBy,
+                         ::testing::Values("astar", "dijkstra", "theta_star", "ant_system", "ant_colony_li22",
+                                           "dual_swarm_pso", "q_learning"),
                          [](const auto& parameter) { return parameter.param; });
 
 TEST_P(DrivenBy, NeverTouchesALethalCellAndKeepsTheClearanceOfTheSearchOnFortyRandomGrids) {
-  GlobalPlannerSettings settings{.method = GetParam(), .goal_tolerance_m = 0.0, .start_tolerance_m = 0.0, .min_clearance_m = 1.0};
+  GlobalPlannerSettings settings{
+      .method = GetParam(), .goal_tolerance_m = 0.0, .start_tolerance_m = 0.0, .min_clearance_m = 1.0};
   settings.family.ant_colony.ants = 8, settings.family.ant_colony.iterations = 8;
   settings.family.dual_swarm_pso.particles = 6, settings.family.dual_swarm_pso.iterations = 8;
   settings.family.q_learning.episodes = 300;
@@ -123,15 +131,18 @@ TEST_P(DrivenBy, NeverTouchesALethalCellAndKeepsTheClearanceOfTheSearchOnFortyRa
     EXPECT_GE(sampled_clearance(costs, plan.points_m, 1.0), std::min(1.0, route.clearance) - 1e-6) << "seed " << seed;
     EXPECT_GT(sampled_clearance(costs, plan.points_m, 1.0), 0.0) << "seed " << seed;
     EXPECT_LE(plan.length_m, route.length + kExactTol) << "seed " << seed;
-    EXPECT_EQ(plan.points_m, GlobalPlanner(settings, seed).plan(costs, grid.center_of(start), grid.center_of(goal)).points_m);
+    EXPECT_EQ(plan.points_m,
+              GlobalPlanner(settings, seed).plan(costs, grid.center_of(start), grid.center_of(goal)).points_m);
   }
   EXPECT_GT(num_found, 20);
 }
 
 TEST(GlobalPlanner, RefusesANegativeWeightAndTheOptimumThatTouches) {
   using ::testing::HasSubstr, ::testing::ThrowsMessage;
-  EXPECT_THAT([] { astar({.family = {.cost_weight = -1.0}}); }, ThrowsMessage<InputError>(HasSubstr("global_planner.cost_weight = -1")));
-  EXPECT_THAT([] { GlobalPlanner({.method = "visibility_graph"}, 0); }, ThrowsMessage<InputError>(HasSubstr("touch lethal cells")));
+  EXPECT_THAT([] { astar({.family = {.cost_weight = -1.0}}); },
+              ThrowsMessage<InputError>(HasSubstr("global_planner.cost_weight = -1")));
+  EXPECT_THAT([] { GlobalPlanner({.method = "visibility_graph"}, 0); },
+              ThrowsMessage<InputError>(HasSubstr("touch lethal cells")));
 }
 
 TEST(NearestPassable, EqualsBruteForceWithinItsRadius) {
@@ -149,7 +160,8 @@ TEST(NearestPassable, EqualsBruteForceWithinItsRadius) {
     double nearest_m = std::numeric_limits<double>::infinity();
     for (int row = 0; row < grid.height; ++row) {
       for (int col = 0; col < grid.width; ++col) {
-        if (costs.at({col, row}) != kLethalCost) nearest_m = std::min(nearest_m, (grid.center_of({col, row}) - p).norm());
+        if (costs.at({col, row}) != kLethalCost)
+          nearest_m = std::min(nearest_m, (grid.center_of({col, row}) - p).norm());
       }
     }
     const std::optional<Cell> found = nearest_passable(costs, p, radius_m);

@@ -1,8 +1,8 @@
 #include "plan/routes/grid_path.h"
 
-#include <gtest/gtest.h>
-
 #include <numbers>
+
+#include <gtest/gtest.h>
 
 #include "tests/plan/routes/drawn_grid.h"
 
@@ -11,7 +11,9 @@ namespace {
 
 constexpr double kExactTol = 1e-12;
 
-StepGraph graph_of(const std::vector<std::string>& drawing) { return StepGraph(test::draw(drawing), cost_factors(9.0)); }
+StepGraph graph_of(const std::vector<std::string>& drawing) {
+  return StepGraph(test::draw(drawing), cost_factors(9.0));
+}
 
 /// The open step that comes first in kGridSteps: right, up, left, down.
 std::size_t first_open(std::uint32_t, unsigned open) { return static_cast<std::size_t>(std::countr_zero(open)); }
@@ -87,12 +89,14 @@ TEST(GridPathBuilder, ShortensAnyPathOverOpenGroundToTheOctileDistance) {
   GridPathBuilder path_builder(graph);
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
     const RandomStream stream(seed, "test/ends");
-    const Cell a{static_cast<int>(20.0 * stream.uniform(0)), static_cast<int>(15.0 * stream.uniform(1))}, b{static_cast<int>(20.0 * stream.uniform(2)), static_cast<int>(15.0 * stream.uniform(3))};
+    const Cell a{static_cast<int>(20.0 * stream.uniform(0)), static_cast<int>(15.0 * stream.uniform(1))},
+        b{static_cast<int>(20.0 * stream.uniform(2)), static_cast<int>(15.0 * stream.uniform(3))};
     if (a == b) continue;
     GridPath path = random_path(path_builder, graph.index_of(a), graph.index_of(b), seed);
     path_builder.shorten(path, graph.index_of(b));
     const int dx = std::abs(a.col - b.col), dy = std::abs(a.row - b.row);
-    EXPECT_NEAR(path_cost(graph, path), std::max(dx, dy) + (std::numbers::sqrt2 - 1.0) * std::min(dx, dy), 1e-9) << "seed " << seed;
+    EXPECT_NEAR(path_cost(graph, path), std::max(dx, dy) + (std::numbers::sqrt2 - 1.0) * std::min(dx, dy), 1e-9)
+        << "seed " << seed;
   }
 }
 

@@ -1,8 +1,8 @@
 #include "plan/routes/grid_search.h"
 
-#include <gtest/gtest.h>
-
 #include <numbers>
+
+#include <gtest/gtest.h>
 
 #include "tests/plan/routes/drawn_grid.h"
 
@@ -49,7 +49,8 @@ TEST(GridSearch, WithCostsAstarCostsWhatDijkstraCostsOnThreeHundredRandomGrids) 
     const Grid<Cost> costs = random_grid(seed, 30, 0.4, true);
     const auto [start, goal] = random_ends(costs, seed);
     if (costs.at(start) == kLethalCost) continue;
-    const Route a = astar(costs, start, goal, 5.0), d = GridSearch(GridSearch::Method::kDijkstra, 5.0).plan(costs, start, goal);
+    const Route a = astar(costs, start, goal, 5.0),
+                d = GridSearch(GridSearch::Method::kDijkstra, 5.0).plan(costs, start, goal);
     ASSERT_EQ(a.status, d.status) << "seed " << seed;
     ASSERT_NEAR(a.cost, d.cost, 1e-6) << "seed " << seed;
     if (a.status == PlanStatus::kFound) {
@@ -58,8 +59,8 @@ TEST(GridSearch, WithCostsAstarCostsWhatDijkstraCostsOnThreeHundredRandomGrids) 
   }
 }
 
-// A corridor three cells high that goes up eight and down again, a thousand times. From its upper cell in a valley to its lower one on a tip, a slope has one straight
-// step, six diagonal ones, another straight one.
+// A corridor three cells high that goes up eight and down again, a thousand times. From its upper cell in a valley to
+// its lower one on a tip, a slope has one straight step, six diagonal ones, another straight one.
 TEST(GridSearch, ARouteOfTwelveThousandDiagonalStepsIsExact) {
   constexpr int kTeeth = 1000, kHeight = 8, kWidth = 2 * kHeight * kTeeth + 1;
   Grid<Cost> costs({.resolution_m = 1.0, .width = kWidth, .height = kHeight + 3}, kLethalCost);
@@ -84,10 +85,12 @@ TEST(GridSearch, OnFreeGroundLooksAroundOnlyFromTheRoutesCells) {
 }
 
 // Past the lethal corner the right angle: 2, not 1.414.
-TEST(GridSearch, DoesNotCutTheCornerOfALethalCell) { EXPECT_NEAR(astar(draw({"..", "#."}), {0, 1}, {1, 0}).length, 2.0, kExactTol); }
+TEST(GridSearch, DoesNotCutTheCornerOfALethalCell) {
+  EXPECT_NEAR(astar(draw({"..", "#."}), {0, 1}, {1, 0}).length, 2.0, kExactTol);
+}
 
-// A cell of the block counts 1 + 9 x 1 with the weight 9 (its cost is 9 ninths): straight through, 3 x 10 and 5 free ones, of which the ends count half. Around it,
-// four diagonal and four straight steps.
+// A cell of the block counts 1 + 9 x 1 with the weight 9 (its cost is 9 ninths): straight through, 3 x 10 and 5 free
+// ones, of which the ends count half. Around it, four diagonal and four straight steps.
 TEST(GridSearch, GoesAroundWhatCostsMoreThanTheDetour) {
   const Grid<Cost> costs = draw({".........", "...999...", "...999...", "...999...", "........."});
   EXPECT_NEAR(astar(costs, {0, 2}, {8, 2}, 9.0).cost, 4.0 * kRoot2 + 4.0, 1e-8);

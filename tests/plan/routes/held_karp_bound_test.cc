@@ -1,8 +1,8 @@
 #include "plan/routes/held_karp_bound.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "core/random.h"
 
@@ -20,7 +20,8 @@ TourProblem random_problem(std::uint64_t seed, std::size_t count) {
   return problem;
 }
 
-// The bound of an open way is looser than a round's: the station of no distance that joins its ends may hang on where no tour would begin.
+// The bound of an open way is looser than a round's: the station of no distance that joins its ends may hang on where
+// no tour would begin.
 TEST(TourBound, NeverExceedsTheExactOrderOfTwoHundredProblemsAndIsWithinTwoPercentOfRounds) {
   double round_gap = 0.0;
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
@@ -48,7 +49,9 @@ TEST(TourBound, OfOneWayMatricesIsBelowTheExactOrderToo) {
 // 4 of service in each, and the last cannot end before 100 + 4.
 TEST(TourBound, CountsServiceAndTheLatestOpening) {
   TourProblem problem{.travel = {{0.0, 10.0, 20.0}, {10.0, 0.0, 10.0}, {20.0, 10.0, 0.0}},
-                      .stations = std::vector<TourProblem::Station>(3, {.service = 4.0}), .start = {}, .end = {}};
+                      .stations = std::vector<TourProblem::Station>(3, {.service = 4.0}),
+                      .start = {},
+                      .end = {}};
   EXPECT_NEAR(held_karp_bound(problem, 32.0, 300), 20.0 + 12.0, 1e-6);
   problem.stations[1].earliest = 100.0;
   EXPECT_NEAR(held_karp_bound(problem, 150.0, 300), 104.0, 1e-6);
@@ -56,7 +59,8 @@ TEST(TourBound, CountsServiceAndTheLatestOpening) {
 
 TEST(TourBound, IsInfiniteIfTheStationsDoNotHangTogether) {
   const double none = std::numeric_limits<double>::infinity();
-  EXPECT_TRUE(std::isinf(held_karp_bound({.travel = {{0.0, none, none}, {none, 0.0, 1.0}, {none, 1.0, 0.0}}}, 10.0, 50)));
+  EXPECT_TRUE(
+      std::isinf(held_karp_bound({.travel = {{0.0, none, none}, {none, 0.0, 1.0}, {none, 1.0, 0.0}}}, 10.0, 50)));
 }
 
 }  // namespace

@@ -22,7 +22,8 @@ TEST(LineOfSight, AgreesWithSeparatingAxesOnTenThousandRandomLines) {
         return Cell{col, static_cast<int>(random.index(static_cast<std::size_t>(costs.geometry().height)))};
       };
       const Cell from = cell(), to = cell();
-      const bool expected = test::keeps_clear(costs, {Eigen::Vector2d(from.col + 0.5, from.row + 0.5), Eigen::Vector2d(to.col + 0.5, to.row + 0.5)});
+      const bool expected = test::keeps_clear(
+          costs, {Eigen::Vector2d(from.col + 0.5, from.row + 0.5), Eigen::Vector2d(to.col + 0.5, to.row + 0.5)});
       ASSERT_EQ(has_line_of_sight(costs, from, to), expected) << "seed " << seed << " line " << line;
       ASSERT_EQ(has_line_of_sight(costs, to, from), expected) << "seed " << seed << " line " << line;
       (expected ? num_clear : num_blocked) += 1;
@@ -32,7 +33,8 @@ TEST(LineOfSight, AgreesWithSeparatingAxesOnTenThousandRandomLines) {
   EXPECT_GT(num_blocked, 1000);
 }
 
-// From the lower-left centre to the upper-right one the line passes exactly through the corner that the lethal cell has in common with both.
+// From the lower-left centre to the upper-right one the line passes exactly through the corner that the lethal cell has
+// in common with both.
 TEST(LineOfSight, EndsAtACornerThatItOnlyTouches) {
   EXPECT_FALSE(has_line_of_sight(draw({"#.", ".."}), {0, 0}, {1, 1}));
   EXPECT_TRUE(has_line_of_sight(draw({"..", ".."}), {0, 0}, {1, 1}));
@@ -47,7 +49,8 @@ TEST(LineOfSight, OnNeighboursIsTheRuleForSteps) {
         for (const GridStep step : kGridSteps) {
           const Cell next{col + step.col, row + step.row};
           if (costs.contains(next)) {
-            ASSERT_EQ(is_valid_step(costs, {col, row}, step), has_line_of_sight(costs, {col, row}, next)) << "seed " << seed;
+            ASSERT_EQ(is_valid_step(costs, {col, row}, step), has_line_of_sight(costs, {col, row}, next))
+                << "seed " << seed;
           }
         }
       }
@@ -55,13 +58,15 @@ TEST(LineOfSight, OnNeighboursIsTheRuleForSteps) {
   }
 }
 
-// Three cells along: half of the first, the second, half of the third. The second costs 5 ninths of the weight 9: 0.5 + (1 + 5) + 0.5 = 7.
+// Three cells along: half of the first, the second, half of the third. The second costs 5 ninths of the weight 9: 0.5 +
+// (1 + 5) + 0.5 = 7.
 TEST(LinePrice, IsTheIntegralOfTheFactorsAlongTheLine) {
   EXPECT_NEAR(*line_cost(draw({".5."}), cost_factors(9.0), {0, 0}, {2, 0}), 7.0, kExactTol);
 }
 
 TEST(LinePrice, OnFreeGroundIsTheLength) {
-  EXPECT_NEAR(*line_cost(draw(std::vector<std::string>(9, "..........")), cost_factors(4.0), {1, 2}, {7, 5}), std::hypot(6.0, 3.0), kExactTol);
+  EXPECT_NEAR(*line_cost(draw(std::vector<std::string>(9, "..........")), cost_factors(4.0), {1, 2}, {7, 5}),
+              std::hypot(6.0, 3.0), kExactTol);
   EXPECT_NEAR(*line_cost(draw({"."}), cost_factors(4.0), {0, 0}, {0, 0}), 0.0, kExactTol);
 }
 

@@ -1,6 +1,6 @@
-#include <gtest/gtest.h>
-
 #include <string>
+
+#include <gtest/gtest.h>
 
 #include "io/maps/moving_ai.h"
 #include "plan/routes/grid_search.h"
@@ -15,12 +15,14 @@ constexpr double kPublishedTolerance = 1e-4;  // what issue 8 asks for on the be
 
 Grid<Cost> to_costs(const OccupancyGrid& occupancy) {
   Grid<Cost> costs(occupancy.geometry());
-  for (std::size_t i = 0; i < costs.values().size(); ++i) costs.values()[i] = occupancy.values()[i] == kFree ? kFreeCost : kLethalCost;
+  for (std::size_t i = 0; i < costs.values().size(); ++i)
+    costs.values()[i] = occupancy.values()[i] == kFree ? kFreeCost : kLethalCost;
   return costs;
 }
 
-// Cells by column and row from the top. Aslant over free ground: 2 sqrt 2. From beside the wall down three rows, two columns on, up three: 8. From corner to corner aslant
-// down to (3, 3), two on, aslant up: 6 sqrt 2 + 2. In the water straight on: 6. To itself: 0.
+// Cells by column and row from the top. Aslant over free ground: 2 sqrt 2. From beside the wall down three rows, two
+// columns on, up three: 8. From corner to corner aslant down to (3, 3), two on, aslant up: 6 sqrt 2 + 2. In the water
+// straight on: 6. To itself: 0.
 TEST(MovingAiRoutes, HaveTheLengthsWorkedOutByHandOnLandAndInWater) {
   ::patrol::test::TemporaryFolder folder;
   ::patrol::test::write_bytes(folder / "hand.map",
@@ -41,7 +43,8 @@ TEST(MovingAiRoutes, HaveTheLengthsWorkedOutByHandOnLandAndInWater) {
   GridSearch astar(GridSearch::Method::kAstar);
   for (const io::MovingAiProblem& problem : io::load_moving_ai_problems(folder / "hand.map.scen")) {
     const Grid<Cost> costs = to_costs(io::to_occupancy(map, problem.start));
-    const Route route = astar.plan(costs, problem.start, problem.goal), any = ThetaStar().plan(costs, problem.start, problem.goal);
+    const Route route = astar.plan(costs, problem.start, problem.goal),
+                any = ThetaStar().plan(costs, problem.start, problem.goal);
     ASSERT_EQ(route.status, PlanStatus::kFound);
     EXPECT_NEAR(route.length, problem.optimal_length, kPublishedTolerance);
     EXPECT_LE(any.length, problem.optimal_length + kPublishedTolerance);

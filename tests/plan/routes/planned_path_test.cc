@@ -1,9 +1,9 @@
 #include "plan/routes/planned_path.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <numbers>
+
+#include <gtest/gtest.h>
 
 #include "core/random.h"
 #include "tests/support/pose_near.h"
@@ -19,9 +19,7 @@ constexpr double kExactTol = 1e-12;
 /// 3 m east, then 4 m north.
 PlannedPath make_corner() { return PlannedPath({{0.0, 0.0}, {3.0, 0.0}, {3.0, 4.0}}); }
 
-TEST(PlannedPath, LengthIsTheSumOfItsSegments) {
-  EXPECT_NEAR(make_corner().length_m(), 3.0 + 4.0, kExactTol);
-}
+TEST(PlannedPath, LengthIsTheSumOfItsSegments) { EXPECT_NEAR(make_corner().length_m(), 3.0 + 4.0, kExactTol); }
 
 TEST(PlannedPath, PointFiveMetresAlongIsTwoMetresPastTheCorner) {
   EXPECT_THAT(make_corner().point_at(5.0), VectorNear(Eigen::Vector2d(3.0, 2.0), kExactTol));

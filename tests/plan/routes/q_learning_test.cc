@@ -10,11 +10,14 @@
 namespace patrol::plan::q_learning_test {
 namespace {
 
-// With rewards that are certain, a rate of 1 and hopeful beginnings, the table ends at the true lengths along the shortest route.
+// With rewards that are certain, a rate of 1 and hopeful beginnings, the table ends at the true lengths along the
+// shortest route.
 TEST(QLearning, EndsAtTheShortestRouteOfGridsOfThirtyCells) {
   for (const char* const kind : {"random", "rooms", "maze"}) {
     const GeneratedGrid grid = generate_grid({.kind = kind, .size_cells = 30}, 4);
-    EXPECT_NEAR(QLearning({}, 0.0, 1).plan(grid.costs, grid.start, grid.goal).length, test::lengths_from(grid.costs, grid.start).at(grid.goal), 1e-9) << kind;
+    EXPECT_NEAR(QLearning({}, 0.0, 1).plan(grid.costs, grid.start, grid.goal).length,
+                test::lengths_from(grid.costs, grid.start).at(grid.goal), 1e-9)
+        << kind;
   }
 }
 
@@ -26,7 +29,8 @@ TEST(QLearning, HasNoRouteUntilTheTableHasLearntOne) {
 }
 
 TEST(QLearning, RefusesALearningRateOfZero) {
-  EXPECT_THAT([] { QLearning({.learning_rate = 0.0}, 0.0, 0); }, ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("q_learning.learning_rate = 0")));
+  EXPECT_THAT([] { QLearning({.learning_rate = 0.0}, 0.0, 0); },
+              ::testing::ThrowsMessage<InputError>(::testing::HasSubstr("q_learning.learning_rate = 0")));
 }
 
 }  // namespace

@@ -1,10 +1,10 @@
 #include "plan/routes/route_planner.h"
 
-#include <gtest/gtest.h>
-
 #include <limits>
 #include <memory>
 #include <numbers>
+
+#include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "plan/routes/generated_grids.h"
@@ -36,7 +36,8 @@ class EveryPlanner : public ::testing::TestWithParam<std::string> {
 
   std::unique_ptr<RoutePlanner> planner = make(GetParam());
 };
-INSTANTIATE_TEST_SUITE_P(Routes, EveryPlanner, ::testing::ValuesIn(names_of(route_planners())), [](const auto& parameter) { return parameter.param; });
+INSTANTIATE_TEST_SUITE_P(Routes, EveryPlanner, ::testing::ValuesIn(names_of(route_planners())),
+                         [](const auto& parameter) { return parameter.param; });
 
 TEST_P(EveryPlanner, FromACellToItselfHasNoLength) {
   const Route route = planner->plan(draw({"...", ".#.", "..."}), {2, 1}, {2, 1});
@@ -83,9 +84,11 @@ TEST_P(EveryPlanner, PassesAGapOfOneCell) {
   EXPECT_TRUE(is_through);
 }
 
-TEST_P(EveryPlanner, AgreesWithBreadthFirstSearchOnMazesAndRandomGridsIfItIsCompleteAndElseFindsNoRouteWhereThereIsNone) {
+TEST_P(EveryPlanner,
+       AgreesWithBreadthFirstSearchOnMazesAndRandomGridsIfItIsCompleteAndElseFindsNoRouteWhereThereIsNone) {
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
-    Grid<Cost> costs = seed % 2 == 0 ? generate_grid({.kind = "maze", .size_cells = 15}, seed).costs : random_grid(seed, 16);
+    Grid<Cost> costs =
+        seed % 2 == 0 ? generate_grid({.kind = "maze", .size_cells = 15}, seed).costs : random_grid(seed, 16);
     if (seed % 4 == 0) costs.at({7, 6}) = costs.at({6, 7}) = kLethalCost;  // a maze that may be closed
     const auto [start, goal] = random_ends(costs, seed);
     if (costs.at(start) == kLethalCost) continue;
@@ -136,7 +139,8 @@ TEST_P(EveryPlanner, GivesTheSameRouteAgainWithTwoThreadsAndWhateverItPlannedBef
   }
 }
 
-// The corridor's middle third costs 1 + 4 in each cell: 3 + 3 x 5 for cells 3, 4, 5 of 0 ... 8, whose ends count half: 8 + 3 x 4 = 20.
+// The corridor's middle third costs 1 + 4 in each cell: 3 + 3 x 5 for cells 3, 4, 5 of 0 ... 8, whose ends count half:
+// 8 + 3 x 4 = 20.
 TEST_P(EveryPlanner, PricesARouteByTheCostsItCrosses) {
   if (GetParam() == "visibility_graph") return;  // it must be 0 for visibility_graph, and refuses a weight (below)
   const Route route = make(GetParam(), 4.0)->plan(draw({"...999..."}), {0, 0}, {8, 0});
@@ -154,8 +158,10 @@ TEST(RoutePlanners, AreEightOfWhichARobotDrivesBySeven) {
 
 TEST(RoutePlanners, RefuseAWrongNameAndACostWeightForTheOptimum) {
   using ::testing::HasSubstr, ::testing::ThrowsMessage;
-  EXPECT_THAT([] { make_route_planner("ants", {}, 0); }, ThrowsMessage<InputError>(HasSubstr("planner = ants: must be one of astar, dijkstra")));
-  EXPECT_THAT([] { make_route_planner("visibility_graph", {.cost_weight = 1.0}, 0); }, ThrowsMessage<InputError>(HasSubstr("must be 0 for visibility_graph")));
+  EXPECT_THAT([] { make_route_planner("ants", {}, 0); },
+              ThrowsMessage<InputError>(HasSubstr("planner = ants: must be one of astar, dijkstra")));
+  EXPECT_THAT([] { make_route_planner("visibility_graph", {.cost_weight = 1.0}, 0); },
+              ThrowsMessage<InputError>(HasSubstr("must be 0 for visibility_graph")));
   EXPECT_THAT([] { cost_factors(-1.0); }, ThrowsMessage<InputError>(HasSubstr("cost_weight = -1")));
 }
 
@@ -178,12 +184,14 @@ TEST(Clearance, IsMeasuredToTheSquareFromAnyPartOfALeg) {
 }
 
 TEST(Clearance, OfFreeGroundIsTheMostThatIsLookedFor) {
-  EXPECT_EQ(compute_clearance(Grid<Cost>({.resolution_m = 1.0, .width = 60, .height = 60}), {{0.5, 0.5}, {50.5, 50.5}}), kMaxClearance);
+  EXPECT_EQ(compute_clearance(Grid<Cost>({.resolution_m = 1.0, .width = 60, .height = 60}), {{0.5, 0.5}, {50.5, 50.5}}),
+            kMaxClearance);
 }
 
 TEST(ToMetres, PutsACellsCentreWhereTheGridHasIt) {
   const GridGeometry geometry{.resolution_m = 0.1, .width = 9, .height = 9, .origin_m = {-1.0, 2.0}};
-  EXPECT_THAT(to_meters(geometry, {{3.5, 4.5}}).at(0), ::patrol::test::VectorNear(geometry.center_of({3, 4}), kExactTol));
+  EXPECT_THAT(to_meters(geometry, {{3.5, 4.5}}).at(0),
+              ::patrol::test::VectorNear(geometry.center_of({3, 4}), kExactTol));
 }
 
 }  // namespace

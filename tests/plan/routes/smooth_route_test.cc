@@ -22,9 +22,11 @@ TEST(SmoothRoute, CutsNoCornerLosesNoClearanceAndCostsNoMoreOnThreeHundredRandom
     if (route.status != PlanStatus::kFound) continue;
     const std::vector<Eigen::Vector2d> smooth = smooth_route(costs, 3.0, 2.0, route.points);
     ASSERT_TRUE(test::keeps_clear(costs, smooth)) << "seed " << seed;
-    ASSERT_GE(compute_clearance(costs, smooth, 2.0), compute_clearance(costs, route.points, 2.0) - kExactTol) << "seed " << seed;
+    ASSERT_GE(compute_clearance(costs, smooth, 2.0), compute_clearance(costs, route.points, 2.0) - kExactTol)
+        << "seed " << seed;
     double cost = 0.0;
-    for (std::size_t i = 1; i < smooth.size(); ++i) cost += line_cost(costs, cost_factors(3.0), cell_of(smooth[i - 1]), cell_of(smooth[i])).value();
+    for (std::size_t i = 1; i < smooth.size(); ++i)
+      cost += line_cost(costs, cost_factors(3.0), cell_of(smooth[i - 1]), cell_of(smooth[i])).value();
     ASSERT_LE(cost, route.cost + 1e-6) << "seed " << seed;
     ASSERT_EQ(smooth.front(), route.points.front());
     ASSERT_EQ(smooth.back(), route.points.back());
@@ -50,7 +52,9 @@ TEST(SmoothRoute, KeepsTheClearanceOfTheStretchItReplaces) {
   EXPECT_EQ(smooth_route(costs, 0.0, 0.0, detour).size(), 2u);
 }
 
-TEST(SmoothRoute, OfTwoPointsIsThoseTwo) { EXPECT_EQ(smooth_route(draw({"..."}), 0.0, 1.0, {{0.5, 0.5}, {2.5, 0.5}}).size(), 2u); }
+TEST(SmoothRoute, OfTwoPointsIsThoseTwo) {
+  EXPECT_EQ(smooth_route(draw({"..."}), 0.0, 1.0, {{0.5, 0.5}, {2.5, 0.5}}).size(), 2u);
+}
 
 }  // namespace
 }  // namespace patrol::plan::smooth_route_test

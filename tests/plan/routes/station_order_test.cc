@@ -1,12 +1,12 @@
 #include "plan/routes/station_order.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "core/random.h"
@@ -23,7 +23,8 @@ TourProblem random_problem(std::uint64_t seed, std::size_t count, bool is_symmet
   TourProblem problem{.travel = std::vector<std::vector<double>>(count, std::vector<double>(count, 0.0))};
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t j = 0; j < count; ++j) {
-      problem.travel[i][j] = 100.0 * std::hypot(stream.uniform(0, i) - stream.uniform(0, j), stream.uniform(1, i) - stream.uniform(1, j));
+      problem.travel[i][j] =
+          100.0 * std::hypot(stream.uniform(0, i) - stream.uniform(0, j), stream.uniform(1, i) - stream.uniform(1, j));
       if (!is_symmetric) problem.travel[i][j] *= 1.0 + stream.uniform(2, i * count + j);
     }
   }
@@ -35,23 +36,28 @@ TourProblem circle(std::size_t count) {
   TourProblem problem{.travel = std::vector<std::vector<double>>(count, std::vector<double>(count, 0.0))};
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t j = 0; j < count; ++j) {
-      const double angle = std::numbers::pi * (static_cast<double>(i) - static_cast<double>(j)) / static_cast<double>(count);
+      const double angle =
+          std::numbers::pi * (static_cast<double>(i) - static_cast<double>(j)) / static_cast<double>(count);
       problem.travel[i][j] = 200.0 * std::abs(std::sin(angle));
     }
   }
   return problem;
 }
 
-/// The slow, obvious version: the soonest end over all orders that keep windows, priorities and ends; infinite if there is none.
+/// The slow, obvious version: the soonest end over all orders that keep windows, priorities and ends; infinite if there
+/// is none.
 double soonest_slowly(const TourProblem& problem) {
   const std::size_t count = problem.travel.size();
-  const std::vector<TourProblem::Station> stations = problem.stations.empty() ? std::vector<TourProblem::Station>(count) : problem.stations;
+  const std::vector<TourProblem::Station> stations =
+      problem.stations.empty() ? std::vector<TourProblem::Station>(count) : problem.stations;
   const bool is_round = problem.start && problem.start == problem.end;
   std::vector<std::size_t> order(count);
   std::iota(order.begin(), order.end(), std::size_t{0});
   double soonest = kInfinite;
   do {
-    if ((problem.start && order.front() != *problem.start) || (problem.end && !is_round && order.back() != *problem.end)) continue;
+    if ((problem.start && order.front() != *problem.start) ||
+        (problem.end && !is_round && order.back() != *problem.end))
+      continue;
     double now = 0.0;
     bool is_kept = true;
     std::vector<int> priorities;
@@ -78,7 +84,9 @@ TourProblem constrained_problem(std::uint64_t seed) {
   problem.stations.resize(7);
   for (std::size_t i = 0; i < 7; ++i) {
     if (seed % 4 == 0) problem.stations[i].priority = static_cast<int>(3.0 * stream.uniform(0, i));
-    if (seed % 4 == 1) problem.stations[i].earliest = 200.0 * stream.uniform(1, i), problem.stations[i].latest = problem.stations[i].earliest + 300.0;
+    if (seed % 4 == 1)
+      problem.stations[i].earliest = 200.0 * stream.uniform(1, i),
+      problem.stations[i].latest = problem.stations[i].earliest + 300.0;
     problem.stations[i].service = 20.0 * stream.uniform(2, i);
   }
   return problem;
@@ -106,7 +114,8 @@ TEST(TourOrder, LocalSearchFindsTheExactOrderOfTenStationsInNineteenOfTwenty) {
   int num_equal = 0;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     const TourProblem problem = random_problem(seed, 10, seed % 2 == 0);
-    const TourOrder exact = solve_station_order(problem, {}, 1), searched = solve_station_order(problem, {.exact_stations = 0}, 1);
+    const TourOrder exact = solve_station_order(problem, {}, 1),
+                    searched = solve_station_order(problem, {.exact_stations = 0}, 1);
     ASSERT_TRUE(exact.is_exact);
     ASSERT_FALSE(searched.is_exact);
     ASSERT_GE(searched.completion, exact.completion - kExactTol);
@@ -158,7 +167,8 @@ TEST(TourOrder, LocalSearchKeepsWindowsPrioritiesAndEndsOfTwentyStations) {
   EXPECT_EQ(order.lateness, 0.0);
   EXPECT_EQ(order.stations.front(), 4u);
   EXPECT_EQ(order.stations.back(), 9u);
-  for (std::size_t k = 2; k + 1 < 20; ++k) EXPECT_LE(problem.stations[order.stations[k - 1]].priority, problem.stations[order.stations[k]].priority);
+  for (std::size_t k = 2; k + 1 < 20; ++k)
+    EXPECT_LE(problem.stations[order.stations[k - 1]].priority, problem.stations[order.stations[k]].priority);
 }
 
 // There and back between two stations that lie one-way 3 and 5 apart.
@@ -171,25 +181,34 @@ TEST(TourOrder, OfOneAndTwoStationsIsPlain) {
 }
 
 TEST(TourOrder, SaysThatAStationCannotBeReached) {
-  const TourOrder order = solve_station_order({.travel = {{0.0, 1.0, kInfinite}, {1.0, 0.0, kInfinite}, {kInfinite, kInfinite, 0.0}}}, {}, 1);
+  const TourOrder order = solve_station_order(
+      {.travel = {{0.0, 1.0, kInfinite}, {1.0, 0.0, kInfinite}, {kInfinite, kInfinite, 0.0}}}, {}, 1);
   EXPECT_FALSE(order.is_found);
   EXPECT_EQ(order.stations.size(), 3u);
 }
 
 TEST(TourOrder, IsTheSameForTheSameSeed) {
   const TourProblem problem = random_problem(5, 18);
-  EXPECT_EQ(solve_station_order(problem, {.restarts = 3}, 4).stations, solve_station_order(problem, {.restarts = 3}, 4).stations);
+  EXPECT_EQ(solve_station_order(problem, {.restarts = 3}, 4).stations,
+            solve_station_order(problem, {.restarts = 3}, 4).stations);
 }
 
 TEST(TourOrder, RefusesWhatIsNoProblem) {
   using ::testing::HasSubstr, ::testing::ThrowsMessage;
-  const auto error_response = [](const TourProblem& problem) { return [problem] { solve_station_order(problem, {}, 1); }; };
+  const auto error_response = [](const TourProblem& problem) {
+    return [problem] { solve_station_order(problem, {}, 1); };
+  };
   EXPECT_THAT(error_response({}), ThrowsMessage<InputError>(HasSubstr("no stations")));
-  EXPECT_THAT(error_response({.travel = {{0.0, 1.0}, {1.0}}}), ThrowsMessage<InputError>(HasSubstr("row 1 of travel has 1 values")));
-  EXPECT_THAT(error_response({.travel = {{0.0, -1.0}, {1.0, 0.0}}}), ThrowsMessage<InputError>(HasSubstr("travel from 0 to 1 is -1")));
-  EXPECT_THAT(error_response({.travel = {{0.0}}, .stations = {{}, {}}}), ThrowsMessage<InputError>(HasSubstr("2 station descriptions: must be 1")));
-  EXPECT_THAT(error_response({.travel = {{0.0}}, .stations = {{.earliest = 5.0, .latest = 4.0}}}), ThrowsMessage<InputError>(HasSubstr("station 0 has service 0 and window [5, 4]")));
-  EXPECT_THAT(error_response({.travel = {{0.0}}, .start = 1}), ThrowsMessage<InputError>(HasSubstr("unknown station 1: must be in [0, 0]")));
+  EXPECT_THAT(error_response({.travel = {{0.0, 1.0}, {1.0}}}),
+              ThrowsMessage<InputError>(HasSubstr("row 1 of travel has 1 values")));
+  EXPECT_THAT(error_response({.travel = {{0.0, -1.0}, {1.0, 0.0}}}),
+              ThrowsMessage<InputError>(HasSubstr("travel from 0 to 1 is -1")));
+  EXPECT_THAT(error_response({.travel = {{0.0}}, .stations = {{}, {}}}),
+              ThrowsMessage<InputError>(HasSubstr("2 station descriptions: must be 1")));
+  EXPECT_THAT(error_response({.travel = {{0.0}}, .stations = {{.earliest = 5.0, .latest = 4.0}}}),
+              ThrowsMessage<InputError>(HasSubstr("station 0 has service 0 and window [5, 4]")));
+  EXPECT_THAT(error_response({.travel = {{0.0}}, .start = 1}),
+              ThrowsMessage<InputError>(HasSubstr("unknown station 1: must be in [0, 0]")));
 }
 
 }  // namespace

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "plan/routes/visibility_graph.h"
 #include "plan/routes/grid_search.h"
+#include "plan/routes/visibility_graph.h"
 #include "tests/plan/routes/drawn_grid.h"
 
 namespace patrol::plan::theta_star_test {
@@ -21,7 +21,8 @@ TEST(ThetaStar, IsNeverLongerThanAstarNorShorterThanTheOptimumOnThreeHundredRand
     const Grid<Cost> costs = random_grid(seed, 40, 0.4);
     const auto [start, goal] = random_ends(costs, seed);
     if (costs.at(start) == kLethalCost) continue;
-    const Route grid = astar.plan(costs, start, goal), any = theta.plan(costs, start, goal), best = VisibilityGraphPlanner().plan(costs, start, goal);
+    const Route grid = astar.plan(costs, start, goal), any = theta.plan(costs, start, goal),
+                best = VisibilityGraphPlanner().plan(costs, start, goal);
     ASSERT_EQ(any.status, grid.status) << "seed " << seed;
     ASSERT_EQ(best.status, grid.status) << "seed " << seed;
     ASSERT_LE(any.length, grid.length + kExactTol) << "seed " << seed;
@@ -44,7 +45,8 @@ TEST(ThetaStar, WithCostsIsNeverDearerThanAstar) {
     const Grid<Cost> costs = random_grid(seed, 30, 0.3, true);
     const auto [start, goal] = random_ends(costs, seed);
     if (costs.at(start) == kLethalCost) continue;
-    const Route grid = GridSearch(GridSearch::Method::kAstar, 3.0).plan(costs, start, goal), any = ThetaStar(3.0).plan(costs, start, goal);
+    const Route grid = GridSearch(GridSearch::Method::kAstar, 3.0).plan(costs, start, goal),
+                any = ThetaStar(3.0).plan(costs, start, goal);
     ASSERT_EQ(any.status, grid.status) << "seed " << seed;
     ASSERT_LE(any.cost, grid.cost + 1e-6) << "seed " << seed;
   }

@@ -8,7 +8,8 @@
 namespace patrol::render::approach_test {
 namespace {
 
-/// The robot's box reaches from x = -0.3 m to 0.3 m, from y = -0.15 m to 0.15 m. The walker is a cylinder of 0.2 m, its leg one of 0.1 m.
+/// The robot's box reaches from x = -0.3 m to 0.3 m, from y = -0.15 m to 0.15 m. The walker is a cylinder of 0.2 m, its
+/// leg one of 0.1 m.
 constexpr const char* kRobotAndWalker = R"(
   <body name="base_link" pos="0 0 0.3"><freejoint/><geom type="box" size="0.3 0.15 0.1" group="4"/></body>
   <body name="walker" pos="10 0 1" mocap="true"><geom type="cylinder" size="0.2 0.9"/></body>

@@ -12,7 +12,14 @@ using ::testing::IsEmpty;
 
 /// A minute at the origin, with a fault after 30 s: its shot is from 26 s to 33 s.
 Director director_of_a_fault() {
-  RunHistory history{.num_states = 2, .begin = 0s, .end = 60s, .T_world_body = {}, .errors = {}, .approaches = {}, .events = {}, .collisions = {}};
+  RunHistory history{.num_states = 2,
+                     .begin = 0s,
+                     .end = 60s,
+                     .T_world_body = {},
+                     .errors = {},
+                     .approaches = {},
+                     .events = {},
+                     .collisions = {}};
   for (const Time at : {Time(0s), Time(60s)}) history.T_world_body.push_back({at, {}});
   const ShotSettings settings{.lead_s = 4.0, .lag_s = 3.0};
   ShotPlan plan = plan_shots(history, {{30s, HighlightKind::kFault, "Fault"}}, FilmStyle::kHighlights, {}, settings);

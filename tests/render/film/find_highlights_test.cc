@@ -1,9 +1,9 @@
 #include "render/film/find_highlights.h"
 
+#include <algorithm>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include <algorithm>
 
 namespace patrol::render::find_moments_test {
 namespace {
@@ -14,7 +14,14 @@ using ::testing::IsEmpty;
 
 /// A minute of standing at the origin, without errors.
 RunHistory quiet_minute() {
-  RunHistory history{.num_states = 601, .begin = 0s, .end = 60s, .T_world_body = {}, .errors = {}, .approaches = {}, .events = {}, .collisions = {}};
+  RunHistory history{.num_states = 601,
+                     .begin = 0s,
+                     .end = 60s,
+                     .T_world_body = {},
+                     .errors = {},
+                     .approaches = {},
+                     .events = {},
+                     .collisions = {}};
   for (Time now = 0s; now <= 60s; now += 100ms) {
     history.T_world_body.push_back({now, {}});
     history.errors.push_back({now, Eigen::Vector2d::Zero()});
@@ -47,7 +54,12 @@ TEST(FindMoments, TheLargestErrorIsOne) {
 
 TEST(FindMoments, ALiningAlarmIsOneAndLooksAtTheRing) {
   RunHistory history = quiet_minute();
-  history.events.push_back({.stamp = 20s, .kind = EventKind::kLiningAlarm, .subject = "ring_31", .text = "Ring 31 has moved inward by 12.0 mm.", .T_map_body = {}, .p_map_target = {3.0, 4.0}});
+  history.events.push_back({.stamp = 20s,
+                            .kind = EventKind::kLiningAlarm,
+                            .subject = "ring_31",
+                            .text = "Ring 31 has moved inward by 12.0 mm.",
+                            .T_map_body = {},
+                            .p_map_target = {3.0, 4.0}});
   const std::vector<Highlight> highlights = moments_of(history);
   ASSERT_THAT(instants(highlights, HighlightKind::kAlarm), ElementsAre(20s));
   EXPECT_EQ(highlights[0].title, "Ring 31 has moved inward by 12.0 mm");
@@ -62,7 +74,9 @@ TEST(FindMoments, AnErrorThatNobodyWouldSeeIsNone) {
 
 TEST(FindMoments, OfEachEncounterTheNearestInstantCounts) {
   RunHistory history = quiet_minute();
-  const auto meet = [&](Time at, const char* actor, double clearance_m) { history.approaches.push_back({at, actor, clearance_m, {1.0, 2.0}}); };
+  const auto meet = [&](Time at, const char* actor, double clearance_m) {
+    history.approaches.push_back({at, actor, clearance_m, {1.0, 2.0}});
+  };
   for (int i = -5; i <= 5; ++i) meet(20s + i * 200ms, "pedestrian_1", 0.4 + 0.05 * std::abs(i));
   meet(40s, "car_1", 0.7);
   meet(50s, "car_1", 1.2);  // not near
@@ -80,7 +94,8 @@ TEST(FindMoments, OnlyTheNearestEncountersAreShown) {
 
 TEST(FindMoments, TouchesWithinSecondsAreOneCollision) {
   RunHistory history = quiet_minute();
-  for (const Time at : {Time(10s), Time(11s), Time(13s), Time(30s)}) history.collisions.push_back({at, "trunk", "barrier_3"});
+  for (const Time at : {Time(10s), Time(11s), Time(13s), Time(30s)})
+    history.collisions.push_back({at, "trunk", "barrier_3"});
   const std::vector<Highlight> highlights = moments_of(history);
   ASSERT_THAT(instants(highlights, HighlightKind::kCollision), ElementsAre(10s, 30s));
   EXPECT_EQ(highlights[0].title, "Collision with barrier 3");
@@ -101,7 +116,13 @@ TEST(FindMoments, ALeapOfTheTruthIsAKidnapAndNotACorrection) {
 TEST(FindMoments, EventsComeWithTheirOwnWords) {
   RunHistory history = quiet_minute();
   const auto say = [&](Time at, EventKind kind, const char* subject, const char* text, double value) {
-    history.events.push_back({.stamp = at, .kind = kind, .subject = subject, .text = text, .value = value, .T_map_body = {}, .p_map_target = {3.0, 1.0}});
+    history.events.push_back({.stamp = at,
+                              .kind = kind,
+                              .subject = subject,
+                              .text = text,
+                              .value = value,
+                              .T_map_body = {},
+                              .p_map_target = {3.0, 1.0}});
   };
   say(10s, EventKind::kGoalReached, "goal_1", "At goal_1.", 1.0);
   say(20s, EventKind::kGasAlarm, "box_2", "Leak at box_2: 4070 ppm m.", 4070.2);
@@ -111,7 +132,8 @@ TEST(FindMoments, EventsComeWithTheirOwnWords) {
   const std::vector<Highlight> highlights = find_highlights(history, {10.0, 0.0, 0.0});
   std::vector<std::string> titles;
   for (const Highlight& highlight : highlights) titles.push_back(highlight.title);
-  EXPECT_THAT(titles, ElementsAre("At goal 1", "Leak at box 2: 4070 ppm m of methane", "Docked at the charging post", "Localization lost"));
+  EXPECT_THAT(titles, ElementsAre("At goal 1", "Leak at box 2: 4070 ppm m of methane", "Docked at the charging post",
+                                  "Localization lost"));
   EXPECT_EQ(*highlights[1].p_world_subject, Eigen::Vector2d(13.0, 1.0)) << "a place in the map, brought to world";
 }
 
@@ -119,7 +141,9 @@ TEST(FindMoments, WhatIsAnnouncedTakesItsPlaceInTime) {
   RunHistory history = quiet_minute();
   history.collisions.push_back({10s, "trunk", "wall"});
   const std::vector<Highlight> highlights =
-      moments_of(history, {{20s, HighlightKind::kFault, "Fault: dropout of lidar"}, {5s, HighlightKind::kFault, "early"}, {99s, HighlightKind::kFault, "after the end"}});
+      moments_of(history, {{20s, HighlightKind::kFault, "Fault: dropout of lidar"},
+                           {5s, HighlightKind::kFault, "early"},
+                           {99s, HighlightKind::kFault, "after the end"}});
   ASSERT_EQ(highlights.size(), 3u);
   EXPECT_EQ(highlights[0].title, "early");
   EXPECT_EQ(highlights[1].kind, HighlightKind::kCollision);

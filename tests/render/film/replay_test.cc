@@ -1,8 +1,8 @@
 #include "render/film/replay.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "io/logs/run_log.h"
@@ -44,7 +44,8 @@ class Replay : public ::testing::Test {
   test::TemporaryFolder folder;
   const std::filesystem::path log = folder / "log.mcap";
   const std::filesystem::path film = folder / "replay.mp4";
-  ReplaySettings settings{.style = FilmStyle::kContinuous, .speed = {.fast = 1.0}, .width = 160, .height = 90, .frames_per_second = 10.0};
+  ReplaySettings settings{
+      .style = FilmStyle::kContinuous, .speed = {.fast = 1.0}, .width = 160, .height = 90, .frames_per_second = 10.0};
 };
 
 TEST_F(Replay, FilmsTheRunAtTheRateThatWasAsked) {
@@ -71,7 +72,8 @@ TEST_F(Replay, IsTheSameFilmEachTime) {
   EXPECT_EQ(test::read_bytes(folder / "one.mp4"), test::read_bytes(folder / "again.mp4"));
 }
 
-// 1.98 s at 8 would be 0.2475 s of film. The fault's scene reaches over the whole run: 1.98 / 2 = 0.99 s, frames at 0 ... 0.9 s.
+// 1.98 s at 8 would be 0.2475 s of film. The fault's scene reaches over the whole run: 1.98 / 2 = 0.99 s, frames at 0
+// ... 0.9 s.
 TEST_F(Replay, OfAStoryIsSlowAtItsMomentsAndHasThemForChapters) {
   settings.style = FilmStyle::kHighlights;
   settings.speed = {.fast = 8.0, .slow = 2.0};
@@ -88,7 +90,8 @@ TEST_F(Replay, OfAStoryIsSlowAtItsMomentsAndHasThemForChapters) {
 TEST_F(Replay, LeavesNothingWhenItIsInterrupted) {
   EXPECT_TRUE(replay(log, model(), {}, settings, film, [](double) { return false; }).is_interrupted);
   EXPECT_FALSE(std::filesystem::exists(film));
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1) << "the log, and no part of a film";
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1)
+      << "the log, and no part of a film";
 }
 
 TEST_F(Replay, TellsHowFarItIs) {

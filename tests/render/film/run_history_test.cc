@@ -27,14 +27,21 @@ TEST(RunHistory, IsWhatTheLogTellsOfTheWholeRun) {
     log.write(now, state);
   }
   log.write(1s, Collision{1s, "trunk", "wall"});
-  log.write(1s, Event{.stamp = 1s, .kind = EventKind::kDocked, .subject = "", .text = "Docked.", .value = 0.0, .T_map_body = {}, .p_map_target = {}});
+  log.write(1s, Event{.stamp = 1s,
+                      .kind = EventKind::kDocked,
+                      .subject = "",
+                      .text = "Docked.",
+                      .value = 0.0,
+                      .T_map_body = {},
+                      .p_map_target = {}});
   log.close();
   const RunHistory history = read_run_history(folder / "log.mcap", *model, {4.0, 2.0, 0.0});
   EXPECT_EQ(history.num_states, 50);
   EXPECT_EQ(history.begin, Time(20ms));
   EXPECT_EQ(history.end, Time(1s));
   ASSERT_EQ(history.errors.size(), 50u);
-  EXPECT_NEAR((history.errors[7].error_in_world_m - Eigen::Vector2d(0.0, 0.25)).norm(), 0.0, 1e-9);  // (4, 2) + (1, 0.25) - (5, 2)
+  EXPECT_NEAR((history.errors[7].error_in_world_m - Eigen::Vector2d(0.0, 0.25)).norm(), 0.0,
+              1e-9);  // (4, 2) + (1, 0.25) - (5, 2)
   ASSERT_EQ(history.approaches.size(), 10u) << "ten a second";
   EXPECT_NEAR(history.approaches[3].clearance_m, 1.0 - 0.3 - 0.2, 1e-3);
   EXPECT_EQ(history.collisions.size(), 1u);

@@ -22,7 +22,8 @@ TEST(ShotCamera, BesideTheRobotLooksAtItFromAhead) {
 
 TEST(ShotCamera, OfTwoHasBothInThePicture) {
   const Eigen::Vector2d subject(0.0, 2.5);
-  const Shot shot{.span = {}, .kind = ShotKind::kTwoSubjects, .caption = {}, .T_world_body = kOrigin, .p_world_subject = subject};
+  const Shot shot{
+      .span = {}, .kind = ShotKind::kTwoSubjects, .caption = {}, .T_world_body = kOrigin, .p_world_subject = subject};
   const View view = ShotCamera(shot, {}, kOrigin).follow(kOrigin, {0.0, 0.0}, kFrame_s);
   EXPECT_TRUE(is_in_picture(view, kOrigin.position));
   EXPECT_TRUE(is_in_picture(view, {subject.x(), subject.y(), 0.5}));

@@ -17,12 +17,22 @@ const ShotSettings kHighlights{.lead_s = 5.0, .lag_s = 4.0, .same_scene_s = 4.0,
 
 /// Two minutes along x at 1 m/s.
 RunHistory two_minutes() {
-  RunHistory history{.num_states = 2, .begin = 0s, .end = 120s, .T_world_body = {}, .errors = {}, .approaches = {}, .events = {}, .collisions = {}};
-  for (const Time at : {Time(0s), Time(120s)}) history.T_world_body.push_back({at, {{to_seconds(at), 0.0, 0.3}, Eigen::Quaterniond::Identity()}});
+  RunHistory history{.num_states = 2,
+                     .begin = 0s,
+                     .end = 120s,
+                     .T_world_body = {},
+                     .errors = {},
+                     .approaches = {},
+                     .events = {},
+                     .collisions = {}};
+  for (const Time at : {Time(0s), Time(120s)})
+    history.T_world_body.push_back({at, {{to_seconds(at), 0.0, 0.3}, Eigen::Quaterniond::Identity()}});
   return history;
 }
 
-ShotPlan plan(const std::vector<Highlight>& highlights, FilmStyle style = FilmStyle::kHighlights) { return plan_shots(two_minutes(), highlights, style, kSpeeds, kHighlights); }
+ShotPlan plan(const std::vector<Highlight>& highlights, FilmStyle style = FilmStyle::kHighlights) {
+  return plan_shots(two_minutes(), highlights, style, kSpeeds, kHighlights);
+}
 
 TEST(ShotPlan, ASceneBeginsBeforeItsMomentAndEndsAfterIt) {
   const ShotPlan one = plan({{60s, HighlightKind::kAlarm, "Leak", Eigen::Vector2d(61.0, 2.0)}});
@@ -36,7 +46,9 @@ TEST(ShotPlan, ASceneBeginsBeforeItsMomentAndEndsAfterIt) {
 }
 
 TEST(ShotPlan, MomentsCloseToEachOtherAreOneSceneToldInOrder) {
-  const ShotPlan one = plan({{60s, HighlightKind::kKidnap, "Lifted"}, {61s, HighlightKind::kLost, "Lost"}, {64s, HighlightKind::kRelocalized, "Found"}});
+  const ShotPlan one = plan({{60s, HighlightKind::kKidnap, "Lifted"},
+                             {61s, HighlightKind::kLost, "Lost"},
+                             {64s, HighlightKind::kRelocalized, "Found"}});
   ASSERT_EQ(one.shots.size(), 1u);
   EXPECT_THAT(one.shots[0].caption, ElementsAre("Lifted", "Lost", "Found"));
   EXPECT_EQ(one.shots[0].kind, ShotKind::kOverhead);
@@ -44,7 +56,10 @@ TEST(ShotPlan, MomentsCloseToEachOtherAreOneSceneToldInOrder) {
 }
 
 TEST(ShotPlan, OfTooManyMomentsInOneSceneTheLeastNotableIsNotTold) {
-  const ShotPlan one = plan({{60s, HighlightKind::kMaxError, "Error"}, {60s, HighlightKind::kKidnap, "Lifted"}, {61s, HighlightKind::kLost, "Lost"}, {62s, HighlightKind::kRelocalized, "Found"}});
+  const ShotPlan one = plan({{60s, HighlightKind::kMaxError, "Error"},
+                             {60s, HighlightKind::kKidnap, "Lifted"},
+                             {61s, HighlightKind::kLost, "Lost"},
+                             {62s, HighlightKind::kRelocalized, "Found"}});
   EXPECT_THAT(one.shots[0].caption, ElementsAre("Lifted", "Lost", "Found"));
 }
 
@@ -57,7 +72,9 @@ TEST(ShotPlan, ScenesThatWouldOverlapMeetInTheMiddle) {
 
 TEST(ShotPlan, TheLessNotableScenesAreChaptersOnly) {
   std::vector<Highlight> highlights;
-  for (int i = 1; i <= 5; ++i) highlights.push_back({i * 20s, i % 2 == 0 ? HighlightKind::kCollision : HighlightKind::kGoal, "moment " + std::to_string(i)});
+  for (int i = 1; i <= 5; ++i)
+    highlights.push_back(
+        {i * 20s, i % 2 == 0 ? HighlightKind::kCollision : HighlightKind::kGoal, "moment " + std::to_string(i)});
   const ShotPlan some = plan(highlights);
   ASSERT_EQ(some.shots.size(), 3u);  // both collisions, and the first of the goals
   EXPECT_EQ(some.shots[0].caption[0], "moment 1");
@@ -67,11 +84,14 @@ TEST(ShotPlan, TheLessNotableScenesAreChaptersOnly) {
 }
 
 TEST(ShotPlan, ChaptersFollowEachOtherFromTheBeginToTheEndOfTheFilm) {
-  const ShotPlan some = plan({{1s, HighlightKind::kMission, "Mission begins"}, {60s, HighlightKind::kGoal, "Goal"}, {100s, HighlightKind::kAlarm, "Leak"}});
+  const ShotPlan some = plan({{1s, HighlightKind::kMission, "Mission begins"},
+                              {60s, HighlightKind::kGoal, "Goal"},
+                              {100s, HighlightKind::kAlarm, "Leak"}});
   ASSERT_EQ(some.chapters.size(), 3u);
   EXPECT_EQ(some.chapters[0].title, "Mission begins") << "nothing comes before it";
   EXPECT_EQ(some.chapters[0].begin_s, 0.0);
-  for (std::size_t i = 1; i < some.chapters.size(); ++i) EXPECT_EQ(some.chapters[i].begin_s, some.chapters[i - 1].end_s);
+  for (std::size_t i = 1; i < some.chapters.size(); ++i)
+    EXPECT_EQ(some.chapters[i].begin_s, some.chapters[i - 1].end_s);
   EXPECT_NEAR(some.chapters[1].begin_s, some.speed.film_s(55s), 1e-9);
   EXPECT_NEAR(some.chapters.back().end_s, some.speed.length_s(), 1e-9);
 }

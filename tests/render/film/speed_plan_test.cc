@@ -8,7 +8,8 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr double kAlgebraTol = 1e-9;
-constexpr SpeedSettings kSpeeds{.fast = 8.0, .slow = 2.0, .ramp_s = 1.25};  // ramps of 2 * 1.25 / (1/8 + 1/2) = 4 s of the run
+constexpr SpeedSettings kSpeeds{
+    .fast = 8.0, .slow = 2.0, .ramp_s = 1.25};  // ramps of 2 * 1.25 / (1/8 + 1/2) = 4 s of the run
 
 TEST(SpeedPlan, WithoutSlowSpansIsEven) {
   const SpeedPlan plan({0s, 80s}, {}, kSpeeds);
@@ -46,8 +47,9 @@ TEST(SpeedPlan, RunsForwardsAndItsTwoMapsAreInverse) {
   EXPECT_NEAR(to_seconds(plan.run_time(plan.length_s())), 100.0, 1e-8);
 }
 
-// The first begins 2 s into the run, its ramp would begin 2 s before that: half of it is left, 2 s at 1/2 - 3/16 / 2 in the mean.
-// The last is cut to 98 ... 100 s. 100/8 + 3/8 (5 + 4) - 3/8 * 0.5 [the missing part of the first ramp] + 3/8 (2 + 2)
+// The first begins 2 s into the run, its ramp would begin 2 s before that: half of it is left, 2 s at 1/2 - 3/16 / 2 in
+// the mean. The last is cut to 98 ... 100 s. 100/8 + 3/8 (5 + 4) - 3/8 * 0.5 [the missing part of the first ramp] + 3/8
+// (2 + 2)
 TEST(SpeedPlan, CutsOffWhatIsBeyondTheRun) {
   const SpeedPlan plan({0s, 100s}, {{2s, 7s}, {98s, 104s}}, kSpeeds);
   EXPECT_NEAR(plan.length_s(), 12.5 + 0.375 * (5.0 + 4.0) - 0.375 * 0.5 + 0.375 * (2.0 + 2.0), kAlgebraTol);

@@ -1,13 +1,13 @@
 #include "render/scene/camera.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "core/geometry/angles.h"
+#include <gtest/gtest.h>
+
 #include "core/error.h"
+#include "core/geometry/angles.h"
 #include "render/scene/scene_painter.h"
 #include "tests/render/small_scene.h"
 
@@ -36,8 +36,7 @@ TEST(Projector, SeesNothingBehind) {
 }
 
 TEST(Projector, AgreesWithMuJoCoWithinAPixelAndOnDepthWithinAMillimetre) {
-  const sim::ModelPtr model =
-      small_scene(R"(<geom type="sphere" size="0.05" pos="4 0.7 1.1" rgba="1 0 0 1"/>)");
+  const sim::ModelPtr model = small_scene(R"(<geom type="sphere" size="0.05" pos="4 0.7 1.1" rgba="1 0 0 1"/>)");
   const View view = look_at({0.0, -0.5, 1.6}, {4.0, 0.0, 0.9});
   SceneRenderer painter(*model, 640, 360);
   Frame frame;
@@ -84,8 +83,7 @@ TEST(CameraRigTest, TurnsWithTheRobotButNotAtOnce) {
 
 TEST(CameraRigTest, ComesNearerAtOnceWhereSomethingIsInTheWayAndLeavesSlowly) {
   double free_m = 100.0;
-  CameraRig rig(CameraKind::kChase,
-                [&](const auto&, const auto&, double max_m) { return std::min(free_m, max_m); });
+  CameraRig rig(CameraKind::kChase, [&](const auto&, const auto&, double max_m) { return std::min(free_m, max_m); });
   const Pose3 robot{{0.0, 0.0, 0.3}, Eigen::Quaterniond::Identity()};
   const double usual_m = -rig.follow(robot, 0.05).eye.x();
   free_m = 1.25;
@@ -108,7 +106,8 @@ FreeDistance under_roof(double height_m) {
 TEST(CameraRigTest, LooksUpByMoreThanSevenDegreesWhereThereIsARoof) {
   const Pose3 robot{{0.0, 0.0, 0.15}, Eigen::Quaterniond::Identity()};
   CameraRig outdoors(CameraKind::kChase), indoors(CameraKind::kChase, under_roof(7.5));
-  const double gained_rad = std::asin(indoors.follow(robot, 10.0).forward.z()) - std::asin(outdoors.follow(robot, 10.0).forward.z());
+  const double gained_rad =
+      std::asin(indoors.follow(robot, 10.0).forward.z()) - std::asin(outdoors.follow(robot, 10.0).forward.z());
   EXPECT_GT(gained_rad, to_rad(7.0));
   EXPECT_LT(gained_rad, to_rad(9.0));
 }
@@ -133,7 +132,8 @@ TEST(CameraRigTest, OnBoardLooksWhereTheRobotHeads) {
 }
 
 TEST(CameraRigTest, OnBoardIsWhereTheRobotHasItsCamera) {
-  const View view = CameraRig(CameraKind::kOnboard, {}, {0.5, 0.0, 0.25}).follow({{3.0, 4.0, 0.3}, quaternion_from_yaw(0.0)}, 0.05);
+  const View view =
+      CameraRig(CameraKind::kOnboard, {}, {0.5, 0.0, 0.25}).follow({{3.0, 4.0, 0.3}, quaternion_from_yaw(0.0)}, 0.05);
   EXPECT_NEAR((view.eye - Eigen::Vector3d(3.5, 4.0, 0.55)).norm(), 0.0, 1e-12);
 }
 

@@ -1,10 +1,10 @@
 #include "render/scene/depth_renderer.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <limits>
 #include <string>
+
+#include <gtest/gtest.h>
 
 #include "sim/lidar_scene.h"
 #include "tests/render/small_scene.h"
@@ -44,7 +44,8 @@ struct Look {
 
 const Pose3 kAhead{{0.0, 0.0, 0.5}, Eigen::Quaterniond::Identity()};
 
-/// Largest difference of a pixel from the ray through its middle, where its neighbours' rays agree that there is no edge.
+/// Largest difference of a pixel from the ray through its middle, where its neighbours' rays agree that there is no
+/// edge.
 double worst_against_rays(const Look& look, double up_to_m, int* compared) {
   sim::LidarScene scene(*look.model);
   scene.update(*look.data);
@@ -62,7 +63,8 @@ double worst_against_rays(const Look& look, double up_to_m, int* compared) {
       constexpr double kBeside_px = 0.3, kSame_m = 0.1;  // the drawn shape's outline may be that far from the true one
       bool is_edge = false;
       for (const double side : {-kBeside_px, kBeside_px}) {
-        is_edge = is_edge || std::abs(ray_depth_m(u + side, v) - expected) > kSame_m || std::abs(ray_depth_m(u, v + side) - expected) > kSame_m;
+        is_edge = is_edge || std::abs(ray_depth_m(u + side, v) - expected) > kSame_m ||
+                  std::abs(ray_depth_m(u, v + side) - expected) > kSame_m;
       }
       if (is_edge) continue;
       ++*compared;
@@ -112,7 +114,8 @@ TEST(DepthRenderer, BeyondTheFarPlaneThereIsNothing) {
 
 TEST(DepthRenderer, ReflectivityIsTheLuminanceOfTheColourToOneIn254) {
   const Look look(R"(<geom type="box" pos="2 1 0.5" size="0.1 0.9 2" rgba="1 1 1 1"/>
-                     <geom type="box" pos="2 -1 0.5" size="0.1 0.9 2" rgba="0.2 0.4 0.1 1"/>)", kAhead);
+                     <geom type="box" pos="2 -1 0.5" size="0.1 0.9 2" rgba="0.2 0.4 0.1 1"/>)",
+                  kAhead);
   EXPECT_NEAR(look.reflectivity(10, 30), 1.0, 1.0 / 254.0);
   EXPECT_NEAR(look.reflectivity(70, 30), 0.2126 * 0.2 + 0.7152 * 0.4 + 0.0722 * 0.1, 0.5 / 254.0 + 1e-6);
 }
@@ -122,7 +125,8 @@ TEST(DepthRenderer, OwnHousingGlassAndWhatIsNotForTheEyeDoNotHideTheWall) {
       <geom type="box" pos="2 0 0.5" size="0.1 5 5" rgba="0.7 0.8 0.9 0.2"/>
       <geom type="box" pos="2 0 0.5" size="0.1 5 5" group="2"/><geom type="box" pos="2 0 0.5" size="0.1 5 5" group="3"/>
       <body name="base_link"><freejoint/><geom type="box" size="0.1 0.1 0.1" pos="-1 0 0" group="4"/>
-        <body name="depth_camera" pos="0 0 0.5"><geom type="box" size="0.12 0.2 0.2" group="4"/></body></body>)", kAhead);
+        <body name="depth_camera" pos="0 0 0.5"><geom type="box" size="0.12 0.2 0.2" group="4"/></body></body>)",
+                  kAhead);
   EXPECT_NEAR(look.depth_m(40, 30), 4.0, 1e-3);
 }
 
@@ -132,7 +136,8 @@ std::string long_wall_asset() {
   std::string vertices, faces;
   for (int i = 0; i < kSteps; ++i) {
     const double y = -40.0 + 0.2 * i, x = 5.0 + 0.2 * std::sin(0.7 * y);
-    for (const double z : {-1.0, 0.5, 2.0}) vertices += std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(z) + " ";
+    for (const double z : {-1.0, 0.5, 2.0})
+      vertices += std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(z) + " ";
     if (i == 0) continue;
     for (const int low : {3 * i, 3 * i + 1}) {
       for (const int corner : {low - 3, low, low + 1, low - 3, low + 1, low - 2}) faces += std::to_string(corner) + " ";
@@ -143,8 +148,10 @@ std::string long_wall_asset() {
 
 TEST(DepthRenderer, OfALongMeshOnlyWhatIsNearIsDrawnAndTheDepthIsThatOfRaysAlongAllOfIt) {
   Look look(kShapes, kAhead);  // for its comparison
-  look.model = sim::compile(*sim::parse_spec("<mujoco><asset>" + long_wall_asset() +
-                                             R"(</asset><worldbody><geom type="mesh" mesh="wall"/></worldbody></mujoco>)"), "wall");
+  look.model =
+      sim::compile(*sim::parse_spec("<mujoco><asset>" + long_wall_asset() +
+                                    R"(</asset><worldbody><geom type="mesh" mesh="wall"/></worldbody></mujoco>)"),
+                   "wall");
   look.data = sim::make_data(*look.model);
   mj_forward(look.model.get(), look.data.get());
   DepthRenderer renderer(*look.model, kLens, 0.1, 10.0);
@@ -161,17 +168,20 @@ TEST(DepthRenderer, OfALongMeshOnlyWhatIsNearIsDrawnAndTheDepthIsThatOfRaysAlong
 TEST(DepthRenderer, ThinBarsAreWithin1CentimetreAndEndWhereTheyEnd) {
   const Look look(R"(<geom type="capsule" pos="0.8 0 0.5" euler="90 0 0" size="0.03 0.2"/>
       <geom type="cylinder" pos="1 0.45 0.5" euler="0 20 0" size="0.03 0.3"/>
-      <geom type="box" pos="3 0 0" size="0.1 5 5"/>)", kAhead);
+      <geom type="box" pos="3 0 0" size="0.1 5 5"/>)",
+                  kAhead);
   int compared = 0;
   EXPECT_LT(worst_against_rays(look, 2.0, &compared), 0.01);
   EXPECT_GT(compared, 100);
-  // The capsule lies across the way from y = -0.23 to 0.23, its front at 0.77: 57 x 0.23 / 0.77 = 17 pixels each side of 39.5.
+  // The capsule lies across the way from y = -0.23 to 0.23, its front at 0.77: 57 x 0.23 / 0.77 = 17 pixels each side
+  // of 39.5.
   EXPECT_LT(look.depth_m(39 + 16, 30), 0.8);
   EXPECT_GT(look.depth_m(39 + 19, 30), 2.0);
 }
 
 TEST(DepthRenderer, ARobotsOwnArmBeforeTheCameraIsSeenWhereItsBodyIs) {
-  Look look(R"(<body name="base_link"><freejoint/><geom type="box" size="0.1 2 2" pos="1 0 0" group="4"/></body>)", kAhead);
+  Look look(R"(<body name="base_link"><freejoint/><geom type="box" size="0.1 2 2" pos="1 0 0" group="4"/></body>)",
+            kAhead);
   EXPECT_NEAR(look.depth_m(40, 30), 0.9, 1e-4);
   DepthRenderer renderer(*look.model, kLens, 0.1, 10.0);
   look.data->qpos[0] = 1.5;
@@ -181,8 +191,10 @@ TEST(DepthRenderer, ARobotsOwnArmBeforeTheCameraIsSeenWhereItsBodyIs) {
 }
 
 TEST(DepthRenderer, WhatIsBehindBesideAndTooFarIsNotDrawn) {
-  const Look look(R"(<geom type="box" pos="3 0 0.5" size="0.1 0.1 0.1"/><geom type="box" pos="-3 0 0.5" size="0.1 0.1 0.1"/>
-      <geom type="box" pos="1 3 0.5" size="0.1 0.1 0.1"/><geom type="box" pos="13 0 0.5" size="0.1 0.1 0.1"/>)", kAhead);
+  const Look look(
+      R"(<geom type="box" pos="3 0 0.5" size="0.1 0.1 0.1"/><geom type="box" pos="-3 0 0.5" size="0.1 0.1 0.1"/>
+      <geom type="box" pos="1 3 0.5" size="0.1 0.1 0.1"/><geom type="box" pos="13 0 0.5" size="0.1 0.1 0.1"/>)",
+      kAhead);
   EXPECT_EQ(look.num_drawn, 1);
 }
 

@@ -1,8 +1,8 @@
 #include "render/scene/frame.h"
 
-#include <gtest/gtest.h>
-
 #include <cstdint>
+
+#include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "tests/support/temporary_file.h"

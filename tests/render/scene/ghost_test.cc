@@ -1,8 +1,8 @@
 #include "render/scene/ghost.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
+
+#include <gtest/gtest.h>
 
 #include "render/scene/scene_painter.h"
 #include "tests/render/small_scene.h"

@@ -1,10 +1,9 @@
 #include "render/scene/gl_context.h"
 
-#include <gtest/gtest.h>
-
 #include <cstdlib>
 
 #include <fmt/format.h>
+#include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "render/scene/frame.h"

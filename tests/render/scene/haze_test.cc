@@ -1,10 +1,10 @@
 #include "render/scene/haze.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include <gtest/gtest.h>
 
 #include "sim/dust.h"
 
@@ -50,7 +50,8 @@ TEST(Haze, AHundredthOfTheVisibilityAwayNearlyAllIsSeen) {
   EXPECT_GT(left_of_contrast(wall_in_haze(0.25, std::log(50.0) / 20.0).at(kMiddle, kMiddle)), 0.95);
 }
 
-// The middle of the edge is seen under 44.7 degrees: tan = 50 / 50.5, the way is sqrt(1 + (50 / 50.5)^2) = 1.407 times as long.
+// The middle of the edge is seen under 44.7 degrees: tan = 50 / 50.5, the way is sqrt(1 + (50 / 50.5)^2) = 1.407 times
+// as long.
 TEST(Haze, CountsTheWayAlongTheRayAndNotAlongTheAxis) {
   const Frame frame = wall_in_haze(10.0, 0.1);
   const double way_m = 10.0 - right_angled().near_m;
@@ -61,7 +62,8 @@ TEST(Haze, CountsTheWayAlongTheRayAndNotAlongTheAxis) {
 TEST(Haze, TheAirBeforeTheNearPlaneIsCutAwayToo) {
   View view = right_angled();
   view.near_m = 8.0;
-  EXPECT_NEAR(left_of_contrast(wall_in_haze(10.0, 0.1, view).at(kMiddle, kMiddle)), std::exp(-0.1 * 2.0), kRounding / 120.0);
+  EXPECT_NEAR(left_of_contrast(wall_in_haze(10.0, 0.1, view).at(kMiddle, kMiddle)), std::exp(-0.1 * 2.0),
+              kRounding / 120.0);
 }
 
 }  // namespace

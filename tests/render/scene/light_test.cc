@@ -1,8 +1,8 @@
 #include "render/scene/light.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "io/yaml/settings_yaml.h"
@@ -32,7 +32,8 @@ Frame draw_at(double intensity) {
 }
 
 // Sky, lamp, what it lights and what has only the headlight: nothing here is so bright that a byte cannot hold it.
-// To the eye, and in a picture, a share s of the light is s^(1/2.2) of the brightness: 0.2176 of the light is half of it.
+// To the eye, and in a picture, a share s of the light is s^(1/2.2) of the brightness: 0.2176 of the light is half of
+// it.
 TEST(Light, AtAFifthOfTheLightEveryPixelIsHalfAsBright) {
   const Frame full = draw_at(1.0), half = draw_at(std::pow(0.5, 2.2));
   constexpr double kRoundingTol = 1.51;  // a byte for the texture, one for the vertex, half of one for the picture

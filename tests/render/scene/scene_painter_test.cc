@@ -1,9 +1,9 @@
 #include "render/scene/scene_painter.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "tests/render/small_scene.h"
@@ -41,8 +41,7 @@ class ScenePainterTest : public ::testing::Test {
 TEST_F(ScenePainterTest, HasSkyAboveGroundBelowAndTheRobotInTheMiddle) {
   painter.set_state(reference_state(*model));
   const Frame frame = draw(kFromBehind);
-  const Color sky = frame.at(20, 3), ground = frame.at(20, kHeight - 3),
-              robot = frame.at(kWidth / 2, kHeight / 2);
+  const Color sky = frame.at(20, 3), ground = frame.at(20, kHeight - 3), robot = frame.at(kWidth / 2, kHeight / 2);
   EXPECT_GT(sky.b, sky.r);
   EXPECT_GT(ground.g, ground.b);
   EXPECT_GT(robot.r, 2 * robot.g);
@@ -90,8 +89,7 @@ TEST_F(ScenePainterTest, WhatItLeavesOutWouldNotHaveBeenSeen) {
   for (const int group : {2, 3, 5}) options.geomgroup[group] = 0;
   options.geomgroup[4] = 1;
   float sun_place[mjMAXLIGHT][3];
-  for (int i = 0; i < scene.nlight; ++i)
-    std::copy(scene.lights[i].pos, scene.lights[i].pos + 3, sun_place[i]);
+  for (int i = 0; i < scene.nlight; ++i) std::copy(scene.lights[i].pos, scene.lights[i].pos + 3, sun_place[i]);
   auto data = sim::make_data(*model);
   mj_forward(model.get(), data.get());
   mjv_updateScene(model.get(), data.get(), &options, nullptr, nullptr, mjCAT_ALL, &scene);
@@ -153,14 +151,16 @@ TEST(ScenePainterUnderLamps, FarFromAllOfThemThereAreNoShadows) {
   const auto num_casting = [&](double x_m) {
     painter.draw(look_at({x_m, 0.0, 5.0}, {x_m, 0.0, 0.0}), frame, depth);
     const mjvScene& scene = painter.scene();
-    return std::count_if(scene.lights, scene.lights + scene.nlight, [](const mjvLight& light) { return light.castshadow != 0 && !light.headlight; });
+    return std::count_if(scene.lights, scene.lights + scene.nlight,
+                         [](const mjvLight& light) { return light.castshadow != 0 && !light.headlight; });
   };
   EXPECT_EQ(num_casting(0.0), 1);
   EXPECT_EQ(num_casting(10.0), 0);
   EXPECT_EQ(num_casting(29.0), 1);
 }
 
-// Along the way from one lamp to the other, the brightness of a place behind a post never jumps: shadows fade in and out.
+// Along the way from one lamp to the other, the brightness of a place behind a post never jumps: shadows fade in and
+// out.
 TEST(ScenePainterUnderLamps, ShadowsDoNotPop) {
   const sim::ModelPtr model = small_scene(R"(
   <light pos="0 0 4" dir="0 0 -1" cutoff="80" exponent="1" diffuse="0.6 0.6 0.6" castshadow="false"/>
@@ -175,7 +175,8 @@ TEST(ScenePainterUnderLamps, ShadowsDoNotPop) {
     View above = look_at({2.0, 0.0, 6.0}, {2.0, 0.0, 0.0});  // the eye stays: only what the light is chosen by moves
     above.focus = {focus_x, 0.0, 0.0};
     painter.draw(above, frame, depth);
-    const Eigen::Vector2d pixel = Projector(above, kWidth, kHeight).project({2.4, 0.0, 0.0})->pixel;  // in the first lamp's shadow
+    const Eigen::Vector2d pixel =
+        Projector(above, kWidth, kHeight).project({2.4, 0.0, 0.0})->pixel;  // in the first lamp's shadow
     const int bright = frame.at(static_cast<int>(pixel.x()), static_cast<int>(pixel.y())).g;
     if (last >= 0) {
       EXPECT_LE(std::abs(bright - last), 12) << "at " << focus_x;
@@ -204,8 +205,8 @@ TEST(ScenePainterInDust, WhatIsFarTakesTheColourOfTheFogAndWhatIsNearDoesNot) {
     const double left = std::exp(-0.2 * (point_m - view.eye).norm());
     EXPECT_NEAR(dusty.at(x, y).r, 255.0 * kFog + left * (clear.at(x, y).r - 255.0 * kFog), 2.0) << point_m.transpose();
   };
-  expect_haze({-0.3, 0.0, 0.3});   // the robot, 2.4 m away
-  expect_haze({7.5, 3.0, 0.5});    // the wall, 10.5 m away
+  expect_haze({-0.3, 0.0, 0.3});  // the robot, 2.4 m away
+  expect_haze({7.5, 3.0, 0.5});   // the wall, 10.5 m away
 }
 
 TEST(OffscreenTest, RefusesASizeWithoutPixels) {

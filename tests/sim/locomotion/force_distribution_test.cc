@@ -1,8 +1,7 @@
 #include "sim/locomotion/force_distribution.h"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Geometry>
+#include <gtest/gtest.h>
 
 namespace patrol::sim::force_distribution_test {
 namespace {
@@ -11,9 +10,7 @@ const FootVectors kFeet = {Eigen::Vector3d(0.19, 0.14, -0.30), Eigen::Vector3d(0
                            Eigen::Vector3d(-0.18, 0.14, -0.30), Eigen::Vector3d(-0.19, -0.14, -0.31)};
 constexpr FootFlags kAll = {true, true, true, true};
 
-Eigen::Vector3d total_force(const FootVectors& forces) {
-  return forces[0] + forces[1] + forces[2] + forces[3];
-}
+Eigen::Vector3d total_force(const FootVectors& forces) { return forces[0] + forces[1] + forces[2] + forces[3]; }
 
 Eigen::Vector3d total_moment(const FootVectors& forces) {
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();
@@ -32,8 +29,7 @@ TEST(ForceDistribution, TheWeightOverTheMiddleOfASquareIsSharedInFour) {
   const FootVectors square = {Eigen::Vector3d(0.2, 0.15, -0.3), Eigen::Vector3d(0.2, -0.15, -0.3),
                               Eigen::Vector3d(-0.2, 0.15, -0.3), Eigen::Vector3d(-0.2, -0.15, -0.3)};
   const FootVectors forces = distribute_wrench({0, 0, 120}, {0, 0, 0}, square, kAll, {});
-  for (const Eigen::Vector3d& force : forces)
-    EXPECT_NEAR((force - Eigen::Vector3d(0, 0, 30)).norm(), 0.0, 0.01);
+  for (const Eigen::Vector3d& force : forces) EXPECT_NEAR((force - Eigen::Vector3d(0, 0, 30)).norm(), 0.0, 0.01);
 }
 
 TEST(ForceDistribution, FeetInTheAirGetNothingAndTheDiagonalPairCarriesTheWeight) {

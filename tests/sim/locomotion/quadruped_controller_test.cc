@@ -1,9 +1,9 @@
 #include "sim/locomotion/quadruped_controller.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <numbers>
+
+#include <gtest/gtest.h>
 
 #include "core/geometry/angles.h"
 #include "tests/support/simulated_quadruped.h"
@@ -58,12 +58,12 @@ TEST_P(Walking, FollowsTheCommandWithin10PercentAnd0_03AndKeepsItsTrunkLevel) {
   EXPECT_FALSE(report.has_fallen);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    QuadrupedController, Walking,
-    testing::Values(Walk{"forward_0_5_mps", 0.5, 0.0, 0.0}, Walk{"forward_1_mps", 1.0, 0.0, 0.0},
-                    Walk{"backward_0_3_mps", -0.3, 0.0, 0.0}, Walk{"turn_left_1_radps", 0.0, 0.0, 1.0},
-                    Walk{"turn_right_1_radps", 0.0, 0.0, -1.0}, Walk{"curve", 0.5, 0.0, 0.5}),
-    [](const testing::TestParamInfo<Walk>& walk) { return std::string(walk.param.name); });
+INSTANTIATE_TEST_SUITE_P(QuadrupedController, Walking,
+                         testing::Values(Walk{"forward_0_5_mps", 0.5, 0.0, 0.0}, Walk{"forward_1_mps", 1.0, 0.0, 0.0},
+                                         Walk{"backward_0_3_mps", -0.3, 0.0, 0.0},
+                                         Walk{"turn_left_1_radps", 0.0, 0.0, 1.0},
+                                         Walk{"turn_right_1_radps", 0.0, 0.0, -1.0}, Walk{"curve", 0.5, 0.0, 0.5}),
+                         [](const testing::TestParamInfo<Walk>& walk) { return std::string(walk.param.name); });
 
 TEST(QuadrupedController, StopsWithin0_8SecondsOfWalkingHalfAMetreASecondAndStands) {
   WalkingRobot robot = standing_robot();
@@ -89,8 +89,8 @@ TEST(QuadrupedController, ClimbsASlopeOf5DegreesAndComesDownIt) {
   const auto ramp = [&](double foot_x, double sign) {
     const double x = foot_x + sign * (length / 2.0 * std::cos(angle)) + sign * 0.1 * std::sin(angle);
     const double z = length / 2.0 * std::sin(angle) - 0.1 * std::cos(angle);
-    return "<geom type='box' size='" + std::to_string(length / 2.0) + " 3 0.1' pos='" + std::to_string(x) +
-           " 0 " + std::to_string(z) + "' euler='0 " + std::to_string(-5.0 * sign) + " 0'/>";
+    return "<geom type='box' size='" + std::to_string(length / 2.0) + " 3 0.1' pos='" + std::to_string(x) + " 0 " +
+           std::to_string(z) + "' euler='0 " + std::to_string(-5.0 * sign) + " 0'/>";
   };
   const double ridge_x = 0.7 + length * std::cos(angle);
   WalkingRobot robot = standing_robot(ramp(0.7, 1.0) + ramp(2.0 * ridge_x - 0.7, -1.0));

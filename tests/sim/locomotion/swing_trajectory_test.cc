@@ -28,15 +28,12 @@ TEST(SwingTrajectory, PassesTheMiddleNineCentimetresOverTheHigherEnd) {
 TEST(SwingTrajectory, TheVelocityIsTheDerivativeOfThePosition) {
   constexpr double kStep = 1e-6;
   for (double s = 0.005; s < 1.0; s += 0.01) {
-    const Eigen::Vector3d difference =
-        (at(s + kStep).position - at(s - kStep).position) / (2.0 * kStep * kDuration_s);
+    const Eigen::Vector3d difference = (at(s + kStep).position - at(s - kStep).position) / (2.0 * kStep * kDuration_s);
     EXPECT_NEAR((at(s).velocity - difference).norm(), 0.0, 1e-5) << s;
   }
 }
 
-TEST(SwingTrajectory, StaysAtTouchDownWhenAskedBeyondItsEnd) {
-  EXPECT_EQ(at(1.4).position, at(1.0).position);
-}
+TEST(SwingTrajectory, StaysAtTouchDownWhenAskedBeyondItsEnd) { EXPECT_EQ(at(1.4).position, at(1.0).position); }
 
 TEST(SwingTrajectory, IsAtFullHeightOverTheMiddleFifthSoThatAKerbIsPassedHigh) {
   for (double s = 0.4; s <= 0.6; s += 0.02) EXPECT_NEAR(at(s).position.z(), -0.16, 1e-12) << s;

@@ -1,8 +1,8 @@
 #include "sim/locomotion/track_controller.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "core/geometry/angles.h"
 #include "sim/sensors/hall_sensors.h"
@@ -74,7 +74,8 @@ TEST(SprocketSpeedController, AfterTenSecondsOfStallItOvershootsByLessThanAFifth
 }
 
 Imu level_imu(double yaw_rate_radps = 0.0) {
-  return {.stamp = {}, .angular_velocity_radps = {0.0, 0.0, yaw_rate_radps}, .linear_acceleration_mps2 = {0.0, 0.0, 9.81}};
+  return {
+      .stamp = {}, .angular_velocity_radps = {0.0, 0.0, yaw_rate_radps}, .linear_acceleration_mps2 = {0.0, 0.0, 9.81}};
 }
 
 VelocityCommand command(double vx_mps, double yaw_rate_radps) {

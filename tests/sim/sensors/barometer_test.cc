@@ -1,9 +1,9 @@
 #include "sim/sensors/barometer.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 #include "io/ros/ros_messages.h"
 #include "tests/support/moments.h"
@@ -13,7 +13,8 @@ namespace {
 
 BarometerSettings ideal() {
   BarometerSettings settings;
-  settings.noise_std_pa = settings.offset_std_pa = settings.drift_std_pa = settings.temperature_coefficient_std_pa_per_k = settings.resolution_pa = 0.0;
+  settings.noise_std_pa = settings.offset_std_pa = settings.drift_std_pa =
+      settings.temperature_coefficient_std_pa_per_k = settings.resolution_pa = 0.0;
   return settings;
 }
 
@@ -31,7 +32,8 @@ std::vector<double> record_pa(const BarometerSettings& settings, std::uint64_t r
 TEST(Barometer, PressureFollowsTheStandardAtmosphere) {
   const double table[][2] = {{0.0, 101325.0}, {100.0, 100129.4}, {1000.0, 89874.6}, {5000.0, 54019.9}};
   for (const auto& [height_m, pressure_pa] : table) {
-    EXPECT_NEAR(Barometer(ideal(), 1).read(height_m, Time{}, 0).pressure_pa, pressure_pa, 2e-5 * pressure_pa) << height_m;
+    EXPECT_NEAR(Barometer(ideal(), 1).read(height_m, Time{}, 0).pressure_pa, pressure_pa, 2e-5 * pressure_pa)
+        << height_m;
   }
   EXPECT_NEAR(air_pressure_pa({}, 0.0) - air_pressure_pa({}, 1.0), 12.01, 0.02) << "12 Pa a meter at sea level";
 }
@@ -62,7 +64,8 @@ TEST(Barometer, OffsetAndTemperatureCoefficientOfTheDefaultsHaveTheirStandardDev
   test::Moments offset_pa, change_pa_per_k;
   for (std::uint64_t seed = 1; seed <= 3000; ++seed) {
     Barometer barometer(settings, seed);
-    const double cold_pa = barometer.read(0.0, Time{}, 0).pressure_pa, warm_pa = barometer.read(0.0, from_seconds(1e5), 1).pressure_pa;
+    const double cold_pa = barometer.read(0.0, Time{}, 0).pressure_pa,
+                 warm_pa = barometer.read(0.0, from_seconds(1e5), 1).pressure_pa;
     offset_pa.add(cold_pa - 101325.0);
     change_pa_per_k.add((warm_pa - cold_pa) / 8.0);
   }
@@ -74,7 +77,8 @@ TEST(Barometer, TheWarmingOfTheDefaultsReaches63PercentAfterFiveMinutes) {
   BarometerSettings settings = ideal();
   settings.temperature_coefficient_std_pa_per_k = 0.3;
   Barometer barometer(settings, 1);
-  const double cold_pa = barometer.read(0.0, Time{}, 0).pressure_pa, later_pa = barometer.read(0.0, from_seconds(300.0), 1).pressure_pa,
+  const double cold_pa = barometer.read(0.0, Time{}, 0).pressure_pa,
+               later_pa = barometer.read(0.0, from_seconds(300.0), 1).pressure_pa,
                warm_pa = barometer.read(0.0, from_seconds(1e5), 2).pressure_pa;
   EXPECT_NEAR((later_pa - cold_pa) / (warm_pa - cold_pa), 1.0 - std::exp(-1.0), 1e-6);
 }

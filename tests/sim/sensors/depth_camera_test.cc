@@ -1,12 +1,12 @@
 #include "sim/sensors/depth_camera.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <memory>
 #include <utility>
+
+#include <gtest/gtest.h>
 
 #include "core/geometry/angles.h"
 #include "tests/support/moments.h"
@@ -36,14 +36,15 @@ class Painted : public DepthImager {
 
 DepthCameraSettings ideal() {
   DepthCameraSettings settings;
-  settings.depth_noise_std_per_m = settings.baseline_m = settings.edge_dropout_probability = settings.dropout_probability = 0.0;
+  settings.depth_noise_std_per_m = settings.baseline_m = settings.edge_dropout_probability =
+      settings.dropout_probability = 0.0;
   settings.max_incidence_deg = 90.0;
   settings.max_range_10pct_m = 100.0;
   return settings;
 }
 
-DepthImage take(const DepthCameraSettings& settings, Painted::Depth depth_m, double reflectivity = 1.0, const DustSettings& dust = {},
-                std::uint64_t seed = 1) {
+DepthImage take(const DepthCameraSettings& settings, Painted::Depth depth_m, double reflectivity = 1.0,
+                const DustSettings& dust = {}, std::uint64_t seed = 1) {
   DepthCamera camera(settings, dust, std::make_unique<Painted>(std::move(depth_m), reflectivity), seed);
   const mjData unused{};
   return camera.take(unused, {}, from_seconds(1.5), 3);
@@ -110,7 +111,8 @@ TEST(DepthCamera, OnePixelIn100IsLostForNoReason) {
 /// A thing at 1 m before a wall at 4 m, from column 40 to 49.
 double thing_before_wall(int u, int) { return u >= 40 && u < 50 ? 1.0 : 4.0; }
 
-// The disparities differ by 57.1 px x 0.1 m x (1/1 - 1/4) / m = 4.28 px: four pixels left of the thing are hidden from the other imager.
+// The disparities differ by 57.1 px x 0.1 m x (1/1 - 1/4) / m = 4.28 px: four pixels left of the thing are hidden from
+// the other imager.
 TEST(DepthCamera, FourPixelsLeftOfAThingAreHiddenFromTheOtherImager) {
   DepthCameraSettings settings = ideal();
   settings.baseline_m = 0.1;
@@ -144,7 +146,8 @@ Painted::Depth ground(double height_m) {
   };
 }
 
-// A row sees the ground at atan(focal / (v - 29.5)) from its normal in the middle column; 80 degrees are (v - 29.5) = 10.07.
+// A row sees the ground at atan(focal / (v - 29.5)) from its normal in the middle column; 80 degrees are (v - 29.5)
+// = 10.07.
 TEST(DepthCamera, LevelGroundHasNoEdgesAndEndsWhereItIsMetAt80Degrees) {
   DepthCameraSettings settings = ideal();
   settings.edge_dropout_probability = 1.0;

@@ -1,10 +1,10 @@
 #include "sim/sensors/fault.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <map>
 #include <string>
+
+#include <gtest/gtest.h>
 
 #include "io/urdf.h"
 #include "sim/sensors/sensor_suite.h"
@@ -37,8 +37,7 @@ class HeldRobot {
     std::map<std::size_t, std::vector<Arrival>> arrivals;
     for (Time now{}; now <= from_seconds(seconds); now += std::chrono::milliseconds(2)) {
       suite.step(robot_.model(), robot_.data(), now);
-      for (SensorMessage& message : suite.take_due(now))
-        arrivals[message.index()].push_back({now, std::move(message)});
+      for (SensorMessage& message : suite.take_due(now)) arrivals[message.index()].push_back({now, std::move(message)});
     }
     if (reports != nullptr) *reports = suite.faults();
     return arrivals;
@@ -54,8 +53,7 @@ class HeldRobot {
   WalkingRobot robot_;
 };
 
-FaultSettings fault(std::string sensor, std::string kind, double start_s, double duration_s,
-                    double magnitude = 1.0) {
+FaultSettings fault(std::string sensor, std::string kind, double start_s, double duration_s, double magnitude = 1.0) {
   return {.sensor = std::move(sensor),
           .kind = std::move(kind),
           .start_s = start_s,
@@ -164,8 +162,8 @@ TEST(Fault, SpikesOf100NewtonsTouchOneFootMessageInTen) {
   const auto bad = robot.run_for<FootContacts>({}, {fault("foot_contact", "outliers", 0.0, 10.0, 100.0)}, 8.0);
   int outliers = 0;
   for (std::size_t i = 0; i < good.size(); ++i) {
-    const double difference = std::get<FootContacts>(bad[i].message).force_n[0] -
-                              std::get<FootContacts>(good[i].message).force_n[0];
+    const double difference =
+        std::get<FootContacts>(bad[i].message).force_n[0] - std::get<FootContacts>(good[i].message).force_n[0];
     EXPECT_TRUE(difference == 0.0 || std::abs(difference - 100.0) < 1e-9);
     outliers += difference != 0.0;
   }
@@ -184,15 +182,13 @@ TEST(Fault, ALidarsDriftMovesItsRangesAndGnssLosesItsHeight) {
   }
   const auto fixes = robot.run_for<GnssFix>({}, {}, 0.5),
              drifting = robot.run_for<GnssFix>({}, {fault("gnss", "drift", 0.0, 1.0, 10.0)}, 0.5);
-  EXPECT_NEAR(
-      std::get<GnssFix>(drifting[1].message).altitude_m - std::get<GnssFix>(fixes[1].message).altitude_m, 2.0,
-      1e-9);
+  EXPECT_NEAR(std::get<GnssFix>(drifting[1].message).altitude_m - std::get<GnssFix>(fixes[1].message).altitude_m, 2.0,
+              1e-9);
 }
 
 TEST(Fault, OneThatNeverComesIsReportedAsNotExecuted) {
   std::vector<FaultStatus> reports;
-  HeldRobot().run({}, {fault("imu", "dropout", 100.0, 1.0), fault("lidar3d", "dropout", 0.0, 1.0)}, 0.5,
-                  &reports);
+  HeldRobot().run({}, {fault("imu", "dropout", 100.0, 1.0), fault("lidar3d", "dropout", 0.0, 1.0)}, 0.5, &reports);
   ASSERT_EQ(reports.size(), 2u);
   EXPECT_FALSE(reports[0].was_triggered);
   EXPECT_FALSE(reports[1].was_triggered);  // that lidar is switched off

@@ -1,8 +1,8 @@
 #include "sim/sensors/foot_contact.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "tests/sim/small_world.h"
@@ -86,9 +86,7 @@ TEST(FootContact, ReadsHalfNewtonsAndStopsAtItsRange) {
   }
   FootContactSettings narrow = ideal();
   narrow.range_n = 20.0;
-  EXPECT_EQ(FootContactSensor(narrow, *feet.model, two_legs(), 1)
-                .read(*feet.model, *feet.data, Time{}, 0)
-                .force_n[0],
+  EXPECT_EQ(FootContactSensor(narrow, *feet.model, two_legs(), 1).read(*feet.model, *feet.data, Time{}, 0).force_n[0],
             20.0);
 }
 

@@ -1,9 +1,9 @@
 #include "sim/sensors/gnss.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 #include "core/geometry/angles.h"
 #include "tests/sim/small_world.h"
@@ -34,10 +34,9 @@ Eigen::Vector3d to_world(const GnssFix& fix, const GnssSettings& settings) {
   const double lat = settings.datum_latitude_deg * kDegree, lon = settings.datum_longitude_deg * kDegree;
   const Eigen::Vector3d d = to_ecef(fix.latitude_deg, fix.longitude_deg, fix.altitude_m) -
                             to_ecef(settings.datum_latitude_deg, settings.datum_longitude_deg, 0.0);
-  return {
-      -std::sin(lon) * d.x() + std::cos(lon) * d.y(),
-      -std::sin(lat) * std::cos(lon) * d.x() - std::sin(lat) * std::sin(lon) * d.y() + std::cos(lat) * d.z(),
-      std::cos(lat) * std::cos(lon) * d.x() + std::cos(lat) * std::sin(lon) * d.y() + std::sin(lat) * d.z()};
+  return {-std::sin(lon) * d.x() + std::cos(lon) * d.y(),
+          -std::sin(lat) * std::cos(lon) * d.x() - std::sin(lat) * std::sin(lon) * d.y() + std::cos(lat) * d.z(),
+          std::cos(lat) * std::cos(lon) * d.x() + std::cos(lat) * std::sin(lon) * d.y() + std::sin(lat) * d.z()};
 }
 
 TEST(Gnss, WithoutNoiseItIsTheAntennaWithin2MillimetresOverTheBlock) {

@@ -1,10 +1,10 @@
 #include "sim/sensors/hall_sensors.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <numbers>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "sim/mujoco.h"
@@ -79,10 +79,13 @@ TEST_F(TwoSprockets, TheSidesMissTheirOwnEdgesAndTheSameSeedTheSame) {
 TEST_F(TwoSprockets, AWrongSettingOrAMissingJointIsNamed) {
   HallSettings settings;
   settings.missed_edge_probability = 1.5;
-  EXPECT_THAT([&] { sensors(settings); }, testing::ThrowsMessage<InputError>(testing::HasSubstr(
-                                              "sensors.hall.missed_edge_probability = 1.5")));
-  EXPECT_THAT([&] { HallSensors({}, *model_, {"left", "starboard"}, 1); },
-              testing::ThrowsMessage<InputError>(testing::HasSubstr("starboard")));
+  EXPECT_THAT([&] { sensors(settings); },
+              testing::ThrowsMessage<InputError>(testing::HasSubstr("sensors.hall.missed_edge_probability = 1.5")));
+  EXPECT_THAT(
+      [&] {
+        HallSensors({}, *model_, {"left", "starboard"}, 1);
+      },
+      testing::ThrowsMessage<InputError>(testing::HasSubstr("starboard")));
 }
 
 }  // namespace

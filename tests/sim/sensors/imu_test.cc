@@ -1,10 +1,10 @@
 #include "sim/sensors/imu.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <functional>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 #include "core/geometry/angles.h"
 #include "tests/sim/small_world.h"
@@ -17,8 +17,10 @@ const std::string kBox = R"(<body><freejoint/><geom size="0.1"/><site name="imu"
 
 ImuSettings ideal() {
   ImuSettings settings;
-  settings.gyro_noise_density_radps_per_sqrt_hz = settings.gyro_bias_std_radps = settings.gyro_bias_random_walk_radps_per_sqrt_s = 0.0;
-  settings.accel_noise_density_mps2_per_sqrt_hz = settings.accel_bias_std_mps2 = settings.accel_bias_random_walk_mps2_per_sqrt_s = 0.0;
+  settings.gyro_noise_density_radps_per_sqrt_hz = settings.gyro_bias_std_radps =
+      settings.gyro_bias_random_walk_radps_per_sqrt_s = 0.0;
+  settings.accel_noise_density_mps2_per_sqrt_hz = settings.accel_bias_std_mps2 =
+      settings.accel_bias_random_walk_mps2_per_sqrt_s = 0.0;
   settings.scale_error_std = settings.misalignment_std_deg = 0.0;
   settings.gyro_resolution_radps = settings.accel_resolution_mps2 = 0.0;
   return settings;
@@ -34,8 +36,8 @@ Record record_at_rest(const ImuSettings& settings, int ticks, std::uint64_t seed
   ImuSensor imu(settings, *world.model, seed);
   Record record;
   for (int tick = 0; tick < ticks; ++tick) {
-    const Imu reading = imu.corrupt(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), Time{},
-                                    static_cast<std::uint64_t>(tick));
+    const Imu reading =
+        imu.corrupt(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), Time{}, static_cast<std::uint64_t>(tick));
     record.gyro.push_back(reading.angular_velocity_radps.x());
     record.accel.push_back(reading.linear_acceleration_mps2.x());
   }
@@ -84,8 +86,7 @@ TEST(Imu, WithTheDefaultsNoiseRulesAt1SecondAndTheWalkCanBeSeenAt100) {
   ImuSettings settings;
   settings.gyro_bias_random_walk_radps_per_sqrt_s = 1.0e-4;  // ten times the default, so that ten minutes show it
   const Record record = record_at_rest(settings, 300000, 3);
-  const double quantisation =
-      settings.gyro_resolution_radps / std::sqrt(12.0) * std::sqrt(kTick_s);  // as white noise
+  const double quantisation = settings.gyro_resolution_radps / std::sqrt(12.0) * std::sqrt(kTick_s);  // as white noise
   const auto expected = [&](double tau) {
     return std::sqrt((2.3e-4 * 2.3e-4 + quantisation * quantisation) / tau + 1.0e-8 * tau / 3.0);
   };
@@ -109,8 +110,7 @@ TEST(Imu, TheConstantBiasOf2000SensorsSpreadsBy2MilliradiansAnd30MillimetresPerS
   settings.gyro_bias_std_radps = 0.002;
   settings.accel_bias_std_mps2 = 0.03;
   const auto rest = [](ImuSensor& imu) { return imu.corrupt({0, 0, 0}, {0, 0, 0}, Time{}, 0); };
-  const test::Moments gyro =
-      over_seeds(settings, [&](ImuSensor& imu) { return rest(imu).angular_velocity_radps.z(); });
+  const test::Moments gyro = over_seeds(settings, [&](ImuSensor& imu) { return rest(imu).angular_velocity_radps.z(); });
   const test::Moments accel =
       over_seeds(settings, [&](ImuSensor& imu) { return rest(imu).linear_acceleration_mps2.y(); });
   EXPECT_NEAR(gyro.std(), 0.002, 0.05 * 0.002);
@@ -160,17 +160,15 @@ TEST(Imu, SwitchingTheBiasOffLeavesNoiseAndWalkAsTheyWere) {
 TEST(Imu, AtRestItReadsGravityUpwardsAndFallingFreelyNothing) {
   SmallWorld falling(kBox);
   ImuSensor in_fall(ideal(), *falling.model, 1);
-  EXPECT_NEAR(in_fall.read(*falling.model, *falling.data, Time{}, 0).linear_acceleration_mps2.norm(), 0.0,
-              1e-9);
+  EXPECT_NEAR(in_fall.read(*falling.model, *falling.data, Time{}, 0).linear_acceleration_mps2.norm(), 0.0, 1e-9);
 
   SmallWorld standing(
       R"(<body><joint type="slide" axis="1 0 0"/><geom size="0.1"/><site name="imu" euler="30 0 0"/></body>)");
   ImuSensor at_rest(ideal(), *standing.model, 1);
   const Imu reading = at_rest.read(*standing.model, *standing.data, Time{}, 0);
   const double roll = to_rad(30.0);
-  EXPECT_NEAR(
-      (reading.linear_acceleration_mps2 - 9.81 * Eigen::Vector3d(0, std::sin(roll), std::cos(roll))).norm(),
-      0.0, 1e-9);
+  EXPECT_NEAR((reading.linear_acceleration_mps2 - 9.81 * Eigen::Vector3d(0, std::sin(roll), std::cos(roll))).norm(),
+              0.0, 1e-9);
 }
 
 TEST(Imu, OnAnArmOfHalfAMetreAt4RadiansPerSecondItReads8MetresPerSquareSecondInwards) {

@@ -1,9 +1,9 @@
 #include "sim/sensors/joint_encoders.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <numbers>
+
+#include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "tests/sim/small_world.h"
@@ -62,8 +62,7 @@ TEST(JointEncoders, EffortIsTheActuatorsTorqueAndJointsComeInTheOrderAskedFor) {
   world.data->qpos[1] = 0.75;
   world.data->qfrc_actuator[0] = 3.0;
   world.data->qfrc_actuator[1] = -7.0;
-  const JointState state =
-      JointEncoders({}, *world.model, {"elbow", "other"}).read(*world.data, from_seconds(1.5));
+  const JointState state = JointEncoders({}, *world.model, {"elbow", "other"}).read(*world.data, from_seconds(1.5));
   EXPECT_EQ(state.stamp, from_seconds(1.5));
   EXPECT_NEAR(state.position_rad[0], 0.75, kStep_rad);
   EXPECT_NEAR(state.position_rad[1], 0.25, kStep_rad);

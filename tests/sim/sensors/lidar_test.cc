@@ -1,10 +1,10 @@
 #include "sim/sensors/lidar.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <limits>
 #include <numbers>
+
+#include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "tests/sim/lidar_scans.h"
@@ -13,8 +13,8 @@ namespace patrol::sim::lidar_test {
 namespace {
 
 /// Walls at +-4 m in x and +-3 m in y.
-const std::string kSquareRoom = box("4.5 0 0", "0.5 4 3") + box("-4.5 0 0", "0.5 4 3") +
-                                box("0 3.5 0", "5 0.5 3") + box("0 -3.5 0", "5 0.5 3");
+const std::string kSquareRoom =
+    box("4.5 0 0", "0.5 4 3") + box("-4.5 0 0", "0.5 4 3") + box("0 3.5 0", "5 0.5 3") + box("0 -3.5 0", "5 0.5 3");
 
 /// True range in that room from its middle, along an angle.
 double room_range(double angle_rad) {
@@ -38,8 +38,7 @@ TEST(Lidar, TenTimesASecondAScanWhoseBeamsFollowOneAnotherEvenlyAndWhoseLastEnds
   for (std::size_t i = 0; i < scans.size(); ++i) {
     EXPECT_NEAR(scans[i].scan_time_s, 0.1, 1e-12);
     EXPECT_NEAR(scans[i].time_increment_s, 0.1 / 720.0, 1e-12);
-    EXPECT_NEAR(to_seconds(scans[i].stamp) + 719.0 * scans[i].time_increment_s,
-                0.1 * static_cast<double>(i + 1), 1e-8);
+    EXPECT_NEAR(to_seconds(scans[i].stamp) + 719.0 * scans[i].time_increment_s, 0.1 * static_cast<double>(i + 1), 1e-8);
   }
 }
 
@@ -53,8 +52,8 @@ TEST(Lidar, A270DegreeScannerAt40HertzSpreadsItsBeamsOverThreeQuartersOfTheRevol
   EXPECT_NEAR(to_seconds(scan.stamp) + 1080.0 * scan.time_increment_s, 0.025, 1e-8);
 }
 
-test::Moments range_errors(const SmallWorld& world, const LidarSettings& settings, double seconds,
-                     double distance_m, std::uint64_t seed = 1) {
+test::Moments range_errors(const SmallWorld& world, const LidarSettings& settings, double seconds, double distance_m,
+                           std::uint64_t seed = 1) {
   test::Moments errors;
   for (const LaserScan& scan : scans_at_rest(world, settings, seconds, seed)) {
     for (std::size_t beam = 0; beam < scan.ranges_m.size(); ++beam) {
@@ -122,8 +121,8 @@ TEST(Lidar, AngularJitterOfATenthOfADegreeIsReadOffAWallMetAt60Degrees) {
   const SmallWorld world(box("2.5 0 0", "0.5 20 5"));
   LidarSettings settings = narrow();
   settings.angle_noise_std_deg = 0.1;
-  Lidar lidar(settings, world.scene, {Eigen::Vector3d::Zero(), quaternion_from_yaw(60.0 * kDegree)},
-              kRayLidar2d, 1, "lidar");
+  Lidar lidar(settings, world.scene, {Eigen::Vector3d::Zero(), quaternion_from_yaw(60.0 * kDegree)}, kRayLidar2d, 1,
+              "lidar");
   test::Moments errors;
   for (Time now{}; now < from_seconds(0.5); now += kTick) {
     lidar.advance(now, now + kTick, {}, {});
@@ -149,8 +148,7 @@ TEST(Lidar, OnARobotTurningAt1RadianPerSecondEachBeamLooksWhereItStoodAtItsInsta
   for (std::size_t beam = 0; beam < scan.ranges_m.size(); ++beam) {
     const double instant = to_seconds(scan.stamp) + static_cast<double>(beam) * scan.time_increment_s;
     EXPECT_NEAR(scan.ranges_m[beam], room_range(angle_of(scan, beam) + instant), 1e-3) << beam;
-    EXPECT_NEAR(frozen.ranges_m[beam], room_range(angle_of(scan, beam) + to_seconds(frozen.stamp)), 1e-3)
-        << beam;
+    EXPECT_NEAR(frozen.ranges_m[beam], room_range(angle_of(scan, beam) + to_seconds(frozen.stamp)), 1e-3) << beam;
     largest = std::max(largest, static_cast<double>(std::abs(scan.ranges_m[beam] - frozen.ranges_m[beam])));
   }
   EXPECT_GT(largest, 0.2);  // a tenth of a radian at the first beam
@@ -159,9 +157,7 @@ TEST(Lidar, OnARobotTurningAt1RadianPerSecondEachBeamLooksWhereItStoodAtItsInsta
 
 TEST(Lidar, OnARobotWalkingAt1MetrePerSecondTheWallAheadComesNearerByOneMillimetreAMillisecond) {
   const SmallWorld world(box("10.5 0 0", "0.5 20 5"));
-  const auto walking = [](double now) {
-    return Pose3{Eigen::Vector3d(now, 0, 0), Eigen::Quaterniond::Identity()};
-  };
+  const auto walking = [](double now) { return Pose3{Eigen::Vector3d(now, 0, 0), Eigen::Quaterniond::Identity()}; };
   LidarSettings settings = ideal();
   settings.fov_deg = 100.0;
   const LaserScan scan = scans_along(world, settings, 0.21, walking).back();
@@ -173,7 +169,10 @@ TEST(Lidar, OnARobotWalkingAt1MetrePerSecondTheWallAheadComesNearerByOneMillimet
 
 TEST(Lidar, StabilizedItMeasuresTheLevelRoomWhateverTheBodyDoes) {
   const SmallWorld world(kSquareRoom);
-  const auto wobbling = [](double t) { return Pose3{Eigen::Vector3d::Zero(), quaternion_from_rpy(0.05 * std::sin(20.0 * t), 0.05 * std::sin(30.0 * t), 0.0)}; };
+  const auto wobbling = [](double t) {
+    return Pose3{Eigen::Vector3d::Zero(),
+                 quaternion_from_rpy(0.05 * std::sin(20.0 * t), 0.05 * std::sin(30.0 * t), 0.0)};
+  };
   LidarSettings settings = ideal();
   const auto worst_error_m = [&] {
     const LaserScan scan = scans_along(world, settings, 0.11, wobbling).front();
@@ -191,8 +190,8 @@ TEST(Lidar, StabilizedItMeasuresTheLevelRoomWhateverTheBodyDoes) {
 TEST(Lidar, SixteenRingsGiveACloudOverPlusMinus15DegreesWithTimesAndRings) {
   const SmallWorld world(kSquareRoom + R"(<geom type="plane" pos="0 0 -1" size="20 20 1" rgba="1 1 1 1"/>)");
   LidarSettings settings = LidarSettings::of_preset("vlp16");
-  settings.range_noise_std_m = settings.range_quantization_m = settings.angle_noise_std_deg = settings.dropout_probability =
-      settings.beam_width_deg = 0.0;
+  settings.range_noise_std_m = settings.range_quantization_m = settings.angle_noise_std_deg =
+      settings.dropout_probability = settings.beam_width_deg = 0.0;
   Lidar lidar(settings, world.scene, {}, kRayLidar3d, 1, "lidar3d");
   std::vector<PointCloud> clouds;
   for (Time now{}; now < from_seconds(0.101); now += kTick) {
@@ -238,9 +237,7 @@ TEST(Lidar, SwitchingOneImperfectionOffChangesNoOtherDraw) {
 TEST(Lidar, TheSameSeedGivesTheSameScansAndAnotherSeedOthers) {
   const SmallWorld world(kSquareRoom);
   const LidarSettings settings;
-  const auto ranges = [&](std::uint64_t seed) {
-    return scans_at_rest(world, settings, 0.11, seed).front().ranges_m;
-  };
+  const auto ranges = [&](std::uint64_t seed) { return scans_at_rest(world, settings, 0.11, seed).front().ranges_m; };
   const std::vector<float> first = ranges(1), again = ranges(1), other = ranges(2);
   int differing = 0;
   for (std::size_t beam = 0; beam < first.size(); ++beam) {

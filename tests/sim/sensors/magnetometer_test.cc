@@ -1,11 +1,11 @@
 #include "sim/sensors/magnetometer.h"
 
-#include <gtest/gtest.h>
-
 #include <array>
 #include <cmath>
 #include <numbers>
 #include <string>
+
+#include <gtest/gtest.h>
 
 #include "core/geometry/angles.h"
 #include "io/ros/ros_messages.h"
@@ -32,7 +32,8 @@ TEST(Magnetometer, LevelAndFacingEastItReadsTheGeomagneticFieldOfTheDefaults) {
   const Eigen::Vector3d field_t = magnetometer.read(*world.data, {}, Time{}, 0).field_t;
   EXPECT_NEAR(field_t.norm(), 4.87e-5, 1e-12);
   EXPECT_NEAR(std::atan2(-field_t.z(), field_t.head<2>().norm()), 45.0 * kDegree, 1e-9);
-  EXPECT_NEAR(std::atan2(field_t.x(), field_t.y()), -5.6 * kDegree, 1e-9) << "declination: x of the body is east, y north";
+  EXPECT_NEAR(std::atan2(field_t.x(), field_t.y()), -5.6 * kDegree, 1e-9)
+      << "declination: x of the body is east, y north";
 }
 
 TEST(Magnetometer, ATurnOfTheRobotTurnsTheReadingBack) {
@@ -54,7 +55,8 @@ TEST(Magnetometer, NoiseOfTheDefaultsIs410NanoteslaOnEachAxisAndIsStatedWithTheR
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {
     EXPECT_NEAR(axes[axis].std(), 4.1e-7, 0.02 * 4.1e-7);
-    EXPECT_NEAR(axes[axis].mean(), magnetometer.hard_iron_t()[static_cast<int>(axis)], 4.0 * 4.1e-7 / std::sqrt(kReadings));
+    EXPECT_NEAR(axes[axis].mean(), magnetometer.hard_iron_t()[static_cast<int>(axis)],
+                4.0 * 4.1e-7 / std::sqrt(kReadings));
   }
 }
 
@@ -70,7 +72,8 @@ TEST(Magnetometer, HardAndSoftIronOfTheDefaultsHaveTheirStandardDeviationsOverRo
     Eigen::Matrix3d soft;
     for (int axis = 0; axis < 3; ++axis) {
       const Eigen::Vector3d field = kField_t * Eigen::Vector3d::Unit(axis);
-      const Eigen::Vector3d plus = magnetometer.measure(field, Time{}, 0).field_t, minus = magnetometer.measure(-field, Time{}, 0).field_t;
+      const Eigen::Vector3d plus = magnetometer.measure(field, Time{}, 0).field_t,
+                            minus = magnetometer.measure(-field, Time{}, 0).field_t;
       soft.col(axis) = (plus - minus) / (2.0 * kField_t);
       hard_t.add(0.5 * (plus + minus)[axis]);
     }
@@ -91,8 +94,8 @@ TEST(Magnetometer, ReadingsOfTheDefaultsAreWholeStepsWithinFullScale) {
   EXPECT_EQ(magnetometer.measure({1e-2, 0.0, 0.0}, Time{}, 0).field_t.x(), 4.0e-4);
 }
 
-// A tenth of 1 m3 is a sphere of 0.288 m. On its axis along the field the dipole adds 2 (radius / distance)^3 of the field, across
-// it takes away (radius / distance)^3.
+// A tenth of 1 m3 is a sphere of 0.288 m. On its axis along the field the dipole adds 2 (radius / distance)^3 of the
+// field, across it takes away (radius / distance)^3.
 TEST(Magnetometer, ASteelBoxAddsTheFieldOfItsInducedDipole) {
   const SmallWorld world(kSteelBox);
   MagnetometerSettings settings = ideal();

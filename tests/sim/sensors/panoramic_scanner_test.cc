@@ -1,7 +1,5 @@
 #include "sim/sensors/panoramic_scanner.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <functional>
 #include <map>
@@ -10,9 +8,10 @@
 #include <vector>
 
 #include <Eigen/Cholesky>
+#include <gtest/gtest.h>
 
-#include "core/geometry/angles.h"
 #include "core/error.h"
+#include "core/geometry/angles.h"
 #include "tests/sim/small_world.h"
 
 namespace patrol::sim::panoramic_scanner_test {
@@ -20,12 +19,13 @@ namespace {
 
 std::string box(const std::string& position, const std::string& size, double grey = 1.0, const std::string& more = "") {
   const std::string g = std::to_string(grey);
-  return R"(<geom type="box" pos=")" + position + R"(" size=")" + size + R"(" rgba=")" + g + " " + g + " " + g + R"( 1" )" + more + "/>";
+  return R"(<geom type="box" pos=")" + position + R"(" size=")" + size + R"(" rgba=")" + g + " " + g + " " + g +
+         R"( 1" )" + more + "/>";
 }
 
 /// Walls at +-4 m in x and +-3 m in y, ceiling 3 m above, floor 2 m below.
-const std::string kRoom = box("4.5 0 0", "0.5 4 4") + box("-4.5 0 0", "0.5 4 4") + box("0 3.5 0", "5 0.5 4") + box("0 -3.5 0", "5 0.5 4") +
-                          box("0 0 3.5", "5 4 0.5") + box("0 0 -2.5", "5 4 0.5");
+const std::string kRoom = box("4.5 0 0", "0.5 4 4") + box("-4.5 0 0", "0.5 4 4") + box("0 3.5 0", "5 0.5 4") +
+                          box("0 -3.5 0", "5 0.5 4") + box("0 0 3.5", "5 4 0.5") + box("0 0 -2.5", "5 4 0.5");
 
 double room_range(const Eigen::Vector3d& direction) {
   const double up = direction.z() > 0.0 ? 3.0 / direction.z() : direction.z() < 0.0 ? -2.0 / direction.z() : 1e9;
@@ -39,7 +39,8 @@ PanoramicScannerSettings ideal() {
   PanoramicScannerSettings settings;
   settings.enabled = true;
   settings.step_deg = 2.0;
-  settings.range_noise_std_m = settings.gray_noise_std_m = settings.range_offset_std_m = settings.angle_noise_std_deg = 0.0;
+  settings.range_noise_std_m = settings.gray_noise_std_m = settings.range_offset_std_m = settings.angle_noise_std_deg =
+      0.0;
   settings.tilt_error_std_deg = settings.beam_divergence_rad = settings.dropout_probability = 0.0;
   settings.max_incidence_deg = 90.0;
   settings.range_min_m = 0.0;
@@ -49,15 +50,18 @@ PanoramicScannerSettings ideal() {
 using PoseAt = std::function<Pose3(double now_s)>;
 
 /// The next scan of a scanner that is the body itself, carried along.
-PanoramicScan next_scan(PanoramicScanner& scanner, double duration_s, const PoseAt& pose = [](double) { return Pose3{}; }) {
+PanoramicScan next_scan(
+    PanoramicScanner& scanner, double duration_s, const PoseAt& pose = [](double) { return Pose3{}; }) {
   scanner.begin(Time{}, pose(0.0));
   const Time tick = from_seconds(duration_s / 60.0);
-  for (Time now{}; scanner.is_busy(); now += tick) scanner.advance(now, now + tick, pose(to_seconds(now)), pose(to_seconds(now + tick)));
+  for (Time now{}; scanner.is_busy(); now += tick)
+    scanner.advance(now, now + tick, pose(to_seconds(now)), pose(to_seconds(now + tick)));
   return std::move(scanner.take_scans().at(0));
 }
 
-PanoramicScan scan(const SmallWorld& world, const PanoramicScannerSettings& settings, std::uint64_t seed = 1,
-                   const PoseAt& pose = [](double) { return Pose3{}; }, const DustSettings& dust = {}) {
+PanoramicScan scan(
+    const SmallWorld& world, const PanoramicScannerSettings& settings, std::uint64_t seed = 1,
+    const PoseAt& pose = [](double) { return Pose3{}; }, const DustSettings& dust = {}) {
   PanoramicScanner scanner(settings, world.scene, {}, seed, dust);
   return next_scan(scanner, settings.duration_s, pose);
 }
@@ -68,7 +72,8 @@ std::map<std::pair<long, long>, double> ranges_ahead(const PanoramicScan& scan, 
   for (const ScannerPoint& point : scan.points) {
     const Eigen::Vector3d p = position_of(point), direction = p.normalized();
     if (direction.x() < std::cos(within_deg * kDegree)) continue;
-    const double azimuth_deg = std::atan2(direction.y(), direction.x()) / kDegree, elevation_deg = std::asin(direction.z()) / kDegree;
+    const double azimuth_deg = std::atan2(direction.y(), direction.x()) / kDegree,
+                 elevation_deg = std::asin(direction.z()) / kDegree;
     ranges_m[{std::lround(azimuth_deg / step_deg), std::lround(elevation_deg / step_deg)}] = p.norm();
   }
   return ranges_m;
@@ -124,7 +129,8 @@ TEST(PanoramicScanner, AScanTakes30SecondsIsStampedAtItsEndAndNoOtherIsBegunMean
   EXPECT_EQ(scans[0].points.size(), 180u * 76u);
 }
 
-// The figures of the sheet, in mm: on 90, 10 and 2 %, at 10 and 25 m. The beams meet the wall within 8 degrees of its normal.
+// The figures of the sheet, in mm: on 90, 10 and 2 %, at 10 and 25 m. The beams meet the wall within 8 degrees of its
+// normal.
 TEST(PanoramicScanner, RangeNoiseIsThatOfTheSheetToItsLastDigit) {
   const struct {
     double reflectivity, range_m, std_mm;
@@ -138,7 +144,8 @@ TEST(PanoramicScanner, RangeNoiseIsThatOfTheSheetToItsLastDigit) {
     settings.gray_noise_std_m = PanoramicScannerSettings{}.gray_noise_std_m;
     const test::Moments errors = range_errors(world, settings, 8.0);
     ASSERT_GT(errors.count, 1500);
-    EXPECT_NEAR(1e3 * errors.std(), std_mm, 0.05 + 4.0 * std_mm / std::sqrt(2.0 * errors.count)) << reflectivity << " at " << range_m;
+    EXPECT_NEAR(1e3 * errors.std(), std_mm, 0.05 + 4.0 * std_mm / std::sqrt(2.0 * errors.count))
+        << reflectivity << " at " << range_m;
     EXPECT_NEAR(1e3 * errors.mean(), 0.0, 4.0 * std_mm / std::sqrt(errors.count));
   }
 }
@@ -176,7 +183,8 @@ TEST(PanoramicScanner, AScansRangesAreAllOffByTheSameWhichIsHalfAMillimetreFromS
   EXPECT_NEAR(offsets.mean(), 0.0, 4.0 * 0.0005 / std::sqrt(300.0));
 }
 
-// On a surface met at 60 degrees the range changes by r tan(60 deg) per radian: azimuth shows on a wall, elevation on a ramp.
+// On a surface met at 60 degrees the range changes by r tan(60 deg) per radian: azimuth shows on a wall, elevation on a
+// ramp.
 TEST(PanoramicScanner, AzimuthAndElevationOfABeamAreEachOffBy19ArcSeconds) {
   for (const char* turn : {"0 0 60", "0 60 0"}) {
     const SmallWorld world(box("10 0 0", "0.001 30 30", 1.0, std::string(R"(euler=")") + turn + "\""));
@@ -187,7 +195,8 @@ TEST(PanoramicScanner, AzimuthAndElevationOfABeamAreEachOffBy19ArcSeconds) {
     const test::Moments errors = range_errors(world, settings, 1.0);
     ASSERT_GT(errors.count, 350);
     const double expected_m = 10.0 * std::tan(60.0 * kDegree) * 19.0 / 3600.0 * kDegree;  // 1.6 mm
-    EXPECT_NEAR(errors.std(), expected_m, expected_m * (0.04 + 4.0 / std::sqrt(2.0 * errors.count))) << turn;  // within 1 degree: 4 %
+    EXPECT_NEAR(errors.std(), expected_m, expected_m * (0.04 + 4.0 / std::sqrt(2.0 * errors.count)))
+        << turn;  // within 1 degree: 4 %
   }
 }
 
@@ -229,7 +238,9 @@ TEST(PanoramicScanner, AllImperfectionsOfAReferenceDifferFromThoseOfAnInspection
     set(settings);
     return position_of(scan(world, settings).points.at(1234)).norm();
   };
-  const auto expect_apart = [&](auto set) { EXPECT_NE(first_range_m("inspection", set), first_range_m("reference", set)); };
+  const auto expect_apart = [&](auto set) {
+    EXPECT_NE(first_range_m("inspection", set), first_range_m("reference", set));
+  };
   expect_apart([](PanoramicScannerSettings& settings) { settings.range_noise_std_m = 0.001; });
   expect_apart([](PanoramicScannerSettings& settings) { settings.range_offset_std_m = 0.001; });
   expect_apart([](PanoramicScannerSettings& settings) { settings.angle_noise_std_deg = 0.5; });
@@ -295,19 +306,24 @@ TEST(PanoramicScanner, TheRobotsBodyHidesWhatIsBehindItAndTheScannersOwnHousingI
   int hidden = 0;
   for (std::size_t i = 0; i < with.points.size(); ++i) {
     const Eigen::Vector3d p = position_of(without.points[i]);
-    const bool is_behind = p.x() > 0.0 && std::abs(p.y()) < p.x() * 0.1 / 0.9 - 1e-6 && std::abs(p.z()) < p.x() * 0.1 / 0.9 - 1e-6;
+    const bool is_behind =
+        p.x() > 0.0 && std::abs(p.y()) < p.x() * 0.1 / 0.9 - 1e-6 && std::abs(p.z()) < p.x() * 0.1 / 0.9 - 1e-6;
     EXPECT_NEAR(with.points[i].x, is_behind ? 0.9 : p.x(), 1e-4);
     hidden += is_behind;
   }
   EXPECT_EQ(hidden, 13 * 13);  // atan(1 / 9) = 6.3 degrees to every side
   settings.range_min_m = 1.0;
-  EXPECT_EQ(scan(carried, settings).points.size(), without.points.size() - 13 * 13) << "too near to be measured, and still in the way";
+  EXPECT_EQ(scan(carried, settings).points.size(), without.points.size() - 13 * 13)
+      << "too near to be measured, and still in the way";
 }
 
-// Half a turn in 30 s: the column that looks ahead when half the time is over has its fellow behind at the same instant.
+// Half a turn in 30 s: the column that looks ahead when half the time is over has its fellow behind at the same
+// instant.
 TEST(PanoramicScanner, OnARobotThatCreepsAMillimetreASecondTheWallAheadIs15NearerAndTheOneBehind15Farther) {
   const SmallWorld world(kRoom);
-  const auto creeping = [](double now) { return Pose3{Eigen::Vector3d(0.001 * now, 0, 0), Eigen::Quaterniond::Identity()}; };
+  const auto creeping = [](double now) {
+    return Pose3{Eigen::Vector3d(0.001 * now, 0, 0), Eigen::Quaterniond::Identity()};
+  };
   int ahead = 0, behind = 0;
   for (const ScannerPoint& point : scan(world, ideal(), 1, creeping).points) {
     if (std::abs(point.y) > 1e-6 || std::abs(point.z) > 0.2 * std::abs(point.x)) continue;
@@ -322,11 +338,14 @@ TEST(PanoramicScanner, OnARobotThatCreepsAMillimetreASecondTheWallAheadIs15Neare
 // Seen in a frame that has turned by the angle t since the start, a point (4, y) of the wall lies at x = 4 + t y.
 TEST(PanoramicScanner, ARobotThatTurnsByATwentiethOfADegreeBendsTheWallByThat) {
   const SmallWorld world(kRoom);
-  const auto turning = [](double now) { return Pose3{Eigen::Vector3d::Zero(), quaternion_from_yaw(0.05 * kDegree * now / 30.0)}; };
+  const auto turning = [](double now) {
+    return Pose3{Eigen::Vector3d::Zero(), quaternion_from_yaw(0.05 * kDegree * now / 30.0)};
+  };
   int looked = 0;
   for (const ScannerPoint& point : scan(world, ideal(), 1, turning).points) {
     if (point.x < 3.5F || std::abs(point.y) < 0.5F || std::abs(point.y) > 2.9F || std::abs(point.z) > 1.0F) continue;
-    const double pair = (std::atan2(point.y, point.x) / kDegree + 90.0) / 2.0, turned_rad = 0.05 * kDegree * (pair + 1.0) / 90.0;
+    const double pair = (std::atan2(point.y, point.x) / kDegree + 90.0) / 2.0,
+                 turned_rad = 0.05 * kDegree * (pair + 1.0) / 90.0;
     EXPECT_NEAR((point.x - 4.0) / point.y, turned_rad, 0.002 * kDegree);
     ++looked;
   }
@@ -346,7 +365,8 @@ TEST(PanoramicScanner, AtAnEdgeSomeBeamsReturnARangeBetweenTheSurfacesUnlessThey
   EXPECT_EQ(count_between(), 0);
   settings.beam_divergence_rad = 0.0003;
   const int mixed = count_between();
-  // The edge crosses some 500 rows; the four rays of a beam span half its width of 0.095 degrees there, of 0.18 from beam to beam.
+  // The edge crosses some 500 rows; the four rays of a beam span half its width of 0.095 degrees there, of 0.18 from
+  // beam to beam.
   EXPECT_GT(mixed, 60);
   EXPECT_LT(mixed, 300);
 }
@@ -376,17 +396,22 @@ TEST(PanoramicScanner, GrazingBeamsBeyond85DegreesAreLost) {
   settings.step_deg = 0.5;
   settings.max_incidence_deg = 85.0;
   double farthest_m = 0.0;
-  for (const ScannerPoint& point : scan(world, settings).points) farthest_m = std::max(farthest_m, position_of(point).norm());
+  for (const ScannerPoint& point : scan(world, settings).points)
+    farthest_m = std::max(farthest_m, position_of(point).norm());
   EXPECT_NEAR(farthest_m, 1.0 / std::sin(5.0 * kDegree), 0.01);
 }
 
-// Light falls by ln 50 / 20 m = 0.1956 / m, and white is seen as from 50 sqrt(1 / 0.02) = 354 m: at 15 m it is as from 282, at 17 m
-// as from 473.
+// Light falls by ln 50 / 20 m = 0.1956 / m, and white is seen as from 50 sqrt(1 / 0.02) = 354 m: at 15 m it is as from
+// 282, at 17 m as from 473.
 TEST(PanoramicScanner, InDustOf20MetresVisibilityAWhiteWallIsSeenAt15MetresAndNotAt17) {
   const DustSettings dust{.enabled = true, .visibility_m = 20.0};
   for (const auto& [distance_m, is_seen] : {std::pair{15.0, true}, {17.0, false}}) {
     const SmallWorld world(box(std::to_string(distance_m + 0.5) + " 0 0", "0.5 1 1"));
-    EXPECT_EQ(!scan(world, ideal(), 1, [](double) { return Pose3{}; }, dust).points.empty(), is_seen) << distance_m;
+    EXPECT_EQ(!scan(
+                   world, ideal(), 1, [](double) { return Pose3{}; }, dust)
+                   .points.empty(),
+              is_seen)
+        << distance_m;
   }
 }
 
@@ -401,16 +426,18 @@ TEST(PanoramicScanner, OneInAThousandBeamsIsLost) {
 }
 
 bool are_same(const PanoramicScan& a, const PanoramicScan& b) {
-  return std::equal(a.points.begin(), a.points.end(), b.points.begin(), b.points.end(), [](const ScannerPoint& p, const ScannerPoint& q) {
-    return p.x == q.x && p.y == q.y && p.z == q.z && p.intensity == q.intensity;
-  });
+  return std::equal(a.points.begin(), a.points.end(), b.points.begin(), b.points.end(),
+                    [](const ScannerPoint& p, const ScannerPoint& q) {
+                      return p.x == q.x && p.y == q.y && p.z == q.z && p.intensity == q.intensity;
+                    });
 }
 
 TEST(PanoramicScanner, TheSameSeedGivesTheSameScanAndTheNextScanOrAnotherSeedOthers) {
   const SmallWorld world(kRoom);
   PanoramicScannerSettings settings;
   settings.step_deg = 3.0;
-  PanoramicScanner scanner(settings, world.scene, {}, 1), same(settings, world.scene, {}, 1), other(settings, world.scene, {}, 2);
+  PanoramicScanner scanner(settings, world.scene, {}, 1), same(settings, world.scene, {}, 1),
+      other(settings, world.scene, {}, 2);
   const PanoramicScan first = next_scan(scanner, settings.duration_s);
   EXPECT_TRUE(are_same(first, next_scan(same, settings.duration_s)));
   EXPECT_FALSE(are_same(first, next_scan(scanner, settings.duration_s)));
@@ -426,7 +453,8 @@ TEST(PanoramicScanner, WithoutRangeNoiseTheSameBeamsAreLostAndTheOthersPointsSta
   settings.range_noise_std_m = settings.gray_noise_std_m = 0.0;
   const PanoramicScan calm = scan(world, settings);
   ASSERT_EQ(noisy.points.size(), calm.points.size());
-  for (std::size_t i = 0; i < calm.points.size(); ++i) ASSERT_LT((position_of(noisy.points[i]) - position_of(calm.points[i])).norm(), 0.0025);
+  for (std::size_t i = 0; i < calm.points.size(); ++i)
+    ASSERT_LT((position_of(noisy.points[i]) - position_of(calm.points[i])).norm(), 0.0025);
 }
 
 TEST(PanoramicScanner, AStepOfNothingIsRefusedByItsName) {

@@ -1,7 +1,5 @@
 #include "sim/sensors/sensor_suite.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -9,6 +7,8 @@
 #include <string>
 #include <utility>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "tests/sim/small_world.h"
@@ -24,7 +24,8 @@ const std::string kWorld = R"(<site name="uwb_anchor_1" pos="8 0 1"/><site name=
 RobotDescription make_robot() {
   RobotDescription robot;
   robot.name = "carrier";
-  for (const char* frame : {"lidar", "imu", "uwb", "ultrasonic_0", "ultrasonic_1", "depth_camera", "scanner"}) robot.T_body_sensor[frame] = {};
+  for (const char* frame : {"lidar", "imu", "uwb", "ultrasonic_0", "ultrasonic_1", "depth_camera", "scanner"})
+    robot.T_body_sensor[frame] = {};
   return robot;
 }
 
@@ -80,7 +81,8 @@ Ride stand(const SensorSuiteSettings& settings, double seconds, const std::vecto
            const RobotDescription& robot = make_robot(), const DepthImagerFactory& make_imager = make_wall_imager,
            const std::vector<Time>& scans_asked = {}) {
   SmallWorld world(kWorld);
-  SensorSuite suite(settings, robot, *world.model, *world.model, GasPlume(Eigen::Vector3d::Zero(), 0.0, {}), faults, 1, make_imager);
+  SensorSuite suite(settings, robot, *world.model, *world.model, GasPlume(Eigen::Vector3d::Zero(), 0.0, {}), faults, 1,
+                    make_imager);
   Ride ride;
   for (Time now{}; now <= from_seconds(seconds); now += std::chrono::milliseconds(2)) {
     suite.step(*world.model, *world.data, now);
@@ -93,7 +95,11 @@ Ride stand(const SensorSuiteSettings& settings, double seconds, const std::vecto
 }
 
 FaultSettings fault(std::string sensor, std::string kind, double start_s, double duration_s, double magnitude = 1.0) {
-  return {.sensor = std::move(sensor), .kind = std::move(kind), .start_s = start_s, .duration_s = duration_s, .magnitude = magnitude};
+  return {.sensor = std::move(sensor),
+          .kind = std::move(kind),
+          .start_s = start_s,
+          .duration_s = duration_s,
+          .magnitude = magnitude};
 }
 
 SensorSuiteSettings with_uwb() {
@@ -131,7 +137,9 @@ SensorSuiteSettings with_scanner() {
 
 /// Scans asked for at 1, 2 and 4 s, over 9 s.
 std::vector<Arrival> scans_of(const SensorSuiteSettings& settings, const std::vector<FaultSettings>& faults = {}) {
-  return stand(settings, 9.0, faults, make_robot(), make_wall_imager, {from_seconds(1.0), from_seconds(2.0), from_seconds(4.0)}).of<PanoramicScan>();
+  return stand(settings, 9.0, faults, make_robot(), make_wall_imager,
+               {from_seconds(1.0), from_seconds(2.0), from_seconds(4.0)})
+      .of<PanoramicScan>();
 }
 
 std::string error_response(const SensorSuiteSettings& settings, const std::string& missing_frame) {
@@ -145,7 +153,9 @@ std::string error_response(const SensorSuiteSettings& settings, const std::strin
   return "accepted";
 }
 
-TEST(SensorSuite, TheSensorsOfATrackedRobotAreSilentUnlessAskedFor) { EXPECT_TRUE(stand(quiet(), 1.0).arrivals.empty()); }
+TEST(SensorSuite, TheSensorsOfATrackedRobotAreSilentUnlessAskedFor) {
+  EXPECT_TRUE(stand(quiet(), 1.0).arrivals.empty());
+}
 
 TEST(SensorSuite, UwbSpeaks25TimesASecondTenMillisecondsLateAndAnchorsTakeTurns) {
   const auto ranges = stand(with_uwb(), 2.009).of<UwbRange>();  // polls at 0, 0.04 ... 1.96; the next is on its way
@@ -169,7 +179,8 @@ TEST(SensorSuite, TheTransducersFireInTurn40TimesASecondAndHearTheWallTwoAndAHal
 }
 
 TEST(SensorSuite, TheDepthCameraTakes5FramesASecondAndTheyComeOut50MillisecondsLater) {
-  const auto frames = stand(with_depth_camera(), 1.049).of<DepthImage>();  // at 0, 0.2 ... 0.8; that of 1 s is on its way
+  const auto frames =
+      stand(with_depth_camera(), 1.049).of<DepthImage>();  // at 0, 0.2 ... 0.8; that of 1 s is on its way
   ASSERT_EQ(frames.size(), 5u);
   for (std::size_t i = 0; i < frames.size(); ++i) {
     EXPECT_EQ(frames[i].stamp(), from_seconds(0.2 * static_cast<double>(i)));
@@ -190,8 +201,9 @@ TEST(SensorSuite, ADepthCameraWithoutARendererIsRefusedInASentence) {
 TEST(SensorSuite, FaultsOfUltrasonicAndDepthCameraAreExecuted) {
   SensorSuiteSettings settings = with_ultrasonic();
   settings.depth_camera = with_depth_camera().depth_camera;
-  const Ride ride = stand(settings, 1.0, {fault("ultrasonic", "freeze", 0.1, 0.5), fault("depth_camera", "dropout", 0.1, 0.5),
-                                          fault("depth_camera", "drift", 0.7, 0.3, 0.5), fault("uwb", "dropout", 0.0, 1.0)});
+  const Ride ride = stand(settings, 1.0,
+                          {fault("ultrasonic", "freeze", 0.1, 0.5), fault("depth_camera", "dropout", 0.1, 0.5),
+                           fault("depth_camera", "drift", 0.7, 0.3, 0.5), fault("uwb", "dropout", 0.0, 1.0)});
   EXPECT_TRUE(ride.faults[0].was_triggered);
   EXPECT_TRUE(ride.faults[1].was_triggered);
   EXPECT_TRUE(ride.faults[2].was_triggered);
@@ -240,20 +252,23 @@ TEST(SensorSuite, AnEnabledSensorWithoutItsFrameIsRefusedByName) {
 }
 
 TEST(SensorSuite, EveryFaultOfUwbIsExecutedAndOneOfASilentSensorIsNot) {
-  const Ride ride = stand(with_uwb(), 2.0,
-                          {fault("uwb", "dropout", 0.5, 0.1), fault("uwb", "drift", 1.0, 0.5), fault("hall", "dropout", 0.0, 9.0),
-                           fault("uwb", "outliers", 1.0, 1.0), fault("teleop", "dropout", 0.0, 9.0)});
+  const Ride ride =
+      stand(with_uwb(), 2.0,
+            {fault("uwb", "dropout", 0.5, 0.1), fault("uwb", "drift", 1.0, 0.5), fault("hall", "dropout", 0.0, 9.0),
+             fault("uwb", "outliers", 1.0, 1.0), fault("teleop", "dropout", 0.0, 9.0)});
   ASSERT_EQ(ride.faults.size(), 5u);
   const std::vector<bool> executed = {true, true, false, true, false};
   for (std::size_t i = 0; i < executed.size(); ++i) EXPECT_EQ(ride.faults[i].was_triggered, executed[i]) << i;
 }
 
 TEST(SensorSuite, ADriftOf1MetrePerSecondLengthensUwbRangesByTheTimeSinceItsStart) {
-  const auto good = stand(with_uwb(), 2.0).of<UwbRange>(), bad = stand(with_uwb(), 2.0, {fault("uwb", "drift", 1.0, 5.0)}).of<UwbRange>();
+  const auto good = stand(with_uwb(), 2.0).of<UwbRange>(),
+             bad = stand(with_uwb(), 2.0, {fault("uwb", "drift", 1.0, 5.0)}).of<UwbRange>();
   ASSERT_EQ(good.size(), bad.size());
   for (std::size_t i = 0; i < good.size(); ++i) {
     const double expected = std::max(0.0, to_seconds(good[i].stamp()) - 1.0);
-    EXPECT_NEAR(std::get<UwbRange>(bad[i].message).range_m - std::get<UwbRange>(good[i].message).range_m, expected, 1e-9);
+    EXPECT_NEAR(std::get<UwbRange>(bad[i].message).range_m - std::get<UwbRange>(good[i].message).range_m, expected,
+                1e-9);
   }
 }
 
@@ -267,7 +282,8 @@ TEST(Fault, AClockOffsetOf50MillisecondsMovesStampsAndNotArrivals) {
   }
 }
 
-// |N(0, s)| has the mean s sqrt(2 / pi) and the standard deviation s sqrt(1 - 2 / pi); arrivals wait for the next tick: 1 ms.
+// |N(0, s)| has the mean s sqrt(2 / pi) and the standard deviation s sqrt(1 - 2 / pi); arrivals wait for the next tick:
+// 1 ms.
 TEST(Fault, JitterOf20MillisecondsDelaysBy16OnAverage) {
   const auto ranges = stand(with_uwb(), 40.0, {fault("uwb", "jitter", 0.0, 50.0, 0.02)}).of<UwbRange>();
   test::Moments delay_s;
@@ -297,7 +313,8 @@ TEST(DeliveryQueue, DeliversInOrderOfTheInstantDueAndAtOneInstantInTheOrderPutIn
   queue.push(from_seconds(2.0), tagged(3));
   queue.push(from_seconds(3.0), tagged(4));
   std::vector<int> order;
-  for (const SensorMessage& message : queue.take_due(from_seconds(2.0))) order.push_back(std::get<UwbRange>(message).anchor);
+  for (const SensorMessage& message : queue.take_due(from_seconds(2.0)))
+    order.push_back(std::get<UwbRange>(message).anchor);
   EXPECT_EQ(order, (std::vector<int>{2, 1, 3}));
   EXPECT_TRUE(queue.take_due(from_seconds(2.5)).empty());
   EXPECT_EQ(queue.take_due(from_seconds(3.0)).size(), 1u);

@@ -1,8 +1,8 @@
 #include "sim/sensors/tdlas.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "tests/sim/small_world.h"
 

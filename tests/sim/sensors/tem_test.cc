@@ -1,9 +1,9 @@
 #include "sim/sensors/tem.h"
 
+#include <cmath>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include <cmath>
 
 #include "core/error.h"
 #include "tests/support/moments.h"
@@ -20,19 +20,21 @@ const Eigen::Vector3d kCoil(0.0, 0.0, 1.0);
 /// Nothing but rock and water.
 TemSettings ideal() {
   TemSettings settings;
-  settings.noise_std_tps = settings.relative_noise_std = settings.gain_std = settings.relative_moment_std = settings.time_shift_std_s = settings.steel_response = 0.0;
+  settings.noise_std_tps = settings.relative_noise_std = settings.gain_std = settings.relative_moment_std =
+      settings.time_shift_std_s = settings.steel_response = 0.0;
   return settings;
 }
 
 Eigen::Matrix3d along(const Eigen::Vector3d& axis) { return axis * axis.transpose(); }
 
-TemSounding sound(const TemSettings& settings, const std::vector<WaterBodySettings>& bodies, const Eigen::Vector3d& axis, std::uint64_t seed = 1,
-                  std::uint64_t count = 0) {
+TemSounding sound(const TemSettings& settings, const std::vector<WaterBodySettings>& bodies,
+                  const Eigen::Vector3d& axis, std::uint64_t seed = 1, std::uint64_t count = 0) {
   return Tem(settings, kRock, bodies, seed).sound(kCoil, along(axis), count, Time{});
 }
 
 TEST(Tem, InRockAloneAnIdealInstrumentReadsTheMomentTimesTheRocksDecayFromEverySide) {
-  const TemSounding ahead = sound(ideal(), {}, Eigen::Vector3d::UnitX()), up = sound(ideal(), {}, Eigen::Vector3d::UnitZ());
+  const TemSounding ahead = sound(ideal(), {}, Eigen::Vector3d::UnitX()),
+                    up = sound(ideal(), {}, Eigen::Vector3d::UnitZ());
   const Eigen::VectorXd rock = gated_whole_space_response(TemGates({.gate_s = ahead.gate_s}), 0.003);
   ASSERT_EQ(ahead.gate_s.size(), 22U);  // ten a decade from 2 to 300 us
   EXPECT_NEAR(ahead.gate_s[10], 2e-5, 1e-12);
@@ -43,14 +45,16 @@ TEST(Tem, InRockAloneAnIdealInstrumentReadsTheMomentTimesTheRocksDecayFromEveryS
 }
 
 TEST(Tem, OfABodyAheadItReadsTheAxialDecayAndTurnedBySixtyDegreesAQuarterOfTheWayFromTheTransverse) {
-  const TemSounding none = sound(ideal(), {}, Eigen::Vector3d::UnitX()), ahead = sound(ideal(), {kBody}, Eigen::Vector3d::UnitX());
+  const TemSounding none = sound(ideal(), {}, Eigen::Vector3d::UnitX()),
+                    ahead = sound(ideal(), {kBody}, Eigen::Vector3d::UnitX());
   const TemSounding turned = sound(ideal(), {kBody}, {0.5, std::sqrt(0.75), 0.0});
   const GatedSphereResponse body = gated_sphere_response(TemGates({.gate_s = none.gate_s}), 0.003, {16.0, 6.0, 0.6});
   for (Eigen::Index gate = 0; gate < body.axial.size(); ++gate) {
     const auto g = static_cast<std::size_t>(gate);
     const double tol = 1e-12 * none.rate_tps[g];
     EXPECT_NEAR(ahead.rate_tps[g] - none.rate_tps[g], 34.0 * body.axial[gate], tol);
-    EXPECT_NEAR(turned.rate_tps[g] - none.rate_tps[g], 34.0 * (0.25 * body.axial[gate] + 0.75 * body.transverse[gate]), tol);
+    EXPECT_NEAR(turned.rate_tps[g] - none.rate_tps[g], 34.0 * (0.25 * body.axial[gate] + 0.75 * body.transverse[gate]),
+                tol);
   }
 }
 
@@ -59,7 +63,8 @@ TEST(Tem, TwoBodiesAddUp) {
   other.y_m = 14.0;
   const Eigen::Vector3d axis = Eigen::Vector3d::UnitX();
   const double none = sound(ideal(), {}, axis).rate_tps[5], first = sound(ideal(), {kBody}, axis).rate_tps[5];
-  const double second = sound(ideal(), {other}, axis).rate_tps[5], both = sound(ideal(), {kBody, other}, axis).rate_tps[5];
+  const double second = sound(ideal(), {other}, axis).rate_tps[5],
+               both = sound(ideal(), {kBody, other}, axis).rate_tps[5];
   EXPECT_NEAR(both - none, first - none + second - none, 1e-12 * none);
 }
 
@@ -70,7 +75,8 @@ test::Moments moments_of(const TemSettings& settings, std::size_t gate) {
   const Tem tem(settings, kRock, {}, 3);
   test::Moments moments;
   for (int count = 0; count < kDraws; ++count) {
-    moments.add(tem.sound(kCoil, along(Eigen::Vector3d::UnitX()), static_cast<std::uint64_t>(count), Time{}).rate_tps[gate]);
+    moments.add(
+        tem.sound(kCoil, along(Eigen::Vector3d::UnitX()), static_cast<std::uint64_t>(count), Time{}).rate_tps[gate]);
   }
   return moments;
 }
@@ -105,7 +111,8 @@ TEST(Tem, AcrossRunsGainIsTwoPerCentAndTheShiftThirtyNanoseconds) {
     early.add(run.rate_tps[0] / clean.rate_tps[0] - run.rate_tps[21] / clean.rate_tps[21]);
   }
   EXPECT_NEAR(late.std(), 0.02, 4.0 * 0.02 / std::sqrt(2.0 * kRuns));
-  // Through the ramp the first gate falls as t^-2.5 on average over 2.0 ... 4.6 us: its slope is (2.0^-2.5 - 4.6^-2.5) / (2.0^-1.5 - 4.6^-1.5) 3/2 = 0.914 a us.
+  // Through the ramp the first gate falls as t^-2.5 on average over 2.0 ... 4.6 us: its slope is (2.0^-2.5 - 4.6^-2.5)
+  // / (2.0^-1.5 - 4.6^-1.5) 3/2 = 0.914 a us.
   EXPECT_NEAR(early.std(), 0.914 * 0.03, 0.1 * 0.914 * 0.03);
 }
 
@@ -137,12 +144,14 @@ TEST(Tem, ASoundingTakesASecondAndIsOfTheMeanOfTheCoilsAxes) {
   ASSERT_TRUE(sounding);
   EXPECT_EQ(sounding->stamp, from_seconds(1.0));
   EXPECT_FALSE(tem.is_sounding());
-  const double x = sound(ideal(), {kBody}, Eigen::Vector3d::UnitX()).rate_tps[5], y = sound(ideal(), {kBody}, Eigen::Vector3d::UnitY()).rate_tps[5];
+  const double x = sound(ideal(), {kBody}, Eigen::Vector3d::UnitX()).rate_tps[5],
+               y = sound(ideal(), {kBody}, Eigen::Vector3d::UnitY()).rate_tps[5];
   EXPECT_NEAR(sounding->rate_tps[5], 0.5 * (x + y), 1e-9 * x);
 }
 
 TEST(Tem, SameSeedAndCountSameSounding) {
-  const TemSounding first = sound({}, {kBody}, Eigen::Vector3d::UnitX(), 5, 7), again = sound({}, {kBody}, Eigen::Vector3d::UnitX(), 5, 7);
+  const TemSounding first = sound({}, {kBody}, Eigen::Vector3d::UnitX(), 5, 7),
+                    again = sound({}, {kBody}, Eigen::Vector3d::UnitX(), 5, 7);
   EXPECT_EQ(first.rate_tps, again.rate_tps);
   EXPECT_NE(first.rate_tps, sound({}, {kBody}, Eigen::Vector3d::UnitX(), 5, 8).rate_tps);
 }

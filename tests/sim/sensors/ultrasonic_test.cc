@@ -1,16 +1,15 @@
 #include "sim/sensors/ultrasonic.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
+#include <gtest/gtest.h>
 
-#include "core/geometry/angles.h"
 #include "core/error.h"
+#include "core/geometry/angles.h"
 #include "core/random.h"
 #include "tests/sim/small_world.h"
 
@@ -25,7 +24,8 @@ RobotDescription make_ring(const std::vector<double>& y_m = {0.0}, const std::ve
   RobotDescription robot;
   robot.name = "carrier";
   for (std::size_t i = 0; i < y_m.size(); ++i) {
-    robot.T_body_sensor[fmt::format("ultrasonic_{}", i)] = {{0.0, y_m[i], 0.0}, quaternion_from_yaw(kDegree * yaw_deg[i])};
+    robot.T_body_sensor[fmt::format("ultrasonic_{}", i)] = {{0.0, y_m[i], 0.0},
+                                                            quaternion_from_yaw(kDegree * yaw_deg[i])};
   }
   return robot;
 }
@@ -39,7 +39,8 @@ UltrasonicSettings ideal() {
 
 /// A thin wall whose middle is `distance_m` ahead of the ring, 0.3 m up, turned away by `yaw_deg`.
 std::string wall(double distance_m, double yaw_deg = 0.0, const char* name = "wall") {
-  return fmt::format(R"(<geom name="{}" type="box" pos="{} 0 0.3" euler="0 0 {}" size="1e-6 3 3"/>)", name, distance_m, yaw_deg);
+  return fmt::format(R"(<geom name="{}" type="box" pos="{} 0 0.3" euler="0 0 {}" size="1e-6 3 3"/>)", name, distance_m,
+                     yaw_deg);
 }
 
 struct Heard {
@@ -127,14 +128,16 @@ TEST(Ultrasonic, ASmoothWallIsHeardAt20DegreesAndAMirrorAt45WhereRockIsHeard) {
 std::string rebar_bundle(double x_m) {
   std::string bars;
   for (int bar = 0; bar < 6; ++bar) {
-    bars += fmt::format(R"(<geom type="capsule" pos="{} 0 {}" euler="90 0 0" size="0.01 0.5"/>)", x_m + 0.02 * (bar % 3), 0.01 + 0.02 * (bar / 3));
+    bars += fmt::format(R"(<geom type="capsule" pos="{} 0 {}" euler="90 0 0" size="0.01 0.5"/>)",
+                        x_m + 0.02 * (bar % 3), 0.01 + 0.02 * (bar / 3));
   }
   return bars;
 }
 
 TEST(Ultrasonic, ARoundBarOf6CentimetresOnTheFloorIsHeardAtOneMetre) {
   // At 1 m the lower edge of the cone is 1 cm above the floor: 0.3 - 1.0 tan 17.5 = -0.015.
-  const SmallWorld world(R"(<geom type="plane" size="20 20 1"/><geom type="capsule" pos="1.03 0 0.03" euler="90 0 0" size="0.03 0.5"/>)");
+  const SmallWorld world(
+      R"(<geom type="plane" size="20 20 1"/><geom type="capsule" pos="1.03 0 0.03" euler="90 0 0" size="0.03 0.5"/>)");
   RobotDescription robot = make_ring();
   robot.T_body_sensor["ultrasonic_0"].position.z() = -0.1;  // mounted 0.2 m above the ground
   const Heard heard = listen(world, ideal(), 500, robot);
@@ -149,8 +152,8 @@ TEST(Ultrasonic, ABundleOfRebar4CentimetresHighIsHeardAtOneMetre) {
   EXPECT_GE(listen(world, ideal(), 500, robot).range_m.count, 400);
 }
 
-/// Rubble as a mesh of triangles: heights at random every 10 cm. Neighbours differ by root 2 times their standard deviation,
-/// so that with 11 mm facets slope by 9 degrees (RMS, each way), and with 50 mm by 35.
+/// Rubble as a mesh of triangles: heights at random every 10 cm. Neighbours differ by root 2 times their standard
+/// deviation, so that with 11 mm facets slope by 9 degrees (RMS, each way), and with 50 mm by 35.
 std::string rubble_asset(double height_std_m) {
   const RandomStream height(3, "rubble");
   constexpr int kColumns = 120, kRows = 50;
@@ -161,14 +164,16 @@ std::string rubble_asset(double height_std_m) {
       vertices += fmt::format("{:.3f} {:.3f} {:.4f} ", 0.1 * col, 0.1 * row - 2.45, z);
       if (row == 0 || col == 0) continue;
       const int here = row * kColumns + col;
-      faces += fmt::format("{} {} {} {} {} {} ", here - kColumns - 1, here - kColumns, here, here - kColumns - 1, here, here - 1);
+      faces += fmt::format("{} {} {} {} {} {} ", here - kColumns - 1, here - kColumns, here, here - kColumns - 1, here,
+                           here - 1);
     }
   }
   return fmt::format(R"(<mesh name="rubble" inertia="shell" vertex="{}" face="{}"/>)", vertices, faces);
 }
 
 TEST(Ultrasonic, ThePlainFloorAndRubbleThatTheConeGrazesAreNotHeard) {
-  EXPECT_EQ(listen(SmallWorld(R"(<geom type="plane" size="50 50 1"/>)"), ideal(), 200, make_ring(), 0, 0.01).silent, 200);
+  EXPECT_EQ(listen(SmallWorld(R"(<geom type="plane" size="50 50 1"/>)"), ideal(), 200, make_ring(), 0, 0.01).silent,
+            200);
   const SmallWorld world(R"(<geom name="rubble" type="mesh" mesh="rubble"/>)", rubble_asset(0.011));
   const Heard heard = listen(world, ideal(), 500, make_ring(), 0, 0.01);
   EXPECT_GE(heard.share_silent(), 0.99);
@@ -184,7 +189,9 @@ TEST(Ultrasonic, HeapsOfRubbleAreHeardNowAndThenFromLowDown) {
 }
 
 TEST(Ultrasonic, AKerbOf10CentimetresInTheRubbleIsHeard) {
-  const SmallWorld world(R"(<geom name="rubble" type="mesh" mesh="rubble"/><geom type="box" pos="6.1 0 0" size="0.1 2 0.1"/>)", rubble_asset(0.011));
+  const SmallWorld world(
+      R"(<geom name="rubble" type="mesh" mesh="rubble"/><geom type="box" pos="6.1 0 0" size="0.1 2 0.1"/>)",
+      rubble_asset(0.011));
   const Heard near_by = listen(world, ideal(), 100, [] {
     RobotDescription robot = make_ring();
     robot.T_body_sensor["ultrasonic_0"].position = {4.8, 0.0, -0.05};
@@ -217,7 +224,8 @@ TEST(Ultrasonic, TheRingOf8FiresInTurnAndInPairsAcross) {
     UltrasonicSettings settings = ideal();
     settings.group_size = group_size;
     std::vector<int> fired;
-    for (const auto& range : UltrasonicRing(settings, world.scene, robot, 1).ping({}, Time{}, tick)) fired.push_back(range.transducer);
+    for (const auto& range : UltrasonicRing(settings, world.scene, robot, 1).ping({}, Time{}, tick))
+      fired.push_back(range.transducer);
     return fired;
   };
   EXPECT_EQ(fired_in(1, 0), std::vector{0});
@@ -257,7 +265,8 @@ TEST(Ultrasonic, ARobotWithoutTransducersAndSlotsTooShortAreRefusedInASentence) 
   UltrasonicSettings fast;
   fast.ping_rate_hz = 50.0;
   EXPECT_EQ(error_response(fast, make_ring()),
-            "sensors.ultrasonic.ping_rate_hz = 50: must be at most 42.5, so that an echo from range_max_m = 4 returns before the next ping");
+            "sensors.ultrasonic.ping_rate_hz = 50: must be at most 42.5, so that an echo from range_max_m = 4 returns "
+            "before the next ping");
 }
 
 }  // namespace

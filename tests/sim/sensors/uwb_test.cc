@@ -1,11 +1,11 @@
 #include "sim/sensors/uwb.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <map>
 #include <string>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "tests/sim/small_world.h"
@@ -23,7 +23,8 @@ std::string anchor(int number, const std::string& pos) {
 UwbSettings ideal() {
   UwbSettings settings;
   settings.range_max_m = 1000.0;
-  settings.range_noise_std_m = settings.bias_scale = settings.loss_probability = settings.nlos_loss_probability = settings.nlos_bias_m = 0.0;
+  settings.range_noise_std_m = settings.bias_scale = settings.loss_probability = settings.nlos_loss_probability =
+      settings.nlos_bias_m = 0.0;
   return settings;
 }
 
@@ -68,10 +69,11 @@ TEST(Uwb, NoiseInSightIs7CentimetresAboutTheTruth) {
 
 // Free space: level = -14.3 dBm - 20 log10(4 pi d f / c), so d = c / (4 pi f) 10^((-14.3 - level) / 20).
 TEST(Uwb, BiasFollowsTable2OfAps011ByTheSignalLevelInFreeSpace) {
-  const std::map<double, double> bias_m_by_level_dbm = {{-61.0, -0.110}, {-69.0, -0.082}, {-77.0, 0.0}, {-78.0, 0.0105},
-                                                        {-83.0, 0.042},  {-93.0, 0.081},  {-99.0, 0.081}};
+  const std::map<double, double> bias_m_by_level_dbm = {
+      {-61.0, -0.110}, {-69.0, -0.082}, {-77.0, 0.0}, {-78.0, 0.0105}, {-83.0, 0.042}, {-93.0, 0.081}, {-99.0, 0.081}};
   for (const auto& [level_dbm, bias_m] : bias_m_by_level_dbm) {
-    const double distance_m = 299792458.0 / (4.0 * 3.141592653589793 * 3993.6e6) * std::pow(10.0, (-14.3 - level_dbm) / 20.0);
+    const double distance_m =
+        299792458.0 / (4.0 * 3.141592653589793 * 3993.6e6) * std::pow(10.0, (-14.3 - level_dbm) / 20.0);
     UwbSettings settings = ideal();
     settings.bias_scale = 1.0;
     const SmallWorld world(anchor(1, std::to_string(distance_m) + " 0 1"));
@@ -148,7 +150,8 @@ TEST(Uwb, WithoutNoiseBiasAndExcessTheSamePollsAreLost) {
   Uwb a({}, *world.model, 3), b(quiet, *world.model, 3);
   int lost = 0;
   for (std::uint64_t tick = 0; tick < 500; ++tick) {
-    const auto noisy = a.read(world.scene, {0, 0, 1}, Time{}, tick), bare = b.read(world.scene, {0, 0, 1}, Time{}, tick);
+    const auto noisy = a.read(world.scene, {0, 0, 1}, Time{}, tick),
+               bare = b.read(world.scene, {0, 0, 1}, Time{}, tick);
     EXPECT_EQ(noisy.has_value(), bare.has_value());
     lost += !noisy.has_value();
   }

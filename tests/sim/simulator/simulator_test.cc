@@ -1,20 +1,19 @@
 #include "sim/simulator/simulator.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <string>
 #include <utility>
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
-#include "core/geometry/angles.h"
 #include "core/error.h"
+#include "core/geometry/angles.h"
 #include "io/urdf.h"
 #include "tests/sim/rubble.h"
-#include "tests/support/simulated_tracked_robot.h"
 #include "tests/support/simulated_quadruped.h"
+#include "tests/support/simulated_tracked_robot.h"
 #include "tests/support/temporary_file.h"
 
 namespace patrol::sim::simulator_test {
@@ -75,13 +74,15 @@ TEST(Simulator, ARobotOnLegsSendsNoTicks) {
 
 TEST(Simulator, LiftedToAnotherPlaceEitherRobotStandsThereUprightAndItsCountersKnowNothingOfIt) {
   for (const std::string& urdf : {kTrackedUrdf, kRobotUrdf}) {
-    SmallSimulation simulator(urdf, make_flat_world(R"(<geom name="ground_stage" type="box" pos="6 2 0.1" size="1 1 0.1"/>)"));
+    SmallSimulation simulator(
+        urdf, make_flat_world(R"(<geom name="ground_stage" type="box" pos="6 2 0.1" size="1 1 0.1"/>)"));
     simulator.run(0.4, 2.0);
     const SimState before = simulator->state();
     simulator->teleport({6.0, 2.0, 2.0});
     const SimState after = simulator->state();
     if (urdf == kTrackedUrdf) {
-      EXPECT_TRUE(std::equal(before.qpos.begin() + 7, before.qpos.end(), after.qpos.begin() + 7)) << "belts and springs";
+      EXPECT_TRUE(std::equal(before.qpos.begin() + 7, before.qpos.end(), after.qpos.begin() + 7))
+          << "belts and springs";
     }
     const GroundTruth at_once = simulator->truth();
     EXPECT_NEAR(at_once.T_world_body.position.x(), 6.0, 1e-9);
@@ -139,7 +140,8 @@ TEST(Simulator, OnRoughGroundARobotThatCreepsStandsWithin5MicrometresAndAThousan
     const Pose3 before = simulator->truth().T_world_body;
     simulator.run(0.0, duration_s);
     const Pose3 after = simulator->truth().T_world_body;
-    return std::pair((after.position - before.position).norm(), to_deg(before.rotation.angularDistance(after.rotation)));
+    return std::pair((after.position - before.position).norm(),
+                     to_deg(before.rotation.angularDistance(after.rotation)));
   };
   const auto [free_m, free_deg] = creep_of(29.0);
   simulator->command(ScanCommand{simulator->now()});
@@ -153,13 +155,14 @@ TEST(Simulator, OnRoughGroundARobotThatCreepsStandsWithin5MicrometresAndAThousan
 TEST(Simulator, RingsOfAWorldWithoutALiningCannotBeMoved) {
   SimulatorSettings settings;
   settings.lining_deformations = {{.kind = "settlement", .first_ring = 2, .last_ring = 2, .inward_mm = 6.0}};
-  EXPECT_THAT([&] { SmallSimulation(kTrackedUrdf, make_flat_world(), settings); },
-              testing::ThrowsMessage<InputError>("lining_deformation.0.first_ring = 2: requires a lining in the mission file"));
+  EXPECT_THAT(
+      [&] { SmallSimulation(kTrackedUrdf, make_flat_world(), settings); },
+      testing::ThrowsMessage<InputError>("lining_deformation.0.first_ring = 2: requires a lining in the mission file"));
 }
 
 std::string kerb(double x_m, double height_m, double half_length_m = 0.09) {
-  return fmt::format(R"(<geom name="kerb_0" type="box" pos="{} 0 {}" size="{} 3 0.2"/>)", x_m + half_length_m, height_m - 0.2,
-                     half_length_m);
+  return fmt::format(R"(<geom name="kerb_0" type="box" pos="{} 0 {}" size="{} 3 0.2"/>)", x_m + half_length_m,
+                     height_m - 0.2, half_length_m);
 }
 
 // The tunnel's stones are 22 cm high.
@@ -207,8 +210,11 @@ TEST(Simulator, PutDownOnRubbleItDrivesOn) {
 
 TEST(Simulator, WhereThereIsNoGroundItCannotBePut) {
   SmallSimulation simulator(kTrackedUrdf, make_rubble_world(4.0, 4.0));
-  EXPECT_THAT([&] { simulator->teleport({50.0, 0.0, 0.0}); },
-              testing::ThrowsMessage<InputError>(testing::HasSubstr("(50.00, 0.00): no ground below")));
+  EXPECT_THAT(
+      [&] {
+        simulator->teleport({50.0, 0.0, 0.0});
+      },
+      testing::ThrowsMessage<InputError>(testing::HasSubstr("(50.00, 0.00): no ground below")));
 }
 
 }  // namespace

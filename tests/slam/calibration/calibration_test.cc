@@ -16,12 +16,15 @@ TEST(CorrectedStep, AMeterWithSteeringBiasOfATenthIsAnArcOfTenMeters) {
   const Pose2 arc{std::cos(0.05), std::sin(0.05), 0.1};  // a chord of 1 m
   EXPECT_THAT(corrected_step({1.0, 0.0, 0.0}, {.steering_bias_rad_per_m = 0.1}), Pose2Near(arc, kExactTol, kExactTol));
   const Pose2 back{-std::cos(0.05), std::sin(0.05), -0.1};
-  EXPECT_THAT(corrected_step({-1.0, 0.0, 0.0}, {.steering_bias_rad_per_m = 0.1}), Pose2Near(back, kExactTol, kExactTol));
+  EXPECT_THAT(corrected_step({-1.0, 0.0, 0.0}, {.steering_bias_rad_per_m = 0.1}),
+              Pose2Near(back, kExactTol, kExactTol));
 }
 
 TEST(CorrectedStep, AnArcOfTwiceTheTurnKeepsItsChordAndTurnsItByHalf) {
-  const Pose2 step{2.0 * std::cos(0.1), 2.0 * std::sin(0.1), 0.2}, wanted{3.0 * std::cos(0.2), 3.0 * std::sin(0.2), 0.4};
-  EXPECT_THAT(corrected_step(step, {.distance_scale = 1.5, .rotation_scale = 2.0}), Pose2Near(wanted, kExactTol, kExactTol));
+  const Pose2 step{2.0 * std::cos(0.1), 2.0 * std::sin(0.1), 0.2},
+      wanted{3.0 * std::cos(0.2), 3.0 * std::sin(0.2), 0.4};
+  EXPECT_THAT(corrected_step(step, {.distance_scale = 1.5, .rotation_scale = 2.0}),
+              Pose2Near(wanted, kExactTol, kExactTol));
 }
 
 TEST(CorrectedStep, InvertsTheModelOfWornWheels) {
@@ -30,7 +33,9 @@ TEST(CorrectedStep, InvertsTheModelOfWornWheels) {
   }
 }
 
-RecordedScan at(const Pose2& T_odom_body) { return {.scan = {.ranges_m = {}, .intensities = {}}, .T_odom_body = T_odom_body, .T_body_lidar = {0.1, 0.0, 0.0}}; }
+RecordedScan at(const Pose2& T_odom_body) {
+  return {.scan = {.ranges_m = {}, .intensities = {}}, .T_odom_body = T_odom_body, .T_body_lidar = {0.1, 0.0, 0.0}};
+}
 
 TEST(CalibratedScans, TheDefaultsChangeNothingToTheBit) {
   CalibratedScans scans(Calibration{});

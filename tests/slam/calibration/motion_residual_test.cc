@@ -1,15 +1,16 @@
 #include "slam/calibration/motion_residual.h"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/LU>
+#include <gtest/gtest.h>
 
 #include "tests/slam/calibration/calibration_world.h"
 
 namespace patrol::slam::motion_residual_test {
 namespace {
 
-const CalibrationVector kTruth{test::kWorn.lidar_x_m, test::kWorn.lidar_y_m, test::kWorn.lidar_yaw_rad, test::kWorn.distance_scale, test::kWorn.rotation_scale, test::kWorn.steering_bias_rad_per_m};
+const CalibrationVector kTruth{test::kWorn.lidar_x_m,      test::kWorn.lidar_y_m,
+                               test::kWorn.lidar_yaw_rad,  test::kWorn.distance_scale,
+                               test::kWorn.rotation_scale, test::kWorn.steering_bias_rad_per_m};
 
 MotionSegment stretch() { return test::record(test::wandering(8), 8, test::kWorn, {}, 1).front(); }
 
@@ -22,7 +23,9 @@ TEST(MotionResidual, ItsDerivativesAreThoseOfDifferences) {
   constexpr double kStep = 1e-6;  // central: errors of kStep^2 and of 1e-16 / kStep
   for (Eigen::Index i = 0; i < 6; ++i) {
     const CalibrationVector offset = kStep * CalibrationVector::Unit(i);
-    const Eigen::Vector3d slope = (motion_residual(pair, there + offset, {}).error - motion_residual(pair, there - offset, {}).error) / (2.0 * kStep);
+    const Eigen::Vector3d slope =
+        (motion_residual(pair, there + offset, {}).error - motion_residual(pair, there - offset, {}).error) /
+        (2.0 * kStep);
     EXPECT_LT((residual.jacobian.col(i) - slope).norm(), 1e-8) << i;
   }
 }

@@ -12,16 +12,23 @@ namespace patrol::slam::motion_segments_test {
 namespace {
 
 /// What a lidar sees in a world of walls, all round.
-LaserScan scan_from(const test::RoomWorld& world, const Pose2& T_world_lidar, Time stamp, const RandomStream& noise, std::uint64_t tick) {
-  LaserScan scan{.stamp = stamp, .angle_increment_rad = 2.0 * std::numbers::pi / test::kOldLidar.beams, .range_max_m = test::kOldLidar.range_max_m, .ranges_m = {}, .intensities = {}};
+LaserScan scan_from(const test::RoomWorld& world, const Pose2& T_world_lidar, Time stamp, const RandomStream& noise,
+                    std::uint64_t tick) {
+  LaserScan scan{.stamp = stamp,
+                 .angle_increment_rad = 2.0 * std::numbers::pi / test::kOldLidar.beams,
+                 .range_max_m = test::kOldLidar.range_max_m,
+                 .ranges_m = {},
+                 .intensities = {}};
   for (const double range_m : world.ranges_m(T_world_lidar, test::kOldLidar.beams, test::kOldLidar.range_max_m)) {
-    scan.ranges_m.push_back(static_cast<float>(range_m + test::kOldLidar.range_std_m * noise.normal(tick, scan.ranges_m.size())));
+    scan.ranges_m.push_back(
+        static_cast<float>(range_m + test::kOldLidar.range_std_m * noise.normal(tick, scan.ranges_m.size())));
   }
   return scan;
 }
 
 /// The log of a worn robot on its way from corner to corner.
-std::vector<RecordedScan> drive(const test::RoomWorld& world, const std::vector<Eigen::Vector2d>& corners, const Calibration& worn, std::uint64_t seed) {
+std::vector<RecordedScan> drive(const test::RoomWorld& world, const std::vector<Eigen::Vector2d>& corners,
+                                const Calibration& worn, std::uint64_t seed) {
   const RandomStream lidar(seed, "test/lidar"), wheels(seed, "test/wheels");
   std::vector<RecordedScan> log;
   Pose2 T_odom_body, T_world_last;
@@ -34,7 +41,9 @@ std::vector<RecordedScan> drive(const test::RoomWorld& world, const std::vector<
       T_odom_body = T_odom_body * motion;
     }
     T_world_last = step.T_world_body;
-    log.push_back({.scan = scan_from(world, step.T_world_body * worn.T_body_lidar(), step.stamp, lidar, log.size()), .T_odom_body = T_odom_body, .T_body_lidar = {}});
+    log.push_back({.scan = scan_from(world, step.T_world_body * worn.T_body_lidar(), step.stamp, lidar, log.size()),
+                   .T_odom_body = T_odom_body,
+                   .T_body_lidar = {}});
   }
   return log;
 }
@@ -45,22 +54,27 @@ std::vector<MotionSegment> pairs_of(const std::vector<RecordedScan>& log, const 
   return pairs.pairs();
 }
 
-const std::vector<Eigen::Vector2d> kRound = {{8.0, 4.2}, {20.0, 4.2}, {20.0, 3.9}, {30.0, 4.4}, {39.8, 4.2}, {39.8, 12.0}, {40.0, 25.8}, {30.0, 25.8}};
+const std::vector<Eigen::Vector2d> kRound = {{8.0, 4.2},  {20.0, 4.2},  {20.0, 3.9},  {30.0, 4.4},
+                                             {39.8, 4.2}, {39.8, 12.0}, {40.0, 25.8}, {30.0, 25.8}};
 
 TEST(MotionSegmenter, StretchesAreHalfAMeterOrAThirdOfARadianAndTheLidarsOwn) {
-  const std::vector<RecordedScan> log = drive(test::make_office(), {{8.0, 4.2}, {14.0, 4.2}, {14.0, 4.8}}, test::kWorn, 1);
+  const std::vector<RecordedScan> log =
+      drive(test::make_office(), {{8.0, 4.2}, {14.0, 4.2}, {14.0, 4.8}}, test::kWorn, 1);
   const std::vector<MotionSegment> pairs = pairs_of(log, {});
   EXPECT_NEAR(static_cast<double>(pairs.size()), 6.0 / 0.6 + 1.57 / 0.36 + 1.0, 2.0);
   for (const MotionSegment& pair : pairs) {
     const Pose2 lidar = pair.lidar();
-    EXPECT_GE(std::max({pair.odometry.position().norm() / 0.5, lidar.position().norm() / 0.5, std::abs(pair.odometry.yaw) / 0.35, std::abs(lidar.yaw) / 0.35}), 1.0);
+    EXPECT_GE(std::max({pair.odometry.position().norm() / 0.5, lidar.position().norm() / 0.5,
+                        std::abs(pair.odometry.yaw) / 0.35, std::abs(lidar.yaw) / 0.35}),
+              1.0);
     EXPECT_LT(pair.begin, pair.end);
   }
   // Straight ahead the lidar, turned by 2 degrees to the left, sees itself move to its right.
   EXPECT_NEAR(std::atan2(pairs[3].lidar().y, pairs[3].lidar().x), to_rad(-2.0), 0.005);
 }
 
-// The lidar's own motion from its first beam to its last is not the body's: a quarter of a meter ahead it moves sideways while the body turns on the spot.
+// The lidar's own motion from its first beam to its last is not the body's: a quarter of a meter ahead it moves
+// sideways while the body turns on the spot.
 TEST(MotionSegmenter, LaterBeamsStartAtTheLaterLidarPose) {
   const test::RoomWorld office = test::make_office();
   Calibration worn;
@@ -72,12 +86,20 @@ TEST(MotionSegmenter, LaterBeamsStartAtTheLaterLidarPose) {
   constexpr int kBeams = 360;
   for (int k = 0; k < 60; ++k) {
     const double turn = k % 2 == 0 ? 0.02 : 0.12;  // of it within the scan
-    LaserScan scan{.stamp = from_seconds(0.2 * k), .angle_increment_rad = 2.0 * std::numbers::pi / kBeams, .range_max_m = 30.0, .ranges_m = {}, .intensities = {}};
+    LaserScan scan{.stamp = from_seconds(0.2 * k),
+                   .angle_increment_rad = 2.0 * std::numbers::pi / kBeams,
+                   .range_max_m = 30.0,
+                   .ranges_m = {},
+                   .intensities = {}};
     for (std::size_t beam = 0; beam < kBeams; ++beam) {
       const Pose2 T_world_body{12.0, 4.2, kTurn * k + turn * static_cast<double>(beam) / (kBeams - 1)};
-      scan.ranges_m.push_back(static_cast<float>(office.ranges_m(T_world_body * worn.T_body_lidar(), kBeams, 30.0)[beam]));
+      scan.ranges_m.push_back(
+          static_cast<float>(office.ranges_m(T_world_body * worn.T_body_lidar(), kBeams, 30.0)[beam]));
     }
-    pairs.add({.scan = scan, .T_odom_body = {0.0, 0.0, wrap_angle(kTurn * k)}, .T_body_lidar = {}, .T_begin_end = {0.0, 0.0, turn}});
+    pairs.add({.scan = scan,
+               .T_odom_body = {0.0, 0.0, wrap_angle(kTurn * k)},
+               .T_body_lidar = {},
+               .T_begin_end = {0.0, 0.0, turn}});
   }
   ASSERT_GT(pairs.pairs().size(), 10U);
   for (const MotionSegment& pair : pairs.pairs()) {
@@ -90,7 +112,8 @@ TEST(MotionSegmenter, LaterBeamsStartAtTheLaterLidarPose) {
 TEST(MotionSegmenter, AlongABareCorridorTheLidarMotionIsUncertain) {
   test::RoomWorld corridor;
   corridor.add_wall(-100.0, -1.0, 200.0, -1.0).add_wall(-100.0, 1.0, 200.0, 1.0);
-  const std::vector<MotionSegment> pairs = pairs_of(drive(corridor, {{0.0, 0.0}, {12.0, 0.0}}, {.distance_scale = 1.03}, 1), {});
+  const std::vector<MotionSegment> pairs =
+      pairs_of(drive(corridor, {{0.0, 0.0}, {12.0, 0.0}}, {.distance_scale = 1.03}, 1), {});
   ASSERT_GT(pairs.size(), 10U);
   for (const MotionSegment& pair : pairs) {
     EXPECT_GT(std::sqrt(pair.lidar_covariance(0, 0)), 0.1);
@@ -101,8 +124,9 @@ TEST(MotionSegmenter, AlongABareCorridorTheLidarMotionIsUncertain) {
   EXPECT_EQ(result.parameters[3].value, 1.0);
 }
 
-// From scans to the six numbers, the second pass with what the first found; errors in centimeters and thousandths, and in standard deviations: the root mean square of
-// 30 is 1 to about sqrt(1/60) = 0.13 where they are independent, which those of one drive are not.
+// From scans to the six numbers, the second pass with what the first found; errors in centimeters and thousandths, and
+// in standard deviations: the root mean square of 30 is 1 to about sqrt(1/60) = 0.13 where they are independent, which
+// those of one drive are not.
 TEST(MotionSegmenter, ADriveThroughAnOfficeCalibratesItsLidarAndWheels) {
   const test::RoomWorld office = test::make_office();
   double sum = 0.0;
@@ -121,7 +145,9 @@ TEST(MotionSegmenter, ADriveThroughAnOfficeCalibratesItsLidarAndWheels) {
     EXPECT_NEAR(found.distance_scale, test::kWorn.distance_scale, 0.006);
     EXPECT_NEAR(found.rotation_scale, test::kWorn.rotation_scale, 0.006);
     EXPECT_NEAR(found.steering_bias_rad_per_m, test::kWorn.steering_bias_rad_per_m, 0.002);
-    const std::array<double, 6> truth = {test::kWorn.lidar_x_m, test::kWorn.lidar_y_m, test::kWorn.lidar_yaw_rad, test::kWorn.distance_scale, test::kWorn.rotation_scale, test::kWorn.steering_bias_rad_per_m};
+    const std::array<double, 6> truth = {test::kWorn.lidar_x_m,      test::kWorn.lidar_y_m,
+                                         test::kWorn.lidar_yaw_rad,  test::kWorn.distance_scale,
+                                         test::kWorn.rotation_scale, test::kWorn.steering_bias_rad_per_m};
     for (std::size_t i = 0; i < 6; ++i) {
       ASSERT_TRUE(result.parameters[i].is_observable);
       const double error = (result.parameters[i].value - truth[i]) / result.parameters[i].std;

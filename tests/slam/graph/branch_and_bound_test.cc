@@ -1,8 +1,8 @@
 #include "slam/graph/branch_and_bound.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "slam/match_points.h"
 #include "slam/scan_integration.h"
@@ -29,7 +29,8 @@ const LikelihoodPyramid& office_pyramid() {
 
 std::vector<Eigen::Vector2d> points_seen() {
   std::vector<Eigen::Vector2d> points;
-  for (const MatchPoint& point : downsample_scan(test::make_office().scan(kSeen, test::kOldLidar), 0.1, 100)) points.push_back(point.p_body);
+  for (const MatchPoint& point : downsample_scan(test::make_office().scan(kSeen, test::kOldLidar), 0.1, 100))
+    points.push_back(point.p_body);
   return points;
 }
 
@@ -38,13 +39,15 @@ double score_of(const Pose2& pose, const Eigen::Vector2d& corner, const Cell& sh
   const Eigen::Matrix2d R = Eigen::Rotation2Dd(pose.yaw).toRotationMatrix();
   for (const Eigen::Vector2d& point : points_seen()) {
     const Eigen::Vector2d cell = (R * point + corner) / 0.1;
-    sum += office_pyramid().value(0, static_cast<int>(std::floor(cell.x())) + shift.col, static_cast<int>(std::floor(cell.y())) + shift.row);
+    sum += office_pyramid().value(0, static_cast<int>(std::floor(cell.x())) + shift.col,
+                                  static_cast<int>(std::floor(cell.y())) + shift.row);
   }
   return sum / (LikelihoodPyramid::kOnSurface * static_cast<double>(points_seen().size()));
 }
 
 TEST(SearchWindow, FindsThePoseToACellAndTheStepOfAngle) {
-  const auto found = search_window(office_pyramid(), points_seen(), {.T_map_center = {7.5, 5.2, 0.2}, .half_width_m = 3.0, .half_angle_rad = 0.6}, 0.3);
+  const auto found = search_window(office_pyramid(), points_seen(),
+                                   {.T_map_center = {7.5, 5.2, 0.2}, .half_width_m = 3.0, .half_angle_rad = 0.6}, 0.3);
   ASSERT_TRUE(found);
   EXPECT_THAT(found->T_map_points, test::Pose2Near(kSeen, 0.1, 0.02));
   EXPECT_GT(found->score, 0.6);
@@ -75,7 +78,8 @@ TEST(SearchWindow, ExcludedPosesAreNotFoundAgainAndTheSecondBestScoresLess) {
 }
 
 TEST(SearchWindow, FindsNothingAboveAScoreThatNoPoseReachesNorWithoutPoints) {
-  EXPECT_FALSE(search_window(office_pyramid(), points_seen(), {.T_map_center = kSeen, .half_width_m = 1.0, .half_angle_rad = 0.1}, 0.999));
+  EXPECT_FALSE(search_window(office_pyramid(), points_seen(),
+                             {.T_map_center = kSeen, .half_width_m = 1.0, .half_angle_rad = 0.1}, 0.999));
   EXPECT_FALSE(search_window(office_pyramid(), {}, {.T_map_center = kSeen}, 0.0));
 }
 

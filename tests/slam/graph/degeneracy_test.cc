@@ -1,8 +1,8 @@
 #include "slam/graph/degeneracy.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 namespace patrol::slam::degeneracy_test {
 namespace {
@@ -30,7 +30,8 @@ TEST(DegenerateDirection, OfTwoParallelWallsIsAlongThem) {
 
 // An end wall of one point in fifty says a fiftieth of what the sides say: on either side of a threshold.
 TEST(DegenerateDirection, IsNoneWhereAnEndWallConstrainsThePose) {
-  const Eigen::Matrix3d sides = wall(M_PI / 2, {0.0, 1.0}, 100) + wall(M_PI / 2, {0.0, -1.0}, 100), end = wall(0.0, {5.0, 0.0}, 4);
+  const Eigen::Matrix3d sides = wall(M_PI / 2, {0.0, 1.0}, 100) + wall(M_PI / 2, {0.0, -1.0}, 100),
+                        end = wall(0.0, {5.0, 0.0}, 4);
   EXPECT_FALSE(degenerate_direction(sides + end, 0.015));
   EXPECT_TRUE(degenerate_direction(sides + end, 0.025));
   EXPECT_FALSE(degenerate_direction(Eigen::Matrix3d::Zero(), 0.02));

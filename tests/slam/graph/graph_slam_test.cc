@@ -13,7 +13,9 @@ struct MappedDrive {
   GraphSlam slam;
 };
 
-MappedDrive map_rounds(const test::RoomWorld& world, const std::vector<Eigen::Vector2d>& corners, const test::DriveOptions& options, const GraphSlamSettings& settings = {}, std::uint64_t seed = 1) {
+MappedDrive map_rounds(const test::RoomWorld& world, const std::vector<Eigen::Vector2d>& corners,
+                       const test::DriveOptions& options, const GraphSlamSettings& settings = {},
+                       std::uint64_t seed = 1) {
   MappedDrive mapped{.drive = test::drive_along(corners, options), .slam = GraphSlam(settings)};
   const RandomStream noise(seed, "test/graph");
   for (std::size_t k = 0; k < mapped.drive.size(); ++k) {
@@ -27,7 +29,9 @@ MappedDrive map_rounds(const test::RoomWorld& world, const std::vector<Eigen::Ve
 double rms_error_m(const MappedDrive& mapped) {
   const std::vector<Pose2> path = mapped.slam.path();
   double sum = 0.0;
-  for (std::size_t k = 0; k < path.size(); ++k) sum += (path[k].position() - (mapped.drive[0].T_world_body.inverse() * mapped.drive[k].T_world_body).position()).squaredNorm();
+  for (std::size_t k = 0; k < path.size(); ++k)
+    sum += (path[k].position() - (mapped.drive[0].T_world_body.inverse() * mapped.drive[k].T_world_body).position())
+               .squaredNorm();
   return std::sqrt(sum / static_cast<double>(path.size()));
 }
 
@@ -52,17 +56,21 @@ TEST(GraphSlam, EveryLoopThatItClosesIsTrueToFiveCentimeters) {
   EXPECT_LT(rms_error_m(mapped), 0.03);
 }
 
-// Up and down among doors that are all alike, odometry 8 % too long: 4 m of doubt at the end, more than from door to door.
+// Up and down among doors that are all alike, odometry 8 % too long: 4 m of doubt at the end, more than from door to
+// door.
 TEST(GraphSlam, AmongIdenticalDoorsNoFalseLoopIsClosedInTenDrives) {
   int loops = 0;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    const MappedDrive mapped = map_rounds(test::make_corridor_of_doors(), {{20.0, 0.0}, {45.0, 0.0}, {15.0, 0.0}, {20.0, 0.0}}, {.speed_mps = 1.0, .odometry_scale = 0.01}, {}, seed);
+    const MappedDrive mapped =
+        map_rounds(test::make_corridor_of_doors(), {{20.0, 0.0}, {45.0, 0.0}, {15.0, 0.0}, {20.0, 0.0}},
+                   {.speed_mps = 1.0, .odometry_scale = 0.01}, {}, seed);
     const std::vector<test::DriveStep>& drive = mapped.drive;
     const std::vector<std::size_t> scans = mapped.slam.node_scan_indices();
     for (const PoseGraphEdge& edge : mapped.slam.graph().edges) {
       if (edge.kind != PoseGraphEdge::Kind::kLoop) continue;
       ++loops;
-      const Pose2 T_from_to = drive[scans[static_cast<std::size_t>(edge.from)]].T_world_body.inverse() * drive[scans[static_cast<std::size_t>(edge.to)]].T_world_body;
+      const Pose2 T_from_to = drive[scans[static_cast<std::size_t>(edge.from)]].T_world_body.inverse() *
+                              drive[scans[static_cast<std::size_t>(edge.to)]].T_world_body;
       EXPECT_LT((edge.T_from_to.position() - T_from_to.position()).norm(), 1.0) << seed;  // a door off is 3 m
     }
     EXPECT_LT(rms_error_m(mapped), 0.3) << seed;
@@ -72,7 +80,8 @@ TEST(GraphSlam, AmongIdenticalDoorsNoFalseLoopIsClosedInTenDrives) {
 
 TEST(GraphSlam, TheSameScansGiveTheSamePathToTheBit) {
   const std::vector<Eigen::Vector2d> corners = {{8.0, 4.2}, {16.0, 4.2}, {8.0, 4.2}};
-  const std::vector<Pose2> first = map_rounds(test::make_office(), corners, {}).slam.path(), second = map_rounds(test::make_office(), corners, {}).slam.path();
+  const std::vector<Pose2> first = map_rounds(test::make_office(), corners, {}).slam.path(),
+                           second = map_rounds(test::make_office(), corners, {}).slam.path();
   ASSERT_EQ(first.size(), second.size());
   for (std::size_t k = 0; k < first.size(); ++k) EXPECT_EQ(first[k].vector(), second[k].vector()) << k;
 }
@@ -81,17 +90,20 @@ TEST(GraphSlam, TheSameScansGiveTheSamePathToTheBit) {
 std::vector<SlamUpdate> follow_corridor(const GraphSlamSettings& settings, GraphSlam& slam) {
   test::RoomWorld corridor;
   corridor.add_wall(-100.0, -1.0, 200.0, -1.0).add_wall(-100.0, 1.0, 200.0, 1.0);
-  const std::vector<UwbAnchor> anchors = {{.number = 1, .p_m = {-5.0, 0.8, 1.0}}, {.number = 2, .p_m = {60.0, -0.8, 1.0}}};
+  const std::vector<UwbAnchor> anchors = {{.number = 1, .p_m = {-5.0, 0.8, 1.0}},
+                                          {.number = 2, .p_m = {60.0, -0.8, 1.0}}};
   const RandomStream noise(1, "test/corridor"), radio(1, "test/radio");
   const Eigen::Vector3d antenna(0.2, 0.0, 0.6);
   std::vector<SlamUpdate> updates;
   for (std::uint64_t k = 0; k <= 400; ++k) {
     const Pose2 truth{0.1 * static_cast<double>(k), 0.0, 0.0}, T_odom_body{1.03 * truth.x, 0.0, 0.0};
     for (const UwbAnchor& anchor : anchors) {
-      const double range_m = predict_uwb_range(anchor, truth, antenna, settings.ranges.calibration).range_m + 0.1 * radio.normal(k, static_cast<std::uint64_t>(anchor.number));
+      const double range_m = predict_uwb_range(anchor, truth, antenna, settings.ranges.calibration).range_m +
+                             0.1 * radio.normal(k, static_cast<std::uint64_t>(anchor.number));
       slam.add({.anchor = anchor, .range_m = range_m, .T_odom_body = T_odom_body, .p_level_antenna = antenna});
     }
-    updates.push_back(slam.update(corridor.scan(truth, from_seconds(0.1 * static_cast<double>(k)), test::kOldLidar, noise, k), T_odom_body));
+    updates.push_back(slam.update(
+        corridor.scan(truth, from_seconds(0.1 * static_cast<double>(k)), test::kOldLidar, noise, k), T_odom_body));
   }
   return updates;
 }
@@ -104,7 +116,8 @@ TEST(GraphSlam, AlongASmoothCorridorRangesConstrainItToTenCentimetersAndWithoutT
     GraphSlam slam(settings);
     const std::vector<SlamUpdate> updates = follow_corridor(settings, slam);
     double worst = 0.0;
-    for (std::size_t k = 0; k < updates.size(); ++k) worst = std::max(worst, std::abs(updates[k].T_map_body.x - 0.1 * static_cast<double>(k)));
+    for (std::size_t k = 0; k < updates.size(); ++k)
+      worst = std::max(worst, std::abs(updates[k].T_map_body.x - 0.1 * static_cast<double>(k)));
     if (has_ranges) {
       EXPECT_LT(worst, 0.1);
       slam.finish();
@@ -156,7 +169,8 @@ TEST(GraphSlam, BeforeAnyScanItHasNoPathAndAfterOneItIsAtTheOrigin) {
   GraphSlam slam({});
   EXPECT_TRUE(slam.path().empty());
   slam.finish();
-  const Pose2 pose = slam.update(test::make_office().scan({8.0, 4.2, 0.0}, test::kOldLidar), {5.0, 5.0, 1.0}).T_map_body;
+  const Pose2 pose =
+      slam.update(test::make_office().scan({8.0, 4.2, 0.0}, test::kOldLidar), {5.0, 5.0, 1.0}).T_map_body;
   EXPECT_THAT(pose, test::Pose2Near(Pose2{}, 1e-12, 1e-12));
   EXPECT_EQ(slam.path().size(), 1U);
 }

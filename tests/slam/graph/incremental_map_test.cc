@@ -26,7 +26,8 @@ double farthest_hit_m(const GridMap& map) {
   map.for_each_tile([&](Cell first, const GridTile& tile) {
     for (int row = 0; row < GridTile::kSize; ++row) {
       for (int col = 0; col < GridTile::kSize; ++col) {
-        if (tile.at(col, row).hits > 0) farthest = std::max(farthest, map.center_of({first.col + col, first.row + row}).x());
+        if (tile.at(col, row).hits > 0)
+          farthest = std::max(farthest, map.center_of({first.col + col, first.row + row}).x());
       }
     }
   });

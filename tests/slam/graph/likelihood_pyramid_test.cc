@@ -1,10 +1,10 @@
 #include "slam/graph/likelihood_pyramid.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+
+#include <gtest/gtest.h>
 
 #include "slam/scan_integration.h"
 #include "tests/slam/graph/office_world.h"
@@ -38,13 +38,16 @@ TEST(LikelihoodPyramid, EveryLevelBoundsAllShiftsWithinItsCell) {
   const RandomStream draws(1, "test/pyramid");
   for (std::uint64_t i = 0; i < 20'000; ++i) {
     const auto u = draws.uniforms(i, 0), shift = draws.uniforms(i, 1);
-    const int level = static_cast<int>(6.0 * u[2]), col = static_cast<int>(500.0 * u[0]) - 50, row = static_cast<int>(400.0 * u[1]) - 50, side = 1 << level;
-    const int at_shift = pyramid.value(0, col + static_cast<int>(side * shift[0]), row + static_cast<int>(side * shift[1]));
+    const int level = static_cast<int>(6.0 * u[2]), col = static_cast<int>(500.0 * u[0]) - 50,
+              row = static_cast<int>(400.0 * u[1]) - 50, side = 1 << level;
+    const int at_shift =
+        pyramid.value(0, col + static_cast<int>(side * shift[0]), row + static_cast<int>(side * shift[1]));
     ASSERT_GE(pyramid.value(level, col, row), at_shift) << "level " << level << ", cell " << col << ", " << row;
   }
 }
 
-// The offset from the center, -2.5 cm, rounds to a float beyond the edge: the surface is in the pyramid's cell before the tile.
+// The offset from the center, -2.5 cm, rounds to a float beyond the edge: the surface is in the pyramid's cell before
+// the tile.
 TEST(LikelihoodPyramid, HoldsHitsOnTheLowEdgesOfTiles) {
   GridMap at_left(0.05, 4000.0), at_bottom(0.05, 4000.0);
   at_left.add_hit({-1.6, 0.02});

@@ -13,8 +13,9 @@
 
 namespace patrol::test {
 
-/// A building of 44 m x 30 m: a corridor 2.4 m wide runs round between offices outside and inside, each with a door of its own place and width and
-/// furniture of its own. The corridor's middle is the rectangle from (4.2, 4.2) to (39.8, 25.8).
+/// A building of 44 m x 30 m: a corridor 2.4 m wide runs round between offices outside and inside, each with a door of
+/// its own place and width and furniture of its own. The corridor's middle is the rectangle from (4.2, 4.2) to
+/// (39.8, 25.8).
 inline RoomWorld make_office() {
   RoomWorld office;
   office.add_box(0.0, 0.0, 44.0, 30.0);
@@ -22,10 +23,12 @@ inline RoomWorld make_office() {
   std::uint64_t draw = 0;
   const auto uniform = [&](double low, double high) { return low + (high - low) * layout.uniform(draw++); };
   // A wall from `from` along `along`, with an office behind it (on the side of `out`) every four meters or so.
-  const auto add_offices = [&](const Eigen::Vector2d& from, const Eigen::Vector2d& along, const Eigen::Vector2d& out, double length, double depth) {
+  const auto add_offices = [&](const Eigen::Vector2d& from, const Eigen::Vector2d& along, const Eigen::Vector2d& out,
+                               double length, double depth) {
     const auto at = [&](double a, double o) -> Eigen::Vector2d { return from + a * along + o * out; };
     for (double s = 0.0; s < length - 2.5;) {
-      const double width = std::min(uniform(3.2, 5.5), length - s), door = s + uniform(0.3, 0.8), opening = uniform(0.8, 1.1);
+      const double width = std::min(uniform(3.2, 5.5), length - s), door = s + uniform(0.3, 0.8),
+                   opening = uniform(0.8, 1.1);
       office.add_polyline({at(s, depth), at(s, 0.0), at(door, 0.0), at(door, 0.15)});
       office.add_polyline({at(door + opening, 0.15), at(door + opening, 0.0), at(std::min(s + width, length), 0.0)});
       const double desk = s + uniform(1.2, 2.0), back = uniform(0.5, 0.7) * depth;
@@ -50,7 +53,8 @@ inline RoomWorld make_corridor_of_doors() {
   for (const double side : {-1.0, 1.0}) {
     std::vector<Eigen::Vector2d> wall = {{0.0, side}};
     for (double x = 1.0; x < 59.0; x += 3.0) {
-      for (const auto& [dx, depth] : {std::pair{0.0, 0.0}, {0.0, 0.3}, {1.0, 0.3}, {1.0, 0.0}}) wall.emplace_back(x + dx, side * (1.0 + depth));
+      for (const auto& [dx, depth] : {std::pair{0.0, 0.0}, {0.0, 0.3}, {1.0, 0.3}, {1.0, 0.0}})
+        wall.emplace_back(x + dx, side * (1.0 + depth));
     }
     wall.emplace_back(60.0, side);
     corridor.add_polyline(wall);
@@ -69,14 +73,15 @@ struct DriveOptions {
   double speed_mps = 0.6;
   double turn_radps = 0.6;
   double period_s = 0.2;
-  double odometry_scale = 0.03;           ///< of the way, too much
+  double odometry_scale = 0.03;  ///< of the way, too much
   double odometry_drift_rad_per_m = 0.01;
 };
 
 /// From corner to corner, turning on the spot at each. Odometry begins at zero.
 inline std::vector<DriveStep> drive_along(const std::vector<Eigen::Vector2d>& corners, const DriveOptions& options) {
   std::vector<Pose2> poses;
-  Pose2 pose{corners[0].x(), corners[0].y(), std::atan2(corners[1].y() - corners[0].y(), corners[1].x() - corners[0].x())};
+  Pose2 pose{corners[0].x(), corners[0].y(),
+             std::atan2(corners[1].y() - corners[0].y(), corners[1].x() - corners[0].x())};
   poses.push_back(pose);
   for (std::size_t i = 0; i + 1 < corners.size(); ++i) {
     const Eigen::Vector2d way = corners[i + 1] - corners[i];
@@ -92,7 +97,8 @@ inline std::vector<DriveStep> drive_along(const std::vector<Eigen::Vector2d>& co
   }
   std::vector<DriveStep> drive;
   for (std::size_t k = 0; k < poses.size(); ++k) {
-    DriveStep step{.stamp = from_seconds(options.period_s * static_cast<double>(k)), .T_world_body = poses[k], .T_odom_body = {}};
+    DriveStep step{
+        .stamp = from_seconds(options.period_s * static_cast<double>(k)), .T_world_body = poses[k], .T_odom_body = {}};
     if (k > 0) {
       Pose2 motion = poses[k - 1].inverse() * poses[k];
       const double way = motion.position().norm();
@@ -109,13 +115,16 @@ inline std::vector<DriveStep> drive_along(const std::vector<Eigen::Vector2d>& co
 inline std::vector<Eigen::Vector2d> office_rounds(int rounds) {
   std::vector<Eigen::Vector2d> corners = {{8.0, 4.2}};
   for (int round = 0; round < rounds; ++round) {
-    for (const auto& corner : {Eigen::Vector2d(39.8, 4.2), Eigen::Vector2d(39.8, 25.8), Eigen::Vector2d(4.2, 25.8), Eigen::Vector2d(4.2, 4.2)}) corners.push_back(corner);
+    for (const auto& corner : {Eigen::Vector2d(39.8, 4.2), Eigen::Vector2d(39.8, 25.8), Eigen::Vector2d(4.2, 25.8),
+                               Eigen::Vector2d(4.2, 4.2)})
+      corners.push_back(corner);
   }
   corners.emplace_back(14.0, 4.2);
   return corners;
 }
 
 /// As old laser scanners saw: a beam a degree, centimeter noise.
-inline constexpr RoomWorld::ScanOptions kOldLidar{.beams = 360, .range_max_m = 30.0, .no_return_clearing_range_m = 6.0, .range_std_m = 0.01};
+inline constexpr RoomWorld::ScanOptions kOldLidar{
+    .beams = 360, .range_max_m = 30.0, .no_return_clearing_range_m = 6.0, .range_std_m = 0.01};
 
 }  // namespace patrol::test

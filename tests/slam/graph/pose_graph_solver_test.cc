@@ -1,9 +1,9 @@
 #include "slam/graph/pose_graph_solver.h"
 
-#include <gtest/gtest.h>
-
 #include <numbers>
 #include <stdexcept>
+
+#include <gtest/gtest.h>
 
 #include "core/random.h"
 #include "tests/support/pose_near.h"
@@ -19,19 +19,27 @@ PoseGraph make_ring(int num_nodes) {
   PoseGraph graph;
   for (int i = 0; i < num_nodes; ++i) {
     const double angle = 2.0 * std::numbers::pi * i / num_nodes;
-    graph.T_map_node.push_back({10.0 * std::cos(angle), 10.0 * std::sin(angle), wrap_angle(angle + 0.5 * std::numbers::pi)});
+    graph.T_map_node.push_back(
+        {10.0 * std::cos(angle), 10.0 * std::sin(angle), wrap_angle(angle + 0.5 * std::numbers::pi)});
   }
   for (int i = 0; i + 1 < num_nodes; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    graph.edges.push_back({.from = i, .to = i + 1, .T_from_to = graph.T_map_node[k].inverse() * graph.T_map_node[k + 1],
-                           .information = Eigen::Vector3d(400.0, 400.0, 1e4).asDiagonal(), .kind = Kind::kOdometry});
+    graph.edges.push_back({.from = i,
+                           .to = i + 1,
+                           .T_from_to = graph.T_map_node[k].inverse() * graph.T_map_node[k + 1],
+                           .information = Eigen::Vector3d(400.0, 400.0, 1e4).asDiagonal(),
+                           .kind = Kind::kOdometry});
   }
   return graph;
 }
 
 PoseGraphEdge true_edge(const PoseGraph& truth, int from, int to, Kind kind) {
-  return {.from = from, .to = to, .T_from_to = truth.T_map_node[static_cast<std::size_t>(from)].inverse() * truth.T_map_node[static_cast<std::size_t>(to)],
-          .information = Eigen::Vector3d(1e4, 1e4, 1e6).asDiagonal(), .kind = kind};
+  return {.from = from,
+          .to = to,
+          .T_from_to = truth.T_map_node[static_cast<std::size_t>(from)].inverse() *
+                       truth.T_map_node[static_cast<std::size_t>(to)],
+          .information = Eigen::Vector3d(1e4, 1e4, 1e6).asDiagonal(),
+          .kind = kind};
 }
 
 /// Nodes as the edges' odometry with noise would have them.
@@ -49,7 +57,9 @@ void shake(PoseGraph& graph, double std_m, double std_rad) {
 // Steps of 1 m and 1 m, and the whole measured as 2.3 m with the same weight: each takes a third of the 0.3 m.
 TEST(SolvePoseGraph, ThreeMeasurementsShareTheirContradictionEqually) {
   PoseGraph graph{.T_map_node = {{}, {1.0, 0.0, 0.0}, {2.0, 0.0, 0.0}},
-                  .edges = {{.from = 0, .to = 1, .T_from_to = {1.0, 0.0, 0.0}}, {.from = 1, .to = 2, .T_from_to = {1.0, 0.0, 0.0}}, {.from = 0, .to = 2, .T_from_to = {2.3, 0.0, 0.0}}}};
+                  .edges = {{.from = 0, .to = 1, .T_from_to = {1.0, 0.0, 0.0}},
+                            {.from = 1, .to = 2, .T_from_to = {1.0, 0.0, 0.0}},
+                            {.from = 0, .to = 2, .T_from_to = {2.3, 0.0, 0.0}}}};
   const PoseGraphSolution solution = solve(graph, {});
   EXPECT_TRUE(solution.converged);
   EXPECT_THAT(graph.T_map_node[1], Pose2Near(Pose2{1.1, 0.0, 0.0}, 1e-6, 1e-9));
@@ -65,7 +75,8 @@ TEST(SolvePoseGraph, EdgesWithoutErrorBringARingOfFortyBackFromMetersOff) {
   shake(graph, 0.2, 0.05);
   EXPECT_GT((graph.T_map_node[39].position() - truth.T_map_node[39].position()).norm(), 2.0);
   solve(graph, {});
-  for (std::size_t i = 0; i < 40; ++i) EXPECT_THAT(graph.T_map_node[i], Pose2Near(truth.T_map_node[i], 1e-5, 1e-6)) << i;
+  for (std::size_t i = 0; i < 40; ++i)
+    EXPECT_THAT(graph.T_map_node[i], Pose2Near(truth.T_map_node[i], 1e-5, 1e-6)) << i;
 }
 
 TEST(SolvePoseGraph, TheFirstNodeStaysWhereItIs) {
@@ -89,7 +100,8 @@ TEST(SolvePoseGraph, OneFalseClosureAmongSixMovesNoNodeByTwoCentimetersAndWithou
     graph.edges.push_back(wrong);
     solve(graph, {});
     double far_m = 0.0;
-    for (std::size_t i = 0; i < 40; ++i) far_m = std::max(far_m, (graph.T_map_node[i].position() - truth.T_map_node[i].position()).norm());
+    for (std::size_t i = 0; i < 40; ++i)
+      far_m = std::max(far_m, (graph.T_map_node[i].position() - truth.T_map_node[i].position()).norm());
     if (kind == Kind::kLoop) {
       EXPECT_LT(far_m, 0.02);
       EXPECT_GT(squared_residual(graph.edges.back(), graph.T_map_node), 1e5);
@@ -110,14 +122,22 @@ PoseGraph make_line(int num_nodes, double step_m) {
   PoseGraph graph;
   for (int i = 0; i < num_nodes; ++i) {
     graph.T_map_node.push_back({static_cast<double>(i), 0.0, 0.0});
-    if (i > 0) graph.edges.push_back({.from = i - 1, .to = i, .T_from_to = {step_m, 0.0, 0.0}, .information = Eigen::Vector3d(1e4, 1e4, 1e4).asDiagonal(), .kind = Kind::kOdometry});
+    if (i > 0)
+      graph.edges.push_back({.from = i - 1,
+                             .to = i,
+                             .T_from_to = {step_m, 0.0, 0.0},
+                             .information = Eigen::Vector3d(1e4, 1e4, 1e4).asDiagonal(),
+                             .kind = Kind::kOdometry});
   }
   return graph;
 }
 
 RangeMeasurement clear_range(const Pose2& T_map_body, const UwbAnchor& anchor) {
   const Eigen::Vector3d antenna = Eigen::Vector3d::Zero();
-  return {.anchor = anchor, .range_m = predict_uwb_range(anchor, T_map_body, antenna, {}).range_m, .T_odom_body = {}, .p_level_antenna = antenna};
+  return {.anchor = anchor,
+          .range_m = predict_uwb_range(anchor, T_map_body, antenna, {}).range_m,
+          .T_odom_body = {},
+          .p_level_antenna = antenna};
 }
 
 // Ten steps that odometry has 1.01 m long; at every node a range of ten readings to an anchor ahead.
@@ -127,7 +147,8 @@ TEST(SolvePoseGraph, RangesAlongALineHoldItWhereOdometryIsOnePercentTooLong) {
   RangeFactors ranges({.range_std_m = 0.02});
   for (int i = 1; i < 11; ++i) {
     const Pose2& node = truth.T_map_node[static_cast<std::size_t>(i)];
-    for (int reading = 0; reading < 10; ++reading) ranges.add(i, node, {}, clear_range(node, {.number = 1, .p_m = {30.0, 0.0, 0.0}}));
+    for (int reading = 0; reading < 10; ++reading)
+      ranges.add(i, node, {}, clear_range(node, {.number = 1, .p_m = {30.0, 0.0, 0.0}}));
   }
   solve(graph, {}, ranges);
   EXPECT_NEAR(graph.T_map_node[5].x, 5.0, 0.001);
@@ -136,7 +157,8 @@ TEST(SolvePoseGraph, RangesAlongALineHoldItWhereOdometryIsOnePercentTooLong) {
   EXPECT_NEAR(graph.T_map_node[10].x, 10.1, 1e-6);
 }
 
-// From an anchor abreast a range tells where across the line, and along it nothing: asked about the direction along it, it does not move the node.
+// From an anchor abreast a range tells where across the line, and along it nothing: asked about the direction along it,
+// it does not move the node.
 TEST(SolvePoseGraph, ARangeMovesItsNodeOnlyInTheDirectionThatItIsAskedAbout) {
   for (const bool is_along : {true, false}) {
     PoseGraph graph = make_line(2, 1.0);
@@ -157,7 +179,8 @@ TEST(SolvePoseGraph, ARangeThatIsFarTooLongIsDownweighted) {
   PoseGraph graph = make_line(7, 1.0);
   RangeFactors ranges({.range_std_m = 0.1});
   for (int i = 1; i < 7; ++i) {
-    RangeMeasurement measurement = clear_range(graph.T_map_node[static_cast<std::size_t>(i)], {.number = 1, .p_m = {-20.0, 0.0, 0.0}});
+    RangeMeasurement measurement =
+        clear_range(graph.T_map_node[static_cast<std::size_t>(i)], {.number = 1, .p_m = {-20.0, 0.0, 0.0}});
     if (i == 3) measurement.range_m += 8.0;
     ranges.add(i, graph.T_map_node[static_cast<std::size_t>(i)], {}, measurement);
   }
@@ -175,7 +198,8 @@ TEST(SolvePoseGraph, NodesBeforeTheFirstFreeOneAreFixedAndTheOthersAreSolved) {
 
 TEST(EdgeResidual, IsInTheFrameOfItsFirstNodeAndWrapsTheAngle) {
   const std::vector<Pose2> nodes = {{1.0, 1.0, 0.5 * std::numbers::pi}, {1.0, 4.0, -3.0}};
-  const PoseGraphEdge edge{.from = 0, .to = 1, .T_from_to = {2.5, 0.1, 1.7}, .information = Eigen::Vector3d(1.0, 4.0, 9.0).asDiagonal()};
+  const PoseGraphEdge edge{
+      .from = 0, .to = 1, .T_from_to = {2.5, 0.1, 1.7}, .information = Eigen::Vector3d(1.0, 4.0, 9.0).asDiagonal()};
   const Eigen::Vector3d error = edge_residual(edge, nodes);
   const double yaw = 2.0 * std::numbers::pi - 3.0 - 0.5 * std::numbers::pi - 1.7;
   EXPECT_LT((error - Eigen::Vector3d(0.5, -0.1, yaw)).norm(), 1e-12);

@@ -13,9 +13,12 @@ RangeFactors without_bias() {
   return RangeFactors({.range_std_m = 0.15, .calibration = {.distance_m = {}, .bias_m = {}}});
 }
 
-RangeMeasurement measurement(const UwbAnchor& anchor, double range_m) { return {.anchor = anchor, .range_m = range_m, .T_odom_body = {}, .p_level_antenna = {0.0, 0.0, 1.0}}; }
+RangeMeasurement measurement(const UwbAnchor& anchor, double range_m) {
+  return {.anchor = anchor, .range_m = range_m, .T_odom_body = {}, .p_level_antenna = {0.0, 0.0, 1.0}};
+}
 
-// The node stands at x = 1, 9 m from the anchor; the robot read 8.7 m when it had come 0.3 m nearer, and 8.6 m when 0.5 m.
+// The node stands at x = 1, 9 m from the anchor; the robot read 8.7 m when it had come 0.3 m nearer, and 8.6 m when 0.5
+// m.
 TEST(RangeFactors, RangesBetweenNodesCountAsMeasuredAtTheNode) {
   RangeFactors ranges = without_bias();
   ranges.add(7, {1.0, 0.0, 0.0}, {0.3, 0.0, 0.0}, measurement(kAnchor, 8.7));

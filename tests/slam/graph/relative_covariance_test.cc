@@ -1,9 +1,9 @@
 #include "slam/graph/relative_covariance.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <numbers>
+
+#include <gtest/gtest.h>
 
 #include "core/random.h"
 #include "tests/support/pose_near.h"
@@ -22,7 +22,8 @@ std::vector<Pose2> make_line(int count) {
   return line;
 }
 
-// From the origin, looking along y, with a tenth of a radian of doubt: 2 m ahead that is 0.2 m to the left, along -x; the way's own 0.3 m is ahead, along y.
+// From the origin, looking along y, with a tenth of a radian of doubt: 2 m ahead that is 0.2 m to the left, along -x;
+// the way's own 0.3 m is ahead, along y.
 TEST(ComposeCovariance, AHeadingErrorRotatesTheEdgeAndItsCovariance) {
   const PoseGaussian here{.mean = {0.0, 0.0, 0.5 * std::numbers::pi}, .covariance = diagonal(0.0, 0.0, 0.01)};
   const Eigen::Matrix3d there = compose_covariance(here, {0.0, 2.0, 0.5 * std::numbers::pi}, diagonal(0.09, 0.0, 0.0));
@@ -32,7 +33,8 @@ TEST(ComposeCovariance, AHeadingErrorRotatesTheEdgeAndItsCovariance) {
   EXPECT_NEAR(there(2, 2), 0.01, kExactTol);
 }
 
-// Step i of n errs by a yaw that moves the end sideways by its rest: the variance is sigma^2 (1^2 + ... + (n-1)^2) + n q.
+// Step i of n errs by a yaw that moves the end sideways by its rest: the variance is sigma^2 (1^2 + ... + (n-1)^2) + n
+// q.
 TEST(ShortestPathDistributions, AHeadingThatWandersOverTenMetersSpreadsTheEndAsTheSumOfSquares) {
   std::vector<CovarianceEdge> covariance_edges;
   for (int i = 0; i < 10; ++i) covariance_edges.push_back({i, i + 1, diagonal(0.01, 0.02, 0.001)});
@@ -74,7 +76,8 @@ TEST(Invert, IsTheCovarianceOfInvertedPoses) {
 }
 
 TEST(RotateCovariance, AQuarterRotationSwapsTheVariancesOfXAndY) {
-  EXPECT_LT((rotate_covariance(diagonal(1.0, 4.0, 9.0), 0.5 * std::numbers::pi) - diagonal(4.0, 1.0, 9.0)).norm(), kExactTol);
+  EXPECT_LT((rotate_covariance(diagonal(1.0, 4.0, 9.0), 0.5 * std::numbers::pi) - diagonal(4.0, 1.0, 9.0)).norm(),
+            kExactTol);
 }
 
 }  // namespace

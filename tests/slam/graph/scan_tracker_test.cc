@@ -1,8 +1,8 @@
 #include "slam/graph/scan_tracker.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "tests/slam/graph/office_world.h"
 #include "tests/support/pose_near.h"
@@ -20,7 +20,8 @@ std::vector<TrackedScan> track(const std::vector<test::DriveStep>& drive, Odomet
   std::vector<TrackedScan> tracked;
   for (std::size_t k = 0; k < drive.size(); ++k) {
     if (k > 0) T_odom_body = T_odom_body * odometry(k, drive[k - 1].T_world_body.inverse() * drive[k].T_world_body);
-    tracked.push_back(tracker.update(office.scan(drive[k].T_world_body, drive[k].stamp, test::kOldLidar, noise, k), T_odom_body));
+    tracked.push_back(
+        tracker.update(office.scan(drive[k].T_world_body, drive[k].stamp, test::kOldLidar, noise, k), T_odom_body));
   }
   return tracked;
 }
@@ -41,7 +42,9 @@ const std::vector<test::DriveStep>& corridor_drive() {
 }
 
 TEST(ScanTracker, FollowsTwelveMetersToTwoCentimetersWithOdometryThatIsTenPercentTooLong) {
-  const auto tracked = track(corridor_drive(), [](std::size_t, const Pose2& motion) { return Pose2{1.1 * motion.x, motion.y, motion.yaw + 0.002}; });
+  const auto tracked = track(corridor_drive(), [](std::size_t, const Pose2& motion) {
+    return Pose2{1.1 * motion.x, motion.y, motion.yaw + 0.002};
+  });
   EXPECT_LT(worst_error_m(corridor_drive(), tracked), 0.02);
 }
 
@@ -49,12 +52,15 @@ TEST(ScanTracker, FollowsTwelveMetersToTwoCentimetersWithOdometryThatIsTenPercen
 TEST(ScanTracker, WrongOdometryForTwoMetersCostsNoMoreThanThreeCentimeters) {
   const auto lies = [](std::size_t k) { return k >= 40 && k < 57; };
   for (const double factor : {-1.0, 0.0, 3.0}) {
-    const auto tracked = track(corridor_drive(), [&](std::size_t k, const Pose2& motion) { return lies(k) ? Pose2{factor * motion.x, 0.0, motion.yaw} : motion; });
+    const auto tracked = track(corridor_drive(), [&](std::size_t k, const Pose2& motion) {
+      return lies(k) ? Pose2{factor * motion.x, 0.0, motion.yaw} : motion;
+    });
     EXPECT_LT(worst_error_m(corridor_drive(), tracked), 0.03) << factor;
   }
 }
 
-// Between smooth walls the scan says nothing of the way: odometry's word stands, and the covariance says how little it is.
+// Between smooth walls the scan says nothing of the way: odometry's word stands, and the covariance says how little it
+// is.
 TEST(ScanTracker, AlongASmoothCorridorOdometryIsUsedAndTheCovarianceIsLarge) {
   test::RoomWorld corridor;
   corridor.add_wall(-100.0, -1.0, 200.0, -1.0).add_wall(-100.0, 1.0, 200.0, 1.0);
@@ -63,7 +69,9 @@ TEST(ScanTracker, AlongASmoothCorridorOdometryIsUsedAndTheCovarianceIsLarge) {
   TrackedScan tracked;
   for (std::uint64_t k = 0; k <= 50; ++k) {
     const double x = 0.1 * static_cast<double>(k);
-    tracked = tracker.update(corridor.scan({x, 0.0, 0.0}, from_seconds(0.2 * static_cast<double>(k)), test::kOldLidar, noise, k), {1.03 * x, 0.0, 0.0});
+    tracked = tracker.update(
+        corridor.scan({x, 0.0, 0.0}, from_seconds(0.2 * static_cast<double>(k)), test::kOldLidar, noise, k),
+        {1.03 * x, 0.0, 0.0});
   }
   EXPECT_NEAR(tracked.T_local_body.x, 1.03 * 5.0, 0.05);
   EXPECT_NEAR(tracked.T_local_body.y, 0.0, 0.01);
@@ -79,7 +87,7 @@ TEST(ScanTracker, KeyframesComeEveryQuarterMeterAndSubmapsEveryThirtyKeyframes) 
     submaps += scan.is_submap_start ? 1 : 0;
     EXPECT_TRUE(scan.is_keyframe || !scan.is_submap_start);
   }
-  const double rest_m = 12.0 - 9 * 0.12;  // the first ten scans are all written
+  const double rest_m = 12.0 - 9 * 0.12;          // the first ten scans are all written
   EXPECT_NEAR(keyframes, 10 + rest_m / 0.36, 2);  // a step is 0.12 m, so every third
   EXPECT_EQ(submaps, 2);
 }

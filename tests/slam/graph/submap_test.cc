@@ -1,10 +1,10 @@
 #include "slam/graph/submap.h"
 
-#include <gtest/gtest.h>
-
 #include <memory>
 #include <set>
 #include <utility>
+
+#include <gtest/gtest.h>
 
 #include "tests/slam/graph/rendered_submap.h"
 
@@ -17,11 +17,13 @@ TEST(RenderedSubmap, IsInTheFrameOfItsFirstKeyframeToHalfACell) {
   room.add_box(-1.0, -2.0, 5.0, 6.0);
   const Pose2 T_world_first{2.0, 1.0, std::numbers::pi / 2};
   std::vector<Keyframe> keyframes;
-  std::vector<Pose2> poses = {{}, T_world_first, T_world_first * Pose2{0.5, 0.0, 0.3}};  // the first node is no part of it
+  std::vector<Pose2> poses = {
+      {}, T_world_first, T_world_first * Pose2{0.5, 0.0, 0.3}};  // the first node is no part of it
   for (const Pose2& pose : poses) keyframes.push_back({room.scan(pose, {}), {}});
   const RenderedSubmap submap({.first = 1, .last = 2}, keyframes, poses, {});
   ASSERT_GT(submap.surface_points().size(), 200U);  // 28 m of wall, a point every 0.1 m
-  for (const MatchPoint& point : submap.surface_points()) EXPECT_LT(room.distance_m(T_world_first * point.p_body), 0.025);  // in a corner a square has both walls
+  for (const MatchPoint& point : submap.surface_points())
+    EXPECT_LT(room.distance_m(T_world_first * point.p_body), 0.025);  // in a corner a square has both walls
 }
 
 TEST(RenderedSubmap, HasOneSurfacePointForEveryTwoByTwoCells) {

@@ -1,12 +1,12 @@
 #include "slam/rbpf/grid_slam.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 
-#include "core/geometry/angles.h"
+#include <gtest/gtest.h>
+
 #include "core/error.h"
+#include "core/geometry/angles.h"
 #include "tests/slam/street_walk.h"
 #include "tests/support/pose_near.h"
 
@@ -36,8 +36,7 @@ struct Outcome {
 };
 
 /// Five scans a second, the first `num_steps` of the walk out and back, past walkers and a car.
-Outcome walk_street(std::uint64_t seed, const GridSlamSettings& settings = {},
-                    std::size_t num_steps = 100'000) {
+Outcome walk_street(std::uint64_t seed, const GridSlamSettings& settings = {}, std::size_t num_steps = 100'000) {
   const test::RoomWorld street = test::make_street();
   std::vector<WalkStep> steps = test::make_walk({.period_s = 0.2}, 1);
   steps.resize(std::min(steps.size(), num_steps));
@@ -49,8 +48,7 @@ Outcome walk_street(std::uint64_t seed, const GridSlamSettings& settings = {},
     const WalkStep& step = steps[i];
     test::RoomWorld world = street;
     world.add(test::make_traffic(to_seconds(step.stamp)));
-    const SlamUpdate update =
-        slam.update(world.scan(step.T_world_body, step.stamp, lidar, noise, i), step.T_odom_body);
+    const SlamUpdate update = slam.update(world.scan(step.T_world_body, step.stamp, lidar, noise, i), step.T_odom_body);
     const double error_m = (update.T_map_body.position() - step.T_start_body.position()).norm();
     const double heading = wrap_angle(update.T_map_body.yaw - step.T_start_body.yaw);
     outcome.rmse_m += error_m * error_m;
@@ -63,8 +61,7 @@ Outcome walk_street(std::uint64_t seed, const GridSlamSettings& settings = {},
   }
   outcome.rmse_m = std::sqrt(outcome.rmse_m / static_cast<double>(steps.size()));
   outcome.heading_rmse_rad = std::sqrt(outcome.heading_rmse_rad / static_cast<double>(steps.size()));
-  outcome.odometry_end_error_m =
-      (steps.back().T_odom_body.position() - steps.back().T_start_body.position()).norm();
+  outcome.odometry_end_error_m = (steps.back().T_odom_body.position() - steps.back().T_start_body.position()).norm();
 
   const OccupancyGrid map = slam.map();
   const Pose2 T_world_map = steps.front().T_world_body;
@@ -205,8 +202,7 @@ TEST(GridSlam, AWalkerWhoCrossesTheRoomIsNotInTheMap) {
   const OccupancyGrid map = slam.map();
   int strays = 0;
   for (double y = -2.0; y < 4.0; y += 0.05) {
-    for (double x = 1.5; x < 2.5; x += 0.05)
-      strays += map.at(map.geometry().cell_at({x, y})) == kOccupied ? 1 : 0;
+    for (double x = 1.5; x < 2.5; x += 0.05) strays += map.at(map.geometry().cell_at({x, y})) == kOccupied ? 1 : 0;
   }
   EXPECT_LE(strays, 10) << "where it stood last";
 }

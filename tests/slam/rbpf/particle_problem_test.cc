@@ -1,9 +1,9 @@
 #include "slam/rbpf/particle_problem.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <limits>
+
+#include <gtest/gtest.h>
 
 #include "slam/particle_filter.h"
 #include "slam/scan_integration.h"
@@ -42,12 +42,14 @@ PoseGaussian wrong_prediction() {
 
 double mean_error_m(const std::string& optimizer, const Start& start) {
   std::vector<Particle> particles(20, {.T_map_body = {}, .map = start.map});
-  RbpfParticleProblem step(particles, std::vector<PoseGaussian>(particles.size(), wrong_prediction()), start.points, 0.2, start.matching);
+  RbpfParticleProblem step(particles, std::vector<PoseGaussian>(particles.size(), wrong_prediction()), start.points,
+                           0.2, start.matching);
   std::vector<double> log_weights(particles.size(), 0.0);
   RandomSequence random(RandomStream(3, "test/particles"), 0);
   propagate_and_weight(step, make_components({.optimizer = optimizer}), random, log_weights);
   double error_m = 0.0;
-  for (const Particle& particle : particles) error_m += particle.T_map_body.position().norm() / static_cast<double>(particles.size());
+  for (const Particle& particle : particles)
+    error_m += particle.T_map_body.position().norm() / static_cast<double>(particles.size());
   return error_m;
 }
 
@@ -68,12 +70,14 @@ TEST(RbpfParticleProblem, SwarmsReduceTheErrorOfOdometrySamplesByAThird) {
   const Start start = start_of_the_street();
   const double drawn_m = mean_error_m("none", start);
   EXPECT_NEAR(drawn_m, 0.155, 0.05);
-  for (const char* optimizer : {"woa", "ba", "fa", "ifa", "scso", "iscso"}) EXPECT_LT(mean_error_m(optimizer, start), 0.67 * drawn_m) << optimizer;
+  for (const char* optimizer : {"woa", "ba", "fa", "ifa", "scso", "iscso"})
+    EXPECT_LT(mean_error_m(optimizer, start), 0.67 * drawn_m) << optimizer;
 }
 
 TEST(RbpfParticleProblem, AParticleThatIsAttractedByAnotherTakesItsMapAndAFractionOfItsIncrement) {
   const Start start = start_of_the_street();
-  std::vector<Particle> particles = {{.T_map_body = {}, .map = GridMap(0.05, 400.0)}, {.T_map_body = {}, .map = start.map}};
+  std::vector<Particle> particles = {{.T_map_body = {}, .map = GridMap(0.05, 400.0)},
+                                     {.T_map_body = {}, .map = start.map}};
   RbpfParticleProblem step(particles, {wrong_prediction(), wrong_prediction()}, start.points, 0.2, start.matching);
   step.commit(0, Eigen::Vector3d(2.0, 0.0, 0.0));
   step.commit(1, Eigen::Vector3d(0.0, 2.0, 0.0));
@@ -87,7 +91,8 @@ TEST(RbpfParticleProblem, AParticleThatIsAttractedByAnotherTakesItsMapAndAFracti
 TEST(ScanLogLikelihood, IsMaximalNearTheGroundTruthAndLowOutsideTheMap) {
   const Start start = start_of_the_street();
   const auto at = [&](const Pose2& pose) { return scan_log_likelihood(start.map, start.points, pose, start.matching); };
-  for (const Pose2& off : {Pose2{0.1, 0.0, 0.0}, Pose2{0.0, -0.1, 0.0}, Pose2{0.0, 0.0, 0.02}, Pose2{5.0, 3.0, 0.5}, Pose2{1000.0, 0.0, 0.0}}) {
+  for (const Pose2& off : {Pose2{0.1, 0.0, 0.0}, Pose2{0.0, -0.1, 0.0}, Pose2{0.0, 0.0, 0.02}, Pose2{5.0, 3.0, 0.5},
+                           Pose2{1000.0, 0.0, 0.0}}) {
     EXPECT_LT(at(off), at({})) << off.x << " " << off.y << " " << off.yaw;
   }
   EXPECT_LE(at({1000.0, 0.0, 0.0}), at({5.0, 3.0, 0.5}));

@@ -1,10 +1,9 @@
 #include "slam/rbpf/proposal.h"
 
-#include <gtest/gtest.h>
+#include <cmath>
 
 #include <Eigen/LU>
-
-#include <cmath>
+#include <gtest/gtest.h>
 
 #include "slam/scan_integration.h"
 #include "tests/support/pose_near.h"
@@ -44,8 +43,7 @@ TEST(LaplaceProposal, MovesToTheMatchAndHasASmallerCovarianceThanOdometry) {
   const Proposal proposal = propose(prediction, 0.02);
   EXPECT_THAT(proposal.posterior.mean, Pose2Near(kTruth, 0.005, 0.002));
   EXPECT_GT(proposal.inlier_ratio, 0.9);
-  for (int i = 0; i < 3; ++i)
-    EXPECT_LT(proposal.posterior.covariance(i, i), 0.1 * prediction.covariance(i, i)) << i;
+  for (int i = 0; i < 3; ++i) EXPECT_LT(proposal.posterior.covariance(i, i), 0.1 * prediction.covariance(i, i)) << i;
 }
 
 // Sigma^-1 = P^-1 + g H for two gains: the difference over the gains' is H, and at g = 0 only P is left.
@@ -60,8 +58,7 @@ TEST(LaplaceProposal, InformationIsProportionalToTheTempering) {
 
 TEST(LaplaceProposal, WithoutAMapStaysWithOdometry) {
   const PoseGaussian prediction = around({0.5, 0.0, 0.0});
-  const Proposal proposal =
-      laplace_proposal(GridMap(0.05, 100.0), look(), prediction.mean, prediction, 0.02, {});
+  const Proposal proposal = laplace_proposal(GridMap(0.05, 100.0), look(), prediction.mean, prediction, 0.02, {});
   EXPECT_THAT(proposal.posterior.mean, Pose2Near(prediction.mean, 0.0, 0.0));
   EXPECT_EQ(proposal.posterior.covariance, prediction.covariance);
   EXPECT_EQ(proposal.log_weight_increment, 0.0);

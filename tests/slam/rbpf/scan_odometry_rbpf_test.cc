@@ -1,8 +1,8 @@
 #include "slam/rbpf/scan_odometry_rbpf.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "slam/methods/mapper.h"
 #include "tests/slam/graph/office_world.h"
@@ -21,7 +21,8 @@ void map_drive(Mapping& mapping) {
   const RandomStream noise(1, "test/rbpf");
   const test::RoomWorld office = test::make_office();
   for (std::size_t k = 0; k < short_drive().size(); ++k) {
-    mapping.update(office.scan(short_drive()[k].T_world_body, short_drive()[k].stamp, test::kOldLidar, noise, k), short_drive()[k].T_odom_body);
+    mapping.update(office.scan(short_drive()[k].T_world_body, short_drive()[k].stamp, test::kOldLidar, noise, k),
+                   short_drive()[k].T_odom_body);
   }
   mapping.finish();
 }
@@ -29,7 +30,9 @@ void map_drive(Mapping& mapping) {
 double worst_error_m(const std::vector<Pose2>& path) {
   double worst = 0.0;
   for (std::size_t k = 0; k < path.size(); ++k) {
-    worst = std::max(worst, (path[k].position() - (short_drive()[0].T_world_body.inverse() * short_drive()[k].T_world_body).position()).norm());
+    worst = std::max(worst, (path[k].position() -
+                             (short_drive()[0].T_world_body.inverse() * short_drive()[k].T_world_body).position())
+                                .norm());
   }
   return worst;
 }

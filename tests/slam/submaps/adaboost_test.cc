@@ -1,10 +1,10 @@
 #include "slam/submaps/adaboost.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
+
+#include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "core/random.h"
@@ -29,7 +29,8 @@ LabeledFeatures make_square(int count, const std::function<bool(double, double)>
 
 int num_wrong(const BoostedStumps& model, const LabeledFeatures& data) {
   int wrong = 0;
-  for (std::size_t i = 0; i < data.examples.size(); ++i) wrong += model.margin(data.examples[i]) * data.labels[i] > 0.0 ? 0 : 1;
+  for (std::size_t i = 0; i < data.examples.size(); ++i)
+    wrong += model.margin(data.examples[i]) * data.labels[i] > 0.0 ? 0 : 1;
   return wrong;
 }
 
@@ -37,10 +38,12 @@ bool in_box(double x, double y) { return std::abs(x) < 0.6 && std::abs(y) < 0.5;
 
 // Six examples on a line, + + - + - -: the best stump has one wrong, the fourth. e = 1/6, vote 1/2 ln 5.
 TEST(AdaBoost, TheFirstStumpIsTheOneWithTheFewestWrong) {
-  const LabeledFeatures training{.names = {"x"}, .examples = {{0}, {1}, {2}, {3}, {4}, {5}}, .labels = {1, 1, -1, 1, -1, -1}};
+  const LabeledFeatures training{
+      .names = {"x"}, .examples = {{0}, {1}, {2}, {3}, {4}, {5}}, .labels = {1, 1, -1, 1, -1, -1}};
   const BoostingResult result = train_adaboost(training, {.rounds = 1});
   ASSERT_EQ(result.model.stumps.size(), 1U);
-  EXPECT_EQ(result.model.stumps[0], (DecisionStump{.feature = 0, .threshold = 1.5, .sign_above = -1, .weight = result.model.stumps[0].weight}));
+  EXPECT_EQ(result.model.stumps[0],
+            (DecisionStump{.feature = 0, .threshold = 1.5, .sign_above = -1, .weight = result.model.stumps[0].weight}));
   EXPECT_NEAR(result.model.stumps[0].weight, 0.5 * std::log(5.0), kExactTol);
   EXPECT_NEAR(result.errors[0], 1.0 / 6.0, kExactTol);
   EXPECT_NEAR(result.training_error, 1.0 / 6.0, kExactTol);
@@ -49,7 +52,8 @@ TEST(AdaBoost, TheFirstStumpIsTheOneWithTheFewestWrong) {
 
 // After the first round the fourth weighs 1/2, the others 1/10 each: "up to 3.5" has only the third wrong.
 TEST(AdaBoost, ThreeStumpsSeparateWhatNoneDoesAlone) {
-  const LabeledFeatures training{.names = {"x"}, .examples = {{0}, {1}, {2}, {3}, {4}, {5}}, .labels = {1, 1, -1, 1, -1, -1}};
+  const LabeledFeatures training{
+      .names = {"x"}, .examples = {{0}, {1}, {2}, {3}, {4}, {5}}, .labels = {1, 1, -1, 1, -1, -1}};
   const BoostingResult result = train_adaboost(training, {.rounds = 3});
   EXPECT_EQ(result.model.stumps.size(), 3U);
   EXPECT_EQ(result.model.stumps[1].threshold, 3.5);
@@ -68,14 +72,16 @@ TEST(AdaBoost, ABoxInASquareIsLearnedWithoutAMistakeByThirtyStumps) {
 
 // Sums of a function of x and one of y: what is right for two opposite quadrants is wrong for the other two.
 TEST(AdaBoost, StumpsCannotLearnOppositeQuadrantsButCanFromTheProduct) {
-  LabeledFeatures training{.names = {"x", "y"}, .examples = {{-1, -1}, {-1, 1}, {1, -1}, {1, 1}}, .labels = {1, -1, -1, 1}};
+  LabeledFeatures training{
+      .names = {"x", "y"}, .examples = {{-1, -1}, {-1, 1}, {1, -1}, {1, 1}}, .labels = {1, -1, -1, 1}};
   const BoostingResult none = train_adaboost(training, {});
   EXPECT_TRUE(none.model.stumps.empty()) << "every stump has half of them wrong";
   EXPECT_EQ(none.training_error, 1.0) << "who says nothing is wrong";
   training.names.push_back("xy");
   for (auto& example : training.examples) example.push_back(example[0] * example[1]);
   const BoostingResult one = train_adaboost(training, {});
-  EXPECT_EQ(one.model.stumps, (std::vector<DecisionStump>{{.feature = 2, .threshold = 0.0, .sign_above = 1, .weight = 1.0}}));
+  EXPECT_EQ(one.model.stumps,
+            (std::vector<DecisionStump>{{.feature = 2, .threshold = 0.0, .sign_above = 1, .weight = 1.0}}));
   EXPECT_EQ(one.training_error, 0.0);
 }
 
@@ -136,7 +142,8 @@ TEST(AdaBoost, BalancedClassesDetectTheRareOne) {
     training.examples.push_back({0.01 * i});
     training.labels.push_back(i > 50 && i % 10 == 5 ? 1 : -1);
   }
-  const auto plain = train_adaboost(training, {.rounds = 1}), balanced = train_adaboost(training, {.rounds = 1, .balance_classes = true});
+  const auto plain = train_adaboost(training, {.rounds = 1}),
+             balanced = train_adaboost(training, {.rounds = 1, .balance_classes = true});
   EXPECT_LT(plain.model.margin({0.75}), 0.0);
   EXPECT_GT(balanced.model.margin({0.75}), 0.0);
 }
@@ -145,10 +152,12 @@ TEST(AdaBoost, TheSameExamplesGiveTheSameModelAndOtherScalesTheSameVotes) {
   const LabeledFeatures training = make_square(200, in_box, 0.1);
   LabeledFeatures scaled = training;
   for (auto& example : scaled.examples) example[1] = 1000.0 * example[1] + 5.0;
-  const BoostingResult first = train_adaboost(training, {.rounds = 20}), second = train_adaboost(scaled, {.rounds = 20});
+  const BoostingResult first = train_adaboost(training, {.rounds = 20}),
+                       second = train_adaboost(scaled, {.rounds = 20});
   EXPECT_EQ(first.model, train_adaboost(training, {.rounds = 20}).model);
   EXPECT_EQ(first.errors, second.errors);
-  for (std::size_t i = 0; i < training.examples.size(); ++i) EXPECT_EQ(first.model.margin(training.examples[i]), second.model.margin(scaled.examples[i]));
+  for (std::size_t i = 0; i < training.examples.size(); ++i)
+    EXPECT_EQ(first.model.margin(training.examples[i]), second.model.margin(scaled.examples[i]));
 }
 
 TEST(BoostedStumps, TheMarginIsTheFractionOfVotes) {
@@ -172,12 +181,15 @@ TEST(AdaBoost, WrongExamplesAreRefusedByName) {
     }
     return "";
   };
-  EXPECT_EQ(complaint([](auto& t) { t.labels.pop_back(); }), "adaboost: 2 examples and 1 labels: numbers must be equal");
+  EXPECT_EQ(complaint([](auto& t) { t.labels.pop_back(); }),
+            "adaboost: 2 examples and 1 labels: numbers must be equal");
   EXPECT_EQ(complaint([](auto& t) { t.examples[1] = {1.0}; }), "adaboost: example 1: 1 features: must be 2");
-  EXPECT_EQ(complaint([](auto& t) { t.examples[1][1] = std::nan(""); }), "adaboost: example 1: y = nan: must be finite");
+  EXPECT_EQ(complaint([](auto& t) { t.examples[1][1] = std::nan(""); }),
+            "adaboost: example 1: y = nan: must be finite");
   EXPECT_EQ(complaint([](auto& t) { t.labels[0] = 0; }), "adaboost: example 0: label = 0: must be +1 or -1");
   EXPECT_EQ(complaint([](auto& t) { t.labels[0] = -1; }), "adaboost: no example has label 1: both labels are required");
-  EXPECT_EQ(complaint([](auto& t) { t = {.names = {"x"}, .examples = {}, .labels = {}}; }), "adaboost: no example has label 1: both labels are required");
+  EXPECT_EQ(complaint([](auto& t) { t = {.names = {"x"}, .examples = {}, .labels = {}}; }),
+            "adaboost: no example has label 1: both labels are required");
 }
 
 }  // namespace

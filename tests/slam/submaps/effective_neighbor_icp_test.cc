@@ -1,11 +1,11 @@
 #include "slam/submaps/effective_neighbor_icp.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 
-#include "core/geometry/angles.h"
+#include <gtest/gtest.h>
+
 #include "core/error.h"
+#include "core/geometry/angles.h"
 #include "tests/support/pose_near.h"
 #include "tests/support/submap_points.h"
 
@@ -44,7 +44,8 @@ Errors errors_of(const Points& target, const Points& source, const IcpSettings& 
   return errors;
 }
 
-// 10 pairs: six of 0.1 ... 0.6, four of 3, 5, 7, 9.1. Chord 0.1 + (k - 1); it is 5.1 at the sixth: 4.5 above it; 6.1 at the seventh: 3.1 above.
+// 10 pairs: six of 0.1 ... 0.6, four of 3, 5, 7, 9.1. Chord 0.1 + (k - 1); it is 5.1 at the sixth: 4.5 above it; 6.1 at
+// the seventh: 3.1 above.
 TEST(EffectiveThreshold, IsTheDistanceFarthestBelowTheChord) {
   EXPECT_EQ(effective_threshold({0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 3.0, 5.0, 7.0, 9.1}), 0.6);
 }
@@ -56,7 +57,9 @@ TEST(EffectiveThreshold, OfAnUpwardBentCurveIsThePaperRule) {
   EXPECT_EQ(effective_threshold(distances), 0.25);
   // Eq. 8 and its sentence as printed: the first k with D_k < D_(k-1), a_(k-1).
   for (std::size_t k = 1; k < distances.size(); ++k) {
-    const auto departure = [&](std::size_t i) { return distances.back() * static_cast<double>(i) / 100.0 - distances[i]; };
+    const auto departure = [&](std::size_t i) {
+      return distances.back() * static_cast<double>(i) / 100.0 - distances[i];
+    };
     if (departure(k) >= departure(k - 1)) continue;
     EXPECT_EQ(distances[k - 1], 0.25);
     break;
@@ -77,12 +80,14 @@ TEST(FitRigidMotion, RecoversAMotionExactly) {
     for (const auto& p : source) target.push_back(T * p);
     EXPECT_THAT(fit_rigid_motion(target, source), Pose2Near(T, 1e-12 * 100.0, kExactTol));
   }
-  EXPECT_THAT(fit_rigid_motion({{3.0, 4.0}}, {{1.0, 1.0}}), Pose2Near((Pose2{2.0, 3.0, 0.0}), kExactTol, kExactTol)) << "one pair says no angle";
+  EXPECT_THAT(fit_rigid_motion({{3.0, 4.0}}, {{1.0, 1.0}}), Pose2Near((Pose2{2.0, 3.0, 0.0}), kExactTol, kExactTol))
+      << "one pair says no angle";
 }
 
 // No pose around has a smaller sum: the closed form is the least squares of eq. 9.
 TEST(FitRigidMotion, IsTheLeastSquaresMotion) {
-  const Points target{{0.0, 0.0}, {2.0, 0.3}, {1.0, 3.0}, {-1.0, 1.0}}, source{{0.2, 0.1}, {1.9, 0.0}, {1.3, 2.7}, {-1.2, 0.8}};
+  const Points target{{0.0, 0.0}, {2.0, 0.3}, {1.0, 3.0}, {-1.0, 1.0}},
+      source{{0.2, 0.1}, {1.9, 0.0}, {1.3, 2.7}, {-1.2, 0.8}};
   const auto loss = [&](const Pose2& T) {
     double sum = 0.0;
     for (std::size_t i = 0; i < target.size(); ++i) sum += (T * source[i] - target[i]).squaredNorm();
@@ -109,19 +114,24 @@ TEST(AlignIcp, RecoversAMotionToANanometerWhereEveryPointHasItsPartner) {
   }
 }
 
-// Where the target ends, the source's farther points pull plain ICP away by meters; the effective neighbors stay within a decimeter as the paper has
-// them, and within 2 cm with the lines.
+// Where the target ends, the source's farther points pull plain ICP away by meters; the effective neighbors stay within
+// a decimeter as the paper has them, and within 2 cm with the lines.
 struct PartOverlap {
   double share, target_left_of_m;
 };
 class PartlyOverlapping : public ::testing::TestWithParam<PartOverlap> {};
 
 TEST_P(PartlyOverlapping, PlainIcpIsMetersOffAndEffectiveNeighborsAreNot) {
-  const Points target = test::yard_target_left_of(GetParam().target_left_of_m), source = test::yard_source_right_of(-3.0);
-  const auto has_partner = [&](const auto& p) { return std::ranges::any_of(target, [&](const auto& q) { return (kTruth * p - q).norm() < 0.15; }); };
-  ASSERT_NEAR(static_cast<double>(std::ranges::count_if(source, has_partner)) / static_cast<double>(source.size()), GetParam().share, 0.02);
+  const Points target = test::yard_target_left_of(GetParam().target_left_of_m),
+               source = test::yard_source_right_of(-3.0);
+  const auto has_partner = [&](const auto& p) {
+    return std::ranges::any_of(target, [&](const auto& q) { return (kTruth * p - q).norm() < 0.15; });
+  };
+  ASSERT_NEAR(static_cast<double>(std::ranges::count_if(source, has_partner)) / static_cast<double>(source.size()),
+              GetParam().share, 0.02);
 
-  const Errors plain = errors_of(target, source, {.use_effective_neighbors = false, .max_threshold_m = kNoLimit, .point_to_line = false});
+  const Errors plain = errors_of(
+      target, source, {.use_effective_neighbors = false, .max_threshold_m = kNoLimit, .point_to_line = false});
   EXPECT_GT(plain.smallest_m, 3.0);
   const Errors paper = errors_of(target, source, kPaper);
   EXPECT_LT(paper.largest_m, 0.12);
@@ -135,8 +145,11 @@ TEST_P(PartlyOverlapping, PlainIcpIsMetersOffAndEffectiveNeighborsAreNot) {
 }
 
 INSTANTIATE_TEST_SUITE_P(By, PartlyOverlapping,
-                         ::testing::Values(PartOverlap{0.52, 6.0}, PartOverlap{0.45, 5.0}, PartOverlap{0.35, 4.0}, PartOverlap{0.30, 3.0}),
-                         [](const auto& run) { return std::to_string(std::lround(100.0 * run.param.share)) + "Percent"; });
+                         ::testing::Values(PartOverlap{0.52, 6.0}, PartOverlap{0.45, 5.0}, PartOverlap{0.35, 4.0},
+                                           PartOverlap{0.30, 3.0}),
+                         [](const auto& run) {
+                           return std::to_string(std::lround(100.0 * run.param.share)) + "Percent";
+                         });
 
 TEST(AlignIcp, WithoutMinThresholdOnlyTheBestPairsAreUsed) {
   const Points target = test::yard_target_left_of(100.0), source = test::yard_source_right_of(-100.0);
@@ -159,7 +172,8 @@ TEST(AlignIcp, ACorridorConstrainsLateralPositionAndHeadingOnly) {
   RoomWorld corridor;
   corridor.add_wall(-40.0, -1.0, 40.0, -1.0).add_wall(-40.0, 1.0, 40.0, 1.0);
   const Points target = sample_walls(corridor, {}, {.std_m = 0.01, .seed = 1});
-  const Points source = sample_walls(corridor, {}, {.phase = 0.5, .std_m = 0.01, .seed = 2}, [](const auto& p) { return std::abs(p.x()) < 8.0; });
+  const Points source = sample_walls(corridor, {}, {.phase = 0.5, .std_m = 0.01, .seed = 2},
+                                     [](const auto& p) { return std::abs(p.x()) < 8.0; });
   const IcpSettings settings;
   const auto result = align_icp(IcpPoints(target, settings), IcpPoints(source, settings), {0.4, 0.1, 0.01}, settings);
   ASSERT_TRUE(result);
@@ -177,19 +191,23 @@ TEST(AlignIcp, OppositeFacesOfAWallAreNotAligned) {
     for (double x = x0; x < x1; x += 0.1) points.emplace_back(x, y);
     return points;
   };
-  const auto facing = [](const Points& points, double y) { return std::vector<Eigen::Vector2d>(points.size(), Eigen::Vector2d(0.0, y)); };
+  const auto facing = [](const Points& points, double y) {
+    return std::vector<Eigen::Vector2d>(points.size(), Eigen::Vector2d(0.0, y));
+  };
   const Points south = face(0.0, 0.0, 8.0), north = face(0.25, 0.0, 8.0);
   const IcpSettings settings;
   const auto blind = align_icp(IcpPoints(south, settings), IcpPoints(north, settings), {}, settings);
   ASSERT_TRUE(blind);
   EXPECT_NEAR(blind->T_target_source.y, -0.25, 0.01);  // one face taken for the other
-  EXPECT_FALSE(align_icp(IcpPoints(south, settings, facing(south, -1.0)), IcpPoints(north, settings, facing(north, 1.0)), {}, settings));
+  EXPECT_FALSE(align_icp(IcpPoints(south, settings, facing(south, -1.0)),
+                         IcpPoints(north, settings, facing(north, 1.0)), {}, settings));
 
   Points both = south;
   both.insert(both.end(), north.begin(), north.end());
   std::vector<Eigen::Vector2d> sides = facing(south, -1.0);
   for (std::size_t i = 0; i < north.size(); ++i) sides.emplace_back(0.0, 1.0);
-  const auto observed = align_icp(IcpPoints(both, settings, sides), IcpPoints(north, settings, facing(north, 1.0)), {0.0, -0.2, 0.0}, settings);
+  const auto observed = align_icp(IcpPoints(both, settings, sides), IcpPoints(north, settings, facing(north, 1.0)),
+                                  {0.0, -0.2, 0.0}, settings);
   ASSERT_TRUE(observed);
   EXPECT_NEAR(observed->T_target_source.y, 0.0, 0.01);  // though the other face was nearer
 }

@@ -1,15 +1,14 @@
 #include "slam/submaps/ndt.h"
 
-#include <gtest/gtest.h>
-
-#include <Eigen/Eigenvalues>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "core/geometry/angles.h"
+#include <Eigen/Eigenvalues>
+#include <gtest/gtest.h>
+
 #include "core/error.h"
+#include "core/geometry/angles.h"
 #include "tests/support/pose_near.h"
 #include "tests/support/submap_points.h"
 
@@ -26,7 +25,8 @@ const Pose2 kTruth = test::kYardTarget.inverse() * test::kYardSource;
 /// Share of the source's points that have one of the target within 15 cm.
 double overlap(const Points& target, const Points& source) {
   int near = 0;
-  for (const auto& p : source) near += std::ranges::any_of(target, [&](const auto& q) { return (kTruth * p - q).norm() < 0.15; }) ? 1 : 0;
+  for (const auto& p : source)
+    near += std::ranges::any_of(target, [&](const auto& q) { return (kTruth * p - q).norm() < 0.15; }) ? 1 : 0;
   return near / static_cast<double>(source.size());
 }
 
@@ -37,7 +37,8 @@ int num_found(const Points& target, const Points& source, double off_m, double o
   int found = 0;
   for (int i = 0; i < 18; ++i) {
     const double direction = 60.0 * kDegree * (i % 6), turn = off_rad * (i / 6 - 1);
-    const Pose2 start{kTruth.x + off_m * std::cos(direction), kTruth.y + off_m * std::sin(direction), kTruth.yaw + turn};
+    const Pose2 start{kTruth.x + off_m * std::cos(direction), kTruth.y + off_m * std::sin(direction),
+                      kTruth.yaw + turn};
     const auto result = align_ndt(ndt, source, start, settings);
     if (!result) continue;
     const Pose2 T_error = kTruth.inverse() * result->T_target_source;
@@ -46,8 +47,8 @@ int num_found(const Points& target, const Points& source, double off_m, double o
   return found;
 }
 
-// Four points at the corners of a square of 2 a about a node: every one counts by (1 - a/h)^2 there, h half the cell. Their mean is the node, their
-// covariance a^2 in either axis.
+// Four points at the corners of a square of 2 a about a node: every one counts by (1 - a/h)^2 there, h half the cell.
+// Their mean is the node, their covariance a^2 in either axis.
 TEST(NdtGrid, FourPointsAboutANodeAreANormalOfTheirMeanAndCovariance) {
   const double a = 0.25;
   const NdtGrid grid({{a, a}, {-a, a}, {a, -a}, {-a, -a}}, 2.0, 0.01);
@@ -77,10 +78,15 @@ TEST(NdtGrid, TheGradientEqualsFiniteDifferences) {
       constexpr double kStep = 1e-6;
       for (int k = 0; k < 3; ++k) {
         const auto value = [&](double step) {
-          return grid.score(source, {at.x + (k == 0 ? step : 0.0), at.y + (k == 1 ? step : 0.0), at.yaw + (k == 2 ? step : 0.0)}).value;
+          return grid
+              .score(source,
+                     {at.x + (k == 0 ? step : 0.0), at.y + (k == 1 ? step : 0.0), at.yaw + (k == 2 ? step : 0.0)})
+              .value;
         };
-        // The score has kinks where a point goes from cell to cell; of 700 points about one in a thousand steps meets one, so a slope may change a little.
-        EXPECT_NEAR((value(kStep) - value(-kStep)) / (2.0 * kStep), gradient[k], 1e-5 * (1.0 + gradient.norm())) << "cell " << grid.cell_m() << " of " << k;
+        // The score has kinks where a point goes from cell to cell; of 700 points about one in a thousand steps meets
+        // one, so a slope may change a little.
+        EXPECT_NEAR((value(kStep) - value(-kStep)) / (2.0 * kStep), gradient[k], 1e-5 * (1.0 + gradient.norm()))
+            << "cell " << grid.cell_m() << " of " << k;
       }
     }
   }
@@ -90,7 +96,8 @@ TEST(NdtGrid, TheScoreHasNoJumps) {
   const Points source = test::yard_source_right_of(-100.0);
   const NdtGrid grid(test::yard_target_left_of(100.0), 1.0, 0.15);
   double before = grid.score(source, kTruth).value;
-  for (int i = 1; i <= 2000; ++i) {  // 726 points; the steepest slope of a normal 0.15 m wide is 0.61 / 0.15 per meter, of a weight 2 per meter
+  for (int i = 1; i <= 2000; ++i) {  // 726 points; the steepest slope of a normal 0.15 m wide is 0.61 / 0.15 per meter,
+                                     // of a weight 2 per meter
     const double value = grid.score(source, {kTruth.x + 1e-3 * i, kTruth.y, kTruth.yaw}).value;
     EXPECT_LT(std::abs(value - before), 726 * 1e-3 * (0.61 / 0.15 + 2.0));
     before = value;
@@ -117,7 +124,8 @@ TEST(NdtGrid, PointsThatAreNotNumbersOrTooFarApartAreRefused) {
     return "";
   };
   EXPECT_EQ(complaint({{0.0, 0.0}, {std::nan(""), 1.0}}), "point (nan, 1): must be finite");
-  EXPECT_EQ(complaint({{0.0, 0.0}, {1e9, 1.0}}), "ndt: lattice of 2000000002 nodes of 0.5 m along an axis: must be at most 4000");
+  EXPECT_EQ(complaint({{0.0, 0.0}, {1e9, 1.0}}),
+            "ndt: lattice of 2000000002 nodes of 0.5 m along an axis: must be at most 4000");
 }
 
 // Positions to 5 cm, for walls sampled every 10 cm with 1 cm of noise.
@@ -143,7 +151,8 @@ TEST(AlignNdt, ReportsTheFit) {
   ASSERT_TRUE(result);
   EXPECT_THAT(result->T_target_source, Pose2Near(kTruth, 0.01, 0.1 * kDegree));
   EXPECT_TRUE(result->converged);
-  // Along a straight wall a cell's points weigh 1 - |u|/h at u from its node: variance h^2/6, and the mean score is 2 int_0^1 (1 - t) exp(-3 t^2) dt = 0.692.
+  // Along a straight wall a cell's points weigh 1 - |u|/h at u from its node: variance h^2/6, and the mean score is 2
+  // int_0^1 (1 - t) exp(-3 t^2) dt = 0.692.
   EXPECT_NEAR(result->score, 0.692, 0.03);
   Points stray = source;
   for (const auto& p : source) stray.push_back(p + Eigen::Vector2d(100.0, 0.0));
@@ -151,7 +160,8 @@ TEST(AlignNdt, ReportsTheFit) {
   all.max_points = 10000;
   const auto half = align_ndt(ndt, stray, kTruth, all);
   ASSERT_TRUE(half);
-  EXPECT_NEAR(half->score, 0.5 * align_ndt(ndt, source, kTruth, all)->score, 1e-6) << "points without a partner count nothing";
+  EXPECT_NEAR(half->score, 0.5 * align_ndt(ndt, source, kTruth, all)->score, 1e-6)
+      << "points without a partner count nothing";
 }
 
 TEST(AlignNdt, ACorridorDoesNotConstrainTheLongitudinalPosition) {

@@ -1,8 +1,8 @@
 #include "slam/submaps/neighbor_examples.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
+
+#include <gtest/gtest.h>
 
 #include "slam/submaps/pair_features.h"
 #include "tests/slam/submaps/submap_drive.h"
@@ -34,7 +34,8 @@ TEST(NeighborExamples, AreOfBothKindsAndFinite) {
 
 TEST(NeighborExamples, AModelTrainedOnOneLapRecognizesNeighborsOnTheNextWithAPrecisionOf95Percent) {
   const BoostedStumps model = train_adaboost(examples_of(office_drive(), {}), {}).model;
-  const test::SubmapDrive other = test::map_by_submaps(test::make_office(), test::office_rounds(1), {.speed_mps = 0.8, .odometry_scale = -0.02}, {}, {}, 2);
+  const test::SubmapDrive other = test::map_by_submaps(test::make_office(), test::office_rounds(1),
+                                                       {.speed_mps = 0.8, .odometry_scale = -0.02}, {}, {}, 2);
   const LabeledFeatures trial = examples_of(other, {.predictions = 2});
   int right = 0, wrong = 0, missed = 0;
   for (std::size_t i = 0; i < trial.labels.size(); ++i) {
@@ -48,7 +49,8 @@ TEST(NeighborExamples, AModelTrainedOnOneLapRecognizesNeighborsOnTheNextWithAPre
 }
 
 TEST(NeighborExamples, TheSameSeedGivesTheSame) {
-  EXPECT_EQ(examples_of(office_drive(), {.predictions = 1}).examples, examples_of(office_drive(), {.predictions = 1}).examples);
+  EXPECT_EQ(examples_of(office_drive(), {.predictions = 1}).examples,
+            examples_of(office_drive(), {.predictions = 1}).examples);
 }
 
 }  // namespace

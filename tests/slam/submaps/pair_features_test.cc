@@ -1,11 +1,11 @@
 #include "slam/submaps/pair_features.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <set>
 #include <utility>
+
+#include <gtest/gtest.h>
 
 #include "core/geometry/angles.h"
 #include "slam/submaps/adaboost.h"
@@ -20,7 +20,8 @@ using Points = std::vector<Eigen::Vector2d>;
 
 constexpr double kExactTol = 1e-9;  // algebra, some of it through a histogram
 
-std::vector<double> pair_features(const SubmapDescriptor& target, const SubmapDescriptor& source, const PoseGaussian& T_target_source, const NdtSettings& settings) {
+std::vector<double> pair_features(const SubmapDescriptor& target, const SubmapDescriptor& source,
+                                  const PoseGaussian& T_target_source, const NdtSettings& settings) {
   return compare_submaps(target, source, T_target_source, settings).features;
 }
 
@@ -45,7 +46,8 @@ SubmapDescriptor describe_yard(const Pose2& T_world_submap, std::uint64_t seed) 
 }
 
 PoseGaussian prediction_of(const Pose2& T_target_source, double std_m, double std_rad) {
-  return {.mean = T_target_source, .covariance = Eigen::Vector3d(std_m * std_m, std_m * std_m, std_rad * std_rad).asDiagonal()};
+  return {.mean = T_target_source,
+          .covariance = Eigen::Vector3d(std_m * std_m, std_m * std_m, std_rad * std_rad).asDiagonal()};
 }
 
 /// Two submaps of the yard, 4 m apart, that see about the same.
@@ -83,17 +85,22 @@ TEST(PairFeatures, OfTwoSquaresEqualTheirGeometry) {
 TEST(PairFeatures, TheCenterIsAsUncertainAsItsArmIsLong) {
   Points far = square_outline();
   for (auto& p : far) p.x() += 10.0;
-  const SubmapDescriptor near = describe_submap(square_outline(), GridMap(0.05, 100.0), {}), away = describe_submap(far, GridMap(0.05, 100.0), {});
+  const SubmapDescriptor near = describe_submap(square_outline(), GridMap(0.05, 100.0), {}),
+                         away = describe_submap(far, GridMap(0.05, 100.0), {});
   const auto features = pair_features(near, away, prediction_of({-10.0, 0.0, 0.0}, 0.0, 0.1), {});
   EXPECT_NEAR(value(features, "center_std"), (away.center.norm() * 0.1) / (near.radius_m + away.radius_m), kExactTol);
 }
 
 TEST(PairFeatures, OfNeighborsIndicateNeighbors) {
   const SubmapDescriptor target = describe_yard(kTarget, 1), source = describe_yard(kSource, 2);
-  const auto features = pair_features(target, source, prediction_of({kTruth.x + 0.8, kTruth.y - 0.6, kTruth.yaw + 5.0 * kDegree}, 0.7, 4.0 * kDegree), {});
+  const auto features = pair_features(
+      target, source, prediction_of({kTruth.x + 0.8, kTruth.y - 0.6, kTruth.yaw + 5.0 * kDegree}, 0.7, 4.0 * kDegree),
+      {});
   EXPECT_GT(value(features, "hull_overlap"), 0.8);
-  EXPECT_GT(value(features, "seen_overlap"), 0.6) << "through the gate and between posts each sees what the other does not";
-  EXPECT_LT(value(features, "aligned_mahalanobis"), 3.0) << "0.8 and 0.6 m off, 0.7 m of standard deviation; 1.25 of the angle's";
+  EXPECT_GT(value(features, "seen_overlap"), 0.6)
+      << "through the gate and between posts each sees what the other does not";
+  EXPECT_LT(value(features, "aligned_mahalanobis"), 3.0)
+      << "0.8 and 0.6 m off, 0.7 m of standard deviation; 1.25 of the angle's";
   EXPECT_GT(value(features, "aligned_mahalanobis"), 1.0);
   EXPECT_GT(value(features, "aligned_agreement"), 0.9);
   EXPECT_GT(value(features, "score_aligned"), 0.4);
@@ -104,20 +111,23 @@ TEST(PairFeatures, OfNonNeighborsIndicateNonNeighbors) {
   RoomWorld hall;
   hall.add_box(-14.0, -9.0, 5.0, 3.0);
   for (int i = -3; i <= 0; ++i) hall.add_post(4.0 * i + 1.0, -2.0, 0.4).add_post(4.0 * i + 1.0, -7.5, 0.4);
-  const SubmapDescriptor target = describe_yard(kTarget, 1), source = describe(see_submap(hall, kSource, short_walk(kSource), 2));
+  const SubmapDescriptor target = describe_yard(kTarget, 1),
+                         source = describe(see_submap(hall, kSource, short_walk(kSource), 2));
   const auto features = pair_features(target, source, prediction_of(kTruth, 0.7, 4.0 * kDegree), {});
   EXPECT_GT(value(features, "hull_overlap"), 0.5) << "by the prediction alone they would be neighbors";
   EXPECT_LT(value(features, "aligned_agreement"), 0.7);
 }
 
-// A room of 10 m, and the same with a wall of 4 m, 2 m before the lidar, that hides one side: of 30 + 4 m that the second sees the first says that 4 are free.
-// All 30 of the first that the second can judge agree; the smaller one counts.
+// A room of 10 m, and the same with a wall of 4 m, 2 m before the lidar, that hides one side: of 30 + 4 m that the
+// second sees the first says that 4 are free. All 30 of the first that the second can judge agree; the smaller one
+// counts.
 TEST(PairFeatures, AgreementIsThatOfTheOneWhoDisagrees) {
   RoomWorld room, divided;
   room.add_box(-5.02, -5.02, 5.02, 5.02);  // in the middle of cells: with 1 cm of noise one row of them is a wall
   divided.add(room).add_wall(2.02, -2.02, 2.02, 2.02);
   const std::vector<Pose2> still(3);
-  const SubmapDescriptor before = describe(see_submap(room, {}, still, 1)), after = describe(see_submap(divided, {}, still, 2));
+  const SubmapDescriptor before = describe(see_submap(room, {}, still, 1)),
+                         after = describe(see_submap(divided, {}, still, 2));
   const PoseGaussian prediction = prediction_of({0.1, 0.1, 0.01}, 0.1, 0.01);
   EXPECT_NEAR(value(pair_features(before, after, prediction, {}), "aligned_agreement"), 30.0 / 34.0, 0.03);
   EXPECT_NEAR(value(pair_features(after, before, prediction, {}), "aligned_agreement"), 30.0 / 34.0, 0.03);
@@ -135,7 +145,8 @@ TEST(PairFeatures, FourNeedNoPose) {
   }
 }
 
-// The source's frame lies elsewhere in it: 7 m away, turned by 35 degrees. What is computed from points is the same; maps are drawn anew on other cells.
+// The source's frame lies elsewhere in it: 7 m away, turned by 35 degrees. What is computed from points is the same;
+// maps are drawn anew on other cells.
 TEST(PairFeatures, DoNotDependOnTheFrameOfASubmap) {
   const Pose2 T_source_other{5.0, -5.0, 35.0 * kDegree};
   const SubmapDescriptor target = describe_yard(kTarget, 1), source = describe_yard(kSource, 2);
@@ -153,17 +164,20 @@ TEST(PairFeatures, DoNotDependOnTheFrameOfASubmap) {
 TEST(PairFeatures, TwiceAsLargeIsTheSame) {
   Points twice = square_outline();
   for (auto& p : twice) p *= 2.0;
-  const SubmapDescriptor small = describe_submap(square_outline(), GridMap(0.05, 100.0), {}), large = describe_submap(twice, GridMap(0.05, 100.0), {});
+  const SubmapDescriptor small = describe_submap(square_outline(), GridMap(0.05, 100.0), {}),
+                         large = describe_submap(twice, GridMap(0.05, 100.0), {});
   const auto of_small = pair_features(small, small, prediction_of({0.7, 0.2, 0.3}, 0.2, 0.05), {});
   const auto of_large = pair_features(large, large, prediction_of({1.4, 0.4, 0.3}, 0.4, 0.05), {});
-  for (const char* name : {"center_distance", "center_mahalanobis", "center_std", "hull_overlap", "radius_ratio", "point_ratio"}) {
+  for (const char* name :
+       {"center_distance", "center_mahalanobis", "center_std", "hull_overlap", "radius_ratio", "point_ratio"}) {
     EXPECT_NEAR(value(of_small, name), value(of_large, name), 1e-6) << name;
   }
 }
 
 TEST(PairFeatures, AreFiniteWhateverTheSubmaps) {
   const GridMap nothing(0.05, 100.0);
-  const SubmapDescriptor line = describe_submap({{0, 0}, {1, 1}, {2, 2}}, nothing, {}), spot = describe_submap({{1, 1}, {1, 1}, {1, 1}}, nothing, {});
+  const SubmapDescriptor line = describe_submap({{0, 0}, {1, 1}, {2, 2}}, nothing, {}),
+                         spot = describe_submap({{1, 1}, {1, 1}, {1, 1}}, nothing, {});
   for (const PoseGaussian& prediction : {prediction_of({}, 0.0, 0.0), prediction_of({1e6, -1e6, 3.0}, 1e6, 100.0)}) {
     for (const auto& [target, source] : {std::pair(&line, &spot), {&spot, &line}, {&spot, &spot}}) {
       const auto features = pair_features(*target, *source, prediction, {});
@@ -186,7 +200,8 @@ RoomWorld make_site(std::uint64_t seed) {
   return site;
 }
 
-/// Pairs of submaps of a site, half of them neighbors; predictions are off by 1 m and 5 degrees (one standard deviation) and say all the same of strangers.
+/// Pairs of submaps of a site, half of them neighbors; predictions are off by 1 m and 5 degrees (one standard
+/// deviation) and say all the same of strangers.
 LabeledFeatures make_pairs(std::uint64_t seed, int num_pairs) {
   const RoomWorld site = make_site(seed);
   const RandomStream random(seed, "test/pairs");
@@ -197,11 +212,14 @@ LabeledFeatures make_pairs(std::uint64_t seed, int num_pairs) {
     const Pose2 T_world_target{30.0 * u[0] - 15.0, 30.0 * u[1] - 15.0, 6.28 * u[2]};
     const Pose2 T_target_source{12.0 * v[0] - 6.0, 12.0 * v[1] - 6.0, 6.28 * v[2]};
     const bool are_neighbors = i % 2 == 0;
-    const Pose2 T_world_source = are_neighbors ? T_world_target * T_target_source : Pose2{-T_world_target.x, -T_world_target.y, 6.28 * u[3]};
+    const Pose2 T_world_source =
+        are_neighbors ? T_world_target * T_target_source : Pose2{-T_world_target.x, -T_world_target.y, 6.28 * u[3]};
     const SubmapDescriptor target = describe(see_submap(site, T_world_target, short_walk(T_world_target), 2 * tick)),
-                      source = describe(see_submap(site, T_world_source, short_walk(T_world_source), 2 * tick + 1));
+                           source =
+                               describe(see_submap(site, T_world_source, short_walk(T_world_source), 2 * tick + 1));
     if (!are_neighbors && (T_world_target.position() - T_world_source.position()).norm() < 12.0) continue;
-    const Pose2 predicted{T_target_source.x + error[0], T_target_source.y + error[1], wrap_angle(T_target_source.yaw + 5.0 * kDegree * error[2])};
+    const Pose2 predicted{T_target_source.x + error[0], T_target_source.y + error[1],
+                          wrap_angle(T_target_source.yaw + 5.0 * kDegree * error[2])};
     pairs.examples.push_back(pair_features(target, source, prediction_of(predicted, 1.0, 5.0 * kDegree), {}));
     pairs.labels.push_back(are_neighbors ? 1 : -1);
   }

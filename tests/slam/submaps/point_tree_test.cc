@@ -1,8 +1,8 @@
 #include "slam/submaps/point_tree.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "core/random.h"

@@ -27,8 +27,10 @@ PoseGaussian prediction_of(const Pose2& mean, double std_m, double std_rad) {
 
 // Four meters apart, predicted 0.3 m and 1 degree off.
 TEST(FindConstraint, NeighborsInTheOfficeAreConstrainedToTwoCentimeters) {
-  const SubmapSurfaces target = seen_from(test::make_office(), 10.0, 4.2, 1), source = seen_from(test::make_office(), 14.0, 4.2, 2);
-  const ConstraintResult result = find_constraint(target, source, prediction_of({4.25, 0.15, 0.017}, 0.3, 0.02), test::agreeing_neighbors(), {}, {});
+  const SubmapSurfaces target = seen_from(test::make_office(), 10.0, 4.2, 1),
+                       source = seen_from(test::make_office(), 14.0, 4.2, 2);
+  const ConstraintResult result = find_constraint(target, source, prediction_of({4.25, 0.15, 0.017}, 0.3, 0.02),
+                                                  test::agreeing_neighbors(), {}, {});
   ASSERT_TRUE(result.constraint);
   EXPECT_EQ(result.failure, ConstraintRejection::kNone);
   EXPECT_THAT(result.constraint->T_target_source, test::Pose2Near(Pose2{4.0, 0.0, 0.0}, 0.02, 0.003));
@@ -36,7 +38,8 @@ TEST(FindConstraint, NeighborsInTheOfficeAreConstrainedToTwoCentimeters) {
 
 TEST(FindConstraint, WithoutAModelTheyAreNotNeighbors) {
   const SubmapSurfaces submap = seen_from(test::make_office(), 10.0, 4.2, 1);
-  EXPECT_EQ(find_constraint(submap, submap, prediction_of({}, 0.1, 0.01), {}, {}, {}).failure, ConstraintRejection::kNotNeighbors);
+  EXPECT_EQ(find_constraint(submap, submap, prediction_of({}, 0.1, 0.01), {}, {}, {}).failure,
+            ConstraintRejection::kNotNeighbors);
 }
 
 // Doors every three meters: known to 0.3 m there is one place, known to 2 m there are others.
@@ -46,17 +49,23 @@ TEST(FindConstraint, AmongIdenticalDoorsAnAmbiguousMatchIsRejected) {
   SubmapConstraintSettings any;
   any.min_margin = -1.0;
   const BoostedStumps all = test::agreeing_neighbors();
-  const ConstraintResult sure = find_constraint(target, source, prediction_of({3.0, 0.0, 0.0}, 0.2, 0.01), all, {}, any);
+  const ConstraintResult sure =
+      find_constraint(target, source, prediction_of({3.0, 0.0, 0.0}, 0.2, 0.01), all, {}, any);
   ASSERT_TRUE(sure.constraint);
   EXPECT_THAT(sure.constraint->T_target_source, test::Pose2Near(Pose2{3.0, 0.0, 0.0}, 0.05, 0.005));
-  EXPECT_EQ(find_constraint(target, source, prediction_of({3.0, 0.0, 0.0}, 2.0, 0.01), all, {}, any).failure, ConstraintRejection::kAmbiguous);
+  EXPECT_EQ(find_constraint(target, source, prediction_of({3.0, 0.0, 0.0}, 2.0, 0.01), all, {}, any).failure,
+            ConstraintRejection::kAmbiguous);
 }
 
 TEST(FindConstraint, AMatchThatLeavesTheRecognizedPoseIsRejected) {
-  const SubmapSurfaces target = seen_from(test::make_office(), 10.0, 4.2, 1), source = seen_from(test::make_office(), 14.0, 4.2, 2);
+  const SubmapSurfaces target = seen_from(test::make_office(), 10.0, 4.2, 1),
+                       source = seen_from(test::make_office(), 14.0, 4.2, 2);
   SubmapConstraintSettings narrow;
   narrow.max_fine_shift_m = 0.0;
-  EXPECT_EQ(find_constraint(target, source, prediction_of({4.25, 0.15, 0.017}, 0.3, 0.02), test::agreeing_neighbors(), {}, narrow).failure, ConstraintRejection::kMismatch);
+  EXPECT_EQ(find_constraint(target, source, prediction_of({4.25, 0.15, 0.017}, 0.3, 0.02), test::agreeing_neighbors(),
+                            {}, narrow)
+                .failure,
+            ConstraintRejection::kMismatch);
 }
 
 }  // namespace

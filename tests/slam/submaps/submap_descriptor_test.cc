@@ -1,12 +1,12 @@
 #include "slam/submaps/submap_descriptor.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <numeric>
 
-#include "core/geometry/angles.h"
+#include <gtest/gtest.h>
+
 #include "core/error.h"
+#include "core/geometry/angles.h"
 #include "tests/support/submap_points.h"
 
 namespace patrol::slam::submap_descriptor_test {
@@ -40,14 +40,16 @@ TEST(SubmapDescriptor, OfTheCornersOfASquareEqualsItsGeometry) {
 
 TEST(SubmapDescriptor, FrameIndependentPartsStayWhenTheFrameMoves) {
   const Points points = sample_walls(make_yard(), {});
-  const SubmapDescriptor here = describe_submap(points, kNoMap, {}), there = describe_submap(moved(points, {30.0, -20.0, 2.2}), kNoMap, {});
+  const SubmapDescriptor here = describe_submap(points, kNoMap, {}),
+                         there = describe_submap(moved(points, {30.0, -20.0, 2.2}), kNoMap, {});
   EXPECT_NEAR(here.radius_m, there.radius_m, 1e-10);
   EXPECT_NEAR(polygon_area(here.hull), polygon_area(there.hull), 1e-9);
   EXPECT_LT(histogram_difference(here.distances, there.distances), 1e-9);
 }
 
 TEST(SubmapDescriptor, DirectionsRotateWithTheFrame) {
-  const Points points = sample_walls(make_yard(), {}, {.spacing_m = 0.11});  // none just so far apart as a neighborhood reaches
+  const Points points =
+      sample_walls(make_yard(), {}, {.spacing_m = 0.11});  // none just so far apart as a neighborhood reaches
   const SubmapDescriptor here = describe_submap(points, kNoMap, {});
   // 25 degrees are five bins of 5.
   const SubmapDescriptor turned = describe_submap(moved(points, {1.0, 2.0, 25.0 * kDegree}), kNoMap, {});

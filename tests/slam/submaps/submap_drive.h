@@ -8,7 +8,8 @@
 
 namespace patrol::test {
 
-/// Votes that need no training: whatever the matching lays together well, near to where it was predicted, are neighbors.
+/// Votes that need no training: whatever the matching lays together well, near to where it was predicted, are
+/// neighbors.
 inline BoostedStumps agreeing_neighbors() {
   return {.features = slam::pair_feature_names(),
           .stumps = {{.feature = 13, .threshold = 0.8, .sign_above = 1, .weight = 2.0},
@@ -23,7 +24,8 @@ struct SubmapDrive {
   double rms_error_m() const {
     const std::vector<Pose2> path = slam.path();
     double sum = 0.0;
-    for (std::size_t k = 0; k < path.size(); ++k) sum += (path[k].position() - (drive[0].T_world_body.inverse() * drive[k].T_world_body).position()).squaredNorm();
+    for (std::size_t k = 0; k < path.size(); ++k)
+      sum += (path[k].position() - (drive[0].T_world_body.inverse() * drive[k].T_world_body).position()).squaredNorm();
     return std::sqrt(sum / static_cast<double>(path.size()));
   }
   std::vector<Pose2> T_world_submap() const {
@@ -33,7 +35,8 @@ struct SubmapDrive {
   }
 };
 
-inline SubmapDrive map_by_submaps(const RoomWorld& world, const std::vector<Eigen::Vector2d>& corners, const DriveOptions& options, const slam::SubmapRbpfSettings& settings,
+inline SubmapDrive map_by_submaps(const RoomWorld& world, const std::vector<Eigen::Vector2d>& corners,
+                                  const DriveOptions& options, const slam::SubmapRbpfSettings& settings,
                                   const BoostedStumps& neighbors, std::uint64_t seed = 1) {
   SubmapDrive mapped{.drive = drive_along(corners, options), .slam = slam::SubmapRbpf(settings, neighbors, seed)};
   const RandomStream noise(seed, "test/submaps");

@@ -12,7 +12,8 @@ using test::agreeing_neighbors, test::map_by_submaps, test::SubmapDrive;
 
 int num_constraints(const SubmapRbpf& slam, int min_apart) {
   int constraints = 0;
-  for (const SubmapRbpf::Comparison& comparison : slam.comparisons()) constraints += comparison.result.constraint && comparison.source - comparison.target >= min_apart ? 1 : 0;
+  for (const SubmapRbpf::Comparison& comparison : slam.comparisons())
+    constraints += comparison.result.constraint && comparison.source - comparison.target >= min_apart ? 1 : 0;
   return constraints;
 }
 
@@ -30,8 +31,10 @@ TEST(SubmapRbpf, EveryConstraintOfTwoLapsIsCorrectToADecimeter) {
   const std::vector<Pose2> T_world_submap = mapped.T_world_submap();
   for (const SubmapRbpf::Comparison& comparison : mapped.slam.comparisons()) {
     if (!comparison.result.constraint) continue;
-    const Pose2 T_target_source = T_world_submap[static_cast<std::size_t>(comparison.target)].inverse() * T_world_submap[static_cast<std::size_t>(comparison.source)];
-    EXPECT_THAT(comparison.result.constraint->T_target_source, test::Pose2Near(T_target_source, 0.1, 0.02)) << comparison.target << " " << comparison.source;
+    const Pose2 T_target_source = T_world_submap[static_cast<std::size_t>(comparison.target)].inverse() *
+                                  T_world_submap[static_cast<std::size_t>(comparison.source)];
+    EXPECT_THAT(comparison.result.constraint->T_target_source, test::Pose2Near(T_target_source, 0.1, 0.02))
+        << comparison.target << " " << comparison.source;
   }
   EXPECT_GT(num_constraints(mapped.slam, 8), 8);
 }
@@ -39,13 +42,16 @@ TEST(SubmapRbpf, EveryConstraintOfTwoLapsIsCorrectToADecimeter) {
 // Ten drives up and down among doors three meters apart: a false joint would shift by a door.
 TEST(SubmapRbpf, AmongIdenticalDoorsNoFalseConstraintIsMadeInTenDrives) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    const SubmapDrive mapped = map_by_submaps(test::make_corridor_of_doors(), {{20.0, 0.0}, {40.0, 0.0}, {16.0, 0.0}, {20.0, 0.0}}, {.speed_mps = 1.0, .odometry_scale = 0.01}, {},
-                                              agreeing_neighbors(), seed);
+    const SubmapDrive mapped =
+        map_by_submaps(test::make_corridor_of_doors(), {{20.0, 0.0}, {40.0, 0.0}, {16.0, 0.0}, {20.0, 0.0}},
+                       {.speed_mps = 1.0, .odometry_scale = 0.01}, {}, agreeing_neighbors(), seed);
     const std::vector<Pose2> T_world_submap = mapped.T_world_submap();
     for (const SubmapRbpf::Comparison& comparison : mapped.slam.comparisons()) {
       if (!comparison.result.constraint) continue;
-      const Pose2 T_target_source = T_world_submap[static_cast<std::size_t>(comparison.target)].inverse() * T_world_submap[static_cast<std::size_t>(comparison.source)];
-      EXPECT_LT((comparison.result.constraint->T_target_source.position() - T_target_source.position()).norm(), 1.0) << seed;
+      const Pose2 T_target_source = T_world_submap[static_cast<std::size_t>(comparison.target)].inverse() *
+                                    T_world_submap[static_cast<std::size_t>(comparison.source)];
+      EXPECT_LT((comparison.result.constraint->T_target_source.position() - T_target_source.position()).norm(), 1.0)
+          << seed;
     }
     EXPECT_LT(mapped.rms_error_m(), 0.3) << seed;
   }
@@ -60,18 +66,22 @@ TEST(SubmapRbpf, WithoutAModelThereAreNoNeighbors) {
 TEST(SubmapRbpf, ASubmapEndsAtItsMaximumDistanceAndTheNextBeginsThere) {
   SubmapRbpfSettings settings;
   settings.submaps.max_distance_m = 5.0;
-  const SubmapDrive mapped = map_by_submaps(test::make_office(), {{8.0, 4.2}, {30.0, 4.2}}, {.odometry_scale = 0.0, .odometry_drift_rad_per_m = 0.0}, settings, {});
+  const SubmapDrive mapped = map_by_submaps(test::make_office(), {{8.0, 4.2}, {30.0, 4.2}},
+                                            {.odometry_scale = 0.0, .odometry_drift_rad_per_m = 0.0}, settings, {});
   EXPECT_EQ(mapped.slam.first_scans().size(), 5U);  // 22 m
   const std::vector<Pose2>& nodes = mapped.slam.graph().T_map_node;
   ASSERT_EQ(nodes.size(), 5U);
   const std::vector<Pose2> path = mapped.slam.path();
-  for (std::size_t s = 0; s < nodes.size(); ++s) EXPECT_THAT(path[mapped.slam.first_scans()[s]], test::Pose2Near(nodes[s], 1e-9, 1e-9));
+  for (std::size_t s = 0; s < nodes.size(); ++s)
+    EXPECT_THAT(path[mapped.slam.first_scans()[s]], test::Pose2Near(nodes[s], 1e-9, 1e-9));
   EXPECT_THAT(nodes[1], test::Pose2Near(Pose2{5.0, 0.0, 0.0}, 0.15, 0.01));
 }
 
 TEST(SubmapRbpf, TheSameScansGiveTheSamePathToTheBit) {
   const std::vector<Eigen::Vector2d> corners = {{8.0, 4.2}, {24.0, 4.2}, {8.0, 4.2}};
-  const auto path = [&] { return map_by_submaps(test::make_office(), corners, {}, {}, agreeing_neighbors()).slam.path(); };
+  const auto path = [&] {
+    return map_by_submaps(test::make_office(), corners, {}, {}, agreeing_neighbors()).slam.path();
+  };
   const std::vector<Pose2> first = path(), second = path();
   ASSERT_EQ(first.size(), second.size());
   for (std::size_t k = 0; k < first.size(); ++k) EXPECT_EQ(first[k].vector(), second[k].vector()) << k;
@@ -81,7 +91,8 @@ TEST(SubmapRbpf, BeforeAnyScanItHasNoPathAndAfterOneItIsAtTheOrigin) {
   SubmapRbpf slam({}, {}, 1);
   EXPECT_TRUE(slam.path().empty());
   slam.finish();
-  EXPECT_THAT(slam.update(test::make_office().scan({8.0, 4.2, 0.0}, test::kOldLidar), {5.0, 5.0, 1.0}), test::Pose2Near(Pose2{}, 1e-12, 1e-12));
+  EXPECT_THAT(slam.update(test::make_office().scan({8.0, 4.2, 0.0}, test::kOldLidar), {5.0, 5.0, 1.0}),
+              test::Pose2Near(Pose2{}, 1e-12, 1e-12));
   EXPECT_EQ(slam.path().size(), 1U);
 }
 

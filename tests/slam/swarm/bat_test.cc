@@ -5,7 +5,8 @@
 namespace patrol::slam::bat_test {
 namespace {
 
-using test::ackley, test::for_all, test::rosenbrock, test::run_trial, test::sphere, test::successes, test::worst_distance;
+using test::ackley, test::for_all, test::rosenbrock, test::run_trial, test::sphere, test::successes,
+    test::worst_distance;
 
 const BatOptimizer kBats({.iterations = 50});
 
@@ -29,8 +30,10 @@ TEST(BatOptimizer, SilentBatsStay) {
 
 // Loudness that falls to nothing at the first success: every bat betters itself once at most.
 TEST(BatOptimizer, LoudnessThatIsLostAtOnceAllowsOneStepEach) {
-  const test::Trial once = run_trial(BatOptimizer({.iterations = 50, .loudness = 1.0, .loudness_decay = 0.0}), for_all(sphere), 20, 1);
-  const test::Trial often = run_trial(BatOptimizer({.iterations = 50, .loudness = 1.0, .loudness_decay = 1.0}), for_all(sphere), 20, 1);
+  const test::Trial once =
+      run_trial(BatOptimizer({.iterations = 50, .loudness = 1.0, .loudness_decay = 0.0}), for_all(sphere), 20, 1);
+  const test::Trial often =
+      run_trial(BatOptimizer({.iterations = 50, .loudness = 1.0, .loudness_decay = 1.0}), for_all(sphere), 20, 1);
   EXPECT_EQ(often.num_evaluations, 20 * 51);
   EXPECT_LT(once.num_evaluations, often.num_evaluations);
   EXPECT_GT(once.distance(), often.distance());

@@ -5,7 +5,8 @@
 namespace patrol::slam::firefly_test {
 namespace {
 
-using test::ackley, test::for_all, test::rosenbrock, test::run_trial, test::sphere, test::successes, test::worst_distance;
+using test::ackley, test::for_all, test::rosenbrock, test::run_trial, test::sphere, test::successes,
+    test::worst_distance;
 
 const FireflyOptimizer kFireflies({.iterations = 50});
 const ImprovedFireflyOptimizer kImproved({.iterations = 50});
@@ -18,7 +19,9 @@ TEST(FireflyOptimizer, FindsAShiftedSphereToThreeCentimetersIn1020Evaluations) {
 // All fly to the brightest: where it is in the wrong bump, its step of half a meter at most does not lead out.
 TEST(FireflyOptimizer, FindsAckleysFunnelInSixOfTenSeeds) { EXPECT_GE(successes(kFireflies, ackley, 0.03), 6); }
 
-TEST(FireflyOptimizer, FollowsRosenbrocksBentValleyInHalfOfTheSeeds) { EXPECT_GE(successes(kFireflies, rosenbrock, 0.2), 5); }
+TEST(FireflyOptimizer, FollowsRosenbrocksBentValleyInHalfOfTheSeeds) {
+  EXPECT_GE(successes(kFireflies, rosenbrock, 0.2), 5);
+}
 
 // No absorption, no random step, beta_0 = 1: the last flight of each ends at the brightest.
 TEST(FireflyOptimizer, WithoutAbsorptionOneFlightEndsAtTheBrightest) {
@@ -56,18 +59,23 @@ TEST(ImprovedFireflyOptimizer, FindsAShiftedSphereToThreeCentimetersIn1020Evalua
 // Its step does not shrink for the brightest, alpha = exp(-1): more find the way out of a wrong bump.
 TEST(ImprovedFireflyOptimizer, FindsAckleysFunnelInNineOfTenSeeds) { EXPECT_GE(successes(kImproved, ackley, 0.03), 9); }
 
-TEST(ImprovedFireflyOptimizer, FollowsRosenbrocksBentValleyInHalfOfTheSeeds) { EXPECT_GE(successes(kImproved, rosenbrock, 0.3), 5); }
+TEST(ImprovedFireflyOptimizer, FollowsRosenbrocksBentValleyInHalfOfTheSeeds) {
+  EXPECT_GE(successes(kImproved, rosenbrock, 0.3), 5);
+}
 
-// Far apart in the squared distance that the fitness is, I = 1 / (1 + 4): the dimmer's alpha is exp(-R / 5), the brighter's exp(-R). With R = 0 both are 1,
-// and a step is alpha (u - 1 / 2); without attraction it is all there is.
+// Far apart in the squared distance that the fitness is, I = 1 / (1 + 4): the dimmer's alpha is exp(-R / 5), the
+// brighter's exp(-R). With R = 0 both are 1, and a step is alpha (u - 1 / 2); without attraction it is all there is.
 TEST(ImprovedFireflyOptimizer, TheDimmersStepIsExpMinusRTimesTheRatioOfBrightness) {
   const ImprovedFireflyOptimizer fireflies({.iterations = 1, .attractiveness = 0.0, .noise_variance = 2.0});
-  Swarm swarm{.positions = {Eigen::Vector2d(1.0, 1.0), Eigen::Vector2d(2.0, 2.0)}, .fitness = {0.0, -8.0}};  // d = sqrt(2 x 8) = 4
+  Swarm swarm{.positions = {Eigen::Vector2d(1.0, 1.0), Eigen::Vector2d(2.0, 2.0)},
+              .fitness = {0.0, -8.0}};  // d = sqrt(2 x 8) = 4
   const Fitness likes_all = [calls = 1.0](std::size_t, const Position&) mutable { return calls += 1.0; };
   RandomSequence random(RandomStream(1, "test/swarm"), 0), draws(RandomStream(1, "test/swarm"), 0);
   fireflies.move(swarm, likes_all, random);
-  for (Eigen::Index k = 0; k < 2; ++k) EXPECT_NEAR(swarm.positions[0](k), 1.0 + std::exp(-2.0) * (draws.uniform() - 0.5), 1e-12) << k;
-  for (Eigen::Index k = 0; k < 2; ++k) EXPECT_NEAR(swarm.positions[1](k), 2.0 + std::exp(-2.0 / 5.0) * (draws.uniform() - 0.5), 1e-12) << k;
+  for (Eigen::Index k = 0; k < 2; ++k)
+    EXPECT_NEAR(swarm.positions[0](k), 1.0 + std::exp(-2.0) * (draws.uniform() - 0.5), 1e-12) << k;
+  for (Eigen::Index k = 0; k < 2; ++k)
+    EXPECT_NEAR(swarm.positions[1](k), 2.0 + std::exp(-2.0 / 5.0) * (draws.uniform() - 0.5), 1e-12) << k;
 }
 
 TEST(ImprovedFireflyOptimizer, NoMemberGetsWorse) { test::expect_nobody_worse(kImproved); }

@@ -9,7 +9,9 @@ namespace {
 
 Position at(double x, double y) { return Eigen::Vector2d(x, y); }
 
-Swarm four_members() { return {.positions = {at(0, 0), at(1, 0), at(2, 0), at(3, 0)}, .fitness = {-2.0, -1.0, -5.0, -1.0}}; }
+Swarm four_members() {
+  return {.positions = {at(0, 0), at(1, 0), at(2, 0), at(3, 0)}, .fitness = {-2.0, -1.0, -5.0, -1.0}};
+}
 
 // One, not three, is the first of two equals.
 TEST(Swarm, RanksMembersFromTheBestAndEqualsInOrder) {
@@ -31,12 +33,15 @@ TEST(Swarm, AcceptsOnlyImprovementsOfTheMembersOwnFitness) {
 TEST(Swarm, AcceptsNeitherAnEqualNorNotANumber) {
   Swarm swarm = four_members();
   EXPECT_FALSE(swarm.accept(0, at(7, 7), [](std::size_t, const Position&) { return -2.0; }));
-  EXPECT_FALSE(swarm.accept(0, at(7, 7), [](std::size_t, const Position&) { return std::numeric_limits<double>::quiet_NaN(); }));
+  EXPECT_FALSE(
+      swarm.accept(0, at(7, 7), [](std::size_t, const Position&) { return std::numeric_limits<double>::quiet_NaN(); }));
   EXPECT_EQ(swarm.positions[0], at(0, 0));
 }
 
 TEST(MakeSwarm, EvaluatesEachMemberOnceByItsOwnFitness) {
-  const Fitness fitness_of = [](std::size_t member, const Position& position) { return 10.0 * static_cast<double>(member) + position.x(); };
+  const Fitness fitness_of = [](std::size_t member, const Position& position) {
+    return 10.0 * static_cast<double>(member) + position.x();
+  };
   const Swarm swarm = make_swarm({at(1, 0), at(2, 0), at(3, 0)}, fitness_of);
   EXPECT_EQ(swarm.fitness, (std::vector<double>{1.0, 12.0, 23.0}));
 }
@@ -45,7 +50,8 @@ TEST(MakeSwarm, EvaluatesEachMemberOnceByItsOwnFitness) {
 TEST(TestFunctions, AreZeroAtTheOptimumAndLessATenthOfAMeterOff) {
   for (const auto& function : {test::sphere, test::rosenbrock, test::ackley}) {
     EXPECT_NEAR(function(test::kOptimum), 0.0, 1e-12);
-    for (const Eigen::Vector2d& aside : {Eigen::Vector2d(0.1, 0.0), Eigen::Vector2d(-0.1, 0.0), Eigen::Vector2d(0.0, 0.1), Eigen::Vector2d(0.0, -0.1)}) {
+    for (const Eigen::Vector2d& aside : {Eigen::Vector2d(0.1, 0.0), Eigen::Vector2d(-0.1, 0.0),
+                                         Eigen::Vector2d(0.0, 0.1), Eigen::Vector2d(0.0, -0.1)}) {
       EXPECT_LT(function(test::kOptimum + aside), -0.009);
     }
   }

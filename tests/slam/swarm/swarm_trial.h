@@ -1,12 +1,12 @@
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 #include "slam/swarm/swarm.h"
 
@@ -14,7 +14,8 @@ namespace patrol::test {
 
 using slam::Fitness, slam::Position, slam::Swarm, slam::SwarmOptimizer;
 
-/// Where the test functions have their optimum: off the origin, to which the papers' moves are drawn, since they multiply positions.
+/// Where the test functions have their optimum: off the origin, to which the papers' moves are drawn, since they
+/// multiply positions.
 inline const Eigen::Vector2d kOptimum(1.5, -2.0);
 
 // Functions to be made large, zero at kOptimum and negative elsewhere.
@@ -38,7 +39,8 @@ inline double ackley(const Position& p) {
 inline std::vector<Position> spread_out(std::size_t members, std::uint64_t seed) {
   const RandomStream stream(seed, "test/start");
   std::vector<Position> positions;
-  for (std::size_t i = 0; i < members; ++i) positions.push_back(Eigen::Vector2d(8.0 * stream.uniform(i) - 4.0, 8.0 * stream.uniform(i, 1) - 4.0));
+  for (std::size_t i = 0; i < members; ++i)
+    positions.push_back(Eigen::Vector2d(8.0 * stream.uniform(i) - 4.0, 8.0 * stream.uniform(i, 1) - 4.0));
   return positions;
 }
 
@@ -49,7 +51,8 @@ struct Trial {
   double distance() const { return (end.positions[end.best()] - kOptimum).norm(); }
 };
 
-inline Trial run_trial(const SwarmOptimizer& optimizer, const Fitness& fitness, std::size_t members, std::uint64_t seed) {
+inline Trial run_trial(const SwarmOptimizer& optimizer, const Fitness& fitness, std::size_t members,
+                       std::uint64_t seed) {
   Trial trial;
   const Fitness counted = [&](std::size_t member, const Position& position) {
     ++trial.num_evaluations;
@@ -66,12 +69,13 @@ Fitness for_all(Function function) {
   return [function](std::size_t, const Position& position) { return function(position); };
 }
 
-/// The farthest from the optimum that the best of 20 members ends, over seeds 1 to 10. To compare: the nearest of n places drawn evenly from the 8 x 8 is
-/// 4 / sqrt(n) off on average, 0.125 for the 1,020 judgements of 50 generations.
+/// The farthest from the optimum that the best of 20 members ends, over seeds 1 to 10. To compare: the nearest of n
+/// places drawn evenly from the 8 x 8 is 4 / sqrt(n) off on average, 0.125 for the 1,020 judgements of 50 generations.
 template <typename Function>
 double worst_distance(const SwarmOptimizer& optimizer, Function function) {
   double worst = 0.0;
-  for (std::uint64_t seed = 1; seed <= 10; ++seed) worst = std::max(worst, run_trial(optimizer, for_all(function), 20, seed).distance());
+  for (std::uint64_t seed = 1; seed <= 10; ++seed)
+    worst = std::max(worst, run_trial(optimizer, for_all(function), 20, seed).distance());
   return worst;
 }
 
@@ -79,7 +83,8 @@ double worst_distance(const SwarmOptimizer& optimizer, Function function) {
 template <typename Function>
 int successes(const SwarmOptimizer& optimizer, Function function, double tol) {
   int count = 0;
-  for (std::uint64_t seed = 1; seed <= 10; ++seed) count += run_trial(optimizer, for_all(function), 20, seed).distance() < tol ? 1 : 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed)
+    count += run_trial(optimizer, for_all(function), 20, seed).distance() < tol ? 1 : 0;
   return count;
 }
 
@@ -117,7 +122,8 @@ inline void expect_own_fitness(const SwarmOptimizer& optimizer) {
 }
 
 inline void expect_same_seed_same_result(const SwarmOptimizer& optimizer) {
-  const Trial first = run_trial(optimizer, for_all(rosenbrock), 12, 4), second = run_trial(optimizer, for_all(rosenbrock), 12, 4);
+  const Trial first = run_trial(optimizer, for_all(rosenbrock), 12, 4),
+              second = run_trial(optimizer, for_all(rosenbrock), 12, 4);
   EXPECT_EQ(first.end.positions, second.end.positions);
   EXPECT_EQ(first.end.fitness, second.end.fitness);
   EXPECT_NE(first.end.positions, run_trial(optimizer, for_all(rosenbrock), 12, 5).end.positions);

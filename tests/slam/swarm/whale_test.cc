@@ -5,7 +5,8 @@
 namespace patrol::slam::whale_test {
 namespace {
 
-using test::ackley, test::for_all, test::rosenbrock, test::run_trial, test::sphere, test::successes, test::worst_distance;
+using test::ackley, test::for_all, test::rosenbrock, test::run_trial, test::sphere, test::successes,
+    test::worst_distance;
 
 const WhaleOptimizer kWhales(50);
 
@@ -16,10 +17,12 @@ TEST(WhaleOptimizer, FindsAShiftedSphereToAMillimeterIn1020Evaluations) {
 
 TEST(WhaleOptimizer, FindsAckleysFunnelInTenOfTenSeeds) { EXPECT_EQ(successes(kWhales, ackley, 1e-3), 10); }
 
-TEST(WhaleOptimizer, FollowsRosenbrocksBentValleyInHalfOfTheSeeds) { EXPECT_GE(successes(kWhales, rosenbrock, 0.01), 5); }
+TEST(WhaleOptimizer, FollowsRosenbrocksBentValleyInHalfOfTheSeeds) {
+  EXPECT_GE(successes(kWhales, rosenbrock, 0.01), 5);
+}
 
-// Eqs. 2.1 to 2.8 with the same draws: a whale that encircles follows the best one only where |A| < 1, else any. The judge likes every move, so that the last
-// one is always taken; the best at the start is the second.
+// Eqs. 2.1 to 2.8 with the same draws: a whale that encircles follows the best one only where |A| < 1, else any. The
+// judge likes every move, so that the last one is always taken; the best at the start is the second.
 TEST(WhaleOptimizer, OneGenerationIsTheFormulasInAHundredSeeds) {
   int num_spirals = 0, num_encircling = 0, num_searching = 0;
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
@@ -38,7 +41,9 @@ TEST(WhaleOptimizer, OneGenerationIsTheFormulasInAHundredSeeds) {
       } else {
         ++num_spirals;
         const double l = 2.0 * draws.uniform() - 1.0;
-        for (Eigen::Index k = 0; k < 2; ++k) whale(k) = start[1](k) + std::abs(start[1](k) - whale(k)) * std::exp(l) * std::cos(2.0 * std::numbers::pi * l);
+        for (Eigen::Index k = 0; k < 2; ++k)
+          whale(k) =
+              start[1](k) + std::abs(start[1](k) - whale(k)) * std::exp(l) * std::cos(2.0 * std::numbers::pi * l);
       }
     }
     for (std::size_t i = 0; i < 3; ++i) EXPECT_LT((swarm.positions[i] - whales[i]).norm(), 1e-12) << seed << ", " << i;

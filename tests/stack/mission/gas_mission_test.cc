@@ -1,13 +1,12 @@
 #include "stack/mission/gas_mission.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <functional>
 #include <numbers>
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "core/random.h"
@@ -24,8 +23,7 @@ using ::testing::HasSubstr;
 
 constexpr double kPeriod_s = 0.1;
 
-Station make_station(const std::string& name, const Pose2& T_route_body,
-                     StationType type = StationType::kInspect) {
+Station make_station(const std::string& name, const Pose2& T_route_body, StationType type = StationType::kInspect) {
   Station station;
   station.name = name;
   station.type = type;
@@ -54,15 +52,19 @@ GasMissionSettings make_settings() {
   return settings;
 }
 
-/// A gas mission with its instrument, in the order of a control period: the instrument works on the task of the period before.
+/// A gas mission with its instrument, in the order of a control period: the instrument works on the task of the period
+/// before.
 class GasRound {
  public:
   GasRound(const GasMissionSettings& settings, Route route, const Pose3& T_body_gas, std::string order_text = "")
-      : mission_(settings, std::move(route), std::move(order_text)), instruments_(gas_meter(settings, T_body_gas), 1.0) {}
+      : mission_(settings, std::move(route), std::move(order_text)),
+        instruments_(gas_meter(settings, T_body_gas), 1.0) {}
 
-  MissionOutput step(Time now, const PoseEstimate& pose, NavigationFeedback feedback, const std::optional<GasReading>& newest_gas) {
+  MissionOutput step(Time now, const PoseEstimate& pose, NavigationFeedback feedback,
+                     const std::optional<GasReading>& newest_gas) {
     if (newest_gas) instruments_.add(*newest_gas, nullptr);
-    const InspectionProgress progress = instruments_.step(now, task_.inspection, {.T_level_body = {}, .T_map_body = pose.T_map_body}, output_);
+    const InspectionProgress progress =
+        instruments_.step(now, task_.inspection, {.T_level_body = {}, .T_map_body = pose.T_map_body}, output_);
     MissionOutput output = mission_.step(now, {.pose = pose, .navigation = feedback, .inspection = progress});
     std::vector<Event> events;
     for (const StackMessage& message : output_.take_messages()) events.push_back(std::get<Event>(message));
@@ -74,7 +76,8 @@ class GasRound {
   Event abort(Time now, EventKind kind, const std::string& text) { return mission_.abort(now, kind, text); }
 
  private:
-  static std::vector<std::unique_ptr<Instrument>> gas_meter(const GasMissionSettings& settings, const Pose3& T_body_gas) {
+  static std::vector<std::unique_ptr<Instrument>> gas_meter(const GasMissionSettings& settings,
+                                                            const Pose3& T_body_gas) {
     std::vector<std::unique_ptr<Instrument>> instruments;
     instruments.push_back(std::make_unique<GasInstrument>(gas_rules(settings), T_body_gas));
     return instruments;
@@ -131,8 +134,7 @@ MissionRecord run(GasRound& mission, const Gas& gas,
     }
     const double column = gas(tick, pose.T_map_body);
     if (!std::isnan(column)) {
-      newest_gas = GasReading{
-          .stamp = pose.stamp, .column_ppm_m = column, .path_length_m = kBeam_m, .mean_mg_m3 = 0.0};
+      newest_gas = GasReading{.stamp = pose.stamp, .column_ppm_m = column, .path_length_m = kBeam_m, .mean_mg_m3 = 0.0};
     }
     const MissionOutput output = mission.step(pose.stamp, pose, feedback, newest_gas);
     record.events.insert(record.events.end(), output.events.begin(), output.events.end());
@@ -147,9 +149,9 @@ double clean_air(int, const Pose2&) { return 20.0; }
 TEST(GasMission, WalksMeasuresAndCompletesInOrder) {
   GasRound mission(make_settings(), make_route(), {});
   const MissionRecord record = run(mission, clean_air);
-  EXPECT_THAT(record.kinds(),
-              ElementsAre(EventKind::kMissionStarted, EventKind::kStationReached, EventKind::kGasMeasured, EventKind::kStationReached,
-                          EventKind::kGasMeasured, EventKind::kStationReached, EventKind::kMissionCompleted));
+  EXPECT_THAT(record.kinds(), ElementsAre(EventKind::kMissionStarted, EventKind::kStationReached,
+                                          EventKind::kGasMeasured, EventKind::kStationReached, EventKind::kGasMeasured,
+                                          EventKind::kStationReached, EventKind::kMissionCompleted));
   EXPECT_EQ(record.events[1].subject, "first");
   EXPECT_EQ(record.events[3].subject, "second");
   EXPECT_EQ(record.events[5].subject, "home");  // nothing is measured there
@@ -158,7 +160,8 @@ TEST(GasMission, WalksMeasuresAndCompletesInOrder) {
 
 TEST(GasMission, NamesItsStationsWhenItStarts) {
   GasRound mission(make_settings(), make_route(), {}, "They should take 9 s.");
-  EXPECT_EQ(run(mission, clean_air).find(EventKind::kMissionStarted).text, "Mission started: 3 stations, first, second, home. They should take 9 s.");
+  EXPECT_EQ(run(mission, clean_air).find(EventKind::kMissionStarted).text,
+            "Mission started: 3 stations, first, second, home. They should take 9 s.");
 }
 
 // It arrives after three seconds and measures one and a half; the second station opens at the tenth.
@@ -168,7 +171,8 @@ TEST(GasMission, WaitsForAStationsWindowAndSaysHowLateItIs) {
   route.stations[1].earliest_s = 10.0;
   GasRound mission(make_settings(), route, {});
   const MissionRecord record = run(mission, clean_air);
-  EXPECT_NEAR(record.find(EventKind::kStationLate, "first").value, to_seconds(record.find(EventKind::kStationReached, "first").stamp) - 2.0, 1e-9);
+  EXPECT_NEAR(record.find(EventKind::kStationLate, "first").value,
+              to_seconds(record.find(EventKind::kStationReached, "first").stamp) - 2.0, 1e-9);
   EXPECT_EQ(record.count(EventKind::kStationLate), 1);
   EXPECT_LT(to_seconds(record.find(EventKind::kStationReached, "second").stamp), 10.0);
   EXPECT_NEAR(to_seconds(record.find(EventKind::kGasMeasured, "second").stamp), 10.0 + 0.5 + 1.0, kPeriod_s + 1e-9);
@@ -182,8 +186,7 @@ TEST(GasMission, StandsForItsStartWait) {
     EXPECT_FALSE(output.task.goal) << tick;
     EXPECT_TRUE(output.events.empty()) << tick;
   }
-  const MissionOutput output =
-      mission.step(from_seconds(1.0), {}, NavigationFeedback::kDriving, std::nullopt);
+  const MissionOutput output = mission.step(from_seconds(1.0), {}, NavigationFeedback::kDriving, std::nullopt);
   ASSERT_TRUE(output.task.goal);
   EXPECT_EQ(output.events.at(0).kind, EventKind::kMissionStarted);
   EXPECT_EQ(output.events.at(0).stamp, from_seconds(1.0));
@@ -214,11 +217,9 @@ TEST(GasMission, HoldsItsPlaceWhileItMeasures) {
   GasRound mission(make_settings(), make_route(), {});
   PoseEstimate pose;
   mission.step(from_seconds(1.0), pose, NavigationFeedback::kDriving, std::nullopt);
-  const MissionOutput arrived =
-      mission.step(from_seconds(2.0), pose, NavigationFeedback::kArrived, std::nullopt);
+  const MissionOutput arrived = mission.step(from_seconds(2.0), pose, NavigationFeedback::kArrived, std::nullopt);
   EXPECT_EQ(arrived.events.at(0).kind, EventKind::kStationReached);
-  const MissionOutput measuring =
-      mission.step(from_seconds(2.1), pose, NavigationFeedback::kArrived, std::nullopt);
+  const MissionOutput measuring = mission.step(from_seconds(2.1), pose, NavigationFeedback::kArrived, std::nullopt);
   ASSERT_TRUE(measuring.task.goal);
   EXPECT_EQ(measuring.task.goal->T_map_body.vector(), Eigen::Vector3d(3.0, 0.0, 0.0));
 }
@@ -245,13 +246,11 @@ TEST(GasMission, AlarmsOnlyTwoStandardErrorsBeyondTheThreshold) {
 // 60 ppm m, none may.
 TEST(GasMission, NeverAlarmsInFiveHundredStationsOfCleanAir) {
   Route route;
-  for (int i = 0; i < 500; ++i)
-    route.stations.push_back(make_station(fmt::format("s{}", i), {1.0 * i, 0.0, 0.0}));
+  for (int i = 0; i < 500; ++i) route.stations.push_back(make_station(fmt::format("s{}", i), {1.0 * i, 0.0, 0.0}));
   const RandomStream stream(11, "test/air");
   GasRound mission(make_settings(), route, {});
   const MissionRecord record = run(
-      mission,
-      [&](int tick, const Pose2&) { return 120.0 + 60.0 * stream.normal(static_cast<std::uint64_t>(tick)); },
+      mission, [&](int tick, const Pose2&) { return 120.0 + 60.0 * stream.normal(static_cast<std::uint64_t>(tick)); },
       nullptr, 1e5);
   EXPECT_EQ(record.count(EventKind::kGasMeasured), 500);
   EXPECT_EQ(record.count(EventKind::kGasAlarm), 0);
@@ -302,11 +301,11 @@ TEST(GasMission, ABeamTurnedToTheLeftPlacesTheLeakOnTheLeft) {
 
 TEST(GasMission, AStationOutOfReachIsLeftOutAndTheMissionFails) {
   GasRound mission(make_settings(), make_route(), {});
-  const MissionRecord record = run(mission, clean_air, [](const NavigationGoal& goal) {
-    return goal.T_map_body.y < 1.0;
-  });  // not "second"
-  EXPECT_THAT(record.kinds(), ElementsAre(EventKind::kMissionStarted, EventKind::kStationReached, EventKind::kGasMeasured,
-                                          EventKind::kStationFailed, EventKind::kStationReached, EventKind::kMissionFailed));
+  const MissionRecord record =
+      run(mission, clean_air, [](const NavigationGoal& goal) { return goal.T_map_body.y < 1.0; });  // not "second"
+  EXPECT_THAT(record.kinds(),
+              ElementsAre(EventKind::kMissionStarted, EventKind::kStationReached, EventKind::kGasMeasured,
+                          EventKind::kStationFailed, EventKind::kStationReached, EventKind::kMissionFailed));
   EXPECT_EQ(record.find(EventKind::kStationFailed).subject, "second");
   EXPECT_THAT(record.find(EventKind::kMissionFailed).text, HasSubstr("1 of 3 stations"));
 }
@@ -317,15 +316,15 @@ TEST(GasMission, AStationWithoutReadingsIsGivenUpAfterItsLimit) {
   const MissionRecord record = run(mission, [](int, const Pose2&) { return std::nan(""); });
   EXPECT_EQ(record.count(EventKind::kStationFailed), 2);
   EXPECT_EQ(record.count(EventKind::kGasMeasured), 0);
-  EXPECT_EQ(record.find(EventKind::kStationFailed).stamp - record.find(EventKind::kStationReached).stamp, from_seconds(3.5));
+  EXPECT_EQ(record.find(EventKind::kStationFailed).stamp - record.find(EventKind::kStationReached).stamp,
+            from_seconds(3.5));
   EXPECT_EQ(record.events.back().kind, EventKind::kMissionFailed);
 }
 
 TEST(GasMission, WaitsLongerForASlowInstrument) {
   // A reading every 0.5 s: five of them take 2 s.
   GasRound mission(make_settings(), make_route(), {});
-  const MissionRecord record =
-      run(mission, [](int tick, const Pose2&) { return tick % 5 == 0 ? 30.0 : std::nan(""); });
+  const MissionRecord record = run(mission, [](int tick, const Pose2&) { return tick % 5 == 0 ? 30.0 : std::nan(""); });
   EXPECT_EQ(record.count(EventKind::kGasMeasured), 2);
   const Time taken = record.find(EventKind::kGasMeasured).stamp - record.find(EventKind::kStationReached).stamp;
   EXPECT_GT(taken, from_seconds(2.0));
@@ -356,8 +355,7 @@ TEST(GasMission, APlaceToPassAsksForNoHeading) {
   route.stations = {make_station("gate", {1.0, 0.0, 0.0}, StationType::kPass)};
   route.stations[0].accuracy_m = 0.6;
   GasRound mission(make_settings(), route, {});
-  const MissionOutput output =
-      mission.step(from_seconds(1.0), {}, NavigationFeedback::kDriving, std::nullopt);
+  const MissionOutput output = mission.step(from_seconds(1.0), {}, NavigationFeedback::kDriving, std::nullopt);
   ASSERT_TRUE(output.task.goal);
   EXPECT_EQ(output.task.goal->position_tolerance_m, 0.6);
   EXPECT_EQ(output.task.goal->yaw_tolerance_rad, pi);
@@ -368,8 +366,7 @@ TEST(GasMission, FeedbackAboutTheGoalBeforeDoesNotCount) {
   GasRound mission(make_settings(), make_route(), {});
   const MissionOutput first = mission.step(from_seconds(1.0), {}, NavigationFeedback::kArrived, std::nullopt);
   EXPECT_EQ(first.events.size(), 1u);
-  const MissionOutput same_instant =
-      mission.step(from_seconds(1.0), {}, NavigationFeedback::kArrived, std::nullopt);
+  const MissionOutput same_instant = mission.step(from_seconds(1.0), {}, NavigationFeedback::kArrived, std::nullopt);
   EXPECT_TRUE(same_instant.events.empty());
 }
 
@@ -393,8 +390,7 @@ TEST(GasMission, EventsSayWhereTheRobotWas) {
 }
 
 TEST(GasMission, RefusesAnEmptyRouteAndSettingsThatBreakTheirRule) {
-  EXPECT_THAT([] { GasRound(make_settings(), {}, {}); },
-              ::testing::ThrowsMessage<InputError>(HasSubstr("no station")));
+  EXPECT_THAT([] { GasRound(make_settings(), {}, {}); }, ::testing::ThrowsMessage<InputError>(HasSubstr("no station")));
   GasMissionSettings settings = make_settings();
   settings.min_readings = 0;
   EXPECT_THAT([&] { GasRound(settings, make_route(), {}); },

@@ -26,21 +26,24 @@ TEST(KnownMap, WithoutAFreeOrAnOccupiedCellIsRefused) {
   map.values() = {kUnknown, kUnknown, kUnknown, kUnknown, kUnknown, kUnknown, kUnknown, kUnknown};
   EXPECT_THAT([&] { validate_map("m.yaml", map); }, ThrowsMessage<InputError>("m.yaml: map contains no free cells"));
   map.at({0, 0}) = kFree;
-  EXPECT_THAT([&] { validate_map("m.yaml", map); }, ThrowsMessage<InputError>("m.yaml: map contains no occupied cells"));
+  EXPECT_THAT([&] { validate_map("m.yaml", map); },
+              ThrowsMessage<InputError>("m.yaml: map contains no occupied cells"));
 }
 
 TEST(KnownMap, ThatDoesNotHoldTheStartIsRefused) {
   OccupancyGrid map({.resolution_m = 0.5, .width = 4, .height = 2, .origin_m = {0.25, 0.0}}, kFree);
   map.at({3, 0}) = kOccupied;
-  EXPECT_THAT([&] { validate_map("m.yaml", map); },
-              ThrowsMessage<InputError>("m.yaml: start (0, 0) is outside the map (x in [0.25, 2.25] m, y in [0.00, 1.00] m)"));
+  EXPECT_THAT(
+      [&] { validate_map("m.yaml", map); },
+      ThrowsMessage<InputError>("m.yaml: start (0, 0) is outside the map (x in [0.25, 2.25] m, y in [0.00, 1.00] m)"));
 }
 
 TEST(KnownMap, GoalsLieOnItEvenInAWall) {
   EXPECT_NO_THROW(validate_goals("nav.json", goal_at(-2.0, -1.0), make_map()));
   EXPECT_NO_THROW(validate_goals("nav.json", goal_at(1.5, 0.5), make_map()));
   EXPECT_THAT([] { validate_goals("nav.json", goal_at(2.0, 0.0), make_map()); },
-              ThrowsMessage<InputError>("nav.json: goal 7: position 2, 0 is outside the map (x in [-2.00, 2.00] m, y in [-1.00, 1.00] m)"));
+              ThrowsMessage<InputError>(
+                  "nav.json: goal 7: position 2, 0 is outside the map (x in [-2.00, 2.00] m, y in [-1.00, 1.00] m)"));
   EXPECT_THROW(validate_goals("nav.json", goal_at(-1e300, 0.0), make_map()), InputError);
 }
 

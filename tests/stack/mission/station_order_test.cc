@@ -26,17 +26,21 @@ Station pass(const std::string& name, double x, double y, int priority = 0) {
 }
 
 StationOrder order(const Route& route) {
-  static const RobotDescription robot = io::load_robot_description(PATROL_SOURCE_DIR "/models/quadruped/quadruped.urdf");
+  static const RobotDescription robot =
+      io::load_robot_description(PATROL_SOURCE_DIR "/models/quadruped/quadruped.urdf");
   return order_stations(route, robot, {}, {}, 1);
 }
 
 TEST(StationOrder, GoesAlongALineWhateverOrderItIsGiven) {
-  EXPECT_THAT(names_of(order({.stations = {pass("c", 9.0, 0.0), pass("a", 3.0, 0.0), pass("d", 12.0, 0.0), pass("b", 6.0, 0.0)}})), ElementsAre("a", "b", "c", "d"));
+  EXPECT_THAT(names_of(order(
+                  {.stations = {pass("c", 9.0, 0.0), pass("a", 3.0, 0.0), pass("d", 12.0, 0.0), pass("b", 6.0, 0.0)}})),
+              ElementsAre("a", "b", "c", "d"));
 }
 
 // 21 m at 0.7 m/s, and the wait at first.
 TEST(StationOrder, SaysHowLongItShouldTake) {
-  EXPECT_THAT(order({.stations = {pass("b", 21.0, 0.0), pass("a", 7.0, 0.0)}}).text, HasSubstr("in this order: 34 s; optimal"));
+  EXPECT_THAT(order({.stations = {pass("b", 21.0, 0.0), pass("a", 7.0, 0.0)}}).text,
+              HasSubstr("in this order: 34 s; optimal"));
 }
 
 TEST(StationOrder, TakesALowerPriorityFirstAndHomeLast) {

@@ -1,8 +1,8 @@
 #include "stack/mission/tunnel_mission.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
+
+#include <gtest/gtest.h>
 
 #include "core/error.h"
 
@@ -28,8 +28,12 @@ class Robot {
   void run(double seconds, std::optional<TeleopCommand> teleop = std::nullopt) {
     for (const Time end = now_ + from_seconds(seconds); now_ < end && !tour_.is_over(); now_ += kStep) {
       if (output.task.goal) pose_ = output.task.goal->T_map_body;
-      output = tour_.step(now_, {.pose = {.stamp = now_, .T_map_body = pose_}, .is_lost = is_lost, .navigation = navigation,
-                                 .docking = docking, .inspection = {.feedback = inspection}, .teleop = teleop});
+      output = tour_.step(now_, {.pose = {.stamp = now_, .T_map_body = pose_},
+                                 .is_lost = is_lost,
+                                 .navigation = navigation,
+                                 .docking = docking,
+                                 .inspection = {.feedback = inspection},
+                                 .teleop = teleop});
       if (teleop) teleop->save_goal = teleop->hand_over = false;
       for (const Event& event : output.events) events.push_back(event);
       restarts += output.relocalization != Relocalization::kNone ? 1 : 0;
@@ -37,7 +41,8 @@ class Robot {
     }
   }
   int count(EventKind kind) const {
-    return static_cast<int>(std::count_if(events.begin(), events.end(), [&](const Event& e) { return e.kind == kind; }));
+    return static_cast<int>(
+        std::count_if(events.begin(), events.end(), [&](const Event& e) { return e.kind == kind; }));
   }
   const TunnelMission& tour() const { return tour_; }
 

@@ -27,7 +27,8 @@ class WatchedWalk {
   void go_on(double seconds, const std::function<std::optional<LaserScan>(Time)>& scan) {
     for (const Time end = now + from_seconds(seconds); now < end; now += kPeriod) {
       if (const auto heard = scan(now)) watch.receive(*heard, now);
-      for (const SensorChange& change : watch.step(now, {to_seconds(now), 0.0, 0.0}, command)) said.push_back(change.text);
+      for (const SensorChange& change : watch.step(now, {to_seconds(now), 0.0, 0.0}, command))
+        said.push_back(change.text);
     }
   }
 
@@ -117,7 +118,8 @@ TEST(SensorMonitor, WhatComesFromTheFutureIsNotToBeUsed) {
   EXPECT_TRUE(watch.receive(imu, now));
   imu.stamp = now + from_seconds(0.2);
   EXPECT_FALSE(watch.receive(imu, now));
-  EXPECT_EQ(watch.step(now + from_seconds(0.3), {}, {}).front().text, "Sensor imu has timestamps in the future.");  // and stays so until the next message
+  EXPECT_EQ(watch.step(now + from_seconds(0.3), {}, {}).front().text,
+            "Sensor imu has timestamps in the future.");  // and stays so until the next message
   EXPECT_TRUE(watch.can_drive());
 }
 
@@ -130,7 +132,8 @@ TEST(SensorMonitor, ASensorWhoseFirstMessageCameFromTheFutureIsHeardLikeAnyOther
   EXPECT_TRUE(watch.receive(imu, from_seconds(1.0)));
 }
 
-// Frozen encoders say that the robot stands, and odometry believes them: that it should move is known from the command alone.
+// Frozen encoders say that the robot stands, and odometry believes them: that it should move is known from the command
+// alone.
 TEST(SensorMonitor, EncodersThatRepeatThemselvesHaltTheRobotOnceItShouldHaveMoved) {
   SensorMonitor watch{{}};
   const auto go_on = [&](double vx_mps) {

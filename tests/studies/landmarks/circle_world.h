@@ -10,19 +10,24 @@
 
 namespace patrol::test {
 
-using studies::Control, studies::ControlMotion, studies::LandmarkSlam, studies::RangeBearing, studies::RangeBearingNoise, studies::Steering;
+using studies::Control, studies::ControlMotion, studies::LandmarkSlam, studies::RangeBearing,
+    studies::RangeBearingNoise, studies::Steering;
 
-/// A vehicle at 1 m/s on a circle of 5 m radius about (0, 5), once round, and landmarks on a circle of 7 m about the same point. It starts at the origin of map.
+/// A vehicle at 1 m/s on a circle of 5 m radius about (0, 5), once round, and landmarks on a circle of 7 m about the
+/// same point. It starts at the origin of map.
 struct CircleWorld {
-  ControlMotion motion;     ///< its deviations are those of odometry's errors
+  ControlMotion motion;  ///< its deviations are those of odometry's errors
   RangeBearingNoise noise;
-  double range_m = 6.0;     ///< to which landmarks are seen
+  double range_m = 6.0;  ///< to which landmarks are seen
   int num_landmarks = 8;
-  int blind_steps = 0;      ///< at first, nothing is seen
-  Eigen::Vector2d bias = Eigen::Vector2d::Zero();  ///< of odometry, in its standard deviations: as studies::OdometryBias has it
+  int blind_steps = 0;  ///< at first, nothing is seen
+  Eigen::Vector2d bias =
+      Eigen::Vector2d::Zero();  ///< of odometry, in its standard deviations: as studies::OdometryBias has it
 
   /// For a circle of 5 m, the turn is length / 5 m: yaw rate v / 5, or sin G / L = 1 / 5.
-  Control control() const { return {1.0, motion.steering == Steering::kAckermann ? std::asin(motion.wheelbase_m / 5.0) : 0.2}; }
+  Control control() const {
+    return {1.0, motion.steering == Steering::kAckermann ? std::asin(motion.wheelbase_m / 5.0) : 0.2};
+  }
   int steps() const { return static_cast<int>(std::ceil(10.0 * std::numbers::pi / motion.step_s)); }
   Eigen::Vector2d landmark(int i) const {
     const double angle = 2.0 * std::numbers::pi * (i + 0.5) / num_landmarks;
@@ -32,12 +37,13 @@ struct CircleWorld {
 
 /// What was, and what the robot got of it.
 struct Drive {
-  std::vector<Pose2> T_map_body;                ///< [step], after its motion
-  std::vector<Control> controls;                ///< [step], as measured
+  std::vector<Pose2> T_map_body;                        ///< [step], after its motion
+  std::vector<Control> controls;                        ///< [step], as measured
   std::vector<std::vector<RangeBearing>> observations;  ///< [step][sight]
 };
 
-/// The truth is the same for every seed; what is measured differs from it by `noise_share` of the world's noise, and by its bias.
+/// The truth is the same for every seed; what is measured differs from it by `noise_share` of the world's noise, and by
+/// its bias.
 inline Drive drive(const CircleWorld& world, std::uint64_t seed, double noise_share = 1.0) {
   const RandomStream odometry(seed, "test/odometry"), sights(seed, "test/sights");
   Drive drive;
@@ -46,16 +52,18 @@ inline Drive drive(const CircleWorld& world, std::uint64_t seed, double noise_sh
     const auto tick = static_cast<std::uint64_t>(k);
     pose = world.motion.move(pose, world.control());
     drive.T_map_body.push_back(pose);
-    const Eigen::Vector2d error = noise_share * Eigen::Vector2d(odometry.normal(tick, 0), odometry.normal(tick, 1)) + world.bias;
+    const Eigen::Vector2d error =
+        noise_share * Eigen::Vector2d(odometry.normal(tick, 0), odometry.normal(tick, 1)) + world.bias;
     drive.controls.push_back(world.control() - world.motion.std.cwiseProduct(error));
     drive.observations.emplace_back();
     for (int i = 0; i < world.num_landmarks && k >= world.blind_steps; ++i) {
       const Eigen::Vector2d observation = studies::predict_observation(pose, world.landmark(i)).observation;
       if (observation.x() > world.range_m) continue;
       const auto draw = sights.normals(tick, static_cast<std::uint64_t>(i));
-      drive.observations.back().push_back({.landmark = i,
-                                   .range_m = observation.x() + noise_share * world.noise.range_std_m * draw[0],
-                                   .bearing_rad = wrap_angle(observation.y() + noise_share * world.noise.bearing_std_rad * draw[1])});
+      drive.observations.back().push_back(
+          {.landmark = i,
+           .range_m = observation.x() + noise_share * world.noise.range_std_m * draw[0],
+           .bearing_rad = wrap_angle(observation.y() + noise_share * world.noise.bearing_std_rad * draw[1])});
     }
   }
   return drive;
@@ -64,7 +72,8 @@ inline Drive drive(const CircleWorld& world, std::uint64_t seed, double noise_sh
 /// [step]
 inline std::vector<studies::LandmarkSlamEstimate> run(LandmarkSlam& slam, const Drive& drive) {
   std::vector<studies::LandmarkSlamEstimate> estimates;
-  for (std::size_t k = 0; k < drive.controls.size(); ++k) estimates.push_back(slam.step(drive.controls[k], drive.observations[k]));
+  for (std::size_t k = 0; k < drive.controls.size(); ++k)
+    estimates.push_back(slam.step(drive.controls[k], drive.observations[k]));
   return estimates;
 }
 

@@ -1,9 +1,9 @@
 #include "studies/landmarks/control_motion.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <numbers>
+
+#include <gtest/gtest.h>
 
 #include "tests/support/pose_near.h"
 
@@ -13,7 +13,7 @@ namespace {
 using test::Pose2Near;
 
 constexpr double kExactTol = 1e-12;
-constexpr double kStep = 1e-6;           // of the central differences: their error is its square, and rounding 1e-16 / 1e-6
+constexpr double kStep = 1e-6;  // of the central differences: their error is its square, and rounding 1e-16 / 1e-6
 constexpr double kDifferenceTol = 1e-9;
 
 const ControlMotion kYawRateMotion{.steering = Steering::kYawRate, .step_s = 0.1};
@@ -26,19 +26,22 @@ void expect_jacobians_are_the_differences(const ControlMotion& motion, const Pos
   const ControlMotionJacobian jacobian = jacobian_of(motion, pose, control);
   for (int i = 0; i < 3; ++i) {
     const Eigen::Vector3d d = kStep * Eigen::Vector3d::Unit(i);
-    const Pose2 ahead{pose.x + d.x(), pose.y + d.y(), pose.yaw + d.z()}, behind{pose.x - d.x(), pose.y - d.y(), pose.yaw - d.z()};
+    const Pose2 ahead{pose.x + d.x(), pose.y + d.y(), pose.yaw + d.z()},
+        behind{pose.x - d.x(), pose.y - d.y(), pose.yaw - d.z()};
     const Eigen::Vector3d slope = difference(motion.move(ahead, control), motion.move(behind, control)) / (2.0 * kStep);
     EXPECT_LT((jacobian.pose.col(i) - slope).norm(), kDifferenceTol) << "by the pose's " << i;
   }
   for (int i = 0; i < 2; ++i) {
     const Eigen::Vector2d d = kStep * Eigen::Vector2d::Unit(i);
-    const Eigen::Vector3d slope = difference(motion.move(pose, control + d), motion.move(pose, control - d)) / (2.0 * kStep);
+    const Eigen::Vector3d slope =
+        difference(motion.move(pose, control + d), motion.move(pose, control - d)) / (2.0 * kStep);
     EXPECT_LT((jacobian.control.col(i) - slope).norm(), kDifferenceTol) << "by the control's " << i;
   }
 }
 
 TEST(ControlMotionJacobian, IsTheCentralDifferenceForBothSteeringsAndInParts) {
-  for (const ControlMotion& motion : {kYawRateMotion, kCar, kCarInFiveParts, ControlMotion{.step_s = 0.3, .substeps = 3}}) {
+  for (const ControlMotion& motion :
+       {kYawRateMotion, kCar, kCarInFiveParts, ControlMotion{.step_s = 0.3, .substeps = 3}}) {
     for (const Control& control : {Control(1.2, 0.3), Control(-0.7, -0.4), Control(0.0, 0.2), Control(2.0, 0.0)}) {
       expect_jacobians_are_the_differences(motion, {0.5, -2.0, 0.8}, control);
       expect_jacobians_are_the_differences(motion, {0.5, -2.0, std::numbers::pi}, control);  // across the wrap
@@ -48,7 +51,8 @@ TEST(ControlMotionJacobian, IsTheCentralDifferenceForBothSteeringsAndInParts) {
 
 TEST(ControlMotion, OneMeterStraightAheadIsOneMeter) {
   for (const ControlMotion& motion : {kYawRateMotion, kCar}) {
-    EXPECT_THAT(motion.move({1.0, 2.0, 0.5 * std::numbers::pi}, {10.0, 0.0}), Pose2Near((Pose2{1.0, 3.0, 0.5 * std::numbers::pi}), kExactTol, kExactTol));
+    EXPECT_THAT(motion.move({1.0, 2.0, 0.5 * std::numbers::pi}, {10.0, 0.0}),
+                Pose2Near((Pose2{1.0, 3.0, 0.5 * std::numbers::pi}), kExactTol, kExactTol));
   }
 }
 
@@ -63,7 +67,8 @@ TEST(ControlMotion, FortyStepsOfNineDegreesCloseACircle) {
 TEST(ControlMotion, HalfACircleEndsADiameterToTheLeft) {
   Pose2 pose;
   for (int k = 0; k < 20; ++k) pose = kYawRateMotion.move(pose, {1.0, std::numbers::pi / 2.0});
-  EXPECT_THAT(pose, Pose2Near((Pose2{0.0, 0.1 / std::sin(std::numbers::pi / 40.0), std::numbers::pi}), 20.0 * kExactTol, 20.0 * kExactTol));
+  EXPECT_THAT(pose, Pose2Near((Pose2{0.0, 0.1 / std::sin(std::numbers::pi / 40.0), std::numbers::pi}), 20.0 * kExactTol,
+                              20.0 * kExactTol));
 }
 
 // d = 0.1 m at G = 30 degrees and L = 2 m: turn 0.1 x 0.5 / 2 = 0.025 rad, step along the wheel.
@@ -94,12 +99,14 @@ TEST(ControlMotion, YawIsWrappedAtPi) {
 }
 
 TEST(ControlMotion, AtRestNothingMoves) {
-  for (const ControlMotion& motion : {kYawRateMotion, kCar}) EXPECT_THAT(motion.move({1.0, 2.0, 3.0}, {0.0, 0.0}), Pose2Near((Pose2{1.0, 2.0, 3.0}), 0.0, 0.0));
+  for (const ControlMotion& motion : {kYawRateMotion, kCar})
+    EXPECT_THAT(motion.move({1.0, 2.0, 3.0}, {0.0, 0.0}), Pose2Near((Pose2{1.0, 2.0, 3.0}), 0.0, 0.0));
 }
 
 TEST(ControlMotion, AnIncrementOfTwoAndMinusOneIsTwoDeviationsFasterAndOneLessTurn) {
   const ControlMotion motion{.std = {0.1, 0.05}};
-  EXPECT_THAT(motion.move_with_noise({1.0, 2.0, 3.0}, {1.0, 0.2}, {2.0, -1.0}), Pose2Near(motion.move({1.0, 2.0, 3.0}, {1.2, 0.15}), kExactTol, kExactTol));
+  EXPECT_THAT(motion.move_with_noise({1.0, 2.0, 3.0}, {1.0, 0.2}, {2.0, -1.0}),
+              Pose2Near(motion.move({1.0, 2.0, 3.0}, {1.2, 0.15}), kExactTol, kExactTol));
 }
 
 }  // namespace

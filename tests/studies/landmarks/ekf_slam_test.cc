@@ -1,12 +1,11 @@
 #include "studies/landmarks/ekf_slam.h"
 
-#include <gtest/gtest.h>
-
-#include <Eigen/LU>
-
 #include <cmath>
 #include <limits>
 #include <numbers>
+
+#include <Eigen/LU>
+#include <gtest/gtest.h>
 
 #include "core/geometry/angles.h"
 #include "tests/studies/landmarks/circle_world.h"
@@ -18,13 +17,17 @@ namespace {
 using test::CircleWorld, test::drive, test::Drive, test::poses_of, test::rmse_m, test::run, test::VectorNear;
 
 constexpr double kExactTol = 1e-12;
-const EkfSlamSettings kPlain{.bias = {.std = 0.0}, .is_invariant = false}, kInvariant{.bias = {.std = 0.0}, .is_invariant = true};
+const EkfSlamSettings kPlain{.bias = {.std = 0.0}, .is_invariant = false},
+    kInvariant{.bias = {.std = 0.0}, .is_invariant = true};
 
 /// The textbook's filter over (x, y, yaw, x of landmark 0, y of landmark 0, ...): dense, slow and obvious.
 class TextbookEkf {
  public:
   TextbookEkf(const CircleWorld& world, int num_landmarks)
-      : world_(world), mean_(Eigen::VectorXd::Zero(3 + 2 * num_landmarks)), P_(Eigen::MatrixXd::Zero(mean_.size(), mean_.size())), is_known_(static_cast<std::size_t>(num_landmarks)) {}
+      : world_(world),
+        mean_(Eigen::VectorXd::Zero(3 + 2 * num_landmarks)),
+        P_(Eigen::MatrixXd::Zero(mean_.size(), mean_.size())),
+        is_known_(static_cast<std::size_t>(num_landmarks)) {}
 
   void step(const Control& control, const std::vector<RangeBearing>& observations) {
     const ControlMotionJacobian jacobian = jacobian_of(world_.motion, pose(), control);
@@ -32,7 +35,8 @@ class TextbookEkf {
     Eigen::MatrixXd F = Eigen::MatrixXd::Identity(mean_.size(), mean_.size());
     F.topLeftCorner<3, 3>() = jacobian.pose;
     P_ = F * P_ * F.transpose();
-    P_.topLeftCorner<3, 3>() += jacobian.control * world_.motion.std.cwiseAbs2().asDiagonal() * jacobian.control.transpose();
+    P_.topLeftCorner<3, 3>() +=
+        jacobian.control * world_.motion.std.cwiseAbs2().asDiagonal() * jacobian.control.transpose();
     mean_.head<3>() = transformed.vector();
     std::vector<RangeBearing> firsts;
     for (const RangeBearing& observation : observations) {
@@ -62,14 +66,16 @@ class TextbookEkf {
   // l = p + r (cos, sin)(yaw + bearing), differentiated by hand.
   void begin(const RangeBearing& observation) {
     is_known_[static_cast<std::size_t>(observation.landmark)] = true;
-    const double direction = mean_(2) + observation.bearing_rad, c = std::cos(direction), s = std::sin(direction), r = observation.range_m;
+    const double direction = mean_(2) + observation.bearing_rad, c = std::cos(direction), s = std::sin(direction),
+                 r = observation.range_m;
     mean_.segment<2>(3 + 2 * observation.landmark) = mean_.head<2>() + r * Eigen::Vector2d(c, s);
     Eigen::MatrixXd d_by_state = Eigen::MatrixXd::Identity(mean_.size(), mean_.size());
     d_by_state.middleRows<2>(3 + 2 * observation.landmark).setZero();
     d_by_state.block<2, 3>(3 + 2 * observation.landmark, 0) << 1.0, 0.0, -r * s, 0.0, 1.0, r * c;
     const Eigen::Matrix2d d_by_observation = (Eigen::Matrix2d() << c, -r * s, s, r * c).finished();
     P_ = d_by_state * P_ * d_by_state.transpose();
-    P_.block<2, 2>(3 + 2 * observation.landmark, 3 + 2 * observation.landmark) += d_by_observation * world_.noise.covariance() * d_by_observation.transpose();
+    P_.block<2, 2>(3 + 2 * observation.landmark, 3 + 2 * observation.landmark) +=
+        d_by_observation * world_.noise.covariance() * d_by_observation.transpose();
   }
 
   CircleWorld world_;
@@ -93,13 +99,16 @@ TEST(EkfSlam, PlainIsTheTextbooksFilterToANanometerWithOneLandmarkAndWithEight) 
       ASSERT_THAT(estimate.T_map_body, test::Pose2Near(textbook.pose(), 1e-9, 1e-9)) << k;
       ASSERT_LT((estimate.covariance - textbook.covariance()).norm(), 1e-9) << k;
     }
-    for (int i = 0; i < num_landmarks; ++i) EXPECT_THAT(slam.landmarks()[static_cast<std::size_t>(i)].value(), VectorNear(textbook.landmark(i), 1e-9)) << i;
+    for (int i = 0; i < num_landmarks; ++i)
+      EXPECT_THAT(slam.landmarks()[static_cast<std::size_t>(i)].value(), VectorNear(textbook.landmark(i), 1e-9)) << i;
   }
 }
 
-// Straight at one landmark, with an error of speed alone: x and the landmark's x are all that is not known. With q = (std dt)^2 and R = range_std^2:
+// Straight at one landmark, with an error of speed alone: x and the landmark's x are all that is not known. With q =
+// (std dt)^2 and R = range_std^2:
 //   first step    P_x = q, and the landmark is seen at x + r:     P_l = q + R, P_xl = q
-//   second step   P_x = 2 q, z = l - x:                           S = P_x - 2 P_xl + P_l + R = q + 2 R, and x's gain is (P_xl - P_x) / S = -q / S
+//   second step   P_x = 2 q, z = l - x:                           S = P_x - 2 P_xl + P_l + R = q + 2 R, and x's gain is
+//   (P_xl - P_x) / S = -q / S
 // so that P_x = 2 q - q^2 / (q + 2 R), and a landmark 0.1 m nearer than expected moves x by 0.1 q / (q + 2 R).
 TEST(EkfSlam, StraightAtOneLandmarkIsTheClosedFormPlainAndInvariant) {
   for (const EkfSlamSettings& settings : {kPlain, kInvariant}) {
@@ -107,12 +116,14 @@ TEST(EkfSlam, StraightAtOneLandmarkIsTheClosedFormPlainAndInvariant) {
     const RangeBearingNoise noise{.range_std_m = 0.5, .bearing_std_rad = 0.1};
     const double q = 0.04, R = 0.25;
     EkfSlam slam(settings, motion, noise);
-    EXPECT_NEAR(slam.step({1.0, 0.0}, {{.landmark = 0, .range_m = 5.0, .bearing_rad = 0.0}}).covariance(0, 0), q, kExactTol);
+    EXPECT_NEAR(slam.step({1.0, 0.0}, {{.landmark = 0, .range_m = 5.0, .bearing_rad = 0.0}}).covariance(0, 0), q,
+                kExactTol);
     const LandmarkSlamEstimate estimate = slam.step({1.0, 0.0}, {{.landmark = 0, .range_m = 4.8, .bearing_rad = 0.0}});
     EXPECT_NEAR(estimate.covariance(0, 0), 2.0 * q - q * q / (q + 2.0 * R), kExactTol);
     EXPECT_NEAR(estimate.T_map_body.x, 0.2 + 0.1 * q / (q + 2.0 * R), kExactTol);
     EXPECT_NEAR(estimate.T_map_body.y, 0.0, kExactTol);
-    EXPECT_NEAR(slam.landmarks()[0]->x(), 5.1 - 0.1 * R / (q + 2.0 * R), kExactTol);  // its gain is (P_l - P_xl) / S = R / S
+    EXPECT_NEAR(slam.landmarks()[0]->x(), 5.1 - 0.1 * R / (q + 2.0 * R),
+                kExactTol);  // its gain is (P_l - P_xl) / S = R / S
   }
 }
 
@@ -124,12 +135,14 @@ TEST(EkfSlam, WithoutNoiseIsTheGroundTruth) {
       const Drive measured = drive(world, 1, 0.0);
       EkfSlam slam(settings, world.motion, world.noise);
       EXPECT_LT(rmse_m(poses_of(run(slam, measured)), measured.T_map_body), 1e-9);
-      for (int i = 0; i < world.num_landmarks; ++i) EXPECT_THAT(slam.landmarks()[static_cast<std::size_t>(i)].value(), VectorNear(world.landmark(i), 1e-9)) << i;
+      for (int i = 0; i < world.num_landmarks; ++i)
+        EXPECT_THAT(slam.landmarks()[static_cast<std::size_t>(i)].value(), VectorNear(world.landmark(i), 1e-9)) << i;
     }
   }
 }
 
-/// Normalized squared error of the position, mean of 20 seeds, after each step. It is 2 for a filter that knows what it knows.
+/// Normalized squared error of the position, mean of 20 seeds, after each step. It is 2 for a filter that knows what it
+/// knows.
 std::vector<double> position_nees(const EkfSlamSettings& settings, const CircleWorld& world) {
   std::vector<double> nees(static_cast<std::size_t>(world.steps()));
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
@@ -157,8 +170,8 @@ TEST(EkfSlam, InvariantsPositionErrorIsConsistentInTwentySeeds) {
   EXPECT_LT(mean, 4.0);
 }
 
-/// After 200 blind steps the heading's variance is 200 q; then landmarks come into sight. The least that the filter believes from there on, over 201 q,
-/// the variance at the first sight: the worst of 20 seeds, and the best.
+/// After 200 blind steps the heading's variance is 200 q; then landmarks come into sight. The least that the filter
+/// believes from there on, over 201 q, the variance at the first sight: the worst of 20 seeds, and the best.
 struct LeastVariance {
   double worst = std::numeric_limits<double>::infinity(), best = 0.0;
 };
@@ -174,17 +187,23 @@ LeastVariance least_heading_variance(const EkfSlamSettings& settings) {
     EkfSlam slam(settings, world.motion, world.noise);
     const std::vector<LandmarkSlamEstimate> estimates = run(slam, measured);
     double least = std::numeric_limits<double>::infinity();
-    for (std::size_t k = 200; k < estimates.size(); ++k) least = std::min(least, estimates[k].covariance(2, 2) / (201.0 * 0.002 * 0.002));
+    for (std::size_t k = 200; k < estimates.size(); ++k)
+      least = std::min(least, estimates[k].covariance(2, 2) / (201.0 * 0.002 * 0.002));
     all.worst = std::min(all.worst, least);
     all.best = std::max(all.best, least);
   }
   return all;
 }
 
-// Landmarks that were never seen before say nothing of where north is. The invariant filter knows; the plain one learns it from its own linearization.
-TEST(EkfSlam, InvariantGainsNoInformationOnTheUnobservableHeading) { EXPECT_GE(least_heading_variance(kInvariant).worst, 1.0 - 1e-9); }
+// Landmarks that were never seen before say nothing of where north is. The invariant filter knows; the plain one learns
+// it from its own linearization.
+TEST(EkfSlam, InvariantGainsNoInformationOnTheUnobservableHeading) {
+  EXPECT_GE(least_heading_variance(kInvariant).worst, 1.0 - 1e-9);
+}
 
-TEST(EkfSlam, PlainUnderestimatesTheVarianceOfTheUnobservableHeading) { EXPECT_LT(least_heading_variance(kPlain).best, 0.6); }
+TEST(EkfSlam, PlainUnderestimatesTheVarianceOfTheUnobservableHeading) {
+  EXPECT_LT(least_heading_variance(kPlain).best, 0.6);
+}
 
 CircleWorld biased_world() {
   CircleWorld world;
@@ -192,7 +211,8 @@ CircleWorld biased_world() {
   return world;
 }
 
-// 29.6: the 99.9 % quantile of chi^2 with ten degrees of freedom, for ten seeds' squared errors in sigmas, once of speed and once of turn.
+// 29.6: the 99.9 % quantile of chi^2 with ten degrees of freedom, for ten seeds' squared errors in sigmas, once of
+// speed and once of turn.
 TEST(EkfSlam, FindsAYawBiasOfTwoDegreesPerSecondWithinThreeSigma) {
   for (const bool is_invariant : {false, true}) {
     Eigen::Vector2d chi_squared = Eigen::Vector2d::Zero();
@@ -200,10 +220,11 @@ TEST(EkfSlam, FindsAYawBiasOfTwoDegreesPerSecondWithinThreeSigma) {
       const CircleWorld world = biased_world();
       EkfSlam slam({.bias = {.std = 1.0}, .is_invariant = is_invariant}, world.motion, world.noise);
       run(slam, drive(world, seed));
-      const Eigen::Vector2d sigma = slam.bias().covariance.diagonal().cwiseSqrt(), off = (slam.bias().mean - world.bias).cwiseQuotient(sigma);
+      const Eigen::Vector2d sigma = slam.bias().covariance.diagonal().cwiseSqrt(),
+                            off = (slam.bias().mean - world.bias).cwiseQuotient(sigma);
       EXPECT_LT(std::abs(off.y()), 3.0) << seed;
       chi_squared += off.cwiseAbs2();
-      EXPECT_LT(sigma.y(), 0.06) << seed;                            // 1 / sqrt(1 + 315) = 0.0563 is the least, if the path were known
+      EXPECT_LT(sigma.y(), 0.06) << seed;  // 1 / sqrt(1 + 315) = 0.0563 is the least, if the path were known
       EXPECT_GE(sigma.y(), 1.0 / std::sqrt(1.0 + 315.0)) << seed;
     }
     EXPECT_LT(chi_squared.x(), 29.6);
@@ -216,7 +237,8 @@ TEST(EkfSlam, WithItsBiasEstimatedHalvesTheMeanErrorOfTenSeeds) {
   double with = 0.0, without = 0.0;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     const Drive measured = drive(world, seed);
-    EkfSlam one({.bias = {.std = 1.0}, .is_invariant = true}, world.motion, world.noise), other(kInvariant, world.motion, world.noise);
+    EkfSlam one({.bias = {.std = 1.0}, .is_invariant = true}, world.motion, world.noise),
+        other(kInvariant, world.motion, world.noise);
     with += rmse_m(poses_of(run(one, measured)), measured.T_map_body) / 10.0;
     without += rmse_m(poses_of(run(other, measured)), measured.T_map_body) / 10.0;
   }
@@ -234,7 +256,8 @@ TEST(EkfSlam, WithoutObservationsABiasOfTwoDeviationsMakesTheSecondStepsYawVaria
 }
 
 TEST(EkfSlam, NoiseScaledByTwoIsFourTimesTheVariance) {
-  EkfSlam slam({.noise_scale = 2.0, .bias = {.std = 0.0}, .is_invariant = false}, {.step_s = 0.1, .std = {0.1, 0.05}}, {});
+  EkfSlam slam({.noise_scale = 2.0, .bias = {.std = 0.0}, .is_invariant = false}, {.step_s = 0.1, .std = {0.1, 0.05}},
+               {});
   EXPECT_NEAR(slam.step({1.0, 0.0}, {}).covariance(2, 2), 4.0 * 0.005 * 0.005, kExactTol);
 }
 

@@ -1,10 +1,10 @@
 #include "studies/landmarks/landmark_map.h"
 
-#include <Eigen/LU>
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <numbers>
+
+#include <Eigen/LU>
+#include <gtest/gtest.h>
 
 #include "core/random.h"
 #include "tests/support/pose_near.h"
@@ -57,7 +57,8 @@ TEST(LandmarkMap, ANumberBeyondAllLeavesTheOnesBetweenUnseen) {
   EXPECT_FALSE(map.has(3));
 }
 
-// A landmark that is known for certain, 5 m ahead, seen 1 m too far and 0.2 rad to the left: (1 / 0.5)^2 + (0.2 / 0.1)^2 = 8, and S = R.
+// A landmark that is known for certain, 5 m ahead, seen 1 m too far and 0.2 rad to the left: (1 / 0.5)^2 + (0.2 /
+// 0.1)^2 = 8, and S = R.
 TEST(LandmarkInnovation, OfACertainLandmarkTwoDeviationsOffInBothIsEight) {
   const Landmark landmark{.mean_m = {5.0, 0.0}, .covariance = Eigen::Matrix2d::Zero(), .is_observed = true};
   const LandmarkInnovation fit = landmark_innovation({}, landmark, {.range_m = 6.0, .bearing_rad = 0.2}, kNoise);
@@ -87,15 +88,19 @@ TEST(LandmarkMap, ClosedFormIsTheMatrixForm) {
   for (std::uint64_t i = 0; i < 200; ++i) {
     const auto place = stream.normals(i, 0), shape = stream.normals(i, 1), error = stream.normals(i, 2);
     const Pose2 pose{error[2], error[3], 3.0 * std::tanh(place[2])};
-    const Eigen::Matrix2d root = (Eigen::Matrix2d() << 0.4 * shape[0], 0.3 * shape[1], 0.2 * shape[2], 0.5 * shape[3]).finished();
+    const Eigen::Matrix2d root =
+        (Eigen::Matrix2d() << 0.4 * shape[0], 0.3 * shape[1], 0.2 * shape[2], 0.5 * shape[3]).finished();
     LandmarkMap map;
-    map.landmarks().push_back({.mean_m = {5.0 * place[0], 5.0 * place[1]}, .covariance = root * root.transpose(), .is_observed = true});
+    map.landmarks().push_back(
+        {.mean_m = {5.0 * place[0], 5.0 * place[1]}, .covariance = root * root.transpose(), .is_observed = true});
     const Landmark before = map.at(0);
     const PredictedObservation predicted = predict_observation(pose, before.mean_m);
-    const RangeBearing observations{.range_m = predicted.observation.x() + 0.3 * error[0], .bearing_rad = wrap_angle(predicted.observation.y() + 0.1 * error[1])};
+    const RangeBearing observations{.range_m = predicted.observation.x() + 0.3 * error[0],
+                                    .bearing_rad = wrap_angle(predicted.observation.y() + 0.1 * error[1])};
 
     const Eigen::Matrix2d& H = predicted.H_landmark;
-    const Eigen::Matrix2d S = H * before.covariance * H.transpose() + kNoise.covariance(), K = before.covariance * H.transpose() * S.inverse();
+    const Eigen::Matrix2d S = H * before.covariance * H.transpose() + kNoise.covariance(),
+                          K = before.covariance * H.transpose() * S.inverse();
     const Eigen::Vector2d innovation = innovation_of(observations, predicted);
     const LandmarkInnovation fit = landmark_innovation(pose, before, observations, kNoise);
     EXPECT_LT((fit.S_inverse() * S - Eigen::Matrix2d::Identity()).norm(), 1e-9) << i;
@@ -118,10 +123,14 @@ TEST(ObservationLikelihood, OfAThousandObservationsIsTheSumOfTheInnovations) {
   double sum = 0.0;
   for (std::uint64_t i = 0; i < 1000; ++i) {
     const auto place = stream.normals(i, 0), shape = stream.normals(i, 1), error = stream.normals(i, 2);
-    const Eigen::Matrix2d root = (Eigen::Matrix2d() << 0.03 * shape[0], 0.02 * shape[1], 0.02 * shape[2], 0.03 * shape[3]).finished();
-    const Landmark landmark{.mean_m = {5.0 * place[0], 5.0 * place[1]}, .covariance = root * root.transpose(), .is_observed = true};
-    const Eigen::Vector2d observation = predict_observation(pose, landmark.mean_m).observation;  // in all directions, across the wrap too
-    const RangeBearing observations{.range_m = observation.x() + 0.05 * error[0], .bearing_rad = wrap_angle(observation.y() + 0.02 * error[1])};
+    const Eigen::Matrix2d root =
+        (Eigen::Matrix2d() << 0.03 * shape[0], 0.02 * shape[1], 0.02 * shape[2], 0.03 * shape[3]).finished();
+    const Landmark landmark{
+        .mean_m = {5.0 * place[0], 5.0 * place[1]}, .covariance = root * root.transpose(), .is_observed = true};
+    const Eigen::Vector2d observation =
+        predict_observation(pose, landmark.mean_m).observation;  // in all directions, across the wrap too
+    const RangeBearing observations{.range_m = observation.x() + 0.05 * error[0],
+                                    .bearing_rad = wrap_angle(observation.y() + 0.02 * error[1])};
     likelihood.add(landmark, observations);
     sum += landmark_innovation(pose, landmark, observations, noise).log_density();
   }

@@ -1,8 +1,8 @@
 #include "studies/landmarks/odometry_bias.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 #include "core/random.h"
 #include "tests/support/pose_near.h"
@@ -14,7 +14,8 @@ using test::VectorNear;
 
 constexpr double kExactTol = 1e-12;
 
-// Increments of unit variance about the bias: information adds up, 1 / variance = 1 / P + n; and the mean is sum / (1 / P + n).
+// Increments of unit variance about the bias: information adds up, 1 / variance = 1 / P + n; and the mean is sum / (1 /
+// P + n).
 TEST(OdometryBias, AfterNIncrementsTheVarianceIsOneOverTheInformation) {
   const OdometryBiasSettings settings{.std = 2.0};
   OdometryBias bias(settings);
@@ -57,8 +58,9 @@ TEST(OdometryBias, ThatWandersATenthEachStepHasTheSteadyStateVariance) {
   OdometryBias bias(settings);
   for (int n = 0; n < 200; ++n) bias.add_increment({1.0, -1.0}, settings);
   const double steady = 0.5 * (0.01 + 0.1 * std::sqrt(0.01 + 4.0));
-  EXPECT_LT((bias.covariance - steady * Eigen::Matrix2d::Identity()).norm(), 1e-9);  // (1 - gain)^400 of the start is left
-  EXPECT_THAT(bias.mean, VectorNear(Eigen::Vector2d(1.0, -1.0), 1e-6));            // (1 - gain)^200 = 2e-9
+  EXPECT_LT((bias.covariance - steady * Eigen::Matrix2d::Identity()).norm(),
+            1e-9);                                                       // (1 - gain)^400 of the start is left
+  EXPECT_THAT(bias.mean, VectorNear(Eigen::Vector2d(1.0, -1.0), 1e-6));  // (1 - gain)^200 = 2e-9
 }
 
 }  // namespace

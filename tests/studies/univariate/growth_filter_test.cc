@@ -1,11 +1,11 @@
 #include "studies/univariate/growth_filter.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <memory>
 #include <numeric>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "tests/studies/univariate/growth_runs.h"
@@ -17,7 +17,9 @@ using testing::HasSubstr;
 using testing::ThrowsMessage;
 
 FilterMaker filters_of(int particles, const slam::ParticleFilterSettings& settings) {
-  return [=](std::uint64_t seed, const GrowthRun&) { return std::make_unique<GrowthFilter>(particles, GrowthModel(), slam::make_components(settings), seed); };
+  return [=](std::uint64_t seed, const GrowthRun&) {
+    return std::make_unique<GrowthFilter>(particles, GrowthModel(), slam::make_components(settings), seed);
+  };
 }
 
 // After one step the posterior is N(x; 8, 1) N(y; x^2 / 20, 1): summed in steps of 0.001.
@@ -37,7 +39,8 @@ TEST(GrowthFilter, AgreesWithTheIntegralAfterOneStep) {
   const UnivariateEstimate estimate = filter.step(2.5);
   const double standard_error = std::sqrt(expected.variance / estimate.effective_sample_size);
   EXPECT_NEAR(estimate.mean, expected.mean, 4.0 * standard_error);
-  EXPECT_NEAR(estimate.variance, expected.variance, 4.0 * expected.variance * std::sqrt(2.0 / estimate.effective_sample_size));
+  EXPECT_NEAR(estimate.variance, expected.variance,
+              4.0 * expected.variance * std::sqrt(2.0 / estimate.effective_sample_size));
 }
 
 TEST(GrowthFilter, ShowsParticlesAndWeightsOfItsEstimate) {
@@ -54,7 +57,8 @@ TEST(GrowthFilter, ShowsParticlesAndWeightsOfItsEstimate) {
 
 TEST(GrowthFilter, ChildHalfwayToAnotherAndATenthFartherStartsThere) {
   const slam::Resampler halfway = [](const std::vector<double>& weights, RandomSequence&) {
-    return std::vector<slam::Offspring>(weights.size(), {.parent = 0, .attractor = 1, .attraction = 0.5, .mutation = 0.1});
+    return std::vector<slam::Offspring>(weights.size(),
+                                        {.parent = 0, .attractor = 1, .attraction = 0.5, .mutation = 0.1});
   };
   GrowthFilter filter(10'000, GrowthModel(), {.optimizer = nullptr, .resample = halfway, .resample_threshold = 1.0}, 1);
   filter.step(3.2);
@@ -65,11 +69,13 @@ TEST(GrowthFilter, ChildHalfwayToAnotherAndATenthFartherStartsThere) {
 }
 
 TEST(GrowthFilter, KeepsWeightsThatNeedNoResampling) {
-  GrowthFilter filter(100, GrowthModel({.observation_var = 1e6}), slam::make_components({.resample_threshold = 0.5}), 1);
+  GrowthFilter filter(100, GrowthModel({.observation_var = 1e6}), slam::make_components({.resample_threshold = 0.5}),
+                      1);
   filter.step(3.0);
   const std::vector<double> before = filter.states();
   EXPECT_GT(filter.step(3.0).effective_sample_size, 99.0);
-  for (std::size_t i = 0; i < before.size(); ++i) EXPECT_NEAR(filter.states()[i], GrowthModel().transition(before[i], 2), 5.0);  // noise of 1
+  for (std::size_t i = 0; i < before.size(); ++i)
+    EXPECT_NEAR(filter.states()[i], GrowthModel().transition(before[i], 2), 5.0);  // noise of 1
 }
 
 TEST(GrowthFilter, GivesTheSameForTheSameSeedOnly) {
@@ -106,12 +112,14 @@ TEST(GrowthFilter, StaysFiniteWhereTheModelExplodes) {
   const GrowthModel model({.denominator_sign = -1});
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     GrowthFilter filter(50, model, slam::make_components(published_ifa_settings()), seed);
-    for (const UnivariateEstimate& estimate : filter_all(filter, model.simulate(seed).observations)) EXPECT_TRUE(std::isfinite(estimate.mean));
+    for (const UnivariateEstimate& estimate : filter_all(filter, model.simulate(seed).observations))
+      EXPECT_TRUE(std::isfinite(estimate.mean));
   }
 }
 
 TEST(GrowthFilter, RefusesToHaveNoParticles) {
-  EXPECT_THAT([] { GrowthFilter(0, GrowthModel(), {}, 1); }, ThrowsMessage<InputError>(HasSubstr("growth_filter.particles = 0")));
+  EXPECT_THAT([] { GrowthFilter(0, GrowthModel(), {}, 1); },
+              ThrowsMessage<InputError>(HasSubstr("growth_filter.particles = 0")));
 }
 
 }  // namespace

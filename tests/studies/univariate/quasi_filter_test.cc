@@ -1,11 +1,11 @@
 #include "studies/univariate/quasi_filter.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <memory>
 #include <numeric>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "studies/univariate/exact_filter.h"
@@ -24,14 +24,17 @@ double distance_from_exact(const FilterMaker& make, std::uint64_t seeds) {
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
     const GrowthRun run = GrowthModel().simulate(seed);
     ExactFilter exact((GrowthModel()));
-    const double distance = rms_difference(means_of(filter_all(*make(seed, run), run.observations)), means_of(filter_all(exact, run.observations)));
+    const double distance = rms_difference(means_of(filter_all(*make(seed, run), run.observations)),
+                                           means_of(filter_all(exact, run.observations)));
     sum += distance * distance;
   }
   return std::sqrt(sum / static_cast<double>(seeds));
 }
 
 FilterMaker quasi_filters(const QuasiFilterSettings& settings) {
-  return [=](std::uint64_t seed, const GrowthRun&) { return std::make_unique<QuasiFilter>(settings, GrowthModel(), seed); };
+  return [=](std::uint64_t seed, const GrowthRun&) {
+    return std::make_unique<QuasiFilter>(settings, GrowthModel(), seed);
+  };
 }
 
 TEST(QuasiFilter, ComesWithinFiveThousandthsOfTheExactMeansWithTwentyThousandParticles) {
@@ -51,9 +54,10 @@ TEST(QuasiFilter, LooksAheadToNearlyEqualWeights) {
   double ahead = 0.0, behind = 0.0;
   for (const bool use_auxiliary : {true, false}) {
     QuasiFilter filter({.particles = 100, .use_auxiliary = use_auxiliary}, GrowthModel(), 1);
-    for (const UnivariateEstimate& estimate : filter_all(filter, run.observations)) (use_auxiliary ? ahead : behind) += estimate.effective_sample_size / 100.0;
+    for (const UnivariateEstimate& estimate : filter_all(filter, run.observations))
+      (use_auxiliary ? ahead : behind) += estimate.effective_sample_size / 100.0;
   }
-  EXPECT_GT(ahead, 90.0);   // of 100
+  EXPECT_GT(ahead, 90.0);  // of 100
   EXPECT_LT(behind, 70.0);
 }
 
@@ -82,21 +86,26 @@ TEST(QuasiFilter, ShowsParticlesAndWeightsOfItsEstimate) {
 
 TEST(QuasiFilter, GivesTheSameForTheSameSeedOnly) {
   const GrowthRun run = GrowthModel().simulate(1);
-  EXPECT_EQ(means_of(filter_all(*quasi_filters({})(3, run), run.observations)), means_of(filter_all(*quasi_filters({})(3, run), run.observations)));
-  EXPECT_NE(means_of(filter_all(*quasi_filters({})(3, run), run.observations)), means_of(filter_all(*quasi_filters({})(4, run), run.observations)));
+  EXPECT_EQ(means_of(filter_all(*quasi_filters({})(3, run), run.observations)),
+            means_of(filter_all(*quasi_filters({})(3, run), run.observations)));
+  EXPECT_NE(means_of(filter_all(*quasi_filters({})(3, run), run.observations)),
+            means_of(filter_all(*quasi_filters({})(4, run), run.observations)));
 }
 
 TEST(QuasiFilter, StaysFiniteWhereTheModelExplodes) {
   const GrowthModel model({.denominator_sign = -1});
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     QuasiFilter filter({.particles = 50}, model, seed);
-    for (const UnivariateEstimate& estimate : filter_all(filter, model.simulate(seed).observations)) EXPECT_TRUE(std::isfinite(estimate.mean));
+    for (const UnivariateEstimate& estimate : filter_all(filter, model.simulate(seed).observations))
+      EXPECT_TRUE(std::isfinite(estimate.mean));
   }
 }
 
 TEST(QuasiFilter, NamesTheSettingThatBreaksItsRule) {
-  EXPECT_THAT([] { QuasiFilter({.particles = 0}, GrowthModel(), 1); }, ThrowsMessage<InputError>(HasSubstr("quasi_filter.particles")));
-  EXPECT_THAT([] { QuasiFilter({.proposal_inflation = 0.5}, GrowthModel(), 1); }, ThrowsMessage<InputError>(HasSubstr("quasi_filter.proposal_inflation")));
+  EXPECT_THAT([] { QuasiFilter({.particles = 0}, GrowthModel(), 1); },
+              ThrowsMessage<InputError>(HasSubstr("quasi_filter.particles")));
+  EXPECT_THAT([] { QuasiFilter({.proposal_inflation = 0.5}, GrowthModel(), 1); },
+              ThrowsMessage<InputError>(HasSubstr("quasi_filter.proposal_inflation")));
 }
 
 }  // namespace

@@ -15,7 +15,8 @@ BatchSettings batch_settings(const BatchOptions& options) {
   }
   if (!(options.run_timeout_s > 0.0)) throw InputError("--run-timeout-s: must be greater than 0");
   const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  return {.pool = {.num_processes = options.jobs > 0 ? options.jobs : cores, .timeout_s = options.run_timeout_s}, .keep = row_named(kKeepRuns, options.keep_runs, "--keep-runs").value};
+  return {.pool = {.num_processes = options.jobs > 0 ? options.jobs : cores, .timeout_s = options.run_timeout_s},
+          .keep = row_named(kKeepRuns, options.keep_runs, "--keep-runs").value};
 }
 
 }  // namespace patrol::app

@@ -29,8 +29,12 @@ using File = std::unique_ptr<std::FILE, decltype(&std::fclose)>;
 class Child {
  public:
   Child(std::size_t number, double timeout_s, const std::function<int(std::size_t)>& task)
-      : task_(number), stderr_file_(std::tmpfile(), std::fclose), deadline_(Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(timeout_s))) {
-    if (!stderr_file_) throw std::runtime_error(fmt::format("cannot create a temporary file: {}", std::strerror(errno)));
+      : task_(number),
+        stderr_file_(std::tmpfile(), std::fclose),
+        deadline_(Clock::now() +
+                  std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(timeout_s))) {
+    if (!stderr_file_)
+      throw std::runtime_error(fmt::format("cannot create a temporary file: {}", std::strerror(errno)));
     std::fflush(nullptr);  // otherwise both processes would write the buffer
     const pid_t parent = ::getpid();
     pid_ = ::fork();
@@ -74,8 +78,8 @@ class Child {
   [[noreturn]] void run_child(pid_t parent, const std::function<int(std::size_t)>& task) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (::getppid() != parent) std::_Exit(EXIT_FAILURE);  // the parent died before prctl
-    std::signal(SIGINT, SIG_IGN);  // Ctrl-C reaches all processes; the parent decides
-    std::signal(SIGHUP, SIG_IGN);  // a closed terminal too
+    std::signal(SIGINT, SIG_IGN);                         // Ctrl-C reaches all processes; the parent decides
+    std::signal(SIGHUP, SIG_IGN);                         // a closed terminal too
     std::signal(SIGTERM, SIG_DFL);
     const rlimit no_core{0, 0};
     ::setrlimit(RLIMIT_CORE, &no_core);
@@ -114,8 +118,9 @@ void wait_for_any(const std::vector<std::unique_ptr<Child>>& children) {
 
 }  // namespace
 
-bool run_in_processes(std::size_t num_tasks, const ProcessPoolSettings& settings, const std::function<int(std::size_t)>& task,
-                      const std::function<void(const TaskEnd&)>& on_end, const std::function<bool()>& keep_going) {
+bool run_in_processes(std::size_t num_tasks, const ProcessPoolSettings& settings,
+                      const std::function<int(std::size_t)>& task, const std::function<void(const TaskEnd&)>& on_end,
+                      const std::function<bool()>& keep_going) {
   std::vector<std::unique_ptr<Child>> children;
   for (std::size_t next = 0; next < num_tasks || !children.empty();) {
     if (!keep_going()) return false;  // destructors kill the children

@@ -10,9 +10,9 @@ namespace patrol::app {
 struct TaskEnd {
   std::size_t task = 0;
   int exit_code = 0;
-  int signal = 0;             ///< signal that killed the process; 0 if it exited
-  bool is_over_time = false;  ///< killed by the pool at the time limit
-  std::string last_stderr_line;     ///< last line of its standard error
+  int signal = 0;                ///< signal that killed the process; 0 if it exited
+  bool is_over_time = false;     ///< killed by the pool at the time limit
+  std::string last_stderr_line;  ///< last line of its standard error
 };
 
 struct ProcessPoolSettings {
@@ -27,7 +27,8 @@ struct ProcessPoolSettings {
 /// `task` is called in the child; its result is the child's exit status. `on_end` is called here, in the order in which
 /// the tasks end. `keep_going` is called at least five times per second; if it returns false, all children are killed,
 /// and the result is false.
-bool run_in_processes(std::size_t num_tasks, const ProcessPoolSettings& settings, const std::function<int(std::size_t)>& task,
-                      const std::function<void(const TaskEnd&)>& on_end, const std::function<bool()>& keep_going);
+bool run_in_processes(std::size_t num_tasks, const ProcessPoolSettings& settings,
+                      const std::function<int(std::size_t)>& task, const std::function<void(const TaskEnd&)>& on_end,
+                      const std::function<bool()>& keep_going);
 
 }  // namespace patrol::app

@@ -30,7 +30,8 @@ ProgramResult run_program(const std::vector<std::string>& words) {
   ProgramResult result;
   if (error == 0) {
     std::array<char, 4096> block{};
-    for (ssize_t count; (count = ::read(pipe[0], block.data(), block.size())) > 0;) result.output.append(block.data(), static_cast<std::size_t>(count));
+    for (ssize_t count; (count = ::read(pipe[0], block.data(), block.size())) > 0;)
+      result.output.append(block.data(), static_cast<std::size_t>(count));
     int status = 0;
     ::waitpid(pid, &status, 0);
     result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);

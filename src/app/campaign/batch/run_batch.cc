@@ -1,7 +1,7 @@
 #include "app/campaign/batch/run_batch.h"
 
-#include <cmath>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstring>
 #include <set>
@@ -32,7 +32,11 @@ RunVerdict verdict_of_run(const BatchRun& run, const std::filesystem::path& work
 /// Verdict on a run whose process died without one.
 RunVerdict verdict_of_crash(const TaskEnd& end, double timeout_s) {
   if (end.is_over_time) {
-    return {.end = RunStatus::kWallTimeLimit, .message = fmt::format("after {:g} s", timeout_s), .metrics = {}, .checks = {}, .events = {}};
+    return {.end = RunStatus::kWallTimeLimit,
+            .message = fmt::format("after {:g} s", timeout_s),
+            .metrics = {},
+            .checks = {},
+            .events = {}};
   }
   const std::string how = end.signal != 0 ? fmt::format("signal {} ({})", end.signal, ::strsignal(end.signal))
                                           : fmt::format("exit status {}", end.exit_code);
@@ -71,7 +75,8 @@ class Batch {
     const std::filesystem::path work = work_.path(run.key);
     RunVerdict verdict = verdict_of_run(run, work);
     std::string& message = verdict.message;  // must not depend on the work folder
-    for (std::size_t at; (at = message.find(work.string())) != std::string::npos;) message.replace(at, work.string().size(), "RUN");
+    for (std::size_t at; (at = message.find(work.string())) != std::string::npos;)
+      message.replace(at, work.string().size(), "RUN");
     keep_or_remove(run.key, verdict.code());
     store_.save(run.key, verdict);
     return static_cast<int>(verdict.code());
@@ -96,7 +101,8 @@ class Batch {
   }
 
   void keep_or_remove(const std::string& key, ExitCode code) const {
-    const bool is_kept = settings_.keep == KeepRuns::kAll || (settings_.keep == KeepRuns::kFailed && code != ExitCode::kDone);
+    const bool is_kept =
+        settings_.keep == KeepRuns::kAll || (settings_.keep == KeepRuns::kFailed && code != ExitCode::kDone);
     std::error_code ignored;
     if (is_kept) {
       std::filesystem::create_directories(store_.folder(), ignored);
@@ -108,7 +114,9 @@ class Batch {
 
   void show() {
     const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
-    const double left_s = num_done_ == 0 ? 0.0 : elapsed_s / static_cast<double>(num_done_) * static_cast<double>(runs_.size() - num_done_);
+    const double left_s =
+        num_done_ == 0 ? 0.0
+                       : elapsed_s / static_cast<double>(num_done_) * static_cast<double>(runs_.size() - num_done_);
     bar_.show(fmt::format("{} of {} runs, {} failed{}", num_done_, runs_.size(), num_failed_,
                           num_done_ == 0 ? "" : fmt::format(", about {:.0f} min left", std::ceil(left_s / 60.0))));
   }

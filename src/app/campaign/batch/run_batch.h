@@ -15,8 +15,8 @@ namespace patrol::app {
 struct BatchRun {
   std::filesystem::path scenario;
   std::vector<std::string> overrides;
-  std::string key;  ///< content hash or name under which the result is stored
-  std::string label;    ///< for display
+  std::string key;    ///< content hash or name under which the result is stored
+  std::string label;  ///< for display
 };
 
 /// Runs whose directories are kept as `runs/KEY/` after scoring.

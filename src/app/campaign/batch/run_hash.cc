@@ -11,8 +11,7 @@ namespace patrol::app {
 std::string build_id() { return io::sha256_of_file("/proc/self/exe"); }
 
 RunHasher::RunHasher(std::filesystem::path data_root)
-    : data_root_(std::move(data_root)),
-      program_(fmt::format("patrol {} mujoco {}", build_id(), mj_versionString())) {}
+    : data_root_(std::move(data_root)), program_(fmt::format("patrol {} mujoco {}", build_id(), mj_versionString())) {}
 
 const std::string& RunHasher::folder_digest(const std::filesystem::path& folder, const std::string& except) {
   const auto known = digests_.find(folder);
@@ -28,9 +27,11 @@ const std::string& RunHasher::file_digest(const std::filesystem::path& file) {
 
 std::string RunHasher::hash(const Scenario& scenario) {
   constexpr std::size_t kDigits = 20;
-  std::string asked = fmt::format("{}\nworld {}\nrobot {}\n", program_, folder_digest(data_root_ / "worlds" / scenario.world, "scenarios"),
+  std::string asked = fmt::format("{}\nworld {}\nrobot {}\n", program_,
+                                  folder_digest(data_root_ / "worlds" / scenario.world, "scenarios"),
                                   folder_digest(data_root_ / "models" / scenario.robot, ""));
-  for (const std::filesystem::path& file : named_files(scenario, data_root_)) asked += fmt::format("file {}\n", file_digest(file));
+  for (const std::filesystem::path& file : named_files(scenario, data_root_))
+    asked += fmt::format("file {}\n", file_digest(file));
   asked += io::to_yaml(scenario);
   return io::sha256(asked).substr(0, kDigits);
 }

@@ -33,8 +33,8 @@ std::vector<std::string> split_values(const std::string& text) {
 }
 
 /// Parses "range:0:1:5" to its numbers; none if `values` begins with another word.
-std::optional<std::vector<double>> arguments(const std::string& text, const std::string& values, const std::string& word,
-                                             std::size_t count, const std::string& shape) {
+std::optional<std::vector<double>> arguments(const std::string& text, const std::string& values,
+                                             const std::string& word, std::size_t count, const std::string& shape) {
   if (!values.starts_with(word + ":")) return std::nullopt;
   std::vector<double> numbers;
   std::size_t begin = word.size() + 1;
@@ -54,7 +54,8 @@ std::optional<std::vector<double>> arguments(const std::string& text, const std:
 
 std::vector<std::string> spaced(const std::string& text, const std::vector<double>& range, bool in_ratios) {
   const double from = range[0], to = range[1];
-  if (range[2] < 2.0 || range[2] > 10000.0 || range[2] != std::floor(range[2])) fail(text, "N must be an integer in [2, 10000]");
+  if (range[2] < 2.0 || range[2] > 10000.0 || range[2] != std::floor(range[2]))
+    fail(text, "N must be an integer in [2, 10000]");
   if (in_ratios && (from <= 0.0 || to <= 0.0)) fail(text, "both ends must be greater than 0");
   const int count = static_cast<int>(range[2]);
   std::vector<std::string> values;
@@ -80,7 +81,8 @@ std::string Axis::sample(std::uint64_t seed) const {
 
 Axis parse_axis(const std::string& text) {
   const std::size_t equals = text.find('=');
-  if (equals == std::string::npos || equals == 0) fail(text, "must be path=a,b,c, e.g. sensors.lidar.range_noise_std_m=0.01,0.03");
+  if (equals == std::string::npos || equals == 0)
+    fail(text, "must be path=a,b,c, e.g. sensors.lidar.range_noise_std_m=0.01,0.03");
   Axis axis;
   axis.path = text.substr(0, equals);
   const std::string values = text.substr(equals + 1);
@@ -94,10 +96,13 @@ Axis parse_axis(const std::string& text) {
     if (kind == Axis::Kind::kLogUniform && axis.first <= 0.0) fail(text, "LOW must be greater than 0");
   };
   if (const auto range = arguments(text, values, "range", 3, "FROM:TO:N")) axis.values = spaced(text, *range, false);
-  else if (const auto ratios = arguments(text, values, "logrange", 3, "FROM:TO:N")) axis.values = spaced(text, *ratios, true);
+  else if (const auto ratios = arguments(text, values, "logrange", 3, "FROM:TO:N"))
+    axis.values = spaced(text, *ratios, true);
   else if (const auto limits = arguments(text, values, "uniform", 2, "LOW:HIGH")) random(Axis::Kind::kUniform, *limits);
-  else if (const auto logs = arguments(text, values, "loguniform", 2, "LOW:HIGH")) random(Axis::Kind::kLogUniform, *logs);
-  else if (const auto parameters = arguments(text, values, "normal", 2, "MEAN:STANDARD_DEVIATION")) random(Axis::Kind::kNormal, *parameters);
+  else if (const auto logs = arguments(text, values, "loguniform", 2, "LOW:HIGH"))
+    random(Axis::Kind::kLogUniform, *logs);
+  else if (const auto parameters = arguments(text, values, "normal", 2, "MEAN:STANDARD_DEVIATION"))
+    random(Axis::Kind::kNormal, *parameters);
   else axis.values = split_values(values);
 
   std::set<std::string> seen;

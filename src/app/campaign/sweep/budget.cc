@@ -42,13 +42,16 @@ void add_sums(const SeedValues& seed_values, Budget& budget) {
 }
 
 std::string numbers(const std::optional<score::Interval>& interval) {
-  return interval ? fmt::format("{:+10.5f}  [{:+.5f}, {:+.5f}]", interval->center, interval->low, interval->high) : "  too few runs";
+  return interval ? fmt::format("{:+10.5f}  [{:+.5f}, {:+.5f}]", interval->center, interval->low, interval->high)
+                  : "  too few runs";
 }
 
 /// Text bar from `from` to `to` on a scale of `full`.
 std::string bar(double from, double to, double full) {
   constexpr double kWidth = 30.0;
-  const auto bar_cell = [&](double value) { return static_cast<std::size_t>(std::lround(kWidth * std::clamp(value / full, 0.0, 1.0))); };
+  const auto bar_cell = [&](double value) {
+    return static_cast<std::size_t>(std::lround(kWidth * std::clamp(value / full, 0.0, 1.0)));
+  };
   const std::size_t begin = bar_cell(std::min(from, to)), end = std::max(bar_cell(std::max(from, to)), begin + 1);
   std::string text(begin, ' ');
   for (std::size_t i = begin; i < end; ++i) text += to <= from ? "█" : "▒";
@@ -78,8 +81,11 @@ Budget make_budget(const SweepManifest& manifest, const SweepRows& rows, const s
   for (std::size_t variant = 1; variant + 1 < manifest.variants.size(); ++variant) {
     budget.contributions.push_back(contribution_of(seed_values, variant, manifest.variants[variant].name));
   }
-  const auto center = [](const Contribution& contribution) { return contribution.value ? contribution.value->center : 0.0; };
-  std::stable_sort(budget.contributions.begin(), budget.contributions.end(), [&](const auto& a, const auto& b) { return center(a) > center(b); });
+  const auto center = [](const Contribution& contribution) {
+    return contribution.value ? contribution.value->center : 0.0;
+  };
+  std::stable_sort(budget.contributions.begin(), budget.contributions.end(),
+                   [&](const auto& a, const auto& b) { return center(a) > center(b); });
   add_sums(seed_values, budget);
   return budget;
 }
@@ -97,7 +103,8 @@ std::string budget_text(const Budget& budget) {
   for (const Contribution& contribution : budget.contributions) {
     const double next = level - (contribution.value ? contribution.value->center : 0.0);
     const bool is_clear = contribution.value && !contribution.value->contains(0.0);
-    text += line(contribution.name, contribution.value, bar(level, next, highest) + (is_clear ? "" : "  interval contains zero"));
+    text += line(contribution.name, contribution.value,
+                 bar(level, next, highest) + (is_clear ? "" : "  interval contains zero"));
     level = next;
   }
   text += line("interaction", budget.interaction, bar(level, budget.ideal->center, highest));
@@ -108,7 +115,8 @@ std::string budget_text(const Budget& budget) {
 io::Table budget_table(const std::vector<Budget>& budgets) {
   io::Table table{.name = "budget", .columns = {"metric", "row", "pairs", "value", "low", "high"}, .rows = {}};
   for (const Budget& budget : budgets) {
-    const auto add = [&](const std::string& row, std::optional<std::size_t> pairs, const std::optional<score::Interval>& interval) {
+    const auto add = [&](const std::string& row, std::optional<std::size_t> pairs,
+                         const std::optional<score::Interval>& interval) {
       std::vector<io::TableValue>& cells = table.rows.emplace_back();
       cells.emplace_back(budget.metric);
       cells.emplace_back(row);
@@ -120,7 +128,8 @@ io::Table budget_table(const std::vector<Budget>& budgets) {
       cells[5] = interval->high;
     };
     add("baseline", {}, budget.baseline);
-    for (const Contribution& contribution : budget.contributions) add(contribution.name, contribution.num_pairs, contribution.value);
+    for (const Contribution& contribution : budget.contributions)
+      add(contribution.name, contribution.num_pairs, contribution.value);
     add("sum", {}, budget.sum);
     add("interaction", {}, budget.interaction);
     add("all ideal", {}, budget.ideal);

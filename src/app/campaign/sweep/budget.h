@@ -13,17 +13,17 @@ namespace patrol::app {
 /// Contribution of one error source to a metric.
 struct Contribution {
   std::string name;
-  std::size_t num_pairs = 0;               ///< seeds for which the metric exists with and without the error source
-  std::optional<score::Interval> value;    ///< baseline minus metric without this error source; 95 %, paired by seed
+  std::size_t num_pairs = 0;             ///< seeds for which the metric exists with and without the error source
+  std::optional<score::Interval> value;  ///< baseline minus metric without this error source; 95 %, paired by seed
 };
 
-/// Error budget of one metric. The manifest's first variant is the unchanged scenario (baseline), the last one has every
-/// error source removed, the others one each.
+/// Error budget of one metric. The manifest's first variant is the unchanged scenario (baseline), the last one has
+/// every error source removed, the others one each.
 struct Budget {
   std::string metric;
   std::optional<score::Interval> baseline;
   std::optional<score::Interval> ideal;        ///< with every error source removed
-  std::vector<Contribution> contributions;             ///< largest first
+  std::vector<Contribution> contributions;     ///< largest first
   std::optional<score::Interval> sum;          ///< sum of the contributions
   std::optional<score::Interval> interaction;  ///< effect of removing all together minus the sum of the contributions
 };

@@ -24,7 +24,8 @@ bool is_decided(const VariantMetric& entry, double margin) {
 
 /// Collects the counted and the missing runs of an interim analysis. `num_seeds`: [variant], lower for variants that
 /// were decided earlier.
-void add_needed(const SweepManifest& manifest, const SweepRows& rows, const std::vector<std::size_t>& num_seeds, SweepProgress& progress) {
+void add_needed(const SweepManifest& manifest, const SweepRows& rows, const std::vector<std::size_t>& num_seeds,
+                SweepProgress& progress) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (seed_index(manifest, i) >= num_seeds[manifest.runs[i].variant]) continue;
     progress.counted.push_back(i);
@@ -47,12 +48,12 @@ std::vector<VariantMetric> compare(const SweepManifest& manifest, const SweepRow
       if (value && seed_values[seed].front()) differences.push_back(*value - *seed_values[seed].front());
     }
     VariantMetric entry{.variant = variant,
-                         .num_runs = values.size(),
-                         .mean = score::mean(values),
-                         .interval = score::mean_interval(values),
-                         .num_pairs = differences.size(),
-                         .difference = {},
-                         .verdict = ""};
+                        .num_runs = values.size(),
+                        .mean = score::mean(values),
+                        .interval = score::mean_interval(values),
+                        .num_pairs = differences.size(),
+                        .difference = {},
+                        .verdict = ""};
     if (variant > 0) {
       entry.difference = score::mean_interval(differences, level);
       entry.verdict = verdict_of(entry.difference);
@@ -70,7 +71,8 @@ std::vector<std::size_t> interim_analyses(std::size_t num_seeds) {
 }
 
 double confidence_level(const SweepManifest& manifest) {
-  return 1.0 - kError / (manifest.stop.is_early ? static_cast<double>(interim_analyses(manifest.seeds.size()).size()) : 1.0);
+  return 1.0 -
+         kError / (manifest.stop.is_early ? static_cast<double>(interim_analyses(manifest.seeds.size()).size()) : 1.0);
 }
 
 SweepProgress evaluate_progress(const SweepManifest& manifest, const SweepRows& rows) {
@@ -89,7 +91,8 @@ SweepProgress evaluate_progress(const SweepManifest& manifest, const SweepRows& 
     progress = {};
     add_needed(manifest, rows, num_seeds, progress);
     if (!progress.needed.empty()) return progress;
-    for (const VariantMetric& entry : compare(manifest, rows, manifest.metrics.front(), analysis, confidence_level(manifest))) {
+    for (const VariantMetric& entry :
+         compare(manifest, rows, manifest.metrics.front(), analysis, confidence_level(manifest))) {
       if (entry.variant > 0 && is_decided(entry, manifest.stop.equivalence_margin)) is_undecided[entry.variant] = false;
     }
     if (std::none_of(is_undecided.begin() + 1, is_undecided.end(), [](bool open) { return open; })) return progress;

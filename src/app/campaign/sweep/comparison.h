@@ -13,11 +13,11 @@ namespace patrol::app {
 /// Metric of one variant over the seeds, with its difference from the first variant.
 struct VariantMetric {
   std::size_t variant = 0;
-  std::size_t num_runs = 0;                    ///< runs with a value of the metric
+  std::size_t num_runs = 0;  ///< runs with a value of the metric
   double mean = 0.0;
-  std::optional<score::Interval> interval;     ///< 95 % interval of the mean
-  std::size_t num_pairs = 0;                   ///< seeds for which both variants have a value
-  std::optional<score::Interval> difference;   ///< mean of the paired differences; none for the first variant
+  std::optional<score::Interval> interval;    ///< 95 % interval of the mean
+  std::size_t num_pairs = 0;                  ///< seeds for which both variants have a value
+  std::optional<score::Interval> difference;  ///< mean of the paired differences; none for the first variant
   /// "lower", "higher", "no difference" (the interval contains zero), "too few pairs"; empty for the first variant.
   std::string verdict;
 };
@@ -30,8 +30,8 @@ std::vector<VariantMetric> compare(const SweepManifest& manifest, const SweepRow
 
 /// Runs that a sweep still needs, and runs that count.
 struct SweepProgress {
-  std::vector<std::size_t> needed;   ///< runs that are required for the next decision
-  std::vector<std::size_t> counted;  ///< runs of the result, in the manifest's order
+  std::vector<std::size_t> needed;     ///< runs that are required for the next decision
+  std::vector<std::size_t> counted;    ///< runs of the result, in the manifest's order
   std::vector<std::size_t> num_seeds;  ///< [variant], number of seeds run
 };
 

@@ -29,7 +29,9 @@ std::vector<std::string> latency_overrides() {
   std::vector<std::string> overrides;
   Sensors::for_each([&]<typename Message>(std::type_identity<Message>) {
     if constexpr (HasSensorSettings<Message>) {
-      if constexpr (requires(const sim::SensorSuiteSettings& all) { (all.*SensorTraits<Message>::kSettings).latency_s; }) {
+      if constexpr (requires(const sim::SensorSuiteSettings& all) {
+                      (all.*SensorTraits<Message>::kSettings).latency_s;
+                    }) {
         overrides.push_back(fmt::format("sensors.{}.latency_s=0", SensorTraits<Message>::kInfo.name));
       }
     }
@@ -44,7 +46,8 @@ std::vector<ScenarioErrorSource> other_error_sources() {
       {"people and vehicles", {"actors=[]"}},
       {"faults", {"faults=[]"}},
       {"start pose error", {"start.ahead_m=0", "start.left_m=0", "start.yaw_deg=0"}},
-      {"map resolution 5 cm (2.5 cm)", {"stack.slam.rbpf.resolution_m=0.025", "stack.slam.graph.scan_odometry.resolution_m=0.025"}},
+      {"map resolution 5 cm (2.5 cm)",
+       {"stack.slam.rbpf.resolution_m=0.025", "stack.slam.graph.scan_odometry.resolution_m=0.025"}},
   };
 }
 

@@ -18,9 +18,12 @@ constexpr double kClockOffset_s = 0.2;
 bool is_triggered(SensorTrigger trigger, const ScenarioFiles& files) {
   const auto is_scanned = [](const SavedGoal& goal) { return goal.type == GoalType::kScan; };
   switch (trigger) {
-    case SensorTrigger::kPeriodic: return true;
-    case SensorTrigger::kScanStation: return std::any_of(files.goals.begin(), files.goals.end(), is_scanned);
-    case SensorTrigger::kTeleoperation: return files.has_teleop();
+    case SensorTrigger::kPeriodic:
+      return true;
+    case SensorTrigger::kScanStation:
+      return std::any_of(files.goals.begin(), files.goals.end(), is_scanned);
+    case SensorTrigger::kTeleoperation:
+      return files.has_teleop();
   }
   return true;
 }
@@ -28,34 +31,38 @@ bool is_triggered(SensorTrigger trigger, const ScenarioFiles& files) {
 template <IsSensorMessage Message>
 bool is_in_matrix(const Scenario& scenario, const ScenarioFiles& files) {
   constexpr SensorInfo kInfo = SensorTraits<Message>::kInfo;
-  return *kInfo.fault_matrix_exclusion_reason == '\0' && sim::is_enabled<Message>(scenario.sensors) && is_fitted<Message>(files.robot) &&
-         is_triggered(kInfo.trigger, files);
+  return *kInfo.fault_matrix_exclusion_reason == '\0' && sim::is_enabled<Message>(scenario.sensors) &&
+         is_fitted<Message>(files.robot) && is_triggered(kInfo.trigger, files);
 }
 
 constexpr std::string_view kBetween = ": ";
 
 }  // namespace
 
-std::vector<sim::FaultSettings> fault_matrix(const Scenario& scenario, const ScenarioFiles& files, double start_s, double duration_s) {
+std::vector<sim::FaultSettings> fault_matrix(const Scenario& scenario, const ScenarioFiles& files, double start_s,
+                                             double duration_s) {
   std::vector<sim::FaultSettings> faults;
   Sensors::for_each([&]<typename Message>(std::type_identity<Message>) {
     if (!is_in_matrix<Message>(scenario, files)) return;
     constexpr SensorInfo kInfo = SensorTraits<Message>::kInfo;
     const std::array<std::pair<const char*, double>, 7> kinds = {{{"dropout", 1.0},
-                                                                   {"freeze", 1.0},
-                                                                   {"delay", kDelay_s},
-                                                                   {"jitter", kJitter_s},
-                                                                   {"clock_offset", kClockOffset_s},
-                                                                   {"drift", kInfo.fault.drift_per_s},
-                                                                   {"outliers", kInfo.fault.outlier}}};
+                                                                  {"freeze", 1.0},
+                                                                  {"delay", kDelay_s},
+                                                                  {"jitter", kJitter_s},
+                                                                  {"clock_offset", kClockOffset_s},
+                                                                  {"drift", kInfo.fault.drift_per_s},
+                                                                  {"outliers", kInfo.fault.outlier}}};
     for (const auto& [kind, magnitude] : kinds) {
-      faults.push_back({.sensor = kInfo.name, .kind = kind, .start_s = start_s, .duration_s = duration_s, .magnitude = magnitude});
+      faults.push_back(
+          {.sensor = kInfo.name, .kind = kind, .start_s = start_s, .duration_s = duration_s, .magnitude = magnitude});
     }
   });
   return faults;
 }
 
-std::string variant_name(const sim::FaultSettings& fault) { return fmt::format("{}{}{}", fault.sensor, kBetween, fault.kind); }
+std::string variant_name(const sim::FaultSettings& fault) {
+  return fmt::format("{}{}{}", fault.sensor, kBetween, fault.kind);
+}
 
 FaultVariant parse_variant_name(const std::string& variant_name) {
   const std::size_t between = variant_name.find(kBetween);
@@ -64,8 +71,8 @@ FaultVariant parse_variant_name(const std::string& variant_name) {
 }
 
 std::string fault_override(const sim::FaultSettings& fault) {
-  return fmt::format("faults=[{{sensor: {}, kind: {}, start_s: {}, duration_s: {}, magnitude: {}}}]", fault.sensor, fault.kind, fault.start_s,
-                     fault.duration_s, fault.magnitude);
+  return fmt::format("faults=[{{sensor: {}, kind: {}, start_s: {}, duration_s: {}, magnitude: {}}}]", fault.sensor,
+                     fault.kind, fault.start_s, fault.duration_s, fault.magnitude);
 }
 
 }  // namespace patrol::app

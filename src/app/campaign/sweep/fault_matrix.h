@@ -10,7 +10,8 @@ namespace patrol::app {
 
 /// Faults of every kind for every registered sensor that the scenario uses, from `start_s` on for `duration_s`. The
 /// magnitudes of drift and outliers are in the registry (SensorInfo::fault), the others in fault_matrix.cc.
-std::vector<sim::FaultSettings> fault_matrix(const Scenario& scenario, const ScenarioFiles& files, double start_s, double duration_s);
+std::vector<sim::FaultSettings> fault_matrix(const Scenario& scenario, const ScenarioFiles& files, double start_s,
+                                             double duration_s);
 
 /// Name of a fault's variant: "lidar: drift".
 std::string variant_name(const sim::FaultSettings& fault);

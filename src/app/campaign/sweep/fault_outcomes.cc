@@ -19,7 +19,8 @@ std::optional<bool> was_triggered(const RunVerdict& verdict) {
 FaultOutcome outcome_of(const RunVerdict& verdict) {
   const auto completed = io::metric_at(verdict.metrics, "mission.completed");
   if (!completed) return FaultOutcome::kNoResult;
-  if (verdict.end == RunStatus::kFall || io::metric_at(verdict.metrics, "mission.collisions").value_or(0.0) > 0.0) return FaultOutcome::kUnsafe;
+  if (verdict.end == RunStatus::kFall || io::metric_at(verdict.metrics, "mission.collisions").value_or(0.0) > 0.0)
+    return FaultOutcome::kUnsafe;
   if (*completed == 0.0) return FaultOutcome::kStopped;
   return verdict.code() == ExitCode::kDone ? FaultOutcome::kSurvived : FaultOutcome::kDegraded;
 }
@@ -31,16 +32,17 @@ std::vector<FaultRow> fault_rows(const SweepManifest& manifest, const SweepRows&
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const PlannedRun& run = manifest.runs[i];
     const RunVerdict& verdict = *rows[i];
-    FaultRow& row = faults.emplace_back(FaultRow{.name = manifest.variants[run.variant].name,
-                                                 .fault = parse_variant_name(manifest.variants[run.variant].name),
-                                                 .seed = run.seed,
-                                                 .was_triggered = was_triggered(verdict),
-                                                 .outcome = outcome_of(verdict),
-                                                 .num_detected = io::metric_at(verdict.metrics, "mission.sensor_faults_noticed"),
-                                                 .end = std::string(name_of(verdict.end)),
-                                                 .message = verdict.message,
-                                                 .values = {},
-                                                 .baseline_values = {}});
+    FaultRow& row =
+        faults.emplace_back(FaultRow{.name = manifest.variants[run.variant].name,
+                                     .fault = parse_variant_name(manifest.variants[run.variant].name),
+                                     .seed = run.seed,
+                                     .was_triggered = was_triggered(verdict),
+                                     .outcome = outcome_of(verdict),
+                                     .num_detected = io::metric_at(verdict.metrics, "mission.sensor_faults_noticed"),
+                                     .end = std::string(name_of(verdict.end)),
+                                     .message = verdict.message,
+                                     .values = {},
+                                     .baseline_values = {}});
     for (const std::string& metric : manifest.metrics) {
       row.values.push_back(io::metric_at(verdict.metrics, metric));
       row.baseline_values.push_back(io::metric_at(rows[i - run.variant]->metrics, metric));
@@ -67,9 +69,11 @@ std::string faults_summary(const std::vector<FaultRow>& rows) {
 }
 
 std::string fault_legend() {
-  return "Survived: mission completed without fall or collision, every expectation met. Degraded: completed, an expectation missed. Stopped: "
+  return "Survived: mission completed without fall or collision, every expectation met. Degraded: completed, an "
+         "expectation missed. Stopped: "
          "not completed, no fall, no collision. UNSAFE: a fall or a "
-         "collision. NO RESULT: the run crashed, timed out or was not scored. Detected: number of reported timeouts, frozen readings and "
+         "collision. NO RESULT: the run crashed, timed out or was not scored. Detected: number of reported timeouts, "
+         "frozen readings and "
          "clock errors; drift and outliers are not detectable.";
 }
 

@@ -13,11 +13,11 @@ namespace patrol::app {
 
 /// Outcome of a run with a fault.
 enum class FaultOutcome {
-  kSurvived,     ///< mission completed, every expectation met
-  kDegraded,     ///< mission completed, an expectation missed
-  kStopped,      ///< mission not completed, no fall or collision
-  kUnsafe,       ///< fall or collision
-  kNoResult,     ///< crashed, hung, or without a score
+  kSurvived,  ///< mission completed, every expectation met
+  kDegraded,  ///< mission completed, an expectation missed
+  kStopped,   ///< mission not completed, no fall or collision
+  kUnsafe,    ///< fall or collision
+  kNoResult,  ///< crashed, hung, or without a score
 };
 
 inline constexpr std::array kFaultOutcomes = std::to_array<NamedValue<FaultOutcome>>({
@@ -35,14 +35,15 @@ std::string_view text_of(FaultOutcome outcome);
 
 /// Row of a fault matrix: a run with a fault, or the one without.
 struct FaultRow {
-  std::string name;     ///< name of the variant
+  std::string name;  ///< name of the variant
   FaultVariant fault;
   std::uint64_t seed = 1;
   std::optional<bool> was_triggered;  ///< empty for the run without a fault
   FaultOutcome outcome = FaultOutcome::kNoResult;
   std::optional<double> num_detected;  ///< number of events in which the robot reported a faulty sensor
   std::string end, message;
-  std::vector<std::optional<double>> values, baseline_values;  ///< [metric], this run and the run without fault of this seed
+  std::vector<std::optional<double>> values,
+      baseline_values;  ///< [metric], this run and the run without fault of this seed
 
   bool is_not_triggered() const { return was_triggered.has_value() && !*was_triggered; }
 };

@@ -16,7 +16,7 @@ struct FaultCell {
   FaultOutcome worst = FaultOutcome::kSurvived;
   bool is_not_triggered = false;  ///< in one seed or more
   bool is_detected = true;        ///< in all seeds
-  std::vector<double> values;   ///< values of the first metric
+  std::vector<double> values;     ///< values of the first metric
 
   void add(const FaultRow& row) {
     worst = std::max(worst, row.outcome);
@@ -27,7 +27,8 @@ struct FaultCell {
 };
 
 std::string text_of(const FaultCell& cell) {
-  std::string text = cell.worst == FaultOutcome::kSurvived ? std::string(text_of(cell.worst)) : fmt::format("**{}**", text_of(cell.worst));
+  std::string text = cell.worst == FaultOutcome::kSurvived ? std::string(text_of(cell.worst))
+                                                           : fmt::format("**{}**", text_of(cell.worst));
   if (!cell.values.empty()) text += fmt::format(" {:.3g}", score::mean(cell.values));
   if (cell.is_detected) text += ", detected";
   if (cell.is_not_triggered) text += ", not triggered";
@@ -64,8 +65,11 @@ FaultGrid grid_of(const std::vector<FaultRow>& rows) {
 }  // namespace
 
 io::Table faults_table(const SweepManifest& manifest, const SweepRows& rows) {
-  const auto cell = [](const std::optional<double>& value) { return value ? io::TableValue{*value} : io::TableValue{}; };
-  io::Table table{.name = "faults", .columns = {"fault", "seed", "triggered", "outcome", "detected", "end", "message"}, .rows = {}};
+  const auto cell = [](const std::optional<double>& value) {
+    return value ? io::TableValue{*value} : io::TableValue{};
+  };
+  io::Table table{
+      .name = "faults", .columns = {"fault", "seed", "triggered", "outcome", "detected", "end", "message"}, .rows = {}};
   for (const std::string& metric : manifest.metrics) {
     table.columns.push_back(metric);
     table.columns.push_back(metric + " difference");
@@ -81,20 +85,25 @@ io::Table faults_table(const SweepManifest& manifest, const SweepRows& rows) {
     cells.emplace_back(row.message);
     for (std::size_t metric = 0; metric < row.values.size(); ++metric) {
       cells.push_back(cell(row.values[metric]));
-      cells.push_back(row.values[metric] && row.baseline_values[metric] ? io::TableValue{*row.values[metric] - *row.baseline_values[metric]} : io::TableValue{});
+      cells.push_back(row.values[metric] && row.baseline_values[metric]
+                          ? io::TableValue{*row.values[metric] - *row.baseline_values[metric]}
+                          : io::TableValue{});
     }
   }
   return table;
 }
 
 std::string faults_text(const SweepManifest& manifest, const SweepRows& rows) {
-  std::string text = fmt::format("{:<28} {:>4}  {:<13}  {:<9}  {:>8}  {:<16}", "fault", "seed", "", "outcome", "detected", "end");
+  std::string text =
+      fmt::format("{:<28} {:>4}  {:<13}  {:<9}  {:>8}  {:<16}", "fault", "seed", "", "outcome", "detected", "end");
   for (const std::string& metric : manifest.metrics) text += fmt::format("  {:>20}", metric);
   text += "\n";
   const std::vector<FaultRow> all = fault_rows(manifest, rows);
   for (const FaultRow& row : all) {
-    text += fmt::format("{:<28} {:>4}  {:<13}  {:<9}  {:>8.0f}  {:<16}", row.name, row.seed, trigger_text(row), text_of(row.outcome), row.num_detected.value_or(0.0), row.end);
-    for (const auto& value : row.values) text += value ? fmt::format("  {:>20.4g}", *value) : fmt::format("  {:>20}", "-");
+    text += fmt::format("{:<28} {:>4}  {:<13}  {:<9}  {:>8.0f}  {:<16}", row.name, row.seed, trigger_text(row),
+                        text_of(row.outcome), row.num_detected.value_or(0.0), row.end);
+    for (const auto& value : row.values)
+      text += value ? fmt::format("  {:>20.4g}", *value) : fmt::format("  {:>20}", "-");
     text += "\n";
   }
   return text + faults_summary(all) + "\n";

@@ -19,7 +19,9 @@ struct Findings {
 };
 
 Findings findings_of(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress) {
-  Findings findings{.tables = {runs_table(manifest, rows, progress), comparison_table(manifest, rows, progress)}, .text = "", .markdown = ""};
+  Findings findings{.tables = {runs_table(manifest, rows, progress), comparison_table(manifest, rows, progress)},
+                    .text = "",
+                    .markdown = ""};
   switch (manifest.kind) {
     case SweepKind::kSweep:
       findings.text = comparison_text(manifest, rows, progress);
@@ -60,7 +62,8 @@ ExitCode finish_sweep(const SweepDirectory& directory, const SweepManifest& mani
   const Findings findings = findings_of(manifest, rows, progress);
   if (!findings.markdown.empty()) io::save_text(directory.root / "faults.md", findings.markdown);
   complete_sweep_directory(directory, findings.tables);
-  fmt::print("{}{} runs: {}\n", findings.text, progress.counted.size(), directory.table(findings.tables.back().name).string());
+  fmt::print("{}{} runs: {}\n", findings.text, progress.counted.size(),
+             directory.table(findings.tables.back().name).string());
   return worst_of(rows, progress);
 }
 

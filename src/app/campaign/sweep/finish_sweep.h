@@ -1,7 +1,7 @@
 #pragma once
 
-#include "app/common/exit_code.h"
 #include "app/campaign/sweep/sweep_directory.h"
+#include "app/common/exit_code.h"
 
 namespace patrol::app {
 

@@ -20,16 +20,16 @@ constexpr int kVersion = 2;
 
 OrderedJson json_of(const SweepManifest& manifest) {
   OrderedJson json{{"version", kVersion},
-            {"kind", row_of(kSweepKinds, manifest.kind).name},
-            {"scenario", manifest.scenario},
-            {"overrides", manifest.overrides},
-            {"paths", manifest.paths},
-            {"metrics", manifest.metrics},
-            {"early_stop", manifest.stop.is_early},
-            {"equivalence_margin", manifest.stop.equivalence_margin},
-            {"seeds", manifest.seeds},
-            {"variants", OrderedJson::array()},
-            {"runs", OrderedJson::array()}};
+                   {"kind", row_of(kSweepKinds, manifest.kind).name},
+                   {"scenario", manifest.scenario},
+                   {"overrides", manifest.overrides},
+                   {"paths", manifest.paths},
+                   {"metrics", manifest.metrics},
+                   {"early_stop", manifest.stop.is_early},
+                   {"equivalence_margin", manifest.stop.equivalence_margin},
+                   {"seeds", manifest.seeds},
+                   {"variants", OrderedJson::array()},
+                   {"runs", OrderedJson::array()}};
   for (const Variant& variant : manifest.variants) {
     json["variants"].push_back({{"name", variant.name}, {"overrides", variant.overrides}});
   }
@@ -60,11 +60,13 @@ SweepManifest manifest_of(const OrderedJson& json) {
                              .hash = run.at("hash")});
     if (manifest.runs.back().variant >= manifest.variants.size()) throw InputError("runs: unknown variant");
   }
-  for (const auto& [key, is_empty] : {std::pair("metrics", manifest.metrics.empty()), std::pair("seeds", manifest.seeds.empty()),
-                                      std::pair("variants", manifest.variants.empty())}) {
+  for (const auto& [key, is_empty] :
+       {std::pair("metrics", manifest.metrics.empty()), std::pair("seeds", manifest.seeds.empty()),
+        std::pair("variants", manifest.variants.empty())}) {
     if (is_empty) throw InputError(fmt::format("{}: is empty", key));
   }
-  if (manifest.runs.size() != manifest.variants.size() * manifest.seeds.size()) throw InputError("runs: must have one run per variant and seed");
+  if (manifest.runs.size() != manifest.variants.size() * manifest.seeds.size())
+    throw InputError("runs: must have one run per variant and seed");
   return manifest;
 }
 

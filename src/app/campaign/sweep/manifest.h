@@ -15,7 +15,7 @@ struct PlannedRun {
   std::size_t variant = 0;
   std::uint64_t seed = 1;
   std::vector<std::string> overrides;  ///< overrides of the variant, then those sampled for the seed: "path=value"
-  std::string hash;                 ///< content hash of the result (run_hash.h)
+  std::string hash;                    ///< content hash of the result (run_hash.h)
 };
 
 /// Condition for stopping before all seeds are run.
@@ -43,9 +43,9 @@ struct SweepManifest {
   std::vector<std::string> paths;      ///< keys that are varied or sampled
   std::vector<Variant> variants;       ///< all others are compared with the first
   std::vector<std::uint64_t> seeds;
-  std::vector<std::string> metrics;    ///< metrics to compare
+  std::vector<std::string> metrics;  ///< metrics to compare
   EarlyStop stop;
-  std::vector<PlannedRun> runs;        ///< ordered by seed, then by variant
+  std::vector<PlannedRun> runs;  ///< ordered by seed, then by variant
 };
 
 /// All overrides of a run: the common ones, its own, and the seed.

@@ -2,8 +2,8 @@
 
 #include "app/campaign/batch/run_hash.h"
 #include "app/campaign/sweep/axis.h"
-#include "app/campaign/sweep/fault_matrix.h"
 #include "app/campaign/sweep/error_sources.h"
+#include "app/campaign/sweep/fault_matrix.h"
 #include "core/error.h"
 #include "io/yaml/settings_yaml.h"
 

@@ -9,7 +9,8 @@ namespace patrol::app {
 /// reported before anything runs. These functions throw InputError.
 SweepManifest plan_sweep(const SweepOptions& options);
 
-/// Plans an error budget: the unchanged scenario (baseline), without each of its error sources (error_sources.h), and without all.
+/// Plans an error budget: the unchanged scenario (baseline), without each of its error sources (error_sources.h), and
+/// without all.
 SweepManifest plan_error_budget(const ErrorBudgetOptions& options);
 
 /// Plans a fault matrix: the unchanged scenario, and with each fault of its sensors (fault_matrix.h).

@@ -8,8 +8,8 @@
 
 namespace patrol::app {
 
-void run_sweep(const std::filesystem::path& scenario, const SweepManifest& manifest, const SweepDirectory& directory, const Shard& shard,
-               const BatchSettings& settings) {
+void run_sweep(const std::filesystem::path& scenario, const SweepManifest& manifest, const SweepDirectory& directory,
+               const Shard& shard, const BatchSettings& settings) {
   while (true) {
     const SweepProgress progress = evaluate_progress(manifest, load_rows(manifest, directory.store()));
     std::vector<BatchRun> runs;
@@ -23,7 +23,8 @@ void run_sweep(const std::filesystem::path& scenario, const SweepManifest& manif
     }
     if (runs.empty()) return;
     if (!run_batch(runs, settings, directory.root)) {
-      throw std::runtime_error(fmt::format("interrupted; {} is incomplete, repeat the command to continue", directory.root.string()));
+      throw std::runtime_error(
+          fmt::format("interrupted; {} is incomplete, repeat the command to continue", directory.root.string()));
     }
   }
 }

@@ -8,9 +8,9 @@
 #include <fmt/format.h>
 
 #include "app/campaign/batch/program.h"
-#include "app/common/progress_bar.h"
 #include "app/campaign/sweep/comparison.h"
 #include "app/campaign/sweep/finish_sweep.h"
+#include "app/common/progress_bar.h"
 #include "io/files/atomic_file.h"
 
 namespace patrol::app {
@@ -38,13 +38,17 @@ class SlurmJob {
     const std::string command = shard_command(options, std::filesystem::read_symlink("/proc/self/exe"),
                                               fmt::format("\"$SLURM_ARRAY_TASK_ID\"/{}", options.slurm_tasks));
     io::save_text(script(), fmt::format("#!/bin/sh\n#SBATCH --job-name=patrol-sweep\nexec {}\n", command));
-    std::vector<std::string> words = {"sbatch", "--parsable", "--array=" + shards,
+    std::vector<std::string> words = {"sbatch",
+                                      "--parsable",
+                                      "--array=" + shards,
                                       fmt::format("--cpus-per-task={}", std::max(1, options.batch.jobs)),
-                                      fmt::format("--output={}", (folder_ / "%A_%a.txt").string()), "--open-mode=append"};
+                                      fmt::format("--output={}", (folder_ / "%A_%a.txt").string()),
+                                      "--open-mode=append"};
     words.insert(words.end(), options.slurm_options.begin(), options.slurm_options.end());
     words.push_back(script().string());
     const ProgramResult submitted = run_program(words);
-    if (submitted.exit_code != 0) throw std::runtime_error(fmt::format("sbatch failed with exit status {}", submitted.exit_code));
+    if (submitted.exit_code != 0)
+      throw std::runtime_error(fmt::format("sbatch failed with exit status {}", submitted.exit_code));
     id_ = submitted.output.substr(0, submitted.output.find_first_of(";\n"));  // "123" or "123;cluster"
     io::save_text(id_file(), id_);
   }
@@ -62,10 +66,11 @@ class SlurmJob {
 }  // namespace
 
 std::string shard_command(const SweepOptions& options, const std::filesystem::path& program, const std::string& shard) {
-  std::string command = fmt::format("{} sweep {} --seeds {} --jobs {} --keep-runs {} --run-timeout-s {} --out {} --shard {}",
-                                    quote_for_shell(program.string()), quote_for_shell(std::filesystem::absolute(options.scenario).string()),
-                                    quote_for_shell(options.seeds), std::max(1, options.batch.jobs), options.batch.keep_runs, options.batch.run_timeout_s,
-                                    quote_for_shell(std::filesystem::absolute(options.out).string()), shard);
+  std::string command = fmt::format(
+      "{} sweep {} --seeds {} --jobs {} --keep-runs {} --run-timeout-s {} --out {} --shard {}",
+      quote_for_shell(program.string()), quote_for_shell(std::filesystem::absolute(options.scenario).string()),
+      quote_for_shell(options.seeds), std::max(1, options.batch.jobs), options.batch.keep_runs,
+      options.batch.run_timeout_s, quote_for_shell(std::filesystem::absolute(options.out).string()), shard);
   const auto add = [&command](const char* option, const std::vector<std::string>& values) {
     for (const std::string& value : values) command += fmt::format(" {} {}", option, quote_for_shell(value));
   };
@@ -102,7 +107,8 @@ ExitCode sweep_on_slurm(const SweepOptions& options, const SweepDirectory& direc
                                            directory.root.string(), missing.size(), submissions));
     }
     job.submit(options, shards_with_work(missing, options.slurm_tasks));
-    bar.print_line(fmt::format("job {}: {} runs in shards {}", job.id(), missing.size(), shards_with_work(missing, options.slurm_tasks)));
+    bar.print_line(fmt::format("job {}: {} runs in shards {}", job.id(), missing.size(),
+                               shards_with_work(missing, options.slurm_tasks)));
     ++submissions;
   }
 }

@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "app/common/exit_code.h"
 #include "app/campaign/sweep/sweep_directory.h"
 #include "app/campaign/sweep/sweep_options.h"
+#include "app/common/exit_code.h"
 
 namespace patrol::app {
 

@@ -11,12 +11,13 @@ namespace patrol::app {
 namespace {
 
 // Several processes may share one directory: files being written by another one (*.part) stay.
-const OutputKind kSweep = {.name = "sweep",
-                           .marker_text = "Incomplete sweep: repeat the command to continue.",
-                           .outputs = {"runs.csv", "comparison.csv", "budget.csv", "faults.csv", "faults.md", "sweep.sqlite", "report.html"},
-                           .required_file = "sweep.json",
-                           .preserved = {"sweep.json", "runs", "work", "slurm", "*.part"},
-                           .is_concurrent = true};
+const OutputKind kSweep = {
+    .name = "sweep",
+    .marker_text = "Incomplete sweep: repeat the command to continue.",
+    .outputs = {"runs.csv", "comparison.csv", "budget.csv", "faults.csv", "faults.md", "sweep.sqlite", "report.html"},
+    .required_file = "sweep.json",
+    .preserved = {"sweep.json", "runs", "work", "slurm", "*.part"},
+    .is_concurrent = true};
 
 }  // namespace
 
@@ -29,7 +30,8 @@ SweepDirectory begin_sweep_directory(const std::filesystem::path& root, const Sw
 
 SweepDirectory open_sweep_directory(const std::filesystem::path& root) {
   const SweepDirectory directory{root};
-  if (!std::filesystem::exists(directory.manifest())) throw InputError(fmt::format("{}: not a sweep directory: sweep.json not found", root.string()));
+  if (!std::filesystem::exists(directory.manifest()))
+    throw InputError(fmt::format("{}: not a sweep directory: sweep.json not found", root.string()));
   return directory;
 }
 

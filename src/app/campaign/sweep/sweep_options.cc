@@ -26,7 +26,8 @@ std::optional<Number> parse_number(std::string_view text) {
 std::vector<std::uint64_t> parse_seeds(const std::string& text) {
   constexpr std::uint64_t kMax = 1'000'000;
   const std::size_t dots = text.find("..");
-  const auto first = dots == std::string::npos ? std::optional<std::uint64_t>(1) : parse_number<std::uint64_t>(text.substr(0, dots));
+  const auto first =
+      dots == std::string::npos ? std::optional<std::uint64_t>(1) : parse_number<std::uint64_t>(text.substr(0, dots));
   const auto last = parse_number<std::uint64_t>(dots == std::string::npos ? text : text.substr(dots + 2));
   if (!first || !last || *last < *first || *last - *first >= kMax) {
     throw InputError(fmt::format("--seeds {}: must be N (seeds 1 ... N) or A..B, at most {} of them", text, kMax));
@@ -40,7 +41,8 @@ Shard parse_shard(const std::string& text) {
   if (text.empty()) return {};
   const std::size_t slash = text.find('/');
   const std::size_t index = parse_number<std::size_t>(text.substr(0, slash)).value_or(0);
-  const std::size_t count = slash == std::string::npos ? 0 : parse_number<std::size_t>(text.substr(slash + 1)).value_or(0);
+  const std::size_t count =
+      slash == std::string::npos ? 0 : parse_number<std::size_t>(text.substr(slash + 1)).value_or(0);
   if (index < 1 || index > count) throw InputError(fmt::format("--shard {}: must be i/n with 1 <= i <= n", text));
   return {.index = index - 1, .count = count};
 }

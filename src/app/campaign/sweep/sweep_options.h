@@ -15,15 +15,16 @@ struct SweepOptions {
   std::vector<std::string> overrides;  ///< "path=value", for all runs
   std::vector<std::string> vary;       ///< axis.h
   std::string seeds = "10";            ///< "N": 1 ... N; or "A..B"
-  std::vector<std::string> metrics = {"pose.ate_rmse_m", "pose.heading_rmse_deg", "map.nearest_mean_m", "mission.completed"};
+  std::vector<std::string> metrics = {"pose.ate_rmse_m", "pose.heading_rmse_deg", "map.nearest_mean_m",
+                                      "mission.completed"};
   bool early_stop = false;
   double equivalence_margin = 0.0;
   BatchOptions batch;
-  std::string shard;                   ///< "i/n"; empty: all
+  std::string shard;  ///< "i/n"; empty: all
   std::string engine = "local";
-  int slurm_tasks = 8;                 ///< tasks of the job array; each runs a shard
+  int slurm_tasks = 8;                     ///< tasks of the job array; each runs a shard
   std::vector<std::string> slurm_options;  ///< for sbatch, "--partition=long"
-  bool detach = false;                 ///< submit without waiting
+  bool detach = false;                     ///< submit without waiting
   std::filesystem::path out = "out/sweep";
 };
 
@@ -43,7 +44,7 @@ struct FaultMatrixOptions {
   std::vector<std::string> overrides;
   std::string seeds = "1";
   std::vector<std::string> metrics = {"pose.ate_rmse_m", "pose.heading_rmse_deg", "map.nearest_mean_m"};
-  double start_s = 12.0;     ///< start of every fault
+  double start_s = 12.0;  ///< start of every fault
   double duration_s = 8.0;
   BatchOptions batch;
   std::filesystem::path out = "out/faults";

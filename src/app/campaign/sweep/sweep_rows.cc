@@ -8,10 +8,13 @@ SweepRows load_rows(const SweepManifest& manifest, const ResultStore& store) {
   return rows;
 }
 
-std::vector<std::vector<std::optional<double>>> flatten_metrics(const SweepManifest& manifest, const SweepRows& rows, const std::string& metric) {
-  std::vector<std::vector<std::optional<double>>> values(manifest.seeds.size(), std::vector<std::optional<double>>(manifest.variants.size()));
+std::vector<std::vector<std::optional<double>>> flatten_metrics(const SweepManifest& manifest, const SweepRows& rows,
+                                                                const std::string& metric) {
+  std::vector<std::vector<std::optional<double>>> values(manifest.seeds.size(),
+                                                         std::vector<std::optional<double>>(manifest.variants.size()));
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (rows[i]) values[i / manifest.variants.size()][manifest.runs[i].variant] = io::metric_at(rows[i]->metrics, metric);
+    if (rows[i])
+      values[i / manifest.variants.size()][manifest.runs[i].variant] = io::metric_at(rows[i]->metrics, metric);
   }
   return values;
 }

@@ -15,6 +15,7 @@ using SweepRows = std::vector<std::optional<RunVerdict>>;
 SweepRows load_rows(const SweepManifest& manifest, const ResultStore& store);
 
 /// Values of one metric, [seed][variant]; none for runs without it.
-std::vector<std::vector<std::optional<double>>> flatten_metrics(const SweepManifest& manifest, const SweepRows& rows, const std::string& metric);
+std::vector<std::vector<std::optional<double>>> flatten_metrics(const SweepManifest& manifest, const SweepRows& rows,
+                                                                const std::string& metric);
 
 }  // namespace patrol::app

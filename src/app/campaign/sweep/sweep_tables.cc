@@ -35,12 +35,14 @@ std::vector<std::string> paths_of(const SweepRows& rows, const std::vector<std::
 }
 
 /// Comparison [metric][variant], each variant over the seeds that were run for it.
-std::vector<std::vector<VariantMetric>> comparisons(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress) {
+std::vector<std::vector<VariantMetric>> comparisons(const SweepManifest& manifest, const SweepRows& rows,
+                                                    const SweepProgress& progress) {
   std::vector<std::vector<VariantMetric>> all;
   for (const std::string& metric : manifest.metrics) {
     std::vector<VariantMetric>& values = all.emplace_back();
     for (std::size_t variant = 0; variant < manifest.variants.size(); ++variant) {
-      values.push_back(compare(manifest, rows, metric, progress.num_seeds[variant], confidence_level(manifest))[variant]);
+      values.push_back(
+          compare(manifest, rows, metric, progress.num_seeds[variant], confidence_level(manifest))[variant]);
     }
   }
   return all;
@@ -82,8 +84,8 @@ io::Table runs_table(const SweepManifest& manifest, const SweepRows& rows, const
 
 io::Table comparison_table(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress) {
   io::Table table{.name = "comparison",
-                  .columns = {"metric", "variant", "runs", "mean", "mean_low", "mean_high", "pairs", "difference", "difference_low",
-                              "difference_high", "verdict"},
+                  .columns = {"metric", "variant", "runs", "mean", "mean_low", "mean_high", "pairs", "difference",
+                              "difference_low", "difference_high", "verdict"},
                   .rows = {}};
   const auto add_interval = [](std::vector<io::TableValue>& row, const std::optional<score::Interval>& interval) {
     row.push_back(interval ? number(interval->low) : io::TableValue{});
@@ -113,19 +115,24 @@ std::string comparison_text(const SweepManifest& manifest, const SweepRows& rows
   std::string text;
   const auto all = comparisons(manifest, rows, progress);
   for (std::size_t metric = 0; metric < all.size(); ++metric) {
-    text += fmt::format("{}\n  {:<{}}  {:>5}  {:>32}  {:>5}  {:>34}\n", manifest.metrics[metric], "variant", width, "runs",
-                        "mean [95 %]", "pairs", "difference from the first");
+    text += fmt::format("{}\n  {:<{}}  {:>5}  {:>32}  {:>5}  {:>34}\n", manifest.metrics[metric], "variant", width,
+                        "runs", "mean [95 %]", "pairs", "difference from the first");
     for (const VariantMetric& entry : all[metric]) {
-      const std::string mean = entry.interval ? fmt::format("{:.4g} [{:.4g}, {:.4g}]", entry.mean, entry.interval->low, entry.interval->high)
-                               : entry.num_runs > 0 ? fmt::format("{:.4g}", entry.mean) : "-";
-      text += fmt::format("  {:<{}}  {:>5}  {:>32}", manifest.variants[entry.variant].name, width, entry.num_runs, mean);
-      if (entry.variant > 0) text += fmt::format("  {:>5}  {:>34}  {}", entry.num_pairs, spread(entry.difference), entry.verdict);
+      const std::string mean =
+          entry.interval ? fmt::format("{:.4g} [{:.4g}, {:.4g}]", entry.mean, entry.interval->low, entry.interval->high)
+          : entry.num_runs > 0 ? fmt::format("{:.4g}", entry.mean)
+                               : "-";
+      text +=
+          fmt::format("  {:<{}}  {:>5}  {:>32}", manifest.variants[entry.variant].name, width, entry.num_runs, mean);
+      if (entry.variant > 0)
+        text += fmt::format("  {:>5}  {:>34}  {}", entry.num_pairs, spread(entry.difference), entry.verdict);
       text += "\n";
     }
     text += "\n";
   }
   if (manifest.stop.is_early) {
-    text += fmt::format("differences: intervals for {} interim analyses (Bonferroni)\n", interim_analyses(manifest.seeds.size()).size());
+    text += fmt::format("differences: intervals for {} interim analyses (Bonferroni)\n",
+                        interim_analyses(manifest.seeds.size()).size());
   }
   return text;
 }

@@ -13,18 +13,19 @@ namespace patrol::app {
 
 /// Scenario that `patrol test` runs.
 struct TestedScenario {
-  std::string name;            ///< path below the folder, without ".yaml"
+  std::string name;  ///< path below the folder, without ".yaml"
   std::filesystem::path file;
-  std::string key;         ///< name of its result: "0007_street_patrol"
+  std::string key;                                              ///< name of its result: "0007_street_patrol"
   std::vector<std::pair<std::string, std::string>> properties;  ///< for JUnit: world, robot, seed, build
-  std::optional<RunVerdict> verdict;  ///< none before the run
+  std::optional<RunVerdict> verdict;                            ///< none before the run
 };
 
 bool is_passed(const TestedScenario& tested);
 
 /// Every *.yaml file in the folder and its subfolders, sorted by name, or the one file. Throws InputError if nothing is
 /// found.
-std::vector<TestedScenario> find_scenarios(const std::filesystem::path& scenarios, const std::vector<std::string>& overrides);
+std::vector<TestedScenario> find_scenarios(const std::filesystem::path& scenarios,
+                                           const std::vector<std::string>& overrides);
 
 /// Writes junit.xml, one suite per scenario; scenarios without a verdict are errors.
 void save_test_junit(const std::filesystem::path& file, const std::vector<TestedScenario>& tested);

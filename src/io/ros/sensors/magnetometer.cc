@@ -18,7 +18,8 @@ void describe(Codec& codec, MagneticField& reading) {
 
 namespace patrol::io {
 
-PATROL_ROS_SENSOR(MagneticField,
-                  "std_msgs/Header header\ngeometry_msgs/Vector3 magnetic_field\nfloat64[9] magnetic_field_covariance\n");
+PATROL_ROS_SENSOR(
+    MagneticField,
+    "std_msgs/Header header\ngeometry_msgs/Vector3 magnetic_field\nfloat64[9] magnetic_field_covariance\n");
 
 }  // namespace patrol::io

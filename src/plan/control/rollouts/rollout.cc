@@ -16,8 +16,8 @@ Pose2 follow_arc(const Pose2& T_map_body, double vx_mps, double yaw_rate_radps, 
   return T_map_body * Pose2{along, aside, turn};
 }
 
-Rollout roll_out(const Costmap& costmap, const Pose2& T_map_body, double vx_mps, double yaw_rate_radps, double horizon_s,
-                 int steps) {
+Rollout roll_out(const Costmap& costmap, const Pose2& T_map_body, double vx_mps, double yaw_rate_radps,
+                 double horizon_s, int steps) {
   Rollout rollout{.vx_mps = vx_mps, .yaw_rate_radps = yaw_rate_radps, .T_map_body = {}, .min_clearance_m = 0.0};
   rollout.min_clearance_m = std::numeric_limits<double>::infinity();
   for (int step = 1; step <= steps; ++step) {

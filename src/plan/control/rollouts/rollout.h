@@ -20,9 +20,9 @@ struct Rollout {
 /// Inputs that all cost terms of a rollout share.
 struct RolloutScene {
   const PlannedPath& path;
-  double along_m = 0.0;        ///< position of the robot along the path
-  double reachable_distance_m = 0.0;        ///< maximum distance that the robot can drive within the horizon
-  Twist3 twist;                ///< current twist, in body
+  double along_m = 0.0;               ///< position of the robot along the path
+  double reachable_distance_m = 0.0;  ///< maximum distance that the robot can drive within the horizon
+  Twist3 twist;                       ///< current twist, in body
   double max_speed_mps = 0.0;
   double max_yaw_rate_radps = 0.0;
 };
@@ -31,7 +31,7 @@ struct RolloutScene {
 Pose2 follow_arc(const Pose2& T_map_body, double vx_mps, double yaw_rate_radps, double time_s);
 
 /// Simulates a constant command for `horizon_s` in `steps` equal steps.
-Rollout roll_out(const Costmap& costmap, const Pose2& T_map_body, double vx_mps, double yaw_rate_radps, double horizon_s,
-                 int steps);
+Rollout roll_out(const Costmap& costmap, const Pose2& T_map_body, double vx_mps, double yaw_rate_radps,
+                 double horizon_s, int steps);
 
 }  // namespace patrol::plan

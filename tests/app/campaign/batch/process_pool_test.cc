@@ -17,9 +17,11 @@ namespace {
 
 using std::chrono::milliseconds;
 
-std::map<std::size_t, TaskEnd> run(std::size_t num_tasks, const ProcessPoolSettings& settings, const std::function<int(std::size_t)>& task) {
+std::map<std::size_t, TaskEnd> run(std::size_t num_tasks, const ProcessPoolSettings& settings,
+                                   const std::function<int(std::size_t)>& task) {
   std::map<std::size_t, TaskEnd> ends;
-  EXPECT_TRUE(run_in_processes(num_tasks, settings, task, [&](const TaskEnd& end) { ends[end.task] = end; }, [] { return true; }));
+  EXPECT_TRUE(run_in_processes(
+      num_tasks, settings, task, [&](const TaskEnd& end) { ends[end.task] = end; }, [] { return true; }));
   return ends;
 }
 

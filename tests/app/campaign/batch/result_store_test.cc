@@ -9,7 +9,11 @@ namespace patrol::app::result_store_test {
 namespace {
 
 RunVerdict sample_row() {
-  return {.end = RunStatus::kTimeLimit, .message = "after 9 s simulated", .metrics = {{"pose", {{"ate_rmse_m", 0.25}}}}, .checks = {}, .events = {}};
+  return {.end = RunStatus::kTimeLimit,
+          .message = "after 9 s simulated",
+          .metrics = {{"pose", {{"ate_rmse_m", 0.25}}}},
+          .checks = {},
+          .events = {}};
 }
 
 TEST(ResultStore, ARowComesBack) {

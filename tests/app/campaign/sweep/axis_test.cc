@@ -33,7 +33,8 @@ TEST(Axis, AListKeepsItsValuesAsTheyWereWritten) {
 }
 
 TEST(Axis, CommasInBracketsAndQuotesDoNotPart) {
-  EXPECT_THAT(parse_axis("faults=[],[{sensor: imu, kind: freeze}]").values, ElementsAre("[]", "[{sensor: imu, kind: freeze}]"));
+  EXPECT_THAT(parse_axis("faults=[],[{sensor: imu, kind: freeze}]").values,
+              ElementsAre("[]", "[{sensor: imu, kind: freeze}]"));
   EXPECT_THAT(parse_axis("a='x,y',z").values, ElementsAre("'x,y'", "z"));
 }
 
@@ -97,7 +98,8 @@ TEST(Axis, WhatIsWrongIsSaid) {
 }
 
 TEST(Cross, TwoMethodsAndThreeNoisesAreSixVariantsTheFirstAxisSlowest) {
-  const std::vector<Variant> variants = cartesian_product({parse_axis("m=a,b"), parse_axis("n=1,2,3"), parse_axis("d=uniform:0:1")});
+  const std::vector<Variant> variants =
+      cartesian_product({parse_axis("m=a,b"), parse_axis("n=1,2,3"), parse_axis("d=uniform:0:1")});
   ASSERT_EQ(variants.size(), 6u);
   EXPECT_EQ(variants[0].name, "m=a, n=1");
   EXPECT_EQ(variants[2].name, "m=a, n=3");
@@ -110,7 +112,9 @@ TEST(Cross, NothingVariedIsOneVariant) {
   EXPECT_EQ(cartesian_product({}).front().name, "baseline");
 }
 
-TEST(Cross, AnAxisTwiceIsRefused) { EXPECT_THROW(cartesian_product({parse_axis("a=1,2"), parse_axis("a=3,4")}), InputError); }
+TEST(Cross, AnAxisTwiceIsRefused) {
+  EXPECT_THROW(cartesian_product({parse_axis("a=1,2"), parse_axis("a=3,4")}), InputError);
+}
 
 }  // namespace
 }  // namespace patrol::app::axis_test

@@ -5,8 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "app/scenario/scenario.h"
 #include "app/campaign/sweep/error_sources.h"
+#include "app/scenario/scenario.h"
 
 namespace patrol::app::budget_test {
 namespace {
@@ -17,11 +17,20 @@ constexpr const char* kMetric = "pose.ate_rmse_m";
 
 /// "baseline", without noise, without slip, "all ideal"; for each seed one figure a variant.
 SweepManifest manifest_for(const std::vector<std::vector<double>>& values) {
-  SweepManifest manifest{.scenario = "s.yaml", .overrides = {}, .paths = {}, .variants = {}, .seeds = {}, .metrics = {kMetric}, .stop = {}, .runs = {}};
-  for (const char* name : {"baseline", "noise", "slip", "all ideal"}) manifest.variants.push_back({.name = name, .overrides = {}});
+  SweepManifest manifest{.scenario = "s.yaml",
+                         .overrides = {},
+                         .paths = {},
+                         .variants = {},
+                         .seeds = {},
+                         .metrics = {kMetric},
+                         .stop = {},
+                         .runs = {}};
+  for (const char* name : {"baseline", "noise", "slip", "all ideal"})
+    manifest.variants.push_back({.name = name, .overrides = {}});
   for (std::uint64_t seed = 1; seed <= values.size(); ++seed) {
     manifest.seeds.push_back(seed);
-    for (std::size_t variant = 0; variant < 4; ++variant) manifest.runs.push_back({.variant = variant, .seed = seed, .overrides = {}, .hash = ""});
+    for (std::size_t variant = 0; variant < 4; ++variant)
+      manifest.runs.push_back({.variant = variant, .seed = seed, .overrides = {}, .hash = ""});
   }
   return manifest;
 }
@@ -30,16 +39,23 @@ SweepRows rows_with(const std::vector<std::vector<double>>& values) {
   SweepRows rows;
   for (const std::vector<double>& of_seed : values) {
     for (const double value : of_seed) {
-      rows.emplace_back(RunVerdict{.end = RunStatus::kDone, .message = "", .metrics = {{"pose", {{"ate_rmse_m", value}}}}, .checks = {}, .events = {}});
+      rows.emplace_back(RunVerdict{.end = RunStatus::kDone,
+                                   .message = "",
+                                   .metrics = {{"pose", {{"ate_rmse_m", value}}}},
+                                   .checks = {},
+                                   .events = {}});
     }
   }
   return rows;
 }
 
-Budget budget_of(const std::vector<std::vector<double>>& values) { return make_budget(manifest_for(values), rows_with(values), kMetric); }
+Budget budget_of(const std::vector<std::vector<double>>& values) {
+  return make_budget(manifest_for(values), rows_with(values), kMetric);
+}
 
 TEST(Budget, TheLargestShareComesFirstAndSumAndInteractionAddUp) {
-  // Seed 1: 10 less 9 is 1 for noise, 10 less 4 is 6 for slip, 10 less 2 is 8 in all: 1 more than the sum. Seed 2 likewise with 1, 7, 9.
+  // Seed 1: 10 less 9 is 1 for noise, 10 less 4 is 6 for slip, 10 less 2 is 8 in all: 1 more than the sum. Seed 2
+  // likewise with 1, 7, 9.
   const Budget budget = budget_of({{10.0, 9.0, 4.0, 2.0}, {12.0, 11.0, 5.0, 3.0}});
   ASSERT_EQ(budget.contributions.size(), 2u);
   EXPECT_EQ(budget.contributions[0].name, "slip");

@@ -16,16 +16,27 @@ using ::testing::SizeIs;
 constexpr const char* kMetric = "pose.ate_rmse_m";
 
 SweepManifest manifest_of(std::size_t num_variants, std::size_t num_seeds, EarlyStop stop = {}) {
-  SweepManifest manifest{.scenario = "s.yaml", .overrides = {}, .paths = {}, .variants = std::vector<Variant>(num_variants),
-                         .seeds = std::vector<std::uint64_t>(num_seeds), .metrics = {kMetric}, .stop = stop, .runs = {}};
+  SweepManifest manifest{.scenario = "s.yaml",
+                         .overrides = {},
+                         .paths = {},
+                         .variants = std::vector<Variant>(num_variants),
+                         .seeds = std::vector<std::uint64_t>(num_seeds),
+                         .metrics = {kMetric},
+                         .stop = stop,
+                         .runs = {}};
   for (std::size_t seed = 0; seed < num_seeds; ++seed) {
-    for (std::size_t variant = 0; variant < num_variants; ++variant) manifest.runs.push_back({.variant = variant, .seed = seed, .overrides = {}, .hash = ""});
+    for (std::size_t variant = 0; variant < num_variants; ++variant)
+      manifest.runs.push_back({.variant = variant, .seed = seed, .overrides = {}, .hash = ""});
   }
   return manifest;
 }
 
 RunVerdict row_with(double value) {
-  return {.end = RunStatus::kDone, .message = "", .metrics = {{"pose", {{"ate_rmse_m", value}}}}, .checks = {}, .events = {}};
+  return {.end = RunStatus::kDone,
+          .message = "",
+          .metrics = {{"pose", {{"ate_rmse_m", value}}}},
+          .checks = {},
+          .events = {}};
 }
 
 /// What `figure(variant, seed)` gives for every run.
@@ -37,9 +48,12 @@ SweepRows rows_of(const SweepManifest& manifest, Figure figure) {
 }
 
 TEST(Compare, PairsCancelWhatSeedsShare) {
-  // Seeds differ by whole metres, the variants by 0.01 m in every one of them: spread of the means large, of the difference none.
+  // Seeds differ by whole metres, the variants by 0.01 m in every one of them: spread of the means large, of the
+  // difference none.
   const SweepManifest manifest = manifest_of(2, 4);
-  const SweepRows rows = rows_of(manifest, [](std::size_t variant, std::uint64_t seed) { return static_cast<double>(seed) + 0.01 * static_cast<double>(variant); });
+  const SweepRows rows = rows_of(manifest, [](std::size_t variant, std::uint64_t seed) {
+    return static_cast<double>(seed) + 0.01 * static_cast<double>(variant);
+  });
   const std::vector<VariantMetric> compared = compare(manifest, rows, kMetric, 4);
   EXPECT_DOUBLE_EQ(compared[0].mean, 1.5);
   EXPECT_GT(compared[0].interval->high - compared[0].interval->low, 2.0);
@@ -51,7 +65,9 @@ TEST(Compare, PairsCancelWhatSeedsShare) {
 TEST(Compare, ThreePairsGiveTheTextbooksInterval) {
   // Differences 1, 2, 3: mean 2, standard deviation 1, t(2) = 4.3027: half width 4.3027 / sqrt(3) = 2.4841.
   const SweepManifest manifest = manifest_of(2, 3);
-  const SweepRows rows = rows_of(manifest, [](std::size_t variant, std::uint64_t seed) { return variant == 0 ? 0.0 : static_cast<double>(seed) + 1.0; });
+  const SweepRows rows = rows_of(manifest, [](std::size_t variant, std::uint64_t seed) {
+    return variant == 0 ? 0.0 : static_cast<double>(seed) + 1.0;
+  });
   const VariantMetric figure = compare(manifest, rows, kMetric, 3)[1];
   EXPECT_NEAR(figure.difference->center, 2.0, 1e-12);
   EXPECT_NEAR(figure.difference->low, 2.0 - 2.4841, 1e-4);
@@ -61,7 +77,8 @@ TEST(Compare, ThreePairsGiveTheTextbooksInterval) {
 
 TEST(Compare, ARunWithoutTheFigureLeavesItsPairOut) {
   const SweepManifest manifest = manifest_of(2, 3);
-  SweepRows rows = rows_of(manifest, [](std::size_t variant, std::uint64_t seed) { return static_cast<double>(seed + variant); });
+  SweepRows rows =
+      rows_of(manifest, [](std::size_t variant, std::uint64_t seed) { return static_cast<double>(seed + variant); });
   rows[3]->metrics = {};  // seed 1, variant 1: crashed
   const VariantMetric figure = compare(manifest, rows, kMetric, 3)[1];
   EXPECT_EQ(figure.num_runs, 2u);
@@ -80,7 +97,8 @@ TEST(Compare, EqualVariantsAreCalledDifferentInFivePercentOfSweeps) {
   int found = 0;
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     const RandomStream noise(static_cast<std::uint64_t>(sweep), "comparison_test");
-    const SweepRows rows = rows_of(manifest, [&](std::size_t variant, std::uint64_t seed) { return noise.normal(seed, variant); });
+    const SweepRows rows =
+        rows_of(manifest, [&](std::size_t variant, std::uint64_t seed) { return noise.normal(seed, variant); });
     found += compare(manifest, rows, kMetric, 10)[1].verdict != "no difference" ? 1 : 0;
   }
   EXPECT_NEAR(static_cast<double>(found) / kSweeps, 0.05, 4.0 * std::sqrt(0.05 * 0.95 / kSweeps));
@@ -109,7 +127,9 @@ TEST(Progress, FirstFiveSeedsAreNeededBeforeALook) {
 TEST(Progress, AClearDifferenceStopsAfterFiveSeedsAndAnUnclearOneGoesOn) {
   const SweepManifest manifest = manifest_of(3, 20, {.is_early = true, .equivalence_margin = 0.0});
   const RandomStream noise(1, "comparison_test");
-  SweepRows rows = rows_of(manifest, [&](std::size_t variant, std::uint64_t seed) { return (variant == 1 ? 10.0 : 0.0) + 0.1 * noise.normal(seed, variant); });
+  SweepRows rows = rows_of(manifest, [&](std::size_t variant, std::uint64_t seed) {
+    return (variant == 1 ? 10.0 : 0.0) + 0.1 * noise.normal(seed, variant);
+  });
   for (std::size_t i = 15; i < rows.size(); ++i) rows[i].reset();  // five seeds of three variants were run
   const SweepProgress progress = evaluate_progress(manifest, rows);
   EXPECT_THAT(progress.num_seeds, ElementsAre(10, 5, 10));
@@ -119,7 +139,8 @@ TEST(Progress, AClearDifferenceStopsAfterFiveSeedsAndAnUnclearOneGoesOn) {
 TEST(Progress, WithinTheMarginEqualIsDecidedToo) {
   const SweepManifest manifest = manifest_of(2, 20, {.is_early = true, .equivalence_margin = 1.0});
   const RandomStream noise(1, "comparison_test");
-  SweepRows rows = rows_of(manifest, [&](std::size_t variant, std::uint64_t seed) { return 0.01 * noise.normal(seed, variant); });
+  SweepRows rows =
+      rows_of(manifest, [&](std::size_t variant, std::uint64_t seed) { return 0.01 * noise.normal(seed, variant); });
   for (std::size_t i = 10; i < rows.size(); ++i) rows[i].reset();
   const SweepProgress progress = evaluate_progress(manifest, rows);
   EXPECT_TRUE(progress.needed.empty());
@@ -132,7 +153,8 @@ TEST(Progress, LookingOftenFindsDifferencesBetweenEqualsInAtMostFivePercentOfSwe
   int stopped = 0;
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     const RandomStream noise(static_cast<std::uint64_t>(sweep), "comparison_test");
-    const SweepRows rows = rows_of(manifest, [&](std::size_t variant, std::uint64_t seed) { return noise.normal(seed, variant); });
+    const SweepRows rows =
+        rows_of(manifest, [&](std::size_t variant, std::uint64_t seed) { return noise.normal(seed, variant); });
     stopped += evaluate_progress(manifest, rows).num_seeds[1] < 40 ? 1 : 0;
   }
   EXPECT_LE(static_cast<double>(stopped) / kSweeps, 0.05);

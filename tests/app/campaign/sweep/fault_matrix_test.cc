@@ -1,10 +1,10 @@
 #include "app/campaign/sweep/fault_matrix.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <set>
 #include <string>
+
+#include <gtest/gtest.h>
 
 #include "app/cli/commands.h"
 
@@ -17,7 +17,8 @@ TEST(FaultMatrix, AFaultBecomesTheSettingThatDeclaresIt) {
 }
 
 TEST(FaultMatrix, AVariantsNameIsReadBackAsSensorAndKind) {
-  const FaultVariant fault = parse_variant_name(variant_name({.sensor = "joint_encoders", .kind = "clock_offset", .start_s = 12.0, .duration_s = 8.0, .magnitude = 0.2}));
+  const FaultVariant fault = parse_variant_name(variant_name(
+      {.sensor = "joint_encoders", .kind = "clock_offset", .start_s = 12.0, .duration_s = 8.0, .magnitude = 0.2}));
   EXPECT_EQ(fault.sensor, "joint_encoders");
   EXPECT_EQ(fault.kind, "clock_offset");
   EXPECT_EQ(parse_variant_name("no fault").kind, "");
@@ -44,7 +45,8 @@ TEST(FaultMatrix, OnARobotWithEverythingItHasEverySensorOfTheRegistryThatGivesNo
   files.recorded.resize(1);
   std::set<std::string> in_matrix;
   for (const sim::FaultSettings& fault : fault_matrix(scenario, files, 12.0, 8.0)) in_matrix.insert(fault.sensor);
-  for (const SensorInfo& info : kSensorInfos) EXPECT_EQ(in_matrix.contains(info.name), *info.fault_matrix_exclusion_reason == '\0') << info.name;
+  for (const SensorInfo& info : kSensorInfos)
+    EXPECT_EQ(in_matrix.contains(info.name), *info.fault_matrix_exclusion_reason == '\0') << info.name;
 }
 
 TEST(FaultMatrix, WithoutStationsAndTeleoperationScannerAndTeleopAreNotInIt) {

@@ -8,16 +8,19 @@
 namespace patrol::app::fault_tables_test {
 namespace {
 
-using ::testing::HasSubstr;
 using test::fault_verdict;
+using ::testing::HasSubstr;
 
 TEST(FaultTables, SaysWhatBecameOfEachFaultAndWhatItCost) {
   SweepManifest manifest;
-  manifest.variants = {{.name = "no fault", .overrides = {}}, {.name = "imu: drift", .overrides = {}}, {.name = "uwb: freeze", .overrides = {}}};
+  manifest.variants = {{.name = "no fault", .overrides = {}},
+                       {.name = "imu: drift", .overrides = {}},
+                       {.name = "uwb: freeze", .overrides = {}}};
   manifest.seeds = {1};
   manifest.metrics = {"pose.ate_rmse_m"};
   for (std::size_t i = 0; i < 3; ++i) manifest.runs.push_back({.variant = i, .seed = 1, .overrides = {}, .hash = ""});
-  SweepRows rows = {fault_verdict(RunStatus::kDone, true, 0), fault_verdict(RunStatus::kTimeLimit, false, 0), fault_verdict(RunStatus::kDone, true, 0, false)};
+  SweepRows rows = {fault_verdict(RunStatus::kDone, true, 0), fault_verdict(RunStatus::kTimeLimit, false, 0),
+                    fault_verdict(RunStatus::kDone, true, 0, false)};
   rows[0]->events.clear();
   rows[1]->metrics["pose"]["ate_rmse_m"] = 0.3;
 
@@ -30,7 +33,9 @@ TEST(FaultTables, SaysWhatBecameOfEachFaultAndWhatItCost) {
 
 TEST(FaultTables, ADocumentHasSensorsDownKindsAcrossAndTheWorstOfTheSeeds) {
   SweepManifest manifest;
-  manifest.variants = {{.name = "no fault", .overrides = {}}, {.name = "imu: drift", .overrides = {}}, {.name = "imu: freeze", .overrides = {}}};
+  manifest.variants = {{.name = "no fault", .overrides = {}},
+                       {.name = "imu: drift", .overrides = {}},
+                       {.name = "imu: freeze", .overrides = {}}};
   manifest.seeds = {1, 2};
   manifest.metrics = {"pose.ate_rmse_m"};
   SweepRows rows;
@@ -42,8 +47,10 @@ TEST(FaultTables, ADocumentHasSensorsDownKindsAcrossAndTheWorstOfTheSeeds) {
   }
   rows[4] = fault_verdict(RunStatus::kTimeLimit, false, 0);
   rows[4]->metrics["pose"]["ate_rmse_m"] = 0.3;
-  EXPECT_THAT(faults_markdown(manifest, rows), HasSubstr("| pose.ate_rmse_m | drift | freeze |\n| --- | --- | --- |\n| no fault: survived 0.1, detected |\n"
-                                                         "| imu | **stopped** 0.2, detected | survived 0.1, detected |\n"));
+  EXPECT_THAT(
+      faults_markdown(manifest, rows),
+      HasSubstr("| pose.ate_rmse_m | drift | freeze |\n| --- | --- | --- |\n| no fault: survived 0.1, detected |\n"
+                "| imu | **stopped** 0.2, detected | survived 0.1, detected |\n"));
 }
 
 }  // namespace

@@ -6,11 +6,13 @@ namespace patrol::test {
 
 /// Of a run with one declared fault.
 inline app::RunVerdict fault_verdict(app::RunStatus end, bool is_completed, int collisions, bool was_triggered = true) {
-  return {.end = end,
-          .message = "",
-          .metrics = {{"mission", {{"completed", is_completed}, {"collisions", collisions}, {"sensor_faults_noticed", 1}}}, {"pose", {{"ate_rmse_m", 0.1}}}},
-          .checks = {},
-          .events = {{.name = "fault", .was_triggered = was_triggered}}};
+  return {
+      .end = end,
+      .message = "",
+      .metrics = {{"mission", {{"completed", is_completed}, {"collisions", collisions}, {"sensor_faults_noticed", 1}}},
+                  {"pose", {{"ate_rmse_m", 0.1}}}},
+      .checks = {},
+      .events = {{.name = "fault", .was_triggered = was_triggered}}};
 }
 
 }  // namespace patrol::test

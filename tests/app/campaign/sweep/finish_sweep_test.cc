@@ -15,11 +15,14 @@ SweepManifest small_budget(const std::string& scenario) {
   SweepManifest manifest;
   manifest.kind = SweepKind::kBudget;
   manifest.scenario = scenario;
-  manifest.variants = {{.name = "baseline", .overrides = {}}, {.name = "no noise", .overrides = {}}, {.name = "all ideal", .overrides = {}}};
+  manifest.variants = {{.name = "baseline", .overrides = {}},
+                       {.name = "no noise", .overrides = {}},
+                       {.name = "all ideal", .overrides = {}}};
   manifest.seeds = {1, 2};
   manifest.metrics = {"pose.ate_rmse_m"};
   for (std::size_t run = 0; run < 6; ++run) {
-    manifest.runs.push_back({.variant = run % 3, .seed = run / 3 + 1, .overrides = {}, .hash = "run" + std::to_string(run)});
+    manifest.runs.push_back(
+        {.variant = run % 3, .seed = run / 3 + 1, .overrides = {}, .hash = "run" + std::to_string(run)});
   }
   return manifest;
 }
@@ -29,10 +32,10 @@ SweepDirectory finished(const std::filesystem::path& root, const SweepManifest& 
   for (std::size_t run = 0; run < manifest.runs.size(); ++run) {
     const double error_m = 0.1 - 0.02 * static_cast<double>(run % 3) + 0.001 * static_cast<double>(run);
     directory.store().save(manifest.runs[run].hash, {.end = RunStatus::kDone,
-                                                        .message = "",
-                                                        .metrics = {{"pose", {{"ate_rmse_m", error_m}}}},
-                                                        .checks = {},
-                                                        .events = {}});
+                                                     .message = "",
+                                                     .metrics = {{"pose", {{"ate_rmse_m", error_m}}}},
+                                                     .checks = {},
+                                                     .events = {}});
   }
   EXPECT_EQ(finish_sweep(directory, manifest), ExitCode::kDone);
   return directory;

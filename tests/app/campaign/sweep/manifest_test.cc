@@ -20,7 +20,8 @@ SweepManifest small_manifest() {
           .seeds = {1},
           .metrics = {"pose.ate_rmse_m"},
           .stop = {.is_early = true, .equivalence_margin = 0.5},
-          .runs = {{.variant = 0, .seed = 1, .overrides = {"a=1"}, .hash = "aa"}, {.variant = 1, .seed = 1, .overrides = {"a=2"}, .hash = "bb"}}};
+          .runs = {{.variant = 0, .seed = 1, .overrides = {"a=1"}, .hash = "aa"},
+                   {.variant = 1, .seed = 1, .overrides = {"a=2"}, .hash = "bb"}}};
 }
 
 std::string message_of(const std::string& text) {

@@ -52,7 +52,8 @@ TEST(PlanSweep, TheSameSettingsHaveTheSameAddressHoweverTheyAreSaid) {
 }
 
 TEST(PlanSweep, ADrawIsCommonToTheVariantsOfASeed) {
-  const SweepManifest manifest = plan_sweep(street({"stack.slam.rbpf.particles=10,20", "sensors.lidar.range_noise_std_m=uniform:0.01:0.05"}));
+  const SweepManifest manifest =
+      plan_sweep(street({"stack.slam.rbpf.particles=10,20", "sensors.lidar.range_noise_std_m=uniform:0.01:0.05"}));
   EXPECT_EQ(manifest.runs[0].overrides.back(), manifest.runs[1].overrides.back());
   EXPECT_NE(manifest.runs[0].overrides.back(), manifest.runs[2].overrides.back());
 }

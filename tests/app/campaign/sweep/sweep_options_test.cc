@@ -15,7 +15,8 @@ using ::testing::ElementsAre;
 TEST(SweepOptions, SeedsAreACountOrARange) {
   EXPECT_THAT(parse_seeds("3"), ElementsAre(1, 2, 3));
   EXPECT_THAT(parse_seeds("11..13"), ElementsAre(11, 12, 13));
-  for (const char* wrong : {"", "0", "-1", "x", "3..1", "1..", "..3", "1e3", "1..9999999"}) EXPECT_THROW(parse_seeds(wrong), InputError) << wrong;
+  for (const char* wrong : {"", "0", "-1", "x", "3..1", "1..", "..3", "1e3", "1..9999999"})
+    EXPECT_THROW(parse_seeds(wrong), InputError) << wrong;
 }
 
 TEST(SweepOptions, AnyNumberOfShardsHoldsEveryRunOnce) {
@@ -30,7 +31,8 @@ TEST(SweepOptions, AnyNumberOfShardsHoldsEveryRunOnce) {
     EXPECT_EQ(held.size(), 20u);
     EXPECT_EQ(std::set(held.begin(), held.end()).size(), 20u);
   }
-  for (const char* wrong : {"0/3", "4/3", "1", "1/", "/3", "a/b"}) EXPECT_THROW(parse_shard(wrong), InputError) << wrong;
+  for (const char* wrong : {"0/3", "4/3", "1", "1/", "/3", "a/b"})
+    EXPECT_THROW(parse_shard(wrong), InputError) << wrong;
 }
 
 }  // namespace

@@ -21,18 +21,28 @@ SweepManifest two_by_two() {
                          .runs = {}};
   for (const std::uint64_t seed : manifest.seeds) {
     for (std::size_t variant = 0; variant < 2; ++variant) {
-      manifest.runs.push_back({.variant = variant, .seed = seed, .overrides = {manifest.variants[variant].overrides[0], "drawn=0.5"}, .hash = "x"});
+      manifest.runs.push_back({.variant = variant,
+                               .seed = seed,
+                               .overrides = {manifest.variants[variant].overrides[0], "drawn=0.5"},
+                               .hash = "x"});
     }
   }
   return manifest;
 }
 
 RunVerdict row_with(double ate_m, double wall_s) {
-  return {.end = RunStatus::kDone, .message = "",
-          .metrics = {{"mission", {{"completed", true}}}, {"pose", {{"ate_rmse_m", ate_m}}}, {"performance", {{"wall_s", wall_s}}}}, .checks = {}, .events = {}};
+  return {.end = RunStatus::kDone,
+          .message = "",
+          .metrics = {{"mission", {{"completed", true}}},
+                      {"pose", {{"ate_rmse_m", ate_m}}},
+                      {"performance", {{"wall_s", wall_s}}}},
+          .checks = {},
+          .events = {}};
 }
 
-SweepRows rows_taking(double wall_s) { return {row_with(0.1, wall_s), row_with(0.2, wall_s), row_with(0.3, wall_s), row_with(0.5, wall_s)}; }
+SweepRows rows_taking(double wall_s) {
+  return {row_with(0.1, wall_s), row_with(0.2, wall_s), row_with(0.3, wall_s), row_with(0.5, wall_s)};
+}
 
 TEST(RunsTable, IsTheSameWhateverTheClockSaid) {
   const SweepManifest manifest = two_by_two();
@@ -41,15 +51,17 @@ TEST(RunsTable, IsTheSameWhateverTheClockSaid) {
     return io::to_csv(runs_table(manifest, rows, evaluate_progress(manifest, rows)));
   };
   EXPECT_EQ(csv(1.0), csv(2.0));
-  EXPECT_THAT(csv(1.0), HasSubstr("variant,a,drawn,seed,hash,end,exit_code,message,mission.completed,pose.ate_rmse_m\r\n"
-                                  "a=1,1,0.5,1,x,done,0,,1,0.1\r\n"));
+  EXPECT_THAT(csv(1.0),
+              HasSubstr("variant,a,drawn,seed,hash,end,exit_code,message,mission.completed,pose.ate_rmse_m\r\n"
+                        "a=1,1,0.5,1,x,done,0,,1,0.1\r\n"));
 }
 
 TEST(RunsTable, ACrashedRunIsARowWithEmptyCells) {
   const SweepManifest manifest = two_by_two();
   SweepRows rows = rows_taking(1.0);
   rows[0] = RunVerdict{.end = RunStatus::kCrashed, .message = "signal 11", .metrics = {}, .checks = {}, .events = {}};
-  EXPECT_THAT(io::to_csv(runs_table(manifest, rows, evaluate_progress(manifest, rows))), HasSubstr("a=1,1,0.5,1,x,crashed,3,signal 11,,\r\n"));
+  EXPECT_THAT(io::to_csv(runs_table(manifest, rows, evaluate_progress(manifest, rows))),
+              HasSubstr("a=1,1,0.5,1,x,crashed,3,signal 11,,\r\n"));
 }
 
 TEST(ComparisonTable, SaysThePairedDifference) {
