@@ -380,7 +380,6 @@ int run_command_line(int argc, const char* const* argv) {
   CLI::App app("Patrol: a digital twin for inspection robots");
   app.set_version_flag("--version", PATROL_VERSION);
   app.require_subcommand(1);
-
   Call call;
   for (const auto add :
        {add_run,   add_score,        add_localizability, add_replay,  add_report,    add_verify, add_sweep,
