@@ -58,7 +58,7 @@ class Verify(unittest.TestCase):
     def test_the_run_is_its_own_repetition(self):
         done = verify(RUN)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
-        self.assertIn("byte for byte", done.stdout)
+        self.assertIn("byte-identical", done.stdout)
 
     def test_one_changed_number_is_named_by_topic_time_and_field(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -62,11 +62,11 @@ class BadInput(TunnelRun):
 
     def refuse_recorded(self, name, rows, *says):
         with self.subTest(name):
-            self.refuse(["teleop.csv", *says], "mapping", f"remote={{recorded: {self.write('teleop.csv', rows)}}}")
+            self.refuse(["teleop.csv", *says], "mapping", f"teleop={{recorded: {self.write('teleop.csv', rows)}}}")
 
     def refuse_drive(self, name, content, *says):
         with self.subTest(name):
-            self.refuse(["drive.json", *says], "mapping", f"remote={{drive: {self.write('drive.json', content)}}}")
+            self.refuse(["drive.json", *says], "mapping", f"teleop={{route: {self.write('drive.json', content)}}}")
 
     def goals(self):
         return json.loads((TUNNEL / "map/nav.json").read_text())
@@ -121,7 +121,7 @@ class BadInput(TunnelRun):
         self.refuse_goals("cut off", json.dumps(self.goals(), indent=1)[:-40], ":45:", "ends too early")
         self.refuse_goals("YAML", "- number: 1\n", ":1:", "not JSON")
         self.refuse_goals("bytes", bytes(range(256)), ":1:", "not JSON")
-        self.refuse_goals("a million brackets", "[" * 1000000, "deep")
+        self.refuse_goals("a million brackets", "[" * 1000000, "nested levels")
         with self.subTest("no such file"):
             self.refuse(["goals", "absent.json"], "navigate", f"goals={self.folder}/absent.json")
         with self.subTest("a folder"):

@@ -40,8 +40,7 @@ ConvexPolygon clip_left_of(const ConvexPolygon& polygon, const Eigen::Vector2d& 
 ConvexPolygon convex_hull(std::vector<Eigen::Vector2d> points) {
   std::ranges::sort(points,
                     [](const auto& a, const auto& b) { return std::pair(a.x(), a.y()) < std::pair(b.x(), b.y()); });
-  const auto rest = std::ranges::unique(points);
-  points.erase(rest.begin(), rest.end());
+  points.erase(std::unique(points.begin(), points.end()), points.end());
   if (points.size() < 3) return points;
   ConvexPolygon hull = half_hull(points);
   std::ranges::reverse(points);

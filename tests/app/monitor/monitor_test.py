@@ -78,7 +78,7 @@ class Refusals(PlatformCase):
         self.assertTrue(all(is_closed(connection, 8.0) for connection in slow))
         for connection in slow:
             connection.close()
-        self.assertIn("no whole header within 5 s", self.platform.log.read_text())
+        self.assertIn("incomplete header after 5 s", self.platform.log.read_text())
 
     def test_a_log_line_stays_one_line(self):
         before = len(self.platform.log.read_text().splitlines())
@@ -88,7 +88,7 @@ class Refusals(PlatformCase):
 
 
     def test_another_host_name(self):
-        self.refuse(421, "GET", "/api/robots", says="not a name of this platform", Host="evil.example")
+        self.refuse(421, "GET", "/api/robots", says="unknown: must be", Host="evil.example")
         self.refuse(421, "POST", "/api/results", "[]", self.platform.token, Host="evil.example:80")
         self.assertEqual(self.platform.ask("GET", "/api/robots", Host="localhost:80")[0], 200)
 

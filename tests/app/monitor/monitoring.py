@@ -26,7 +26,7 @@ class Platform:
             at = log.tell()
             self.process = subprocess.Popen([self.patrol, "monitor", "--port", str(self.port), "--data-dir", self.folder], stderr=log, env=environment)
         for _ in range(300):
-            said = re.search(r"monitoring at http://127.0.0.1:(\d+)/", self.log.read_text()[at:])
+            said = re.search(r"monitor listening at http://127.0.0.1:(\d+)/", self.log.read_text()[at:])
             if said:
                 self.port = int(said.group(1))
                 return

@@ -53,7 +53,7 @@ class ReportedRun(unittest.TestCase):
         done = self.patrol("run", self.scenario, "--out", run, "--monitor-url", AWAY)
         count = len(self.kinds(run))
         self.assertIn(f"{count} results not delivered, kept in {run}/outbox.jsonl (Connection refused); upload with: patrol upload {run} --monitor-url {AWAY}", done.stderr)
-        self.assertIn(f"{count} results of an earlier run wait there", self.patrol("run", self.scenario, "--out", run, code=2).stderr)
+        self.assertIn(f"contains {count} undelivered results of an earlier run", self.patrol("run", self.scenario, "--out", run, code=2).stderr)
         self.patrol("upload", run, "--monitor-url", AWAY, "--timeout-s", "1", code=3)
 
         platform = Platform(PATROL, self.path / "data")

@@ -69,7 +69,7 @@ class Sweep(SweepCase):
             parts.append(self.path / f"shard_{shard[0]}")
             done = self.sweep(parts[-1], *self.vary, "--shard", shard)
             self.assertEqual(done.returncode, 0, done.stderr)
-            self.assertIn("of 4 runs are still to do", done.stdout)
+            self.assertIn("of 4 runs are missing", done.stdout)
         out = self.path / "collected"
         early = subprocess.run([PATROL, "merge", out, *parts[:2]], capture_output=True, text=True)
         self.assertEqual(early.returncode, 2)
