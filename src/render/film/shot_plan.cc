@@ -104,8 +104,8 @@ std::vector<Chapter> chapters_of(const std::vector<Scene>& scenes, const SpeedPl
 }  // namespace
 
 FilmStyle parse_film_style(const std::string& name) {
-  if (name == "story") return FilmStyle::kHighlights;
-  if (name == "plain") return FilmStyle::kContinuous;
+  if (name == "highlights") return FilmStyle::kHighlights;
+  if (name == "continuous") return FilmStyle::kContinuous;
   throw InputError("style = " + name + ": must be one of highlights, continuous");
 }
 
