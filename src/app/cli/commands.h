@@ -51,7 +51,7 @@ ExitCode localizability_command(const LocalizabilityOptions& options);
 
 struct ReplayOptions {
   std::filesystem::path run;
-  std::string style = "story";
+  std::string style = "highlights";
   std::string camera = "chase";
   double speed = 8.0;
   double highlight_speed = 2.0;

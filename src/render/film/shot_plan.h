@@ -18,7 +18,7 @@ enum class FilmStyle {
   kContinuous,  ///< constant speed, one camera
 };
 
-/// Parses "story" or "plain". Throws InputError for any other text.
+/// Parses "highlights" or "continuous". Throws InputError for any other text.
 FilmStyle parse_film_style(const std::string& name);
 
 /// Perspective of a shot.

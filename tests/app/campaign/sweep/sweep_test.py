@@ -73,7 +73,7 @@ class Sweep(SweepCase):
         out = self.path / "collected"
         early = subprocess.run([PATROL, "merge", out, *parts[:2]], capture_output=True, text=True)
         self.assertEqual(early.returncode, 2)
-        self.assertIn("1 of 4 runs have no result yet", early.stderr)
+        self.assertIn("1 of 4 runs are missing", early.stderr)
         done = subprocess.run([PATROL, "merge", out, parts[2]], capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assert_same_tables(out)
