@@ -129,7 +129,7 @@ class Slurm(SweepCase):
         call = (*self.vary, "--engine", "slurm", "--slurm-tasks", "2")
         done = self.sweep(out, *call, "--detach")
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("goes on", done.stdout)
+        self.assertIn("is running", done.stdout)
         self.assertTrue((out / "INCOMPLETE").exists())
         self.assertEqual(self.sweep(out, *call).returncode, 0)
         self.assert_same_tables(out)
