@@ -126,7 +126,7 @@ studies::StudySample run_planners(const std::vector<PlannerWorld>& worlds, std::
   return sample;
 }
 
-/// Figure 1: excess of the best route so far over A*'s length, in the first two hundred iterations.
+/// Figure 1: excess of the best route found until then over A*'s length, in the first two hundred iterations.
 report::LinePlot convergence(const std::array<Planned, kPlannerMethods.size()>& all, const std::string& world) {
   constexpr std::size_t kShown = 200;
   constexpr double kMaxExcess = 25.0;

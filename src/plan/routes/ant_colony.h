@@ -18,7 +18,7 @@ struct AntColonySettings {
   double beta = 7.0;         ///< exponent of 1 / distance to the goal
   double evaporation = 0.1;  ///< fraction of the pheromone lost in an iteration, rho of eq. 11
   double deposit = 1.0;      ///< Q of eq. 13, relative to the straight-line cost; pheromone starts at 1
-  double elite = 20.0;       ///< pheromone of the best route so far, in ants per iteration; extension
+  double elite = 20.0;       ///< pheromone of the best route found until then, in ants per iteration; extension
   bool remove_loops = true;  ///< whether steps between neighboring cells of a route replace detours; extension
   int threads = 0;           ///< 0: one per core; has no influence on the result
 

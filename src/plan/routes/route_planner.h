@@ -28,9 +28,9 @@ struct Route {
   double length = 0.0;                  ///< cells; straight and diagonal steps are counted exactly
   double cost = 0.0;                    ///< cells, weighted by the costs of the cells crossed
   int num_iterations = 0;               ///< iterations of ants, particles or episodes; 1 for a search
-  std::vector<double> history;          ///< [iteration], cost of the best route so far; infinite before the first
-  std::int64_t num_expanded = 0;        ///< expanded cells; for a swarm, steps taken
-  double clearance = 0.0;               ///< distance to the nearest lethal cell, cells; at most kMaxClearance
+  std::vector<double> history;    ///< [iteration], cost of the best route found until then; infinite before the first
+  std::int64_t num_expanded = 0;  ///< expanded cells; for a swarm, steps taken
+  double clearance = 0.0;         ///< distance to the nearest lethal cell, cells; at most kMaxClearance
 };
 
 inline constexpr double kMaxClearance = 16.0;  ///< cells
@@ -83,7 +83,7 @@ class RoutePlanner {
   virtual bool is_complete() const = 0;
 
   /// Limits the steps from cell to cell of an iterative planner (ants, particles, episodes). It ends with the iteration
-  /// that exceeds the limit, and returns its best route so far.
+  /// that exceeds the limit, and returns its best route found until then.
   void limit_steps(std::int64_t max_steps) { max_steps_ = max_steps; }
 
   Route plan(const Grid<Cost>& costs, Cell start, Cell goal);
