@@ -29,7 +29,7 @@ std::string drive_complaint(const std::string& waypoints) {
   return complaint("d.json", R"({"version": 1, "frame": "site", "waypoints": )" + waypoints + "}", load_teleop_route);
 }
 
-std::string remote_complaint(const std::string& lines) {
+std::string teleop_error(const std::string& lines) {
   return complaint("r.csv", "time_s,vx_mps,yaw_rate_radps,mark,hand_over\n" + lines, load_teleop);
 }
 
@@ -76,25 +76,25 @@ TEST(LoadTeleop, WhatWasSavedIsReadBack) {
 TEST(LoadTeleop, NamesTheLine) {
   EXPECT_EQ(complaint("r.csv", "t,v\n", load_teleop),
             "r.csv:1: the first line must be time_s,vx_mps,yaw_rate_radps,mark,hand_over");
-  EXPECT_EQ(remote_complaint(""), "r.csv: contains no commands");
-  EXPECT_EQ(remote_complaint("0,1,2,0\n"),
+  EXPECT_EQ(teleop_error(""), "r.csv: contains no commands");
+  EXPECT_EQ(teleop_error("0,1,2,0\n"),
             "r.csv:2: must be 5 numbers with commas between, time_s,vx_mps,yaw_rate_radps,mark,hand_over");
-  EXPECT_EQ(remote_complaint("0,1,nan,0,0\n"), "r.csv:2: yaw_rate_radps = nan: must be a number");
-  EXPECT_EQ(remote_complaint("0,fast,0,0,0\n"), "r.csv:2: vx_mps = fast: must be a number");
-  EXPECT_EQ(remote_complaint("0,1e400,0,0,0\n"), "r.csv:2: vx_mps = 1e400: must be a number");
-  EXPECT_EQ(remote_complaint("0,1,0,0, 0\n"), "r.csv:2: hand_over =  0: must be a number");
-  EXPECT_EQ(remote_complaint("0,,0,0,0\n"), "r.csv:2: vx_mps = : must be a number");
-  EXPECT_EQ(remote_complaint("0,1,0,2,0\n"), "r.csv:2: mark = 2: must be 0 or 1");
-  EXPECT_EQ(remote_complaint("0,1,0,0,0.5\n"), "r.csv:2: hand_over = 0.5: must be 0 or 1");
-  EXPECT_EQ(remote_complaint("0,1,0,0,0\n0,1,0,0,0\n"), "r.csv:3: time_s = 0: must be later than in the line before");
+  EXPECT_EQ(teleop_error("0,1,nan,0,0\n"), "r.csv:2: yaw_rate_radps = nan: must be a number");
+  EXPECT_EQ(teleop_error("0,fast,0,0,0\n"), "r.csv:2: vx_mps = fast: must be a number");
+  EXPECT_EQ(teleop_error("0,1e400,0,0,0\n"), "r.csv:2: vx_mps = 1e400: must be a number");
+  EXPECT_EQ(teleop_error("0,1,0,0, 0\n"), "r.csv:2: hand_over =  0: must be a number");
+  EXPECT_EQ(teleop_error("0,,0,0,0\n"), "r.csv:2: vx_mps = : must be a number");
+  EXPECT_EQ(teleop_error("0,1,0,2,0\n"), "r.csv:2: mark = 2: must be 0 or 1");
+  EXPECT_EQ(teleop_error("0,1,0,0,0.5\n"), "r.csv:2: hand_over = 0.5: must be 0 or 1");
+  EXPECT_EQ(teleop_error("0,1,0,0,0\n0,1,0,0,0\n"), "r.csv:3: time_s = 0: must be later than in the line before");
 }
 
 TEST(LoadTeleop, NumbersBeyondAnyDriveAreRefused) {
-  EXPECT_EQ(remote_complaint("-1,0,0,0,0\n"), "r.csv:2: time_s = -1: must be in [0, 86400]");
-  EXPECT_EQ(remote_complaint("1e300,0,0,0,0\n"), "r.csv:2: time_s = 1e+300: must be in [0, 86400]")
+  EXPECT_EQ(teleop_error("-1,0,0,0,0\n"), "r.csv:2: time_s = -1: must be in [0, 86400]");
+  EXPECT_EQ(teleop_error("1e300,0,0,0,0\n"), "r.csv:2: time_s = 1e+300: must be in [0, 86400]")
       << "no integer of nanoseconds";
-  EXPECT_EQ(remote_complaint("0,1e300,0,0,0\n"), "r.csv:2: vx_mps = 1e+300: must be in [-100, 100]");
-  EXPECT_EQ(remote_complaint("0,0,-101,0,0\n"), "r.csv:2: yaw_rate_radps = -101: must be in [-100, 100]");
+  EXPECT_EQ(teleop_error("0,1e300,0,0,0\n"), "r.csv:2: vx_mps = 1e+300: must be in [-100, 100]");
+  EXPECT_EQ(teleop_error("0,0,-101,0,0\n"), "r.csv:2: yaw_rate_radps = -101: must be in [-100, 100]");
 }
 
 }  // namespace

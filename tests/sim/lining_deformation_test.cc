@@ -149,8 +149,8 @@ TEST_F(MovedTunnel, TheIntradosIsWithinAMillimetreOfTheDesign) {
   }
 }
 
-std::string error_response(const LiningDeformationSettings& move, const std::optional<TunnelLining>& design,
-                           const std::string& world = "<mujoco/>") {
+std::string error_text(const LiningDeformationSettings& move, const std::optional<TunnelLining>& design,
+                       const std::string& world = "<mujoco/>") {
   const SpecPtr spec = parse_spec(world);
   const ModelPtr model = compile(*spec, "world");
   try {
@@ -162,15 +162,15 @@ std::string error_response(const LiningDeformationSettings& move, const std::opt
 }
 
 TEST(LiningMoves, WhatCannotBeMovedIsRefusedByItsPlaceInTheList) {
-  EXPECT_EQ(error_response(convergence(2, 51, 3.0), tunnel_lining()),
+  EXPECT_EQ(error_text(convergence(2, 51, 3.0), tunnel_lining()),
             "lining_deformation.1.last_ring = 51: must be at most 50, the last ring of the lining");
-  EXPECT_EQ(error_response(convergence(7, 5, 3.0), tunnel_lining()),
+  EXPECT_EQ(error_text(convergence(7, 5, 3.0), tunnel_lining()),
             "lining_deformation.1.last_ring = 5: must be at least first_ring, 7");
-  EXPECT_EQ(error_response(bulge(2, 3.0, 0.0, 0.0), tunnel_lining()),
+  EXPECT_EQ(error_text(bulge(2, 3.0, 0.0, 0.0), tunnel_lining()),
             "lining_deformation.1.half_width_deg = 0: must be in [1, 180]");
-  EXPECT_EQ(error_response(convergence(2, 2, 3.0), std::nullopt),
+  EXPECT_EQ(error_text(convergence(2, 2, 3.0), std::nullopt),
             "lining_deformation.0.first_ring = 1: requires a lining in the mission file");
-  EXPECT_EQ(error_response(convergence(2, 2, 3.0), tunnel_lining()),
+  EXPECT_EQ(error_text(convergence(2, 2, 3.0), tunnel_lining()),
             "lining_deformation.0.first_ring: requires a world with a mesh named lining");
 }
 

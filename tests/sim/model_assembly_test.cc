@@ -48,7 +48,7 @@ std::string read(const std::string& path) {
 
 /// What the call throws, as text.
 template <typename Call>
-std::string error_response(Call call) {
+std::string error_text(Call call) {
   try {
     call();
   } catch (const InputError& error) {
@@ -187,7 +187,7 @@ TEST(ModelAssembly, PropsAreThereToBeTouchedAndSeen) {
 }
 
 TEST(ModelAssembly, AStartInsideAWallIsRefusedWithTheWallsName) {
-  const std::string said = error_response([] {
+  const std::string said = error_text([] {
     on_plane(R"(<geom name="garden_wall" type="box" pos="1 0 0.5" size="0.2 3 0.5"/>)", {1.0, 0.0, 0.0});
   });
   EXPECT_THAT(said, HasSubstr("start pose (1.00, 0.00)"));
@@ -196,19 +196,15 @@ TEST(ModelAssembly, AStartInsideAWallIsRefusedWithTheWallsName) {
 
 TEST(ModelAssembly, AStartOverNothingIsRefused) {
   const test::TemporaryFile world("world.xml", make_world(R"(<geom type="box" pos="0 0 -0.1" size="1 1 0.1"/>)"));
-  EXPECT_THAT(error_response([&] {
-                assemble_model(world.path(), kRobotUrdf, {20.0, 0.0, 0.0});
-              }),
-              HasSubstr("no ground"));
+  EXPECT_THAT(error_text([&] { assemble_model(world.path(), kRobotUrdf, {20.0, 0.0, 0.0}); }), HasSubstr("no ground"));
 }
 
 TEST(ModelAssembly, AMissingOrBrokenFileIsRefusedByName) {
-  EXPECT_THAT(error_response([] { assemble_model("no/such/world.xml", kRobotUrdf, {}); }),
-              HasSubstr("no/such/world.xml"));
+  EXPECT_THAT(error_text([] { assemble_model("no/such/world.xml", kRobotUrdf, {}); }), HasSubstr("no/such/world.xml"));
   const test::TemporaryFile broken("broken.xml", "<mujoco><worldbody><geom tipe=\"box\"/></worldbody></mujoco>");
-  EXPECT_THAT(error_response([&] { assemble_model(broken.path(), kRobotUrdf, {}); }), HasSubstr("broken.xml"));
+  EXPECT_THAT(error_text([&] { assemble_model(broken.path(), kRobotUrdf, {}); }), HasSubstr("broken.xml"));
   const test::TemporaryFile world("world.xml", make_flat_world());
-  EXPECT_THAT(error_response([&] { assemble_model(world.path(), "no/such/robot.urdf", {}); }),
+  EXPECT_THAT(error_text([&] { assemble_model(world.path(), "no/such/robot.urdf", {}); }),
               HasSubstr("no/such/robot.urdf"));
 }
 

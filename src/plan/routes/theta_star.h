@@ -27,9 +27,9 @@ class ThetaStar : public RoutePlanner {
     bool is_closed;
   };
   struct Open {
-    double estimate, cost;  ///< estimated cost of the whole route; cost so far
+    double estimate, cost;  ///< estimated cost of the whole route; cost from the start to this node
     Cell cell;
-    /// Order for a heap with the best node on top; of equal estimates, the one with the higher cost so far.
+    /// Order for a heap with the best node on top; of equal estimates, the one with the higher cost from the start.
     bool operator<(const Open& other) const {
       return estimate != other.estimate ? estimate > other.estimate : cost < other.cost;
     }

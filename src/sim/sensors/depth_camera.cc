@@ -66,7 +66,7 @@ bool DepthCamera::is_at_edge(int u, int v) const {
          (v > 0 && v + 1 < lens_.height_px && bends(inverse_depth(u, v - 1), inverse_depth(u, v + 1)));
 }
 
-/// Returns the cosine of the angle between the line of ray and the surface normal.
+/// Returns the cosine of the angle between the line of sight and the surface normal.
 ///
 /// On the plane n . X = 1 with X = z (a, b, 1) the inverse depth is n . (a, b, 1); its slopes over the image give n.
 double DepthCamera::incidence_cosine(int u, int v) const {

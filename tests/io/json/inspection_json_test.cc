@@ -53,7 +53,7 @@ WaterResult small_water() {
 
 /// The sentence with which it is refused.
 template <typename Read>
-std::string error_response(Read read, const Json& json) {
+std::string error_text(Read read, const Json& json) {
   try {
     read("result.data", json);
   } catch (const InputError& error) {
@@ -88,7 +88,7 @@ TEST(InspectionJson, OfWaterThatWasNotFoundNothingIsSaid) {
   EXPECT_FALSE(water_from_json("x", json).is_found);
   Json both = json;
   both["distance_m"] = 3.0;
-  EXPECT_EQ(error_response(water_from_json, both), "result.data: unknown key distance_m");
+  EXPECT_EQ(error_text(water_from_json, both), "result.data: unknown key distance_m");
 }
 
 TEST(InspectionJson, AFigureThatCouldNotBeComputedIsNull) {
@@ -103,7 +103,7 @@ TEST(InspectionJson, WhatIsWrongIsNamedWithItsPlaceAndRule) {
   const auto broken = [](const char* pointer, const Json& value) {
     Json json = to_json(small_lining());
     json[Json::json_pointer(pointer)] = value;
-    return error_response(lining_from_json, json);
+    return error_text(lining_from_json, json);
   };
   EXPECT_EQ(broken("/cells/0/ring", 0), "result.data.cells[0]: ring must be in [1, 100000]");
   EXPECT_EQ(broken("/cells/0/clock_deg", 361), "result.data.cells[0]: clock_deg must be in [0, 360]");
@@ -121,7 +121,7 @@ TEST(InspectionJson, WhatIsWrongIsNamedWithItsPlaceAndRule) {
 TEST(InspectionJson, ACovarianceOfTwoRowsIsRefused) {
   Json json = to_json(small_water());
   json["covariance_m2"].erase(2);
-  EXPECT_EQ(error_response(water_from_json, json), "result.data: covariance_m2 must be a list of 3 lists of 3 numbers");
+  EXPECT_EQ(error_text(water_from_json, json), "result.data: covariance_m2 must be a list of 3 lists of 3 numbers");
 }
 
 }  // namespace

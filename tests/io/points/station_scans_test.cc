@@ -19,7 +19,7 @@ std::vector<StationScan> two_scans() {
            .points = {{8.0F, 9.0F, 1.5F, 0.0F}}}};
 }
 
-std::string error_response(const std::filesystem::path& folder) {
+std::string error_text(const std::filesystem::path& folder) {
   try {
     load_station_scans(folder);
   } catch (const InputError& error) {
@@ -46,7 +46,7 @@ TEST(StationScans, AStationThatLeadsOutOfTheFolderIsRefused) {
   save_station_scans(folder.path(), two_scans());
   save_text(folder.path() / "scans.json",
             R"([{"station": "../goal_1", "position": [0, 0, 1], "orientation": [0, 0, 0, 1]}])");
-  EXPECT_EQ(error_response(folder.path()),
+  EXPECT_EQ(error_text(folder.path()),
             (folder.path() / "scans.json").string() +
                 ": [0]: station = ../goal_1: must be made of letters, digits and underlines");
 }
@@ -55,7 +55,7 @@ TEST(StationScans, ACloudThatIsNotThereIsNamed) {
   const test::TemporaryFolder folder;
   save_station_scans(folder.path(), two_scans());
   std::filesystem::remove(folder.path() / "goal_2.ply");
-  EXPECT_NE(error_response(folder.path()).find("goal_2.ply"), std::string::npos);
+  EXPECT_NE(error_text(folder.path()).find("goal_2.ply"), std::string::npos);
 }
 
 }  // namespace

@@ -195,19 +195,17 @@ TEST(TourOrder, IsTheSameForTheSameSeed) {
 
 TEST(TourOrder, RefusesWhatIsNoProblem) {
   using ::testing::HasSubstr, ::testing::ThrowsMessage;
-  const auto error_response = [](const TourProblem& problem) {
-    return [problem] { solve_station_order(problem, {}, 1); };
-  };
-  EXPECT_THAT(error_response({}), ThrowsMessage<InputError>(HasSubstr("no stations")));
-  EXPECT_THAT(error_response({.travel = {{0.0, 1.0}, {1.0}}}),
+  const auto error_text = [](const TourProblem& problem) { return [problem] { solve_station_order(problem, {}, 1); }; };
+  EXPECT_THAT(error_text({}), ThrowsMessage<InputError>(HasSubstr("no stations")));
+  EXPECT_THAT(error_text({.travel = {{0.0, 1.0}, {1.0}}}),
               ThrowsMessage<InputError>(HasSubstr("row 1 of travel has 1 values")));
-  EXPECT_THAT(error_response({.travel = {{0.0, -1.0}, {1.0, 0.0}}}),
+  EXPECT_THAT(error_text({.travel = {{0.0, -1.0}, {1.0, 0.0}}}),
               ThrowsMessage<InputError>(HasSubstr("travel from 0 to 1 is -1")));
-  EXPECT_THAT(error_response({.travel = {{0.0}}, .stations = {{}, {}}}),
+  EXPECT_THAT(error_text({.travel = {{0.0}}, .stations = {{}, {}}}),
               ThrowsMessage<InputError>(HasSubstr("2 station descriptions: must be 1")));
-  EXPECT_THAT(error_response({.travel = {{0.0}}, .stations = {{.earliest = 5.0, .latest = 4.0}}}),
+  EXPECT_THAT(error_text({.travel = {{0.0}}, .stations = {{.earliest = 5.0, .latest = 4.0}}}),
               ThrowsMessage<InputError>(HasSubstr("station 0 has service 0 and window [5, 4]")));
-  EXPECT_THAT(error_response({.travel = {{0.0}}, .start = 1}),
+  EXPECT_THAT(error_text({.travel = {{0.0}}, .start = 1}),
               ThrowsMessage<InputError>(HasSubstr("unknown station 1: must be in [0, 0]")));
 }
 

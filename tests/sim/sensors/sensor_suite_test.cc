@@ -142,7 +142,7 @@ std::vector<Arrival> scans_of(const SensorSuiteSettings& settings, const std::ve
       .of<PanoramicScan>();
 }
 
-std::string error_response(const SensorSuiteSettings& settings, const std::string& missing_frame) {
+std::string error_text(const SensorSuiteSettings& settings, const std::string& missing_frame) {
   RobotDescription robot = make_robot();
   robot.T_body_sensor.erase(missing_frame);
   try {
@@ -245,10 +245,10 @@ TEST(SensorSuite, AScannersFaultsAreSilenceDelayAndADriftOfItsRanges) {
 }
 
 TEST(SensorSuite, AnEnabledSensorWithoutItsFrameIsRefusedByName) {
-  EXPECT_EQ(error_response(with_scanner(), "scanner"), "robot carrier: link not found: scanner");
-  EXPECT_EQ(error_response(with_uwb(), "uwb"), "robot carrier: link not found: uwb");
-  EXPECT_EQ(error_response(with_ultrasonic(), "ultrasonic_0"), "robot carrier: link not found: ultrasonic_0");
-  EXPECT_EQ(error_response(with_depth_camera(), "depth_camera"), "robot carrier: link not found: depth_camera");
+  EXPECT_EQ(error_text(with_scanner(), "scanner"), "robot carrier: link not found: scanner");
+  EXPECT_EQ(error_text(with_uwb(), "uwb"), "robot carrier: link not found: uwb");
+  EXPECT_EQ(error_text(with_ultrasonic(), "ultrasonic_0"), "robot carrier: link not found: ultrasonic_0");
+  EXPECT_EQ(error_text(with_depth_camera(), "depth_camera"), "robot carrier: link not found: depth_camera");
 }
 
 TEST(SensorSuite, EveryFaultOfUwbIsExecutedAndOneOfASilentSensorIsNot) {

@@ -250,7 +250,7 @@ TEST(Ultrasonic, WithoutNoiseTheSamePingsAreLost) {
   EXPECT_GT(lost, 5);
 }
 
-std::string error_response(const UltrasonicSettings& settings, const RobotDescription& robot) {
+std::string error_text(const UltrasonicSettings& settings, const RobotDescription& robot) {
   const SmallWorld world("");
   try {
     UltrasonicRing ring(settings, world.scene, robot, 1);
@@ -261,10 +261,10 @@ std::string error_response(const UltrasonicSettings& settings, const RobotDescri
 }
 
 TEST(Ultrasonic, ARobotWithoutTransducersAndSlotsTooShortAreRefusedInASentence) {
-  EXPECT_EQ(error_response({}, make_ring({}, {})), "robot carrier: link not found: ultrasonic_0");
+  EXPECT_EQ(error_text({}, make_ring({}, {})), "robot carrier: link not found: ultrasonic_0");
   UltrasonicSettings fast;
   fast.ping_rate_hz = 50.0;
-  EXPECT_EQ(error_response(fast, make_ring()),
+  EXPECT_EQ(error_text(fast, make_ring()),
             "sensors.ultrasonic.ping_rate_hz = 50: must be at most 42.5, so that an echo from range_max_m = 4 returns "
             "before the next ping");
 }
