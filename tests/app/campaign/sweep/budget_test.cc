@@ -54,8 +54,8 @@ Budget budget_of(const std::vector<std::vector<double>>& values) {
 }
 
 TEST(Budget, TheLargestShareComesFirstAndSumAndInteractionAddUp) {
-  // Seed 1: 10 less 9 is 1 for noise, 10 less 4 is 6 for slip, 10 less 2 is 8 in all: 1 more than the sum. Seed 2
-  // The same with 1, 7, 9.
+  // Seed 1: 10 less 9 is 1 for noise, 10 less 4 is 6 for slip, 10 less 2 is 8 in all: 1 more than the sum.
+  // Seed 2: the same with 1, 7, 9.
   const Budget budget = budget_of({{10.0, 9.0, 4.0, 2.0}, {12.0, 11.0, 5.0, 3.0}});
   ASSERT_EQ(budget.contributions.size(), 2u);
   EXPECT_EQ(budget.contributions[0].name, "slip");
