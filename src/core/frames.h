@@ -71,7 +71,7 @@ struct Pose3 {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();            ///< m
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< unit quaternion
 
-  Pose3 inverse() const { return {rotation.conjugate() * -position, rotation.conjugate()}; }
+  Pose3 inverse() const { return {rotation.conjugate() * Eigen::Vector3d(-position), rotation.conjugate()}; }
 
   friend Pose3 operator*(const Pose3& T_a_b, const Pose3& T_b_c) {
     return {T_a_b.position + T_a_b.rotation * T_b_c.position, T_a_b.rotation * T_b_c.rotation};
@@ -91,10 +91,7 @@ inline Eigen::Quaterniond quaternion_from_yaw(double yaw_rad) {
 }
 
 /// Returns the rotation Rz(yaw) Ry(pitch) Rx(roll), the convention of URDF and REP 103.
-inline Eigen::Quaterniond quaternion_from_rpy(double roll_rad, double pitch_rad, double yaw_rad) {
-  return Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ()) * Eigen::AngleAxisd(pitch_rad, Eigen::Vector3d::UnitY()) *
-         Eigen::AngleAxisd(roll_rad, Eigen::Vector3d::UnitX());
-}
+Eigen::Quaterniond quaternion_from_rpy(double roll_rad, double pitch_rad, double yaw_rad);
 
 /// Projects a pose onto the ground plane: keeps x, y and yaw.
 inline Pose2 to_pose2(const Pose3& T_a_b) { return {T_a_b.position.x(), T_a_b.position.y(), to_yaw(T_a_b.rotation)}; }
@@ -107,9 +104,7 @@ inline Pose3 to_pose3(const Pose2& T_a_b, double z_m = 0.0) {
 inline Pose3 remove_tilt(const Pose3& T_a_b) { return {T_a_b.position, quaternion_from_yaw(to_yaw(T_a_b.rotation))}; }
 
 /// Interpolates linearly in position and spherically in rotation. Fraction 0 gives a, fraction 1 gives b.
-inline Pose3 interpolate(const Pose3& a, const Pose3& b, double fraction) {
-  return {a.position + fraction * (b.position - a.position), a.rotation.slerp(fraction, b.rotation)};
-}
+Pose3 interpolate(const Pose3& a, const Pose3& b, double fraction);
 
 /// Velocity of the body relative to the world, expressed in the body frame.
 struct Twist3 {

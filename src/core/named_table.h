@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/text.h"
 
 /// Tables of named choices: enumerators with their texts, algorithms with their factories. Each family has one table.
 /// Parsing, JSON, settings validation (`one_of` of core/settings.h) and documentation (`patrol list`) derive from that
@@ -74,9 +75,7 @@ std::vector<std::string> names_of(const Table& table) {
 template <NamedTable Table>
 const auto& row_named(const Table& table, std::string_view name, const std::string& what) {
   if (const auto* row = find_named(table, name)) return *row;
-  std::string allowed;
-  for (const auto& row : table) allowed += (allowed.empty() ? "" : ", ") + std::string(row.name);
-  throw InputError(what + " = " + std::string(name) + ": must be one of " + allowed);
+  throw InputError(what + " = " + std::string(name) + ": must be one of " + join(names_of(table), ", "));
 }
 
 }  // namespace patrol

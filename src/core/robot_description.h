@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <map>
 #include <numbers>
 #include <optional>
@@ -9,7 +8,6 @@
 
 #include <Eigen/Core>
 
-#include "core/error.h"
 #include "core/frames.h"
 
 namespace patrol {
@@ -70,18 +68,10 @@ struct RobotDescription {
   std::map<std::string, Pose3> T_body_sensor;
 
   /// Returns the radius of the circle around the body origin that encloses the footprint.
-  double outline_radius_m() const {
-    double radius_m = 0.0;
-    for (const Eigen::Vector2d& corner : footprint_m) radius_m = std::max(radius_m, corner.norm());
-    return radius_m;
-  }
+  double outline_radius_m() const;
 
   /// Returns the pose of a sensor frame in body. Throws InputError if the robot has no such frame.
-  const Pose3& T_body(const std::string& sensor) const {
-    const auto frame = T_body_sensor.find(sensor);
-    if (frame == T_body_sensor.end()) throw InputError("robot " + name + ": link not found: " + sensor);
-    return frame->second;
-  }
+  const Pose3& T_body(const std::string& sensor) const;
 };
 
 }  // namespace patrol

@@ -1,13 +1,10 @@
 #pragma once
 
-#include <cmath>
+#include <cstdint>
 #include <limits>
 #include <string>
-#include <type_traits>
 #include <utility>
 #include <vector>
-
-#include <fmt/format.h>
 
 #include "core/error.h"
 #include "core/named_table.h"
@@ -37,73 +34,47 @@ struct Limits {
   std::vector<std::string> allowed;
 };
 
-inline Limits any() { return {}; }
-inline Limits at_least(double min) { return {.min = min, .allowed = {}}; }
-inline Limits between(double min, double max) { return {.min = min, .max = max, .allowed = {}}; }
-inline Limits one_of(std::vector<std::string> allowed) {
-  Limits limits;
-  limits.allowed = std::move(allowed);
-  return limits;
-}
+Limits any();
+Limits at_least(double min);
+Limits between(double min, double max);
+Limits one_of(std::vector<std::string> allowed);
 
 /// The names of a table of enumerators or factories.
 template <NamedTable Table>
 Limits one_of(const Table& table) {
-  Limits limits;
-  limits.allowed = names_of(table);
-  return limits;
+  return one_of(names_of(table));
 }
 
 /// Returns the rule as text for error messages.
-inline std::string describe_limits(const Limits& limits) {
-  if (!limits.allowed.empty()) return fmt::format("must be one of {}", fmt::join(limits.allowed, ", "));
-  const bool has_min = std::isfinite(limits.min), has_max = std::isfinite(limits.max);
-  if (has_min && has_max) return fmt::format("must be in [{}, {}]", limits.min, limits.max);
-  if (has_min) return fmt::format("must be at least {}", limits.min);
-  if (has_max) return fmt::format("must be at most {}", limits.max);
-  return "must be finite";
-}
+std::string describe_limits(const Limits& limits);
 
-inline bool allows(const Limits& limits, double value) {
-  return std::isfinite(value) && value >= limits.min && value <= limits.max;
-}
-
-inline bool allows(const Limits& limits, const std::string& value) {
-  if (limits.allowed.empty()) return true;
-  for (const std::string& allowed : limits.allowed) {
-    if (value == allowed) return true;
-  }
-  return false;
-}
+bool allows(const Limits& limits, double value);
+bool allows(const Limits& limits, const std::string& value);
 
 /// Checks one field; used through `validate`.
 class Validator {
  public:
   explicit Validator(std::string prefix) : prefix_(std::move(prefix)) {}
 
+  void operator()(const char* /*name*/, const bool& /*value*/, const Limits& = {}) const {}
+  void operator()(const char* name, const int& value, const Limits& limits = {}) const;
+  void operator()(const char* name, const std::uint64_t& value, const Limits& limits = {}) const;
+  void operator()(const char* name, const double& value, const Limits& limits = {}) const;
+  void operator()(const char* name, const std::string& value, const Limits& limits = {}) const;
+
   template <typename Value>
-  void operator()(const char* name, const Value& value, const Limits& limits = {}) {
-    const std::string key = prefix_.empty() ? name : prefix_ + "." + name;
-    if constexpr (std::is_same_v<Value, bool>) {
-      return;
-    } else if constexpr (std::is_arithmetic_v<Value>) {
-      if (!allows(limits, static_cast<double>(value))) fail(key, fmt::format("{}", value), limits);
-    } else if constexpr (std::is_same_v<Value, std::string>) {
-      if (!allows(limits, value)) fail(key, value, limits);
-    } else if constexpr (requires { value.begin(); }) {
+  void operator()(const char* name, const Value& value, const Limits& limits = {}) const {
+    Validator nested(key(name));
+    if constexpr (requires { value.begin(); }) {
       int index = 0;
-      Validator elements(key);
-      for (const auto& element : value) elements(fmt::format("{}", index++).c_str(), element, limits);
+      for (const auto& element : value) nested(std::to_string(index++).c_str(), element, limits);
     } else {
-      Validator nested(key);
       Value::fields(value, nested);
     }
   }
 
  private:
-  [[noreturn]] static void fail(const std::string& key, const std::string& value, const Limits& limits) {
-    throw InputError(fmt::format("{} = {}: {}", key, value, describe_limits(limits)));
-  }
+  std::string key(const char* name) const;
 
   std::string prefix_;
 };

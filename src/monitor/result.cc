@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/text.h"
 #include "io/files/base64.h"
 #include "io/json/inspection_json.h"
 #include "io/json/json_check.h"
@@ -122,7 +123,7 @@ Result parse_result(const std::string& location, const Json& json) {
     object.fail(fmt::format("made_utc {}", error.what()));
   }
   static const std::set<std::string> kKinds = {"pose", "map", "event", "lining", "water", "status"};
-  if (!kKinds.contains(result.kind)) object.fail(fmt::format("kind must be one of {}", fmt::join(kKinds, ", ")));
+  if (!kKinds.contains(result.kind)) object.fail(fmt::format("kind must be one of {}", join(kKinds, ", ")));
   const Json& data = object.member("data");
   check_data(location + ".data", result.kind, data);
   result.data = data.dump();

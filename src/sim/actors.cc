@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/frames.h"
+#include "core/text.h"
 #include "sim/mujoco.h"
 
 namespace patrol::sim {
@@ -45,7 +46,7 @@ std::string known_actors(const mjModel& model) {
     const bool is_part = name.find("_thigh_") != std::string::npos || name.find("_shank_") != std::string::npos;
     if (model.body_mocapid[body] >= 0 && !is_part) names.push_back(name);
   }
-  return fmt::format("{}", fmt::join(names, ", "));
+  return join(names, ", ");
 }
 
 /// Returns the ground height at a position: the highest static collision surface below knee height, for a person on

@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/geometry/angles.h"
 #include "core/random.h"
+#include "core/text.h"
 #include "sim/robot_model.h"
 #include "sim/truck_obstacle.h"
 
@@ -147,8 +148,7 @@ StaticObstacleSize static_obstacle_size(const std::string& kind) {
   if (kind == "hose") return {.length_m = 1.6, .width_m = 0.10, .height_m = 0.10};
   if (kind == "brick") return {.length_m = 0.25, .width_m = 0.12, .height_m = 0.14};
   if (kind == "truck") return {.length_m = 7.6, .width_m = 2.5, .height_m = 3.0};
-  throw InputError(
-      fmt::format("static_obstacles.kind = {}: must be one of {}, truck", kind, fmt::join(kLowKinds, ", ")));
+  throw InputError(fmt::format("static_obstacles.kind = {}: must be one of {}, truck", kind, join(kLowKinds, ", ")));
 }
 
 void add_static_obstacles(mjSpec& world, const std::vector<StaticObstacleSettings>& obstacles) {

@@ -21,6 +21,7 @@
 #include "app/cli/commands.h"
 #include "app/cli/renamed_options.h"
 #include "core/error.h"
+#include "core/text.h"
 #include "io/files/one_line.h"
 
 namespace patrol::app {
@@ -318,7 +319,7 @@ void refuse_unknown_command(const CLI::App& app, int argc, const char* const* ar
     if (command->check_name(word)) return;
     known.push_back(command->get_name());
   }
-  throw InputError(fmt::format("unknown command '{}' (known: {})", word, fmt::join(known, ", ")));
+  throw InputError(fmt::format("unknown command '{}' (known: {})", word, join(known, ", ")));
 }
 
 /// Prints an error; does not throw if standard error is not writable.

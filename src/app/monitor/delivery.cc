@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "core/text.h"
 #include "monitor/http_client.h"
 #include "monitor/token.h"
 
@@ -48,7 +49,7 @@ Sender::Sender(Outbox& outbox, MonitorServer server, const DeliverySettings& set
 Sender::Outcome Sender::send_next() {
   const Outbox::Batch batch = outbox_.next(batch_limit_, settings_.batch_bytes);
   if (batch.results.empty()) return Outcome::kEmpty;
-  const std::string body = fmt::format("[{}]", fmt::join(batch.results, ","));
+  const std::string body = fmt::format("[{}]", join(batch.results, ","));
   const auto response =
       monitor::post_json(server_.url, "/api/results", server_.token, body, settings_.request_timeout_s, &last_error_);
   if (!response) return Outcome::kUnreachable;

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "app/scenario/scenario.h"
 #include "core/error.h"
+#include "core/text.h"
 #include "io/urdf.h"
 #include "io/yaml/settings_yaml.h"
 #include "plan/routes/global_planner.h"
@@ -37,7 +37,7 @@ std::filesystem::path urdf_of(const std::string& robot, const std::filesystem::p
   }
   std::sort(known.begin(), known.end());
   if (std::find(known.begin(), known.end(), robot) == known.end()) {
-    throw InputError(fmt::format("--robot: unknown robot '{}' (known: {})", robot, fmt::join(known, ", ")));
+    throw InputError(fmt::format("--robot: unknown robot '{}' (known: {})", robot, join(known, ", ")));
   }
   return models / robot / (robot + ".urdf");
 }

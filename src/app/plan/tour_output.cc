@@ -3,10 +3,10 @@
 #include <algorithm>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "app/plan/route_metrics.h"
 #include "app/plan/route_output.h"
+#include "core/text.h"
 
 namespace patrol::app {
 namespace {
@@ -97,7 +97,7 @@ std::string to_text(const TourReport& report) {
   text += fmt::format("paths        {} planned, {:.2f} ms each\n", tour.num_routes,
                       1e3 * tour.processor_s / std::max(1, tour.num_routes));
   if (!tour.unreachable.empty()) {
-    text += fmt::format("UNREACHABLE  {}{}\n", fmt::join(unreachable_names(report), ", "),
+    text += fmt::format("UNREACHABLE  {}{}\n", join(unreachable_names(report), ", "),
                         tour.is_proven ? "" : ": this planner is not complete");
   }
   return text;

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "core/text.h"
 #include "report/boxes.h"
 
 namespace patrol::app {
@@ -42,7 +43,7 @@ std::vector<std::string> short_names(const SweepManifest& manifest) {
       if (known != short_paths.end()) parts.push_back(known->second + override.substr(equals));
     }
     const bool is_shown = manifest.kind == SweepKind::kSweep && are_unique && !parts.empty();
-    names.push_back(is_shown ? fmt::format("{}", fmt::join(parts, ", ")) : variant.name);
+    names.push_back(is_shown ? join(parts, ", ") : variant.name);
   }
   return names;
 }

@@ -6,6 +6,7 @@
 
 #include "app/run/run_verdict.h"
 #include "app/scoring/expectations.h"
+#include "core/text.h"
 
 namespace patrol::app {
 namespace {
@@ -57,7 +58,7 @@ std::string missed_text(const std::vector<CheckedExpectation>& checks) {
     if (!check.is_met) texts.push_back(describe_missed(check));
   }
   if (texts.empty()) return "";
-  return fmt::format("{} of {} expectations missed: {}.", texts.size(), checks.size(), fmt::join(texts, "; "));
+  return fmt::format("{} of {} expectations missed: {}.", texts.size(), checks.size(), join(texts, "; "));
 }
 
 /// Fills in verdict, tone and reason of a complete run.

@@ -11,6 +11,7 @@
 #include "app/scenario/neighbor_model.h"
 #include "core/error.h"
 #include "core/geometry/angles.h"
+#include "core/text.h"
 #include "io/files/teleop_csv.h"
 #include "io/json/nav_json.h"
 #include "io/json/route_json.h"
@@ -49,7 +50,7 @@ std::string folders_in(const std::filesystem::path& parent) {
     if (entry.is_directory()) names.push_back(entry.path().filename().string());
   }
   std::sort(names.begin(), names.end());
-  return fmt::format("{}", fmt::join(names, ", "));
+  return join(names, ", ");
 }
 
 /// Path <root>/<kind>/<name>/<name><extension>. Throws InputError if it does not exist.
@@ -106,6 +107,8 @@ Scenario load_scenario(const std::filesystem::path& file, const std::vector<std:
   io::read_settings(file, overrides, scenario);
   return scenario;
 }
+
+std::string to_yaml(const Scenario& scenario) { return io::to_yaml(scenario); }
 
 void save_scenario(const std::filesystem::path& file, const Scenario& scenario, const std::string& comment) {
   io::save_settings(file, scenario, comment);

@@ -184,6 +184,9 @@ Scenario default_scenario(const std::string& robot, const std::filesystem::path&
 /// with file, line and key.
 Scenario load_scenario(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
 
+/// Formats every setting as YAML.
+std::string to_yaml(const Scenario& scenario);
+
 /// Writes every setting, below a line of comment.
 void save_scenario(const std::filesystem::path& file, const Scenario& scenario, const std::string& comment);
 

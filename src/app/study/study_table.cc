@@ -9,6 +9,7 @@
 #include "app/study/street_study.h"
 #include "app/study/substation_study.h"
 #include "core/error.h"
+#include "core/text.h"
 #include "studies/growth_study.h"
 #include "studies/landmark_study.h"
 
@@ -31,7 +32,7 @@ studies::Study make_study(const std::string& name) {
   for (const auto& [study_name, make] : kStudies) {
     if (name == study_name) return make();
   }
-  throw InputError(fmt::format("unknown study '{}' (known: {})", name, fmt::join(study_names(), ", ")));
+  throw InputError(fmt::format("unknown study '{}' (known: {})", name, join(study_names(), ", ")));
 }
 
 std::vector<std::string> study_names() {

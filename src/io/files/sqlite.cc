@@ -10,6 +10,7 @@
 #include <sqlite3.h>
 
 #include "core/error.h"
+#include "core/text.h"
 
 namespace patrol::io {
 namespace {
@@ -44,11 +45,10 @@ int bind(sqlite3_stmt* statement, int index, const TableValue& cell) {
 void write(sqlite3* database, const Table& table) {
   std::vector<std::string> columns;
   for (const std::string& column : table.columns) columns.push_back(identifier(column));
-  execute(database, fmt::format("CREATE TABLE {} ({})", identifier(table.name), fmt::join(columns, ", ")));
+  execute(database, fmt::format("CREATE TABLE {} ({})", identifier(table.name), join(columns, ", ")));
 
   const std::vector<char> placeholders(table.columns.size(), '?');
-  const std::string sql =
-      fmt::format("INSERT INTO {} VALUES ({})", identifier(table.name), fmt::join(placeholders, ", "));
+  const std::string sql = fmt::format("INSERT INTO {} VALUES ({})", identifier(table.name), join(placeholders, ", "));
   sqlite3_stmt* raw = nullptr;
   check(sqlite3_prepare_v2(database, sql.c_str(), -1, &raw, nullptr) == SQLITE_OK, database);
   const Statement insert(raw, sqlite3_finalize);

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/text.h"
 #include "io/files/atomic_file.h"
 
 namespace patrol::io {
@@ -22,7 +23,7 @@ constexpr double kMaxTeleopSpeed = 100.0;         // m/s, rad/s; larger values a
 
 using Row = std::array<double, kTeleopColumns.size()>;
 
-std::string header() { return fmt::format("{}", fmt::join(kTeleopColumns, ",")); }
+std::string header() { return join(kTeleopColumns, ","); }
 
 /// Reads one number per column. `refuse` does not return.
 template <typename Refuse>

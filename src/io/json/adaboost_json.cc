@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "core/error.h"
+#include "core/text.h"
 #include "io/files/atomic_file.h"
 #include "io/json/json_object.h"
 
@@ -21,7 +21,7 @@ void check_features(const JsonObject& reader, const std::vector<std::string>& ex
     names.push_back(name.get<std::string>());
   }
   if (names != expected)
-    reader.fail(fmt::format("features must be {}: the model was trained for others", fmt::join(expected, ", ")));
+    reader.fail(fmt::format("features must be {}: the model was trained for others", join(expected, ", ")));
 }
 
 DecisionStump read_stump(const std::string& place, const Json& json, const std::vector<std::string>& features) {

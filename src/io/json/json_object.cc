@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/text.h"
 #include "io/files/atomic_file.h"
 #include "io/files/one_line.h"
 #include "io/json/json_check.h"
@@ -110,7 +111,7 @@ std::vector<Eigen::Vector2d> JsonObject::polyline(const char* key) const {
 }
 
 void JsonObject::fail_choice(const char* key, const std::string& name, const std::vector<std::string>& allowed) const {
-  fail(fmt::format("{} = {}: must be one of {}", key, name, fmt::join(allowed, ", ")));
+  fail(fmt::format("{} = {}: must be one of {}", key, name, join(allowed, ", ")));
 }
 
 void JsonObject::fail(const std::string& what) const { throw InputError(place_ + ": " + what); }

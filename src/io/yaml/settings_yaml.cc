@@ -6,6 +6,9 @@
 #include <numeric>
 #include <set>
 
+#include <fmt/format.h>
+
+#include "core/text.h"
 #include "io/yaml/renamed_settings.h"
 #include "io/yaml/yaml_document.h"
 
@@ -90,6 +93,41 @@ std::string closest_match(const std::string& word, const std::vector<std::string
   return nearest;
 }
 
+SettingsReader::SettingsReader(std::string file, YAML::Node node, std::string path)
+    : file_(std::move(file)), node_(std::move(node)), path_(std::move(path)) {
+  if (node_ && !node_.IsNull() && !node_.IsMap()) fail(node_, path_, "must be a section of keys and values");
+}
+
+void SettingsReader::operator()(const char* name, bool& value, const Limits&) {
+  if (const YAML::Node node = child(name); node.IsDefined()) read_scalar(node, key(name), value);
+}
+
+void SettingsReader::operator()(const char* name, int& value, const Limits& limits) {
+  if (const YAML::Node node = child(name); node.IsDefined()) read(node, key(name), value, limits);
+}
+
+void SettingsReader::operator()(const char* name, std::uint64_t& value, const Limits& limits) {
+  if (const YAML::Node node = child(name); node.IsDefined()) read(node, key(name), value, limits);
+}
+
+void SettingsReader::operator()(const char* name, double& value, const Limits& limits) {
+  if (const YAML::Node node = child(name); node.IsDefined()) read(node, key(name), value, limits);
+}
+
+void SettingsReader::operator()(const char* name, std::string& value, const Limits& limits) {
+  if (const YAML::Node node = child(name); node.IsDefined()) read(node, key(name), value, limits);
+}
+
+void SettingsReader::operator()(const char* name, Expectations& value, const Limits&) {
+  if (const YAML::Node node = child(name); node.IsDefined()) read_expectations(node, key(name), value);
+}
+
+YAML::Node SettingsReader::child(const char* name) {
+  known_.emplace_back(name);
+  const YAML::Node& document = node_;
+  return document && document.IsMap() ? document[name] : YAML::Node(YAML::NodeType::Undefined);
+}
+
 void SettingsReader::fail(const YAML::Node& node, const std::string& key, const std::string& what) const {
   throw input_error(file_, line_of(node), (key.empty() ? "" : key + ": ") + what);
 }
@@ -106,7 +144,7 @@ void SettingsReader::finish() const {
     const std::string nearest = closest_match(name, known_);
     fail(entry.first, key(name),
          fmt::format("unknown key{} (known: {})", nearest.empty() ? "" : "; did you mean " + nearest + "?",
-                     fmt::join(known_, ", ")));
+                     join(known_, ", ")));
   }
 }
 
@@ -138,6 +176,33 @@ void SettingsReader::read_scalar(const YAML::Node& node, const std::string& key,
   value = node.Scalar();
 }
 
+void SettingsReader::check_limits(const YAML::Node& node, const std::string& key, bool is_allowed,
+                                  const Limits& limits) const {
+  if (!is_allowed) fail(node, key, fmt::format("{} is out of range: {}", node.Scalar(), describe_limits(limits)));
+}
+
+void SettingsReader::read(const YAML::Node& node, const std::string& key, int& value, const Limits& limits) const {
+  read_scalar(node, key, value);
+  check_limits(node, key, allows(limits, value), limits);
+}
+
+void SettingsReader::read(const YAML::Node& node, const std::string& key, std::uint64_t& value,
+                          const Limits& limits) const {
+  read_scalar(node, key, value);
+  check_limits(node, key, allows(limits, static_cast<double>(value)), limits);
+}
+
+void SettingsReader::read(const YAML::Node& node, const std::string& key, double& value, const Limits& limits) const {
+  read_scalar(node, key, value);
+  check_limits(node, key, allows(limits, value), limits);
+}
+
+void SettingsReader::read(const YAML::Node& node, const std::string& key, std::string& value,
+                          const Limits& limits) const {
+  read_scalar(node, key, value);
+  check_limits(node, key, allows(limits, value), limits);
+}
+
 void SettingsReader::read_expectations(const YAML::Node& node, const std::string& key, Expectations& value) const {
   if (!node.IsMap()) fail(node, key, "must be a section of metrics");
   for (const auto& entry : node) {
@@ -159,7 +224,16 @@ void SettingsReader::read_expectations(const YAML::Node& node, const std::string
   }
 }
 
-void SettingsWriter::write_expectations(const Expectations& expectations) {
+void SettingsWriter::write(const bool& value) { out_ << value; }
+void SettingsWriter::write(const int& value) { out_ << value; }
+void SettingsWriter::write(const std::uint64_t& value) { out_ << value; }
+void SettingsWriter::write(const double& value) { out_ << fmt::format("{}", value); }
+void SettingsWriter::write(const std::string& value) { out_ << value; }
+void SettingsWriter::write_key(const char* name) { out_ << YAML::Key << name << YAML::Value; }
+void SettingsWriter::begin_list() { out_ << YAML::BeginSeq; }
+void SettingsWriter::end_list() { out_ << YAML::EndSeq; }
+
+void SettingsWriter::write(const Expectations& expectations) {
   out_ << YAML::BeginMap;
   for (const auto& [metric, expectation] : expectations) {
     out_ << YAML::Key << metric << YAML::Value;

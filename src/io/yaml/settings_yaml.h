@@ -1,14 +1,10 @@
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 #include <filesystem>
-#include <map>
 #include <string>
-#include <type_traits>
 #include <vector>
 
-#include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
 
 #include "core/error.h"
@@ -22,17 +18,18 @@ namespace patrol::io {
 /// Reads a YAML document into a struct, field by field, and rejects remaining keys.
 class SettingsReader {
  public:
-  SettingsReader(std::string file, YAML::Node node, std::string path)
-      : file_(std::move(file)), node_(std::move(node)), path_(std::move(path)) {
-    if (node_ && !node_.IsNull() && !node_.IsMap()) fail(node_, path_, "must be a section of keys and values");
-  }
+  SettingsReader(std::string file, YAML::Node node, std::string path);
+
+  void operator()(const char* name, bool& value, const Limits& limits = {});
+  void operator()(const char* name, int& value, const Limits& limits = {});
+  void operator()(const char* name, std::uint64_t& value, const Limits& limits = {});
+  void operator()(const char* name, double& value, const Limits& limits = {});
+  void operator()(const char* name, std::string& value, const Limits& limits = {});
+  void operator()(const char* name, Expectations& value, const Limits& limits = {});
 
   template <typename Value>
   void operator()(const char* name, Value& value, const Limits& limits = {}) {
-    known_.emplace_back(name);
-    const YAML::Node child = node_ && node_.IsMap() ? node_[name] : YAML::Node(YAML::NodeType::Undefined);
-    if (!child.IsDefined()) return;
-    read(child, key(name), value, limits);
+    if (const YAML::Node node = child(name); node.IsDefined()) read(node, key(name), value, limits);
   }
 
   /// Throws InputError for unknown and duplicate keys.
@@ -69,27 +66,21 @@ class SettingsReader {
 
   template <typename Value>
   void read(const YAML::Node& node, const std::string& key, Value& value, const Limits& limits) const {
-    if constexpr (std::is_same_v<Value, Expectations>) {
-      read_expectations(node, key, value);
-    } else if constexpr (std::is_same_v<Value, std::string> || std::is_arithmetic_v<Value>) {
-      read_scalar(node, key, value);
-      if constexpr (!std::is_same_v<Value, bool>) {
-        using Checked = std::conditional_t<std::is_same_v<Value, std::string>, std::string, double>;
-        if (!allows(limits, static_cast<Checked>(value))) {
-          fail(node, key, fmt::format("{} is out of range: {}", node.Scalar(), describe_limits(limits)));
-        }
-      }
-    } else if constexpr (requires { value.begin(); }) {
+    if constexpr (requires { value.begin(); }) {
       if (!node.IsSequence()) fail(node, key, "must be a list");
       value.clear();
       for (std::size_t i = 0; i < node.size(); ++i) {
         value.emplace_back();
-        read(node[i], fmt::format("{}.{}", key, i), value.back(), limits);
+        read(node[i], key + "." + std::to_string(i), value.back(), limits);
       }
     } else {
       read_section(file_, node, key, value);
     }
   }
+  void read(const YAML::Node& node, const std::string& key, int& value, const Limits& limits) const;
+  void read(const YAML::Node& node, const std::string& key, std::uint64_t& value, const Limits& limits) const;
+  void read(const YAML::Node& node, const std::string& key, double& value, const Limits& limits) const;
+  void read(const YAML::Node& node, const std::string& key, std::string& value, const Limits& limits) const;
 
   void read_scalar(const YAML::Node& node, const std::string& key, bool& value) const;
   void read_scalar(const YAML::Node& node, const std::string& key, int& value) const;
@@ -97,8 +88,11 @@ class SettingsReader {
   void read_scalar(const YAML::Node& node, const std::string& key, double& value) const;
   void read_scalar(const YAML::Node& node, const std::string& key, std::string& value) const;
   void read_expectations(const YAML::Node& node, const std::string& key, Expectations& value) const;
+  void check_limits(const YAML::Node& node, const std::string& key, bool is_allowed, const Limits& limits) const;
   [[noreturn]] void fail(const YAML::Node& node, const std::string& key, const std::string& what) const;
   std::string key(const std::string& name) const { return path_.empty() ? name : path_ + "." + name; }
+  /// Returns the node of a field and notes that the field is known; undefined if the document does not have it.
+  YAML::Node child(const char* name);
 
   std::string file_;
   YAML::Node node_;
@@ -113,7 +107,7 @@ class SettingsWriter {
 
   template <typename Value>
   void operator()(const char* name, const Value& value, const Limits& = {}) {
-    out_ << YAML::Key << name << YAML::Value;
+    write_key(name);
     write(value);
   }
 
@@ -128,21 +122,23 @@ class SettingsWriter {
  private:
   template <typename Value>
   void write(const Value& value) {
-    if constexpr (std::is_same_v<Value, Expectations>) {
-      write_expectations(value);
-    } else if constexpr (std::is_same_v<Value, double>) {
-      out_ << fmt::format("{}", value);
-    } else if constexpr (std::is_arithmetic_v<Value> || std::is_same_v<Value, std::string>) {
-      out_ << value;
-    } else if constexpr (requires { value.begin(); }) {
-      out_ << YAML::BeginSeq;
+    if constexpr (requires { value.begin(); }) {
+      begin_list();
       for (const auto& element : value) write(element);
-      out_ << YAML::EndSeq;
+      end_list();
     } else {
       write_section(out_, value);
     }
   }
-  void write_expectations(const Expectations& expectations);
+  void write(const bool& value);
+  void write(const int& value);
+  void write(const std::uint64_t& value);
+  void write(const double& value);
+  void write(const std::string& value);
+  void write(const Expectations& expectations);
+  void write_key(const char* name);
+  void begin_list();
+  void end_list();
 
   YAML::Emitter& out_;
 };

@@ -2,9 +2,8 @@
 
 #include <algorithm>
 
-#include <fmt/format.h>
-
 #include "core/error.h"
+#include "core/text.h"
 
 namespace patrol::render {
 namespace {
@@ -89,7 +88,7 @@ std::vector<Chapter> chapters_of(const std::vector<Scene>& scenes, const SpeedPl
   std::vector<Chapter> chapters = {{.begin_s = 0.0, .end_s = speed.length_s(), .title = kStart}};
   for (const Scene& scene : scenes) {
     const double begin_s = speed.film_s(scene.span.from);
-    const std::string title = fmt::format("{}", fmt::join(scene.titles, "; "));
+    const std::string title = join(scene.titles, "; ");
     if (begin_s - chapters.back().begin_s < kMinChapter_s) {
       std::string& earlier = chapters.back().title;
       earlier = earlier == kStart ? title : earlier + "; " + title;

@@ -3,7 +3,8 @@
 #include <algorithm>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
+
+#include "core/text.h"
 
 namespace patrol::stack {
 
@@ -68,7 +69,7 @@ void GasMission::wait(MissionOutput& output) {
   if (now_ < from_seconds(settings_.init_wait_s)) return;
   std::vector<std::string> names;
   for (const Station& station : route_.stations) names.push_back(station.name);
-  const std::string stations = fmt::format("Mission started: {} stations, {}.", names.size(), fmt::join(names, ", "));
+  const std::string stations = fmt::format("Mission started: {} stations, {}.", names.size(), join(names, ", "));
   output.events.push_back(
       event(EventKind::kMissionStarted, "", order_text_.empty() ? stations : stations + " " + order_text_));
   phase_ = Phase::kDriving;

@@ -4,7 +4,8 @@
 #include <numbers>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
+
+#include "core/text.h"
 
 namespace patrol::stack {
 
@@ -12,7 +13,7 @@ GoalType TunnelMissionSettings::goal_type(std::size_t index) const {
   if (index >= goal_types.size()) return GoalType::kStop;
   if (const auto* row = find_named(kGoalTypes, std::string_view(goal_types).substr(index, 1))) return row->value;
   throw InputError(fmt::format("tunnel_mission.goal_types = {}: must consist of the letters {}", goal_types,
-                               fmt::join(names_of(kGoalTypes), ", ")));
+                               join(names_of(kGoalTypes), ", ")));
 }
 
 TunnelMission::TunnelMission(const TunnelMissionSettings& settings, std::vector<SavedGoal> goals, bool has_teleop,

@@ -32,7 +32,7 @@ std::string RunHasher::hash(const Scenario& scenario) {
                                   folder_digest(data_root_ / "models" / scenario.robot, ""));
   for (const std::filesystem::path& file : named_files(scenario, data_root_))
     asked += fmt::format("file {}\n", file_digest(file));
-  asked += io::to_yaml(scenario);
+  asked += to_yaml(scenario);
   return io::sha256(asked).substr(0, kDigits);
 }
 

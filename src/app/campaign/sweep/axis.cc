@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/random.h"
+#include "core/text.h"
 
 namespace patrol::app {
 namespace {
@@ -129,7 +130,7 @@ std::vector<Variant> cartesian_product(const std::vector<Axis>& axes) {
     variants = std::move(longer);
   }
   for (Variant& variant : variants) {
-    variant.name = variant.overrides.empty() ? "baseline" : fmt::format("{}", fmt::join(variant.overrides, ", "));
+    variant.name = variant.overrides.empty() ? "baseline" : join(variant.overrides, ", ");
   }
   return variants;
 }

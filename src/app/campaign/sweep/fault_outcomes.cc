@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "core/text.h"
+
 namespace patrol::app {
 namespace {
 
@@ -65,7 +67,7 @@ std::string faults_summary(const std::vector<FaultRow>& rows) {
   }
   std::vector<std::string> parts;
   for (const auto& [outcome, count] : counts) parts.push_back(fmt::format("{} {}", count, text_of(outcome)));
-  return fmt::format("{} runs: {}; {} faults not triggered.", rows.size(), fmt::join(parts, ", "), num_not_triggered);
+  return fmt::format("{} runs: {}; {} faults not triggered.", rows.size(), join(parts, ", "), num_not_triggered);
 }
 
 std::string fault_legend() {

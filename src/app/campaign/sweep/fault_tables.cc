@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "core/text.h"
 #include "score/statistics.h"
 
 namespace patrol::app {
@@ -112,7 +113,7 @@ std::string faults_text(const SweepManifest& manifest, const SweepRows& rows) {
 std::string faults_markdown(const SweepManifest& manifest, const SweepRows& rows) {
   const std::vector<FaultRow> all = fault_rows(manifest, rows);
   const FaultGrid grid = grid_of(all);
-  std::string page = fmt::format("| {} | {} |\n| --- |", manifest.metrics.front(), fmt::join(grid.kinds, " | "));
+  std::string page = fmt::format("| {} | {} |\n| --- |", manifest.metrics.front(), join(grid.kinds, " | "));
   for (std::size_t i = 0; i < grid.kinds.size(); ++i) page += " --- |";
   page += fmt::format("\n| {}: {} |\n", grid.baseline_name, text_of(grid.baseline));
   for (const std::string& sensor : grid.sensors) {

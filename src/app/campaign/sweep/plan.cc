@@ -61,7 +61,7 @@ SweepManifest plan_error_budget(const ErrorBudgetOptions& options) {
   const auto changes_it = [&](const ScenarioErrorSource& source) {
     std::vector<std::string> overrides = options.overrides;
     overrides.insert(overrides.end(), source.overrides.begin(), source.overrides.end());
-    return io::to_yaml(load_scenario(options.scenario, overrides)) != io::to_yaml(scenario);
+    return to_yaml(load_scenario(options.scenario, overrides)) != to_yaml(scenario);
   };
   Variant ideal{.name = "all ideal", .overrides = {}};
   for (const ScenarioErrorSource& source : scenario_error_sources()) {

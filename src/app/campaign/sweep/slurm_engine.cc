@@ -11,6 +11,7 @@
 #include "app/campaign/sweep/comparison.h"
 #include "app/campaign/sweep/finish_sweep.h"
 #include "app/common/progress_bar.h"
+#include "core/text.h"
 #include "io/files/atomic_file.h"
 
 namespace patrol::app {
@@ -83,7 +84,7 @@ std::string shard_command(const SweepOptions& options, const std::filesystem::pa
 std::string shards_with_work(const std::vector<std::size_t>& needed, int num_shards) {
   std::set<std::size_t> shards;
   for (const std::size_t run : needed) shards.insert(run % static_cast<std::size_t>(num_shards) + 1);
-  return fmt::format("{}", fmt::join(shards, ","));
+  return join(shards, ",");
 }
 
 ExitCode sweep_on_slurm(const SweepOptions& options, const SweepDirectory& directory, const SweepManifest& manifest) {
