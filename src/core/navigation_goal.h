@@ -11,7 +11,8 @@ struct NavigationGoal {
   double yaw_tolerance_rad = 0.05;  ///< pi: any heading is accepted, and the robot does not turn in place at the goal
 
   friend bool operator==(const NavigationGoal& a, const NavigationGoal& b) {
-    return a.T_map_body.vector() == b.T_map_body.vector() && a.position_tolerance_m == b.position_tolerance_m &&
+    return a.T_map_body.x == b.T_map_body.x && a.T_map_body.y == b.T_map_body.y &&
+           a.T_map_body.yaw == b.T_map_body.yaw && a.position_tolerance_m == b.position_tolerance_m &&
            a.yaw_tolerance_rad == b.yaw_tolerance_rad;
   }
 };
