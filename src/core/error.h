@@ -9,7 +9,7 @@ namespace patrol {
 /// The program prints it and exits with status 2.
 class InputError : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  explicit InputError(const std::string& message) : std::runtime_error(message) {}
 };
 
 /// Returns an InputError with the message "worlds/x.yaml:12: sensors.lidar: what is wrong". Line 0: no line number.

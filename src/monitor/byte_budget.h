@@ -18,6 +18,8 @@ class ByteBudget {
     Claim(ByteBudget& budget, std::size_t bytes) : budget_(&budget), bytes_(bytes) { budget_->used_ += bytes_; }
     Claim(Claim&& other) noexcept : budget_(std::exchange(other.budget_, nullptr)), bytes_(other.bytes_) {}
     Claim& operator=(Claim&&) = delete;
+    Claim(const Claim&) = delete;
+    Claim& operator=(const Claim&) = delete;
     ~Claim() {
       if (budget_ != nullptr) budget_->used_ -= bytes_;
     }

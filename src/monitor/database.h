@@ -65,7 +65,7 @@ class Database {
   /// InputError when it cannot be opened or is not a database.
   explicit Database(const std::filesystem::path& file);
 
-  Statement prepare(std::string_view sql) { return Statement(database_.get(), sql); }
+  Statement prepare(std::string_view sql) { return {database_.get(), sql}; }
   /// Cached statement for repeated use. Must be run to its end before the next use.
   Statement& prepared(const std::string& sql);
   /// First column of the first row, none without a row.

@@ -57,7 +57,7 @@ std::optional<HttpClientResponse> post_json(const Url& url, const std::string& p
   asio::io_context context(1);
   std::optional<HttpClientResponse> answer;
   asio::co_spawn(context, exchange(context, url, request, timeout_s),
-                 [&](std::exception_ptr failure, HttpClientResponse got) {
+                 [&](const std::exception_ptr& failure, HttpClientResponse got) {
                    if (!failure) {
                      answer = std::move(got);
                      return;

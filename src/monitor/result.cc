@@ -29,7 +29,7 @@ constexpr std::size_t kMaxSummaryBytes = 400;
 constexpr int kMaxMapSide_px = 8192;  // per side of a map
 
 std::string text_of(const JsonObject& object, const char* key, std::size_t min_bytes, std::size_t max_bytes) {
-  const std::string text = object.string(key);
+  std::string text = object.string(key);
   if (text.size() < min_bytes || text.size() > max_bytes)
     object.fail(fmt::format("{} must have {} to {} bytes", key, min_bytes, max_bytes));
   return text;
@@ -160,7 +160,7 @@ std::string to_content(const Result& result) {
 std::string to_summary(const Result& result) {
   if (result.data.size() <= kMaxSummaryBytes || result.kind == "event") return result.data;
   Json json = Json::parse(result.data);
-  for (auto& [key, value] : json.items()) {
+  for (const auto& [key, value] : json.items()) {
     if (value.is_array()) value = value.size();
     if (key == "png_base64") value = "";
   }

@@ -46,7 +46,8 @@ std::string load_token(const std::filesystem::path& file) {
 std::string load_or_create_token(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "token";
   if (std::filesystem::exists(file)) return load_token(file);
-  const std::string token = new_token(), line = token + "\n";
+  std::string token = new_token();
+  const std::string line = token + "\n";
   const std::filesystem::path temporary = folder / "token.part";
   ::unlink(temporary.c_str());  // a remaining file may have another owner or mode
   const int out = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);

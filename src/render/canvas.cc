@@ -19,7 +19,7 @@ std::filesystem::path font_file(bool is_bold) {
   constexpr std::array kFolders = {"/usr/share/fonts/truetype/dejavu", "/usr/share/fonts/dejavu-sans-fonts",
                                    "/usr/share/fonts/dejavu", "/usr/share/fonts/TTF"};
   for (const char* folder : kFolders) {
-    const std::filesystem::path file = std::filesystem::path(folder) / name;
+    std::filesystem::path file = std::filesystem::path(folder) / name;
     if (std::filesystem::exists(file)) return file;
   }
   throw InputError(std::string(name) + " is not installed (package fonts-dejavu-core): required by replay");
@@ -83,7 +83,7 @@ Font::~Font() = default;
 int Font::draw(Frame& frame, int left, int baseline, const std::string& text, const Brush& brush) {
   for (std::size_t at = 0; at < text.size();) {
     if (FT_Load_Char(face_->face, next_character(text, at), FT_LOAD_RENDER) != 0) continue;
-    const FT_GlyphSlot glyph = face_->face->glyph;
+    const auto* const glyph = face_->face->glyph;
     const FT_Bitmap& bitmap = glyph->bitmap;
     for (int row = 0; row < static_cast<int>(bitmap.rows); ++row) {
       for (int col = 0; col < static_cast<int>(bitmap.width); ++col) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -19,7 +21,7 @@ struct Brush {
 /// Color of `above` with `opacity` over `below`.
 inline Color blend(Color below, Color above, double opacity) {
   const auto mix = [&](std::uint8_t a, std::uint8_t b) {
-    return static_cast<std::uint8_t>(a + opacity * (b - a) + 0.5);
+    return static_cast<std::uint8_t>(std::lround(a + opacity * (b - a)));
   };
   return {mix(below.r, above.r), mix(below.g, above.g), mix(below.b, above.b)};
 }

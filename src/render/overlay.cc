@@ -120,7 +120,7 @@ void Overlay::draw_caption(Frame& frame, const std::vector<std::string>& lines, 
 }
 
 /// Progress bar of the film with marks at the highlights.
-void Overlay::draw_timeline(Frame& frame, const FilmNote& note) {
+void Overlay::draw_timeline(Frame& frame, const FilmNote& note) const {
   const int height = std::max(2, static_cast<int>(std::lround(4.0 * scale_))), top = frame.height() - height;
   const auto at = [&](double film_s) {
     return static_cast<int>(std::lround(frame.width() * std::clamp(film_s / std::max(note.length_s, 1e-9), 0.0, 1.0)));

@@ -28,7 +28,7 @@ class Overlay {
   /// Returns the upper edge of the legend, px.
   int draw_legend(Frame& frame, const RunSnapshot& snapshot);
   void draw_caption(Frame& frame, const std::vector<std::string>& lines, int bottom);
-  void draw_timeline(Frame& frame, const FilmNote& note);
+  void draw_timeline(Frame& frame, const FilmNote& note) const;
 
   double scale_;  ///< line width scale: 1 for a frame of 720 pixels height
   Font values_;

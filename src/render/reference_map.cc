@@ -117,7 +117,7 @@ class SliceScene {
   }
 
  private:
-  mjvScene scene_;
+  mjvScene scene_{};
 };
 
 /// Computes the cells whose center is inside a solid.

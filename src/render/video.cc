@@ -92,7 +92,7 @@ struct VideoWriter::Encoder {
 
   void open_codec(int width, int height, double frames_per_second);
   void open_container(int width, int height, const std::vector<Chapter>& chapters);
-  void encode(const AVFrame* frame);
+  void encode(const AVFrame* frame) const;
 
   std::filesystem::path file;
   std::filesystem::path temporary;
@@ -161,7 +161,7 @@ void VideoWriter::Encoder::open_container(int width, int height, const std::vect
   packet = not_null(av_packet_alloc(), "packet");
 }
 
-void VideoWriter::Encoder::encode(const AVFrame* frame) {
+void VideoWriter::Encoder::encode(const AVFrame* frame) const {
   checked(avcodec_send_frame(codec, frame), "frame rejected by the encoder");
   for (;;) {
     const int code = avcodec_receive_packet(codec, packet);

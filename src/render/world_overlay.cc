@@ -83,7 +83,7 @@ void WorldOverlay::cover(const Stroke& stroke) {
       const double half_width = stroke.half_width_from + t * (stroke.half_width_to - stroke.half_width_from);
       const double coverage = std::clamp(half_width + 0.5 - (p - stroke.from - t * along).norm(), 0.0, 1.0);
       const auto pixel = static_cast<std::size_t>(y * frame_.width() + x);
-      const auto covered = static_cast<std::uint8_t>(255.0 * coverage + 0.5);
+      const auto covered = static_cast<std::uint8_t>(std::lround(255.0 * coverage));
       if (covered <= coverage_[pixel]) continue;
       if (is_hidden(pixel, 1.0 / (stroke.inverse_from + t * (stroke.inverse_to - stroke.inverse_from)))) continue;
       coverage_[pixel] = covered;

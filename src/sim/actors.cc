@@ -58,7 +58,7 @@ double ground_at(const mjModel& model, const mjData& data, const Eigen::Vector2d
   for (double height = from_m + kKnee_m;;) {
     const mjtNum from[3] = {p_world.x(), p_world.y(), height};
     int geom = -1;
-    const mjtNum distance = mj_ray(&model, &data, from, down, can_carry, 1, -1, &geom, nullptr);
+    const mjtNum distance = mj_ray(&model, &data, from, down, can_carry, true, -1, &geom, nullptr);
     if (distance < 0.0) return 0.0;
     height -= distance;
     const bool is_actor = model.body_mocapid[model.body_rootid[model.geom_bodyid[geom]]] >= 0;
@@ -217,7 +217,7 @@ std::vector<Eigen::Vector2d> Actors::positions() const {
   return positions;
 }
 
-void Actors::write_pose(const Actor& actor, mjData& data) const {
+void Actors::write_pose(const Actor& actor, mjData& data) {
   const double along = along_path(actor);
   const bool is_facing_back = is_returning(actor) && actor.settings.kind != "car";  // a car reverses
   const double heading = actor.path.heading_rad(along) + (is_facing_back ? std::numbers::pi : 0.0);
@@ -237,7 +237,7 @@ void Actors::write_pose(const Actor& actor, mjData& data) const {
 }
 
 // Each foot is in stance for half a stride while the hip passes over it, then swings forward at twice the speed.
-void Actors::write_leg_poses(const Actor& actor, const Eigen::Vector3d& hip, double heading_rad, mjData& data) const {
+void Actors::write_leg_poses(const Actor& actor, const Eigen::Vector3d& hip, double heading_rad, mjData& data) {
   const Eigen::Quaterniond yaw = quaternion_from_yaw(heading_rad);
   const double fraction = stride_fraction(actor.speed_mps);
   const double hip_height = kLeg_m - hip_drop_m(actor.walked_m, actor.speed_mps);

@@ -100,8 +100,8 @@ class Actors {
     double speed_mps = 0.0;
   };
 
-  void write_pose(const Actor& actor, mjData& data) const;
-  void write_leg_poses(const Actor& actor, const Eigen::Vector3d& hip, double heading_rad, mjData& data) const;
+  static void write_pose(const Actor& actor, mjData& data);
+  static void write_leg_poses(const Actor& actor, const Eigen::Vector3d& hip, double heading_rad, mjData& data);
   static double along_path(const Actor& actor);
   static bool is_returning(const Actor& actor);
   static double course_rad(const Actor& actor);

@@ -38,11 +38,11 @@ class AntennaMount {
 
  private:
   struct Servo {
-    int qpos, dof, motor;
+    int qpos = 0, dof = 0, motor = 0;
     JointLimit limit;
-    double stowed_rad;
-    double alignment_rad;
-    double target_rad, setpoint_rad, speed_radps = 0.0;
+    double stowed_rad = 0.0;
+    double alignment_rad = 0.0;
+    double target_rad = 0.0, setpoint_rad = 0.0, speed_radps = 0.0;
     double backlash_rad = 0.0;  ///< half the backlash, signed by the side of the last motion
   };
   double encoder_rad(const Servo& servo, const mjData& data) const;

@@ -161,7 +161,7 @@ class HeightFieldTriangles {
     const auto first = static_cast<unsigned>(made_.corners.size());
     const Triangles box = box_triangles(half);
     for (const Eigen::Vector3f& corner : box.corners) {
-      made_.corners.push_back(corner - Eigen::Vector3f(0.0f, 0.0f, static_cast<float>(half[2])));
+      made_.corners.emplace_back(corner - Eigen::Vector3f(0.0f, 0.0f, static_cast<float>(half[2])));
     }
     for (const auto& [a, b, c] : box.faces) made_.faces.push_back({first + a, first + b, first + c});
   }
@@ -220,7 +220,7 @@ EmbreeScene::EmbreeScene(RTCDevice device, RTCBuildQuality quality) : device_(de
 EmbreeScene::~EmbreeScene() { rtcReleaseScene(scene_); }
 
 void EmbreeScene::add(const mjModel& model, const PlacedGeom& placed) {
-  const RTCGeometry geometry = is_analytic(placed.type) ? make_round(placed) : make_triangles(model, placed);
+  RTCGeometry geometry = is_analytic(placed.type) ? make_round(placed) : make_triangles(model, placed);
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(scene_, geometry);
   rtcReleaseGeometry(geometry);
@@ -231,7 +231,7 @@ void EmbreeScene::build() { rtcCommitScene(scene_); }
 
 std::optional<RayHit> EmbreeScene::cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
                                         double max_range_m) const {
-  RTCIntersectContext context;
+  RTCIntersectContext context{};
   rtcInitIntersectContext(&context);
   RTCRayHit query = make_query(origin, direction, max_range_m);
   rtcIntersect1(scene_, &context, &query);
@@ -243,7 +243,7 @@ std::optional<RayHit> EmbreeScene::cast(const Eigen::Vector3d& origin, const Eig
 
 RTCGeometry EmbreeScene::make_round(const PlacedGeom& placed) {
   rounds_.push_back(std::make_unique<PlacedGeom>(placed));
-  const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
+  RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
   rtcSetGeometryUserPrimitiveCount(geometry, 1);
   rtcSetGeometryUserData(geometry, rounds_.back().get());
   rtcSetGeometryBoundsFunction(geometry, round_bounds, nullptr);
@@ -255,7 +255,7 @@ RTCGeometry EmbreeScene::make_triangles(const mjModel& model, const PlacedGeom& 
   const Triangles triangles = triangles_of(model, placed);
   const Eigen::Map<const Eigen::Vector3d> p(placed.position);
   const Eigen::Map<const Matrix3> R(placed.rotation);
-  const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+  RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
   auto* coordinates = static_cast<float*>(rtcSetNewGeometryBuffer(
       geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), triangles.corners.size()));
   for (const Eigen::Vector3f& corner : triangles.corners) {

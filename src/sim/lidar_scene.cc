@@ -77,7 +77,8 @@ class Boxes {
     // Replace zero components by a tiny value, so that the inverse is finite and no product below is 0 x infinity.
     const Eigen::Array3f inverse = (direction.array().abs() < 1e-12f).select(1e-12f, direction.array()).inverse();
     constexpr std::size_t kChunk = 64;
-    std::array<float, kChunk> stay;  // length of the ray inside the box; negative if it misses
+    // Length of the ray inside the box; negative if it misses.
+    std::array<float, kChunk> stay;  // NOLINT(cppcoreguidelines-pro-type-member-init): per ray, filled below
     for (std::size_t begin = 0; begin < lower_[0].size(); begin += kChunk) {
       const std::size_t count = std::min(kChunk, lower_[0].size() - begin);
       for (std::size_t k = 0; k < count; ++k) {
@@ -124,6 +125,8 @@ struct LidarScene::Impl {
     parts.clear();
     rtcReleaseDevice(device);
   }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
 
   void add_geom(const mjData& data, int geom) {
     const int type = model.geom_type[geom];

@@ -15,7 +15,7 @@ namespace patrol::sim {
 namespace {
 
 /// Removes every geom that cannot be in contact. Masses are explicit in the files, so nothing else changes.
-void strip_visual_geoms(mjSpec& spec) { spec.compiler.discardvisual = 1; }
+void strip_visual_geoms(mjSpec& spec) { spec.compiler.discardvisual = true; }
 
 SpecPtr load_world(const std::string& world_xml, const std::vector<StaticObstacleSettings>& obstacles) {
   SpecPtr spec = load_spec(world_xml);
@@ -67,7 +67,7 @@ double ground_height_m(const mjModel& model, const mjData& data, const Stance& s
   for (const Eigen::Vector2d& support : stance.support_points_m) {
     const Eigen::Vector2d p_world = T_world_body * support;
     const mjtNum from[3] = {p_world.x(), p_world.y(), max_ground_height_m};
-    const mjtNum distance = mj_ray(&model, &data, from, down, kScenery, 1, -1, nullptr, nullptr);
+    const mjtNum distance = mj_ray(&model, &data, from, down, kScenery, true, -1, nullptr, nullptr);
     if (distance >= 0.0) nearest_m = std::min(nearest_m, distance);
   }
   if (!std::isfinite(nearest_m)) {

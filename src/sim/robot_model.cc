@@ -37,7 +37,7 @@ void set_pose(const urdf::Pose& pose, double position[3], double quaternion[4]) 
 void set_shape(const urdf::Geometry& geometry, mjsGeom& geom) {
   switch (geometry.type) {
     case urdf::Geometry::BOX: {
-      const urdf::Vector3& size = static_cast<const urdf::Box&>(geometry).dim;
+      const urdf::Vector3& size = dynamic_cast<const urdf::Box&>(geometry).dim;
       geom.type = mjGEOM_BOX;
       geom.size[0] = size.x / 2.0;
       geom.size[1] = size.y / 2.0;
@@ -45,7 +45,7 @@ void set_shape(const urdf::Geometry& geometry, mjsGeom& geom) {
       return;
     }
     case urdf::Geometry::CYLINDER: {
-      const auto& cylinder = static_cast<const urdf::Cylinder&>(geometry);
+      const auto& cylinder = dynamic_cast<const urdf::Cylinder&>(geometry);
       geom.type = mjGEOM_CYLINDER;
       geom.size[0] = cylinder.radius;
       geom.size[1] = cylinder.length / 2.0;
@@ -53,7 +53,7 @@ void set_shape(const urdf::Geometry& geometry, mjsGeom& geom) {
     }
     case urdf::Geometry::SPHERE:
       geom.type = mjGEOM_SPHERE;
-      geom.size[0] = static_cast<const urdf::Sphere&>(geometry).radius;
+      geom.size[0] = dynamic_cast<const urdf::Sphere&>(geometry).radius;
       return;
     default:
       throw InputError("robot URDF: meshes are not supported: must be boxes, cylinders or spheres");
@@ -109,7 +109,7 @@ void add_collisions(const urdf::Link& link, mjsBody& body) {
 }
 
 void set_inertia(const urdf::Inertial& inertial, mjsBody& body) {
-  body.explicitinertial = 1;
+  body.explicitinertial = true;
   body.mass = inertial.mass;
   double quaternion[4];
   set_pose(inertial.origin, body.ipos, quaternion);
@@ -198,7 +198,7 @@ urdf::ModelInterfaceSharedPtr parse(const std::string& path) {
   std::ifstream file(path);
   std::ostringstream text;
   text << file.rdbuf();
-  const urdf::ModelInterfaceSharedPtr model = file ? urdf::parseURDF(text.str()) : nullptr;
+  urdf::ModelInterfaceSharedPtr model = file ? urdf::parseURDF(text.str()) : nullptr;
   if (!model) throw InputError(path + ": not a valid URDF file");
   return model;
 }

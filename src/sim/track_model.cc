@@ -26,7 +26,7 @@ void set(double* to, std::initializer_list<double> values) { std::copy(values.be
 const urdf::Cylinder& wheel_shape(const urdf::Collision& wheel) {
   if (wheel.geometry->type != urdf::Geometry::CYLINDER)
     throw InputError(wheel.name + ": wheels of a track must be cylinders");
-  return static_cast<const urdf::Cylinder&>(*wheel.geometry);
+  return dynamic_cast<const urdf::Cylinder&>(*wheel.geometry);
 }
 
 /// Returns the height of the lowest point of a track's wheels, in the link, m.
@@ -48,7 +48,7 @@ mjsBody* add_suspension(const urdf::Collision& wheel, double load_n, mjsBody& tr
   mjs_setName(carrier->element, (wheel.name + "_carrier").c_str());
   const urdf::Vector3& center = wheel.origin.position;
   set(carrier->pos, {center.x, center.y, center.z});
-  carrier->explicitinertial = 1;
+  carrier->explicitinertial = true;
   carrier->mass = kWheelMass_kg;
   std::fill_n(carrier->inertia, 3, kWheelInertia_kgm2);
   mjsJoint* slide = mjs_addJoint(carrier, nullptr);

@@ -73,7 +73,7 @@ InstrumentSet make_instruments(const StackSettings& settings, const RobotDescrip
   }
   if (robot.antenna)
     instruments.push_back(std::make_unique<WaterInstrument>(settings.inspection.water, *robot.antenna, start.seed));
-  return InstrumentSet(std::move(instruments), settings.inspection.siren_duration_s);
+  return {std::move(instruments), settings.inspection.siren_duration_s};
 }
 
 }  // namespace

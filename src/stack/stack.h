@@ -55,7 +55,7 @@ class Stack {
     PoseEstimate pose;
   };
 
-  void handle_scan(const LaserScan& scan);
+  void handle_scan(const LaserScan& raw);
   void publish_map(Time now);
   void monitor_sensors(Time now, const Pose2& T_odom_body);
   VelocityCommand control(const Period& period);

@@ -84,7 +84,7 @@ void DistanceTransform::compute(const std::vector<std::uint8_t>& is_obstacle, in
   };
   for (std::size_t row = 0; row < rows; ++row) {
     const std::uint8_t* obstacles = is_obstacle.data() + row * columns;
-    row_is_empty_[row] = std::find(obstacles, obstacles + columns, 1) == obstacles + columns;
+    row_is_empty_[row] = std::find(obstacles, obstacles + columns, 1) == obstacles + columns ? 1 : 0;
     if (!row_is_empty_[row]) transform_row(obstacles, width, cap_ + 1, square, along_rows_.data() + row * columns);
   }
 

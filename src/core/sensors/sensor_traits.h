@@ -32,10 +32,10 @@ struct FaultMagnitudes {
 
 /// Registry entry of a sensor type.
 struct SensorInfo {
-  const char* name;      ///< settings key below `sensors`, and sensor name in faults and events
-  const char* topic;     ///< topic in the log
-  const char* ros_type;  ///< ROS message type, e.g. "sensor_msgs/msg/Imu"
-  const char* summary;   ///< line of documentation in `patrol list`
+  const char* name = "";      ///< settings key below `sensors`, and sensor name in faults and events
+  const char* topic = "";     ///< topic in the log
+  const char* ros_type = "";  ///< ROS message type, e.g. "sensor_msgs/msg/Imu"
+  const char* summary = "";   ///< line of documentation in `patrol list`
   SensorTimeout timeout = SensorTimeout::kNone;
   FreezeCheck freeze_check = FreezeCheck::kNone;
   bool is_required_to_drive = false;  ///< true: the robot stops while the sensor monitor reports a fault of this

@@ -74,7 +74,7 @@ CellBox LowObstacleLayer::apply_changes() {
   CellBox changed;
   for (const Cell lattice : low_.take_changed()) {
     const Cell cell = lattice_.to_grid(lattice);
-    is_low_.at(cell) = low_.is_obstacle(lattice);
+    is_low_.at(cell) = low_.is_obstacle(lattice) ? 1 : 0;
     changed.extend(cell);
   }
   return changed;

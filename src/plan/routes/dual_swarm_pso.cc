@@ -184,7 +184,8 @@ void DualSwarmPso::search(const Grid<Cost>& costs, Cell start, Cell goal, Route&
   RandomSequence first(stream_, 0);
   for (Swarm& swarm : swarms) {
     for (int i = 0; i < settings_.particles; ++i) {
-      swarm.particles.push_back(flight.make_particle(first, &swarm == &swarms[0] ? kExploringSpread : kRefiningSpread));
+      swarm.particles.push_back(
+          flight.make_particle(first, &swarm == swarms.data() ? kExploringSpread : kRefiningSpread));
       evaluate(swarm.particles.back());
     }
   }

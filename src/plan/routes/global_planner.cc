@@ -1,6 +1,7 @@
 #include "plan/routes/global_planner.h"
 
 #include <cmath>
+#include <utility>
 
 #include "core/error.h"
 #include "plan/routes/smooth_route.h"
@@ -27,7 +28,7 @@ std::optional<Cell> nearest_passable(const Grid<Cost>& costs, const Eigen::Vecto
   return nearest;
 }
 
-GlobalPlanner::GlobalPlanner(const GlobalPlannerSettings& settings, std::uint64_t seed) : settings_(settings) {
+GlobalPlanner::GlobalPlanner(GlobalPlannerSettings settings, std::uint64_t seed) : settings_(std::move(settings)) {
   if (settings_.method == "visibility_graph") {
     throw InputError("global_planner.method = visibility_graph: not drivable: its paths touch lethal cells");
   }

@@ -46,7 +46,7 @@ struct PlanResult {
 class GlobalPlanner {
  public:
   /// Throws InputError like make_route_planner, and for `visibility_graph`, whose paths touch lethal cells.
-  GlobalPlanner(const GlobalPlannerSettings& settings, std::uint64_t seed);
+  GlobalPlanner(GlobalPlannerSettings settings, std::uint64_t seed);
 
   PlanResult plan(const Grid<Cost>& costs, const Eigen::Vector2d& p_map_start, const Eigen::Vector2d& p_map_goal);
 

@@ -14,8 +14,8 @@ namespace {
 enum class Mix { kEven, kDiagonalFirst, kStraightFirst };
 
 std::size_t direction_of(int col, int row) {
-  const auto found = std::find_if(kGridSteps.begin(), kGridSteps.end(),
-                                  [&](GridStep step) { return step.col == col && step.row == row; });
+  const auto* const found = std::find_if(kGridSteps.begin(), kGridSteps.end(),
+                                         [&](GridStep step) { return step.col == col && step.row == row; });
   return static_cast<std::size_t>(found - kGridSteps.begin());
 }
 
@@ -25,7 +25,7 @@ std::optional<double> append_open_path(const StepGraph& graph, std::uint32_t fro
   const Cell a = graph.cell_of(from), b = graph.cell_of(to);
   const int dx = b.col - a.col, dy = b.row - a.row, longer = std::max(std::abs(dx), std::abs(dy)),
             shorter = std::min(std::abs(dx), std::abs(dy));
-  const int sign_x = (dx > 0) - (dx < 0), sign_y = (dy > 0) - (dy < 0);
+  const int sign_x = std::clamp(dx, -1, 1), sign_y = std::clamp(dy, -1, 1);
   const std::size_t diagonal = direction_of(sign_x, sign_y);
   const std::size_t straight = std::abs(dx) >= std::abs(dy) ? direction_of(sign_x, 0) : direction_of(0, sign_y);
   double cost = 0.0;

@@ -22,7 +22,7 @@ struct StepGraph {
   double step_cost(std::uint32_t cell, std::size_t direction) const;
 
   int width;
-  std::array<int, 8> offsets;        ///< [direction] of kGridSteps, index offset
+  std::array<int, 8> offsets{};      ///< [direction] of kGridSteps, index offset
   std::vector<std::uint8_t> steps;   ///< [cell], one bit per direction
   std::vector<double> cell_factors;  ///< [cell], cost factor
 };

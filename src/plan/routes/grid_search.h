@@ -43,8 +43,8 @@ class GridSearch : public RoutePlanner {
   std::vector<Eigen::Vector2d> trace_back(std::uint32_t width, Cell start, Cell goal) const;
 
   Method method_;
-  std::array<PathCost, 256> half_straight_;  ///< [cost] cost of half a step through such a cell
-  std::array<PathCost, 256> half_diagonal_;
+  std::array<PathCost, 256> half_straight_{};  ///< [cost] cost of half a step through such a cell
+  std::array<PathCost, 256> half_diagonal_{};
   std::vector<Node> nodes_;
   std::uint32_t num_searches_ = 0;
   std::vector<Open> open_;  ///< binary heap

@@ -7,7 +7,7 @@
 
 namespace patrol::plan {
 
-PlannedPath::PlannedPath(std::vector<Eigen::Vector2d> points_m) {
+PlannedPath::PlannedPath(const std::vector<Eigen::Vector2d>& points_m) {
   for (const Eigen::Vector2d& p : points_m) {
     const double step_m = points_m_.empty() ? 0.0 : (p - points_m_.back()).norm();
     if (!points_m_.empty() && step_m < 1e-9) continue;

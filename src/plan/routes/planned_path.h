@@ -20,7 +20,7 @@ struct PathProjection {
 class PlannedPath {
  public:
   PlannedPath() = default;
-  explicit PlannedPath(std::vector<Eigen::Vector2d> points_m);
+  explicit PlannedPath(const std::vector<Eigen::Vector2d>& points_m);
 
   bool is_empty() const { return points_m_.empty(); }
   double length_m() const { return along_m_.empty() ? 0.0 : along_m_.back(); }

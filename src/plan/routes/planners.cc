@@ -61,7 +61,7 @@ constexpr std::array kPlanners = std::to_array<RoutePlannerRow>({
 std::span<const RoutePlannerRow> route_planners() { return kPlanners; }
 
 std::span<const RoutePlannerRow> drivable_route_planners() {
-  const auto end =
+  const auto* const end =
       std::find_if(kPlanners.begin(), kPlanners.end(), [](const RoutePlannerRow& row) { return !row.is_drivable; });
   return {kPlanners.begin(), end};
 }

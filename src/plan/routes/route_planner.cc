@@ -62,14 +62,14 @@ int iterations_to_convergence(const std::vector<double>& history, double toleran
 
 std::vector<Eigen::Vector2d> to_meters(const GridGeometry& geometry, const std::vector<Eigen::Vector2d>& points) {
   std::vector<Eigen::Vector2d> points_m;
-  for (const Eigen::Vector2d& point : points) points_m.push_back(geometry.origin_m + geometry.resolution_m * point);
+  for (const Eigen::Vector2d& point : points) points_m.emplace_back(geometry.origin_m + geometry.resolution_m * point);
   return points_m;
 }
 
 double compute_clearance(const Grid<Cost>& costs, const std::vector<Eigen::Vector2d>& points, double at_most) {
   double min_distance = at_most;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Eigen::Vector2d from = points[i], to = points[std::min(i + 1, points.size() - 1)];
+    const Eigen::Vector2d &from = points[i], &to = points[std::min(i + 1, points.size() - 1)];
     // Pieces of at most one cell, and for each the cells that could be nearer than the minimum so far.
     const int pieces = std::max(1, static_cast<int>(std::ceil((to - from).cwiseAbs().maxCoeff())));
     for (int k = 0; k < pieces; ++k) {
@@ -114,7 +114,7 @@ std::array<double, 256> cost_factors(double cost_weight) {
   if (!(cost_weight >= 0.0 && cost_weight <= kMaxCostWeight)) {
     throw InputError(fmt::format("cost_weight = {}: must be in [0, {}]", cost_weight, kMaxCostWeight));
   }
-  std::array<double, 256> factors;
+  std::array<double, 256> factors{};
   for (std::size_t cost = 0; cost < factors.size(); ++cost) {
     factors[cost] =
         1.0 + cost_weight * std::min<double>(static_cast<double>(cost), kMaxPassableCost) / kMaxPassableCost;

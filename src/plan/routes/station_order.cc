@@ -83,7 +83,7 @@ class Tour {
         now = departure(order[k], now);
       }
       if (is_fixed(order[k])) continue;
-      inverted += priority(order[k]) < last;
+      if (priority(order[k]) < last) ++inverted;
       last = std::max(last, priority(order[k]));
     }
     if (is_closed_tour() && order.size() > 1) go(order.back(), order.front());
@@ -160,7 +160,8 @@ class LocalSearch {
  private:
   bool improve() {
     bool is_better = false;
-    const std::size_t first = tour_.is_start(order_.front()), end = order_.size() - tour_.is_end(order_.back());
+    const std::size_t first = tour_.is_start(order_.front()) ? 1 : 0;
+    const std::size_t end = order_.size() - (tour_.is_end(order_.back()) ? 1 : 0);
     for (std::size_t from = first; from < end; ++from) {
       for (std::size_t to = from + 2; to <= end; ++to) {
         is_better |= attempt([&](std::vector<std::size_t>& order) { std::reverse(at(order, from), at(order, to)); });
@@ -223,7 +224,7 @@ std::vector<std::size_t> random_order(const Tour& tour, RandomSequence random) {
 
 /// Nearest-neighbor order from the first station of `order`, within the lowest remaining priority.
 std::vector<std::size_t> nearest_order(const Tour& tour, std::vector<std::size_t> order) {
-  const std::size_t end = order.size() - tour.is_end(order.back());
+  const std::size_t end = order.size() - (tour.is_end(order.back()) ? 1 : 0);
   for (std::size_t k = 1; k < end; ++k) {
     const auto rank = [&](std::size_t i) { return std::tuple(tour.priority(i), tour.travel(order[k - 1], i)); };
     const auto left = order.begin() + static_cast<std::ptrdiff_t>(k);

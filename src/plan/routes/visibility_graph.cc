@@ -63,8 +63,8 @@ bool is_visible_up_right(const Quadrant& quadrant, HalfCellPoint to) {
     if (x >= dx && y >= dy) return true;
     const bool by_right = x * dy <= y * dx, by_top = y * dx <= x * dy;
     if (by_right && by_top && !quadrant.is_free(col + 1, row) && !quadrant.is_free(col, row + 1)) return false;
-    col += by_right;
-    row += by_top;
+    col += by_right ? 1 : 0;
+    row += by_top ? 1 : 0;
   }
 }
 
@@ -237,12 +237,12 @@ bool is_visible(const Grid<Cost>& costs, HalfCellPoint from, HalfCellPoint to) {
   const HalfCellPoint origin = quadrant.origin(), end = quadrant.to_quadrant(to);
   const int col = quadrant.first_col(), row = quadrant.first_row();
   if (dy == 0) {
-    const int between = origin.y % 2 == 0;  // else the line runs through cells, which are on both sides
+    const int between = origin.y % 2 == 0 ? 1 : 0;  // else the line runs through cells, which are on both sides
     return is_visible_along_axis(col, end.x,
                                  [&](int along, int side) { return quadrant.is_free(along, row + between * side); });
   }
   if (dx == 0) {
-    const int between = origin.x % 2 == 0;
+    const int between = origin.x % 2 == 0 ? 1 : 0;
     return is_visible_along_axis(row, end.y,
                                  [&](int along, int side) { return quadrant.is_free(col + between * side, along); });
   }

@@ -12,7 +12,7 @@ const Shot* Director::shot_at(Time now) const {
 
 View Director::view(const RunSnapshot& snapshot, double elapsed_s) {
   const Pose3& T_world_body = snapshot.T_world_body;
-  const View following = rig_.follow(T_world_body, elapsed_s);
+  View following = rig_.follow(T_world_body, elapsed_s);
   const Shot* const shot = shot_at(snapshot.state.stamp);
   if (shot == nullptr) {
     shot_ = nullptr;

@@ -49,7 +49,7 @@ FreeDistance free_distance_in(const SnapshotBuilder& follower) {
 
 /// Camera rig that detects obstacles in the follower's world.
 CameraRig camera_on(const SnapshotBuilder& follower, CameraKind kind) {
-  const std::optional<Eigen::Vector3d> head_m = follower.head_m();
+  const std::optional<Eigen::Vector3d>& head_m = follower.head_m();
   return head_m ? CameraRig(kind, free_distance_in(follower), *head_m) : CameraRig(kind, free_distance_in(follower));
 }
 

@@ -15,8 +15,8 @@ constexpr double kFollow_s = 0.12;     // time constant
 
 }  // namespace
 
-ShotCamera::ShotCamera(const Shot& shot, FreeDistance free_distance, const Pose3& T_world_body)
-    : shot_(shot),
+ShotCamera::ShotCamera(Shot shot, FreeDistance free_distance, const Pose3& T_world_body)
+    : shot_(std::move(shot)),
       free_distance_(std::move(free_distance)),
       focus_m_(focus_of(T_world_body)),
       bearing_rad_(choose_bearing(T_world_body)) {}

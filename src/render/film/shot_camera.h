@@ -12,7 +12,7 @@ namespace patrol::render {
 class ShotCamera {
  public:
   /// `T_world_body` is the pose at the start of the shot; `free_distance` as in CameraRig.
-  ShotCamera(const Shot& shot, FreeDistance free_distance, const Pose3& T_world_body);
+  ShotCamera(Shot shot, FreeDistance free_distance, const Pose3& T_world_body);
 
   /// Returns the view of the next frame, `elapsed_s` of film time after the previous one.
   View follow(const Pose3& T_world_body, const Eigen::Vector2d& p_world_estimate, double elapsed_s);

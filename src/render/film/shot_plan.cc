@@ -91,7 +91,8 @@ std::vector<Chapter> chapters_of(const std::vector<Scene>& scenes, const SpeedPl
     const std::string title = join(scene.titles, "; ");
     if (begin_s - chapters.back().begin_s < kMinChapter_s) {
       std::string& earlier = chapters.back().title;
-      earlier = earlier == kStart ? title : earlier + "; " + title;
+      if (earlier == kStart) earlier = title;
+      else earlier += "; " + title;
       continue;
     }
     chapters.back().end_s = begin_s;

@@ -53,8 +53,8 @@ void mark_edges(const std::int16_t* above, const std::int16_t* here, const std::
     const auto brightest =
         std::max(std::max(std::max(above[x - 1], above[x + 1]), std::max(below[x - 1], below[x + 1])), here[x]);
     const int contrast = brightest - darkest;
-    is_edge[x] =
-        static_cast<std::int16_t>((contrast >= kMinContrast) & (kBrightnessPerContrast * contrast >= brightest));
+    is_edge[x] = static_cast<std::int16_t>((contrast >= kMinContrast ? 1 : 0) &
+                                           (kBrightnessPerContrast * contrast >= brightest ? 1 : 0));
   }
 }
 
@@ -75,7 +75,7 @@ Color blurred_along_edge(const Frame& sharp, int x, int y, const std::int16_t* a
   const float middle = here[x];
   const bool is_beyond = light < std::min({nw, ne, sw, se, middle}) || light > std::max({nw, ne, sw, se, middle});
   const Tint& chosen = is_beyond ? near : both;
-  const auto rounded = [](float value) { return static_cast<std::uint8_t>(value + 0.5f); };
+  const auto rounded = [](float value) { return static_cast<std::uint8_t>(std::lround(value)); };
   return {rounded(chosen.r), rounded(chosen.g), rounded(chosen.b)};
 }
 

@@ -89,9 +89,8 @@ View look_down(const Eigen::Vector3d& focus, double height_m, const FreeDistance
 class CameraRig {
  public:
   /// `head_m` is the position of the onboard camera in the level body frame.
-  explicit CameraRig(CameraKind kind, FreeDistance free_distance = {},
-                     const Eigen::Vector3d& head_m = {0.33, 0.0, 0.12})
-      : kind_(kind), free_distance_(std::move(free_distance)), head_m_(head_m) {}
+  explicit CameraRig(CameraKind kind, FreeDistance free_distance = {}, Eigen::Vector3d head_m = {0.33, 0.0, 0.12})
+      : kind_(kind), free_distance_(std::move(free_distance)), head_m_(std::move(head_m)) {}
 
   /// Returns the view of the next frame, `elapsed_s` of film time after the previous one.
   View follow(const Pose3& T_world_body, double elapsed_s);

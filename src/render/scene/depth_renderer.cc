@@ -143,7 +143,7 @@ void DepthRenderer::find_large_meshes() {
     LargeMesh large{.mesh = mesh, .face_middles = {}, .face_radii_m = {}, .face_indices = {}};
     const float* vertices = model.mesh_vert + 3 * model.mesh_vertadr[mesh];
     for (int i = 0, face = model.mesh_faceadr[mesh]; i < model.mesh_facenum[mesh]; ++i, ++face) {
-      std::array<int, 9> indices;
+      std::array<int, 9> indices{};
       std::copy_n(model.mesh_face + 3 * face, 3, indices.begin());
       std::copy_n(model.mesh_facenormal + 3 * face, 3, indices.begin() + 3);
       std::copy_n(model.mesh_facetexcoord + 3 * face, 3, indices.begin() + 6);
@@ -152,7 +152,7 @@ void DepthRenderer::find_large_meshes() {
         corners.col(k) =
             Eigen::Map<const Eigen::Vector3f>(vertices + 3 * indices[static_cast<std::size_t>(k)]).cast<double>();
       const Eigen::Vector3d middle = corners.rowwise().mean();
-      large.face_middles.push_back(shape.position + shape.rotation * middle);
+      large.face_middles.emplace_back(shape.position + shape.rotation * middle);
       large.face_radii_m.push_back((corners.colwise() - middle).colwise().norm().maxCoeff());
       large.face_indices.push_back(indices);
     }
@@ -194,7 +194,7 @@ int DepthRenderer::num_near_faces() const {
 }
 
 /// Sets the geom's pose from the pose of its body.
-void DepthRenderer::update_pose(Shape& shape, const mjData& data) const {
+void DepthRenderer::update_pose(Shape& shape, const mjData& data) {
   if (shape.body == 0) return;
   const Eigen::Map<const RowMajor3> R_world_body(data.xmat + 9 * shape.body);
   const Eigen::Vector3d position =
@@ -265,7 +265,7 @@ void DepthRenderer::draw(const mjData& data, const Pose3& T_world_camera, sim::I
     image.depth_m[pixel] = is_something
                                ? static_cast<float>(near_m_ * far_m_ / (near_m_ + fraction * (far_m_ - near_m_)))
                                : std::numeric_limits<float>::infinity();
-    const float red = static_cast<float>(colors_.bytes()[3 * pixel]);
+    const auto red = static_cast<float>(colors_.bytes()[3 * pixel]);
     image.reflectivity[pixel] = is_something ? std::max(0.0f, red - 1.0f) / kBrightest : 0.0f;
   }
 }

@@ -64,7 +64,7 @@ class DepthRenderer : public sim::DepthImager {
   void collect();
   void find_large_meshes();
   void upload_near(const Eigen::Vector3d& eye);
-  void update_pose(Shape& shape, const mjData& data) const;
+  static void update_pose(Shape& shape, const mjData& data);
   void limit_infinite_plane(Shape& shape, const Camera& camera) const;
   bool is_in_view(const Shape& shape, const Camera& camera) const;
   void aim(const Camera& camera);
@@ -74,7 +74,7 @@ class DepthRenderer : public sim::DepthImager {
   /// copy of the render model without textures and shadows; its large meshes contain only the faces near the camera
   sim::ModelPtr model_;
   Offscreen offscreen_;
-  mjvScene scene_;
+  mjvScene scene_{};
   std::vector<Shape> shapes_;
   std::vector<LargeMesh> large_meshes_;
   std::optional<Eigen::Vector3d> uploaded_about_;

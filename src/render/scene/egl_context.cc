@@ -57,7 +57,7 @@ std::vector<EGLDeviceEXT> graphics_cards(const EglLibrary& egl) {
 EGLDisplay open_display(const EglLibrary& egl, EGLenum platform, void* device) {
   const auto get_display = egl.function<PFNEGLGETPLATFORMDISPLAYEXTPROC>("eglGetPlatformDisplayEXT");
   if (get_display == nullptr) return EGL_NO_DISPLAY;
-  const EGLDisplay display = get_display(platform, device, nullptr);
+  EGLDisplay display = get_display(platform, device, nullptr);
   if (display == EGL_NO_DISPLAY) return display;
   return egl.function<decltype(&eglInitialize)>("eglInitialize")(display, nullptr, nullptr) == EGL_TRUE
              ? display
@@ -65,8 +65,8 @@ EGLDisplay open_display(const EglLibrary& egl, EGLenum platform, void* device) {
 }
 
 EGLDisplay open_graphics_card(const EglLibrary& egl) {
-  for (const EGLDeviceEXT device : graphics_cards(egl)) {
-    if (const EGLDisplay display = open_display(egl, EGL_PLATFORM_DEVICE_EXT, device); display != EGL_NO_DISPLAY)
+  for (EGLDeviceEXT device : graphics_cards(egl)) {
+    if (EGLDisplay display = open_display(egl, EGL_PLATFORM_DEVICE_EXT, device); display != EGL_NO_DISPLAY)
       return display;
   }
   return EGL_NO_DISPLAY;

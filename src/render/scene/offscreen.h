@@ -35,7 +35,7 @@ class Offscreen {
 
  private:
   std::unique_ptr<GlContext> gl_;
-  mjrContext context_;
+  mjrContext context_{};
   mjrRect viewport_;
 };
 

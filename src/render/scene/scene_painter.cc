@@ -145,7 +145,7 @@ void SceneRenderer::select_shadow_light(const View& view) {
   for (const mjvLight* other = scene_.lights; other != end; ++other) {
     if (other != lamp) second_m = std::min(second_m, away_m(*other));
   }
-  const double reach_deg = static_cast<double>(lamp->cutoff * model_.vis.map.shadowscale);
+  const auto reach_deg = static_cast<double>(lamp->cutoff * model_.vis.map.shadowscale);
   double weight = shadow_weight(*lamp, view.focus, to_rad(reach_deg), second_m);
   const bool has_room = scene_.nlight < kMaxLights;
   if (!has_room) weight = std::round(weight);

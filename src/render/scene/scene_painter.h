@@ -49,8 +49,8 @@ class SceneRenderer {
   const mjModel& model_;
   sim::DataPtr data_;
   Offscreen offscreen_;
-  mjvScene scene_;
-  mjvOption options_;
+  mjvScene scene_{};
+  mjvOption options_{};
   Haze dust_;
   Pose2 T_true_estimate_;
   bool has_shadow_lamp_ = false;  ///< a lamp casts shadows in the last scene

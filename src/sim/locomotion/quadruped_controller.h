@@ -95,7 +95,7 @@ class QuadrupedController {
   double idle_s_ = 0.0;
   double cycle_ = 0.0;
   std::array<LegPhase, kNumLegs> phase_;
-  FootFlags is_stance_;
+  FootFlags is_stance_{};
   FootFlags is_searching_{};  ///< true: the stance has begun but the foot has no ground contact
   std::array<double, kNumLegs> search_s_{};
   double awake_s_ = 0.0;    ///< time since switch-on

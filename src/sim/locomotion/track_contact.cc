@@ -38,7 +38,7 @@ TrackContact::TrackContact(const RobotDescription& robot, double friction, mjMod
       throw InputError("robot " + robot.name + ": physics model lacks the robot's tracks");
     sprocket_dofs_[side] = physics.jnt_dofadr[joint];
   }
-  physics.flg_surfacevel = 1;
+  physics.flg_surfacevel = true;
 }
 
 void TrackContact::run(mjModel& physics, const mjData& data) const {

@@ -22,8 +22,8 @@ class TrackDrive : public Locomotion {
   TrackController initial_, controller_;
   TrackContact contact_;
   double brake_torque_nm_;
-  std::array<double, 2> gear_friction_nm_;  ///< left, right
-  std::array<int, 2> motors_;
+  std::array<double, 2> gear_friction_nm_{};  ///< left, right
+  std::array<int, 2> motors_{};
 };
 
 }  // namespace patrol::sim

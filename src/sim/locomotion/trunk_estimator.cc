@@ -1,6 +1,7 @@
 #include "sim/locomotion/trunk_estimator.h"
 
 #include <cmath>
+#include <utility>
 
 #include <Eigen/Geometry>
 
@@ -19,7 +20,7 @@ constexpr double kTouch_n = 12.0;         // force threshold of a contact
 
 }  // namespace
 
-TrunkEstimator::TrunkEstimator(const RobotDescription& robot, double tick_s) : robot_(robot), tick_s_(tick_s) {
+TrunkEstimator::TrunkEstimator(RobotDescription robot, double tick_s) : robot_(std::move(robot)), tick_s_(tick_s) {
   state_.foot_m.fill(Eigen::Vector3d::Zero());
   state_.foot_velocity_mps.fill(Eigen::Vector3d::Zero());
   foot_roll_mps_.fill(Eigen::Vector3d::Zero());

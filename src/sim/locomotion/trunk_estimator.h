@@ -29,7 +29,7 @@ struct TrunkState {
 /// separate and more accurate; the firmware needs its estimate within a tick.
 class TrunkEstimator {
  public:
-  TrunkEstimator(const RobotDescription& robot, double tick_s);
+  TrunkEstimator(RobotDescription robot, double tick_s);
 
   const TrunkState& update(const Imu& imu, const JointState& joints, const FootContacts& contacts);
   const TrunkState& state() const { return state_; }

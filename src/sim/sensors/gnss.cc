@@ -19,7 +19,7 @@ Gnss::Gnss(const GnssSettings& settings, std::uint64_t seed) : settings_(setting
 }
 
 /// Returns the visible fraction of the sky: free rays to 24 directions, 15 to 75 degrees above the horizon.
-double Gnss::open_sky_fraction(const LidarScene& scene, const Eigen::Vector3d& antenna) const {
+double Gnss::open_sky_fraction(const LidarScene& scene, const Eigen::Vector3d& antenna) {
   constexpr int kAzimuths = 8;
   int open = 0, all = 0;
   for (const double elevation : {15.0 * kDegree, 45.0 * kDegree, 75.0 * kDegree}) {

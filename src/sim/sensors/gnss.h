@@ -17,7 +17,7 @@ class Gnss {
   GnssFix read(const LidarScene& scene, const Eigen::Vector3d& p_world_antenna, Time now, std::uint64_t tick);
 
  private:
-  double open_sky_fraction(const LidarScene& scene, const Eigen::Vector3d& antenna) const;
+  static double open_sky_fraction(const LidarScene& scene, const Eigen::Vector3d& antenna);
 
   GnssSettings settings_;
   RandomStream noise_;

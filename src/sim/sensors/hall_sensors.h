@@ -25,7 +25,7 @@ class HallSensors {
 
  private:
   struct Counter {
-    int qpos;
+    int qpos = 0;
     std::int64_t edge = 0;     ///< last edge that passed
     std::int64_t count = 0;    ///< counter value
     std::uint64_t passed = 0;  ///< passed edges in both directions; index of the next random number

@@ -29,11 +29,11 @@ Pose3 move_between(const Pose3& a, const Pose3& b, double fraction) {
 
 }  // namespace
 
-Lidar::Lidar(const LidarSettings& settings, const LidarScene& scene, const Pose3& T_body_lidar, RayMask own_housing,
+Lidar::Lidar(const LidarSettings& settings, const LidarScene& scene, Pose3 T_body_lidar, RayMask own_housing,
              std::uint64_t seed, const std::string& name, const DustSettings& dust)
     : settings_(settings),
       scene_(scene),
-      T_body_lidar_(T_body_lidar),
+      T_body_lidar_(std::move(T_body_lidar)),
       mask_(kRayEverything & ~static_cast<std::uint32_t>(own_housing)),
       dust_(dust),
       surfaces_(surface_optics(scene.model())),

@@ -24,7 +24,7 @@ class Lidar {
  public:
   /// One ring yields scans, several yield clouds. `name` is the prefix of the random streams; `own_housing` is the
   /// housing that contains the beam origin and is ignored. Dust reduces the range and causes false returns.
-  Lidar(const LidarSettings& settings, const LidarScene& scene, const Pose3& T_body_lidar, RayMask own_housing,
+  Lidar(const LidarSettings& settings, const LidarScene& scene, Pose3 T_body_lidar, RayMask own_housing,
         std::uint64_t seed, const std::string& name, const DustSettings& dust = {});
 
   /// Fires the beams whose instants are in (from, to]; the body pose is interpolated in between.

@@ -53,12 +53,12 @@ Magnetometer::Magnetometer(const MagnetometerSettings& settings, const mjModel& 
                       .radius_m = std::cbrt(0.75 * volume_m3 / std::numbers::pi)});
   }
   const RandomStream iron(seed, "magnetometer/iron");
-  for (int row = 0; row < 3; ++row) {
-    hard_iron_t_[row] = settings.hard_iron_std_t * iron.normal(0, static_cast<std::uint64_t>(row));
-    for (int column = 0; column <= row; ++column) {
-      const double entry = settings.soft_iron_std * iron.normal(1, static_cast<std::uint64_t>(3 * row + column));
-      soft_iron_(row, column) += entry;
-      if (column != row) soft_iron_(column, row) += entry;
+  for (int i = 0; i < 3; ++i) {
+    hard_iron_t_[i] = settings.hard_iron_std_t * iron.normal(0, static_cast<std::uint64_t>(i));
+    for (int j = 0; j <= i; ++j) {
+      const double entry = settings.soft_iron_std * iron.normal(1, static_cast<std::uint64_t>(3 * i + j));
+      soft_iron_(i, j) += entry;
+      if (j != i) soft_iron_(j, i) += entry;
     }
   }
 }

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -36,10 +37,10 @@ RandomStream stream_of(const PanoramicScannerSettings& settings, std::uint64_t s
 }  // namespace
 
 PanoramicScanner::PanoramicScanner(const PanoramicScannerSettings& settings, const LidarScene& scene,
-                                   const Pose3& T_body_scanner, std::uint64_t seed, const DustSettings& dust)
+                                   Pose3 T_body_scanner, std::uint64_t seed, const DustSettings& dust)
     : settings_(settings),
       scene_(scene),
-      T_body_scanner_(T_body_scanner),
+      T_body_scanner_(std::move(T_body_scanner)),
       dust_(dust),
       surfaces_(surface_optics(scene.model())),
       range_noise_(stream_of(settings, seed, "range")),

@@ -34,7 +34,7 @@ namespace patrol::sim {
 class PanoramicScanner {
  public:
   /// Dust reduces the light.
-  PanoramicScanner(const PanoramicScannerSettings& settings, const LidarScene& scene, const Pose3& T_body_scanner,
+  PanoramicScanner(const PanoramicScannerSettings& settings, const LidarScene& scene, Pose3 T_body_scanner,
                    std::uint64_t seed, const DustSettings& dust = {});
 
   /// Starts a scan at the given body pose; does nothing during a scan.
@@ -71,7 +71,7 @@ class PanoramicScanner {
   Eigen::Vector3d direction(int column, std::size_t row, double azimuth_error_rad, double elevation_error_rad) const;
   Return trace(const Pose3& T_world_scanner, const Eigen::Vector3d& direction) const;
   Return mixed_pixel_return(const Pose3& T_world_scanner, const Eigen::Vector3d& direction, double range_m) const;
-  double range_std_m(const Return& echo) const;
+  double range_std_m(const Return& beam_return) const;
 
   PanoramicScannerSettings settings_;
   const LidarScene& scene_;

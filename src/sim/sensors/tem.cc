@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -45,11 +46,11 @@ double steel_decay(double time_s) {
 
 }  // namespace
 
-Tem::Tem(const TemSettings& settings, const RockSettings& rock, const std::vector<WaterBodySettings>& bodies,
+Tem::Tem(const TemSettings& settings, const RockSettings& rock, std::vector<WaterBodySettings> bodies,
          std::uint64_t seed)
     : settings_(settings),
       rock_(rock),
-      bodies_(bodies),
+      bodies_(std::move(bodies)),
       window_(reported_window(settings)),
       gates_(shift(window_, settings.time_shift_std_s * RandomStream(seed, "tem/time_shift").normal(0))),
       gain_(1.0 + settings.gain_std * RandomStream(seed, "tem/gain").normal(0)),
@@ -59,11 +60,10 @@ Tem::Tem(const TemSettings& settings, const RockSettings& rock, const std::vecto
   validate(rock, "rock");
   const RandomStream steel(seed, "tem/steel");
   steel_rate_ = settings.steel_response * std::exp(settings.steel_log_std * steel.normal(0));
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column <= row; ++column) {
-      const double entry =
-          settings.steel_anisotropy_std * steel.normal(1, static_cast<std::uint64_t>(3 * row + column));
-      steel_form_(row, column) = steel_form_(column, row) = entry;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j <= i; ++j) {
+      const double entry = settings.steel_anisotropy_std * steel.normal(1, static_cast<std::uint64_t>(3 * i + j));
+      steel_form_(i, j) = steel_form_(j, i) = entry;
     }
   }
 }

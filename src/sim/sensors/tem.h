@@ -24,8 +24,7 @@ namespace patrol::sim {
 class Tem {
  public:
   /// Throws InputError for fewer than three gates.
-  Tem(const TemSettings& settings, const RockSettings& rock, const std::vector<WaterBodySettings>& bodies,
-      std::uint64_t seed);
+  Tem(const TemSettings& settings, const RockSettings& rock, std::vector<WaterBodySettings> bodies, std::uint64_t seed);
 
   /// Starts a sounding unless one is in progress.
   void start(Time now);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <utility>
+
 #include "core/robot_description.h"
 #include "inspect/gas_measurement.h"
 #include "stack/instruments/instrument.h"
@@ -23,7 +25,7 @@ struct GasRules {
 class GasInstrument final : public Instrument {
  public:
   /// `T_body_gas`: pose of the methane meter, whose beam is along x.
-  GasInstrument(const GasRules& rules, const Pose3& T_body_gas) : rules_(rules), T_body_gas_(T_body_gas) {}
+  GasInstrument(const GasRules& rules, Pose3 T_body_gas) : rules_(rules), T_body_gas_(std::move(T_body_gas)) {}
 
   InstrumentKind kind() const override { return InstrumentKind::kGas; }
   void add(const SensorMessage& message, const StationPoseLookup& station_pose_at) override;

@@ -7,9 +7,8 @@
 
 namespace patrol::stack {
 
-WaterInstrument::WaterInstrument(const inspect::WaterSettings& settings, const AntennaGeometry& antenna,
-                                 std::uint64_t seed)
-    : settings_(settings), geometry_(antenna), inversion_(settings), seed_(seed) {}
+WaterInstrument::WaterInstrument(const inspect::WaterSettings& settings, AntennaGeometry antenna, std::uint64_t seed)
+    : settings_(settings), geometry_(std::move(antenna)), inversion_(settings), seed_(seed) {}
 
 void WaterInstrument::add(const SensorMessage& message, const StationPoseLookup&) {
   if (const auto* state = std::get_if<AntennaState>(&message)) antenna_ = *state;

@@ -17,7 +17,7 @@ namespace patrol::stack {
 /// Events: water_notice, water_warning, water_alarm (value: distance, m), water_not_found.
 class WaterInstrument final : public Instrument {
  public:
-  WaterInstrument(const inspect::WaterSettings& settings, const AntennaGeometry& antenna, std::uint64_t seed);
+  WaterInstrument(const inspect::WaterSettings& settings, AntennaGeometry antenna, std::uint64_t seed);
 
   InstrumentKind kind() const override { return InstrumentKind::kWater; }
   void add(const SensorMessage& message, const StationPoseLookup& station_pose_at) override;

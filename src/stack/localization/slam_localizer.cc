@@ -6,8 +6,8 @@
 namespace patrol::stack {
 
 SlamLocalizer::SlamLocalizer(std::unique_ptr<slam::Mapper> mapper, std::vector<UwbAnchor> anchors_in_map,
-                             const std::optional<Pose3>& T_body_uwb)
-    : mapper_(std::move(mapper)), anchors_(std::move(anchors_in_map)), T_body_uwb_(T_body_uwb) {}
+                             std::optional<Pose3> T_body_uwb)
+    : mapper_(std::move(mapper)), anchors_(std::move(anchors_in_map)), T_body_uwb_(std::move(T_body_uwb)) {}
 
 void SlamLocalizer::add(const RangeWithOdometry& range) {
   const auto anchor = std::find_if(anchors_.begin(), anchors_.end(),
@@ -23,7 +23,7 @@ void SlamLocalizer::add(const RangeWithOdometry& range) {
 PoseEstimate SlamLocalizer::update(const LevelScan& scan, const Pose2& T_odom_body, StackOutput& output) {
   const auto timer = output.time_stage("slam");
   const slam::SlamUpdate update = mapper_->update(scan, T_odom_body);
-  const PoseEstimate estimate{scan.stamp, update.T_map_body, update.covariance};
+  PoseEstimate estimate{scan.stamp, update.T_map_body, update.covariance};
   output.publish(estimate);
   if (!update.is_keyframe) return estimate;
   if (ParticleSet particles = mapper_->particles(); !particles.T_map_body.empty()) output.publish(std::move(particles));

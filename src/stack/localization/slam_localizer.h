@@ -16,7 +16,7 @@ class SlamLocalizer final : public Localizer {
  public:
   /// `T_body_uwb`: pose of the UWB antenna; none for a robot without one, which ignores ranges.
   SlamLocalizer(std::unique_ptr<slam::Mapper> mapper, std::vector<UwbAnchor> anchors_in_map,
-                const std::optional<Pose3>& T_body_uwb);
+                std::optional<Pose3> T_body_uwb);
 
   void add(const RangeWithOdometry& range) override;
   PoseEstimate update(const LevelScan& scan, const Pose2& T_odom_body, StackOutput& output) override;

@@ -42,8 +42,8 @@ void validate_goals(const std::string& file, const std::vector<SavedGoal>& goals
   for (const SavedGoal& goal : goals) {
     const Eigen::Vector2d p_map = goal.T_map_body.position();
     const std::string prefix =
-        fmt::format("{}: goal {}: position {:.6g}, {:.6g} is", file, goal.number, p_map.x(), p_map.y());
-    const auto refuse = [&](const std::string& what) { throw InputError(prefix + " " + what); };
+        fmt::format("{}: goal {}: position {:.6g}, {:.6g} is ", file, goal.number, p_map.x(), p_map.y());
+    const auto refuse = [&](const std::string& what) { throw InputError(prefix + what); };
     if (map && !contains(map->geometry(), p_map))
       refuse(fmt::format("outside the map ({})", extent_of(map->geometry())));
     if (!map && p_map.norm() > kMaxGoalDistance_m)
