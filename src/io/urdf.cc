@@ -132,6 +132,8 @@ class ParserErrors : public console_bridge::OutputHandler {
  public:
   ParserErrors() { console_bridge::useOutputHandler(this); }
   ~ParserErrors() override { console_bridge::restorePreviousOutputHandler(); }
+  ParserErrors(const ParserErrors&) = delete;
+  ParserErrors& operator=(const ParserErrors&) = delete;
   void log(const std::string& text, console_bridge::LogLevel level, const char*, int) override {
     if (level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR && first_.empty()) first_ = text;
   }
@@ -184,7 +186,7 @@ void UrdfReader::check_inertias() const {
 }
 
 urdf::JointConstSharedPtr UrdfReader::joint(const std::string& name) const {
-  const urdf::JointConstSharedPtr found = model_->getJoint(name);
+  urdf::JointConstSharedPtr found = model_->getJoint(name);
   if (!found) throw InputError(fmt::format("{}: joint not found: {}", path_, name));
   return found;
 }
@@ -232,7 +234,7 @@ std::vector<Wheel> UrdfReader::read_wheels(const std::string& track) const {
     if (collision->geometry->type != urdf::Geometry::CYLINDER || !is_across) {
       fail(track, "collision shapes of a track must be its wheels: cylinders along y");
     }
-    const auto& cylinder = static_cast<const urdf::Cylinder&>(*collision->geometry);
+    const auto& cylinder = dynamic_cast<const urdf::Cylinder&>(*collision->geometry);
     wheels.push_back({.center_m = T_body_wheel.position, .radius_m = cylinder.radius, .width_m = cylinder.length});
   }
   return wheels;
@@ -338,9 +340,9 @@ AntennaGeometry UrdfReader::read_antenna() const {
   };
   check("tem_yaw_joint", Eigen::Vector3d::UnitZ());
   check("tem_pitch_joint", Eigen::Vector3d::UnitY());
-  const AntennaGeometry mount{.T_body_mount = joint_origin("tem_mount_joint"),
-                              .yaw = read_limit("tem_yaw_joint"),
-                              .pitch = read_limit("tem_pitch_joint")};
+  AntennaGeometry mount{.T_body_mount = joint_origin("tem_mount_joint"),
+                        .yaw = read_limit("tem_yaw_joint"),
+                        .pitch = read_limit("tem_pitch_joint")};
   if (mount.pitch.lower_rad >= mount.stowed_pitch_rad)
     fail("tem_pitch_joint", "lower limit must reach -90 degrees, the stowed pitch");
   return mount;

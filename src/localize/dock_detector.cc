@@ -223,15 +223,18 @@ bool DockDetector::accept(const std::vector<Beam>& beams, const Eigen::Vector2d&
     const double error = beam.range_m - should_m;
     if (std::isfinite(should_m)) {
       const bool is_met = beam.is_hit && std::abs(error) <= width_m;
-      num_inliers += is_met;
-      num_outliers += !is_met;
-      if (is_met) squares += error * error;
+      if (is_met) {
+        ++num_inliers;
+        squares += error * error;
+      } else {
+        ++num_outliers;
+      }
     } else if (beam.is_hit) {
       double distance_m = std::numeric_limits<double>::infinity();
       for (std::size_t i = 0; i + 1 < profile_m_.size(); ++i) {
         distance_m = std::min(distance_m, distance_to_segment(end, profile_m_[i], profile_m_[i + 1]));
       }
-      num_outliers += distance_m < settings_.end_clearance_m;
+      if (distance_m < settings_.end_clearance_m) ++num_outliers;
     }
   }
   if (num_inliers < settings_.min_beams) return false;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 
 #include "core/sensors/registry.h"
 #include "localize/inertial_motion.h"
@@ -13,7 +14,7 @@ bool is_plausible(const Imu& imu);
 /// Transforms readings of an IMU with any mounting pose to the body origin: rotation and lever-arm compensation.
 class ImuMount {
  public:
-  explicit ImuMount(const Pose3& T_body_imu) : T_body_imu_(T_body_imu) {}
+  explicit ImuMount(Pose3 T_body_imu) : T_body_imu_(std::move(T_body_imu)) {}
 
   /// Transforms a reading. Call in order of stamps, because the lever arm needs the angular acceleration.
   InertialSample to_body(const Imu& imu);

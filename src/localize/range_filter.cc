@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -51,12 +52,12 @@ double nlos_density(double x, double std, double mean_bias) {
 }  // namespace
 
 RangeFilter::RangeFilter(const RangeFilterSettings& settings, const std::vector<UwbAnchor>& anchors_in_map,
-                         const Pose3& T_body_uwb)
+                         Pose3 T_body_uwb)
     : settings_(checked(settings)),
       calibration_{
           .distance_m = settings.bias_distance_m, .bias_m = settings.bias_m, .range_std_m = settings.range_std_m},
       anchors_(by_number(anchors_in_map)),
-      T_body_uwb_(T_body_uwb) {}
+      T_body_uwb_(std::move(T_body_uwb)) {}
 
 void RangeFilter::set_initial_pose(const PoseEstimate& start, const Pose3& T_odom_body, double z_m) {
   has_started_ = true;

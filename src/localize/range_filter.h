@@ -47,8 +47,7 @@ class RangeFilter {
  public:
   /// Creates the filter. Throws InputError for settings out of range, bias tables of different lengths, or duplicate
   /// anchor numbers.
-  RangeFilter(const RangeFilterSettings& settings, const std::vector<UwbAnchor>& anchors_in_map,
-              const Pose3& T_body_uwb);
+  RangeFilter(const RangeFilterSettings& settings, const std::vector<UwbAnchor>& anchors_in_map, Pose3 T_body_uwb);
 
   /// Starts at a pose, at which the odometry pose is `T_odom_body`; the height above the origin of map is `z_m`.
   void set_initial_pose(const PoseEstimate& start, const Pose3& T_odom_body, double z_m = 0.0);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <complex>
 #include <limits>
+#include <utility>
 
 namespace patrol::localize {
 namespace {
@@ -20,8 +21,8 @@ Time beam_time(const LaserScan& scan, double beam) { return scan.stamp + from_se
 
 }  // namespace
 
-ScanLeveler::ScanLeveler(const Pose3& T_body_lidar, const ScanLevelerSettings& settings)
-    : T_body_lidar_(T_body_lidar), settings_(settings) {
+ScanLeveler::ScanLeveler(Pose3 T_body_lidar, const ScanLevelerSettings& settings)
+    : T_body_lidar_(std::move(T_body_lidar)), settings_(settings) {
   validate(settings, "scan_leveling");
 }
 
@@ -34,7 +35,7 @@ std::optional<LevelScan> ScanLeveler::level(const LaserScan& scan, const PoseLoo
                                             double body_height_m) const {
   const std::size_t num_beams = scan.ranges_m.size();
   if (num_beams == 0) return std::nullopt;
-  const double last_beam = static_cast<double>(num_beams - 1);
+  const auto last_beam = static_cast<double>(num_beams - 1);
   const std::optional<Pose3> T_odom_body = T_odom_body_at(beam_time(scan, last_beam));
   if (!T_odom_body) return std::nullopt;
   const Pose3 T_level_odom = Pose3{T_odom_body->position, quaternion_from_yaw(to_yaw(T_odom_body->rotation))}.inverse();

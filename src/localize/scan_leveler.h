@@ -20,7 +20,7 @@ using PoseLookup = std::function<std::optional<Pose3>(Time)>;
 /// not obstacles; the beam then clears the part within the band.
 class ScanLeveler {
  public:
-  ScanLeveler(const Pose3& T_body_lidar, const ScanLevelerSettings& settings);
+  ScanLeveler(Pose3 T_body_lidar, const ScanLevelerSettings& settings);
 
   /// Returns the compensated scan; nullopt if the poses do not cover the scan, or if it has no beams.
   std::optional<LevelScan> level(const LaserScan& scan, const BodyEstimator& odometry) const;

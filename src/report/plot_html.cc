@@ -78,7 +78,7 @@ std::string decimation_note(const std::vector<Curve>& curves) {
   for (const Curve& curve : curves) max_samples = std::max(max_samples, curve.points.size());
   if (max_samples <= 2 * kNumSegments) return "";
   return fmt::format(
-      "<span class=\"thinned\" title=\"Minimum and maximum of each of {} segments\">min/max of {} samples</span>",
+      R"(<span class="thinned" title="Minimum and maximum of each of {} segments">min/max of {} samples</span>)",
       kNumSegments, max_samples);
 }
 

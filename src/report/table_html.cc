@@ -80,22 +80,22 @@ std::string ticks_html(const Scale& scale, const std::string& unit) {
 std::string box_html(const Box& box, const Scale& scale) {
   const auto [min, max] = std::minmax_element(box.values.begin(), box.values.end());
   const auto span = [&](const char* name, double from, double to) {
-    return fmt::format("<i class=\"{}\" style=\"left:{:.3f}%;width:{:.3f}%\"></i>", name, scale.percent(from),
+    return fmt::format(R"(<i class="{}" style="left:{:.3f}%;width:{:.3f}%"></i>)", name, scale.percent(from),
                        scale.width(from, to));
   };
   std::string html = span("whisker", *min, *max) + span("box", box.lower_quartile, box.upper_quartile);
   for (const double value : box.values)
-    html += fmt::format("<i class=\"dot\" style=\"left:{:.3f}%\"></i>", scale.percent(value));
-  return html + fmt::format("<i class=\"median\" style=\"left:{:.3f}%\"></i>", scale.percent(box.median));
+    html += fmt::format(R"(<i class="dot" style="left:{:.3f}%"></i>)", scale.percent(value));
+  return html + fmt::format(R"(<i class="median" style="left:{:.3f}%"></i>)", scale.percent(box.median));
 }
 
 std::string span_html(const Span& span, const Scale& scale) {
   const double low = std::min(span.from, span.to), high = std::max(span.from, span.to);
   std::string html = fmt::format(
-      "<i class=\"zero\" style=\"left:{:.3f}%\"></i><i class=\"span {}\" style=\"left:{:.3f}%;width:{:.3f}%\"></i>",
+      R"(<i class="zero" style="left:{:.3f}%"></i><i class="span {}" style="left:{:.3f}%;width:{:.3f}%"></i>)",
       scale.percent(0.0), css_class(span.tone), scale.percent(low), scale.width(low, high));
   if (!span.interval) return html;
-  return html + fmt::format("<i class=\"whisker\" style=\"left:{:.3f}%;width:{:.3f}%\"></i>",
+  return html + fmt::format(R"(<i class="whisker" style="left:{:.3f}%;width:{:.3f}%"></i>)",
                             scale.percent(span.interval->first),
                             scale.width(span.interval->first, span.interval->second));
 }

@@ -28,7 +28,8 @@ double distance_to_outline(const Eigen::Vector2d& p, const std::vector<Eigen::Ve
   bool is_inside = true;
   double min_m = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < outline.size(); ++i) {
-    const Eigen::Vector2d from = outline[i], side = outline[(i + 1) % outline.size()] - from, to_p = p - from;
+    const Eigen::Vector2d& from = outline[i];
+    const Eigen::Vector2d side = outline[(i + 1) % outline.size()] - from, to_p = p - from;
     if (side.x() * to_p.y() - side.y() * to_p.x() < 0.0) is_inside = false;
     min_m = std::min(min_m, distance_to_segment(p, from, from + side));
   }

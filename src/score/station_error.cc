@@ -36,7 +36,7 @@ std::vector<Eigen::Vector2d> points_near(const OccupancyGrid& built, const Pose2
   std::vector<Eigen::Vector2d> near;
   for (const Eigen::Vector2d& p_map : occupied_points(built)) {
     const Eigen::Vector2d p_world = T_world_map * p_map;
-    if ((p_world - center).norm() <= radius_m) near.push_back(p_world - center);
+    if ((p_world - center).norm() <= radius_m) near.emplace_back(p_world - center);
   }
   return near;
 }

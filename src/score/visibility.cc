@@ -44,7 +44,7 @@ class CellWalk {
 
   Cell cell_;
   Cell step_;
-  double next_[2], stride_[2];
+  double next_[2] = {}, stride_[2] = {};
   double entered_at_m_ = 0.0;
 };
 

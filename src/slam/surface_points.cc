@@ -23,7 +23,7 @@ std::vector<Eigen::Vector2d> surface_points(const GridMap& map) {
   });
   std::vector<Eigen::Vector2d> points;
   points.reserve(squares.size());
-  for (const auto& [square, sum] : squares) points.push_back(sum.first / sum.second);
+  for (const auto& [square, sum] : squares) points.emplace_back(sum.first / sum.second);
   return points;
 }
 

@@ -71,11 +71,11 @@ Pose2 campus_start() {
 std::vector<Eigen::Vector2d> campus_landmarks() {
   std::vector<Eigen::Vector2d> landmarks_m = {{5.0, 8.0}};
   for (std::size_t i = 0; i < kCampusWaypoints_m.size(); ++i) {
-    const Eigen::Vector2d from = kCampusWaypoints_m[i],
-                          along = kCampusWaypoints_m[(i + 1) % kCampusWaypoints_m.size()] - from;
+    const Eigen::Vector2d& from = kCampusWaypoints_m[i];
+    const Eigen::Vector2d along = kCampusWaypoints_m[(i + 1) % kCampusWaypoints_m.size()] - from;
     const Eigen::Vector2d left = Eigen::Vector2d(-along.y(), along.x()).normalized();
-    landmarks_m.push_back(from + 0.5 * along + 7.0 * left);
-    landmarks_m.push_back(from + 0.25 * along - 9.0 * left);
+    landmarks_m.emplace_back(from + 0.5 * along + 7.0 * left);
+    landmarks_m.emplace_back(from + 0.25 * along - 9.0 * left);
   }
   return landmarks_m;
 }
@@ -170,8 +170,8 @@ LandmarkRun simulate(const LandmarkWorld& world, std::uint64_t seed) {
     }
     run.truth.push_back(T_map_body);
     const auto unit = odometry.normals(k);
-    run.odometry.push_back(mean + world.odometry_bias +
-                           world.motion.std.cwiseProduct(Eigen::Vector2d(unit[0], unit[1])));
+    run.odometry.emplace_back(mean + world.odometry_bias +
+                              world.motion.std.cwiseProduct(Eigen::Vector2d(unit[0], unit[1])));
     std::vector<RangeBearing>& observations = run.observations.emplace_back();
     for (std::size_t i = 0; i < world.landmarks_m.size(); ++i) {
       const PredictedObservation observation = predict_observation(T_map_body, world.landmarks_m[i]);

@@ -184,10 +184,10 @@ io::Table samples_table(const Study& study, const std::vector<std::uint64_t>& se
   for (std::size_t s = 0; s < samples.size(); ++s) {
     for (std::size_t v = 0; v < study.variants.size(); ++v) {
       std::vector<io::TableValue>& row = table.rows.emplace_back();
-      row.push_back(static_cast<std::int64_t>(seeds[s]));
+      row.emplace_back(static_cast<std::int64_t>(seeds[s]));
       row.emplace_back(study.variants[v].world);
       row.emplace_back(study.variants[v].method);
-      row.push_back(static_cast<std::int64_t>(study.variants[v].particles));
+      row.emplace_back(static_cast<std::int64_t>(study.variants[v].particles));
       for (std::size_t f = 0; f < study.metrics.size(); ++f) {
         if (study.metrics[f].is_processor_time) continue;
         row.push_back(std::isfinite(samples[s][v][f]) ? io::TableValue{samples[s][v][f]} : io::TableValue{});

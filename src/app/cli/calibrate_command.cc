@@ -136,7 +136,7 @@ std::string table_text(const slam::CalibrationResult& result) {
 
 ExitCode calibrate_command(const CalibrateOptions& options) {
   std::vector<std::string> overrides = options.overrides;
-  if (options.skip_invalid) overrides.push_back("log.skip_invalid=true");
+  if (options.skip_invalid) overrides.emplace_back("log.skip_invalid=true");
   const auto settings = io::parse_settings<LogCalibrationSettings>(overrides);
   std::optional<CalibratedLog> log;
   for (int pass = 1; pass <= settings.passes; ++pass) {

@@ -29,7 +29,7 @@ Scenario scenario_of(const RunOptions& options) {
 /// Observer that shows the progress of a run in one line.
 class ProgressLine final : public RunObserver {
  public:
-  explicit ProgressLine(const std::string& name) : name_(name) {}
+  explicit ProgressLine(std::string name) : name_(std::move(name)) {}
 
   bool keep_running(Time now, double distance_m) override {
     bar_.show(fmt::format("{}  {:6.1f} s simulated  {:6.1f} m traveled", name_, to_seconds(now), distance_m));

@@ -135,7 +135,7 @@ ExitCode slam_command(const SlamOptions& options) {
   std::vector<std::string> overrides = options.overrides;
   if (options.method) overrides.push_back("slam.method=" + *options.method);
   if (options.seed) overrides.push_back(fmt::format("seed={}", *options.seed));
-  if (options.skip_invalid) overrides.push_back("log.skip_invalid=true");
+  if (options.skip_invalid) overrides.emplace_back("log.skip_invalid=true");
   LogMappingSettings settings;
   if (options.calibration) settings.calibration = io::load_settings<slam::Calibration>(*options.calibration, {});
   io::SettingsReader::read_section("--set", io::parse_overrides(overrides), "", settings);

@@ -37,7 +37,7 @@ bool is_folder_of(const std::string& name, const std::vector<std::string>& patte
 }
 
 InputError cannot_be_written(const std::filesystem::path& root, int error) {
-  return InputError(fmt::format("{}: cannot write: {}", root.string(), std::strerror(error)));
+  return InputError{fmt::format("{}: cannot write: {}", root.string(), std::strerror(error))};
 }
 
 /// Lists the entries that may be removed. Throws InputError if there are any others.
@@ -144,8 +144,8 @@ OutputLock begin_output(const std::filesystem::path& root, const OutputKind& kin
   write_marker(root, kind, descriptor);
   const EarlierOutput earlier = earlier_output(root, kind);  // again, now under the lock
   for (const std::filesystem::path& file : earlier.files) std::filesystem::remove(file, error);
-  for (auto folder = earlier.folders.rbegin(); folder != earlier.folders.rend(); ++folder)
-    std::filesystem::remove(*folder, error);
+  std::for_each(earlier.folders.rbegin(), earlier.folders.rend(),
+                [&](const std::filesystem::path& folder) { std::filesystem::remove(folder, error); });
   return lock;
 }
 

@@ -27,6 +27,8 @@ class OutputLock {
   OutputLock() = default;
   explicit OutputLock(int descriptor) : descriptor_(descriptor) {}
   ~OutputLock();
+  OutputLock(const OutputLock&) = delete;
+  OutputLock& operator=(const OutputLock&) = delete;
   OutputLock(OutputLock&& other) noexcept : descriptor_(other.descriptor_) { other.descriptor_ = -1; }
   OutputLock& operator=(OutputLock&& other) noexcept;
 

@@ -25,7 +25,7 @@ inline double process_seconds() {
 inline double peak_memory_mb() {
   rusage usage{};
   ::getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;  // NOLINT(cppcoreguidelines-pro-type-union-access): by glibc
 }
 
 /// Current heap memory, in units of 10^6 bytes.

@@ -8,7 +8,7 @@
 namespace patrol::app {
 namespace {
 
-// Global, because a signal handler has no other access.
+// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): a signal handler has no other access
 volatile std::sig_atomic_t interrupts = 0;
 
 constexpr int kCounted[] = {SIGINT, SIGTERM, SIGHUP};
@@ -60,6 +60,7 @@ InterruptGuard::~InterruptGuard() {
   }
 }
 
+// NOLINTNEXTLINE(readability-convert-member-functions-to-static): interrupts are counted only while a guard exists
 bool InterruptGuard::is_interrupted() const { return interrupts > 0; }
 
 }  // namespace patrol::app

@@ -15,7 +15,7 @@ report::MapBlock map_block(const MappingContents& contents) {
   std::vector<Eigen::Vector2d> path;
   Eigen::AlignedBox2d shown;
   for (const StampedPose& entry : contents.estimate) {
-    path.push_back(entry.pose.position.head<2>());
+    path.emplace_back(entry.pose.position.head<2>());
     shown.extend(path.back());
   }
   const report::MapLayers layers{.built = contents.map, .T_world_map = {}, .truth = {}, .error_m = {}};

@@ -132,7 +132,7 @@ void Reporter::report_map(const MapUpdate& update) {
   last_sent_map_ = update.map;
 }
 
-void Reporter::report_status(const char* state, const std::string& message, std::string stations) {
+void Reporter::report_status(const char* state, const std::string& message, const std::string& stations) {
   const Json json = {
       {"state", state}, {"scenario", run_.scenario}, {"message", message}, {"stations", Json::parse(stations)}};
   report(newest_, "status", text_of(json));

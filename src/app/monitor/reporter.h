@@ -54,7 +54,7 @@ class Reporter final : public RunObserver {
  private:
   void report(Time stamp, const char* kind, std::string data);
   void report_map(const MapUpdate& update);
-  void report_status(const char* state, const std::string& message, std::string stations);
+  void report_status(const char* state, const std::string& message, const std::string& stations);
 
   std::filesystem::path root_;
   ReportedRun run_;

@@ -47,7 +47,7 @@ Eigen::Vector2d PlanMap::parse_point(const std::string& key, double x, double y)
     throw InputError(
         fmt::format("{}: {}, {}: must be integers, column and row of a cell from the upper left", key, x, y));
   }
-  const Eigen::Vector2d p_m = is_moving_ai() ? Eigen::Vector2d(x + 0.5, grid.height - 0.5 - y) : Eigen::Vector2d(x, y);
+  Eigen::Vector2d p_m = is_moving_ai() ? Eigen::Vector2d(x + 0.5, grid.height - 0.5 - y) : Eigen::Vector2d(x, y);
   const Eigen::Array2d along = p_m - grid.origin_m, size = grid.resolution_m * Eigen::Array2d(grid.width, grid.height);
   if (!((along >= 0.0).all() && (along < size).all()))
     throw InputError(fmt::format("{}: {}, {} is outside the map, which spans {}", key, x, y, extent()));

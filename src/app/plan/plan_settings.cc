@@ -78,7 +78,7 @@ PlanSetup load_plan_setup(const PlanOptions& options) {
   std::vector<std::string> overrides = options.overrides;
   if (options.planner) overrides.push_back("planner=" + *options.planner);
   if (options.seed) overrides.push_back(fmt::format("seed={}", *options.seed));
-  if (options.smooth) overrides.push_back("smooth=true");
+  if (options.smooth) overrides.emplace_back("smooth=true");
   if (options.speed_mps) overrides.push_back(fmt::format("speed_mps={}", *options.speed_mps));
   io::SettingsReader::read_section("--set", io::parse_overrides(overrides), "", settings);
   settings.costmap.allow_unknown = settings.allow_unknown;

@@ -21,7 +21,7 @@ bool is_any_angle(const std::string& planner) { return planner == "theta_star" |
 /// Cost grids of the maps that a file's problems name, for starts on land and in water.
 class Grids {
  public:
-  explicit Grids(const std::filesystem::path& file) : file_(file) {}
+  explicit Grids(std::filesystem::path file) : file_(std::move(file)) {}
 
   const Grid<plan::Cost>& of(const io::MovingAiProblem& problem) {
     auto map = maps_.find(problem.map);

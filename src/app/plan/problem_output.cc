@@ -26,7 +26,7 @@ Summary to_summary(const ProblemReport& report) {
     summary.processor_s += solved.processor_s;
     if (!solved.is_found()) continue;
     ++summary.num_found;
-    summary.num_agree += solved.agrees();
+    if (solved.agrees()) ++summary.num_agree;
     summary.worst_difference =
         std::max(summary.worst_difference, std::abs(solved.length - solved.problem.optimal_length));
     if (solved.ratio()) summary.ratios.push_back(*solved.ratio());

@@ -27,7 +27,7 @@ std::optional<Point> to_half_cell_point(const Eigen::Vector2d& p) {
   return point;
 }
 
-long floor_div(long a, long b) { return a / b - (a % b != 0 && (a < 0) != (b < 0)); }
+long floor_div(long a, long b) { return a / b - (a % b != 0 && (a < 0) != (b < 0) ? 1 : 0); }
 long ceil_div(long a, long b) { return -floor_div(-a, b); }
 
 class Leg {

@@ -37,7 +37,7 @@ int count_turns(const std::vector<Eigen::Vector2d>& points) {
   int num_turns = 0;
   for (std::size_t i = 2; i < points.size(); ++i) {
     const Eigen::Vector2d before = points[i - 1] - points[i - 2], after = points[i] - points[i - 1];  // exact
-    num_turns += before.x() * after.y() != before.y() * after.x() || before.dot(after) < 0.0;
+    if (before.x() * after.y() != before.y() * after.x() || before.dot(after) < 0.0) ++num_turns;
   }
   return num_turns;
 }

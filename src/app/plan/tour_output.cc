@@ -91,7 +91,7 @@ std::string to_text(const TourReport& report) {
             ? fmt::format("order        optimal, by exact search (lower bound {:.1f} s)\n", tour.order.lower_bound)
             : fmt::format("order        by local search: at most {:.2f} % above the optimum, lower bound {:.1f} s\n",
                           100.0 * tour.order.gap(), tour.order.lower_bound);
-  } else if (tour.unreachable.size() + 1 < report.stops.size() + 1 + report.p_end_m.has_value()) {
+  } else if (tour.unreachable.size() + 1 < report.stops.size() + 1 + (report.p_end_m.has_value() ? 1 : 0)) {
     text += "no order: some stations are not connected\n";
   }
   text += fmt::format("paths        {} planned, {:.2f} ms each\n", tour.num_routes,

@@ -37,7 +37,7 @@ RunDirectory begin_run_directory(const std::filesystem::path& root) {
 }
 
 RunDirectory open_run_directory(const std::filesystem::path& root) {
-  const RunDirectory directory{root};
+  RunDirectory directory{root};
   if (!std::filesystem::exists(directory.log())) {
     throw InputError(fmt::format("{}: not a run directory: log.mcap not found", root.string()));
   }

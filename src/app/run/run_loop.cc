@@ -207,7 +207,7 @@ std::vector<sim::StaticObstacleSettings> all_static_obstacles(const Scenario& sc
 }
 
 sim::Simulator make_simulator(const Scenario& scenario, const ScenarioFiles& files) {
-  return sim::Simulator(simulator_settings(scenario, files), files.robot, scenario.seed, render::make_depth_renderer);
+  return {simulator_settings(scenario, files), files.robot, scenario.seed, render::make_depth_renderer};
 }
 
 stack::Stack make_stack(const Scenario& scenario, const ScenarioFiles& files) {

@@ -31,7 +31,8 @@ RunStatus status_of(RunEnd end, const std::vector<CheckedExpectation>& checks) {
 
 RunVerdict verdict_of(const RunOutcome& outcome, const std::vector<KidnapSettings>& kidnaps, io::Metrics metrics,
                       std::vector<CheckedExpectation> checks) {
-  RunVerdict verdict{.end = status_of(outcome.end, checks),
+  const RunStatus end = status_of(outcome.end, checks);
+  RunVerdict verdict{.end = end,
                      .message = "",
                      .metrics = std::move(metrics),
                      .checks = std::move(checks),

@@ -56,7 +56,7 @@ std::string folders_in(const std::filesystem::path& parent) {
 /// Path <root>/<kind>/<name>/<name><extension>. Throws InputError if it does not exist.
 std::filesystem::path find_definition(const std::filesystem::path& root, const std::string& kind,
                                       const std::string& key, const std::string& name, const std::string& extension) {
-  const std::filesystem::path file = root / kind / name / (name + extension);
+  std::filesystem::path file = root / kind / name / (name + extension);
   if (!std::filesystem::exists(file)) {
     throw InputError(
         fmt::format("{} = {}: {} not found (known: {})", key, name, file.string(), folders_in(root / kind)));
@@ -66,7 +66,7 @@ std::filesystem::path find_definition(const std::filesystem::path& root, const s
 
 /// Path of a file below the world's folder that a key names. Throws InputError if it does not exist.
 std::filesystem::path find_named_file(const std::filesystem::path& world, const char* key, const std::string& name) {
-  const std::filesystem::path file = world / name;
+  std::filesystem::path file = world / name;
   if (!std::filesystem::exists(file)) throw InputError(fmt::format("{} = {}: {} not found", key, name, file.string()));
   if (std::filesystem::is_directory(file))
     throw InputError(fmt::format("{} = {}: {} is a folder", key, name, file.string()));
@@ -128,7 +128,7 @@ std::filesystem::path find_data_root(const std::filesystem::path& scenario) {
     if (contains_data(folder)) return folder;
   }
   if (contains_data(std::filesystem::current_path())) return std::filesystem::current_path();
-  if (const std::filesystem::path found = data_root_of_program(); !found.empty()) return found;
+  if (std::filesystem::path found = data_root_of_program(); !found.empty()) return found;
   if (contains_data(PATROL_SOURCE_DIR)) return PATROL_SOURCE_DIR;
   throw InputError(
       "folders worlds and models not found near the scenario or the program: set PATROL_DATA to the folder that "

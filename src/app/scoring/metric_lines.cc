@@ -14,7 +14,8 @@ std::string shown(const io::Metrics& value) {
 
 void add(const std::string& path, const io::Metrics& value, std::vector<MetricLine>& lines) {
   if (value.is_object()) {
-    for (const auto& [key, child] : value.items()) add(path.empty() ? key : path + "." + key, child, lines);
+    for (const auto& [key, child] : value.items())
+      add(path.empty() ? key : fmt::format("{}.{}", path, key), child, lines);
   } else if (value.is_array()) {
     for (std::size_t i = 0; i < value.size(); ++i) {
       if (value[i].is_number()) continue;
@@ -22,7 +23,7 @@ void add(const std::string& path, const io::Metrics& value, std::vector<MetricLi
       const bool is_named = entry.is_object() && entry.contains("name");
       const std::string name = is_named ? entry.at("name").get<std::string>() : fmt::format("{}", i);
       if (is_named) entry.erase("name");
-      add(path + "." + name, entry, lines);
+      add(fmt::format("{}.{}", path, name), entry, lines);
     }
   } else {
     lines.push_back({path, shown(value)});

@@ -32,6 +32,6 @@ io::Metrics to_json(const score::LiningScore& score);
 io::Metrics to_json(const score::WaterScore& score);
 
 /// metrics.json without `performance`.
-io::Metrics to_json(const score::RunScore& score);
+io::Metrics to_json(const score::RunScore& run);
 
 }  // namespace patrol::app

@@ -23,7 +23,7 @@ class LogMapper {
   double seconds() const { return seconds_; }  ///< processor time of SLAM
 
  private:
-  void handle(const LaserScan& scan);
+  void handle(const LaserScan& raw);
 
   stack::PosePipeline pipeline_;
   stack::StackOutput output_;

@@ -40,10 +40,10 @@ std::vector<PlannerWorld> planner_worlds() {
 }
 
 struct PlannerMethod {
-  const char* title;
-  const char* name;  ///< name of the planner
-  bool iterates;
-  SeriesColor color;
+  const char* title = "";
+  const char* name = "";  ///< name of the planner
+  bool iterates = false;
+  SeriesColor color = SeriesColor::kTruth;
   bool tightens = true;  ///< improved colony only: extension
 };
 

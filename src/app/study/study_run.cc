@@ -21,13 +21,13 @@ std::vector<Eigen::Vector2d> positions_of(const Trajectory& trajectory, const Po
 
 StudyRun run_for_study(const std::string& scenario, const std::vector<std::string>& overrides, std::uint64_t seed,
                        const std::filesystem::path& folder) {
-  const std::filesystem::path root = find_data_root("");
+  const std::filesystem::path data_root = find_data_root("");
   std::vector<std::string> all = overrides;
   all.push_back(fmt::format("seed={}", seed));
-  StudyRun run{.scenario = load_scenario(root / scenario, all), .files = {}, .log = {}, .record = {}, .truth = {}};
-  run.files = load_scenario_files(run.scenario, root);
+  StudyRun run{.scenario = load_scenario(data_root / scenario, all), .files = {}, .log = {}, .record = {}, .truth = {}};
+  run.files = load_scenario_files(run.scenario, data_root);
   NullObserver observer;
-  run_once(run.scenario, "study", root, folder, observer);
+  run_once(run.scenario, "study", data_root, folder, observer);
   run.log = RunDirectory{folder}.log();
   run.record = read_run_record(run.log);
   run.truth = true_map(run.record, run.scenario, run.files);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "inspect/lining/adjustment.h"
@@ -37,9 +38,9 @@ bool is_same_position(const ScanView& source, const ScanView& target_map, const 
 
 }  // namespace
 
-LiningInspection::LiningInspection(const LiningSettings& settings, const TunnelLining& design_in_map,
+LiningInspection::LiningInspection(const LiningSettings& settings, TunnelLining design_in_map,
                                    const Pose3& T_body_scanner)
-    : settings_(settings), design_(design_in_map), T_scanner_body_(to_pose2(T_body_scanner).inverse()) {
+    : settings_(settings), design_(std::move(design_in_map)), T_scanner_body_(to_pose2(T_body_scanner).inverse()) {
   validate(settings, "lining");
 }
 

@@ -20,7 +20,7 @@ namespace patrol::inspect {
 class LiningInspection {
  public:
   /// Creates the inspection. Throws InputError with the name of an invalid setting.
-  LiningInspection(const LiningSettings& settings, const TunnelLining& design_in_map, const Pose3& T_body_scanner);
+  LiningInspection(const LiningSettings& settings, TunnelLining design_in_map, const Pose3& T_body_scanner);
 
   /// Compares a scan with the reference scan of the station. `T_map_scanner_guess`: pose estimate of the robot.
   LiningResult inspect(Time stamp, const std::string& station, const PanoramicScan& scan,

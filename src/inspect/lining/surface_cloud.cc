@@ -43,7 +43,7 @@ struct Beam {
   std::uint64_t cell = 0;
   float range_m = 0.0F;
   std::uint32_t point = 0;
-  auto operator<=>(const Beam&) const = default;
+  auto operator<=>(const Beam&) const = default;  // NOLINT(modernize-use-nullptr): no pointer here
 };
 
 Beam beam_of(const ScannerPoint& point, std::uint32_t index, double spacing_m) {

@@ -32,6 +32,8 @@ class SurfaceCloud {
  public:
   explicit SurfaceCloud(std::vector<DownsampledPoint> points);
   ~SurfaceCloud();
+  SurfaceCloud(const SurfaceCloud&) = delete;
+  SurfaceCloud& operator=(const SurfaceCloud&) = delete;
   SurfaceCloud(SurfaceCloud&&) noexcept;
   SurfaceCloud& operator=(SurfaceCloud&&) noexcept;
 

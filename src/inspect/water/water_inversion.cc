@@ -208,7 +208,7 @@ WarningLevel level_of(const WaterSettings& settings, double nearest_m) {
 /// Computes the body fields of the result from the particles.
 void describe_body(const std::vector<Particle>& particles, const WaterSettings& settings,
                    const AntennaGeometry& antenna, WaterResult& result) {
-  const double count = static_cast<double>(particles.size());
+  const auto count = static_cast<double>(particles.size());
   const Pose3 T_map_level = to_pose3(result.T_map_body);
   std::vector<double> distances_m, radii_m, nearest_m;
   Eigen::Vector3d p_coil_mean = Eigen::Vector3d::Zero();
@@ -216,7 +216,7 @@ void describe_body(const std::vector<Particle>& particles, const WaterSettings& 
   result.rock_spm = 0.0;
   for (const Particle& particle : particles) {
     const Body body = body_of(particle.p);
-    positions.push_back(body.sphere.distance_m * body.direction);
+    positions.emplace_back(body.sphere.distance_m * body.direction);
     p_coil_mean += positions.back() / count;
     distances_m.push_back(body.sphere.distance_m);
     radii_m.push_back(body.sphere.radius_m);

@@ -48,7 +48,7 @@ class WaterSounding {
  private:
   enum class Phase { kTurning, kSounding, kStowing, kOver };
 
-  void on_antenna_state(const AntennaState& antenna);
+  void on_antenna_state(const AntennaState& state);
   bool is_settled(Time now) const;
   InstrumentCommand command_pose(const AntennaPose& pose, Phase phase, Time now);
   std::optional<InstrumentCommand> next_command(Time now);

@@ -64,17 +64,18 @@ std::string load_text(const std::filesystem::path& file, std::uintmax_t max_byte
   struct stat status {};
   if (::fstat(in.descriptor(), &status) != 0) throw refuse("cannot be read");
   if (!S_ISREG(status.st_mode)) throw refuse("cannot be read: is not a regular file");
-  const InputError too_large = refuse(fmt::format("is too large: at most {} bytes are read", max_bytes));
-  if (static_cast<std::uintmax_t>(status.st_size) > max_bytes) throw too_large;
+  const std::string too_large = fmt::format("is too large: at most {} bytes are read", max_bytes);
+  if (static_cast<std::uintmax_t>(status.st_size) > max_bytes) throw refuse(too_large);
 
   std::string text;
   std::vector<char> block(std::size_t{1} << 16);
   text.reserve(static_cast<std::size_t>(status.st_size));
-  for (ssize_t count; (count = ::read(in.descriptor(), block.data(), block.size())) != 0;) {
+  for (ssize_t count = 0; (count = ::read(in.descriptor(), block.data(), block.size())) != 0;) {
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) throw refuse(fmt::format("cannot be read: {}", std::strerror(errno)));
     text.append(block.data(), static_cast<std::size_t>(count));
-    if (text.size() > max_bytes) throw too_large;  // files in /proc have size 0, and files may grow while they are read
+    // files in /proc have size 0, and files may grow while they are read
+    if (text.size() > max_bytes) throw refuse(too_large);
   }
   return text;
 }

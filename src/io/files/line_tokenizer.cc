@@ -76,7 +76,7 @@ std::size_t LineTokenizer::num_words() const {
   bool was_blank = true;
   for (const char c : rest_) {
     const bool is_now_blank = is_blank(c);
-    count += was_blank && !is_now_blank;
+    if (was_blank && !is_now_blank) ++count;
     was_blank = is_now_blank;
   }
   return count;

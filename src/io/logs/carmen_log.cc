@@ -87,7 +87,7 @@ bool CarmenLog::read_line() {
   const std::optional<LineReader::Line> line = lines_.next();
   if (!line) return false;
   line_ = line->number;
-  ++summary_.num_read;
+  count_read();
   try {
     read_message(*line);
   } catch (const ParseError& error) {
@@ -101,9 +101,9 @@ void CarmenLog::finish() {
   if (lines_.read_error())
     reject_or_skip(options_, "unexpected end of file",
                    fmt::format("{}: {} after line {}", lines_.file().string(), *lines_.read_error(), line_));
-  if (summary_.num_scans == 0 && sorter_.is_empty()) {
+  if (summary().num_scans == 0 && sorter_.is_empty()) {
     throw InputError(fmt::format("{}: contains no scan ({}): must contain FLASER, ROBOTLASER1 or RAWLASER1",
-                                 lines_.file().string(), counted(summary_)));
+                                 lines_.file().string(), counted(summary())));
   }
 }
 
@@ -170,13 +170,13 @@ Pose2 CarmenLog::mount_of(const CarmenScan& scan) {
   if (!T_body_lidar_)
     T_body_lidar_ = is_uninformative || T_body_lidar.position().norm() > kMaxMount_m ? parameter_mount() : T_body_lidar;
   const bool is_elsewhere = !is_uninformative && !are_equal(T_body_lidar, *T_body_lidar_, kSameMount_m, kSameMountRad);
-  if (is_elsewhere) ++summary_.assumed["scans: lidar pose of the first scan"];
+  if (is_elsewhere) count_assumed("scans: lidar pose of the first scan");
   return *T_body_lidar_;
 }
 
 double CarmenLog::old_step_deg(std::size_t num_beams, std::size_t num_steps) const {
-  const auto known = std::find_if(kKnownSteps.begin(), kKnownSteps.end(),
-                                  [&](const KnownStep& step) { return step.num_beams == num_beams; });
+  const auto* const known = std::find_if(kKnownSteps.begin(), kKnownSteps.end(),
+                                         [&](const KnownStep& step) { return step.num_beams == num_beams; });
   const double usual_deg =
       known == kKnownSteps.end() ? 180.0 / static_cast<double>(std::max<std::size_t>(1, num_steps)) : known->step_deg;
   const double parameter_deg =

@@ -68,7 +68,7 @@ std::optional<LogDifference> first_difference(const std::filesystem::path& log, 
     if (!was && !is) break;
     if (!is) return LogDifference{was->channel.topic, was->log_time, "the other log ended before this message"};
     if (!was) return LogDifference{is->channel.topic, is->log_time, "the log ended before this message of the other"};
-    if (const auto difference = message_difference(*was, *is)) return difference;
+    if (auto difference = message_difference(*was, *is)) return difference;
   }
   if (before.is_complete() != after.is_complete()) {
     return LogDifference{

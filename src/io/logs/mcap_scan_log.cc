@@ -110,7 +110,7 @@ std::optional<McapMessage> McapScanLog::next_message() {
 bool McapScanLog::read_message() {
   const std::optional<McapMessage> message = next_message();
   if (!message) return false;
-  ++summary_.num_read;
+  count_read();
   try {
     handle(*message);
   } catch (const DecodeError& error) {
@@ -166,7 +166,7 @@ void McapScanLog::add_imu(const McapMessage& message) {
   const Imu imu = decode<Imu>(message.cdr);
   if (!(imu.angular_velocity_radps.norm() <= kMaxRateRadps)) throw DecodeError("IMU rates not finite or implausible");
   const std::optional<Pose3> T_body_imu = sensor_pose_in_body(frame_id_of(message.cdr), imu.stamp);
-  if (!T_body_imu && options_.imu == "on") ++summary_.assumed["IMU messages: IMU mounted level (no transform)"];
+  if (!T_body_imu && options_.imu == "on") count_assumed("IMU messages: IMU mounted level (no transform)");
   gyro_.add(imu.stamp,
             T_body_imu ? (T_body_imu->rotation * imu.angular_velocity_radps).z() : imu.angular_velocity_radps.z());
 }
@@ -219,7 +219,7 @@ std::optional<Pose3> McapScanLog::sensor_pose_in_body(const std::string& frame, 
 Pose3 McapScanLog::mount_of(WaitingScan& waiting) {
   const std::optional<Pose3> T_body_lidar = sensor_pose_in_body(waiting.frame, waiting.scan.stamp);
   if (!T_body_lidar) {
-    ++summary_.assumed["scans: lidar at the body origin (no transform)"];
+    count_assumed("scans: lidar at the body origin (no transform)");
     return {};
   }
   const bool is_upside_down = (T_body_lidar->rotation * Eigen::Vector3d::UnitZ()).z() < 0.0;
@@ -254,12 +254,12 @@ void McapScanLog::finish() {
     count_skipped("scans without odometry", fmt::format("{}: no odometry at the stamp of the scan, {:.9f} s",
                                                         file_.string(), to_seconds(waiting_.front().scan.stamp)));
   }
-  if (summary_.num_scans > 0 || !sorter_.is_empty()) return;
+  if (summary().num_scans > 0 || !sorter_.is_empty()) return;
   const char* const what =
       without_odometry > 0
           ? "no odometry overlaps the scans: must contain nav_msgs/msg/Odometry or tf odom -> base_link"
           : "contains no scan: must contain sensor_msgs/msg/LaserScan";
-  throw InputError(fmt::format("{}: {} ({})", file_.string(), what, counted(summary_)));
+  throw InputError(fmt::format("{}: {} ({})", file_.string(), what, counted(summary())));
 }
 
 }  // namespace patrol::io

@@ -72,7 +72,7 @@ class RunLogWriter {
     if constexpr (std::is_same_v<Message, PoseEstimate>) write_frames(log_time, message);
   }
   void write(Time log_time, const SensorMessage& message) {
-    std::visit([&](const auto& content) { write(log_time, content); }, message);
+    std::visit([this, log_time](const auto& content) { write(log_time, content); }, message);
   }
 
   void close() { writer_.close(); }

@@ -49,7 +49,9 @@ FirstPass run_first_pass(const std::filesystem::path& file, ScanLogOptions optio
   options.no_return_m = kMaxNoReturn_m;
   const std::unique_ptr<ScanLog> log = make_log(file, options, {});
   NoReturnDetector finder;
-  const auto is_conclusive = [&] { return finder.is_conclusive() && (!log->gyro() || log->gyro()->bias_radps()); };
+  const auto is_conclusive = [&] {
+    return finder.is_conclusive() && (log->gyro() == nullptr || log->gyro()->bias_radps());
+  };
   try {
     for (int scans = 0; scans < kMaxFirstPassScans && !is_conclusive(); ++scans) {
       const std::optional<RecordedScan> recorded = log->next();
@@ -72,9 +74,9 @@ ScanLogOptions apply_first_pass(const FirstPass& first_pass, ScanLogOptions opti
   if (options.imu != "auto") return options;
   options.imu = first_pass.gyro == GyroConsistency::kContradicts ? "on" : "off";
   if (first_pass.gyro == GyroConsistency::kAgrees)
-    found.push_back("odometry yaw agrees with the gyro: odometry kept unchanged (log.imu)");
+    found.emplace_back("odometry yaw agrees with the gyro: odometry kept unchanged (log.imu)");
   if (first_pass.gyro == GyroConsistency::kUnrelated)
-    found.push_back("odometry yaw and gyro are uncorrelated: gyro not used (log.imu)");
+    found.emplace_back("odometry yaw and gyro are uncorrelated: gyro not used (log.imu)");
   return options;
 }
 

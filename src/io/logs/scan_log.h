@@ -26,7 +26,7 @@ struct ScanLogOptions {
   /// MCAP only; on: yaw increments from the gyro (io/logs/gyro_odometry.h), auto: only if the first scans show that
   /// gyro and odometry disagree, off: never.
   std::string imu = "auto";
-  std::string imu_topic = "";  ///< MCAP only; empty: topic of the first IMU message
+  std::string imu_topic;  ///< MCAP only; empty: topic of the first IMU message
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -88,7 +88,9 @@ class ScanLog {
   virtual const GyroOdometry* gyro() const { return nullptr; }
 
  protected:
+  void count_read() { ++summary_.num_read; }
   void count_ignored(const std::string& name);
+  void count_assumed(const std::string& assumption) { ++summary_.assumed[assumption]; }
   /// Throws InputError(complaint), or counts it if `skip_invalid` is set.
   void reject_or_skip(const ScanLogOptions& options, const std::string& reason, const std::string& warning);
   void count_skipped(const std::string& reason, const std::string& warning);
@@ -97,9 +99,8 @@ class ScanLog {
   void sort_in(ScanSorter& sorter, RecordedScan scan, const ScanLogOptions& options, const std::string& location);
   void count_returned(const RecordedScan& scan);
 
-  ScanLogSummary summary_;
-
  private:
+  ScanLogSummary summary_;
   std::optional<Time> last_stamp_;
 };
 

@@ -212,7 +212,7 @@ std::optional<McapMessage> McapReader::read_message(mcap::RecordReader content) 
   return McapMessage{.channel = channel->second, .log_time = log_time, .cdr = content.rest()};
 }
 
-std::string McapReader::unpack_chunk(mcap::RecordReader content) const {
+std::string McapReader::unpack_chunk(mcap::RecordReader content) {
   content.take(8 + 8);  // the times of the first and last message
   const auto size = content.number<std::uint64_t>();
   const auto crc = content.number<std::uint32_t>();

@@ -69,7 +69,7 @@ class McapReader {
   void add_channel(mcap::RecordReader content);
   bool read_record();
   std::optional<McapMessage> read_message(mcap::RecordReader content);
-  std::string unpack_chunk(mcap::RecordReader content) const;
+  static std::string unpack_chunk(mcap::RecordReader content);
   bool is_wanted(const std::string& topic) const;
   [[noreturn]] void fail(const std::string& what) const;
 

@@ -161,7 +161,8 @@ inline void read_head(Reader& reader, std::string& frame) {
 template <typename Read>
 void read_cdr(std::string_view bytes, const char* type, const Read& read) {
   try {
-    FastBuffer buffer(const_cast<char*>(bytes.data()), bytes.size());  // only read from
+    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-const-cast): only read from
+    FastBuffer buffer(const_cast<char*>(bytes.data()), bytes.size());
     Cdr cdr(buffer, Cdr::LITTLE_ENDIANNESS, Cdr::DDS_CDR);
     cdr.read_encapsulation();
     Reader reader{cdr};
@@ -206,12 +207,14 @@ Message decode(std::string_view bytes) {
 }  // namespace patrol::io
 
 /// Instantiates `encode` and `decode` of a message with a `describe` function above.
+// NOLINTNEXTLINE(cppcoreguidelines-macro-usage): a template cannot instantiate others
 #define PATROL_ROS_MESSAGE(Message)                             \
   template std::string encode(const Message&, const RosNames&); \
   template Message decode<Message>(std::string_view)
 
 /// Instantiates `encode` and `decode` of a sensor message. `fields`: fields of its ROS type; "" for a type of
 /// ros_definitions.cc.
+// NOLINTNEXTLINE(cppcoreguidelines-macro-usage): a template cannot instantiate others
 #define PATROL_ROS_SENSOR(Message, fields)         \
   template <>                                      \
   std::string_view ros_message_fields<Message>() { \

@@ -126,7 +126,8 @@ class FieldReader {
 std::vector<RosField> ros_fields(const std::string& type, const std::string& definition, std::string_view bytes) {
   const Types types = parse_definition(type, definition);
   try {
-    FastBuffer buffer(const_cast<char*>(bytes.data()), bytes.size());  // only read from
+    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-const-cast): only read from
+    FastBuffer buffer(const_cast<char*>(bytes.data()), bytes.size());
     Cdr cdr(buffer, Cdr::LITTLE_ENDIANNESS, Cdr::DDS_CDR);
     cdr.read_encapsulation();
     FieldReader reader(types, cdr);

@@ -14,6 +14,6 @@ struct RosField {
 
 /// Returns all primitive values of a CDR message in order, by its definition as in MCAP. `type`: "pkg/msg/Type".
 /// Throws InputError when the bytes do not match the definition.
-std::vector<RosField> ros_fields(const std::string& type, const std::string& definition, std::string_view cdr);
+std::vector<RosField> ros_fields(const std::string& type, const std::string& definition, std::string_view bytes);
 
 }  // namespace patrol::io

@@ -88,15 +88,15 @@ class DecodeError : public InputError {
 
 /// Throws DecodeError.
 template <typename Message>
-Message decode(std::string_view cdr);
+Message decode(std::string_view bytes);
 
 /// Returns header.frame_id of a message that begins with a header. Throws DecodeError.
-std::string frame_id_of(std::string_view cdr);
+std::string frame_id_of(std::string_view bytes);
 
 /// Frames of a nav_msgs/Odometry: header.frame_id and child_frame_id.
 struct OdometryFrames {
   std::string frame, child;
 };
-OdometryFrames odometry_frames_of(std::string_view cdr);
+OdometryFrames odometry_frames_of(std::string_view bytes);
 
 }  // namespace patrol::io

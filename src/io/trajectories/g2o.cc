@@ -24,8 +24,9 @@ Id read_id(LineTokenizer& fields) { return fields.integer("id", 0, std::numeric_
 Eigen::Matrix3d read_information(LineTokenizer& fields) {
   Eigen::Matrix3d information;
   for (int row = 0; row < 3; ++row) {
-    for (int col = row; col < 3; ++col) information(row, col) = information(col, row) = fields.number("information");
+    for (int col = row; col < 3; ++col) information(row, col) = fields.number("information");
   }
+  information.triangularView<Eigen::StrictlyLower>() = information.transpose();
   if (!is_positive_definite(information)) throw ParseError("information is not positive definite");
   return information;
 }

@@ -35,8 +35,12 @@ std::string renamed_setting(std::string_view path) {
   for (std::size_t begin = 0; begin < path.size();) {
     const std::size_t end = std::min(path.find('.', begin), path.size());
     // A row with the former names of the parents comes first: its key has the name of another key of today.
-    if (const std::string_view now = row_of(path.substr(0, end)); !now.empty()) renamed = now;
-    else renamed = rename_last((renamed.empty() ? "" : renamed + ".") + std::string(path.substr(begin, end - begin)));
+    if (const std::string_view now = row_of(path.substr(0, end)); !now.empty()) {
+      renamed = now;
+    } else {
+      if (!renamed.empty()) renamed += '.';
+      renamed = rename_last(renamed.append(path.substr(begin, end - begin)));
+    }
     begin = std::min(end + 1, path.size());
   }
   return renamed;

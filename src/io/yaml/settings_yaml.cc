@@ -43,7 +43,7 @@ std::vector<std::string> split(const std::string& text, char separator) {
 }
 
 /// Applies one "path=value" to the document and creates missing sections.
-void apply_override(YAML::Node root, const std::string& override) {
+void apply_override(const YAML::Node& root, const std::string& override) {
   const std::size_t equals = override.find('=');
   if (equals == std::string::npos || equals == 0) {
     throw InputError("--set " + override + ": must be path=value, e.g. sensors.lidar.range_noise_std_m=0.05");
@@ -93,8 +93,8 @@ std::string closest_match(const std::string& word, const std::vector<std::string
   return nearest;
 }
 
-SettingsReader::SettingsReader(std::string file, YAML::Node node, std::string path)
-    : file_(std::move(file)), node_(std::move(node)), path_(std::move(path)) {
+SettingsReader::SettingsReader(std::string file, const YAML::Node& node, std::string path)
+    : file_(std::move(file)), node_(node), path_(std::move(path)) {
   if (node_ && !node_.IsNull() && !node_.IsMap()) fail(node_, path_, "must be a section of keys and values");
 }
 
@@ -206,18 +206,18 @@ void SettingsReader::read(const YAML::Node& node, const std::string& key, std::s
 void SettingsReader::read_expectations(const YAML::Node& node, const std::string& key, Expectations& value) const {
   if (!node.IsMap()) fail(node, key, "must be a section of metrics");
   for (const auto& entry : node) {
-    const std::string metric = entry.first.Scalar();
+    const std::string metric = entry.first.Scalar(), path = fmt::format("{}.{}", key, metric);
     Expectation expectation;
     if (bool wanted = false; entry.second.IsScalar() && YAML::convert<bool>::decode(entry.second, wanted)) {
       expectation = {.min = wanted ? 1.0 : 0.0, .max = wanted ? 1.0 : 0.0, .is_boolean = true};
     } else if (entry.second.IsMap()) {
-      SettingsReader band(file_, entry.second, key + "." + metric);
+      SettingsReader band(file_, entry.second, path);
       if (entry.second["min"].IsDefined()) band("min", expectation.min);
       if (entry.second["max"].IsDefined()) band("max", expectation.max);
       band.known_ = {"min", "max"};
       band.finish();
     } else {
-      read_scalar(entry.second, key + "." + metric, expectation.min);
+      read_scalar(entry.second, path, expectation.min);
       expectation.max = expectation.min;
     }
     value[metric] = expectation;

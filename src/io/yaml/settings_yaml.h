@@ -18,7 +18,7 @@ namespace patrol::io {
 /// Reads a YAML document into a struct, field by field, and rejects remaining keys.
 class SettingsReader {
  public:
-  SettingsReader(std::string file, YAML::Node node, std::string path);
+  SettingsReader(std::string file, const YAML::Node& node, std::string path);
 
   void operator()(const char* name, bool& value, const Limits& limits = {});
   void operator()(const char* name, int& value, const Limits& limits = {});

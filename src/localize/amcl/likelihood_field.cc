@@ -79,7 +79,7 @@ double LikelihoodField::mean_log(const BeamEnds& ends, const Pose2& T_map_body) 
   const auto s = static_cast<float>(inverse_resolution_ * std::sin(T_map_body.yaw));
   const auto x = static_cast<float>(inverse_resolution_ * (T_map_body.x - corner_m_.x()));
   const auto y = static_cast<float>(inverse_resolution_ * (T_map_body.y - corner_m_.y()));
-  std::array<int, kBlock> cols, rows;
+  std::array<int, kBlock> cols, rows;  // NOLINT(cppcoreguidelines-pro-type-member-init): written before they are read
   int sum = 0;
   for (std::size_t begin = 0; begin < ends.size(); begin += kBlock) {
     const std::size_t count = std::min(kBlock, ends.size() - begin);

@@ -1,11 +1,12 @@
 #include "localize/amcl/range_buffer.h"
 
 #include <cmath>
+#include <utility>
 
 namespace patrol::localize {
 
-RangeBuffer::RangeBuffer(const std::vector<UwbAnchor>& anchors_in_map, const Pose3& T_body_uwb)
-    : T_body_uwb_(T_body_uwb) {
+RangeBuffer::RangeBuffer(const std::vector<UwbAnchor>& anchors_in_map, Pose3 T_body_uwb)
+    : T_body_uwb_(std::move(T_body_uwb)) {
   for (const UwbAnchor& anchor : anchors_in_map) p_map_anchor_[anchor.number] = anchor.p_m;
 }
 

@@ -16,7 +16,7 @@ namespace patrol::localize {
 class RangeBuffer {
  public:
   /// Anchors in map, with heights above the body origin.
-  RangeBuffer(const std::vector<UwbAnchor>& anchors_in_map, const Pose3& T_body_uwb);
+  RangeBuffer(const std::vector<UwbAnchor>& anchors_in_map, Pose3 T_body_uwb);
 
   /// Adds a range. Ranges of unknown anchors and ranges that are not finite and positive are ignored.
   void add(const UwbRange& range, const Pose3& T_odom_body);

@@ -145,7 +145,7 @@ class Calibrator {
     distances_.clear();
     weights_.clear();
     for (const MotionResidual& residual : residuals_) {
-      information_.push_back(residual.covariance(translation_noise_scale_, rotation_noise_scale_).inverse());
+      information_.emplace_back(residual.covariance(translation_noise_scale_, rotation_noise_scale_).inverse());
       distances_.push_back(std::sqrt(residual.error.dot(information_.back() * residual.error)));
       weights_.push_back(is_early ? cauchy(distances_.back()) : tukey(distances_.back(), settings_.outlier_sigma));
     }

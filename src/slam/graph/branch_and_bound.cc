@@ -24,12 +24,15 @@ class Search {
  public:
   Search(const LikelihoodPyramid& map, const std::vector<Eigen::Vector2d>& points, const SearchWindow& window,
          int best_sum, const std::optional<SearchExclusion>& exclusion)
-      : map_(map), exclusion_(exclusion), best_sum_(best_sum), cell_m_(map.resolution_m()) {
+      : map_(map),
+        exclusion_(exclusion),
+        best_sum_(best_sum),
+        cell_m_(map.resolution_m()),
+        num_steps_(2 * static_cast<int>(std::ceil(window.half_width_m / cell_m_)) + 1) {
     double far_m = cell_m_;
     for (const Eigen::Vector2d& point : points) far_m = std::max(far_m, point.norm());
     const double step_rad = cell_m_ / far_m;
     const int num_rotations = static_cast<int>(std::ceil(window.half_angle_rad / step_rad));
-    num_steps_ = 2 * static_cast<int>(std::ceil(window.half_width_m / cell_m_)) + 1;
     corner_m_ = window.T_map_center.position() - Eigen::Vector2d::Constant(0.5 * (num_steps_ - 1) * cell_m_);
     for (int rotation = -num_rotations; rotation <= num_rotations; ++rotation) {
       RotatedPoints rotated{.yaw_rad = wrap_angle(window.T_map_center.yaw + rotation * step_rad), .cells = {}};
@@ -107,7 +110,7 @@ class Search {
   std::optional<SearchExclusion> exclusion_;
   int best_sum_;
   double cell_m_;
-  int num_steps_ = 1;
+  int num_steps_;
   Eigen::Vector2d corner_m_;
   std::vector<RotatedPoints> rotated_;
   std::optional<Candidate> best_;

@@ -29,7 +29,7 @@ std::vector<std::vector<int>> GraphSlam::keyframes_around_submaps() const {
     for (std::size_t s = 0; s < submaps_.size(); ++s) {
       if (k >= submaps_[s].first && k <= submaps_[s].last) continue;
       const double distance_m = (centers[s] - graph_.T_map_node[static_cast<std::size_t>(k)].position()).norm();
-      if (distance_m < settings_.max_loop_distance_m) near.push_back({distance_m, static_cast<int>(s)});
+      if (distance_m < settings_.max_loop_distance_m) near.emplace_back(distance_m, static_cast<int>(s));
     }
     for (const int s : nearest(near, settings_.max_refinement_submaps))
       keyframes_by_submap[static_cast<std::size_t>(s)].push_back(k);
@@ -62,7 +62,7 @@ std::optional<MatchResult> GraphSlam::refined(const RenderedSubmap& submap, cons
                                               const Pose2& T_submap_body) const {
   const ScanMatcherSettings& matching = settings_.scan_odometry.matching;
   const std::vector<MatchPoint> points = downsample_scan(keyframe.scan, matching.point_spacing_m, matching.max_points);
-  const std::optional<MatchResult> match =
+  std::optional<MatchResult> match =
       match_scan(submap.map(), points, T_submap_body, match_prior(T_submap_body), matching);
   if (!match || match->inlier_ratio < settings_.min_refinement_inlier_ratio) return std::nullopt;
   const Pose2 moved = T_submap_body.inverse() * match->T_map_body;

@@ -87,7 +87,7 @@ void GraphSlam::add_keyframe(const LevelScan& scan, const TrackedScan& tracked) 
   }
   keyframes_.push_back({scan, tracked.T_local_body});
   if (tracked.is_submap_start) submaps_.push_back({.first = node, .last = node});
-  for (std::size_t s = static_cast<std::size_t>(tracked.submap); s < submaps_.size(); ++s) submaps_[s].last = node;
+  for (auto s = static_cast<std::size_t>(tracked.submap); s < submaps_.size(); ++s) submaps_[s].last = node;
   while (finished_submaps_ < tracked.submap) close_loops(finished_submaps_++);
 }
 
@@ -208,7 +208,7 @@ std::vector<int> GraphSlam::submaps_near(int source, const std::vector<PoseGauss
     const double search_radius_m =
         settings_.max_loop_distance_m + 2.0 * std::sqrt(std::max(covariance(0, 0), covariance(1, 1)));
     const double distance_m = (submap_center(target) - center).norm();
-    if (distance_m < search_radius_m) near.push_back({distance_m, target});
+    if (distance_m < search_radius_m) near.emplace_back(distance_m, target);
   }
   return nearest(near, settings_.max_loop_candidates);
 }
@@ -251,19 +251,19 @@ std::vector<std::size_t> GraphSlam::node_scan_indices() const {
 // Poses between two keyframes are interpolated between the corrections of both, by the distance to each.
 std::vector<Pose2> GraphSlam::path() const {
   std::vector<Pose2> T_map_body;
-  for (std::size_t i = 0; i < path_.size(); ++i) {
-    const auto before = static_cast<std::size_t>(path_[i].keyframe);
+  for (const TrackedPose& tracked : path_) {
+    const auto before = static_cast<std::size_t>(tracked.keyframe);
     const Pose2 from_before =
-        graph_.T_map_node[before] * (keyframes_[before].T_local_body.inverse() * path_[i].T_local_body);
+        graph_.T_map_node[before] * (keyframes_[before].T_local_body.inverse() * tracked.T_local_body);
     const std::size_t after = before + 1;
     if (after >= keyframes_.size()) {
       T_map_body.push_back(from_before);
       continue;
     }
     const Pose2 from_after =
-        graph_.T_map_node[after] * (keyframes_[after].T_local_body.inverse() * path_[i].T_local_body);
+        graph_.T_map_node[after] * (keyframes_[after].T_local_body.inverse() * tracked.T_local_body);
     const auto distance = [&](std::size_t k) {
-      const Pose2 offset = keyframes_[k].T_local_body.inverse() * path_[i].T_local_body;
+      const Pose2 offset = keyframes_[k].T_local_body.inverse() * tracked.T_local_body;
       return offset.position().norm() + std::abs(offset.yaw);
     };
     const double to_before = distance(before), to_after = distance(after),

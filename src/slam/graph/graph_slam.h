@@ -64,7 +64,7 @@ class GraphSlam {
  private:
   /// Tracked pose of a scan and its preceding keyframe.
   struct TrackedPose {
-    int keyframe;
+    int keyframe = 0;
     Pose2 T_local_body;
   };
 
@@ -79,7 +79,7 @@ class GraphSlam {
   void update_estimate(const TrackedScan& tracked, Time stamp);
   void gate_ranges(const TrackedScan& tracked, const Pose2& T_odom_body);
   void smooth_with_ranges(int submap);
-  void close_loops(int submap);
+  void close_loops(int source);
   std::vector<PoseGaussian> relative_pose_distributions(int submap) const;
   Eigen::Matrix3d odometry_drift_covariance(int submap) const;
   std::shared_ptr<const RenderedSubmap> rendered(int submap);

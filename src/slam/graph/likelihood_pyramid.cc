@@ -88,7 +88,7 @@ LikelihoodPyramid::Level LikelihoodPyramid::halved(const Level& fine, bool is_fr
   const int step = is_from_finest ? 1 : 2;
   for (int row = coarse.first_row; row < coarse.first_row + coarse.height; ++row) {
     for (int col = coarse.first_col; col < coarse.first_col + coarse.width; ++col) {
-      int highest = std::numeric_limits<std::int8_t>::min();
+      int highest = std::numeric_limits<int>::min();
       for (int j = 0; j < 4; j += step) {
         for (int i = 0; i < 4; i += step) highest = std::max(highest, fine.find(2 * col + i, 2 * row + j));
       }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include <Eigen/Cholesky>
 #include <ceres/ceres.h>
@@ -45,8 +46,8 @@ class EdgeCost : public ceres::SizedCostFunction<3, 3, 3> {
 /// Residual of a range: (predicted range - range) / standard deviation.
 class RangeCost : public ceres::SizedCostFunction<1, 3> {
  public:
-  RangeCost(const RangeFactor& range, double std_m, const UwbCalibration& calibration)
-      : range_(range), std_m_(std_m), calibration_(calibration) {}
+  RangeCost(RangeFactor range, double std_m, const UwbCalibration& calibration)
+      : range_(std::move(range)), std_m_(std_m), calibration_(calibration) {}
 
   bool Evaluate(const double* const* poses, double* residuals, double** jacobians) const override {
     const Pose2 T_map_constrained = range_.T_map_constrained({poses[0][0], poses[0][1], poses[0][2]});
@@ -106,7 +107,7 @@ PoseGraphSolution solve(PoseGraph& graph, const PoseGraphSolverSettings& setting
   options.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
-  for (std::size_t i = static_cast<std::size_t>(num_fixed_nodes); i < poses.size(); ++i)
+  for (auto i = static_cast<std::size_t>(num_fixed_nodes); i < poses.size(); ++i)
     graph.T_map_node[i] = {poses[i][0], poses[i][1], wrap_angle(poses[i][2])};
   return {.initial_cost = summary.initial_cost,
           .final_cost = summary.final_cost,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -32,7 +33,7 @@ struct RangeFactor {
 class RangeFactors {
  public:
   RangeFactors() = default;
-  explicit RangeFactors(const RangeUpdateSettings& settings) : settings_(settings) {}
+  explicit RangeFactors(RangeUpdateSettings settings) : settings_(std::move(settings)) {}
 
   /// Adds a range. `T_node_then` is the body pose at the measurement relative to the newest or second-newest node. The
   /// range is reduced to the node by the difference of the predicted ranges at the current node pose. The error of the

@@ -69,7 +69,7 @@ Proposal GridSlam::move_by_scan_match(const std::vector<MatchPoint>& points, con
   const std::vector<Proposal> proposals = propose(points, T_odom_body, stamp);
   sample_particles(proposals);
   update.effective_sample_size = choose_best();
-  const Proposal best = proposals[best_];
+  const Proposal& best = proposals[best_];
   update.resampled = resample_if_needed(update.effective_sample_size);
   return best;
 }
@@ -89,7 +89,7 @@ Proposal GridSlam::move_by_odometry(const std::vector<MatchPoint>& points, const
   for (std::size_t i = 0; i < particles_.size(); ++i) particles_[i].log_weight = log_weights[i];
 
   update.effective_sample_size = choose_best();
-  const Proposal best{.posterior = {.mean = particles_[best_].T_map_body, .covariance = predictions[best_].covariance}};
+  Proposal best{.posterior = {.mean = particles_[best_].T_map_body, .covariance = predictions[best_].covariance}};
   update.resampled = resample_if_depleted(step, components_, particles().weights, random, log_weights);
   for (std::size_t i = 0; i < particles_.size(); ++i) particles_[i].log_weight = log_weights[i];
   if (update.resampled) {

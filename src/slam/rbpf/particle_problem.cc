@@ -20,7 +20,7 @@ RbpfParticleProblem::RbpfParticleProblem(std::vector<Particle>& particles, std::
   for (const PoseGaussian& prediction : predictions_) roots_.push_back(cholesky_factor(prediction.covariance));
 }
 
-Position RbpfParticleProblem::sample(std::size_t, RandomSequence& random) const {
+Position RbpfParticleProblem::sample(std::size_t, RandomSequence& random) {
   const double x = random.normal(), y = random.normal(), yaw = random.normal();
   return Eigen::Vector3d(x, y, yaw);
 }

@@ -24,7 +24,7 @@ class RbpfParticleProblem {
                       const ScanMatcherSettings& settings);
 
   std::size_t size() const { return particles_.size(); }
-  Position sample(std::size_t particle, RandomSequence& random) const;
+  static Position sample(std::size_t particle, RandomSequence& random);
   double log_fitness(std::size_t particle, const Position& position) const;
   double commit(std::size_t particle, const Position& position);
   /// Replaces the particles by their offspring. A particle that is attracted toward another one takes the other's map

@@ -3,7 +3,7 @@
 namespace patrol::slam {
 
 SlamUpdate TrajectoryRbpf::update(const LevelScan& scan, const Pose2& T_odom_body) {
-  const SlamUpdate update = filter_.update(scan, T_odom_body);
+  SlamUpdate update = filter_.update(scan, T_odom_body);
   if (update.is_keyframe) {
     keyframe_scans_.push_back(path_.size());
     T_odom_keyframe_ = T_odom_body;

@@ -31,7 +31,7 @@ class TrajectoryRbpf {
  private:
   /// Pose of a scan relative to the preceding keyframe.
   struct TrackedPose {
-    std::size_t keyframe;
+    std::size_t keyframe = 0;
     Pose2 T_keyframe_body;
   };
 

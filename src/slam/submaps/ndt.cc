@@ -145,7 +145,7 @@ std::vector<NdtGrid> make_ndt(const std::vector<Eigen::Vector2d>& points_target,
 }
 
 std::vector<Eigen::Vector2d> subsample(const std::vector<Eigen::Vector2d>& points, int max_points) {
-  const std::size_t max_count = static_cast<std::size_t>(max_points);
+  const auto max_count = static_cast<std::size_t>(max_points);
   if (points.size() <= max_count) return points;
   std::vector<Eigen::Vector2d> kept(max_count);
   for (std::size_t i = 0; i < max_count; ++i) kept[i] = points[i * points.size() / max_count];

@@ -20,7 +20,7 @@ void for_each_observed_cell(const GridMap& map, Visitor&& visit) {
 
 /// Grid that covers all observed cells; its borders are at multiples of `cell_m`.
 GridGeometry geometry_of(const GridMap& map, double cell_m) {
-  const GridGeometry everywhere{.resolution_m = cell_m};
+  GridGeometry everywhere{.resolution_m = cell_m};
   constexpr int kMaxIndex = std::numeric_limits<int>::max();
   Cell low{kMaxIndex, kMaxIndex}, high{-kMaxIndex, -kMaxIndex};
   for_each_observed_cell(map, [&](const Eigen::Vector2d& center, const GridCell&) {
@@ -35,16 +35,22 @@ GridGeometry geometry_of(const GridMap& map, double cell_m) {
           .origin_m = cell_m * Eigen::Vector2d(low.col, low.row)};
 }
 
-}  // namespace
-
-ObservedCells::ObservedCells(const GridMap& map, double cell_m) : cells_(geometry_of(map, cell_m), State::kUnknown) {
+Grid<ObservedCells::State> coarsened(const GridMap& map, double cell_m) {
+  using State = ObservedCells::State;
+  Grid<State> cells(geometry_of(map, cell_m), State::kUnknown);
   for_each_observed_cell(map, [&](const Eigen::Vector2d& center, const GridCell& cell) {
-    State& coarse = cells_.at(cells_.geometry().cell_at(center));
+    State& coarse = cells.at(cells.geometry().cell_at(center));
     coarse = std::max(coarse, cell.is_surface() ? State::kSurface : State::kFree);
   });
-  num_observed_ =
-      static_cast<int>(std::ranges::count_if(cells_.values(), [](State coarse) { return coarse != State::kUnknown; }));
+  return cells;
 }
+
+}  // namespace
+
+ObservedCells::ObservedCells(const GridMap& map, double cell_m)
+    : cells_(coarsened(map, cell_m)),
+      num_observed_(static_cast<int>(
+          std::ranges::count_if(cells_.values(), [](State coarse) { return coarse != State::kUnknown; }))) {}
 
 ObservedCells::State ObservedCells::at(const Eigen::Vector2d& p_map) const {
   return state(cells_.geometry().cell_at(p_map));

@@ -36,7 +36,7 @@ class ObservedCells {
   State state(Cell cell) const { return cells_.contains(cell) ? cells_.at(cell) : State::kUnknown; }
 
   Grid<State> cells_;
-  int num_observed_ = 0;
+  int num_observed_;
 };
 
 }  // namespace patrol::slam

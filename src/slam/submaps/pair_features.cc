@@ -105,11 +105,9 @@ double mutual_overlap_consistency(const SubmapDescriptor& target, const SubmapDe
                   overlap_consistency_in(source.observed, target.points, T_target_source.inverse()));
 }
 
-bool may_be_neighbors(const SubmapDescriptor& target, const SubmapDescriptor& source,
-                      const PoseGaussian& T_target_source) {
-  const double distance_m = (T_target_source.mean * source.center - target.center).norm();
-  return distance_m - 2.0 * std::sqrt(largest_variance(center_covariance(source, T_target_source))) <
-         target.radius_m + source.radius_m;
+bool may_be_neighbors(const SubmapDescriptor& a, const SubmapDescriptor& b, const PoseGaussian& T_a_b) {
+  const double distance_m = (T_a_b.mean * b.center - a.center).norm();
+  return distance_m - 2.0 * std::sqrt(largest_variance(center_covariance(b, T_a_b))) < a.radius_m + b.radius_m;
 }
 
 std::vector<std::string> pair_feature_names() { return {kPairFeatures.begin(), kPairFeatures.end()}; }

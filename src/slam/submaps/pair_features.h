@@ -45,8 +45,7 @@ double mutual_overlap_consistency(const SubmapDescriptor& target, const SubmapDe
 
 /// Returns whether the distance of the centers, minus two standard deviations of the prediction, is below the sum of
 /// the radii.
-bool may_be_neighbors(const SubmapDescriptor& target, const SubmapDescriptor& source,
-                      const PoseGaussian& T_target_source);
+bool may_be_neighbors(const SubmapDescriptor& a, const SubmapDescriptor& b, const PoseGaussian& T_a_b);
 
 struct SubmapComparison {
   std::vector<double> features;      ///< [feature] in the order of kPairFeatures, all finite

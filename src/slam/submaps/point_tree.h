@@ -17,6 +17,8 @@ class PointTree {
   /// Throws InputError if a point is not finite.
   explicit PointTree(std::vector<Eigen::Vector2d> points);
   ~PointTree();
+  PointTree(const PointTree&) = delete;
+  PointTree& operator=(const PointTree&) = delete;
   PointTree(PointTree&&) noexcept;
   PointTree& operator=(PointTree&&) noexcept;
 

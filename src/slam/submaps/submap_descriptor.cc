@@ -44,7 +44,7 @@ void add_around_circle(std::vector<double>& histogram, double position, double w
 std::vector<double> distance_histogram(const std::vector<Eigen::Vector2d>& points,
                                        const SubmapDescriptorSettings& settings) {
   std::vector<double> histogram(static_cast<std::size_t>(settings.distance_bins), 0.0);
-  const double last = static_cast<double>(settings.distance_bins - 1);
+  const auto last = static_cast<double>(settings.distance_bins - 1);
   for (std::size_t i = 0; i < points.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       // Linear distribution over two bins avoids jumps of whole counts by rounding.

@@ -1,6 +1,7 @@
 #include "studies/landmarks/ekf_slam.h"
 
 #include <cmath>
+#include <utility>
 
 #include <Eigen/LU>
 
@@ -20,9 +21,9 @@ Eigen::Vector2d transformed(const Eigen::Vector2d& p, double dtheta, const Eigen
 
 }  // namespace
 
-EkfSlam::EkfSlam(const EkfSlamSettings& settings, const ControlMotion& motion, const RangeBearingNoise& noise)
+EkfSlam::EkfSlam(const EkfSlamSettings& settings, ControlMotion motion, const RangeBearingNoise& noise)
     : settings_(settings),
-      motion_(motion),
+      motion_(std::move(motion)),
       noise_(noise),
       bias_(settings.bias),
       P_(Eigen::MatrixXd::Zero(kLandmarks, kLandmarks)) {

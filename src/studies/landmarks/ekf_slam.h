@@ -28,7 +28,7 @@ struct EkfSlamSettings {
 /// information.
 class EkfSlam : public LandmarkSlam {
  public:
-  EkfSlam(const EkfSlamSettings& settings, const ControlMotion& motion, const RangeBearingNoise& noise);
+  EkfSlam(const EkfSlamSettings& settings, ControlMotion motion, const RangeBearingNoise& noise);
 
   LandmarkSlamEstimate step(const Control& control, const std::vector<RangeBearing>& observations) override;
   std::vector<std::optional<Eigen::Vector2d>> landmarks() const override;

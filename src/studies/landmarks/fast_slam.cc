@@ -87,10 +87,10 @@ class FastSlam::Step {
   std::vector<Proposal> proposals_;        ///< [particle], for FastSLAM 2.0
 };
 
-FastSlam::FastSlam(const FastSlamSettings& settings, const ControlMotion& motion, const RangeBearingNoise& noise,
+FastSlam::FastSlam(const FastSlamSettings& settings, ControlMotion motion, const RangeBearingNoise& noise,
                    slam::ParticleFilterComponents components, std::uint64_t seed)
     : settings_(settings),
-      motion_(motion),
+      motion_(std::move(motion)),
       noise_(noise),
       components_(std::move(components)),
       random_(seed, "slam/landmarks/particles") {

@@ -38,7 +38,7 @@ struct FastSlamSettings {
 class FastSlam : public LandmarkSlam {
  public:
   /// `motion.std` and `noise` are the assumed noise of odometry and sensor.
-  FastSlam(const FastSlamSettings& settings, const ControlMotion& motion, const RangeBearingNoise& noise,
+  FastSlam(const FastSlamSettings& settings, ControlMotion motion, const RangeBearingNoise& noise,
            slam::ParticleFilterComponents components, std::uint64_t seed);
 
   LandmarkSlamEstimate step(const Control& control, const std::vector<RangeBearing>& observations) override;

@@ -21,12 +21,12 @@ struct Landmark {
 /// because this is the innermost loop of every swarm. With u the direction to the landmark and n perpendicular to it, H
 /// = [u^T; n^T / r].
 struct LandmarkInnovation {
-  double range, bearing;  ///< innovation, m and rad
-  double ux, uy, r;       ///< direction and distance of the landmark, m
-  double PH00, PH01;      ///< P H^T, cross covariance of landmark position and observation
-  double PH10, PH11;
-  double S00, S01, S11, det;  ///< S = H P H^T + R, and its determinant
-  double squared_distance;    ///< squared Mahalanobis distance
+  double range = 0.0, bearing = 0.0;   ///< innovation, m and rad
+  double ux = 0.0, uy = 0.0, r = 0.0;  ///< direction and distance of the landmark, m
+  double PH00 = 0.0, PH01 = 0.0;       ///< P H^T, cross covariance of landmark position and observation
+  double PH10 = 0.0, PH11 = 0.0;
+  double S00 = 0.0, S01 = 0.0, S11 = 0.0, det = 0.0;  ///< S = H P H^T + R, and its determinant
+  double squared_distance = 0.0;                      ///< squared Mahalanobis distance
 
   /// Log density of the observation without the log 2 pi term.
   double log_density() const { return -0.5 * (squared_distance + std::log(det)); }

@@ -48,7 +48,7 @@ void ExactFilter::spread(double mean, double mass, std::vector<double>& predicte
 }
 
 std::vector<double> ExactFilter::predict() const {
-  const double forcing = model_.forcing(steps_);
+  const double forcing = GrowthModel::forcing(steps_);
   std::vector<double> predicted(nodes_.size() + 2 * bell_.size(), 0.0);
   if (density_.empty()) {
     spread(model_.drift(model_.settings().initial_state) + forcing, 1.0, predicted);

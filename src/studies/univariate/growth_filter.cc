@@ -17,7 +17,7 @@ class GrowthFilter::Step {
   Step(GrowthFilter& filter, double observation)
       : filter_(filter),
         observation_(observation),
-        forcing_(filter.model_.forcing(filter.steps_)),
+        forcing_(GrowthModel::forcing(filter.steps_)),
         process_std_(std::sqrt(filter.model_.settings().process_var)) {}
 
   std::size_t size() const { return filter_.particles_.size(); }

@@ -18,9 +18,9 @@ double GrowthModel::drift(double state) const {
   return 0.5 * state + 25.0 * state / (1.0 + settings_.denominator_sign * state * state);
 }
 
-double GrowthModel::forcing(int step) const { return 8.0 * std::cos(1.2 * (step - 1)); }
+double GrowthModel::forcing(int step) { return 8.0 * std::cos(1.2 * (step - 1)); }
 
-double GrowthModel::mean_observation(double state) const { return state * state / 20.0; }
+double GrowthModel::mean_observation(double state) { return state * state / 20.0; }
 
 double GrowthModel::log_likelihood(double observation, double state) const {
   const double error = observation - mean_observation(state);

@@ -44,9 +44,9 @@ class GrowthModel {
   /// Mean of x(step) given x(step - 1): drift(state) + forcing(step). The first step is 1.
   double transition(double state, int step) const { return drift(state) + forcing(step); }
   double drift(double state) const;
-  double forcing(int step) const;
+  static double forcing(int step);
   /// Mean of y given x.
-  double mean_observation(double state) const;
+  static double mean_observation(double state);
   /// Returns log p(y | x).
   double log_likelihood(double observation, double state) const;
 

@@ -53,7 +53,7 @@ UnivariateEstimate QuasiFilter::step(double observation) {
 
 /// Returns the branches sorted by expected state.
 std::vector<QuasiFilter::Branch> QuasiFilter::make_branches(double observation) const {
-  const double forcing = model_.forcing(steps_);
+  const double forcing = GrowthModel::forcing(steps_);
   std::vector<Branch> branches;
   std::vector<double> log_weights;
   branches.reserve(states_.size());
@@ -74,7 +74,7 @@ QuasiFilter::Branch QuasiFilter::make_branch(double expected, double observation
   const double surprise = observation - (expected * expected + Q) / 20.0;
   const auto variance_at = [&](double state) { return 1.0 / (1.0 / Q + square_of(state / 10.0) / R); };
   const double mean =
-      expected + variance_at(expected) * expected / 10.0 / R * (observation - model_.mean_observation(expected));
+      expected + variance_at(expected) * expected / 10.0 / R * (observation - GrowthModel::mean_observation(expected));
   return {.expected = expected,
           .proposal_mean = mean,
           .proposal_std = std::sqrt(settings_.proposal_inflation * variance_at(mean)),

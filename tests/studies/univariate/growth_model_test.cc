@@ -42,7 +42,7 @@ TEST(GrowthModel, StaysWithinThirtyAndExplodesPastTenThousandAsPrinted) {
 
 TEST(GrowthModel, DoesNotDistinguishTenFromMinusTenByTheFiveItObserves) {
   const GrowthModel model;
-  EXPECT_NEAR(model.mean_observation(10.0), 5.0, kExactTol);
+  EXPECT_NEAR(GrowthModel::mean_observation(10.0), 5.0, kExactTol);
   EXPECT_NEAR(model.log_likelihood(5.0, 10.0), -0.5 * std::log(2.0 * std::numbers::pi), kExactTol);
   EXPECT_NEAR(model.log_likelihood(7.0, 10.0), -2.0 - 0.5 * std::log(2.0 * std::numbers::pi),
               kExactTol);  // -(7 - 5)^2 / 2
@@ -61,7 +61,7 @@ TEST(GrowthModel, SimulatesNoiseOfItsVariances) {
   double before = 0.0, process = 0.0, process_square = 0.0, sensor = 0.0, sensor_square = 0.0;
   for (std::size_t i = 0; i < run.states.size(); ++i) {
     const double w = run.states[i] - model.transition(before, static_cast<int>(i) + 1),
-                 v = run.observations[i] - model.mean_observation(run.states[i]);
+                 v = run.observations[i] - GrowthModel::mean_observation(run.states[i]);
     process += w, process_square += w * w, sensor += v, sensor_square += v * v;
     before = run.states[i];
   }

@@ -54,7 +54,7 @@ class Child {
 
   int pidfd() const { return pidfd_; }
   bool is_late(Clock::time_point now) const { return now >= deadline_; }
-  void kill() { ::kill(pid_, SIGKILL); }
+  void kill() const { ::kill(pid_, SIGKILL); }
   void kill_for_time() {
     is_over_time_ = true;
     kill();

@@ -21,6 +21,7 @@ ProgramResult run_program(const std::vector<std::string>& words) {
   posix_spawn_file_actions_addclose(&actions, pipe[0]);
   posix_spawn_file_actions_addclose(&actions, pipe[1]);
   std::vector<char*> arguments;
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-const-cast): posix_spawnp does not change the words
   for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
   pid_t pid = 0;
@@ -30,7 +31,7 @@ ProgramResult run_program(const std::vector<std::string>& words) {
   ProgramResult result;
   if (error == 0) {
     std::array<char, 4096> block{};
-    for (ssize_t count; (count = ::read(pipe[0], block.data(), block.size())) > 0;)
+    for (ssize_t count = 0; (count = ::read(pipe[0], block.data(), block.size())) > 0;)
       result.output.append(block.data(), static_cast<std::size_t>(count));
     int status = 0;
     ::waitpid(pid, &status, 0);

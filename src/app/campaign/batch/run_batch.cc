@@ -75,7 +75,7 @@ class Batch {
     const std::filesystem::path work = work_.path(run.key);
     RunVerdict verdict = verdict_of_run(run, work);
     std::string& message = verdict.message;  // must not depend on the work folder
-    for (std::size_t at; (at = message.find(work.string())) != std::string::npos;)
+    for (std::size_t at = 0; (at = message.find(work.string())) != std::string::npos;)
       message.replace(at, work.string().size(), "RUN");
     keep_or_remove(run.key, verdict.code());
     store_.save(run.key, verdict);

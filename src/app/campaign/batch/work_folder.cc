@@ -1,11 +1,11 @@
 #include "app/campaign/batch/work_folder.h"
 
-#include <signal.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
 #include <charconv>
+#include <csignal>
 #include <system_error>
 
 #include <fmt/format.h>

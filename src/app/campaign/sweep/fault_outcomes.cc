@@ -63,7 +63,7 @@ std::string faults_summary(const std::vector<FaultRow>& rows) {
   int num_not_triggered = 0;
   for (const FaultRow& row : rows) {
     ++counts[row.outcome];
-    num_not_triggered += row.is_not_triggered();
+    if (row.is_not_triggered()) ++num_not_triggered;
   }
   std::vector<std::string> parts;
   for (const auto& [outcome, count] : counts) parts.push_back(fmt::format("{} {}", count, text_of(outcome)));

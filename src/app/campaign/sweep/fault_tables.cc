@@ -78,7 +78,7 @@ io::Table faults_table(const SweepManifest& manifest, const SweepRows& rows) {
   for (const FaultRow& row : fault_rows(manifest, rows)) {
     std::vector<io::TableValue>& cells = table.rows.emplace_back();
     cells.emplace_back(row.name);
-    cells.push_back(static_cast<std::int64_t>(row.seed));
+    cells.emplace_back(static_cast<std::int64_t>(row.seed));
     cells.emplace_back(trigger_text(row));
     cells.emplace_back(std::string(text_of(row.outcome)));
     cells.push_back(cell(row.num_detected));

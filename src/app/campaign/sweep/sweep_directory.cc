@@ -23,13 +23,13 @@ const OutputKind kSweep = {
 
 SweepDirectory begin_sweep_directory(const std::filesystem::path& root, const SweepManifest& manifest) {
   const OutputLock shared = begin_output(root, kSweep);
-  const SweepDirectory directory{root};
+  SweepDirectory directory{root};
   save_manifest(directory.manifest(), manifest);
   return directory;
 }
 
 SweepDirectory open_sweep_directory(const std::filesystem::path& root) {
-  const SweepDirectory directory{root};
+  SweepDirectory directory{root};
   if (!std::filesystem::exists(directory.manifest()))
     throw InputError(fmt::format("{}: not a sweep directory: sweep.json not found", root.string()));
   return directory;

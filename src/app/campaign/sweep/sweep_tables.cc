@@ -67,10 +67,10 @@ io::Table runs_table(const SweepManifest& manifest, const SweepRows& rows, const
     std::vector<io::TableValue>& row = table.rows.emplace_back();
     row.emplace_back(manifest.variants[run.variant].name);
     for (const std::string& path : manifest.paths) row.push_back(value_of(run.overrides, path));
-    row.push_back(static_cast<std::int64_t>(run.seed));
+    row.emplace_back(static_cast<std::int64_t>(run.seed));
     row.emplace_back(run.hash);
     row.emplace_back(std::string(name_of(result.end)));
-    row.push_back(static_cast<std::int64_t>(result.code()));
+    row.emplace_back(static_cast<std::int64_t>(result.code()));
     row.emplace_back(result.message);
     std::map<std::string, double> values;
     for (const auto& [path, value] : io::flatten_metrics(result.metrics)) values[path] = value;

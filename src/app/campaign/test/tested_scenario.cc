@@ -48,7 +48,7 @@ std::vector<std::pair<std::string, std::string>> properties_of(const std::filesy
 std::string key_of(std::size_t index, std::string name) {
   std::replace_if(
       name.begin(), name.end(),
-      [](char c) { return !std::isalnum(static_cast<unsigned char>(c)) && c != '.' && c != '-'; }, '_');
+      [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '.' && c != '-'; }, '_');
   return fmt::format("{:04}_{}", index + 1, name);
 }
 
