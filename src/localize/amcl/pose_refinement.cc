@@ -4,9 +4,9 @@
 #include <cmath>
 #include <vector>
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "core/geometry/linear_algebra.h"
 #include "core/geometry/principal_axes.h"
 
 namespace patrol::localize {
@@ -98,8 +98,8 @@ RefinedPose refine_pose(const LineField& lines, const LevelScan& scan, const sla
     if (refined.inlier_ratio < settings.min_inlier_ratio) return refined;
 
     sum = equations_of(residuals, settings);
-    const Eigen::Vector3d step =
-        -(sum.H + prior_information).ldlt().solve(sum.b + prior_information * prior.residual_to_mean(pose));
+    const Eigen::Vector3d step = -solve_symmetric(Eigen::Matrix3d(sum.H + prior_information),
+                                                  sum.b + prior_information * prior.residual_to_mean(pose));
     if (!step.allFinite()) return refined;
     pose = slam::perturbed(pose, step);
     if (step.head<2>().norm() < kStepTolerance_m && std::abs(step.z()) < kStepTolerance_rad) break;
@@ -117,7 +117,7 @@ ScanProposal::ScanProposal(const RefinedPose& refined, const Eigen::Matrix3d& sp
     : matched_(refined.posterior.mean) {
   const Eigen::Matrix3d covariance = (spread.inverse() + refined.information).inverse();
   gain_ = covariance * refined.information;
-  root_ = Eigen::Matrix3d(0.5 * (covariance + covariance.transpose())).llt().matrixL();
+  root_ = cholesky_factor(Eigen::Matrix3d(0.5 * (covariance + covariance.transpose())));
 }
 
 Pose2 ScanProposal::sample(const Pose2& particle, const Eigen::Vector3d& unit) const {

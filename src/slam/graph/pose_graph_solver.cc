@@ -6,8 +6,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include <Eigen/Cholesky>
 #include <ceres/ceres.h>
+
+#include "core/geometry/linear_algebra.h"
 
 namespace patrol::slam {
 namespace {
@@ -15,7 +16,8 @@ namespace {
 /// L^T (R_from^T (p_to - p_from) - p, yaw_to - yaw_from - yaw), with L L^T the information.
 class EdgeCost : public ceres::SizedCostFunction<3, 3, 3> {
  public:
-  explicit EdgeCost(const PoseGraphEdge& edge) : T_from_to_(edge.T_from_to), root_(edge.information.llt().matrixU()) {}
+  explicit EdgeCost(const PoseGraphEdge& edge)
+      : T_from_to_(edge.T_from_to), root_(cholesky_factor(edge.information).transpose()) {}
 
   bool Evaluate(const double* const* poses, double* residuals, double** jacobians) const override {
     const double *from = poses[0], *to = poses[1];
