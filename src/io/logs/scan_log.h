@@ -26,7 +26,7 @@ struct ScanLogOptions {
   /// MCAP only; on: yaw increments from the gyro (io/logs/gyro_odometry.h), auto: only if the first scans show that
   /// gyro and odometry disagree, off: never.
   std::string imu = "auto";
-  std::string imu_topic;  ///< MCAP only; empty: topic of the first IMU message
+  std::string imu_topic = {};  ///< MCAP only; empty: topic of the first IMU message
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -22,8 +22,8 @@ struct TunnelMissionSettings {
   double yaw_tolerance_rad = 0.017;
   double teleop_timeout_s = 2.0;           ///< timeout after which the teleoperation counts as switched off
   double relocalization_timeout_s = 30.0;  ///< relocalization timeout; the robot stands still meanwhile
-  std::string goal_types;  ///< types of the goals saved on the mapping drive, in order (core/route.h); N for the
-                           ///< rest
+  std::string goal_types = {};  ///< types of the goals saved on the mapping drive, in order (core/route.h); N for the
+                                ///< rest
   double operator_timeout_s = 120.0;  ///< timeout for teleoperation commands at a goal of type R; the robot then
                                       ///< continues autonomously
 

@@ -23,8 +23,7 @@ using ::testing::ElementsAre, ::testing::EndsWith, ::testing::HasSubstr, ::testi
 
 constexpr double kExactTol = 1e-12;
 constexpr double kRoundedPi = 3.141593;  // as logs write it
-const ScanLogOptions kSkip{
-    .skip_invalid = true, .carmen_laser = {}, .scan_topic = {}, .odometry_topic = {}, .imu_topic = {}};
+const ScanLogOptions kSkip{.skip_invalid = true, .carmen_laser = {}, .scan_topic = {}, .odometry_topic = {}};
 
 std::string repeated(const std::string& word, int count) {
   std::string text;
