@@ -26,7 +26,7 @@ ScanLeveler::ScanLeveler(Pose3 T_body_lidar, const ScanLevelerSettings& settings
   validate(settings, "scan_leveling");
 }
 
-std::optional<LevelScan> ScanLeveler::level(const LaserScan& scan, const BodyEstimator& odometry) const {
+std::optional<LevelScan> ScanLeveler::level(const LaserScan& scan, const LeggedOdometry& odometry) const {
   return level(
       scan, [&odometry](Time stamp) { return odometry.T_odom_body_at(stamp); }, odometry.height_above_ground_m());
 }

@@ -6,7 +6,7 @@
 #include "core/frames.h"
 #include "core/messages.h"
 #include "core/sensors/registry.h"
-#include "localize/body_estimator.h"
+#include "localize/legged_odometry.h"
 #include "localize/scan_leveler_settings.h"
 
 namespace patrol::localize {
@@ -23,7 +23,7 @@ class ScanLeveler {
   ScanLeveler(Pose3 T_body_lidar, const ScanLevelerSettings& settings);
 
   /// Returns the compensated scan; nullopt if the poses do not cover the scan, or if it has no beams.
-  std::optional<LevelScan> level(const LaserScan& scan, const BodyEstimator& odometry) const;
+  std::optional<LevelScan> level(const LaserScan& scan, const LeggedOdometry& odometry) const;
   std::optional<LevelScan> level(const LaserScan& scan, const PoseLookup& T_odom_body_at, double body_height_m) const;
 
  private:

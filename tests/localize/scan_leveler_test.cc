@@ -209,18 +209,18 @@ TEST(ScanLeveler, WithTheEstimatorInTheLoopWallsAreAsGoodAsItsPose) {
   const RobotDescription quadruped = test::make_quadruped();
   test::WalkingRobot robot(quadruped, test::stand_then_walk(1.0, {.vx_mps = 0.4, .yaw_rate_radps = 0.8}),
                            test::WalkingRobotSettings::without_noise(), 1);
-  BodyEstimator estimator(quadruped, {});
+  LeggedOdometry odometry(quadruped, {});
   Trajectory truth;
   while (to_seconds(robot.now()) < 5.0) {
     robot.step();
-    estimator.add(robot.imu());
-    estimator.add(robot.joints());
-    estimator.add(robot.contacts());
+    odometry.add(robot.imu());
+    odometry.add(robot.joints());
+    odometry.add(robot.contacts());
     truth.push_back({robot.now(), robot.T_world_body()});
   }
   const Time start = from_seconds(4.9) - from_seconds(0.004);
   const LaserScan scan = scan_room([&](Time t) { return pose_at(truth, t); }, start, 1600, 0.0);
-  const auto level = ScanLeveler(kLidar, {}).level(scan, estimator);
+  const auto level = ScanLeveler(kLidar, {}).level(scan, odometry);
   ASSERT_TRUE(level);
   const Pose2 T_world_level = to_pose2(*pose_at(truth, level->stamp));
   for (const auto& beam : level->beams) {

@@ -8,7 +8,7 @@
 
 #include "core/geometry/angles.h"
 #include "io/urdf.h"
-#include "localize/body_estimator.h"
+#include "localize/legged_odometry.h"
 #include "sim/simulator/simulator.h"
 #include "tests/support/temporary_file.h"
 
@@ -43,7 +43,7 @@ struct OdometryReport {
 };
 
 OdometryReport walk(const std::vector<Leg>& legs, std::uint64_t seed,
-                    const localize::BodyEstimatorSettings& settings = {}) {
+                    const localize::LeggedOdometrySettings& settings = {}) {
   const test::TemporaryFile world("flat.xml", kFlatWorld);
   const RobotDescription robot = io::load_robot_description(kRobotUrdf);
   sim::SimulatorSettings simulator_settings;
@@ -51,7 +51,7 @@ OdometryReport walk(const std::vector<Leg>& legs, std::uint64_t seed,
   simulator_settings.robot_urdf = kRobotUrdf;
   simulator_settings.sensors.lidar.enabled = false;
   sim::Simulator simulator(simulator_settings, robot, seed);
-  localize::BodyEstimator estimator(robot, settings);
+  localize::LeggedOdometry odometry(robot, settings);
 
   OdometryReport report;
   const Pose3 start = to_pose3(to_pose2(simulator.truth().T_world_body), simulator.truth().T_world_body.position.z());
@@ -66,11 +66,11 @@ OdometryReport walk(const std::vector<Leg>& legs, std::uint64_t seed,
       for (const SensorMessage& message : simulator.take_messages()) {
         std::visit(
             [&](const auto& m) {
-              if constexpr (requires { estimator.add(m); }) estimator.add(m);
+              if constexpr (requires { odometry.add(m); }) odometry.add(m);
             },
             message);
       }
-      const auto estimate = estimator.estimate();
+      const auto estimate = odometry.estimate();
       if (!estimate || estimate->stamp != simulator.now()) continue;
       const GroundTruth truth = simulator.truth();
       const Pose3 T_odom_body = start.inverse() * truth.T_world_body;
@@ -80,7 +80,7 @@ OdometryReport walk(const std::vector<Leg>& legs, std::uint64_t seed,
       const double cos_tilt =
           (T_odom_body.rotation.conjugate() * up).dot(estimate->T_odom_body.rotation.conjugate() * up);
       report.tilt_rms_rad += std::pow(std::acos(std::min(1.0, cos_tilt)), 2);
-      report.height_rms_m += std::pow(estimator.height_above_ground_m() - truth.T_world_body.position.z(), 2);
+      report.height_rms_m += std::pow(odometry.height_above_ground_m() - truth.T_world_body.position.z(), 2);
       report.velocity_rms_mps += (estimate->twist.linear - truth.twist.linear).squaredNorm();
       ++samples;
       if (samples % 90 == 0) {  // a gait period

@@ -1,13 +1,13 @@
 #pragma once
 
 #include "core/settings.h"
-#include "localize/body_estimator_settings.h"
+#include "localize/legged_odometry_settings.h"
 #include "localize/track_odometry_settings.h"
 
 namespace patrol::stack {
 
 struct OdometrySettings {
-  localize::BodyEstimatorSettings legged;   ///< robot with legs
+  localize::LeggedOdometrySettings legged;  ///< robot with legs
   localize::TrackOdometrySettings tracked;  ///< robot with tracks
 
   template <typename Self, typename Visitor>

@@ -6,11 +6,11 @@
 #include "core/messages.h"
 #include "core/robot_description.h"
 #include "core/sensors/registry.h"
-#include "localize/body_estimator_settings.h"
 #include "localize/frozen_readings.h"
 #include "localize/imu_front_end.h"
 #include "localize/inertial_filter.h"
 #include "localize/leg_odometry.h"
+#include "localize/legged_odometry_settings.h"
 #include "localize/pending_readings.h"
 
 namespace patrol::localize {
@@ -30,9 +30,9 @@ struct EstimatorHealth {
 /// Messages may be late, out of order or missing. Joint readings wait for the IMU reading of their stamp, at most
 /// `imu_timeout_s`; then the feet alone propagate the estimate. Readings older than the state are compared with the
 /// motion history. Not handled: a robot that is lifted or falls.
-class BodyEstimator {
+class LeggedOdometry {
  public:
-  BodyEstimator(const RobotDescription& robot, const BodyEstimatorSettings& settings);
+  LeggedOdometry(const RobotDescription& robot, const LeggedOdometrySettings& settings);
 
   void add(const Imu& imu);
   void add(const JointState& joints);
@@ -61,7 +61,7 @@ class BodyEstimator {
   void limit_velocity();
 
   RobotDescription robot_;
-  BodyEstimatorSettings settings_;
+  LeggedOdometrySettings settings_;
   ImuFrontEnd<InertialFilter> imu_;
 
   ContactDetector contact_;

@@ -5,7 +5,7 @@
 namespace patrol::localize {
 
 /// Settings of the legged odometry. The defaults fit a MEMS IMU of robotics grade and encoders at 250 Hz.
-struct BodyEstimatorSettings {
+struct LeggedOdometrySettings {
   // IMU.
   double gyro_noise_density_radps_per_sqrt_hz = 2e-4;
   double gyro_bias_std_radps = 5e-3;  ///< standard deviation of the bias at power-on

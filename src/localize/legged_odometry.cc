@@ -1,4 +1,4 @@
-#include "localize/body_estimator.h"
+#include "localize/legged_odometry.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,7 +29,7 @@ bool has_all_joints(const JointState& joints) {
   return joints.position_rad.size() == 3 * kNumLegs && joints.velocity_radps.size() == 3 * kNumLegs;
 }
 
-InertialFilter::Settings filter_settings(const BodyEstimatorSettings& s) {
+InertialFilter::Settings filter_settings(const LeggedOdometrySettings& s) {
   return {.gyro_noise_density_radps_per_sqrt_hz = s.gyro_noise_density_radps_per_sqrt_hz,
           .gyro_bias_std_radps = s.gyro_bias_std_radps,
           .gyro_bias_random_walk_radps_per_sqrt_s = s.gyro_bias_random_walk_radps_per_sqrt_s,
@@ -45,14 +45,14 @@ Pose3 imu_pose(const RobotDescription& robot) {
   return imu == robot.T_body_sensor.end() ? Pose3{} : imu->second;
 }
 
-const BodyEstimatorSettings& checked(const BodyEstimatorSettings& settings) {
+const LeggedOdometrySettings& checked(const LeggedOdometrySettings& settings) {
   validate(settings, "odometry.legged");
   return settings;
 }
 
 }  // namespace
 
-BodyEstimator::BodyEstimator(const RobotDescription& robot, const BodyEstimatorSettings& settings)
+LeggedOdometry::LeggedOdometry(const RobotDescription& robot, const LeggedOdometrySettings& settings)
     : robot_(robot),
       settings_(checked(settings)),
       imu_(imu_pose(robot),
@@ -71,14 +71,14 @@ BodyEstimator::BodyEstimator(const RobotDescription& robot, const BodyEstimatorS
   }
 }
 
-void BodyEstimator::add(const Imu& imu) {
+void LeggedOdometry::add(const Imu& imu) {
   const std::optional<InertialSample> sample = imu_.accept(imu, joints_move_);
   if (!sample) return;
   advance(imu.stamp, *sample);
   process_pending();
 }
 
-void BodyEstimator::add(const JointState& joints) {
+void LeggedOdometry::add(const JointState& joints) {
   if (!has_all_joints(joints) || pending_.is_full()) {
     imu_.reject();
     return;
@@ -96,7 +96,7 @@ void BodyEstimator::add(const JointState& joints) {
   process_pending();
 }
 
-void BodyEstimator::add(const FootContacts& contacts) {
+void LeggedOdometry::add(const FootContacts& contacts) {
   const bool is_finite =
       std::all_of(contacts.force_n.begin(), contacts.force_n.end(), [](double f) { return std::isfinite(f); });
   if (contacts.force_n.size() != kNumLegs || !is_finite || (last_contacts_ && contacts.stamp <= *last_contacts_)) {
@@ -117,7 +117,7 @@ void BodyEstimator::add(const FootContacts& contacts) {
   process_pending();
 }
 
-void BodyEstimator::advance(Time stamp, const InertialSample& sample) {
+void LeggedOdometry::advance(Time stamp, const InertialSample& sample) {
   const auto make_filter = [this](const InertialSample& first) {
     return InertialFilter(filter_settings(settings_), first);
   };
@@ -127,7 +127,7 @@ void BodyEstimator::advance(Time stamp, const InertialSample& sample) {
 }
 
 // A leg reading is due when the IMU has passed its stamp and the foot forces of that stamp have arrived or timed out.
-void BodyEstimator::process_pending() {
+void LeggedOdometry::process_pending() {
   if (!imu_.filter()) {
     pending_.clear();
     return;
@@ -147,11 +147,11 @@ void BodyEstimator::process_pending() {
   }
 }
 
-void BodyEstimator::coast_to(const LegSample& sample) {
+void LeggedOdometry::coast_to(const LegSample& sample) {
   imu_.coast_to(sample.stamp, yaw_rate_from_feet(stance_feet(sample)).value_or(imu_.filter()->yaw_rate_radps()));
 }
 
-void BodyEstimator::use_legs(const LegSample& sample) {
+void LeggedOdometry::use_legs(const LegSample& sample) {
   const std::optional<TrunkMotion> then = imu_.motion_at(sample.stamp);
   if (!then) {
     imu_.reject();
@@ -173,7 +173,7 @@ void BodyEstimator::use_legs(const LegSample& sample) {
   imu_.remember();
 }
 
-StanceFeet BodyEstimator::stance_feet(const LegSample& sample) const {
+StanceFeet LeggedOdometry::stance_feet(const LegSample& sample) const {
   if (!sample.weights) return lowest_feet(sample);
   StanceFeet feet;
   const Eigen::Vector3d up = imu_.filter()->up_in_body();
@@ -188,7 +188,7 @@ StanceFeet BodyEstimator::stance_feet(const LegSample& sample) const {
 }
 
 // Fallback without foot sensors.
-StanceFeet BodyEstimator::lowest_feet(const LegSample& sample) const {
+StanceFeet LeggedOdometry::lowest_feet(const LegSample& sample) const {
   const Eigen::Vector3d up = imu_.filter()->up_in_body();
   StanceFeet all, lowest;
   double ground = 0.0;
@@ -204,7 +204,7 @@ StanceFeet BodyEstimator::lowest_feet(const LegSample& sample) const {
   return lowest;
 }
 
-void BodyEstimator::measure_standstill(const LegSample& sample, const TrunkMotion& then, const StanceFeet& feet) {
+void LeggedOdometry::measure_standstill(const LegSample& sample, const TrunkMotion& then, const StanceFeet& feet) {
   if (imu_.has_timed_out() || !sample.weights || feet.count < kNumLegs) {
     imu_.bias_estimator().reset();
     return;
@@ -216,21 +216,21 @@ void BodyEstimator::measure_standstill(const LegSample& sample, const TrunkMotio
 }
 
 // The velocity of the IMU alone diverges; that of a walking robot is bounded.
-void BodyEstimator::limit_velocity() {
+void LeggedOdometry::limit_velocity() {
   if (!imu_.is_velocity_limit_due(kLegTimeout)) return;
   imu_.filter()->correct_velocity(-imu_.filter()->motion().v_body, Eigen::Vector3d::Zero(),
                                   kLegVelocityLimitStd_mps * kLegVelocityLimitStd_mps);
   imu_.remember();
 }
 
-std::optional<OdometryEstimate> BodyEstimator::estimate() const {
+std::optional<OdometryEstimate> LeggedOdometry::estimate() const {
   if (!imu_.filter() || !last_leg_update_) return std::nullopt;
   return imu_.estimate();
 }
 
-std::optional<Pose3> BodyEstimator::T_odom_body_at(Time stamp) const { return imu_.T_odom_body_at(stamp); }
+std::optional<Pose3> LeggedOdometry::T_odom_body_at(Time stamp) const { return imu_.T_odom_body_at(stamp); }
 
-EstimatorHealth BodyEstimator::health() const {
+EstimatorHealth LeggedOdometry::health() const {
   EstimatorHealth health{.imu_timed_out = imu_.has_timed_out(),
                          .contacts_timed_out = contacts_timed_out_,
                          .num_rejected_messages = imu_.num_rejected_messages(),
