@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/random.h"
-#include "core/tem_response.h"
+#include "core/sensors/tem_response.h"
 #include "inspect/water/water_sounding.h"
 
 namespace patrol::test {

@@ -5,7 +5,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 
-#include "core/tem_response.h"
+#include "core/sensors/tem_response.h"
 #include "inspect/water/water_settings.h"
 #include "inspect/water/water_sounding.h"
 

@@ -11,7 +11,7 @@
 namespace patrol::inspect {
 
 /// Inversion of the soundings of one station for water ahead of the face. The models are one homogeneous sphere in
-/// homogeneous rock, and rock alone (core/tem_response.h).
+/// homogeneous rock, and rock alone (core/sensors/tem_response.h).
 ///
 /// The posterior of rock conductivity, position, radius and water conductivity is sampled with a sequential Monte Carlo
 /// sampler [DelMoral06]. It tempers from prior to likelihood; each temperature keeps half of the effective sample size.

@@ -9,8 +9,8 @@
 #include "core/frames.h"
 #include "core/random.h"
 #include "core/sensors/registry.h"
+#include "core/sensors/tem_response.h"
 #include "core/settings.h"
-#include "core/tem_response.h"
 #include "sim/subsurface.h"
 
 namespace patrol::sim {

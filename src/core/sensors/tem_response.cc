@@ -1,4 +1,4 @@
-#include "core/tem_response.h"
+#include "core/sensors/tem_response.h"
 
 #include <algorithm>
 #include <array>
