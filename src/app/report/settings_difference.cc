@@ -59,7 +59,7 @@ std::string entry_text(const Settings& entry) {
   std::vector<std::string> parts;
   for (std::size_t i = 0; i < visitor.fields.size(); ++i) {
     const auto& [name, text] = visitor.fields[i];
-    if (text != standard.fields[i].second) parts.push_back(name + ": " + text);
+    if (text != standard.fields[i].second) parts.push_back(fmt::format("{}: {}", name, text));
   }
   return "{" + join(parts, ", ") + "}";
 }
