@@ -5,8 +5,8 @@
 
 namespace patrol::sim {
 
-/// Part of a parked dump truck, 7.6 x 2.5 x 3.0 m, equal to the world's own truck (tools/tunnel_objects.py). x toward its
-/// nose, y to its left, z up from the ground; m.
+/// Part of a parked dump truck, 7.6 x 2.5 x 3.0 m, equal to the world's own truck (tools/tunnel_objects.py). x toward
+/// its nose, y to its left, z up from the ground; m.
 struct TruckPart {
   enum class Shape { kBox, kWheel };
   Shape shape;
