@@ -11,7 +11,7 @@ template <typename Strings>
 std::string join(const Strings& parts, std::string_view separator) {
   std::string text;
   bool is_first = true;
-  for (const auto& part : parts) {
+  for (const std::string_view part : parts) {
     if (!is_first) text += separator;
     text += part;
     is_first = false;

@@ -47,7 +47,7 @@ void write(sqlite3* database, const Table& table) {
   for (const std::string& column : table.columns) columns.push_back(identifier(column));
   execute(database, fmt::format("CREATE TABLE {} ({})", identifier(table.name), join(columns, ", ")));
 
-  const std::vector<char> placeholders(table.columns.size(), '?');
+  const std::vector<std::string> placeholders(table.columns.size(), "?");
   const std::string sql = fmt::format("INSERT INTO {} VALUES ({})", identifier(table.name), join(placeholders, ", "));
   sqlite3_stmt* raw = nullptr;
   check(sqlite3_prepare_v2(database, sql.c_str(), -1, &raw, nullptr) == SQLITE_OK, database);

@@ -84,7 +84,9 @@ std::string shard_command(const SweepOptions& options, const std::filesystem::pa
 std::string shards_with_work(const std::vector<std::size_t>& needed, int num_shards) {
   std::set<std::size_t> shards;
   for (const std::size_t run : needed) shards.insert(run % static_cast<std::size_t>(num_shards) + 1);
-  return join(shards, ",");
+  std::vector<std::string> texts;
+  for (const std::size_t shard : shards) texts.push_back(std::to_string(shard));
+  return join(texts, ",");
 }
 
 ExitCode sweep_on_slurm(const SweepOptions& options, const SweepDirectory& directory, const SweepManifest& manifest) {
