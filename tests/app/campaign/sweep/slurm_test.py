@@ -113,7 +113,8 @@ class Slurm(SweepCase):
 
     def test_a_task_killed_midway_is_submitted_again(self):
         out = self.path / "killed_task"
-        process = self.start(out, *self.vary, "--engine", "slurm", "--slurm-tasks", "2")
+        # One task: the one that has left the first result is the one that is killed, before the next.
+        process = self.start(out, *self.vary, "--engine", "slurm", "--slurm-tasks", "1")
         deadline = time.monotonic() + 60
         while not list((out / "runs").glob("*.json")) and time.monotonic() < deadline:
             time.sleep(0.05)
