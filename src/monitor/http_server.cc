@@ -262,9 +262,10 @@ class HttpServer::Connections {
     HttpRequest request = head_of(parser, connection);
     std::optional<HttpResponse> error_reply = error ? to_error_response(error) : check_framing(parser);
     if (!error_reply) error_reply = handler_.refuse(request);
-    const std::size_t body_bytes =
-        parser.chunked() ? to_bytes(settings_.max_body_mb) : parser.content_length().value_or(0);
-    std::optional<ByteBudget::Claim> body_claim = bodies_.claim(error_reply ? 0 : body_bytes);
+    std::size_t body_bytes = 0;
+    if (!error_reply)  // else the header may be incomplete, and its length unknown
+      body_bytes = parser.chunked() ? to_bytes(settings_.max_body_mb) : parser.content_length().value_or(0);
+    std::optional<ByteBudget::Claim> body_claim = bodies_.claim(body_bytes);
     if (!body_claim) error_reply = busy("too many request bodies");
     if (error_reply) {
       co_await refuse(connection, request, std::move(*error_reply));

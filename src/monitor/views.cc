@@ -126,19 +126,19 @@ class Entry {
   }
 
   void enter_status(const Json& data) {
-    const std::string state = data["state"], scenario = data["scenario"], message = data["message"];
+    const std::string state = data.at("state"), scenario = data.at("scenario"), message = data.at("message");
     // A late start message does not reopen a finished run.
     database_
         .prepared(
             "UPDATE runs SET scenario = ?2, state = CASE WHEN ?3 = 'started' THEN state ELSE ?3 END, "
             "message = CASE WHEN ?3 = 'started' THEN message ELSE ?4 END, "
             "stations = CASE WHEN ?3 = 'started' THEN ?5 ELSE stations END WHERE number = ?1")
-        .bind(run_, scenario, state, message, data["stations"].dump())
+        .bind(run_, scenario, state, message, data.at("stations").dump())
         .run();
   }
 
   void enter_pose(const Json& data, bool is_newest) {
-    const double x = data["x"], y = data["y"], yaw = data["yaw"];
+    const double x = data.at("x"), y = data.at("y"), yaw = data.at("yaw");
     database_.prepared("UPDATE runs SET poses = poses + 1 WHERE number = ?1").bind(run_).run();
     database_.prepared("INSERT INTO poses SELECT ?1, poses - 1, ?2, ?3 FROM runs WHERE number = ?1")
         .bind(run_, x, y)
@@ -159,13 +159,13 @@ class Entry {
   }
 
   void enter_event(const Json& data) {
-    const std::string kind_name = data["kind"], subject = data["subject"];
+    const std::string kind_name = data.at("kind"), subject = data.at("subject");
     const EventKind kind = event_kind_named(kind_name);
-    const Eigen::Vector2d p_map(data["position_m"][0].get<double>(), data["position_m"][1].get<double>());
-    add_finding(finding_level(kind), kind_name, subject, data["text"], p_map);
-    if (kind == EventKind::kGasMeasured && data["value"].is_number()) {
+    const Eigen::Vector2d p_map(data.at("position_m").at(0).get<double>(), data.at("position_m").at(1).get<double>());
+    add_finding(finding_level(kind), kind_name, subject, data.at("text"), p_map);
+    if (kind == EventKind::kGasMeasured && data.at("value").is_number()) {
       database_.prepared("INSERT OR REPLACE INTO gas VALUES (?1, ?2, ?3, ?4, ?5)")
-          .bind(result_.world, subject, made_ms_, run_, data["value"].get<double>())
+          .bind(result_.world, subject, made_ms_, run_, data.at("value").get<double>())
           .run();
     }
     if (kind == EventKind::kGoalSaved) {
