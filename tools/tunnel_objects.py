@@ -148,7 +148,7 @@ def bridge(w):
 
 
 def trench(w):
-    """Barriers beside the bridge, so that nobody drives into the excavation, and rebar in it."""
+    """Barriers between the bridge and the excavation, and rebar in the excavation."""
     for k, (s, side) in enumerate(((130.4, 1), (139.6, 1))):
         for j in range(3):
             with w.at(s, 0.95 + 1.45 * j):

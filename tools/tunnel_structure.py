@@ -24,7 +24,7 @@ INVERT_WIDTH = 12.8  # that its texture covers
 def lining(w):
     """The lined part: a shell 0.45 m thick in rings, the same everywhere, so that a lidar cannot tell one place from another. Its
     inner face is within a millimetre of the design's section, and has corners on both sides of every joint, so that a ring can be
-    moved against its neighbours; nobody sees the outer face, which is coarse."""
+    moved against its neighbours; the outer face is not visible and is coarse."""
     points, normals, along = shape.section(side_steps=13, crown_steps=84)
     joints = np.arange(FIRST_RING, shape.LINED + 0.01, paint.RING)
     stations = np.concatenate([[-1.5], joints - JOINT / 2, joints[:-1] + JOINT / 2, [shape.LINED],
