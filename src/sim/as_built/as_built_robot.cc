@@ -153,7 +153,11 @@ AsBuiltTruth AsBuiltRobot::truth(const std::vector<int>& uwb_anchors) const {
     add(frame + ".pitch_rad", rotation.y());
     add(frame + ".yaw_rad", rotation.z());
   }
-  add("imu.gyro_z_bias_radps", imu_errors.gyro.bias.z());
+  constexpr const char* kAxes[] = {"x", "y", "z"};
+  for (int axis = 0; axis < 3; ++axis) {
+    add(fmt::format("imu.gyro_{}_bias_radps", kAxes[axis]), imu_errors.gyro.bias[axis]);
+    add(fmt::format("imu.accel_{}_bias_mps2", kAxes[axis]), imu_errors.accel.bias[axis]);
+  }
   add("imu.gyro_z_scale", 1.0 + imu_errors.gyro.distortion(2, 2));
   if (nominal_.tracks) {
     add("tracks.left_sprocket_scale", tracks().sprocket_scale[0]);

@@ -170,9 +170,12 @@ Eigen::Vector3d QuadrupedController::touch_down(const TrunkState& trunk, int leg
   const Eigen::Vector2d velocity = trunk.velocity_mps.head<2>();
   const Eigen::Vector2d step =
       (velocity + turning) * gait_.stance_s() / 2.0 + kCaptureTime_s * (velocity - velocity_mps_);
-  // In a turn the ground pushes the feet sideways; this outward offset prevents the trunk from rolling over.
-  const Eigen::Vector2d outwards =
-      -settings_.trunk_height_m / kGravity * yaw_rate_radps_ * Eigen::Vector2d(-velocity.y(), velocity.x());
+  // The ground pushes the feet sideways in a turn, and lastingly when the estimate of the vertical is tilted (bias of
+  // the accelerometer). This offset keeps the push in line with the trunk, which would roll over otherwise. Pitch needs
+  // no offset: the feet are farther apart along x.
+  const Eigen::Vector2d push_mps2 = yaw_rate_radps_ * Eigen::Vector2d(-velocity.y(), velocity.x()) +
+                                    Eigen::Vector2d(0.0, kVelocityIntegral * velocity_integral_.y());
+  const Eigen::Vector2d outwards = -settings_.trunk_height_m / kGravity * push_mps2;
   const Eigen::Vector2d foot = hip + outwards + step.cwiseMax(-0.2).cwiseMin(0.2);
   return {foot.x(), foot.y(), ground_offset_m_ + slope_.dot(foot)};
 }

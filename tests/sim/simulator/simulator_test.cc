@@ -267,5 +267,29 @@ TEST(AsBuilt, PlacementMovesTheStartAndNothingIsDrawnForANominalRobot) {
   EXPECT_NE(values.at("placement.x_m"), 0.0);
 }
 
+/// An accelerometer bias of 0.54 m/s2 across the robot tilts its vertical by 3.1 degrees.
+TEST(AsBuilt, QuadrupedWalksUprightDespiteAnAccelerometerBiasAcrossIt) {
+  SimulatorSettings settings;
+  settings.as_built.enabled = true;
+  settings.as_built.mounting = {.position_m = 0.0, .angle_deg = 0.0};
+  settings.as_built.joints = {.zero_offset_deg = 0.0, .play_deg = 0.0};
+  settings.as_built.legs = {.friction_scale = 0.0};
+  settings.as_built.imu = {.gyro_bias_std_radps = 0.0, .scale_std = 0.0, .misalignment_std_deg = 0.0};
+  ASSERT_NEAR(AsBuiltRobot(settings.as_built, io::load_robot_description(kRobotUrdf), 1).imu().accel.bias.y(), 0.536,
+              0.001);
+  SmallSimulation simulation(kRobotUrdf, make_flat_world(), settings);
+  simulation.run(0.0, 1.0);
+  simulation.run(0.8, 5.0);
+  double sum_deg = 0.0;
+  constexpr int kTicks = 5000;
+  for (int tick = 0; tick < kTicks; ++tick) {
+    simulation->step();
+    const Eigen::Vector3d left = simulation->truth().T_world_body.rotation * Eigen::Vector3d::UnitY();
+    sum_deg += to_deg(std::asin(left.z()));
+  }
+  EXPECT_FALSE(simulation->has_fallen());
+  EXPECT_NEAR(sum_deg / kTicks, 0.0, 5.0);
+}
+
 }  // namespace
 }  // namespace patrol::sim::simulator_test
