@@ -1,5 +1,7 @@
 #include "score/run_score.h"
 
+#include "score/live_trajectory.h"
+
 namespace patrol::score {
 namespace {
 
@@ -10,12 +12,27 @@ NavigationScore navigation_score(const RunRecord& record, const RunReferences& r
           .clearance = driven_clearance(record.T_world_body, references.footprint_m, references.map.cells)};
 }
 
-std::optional<KnownMapScore> known_map_score(const RunRecord& record, const RunReferences& references,
-                                             const Pose2& T_world_map) {
+/// Estimates of a run on the common clock.
+struct LiveEstimates {
+  Trajectory T_map_body, T_map_body_by_ranges, T_odom_body;
+};
+
+LiveEstimates live_estimates(const RunRecord& record) {
+  const Time end = record.T_world_body.back().stamp;
+  const ReceivedPoses odometry{record.T_odom_body, record.T_odom_body_received};
+  return {.T_map_body = live_trajectory({record.T_map_body, record.T_map_body_received}, odometry, end),
+          .T_map_body_by_ranges =
+              live_trajectory({record.T_map_body_by_ranges, record.T_map_body_by_ranges_received}, odometry, end),
+          .T_odom_body = live_odometry(odometry, end)};
+}
+
+std::optional<KnownMapScore> known_map_score(const RunRecord& record, const Trajectory& live_T_map_body,
+                                             const RunReferences& references, const Pose2& T_world_map) {
   if (record.confidences.empty()) return std::nullopt;
-  std::vector<MatchedPose> matched = pair_poses(record.T_map_body, T_world_map, record.T_world_body);
+  std::vector<MatchedPose> matched = pair_poses(live_T_map_body, T_world_map, record.T_world_body);
   std::erase_if(matched, [&](const MatchedPose& pose) { return pose.stamp < record.confidences.front().stamp; });
-  KnownMapScore score{.localization = localization_score(matched, record.confidences), .kidnaps = {}};
+  KnownMapScore score{.localization = localization_score(matched, record.confidences),
+                      .kidnaps = {}};
   for (const Time kidnapped : references.kidnaps)
     score.kidnaps.push_back(relocalization_score(kidnapped, matched, record.confidences));
   return score;
@@ -47,11 +64,13 @@ EstimateScore estimate_score(const RunRecord& record, const RunReferences& refer
   const Trajectory& truth = record.T_world_body;
   // A given map has its origin where the survey says; a map of the run has it where the robot truly started.
   const Pose2 T_world_map = references.T_world_map ? *references.T_world_map : align_at_start(record.T_map_body, truth);
+  const LiveEstimates live = live_estimates(record);
   EstimateScore score{
       .T_world_map = T_world_map,
-      .pose = trajectory_error(record.T_map_body, T_world_map, truth),
+      .pose = trajectory_error(live.T_map_body, T_world_map, truth),
+      .pose_coverage = time_coverage(timely_poses({record.T_map_body, record.T_map_body_received}), truth),
       .aligned_pose = aligned_error(record.T_map_body, truth),
-      .odometry = trajectory_error(record.T_odom_body, align_at_start(record.T_odom_body, truth), truth),
+      .odometry = trajectory_error(live.T_odom_body, align_at_start(record.T_odom_body, truth), truth),
       .map = map_error(record.map, T_world_map, references.map),
       .map_agreement = references.map_agreement,
       .localizability = track_localizability(record, T_world_map, references.localizability),
@@ -60,13 +79,13 @@ EstimateScore estimate_score(const RunRecord& record, const RunReferences& refer
       .goals = goal_errors(record.events, references.goals, T_world_map, truth),
       .docking = {},
       .range_pose = {},
-      .known_map = known_map_score(record, references, T_world_map),
+      .known_map = known_map_score(record, live.T_map_body, references, T_world_map),
       .inspection = {},
       .lining = {},
       .water = {}};
   if (references.route.dock) score.docking = docking_error(record.events, references.route.dock->T_route_docked, truth);
   if (!record.T_map_body_by_ranges.empty())
-    score.range_pose = trajectory_error(record.T_map_body_by_ranges, T_world_map, truth);
+    score.range_pose = trajectory_error(live.T_map_body_by_ranges, T_world_map, truth);
   add_inspection(record, references, score);
   return score;
 }

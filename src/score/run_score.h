@@ -60,8 +60,9 @@ struct KnownMapScore {
 
 /// Scores that need an estimate and a map.
 struct EstimateScore {
-  Pose2 T_world_map;  ///< pose of the map's frame that the scores use
-  TrajectoryError pose;
+  Pose2 T_world_map;           ///< pose of the map's frame that the scores use
+  TrajectoryError pose;        ///< on the common clock (live_trajectory.h), as are `odometry` and `range_pose`
+  double pose_coverage = 0.0;  ///< fraction of the run within 0.2 s of a timely pose (live_trajectory.h)
   AlignedError aligned_pose;
   TrajectoryError odometry;
   MapError map;

@@ -241,6 +241,7 @@ io::Metrics to_json(const score::RunScore& run) {
   if (!run.estimate) return metrics;
   const score::EstimateScore& score = *run.estimate;
   metrics["pose"] = to_json(score.pose);
+  metrics["pose"]["coverage"] = score.pose_coverage;
   metrics["pose"]["aligned"] = to_json(score.aligned_pose);
   metrics["odometry"] = to_json(score.odometry);
   metrics["map"] = to_json(score.map);
