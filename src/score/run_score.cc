@@ -69,6 +69,7 @@ EstimateScore estimate_score(const RunRecord& record, const RunReferences& refer
       .T_world_map = T_world_map,
       .pose = trajectory_error(live.T_map_body, T_world_map, truth),
       .pose_coverage = time_coverage(timely_poses({record.T_map_body, record.T_map_body_received}), truth),
+      .nees = pose_nees(record.T_map_body, record.covariances, T_world_map, truth),
       .aligned_pose = aligned_error(record.T_map_body, truth),
       .odometry = trajectory_error(live.T_odom_body, align_at_start(record.T_odom_body, truth), truth),
       .map = map_error(record.map, T_world_map, references.map),

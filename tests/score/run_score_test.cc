@@ -73,6 +73,8 @@ TEST(EstimateScore, OfAPerfectRunHasNoErrorAndOnlyThePartsThatTheLogHas) {
   EXPECT_NEAR(score.pose.ate_rmse_m, 0.0, 1e-9);
   EXPECT_NEAR(score.odometry.ate_rmse_m, 0.0, 1e-9);
   EXPECT_NEAR(score.pose_coverage, 1.0, 1e-9);
+  EXPECT_EQ(score.nees.num_instants, 41U);
+  EXPECT_NEAR(score.nees.mean, 0.0, 1e-9);
   EXPECT_NEAR(score.map.nearest_mean_m, 0.0, 1e-9);
   EXPECT_EQ(score.navigation.num_detours, 1U);
   EXPECT_EQ(score.navigation.num_recoveries, 2U);
@@ -93,6 +95,7 @@ TEST(EstimateScore, ScoresASilentEstimatorByItsLastCorrectionAndOdometryToTheEnd
   EXPECT_EQ(score.pose.num_poses, 41U);
   EXPECT_NEAR(score.pose.ate_max_m, 0.015, 1e-9);
   EXPECT_NEAR(score.pose_coverage, 2.7 / 4.0, 1e-9);
+  EXPECT_EQ(score.nees.num_instants, 26U);
 }
 
 TEST(EstimateScore, ScoresTheLocalizationOverItsSilence) {

@@ -50,6 +50,16 @@ io::Metrics to_json(const score::AlignedError& error) {
   return metrics;
 }
 
+io::Metrics to_json(const score::PoseNees& score) {
+  io::Metrics metrics;
+  metrics["mean"] = if_found(score.has_mean(), score.mean);
+  metrics["per_dimension"] = if_found(score.has_mean(), score.per_dimension());
+  metrics["within_95"] = if_found(score.num_instants > 0, score.within_95);
+  metrics["instants"] = score.num_instants;
+  metrics["singular"] = score.num_singular;
+  return metrics;
+}
+
 io::Metrics to_json(const score::MapError& error) {
   io::Metrics metrics;
   metrics["nearest_mean_m"] = error.nearest_mean_m;
@@ -243,6 +253,7 @@ io::Metrics to_json(const score::RunScore& run) {
   metrics["pose"] = to_json(score.pose);
   metrics["pose"]["coverage"] = score.pose_coverage;
   metrics["pose"]["aligned"] = to_json(score.aligned_pose);
+  metrics["pose"]["nees"] = to_json(score.nees);
   metrics["odometry"] = to_json(score.odometry);
   metrics["map"] = to_json(score.map);
   metrics["map"]["origin_in_world"] = pose_json(score.T_world_map);
