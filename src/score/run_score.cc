@@ -31,7 +31,7 @@ std::optional<KnownMapScore> known_map_score(const RunRecord& record, const Traj
   if (record.confidences.empty()) return std::nullopt;
   std::vector<MatchedPose> matched = pair_poses(live_T_map_body, T_world_map, record.T_world_body);
   std::erase_if(matched, [&](const MatchedPose& pose) { return pose.stamp < record.confidences.front().stamp; });
-  KnownMapScore score{.localization = localization_score(matched, record.confidences),
+  KnownMapScore score{.localization = localization_score(matched, record.confidences, record.T_world_body.back().stamp),
                       .kidnaps = {}};
   for (const Time kidnapped : references.kidnaps)
     score.kidnaps.push_back(relocalization_score(kidnapped, matched, record.confidences));

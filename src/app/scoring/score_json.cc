@@ -119,6 +119,7 @@ io::Metrics to_json(const score::GoalError& error) {
 io::Metrics to_json(const score::LocalizationScore& score) {
   io::Metrics metrics;
   metrics["max_error_m"] = score.max_error_m;
+  metrics["max_error_with_lost_m"] = score.max_error_with_lost_m;
   metrics["min_trust"] = score.min_confidence;
   metrics["doubted_s"] = optional_json(score.low_confidence_at_s);
   metrics["strayed_s"] = optional_json(score.error_exceeded_at_s);
