@@ -1,5 +1,8 @@
 #include "score/run_score.h"
 
+#include <limits>
+
+#include "core/error.h"
 #include "score/live_trajectory.h"
 
 namespace patrol::score {
@@ -24,6 +27,23 @@ LiveEstimates live_estimates(const RunRecord& record) {
           .T_map_body_by_ranges =
               live_trajectory({record.T_map_body_by_ranges, record.T_map_body_by_ranges_received}, odometry, end),
           .T_odom_body = live_odometry(odometry, end)};
+}
+
+/// None when the estimate allows no fit.
+std::optional<AlignedError> aligned_if_possible(const Trajectory& estimate, const Trajectory& reference) {
+  try {
+    return aligned_error(estimate, reference);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+/// Error of the run's map. A map without occupied cells covers nothing and has no distances.
+MapError run_map_error(const OccupancyGrid& built, const Pose2& T_world_map, const ReferenceMap& reference) {
+  if (!occupied_points(built).empty()) return map_error(built, T_world_map, reference);
+  MapError error;
+  error.cells_m = Grid<float>(built.geometry(), std::numeric_limits<float>::quiet_NaN());
+  return error;
 }
 
 std::optional<KnownMapScore> known_map_score(const RunRecord& record, const Trajectory& live_T_map_body,
@@ -70,9 +90,9 @@ EstimateScore estimate_score(const RunRecord& record, const RunReferences& refer
       .pose = trajectory_error(live.T_map_body, T_world_map, truth),
       .pose_coverage = time_coverage(timely_poses({record.T_map_body, record.T_map_body_received}), truth),
       .nees = pose_nees(record.T_map_body, record.covariances, T_world_map, truth),
-      .aligned_pose = aligned_error(record.T_map_body, truth),
+      .aligned_pose = aligned_if_possible(record.T_map_body, truth),
       .odometry = trajectory_error(live.T_odom_body, align_at_start(record.T_odom_body, truth), truth),
-      .map = map_error(record.map, T_world_map, references.map),
+      .map = run_map_error(record.map, T_world_map, references.map),
       .map_agreement = references.map_agreement,
       .localizability = track_localizability(record, T_world_map, references.localizability),
       .navigation = navigation_score(record, references),

@@ -65,7 +65,7 @@ struct EstimateScore {
   TrajectoryError pose;        ///< on the common clock (live_trajectory.h), as are `odometry` and `range_pose`
   double pose_coverage = 0.0;  ///< fraction of the run within 0.2 s of a timely pose (live_trajectory.h)
   PoseNees nees;
-  AlignedError aligned_pose;
+  std::optional<AlignedError> aligned_pose;  ///< none when no fit is possible, e.g. of an estimate that never moves
   TrajectoryError odometry;
   MapError map;
   double map_agreement = 0.0;

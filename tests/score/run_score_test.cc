@@ -1,6 +1,7 @@
 #include "score/run_score.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <gtest/gtest.h>
 
@@ -109,6 +110,24 @@ TEST(EstimateScore, ScoresTheLocalizationOverItsSilence) {
   ASSERT_TRUE(score.known_map);
   EXPECT_NEAR(score.known_map->localization.max_error_m, 1.5, 1e-9) << "held at (2, 0.5), truth at (2, 2)";
   EXPECT_NEAR(*score.known_map->localization.error_exceeded_at_s, 3.05, 0.06);
+}
+
+TEST(EstimateScore, OfAnEmptyMapCoversNothingAndHasNoDistances) {
+  RunRecord record = perfect_run();
+  record.map = OccupancyGrid(record.map.geometry(), kFree);
+  const MapError error = estimate_score(record, wall_references()).map;
+  EXPECT_EQ(error.num_occupied, 0U);
+  EXPECT_EQ(error.coverage, 0.0);
+  EXPECT_EQ(error.iou, 0.0);
+  EXPECT_EQ(error.cells_m.values().size(), record.map.values().size());
+}
+
+TEST(EstimateScore, OfAnEstimateThatNeverMovesHasEveryErrorButTheFittedOne) {
+  RunRecord record = perfect_run();
+  for (StampedPose& pose : record.T_map_body) pose.pose = {};
+  const EstimateScore score = estimate_score(record, wall_references());
+  EXPECT_FALSE(score.aligned_pose);
+  EXPECT_NEAR(score.pose.ate_max_m, std::sqrt(8.0), 1e-9);
 }
 
 TEST(EstimateScore, PlacesAGivenMapWhereTheSurveySays) {

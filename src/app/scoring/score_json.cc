@@ -62,9 +62,10 @@ io::Metrics to_json(const score::PoseNees& score) {
 
 io::Metrics to_json(const score::MapError& error) {
   io::Metrics metrics;
-  metrics["nearest_mean_m"] = error.nearest_mean_m;
-  metrics["nearest_var_m2"] = error.nearest_var_m2;
-  metrics["nearest_p95_m"] = error.nearest_p95_m;
+  const bool has_cells = error.num_occupied > 0;
+  metrics["nearest_mean_m"] = if_found(has_cells, error.nearest_mean_m);
+  metrics["nearest_var_m2"] = if_found(has_cells, error.nearest_var_m2);
+  metrics["nearest_p95_m"] = if_found(has_cells, error.nearest_p95_m);
   metrics["coverage"] = error.coverage;
   metrics["iou"] = error.iou;
   metrics["occupied_cells"] = error.num_occupied;
@@ -253,7 +254,7 @@ io::Metrics to_json(const score::RunScore& run) {
   const score::EstimateScore& score = *run.estimate;
   metrics["pose"] = to_json(score.pose);
   metrics["pose"]["coverage"] = score.pose_coverage;
-  metrics["pose"]["aligned"] = to_json(score.aligned_pose);
+  metrics["pose"]["aligned"] = score.aligned_pose ? to_json(*score.aligned_pose) : io::Metrics();
   metrics["pose"]["nees"] = to_json(score.nees);
   metrics["odometry"] = to_json(score.odometry);
   metrics["map"] = to_json(score.map);
