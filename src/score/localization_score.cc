@@ -22,16 +22,18 @@ const LocalizationConfidence* newest_confidence(const std::vector<LocalizationCo
 }  // namespace
 
 LocalizationScore localization_score(const std::vector<MatchedPose>& matched,
-                                     const std::vector<LocalizationConfidence>& confidences) {
+                                     const std::vector<LocalizationConfidence>& confidences, Time end) {
   LocalizationScore score;
   for (std::size_t i = 0; i < confidences.size(); ++i) {
     score.min_confidence = std::min(score.min_confidence, confidences[i].confidence);
     if (confidences[i].confidence < kLowConfidence && !score.low_confidence_at_s)
       score.low_confidence_at_s = to_seconds(confidences[i].stamp);
-    if (confidences[i].is_lost && i + 1 < confidences.size())
-      score.lost_s += to_seconds(confidences[i + 1].stamp - confidences[i].stamp);
+    if (!confidences[i].is_lost) continue;
+    const Time until = i + 1 < confidences.size() ? confidences[i + 1].stamp : std::max(end, confidences[i].stamp);
+    score.lost_s += to_seconds(until - confidences[i].stamp);
   }
   for (const MatchedPose& pose : matched) {
+    score.max_error_with_lost_m = std::max(score.max_error_with_lost_m, pose.position_error_m());
     const LocalizationConfidence* confidence = newest_confidence(confidences, pose.stamp);
     if (confidence == nullptr || confidence->is_lost) continue;
     score.max_error_m = std::max(score.max_error_m, pose.position_error_m());

@@ -13,11 +13,14 @@ namespace patrol::score {
 
 /// Messages of a run's log that its score is computed from.
 struct RunRecord {
-  Trajectory T_map_body;                     ///< estimate of the stack
-  std::vector<Eigen::Matrix3d> covariances;  ///< [pose of T_map_body]: of x, y, yaw in map; m, m, rad
-  Trajectory T_map_body_by_ranges;           ///< estimate by odometry and UWB ranges, if the stack has one
+  Trajectory T_map_body;                            ///< estimate of the stack
+  std::vector<Time> T_map_body_received;            ///< [pose of T_map_body]: log time
+  std::vector<Eigen::Matrix3d> covariances;         ///< [pose of T_map_body]: of x, y, yaw in map; m, m, rad
+  Trajectory T_map_body_by_ranges;                  ///< estimate by odometry and UWB ranges, if the stack has one
+  std::vector<Time> T_map_body_by_ranges_received;  ///< [pose of T_map_body_by_ranges]: log time
   Trajectory T_odom_body;
-  Trajectory T_world_body;  ///< ground truth
+  std::vector<Time> T_odom_body_received;  ///< [pose of T_odom_body]: log time
+  Trajectory T_world_body;                 ///< ground truth
   std::vector<Event> events;
   std::vector<LocalizationConfidence> confidences;
   std::vector<TeleopCommand> teleop;

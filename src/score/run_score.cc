@@ -1,5 +1,10 @@
 #include "score/run_score.h"
 
+#include <limits>
+
+#include "core/error.h"
+#include "score/live_trajectory.h"
+
 namespace patrol::score {
 namespace {
 
@@ -10,12 +15,44 @@ NavigationScore navigation_score(const RunRecord& record, const RunReferences& r
           .clearance = driven_clearance(record.T_world_body, references.footprint_m, references.map.cells)};
 }
 
-std::optional<KnownMapScore> known_map_score(const RunRecord& record, const RunReferences& references,
-                                             const Pose2& T_world_map) {
+/// Estimates of a run on the common clock.
+struct LiveEstimates {
+  Trajectory T_map_body, T_map_body_by_ranges, T_odom_body;
+};
+
+LiveEstimates live_estimates(const RunRecord& record) {
+  const Time end = record.T_world_body.back().stamp;
+  const ReceivedPoses odometry{record.T_odom_body, record.T_odom_body_received};
+  return {.T_map_body = live_trajectory({record.T_map_body, record.T_map_body_received}, odometry, end),
+          .T_map_body_by_ranges =
+              live_trajectory({record.T_map_body_by_ranges, record.T_map_body_by_ranges_received}, odometry, end),
+          .T_odom_body = live_odometry(odometry, end)};
+}
+
+/// None when the estimate allows no fit.
+std::optional<AlignedError> aligned_if_possible(const Trajectory& estimate, const Trajectory& reference) {
+  try {
+    return aligned_error(estimate, reference);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+/// Error of the run's map. A map without occupied cells covers nothing and has no distances.
+MapError run_map_error(const OccupancyGrid& built, const Pose2& T_world_map, const ReferenceMap& reference) {
+  if (!occupied_points(built).empty()) return map_error(built, T_world_map, reference);
+  MapError error;
+  error.cells_m = Grid<float>(built.geometry(), std::numeric_limits<float>::quiet_NaN());
+  return error;
+}
+
+std::optional<KnownMapScore> known_map_score(const RunRecord& record, const Trajectory& live_T_map_body,
+                                             const RunReferences& references, const Pose2& T_world_map) {
   if (record.confidences.empty()) return std::nullopt;
-  std::vector<MatchedPose> matched = pair_poses(record.T_map_body, T_world_map, record.T_world_body);
+  std::vector<MatchedPose> matched = pair_poses(live_T_map_body, T_world_map, record.T_world_body);
   std::erase_if(matched, [&](const MatchedPose& pose) { return pose.stamp < record.confidences.front().stamp; });
-  KnownMapScore score{.localization = localization_score(matched, record.confidences), .kidnaps = {}};
+  KnownMapScore score{.localization = localization_score(matched, record.confidences, record.T_world_body.back().stamp),
+                      .kidnaps = {}};
   for (const Time kidnapped : references.kidnaps)
     score.kidnaps.push_back(relocalization_score(kidnapped, matched, record.confidences));
   return score;
@@ -47,12 +84,15 @@ EstimateScore estimate_score(const RunRecord& record, const RunReferences& refer
   const Trajectory& truth = record.T_world_body;
   // A given map has its origin where the survey says; a map of the run has it where the robot truly started.
   const Pose2 T_world_map = references.T_world_map ? *references.T_world_map : align_at_start(record.T_map_body, truth);
+  const LiveEstimates live = live_estimates(record);
   EstimateScore score{
       .T_world_map = T_world_map,
-      .pose = trajectory_error(record.T_map_body, T_world_map, truth),
-      .aligned_pose = aligned_error(record.T_map_body, truth),
-      .odometry = trajectory_error(record.T_odom_body, align_at_start(record.T_odom_body, truth), truth),
-      .map = map_error(record.map, T_world_map, references.map),
+      .pose = trajectory_error(live.T_map_body, T_world_map, truth),
+      .pose_coverage = time_coverage(timely_poses({record.T_map_body, record.T_map_body_received}), truth),
+      .nees = pose_nees(record.T_map_body, record.covariances, T_world_map, truth),
+      .aligned_pose = aligned_if_possible(record.T_map_body, truth),
+      .odometry = trajectory_error(live.T_odom_body, align_at_start(record.T_odom_body, truth), truth),
+      .map = run_map_error(record.map, T_world_map, references.map),
       .map_agreement = references.map_agreement,
       .localizability = track_localizability(record, T_world_map, references.localizability),
       .navigation = navigation_score(record, references),
@@ -60,13 +100,13 @@ EstimateScore estimate_score(const RunRecord& record, const RunReferences& refer
       .goals = goal_errors(record.events, references.goals, T_world_map, truth),
       .docking = {},
       .range_pose = {},
-      .known_map = known_map_score(record, references, T_world_map),
+      .known_map = known_map_score(record, live.T_map_body, references, T_world_map),
       .inspection = {},
       .lining = {},
       .water = {}};
   if (references.route.dock) score.docking = docking_error(record.events, references.route.dock->T_route_docked, truth);
   if (!record.T_map_body_by_ranges.empty())
-    score.range_pose = trajectory_error(record.T_map_body_by_ranges, T_world_map, truth);
+    score.range_pose = trajectory_error(live.T_map_body_by_ranges, T_world_map, truth);
   add_inspection(record, references, score);
   return score;
 }

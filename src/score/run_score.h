@@ -11,6 +11,7 @@
 #include "score/localizability_track.h"
 #include "score/localization_score.h"
 #include "score/map_error.h"
+#include "score/pose_nees.h"
 #include "score/run_record.h"
 #include "score/station_error.h"
 #include "score/trajectory_error.h"
@@ -60,9 +61,11 @@ struct KnownMapScore {
 
 /// Scores that need an estimate and a map.
 struct EstimateScore {
-  Pose2 T_world_map;  ///< pose of the map's frame that the scores use
-  TrajectoryError pose;
-  AlignedError aligned_pose;
+  Pose2 T_world_map;           ///< pose of the map's frame that the scores use
+  TrajectoryError pose;        ///< on the common clock (live_trajectory.h), as are `odometry` and `range_pose`
+  double pose_coverage = 0.0;  ///< fraction of the run within 0.2 s of a timely pose (live_trajectory.h)
+  PoseNees nees;
+  std::optional<AlignedError> aligned_pose;  ///< none when no fit is possible, e.g. of an estimate that never moves
   TrajectoryError odometry;
   MapError map;
   double map_agreement = 0.0;

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kSegment_m = 1.0;
 constexpr Time kMaxStampDifference = std::chrono::milliseconds(10);
+constexpr Time kCoveredWithin = std::chrono::milliseconds(200);
 
 struct RelativeError {
   std::vector<double> translation_m;
@@ -134,6 +135,24 @@ TrajectoryError trajectory_error(const Trajectory& T_map_body, const Pose2& T_wo
           .heading_rmse_deg = kDegPerRad * root_mean_square(heading_rad),
           .rpe_trans_1m_m = root_mean_square(relative.translation_m),
           .rpe_rot_1m_deg = kDegPerRad * root_mean_square(relative.rotation_rad)};
+}
+
+double time_coverage(const Trajectory& estimate, const Trajectory& reference) {
+  if (reference.empty()) return 0.0;
+  const Time begin = reference.front().stamp, end = reference.back().stamp;
+  Time covered{}, covered_until = begin;
+  bool is_any_near = false;
+  for (const StampedPose& pose : estimate) {
+    if (pose.stamp + kCoveredWithin < begin || pose.stamp - kCoveredWithin > end) continue;
+    is_any_near = true;
+    const Time from = std::max(covered_until, pose.stamp - kCoveredWithin);
+    const Time until = std::min(end, pose.stamp + kCoveredWithin);
+    if (until <= from) continue;
+    covered += until - from;
+    covered_until = until;
+  }
+  if (begin == end) return is_any_near ? 1.0 : 0.0;
+  return to_seconds(covered) / to_seconds(end - begin);
 }
 
 AlignedError aligned_error(const Trajectory& estimate, const Trajectory& reference) {

@@ -42,6 +42,10 @@ struct TrajectoryError {
 TrajectoryError trajectory_error(const Trajectory& T_map_body, const Pose2& T_world_map,
                                  const Trajectory& T_world_body);
 
+/// Fraction of the reference's time span that lies within 0.2 s of a pose of the estimate. 0 for an empty estimate. The
+/// errors above do not see the rest of the span.
+double time_coverage(const Trajectory& estimate, const Trajectory& reference);
+
 /// Trajectory error after the best rigid motion in space of the estimate to the reference ([Umeyama91], without scale).
 /// For comparison with published values: equals the output of `evo_ape tum reference estimate --align`. Pairs are
 /// formed as in evo: each pose of the shorter trajectory with the nearest stamp of the other, at most 10 ms apart.

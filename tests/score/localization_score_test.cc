@@ -16,8 +16,9 @@ LocalizationConfidence confidence(Time stamp, double value, bool is_lost = false
 }
 
 TEST(LocalizationScore, SaysWhenItDoubtedAndWhenItStrayed) {
-  const LocalizationScore score = localization_score({off_by(1s, 0.1), off_by(2s, 0.4), off_by(3s, 0.6)},
-                                                     {confidence(1s, 0.9), confidence(2s, 0.4), confidence(3s, 0.3)});
+  const LocalizationScore score =
+      localization_score({off_by(1s, 0.1), off_by(2s, 0.4), off_by(3s, 0.6)},
+                         {confidence(1s, 0.9), confidence(2s, 0.4), confidence(3s, 0.3)}, 4s);
   EXPECT_DOUBLE_EQ(score.max_error_m, 0.6);
   EXPECT_DOUBLE_EQ(score.min_confidence, 0.3);
   EXPECT_DOUBLE_EQ(*score.low_confidence_at_s, 2.0);
@@ -28,10 +29,17 @@ TEST(LocalizationScore, SaysWhenItDoubtedAndWhenItStrayed) {
 TEST(LocalizationScore, WhatItSaysItDoesNotKnowIsNotHeldAgainstIt) {
   const LocalizationScore score =
       localization_score({off_by(1s, 0.1), off_by(2s, 9.0), off_by(4s, 0.2)},
-                         {confidence(1s, 0.9), confidence(2s, 0.0, true), confidence(4s, 0.9)});
+                         {confidence(1s, 0.9), confidence(2s, 0.0, true), confidence(4s, 0.9)}, 5s);
   EXPECT_DOUBLE_EQ(score.max_error_m, 0.2);
+  EXPECT_DOUBLE_EQ(score.max_error_with_lost_m, 9.0);
   EXPECT_FALSE(score.error_exceeded_at_s.has_value());
   EXPECT_DOUBLE_EQ(score.lost_s, 2.0);
+}
+
+TEST(LocalizationScore, CountsLostTimeUpToTheEndOfTheRunWhenNoReportFollows) {
+  const std::vector<LocalizationConfidence> confidences = {confidence(1s, 0.9), confidence(3s, 0.0, true)};
+  EXPECT_DOUBLE_EQ(localization_score({off_by(1s, 0.1)}, confidences, 10s).lost_s, 7.0);
+  EXPECT_DOUBLE_EQ(localization_score({off_by(1s, 0.1)}, confidences, 2s).lost_s, 0.0) << "the end precedes the report";
 }
 
 TEST(RelocalizationScore, CountsFromTheKidnapToThePlaceThatItKeeps) {

@@ -1,6 +1,7 @@
 #include "score/run_score.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <gtest/gtest.h>
 
@@ -25,6 +26,8 @@ RunRecord perfect_run() {
     record.T_world_body.push_back(pose);
     record.T_map_body.push_back(pose);
     record.T_odom_body.push_back(pose);
+    record.T_map_body_received.push_back(pose.stamp);
+    record.T_odom_body_received.push_back(pose.stamp);
     record.covariances.push_back(Eigen::Matrix3d::Identity());
   }
   record.map = wall_map();
@@ -70,12 +73,61 @@ TEST(EstimateScore, OfAPerfectRunHasNoErrorAndOnlyThePartsThatTheLogHas) {
   const EstimateScore score = estimate_score(record, wall_references());
   EXPECT_NEAR(score.pose.ate_rmse_m, 0.0, 1e-9);
   EXPECT_NEAR(score.odometry.ate_rmse_m, 0.0, 1e-9);
+  EXPECT_NEAR(score.pose_coverage, 1.0, 1e-9);
+  EXPECT_EQ(score.nees.num_instants, 41U);
+  EXPECT_NEAR(score.nees.mean, 0.0, 1e-9);
   EXPECT_NEAR(score.map.nearest_mean_m, 0.0, 1e-9);
   EXPECT_EQ(score.navigation.num_detours, 1U);
   EXPECT_EQ(score.navigation.num_recoveries, 2U);
   EXPECT_EQ(score.localizability.size(), 9U) << "two a second";
   EXPECT_FALSE(score.docking || score.range_pose || score.known_map || score.lining || score.water);
   EXPECT_TRUE(score.goals.empty());
+}
+
+// Estimates end at 2.5 s, odometry goes on with 1 % of scale error: at the end 1 % of the 1.5 m from (2, 0.5) to (2,
+// 2).
+TEST(EstimateScore, ScoresASilentEstimatorByItsLastCorrectionAndOdometryToTheEnd) {
+  RunRecord record = perfect_run();
+  for (StampedPose& pose : record.T_odom_body) pose.pose.position *= 1.01;
+  record.T_map_body.resize(26);
+  record.T_map_body_received.resize(26);
+  record.covariances.resize(26);
+  const EstimateScore score = estimate_score(record, wall_references());
+  EXPECT_EQ(score.pose.num_poses, 41U);
+  EXPECT_NEAR(score.pose.ate_max_m, 0.015, 1e-9);
+  EXPECT_NEAR(score.pose_coverage, 2.7 / 4.0, 1e-9);
+  EXPECT_EQ(score.nees.num_instants, 26U);
+}
+
+TEST(EstimateScore, ScoresTheLocalizationOverItsSilence) {
+  RunRecord record = perfect_run();
+  record.confidences = {{.stamp = 0s, .confidence = 0.9}};
+  record.T_map_body.resize(26);
+  record.T_map_body_received.resize(26);
+  record.T_odom_body.resize(26);
+  record.T_odom_body_received.resize(26);
+  const EstimateScore score = estimate_score(record, wall_references());
+  ASSERT_TRUE(score.known_map);
+  EXPECT_NEAR(score.known_map->localization.max_error_m, 1.5, 1e-9) << "held at (2, 0.5), truth at (2, 2)";
+  EXPECT_NEAR(*score.known_map->localization.error_exceeded_at_s, 3.05, 0.06);
+}
+
+TEST(EstimateScore, OfAnEmptyMapCoversNothingAndHasNoDistances) {
+  RunRecord record = perfect_run();
+  record.map = OccupancyGrid(record.map.geometry(), kFree);
+  const MapError error = estimate_score(record, wall_references()).map;
+  EXPECT_EQ(error.num_occupied, 0U);
+  EXPECT_EQ(error.coverage, 0.0);
+  EXPECT_EQ(error.iou, 0.0);
+  EXPECT_EQ(error.cells_m.values().size(), record.map.values().size());
+}
+
+TEST(EstimateScore, OfAnEstimateThatNeverMovesHasEveryErrorButTheFittedOne) {
+  RunRecord record = perfect_run();
+  for (StampedPose& pose : record.T_map_body) pose.pose = {};
+  const EstimateScore score = estimate_score(record, wall_references());
+  EXPECT_FALSE(score.aligned_pose);
+  EXPECT_NEAR(score.pose.ate_max_m, std::sqrt(8.0), 1e-9);
 }
 
 TEST(EstimateScore, PlacesAGivenMapWhereTheSurveySays) {

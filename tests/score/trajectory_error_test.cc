@@ -136,6 +136,31 @@ TEST(TrajectoryError, WithoutACommonInstantIsRefused) {
   EXPECT_THROW(trajectory_error({}, {}, walk), InputError);
 }
 
+/// Poses every 0.1 s from one time to another.
+Trajectory poses_between(double from_s, double to_s) {
+  Trajectory trajectory;
+  for (int i = 0; 0.1 * i <= to_s - from_s + 1e-9; ++i) trajectory.push_back({from_seconds(from_s + 0.1 * i), {}});
+  return trajectory;
+}
+
+TEST(TimeCoverage, IsTheFractionOfTheReferencesTimeWithinAFifthOfASecondOfAPose) {
+  const Trajectory reference = poses_between(0.0, 10.0);
+  EXPECT_NEAR(time_coverage(reference, reference), 1.0, kExactTol);
+  EXPECT_NEAR(time_coverage(poses_between(2.0, 6.0), reference), 0.44, kExactTol);
+  EXPECT_NEAR(time_coverage(poses_between(5.0, 5.0), reference), 0.04, kExactTol);
+  EXPECT_NEAR(time_coverage(poses_between(9.0, 20.0), reference), 0.12, kExactTol);
+  EXPECT_NEAR(time_coverage(poses_between(-5.0, 0.1), reference), 0.03, kExactTol);
+  EXPECT_EQ(time_coverage(poses_between(11.0, 12.0), reference), 0.0);
+  EXPECT_EQ(time_coverage({}, reference), 0.0);
+}
+
+TEST(TimeCoverage, ASilenceOfThreeSecondsIsMissingButForTheFifthsAtItsEnds) {
+  const Trajectory reference = poses_between(0.0, 10.0);
+  Trajectory estimate = poses_between(0.0, 4.0);
+  for (const StampedPose& pose : poses_between(7.0, 10.0)) estimate.push_back(pose);
+  EXPECT_NEAR(time_coverage(estimate, reference), 1.0 - 0.26, kExactTol);
+}
+
 /// Moves every pose by a rigid motion in space.
 Trajectory moved(const Trajectory& trajectory, const Pose3& T) {
   Trajectory result;

@@ -194,8 +194,15 @@ void add_fault_matrix(CLI::App& app, Call& call) {
   CLI::App* command = app.add_subcommand("fault-matrix", "Inject every fault into every sensor");
   command->alias("faults");
   add_variants(*command, faults, "Metric to compare with the fault-free run (repeatable)");
+  command->add_option("--fault", faults.faults, "Only this fault, e.g. 'lidar: dropout' (repeatable)")->take_all();
   command->add_option("--start-s", faults.start_s, "Fault onset, s")->capture_default_str();
   command->add_option("--duration-s", faults.duration_s, "Fault duration, s")->capture_default_str();
+  command->add_option("--max-error-m", faults.max_error_m, "Largest position error of a survived run, m")
+      ->capture_default_str();
+  command->add_option("--min-map-coverage", faults.min_map_coverage, "Smallest map coverage of a survived run")
+      ->capture_default_str();
+  command->add_option("--max-lost-s", faults.max_lost_s, "Longest time reported lost on a given map, s")
+      ->capture_default_str();
   command->callback([&] { call.chosen = [&] { return fault_matrix_command(call.fault_matrix); }; });
 }
 

@@ -8,9 +8,11 @@
 namespace patrol::app {
 namespace {
 
-/// Appends a pose; stamps must increase, so a repeated or late message is ignored.
-void append(Trajectory& trajectory, Time stamp, const Pose3& pose) {
-  if (trajectory.empty() || stamp > trajectory.back().stamp) trajectory.push_back({stamp, pose});
+/// Appends a pose; stamps must increase, so a repeated or late message is ignored. Returns whether it was appended.
+bool append(Trajectory& trajectory, Time stamp, const Pose3& pose) {
+  if (!trajectory.empty() && stamp <= trajectory.back().stamp) return false;
+  trajectory.push_back({stamp, pose});
+  return true;
 }
 
 }  // namespace
@@ -18,15 +20,18 @@ void append(Trajectory& trajectory, Time stamp, const Pose3& pose) {
 RunRecord read_run_record(const std::filesystem::path& log_mcap) {
   RunRecord record;
   io::LogHandlers handlers;
-  handlers.on<UwbPoseEstimate>([&](Time, const UwbPoseEstimate& pose) {
-    append(record.T_map_body_by_ranges, pose.stamp, to_pose3(pose.T_map_body));
+  handlers.on<UwbPoseEstimate>([&](Time log_time, const UwbPoseEstimate& pose) {
+    if (!append(record.T_map_body_by_ranges, pose.stamp, to_pose3(pose.T_map_body))) return;
+    record.T_map_body_by_ranges_received.push_back(log_time);
   });
-  handlers.on<PoseEstimate>([&](Time, const PoseEstimate& pose) {
-    append(record.T_map_body, pose.stamp, to_pose3(pose.T_map_body));
-    if (record.covariances.size() < record.T_map_body.size()) record.covariances.push_back(pose.covariance);
+  handlers.on<PoseEstimate>([&](Time log_time, const PoseEstimate& pose) {
+    if (!append(record.T_map_body, pose.stamp, to_pose3(pose.T_map_body))) return;
+    record.T_map_body_received.push_back(log_time);
+    record.covariances.push_back(pose.covariance);
   });
-  handlers.on<OdometryEstimate>([&](Time, const OdometryEstimate& odometry) {
-    append(record.T_odom_body, odometry.stamp, odometry.T_odom_body);
+  handlers.on<OdometryEstimate>([&](Time log_time, const OdometryEstimate& odometry) {
+    if (!append(record.T_odom_body, odometry.stamp, odometry.T_odom_body)) return;
+    record.T_odom_body_received.push_back(log_time);
   });
   handlers.on<GroundTruth>(
       [&](Time, const GroundTruth& truth) { append(record.T_world_body, truth.stamp, truth.T_world_body); });

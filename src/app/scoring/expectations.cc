@@ -17,11 +17,21 @@ std::string describe_limits(const io::Expectation& expectation) {
   return has_min ? fmt::format(">= {}", expectation.min) : fmt::format("<= {}", expectation.max);
 }
 
+constexpr double kMinMapCoverage = 0.5;
+
+/// Adds the coverage that a bound of the map's error presumes.
+io::Expectations with_map_coverage(io::Expectations expectations) {
+  const auto is_map_error = [](const auto& entry) { return entry.first.starts_with("map.nearest_"); };
+  if (std::ranges::any_of(expectations, is_map_error))
+    expectations.try_emplace("map.coverage", io::Expectation{.min = kMinMapCoverage});
+  return expectations;
+}
+
 }  // namespace
 
 std::vector<CheckedExpectation> check_expectations(const io::Expectations& expectations, const io::Metrics& metrics) {
   std::vector<CheckedExpectation> checks;
-  for (const auto& [metric, expectation] : expectations) {
+  for (const auto& [metric, expectation] : with_map_coverage(expectations)) {
     CheckedExpectation check{.metric = metric, .wanted = describe_limits(expectation), .got = "not measured"};
     if (const std::optional<double> value = io::metric_at(metrics, metric)) {
       check.is_measured = true;

@@ -17,7 +17,8 @@ struct CheckedExpectation {
   bool is_met = false;
 };
 
-/// Checks all expectations. An expectation of a metric that the run did not measure is not met.
+/// Checks all expectations. An expectation of a metric that the run did not measure is not met. A nearly empty map can
+/// meet any bound of `map.nearest_*`: with such a bound and none of `map.coverage`, the coverage must be at least 0.5.
 std::vector<CheckedExpectation> check_expectations(const io::Expectations& expectations, const io::Metrics& metrics);
 
 bool all_met(const std::vector<CheckedExpectation>& checks);

@@ -50,11 +50,22 @@ io::Metrics to_json(const score::AlignedError& error) {
   return metrics;
 }
 
+io::Metrics to_json(const score::PoseNees& score) {
+  io::Metrics metrics;
+  metrics["mean"] = if_found(score.has_mean(), score.mean);
+  metrics["per_dimension"] = if_found(score.has_mean(), score.per_dimension());
+  metrics["within_95"] = if_found(score.num_instants > 0, score.within_95);
+  metrics["instants"] = score.num_instants;
+  metrics["singular"] = score.num_singular;
+  return metrics;
+}
+
 io::Metrics to_json(const score::MapError& error) {
   io::Metrics metrics;
-  metrics["nearest_mean_m"] = error.nearest_mean_m;
-  metrics["nearest_var_m2"] = error.nearest_var_m2;
-  metrics["nearest_p95_m"] = error.nearest_p95_m;
+  const bool has_cells = error.num_occupied > 0;
+  metrics["nearest_mean_m"] = if_found(has_cells, error.nearest_mean_m);
+  metrics["nearest_var_m2"] = if_found(has_cells, error.nearest_var_m2);
+  metrics["nearest_p95_m"] = if_found(has_cells, error.nearest_p95_m);
   metrics["coverage"] = error.coverage;
   metrics["iou"] = error.iou;
   metrics["occupied_cells"] = error.num_occupied;
@@ -109,6 +120,7 @@ io::Metrics to_json(const score::GoalError& error) {
 io::Metrics to_json(const score::LocalizationScore& score) {
   io::Metrics metrics;
   metrics["max_error_m"] = score.max_error_m;
+  metrics["max_error_with_lost_m"] = score.max_error_with_lost_m;
   metrics["min_trust"] = score.min_confidence;
   metrics["doubted_s"] = optional_json(score.low_confidence_at_s);
   metrics["strayed_s"] = optional_json(score.error_exceeded_at_s);
@@ -241,7 +253,9 @@ io::Metrics to_json(const score::RunScore& run) {
   if (!run.estimate) return metrics;
   const score::EstimateScore& score = *run.estimate;
   metrics["pose"] = to_json(score.pose);
-  metrics["pose"]["aligned"] = to_json(score.aligned_pose);
+  metrics["pose"]["coverage"] = score.pose_coverage;
+  metrics["pose"]["aligned"] = score.aligned_pose ? to_json(*score.aligned_pose) : io::Metrics();
+  metrics["pose"]["nees"] = to_json(score.nees);
   metrics["odometry"] = to_json(score.odometry);
   metrics["map"] = to_json(score.map);
   metrics["map"]["origin_in_world"] = pose_json(score.T_world_map);

@@ -10,6 +10,7 @@
 #include "score/localizability.h"
 #include "score/localization_score.h"
 #include "score/map_error.h"
+#include "score/pose_nees.h"
 #include "score/run_score.h"
 #include "score/station_error.h"
 #include "score/trajectory_error.h"
@@ -20,6 +21,7 @@ namespace patrol::app {
 /// Scores in the form of metrics.json: every metric by its name, null without a value.
 io::Metrics to_json(const score::TrajectoryError& error);
 io::Metrics to_json(const score::AlignedError& error);
+io::Metrics to_json(const score::PoseNees& score);
 io::Metrics to_json(const score::MapError& error);
 io::Metrics to_json(const score::DrivenClearance& clearance);
 io::Metrics to_json(const std::vector<score::StationError>& errors);

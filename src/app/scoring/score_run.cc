@@ -20,6 +20,7 @@ io::Metrics score_trajectories(const Trajectory& estimate, const Trajectory& ref
   const Pose2 T_reference_estimate = score::align_at_start(estimate, reference);
   io::Metrics metrics;
   metrics["pose"] = to_json(score::trajectory_error(estimate, T_reference_estimate, reference));
+  metrics["pose"]["coverage"] = score::time_coverage(estimate, reference);
   metrics["pose"]["aligned"] = to_json(score::aligned_error(estimate, reference));
   return metrics;
 }

@@ -33,7 +33,8 @@ ScoredRun score_run(const std::filesystem::path& log_mcap, const Scenario& scena
 /// is not known here.
 void save_scored_run(const RunDirectory& directory, const ScoredRun& run, const Scenario& scenario);
 
-/// Scores any two trajectories: metrics `pose.*` and `pose.aligned.*`.
+/// Scores any two trajectories at the stamps of the estimate: metrics `pose.*`, with `pose.coverage` as the fraction of
+/// the reference's time that they concern, and `pose.aligned.*`.
 io::Metrics score_trajectories(const Trajectory& estimate, const Trajectory& reference);
 
 /// Scores any two maps in one frame: metrics `map.*`.

@@ -42,6 +42,13 @@ std::vector<std::string> split(const std::string& text, char separator) {
   return parts;
 }
 
+/// Keys of an override's path. The metric of an expectation is one key: expect.pose.ate_max_m.
+std::vector<std::string> override_path(const std::string& text) {
+  constexpr std::string_view kExpect = "expect.";
+  if (text.starts_with(kExpect)) return {"expect", text.substr(kExpect.size())};
+  return split(text, '.');
+}
+
 /// Applies one "path=value" to the document and creates missing sections.
 void apply_override(const YAML::Node& root, const std::string& override) {
   const std::size_t equals = override.find('=');
@@ -49,7 +56,7 @@ void apply_override(const YAML::Node& root, const std::string& override) {
     throw InputError("--set " + override + ": must be path=value, e.g. sensors.lidar.range_noise_std_m=0.05");
   }
   const YAML::Node value = parse_yaml("--set " + override, override.substr(equals + 1), false);
-  const std::vector<std::string> path = split(override.substr(0, equals), '.');
+  const std::vector<std::string> path = override_path(override.substr(0, equals));
   YAML::Node node = root;
   for (std::size_t i = 0; i < path.size(); ++i) {
     const bool is_last = i + 1 == path.size();

@@ -87,6 +87,22 @@ TEST(Expectations, SaysWhatIsWantedAndWhatItGot) {
   EXPECT_EQ(check("pose.ate_rmse_m", at_most(0.15)).got, "0.07123");
 }
 
+/// Checks of a bound of the map's error on a map with a coverage.
+std::vector<CheckedExpectation> check_map(double coverage, io::Expectations expectations) {
+  expectations["map.nearest_mean_m"] = at_most(0.05);
+  return check_expectations(expectations, {{"map", {{"nearest_mean_m", 0.01}, {"coverage", coverage}}}});
+}
+
+TEST(Expectations, AMapErrorIsMetOnlyByAMapThatCoversHalfOfTheSurfacesOrWhatIsExpected) {
+  EXPECT_TRUE(all_met(check_map(0.5, {})));
+  EXPECT_FALSE(all_met(check_map(0.49, {})));
+  EXPECT_EQ(check_map(0.49, {}).front().metric, "map.coverage");
+  EXPECT_EQ(check_map(0.49, {}).front().wanted, ">= 0.5");
+  EXPECT_TRUE(all_met(check_map(0.3, {{"map.coverage", at_least(0.25)}}))) << "the scenario's own floor counts";
+  EXPECT_FALSE(all_met(check_map(0.7, {{"map.coverage", at_least(0.8)}})));
+  EXPECT_EQ(check_map(0.7, {{"map.coverage", at_least(0.8)}}).size(), 2U);
+}
+
 TEST(Expectations, OneMissedOfManyIsNotAllMet) {
   EXPECT_TRUE(all_met({}));
   EXPECT_TRUE(all_met(check_expectations({{"mission.completed", boolean(true)}}, make_metrics())));

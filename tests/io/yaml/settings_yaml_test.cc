@@ -244,6 +244,15 @@ TEST(Overrides, ReachSectionsAndListsAndMakeSections) {
   EXPECT_THAT(scenario.wind_mps, ElementsAre(3.0, 4.0));
 }
 
+TEST(Overrides, OfAnExpectationNameItsMetric) {
+  const Scenario scenario = load("expect:\n  mission.completed: true\n  pose.ate_rmse_m: {max: 0.15}\n",
+                                 {"expect.pose.ate_rmse_m={max: 0.2}", "expect.map.coverage={min: 0.5}"});
+  EXPECT_EQ(scenario.expect.size(), 3U);
+  EXPECT_EQ(scenario.expect.at("pose.ate_rmse_m").max, 0.2);
+  EXPECT_EQ(scenario.expect.at("map.coverage").min, 0.5);
+  EXPECT_EQ(load("{}", {"expect.mission.collisions=0"}).expect.at("mission.collisions").max, 0.0);
+}
+
 TEST(Overrides, TheLastOfTwoWins) { EXPECT_EQ(load("seed: 1\n", {"seed=2", "seed=3"}).seed, 3U); }
 
 TEST(Overrides, AreComplainedAboutLikeTheFile) {

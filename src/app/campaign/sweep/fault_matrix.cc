@@ -60,6 +60,18 @@ std::vector<sim::FaultSettings> fault_matrix(const Scenario& scenario, const Sce
   return faults;
 }
 
+std::vector<std::string> survival_overrides(const Scenario& scenario, const SurvivalBounds& bounds) {
+  std::vector<std::string> overrides;
+  const auto expect = [&](const char* metric, const char* limit, double value) {
+    if (scenario.expect.contains(metric)) return;
+    overrides.push_back(fmt::format("expect.{}={{{}: {}}}", metric, limit, value));
+  };
+  expect("pose.ate_max_m", "max", bounds.max_error_m);
+  expect("map.coverage", "min", bounds.min_map_coverage);
+  if (!scenario.map.empty()) expect("localization.lost_s", "max", bounds.max_lost_s);
+  return overrides;
+}
+
 std::string variant_name(const sim::FaultSettings& fault) {
   return fmt::format("{}{}{}", fault.sensor, kBetween, fault.kind);
 }

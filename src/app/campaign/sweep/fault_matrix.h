@@ -13,6 +13,17 @@ namespace patrol::app {
 std::vector<sim::FaultSettings> fault_matrix(const Scenario& scenario, const ScenarioFiles& files, double start_s,
                                              double duration_s);
 
+/// Bounds that a run with a fault must meet to have survived.
+struct SurvivalBounds {
+  double max_error_m = 0.0;       ///< position error at any instant of the run
+  double min_map_coverage = 0.0;  ///< fraction of the observable surfaces
+  double max_lost_s = 0.0;        ///< time reported lost on a given map
+};
+
+/// Overrides that expect the bounds: "expect.pose.ate_max_m={max: 0.3}". A scenario's own expectation of the same
+/// metric stands. A scenario without a given map has no bound of the time reported lost.
+std::vector<std::string> survival_overrides(const Scenario& scenario, const SurvivalBounds& bounds);
+
 /// Name of a fault's variant: "lidar: drift".
 std::string variant_name(const sim::FaultSettings& fault);
 

@@ -1,5 +1,6 @@
 #include "app/campaign/sweep/fault_outcomes.h"
 
+#include <algorithm>
 #include <array>
 #include <map>
 
@@ -14,6 +15,15 @@ namespace {
 std::optional<bool> was_triggered(const RunVerdict& verdict) {
   if (verdict.events.empty()) return std::nullopt;
   return verdict.events.front().was_triggered;
+}
+
+/// Metrics by which a run with a fault is compared with the one without.
+io::Metrics compared_metrics(const RunVerdict& verdict) {
+  io::Metrics metrics = verdict.metrics;
+  if (!metrics.is_object()) return metrics;
+  metrics.erase("performance");
+  if (metrics.contains("mission")) metrics["mission"].erase("sensor_faults_noticed");
+  return metrics;
 }
 
 }  // namespace
@@ -34,11 +44,13 @@ std::vector<FaultRow> fault_rows(const SweepManifest& manifest, const SweepRows&
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const PlannedRun& run = manifest.runs[i];
     const RunVerdict& verdict = *rows[i];
+    const RunVerdict& baseline = *rows[i - run.variant];
     FaultRow& row =
         faults.emplace_back(FaultRow{.name = manifest.variants[run.variant].name,
                                      .fault = parse_variant_name(manifest.variants[run.variant].name),
                                      .seed = run.seed,
                                      .was_triggered = was_triggered(verdict),
+                                     .has_effect = compared_metrics(verdict) != compared_metrics(baseline),
                                      .outcome = outcome_of(verdict),
                                      .num_detected = io::metric_at(verdict.metrics, "mission.sensor_faults_noticed"),
                                      .end = std::string(name_of(verdict.end)),
@@ -47,7 +59,7 @@ std::vector<FaultRow> fault_rows(const SweepManifest& manifest, const SweepRows&
                                      .baseline_values = {}});
     for (const std::string& metric : manifest.metrics) {
       row.values.push_back(io::metric_at(verdict.metrics, metric));
-      row.baseline_values.push_back(io::metric_at(rows[i - run.variant]->metrics, metric));
+      row.baseline_values.push_back(io::metric_at(baseline.metrics, metric));
     }
   }
   return faults;
@@ -60,23 +72,21 @@ std::string trigger_text(const FaultRow& row) {
 
 std::string faults_summary(const std::vector<FaultRow>& rows) {
   std::map<FaultOutcome, int> counts;
-  int num_not_triggered = 0;
-  for (const FaultRow& row : rows) {
-    ++counts[row.outcome];
-    if (row.is_not_triggered()) ++num_not_triggered;
-  }
+  for (const FaultRow& row : rows) ++counts[row.outcome];
   std::vector<std::string> parts;
   for (const auto& [outcome, count] : counts) parts.push_back(fmt::format("{} {}", count, text_of(outcome)));
-  return fmt::format("{} runs: {}; {} faults not triggered.", rows.size(), join(parts, ", "), num_not_triggered);
+  return fmt::format("{} runs: {}; {} faults not triggered, {} without effect.", rows.size(), join(parts, ", "),
+                     std::ranges::count_if(rows, &FaultRow::is_not_triggered),
+                     std::ranges::count_if(rows, &FaultRow::is_without_effect));
 }
 
 std::string fault_legend() {
-  return "Survived: mission completed without fall or collision, every expectation met. Degraded: completed, an "
-         "expectation missed. Stopped: "
-         "not completed, no fall, no collision. UNSAFE: a fall or a "
-         "collision. NO RESULT: the run crashed, timed out or was not scored. Detected: number of reported timeouts, "
-         "frozen readings and "
-         "clock errors; drift and outliers are not detectable.";
+  return "Survived: mission completed without fall or collision, every expectation met, among them bounds of the "
+         "position error at every instant, of the map's coverage and, on a given map, of the time reported lost. "
+         "Degraded: completed, an expectation missed. Stopped: not completed, no fall, no collision. UNSAFE: a fall or "
+         "a collision. NO RESULT: the run crashed, timed out or was not scored. No effect: every metric equals that of "
+         "the run without fault, so the scenario does not need the sensor. Detected: number of reported timeouts, "
+         "frozen readings and clock errors; drift and outliers are not detectable.";
 }
 
 }  // namespace patrol::app

@@ -13,7 +13,7 @@ namespace patrol::app {
 
 /// Outcome of a run with a fault.
 enum class FaultOutcome {
-  kSurvived,  ///< mission completed, every expectation met
+  kSurvived,  ///< mission completed, every expectation met, the survival bounds (fault_matrix.h) among them
   kDegraded,  ///< mission completed, an expectation missed
   kStopped,   ///< mission not completed, no fall or collision
   kUnsafe,    ///< fall or collision
@@ -39,12 +39,16 @@ struct FaultRow {
   FaultVariant fault;
   std::uint64_t seed = 1;
   std::optional<bool> was_triggered;  ///< empty for the run without a fault
+  /// whether any metric but `performance` and the number of reported faults differs from the run without fault of this
+  /// seed; a fault without effect says nothing about robustness, because the scenario does not need the sensor
+  bool has_effect = false;
   FaultOutcome outcome = FaultOutcome::kNoResult;
   std::optional<double> num_detected;  ///< number of events in which the robot reported a faulty sensor
   std::string end, message;
   std::vector<std::optional<double>> values,
       baseline_values;  ///< [metric], this run and the run without fault of this seed
 
+  bool is_without_effect() const { return was_triggered.value_or(false) && !has_effect; }
   bool is_not_triggered() const { return was_triggered.has_value() && !*was_triggered; }
 };
 

@@ -16,12 +16,14 @@ namespace {
 struct FaultCell {
   FaultOutcome worst = FaultOutcome::kSurvived;
   bool is_not_triggered = false;  ///< in one seed or more
+  bool is_without_effect = true;  ///< in all seeds
   bool is_detected = true;        ///< in all seeds
   std::vector<double> values;     ///< values of the first metric
 
   void add(const FaultRow& row) {
     worst = std::max(worst, row.outcome);
     is_not_triggered |= row.is_not_triggered();
+    is_without_effect &= row.is_without_effect();
     is_detected &= row.num_detected.value_or(0.0) > 0.0;
     if (!row.values.empty() && row.values.front()) values.push_back(*row.values.front());
   }
@@ -30,7 +32,8 @@ struct FaultCell {
 std::string text_of(const FaultCell& cell) {
   std::string text = cell.worst == FaultOutcome::kSurvived ? std::string(text_of(cell.worst))
                                                            : fmt::format("**{}**", text_of(cell.worst));
-  if (!cell.values.empty()) text += fmt::format(" {:.3g}", score::mean(cell.values));
+  if (!cell.values.empty()) text += fmt::format(" {:.3g}", score::maximum(cell.values));
+  if (cell.is_without_effect) text += ", no effect";
   if (cell.is_detected) text += ", detected";
   if (cell.is_not_triggered) text += ", not triggered";
   return text;

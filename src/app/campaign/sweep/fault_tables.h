@@ -13,8 +13,9 @@ io::Table faults_table(const SweepManifest& manifest, const SweepRows& rows);
 /// Fault matrix as text for a terminal.
 std::string faults_text(const SweepManifest& manifest, const SweepRows& rows);
 
-/// Fault matrix in Markdown: rows by sensor, columns by kind of fault. A cell has the worst outcome over the seeds, the
-/// mean of the first metric, and whether the robot reported the fault.
+/// Fault matrix in Markdown: rows by sensor, columns by kind of fault. A cell has the worst outcome and
+/// the largest value of the first metric over the seeds, whether no seed had an effect, and whether the robot reported
+/// the fault in all of them.
 std::string faults_markdown(const SweepManifest& manifest, const SweepRows& rows);
 
 }  // namespace patrol::app

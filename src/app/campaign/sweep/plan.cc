@@ -1,10 +1,16 @@
 #include "app/campaign/sweep/plan.h"
 
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
 #include "app/campaign/batch/run_hash.h"
 #include "app/campaign/sweep/axis.h"
 #include "app/campaign/sweep/error_sources.h"
 #include "app/campaign/sweep/fault_matrix.h"
 #include "core/error.h"
+#include "core/text.h"
 #include "io/yaml/settings_yaml.h"
 
 namespace patrol::app {
@@ -37,6 +43,24 @@ void plan_runs(const std::filesystem::path& scenario, const std::vector<Axis>& a
       manifest.runs.push_back(run);
     }
   }
+}
+
+/// Faults of the given names, all without names. Throws InputError for an unknown name.
+std::vector<sim::FaultSettings> chosen_faults(const std::vector<sim::FaultSettings>& all,
+                                              const std::vector<std::string>& names) {
+  if (names.empty()) return all;
+  std::vector<sim::FaultSettings> chosen;
+  for (const std::string& name : names) {
+    const auto found = std::ranges::find(all, name, variant_name);
+    if (found == all.end()) {
+      std::vector<std::string> known;
+      for (const sim::FaultSettings& fault : all) known.push_back(variant_name(fault));
+      throw InputError(
+          fmt::format("--fault {}: not in the matrix of this scenario: must be one of {}", name, join(known, ", ")));
+    }
+    chosen.push_back(*found);
+  }
+  return chosen;
 }
 
 }  // namespace
@@ -80,9 +104,13 @@ SweepManifest plan_fault_matrix(const FaultMatrixOptions& options) {
   manifest.variants.push_back({.name = "no fault", .overrides = {"faults=[]"}});
   const Scenario scenario = load_scenario(options.scenario, options.overrides);
   const ScenarioFiles files = load_scenario_files(scenario, find_data_root(options.scenario));
-  for (const sim::FaultSettings& fault : fault_matrix(scenario, files, options.start_s, options.duration_s)) {
+  for (std::string& override : survival_overrides(scenario, {.max_error_m = options.max_error_m,
+                                                            .min_map_coverage = options.min_map_coverage,
+                                                            .max_lost_s = options.max_lost_s}))
+    manifest.overrides.push_back(std::move(override));
+  const std::vector<sim::FaultSettings> all = fault_matrix(scenario, files, options.start_s, options.duration_s);
+  for (const sim::FaultSettings& fault : chosen_faults(all, options.faults))
     manifest.variants.push_back({.name = variant_name(fault), .overrides = {fault_override(fault)}});
-  }
   plan_runs(options.scenario, {}, manifest);
   return manifest;
 }

@@ -42,10 +42,15 @@ struct ErrorBudgetOptions {
 struct FaultMatrixOptions {
   std::filesystem::path scenario;
   std::vector<std::string> overrides;
-  std::string seeds = "1";
-  std::vector<std::string> metrics = {"pose.ate_rmse_m", "pose.heading_rmse_deg", "map.nearest_mean_m"};
-  double start_s = 12.0;  ///< start of every fault
+  std::string seeds = "3";
+  std::vector<std::string> metrics = {"pose.ate_max_m", "pose.ate_rmse_m", "pose.heading_rmse_deg", "map.coverage",
+                                      "map.nearest_mean_m"};
+  std::vector<std::string> faults;  ///< names of the faults to run, "lidar: dropout"; empty: all
+  double start_s = 12.0;            ///< start of every fault
   double duration_s = 8.0;
+  double max_error_m = 0.3;       ///< `pose.ate_max_m` that a survived run may have
+  double min_map_coverage = 0.5;  ///< `map.coverage` that a survived run must have
+  double max_lost_s = 10.0;       ///< `localization.lost_s` that a survived run on a given map may have
   BatchOptions batch;
   std::filesystem::path out = "out/faults";
 };

@@ -4,12 +4,15 @@
 #include <set>
 #include <string>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "app/cli/commands.h"
 
 namespace patrol::app::fault_matrix_test {
 namespace {
+
+using ::testing::ElementsAre;
 
 TEST(FaultMatrix, AFaultBecomesTheSettingThatDeclaresIt) {
   EXPECT_EQ(fault_override({.sensor = "imu", .kind = "drift", .start_s = 12.0, .duration_s = 8.0, .magnitude = 0.005}),
@@ -22,6 +25,17 @@ TEST(FaultMatrix, AVariantsNameIsReadBackAsSensorAndKind) {
   EXPECT_EQ(fault.sensor, "joint_encoders");
   EXPECT_EQ(fault.kind, "clock_offset");
   EXPECT_EQ(parse_variant_name("no fault").kind, "");
+}
+
+TEST(SurvivalOverrides, BoundErrorCoverageAndOnAGivenMapLostTime) {
+  const SurvivalBounds bounds{.max_error_m = 0.3, .min_map_coverage = 0.5, .max_lost_s = 10.0};
+  Scenario scenario;
+  EXPECT_THAT(survival_overrides(scenario, bounds),
+              ElementsAre("expect.pose.ate_max_m={max: 0.3}", "expect.map.coverage={min: 0.5}"));
+  scenario.map = "map/map.yaml";
+  scenario.expect["map.coverage"].min = 0.9;
+  EXPECT_THAT(survival_overrides(scenario, bounds),
+              ElementsAre("expect.pose.ate_max_m={max: 0.3}", "expect.localization.lost_s={max: 10}"));
 }
 
 /// Switches every sensor on.

@@ -19,5 +19,20 @@ TEST(FaultOutcome, IsTheWorstThatHappened) {
             FaultOutcome::kNoResult);
 }
 
+TEST(FaultRow, HasNoEffectWhenOnlyTheNumberOfReportedFaultsAndThePerformanceDiffer) {
+  SweepManifest manifest;
+  manifest.variants = {{.name = "no fault", .overrides = {}}, {.name = "gnss: drift", .overrides = {}}};
+  manifest.seeds = {1};
+  for (std::size_t i = 0; i < 2; ++i) manifest.runs.push_back({.variant = i, .seed = 1, .overrides = {}, .hash = ""});
+  SweepRows rows = {fault_verdict(RunStatus::kDone, true, 0), fault_verdict(RunStatus::kDone, true, 0)};
+  rows[0]->events.clear();
+  rows[0]->metrics["mission"]["sensor_faults_noticed"] = 0;
+  rows[1]->metrics["performance"]["cpu_s"] = 7.0;
+  EXPECT_FALSE(fault_rows(manifest, rows)[0].is_without_effect()) << "no fault";
+  EXPECT_TRUE(fault_rows(manifest, rows)[1].is_without_effect());
+  rows[1]->metrics["pose"]["ate_rmse_m"] = 0.1001;
+  EXPECT_FALSE(fault_rows(manifest, rows)[1].is_without_effect());
+}
+
 }  // namespace
 }  // namespace patrol::app::fault_outcomes_test

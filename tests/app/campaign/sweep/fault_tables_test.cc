@@ -28,7 +28,8 @@ TEST(FaultTables, SaysWhatBecameOfEachFaultAndWhatItCost) {
   EXPECT_EQ(table.rows[1][3], io::TableValue("stopped"));
   EXPECT_EQ(table.rows[2][2], io::TableValue("not triggered"));
   EXPECT_NEAR(std::get<double>(table.rows[1].back()), 0.2, 1e-12);
-  EXPECT_THAT(faults_text(manifest, rows), HasSubstr("3 runs: 2 survived, 1 stopped; 1 faults not triggered."));
+  EXPECT_THAT(faults_text(manifest, rows),
+              HasSubstr("3 runs: 2 survived, 1 stopped; 1 faults not triggered, 0 without effect."));
 }
 
 TEST(FaultTables, ADocumentHasSensorsDownKindsAcrossAndTheWorstOfTheSeeds) {
@@ -50,7 +51,9 @@ TEST(FaultTables, ADocumentHasSensorsDownKindsAcrossAndTheWorstOfTheSeeds) {
   EXPECT_THAT(
       faults_markdown(manifest, rows),
       HasSubstr("| pose.ate_rmse_m | drift | freeze |\n| --- | --- | --- |\n| no fault: survived 0.1, detected |\n"
-                "| imu | **stopped** 0.2, detected | survived 0.1, detected |\n"));
+                "| imu | **stopped** 0.3, detected | survived 0.1, no effect, detected |\n"));
+  rows[2]->metrics["pose"]["ate_rmse_m"] = 0.101;
+  EXPECT_THAT(faults_markdown(manifest, rows), HasSubstr("survived 0.101, detected |\n")) << "it had one with seed 1";
 }
 
 }  // namespace

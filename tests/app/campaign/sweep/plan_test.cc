@@ -13,6 +13,7 @@ namespace patrol::app::plan_test {
 namespace {
 
 using ::testing::Contains;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -114,9 +115,34 @@ FaultMatrixOptions faults_of(const char* scenario) {
 
 TEST(PlanFaults, EachOfTheSevenKindsForEachSensorAndOneRunWithout) {
   // lidar, IMU, joint encoders, foot sensors, gas meter, GNSS
-  EXPECT_EQ(plan_fault_matrix(faults_of("street/scenarios/short.yaml")).runs.size(), 1u + 6u * 7u);
+  EXPECT_EQ(plan_fault_matrix(faults_of("street/scenarios/short.yaml")).variants.size(), 1u + 6u * 7u);
   // lidar, IMU, Hall sensors, UWB, ultrasonic ring, depth camera
-  EXPECT_EQ(plan_fault_matrix(faults_of("tunnel/scenarios/docking.yaml")).runs.size(), 1u + 6u * 7u);
+  EXPECT_EQ(plan_fault_matrix(faults_of("tunnel/scenarios/docking.yaml")).variants.size(), 1u + 6u * 7u);
+}
+
+TEST(PlanFaults, ThreeSeedsUnlessToldOtherwise) {
+  FaultMatrixOptions options = faults_of("street/scenarios/short.yaml");
+  EXPECT_EQ(plan_fault_matrix(options).runs.size(), 3u * (1u + 6u * 7u));
+  options.seeds = "4..5";
+  EXPECT_EQ(plan_fault_matrix(options).runs.size(), 2u * (1u + 6u * 7u));
+}
+
+TEST(PlanFaults, NamedFaultsOnlyAndAnUnknownOneIsRefused) {
+  FaultMatrixOptions options = faults_of("street/scenarios/short.yaml");
+  options.faults = {"imu: drift", "lidar: dropout"};
+  const SweepManifest manifest = plan_fault_matrix(options);
+  EXPECT_THAT(variants_of(manifest), ElementsAre("no fault", "imu: drift", "lidar: dropout"));
+  options.faults = {"hall: delay"};
+  EXPECT_THROW(plan_fault_matrix(options), InputError) << "a quadruped has no Hall sensors";
+}
+
+TEST(PlanFaults, EveryRunExpectsTheSurvivalBoundsUnlessTheScenarioHasItsOwn) {
+  FaultMatrixOptions options = faults_of("tunnel/scenarios/docking.yaml");
+  options.faults = {"hall: delay"};
+  options.max_error_m = 0.4;
+  EXPECT_THAT(plan_fault_matrix(options).overrides, Contains("expect.pose.ate_max_m={max: 0.4}"));
+  options.overrides = {"expect.pose.ate_max_m={max: 0.1}"};
+  EXPECT_THAT(plan_fault_matrix(options).overrides, Not(Contains("expect.pose.ate_max_m={max: 0.4}")));
 }
 
 }  // namespace
