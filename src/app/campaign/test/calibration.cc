@@ -46,6 +46,12 @@ void propose(CalibratedMetric& calibrated, std::size_t num_samples) {
   if (!calibrated.proposed) calibrated.note = "no limit follows from the values";
 }
 
+/// Whether no value meets both: every run missed the present expectation by far.
+bool are_disjoint(const io::Expectation& a, const io::Expectation& b) {
+  const io::Expectation both = narrower(a, b);
+  return both.min > both.max;
+}
+
 std::string range_text(const CalibratedMetric& metric) {
   if (metric.values.empty()) return "";
   const auto [lowest, highest] = std::minmax_element(metric.values.begin(), metric.values.end());

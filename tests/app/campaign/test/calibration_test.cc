@@ -57,6 +57,14 @@ TEST(Calibration, NoLimitIsWidenedUnlessThatIsAllowed) {
   EXPECT_EQ(expectations_of(calibration, true).at("pose.ate_rmse_m").max, 0.04);
 }
 
+TEST(Calibration, AnExpectationThatEveryRunMissesByFarStays) {
+  const io::Expectations present = {{"pose.ate_rmse_m", {.max = 0.001}}};
+  const Calibration calibration = calibrate("walk", present, {walk(1, 0.01), walk(2, 0.02)});
+  const io::Expectation kept = expectations_of(calibration, false).at("pose.ate_rmse_m");
+  EXPECT_EQ(kept.max, 0.001);
+  EXPECT_LT(kept.min, kept.max);
+}
+
 TEST(Calibration, RunsThatDidNotCompleteAreNoValuesButNamed) {
   const SeedRun fallen = run(2, R"({"mission": {"completed": false}, "pose": {"ate_rmse_m": 9.0}})", RunStatus::kFall);
   const SeedRun stuck =

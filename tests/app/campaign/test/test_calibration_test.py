@@ -100,7 +100,7 @@ class Calibration(unittest.TestCase):
         done = self.calibrate("--calibrate", "1", "--write")
         self.assertEqual(done.returncode, 1, done.stderr)
         self.assertIn("MISSED", done.stdout)
-        self.assertIn("max: 1e-09}  # loose on purpose", self.scenario.read_text())
+        self.assertIn("  odometry.ate_rmse_m: {max: 1e-09}  # loose on purpose\n", self.scenario.read_text())
         self.calibrate("--calibrate", "1", "--write", "--widen")
         self.assertNotIn("1e-09", self.scenario.read_text())
         self.assertEqual(self.calibrate("--calibrate", "1").returncode, 0)
