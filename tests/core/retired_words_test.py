@@ -103,6 +103,7 @@ ALLOWED = [
     ("share", "src/app/scoring/score_json.cc", r"^degenerate_share$", CONTRACT),
     ("place", "src/app/*/*", r"^(max_)?place_error_m$", CONTRACT),
     ("trust", "src/app/scoring/score_json.cc", r"^(min_trust|trust_rank_correlation|trust_detection)$", CONTRACT),
+    ("trust", "src/app/campaign/test/limit_rules.h", r"^(localization\.min_trust|localizability\.trust_rank_correlation|localizability\.trust_detection)$", CONTRACT),
     ("stretch", "src/app/cli/calibrate_command.cc", r"^stretches$", CONTRACT),
     ("way", "src/app/plan/tour_output.cc", r"^(way_.*|num_ways)$", CONTRACT),
     ("least", "src/app/plan/problem_output.cc", r"^least$", CONTRACT),

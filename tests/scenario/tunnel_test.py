@@ -10,6 +10,8 @@ import sys
 import tempfile
 import unittest
 
+from seeds import seed_option
+
 PATROL, SOURCE = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
 SCENARIOS = SOURCE / "worlds/tunnel/scenarios"
 
@@ -43,7 +45,7 @@ class Tunnel(unittest.TestCase):
         return ways
 
     def assert_as_expected(self, scenario):
-        done = self.run_patrol(scenario)
+        done = self.run_patrol(scenario, *seed_option("tunnel", scenario))
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 
     def test_docks_within_2_cm_and_1_degree(self):

@@ -281,10 +281,17 @@ void add_study(CLI::App& app, Call& call) {
 void add_test(CLI::App& app, Call& call) {
   TestOptions& test = call.test;
   CLI::App* command = app.add_subcommand("test", "Run all scenarios of a folder; write JUnit XML");
-  command->add_option("scenarios", test.scenarios, "Folder of scenarios, or one scenario file")->required();
+  command->add_option("scenarios", test.scenarios, "Folders of scenarios, and scenario files")->required();
   command->add_option("--set", test.overrides, kSetAllHelp)->take_all();
+  CLI::Option* table =
+      command->add_option("--seed-table", test.seed_table, "Seeds of scenarios (JSON: end of a scenario's path, seed)");
+  CLI::Option* calibrate = command->add_option(
+      "--calibrate", test.calibrate, "Propose expectations from seeds N (1 ... N) or A..B instead of testing");
+  calibrate->excludes(table);
+  command->add_flag("--write", test.write, "Write the proposed expectations to the scenarios")->needs(calibrate);
+  command->add_flag("--widen", test.widen, "Allow proposals that are wider than the present ones")->needs(calibrate);
   add_batch(*command, test.batch);
-  command->add_option("--out", test.out, kOutHelp)->capture_default_str();
+  command->add_option("--out", test.out, "Output directory (default: out/test or out/calibration)");
   command->callback([&] { call.chosen = [&] { return test_command(call.test); }; });
 }
 

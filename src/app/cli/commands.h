@@ -136,6 +136,8 @@ ExitCode study_command(const StudyOptions& options);
 
 /// Runs every scenario of a folder and checks its expectations.
 ExitCode test_command(const TestOptions& options);
+/// Proposes expectations from several seeds of every scenario: `patrol test --calibrate`.
+ExitCode test_calibration_command(const TestOptions& options);
 
 /// Runs the monitoring server until it is interrupted.
 ExitCode monitor_command(const MonitorOptions& options);

@@ -22,10 +22,10 @@ const OutputKind kTest = {.name = "test",
                           .required_file = "junit.xml",
                           .preserved = {}};
 
-std::vector<BatchRun> runs_of(const std::vector<TestedScenario>& tested, const TestOptions& options) {
+std::vector<BatchRun> runs_of(const std::vector<TestedScenario>& tested) {
   std::vector<BatchRun> runs;
   for (const TestedScenario& one : tested) {
-    runs.push_back({.scenario = one.file, .overrides = options.overrides, .key = one.key, .label = one.name});
+    runs.push_back({.scenario = one.file, .overrides = one.overrides, .key = one.key, .label = one.name});
   }
   return runs;
 }
@@ -41,33 +41,35 @@ void print_verdicts(const std::vector<TestedScenario>& tested) {
 }  // namespace
 
 ExitCode test_command(const TestOptions& options) {
+  if (options.calibrate) return test_calibration_command(options);
   const BatchSettings settings = batch_settings(options.batch);
-  std::vector<TestedScenario> tested = find_scenarios(options.scenarios, options.overrides);
+  const SeedTable seeds = options.seed_table.empty() ? SeedTable() : SeedTable(options.seed_table);
+  const std::filesystem::path out = options.out.empty() ? "out/test" : options.out;
+  std::vector<TestedScenario> tested = find_scenarios(options.scenarios, options.overrides, seeds);
   if (tested.empty()) {
-    fmt::print(stderr, "patrol: {}: contains no scenario (*.yaml); nothing executed\n", options.scenarios.string());
+    fmt::print(stderr, "patrol: {}: contains no scenario (*.yaml); nothing executed\n",
+               options.scenarios.front().string());
     return ExitCode::kNothingExecuted;
   }
-  const OutputLock lock = begin_output(options.out, kTest);
-  save_test_junit(options.out / "junit.xml", tested);
+  const OutputLock lock = begin_output(out, kTest);
+  save_test_junit(out / "junit.xml", tested);
 
-  const bool is_through = run_batch(runs_of(tested, options), settings, options.out);
-  const ResultStore store(runs_folder(options.out));
+  const bool is_through = run_batch(runs_of(tested), settings, out);
+  const ResultStore store(runs_folder(out));
   ExitCode worst = ExitCode::kDone;
   for (TestedScenario& one : tested) {
     one.verdict = store.load(one.key);
     if (one.verdict) worst = worse(worst, one.verdict->code());
   }
-  save_test_junit(options.out / "junit.xml", tested);
-  if (!is_through) {
-    throw std::runtime_error(fmt::format("interrupted; {} is incomplete", options.out.string()));
-  }
-  io::save_csv(options.out / "tests.csv", tests_table(tested));
-  io::save_text(options.out / "summary.md", tests_summary(tested));
-  io::save_text(options.out / "report.html", report::to_html(test_page(tested)));
-  complete_output(options.out);
+  save_test_junit(out / "junit.xml", tested);
+  if (!is_through) throw std::runtime_error(fmt::format("interrupted; {} is incomplete", out.string()));
+  io::save_csv(out / "tests.csv", tests_table(tested));
+  io::save_text(out / "summary.md", tests_summary(tested));
+  io::save_text(out / "report.html", report::to_html(test_page(tested)));
+  complete_output(out);
 
   print_verdicts(tested);
-  fmt::print("{} scenarios: {}\n", tested.size(), (options.out / "junit.xml").string());
+  fmt::print("{} scenarios: {}\n", tested.size(), (out / "junit.xml").string());
   return worst;
 }
 

@@ -23,14 +23,14 @@ std::optional<Number> parse_number(std::string_view text) {
 
 }  // namespace
 
-std::vector<std::uint64_t> parse_seeds(const std::string& text) {
+std::vector<std::uint64_t> parse_seeds(const std::string& text, const std::string& option) {
   constexpr std::uint64_t kMax = 1'000'000;
   const std::size_t dots = text.find("..");
   const auto first =
       dots == std::string::npos ? std::optional<std::uint64_t>(1) : parse_number<std::uint64_t>(text.substr(0, dots));
   const auto last = parse_number<std::uint64_t>(dots == std::string::npos ? text : text.substr(dots + 2));
   if (!first || !last || *last < *first || *last - *first >= kMax) {
-    throw InputError(fmt::format("--seeds {}: must be N (seeds 1 ... N) or A..B, at most {} of them", text, kMax));
+    throw InputError(fmt::format("{} {}: must be N (seeds 1 ... N) or A..B, at most {} of them", option, text, kMax));
   }
   std::vector<std::uint64_t> seeds(*last - *first + 1);
   std::iota(seeds.begin(), seeds.end(), *first);

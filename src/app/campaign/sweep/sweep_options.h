@@ -63,8 +63,8 @@ struct Shard {
   bool contains(std::size_t run) const { return run % count == index; }
 };
 
-/// Parses the seeds. Throws InputError with the option's name.
-std::vector<std::uint64_t> parse_seeds(const std::string& text);
+/// Parses the seeds "N" or "A..B". Throws InputError with the option's name.
+std::vector<std::uint64_t> parse_seeds(const std::string& text, const std::string& option = "--seeds");
 /// Parses a shard "i/n". Throws InputError with the option's name.
 Shard parse_shard(const std::string& text);
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,10 +11,14 @@ namespace patrol::app {
 
 /// Options of `patrol test`.
 struct TestOptions {
-  std::filesystem::path scenarios;     ///< a folder, or one scenario file
-  std::vector<std::string> overrides;  ///< "path=value", for every scenario
+  std::vector<std::filesystem::path> scenarios;  ///< folders and scenario files
+  std::vector<std::string> overrides;            ///< "path=value", for every scenario
+  std::filesystem::path seed_table;              ///< seed_table.h; empty: the seeds of the scenarios
+  std::optional<std::string> calibrate;          ///< seeds to propose expectations from, "N" or "A..B"
+  bool write = false;                            ///< write the proposals to the scenarios
+  bool widen = false;                            ///< proposals may be wider than the present expectations
   BatchOptions batch{.keep_runs = "failed"};
-  std::filesystem::path out = "out/test";
+  std::filesystem::path out;  ///< empty: out/test or out/calibration
 };
 
 }  // namespace patrol::app

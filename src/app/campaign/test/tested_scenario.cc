@@ -17,17 +17,47 @@ bool is_scenario(const std::filesystem::path& file) {
   return file.extension() == ".yaml" || file.extension() == ".yml";
 }
 
-std::vector<std::filesystem::path> files_of(const std::filesystem::path& scenarios) {
+void add_files(const std::filesystem::path& scenarios, std::vector<std::filesystem::path>& files) {
   std::error_code ignored;
-  if (std::filesystem::is_regular_file(scenarios, ignored)) return {scenarios};
+  if (std::filesystem::is_regular_file(scenarios, ignored)) {
+    files.push_back(scenarios);
+    return;
+  }
   if (!std::filesystem::is_directory(scenarios, ignored))
     throw InputError(fmt::format("{}: not found", scenarios.string()));
-  std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(scenarios)) {  // follows no folder links
     if (entry.is_regular_file(ignored) && is_scenario(entry.path())) files.push_back(entry.path());
   }
-  std::sort(files.begin(), files.end());
+}
+
+std::vector<std::filesystem::path> files_of(const std::vector<std::filesystem::path>& scenarios) {
+  std::vector<std::filesystem::path> files;
+  for (const std::filesystem::path& path : scenarios) add_files(path, files);
+  const auto absolute = [](const std::filesystem::path& file) {
+    return std::filesystem::absolute(file).lexically_normal();
+  };
+  std::sort(files.begin(), files.end(), [&](const auto& a, const auto& b) { return absolute(a) < absolute(b); });
+  const auto is_same = [&](const auto& a, const auto& b) { return absolute(a) == absolute(b); };
+  files.erase(std::unique(files.begin(), files.end(), is_same), files.end());
   return files;
+}
+
+/// Last folder that contains all files: the given one, the only file's, or the common part of their paths.
+std::filesystem::path common_folder(const std::vector<std::filesystem::path>& scenarios,
+                                    const std::vector<std::filesystem::path>& files) {
+  std::error_code ignored;
+  if (scenarios.size() == 1 && std::filesystem::is_directory(scenarios.front(), ignored))
+    return std::filesystem::absolute(scenarios.front()).lexically_normal();
+  std::filesystem::path common;
+  for (const std::filesystem::path& file : files) {
+    const std::filesystem::path folder = std::filesystem::absolute(file).lexically_normal().parent_path();
+    if (common.empty()) common = folder;
+    const auto end = std::mismatch(common.begin(), common.end(), folder.begin(), folder.end()).first;
+    std::filesystem::path shared;
+    for (auto part = common.begin(); part != end; ++part) shared /= *part;
+    common = shared;
+  }
+  return common;
 }
 
 std::vector<std::pair<std::string, std::string>> properties_of(const std::filesystem::path& file,
@@ -73,18 +103,24 @@ std::string line_of(const TestedScenario& tested) {
 
 bool is_passed(const TestedScenario& tested) { return tested.verdict && tested.verdict->code() == ExitCode::kDone; }
 
-std::vector<TestedScenario> find_scenarios(const std::filesystem::path& scenarios,
-                                           const std::vector<std::string>& overrides) {
+std::vector<TestedScenario> find_scenarios(const std::vector<std::filesystem::path>& scenarios,
+                                           const std::vector<std::string>& overrides, const SeedTable& seeds) {
   const std::string build = build_id();
+  const std::vector<std::filesystem::path> files = files_of(scenarios);
+  const std::filesystem::path folder = common_folder(scenarios, files);
   std::vector<TestedScenario> tested;
-  for (const std::filesystem::path& file : files_of(scenarios)) {
-    const bool is_alone = file == scenarios;
-    const std::string name =
-        (is_alone ? file.filename() : file.lexically_relative(scenarios)).replace_extension().generic_string();
+  for (const std::filesystem::path& file : files) {
+    const std::filesystem::path below =
+        std::filesystem::absolute(file).lexically_normal().lexically_relative(folder).replace_extension();
+    const std::string name = below.generic_string();
+    std::vector<std::string> all;
+    if (const auto seed = seeds.seed_of(file)) all.push_back(fmt::format("seed={}", *seed));
+    all.insert(all.end(), overrides.begin(), overrides.end());
     tested.push_back({.name = name,
                       .file = file,
+                      .overrides = all,
                       .key = key_of(tested.size(), name),
-                      .properties = properties_of(file, overrides, build),
+                      .properties = properties_of(file, all, build),
                       .verdict = {}});
   }
   return tested;

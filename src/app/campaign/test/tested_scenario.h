@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/campaign/test/seed_table.h"
 #include "app/run/run_verdict.h"
 #include "io/files/table.h"
 
@@ -13,8 +14,9 @@ namespace patrol::app {
 
 /// Scenario that `patrol test` runs.
 struct TestedScenario {
-  std::string name;  ///< path below the folder, without ".yaml"
+  std::string name;  ///< path below the folder, or below the last folder that contains all, without ".yaml"
   std::filesystem::path file;
+  std::vector<std::string> overrides;                           ///< "path=value"
   std::string key;                                              ///< name of its result: "0007_street_patrol"
   std::vector<std::pair<std::string, std::string>> properties;  ///< for JUnit: world, robot, seed, build
   std::optional<RunVerdict> verdict;                            ///< none before the run
@@ -22,10 +24,11 @@ struct TestedScenario {
 
 bool is_passed(const TestedScenario& tested);
 
-/// Every *.yaml file in the folder and its subfolders, sorted by name, or the one file. Throws InputError if nothing is
+/// Every *.yaml file in the folders and their subfolders, and the files themselves, each once, sorted by path. Their
+/// seeds are those of the table, if it has them. Overrides come after the table. Throws InputError if a path is not
 /// found.
-std::vector<TestedScenario> find_scenarios(const std::filesystem::path& scenarios,
-                                           const std::vector<std::string>& overrides);
+std::vector<TestedScenario> find_scenarios(const std::vector<std::filesystem::path>& scenarios,
+                                           const std::vector<std::string>& overrides, const SeedTable& seeds = {});
 
 /// Writes junit.xml, one suite per scenario; scenarios without a verdict are errors.
 void save_test_junit(const std::filesystem::path& file, const std::vector<TestedScenario>& tested);

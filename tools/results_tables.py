@@ -1,0 +1,156 @@
+"""Values of runs, and Markdown tables made of them."""
+import csv
+import dataclasses
+import json
+import re
+import typing
+
+NONE = "–"
+
+
+# --- Values: JSON-like, read from what the commands leave ---------------------------------------------------------------------
+
+
+def flatten(value, path=""):
+    """{path: number} of metrics, lists addressed by name or index, as in `expect:`."""
+    if isinstance(value, dict):
+        items = [(key, child) for key, child in value.items() if key != "name"]
+    elif isinstance(value, list):
+        items = [(child.get("name", str(i)) if isinstance(child, dict) else str(i), child) for i, child in enumerate(value)]
+    else:
+        is_number = isinstance(value, (bool, int, float))
+        return {path: value} if is_number else {}
+    flat = {}
+    for key, child in items:
+        flat.update(flatten(child, f"{path}.{key}" if path else key))
+    return flat
+
+
+def matches(pattern, path):
+    return re.fullmatch(re.escape(pattern).replace(r"\*", r"[^.]+"), path) is not None
+
+
+def sweep_values(folder, metrics):
+    """Runs of `patrol sweep`: variant, seed, end and the metrics of the given patterns."""
+    manifest = json.loads((folder / "sweep.json").read_text())
+    runs = []
+    for run in manifest["runs"]:
+        result = json.loads((folder / "runs" / f"{run['hash']}.json").read_text())
+        flat = flatten(result["metrics"])
+        kept = {path: value for path, value in flat.items() if any(matches(pattern, path) for pattern in metrics)}
+        runs.append({"variant": manifest["variants"][run["variant"]]["name"], "seed": run["seed"], "end": result["end"],
+                     "metrics": {path: round_to(value, 6) for path, value in sorted(kept.items())}})
+    return runs
+
+
+def csv_values(file, columns=None):
+    with open(file, newline="") as rows:
+        return [{key: value for key, value in row.items() if columns is None or key in columns} for row in csv.DictReader(rows)]
+
+
+def round_to(value, digits):
+    return value if isinstance(value, (bool, int)) else float(f"{value:.{digits}g}")
+
+
+# --- Tables -------------------------------------------------------------------------------------------------------------------
+
+
+def markdown(head, rows, align=None):
+    lines = [head, align or ["---"] * len(head), *rows]
+    return "\n".join("| " + " | ".join(str(cell) for cell in line) + " |" for line in lines)
+
+
+def shown(value, form):
+    if value is None:
+        return NONE
+    return form(value) if callable(form) else format(value, form)
+
+
+@dataclasses.dataclass
+class Row:
+    """Row of a table with one column per run: a metric, or a function of the metrics of a run."""
+    label: str
+    value: typing.Union[str, typing.Callable]
+    form: typing.Union[str, typing.Callable] = ".3f"
+    worst: typing.Callable = max  # of the values; None: neither mean nor worst
+
+    def of(self, run):
+        return self.value(run["metrics"]) if callable(self.value) else run["metrics"].get(self.value)
+
+
+def by_seed(runs, rows, published=None):
+    """One column per seed, then mean and worst. `published`: {label: text}, a further column."""
+    head = ["metric", *(f"S = {run['seed']}" if i == 0 else str(run["seed"]) for i, run in enumerate(runs)), "mean", "worst"]
+    lines = []
+    for row in rows:
+        values = [row.of(run) for run in runs]
+        numbers = [value for value in values if isinstance(value, (int, float))]
+        line = [row.label, *(shown(value, row.form) for value in values)]
+        has_mean = row.worst is not None and numbers and len(numbers) == len(values)
+        line += [shown(sum(numbers) / len(numbers), row.form), shown(row.worst(numbers), row.form)] if has_mean else [NONE, NONE]
+        lines.append(line)
+    if published is not None:
+        head.append("published")
+        for row, line in zip(rows, lines):
+            line.append(published.get(row.label, NONE))
+    return markdown(head, lines)
+
+
+def pair(first, second, form="{} / {}"):
+    """Value of two metrics as one text."""
+    def value(metrics):
+        if first not in metrics or second not in metrics:
+            return None
+        return form.format(metrics[first], metrics[second])
+    return value
+
+
+def as_text(value):
+    return value if isinstance(value, str) else f"{value:g}"
+
+
+def interval(row):
+    """Mean of a study's result with half of its 95 % interval, the mean with three digits."""
+    mean = float(row["mean"])
+    if not row.get("mean_low"):
+        return f"{mean:.3g}"
+    return f"{mean:.3g} ± {(float(row['mean_high']) - float(row['mean_low'])) / 2:.2g}"
+
+
+def study_table(rows, head, columns, key="method"):
+    """Pivots results of a study. `columns`: (filter, figure, form), with forms "published", "mean", "interval"; one line per value
+    of `key`, in the order of the rows."""
+    lines = []
+    for name in dict.fromkeys(row[key] for row in rows):
+        line = [name]
+        for wanted, figure, form in columns:
+            found = [row for row in rows if row[key] == name and row["figure"] == figure
+                     and all(row[column] == value for column, value in wanted.items())]
+            if not found:
+                line.append(NONE)
+            elif form == "published":
+                line.append(f"{float(found[0]['published']):.3g}" if found[0].get("published") else NONE)
+            else:
+                line.append(interval(found[0]) if form == "interval" else f"{float(found[0]['mean']):.3g}")
+        if any(cell != NONE for cell in line[1:]):
+            lines.append(line)
+    return markdown(head, lines)
+
+
+def study_values(folder):
+    """Results and processor times of a study."""
+    columns = ("world", "method", "particles", "figure", "published", "mean", "mean_low", "mean_high")
+    values = csv_values(folder / "results.csv", columns)
+    for row in csv_values(folder / "performance.csv", columns):
+        values.append(row)
+    for row in values:
+        for column in ("published", "mean", "mean_low", "mean_high"):
+            if row.get(column):
+                row[column] = f"{float(row[column]):.6g}"
+    return values
+
+
+def benchmark_values(file):
+    """Ratios of a benchmark's JSON output."""
+    found = json.loads(file.read_text())["benchmarks"]
+    return {one["name"]: round_to(one["ratio"], 4) for one in found if "ratio" in one and one.get("run_type") != "aggregate"}
