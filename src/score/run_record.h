@@ -7,6 +7,7 @@
 #include "core/inspection_result.h"
 #include "core/messages.h"
 #include "core/sensors/registry.h"
+#include "core/site/site_registration.h"
 #include "core/trajectory.h"
 
 namespace patrol::score {
@@ -17,7 +18,8 @@ struct RunRecord {
   std::vector<Eigen::Matrix3d> covariances;  ///< [pose of T_map_body]: of x, y, yaw in map; m, m, rad
   Trajectory T_map_body_by_ranges;           ///< estimate by odometry and UWB ranges, if the stack has one
   Trajectory T_odom_body;
-  Trajectory T_world_body;  ///< ground truth
+  Trajectory T_world_body;                      ///< ground truth
+  std::vector<SiteRegistration> registrations;  ///< pose of map in site, in order; empty in older logs
   std::vector<Event> events;
   std::vector<LocalizationConfidence> confidences;
   std::vector<TeleopCommand> teleop;

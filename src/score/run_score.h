@@ -12,6 +12,7 @@
 #include "score/localization_score.h"
 #include "score/map_error.h"
 #include "score/run_record.h"
+#include "score/site_score.h"
 #include "score/station_error.h"
 #include "score/trajectory_error.h"
 #include "score/visibility.h"
@@ -24,6 +25,7 @@ namespace patrol::score {
 struct RunReferences {
   ReferenceMap map;                  ///< in world
   double map_agreement = 0.0;        ///< ratio of the reference's cells that an independent rendering confirms
+  Pose2 T_site_start;                ///< surveyed start; site is world
   std::optional<Pose2> T_world_map;  ///< pose of a given map's frame; none: the map begins at the robot's true start
   Route route;                       ///< survey, in world
   std::vector<SavedGoal> goals;      ///< given goals, in map
@@ -62,6 +64,7 @@ struct KnownMapScore {
 struct EstimateScore {
   Pose2 T_world_map;  ///< pose of the map's frame that the scores use
   TrajectoryError pose;
+  SiteScore site;  ///< pose and registration in the survey frame
   AlignedError aligned_pose;
   TrajectoryError odometry;
   MapError map;

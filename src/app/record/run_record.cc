@@ -25,6 +25,8 @@ RunRecord read_run_record(const std::filesystem::path& log_mcap) {
     append(record.T_map_body, pose.stamp, to_pose3(pose.T_map_body));
     if (record.covariances.size() < record.T_map_body.size()) record.covariances.push_back(pose.covariance);
   });
+  handlers.on<SiteRegistration>(
+      [&](Time, const SiteRegistration& registration) { record.registrations.push_back(registration); });
   handlers.on<OdometryEstimate>([&](Time, const OdometryEstimate& odometry) {
     append(record.T_odom_body, odometry.stamp, odometry.T_odom_body);
   });
