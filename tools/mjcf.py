@@ -7,6 +7,9 @@ SEEN = 'class="seen"'    # eye and lidar see it, and it is not touched
 EYE = 'class="eye"'      # only looked at
 TOUCH = 'class="touch"'  # only touched: a simple hull
 
+# WGS 84 position of the origin of the sites under open sky; the default of sensors.gnss.
+DATUM = {'latitude_deg': 29.21, 'longitude_deg': 119.46}
+
 # What a thing is for, by geom group (README, "Worlds").
 CLASSES = '''  <default>
     <!-- What a thing is for (README, "Worlds"): solid is seen by eye and lidar and touched; seen is seen by both and not touched; eye

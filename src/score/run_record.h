@@ -7,6 +7,7 @@
 #include "core/inspection_result.h"
 #include "core/messages.h"
 #include "core/sensors/registry.h"
+#include "core/site/site_registration.h"
 #include "core/trajectory.h"
 
 namespace patrol::score {
@@ -21,6 +22,7 @@ struct RunRecord {
   Trajectory T_odom_body;
   std::vector<Time> T_odom_body_received;  ///< [pose of T_odom_body]: log time
   Trajectory T_world_body;                 ///< ground truth
+  std::vector<SiteRegistration> registrations;  ///< pose of map in site, in order; empty in older logs
   std::vector<Event> events;
   std::vector<LocalizationConfidence> confidences;
   std::vector<TeleopCommand> teleop;

@@ -58,6 +58,14 @@ std::optional<KnownMapScore> known_map_score(const RunRecord& record, const Traj
   return score;
 }
 
+/// Adds the error of each station in the map as the robot places it in site.
+void add_site_map_errors(const RunRecord& record, const RunReferences& references, EstimateScore& score) {
+  for (std::size_t i = 0; i < score.stations.size(); ++i) {
+    score.stations[i].site_map_error_m = map_displacement_m(record.map, score.site.T_site_map, references.map,
+                                                            references.route.stations[i].p_route_target.head<2>());
+  }
+}
+
 void add_inspection(const RunRecord& record, const RunReferences& references, EstimateScore& score) {
   score.inspection = inspection_score(record.events, score.T_world_map, references.leaks);
   if (!record.linings.empty() && references.lining) {
@@ -88,6 +96,7 @@ EstimateScore estimate_score(const RunRecord& record, const RunReferences& refer
   EstimateScore score{
       .T_world_map = T_world_map,
       .pose = trajectory_error(live.T_map_body, T_world_map, truth),
+      .site = site_score(live.T_map_body, record.registrations, references.T_site_start, truth),
       .pose_coverage = time_coverage(timely_poses({record.T_map_body, record.T_map_body_received}), truth),
       .nees = pose_nees(record.T_map_body, record.covariances, T_world_map, truth),
       .aligned_pose = aligned_if_possible(record.T_map_body, truth),
@@ -104,6 +113,7 @@ EstimateScore estimate_score(const RunRecord& record, const RunReferences& refer
       .inspection = {},
       .lining = {},
       .water = {}};
+  add_site_map_errors(record, references, score);
   if (references.route.dock) score.docking = docking_error(record.events, references.route.dock->T_route_docked, truth);
   if (!record.T_map_body_by_ranges.empty())
     score.range_pose = trajectory_error(live.T_map_body_by_ranges, T_world_map, truth);

@@ -13,6 +13,7 @@
 #include "score/map_error.h"
 #include "score/pose_nees.h"
 #include "score/run_record.h"
+#include "score/site_score.h"
 #include "score/station_error.h"
 #include "score/trajectory_error.h"
 #include "score/visibility.h"
@@ -25,6 +26,7 @@ namespace patrol::score {
 struct RunReferences {
   ReferenceMap map;                  ///< in world
   double map_agreement = 0.0;        ///< ratio of the reference's cells that an independent rendering confirms
+  Pose2 T_site_start;                ///< surveyed start; site is world
   std::optional<Pose2> T_world_map;  ///< pose of a given map's frame; none: the map begins at the robot's true start
   Route route;                       ///< survey, in world
   std::vector<SavedGoal> goals;      ///< given goals, in map
@@ -63,6 +65,7 @@ struct KnownMapScore {
 struct EstimateScore {
   Pose2 T_world_map;           ///< pose of the map's frame that the scores use
   TrajectoryError pose;        ///< on the common clock (live_trajectory.h), as are `odometry` and `range_pose`
+  SiteScore site;              ///< pose and registration in the survey frame
   double pose_coverage = 0.0;  ///< fraction of the run within 0.2 s of a timely pose (live_trajectory.h)
   PoseNees nees;
   std::optional<AlignedError> aligned_pose;  ///< none when no fit is possible, e.g. of an estimate that never moves

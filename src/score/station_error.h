@@ -17,10 +17,11 @@ namespace patrol::score {
 struct StationError {
   std::string name;
   bool is_reached = false;
-  double position_error_m = 0.0;       ///< error of the estimated pose at the time of the arrival event
-  double heading_error_deg = 0.0;      ///< absolute value, at the arrival event
-  double goal_position_error_m = 0.0;  ///< distance of the true position from the surveyed one
-  std::optional<double> map_error_m;   ///< displacement of the station's target in the built map
+  double position_error_m = 0.0;           ///< error of the estimated pose at the time of the arrival event
+  double heading_error_deg = 0.0;          ///< absolute value, at the arrival event
+  double goal_position_error_m = 0.0;      ///< distance of the true position from the surveyed one
+  std::optional<double> map_error_m;       ///< displacement of the station's target in the built map
+  std::optional<double> site_map_error_m;  ///< displacement with the map placed in site by the robot's registration
 };
 
 /// Displacement of a station's target in the built map, m. The occupied cells within `radius_m` of the target are

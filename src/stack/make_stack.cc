@@ -86,12 +86,13 @@ Stack make_stack(const StackSettings& settings, const RobotDescription& robot, c
   LocalizerStart localizer{.map = std::move(start.map),
                            .has_mapping_drive = is_tunnel(settings) && start.has_teleop,
                            .neighbor_model = std::move(start.neighbor_model)};
-  return Stack({.pose = PosePipeline(settings, robot, site_in_map, std::move(localizer), start.seed),
+  return Stack({.pose = PosePipeline(settings, robot, site_in_map, std::move(localizer), start.seed, start.site),
                 .motion = std::move(motion),
                 .mission = std::move(mission),
                 .instruments = std::move(instruments),
                 .sensor_monitor = SensorMonitor(settings.sensor_monitor),
                 .dock = site_in_map.dock,
+                .site = SiteFollower(site_in_map, start.site.T_site_start, settings.registration.min_site_shift_m),
                 .map_period_s = start.map_period_s});
 }
 

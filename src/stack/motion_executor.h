@@ -26,6 +26,11 @@ class MotionExecutor {
                  std::uint64_t seed);
 
   void set_map(const OccupancyGrid& map) { navigator_.set_map(map); }
+  /// Replaces the survey in map: keep-out lines and charging post.
+  void set_site(const Route& site_in_map) {
+    navigator_.set_keep_out_lines(site_in_map.keep_out_lines);
+    dock_ = site_in_map.dock;
+  }
   /// Adds obstacles, and detects the charging post while the robot docks.
   void add(const LevelScan& scan, const ScanPose& pose);
   void add(const UltrasonicRange& range, const StationPose& station_pose) {

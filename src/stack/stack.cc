@@ -69,6 +69,7 @@ void Stack::step(Time now) {
   const auto timer = output_.time_stage("planning");
   const Pose2 T_odom_body = to_pose2(odometry->T_odom_body);
   monitor_sensors(now, T_odom_body);
+  follow_registration(now);
   command_ = control({.now = now,
                       .odometry = *odometry,
                       .T_odom_body = T_odom_body,
@@ -83,6 +84,18 @@ void Stack::publish_map(Time now) {
   MapUpdate update{now, parts_.pose.map()};
   parts_.motion.set_map(update.map);
   output_.publish(std::move(update));
+}
+
+/// Moves the survey in map with the registration of the map to the site.
+void Stack::follow_registration(Time now) {
+  const std::optional<SiteRegistration> registration = parts_.pose.register_to_site(now);
+  if (!registration) return;
+  output_.publish(*registration);
+  const std::optional<Route> site_in_map = parts_.site.update(*registration);
+  if (!site_in_map) return;
+  parts_.mission->set_site(*site_in_map);
+  parts_.motion.set_site(*site_in_map);
+  parts_.dock = site_in_map->dock;
 }
 
 void Stack::monitor_sensors(Time now, const Pose2& T_odom_body) {

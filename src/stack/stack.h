@@ -9,6 +9,7 @@
 #include "core/sensors/registry.h"
 #include "stack/instruments/instrument_set.h"
 #include "stack/localization/pose_pipeline.h"
+#include "stack/localization/site_follower.h"
 #include "stack/mission/mission.h"
 #include "stack/motion_executor.h"
 #include "stack/output/stack_output.h"
@@ -23,7 +24,8 @@ struct StackParts {
   std::unique_ptr<Mission> mission;
   InstrumentSet instruments;
   SensorMonitor sensor_monitor;
-  std::optional<Dock> dock;   ///< charging post of the site, in map
+  std::optional<Dock> dock;  ///< charging post of the site, in map
+  SiteFollower site = {{}, {}, 1.0};
   double map_period_s = 5.0;  ///< interval between published maps while the map grows
 };
 
@@ -57,6 +59,7 @@ class Stack {
 
   void handle_scan(const LaserScan& raw);
   void publish_map(Time now);
+  void follow_registration(Time now);
   void monitor_sensors(Time now, const Pose2& T_odom_body);
   VelocityCommand control(const Period& period);
   void advance_mission(const Period& period);

@@ -155,6 +155,9 @@ inline MapUpdate sample_map() {
   update.map.at({0, 1}) = kFree;
   return update;
 }
+inline SiteRegistration sample_registration() {
+  return {.stamp = kSampleStamp, .T_site_map = {11.0, 8.0, 0.5}, .covariance = sample_estimate().covariance};
+}
 inline Path sample_path() { return {.stamp = kSampleStamp, .T_map_body = {{1.0, 2.0, 0.5}, {3.0, 4.0, -0.5}}}; }
 inline VelocityCommand sample_command() {
   return {.stamp = kSampleStamp, .vx_mps = 0.5, .vy_mps = -0.25, .yaw_rate_radps = 1.0};
@@ -185,6 +188,7 @@ inline auto all_samples() {
                     AntennaCommand{kSampleStamp, 0.5, -0.25}, SoundingCommand{kSampleStamp},
                     WarningCommand{kSampleStamp, true, false}, sample_lining(), sample_water(), sample_trust(),
                     sample_odometry(), sample_estimate(), UwbPoseEstimate{sample_estimate()}, sample_particles(),
+                    sample_registration(),
                     sample_map(), sample_path(), sample_command(), sample_event(), sample_truth(), sample_state(),
                     sample_collision(), sample_transforms());
 }

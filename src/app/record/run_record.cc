@@ -29,6 +29,8 @@ RunRecord read_run_record(const std::filesystem::path& log_mcap) {
     record.T_map_body_received.push_back(log_time);
     record.covariances.push_back(pose.covariance);
   });
+  handlers.on<SiteRegistration>(
+      [&](Time, const SiteRegistration& registration) { record.registrations.push_back(registration); });
   handlers.on<OdometryEstimate>([&](Time log_time, const OdometryEstimate& odometry) {
     if (!append(record.T_odom_body, odometry.stamp, odometry.T_odom_body)) return;
     record.T_odom_body_received.push_back(log_time);

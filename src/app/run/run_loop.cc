@@ -219,6 +219,7 @@ stack::Stack make_stack(const Scenario& scenario, const ScenarioFiles& files) {
                             .references = references_of(files),
                             .neighbor_model = files.neighbor_model,
                             .has_teleop = files.has_teleop(),
+                            .site = {.T_site_start = files.T_site_start, .datum = files.datum},
                             .map_period_s = scenario.log.map_period_s,
                             .seed = scenario.seed});
 }

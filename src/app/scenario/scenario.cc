@@ -167,6 +167,7 @@ ScenarioFiles load_scenario_files(const Scenario& scenario, const std::filesyste
   const io::RouteFile route = io::load_route(named_file("mission", scenario.mission));
   files.route = route.route;
   files.T_site_start = route.T_site_start;
+  files.datum = route.datum;
   if (!scenario.map.empty()) {
     const std::filesystem::path file = named_file("map", scenario.map);
     files.map = io::load_map(file);

@@ -9,6 +9,7 @@
 #include "core/boosted_stumps.h"
 #include "core/route.h"
 #include "core/settings.h"
+#include "core/site/geodetic_datum.h"
 #include "core/teleop_route.h"
 #include "io/points/station_scans.h"
 #include "io/yaml/expectations.h"
@@ -210,6 +211,7 @@ struct ScenarioFiles {
   RobotDescription robot;
   Route route;                          ///< in site
   Pose2 T_site_start;                   ///< surveyed start
+  std::optional<GeodeticDatum> datum;   ///< WGS 84 position of the origin of site
   TeleopRoute teleop_route;             ///< in site
   std::vector<TeleopCommand> recorded;  ///< recorded teleoperation commands
   std::vector<SavedGoal> goals;         ///< in map

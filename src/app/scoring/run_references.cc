@@ -32,6 +32,7 @@ score::RunReferences run_references(const Scenario& scenario, const ScenarioFile
   score::RunReferences references{
       .map = truth.reference,
       .map_agreement = truth.reference_agreement,
+      .T_site_start = files.T_site_start,
       .T_world_map = {},
       .route = files.route,
       .goals = files.goals,

@@ -83,6 +83,7 @@ io::Metrics to_json(const std::vector<score::StationError>& errors) {
     station["heading_error_deg"] = if_reached(error.heading_error_deg);
     station["stand_error_m"] = if_reached(error.goal_position_error_m);
     station["map_error_m"] = error.map_error_m ? io::Metrics(*error.map_error_m) : io::Metrics();
+    station["site_map_error_m"] = optional_json(error.site_map_error_m);
     list.push_back(station);
   }
   return list;
@@ -229,6 +230,14 @@ io::Metrics pose_json(const Pose2& T_world_map) {
   return {{"x_m", T_world_map.x}, {"y_m", T_world_map.y}, {"yaw_rad", T_world_map.yaw}};
 }
 
+io::Metrics registration_json(const score::SiteScore& site) {
+  return {{"position_error_m", site.position_error_m},
+          {"yaw_error_deg", site.yaw_error_deg},
+          {"nees", optional_json(site.nees)},
+          {"updates", site.num_registrations},
+          {"map_in_site", pose_json(site.T_site_map)}};
+}
+
 void add_goals(const score::EstimateScore& score, io::Metrics& metrics) {
   for (const score::GoalError& goal : score.goals) metrics["goals"].push_back(to_json(goal));
   if (score.docking) {
@@ -254,8 +263,10 @@ io::Metrics to_json(const score::RunScore& run) {
   const score::EstimateScore& score = *run.estimate;
   metrics["pose"] = to_json(score.pose);
   metrics["pose"]["coverage"] = score.pose_coverage;
+  metrics["pose"]["site"] = to_json(score.site.pose);
   metrics["pose"]["aligned"] = score.aligned_pose ? to_json(*score.aligned_pose) : io::Metrics();
   metrics["pose"]["nees"] = to_json(score.nees);
+  metrics["registration"] = registration_json(score.site);
   metrics["odometry"] = to_json(score.odometry);
   metrics["map"] = to_json(score.map);
   metrics["map"]["origin_in_world"] = pose_json(score.T_world_map);

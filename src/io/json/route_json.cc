@@ -1,5 +1,6 @@
 #include "io/json/route_json.h"
 
+#include <cmath>
 #include <set>
 
 #include <fmt/format.h>
@@ -100,17 +101,29 @@ TunnelLining read_lining(const std::string& file, const Json& json) {
   return lining;
 }
 
+GeodeticDatum read_datum(const std::string& file, const Json& json) {
+  const JsonObject reader(file + ": datum", json, {"latitude_deg", "longitude_deg"});
+  const GeodeticDatum datum{.latitude_deg = reader.number("latitude_deg"),
+                            .longitude_deg = reader.number("longitude_deg")};
+  // Near the poles the radius of a parallel changes too fast for the conversion.
+  if (std::abs(datum.latitude_deg) > 85.0) reader.fail("latitude_deg must be in [-85, 85]");
+  if (std::abs(datum.longitude_deg) > 180.0) reader.fail("longitude_deg must be in [-180, 180]");
+  return datum;
+}
+
 }  // namespace
 
 RouteFile load_route(const std::filesystem::path& file) {
   const Json json = load_json(file);
   const std::string name = file.string();
-  const JsonObject root(name, json, {"version", "frame", "start", "stations", "keep_out", "anchors", "dock", "lining"});
+  const JsonObject root(name, json,
+                        {"version", "frame", "start", "stations", "keep_out", "anchors", "dock", "lining", "datum"});
   if (root.integer("version") != 1) root.fail("version must be 1");
   if (root.string("frame") != "site") root.fail("frame must be site");
   RouteFile route{.route = {},
                   .T_site_start =
-                      JsonObject(name + ": start", root.member("start"), {"position", "orientation"}).pose()};
+                      JsonObject(name + ": start", root.member("start"), {"position", "orientation"}).pose(),
+                  .datum = {}};
   const Json& stations = root.list("stations");
   for (std::size_t i = 0; i < stations.size(); ++i) {
     route.route.stations.push_back(read_station(fmt::format("{}: stations[{}]", name, i), stations[i]));
@@ -125,6 +138,7 @@ RouteFile load_route(const std::filesystem::path& file) {
   if (root.has("anchors")) route.route.anchors = read_anchors(name, root.list("anchors"));
   if (root.has("dock")) route.route.dock = read_dock(name, root.member("dock"));
   if (root.has("lining")) route.route.lining = read_lining(name, root.member("lining"));
+  if (root.has("datum")) route.datum = read_datum(name, root.member("datum"));
   return route;
 }
 

@@ -44,6 +44,8 @@ inline constexpr const char* kTopic<PoseEstimate> = "/pose";
 template <>
 inline constexpr const char* kTopic<UwbPoseEstimate> = "/uwb_odometry/pose";
 template <>
+inline constexpr const char* kTopic<SiteRegistration> = "/site_registration";
+template <>
 inline constexpr const char* kTopic<ParticleSet> = "/particles";
 template <>
 inline constexpr const char* kTopic<MapUpdate> = "/map";

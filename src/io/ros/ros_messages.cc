@@ -49,6 +49,13 @@ void describe(Codec& codec, PoseEstimate& estimate) {
 }
 
 template <typename Codec>
+void describe(Codec& codec, SiteRegistration& registration) {
+  header(codec, registration.stamp, frame_id::kSite);
+  pose2(codec, registration.T_site_map);
+  planar_covariance(codec, registration.covariance);
+}
+
+template <typename Codec>
 void describe(Codec& codec, ParticleSet& particles) {
   header(codec, particles.stamp, frame_id::kMap);
   struct Particle {
@@ -186,6 +193,7 @@ PATROL_ROS_MESSAGE(LocalizationConfidence);
 PATROL_ROS_MESSAGE(OdometryEstimate);
 PATROL_ROS_MESSAGE(PoseEstimate);
 PATROL_ROS_MESSAGE(UwbPoseEstimate);
+PATROL_ROS_MESSAGE(SiteRegistration);
 PATROL_ROS_MESSAGE(ParticleSet);
 PATROL_ROS_MESSAGE(MapUpdate);
 PATROL_ROS_MESSAGE(Path);

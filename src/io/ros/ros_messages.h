@@ -8,6 +8,7 @@
 #include "core/ground_truth.h"
 #include "core/messages.h"
 #include "core/sensors/registry.h"
+#include "core/site/site_registration.h"
 
 /// Conversion of messages to ROS 2 messages: the ROS type of each message and its CDR encoding (little-endian XCDR1
 /// with its four-byte header). `encode` and `decode` share one description of the fields, in ros_messages.cc,
@@ -48,6 +49,8 @@ template <>
 inline constexpr const char* kRosType<UwbPoseEstimate> = "geometry_msgs/msg/PoseWithCovarianceStamped";
 template <>
 inline constexpr const char* kRosType<PoseEstimate> = "geometry_msgs/msg/PoseWithCovarianceStamped";
+template <>
+inline constexpr const char* kRosType<SiteRegistration> = "geometry_msgs/msg/PoseWithCovarianceStamped";
 template <>
 inline constexpr const char* kRosType<ParticleSet> = "nav2_msgs/msg/ParticleCloud";
 template <>

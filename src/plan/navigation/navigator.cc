@@ -42,6 +42,11 @@ void Navigator::set_map(const OccupancyGrid& map) {
   search_.on_new_map();
 }
 
+void Navigator::set_keep_out_lines(std::vector<Polyline> lines_in_map) {
+  costmap_.set_keep_out_lines(std::move(lines_in_map));
+  search_.on_new_map();
+}
+
 void Navigator::add_depth(const DepthImage& image, const Pose3& T_level_body, const Pose2& T_map_body) {
   const Pose3 T_level_camera = T_level_body * robot_.T_body("depth_camera");
   costmap_.add_image(segment_obstacles(settings_.depth_obstacles, image, T_level_camera, body_height_m(robot_)),

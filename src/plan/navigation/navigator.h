@@ -32,6 +32,8 @@ class Navigator {
             std::vector<Polyline> keep_out_lines_in_map, std::uint64_t seed = 0);
 
   void set_map(const OccupancyGrid& map);
+  /// Replaces the keep-out lines.
+  void set_keep_out_lines(std::vector<Polyline> lines_in_map);
   void add_scan(const LevelScan& scan, const Pose2& T_map_body) { costmap_.add_scan(scan, T_map_body); }
   /// Adds a depth image; `T_level_body` is the body's tilt. Throws InputError if the robot has no such camera.
   void add_depth(const DepthImage& image, const Pose3& T_level_body, const Pose2& T_map_body);

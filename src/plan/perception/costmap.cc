@@ -30,10 +30,21 @@ Costmap::Costmap(const CostmapSettings& settings, const Footprint& footprint,
       low_(settings.low),
       inflation_(settings, footprint),
       keep_out_(settings, std::move(keep_out_lines_in_map), inflation_.max_distance_m()) {
+  include_keep_out_lines();
+  include(Eigen::Vector2d::Zero(), kGrowth_m);
+}
+
+void Costmap::include_keep_out_lines() {
   for (const Polyline& line : keep_out_.lines()) {
     for (const Eigen::Vector2d& p : line) include(p, 1.0);
   }
-  include(Eigen::Vector2d::Zero(), kGrowth_m);
+}
+
+void Costmap::set_keep_out_lines(std::vector<Polyline> lines_in_map) {
+  keep_out_.set_lines(std::move(lines_in_map));
+  include_keep_out_lines();
+  keep_out_.resize(lattice_);
+  refresh(all_cells(lattice_.geometry));
 }
 
 void Costmap::include(const Eigen::Vector2d& p_map, double margin_m) {

@@ -35,6 +35,8 @@ class Costmap {
 
   /// Throws InputError if the map's cells are larger than the costmap's.
   void set_map(const OccupancyGrid& map);
+  /// Replaces the keep-out lines and refreshes all cells.
+  void set_keep_out_lines(std::vector<Polyline> lines_in_map);
   void add_scan(const LevelScan& scan, const Pose2& T_map_body);
   /// Adds the points of a depth image, in level at its stamp.
   void add_image(const DepthPoints& points, Time stamp, const Pose2& T_map_body);
@@ -72,6 +74,7 @@ class Costmap {
   /// Moves all layers to a new lattice, from the lattice cell `min` up to, but without, `end`.
   void resize(Cell min, Cell end);
   void refresh(const CellBox& changed);
+  void include_keep_out_lines();
 
   CostmapSettings settings_;
   Footprint footprint_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "plan/perception/cell_lattice.h"
@@ -18,6 +19,8 @@ class KeepOutLayer {
   KeepOutLayer(const CostmapSettings& settings, std::vector<Polyline> lines_in_map, double max_distance_m);
 
   void resize(const CellLattice& lattice);
+  /// Replaces the lines; they have costs from the next `resize` on.
+  void set_lines(std::vector<Polyline> lines_in_map) { lines_ = std::move(lines_in_map); }
   const std::vector<Polyline>& lines() const { return lines_; }
   /// Distance to the nearest line, interpolated between cells.
   double distance_m(const Eigen::Vector2d& p_map) const;

@@ -4,16 +4,10 @@
 #include <numbers>
 
 #include "core/geometry/angles.h"
+#include "core/site/geodetic_datum.h"
 #include "sim/sensors/sensor.h"
 
 namespace patrol::sim {
-namespace {
-
-constexpr double kEarthRadius_m = 6378137.0;  // equatorial radius of WGS 84
-constexpr double kEccentricitySquared = 6.69437999014e-3;
-
-}  // namespace
-
 Gnss::Gnss(const GnssSettings& settings, std::uint64_t seed) : settings_(settings), noise_(seed, "gnss/noise") {
   validate(settings, "sensors.gnss");
 }
@@ -54,13 +48,10 @@ GnssFix Gnss::read(const LidarScene& scene, const Eigen::Vector3d& p_world_anten
   const double std_m = fix.status == GnssStatus::kFix ? settings_.fix_noise_std_m : settings_.float_noise_std_m;
   fix.position_std_m = Eigen::Vector3d(std_m, std_m, 2.0 * std_m);
   const Eigen::Vector3d enu = p_world_antenna + fix.position_std_m.cwiseProduct(error_);
-  // Convert east and north to angles with the ellipsoid's radii at the datum: exact to a millimeter over a city block.
-  const double sine = std::sin(settings_.datum_latitude_deg * kDegree);
-  const double w = std::sqrt(1.0 - kEccentricitySquared * sine * sine);
-  const double meridian_m = kEarthRadius_m * (1.0 - kEccentricitySquared) / (w * w * w);
-  const double parallel_m = kEarthRadius_m / w * std::cos(settings_.datum_latitude_deg * kDegree);
-  fix.latitude_deg = settings_.datum_latitude_deg + enu.y() / meridian_m / kDegree;
-  fix.longitude_deg = settings_.datum_longitude_deg + enu.x() / parallel_m / kDegree;
+  const GeodeticPosition position = to_geodetic(
+      {.latitude_deg = settings_.datum_latitude_deg, .longitude_deg = settings_.datum_longitude_deg}, enu.head<2>());
+  fix.latitude_deg = position.latitude_deg;
+  fix.longitude_deg = position.longitude_deg;
   fix.altitude_m = enu.z();
   return fix;
 }

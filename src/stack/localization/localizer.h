@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "core/grid.h"
 #include "core/messages.h"
 #include "core/sensors/registry.h"
@@ -23,6 +25,8 @@ class Localizer {
   /// Corrects the pose by a scan and publishes the estimate with its diagnostics. `T_odom_body` is at the scan's stamp.
   virtual PoseEstimate update(const LevelScan& scan, const Pose2& T_odom_body, StackOutput& output) = 0;
 
+  /// Returns the present pose estimates of all scans, [scan]; empty for a fixed map, whose poses do not change.
+  virtual std::vector<Pose2> path() const { return {}; }
   virtual OccupancyGrid map() = 0;
   /// Returns whether the map grows with every scan.
   virtual bool is_mapping() const = 0;

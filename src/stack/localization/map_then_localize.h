@@ -19,6 +19,7 @@ class MapThenLocalize final : public Localizer {
   PoseEstimate update(const LevelScan& scan, const Pose2& T_odom_body, StackOutput& output) override {
     return current_->update(scan, T_odom_body, output);
   }
+  std::vector<Pose2> path() const override { return current_->path(); }
   OccupancyGrid map() override { return current_->map(); }
   bool is_mapping() const override { return current_->is_mapping(); }
   bool is_lost() const override { return current_->is_lost(); }

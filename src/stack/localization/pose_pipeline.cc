@@ -18,18 +18,21 @@ Eigen::Matrix3d PosePipeline::surveyed_covariance() {
 }
 
 PosePipeline::PosePipeline(const StackSettings& settings, const RobotDescription& robot, const Route& site_in_map,
-                           LocalizerStart start, std::uint64_t seed)
+                           LocalizerStart start, std::uint64_t seed, const SiteFrame& site)
     : settle_(from_seconds(settings.odometry_settling_time_s)),
       odometry_(make_odometry_source(settings, robot)),
-      leveler_(robot.T_body("lidar"), settings.scan_leveling) {
+      leveler_(robot.T_body("lidar"), settings.scan_leveling),
+      registrar_(settings.registration, site) {
   start.height_above_ground_m = odometry_->height_above_ground_m();
   localizer_ = make_localizer(settings, robot, site_in_map, start, seed);
   if (robot.T_body_sensor.contains("uwb"))
     range_pose_.emplace(settings.uwb_filter, site_in_map.anchors, robot.T_body("uwb"));
+  if (robot.T_body_sensor.contains("gnss")) T_body_gnss_ = robot.T_body("gnss");
 }
 
 void PosePipeline::add(const SensorMessage& message, StackOutput& output) {
   if (const auto* range = std::get_if<UwbRange>(&message)) return add_range(*range);
+  if (const auto* fix = std::get_if<GnssFix>(&message)) return add_fix(*fix);
   const auto timer = output.time_stage("odometry");
   odometry_->add(message);
 }
@@ -40,6 +43,28 @@ void PosePipeline::add_range(const UwbRange& range) {
   if (range_pose_) range_pose_->add(range, *T_odom_body);
   localizer_->add(
       {.range = range, .T_odom_body = *T_odom_body, .height_above_ground_m = odometry_->height_above_ground_m()});
+}
+
+void PosePipeline::add_fix(const GnssFix& fix) {
+  if (!T_body_gnss_ || !registrar_.uses_gnss() || !localizer_->has_pose()) return;
+  const std::optional<PoseFromScan> pose = pose_from_scan(fix.stamp);
+  const std::optional<StationPose> station = station_pose_at(fix.stamp);
+  if (pose && station) registrar_.add(fix, *pose, (station->T_level_body * T_body_gnss_->position).head<2>());
+}
+
+/// Returns the body pose at an instant, relative to the newest scan; none before the first scan.
+std::optional<PoseFromScan> PosePipeline::pose_from_scan(Time stamp) const {
+  const std::optional<Pose3> T_odom_body = odometry_->T_odom_body_at(stamp);
+  if (num_scans_ == 0 || !T_odom_body) return std::nullopt;
+  const Pose2 T_odom_level = to_pose2(*T_odom_body);
+  return PoseFromScan{.scan = num_scans_ - 1,
+                      .T_scan_body = T_odom_scan_.inverse() * T_odom_level,
+                      .T_map_body = tracker_.at(stamp, T_odom_level).T_map_body};
+}
+
+std::optional<SiteRegistration> PosePipeline::register_to_site(Time now) {
+  if (num_scans_ == 0 || !registrar_.is_due(now)) return std::nullopt;
+  return registrar_.update(now, localizer_->path());
 }
 
 std::optional<OdometryEstimate> PosePipeline::update_odometry() {
@@ -59,6 +84,8 @@ ScanPose PosePipeline::localize(const LevelScan& scan, StackOutput& output) {
   const Pose2 T_odom_body = to_pose2(*odometry_->T_odom_body_at(scan.stamp));
   const PoseEstimate estimate = localizer_->update(scan, T_odom_body, output);
   tracker_.correct(scan.stamp, T_odom_body, estimate.T_map_body, estimate.covariance);
+  ++num_scans_;
+  T_odom_scan_ = T_odom_body;
   return {.T_odom_body = T_odom_body, .T_map_body = tracker_.at(scan.stamp, T_odom_body).T_map_body};
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -8,12 +9,15 @@
 #include "core/robot_description.h"
 #include "core/route.h"
 #include "core/sensors/registry.h"
+#include "core/site/site_frame.h"
+#include "core/site/site_registration.h"
 #include "localize/map_pose_tracker.h"
 #include "localize/scan_leveler.h"
 #include "stack/instruments/station_pose.h"
 #include "stack/localization/make_localizer.h"
 #include "stack/localization/odometry_source.h"
 #include "stack/localization/range_pose_tracker.h"
+#include "stack/localization/site_registrar.h"
 
 namespace patrol::stack {
 
@@ -32,7 +36,7 @@ class PosePipeline {
   /// `start.height_above_ground_m` is taken from the odometry source. Throws InputError when settings, robot and map
   /// are inconsistent.
   PosePipeline(const StackSettings& settings, const RobotDescription& robot, const Route& site_in_map,
-               LocalizerStart start, std::uint64_t seed);
+               LocalizerStart start, std::uint64_t seed, const SiteFrame& site = {});
 
   /// Processes a sensor message other than a scan; `level` and `localize` process scans.
   void add(const SensorMessage& message, StackOutput& output);
@@ -44,6 +48,9 @@ class PosePipeline {
   ScanPose localize(const LevelScan& scan, StackOutput& output);
   /// Publishes the pose from odometry and UWB ranges alone, if robot and site have UWB.
   void publish_range_pose(const OdometryEstimate& odometry, const PoseEstimate& pose, StackOutput& output);
+
+  /// Returns the registration of the map to the site if it is due and has changed; none before the first scan.
+  std::optional<SiteRegistration> register_to_site(Time now);
 
   PoseEstimate pose_at(Time stamp, const Pose2& T_odom_body) const { return tracker_.at(stamp, T_odom_body); }
   /// Returns the body pose at an instant; none outside the time span of odometry.
@@ -62,6 +69,8 @@ class PosePipeline {
  private:
   bool has_settled(Time stamp) const { return first_odometry_ && stamp >= *first_odometry_ + settle_; }
   void add_range(const UwbRange& range);
+  void add_fix(const GnssFix& fix);
+  std::optional<PoseFromScan> pose_from_scan(Time stamp) const;
 
   Time settle_;
   std::unique_ptr<OdometrySource> odometry_;
@@ -69,6 +78,10 @@ class PosePipeline {
   std::unique_ptr<Localizer> localizer_;
   std::optional<RangePoseTracker> range_pose_;  ///< present for a robot with a UWB antenna
   localize::MapPoseTracker tracker_;
+  SiteRegistrar registrar_;
+  std::optional<Pose3> T_body_gnss_;  ///< present for a robot with a GNSS antenna
+  std::size_t num_scans_ = 0;         ///< scans that the localizer has processed
+  Pose2 T_odom_scan_;                 ///< body at the newest scan
   std::optional<Time> first_odometry_;
 };
 

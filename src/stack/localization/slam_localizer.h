@@ -20,6 +20,7 @@ class SlamLocalizer final : public Localizer {
 
   void add(const RangeWithOdometry& range) override;
   PoseEstimate update(const LevelScan& scan, const Pose2& T_odom_body, StackOutput& output) override;
+  std::vector<Pose2> path() const override { return mapper_->path(); }
   OccupancyGrid map() override { return mapper_->map(); }
   bool is_mapping() const override { return true; }
   bool is_lost() const override { return false; }

@@ -7,6 +7,11 @@
 #include "core/text.h"
 
 namespace patrol::stack {
+namespace {
+
+constexpr double kMinStationShift_m = 0.05;  // minimum shift of the station that the robot is driving to
+
+}  // namespace
 
 GasRules gas_rules(const GasMissionSettings& settings) {
   return {.settling_time_s = settings.settling_time_s,
@@ -41,6 +46,19 @@ MissionOutput GasMission::step(Time now, const MissionInput& input) {
   }
   output.task = task();
   return output;
+}
+
+void GasMission::set_site(const Route& site_in_map) {
+  for (std::size_t i = current_; i < route_.stations.size(); ++i) {
+    Station& mine = route_.stations[i];
+    const auto moved = std::ranges::find(site_in_map.stations, mine.name, &Station::name);
+    if (moved == site_in_map.stations.end()) continue;
+    const double shift_m = (moved->T_route_body.position() - mine.T_route_body.position()).norm();
+    const bool is_present = i == current_ && phase_ != Phase::kWaiting;
+    if (is_present && (phase_ != Phase::kDriving || shift_m < kMinStationShift_m)) continue;
+    mine.T_route_body = moved->T_route_body;
+    mine.p_route_target = moved->p_route_target;
+  }
 }
 
 /// Keeps the goal while measuring, so that the robot holds its pose.

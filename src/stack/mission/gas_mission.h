@@ -33,6 +33,9 @@ class GasMission final : public Mission {
   GasMission(const GasMissionSettings& settings, Route route_in_map, std::string order_text = "");
 
   MissionOutput step(Time now, const MissionInput& input) override;
+  /// Moves the stations. The present one moves only while the robot drives to it and the shift is at least 5 cm, so
+  /// that a small change interrupts neither an approach nor a measurement.
+  void set_site(const Route& site_in_map) override;
   bool is_over() const override { return phase_ == Phase::kOver; }
   Event abort(Time now, EventKind kind, const std::string& text) override;
   TaskTiming timing() const override { return TaskTiming::kNext; }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/messages.h"
+#include "core/route.h"
 #include "core/sensors/registry.h"
 #include "stack/mission/task.h"
 
@@ -43,6 +44,8 @@ class Mission {
 
   /// Advances by one control period.
   virtual MissionOutput step(Time now, const MissionInput& input) = 0;
+  /// Replaces the survey in map after the registration of the map to the site has changed.
+  virtual void set_site(const Route& /*site_in_map*/) {}
   virtual bool is_over() const = 0;
   /// Ends the mission, unless it is over, and returns an event of this kind.
   virtual Event abort(Time now, EventKind kind, const std::string& text) = 0;

@@ -3,12 +3,13 @@
 #include <variant>
 
 #include "core/messages.h"
+#include "core/site/site_registration.h"
 
 namespace patrol::stack {
 
 /// Message published by the robot's software: estimates, map, commands, events and results.
 using StackMessage = std::variant<OdometryEstimate, PoseEstimate, UwbPoseEstimate, LocalizationConfidence, ParticleSet,
                                   MapUpdate, Path, VelocityCommand, Event, ScanCommand, AntennaCommand, SoundingCommand,
-                                  WarningCommand, LiningResult, WaterResult>;
+                                  WarningCommand, LiningResult, WaterResult, SiteRegistration>;
 
 }  // namespace patrol::stack

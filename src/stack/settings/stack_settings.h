@@ -5,6 +5,7 @@
 #include "core/settings.h"
 #include "localize/amcl/monte_carlo_settings.h"
 #include "localize/range_filter_settings.h"
+#include "localize/registration/registration_settings.h"
 #include "localize/scan_leveler_settings.h"
 #include "plan/navigation/navigator_settings.h"
 #include "slam/methods/mapper_settings.h"
@@ -40,8 +41,9 @@ struct StackSettings {
   OdometrySettings odometry;
   localize::ScanLevelerSettings scan_leveling;
   slam::MapperSettings slam = default_slam_settings();
-  localize::MonteCarloSettings localization;  ///< settings of the localization on a given map
-  localize::RangeFilterSettings uwb_filter;   ///< settings of the UWB pose of a robot with tracks and UWB
+  localize::MonteCarloSettings localization;    ///< settings of the localization on a given map
+  localize::RangeFilterSettings uwb_filter;     ///< settings of the UWB pose of a robot with tracks and UWB
+  localize::RegistrationSettings registration;  ///< settings of the registration of the map to the site
   plan::NavigatorSettings navigation;
   SensorMonitorSettings sensor_monitor;
   DockingSettings docking;
@@ -60,6 +62,7 @@ struct StackSettings {
     visit("slam", self.slam);
     visit("localization", self.localization);
     visit("uwb_filter", self.uwb_filter);
+    visit("registration", self.registration);
     visit("navigation", self.navigation);
     visit("sensor_monitor", self.sensor_monitor);
     visit("docking", self.docking);

@@ -46,6 +46,21 @@ std::string complaint_after(const std::function<void(Json&)>& change) {
   return complaint_about_text(route.dump());
 }
 
+TEST(LoadRoute, ReadsTheDatumAndRefusesOneNearAPole) {
+  Json json = make_route();
+  EXPECT_FALSE(load_route(TemporaryFile("r.json", json.dump()).path()).datum);
+  json["datum"] = {{"latitude_deg", 29.21}, {"longitude_deg", 119.46}};
+  const TemporaryFile file("r.json", json.dump());
+  const std::optional<GeodeticDatum> datum = load_route(file.path()).datum;
+  ASSERT_TRUE(datum);
+  EXPECT_EQ(datum->latitude_deg, 29.21);
+  EXPECT_EQ(datum->longitude_deg, 119.46);
+  EXPECT_THAT(complaint_after([](Json& route) {
+                route["datum"] = {{"latitude_deg", 86.0}, {"longitude_deg", 0.0}};
+              }),
+              ::testing::HasSubstr("latitude_deg must be in [-85, 85]"));
+}
+
 TEST(LoadRoute, ReadsStartStationsAndKeepOutLines) {
   const TemporaryFile file("r.json", make_route().dump());
   const RouteFile route = load_route(file.path());

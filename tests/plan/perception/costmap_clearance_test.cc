@@ -66,6 +66,18 @@ TEST(Costmap, KeepOutLinesAreLethalAlongTheirWholeLength) {
   EXPECT_EQ(costmap.cost_at({3.55, 0.05}), kFreeCost);  // past its end
 }
 
+TEST(Costmap, ReplacedKeepOutLinesEqualThoseOfAFreshCostmap) {
+  const CostmapSettings settings{.unknown_cost = 0.0, .keep_out_margin_m = 0.2, .keep_out_inflation_m = 0.3};
+  const std::vector<Polyline> moved = {{{-3.0, 0.4}, {4.0, 0.6}}};
+  Costmap costmap(settings, make_robot(), {{{-3.0, 0.0}, {3.0, 0.0}}});
+  costmap.set_keep_out_lines(moved);
+  const Costmap fresh(settings, make_robot(), moved);
+  for (double x = -3.95; x < 5.0; x += 0.1) {
+    for (double y = -1.95; y < 2.0; y += 0.1) ASSERT_EQ(costmap.cost_at({x, y}), fresh.cost_at({x, y})) << x << ' ' << y;
+  }
+  EXPECT_EQ(costmap.cost_at({0.0, 0.0}), kFreeCost);
+}
+
 TEST(Costmap, KeepOutDistanceIsTheDistanceToTheLine) {
   const Costmap costmap({}, make_robot(), {{{0.0, 0.0}, {2.0, 0.0}, {2.0, 2.0}}});
   EXPECT_NEAR(costmap.keep_out_distance_m({1.0, -0.5}), 0.5, 1e-3);

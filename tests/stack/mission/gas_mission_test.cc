@@ -51,6 +51,29 @@ TEST(GasMission, StandsForItsStartWait) {
   EXPECT_EQ(output.events.at(0).stamp, from_seconds(1.0));
 }
 
+// The registration moves the survey by 10 cm on the way to the first station, and again while it is measured there.
+TEST(GasMission, StationsFollowTheSurveyButNotDuringAMeasurement) {
+  GasMission mission(make_settings(), make_route());
+  const auto moved_by = [](double shift_m) {
+    Route route = make_route();
+    for (Station& station : route.stations) station.T_route_body.x += shift_m;
+    return route;
+  };
+  const auto step_at = [&](double time_s, NavigationFeedback feedback) {
+    return mission.step(from_seconds(time_s), {.pose = {}, .navigation = feedback});
+  };
+  EXPECT_EQ(step_at(1.0, NavigationFeedback::kDriving).task.goal->T_map_body.x, 3.0);
+  mission.set_site(moved_by(0.02));  // less than the minimum shift
+  EXPECT_EQ(step_at(1.1, NavigationFeedback::kDriving).task.goal->T_map_body.x, 3.0);
+  mission.set_site(moved_by(0.1));
+  EXPECT_EQ(step_at(1.2, NavigationFeedback::kDriving).task.goal->T_map_body.x, 3.1);
+  step_at(3.0, NavigationFeedback::kArrived);
+  mission.set_site(moved_by(0.2));
+  EXPECT_EQ(step_at(3.1, NavigationFeedback::kArrived).task.goal->T_map_body.x, 3.1);
+  const MissionInput measured{.inspection = {.feedback = InspectionFeedback::kDone}};
+  EXPECT_EQ(mission.step(from_seconds(5.0), measured).task.goal->T_map_body.x, 3.2);  // the second station
+}
+
 // Reached at t, readings from t + 0.5 s on, for 1 s: measured at t + 1.5 s.
 TEST(GasMission, MeasuresForItsTimeAfterSettling) {
   GasRound mission(make_settings(), make_route(), {});

@@ -1,0 +1,79 @@
+#include "stack/localization/site_registrar.h"
+
+#include <utility>
+
+namespace patrol::stack {
+namespace {
+
+// Sources of measurements, whose errors are independent of each other.
+constexpr int kFixSource = 0;
+constexpr int kFloatSource = 1;
+
+}  // namespace
+
+SiteRegistrar::SiteRegistrar(const localize::RegistrationSettings& settings, const SiteFrame& site)
+    : settings_(settings),
+      site_(site),
+      prior_(localize::registration_prior(site.T_site_start, settings)),
+      min_distance_m_(settings.min_distance_m) {
+  validate(settings, "registration");
+}
+
+void SiteRegistrar::add(const GnssFix& fix, const PoseFromScan& pose, const Eigen::Vector2d& p_level_antenna) {
+  if (!uses_gnss() || fix.status == GnssStatus::kNone) return;
+  const bool is_float = fix.status == GnssStatus::kFloat;
+  const localize::AntennaPosition position{
+      .p_level_antenna = p_level_antenna,
+      .p_site_antenna = to_site(*site_.datum, {.latitude_deg = fix.latitude_deg, .longitude_deg = fix.longitude_deg}),
+      .std_m = fix.position_std_m.head<2>().maxCoeff()};
+  if (!position.p_site_antenna.allFinite() || !(position.std_m > 0.0)) return;
+  add({.stamp = fix.stamp,
+       .source = is_float ? kFloatSource : kFixSource,
+       .correlation_time_s = is_float ? settings_.float_correlation_time_s : settings_.fix_correlation_time_s,
+       .T_map_body = pose.T_map_body,
+       .content = position},
+      pose);
+}
+
+bool SiteRegistrar::is_spaced(int source, Time stamp, const Pose2& T_map_body) const {
+  const auto last = last_poses_.find(source);
+  if (last == last_poses_.end()) return true;
+  const Time age = stamp - last_stamps_.at(source);
+  if (age <= Time{}) return false;
+  const double distance_m = (T_map_body.position() - last->second.T_map_body.position()).norm();
+  return distance_m >= min_distance_m_ || age >= from_seconds(settings_.max_interval_s);
+}
+
+void SiteRegistrar::add(localize::SiteMeasurement measurement, const PoseFromScan& pose) {
+  if (!is_spaced(measurement.source, measurement.stamp, pose.T_map_body)) return;
+  last_poses_[measurement.source] = pose;
+  last_stamps_[measurement.source] = measurement.stamp;
+  entries_.push_back({.measurement = std::move(measurement), .pose = pose});
+  if (entries_.size() > static_cast<std::size_t>(settings_.max_measurements)) thin_out();
+}
+
+void SiteRegistrar::thin_out() {
+  std::map<int, bool> keeps_next;
+  std::erase_if(entries_, [&](const Entry& entry) {
+    bool& keeps = keeps_next[entry.measurement.source];
+    keeps = !keeps;
+    return !keeps;
+  });
+  min_distance_m_ *= 2.0;
+}
+
+std::optional<SiteRegistration> SiteRegistrar::update(Time now, const std::vector<Pose2>& path) {
+  next_ = now + from_seconds(settings_.period_s);
+  std::vector<localize::SiteMeasurement> measurements;
+  for (Entry& entry : entries_) {
+    if (entry.pose.scan < path.size()) entry.measurement.T_map_body = path[entry.pose.scan] * entry.pose.T_scan_body;
+    measurements.push_back(entry.measurement);
+  }
+  const localize::SitePoseGaussian estimate = localize::register_to_site(prior_, measurements, settings_);
+  const bool has_changed = !published_ || published_->T_site_map.vector() != estimate.T_site_map.vector();
+  if (!has_changed) return std::nullopt;
+  published_ = SiteRegistration{.stamp = now, .T_site_map = estimate.T_site_map, .covariance = estimate.covariance};
+  return published_;
+}
+
+}  // namespace patrol::stack

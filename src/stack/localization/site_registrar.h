@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "core/sensors/gnss.h"
+#include "core/site/site_frame.h"
+#include "core/site/site_registration.h"
+#include "localize/registration/register_to_site.h"
+
+namespace patrol::stack {
+
+/// Pose of the body relative to a scan: it follows the scan's pose when the map changes.
+struct PoseFromScan {
+  std::size_t scan = 0;  ///< index of the scan
+  Pose2 T_scan_body;     ///< by odometry
+  Pose2 T_map_body;      ///< by the present map
+};
+
+/// Keeps measurements of the survey and estimates the pose of `map` in `site` from them.
+///
+/// A measurement refers to the scan before it. Each estimation takes the present poses of the scans, so the
+/// registration follows loop closures. Poses that a fixed map has given are kept as they were.
+class SiteRegistrar {
+ public:
+  /// Throws InputError if a setting is out of range.
+  SiteRegistrar(const localize::RegistrationSettings& settings, const SiteFrame& site);
+
+  /// Returns whether GNSS fixes are used: the site has a datum.
+  bool uses_gnss() const { return settings_.use_gnss && site_.datum.has_value(); }
+  /// Adds a GNSS fix. `pose`: body at the stamp of the fix. Fixes that are too close to the previous one are ignored.
+  void add(const GnssFix& fix, const PoseFromScan& pose, const Eigen::Vector2d& p_level_antenna);
+
+  std::size_t num_measurements() const { return entries_.size(); }
+  bool is_due(Time now) const { return now >= next_; }
+  /// Estimates the registration and returns it if it has changed, the prior at the first call. `path`: present poses of
+  /// all scans, [scan]; empty for a fixed map. Precondition: `is_due(now)`.
+  std::optional<SiteRegistration> update(Time now, const std::vector<Pose2>& path);
+
+ private:
+  struct Entry {
+    localize::SiteMeasurement measurement;
+    PoseFromScan pose;
+  };
+
+  bool is_spaced(int source, Time stamp, const Pose2& T_map_body) const;
+  void add(localize::SiteMeasurement measurement, const PoseFromScan& pose);
+  void thin_out();
+
+  localize::RegistrationSettings settings_;
+  SiteFrame site_;
+  localize::SitePoseGaussian prior_;
+  double min_distance_m_;
+  std::vector<Entry> entries_;              ///< in ascending time order
+  std::map<int, PoseFromScan> last_poses_;  ///< [source] pose of the newest entry
+  std::map<int, Time> last_stamps_;         ///< [source] stamp of the newest entry
+  std::optional<SiteRegistration> published_;
+  Time next_{};
+};
+
+}  // namespace patrol::stack

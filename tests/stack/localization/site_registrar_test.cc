@@ -1,0 +1,89 @@
+#include "stack/localization/site_registrar.h"
+
+#include <gtest/gtest.h>
+
+#include "core/geometry/angles.h"
+#include "tests/support/pose_near.h"
+
+namespace patrol::stack::site_registrar_test {
+namespace {
+
+constexpr double kSpeed_mps = 0.5;
+const SiteFrame kSite{.T_site_start = {11.0, 8.0, to_rad(90.0)},
+                      .datum = GeodeticDatum{.latitude_deg = 29.21, .longitude_deg = 119.46}};
+
+GnssFix fix_at(const Eigen::Vector2d& p_site, Time stamp) {
+  const GeodeticPosition position = to_geodetic(*kSite.datum, p_site);
+  return {.stamp = stamp,
+          .status = GnssStatus::kFix,
+          .latitude_deg = position.latitude_deg,
+          .longitude_deg = position.longitude_deg,
+          .altitude_m = 0.0,
+          .position_std_m = Eigen::Vector3d(0.01, 0.01, 0.02)};
+}
+
+/// Drives straight ahead for so many meters; the map is what `T_map_true` makes of the path. A scan every meter.
+std::vector<Pose2> drive(SiteRegistrar& registrar, const Pose2& T_site_map, int meters, double map_scale = 1.0) {
+  std::vector<Pose2> path;
+  for (int i = 0; i <= meters; ++i) {
+    const Pose2 T_true{1.0 * i, 0.0, 0.0}, T_map_body{map_scale * i, 0.0, 0.0};
+    path.push_back(T_map_body);
+    const PoseFromScan pose{
+        .scan = static_cast<std::size_t>(i), .T_scan_body = {}, .T_map_body = T_map_body};
+    registrar.add(fix_at(T_site_map * T_true.position(), from_seconds(i / kSpeed_mps)), pose, Eigen::Vector2d::Zero());
+  }
+  return path;
+}
+
+TEST(SiteRegistrar, BeginsWithTheSurveyedStart) {
+  SiteRegistrar registrar({}, kSite);
+  const std::optional<SiteRegistration> first = registrar.update(from_seconds(1.0), {});
+  ASSERT_TRUE(first);
+  EXPECT_THAT(first->T_site_map, test::Pose2Near(kSite.T_site_start, 1e-12, 1e-12));
+  EXPECT_FALSE(registrar.is_due(from_seconds(1.5)));
+  EXPECT_FALSE(registrar.update(from_seconds(2.0), {}));  // nothing has changed
+}
+
+TEST(SiteRegistrar, FindsThePutDownYawFromFixes) {
+  SiteRegistrar registrar({}, kSite);
+  const Pose2 T_site_map = kSite.T_site_start * Pose2{0.01, -0.01, to_rad(0.5)};
+  const std::vector<Pose2> path = drive(registrar, T_site_map, 60);
+  const std::optional<SiteRegistration> found = registrar.update(from_seconds(200.0), path);
+  ASSERT_TRUE(found);
+  EXPECT_LT(std::abs(wrap_angle(found->T_site_map.yaw - T_site_map.yaw)), to_rad(0.02));
+  EXPECT_LT(std::sqrt(found->covariance(2, 2)), to_rad(0.1));
+}
+
+// A loop closure turns the map by one degree: the fixes follow their scans.
+TEST(SiteRegistrar, FollowsTheMapWhenItIsCorrected) {
+  SiteRegistrar registrar({}, kSite);
+  std::vector<Pose2> path = drive(registrar, kSite.T_site_start, 60);
+  registrar.update(from_seconds(200.0), path);
+  const Pose2 correction{0.0, 0.0, to_rad(-1.0)};
+  for (Pose2& pose : path) pose = correction * pose;
+  const std::optional<SiteRegistration> corrected = registrar.update(from_seconds(201.0), path);
+  ASSERT_TRUE(corrected);
+  EXPECT_NEAR(wrap_angle(corrected->T_site_map.yaw - kSite.T_site_start.yaw), to_rad(1.0), to_rad(0.05));
+}
+
+TEST(SiteRegistrar, WithoutADatumIgnoresFixes) {
+  SiteRegistrar registrar({}, {.T_site_start = kSite.T_site_start, .datum = {}});
+  EXPECT_FALSE(registrar.uses_gnss());
+  const std::vector<Pose2> path = drive(registrar, kSite.T_site_start * Pose2{5.0, 0.0, 0.0}, 60);
+  EXPECT_THAT(registrar.update(from_seconds(200.0), path)->T_site_map,
+              test::Pose2Near(kSite.T_site_start, 1e-12, 1e-12));
+}
+
+TEST(SiteRegistrar, BoundsItsMeasurements) {
+  localize::RegistrationSettings settings;
+  settings.max_measurements = 20;
+  SiteRegistrar registrar(settings, kSite);
+  const Pose2 T_site_map = kSite.T_site_start * Pose2{0.0, 0.0, to_rad(0.5)};
+  const std::vector<Pose2> path = drive(registrar, T_site_map, 300);
+  EXPECT_LE(registrar.num_measurements(), 20U);
+  EXPECT_LT(std::abs(wrap_angle(registrar.update(from_seconds(999.0), path)->T_site_map.yaw - T_site_map.yaw)),
+            to_rad(0.05));
+}
+
+}  // namespace
+}  // namespace patrol::stack::site_registrar_test
