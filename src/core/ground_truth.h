@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/frames.h"
@@ -21,6 +22,13 @@ struct SimState {
   Time stamp{};
   std::vector<double> qpos;
   std::vector<double> mocap;  ///< [mocap body]: x y z qw qx qy qz
+};
+
+/// Values drawn for the simulated robot: calibration and manufacturing errors by name, "lidar.yaw_rad". Units are in
+/// the names.
+struct AsBuiltTruth {
+  Time stamp{};
+  std::vector<std::pair<std::string, double>> values;
 };
 
 /// Unintended contact of the robot. `first` is the geom of the robot, `second` the other geom.

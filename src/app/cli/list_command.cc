@@ -3,6 +3,7 @@
 #include <span>
 #include <string>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -73,6 +74,29 @@ std::vector<std::string> sensor_lines() {
   return lines;
 }
 
+/// Visitor that collects the tolerances of section `as_built` with their defaults and sources.
+struct ToleranceLines {
+  std::vector<std::string> lines;
+  std::string group;
+  template <typename Value>
+  void operator()(const char* name, const Value& value, const Limits& = {}) {
+    if constexpr (requires { Value::kSource; }) {
+      group = name;
+      lines.push_back(fmt::format("{}: {}", name, Value::kSource));
+      Value::fields(value, *this);
+    } else {
+      lines.push_back(fmt::format("  {:<45} {}", group.empty() ? name : fmt::format("{}.{}", group, name), value));
+    }
+  }
+};
+
+std::vector<std::string> tolerance_lines() {
+  ToleranceLines visitor;
+  const sim::AsBuiltSettings settings;
+  sim::AsBuiltSettings::fields(settings, visitor);
+  return std::move(visitor.lines);
+}
+
 /// Prints scenarios, worlds and robots; a hint if the data folder is missing.
 void print_data() {
   std::filesystem::path root;
@@ -96,6 +120,7 @@ ExitCode list_command() {
   print_data();
   print("sensors", sensor_lines());
   print("lidar presets", allowed<LidarSettings>("preset"));
+  print("as-built tolerances (as_built)", tolerance_lines());
   print("sensor faults", allowed<sim::FaultSettings>("kind"));
   print("odometry sources (stack.odometry_source)", allowed<stack::StackSettings>("odometry_source"));
   print("localizers (stack.localizer)", allowed<stack::StackSettings>("localizer"));

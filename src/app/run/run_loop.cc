@@ -40,6 +40,7 @@ sim::SimulatorSettings simulator_settings(const Scenario& scenario, const Scenar
   return {.world_xml = files.world_xml.string(),
           .robot_urdf = files.robot_urdf.string(),
           .T_world_start = start_in_world(scenario, files),
+          .as_built = scenario.as_built,
           .sensors = scenario.sensors,
           .locomotion = scenario.locomotion,
           .track_drive = scenario.track_drive,
@@ -84,6 +85,7 @@ class ClosedLoop {
 
   RunOutcome run(const ScenarioFiles& files) {
     observer_.begin(files);
+    if (const AsBuiltTruth as_built = simulator_.as_built(); !as_built.values.empty()) log_.write(Time{}, as_built);
     for (bool is_running = true; is_running;) {
       const Time now = simulator_.now();
       handle_sensor_messages(now);

@@ -93,6 +93,7 @@ Scenario default_scenario(const std::string& robot, const std::filesystem::path&
   const std::filesystem::path profile_file = data_root / "models" / robot / (robot + ".yaml");
   if (std::filesystem::exists(profile_file)) {
     const auto profile = io::load_settings<RobotProfile>(profile_file, {});
+    scenario.as_built = profile.as_built;
     scenario.sensors = profile.sensors;
     scenario.locomotion = profile.locomotion;
     scenario.track_drive = profile.track_drive;

@@ -109,6 +109,7 @@ struct Scenario {
   TeleopSettings teleop;
   StartOffsetSettings start;
   std::vector<MountSettings> mounts;  ///< sensors in addition to those of the robot's URDF
+  sim::AsBuiltSettings as_built;      ///< tolerances of the simulated robot
   sim::SensorSuiteSettings sensors;
   sim::LocomotionSettings locomotion;   ///< locomotion of a legged robot
   sim::TrackDriveSettings track_drive;  ///< drive of a tracked robot
@@ -141,6 +142,7 @@ struct Scenario {
     visit("teleop", self.teleop);
     visit("start", self.start);
     visit("mounts", self.mounts);
+    visit("as_built", self.as_built);
     visit("sensors", self.sensors);
     visit("locomotion", self.locomotion);
     visit("track_drive", self.track_drive);
@@ -163,6 +165,7 @@ struct Scenario {
 
 /// Robot profile, models/<robot>/<robot>.yaml: settings that differ from the defaults.
 struct RobotProfile {
+  sim::AsBuiltSettings as_built;
   sim::SensorSuiteSettings sensors;
   sim::LocomotionSettings locomotion;
   sim::TrackDriveSettings track_drive;
@@ -170,6 +173,7 @@ struct RobotProfile {
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
+    visit("as_built", self.as_built);
     visit("sensors", self.sensors);
     visit("locomotion", self.locomotion);
     visit("track_drive", self.track_drive);

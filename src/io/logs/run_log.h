@@ -58,6 +58,8 @@ inline constexpr const char* kTopic<GroundTruth> = "/ground_truth/odom";
 template <>
 inline constexpr const char* kTopic<SimState> = "/sim/state";
 template <>
+inline constexpr const char* kTopic<AsBuiltTruth> = "/ground_truth/as_built";
+template <>
 inline constexpr const char* kTopic<Collision> = "/ground_truth/collisions";
 
 /// Writes log.mcap: every message on its topic, and the frames on /tf and /tf_static.

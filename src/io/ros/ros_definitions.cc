@@ -95,6 +95,9 @@ constexpr Definition kDefinitions[] = {
     {"patrol_msgs/SimState",
      "# State of the simulator for the replay: qpos of MuJoCo, and x y z qw qx qy qz of each mocap body.\n"
      "std_msgs/Header header\nfloat64[] qpos\nfloat64[] mocap\n"},
+    {"patrol_msgs/NamedValue", "string name\nfloat64 value\n"},
+    {"patrol_msgs/NamedValues",
+     "# Values by name; the unit is in the name.\nstd_msgs/Header header\npatrol_msgs/NamedValue[] values\n"},
     {"patrol_msgs/Collision",
      "# Contact of geom `first` of the robot with geom `second`.\nstd_msgs/Header header\nstring first\nstring "
      "second\n"},

@@ -145,6 +145,15 @@ void describe(Codec& codec, Collision& collision) {
 }
 
 template <typename Codec>
+void describe(Codec& codec, AsBuiltTruth& truth) {
+  header(codec, truth.stamp, frame_id::kBody);
+  list(codec, truth.values, [&](std::pair<std::string, double>& value) {
+    codec(value.first);
+    codec(value.second);
+  });
+}
+
+template <typename Codec>
 void describe(Codec& codec, TransformSet& set) {
   list(codec, set.transforms, [&](FrameTransform& transform) {
     time_field(codec, transform.stamp);
@@ -184,6 +193,7 @@ PATROL_ROS_MESSAGE(VelocityCommand);
 PATROL_ROS_MESSAGE(Event);
 PATROL_ROS_MESSAGE(GroundTruth);
 PATROL_ROS_MESSAGE(SimState);
+PATROL_ROS_MESSAGE(AsBuiltTruth);
 PATROL_ROS_MESSAGE(Collision);
 PATROL_ROS_MESSAGE(TransformSet);
 

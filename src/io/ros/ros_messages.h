@@ -63,6 +63,8 @@ inline constexpr const char* kRosType<GroundTruth> = "nav_msgs/msg/Odometry";
 template <>
 inline constexpr const char* kRosType<SimState> = "patrol_msgs/msg/SimState";
 template <>
+inline constexpr const char* kRosType<AsBuiltTruth> = "patrol_msgs/msg/NamedValues";
+template <>
 inline constexpr const char* kRosType<Collision> = "patrol_msgs/msg/Collision";
 template <>
 inline constexpr const char* kRosType<TransformSet> = "tf2_msgs/msg/TFMessage";

@@ -18,7 +18,7 @@ Eigen::Vector3d across(const mjModel& model, int geom) {
 
 }  // namespace
 
-TrackContact::TrackContact(const RobotDescription& robot, double friction, mjModel& physics)
+TrackContact::TrackContact(const RobotDescription& robot, double friction, mjModel& physics, const TrackErrors& errors)
     : wheel_of_geom_(static_cast<std::size_t>(physics.ngeom), -1) {
   constexpr std::array<std::string_view, 2> kWheelNames = {"left_wheel_", "right_wheel_"};
   for (int geom = 0; geom < physics.ngeom; ++geom) {
@@ -26,10 +26,11 @@ TrackContact::TrackContact(const RobotDescription& robot, double friction, mjMod
     if (name == nullptr) continue;
     for (std::size_t side = 0; side < kWheelNames.size(); ++side) {
       if (!std::string_view(name).starts_with(kWheelNames[side])) continue;
-      const double turns = robot.tracks->sprocket_radius_m / physics.geom_size[3 * geom];
+      const double sprocket_radius_m = robot.tracks->sprocket_radius_m * errors.sprocket_scale[side];
+      const double turns = sprocket_radius_m / physics.geom_size[3 * geom];
       wheel_of_geom_[static_cast<std::size_t>(geom)] = static_cast<int>(wheels_.size());
       wheels_.push_back({.geom = geom, .side = side, .rate_per_radps = turns * across(physics, geom)});
-      physics.geom_friction[3 * geom] = friction;
+      physics.geom_friction[3 * geom] = friction * errors.friction_scale;
     }
   }
   for (std::size_t side = 0; side < sprocket_dofs_.size(); ++side) {

@@ -7,6 +7,7 @@
 #include <mujoco/mujoco.h>
 
 #include "core/robot_description.h"
+#include "sim/as_built/sensor_errors.h"
 
 namespace patrol::sim {
 
@@ -19,7 +20,7 @@ namespace patrol::sim {
 class TrackContact {
  public:
   /// Sets the friction of the track geoms in `physics`. Throws InputError when the model lacks the robot's tracks.
-  TrackContact(const RobotDescription& robot, double friction, mjModel& physics);
+  TrackContact(const RobotDescription& robot, double friction, mjModel& physics, const TrackErrors& errors = {});
 
   /// Sets the surface velocities to the sprocket speeds at the end of this tick.
   void run(mjModel& physics, const mjData& data) const;

@@ -3,10 +3,10 @@
 namespace patrol::sim {
 
 TrackDrive::TrackDrive(const RobotDescription& robot, const TrackDriveSettings& settings, double ticks_per_rad,
-                       mjModel& physics)
+                       mjModel& physics, const TrackErrors& errors)
     : initial_(robot, settings, ticks_per_rad, physics.opt.timestep),
       controller_(initial_),
-      contact_(robot, settings.friction, physics),
+      contact_(robot, settings.friction, physics, errors),
       brake_torque_nm_(settings.brake_torque_nm) {
   for (std::size_t side = 0; side < motors_.size(); ++side) {
     motors_[side] = mj_name2id(&physics, mjOBJ_ACTUATOR, robot.joint_names[side].c_str());

@@ -12,7 +12,8 @@ namespace patrol::sim {
 class TrackDrive : public Locomotion {
  public:
   /// `ticks_per_rad`: Hall counts per radian of a sprocket.
-  TrackDrive(const RobotDescription& robot, const TrackDriveSettings& settings, double ticks_per_rad, mjModel& physics);
+  TrackDrive(const RobotDescription& robot, const TrackDriveSettings& settings, double ticks_per_rad, mjModel& physics,
+             const TrackErrors& errors = {});
 
   void step(const FirmwareReadings& readings, const VelocityCommand& command, mjModel& physics, mjData& data) override;
   void restart() override { controller_ = initial_; }

@@ -28,9 +28,10 @@ PinholeLens make_lens(const DepthCameraSettings& settings) {
 }
 
 DepthCamera::DepthCamera(const DepthCameraSettings& settings, const DustSettings& dust,
-                         std::unique_ptr<DepthImager> imager, std::uint64_t seed)
+                         std::unique_ptr<DepthImager> imager, std::uint64_t seed, const DepthCameraErrors& errors)
     : settings_(settings),
       dust_(dust),
+      errors_(errors),
       lens_(make_lens(settings)),
       imager_(std::move(imager)),
       noise_(seed, "depth_camera/noise"),
@@ -102,10 +103,10 @@ DepthImage DepthCamera::take(const mjData& data, const Pose3& T_world_camera, Ti
   DepthImage image{.stamp = now,
                    .width = lens_.width_px,
                    .height = lens_.height_px,
-                   .fx_px = lens_.focal_px,
-                   .fy_px = lens_.focal_px,
-                   .cx_px = lens_.cx_px(),
-                   .cy_px = lens_.cy_px(),
+                   .fx_px = lens_.focal_px * errors_.focal_scale,
+                   .fy_px = lens_.focal_px * errors_.focal_scale,
+                   .cx_px = lens_.cx_px() + errors_.cx_px,
+                   .cy_px = lens_.cy_px() + errors_.cy_px,
                    .depth_mm = std::vector<std::uint16_t>(ideal_.depth_m.size(), 0)};
   for (int v = 0; v < lens_.height_px; ++v) {
     for (int u = 0; u < lens_.width_px; ++u) {
@@ -116,7 +117,8 @@ DepthImage DepthCamera::take(const mjData& data, const Pose3& T_world_camera, Ti
       if (is_at_edge(u, v) && edge_.uniform(tick, pixel) < settings_.edge_dropout_probability) continue;
       const double std_m =
           settings_.depth_noise_std_per_m * true_m * true_m * std::exp(2.0 * dust_.extinction_per_m() * true_m);
-      const double depth_m = true_m + std_m * noise_.normal(tick, pixel);
+      const double measured_m = true_m / (1.0 + errors_.inverse_depth_per_m * true_m);
+      const double depth_m = measured_m + std_m * noise_.normal(tick, pixel);
       if (depth_m < settings_.range_min_m || depth_m > settings_.range_max_m) continue;
       image.depth_mm[pixel] = static_cast<std::uint16_t>(std::lround(1000.0 * depth_m));
     }
@@ -131,7 +133,8 @@ class DepthCameraOnBody : public PeriodicSensor {
   DepthCameraOnBody(const SensorContext& context, std::unique_ptr<DepthImager> imager)
       : PeriodicSensor(context.settings.depth_camera.rate_hz),
         T_body_camera_(context.robot.T_body("depth_camera")),
-        camera_(context.settings.depth_camera, context.settings.dust, std::move(imager), context.seed) {}
+        camera_(context.settings.depth_camera, context.settings.dust, std::move(imager), context.seed,
+                context.as_built.depth_camera()) {}
 
  private:
   void read(const SensorTick& tick, std::uint64_t index, std::vector<SensorMessage>& readings) override {

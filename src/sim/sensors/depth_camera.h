@@ -10,6 +10,7 @@
 #include "core/random.h"
 #include "core/sensors/registry.h"
 #include "core/settings.h"
+#include "sim/as_built/sensor_errors.h"
 #include "sim/dust.h"
 
 namespace patrol::sim {
@@ -46,15 +47,16 @@ using DepthImagerFactory = std::function<std::unique_ptr<DepthImager>(const mjMo
                                                                       double near_m, double far_m)>;
 
 /// Depth camera model: adds sensor errors to ideal images. Each error source has its own random stream, indexed by
-/// frame and pixel.
+/// frame and pixel. Calibration errors are the difference between the published intrinsics and those of the image, and
+/// an error of the inverse depth.
 ///
 /// Dust attenuates the pattern both ways, which reduces the range and increases the noise. Not modeled: errors
-/// correlated between pixels, calibration errors, sunlight (it would drown the pattern), other cameras, and motion
+/// correlated between pixels, sunlight (it would drown the pattern), other cameras, and motion
 /// within a frame.
 class DepthCamera {
  public:
   DepthCamera(const DepthCameraSettings& settings, const DustSettings& dust, std::unique_ptr<DepthImager> imager,
-              std::uint64_t seed);
+              std::uint64_t seed, const DepthCameraErrors& errors = {});
 
   /// Takes frame number `tick`.
   DepthImage take(const mjData& data, const Pose3& T_world_camera, Time now, std::uint64_t tick);
@@ -70,6 +72,7 @@ class DepthCamera {
 
   DepthCameraSettings settings_;
   DustSettings dust_;
+  DepthCameraErrors errors_;
   PinholeLens lens_;
   std::unique_ptr<DepthImager> imager_;
   RandomStream noise_, edge_, dropout_;

@@ -1,5 +1,6 @@
 #include "sim/sensors/hall_sensors.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/error.h"
@@ -42,12 +43,18 @@ std::int64_t HallSensors::advance(Counter& counter, std::uint64_t side, double a
 
 namespace {
 
+HallSettings with_missed_edges(HallSettings settings, const TrackErrors& errors) {
+  settings.missed_edge_probability = std::min(1.0, settings.missed_edge_probability + errors.missed_edge_probability);
+  return settings;
+}
+
 class HallOnMotors : public Sensor {
  public:
   explicit HallOnMotors(const SensorContext& context)
       : is_enabled_(context.settings.hall.enabled),
         schedule_(context.settings.hall.rate_hz),
-        hall_(context.settings.hall, context.physics, context.robot.joint_names, context.seed) {}
+        hall_(with_missed_edges(context.settings.hall, context.as_built.tracks()), context.physics,
+              context.robot.joint_names, context.seed) {}
 
   void step(const SensorTick& tick, std::vector<SensorMessage>& readings) override {
     tick.newest.ticks = hall_.read(tick.data, tick.now);

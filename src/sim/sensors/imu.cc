@@ -16,8 +16,9 @@ double quantized(double value, double resolution) {
 
 }  // namespace
 
-ImuSensor::ImuSensor(const ImuSettings& settings, const mjModel& model, std::uint64_t seed)
+ImuSensor::ImuSensor(const ImuSettings& settings, const mjModel& model, std::uint64_t seed, const ImuErrors& errors)
     : site_(mj_name2id(&model, mjOBJ_SITE, "imu")),
+      errors_(errors),
       gyro_(make_triad(seed, "imu/gyro", settings, model.opt.timestep, settings.gyro_noise_density_radps_per_sqrt_hz,
                        settings.gyro_bias_std_radps, settings.gyro_bias_random_walk_radps_per_sqrt_s,
                        settings.gyro_range_radps, settings.gyro_resolution_radps)),
@@ -25,6 +26,14 @@ ImuSensor::ImuSensor(const ImuSettings& settings, const mjModel& model, std::uin
                         settings.accel_bias_std_mps2, settings.accel_bias_random_walk_mps2_per_sqrt_s,
                         settings.accel_range_mps2, settings.accel_resolution_mps2)) {
   validate(settings, "sensors.imu");
+  add_errors(errors.gyro, gyro_);
+  add_errors(errors.accel, accel_);
+}
+
+void ImuSensor::add_errors(const TriadErrors& errors, Triad& triad) {
+  triad.bias += errors.bias;
+  triad.bias_per_k = errors.bias_per_k;
+  triad.distortion += errors.distortion;
 }
 
 ImuSensor::Triad ImuSensor::make_triad(std::uint64_t seed, const char* name, const ImuSettings& settings, double tick_s,
@@ -35,6 +44,7 @@ ImuSensor::Triad ImuSensor::make_triad(std::uint64_t seed, const char* name, con
               .walk = RandomStream(seed, stream + "/walk"),
               .distortion = Eigen::Matrix3d::Identity(),
               .bias = Eigen::Vector3d::Zero(),
+              .bias_per_k = Eigen::Vector3d::Zero(),
               .noise_std = noise / std::sqrt(tick_s),
               .walk_std = walk * std::sqrt(tick_s),
               .range = range,
@@ -51,8 +61,9 @@ ImuSensor::Triad ImuSensor::make_triad(std::uint64_t seed, const char* name, con
   return triad;
 }
 
-Eigen::Vector3d ImuSensor::measure(Triad& triad, const Eigen::Vector3d& truth, std::uint64_t tick) {
-  Eigen::Vector3d reading = triad.distortion * truth;
+Eigen::Vector3d ImuSensor::measure(Triad& triad, const Eigen::Vector3d& truth, double temperature_rise_k,
+                                   std::uint64_t tick) {
+  Eigen::Vector3d reading = triad.distortion * truth + temperature_rise_k * triad.bias_per_k;
   for (int axis = 0; axis < 3; ++axis) {
     const auto index = static_cast<std::uint64_t>(axis);
     triad.bias[axis] += triad.walk_std * triad.walk.normal(tick, index);
@@ -64,9 +75,10 @@ Eigen::Vector3d ImuSensor::measure(Triad& triad, const Eigen::Vector3d& truth, s
 
 Imu ImuSensor::corrupt(const Eigen::Vector3d& rate_radps, const Eigen::Vector3d& force_mps2, Time now,
                        std::uint64_t tick) {
+  const double rise_k = errors_.temperature_rise_k(now);
   return {.stamp = now,
-          .angular_velocity_radps = measure(gyro_, rate_radps, tick),
-          .linear_acceleration_mps2 = measure(accel_, force_mps2, tick)};
+          .angular_velocity_radps = measure(gyro_, rate_radps + errors_.g_sensitivity * force_mps2, rise_k, tick),
+          .linear_acceleration_mps2 = measure(accel_, force_mps2, rise_k, tick)};
 }
 
 Imu ImuSensor::read(const mjModel& model, mjData& data, Time now, std::uint64_t tick) {
@@ -85,7 +97,7 @@ class ImuOnBody : public Sensor {
   explicit ImuOnBody(const SensorContext& context)
       : is_enabled_(context.settings.imu.enabled),
         schedule_(context.settings.imu.rate_hz),
-        imu_(context.settings.imu, context.physics, context.seed) {}
+        imu_(context.settings.imu, context.physics, context.seed, context.as_built.imu()) {}
 
   void step(const SensorTick& tick, std::vector<SensorMessage>& readings) override {
     tick.newest.imu = imu_.read(tick.physics, tick.data, tick.now, tick.count);

@@ -7,14 +7,15 @@
 #include "core/random.h"
 #include "core/sensors/registry.h"
 #include "core/settings.h"
+#include "sim/as_built/sensor_errors.h"
 
 namespace patrol::sim {
 
 /// IMU model: specific force and angular rate at the site `imu`, read at every tick. Scale factors and initial biases
-/// are sampled once per run.
+/// are sampled once per run; those of the as-built robot are added.
 class ImuSensor {
  public:
-  ImuSensor(const ImuSettings& settings, const mjModel& model, std::uint64_t seed);
+  ImuSensor(const ImuSettings& settings, const mjModel& model, std::uint64_t seed, const ImuErrors& errors = {});
 
   /// Takes reading number `tick`; the bias random walk advances with it.
   Imu read(const mjModel& model, mjData& data, Time now, std::uint64_t tick);
@@ -28,13 +29,17 @@ class ImuSensor {
     RandomStream noise, walk;
     Eigen::Matrix3d distortion;  ///< scale and misalignment
     Eigen::Vector3d bias;
+    Eigen::Vector3d bias_per_k;
     double noise_std, walk_std, range, resolution;
   };
   static Triad make_triad(std::uint64_t seed, const char* name, const ImuSettings& settings, double tick_s,
                           double noise, double bias, double walk, double range, double resolution);
-  static Eigen::Vector3d measure(Triad& triad, const Eigen::Vector3d& truth, std::uint64_t tick);
+  static void add_errors(const TriadErrors& errors, Triad& triad);
+  static Eigen::Vector3d measure(Triad& triad, const Eigen::Vector3d& truth, double temperature_rise_k,
+                                 std::uint64_t tick);
 
   int site_;
+  ImuErrors errors_;
   Triad gyro_, accel_;
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -8,18 +9,22 @@
 
 #include "core/sensors/registry.h"
 #include "core/settings.h"
+#include "sim/as_built/sensor_errors.h"
 
 namespace patrol::sim {
 
 class JointEncoders {
  public:
-  JointEncoders(const JointEncoderSettings& settings, const mjModel& model,
-                const std::vector<std::string>& joint_names);
+  JointEncoders(const JointEncoderSettings& settings, const mjModel& model, const std::vector<std::string>& joint_names,
+                JointErrors errors = {});
 
   /// Takes the reading of one tick. Call at every tick.
   JointState read(const mjData& data, Time now);
 
  private:
+  double error_rad(std::size_t joint, const mjData& data) const;
+
+  JointErrors errors_;
   double step_rad_;
   double tick_s_;
   double filter_gain_;

@@ -30,12 +30,13 @@ Pose3 move_between(const Pose3& a, const Pose3& b, double fraction) {
 }  // namespace
 
 Lidar::Lidar(const LidarSettings& settings, const LidarScene& scene, Pose3 T_body_lidar, RayMask own_housing,
-             std::uint64_t seed, const std::string& name, const DustSettings& dust)
+             std::uint64_t seed, const std::string& name, const DustSettings& dust, const LidarErrors& errors)
     : settings_(settings),
       scene_(scene),
       T_body_lidar_(std::move(T_body_lidar)),
       mask_(kRayEverything & ~static_cast<std::uint32_t>(own_housing)),
       dust_(dust),
+      errors_(errors),
       surfaces_(surface_optics(scene.model())),
       false_return_rate_per_m_(settings.false_return_rate_per_m +
                                dust.backscatter_probability * dust.extinction_per_m()),
@@ -43,8 +44,11 @@ Lidar::Lidar(const LidarSettings& settings, const LidarScene& scene, Pose3 T_bod
       angle_noise_(seed, name + "/angle"),
       dropout_(seed, name + "/dropout"),
       rain_(seed, name + "/rain"),
-      rain_range_(seed, name + "/rain_range") {
+      rain_range_(seed, name + "/rain_range"),
+      rate_noise_(seed, name + "/rate"),
+      revolution_ns_(1e9 / settings.rate_hz) {
   validate(settings, name);
+  settings_.range_noise_std_m *= errors.noise_ratio;
   const double step = settings.fov_deg * kDegree / settings.beams;
   for (int beam = 0; beam < settings.beams; ++beam) {
     const double angle = -settings.fov_deg * kDegree / 2.0 + beam * step;
@@ -65,10 +69,23 @@ Time Lidar::instant_of(std::int64_t beam) const {
   const double revolution_ns = 1e9 / settings_.rate_hz;
   const double used = settings_.fov_deg / 360.0;
   const double in_revolution = 1.0 - used + used * static_cast<double>(index + 1) / settings_.beams;
+  if (errors_.rate_std > 0.0) return Time{std::llround(revolution_begin_ns_ + in_revolution * revolution_ns_)};
   return Time{std::llround((static_cast<double>(revolution) + in_revolution) * revolution_ns)};
 }
 
+/// Advances the revolution rate, a Gauss-Markov process, to the revolution of the next beam.
+void Lidar::update_rate() {
+  constexpr double kCorrelationTime_s = 5.0;
+  const double correlation = std::exp(-1.0 / (settings_.rate_hz * kCorrelationTime_s));
+  const auto revolution = static_cast<std::uint64_t>(next_beam_ / settings_.beams);
+  const double draw = errors_.rate_std * rate_noise_.normal(revolution);
+  if (revolution > 0) revolution_begin_ns_ += revolution_ns_;
+  rate_error_ = revolution == 0 ? draw : correlation * rate_error_ + std::sqrt(1.0 - correlation * correlation) * draw;
+  revolution_ns_ = 1e9 / (settings_.rate_hz * (1.0 + rate_error_));
+}
+
 void Lidar::begin_revolution() {
+  if (errors_.rate_std > 0.0) update_rate();
   last_range_m_.assign(elevation_.size(), kInfinity);
   if (settings_.rings > 1) {
     cloud_ = {.stamp = instant_of(next_beam_), .points = {}};
@@ -146,6 +163,7 @@ Lidar::Return Lidar::measure(std::uint64_t tick, std::uint64_t index, const Pose
     aimed += turn * Eigen::Vector3d(-direction.y(), direction.x(), 0.0);
     aimed.normalize();
   }
+  aimed = errors_.actual_direction(aimed);
   Return got = trace(T_world_lidar, aimed);
   const double jump_m = std::abs(got.range_m - std::exchange(last_range_m, got.range_m));
   if (jump_m > kMinJump_m && jump_m < kPulseLength_m && settings_.beam_width_deg > 0.0) {
@@ -207,7 +225,7 @@ Lidar::Return Lidar::to_return(const RayHit& hit, const Eigen::Vector3d& directi
       std::min(settings_.range_max_m, settings_.max_range_10pct_m * std::sqrt(reflectivity * std::sqrt(cosine) / 0.1));
   if (settings_.max_range_10pct_m > 0.0 && dust_.equivalent_clear_distance_m(range_m) > reach_m)
     return {kInfinity, 0.0};
-  return {range_m, 255.0 * std::min(1.0, reflectivity * cosine)};
+  return {range_m + errors_.range_error_m(range_m, reflectivity, cosine), 255.0 * std::min(1.0, reflectivity * cosine)};
 }
 
 namespace {
@@ -216,7 +234,7 @@ class LidarOnBody : public Sensor {
  public:
   LidarOnBody(const SensorContext& context, const LidarSettings& settings, const std::string& frame, RayMask housing)
       : lidar_(settings, context.scene, context.robot.T_body(frame), housing, context.seed, frame,
-               context.settings.dust) {}
+               context.settings.dust, context.as_built.lidar(frame)) {}
 
   void step(const SensorTick& tick, std::vector<SensorMessage>& readings) override {
     if (tick.is_first()) return;

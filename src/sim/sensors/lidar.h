@@ -8,6 +8,7 @@
 #include "core/random.h"
 #include "core/sensors/registry.h"
 #include "core/settings.h"
+#include "sim/as_built/sensor_errors.h"
 #include "sim/dust.h"
 #include "sim/lidar_scene.h"
 #include "sim/sensors/surface_optics.h"
@@ -23,9 +24,10 @@ namespace patrol::sim {
 class Lidar {
  public:
   /// One ring yields scans, several yield clouds. `name` is the prefix of the random streams; `own_housing` is the
-  /// housing that contains the beam origin and is ignored. Dust reduces the range and causes false returns.
+  /// housing that contains the beam origin and is ignored. Dust reduces the range and causes false returns. Messages
+  /// state the nominal revolution rate.
   Lidar(const LidarSettings& settings, const LidarScene& scene, Pose3 T_body_lidar, RayMask own_housing,
-        std::uint64_t seed, const std::string& name, const DustSettings& dust = {});
+        std::uint64_t seed, const std::string& name, const DustSettings& dust = {}, const LidarErrors& errors = {});
 
   /// Fires the beams whose instants are in (from, to]; the body pose is interpolated in between.
   void advance(Time from, Time to, const Pose3& T_world_body_from, const Pose3& T_world_body_to);
@@ -48,19 +50,23 @@ class Lidar {
   Return mixed_pixel_return(const Pose3& T_world_lidar, const Eigen::Vector3d& direction, const Return& middle) const;
   Return to_return(const RayHit& hit, const Eigen::Vector3d& direction, double range_m) const;
   void begin_revolution();
+  void update_rate();
 
   LidarSettings settings_;
   const LidarScene& scene_;
   Pose3 T_body_lidar_;
   std::uint32_t mask_;
   DustSettings dust_;
+  LidarErrors errors_;
   std::vector<SurfaceOptics> surfaces_;  ///< [geom] of the view model
   double false_return_rate_per_m_;       ///< rate of false returns from rain and dust
-  RandomStream range_noise_, angle_noise_, dropout_, rain_, rain_range_;
-  std::int64_t next_beam_ = 0;              ///< number of the next beam since the start
-  std::vector<Eigen::Vector2d> azimuth_;    ///< [beam], cosine and sine of the azimuth
-  std::vector<Eigen::Vector2d> elevation_;  ///< [ring], cosine and sine of the elevation
-  std::vector<double> last_range_m_;        ///< [ring], range of the last beam without noise
+  RandomStream range_noise_, angle_noise_, dropout_, rain_, rain_range_, rate_noise_;
+  std::int64_t next_beam_ = 0;                              ///< number of the next beam since the start
+  double revolution_begin_ns_ = 0.0, revolution_ns_ = 0.0;  ///< begin and duration of the revolution of the next beam
+  double rate_error_ = 0.0;                                 ///< relative error of the revolution rate
+  std::vector<Eigen::Vector2d> azimuth_;                    ///< [beam], cosine and sine of the azimuth
+  std::vector<Eigen::Vector2d> elevation_;                  ///< [ring], cosine and sine of the elevation
+  std::vector<double> last_range_m_;                        ///< [ring], range of the last beam without noise
   LaserScan scan_;
   PointCloud cloud_;
   std::vector<LaserScan> scans_;

@@ -10,6 +10,7 @@
 #include "core/robot_description.h"
 #include "core/sensors/registry.h"
 #include "core/stage_profiler.h"
+#include "sim/as_built/as_built_robot.h"
 #include "sim/gas_plume.h"
 #include "sim/lidar_scene.h"
 #include "sim/sensors/depth_camera.h"
@@ -21,7 +22,8 @@ namespace patrol::sim {
 /// Arguments for making a sensor. Sensors may keep references to `scene` and `view` only.
 struct SensorContext {
   const SensorSuiteSettings& settings;
-  const RobotDescription& robot;
+  const AsBuiltRobot& as_built;
+  const RobotDescription& robot;  ///< the robot with the actual poses of its sensors
   const mjModel& physics;
   const mjModel& view;
   const LidarScene& scene;

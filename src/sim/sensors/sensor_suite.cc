@@ -13,7 +13,7 @@ Pose3 body_pose(const mjData& data, int body) {
 
 }  // namespace
 
-SensorSuite::SensorSuite(const SensorSuiteSettings& settings, const RobotDescription& robot, const mjModel& physics,
+SensorSuite::SensorSuite(const SensorSuiteSettings& settings, const AsBuiltRobot& robot, const mjModel& physics,
                          const mjModel& view, const GasPlume& plume, const std::vector<FaultSettings>& faults,
                          std::uint64_t seed, const DepthImagerFactory& make_depth_imager, const Subsurface& subsurface)
     : settings_(settings),
@@ -22,7 +22,8 @@ SensorSuite::SensorSuite(const SensorSuiteSettings& settings, const RobotDescrip
       faults_(faults, seed) {
   validate(settings.dust, "sensors.dust");
   const SensorContext context{.settings = settings_,
-                              .robot = robot,
+                              .as_built = robot,
+                              .robot = robot.actual(),
                               .physics = physics,
                               .view = view,
                               .scene = scene_,
@@ -30,6 +31,10 @@ SensorSuite::SensorSuite(const SensorSuiteSettings& settings, const RobotDescrip
                               .subsurface = subsurface,
                               .make_depth_imager = make_depth_imager,
                               .seed = seed};
+  for (std::size_t type = 0; type < channels_.size(); ++type) {
+    const SensorInfo& info = kSensorInfos[type];
+    channels_[type].clock = robot.clock(info.is_read_by_firmware ? "firmware" : info.name);
+  }
   for (const bool are_read_by_firmware : {true, false}) add_sensors(context, are_read_by_firmware);
 }
 
@@ -77,7 +82,11 @@ bool SensorSuite::is_busy() const {
 }
 
 void SensorSuite::deliver(Time ready, double latency_s, SensorMessage message) {
-  Time due = ready + from_seconds(latency_s);
+  Channel& channel = channels_[message.index()];
+  std::visit([&](auto& content) { content.stamp = channel.clock.stamp(content.stamp); }, message);
+  const Time delay = channel.clock.transport_delay(channel.num_messages++);
+  Time due = std::max(channel.last_due, ready + from_seconds(latency_s) + delay);
+  channel.last_due = due;
   if (faults_.apply(ready, due, message)) queue_.push(due, std::move(message));
 }
 

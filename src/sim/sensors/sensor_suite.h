@@ -1,16 +1,18 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <variant>
 #include <vector>
 
 #include <mujoco/mujoco.h>
 
 #include "core/messages.h"
-#include "core/robot_description.h"
 #include "core/sensors/registry.h"
 #include "core/stage_profiler.h"
+#include "sim/as_built/as_built_robot.h"
 #include "sim/gas_plume.h"
 #include "sim/lidar_scene.h"
 #include "sim/sensors/delivery_queue.h"
@@ -21,14 +23,15 @@
 
 namespace patrol::sim {
 
-/// All sensors of the robot, made from the registry. A message is delivered after its sensor's latency; faults of the
-/// scenario change message and delivery.
+/// All sensors of the robot, made from the registry. A message has the stamp of its device's clock and is delivered
+/// after its sensor's latency and the random delay of its transport, in the order of its device. Faults of the scenario
+/// change message and delivery.
 class SensorSuite {
  public:
   /// `view` must outlive the suite; `plume` is in world. Throws InputError when an enabled sensor has no frame on the
   /// robot or requires something that the world lacks. Throws InputError also when the depth camera is enabled without
   /// `make_depth_imager`.
-  SensorSuite(const SensorSuiteSettings& settings, const RobotDescription& robot, const mjModel& physics,
+  SensorSuite(const SensorSuiteSettings& settings, const AsBuiltRobot& robot, const mjModel& physics,
               const mjModel& view, const GasPlume& plume, const std::vector<FaultSettings>& faults, std::uint64_t seed,
               const DepthImagerFactory& make_depth_imager = {}, const Subsurface& subsurface = {});
 
@@ -58,6 +61,12 @@ class SensorSuite {
   const StageProfiler& clock() const { return clock_; }
 
  private:
+  /// Way of one type of messages from the device to the stack.
+  struct Channel {
+    DeviceClock clock;
+    std::uint64_t num_messages = 0;
+    Time last_due{};
+  };
   struct Entry {
     double latency_s;
     std::unique_ptr<Sensor> sensor;
@@ -72,6 +81,7 @@ class SensorSuite {
   void deliver(Time ready, double latency_s, SensorMessage message);
 
   SensorSuiteSettings settings_;
+  std::array<Channel, std::variant_size_v<SensorMessage>> channels_;  ///< [type of the message]
   int body_;
   LidarScene scene_;
   std::vector<Entry> sensors_;  ///< sensors in the order of their steps

@@ -131,16 +131,20 @@ class UwbOnBody : public PeriodicSensor {
   explicit UwbOnBody(const SensorContext& context)
       : PeriodicSensor(context.settings.uwb.rate_hz),
         scene_(context.scene),
+        as_built_(context.as_built),
         T_body_uwb_(context.robot.T_body("uwb")),
         uwb_(context.settings.uwb, context.view, context.seed) {}
 
  private:
   void read(const SensorTick& tick, std::uint64_t index, std::vector<SensorMessage>& readings) override {
-    const auto range = uwb_.read(scene_, tick.T_world_body * T_body_uwb_.position, tick.now, index);
-    if (range) readings.emplace_back(*range);
+    auto range = uwb_.read(scene_, tick.T_world_body * T_body_uwb_.position, tick.now, index);
+    if (!range) return;
+    range->range_m = std::max(range->range_m + as_built_.uwb_delay_m(range->anchor), 0.0);
+    readings.emplace_back(*range);
   }
 
   const LidarScene& scene_;
+  AsBuiltRobot as_built_;
   Pose3 T_body_uwb_;
   Uwb uwb_;
 };

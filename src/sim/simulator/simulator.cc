@@ -11,8 +11,10 @@
 #include <fmt/format.h>
 #include <mujoco/mujoco.h>
 
+#include "sim/as_built/as_built_model.h"
 #include "sim/locomotion/quadruped_drive.h"
 #include "sim/locomotion/track_drive.h"
+#include "sim/sensors/uwb.h"
 
 namespace patrol::sim {
 namespace {
@@ -61,15 +63,19 @@ std::string geom_name(const mjModel& model, int geom) {
   return fmt::format("geom {} of {}", geom, body == nullptr ? "?" : body);
 }
 
-std::unique_ptr<Locomotion> make_locomotion(const SimulatorSettings& settings, const RobotDescription& robot,
+/// The firmware knows the nominal robot.
+std::unique_ptr<Locomotion> make_locomotion(const SimulatorSettings& settings, const AsBuiltRobot& robot,
                                             mjModel& physics) {
-  if (!robot.tracks) return std::make_unique<QuadrupedDrive>(robot, settings.locomotion);
-  return std::make_unique<TrackDrive>(robot, settings.track_drive, settings.sensors.hall.ticks_per_rad(), physics);
+  const RobotDescription& nominal = robot.nominal();
+  if (!nominal.tracks) return std::make_unique<QuadrupedDrive>(nominal, settings.locomotion);
+  return std::make_unique<TrackDrive>(nominal, settings.track_drive, settings.sensors.hall.ticks_per_rad(), physics,
+                                      robot.tracks());
 }
 
-AssembledModel assemble(const SimulatorSettings& settings) {
-  AssembledModel model =
-      assemble_model(settings.world_xml, settings.robot_urdf, settings.T_world_start, settings.static_obstacles);
+AssembledModel assemble(const SimulatorSettings& settings, const AsBuiltRobot& robot) {
+  AssembledModel model = assemble_model(settings.world_xml, settings.robot_urdf, robot.start(settings.T_world_start),
+                                        settings.static_obstacles);
+  apply_as_built(robot, *model.physics);
   deform_lining(settings.lining_deformations, settings.lining, *model.view);
   return model;
 }
@@ -78,15 +84,16 @@ AssembledModel assemble(const SimulatorSettings& settings) {
 
 Simulator::Simulator(const SimulatorSettings& settings, const RobotDescription& robot, std::uint64_t seed,
                      const DepthImagerFactory& make_depth_imager)
-    : model_(assemble(settings)),
+    : robot_(settings.as_built, robot, seed),
+      model_(assemble(settings, robot_)),
       data_(make_data(*model_.physics)),
       culler_(*model_.physics),
       robot_body_(mj_name2id(model_.physics.get(), mjOBJ_BODY, frame_id::kBody)),
       robot_radius_m_(robot.outline_radius_m()),
       settings_(settings),
-      locomotion_(make_locomotion(settings, robot, *model_.physics)),
+      locomotion_(make_locomotion(settings, robot_, *model_.physics)),
       actors_(*model_.physics, settings.actors),
-      sensors_(settings.sensors, robot, *model_.physics, *model_.view,
+      sensors_(settings.sensors, robot_, *model_.physics, *model_.view,
                GasPlume(*model_.view, settings.leaks, settings.wind), settings.faults, seed, make_depth_imager,
                settings.subsurface),
       recorded_(settings.recorded),
@@ -95,7 +102,8 @@ Simulator::Simulator(const SimulatorSettings& settings, const RobotDescription& 
   if (robot.antenna) antenna_.emplace(settings.sensors.antenna, *robot.antenna, *model_.physics, seed);
   if (robot_body_ < 0) throw InputError(fmt::format("{}: link not found: {}", settings.robot_urdf, frame_id::kBody));
   std::copy(model_.start_qpos.begin(), model_.start_qpos.end(), data_->qpos);
-  actors_.advance(now_, {.p_world = settings.T_world_start.position(), .radius_m = robot_radius_m_}, *data_);
+  actors_.advance(now_, {.p_world = robot_.start(settings.T_world_start).position(), .radius_m = robot_radius_m_},
+                  *data_);
   mj_forward(model_.physics.get(), data_.get());
   sensors_.step(*model_.physics, *data_, now_);
 }
@@ -223,6 +231,14 @@ void Simulator::throw_if_diverged() const {
 }
 
 std::vector<SensorMessage> Simulator::take_messages() { return sensors_.take_due(now_); }
+
+AsBuiltTruth Simulator::as_built() const {
+  std::vector<int> anchors;
+  for (const UwbAnchor& anchor : uwb_anchors(*model_.view)) anchors.push_back(anchor.number);
+  AsBuiltTruth truth = robot_.truth(anchors);
+  truth.stamp = now_;
+  return truth;
+}
 
 GroundTruth Simulator::truth() const {
   const mjtNum* position = data_->xpos + 3 * robot_body_;

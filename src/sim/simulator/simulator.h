@@ -13,6 +13,7 @@
 #include "core/stage_profiler.h"
 #include "sim/actors.h"
 #include "sim/antenna_mount.h"
+#include "sim/as_built/as_built_robot.h"
 #include "sim/collision_culler.h"
 #include "sim/gas_plume.h"
 #include "sim/lining_deformation.h"
@@ -31,7 +32,8 @@ namespace patrol::sim {
 struct SimulatorSettings {
   std::string world_xml;
   std::string robot_urdf;
-  Pose2 T_world_start;  ///< start pose of the robot
+  Pose2 T_world_start;  ///< start pose of the robot, before the placement error of the as-built robot
+  AsBuiltSettings as_built;
   SensorSuiteSettings sensors;
   LocomotionSettings locomotion;   ///< settings for a robot with legs
   TrackDriveSettings track_drive;  ///< settings for a robot with tracks
@@ -71,6 +73,8 @@ class Simulator {
   std::vector<SensorMessage> take_messages();
 
   GroundTruth truth() const;
+  /// Returns the values drawn for the simulated robot; empty for a nominal robot.
+  AsBuiltTruth as_built() const;
   SimState state() const;
   /// Removes and returns the collisions that began since the last call; one entry per collision, not per tick.
   std::vector<Collision> take_collisions();
@@ -91,6 +95,7 @@ class Simulator {
   void record_collisions();
   void throw_if_diverged() const;
 
+  AsBuiltRobot robot_;
   AssembledModel model_;
   DataPtr data_;
   CollisionCuller culler_;

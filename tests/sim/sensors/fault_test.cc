@@ -32,7 +32,7 @@ class HeldRobot {
   std::map<std::size_t, std::vector<Arrival>> run(const SensorSuiteSettings& settings,
                                                   const std::vector<FaultSettings>& faults, double seconds,
                                                   std::vector<FaultStatus>* reports = nullptr) {
-    SensorSuite suite(settings, io::load_robot_description(kRobotUrdf), robot_.model(), robot_.view(),
+    SensorSuite suite(settings, AsBuiltRobot(io::load_robot_description(kRobotUrdf)), robot_.model(), robot_.view(),
                       GasPlume(Eigen::Vector3d::Zero(), 0.0, {}), faults, 1);
     std::map<std::size_t, std::vector<Arrival>> arrivals;
     for (Time now{}; now <= from_seconds(seconds); now += std::chrono::milliseconds(2)) {

@@ -74,5 +74,20 @@ TEST(JointEncoders, AJointThatTheModelLacksIsRefused) {
   EXPECT_THROW(JointEncoders({}, *world.model, {"knee"}), InputError);
 }
 
+TEST(JointEncoders, ZeroOffsetShiftsTheReadingAndThePlayFollowsTheLoad) {
+  SmallWorld world(kElbow);
+  JointEncoderSettings settings;
+  settings.counts_per_revolution = 1 << 24;
+  JointEncoders encoders(settings, *world.model, {"elbow"}, {.zero_offset_rad = {0.005}, .play_rad = 0.002});
+  const int dof = 1;
+  world.data->qpos[1] = 0.3;
+  world.data->qfrc_actuator[dof] = 0.0;
+  EXPECT_NEAR(encoders.read(*world.data, Time{}).position_rad[0], 0.305, 1e-6);
+  world.data->qfrc_actuator[dof] = 8.0;
+  EXPECT_NEAR(encoders.read(*world.data, Time{}).position_rad[0], 0.306, 1e-6);
+  world.data->qfrc_actuator[dof] = -8.0;
+  EXPECT_NEAR(encoders.read(*world.data, Time{}).position_rad[0], 0.304, 1e-6);
+}
+
 }  // namespace
 }  // namespace patrol::sim::joint_encoders_test

@@ -79,10 +79,10 @@ std::unique_ptr<DepthImager> make_wall_imager(const mjModel&, const PinholeLens&
 
 Ride stand(const SensorSuiteSettings& settings, double seconds, const std::vector<FaultSettings>& faults = {},
            const RobotDescription& robot = make_robot(), const DepthImagerFactory& make_imager = make_wall_imager,
-           const std::vector<Time>& scans_asked = {}) {
+           const std::vector<Time>& scans_asked = {}, const AsBuiltSettings& as_built = {}) {
   SmallWorld world(kWorld);
-  SensorSuite suite(settings, robot, *world.model, *world.model, GasPlume(Eigen::Vector3d::Zero(), 0.0, {}), faults, 1,
-                    make_imager);
+  SensorSuite suite(settings, AsBuiltRobot(as_built, robot, 1), *world.model, *world.model,
+                    GasPlume(Eigen::Vector3d::Zero(), 0.0, {}), faults, 1, make_imager);
   Ride ride;
   for (Time now{}; now <= from_seconds(seconds); now += std::chrono::milliseconds(2)) {
     suite.step(*world.model, *world.data, now);
@@ -303,6 +303,57 @@ TEST(SensorSuite, MagnetometerAndBarometerPublishAtTheirRatesWhenSwitchedOnAndAr
   RobotDescription robot = make_robot();
   robot.T_body_sensor.erase("imu");
   EXPECT_THROW(stand(settings, 0.1, {}, robot), InputError);
+}
+
+AsBuiltSettings clock_only(const ClockTolerances& clock) {
+  AsBuiltSettings settings;
+  settings.enabled = true;
+  settings.clock = clock;
+  settings.mounting = {.position_m = 0.0, .angle_deg = 0.0};
+  settings.uwb = {.anchor_delay_m = 0.0, .tag_delay_m = 0.0};
+  return settings;
+}
+
+TEST(AsBuilt, ClockOffsetAndDriftChangeStampsAndNotArrivals) {
+  const AsBuiltSettings as_built = clock_only({.offset_s = 0.002, .drift_ppm = 500.0, .transport_jitter_s = 0.0});
+  const DeviceClock clock = AsBuiltRobot(as_built, make_robot(), 1).clock("uwb");
+  ASSERT_NE(clock.offset_s(), 0.0);
+  const auto nominal = stand(with_uwb(), 4.0).of<UwbRange>();
+  const auto actual = stand(with_uwb(), 4.0, {}, make_robot(), make_wall_imager, {}, as_built).of<UwbRange>();
+  ASSERT_EQ(actual.size(), nominal.size());
+  for (std::size_t i = 1; i < nominal.size(); ++i) {
+    EXPECT_EQ(actual[i].at, nominal[i].at);
+    const double instant_s = to_seconds(nominal[i].stamp());
+    EXPECT_NEAR(to_seconds(actual[i].stamp()) - instant_s, clock.offset_s() + clock.drift() * instant_s, 1e-9);
+  }
+}
+
+TEST(AsBuilt, TransportJitterDelaysByItsMeanAndKeepsTheOrder) {
+  const AsBuiltSettings as_built = clock_only({.offset_s = 0.0, .drift_ppm = 0.0, .transport_jitter_s = 0.02});
+  const auto ranges = stand(with_uwb(), 40.0, {}, make_robot(), make_wall_imager, {}, as_built).of<UwbRange>();
+  test::Moments delay_s;
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    delay_s.add(to_seconds(ranges[i].at - ranges[i].stamp()) - 0.01);
+    if (i == 0) continue;
+    EXPECT_GT(ranges[i].stamp(), ranges[i - 1].stamp());
+  }
+  // Arrivals wait for the next tick, 1 ms, and for the message before, 40 ms earlier: E[max(0, overtaking)] = 3.3 ms.
+  EXPECT_GT(delay_s.mean(), 0.020);
+  EXPECT_LT(delay_s.mean(), 0.028);
+}
+
+TEST(AsBuilt, AntennaDelaysShiftTheRangesOfEachAnchor) {
+  AsBuiltSettings as_built = clock_only({.offset_s = 0.0, .drift_ppm = 0.0, .transport_jitter_s = 0.0});
+  as_built.uwb = {};
+  const AsBuiltRobot robot(as_built, make_robot(), 1);
+  const auto nominal = stand(with_uwb(), 2.0).of<UwbRange>();
+  const auto actual = stand(with_uwb(), 2.0, {}, make_robot(), make_wall_imager, {}, as_built).of<UwbRange>();
+  ASSERT_EQ(actual.size(), nominal.size());
+  for (std::size_t i = 0; i < nominal.size(); ++i) {
+    const auto& range = std::get<UwbRange>(actual[i].message);
+    EXPECT_NEAR(range.range_m - std::get<UwbRange>(nominal[i].message).range_m, robot.uwb_delay_m(range.anchor), 1e-12);
+  }
+  EXPECT_NE(robot.uwb_delay_m(1), robot.uwb_delay_m(2));
 }
 
 TEST(DeliveryQueue, DeliversInOrderOfTheInstantDueAndAtOneInstantInTheOrderPutIn) {

@@ -1,6 +1,8 @@
 #include "sim/simulator/simulator.h"
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 #include <string>
 #include <utility>
 
@@ -215,6 +217,54 @@ TEST(Simulator, WhereThereIsNoGroundItCannotBePut) {
         simulator->teleport({50.0, 0.0, 0.0});
       },
       testing::ThrowsMessage<InputError>(testing::HasSubstr("(50.00, 0.00): no ground below")));
+}
+
+/// Drives 2 m on level ground with drawn sprockets only: the robot covers their mean relative radius more, while the
+/// counters say the same.
+TEST(AsBuilt, LargerSprocketsDriveFartherThanTheCountersSay) {
+  const auto odometer_ratio = [](const AsBuiltSettings& as_built) {
+    SimulatorSettings settings;
+    settings.as_built = as_built;
+    SmallSimulation simulation(kTrackedUrdf, make_flat_world(), settings);
+    simulation.run(0.0, 1.0);
+    const double from_m = simulation->truth().T_world_body.position.x();
+    const auto ticks = [&](const std::vector<SensorMessage>& messages) {
+      double sum = 0.0;
+      for (const SensorMessage& message : messages) {
+        if (const auto* counts = std::get_if<TrackTicks>(&message)) {
+          sum = 0.5 * static_cast<double>(counts->left + counts->right);
+        }
+      }
+      return sum;
+    };
+    const double counted = ticks(simulation.run(0.5, 5.0));
+    return (simulation->truth().T_world_body.position.x() - from_m) / counted;
+  };
+  AsBuiltSettings as_built;
+  as_built.enabled = true;
+  as_built.mounting = {.position_m = 0.0, .angle_deg = 0.0};
+  as_built.imu = {.gyro_bias_std_radps = 0.0, .accel_bias_std_mps2 = 0.0, .scale_std = 0.0};
+  as_built.clock = {.offset_s = 0.0, .drift_ppm = 0.0, .transport_jitter_s = 0.0};
+  as_built.placement = {.position_m = 0.0, .yaw_deg = 0.0};
+  as_built.tracks = {.sprocket_scale = 0.05, .friction_scale = 0.0, .missed_edge_probability = 0.0};
+  const TrackErrors errors = AsBuiltRobot(as_built, io::load_robot_description(kTrackedUrdf), 1).tracks();
+  const double mean_scale = 0.5 * (errors.sprocket_scale[0] + errors.sprocket_scale[1]);
+  ASSERT_GT(std::abs(mean_scale - 1.0), 0.003);
+  EXPECT_NEAR(odometer_ratio(as_built) / odometer_ratio({}), mean_scale, 0.002);
+}
+
+TEST(AsBuilt, PlacementMovesTheStartAndNothingIsDrawnForANominalRobot) {
+  SimulatorSettings settings;
+  SmallSimulation nominal(kTrackedUrdf, make_flat_world(), settings);
+  EXPECT_TRUE(nominal->as_built().values.empty());
+  EXPECT_EQ(nominal->truth().T_world_body.position.x(), 0.0);
+  settings.as_built.enabled = true;
+  SmallSimulation actual(kTrackedUrdf, make_flat_world(), settings);
+  std::map<std::string, double> values;
+  for (const auto& [name, value] : actual->as_built().values) values[name] = value;
+  EXPECT_NEAR(actual->truth().T_world_body.position.x(), values.at("placement.x_m"), 1e-12);
+  EXPECT_NEAR(to_yaw(actual->truth().T_world_body.rotation), values.at("placement.yaw_rad"), 1e-12);
+  EXPECT_NE(values.at("placement.x_m"), 0.0);
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "app/campaign/sweep/error_sources.h"
 
+#include <string_view>
+#include <type_traits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -39,6 +41,59 @@ std::vector<std::string> latency_overrides() {
   return overrides;
 }
 
+bool is_as_built(const Scenario& scenario, const ScenarioFiles&) { return scenario.as_built.enabled; }
+
+template <IsSensorMessage Message>
+bool is_as_built_with(const Scenario& scenario, const ScenarioFiles& files) {
+  return is_as_built(scenario, files) && has_sensor<Message>(scenario, files);
+}
+
+/// Collects the tolerances of section `as_built`, each as one error source that 0 removes.
+class ToleranceCollector {
+ public:
+  template <typename Value>
+  void operator()(const char* group, const Value& tolerances, const Limits& = {}) {
+    if constexpr (requires { Value::fields(tolerances, *this); }) {
+      group_ = group;
+      Value::fields(tolerances, *this);
+    } else if constexpr (std::is_same_v<Value, double>) {
+      add(group);
+    }
+  }
+  std::vector<ScenarioErrorSource> take() { return std::move(sources_); }
+
+ private:
+  using Applies = bool (*)(const Scenario&, const ScenarioFiles&);
+
+  void add(std::string_view field) {
+    // Neither is an error source: the first splits the range noise, the second is a time constant.
+    if (field == "noise_ratio" || field == "warming_time_s") return;
+    sources_.push_back(
+        {fmt::format("as built: {}.{}", group_, field), {fmt::format("as_built.{}.{}=0", group_, field)}, condition()});
+  }
+
+  /// Groups of sensors that a robot may lack.
+  Applies condition() const {
+    if (group_ == "lidar") return is_as_built_with<LaserScan>;
+    if (group_ == "joints" || group_ == "legs") return is_as_built_with<JointState>;
+    if (group_ == "tracks") return is_as_built_with<TrackTicks>;
+    if (group_ == "imu") return is_as_built_with<Imu>;
+    if (group_ == "uwb") return is_as_built_with<UwbRange>;
+    if (group_ == "depth_camera") return is_as_built_with<DepthImage>;
+    return is_as_built;
+  }
+
+  std::string group_;
+  std::vector<ScenarioErrorSource> sources_;
+};
+
+std::vector<ScenarioErrorSource> as_built_error_sources() {
+  ToleranceCollector collector;
+  const sim::AsBuiltSettings settings;
+  sim::AsBuiltSettings::fields(settings, collector);
+  return collector.take();
+}
+
 std::vector<ScenarioErrorSource> other_error_sources() {
   return {
       {"tracks: slip (friction 2)", {"track_drive.friction=2"}, has_tracks},
@@ -56,6 +111,7 @@ std::vector<ScenarioErrorSource> other_error_sources() {
 const std::vector<ScenarioErrorSource>& scenario_error_sources() {
   static const std::vector<ScenarioErrorSource> kAll = [] {
     std::vector<ScenarioErrorSource> all = sensor_error_sources();
+    for (ScenarioErrorSource& source : as_built_error_sources()) all.push_back(std::move(source));
     for (ScenarioErrorSource& source : other_error_sources()) all.push_back(std::move(source));
     return all;
   }();

@@ -1,0 +1,169 @@
+#include "sim/as_built/as_built_robot.h"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "core/geometry/angles.h"
+#include "core/random.h"
+
+namespace patrol::sim {
+
+AsBuiltRobot::AsBuiltRobot(const AsBuiltSettings& settings, RobotDescription nominal, std::uint64_t seed)
+    : settings_(settings), seed_(seed), nominal_(std::move(nominal)), actual_(nominal_) {
+  validate(settings, "as_built");
+  if (!settings_.enabled) return;
+  mount_sensors();
+  const PlacementTolerances& placement = settings_.placement;
+  T_surveyed_start_ = {uniform("placement/position", placement.position_m, 0),
+                       uniform("placement/position", placement.position_m, 1),
+                       uniform("placement/yaw", to_rad(placement.yaw_deg))};
+}
+
+double AsBuiltRobot::uniform(const std::string& term, double tolerance, std::uint64_t index) const {
+  if (!settings_.enabled) return 0.0;
+  return tolerance * (2.0 * RandomStream(seed_, "as_built/" + term).uniform(0, index) - 1.0);
+}
+
+double AsBuiltRobot::normal(const std::string& term, double std, std::uint64_t index) const {
+  if (!settings_.enabled) return 0.0;
+  return std * RandomStream(seed_, "as_built/" + term).normal(0, index);
+}
+
+/// The coil's mount is left out: its servos have alignment errors of their own (sensors.antenna).
+void AsBuiltRobot::mount_sensors() {
+  const MountingTolerances& mounting = settings_.mounting;
+  const double angle_rad = to_rad(mounting.angle_deg);
+  for (auto& [frame, T_body_sensor] : actual_.T_body_sensor) {
+    if (frame == "tem_mount") continue;
+    const std::string position = "mounting/" + frame + "/position", angle = "mounting/" + frame + "/angle";
+    const Pose3 T_nominal_actual{
+        {uniform(position, mounting.position_m, 0), uniform(position, mounting.position_m, 1),
+         uniform(position, mounting.position_m, 2)},
+        quaternion_from_rpy(uniform(angle, angle_rad, 0), uniform(angle, angle_rad, 1), uniform(angle, angle_rad, 2))};
+    T_body_sensor = T_body_sensor * T_nominal_actual;
+  }
+}
+
+DeviceClock AsBuiltRobot::clock(const std::string& device) const {
+  if (!settings_.enabled) return {};
+  const ClockTolerances& clock = settings_.clock;
+  return {uniform("clock/" + device + "/offset", clock.offset_s),
+          1e-6 * uniform("clock/" + device + "/drift", clock.drift_ppm), clock.transport_jitter_s, seed_, device};
+}
+
+LidarErrors AsBuiltRobot::lidar(const std::string& frame) const {
+  if (!settings_.enabled) return {};
+  const LidarTolerances& lidar = settings_.lidar;
+  const std::string term = "lidar/" + frame + "/";
+  const double tilt_rad = to_rad(lidar.axis_tilt_deg), cone_rad = to_rad(lidar.cone_deg);
+  return {.noise_ratio = lidar.noise_ratio,
+          .range_offset_m = uniform(term + "range_offset", lidar.range_offset_m),
+          .range_scale = uniform(term + "range_scale", lidar.range_scale),
+          .reflectivity_m = uniform(term + "reflectivity", lidar.reflectivity_m),
+          .incidence_m = uniform(term + "incidence", lidar.incidence_m),
+          .axis_tilt_x_rad = uniform(term + "axis_tilt", tilt_rad, 0),
+          .axis_tilt_y_rad = uniform(term + "axis_tilt", tilt_rad, 1),
+          .cone_rad = 0.5 * (cone_rad + uniform(term + "cone", cone_rad)),
+          .rate_std = lidar.rate_std};
+}
+
+TriadErrors AsBuiltRobot::triad(const std::string& term, double bias_std, double bias_std_per_k) const {
+  TriadErrors errors;
+  const double misalignment_rad = to_rad(settings_.imu.misalignment_std_deg);
+  for (int row = 0; row < 3; ++row) {
+    const auto axis = static_cast<std::uint64_t>(row);
+    errors.bias[row] = normal(term + "/bias", bias_std, axis);
+    errors.bias_per_k[row] = normal(term + "/bias_per_k", bias_std_per_k, axis);
+    for (int col = 0; col < 3; ++col) {
+      const auto index = 3 * axis + static_cast<std::uint64_t>(col);
+      errors.distortion(row, col) = row == col ? normal(term + "/scale", settings_.imu.scale_std, axis)
+                                               : normal(term + "/misalignment", misalignment_rad, index);
+    }
+  }
+  return errors;
+}
+
+ImuErrors AsBuiltRobot::imu() const {
+  const ImuTolerances& imu = settings_.imu;
+  if (!settings_.enabled) return {};
+  ImuErrors errors{.gyro = triad("imu/gyro", imu.gyro_bias_std_radps, imu.gyro_bias_std_radps_per_k),
+                   .accel = triad("imu/accel", imu.accel_bias_std_mps2, imu.accel_bias_std_mps2_per_k),
+                   .warming_k = imu.warming_k,
+                   .warming_time_s = imu.warming_time_s};
+  for (int i = 0; i < 9; ++i) {
+    errors.g_sensitivity(i / 3, i % 3) =
+        normal("imu/g_sensitivity", imu.g_sensitivity_std_radps_per_mps2, static_cast<std::uint64_t>(i));
+  }
+  return errors;
+}
+
+JointErrors AsBuiltRobot::joints() const {
+  if (!settings_.enabled) return {};
+  JointErrors errors{.zero_offset_rad = {}, .play_rad = to_rad(settings_.joints.play_deg)};
+  for (std::size_t joint = 0; joint < nominal_.joint_names.size(); ++joint) {
+    errors.zero_offset_rad.push_back(uniform("joints/zero_offset", to_rad(settings_.joints.zero_offset_deg), joint));
+  }
+  return errors;
+}
+
+TrackErrors AsBuiltRobot::tracks() const {
+  if (!settings_.enabled) return {};
+  const TrackTolerances& tracks = settings_.tracks;
+  return {.sprocket_scale = {1.0 + uniform("tracks/sprocket", tracks.sprocket_scale, 0),
+                             1.0 + uniform("tracks/sprocket", tracks.sprocket_scale, 1)},
+          .friction_scale = 1.0 + uniform("tracks/friction", tracks.friction_scale),
+          .missed_edge_probability =
+              0.5 * (tracks.missed_edge_probability + uniform("tracks/missed_edge", tracks.missed_edge_probability))};
+}
+
+double AsBuiltRobot::foot_friction_scale() const {
+  return 1.0 + uniform("legs/friction", settings_.legs.friction_scale);
+}
+
+double AsBuiltRobot::uwb_delay_m(int anchor) const {
+  return uniform("uwb/anchor_delay", settings_.uwb.anchor_delay_m, static_cast<std::uint64_t>(anchor)) +
+         uniform("uwb/tag_delay", settings_.uwb.tag_delay_m);
+}
+
+DepthCameraErrors AsBuiltRobot::depth_camera() const {
+  const DepthCameraTolerances& camera = settings_.depth_camera;
+  return {.focal_scale = 1.0 + uniform("depth_camera/focal", camera.focal_scale),
+          .cx_px = uniform("depth_camera/principal_point", camera.principal_point_px, 0),
+          .cy_px = uniform("depth_camera/principal_point", camera.principal_point_px, 1),
+          .inverse_depth_per_m = uniform("depth_camera/inverse_depth", camera.inverse_depth_per_m)};
+}
+
+AsBuiltTruth AsBuiltRobot::truth(const std::vector<int>& uwb_anchors) const {
+  AsBuiltTruth truth;
+  if (!settings_.enabled) return truth;
+  const auto add = [&](std::string name, double value) { truth.values.emplace_back(std::move(name), value); };
+  const ImuErrors imu_errors = imu();
+  const LidarErrors lidar_errors = lidar("lidar");
+  add("lidar.time_offset_s", clock("lidar").offset_s() - clock("firmware").offset_s());
+  add("lidar.time_drift", clock("lidar").drift() - clock("firmware").drift());
+  add("lidar.range_offset_m", lidar_errors.range_offset_m);
+  for (const auto& [frame, T_body_sensor] : actual_.T_body_sensor) {
+    const Pose3 T_nominal_actual = nominal_.T_body(frame).inverse() * T_body_sensor;
+    add(frame + ".x_m", T_nominal_actual.position.x());
+    add(frame + ".y_m", T_nominal_actual.position.y());
+    add(frame + ".z_m", T_nominal_actual.position.z());
+    const Eigen::Vector3d rotation = 2.0 * T_nominal_actual.rotation.vec();  // small angles about x, y, z
+    add(frame + ".roll_rad", rotation.x());
+    add(frame + ".pitch_rad", rotation.y());
+    add(frame + ".yaw_rad", rotation.z());
+  }
+  add("imu.gyro_z_bias_radps", imu_errors.gyro.bias.z());
+  add("imu.gyro_z_scale", 1.0 + imu_errors.gyro.distortion(2, 2));
+  if (nominal_.tracks) {
+    add("tracks.left_sprocket_scale", tracks().sprocket_scale[0]);
+    add("tracks.right_sprocket_scale", tracks().sprocket_scale[1]);
+  }
+  for (const int anchor : uwb_anchors) add(fmt::format("uwb.anchor_{}.delay_m", anchor), uwb_delay_m(anchor));
+  add("placement.x_m", T_surveyed_start_.x);
+  add("placement.y_m", T_surveyed_start_.y);
+  add("placement.yaw_rad", T_surveyed_start_.yaw);
+  return truth;
+}
+
+}  // namespace patrol::sim

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/frames.h"
+#include "core/ground_truth.h"
+#include "core/robot_description.h"
+#include "sim/as_built/as_built_settings.h"
+#include "sim/as_built/device_clock.h"
+#include "sim/as_built/sensor_errors.h"
+
+namespace patrol::sim {
+
+/// Robot that is simulated: the nominal robot with manufacturing and calibration errors, which are constant over a run.
+/// Ground truth: no part of it reaches the stack.
+class AsBuiltRobot {
+ public:
+  /// Nominal robot.
+  explicit AsBuiltRobot(RobotDescription nominal) : nominal_(std::move(nominal)), actual_(nominal_) {}
+  /// Draws the robot of a seed within the tolerances; the nominal robot if the settings are disabled.
+  AsBuiltRobot(const AsBuiltSettings& settings, RobotDescription nominal, std::uint64_t seed);
+
+  /// Returns false for a nominal robot.
+  bool is_as_built() const { return settings_.enabled; }
+  /// Returns the robot's documents.
+  const RobotDescription& nominal() const { return nominal_; }
+  /// Returns the robot with the actual poses of its sensors.
+  const RobotDescription& actual() const { return actual_; }
+  /// Returns the actual body pose at the start for a surveyed start.
+  Pose2 start(const Pose2& T_world_surveyed) const { return T_world_surveyed * T_surveyed_start_; }
+
+  /// Returns the clock of a device: "firmware", or the name of a sensor.
+  DeviceClock clock(const std::string& device) const;
+  /// Returns the errors of a lidar by its frame.
+  LidarErrors lidar(const std::string& frame) const;
+  ImuErrors imu() const;
+  JointErrors joints() const;
+  TrackErrors tracks() const;
+  double foot_friction_scale() const;
+  /// Returns the range error of an anchor and the robot's antenna.
+  double uwb_delay_m(int anchor) const;
+  DepthCameraErrors depth_camera() const;
+
+  /// Returns the drawn values that the stack can estimate, and the sensor poses relative to the nominal ones; empty for
+  /// a nominal robot.
+  AsBuiltTruth truth(const std::vector<int>& uwb_anchors) const;
+
+ private:
+  /// Returns a number with uniform distribution in +-`tolerance`.
+  double uniform(const std::string& term, double tolerance, std::uint64_t index = 0) const;
+  double normal(const std::string& term, double std, std::uint64_t index = 0) const;
+  TriadErrors triad(const std::string& term, double bias_std, double bias_std_per_k) const;
+  void mount_sensors();
+
+  AsBuiltSettings settings_;
+  std::uint64_t seed_ = 0;
+  RobotDescription nominal_, actual_;
+  Pose2 T_surveyed_start_;
+};
+
+}  // namespace patrol::sim
