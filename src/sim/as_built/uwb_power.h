@@ -11,6 +11,8 @@ namespace patrol::sim {
 /// varies with the azimuth of the robot, once around, because of what it is mounted on.
 class UwbPower {
  public:
+  /// Isotropic antennas.
+  UwbPower() = default;
   /// `std_db`: standard deviation of each of the three parts.
   UwbPower(double std_db, std::uint64_t seed) : std_db_(std_db), seed_(seed) {}
 
@@ -18,8 +20,8 @@ class UwbPower {
   double offset_db(int anchor, const Eigen::Vector3d& anchor_to_robot) const;
 
  private:
-  double std_db_;
-  std::uint64_t seed_;
+  double std_db_ = 0.0;
+  std::uint64_t seed_ = 0;
 };
 
 }  // namespace patrol::sim

@@ -220,7 +220,7 @@ class ScannerOnBody : public Sensor {
  public:
   explicit ScannerOnBody(const SensorContext& context)
       : scanner_(context.settings.scanner, context.scene, context.robot.T_body("scanner"), context.seed,
-                 context.settings.dust) {}
+                 context.settings.dust, context.as_built.scanner()) {}
 
   void step(const SensorTick& tick, std::vector<SensorMessage>& readings) override {
     if (!scanner_.is_busy()) return;

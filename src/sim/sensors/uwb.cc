@@ -80,10 +80,10 @@ bool is_uwb_path_nlos(const LidarScene& scene, const Eigen::Vector3d& p_world_an
   return 2 * blocked > kLines + 1;
 }
 
-Uwb::Uwb(const UwbSettings& settings, const mjModel& view, std::uint64_t seed, double received_power_std_db)
+Uwb::Uwb(const UwbSettings& settings, const mjModel& view, std::uint64_t seed, const UwbPower& power)
     : settings_(settings),
       anchors_(uwb_anchors(view)),
-      power_(received_power_std_db, seed),
+      power_(power),
       noise_(seed, "uwb/noise"),
       loss_(seed, "uwb/loss"),
       nlos_loss_(seed, "uwb/blocked_loss"),
@@ -133,7 +133,7 @@ class UwbOnBody : public PeriodicSensor {
         scene_(context.scene),
         as_built_(context.as_built),
         T_body_uwb_(context.robot.T_body("uwb")),
-        uwb_(context.settings.uwb, context.view, context.seed) {}
+        uwb_(context.settings.uwb, context.view, context.seed, context.as_built.uwb_power()) {}
 
  private:
   void read(const SensorTick& tick, std::uint64_t index, std::vector<SensorMessage>& readings) override {

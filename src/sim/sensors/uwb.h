@@ -36,9 +36,8 @@ double uwb_range_bias_m(double distance_m, double power_offset_db = 0.0);
 /// ranges through thin walls, and growth of NLOS bias and loss with the obstruction.
 class Uwb {
  public:
-  /// Throws InputError when the world has no anchors. `received_power_std_db`: standard deviation of the antenna gains
-  /// (sim/as_built/uwb_power.h).
-  Uwb(const UwbSettings& settings, const mjModel& view, std::uint64_t seed, double received_power_std_db = 0.0);
+  /// Throws InputError when the world has no anchors. `power`: received power relative to isotropic antennas.
+  Uwb(const UwbSettings& settings, const mjModel& view, std::uint64_t seed, const UwbPower& power = {});
 
   /// Returns the range of poll number `tick`, which addresses the next anchor in range; none if it is lost.
   std::optional<UwbRange> read(const LidarScene& scene, const Eigen::Vector3d& p_world_antenna, Time now,

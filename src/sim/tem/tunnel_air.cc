@@ -14,7 +14,7 @@ namespace {
 using Complex = std::complex<double>;
 
 /// Returns K_1(z) / K_0(z) for a positive real part of z, by the trapezoidal rule on K_n(z) = integral of e^(-z cosh t)
-/// cosh(n t) over t > 0 [DLMF, eq. 10.32.9].
+/// cosh(n t) over t > 0 [DLMF10, eq. 10.32.9].
 Complex bessel_k_ratio(Complex z) {
   constexpr double kStep = 0.08, kNegligible = 40.0;
   Complex k0 = 0.5, k1 = 0.5;

@@ -46,7 +46,7 @@ TEST(UwbPower, ShiftsTheBiasCurveSoThatTheStacksCorrectionNoLongerFits) {
   settings.range_max_m = 1000.0;
   test::Moments residual;
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
-    Uwb uwb(settings, *world.model, seed, 2.0);
+    Uwb uwb(settings, *world.model, seed, UwbPower(2.0, seed));
     const auto range = uwb.read(world.scene, {0.0, 0.0, 1.0}, Time{}, 0);
     ASSERT_TRUE(range);
     residual.add(range->range_m - 8.0 - uwb_bias_at({}, 8.0).bias_m);
