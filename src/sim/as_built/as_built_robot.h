@@ -10,7 +10,9 @@
 #include "core/robot_description.h"
 #include "sim/as_built/as_built_settings.h"
 #include "sim/as_built/device_clock.h"
+#include "sim/as_built/scanner_errors.h"
 #include "sim/as_built/sensor_errors.h"
+#include "sim/as_built/uwb_power.h"
 
 namespace patrol::sim {
 
@@ -42,7 +44,11 @@ class AsBuiltRobot {
   double foot_friction_scale() const;
   /// Returns the range error of an anchor and the robot's antenna.
   double uwb_delay_m(int anchor) const;
+  UwbPower uwb_power() const { return {settings_.enabled ? settings_.uwb.received_power_std_db : 0.0, seed_}; }
   DepthCameraErrors depth_camera() const;
+  ScannerErrors scanner() const {
+    return settings_.enabled ? sample_scanner_errors(settings_.scanner, seed_) : ScannerErrors{};
+  }
 
   /// Returns the drawn values that the stack can estimate, and the sensor poses relative to the nominal ones; empty for
   /// a nominal robot.

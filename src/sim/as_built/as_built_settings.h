@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/settings.h"
+#include "sim/as_built/scanner_tolerances.h"
 
 /// Tolerances of the as-built robot.
 ///
@@ -164,11 +165,16 @@ struct UwbTolerances {
 
   double anchor_delay_m = 0.1;  ///< tolerance of the range error of each anchor
   double tag_delay_m = 0.1;     ///< tolerance of the range error of the robot's antenna
+  /// Standard deviation of the gains of the robot's antenna, of an anchor's, and of its variation around it. The bias of
+  /// the receiver depends on the received power (APS011, table 2), and the stack's correction assumes isotropic antennas.
+  /// Printed antennas vary by +-3 dB in their plane, read as two standard deviations (assumption).
+  double received_power_std_db = 1.5;
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("anchor_delay_m", self.anchor_delay_m, between(0.0, 5.0));
     visit("tag_delay_m", self.tag_delay_m, between(0.0, 5.0));
+    visit("received_power_std_db", self.received_power_std_db, between(0.0, 20.0));
   }
 };
 
@@ -216,6 +222,7 @@ struct AsBuiltSettings {
   ImuTolerances imu;
   UwbTolerances uwb;
   DepthCameraTolerances depth_camera;
+  ScannerTolerances scanner;
   PlacementTolerances placement;
 
   template <typename Self, typename Visitor>
@@ -230,6 +237,7 @@ struct AsBuiltSettings {
     visit("imu", self.imu);
     visit("uwb", self.uwb);
     visit("depth_camera", self.depth_camera);
+    visit("scanner", self.scanner);
     visit("placement", self.placement);
   }
 };

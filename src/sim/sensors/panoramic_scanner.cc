@@ -37,11 +37,13 @@ RandomStream stream_of(const PanoramicScannerSettings& settings, std::uint64_t s
 }  // namespace
 
 PanoramicScanner::PanoramicScanner(const PanoramicScannerSettings& settings, const LidarScene& scene,
-                                   Pose3 T_body_scanner, std::uint64_t seed, const DustSettings& dust)
+                                   Pose3 T_body_scanner, std::uint64_t seed, const DustSettings& dust,
+                                   const ScannerErrors& errors)
     : settings_(settings),
       scene_(scene),
       T_body_scanner_(std::move(T_body_scanner)),
       dust_(dust),
+      errors_(errors),
       surfaces_(surface_optics(scene.model())),
       range_noise_(stream_of(settings, seed, "range")),
       range_offset_(stream_of(settings, seed, "range_offset")),
@@ -67,13 +69,14 @@ void PanoramicScanner::begin(Time now, const Pose3& T_world_body) {
   const Eigen::Quaterniond R_world_scanner = T_world_body.rotation * T_body_scanner_.rotation;
   const auto tilt = tilt_error_.normals(number);
   const double std_rad = settings_.tilt_error_std_deg * kDegree;
-  scan_ = Scan{.start = now,
-               .number = number,
-               .R_level_scanner = quaternion_from_rpy(std_rad * tilt[0], std_rad * tilt[1], 0.0) *
-                                  quaternion_from_yaw(-to_yaw(R_world_scanner)) * R_world_scanner,
-               .range_offset_m = settings_.range_offset_std_m * range_offset_.normal(number),
-               .before_m = {},
-               .points = {}};
+  scan_ =
+      Scan{.start = now,
+           .number = number,
+           .R_level_scanner = quaternion_from_rpy(std_rad * tilt[0], std_rad * tilt[1], 0.0) *
+                              quaternion_from_yaw(-to_yaw(R_world_scanner)) * R_world_scanner,
+           .range_offset_m = errors_.range_offset_ratio * settings_.range_offset_std_m * range_offset_.normal(number),
+           .before_m = {},
+           .points = {}};
   const std::vector<double> no_returns(elevation_.size(), kNoReturn);
   scan_->before_m = {{{no_returns, no_returns}, {no_returns, no_returns}}};
   scan_->points.reserve(2 * azimuth_.size() * elevation_.size());
@@ -97,30 +100,46 @@ void PanoramicScanner::advance(Time from, Time to, const Pose3& T_world_body_fro
   }
 }
 
-/// Returns the direction of a beam, in `scanner`; first order in the errors.
-Eigen::Vector3d PanoramicScanner::direction(int column, std::size_t row, double azimuth_error_rad,
-                                            double elevation_error_rad) const {
+PanoramicScanner::Beam PanoramicScanner::beam_at(int column, std::size_t row) const {
   const auto pair = static_cast<std::size_t>(column) % azimuth_.size();
-  const Eigen::Vector2d ahead =
-      static_cast<std::size_t>(column) == pair ? azimuth_[pair] : Eigen::Vector2d(-azimuth_[pair]);
+  const bool is_front = static_cast<std::size_t>(column) == pair;
+  const Eigen::Vector2d ahead = is_front ? azimuth_[pair] : Eigen::Vector2d(-azimuth_[pair]);
   const double c = elevation_[row].x(), s = elevation_[row].y();
-  const Eigen::Vector3d exact(c * ahead.x(), c * ahead.y(), s);
-  const Eigen::Vector3d aside(-c * ahead.y(), c * ahead.x(), 0.0), up(-s * ahead.x(), -s * ahead.y(), c);
-  return (exact + azimuth_error_rad * aside + elevation_error_rad * up).normalized();
+  return {.nominal = {c * ahead.x(), c * ahead.y(), s},
+          .left = {-ahead.y(), ahead.x(), 0.0},
+          .up = {-s * ahead.x(), -s * ahead.y(), c},
+          .cosine = c,
+          .deviation =
+              errors_.deviation(std::atan2(azimuth_[pair].y(), azimuth_[pair].x()), std::atan2(s, c), is_front)};
+}
+
+Eigen::Vector3d PanoramicScanner::Beam::aimed(double azimuth_error_rad, double elevation_error_rad) const {
+  const Eigen::Vector3d aside = cosine * left;
+  return (nominal + azimuth_error_rad * aside + elevation_error_rad * up + deviation.left_rad * left +
+          deviation.up_rad * up)
+      .normalized();
+}
+
+/// Returns the pose of the scanner moved to the origin of a beam, which does not pass exactly through the center.
+Pose3 PanoramicScanner::beam_origin(const Pose3& T_world_scanner, const Beam& beam) const {
+  return {T_world_scanner * (beam.deviation.left_m * beam.left + beam.deviation.up_m * beam.up),
+          T_world_scanner.rotation};
 }
 
 /// Fires every beam of the column along its axis, averages beams at edges over their width, and adds the instrument
 /// errors.
 void PanoramicScanner::fire_column(int column, const Pose3& T_world_scanner) {
   const std::size_t rows = elevation_.size();
-  const auto beam = [&](std::size_t row) { return static_cast<std::uint64_t>(column) * rows + row; };
+  const auto index = [&](std::size_t row) { return static_cast<std::uint64_t>(column) * rows + row; };
+  std::vector<Beam> beams(rows);
   std::vector<Eigen::Vector3d> aimed(rows);
   std::vector<Return> ideal(rows);
-  const double angle_std_rad = settings_.angle_noise_std_deg * kDegree;
+  const double angle_std_rad = errors_.angle_noise_ratio * settings_.angle_noise_std_deg * kDegree;
   for (std::size_t row = 0; row < rows; ++row) {
-    const auto error = angle_noise_.normals(scan_->number, beam(row));
-    aimed[row] = direction(column, row, angle_std_rad * error[0], angle_std_rad * error[1]);
-    ideal[row] = trace(T_world_scanner, aimed[row]);
+    const auto error = angle_noise_.normals(scan_->number, index(row));
+    beams[row] = beam_at(column, row);
+    aimed[row] = beams[row].aimed(angle_std_rad * error[0], angle_std_rad * error[1]);
+    ideal[row] = trace(beam_origin(T_world_scanner, beams[row]), aimed[row]);
   }
   auto& [one_ago, two_ago] = scan_->before_m[static_cast<std::size_t>(column) < azimuth_.size() ? 0 : 1];
   for (std::size_t row = 0; row < rows; ++row) {
@@ -131,20 +150,24 @@ void PanoramicScanner::fire_column(int column, const Pose3& T_world_scanner) {
     two_ago[row] = std::exchange(one_ago[row], range_m);
     const bool is_at_edge =
         settings_.beam_divergence_rad > 0.0 && std::max(upwards, sideways) > min_edge_curvature_m(range_m);
-    const Return beam_return = is_at_edge ? mixed_pixel_return(T_world_scanner, aimed[row], range_m) : ideal[row];
-    if (beam_return.range_m > settings_.range_max_m || beam_return.range_m < settings_.range_min_m) continue;
-    if (settings_.dropout_probability > 0.0 &&
-        dropout_.uniform(scan_->number, beam(row)) < settings_.dropout_probability)
-      continue;
-    const double measured_m = beam_return.range_m + scan_->range_offset_m +
-                              range_std_m(beam_return) * range_noise_.normal(scan_->number, beam(row));
-    const Eigen::Vector3f point =
-        (scan_->R_level_scanner * (measured_m * direction(column, row, 0.0, 0.0))).cast<float>();
-    scan_->points.push_back({.x = point.x(),
-                             .y = point.y(),
-                             .z = point.z(),
-                             .intensity = static_cast<float>(255.0 * std::min(1.0, beam_return.light))});
+    report(beams[row].nominal.normalized(),
+           is_at_edge ? mixed_pixel_return(beam_origin(T_world_scanner, beams[row]), aimed[row], range_m) : ideal[row],
+           index(row));
   }
+}
+
+/// Appends the point of beam number `index` unless its return is lost.
+void PanoramicScanner::report(const Eigen::Vector3d& direction, const Return& beam_return, std::uint64_t index) {
+  if (beam_return.range_m > settings_.range_max_m || beam_return.range_m < settings_.range_min_m) return;
+  if (settings_.dropout_probability > 0.0 && dropout_.uniform(scan_->number, index) < settings_.dropout_probability)
+    return;
+  const double measured_m = beam_return.range_m + scan_->range_offset_m + errors_.range_error_m(beam_return.range_m) +
+                            range_std_m(beam_return) * range_noise_.normal(scan_->number, index);
+  const Eigen::Vector3f point = (scan_->R_level_scanner * (measured_m * direction)).cast<float>();
+  scan_->points.push_back({.x = point.x(),
+                           .y = point.y(),
+                           .z = point.z(),
+                           .intensity = static_cast<float>(255.0 * std::min(1.0, beam_return.light))});
 }
 
 /// Returns the reading of an ideal ray without width. Glass, grazing incidence, and dark distant surfaces return
@@ -197,7 +220,7 @@ class ScannerOnBody : public Sensor {
  public:
   explicit ScannerOnBody(const SensorContext& context)
       : scanner_(context.settings.scanner, context.scene, context.robot.T_body("scanner"), context.seed,
-                 context.settings.dust) {}
+                 context.settings.dust, context.as_built.scanner()) {}
 
   void step(const SensorTick& tick, std::vector<SensorMessage>& readings) override {
     if (!scanner_.is_busy()) return;

@@ -10,6 +10,7 @@
 #include "core/random.h"
 #include "core/sensors/registry.h"
 #include "core/settings.h"
+#include "sim/as_built/scanner_errors.h"
 #include "sim/dust.h"
 #include "sim/lidar_scene.h"
 #include "sim/sensors/surface_optics.h"
@@ -33,9 +34,9 @@ namespace patrol::sim {
 /// compensator's limit of 2 degrees, color.
 class PanoramicScanner {
  public:
-  /// Dust reduces the light.
+  /// Dust reduces the light. `errors`: systematic errors of the instrument.
   PanoramicScanner(const PanoramicScannerSettings& settings, const LidarScene& scene, Pose3 T_body_scanner,
-                   std::uint64_t seed, const DustSettings& dust = {});
+                   std::uint64_t seed, const DustSettings& dust = {}, const ScannerErrors& errors = {});
 
   /// Starts a scan at the given body pose; does nothing during a scan.
   void begin(Time now, const Pose3& T_world_body);
@@ -56,6 +57,16 @@ class PanoramicScanner {
     double range_m;  ///< +Inf: no return
     double light;    ///< reflectivity times cosine
   };
+  /// Beam of one column and row. Unit vectors in `scanner`.
+  struct Beam {
+    Eigen::Vector3d nominal;   ///< reported direction
+    Eigen::Vector3d left, up;  ///< perpendicular to it
+    double cosine;             ///< cosine of the elevation
+    BeamDeviation deviation;
+
+    /// Returns the actual direction for random errors of the encoders; first order in the errors.
+    Eigen::Vector3d aimed(double azimuth_error_rad, double elevation_error_rad) const;
+  };
   struct Scan {
     Time start;
     std::uint64_t number;                ///< number of the scan, from 0
@@ -68,7 +79,9 @@ class PanoramicScanner {
 
   Time instant_of(int pair) const;
   void fire_column(int column, const Pose3& T_world_scanner);
-  Eigen::Vector3d direction(int column, std::size_t row, double azimuth_error_rad, double elevation_error_rad) const;
+  Beam beam_at(int column, std::size_t row) const;
+  Pose3 beam_origin(const Pose3& T_world_scanner, const Beam& beam) const;
+  void report(const Eigen::Vector3d& direction, const Return& beam_return, std::uint64_t index);
   Return trace(const Pose3& T_world_scanner, const Eigen::Vector3d& direction) const;
   Return mixed_pixel_return(const Pose3& T_world_scanner, const Eigen::Vector3d& direction, double range_m) const;
   double range_std_m(const Return& beam_return) const;
@@ -77,6 +90,7 @@ class PanoramicScanner {
   const LidarScene& scene_;
   Pose3 T_body_scanner_;
   DustSettings dust_;
+  ScannerErrors errors_;
   std::vector<SurfaceOptics> surfaces_;  ///< [geom] of the view model
   RandomStream range_noise_, range_offset_, angle_noise_, tilt_error_, dropout_;
   std::vector<Eigen::Vector2d> azimuth_;    ///< [column ahead], cosine and sine; the column behind has the opposite

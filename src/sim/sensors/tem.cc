@@ -49,15 +49,14 @@ double steel_decay(double time_s) {
 Tem::Tem(const TemSettings& settings, const RockSettings& rock, std::vector<WaterBodySettings> bodies,
          std::uint64_t seed)
     : settings_(settings),
-      rock_(rock),
-      bodies_(std::move(bodies)),
       window_(reported_window(settings)),
-      gates_(shift(window_, settings.time_shift_std_s * RandomStream(seed, "tem/time_shift").normal(0))),
+      // The actual gates, with the time shift.
+      subsurface_(sample_subsurface({rock, std::move(bodies)}, seed),
+                  TemGates(shift(window_, settings.time_shift_std_s * RandomStream(seed, "tem/time_shift").normal(0)))),
       gain_(1.0 + settings.gain_std * RandomStream(seed, "tem/gain").normal(0)),
       noise_(seed, "tem/noise"),
       relative_noise_(seed, "tem/relative_noise"),
       current_(seed, "tem/current") {
-  validate(rock, "rock");
   const RandomStream steel(seed, "tem/steel");
   steel_rate_ = settings.steel_response * std::exp(settings.steel_log_std * steel.normal(0));
   for (int i = 0; i < 3; ++i) {
@@ -89,19 +88,7 @@ std::optional<TemSounding> Tem::step(const Pose3& T_world_tem, Time now) {
 
 TemSounding Tem::sound(const Eigen::Vector3d& p_world, const Eigen::Matrix3d& axes, std::uint64_t count,
                        Time end) const {
-  Eigen::VectorXd rate = gated_whole_space_response(gates_, rock_.conductivity_spm);
-  for (const WaterBodySettings& body : bodies_) {
-    const Eigen::Vector3d offset = Eigen::Vector3d(body.x_m, body.y_m, body.z_m) - p_world;
-    const ConductiveSphere sphere{
-        .distance_m = offset.norm(), .radius_m = body.radius_m, .conductivity_spm = body.conductivity_spm};
-    if (sphere.distance_m <= 1.02 * sphere.radius_m) {
-      throw InputError(fmt::format("water_bodies: body at ({}, {}, {}): must not contain the antenna", body.x_m,
-                                   body.y_m, body.z_m));
-    }
-    const GatedSphereResponse decay = gated_sphere_response(gates_, rock_.conductivity_spm, sphere);
-    const double cos_squared = offset.dot(axes * offset) / offset.squaredNorm();
-    rate += decay.transverse + cos_squared * (decay.axial - decay.transverse);
-  }
+  const Eigen::VectorXd rate = subsurface_.gated_rate(p_world, axes);
   const double steel = steel_rate_ * (1.0 + steel_form_.cwiseProduct(axes).sum());
 
   TemSounding sounding{

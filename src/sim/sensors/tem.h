@@ -12,15 +12,16 @@
 #include "core/sensors/tem_response.h"
 #include "core/settings.h"
 #include "sim/subsurface.h"
+#include "sim/tem/subsurface_response.h"
 
 namespace patrol::sim {
 
-/// TEM coil in conductive rock with water bodies.
+/// TEM coil in conductive rock with tunnel, fault zone and water bodies (sim/tem/subsurface_response.h).
 ///
-/// The responses of the bodies are summed; mutual screening is neglected. The response of steel is a sum of three
-/// exponential decays (15, 60, 250 us), close to t^-1 in between. It depends on the coil direction as a quadratic form
-/// of its axis and is sampled once per run. Not modeled: the air of the tunnel, the receiver's low-pass filter (the
-/// instrument corrects its delay; the time shift is the residual), polarization of the rock, power lines and radio.
+/// The response of steel is a sum of three exponential decays (15, 60, 250 us), close to t^-1 in between. It depends on
+/// the coil direction as a quadratic form of its axis and is sampled once per run. Not modeled: the receiver's low-pass
+/// filter (the instrument corrects its delay; the time shift is the residual), polarization of the rock, power lines
+/// and radio.
 class Tem {
  public:
   /// Throws InputError for fewer than three gates.
@@ -40,10 +41,8 @@ class Tem {
 
  private:
   TemSettings settings_;
-  RockSettings rock_;
-  std::vector<WaterBodySettings> bodies_;
   TemGateLayout window_;  ///< reported gates
-  TemGates gates_;        ///< actual gates, with the time shift
+  SubsurfaceResponse subsurface_;
   double gain_ = 1.0, steel_rate_ = 0.0;
   Eigen::Matrix3d steel_form_ = Eigen::Matrix3d::Zero();
   RandomStream noise_, relative_noise_, current_;

@@ -46,7 +46,7 @@ std::vector<UwbAnchor> uwb_anchors(const mjModel& view) {
   return anchors;
 }
 
-double uwb_range_bias_m(double distance_m) {
+double uwb_range_bias_m(double distance_m, double power_offset_db) {
   constexpr double kStrongest_dbm = -61.0, kStep_db = 2.0;
   constexpr std::array kBias_m = {-0.110, -0.105, -0.100, -0.093, -0.082, -0.069, -0.051, -0.027, 0.0,
                                   0.021,  0.035,  0.042,  0.049,  0.062,  0.071,  0.076,  0.081};
@@ -54,7 +54,8 @@ double uwb_range_bias_m(double distance_m) {
   constexpr double kChannel2_hz = 3993.6e6, kLight_mps = 299792458.0;
   const double path_loss_db =
       20.0 * std::log10(4.0 * std::numbers::pi * kChannel2_hz * std::max(distance_m, 0.01) / kLight_mps);
-  const double row = std::clamp((kStrongest_dbm - (kSent_dbm - path_loss_db)) / kStep_db, 0.0, kBias_m.size() - 1.0);
+  const double row =
+      std::clamp((kStrongest_dbm - (kSent_dbm - path_loss_db + power_offset_db)) / kStep_db, 0.0, kBias_m.size() - 1.0);
   const auto above = static_cast<std::size_t>(std::min(row, kBias_m.size() - 2.0));
   return kBias_m[above] + (row - static_cast<double>(above)) * (kBias_m[above + 1] - kBias_m[above]);
 }
@@ -79,9 +80,10 @@ bool is_uwb_path_nlos(const LidarScene& scene, const Eigen::Vector3d& p_world_an
   return 2 * blocked > kLines + 1;
 }
 
-Uwb::Uwb(const UwbSettings& settings, const mjModel& view, std::uint64_t seed)
+Uwb::Uwb(const UwbSettings& settings, const mjModel& view, std::uint64_t seed, const UwbPower& power)
     : settings_(settings),
       anchors_(uwb_anchors(view)),
+      power_(power),
       noise_(seed, "uwb/noise"),
       loss_(seed, "uwb/loss"),
       nlos_loss_(seed, "uwb/blocked_loss"),
@@ -111,7 +113,8 @@ std::optional<UwbRange> Uwb::read(const LidarScene& scene, const Eigen::Vector3d
   if (loss_.uniform(tick, index) < loss) return std::nullopt;
 
   UwbRange range{.stamp = now, .anchor = anchor->number};
-  range.range_m = distance_m + settings_.bias_scale * uwb_range_bias_m(distance_m) +
+  const double power_offset_db = power_.offset_db(anchor->number, p_world_antenna - anchor->p_world);
+  range.range_m = distance_m + settings_.bias_scale * uwb_range_bias_m(distance_m, power_offset_db) +
                   settings_.range_noise_std_m * noise_.normal(tick, index);
   if (is_uwb_path_nlos(scene, p_world_antenna, anchor->p_world)) {
     if (nlos_loss_.uniform(tick, index) < settings_.nlos_loss_probability) return std::nullopt;
@@ -130,7 +133,7 @@ class UwbOnBody : public PeriodicSensor {
         scene_(context.scene),
         as_built_(context.as_built),
         T_body_uwb_(context.robot.T_body("uwb")),
-        uwb_(context.settings.uwb, context.view, context.seed) {}
+        uwb_(context.settings.uwb, context.view, context.seed, context.as_built.uwb_power()) {}
 
  private:
   void read(const SensorTick& tick, std::uint64_t index, std::vector<SensorMessage>& readings) override {

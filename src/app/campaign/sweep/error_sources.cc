@@ -66,8 +66,8 @@ class ToleranceCollector {
   using Applies = bool (*)(const Scenario&, const ScenarioFiles&);
 
   void add(std::string_view field) {
-    // Neither is an error source: the first splits the range noise, the second is a time constant.
-    if (field == "noise_ratio" || field == "warming_time_s") return;
+    // None is an error source: ratios of noise, time constants and wavelengths.
+    if (field.ends_with("_ratio") || field == "warming_time_s" || field == "cyclic_wavelength_m") return;
     sources_.push_back(
         {fmt::format("as built: {}.{}", group_, field), {fmt::format("as_built.{}.{}=0", group_, field)}, condition()});
   }
@@ -80,6 +80,7 @@ class ToleranceCollector {
     if (group_ == "imu") return is_as_built_with<Imu>;
     if (group_ == "uwb") return is_as_built_with<UwbRange>;
     if (group_ == "depth_camera") return is_as_built_with<DepthImage>;
+    if (group_ == "scanner") return is_as_built_with<PanoramicScan>;
     return is_as_built;
   }
 

@@ -1,0 +1,9 @@
+#pragma once
+
+#include <numbers>
+
+namespace patrol::sim {
+
+inline constexpr double kPermeability = 4e-7 * std::numbers::pi;  ///< of the vacuum, V s / (A m)
+
+}  // namespace patrol::sim
