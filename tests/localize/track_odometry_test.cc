@@ -61,20 +61,48 @@ Pose2 by_counters_alone(const Pose2& before, const TrackTicks& last, const Track
 /// and 97.5 %, over 20).
 constexpr double kLowNees = 40.48 / 20.0, kHighNees = 83.30 / 20.0;
 
-TEST(TrackOdometry, NeesOverTwentySeedsIsWithinItsBoundsAfter30And60And120Seconds) {
-  std::array<double, 3> sum{};
-  const std::array<double, 3> times{30.0, 60.0, 120.0};
+constexpr std::array<double, 3> kNeesTimes_s{30.0, 60.0, 120.0};
+
+/// Mean NEES over twenty seeds, [time].
+std::array<double, 3> mean_nees(const TrackedDriveSettings& plant) {
+  std::array<double, 3> mean{};
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    TrackedDrive drive(make_tracked_robot(), make_tour(), {}, seed);
+    TrackedDrive drive(make_tracked_robot(), make_tour(), plant, seed);
     TrackOdometry odometry(make_tracked_robot(), {});
-    for (std::size_t i = 0; i < times.size(); ++i) {
-      run(drive, odometry, times[i]);
-      sum[i] += nees(odometry, drive);
+    for (std::size_t i = 0; i < kNeesTimes_s.size(); ++i) {
+      run(drive, odometry, kNeesTimes_s[i]);
+      mean[i] += nees(odometry, drive) / 20.0;
     }
   }
-  for (std::size_t i = 0; i < times.size(); ++i) {
-    EXPECT_GT(sum[i] / 20.0, kLowNees) << times[i] << " s";
-    EXPECT_LT(sum[i] / 20.0, kHighNees) << times[i] << " s";
+  return mean;
+}
+
+TEST(TrackOdometry, NeesOverTwentySeedsIsWithinItsBoundsAfter30And60And120Seconds) {
+  const std::array<double, 3> mean = mean_nees({});
+  for (std::size_t i = 0; i < mean.size(); ++i) {
+    EXPECT_GT(mean[i], kLowNees) << kNeesTimes_s[i] << " s";
+    EXPECT_LT(mean[i], kHighNees) << kNeesTimes_s[i] << " s";
+  }
+}
+
+TEST(TrackOdometry, OnAPlantWithParametersOfItsOwnTheNeesIsWithinItsBounds) {
+  const std::array<double, 3> mean = mean_nees(TrackedDriveSettings::of_data_sheets());
+  for (std::size_t i = 0; i < mean.size(); ++i) {
+    EXPECT_GT(mean[i], kLowNees) << kNeesTimes_s[i] << " s";
+    EXPECT_LT(mean[i], kHighNees) << kNeesTimes_s[i] << " s";
+  }
+}
+
+// Limit: the filter has no state for the scale of the gyro. A sensitivity of 1 % (ADIS16448 data sheet; here one
+// standard deviation) is 2 % of a radian and more on a tour that turns one way, twice the claimed deviation of the yaw.
+// The bounds are half and twice the measured value; whoever mends it moves this case into the test above.
+TEST(TrackOdometry, AGyroSensitivityOfOnePercentIsNotInTheCovariance) {
+  TrackedDriveSettings plant = TrackedDriveSettings::of_data_sheets();
+  plant.imu_scale = 0.01;
+  const std::array<double, 3> mean = mean_nees(plant), measured = {25.0, 9.7, 7.2};
+  for (std::size_t i = 0; i < mean.size(); ++i) {
+    EXPECT_GT(mean[i], 0.5 * measured[i]) << kNeesTimes_s[i] << " s";
+    EXPECT_LT(mean[i], 2.0 * measured[i]) << kNeesTimes_s[i] << " s";
   }
 }
 

@@ -100,6 +100,31 @@ TrackedDriveSettings TrackedDriveSettings::without_noise() {
           .accel_resolution_mps2 = 0.0};
 }
 
+TrackedDriveSettings TrackedDriveSettings::of_data_sheets() {
+  const double root_period = std::sqrt(TrackedDriveSettings{}.imu_period_s);
+  TrackedDriveSettings settings;
+  settings.gyro_noise_radps = 2.36e-4 / root_period;
+  settings.gyro_bias_radps = 8.7e-3;
+  settings.accel_noise_mps2 = 2.26e-3 / root_period;
+  settings.accel_bias_mps2 = 0.196;
+  settings.imu_misalignment_rad = 0.0015;
+  settings.scale = 0.015;
+  settings.slip = 0.01;
+  settings.slip_length_m = 1.0;
+  settings.slip_per_radps = 0.05;
+  settings.slip_per_tilt = 0.2;
+  settings.crab = 0.01;
+  settings.turn_ratio = 1.41;
+  settings.turn_ratio_std = 0.08;
+  settings.turn_length_rad = 1.0;
+  settings.icr_x_m = 0.03;
+  settings.icr_y_m = 0.03;
+  settings.pitch_rad = 0.06;
+  settings.roll_rad = 0.04;
+  settings.vibration_mps2_rthz = 0.05;
+  return settings;
+}
+
 void TrackedDrive::Wanderer::go(double share_of_length, double std, double normal) {
   const double a = std::exp(-share_of_length);
   value = a * value + std::sqrt(1.0 - a * a) * std * normal;

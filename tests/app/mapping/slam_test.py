@@ -8,6 +8,7 @@ import json
 import math
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -108,16 +109,42 @@ class Slam(unittest.TestCase):
 
     def test_relations_score_the_estimate(self):
         out = self.map("scored")
-        lines = []
-        for a, b in [(10, 20), (50, 90), (3, 200), (100, len(self.poses) - 5)]:
+        lines, pairs = [], [(10, 20), (50, 90), (3, 200), (100, len(self.poses) - 5)]
+        for a, b in pairs:
             (ax, ay, ayaw), (bx, by, byaw) = self.poses[a], self.poses[b]
             dx, dy = bx - ax, by - ay
             x, y = math.cos(ayaw) * dx + math.sin(ayaw) * dy, -math.sin(ayaw) * dx + math.cos(ayaw) * dy
             lines.append(f"{START_S + 0.2 * a:.6f} {START_S + 0.2 * b:.6f} {x:.6f} {y:.6f} 0 0 0 {math.remainder(byaw - ayaw, 2 * math.pi):.6f}")
         relations = self.folder / "block.relations"
         relations.write_text("\n".join(lines) + "\n")
-        done = self.patrol("score", "--estimate", out / "estimate.tum", "--relations", relations)
-        self.assertIn("0.0", done.stdout)
+        # The same errors from the two files, computed here: each relation between the poses at its two stamps.
+        rows = [list(map(float, line.split())) for line in (out / "estimate.tum").read_text().splitlines() if not line.startswith("#")]
+        trans, rot = [], []
+        for a, b, line in zip(*zip(*pairs), lines):
+            (ax, ay, ayaw), (bx, by, byaw) = [(row[1], row[2], 2 * math.atan2(row[6], row[7])) for row in (rows[a], rows[b])]
+            dx, dy = bx - ax, by - ay
+            x, y = math.cos(ayaw) * dx + math.sin(ayaw) * dy, -math.sin(ayaw) * dx + math.cos(ayaw) * dy
+            tx, ty, *_, tyaw = map(float, line.split()[2:])
+            trans.append(math.hypot(x - tx, y - ty))
+            rot.append(abs(math.degrees(math.remainder(byaw - ayaw - tyaw, 2 * math.pi))))
+        printed = self.printed_means(self.patrol("score", "--estimate", out / "estimate.tum", "--relations", relations).stdout)
+        self.assertAlmostEqual(printed["translation, m"], sum(trans) / len(trans), delta=0.00006)
+        self.assertAlmostEqual(printed["rotation, deg"], sum(rot) / len(rot), delta=0.0006)
+        # The map is right to centimeters. Odometry, 3 % too long and turning by 0.01 rad/m, is not.
+        self.assertLess(printed["translation, m"], 0.04)
+        self.assertLess(printed["rotation, deg"], 0.3)
+        of_odometry = self.printed_means(self.patrol("score", "--estimate", out / "odometry.tum", "--relations", relations).stdout)
+        self.assertGreater(of_odometry["translation, m"], 0.5)
+        self.assertGreater(of_odometry["rotation, deg"], 5.0)
+
+    def printed_means(self, text):
+        """First number of each row of the printed table, by the row's name."""
+        found = {}
+        for line in text.splitlines():
+            row = re.match(r"  (\S.*?)\s{2,}([-0-9.e]+)", line)
+            if row:
+                found[row[1]] = float(row[2])
+        return found
 
     def test_a_graph_is_solved_and_one_that_is_damaged_refused(self):
         ring = ["VERTEX_SE2 0 0 0 0", "VERTEX_SE2 1 1 0 0", "VERTEX_SE2 2 2 0 0"]

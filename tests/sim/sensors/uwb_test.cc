@@ -105,6 +105,26 @@ TEST(Uwb, BehindAWallTheExcessIsExponentialOf40CentimetresAndThreeInTenAreLost) 
   EXPECT_GE(ranges.error_m.smallest, 0.0);
 }
 
+// At 20 m the level is -84.8 dBm, where table 2 of APS011 gives 4.83 cm between its rows of -83 and -85 dBm.
+TEST(Uwb, TheDefaultsAreRecoveredFromRangesInAndOffTheLineOfSight) {
+  const SmallWorld in_sight(anchor(1, "20 0 1"));
+  const Ranges los = poll(in_sight, {});
+  const double n = los.error_m.count, lost = 0.02 + 0.98 * std::pow(20.0 / 60.0, 4);
+  EXPECT_NEAR(los.lost(), lost, share_tolerance(lost, kPolls));
+  EXPECT_NEAR(los.error_m.std(), 0.07, 4.0 * 0.07 / std::sqrt(2.0 * n));
+  EXPECT_NEAR(los.error_m.mean(), 0.0483, 4.0 * 0.07 / std::sqrt(n) + 1e-3);
+
+  const SmallWorld blocked(anchor(1, "20 0 1") + R"(<geom type="box" pos="10 0 1" size="0.2 2 2"/>)");
+  const Ranges nlos = poll(blocked, {});
+  const double m = nlos.error_m.count, nlos_lost = 1.0 - (1.0 - lost) * (1.0 - 0.3);
+  EXPECT_NEAR(nlos.lost(), nlos_lost, share_tolerance(nlos_lost, kPolls));
+  EXPECT_NEAR(nlos.error_m.mean() - los.error_m.mean(), 0.4, 4.0 * std::hypot(0.4 / std::sqrt(m), 0.07 / std::sqrt(n)));
+  EXPECT_NEAR(nlos.error_m.std(), std::hypot(0.4, 0.07), 4.0 * 0.4 * std::sqrt(2.0 / m));
+
+  EXPECT_EQ(poll(SmallWorld(anchor(1, "60.1 0 1")), {}, 1000).lost(), 1.0);
+  EXPECT_DOUBLE_EQ(UwbSettings{}.rate_hz, 30.0);
+}
+
 bool is_blocked_by(const std::string& geom) {
   const SmallWorld world(geom);
   return is_uwb_path_nlos(world.scene, {0, 0, 1}, {20, 0, 1});

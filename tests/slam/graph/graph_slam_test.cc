@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/slam/graph/door_gallery.h"
 #include "tests/slam/graph/office_world.h"
 #include "tests/support/pose_near.h"
 
@@ -56,26 +57,80 @@ TEST(GraphSlam, EveryLoopThatItClosesIsTrueToFiveCentimeters) {
   EXPECT_LT(rms_error_m(mapped), 0.03);
 }
 
-// Up and down among doors that are all alike, odometry 8 % too long: 4 m of doubt at the end, more than from door to
-// door.
-TEST(GraphSlam, AmongIdenticalDoorsNoFalseLoopIsClosedInTenDrives) {
-  int loops = 0;
-  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    const MappedDrive mapped =
-        map_rounds(test::make_corridor_of_doors(), {{20.0, 0.0}, {45.0, 0.0}, {15.0, 0.0}, {20.0, 0.0}},
-                   {.speed_mps = 1.0, .odometry_scale = 0.01}, {}, seed);
-    const std::vector<test::DriveStep>& drive = mapped.drive;
-    const std::vector<std::size_t> scans = mapped.slam.node_scan_indices();
-    for (const PoseGraphEdge& edge : mapped.slam.graph().edges) {
-      if (edge.kind != PoseGraphEdge::Kind::kLoop) continue;
-      ++loops;
-      const Pose2 T_from_to = drive[scans[static_cast<std::size_t>(edge.from)]].T_world_body.inverse() *
-                              drive[scans[static_cast<std::size_t>(edge.to)]].T_world_body;
-      EXPECT_LT((edge.T_from_to.position() - T_from_to.position()).norm(), 1.0) << seed;  // a door off is 3 m
-    }
-    EXPECT_LT(rms_error_m(mapped), 0.3) << seed;
+/// Mapped drive through the gallery of identical doors, and the submap matches that were accepted on it.
+struct GalleryMapping {
+  std::vector<test::DriveStep> drive;
+  GraphSlam slam;
+  int num_correct = 0;
+  int num_shifted = 0;  ///< matches that are off by at least half the spacing of the doors
+
+  double rms_error_m() const {
+    const std::vector<Pose2> path = slam.path();
+    double sum = 0.0;
+    for (std::size_t k = 0; k < path.size(); ++k) sum += std::pow(error_m(path, k), 2);
+    return std::sqrt(sum / static_cast<double>(path.size()));
   }
-  EXPECT_GT(loops, 100);
+  double error_m(const std::vector<Pose2>& path, std::size_t k) const {
+    return (path[k].position() - (drive[0].T_world_body.inverse() * drive[k].T_world_body).position()).norm();
+  }
+};
+
+GalleryMapping map_gallery(const GraphSlamSettings& settings, std::uint64_t seed) {
+  const test::RoomWorld gallery = test::DoorGallery::world();
+  GalleryMapping mapped{.drive = test::DoorGallery::drive(seed), .slam = GraphSlam(settings)};
+  const RandomStream noise(seed, "test/graph");
+  for (std::size_t k = 0; k < mapped.drive.size(); ++k) {
+    const test::DriveStep& step = mapped.drive[k];
+    mapped.slam.update(gallery.scan(step.T_world_body, step.stamp, test::DoorGallery::kLidar, noise, k),
+                       step.T_odom_body);
+  }
+  // Before the refinement, loop edges are matches of whole submaps.
+  const std::vector<std::size_t> scans = mapped.slam.node_scan_indices();
+  for (const PoseGraphEdge& edge : mapped.slam.graph().edges) {
+    if (edge.kind != PoseGraphEdge::Kind::kLoop) continue;
+    const Pose2 T_from_to = mapped.drive[scans[static_cast<std::size_t>(edge.from)]].T_world_body.inverse() *
+                            mapped.drive[scans[static_cast<std::size_t>(edge.to)]].T_world_body;
+    const double error_m = (edge.T_from_to.position() - T_from_to.position()).norm();
+    ++(error_m < 0.5 * test::DoorGallery::kSpacing_m ? mapped.num_correct : mapped.num_shifted);
+  }
+  mapped.slam.finish();
+  return mapped;
+}
+
+// The niches lie within the predicted drift of each other: every match between them is ambiguous. Those of the hall are
+// not, and close the loop. The scale of the odometry along the bare walls remains as an error of the map.
+//
+// With twice the predicted drift (3 % per leg) the check is not sufficient: in 1 of 5 drives the correct pose lay outside
+// the search window, a door was taken for its neighbor, and the hall was 1.4 m off.
+TEST(GraphSlam, AmongIdenticalDoorsOnlyTheHallClosesLoopsAndEveryMatchOfDoorsIsRejectedAsAmbiguous) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const GalleryMapping mapped = map_gallery({}, seed);
+    EXPECT_GE(mapped.num_correct, 2) << seed;
+    EXPECT_EQ(mapped.num_shifted, 0) << seed;
+    EXPECT_GE(mapped.slam.loop_closure_statistics().ambiguous, 15) << seed;
+    const std::size_t back = test::DoorGallery::back_in_hall(mapped.drive);
+    EXPECT_LT(mapped.error_m(mapped.slam.path(), back), 0.02) << seed;
+    EXPECT_LT(mapped.rms_error_m(), 0.8) << seed;
+  }
+}
+
+// The same drives with a matcher that takes the best match. The robust loss still keeps such matches out of the map; by
+// least squares the map is bent by doors.
+TEST(GraphSlam, WithoutTheCheckForASecondMatchDoorsAreTakenForOneAnotherInEveryDrive) {
+  GraphSlamSettings naive;
+  naive.loop_closure.max_second_best_ratio = 1.0;
+  GraphSlamSettings least_squares = naive;
+  least_squares.solver.robust_loop_closures = false;
+  double robust_m = 0.0, least_squares_m = 0.0;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const GalleryMapping robust = map_gallery(naive, seed), bent = map_gallery(least_squares, seed);
+    EXPECT_GE(robust.num_shifted, 8) << seed;
+    EXPECT_GE(bent.num_shifted, 8) << seed;
+    robust_m += robust.rms_error_m() / 3.0;
+    least_squares_m += bent.rms_error_m() / 3.0;
+  }
+  EXPECT_LT(robust_m, 0.5);
+  EXPECT_GT(least_squares_m, 0.8);
 }
 
 TEST(GraphSlam, TheSameScansGiveTheSamePathToTheBit) {

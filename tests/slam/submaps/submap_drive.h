@@ -1,5 +1,6 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "slam/submaps/pair_features.h"
@@ -35,17 +36,23 @@ struct SubmapDrive {
   }
 };
 
-inline SubmapDrive map_by_submaps(const RoomWorld& world, const std::vector<Eigen::Vector2d>& corners,
-                                  const DriveOptions& options, const slam::SubmapRbpfSettings& settings,
-                                  const BoostedStumps& neighbors, std::uint64_t seed = 1) {
-  SubmapDrive mapped{.drive = drive_along(corners, options), .slam = slam::SubmapRbpf(settings, neighbors, seed)};
+inline SubmapDrive map_by_submaps(const RoomWorld& world, std::vector<DriveStep> drive,
+                                  const RoomWorld::ScanOptions& lidar, const slam::SubmapRbpfSettings& settings,
+                                  const BoostedStumps& neighbors, std::uint64_t seed) {
+  SubmapDrive mapped{.drive = std::move(drive), .slam = slam::SubmapRbpf(settings, neighbors, seed)};
   const RandomStream noise(seed, "test/submaps");
   for (std::size_t k = 0; k < mapped.drive.size(); ++k) {
     const DriveStep& step = mapped.drive[k];
-    mapped.slam.update(world.scan(step.T_world_body, step.stamp, kOldLidar, noise, k), step.T_odom_body);
+    mapped.slam.update(world.scan(step.T_world_body, step.stamp, lidar, noise, k), step.T_odom_body);
   }
   mapped.slam.finish();
   return mapped;
+}
+
+inline SubmapDrive map_by_submaps(const RoomWorld& world, const std::vector<Eigen::Vector2d>& corners,
+                                  const DriveOptions& options, const slam::SubmapRbpfSettings& settings,
+                                  const BoostedStumps& neighbors, std::uint64_t seed = 1) {
+  return map_by_submaps(world, drive_along(corners, options), kOldLidar, settings, neighbors, seed);
 }
 
 }  // namespace patrol::test

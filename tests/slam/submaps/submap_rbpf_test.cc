@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/slam/graph/door_gallery.h"
 #include "tests/slam/submaps/submap_drive.h"
 #include "tests/support/pose_near.h"
 
@@ -39,22 +40,68 @@ TEST(SubmapRbpf, EveryConstraintOfTwoLapsIsCorrectToADecimeter) {
   EXPECT_GT(num_constraints(mapped.slam, 8), 8);
 }
 
-// Ten drives up and down among doors three meters apart: a false joint would shift by a door.
-TEST(SubmapRbpf, AmongIdenticalDoorsNoFalseConstraintIsMadeInTenDrives) {
-  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    const SubmapDrive mapped =
-        map_by_submaps(test::make_corridor_of_doors(), {{20.0, 0.0}, {40.0, 0.0}, {16.0, 0.0}, {20.0, 0.0}},
-                       {.speed_mps = 1.0, .odometry_scale = 0.01}, {}, agreeing_neighbors(), seed);
-    const std::vector<Pose2> T_world_submap = mapped.T_world_submap();
-    for (const SubmapRbpf::Comparison& comparison : mapped.slam.comparisons()) {
-      if (!comparison.result.constraint) continue;
-      const Pose2 T_target_source = T_world_submap[static_cast<std::size_t>(comparison.target)].inverse() *
-                                    T_world_submap[static_cast<std::size_t>(comparison.source)];
-      EXPECT_LT((comparison.result.constraint->T_target_source.position() - T_target_source.position()).norm(), 1.0)
-          << seed;
-    }
-    EXPECT_LT(mapped.rms_error_m(), 0.3) << seed;
+/// Drive through the gallery of identical doors, and its constraints between submaps that do not follow one another.
+struct GalleryResult {
+  int num_correct = 0;
+  int num_shifted = 0;  ///< constraints that are off by at least half the spacing of the doors
+  int num_ambiguous = 0;
+  double hall_error_m = 0.0;  ///< error of the pose back in the hall, where the drive started
+};
+
+/// Settings whose predicted drift, that of GraphSlam, covers a door; with the default of 0.003 m per meter no other door
+/// is in the search window. `max_second_best_ratio` 1.0: no check for a second match.
+///
+/// Least squares instead of the default robust loss. With that, the two correct constraints of the hall are discounted
+/// as outliers in 4 of 6 drives (seeds 1 to 6), and the hall stays 0.5 to 0.8 m off. With twice the predicted drift (3 %
+/// per leg) the check lets one constraint pass that is off by a door, in 10 drives.
+SubmapRbpfSettings gallery_settings(double max_second_best_ratio) {
+  SubmapRbpfSettings settings;
+  settings.drift_std_m_per_m = 0.02;
+  settings.constraints.max_second_best_ratio = max_second_best_ratio;
+  settings.solver.robust_loop_closures = false;
+  return settings;
+}
+
+GalleryResult map_gallery(const SubmapRbpfSettings& settings, const BoostedStumps& neighbors, std::uint64_t seed) {
+  const SubmapDrive mapped = map_by_submaps(test::DoorGallery::world(), test::DoorGallery::drive(seed),
+                                            test::DoorGallery::kLidar, settings, neighbors, seed);
+  GalleryResult result;
+  const std::vector<Pose2> T_world_submap = mapped.T_world_submap();
+  for (const SubmapRbpf::Comparison& comparison : mapped.slam.comparisons()) {
+    result.num_ambiguous += comparison.result.failure == ConstraintRejection::kAmbiguous ? 1 : 0;
+    if (!comparison.result.constraint || comparison.source - comparison.target < 4) continue;
+    const Pose2 T_target_source = T_world_submap[static_cast<std::size_t>(comparison.target)].inverse() *
+                                  T_world_submap[static_cast<std::size_t>(comparison.source)];
+    const double error_m =
+        (comparison.result.constraint->T_target_source.position() - T_target_source.position()).norm();
+    ++(error_m < 0.5 * test::DoorGallery::kSpacing_m ? result.num_correct : result.num_shifted);
   }
+  const std::size_t back = test::DoorGallery::back_in_hall(mapped.drive);
+  const Pose2 T_map_body = mapped.drive[0].T_world_body.inverse() * mapped.drive[back].T_world_body;
+  result.hall_error_m = (mapped.slam.path()[back].position() - T_map_body.position()).norm();
+  return result;
+}
+
+TEST(SubmapRbpf, AmongIdenticalDoorsTheHallClosesTheLoopAndNoConstraintIsOffByADoor) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const GalleryResult result = map_gallery(gallery_settings(0.9), agreeing_neighbors(), seed);
+    EXPECT_GE(result.num_correct, 1) << seed;
+    EXPECT_EQ(result.num_shifted, 0) << seed;
+    EXPECT_GE(result.num_ambiguous, 2) << seed;
+    EXPECT_LT(result.hall_error_m, 0.02) << seed;
+  }
+}
+
+TEST(SubmapRbpf, WithoutConstraintsTheHallIsOffByDecimeters) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed)
+    EXPECT_GT(map_gallery(gallery_settings(0.9), {}, seed).hall_error_m, 0.2) << seed;
+}
+
+TEST(SubmapRbpf, WithoutTheCheckForASecondMatchConstraintsAreOffByADoor) {
+  int num_shifted = 0;
+  for (std::uint64_t seed = 1; seed <= 5; ++seed)
+    num_shifted += map_gallery(gallery_settings(1.0), agreeing_neighbors(), seed).num_shifted;
+  EXPECT_GE(num_shifted, 2);
 }
 
 TEST(SubmapRbpf, WithoutAModelThereAreNoNeighbors) {
