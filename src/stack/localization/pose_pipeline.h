@@ -8,12 +8,14 @@
 #include "core/robot_description.h"
 #include "core/route.h"
 #include "core/sensors/registry.h"
+#include "localize/calibration/online_calibrator.h"
 #include "localize/map_pose_tracker.h"
 #include "localize/scan_leveler.h"
 #include "stack/instruments/station_pose.h"
 #include "stack/localization/make_localizer.h"
 #include "stack/localization/odometry_source.h"
 #include "stack/localization/range_pose_tracker.h"
+#include "stack/sensors/clock_monitor.h"
 
 namespace patrol::stack {
 
@@ -39,11 +41,16 @@ class PosePipeline {
   /// Returns the newest odometry. Call once per tick: the first estimate starts the settling time of odometry.
   std::optional<OdometryEstimate> update_odometry();
   /// Returns the level scan; none before odometry has settled, because the first scan defines the map's origin.
-  std::optional<LevelScan> level(const LaserScan& scan, StackOutput& output) const;
+  std::optional<LevelScan> level(const LaserScan& scan, StackOutput& output);
   /// Corrects the pose by a scan and publishes the estimates.
   ScanPose localize(const LevelScan& scan, StackOutput& output);
   /// Publishes the pose from odometry and UWB ranges alone, if robot and site have UWB.
   void publish_range_pose(const OdometryEstimate& odometry, const PoseEstimate& pose, StackOutput& output);
+
+  /// Publishes the estimates of the calibration at their period, if it is enabled.
+  void publish_calibration(Time now, StackOutput& output);
+  /// Returns the estimated clock of the lidar; none if the calibration is disabled.
+  std::optional<LidarClock> lidar_clock(Time now) const;
 
   PoseEstimate pose_at(Time stamp, const Pose2& T_odom_body) const { return tracker_.at(stamp, T_odom_body); }
   /// Returns the body pose at an instant; none outside the time span of odometry.
@@ -62,6 +69,10 @@ class PosePipeline {
  private:
   bool has_settled(Time stamp) const { return first_odometry_ && stamp >= *first_odometry_ + settle_; }
   void add_range(const UwbRange& range);
+  void add_to_calibration(const Imu& imu);
+  void add_to_calibration(const UwbRange& range, const Pose3& T_odom_body);
+  std::optional<LevelScan> level_corrected(const LaserScan& scan, StackOutput& output);
+  std::optional<LevelScan> level_as_stamped(const LaserScan& scan, StackOutput& output) const;
 
   Time settle_;
   std::unique_ptr<OdometrySource> odometry_;
@@ -69,6 +80,11 @@ class PosePipeline {
   std::unique_ptr<Localizer> localizer_;
   std::optional<RangePoseTracker> range_pose_;  ///< present for a robot with a UWB antenna
   localize::MapPoseTracker tracker_;
+  Pose3 T_body_lidar_;                                    ///< nominal
+  Pose3 T_body_uwb_;                                      ///< nominal, for a robot with a UWB antenna
+  std::optional<localize::OnlineCalibrator> calibrator_;  ///< present if the calibration is enabled
+  Time calibration_period_;
+  Time next_calibration_{};
   std::optional<Time> first_odometry_;
 };
 
