@@ -22,6 +22,9 @@ class ScanLeveler {
  public:
   ScanLeveler(Pose3 T_body_lidar, const ScanLevelerSettings& settings);
 
+  /// Replaces the mounting pose of the lidar, for the following scans.
+  void set_lidar_pose(const Pose3& T_body_lidar) { T_body_lidar_ = T_body_lidar; }
+
   /// Returns the compensated scan; nullopt if the poses do not cover the scan, or if it has no beams.
   std::optional<LevelScan> level(const LaserScan& scan, const LeggedOdometry& odometry) const;
   std::optional<LevelScan> level(const LaserScan& scan, const PoseLookup& T_odom_body_at, double body_height_m) const;

@@ -20,8 +20,8 @@ struct RunRecord {
   Trajectory T_map_body_by_ranges;                  ///< estimate by odometry and UWB ranges, if the stack has one
   std::vector<Time> T_map_body_by_ranges_received;  ///< [pose of T_map_body_by_ranges]: log time
   Trajectory T_odom_body;
-  std::vector<Time> T_odom_body_received;  ///< [pose of T_odom_body]: log time
-  Trajectory T_world_body;                 ///< ground truth
+  std::vector<Time> T_odom_body_received;       ///< [pose of T_odom_body]: log time
+  Trajectory T_world_body;                      ///< ground truth
   std::vector<SiteRegistration> registrations;  ///< pose of map in site, in order; empty in older logs
   std::vector<Event> events;
   std::vector<LocalizationConfidence> confidences;

@@ -60,6 +60,7 @@ void Stack::step(Time now) {
     next_odometry_ += kOdometryPeriod;
     output_.publish(*odometry);
   }
+  parts_.pose.publish_calibration(now, output_);
   if (parts_.pose.is_mapping() && now >= next_map_) {
     next_map_ += map_period_;
     publish_map(now);
@@ -100,7 +101,8 @@ void Stack::follow_registration(Time now) {
 
 void Stack::monitor_sensors(Time now, const Pose2& T_odom_body) {
   const Pose2 T_map_body = parts_.pose.pose_at(now, T_odom_body).T_map_body;
-  for (const SensorChange& change : parts_.sensor_monitor.step(now, T_odom_body, command_)) {
+  for (const SensorChange& change :
+       parts_.sensor_monitor.step(now, T_odom_body, command_, parts_.pose.lidar_clock(now))) {
     output_.publish_event(now, T_map_body, change.has_recovered ? EventKind::kSensorRecovered : EventKind::kSensorFault,
                           change.text, change.sensor);
   }

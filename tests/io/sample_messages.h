@@ -129,6 +129,11 @@ inline WaterResult sample_water() {
 inline LocalizationConfidence sample_trust() {
   return {.stamp = kSampleStamp, .confidence = 0.25, .max_std_m = 0.75, .max_std_direction_rad = 1.5, .is_lost = true};
 }
+inline CalibrationEstimate sample_calibration() {
+  return {.stamp = kSampleStamp,
+          .values = {{.name = "lidar.time_offset_s", .value = -0.02, .std = 0.001},
+                     {.name = anchor_delay_name(3), .value = 0.25, .std = 0.05}}};
+}
 inline Eigen::Matrix3d sample_covariance() {
   Eigen::Matrix3d P;
   P << 1.0, 2.0, 3.0, 2.0, 4.0, 5.0, 3.0, 5.0, 6.0;
@@ -187,10 +192,9 @@ inline auto all_samples() {
                     sample_panorama(), sample_antenna(), sample_sounding(), ScanCommand{kSampleStamp},
                     AntennaCommand{kSampleStamp, 0.5, -0.25}, SoundingCommand{kSampleStamp},
                     WarningCommand{kSampleStamp, true, false}, sample_lining(), sample_water(), sample_trust(),
-                    sample_odometry(), sample_estimate(), UwbPoseEstimate{sample_estimate()}, sample_particles(),
-                    sample_registration(),
-                    sample_map(), sample_path(), sample_command(), sample_event(), sample_truth(), sample_state(),
-                    sample_collision(), sample_transforms());
+                    sample_calibration(), sample_odometry(), sample_estimate(), UwbPoseEstimate{sample_estimate()},
+                    sample_particles(), sample_registration(), sample_map(), sample_path(), sample_command(),
+                    sample_event(), sample_truth(), sample_state(), sample_collision(), sample_transforms());
 }
 
 }  // namespace patrol::test

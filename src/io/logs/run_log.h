@@ -38,6 +38,8 @@ inline constexpr const char* kTopic<WaterResult> = "/inspection/water";
 template <>
 inline constexpr const char* kTopic<LocalizationConfidence> = "/localization_confidence";
 template <>
+inline constexpr const char* kTopic<CalibrationEstimate> = "/calibration";
+template <>
 inline constexpr const char* kTopic<OdometryEstimate> = "/odom";
 template <>
 inline constexpr const char* kTopic<PoseEstimate> = "/pose";

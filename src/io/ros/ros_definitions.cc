@@ -88,6 +88,13 @@ constexpr Definition kDefinitions[] = {
      "# Confidence 0 (lost) ... 1 (certain); largest principal standard deviation of the position, and its direction "
      "in map.\n"
      "std_msgs/Header header\nfloat64 confidence\nfloat64 max_std_m\nfloat64 max_std_direction_rad\nbool is_lost\n"},
+    {"patrol_msgs/CalibrationValue",
+     "# Estimate of one calibration parameter; unit and meaning by its name "
+     "(src/core/calibration/calibration_estimate.h).\n"
+     "string name\nfloat64 value\nfloat64 std\n"},
+    {"patrol_msgs/CalibrationEstimate",
+     "# Estimates of the calibration parameters of the robot.\n"
+     "std_msgs/Header header\npatrol_msgs/CalibrationValue[] values\n"},
     {"patrol_msgs/Event",
      "# Event of the mission; pose: estimated pose of the robot, target: position of the object; in map.\n"
      "std_msgs/Header header\nstring kind\nstring subject\nstring text\nfloat64 value\ngeometry_msgs/Pose pose\n"

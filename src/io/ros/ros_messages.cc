@@ -17,6 +17,16 @@ void describe(Codec& codec, LocalizationConfidence& confidence) {
 }
 
 template <typename Codec>
+void describe(Codec& codec, CalibrationEstimate& estimate) {
+  header(codec, estimate.stamp, frame_id::kBody);
+  list(codec, estimate.values, [&](CalibrationValue& value) {
+    codec(value.name);
+    codec(value.value);
+    codec(value.std);
+  });
+}
+
+template <typename Codec>
 void odometry_fields(Codec& codec, Time& stamp, const char* frame, Pose3& pose, Eigen::Matrix3d& covariance,
                      Twist3& twist) {
   header(codec, stamp, frame);
@@ -190,6 +200,7 @@ std::string frame_id_of(std::string_view bytes) {
 }
 
 PATROL_ROS_MESSAGE(LocalizationConfidence);
+PATROL_ROS_MESSAGE(CalibrationEstimate);
 PATROL_ROS_MESSAGE(OdometryEstimate);
 PATROL_ROS_MESSAGE(PoseEstimate);
 PATROL_ROS_MESSAGE(UwbPoseEstimate);

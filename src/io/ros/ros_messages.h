@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/calibration/calibration_estimate.h"
 #include "core/error.h"
 #include "core/ground_truth.h"
 #include "core/messages.h"
@@ -43,6 +44,8 @@ template <>
 inline constexpr const char* kRosType<WaterResult> = "patrol_msgs/msg/WaterResult";
 template <>
 inline constexpr const char* kRosType<LocalizationConfidence> = "patrol_msgs/msg/LocalizationConfidence";
+template <>
+inline constexpr const char* kRosType<CalibrationEstimate> = "patrol_msgs/msg/CalibrationEstimate";
 template <>
 inline constexpr const char* kRosType<OdometryEstimate> = "nav_msgs/msg/Odometry";
 template <>

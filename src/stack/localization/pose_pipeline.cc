@@ -22,12 +22,22 @@ PosePipeline::PosePipeline(const StackSettings& settings, const RobotDescription
     : settle_(from_seconds(settings.odometry_settling_time_s)),
       odometry_(make_odometry_source(settings, robot)),
       leveler_(robot.T_body("lidar"), settings.scan_leveling),
-      registrar_(settings.registration, site) {
+      registrar_(settings.registration, site),
+      T_body_lidar_(robot.T_body("lidar")),
+      calibration_period_(from_seconds(settings.calibration.period_s)) {
   start.height_above_ground_m = odometry_->height_above_ground_m();
   localizer_ = make_localizer(settings, robot, site_in_map, start, seed);
   if (robot.T_body_sensor.contains("uwb"))
     range_pose_.emplace(settings.uwb_filter, site_in_map.anchors, robot.T_body("uwb"));
   if (robot.T_body_sensor.contains("gnss")) T_body_gnss_ = robot.T_body("gnss");
+  validate(settings.calibration, "calibration");
+  if (robot.T_body_sensor.contains("uwb")) T_body_uwb_ = robot.T_body("uwb");
+  if (settings.calibration.enabled) {
+    const auto imu = robot.T_body_sensor.find("imu");
+    calibrator_.emplace(settings.calibration, T_body_lidar_, imu == robot.T_body_sensor.end() ? Pose3{} : imu->second,
+                        site_in_map.anchors,
+                        {.distance_m = settings.uwb_filter.bias_distance_m, .bias_m = settings.uwb_filter.bias_m});
+  }
 }
 
 void PosePipeline::add(const SensorMessage& message, StackOutput& output) {
@@ -35,12 +45,29 @@ void PosePipeline::add(const SensorMessage& message, StackOutput& output) {
   if (const auto* fix = std::get_if<GnssFix>(&message)) return add_fix(*fix);
   const auto timer = output.time_stage("odometry");
   odometry_->add(message);
+  if (const auto* imu = std::get_if<Imu>(&message)) add_to_calibration(*imu);
+}
+
+void PosePipeline::add_to_calibration(const Imu& imu) {
+  if (!calibrator_) return;
+  if (const std::optional<Pose3> T_odom_body = odometry_->T_odom_body_at(imu.stamp))
+    calibrator_->add(imu, T_odom_body->rotation);
+}
+
+/// Uses the height of the UWB filter: tunnels are not level.
+void PosePipeline::add_to_calibration(const UwbRange& range, const Pose3& T_odom_body) {
+  if (!range_pose_ || !range_pose_->has_started() || !localizer_->has_pose() || localizer_->is_lost()) return;
+  calibrator_->add(
+      {.range = range,
+       .pose = tracker_.at(range.stamp, to_pose2(T_odom_body)),
+       .p_level_antenna = uwb_antenna_in_level(T_odom_body.rotation, T_body_uwb_, range_pose_->height_m())});
 }
 
 void PosePipeline::add_range(const UwbRange& range) {
   const std::optional<Pose3> T_odom_body = odometry_->T_odom_body_at(range.stamp);
   if (!T_odom_body) return;
   if (range_pose_) range_pose_->add(range, *T_odom_body);
+  if (calibrator_) add_to_calibration(range, *T_odom_body);
   localizer_->add(
       {.range = range, .T_odom_body = *T_odom_body, .height_above_ground_m = odometry_->height_above_ground_m()});
 }
@@ -73,8 +100,32 @@ std::optional<OdometryEstimate> PosePipeline::update_odometry() {
   return odometry;
 }
 
-std::optional<LevelScan> PosePipeline::level(const LaserScan& scan, StackOutput& output) const {
+std::optional<LevelScan> PosePipeline::level(const LaserScan& scan, StackOutput& output) {
   if (!has_settled(scan.stamp)) return std::nullopt;
+  return calibrator_ ? level_corrected(scan, output) : level_as_stamped(scan, output);
+}
+
+/// Levels the scan with the estimated time offset and lidar yaw, and adds it to the calibration.
+std::optional<LevelScan> PosePipeline::level_corrected(const LaserScan& scan, StackOutput& output) {
+  const localize::ScanCorrection correction = calibrator_->next_correction(scan.stamp);
+  leveler_.set_lidar_pose(
+      {T_body_lidar_.position, quaternion_from_yaw(correction.lidar_yaw_rad) * T_body_lidar_.rotation});
+  LaserScan corrected = scan;
+  corrected.stamp -= from_seconds(correction.time_offset_s);
+  std::optional<LevelScan> level = level_as_stamped(corrected, output);
+  const std::optional<Pose3> T_odom_begin = odometry_->T_odom_body_at(corrected.stamp);
+  if (!level || !T_odom_begin || level->stamp <= corrected.stamp) return level;
+  const auto timer = output.time_stage("calibration");
+  calibrator_->add(*level, {.stamp = level->stamp,
+                            .duration_s = to_seconds(level->stamp - corrected.stamp),
+                            .T_odom_begin = to_pose2(*T_odom_begin),
+                            .T_odom_end = to_pose2(*odometry_->T_odom_body_at(level->stamp)),
+                            .applied_time_offset_s = correction.time_offset_s,
+                            .applied_lidar_yaw_rad = correction.lidar_yaw_rad});
+  return level;
+}
+
+std::optional<LevelScan> PosePipeline::level_as_stamped(const LaserScan& scan, StackOutput& output) const {
   const auto timer = output.time_stage("odometry");
   return leveler_.level(
       scan, [this](Time stamp) { return odometry_->T_odom_body_at(stamp); }, odometry_->height_above_ground_m());
@@ -99,6 +150,19 @@ void PosePipeline::publish_range_pose(const OdometryEstimate& odometry, const Po
   }
   const UwbPoseEstimate estimate = range_pose_->predict(odometry, odometry_->twist_std());
   if (has_settled(odometry.stamp)) output.publish(estimate);
+}
+
+void PosePipeline::publish_calibration(Time now, StackOutput& output) {
+  if (!calibrator_ || now < next_calibration_) return;
+  next_calibration_ += calibration_period_;
+  output.publish(calibrator_->estimate(now));
+}
+
+std::optional<LidarClock> PosePipeline::lidar_clock(Time now) const {
+  if (!calibrator_) return std::nullopt;
+  const localize::TimeOffset offset = calibrator_->time_offset(now);
+  return LidarClock{
+      .offset_s = offset.value_s, .std_s = offset.std_s, .num_steps = calibrator_->num_time_offset_steps()};
 }
 
 std::optional<StationPose> PosePipeline::station_pose_at(Time stamp) const {

@@ -11,6 +11,7 @@
 #include "core/sensors/registry.h"
 #include "core/site/site_frame.h"
 #include "core/site/site_registration.h"
+#include "localize/calibration/online_calibrator.h"
 #include "localize/map_pose_tracker.h"
 #include "localize/scan_leveler.h"
 #include "stack/instruments/station_pose.h"
@@ -18,6 +19,7 @@
 #include "stack/localization/odometry_source.h"
 #include "stack/localization/range_pose_tracker.h"
 #include "stack/localization/site_registrar.h"
+#include "stack/sensors/clock_monitor.h"
 
 namespace patrol::stack {
 
@@ -43,7 +45,7 @@ class PosePipeline {
   /// Returns the newest odometry. Call once per tick: the first estimate starts the settling time of odometry.
   std::optional<OdometryEstimate> update_odometry();
   /// Returns the level scan; none before odometry has settled, because the first scan defines the map's origin.
-  std::optional<LevelScan> level(const LaserScan& scan, StackOutput& output) const;
+  std::optional<LevelScan> level(const LaserScan& scan, StackOutput& output);
   /// Corrects the pose by a scan and publishes the estimates.
   ScanPose localize(const LevelScan& scan, StackOutput& output);
   /// Publishes the pose from odometry and UWB ranges alone, if robot and site have UWB.
@@ -51,6 +53,10 @@ class PosePipeline {
 
   /// Returns the registration of the map to the site if it is due and has changed; none before the first scan.
   std::optional<SiteRegistration> register_to_site(Time now);
+  /// Publishes the estimates of the calibration at their period, if it is enabled.
+  void publish_calibration(Time now, StackOutput& output);
+  /// Returns the estimated clock of the lidar; none if the calibration is disabled.
+  std::optional<LidarClock> lidar_clock(Time now) const;
 
   PoseEstimate pose_at(Time stamp, const Pose2& T_odom_body) const { return tracker_.at(stamp, T_odom_body); }
   /// Returns the body pose at an instant; none outside the time span of odometry.
@@ -71,6 +77,10 @@ class PosePipeline {
   void add_range(const UwbRange& range);
   void add_fix(const GnssFix& fix);
   std::optional<PoseFromScan> pose_from_scan(Time stamp) const;
+  void add_to_calibration(const Imu& imu);
+  void add_to_calibration(const UwbRange& range, const Pose3& T_odom_body);
+  std::optional<LevelScan> level_corrected(const LaserScan& scan, StackOutput& output);
+  std::optional<LevelScan> level_as_stamped(const LaserScan& scan, StackOutput& output) const;
 
   Time settle_;
   std::unique_ptr<OdometrySource> odometry_;
@@ -79,9 +89,14 @@ class PosePipeline {
   std::optional<RangePoseTracker> range_pose_;  ///< present for a robot with a UWB antenna
   localize::MapPoseTracker tracker_;
   SiteRegistrar registrar_;
-  std::optional<Pose3> T_body_gnss_;  ///< present for a robot with a GNSS antenna
-  std::size_t num_scans_ = 0;         ///< scans that the localizer has processed
-  Pose2 T_odom_scan_;                 ///< body at the newest scan
+  std::optional<Pose3> T_body_gnss_;                      ///< present for a robot with a GNSS antenna
+  std::size_t num_scans_ = 0;                             ///< scans that the localizer has processed
+  Pose2 T_odom_scan_;                                     ///< body at the newest scan
+  Pose3 T_body_lidar_;                                    ///< nominal
+  Pose3 T_body_uwb_;                                      ///< nominal, for a robot with a UWB antenna
+  std::optional<localize::OnlineCalibrator> calibrator_;  ///< present if the calibration is enabled
+  Time calibration_period_;
+  Time next_calibration_{};
   std::optional<Time> first_odometry_;
 };
 

@@ -24,6 +24,7 @@ class RangePoseTracker {
     filter_.set_initial_pose({.stamp = odometry.stamp, .T_map_body = T_map_body, .covariance = covariance},
                              odometry.T_odom_body, height_above_ground_m);
   }
+  double height_m() const { return filter_.height_m(); }
   void add(const UwbRange& range, const Pose3& T_odom_body) { filter_.add(range, T_odom_body); }
   UwbPoseEstimate predict(const OdometryEstimate& odometry, const Eigen::Vector3d& twist_std) {
     filter_.predict(odometry.stamp, odometry.T_odom_body, twist_std);

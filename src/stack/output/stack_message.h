@@ -2,6 +2,7 @@
 
 #include <variant>
 
+#include "core/calibration/calibration_estimate.h"
 #include "core/messages.h"
 #include "core/site/site_registration.h"
 
@@ -10,6 +11,6 @@ namespace patrol::stack {
 /// Message published by the robot's software: estimates, map, commands, events and results.
 using StackMessage = std::variant<OdometryEstimate, PoseEstimate, UwbPoseEstimate, LocalizationConfidence, ParticleSet,
                                   MapUpdate, Path, VelocityCommand, Event, ScanCommand, AntennaCommand, SoundingCommand,
-                                  WarningCommand, LiningResult, WaterResult, SiteRegistration>;
+                                  WarningCommand, LiningResult, WaterResult, SiteRegistration, CalibrationEstimate>;
 
 }  // namespace patrol::stack

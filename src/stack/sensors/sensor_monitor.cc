@@ -37,7 +37,8 @@ bool SensorMonitor::receive(const SensorMessage& message, Time now) {
   return true;
 }
 
-std::vector<SensorChange> SensorMonitor::step(Time now, const Pose2& T_odom_body, const VelocityCommand& command) {
+std::vector<SensorChange> SensorMonitor::step(Time now, const Pose2& T_odom_body, const VelocityCommand& command,
+                                              const std::optional<LidarClock>& lidar_clock) {
   const double period_s = last_step_ ? to_seconds(now - *last_step_) : 0.0;
   last_step_ = now;
   std::vector<SensorChange> changes;
@@ -74,6 +75,10 @@ std::vector<SensorChange> SensorMonitor::step(Time now, const Pose2& T_odom_body
         add("is frozen (repeated readings)");
         break;
     }
+  }
+  if (lidar_clock) {
+    if (std::optional<SensorChange> change = clock_monitor_.step(now, *lidar_clock)) changes.push_back(*change);
+    can_drive = can_drive && clock_monitor_.can_drive();
   }
   if (can_drive) halted_since_.reset();
   else if (!halted_since_) halted_since_ = now;

@@ -2,42 +2,40 @@
 
 #include <array>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "core/frames.h"
 #include "core/messages.h"
 #include "core/sensors/registry.h"
 #include "core/settings.h"
+#include "stack/sensors/clock_monitor.h"
+#include "stack/sensors/sensor_change.h"
 #include "stack/sensors/sensor_monitor_settings.h"
 
 namespace patrol::stack {
 
-/// Change of the state of a sensor: fault or recovery.
-struct SensorChange {
-  std::string sensor;
-  bool has_recovered = false;
-  std::string text;  ///< one sentence for a person
-};
-
 /// Sensor monitor.
 ///
 /// Checks for each sensor that has ever published: messages arrive in time, stamps agree with the clock, readings
-/// change as the robot moves. Plausible errors (drift, outliers) are not detected.
+/// change as the robot moves. Plausible errors (drift, outliers) are not detected. The clock of the lidar is also
+/// compared with odometry (clock_monitor.h), if its offset is estimated.
 ///
 /// The robot must not drive without its lidar, the only sensor of obstacles ahead. It must not drive without its
 /// encoders either, since the IMU alone loses the pose within seconds. It can drive without all others, including IMU
 /// and foot sensors, because odometry continues without them.
 class SensorMonitor {
  public:
-  explicit SensorMonitor(const SensorMonitorSettings& settings) : settings_(settings) {}
+  explicit SensorMonitor(const SensorMonitorSettings& settings)
+      : settings_(settings), clock_monitor_(settings.lidar_clock) {}
 
   /// Processes a message. Returns false if it must not be used, because its stamp is in the future.
   bool receive(const SensorMessage& message, Time now);
 
   /// Returns the changes since the last step. Call once per control period. The reference motion is `T_odom_body`; for
-  /// the encoders, from which odometry is computed, it is the `command` since the last step.
-  std::vector<SensorChange> step(Time now, const Pose2& T_odom_body, const VelocityCommand& command);
+  /// the encoders, from which odometry is computed, it is the `command` since the last step. `lidar_clock`: none if the
+  /// time offset of the lidar is not estimated.
+  std::vector<SensorChange> step(Time now, const Pose2& T_odom_body, const VelocityCommand& command,
+                                 const std::optional<LidarClock>& lidar_clock = std::nullopt);
 
   bool can_drive() const { return !halted_since_; }
   /// Returns whether the robot has been unable to drive for longer than `abort_timeout_s`.
@@ -66,6 +64,7 @@ class SensorMonitor {
   double timeout_s(std::size_t kind) const;
 
   SensorMonitorSettings settings_;
+  ClockMonitor clock_monitor_;
   std::array<Sensor, std::variant_size_v<SensorMessage>> sensors_;
   std::optional<Time> last_step_;
   std::optional<Time> halted_since_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/settings.h"
+#include "stack/sensors/clock_monitor_settings.h"
 
 namespace patrol::stack {
 
@@ -14,6 +15,7 @@ struct SensorMonitorSettings {
   double frozen_turn_rad = 0.1;
   int frozen_repeats = 3;         ///< minimum number of repeated readings
   double abort_timeout_s = 60.0;  ///< time unable to drive after which the mission is aborted
+  ClockMonitorSettings lidar_clock;
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -25,6 +27,7 @@ struct SensorMonitorSettings {
     visit("frozen_turn_rad", self.frozen_turn_rad, at_least(0.01));
     visit("frozen_repeats", self.frozen_repeats, between(1, 1000));
     visit("abort_timeout_s", self.abort_timeout_s, at_least(1.0));
+    visit("lidar_clock", self.lidar_clock);
   }
 };
 

@@ -4,6 +4,7 @@
 
 #include "core/settings.h"
 #include "localize/amcl/monte_carlo_settings.h"
+#include "localize/calibration/online_calibrator_settings.h"
 #include "localize/range_filter_settings.h"
 #include "localize/registration/registration_settings.h"
 #include "localize/scan_leveler_settings.h"
@@ -40,6 +41,7 @@ struct StackSettings {
   double odometry_settling_time_s = 1.0;
   OdometrySettings odometry;
   localize::ScanLevelerSettings scan_leveling;
+  localize::OnlineCalibratorSettings calibration;  ///< settings of the calibration while the robot drives
   slam::MapperSettings slam = default_slam_settings();
   localize::MonteCarloSettings localization;    ///< settings of the localization on a given map
   localize::RangeFilterSettings uwb_filter;     ///< settings of the UWB pose of a robot with tracks and UWB
@@ -59,6 +61,7 @@ struct StackSettings {
     visit("odometry_settling_time_s", self.odometry_settling_time_s, between(0.0, 60.0));
     visit("odometry", self.odometry);
     visit("scan_leveling", self.scan_leveling);
+    visit("calibration", self.calibration);
     visit("slam", self.slam);
     visit("localization", self.localization);
     visit("uwb_filter", self.uwb_filter);

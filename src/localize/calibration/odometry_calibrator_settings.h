@@ -1,0 +1,47 @@
+#pragma once
+
+#include "core/settings.h"
+
+namespace patrol::localize {
+
+/// Settings of the estimation of lidar yaw and odometry scales.
+struct OdometryCalibratorSettings {
+  double segment_m = 1.0;    ///< a segment ends after this distance
+  double segment_rad = 0.5;  ///< or after this rotation
+  double segment_s = 10.0;   ///< or after this time
+  double prior_lidar_yaw_std_rad = 0.02;
+  double prior_distance_scale_std = 0.03;
+  double prior_rotation_scale_std = 0.02;
+  double prior_gyro_bias_std_radps = 0.01;
+  double prior_gyro_scale_std = 0.02;
+  double odometry_std_m_per_m = 0.01;  ///< nominal standard deviation of odometry per distance
+  double odometry_std_rad_per_m = 0.001;
+  double odometry_std_rad_per_rad = 0.002;
+  double gyro_std_rad_per_sqrt_s = 3e-4;  ///< nominal standard deviation of the integrated gyro rate
+  /// Standard deviation of the direction of odometry's translation relative to the body, constant over a run: legs and
+  /// tracks slip sideways systematically. Added to that of the lidar yaw, which cannot be separated from it.
+  double lateral_bias_std_rad = 0.001;
+  double distance_bias_std = 0.001;  ///< error of the distance scale that scan matching cannot separate
+  double outlier_sigma = 4.0;        ///< segments with larger residuals are rejected
+
+  template <typename Self, typename Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("segment_m", self.segment_m, between(0.05, 100.0));
+    visit("segment_rad", self.segment_rad, between(0.05, 3.0));
+    visit("segment_s", self.segment_s, between(0.5, 1000.0));
+    visit("prior_lidar_yaw_std_rad", self.prior_lidar_yaw_std_rad, between(1e-6, 1.0));
+    visit("prior_distance_scale_std", self.prior_distance_scale_std, between(1e-6, 1.0));
+    visit("prior_rotation_scale_std", self.prior_rotation_scale_std, between(1e-6, 1.0));
+    visit("prior_gyro_bias_std_radps", self.prior_gyro_bias_std_radps, between(1e-9, 1.0));
+    visit("prior_gyro_scale_std", self.prior_gyro_scale_std, between(1e-6, 1.0));
+    visit("odometry_std_m_per_m", self.odometry_std_m_per_m, between(1e-6, 1.0));
+    visit("odometry_std_rad_per_m", self.odometry_std_rad_per_m, between(0.0, 1.0));
+    visit("odometry_std_rad_per_rad", self.odometry_std_rad_per_rad, between(0.0, 1.0));
+    visit("gyro_std_rad_per_sqrt_s", self.gyro_std_rad_per_sqrt_s, between(1e-9, 1.0));
+    visit("lateral_bias_std_rad", self.lateral_bias_std_rad, between(0.0, 1.0));
+    visit("distance_bias_std", self.distance_bias_std, between(0.0, 1.0));
+    visit("outlier_sigma", self.outlier_sigma, between(1.0, 100.0));
+  }
+};
+
+}  // namespace patrol::localize

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "core/settings.h"
+#include "localize/calibration/anchor_delay_estimator_settings.h"
+#include "localize/calibration/odometry_calibrator_settings.h"
+#include "localize/calibration/scan_motion_settings.h"
+#include "localize/calibration/time_offset_estimator_settings.h"
+
+namespace patrol::localize {
+
+/// Settings of the calibration while the robot drives, and of the use of its estimates.
+struct OnlineCalibratorSettings {
+  bool enabled = false;
+  bool corrects_time_offset = true;     ///< scans are leveled with the estimated time offset
+  bool corrects_lidar_yaw = true;       ///< scans are leveled with the estimated yaw of the lidar
+  double max_applied_std_s = 0.002;     ///< estimates of the time offset with a larger standard deviation are not used
+  double max_applied_std_rad = 0.0025;  ///< estimates of the lidar yaw with a larger standard deviation are not used
+  double max_offset_change_s_per_s = 0.05;  ///< maximum change of the applied time offset
+  double max_yaw_change_rad_per_s = 0.001;  ///< maximum change of the applied lidar yaw
+  double period_s = 1.0;                    ///< interval between published estimates
+  ScanMotionSettings scan_motion;
+  TimeOffsetEstimatorSettings time_offset;
+  OdometryCalibratorSettings odometry;
+  AnchorDelayEstimatorSettings anchor_delays;
+
+  template <typename Self, typename Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("enabled", self.enabled);
+    visit("corrects_time_offset", self.corrects_time_offset);
+    visit("corrects_lidar_yaw", self.corrects_lidar_yaw);
+    visit("max_applied_std_s", self.max_applied_std_s, at_least(0.0));
+    visit("max_applied_std_rad", self.max_applied_std_rad, at_least(0.0));
+    visit("max_offset_change_s_per_s", self.max_offset_change_s_per_s, between(1e-6, 10.0));
+    visit("max_yaw_change_rad_per_s", self.max_yaw_change_rad_per_s, between(1e-9, 1.0));
+    visit("period_s", self.period_s, between(0.05, 3600.0));
+    visit("scan_motion", self.scan_motion);
+    visit("time_offset", self.time_offset);
+    visit("odometry", self.odometry);
+    visit("anchor_delays", self.anchor_delays);
+  }
+};
+
+}  // namespace patrol::localize

@@ -1,0 +1,78 @@
+#include "localize/calibration/time_offset_estimator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <Eigen/LU>
+
+namespace patrol::localize {
+namespace {
+
+constexpr std::size_t kMinRecent = 20;   // minimum number of comparisons that detect a step
+constexpr double kRecentVariance = 4.0;  // variance factor of the newest scans alone, for correlated errors
+
+}  // namespace
+
+TimeOffsetEstimator::TimeOffsetEstimator(const TimeOffsetEstimatorSettings& settings)
+    : settings_(settings), filter_(Eigen::Vector2d(settings.prior_std_s, settings.prior_drift_std_s_per_s), {}) {}
+
+void TimeOffsetEstimator::add(const CalibrationScan& scan) {
+  const std::optional<CalibrationScan> before = std::exchange(last_, scan);
+  if (!before || before->match.map != scan.match.map) return;
+  const double gap_s = to_seconds(scan.sweep.stamp - before->sweep.stamp);
+  if (gap_s <= 0.0 || gap_s > settings_.max_gap_s) return;
+  if (!origin_) origin_ = scan.sweep.stamp;
+
+  const CalibrationStep step = compare(*before, scan);
+  const double elapsed_s = to_seconds(scan.sweep.stamp - *origin_);
+  LinearMeasurement measurement{.stamp = scan.sweep.stamp, .J = Eigen::MatrixXd(3, 2), .r = step.residual, .W = {}};
+  const Eigen::Vector3d by_offset = step.by_offset_now - step.by_offset_before;
+  measurement.J << by_offset, elapsed_s * by_offset;
+  measurement.r += step.by_offset_now * scan.sweep.applied_time_offset_s -
+                   step.by_offset_before * before->sweep.applied_time_offset_s;
+  Eigen::Matrix3d covariance = step.match_covariance;
+  covariance.diagonal() +=
+      Eigen::Vector3d(settings_.odometry_std_m, settings_.odometry_std_m, settings_.odometry_std_rad).cwiseAbs2();
+  const double root = std::sqrt(settings_.translation_variance_factor);
+  const Eigen::Vector3d scale(root, root, 1.0);
+  measurement.W = (scale.asDiagonal() * covariance * scale.asDiagonal()).inverse();
+  detect_step(measurement);
+  if (filter_.distance(measurement) > settings_.outlier_sigma * settings_.outlier_sigma) return;
+  filter_.add(measurement);
+}
+
+void TimeOffsetEstimator::detect_step(const LinearMeasurement& measurement) {
+  const Eigen::VectorXd by_offset = measurement.J.col(0);
+  const double weight =
+      std::min(1.0, settings_.outlier_sigma * settings_.outlier_sigma / filter_.distance(measurement));
+  recent_.push_back({.stamp = measurement.stamp,
+                     .information = weight * by_offset.dot(measurement.W * by_offset),
+                     .information_offset = weight * by_offset.dot(measurement.W * measurement.r)});
+  while (recent_.front().stamp < measurement.stamp - from_seconds(settings_.step_window_s)) recent_.pop_front();
+  if (recent_.size() < kMinRecent) return;
+  double information = 0.0, information_offset = 0.0;
+  for (const Term& term : recent_) {
+    information += term.information;
+    information_offset += term.information_offset;
+  }
+  const TimeOffset now = at(measurement.stamp);
+  const double difference_s = std::abs(information_offset / information - now.value_s);
+  const double std_s = std::sqrt(kRecentVariance / information + now.std_s * now.std_s);
+  if (difference_s < std::max(settings_.min_step_s, settings_.step_sigma * std_s)) return;
+  ++num_steps_;
+  filter_.reset();
+  recent_.clear();
+  origin_ = measurement.stamp;
+}
+
+TimeOffset TimeOffsetEstimator::at(Time stamp) const {
+  const LinearEstimate estimate = filter_.estimate();
+  const Eigen::Vector2d by(1.0, origin_ ? to_seconds(stamp - *origin_) : 0.0);
+  return {.value_s = by.dot(estimate.value),
+          .std_s = std::hypot(std::sqrt(by.dot(estimate.covariance * by)), settings_.odometry_lag_std_s),
+          .drift_s_per_s = estimate.value[1],
+          .drift_std_s_per_s = estimate.std(1)};
+}
+
+}  // namespace patrol::localize
