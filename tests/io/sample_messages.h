@@ -188,9 +188,8 @@ inline auto all_samples() {
                     AntennaCommand{kSampleStamp, 0.5, -0.25}, SoundingCommand{kSampleStamp},
                     WarningCommand{kSampleStamp, true, false}, sample_lining(), sample_water(), sample_trust(),
                     sample_odometry(), sample_estimate(), UwbPoseEstimate{sample_estimate()}, sample_particles(),
-                    sample_registration(),
-                    sample_map(), sample_path(), sample_command(), sample_event(), sample_truth(), sample_state(),
-                    sample_collision(), sample_transforms());
+                    sample_registration(), sample_map(), sample_path(), sample_command(), sample_event(),
+                    sample_truth(), sample_state(), sample_collision(), sample_transforms());
 }
 
 }  // namespace patrol::test

@@ -42,8 +42,7 @@ TEST(SiteScore, WithoutRegistrationTheSurveyedStartCounts) {
 TEST(SiteScore, AnExactRegistrationHasNoError) {
   const Pose2 T_world_map = kStart * Pose2{0.02, 0.01, to_rad(0.5)};
   const Drive drive = drive_with(T_world_map);
-  const SiteScore score =
-      site_score(drive.T_map_body, {registration_of(T_world_map, 0.0)}, kStart, drive.T_world_body);
+  const SiteScore score = site_score(drive.T_map_body, {registration_of(T_world_map, 0.0)}, kStart, drive.T_world_body);
   EXPECT_NEAR(score.pose.ate_max_m, 0.0, 1e-9);
   EXPECT_NEAR(score.position_error_m, 0.0, 1e-9);
   EXPECT_NEAR(*score.nees, 0.0, 1e-9);

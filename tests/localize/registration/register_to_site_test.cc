@@ -90,7 +90,7 @@ TEST(RegisterToSite, FixesAtOnePlaceKnowNoYaw) {
   const SitePoseGaussian estimate = solve(fixes_along(standing, truth, 0.01, no_error), settings);
   const double prior_rad = to_rad(settings.start_yaw_std_deg);
   EXPECT_NEAR(std::sqrt(estimate.covariance(2, 2)), prior_rad, 0.01 * prior_rad);
-  EXPECT_NEAR(estimate.T_site_map.yaw, kStart.yaw, to_rad(0.01));
+  EXPECT_NEAR(estimate.T_site_map.yaw, kStart.yaw, to_rad(0.1));  // the lever arm of 0.1 m turns it a little
   EXPECT_LT(estimate.covariance(0, 0), 0.01 * 0.01);
 }
 
@@ -177,14 +177,13 @@ TEST(RegisterToSite, RangesToAnchorsGiveTheTransform) {
       const UwbAnchor anchor{.number = number, .p_m = {11.0 + 12.0 * (number % 2), 8.0 + 30.0 * (number / 2), 2.0}};
       const Eigen::Vector3d p_level_antenna(0.1, 0.0, 0.4);
       const double range_m = predict_uwb_range(anchor, truth * T_map_body, p_level_antenna, calibration).range_m;
-      ranges.push_back({.stamp = from_seconds(0.1 * stamp++),
-                        .source = 10 + number,
-                        .correlation_time_s = 5.0,
-                        .T_map_body = T_map_body,
-                        .content = AnchorRange{.anchor_in_site = anchor,
-                                               .p_level_antenna = p_level_antenna,
-                                               .range_m = range_m,
-                                               .std_m = 0.1}});
+      ranges.push_back(
+          {.stamp = from_seconds(0.1 * stamp++),
+           .source = 10 + number,
+           .correlation_time_s = 5.0,
+           .T_map_body = T_map_body,
+           .content = AnchorRange{
+               .anchor_in_site = anchor, .p_level_antenna = p_level_antenna, .range_m = range_m, .std_m = 0.1}});
     }
   }
   EXPECT_THAT(solve(ranges, without_prior()).T_site_map, test::Pose2Near(truth, 1e-9, 1e-9));
@@ -194,8 +193,7 @@ TEST(RegisterToSite, ASurveyedPoseGivesTheTransform) {
   const Pose2 truth = true_registration({0.3, -0.2, to_rad(2.0)}), T_map_body{2.0, -1.0, 0.3};
   const std::vector<SiteMeasurement> docked = {
       {.T_map_body = T_map_body,
-       .content = SurveyedPose{
-           .T_site_body = truth * T_map_body, .position_std_m = 0.01, .yaw_std_rad = to_rad(0.2)}}};
+       .content = SurveyedPose{.T_site_body = truth * T_map_body, .position_std_m = 0.01, .yaw_std_rad = to_rad(0.2)}}};
   const SitePoseGaussian estimate = solve(docked, without_prior());
   EXPECT_THAT(estimate.T_site_map, test::Pose2Near(truth, 1e-9, 1e-9));
   EXPECT_NEAR(std::sqrt(estimate.covariance(2, 2)), to_rad(0.2), 1e-6);

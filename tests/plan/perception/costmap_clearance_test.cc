@@ -73,7 +73,8 @@ TEST(Costmap, ReplacedKeepOutLinesEqualThoseOfAFreshCostmap) {
   costmap.set_keep_out_lines(moved);
   const Costmap fresh(settings, make_robot(), moved);
   for (double x = -3.95; x < 5.0; x += 0.1) {
-    for (double y = -1.95; y < 2.0; y += 0.1) ASSERT_EQ(costmap.cost_at({x, y}), fresh.cost_at({x, y})) << x << ' ' << y;
+    for (double y = -1.95; y < 2.0; y += 0.1)
+      ASSERT_EQ(costmap.cost_at({x, y}), fresh.cost_at({x, y})) << x << ' ' << y;
   }
   EXPECT_EQ(costmap.cost_at({0.0, 0.0}), kFreeCost);
 }
