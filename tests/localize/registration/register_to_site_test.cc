@@ -90,7 +90,7 @@ TEST(RegisterToSite, FixesAtOnePlaceKnowNoYaw) {
   const SitePoseGaussian estimate = solve(fixes_along(standing, truth, 0.01, no_error), settings);
   const double prior_rad = to_rad(settings.start_yaw_std_deg);
   EXPECT_NEAR(std::sqrt(estimate.covariance(2, 2)), prior_rad, 0.01 * prior_rad);
-  EXPECT_NEAR(estimate.T_site_map.yaw, kStart.yaw, to_rad(0.01));
+  EXPECT_NEAR(estimate.T_site_map.yaw, kStart.yaw, to_rad(0.1));  // the lever arm of 0.1 m turns it a little
   EXPECT_LT(estimate.covariance(0, 0), 0.01 * 0.01);
 }
 
