@@ -118,10 +118,13 @@ Calibration calibrate(const std::string& name, const io::Expectations& present, 
 io::Expectations expectations_of(const Calibration& calibration, bool may_widen) {
   io::Expectations expectations;
   for (const CalibratedMetric& metric : calibration.metrics) {
-    if (metric.present && metric.proposed && !may_widen)
+    if (metric.proposed && (may_widen || !metric.present)) {
+      expectations[metric.metric] = *metric.proposed;
+    } else if (metric.proposed && !are_disjoint(*metric.proposed, *metric.present)) {
       expectations[metric.metric] = narrower(*metric.proposed, *metric.present);
-    else if (metric.proposed) expectations[metric.metric] = *metric.proposed;
-    else if (metric.present) expectations[metric.metric] = *metric.present;
+    } else {
+      expectations[metric.metric] = *metric.present;
+    }
   }
   return expectations;
 }

@@ -61,7 +61,7 @@ class Calibration(unittest.TestCase):
         self.assertEqual({file: after[file] for file in before}, before)
 
     def test_interrupted_it_continues(self):
-        process = subprocess.Popen([PATROL, "test", self.scenario, "--out", self.out, "--calibrate", "6", "--jobs", "1"],
+        process = subprocess.Popen([PATROL, "test", self.scenario, "--out", self.out, "--calibrate", "4", "--jobs", "1"],
                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE, cwd=SOURCE)
         deadline = time.monotonic() + 120
         while not list((self.out / "runs").glob("*.json")) and time.monotonic() < deadline:
@@ -72,7 +72,7 @@ class Calibration(unittest.TestCase):
         if process.returncode != 0:
             self.assertEqual(process.returncode, 3)
             self.assertTrue((self.out / "INCOMPLETE").exists())
-        self.assertEqual(self.calibrate("--calibrate", "6").returncode, 0)
+        self.assertEqual(self.calibrate("--calibrate", "4").returncode, 0)
         self.assertFalse((self.out / "INCOMPLETE").exists())
         then = {file.name: file.stat().st_mtime_ns for file in (self.out / "runs").glob("*.json")}
         self.assertEqual({name: then[name] for name in first}, first)
