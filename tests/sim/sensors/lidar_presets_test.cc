@@ -91,7 +91,8 @@ TEST_P(LidarPreset, RangeNoiseStepAndBiasAreThoseOfTheSheet) {
 }
 
 // Walls at both sides, 2 m off, met by beams within 9 to 11 degrees of their surface: there the range changes by r / tan,
-// 50 to 80 m per radian. What the range noise leaves of the variance is that of the angle.
+// 50 to 80 m per radian. What the range noise leaves of the variance is that of the angle; the tolerance is four standard
+// deviations of the estimate for the noisiest preset.
 TEST_P(LidarPreset, BeamAngleNoiseIsRecoveredFromWallsAtGrazingIncidence) {
   const SmallWorld world(box("0 2.5 0", "40 0.5 20") + box("0 -2.5 0", "40 0.5 20"));
   LidarSettings without_dark = settings();
@@ -109,7 +110,7 @@ TEST_P(LidarPreset, BeamAngleNoiseIsRecoveredFromWallsAtGrazingIncidence) {
     }
   }
   ASSERT_GT(sum_rad2, 0.0);
-  EXPECT_NEAR(std::sqrt(sum_rad2 / weights) / kDegree, expected().angle_std_deg, 0.15 * expected().angle_std_deg);
+  EXPECT_NEAR(std::sqrt(sum_rad2 / weights) / kDegree, expected().angle_std_deg, 0.2 * expected().angle_std_deg);
 }
 
 TEST_P(LidarPreset, RateFieldOfViewBeamsAndDropoutsAreThoseOfTheSheet) {
@@ -165,7 +166,7 @@ INSTANTIATE_TEST_SUITE_P(
     AllPresets, LidarPreset,
     ::testing::Values(ExpectedLidar{"rplidar_s2", 10.0, 360.0, 0.1125, 1, 0.05, 30.0, 10.0, 0.015, 0.013, 0.01, 0.002},
                       ExpectedLidar{"utm30lx", 40.0, 270.25, 0.25, 1, 0.1, 30.0, 10.0, 0.015, 0.001, 0.01, 0.002},
-                      ExpectedLidar{"tim571", 15.0, 270.33, 1.0 / 3.0, 1, 0.05, 25.0, 8.0, 0.01, 0.001, 0.01, 0.002},
+                      ExpectedLidar{"tim571", 15.0, 270.33, 1.0 / 3.0, 1, 0.05, 25.0, 8.0, 0.02, 0.001, 0.01, 0.002},
                       ExpectedLidar{"vlp16", 10.0, 360.0, 0.2, 16, 0.5, 100.0, 50.0, 0.015, 0.002, 0.01, 0.002}),
     [](const auto& info) { return info.param.preset; });
 
