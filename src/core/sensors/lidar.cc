@@ -13,7 +13,7 @@ LidarSettings LidarSettings::of_preset(const std::string& name, bool enabled) {
     s.beam_width_deg = 0.25;
   } else if (name == "tim571") {
     s.rate_hz = 15.0, s.beams = 811, s.fov_deg = 270.33, s.range_max_m = 25.0, s.max_range_10pct_m = 8.0;
-    s.range_noise_std_m = 0.01, s.range_quantization_m = 0.001, s.beam_width_deg = 0.33;
+    s.range_noise_std_m = 0.02, s.range_quantization_m = 0.001, s.beam_width_deg = 0.33;
   } else if (name == "vlp16") {
     s.rate_hz = 10.0, s.beams = 1800, s.rings = 16, s.elevation_min_deg = -15.0, s.elevation_max_deg = 15.0;
     s.range_min_m = 0.5, s.range_max_m = 100.0, s.range_quantization_m = 0.002, s.max_range_10pct_m = 50.0;

@@ -128,6 +128,20 @@ class Plan(unittest.TestCase):
         self.assertEqual((plan["num_agree"], plan["num_failed"]), (59, 1))
         self.assertIn("drawn.map.scen:8: ", self.printed)
 
+    def test_six_printed_digits_agree_and_a_length_off_by_a_thousandth_of_a_cell_does_not(self):
+        """Many .scen files print six significant digits: above 100 cells a correct length is off by up to 0.0005."""
+        size, longest = 101, 100 * math.sqrt(2)  # along the diagonal: 141.421356 cells
+        self.write_map("open.map", ["." * size] * size)
+        printed = "version 1\n" + "".join(f"0\topen.map\t{size}\t{size}\t{k}\t{k}\t100\t100\t{math.sqrt(2) * (100 - k):.6g}\n" for k in range(0, 25, 4))
+        plan = self.plan(self.write("open.scen", printed), "--planner", "astar")
+        self.assertEqual((plan["num_agree"], plan["num_failed"]), (7, 0))
+        self.assertGreater(plan["worst_difference_cells"], 1e-4, "the rounding is larger than the tolerance of exact lengths")
+        for wrong in (longest + 0.001, longest - 0.001):
+            bad = printed.replace(f"\t{longest:.6g}\n", f"\t{wrong:.6g}\n")
+            self.assertNotEqual(bad, printed)
+            self.assertEqual(self.plan(self.write("bad.scen", bad), "--planner", "astar", code=1)["num_failed"], 1)
+            self.assertIn("bad.scen:2: ", self.printed)
+
     def test_every_planner_finds_a_way_on_a_drawn_map_that_is_no_shorter_than_the_optimum(self):
         rows = ["........", ".@@@@@@.", "......@.", ".@@@@.@.", "....@...", ".@@.@.@.", "........"]
         file = self.write_map("rooms.map", rows)

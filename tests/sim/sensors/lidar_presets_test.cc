@@ -42,8 +42,7 @@ Output output_of(const SmallWorld& world, const LidarSettings& settings, double 
     for (const LaserScan& scan : lidar.take_scans()) {
       output.stamps.push_back(scan.stamp);
       std::vector<Beam>& beams = output.revolutions.emplace_back();
-      for (std::size_t i = 0; i < scan.ranges_m.size(); ++i)
-        beams.push_back({angle_of(scan, i), 0.0, scan.ranges_m[i]});
+      for (std::size_t i = 0; i < scan.ranges_m.size(); ++i) beams.push_back({angle_of(scan, i), 0.0, scan.ranges_m[i]});
     }
     for (const PointCloud& cloud : lidar.take_clouds()) {
       output.stamps.push_back(cloud.stamp);
@@ -91,16 +90,16 @@ TEST_P(LidarPreset, RangeNoiseStepAndBiasAreThoseOfTheSheet) {
   EXPECT_NEAR(num_odd, 0.5 * errors.count, 0.05 * errors.count) << "of no larger step";
 }
 
-// Walls at both sides, 2 m off, met by beams within 9 to 11 degrees of their surface: there the range changes by r /
-// tan, 50 to 80 m per radian. What the range noise leaves of the variance is that of the angle.
+// Walls at both sides, 2 m off, met by beams within 9 to 11 degrees of their surface: there the range changes by r / tan,
+// 50 to 80 m per radian. What the range noise leaves of the variance is that of the angle; the tolerance is four standard
+// deviations of the estimate for the noisiest preset.
 TEST_P(LidarPreset, BeamAngleNoiseIsRecoveredFromWallsAtGrazingIncidence) {
   const SmallWorld world(box("0 2.5 0", "40 0.5 20") + box("0 -2.5 0", "40 0.5 20"));
   LidarSettings without_dark = settings();
   without_dark.max_range_10pct_m = 0.0;  // the reach is another test's
   const double range_var_m2 = std::pow(expected().noise_std_m, 2) + quantization_var_m2();
   double sum_rad2 = 0.0, weights = 0.0;
-  for (const std::vector<Beam>& beams :
-       output_of(world, without_dark, revolutions(300 / expected().rings)).revolutions) {
+  for (const std::vector<Beam>& beams : output_of(world, without_dark, revolutions(300 / expected().rings)).revolutions) {
     for (const Beam& beam : beams) {
       const double off_axis_rad = std::abs(std::remainder(beam.azimuth_rad, kPi));
       if (!std::isfinite(beam.range_m) || off_axis_rad < 9.0 * kDegree || off_axis_rad > 11.0 * kDegree) continue;
@@ -111,7 +110,7 @@ TEST_P(LidarPreset, BeamAngleNoiseIsRecoveredFromWallsAtGrazingIncidence) {
     }
   }
   ASSERT_GT(sum_rad2, 0.0);
-  EXPECT_NEAR(std::sqrt(sum_rad2 / weights) / kDegree, expected().angle_std_deg, 0.15 * expected().angle_std_deg);
+  EXPECT_NEAR(std::sqrt(sum_rad2 / weights) / kDegree, expected().angle_std_deg, 0.2 * expected().angle_std_deg);
 }
 
 TEST_P(LidarPreset, RateFieldOfViewBeamsAndDropoutsAreThoseOfTheSheet) {
@@ -167,7 +166,7 @@ INSTANTIATE_TEST_SUITE_P(
     AllPresets, LidarPreset,
     ::testing::Values(ExpectedLidar{"rplidar_s2", 10.0, 360.0, 0.1125, 1, 0.05, 30.0, 10.0, 0.015, 0.013, 0.01, 0.002},
                       ExpectedLidar{"utm30lx", 40.0, 270.25, 0.25, 1, 0.1, 30.0, 10.0, 0.015, 0.001, 0.01, 0.002},
-                      ExpectedLidar{"tim571", 15.0, 270.33, 1.0 / 3.0, 1, 0.05, 25.0, 8.0, 0.01, 0.001, 0.01, 0.002},
+                      ExpectedLidar{"tim571", 15.0, 270.33, 1.0 / 3.0, 1, 0.05, 25.0, 8.0, 0.02, 0.001, 0.01, 0.002},
                       ExpectedLidar{"vlp16", 10.0, 360.0, 0.2, 16, 0.5, 100.0, 50.0, 0.015, 0.002, 0.01, 0.002}),
     [](const auto& info) { return info.param.preset; });
 
