@@ -205,9 +205,9 @@ TEST(RangeFilter, OnAPlantWithParametersOfItsOwnTheNeesIsWithinItsBoundsAndTheNi
   }
 }
 
-// Limit: ranges of one anchor are taken for independent. With a constant error of 3 cm for each anchor the filter claims
-// half of the error that it has; with 10 cm, a fifth. The bounds are half and twice the measured value; whoever mends it
-// moves this case into the test above.
+// Limit: ranges of one anchor are taken for independent. With a constant error of 3 cm for each anchor the filter
+// claims half of the error that it has; with 10 cm, a fifth. The bounds are half and twice the measured value; whoever
+// mends it moves this case into the test above.
 TEST(RangeFilter, AntennaDelaysOf3And10CentimetersAreNotInTheCovariance) {
   for (const auto& [delay_m, measured_nees] : {std::pair{0.03, 8.4}, {0.10, 71.0}}) {
     const TunnelMeans means = mean_over_seeds(of_data_sheets(0.0, delay_m));

@@ -90,8 +90,8 @@ DriveReport turn_around(TrackedRobot& robot, double yaw_rate_radps) {
 
 TEST(Tracks, TheClosedFormOfFiveEvenlyLoadedWheelsIsARatioOf0_708) { EXPECT_NEAR(closed_form().ratio, 0.708, 5e-4); }
 
-/// Robot whose contacts have round friction cones. The twin's pyramidal cones resist a sliding contact along one axis at
-/// a time: belts that slide along x leave the body free to creep along y.
+/// Robot whose contacts have round friction cones. The twin's pyramidal cones resist a sliding contact along one axis
+/// at a time: belts that slide along x leave the body free to creep along y.
 void use_round_cones(TrackedRobot& robot) { robot.options().cone = mjCONE_ELLIPTIC; }
 
 /// Creep along y that pyramidal cones allow, relative to the distance over which the belts slide: twice the largest of

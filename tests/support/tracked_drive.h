@@ -68,8 +68,8 @@ struct TrackedDriveSettings {
   /// Robot whose parameters are not those that the filters assume.
   ///
   /// IMU by the ADIS16448 data sheet: rate noise density 0.0135 deg/s/sqrt(Hz), initial bias 0.5 deg/s (1 sigma),
-  /// acceleration noise density 0.23 mg/sqrt(Hz), bias repeatability 20 mg (1 sigma), alignment 0.05 to 0.2 deg; but for
-  /// its sensitivity of 1 %, for which see `imu_scale`. Ground: no sheet states slip. Half of the assumed slip per
+  /// acceleration noise density 0.23 mg/sqrt(Hz), bias repeatability 20 mg (1 sigma), alignment 0.05 to 0.2 deg; but
+  /// for its sensitivity of 1 %, for which see `imu_scale`. Ground: no sheet states slip. Half of the assumed slip per
   /// distance on a third of the correlation length, twice the crabbing, one and a half times the wear, a scrub ratio of
   /// 1.41 (five evenly loaded wheels, tests/scenario/tracks_test.cc) instead of 1.5 that varies half as much over half
   /// the rotation, and twice the slope.

@@ -10,8 +10,8 @@
 namespace patrol::test {
 
 /// World and drive in which identical doors mislead a matcher that takes the best match without looking for a second
-/// one. A furnished hall (x = 0 to 10 m) opens into a corridor 2 m wide: bare walls to x = 40 m, then niches every 1.5 m
-/// on both sides, all alike, to its end at x = 110 m.
+/// one. A furnished hall (x = 0 to 10 m) opens into a corridor 2 m wide: bare walls to x = 40 m, then niches every 1.5
+/// m on both sides, all alike, to its end at x = 110 m.
 ///
 /// With a lidar of 6 m, neither the hall nor the corridor's end is in range among the niches at 46 to 64 m, where the
 /// drive turns. Between 16 and 34 m the scan does not constrain the position along the corridor, so an error of the
@@ -44,9 +44,9 @@ struct DoorGallery {
   /// three legs, with a standard deviation of `scale_std`. With the default, two passages differ by one standard
   /// deviation of the drift that GraphSlam predicts for them (0.02 m per meter and submap).
   static std::vector<DriveStep> drive(std::uint64_t seed, double scale_std = 0.015) {
-    std::vector<DriveStep> steps = drive_along(
-        {{5.0, 0.0}, {64.0, 0.0}, {5.0, 0.0}, {64.0, 0.0}},
-        {.speed_mps = 1.0, .odometry_scale = 0.0, .odometry_drift_rad_per_m = 0.002});
+    std::vector<DriveStep> steps =
+        drive_along({{5.0, 0.0}, {64.0, 0.0}, {5.0, 0.0}, {64.0, 0.0}},
+                    {.speed_mps = 1.0, .odometry_scale = 0.0, .odometry_drift_rad_per_m = 0.002});
     const RandomStream draw(seed, "test/door_gallery");
     std::uint64_t leg = 0;
     bool was_turning = false;

@@ -100,8 +100,8 @@ GalleryMapping map_gallery(const GraphSlamSettings& settings, std::uint64_t seed
 // The niches lie within the predicted drift of each other: every match between them is ambiguous. Those of the hall are
 // not, and close the loop. The scale of the odometry along the bare walls remains as an error of the map.
 //
-// With twice the predicted drift (3 % per leg) the check is not sufficient: in 1 of 5 drives the correct pose lay outside
-// the search window, a door was taken for its neighbor, and the hall was 1.4 m off.
+// With twice the predicted drift (3 % per leg) the check is not sufficient: in 1 of 5 drives the correct pose lay
+// outside the search window, a door was taken for its neighbor, and the hall was 1.4 m off.
 TEST(GraphSlam, AmongIdenticalDoorsOnlyTheHallClosesLoopsAndEveryMatchOfDoorsIsRejectedAsAmbiguous) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const GalleryMapping mapped = map_gallery({}, seed);

@@ -48,12 +48,12 @@ struct GalleryResult {
   double hall_error_m = 0.0;  ///< error of the pose back in the hall, where the drive started
 };
 
-/// Settings whose predicted drift, that of GraphSlam, covers a door; with the default of 0.003 m per meter no other door
-/// is in the search window. `max_second_best_ratio` 1.0: no check for a second match.
+/// Settings whose predicted drift, that of GraphSlam, covers a door; with the default of 0.003 m per meter no other
+/// door is in the search window. `max_second_best_ratio` 1.0: no check for a second match.
 ///
 /// Least squares instead of the default robust loss. With that, the two correct constraints of the hall are discounted
-/// as outliers in 4 of 6 drives (seeds 1 to 6), and the hall stays 0.5 to 0.8 m off. With twice the predicted drift (3 %
-/// per leg) the check lets one constraint pass that is off by a door, in 10 drives.
+/// as outliers in 4 of 6 drives (seeds 1 to 6), and the hall stays 0.5 to 0.8 m off. With twice the predicted drift (3
+/// % per leg) the check lets one constraint pass that is off by a door, in 10 drives.
 SubmapRbpfSettings gallery_settings(double max_second_best_ratio) {
   SubmapRbpfSettings settings;
   settings.drift_std_m_per_m = 0.02;
