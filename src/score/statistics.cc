@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include <boost/math/distributions/binomial.hpp>
 #include <boost/math/distributions/students_t.hpp>
 
 namespace patrol::score {
@@ -78,6 +79,34 @@ std::optional<Interval> mean_interval(const std::vector<double>& values, double 
   const double half =
       student_t(values.size() - 1, level) * std::sqrt(variance(values) / static_cast<double>(values.size()));
   return Interval{.center = center, .low = center - half, .high = center + half};
+}
+
+std::optional<double> mean_p_value(const std::vector<double>& values) {
+  if (values.size() < 2) return std::nullopt;
+  const double center = mean(values), std_error = std::sqrt(variance(values) / static_cast<double>(values.size()));
+  if (std_error == 0.0) return center == 0.0 ? 1.0 : 0.0;
+  const boost::math::students_t distribution(static_cast<double>(values.size() - 1));
+  return 2.0 * boost::math::cdf(boost::math::complement(distribution, std::abs(center) / std_error));
+}
+
+std::vector<double> holm_adjusted(const std::vector<double>& p_values) {
+  std::vector<std::size_t> order(p_values.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return p_values[a] < p_values[b]; });
+  std::vector<double> adjusted(p_values.size());
+  double largest = 0.0;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    largest = std::max(largest, std::min(1.0, static_cast<double>(order.size() - i) * p_values[order[i]]));
+    adjusted[order[i]] = largest;
+  }
+  return adjusted;
+}
+
+double sign_test_p_value(int num_first, int num_second) {
+  const int num_tosses = num_first + num_second;
+  if (num_tosses == 0) return 1.0;
+  const boost::math::binomial distribution(num_tosses, 0.5);
+  return std::min(1.0, 2.0 * boost::math::cdf(distribution, std::min(num_first, num_second)));
 }
 
 std::optional<double> rank_correlation(const std::vector<double>& a, const std::vector<double>& b) {

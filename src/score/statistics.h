@@ -29,6 +29,18 @@ struct Interval {
 /// Confidence interval of the mean by Student's t, none for fewer than two values.
 std::optional<Interval> mean_interval(const std::vector<double>& values, double level = 0.95);
 
+/// Two-sided p-value of Student's t test of a mean of zero. None for fewer than two values; 1 if all values are 0, and
+/// 0 if they are all equal otherwise.
+std::optional<double> mean_p_value(const std::vector<double>& values);
+
+/// P-values adjusted for their number by Holm's step-down method [Holm79], [p-value]: rejecting those below a level
+/// bounds the probability of any false rejection by that level, whatever the dependence between the tests.
+std::vector<double> holm_adjusted(const std::vector<double>& p_values);
+
+/// Two-sided exact p-value of the sign test [McNemar47]: probability that of `num_first + num_second` fair coin tosses
+/// at least as many fall on one side as on the larger of the two. 1 without any toss.
+double sign_test_p_value(int num_first, int num_second);
+
 /// Spearman's rank correlation, -1 ... 1; ties have the mean of their ranks. None when either list is constant.
 std::optional<double> rank_correlation(const std::vector<double>& a, const std::vector<double>& b);
 

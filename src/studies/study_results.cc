@@ -11,6 +11,8 @@
 namespace patrol::studies {
 namespace {
 
+constexpr double kLevel = 0.05;
+
 io::TableValue number(const std::optional<double>& value) { return value ? io::TableValue{*value} : io::TableValue{}; }
 
 std::optional<double> published(const StudyVariant& variant, std::size_t metric) {
@@ -21,6 +23,12 @@ std::optional<double> published(const StudyVariant& variant, std::size_t metric)
 std::string with_interval(const std::optional<score::Interval>& interval, double mean, const char* sign) {
   const auto text = [&](double value) { return fmt::format(fmt::runtime(fmt::format("{{:{}.3g}}", sign)), value); };
   return interval ? fmt::format("{} [{}, {}]", text(mean), text(interval->low), text(interval->high)) : text(mean);
+}
+
+/// Number of failed seeds, marked if it differs from the reference's.
+std::string failures_text(const StudyResult& result) {
+  const bool differs = result.adjusted_failure_p_value.value_or(1.0) < kLevel;
+  return std::to_string(result.num_failed) + (differs ? " *" : "");
 }
 
 std::string title_of(const StudyMetric& metric) {
@@ -42,6 +50,7 @@ std::vector<report::TableBlock> tables_of(const Study& study, const StudyResults
     if (has_particles) table.columns.push_back({"N", true});
     if (has_published) table.columns.push_back({"published", true});
     table.columns.push_back({has_published ? "this work" : "mean", true});
+    if (f == 0) table.columns.push_back({"failed", true});
     table.columns.push_back({"relative to " + study.compared_with, true});
     const bool is_first = tables.size() == 1;
     for (const StudyMetric& metric : study.metrics) {
@@ -58,6 +67,7 @@ std::vector<report::TableBlock> tables_of(const Study& study, const StudyResults
       if (has_published)
         row.push_back({published_value ? fmt::format("{:.4g}", *published_value) : "–", report::Tone::kFaint});
       row.push_back({result.num_seeds > 0 ? with_interval(result.interval, result.mean, "") : "–"});
+      if (f == 0) row.push_back({result.num_failed > 0 ? failures_text(result) : ""});
       row.push_back({result.difference ? with_interval(result.difference, result.difference->center, "+") : "",
                      verdict_of(result) == "no difference" ? report::Tone::kFaint : report::Tone::kPlain});
       for (std::size_t other = 0; is_first && other < study.metrics.size(); ++other) {
@@ -107,10 +117,37 @@ std::string aligned(const report::TableBlock& table) {
   return text + "\n";
 }
 
+/// Writes the adjusted p-values of all comparisons of a study, which form one family [Holm79].
+void correct_for_number(const std::vector<std::optional<double>*>& p_values) {
+  std::vector<double> own;
+  for (const std::optional<double>* p_value : p_values) own.push_back(**p_value);
+  const std::vector<double> adjusted = score::holm_adjusted(own);
+  for (std::size_t i = 0; i < adjusted.size(); ++i) *p_values[i] = adjusted[i];
+}
+
+/// p-value of equal failure rates; none if both fail on the same seeds.
+std::optional<double> failure_p_value(const std::vector<StudySample>& samples, std::size_t variant,
+                                      std::size_t reference) {
+  int num_only_variant = 0, num_only_reference = 0;
+  for (const StudySample& sample : samples) {
+    const bool has_failed = !std::isfinite(sample[variant].front()),
+               reference_has_failed = !std::isfinite(sample[reference].front());
+    num_only_variant += has_failed && !reference_has_failed ? 1 : 0;
+    num_only_reference += reference_has_failed && !has_failed ? 1 : 0;
+  }
+  if (num_only_variant + num_only_reference == 0) return std::nullopt;
+  return score::sign_test_p_value(num_only_variant, num_only_reference);
+}
+
+bool is_comparison(const Study& study, std::size_t variant, std::size_t metric) {
+  return study.metrics[metric].is_compared && study.variants[variant].reference != variant;
+}
+
 }  // namespace
 
 StudyResults summarize(const Study& study, const std::vector<StudySample>& samples) {
   StudyResults results(study.variants.size(), std::vector<StudyResult>(study.metrics.size()));
+  std::vector<std::optional<double>*> p_values;
   for (std::size_t v = 0; v < study.variants.size(); ++v) {
     for (std::size_t f = 0; f < study.metrics.size(); ++f) {
       std::vector<double> values, differences;
@@ -123,39 +160,85 @@ StudyResults summarize(const Study& study, const std::vector<StudySample>& sampl
       result = {.mean = score::mean(values),
                 .interval = score::mean_interval(values),
                 .difference = {},
-                .num_seeds = values.size()};
-      if (study.metrics[f].is_compared && study.variants[v].reference != v)
-        result.difference = score::mean_interval(differences);
+                .adjusted_p_value = {},
+                .num_seeds = values.size(),
+                .adjusted_failure_p_value = {},
+                .num_failed = f == 0 ? samples.size() - values.size() : 0,
+                .num_paired = differences.size()};
+      if (!is_comparison(study, v, f)) continue;
+      result.difference = score::mean_interval(differences);
+      result.adjusted_p_value = score::mean_p_value(differences);
+      if (result.adjusted_p_value) p_values.push_back(&result.adjusted_p_value);
+      if (f > 0) continue;
+      result.adjusted_failure_p_value = failure_p_value(samples, v, study.variants[v].reference);
+      if (result.adjusted_failure_p_value) p_values.push_back(&result.adjusted_failure_p_value);
     }
   }
+  correct_for_number(p_values);
   return results;
+}
+
+ComparisonCount count_comparisons(const Study& study, const StudyResults& results) {
+  ComparisonCount count;
+  for (std::size_t v = 0; v < study.variants.size(); ++v) {
+    for (std::size_t f = 0; f < study.metrics.size(); ++f) {
+      if (!is_comparison(study, v, f)) continue;
+      const StudyResult& result = results[v][f];
+      ++count.num_comparisons;
+      const bool is_tested = result.difference.has_value();
+      count.num_failure_comparisons += result.adjusted_failure_p_value ? 1 : 0;
+      count.num_failure_differences += result.adjusted_failure_p_value.value_or(1.0) < kLevel ? 1 : 0;
+      count.num_untested += is_tested ? 0 : 1;
+      count.num_uncorrected += is_tested && !result.difference->contains(0.0) ? 1 : 0;
+      count.num_significant += is_tested && verdict_of(result) != "no difference" ? 1 : 0;
+    }
+  }
+  return count;
+}
+
+std::string comparison_text(const Study& study, const StudyResults& results) {
+  const ComparisonCount count = count_comparisons(study, results);
+  std::size_t num_failed = 0;
+  for (const std::vector<StudyResult>& of_variant : results) num_failed += of_variant.front().num_failed;
+  return fmt::format(
+      "{} comparisons, {} of them with fewer than two pairs: {} differences at 5 % after Holm's correction ({} without "
+      "it). They are over the seeds on which both have a value. Failed runs: {}; {} comparisons of failure rates, in "
+      "the "
+      "same correction: {} differences.",
+      count.num_comparisons, count.num_untested, count.num_significant, count.num_uncorrected, num_failed,
+      count.num_failure_comparisons, count.num_failure_differences);
 }
 
 std::string verdict_of(const StudyResult& result) {
   if (!result.difference) return "";
-  if (result.difference->contains(0.0)) return "no difference";
+  if (result.adjusted_p_value.value_or(1.0) >= kLevel) return "no difference";
   return result.difference->center < 0.0 ? "lower" : "higher";
 }
 
 io::Table results_table(const Study& study, const StudyResults& results) {
   io::Table table{.name = "results",
                   .columns = {"world", "method", "particles", "figure", "unit", "published", "seeds", "mean",
-                              "mean_low", "mean_high", "difference", "difference_low", "difference_high", "verdict"},
+                              "mean_low", "mean_high", "difference", "difference_low", "difference_high", "verdict",
+                              "failed", "pairs", "adjusted_p_value", "adjusted_failure_p_value"},
                   .rows = {}};
   for (std::size_t v = 0; v < study.variants.size(); ++v) {
     const StudyVariant& variant = study.variants[v];
     for (std::size_t f = 0; f < study.metrics.size(); ++f) {
       const StudyResult& result = results[v][f];
-      if (study.metrics[f].is_processor_time || result.num_seeds == 0) continue;
+      if (study.metrics[f].is_processor_time || (result.num_seeds == 0 && result.num_failed == 0)) continue;
       const auto part = [](const std::optional<score::Interval>& interval, double score::Interval::*end) {
         return interval ? io::TableValue{(*interval).*end} : io::TableValue{};
       };
       table.rows.push_back(
           {variant.world, variant.method, static_cast<std::int64_t>(variant.particles), study.metrics[f].name,
            study.metrics[f].unit, number(published(variant, f)), static_cast<std::int64_t>(result.num_seeds),
-           result.mean, part(result.interval, &score::Interval::low), part(result.interval, &score::Interval::high),
+           result.num_seeds > 0 ? io::TableValue{result.mean} : io::TableValue{},
+           part(result.interval, &score::Interval::low), part(result.interval, &score::Interval::high),
            part(result.difference, &score::Interval::center), part(result.difference, &score::Interval::low),
-           part(result.difference, &score::Interval::high), verdict_of(result)});
+           part(result.difference, &score::Interval::high), verdict_of(result),
+           f == 0 ? io::TableValue{static_cast<std::int64_t>(result.num_failed)} : io::TableValue{},
+           static_cast<std::int64_t>(result.num_paired), number(result.adjusted_p_value),
+           number(result.adjusted_failure_p_value)});
     }
   }
   return table;
@@ -203,7 +286,7 @@ std::string results_text(const Study& study, const StudyResults& results) {
     for (const report::TableBlock& table : tables_of(study, results, world))
       text += fmt::format("{}: {}\n{}\n", world, table.caption, aligned(table));
   }
-  return text;
+  return text + comparison_text(study, results) + "\n";
 }
 
 report::Page study_page(const Study& study, const std::vector<std::uint64_t>& seeds,
@@ -213,7 +296,8 @@ report::Page study_page(const Study& study, const std::vector<std::uint64_t>& se
                     .facts = {{"source", study.source}, {"seeds", fmt::format("{} … {}", seeds.front(), seeds.back())}},
                     .sections = {},
                     .footer = fmt::format("Generated by patrol study {} {}.", study.name, PATROL_VERSION)};
-  page.sections.push_back({"", {report::TextBlock{study.conditions}}});
+  page.sections.push_back(
+      {"", {report::TextBlock{study.conditions}, report::TextBlock{comparison_text(study, results)}}});
   for (const std::string& world : worlds_of(study)) {
     report::Section section{world, {}};
     for (report::TableBlock& table : tables_of(study, results, world)) section.blocks.emplace_back(std::move(table));

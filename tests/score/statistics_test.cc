@@ -72,6 +72,45 @@ TEST(MeanInterval, AtNinetyNinePercentIsWiderByTheQuantiles) {
 
 TEST(MeanInterval, OneValueHasNone) { EXPECT_FALSE(mean_interval({1.0}).has_value()); }
 
+// t = 3 / sqrt(2.5 / 5) = 4.2426 with four degrees of freedom. Closed form: 1 - x (1 + (1 - x^2) / 2), x = t / sqrt(t^2
+// + 4).
+TEST(MeanPValue, OfOneToFiveIsThatOfTheClosedFormWithFourDegreesOfFreedom) {
+  const double t = 3.0 / std::sqrt(0.5), x = t / std::sqrt(t * t + 4.0);
+  EXPECT_NEAR(mean_p_value({1.0, 2.0, 3.0, 4.0, 5.0}).value(), 1.0 - x * (1.0 + (1.0 - x * x) / 2.0), 1e-12);
+  EXPECT_NEAR(mean_p_value({-1.0, 1.0}).value(), 1.0, kExactTol);
+  EXPECT_EQ(mean_p_value({0.0, 0.0}), 1.0);
+  EXPECT_EQ(mean_p_value({2.0, 2.0}), 0.0);
+  EXPECT_FALSE(mean_p_value({2.0}));
+}
+
+TEST(MeanPValue, IsFivePercentWhereTheIntervalEndsAtZero) {
+  const std::vector<double> values = {1.0, 2.0, 3.0, 4.0, 5.0};
+  std::vector<double> shifted;
+  for (const double value : values) shifted.push_back(value - mean_interval(values)->low);
+  EXPECT_NEAR(mean_p_value(shifted).value(), 0.05, 1e-9);
+}
+
+// By hand: 0.01 * 4, 0.02 * 3, 0.03 * 2 (raised to the one before), 0.04 * 1 (raised).
+TEST(HolmAdjusted, StepsDownAndNeverDecreases) {
+  const std::vector<double> adjusted = holm_adjusted({0.04, 0.01, 0.03, 0.02});
+  EXPECT_NEAR(adjusted[1], 0.04, kExactTol);
+  EXPECT_NEAR(adjusted[3], 0.06, kExactTol);
+  EXPECT_NEAR(adjusted[2], 0.06, kExactTol);
+  EXPECT_NEAR(adjusted[0], 0.06, kExactTol);
+  EXPECT_TRUE(holm_adjusted({}).empty());
+  EXPECT_EQ(holm_adjusted({0.03}), std::vector<double>{0.03});
+  EXPECT_EQ(holm_adjusted({0.7, 0.6}), (std::vector<double>{1.0, 1.0}));
+}
+
+// Three of three: 2 / 2^3. Five to one of six: 2 (1 + 6) / 2^6.
+TEST(SignTest, IsTheTwoSidedTailOfTheBinomialDistribution) {
+  EXPECT_NEAR(sign_test_p_value(3, 0), 0.25, kExactTol);
+  EXPECT_NEAR(sign_test_p_value(0, 3), 0.25, kExactTol);
+  EXPECT_NEAR(sign_test_p_value(1, 5), 14.0 / 64.0, kExactTol);
+  EXPECT_EQ(sign_test_p_value(2, 2), 1.0);
+  EXPECT_EQ(sign_test_p_value(0, 0), 1.0);
+}
+
 TEST(RankCorrelation, IsOneForAnyGrowingRelationAndMinusOneForAFallingOne) {
   EXPECT_DOUBLE_EQ(*rank_correlation({1, 2, 3, 4}, {1, 8, 27, 64}), 1.0);
   EXPECT_DOUBLE_EQ(*rank_correlation({1, 2, 3, 4}, {9, 5, 2, -7}), -1.0);

@@ -1,5 +1,6 @@
 #include "studies/study_results.h"
 
+#include <cmath>
 #include <limits>
 
 #include <gmock/gmock.h>
@@ -64,6 +65,51 @@ TEST(StudyResults, ProcessorTimeHasItsOwnTableAndUnmeasuredMetricsHaveNoRow) {
   EXPECT_THAT(csv, Not(HasSubstr("time")));
   EXPECT_THAT(io::to_csv(performance_table(study, results)), HasSubstr("flat,new,10,time,s,0.4"));
   EXPECT_THAT(io::to_csv(samples_table(study, {1001, 1002, 1003}, samples())), HasSubstr("1002,flat,new,10,3.1,\r\n"));
+}
+
+/// One reference and `count` others, each with differences of mean -1 and the same p-value.
+Study many_methods(std::size_t count) {
+  Study study = two_methods();
+  study.metrics.resize(1);
+  study.variants.resize(1);
+  for (std::size_t i = 0; i < count; ++i) study.variants.push_back({.world = "flat", .method = "new", .reference = 0});
+  return study;
+}
+
+// The difference of `samples` has t = -1 / (0.1 / sqrt 3) = -17.3 with two degrees of freedom: p = 1 - t / sqrt(t^2 +
+// 2) = 0.00332. Alone and among 15 it is significant; among 16 the smallest adjusted p-value is 0.053.
+TEST(StudyResults, DifferencesAreCorrectedForTheNumberOfComparisonsOfTheStudy) {
+  for (const std::size_t count : {1U, 15U, 16U}) {
+    std::vector<StudySample> all;
+    for (const StudySample& sample : samples()) {
+      StudySample& extended = all.emplace_back(StudySample{{sample[0][0]}});
+      for (std::size_t i = 0; i < count; ++i) extended.push_back({sample[1][0]});
+    }
+    const Study study = many_methods(count);
+    const StudyResults results = summarize(study, all);
+    const double t = std::sqrt(300.0), p = 1.0 - t / std::sqrt(t * t + 2.0);
+    EXPECT_NEAR(results[1][0].adjusted_p_value.value(), static_cast<double>(count) * p, 1e-9) << count;
+    EXPECT_EQ(verdict_of(results[1][0]), count < 16 ? "lower" : "no difference") << count;
+    const ComparisonCount counted = count_comparisons(study, results);
+    EXPECT_EQ(counted.num_comparisons, count);
+    EXPECT_EQ(counted.num_uncorrected, count);
+    EXPECT_EQ(counted.num_significant, count < 16 ? count : 0U);
+  }
+}
+
+// Ten seeds; the second method fails on eight on which the first does not: p = 2 / 2^8, times two in the family.
+TEST(StudyResults, FailedRunsAreCountedAndTheirRatesCompared) {
+  std::vector<StudySample> all;
+  for (int seed = 0; seed < 10; ++seed) all.push_back({{1.0 + 0.1 * seed}, {seed < 2 ? 2.0 + 0.3 * seed : kNothing}});
+  const Study study = many_methods(1);
+  const StudyResults results = summarize(study, all);
+  EXPECT_EQ(results[0][0].num_failed, 0U);
+  EXPECT_EQ(results[1][0].num_failed, 8U);
+  EXPECT_EQ(results[1][0].num_paired, 2U);
+  EXPECT_NEAR(results[1][0].adjusted_failure_p_value.value(), 2.0 * 2.0 / 256.0, 1e-12);
+  EXPECT_EQ(count_comparisons(study, results).num_failure_differences, 1U);
+  EXPECT_THAT(results_text(study, results), HasSubstr("8 *"));
+  EXPECT_THAT(results_text(study, results), HasSubstr("Failed runs: 8"));
 }
 
 TEST(StudyResults, TextContainsPublishedValuesAndOwnMeans) {

@@ -53,12 +53,12 @@ struct LidarSettings {
   /// statistical 20 mm, systematic +-60 mm). "vlp16": Velodyne VLP-16 (10 Hz, 16 rings over +-15 deg, 1,800 firings,
   /// 100 m, +-30 mm, 2 mm steps, 3 mrad wide).
   ///
-  /// `range_noise_std_m` is the part of the stated error that is drawn for each beam; the constant part of one device is
-  /// an as-built error, not a setting of the preset. SICK states both (TiM55x/TiM56x, 8015886, p. 4, typical values): a
-  /// statistical error of 20 mm at one standard deviation and a systematic one of +-60 mm. The other sheets give one
-  /// bound for noise and bias together. Half of it is the standard deviation of the noise, since 95 % of the readings of
-  /// a device without bias lie within the bound. The bound on the bias of one device is the same +-30 mm, because a mean
-  /// of many readings may lie anywhere within it.
+  /// `range_noise_std_m` is the part of the stated error that is drawn for each beam; the constant part of one device
+  /// is an as-built error, not a setting of the preset. SICK states both (TiM55x/TiM56x, 8015886, p. 4, typical
+  /// values): a statistical error of 20 mm at one standard deviation and a systematic one of +-60 mm. The other sheets
+  /// give one bound for noise and bias together. Half of it is the standard deviation of the noise, since 95 % of the
+  /// readings of a device without bias lie within the bound. The bound on the bias of one device is the same +-30 mm,
+  /// because a mean of many readings may lie anywhere within it.
   ///
   /// The data sheets of the first three state no beam width; about the angle between beams is assumed.
   static LidarSettings of_preset(const std::string& name, bool enabled = true);

@@ -53,8 +53,8 @@ struct ClockTolerances {
 /// (`noise_ratio` times the 15 mm of sensors.lidar) and systematic errors of 11.5 mm: an offset (8.7 mm), the range
 /// walk with the returned light (5.8 mm between 10 and 50 % reflectivity) and the incidence angle (4.6 mm at grazing
 /// incidence). The white part follows the repeatability that manufacturers of this class state (Hokuyo UTM-30LX: below
-/// 10 mm to 10 m); the split of the systematic part is an assumption. SICK's TiM571 states both parts: with that preset,
-/// set `noise_ratio` to 1 and `range_offset_m` to 0.06.
+/// 10 mm to 10 m); the split of the systematic part is an assumption. SICK's TiM571 states both parts: with that
+/// preset, set `noise_ratio` to 1 and `range_offset_m` to 0.06.
 struct LidarTolerances {
   static constexpr const char* kSource =
       "Slamtec RPLIDAR C1 and S series data sheets: accuracy 30 mm, flatness 0 to 1.5 deg, rate 5 %";

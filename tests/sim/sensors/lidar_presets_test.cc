@@ -42,7 +42,8 @@ Output output_of(const SmallWorld& world, const LidarSettings& settings, double 
     for (const LaserScan& scan : lidar.take_scans()) {
       output.stamps.push_back(scan.stamp);
       std::vector<Beam>& beams = output.revolutions.emplace_back();
-      for (std::size_t i = 0; i < scan.ranges_m.size(); ++i) beams.push_back({angle_of(scan, i), 0.0, scan.ranges_m[i]});
+      for (std::size_t i = 0; i < scan.ranges_m.size(); ++i)
+        beams.push_back({angle_of(scan, i), 0.0, scan.ranges_m[i]});
     }
     for (const PointCloud& cloud : lidar.take_clouds()) {
       output.stamps.push_back(cloud.stamp);
@@ -90,16 +91,17 @@ TEST_P(LidarPreset, RangeNoiseStepAndBiasAreThoseOfTheSheet) {
   EXPECT_NEAR(num_odd, 0.5 * errors.count, 0.05 * errors.count) << "of no larger step";
 }
 
-// Walls at both sides, 2 m off, met by beams within 9 to 11 degrees of their surface: there the range changes by r / tan,
-// 50 to 80 m per radian. What the range noise leaves of the variance is that of the angle; the tolerance is four standard
-// deviations of the estimate for the noisiest preset.
+// Walls at both sides, 2 m off, met by beams within 9 to 11 degrees of their surface: there the range changes by r /
+// tan, 50 to 80 m per radian. What the range noise leaves of the variance is that of the angle; the tolerance is four
+// standard deviations of the estimate for the noisiest preset.
 TEST_P(LidarPreset, BeamAngleNoiseIsRecoveredFromWallsAtGrazingIncidence) {
   const SmallWorld world(box("0 2.5 0", "40 0.5 20") + box("0 -2.5 0", "40 0.5 20"));
   LidarSettings without_dark = settings();
   without_dark.max_range_10pct_m = 0.0;  // the reach is another test's
   const double range_var_m2 = std::pow(expected().noise_std_m, 2) + quantization_var_m2();
   double sum_rad2 = 0.0, weights = 0.0;
-  for (const std::vector<Beam>& beams : output_of(world, without_dark, revolutions(300 / expected().rings)).revolutions) {
+  for (const std::vector<Beam>& beams :
+       output_of(world, without_dark, revolutions(300 / expected().rings)).revolutions) {
     for (const Beam& beam : beams) {
       const double off_axis_rad = std::abs(std::remainder(beam.azimuth_rad, kPi));
       if (!std::isfinite(beam.range_m) || off_axis_rad < 9.0 * kDegree || off_axis_rad > 11.0 * kDegree) continue;

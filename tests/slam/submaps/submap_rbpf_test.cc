@@ -52,8 +52,7 @@ struct GalleryResult {
 /// door is in the search window. `max_second_best_ratio` 1.0: no check for a second match.
 ///
 /// Least squares instead of the default robust loss. With that, the two correct constraints of the hall are discounted
-/// as outliers in 4 of 6 drives (seeds 1 to 6), and the hall stays 0.5 to 0.8 m off. With twice the predicted drift (3
-/// % per leg) the check lets one constraint pass that is off by a door, in 10 drives.
+/// as outliers in 4 of 6 drives (seeds 1 to 6), and the hall stays 0.5 to 0.8 m off.
 SubmapRbpfSettings gallery_settings(double max_second_best_ratio) {
   SubmapRbpfSettings settings;
   settings.drift_std_m_per_m = 0.02;
