@@ -32,9 +32,10 @@ PosePipeline::PosePipeline(const StackSettings& settings, const RobotDescription
   if (robot.T_body_sensor.contains("uwb")) T_body_uwb_ = robot.T_body("uwb");
   if (settings.calibration.enabled) {
     const auto imu = robot.T_body_sensor.find("imu");
-    calibrator_.emplace(settings.calibration, T_body_lidar_, imu == robot.T_body_sensor.end() ? Pose3{} : imu->second,
-                        site_in_map.anchors,
-                        {.distance_m = settings.uwb_filter.bias_distance_m, .bias_m = settings.uwb_filter.bias_m});
+    calibrator_.emplace(
+        settings.calibration, T_body_lidar_, imu == robot.T_body_sensor.end() ? Pose3{} : imu->second,
+        site_in_map.anchors,
+        UwbCalibration{.distance_m = settings.uwb_filter.bias_distance_m, .bias_m = settings.uwb_filter.bias_m});
   }
 }
 
