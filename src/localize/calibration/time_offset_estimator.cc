@@ -34,9 +34,13 @@ void TimeOffsetEstimator::add(const CalibrationScan& scan) {
   Eigen::Matrix3d covariance = step.match_covariance;
   covariance.diagonal() +=
       Eigen::Vector3d(settings_.odometry_std_m, settings_.odometry_std_m, settings_.odometry_std_rad).cwiseAbs2();
+  const double remaining_s =
+      settings_.linearization_error * (at(scan.sweep.stamp).value_s - scan.sweep.applied_time_offset_s);
   const double root = std::sqrt(settings_.translation_variance_factor);
   const Eigen::Vector3d scale(root, root, 1.0);
-  measurement.W = (scale.asDiagonal() * covariance * scale.asDiagonal()).inverse();
+  covariance = scale.asDiagonal() * covariance * scale.asDiagonal();
+  covariance += remaining_s * remaining_s * by_offset * by_offset.transpose();
+  measurement.W = covariance.inverse();
   detect_step(measurement);
   if (filter_.distance(measurement) > settings_.outlier_sigma * settings_.outlier_sigma) return;
   filter_.add(measurement);

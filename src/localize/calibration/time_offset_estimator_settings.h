@@ -12,6 +12,8 @@ struct TimeOffsetEstimatorSettings {
   /// Standard deviation of the lag of odometry behind its own stamps, which cannot be separated from the offset.
   double odometry_lag_std_s = 0.001;
   double translation_variance_factor = 25;  ///< of the translations, whose errors follow the gait
+  /// Standard deviation of the linearized effect of the offset that is not yet applied, relative to the effect.
+  double linearization_error = 0.2;
   double max_gap_s = 0.3;                   ///< maximum time between two scans that are compared
   double outlier_sigma = 4.0;               ///< comparisons with larger residuals are rejected
   double step_window_s = 10.0;              ///< time span of the newest scans that detect a step of the offset
@@ -26,6 +28,7 @@ struct TimeOffsetEstimatorSettings {
     visit("odometry_std_rad", self.odometry_std_rad, between(1e-6, 1.0));
     visit("odometry_lag_std_s", self.odometry_lag_std_s, between(0.0, 1.0));
     visit("translation_variance_factor", self.translation_variance_factor, between(1.0, 1e12));
+    visit("linearization_error", self.linearization_error, between(0.0, 10.0));
     visit("max_gap_s", self.max_gap_s, between(0.01, 10.0));
     visit("outlier_sigma", self.outlier_sigma, between(1.0, 100.0));
     visit("step_window_s", self.step_window_s, between(1.0, 1000.0));

@@ -17,7 +17,7 @@ std::string describe(double offset_s) {
 
 std::optional<SensorChange> ClockMonitor::step(Time now, const LidarClock& clock) {
   for (; num_steps_ < clock.num_steps; ++num_steps_) steps_.push_back(now);
-  while (!steps_.empty() && now - steps_.front() > from_seconds(settings_.step_buffer_s)) steps_.pop_front();
+  while (!steps_.empty() && now - steps_.front() > from_seconds(settings_.step_window_s)) steps_.pop_front();
   const State state = state_of(clock);
   if (std::exchange(state_, state) == state) return std::nullopt;
   SensorChange change{.sensor = "lidar", .has_recovered = state == State::kFine, .text = {}};

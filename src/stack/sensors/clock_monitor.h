@@ -34,7 +34,7 @@ class ClockMonitor {
   ClockMonitorSettings settings_;
   State state_ = State::kFine;
   int num_steps_ = 0;
-  std::deque<Time> steps_;  ///< of the last `step_buffer_s`
+  std::deque<Time> steps_;  ///< of the last `step_window_s`
 };
 
 }  // namespace patrol::stack

@@ -9,8 +9,8 @@ struct ClockMonitorSettings {
   double max_offset_s = 0.005;          ///< a larger offset is reported
   double sigma = 3.0;                   ///< the offset exceeds a limit if it does by this many standard deviations
   double max_corrected_offset_s = 0.1;  ///< a larger offset cannot be corrected: the robot stops
-  int max_steps = 2;                    ///< more steps of the offset within `step_buffer_s` stop the robot
-  double step_buffer_s = 60.0;
+  int max_steps = 2;                    ///< more steps of the offset within `step_window_s` stop the robot
+  double step_window_s = 60.0;
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -18,7 +18,7 @@ struct ClockMonitorSettings {
     visit("sigma", self.sigma, between(0.0, 100.0));
     visit("max_corrected_offset_s", self.max_corrected_offset_s, at_least(0.0));
     visit("max_steps", self.max_steps, between(0, 1000));
-    visit("step_buffer_s", self.step_memory_s, at_least(0.0));
+    visit("step_window_s", self.step_window_s, at_least(0.0));
   }
 };
 

@@ -103,7 +103,7 @@ TEST(OnlineCalibrator, FindsNothingOnAPerfectRobot) {
   }
 }
 
-TEST(OnlineCalibrator, AppliesNothingBeforeItIsSure) {
+TEST(OnlineCalibrator, AppliesNothingBeforeTheEstimateIsCertain) {
   const Result result = run(0.03, 0.0, 0.5);
   EXPECT_DOUBLE_EQ(result.applied.time_offset_s, 0.0);
 }
