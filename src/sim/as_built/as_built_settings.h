@@ -165,9 +165,9 @@ struct UwbTolerances {
 
   double anchor_delay_m = 0.1;  ///< tolerance of the range error of each anchor
   double tag_delay_m = 0.1;     ///< tolerance of the range error of the robot's antenna
-  /// Standard deviation of the gains of the robot's antenna, of an anchor's, and of its variation around it. The bias of
-  /// the receiver depends on the received power (APS011, table 2), and the stack's correction assumes isotropic antennas.
-  /// Printed antennas vary by +-3 dB in their plane, read as two standard deviations (assumption).
+  /// Standard deviation of the gains of the robot's antenna, of an anchor's, and of its variation around it. The bias
+  /// of the receiver depends on the received power (APS011, table 2), and the stack's correction assumes isotropic
+  /// antennas. Printed antennas vary by +-3 dB in their plane, read as two standard deviations (assumption).
   double received_power_std_db = 1.5;
 
   template <typename Self, typename Visitor>

@@ -13,8 +13,7 @@ namespace patrol::sim {
 /// into the offset of each scan (0.42 mm), the cyclic error (0.2 mm) and the scale (0.15 mm at 15 m). The shares are
 /// assumptions; all values are standard deviations over instruments.
 struct ScannerTolerances {
-  static constexpr const char* kSource =
-      "FARO Focus S 70 technical sheet: 19 arc seconds, 1 mm; split: assumption";
+  static constexpr const char* kSource = "FARO Focus S 70 technical sheet: 19 arc seconds, 1 mm; split: assumption";
 
   double angle_noise_ratio = 0.775;          ///< noise of the angles relative to that of sensors.scanner
   double range_offset_ratio = 0.84;          ///< range offset of a scan relative to that of sensors.scanner
