@@ -14,6 +14,14 @@ namespace {
 
 constexpr std::array kSteelDecay_s = {1e-5, 3e-5, 1e-4, 3e-4};
 constexpr double kSteelReferenceTime_s = 1e-5;
+constexpr Eigen::Index kForm = 7;  // an isotropic part and the six products of the components of an axis
+constexpr Eigen::Index kShape = 4;
+
+/// Relative response of the tunnel's air, 1 at 2 us.
+double air_decay(double time_s) { return 2e-6 / time_s; }
+
+/// Relative response of a layer, 1 at early times: a conductive sheet some 10 m away, in rock.
+double layer_decay(double time_s) { return 1.0 / std::sqrt(1.0 + time_s / 1e-5); }
 
 TemGateLayout gate_layout(const SoundingErrorSettings& settings, const std::vector<OrientedSounding>& soundings) {
   validate(settings, "stack.inspection.water.errors");
@@ -76,7 +84,8 @@ Eigen::VectorXd log_slopes(const std::vector<double>& gate_s, const Eigen::Vecto
 SoundingLikelihood::SoundingLikelihood(const SoundingErrorSettings& settings,
                                        const std::vector<OrientedSounding>& soundings)
     : gates_(gate_layout(settings, soundings)),
-      num_gates_(static_cast<Eigen::Index>(soundings.front().sounding.gate_s.size())) {
+      num_gates_(static_cast<Eigen::Index>(soundings.front().sounding.gate_s.size())),
+      body_shape_std_(settings.body_shape_std) {
   const auto count = static_cast<Eigen::Index>(soundings.size());
   const std::vector<double>& gate_s = soundings.front().sounding.gate_s;
   Eigen::MatrixXd rate(num_gates_, count), std(num_gates_, count);
@@ -96,33 +105,40 @@ SoundingLikelihood::SoundingLikelihood(const SoundingErrorSettings& settings,
     }
   }
   const Eigen::MatrixXd smooth = fit_quadratic_form(rate, std, axes_);
-  const Eigen::VectorXd slopes = log_slopes(gate_s, smooth.rowwise().mean());
+  const Eigen::VectorXd mean = smooth.rowwise().mean(), slopes = log_slopes(gate_s, mean);
   std = (std.array().square() + (settings.model_std * smooth.array()).square()).sqrt();
 
-  constexpr Eigen::Index kSteel = 7 * kSteelDecay_s.size();
+  const Eigen::Index forms = static_cast<Eigen::Index>(kSteelDecay_s.size()) + (settings.tunnel_air_std > 0.0 ? 1 : 0) +
+                             (settings.layer_std > 0.0 ? 1 : 0);
+  const Eigen::Index common = 2 + kForm * forms;
   const Eigen::Index data = num_gates_ * count;
   data_.resize(data);
   inverse_std_.resize(data);
-  nuisances_ = Eigen::MatrixXd::Zero(data, 2 + kSteel + count);
+  nuisances_ = Eigen::MatrixXd::Zero(data, common + count);
   for (Eigen::Index i = 0; i < count; ++i) {
-    const Eigen::Vector3d& axis = axes_[static_cast<std::size_t>(i)];
     for (Eigen::Index gate = 0; gate < num_gates_; ++gate) {
       const Eigen::Index row = i * num_gates_ + gate;
+      const double time_s = gate_s[static_cast<std::size_t>(gate)], signal = smooth(gate, i) / std(gate, i);
       inverse_std_[row] = 1.0 / std(gate, i);
       data_[row] = rate(gate, i) / std(gate, i);
-      const double signal = smooth(gate, i) / std(gate, i);
       nuisances_(row, 0) = settings.gain_std * signal;
       nuisances_(row, 1) = settings.time_shift_std_s * slopes[gate] * signal;
-      nuisances_(row, 2 + kSteel + i) = settings.sounding_gain_std * signal;
+      nuisances_(row, common + i) = settings.sounding_gain_std * signal;
       Eigen::Index column = 2;
+      const auto add_form = [&](double isotropic, double anisotropy) {
+        nuisances_(row, column) = isotropic;
+        nuisances_.block<1, 6>(row, column + 1) =
+            anisotropy * isotropic * products(axes_[static_cast<std::size_t>(i)]).transpose();
+        column += kForm;
+      };
       for (const double decay_s : kSteelDecay_s) {
-        const double steel = settings.steel_response *
-                             std::exp((kSteelReferenceTime_s - gate_s[static_cast<std::size_t>(gate)]) / decay_s) *
-                             inverse_std_[row];
-        nuisances_(row, column++) = steel;
-        nuisances_.block<1, 6>(row, column) = settings.steel_anisotropy * steel * products(axis).transpose();
-        column += 6;
+        add_form(settings.steel_response * std::exp((kSteelReferenceTime_s - time_s) / decay_s) * inverse_std_[row],
+                 settings.steel_anisotropy);
       }
+      if (settings.tunnel_air_std > 0.0)
+        add_form(settings.tunnel_air_std * air_decay(time_s) * mean[gate] * inverse_std_[row], 1.0);
+      if (settings.layer_std > 0.0)
+        add_form(settings.layer_std * layer_decay(time_s) * mean[gate] * inverse_std_[row], 1.0);
     }
   }
   const Eigen::Index columns = nuisances_.cols();
@@ -133,6 +149,43 @@ SoundingLikelihood::SoundingLikelihood(const SoundingErrorSettings& settings,
 double SoundingLikelihood::log_likelihood_residual(const Eigen::VectorXd& whitened) const {
   const Eigen::VectorXd projected = nuisances_.transpose() * whitened;
   return -0.5 * (whitened.squaredNorm() - projected.dot(nuisance_information_.solve(projected)));
+}
+
+// The deviations C from a sphere, whitened with unit prior standard deviation, depend on the parameters: with M = (I +
+// B B')^-1 and G = C'M C, r' (I + B B' + C C')^-1 r = r'M r - (C'M r)' (I + G)^-1 (C'M r), and the determinant grows by
+// that of I + G.
+double SoundingLikelihood::log_likelihood_residual(const Eigen::VectorXd& whitened,
+                                                   const Eigen::MatrixXd& shape) const {
+  const Eigen::MatrixXd projected_shape = nuisances_.transpose() * shape,
+                        solved_shape = nuisance_information_.solve(projected_shape);
+  const Eigen::MatrixXd information = Eigen::MatrixXd::Identity(shape.cols(), shape.cols()) +
+                                      shape.transpose() * shape - projected_shape.transpose() * solved_shape;
+  const Eigen::VectorXd projected =
+      shape.transpose() * whitened - solved_shape.transpose() * (nuisances_.transpose() * whitened);
+  const Eigen::LLT<Eigen::MatrixXd> factor(information);
+  const double log_determinant = 2.0 * factor.matrixLLT().diagonal().array().log().sum();
+  return log_likelihood_residual(whitened) + 0.5 * (projected.dot(factor.solve(projected)) - log_determinant);
+}
+
+/// Returns the deviations of a body's response from that of a sphere, whitened, [datum][deviation]: along and across
+/// the line of sight, and the two mixed terms of a body whose axes are oblique. A moment of 1 along the line of sight
+/// responds like 4 along, 1 across and 2 mixed.
+Eigen::MatrixXd SoundingLikelihood::shape_deviations(const GatedSphereResponse& body,
+                                                     const Eigen::Vector3d& direction) const {
+  const Eigen::Vector3d aside = direction.unitOrthogonal(), other = direction.cross(aside);
+  Eigen::MatrixXd shape(data_.size(), kShape);
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    const Eigen::Index row = static_cast<Eigen::Index>(i) * num_gates_;
+    const double cosine = axes_[i].dot(direction);
+    const auto scale = inverse_std_.segment(row, num_gates_);
+    const Eigen::VectorXd axial = body_shape_std_ * body.axial.cwiseProduct(scale);
+    shape.col(0).segment(row, num_gates_) = cosine * cosine * axial;
+    shape.col(1).segment(row, num_gates_) =
+        body_shape_std_ * (1.0 - cosine * cosine) * body.transverse.cwiseProduct(scale);
+    shape.col(2).segment(row, num_gates_) = cosine * axes_[i].dot(aside) * axial;
+    shape.col(3).segment(row, num_gates_) = cosine * axes_[i].dot(other) * axial;
+  }
+  return shape;
 }
 
 double SoundingLikelihood::log_likelihood_rock(double rock_spm) const {
@@ -153,7 +206,8 @@ double SoundingLikelihood::log_likelihood_body(double rock_spm, const Conductive
     whitened.segment(row, num_gates_) -=
         (across + cosine * cosine * along).cwiseProduct(inverse_std_.segment(row, num_gates_));
   }
-  return log_likelihood_residual(whitened);
+  if (body_shape_std_ <= 0.0) return log_likelihood_residual(whitened);
+  return log_likelihood_residual(whitened, shape_deviations(body, direction));
 }
 
 }  // namespace patrol::inspect
