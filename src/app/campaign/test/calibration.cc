@@ -12,7 +12,7 @@
 namespace patrol::app {
 namespace {
 
-bool is_exact(const io::Expectation& expectation) {
+bool is_one_number(const io::Expectation& expectation) {
   return !expectation.is_boolean && expectation.min == expectation.max;
 }
 
@@ -36,7 +36,7 @@ void propose(CalibratedMetric& calibrated, std::size_t num_samples) {
     calibrated.note = fmt::format("measured with {} of {} seeds", calibrated.values.size(), num_samples);
     return;
   }
-  if (calibrated.present && is_exact(*calibrated.present)) {
+  if (calibrated.present && is_one_number(*calibrated.present)) {
     if (calibrated.is_missed()) calibrated.note = "not equal for all seeds";
     else calibrated.proposed = calibrated.present;
     return;

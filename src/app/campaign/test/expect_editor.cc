@@ -30,7 +30,7 @@ bool is_blank_or_comment(const std::string& line) {
 }
 
 /// Comment behind a value: the new range in source of an old one, any other comment as it is.
-std::string comment_of(const std::string& old, const std::string& measured) {
+std::string trailing_comment(const std::string& old, const std::string& measured) {
   if (!old.empty() && !std::regex_match(old, std::regex(R"(#\s*measured .*)"))) return "  " + old;
   return measured.empty() ? "" : "  # " + measured;
 }
@@ -58,7 +58,7 @@ class Editor {
                      [](const std::string& a, const std::string& b) { return rule_index(a) < rule_index(b); });
     for (std::string& metric : added) {
       metric = fmt::format("{}{}: {}{}", indent_, metric, to_yaml(expectations.at(metric)),
-                           comment_of("", measured(metric)));
+                           trailing_comment("", measured(metric)));
     }
     lines_.insert(lines_.begin() + static_cast<std::ptrdiff_t>(end), added.begin(), added.end());
     std::string text;
@@ -87,8 +87,8 @@ class Editor {
     const std::string metric = parts[2];
     const auto found = expectations.find(metric);
     if (found != expectations.end()) {
-      lines_[i] =
-          fmt::format("{}{}: {}{}", indent_, metric, to_yaml(found->second), comment_of(parts[4], measured(metric)));
+      lines_[i] = fmt::format("{}{}: {}{}", indent_, metric, to_yaml(found->second),
+                              trailing_comment(parts[4], measured(metric)));
     }
     return metric;
   }

@@ -8,7 +8,7 @@
 namespace patrol::app {
 namespace {
 
-bool matches(std::string_view pattern, std::string_view metric) {
+bool matches_pattern(std::string_view pattern, std::string_view metric) {
   while (true) {
     const std::string_view wanted = pattern.substr(0, pattern.find('.')), name = metric.substr(0, metric.find('.'));
     if (wanted != "*" && wanted != name) return false;
@@ -44,7 +44,7 @@ io::Expectation error_limits(double lowest, double highest) {
 
 std::size_t rule_index(std::string_view metric) {
   const auto found = std::find_if(kMetricRules.begin(), kMetricRules.end(),
-                                  [&](const MetricRule& rule) { return matches(rule.pattern, metric); });
+                                  [&](const MetricRule& rule) { return matches_pattern(rule.pattern, metric); });
   return static_cast<std::size_t>(found - kMetricRules.begin());
 }
 
