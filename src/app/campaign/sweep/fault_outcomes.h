@@ -48,7 +48,7 @@ struct FaultRow {
   std::vector<std::optional<double>> values,
       baseline_values;  ///< [metric], this run and the run without fault of this seed
 
-  bool is_without_effect() const { return was_triggered.value_or(false) && !has_effect; }
+  bool is_without_effect() const { return !fault.kind.empty() && was_triggered.value_or(false) && !has_effect; }
   bool is_not_triggered() const { return was_triggered.has_value() && !*was_triggered; }
 };
 

@@ -122,9 +122,10 @@ TEST(PlanFaults, EachOfTheSevenKindsForEachSensorAndOneRunWithout) {
 
 TEST(PlanFaults, ThreeSeedsUnlessToldOtherwise) {
   FaultMatrixOptions options = faults_of("street/scenarios/short.yaml");
-  EXPECT_EQ(plan_fault_matrix(options).runs.size(), 3u * (1u + 6u * 7u));
+  options.faults = {"imu: drift"};
+  EXPECT_EQ(plan_fault_matrix(options).runs.size(), 3u * 2u);
   options.seeds = "4..5";
-  EXPECT_EQ(plan_fault_matrix(options).runs.size(), 2u * (1u + 6u * 7u));
+  EXPECT_EQ(plan_fault_matrix(options).runs.size(), 2u * 2u);
 }
 
 TEST(PlanFaults, NamedFaultsOnlyAndAnUnknownOneIsRefused) {
