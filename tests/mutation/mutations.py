@@ -40,7 +40,7 @@ MUTATIONS = [
              "                              log_.write(now, leaked);\n"
              "                            },",
              ("patrol",), r"^(Scenario|Street|Substation|Tunnel)\."),
-    Mutation("ate_halved", "the ATE is half of what it is", "src/score/trajectory_error.cc",
+    Mutation("ate_halved", "the ATE is half of what it is", "src/score/pose/trajectory_error.cc",
              ".ate_rmse_m = root_mean_square(position_m),", ".ate_rmse_m = 0.5 * root_mean_square(position_m),",
              ("score_test",), r"^(TrajectoryError|RunScore|ScoreRun)\."),
     Mutation("collision_ignored", "the first contact with an object is no collision", "src/sim/simulator/simulator.cc",

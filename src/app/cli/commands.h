@@ -11,7 +11,7 @@
 #include "app/common/exit_code.h"
 #include "app/monitor/monitor_options.h"
 #include "app/plan/plan_options.h"
-#include "score/relation_error.h"
+#include "score/pose/relation_error.h"
 
 /// Functions of the program's commands, one each. Results are printed to standard output, messages to standard error.
 namespace patrol::app {

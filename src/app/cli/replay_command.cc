@@ -9,7 +9,7 @@
 #include "app/run/run_loop.h"
 #include "core/error.h"
 #include "render/film/replay.h"
-#include "score/trajectory_error.h"
+#include "score/pose/trajectory_error.h"
 
 namespace patrol::app {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "app/report/event_timeline.h"
 #include "core/geometry/angles.h"
-#include "score/trajectory_error.h"
+#include "score/pose/trajectory_error.h"
 
 namespace patrol::app {
 namespace {

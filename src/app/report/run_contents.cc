@@ -5,7 +5,7 @@
 #include "core/error.h"
 #include "io/files/atomic_file.h"
 #include "io/maps/map_server.h"
-#include "score/trajectory_error.h"
+#include "score/pose/trajectory_error.h"
 
 namespace patrol::app {
 namespace {

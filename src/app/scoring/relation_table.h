@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "score/relation_error.h"
+#include "score/pose/relation_error.h"
 
 namespace patrol::app {
 

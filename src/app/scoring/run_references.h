@@ -2,7 +2,7 @@
 
 #include "app/scenario/scenario.h"
 #include "app/scoring/true_map.h"
-#include "score/run_score.h"
+#include "score/run/run_score.h"
 
 namespace patrol::app {
 

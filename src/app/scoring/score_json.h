@@ -8,12 +8,12 @@
 #include "score/inspection_score.h"
 #include "score/lining_score.h"
 #include "score/localizability.h"
-#include "score/localization_score.h"
 #include "score/map_error.h"
-#include "score/pose_nees.h"
-#include "score/run_score.h"
+#include "score/pose/localization_score.h"
+#include "score/pose/pose_nees.h"
+#include "score/pose/trajectory_error.h"
+#include "score/run/run_score.h"
 #include "score/station_error.h"
-#include "score/trajectory_error.h"
 #include "score/water_score.h"
 
 namespace patrol::app {

@@ -12,7 +12,7 @@
 #include "core/trajectory.h"
 #include "io/json/metrics_json.h"
 #include "io/points/station_scans.h"
-#include "score/run_score.h"
+#include "score/run/run_score.h"
 
 namespace patrol::app {
 

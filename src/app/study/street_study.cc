@@ -9,8 +9,8 @@
 #include "app/study/log_mapper.h"
 #include "app/study/study_run.h"
 #include "score/map_error.h"
+#include "score/pose/trajectory_error.h"
 #include "score/station_error.h"
-#include "score/trajectory_error.h"
 
 namespace patrol::app {
 namespace {

@@ -6,7 +6,7 @@
 #include "app/run/run_once.h"
 #include "report/map_picture.h"
 #include "score/map_error.h"
-#include "score/trajectory_error.h"
+#include "score/pose/trajectory_error.h"
 
 namespace patrol::app {
 namespace {

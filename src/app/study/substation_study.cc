@@ -10,7 +10,7 @@
 #include "app/study/study_run.h"
 #include "report/boxes.h"
 #include "score/map_error.h"
-#include "score/trajectory_error.h"
+#include "score/pose/trajectory_error.h"
 
 namespace patrol::app {
 namespace {

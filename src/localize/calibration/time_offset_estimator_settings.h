@@ -14,11 +14,11 @@ struct TimeOffsetEstimatorSettings {
   double translation_variance_factor = 25;  ///< of the translations, whose errors follow the gait
   /// Standard deviation of the linearized effect of the offset that is not yet applied, relative to the effect.
   double linearization_error = 0.2;
-  double max_gap_s = 0.3;                   ///< maximum time between two scans that are compared
-  double outlier_sigma = 4.0;               ///< comparisons with larger residuals are rejected
-  double step_window_s = 10.0;              ///< time span of the newest scans that detect a step of the offset
-  double step_sigma = 6.0;                  ///< minimum size of a detected step, in standard deviations
-  double min_step_s = 0.004;                ///< minimum size of a detected step
+  double max_gap_s = 0.3;       ///< maximum time between two scans that are compared
+  double outlier_sigma = 4.0;   ///< comparisons with larger residuals are rejected
+  double step_window_s = 10.0;  ///< time span of the newest scans that detect a step of the offset
+  double step_sigma = 6.0;      ///< minimum size of a detected step, in standard deviations
+  double min_step_s = 0.004;    ///< minimum size of a detected step
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

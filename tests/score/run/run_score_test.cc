@@ -1,4 +1,4 @@
-#include "score/run_score.h"
+#include "score/run/run_score.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
-#include "score/run_score.h"
+#include "score/run/run_score.h"
 
 #include <limits>
 
 #include "core/error.h"
-#include "score/live_trajectory.h"
+#include "score/pose/live_trajectory.h"
 
 namespace patrol::score {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "core/site/site_registration.h"
 #include "core/trajectory.h"
-#include "score/trajectory_error.h"
+#include "score/pose/trajectory_error.h"
 
 namespace patrol::score {
 

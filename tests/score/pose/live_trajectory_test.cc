@@ -1,4 +1,4 @@
-#include "score/live_trajectory.h"
+#include "score/pose/live_trajectory.h"
 
 #include <cmath>
 #include <functional>
@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "score/trajectory_error.h"
+#include "score/pose/trajectory_error.h"
 #include "tests/support/pose_near.h"
 
 namespace patrol::score::live_trajectory_test {

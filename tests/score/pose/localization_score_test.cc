@@ -1,4 +1,4 @@
-#include "score/localization_score.h"
+#include "score/pose/localization_score.h"
 
 #include <gtest/gtest.h>
 

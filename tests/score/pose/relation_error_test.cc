@@ -1,4 +1,4 @@
-#include "score/relation_error.h"
+#include "score/pose/relation_error.h"
 
 #include <cmath>
 #include <numbers>

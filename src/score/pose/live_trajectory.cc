@@ -1,4 +1,4 @@
-#include "score/live_trajectory.h"
+#include "score/pose/live_trajectory.h"
 
 #include <algorithm>
 #include <iterator>

@@ -1,4 +1,4 @@
-#include "score/site_score.h"
+#include "score/pose/site_score.h"
 
 #include <cmath>
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/messages.h"
-#include "score/trajectory_error.h"
+#include "score/pose/trajectory_error.h"
 
 namespace patrol::score {
 

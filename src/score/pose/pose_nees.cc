@@ -1,4 +1,4 @@
-#include "score/pose_nees.h"
+#include "score/pose/pose_nees.h"
 
 #include <algorithm>
 #include <optional>

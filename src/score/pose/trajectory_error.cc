@@ -1,4 +1,4 @@
-#include "score/trajectory_error.h"
+#include "score/pose/trajectory_error.h"
 
 #include <algorithm>
 
