@@ -1,15 +1,11 @@
 #include "app/cli/command_line.h"
 
 #include <cerrno>
-#include <charconv>
-#include <cmath>
-#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <exception>
 #include <functional>
 #include <iostream>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -18,6 +14,7 @@
 #include <mujoco/mujoco.h>
 
 #include "app/cli/commands.h"
+#include "app/cli/number_checks.h"
 #include "app/cli/renamed_options.h"
 #include "core/error.h"
 #include "core/text.h"
@@ -339,35 +336,6 @@ void refuse_unknown_command(const CLI::App& app, int argc, const char* const* ar
 int report(const std::string& what, ExitCode code) {
   std::fputs(fmt::format("patrol: {}\n", io::on_one_line(what)).c_str(), stderr);  // fmt::print would throw on failure
   return static_cast<int>(code);
-}
-
-/// Accepts decimal digits only. CLI11 converts -1 to 2^64 - 1, and 010 to 8.
-std::string refuse_bad_seed(const std::string& text) {
-  std::uint64_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool is_octal = text.size() > 1 && text.front() == '0';
-  if (error == std::errc() && end == text.data() + text.size() && !is_octal) return "";
-  return fmt::format("{}: must be an integer in [0, {}]", text, std::numeric_limits<std::uint64_t>::max());
-}
-
-/// Rejects numbers beyond all times, lengths and speeds in use. CLI11 converts 1e400 to infinity.
-std::string refuse_bad_number(const std::string& text) {
-  constexpr double kMaxNumber = 1e9;
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  if (!text.empty() && *end == '\0' && std::abs(value) <= kMaxNumber) return "";
-  return fmt::format("{}: must be a number in [-1e9, 1e9]", text);
-}
-
-/// Adds checks that CLI11 lacks to every option of every command, by the type of its value.
-void add_number_checks(CLI::App& app) {
-  for (CLI::App* command : app.get_subcommands({})) {
-    for (CLI::Option* option : command->get_options()) {
-      const std::string type = option->get_type_name();
-      if (type == "UINT") option->check(CLI::Validator(refuse_bad_seed, "", "seed"));
-      if (type == "FLOAT") option->check(CLI::Validator(refuse_bad_number, "", "number"));
-    }
-  }
 }
 
 /// Parses the command line and runs its command. Exceptions become one line on standard error.

@@ -1,0 +1,11 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace patrol::app {
+
+/// Adds checks that CLI11 lacks to every option of every command, by the type of its value: integers must be decimal
+/// and not negative, numbers within 1e9.
+void add_number_checks(CLI::App& app);
+
+}  // namespace patrol::app
