@@ -170,7 +170,7 @@ INSTANTIATE_TEST_SUITE_P(
                       ExpectedLidar{"utm30lx", 40.0, 270.25, 0.25, 1, 0.1, 30.0, 10.0, 0.015, 0.001, 0.01, 0.002},
                       ExpectedLidar{"tim571", 15.0, 270.33, 1.0 / 3.0, 1, 0.05, 25.0, 8.0, 0.02, 0.001, 0.01, 0.002},
                       ExpectedLidar{"vlp16", 10.0, 360.0, 0.2, 16, 0.5, 100.0, 50.0, 0.015, 0.002, 0.01, 0.002}),
-    [](const auto& info) { return info.param.preset; });
+    [](const auto& preset) { return preset.param.preset; });
 
 }  // namespace
 }  // namespace patrol::sim::lidar_presets_test
