@@ -67,8 +67,6 @@ SitePoseGaussian solve(const std::vector<SiteMeasurement>& measurements, const R
   return register_to_site(registration_prior(kStart, settings), measurements, settings);
 }
 
-double position_error_m(const Pose2& a, const Pose2& b) { return (a.position() - b.position()).norm(); }
-
 TEST(RegisterToSite, WithoutMeasurementsIsThePrior) {
   const RegistrationSettings settings;
   const SitePoseGaussian estimate = solve({}, settings);
