@@ -70,7 +70,7 @@ TEST(GasMission, StationsFollowTheSurveyButNotDuringAMeasurement) {
   step_at(3.0, NavigationFeedback::kArrived);
   mission.set_site(moved_by(0.2));
   EXPECT_EQ(step_at(3.1, NavigationFeedback::kArrived).task.goal->T_map_body.x, 3.1);
-  const MissionInput measured{.inspection = {.feedback = InspectionFeedback::kDone}};
+  const MissionInput measured{.pose = {}, .inspection = {.feedback = InspectionFeedback::kDone}};
   EXPECT_EQ(mission.step(from_seconds(5.0), measured).task.goal->T_map_body.x, 3.2);  // the second station
 }
 
