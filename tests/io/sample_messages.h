@@ -181,20 +181,23 @@ inline GroundTruth sample_truth() {
 }
 inline SimState sample_state() { return {.stamp = kSampleStamp, .qpos = {1.0, 2.0, 3.0}, .mocap = {4.0, 5.0}}; }
 inline Collision sample_collision() { return {.stamp = kSampleStamp, .first = "FL_shank", .second = "house_7"}; }
+inline AsBuiltTruth sample_as_built() {
+  return {.stamp = kSampleStamp, .values = {{"lidar.yaw_rad", 0.004}, {"imu.gyro_z_scale", 1.002}}};
+}
 inline io::TransformSet sample_transforms() {
   return {{{.stamp = kSampleStamp, .parent = "map", .child = "odom", .T_parent_child = sample_pose()},
            {.stamp = 1s, .parent = "odom", .child = "base_link", .T_parent_child = {}}}};
 }
 
 inline auto all_samples() {
-  return std::tuple(sample_scan(), sample_cloud(), sample_imu(), sample_joints(), sample_contacts(), sample_gas(),
-                    sample_fix(), sample_ticks(), sample_uwb(), sample_ultrasonic(), sample_depth(), sample_teleop(),
-                    sample_panorama(), sample_antenna(), sample_sounding(), ScanCommand{kSampleStamp},
-                    AntennaCommand{kSampleStamp, 0.5, -0.25}, SoundingCommand{kSampleStamp},
-                    WarningCommand{kSampleStamp, true, false}, sample_lining(), sample_water(), sample_trust(),
-                    sample_calibration(), sample_odometry(), sample_estimate(), UwbPoseEstimate{sample_estimate()},
-                    sample_particles(), sample_registration(), sample_map(), sample_path(), sample_command(),
-                    sample_event(), sample_truth(), sample_state(), sample_collision(), sample_transforms());
+  return std::tuple(
+      sample_scan(), sample_cloud(), sample_imu(), sample_joints(), sample_contacts(), sample_gas(), sample_fix(),
+      sample_ticks(), sample_uwb(), sample_ultrasonic(), sample_depth(), sample_teleop(), sample_panorama(),
+      sample_antenna(), sample_sounding(), ScanCommand{kSampleStamp}, AntennaCommand{kSampleStamp, 0.5, -0.25},
+      SoundingCommand{kSampleStamp}, WarningCommand{kSampleStamp, true, false}, sample_lining(), sample_water(),
+      sample_trust(), sample_calibration(), sample_odometry(), sample_estimate(), UwbPoseEstimate{sample_estimate()},
+      sample_particles(), sample_registration(), sample_map(), sample_path(), sample_command(), sample_event(),
+      sample_truth(), sample_state(), sample_as_built(), sample_collision(), sample_transforms());
 }
 
 }  // namespace patrol::test

@@ -69,8 +69,8 @@ TEST_F(RunLog, BringsEveryMessageToItsHandlerAtItsTime) {
       },
       test::all_samples());
   EXPECT_TRUE(read_run_log(file, handlers));
-  EXPECT_EQ(written, 33);
-  EXPECT_EQ(calls.size(), 33U);
+  EXPECT_EQ(written, 36);
+  EXPECT_EQ(calls.size(), 36U);
   for (const auto& [second, number] : calls) EXPECT_EQ(number, 1) << second;
 }
 
