@@ -310,7 +310,7 @@ AsBuiltSettings clock_only(const ClockTolerances& clock) {
   settings.enabled = true;
   settings.clock = clock;
   settings.mounting = {.position_m = 0.0, .angle_deg = 0.0};
-  settings.uwb = {.anchor_delay_m = 0.0, .tag_delay_m = 0.0};
+  settings.uwb = {.anchor_delay_m = 0.0, .tag_delay_m = 0.0, .received_power_std_db = 0.0};
   return settings;
 }
 
@@ -344,7 +344,7 @@ TEST(AsBuilt, TransportJitterDelaysByItsMeanAndKeepsTheOrder) {
 
 TEST(AsBuilt, AntennaDelaysShiftTheRangesOfEachAnchor) {
   AsBuiltSettings as_built = clock_only({.offset_s = 0.0, .drift_ppm = 0.0, .transport_jitter_s = 0.0});
-  as_built.uwb = {};
+  as_built.uwb = {.received_power_std_db = 0.0};
   const AsBuiltRobot robot(as_built, make_robot(), 1);
   const auto nominal = stand(with_uwb(), 2.0).of<UwbRange>();
   const auto actual = stand(with_uwb(), 2.0, {}, make_robot(), make_wall_imager, {}, as_built).of<UwbRange>();

@@ -40,18 +40,19 @@ TEST(SubsurfaceResponse, ASpheroidOfEqualAxesIsASphere) {
   sphere.shape = "sphere";
   for (const Eigen::Vector3d& axis : {Eigen::Vector3d::UnitX().eval(), Eigen::Vector3d(0.6, 0.0, -0.8)}) {
     const Eigen::VectorXd expected = rate({.water_bodies = {sphere}}, axis);
-    EXPECT_LT((rate({.water_bodies = {spheroid(1.0)}}, axis) - expected).cwiseQuotient(expected).norm(), 1e-5);
+    EXPECT_LT((rate({.water_bodies = {spheroid(1.0)}}, axis) - expected).cwiseQuotient(expected).norm(), 2e-5);
   }
 }
 
-TEST(SubsurfaceResponse, AFlatBodyRespondsMostThroughItsFlatSide) {
+TEST(SubsurfaceResponse, AFlatBodyRespondsLongestThroughItsFlatSide) {
   WaterBodySettings lens = spheroid(0.5);
   lens.y_m = 0.0, lens.z_m = kCoil.z();
   lens.axis_azimuth_deg = lens.axis_elevation_deg = 0.0;
   const Eigen::VectorXd rock = rate({}), facing = rate({.water_bodies = {lens}}) - rock;
   lens.axis_azimuth_deg = 90.0;
   const Eigen::VectorXd edge_on = rate({.water_bodies = {lens}}) - rock;
-  EXPECT_GT(facing[0], 1.3 * edge_on[0]);
+  EXPECT_LT(facing[0], edge_on[0]) << "early: the rim is nearer";
+  EXPECT_GT(facing[2], 5.0 * edge_on[2]) << "late: the currents around the axis are slowest";
   lens.axis_azimuth_deg = 0.0, lens.axis_elevation_deg = 90.0;
   const Eigen::VectorXd lying = rate({.water_bodies = {lens}}) - rock;
   EXPECT_LT((lying - edge_on).norm(), 1e-3 * lying.norm()) << "along the line of sight only the axis' angle counts";
