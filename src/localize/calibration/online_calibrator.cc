@@ -31,7 +31,7 @@ ScanCorrection OnlineCalibrator::next_correction(Time stamp) {
   const double elapsed_s = corrected_ ? std::max(0.0, to_seconds(stamp - *corrected_)) : 0.0;
   corrected_ = stamp;
   const TimeOffset offset = time_offset_.at(stamp);
-  if (settings_.corrects_time_offset && offset.std_s <= settings_.max_applied_std_s) {
+  if (settings_.corrects_time_offset && is_applicable(offset, applied_.time_offset_s, settings_.max_applied_std_s)) {
     applied_.time_offset_s =
         toward(applied_.time_offset_s, offset.value_s, settings_.max_offset_change_s_per_s * elapsed_s);
   }

@@ -14,6 +14,12 @@ constexpr double kRecentVariance = 4.0;  // variance factor of the newest scans 
 
 }  // namespace
 
+bool is_applicable(const TimeOffset& estimate, double applied_s, double max_std_s) {
+  constexpr double kClearDifference_sigma = 5.0;
+  return estimate.std_s <= max_std_s ||
+         std::abs(estimate.value_s - applied_s) > kClearDifference_sigma * estimate.std_s;
+}
+
 TimeOffsetEstimator::TimeOffsetEstimator(const TimeOffsetEstimatorSettings& settings)
     : settings_(settings), filter_(Eigen::Vector2d(settings.prior_std_s, settings.prior_drift_std_s_per_s), {}) {}
 

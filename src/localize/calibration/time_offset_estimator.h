@@ -15,6 +15,11 @@ struct TimeOffset {
   double drift_s_per_s = 0.0, drift_std_s_per_s = 0.0;
 };
 
+/// Returns whether an estimate is precise enough to replace the applied offset: its standard deviation is at most
+/// `max_std_s`, or it differs from the applied offset by more than five of them. Far from the applied offset, the
+/// standard deviation decreases only once the offset is corrected, because the comparison of scans is linearized.
+bool is_applicable(const TimeOffset& estimate, double applied_s, double max_std_s);
+
 /// Estimator of the time offset between lidar stamps and odometry, and of its drift.
 ///
 /// The motion between consecutive scans by matching is compared with odometry: an offset e changes the residual by e
