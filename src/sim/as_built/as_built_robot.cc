@@ -20,14 +20,16 @@ AsBuiltRobot::AsBuiltRobot(const AsBuiltSettings& settings, RobotDescription nom
                        uniform("placement/yaw", to_rad(placement.yaw_deg))};
 }
 
+RandomStream AsBuiltRobot::stream(const std::string& term) const { return {seed_, "as_built/" + term}; }
+
 double AsBuiltRobot::uniform(const std::string& term, double tolerance, std::uint64_t index) const {
   if (!settings_.enabled) return 0.0;
-  return tolerance * (2.0 * RandomStream(seed_, "as_built/" + term).uniform(0, index) - 1.0);
+  return tolerance * (2.0 * stream(term).uniform(0, index) - 1.0);
 }
 
 double AsBuiltRobot::normal(const std::string& term, double std, std::uint64_t index) const {
   if (!settings_.enabled) return 0.0;
-  return std * RandomStream(seed_, "as_built/" + term).normal(0, index);
+  return std * stream(term).normal(0, index);
 }
 
 /// The coil's mount is left out: its servos have alignment errors of their own (sensors.antenna).
@@ -100,9 +102,10 @@ ImuErrors AsBuiltRobot::imu() const {
 
 JointErrors AsBuiltRobot::joints() const {
   if (!settings_.enabled) return {};
-  JointErrors errors{.zero_offset_rad = {}, .play_rad = to_rad(settings_.joints.play_deg)};
+  JointErrors errors{.zero_offset_rad = {}, .play_rad = to_rad(settings_.joint_encoders.play_deg)};
   for (std::size_t joint = 0; joint < nominal_.joint_names.size(); ++joint) {
-    errors.zero_offset_rad.push_back(uniform("joints/zero_offset", to_rad(settings_.joints.zero_offset_deg), joint));
+    errors.zero_offset_rad.push_back(
+        uniform("joints/zero_offset", to_rad(settings_.joint_encoders.zero_offset_deg), joint));
   }
   return errors;
 }

@@ -7,6 +7,7 @@
 
 #include "core/frames.h"
 #include "core/ground_truth.h"
+#include "core/random.h"
 #include "core/robot_description.h"
 #include "sim/as_built/as_built_settings.h"
 #include "sim/as_built/device_clock.h"
@@ -55,6 +56,7 @@ class AsBuiltRobot {
   AsBuiltTruth truth(const std::vector<int>& uwb_anchors) const;
 
  private:
+  RandomStream stream(const std::string& term) const;
   /// Returns a number with uniform distribution in +-`tolerance`.
   double uniform(const std::string& term, double tolerance, std::uint64_t index = 0) const;
   double normal(const std::string& term, double std, std::uint64_t index = 0) const;

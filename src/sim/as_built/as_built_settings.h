@@ -217,7 +217,7 @@ struct AsBuiltSettings {
   MountingTolerances mounting;
   ClockTolerances clock;
   LidarTolerances lidar;
-  JointTolerances joints;
+  JointTolerances joint_encoders;
   TrackTolerances tracks;
   LegTolerances legs;
   ImuTolerances imu;
@@ -232,7 +232,7 @@ struct AsBuiltSettings {
     visit("mounting", self.mounting);
     visit("clock", self.clock);
     visit("lidar", self.lidar);
-    visit("joints", self.joints);
+    visit("joint_encoders", self.joint_encoders);
     visit("tracks", self.tracks);
     visit("legs", self.legs);
     visit("imu", self.imu);

@@ -272,7 +272,7 @@ TEST(AsBuilt, QuadrupedWalksUprightDespiteAnAccelerometerBiasAcrossIt) {
   SimulatorSettings settings;
   settings.as_built.enabled = true;
   settings.as_built.mounting = {.position_m = 0.0, .angle_deg = 0.0};
-  settings.as_built.joints = {.zero_offset_deg = 0.0, .play_deg = 0.0};
+  settings.as_built.joint_encoders = {.zero_offset_deg = 0.0, .play_deg = 0.0};
   settings.as_built.legs = {.friction_scale = 0.0};
   settings.as_built.imu = {.gyro_bias_std_radps = 0.0, .scale_std = 0.0, .misalignment_std_deg = 0.0};
   ASSERT_NEAR(AsBuiltRobot(settings.as_built, io::load_robot_description(kRobotUrdf), 1).imu().accel.bias.y(), 0.536,

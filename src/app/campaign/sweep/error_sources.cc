@@ -75,7 +75,7 @@ class ToleranceCollector {
   /// Groups of sensors that a robot may lack.
   Applies condition() const {
     if (group_ == "lidar") return is_as_built_with<LaserScan>;
-    if (group_ == "joints" || group_ == "legs") return is_as_built_with<JointState>;
+    if (group_ == "joint_encoders" || group_ == "legs") return is_as_built_with<JointState>;
     if (group_ == "tracks") return is_as_built_with<TrackTicks>;
     if (group_ == "imu") return is_as_built_with<Imu>;
     if (group_ == "uwb") return is_as_built_with<UwbRange>;
