@@ -28,6 +28,7 @@ InertialFilter::InertialFilter(const Settings& settings, const InertialSample& f
   set_std(kVelocity, kStartVelocityStd_mps);
   set_std(kGyroBias, settings.gyro_bias_std_radps);
   set_std(kAccelBias, settings.accel_bias_std_mps2);
+  correlate_start_tilt(P_, motion_.T_odom_body.rotation);
 }
 
 void InertialFilter::predict(double dt_s, const InertialSample& sample) {

@@ -21,6 +21,10 @@ Eigen::Quaterniond tilt_from_gravity(const Eigen::Vector3d& force) {
                              0.0);
 }
 
+Eigen::Matrix3d tilt_error_by_accel_bias(const Eigen::Quaterniond& R_odom_body) {
+  return cross_matrix(Eigen::Vector3d::UnitZ()) * R_odom_body.toRotationMatrix() / kGravity_mps2;
+}
+
 InertialStep integrate(const TrunkMotion& before, double dt_s, const Eigen::Vector3d& omega,
                        const Eigen::Vector3d& force) {
   const Eigen::Quaterniond& rotation = before.T_odom_body.rotation;

@@ -32,6 +32,10 @@ Eigen::Quaterniond rotation_by(const Eigen::Vector3d& angle_rad);
 /// Returns roll and pitch for which gravity reads `force` at rest; yaw 0.
 Eigen::Quaterniond tilt_from_gravity(const Eigen::Vector3d& force);
 
+/// Returns the rotation error in odom per accelerometer bias in body, for a tilt that was taken from gravity at rest:
+/// the biased specific force looks level.
+Eigen::Matrix3d tilt_error_by_accel_bias(const Eigen::Quaterniond& R_odom_body);
+
 /// Dead-reckoning step with its linearization point.
 struct InertialStep {
   TrunkMotion after;                                          ///< its omega is the mean rate of the step
@@ -48,6 +52,17 @@ InertialStep integrate(const TrunkMotion& before, double dt_s, const Eigen::Vect
 struct InertialError {
   static constexpr int kPosition = 0, kRotation = 3, kVelocity = 6, kGyroBias = 9, kAccelBias = 12, kSize = 15;
 };
+
+/// Adds to the covariance that a tilt taken from gravity has the error of the accelerometer bias, which must be set.
+template <typename Covariance>
+void correlate_start_tilt(Covariance& P, const Eigen::Quaterniond& R_odom_body) {
+  using Error = InertialError;
+  const Eigen::Matrix3d by_bias = tilt_error_by_accel_bias(R_odom_body);
+  const Eigen::Matrix3d bias = P.template block<3, 3>(Error::kAccelBias, Error::kAccelBias);
+  P.template block<3, 3>(Error::kRotation, Error::kRotation) += by_bias * bias * by_bias.transpose();
+  P.template block<3, 3>(Error::kRotation, Error::kAccelBias) = by_bias * bias;
+  P.template block<3, 3>(Error::kAccelBias, Error::kRotation) = bias * by_bias.transpose();
+}
 
 /// Propagates the error covariance. With R_true = exp(phi) R, omega_true = omega - dbg, force_true = force - dba, to
 /// first order:

@@ -7,6 +7,7 @@ namespace patrol::localize {
 namespace {
 
 constexpr double kSigmas = 4.0;         // significance threshold for the roughness
+constexpr double kLastingSigmas = 3.0;  // and for the lasting error of the acceleration
 constexpr double kMaxLateness_s = 0.5;  // maximum delay of the tracks behind the IMU
 
 }  // namespace
@@ -15,12 +16,13 @@ void SlipDetector::reset() { readings_.clear(); }
 
 // Roughness: consecutive accelerations of a smooth ride are similar. Half their squared difference is the variance of
 // the rough part.
-void SlipDetector::add_acceleration(Time stamp, double dt_s, double acceleration_mps2) {
+void SlipDetector::add_acceleration(Time stamp, double dt_s, double acceleration_mps2, double std_mps2) {
   Sum sum = sums_.empty() ? Sum{} : sums_.back();
   const double rough = acceleration_mps2 - last_acceleration_;
   sum.stamp = stamp;
   sum.speed_mps += acceleration_mps2 * dt_s;
   sum.variance_m2ps2 += 0.5 * rough * rough * dt_s * dt_s;
+  sum.lasting_std_mps += std_mps2 * dt_s;
   last_acceleration_ = acceleration_mps2;
   sums_.push_back(sum);
   while (to_seconds(stamp - sums_.front().stamp) > kMaxLateness_s) sums_.pop_front();
@@ -45,7 +47,9 @@ std::optional<SlipEvidence> SlipDetector::add_speed(Time stamp, double tracks_mp
   const double felt = sum->speed_mps - first.sum.speed_mps;
   const double disagreement = (tracks_mps - first.tracks_mps) - felt;
   const double rough_std = std::sqrt(sum->variance_m2ps2 - first.sum.variance_m2ps2);
-  if (std::abs(disagreement) < settings_.threshold_mps + kSigmas * rough_std) return std::nullopt;
+  const double lasting_std = sum->lasting_std_mps - first.sum.lasting_std_mps;
+  const double threshold = settings_.threshold_mps + kSigmas * rough_std + kLastingSigmas * lasting_std;
+  if (std::abs(disagreement) < threshold) return std::nullopt;
   return SlipEvidence{.forward_mps = first.estimated_mps + felt,
                       .disagreement_mps = disagreement,
                       .duration_s = to_seconds(stamp - first.sum.stamp)};

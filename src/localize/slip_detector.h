@@ -21,12 +21,13 @@ class SlipDetector {
  public:
   struct Settings {
     double window_s;
-    double threshold_mps;  ///< minimum disagreement; increased on a rough ride
+    double threshold_mps;  ///< minimum disagreement; increased on a rough ride and by the error of the acceleration
   };
   explicit SlipDetector(const Settings& settings) : settings_(settings) {}
 
-  /// Adds an IMU step: forward acceleration over the step that ends at `stamp`, without gravity.
-  void add_acceleration(Time stamp, double dt_s, double acceleration_mps2);
+  /// Adds an IMU step: forward acceleration over the step that ends at `stamp`, without gravity. `std_mps2`: standard
+  /// deviation of its lasting error, from accelerometer bias and tilt.
+  void add_acceleration(Time stamp, double dt_s, double acceleration_mps2, double std_mps2 = 0.0);
   /// Adds a track reading, not newer than the newest acceleration: mean track speed and estimated body speed. Returns
   /// evidence if there is slip.
   std::optional<SlipEvidence> add_speed(Time stamp, double tracks_mps, double estimated_mps);
@@ -36,8 +37,9 @@ class SlipDetector {
  private:
   struct Sum {
     Time stamp{};
-    double speed_mps = 0.0;       ///< integrated acceleration
-    double variance_m2ps2 = 0.0;  ///< accumulated variance of the integral, from the roughness of the acceleration
+    double speed_mps = 0.0;        ///< integrated acceleration
+    double variance_m2ps2 = 0.0;   ///< accumulated variance of the integral, from the roughness of the acceleration
+    double lasting_std_mps = 0.0;  ///< integrated standard deviation of the lasting error
   };
   struct Reading {
     Sum sum;

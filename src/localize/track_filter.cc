@@ -36,6 +36,7 @@ TrackFilter::TrackFilter(const Settings& settings, const InertialSample& first) 
   set_std(Error::kVelocity, kTrackStartVelocityStd_mps);
   set_std(Error::kGyroBias, settings.gyro_bias_std_radps);
   set_std(Error::kAccelBias, settings.accel_bias_std_mps2);
+  correlate_start_tilt(P_, motion_.T_odom_body.rotation);
   P_(kScale, kScale) = std::pow(settings.scale_std, 2);
   P_(kIcr, kIcr) = std::pow(settings.icr_x_std_m, 2);
   P_(kIcr + 1, kIcr + 1) = std::pow(settings.icr_y_std_m, 2);
@@ -205,6 +206,18 @@ void TrackFilter::apply_error(const Eigen::Matrix<double, kSize, 1>& error) {
 }
 
 // v = ((1 - scale - slip) u, 0) - omega x p
+double TrackFilter::forward_acceleration_std_mps2() const {
+  const Eigen::Matrix3d R = motion_.T_odom_body.rotation.toRotationMatrix();
+  const Eigen::Matrix3d by_rotation = R.transpose() * cross_matrix(Eigen::Vector3d(0.0, 0.0, -kGravity_mps2));
+  Eigen::Matrix<double, 1, 6> H;
+  H << by_rotation.row(0), -Eigen::RowVector3d::UnitX();
+  Eigen::Matrix<double, 6, 6> P;
+  constexpr int kRotation = Error::kRotation, kBias = Error::kAccelBias;
+  P << P_.block<3, 3>(kRotation, kRotation), P_.block<3, 3>(kRotation, kBias), P_.block<3, 3>(kBias, kRotation),
+      P_.block<3, 3>(kBias, kBias);
+  return std::sqrt(std::max(0.0, (H * P * H.transpose()).value()));
+}
+
 Eigen::Vector2d TrackFilter::systematic_velocity_variance() const {
   const double u = smooth_track_mps_, omega = motion_.omega_body.z();
   const Eigen::Vector4d ahead(-u, -u, 0.0, omega), left(0.0, 0.0, -omega, 0.0);

@@ -71,6 +71,9 @@ class TrackFilter {
   double yaw_rate_radps() const { return (motion_.T_odom_body.rotation * motion_.omega_body).z(); }
   /// Returns the IMU forward acceleration of the last step, in body, without gravity, m/s2.
   double forward_acceleration_mps2() const { return forward_acceleration_mps2_; }
+  /// Returns the standard deviation of the lasting error of the forward acceleration: accelerometer bias and gravity in
+  /// a wrong tilt, m/s2.
+  double forward_acceleration_std_mps2() const;
   double scale() const { return scale_; }
   double slip() const { return slip_; }
   const Eigen::Vector2d& icr_m() const { return icr_m_; }

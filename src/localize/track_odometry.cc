@@ -106,7 +106,8 @@ void TrackOdometry::advance(Time stamp, const InertialSample& sample) {
   } else if (step == Step::kBridged) {
     slip_detector_.reset();
   } else {
-    slip_detector_.add_acceleration(stamp, to_seconds(stamp - before), imu_.filter()->forward_acceleration_mps2());
+    slip_detector_.add_acceleration(stamp, to_seconds(stamp - before), imu_.filter()->forward_acceleration_mps2(),
+                                    imu_.filter()->forward_acceleration_std_mps2());
   }
   update_standstill(sample);
   has_settled_ = has_settled_ || to_seconds(stamp - started_) > settings_.init_timeout_s;

@@ -4,7 +4,7 @@
 
 namespace patrol::score {
 
-InspectionScore inspection_score(const std::vector<Event>& events, const Pose2& T_world_map,
+InspectionScore inspection_score(const std::vector<Event>& events, const MapInSite& map,
                                  const std::vector<LeakGroundTruth>& leaks, double max_distance_m) {
   InspectionScore score;
   score.leaks = static_cast<int>(leaks.size());
@@ -13,7 +13,7 @@ InspectionScore inspection_score(const std::vector<Event>& events, const Pose2& 
     if (event.kind != EventKind::kGasAlarm) continue;
     ScoredAlarm finding{.station = event.subject,
                         .column_ppm_m = event.value,
-                        .p_world_m = T_world_map * event.p_map_target,
+                        .p_world_m = map.at(event.stamp).T_site_map * event.p_map_target,
                         .leak = "",
                         .error_m = max_distance_m};
     for (const LeakGroundTruth& leak : leaks) {

@@ -7,6 +7,7 @@
 
 #include "core/frames.h"
 #include "core/messages.h"
+#include "score/pose/map_in_site.h"
 
 namespace patrol::score {
 
@@ -33,9 +34,9 @@ struct InspectionScore {
   std::vector<ScoredAlarm> findings;
 };
 
-/// Assigns each alarm to the nearest leak within `max_distance_m`. An alarm with no leak in this radius is a false
-/// alarm.
-InspectionScore inspection_score(const std::vector<Event>& events, const Pose2& T_world_map,
+/// Assigns each alarm, placed in site as the robot places it, to the nearest leak within `max_distance_m`. An alarm
+/// with no leak in this radius is a false alarm.
+InspectionScore inspection_score(const std::vector<Event>& events, const MapInSite& map,
                                  const std::vector<LeakGroundTruth>& leaks, double max_distance_m = 2.0);
 
 }  // namespace patrol::score

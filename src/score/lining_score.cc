@@ -57,8 +57,8 @@ void add_rings(const LiningResult& result, const LiningGroundTruth& truth, const
 
 }  // namespace
 
-LiningScore lining_score(const std::vector<LiningResult>& results, const LiningGroundTruth& truth,
-                         const Pose3& T_world_map, double displacement_m, double still_m) {
+LiningScore lining_score(const std::vector<LiningResult>& results, const LiningGroundTruth& truth, const MapInSite& map,
+                         double displacement_m, double still_m) {
   LiningScore score;
   double squares = 0.0;
   int held = 0;
@@ -66,7 +66,7 @@ LiningScore lining_score(const std::vector<LiningResult>& results, const LiningG
     ++score.stations;
     if (!result.is_registered) continue;
     ++score.registered;
-    add_rings(result, truth, T_world_map, displacement_m, still_m, score);
+    add_rings(result, truth, to_pose3(map.at(result.stamp).T_site_map), displacement_m, still_m, score);
     for (const LiningCell& cell : result.cells) {
       const double error_m = cell.inward_m - truth.inward_m(cell.ring, cell.clock_deg);
       squares += error_m * error_m;

@@ -9,6 +9,7 @@
 #include "core/frames.h"
 #include "core/inspection_result.h"
 #include "core/tunnel_lining.h"
+#include "score/pose/map_in_site.h"
 
 namespace patrol::score {
 
@@ -52,10 +53,10 @@ struct LiningScore {
   std::vector<RingScore> rings;  ///< moved rings and rings with a finding
 };
 
-/// Evaluates the findings of all stations. A ring counts as moved when its peak displacement is at least
-/// `displacement_m`, and a finding is false when it is below `still_m`. Between the two limits, a finding and its
-/// absence are both correct.
-LiningScore lining_score(const std::vector<LiningResult>& results, const LiningGroundTruth& truth,
-                         const Pose3& T_world_map, double displacement_m = 0.0025, double still_m = 0.0015);
+/// Evaluates the findings of all stations, placed in site as the robot places them. A ring counts as moved when its
+/// peak displacement is at least `displacement_m`, and a finding is false when it is below `still_m`. Between the two
+/// limits, a finding and its absence are both correct.
+LiningScore lining_score(const std::vector<LiningResult>& results, const LiningGroundTruth& truth, const MapInSite& map,
+                         double displacement_m = 0.0025, double still_m = 0.0015);
 
 }  // namespace patrol::score

@@ -138,7 +138,7 @@ std::optional<double> map_displacement_m(const OccupancyGrid& built, const Pose2
 }
 
 std::vector<StationError> station_errors(const Route& route_in_world, const std::vector<Event>& events,
-                                         const Pose2& T_world_map, const Trajectory& T_world_body,
+                                         const Pose2& T_world_map, const MapInSite& map, const Trajectory& T_world_body,
                                          const OccupancyGrid& built, const ReferenceMap& reference) {
   std::vector<StationError> errors;
   for (const Station& station : route_in_world.stations) {
@@ -149,7 +149,8 @@ std::vector<StationError> station_errors(const Route& route_in_world, const std:
       if (event.kind != EventKind::kStationReached || event.subject != station.name) continue;
       const std::optional<Pose3> truth = pose_at(T_world_body, event.stamp);
       if (!truth) continue;
-      const Pose2 T_world_truth = to_pose2(*truth), T_world_estimate = T_world_map * event.T_map_body;
+      const Pose2 T_world_truth = to_pose2(*truth);
+      const Pose2 T_world_estimate = map.at(event.stamp).T_site_map * event.T_map_body;
       error.is_reached = true;
       error.position_error_m = (T_world_estimate.position() - T_world_truth.position()).norm();
       error.heading_error_deg = to_deg(std::abs(wrap_angle(T_world_estimate.yaw - T_world_truth.yaw)));

@@ -9,6 +9,7 @@
 #include "core/messages.h"
 #include "core/route.h"
 #include "core/trajectory.h"
+#include "score/pose/map_in_site.h"
 #include "score/visibility.h"
 
 namespace patrol::score {
@@ -17,7 +18,7 @@ namespace patrol::score {
 struct StationError {
   std::string name;
   bool is_reached = false;
-  double position_error_m = 0.0;           ///< error of the estimated pose at the time of the arrival event
+  double position_error_m = 0.0;           ///< error of the estimated pose in site at the time of the arrival event
   double heading_error_deg = 0.0;          ///< absolute value, at the arrival event
   double goal_position_error_m = 0.0;      ///< distance of the true position from the surveyed one
   std::optional<double> map_error_m;       ///< displacement of the station's target in the built map
@@ -37,8 +38,9 @@ std::optional<double> map_displacement_m(const OccupancyGrid& built, const Pose2
                                          double radius_m = 6.0);
 
 /// One entry per station in the order of the route. `route_in_world` is the survey, the ground truth of the stations.
+/// `T_world_map`: true pose of the built map; `map`: its pose in site as the robot knows it.
 std::vector<StationError> station_errors(const Route& route_in_world, const std::vector<Event>& events,
-                                         const Pose2& T_world_map, const Trajectory& T_world_body,
+                                         const Pose2& T_world_map, const MapInSite& map, const Trajectory& T_world_body,
                                          const OccupancyGrid& built, const ReferenceMap& reference);
 
 }  // namespace patrol::score

@@ -27,7 +27,7 @@ std::optional<std::size_t> nearest_body(const std::vector<WaterGroundTruth>& bod
 }  // namespace
 
 WaterScore water_score(const std::vector<WaterResult>& results, const std::vector<WaterGroundTruth>& bodies,
-                       const Pose2& T_world_map, const Trajectory& T_world_body, const Eigen::Vector3d& p_body_antenna,
+                       const MapInSite& map, const Trajectory& T_world_body, const Eigen::Vector3d& p_body_antenna,
                        double max_distance_m) {
   WaterScore score{.bodies = static_cast<int>(bodies.size()), .findings = {}};
   std::set<std::size_t> found;
@@ -35,7 +35,7 @@ WaterScore water_score(const std::vector<WaterResult>& results, const std::vecto
     if (result.soundings > 0) ++score.stations;
     const std::optional<Pose3> T_world_body_at_stamp = pose_at(T_world_body, result.stamp);
     if (!result.is_found || !T_world_body_at_stamp) continue;
-    const Pose3 T_world_map_at_height = to_pose3(T_world_map, T_world_body_at_stamp->position.z());
+    const Pose3 T_world_map_at_height = to_pose3(map.at(result.stamp).T_site_map, T_world_body_at_stamp->position.z());
     const Eigen::Vector3d p_world_m = T_world_map_at_height * result.p_map;
     WaterFinding finding{.station = result.station, .body = nearest_body(bodies, p_world_m, max_distance_m)};
     if (!finding.body) {

@@ -8,6 +8,7 @@
 
 #include "core/inspection_result.h"
 #include "core/trajectory.h"
+#include "score/pose/map_in_site.h"
 
 namespace patrol::score {
 
@@ -40,11 +41,11 @@ struct WaterScore {
 };
 
 /// Assigns each finding to the nearest true body within `max_distance_m`. A finding with no body in this radius is a
-/// false alarm. Findings are transformed to world by `T_world_map` in the plane and by the robot's true height, which
-/// is not estimated. Distances start at the true antenna, `p_body_antenna` in body. Without any sounding, no body
+/// false alarm. Findings are placed in site as the robot places them in the plane, and by the robot's true height,
+/// which is not estimated. Distances start at the true antenna, `p_body_antenna` in body. Without any sounding, no body
 /// counts as missed.
 WaterScore water_score(const std::vector<WaterResult>& results, const std::vector<WaterGroundTruth>& bodies,
-                       const Pose2& T_world_map, const Trajectory& T_world_body, const Eigen::Vector3d& p_body_antenna,
+                       const MapInSite& map, const Trajectory& T_world_body, const Eigen::Vector3d& p_body_antenna,
                        double max_distance_m = 6.0);
 
 }  // namespace patrol::score

@@ -49,7 +49,8 @@ TEST(InspectionScore, TheNearestOfTwoLeaksIsMeant) {
 }
 
 TEST(InspectionScore, PlacesAreTakenFromMapToWorld) {
-  const InspectionScore score = inspection_score({alarm_at(0.0, -9.0)}, {1.0, 0.0, std::numbers::pi / 2.0}, kLeaks);
+  const InspectionScore score =
+      inspection_score({alarm_at(0.0, -9.0)}, Pose2{1.0, 0.0, std::numbers::pi / 2.0}, kLeaks);
   EXPECT_NEAR(score.findings[0].error_m, 0.0, 1e-9);
 }
 

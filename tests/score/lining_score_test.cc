@@ -47,8 +47,8 @@ LiningCell cell(int ring, double inward_m, double std_m) {
 
 TEST(LiningScore, RingPushedBy6mmAndReportedWith7IsFoundWithAnErrorOf1) {
   // The crown of ring 3 is at x = 5, z = 0.1 + 8; map stands 10 m along.
-  const LiningScore score = lining_score({result({finding(3, 0.007, {-5.0, 0.3, 8.1 - 0.4})})}, truth(),
-                                         {{10.0, 0.0, 0.0}, Eigen::Quaterniond::Identity()});
+  const LiningScore score =
+      lining_score({result({finding(3, 0.007, {-5.0, 0.3, 8.1 - 0.4})})}, truth(), Pose2{10.0, 0.0, 0.0});
   EXPECT_EQ(score.found, 1);
   EXPECT_EQ(score.false_findings, 0);
   EXPECT_NEAR(score.max_error_m, 0.001, 1e-12);

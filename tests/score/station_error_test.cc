@@ -137,8 +137,8 @@ TEST(StationErrors, TellBeliefTruthAndSurveyApart) {
   const Trajectory truth = {{Time(0s), to_pose3({1.0, 1.1, 3.0 * kDegree})},
                             {Time(2s), to_pose3({3.0, 1.1, 3.0 * kDegree})}};
   const Pose2 T_world_map{0.5, 0.0, 0.0};
-  const auto errors = station_errors(route, {reached("box_1", 1s, {1.53, 1.14, 5.0 * kDegree})}, T_world_map, truth,
-                                     make_walls(), all_seeable(make_walls()));
+  const auto errors = station_errors(route, {reached("box_1", 1s, {1.53, 1.14, 5.0 * kDegree})}, T_world_map,
+                                     T_world_map, truth, make_walls(), all_seeable(make_walls()));
   ASSERT_EQ(errors.size(), 2U);
   EXPECT_EQ(errors[0].name, "box_1");
   EXPECT_TRUE(errors[0].is_reached);

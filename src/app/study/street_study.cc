@@ -86,8 +86,8 @@ std::vector<double> flatten_metrics(const Mapped& mapped, const StudyRun& patrol
   const Pose2 T_world_map = score::align_at_start(mapped.T_map_body, patrol.record.T_world_body);
   std::vector<double> metrics;
   for (const score::StationError& station :
-       score::station_errors(patrol.files.route, patrol.record.events, T_world_map, patrol.record.T_world_body,
-                             mapped.map, patrol.truth.reference)) {
+       score::station_errors(patrol.files.route, patrol.record.events, T_world_map, T_world_map,
+                             patrol.record.T_world_body, mapped.map, patrol.truth.reference)) {
     metrics.push_back(station.map_error_m.value_or(kNoStreetMetric));
   }
   metrics.resize(3, kNoStreetMetric);

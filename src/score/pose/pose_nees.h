@@ -6,12 +6,14 @@
 
 #include "core/frames.h"
 #include "core/trajectory.h"
+#include "score/pose/map_in_site.h"
 
 namespace patrol::score {
 
-/// Consistency of the published pose covariance: normalized estimation error squared (NEES) e^T P^-1 e of x, y and yaw
-/// in map [BarShalom01, sec. 5.4]. A consistent estimator has a mean of 3. More is overconfident, less underconfident.
-/// Silent time has no published covariance and does not count (`time_coverage`, trajectory_error.h).
+/// Consistency of the published covariances: normalized estimation error squared (NEES) e^T P^-1 e of x, y and yaw of
+/// the body in site [BarShalom01, sec. 5.4]. P is the sum of the covariance of the pose in map and of that of the map's
+/// registration to the site at the stamp. A consistent estimator has a mean of 3. More is overconfident, less
+/// underconfident. Silent time has no published covariance and does not count (`time_coverage`, trajectory_error.h).
 ///
 /// The instants are the stamps of the published poses within the time of the ground truth. A covariance is singular if
 /// it is not finite, or a principal standard deviation is at most 1 um or 1 urad (yaw in rad counts like m). Such a
@@ -29,7 +31,7 @@ struct PoseNees {
 };
 
 /// `covariances`: [pose of T_map_body], of x, y, yaw in map; m, m, rad.
-PoseNees pose_nees(const Trajectory& T_map_body, const std::vector<Eigen::Matrix3d>& covariances,
-                   const Pose2& T_world_map, const Trajectory& T_world_body);
+PoseNees pose_nees(const Trajectory& T_map_body, const std::vector<Eigen::Matrix3d>& covariances, const MapInSite& map,
+                   const Trajectory& T_world_body);
 
 }  // namespace patrol::score

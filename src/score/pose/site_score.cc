@@ -25,20 +25,6 @@ std::vector<MatchedPose> spaced_poses(const Trajectory& T_map_body, const Trajec
   return spaced;
 }
 
-/// The estimate in site, by the registration that was valid at the stamp of each pose.
-Trajectory path_in_site(const Trajectory& T_map_body, const std::vector<SiteRegistration>& registrations,
-                        const Pose2& T_site_start) {
-  Trajectory path;
-  path.reserve(T_map_body.size());
-  auto next = registrations.begin();
-  Pose2 T_site_map = T_site_start;
-  for (const StampedPose& entry : T_map_body) {
-    for (; next != registrations.end() && next->stamp <= entry.stamp; ++next) T_site_map = next->T_site_map;
-    path.push_back({entry.stamp, to_pose3(T_site_map) * entry.pose});
-  }
-  return path;
-}
-
 }  // namespace
 
 Pose2 fit_map_frame(const Trajectory& T_map_body, const Trajectory& T_world_body) {
@@ -63,12 +49,11 @@ Pose2 fit_map_frame(const Trajectory& T_map_body, const Trajectory& T_world_body
   return {position.x(), position.y(), rotation.yaw};
 }
 
-SiteScore site_score(const Trajectory& T_map_body, const std::vector<SiteRegistration>& registrations,
-                     const Pose2& T_site_start, const Trajectory& T_world_body) {
-  SiteScore score{.pose = trajectory_error(path_in_site(T_map_body, registrations, T_site_start), {}, T_world_body),
-                  .T_site_map = registrations.empty() ? T_site_start : registrations.back().T_site_map,
+SiteScore site_score(const Trajectory& T_map_body, const MapInSite& map, const Trajectory& T_world_body) {
+  SiteScore score{.pose = trajectory_error(map.place(T_map_body), {}, T_world_body),
+                  .T_site_map = map.last().T_site_map,
                   .nees = {},
-                  .num_registrations = registrations.size()};
+                  .num_registrations = map.num_registrations()};
   const Pose2 T_world_map = fit_map_frame(T_map_body, T_world_body);
   std::vector<double> errors_m;
   for (const MatchedPose& pose : spaced_poses(T_map_body, T_world_body)) {
@@ -79,7 +64,7 @@ SiteScore site_score(const Trajectory& T_map_body, const std::vector<SiteRegistr
   const Eigen::Vector3d error(score.T_site_map.x - T_world_map.x, score.T_site_map.y - T_world_map.y,
                               wrap_angle(score.T_site_map.yaw - T_world_map.yaw));
   score.yaw_error_deg = to_deg(std::abs(error.z()));
-  if (!registrations.empty()) score.nees = error.dot(solve_symmetric(registrations.back().covariance, error));
+  if (score.num_registrations > 0) score.nees = error.dot(solve_symmetric(map.last().covariance, error));
   return score;
 }
 

@@ -2,17 +2,16 @@
 
 #include <cstddef>
 #include <optional>
-#include <vector>
 
-#include "core/site/site_registration.h"
 #include "core/trajectory.h"
+#include "score/pose/map_in_site.h"
 #include "score/pose/trajectory_error.h"
 
 namespace patrol::score {
 
 /// Error of the pose in the survey frame, and of the registration of the map to it. `site` is world.
 struct SiteScore {
-  TrajectoryError pose;           ///< T_site_map * T_map_body, with the registration that was valid at each pose
+  TrajectoryError pose;           ///< of the path as the robot places it in site
   Pose2 T_site_map;               ///< last registration; the surveyed start in logs without one
   double position_error_m = 0.0;  ///< RMS distance by which the registration's error moves the driven path
   double yaw_error_deg = 0.0;     ///< absolute value
@@ -28,7 +27,6 @@ Pose2 fit_map_frame(const Trajectory& T_map_body, const Trajectory& T_world_body
 
 /// Evaluates the estimated path and the last registration. Throws InputError when the trajectories do not overlap in
 /// time.
-SiteScore site_score(const Trajectory& T_map_body, const std::vector<SiteRegistration>& registrations,
-                     const Pose2& T_site_start, const Trajectory& T_world_body);
+SiteScore site_score(const Trajectory& T_map_body, const MapInSite& map, const Trajectory& T_world_body);
 
 }  // namespace patrol::score

@@ -46,10 +46,10 @@ MapError run_map_error(const OccupancyGrid& built, const Pose2& T_world_map, con
   return error;
 }
 
-std::optional<KnownMapScore> known_map_score(const RunRecord& record, const Trajectory& live_T_map_body,
-                                             const RunReferences& references, const Pose2& T_world_map) {
+std::optional<KnownMapScore> known_map_score(const RunRecord& record, const Trajectory& live_T_site_body,
+                                             const RunReferences& references) {
   if (record.confidences.empty()) return std::nullopt;
-  std::vector<MatchedPose> matched = pair_poses(live_T_map_body, T_world_map, record.T_world_body);
+  std::vector<MatchedPose> matched = pair_poses(live_T_site_body, {}, record.T_world_body);
   std::erase_if(matched, [&](const MatchedPose& pose) { return pose.stamp < record.confidences.front().stamp; });
   KnownMapScore score{.localization = localization_score(matched, record.confidences, record.T_world_body.back().stamp),
                       .kidnaps = {}};
@@ -66,14 +66,14 @@ void add_site_map_errors(const RunRecord& record, const RunReferences& reference
   }
 }
 
-void add_inspection(const RunRecord& record, const RunReferences& references, EstimateScore& score) {
-  score.inspection = inspection_score(record.events, score.T_world_map, references.leaks);
+void add_inspection(const RunRecord& record, const RunReferences& references, const MapInSite& map,
+                    EstimateScore& score) {
+  score.inspection = inspection_score(record.events, map, references.leaks);
   if (!record.linings.empty() && references.lining) {
-    score.lining = lining_score(record.linings, *references.lining, to_pose3(score.T_world_map));
+    score.lining = lining_score(record.linings, *references.lining, map);
   }
   if (!record.waters.empty() && references.p_body_antenna) {
-    score.water = water_score(record.waters, references.waters, score.T_world_map, record.T_world_body,
-                              *references.p_body_antenna);
+    score.water = water_score(record.waters, references.waters, map, record.T_world_body, *references.p_body_antenna);
   }
 }
 
@@ -90,34 +90,37 @@ MissionScore mission_score(const RunRecord& record) {
 
 EstimateScore estimate_score(const RunRecord& record, const RunReferences& references) {
   const Trajectory& truth = record.T_world_body;
-  // A given map has its origin where the survey says; a map of the run has it where the robot truly started.
-  const Pose2 T_world_map = references.T_world_map ? *references.T_world_map : align_at_start(record.T_map_body, truth);
   const LiveEstimates live = live_estimates(record);
+  const MapInSite map(references.T_site_start, record.registrations);
+  // A given map has its origin where the survey says; a map of the run has it where its path fits the truth.
+  const Pose2 T_world_map = references.T_world_map ? *references.T_world_map : fit_map_frame(live.T_map_body, truth);
+  const Pose2 T_world_start =
+      references.T_world_map ? *references.T_world_map : align_at_start(record.T_map_body, truth);
   EstimateScore score{
       .T_world_map = T_world_map,
-      .pose = trajectory_error(live.T_map_body, T_world_map, truth),
-      .site = site_score(live.T_map_body, record.registrations, references.T_site_start, truth),
+      .pose = trajectory_error(live.T_map_body, T_world_start, truth),
+      .site = site_score(live.T_map_body, map, truth),
       .pose_coverage = time_coverage(timely_poses({record.T_map_body, record.T_map_body_received}), truth),
-      .nees = pose_nees(record.T_map_body, record.covariances, T_world_map, truth),
+      .nees = pose_nees(record.T_map_body, record.covariances, map, truth),
       .aligned_pose = aligned_if_possible(record.T_map_body, truth),
       .odometry = trajectory_error(live.T_odom_body, align_at_start(record.T_odom_body, truth), truth),
       .map = run_map_error(record.map, T_world_map, references.map),
       .map_agreement = references.map_agreement,
       .localizability = track_localizability(record, T_world_map, references.localizability),
       .navigation = navigation_score(record, references),
-      .stations = station_errors(references.route, record.events, T_world_map, truth, record.map, references.map),
+      .stations = station_errors(references.route, record.events, T_world_map, map, truth, record.map, references.map),
       .goals = goal_errors(record.events, references.goals, T_world_map, truth),
       .docking = {},
       .range_pose = {},
-      .known_map = known_map_score(record, live.T_map_body, references, T_world_map),
+      .known_map = known_map_score(record, map.place(live.T_map_body), references),
       .inspection = {},
       .lining = {},
       .water = {}};
   add_site_map_errors(record, references, score);
   if (references.route.dock) score.docking = docking_error(record.events, references.route.dock->T_route_docked, truth);
   if (!record.T_map_body_by_ranges.empty())
-    score.range_pose = trajectory_error(live.T_map_body_by_ranges, T_world_map, truth);
-  add_inspection(record, references, score);
+    score.range_pose = trajectory_error(map.place(live.T_map_body_by_ranges), {}, truth);
+  add_inspection(record, references, map, score);
   return score;
 }
 

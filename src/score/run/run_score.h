@@ -24,12 +24,12 @@ namespace patrol::score {
 
 /// Ground truth and survey that a run is evaluated against.
 struct RunReferences {
-  ReferenceMap map;                  ///< in world
-  double map_agreement = 0.0;        ///< ratio of the reference's cells that an independent rendering confirms
-  Pose2 T_site_start;                ///< surveyed start; site is world
-  std::optional<Pose2> T_world_map;  ///< pose of a given map's frame; none: the map begins at the robot's true start
-  Route route;                       ///< survey, in world
-  std::vector<SavedGoal> goals;      ///< given goals, in map
+  ReferenceMap map;                          ///< in world
+  double map_agreement = 0.0;                ///< ratio of the reference's cells that an independent rendering confirms
+  Pose2 T_site_start;                        ///< surveyed start; site is world
+  std::optional<Pose2> T_world_map;          ///< pose of a given map's frame; none for a map that the run makes
+  Route route;                               ///< survey, in world
+  std::vector<SavedGoal> goals;              ///< given goals, in map
   std::vector<Eigen::Vector2d> footprint_m;  ///< outline of the robot
   std::vector<LeakGroundTruth> leaks;
   std::optional<LiningGroundTruth> lining;
@@ -63,7 +63,7 @@ struct KnownMapScore {
 
 /// Scores that need an estimate and a map.
 struct EstimateScore {
-  Pose2 T_world_map;           ///< pose of the map's frame that the scores use
+  Pose2 T_world_map;           ///< true pose of the map's frame: of the given map, or by fit_map_frame
   TrajectoryError pose;        ///< on the common clock (live_trajectory.h), as are `odometry` and `range_pose`
   SiteScore site;              ///< pose and registration in the survey frame
   double pose_coverage = 0.0;  ///< fraction of the run within 0.2 s of a timely pose (live_trajectory.h)

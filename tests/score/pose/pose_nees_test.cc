@@ -4,6 +4,7 @@
 #include <limits>
 #include <numbers>
 
+#include <Eigen/LU>
 #include <gtest/gtest.h>
 
 #include "core/geometry/linear_algebra.h"
@@ -77,6 +78,24 @@ TEST(PoseNees, InsideTheEllipsoidIsUpToAboutTwoPointEightStandardDeviationsOfOne
   EXPECT_NEAR(with_error(0.279, covariance).mean, 2.79 * 2.79, 1e-9);
   EXPECT_EQ(with_error(0.279, covariance).within_95, 1.0);
   EXPECT_EQ(with_error(0.280, covariance).within_95, 0.0);
+}
+
+// The map is turned by 3 mrad about its origin: 0.12 m at 40 m. The pose in map is exact.
+TEST(PoseNees, ContainsTheRegistrationWithItsLever) {
+  const Pose2 T_site_map{11.0, 8.0, 0.5}, T_map_body{40.0, 0.0, 0.0};
+  const Pose2 turned{11.0, 8.0, 0.503};
+  const Eigen::Matrix3d by_pose = Eigen::Vector3d(1e-4, 1e-4, 1e-6).asDiagonal();
+  const Eigen::Matrix3d by_map = Eigen::Vector3d(0.0, 0.0, 9e-6).asDiagonal();
+  const Trajectory truth = {{Time(0s), to_pose3(T_site_map * T_map_body)},
+                            {Time(1s), to_pose3(T_site_map * T_map_body)}};
+  const PoseNees score = pose_nees({{Time(500ms), to_pose3(T_map_body)}}, {by_pose},
+                                   {T_site_map, {{.stamp = {}, .T_site_map = turned, .covariance = by_map}}}, truth);
+  // Across: variance of the pose 1e-4, of the map 9e-6 with a lever of 40 m, both in yaw. e = 3e-3 (40, 1).
+  Eigen::Matrix2d P;
+  P << 1e-4 + 1600.0 * 9e-6, 40.0 * 9e-6, 40.0 * 9e-6, 1e-6 + 9e-6;
+  const Eigen::Vector2d e(0.12, 3e-3);
+  EXPECT_NEAR(score.mean, e.dot(P.inverse() * e), 5e-3);
+  EXPECT_EQ(score.within_95, 1.0);
 }
 
 TEST(PoseNees, ASingularCovarianceHasNoNeesAndIsOutside) {

@@ -33,7 +33,7 @@ SiteRegistration registration_of(const Pose2& T_site_map, double at_s) {
 
 TEST(SiteScore, WithoutRegistrationTheSurveyedStartCounts) {
   const Drive drive = drive_with(kStart * Pose2{0.0, 0.0, to_rad(0.5)});
-  const SiteScore score = site_score(drive.T_map_body, {}, kStart, drive.T_world_body);
+  const SiteScore score = site_score(drive.T_map_body, kStart, drive.T_world_body);
   EXPECT_NEAR(score.yaw_error_deg, 0.5, 1e-6);
   EXPECT_NEAR(score.pose.ate_max_m, std::hypot(40.0, 20.0) * to_rad(0.5), 1e-3);
   EXPECT_FALSE(score.nees);
@@ -42,7 +42,8 @@ TEST(SiteScore, WithoutRegistrationTheSurveyedStartCounts) {
 TEST(SiteScore, AnExactRegistrationHasNoError) {
   const Pose2 T_world_map = kStart * Pose2{0.02, 0.01, to_rad(0.5)};
   const Drive drive = drive_with(T_world_map);
-  const SiteScore score = site_score(drive.T_map_body, {registration_of(T_world_map, 0.0)}, kStart, drive.T_world_body);
+  const SiteScore score =
+      site_score(drive.T_map_body, {kStart, {registration_of(T_world_map, 0.0)}}, drive.T_world_body);
   EXPECT_NEAR(score.pose.ate_max_m, 0.0, 1e-9);
   EXPECT_NEAR(score.position_error_m, 0.0, 1e-9);
   EXPECT_NEAR(*score.nees, 0.0, 1e-9);
@@ -53,7 +54,7 @@ TEST(SiteScore, EachPoseTakesTheRegistrationOfItsTime) {
   const Pose2 T_world_map = kStart * Pose2{0.02, 0.0, 0.0};
   const Drive drive = drive_with(T_world_map);
   const SiteScore score =
-      site_score(drive.T_map_body, {registration_of(T_world_map, 20.0)}, kStart, drive.T_world_body);
+      site_score(drive.T_map_body, {kStart, {registration_of(T_world_map, 20.0)}}, drive.T_world_body);
   EXPECT_NEAR(score.pose.ate_max_m, 0.02, 1e-9);
   EXPECT_NEAR(score.pose.ate_mean_m, 0.02 * 20.0 / 61.0, 1e-9);
 }
@@ -61,7 +62,7 @@ TEST(SiteScore, EachPoseTakesTheRegistrationOfItsTime) {
 TEST(SiteScore, NeesIsTheSquaredErrorInStandardDeviations) {
   const Drive drive = drive_with(kStart);
   const Pose2 wrong{kStart.x + 0.02, kStart.y, kStart.yaw + 3e-3};
-  const SiteScore score = site_score(drive.T_map_body, {registration_of(wrong, 0.0)}, kStart, drive.T_world_body);
+  const SiteScore score = site_score(drive.T_map_body, {kStart, {registration_of(wrong, 0.0)}}, drive.T_world_body);
   EXPECT_NEAR(*score.nees, 4.0 + 9.0, 1e-6);
   EXPECT_NEAR(score.yaw_error_deg, to_deg(3e-3), 1e-6);
 }

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "core/geometry/angles.h"
+
 namespace patrol::score::run_score_test {
 namespace {
 
@@ -128,6 +130,20 @@ TEST(EstimateScore, OfAnEstimateThatNeverMovesHasEveryErrorButTheFittedOne) {
   const EstimateScore score = estimate_score(record, wall_references());
   EXPECT_FALSE(score.aligned_pose);
   EXPECT_NEAR(score.pose.ate_max_m, std::sqrt(8.0), 1e-9);
+}
+
+// A lidar with a mounting yaw turns the map against the body. The map itself is straight; the pose that is aligned at
+// the start is not.
+TEST(EstimateScore, PlacesAMapOfTheRunWhereItsPathFitsTheTruth) {
+  RunRecord record = perfect_run();
+  for (StampedPose& pose : record.T_map_body) {
+    pose.pose.position = 3.0 * (quaternion_from_yaw(to_rad(-3.0)) * pose.pose.position);
+  }
+  for (StampedPose& pose : record.T_world_body) pose.pose.position *= 3.0;
+  for (StampedPose& pose : record.T_odom_body) pose.pose.position *= 3.0;
+  const EstimateScore score = estimate_score(record, wall_references());
+  EXPECT_NEAR(to_deg(score.T_world_map.yaw), 3.0, 0.05);
+  EXPECT_NEAR(score.pose.ate_max_m, std::hypot(6.0, 6.0) * to_rad(3.0), 0.03);
 }
 
 TEST(EstimateScore, PlacesAGivenMapWhereTheSurveySays) {
