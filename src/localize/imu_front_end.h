@@ -114,6 +114,15 @@ class ImuFrontEnd {
   std::optional<Filter>& filter() { return filter_; }
   const std::optional<Filter>& filter() const { return filter_; }
   StationaryGyroBiasEstimator& bias_estimator() { return bias_estimator_; }
+  /// Corrects the gyro bias about the vertical by a measurement, e.g. from scan matching.
+  void correct_vertical_gyro_bias(double bias_radps, double std_radps) {
+    if (!filter_ || !std::isfinite(bias_radps) || !(std_radps > 0.0)) return;
+    const Eigen::Vector3d up = filter_->up_in_body();
+    Eigen::Vector3d bias = filter_->gyro_bias_radps();
+    bias.z() += (bias_radps - up.dot(bias)) / up.z();
+    constexpr double kUnknown = 1e6;
+    filter_->correct_gyro_bias(bias, {kUnknown, kUnknown, std_radps * std_radps});
+  }
   Time now() const { return now_; }                      ///< stamp of the filter state
   bool has_timed_out() const { return has_timed_out_; }  ///< the last step of the filter was without the IMU
 

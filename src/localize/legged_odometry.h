@@ -37,6 +37,10 @@ class LeggedOdometry {
   void add(const Imu& imu);
   void add(const JointState& joints);
   void add(const FootContacts& contacts);
+  /// Corrects the gyro bias about the vertical by a measurement from other sensors, rad/s.
+  void correct_gyro_bias(double bias_radps, double std_radps) {
+    imu_.correct_vertical_gyro_bias(bias_radps, std_radps);
+  }
 
   /// Returns nullopt before the first readings of both the IMU and the legs.
   std::optional<OdometryEstimate> estimate() const;

@@ -68,6 +68,8 @@ void RangeFilter::set_initial_pose(const PoseEstimate& start, const Pose3& T_odo
   accepted_.clear();
 }
 
+void RangeFilter::set_anchors(const std::vector<UwbAnchor>& anchors_in_map) { anchors_ = by_number(anchors_in_map); }
+
 void RangeFilter::predict(Time stamp, const Pose3& T_odom_body, const Eigen::Vector3d& twist_std) {
   if (!has_started_ || stamp <= state_.stamp) return;
   state_ = predicted(state_, stamp, T_odom_body, twist_std);

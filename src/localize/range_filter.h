@@ -49,6 +49,9 @@ class RangeFilter {
   /// anchor numbers.
   RangeFilter(const RangeFilterSettings& settings, const std::vector<UwbAnchor>& anchors_in_map, Pose3 T_body_uwb);
 
+  /// Moves the anchors in map. Throws InputError for duplicate numbers.
+  void set_anchors(const std::vector<UwbAnchor>& anchors_in_map);
+
   /// Starts at a pose, at which the odometry pose is `T_odom_body`; the height above the origin of map is `z_m`.
   void set_initial_pose(const PoseEstimate& start, const Pose3& T_odom_body, double z_m = 0.0);
   bool has_started() const { return has_started_; }

@@ -40,6 +40,10 @@ class TrackOdometry {
 
   void add(const Imu& imu);
   void add(const TrackTicks& ticks);
+  /// Corrects the gyro bias about the vertical by a measurement from other sensors, rad/s.
+  void correct_gyro_bias(double bias_radps, double std_radps) {
+    imu_.correct_vertical_gyro_bias(bias_radps, std_radps);
+  }
 
   /// Returns nullopt before a standstill of `settling_time_s` or the end of `init_timeout_s`.
   std::optional<OdometryEstimate> estimate() const;

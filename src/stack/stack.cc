@@ -96,6 +96,7 @@ void Stack::follow_registration(Time now) {
   if (!site_in_map) return;
   parts_.mission->set_site(*site_in_map);
   parts_.motion.set_site(*site_in_map);
+  parts_.pose.set_site(*site_in_map);
   parts_.dock = site_in_map->dock;
 }
 

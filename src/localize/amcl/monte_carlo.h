@@ -65,6 +65,8 @@ class MonteCarloLocalizer {
   /// Starts global localization: the next scan is searched for on the whole map.
   void start_global_localization();
 
+  /// Moves the anchors in map.
+  void set_anchors(const std::vector<UwbAnchor>& anchors_in_map) { ranges_.set_anchors(anchors_in_map); }
   /// Adds a UWB range; `T_odom_body` is the odometry at its stamp. Ranges of unknown anchors and ranges that are not
   /// finite and positive are ignored. The newest range of each anchor is used in the next particle update.
   void add(const UwbRange& range, const Pose3& T_odom_body) { ranges_.add(range, T_odom_body); }

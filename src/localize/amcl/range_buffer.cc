@@ -7,6 +7,10 @@ namespace patrol::localize {
 
 RangeBuffer::RangeBuffer(const std::vector<UwbAnchor>& anchors_in_map, Pose3 T_body_uwb)
     : T_body_uwb_(std::move(T_body_uwb)) {
+  set_anchors(anchors_in_map);
+}
+
+void RangeBuffer::set_anchors(const std::vector<UwbAnchor>& anchors_in_map) {
   for (const UwbAnchor& anchor : anchors_in_map) p_map_anchor_[anchor.number] = anchor.p_m;
 }
 

@@ -18,6 +18,7 @@ class RangeBuffer {
   /// Anchors in map, with heights above the body origin.
   RangeBuffer(const std::vector<UwbAnchor>& anchors_in_map, Pose3 T_body_uwb);
 
+  void set_anchors(const std::vector<UwbAnchor>& anchors_in_map);
   /// Adds a range. Ranges of unknown anchors and ranges that are not finite and positive are ignored.
   void add(const UwbRange& range, const Pose3& T_odom_body);
   /// Returns the ranges newer than `since` in the body frame at `T_odom_now`, sorted by anchor number.

@@ -83,8 +83,27 @@ void OdometryCalibrator::add_gyro(const SegmentBegin& begin, const CalibrationSc
   const double variance =
       step.match_covariance(2, 2) + settings_.gyro_std_rad_per_sqrt_s * settings_.gyro_std_rad_per_sqrt_s * elapsed_s;
   measurement.W << 1.0 / variance;
-  if (gyro_.distance(measurement) > settings_.outlier_sigma * settings_.outlier_sigma) return;
+  if (gyro_.distance(measurement) > settings_.outlier_sigma * settings_.outlier_sigma) {
+    gyro_drift_ = {};
+    return;
+  }
   gyro_.add(measurement);
+  gyro_drift_.yaw_rad -= measurement.r[0];
+  gyro_drift_.variance_rad2 += variance;
+  gyro_drift_.turned_rad += gyro_turn_rad;
+  gyro_drift_.elapsed_s += elapsed_s;
+  if (gyro_drift_.elapsed_s < settings_.gyro_bias_interval_s) return;
+  const ScalarEstimate scale = gyro_scale();
+  const double std_rad = std::hypot(std::sqrt(gyro_drift_.variance_rad2), scale.std * gyro_drift_.turned_rad);
+  recent_gyro_bias_ = {.value =
+                           (gyro_drift_.yaw_rad + (scale.value - 1.0) * gyro_drift_.turned_rad) / gyro_drift_.elapsed_s,
+                       .std = std_rad / gyro_drift_.elapsed_s};
+  gyro_drift_ = {};
+}
+
+void OdometryCalibrator::interrupt() {
+  begin_.reset();
+  gyro_drift_ = {};
 }
 
 ScalarEstimate OdometryCalibrator::lidar_yaw_rad() const {

@@ -18,6 +18,7 @@ struct OdometryCalibratorSettings {
   double odometry_std_rad_per_m = 0.001;
   double odometry_std_rad_per_rad = 0.002;
   double gyro_std_rad_per_sqrt_s = 3e-4;  ///< nominal standard deviation of the integrated gyro rate
+  double gyro_bias_interval_s = 5.0;      ///< interval of the measurements of the gyro bias for odometry
   /// Standard deviation of the direction of odometry's translation relative to the body, constant over a run: legs and
   /// tracks slip sideways systematically. Added to that of the lidar yaw, which cannot be separated from it.
   double lateral_bias_std_rad = 0.001;
@@ -40,6 +41,7 @@ struct OdometryCalibratorSettings {
     visit("gyro_std_rad_per_sqrt_s", self.gyro_std_rad_per_sqrt_s, between(1e-9, 1.0));
     visit("lateral_bias_std_rad", self.lateral_bias_std_rad, between(0.0, 1.0));
     visit("distance_bias_std", self.distance_bias_std, between(0.0, 1.0));
+    visit("gyro_bias_interval_s", self.gyro_bias_interval_s, between(0.1, 1000.0));
     visit("outlier_sigma", self.outlier_sigma, between(1.0, 100.0));
   }
 };

@@ -38,6 +38,12 @@ class OnlineCalibrator {
   /// Adds a scan that was leveled with the corrections of `sweep`.
   void add(const LevelScan& scan, const ScanSweep& sweep);
 
+  /// Returns a new measurement of the gyro bias about the vertical, for odometry; none if there is none since the last
+  /// call, or if the setting excludes it.
+  std::optional<ScalarEstimate> take_gyro_bias() {
+    return settings_.corrects_gyro_bias ? odometry_.take_recent_gyro_bias() : std::nullopt;
+  }
+
   TimeOffset time_offset(Time stamp) const { return time_offset_.at(stamp); }
   /// Returns how many times the time offset has changed by a step.
   int num_time_offset_steps() const { return time_offset_.num_steps(); }

@@ -13,6 +13,7 @@ struct OnlineCalibratorSettings {
   bool enabled = false;
   bool corrects_time_offset = true;     ///< scans are leveled with the estimated time offset
   bool corrects_lidar_yaw = true;       ///< scans are leveled with the estimated yaw of the lidar
+  bool corrects_gyro_bias = true;       ///< odometry takes the bias of the gyro from scan matching
   double max_applied_std_s = 0.002;     ///< estimates of the time offset with a larger standard deviation are not used
   double max_applied_std_rad = 0.0025;  ///< estimates of the lidar yaw with a larger standard deviation are not used
   double max_offset_change_s_per_s = 0.05;  ///< maximum change of the applied time offset
@@ -28,6 +29,7 @@ struct OnlineCalibratorSettings {
     visit("enabled", self.enabled);
     visit("corrects_time_offset", self.corrects_time_offset);
     visit("corrects_lidar_yaw", self.corrects_lidar_yaw);
+    visit("corrects_gyro_bias", self.corrects_gyro_bias);
     visit("max_applied_std_s", self.max_applied_std_s, at_least(0.0));
     visit("max_applied_std_rad", self.max_applied_std_rad, at_least(0.0));
     visit("max_offset_change_s_per_s", self.max_offset_change_s_per_s, between(1e-6, 10.0));

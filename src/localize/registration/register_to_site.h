@@ -27,7 +27,8 @@ SitePoseGaussian registration_prior(const Pose2& T_site_start, const Registratio
 /// Measurements of one source are whitened as a first-order Gauss-Markov process, with the map's deformation as part of
 /// their error. The covariance is that of the linearized problem; if the weighted residuals exceed their expectation,
 /// the information of the measurements is divided by the ratio. The poses in map are taken as exact but for
-/// `map_std_m`: a bend of the map longer than the correlation is not modeled. `calibration`: bias of UWB ranges.
+/// `map_std_m`: a bend of the map longer than the correlation is not modeled. `calibration`: bias of UWB ranges. The
+/// constant error of the ranges to each anchor (antenna delays) is estimated with the pose and eliminated.
 SitePoseGaussian register_to_site(const SitePoseGaussian& prior, std::span<const SiteMeasurement> measurements,
                                   const RegistrationSettings& settings, const UwbCalibration& calibration = {});
 

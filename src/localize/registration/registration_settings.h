@@ -7,18 +7,23 @@ namespace patrol::localize {
 /// Settings of the registration of the map to the survey.
 struct RegistrationSettings {
   bool use_gnss = true;
+  bool use_uwb = true;
   /// Prior: the robot is put down by hand at the surveyed start, within 2 cm and 0.5 degrees. The yaw includes the
   /// mounting yaw of the lidar, 0.3 degrees, which turns the map against the body.
   double start_position_std_m = 0.02;
   double start_yaw_std_deg = 0.6;
   double fix_correlation_time_s = 20.0;    ///< correlation time of the errors of RTK fixes (core/sensors/gnss.h)
   double float_correlation_time_s = 60.0;  ///< correlation time of the errors of float solutions
+  double range_std_m = 0.12;               ///< standard deviation of a UWB range in line of sight, without its delay
+  double range_correlation_time_s = 2.0;   ///< correlation time of the errors of UWB ranges: reflections
+  double anchor_delay_std_m = 0.1;         ///< standard deviation of the constant error of the ranges to an anchor
+  double range_min_distance_m = 2.0;       ///< minimum distance between two ranges to one anchor
   /// Standard deviation of the map's own deformation at a position, added to each measurement's; correlated over the
   /// measurement's correlation time.
   double map_std_m = 0.02;
-  double min_distance_m = 0.5;       ///< minimum distance between two measurements of one source
+  double min_distance_m = 0.5;       ///< minimum distance between two GNSS fixes of one status
   double max_interval_s = 10.0;      ///< maximum time between two measurements of one source while the robot stands
-  int max_measurements = 400;        ///< bound of the stored measurements; above it every second one is dropped
+  int max_measurements = 600;        ///< bound of the stored measurements; above it every second one is dropped
   double outlier_scale_sigma = 4.0;  ///< scale of the Cauchy loss, standard deviations
   double period_s = 1.0;             ///< period of the estimation
   /// Minimum displacement of any point of the survey by which the mission's stations and the keep-out lines follow.
@@ -27,10 +32,15 @@ struct RegistrationSettings {
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("use_gnss", self.use_gnss);
+    visit("use_uwb", self.use_uwb);
     visit("start_position_std_m", self.start_position_std_m, between(1e-4, 1e6));
     visit("start_yaw_std_deg", self.start_yaw_std_deg, between(1e-4, 1e6));
     visit("fix_correlation_time_s", self.fix_correlation_time_s, between(0.0, 1e4));
     visit("float_correlation_time_s", self.float_correlation_time_s, between(0.0, 1e4));
+    visit("range_std_m", self.range_std_m, between(1e-4, 10.0));
+    visit("range_correlation_time_s", self.range_correlation_time_s, between(0.0, 1e4));
+    visit("anchor_delay_std_m", self.anchor_delay_std_m, between(1e-6, 10.0));
+    visit("range_min_distance_m", self.range_min_distance_m, between(0.0, 100.0));
     visit("map_std_m", self.map_std_m, between(0.0, 10.0));
     visit("min_distance_m", self.min_distance_m, between(0.0, 100.0));
     visit("max_interval_s", self.max_interval_s, between(0.1, 1e4));

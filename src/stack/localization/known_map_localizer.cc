@@ -3,11 +3,26 @@
 #include <utility>
 
 namespace patrol::stack {
+namespace {
+
+/// Returns the anchors with heights relative to the body's origin, as Monte Carlo localization expects them.
+std::vector<UwbAnchor> anchors_above_body(std::vector<UwbAnchor> anchors, double height_above_ground_m) {
+  for (UwbAnchor& anchor : anchors) anchor.p_m.z() -= height_above_ground_m;
+  return anchors;
+}
+
+}  // namespace
 
 KnownMapLocalizer::KnownMapLocalizer(const localize::MonteCarloSettings& settings, OccupancyGrid map,
-                                     const std::vector<UwbAnchor>& anchors_in_map, const Pose3& T_body_uwb,
-                                     std::uint64_t seed)
-    : map_(std::move(map)), localizer_(settings, map_, anchors_in_map, T_body_uwb, seed) {}
+                                     const std::vector<UwbAnchor>& anchors_in_map, double height_above_ground_m,
+                                     const Pose3& T_body_uwb, std::uint64_t seed)
+    : map_(std::move(map)),
+      height_above_ground_m_(height_above_ground_m),
+      localizer_(settings, map_, anchors_above_body(anchors_in_map, height_above_ground_m), T_body_uwb, seed) {}
+
+void KnownMapLocalizer::set_anchors(const std::vector<UwbAnchor>& anchors_in_map) {
+  localizer_.set_anchors(anchors_above_body(anchors_in_map, height_above_ground_m_));
+}
 
 PoseEstimate KnownMapLocalizer::update(const LevelScan& scan, const Pose2& T_odom_body, StackOutput& output) {
   const auto timer = output.time_stage("localization");

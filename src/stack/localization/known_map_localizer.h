@@ -11,9 +11,10 @@ namespace patrol::stack {
 /// Monte Carlo localization on a fixed map.
 class KnownMapLocalizer final : public Localizer {
  public:
-  /// `anchors_in_map`: heights are relative to the body's origin.
+  /// `height_above_ground_m`: height of the body's origin.
   KnownMapLocalizer(const localize::MonteCarloSettings& settings, OccupancyGrid map,
-                    const std::vector<UwbAnchor>& anchors_in_map, const Pose3& T_body_uwb, std::uint64_t seed);
+                    const std::vector<UwbAnchor>& anchors_in_map, double height_above_ground_m, const Pose3& T_body_uwb,
+                    std::uint64_t seed);
 
   void add(const RangeWithOdometry& range) override { localizer_.add(range.range, range.T_odom_body); }
   PoseEstimate update(const LevelScan& scan, const Pose2& T_odom_body, StackOutput& output) override;
@@ -25,9 +26,11 @@ class KnownMapLocalizer final : public Localizer {
     localizer_.set_initial_pose(T_map_body, covariance);
   }
   void start_global_localization() override { localizer_.start_global_localization(); }
+  void set_anchors(const std::vector<UwbAnchor>& anchors_in_map) override;
 
  private:
   OccupancyGrid map_;
+  double height_above_ground_m_;
   localize::MonteCarloLocalizer localizer_;
   LocalizationConfidence confidence_{.confidence = 1.0};  ///< confidence at the newest scan
 };

@@ -5,6 +5,7 @@
 #include "core/grid.h"
 #include "core/messages.h"
 #include "core/sensors/registry.h"
+#include "core/uwb.h"
 #include "stack/output/stack_output.h"
 
 namespace patrol::stack {
@@ -41,6 +42,8 @@ class Localizer {
   /// Restarts near a pose, or anywhere on the map. Ignored by localizers that make the map.
   virtual void set_initial_pose(const Pose2& /*T_map_body*/, const Eigen::Matrix3d& /*covariance*/) {}
   virtual void start_global_localization() {}
+  /// Moves the UWB anchors in `map`, above the ground of map. Ignored by localizers without ranges.
+  virtual void set_anchors(const std::vector<UwbAnchor>& /*anchors_in_map*/) {}
 };
 
 }  // namespace patrol::stack

@@ -18,12 +18,6 @@ std::optional<Pose3> antenna_of(const RobotDescription& robot) {
   return frame == robot.T_body_sensor.end() ? std::nullopt : std::optional(frame->second);
 }
 
-/// Returns the anchors with heights relative to the body's origin, as Monte Carlo localization expects them.
-std::vector<UwbAnchor> anchors_above_body(std::vector<UwbAnchor> anchors, double height_above_ground_m) {
-  for (UwbAnchor& anchor : anchors) anchor.p_m.z() -= height_above_ground_m;
-  return anchors;
-}
-
 std::string method_of(const StackSettings& settings, const LocalizerStart& start) {
   if (settings.localizer != "automatic") return settings.localizer;
   if (start.map) return "monte_carlo";
@@ -37,10 +31,11 @@ std::unique_ptr<Localizer> make_localizer(const StackSettings& settings, const R
   const std::string method = method_of(settings, start);
   const auto refuse = [&](const char* why) { throw InputError(fmt::format("stack.localizer = {}: {}", method, why)); };
   const std::optional<Pose3> T_body_uwb = antenna_of(robot);
-  const auto make_on_map = [settings = settings.localization,
-                            anchors = anchors_above_body(site_in_map.anchors, start.height_above_ground_m), T_body_uwb,
+  const auto make_on_map = [settings = settings.localization, anchors = site_in_map.anchors,
+                            height_m = start.height_above_ground_m, T_body_uwb,
                             seed](OccupancyGrid map) -> std::unique_ptr<Localizer> {
-    return std::make_unique<KnownMapLocalizer>(settings, std::move(map), anchors, T_body_uwb.value_or(Pose3{}), seed);
+    return std::make_unique<KnownMapLocalizer>(settings, std::move(map), anchors, height_m,
+                                               T_body_uwb.value_or(Pose3{}), seed);
   };
   if (method == "monte_carlo") {
     if (!start.map) refuse("requires a map: set the key map, or select slam or slam_then_monte_carlo");

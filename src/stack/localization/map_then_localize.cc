@@ -10,7 +10,13 @@ MapThenLocalize::MapThenLocalize(std::unique_ptr<Localizer> slam, LocalizerFacto
 void MapThenLocalize::finish_map(const PoseEstimate& pose) {
   if (!current_->is_mapping()) return;
   current_ = make_on_map_(current_->map());
+  if (anchors_in_map_) current_->set_anchors(*anchors_in_map_);
   current_->set_initial_pose(pose.T_map_body, pose.covariance);
+}
+
+void MapThenLocalize::set_anchors(const std::vector<UwbAnchor>& anchors_in_map) {
+  anchors_in_map_ = anchors_in_map;
+  current_->set_anchors(anchors_in_map);
 }
 
 }  // namespace patrol::stack

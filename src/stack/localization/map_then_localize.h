@@ -2,6 +2,8 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
+#include <vector>
 
 #include "stack/localization/localizer.h"
 
@@ -29,10 +31,12 @@ class MapThenLocalize final : public Localizer {
     current_->set_initial_pose(T_map_body, covariance);
   }
   void start_global_localization() override { current_->start_global_localization(); }
+  void set_anchors(const std::vector<UwbAnchor>& anchors_in_map) override;
 
  private:
   std::unique_ptr<Localizer> current_;
   LocalizerFactory make_on_map_;
+  std::optional<std::vector<UwbAnchor>> anchors_in_map_;  ///< once they have moved
 };
 
 }  // namespace patrol::stack

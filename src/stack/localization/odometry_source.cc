@@ -23,6 +23,9 @@ class LeggedOdometrySource final : public OdometrySource {
     if (const auto* joints = std::get_if<JointState>(&message)) odometry_.add(*joints);
     if (const auto* contacts = std::get_if<FootContacts>(&message)) odometry_.add(*contacts);
   }
+  void correct_gyro_bias(double bias_radps, double std_radps) override {
+    odometry_.correct_gyro_bias(bias_radps, std_radps);
+  }
   std::optional<OdometryEstimate> estimate() const override { return odometry_.estimate(); }
   std::optional<Pose3> T_odom_body_at(Time stamp) const override { return odometry_.T_odom_body_at(stamp); }
   double height_above_ground_m() const override { return odometry_.height_above_ground_m(); }
@@ -50,6 +53,9 @@ class TrackedOdometrySource final : public OdometrySource {
   void add(const SensorMessage& message) override {
     if (const auto* imu = std::get_if<Imu>(&message)) odometry_.add(*imu);
     if (const auto* ticks = std::get_if<TrackTicks>(&message)) odometry_.add(*ticks);
+  }
+  void correct_gyro_bias(double bias_radps, double std_radps) override {
+    odometry_.correct_gyro_bias(bias_radps, std_radps);
   }
   std::optional<OdometryEstimate> estimate() const override { return odometry_.estimate(); }
   std::optional<Pose3> T_odom_body_at(Time stamp) const override { return odometry_.T_odom_body_at(stamp); }

@@ -19,6 +19,8 @@ class OdometrySource {
 
   /// Processes a sensor message; called for all types, of which a source ignores those that it does not use.
   virtual void add(const SensorMessage& message) = 0;
+  /// Corrects the gyro bias about the vertical by a measurement from other sensors, rad/s.
+  virtual void correct_gyro_bias(double bias_radps, double std_radps) = 0;
   /// Returns the newest estimate; none before the source has settled.
   virtual std::optional<OdometryEstimate> estimate() const = 0;
   /// Returns the pose at an instant of the last seconds, or slightly after the newest reading; none outside that span.

@@ -1,5 +1,6 @@
 #include "stack/localization/pose_pipeline.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace patrol::stack {
@@ -8,6 +9,11 @@ namespace {
 // Accuracy of the pose of a robot that stands at its charging post or has been placed by hand.
 constexpr double kSurveyedPosition_m = 0.03;
 constexpr double kSurveyedYaw_rad = 0.02;
+
+std::vector<UwbAnchor> placed(std::vector<UwbAnchor> anchors, const Pose2& T_site_start) {
+  for (UwbAnchor& anchor : anchors) anchor.p_m.head<2>() = T_site_start * Eigen::Vector2d(anchor.p_m.head<2>());
+  return anchors;
+}
 
 }  // namespace
 
@@ -24,6 +30,7 @@ PosePipeline::PosePipeline(const StackSettings& settings, const RobotDescription
       leveler_(robot.T_body("lidar"), settings.scan_leveling),
       registrar_(settings.registration, site),
       T_body_lidar_(robot.T_body("lidar")),
+      anchors_in_site_(placed(site_in_map.anchors, site.T_site_start)),
       calibration_period_(from_seconds(settings.calibration.period_s)) {
   start.height_above_ground_m = odometry_->height_above_ground_m();
   localizer_ = make_localizer(settings, robot, site_in_map, start, seed);
@@ -69,8 +76,24 @@ void PosePipeline::add_range(const UwbRange& range) {
   if (!T_odom_body) return;
   if (range_pose_) range_pose_->add(range, *T_odom_body);
   if (calibrator_) add_to_calibration(range, *T_odom_body);
+  add_to_registration(range, *T_odom_body);
   localizer_->add(
       {.range = range, .T_odom_body = *T_odom_body, .height_above_ground_m = odometry_->height_above_ground_m()});
+}
+
+/// Uses the height of the UWB filter: tunnels are not level.
+void PosePipeline::add_to_registration(const UwbRange& range, const Pose3& T_odom_body) {
+  const auto anchor = std::ranges::find(anchors_in_site_, range.anchor, &UwbAnchor::number);
+  if (anchor == anchors_in_site_.end() || !localizer_->has_pose() || localizer_->is_lost()) return;
+  const double height_m =
+      range_pose_ && range_pose_->has_started() ? range_pose_->height_m() : odometry_->height_above_ground_m();
+  if (const std::optional<PoseFromScan> pose = pose_from_scan(range.stamp))
+    registrar_.add(range, *anchor, *pose, uwb_antenna_in_level(T_odom_body.rotation, T_body_uwb_, height_m));
+}
+
+void PosePipeline::set_site(const Route& site_in_map) {
+  localizer_->set_anchors(site_in_map.anchors);
+  if (range_pose_) range_pose_->set_anchors(site_in_map.anchors);
 }
 
 void PosePipeline::add_fix(const GnssFix& fix) {
@@ -123,6 +146,8 @@ std::optional<LevelScan> PosePipeline::level_corrected(const LaserScan& scan, St
                             .T_odom_end = to_pose2(*odometry_->T_odom_body_at(level->stamp)),
                             .applied_time_offset_s = correction.time_offset_s,
                             .applied_lidar_yaw_rad = correction.lidar_yaw_rad});
+  if (const std::optional<localize::ScalarEstimate> bias = calibrator_->take_gyro_bias())
+    odometry_->correct_gyro_bias(bias->value, bias->std);
   return level;
 }
 

@@ -53,6 +53,8 @@ class PosePipeline {
 
   /// Returns the registration of the map to the site if it is due and has changed; none before the first scan.
   std::optional<SiteRegistration> register_to_site(Time now);
+  /// Moves the survey in map: the localizer's anchors follow the registration.
+  void set_site(const Route& site_in_map);
   /// Publishes the estimates of the calibration at their period, if it is enabled.
   void publish_calibration(Time now, StackOutput& output);
   /// Returns the estimated clock of the lidar; none if the calibration is disabled.
@@ -76,6 +78,7 @@ class PosePipeline {
   bool has_settled(Time stamp) const { return first_odometry_ && stamp >= *first_odometry_ + settle_; }
   void add_range(const UwbRange& range);
   void add_fix(const GnssFix& fix);
+  void add_to_registration(const UwbRange& range, const Pose3& T_odom_body);
   std::optional<PoseFromScan> pose_from_scan(Time stamp) const;
   void add_to_calibration(const Imu& imu);
   void add_to_calibration(const UwbRange& range, const Pose3& T_odom_body);
@@ -89,10 +92,11 @@ class PosePipeline {
   std::optional<RangePoseTracker> range_pose_;  ///< present for a robot with a UWB antenna
   localize::MapPoseTracker tracker_;
   SiteRegistrar registrar_;
-  std::optional<Pose3> T_body_gnss_;                      ///< present for a robot with a GNSS antenna
-  std::size_t num_scans_ = 0;                             ///< scans that the localizer has processed
-  Pose2 T_odom_scan_;                                     ///< body at the newest scan
-  Pose3 T_body_lidar_;                                    ///< nominal
+  std::optional<Pose3> T_body_gnss_;  ///< present for a robot with a GNSS antenna
+  std::size_t num_scans_ = 0;         ///< scans that the localizer has processed
+  Pose2 T_odom_scan_;                 ///< body at the newest scan
+  Pose3 T_body_lidar_;                ///< nominal
+  std::vector<UwbAnchor> anchors_in_site_;
   Pose3 T_body_uwb_;                                      ///< nominal, for a robot with a UWB antenna
   std::optional<localize::OnlineCalibrator> calibrator_;  ///< present if the calibration is enabled
   Time calibration_period_;

@@ -24,6 +24,7 @@ class RangePoseTracker {
     filter_.set_initial_pose({.stamp = odometry.stamp, .T_map_body = T_map_body, .covariance = covariance},
                              odometry.T_odom_body, height_above_ground_m);
   }
+  void set_anchors(const std::vector<UwbAnchor>& anchors_in_map) { filter_.set_anchors(anchors_in_map); }
   double height_m() const { return filter_.height_m(); }
   void add(const UwbRange& range, const Pose3& T_odom_body) { filter_.add(range, T_odom_body); }
   UwbPoseEstimate predict(const OdometryEstimate& odometry, const Eigen::Vector3d& twist_std) {

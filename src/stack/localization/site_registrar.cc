@@ -1,5 +1,6 @@
 #include "stack/localization/site_registrar.h"
 
+#include <cmath>
 #include <utility>
 
 namespace patrol::stack {
@@ -8,6 +9,7 @@ namespace {
 // Sources of measurements, whose errors are independent of each other.
 constexpr int kFixSource = 0;
 constexpr int kFloatSource = 1;
+constexpr int kFirstAnchorSource = 2;  // plus the number of the anchor
 
 }  // namespace
 
@@ -35,13 +37,29 @@ void SiteRegistrar::add(const GnssFix& fix, const PoseFromScan& pose, const Eige
       pose);
 }
 
+void SiteRegistrar::add(const UwbRange& range, const UwbAnchor& anchor_in_site, const PoseFromScan& pose,
+                        const Eigen::Vector3d& p_level_antenna) {
+  if (!settings_.use_uwb || !std::isfinite(range.range_m)) return;
+  add({.stamp = range.stamp,
+       .source = kFirstAnchorSource + anchor_in_site.number,
+       .correlation_time_s = settings_.range_correlation_time_s,
+       .T_map_body = pose.T_map_body,
+       .content = localize::AnchorRange{.anchor_in_site = anchor_in_site,
+                                        .p_level_antenna = p_level_antenna,
+                                        .range_m = range.range_m,
+                                        .std_m = settings_.range_std_m}},
+      pose);
+}
+
 bool SiteRegistrar::is_spaced(int source, Time stamp, const Pose2& T_map_body) const {
   const auto last = last_poses_.find(source);
   if (last == last_poses_.end()) return true;
   const Time age = stamp - last_stamps_.at(source);
   if (age <= Time{}) return false;
   const double distance_m = (T_map_body.position() - last->second.T_map_body.position()).norm();
-  return distance_m >= min_distance_m_ || age >= from_seconds(settings_.max_interval_s);
+  const bool is_range = source >= kFirstAnchorSource;
+  const double spacing = is_range ? settings_.range_min_distance_m / settings_.min_distance_m : 1.0;
+  return distance_m >= spacing * min_distance_m_ || age >= from_seconds(settings_.max_interval_s);
 }
 
 void SiteRegistrar::add(localize::SiteMeasurement measurement, const PoseFromScan& pose) {

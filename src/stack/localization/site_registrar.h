@@ -30,6 +30,10 @@ class SiteRegistrar {
 
   /// Returns whether GNSS fixes are used: the site has a datum.
   bool uses_gnss() const { return settings_.use_gnss && site_.datum.has_value(); }
+  /// Adds a UWB range to an anchor in site. `pose`: body at the stamp of the range. `p_level_antenna`: raised as by
+  /// uwb_antenna_in_level. Ranges that are too close to the previous one to the anchor are ignored.
+  void add(const UwbRange& range, const UwbAnchor& anchor_in_site, const PoseFromScan& pose,
+           const Eigen::Vector3d& p_level_antenna);
   /// Adds a GNSS fix. `pose`: body at the stamp of the fix. Fixes that are too close to the previous one are ignored.
   void add(const GnssFix& fix, const PoseFromScan& pose, const Eigen::Vector2d& p_level_antenna);
 

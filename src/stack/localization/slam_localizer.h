@@ -25,6 +25,7 @@ class SlamLocalizer final : public Localizer {
   bool is_mapping() const override { return true; }
   bool is_lost() const override { return false; }
   bool has_pose() const override { return true; }
+  void set_anchors(const std::vector<UwbAnchor>& anchors_in_map) override { anchors_ = anchors_in_map; }
 
  private:
   std::unique_ptr<slam::Mapper> mapper_;

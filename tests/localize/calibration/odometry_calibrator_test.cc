@@ -107,6 +107,17 @@ TEST(OdometryCalibrator, IsConsistentOverManySeeds) {
   }
 }
 
+TEST(OdometryCalibrator, MeasuresTheRecentGyroBiasOncePerInterval) {
+  const Plant plant{.gyro_bias_radps = 0.003, .gyro_scale = 1.004};
+  OdometryCalibrator calibrator(without_biases(), kLidar);
+  drive(calibrator, plant, 1, 60.0, true);
+  const std::optional<ScalarEstimate> bias = calibrator.take_recent_gyro_bias();
+  ASSERT_TRUE(bias);
+  EXPECT_LT(bias->std, 5e-4);
+  expect_within_3_sigma(*bias, plant.gyro_bias_radps, "recent bias");
+  EXPECT_FALSE(calibrator.take_recent_gyro_bias());
+}
+
 TEST(OdometryCalibrator, LeavesTheRotationScaleOpenOnAStraightLine) {
   const OdometryCalibratorSettings settings = without_biases();
   OdometryCalibrator calibrator(settings, kLidar);

@@ -163,28 +163,63 @@ TEST(RegisterToSite, AWrongPriorDoesNotMakeFixesOutliers) {
   EXPECT_LT(std::abs(wrap_angle(solve(fixes, settings).T_site_map.yaw - truth.yaw)), to_rad(0.15));
 }
 
-// A shorter range than to any position: four anchors about the path, and ranges with the calibration's bias.
-TEST(RegisterToSite, RangesToAnchorsGiveTheTransform) {
-  const Pose2 truth = true_registration({0.3, -0.2, to_rad(2.0)});
+/// Ranges along the corner to four anchors about it, with the calibration's bias and given errors.
+template <typename ErrorOf>
+std::vector<SiteMeasurement> ranges_along_corner(const Pose2& T_site_map, const ErrorOf& error_of) {
   std::vector<SiteMeasurement> ranges;
-  const std::vector<Pose2> path = corner_path();
-  const UwbCalibration calibration;
   int stamp = 0;
-  for (const Pose2& T_map_body : path) {
-    for (int number = 0; number < 4; ++number) {
+  for (const Pose2& T_map_body : corner_path()) {
+    for (int number = 0; number < 4; ++number, ++stamp) {
       const UwbAnchor anchor{.number = number, .p_m = {11.0 + 12.0 * (number % 2), 8.0 + 30.0 * (number / 2), 2.0}};
       const Eigen::Vector3d p_level_antenna(0.1, 0.0, 0.4);
-      const double range_m = predict_uwb_range(anchor, truth * T_map_body, p_level_antenna, calibration).range_m;
-      ranges.push_back(
-          {.stamp = from_seconds(0.1 * stamp++),
-           .source = 10 + number,
-           .correlation_time_s = 5.0,
-           .T_map_body = T_map_body,
-           .content = AnchorRange{
-               .anchor_in_site = anchor, .p_level_antenna = p_level_antenna, .range_m = range_m, .std_m = 0.1}});
+      const double range_m = predict_uwb_range(anchor, T_site_map * T_map_body, p_level_antenna, {}).range_m;
+      ranges.push_back({.stamp = from_seconds(0.1 * stamp),
+                        .source = 10 + number,
+                        .correlation_time_s = 0.0,
+                        .T_map_body = T_map_body,
+                        .content = AnchorRange{.anchor_in_site = anchor,
+                                               .p_level_antenna = p_level_antenna,
+                                               .range_m = range_m + error_of(number, stamp),
+                                               .std_m = 0.1}});
     }
   }
+  return ranges;
+}
+
+TEST(RegisterToSite, RangesToAnchorsGiveTheTransform) {
+  const Pose2 truth = true_registration({0.3, -0.2, to_rad(2.0)});
+  const std::vector<SiteMeasurement> ranges = ranges_along_corner(truth, [](int, int) { return 0.0; });
   EXPECT_THAT(solve(ranges, without_prior()).T_site_map, test::Pose2Near(truth, 1e-9, 1e-9));
+}
+
+// Antenna delays of 10 cm are constant errors of the ranges to one anchor. Taken for noise they would be averaged over
+// 60 ranges to an anchor, and the claimed variance would be far too small. The mean of 200 draws of a chi-square of
+// three degrees has a standard deviation of 0.17.
+TEST(RegisterToSite, CovarianceIsConsistentWithAntennaDelays) {
+  const auto mean_nees = [](const RegistrationSettings& settings) {
+    constexpr int kDraws = 200;
+    double sum = 0.0;
+    for (std::uint64_t draw = 1; draw <= kDraws; ++draw) {
+      const RandomStream noise(draw, "test/ranges"), delays(draw, "test/delays"), put_down(draw, "test/put_down");
+      const Pose2 truth = true_registration({0.02 * put_down.normal(0), 0.02 * put_down.normal(1),
+                                             to_rad(settings.start_yaw_std_deg) * put_down.normal(2)});
+      const auto error_of = [&](int anchor, int stamp) {
+        return 0.1 * delays.normal(static_cast<std::uint64_t>(anchor)) +
+               0.1 * noise.normal(static_cast<std::uint64_t>(stamp));
+      };
+      const SitePoseGaussian estimate = solve(ranges_along_corner(truth, error_of), settings);
+      const Eigen::Vector3d e(estimate.T_site_map.x - truth.x, estimate.T_site_map.y - truth.y,
+                              wrap_angle(estimate.T_site_map.yaw - truth.yaw));
+      sum += e.dot(solve_symmetric(estimate.covariance, e)) / kDraws;
+    }
+    return sum;
+  };
+  RegistrationSettings settings = without_map_error();
+  const double modeled = mean_nees(settings);
+  EXPECT_GT(modeled, 2.3);
+  EXPECT_LT(modeled, 3.7);
+  settings.anchor_delay_std_m = 1e-6;
+  EXPECT_GT(mean_nees(settings), 6.0);
 }
 
 TEST(RegisterToSite, ASurveyedPoseGivesTheTransform) {
