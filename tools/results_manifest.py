@@ -89,7 +89,7 @@ def summary_values(tables):
     scenarios, inspection = tables["tunnel_scenarios"], tables["tunnel_inspection"]["inspection"]
     goals = [span(navigation, f"goals.goal_{i}.position_error_m.mean", ".3f") for i in (1, 2, 3)]
     worst = max(run["metrics"]["docking.position_error_m.max"] for run in scenarios["docking"])
-    return {"patrol": span(patrol, "pose.ate_rmse_m", ".3f"), "goals": "; ".join(goals), "docking": f"{1000 * worst:.1f}",
+    return {"patrol": span(patrol, "pose.site.ate_rmse_m", ".3f"), "goals": "; ".join(goals), "docking": f"{1000 * worst:.1f}",
             "lining": span(inspection, "inspection.lining.max_error_mm", ".2f"), "patrol_seeds": len(patrol),
             "navigation_seeds": len(navigation), "docking_seeds": len(scenarios["docking"]), "lining_seeds": len(inspection),
             "log": next(row["error"] for row in tables["slam_logs"] if row["log"] == "intel" and row["method"] == "graph"),
@@ -99,7 +99,7 @@ def summary_values(tables):
 
 def summary_text(values):
     return markdown(["result", "value", "seeds"], [
-        ["[street patrol](worlds/street/README.md), quadruped, 194 m: position error (ATE)", f"{values['patrol']} m", values["patrol_seeds"]],
+        ["[street patrol](worlds/street/README.md), quadruped, 194 m: position error in the survey frame", f"{values['patrol']} m", values["patrol_seeds"]],
         ["[tunnel navigation](worlds/tunnel/README.md), tracked robot: mean errors at goals 1, 2 and 3", f"{values['goals']} m",
          values["navigation_seeds"]],
         ["[tunnel docking](worlds/tunnel/README.md)", f"at most {values['docking']} mm", values["docking_seeds"]],
@@ -116,24 +116,24 @@ add(name="summary", file="README.md", seeds="those of the linked tables", minute
 # --- worlds/street ------------------------------------------------------------------------------------------------------------
 
 PATROL_ROWS = [
-    Row("`pose.ate_rmse_m`, aligned at the start only", "pose.ate_rmse_m"),
+    Row("`pose.site.ate_rmse_m`, in the survey frame", "pose.site.ate_rmse_m"),
     Row("`pose.aligned.rmse_m`", "pose.aligned.rmse_m"),
-    Row("`pose.heading_rmse_deg`", "pose.heading_rmse_deg", ".2f"),
-    Row("box 1 in the map: `map_error_m`", "stations.regulator_box_1.map_error_m"),
-    Row("box 2 in the map", "stations.regulator_box_2.map_error_m"),
-    Row("valve well 3 in the map", "stations.valve_well_3.map_error_m"),
+    Row("`pose.nees.mean`", "pose.nees.mean", ".1f"),
+    Row("box 1 in the map: `site_map_error_m`", "stations.regulator_box_1.site_map_error_m"),
+    Row("box 2 in the map", "stations.regulator_box_2.site_map_error_m"),
+    Row("valve well 3 in the map", "stations.valve_well_3.site_map_error_m"),
     Row("map to nearest surface: `map.nearest_mean_m`", "map.nearest_mean_m"),
     Row("distance walked, m", "mission.distance_m", ".0f", min),
     Row("leaks found / false alarms", pair("inspection.leaks_found", "inspection.false_alarms"), as_text, None),
     Row("falls / collisions", lambda m: f"{m['mission.fell']:d} / {m['mission.collisions']}", as_text, None),
     Row("simulated s per wall s", "performance.real_time_factor", ".1f", min),
 ]
-WU25 = {"box 1 in the map: `map_error_m`": "[Wu25] 0.92–1.18", "box 2 in the map": "[Wu25] 0.92–1.18",
+WU25 = {"box 1 in the map: `site_map_error_m`": "[Wu25] 0.92–1.18", "box 2 in the map": "[Wu25] 0.92–1.18",
         "valve well 3 in the map": "[Wu25] 0.92–1.18"}
 
 add(name="street_patrol", file="worlds/street/README.md", seeds=REPORT, minutes=2,
     steps=[sweep("patrol", "street/scenarios/patrol", REPORT)],
-    values=swept(patrol=("mission.*", "pose.*_rmse_m", "pose.heading_rmse_deg", "pose.aligned.rmse_m", "stations.*.map_error_m",
+    values=swept(patrol=("mission.*", "pose.site.ate_rmse_m", "pose.aligned.rmse_m", "pose.nees.mean", "stations.*.site_map_error_m",
                          "map.nearest_mean_m", "inspection.*", "performance.real_time_factor")),
     text=lambda values: by_seed(values["patrol"], PATROL_ROWS, WU25))
 

@@ -7,7 +7,7 @@
 
 #include "core/frames.h"
 #include "core/messages.h"
-#include "score/pose/map_in_site.h"
+#include "core/site/map_in_site.h"
 
 namespace patrol::score {
 

@@ -8,8 +8,8 @@
 
 #include "core/frames.h"
 #include "core/inspection_result.h"
+#include "core/site/map_in_site.h"
 #include "core/tunnel_lining.h"
-#include "score/pose/map_in_site.h"
 
 namespace patrol::score {
 

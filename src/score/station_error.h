@@ -8,8 +8,8 @@
 #include "core/grid.h"
 #include "core/messages.h"
 #include "core/route.h"
+#include "core/site/map_in_site.h"
 #include "core/trajectory.h"
-#include "score/pose/map_in_site.h"
 #include "score/visibility.h"
 
 namespace patrol::score {

@@ -7,8 +7,8 @@
 #include <Eigen/Core>
 
 #include "core/inspection_result.h"
+#include "core/site/map_in_site.h"
 #include "core/trajectory.h"
-#include "score/pose/map_in_site.h"
 
 namespace patrol::score {
 

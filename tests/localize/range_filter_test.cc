@@ -193,8 +193,8 @@ TunnelMeans mean_over_seeds(const TunnelSetting& setting) {
 }
 
 // The filter assumes 10 cm: the NIS is (7 / 10)^2 and the little that the pose adds.
-// The lower bound is half the dimension: the odometry below it is underconfident on this plant (track_odometry_test.cc).
-// Measured: 1.8 at the end, 1.9 on average.
+// The lower bound is half the dimension: the odometry below it is underconfident on this plant
+// (track_odometry_test.cc). Measured: 1.8 at the end, 1.9 on average.
 TEST(RangeFilter, OnAPlantWithParametersOfItsOwnTheNeesIsAtLeastHalfItsDimensionAndTheNisShowsTheRangeNoise) {
   for (const double nlos_probability : {0.0, 0.3}) {
     const TunnelMeans means = mean_over_seeds(of_data_sheets(nlos_probability, 0.0));

@@ -18,9 +18,13 @@ struct RegistrationSettings {
   double range_correlation_time_s = 2.0;   ///< correlation time of the errors of UWB ranges: reflections
   double anchor_delay_std_m = 0.1;         ///< standard deviation of the constant error of the ranges to an anchor
   double range_min_distance_m = 2.0;       ///< minimum distance between two ranges to one anchor
-  /// Standard deviation of the map's own deformation at a position, added to each measurement's; correlated over the
-  /// measurement's correlation time.
-  double map_std_m = 0.02;
+  /// Standard deviation of the map's own deformation at a position. It is added to that of each measurement, and to the
+  /// published pose while the robot maps.
+  double map_std_m = 0.03;
+  /// Correlation time of the map's deformation. The sum of the errors of fix and map is taken as one process with the
+  /// longer of the two correlation times.
+  double map_correlation_time_s = 100.0;
+  double map_yaw_std_deg = 0.15;     ///< as `map_std_m`, of the body's yaw; contains the remaining mounting yaw
   double min_distance_m = 0.5;       ///< minimum distance between two GNSS fixes of one status
   double max_interval_s = 10.0;      ///< maximum time between two measurements of one source while the robot stands
   int max_measurements = 600;        ///< bound of the stored measurements; above it every second one is dropped
@@ -42,6 +46,8 @@ struct RegistrationSettings {
     visit("anchor_delay_std_m", self.anchor_delay_std_m, between(1e-6, 10.0));
     visit("range_min_distance_m", self.range_min_distance_m, between(0.0, 100.0));
     visit("map_std_m", self.map_std_m, between(0.0, 10.0));
+    visit("map_correlation_time_s", self.map_correlation_time_s, between(0.0, 1e4));
+    visit("map_yaw_std_deg", self.map_yaw_std_deg, between(0.0, 10.0));
     visit("min_distance_m", self.min_distance_m, between(0.0, 100.0));
     visit("max_interval_s", self.max_interval_s, between(0.1, 1e4));
     visit("max_measurements", self.max_measurements, between(10, 100000));

@@ -5,8 +5,8 @@
 #include <Eigen/Core>
 
 #include "core/frames.h"
+#include "core/site/map_in_site.h"
 #include "core/trajectory.h"
-#include "score/pose/map_in_site.h"
 
 namespace patrol::score {
 

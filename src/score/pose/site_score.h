@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <optional>
 
+#include "core/site/map_in_site.h"
 #include "core/trajectory.h"
-#include "score/pose/map_in_site.h"
 #include "score/pose/trajectory_error.h"
 
 namespace patrol::score {

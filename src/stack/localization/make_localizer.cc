@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/geometry/angles.h"
 #include "stack/localization/known_map_localizer.h"
 #include "stack/localization/map_then_localize.h"
 #include "stack/localization/slam_localizer.h"
@@ -16,6 +17,12 @@ namespace {
 std::optional<Pose3> antenna_of(const RobotDescription& robot) {
   const auto frame = robot.T_body_sensor.find("uwb");
   return frame == robot.T_body_sensor.end() ? std::nullopt : std::optional(frame->second);
+}
+
+Eigen::Matrix3d map_covariance(const localize::RegistrationSettings& settings) {
+  return Eigen::Vector3d(settings.map_std_m, settings.map_std_m, to_rad(settings.map_yaw_std_deg))
+      .cwiseAbs2()
+      .asDiagonal();
 }
 
 std::string method_of(const StackSettings& settings, const LocalizerStart& start) {
@@ -43,7 +50,7 @@ std::unique_ptr<Localizer> make_localizer(const StackSettings& settings, const R
   }
   if (start.map) refuse("would replace the given map: remove the key map, or select monte_carlo");
   auto slam = std::make_unique<SlamLocalizer>(slam::make_mapper(settings.slam, start.neighbor_model, seed),
-                                              site_in_map.anchors, T_body_uwb);
+                                              site_in_map.anchors, T_body_uwb, map_covariance(settings.registration));
   if (method == "slam") return slam;
   if (!start.has_mapping_drive) refuse("requires a teleoperated mapping drive: select slam");
   return std::make_unique<MapThenLocalize>(std::move(slam), make_on_map);

@@ -1,5 +1,6 @@
 #include "stack/localization/site_registrar.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -31,7 +32,8 @@ void SiteRegistrar::add(const GnssFix& fix, const PoseFromScan& pose, const Eige
   if (!position.p_site_antenna.allFinite() || !(position.std_m > 0.0)) return;
   add({.stamp = fix.stamp,
        .source = is_float ? kFloatSource : kFixSource,
-       .correlation_time_s = is_float ? settings_.float_correlation_time_s : settings_.fix_correlation_time_s,
+       .correlation_time_s = std::max(settings_.map_correlation_time_s,
+                                      is_float ? settings_.float_correlation_time_s : settings_.fix_correlation_time_s),
        .T_map_body = pose.T_map_body,
        .content = position},
       pose);

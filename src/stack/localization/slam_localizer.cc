@@ -6,8 +6,11 @@
 namespace patrol::stack {
 
 SlamLocalizer::SlamLocalizer(std::unique_ptr<slam::Mapper> mapper, std::vector<UwbAnchor> anchors_in_map,
-                             std::optional<Pose3> T_body_uwb)
-    : mapper_(std::move(mapper)), anchors_(std::move(anchors_in_map)), T_body_uwb_(std::move(T_body_uwb)) {}
+                             std::optional<Pose3> T_body_uwb, const Eigen::Matrix3d& map_covariance)
+    : mapper_(std::move(mapper)),
+      anchors_(std::move(anchors_in_map)),
+      T_body_uwb_(std::move(T_body_uwb)),
+      map_covariance_(map_covariance) {}
 
 void SlamLocalizer::add(const RangeWithOdometry& range) {
   const auto anchor = std::find_if(anchors_.begin(), anchors_.end(),
@@ -23,7 +26,7 @@ void SlamLocalizer::add(const RangeWithOdometry& range) {
 PoseEstimate SlamLocalizer::update(const LevelScan& scan, const Pose2& T_odom_body, StackOutput& output) {
   const auto timer = output.time_stage("slam");
   const slam::SlamUpdate update = mapper_->update(scan, T_odom_body);
-  PoseEstimate estimate{scan.stamp, update.T_map_body, update.covariance};
+  PoseEstimate estimate{scan.stamp, update.T_map_body, update.covariance + map_covariance_};
   output.publish(estimate);
   if (!update.is_keyframe) return estimate;
   if (ParticleSet particles = mapper_->particles(); !particles.T_map_body.empty()) output.publish(std::move(particles));

@@ -15,8 +15,9 @@ namespace patrol::stack {
 class SlamLocalizer final : public Localizer {
  public:
   /// `T_body_uwb`: pose of the UWB antenna; none for a robot without one, which ignores ranges.
+  /// `map_covariance`: covariance of x, y, yaw by the deformation of the map, added to that of each scan match.
   SlamLocalizer(std::unique_ptr<slam::Mapper> mapper, std::vector<UwbAnchor> anchors_in_map,
-                std::optional<Pose3> T_body_uwb);
+                std::optional<Pose3> T_body_uwb, const Eigen::Matrix3d& map_covariance = Eigen::Matrix3d::Zero());
 
   void add(const RangeWithOdometry& range) override;
   PoseEstimate update(const LevelScan& scan, const Pose2& T_odom_body, StackOutput& output) override;
@@ -31,6 +32,7 @@ class SlamLocalizer final : public Localizer {
   std::unique_ptr<slam::Mapper> mapper_;
   std::vector<UwbAnchor> anchors_;
   std::optional<Pose3> T_body_uwb_;
+  Eigen::Matrix3d map_covariance_;
 };
 
 }  // namespace patrol::stack

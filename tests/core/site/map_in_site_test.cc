@@ -1,10 +1,10 @@
-#include "score/pose/map_in_site.h"
+#include "core/site/map_in_site.h"
 
 #include <gtest/gtest.h>
 
 #include "tests/support/pose_near.h"
 
-namespace patrol::score::map_in_site_test {
+namespace patrol::map_in_site_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -39,4 +39,4 @@ TEST(MapInSite, PlacesEachPoseByTheRegistrationOfItsTime) {
 }
 
 }  // namespace
-}  // namespace patrol::score::map_in_site_test
+}  // namespace patrol::map_in_site_test

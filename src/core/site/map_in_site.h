@@ -9,7 +9,7 @@
 #include "core/time.h"
 #include "core/trajectory.h"
 
-namespace patrol::score {
+namespace patrol {
 
 /// Pose of `map` in the survey frame `site` as the robot knew it at each time: the newest registration, the surveyed
 /// start before the first one. The estimates and findings of a robot are placed in site with it.
@@ -32,4 +32,4 @@ class MapInSite {
   SiteRegistration start_;
 };
 
-}  // namespace patrol::score
+}  // namespace patrol

@@ -1,9 +1,9 @@
-#include "score/pose/map_in_site.h"
+#include "core/site/map_in_site.h"
 
 #include <algorithm>
 #include <iterator>
 
-namespace patrol::score {
+namespace patrol {
 
 const SiteRegistration& MapInSite::at(Time stamp) const {
   const auto after = std::upper_bound(registrations_.begin(), registrations_.end(), stamp,
@@ -19,4 +19,4 @@ Trajectory MapInSite::place(const Trajectory& T_map_body) const {
   return path;
 }
 
-}  // namespace patrol::score
+}  // namespace patrol
