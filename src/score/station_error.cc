@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kMaxDistance_m = 0.5;  // cells farther from every true surface are not used
 constexpr double kRobust_m = 0.05;      // scale of the Cauchy weight
-constexpr int kMinPoints = 30;
+constexpr std::size_t kMinPoints = 30;
 constexpr int kIterations = 20;
 // directions below this fraction of the largest information eigenvalue are not moved
 constexpr double kDegenerateRatio = 0.03;
@@ -135,6 +135,25 @@ std::optional<double> map_displacement_m(const OccupancyGrid& built, const Pose2
   const Pose2 far = refine(field, points, p_world_target, search(field, points, p_world_target, radius_m), radius_m);
   const bool is_near_as_good = score(near) >= kEquivalentScoreRatio * score(far);
   return (is_near_as_good ? near : far).position().norm();
+}
+
+Pose2 fit_map_to_reference(const OccupancyGrid& built, const Pose2& T_world_map, const ReferenceMap& reference) {
+  std::vector<Eigen::Vector2d> points = occupied_points(built);
+  if (points.size() < kMinPoints) return T_world_map;
+  Eigen::Vector2d center = Eigen::Vector2d::Zero();
+  for (Eigen::Vector2d& point : points) {
+    point = T_world_map * point;
+    center += point / static_cast<double>(points.size());
+  }
+  double squares_m2 = 0.0;
+  for (Eigen::Vector2d& point : points) {
+    point -= center;
+    squares_m2 += point.squaredNorm();
+  }
+  const double radius_m = std::sqrt(squares_m2 / static_cast<double>(points.size()));
+  const Pose2 motion = refine(DistanceField(occupied_cells(reference.cells)), points, center, {}, radius_m);
+  const Pose2 T_world_center{center.x(), center.y(), 0.0};
+  return T_world_center * motion * T_world_center.inverse() * T_world_map;
 }
 
 std::vector<StationError> station_errors(const Route& route_in_world, const std::vector<Event>& events,

@@ -76,7 +76,7 @@ MUTATIONS = [
              ("core_test",), r"^RandomStream\."),
     Mutation("covariance_tight", "the published covariance of the pose is a hundredth of the estimated one",
              "src/stack/localization/slam_localizer.cc",
-             "PoseEstimate estimate{scan.stamp, update.T_map_body, update.covariance};",
-             "PoseEstimate estimate{scan.stamp, update.T_map_body, 0.01 * update.covariance};",
+             "update.T_map_body, update.covariance + map_covariance_};",
+             "update.T_map_body, 0.01 * (update.covariance + map_covariance_)};",
              ("patrol",), r"^(Scenario|Street|Substation|Tunnel)\."),
 ]

@@ -150,5 +150,26 @@ TEST(StationErrors, TellBeliefTruthAndSurveyApart) {
   EXPECT_FALSE(errors[1].is_reached);
 }
 
+TEST(FitMapToReference, FindsAMapTenCentimetersAndOneDegreeOff) {
+  const Pose2 off{0.06, -0.08, 1.0 * kDegree};
+  const Pose2 fitted = fit_map_to_reference(make_walls(), off, all_seeable(make_walls()));
+  EXPECT_LT(fitted.position().norm(), 0.003);
+  EXPECT_NEAR(fitted.yaw, 0.0, 0.02 * kDegree);
+}
+
+// Along a single wall the cells fit everywhere.
+TEST(FitMapToReference, DoesNotMoveTheMapAlongAWall) {
+  const Pose2 off{0.06, -0.08, 0.0};
+  const Pose2 fitted = fit_map_to_reference(make_walls(false), off, all_seeable(make_walls(false)));
+  EXPECT_NEAR(fitted.x, off.x, 0.005);
+  EXPECT_NEAR(fitted.y, 0.0, 0.003);
+}
+
+TEST(FitMapToReference, OfAnEmptyMapIsWhereItWas) {
+  const OccupancyGrid empty(make_walls().geometry(), kFree);
+  EXPECT_EQ(fit_map_to_reference(empty, {1.0, 2.0, 0.3}, all_seeable(make_walls())).vector(),
+            Eigen::Vector3d(1.0, 2.0, 0.3));
+}
+
 }  // namespace
 }  // namespace patrol::score::station_error_test

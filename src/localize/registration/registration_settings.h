@@ -12,6 +12,8 @@ struct RegistrationSettings {
   /// mounting yaw of the lidar, 0.3 degrees, which turns the map against the body.
   double start_position_std_m = 0.02;
   double start_yaw_std_deg = 0.6;
+  double given_map_position_std_m = 0.02;  ///< prior for a given map, whose frame has been surveyed
+  double given_map_yaw_std_deg = 0.05;     ///< prior for a given map
   double fix_correlation_time_s = 20.0;    ///< correlation time of the errors of RTK fixes (core/sensors/gnss.h)
   double float_correlation_time_s = 60.0;  ///< correlation time of the errors of float solutions
   double range_std_m = 0.12;               ///< standard deviation of a UWB range in line of sight, without its delay
@@ -39,6 +41,8 @@ struct RegistrationSettings {
     visit("use_uwb", self.use_uwb);
     visit("start_position_std_m", self.start_position_std_m, between(1e-4, 1e6));
     visit("start_yaw_std_deg", self.start_yaw_std_deg, between(1e-4, 1e6));
+    visit("given_map_position_std_m", self.given_map_position_std_m, between(1e-4, 1e6));
+    visit("given_map_yaw_std_deg", self.given_map_yaw_std_deg, between(1e-4, 1e6));
     visit("fix_correlation_time_s", self.fix_correlation_time_s, between(0.0, 1e4));
     visit("float_correlation_time_s", self.float_correlation_time_s, between(0.0, 1e4));
     visit("range_std_m", self.range_std_m, between(1e-4, 10.0));

@@ -63,7 +63,7 @@ struct KnownMapScore {
 
 /// Scores that need an estimate and a map.
 struct EstimateScore {
-  Pose2 T_world_map;           ///< true pose of the map's frame: of the given map, or by fit_map_frame
+  Pose2 T_world_map;           ///< true pose of the map's frame: of the given map, or by fit_map_to_reference
   TrajectoryError pose;        ///< on the common clock (live_trajectory.h), as are `odometry` and `range_pose`
   SiteScore site;              ///< pose and registration in the survey frame
   double pose_coverage = 0.0;  ///< fraction of the run within 0.2 s of a timely pose (live_trajectory.h)

@@ -10,6 +10,14 @@ namespace {
 constexpr double kSurveyedPosition_m = 0.03;
 constexpr double kSurveyedYaw_rad = 0.02;
 
+/// Returns the settings with the prior of the map that the run starts with.
+localize::RegistrationSettings for_map(localize::RegistrationSettings settings, bool is_given) {
+  if (!is_given) return settings;
+  settings.start_position_std_m = settings.given_map_position_std_m;
+  settings.start_yaw_std_deg = settings.given_map_yaw_std_deg;
+  return settings;
+}
+
 std::vector<UwbAnchor> placed(std::vector<UwbAnchor> anchors, const Pose2& T_site_start) {
   for (UwbAnchor& anchor : anchors) anchor.p_m.head<2>() = T_site_start * Eigen::Vector2d(anchor.p_m.head<2>());
   return anchors;
@@ -28,7 +36,7 @@ PosePipeline::PosePipeline(const StackSettings& settings, const RobotDescription
     : settle_(from_seconds(settings.odometry_settling_time_s)),
       odometry_(make_odometry_source(settings, robot)),
       leveler_(robot.T_body("lidar"), settings.scan_leveling),
-      registrar_(settings.registration, site),
+      registrar_(for_map(settings.registration, start.map.has_value()), site),
       T_body_lidar_(robot.T_body("lidar")),
       anchors_in_site_(placed(site_in_map.anchors, site.T_site_start)),
       calibration_period_(from_seconds(settings.calibration.period_s)) {
