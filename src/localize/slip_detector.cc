@@ -7,7 +7,7 @@ namespace patrol::localize {
 namespace {
 
 constexpr double kSigmas = 4.0;         // significance threshold for the roughness
-constexpr double kLastingSigmas = 3.0;  // and for the lasting error of the acceleration
+constexpr double kLastingSigmas = 3.0;  // significance threshold for the lasting error of the acceleration
 constexpr double kMaxLateness_s = 0.5;  // maximum delay of the tracks behind the IMU
 
 }  // namespace

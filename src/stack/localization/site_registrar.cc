@@ -15,10 +15,7 @@ constexpr int kFirstAnchorSource = 2;  // plus the number of the anchor
 }  // namespace
 
 SiteRegistrar::SiteRegistrar(const localize::RegistrationSettings& settings, const SiteFrame& site)
-    : settings_(settings),
-      site_(site),
-      prior_(localize::registration_prior(site.T_site_start, settings)),
-      min_distance_m_(settings.min_distance_m) {
+    : settings_(settings), site_(site), prior_(localize::registration_prior(site.T_site_start, settings)) {
   validate(settings, "registration");
 }
 
@@ -59,9 +56,8 @@ bool SiteRegistrar::is_spaced(int source, Time stamp, const Pose2& T_map_body) c
   const Time age = stamp - last_stamps_.at(source);
   if (age <= Time{}) return false;
   const double distance_m = (T_map_body.position() - last->second.T_map_body.position()).norm();
-  const bool is_range = source >= kFirstAnchorSource;
-  const double spacing = is_range ? settings_.range_min_distance_m / settings_.min_distance_m : 1.0;
-  return distance_m >= spacing * min_distance_m_ || age >= from_seconds(settings_.max_interval_s);
+  const double spacing_m = source >= kFirstAnchorSource ? settings_.range_min_distance_m : settings_.min_distance_m;
+  return distance_m >= spacing_factor_ * spacing_m || age >= from_seconds(settings_.max_interval_s);
 }
 
 void SiteRegistrar::add(localize::SiteMeasurement measurement, const PoseFromScan& pose) {
@@ -79,7 +75,7 @@ void SiteRegistrar::thin_out() {
     keeps = !keeps;
     return !keeps;
   });
-  min_distance_m_ *= 2.0;
+  spacing_factor_ *= 2.0;
 }
 
 std::optional<SiteRegistration> SiteRegistrar::update(Time now, const std::vector<Pose2>& path) {

@@ -56,7 +56,7 @@ class SiteRegistrar {
   localize::RegistrationSettings settings_;
   SiteFrame site_;
   localize::SitePoseGaussian prior_;
-  double min_distance_m_;
+  double spacing_factor_ = 1.0;             ///< of the minimum distances, doubled each time the entries are thinned out
   std::vector<Entry> entries_;              ///< in ascending time order
   std::map<int, PoseFromScan> last_poses_;  ///< [source] pose of the newest entry
   std::map<int, Time> last_stamps_;         ///< [source] stamp of the newest entry
