@@ -27,6 +27,7 @@ enum class EventKind : std::uint8_t {
   kGasAlarm,
   // tunnel mission
   kGoalSaved,
+  kGoalMoved,
   kMappingCompleted,
   kNavigationStarted,
   kGoalReached,
@@ -93,6 +94,7 @@ inline constexpr std::array kEventKinds = std::to_array<EventKindRow>({
      "The methane column exceeds its threshold; value: column, ppm m; target: the leak", EventClass::kHazard,
      WarningLevel::kAlarm},
     {EventKind::kGoalSaved, "goal_saved", "The operator saved a goal during teleoperation"},
+    {EventKind::kGoalMoved, "goal_moved", "The final optimization of the map moved a saved goal; pose: the goal's"},
     {EventKind::kMappingCompleted, "mapping_completed", "The teleoperated mapping drive is over; the map is final"},
     {EventKind::kNavigationStarted, "navigation_started", "A run to all goals begins; value: its number"},
     {EventKind::kGoalReached, "goal_reached", "The robot is at a goal; value: number of the run"},

@@ -21,6 +21,9 @@ class MapPoseTracker {
   /// are ignored.
   void correct(Time stamp, const Pose2& T_odom_body, const Pose2& T_map_body, const Eigen::Matrix3d& covariance);
 
+  /// Moves map: p_map = T_map_old * p_old.
+  void move_map(const Pose2& T_map_old) { T_map_odom_ = T_map_old * T_map_odom_; }
+
   /// Returns the pose and its covariance at `stamp`, at which the odometry pose is `T_odom_body`.
   PoseEstimate at(Time stamp, const Pose2& T_odom_body) const;
   const Pose2& T_map_odom() const { return T_map_odom_; }

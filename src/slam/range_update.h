@@ -11,7 +11,7 @@ namespace patrol::slam {
 
 /// UWB range with the odometry at its time.
 struct RangeMeasurement {
-  UwbAnchor anchor;  ///< anchor in map, height above the ground of map
+  UwbAnchor anchor;  ///< anchor in survey, which is close to map; height above the ground of map
   double range_m = 0.0;
   Pose2 T_odom_body;
   Eigen::Vector3d p_level_antenna = Eigen::Vector3d::Zero();  ///< antenna in level, height above the ground

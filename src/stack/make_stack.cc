@@ -84,6 +84,7 @@ Stack make_stack(const StackSettings& settings, const RobotDescription& robot, c
   std::unique_ptr<Mission> mission = make_mission(settings, robot, site_in_map, start);
   InstrumentSet instruments = make_instruments(settings, robot, site_in_map, start);
   LocalizerStart localizer{.map = std::move(start.map),
+                           .map_registration = start.map_registration,
                            .has_mapping_drive = is_tunnel(settings) && start.has_teleop,
                            .neighbor_model = std::move(start.neighbor_model)};
   return Stack({.pose = PosePipeline(settings, robot, site_in_map, std::move(localizer), start.seed, start.site),

@@ -8,6 +8,7 @@
 #include "core/robot_description.h"
 #include "core/route.h"
 #include "core/site/site_frame.h"
+#include "core/site/site_registration.h"
 #include "stack/instruments/lining_instrument.h"
 #include "stack/settings/stack_settings.h"
 #include "stack/stack.h"
@@ -16,7 +17,8 @@ namespace patrol::stack {
 
 /// Initial data of a stack besides the survey; in map unless the member says otherwise.
 struct StackStart {
-  std::optional<OccupancyGrid> map = {};  ///< none: the robot makes its own map
+  std::optional<OccupancyGrid> map = {};                  ///< none: the robot makes its own map
+  std::optional<SiteRegistration> map_registration = {};  ///< of the given map; none: its origin is the surveyed start
   std::vector<SavedGoal> goals = {};  ///< none: saved during teleoperation, or the mission visits the route's stations
   LiningReferences references = {};   ///< scans of an earlier inspection run
   BoostedStumps neighbor_model = {};  ///< classifier of submap pairs, for SLAM methods that need it

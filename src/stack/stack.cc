@@ -87,6 +87,25 @@ void Stack::publish_map(Time now) {
   output_.publish(std::move(update));
 }
 
+/// Completes the map; everything that the robot has located in it follows its final optimization.
+void Stack::finish_map(Time now, const PoseEstimate& pose) {
+  {
+    const auto timer = output_.time_stage("slam");
+    const std::optional<MapCorrection> correction = parts_.pose.finish_map(pose);
+    if (!correction) return;
+    for (Event& event : parts_.mission->correct_map(now, *correction)) output_.publish(std::move(event));
+  }
+  publish_map(now);
+  follow_registration(now);
+}
+
+void Stack::finish(Time now) {
+  const std::optional<OdometryEstimate> odometry = parts_.pose.update_odometry();
+  if (odometry && parts_.pose.is_mapping())
+    return finish_map(now, parts_.pose.pose_at(odometry->stamp, to_pose2(odometry->T_odom_body)));
+  publish_map(now);
+}
+
 /// Moves the survey in map with the registration of the map to the site.
 void Stack::follow_registration(Time now) {
   const std::optional<SiteRegistration> registration = parts_.pose.register_to_site(now);
@@ -134,10 +153,7 @@ void Stack::advance_mission(const Period& period) {
                                                            .inspection = inspection_,
                                                            .teleop = std::exchange(new_teleop_, std::nullopt)});
   for (Event& event : output.events) output_.publish(std::move(event));
-  if (output.is_map_complete) {
-    parts_.pose.finish_map(period.pose);
-    publish_map(period.now);
-  }
+  if (output.is_map_complete) finish_map(period.now, period.pose);
   relocalize(output.relocalization, period.odometry);
   task_ = std::move(output.task);
 }

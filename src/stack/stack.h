@@ -43,7 +43,8 @@ class Stack {
 
   const VelocityCommand& command() const { return command_; }
   bool mission_is_over() const { return parts_.mission->is_over(); }
-  MapUpdate final_map(Time now) { return {now, parts_.pose.map()}; }
+  /// Ends the run: completes the map, and publishes it with the registration to the site.
+  void finish(Time now);
   /// Removes and returns the messages published since the last call, in order.
   std::vector<StackMessage> take_messages() { return output_.take_messages(); }
   const StageProfiler& clock() const { return output_.clock(); }
@@ -59,6 +60,7 @@ class Stack {
 
   void handle_scan(const LaserScan& raw);
   void publish_map(Time now);
+  void finish_map(Time now, const PoseEstimate& pose);
   void follow_registration(Time now);
   void monitor_sensors(Time now, const Pose2& T_odom_body);
   VelocityCommand control(const Period& period);

@@ -47,16 +47,13 @@ MUTATIONS = [
              "      contacts_.emplace_back(object, now_);\n      collisions_.push_back(collision);\n",
              "      contacts_.emplace_back(object, now_);\n",
              ("sim_test",), r"^Simulator\."),
-    Mutation("map_shifted", "the final map is 0.8 m off, and with it every station", "src/stack/stack.h",
-             "MapUpdate final_map(Time now) { return {now, parts_.pose.map()}; }",
-             "MapUpdate final_map(Time now) {\n"
-             "    const OccupancyGrid map = parts_.pose.map();\n"
-             "    GridGeometry geometry = map.geometry();\n"
-             "    geometry.origin_m.x() += 0.8;\n"
-             "    MapUpdate shifted{now, OccupancyGrid(geometry)};\n"
-             "    shifted.map.values() = map.values();\n"
-             "    return shifted;\n"
-             "  }",
+    Mutation("map_shifted", "published maps are 0.8 m off, and with them every station", "src/stack/stack.cc",
+             "  output_.publish(std::move(update));\n",
+             "  GridGeometry geometry = update.map.geometry();\n"
+             "  geometry.origin_m.x() += 0.8;\n"
+             "  MapUpdate shifted{now, OccupancyGrid(geometry)};\n"
+             "  shifted.map.values() = update.map.values();\n"
+             "  output_.publish(std::move(shifted));\n",
              ("patrol",), r"^(Scenario|Street|Substation|Tunnel)\."),
     Mutation("stream_shared", "two sensors draw from one random stream", "src/sim/sensors/ultrasonic.cc",
              'noise_(seed, "ultrasonic/noise")', 'noise_(seed, "uwb/noise")',

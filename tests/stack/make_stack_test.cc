@@ -79,7 +79,8 @@ TEST(MakeStack, AGasPatrolOnAKnownMapUsesThatMap) {
   const std::vector<StackMessage> messages = stand(stack, robot, 8.0);
   EXPECT_TRUE(stack.mission_is_over());
   EXPECT_FALSE(all_of<LocalizationConfidence>(messages).empty());
-  EXPECT_EQ(stack.final_map({}).map.values(), map_of_small_room().values());
+  stack.finish({});
+  EXPECT_EQ(all_of<MapUpdate>(stack.take_messages()).back().map.values(), map_of_small_room().values());
 }
 
 TEST(MakeStack, ATrackedRobotMayPatrolForGas) {

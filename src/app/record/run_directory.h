@@ -16,6 +16,7 @@ struct RunDirectory {
   std::filesystem::path scenario() const { return root / "scenario.yaml"; }
   std::filesystem::path log() const { return root / "log.mcap"; }
   std::filesystem::path nav() const { return root / "nav.json"; }
+  std::filesystem::path registration() const { return root / "registration.json"; }
   std::filesystem::path teleop() const { return root / "teleop.csv"; }
   std::filesystem::path scans() const { return root / "scans"; }
   std::filesystem::path metrics() const { return root / "metrics.json"; }

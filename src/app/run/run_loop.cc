@@ -159,11 +159,10 @@ class ClosedLoop {
     return !stack_.mission_is_over() && now < limit_;
   }
 
-  /// Writes the final map, closes the log and completes the outcome.
+  /// Lets the stack complete its map, closes the log and completes the outcome.
   void finish() {
-    const MapUpdate final_map = stack_.final_map(simulator_.now());
-    log_.write(simulator_.now(), final_map);
-    observer_.on_message(stack::StackMessage(final_map));
+    stack_.finish(simulator_.now());
+    publish_stack_messages(simulator_.now());
     log_.close();
     outcome_.duration = simulator_.now();
     outcome_.faults = simulator_.sensors().faults();
@@ -215,6 +214,7 @@ sim::Simulator make_simulator(const Scenario& scenario, const ScenarioFiles& fil
 stack::Stack make_stack(const Scenario& scenario, const ScenarioFiles& files) {
   return stack::make_stack(scenario.stack, files.robot, inspect::to_map(files.route, files.T_site_start),
                            {.map = files.map,
+                            .map_registration = files.map_registration,
                             .goals = files.goals,
                             .references = references_of(files),
                             .neighbor_model = files.neighbor_model,

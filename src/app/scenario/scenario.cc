@@ -14,6 +14,7 @@
 #include "core/text.h"
 #include "io/files/teleop_csv.h"
 #include "io/json/nav_json.h"
+#include "io/json/registration_json.h"
 #include "io/json/route_json.h"
 #include "io/json/teleop_route_json.h"
 #include "io/maps/map_server.h"
@@ -86,6 +87,12 @@ void add_mounts(RobotDescription& robot, const std::vector<MountSettings>& mount
   }
 }
 
+/// Returns the file with the registration of a map to the site; none if there is none beside the map.
+std::optional<std::filesystem::path> registration_of(const std::filesystem::path& map_yaml) {
+  const std::filesystem::path file = map_yaml.parent_path() / "registration.json";
+  return std::filesystem::exists(file) ? std::optional(file) : std::nullopt;
+}
+
 }  // namespace
 
 Scenario default_scenario(const std::string& robot, const std::filesystem::path& data_root) {
@@ -147,7 +154,11 @@ std::vector<std::filesystem::path> named_files(const Scenario& scenario, const s
   for (const auto& [key, name] : named) {
     if (!name.empty()) files.push_back(find_named_file(world, key, name));
   }
-  if (!scenario.map.empty()) files.push_back(io::map_image(find_named_file(world, "map", scenario.map)));
+  if (!scenario.map.empty()) {
+    const std::filesystem::path map_yaml = find_named_file(world, "map", scenario.map);
+    files.push_back(io::map_image(map_yaml));
+    if (const auto registration = registration_of(map_yaml)) files.push_back(*registration);
+  }
   if (!scenario.references.empty()) {
     for (const std::filesystem::path& file : io::station_scan_files(world / scenario.references)) files.push_back(file);
   }
@@ -172,6 +183,7 @@ ScenarioFiles load_scenario_files(const Scenario& scenario, const std::filesyste
     const std::filesystem::path file = named_file("map", scenario.map);
     files.map = io::load_map(file);
     stack::validate_map(file.string(), *files.map);
+    if (const auto registration = registration_of(file)) files.map_registration = io::load_registration(*registration);
   }
   if (!scenario.goals.empty()) {
     const std::filesystem::path file = named_file("goals", scenario.goals);

@@ -10,6 +10,7 @@
 #include "core/route.h"
 #include "core/settings.h"
 #include "core/site/geodetic_datum.h"
+#include "core/site/site_registration.h"
 #include "core/teleop_route.h"
 #include "io/points/station_scans.h"
 #include "io/yaml/expectations.h"
@@ -217,6 +218,7 @@ struct ScenarioFiles {
   std::vector<SavedGoal> goals;         ///< in map
   std::vector<io::StationScan> references;
   std::optional<OccupancyGrid> map;
+  std::optional<SiteRegistration> map_registration;  ///< saved beside the map
   BoostedStumps neighbor_model;  ///< classifier of pairs of submaps; empty for SLAM methods that need none
 
   bool has_teleop() const { return !teleop_route.empty() || !recorded.empty(); }

@@ -1,11 +1,14 @@
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <string>
 
 #include "app/scoring/score_run.h"
 #include "core/geometry/angles.h"
 #include "io/files/csv.h"
 #include "io/files/teleop_csv.h"
 #include "io/json/nav_json.h"
+#include "io/json/registration_json.h"
 #include "io/maps/map_server.h"
 #include "io/trajectories/tum.h"
 
@@ -23,8 +26,12 @@ void save_drive(const RunDirectory& directory, const Scenario& scenario, const R
   if (record.teleop.empty()) return;
   io::save_teleop(directory.teleop(), record.teleop);
   std::vector<SavedGoal> goals;
+  std::map<std::string, std::size_t> index_of;  // by subject
   for (const Event& event : record.events) {
+    if (event.kind == EventKind::kGoalMoved && index_of.contains(event.subject))
+      goals[index_of[event.subject]].T_map_body = event.T_map_body;
     if (event.kind != EventKind::kGoalSaved) continue;
+    index_of[event.subject] = goals.size();
     goals.push_back({.number = static_cast<int>(goals.size()) + 1,
                      .T_map_body = event.T_map_body,
                      .type = scenario.stack.tunnel_mission.goal_type(goals.size())});
@@ -58,6 +65,8 @@ void save_scored_run(const RunDirectory& directory, const ScoredRun& run, const 
   save_drive(directory, scenario, run.record);
   if (!run.scans.empty()) io::save_station_scans(directory.scans(), run.scans);
   io::save_map(directory.map(), run.record.map);
+  if (!run.record.registrations.empty())
+    io::save_registration(directory.registration(), run.record.registrations.back());
   io::save_map(directory.truth_map(), score::observable_part(run.truth->reference));
   io::save_map_errors(directory.map_errors(), run.score.estimate->map.cells_m);
   save_localizability(directory.localizability(), run.score.estimate->localizability);

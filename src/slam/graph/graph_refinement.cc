@@ -14,7 +14,7 @@ void GraphSlam::finish() {
     graph_.edges.resize(num_edges);
     cache_.clear();
     refine();
-    solve(graph_, settings_.solver, ranges_);
+    solve(graph_, settings_.solver, survey_);
   }
   is_finished_ = true;
 }

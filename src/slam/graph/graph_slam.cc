@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <Eigen/LU>
 
@@ -42,7 +43,7 @@ GraphSlam::GraphSlam(const GraphSlamSettings& settings)
       tracker_(settings.scan_odometry),
       cache_(static_cast<std::size_t>(settings.cached_submaps)),
       incremental_map_(rendering_),
-      ranges_(settings.ranges) {
+      survey_{.ranges = RangeFactors(settings.ranges), .positions = PositionFactors(settings.positions)} {
   validate(settings, "slam.graph");
 }
 
@@ -53,8 +54,9 @@ SlamUpdate GraphSlam::update(const LevelScan& input_scan, const Pose2& T_odom_bo
   if (tracked.is_keyframe) add_keyframe(scan, tracked);
   update_estimate(tracked, scan.stamp);
   gate_ranges(tracked, T_odom_body);
-  if (tracked.is_keyframe && !ranges_.ranges().empty() &&
-      ranges_.ranges().back().node >= smoothed_until_ + settings_.range_smoothing_period_keyframes)
+  add_positions(tracked, T_odom_body);
+  if (tracked.is_keyframe && !survey_.ranges.ranges().empty() &&
+      survey_.ranges.ranges().back().node >= smoothed_until_ + settings_.range_smoothing_period_keyframes)
     smooth_with_ranges(tracked.submap);
   path_.push_back({static_cast<int>(keyframes_.size()) - 1, tracked.T_local_body});
   now_.mean = T_map_body(tracked.T_local_body);
@@ -135,27 +137,39 @@ void GraphSlam::update_estimate(const TrackedScan& tracked, Time stamp) {
 }
 
 void GraphSlam::gate_ranges(const TrackedScan& tracked, const Pose2& T_odom_body) {
-  std::vector<RangeMeasurement> measurements;
-  measurements.swap(new_ranges_);
-  const bool is_matched = tracked.inlier_ratio > 0.0;
-  const std::optional<Eigen::Vector2d> degenerate =
-      degenerate_direction(rotate_covariance(tracked.match_information, now_.mean.yaw - tracked.T_local_body.yaw),
-                           settings_.min_eigenvalue_ratio);
-  if (!settings_.ranges.enabled || (is_matched && !degenerate)) return;
+  std::vector<RangeMeasurement> measurements = std::exchange(new_ranges_, {});
+  if (!settings_.ranges.enabled) return;
+  const Pose2& T_survey_map = survey_.positions.T_survey_map();
   const Pose2 T_node_body = keyframes_.back().T_local_body.inverse() * tracked.T_local_body;
+  RangeUpdateSettings gating = settings_.ranges;
+  gating.range_std_m = Eigen::Vector3d(gating.range_std_m, gating.common_std_m, gating.anchor_delay_std_m).norm();
+  RangeUpdateSettings wide = gating;  // for a map that is still bent: the kernel of the factors is the finer gate
+  wide.range_std_m = std::hypot(wide.range_std_m, settings_.surveyed_submap_std_m);
   for (const RangeMeasurement& measurement : measurements) {
-    if (!passes_gate(range_innovation(now_, T_odom_body, measurement, settings_.ranges), settings_.ranges)) continue;
-    ranges_.add(static_cast<int>(keyframes_.size()) - 1, graph_.T_map_node.back(),
-                T_node_body * (T_odom_body.inverse() * measurement.T_odom_body), measurement, degenerate);
+    RangeMeasurement corrected = measurement;  // to an anchor in map
+    corrected.range_m -= survey_.ranges.delay_m(measurement.anchor.number);
+    corrected.anchor.p_m.head<2>() = T_survey_map.inverse() * Eigen::Vector2d(measurement.anchor.p_m.head<2>());
+    if (!passes_gate(range_innovation(now_, T_odom_body, corrected, wide), wide)) continue;
+    survey_.ranges.add(static_cast<int>(keyframes_.size()) - 1, T_survey_map * graph_.T_map_node.back(),
+                       T_node_body * (T_odom_body.inverse() * measurement.T_odom_body), measurement);
+    if (!passes_gate(range_innovation(now_, T_odom_body, corrected, gating), gating)) continue;
     PoseGaussian updated = now_;
-    update_with_ranges({measurement}, T_odom_body, settings_.ranges, updated);
+    update_with_ranges({corrected}, T_odom_body, gating, updated);
     now_.covariance = updated.covariance;
+  }
+}
+
+void GraphSlam::add_positions(const TrackedScan& tracked, const Pose2& T_odom_body) {
+  const Pose2 T_node_body = keyframes_.back().T_local_body.inverse() * tracked.T_local_body;
+  for (const PositionMeasurement& measurement : std::exchange(new_positions_, {})) {
+    survey_.positions.add(static_cast<int>(keyframes_.size()) - 1,
+                          T_node_body * (T_odom_body.inverse() * measurement.T_odom_body), measurement);
   }
 }
 
 // Fixed-lag smoothing: free nodes begin at the submap before the matched one.
 void GraphSlam::smooth_with_ranges(int submap) {
-  solve(graph_, settings_.solver, ranges_,
+  solve(graph_, settings_.solver, survey_,
         std::max(1, submaps_[static_cast<std::size_t>(std::max(0, submap - 1))].first));
   smoothed_until_ = static_cast<int>(keyframes_.size()) - 1;
 }
@@ -197,6 +211,17 @@ Eigen::Matrix3d GraphSlam::odometry_drift_covariance(int submap) const {
   return Eigen::Vector3d(std_m * std_m, std_m * std_m, std_rad * std_rad).asDiagonal();
 }
 
+// Fuses the covariance of a relative pose by scans and odometry with that of two surveyed positions.
+Eigen::Matrix3d GraphSlam::limited_by_survey(const Eigen::Matrix3d& covariance, int target, int source) const {
+  if (!is_surveyed(submaps_[static_cast<std::size_t>(target)]) ||
+      !is_surveyed(submaps_[static_cast<std::size_t>(source)]))
+    return covariance;
+  const double variance_m2 = 2.0 * settings_.surveyed_submap_std_m * settings_.surveyed_submap_std_m;
+  Eigen::Matrix3d information = covariance.inverse();
+  information.diagonal().head<2>().array() += 1.0 / variance_m2;
+  return information.inverse();
+}
+
 // Returns older submaps within the search radius, which includes the drift, nearest first.
 std::vector<int> GraphSlam::submaps_near(int source, const std::vector<PoseGaussian>& around) const {
   const Eigen::Vector2d center = submap_center(source);
@@ -217,7 +242,8 @@ void GraphSlam::close_loops(int source) {
   const std::vector<PoseGaussian> around = relative_pose_distributions(source);
   bool has_closed = false;
   for (const int target : submaps_near(source, around)) {
-    const PoseGaussian prediction = invert(around[static_cast<std::size_t>(target)]);  // pose of source in target
+    PoseGaussian prediction = invert(around[static_cast<std::size_t>(target)]);  // pose of source in target
+    prediction.covariance = limited_by_survey(prediction.covariance, target, source);
     const SubmapMatchResult result = match_submaps(*rendered(target), *rendered(source), prediction,
                                                    settings_.loop_closure, settings_.scan_odometry.matching);
     loop_closure_statistics_.add(result.failure);
@@ -230,7 +256,7 @@ void GraphSlam::close_loops(int source) {
                             .information = match_edge_information(result.match->information),
                             .kind = PoseGraphEdge::Kind::kLoop});
   }
-  if (has_closed) solve(graph_, settings_.solver, ranges_);
+  if (has_closed || is_surveyed(submaps_[static_cast<std::size_t>(source)])) solve(graph_, settings_.solver, survey_);
 }
 
 std::shared_ptr<const RenderedSubmap> GraphSlam::rendered(int submap) {

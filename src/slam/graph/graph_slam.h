@@ -10,7 +10,6 @@
 #include "slam/graph/graph_slam_settings.h"
 #include "slam/graph/incremental_map.h"
 #include "slam/graph/pose_graph_solver.h"
-#include "slam/graph/range_factors.h"
 #include "slam/graph/scan_tracker.h"
 #include "slam/graph/submap.h"
 #include "slam/graph/submap_matcher.h"
@@ -29,10 +28,11 @@ struct LoopClosureStatistics {
 ///
 ///   every scan     track it in a map of the last meters (scan_tracker.h)
 ///   keyframe       node: an odometry edge to the previous node and a match edge to the matched submap
-///   range          where the scan leaves a direction degenerate: constrain the current node in that direction;
-///                  every N keyframes optimize the newest submaps with the ranges, older ones are fixed
+///   range          constrain the current node; every N keyframes optimize the newest submaps with the ranges, older
+///                  ones are fixed
+///   position       constrain the current node, where a survey's position of an antenna is measured
 ///   submap full    search the older ones within the drift of odometry (submap_matcher.h); for an unambiguous match
-///                  add an edge from submap to submap and optimize the graph
+///                  add an edge from submap to submap and optimize the graph, also with new positions
 ///   finish         render all submaps again, match every keyframe with the surrounding submaps, optimize
 ///
 /// Deviations from [Hess16]:
@@ -44,9 +44,10 @@ class GraphSlam {
  public:
   explicit GraphSlam(const GraphSlamSettings& settings);
 
-  /// Adds a UWB range measured before the next scan. It is rejected if NLOS (range_update.h), and unused if the scan
-  /// constrains both directions.
+  /// Adds a UWB range measured before the next scan. It is rejected if NLOS (range_update.h).
   void add(const RangeMeasurement& measurement) { new_ranges_.push_back(measurement); }
+  /// Adds the position of an antenna in a survey in which map has its origin, roughly.
+  void add(const PositionMeasurement& measurement) { new_positions_.push_back(measurement); }
   /// Processes a scan; `T_odom_body` is the odometry at its stamp. The covariance is that of the pose in a map without
   /// errors.
   SlamUpdate update(const LevelScan& scan, const Pose2& T_odom_body);
@@ -78,9 +79,11 @@ class GraphSlam {
   Pose2 T_map_body(const Pose2& T_local_body) const;
   void update_estimate(const TrackedScan& tracked, Time stamp);
   void gate_ranges(const TrackedScan& tracked, const Pose2& T_odom_body);
+  void add_positions(const TrackedScan& tracked, const Pose2& T_odom_body);
   void smooth_with_ranges(int submap);
   void close_loops(int source);
   std::vector<PoseGaussian> relative_pose_distributions(int submap) const;
+  Eigen::Matrix3d limited_by_survey(const Eigen::Matrix3d& covariance, int target, int source) const;
   Eigen::Matrix3d odometry_drift_covariance(int submap) const;
   std::shared_ptr<const RenderedSubmap> rendered(int submap);
   std::vector<int> submaps_near(int source, const std::vector<PoseGaussian>& around) const;
@@ -94,6 +97,7 @@ class GraphSlam {
     return graph_.T_map_node[static_cast<std::size_t>(submaps_[static_cast<std::size_t>(submap)].first)];
   }
   Eigen::Vector2d submap_center(int submap) const;
+  bool is_surveyed(const Submap& submap) const { return survey_.constrain(submap.first, submap.last); }
 
   GraphSlamSettings settings_;
   MapRenderingSettings rendering_;
@@ -110,8 +114,9 @@ class GraphSlam {
   bool is_finished_ = false;
   PoseGaussian now_;  ///< current pose in map
   Time stamp_{};
-  std::vector<RangeMeasurement> new_ranges_;  ///< not yet gated
-  RangeFactors ranges_;
+  std::vector<RangeMeasurement> new_ranges_;        ///< not yet gated
+  std::vector<PositionMeasurement> new_positions_;  ///< not yet added
+  SurveyFactors survey_;
   int smoothed_until_ = 0;  ///< newest node moved by the ranges
 };
 

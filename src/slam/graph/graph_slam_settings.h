@@ -2,6 +2,7 @@
 
 #include "core/settings.h"
 #include "slam/graph/pose_graph_solver_settings.h"
+#include "slam/graph/position_factors_settings.h"
 #include "slam/graph/scan_tracker_settings.h"
 #include "slam/graph/submap_matcher_settings.h"
 #include "slam/range_update_settings.h"
@@ -37,7 +38,11 @@ struct GraphSlamSettings {
   double max_tilt_rad = 1.6;  ///< scans tilted by more are not used, for example on a ramp between inclined walls
   double map_update_threshold_m =
       0.03;  ///< the map is rendered again if a keyframe or its view at 10 m has moved by more
+  /// Standard deviation of the position of submaps that ranges or positions constrain, which limits the search for loop
+  /// closures: in a tunnel, one ring resembles the next.
+  double surveyed_submap_std_m = 0.3;
   RangeUpdateSettings ranges;
+  PositionFactorsSettings positions;
   int range_smoothing_period_keyframes = 4;  ///< run the fixed-lag smoothing with UWB ranges every N keyframes
 
   template <typename Self, typename Visitor>
@@ -63,7 +68,9 @@ struct GraphSlamSettings {
     visit("min_occupied_hit_ratio", self.min_occupied_hit_ratio, between(0.0, 1.0));
     visit("max_tilt_rad", self.max_tilt_rad, between(0.0, 1.6));
     visit("map_update_threshold_m", self.map_update_threshold_m, at_least(0.0));
+    visit("surveyed_submap_std_m", self.surveyed_submap_std_m, between(1e-3, 1e3));
     visit("ranges", self.ranges);
+    visit("positions", self.positions);
     visit("range_smoothing_period_keyframes", self.range_smoothing_period_keyframes, between(1, 1000));
   }
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <stdexcept>
 #include <utility>
 
@@ -45,21 +46,32 @@ class EdgeCost : public ceres::SizedCostFunction<3, 3, 3> {
   Eigen::Matrix3d root_;
 };
 
-/// Residual of a range: (predicted range - range) / standard deviation.
-class RangeCost : public ceres::SizedCostFunction<1, 3> {
+/// Residual of a range: (predicted range + delay - range) / standard deviation.
+class RangeCost : public ceres::SizedCostFunction<1, 3, 3, 1> {
  public:
   RangeCost(RangeFactor range, double std_m, const UwbCalibration& calibration)
       : range_(std::move(range)), std_m_(std_m), calibration_(calibration) {}
 
-  bool Evaluate(const double* const* poses, double* residuals, double** jacobians) const override {
-    const Pose2 T_map_constrained = range_.T_map_constrained({poses[0][0], poses[0][1], poses[0][2]});
+  bool Evaluate(const double* const* parameters, double* residuals, double** jacobians) const override {
+    const double *pose = parameters[0], *survey = parameters[1], *delay_m = parameters[2];
+    const Pose2 T_map_node{pose[0], pose[1], pose[2]}, T_survey_map{survey[0], survey[1], survey[2]};
+    const Pose2 T_survey_node = T_survey_map * T_map_node;
     const PredictedRange predicted =
-        predict_uwb_range(range_.anchor, T_map_constrained, range_.p_level_antenna, calibration_);
-    residuals[0] = (predicted.range_m - range_.range_m) / std_m_;
-    if (!jacobians || !jacobians[0]) return true;
-    Eigen::Vector3d H_pose = predicted.H_pose;
-    if (range_.direction) H_pose << range_.direction->dot(predicted.H_pose.head<2>()) * *range_.direction, 0.0;
-    Eigen::Map<Eigen::Vector3d>(jacobians[0]).noalias() = H_pose / std_m_;
+        predict_uwb_range(range_.anchor_in_survey, T_survey_node, range_.p_level_antenna, calibration_);
+    residuals[0] = (predicted.range_m + delay_m[0] - range_.range_m) / std_m_;
+    if (!jacobians) return true;
+    const Eigen::Vector2d slope = predicted.H_pose.head<2>() / std_m_;
+    const double turn = predicted.H_pose.z() / std_m_;
+    if (jacobians[0]) {
+      const Eigen::Vector2d slope_in_map = Eigen::Rotation2Dd(-survey[2]) * slope;
+      Eigen::Map<Eigen::Vector3d>(jacobians[0]) << slope_in_map.x(), slope_in_map.y(), turn;
+    }
+    if (jacobians[1]) {
+      const Eigen::Vector2d reach = T_survey_node.position() - T_survey_map.position();
+      Eigen::Map<Eigen::Vector3d>(jacobians[1]) << slope.x(), slope.y(),
+          turn + slope.y() * reach.x() - slope.x() * reach.y();
+    }
+    if (jacobians[2]) jacobians[2][0] = 1.0 / std_m_;
     return true;
   }
 
@@ -69,9 +81,70 @@ class RangeCost : public ceres::SizedCostFunction<1, 3> {
   const UwbCalibration& calibration_;  ///< owned by the caller of the solver
 };
 
+/// Residual of a position: (p_survey - measured) / standard deviation.
+class PositionCost : public ceres::SizedCostFunction<2, 3, 3> {
+ public:
+  explicit PositionCost(const PositionFactor& position) : position_(position) {}
+
+  bool Evaluate(const double* const* parameters, double* residuals, double** jacobians) const override {
+    const double *pose = parameters[0], *survey = parameters[1];
+    const Pose2 T_map_node{pose[0], pose[1], pose[2]}, T_survey_map{survey[0], survey[1], survey[2]};
+    const Eigen::Vector2d p_map = T_map_node * position_.p_node_antenna, p_survey = T_survey_map * p_map;
+    const double weight = 1.0 / position_.std_m;
+    Eigen::Map<Eigen::Vector2d>(residuals).noalias() = weight * (p_survey - position_.p_survey_antenna);
+    if (!jacobians) return true;
+    using RowMajor = Eigen::Matrix<double, 2, 3, Eigen::RowMajor>;
+    const Eigen::Matrix2d R_survey_map = Eigen::Rotation2Dd(survey[2]).toRotationMatrix();
+    const Eigen::Vector2d lever = p_map - T_map_node.position(), reach = p_survey - T_survey_map.position();
+    if (jacobians[0]) {
+      Eigen::Map<RowMajor> by_pose(jacobians[0]);
+      by_pose.leftCols<2>() = weight * R_survey_map;
+      by_pose.col(2) = weight * (R_survey_map * Eigen::Vector2d(-lever.y(), lever.x()));
+    }
+    if (jacobians[1]) {
+      Eigen::Map<RowMajor> by_survey(jacobians[1]);
+      by_survey.leftCols<2>() = weight * Eigen::Matrix2d::Identity();
+      by_survey.col(2) = weight * Eigen::Vector2d(-reach.y(), reach.x());
+    }
+    return true;
+  }
+
+ private:
+  PositionFactor position_;
+};
+
+/// Residual of parameters with a prior of mean zero: parameters / standard deviations.
+template <int N>
+class PriorCost : public ceres::SizedCostFunction<N, N> {
+ public:
+  using Vector = Eigen::Matrix<double, N, 1>;
+  explicit PriorCost(const Vector& std) : weights_(std.cwiseInverse()) {}
+
+  bool Evaluate(const double* const* parameters, double* residuals, double** jacobians) const override {
+    for (int i = 0; i < N; ++i) residuals[i] = weights_[i] * parameters[0][i];
+    if (!jacobians || !jacobians[0]) return true;
+    Eigen::Map<Eigen::Matrix<double, N, N>> by_parameters(jacobians[0]);
+    by_parameters.setZero();
+    by_parameters.diagonal() = weights_;
+    return true;
+  }
+
+ private:
+  Vector weights_;
+};
+
+Eigen::Vector3d prior_std(const PositionFactorsSettings& settings) {
+  return {settings.survey_position_std_m, settings.survey_position_std_m, settings.survey_yaw_std_rad};
+}
+
 }  // namespace
 
-PoseGraphSolution solve(PoseGraph& graph, const PoseGraphSolverSettings& settings, const RangeFactors& ranges,
+PoseGraphSolution solve(PoseGraph& graph, const PoseGraphSolverSettings& settings) {
+  SurveyFactors no_factors;
+  return solve(graph, settings, no_factors);
+}
+
+PoseGraphSolution solve(PoseGraph& graph, const PoseGraphSolverSettings& settings, SurveyFactors& survey,
                         int num_fixed_nodes) {
   std::vector<std::array<double, 3>> poses;
   for (const Pose2& pose : graph.T_map_node) poses.push_back({pose.x, pose.y, pose.yaw});
@@ -91,11 +164,20 @@ PoseGraphSolution solve(PoseGraph& graph, const PoseGraphSolverSettings& setting
     const bool is_robust = settings.robust_loop_closures && edge.kind == PoseGraphEdge::Kind::kLoop;
     problem.AddResidualBlock(new EdgeCost(edge), is_robust ? &kernel : nullptr, from, to);
   }
+  const RangeFactors& ranges = survey.ranges;
+  ceres::CauchyLoss range_kernel(ranges.outlier_scale_sigma());
+  Eigen::Vector3d survey_map = survey.positions.T_survey_map().vector();
+  std::map<int, double> delays_m = ranges.delays_m();  // the addresses of its values are constant
   for (const RangeFactor& range : ranges.ranges()) {
-    if (range.node >= num_fixed_nodes)
-      problem.AddResidualBlock(new RangeCost(range, ranges.std_m(range), ranges.calibration()), &kernel,
-                               node(range.node));
+    problem.AddResidualBlock(new RangeCost(range, ranges.std_m(range), ranges.calibration()), &range_kernel,
+                             node(range.node), survey_map.data(), &delays_m[range.anchor_in_survey.number]);
   }
+  for (auto& [anchor, delay_m] : delays_m)
+    problem.AddResidualBlock(new PriorCost<1>(PriorCost<1>::Vector(ranges.delay_std_m())), nullptr, &delay_m);
+  for (const PositionFactor& position : survey.positions.positions())
+    problem.AddResidualBlock(new PositionCost(position), &kernel, node(position.node), survey_map.data());
+  if (problem.HasParameterBlock(survey_map.data()))
+    problem.AddResidualBlock(new PriorCost<3>(prior_std(survey.positions.settings())), nullptr, survey_map.data());
   for (std::size_t i = 0; i < std::min(poses.size(), static_cast<std::size_t>(num_fixed_nodes)); ++i) {
     if (problem.HasParameterBlock(poses[i].data())) problem.SetParameterBlockConstant(poses[i].data());
   }
@@ -111,6 +193,8 @@ PoseGraphSolution solve(PoseGraph& graph, const PoseGraphSolverSettings& setting
   ceres::Solve(options, &problem, &summary);
   for (auto i = static_cast<std::size_t>(num_fixed_nodes); i < poses.size(); ++i)
     graph.T_map_node[i] = {poses[i][0], poses[i][1], wrap_angle(poses[i][2])};
+  survey.ranges.set_delays(std::move(delays_m));
+  survey.positions.set_survey({survey_map.x(), survey_map.y(), wrap_angle(survey_map.z())});
   return {.initial_cost = summary.initial_cost,
           .final_cost = summary.final_cost,
           .iterations = summary.num_successful_steps,

@@ -5,6 +5,8 @@
 
 #include <Eigen/LU>
 
+#include "slam/graph/degeneracy.h"
+
 namespace patrol::slam {
 namespace {
 
@@ -13,6 +15,9 @@ constexpr double kStudentDegreesOfFreedom = 4.0;
 /// Decay per scan of the inflated odometry variance, after odometry contradicted a match.
 constexpr double kVarianceScaleDecay = 0.8;
 constexpr double kMaxVarianceScale = 400.0;
+/// Along a direction with less information than this fraction of the best one, a match is not evidence against
+/// odometry.
+constexpr double kMinEvidenceRatio = 0.02;
 /// A match with a smaller inlier ratio triggers a window search.
 constexpr double kGoodInlierRatio = 0.6;
 
@@ -20,6 +25,15 @@ double log_student_t(const PoseGaussian& prediction, const Pose2& pose) {
   const Eigen::Vector3d offset = prediction.residual_to_mean(pose);
   return -0.5 * (kStudentDegreesOfFreedom + 3.0) *
          std::log1p(offset.dot(prediction.covariance.inverse() * offset) / kStudentDegreesOfFreedom);
+}
+
+/// Returns the difference of two poses without its part along the direction that a match does not determine.
+Eigen::Vector3d determined_offset(const Eigen::Vector3d& offset, const Eigen::Matrix3d& match_information) {
+  const auto degenerate = degenerate_direction(match_information, kMinEvidenceRatio);
+  if (!degenerate) return offset;
+  Eigen::Vector3d determined = offset;
+  determined.head<2>() -= degenerate->dot(offset.head<2>()) * *degenerate;
+  return determined;
 }
 
 bool is_distinct(const Pose2& a, const Pose2& b) {
@@ -48,7 +62,7 @@ TrackedScan ScanTracker::update(const LevelScan& scan, const Pose2& T_odom_body)
   const bool can_be_matched = older_.has_surface();
   const Hypothesis best =
       track(downsample_scan(scan, settings_.matching.point_spacing_m, settings_.matching.max_points), step, prediction);
-  inflate_odometry_covariance(prediction, best.T_local_body);
+  inflate_odometry_covariance(prediction, best);
   TrackedScan tracked = to_tracked_scan(best, prediction);
   tracked.is_keyframe = is_keyframe_due(tracked.T_local_body);
   if (tracked.is_keyframe) integrate(scan, tracked.T_local_body, tracked);
@@ -69,7 +83,8 @@ ScanTracker::Hypothesis ScanTracker::track(const std::vector<MatchPoint>& points
   Hypothesis best = match_from(prediction.mean, points, prediction, true);
   const auto consider = [&](const Pose2& start) {
     const Hypothesis other = match_from(start, points, prediction, false);
-    if (other.match && (!best.match || is_better(other, best))) best = other;
+    if (!other.match) return;
+    if (!best.match || (is_determined_by_scan(other, best) && is_better(other, best))) best = other;
   };
   const double factor = last_step_s_ > 1e-3 ? std::clamp(step.seconds / last_step_s_, 0.0, 2.0) : 1.0;
   const Pose2 as_before = scaled(T_last_now_, factor), none{0.0, 0.0, step.T_last_odom.yaw},
@@ -83,8 +98,10 @@ ScanTracker::Hypothesis ScanTracker::track(const std::vector<MatchPoint>& points
   return best;
 }
 
-void ScanTracker::inflate_odometry_covariance(const PoseGaussian& prediction, const Pose2& T_local_body) {
-  const Eigen::Vector3d offset = prediction.residual_to_mean(T_local_body);
+// Only the directions that the scan determines are evidence: along a smooth corridor any pose matches.
+void ScanTracker::inflate_odometry_covariance(const PoseGaussian& prediction, const Hypothesis& best) {
+  Eigen::Vector3d offset = prediction.residual_to_mean(best.T_local_body);
+  if (best.match) offset = determined_offset(offset, best.match->information);
   // 3 on average if the variance is correct
   const double squared = offset.dot(prediction.covariance.inverse() * offset);
   odometry_variance_scale_ =
@@ -126,6 +143,14 @@ ScanTracker::Hypothesis ScanTracker::match_from(const Pose2& T_local_start, cons
   hypothesis.log_prior = log_student_t(prediction, hypothesis.T_local_body);
   hypothesis.log_likelihoods = point_log_likelihoods(older_, points, hypothesis.T_local_body, settings_.matching);
   return hypothesis;
+}
+
+// A smooth corridor matches anywhere along it: such a difference is left to odometry.
+bool ScanTracker::is_determined_by_scan(const Hypothesis& a, const Hypothesis& b) {
+  const Eigen::Vector3d offset(a.T_local_body.x - b.T_local_body.x, a.T_local_body.y - b.T_local_body.y,
+                               wrap_angle(a.T_local_body.yaw - b.T_local_body.yaw));
+  const Eigen::Vector3d determined = determined_offset(offset, a.match->information);
+  return is_distinct({determined.x(), determined.y(), determined.z()}, {});
 }
 
 // Compares at points in observed cells of both poses; other points would favor poses with fewer observed cells.

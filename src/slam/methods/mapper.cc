@@ -23,6 +23,12 @@ class MapperAdapter final : public Mapper {
   void add(const RangeMeasurement& measurement) override {
     if constexpr (requires { method_.add(measurement); }) method_.add(measurement);
   }
+  void add(const PositionMeasurement& measurement) override {
+    if constexpr (requires { method_.add(measurement); }) method_.add(measurement);
+  }
+  bool estimates_survey() const override {
+    return requires(const PositionMeasurement& position) { method_.add(position); };
+  }
   SlamUpdate update(const LevelScan& scan, const Pose2& T_odom_body) override {
     if constexpr (std::is_same_v<decltype(method_.update(scan, T_odom_body)), Pose2>) {
       return {.T_map_body = method_.update(scan, T_odom_body)};

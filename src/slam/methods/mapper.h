@@ -9,6 +9,7 @@
 #include "core/messages.h"
 #include "core/pose_graph.h"
 #include "slam/methods/mapper_settings.h"
+#include "slam/position_measurement.h"
 #include "slam/range_update.h"
 #include "slam/slam_update.h"
 
@@ -21,6 +22,10 @@ class Mapper {
 
   /// Adds a UWB range measured before the next scan. Methods without range updates ignore it.
   virtual void add(const RangeMeasurement& measurement) = 0;
+  /// Returns whether the method estimates the pose of the survey, whose anchors and positions it takes, in map.
+  virtual bool estimates_survey() const = 0;
+  /// Adds the position of an antenna, measured before the next scan. Methods without position factors ignore it.
+  virtual void add(const PositionMeasurement& measurement) = 0;
   /// Processes a scan and returns the current pose in map. The origin of map is the pose of the first scan;
   /// `T_odom_body` is the odometry at the stamp of the scan. Methods without a covariance estimate leave the covariance
   /// zero.

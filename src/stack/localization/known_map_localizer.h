@@ -16,6 +16,7 @@ class KnownMapLocalizer final : public Localizer {
                     const std::vector<UwbAnchor>& anchors_in_map, double height_above_ground_m, const Pose3& T_body_uwb,
                     std::uint64_t seed);
 
+  using Localizer::add;
   void add(const RangeWithOdometry& range) override { localizer_.add(range.range, range.T_odom_body); }
   PoseEstimate update(const LevelScan& scan, const Pose2& T_odom_body, StackOutput& output) override;
   OccupancyGrid map() override { return map_; }

@@ -6,6 +6,7 @@
 #include "core/messages.h"
 #include "core/sensors/registry.h"
 #include "core/uwb.h"
+#include "slam/position_measurement.h"
 #include "stack/output/stack_output.h"
 
 namespace patrol::stack {
@@ -14,7 +15,7 @@ namespace patrol::stack {
 struct RangeWithOdometry {
   UwbRange range;
   Pose3 T_odom_body;
-  double height_above_ground_m = 0.0;  ///< height of the body's origin
+  double height_m = 0.0;  ///< height of the body's origin above the ground at the start
 };
 
 /// Interface of a localizer: pose of the body in `map` from level scans, odometry and UWB ranges.
@@ -23,10 +24,12 @@ class Localizer {
   virtual ~Localizer() = default;
 
   virtual void add(const RangeWithOdometry& range) = 0;
+  /// Adds a position of the GNSS antenna in map, as the surveyed start places it. Ignored by localizers on a fixed map.
+  virtual void add(const slam::PositionMeasurement& /*position*/) {}
   /// Corrects the pose by a scan and publishes the estimate with its diagnostics. `T_odom_body` is at the scan's stamp.
   virtual PoseEstimate update(const LevelScan& scan, const Pose2& T_odom_body, StackOutput& output) = 0;
 
-  /// Returns the present pose estimates of all scans, [scan]; empty for a fixed map, whose poses do not change.
+  /// Returns the present pose estimates of the scans with which the map was made, [scan]; empty for a given map.
   virtual std::vector<Pose2> path() const { return {}; }
   virtual OccupancyGrid map() = 0;
   /// Returns whether the map grows with every scan.
@@ -37,8 +40,9 @@ class Localizer {
   /// confident scan for others.
   virtual bool has_pose() const = 0;
 
-  /// Ends the mapping; the map is fixed from then on. Ignored by localizers that do not switch.
-  virtual void finish_map(const PoseEstimate&) {}
+  /// Ends the mapping with its final optimization; the map is fixed from then on. `pose`: present pose. Returns the
+  /// motion of the map at the newest scan, p_map = T_map_old * p_old. Does nothing where the map is given or complete.
+  virtual Pose2 finish_map(const PoseEstimate& /*pose*/) { return {}; }
   /// Restarts near a pose, or anywhere on the map. Ignored by localizers that make the map.
   virtual void set_initial_pose(const Pose2& /*T_map_body*/, const Eigen::Matrix3d& /*covariance*/) {}
   virtual void start_global_localization() {}

@@ -7,11 +7,14 @@ namespace patrol::stack {
 MapThenLocalize::MapThenLocalize(std::unique_ptr<Localizer> slam, LocalizerFactory make_on_map)
     : current_(std::move(slam)), make_on_map_(std::move(make_on_map)) {}
 
-void MapThenLocalize::finish_map(const PoseEstimate& pose) {
-  if (!current_->is_mapping()) return;
+Pose2 MapThenLocalize::finish_map(const PoseEstimate& pose) {
+  if (!current_->is_mapping()) return {};
+  const Pose2 T_map_old = current_->finish_map(pose);
+  path_of_mapping_ = current_->path();
   current_ = make_on_map_(current_->map());
   if (anchors_in_map_) current_->set_anchors(*anchors_in_map_);
-  current_->set_initial_pose(pose.T_map_body, pose.covariance);
+  current_->set_initial_pose(T_map_old * pose.T_map_body, pose.covariance);
+  return T_map_old;
 }
 
 void MapThenLocalize::set_anchors(const std::vector<UwbAnchor>& anchors_in_map) {

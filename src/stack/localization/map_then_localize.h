@@ -18,15 +18,16 @@ class MapThenLocalize final : public Localizer {
   MapThenLocalize(std::unique_ptr<Localizer> slam, LocalizerFactory make_on_map);
 
   void add(const RangeWithOdometry& range) override { current_->add(range); }
+  void add(const slam::PositionMeasurement& position) override { current_->add(position); }
   PoseEstimate update(const LevelScan& scan, const Pose2& T_odom_body, StackOutput& output) override {
     return current_->update(scan, T_odom_body, output);
   }
-  std::vector<Pose2> path() const override { return current_->path(); }
+  std::vector<Pose2> path() const override { return is_mapping() ? current_->path() : path_of_mapping_; }
   OccupancyGrid map() override { return current_->map(); }
   bool is_mapping() const override { return current_->is_mapping(); }
   bool is_lost() const override { return current_->is_lost(); }
   bool has_pose() const override { return current_->has_pose(); }
-  void finish_map(const PoseEstimate& pose) override;
+  Pose2 finish_map(const PoseEstimate& pose) override;
   void set_initial_pose(const Pose2& T_map_body, const Eigen::Matrix3d& covariance) override {
     current_->set_initial_pose(T_map_body, covariance);
   }
@@ -36,6 +37,7 @@ class MapThenLocalize final : public Localizer {
  private:
   std::unique_ptr<Localizer> current_;
   LocalizerFactory make_on_map_;
+  std::vector<Pose2> path_of_mapping_;                    ///< [scan] once the map is complete
   std::optional<std::vector<UwbAnchor>> anchors_in_map_;  ///< once they have moved
 };
 

@@ -36,7 +36,8 @@ PosePipeline::PosePipeline(const StackSettings& settings, const RobotDescription
     : settle_(from_seconds(settings.odometry_settling_time_s)),
       odometry_(make_odometry_source(settings, robot)),
       leveler_(robot.T_body("lidar"), settings.scan_leveling),
-      registrar_(for_map(settings.registration, start.map.has_value()), site),
+      registrar_(for_map(settings.registration, start.map.has_value()), site, start.map_registration),
+      T_start_site_(site.T_site_start.inverse()),
       T_body_lidar_(robot.T_body("lidar")),
       anchors_in_site_(placed(site_in_map.anchors, site.T_site_start)),
       calibration_period_(from_seconds(settings.calibration.period_s)) {
@@ -85,18 +86,19 @@ void PosePipeline::add_range(const UwbRange& range) {
   if (range_pose_) range_pose_->add(range, *T_odom_body);
   if (calibrator_) add_to_calibration(range, *T_odom_body);
   add_to_registration(range, *T_odom_body);
-  localizer_->add(
-      {.range = range, .T_odom_body = *T_odom_body, .height_above_ground_m = odometry_->height_above_ground_m()});
+  localizer_->add(RangeWithOdometry{.range = range, .T_odom_body = *T_odom_body, .height_m = height_m()});
 }
 
-/// Uses the height of the UWB filter: tunnels are not level.
+/// Returns the height of the body above the start, by the UWB filter once it has started: tunnels are not level.
+double PosePipeline::height_m() const {
+  return range_pose_ && range_pose_->has_started() ? range_pose_->height_m() : odometry_->height_above_ground_m();
+}
+
 void PosePipeline::add_to_registration(const UwbRange& range, const Pose3& T_odom_body) {
   const auto anchor = std::ranges::find(anchors_in_site_, range.anchor, &UwbAnchor::number);
   if (anchor == anchors_in_site_.end() || !localizer_->has_pose() || localizer_->is_lost()) return;
-  const double height_m =
-      range_pose_ && range_pose_->has_started() ? range_pose_->height_m() : odometry_->height_above_ground_m();
   if (const std::optional<PoseFromScan> pose = pose_from_scan(range.stamp))
-    registrar_.add(range, *anchor, *pose, uwb_antenna_in_level(T_odom_body.rotation, T_body_uwb_, height_m));
+    registrar_.add(range, *anchor, *pose, uwb_antenna_in_level(T_odom_body.rotation, T_body_uwb_, height_m()));
 }
 
 void PosePipeline::set_site(const Route& site_in_map) {
@@ -108,7 +110,17 @@ void PosePipeline::add_fix(const GnssFix& fix) {
   if (!T_body_gnss_ || !registrar_.uses_gnss() || !localizer_->has_pose()) return;
   const std::optional<PoseFromScan> pose = pose_from_scan(fix.stamp);
   const std::optional<StationPose> station = station_pose_at(fix.stamp);
-  if (pose && station) registrar_.add(fix, *pose, (station->T_level_body * T_body_gnss_->position).head<2>());
+  if (!pose || !station) return;
+  const Eigen::Vector2d p_level_antenna = (station->T_level_body * T_body_gnss_->position).head<2>();
+  const std::optional<GnssPosition> position = registrar_.position_of(fix, p_level_antenna);
+  if (!position) return;
+  registrar_.add(*position, *pose);
+  localizer_->add(slam::PositionMeasurement{.stamp = fix.stamp,
+                                            .p_survey_antenna = T_start_site_ * position->content.p_site_antenna,
+                                            .std_m = position->content.std_m,
+                                            .correlation_time_s = position->correlation_time_s,
+                                            .T_odom_body = to_pose2(*odometry_->T_odom_body_at(fix.stamp)),
+                                            .p_level_antenna = p_level_antenna});
 }
 
 /// Returns the body pose at an instant, relative to the newest scan; none before the first scan.
@@ -124,6 +136,17 @@ std::optional<PoseFromScan> PosePipeline::pose_from_scan(Time stamp) const {
 std::optional<SiteRegistration> PosePipeline::register_to_site(Time now) {
   if (num_scans_ == 0 || !registrar_.is_due(now)) return std::nullopt;
   return registrar_.update(now, localizer_->path());
+}
+
+std::optional<MapCorrection> PosePipeline::finish_map(const PoseEstimate& pose) {
+  if (!localizer_->is_mapping()) return std::nullopt;
+  tracker_.move_map(localizer_->finish_map(pose));
+  registrar_.request();
+  const std::vector<Pose2> path = localizer_->path();
+  MapCorrection correction{.stamps = std::move(mapped_), .T_map_old = {}};
+  for (std::size_t i = 0; i < correction.stamps.size(); ++i)
+    correction.T_map_old.push_back(path[i] * T_map_mapped_[i].inverse());
+  return correction;
 }
 
 std::optional<OdometryEstimate> PosePipeline::update_odometry() {
@@ -171,6 +194,10 @@ ScanPose PosePipeline::localize(const LevelScan& scan, StackOutput& output) {
   tracker_.correct(scan.stamp, T_odom_body, estimate.T_map_body, estimate.covariance);
   ++num_scans_;
   T_odom_scan_ = T_odom_body;
+  if (localizer_->is_mapping()) {
+    mapped_.push_back(scan.stamp);
+    T_map_mapped_.push_back(estimate.T_map_body);
+  }
   return {.T_odom_body = T_odom_body, .T_map_body = tracker_.at(scan.stamp, T_odom_body).T_map_body};
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "core/messages.h"
 #include "core/robot_description.h"
@@ -16,6 +17,7 @@
 #include "localize/scan_leveler.h"
 #include "stack/instruments/station_pose.h"
 #include "stack/localization/make_localizer.h"
+#include "stack/localization/map_correction.h"
 #include "stack/localization/odometry_source.h"
 #include "stack/localization/range_pose_tracker.h"
 #include "stack/localization/site_registrar.h"
@@ -67,7 +69,9 @@ class PosePipeline {
   bool is_mapping() const { return localizer_->is_mapping(); }
   bool is_lost() const { return localizer_->is_lost(); }
 
-  void finish_map(const PoseEstimate& pose) { localizer_->finish_map(pose); }
+  /// Ends the mapping with its final optimization, which the pose and the registration to the site follow. `pose`:
+  /// present pose. Returns the motion of the map; none where the map is given or complete.
+  std::optional<MapCorrection> finish_map(const PoseEstimate& pose);
   void start_global_localization() { localizer_->start_global_localization(); }
   /// Starts at the surveyed start, the origin of map, before the robot has moved.
   void start_at_survey() { localizer_->set_initial_pose(Pose2{}, surveyed_covariance()); }
@@ -76,6 +80,7 @@ class PosePipeline {
 
  private:
   bool has_settled(Time stamp) const { return first_odometry_ && stamp >= *first_odometry_ + settle_; }
+  double height_m() const;
   void add_range(const UwbRange& range);
   void add_fix(const GnssFix& fix);
   void add_to_registration(const UwbRange& range, const Pose3& T_odom_body);
@@ -92,8 +97,11 @@ class PosePipeline {
   std::optional<RangePoseTracker> range_pose_;  ///< present for a robot with a UWB antenna
   localize::MapPoseTracker tracker_;
   SiteRegistrar registrar_;
+  Pose2 T_start_site_;
   std::optional<Pose3> T_body_gnss_;  ///< present for a robot with a GNSS antenna
   std::size_t num_scans_ = 0;         ///< scans that the localizer has processed
+  std::vector<Time> mapped_;          ///< stamps of the scans while the robot maps
+  std::vector<Pose2> T_map_mapped_;   ///< [scan] body pose at each of them, as estimated then
   Pose2 T_odom_scan_;                 ///< body at the newest scan
   Pose3 T_body_lidar_;                ///< nominal
   std::vector<UwbAnchor> anchors_in_site_;

@@ -14,25 +14,35 @@ constexpr int kFirstAnchorSource = 2;  // plus the number of the anchor
 
 }  // namespace
 
-SiteRegistrar::SiteRegistrar(const localize::RegistrationSettings& settings, const SiteFrame& site)
+SiteRegistrar::SiteRegistrar(const localize::RegistrationSettings& settings, const SiteFrame& site,
+                             const std::optional<SiteRegistration>& given)
     : settings_(settings), site_(site), prior_(localize::registration_prior(site.T_site_start, settings)) {
+  if (given) prior_ = {.T_site_map = given->T_site_map, .covariance = given->covariance};
   validate(settings, "registration");
 }
 
-void SiteRegistrar::add(const GnssFix& fix, const PoseFromScan& pose, const Eigen::Vector2d& p_level_antenna) {
-  if (!uses_gnss() || fix.status == GnssStatus::kNone) return;
+std::optional<GnssPosition> SiteRegistrar::position_of(const GnssFix& fix,
+                                                       const Eigen::Vector2d& p_level_antenna) const {
+  if (!uses_gnss() || fix.status == GnssStatus::kNone) return std::nullopt;
   const bool is_float = fix.status == GnssStatus::kFloat;
-  const localize::AntennaPosition position{
+  const localize::AntennaPosition content{
       .p_level_antenna = p_level_antenna,
       .p_site_antenna = to_site(*site_.datum, {.latitude_deg = fix.latitude_deg, .longitude_deg = fix.longitude_deg}),
       .std_m = fix.position_std_m.head<2>().maxCoeff()};
-  if (!position.p_site_antenna.allFinite() || !(position.std_m > 0.0)) return;
-  add({.stamp = fix.stamp,
-       .source = is_float ? kFloatSource : kFixSource,
-       .correlation_time_s = std::max(settings_.map_correlation_time_s,
-                                      is_float ? settings_.float_correlation_time_s : settings_.fix_correlation_time_s),
+  if (!content.p_site_antenna.allFinite() || !(content.std_m > 0.0)) return std::nullopt;
+  return GnssPosition{.stamp = fix.stamp,
+                      .is_float = is_float,
+                      .correlation_time_s =
+                          is_float ? settings_.float_correlation_time_s : settings_.fix_correlation_time_s,
+                      .content = content};
+}
+
+void SiteRegistrar::add(const GnssPosition& position, const PoseFromScan& pose) {
+  add({.stamp = position.stamp,
+       .source = position.is_float ? kFloatSource : kFixSource,
+       .correlation_time_s = std::max(settings_.map_correlation_time_s, position.correlation_time_s),
        .T_map_body = pose.T_map_body,
-       .content = position},
+       .content = position.content},
       pose);
 }
 

@@ -19,14 +19,24 @@ struct PoseFromScan {
   Pose2 T_map_body;      ///< by the present map
 };
 
+/// Position of the GNSS antenna in site.
+struct GnssPosition {
+  Time stamp{};
+  bool is_float = false;            ///< true: float solution, false: RTK fix
+  double correlation_time_s = 0.0;  ///< of the receiver's error
+  localize::AntennaPosition content;
+};
+
 /// Keeps measurements of the survey and estimates the pose of `map` in `site` from them.
 ///
 /// A measurement refers to the scan before it. Each estimation takes the present poses of the scans, so the
 /// registration follows loop closures. Poses that a fixed map has given are kept as they were.
 class SiteRegistrar {
  public:
-  /// Throws InputError if a setting is out of range.
-  SiteRegistrar(const localize::RegistrationSettings& settings, const SiteFrame& site);
+  /// `given`: registration of a given map, which is the prior instead of that of the settings. Throws InputError if a
+  /// setting is out of range.
+  SiteRegistrar(const localize::RegistrationSettings& settings, const SiteFrame& site,
+                const std::optional<SiteRegistration>& given = {});
 
   /// Returns whether GNSS fixes are used: the site has a datum.
   bool uses_gnss() const { return settings_.use_gnss && site_.datum.has_value(); }
@@ -34,11 +44,14 @@ class SiteRegistrar {
   /// uwb_antenna_in_level. Ranges that are too close to the previous one to the anchor are ignored.
   void add(const UwbRange& range, const UwbAnchor& anchor_in_site, const PoseFromScan& pose,
            const Eigen::Vector3d& p_level_antenna);
-  /// Adds a GNSS fix. `pose`: body at the stamp of the fix. Fixes that are too close to the previous one are ignored.
-  void add(const GnssFix& fix, const PoseFromScan& pose, const Eigen::Vector2d& p_level_antenna);
+  /// Returns the position of a GNSS fix in site; none if the fix has no solution or GNSS is not used.
+  std::optional<GnssPosition> position_of(const GnssFix& fix, const Eigen::Vector2d& p_level_antenna) const;
+  /// Adds a GNSS position. `pose`: body at its stamp. Positions that are too close to the previous one are ignored.
+  void add(const GnssPosition& position, const PoseFromScan& pose);
 
   std::size_t num_measurements() const { return entries_.size(); }
   bool is_due(Time now) const { return now >= next_; }
+  void request() { next_ = Time{}; }  ///< makes an estimation due at once
   /// Estimates the registration and returns it if it has changed, the prior at the first call. `path`: present poses of
   /// all scans, [scan]; empty for a fixed map. Precondition: `is_due(now)`.
   std::optional<SiteRegistration> update(Time now, const std::vector<Pose2>& path);

@@ -16,11 +16,10 @@ void SlamLocalizer::add(const RangeWithOdometry& range) {
   const auto anchor = std::find_if(anchors_.begin(), anchors_.end(),
                                    [&](const UwbAnchor& known) { return known.number == range.range.anchor; });
   if (anchor == anchors_.end() || !T_body_uwb_) return;
-  mapper_->add(
-      {.anchor = *anchor,
-       .range_m = range.range.range_m,
-       .T_odom_body = to_pose2(range.T_odom_body),
-       .p_level_antenna = uwb_antenna_in_level(range.T_odom_body.rotation, *T_body_uwb_, range.height_above_ground_m)});
+  mapper_->add({.anchor = *anchor,
+                .range_m = range.range.range_m,
+                .T_odom_body = to_pose2(range.T_odom_body),
+                .p_level_antenna = uwb_antenna_in_level(range.T_odom_body.rotation, *T_body_uwb_, range.height_m)});
 }
 
 PoseEstimate SlamLocalizer::update(const LevelScan& scan, const Pose2& T_odom_body, StackOutput& output) {
@@ -31,6 +30,13 @@ PoseEstimate SlamLocalizer::update(const LevelScan& scan, const Pose2& T_odom_bo
   if (!update.is_keyframe) return estimate;
   if (ParticleSet particles = mapper_->particles(); !particles.T_map_body.empty()) output.publish(std::move(particles));
   return estimate;
+}
+
+Pose2 SlamLocalizer::finish_map(const PoseEstimate& /*pose*/) {
+  if (!std::exchange(is_mapping_, false)) return {};
+  const std::vector<Pose2> before = mapper_->path();
+  mapper_->finish();
+  return before.empty() ? Pose2{} : mapper_->path().back() * before.back().inverse();
 }
 
 }  // namespace patrol::stack

@@ -20,19 +20,24 @@ class SlamLocalizer final : public Localizer {
                 std::optional<Pose3> T_body_uwb, const Eigen::Matrix3d& map_covariance = Eigen::Matrix3d::Zero());
 
   void add(const RangeWithOdometry& range) override;
+  void add(const slam::PositionMeasurement& position) override { mapper_->add(position); }
   PoseEstimate update(const LevelScan& scan, const Pose2& T_odom_body, StackOutput& output) override;
   std::vector<Pose2> path() const override { return mapper_->path(); }
   OccupancyGrid map() override { return mapper_->map(); }
-  bool is_mapping() const override { return true; }
+  bool is_mapping() const override { return is_mapping_; }
   bool is_lost() const override { return false; }
   bool has_pose() const override { return true; }
-  void set_anchors(const std::vector<UwbAnchor>& anchors_in_map) override { anchors_ = anchors_in_map; }
+  Pose2 finish_map(const PoseEstimate& pose) override;
+  void set_anchors(const std::vector<UwbAnchor>& anchors_in_map) override {
+    if (!mapper_->estimates_survey()) anchors_ = anchors_in_map;
+  }
 
  private:
   std::unique_ptr<slam::Mapper> mapper_;
   std::vector<UwbAnchor> anchors_;
   std::optional<Pose3> T_body_uwb_;
   Eigen::Matrix3d map_covariance_;
+  bool is_mapping_ = true;
 };
 
 }  // namespace patrol::stack

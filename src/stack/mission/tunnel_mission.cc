@@ -126,6 +126,7 @@ void TunnelMission::teleoperate(const MissionInput& input, MissionOutput& output
     goals_.push_back({.number = static_cast<int>(goals_.size()) + 1,
                       .T_map_body = T_map_body_,
                       .type = settings_.goal_type(goals_.size())});
+    saved_.push_back(now_);
     goal_ = goals_.size() - 1;
     output.events.push_back(event(EventKind::kGoalSaved, goal_name(), fmt::format("Saved {}.", goal_name())));
   }
@@ -246,6 +247,21 @@ void TunnelMission::finish(MissionOutput& output) {
     return;
   }
   output.events.push_back(event(EventKind::kMissionFailed, "", fmt::format("Tasks failed: {}.", num_failed_)));
+}
+
+std::vector<Event> TunnelMission::correct_map(Time now, const MapCorrection& correction) {
+  std::vector<Event> events;
+  for (std::size_t i = 0; i < saved_.size(); ++i) {
+    Pose2& T_map_goal = goals_[i].T_map_body;
+    T_map_goal = correction.at(saved_[i]) * T_map_goal;
+    events.push_back({.stamp = now,
+                      .kind = EventKind::kGoalMoved,
+                      .subject = fmt::format("goal_{}", goals_[i].number),
+                      .text = fmt::format("Moved goal_{} with the map.", goals_[i].number),
+                      .T_map_body = T_map_goal,
+                      .p_map_target = T_map_goal.position()});
+  }
+  return events;
 }
 
 Event TunnelMission::abort(Time now, EventKind kind, const std::string& text) {

@@ -23,7 +23,7 @@ namespace patrol::stack {
 /// the trestle bridge), requests soundings, drives it back and hands over control. If the mission makes its own map,
 /// the operator was present at the mapping drive, and R is treated as N.
 ///
-/// Events: goal_saved, mapping_completed, navigation_started, goal_reached, goal_failed, inspection_failed,
+/// Events: goal_saved, goal_moved, mapping_completed, navigation_started, goal_reached, goal_failed, inspection_failed,
 /// teleop_requested, teleop_ended, docked, dock_failed, localization_lost, relocalized, localization_failed. At the end
 /// mission_completed (every goal of every run reached, every inspection and docking done) or mission_failed. Subjects
 /// are "goal_2", "navigation_7", "sounding_1"; the value of a goal event is the number of its run.
@@ -36,6 +36,7 @@ class TunnelMission final : public Mission {
                 bool has_map = false);
 
   MissionOutput step(Time now, const MissionInput& input) override;
+  std::vector<Event> correct_map(Time now, const MapCorrection& correction) override;
   bool is_over() const override { return phase_ == Phase::kOver; }
   Event abort(Time now, EventKind kind, const std::string& text) override;
   TaskTiming timing() const override { return TaskTiming::kNow; }
@@ -79,6 +80,7 @@ class TunnelMission final : public Mission {
 
   TunnelMissionSettings settings_;
   std::vector<SavedGoal> goals_;
+  std::vector<Time> saved_;  ///< [goal] stamp at which teleoperation saved it; empty for given goals
   bool has_teleop_;
   bool has_map_;
   bool is_docked_;

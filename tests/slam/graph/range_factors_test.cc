@@ -10,7 +10,7 @@ const UwbAnchor kOther{.number = 4, .p_m = {0.0, 10.0, 1.0}};
 
 /// Without a bias, and with the antenna on the body's axis as high as the anchors: a range is a distance in the plane.
 RangeFactors without_bias() {
-  return RangeFactors({.range_std_m = 0.15, .calibration = {.distance_m = {}, .bias_m = {}}});
+  return RangeFactors({.range_std_m = 0.15, .common_std_m = 0.0, .calibration = {.distance_m = {}, .bias_m = {}}});
 }
 
 RangeMeasurement measurement(const UwbAnchor& anchor, double range_m) {

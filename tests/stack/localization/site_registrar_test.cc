@@ -29,7 +29,8 @@ std::vector<Pose2> drive(SiteRegistrar& registrar, const Pose2& T_site_map, int 
     const Pose2 T_true{1.0 * i, 0.0, 0.0}, T_map_body{map_scale * i, 0.0, 0.0};
     path.push_back(T_map_body);
     const PoseFromScan pose{.scan = static_cast<std::size_t>(i), .T_scan_body = {}, .T_map_body = T_map_body};
-    registrar.add(fix_at(T_site_map * T_true.position(), from_seconds(i / kSpeed_mps)), pose, Eigen::Vector2d::Zero());
+    const GnssFix fix = fix_at(T_site_map * T_true.position(), from_seconds(i / kSpeed_mps));
+    if (const auto position = registrar.position_of(fix, Eigen::Vector2d::Zero())) registrar.add(*position, pose);
   }
   return path;
 }

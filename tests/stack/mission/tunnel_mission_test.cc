@@ -85,6 +85,29 @@ TEST(TunnelMission, MarksGoalsByRemoteControlThenDrivesToThemByItself) {
   EXPECT_EQ(robot.count(EventKind::kMissionCompleted), 1);
 }
 
+// The final optimization moves the place of the first goal by 0.2 m and that of the second by 0.5 m.
+TEST(TunnelMission, SavedGoalsFollowTheFinalOptimizationOfTheMap) {
+  TunnelMission mission({.num_runs = 1}, {}, true);
+  const auto save_goal_at = [&](double time_s, double x_m) {
+    mission.step(from_seconds(time_s), {.pose = {.T_map_body = {x_m, 0.0, 0.0}}});
+    mission.step(from_seconds(time_s + 1.0),
+                 {.pose = {.T_map_body = {x_m, 0.0, 0.0}}, .teleop = TeleopCommand{.save_goal = true}});
+  };
+  for (int i = 0; i <= 48; ++i) mission.step(from_seconds(0.1 * i), {});
+  save_goal_at(5.0, 10.0);
+  save_goal_at(6.5, 20.0);
+  ASSERT_EQ(mission.goals().size(), 2U);
+  const std::vector<Event> events =
+      mission.correct_map(from_seconds(9.0), {.stamps = {from_seconds(5.9), from_seconds(7.4)},
+                                              .T_map_old = {{0.2, 0.0, 0.0}, {0.5, 0.0, 0.0}}});
+  EXPECT_NEAR(mission.goals()[0].T_map_body.x, 10.2, 1e-12);
+  EXPECT_NEAR(mission.goals()[1].T_map_body.x, 20.5, 1e-12);
+  ASSERT_EQ(events.size(), 2U);
+  EXPECT_EQ(events[1].kind, EventKind::kGoalMoved);
+  EXPECT_EQ(events[1].subject, "goal_2");
+  EXPECT_NEAR(events[1].T_map_body.x, 20.5, 1e-12);
+}
+
 TEST(TunnelMission, ARemoteControlThatFallsSilentForTwoSecondsIsOff) {
   Robot robot(TunnelMission({.num_runs = 0, .dock_after_run = false}, {}, true));
   robot.run(4.1);
