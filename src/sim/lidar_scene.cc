@@ -100,10 +100,13 @@ class Boxes {
   std::array<std::vector<float>, 3> lower_, upper_;  ///< bounds, [axis][part]
 };
 
+/// One instruction set for every processor: with another one hits differ in the last bits, and runs after minutes.
+constexpr const char* kEmbreeConfiguration = "threads=1,isa=avx2";
+
 }  // namespace
 
 struct LidarScene::Impl {
-  explicit Impl(const mjModel& view) : model(view), device(rtcNewDevice("threads=1")) {
+  explicit Impl(const mjModel& view) : model(view), device(rtcNewDevice(kEmbreeConfiguration)) {
     if (device == nullptr) throw std::runtime_error("Embree: device creation failed");
     static_scene = std::make_unique<EmbreeScene>(device, RTC_BUILD_QUALITY_HIGH);
     const std::unique_ptr<mjData, void (*)(mjData*)> data(mj_makeData(&model), mj_deleteData);

@@ -91,7 +91,7 @@ void Stack::publish_map(Time now) {
 void Stack::finish_map(Time now, const PoseEstimate& pose) {
   {
     const auto timer = output_.time_stage("slam");
-    const std::optional<MapCorrection> correction = parts_.pose.finish_map(pose);
+    const std::optional<localize::MapCorrection> correction = parts_.pose.finish_map(pose);
     if (!correction) return;
     for (Event& event : parts_.mission->correct_map(now, *correction)) output_.publish(std::move(event));
   }

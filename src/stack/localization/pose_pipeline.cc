@@ -138,12 +138,12 @@ std::optional<SiteRegistration> PosePipeline::register_to_site(Time now) {
   return registrar_.update(now, localizer_->path());
 }
 
-std::optional<MapCorrection> PosePipeline::finish_map(const PoseEstimate& pose) {
+std::optional<localize::MapCorrection> PosePipeline::finish_map(const PoseEstimate& pose) {
   if (!localizer_->is_mapping()) return std::nullopt;
   tracker_.move_map(localizer_->finish_map(pose));
   registrar_.request();
   const std::vector<Pose2> path = localizer_->path();
-  MapCorrection correction{.stamps = std::move(mapped_), .T_map_old = {}};
+  localize::MapCorrection correction{.stamps = std::move(mapped_), .T_map_old = {}};
   for (std::size_t i = 0; i < correction.stamps.size(); ++i)
     correction.T_map_old.push_back(path[i] * T_map_mapped_[i].inverse());
   return correction;

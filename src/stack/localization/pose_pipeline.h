@@ -13,11 +13,11 @@
 #include "core/site/site_frame.h"
 #include "core/site/site_registration.h"
 #include "localize/calibration/online_calibrator.h"
+#include "localize/map_correction.h"
 #include "localize/map_pose_tracker.h"
 #include "localize/scan_leveler.h"
 #include "stack/instruments/station_pose.h"
 #include "stack/localization/make_localizer.h"
-#include "stack/localization/map_correction.h"
 #include "stack/localization/odometry_source.h"
 #include "stack/localization/range_pose_tracker.h"
 #include "stack/localization/site_registrar.h"
@@ -71,7 +71,7 @@ class PosePipeline {
 
   /// Ends the mapping with its final optimization, which the pose and the registration to the site follow. `pose`:
   /// present pose. Returns the motion of the map; none where the map is given or complete.
-  std::optional<MapCorrection> finish_map(const PoseEstimate& pose);
+  std::optional<localize::MapCorrection> finish_map(const PoseEstimate& pose);
   void start_global_localization() { localizer_->start_global_localization(); }
   /// Starts at the surveyed start, the origin of map, before the robot has moved.
   void start_at_survey() { localizer_->set_initial_pose(Pose2{}, surveyed_covariance()); }

@@ -7,7 +7,7 @@
 #include "core/messages.h"
 #include "core/route.h"
 #include "core/sensors/registry.h"
-#include "stack/localization/map_correction.h"
+#include "localize/map_correction.h"
 #include "stack/mission/task.h"
 
 namespace patrol::stack {
@@ -48,7 +48,7 @@ class Mission {
   /// Replaces the survey in map after the registration of the map to the site has changed.
   virtual void set_site(const Route& /*site_in_map*/) {}
   /// Moves everything that the mission has located in map while the map was made; returns an event for each move.
-  virtual std::vector<Event> correct_map(Time /*now*/, const MapCorrection& /*correction*/) { return {}; }
+  virtual std::vector<Event> correct_map(Time /*now*/, const localize::MapCorrection& /*correction*/) { return {}; }
   virtual bool is_over() const = 0;
   /// Ends the mission, unless it is over, and returns an event of this kind.
   virtual Event abort(Time now, EventKind kind, const std::string& text) = 0;

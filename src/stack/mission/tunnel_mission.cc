@@ -249,7 +249,7 @@ void TunnelMission::finish(MissionOutput& output) {
   output.events.push_back(event(EventKind::kMissionFailed, "", fmt::format("Tasks failed: {}.", num_failed_)));
 }
 
-std::vector<Event> TunnelMission::correct_map(Time now, const MapCorrection& correction) {
+std::vector<Event> TunnelMission::correct_map(Time now, const localize::MapCorrection& correction) {
   std::vector<Event> events;
   for (std::size_t i = 0; i < saved_.size(); ++i) {
     Pose2& T_map_goal = goals_[i].T_map_body;

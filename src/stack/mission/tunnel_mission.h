@@ -36,7 +36,7 @@ class TunnelMission final : public Mission {
                 bool has_map = false);
 
   MissionOutput step(Time now, const MissionInput& input) override;
-  std::vector<Event> correct_map(Time now, const MapCorrection& correction) override;
+  std::vector<Event> correct_map(Time now, const localize::MapCorrection& correction) override;
   bool is_over() const override { return phase_ == Phase::kOver; }
   Event abort(Time now, EventKind kind, const std::string& text) override;
   TaskTiming timing() const override { return TaskTiming::kNow; }

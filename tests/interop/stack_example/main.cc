@@ -12,9 +12,12 @@
 int main(int argc, char** argv) {
   if (argc != 5) return std::puts("usage: stack_example ROBOT.urdf MISSION.json LOG.mcap MAP.yaml"), 2;
   const patrol::io::RouteFile site = patrol::io::load_route(argv[2]);
-  patrol::stack::Stack stack =
-      patrol::stack::make_stack({}, patrol::io::load_robot_description(argv[1]),
-                                patrol::inspect::to_map(site.route, site.T_site_start), {.seed = 1});
+  patrol::stack::StackSettings settings;
+  settings.slam.graph.edge_std_m = 0.02;  // as in models/quadruped/quadruped.yaml
+  settings.slam.graph.edge_std_rad = 0.003;
+  patrol::stack::Stack stack = patrol::stack::make_stack(
+      settings, patrol::io::load_robot_description(argv[1]), patrol::inspect::to_map(site.route, site.T_site_start),
+      {.site = {.T_site_start = site.T_site_start, .datum = site.datum}, .seed = 1});
   patrol::Time now{};
   const auto feed = [&](patrol::Time log_time, const auto& message) {
     if (log_time > now) stack.step(now);  // all messages of that tick are there
@@ -27,6 +30,7 @@ int main(int argc, char** argv) {
   handlers.on<patrol::JointState>(feed);
   handlers.on<patrol::FootContacts>(feed);
   handlers.on<patrol::GasReading>(feed);
+  handlers.on<patrol::GnssFix>(feed);
   patrol::io::read_run_log(argv[3], handlers);
   stack.finish(now);
   const std::vector<patrol::stack::StackMessage> messages = stack.take_messages();

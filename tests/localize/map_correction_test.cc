@@ -1,10 +1,10 @@
-#include "stack/localization/map_correction.h"
+#include "localize/map_correction.h"
 
 #include <gtest/gtest.h>
 
 #include "tests/support/pose_near.h"
 
-namespace patrol::stack::map_correction_test {
+namespace patrol::localize::map_correction_test {
 namespace {
 
 using test::Pose2Near;
@@ -24,4 +24,4 @@ TEST(MapCorrection, WithoutScansNothingMoves) {
 }
 
 }  // namespace
-}  // namespace patrol::stack::map_correction_test
+}  // namespace patrol::localize::map_correction_test

@@ -5,7 +5,7 @@
 #include "core/frames.h"
 #include "core/time.h"
 
-namespace patrol::stack {
+namespace patrol::localize {
 
 /// Motion of the map by its final optimization, along the path on which it was made.
 struct MapCorrection {
@@ -16,4 +16,4 @@ struct MapCorrection {
   Pose2 at(Time stamp) const;
 };
 
-}  // namespace patrol::stack
+}  // namespace patrol::localize

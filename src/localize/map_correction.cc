@@ -1,8 +1,8 @@
-#include "stack/localization/map_correction.h"
+#include "localize/map_correction.h"
 
 #include <algorithm>
 
-namespace patrol::stack {
+namespace patrol::localize {
 
 Pose2 MapCorrection::at(Time stamp) const {
   if (stamps.empty()) return {};
@@ -10,4 +10,4 @@ Pose2 MapCorrection::at(Time stamp) const {
   return T_map_old[static_cast<std::size_t>(std::max<std::ptrdiff_t>(after - 1, 0))];
 }
 
-}  // namespace patrol::stack
+}  // namespace patrol::localize
