@@ -1,7 +1,10 @@
 #include "slam/graph/scan_tracker.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <numbers>
 
 #include <Eigen/LU>
 
@@ -18,6 +21,12 @@ constexpr double kMaxVarianceScale = 400.0;
 /// Along a direction with less information than this fraction of the best one, a match is not evidence against
 /// odometry.
 constexpr double kMinEvidenceRatio = 0.02;
+/// Number of sectors of bearings that vote between two poses.
+constexpr std::size_t kSectors = 36;
+/// Minimum difference of the log likelihoods of a sector's points for a vote.
+constexpr double kMinVote = 2.0;
+/// Squared Mahalanobis distance from the odometry prediction above which a match contradicts odometry.
+constexpr double kContradiction = 16.0;
 /// A match with a smaller inlier ratio triggers a window search.
 constexpr double kGoodInlierRatio = 0.6;
 
@@ -39,6 +48,33 @@ Eigen::Vector3d determined_offset(const Eigen::Vector3d& offset, const Eigen::Ma
 bool is_distinct(const Pose2& a, const Pose2& b) {
   return (a.position() - b.position()).norm() > 0.03 || std::abs(wrap_angle(a.yaw - b.yaw)) > 0.02;
 }
+
+std::size_t sector_of(const MatchPoint& point) {
+  const double turn = std::atan2(point.p_body.y(), point.p_body.x()) / (2.0 * std::numbers::pi);
+  return static_cast<std::size_t>((turn + 1.0) * kSectors) % kSectors;
+}
+
+/// Gain in log likelihood of one pose over another by the bearing of the points.
+struct SectorGains {
+  std::array<double, kSectors> gains{};
+  double total = 0.0;
+
+  /// Compares at points in observed cells of both poses; other points would favor poses with fewer observed cells.
+  SectorGains(const std::vector<MatchPoint>& points, const std::vector<double>& a, const std::vector<double>& b) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const double difference = a[i] - b[i];
+      if (std::isnan(difference)) continue;
+      gains[sector_of(points[i])] += difference;
+      total += difference;
+    }
+  }
+  bool favors(std::size_t sector) const { return gains[sector] > kMinVote; }
+  /// Number of sectors in favor minus number against.
+  int votes() const {
+    return static_cast<int>(std::ranges::count_if(gains, [](double gain) { return gain > kMinVote; }) -
+                            std::ranges::count_if(gains, [](double gain) { return gain < -kMinVote; }));
+  }
+};
 
 /// Scales a motion to another duration at constant velocity.
 Pose2 scaled(const Pose2& motion, double factor) { return {factor * motion.x, factor * motion.y, factor * motion.yaw}; }
@@ -84,7 +120,7 @@ ScanTracker::Hypothesis ScanTracker::track(const std::vector<MatchPoint>& points
   const auto consider = [&](const Pose2& start) {
     const Hypothesis other = match_from(start, points, prediction, false);
     if (!other.match) return;
-    if (!best.match || (is_determined_by_scan(other, best) && is_better(other, best))) best = other;
+    if (!best.match || (is_determined_by_scan(other, best) && is_better(other, best, points))) best = other;
   };
   const double factor = last_step_s_ > 1e-3 ? std::clamp(step.seconds / last_step_s_, 0.0, 2.0) : 1.0;
   const Pose2 as_before = scaled(T_last_now_, factor), none{0.0, 0.0, step.T_last_odom.yaw},
@@ -95,7 +131,7 @@ ScanTracker::Hypothesis ScanTracker::track(const std::vector<MatchPoint>& points
   }
   if (!best.match || best.match->inlier_ratio < kGoodInlierRatio)
     consider(search_pose(older_, points, prediction.mean, settings_.matching));
-  return best;
+  return best.match ? without_moving_objects(best, points, prediction) : best;
 }
 
 // Only the directions that the scan determines are evidence: along a smooth corridor any pose matches.
@@ -153,14 +189,25 @@ bool ScanTracker::is_determined_by_scan(const Hypothesis& a, const Hypothesis& b
   return is_distinct({determined.x(), determined.y(), determined.z()}, {});
 }
 
-// Compares at points in observed cells of both poses; other points would favor poses with fewer observed cells.
-bool ScanTracker::is_better(const Hypothesis& a, const Hypothesis& b) const {
-  double log_likelihood_gain = 0.0;
-  for (std::size_t i = 0; i < a.log_likelihoods.size(); ++i) {
-    const double difference = a.log_likelihoods[i] - b.log_likelihoods[i];
-    if (!std::isnan(difference)) log_likelihood_gain += difference;
-  }
-  return settings_.likelihood_tempering * log_likelihood_gain + a.log_prior - b.log_prior > 0.0;
+// A vehicle that passes has many points in few sectors, and they match best as if the robot moved with it.
+bool ScanTracker::is_better(const Hypothesis& a, const Hypothesis& b, const std::vector<MatchPoint>& points) const {
+  const SectorGains gains(points, a.log_likelihoods, b.log_likelihoods);
+  return gains.votes() > 0 && settings_.likelihood_tempering * gains.total + a.log_prior - b.log_prior > 0.0;
+}
+
+// Without the sectors in favor of a match that contradicts odometry and the majority of the sectors.
+ScanTracker::Hypothesis ScanTracker::without_moving_objects(const Hypothesis& best,
+                                                            const std::vector<MatchPoint>& points,
+                                                            const PoseGaussian& prediction) const {
+  const Eigen::Vector3d offset =
+      determined_offset(prediction.residual_to_mean(best.T_local_body), best.match->information);
+  if (offset.dot(prediction.covariance.inverse() * offset) < kContradiction) return best;
+  const SectorGains gains(points, best.log_likelihoods,
+                          point_log_likelihoods(older_, points, prediction.mean, settings_.matching));
+  if (gains.votes() > 0) return best;
+  std::vector<MatchPoint> others = points;
+  std::erase_if(others, [&](const MatchPoint& point) { return gains.favors(sector_of(point)); });
+  return match_from(prediction.mean, others, prediction, true);
 }
 
 void ScanTracker::integrate(const LevelScan& scan, const Pose2& T_local_body, TrackedScan& tracked) {

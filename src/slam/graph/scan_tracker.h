@@ -35,6 +35,9 @@ struct TrackedScan {
 /// Robust against failures of wheel odometry (slip, frozen or reversed readings). Alternative start poses are the
 /// previous motion, no motion, the reversed motion, and a window search. An alternative replaces the odometry
 /// prediction if its gain in scan likelihood exceeds its loss under the Student's t prior of odometry.
+///
+/// Robust against moving objects: a match that contradicts odometry needs the majority of the sectors of bearings that
+/// distinguish the two poses. Sectors of a rejected match are left out.
 class ScanTracker {
  public:
   explicit ScanTracker(const ScanTrackerSettings& settings);
@@ -61,12 +64,14 @@ class ScanTracker {
     Pose2 T_last_odom;
   };
 
+  Hypothesis without_moving_objects(const Hypothesis& best, const std::vector<MatchPoint>& points,
+                                    const PoseGaussian& prediction) const;
   Hypothesis track(const std::vector<MatchPoint>& points, const Step& step, const PoseGaussian& prediction) const;
   void inflate_odometry_covariance(const PoseGaussian& prediction, const Hypothesis& best);
   TrackedScan to_tracked_scan(const Hypothesis& best, const PoseGaussian& prediction) const;
   bool is_keyframe_due(const Pose2& T_local_body) const;
   static bool is_determined_by_scan(const Hypothesis& a, const Hypothesis& b);
-  bool is_better(const Hypothesis& a, const Hypothesis& b) const;
+  bool is_better(const Hypothesis& a, const Hypothesis& b, const std::vector<MatchPoint>& points) const;
   Hypothesis match_from(const Pose2& T_local_start, const std::vector<MatchPoint>& points,
                         const PoseGaussian& prediction, bool is_odometry) const;
   void integrate(const LevelScan& scan, const Pose2& T_local_body, TrackedScan& tracked);

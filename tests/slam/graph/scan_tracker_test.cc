@@ -79,6 +79,30 @@ TEST(ScanTracker, AlongASmoothCorridorOdometryIsUsedAndTheCovarianceIsLarge) {
   EXPECT_LT(std::sqrt(tracked.covariance(1, 1)), 0.003);
 }
 
+// A car waits, drives off at 1.5 m/s when the robot at 0.9 m/s is 4 m behind it, waits 15 m farther on, and so forth.
+// It has more points than the posts at the sides, which alone show the way along the street.
+TEST(ScanTracker, ACarThatDrivesOffAheadCostsNoMoreThanTenCentimetersIn45Meters) {
+  test::RoomWorld street;
+  street.add_wall(-50.0, -8.0, 120.0, -8.0).add_wall(-50.0, 6.0, 120.0, 6.0);
+  for (int i = -5; i < 12; ++i) street.add_post(10.0 * i, 5.0, 0.15).add_post(10.0 * i + 4.0, -7.0, 0.15);
+  ScanTracker tracker({});
+  const RandomStream noise(1, "test/street");
+  constexpr double kStep_s = 0.1, kSpeed_mps = 0.9, kCarSpeed_mps = 1.5;
+  double car_m = 8.0, car_end_m = 8.0, worst_m = 0.0;
+  for (std::uint64_t k = 0; k <= 500; ++k) {
+    const double x = kSpeed_mps * kStep_s * static_cast<double>(k);
+    if (car_m >= car_end_m && car_m - x < 4.0) car_end_m = car_m + 15.0;
+    if (car_m < car_end_m) car_m += kCarSpeed_mps * kStep_s;
+    test::RoomWorld now = street;
+    now.add_box(car_m, -3.6, car_m + 4.5, -1.8);
+    const LevelScan scan = now.scan({x, 0.0, 0.0}, from_seconds(kStep_s * static_cast<double>(k)),
+                                    {.beams = 1600, .range_std_m = 0.01}, noise, k);
+    const TrackedScan tracked = tracker.update(scan, {x, 0.0, 0.0});
+    worst_m = std::max(worst_m, (tracked.T_local_body.position() - Eigen::Vector2d(x, 0.0)).norm());
+  }
+  EXPECT_LT(worst_m, 0.1);
+}
+
 TEST(ScanTracker, KeyframesComeEveryQuarterMeterAndSubmapsEveryThirtyKeyframes) {
   const auto tracked = track(corridor_drive(), [](std::size_t, const Pose2& motion) { return motion; });
   int keyframes = 0, submaps = 0;
