@@ -1,14 +1,17 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
+#include "core/calibration/calibration_estimate.h"
 #include "core/ground_truth.h"
 #include "core/inspection_result.h"
 #include "core/messages.h"
 #include "core/sensors/registry.h"
 #include "core/site/site_registration.h"
 #include "core/trajectory.h"
+#include "score/calibration_score.h"
 
 namespace patrol::score {
 
@@ -23,6 +26,9 @@ struct RunRecord {
   std::vector<Time> T_odom_body_received;       ///< [pose of T_odom_body]: log time
   Trajectory T_world_body;                      ///< ground truth
   std::vector<SiteRegistration> registrations;  ///< pose of map in site, in order; empty in older logs
+  std::vector<GyroReading> gyro;
+  AsBuiltTruth as_built;                           ///< ground truth; empty for a nominal robot
+  std::optional<CalibrationEstimate> calibration;  ///< newest, if the stack estimates its calibration
   std::vector<Event> events;
   std::vector<LocalizationConfidence> confidences;
   std::vector<TeleopCommand> teleop;

@@ -92,8 +92,8 @@ struct ToleranceLines {
 
 std::vector<std::string> tolerance_lines() {
   ToleranceLines visitor;
-  const sim::AsBuiltSettings settings;
-  sim::AsBuiltSettings::fields(settings, visitor);
+  const Scenario defaults;
+  sim::AsBuiltSettings::fields(defaults.as_built, visitor);
   return std::move(visitor.lines);
 }
 

@@ -111,7 +111,7 @@ struct Scenario {
   TeleopSettings teleop;
   StartOffsetSettings start;
   std::vector<MountSettings> mounts;  ///< sensors in addition to those of the robot's URDF
-  sim::AsBuiltSettings as_built;      ///< tolerances of the simulated robot
+  sim::AsBuiltSettings as_built = sim::AsBuiltSettings::as_delivered();  ///< tolerances of the simulated robot
   sim::SensorSuiteSettings sensors;
   sim::LocomotionSettings locomotion;   ///< locomotion of a legged robot
   sim::TrackDriveSettings track_drive;  ///< drive of a tracked robot
@@ -167,7 +167,7 @@ struct Scenario {
 
 /// Robot profile, models/<robot>/<robot>.yaml: settings that differ from the defaults.
 struct RobotProfile {
-  sim::AsBuiltSettings as_built;
+  sim::AsBuiltSettings as_built = sim::AsBuiltSettings::as_delivered();
   sim::SensorSuiteSettings sensors;
   sim::LocomotionSettings locomotion;
   sim::TrackDriveSettings track_drive;

@@ -24,6 +24,14 @@ std::vector<score::WaterGroundTruth> true_waters(const Scenario& scenario) {
   return bodies;
 }
 
+/// Sum of the clock offsets by faults of the lidar.
+double lidar_clock_fault_s(const std::vector<sim::FaultSettings>& faults, Time now) {
+  double offset_s = 0.0;
+  for (const sim::FaultSettings& fault : faults)
+    if (fault.sensor == "lidar" && fault.kind == "clock_offset" && fault.is_active(now)) offset_s += fault.magnitude;
+  return offset_s;
+}
+
 }  // namespace
 
 score::RunReferences run_references(const Scenario& scenario, const ScenarioFiles& files, const TrueMap& truth) {
@@ -42,6 +50,9 @@ score::RunReferences run_references(const Scenario& scenario, const ScenarioFile
       .waters = true_waters(scenario),
       .p_body_antenna = {},
       .kidnaps = {},
+      .calibration = {.R_body_imu = files.robot.T_body("imu").rotation,
+                      .lidar_clock_fault_s = [faults = scenario.faults](
+                                                 Time now) { return lidar_clock_fault_s(faults, now); }},
       .localizability = [oracle](const Eigen::Vector2d& p_world_m) { return oracle->at(p_world_m); }};
   if (files.map) references.T_world_map = files.T_site_start;
   if (files.route.lining) {

@@ -156,6 +156,23 @@ io::Metrics to_json(const score::RelocalizationScore& score) {
   return metrics;
 }
 
+io::Metrics to_json(const std::vector<score::ScoredParameter>& calibration) {
+  io::Metrics metrics;
+  std::size_t num_held = 0;
+  for (const score::ScoredParameter& parameter : calibration) {
+    std::string pointer = "/" + parameter.name;
+    std::ranges::replace(pointer, '.', '/');
+    metrics[io::Metrics::json_pointer(pointer)] = {{"value", parameter.value},
+                                                   {"std", parameter.std},
+                                                   {"truth", parameter.truth},
+                                                   {"holds", parameter.holds()}};
+    if (parameter.holds()) ++num_held;
+  }
+  metrics["parameters"] = calibration.size();
+  metrics["within_95"] = static_cast<double>(num_held) / static_cast<double>(calibration.size());
+  return metrics;
+}
+
 io::Metrics to_json(const score::LiningScore& score) {
   io::Metrics metrics;
   metrics["stations"] = score.stations;
@@ -267,6 +284,7 @@ io::Metrics to_json(const score::RunScore& run) {
   metrics["pose"]["aligned"] = score.aligned_pose ? to_json(*score.aligned_pose) : io::Metrics();
   metrics["pose"]["nees"] = to_json(score.nees);
   metrics["registration"] = registration_json(score.site);
+  if (!score.calibration.empty()) metrics["calibration"] = to_json(score.calibration);
   metrics["odometry"] = to_json(score.odometry);
   metrics["map"] = to_json(score.map);
   metrics["map"]["origin_in_world"] = pose_json(score.T_world_map);

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "io/json/metrics_json.h"
+#include "score/calibration_score.h"
 #include "score/driven_clearance.h"
 #include "score/goal_error.h"
 #include "score/inspection_score.h"
@@ -30,6 +31,7 @@ io::Metrics to_json(const score::GoalError& error);
 io::Metrics to_json(const score::LocalizationScore& score);
 io::Metrics to_json(const score::LocalizabilityScore& score);
 io::Metrics to_json(const score::RelocalizationScore& score);
+io::Metrics to_json(const std::vector<score::ScoredParameter>& calibration);
 io::Metrics to_json(const score::LiningScore& score);
 io::Metrics to_json(const score::WaterScore& score);
 

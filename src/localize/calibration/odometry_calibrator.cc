@@ -93,7 +93,7 @@ void OdometryCalibrator::add_gyro(const SegmentBegin& begin, const CalibrationSc
   gyro_drift_.turned_rad += gyro_turn_rad;
   gyro_drift_.elapsed_s += elapsed_s;
   if (gyro_drift_.elapsed_s < settings_.gyro_bias_interval_s) return;
-  const ScalarEstimate scale = gyro_scale();
+  const ScalarEstimate scale = scalar(gyro_.estimate(), kGyroScale, 1.0);
   const double std_rad = std::hypot(std::sqrt(gyro_drift_.variance_rad2), scale.std * gyro_drift_.turned_rad);
   recent_gyro_bias_ = {.value =
                            (gyro_drift_.yaw_rad + (scale.value - 1.0) * gyro_drift_.turned_rad) / gyro_drift_.elapsed_s,
@@ -113,7 +113,11 @@ ScalarEstimate OdometryCalibrator::distance_scale() const {
   return scalar(odometry_.estimate(), kDistanceScale, 1.0, settings_.distance_bias_std);
 }
 ScalarEstimate OdometryCalibrator::rotation_scale() const { return scalar(odometry_.estimate(), kRotationScale, 1.0); }
-ScalarEstimate OdometryCalibrator::gyro_bias_radps() const { return scalar(gyro_.estimate(), kGyroBias, 0.0); }
-ScalarEstimate OdometryCalibrator::gyro_scale() const { return scalar(gyro_.estimate(), kGyroScale, 1.0); }
+ScalarEstimate OdometryCalibrator::gyro_bias_radps() const {
+  return scalar(gyro_.estimate(), kGyroBias, 0.0, settings_.matched_rate_bias_std_radps);
+}
+ScalarEstimate OdometryCalibrator::gyro_scale() const {
+  return scalar(gyro_.estimate(), kGyroScale, 1.0, settings_.matched_rotation_bias_std);
+}
 
 }  // namespace patrol::localize

@@ -23,6 +23,10 @@ struct OdometryCalibratorSettings {
   /// tracks slip sideways systematically. Added to that of the lidar yaw, which cannot be separated from it.
   double lateral_bias_std_rad = 0.001;
   double distance_bias_std = 0.001;  ///< error of the distance scale that scan matching cannot separate
+  /// Systematic error of the rotation by scan matching, which the bias and the scale of the gyro contain: scans are not
+  /// level, and walls are not vertical.
+  double matched_rate_bias_std_radps = 0.0007;
+  double matched_rotation_bias_std = 0.002;
   double outlier_sigma = 4.0;        ///< segments with larger residuals are rejected
 
   template <typename Self, typename Visitor>
@@ -40,6 +44,8 @@ struct OdometryCalibratorSettings {
     visit("odometry_std_rad_per_rad", self.odometry_std_rad_per_rad, between(0.0, 1.0));
     visit("gyro_std_rad_per_sqrt_s", self.gyro_std_rad_per_sqrt_s, between(1e-9, 1.0));
     visit("lateral_bias_std_rad", self.lateral_bias_std_rad, between(0.0, 1.0));
+    visit("matched_rate_bias_std_radps", self.matched_rate_bias_std_radps, between(0.0, 1.0));
+    visit("matched_rotation_bias_std", self.matched_rotation_bias_std, between(0.0, 1.0));
     visit("distance_bias_std", self.distance_bias_std, between(0.0, 1.0));
     visit("gyro_bias_interval_s", self.gyro_bias_interval_s, between(0.1, 1000.0));
     visit("outlier_sigma", self.outlier_sigma, between(1.0, 100.0));

@@ -10,7 +10,7 @@ namespace patrol::localize {
 
 /// Settings of the calibration while the robot drives, and of the use of its estimates.
 struct OnlineCalibratorSettings {
-  bool enabled = false;
+  bool enabled = true;
   bool corrects_time_offset = true;     ///< scans are leveled with the estimated time offset
   bool corrects_lidar_yaw = true;       ///< scans are leveled with the estimated yaw of the lidar
   bool corrects_gyro_bias = true;       ///< odometry takes the bias of the gyro from scan matching

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include <Eigen/LU>
@@ -78,11 +79,15 @@ void TimeOffsetEstimator::detect_step(const LinearMeasurement& measurement) {
 
 TimeOffset TimeOffsetEstimator::at(Time stamp) const {
   const LinearEstimate estimate = filter_.estimate();
-  const Eigen::Vector2d by(1.0, origin_ ? to_seconds(stamp - *origin_) : 0.0);
+  const double elapsed_s = origin_ ? to_seconds(stamp - *origin_) : 0.0;
+  const Eigen::Vector2d by(1.0, elapsed_s);
+  // The lag may differ between the beginning and the end.
+  const double lag_drift_std = std::min(settings_.prior_drift_std_s_per_s,
+                                        std::numbers::sqrt2 * settings_.odometry_lag_std_s / std::max(elapsed_s, 1.0));
   return {.value_s = by.dot(estimate.value),
           .std_s = std::hypot(std::sqrt(by.dot(estimate.covariance * by)), settings_.odometry_lag_std_s),
           .drift_s_per_s = estimate.value[1],
-          .drift_std_s_per_s = estimate.std(1)};
+          .drift_std_s_per_s = std::hypot(estimate.std(1), lag_drift_std)};
 }
 
 }  // namespace patrol::localize

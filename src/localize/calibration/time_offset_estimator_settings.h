@@ -10,7 +10,7 @@ struct TimeOffsetEstimatorSettings {
   double odometry_std_m = 0.002;          ///< standard deviation of odometry from scan to scan
   double odometry_std_rad = 0.0005;       ///< standard deviation of odometry from scan to scan
   /// Standard deviation of the lag of odometry behind its own stamps, which cannot be separated from the offset.
-  double odometry_lag_std_s = 0.001;
+  double odometry_lag_std_s = 0.0015;
   double translation_variance_factor = 25;  ///< of the translations, whose errors follow the gait
   /// Standard deviation of the linearized effect of the offset that is not yet applied, relative to the effect.
   double linearization_error = 0.2;

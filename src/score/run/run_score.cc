@@ -66,6 +66,17 @@ void add_site_map_errors(const RunRecord& record, const RunReferences& reference
   }
 }
 
+std::vector<ScoredParameter> run_calibration_score(const RunRecord& record, const RunReferences& references) {
+  if (!record.calibration || record.as_built.values.empty()) return {};
+  const auto truth = calibration_truth({.T_odom_body = record.T_odom_body,
+                                        .T_world_body = record.T_world_body,
+                                        .gyro = record.gyro,
+                                        .as_built = record.as_built,
+                                        .kidnaps = references.kidnaps},
+                                       references.calibration, record.calibration->stamp);
+  return calibration_score(*record.calibration, truth);
+}
+
 void add_inspection(const RunRecord& record, const RunReferences& references, const MapInSite& map,
                     EstimateScore& score) {
   score.inspection = inspection_score(record.events, map, references.leaks);
@@ -111,6 +122,7 @@ EstimateScore estimate_score(const RunRecord& record, const RunReferences& refer
       .localizability = track_localizability(record, T_world_map, references.localizability),
       .navigation = navigation_score(record, references),
       .stations = station_errors(references.route, record.events, T_world_map, map, truth, record.map, references.map),
+      .calibration = run_calibration_score(record, references),
       .goals = goal_errors(record.events, references.goals, T_world_map, truth),
       .docking = {},
       .range_pose = {},

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/route.h"
+#include "score/calibration_score.h"
 #include "score/driven_clearance.h"
 #include "score/goal_error.h"
 #include "score/inspection_score.h"
@@ -36,6 +37,7 @@ struct RunReferences {
   std::vector<WaterGroundTruth> waters;
   std::optional<Eigen::Vector3d> p_body_antenna;  ///< mount of the sounding antenna, m
   std::vector<Time> kidnaps;
+  CalibrationReferences calibration;
   LocalizabilityOracle localizability;
 };
 
@@ -75,6 +77,7 @@ struct EstimateScore {
   std::vector<TrackedLocalizability> localizability;
   NavigationScore navigation;
   std::vector<StationError> stations;
+  std::vector<ScoredParameter> calibration;  ///< with an estimated calibration of an as-built robot
   std::vector<GoalError> goals;
   std::optional<GoalError> docking;           ///< with a dock in the survey
   std::optional<TrajectoryError> range_pose;  ///< with an estimate by odometry and UWB ranges

@@ -144,7 +144,7 @@ AsBuiltTruth AsBuiltRobot::truth(const std::vector<int>& uwb_anchors) const {
   const ImuErrors imu_errors = imu();
   const LidarErrors lidar_errors = lidar("lidar");
   add("lidar.time_offset_s", clock("lidar").offset_s() - clock("firmware").offset_s());
-  add("lidar.time_drift", clock("lidar").drift() - clock("firmware").drift());
+  add("lidar.clock_drift_s_per_s", clock("lidar").drift() - clock("firmware").drift());
   add("lidar.range_offset_m", lidar_errors.range_offset_m);
   for (const auto& [frame, T_body_sensor] : actual_.T_body_sensor) {
     const Pose3 T_nominal_actual = nominal_.T_body(frame).inverse() * T_body_sensor;
@@ -161,7 +161,7 @@ AsBuiltTruth AsBuiltRobot::truth(const std::vector<int>& uwb_anchors) const {
     add(fmt::format("imu.gyro_{}_bias_radps", kAxes[axis]), imu_errors.gyro.bias[axis]);
     add(fmt::format("imu.accel_{}_bias_mps2", kAxes[axis]), imu_errors.accel.bias[axis]);
   }
-  add("imu.gyro_z_scale", 1.0 + imu_errors.gyro.distortion(2, 2));
+  add("imu.gyro_z_scale_error", imu_errors.gyro.distortion(2, 2));
   if (nominal_.tracks) {
     add("tracks.left_sprocket_scale", tracks().sprocket_scale[0]);
     add("tracks.right_sprocket_scale", tracks().sprocket_scale[1]);

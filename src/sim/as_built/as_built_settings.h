@@ -211,7 +211,7 @@ struct PlacementTolerances {
   }
 };
 
-/// Section `as_built` of a scenario.
+/// Section `as_built` of a scenario, where it is enabled by default.
 struct AsBuiltSettings {
   bool enabled = false;  ///< false: the robot is nominal
   MountingTolerances mounting;
@@ -225,6 +225,13 @@ struct AsBuiltSettings {
   DepthCameraTolerances depth_camera;
   ScannerTolerances scanner;
   PlacementTolerances placement;
+
+  /// Returns the default tolerances, enabled.
+  static AsBuiltSettings as_delivered() {
+    AsBuiltSettings settings;
+    settings.enabled = true;
+    return settings;
+  }
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -19,6 +19,7 @@ TEST(ErrorSources, NamesAreUnique) {
 /// Each tolerance of section `as_built` is a source, which applies only to as-built robots.
 TEST(ErrorSources, EveryAsBuiltToleranceIsOneSource) {
   Scenario scenario;
+  scenario.as_built.enabled = false;
   const ScenarioFiles files;
   int num_tolerances = 0;
   for (const ScenarioErrorSource& source : scenario_error_sources()) {

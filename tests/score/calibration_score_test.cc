@@ -1,0 +1,103 @@
+#include "score/calibration_score.h"
+
+#include <cmath>
+#include <map>
+
+#include <gtest/gtest.h>
+
+namespace patrol::score::calibration_score_test {
+namespace {
+
+/// Robot on a figure of eight at 1 m/s and up to 0.5 rad/s for 60 s, with errors of odometry and gyro.
+struct Ride {
+  Trajectory T_odom_body, T_world_body;
+  std::vector<GyroReading> gyro;
+  AsBuiltTruth as_built{.stamp = {},
+                        .values = {{"lidar.time_offset_s", 0.002},
+                                   {"lidar.clock_drift_s_per_s", 1e-5},
+                                   {"lidar.yaw_rad", 0.004},
+                                   {"uwb.anchor_3.delay_m", -0.07}}};
+  std::vector<Time> kidnaps;
+
+  Ride(double distance_scale, double rotation_scale, double gyro_bias_radps, double gyro_scale) {
+    constexpr double kStep_s = 0.01;
+    Pose2 T_world_now{5.0, -3.0, 1.0}, T_odom_now;
+    for (int i = 0; i <= 6000; ++i) {
+      const Time stamp = from_seconds(kStep_s * i);
+      const double rate_radps = 0.5 * std::sin(0.2 * kStep_s * i);
+      T_world_body.push_back({stamp, to_pose3(T_world_now)});
+      T_odom_body.push_back({stamp, to_pose3(T_odom_now)});
+      gyro.push_back({stamp, {0.0, 0.0, rate_radps / gyro_scale + gyro_bias_radps / gyro_scale}});
+      T_world_now = T_world_now * Pose2{kStep_s, 0.0, kStep_s * rate_radps};
+      T_odom_now = T_odom_now * Pose2{kStep_s / distance_scale, 0.0, kStep_s * rate_radps / rotation_scale};
+    }
+  }
+
+  std::map<std::string, double> truth(const CalibrationReferences& references = {}) const {
+    std::map<std::string, double> values;
+    for (const auto& [name, value] :
+         calibration_truth({T_odom_body, T_world_body, gyro, as_built, kidnaps}, references, from_seconds(60.0)))
+      values.emplace(name, value);
+    return values;
+  }
+};
+
+TEST(CalibrationTruth, FitsTheScalesOfOdometryAndTheErrorsOfTheGyro) {
+  const auto truth = Ride(1.02, 0.97, 0.01, 1.004).truth();
+  EXPECT_NEAR(truth.at("odometry.distance_scale"), 1.02, 5e-4);  // chords of curves depend on the rotation scale
+  EXPECT_NEAR(truth.at("odometry.rotation_scale"), 0.97, 3e-4);
+  EXPECT_NEAR(truth.at("imu.gyro_z_bias_radps"), 0.01, 1e-4);
+  EXPECT_NEAR(truth.at("imu.gyro_z_scale"), 1.004, 5e-4);
+}
+
+TEST(CalibrationTruth, EvaluatesTheTimeOffsetAtTheInstantOfTheEstimate) {
+  const Ride ride(1.0, 1.0, 0.0, 1.0);
+  EXPECT_NEAR(ride.truth().at("lidar.time_offset_s"), 0.0026, 1e-12) << "2 ms and 60 s of 10 ppm";
+  const auto with_fault = ride.truth({.R_body_imu = Eigen::Quaterniond::Identity(),
+                                      .lidar_clock_fault_s = [](Time) { return -0.02; }});
+  EXPECT_NEAR(with_fault.at("lidar.time_offset_s"), -0.0174, 1e-12);
+  EXPECT_EQ(with_fault.at("lidar.clock_drift_s_per_s"), 1e-5);
+}
+
+TEST(CalibrationTruth, TakesYawAndAntennaDelaysAsDrawn) {
+  const auto truth = Ride(1.0, 1.0, 0.0, 1.0).truth();
+  EXPECT_EQ(truth.at("lidar.yaw_rad"), 0.004);
+  EXPECT_EQ(truth.at("uwb.anchor_3.delay_m"), -0.07);
+}
+
+TEST(CalibrationTruth, LeavesOutTheSegmentOfAKidnap) {
+  Ride ride(1.02, 1.0, 0.0, 1.0);
+  for (std::size_t i = 3000; i < ride.T_world_body.size(); ++i) ride.T_world_body[i].pose.position.x() += 40.0;
+  EXPECT_GT(std::abs(ride.truth().at("odometry.distance_scale") - 1.02), 0.05);
+  ride.kidnaps = {from_seconds(30.0)};
+  EXPECT_NEAR(ride.truth().at("odometry.distance_scale"), 1.02, 3e-4);
+}
+
+TEST(CalibrationTruth, LeavesOutTheGyroOfARobotThatDoesNotTurn) {
+  Ride ride(1.0, 1.0, 0.01, 1.0);
+  for (std::size_t i = 0; i < ride.T_world_body.size(); ++i) {
+    const Pose2 straight{0.01 * static_cast<double>(i), 0.0, 0.0};
+    ride.T_world_body[i].pose = ride.T_odom_body[i].pose = to_pose3(straight);
+    ride.gyro[i].angular_velocity_radps = {0.0, 0.0, 0.01};
+  }
+  const auto truth = ride.truth();
+  EXPECT_FALSE(truth.contains("imu.gyro_z_scale"));
+  EXPECT_NEAR(truth.at("odometry.distance_scale"), 1.0, 1e-9);
+}
+
+TEST(CalibrationScore, HoldsWithin1_96StandardDeviationsAndSkipsUnknownNames) {
+  const CalibrationEstimate estimate{.stamp = {},
+                                     .values = {{"lidar.yaw_rad", 0.0059, 0.001},
+                                                {"imu.gyro_z_scale", 1.002, 0.001},
+                                                {"uwb.anchor_9.delay_m", 0.1, 0.1}}};
+  const std::vector<ScoredParameter> scored =
+      calibration_score(estimate, {{"imu.gyro_z_scale", 1.0}, {"lidar.yaw_rad", 0.004}});
+  ASSERT_EQ(scored.size(), 2U);
+  EXPECT_EQ(scored[0].name, "lidar.yaw_rad");
+  EXPECT_NEAR(scored[0].error(), 0.0019, 1e-12);
+  EXPECT_TRUE(scored[0].holds());
+  EXPECT_FALSE(scored[1].holds());
+}
+
+}  // namespace
+}  // namespace patrol::score::calibration_score_test
