@@ -119,6 +119,7 @@ PATROL_ROWS = [
     Row("`pose.site.ate_rmse_m`, in the survey frame", "pose.site.ate_rmse_m"),
     Row("`pose.aligned.rmse_m`", "pose.aligned.rmse_m"),
     Row("`pose.nees.mean`", "pose.nees.mean", ".1f"),
+    Row("true calibration within the 95 % intervals: `calibration.within_95`", "calibration.within_95", ".0%", min),
     Row("box 1 in the map: `site_map_error_m`", "stations.regulator_box_1.site_map_error_m"),
     Row("box 2 in the map", "stations.regulator_box_2.site_map_error_m"),
     Row("valve well 3 in the map", "stations.valve_well_3.site_map_error_m"),
@@ -133,8 +134,8 @@ WU25 = {"box 1 in the map: `site_map_error_m`": "[Wu25] 0.92–1.18", "box 2 in 
 
 add(name="street_patrol", file="worlds/street/README.md", seeds=REPORT, minutes=2,
     steps=[sweep("patrol", "street/scenarios/patrol", REPORT)],
-    values=swept(patrol=("mission.*", "pose.site.ate_rmse_m", "pose.aligned.rmse_m", "pose.nees.mean", "stations.*.site_map_error_m",
-                         "map.nearest_mean_m", "inspection.*", "performance.real_time_factor")),
+    values=swept(patrol=("mission.*", "pose.site.ate_rmse_m", "pose.aligned.rmse_m", "pose.nees.mean", "calibration.within_95",
+                         "stations.*.site_map_error_m", "map.nearest_mean_m", "inspection.*", "performance.real_time_factor")),
     text=lambda values: by_seed(values["patrol"], PATROL_ROWS, WU25))
 
 
@@ -252,6 +253,24 @@ for world, scenario in (("street", "short"), ("tunnel", "docking")):
     add(name=f"faults_{world}", file="tools/faults.md", seeds="1", minutes=2 if world == "street" else 3,
         steps=[Step("faults", ["build/patrol", "fault-matrix", f"worlds/{world}/scenarios/{scenario}.yaml", "--out", "{out}"])],
         values=lambda folders: (folders["faults"] / "faults.md").read_text().splitlines(), text="\n".join)
+
+
+def stamps_text(values):
+    offsets = sorted({run["variant"] for run in values["stamps"]}, key=lambda variant: float(variant.split("=")[1]))
+    rows = []
+    for offset in offsets:
+        runs = [run["metrics"] for run in values["stamps"] if run["variant"] == offset]
+        errors = [run["pose.site.ate_rmse_m"] for run in runs]
+        rows.append([f"{1000 * float(offset.split('=')[1]):+.0f} ms", f"{sum(errors) / len(errors):.3f}", f"{max(errors):.3f}",
+                     f"{sum(run['mission.completed'] for run in runs)} of {len(runs)}", sum(run["mission.fell"] for run in runs)])
+    return markdown(["lidar stamps", "`pose.site.ate_rmse_m`, mean", "worst", "completed", "falls"], rows)
+
+
+add(name="lidar_stamps", file="tools/faults.md", seeds=REPORT_FIVE, minutes=12,
+    steps=[sweep("stamps", "street/scenarios/patrol", REPORT_FIVE, "--set",
+                 "faults=[{sensor: lidar, kind: clock_offset, start_s: 0, duration_s: 10000, magnitude: 0.0}]",
+                 "--vary", "faults.0.magnitude=range:-0.05:0.05:11")],
+    values=swept(stamps=("pose.site.ate_rmse_m", "mission.completed", "mission.fell")), text=stamps_text)
 
 
 def localizability_text(values):

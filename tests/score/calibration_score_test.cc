@@ -53,8 +53,8 @@ TEST(CalibrationTruth, FitsTheScalesOfOdometryAndTheErrorsOfTheGyro) {
 TEST(CalibrationTruth, EvaluatesTheTimeOffsetAtTheInstantOfTheEstimate) {
   const Ride ride(1.0, 1.0, 0.0, 1.0);
   EXPECT_NEAR(ride.truth().at("lidar.time_offset_s"), 0.0026, 1e-12) << "2 ms and 60 s of 10 ppm";
-  const auto with_fault = ride.truth({.R_body_imu = Eigen::Quaterniond::Identity(),
-                                      .lidar_clock_fault_s = [](Time) { return -0.02; }});
+  const auto with_fault =
+      ride.truth({.R_body_imu = Eigen::Quaterniond::Identity(), .lidar_clock_fault_s = [](Time) { return -0.02; }});
   EXPECT_NEAR(with_fault.at("lidar.time_offset_s"), -0.0174, 1e-12);
   EXPECT_EQ(with_fault.at("lidar.clock_drift_s_per_s"), 1e-5);
 }

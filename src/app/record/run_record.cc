@@ -37,8 +37,7 @@ RunRecord read_run_record(const std::filesystem::path& log_mcap) {
   });
   handlers.on<GroundTruth>(
       [&](Time, const GroundTruth& truth) { append(record.T_world_body, truth.stamp, truth.T_world_body); });
-  handlers.on<Imu>(
-      [&](Time, const Imu& imu) { record.gyro.push_back({imu.stamp, imu.angular_velocity_radps}); });
+  handlers.on<Imu>([&](Time, const Imu& imu) { record.gyro.push_back({imu.stamp, imu.angular_velocity_radps}); });
   handlers.on<AsBuiltTruth>([&](Time, const AsBuiltTruth& as_built) { record.as_built = as_built; });
   handlers.on<CalibrationEstimate>(
       [&](Time, const CalibrationEstimate& calibration) { record.calibration = calibration; });

@@ -51,8 +51,8 @@ score::RunReferences run_references(const Scenario& scenario, const ScenarioFile
       .p_body_antenna = {},
       .kidnaps = {},
       .calibration = {.R_body_imu = files.robot.T_body("imu").rotation,
-                      .lidar_clock_fault_s = [faults = scenario.faults](
-                                                 Time now) { return lidar_clock_fault_s(faults, now); }},
+                      .lidar_clock_fault_s =
+                          [faults = scenario.faults](Time now) { return lidar_clock_fault_s(faults, now); }},
       .localizability = [oracle](const Eigen::Vector2d& p_world_m) { return oracle->at(p_world_m); }};
   if (files.map) references.T_world_map = files.T_site_start;
   if (files.route.lining) {

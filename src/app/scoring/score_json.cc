@@ -162,10 +162,8 @@ io::Metrics to_json(const std::vector<score::ScoredParameter>& calibration) {
   for (const score::ScoredParameter& parameter : calibration) {
     std::string pointer = "/" + parameter.name;
     std::ranges::replace(pointer, '.', '/');
-    metrics[io::Metrics::json_pointer(pointer)] = {{"value", parameter.value},
-                                                   {"std", parameter.std},
-                                                   {"truth", parameter.truth},
-                                                   {"holds", parameter.holds()}};
+    metrics[io::Metrics::json_pointer(pointer)] = {
+        {"value", parameter.value}, {"std", parameter.std}, {"truth", parameter.truth}, {"holds", parameter.holds()}};
     if (parameter.holds()) ++num_held;
   }
   metrics["parameters"] = calibration.size();

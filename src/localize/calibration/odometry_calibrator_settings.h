@@ -27,7 +27,7 @@ struct OdometryCalibratorSettings {
   /// level, and walls are not vertical.
   double matched_rate_bias_std_radps = 0.0007;
   double matched_rotation_bias_std = 0.002;
-  double outlier_sigma = 4.0;        ///< segments with larger residuals are rejected
+  double outlier_sigma = 4.0;  ///< segments with larger residuals are rejected
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

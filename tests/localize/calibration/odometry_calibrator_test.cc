@@ -52,7 +52,8 @@ void drive(OdometryCalibrator& calibrator, const Plant& plant, std::uint64_t see
 
 OdometryCalibratorSettings without_biases() {
   OdometryCalibratorSettings settings;
-  settings.lateral_bias_std_rad = settings.distance_bias_std = settings.matched_rate_bias_std_radps = settings.matched_rotation_bias_std = 0.0;
+  settings.lateral_bias_std_rad = settings.distance_bias_std = settings.matched_rate_bias_std_radps =
+      settings.matched_rotation_bias_std = 0.0;
   return settings;
 }
 
