@@ -68,11 +68,13 @@ struct SectorGains {
       total += difference;
     }
   }
-  bool favors(std::size_t sector) const { return gains[sector] > kMinVote; }
-  /// Number of sectors in favor minus number against.
+  /// Returns the vote of a sector: 1 in favor, -1 against, 0 undecided.
+  int vote(std::size_t sector) const { return (gains[sector] > kMinVote) - (gains[sector] < -kMinVote); }
+  /// Returns the number of sectors in favor minus the number against.
   int votes() const {
-    return static_cast<int>(std::ranges::count_if(gains, [](double gain) { return gain > kMinVote; }) -
-                            std::ranges::count_if(gains, [](double gain) { return gain < -kMinVote; }));
+    int sum = 0;
+    for (std::size_t sector = 0; sector < kSectors; ++sector) sum += vote(sector);
+    return sum;
   }
 };
 
@@ -206,7 +208,7 @@ ScanTracker::Hypothesis ScanTracker::without_moving_objects(const Hypothesis& be
                           point_log_likelihoods(older_, points, prediction.mean, settings_.matching));
   if (gains.votes() > 0) return best;
   std::vector<MatchPoint> others = points;
-  std::erase_if(others, [&](const MatchPoint& point) { return gains.favors(sector_of(point)); });
+  std::erase_if(others, [&](const MatchPoint& point) { return gains.vote(sector_of(point)) > 0; });
   return match_from(prediction.mean, others, prediction, true);
 }
 

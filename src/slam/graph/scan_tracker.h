@@ -64,14 +64,14 @@ class ScanTracker {
     Pose2 T_last_odom;
   };
 
-  Hypothesis without_moving_objects(const Hypothesis& best, const std::vector<MatchPoint>& points,
-                                    const PoseGaussian& prediction) const;
   Hypothesis track(const std::vector<MatchPoint>& points, const Step& step, const PoseGaussian& prediction) const;
   void inflate_odometry_covariance(const PoseGaussian& prediction, const Hypothesis& best);
   TrackedScan to_tracked_scan(const Hypothesis& best, const PoseGaussian& prediction) const;
   bool is_keyframe_due(const Pose2& T_local_body) const;
   static bool is_determined_by_scan(const Hypothesis& a, const Hypothesis& b);
   bool is_better(const Hypothesis& a, const Hypothesis& b, const std::vector<MatchPoint>& points) const;
+  Hypothesis without_moving_objects(const Hypothesis& best, const std::vector<MatchPoint>& points,
+                                    const PoseGaussian& prediction) const;
   Hypothesis match_from(const Pose2& T_local_start, const std::vector<MatchPoint>& points,
                         const PoseGaussian& prediction, bool is_odometry) const;
   void integrate(const LevelScan& scan, const Pose2& T_local_body, TrackedScan& tracked);
