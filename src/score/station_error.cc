@@ -137,23 +137,33 @@ std::optional<double> map_displacement_m(const OccupancyGrid& built, const Pose2
   return (is_near_as_good ? near : far).position().norm();
 }
 
-Pose2 fit_map_to_reference(const OccupancyGrid& built, const Pose2& T_world_map, const ReferenceMap& reference) {
-  std::vector<Eigen::Vector2d> points = occupied_points(built);
-  if (points.size() < kMinPoints) return T_world_map;
-  Eigen::Vector2d center = Eigen::Vector2d::Zero();
-  for (Eigen::Vector2d& point : points) {
-    point = T_world_map * point;
-    center += point / static_cast<double>(points.size());
-  }
+Pose2 fit_map_to_reference(const OccupancyGrid& built, std::span<const Pose2> T_world_map,
+                           const ReferenceMap& reference) {
+  const std::vector<Eigen::Vector2d> cells = occupied_points(built);
+  if (cells.size() < kMinPoints) return T_world_map.front();
+  const DistanceField field(occupied_cells(reference.cells));
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  for (const Eigen::Vector2d& cell : cells) mean += cell / static_cast<double>(cells.size());
   double squares_m2 = 0.0;
-  for (Eigen::Vector2d& point : points) {
-    point -= center;
-    squares_m2 += point.squaredNorm();
+  for (const Eigen::Vector2d& cell : cells) squares_m2 += (cell - mean).squaredNorm();
+  const double radius_m = std::sqrt(squares_m2 / static_cast<double>(cells.size()));
+
+  Pose2 best = T_world_map.front();
+  double best_score = -1.0;
+  for (const Pose2& start : T_world_map) {
+    const Eigen::Vector2d center = start * mean;
+    std::vector<Eigen::Vector2d> points;
+    points.reserve(cells.size());
+    for (const Eigen::Vector2d& cell : cells) points.emplace_back(start * cell - center);
+    const Pose2 T_world_center{center.x(), center.y(), 0.0};
+    for (const Pose2& motion : {Pose2{}, refine(field, points, center, {}, radius_m)}) {
+      const double score = mean_weight(field, points, center, motion, kSearchRobust_m);
+      if (score <= best_score) continue;
+      best_score = score;
+      best = T_world_center * motion * T_world_center.inverse() * start;
+    }
   }
-  const double radius_m = std::sqrt(squares_m2 / static_cast<double>(points.size()));
-  const Pose2 motion = refine(DistanceField(occupied_cells(reference.cells)), points, center, {}, radius_m);
-  const Pose2 T_world_center{center.x(), center.y(), 0.0};
-  return T_world_center * motion * T_world_center.inverse() * T_world_map;
+  return best;
 }
 
 std::vector<StationError> station_errors(const Route& route_in_world, const std::vector<Event>& events,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -37,10 +38,11 @@ std::optional<double> map_displacement_m(const OccupancyGrid& built, const Pose2
                                          const ReferenceMap& reference, const Eigen::Vector2d& p_world_target,
                                          double radius_m = 6.0);
 
-/// Returns the pose of the built map in world for which its occupied cells fit the reference best, from a nearby pose:
-/// Gauss-Newton as for map_displacement_m over the whole map. Degenerate directions (along a tunnel without features)
-/// are not moved. Returns `T_world_map` when there are too few occupied cells.
-Pose2 fit_map_to_reference(const OccupancyGrid& built, const Pose2& T_world_map, const ReferenceMap& reference);
+/// Returns the pose of the built map in world for which its occupied cells fit the reference best: Gauss-Newton as for
+/// map_displacement_m over the whole map, from each of the given poses. Degenerate directions (along a tunnel without
+/// features) are not moved. Returns the first pose when there are too few occupied cells. Precondition: there is one.
+Pose2 fit_map_to_reference(const OccupancyGrid& built, std::span<const Pose2> T_world_map,
+                           const ReferenceMap& reference);
 
 /// One entry per station in the order of the route. `route_in_world` is the survey, the ground truth of the stations.
 /// `T_world_map`: true pose of the built map; `map`: its pose in site as the robot knows it.

@@ -1,10 +1,12 @@
 #include "score/station_error.h"
 
+#include <array>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
 #include "core/geometry/angles.h"
+#include "score/map_error.h"
 
 namespace patrol::score::station_error_test {
 namespace {
@@ -152,7 +154,7 @@ TEST(StationErrors, TellBeliefTruthAndSurveyApart) {
 
 TEST(FitMapToReference, FindsAMapTenCentimetersAndOneDegreeOff) {
   const Pose2 off{0.06, -0.08, 1.0 * kDegree};
-  const Pose2 fitted = fit_map_to_reference(make_walls(), off, all_seeable(make_walls()));
+  const Pose2 fitted = fit_map_to_reference(make_walls(), std::array{off}, all_seeable(make_walls()));
   EXPECT_LT(fitted.position().norm(), 0.003);
   EXPECT_NEAR(fitted.yaw, 0.0, 0.02 * kDegree);
 }
@@ -160,14 +162,46 @@ TEST(FitMapToReference, FindsAMapTenCentimetersAndOneDegreeOff) {
 // Along a single wall the cells fit everywhere.
 TEST(FitMapToReference, DoesNotMoveTheMapAlongAWall) {
   const Pose2 off{0.06, -0.08, 0.0};
-  const Pose2 fitted = fit_map_to_reference(make_walls(false), off, all_seeable(make_walls(false)));
+  const Pose2 fitted = fit_map_to_reference(make_walls(false), std::array{off}, all_seeable(make_walls(false)));
   EXPECT_NEAR(fitted.x, off.x, 0.005);
   EXPECT_NEAR(fitted.y, 0.0, 0.003);
 }
 
+/// Walls of a tunnel of 100 m by 10 m with niches, cells of 10 cm, bent sideways by a sine of this amplitude.
+OccupancyGrid make_tunnel(double bend_m, double waves) {
+  OccupancyGrid map({.resolution_m = 0.1, .width = 1000, .height = 160}, kFree);
+  for (int col = 0; col < 1000; ++col) {
+    const int shift = static_cast<int>(std::lround(bend_m / 0.1 * std::sin(2.0 * M_PI * waves * col / 1000.0)));
+    const int niche = col % 150 < 20 ? 8 : 0;
+    map.at({col, 30 + shift - niche}) = kOccupied;
+    map.at({col, 130 + shift + niche}) = kOccupied;
+  }
+  return map;
+}
+
+TEST(FitMapToReference, OfABentTunnelDoesNotFitWorseThanTheStart) {
+  const ReferenceMap reference = all_seeable(make_tunnel(0.0, 1.0));
+  for (const double bend_m : {0.1, 0.3, 0.6, 1.0}) {
+    for (const double waves : {0.5, 1.0, 1.5, 2.0, 3.0}) {
+      const OccupancyGrid bent = make_tunnel(bend_m, waves);
+      const Pose2 fitted = fit_map_to_reference(bent, std::array{Pose2{}}, reference);
+      EXPECT_LE(map_error(bent, fitted, reference).nearest_mean_m, map_error(bent, {}, reference).nearest_mean_m + 0.02)
+          << bend_m << " m, " << waves << " waves";
+    }
+  }
+}
+
+TEST(FitMapToReference, StartsFromTheNearerOfTwoPoses) {
+  const std::array<Pose2, 2> starts{Pose2{0.0, 1.4, 1.0 * kDegree}, Pose2{0.05, -0.1, 0.1 * kDegree}};
+  const OccupancyGrid tunnel = make_tunnel(0.0, 1.0);
+  const Pose2 fitted = fit_map_to_reference(tunnel, starts, all_seeable(tunnel));
+  EXPECT_NEAR(fitted.y, 0.0, 0.02);
+  EXPECT_NEAR(fitted.yaw, 0.0, 0.02 * kDegree);
+}
+
 TEST(FitMapToReference, OfAnEmptyMapIsWhereItWas) {
   const OccupancyGrid empty(make_walls().geometry(), kFree);
-  EXPECT_EQ(fit_map_to_reference(empty, {1.0, 2.0, 0.3}, all_seeable(make_walls())).vector(),
+  EXPECT_EQ(fit_map_to_reference(empty, std::array{Pose2{1.0, 2.0, 0.3}}, all_seeable(make_walls())).vector(),
             Eigen::Vector3d(1.0, 2.0, 0.3));
 }
 

@@ -76,7 +76,7 @@ ExitCode replay_command(const ReplayOptions& options) {
   const RunRecord record = read_run_record(directory.log());
   if (!record.has_estimate()) throw InputError(fmt::format("{}: contains no pose estimate", directory.log().string()));
   const Pose2 T_world_map =
-      files.map ? files.T_site_start : score::align_at_start(record.T_map_body, record.T_world_body);
+      files.map ? files.T_site_map() : score::align_at_start(record.T_map_body, record.T_world_body);
   sim::AssembledModel model = sim::assemble_model(files.world_xml.string(), files.robot_urdf.string(),
                                                   start_in_world(scenario, files), all_static_obstacles(scenario));
 

@@ -39,7 +39,7 @@ TerminalView::~TerminalView() {
 void TerminalView::begin(const ScenarioFiles& files) {
   if (!files.map) return;
   run_.map = *files.map;
-  T_world_map_ = files.T_site_start;
+  T_world_map_ = files.T_site_map();
 }
 
 void TerminalView::on_message(const stack::StackMessage& message) {

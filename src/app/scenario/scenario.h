@@ -221,6 +221,8 @@ struct ScenarioFiles {
   std::optional<SiteRegistration> map_registration;  ///< saved beside the map
   BoostedStumps neighbor_model;  ///< classifier of pairs of submaps; empty for SLAM methods that need none
 
+  /// Pose in site of the frame of the given map: its registration; without one, the surveyed start.
+  Pose2 T_site_map() const { return map_registration ? map_registration->T_site_map : T_site_start; }
   bool has_teleop() const { return !teleop_route.empty() || !recorded.empty(); }
 };
 

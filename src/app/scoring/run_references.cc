@@ -54,7 +54,7 @@ score::RunReferences run_references(const Scenario& scenario, const ScenarioFile
                       .lidar_clock_fault_s =
                           [faults = scenario.faults](Time now) { return lidar_clock_fault_s(faults, now); }},
       .localizability = [oracle](const Eigen::Vector2d& p_world_m) { return oracle->at(p_world_m); }};
-  if (files.map) references.T_world_map = files.T_site_start;
+  if (files.map) references.T_world_map = files.T_site_map();
   if (files.route.lining) {
     references.lining =
         score::LiningGroundTruth{.design = *files.route.lining,

@@ -21,8 +21,8 @@ struct RegistrationSettings {
   double anchor_delay_std_m = 0.1;         ///< standard deviation of the constant error of the ranges to an anchor
   double range_min_distance_m = 2.0;       ///< minimum distance between two ranges to one anchor
   /// Standard deviation of the map's own deformation at a position. It is added to that of each measurement, and to the
-  /// published pose while the robot maps.
-  double map_std_m = 0.03;
+  /// published pose.
+  double map_std_m = 0.02;
   /// Correlation time of the map's deformation. The sum of the errors of fix and map is taken as one process with the
   /// longer of the two correlation times.
   double map_correlation_time_s = 100.0;

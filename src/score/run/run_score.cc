@@ -1,5 +1,6 @@
 #include "score/run/run_score.h"
 
+#include <array>
 #include <limits>
 
 #include "core/error.h"
@@ -103,10 +104,11 @@ EstimateScore estimate_score(const RunRecord& record, const RunReferences& refer
   const Trajectory& truth = record.T_world_body;
   const LiveEstimates live = live_estimates(record);
   const MapInSite map(references.T_site_start, record.registrations);
-  // A given map has its origin where the survey says; a map of the run has it where its cells fit the surfaces.
+  // A given map has its origin where the survey says; a map of the run has it where its cells fit the surfaces. The
+  // final optimization may have turned it against the poses estimated before.
+  const std::array starts{fit_map_frame(live.T_map_body, truth), map.last().T_site_map};
   const Pose2 T_world_map =
-      references.T_world_map ? *references.T_world_map
-                             : fit_map_to_reference(record.map, fit_map_frame(live.T_map_body, truth), references.map);
+      references.T_world_map ? *references.T_world_map : fit_map_to_reference(record.map, starts, references.map);
   const Pose2 T_world_start =
       references.T_world_map ? *references.T_world_map : align_at_start(record.T_map_body, truth);
   EstimateScore score{

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "localize/amcl/monte_carlo.h"
 #include "stack/localization/localizer.h"
 
@@ -11,10 +13,11 @@ namespace patrol::stack {
 /// Monte Carlo localization on a fixed map.
 class KnownMapLocalizer final : public Localizer {
  public:
-  /// `height_above_ground_m`: height of the body's origin.
+  /// `height_above_ground_m`: height of the body's origin. `map_covariance`: of the map's own deformation, which is
+  /// added to the pose.
   KnownMapLocalizer(const localize::MonteCarloSettings& settings, OccupancyGrid map,
                     const std::vector<UwbAnchor>& anchors_in_map, double height_above_ground_m, const Pose3& T_body_uwb,
-                    std::uint64_t seed);
+                    const Eigen::Matrix3d& map_covariance, std::uint64_t seed);
 
   using Localizer::add;
   void add(const RangeWithOdometry& range) override { localizer_.add(range.range, range.T_odom_body); }
@@ -32,6 +35,7 @@ class KnownMapLocalizer final : public Localizer {
  private:
   OccupancyGrid map_;
   double height_above_ground_m_;
+  Eigen::Matrix3d map_covariance_;
   localize::MonteCarloLocalizer localizer_;
   LocalizationConfidence confidence_{.confidence = 1.0};  ///< confidence at the newest scan
 };

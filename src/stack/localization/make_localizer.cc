@@ -40,9 +40,10 @@ std::unique_ptr<Localizer> make_localizer(const StackSettings& settings, const R
   const std::optional<Pose3> T_body_uwb = antenna_of(robot);
   const auto make_on_map = [settings = settings.localization, anchors = site_in_map.anchors,
                             height_m = start.height_above_ground_m, T_body_uwb,
+                            covariance = map_covariance(settings.registration),
                             seed](OccupancyGrid map) -> std::unique_ptr<Localizer> {
     return std::make_unique<KnownMapLocalizer>(settings, std::move(map), anchors, height_m,
-                                               T_body_uwb.value_or(Pose3{}), seed);
+                                               T_body_uwb.value_or(Pose3{}), covariance, seed);
   };
   if (method == "monte_carlo") {
     if (!start.map) refuse("requires a map: set the key map, or select slam or slam_then_monte_carlo");

@@ -1,6 +1,7 @@
 #include "stack/localization/pose_pipeline.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace patrol::stack {
@@ -40,6 +41,9 @@ PosePipeline::PosePipeline(const StackSettings& settings, const RobotDescription
       T_start_site_(site.T_site_start.inverse()),
       T_body_lidar_(robot.T_body("lidar")),
       anchors_in_site_(placed(site_in_map.anchors, site.T_site_start)),
+      anchors_in_map_(site_in_map.anchors),
+      uwb_calibration_{.distance_m = settings.uwb_filter.bias_distance_m, .bias_m = settings.uwb_filter.bias_m},
+      line_of_sight_(settings.line_of_sight),
       calibration_period_(from_seconds(settings.calibration.period_s)) {
   start.height_above_ground_m = odometry_->height_above_ground_m();
   localizer_ = make_localizer(settings, robot, site_in_map, start, seed);
@@ -50,10 +54,8 @@ PosePipeline::PosePipeline(const StackSettings& settings, const RobotDescription
   if (robot.T_body_sensor.contains("uwb")) T_body_uwb_ = robot.T_body("uwb");
   if (settings.calibration.enabled) {
     const auto imu = robot.T_body_sensor.find("imu");
-    calibrator_.emplace(
-        settings.calibration, T_body_lidar_, imu == robot.T_body_sensor.end() ? Pose3{} : imu->second,
-        site_in_map.anchors,
-        UwbCalibration{.distance_m = settings.uwb_filter.bias_distance_m, .bias_m = settings.uwb_filter.bias_m});
+    calibrator_.emplace(settings.calibration, T_body_lidar_, imu == robot.T_body_sensor.end() ? Pose3{} : imu->second,
+                        site_in_map.anchors, uwb_calibration_);
   }
 }
 
@@ -80,13 +82,31 @@ void PosePipeline::add_to_calibration(const UwbRange& range, const Pose3& T_odom
        .p_level_antenna = uwb_antenna_in_level(T_odom_body.rotation, T_body_uwb_, range_pose_->height_m())});
 }
 
+/// Monte Carlo localization takes all ranges: its likelihood contains ranges without line of sight, and it must not
+/// select the ranges that could refute its pose.
 void PosePipeline::add_range(const UwbRange& range) {
   const std::optional<Pose3> T_odom_body = odometry_->T_odom_body_at(range.stamp);
   if (!T_odom_body) return;
   if (range_pose_) range_pose_->add(range, *T_odom_body);
-  if (calibrator_) add_to_calibration(range, *T_odom_body);
-  add_to_registration(range, *T_odom_body);
-  localizer_->add(RangeWithOdometry{.range = range, .T_odom_body = *T_odom_body, .height_m = height_m()});
+  const bool is_usable = is_in_line_of_sight(range, *T_odom_body);
+  if (is_usable && calibrator_) add_to_calibration(range, *T_odom_body);
+  if (is_usable) add_to_registration(range, *T_odom_body);
+  if (is_usable || !localizer_->is_mapping())
+    localizer_->add(RangeWithOdometry{.range = range, .T_odom_body = *T_odom_body, .height_m = height_m()});
+}
+
+/// Returns whether the range is used: true without a pose, which gives no prediction.
+bool PosePipeline::is_in_line_of_sight(const UwbRange& range, const Pose3& T_odom_body) {
+  if (!localizer_->has_pose() || localizer_->is_lost()) {
+    line_of_sight_.reset();
+    return true;
+  }
+  const auto anchor = std::ranges::find(anchors_in_map_, range.anchor, &UwbAnchor::number);
+  if (anchor == anchors_in_map_.end() || !std::isfinite(range.range_m)) return true;
+  const PredictedRange predicted =
+      predict_uwb_range(*anchor, tracker_.at(range.stamp, to_pose2(T_odom_body)).T_map_body,
+                        uwb_antenna_in_level(T_odom_body.rotation, T_body_uwb_, height_m()), uwb_calibration_);
+  return line_of_sight_.add(range.anchor, range.stamp, range.range_m - predicted.range_m);
 }
 
 /// Returns the height of the body above the start, by the UWB filter once it has started: tunnels are not level.
@@ -102,6 +122,7 @@ void PosePipeline::add_to_registration(const UwbRange& range, const Pose3& T_odo
 }
 
 void PosePipeline::set_site(const Route& site_in_map) {
+  anchors_in_map_ = site_in_map.anchors;
   localizer_->set_anchors(site_in_map.anchors);
   if (range_pose_) range_pose_->set_anchors(site_in_map.anchors);
 }

@@ -13,6 +13,7 @@
 #include "core/site/site_frame.h"
 #include "core/site/site_registration.h"
 #include "localize/calibration/online_calibrator.h"
+#include "localize/line_of_sight_monitor.h"
 #include "localize/map_correction.h"
 #include "localize/map_pose_tracker.h"
 #include "localize/scan_leveler.h"
@@ -82,6 +83,7 @@ class PosePipeline {
   bool has_settled(Time stamp) const { return first_odometry_ && stamp >= *first_odometry_ + settle_; }
   double height_m() const;
   void add_range(const UwbRange& range);
+  bool is_in_line_of_sight(const UwbRange& range, const Pose3& T_odom_body);
   void add_fix(const GnssFix& fix);
   void add_to_registration(const UwbRange& range, const Pose3& T_odom_body);
   std::optional<PoseFromScan> pose_from_scan(Time stamp) const;
@@ -105,6 +107,9 @@ class PosePipeline {
   Pose2 T_odom_scan_;                 ///< body at the newest scan
   Pose3 T_body_lidar_;                ///< nominal
   std::vector<UwbAnchor> anchors_in_site_;
+  std::vector<UwbAnchor> anchors_in_map_;
+  UwbCalibration uwb_calibration_;
+  localize::LineOfSightMonitor line_of_sight_;
   Pose3 T_body_uwb_;                                      ///< nominal, for a robot with a UWB antenna
   std::optional<localize::OnlineCalibrator> calibrator_;  ///< present if the calibration is enabled
   Time calibration_period_;

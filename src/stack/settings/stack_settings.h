@@ -5,6 +5,7 @@
 #include "core/settings.h"
 #include "localize/amcl/monte_carlo_settings.h"
 #include "localize/calibration/online_calibrator_settings.h"
+#include "localize/line_of_sight_monitor.h"
 #include "localize/range_filter_settings.h"
 #include "localize/registration/registration_settings.h"
 #include "localize/scan_leveler_settings.h"
@@ -45,6 +46,7 @@ struct StackSettings {
   slam::MapperSettings slam = default_slam_settings();
   localize::MonteCarloSettings localization;    ///< settings of the localization on a given map
   localize::RangeFilterSettings uwb_filter;     ///< settings of the UWB pose of a robot with tracks and UWB
+  localize::LineOfSightSettings line_of_sight;  ///< settings of the selection of UWB ranges
   localize::RegistrationSettings registration;  ///< settings of the registration of the map to the site
   plan::NavigatorSettings navigation;
   SensorMonitorSettings sensor_monitor;
@@ -65,6 +67,7 @@ struct StackSettings {
     visit("slam", self.slam);
     visit("localization", self.localization);
     visit("uwb_filter", self.uwb_filter);
+    visit("line_of_sight", self.line_of_sight);
     visit("registration", self.registration);
     visit("navigation", self.navigation);
     visit("sensor_monitor", self.sensor_monitor);
