@@ -4,8 +4,8 @@ import json
 import pathlib
 import typing
 
-from results_tables import (NONE, Row, as_text, benchmark_values, by_seed, csv_values, markdown, pair, study_table, study_values,
-                            sweep_values)
+from results_tables import (NONE, Row, as_text, benchmark_values, by_seed, csv_values, markdown, pair, run_values, seeds_of, study_table,
+                            study_values, sweep_values)
 
 # Seeds of published figures: nothing is tuned on them. Change them here only.
 REPORT = "2001..2010"
@@ -246,6 +246,37 @@ add(name="tunnel_inspection", file="worlds/tunnel/README.md", seeds=REPORT, minu
     values=swept(inspection=("mission.*", "inspection.lining.*", "inspection.lining.rings.*.reported_mm", "inspection.water.*",
                              "inspection.water.findings.*.distance_holds", "docking.*.max", "pose.ate_rmse_m")),
     text=lambda values: by_seed(values["inspection"], INSPECTION_ROWS))
+
+ROUND_SEEDS = ("2001", "2002")
+ROUND_METRICS = ("inspection.lining.max_error_mm", "inspection.lining.false_findings", "inspection.lining.registered",
+                 "inspection.water.position_error_m", "inspection.water.missed", "docking.position_error_m.max", "mission.completed",
+                 "mission.collisions", "pose.site.ate_rmse_m", "pose.nees.mean")
+
+
+def rounds_values(folders):
+    return [{"map": seed, "seed": round_seed, "metrics": run_values(folders["rounds"] / f"{seed}_{round_seed}", ROUND_METRICS)}
+            for seed in seeds_of(REPORT) for round_seed in ROUND_SEEDS]
+
+
+def rounds_text(values):
+    def cell(run, path, form):
+        return format(run["metrics"][path], form) if path in run["metrics"] else NONE
+    lines = [[run["map"], run["seed"], f"{yes_no(run['metrics'].get('mission.completed', False))} / {cell(run, 'mission.collisions', 'd')}",
+              cell(run, "inspection.lining.max_error_mm", ".2f"), cell(run, "inspection.lining.false_findings", "d"),
+              cell(run, "inspection.water.position_error_m", ".2f"), cell(run, "docking.position_error_m.max", ".4f"),
+              cell(run, "pose.site.ate_rmse_m", ".3f"), cell(run, "pose.nees.mean", ".1f")] for run in values]
+    return markdown(["seed of the map", "of the round", "completed / collisions", "rings: maximum error, mm", "other rings reported as moved",
+                     "water body: error, m", "docking error, m", "`pose.site.ate_rmse_m`", "`pose.nees.mean`"], lines)
+
+
+# Exit status 123 of xargs: a run missed an expectation.
+add(name="tunnel_inspection_maps", file="worlds/tunnel/README.md", seeds=f"maps {REPORT}, rounds {' and '.join(ROUND_SEEDS)}", minutes=14,
+    steps=[Step("maps", ["sh", "-c", f"seq {REPORT.replace('..', ' ')} | xargs -P 2 -I {{}} build/patrol run "
+                         "worlds/tunnel/scenarios/reference_round.yaml --seed {} --out {out}/{}"], (0, 123)),
+           Step("rounds", ["sh", "-c", f"for map in $(seq {REPORT.replace('..', ' ')}); do echo {' '.join(ROUND_SEEDS)} | xargs -n 1 | xargs -P 2 "
+                           "-I {} build/patrol run worlds/tunnel/scenarios/inspection_round.yaml --seed {} --set map={out}/../maps/$map/map.yaml "
+                           "--set goals={out}/../maps/$map/nav.json --set references={out}/../maps/$map/scans --out {out}/${map}_{}; done"], (0, 123))],
+    values=rounds_values, text=rounds_text)
 
 # --- Fault matrices, sweeps ---------------------------------------------------------------------------------------------------
 

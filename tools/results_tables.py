@@ -30,16 +30,31 @@ def matches(pattern, path):
     return re.fullmatch(re.escape(pattern).replace(r"\*", r"[^.]+"), path) is not None
 
 
+def seeds_of(span):
+    """Seeds of "A..B"."""
+    first, last = map(int, span.split(".."))
+    return range(first, last + 1)
+
+
+def chosen(metrics, patterns):
+    flat = flatten(metrics)
+    return {path: round_to(value, 6) for path, value in sorted(flat.items()) if any(matches(pattern, path) for pattern in patterns)}
+
+
+def run_values(folder, metrics):
+    """Metrics of the given patterns of a `patrol run`; none if it has failed."""
+    file = folder / "metrics.json"
+    return chosen(json.loads(file.read_text()), metrics) if file.exists() else {}
+
+
 def sweep_values(folder, metrics):
     """Runs of `patrol sweep`: variant, seed, end and the metrics of the given patterns."""
     manifest = json.loads((folder / "sweep.json").read_text())
     runs = []
     for run in manifest["runs"]:
         result = json.loads((folder / "runs" / f"{run['hash']}.json").read_text())
-        flat = flatten(result["metrics"])
-        kept = {path: value for path, value in flat.items() if any(matches(pattern, path) for pattern in metrics)}
         runs.append({"variant": manifest["variants"][run["variant"]]["name"], "seed": run["seed"], "end": result["end"],
-                     "metrics": {path: round_to(value, 6) for path, value in sorted(kept.items())}})
+                     "metrics": chosen(result["metrics"], metrics)})
     return runs
 
 

@@ -188,6 +188,8 @@ RefinedPose MonteCarloLocalizer::update_weights(const LevelScan& scan, const std
   return refine_pose(lines_, scan, prior, cluster_gaussian_.mean, settings_.scan_refinement);
 }
 
+// An injected particle that contradicts ranges which the present pose explains starts with their likelihood ratio: the
+// cloud has been weighted by them, and the next update may not contain one that tells the two apart.
 int MonteCarloLocalizer::resample_and_inject(const LevelScan& scan, const Pose2& T_odom_body) {
   const bool may_search = !last_search_ || to_seconds(scan.stamp - *last_search_) >= settings_.search_period_s;
   const double injected_fraction = may_search ? divergence_monitor_.injection_fraction() : 0.0;
@@ -203,7 +205,19 @@ int MonteCarloLocalizer::resample_and_inject(const LevelScan& scan, const Pose2&
   last_search_ = scan.stamp;
   const std::vector<Pose2> poses =
       sample_poses(global_localization(scan, T_odom_body), num_injected, injection_noise_, updates_);
-  for (std::size_t i = 0; i < poses.size(); ++i) cloud_.T_map_body[i * cloud_.size() / poses.size()] = poses[i];
+  const std::vector<AnchoredRange> ranges = buffered_ranges(scan.stamp, T_odom_body);
+  const auto range_fit = [&](const Pose2& T_map_body) {
+    double sum = 0.0;
+    for (const AnchoredRange& range : ranges)
+      sum += range_log_likelihood(range_innovation_m(range, T_map_body), settings_.ranges);
+    return sum;
+  };
+  const double present_fit = range_fit(cluster_gaussian_.mean);
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const std::size_t replaced = i * cloud_.size() / poses.size();
+    cloud_.T_map_body[replaced] = poses[i];
+    cloud_.log_weights[replaced] = std::min(0.0, range_fit(poses[i]) - present_fit);
+  }
   return static_cast<int>(poses.size());
 }
 
@@ -243,10 +257,13 @@ std::size_t MonteCarloLocalizer::particles_needed(const std::vector<double>& wei
   return std::max(num_samples, min_samples);
 }
 
+std::vector<AnchoredRange> MonteCarloLocalizer::buffered_ranges(Time now, const Pose2& T_odom_body) const {
+  return ranges_.ranges_since(now - from_seconds(settings_.range_buffer_s), T_odom_body);
+}
+
 GlobalSearch::Candidates MonteCarloLocalizer::global_localization(const LevelScan& scan,
                                                                   const Pose2& T_odom_body) const {
-  const Time since = scan.stamp - from_seconds(settings_.range_buffer_s);
-  return search_.find(scan, ranges_.ranges_since(since, T_odom_body), settings_.ranges, settings_.effective_beams,
+  return search_.find(scan, buffered_ranges(scan.stamp, T_odom_body), settings_.ranges, settings_.effective_beams,
                       injection_noise_.uniform(updates_, 0));
 }
 

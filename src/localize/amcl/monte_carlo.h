@@ -84,6 +84,8 @@ class MonteCarloLocalizer {
   void apply_scan_proposal(const RefinedPose& refined);
   void resample(const std::vector<double>& weights, std::size_t count);
   std::size_t particles_needed(const std::vector<double>& weights) const;
+  /// Returns the newest range of each anchor within the buffer time.
+  std::vector<AnchoredRange> buffered_ranges(Time now, const Pose2& T_odom_body) const;
   GlobalSearch::Candidates global_localization(const LevelScan& scan, const Pose2& T_odom_body) const;
   LocalizationUpdate describe(const LevelScan& scan, const RefinedPose& refined);
   ParticleSet logged_particles(Time stamp) const;
