@@ -238,6 +238,27 @@ TEST(MonteCarlo, UnknownThingsDoNotPullThePose) {
   }
 }
 
+// In the lined stretch, every place fits as well as the robot's own. The newest range is to an anchor that is as far from
+// a second place on its other side; the ranges before it tell the two apart.
+TEST(MonteCarlo, AnInjectedPlaceThatEarlierRangesRefuteIsNotBelieved) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const Pose2 start{52.0, 0.0, 0.0};
+    MonteCarloSettings settings;
+    settings.divergence_monitor.min_scan_fit = 1.0;  // always injects
+    Tour tour(seed, start, settings);
+    test::RoomWorld crowded = tour.tunnel.world;
+    crowded.add_box(40.0, 1.6, 80.0, 4.0);
+    tour.localizer.set_initial_pose(start, kNearly);
+    tour.look(true);
+    for (int i = 0; i < 40; ++i) {
+      tour.drive.step();
+      for (const UwbRange& range : tour.drive.ranges())
+        if (range.anchor == 4 || i % 10 == 0) tour.localizer.add(range, to_pose3(tour.drive.T_odom_body()));
+      EXPECT_LT(tour.error_m(tour.look(false, crowded)), 0.5) << "seed " << seed << " at " << tour.drive.T_map_body().x;
+    }
+  }
+}
+
 TEST(MonteCarlo, TheBeamModelHoldsThePoseToo) {
   MonteCarloSettings settings;
   settings.sensor_model = "beam";
