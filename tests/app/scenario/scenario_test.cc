@@ -20,7 +20,8 @@ TEST(ScenarioFiles, AGivenMapLiesWhereItsRegistrationSaysElseAtTheSurveyedStart)
   const auto files_of = [](const char* scenario) {
     return load_scenario_files(load_scenario(kSource / "worlds" / scenario), kSource);
   };
-  const ScenarioFiles docking = files_of("tunnel/scenarios/docking.yaml"), patrol = files_of("street/scenarios/short.yaml");
+  const ScenarioFiles docking = files_of("tunnel/scenarios/docking.yaml"),
+                      patrol = files_of("street/scenarios/short.yaml");
   ASSERT_TRUE(docking.map_registration);
   EXPECT_EQ(docking.T_site_map().vector(), docking.map_registration->T_site_map.vector());
   EXPECT_NE(docking.T_site_map().vector(), docking.T_site_start.vector());

@@ -238,8 +238,8 @@ TEST(MonteCarlo, UnknownThingsDoNotPullThePose) {
   }
 }
 
-// In the lined stretch, every place fits as well as the robot's own. The newest range is to an anchor that is as far from
-// a second place on its other side; the ranges before it tell the two apart.
+// In the lined stretch, every place fits as well as the robot's own. The newest range is to an anchor that is as far
+// from a second place on its other side; the ranges before it tell the two apart.
 TEST(MonteCarlo, AnInjectedPlaceThatEarlierRangesRefuteIsNotBelieved) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     const Pose2 start{52.0, 0.0, 0.0};
