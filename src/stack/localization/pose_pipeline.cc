@@ -19,6 +19,14 @@ localize::RegistrationSettings for_map(localize::RegistrationSettings settings, 
   return settings;
 }
 
+/// Returns the settings of the calibration: an anchor that is displaced in a deformed map appears to have a delay.
+localize::OnlineCalibratorSettings calibration_on_map(const StackSettings& settings) {
+  localize::OnlineCalibratorSettings calibration = settings.calibration;
+  double& bias_std_m = calibration.anchor_delays.bias_std_m;
+  bias_std_m = std::hypot(bias_std_m, settings.registration.map_std_m);
+  return calibration;
+}
+
 std::vector<UwbAnchor> placed(std::vector<UwbAnchor> anchors, const Pose2& T_site_start) {
   for (UwbAnchor& anchor : anchors) anchor.p_m.head<2>() = T_site_start * Eigen::Vector2d(anchor.p_m.head<2>());
   return anchors;
@@ -54,8 +62,9 @@ PosePipeline::PosePipeline(const StackSettings& settings, const RobotDescription
   if (robot.T_body_sensor.contains("uwb")) T_body_uwb_ = robot.T_body("uwb");
   if (settings.calibration.enabled) {
     const auto imu = robot.T_body_sensor.find("imu");
-    calibrator_.emplace(settings.calibration, T_body_lidar_, imu == robot.T_body_sensor.end() ? Pose3{} : imu->second,
-                        site_in_map.anchors, uwb_calibration_);
+    calibrator_.emplace(calibration_on_map(settings), T_body_lidar_,
+                        imu == robot.T_body_sensor.end() ? Pose3{} : imu->second, site_in_map.anchors,
+                        uwb_calibration_);
   }
 }
 
