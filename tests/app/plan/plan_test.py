@@ -289,7 +289,7 @@ class Plan(unittest.TestCase):
             ((self.path / "broken.map", "--from", "0,0", "--to", "1,1"), ["broken.map:6", "row 1"]),
             ((TUNNEL,), ["--from"]),
             ((TUNNEL, "--from", "0,0"), ["--to", "--stations"]),
-            ((TUNNEL, "--from", "400,3", "--to", "0,0"), ["--from: 400, 3 is outside the map, which spans x -136.05 ... 22.20 m, y -11.75 ... 3.45 m"]),
+            ((TUNNEL, "--from", "400,3", "--to", "0,0"), ["--from: 400, 3 is outside the map, which spans x -136.65 ... 21.80 m, y -11.70 ... 3.45 m"]),
             ((TUNNEL, "--from", "0,0", "--to", "nan,3"), ["--to: nan,3"]),
             ((TUNNEL, "--from", "0", "--to", "1,3"), ["--from: 0:"]),
             ((TUNNEL, *there, "--planner", "crow"), ["crow", "theta_star"]),
