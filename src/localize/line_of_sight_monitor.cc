@@ -1,9 +1,13 @@
 #include "localize/line_of_sight_monitor.h"
 
+#include "core/error.h"
+
 namespace patrol::localize {
 
-LineOfSightMonitor::LineOfSightMonitor(const LineOfSightSettings& settings) : settings_(settings) {
+LineOfSightMonitor::LineOfSightMonitor(const LineOfSightMonitorSettings& settings) : settings_(settings) {
   validate(settings, "line_of_sight");
+  if (settings.window_ranges < settings.min_ranges)
+    throw InputError("line_of_sight.window_ranges: must be at least line_of_sight.min_ranges");
 }
 
 bool LineOfSightMonitor::add(int anchor, Time stamp, double innovation_m) {

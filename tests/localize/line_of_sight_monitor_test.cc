@@ -69,6 +69,7 @@ TEST(LineOfSightMonitor, ComparesRangesOfOneAnchorAndOfTheLast10SecondsOnly) {
 TEST(LineOfSightMonitor, RefusesSettingsOutOfRange) {
   EXPECT_THROW(LineOfSightMonitor({.min_ranges = 1}), InputError);
   EXPECT_THROW(LineOfSightMonitor({.max_std_ratio = 0.5}), InputError);
+  EXPECT_THROW(LineOfSightMonitor({.window_ranges = 5, .min_ranges = 6}), InputError);
 }
 
 }  // namespace

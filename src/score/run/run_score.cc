@@ -104,8 +104,8 @@ EstimateScore estimate_score(const RunRecord& record, const RunReferences& refer
   const Trajectory& truth = record.T_world_body;
   const LiveEstimates live = live_estimates(record);
   const MapInSite map(references.T_site_start, record.registrations);
-  // A given map has its origin where the survey says; a map of the run has it where its cells fit the surfaces. The
-  // final optimization may have turned it against the poses estimated before.
+  // A given map has its origin where its registration says; a map of the run has it where its cells fit the surfaces.
+  // The final optimization may have turned it against the poses estimated before.
   const std::array starts{fit_map_frame(live.T_map_body, truth), map.last().T_site_map};
   const Pose2 T_world_map =
       references.T_world_map ? *references.T_world_map : fit_map_to_reference(record.map, starts, references.map);

@@ -5,7 +5,7 @@
 #include "core/settings.h"
 #include "localize/amcl/monte_carlo_settings.h"
 #include "localize/calibration/online_calibrator_settings.h"
-#include "localize/line_of_sight_monitor.h"
+#include "localize/line_of_sight_monitor_settings.h"
 #include "localize/range_filter_settings.h"
 #include "localize/registration/registration_settings.h"
 #include "localize/scan_leveler_settings.h"
@@ -44,10 +44,10 @@ struct StackSettings {
   localize::ScanLevelerSettings scan_leveling;
   localize::OnlineCalibratorSettings calibration;  ///< settings of the calibration while the robot drives
   slam::MapperSettings slam = default_slam_settings();
-  localize::MonteCarloSettings localization;    ///< settings of the localization on a given map
-  localize::RangeFilterSettings uwb_filter;     ///< settings of the UWB pose of a robot with tracks and UWB
-  localize::LineOfSightSettings line_of_sight;  ///< settings of the selection of UWB ranges
-  localize::RegistrationSettings registration;  ///< settings of the registration of the map to the site
+  localize::MonteCarloSettings localization;           ///< settings of the localization on a given map
+  localize::RangeFilterSettings uwb_filter;            ///< settings of the UWB pose of a robot with tracks and UWB
+  localize::LineOfSightMonitorSettings line_of_sight;  ///< settings of the selection of UWB ranges
+  localize::RegistrationSettings registration;         ///< settings of the registration of the map to the site
   plan::NavigatorSettings navigation;
   SensorMonitorSettings sensor_monitor;
   DockingSettings docking;
