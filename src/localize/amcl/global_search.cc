@@ -24,13 +24,6 @@ RangeLikelihoodSettings widen(RangeLikelihoodSettings settings, double step_m) {
   return settings;
 }
 
-double log_likelihood_of(const std::vector<AnchoredRange>& ranges, const Pose2& pose,
-                         const RangeLikelihoodSettings& settings) {
-  double sum = 0.0;
-  for (const AnchoredRange& range : ranges) sum += range_log_likelihood(range_innovation_m(range, pose), settings);
-  return sum;
-}
-
 }  // namespace
 
 GlobalSearch::GlobalSearch(const GlobalSearchSettings& settings, const LikelihoodFieldSettings& field,
@@ -64,7 +57,7 @@ std::vector<GlobalSearch::CandidatePosition> GlobalSearch::filter_positions_by_r
   std::vector<CandidatePosition> positions;
   double best = -std::numeric_limits<double>::infinity();
   for (const Eigen::Vector2d& p_map : free_positions_) {
-    positions.push_back({p_map, log_likelihood_of(ranges, {p_map.x(), p_map.y(), 0.0}, settings)});
+    positions.push_back({p_map, ranges_log_likelihood(ranges, {p_map.x(), p_map.y(), 0.0}, settings)});
     best = std::max(best, positions.back().log_ranges);
   }
   std::erase_if(positions, [&](const CandidatePosition& position) { return position.log_ranges < best - kNegligible; });
@@ -115,7 +108,7 @@ GlobalSearch::Candidates GlobalSearch::find(const LevelScan& scan, const std::ve
           wrap_angle(center.yaw + part_of_step(part / (kFineSteps * kFineSteps), kFineHeadings, step_rad))};
       candidates.T_map_body.push_back(pose);
       log_fine.push_back(log_importance_weight + scan_gain * fine_.mean_log(ends, pose) +
-                         log_likelihood_of(ranges, pose, range_settings));
+                         ranges_log_likelihood(ranges, pose, range_settings));
     }
     first = end;
   }

@@ -206,17 +206,11 @@ int MonteCarloLocalizer::resample_and_inject(const LevelScan& scan, const Pose2&
   const std::vector<Pose2> poses =
       sample_poses(global_localization(scan, T_odom_body), num_injected, injection_noise_, updates_);
   const std::vector<AnchoredRange> ranges = buffered_ranges(scan.stamp, T_odom_body);
-  const auto range_fit = [&](const Pose2& T_map_body) {
-    double sum = 0.0;
-    for (const AnchoredRange& range : ranges)
-      sum += range_log_likelihood(range_innovation_m(range, T_map_body), settings_.ranges);
-    return sum;
-  };
-  const double present_fit = range_fit(cluster_gaussian_.mean);
+  const double present = ranges_log_likelihood(ranges, cluster_gaussian_.mean, settings_.ranges);
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const std::size_t replaced = i * cloud_.size() / poses.size();
     cloud_.T_map_body[replaced] = poses[i];
-    cloud_.log_weights[replaced] = std::min(0.0, range_fit(poses[i]) - present_fit);
+    cloud_.log_weights[replaced] = std::min(0.0, ranges_log_likelihood(ranges, poses[i], settings_.ranges) - present);
   }
   return static_cast<int>(poses.size());
 }

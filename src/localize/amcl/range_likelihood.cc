@@ -19,4 +19,12 @@ double range_innovation_m(const AnchoredRange& range, const Pose2& T_map_body) {
   return range.range_m - std::sqrt(across.squaredNorm() + up * up);
 }
 
+double ranges_log_likelihood(const std::vector<AnchoredRange>& ranges, const Pose2& T_map_body,
+                             const RangeLikelihoodSettings& settings) {
+  double sum = 0.0;
+  for (const AnchoredRange& range : ranges)
+    sum += range_log_likelihood(range_innovation_m(range, T_map_body), settings);
+  return sum;
+}
+
 }  // namespace patrol::localize

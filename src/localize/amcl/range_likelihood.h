@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include <Eigen/Core>
 
 #include "core/frames.h"
@@ -22,5 +24,9 @@ struct AnchoredRange {
 
 /// Measured range minus the distance from anchor to antenna for the level body at `T_map_body`, m.
 double range_innovation_m(const AnchoredRange& range, const Pose2& T_map_body);
+
+/// Returns the sum of the log likelihoods of independent ranges at a pose.
+double ranges_log_likelihood(const std::vector<AnchoredRange>& ranges, const Pose2& T_map_body,
+                             const RangeLikelihoodSettings& settings);
 
 }  // namespace patrol::localize

@@ -27,7 +27,7 @@ Eigen::Vector3d published_variances(const LocalizerStart& start, double map_std_
   return pose.covariance.diagonal();
 }
 
-// A scan match is known to millimeters; the map may still be bent by the settings.
+// A scan match is known to millimeters; the deformation of the map is that of the settings.
 TEST(MakeLocalizer, PublishedCovarianceContainsTheDeformationOfTheMapWithAndWithoutAGivenMap) {
   for (const LocalizerStart& start : {LocalizerStart{}, LocalizerStart{.map = map_of_small_room()}}) {
     const Eigen::Vector3d of_matches = published_variances(start, 0.0, 0.0);
