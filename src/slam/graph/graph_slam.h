@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -59,6 +60,8 @@ class GraphSlam {
   const PoseGraph& graph() const { return graph_; }
   /// Scan index of each keyframe, [keyframe].
   std::vector<std::size_t> node_scan_indices() const;
+  /// Estimated delays of the UWB anchors, m, [anchor number]; with the map, they explain the ranges.
+  const std::map<int, double>& range_delays_m() const { return survey_.ranges.delays_m(); }
   const LoopClosureStatistics& loop_closure_statistics() const { return loop_closure_statistics_; }
   OccupancyGrid map();
 

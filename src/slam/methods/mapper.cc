@@ -39,6 +39,10 @@ class MapperAdapter final : public Mapper {
   void finish() override { method_.finish(); }
   std::vector<Pose2> path() const override { return method_.path(); }
   OccupancyGrid map() override { return method_.map(); }
+  std::map<int, double> range_delays_m() const override {
+    if constexpr (requires { method_.range_delays_m(); }) return method_.range_delays_m();
+    return {};
+  }
   PoseGraph graph() const override { return method_.graph(); }
   std::vector<std::size_t> node_scan_indices() const override { return method_.node_scan_indices(); }
   ParticleSet particles() const override {

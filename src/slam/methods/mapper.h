@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -36,6 +37,8 @@ class Mapper {
   /// Current pose estimates of all scans, [scan].
   virtual std::vector<Pose2> path() const = 0;
   virtual OccupancyGrid map() = 0;
+  /// Estimated delays of the UWB anchors, m, [anchor number]; empty for methods that do not estimate them.
+  virtual std::map<int, double> range_delays_m() const = 0;
   /// Particles at the last keyframe; empty for methods without particles.
   virtual ParticleSet particles() const = 0;
   /// Keyframes and the relative pose constraints between them. Methods without loop closure return odometry edges only.

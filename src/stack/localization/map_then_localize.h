@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -9,7 +10,8 @@
 
 namespace patrol::stack {
 
-/// SLAM until the map is complete, then Monte Carlo localization on that map.
+/// SLAM until the map is complete, then Monte Carlo localization on that map, with the delays of the UWB anchors that
+/// SLAM has estimated: without them, the ranges contradict the map by centimeters.
 class MapThenLocalize final : public Localizer {
  public:
   using LocalizerFactory = std::function<std::unique_ptr<Localizer>(OccupancyGrid)>;
@@ -17,7 +19,7 @@ class MapThenLocalize final : public Localizer {
   /// `make_on_map` makes the localizer for the complete map.
   MapThenLocalize(std::unique_ptr<Localizer> slam, LocalizerFactory make_on_map);
 
-  void add(const RangeWithOdometry& range) override { current_->add(range); }
+  void add(const RangeWithOdometry& range) override;
   void add(const slam::PositionMeasurement& position) override { current_->add(position); }
   PoseEstimate update(const LevelScan& scan, const Pose2& T_odom_body, StackOutput& output) override {
     return current_->update(scan, T_odom_body, output);
@@ -37,6 +39,7 @@ class MapThenLocalize final : public Localizer {
  private:
   std::unique_ptr<Localizer> current_;
   LocalizerFactory make_on_map_;
+  std::map<int, double> range_delays_m_;                  ///< [anchor number] once the map is complete
   std::vector<Pose2> path_of_mapping_;                    ///< [scan] once the map is complete
   std::optional<std::vector<UwbAnchor>> anchors_in_map_;  ///< once they have moved
 };

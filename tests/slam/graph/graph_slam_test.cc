@@ -208,6 +208,36 @@ TEST(GraphSlam, TheCovarianceGrowsAlongASmoothCorridorAndRangesKeepItSmall) {
   EXPECT_LT(along_std_m[1], 0.05);
 }
 
+// The scans determine the pose, hence the delay of each radio.
+TEST(GraphSlam, TheDelayOfTheRadioWithRangesTwentyCentimetersLongIsReturnedWithTheMap) {
+  test::RoomWorld room;
+  room.add_box(-3.0, -2.0, 9.0, 4.0).add_wall(2.0, 4.0, 2.0, 2.5);
+  GraphSlamSettings settings;
+  settings.ranges.common_std_m = 0.0;
+  GraphSlam slam(settings);
+  const std::vector<UwbAnchor> anchors = {{.number = 1, .p_m = {-2.5, 3.5, 1.0}},
+                                          {.number = 2, .p_m = {8.5, -1.5, 1.0}}};
+  const Eigen::Vector3d antenna(0.2, 0.0, 0.6);
+  EXPECT_TRUE(slam.range_delays_m().empty());
+  for (int k = 0; k <= 120; ++k) {
+    const Pose2 truth{0.05 * k, 0.0, 0.0};
+    for (const UwbAnchor& anchor : anchors) {
+      const double range_m = predict_uwb_range(anchor, truth, antenna, settings.ranges.calibration).range_m;
+      slam.add({.anchor = anchor,
+                .range_m = anchor.number == 1 ? range_m + 0.2 : range_m,
+                .T_odom_body = truth,
+                .p_level_antenna = antenna});
+    }
+    LevelScan scan = room.scan(truth, {});
+    scan.stamp = from_seconds(0.1 * k);
+    slam.update(scan, truth);
+  }
+  slam.finish();
+  ASSERT_EQ(slam.range_delays_m().size(), 2U);
+  EXPECT_NEAR(slam.range_delays_m().at(1), 0.2, 0.03);
+  EXPECT_NEAR(slam.range_delays_m().at(2), 0.0, 0.03);
+}
+
 // As on a ramp between walls that lean: what is seen there is turned by 3 degrees, and odometry is right.
 TEST(GraphSlam, ScansTiltedBy11DegreesAreNeitherMatchedNorIntegrated) {
   test::RoomWorld room;
