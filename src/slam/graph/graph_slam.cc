@@ -159,6 +159,18 @@ void GraphSlam::gate_ranges(const TrackedScan& tracked, const Pose2& T_odom_body
   }
 }
 
+std::vector<MappedRange> GraphSlam::mapped_ranges() const {
+  std::vector<MappedRange> mapped;
+  for (const RangeFactor& factor : survey_.ranges.ranges()) {
+    mapped.push_back({.anchor = factor.anchor_in_survey.number,
+                      .T_map_body = graph_.T_map_node[static_cast<std::size_t>(factor.node)],
+                      .p_level_antenna = factor.p_level_antenna,
+                      .range_m = factor.range_m,
+                      .count = factor.count});
+  }
+  return mapped;
+}
+
 void GraphSlam::add_positions(const TrackedScan& tracked, const Pose2& T_odom_body) {
   const Pose2 T_node_body = keyframes_.back().T_local_body.inverse() * tracked.T_local_body;
   for (const PositionMeasurement& measurement : std::exchange(new_positions_, {})) {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <map>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -14,6 +13,7 @@
 #include "slam/graph/scan_tracker.h"
 #include "slam/graph/submap.h"
 #include "slam/graph/submap_matcher.h"
+#include "slam/mapped_range.h"
 #include "slam/slam_update.h"
 
 namespace patrol::slam {
@@ -60,8 +60,8 @@ class GraphSlam {
   const PoseGraph& graph() const { return graph_; }
   /// Scan index of each keyframe, [keyframe].
   std::vector<std::size_t> node_scan_indices() const;
-  /// Estimated delays of the UWB anchors, m, [anchor number]; with the map, they explain the ranges.
-  const std::map<int, double>& range_delays_m() const { return survey_.ranges.delays_m(); }
+  /// UWB ranges in line of sight along the path.
+  std::vector<MappedRange> mapped_ranges() const;
   const LoopClosureStatistics& loop_closure_statistics() const { return loop_closure_statistics_; }
   OccupancyGrid map();
 

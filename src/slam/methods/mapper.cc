@@ -39,8 +39,8 @@ class MapperAdapter final : public Mapper {
   void finish() override { method_.finish(); }
   std::vector<Pose2> path() const override { return method_.path(); }
   OccupancyGrid map() override { return method_.map(); }
-  std::map<int, double> range_delays_m() const override {
-    if constexpr (requires { method_.range_delays_m(); }) return method_.range_delays_m();
+  std::vector<MappedRange> mapped_ranges() const override {
+    if constexpr (requires { method_.mapped_ranges(); }) return method_.mapped_ranges();
     return {};
   }
   PoseGraph graph() const override { return method_.graph(); }

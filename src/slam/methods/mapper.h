@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <vector>
 
@@ -9,6 +8,7 @@
 #include "core/grid.h"
 #include "core/messages.h"
 #include "core/pose_graph.h"
+#include "slam/mapped_range.h"
 #include "slam/methods/mapper_settings.h"
 #include "slam/position_measurement.h"
 #include "slam/range_update.h"
@@ -37,8 +37,8 @@ class Mapper {
   /// Current pose estimates of all scans, [scan].
   virtual std::vector<Pose2> path() const = 0;
   virtual OccupancyGrid map() = 0;
-  /// Estimated delays of the UWB anchors, m, [anchor number]; empty for methods that do not estimate them.
-  virtual std::map<int, double> range_delays_m() const = 0;
+  /// UWB ranges in line of sight along the path; empty for methods that do not keep them.
+  virtual std::vector<MappedRange> mapped_ranges() const = 0;
   /// Particles at the last keyframe; empty for methods without particles.
   virtual ParticleSet particles() const = 0;
   /// Keyframes and the relative pose constraints between them. Methods without loop closure return odometry edges only.

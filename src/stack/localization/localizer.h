@@ -1,12 +1,12 @@
 #pragma once
 
-#include <map>
 #include <vector>
 
 #include "core/grid.h"
 #include "core/messages.h"
 #include "core/sensors/registry.h"
 #include "core/uwb.h"
+#include "slam/mapped_range.h"
 #include "slam/position_measurement.h"
 #include "stack/output/stack_output.h"
 
@@ -33,8 +33,8 @@ class Localizer {
   /// Returns the present pose estimates of the scans with which the map was made, [scan]; empty for a given map.
   virtual std::vector<Pose2> path() const { return {}; }
   virtual OccupancyGrid map() = 0;
-  /// Returns the delays of the UWB anchors that were estimated with the map, m, [anchor number].
-  virtual std::map<int, double> range_delays_m() const { return {}; }
+  /// Returns the UWB ranges along the path of the mapping; empty for a given map.
+  virtual std::vector<slam::MappedRange> mapped_ranges() const { return {}; }
   /// Returns whether the map grows with every scan.
   virtual bool is_mapping() const = 0;
   /// Returns whether localization has reported failure.

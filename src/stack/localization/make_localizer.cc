@@ -54,7 +54,7 @@ std::unique_ptr<Localizer> make_localizer(const StackSettings& settings, const R
                                               site_in_map.anchors, T_body_uwb, map_covariance(settings.registration));
   if (method == "slam") return slam;
   if (!start.has_mapping_drive) refuse("requires a teleoperated mapping drive: select slam");
-  return std::make_unique<MapThenLocalize>(std::move(slam), make_on_map);
+  return std::make_unique<MapThenLocalize>(std::move(slam), site_in_map.anchors, make_on_map);
 }
 
 }  // namespace patrol::stack

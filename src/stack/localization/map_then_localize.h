@@ -1,29 +1,27 @@
 #pragma once
 
 #include <functional>
-#include <map>
 #include <memory>
 #include <optional>
 #include <vector>
 
+#include "localize/amcl/range_bias_map.h"
 #include "stack/localization/localizer.h"
 
 namespace patrol::stack {
 
-/// SLAM until the map is complete, then Monte Carlo localization on that map, with the delays of the UWB anchors that
-/// SLAM has estimated: without them, the ranges contradict the map by centimeters.
+/// SLAM until the map is complete, then Monte Carlo localization on that map. The UWB ranges are corrected by their
+/// errors in the mapping: without that, they contradict the map by centimeters.
 class MapThenLocalize final : public Localizer {
  public:
   using LocalizerFactory = std::function<std::unique_ptr<Localizer>(OccupancyGrid)>;
 
-  /// `make_on_map` makes the localizer for the complete map.
-  MapThenLocalize(std::unique_ptr<Localizer> slam, LocalizerFactory make_on_map);
+  /// `make_on_map` makes the localizer for the complete map, with `anchors_in_map`.
+  MapThenLocalize(std::unique_ptr<Localizer> slam, std::vector<UwbAnchor> anchors_in_map, LocalizerFactory make_on_map);
 
   void add(const RangeWithOdometry& range) override;
   void add(const slam::PositionMeasurement& position) override { current_->add(position); }
-  PoseEstimate update(const LevelScan& scan, const Pose2& T_odom_body, StackOutput& output) override {
-    return current_->update(scan, T_odom_body, output);
-  }
+  PoseEstimate update(const LevelScan& scan, const Pose2& T_odom_body, StackOutput& output) override;
   std::vector<Pose2> path() const override { return is_mapping() ? current_->path() : path_of_mapping_; }
   OccupancyGrid map() override { return current_->map(); }
   bool is_mapping() const override { return current_->is_mapping(); }
@@ -39,9 +37,11 @@ class MapThenLocalize final : public Localizer {
  private:
   std::unique_ptr<Localizer> current_;
   LocalizerFactory make_on_map_;
-  std::map<int, double> range_delays_m_;                  ///< [anchor number] once the map is complete
-  std::vector<Pose2> path_of_mapping_;                    ///< [scan] once the map is complete
-  std::optional<std::vector<UwbAnchor>> anchors_in_map_;  ///< once they have moved
+  std::vector<UwbAnchor> anchors_in_map_;
+  std::vector<Pose2> path_of_mapping_;            ///< [scan] once the map is complete
+  std::vector<slam::MappedRange> mapped_ranges_;  ///< once the map is complete
+  localize::RangeBiasMap range_biases_;           ///< once the map is complete
+  std::optional<Eigen::Vector2d> p_map_body_;     ///< at the newest scan; none without a confident pose
 };
 
 }  // namespace patrol::stack

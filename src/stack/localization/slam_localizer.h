@@ -1,6 +1,5 @@
 #pragma once
 
-#include <map>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -25,7 +24,7 @@ class SlamLocalizer final : public Localizer {
   PoseEstimate update(const LevelScan& scan, const Pose2& T_odom_body, StackOutput& output) override;
   std::vector<Pose2> path() const override { return mapper_->path(); }
   OccupancyGrid map() override { return mapper_->map(); }
-  std::map<int, double> range_delays_m() const override { return mapper_->range_delays_m(); }
+  std::vector<slam::MappedRange> mapped_ranges() const override { return mapper_->mapped_ranges(); }
   bool is_mapping() const override { return is_mapping_; }
   bool is_lost() const override { return false; }
   bool has_pose() const override { return true; }

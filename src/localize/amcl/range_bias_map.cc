@@ -1,0 +1,44 @@
+#include "localize/amcl/range_bias_map.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace patrol::localize {
+namespace {
+
+constexpr double kPlaceStdM = 2.0;     // standard deviation of the Gaussian kernel that averages places
+constexpr double kPriorRanges = 10.0;  // weight of the mean of all places, in ranges at the place
+
+}  // namespace
+
+RangeBiasMap::RangeBiasMap(const std::vector<slam::MappedRange>& ranges, const std::vector<UwbAnchor>& anchors_in_map) {
+  std::map<int, int> counts;
+  for (const slam::MappedRange& range : ranges) {
+    const auto anchor = std::ranges::find(anchors_in_map, range.anchor, &UwbAnchor::number);
+    if (anchor == anchors_in_map.end()) continue;
+    const PredictedRange predicted = predict_uwb_range(*anchor, range.T_map_body, range.p_level_antenna, {});
+    AnchorBias& bias = anchors_[range.anchor];
+    bias.places.push_back({range.T_map_body.position(), range.range_m - predicted.range_m, range.count});
+    bias.mean_m += (bias.places.back().bias_m - bias.mean_m) * range.count / (counts[range.anchor] += range.count);
+  }
+}
+
+double RangeBiasMap::bias_m(int anchor) const {
+  const auto found = anchors_.find(anchor);
+  return found == anchors_.end() ? 0.0 : found->second.mean_m;
+}
+
+double RangeBiasMap::bias_m(int anchor, const Eigen::Vector2d& p_map) const {
+  const auto found = anchors_.find(anchor);
+  if (found == anchors_.end()) return 0.0;
+  double weight = kPriorRanges, sum = kPriorRanges * found->second.mean_m;
+  for (const LocalBias& place : found->second.places) {
+    const double ratio2 = (place.p_map - p_map).squaredNorm() / (kPlaceStdM * kPlaceStdM);
+    const double one = place.count * std::exp(-0.5 * ratio2);
+    weight += one;
+    sum += one * place.bias_m;
+  }
+  return sum / weight;
+}
+
+}  // namespace patrol::localize
