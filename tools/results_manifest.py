@@ -142,7 +142,7 @@ add(name="street_patrol", file="worlds/street/README.md", seeds=REPORT, minutes=
 def methods_text(values):
     def cell(runs, method):
         chosen = [run["metrics"] for run in runs if run["variant"].endswith(method)]
-        means = [sum(run[path] for run in chosen) / len(chosen) for path in ("pose.ate_rmse_m", "map.nearest_mean_m")]
+        means = [sum(run[path] for run in chosen) / len(chosen) for path in ("pose.site.ate_rmse_m", "map.nearest_mean_m")]
         return f"{means[0]:.3f}, {means[1]:.3f} m"
     return markdown(["", "`rbpf`", "`graph`"],
                     [[label, cell(values[key], "rbpf"), cell(values[key], "graph")] for label, key in
@@ -152,7 +152,7 @@ def methods_text(values):
 add(name="slam_methods", file="worlds/street/README.md", seeds=REPORT_FIVE, minutes=6,
     steps=[sweep("street", "street/scenarios/patrol", REPORT_FIVE, "--vary", "stack.slam.method=rbpf,graph"),
            sweep("tunnel", "tunnel/scenarios/mapping", REPORT_FIVE, "--vary", "stack.slam.method=rbpf,graph")],
-    values=swept(street=("pose.ate_rmse_m", "map.nearest_mean_m"), tunnel=("pose.ate_rmse_m", "map.nearest_mean_m")), text=methods_text)
+    values=swept(street=("pose.site.ate_rmse_m", "map.nearest_mean_m"), tunnel=("pose.site.ate_rmse_m", "map.nearest_mean_m")), text=methods_text)
 
 # --- worlds/tunnel ------------------------------------------------------------------------------------------------------------
 
@@ -180,19 +180,20 @@ NAVIGATION_ROWS = [
     *(Row(f"goal {i}, cm", at_goal(f"goal_{i}", "position_error_m", 100, 1), as_text, None) for i in (1, 2, 3)),
     *(Row(f"goal {i}, °", at_goal(f"goal_{i}", "heading_error_deg", 1, 2), as_text, None) for i in (1, 2, 3)),
     Row("worst docking", worst_docking, as_text, None),
-    Row("`pose.ate_rmse_m`", "pose.ate_rmse_m"),
+    Row("`pose.site.ate_rmse_m`", "pose.site.ate_rmse_m"),
+    Row("`pose.nees.mean`", "pose.nees.mean", ".1f"),
     Row("track encoders, IMU and UWB: `range_pose.ate_rmse_m`", "range_pose.ate_rmse_m", ".2f"),
     Row("track encoders and IMU: `odometry.ate_rmse_m`", "odometry.ate_rmse_m", ".0f"),
 ]
 
 add(name="tunnel_navigation", file="worlds/tunnel/README.md", seeds=REPORT, minutes=33,
     steps=[sweep("navigation", "tunnel/scenarios/map_then_navigate", REPORT)],
-    values=swept(navigation=("mission.*", "goals.*.arrivals", "goals.*.*.mean", "goals.*.*.std", "docking.*.max", "pose.ate_rmse_m",
-                             "range_pose.ate_rmse_m", "odometry.ate_rmse_m")),
+    values=swept(navigation=("mission.*", "goals.*.arrivals", "goals.*.*.mean", "goals.*.*.std", "docking.*.max",
+                             "pose.site.ate_rmse_m", "pose.nees.mean", "range_pose.ate_rmse_m", "odometry.ate_rmse_m")),
     text=lambda values: by_seed(values["navigation"], NAVIGATION_ROWS))
 
 ENDS = ("mission.*", "docking.*.max", "docking.arrivals", "localization.max_error_m", "localization.min_trust",
-        "localization.kidnaps.*.*", "pose.ate_rmse_m")
+        "localization.kidnaps.*.*", "pose.site.ate_rmse_m")
 
 
 def scenarios_text(values):
@@ -212,7 +213,8 @@ def scenarios_text(values):
         ["`degenerate.yaml` without UWB", len(degenerate["false"]),
          f"maximum error {span(degenerate['false'], 'localization.max_error_m', '.3f')} m; minimum confidence "
          f"{span(degenerate['false'], 'localization.min_trust', '.2f')}"],
-        ["`bridge.yaml`", len(values["bridge"]), f"{done(values['bridge'])}; ATE {span(values['bridge'], 'pose.ate_rmse_m', '.3f')} m"]])
+        ["`bridge.yaml`", len(values["bridge"]),
+         f"{done(values['bridge'])}; `pose.site.ate_rmse_m` {span(values['bridge'], 'pose.site.ate_rmse_m', '.3f')} m"]])
 
 
 add(name="tunnel_scenarios", file="worlds/tunnel/README.md", seeds=f"{REPORT}; low obstacles, kidnap, degenerate and bridge {REPORT_FIVE}",
@@ -238,13 +240,15 @@ INSPECTION_ROWS = [
     Row("95 % interval contains the distance", lambda m: next(
         (yes_no(value) for path, value in m.items() if path.endswith(".distance_holds")), None), as_text, None),
     Row("docking error, mm", lambda m: None if "docking.position_error_m.max" not in m else 1000 * m["docking.position_error_m.max"], ".1f"),
-    Row("ATE, m", "pose.ate_rmse_m"),
+    Row("`pose.site.ate_rmse_m`", "pose.site.ate_rmse_m"),
+    Row("`pose.nees.mean`", "pose.nees.mean", ".1f"),
 ]
 
 add(name="tunnel_inspection", file="worlds/tunnel/README.md", seeds=REPORT, minutes=7,
     steps=[sweep("inspection", "tunnel/scenarios/inspection_round", REPORT)],
     values=swept(inspection=("mission.*", "inspection.lining.*", "inspection.lining.rings.*.reported_mm", "inspection.water.*",
-                             "inspection.water.findings.*.distance_holds", "docking.*.max", "pose.ate_rmse_m")),
+                             "inspection.water.findings.*.distance_holds", "docking.*.max", "pose.site.ate_rmse_m",
+                             "pose.nees.mean")),
     text=lambda values: by_seed(values["inspection"], INSPECTION_ROWS))
 
 ROUND_SEEDS = ("2001", "2002")
