@@ -110,7 +110,7 @@ def faults_of(root, tables):
         for name in names_in(document.read_text()):
             place = document.relative_to(root).as_posix()
             if name not in known or known[name].file != place:
-                faults.append(f"{place}: {name}: not a table of this file in tools/results_manifest.py")
+                faults.append(f"{place}: {name}: not a table of this file in tools/results_manifest")
     for table in tables:
         try:
             record = load_record(root, table.name)

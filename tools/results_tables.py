@@ -124,6 +124,20 @@ def as_text(value):
     return value if isinstance(value, str) else f"{value:g}"
 
 
+def yes_no(value):
+    return "yes" if value else "no"
+
+
+def count(value):
+    return f"{value:.0f}"
+
+
+def span(runs, path, form):
+    """Least and largest value of a metric."""
+    values = [run["metrics"][path] for run in runs if path in run["metrics"]]
+    return f"{format(min(values), form)} to {format(max(values), form)}" if values else NONE
+
+
 def interval(row):
     """Mean of a study's result with half of its 95 % interval, the mean with three digits."""
     mean = float(row["mean"])

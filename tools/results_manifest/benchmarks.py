@@ -1,0 +1,37 @@
+"""Tables of benchmarks and mutations."""
+import json
+
+from results_tables import NONE, benchmark_values, markdown, yes_no
+from .declare import Step, add
+
+BENCHMARKS = ("physics", "lidar", "render", "particle", "plan")
+
+
+def benchmarks_values(folders):
+    return {name: benchmark_values(folders[name] / "benchmark.json") for name in BENCHMARKS}
+
+
+def benchmarks_text(values):
+    return markdown(["benchmark", "ratio to its reference"],
+                    [[f"`{bench}_bench`: {name.replace('/manual_time', '')}", f"{ratio:.2f}"]
+                     for bench, found in values.items() for name, ratio in found.items()])
+
+
+add(name="benchmarks", file="tests/README.md", seeds="none", minutes=6,
+    steps=[Step(name, [f"build/tests/bench/{name}_bench", "--benchmark_out_format=json", "--benchmark_out={out}/benchmark.json"], (0,))
+           for name in BENCHMARKS],
+    values=benchmarks_values, text=benchmarks_text, targets=tuple(f"{name}_bench" for name in BENCHMARKS))
+
+
+def mutations_values(folders):
+    return json.loads((folders["mutations"] / "mutations.json").read_text())["rows"]
+
+
+def mutations_text(values):
+    return markdown(["mutation", "caught", "by", "first tests, min", "all tests, min"],
+                    [[row["summary"], yes_no(row["caught"]), ", ".join(row["tests"]) or NONE, f"{row['first_min']:.1f}",
+                      f"{row['all_min']:.1f}" if row["all_min"] else NONE] for row in values])
+
+
+add(name="mutations", file="tests/mutation/README.md", seeds="those of the tests", minutes=120,
+    steps=[Step("mutations", ["tests/mutation/run", "--out", "{out}"])], values=mutations_values, text=mutations_text, targets=())

@@ -1,0 +1,47 @@
+"""Declaration of a table: file, commands, values and text."""
+import dataclasses
+import typing
+
+from results_tables import sweep_values
+
+# Seeds of published figures: nothing is tuned on them. Change them here only.
+REPORT = "2001..2010"
+REPORT_FIVE = "2001..2005"
+
+
+@dataclasses.dataclass
+class Step:
+    """Command of a table. `{out}` is the step's folder, `{logs}` the folder of recorded logs."""
+    key: str
+    command: list
+    good_codes: tuple = (0, 1)  # 1: an expectation missed; the figures show it
+
+
+@dataclasses.dataclass
+class Table:
+    name: str
+    file: str
+    seeds: str
+    minutes: float  # of wall time on two idle cores, estimated
+    steps: list
+    values: typing.Callable  # {key of step: folder} -> values for the record
+    text: typing.Callable  # values -> Markdown
+    logs: tuple = ()  # files below --logs that must exist
+    targets: tuple = ("patrol",)  # built before the commands
+    needs: tuple = ()  # tables whose records are used; values gets {name: values}
+
+
+def sweep(key, scenario, seeds, *options):
+    return Step(key, ["build/patrol", "sweep", f"worlds/{scenario}.yaml", "--seeds", seeds, *options, "--out", "{out}"])
+
+
+def swept(**metrics):
+    """Values of several sweeps: {key: runs}."""
+    return lambda folders: {key: sweep_values(folders[key], patterns) for key, patterns in metrics.items()}
+
+
+TABLES = []
+
+
+def add(**fields):
+    TABLES.append(Table(**fields))
