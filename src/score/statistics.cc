@@ -102,6 +102,18 @@ std::vector<double> holm_adjusted(const std::vector<double>& p_values) {
   return adjusted;
 }
 
+void adjust_by_holm(const std::vector<std::optional<double>*>& p_values) {
+  std::vector<double> present;
+  for (const std::optional<double>* p_value : p_values) {
+    if (*p_value) present.push_back(**p_value);
+  }
+  const std::vector<double> adjusted = holm_adjusted(present);
+  auto next = adjusted.begin();
+  for (std::optional<double>* p_value : p_values) {
+    if (*p_value) *p_value = *next++;
+  }
+}
+
 double sign_test_p_value(int num_first, int num_second) {
   const int num_tosses = num_first + num_second;
   if (num_tosses == 0) return 1.0;

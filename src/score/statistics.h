@@ -36,6 +36,8 @@ std::optional<double> mean_p_value(const std::vector<double>& values);
 /// P-values adjusted for their number by Holm's step-down method [Holm79], [p-value]: rejecting those below a level
 /// bounds the probability of any false rejection by that level, whatever the dependence between the tests.
 std::vector<double> holm_adjusted(const std::vector<double>& p_values);
+/// Adjusts p-values in place; none is not counted.
+void adjust_by_holm(const std::vector<std::optional<double>*>& p_values);
 
 /// Two-sided exact p-value of the sign test [McNemar47]: probability that of `num_first + num_second` fair coin tosses
 /// at least as many fall on one side as on the larger of the two. 1 without any toss.

@@ -117,14 +117,6 @@ std::string aligned(const report::TableBlock& table) {
   return text + "\n";
 }
 
-/// Writes the adjusted p-values of all comparisons of a study, which form one family [Holm79].
-void correct_for_number(const std::vector<std::optional<double>*>& p_values) {
-  std::vector<double> own;
-  for (const std::optional<double>* p_value : p_values) own.push_back(**p_value);
-  const std::vector<double> adjusted = score::holm_adjusted(own);
-  for (std::size_t i = 0; i < adjusted.size(); ++i) *p_values[i] = adjusted[i];
-}
-
 /// p-value of equal failure rates; none if both fail on the same seeds.
 std::optional<double> failure_p_value(const std::vector<StudySample>& samples, std::size_t variant,
                                       std::size_t reference) {
@@ -174,7 +166,7 @@ StudyResults summarize(const Study& study, const std::vector<StudySample>& sampl
       if (result.adjusted_failure_p_value) p_values.push_back(&result.adjusted_failure_p_value);
     }
   }
-  correct_for_number(p_values);
+  score::adjust_by_holm(p_values);
   return results;
 }
 

@@ -1,6 +1,6 @@
 """Tables of the street."""
-from results_tables import Row, as_text, by_seed, markdown, pair
-from .declare import REPORT, REPORT_FIVE, add, sweep, swept
+from results_tables import NONE, Row, as_text, by_seed, csv_values, markdown, pair
+from .declare import REPORT, REPORT_FIVE, Step, add, sweep, swept
 
 PATROL_ROWS = [
     Row("`pose.site.ate_rmse_m`, in the survey frame", "pose.site.ate_rmse_m"),
@@ -24,6 +24,56 @@ add(name="street_patrol", file="worlds/street/README.md", seeds=REPORT, minutes=
     values=swept(patrol=("mission.*", "pose.site.ate_rmse_m", "pose.aligned.rmse_m", "pose.nees.mean", "calibration.within_95",
                          "stations.*.site_map_error_m", "map.nearest_mean_m", "inspection.*", "performance.real_time_factor")),
     text=lambda values: by_seed(values["patrol"], PATROL_ROWS, WU25))
+
+
+LEAK_PLACES = {"regulator_box_1": "regulator box 1", "regulator_box_2": "regulator box 2", "valve_well_3": "valve well 3"}
+WIND_DIRECTIONS = (240, 60)
+
+
+def leaks_text(values):
+    rows = []
+    for place, title in LEAK_PLACES.items():
+        for direction in WIND_DIRECTIONS:
+            runs = [run for run in values["leaks"] if f"={place}" in run["variant"] and run["variant"].endswith(f"={direction}")]
+            metrics = [run["metrics"] for run in runs]
+            found = [one["inspection.findings.0.position_error_m"] for one in metrics if one.get("inspection.leaks_found")]
+            rows.append([title, f"{direction}°", f"{len(found)} of {len(runs)}", sum(one.get("inspection.false_alarms", 0) for one in metrics),
+                         f"{max(found):.3f}" if found else NONE, f"{sum(one.get('mission.completed', False) for one in metrics)} of {len(runs)}"])
+    return markdown(["leak", "wind", "found", "false alarms", "position error of the finding, worst, m", "completed"], rows)
+
+
+add(name="street_leaks", file="worlds/street/README.md", seeds=REPORT, minutes=13,
+    steps=[sweep("leaks", "street/scenarios/patrol", REPORT, "--vary", "leaks.0.at=" + ",".join(LEAK_PLACES),
+                 "--vary", "wind.direction_deg=" + ",".join(map(str, WIND_DIRECTIONS)))],
+    values=swept(leaks=("inspection.leaks_found", "inspection.false_alarms", "inspection.findings.*.position_error_m", "mission.completed")),
+    text=leaks_text)
+
+BUDGET_METRICS = ("pose.site.ate_rmse_m", "map.nearest_mean_m")
+BUDGET_TERMS = 5
+
+
+def budget_values(folders):
+    """The rows of each metric; of the error sources, which are sorted, the largest only."""
+    rows = csv_values(folders["budget"] / "budget.csv")
+    kept = []
+    for metric in BUDGET_METRICS:
+        of_metric = [row for row in rows if row["metric"] == metric]
+        kept += of_metric[:1 + BUDGET_TERMS] + of_metric[-3:]
+    return {"sources": len(rows) // len(BUDGET_METRICS) - 4, "rows": kept}
+
+
+def budget_text(values):
+    def cell(row):
+        return f"{1000 * float(row['value']):.1f} [{1000 * float(row['low']):.1f}, {1000 * float(row['high']):.1f}]" if row["value"] else NONE
+    return markdown(["metric", f"the five largest of {values['sources']} error sources", "mm [95 %]", "p-value [Holm79]"],
+                    [[f"`{row['metric']}`" if row["row"] == "baseline" else "", row["row"], cell(row),
+                      f"{float(row['p_adjusted']):.2g}" if row["p_adjusted"] else NONE] for row in values["rows"]])
+
+
+add(name="street_budget", file="worlds/street/README.md", seeds=REPORT_FIVE, minutes=40,
+    steps=[Step("budget", ["build/patrol", "error-budget", "worlds/street/scenarios/patrol.yaml", "--seeds", REPORT_FIVE,
+                           *(word for metric in BUDGET_METRICS for word in ("--metric", metric)), "--out", "{out}"])],
+    values=budget_values, text=budget_text)
 
 
 def methods_text(values):

@@ -19,12 +19,16 @@ std::vector<double> column(const SeedValues& seed_values, std::size_t variant) {
   return values;
 }
 
+/// The p-value is not adjusted yet.
 Contribution contribution_of(const SeedValues& seed_values, std::size_t variant, const std::string& name) {
   std::vector<double> differences;
   for (const auto& of_seed : seed_values) {
     if (of_seed[0] && of_seed[variant]) differences.push_back(*of_seed[0] - *of_seed[variant]);
   }
-  return {.name = name, .num_pairs = differences.size(), .value = score::mean_interval(differences)};
+  return {.name = name,
+          .num_pairs = differences.size(),
+          .value = score::mean_interval(differences),
+          .p_adjusted = score::mean_p_value(differences)};
 }
 
 /// Adds sum and interaction, from the seeds with all values.
@@ -81,6 +85,9 @@ Budget make_budget(const SweepManifest& manifest, const SweepRows& rows, const s
   for (std::size_t variant = 1; variant + 1 < manifest.variants.size(); ++variant) {
     budget.contributions.push_back(contribution_of(seed_values, variant, manifest.variants[variant].name));
   }
+  std::vector<std::optional<double>*> p_values;
+  for (Contribution& contribution : budget.contributions) p_values.push_back(&contribution.p_adjusted);
+  score::adjust_by_holm(p_values);
   const auto center = [](const Contribution& contribution) {
     return contribution.value ? contribution.value->center : 0.0;
   };
@@ -102,21 +109,23 @@ std::string budget_text(const Budget& budget) {
   text += line("baseline", budget.baseline, bar(0.0, level, highest));
   for (const Contribution& contribution : budget.contributions) {
     const double next = level - (contribution.value ? contribution.value->center : 0.0);
-    const bool is_clear = contribution.value && !contribution.value->contains(0.0);
     text += line(contribution.name, contribution.value,
-                 bar(level, next, highest) + (is_clear ? "" : "  interval contains zero"));
+                 bar(level, next, highest) + (contribution.is_significant() ? "" : "  not significant"));
     level = next;
   }
   text += line("interaction", budget.interaction, bar(level, budget.ideal->center, highest));
   text += line("all ideal", budget.ideal, bar(0.0, budget.ideal->center, highest));
-  return text + fmt::format("  sum of the contributions {}\n", numbers(budget.sum));
+  text += fmt::format("  sum of the contributions {}\n", numbers(budget.sum));
+  return text + fmt::format("  not significant: p-value above 5 % after Holm's correction for {} error sources\n",
+                            budget.contributions.size());
 }
 
 io::Table budget_table(const std::vector<Budget>& budgets) {
-  io::Table table{.name = "budget", .columns = {"metric", "row", "pairs", "value", "low", "high"}, .rows = {}};
+  io::Table table{
+      .name = "budget", .columns = {"metric", "row", "pairs", "value", "low", "high", "p_adjusted"}, .rows = {}};
   for (const Budget& budget : budgets) {
     const auto add = [&](const std::string& row, std::optional<std::size_t> pairs,
-                         const std::optional<score::Interval>& interval) {
+                         const std::optional<score::Interval>& interval, std::optional<double> p_adjusted = {}) {
       std::vector<io::TableValue>& cells = table.rows.emplace_back();
       cells.emplace_back(budget.metric);
       cells.emplace_back(row);
@@ -126,10 +135,11 @@ io::Table budget_table(const std::vector<Budget>& budgets) {
       cells[3] = interval->center;
       cells[4] = interval->low;
       cells[5] = interval->high;
+      if (p_adjusted) cells[6] = *p_adjusted;
     };
     add("baseline", {}, budget.baseline);
     for (const Contribution& contribution : budget.contributions)
-      add(contribution.name, contribution.num_pairs, contribution.value);
+      add(contribution.name, contribution.num_pairs, contribution.value, contribution.p_adjusted);
     add("sum", {}, budget.sum);
     add("interaction", {}, budget.interaction);
     add("all ideal", {}, budget.ideal);

@@ -15,6 +15,10 @@ struct Contribution {
   std::string name;
   std::size_t num_pairs = 0;             ///< seeds for which the metric exists with and without the error source
   std::optional<score::Interval> value;  ///< baseline minus metric without this error source; 95 %, paired by seed
+  /// p-value of a contribution of zero, adjusted for the number of error sources [Holm79]
+  std::optional<double> p_adjusted;
+
+  bool is_significant() const { return p_adjusted && *p_adjusted < 0.05; }
 };
 
 /// Error budget of one metric. The manifest's first variant is the unchanged scenario (baseline), the last one has

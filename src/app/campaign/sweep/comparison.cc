@@ -10,10 +10,10 @@ constexpr double kError = 0.05;  ///< probability of a false difference
 
 std::size_t seed_index(const SweepManifest& manifest, std::size_t run) { return run / manifest.variants.size(); }
 
-std::string verdict_of(const std::optional<score::Interval>& difference) {
-  if (!difference) return "too few pairs";
-  if (difference->contains(0.0)) return "no difference";
-  return difference->center < 0.0 ? "lower" : "higher";
+std::string verdict_of(const VariantMetric& entry, double level) {
+  if (!entry.difference || !entry.p_adjusted) return "too few pairs";
+  if (*entry.p_adjusted >= 1.0 - level) return "no difference";
+  return entry.difference->center < 0.0 ? "lower" : "higher";
 }
 
 bool is_decided(const VariantMetric& entry, double margin) {
@@ -53,12 +53,19 @@ std::vector<VariantMetric> compare(const SweepManifest& manifest, const SweepRow
                         .interval = score::mean_interval(values),
                         .num_pairs = differences.size(),
                         .difference = {},
+                        .p_adjusted = {},
                         .verdict = ""};
     if (variant > 0) {
       entry.difference = score::mean_interval(differences, level);
-      entry.verdict = verdict_of(entry.difference);
+      entry.p_adjusted = score::mean_p_value(differences);
     }
     compared.push_back(entry);
+  }
+  std::vector<std::optional<double>*> p_values;
+  for (VariantMetric& entry : compared) p_values.push_back(&entry.p_adjusted);
+  score::adjust_by_holm(p_values);
+  for (VariantMetric& entry : compared) {
+    if (entry.variant > 0) entry.verdict = verdict_of(entry, level);
   }
   return compared;
 }

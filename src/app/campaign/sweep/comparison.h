@@ -18,7 +18,10 @@ struct VariantMetric {
   std::optional<score::Interval> interval;    ///< 95 % interval of the mean
   std::size_t num_pairs = 0;                  ///< seeds for which both variants have a value
   std::optional<score::Interval> difference;  ///< mean of the paired differences; none for the first variant
-  /// "lower", "higher", "no difference" (the interval contains zero), "too few pairs"; empty for the first variant.
+  /// p-value of a difference of zero, adjusted for the number of variants [Holm79]; none for the first variant
+  std::optional<double> p_adjusted;
+  /// "lower", "higher", "no difference" (p_adjusted is not below 1 - level), "too few pairs"; empty for the first
+  /// variant.
   std::string verdict;
 };
 

@@ -85,7 +85,7 @@ io::Table runs_table(const SweepManifest& manifest, const SweepRows& rows, const
 io::Table comparison_table(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress) {
   io::Table table{.name = "comparison",
                   .columns = {"metric", "variant", "runs", "mean", "mean_low", "mean_high", "pairs", "difference",
-                              "difference_low", "difference_high", "verdict"},
+                              "difference_low", "difference_high", "p_adjusted", "verdict"},
                   .rows = {}};
   const auto add_interval = [](std::vector<io::TableValue>& row, const std::optional<score::Interval>& interval) {
     row.push_back(interval ? number(interval->low) : io::TableValue{});
@@ -103,6 +103,7 @@ io::Table comparison_table(const SweepManifest& manifest, const SweepRows& rows,
       row.push_back(whole(entry.num_pairs));
       row.push_back(entry.difference ? number(entry.difference->center) : io::TableValue{});
       add_interval(row, entry.difference);
+      row.push_back(entry.p_adjusted ? number(*entry.p_adjusted) : io::TableValue{});
       row.emplace_back(entry.verdict);
     }
   }
@@ -130,6 +131,8 @@ std::string comparison_text(const SweepManifest& manifest, const SweepRows& rows
     }
     text += "\n";
   }
+  if (manifest.variants.size() > 2)
+    text += fmt::format("verdicts: 5 % after Holm's correction for {} variants\n", manifest.variants.size() - 1);
   if (manifest.stop.is_early) {
     text += fmt::format("differences: intervals for {} interim analyses (Bonferroni)\n",
                         interim_analyses(manifest.seeds.size()).size());

@@ -75,6 +75,20 @@ TEST(Compare, ThreePairsGiveTheTextbooksInterval) {
   EXPECT_EQ(figure.verdict, "no difference");
 }
 
+// Differences 1, 2, 1.5: p = 0.035, which Holm's correction doubles where there is a second variant.
+TEST(Compare, ADifferenceWithAPValueOfThreePercentIsOneAloneAndNoneAmongTwoVariants) {
+  const double differences[] = {1.0, 2.0, 1.5};
+  for (const std::size_t num_variants : {2, 3}) {
+    const SweepManifest manifest = manifest_of(num_variants, 3);
+    const SweepRows rows = rows_of(manifest, [&](std::size_t variant, std::uint64_t seed) {
+      return variant == 1 ? differences[seed] : variant == 2 ? 0.1 * static_cast<double>(seed) - 0.1 : 0.0;
+    });
+    const VariantMetric metric = compare(manifest, rows, kMetric, 3)[1];
+    EXPECT_FALSE(metric.difference->contains(0.0));
+    EXPECT_EQ(metric.verdict, num_variants == 2 ? "higher" : "no difference");
+  }
+}
+
 TEST(Compare, ARunWithoutTheFigureLeavesItsPairOut) {
   const SweepManifest manifest = manifest_of(2, 3);
   SweepRows rows =
