@@ -70,12 +70,14 @@ TrackOdometry::TrackOdometry(const RobotDescription& robot, const TrackOdometryS
                            .foot_std_m = kStandstillCreep_m},
             .buffer_s = settings.buffer_s,
             .max_extrapolation_s = settings.max_extrapolation_s}),
+      rest_detector_({.window_s = settings.standstill_window_s, .max_std_mps2 = settings.standstill_accel_std_mps2}),
       slip_detector_({.window_s = settings.slip_window_s, .threshold_mps = settings.slip_disagreement_mps}),
       encoders_({.meters_per_tick = meters_per_tick_, .max_acceleration_mps2 = settings.max_track_acceleration_mps2}) {}
 
 void TrackOdometry::add(const Imu& imu) {
   const std::optional<InertialSample> sample = imu_.accept(imu, !encoders_.is_stationary());
   if (!sample) return;
+  rest_detector_.add(imu.stamp, imu.linear_acceleration_mps2);
   advance(imu.stamp, *sample);
   process_pending();
 }
@@ -191,13 +193,16 @@ Eigen::Vector3d TrackOdometry::speed_std(const EncoderInterval& interval, const 
 }
 
 // Loss of traction and frozen encoders are alike: the track speeds differ from the body speed. The IMU alone propagates
-// the estimate until both agree for `kAgreement`.
+// the estimate until both agree for `kAgreement`, or until the body is at rest on stationary tracks. The latter ends a
+// wrong detection after a stop that the accelerometer has not measured.
 bool TrackOdometry::update_slip_state(const EncoderInterval& interval) {
   const double estimated_mps = imu_.filter()->motion().v_body.x(), track_mps = interval.smooth.mean_mps();
   if (is_slipping_) {
     if (std::abs(track_mps - estimated_mps) > kAgreement_mps) agree_since_.reset();
     else if (!agree_since_) agree_since_ = interval.start;
-    if (!agree_since_ || interval.end - *agree_since_ < kAgreement) return false;
+    const bool is_at_rest = encoders_.is_stationary() && rest_detector_.is_at_rest();
+    if (is_at_rest) imu_.filter()->correct_velocity(Eigen::Vector3d::Zero(), kStandingStd_mps);
+    else if (!agree_since_ || interval.end - *agree_since_ < kAgreement) return false;
     is_slipping_ = false;
     slip_detector_.reset();
     imu_.filter()->end_slip(track_mps, settings_.slip_std);

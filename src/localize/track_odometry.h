@@ -8,6 +8,7 @@
 #include "core/sensors/registry.h"
 #include "localize/imu_front_end.h"
 #include "localize/pending_readings.h"
+#include "localize/rest_detector.h"
 #include "localize/slip_detector.h"
 #include "localize/track_encoders.h"
 #include "localize/track_filter.h"
@@ -83,6 +84,7 @@ class TrackOdometry {
 
   Time started_{};
   bool has_settled_ = false;
+  RestDetector rest_detector_;
   SlipDetector slip_detector_;
 
   TrackEncoders encoders_;

@@ -40,7 +40,10 @@ struct TrackOdometrySettings {
   // Standstill.
   double settling_time_s = 1.5;      ///< time at rest before the first estimate
   double init_timeout_s = 6.0;       ///< time after which an estimate is published without any rest
-  double standstill_window_s = 1.0;  ///< window of one gyro bias measurement
+  double standstill_window_s = 1.0;  ///< window of one gyro bias measurement, and of the detection of rest
+  /// Standard deviation of the acceleration up to which the body is at rest: 0.05 m/s2 at rest, at least 0.16 m/s2
+  /// while driving (simulated ADIS16448 on tracks).
+  double standstill_accel_std_mps2 = 0.1;
   // Faults.
   double imu_timeout_s = 0.1;                 ///< maximum delay of the IMU behind the encoders before it is bridged
   double max_track_acceleration_mps2 = 10.0;  ///< encoder readings with larger accelerations are rejected
@@ -79,6 +82,7 @@ struct TrackOdometrySettings {
     visit("settling_time_s", self.settling_time_s, between(0.1, 60.0));
     visit("init_timeout_s", self.init_timeout_s, between(0.1, 600.0));
     visit("standstill_window_s", self.standstill_window_s, between(0.1, 10.0));
+    visit("standstill_accel_std_mps2", self.standstill_accel_std_mps2, between(0.0, 10.0));
     visit("imu_timeout_s", self.imu_timeout_s, between(0.01, 1.0));
     visit("max_track_acceleration_mps2", self.max_track_acceleration_mps2, between(0.5, 1000.0));
     visit("buffer_s", self.buffer_s, between(0.5, 60.0));

@@ -255,6 +255,36 @@ TEST(TrackOdometry, CountersFrozenForFourSecondsAreSurvivedAndReported) {
   }
 }
 
+// The tracks stop from 0.6 m/s, and the accelerometer does not measure it, as when the robot is lifted and put down.
+TEST(TrackOdometry, AStopThatTheAccelerometerMissesIsFoundAfterAtMostThreeSecondsAtRest) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    TrackedDrive drive(
+        make_tracked_robot(),
+        [](double time_s, const Pose3&) {
+          return time_s > 2.0 && time_s < 6.0 ? test::Belts{0.6, 0.6} : test::Belts{};
+        },
+        {}, seed);
+    TrackOdometry odometry(make_tracked_robot(), {});
+    run(drive, odometry, 5.9);
+    bool has_slipped = false;
+    while (to_seconds(drive.now()) < 9.5) {
+      drive.step();
+      Imu imu = drive.imu();
+      if (to_seconds(drive.now()) < 6.6) imu.linear_acceleration_mps2.x() = 0.0;
+      odometry.add(imu);
+      if (drive.has_ticks()) odometry.add(drive.ticks());
+      has_slipped = has_slipped || odometry.health().is_slipping;
+    }
+    EXPECT_TRUE(has_slipped);
+    EXPECT_FALSE(odometry.health().is_slipping);
+    EXPECT_LT(odometry.estimate()->twist.linear.norm(), 0.01);
+    const double error_m = std::abs(planar_error(odometry, drive).x());
+    EXPECT_LT(error_m, 0.5);
+    run(drive, odometry, 14.0);
+    EXPECT_NEAR(std::abs(planar_error(odometry, drive).x()), error_m, 0.01);
+  }
+}
+
 TEST(TrackOdometry, SilentCountersAreReportedAndTheCovarianceGrows) {
   TrackedDrive drive(make_tracked_robot(), make_tour(), {}, 5);
   TrackOdometry odometry(make_tracked_robot(), {});
