@@ -17,7 +17,8 @@ class RestDetector {
   };
   explicit RestDetector(const Settings& settings) : settings_(settings) {}
 
-  /// Adds a reading of the accelerometer, in its own frame, m/s2. Stamps increase; a gap of the length of the window starts a new window.
+  /// Adds a reading of the accelerometer, in its own frame, m/s2. Stamps increase; a gap of the length of the window
+  /// starts a new window.
   void add(Time stamp, const Eigen::Vector3d& force_mps2);
   /// Returns whether the body has been at rest over the whole window; false before the window is full.
   bool is_at_rest() const;

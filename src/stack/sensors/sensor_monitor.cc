@@ -1,5 +1,6 @@
 #include "stack/sensors/sensor_monitor.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <variant>
@@ -23,7 +24,10 @@ bool SensorMonitor::receive(const SensorMessage& message, Time now) {
   const std::size_t kind = message.index();
   Sensor& sensor = sensors_[kind];
   sensor.stamp = stamp_of(message);
-  sensor.has_future_stamp = sensor.stamp > now + from_seconds(settings_.max_clock_lead_s);
+  const double lead_s = to_seconds(sensor.stamp - now);
+  sensor.has_future_stamp = lead_s > sensor.clock_lead_s + settings_.max_clock_lead_s;
+  if (!sensor.has_future_stamp) follow_clock(lead_s, now, sensor);
+  sensor.received = now;
   if (kSensorInfos[kind].freeze_check == FreezeCheck::kNone || sensor.has_future_stamp) return !sensor.has_future_stamp;
   const bool has_reading = sensor.reading.index() == kind;  // initially a laser scan without returns, which no scan
                                                             // repeats
@@ -35,6 +39,12 @@ bool SensorMonitor::receive(const SensorMessage& message, Time now) {
   sensor.num_repeats = 0;
   sensor.has_changed = true;
   return true;
+}
+
+void SensorMonitor::follow_clock(double lead_s, Time now, Sensor& sensor) const {
+  if (sensor.received == Time{}) return;
+  const double max_change_s = settings_.max_clock_drift * to_seconds(now - sensor.received);
+  sensor.clock_lead_s += std::clamp(lead_s - sensor.clock_lead_s, -max_change_s, max_change_s);
 }
 
 std::vector<SensorChange> SensorMonitor::step(Time now, const Pose2& T_odom_body, const VelocityCommand& command,
@@ -88,7 +98,8 @@ std::vector<SensorChange> SensorMonitor::step(Time now, const Pose2& T_odom_body
 SensorMonitor::State SensorMonitor::state_of(std::size_t kind, const Sensor& sensor, Time now,
                                              const Pose2& T_odom_body) const {
   if (sensor.has_future_stamp) return State::kWrongClock;
-  if (now - sensor.stamp > from_seconds(timeout_s(kind))) return State::kTimedOut;
+  const Time age = now - sensor.stamp + from_seconds(sensor.clock_lead_s);
+  if (age > from_seconds(timeout_s(kind))) return State::kTimedOut;
   return is_frozen(kind, sensor, T_odom_body) ? State::kFrozen : State::kFine;
 }
 

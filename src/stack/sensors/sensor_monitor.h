@@ -50,6 +50,8 @@ class SensorMonitor {
   struct Sensor {
     Time stamp{};  ///< stamp of the newest message; zero: none received yet
     SensorMessage reading;
+    Time received{};                ///< time of the newest message; zero: none received yet
+    double clock_lead_s = 0.0;      ///< slow drift of the stamps ahead of the time of their receipt
     bool has_future_stamp = false;  ///< true: the newest message has a stamp in the future
     int num_repeats = 0;            ///< repetitions of the newest reading
     bool has_changed = true;        ///< true: the reading has changed since the reference below was taken
@@ -59,6 +61,8 @@ class SensorMonitor {
     State state = State::kFine;
   };
 
+  /// Follows a lead of the stamps at no more than the drift of a clock.
+  void follow_clock(double lead_s, Time now, Sensor& sensor) const;
   State state_of(std::size_t kind, const Sensor& sensor, Time now, const Pose2& T_odom_body) const;
   bool is_frozen(std::size_t kind, const Sensor& sensor, const Pose2& T_odom_body) const;
   double timeout_s(std::size_t kind) const;

@@ -11,6 +11,9 @@ struct SensorMonitorSettings {
   double proprioception_timeout_s = 0.15;  ///< age limit of sensors with SensorTimeout::kMotion
   double instrument_timeout_s = 5.0;       ///< age limit of sensors with SensorTimeout::kInstrument
   double max_clock_lead_s = 0.05;          ///< a stamp further ahead of now indicates a clock error
+  /// Relative rate error of a clock up to which stamps may drift from now without indicating an error: quartz
+  /// oscillator.
+  double max_clock_drift = 1e-4;
   double frozen_path_m = 0.1;  ///< travel or rotation of the robot during which the readings are bitwise identical
   double frozen_turn_rad = 0.1;
   int frozen_repeats = 3;         ///< minimum number of repeated readings
@@ -23,6 +26,7 @@ struct SensorMonitorSettings {
     visit("proprioception_timeout_s", self.proprioception_timeout_s, at_least(0.01));
     visit("instrument_timeout_s", self.instrument_timeout_s, at_least(0.05));
     visit("max_clock_lead_s", self.max_clock_lead_s, at_least(0.0));
+    visit("max_clock_drift", self.max_clock_drift, between(0.0, 0.01));
     visit("frozen_path_m", self.frozen_path_m, at_least(0.01));
     visit("frozen_turn_rad", self.frozen_turn_rad, at_least(0.01));
     visit("frozen_repeats", self.frozen_repeats, between(1, 1000));

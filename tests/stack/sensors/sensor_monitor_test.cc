@@ -78,6 +78,27 @@ TEST(SensorMonitor, AStampOfTheFutureIsAWrongClock) {
   EXPECT_THAT(walk.said, ElementsAre("Sensor lidar has timestamps in the future."));
 }
 
+// 0.65 s in two hours, more than the lead and the age that are allowed.
+TEST(SensorMonitor, AClockThatDriftsBy90PpmForTwoHoursIsNoFaultAndAStepOf100MillisecondsIsOne) {
+  for (const double drift : {-9e-5, 9e-5}) {
+    WatchedWalk walk;
+    const auto drifting = [&](Time now) { return fresh(now + from_seconds(drift * to_seconds(now))); };
+    walk.go_on(7200.0, drifting);
+    EXPECT_THAT(walk.said, IsEmpty());
+    walk.go_on(1.0, [&](Time now) { return drifting(now + from_seconds(0.1)); });
+    EXPECT_THAT(walk.said, ElementsAre("Sensor lidar has timestamps in the future."));
+  }
+}
+
+TEST(SensorMonitor, AClockThatDriftsBy300PpmIsAFaultAfterFourMinutes) {
+  WatchedWalk walk;
+  const auto drifting = [&](Time now) { return fresh(now + from_seconds(3e-4 * to_seconds(now))); };
+  walk.go_on(200.0, drifting);
+  EXPECT_THAT(walk.said, IsEmpty());
+  walk.go_on(60.0, drifting);
+  EXPECT_THAT(walk.said, ElementsAre("Sensor lidar has timestamps in the future."));
+}
+
 TEST(SensorMonitor, TheSameScanAgainAndAgainIsFrozenOnceTheRobotHasMoved) {
   WatchedWalk walk;
   walk.go_on(1.0, fresh);
