@@ -44,11 +44,18 @@ TEST(ClockMonitor, SeparatesOffsetsOnBothSidesOfTheLimit) {
 
 TEST(ClockMonitor, StopsForAnOffsetThatCannotBeCorrected) {
   ClockMonitor monitor({});
-  const auto change = monitor.step(seconds(1.0), {.offset_s = 0.15, .std_s = 0.002});
+  const auto change = monitor.step(seconds(1.0), {.offset_s = 0.16, .std_s = 0.002});
   ASSERT_TRUE(change);
-  EXPECT_THAT(change->text, HasSubstr("150.0 ms late"));
+  EXPECT_THAT(change->text, HasSubstr("160.0 ms late"));
   EXPECT_THAT(change->text, HasSubstr("robot stopped"));
   EXPECT_FALSE(monitor.can_drive());
+}
+
+// An hour of two clocks of 20 ppm.
+TEST(ClockMonitor, GoesOnWithAnOffsetOf144Milliseconds) {
+  ClockMonitor monitor({});
+  EXPECT_TRUE(monitor.step(seconds(1.0), {.offset_s = 0.144, .std_s = 0.002}));
+  EXPECT_TRUE(monitor.can_drive());
 }
 
 TEST(ClockMonitor, StopsForAClockThatStepsAgainAndAgain) {
