@@ -3,7 +3,7 @@ from results_tables import NONE, markdown
 from .declare import REPORT_FIVE, Step, add, sweep, swept
 
 for world, scenario in (("street", "short"), ("tunnel", "docking")):
-    add(name=f"faults_{world}", file="tools/faults.md", seeds="1", minutes=2 if world == "street" else 3,
+    add(name=f"faults_{world}", file="tools/faults.md", seeds="1 to 3", minutes=6 if world == "street" else 11,
         steps=[Step("faults", ["build/patrol", "fault-matrix", f"worlds/{world}/scenarios/{scenario}.yaml", "--out", "{out}"])],
         values=lambda folders: (folders["faults"] / "faults.md").read_text().splitlines(), text="\n".join)
 
