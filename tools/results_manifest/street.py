@@ -26,15 +26,15 @@ add(name="street_patrol", file="worlds/street/README.md", seeds=REPORT, minutes=
     text=lambda values: by_seed(values["patrol"], PATROL_ROWS, WU25))
 
 
-LEAK_PLACES = {"regulator_box_1": "regulator box 1", "regulator_box_2": "regulator box 2", "valve_well_3": "valve well 3"}
+LEAK_STATIONS = {"regulator_box_1": "regulator box 1", "regulator_box_2": "regulator box 2", "valve_well_3": "valve well 3"}
 WIND_DIRECTIONS = (240, 60)
 
 
 def leaks_text(values):
     rows = []
-    for place, title in LEAK_PLACES.items():
+    for station, title in LEAK_STATIONS.items():
         for direction in WIND_DIRECTIONS:
-            runs = [run for run in values["leaks"] if f"={place}" in run["variant"] and run["variant"].endswith(f"={direction}")]
+            runs = [run for run in values["leaks"] if f"={station}" in run["variant"] and run["variant"].endswith(f"={direction}")]
             metrics = [run["metrics"] for run in runs]
             found = [one["inspection.findings.0.position_error_m"] for one in metrics if one.get("inspection.leaks_found")]
             rows.append([title, f"{direction}°", f"{len(found)} of {len(runs)}", sum(one.get("inspection.false_alarms", 0) for one in metrics),
@@ -43,7 +43,7 @@ def leaks_text(values):
 
 
 add(name="street_leaks", file="worlds/street/README.md", seeds=REPORT, minutes=13,
-    steps=[sweep("leaks", "street/scenarios/patrol", REPORT, "--vary", "leaks.0.at=" + ",".join(LEAK_PLACES),
+    steps=[sweep("leaks", "street/scenarios/patrol", REPORT, "--vary", "leaks.0.at=" + ",".join(LEAK_STATIONS),
                  "--vary", "wind.direction_deg=" + ",".join(map(str, WIND_DIRECTIONS)))],
     values=swept(leaks=("inspection.leaks_found", "inspection.false_alarms", "inspection.findings.*.position_error_m", "mission.completed")),
     text=leaks_text)

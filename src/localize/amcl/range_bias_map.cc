@@ -6,8 +6,8 @@
 namespace patrol::localize {
 namespace {
 
-constexpr double kPlaceStdM = 2.0;     // standard deviation of the Gaussian kernel that averages places
-constexpr double kPriorRanges = 10.0;  // weight of the mean of all places, in ranges at the place
+constexpr double kKernelStd_m = 2.0;   // standard deviation of the Gaussian kernel that averages positions
+constexpr double kPriorRanges = 10.0;  // weight of the mean of all positions, in ranges at the position
 
 }  // namespace
 
@@ -18,8 +18,8 @@ RangeBiasMap::RangeBiasMap(const std::vector<slam::MappedRange>& ranges, const s
     if (anchor == anchors_in_map.end()) continue;
     const PredictedRange predicted = predict_uwb_range(*anchor, range.T_map_body, range.p_level_antenna, {});
     AnchorBias& bias = anchors_[range.anchor];
-    bias.places.push_back({range.T_map_body.position(), range.range_m - predicted.range_m, range.count});
-    bias.mean_m += (bias.places.back().bias_m - bias.mean_m) * range.count / (counts[range.anchor] += range.count);
+    bias.local.push_back({range.T_map_body.position(), range.range_m - predicted.range_m, range.count});
+    bias.mean_m += (bias.local.back().bias_m - bias.mean_m) * range.count / (counts[range.anchor] += range.count);
   }
 }
 
@@ -32,11 +32,11 @@ double RangeBiasMap::bias_m(int anchor, const Eigen::Vector2d& p_map) const {
   const auto found = anchors_.find(anchor);
   if (found == anchors_.end()) return 0.0;
   double weight = kPriorRanges, sum = kPriorRanges * found->second.mean_m;
-  for (const LocalBias& place : found->second.places) {
-    const double ratio2 = (place.p_map - p_map).squaredNorm() / (kPlaceStdM * kPlaceStdM);
-    const double one = place.count * std::exp(-0.5 * ratio2);
+  for (const LocalBias& local : found->second.local) {
+    const double ratio2 = (local.p_map - p_map).squaredNorm() / (kKernelStd_m * kKernelStd_m);
+    const double one = local.count * std::exp(-0.5 * ratio2);
     weight += one;
-    sum += one * place.bias_m;
+    sum += one * local.bias_m;
   }
   return sum / weight;
 }

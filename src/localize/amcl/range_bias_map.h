@@ -10,9 +10,9 @@
 
 namespace patrol::localize {
 
-/// Map of the errors of UWB ranges, by anchor and place: measured minus predicted ranges along the path of the mapping.
-/// They contain the delays of the antennas, reflections and the deformation of the map. Localization on the map
-/// subtracts them, so that ranges and scans agree in the pose.
+/// Map of the errors of UWB ranges, by anchor and position: measured minus predicted ranges along the path of the
+/// mapping. They contain the delays of the antennas, reflections and the deformation of the map. Localization on the
+/// map subtracts them, so that ranges and scans agree in the pose.
 class RangeBiasMap {
  public:
   RangeBiasMap() = default;
@@ -21,8 +21,8 @@ class RangeBiasMap {
 
   /// Returns the mean error of the ranges to an anchor, m; zero without a range to it.
   double bias_m(int anchor) const;
-  /// Returns the mean error of the ranges that were measured within a few meters of a place in map, m. It approaches
-  /// the mean of all places where there are few of them.
+  /// Returns the mean error of the ranges that were measured within a few meters of a position in map, m. It
+  /// approaches the mean of all positions where there are few of them.
   double bias_m(int anchor, const Eigen::Vector2d& p_map) const;
 
  private:
@@ -33,7 +33,7 @@ class RangeBiasMap {
   };
   struct AnchorBias {
     double mean_m = 0.0;
-    std::vector<LocalBias> places;
+    std::vector<LocalBias> local;
   };
 
   std::map<int, AnchorBias> anchors_;  ///< [number]

@@ -7,7 +7,7 @@ namespace {
 
 const UwbAnchor kAnchor{.number = 1, .p_m = {0.0, 4.0, 2.0}};
 
-/// Mean of `count` ranges that are `error_m` too long, at a place 10 m from the next along x.
+/// Mean of `count` ranges that are `error_m` too long, at a position on the x axis.
 slam::MappedRange mapped(double x_m, double error_m, int count, int anchor = 1) {
   const Pose2 T_map_body{x_m, 0.0, 0.3};
   const Eigen::Vector3d antenna(0.1, 0.0, 0.5);
@@ -30,8 +30,8 @@ TEST(RangeBiasMap, WhereManyRangesAreMeasuredTheirErrorIsReturnedAndTheMeanFarAw
   EXPECT_NEAR(map.bias_m(1, {25.0, 0.0}), 0.2, 1e-3);
 }
 
-// Ten ranges weigh as much as the mean of all places.
-TEST(RangeBiasMap, TenRangesAtAPlaceGiveHalfWayBetweenTheirErrorAndTheMean) {
+// Ten ranges weigh as much as the mean of all positions.
+TEST(RangeBiasMap, TenRangesAtAPositionGiveHalfWayBetweenTheirErrorAndTheMean) {
   const RangeBiasMap map({mapped(0.0, 0.3, 10), mapped(100.0, 0.0, 990)}, {kAnchor});
   EXPECT_NEAR(map.bias_m(1), 0.003, 1e-12);
   EXPECT_NEAR(map.bias_m(1, {0.0, 0.0}), 0.1515, 1e-9);
