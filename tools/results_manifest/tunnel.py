@@ -80,7 +80,7 @@ INSPECTION_ROWS = [
     Row("other rings reported as moved", "inspection.lining.false_findings", count),
     Row("cells (ring × 10°): RMS error, mm", "inspection.lining.cell_rmse_mm", ".2f"),
     Row("coverage of the 95 % intervals of the cells", "inspection.lining.cell_coverage_95", ".1%", min),
-    Row("position of the findings, maximum error, m", "inspection.lining.max_position_error_m", ".2f"),
+    Row("position of the findings, maximum error, m", "inspection.lining.max_place_error_m", ".2f"),
     Row("water body 18 m ahead of the coil: error, m", "inspection.water.position_error_m", ".2f"),
     Row("water bodies missed / false alarms", pair("inspection.water.missed", "inspection.water.false_alarms"), as_text, None),
     Row("95 % interval contains the distance", lambda m: next(
