@@ -65,14 +65,15 @@ TEST(RunsTable, ACrashedRunIsARowWithEmptyCells) {
 }
 
 TEST(ComparisonTable, SaysThePairedDifference) {
-  // Differences 0.1 and 0.2: mean 0.15, standard deviation 0.0707, t(1) = 12.71: half width 0.635.
+  // Differences 0.1 and 0.2: mean 0.15, standard deviation 0.0707, t(1) = 12.71: half width 0.635; t = 3, p = 0.205.
   const SweepManifest manifest = two_by_two();
   const SweepRows rows = rows_taking(1.0);
   const io::Table table = comparison_table(manifest, rows, evaluate_progress(manifest, rows));
   ASSERT_EQ(table.rows.size(), 2u);
   EXPECT_NEAR(std::get<double>(table.rows[1][7]), 0.15, 1e-12);
   EXPECT_NEAR(std::get<double>(table.rows[1][9]), 0.15 + 0.6353, 1e-4);
-  EXPECT_EQ(std::get<std::string>(table.rows[1][10]), "no difference");
+  EXPECT_NEAR(std::get<double>(table.rows[1][10]), 0.2048, 1e-4);
+  EXPECT_EQ(std::get<std::string>(table.rows[1][11]), "no difference");
   EXPECT_THAT(comparison_text(manifest, rows, evaluate_progress(manifest, rows)), HasSubstr("no difference"));
 }
 
