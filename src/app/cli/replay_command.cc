@@ -9,7 +9,6 @@
 #include "app/run/run_loop.h"
 #include "core/error.h"
 #include "render/film/replay.h"
-#include "score/pose/trajectory_error.h"
 
 namespace patrol::app {
 namespace {
@@ -75,8 +74,7 @@ ExitCode replay_command(const ReplayOptions& options) {
   settings.map = files.map;
   const RunRecord record = read_run_record(directory.log());
   if (!record.has_estimate()) throw InputError(fmt::format("{}: contains no pose estimate", directory.log().string()));
-  const Pose2 T_world_map =
-      files.map ? files.T_site_map() : score::align_at_start(record.T_map_body, record.T_world_body);
+  const Pose2 T_world_map = pose_of_map(record, files.map ? std::optional(files.T_site_map()) : std::nullopt);
   sim::AssembledModel model = sim::assemble_model(files.world_xml.string(), files.robot_urdf.string(),
                                                   start_in_world(scenario, files), all_static_obstacles(scenario));
 

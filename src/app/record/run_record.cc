@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "io/logs/run_log.h"
+#include "score/pose/trajectory_error.h"
 
 namespace patrol::app {
 namespace {
@@ -53,6 +54,12 @@ RunRecord read_run_record(const std::filesystem::path& log_mcap) {
   record.is_complete = io::read_run_log(log_mcap, handlers);
   if (record.T_world_body.empty()) throw InputError(fmt::format("{}: contains no ground truth", log_mcap.string()));
   return record;
+}
+
+Pose2 pose_of_map(const RunRecord& record, const std::optional<Pose2>& T_world_given_map) {
+  if (T_world_given_map) return *T_world_given_map;
+  if (!record.registrations.empty()) return record.registrations.back().T_site_map;
+  return score::align_at_start(record.T_map_body, record.T_world_body);
 }
 
 }  // namespace patrol::app
