@@ -10,6 +10,7 @@ import re
 import subprocess
 
 RECORDS = "tools/tables"
+SHOWN_COMMANDS = 5  # of a table, in its caption
 NOT_MADE = "Not made by `tools/results` yet"
 
 
@@ -48,7 +49,9 @@ def caption(record):
     """Line above a table: commit, date, seeds and commands."""
     if not record["made"]:
         return f"*{NOT_MADE}. Commit: {record['commit']}. Date: {record['date']}. Seeds: {record['seeds']}. Command: {record['commands'][0]}.*"
-    commands = "; ".join(f"`{command}`" for command in record["commands"])
+    commands = "; ".join(f"`{command}`" for command in record["commands"][:SHOWN_COMMANDS])
+    if len(record["commands"]) > SHOWN_COMMANDS:
+        commands += f"; {len(record['commands']) - SHOWN_COMMANDS} more in `{RECORDS}/{record['name']}.json`"
     return (f"*By `tools/results --only {record['name']}` on {record['date']} at commit {record['commit']}. "
             f"Seeds: {record['seeds']}. {'Commands' if len(record['commands']) > 1 else 'Command'}: {commands}.*")
 
