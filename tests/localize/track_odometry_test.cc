@@ -1,10 +1,8 @@
 #include "localize/track_odometry.h"
 
 #include <array>
+#include <chrono>
 #include <cmath>
-#include <deque>
-#include <functional>
-#include <limits>
 #include <numbers>
 
 #include <Eigen/LU>
@@ -12,37 +10,15 @@
 
 #include "core/error.h"
 #include "core/geometry/angles.h"
-#include "tests/support/tracked_drive.h"
+#include "tests/localize/odometry_drive.h"
 
 namespace patrol::localize::track_odometry_test {
 namespace {
 
 using test::make_tour;
 using test::make_tracked_robot;
-using test::stand_then_drive;
 using test::TrackedDrive;
 using test::TrackedDriveSettings;
-
-/// Which messages get through at a time.
-struct Channels {
-  bool imu = true, ticks = true;
-};
-using Outage = std::function<Channels(double time_s)>;
-
-void run(TrackedDrive& drive, TrackOdometry& odometry, double until_s, const Outage& outage = nullptr) {
-  while (to_seconds(drive.now()) < until_s) {
-    drive.step();
-    const Channels on = outage ? outage(to_seconds(drive.now())) : Channels{};
-    if (on.imu) odometry.add(drive.imu());
-    if (on.ticks && drive.has_ticks()) odometry.add(drive.ticks());
-  }
-}
-
-/// Estimate less truth: x, y, yaw. Odom starts where the robot has stood, which is the world's origin.
-Eigen::Vector3d planar_error(const TrackOdometry& odometry, const TrackedDrive& drive) {
-  const Pose2 estimate = to_pose2(odometry.estimate()->T_odom_body), truth = to_pose2(drive.T_world_body());
-  return {estimate.x - truth.x, estimate.y - truth.y, wrap_angle(estimate.yaw - truth.yaw)};
-}
 
 double nees(const TrackOdometry& odometry, const TrackedDrive& drive) {
   const Eigen::Vector3d error = planar_error(odometry, drive);
@@ -60,9 +36,6 @@ Pose2 by_counters_alone(const Pose2& before, const TrackTicks& last, const Track
 /// Mean of 20 values of chi-square with three degrees of freedom: 95 % lie between these (chi-square of 60, 2.5 %
 /// and 97.5 %, over 20).
 constexpr double kLowNees = 40.48 / 20.0, kHighNees = 83.30 / 20.0;
-
-/// Settings for the IMU of the plant's defaults, which is better than that of the data sheet.
-TrackOdometrySettings for_plant() { return {.gyro_bias_std_radps = 5e-3, .accel_bias_std_mps2 = 0.05}; }
 
 constexpr std::array<double, 3> kNeesTimes_s{30.0, 60.0, 120.0};
 
@@ -209,180 +182,6 @@ TEST(TrackOdometry, WithoutRestAnEstimateIsGivenAfterSixSeconds) {
   run(drive, odometry, 6.1);
   ASSERT_TRUE(odometry.estimate());
   EXPECT_GT(odometry.health().gyro_z_bias_std_radps, 0.004) << "nothing has shown the bias";
-}
-
-TEST(TrackOdometry, OnIceTheBodyStaysWithinThreeSigmaOfItsPosition) {
-  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    TrackedDriveSettings settings;
-    settings.friction = [](double time_s) { return time_s > 2.5 && time_s < 9.0 ? 0.0 : 0.8; };
-    TrackedDrive drive(make_tracked_robot(), stand_then_drive({0.5, 0.5}), settings, seed);
-    TrackOdometry odometry(make_tracked_robot(), {});
-    run(drive, odometry, 2.9);
-    const double std_before = std::sqrt(odometry.estimate()->planar_covariance(0, 0));
-    run(drive, odometry, 9.0);  // 5.7 s of belts at 0.5 m/s: 2.9 m by the counters
-    EXPECT_LT(drive.way_m(), 0.01);
-    EXPECT_TRUE(odometry.health().is_slipping);
-    const double std = std::sqrt(odometry.estimate()->planar_covariance(0, 0));
-    EXPECT_LT(std::abs(planar_error(odometry, drive).x()), 3.0 * std);
-    EXPECT_LT(std::abs(planar_error(odometry, drive).x()), 0.6);
-    EXPECT_GT(std, 0.2 + std_before) << "a map matcher or UWB must be let in";
-
-    run(drive, odometry, 12.0);  // the tracks have taken hold
-    EXPECT_FALSE(odometry.health().is_slipping);
-    EXPECT_NEAR(odometry.estimate()->twist.linear.x(), drive.speed_mps(), 0.05);
-    EXPECT_LT(std::abs(planar_error(odometry, drive).x()), 3.0 * std);
-  }
-}
-
-TEST(TrackOdometry, CountersFrozenForFourSecondsAreSurvivedAndReported) {
-  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    TrackedDrive drive(make_tracked_robot(), make_tour(), {}, seed);
-    TrackOdometry odometry(make_tracked_robot(), {});
-    run(drive, odometry, 8.0);
-    const TrackTicks frozen = drive.ticks();
-    while (to_seconds(drive.now()) < 12.0) {
-      drive.step();
-      odometry.add(drive.imu());
-      if (drive.has_ticks()) odometry.add(TrackTicks{drive.now(), frozen.left, frozen.right});
-    }
-    EXPECT_TRUE(odometry.health().is_slipping);
-    const double std = std::sqrt(odometry.estimate()->planar_covariance(0, 0));
-    EXPECT_LT(std::abs(planar_error(odometry, drive).x()), 3.0 * std);
-    run(drive, odometry, 14.0);
-    EXPECT_FALSE(odometry.health().is_slipping);
-    // Believing them would have lost 4 s at 0.6 m/s: 2.4 m.
-    EXPECT_LT(std::abs(planar_error(odometry, drive).x()), 0.5);
-  }
-}
-
-// The tracks stop from 0.6 m/s, and the accelerometer does not measure it, as when the robot is lifted and put down.
-TEST(TrackOdometry, AStopThatTheAccelerometerMissesIsFoundAfterAtMostThreeSecondsAtRest) {
-  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    TrackedDrive drive(
-        make_tracked_robot(),
-        [](double time_s, const Pose3&) {
-          return time_s > 2.0 && time_s < 6.0 ? test::Belts{0.6, 0.6} : test::Belts{};
-        },
-        {}, seed);
-    TrackOdometry odometry(make_tracked_robot(), {});
-    run(drive, odometry, 5.9);
-    bool has_slipped = false;
-    while (to_seconds(drive.now()) < 9.5) {
-      drive.step();
-      Imu imu = drive.imu();
-      if (to_seconds(drive.now()) < 6.6) imu.linear_acceleration_mps2.x() = 0.0;
-      odometry.add(imu);
-      if (drive.has_ticks()) odometry.add(drive.ticks());
-      has_slipped = has_slipped || odometry.health().is_slipping;
-    }
-    EXPECT_TRUE(has_slipped);
-    EXPECT_FALSE(odometry.health().is_slipping);
-    EXPECT_LT(odometry.estimate()->twist.linear.norm(), 0.01);
-    const double error_m = std::abs(planar_error(odometry, drive).x());
-    EXPECT_LT(error_m, 0.5);
-    run(drive, odometry, 14.0);
-    EXPECT_NEAR(std::abs(planar_error(odometry, drive).x()), error_m, 0.01);
-  }
-}
-
-TEST(TrackOdometry, SilentCountersAreReportedAndTheCovarianceGrows) {
-  TrackedDrive drive(make_tracked_robot(), make_tour(), {}, 5);
-  TrackOdometry odometry(make_tracked_robot(), {});
-  run(drive, odometry, 8.0);
-  const double std_before = std::sqrt(odometry.estimate()->planar_covariance(0, 0));
-  run(drive, odometry, 11.0, [](double) { return Channels{.ticks = false}; });
-  EXPECT_TRUE(odometry.health().encoders_timed_out);
-  const double std = std::sqrt(odometry.estimate()->planar_covariance(0, 0));
-  EXPECT_GT(std, 2.0 * std_before);
-  EXPECT_LT(std::abs(planar_error(odometry, drive).x()), 3.0 * std);
-  run(drive, odometry, 12.0);
-  EXPECT_FALSE(odometry.health().encoders_timed_out);
-}
-
-TEST(TrackOdometry, TwoSecondsWithoutImuRotateWithTheTracksAndAreReported) {
-  TrackedDrive drive(make_tracked_robot(), make_tour(), {}, 6);
-  TrackOdometry odometry(make_tracked_robot(), {});
-  run(drive, odometry, 16.0);
-  const double yaw_std_before = std::sqrt(odometry.estimate()->planar_covariance(2, 2));
-  run(drive, odometry, 18.0, [](double) { return Channels{.imu = false}; });
-  EXPECT_TRUE(odometry.health().imu_timed_out);
-  const double yaw_std = std::sqrt(odometry.estimate()->planar_covariance(2, 2));
-  EXPECT_GT(yaw_std, 2.0 * yaw_std_before);
-  EXPECT_LT(std::abs(planar_error(odometry, drive).z()), 3.0 * yaw_std);
-  run(drive, odometry, 19.0);
-  EXPECT_FALSE(odometry.health().imu_timed_out);
-}
-
-TEST(TrackOdometry, AFrozenImuCountsAsSilent) {
-  TrackedDrive drive(make_tracked_robot(), make_tour(), {}, 7);
-  TrackOdometry odometry(make_tracked_robot(), {});
-  run(drive, odometry, 10.0);
-  Imu frozen = drive.imu();
-  while (to_seconds(drive.now()) < 11.0) {
-    drive.step();
-    frozen.stamp = drive.now();
-    odometry.add(frozen);
-    if (drive.has_ticks()) odometry.add(drive.ticks());
-  }
-  EXPECT_TRUE(odometry.health().imu_timed_out);
-  EXPECT_GT(odometry.health().num_rejected_messages, 200U);
-}
-
-TEST(TrackOdometry, CountersFortyMillisecondsLateChangeTheEndOfThirtySecondsByLessThanFiveCentimeters) {
-  TrackedDrive drive(make_tracked_robot(), make_tour(), {}, 8);
-  TrackOdometry punctual(make_tracked_robot(), for_plant()), late(make_tracked_robot(), for_plant());
-  std::deque<TrackTicks> under_way;
-  while (to_seconds(drive.now()) < 30.0) {
-    drive.step();
-    punctual.add(drive.imu());
-    late.add(drive.imu());
-    if (!drive.has_ticks()) continue;
-    punctual.add(drive.ticks());
-    under_way.push_back(drive.ticks());
-    if (under_way.size() <= 2) continue;
-    late.add(under_way.front());
-    under_way.pop_front();
-  }
-  const Eigen::Vector3d difference = late.estimate()->T_odom_body.position - punctual.estimate()->T_odom_body.position;
-  EXPECT_LT(difference.head<2>().norm(), 0.05);
-  EXPECT_EQ(late.health().num_slip_events, 0U);
-}
-
-TEST(TrackOdometry, RepeatedOldAndBrokenMessagesAreRejectedAndChangeNothing) {
-  TrackedDrive drive(make_tracked_robot(), make_tour(), {}, 9);
-  TrackOdometry clean(make_tracked_robot(), {}), pestered(make_tracked_robot(), {});
-  while (to_seconds(drive.now()) < 8.0) {
-    drive.step();
-    clean.add(drive.imu());
-    pestered.add(drive.imu());
-    pestered.add(drive.imu());
-    Imu broken = drive.imu();
-    broken.stamp += std::chrono::milliseconds(1);
-    broken.angular_velocity_radps.x() = std::numeric_limits<double>::quiet_NaN();
-    pestered.add(broken);
-    if (!drive.has_ticks()) continue;
-    clean.add(drive.ticks());
-    pestered.add(drive.ticks());
-    pestered.add(drive.ticks());
-  }
-  EXPECT_EQ(clean.estimate()->T_odom_body.position, pestered.estimate()->T_odom_body.position);
-  EXPECT_EQ(pestered.health().num_rejected_messages, 2U * 2000U + 400U);
-}
-
-TEST(TrackOdometry, EncodersThatRestartAtZeroCostNoMeters) {
-  TrackedDrive drive(make_tracked_robot(), make_tour(), {}, 10);
-  TrackOdometry odometry(make_tracked_robot(), {});
-  run(drive, odometry, 8.0);
-  const TrackTicks at_restart = drive.ticks();
-  while (to_seconds(drive.now()) < 12.0) {
-    drive.step();
-    odometry.add(drive.imu());
-    if (!drive.has_ticks()) continue;
-    const TrackTicks ticks = drive.ticks();
-    odometry.add(TrackTicks{ticks.stamp, ticks.left - at_restart.left, ticks.right - at_restart.right});
-  }
-  EXPECT_LT(planar_error(odometry, drive).head<2>().norm(), 0.25);
-  EXPECT_EQ(odometry.health().num_slip_events, 0U);
 }
 
 TEST(TrackOdometry, PosesOfAtLeastTwoSecondsAreBufferedWithTheirTilt) {

@@ -1,12 +1,9 @@
 """Tables of the street."""
 from results_tables import NONE, Row, as_text, by_seed, csv_values, markdown, pair
-from .declare import REPORT, REPORT_FIVE, Step, add, sweep, swept
+from .declare import POSE_METRICS, POSE_ROWS, REPORT, REPORT_FIVE, Step, add, sweep, swept
 
 PATROL_ROWS = [
-    Row("`pose.site.ate_rmse_m`, in the survey frame", "pose.site.ate_rmse_m"),
-    Row("`pose.aligned.rmse_m`", "pose.aligned.rmse_m"),
-    Row("`pose.nees.mean`", "pose.nees.mean", ".1f"),
-    Row("true calibration within the 95 % intervals: `calibration.within_95`", "calibration.within_95", ".0%", min),
+    *POSE_ROWS,
     Row("box 1 in the map: `site_map_error_m`", "stations.regulator_box_1.site_map_error_m"),
     Row("box 2 in the map", "stations.regulator_box_2.site_map_error_m"),
     Row("valve well 3 in the map", "stations.valve_well_3.site_map_error_m"),
@@ -21,7 +18,7 @@ WU25 = {"box 1 in the map: `site_map_error_m`": "[Wu25] 0.92–1.18", "box 2 in 
 
 add(name="street_patrol", file="worlds/street/README.md", seeds=REPORT, minutes=2,
     steps=[sweep("patrol", "street/scenarios/patrol", REPORT)],
-    values=swept(patrol=("mission.*", "pose.site.ate_rmse_m", "pose.aligned.rmse_m", "pose.nees.mean", "calibration.within_95",
+    values=swept(patrol=("mission.*", *POSE_METRICS,
                          "stations.*.site_map_error_m", "map.nearest_mean_m", "inspection.*", "performance.real_time_factor")),
     text=lambda values: by_seed(values["patrol"], PATROL_ROWS, WU25))
 

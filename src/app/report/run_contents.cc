@@ -5,7 +5,6 @@
 #include "core/error.h"
 #include "io/files/atomic_file.h"
 #include "io/maps/map_server.h"
-#include "score/pose/trajectory_error.h"
 
 namespace patrol::app {
 namespace {
@@ -28,8 +27,7 @@ void read_junit(RunContents& run) {
   }
 }
 
-/// Pose of map in world as scored. Without a score, or with an older one, the trajectories are aligned at their first
-/// common pose.
+/// Pose of map in world as scored; without a score, that of the replay.
 Pose2 map_in_world(const RunContents& run) {
   const auto value = [&](const char* name) {
     return io::metric_at(run.metrics, fmt::format("map.origin_in_world.{}", name));
@@ -37,7 +35,7 @@ Pose2 map_in_world(const RunContents& run) {
   const auto x_m = value("x_m"), y_m = value("y_m"), yaw_rad = value("yaw_rad");
   if (x_m && y_m && yaw_rad) return {*x_m, *y_m, *yaw_rad};
   if (!overlap(run.record.T_map_body, run.record.T_world_body)) return {};
-  return score::align_at_start(run.record.T_map_body, run.record.T_world_body);
+  return pose_of_map(run.record, std::nullopt);
 }
 
 }  // namespace

@@ -5,7 +5,8 @@
 
 namespace patrol::stack {
 
-/// Settings of the sensor monitor. The age of a reading is counted from its stamp, so late readings count as missing.
+/// Settings of the sensor monitor. The age of a reading is counted from its stamp, less the slow drift of its clock, so
+/// late readings count as missing.
 struct SensorMonitorSettings {
   double lidar_timeout_s = 0.6;  ///< age limit of sensors with SensorTimeout::kLidar (core/sensors/registry.h)
   double proprioception_timeout_s = 0.15;  ///< age limit of sensors with SensorTimeout::kMotion
