@@ -18,6 +18,7 @@ namespace patrol::app {
 namespace {
 
 constexpr int kMaxSubmissions = 3;
+constexpr int kMaxQueries = 10;
 constexpr std::chrono::seconds kPoll{2};
 
 class SlurmJob {
@@ -30,9 +31,15 @@ class SlurmJob {
   /// Whether tasks of the job are waiting, running or just ending.
   bool is_in_queue() const {
     if (id_.empty()) return false;
-    // squeue fails for a job that ended long ago.
-    const ProgramResult queue = run_program({"squeue", "--noheader", "--jobs=" + id_, "--format=%T"});
-    return queue.exit_code == 0 && !queue.output.empty();
+    // Asked for one job, squeue fails both when that job ended long ago and when the controller does not answer; asked
+    // for all jobs, it fails only in the second case.
+    for (int attempt = 0; attempt < kMaxQueries; ++attempt) {
+      if (attempt > 0) std::this_thread::sleep_for(kPoll);
+      const ProgramResult queue = run_program({"squeue", "--noheader", "--me", "--format=%F"});
+      if (queue.exit_code != 0) continue;
+      return ("\n" + queue.output).find("\n" + id_ + "\n") != std::string::npos;
+    }
+    throw std::runtime_error(fmt::format("squeue failed {} times; repeat the command to wait for job {}", kMaxQueries, id_));
   }
 
   void submit(const SweepOptions& options, const std::string& shards) {

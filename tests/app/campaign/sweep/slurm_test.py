@@ -13,7 +13,7 @@ import sys
 import time
 import unittest
 
-from sweeping import SweepCase
+from sweeping import SOURCE, SweepCase
 
 HOST = socket.gethostname().split(".")[0]
 CONFIGURATION = """\
@@ -134,6 +134,22 @@ class Slurm(SweepCase):
         self.assertTrue((out / "INCOMPLETE").exists())
         self.assertEqual(self.sweep(out, *call).returncode, 0)
         self.assert_same_tables(out)
+
+    def test_a_controller_that_does_not_answer_once_is_asked_again(self):
+        folder = self.path / "programs"
+        folder.mkdir()
+        squeue = folder / "squeue"
+        squeue.write_text(f"#!/bin/sh\n[ -e {folder}/failed ] || {{ touch {folder}/failed; exit 1; }}\n"
+                          f'exec {shutil.which("squeue")} "$@"\n')
+        squeue.chmod(0o755)
+        out = self.path / "controller_restarts"
+        done = subprocess.run(self.command(out, *self.vary, "--engine", "slurm", "--slurm-tasks", "2"), text=True,
+                              capture_output=True, cwd=SOURCE, timeout=280,
+                              env={**os.environ, "PATH": f"{folder}:{os.environ['PATH']}"})
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertTrue((folder / "failed").exists())
+        self.assert_same_tables(out)
+        self.assertEqual(done.stderr.count("\n"), 1, done.stderr)  # one submission
 
     def test_what_sbatch_refuses_is_3(self):
         done = self.sweep(self.path / "refused", *self.vary, "--engine", "slurm", "--slurm-option=--partition=none")
