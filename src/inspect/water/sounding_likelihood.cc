@@ -16,11 +16,16 @@ constexpr std::array kSteelDecay_s = {1e-5, 3e-5, 1e-4, 3e-4};
 constexpr double kSteelReferenceTime_s = 1e-5;
 constexpr Eigen::Index kForm = 7;  // an isotropic part and the six products of the components of an axis
 constexpr Eigen::Index kShape = 4;
+constexpr double kReferenceRock_spm = 0.003;  // conductivity to which `tunnel_air_std` and `layer_std` refer
 
-/// Relative response of the tunnel's air, 1 at 2 us.
-double air_decay(double time_s) { return 2e-6 / time_s; }
+/// Ratios of the response of the tunnel's air to that of the rock, relative to the ratio across the axis at 2 us. Fit
+/// to the response of an infinite tunnel of 5.5 m radius in rock of 0.003 S/m: -0.070 along and -0.226 across at 2 us,
+/// -0.014 and -0.076 at 10 us.
+double air_along(double time_s) { return 0.3 * (2e-6 / time_s); }
+double air_across(double time_s) { return std::pow(2e-6 / time_s, 0.7); }
 
-/// Relative response of a layer, 1 at early times: a conductive sheet some 10 m away, in rock.
+/// Ratio of the response of a layer to that of the rock, relative to its early value: a conductive sheet some 10 m
+/// away.
 double layer_decay(double time_s) { return 1.0 / std::sqrt(1.0 + time_s / 1e-5); }
 
 TemGateLayout gate_layout(const SoundingErrorSettings& settings, const std::vector<OrientedSounding>& soundings) {
@@ -84,10 +89,10 @@ Eigen::VectorXd log_slopes(const std::vector<double>& gate_s, const Eigen::Vecto
 SoundingLikelihood::SoundingLikelihood(const SoundingErrorSettings& settings,
                                        const std::vector<OrientedSounding>& soundings)
     : gates_(gate_layout(settings, soundings)),
-      num_gates_(static_cast<Eigen::Index>(soundings.front().sounding.gate_s.size())),
+      gate_s_(soundings.front().sounding.gate_s),
+      num_gates_(static_cast<Eigen::Index>(gate_s_.size())),
       body_shape_std_(settings.body_shape_std) {
   const auto count = static_cast<Eigen::Index>(soundings.size());
-  const std::vector<double>& gate_s = soundings.front().sounding.gate_s;
   Eigen::MatrixXd rate(num_gates_, count), std(num_gates_, count);
   for (Eigen::Index i = 0; i < count; ++i) {
     const OrientedSounding& oriented = soundings[static_cast<std::size_t>(i)];
@@ -105,12 +110,10 @@ SoundingLikelihood::SoundingLikelihood(const SoundingErrorSettings& settings,
     }
   }
   const Eigen::MatrixXd smooth = fit_quadratic_form(rate, std, axes_);
-  const Eigen::VectorXd mean = smooth.rowwise().mean(), slopes = log_slopes(gate_s, mean);
+  const Eigen::VectorXd mean = smooth.rowwise().mean(), slopes = log_slopes(gate_s_, mean);
   std = (std.array().square() + (settings.model_std * smooth.array()).square()).sqrt();
 
-  const Eigen::Index forms = static_cast<Eigen::Index>(kSteelDecay_s.size()) + (settings.tunnel_air_std > 0.0 ? 1 : 0) +
-                             (settings.layer_std > 0.0 ? 1 : 0);
-  const Eigen::Index common = 2 + kForm * forms;
+  const Eigen::Index common = 2 + kForm * static_cast<Eigen::Index>(kSteelDecay_s.size());
   const Eigen::Index data = num_gates_ * count;
   data_.resize(data);
   inverse_std_.resize(data);
@@ -118,7 +121,7 @@ SoundingLikelihood::SoundingLikelihood(const SoundingErrorSettings& settings,
   for (Eigen::Index i = 0; i < count; ++i) {
     for (Eigen::Index gate = 0; gate < num_gates_; ++gate) {
       const Eigen::Index row = i * num_gates_ + gate;
-      const double time_s = gate_s[static_cast<std::size_t>(gate)], signal = smooth(gate, i) / std(gate, i);
+      const double time_s = gate_s_[static_cast<std::size_t>(gate)], signal = smooth(gate, i) / std(gate, i);
       inverse_std_[row] = 1.0 / std(gate, i);
       data_[row] = rate(gate, i) / std(gate, i);
       nuisances_(row, 0) = settings.gain_std * signal;
@@ -135,14 +138,45 @@ SoundingLikelihood::SoundingLikelihood(const SoundingErrorSettings& settings,
         add_form(settings.steel_response * std::exp((kSteelReferenceTime_s - time_s) / decay_s) * inverse_std_[row],
                  settings.steel_anisotropy);
       }
-      if (settings.tunnel_air_std > 0.0)
-        add_form(settings.tunnel_air_std * air_decay(time_s) * mean[gate] * inverse_std_[row], 1.0);
-      if (settings.layer_std > 0.0)
-        add_form(settings.layer_std * layer_decay(time_s) * mean[gate] * inverse_std_[row], 1.0);
     }
   }
+  set_ground_deviations(settings);
   const Eigen::Index columns = nuisances_.cols();
   nuisance_information_.compute(Eigen::MatrixXd::Identity(columns, columns) + nuisances_.transpose() * nuisances_);
+}
+
+/// Sets the deviations of the response of the ground from that of homogeneous rock, for rock of unit conductivity. The
+/// tunnel's axis is the x axis of the mount.
+void SoundingLikelihood::set_ground_deviations(const SoundingErrorSettings& settings) {
+  const Eigen::VectorXd rock = gated_whole_space_response(gates_, 1.0);
+  const Eigen::Index num_air = settings.tunnel_air_std > 0.0 ? 2 : 0, num_layer = settings.layer_std > 0.0 ? kForm : 0;
+  air_ = Eigen::MatrixXd::Zero(data_.size(), num_air);
+  layer_ = Eigen::MatrixXd::Zero(data_.size(), num_layer);
+  for (Eigen::Index row = 0; row < data_.size(); ++row) {
+    const Eigen::Index gate = row % num_gates_;
+    const Eigen::Vector3d& axis = axes_[static_cast<std::size_t>(row / num_gates_)];
+    const double time_s = gate_s_[static_cast<std::size_t>(gate)], cosine_squared = axis.x() * axis.x();
+    const double scale = rock[gate] * inverse_std_[row];
+    if (num_air > 0) {
+      air_(row, 0) = settings.tunnel_air_std * air_along(time_s) * cosine_squared * scale;
+      air_(row, 1) = settings.tunnel_air_std * air_across(time_s) * (1.0 - cosine_squared) * scale;
+    }
+    if (num_layer > 0) {
+      layer_(row, 0) = settings.layer_std * layer_decay(time_s) * scale;
+      layer_.block<1, 6>(row, 1) = layer_(row, 0) * products(axis).transpose();
+    }
+  }
+}
+
+/// Returns the deviations of the ground's response for a conductivity of the rock, whitened, followed by `num_others`
+/// columns of zeros, [datum][deviation]. The response of rock is proportional to the power 3/2 of its conductivity.
+/// That of the air, relative to it, is proportional to the conductivity; that of a layer is inversely proportional.
+Eigen::MatrixXd SoundingLikelihood::deviations(double rock_spm, Eigen::Index num_others) const {
+  const double rock = rock_spm * std::sqrt(rock_spm), ratio = rock_spm / kReferenceRock_spm;
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(data_.size(), air_.cols() + layer_.cols() + num_others);
+  all.leftCols(air_.cols()) = (rock * ratio) * air_;
+  all.middleCols(air_.cols(), layer_.cols()) = (rock / ratio) * layer_;
+  return all;
 }
 
 // With residual r and nuisances B, both whitened: r' (I + B B')^-1 r = r'r - (B'r)' (I + B'B)^-1 (B'r).
@@ -151,17 +185,18 @@ double SoundingLikelihood::log_likelihood_residual(const Eigen::VectorXd& whiten
   return -0.5 * (whitened.squaredNorm() - projected.dot(nuisance_information_.solve(projected)));
 }
 
-// The deviations C from a sphere, whitened with unit prior standard deviation, depend on the parameters: with M = (I +
-// B B')^-1 and G = C'M C, r' (I + B B' + C C')^-1 r = r'M r - (C'M r)' (I + G)^-1 (C'M r), and the determinant grows by
+// The deviations C of the model, whitened with unit prior standard deviation, depend on the parameters: with M = (I + B
+// B')^-1 and G = C'M C, r' (I + B B' + C C')^-1 r = r'M r - (C'M r)' (I + G)^-1 (C'M r), and the determinant grows by
 // that of I + G.
 double SoundingLikelihood::log_likelihood_residual(const Eigen::VectorXd& whitened,
-                                                   const Eigen::MatrixXd& shape) const {
-  const Eigen::MatrixXd projected_shape = nuisances_.transpose() * shape,
-                        solved_shape = nuisance_information_.solve(projected_shape);
-  const Eigen::MatrixXd information = Eigen::MatrixXd::Identity(shape.cols(), shape.cols()) +
-                                      shape.transpose() * shape - projected_shape.transpose() * solved_shape;
+                                                   const Eigen::MatrixXd& deviations) const {
+  if (deviations.cols() == 0) return log_likelihood_residual(whitened);
+  const Eigen::MatrixXd projected_deviations = nuisances_.transpose() * deviations,
+                        solved = nuisance_information_.solve(projected_deviations);
+  const Eigen::MatrixXd information = Eigen::MatrixXd::Identity(deviations.cols(), deviations.cols()) +
+                                      deviations.transpose() * deviations - projected_deviations.transpose() * solved;
   const Eigen::VectorXd projected =
-      shape.transpose() * whitened - solved_shape.transpose() * (nuisances_.transpose() * whitened);
+      deviations.transpose() * whitened - solved.transpose() * (nuisances_.transpose() * whitened);
   const Eigen::LLT<Eigen::MatrixXd> factor(information);
   const double log_determinant = 2.0 * factor.matrixLLT().diagonal().array().log().sum();
   return log_likelihood_residual(whitened) + 0.5 * (projected.dot(factor.solve(projected)) - log_determinant);
@@ -190,8 +225,9 @@ Eigen::MatrixXd SoundingLikelihood::shape_deviations(const GatedSphereResponse& 
 
 double SoundingLikelihood::log_likelihood_rock(double rock_spm) const {
   const Eigen::VectorXd rock = gated_whole_space_response(gates_, rock_spm);
-  return log_likelihood_residual(data_ -
-                                 rock.replicate(static_cast<Eigen::Index>(axes_.size()), 1).cwiseProduct(inverse_std_));
+  return log_likelihood_residual(
+      data_ - rock.replicate(static_cast<Eigen::Index>(axes_.size()), 1).cwiseProduct(inverse_std_),
+      deviations(rock_spm, 0));
 }
 
 double SoundingLikelihood::log_likelihood_body(double rock_spm, const ConductiveSphere& sphere,
@@ -206,8 +242,10 @@ double SoundingLikelihood::log_likelihood_body(double rock_spm, const Conductive
     whitened.segment(row, num_gates_) -=
         (across + cosine * cosine * along).cwiseProduct(inverse_std_.segment(row, num_gates_));
   }
-  if (body_shape_std_ <= 0.0) return log_likelihood_residual(whitened);
-  return log_likelihood_residual(whitened, shape_deviations(body, direction));
+  const Eigen::Index num_shape = body_shape_std_ > 0.0 ? kShape : 0;
+  Eigen::MatrixXd all = deviations(rock_spm, num_shape);
+  if (num_shape > 0) all.rightCols(num_shape) = shape_deviations(body, direction);
+  return log_likelihood_residual(whitened, all);
 }
 
 }  // namespace patrol::inspect

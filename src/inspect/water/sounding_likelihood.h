@@ -29,10 +29,13 @@ class SoundingLikelihood {
 
  private:
   double log_likelihood_residual(const Eigen::VectorXd& whitened) const;
-  double log_likelihood_residual(const Eigen::VectorXd& whitened, const Eigen::MatrixXd& shape) const;
+  double log_likelihood_residual(const Eigen::VectorXd& whitened, const Eigen::MatrixXd& deviations) const;
+  void set_ground_deviations(const SoundingErrorSettings& settings);
+  Eigen::MatrixXd deviations(double rock_spm, Eigen::Index num_others) const;
   Eigen::MatrixXd shape_deviations(const GatedSphereResponse& body, const Eigen::Vector3d& direction) const;
 
   TemGates gates_;
+  std::vector<double> gate_s_;  ///< [gate]
   Eigen::Index num_gates_;
   double body_shape_std_;
   std::vector<Eigen::Vector3d> axes_;  ///< [sounding]
@@ -40,6 +43,7 @@ class SoundingLikelihood {
   Eigen::VectorXd data_, inverse_std_;
   Eigen::MatrixXd nuisances_;  ///< [datum][nuisance], scaled to unit prior standard deviation
   Eigen::LLT<Eigen::MatrixXd> nuisance_information_;
+  Eigen::MatrixXd air_, layer_;  ///< [datum][deviation], in rock of unit conductivity; without columns if not modeled
 };
 
 }  // namespace patrol::inspect

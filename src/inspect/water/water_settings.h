@@ -42,16 +42,17 @@ struct SoundingErrorSettings {
   double time_shift_std_s = 5e-8;   ///< time shift of the gates, common to all soundings
   double steel_response = 1e-8;     ///< response of nearby steel at 10 us, T/s per A m2
   double steel_anisotropy = 0.3;    ///< anisotropic part of the steel response, relative to `steel_response`
-  // Errors of the model of rock and body. 0: the model is taken as exact; the values for real ground follow from
-  // physics (sim/tem), but their effect on the intervals has not been measured.
-  /// Relative response of the tunnel's air at 2 us, isotropic and anisotropic; it decreases as 1/t. A tunnel of 5 m
-  /// radius in rock of 0.003 S/m: -0.06 along and -0.2 across an infinite tunnel.
-  double tunnel_air_std = 0.0;
-  /// Relative early response of layers and fault zones, isotropic and anisotropic. A zone of 0.01 S, 9 m away: 0.2.
+  /// Relative response of the tunnel's air across its axis, at 2 us in rock of 0.003 S/m; 0.3 of it along the axis. A
+  /// tunnel of 5.5 m radius: -0.23 far from the face, half of it at the face (sim/tem/tunnel_air.h). With 0, 7 of 10
+  /// faces without water are reported as water.
+  double tunnel_air_std = 0.2;
+  /// Relative early response of layers and fault zones in rock of 0.003 S/m, isotropic and anisotropic. A zone of 0.01
+  /// S, 9 m away: 0.2. With 0, a wet fault zone from 0.007 S on is reported as a body of water. With 0.02, it is not,
+  /// but neither are 4 of 20 water bodies: small bodies and zones decay alike.
   double layer_std = 0.0;
   /// Relative deviation of the response of a body from that of a sphere, along and across the line of sight. Spheroids
-  /// of aspect ratios 1/2 to 2 and the same volume have 0.63 to 1.59 times the moment of the sphere: 0.25.
-  double body_shape_std = 0.0;
+  /// of aspect ratios 1/2 to 2 and the same volume have 0.63 to 1.59 times the moment of the sphere.
+  double body_shape_std = 0.25;
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -74,8 +75,9 @@ struct WaterPriorSettings {
   double min_rock_spm = 3e-4;  ///< limits of the rock conductivity, uniform in its logarithm
   double max_rock_spm = 0.03;
   double water_spm = 0.6;  ///< median conductivity of water or mud, as measured by a probe in the seepage of the face
-  double water_log_std = 0.2;  ///< standard deviation of the logarithm of the conductivity
-  double min_radius_m = 2.0;   ///< limits of the radius, uniform in its logarithm
+  /// Standard deviation of the logarithm of the conductivity: mud and mineralized water have 0.3 to 1 S/m.
+  double water_log_std = 0.35;
+  double min_radius_m = 2.0;  ///< limits of the radius, uniform in its logarithm
   double max_radius_m = 10.0;
   /// Maximum distance to the center of the body, which is uniform in a cone ahead; behind the robot it would be
   /// indistinguishable.

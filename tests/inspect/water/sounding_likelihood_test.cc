@@ -60,7 +60,9 @@ TEST(SoundingLikelihood, AGainOfFivePerCentAndASmallShiftOfTimeCostLittleAndTwen
         aimed.sounding.std_tps[gate] *= gain;
       }
     }
-    return SoundingLikelihood({}, all).log_likelihood_body(0.003, kBody, kAhead);
+    // Deviations of ground and body from the model explain a part of a gain.
+    return SoundingLikelihood({.tunnel_air_std = 0.0, .body_shape_std = 0.0}, all)
+        .log_likelihood_body(0.003, kBody, kAhead);
   };
   EXPECT_LT(scaled(1.0) - scaled(1.05), 4.0);  // (0.05 / 0.03)^2 / 2 = 1.4, and what time's shift and steel make of it
   EXPECT_GT(scaled(1.0) - scaled(1.3), 8.0);
@@ -76,6 +78,46 @@ TEST(SoundingLikelihood, TheTruthIsNotBeatenByAWeakerWorld) {
                                0.0026, {.distance_m = 17.2, .radius_m = 6.0, .conductivity_spm = 0.6}, kAhead))
         << seed;
   }
+}
+
+// Half of the air of an infinite tunnel of 5.5 m radius in rock of 0.003 S/m: -0.035 along and -0.11 across at 2 us.
+TEST(SoundingLikelihood, TheAirOfATunnelCostsLessThanTwoOnlyIfItIsModeled) {
+  const auto cost = [](double tunnel_air_std) {
+    std::vector<OrientedSounding> with_air = soundings(kNone);
+    for (OrientedSounding& aimed : with_air) {
+      const double cosine = std::cos(aimed.pose.yaw_rad) * std::cos(aimed.pose.pitch_rad);
+      for (std::size_t gate = 0; gate < aimed.sounding.rate_tps.size(); ++gate) {
+        const double ratio = 2e-6 / aimed.sounding.gate_s[gate];
+        aimed.sounding.rate_tps[gate] *=
+            1.0 - 0.035 * ratio * cosine * cosine - 0.11 * std::pow(ratio, 0.7) * (1.0 - cosine * cosine);
+      }
+    }
+    const SoundingErrorSettings settings{.tunnel_air_std = tunnel_air_std};
+    return SoundingLikelihood(settings, soundings(kNone)).log_likelihood_rock(0.003) -
+           SoundingLikelihood(settings, with_air).log_likelihood_rock(0.003);
+  };
+  EXPECT_LT(cost(0.2), 2.0);
+  EXPECT_GT(cost(0.0), 10.0);
+}
+
+TEST(SoundingLikelihood, AnOblateBodyIsMoreLikelyWithDeviationsFromASphere) {
+  // 1.4 times the moment of the sphere along the line of sight and 0.8 times across it.
+  std::vector<OrientedSounding> oblate = soundings(kNone);
+  const std::vector<OrientedSounding> sphere = soundings(kBody);
+  const Eigen::Vector3d direction = kAhead;
+  for (std::size_t i = 0; i < oblate.size(); ++i) {
+    const Eigen::Vector3d axis =
+        quaternion_from_rpy(0.0, oblate[i].pose.pitch_rad, oblate[i].pose.yaw_rad) * Eigen::Vector3d::UnitX();
+    const double cosine_squared = std::pow(axis.dot(direction), 2);
+    for (std::size_t gate = 0; gate < oblate[i].sounding.rate_tps.size(); ++gate) {
+      double& rate = oblate[i].sounding.rate_tps[gate];
+      rate += (sphere[i].sounding.rate_tps[gate] - rate) * (1.4 * cosine_squared + 0.8 * (1.0 - cosine_squared));
+    }
+  }
+  const auto log_likelihood = [&](double body_shape_std) {
+    return SoundingLikelihood({.body_shape_std = body_shape_std}, oblate).log_likelihood_body(0.003, kBody, kAhead);
+  };
+  EXPECT_GT(log_likelihood(0.25), log_likelihood(0.0) + 10.0);
 }
 
 TEST(SoundingLikelihood, RefusesNoSoundingsAndGatesThatDiffer) {

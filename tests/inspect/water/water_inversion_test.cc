@@ -31,7 +31,9 @@ WaterResult invert(const ConductiveSphere& body, const WaterSettings& settings =
 }
 
 TEST(WaterInversion, ABodySixteenMetresAheadIsPutWithinAMetreAndAHalfAndWarnedOf) {
-  const WaterResult result = invert(kBody);
+  WaterSettings exact_model = quick();
+  exact_model.errors.tunnel_air_std = exact_model.errors.body_shape_std = 0.0;
+  const WaterResult result = invert(kBody, exact_model);
   EXPECT_EQ(result.soundings, 35);
   EXPECT_GT(result.evidence, 100.0);
   ASSERT_TRUE(result.is_found);

@@ -39,7 +39,8 @@ class SlurmJob {
       if (queue.exit_code != 0) continue;
       return ("\n" + queue.output).find("\n" + id_ + "\n") != std::string::npos;
     }
-    throw std::runtime_error(fmt::format("squeue failed {} times; repeat the command to wait for job {}", kMaxQueries, id_));
+    throw std::runtime_error(
+        fmt::format("squeue failed {} times; repeat the command to wait for job {}", kMaxQueries, id_));
   }
 
   void submit(const SweepOptions& options, const std::string& shards) {
