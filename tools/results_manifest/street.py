@@ -10,7 +10,7 @@ PATROL_ROWS = [
     Row("map to nearest surface: `map.nearest_mean_m`", "map.nearest_mean_m"),
     Row("distance walked, m", "mission.distance_m", ".0f", min),
     Row("leaks found / false alarms", pair("inspection.leaks_found", "inspection.false_alarms"), as_text, None),
-    Row("falls / collisions", lambda m: f"{m['mission.fell']:d} / {m['mission.collisions']}", as_text, None),
+    Row("falls / collisions", pair("mission.fell", "mission.collisions", "{:d} / {}"), as_text, None),
     Row("simulated s per wall s", "performance.real_time_factor", ".1f", min),
 ]
 WU25 = {"box 1 in the map: `site_map_error_m`": "[Wu25] 0.92–1.18", "box 2 in the map": "[Wu25] 0.92–1.18",
