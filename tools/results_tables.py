@@ -98,13 +98,15 @@ def shown(value, form):
 
 @dataclasses.dataclass
 class Row:
-    """Row of a table with one column per run: a metric, or a function of the metrics of a run."""
+    """Row of a table with one column per run: a metric, a function of the metrics of a run, or how the run ended ("end")."""
     label: str
     value: typing.Union[str, typing.Callable]
     form: typing.Union[str, typing.Callable] = ".3f"
     worst: typing.Callable = max  # of the values; None: neither mean nor worst
 
     def of(self, run):
+        if self.value == "end":
+            return run.get("end")
         return self.value(run["metrics"]) if callable(self.value) else run["metrics"].get(self.value)
 
 
@@ -137,6 +139,11 @@ def pair(first, second, form="{} / {}"):
 
 def as_text(value):
     return value if isinstance(value, str) else f"{value:g}"
+
+
+def met_or_missed(end):
+    """How a run of a sweep ended, as the verdict on its expectations."""
+    return {"done": "met", "expectation missed": "missed"}.get(end, end)
 
 
 def yes_no(value):

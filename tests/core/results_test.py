@@ -224,12 +224,13 @@ class PlantedFaults(Repository):
 
 class Tables(unittest.TestCase):
     def test_columns_are_seeds_with_mean_and_worst(self):
-        runs = [{"seed": seed, "metrics": {"a": value, "d": 10 - value}} for seed, value in ((1, 0.2), (2, 0.4))]
+        runs = [{"seed": seed, "end": end, "metrics": {"a": value, "d": 10 - value}}
+                for seed, value, end in ((1, 0.2, "done"), (2, 0.4, "expectation missed"))]
         rows = [tables.Row("a, m", "a", ".1f"), tables.Row("d", "d", ".1f", min), tables.Row("b", "b"),
-                tables.Row("both", tables.pair("a", "d"), tables.as_text, None)]
+                tables.Row("both", tables.pair("a", "d"), tables.as_text, None), tables.Row("verdict", "end", tables.met_or_missed, None)]
         self.assertEqual(tables.by_seed(runs, rows).splitlines()[2:],
                          ["| a, m | 0.2 | 0.4 | 0.3 | 0.4 |", "| d | 9.8 | 9.6 | 9.7 | 9.6 |", "| b | – | – | – | – |",
-                          "| both | 0.2 / 9.8 | 0.4 / 9.6 | – | – |"])
+                          "| both | 0.2 / 9.8 | 0.4 / 9.6 | – | – |", "| verdict | met | missed | – | – |"])
 
     def test_metrics_of_a_sweep_are_named_as_in_expectations(self):
         with tempfile.TemporaryDirectory() as name:

@@ -1,6 +1,6 @@
 """Tables of the street."""
 from results_tables import NONE, Row, as_text, by_seed, csv_values, markdown, pair
-from .declare import POSE_METRICS, POSE_ROWS, REPORT, REPORT_FIVE, Step, add, sweep, swept
+from .declare import POSE_METRICS, POSE_ROWS, REPORT, REPORT_FIVE, VERDICT_ROW, Step, add, sweep, swept
 
 PATROL_ROWS = [
     *POSE_ROWS,
@@ -11,6 +11,7 @@ PATROL_ROWS = [
     Row("distance walked, m", "mission.distance_m", ".0f", min),
     Row("leaks found / false alarms", pair("inspection.leaks_found", "inspection.false_alarms"), as_text, None),
     Row("falls / collisions", pair("mission.fell", "mission.collisions", "{:d} / {}"), as_text, None),
+    VERDICT_ROW,
     Row("simulated s per wall s", "performance.real_time_factor", ".1f", min),
 ]
 WU25 = {"box 1 in the map: `site_map_error_m`": "[Wu25] 0.92–1.18", "box 2 in the map": "[Wu25] 0.92–1.18",

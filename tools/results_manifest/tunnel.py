@@ -3,7 +3,7 @@ import re
 
 from results_blocks import ResultsError
 from results_tables import NONE, Row, as_text, by_seed, count, markdown, missed_expectations, pair, run_values, seeds_of, span, yes_no
-from .declare import CALIBRATION_ROW, REPORT, REPORT_FIVE, Step, add, sweep, swept
+from .declare import CALIBRATION_ROW, REPORT, REPORT_FIVE, VERDICT_ROW, Step, add, sweep, swept
 
 
 def at_goal(goal, quantity, scale, digits):
@@ -36,6 +36,7 @@ NAVIGATION_ROWS = [
     CALIBRATION_ROW,
     Row("track encoders, IMU and UWB: `range_pose.ate_rmse_m`", "range_pose.ate_rmse_m", ".2f"),
     Row("track encoders and IMU: `odometry.ate_rmse_m`", "odometry.ate_rmse_m", ".0f"),
+    VERDICT_ROW,
 ]
 
 add(name="tunnel_navigation", file="worlds/tunnel/README.md", seeds=REPORT, minutes=33,
@@ -95,6 +96,7 @@ INSPECTION_ROWS = [
     Row("`pose.site.ate_rmse_m`", "pose.site.ate_rmse_m"),
     Row("`pose.nees.mean`", "pose.nees.mean", ".1f"),
     CALIBRATION_ROW,
+    VERDICT_ROW,
 ]
 
 add(name="tunnel_inspection", file="worlds/tunnel/README.md", seeds=REPORT, minutes=7,
