@@ -37,11 +37,13 @@ class Table:
     text: typing.Callable
     logs: tuple = ()
     targets: tuple = ()
+    files: tuple = ()
     needs: tuple = ()
 def number(folders):
     return int((folders["run"] / "value").read_text())
 TABLES = [
-    Table("answer", "page.md", "1 to 2", 1, [Step("run", ["sh", "-c", "cat src/number > {out}/value"])], number, lambda value: f"| {value} |"),
+    Table("answer", "page.md", "1 to 2", 1, [Step("run", ["sh", "-c", "cat src/number > {out}/value"])], number, lambda value: f"| {value} |",
+          files=("tests",)),
     Table("twice", "page.md", "1", 1, [], lambda tables: 2 * tables["answer"], lambda value: f"| {value} |", needs=("answer",)),
 ]
 """
@@ -135,6 +137,20 @@ class Command(Repository):
         self.assertEqual(self.results("--only", "answer").returncode, 0)
         self.assertIn("| 5 |", self.page())
         self.assertIn("| 42 |", self.page())  # its table has not been made again
+
+    def test_a_commit_of_the_files_of_one_table_makes_only_that_one_due(self):
+        self.results()
+        self.commit()
+        (self.root / "tests").mkdir()
+        (self.root / "tests/one_test.cc").write_text("// a test that prints figures\n")
+        done = self.results()
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("uncommitted change", done.stderr)
+        self.assertEqual(self.results("--only", "twice").returncode, 0)
+        self.commit()
+        listed = self.results("--list").stdout.splitlines()
+        self.assertIn("1 relevant commits old", listed[0])
+        self.assertIn("up to date", listed[1])
 
     def test_changed_commands_make_a_table_due(self):
         self.results()

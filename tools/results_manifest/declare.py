@@ -39,6 +39,7 @@ class Table:
     text: typing.Callable  # values -> Markdown
     logs: tuple = ()  # files below --logs that must exist
     targets: tuple = ("patrol",)  # built before the commands
+    files: tuple = ()  # that determine the figures besides the program, the robots and the worlds: git's pathspecs
     needs: tuple = ()  # tables whose records are used; values gets {name: values}
 
 

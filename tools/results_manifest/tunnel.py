@@ -196,4 +196,5 @@ def water_text(runs):
 # Exit status 1: a bound of the test is missed; the figures show it.
 add(name="tunnel_water_ground", file="worlds/tunnel/README.md", seeds="those of the table, drawn by the test", minutes=2,
     steps=[Step("water", ["build/tests/scenario/scenario_test", "--gtest_filter=WaterAhead.InRealGround*"])],
-    values=lambda folders: water_runs((folders["water"].parent / "water.txt").read_text()), text=water_text, targets=("scenario_test",))
+    values=lambda folders: water_runs((folders["water"].parent / "water.txt").read_text()), text=water_text, targets=("scenario_test",),
+    files=("tests/scenario/water_ahead_test.cc", "tests/support"))
