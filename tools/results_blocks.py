@@ -106,14 +106,26 @@ def documents(root):
     return sorted(root.rglob("*.md"))
 
 
+def results_outside(text):
+    """Headers of tables outside of blocks that have the columns of a results table: a mean, a worst value, a result, or a seed."""
+    text = re.sub(r"^<!-- results: (\S+) -->$.*?^<!-- end of results: \1 -->$", "", text, flags=re.M | re.S)
+    text = re.sub(r"^```.*?^```", "", text, flags=re.M | re.S)
+    headers = re.findall(r"^(\|.*\|) *\n\|(?: *:?-+:? *\|)+ *$", text, re.M)
+    return [header for header in headers
+            if any(re.fullmatch(r"mean|worst|result|S = \d+|seed \d+", cell.strip()) for cell in header.strip("|").split("|"))]
+
+
 def faults_of(root, tables):
-    """One line for each block without a table, table without a record or a block, and block that differs from its record."""
+    """One line for each block without a table, table without a record or a block, block that differs from its record, and results table
+    outside of a block."""
     faults, known = [], {table.name: table for table in tables}
     for document in documents(root):
-        for name in names_in(document.read_text()):
-            place = document.relative_to(root).as_posix()
+        place, text = document.relative_to(root).as_posix(), document.read_text()
+        for name in names_in(text):
             if name not in known or known[name].file != place:
                 faults.append(f"{place}: {name}: not a table of this file in tools/results_manifest")
+        for header in results_outside(text):
+            faults.append(f"{place}: {header}: a table of results outside of a block: add it to tools/results_manifest")
     for table in tables:
         try:
             record = load_record(root, table.name)

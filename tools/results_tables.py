@@ -4,6 +4,7 @@ import dataclasses
 import json
 import re
 import typing
+import xml.etree.ElementTree
 
 NONE = "–"
 
@@ -47,6 +48,20 @@ def run_values(folder, metrics):
     return chosen(json.loads(file.read_text()), metrics) if file.exists() else {}
 
 
+def missed_expectations(folder):
+    """Names of the metrics whose expectation a `patrol run` missed, from its JUnit report; first the reason if the run has failed. None
+    without a report."""
+    file = folder / "junit.xml"
+    if not file.exists():
+        return None
+    missed = []
+    for case in xml.etree.ElementTree.parse(file).iter("testcase"):
+        bad = next((child for child in case if child.tag in ("failure", "error")), None)
+        if bad is not None:
+            missed.append(f"run: {bad.get('message')}" if case.get("name") == "run" else case.get("name").split()[0])
+    return missed
+
+
 def sweep_values(folder, metrics):
     """Runs of `patrol sweep`: variant, seed, end and the metrics of the given patterns."""
     manifest = json.loads((folder / "sweep.json").read_text())
@@ -83,13 +98,15 @@ def shown(value, form):
 
 @dataclasses.dataclass
 class Row:
-    """Row of a table with one column per run: a metric, or a function of the metrics of a run."""
+    """Row of a table with one column per run: a metric, a function of the metrics of a run, or how the run ended ("end")."""
     label: str
     value: typing.Union[str, typing.Callable]
     form: typing.Union[str, typing.Callable] = ".3f"
     worst: typing.Callable = max  # of the values; None: neither mean nor worst
 
     def of(self, run):
+        if self.value == "end":
+            return run.get("end")
         return self.value(run["metrics"]) if callable(self.value) else run["metrics"].get(self.value)
 
 
@@ -124,6 +141,11 @@ def as_text(value):
     return value if isinstance(value, str) else f"{value:g}"
 
 
+def met_or_missed(end):
+    """How a run of a sweep ended, as the verdict on its expectations."""
+    return {"done": "met", "expectation missed": "missed"}.get(end, end)
+
+
 def yes_no(value):
     return "yes" if value else "no"
 
@@ -132,48 +154,87 @@ def count(value):
     return f"{value:.0f}"
 
 
-def span(runs, path, form):
-    """Least and largest value of a metric."""
+def with_count(text, number, total):
+    """Text about the runs that have a value, with their number if it is not that of all runs."""
+    return text if number == total else f"{text} ({number} of {total} runs)"
+
+
+def span(runs, path, form, unit=""):
+    """Least and largest value of a metric with its unit; the number of runs that have it, unless all have."""
     values = [run["metrics"][path] for run in runs if path in run["metrics"]]
-    return f"{format(min(values), form)} to {format(max(values), form)}" if values else NONE
+    return with_count(f"{format(min(values), form)} to {format(max(values), form)}{unit}", len(values), len(runs)) if values else NONE
+
+
+# --- Studies ------------------------------------------------------------------------------------------------------------------
+
+
+def three_digits(value):
+    """Number with three significant digits and without an exponent for large ones."""
+    rounded = float(f"{value:.3g}")
+    return f"{rounded:.3g}" if abs(rounded) < 1000 else f"{rounded:,.0f}"
 
 
 def interval(row):
-    """Mean of a study's result with half of its 95 % interval, the mean with three digits."""
+    """Mean of a study's result with half of its 95 % interval, the mean with three digits; the dash if no run has a value."""
+    if not row.get("mean"):
+        return NONE
     mean = float(row["mean"])
     if not row.get("mean_low"):
-        return f"{mean:.3g}"
-    return f"{mean:.3g} ± {(float(row['mean_high']) - float(row['mean_low'])) / 2:.2g}"
+        return three_digits(mean)
+    return f"{three_digits(mean)} ± {(float(row['mean_high']) - float(row['mean_low'])) / 2:.2g}"
+
+
+def p_value(row, column):
+    """Adjusted p-value in brackets; nothing if there is no comparison."""
+    return f" [{float(row[column]):.2g}]" if row.get(column) else ""
+
+
+def compared(row, num_runs):
+    """Mean and interval of a study's result, with the adjusted p-value of its difference from the reference, the number of pairs if it is
+    less than that of the runs, and the number of failed runs with the adjusted p-value of equal failure rates."""
+    text = interval(row) + p_value(row, "adjusted_p_value")
+    failed = int(row.get("failed") or 0)
+    if failed:
+        text += f"; {failed} failed{p_value(row, 'adjusted_failure_p_value')}"
+    is_compared = row.get("adjusted_p_value") or failed
+    if is_compared and row.get("pairs") and int(row["pairs"]) < num_runs:
+        text += f"; {row['pairs']} pairs"
+    return text
+
+
+def study_cell(row, form, num_runs):
+    if form == "published":
+        return f"{float(row['published']):.3g}" if row.get("published") else NONE
+    if form == "compared":
+        return compared(row, num_runs)
+    if form == "interval":
+        return interval(row)
+    return three_digits(float(row["mean"])) if row.get("mean") else NONE
 
 
 def study_table(rows, head, columns, key="method"):
-    """Pivots results of a study. `columns`: (filter, figure, form), with forms "published", "mean", "interval"; one line per value
-    of `key`, in the order of the rows."""
+    """Pivots results of a study. `columns`: (filter, figure, form), with forms "published", "mean", "interval", "compared"; one line per
+    value of `key`, in the order of the rows."""
+    num_runs = max((int(row.get("seeds") or 0) + int(row.get("failed") or 0) for row in rows), default=0)
     lines = []
     for name in dict.fromkeys(row[key] for row in rows):
         line = [name]
         for wanted, figure, form in columns:
             found = [row for row in rows if row[key] == name and row["figure"] == figure
                      and all(row[column] == value for column, value in wanted.items())]
-            if not found:
-                line.append(NONE)
-            elif form == "published":
-                line.append(f"{float(found[0]['published']):.3g}" if found[0].get("published") else NONE)
-            else:
-                line.append(interval(found[0]) if form == "interval" else f"{float(found[0]['mean']):.3g}")
+            line.append(study_cell(found[0], form, num_runs) if found else NONE)
         if any(cell != NONE for cell in line[1:]):
             lines.append(line)
     return markdown(head, lines)
 
 
 def study_values(folder):
-    """Results and processor times of a study."""
-    columns = ("world", "method", "particles", "figure", "published", "mean", "mean_low", "mean_high")
-    values = csv_values(folder / "results.csv", columns)
-    for row in csv_values(folder / "performance.csv", columns):
-        values.append(row)
+    """Results and processor times of a study, with the failures, pairs and adjusted p-values of its comparisons."""
+    texts = ("world", "method", "particles", "figure", "seeds", "failed", "pairs")
+    numbers = ("published", "mean", "mean_low", "mean_high", "adjusted_p_value", "adjusted_failure_p_value")
+    values = csv_values(folder / "results.csv", texts + numbers) + csv_values(folder / "performance.csv", texts + numbers)
     for row in values:
-        for column in ("published", "mean", "mean_low", "mean_high"):
+        for column in numbers:
             if row.get(column):
                 row[column] = f"{float(row[column]):.6g}"
     return values

@@ -20,7 +20,8 @@ def benchmarks_text(values):
 add(name="benchmarks", file="tests/README.md", seeds="none", minutes=6,
     steps=[Step(name, [f"build/tests/bench/{name}_bench", "--benchmark_out_format=json", "--benchmark_out={out}/benchmark.json"], (0,))
            for name in BENCHMARKS],
-    values=benchmarks_values, text=benchmarks_text, targets=tuple(f"{name}_bench" for name in BENCHMARKS))
+    values=benchmarks_values, text=benchmarks_text, targets=tuple(f"{name}_bench" for name in BENCHMARKS),
+    files=("tests/bench",))
 
 
 def mutations_values(folders):
@@ -34,4 +35,5 @@ def mutations_text(values):
 
 
 add(name="mutations", file="tests/mutation/README.md", seeds="those of the tests", minutes=120,
-    steps=[Step("mutations", ["tests/mutation/run", "--out", "{out}"])], values=mutations_values, text=mutations_text, targets=())
+    steps=[Step("mutations", ["tests/mutation/run", "--out", "{out}"])], values=mutations_values, text=mutations_text, targets=(),
+    files=("tests",))

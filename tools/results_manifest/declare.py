@@ -2,7 +2,7 @@
 import dataclasses
 import typing
 
-from results_tables import Row, sweep_values
+from results_tables import Row, met_or_missed, sweep_values
 
 # Seeds of published figures: nothing is tuned on them. Change them here only.
 REPORT = "2001..2010"
@@ -10,11 +10,13 @@ REPORT_FIVE = "2001..2005"
 
 # Accuracy of an as-built robot that makes its map.
 POSE_METRICS = ("pose.site.ate_rmse_m", "pose.aligned.rmse_m", "pose.nees.mean", "calibration.within_95")
+CALIBRATION_ROW = Row("true calibration within the 95 % intervals: `calibration.within_95`", "calibration.within_95", ".0%", min)
+VERDICT_ROW = Row("expectations of the scenario", "end", met_or_missed, None)
 POSE_ROWS = [
     Row("`pose.site.ate_rmse_m`, in the survey frame", "pose.site.ate_rmse_m"),
     Row("`pose.aligned.rmse_m`", "pose.aligned.rmse_m"),
     Row("`pose.nees.mean`", "pose.nees.mean", ".1f"),
-    Row("true calibration within the 95 % intervals: `calibration.within_95`", "calibration.within_95", ".0%", min),
+    CALIBRATION_ROW,
 ]
 
 
@@ -37,6 +39,7 @@ class Table:
     text: typing.Callable  # values -> Markdown
     logs: tuple = ()  # files below --logs that must exist
     targets: tuple = ("patrol",)  # built before the commands
+    files: tuple = ()  # that determine the figures besides the program, the robots and the worlds: git's pathspecs
     needs: tuple = ()  # tables whose records are used; values gets {name: values}
 
 

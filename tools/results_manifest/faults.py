@@ -1,5 +1,5 @@
 """Tables of fault matrices and sweeps."""
-from results_tables import NONE, markdown
+from results_tables import NONE, markdown, with_count
 from .declare import REPORT_FIVE, Step, add, sweep, swept
 
 for world, scenario in (("street", "short"), ("tunnel", "docking")):
@@ -13,9 +13,11 @@ def stamps_text(values):
     rows = []
     for offset in offsets:
         runs = [run["metrics"] for run in values["stamps"] if run["variant"] == offset]
-        errors = [run["pose.site.ate_rmse_m"] for run in runs]
-        rows.append([f"{1000 * float(offset.split('=')[1]):+.0f} ms", f"{sum(errors) / len(errors):.3f}", f"{max(errors):.3f}",
-                     f"{sum(run['mission.completed'] for run in runs)} of {len(runs)}", sum(run["mission.fell"] for run in runs)])
+        errors = [run["pose.site.ate_rmse_m"] for run in runs if "pose.site.ate_rmse_m" in run]
+        figures = [f"{sum(errors) / len(errors):.3f}", with_count(f"{max(errors):.3f}", len(errors), len(runs))] if errors else [NONE, NONE]
+        rows.append([f"{1000 * float(offset.split('=')[1]):+.0f} ms", *figures,
+                     f"{sum(run.get('mission.completed', False) for run in runs)} of {len(runs)}",
+                     sum(run.get("mission.fell", False) for run in runs)])
     return markdown(["lidar stamps", "`pose.site.ate_rmse_m`, mean", "worst", "completed", "falls"], rows)
 
 

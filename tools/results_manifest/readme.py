@@ -1,5 +1,5 @@
 """Tables of README.md."""
-from results_tables import NONE, markdown, span
+from results_tables import NONE, markdown, span, with_count
 from .declare import Step, add
 
 
@@ -21,13 +21,18 @@ add(name="street_short", file="README.md", seeds="1", minutes=0.1,
     values=short_values, text=short_text)
 
 
+def worst_docking(runs):
+    """Largest docking error; runs that did not dock have none."""
+    errors = [run["metrics"]["docking.position_error_m.max"] for run in runs if "docking.position_error_m.max" in run["metrics"]]
+    return with_count(f"at most {1000 * max(errors):.1f} mm", len(errors), len(runs)) if errors else NONE
+
+
 def summary_values(tables):
     patrol, navigation = tables["street_patrol"]["patrol"], tables["tunnel_navigation"]["navigation"]
     scenarios, inspection = tables["tunnel_scenarios"], tables["tunnel_inspection"]["inspection"]
-    goals = [span(navigation, f"goals.goal_{i}.position_error_m.mean", ".3f") for i in (1, 2, 3)]
-    worst = max(run["metrics"]["docking.position_error_m.max"] for run in scenarios["docking"])
-    return {"patrol": span(patrol, "pose.site.ate_rmse_m", ".3f"), "goals": "; ".join(goals), "docking": f"{1000 * worst:.1f}",
-            "lining": span(inspection, "inspection.lining.max_error_mm", ".2f"), "patrol_seeds": len(patrol),
+    goals = [span(navigation, f"goals.goal_{i}.position_error_m.mean", ".3f", " m") for i in (1, 2, 3)]
+    return {"patrol": span(patrol, "pose.site.ate_rmse_m", ".3f", " m"), "goals": "; ".join(goals), "docking": worst_docking(scenarios["docking"]),
+            "lining": span(inspection, "inspection.lining.max_error_mm", ".2f", " mm"), "patrol_seeds": len(patrol),
             "navigation_seeds": len(navigation), "docking_seeds": len(scenarios["docking"]), "lining_seeds": len(inspection),
             "log": next(row["error"] for row in tables["slam_logs"] if row["log"] == "intel" and row["method"] == "graph"),
             "substation": next(row["mean"] for row in tables["study_substation"]
@@ -36,11 +41,11 @@ def summary_values(tables):
 
 def summary_text(values):
     return markdown(["result", "value", "seeds"], [
-        ["[street patrol](worlds/street/README.md), quadruped, 194 m: position error in the survey frame", f"{values['patrol']} m", values["patrol_seeds"]],
-        ["[tunnel navigation](worlds/tunnel/README.md), tracked robot: mean errors at goals 1, 2 and 3", f"{values['goals']} m",
+        ["[street patrol](worlds/street/README.md), quadruped, 194 m: position error in the survey frame", values["patrol"], values["patrol_seeds"]],
+        ["[tunnel navigation](worlds/tunnel/README.md), tracked robot: mean errors at goals 1, 2 and 3", values["goals"],
          values["navigation_seeds"]],
-        ["[tunnel docking](worlds/tunnel/README.md)", f"at most {values['docking']} mm", values["docking_seeds"]],
-        ["[lining deformation](worlds/tunnel/README.md#inspection) of 3, 6 and 12 mm: maximum error", f"{values['lining']} mm",
+        ["[tunnel docking](worlds/tunnel/README.md)", values["docking"], values["docking_seeds"]],
+        ["[lining deformation](worlds/tunnel/README.md#inspection) of 3, 6 and 12 mm: maximum error", values["lining"],
          values["lining_seeds"]],
         ["[recorded log](src/slam/README.md), Intel Research Lab: mean relation error", values["log"], NONE],
         ["[substation map](src/app/study/README.md), 923 m: distance to the nearest surface", f"{float(values['substation']):.3f} m", 5]])

@@ -1,6 +1,6 @@
 """Tables of the street."""
-from results_tables import NONE, Row, as_text, by_seed, csv_values, markdown, pair
-from .declare import POSE_METRICS, POSE_ROWS, REPORT, REPORT_FIVE, Step, add, sweep, swept
+from results_tables import NONE, Row, as_text, by_seed, csv_values, markdown, pair, span
+from .declare import POSE_METRICS, POSE_ROWS, REPORT, REPORT_FIVE, VERDICT_ROW, Step, add, sweep, swept
 
 PATROL_ROWS = [
     *POSE_ROWS,
@@ -10,7 +10,8 @@ PATROL_ROWS = [
     Row("map to nearest surface: `map.nearest_mean_m`", "map.nearest_mean_m"),
     Row("distance walked, m", "mission.distance_m", ".0f", min),
     Row("leaks found / false alarms", pair("inspection.leaks_found", "inspection.false_alarms"), as_text, None),
-    Row("falls / collisions", lambda m: f"{m['mission.fell']:d} / {m['mission.collisions']}", as_text, None),
+    Row("falls / collisions", pair("mission.fell", "mission.collisions", "{:d} / {}"), as_text, None),
+    VERDICT_ROW,
     Row("simulated s per wall s", "performance.real_time_factor", ".1f", min),
 ]
 WU25 = {"box 1 in the map: `site_map_error_m`": "[Wu25] 0.92–1.18", "box 2 in the map": "[Wu25] 0.92–1.18",
@@ -34,15 +35,17 @@ def leaks_text(values):
             runs = [run for run in values["leaks"] if f"={station}" in run["variant"] and run["variant"].endswith(f"={direction}")]
             metrics = [run["metrics"] for run in runs]
             found = [one["inspection.findings.0.position_error_m"] for one in metrics if one.get("inspection.leaks_found")]
+            columns = span([{"metrics": one} for one in metrics if one.get("inspection.leaks_found")], "inspection.findings.0.column_ppm_m", ".0f")
             rows.append([title, f"{direction}°", f"{len(found)} of {len(runs)}", sum(one.get("inspection.false_alarms", 0) for one in metrics),
-                         f"{max(found):.3f}" if found else NONE, f"{sum(one.get('mission.completed', False) for one in metrics)} of {len(runs)}"])
-    return markdown(["leak", "wind", "found", "false alarms", "position error of the finding, worst, m", "completed"], rows)
+                         f"{max(found):.3f}" if found else NONE, columns, f"{sum(one.get('mission.completed', False) for one in metrics)} of {len(runs)}"])
+    return markdown(["leak", "wind", "found", "false alarms", "position error of the finding, worst, m", "column of gas, ppm m", "completed"], rows)
 
 
 add(name="street_leaks", file="worlds/street/README.md", seeds=REPORT, minutes=13,
     steps=[sweep("leaks", "street/scenarios/patrol", REPORT, "--vary", "leaks.0.at=" + ",".join(LEAK_STATIONS),
                  "--vary", "wind.direction_deg=" + ",".join(map(str, WIND_DIRECTIONS)))],
-    values=swept(leaks=("inspection.leaks_found", "inspection.false_alarms", "inspection.findings.*.position_error_m", "mission.completed")),
+    values=swept(leaks=("inspection.leaks_found", "inspection.false_alarms", "inspection.findings.*.position_error_m", "inspection.findings.*.column_ppm_m",
+                        "mission.completed")),
     text=leaks_text)
 
 BUDGET_METRICS = ("pose.site.ate_rmse_m", "map.nearest_mean_m")

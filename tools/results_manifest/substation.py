@@ -1,6 +1,6 @@
 """Tables of the substation."""
 from results_tables import Row, by_seed
-from .declare import POSE_METRICS, POSE_ROWS, REPORT, add, sweep, swept
+from .declare import POSE_METRICS, POSE_ROWS, REPORT, VERDICT_ROW, add, sweep, swept
 
 MAPPING_ROWS = [
     *POSE_ROWS,
@@ -8,6 +8,7 @@ MAPPING_ROWS = [
     Row("`map.coverage`", "map.coverage", ".2f", min),
     Row("distance driven, m", "mission.distance_m", ".0f", min),
     Row("collisions", "mission.collisions", ".0f"),
+    VERDICT_ROW,
 ]
 
 add(name="substation_mapping", file="worlds/substation/README.md", seeds=REPORT, minutes=9,

@@ -1,6 +1,9 @@
 """Tables of the tunnel."""
-from results_tables import NONE, Row, as_text, by_seed, count, markdown, pair, run_values, seeds_of, span, yes_no
-from .declare import REPORT, REPORT_FIVE, Step, add, sweep, swept
+import re
+
+from results_blocks import ResultsError
+from results_tables import NONE, Row, as_text, by_seed, count, markdown, missed_expectations, pair, run_values, seeds_of, span, yes_no
+from .declare import CALIBRATION_ROW, REPORT, REPORT_FIVE, VERDICT_ROW, Step, add, sweep, swept
 
 
 def at_goal(goal, quantity, scale, digits):
@@ -11,6 +14,8 @@ def at_goal(goal, quantity, scale, digits):
 
 
 def reached(metrics):
+    if "mission.collisions" not in metrics:
+        return None
     arrivals = sum(value for path, value in metrics.items() if path.endswith(".arrivals") and path.startswith("goals."))
     return f"{arrivals} / {metrics['mission.collisions']}"
 
@@ -28,14 +33,16 @@ NAVIGATION_ROWS = [
     Row("worst docking", worst_docking, as_text, None),
     Row("`pose.site.ate_rmse_m`", "pose.site.ate_rmse_m"),
     Row("`pose.nees.mean`", "pose.nees.mean", ".1f"),
+    CALIBRATION_ROW,
     Row("track encoders, IMU and UWB: `range_pose.ate_rmse_m`", "range_pose.ate_rmse_m", ".2f"),
     Row("track encoders and IMU: `odometry.ate_rmse_m`", "odometry.ate_rmse_m", ".0f"),
+    VERDICT_ROW,
 ]
 
 add(name="tunnel_navigation", file="worlds/tunnel/README.md", seeds=REPORT, minutes=33,
     steps=[sweep("navigation", "tunnel/scenarios/map_then_navigate", REPORT)],
     values=swept(navigation=("mission.*", "goals.*.arrivals", "goals.*.*.mean", "goals.*.*.std", "docking.*.max",
-                             "pose.site.ate_rmse_m", "pose.nees.mean", "range_pose.ate_rmse_m", "odometry.ate_rmse_m")),
+                             "pose.site.ate_rmse_m", "pose.nees.mean", "calibration.within_95", "range_pose.ate_rmse_m", "odometry.ate_rmse_m")),
     text=lambda values: by_seed(values["navigation"], NAVIGATION_ROWS))
 
 ENDS = ("mission.*", "docking.*.max", "docking.arrivals", "localization.max_error_m", "localization.min_trust",
@@ -48,19 +55,19 @@ def scenarios_text(values):
     degenerate = {name: [run for run in values["degenerate"] if run["variant"].endswith(name)] for name in ("true", "false")}
     return markdown(["scenario", "seeds", "result"], [
         ["`docking.yaml`", len(values["docking"]),
-         f"{done(values['docking'])}; position error {span(values['docking'], 'docking.position_error_m.max', '.4f')} m, heading error "
-         f"{span(values['docking'], 'docking.heading_error_deg.max', '.2f')}°"],
+         f"{done(values['docking'])}; position error {span(values['docking'], 'docking.position_error_m.max', '.4f', ' m')}, heading error "
+         f"{span(values['docking'], 'docking.heading_error_deg.max', '.2f', '°')}"],
         ["`low_obstacles.yaml`", len(values["low_obstacles"]),
          f"{done(values['low_obstacles'])}; collisions {span(values['low_obstacles'], 'mission.collisions', '.0f')}"],
         ["`kidnap.yaml`", len(values["kidnap"]),
-         f"{done(values['kidnap'])}; relocalized after {span(values['kidnap'], 'localization.kidnaps.0.relocalized_s', '.1f')} s"],
+         f"{done(values['kidnap'])}; relocalized after {span(values['kidnap'], 'localization.kidnaps.0.relocalized_s', '.1f', ' s')}"],
         ["`degenerate.yaml`", len(degenerate["true"]),
-         f"{done(degenerate['true'])}; maximum error {span(degenerate['true'], 'localization.max_error_m', '.3f')} m"],
+         f"{done(degenerate['true'])}; maximum error {span(degenerate['true'], 'localization.max_error_m', '.3f', ' m')}"],
         ["`degenerate.yaml` without UWB", len(degenerate["false"]),
-         f"maximum error {span(degenerate['false'], 'localization.max_error_m', '.3f')} m; minimum confidence "
+         f"maximum error {span(degenerate['false'], 'localization.max_error_m', '.3f', ' m')}; minimum confidence "
          f"{span(degenerate['false'], 'localization.min_trust', '.2f')}"],
         ["`bridge.yaml`", len(values["bridge"]),
-         f"{done(values['bridge'])}; `pose.site.ate_rmse_m` {span(values['bridge'], 'pose.site.ate_rmse_m', '.3f')} m"]])
+         f"{done(values['bridge'])}; `pose.site.ate_rmse_m` {span(values['bridge'], 'pose.site.ate_rmse_m', '.3f', ' m')}"]])
 
 
 add(name="tunnel_scenarios", file="worlds/tunnel/README.md", seeds=f"{REPORT}; low obstacles, kidnap, degenerate and bridge {REPORT_FIVE}",
@@ -88,13 +95,15 @@ INSPECTION_ROWS = [
     Row("docking error, mm", lambda m: None if "docking.position_error_m.max" not in m else 1000 * m["docking.position_error_m.max"], ".1f"),
     Row("`pose.site.ate_rmse_m`", "pose.site.ate_rmse_m"),
     Row("`pose.nees.mean`", "pose.nees.mean", ".1f"),
+    CALIBRATION_ROW,
+    VERDICT_ROW,
 ]
 
 add(name="tunnel_inspection", file="worlds/tunnel/README.md", seeds=REPORT, minutes=7,
     steps=[sweep("inspection", "tunnel/scenarios/inspection_round", REPORT)],
     values=swept(inspection=("mission.*", "inspection.lining.*", "inspection.lining.rings.*.reported_mm", "inspection.water.*",
                              "inspection.water.findings.*.distance_holds", "docking.*.max", "pose.site.ate_rmse_m",
-                             "pose.nees.mean")),
+                             "pose.nees.mean", "calibration.within_95")),
     text=lambda values: by_seed(values["inspection"], INSPECTION_ROWS))
 
 ROUND_SEEDS = ("2001", "2002")
@@ -104,8 +113,17 @@ ROUND_METRICS = ("inspection.lining.max_error_mm", "inspection.lining.false_find
 
 
 def rounds_values(folders):
-    return [{"map": seed, "seed": round_seed, "metrics": run_values(folders["rounds"] / f"{seed}_{round_seed}", ROUND_METRICS)}
+    runs = [{"map": seed, "seed": round_seed, "folder": folders["rounds"] / f"{seed}_{round_seed}"}
             for seed in seeds_of(REPORT) for round_seed in ROUND_SEEDS]
+    return [{"map": run["map"], "seed": run["seed"], "metrics": run_values(run["folder"], ROUND_METRICS),
+             "missed": missed_expectations(run["folder"])} for run in runs]
+
+
+def verdict(missed):
+    """Expectations of a run: "all met", or the missed metrics; the dash if they are not recorded."""
+    if missed is None:
+        return NONE
+    return f"{len(missed)} missed: " + ", ".join(f"`{name}`" for name in missed) if missed else "all met"
 
 
 def rounds_text(values):
@@ -114,9 +132,9 @@ def rounds_text(values):
     lines = [[run["map"], run["seed"], f"{yes_no(run['metrics'].get('mission.completed', False))} / {cell(run, 'mission.collisions', 'd')}",
               cell(run, "inspection.lining.max_error_mm", ".2f"), cell(run, "inspection.lining.false_findings", "d"),
               cell(run, "inspection.water.position_error_m", ".2f"), cell(run, "docking.position_error_m.max", ".4f"),
-              cell(run, "pose.site.ate_rmse_m", ".3f"), cell(run, "pose.nees.mean", ".1f")] for run in values]
+              cell(run, "pose.site.ate_rmse_m", ".3f"), cell(run, "pose.nees.mean", ".1f"), verdict(run.get("missed"))] for run in values]
     return markdown(["seed of the map", "of the round", "completed / collisions", "rings: maximum error, mm", "other rings reported as moved",
-                     "water body: error, m", "docking error, m", "`pose.site.ate_rmse_m`", "`pose.nees.mean`"], lines)
+                     "water body: error, m", "docking error, m", "`pose.site.ate_rmse_m`", "`pose.nees.mean`", "expectations"], lines)
 
 
 # Exit status 123 of xargs: a run missed an expectation.
@@ -127,3 +145,56 @@ add(name="tunnel_inspection_maps", file="worlds/tunnel/README.md", seeds=f"maps 
                            "-I {} build/patrol run worlds/tunnel/scenarios/inspection_round.yaml --seed {} --set map={out}/../maps/$map/map.yaml "
                            "--set goals={out}/../maps/$map/nav.json --set references={out}/../maps/$map/scans --out {out}/${map}_{}; done"], (0, 123))],
     values=rounds_values, text=rounds_text)
+
+
+WATER_LINE = re.compile(r"^seed +(\d+): found (yes|no)(?:, error (\S+) m, distance (\S+) m in \[ *(\S+), *(\S+)\] (yes|no), "
+                        r"radius (\S+) m in \[ *(\S+), *(\S+)\] (yes|no))?$")
+LOCATED_M = 2.0
+
+
+def water_runs(text):
+    """Lines that the test of water ahead prints, one per seed. A body that is not found may have no figures."""
+    runs = []
+    for line in text.splitlines():
+        if not (match := WATER_LINE.match(line.strip())):
+            if re.match(r"\s*seed +\d+:", line):
+                raise ResultsError(f"water ahead: {line.strip()!r}: must be 'seed N: found yes, error E m, distance D m in [L, H] yes, "
+                                   "radius R m in [L, H] no'")
+            continue
+        seed, found, error, distance, *rest = match.groups()
+        run = {"seed": int(seed), "found": found == "yes"}
+        if run["found"]:
+            if error is None:
+                raise ResultsError(f"water ahead: {line.strip()!r}: a body that is found must have its error and intervals")
+            low, high, holds, radius, radius_low, radius_high, radius_holds = rest
+            run |= {"error_m": float(error),
+                    "distance": {"m": float(distance), "low": float(low), "high": float(high), "holds": holds == "yes"},
+                    "radius": {"m": float(radius), "low": float(radius_low), "high": float(radius_high), "holds": radius_holds == "yes"}}
+        runs.append(run)
+    if not runs:
+        raise ResultsError("water ahead: the test printed no line 'seed N: found ...'")
+    return runs
+
+
+def water_text(runs):
+    def estimate(run, quantity):
+        value = run.get(quantity)
+        return [f"{value['m']:.1f} [{value['low']:.1f}, {value['high']:.1f}]", yes_no(value["holds"])] if value else [NONE, NONE]
+
+    def held(quantity):
+        return f"{sum(run[quantity]['holds'] for run in runs if quantity in run)} of {len(runs)}"
+    lines = [[run["seed"], yes_no(run["found"]), f"{run['error_m']:.2f}" if run["found"] else NONE, *estimate(run, "distance"),
+              *estimate(run, "radius")] for run in runs]
+    errors = [run["error_m"] for run in runs if run["found"]]
+    near = sum(error < LOCATED_M for error in errors)
+    located = f"mean {sum(errors) / len(errors):.2f}, worst {max(errors):.2f}; below {LOCATED_M:g} m: {near} of {len(runs)}" if errors else NONE
+    lines.append(["all", f"{len(errors)} of {len(runs)}", located, "", held("distance"), "", held("radius")])
+    return markdown(["seed", "found", "error of the position, m", "distance [95 % interval], m", "contains the true distance",
+                     "radius [95 % interval], m", "contains the true radius"], lines)
+
+
+# Exit status 1: a bound of the test is missed; the figures show it.
+add(name="tunnel_water_ground", file="worlds/tunnel/README.md", seeds="those of the table, drawn by the test", minutes=2,
+    steps=[Step("water", ["build/tests/scenario/scenario_test", "--gtest_filter=WaterAhead.InRealGround*"])],
+    values=lambda folders: water_runs((folders["water"].parent / "water.txt").read_text()), text=water_text, targets=("scenario_test",),
+    files=("tests/scenario/water_ahead_test.cc", "tests/support"))
