@@ -6,6 +6,7 @@
 namespace patrol::stack {
 namespace {
 
+constexpr Time kDockSearchPeriod = std::chrono::seconds(1);
 constexpr Time kTeleopCommandValidity = std::chrono::milliseconds(500);  // validity of a teleoperation command
 
 DockingFeedback feedback_of(plan::DockingStatus status) {
@@ -26,20 +27,27 @@ MotionExecutor::MotionExecutor(const StackSettings& settings, const RobotDescrip
                                std::uint64_t seed)
     : navigator_(settings.navigation, robot, site_in_map.keep_out_lines, seed),
       docking_(settings.docking.maneuver),
-      dock_(site_in_map.dock) {
+      dock_(site_in_map.dock),
+      max_dock_distance_m_(settings.docking.detector.max_range_m) {
   if (dock_) dock_detector_.emplace(settings.docking.detector, dock_->profile_m);
 }
 
-void MotionExecutor::add(const LevelScan& scan, const ScanPose& pose) {
+std::optional<DockDetection> MotionExecutor::add(const LevelScan& scan, const ScanPose& pose) {
   navigator_.add_scan(scan, pose.T_map_body);
-  if (docking_.status() == plan::DockingStatus::kDocking) detect_dock(scan, pose);
+  return dock_detector_ ? detect_dock(scan, pose) : std::nullopt;
 }
 
-void MotionExecutor::detect_dock(const LevelScan& scan, const ScanPose& pose) {
-  const Pose2 T_level_expected =
-      docking_.T_level_docked(pose.T_odom_body).value_or(pose.T_map_body.inverse() * dock_->T_route_docked);
-  const std::optional<DockDetection> detection = dock_detector_->detect(scan, T_level_expected);
-  if (detection) docking_.add(*detection, pose.T_odom_body);
+std::optional<DockDetection> MotionExecutor::detect_dock(const LevelScan& scan, const ScanPose& pose) {
+  const Pose2 T_level_by_map = pose.T_map_body.inverse() * dock_->T_route_docked;
+  if (docking_.status() == plan::DockingStatus::kDocking) {
+    const std::optional<DockDetection> detection =
+        dock_detector_->detect(scan, docking_.T_level_docked(pose.T_odom_body).value_or(T_level_by_map));
+    if (detection) docking_.add(*detection, pose.T_odom_body);
+    return detection;
+  }
+  if (scan.stamp < next_dock_search_ || T_level_by_map.position().norm() > max_dock_distance_m_) return std::nullopt;
+  next_dock_search_ = scan.stamp + kDockSearchPeriod;
+  return dock_detector_->detect(scan, T_level_by_map);
 }
 
 VelocityCommand MotionExecutor::step(Time now, const Task& task, const Pose2& T_map_body, const Pose2& T_odom_body,

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "core/dock_detection.h"
 #include "core/messages.h"
 #include "core/robot_description.h"
 #include "core/route.h"
@@ -31,8 +32,9 @@ class MotionExecutor {
     navigator_.set_keep_out_lines(site_in_map.keep_out_lines);
     dock_ = site_in_map.dock;
   }
-  /// Adds obstacles, and detects the charging post while the robot docks.
-  void add(const LevelScan& scan, const ScanPose& pose);
+  /// Adds obstacles. Returns a detection of the charging post, which is searched in every scan while the robot docks,
+  /// and else once a second near the post.
+  std::optional<DockDetection> add(const LevelScan& scan, const ScanPose& pose);
   void add(const UltrasonicRange& range, const StationPose& station_pose) {
     navigator_.add_range(range, station_pose.T_level_body, station_pose.T_map_body);
   }
@@ -56,12 +58,14 @@ class MotionExecutor {
   VelocityCommand teleop_command(Time now) const;
   VelocityCommand go_to_dock(Time now, const Pose2& T_map_body, const Pose2& T_odom_body, StackOutput& output);
   VelocityCommand move_at_dock(Time now, const Pose2& T_map_body, const Pose2& T_odom_body, StackOutput& output);
-  void detect_dock(const LevelScan& scan, const ScanPose& pose);
+  std::optional<DockDetection> detect_dock(const LevelScan& scan, const ScanPose& pose);
 
   plan::Navigator navigator_;
   plan::Docking docking_;
   std::optional<Dock> dock_;
   std::optional<localize::DockDetector> dock_detector_;
+  double max_dock_distance_m_;
+  Time next_dock_search_{};
   std::optional<TeleopCommand> last_teleop_;
   Motion motion_ = Motion::kStand;
   plan::NavigationStatus navigation_ = plan::NavigationStatus::kIdle;

@@ -45,7 +45,7 @@ void Stack::handle_scan(const LaserScan& raw) {
   if (!scan) return;
   const ScanPose pose = parts_.pose.localize(*scan, output_);
   const auto timer = output_.time_stage("planning");
-  parts_.motion.add(*scan, pose);
+  if (const std::optional<DockDetection> dock = parts_.motion.add(*scan, pose)) parts_.pose.add(*dock);
 }
 
 void Stack::handle_fall(Time now) {

@@ -8,6 +8,7 @@ namespace patrol::localize {
 struct RegistrationSettings {
   bool use_gnss = true;
   bool use_uwb = true;
+  bool use_dock = true;
   /// Prior: the robot is put down by hand at the surveyed start, within 2 cm and 0.5 degrees. The yaw includes the
   /// mounting yaw of the lidar, 0.3 degrees, which turns the map against the body.
   double start_position_std_m = 0.02;
@@ -16,10 +17,14 @@ struct RegistrationSettings {
   double given_map_yaw_std_deg = 0.05;     ///< prior for a given map
   double fix_correlation_time_s = 20.0;    ///< correlation time of the errors of RTK fixes (core/sensors/gnss.h)
   double float_correlation_time_s = 60.0;  ///< correlation time of the errors of float solutions
-  double range_std_m = 0.12;               ///< standard deviation of a UWB range in line of sight, without its delay
-  double range_correlation_time_s = 2.0;   ///< correlation time of the errors of UWB ranges: reflections
-  double anchor_delay_std_m = 0.1;         ///< standard deviation of the constant error of the ranges to an anchor
-  double range_min_distance_m = 2.0;       ///< minimum distance between two ranges to one anchor
+  double dock_std_m = 0.02;                ///< standard deviation of survey and outline of the charging post
+  /// Standard deviation of the yaw of the charging post. It contains the bend of the map beyond the post: a yaw that
+  /// holds at the post moves the other end of a bent map of 150 m.
+  double dock_yaw_std_deg = 1.0;
+  double range_std_m = 0.12;              ///< standard deviation of a UWB range in line of sight, without its delay
+  double range_correlation_time_s = 2.0;  ///< correlation time of the errors of UWB ranges: reflections
+  double anchor_delay_std_m = 0.1;        ///< standard deviation of the constant error of the ranges to an anchor
+  double range_min_distance_m = 2.0;      ///< minimum distance between two ranges to one anchor
   /// Standard deviation of the map's own deformation at a position. It is added to that of each measurement, and to the
   /// published pose.
   double map_std_m = 0.02;
@@ -39,12 +44,15 @@ struct RegistrationSettings {
   static void fields(Self& self, Visitor& visit) {
     visit("use_gnss", self.use_gnss);
     visit("use_uwb", self.use_uwb);
+    visit("use_dock", self.use_dock);
     visit("start_position_std_m", self.start_position_std_m, between(1e-4, 1e6));
     visit("start_yaw_std_deg", self.start_yaw_std_deg, between(1e-4, 1e6));
     visit("given_map_position_std_m", self.given_map_position_std_m, between(1e-4, 1e6));
     visit("given_map_yaw_std_deg", self.given_map_yaw_std_deg, between(1e-4, 1e6));
     visit("fix_correlation_time_s", self.fix_correlation_time_s, between(0.0, 1e4));
     visit("float_correlation_time_s", self.float_correlation_time_s, between(0.0, 1e4));
+    visit("dock_std_m", self.dock_std_m, between(1e-4, 10.0));
+    visit("dock_yaw_std_deg", self.dock_yaw_std_deg, between(1e-3, 90.0));
     visit("range_std_m", self.range_std_m, between(1e-4, 10.0));
     visit("range_correlation_time_s", self.range_correlation_time_s, between(0.0, 1e4));
     visit("anchor_delay_std_m", self.anchor_delay_std_m, between(1e-6, 10.0));

@@ -58,6 +58,7 @@ PosePipeline::PosePipeline(const StackSettings& settings, const RobotDescription
   if (robot.T_body_sensor.contains("uwb"))
     range_pose_.emplace(settings.uwb_filter, site_in_map.anchors, robot.T_body("uwb"));
   if (robot.T_body_sensor.contains("gnss")) T_body_gnss_ = robot.T_body("gnss");
+  if (site_in_map.dock) T_site_docked_ = site.T_site_start * site_in_map.dock->T_route_docked;
   validate(settings.calibration, "calibration");
   if (robot.T_body_sensor.contains("uwb")) T_body_uwb_ = robot.T_body("uwb");
   if (settings.calibration.enabled) {
@@ -151,6 +152,12 @@ void PosePipeline::add_fix(const GnssFix& fix) {
                                             .correlation_time_s = position->correlation_time_s,
                                             .T_odom_body = to_pose2(*odometry_->T_odom_body_at(fix.stamp)),
                                             .p_level_antenna = p_level_antenna});
+}
+
+void PosePipeline::add(const DockDetection& detection) {
+  if (!T_site_docked_ || !localizer_->has_pose() || localizer_->is_lost()) return;
+  if (const std::optional<PoseFromScan> pose = pose_from_scan(detection.stamp))
+    registrar_.add(detection, *T_site_docked_, *pose);
 }
 
 /// Returns the body pose at an instant, relative to the newest scan; none before the first scan.

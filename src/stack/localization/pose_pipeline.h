@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/dock_detection.h"
 #include "core/messages.h"
 #include "core/robot_description.h"
 #include "core/route.h"
@@ -51,6 +52,8 @@ class PosePipeline {
   std::optional<LevelScan> level(const LaserScan& scan, StackOutput& output);
   /// Corrects the pose by a scan and publishes the estimates.
   ScanPose localize(const LevelScan& scan, StackOutput& output);
+  /// Adds a detection of the surveyed charging post to the registration of the map.
+  void add(const DockDetection& detection);
   /// Publishes the pose from odometry and UWB ranges alone, if robot and site have UWB.
   void publish_range_pose(const OdometryEstimate& odometry, const PoseEstimate& pose, StackOutput& output);
 
@@ -100,12 +103,13 @@ class PosePipeline {
   localize::MapPoseTracker tracker_;
   SiteRegistrar registrar_;
   Pose2 T_start_site_;
-  std::optional<Pose3> T_body_gnss_;  ///< present for a robot with a GNSS antenna
-  std::size_t num_scans_ = 0;         ///< scans that the localizer has processed
-  std::vector<Time> mapped_;          ///< stamps of the scans while the robot maps
-  std::vector<Pose2> T_map_mapped_;   ///< [scan] body pose at each of them, as estimated then
-  Pose2 T_odom_scan_;                 ///< body at the newest scan
-  Pose3 T_body_lidar_;                ///< nominal
+  std::optional<Pose3> T_body_gnss_;    ///< present for a robot with a GNSS antenna
+  std::size_t num_scans_ = 0;           ///< scans that the localizer has processed
+  std::vector<Time> mapped_;            ///< stamps of the scans while the robot maps
+  std::vector<Pose2> T_map_mapped_;     ///< [scan] body pose at each of them, as estimated then
+  Pose2 T_odom_scan_;                   ///< body at the newest scan
+  Pose3 T_body_lidar_;                  ///< nominal
+  std::optional<Pose2> T_site_docked_;  ///< surveyed pose of the docked body; none without a charging post
   std::vector<UwbAnchor> anchors_in_site_;
   std::vector<UwbAnchor> anchors_in_map_;
   UwbCalibration uwb_calibration_;

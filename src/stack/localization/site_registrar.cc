@@ -4,13 +4,18 @@
 #include <cmath>
 #include <utility>
 
+#include "core/geometry/angles.h"
+
 namespace patrol::stack {
 namespace {
 
 // Sources of measurements, whose errors are independent of each other.
 constexpr int kFixSource = 0;
 constexpr int kFloatSource = 1;
-constexpr int kFirstAnchorSource = 2;  // plus the number of the anchor
+constexpr int kDockSource = 2;
+constexpr int kFirstAnchorSource = 3;  // plus the number of the anchor
+
+double square(double value) { return value * value; }
 
 }  // namespace
 
@@ -57,6 +62,25 @@ void SiteRegistrar::add(const UwbRange& range, const UwbAnchor& anchor_in_site, 
                                         .p_level_antenna = p_level_antenna,
                                         .range_m = range.range_m,
                                         .std_m = settings_.range_std_m}},
+      pose);
+}
+
+// The pose of the body at the detection follows from the outline of the post, so a yaw of the lidar on the body
+// cancels.
+void SiteRegistrar::add(const DockDetection& detection, const Pose2& T_site_docked, const PoseFromScan& pose) {
+  if (!settings_.use_dock || !detection.covariance.allFinite()) return;
+  const double yaw_var = detection.covariance(2, 2) + square(to_rad(settings_.dock_yaw_std_deg)),
+               distance_m = detection.T_level_docked.position().norm();
+  const double position_var_m2 =
+      detection.covariance.topLeftCorner<2, 2>().trace() + square(settings_.dock_std_m) + square(distance_m) * yaw_var;
+  add({.stamp = detection.stamp,
+       .source = kDockSource,
+       .correlation_time_s = settings_.map_correlation_time_s,
+       .T_map_body = pose.T_map_body,
+       .content =
+           localize::SurveyedPose{.T_site_body = T_site_docked * detection.T_level_docked.inverse(),
+                                  .position_std_m = std::sqrt(position_var_m2),
+                                  .yaw_std_rad = std::sqrt(yaw_var + square(to_rad(settings_.map_yaw_std_deg)))}},
       pose);
 }
 

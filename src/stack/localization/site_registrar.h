@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/dock_detection.h"
 #include "core/sensors/gnss.h"
 #include "core/site/site_frame.h"
 #include "core/site/site_registration.h"
@@ -44,6 +45,9 @@ class SiteRegistrar {
   /// uwb_antenna_in_level. Ranges that are too close to the previous one to the anchor are ignored.
   void add(const UwbRange& range, const UwbAnchor& anchor_in_site, const PoseFromScan& pose,
            const Eigen::Vector3d& p_level_antenna);
+  /// Adds a detection of the charging post at its surveyed place. `pose`: body at the stamp of the detection.
+  /// Detections that are too close to the previous one are ignored.
+  void add(const DockDetection& detection, const Pose2& T_site_docked, const PoseFromScan& pose);
   /// Returns the position of a GNSS fix in site; none if the fix has no solution or GNSS is not used.
   std::optional<GnssPosition> position_of(const GnssFix& fix, const Eigen::Vector2d& p_level_antenna) const;
   /// Adds a GNSS position. `pose`: body at its stamp. Positions that are too close to the previous one are ignored.

@@ -12,6 +12,8 @@ constexpr double kSpeed_mps = 0.5;
 const SiteFrame kSite{.T_site_start = {11.0, 8.0, to_rad(90.0)},
                       .datum = GeodeticDatum{.latitude_deg = 29.21, .longitude_deg = 119.46}};
 
+double square(double value) { return value * value; }
+
 GnssFix fix_at(const Eigen::Vector2d& p_site, Time stamp) {
   const GeodeticPosition position = to_geodetic(*kSite.datum, p_site);
   return {.stamp = stamp,
@@ -98,6 +100,39 @@ TEST(SiteRegistrar, FindsThePutDownYawFromRangesWithAntennaDelays) {
   ASSERT_TRUE(found);
   EXPECT_LT(std::abs(wrap_angle(found->T_site_map.yaw - T_site_map.yaw)), to_rad(0.05));
   EXPECT_LT(std::sqrt(found->covariance(2, 2)), to_rad(0.1));
+}
+
+// The robot drives 3 m toward the post: one detection every 0.5 m, with the errors of 1 mm and 0.05 degrees.
+TEST(SiteRegistrar, FindsThePutDownErrorFromTheChargingPost) {
+  const SiteFrame site{.T_site_start = {3.0, -2.0, 0.0}, .datum = {}};
+  const Pose2 T_site_map = site.T_site_start * Pose2{0.3, -0.2, to_rad(1.0)}, T_site_docked{7.0, -2.0, 0.1};
+  const auto found_with = [&](const localize::RegistrationSettings& settings) {
+    SiteRegistrar registrar(settings, site);
+    std::vector<Pose2> path;
+    for (int i = 0; i <= 30; ++i) {
+      const Pose2 T_map_body{0.1 * i, 0.0, 0.0};
+      path.push_back(T_map_body);
+      DockDetection detection{.stamp = from_seconds(i),
+                              .T_level_docked = (T_site_map * T_map_body).inverse() * T_site_docked};
+      detection.covariance = Eigen::Vector3d(1e-6, 1e-6, square(to_rad(0.05))).asDiagonal();
+      registrar.add(detection, T_site_docked,
+                    {.scan = static_cast<std::size_t>(i), .T_scan_body = {}, .T_map_body = T_map_body});
+    }
+    EXPECT_LE(registrar.num_measurements(), 7U);
+    return registrar.update(from_seconds(60.0), path);
+  };
+  const localize::RegistrationSettings put_down_by_eye{.start_position_std_m = 0.5, .start_yaw_std_deg = 5.0};
+  localize::RegistrationSettings without_dock = put_down_by_eye;
+  without_dock.use_dock = false;
+  const std::optional<SiteRegistration> found = found_with(put_down_by_eye), prior = found_with(without_dock);
+  ASSERT_TRUE(found && prior);
+  EXPECT_THAT(prior->T_site_map, test::Pose2Near(site.T_site_start, 1e-12, 1e-12));
+  const Eigen::Vector3d std = found->covariance.diagonal().cwiseSqrt();
+  EXPECT_THAT(found->T_site_map, test::Pose2Near(T_site_map, 0.01, to_rad(0.2)));
+  EXPECT_GT(std[2], to_rad(0.5));
+  EXPECT_LT(std[2], to_rad(1.1));
+  EXPECT_GT(std.head<2>().minCoeff(), 0.02);
+  EXPECT_LT(std.head<2>().maxCoeff(), 0.08);
 }
 
 TEST(SiteRegistrar, BoundsItsMeasurements) {
