@@ -102,10 +102,12 @@ ImuErrors AsBuiltRobot::imu() const {
 
 JointErrors AsBuiltRobot::joints() const {
   if (!settings_.enabled) return {};
-  JointErrors errors{.zero_offset_rad = {}, .play_rad = to_rad(settings_.joint_encoders.play_deg)};
+  const double zero_offset_rad = to_rad(settings_.joint_encoders.zero_offset_deg),
+               play_rad = to_rad(settings_.joint_encoders.play_deg);
+  JointErrors errors;
   for (std::size_t joint = 0; joint < nominal_.joint_names.size(); ++joint) {
-    errors.zero_offset_rad.push_back(
-        uniform("joints/zero_offset", to_rad(settings_.joint_encoders.zero_offset_deg), joint));
+    errors.zero_offset_rad.push_back(uniform("joints/zero_offset", zero_offset_rad, joint));
+    errors.play_rad.push_back(0.75 * play_rad + uniform("joints/play", 0.25 * play_rad, joint));
   }
   return errors;
 }

@@ -91,7 +91,10 @@ struct JointTolerances {
   static constexpr const char* kSource = "assumption: planetary gear with an encoder at the motor";
 
   double zero_offset_deg = 0.3;  ///< tolerance of the zero position of each joint
-  double play_deg = 0.1;         ///< total play between encoder and joint; the load decides the side
+  double play_deg = 0.1;         ///< maximum total play between encoder and joint; the load decides the side. The play
+                                 ///< of each joint is uniform between half of it and all of it: gears of one type
+                                 ///< share their clearance by design, and wear and manufacturing add up to as much
+                                 ///< again (assumption)
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -47,8 +47,8 @@ struct ImuErrors {
 
 /// Errors of the joint encoders.
 struct JointErrors {
-  std::vector<double> zero_offset_rad;  ///< [joint]; empty: none
-  double play_rad = 0.0;                ///< total play between encoder and joint
+  std::vector<double> zero_offset_rad;  ///< [joint]; empty: no errors
+  std::vector<double> play_rad;         ///< total play between encoder and joint, as long as `zero_offset_rad`
 };
 
 /// Errors of a track drive.

@@ -15,6 +15,7 @@
 #include "core/geometry/angles.h"
 #include "io/urdf.h"
 #include "tests/sim/as_built/tolerances.h"
+#include "tests/support/moments.h"
 
 namespace patrol::sim::as_built_robot_test {
 namespace {
@@ -122,6 +123,27 @@ TEST(AsBuiltRobot, LidarConeIsOneSided) {
   EXPECT_GT(*std::max_element(cone.begin(), cone.end()), 1.48 * kDegree);
 }
 
+/// Uniform between half and all of the tolerance: mean 3/4 and standard deviation 1 / (4 sqrt(3)) of it.
+TEST(AsBuiltRobot, ThePlayOfEachJointOfEachRobotIsBetweenHalfAndAllOfItsTolerance) {
+  const double tolerance_rad = to_rad(JointTolerances{}.play_deg);
+  const RobotDescription quadruped = io::load_robot_description(PATROL_SOURCE_DIR "/models/quadruped/quadruped.urdf");
+  test::Moments play, difference;
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    const std::vector<double> joints = AsBuiltRobot(enabled(), quadruped, seed).joints().play_rad;
+    ASSERT_EQ(joints.size(), 12U);
+    for (const double play_rad : joints) play.add(play_rad / tolerance_rad);
+    difference.add((joints[1] - joints[0]) / tolerance_rad);
+  }
+  EXPECT_GE(play.smallest, 0.5);
+  EXPECT_LT(play.smallest, 0.51);
+  EXPECT_LE(play.largest, 1.0);
+  EXPECT_GT(play.largest, 0.99);
+  const double std = 0.25 / std::sqrt(3.0);
+  EXPECT_NEAR(play.mean(), 0.75, 4.0 * std / std::sqrt(play.count));
+  EXPECT_NEAR(play.std(), std, 0.05 * std);
+  EXPECT_NEAR(difference.std(), std * std::sqrt(2.0), 0.2 * std) << "joints of one robot are independent";
+}
+
 /// Collects every value of a robot under the number of section `as_built` that it is drawn with, "group.field: ...".
 class DrawnValues {
  public:
@@ -141,10 +163,10 @@ class DrawnValues {
     }
     for (const std::string frame : {"lidar", "lidar3d"}) add_lidar(frame, robot.lidar(frame));
     const JointErrors joints = robot.joints();
-    add("joint_encoders.play_deg", "all", joints.play_rad);
     for (std::size_t joint = 0; joint < robot.nominal().joint_names.size(); ++joint) {
       const bool is_drawn = !joints.zero_offset_rad.empty();
       add("joint_encoders.zero_offset_deg", std::to_string(joint), is_drawn ? joints.zero_offset_rad[joint] : 0.0);
+      add("joint_encoders.play_deg", std::to_string(joint), is_drawn ? joints.play_rad[joint] : 0.0);
     }
     const TrackErrors tracks = robot.tracks();
     add("tracks.sprocket_scale", "left", tracks.sprocket_scale[0]);
