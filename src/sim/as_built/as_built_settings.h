@@ -103,19 +103,24 @@ struct JointTolerances {
   }
 };
 
-/// Track drives (assumptions: wear and manufacturing of the sprockets, electromagnetic interference).
+/// Track drives (assumptions: wear and manufacturing of the sprockets, electromagnetic interference). No data sheet
+/// states a tolerance of the gauge: the frame is assumed to be welded within class A of ISO 13920, table 1, for 400 to
+/// 1000 mm.
 struct TrackTolerances {
-  static constexpr const char* kSource = "assumption: manufacturing and wear of the sprockets";
+  static constexpr const char* kSource =
+      "assumption: manufacturing and wear of the sprockets; frame welded within ISO 13920, class A";
 
   double sprocket_scale = 0.005;          ///< tolerance of the relative pitch radius of each sprocket
   double friction_scale = 0.2;            ///< tolerance of the relative friction of the tracks on the ground
   double missed_edge_probability = 1e-5;  ///< maximum probability that a Hall edge is not counted, from 0
+  double gauge_m = 0.002;                 ///< tolerance of the distance between the center lines of the tracks
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("sprocket_scale", self.sprocket_scale, between(0.0, 0.2));
     visit("friction_scale", self.friction_scale, between(0.0, 0.9));
     visit("missed_edge_probability", self.missed_edge_probability, between(0.0, 0.5));
+    visit("gauge_m", self.gauge_m, between(0.0, 0.1));
   }
 };
 

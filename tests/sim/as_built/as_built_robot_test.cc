@@ -173,6 +173,7 @@ class DrawnValues {
     add("tracks.sprocket_scale", "right", tracks.sprocket_scale[1]);
     add("tracks.friction_scale", "", tracks.friction_scale);
     add("tracks.missed_edge_probability", "", tracks.missed_edge_probability);
+    add("tracks.gauge_m", "", tracks.gauge_error_m);
     add("legs.friction_scale", "", robot.foot_friction_scale());
     add_imu(robot.imu());
     for (const int anchor : {0, 1, 5}) {

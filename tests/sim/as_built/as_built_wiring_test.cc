@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "core/geometry/angles.h"
@@ -294,6 +295,33 @@ TEST(AsBuiltWiring, FeetAndWheelsHaveTheDrawnFriction) {
   };
   expect_friction(kRobotUrdf, as_built, "_foot", robot(kRobotUrdf).foot_friction_scale(), 4);
   expect_friction(kTrackedUrdf, as_built, "_wheel_", robot(kTrackedUrdf).tracks().friction_scale, 14);
+}
+
+/// The wheels of the two rows in the physics model, at its reference configuration, are the gauge of the URDF and the
+/// drawn error apart; the robot's x axis stays midway.
+TEST(AsBuiltWiring, TheRowsOfWheelsAreTheDrawnGaugeApart) {
+  AsBuiltSettings as_built = exact();
+  as_built.tracks.gauge_m = TrackTolerances{}.gauge_m;
+  const AsBuiltRobot robot(as_built, io::load_robot_description(kTrackedUrdf), 1);
+  const double error_m = robot.tracks().gauge_error_m;
+  ASSERT_GT(std::abs(error_m), 0.0002);
+  ASSERT_LE(std::abs(error_m), 0.002);
+  const auto logged = robot.truth({}).values;
+  EXPECT_EQ(std::count(logged.begin(), logged.end(), std::pair<std::string, double>("tracks.gauge_error_m", error_m)),
+            1);
+  const Room room(kTrackedUrdf, as_built);
+  const mjModel& model = room.physics();
+  const DataPtr data = make_data(model);
+  mj_kinematics(&model, data.get());
+  const auto y_m = [&](const std::string& side, int wheel) {
+    const int geom = mj_name2id(&model, mjOBJ_GEOM, fmt::format("{}_wheel_{}", side, wheel).c_str());
+    EXPECT_GE(geom, 0) << side << wheel;
+    return data->geom_xpos[3 * std::max(geom, 0) + 1];
+  };
+  for (int wheel = 0; wheel < 7; ++wheel) {
+    EXPECT_NEAR(y_m("left", wheel) - y_m("right", wheel), 0.55 + error_m, 1e-9) << wheel;
+    EXPECT_NEAR(y_m("left", wheel) + y_m("right", wheel), 0.0, 1e-9) << wheel;
+  }
 }
 
 /// Completeness: a number of section `as_built` that reaches no sensor and no physics fails here. Each of them has a
