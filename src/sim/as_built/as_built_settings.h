@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "core/settings.h"
 #include "sim/as_built/scanner_tolerances.h"
 
@@ -53,11 +55,16 @@ struct ClockTolerances {
 /// (`noise_ratio` times the 15 mm of sensors.lidar) and systematic errors of 11.5 mm: an offset (8.7 mm), the range
 /// walk with the returned light (5.8 mm between 10 and 50 % reflectivity) and the incidence angle (4.6 mm at grazing
 /// incidence). The white part follows the repeatability that manufacturers of this class state (Hokuyo UTM-30LX: below
-/// 10 mm to 10 m); the split of the systematic part is an assumption. SICK's TiM571 states both parts: with that
-/// preset, set `noise_ratio` to 1 and `range_offset_m` to 0.06.
+/// 10 mm to 10 m); the split of the systematic part is an assumption.
+///
+/// SICK states both parts of the TiM571's error (LidarSettings::of_preset): its noise is that of sensors.lidar and its
+/// range offset has the bounds of the systematic error, +-60 mm. A scenario or robot profile that selects another
+/// preset of sensors.lidar starts from the tolerances of that preset; values in section as_built.lidar win. A 3D lidar
+/// shares the tolerances of the 2D lidar.
 struct LidarTolerances {
   static constexpr const char* kSource =
-      "Slamtec RPLIDAR C1 and S series data sheets: accuracy 30 mm, flatness 0 to 1.5 deg, rate 5 %";
+      "Slamtec RPLIDAR C1 and S series data sheets: accuracy 30 mm, flatness 0 to 1.5 deg, rate 5 %; preset tim571: "
+      "SICK 8015886, noise ratio 1, range offset 60 mm";
 
   double noise_ratio = 0.64;      ///< range noise relative to the `range_noise_std_m` of the sensor's settings; 1
                                   ///< reads the whole accuracy of the sheet as noise
@@ -72,6 +79,13 @@ struct LidarTolerances {
   double rate_std = 0.01;         ///< standard deviation of the relative revolution rate, which varies with a
                                   ///< correlation time of 5 s; the sheet bounds fluctuations by 5 %. Messages state the
                                   ///< nominal rate
+
+  /// Returns the tolerances of a preset of sensors.lidar.
+  static LidarTolerances for_preset(const std::string& preset) {
+    LidarTolerances tolerances;
+    if (preset == "tim571") tolerances.noise_ratio = 1.0, tolerances.range_offset_m = 0.06;
+    return tolerances;
+  }
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
