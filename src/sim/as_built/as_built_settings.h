@@ -150,15 +150,17 @@ struct LegTolerances {
   }
 };
 
-/// Inertial measurement unit, in addition to sensors.imu. Defaults: Analog Devices ADIS16448 data sheet, Rev. H, table
-/// 1. Repeatabilities and coefficients without sign are standard deviations, as the table's footnotes state.
+/// Inertial measurement unit, in addition to sensors.imu. Values: Analog Devices ADIS16448 data sheet, Rev. H, table 1.
+/// Repeatabilities and coefficients without sign are standard deviations, as the table's footnotes state. Biases and
+/// scale have another share in sensors.imu; the root sum of squares of both shares is the value of the sheet.
 struct ImuTolerances {
   static constexpr const char* kSource = "Analog Devices ADIS16448 data sheet, table 1; warming: assumption";
 
-  double gyro_bias_std_radps = 0.0087;  ///< turn-on bias: bias repeatability of 0.5 deg/s
-  double accel_bias_std_mps2 = 0.196;   ///< turn-on bias: bias repeatability of 20 mg
-  double scale_std = 0.005;             ///< scale of each axis: sensitivity repeatability of 1 %, read as two
-                                        ///< standard deviations
+  double gyro_bias_std_radps = 0.0085;  ///< turn-on bias: with the 0.002 of sensors.imu, bias repeatability of
+                                        ///< 0.5 deg/s
+  double accel_bias_std_mps2 = 0.194;   ///< turn-on bias: with the 0.03 of sensors.imu, bias repeatability of 20 mg
+  double scale_std = 0.0049;            ///< scale of each axis: with the 0.001 of sensors.imu, sensitivity
+                                        ///< repeatability of 1 %, read as two standard deviations
   double misalignment_std_deg = 0.025;  ///< between axes: 0.05 deg, read as two standard deviations; the alignment
                                         ///< with the frame is part of the mounting
   double g_sensitivity_std_radps_per_mps2 = 2.67e-5;  ///< linear acceleration effect on the gyro bias: 0.015 deg/s/g
