@@ -94,9 +94,10 @@ TEST(Tracks, TheClosedFormOfFiveEvenlyLoadedWheelsIsARatioOf0_708) { EXPECT_NEAR
 /// at a time: belts that slide along x leave the body free to creep along y.
 void use_round_cones(TrackedRobot& robot) { robot.options().cone = mjCONE_ELLIPTIC; }
 
-/// Creep along y that pyramidal cones allow, relative to the distance over which the belts slide: twice the largest of
-/// the measured 0.14 % (friction 0.05) and 0.80 % (friction 0.8).
-constexpr double kMaxPyramidalCreep = 0.016;
+/// Largest creep along y that pyramidal cones may cause, relative to the distance over which the belts slide. On dry
+/// ground (friction 0.8): twice the measured 0.80 %. On ice (friction 0.05), where 0.14 % are measured: 6 mm over 2.5
+/// m.
+constexpr double kMaxCreepOnDryGround = 0.016, kMaxCreepOnIce = 0.0024;
 
 // Robot and belts are symmetric about x, so the closed form of y and yaw is zero.
 TEST(Tracks, UnderRoundConesTenMetresStraightEndWithin1CentimetreOfTheLine) {
@@ -203,7 +204,7 @@ TEST(Tracks, OnIceAgainstAWallTheTicksRunOnWhileTheRobotStands) {
   const DriveReport report = robot.drive(0.5, 0.0, 5.0);
   EXPECT_NEAR(report.left_belt_m, 2.5, 0.01);
   EXPECT_NEAR(report.moved.x, 0.0, 0.001);
-  EXPECT_NEAR(report.moved.y, 0.0, kMaxPyramidalCreep * report.left_belt_m);
+  EXPECT_NEAR(report.moved.y, 0.0, kMaxCreepOnIce * report.left_belt_m);
 }
 
 // The wall takes the push; nothing pushes aside: the closed form of the motion is zero.
@@ -238,7 +239,7 @@ TEST(Tracks, AgainstAWallTheBeltsSlipAt24_8NewtonMetres) {
   EXPECT_NEAR(report.mean_left_nm, slip_nm, 0.02 * slip_nm);
   EXPECT_NEAR(report.left_belt_m, 2.5, 0.01);
   EXPECT_NEAR(report.moved.x, 0.0, 0.001);
-  EXPECT_NEAR(report.moved.y, 0.0, kMaxPyramidalCreep * report.left_belt_m);
+  EXPECT_NEAR(report.moved.y, 0.0, kMaxCreepOnDryGround * report.left_belt_m);
 }
 
 TEST(Tracks, MotorsOf15NewtonMetresStallAgainstAWallAndPushWithWhatTheyHave) {

@@ -87,6 +87,20 @@ void add_mounts(RobotDescription& robot, const std::vector<MountSettings>& mount
   }
 }
 
+/// Reads a scenario or a robot profile over the values in `settings`. If it selects another lidar, the as-built
+/// tolerances of that lidar are the defaults.
+template <typename Settings>
+void read_with_lidar_tolerances(const std::filesystem::path& file, const std::vector<std::string>& overrides,
+                                Settings& settings) {
+  Settings defaults = settings;
+  io::read_settings(file, overrides, settings);
+  const std::string preset = settings.sensors.lidar.preset;
+  if (preset == defaults.sensors.lidar.preset) return;
+  defaults.as_built.lidar = sim::LidarTolerances::for_preset(preset);
+  io::read_settings(file, overrides, defaults);
+  settings = std::move(defaults);
+}
+
 /// Returns the file with the registration of a map to the site; none if there is none beside the map.
 std::optional<std::filesystem::path> registration_of(const std::filesystem::path& map_yaml) {
   const std::filesystem::path file = map_yaml.parent_path() / "registration.json";
@@ -99,7 +113,8 @@ Scenario default_scenario(const std::string& robot, const std::filesystem::path&
   Scenario scenario;
   const std::filesystem::path profile_file = data_root / "models" / robot / (robot + ".yaml");
   if (std::filesystem::exists(profile_file)) {
-    const auto profile = io::load_settings<RobotProfile>(profile_file, {});
+    RobotProfile profile;
+    read_with_lidar_tolerances(profile_file, {}, profile);
     scenario.as_built = profile.as_built;
     scenario.sensors = profile.sensors;
     scenario.locomotion = profile.locomotion;
@@ -112,7 +127,7 @@ Scenario default_scenario(const std::string& robot, const std::filesystem::path&
 Scenario load_scenario(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   const std::string robot = io::load_settings<Scenario>(file, overrides).robot;
   Scenario scenario = default_scenario(robot, find_data_root(file));
-  io::read_settings(file, overrides, scenario);
+  read_with_lidar_tolerances(file, overrides, scenario);
   return scenario;
 }
 

@@ -16,17 +16,22 @@ struct Imu {
 };
 
 /// Inertial measurement unit (error model of IEEE Std 952). Defaults: Analog Devices ADIS16448 data sheet, rounded.
+///
+/// The constant errors (biases, scale, misalignment) are one share of those of the data sheet. The other share is that
+/// of the as-built robot, section as_built.imu, to which they are added. The root sum of squares of the default shares
+/// is the value of the sheet. A nominal robot has the errors of this section only.
 struct ImuSettings {
   bool enabled = true;
   double rate_hz = 250.0;                                ///< message rate; the firmware reads the sensor at every tick
   double gyro_noise_density_radps_per_sqrt_hz = 2.3e-4;  ///< angle random walk, 0.66 deg/sqrt(h) plus vibration
-  double gyro_bias_std_radps = 0.002;                    ///< standard deviation of the constant bias
+  double gyro_bias_std_radps = 0.002;                    ///< standard deviation of the constant bias of each axis
   double gyro_bias_random_walk_radps_per_sqrt_s = 1.0e-5;  ///< rate random walk
   double accel_noise_density_mps2_per_sqrt_hz = 0.002;
-  double accel_bias_std_mps2 = 0.03;
+  double accel_bias_std_mps2 = 0.03;  ///< standard deviation of the constant bias of each axis
   double accel_bias_random_walk_mps2_per_sqrt_s = 1.0e-4;
-  double scale_error_std = 0.001;      ///< standard deviation of the scale factor of each axis
-  double misalignment_std_deg = 0.05;  ///< standard deviation of the misalignment of each axis
+  double scale_error_std = 0.001;     ///< standard deviation of the scale factor of each axis
+  double misalignment_std_deg = 0.0;  ///< standard deviation of the misalignment of each axis; all of that of the
+                                      ///< sheet is in as_built.imu
   double gyro_range_radps = 17.4;
   double accel_range_mps2 = 176.0;
   double gyro_resolution_radps = 7.0e-4;

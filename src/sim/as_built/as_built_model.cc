@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 namespace patrol::sim {
 namespace {
@@ -19,11 +20,23 @@ void move_site(const AsBuiltRobot& robot, const std::string& frame, mjModel& phy
   physics.site_sameframe[site] = mjSAMEFRAME_NONE;
 }
 
+/// Moves each track by half of the error, so that the center of the robot stays between them.
+void move_tracks(double gauge_error_m, mjModel& physics) {
+  for (const auto& [side, outward_m] :
+       {std::pair("left", 0.5 * gauge_error_m), std::pair("right", -0.5 * gauge_error_m)}) {
+    for (const char* part : {"_track", "_sprocket"}) {
+      const int body = mj_name2id(&physics, mjOBJ_BODY, (std::string(side) + part).c_str());
+      if (body >= 0) physics.body_pos[3 * body + 1] += outward_m;
+    }
+  }
+}
+
 }  // namespace
 
 void apply_as_built(const AsBuiltRobot& robot, mjModel& physics) {
   if (!robot.is_as_built()) return;
   move_site(robot, "imu", physics);
+  if (robot.nominal().tracks) move_tracks(robot.tracks().gauge_error_m, physics);
   for (const LegGeometry& leg : robot.nominal().legs) {
     const int foot = mj_name2id(&physics, mjOBJ_GEOM, (leg.name + "_foot").c_str());
     if (foot >= 0) physics.geom_friction[3 * foot] *= robot.foot_friction_scale();

@@ -102,10 +102,12 @@ ImuErrors AsBuiltRobot::imu() const {
 
 JointErrors AsBuiltRobot::joints() const {
   if (!settings_.enabled) return {};
-  JointErrors errors{.zero_offset_rad = {}, .play_rad = to_rad(settings_.joint_encoders.play_deg)};
+  const double zero_offset_rad = to_rad(settings_.joint_encoders.zero_offset_deg),
+               play_rad = to_rad(settings_.joint_encoders.play_deg);
+  JointErrors errors;
   for (std::size_t joint = 0; joint < nominal_.joint_names.size(); ++joint) {
-    errors.zero_offset_rad.push_back(
-        uniform("joints/zero_offset", to_rad(settings_.joint_encoders.zero_offset_deg), joint));
+    errors.zero_offset_rad.push_back(uniform("joints/zero_offset", zero_offset_rad, joint));
+    errors.play_rad.push_back(0.75 * play_rad + uniform("joints/play", 0.25 * play_rad, joint));
   }
   return errors;
 }
@@ -117,7 +119,8 @@ TrackErrors AsBuiltRobot::tracks() const {
                              1.0 + uniform("tracks/sprocket", tracks.sprocket_scale, 1)},
           .friction_scale = 1.0 + uniform("tracks/friction", tracks.friction_scale),
           .missed_edge_probability =
-              0.5 * (tracks.missed_edge_probability + uniform("tracks/missed_edge", tracks.missed_edge_probability))};
+              0.5 * (tracks.missed_edge_probability + uniform("tracks/missed_edge", tracks.missed_edge_probability)),
+          .gauge_error_m = uniform("tracks/gauge", tracks.gauge_m)};
 }
 
 double AsBuiltRobot::foot_friction_scale() const {
@@ -165,6 +168,7 @@ AsBuiltTruth AsBuiltRobot::truth(const std::vector<int>& uwb_anchors) const {
   if (nominal_.tracks) {
     add("tracks.left_sprocket_scale", tracks().sprocket_scale[0]);
     add("tracks.right_sprocket_scale", tracks().sprocket_scale[1]);
+    add("tracks.gauge_error_m", tracks().gauge_error_m);
   }
   for (const int anchor : uwb_anchors) add(fmt::format("uwb.anchor_{}.delay_m", anchor), uwb_delay_m(anchor));
   add("placement.x_m", T_surveyed_start_.x);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "core/settings.h"
 #include "sim/as_built/scanner_tolerances.h"
 
@@ -53,11 +55,16 @@ struct ClockTolerances {
 /// (`noise_ratio` times the 15 mm of sensors.lidar) and systematic errors of 11.5 mm: an offset (8.7 mm), the range
 /// walk with the returned light (5.8 mm between 10 and 50 % reflectivity) and the incidence angle (4.6 mm at grazing
 /// incidence). The white part follows the repeatability that manufacturers of this class state (Hokuyo UTM-30LX: below
-/// 10 mm to 10 m); the split of the systematic part is an assumption. SICK's TiM571 states both parts: with that
-/// preset, set `noise_ratio` to 1 and `range_offset_m` to 0.06.
+/// 10 mm to 10 m); the split of the systematic part is an assumption.
+///
+/// SICK states both parts of the TiM571's error (LidarSettings::of_preset): its noise is that of sensors.lidar and its
+/// range offset has the bounds of the systematic error, +-60 mm. A scenario or robot profile that selects another
+/// preset of sensors.lidar starts from the tolerances of that preset; values in section as_built.lidar win. A 3D lidar
+/// shares the tolerances of the 2D lidar.
 struct LidarTolerances {
   static constexpr const char* kSource =
-      "Slamtec RPLIDAR C1 and S series data sheets: accuracy 30 mm, flatness 0 to 1.5 deg, rate 5 %";
+      "Slamtec RPLIDAR C1 and S series data sheets: accuracy 30 mm, flatness 0 to 1.5 deg, rate 5 %; preset tim571: "
+      "SICK 8015886, noise ratio 1, range offset 60 mm";
 
   double noise_ratio = 0.64;      ///< range noise relative to the `range_noise_std_m` of the sensor's settings; 1
                                   ///< reads the whole accuracy of the sheet as noise
@@ -72,6 +79,13 @@ struct LidarTolerances {
   double rate_std = 0.01;         ///< standard deviation of the relative revolution rate, which varies with a
                                   ///< correlation time of 5 s; the sheet bounds fluctuations by 5 %. Messages state the
                                   ///< nominal rate
+
+  /// Returns the tolerances of a preset of sensors.lidar.
+  static LidarTolerances for_preset(const std::string& preset) {
+    LidarTolerances tolerances;
+    if (preset == "tim571") tolerances.noise_ratio = 1.0, tolerances.range_offset_m = 0.06;
+    return tolerances;
+  }
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -91,7 +105,10 @@ struct JointTolerances {
   static constexpr const char* kSource = "assumption: planetary gear with an encoder at the motor";
 
   double zero_offset_deg = 0.3;  ///< tolerance of the zero position of each joint
-  double play_deg = 0.1;         ///< total play between encoder and joint; the load decides the side
+  double play_deg = 0.1;         ///< maximum total play between encoder and joint; the load decides the side. The play
+                                 ///< of each joint is uniform between half of it and all of it: gears of one type
+                                 ///< share their clearance by design, and wear and manufacturing add up to as much
+                                 ///< again (assumption)
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -100,19 +117,24 @@ struct JointTolerances {
   }
 };
 
-/// Track drives (assumptions: wear and manufacturing of the sprockets, electromagnetic interference).
+/// Track drives (assumptions: wear and manufacturing of the sprockets, electromagnetic interference). No data sheet
+/// states a tolerance of the gauge: the frame is assumed to be welded within class A of ISO 13920, table 1, for 400 to
+/// 1000 mm.
 struct TrackTolerances {
-  static constexpr const char* kSource = "assumption: manufacturing and wear of the sprockets";
+  static constexpr const char* kSource =
+      "assumption: manufacturing and wear of the sprockets; frame welded within ISO 13920, class A";
 
   double sprocket_scale = 0.005;          ///< tolerance of the relative pitch radius of each sprocket
   double friction_scale = 0.2;            ///< tolerance of the relative friction of the tracks on the ground
   double missed_edge_probability = 1e-5;  ///< maximum probability that a Hall edge is not counted, from 0
+  double gauge_m = 0.002;                 ///< tolerance of the distance between the center lines of the tracks
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("sprocket_scale", self.sprocket_scale, between(0.0, 0.2));
     visit("friction_scale", self.friction_scale, between(0.0, 0.9));
     visit("missed_edge_probability", self.missed_edge_probability, between(0.0, 0.5));
+    visit("gauge_m", self.gauge_m, between(0.0, 0.1));
   }
 };
 
@@ -128,15 +150,17 @@ struct LegTolerances {
   }
 };
 
-/// Inertial measurement unit, in addition to sensors.imu. Defaults: Analog Devices ADIS16448 data sheet, Rev. H, table
-/// 1. Repeatabilities and coefficients without sign are standard deviations, as the table's footnotes state.
+/// Inertial measurement unit, in addition to sensors.imu. Values: Analog Devices ADIS16448 data sheet, Rev. H, table 1.
+/// Repeatabilities and coefficients without sign are standard deviations, as the table's footnotes state. Biases and
+/// scale have another share in sensors.imu; the root sum of squares of both shares is the value of the sheet.
 struct ImuTolerances {
   static constexpr const char* kSource = "Analog Devices ADIS16448 data sheet, table 1; warming: assumption";
 
-  double gyro_bias_std_radps = 0.0087;  ///< turn-on bias: bias repeatability of 0.5 deg/s
-  double accel_bias_std_mps2 = 0.196;   ///< turn-on bias: bias repeatability of 20 mg
-  double scale_std = 0.005;             ///< scale of each axis: sensitivity repeatability of 1 %, read as two
-                                        ///< standard deviations
+  double gyro_bias_std_radps = 0.0085;  ///< turn-on bias: with the 0.002 of sensors.imu, bias repeatability of
+                                        ///< 0.5 deg/s
+  double accel_bias_std_mps2 = 0.194;   ///< turn-on bias: with the 0.03 of sensors.imu, bias repeatability of 20 mg
+  double scale_std = 0.0049;            ///< scale of each axis: with the 0.001 of sensors.imu, sensitivity
+                                        ///< repeatability of 1 %, read as two standard deviations
   double misalignment_std_deg = 0.025;  ///< between axes: 0.05 deg, read as two standard deviations; the alignment
                                         ///< with the frame is part of the mounting
   double g_sensitivity_std_radps_per_mps2 = 2.67e-5;  ///< linear acceleration effect on the gyro bias: 0.015 deg/s/g

@@ -47,8 +47,8 @@ struct ImuErrors {
 
 /// Errors of the joint encoders.
 struct JointErrors {
-  std::vector<double> zero_offset_rad;  ///< [joint]; empty: none
-  double play_rad = 0.0;                ///< total play between encoder and joint
+  std::vector<double> zero_offset_rad;  ///< [joint]; empty: no errors
+  std::vector<double> play_rad;         ///< total play between encoder and joint, as long as `zero_offset_rad`
 };
 
 /// Errors of a track drive.
@@ -56,6 +56,7 @@ struct TrackErrors {
   std::array<double, 2> sprocket_scale = {1.0, 1.0};  ///< pitch radius relative to the nominal one, left and right
   double friction_scale = 1.0;
   double missed_edge_probability = 0.0;
+  double gauge_error_m = 0.0;  ///< actual minus nominal distance between the center lines of the tracks
 };
 
 /// Errors of a depth camera's calibration: published minus actual values.

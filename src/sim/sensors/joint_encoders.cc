@@ -48,7 +48,7 @@ double JointEncoders::error_rad(std::size_t joint, const mjData& data) const {
   if (errors_.zero_offset_rad.empty()) return 0.0;
   constexpr double kContactTorque_nm = 0.5;  // torque at which the teeth are in contact (assumption)
   const double load = std::clamp(data.qfrc_actuator[dof_[joint]] / kContactTorque_nm, -1.0, 1.0);
-  return errors_.zero_offset_rad[joint] + 0.5 * errors_.play_rad * load;
+  return errors_.zero_offset_rad[joint] + 0.5 * errors_.play_rad[joint] * load;
 }
 
 namespace {

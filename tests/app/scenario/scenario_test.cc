@@ -120,6 +120,49 @@ TEST(Scenario, ResolvedAndReadAgainIsTheSame) {
   EXPECT_EQ(test::read_bytes(folder / "a.yaml"), test::read_bytes(folder / "b.yaml"));
 }
 
+/// SICK states noise and systematic error of the TiM571 separately: 20 mm at one standard deviation and +-60 mm.
+TEST(Scenario, TheAsBuiltTolerancesOfTheLidarAreThoseOfItsPresetUnlessTheScenarioStatesThem) {
+  const std::filesystem::path file = kSource / "worlds/street/scenarios/short.yaml";
+  const auto lidar = [&](const std::vector<std::string>& overrides) {
+    return load_scenario(file, overrides).as_built.lidar;
+  };
+  EXPECT_EQ(lidar({}).range_offset_m, 0.015);
+  EXPECT_EQ(lidar({}).noise_ratio, 0.64);
+  EXPECT_EQ(lidar({"sensors.lidar.preset=utm30lx"}).range_offset_m, 0.015);
+  const std::string tim571 = "sensors.lidar.preset=tim571";
+  EXPECT_EQ(lidar({tim571}).range_offset_m, 0.06);
+  EXPECT_EQ(lidar({tim571}).noise_ratio, 1.0);
+  EXPECT_EQ(lidar({tim571}).cone_deg, lidar({}).cone_deg);
+  EXPECT_EQ(lidar({tim571, "as_built.lidar.range_offset_m=0.02"}).range_offset_m, 0.02);
+  EXPECT_EQ(lidar({tim571, "as_built.lidar.range_offset_m=0.02"}).noise_ratio, 1.0);
+  EXPECT_EQ(lidar({tim571, "as_built.lidar.range_offset_m=0"}).range_offset_m, 0.0) << "as patrol error-budget does";
+
+  // A log contains the scenario with all values.
+  const TemporaryFolder folder;
+  save_scenario(folder / "resolved.yaml", load_scenario(file, {tim571, "as_built.lidar.noise_ratio=0.5"}), "");
+  const Scenario again = load_scenario(folder / "resolved.yaml");
+  EXPECT_EQ(again.as_built.lidar.range_offset_m, 0.06);
+  EXPECT_EQ(again.as_built.lidar.noise_ratio, 0.5);
+}
+
+TEST(Scenario, ARobotProfileSelectsTheTolerancesOfItsLidarAndAScenarioThoseOfAnother) {
+  const TemporaryFolder root;
+  std::filesystem::create_directories(root / "worlds");
+  std::filesystem::create_directories(root / "models/sick");
+  const auto write = [&](const char* name, const std::string& text) {
+    test::write_bytes(root / name, text);
+    return root / name;
+  };
+  write("models/sick/sick.yaml", "sensors: {lidar: {preset: tim571}}\nas_built: {lidar: {cone_deg: 0.5}}\n");
+  const auto same = load_scenario(write("worlds/same.yaml", "robot: sick\n")).as_built.lidar;
+  EXPECT_EQ(same.range_offset_m, 0.06);
+  EXPECT_EQ(same.cone_deg, 0.5);
+  const auto other =
+      load_scenario(write("worlds/other.yaml", "robot: sick\nsensors: {lidar: {preset: utm30lx}}\n")).as_built.lidar;
+  EXPECT_EQ(other.range_offset_m, 0.015);
+  EXPECT_EQ(other.cone_deg, 1.5) << "that of the profile is of its own lidar";
+}
+
 TEST(Scenario, TheLightIsAsTheWorldHasItUnlessOneDimsIt) {
   const std::filesystem::path file = kSource / "worlds/tunnel/scenarios/docking.yaml";
   EXPECT_EQ(load_scenario(file).light.intensity, 1.0);

@@ -110,7 +110,9 @@ TEST(QuadrupedController, AFallIsDetectedWithin1SecondOfBeingToppled) {
   robot.data().xfrc_applied[6 * trunk + 3] = 80.0;  // N m, about x: rolled over by a hand
   robot.stand(0.4);
   robot.data().xfrc_applied[6 * trunk + 3] = 0.0;
-  EXPECT_TRUE(robot.stand(1.0).has_fallen);
+  bool was_detected = false;  // at any instant: the robot rolls over, and it may be upright again for a moment
+  for (int i = 0; i < 10; ++i) was_detected |= robot.stand(0.1).has_fallen;
+  EXPECT_TRUE(was_detected);
 }
 
 TEST(QuadrupedController, APushOfSixNewtonSecondsAtTheTrunkIsNoFall) {

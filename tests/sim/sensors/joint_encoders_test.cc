@@ -78,7 +78,7 @@ TEST(JointEncoders, ZeroOffsetShiftsTheReadingAndThePlayFollowsTheLoad) {
   SmallWorld world(kElbow);
   JointEncoderSettings settings;
   settings.counts_per_revolution = 1 << 24;
-  JointEncoders encoders(settings, *world.model, {"elbow"}, {.zero_offset_rad = {0.005}, .play_rad = 0.002});
+  JointEncoders encoders(settings, *world.model, {"elbow"}, {.zero_offset_rad = {0.005}, .play_rad = {0.002}});
   const int dof = 1;
   world.data->qpos[1] = 0.3;
   world.data->qfrc_actuator[dof] = 0.0;

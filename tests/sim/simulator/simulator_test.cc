@@ -267,7 +267,7 @@ TEST(AsBuilt, PlacementMovesTheStartAndNothingIsDrawnForANominalRobot) {
   EXPECT_NE(values.at("placement.x_m"), 0.0);
 }
 
-/// An accelerometer bias of 0.54 m/s2 across the robot tilts its vertical by 3.1 degrees.
+/// An accelerometer bias of 0.53 m/s2 across the robot tilts its vertical by 3.1 degrees.
 TEST(AsBuilt, QuadrupedWalksUprightDespiteAnAccelerometerBiasAcrossIt) {
   SimulatorSettings settings;
   settings.as_built.enabled = true;
@@ -275,7 +275,7 @@ TEST(AsBuilt, QuadrupedWalksUprightDespiteAnAccelerometerBiasAcrossIt) {
   settings.as_built.joint_encoders = {.zero_offset_deg = 0.0, .play_deg = 0.0};
   settings.as_built.legs = {.friction_scale = 0.0};
   settings.as_built.imu = {.gyro_bias_std_radps = 0.0, .scale_std = 0.0, .misalignment_std_deg = 0.0};
-  ASSERT_NEAR(AsBuiltRobot(settings.as_built, io::load_robot_description(kRobotUrdf), 1).imu().accel.bias.y(), 0.536,
+  ASSERT_NEAR(AsBuiltRobot(settings.as_built, io::load_robot_description(kRobotUrdf), 1).imu().accel.bias.y(), 0.531,
               0.001);
   SmallSimulation simulation(kRobotUrdf, make_flat_world(), settings);
   simulation.run(0.0, 1.0);

@@ -20,7 +20,7 @@ TEST(ErrorSources, NamesAreUnique) {
 TEST(ErrorSources, EveryAsBuiltToleranceIsOneSource) {
   Scenario scenario;
   scenario.as_built.enabled = false;
-  const ScenarioFiles files;
+  ScenarioFiles files;
   int num_tolerances = 0;
   for (const ScenarioErrorSource& source : scenario_error_sources()) {
     if (!source.name.starts_with("as built: ")) continue;
@@ -38,8 +38,11 @@ TEST(ErrorSources, EveryAsBuiltToleranceIsOneSource) {
   };
   EXPECT_TRUE(applies("as built: mounting.angle_deg"));
   EXPECT_TRUE(applies("as built: lidar.cone_deg"));
+  EXPECT_FALSE(applies("as built: tracks.gauge_m")) << "a robot without tracks";
   EXPECT_FALSE(applies("as built: uwb.tag_delay_m")) << "UWB is off by default";
   EXPECT_FALSE(applies("as built: lidar.noise_ratio"));
+  files.robot.tracks = TrackGeometry{};
+  EXPECT_TRUE(applies("as built: tracks.gauge_m"));
 }
 
 }  // namespace
