@@ -256,9 +256,7 @@ void PosePipeline::publish_calibration(Time now, StackOutput& output) {
 
 std::optional<LidarClock> PosePipeline::lidar_clock(Time now) const {
   if (!calibrator_) return std::nullopt;
-  const localize::TimeOffset offset = calibrator_->time_offset(now);
-  return LidarClock{
-      .offset_s = offset.value_s, .std_s = offset.std_s, .num_steps = calibrator_->num_time_offset_steps()};
+  return lidar_clock_by(calibrator_->time_offset(now), calibrator_->num_time_offset_steps());
 }
 
 std::optional<StationPose> PosePipeline::station_pose_at(Time stamp) const {

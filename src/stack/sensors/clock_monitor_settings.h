@@ -7,7 +7,7 @@ namespace patrol::stack {
 /// Settings of the clock monitor, for the estimated time offset of the lidar.
 struct ClockMonitorSettings {
   double max_offset_s = 0.005;  ///< a larger offset is reported
-  double sigma = 3.0;           ///< the offset exceeds a limit if it does by this many standard deviations
+  double sigma = 3.0;           ///< an offset exceeds a limit by at least this many standard deviations of its noise
   /// A larger offset cannot be corrected: the robot stops. Two clocks of 20 ppm reach 0.144 s in an hour.
   double max_corrected_offset_s = 0.15;
   int max_steps = 2;  ///< more steps of the offset within `step_window_s` stop the robot

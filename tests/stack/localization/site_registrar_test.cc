@@ -114,7 +114,8 @@ TEST(SiteRegistrar, FindsThePutDownYawFromRangesWithAntennaDelays) {
   EXPECT_LT(std::sqrt(found->covariance(2, 2)), to_rad(0.1));
 }
 
-// A bias of 1 m from 10 m on moves the map by decimeters if it is not corrected. Its pose is searched with a wide prior.
+// A bias of 1 m from 10 m on moves the map by decimeters if it is not corrected. Its pose is searched with a wide
+// prior.
 TEST(SiteRegistrar, CorrectsTheBiasOfRangesByTheGivenCalibration) {
   const SiteFrame site{.T_site_start = {3.0, -2.0, 0.0}, .datum = {}};
   const UwbCalibration uwb{.distance_m = {6.0, 10.0}, .bias_m = {0.0, 1.0}};
