@@ -19,7 +19,9 @@ LidarClock lidar_clock_by(const localize::TimeOffset& offset, int num_steps) {
   return {.offset_s = offset.value_s, .noise_std_s = offset.noise_std_s, .num_steps = num_steps};
 }
 
-std::optional<SensorChange> ClockMonitor::step(Time now, const LidarClock& clock) {
+std::optional<SensorChange> ClockMonitor::step(Time now, const LidarClock& against_odometry) {
+  LidarClock clock = against_odometry;
+  clock.offset_s += settings_.odometry_lag_s;
   for (; num_steps_ < clock.num_steps; ++num_steps_) steps_.push_back(now);
   while (!steps_.empty() && now - steps_.front() > from_seconds(settings_.step_window_s)) steps_.pop_front();
   const State state = state_of(clock);
