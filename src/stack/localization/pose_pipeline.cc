@@ -251,7 +251,10 @@ void PosePipeline::publish_range_pose(const OdometryEstimate& odometry, const Po
 void PosePipeline::publish_calibration(Time now, StackOutput& output) {
   if (!calibrator_ || now < next_calibration_) return;
   next_calibration_ += calibration_period_;
-  output.publish(calibrator_->estimate(now));
+  CalibrationEstimate estimate = calibrator_->estimate(now);
+  const std::vector<CalibrationValue> by_odometry = odometry_->calibration();
+  estimate.values.insert(estimate.values.end(), by_odometry.begin(), by_odometry.end());
+  output.publish(std::move(estimate));
 }
 
 std::optional<LidarClock> PosePipeline::lidar_clock(Time now) const {
