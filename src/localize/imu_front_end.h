@@ -3,10 +3,12 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "core/messages.h"
 #include "core/sensors/registry.h"
 #include "localize/frozen_readings.h"
+#include "localize/imu_calibration.h"
 #include "localize/imu_mount.h"
 #include "localize/motion_history.h"
 #include "localize/stationary_gyro_bias.h"
@@ -122,6 +124,17 @@ class ImuFrontEnd {
     bias.z() += (bias_radps - up.dot(bias)) / up.z();
     constexpr double kUnknown = 1e6;
     filter_->correct_gyro_bias(bias, {kUnknown, kUnknown, std_radps * std_radps});
+  }
+  /// Returns the biases of the IMU by the filter; empty before it exists.
+  std::vector<CalibrationValue> calibration(const ImuBiasErrors& errors) const {
+    if (!filter_) return {};
+    constexpr int kGyro = InertialError::kGyroBias, kAccel = InertialError::kAccelBias;
+    const auto& P = filter_->covariance();
+    return imu_calibration({.gyro_radps = filter_->gyro_bias_radps(),
+                            .accel_mps2 = filter_->accel_bias_mps2(),
+                            .gyro_covariance = P.template block<3, 3>(kGyro, kGyro),
+                            .accel_covariance = P.template block<3, 3>(kAccel, kAccel)},
+                           errors, mount_.R_body_imu(), filter_->up_in_body());
   }
   Time now() const { return now_; }                      ///< stamp of the filter state
   bool has_timed_out() const { return has_timed_out_; }  ///< the last step of the filter was without the IMU

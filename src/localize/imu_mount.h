@@ -19,6 +19,8 @@ class ImuMount {
   /// Transforms a reading. Call in order of stamps, because the lever arm needs the angular acceleration.
   InertialSample to_body(const Imu& imu);
 
+  const Eigen::Quaterniond& R_body_imu() const { return T_body_imu_.rotation; }
+
  private:
   Pose3 T_body_imu_;
   Eigen::Vector3d last_rate_radps_ = Eigen::Vector3d::Zero();

@@ -230,6 +230,14 @@ std::optional<OdometryEstimate> LeggedOdometry::estimate() const {
 
 std::optional<Pose3> LeggedOdometry::T_odom_body_at(Time stamp) const { return imu_.T_odom_body_at(stamp); }
 
+std::vector<CalibrationValue> LeggedOdometry::calibration() const {
+  return imu_.calibration({.gyro_systematic_std_radps = settings_.gyro_bias_systematic_std_radps,
+                           .accel_systematic_std_mps2 = settings_.accel_bias_systematic_std_mps2,
+                           .accel_filter_prior_std_mps2 = settings_.accel_bias_std_mps2,
+                           .accel_prior_std_mps2 = settings_.accel_bias_sheet_std_mps2,
+                           .accel_scale_std = settings_.accel_scale_std});
+}
+
 EstimatorHealth LeggedOdometry::health() const {
   EstimatorHealth health{.imu_timed_out = imu_.has_timed_out(),
                          .contacts_timed_out = contacts_timed_out_,

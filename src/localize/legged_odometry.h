@@ -2,7 +2,9 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
+#include "core/calibration/calibration_estimate.h"
 #include "core/messages.h"
 #include "core/robot_description.h"
 #include "core/sensors/registry.h"
@@ -50,6 +52,9 @@ class LeggedOdometry {
   double height_above_ground_m() const { return height_m_; }
 
   EstimatorHealth health() const;
+  /// Returns the estimates of the calibration, in the order of `kCalibrationParameters`: biases of the IMU; empty
+  /// before the first IMU reading.
+  std::vector<CalibrationValue> calibration() const;
   /// Returns the filter; nullopt before the first IMU reading.
   const std::optional<InertialFilter>& filter() const { return imu_.filter(); }
 

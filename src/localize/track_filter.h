@@ -66,6 +66,7 @@ class TrackFilter {
 
   const TrunkMotion& motion() const { return motion_; }
   const Eigen::Vector3d& gyro_bias_radps() const { return gyro_bias_; }
+  const Eigen::Vector3d& accel_bias_mps2() const { return accel_bias_; }
   Eigen::Vector3d up_in_body() const { return motion_.T_odom_body.rotation.conjugate() * Eigen::Vector3d::UnitZ(); }
   /// Returns the yaw rate about the z axis of odom.
   double yaw_rate_radps() const { return (motion_.T_odom_body.rotation * motion_.omega_body).z(); }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -265,6 +266,21 @@ Eigen::Vector3d TrackOdometry::twist_std() const {
 
 bool TrackOdometry::encoders_timed_out() const {
   return !last_speed_update_ || imu_.now() - *last_speed_update_ > kEncoderTimeout;
+}
+
+std::vector<CalibrationValue> TrackOdometry::calibration() const {
+  std::vector<CalibrationValue> values = imu_.calibration({.accel_filter_prior_std_mps2 = settings_.accel_bias_std_mps2,
+                                                           .accel_prior_std_mps2 = settings_.accel_bias_std_mps2,
+                                                           .accel_scale_std = settings_.accel_scale_std});
+  if (!imu_.filter()) return values;
+  const TrackFilter& filter = *imu_.filter();
+  constexpr int kIcr = TrackFilter::kIcr;
+  const auto add = [&](CalibrationParameter parameter, double value, double variance) {
+    values.push_back({.name = std::string(name_of(parameter)), .value = value, .std = std::sqrt(variance)});
+  };
+  add(CalibrationParameter::kTurnCenterX, filter.icr_m().x(), filter.covariance()(kIcr, kIcr));
+  add(CalibrationParameter::kTurnCenterY, filter.icr_m().y(), filter.covariance()(kIcr + 1, kIcr + 1));
+  return values;
 }
 
 TrackOdometryHealth TrackOdometry::health() const {

@@ -2,7 +2,9 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
+#include "core/calibration/calibration_estimate.h"
 #include "core/messages.h"
 #include "core/robot_description.h"
 #include "core/sensors/registry.h"
@@ -57,6 +59,9 @@ class TrackOdometry {
   double height_above_ground_m() const { return robot_.tracks->body_height_m; }
 
   TrackOdometryHealth health() const;
+  /// Returns the estimates of the calibration, in the order of `kCalibrationParameters`: biases of the IMU and center
+  /// of rotation; empty before the first IMU reading.
+  std::vector<CalibrationValue> calibration() const;
   /// Returns the filter; nullopt before the first IMU reading.
   const std::optional<TrackFilter>& filter() const { return imu_.filter(); }
 

@@ -15,6 +15,8 @@ struct TrackOdometrySettings {
   double accel_bias_std_mps2 = 0.2;                    ///< standard deviation of the bias at power-on
   double accel_bias_random_walk_mps2_per_sqrt_s = 1e-3;
   double yaw_random_walk_rad_per_sqrt_rad = 0.002;  ///< gyro scale factor and misalignment, during rotation
+  /// Standard deviation of the scale of the accelerometer, which the published bias along the vertical contains.
+  double accel_scale_std = 0.005;
   // Track encoders and the standard deviation of the track speed, whose terms add in quadrature.
   double ticks_per_sprocket_turn = 720.0;  ///< edges of the Hall sensors of the motor, through the gear
   double skid_ratio = 1.5;           ///< track speed difference over the gauge, relative to the true yaw rate: scrub
@@ -59,6 +61,7 @@ struct TrackOdometrySettings {
     visit("accel_bias_std_mps2", self.accel_bias_std_mps2, between(0.0, 5.0));
     visit("accel_bias_random_walk_mps2_per_sqrt_s", self.accel_bias_random_walk_mps2_per_sqrt_s, between(0.0, 1.0));
     visit("yaw_random_walk_rad_per_sqrt_rad", self.yaw_random_walk_rad_per_sqrt_rad, between(0.0, 0.5));
+    visit("accel_scale_std", self.accel_scale_std, between(0.0, 0.5));
     visit("ticks_per_sprocket_turn", self.ticks_per_sprocket_turn, between(1.0, 1e6));
     visit("skid_ratio", self.skid_ratio, between(1.0, 10.0));
     visit("speed_std_mps", self.speed_std_mps, between(1e-4, 1.0));

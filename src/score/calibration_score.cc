@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "core/geometry/angles.h"
 #include "core/geometry/linear_algebra.h"
@@ -12,6 +13,9 @@ namespace patrol::score {
 namespace {
 
 constexpr double kSegment_m = 1.0, kSegment_rad = 0.5, kSegment_s = 10.0;
+constexpr double kTurnStep_s = 0.2;  // interval of the motion that shows the center of rotation
+constexpr double kTurnCorrelation_rad = 2.0;
+constexpr double kMinTurn_rad2 = 0.05;  // minimum weighted sum of squared rotations that gives a center
 constexpr double kQuantile95 = 1.959964;
 constexpr double kMinDeterminant = 1e-6;  ///< of the normal equations scaled to a diagonal of 1
 
@@ -72,6 +76,47 @@ struct GyroYaw {
   }
 };
 
+/// Weighted normal equations of the center of rotation: forward = ticks k + rotation y, left = -rotation x.
+struct TurnCenterFit {
+  Eigen::Matrix2d A = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d b = Eigen::Vector2d::Zero();
+  double left_rad_m = 0.0, rad2 = 0.0;
+
+  void fade(double turn_rad) {
+    const double factor = std::exp(-turn_rad / kTurnCorrelation_rad);
+    A *= factor, b *= factor, left_rad_m *= factor, rad2 *= factor;
+  }
+  void add(const Pose2& moved, double ticks) {
+    const Eigen::Vector2d along = Eigen::Rotation2Dd(-0.5 * moved.yaw) * moved.position();
+    const Eigen::Vector2d row(ticks, moved.yaw);
+    A += row * row.transpose();
+    b += row * along.x();
+    left_rad_m += moved.yaw * along.y();
+    rad2 += moved.yaw * moved.yaw;
+  }
+};
+
+/// Fits the center of rotation of a tracked robot up to an instant; none if it has not turned.
+std::optional<Eigen::Vector2d> turn_center(const CalibrationRecord& record, Time until) {
+  TurnCenterFit fit;
+  const TrackReading* from = nullptr;
+  for (const TrackReading& to : record.tracks) {
+    if (to.stamp > until) break;
+    if (from && to_seconds(to.stamp - from->stamp) < kTurnStep_s) continue;
+    const TrackReading* const begin = std::exchange(from, &to);
+    if (!begin || is_crossed(record.kidnaps, begin->stamp, to.stamp)) continue;
+    const std::optional<Pose3> T_world_from = pose_at(record.T_world_body, begin->stamp);
+    const std::optional<Pose3> T_world_to = pose_at(record.T_world_body, to.stamp);
+    if (!T_world_from || !T_world_to) continue;
+    const Pose2 moved = motion(*T_world_from, *T_world_to);
+    fit.fade(std::abs(moved.yaw));
+    fit.add(moved, 0.5 * (to.left - begin->left + to.right - begin->right));
+  }
+  if (fit.rad2 < kMinTurn_rad2 || !(fit.A.determinant() > kMinDeterminant * fit.A(0, 0) * fit.A(1, 1)))
+    return std::nullopt;
+  return Eigen::Vector2d(-fit.left_rad_m / fit.rad2, solve_symmetric(fit.A, fit.b)[1]);
+}
+
 /// Value of a name; none if it is missing.
 std::optional<double> value_of(const std::vector<std::pair<std::string, double>>& values, std::string_view name) {
   const auto found = std::ranges::find(values, name, [](const auto& entry) { return std::string_view(entry.first); });
@@ -81,25 +126,28 @@ std::optional<double> value_of(const std::vector<std::pair<std::string, double>>
 
 }  // namespace
 
-bool ScoredParameter::holds() const { return std::abs(error()) <= kQuantile95 * std; }
+bool ScoredParameter::holds() const { return std::abs(error()) <= kQuantile95 * std::hypot(std, truth_std); }
 
-std::vector<std::pair<std::string, double>> calibration_truth(const CalibrationRecord& record,
-                                                              const CalibrationReferences& references, Time stamp) {
+std::vector<TrueParameter> calibration_truth(const CalibrationRecord& record, const CalibrationReferences& references,
+                                             Time stamp) {
   using enum CalibrationParameter;
-  std::vector<std::pair<std::string, double>> truth;
-  const auto add = [&](CalibrationParameter parameter, std::optional<double> value) {
-    if (value && std::isfinite(*value)) truth.emplace_back(name_of(parameter), *value);
+  std::vector<TrueParameter> truth;
+  const auto drawn = [&](std::string_view name) { return value_of(record.as_built.values, name); };
+  const auto add = [&](CalibrationParameter parameter, std::optional<double> value, double std = 0.0,
+                       std::optional<double> related = std::nullopt) {
+    if (value && std::isfinite(*value))
+      truth.push_back({.name = std::string(name_of(parameter)), .value = *value, .std = std, .drawn = related});
   };
-  const std::optional<double> offset_s = value_of(record.as_built.values, name_of(kLidarTimeOffset));
-  const std::optional<double> drift = value_of(record.as_built.values, name_of(kLidarClockDrift));
+  const std::optional<double> offset_s = drawn(name_of(kLidarTimeOffset));
+  const std::optional<double> drift = drawn(name_of(kLidarClockDrift));
   if (offset_s && drift) {
     const double fault_s = references.lidar_clock_fault_s ? references.lidar_clock_fault_s(stamp) : 0.0;
     add(kLidarTimeOffset, *offset_s + *drift * to_seconds(stamp) + fault_s);
   }
   add(kLidarClockDrift, drift);
-  add(kLidarYaw, value_of(record.as_built.values, name_of(kLidarYaw)));
+  add(kLidarYaw, drawn(name_of(kLidarYaw)));
   for (const auto& [name, value] : record.as_built.values)
-    if (name.starts_with("uwb.")) truth.emplace_back(name, value);
+    if (name.starts_with("uwb.")) truth.push_back({.name = name, .value = value, .drawn = std::nullopt});
 
   const GyroYaw gyro(record, references.R_body_imu);
   double odom_m2 = 0.0, along_m2 = 0.0, odom_rad2 = 0.0, along_rad2 = 0.0;
@@ -117,22 +165,53 @@ std::vector<std::pair<std::string, double>> calibration_truth(const CalibrationR
     A += row * row.transpose();
     b += row * wrap_angle(segment.T_from_to_true.yaw - row[1]);
   }
-  add(kOdometryDistanceScale, along_m2 / odom_m2);
+  const std::optional<double> left = drawn("tracks.left_sprocket_scale"), right = drawn("tracks.right_sprocket_scale");
+  add(kOdometryDistanceScale, along_m2 / odom_m2, 0.0,
+      left && right ? std::optional(0.5 * (*left + *right)) : std::nullopt);
   add(kOdometryRotationScale, along_rad2 / odom_rad2);
   if (A.determinant() > kMinDeterminant * A(0, 0) * A(1, 1)) {
     const Eigen::Vector2d fit = solve_symmetric(A, b);
     add(kGyroZBias, fit[0]);
     add(kGyroZScale, 1.0 + fit[1]);
   }
+
+  // Biases of the other axes: at power-on, by warming, by gravity on level ground.
+  const double elapsed_s = std::max(0.0, to_seconds(stamp));
+  const double warming = 1.0 - std::exp(-elapsed_s / drawn("imu.warming_time_s").value_or(1.0));
+  const auto add_bias = [&](CalibrationParameter parameter, const std::string& axis, const char* unit, double walk) {
+    const std::optional<double> turn_on = drawn(name_of(parameter));
+    const std::optional<double> warm = drawn(axis + "_warming_" + unit);
+    if (!turn_on || !warm) return;
+    const double by_gravity = drawn(axis + "_by_gravity_" + unit).value_or(0.0);
+    add(parameter, *turn_on + warming * *warm + by_gravity, walk * std::sqrt(elapsed_s));
+  };
+  const double gyro_walk = drawn("imu.gyro_bias_walk_radps_per_sqrt_s").value_or(0.0);
+  const double accel_walk = drawn("imu.accel_bias_walk_mps2_per_sqrt_s").value_or(0.0);
+  add_bias(kGyroXBias, "imu.gyro_x", "radps", gyro_walk);
+  add_bias(kGyroYBias, "imu.gyro_y", "radps", gyro_walk);
+  add_bias(kAccelXBias, "imu.accel_x", "mps2", accel_walk);
+  add_bias(kAccelYBias, "imu.accel_y", "mps2", accel_walk);
+  add_bias(kAccelZBias, "imu.accel_z", "mps2", accel_walk);
+
+  if (const std::optional<Eigen::Vector2d> center = turn_center(record, stamp)) {
+    add(kTurnCenterX, center->x());
+    add(kTurnCenterY, center->y());
+  }
   return truth;
 }
 
 std::vector<ScoredParameter> calibration_score(const CalibrationEstimate& estimate,
-                                               const std::vector<std::pair<std::string, double>>& truth) {
+                                               const std::vector<TrueParameter>& truth) {
   std::vector<ScoredParameter> scored;
   for (const CalibrationValue& entry : estimate.values) {
-    if (const std::optional<double> value = value_of(truth, entry.name))
-      scored.push_back({.name = entry.name, .value = entry.value, .std = entry.std, .truth = *value});
+    const auto found = std::ranges::find(truth, entry.name, &TrueParameter::name);
+    if (found == truth.end()) continue;
+    scored.push_back({.name = entry.name,
+                      .value = entry.value,
+                      .std = entry.std,
+                      .truth = found->value,
+                      .truth_std = found->std,
+                      .drawn = found->drawn});
   }
   return scored;
 }

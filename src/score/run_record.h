@@ -28,6 +28,7 @@ struct RunRecord {
   std::vector<SiteRegistration> registrations;  ///< pose of map in site, in order; empty in older logs
   std::vector<GyroReading> gyro;
   AsBuiltTruth as_built;                           ///< ground truth; empty for a nominal robot
+  std::vector<TrackReading> tracks;                ///< counts of a tracked robot
   std::optional<CalibrationEstimate> calibration;  ///< newest, if the stack estimates its calibration
   std::vector<Event> events;
   std::vector<LocalizationConfidence> confidences;

@@ -82,6 +82,22 @@ TEST(TrackOdometry, AnAccelerometerBiasOfTheDataSheetIsNoLossOfTraction) {
   }
 }
 
+TEST(TrackOdometry, CalibrationContainsTheBiasesAndTheCenterOfRotation) {
+  const TrackOdometrySettings settings;
+  TrackedDrive drive(make_tracked_robot(), make_tour(), {}, 1);
+  TrackOdometry odometry(make_tracked_robot(), settings);
+  EXPECT_TRUE(odometry.calibration().empty());
+  run(drive, odometry, 60.0);
+  const std::vector<CalibrationValue> values = odometry.calibration();
+  ASSERT_EQ(values.size(), 7U);
+  constexpr auto kFirst = static_cast<std::size_t>(CalibrationParameter::kGyroXBias);
+  for (std::size_t i = 0; i < values.size(); ++i) EXPECT_EQ(values[i].name, kCalibrationParameters[kFirst + i].name);
+  EXPECT_EQ(values[5].value, odometry.filter()->icr_m().x());
+  EXPECT_EQ(values[6].value, odometry.filter()->icr_m().y());
+  EXPECT_LT(values[5].std, settings.icr_x_std_m);  // the tour turns
+  EXPECT_LT(values[6].std, settings.icr_y_std_m);
+}
+
 // Without rest there is no measurement of the bias by the odometry itself: 8.7 mrad/s are 30 degrees in a minute.
 TEST(TrackOdometry, AGyroBiasMeasuredByOthersKeepsTheHeading) {
   for (const bool is_corrected : {false, true}) {

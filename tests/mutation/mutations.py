@@ -76,4 +76,12 @@ MUTATIONS = [
              "update.T_map_body, update.covariance + map_covariance_};",
              "update.T_map_body, 0.01 * (update.covariance + map_covariance_)};",
              ("patrol",), r"^(Scenario|Street|Substation|Tunnel)\."),
+    Mutation("time_offset_sign", "the estimated time offset of the lidar is applied with the other sign",
+             "src/stack/localization/pose_pipeline.cc",
+             "corrected.stamp -= from_seconds(correction.time_offset_s);", "corrected.stamp += from_seconds(correction.time_offset_s);",
+             ("patrol",), r"^ClockOffset\."),
+    Mutation("clock_lag_in_margin", "the margin of the clock monitor contains the lag of odometry, so that 7 ms are not reported",
+             "src/stack/sensors/clock_monitor.cc",
+             ".noise_std_s = offset.noise_std_s", ".noise_std_s = offset.std_s",
+             ("stack_test",), r"^ClockMonitor\."),
 ]

@@ -77,5 +77,15 @@ TEST(RangeSelection, CalibrationTakesRangesInLineOfSightOnly) {
   EXPECT_LT(std::abs(hidden->second.value - kDelay_m), 2.0 * hidden->second.std) << hidden->second.value;
 }
 
+TEST(PoseCalibration, ContainsTheBiasesOfTheOdometrySource) {
+  const auto values = delays_after_walk();
+  for (const char* name : {"imu.gyro_x_bias_radps", "imu.gyro_y_bias_radps", "imu.accel_x_bias_mps2",
+                           "imu.accel_y_bias_mps2", "imu.accel_z_bias_mps2"}) {
+    ASSERT_TRUE(values.contains(name)) << name;
+    EXPECT_GT(values.at(name).std, 0.0) << name;
+  }
+  EXPECT_FALSE(values.contains("odometry.turn_center_x_m")) << "a robot without tracks";
+}
+
 }  // namespace
 }  // namespace patrol::stack::range_selection_test

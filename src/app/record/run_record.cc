@@ -39,6 +39,9 @@ RunRecord read_run_record(const std::filesystem::path& log_mcap) {
   handlers.on<GroundTruth>(
       [&](Time, const GroundTruth& truth) { append(record.T_world_body, truth.stamp, truth.T_world_body); });
   handlers.on<Imu>([&](Time, const Imu& imu) { record.gyro.push_back({imu.stamp, imu.angular_velocity_radps}); });
+  handlers.on<TrackTicks>([&](Time, const TrackTicks& ticks) {
+    record.tracks.push_back({ticks.stamp, static_cast<double>(ticks.left), static_cast<double>(ticks.right)});
+  });
   handlers.on<AsBuiltTruth>([&](Time, const AsBuiltTruth& as_built) { record.as_built = as_built; });
   handlers.on<CalibrationEstimate>(
       [&](Time, const CalibrationEstimate& calibration) { record.calibration = calibration; });

@@ -164,6 +164,7 @@ io::Metrics to_json(const std::vector<score::ScoredParameter>& calibration) {
     std::ranges::replace(pointer, '.', '/');
     metrics[io::Metrics::json_pointer(pointer)] = {
         {"value", parameter.value}, {"std", parameter.std}, {"truth", parameter.truth}, {"holds", parameter.holds()}};
+    if (parameter.drawn) metrics[io::Metrics::json_pointer(pointer)]["drawn"] = *parameter.drawn;
     if (parameter.holds()) ++num_held;
   }
   metrics["parameters"] = calibration.size();

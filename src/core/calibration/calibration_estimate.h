@@ -21,6 +21,13 @@ enum class CalibrationParameter : std::uint8_t {
   kOdometryRotationScale,
   kGyroZBias,
   kGyroZScale,
+  kGyroXBias,
+  kGyroYBias,
+  kAccelXBias,
+  kAccelYBias,
+  kAccelZBias,
+  kTurnCenterX,
+  kTurnCenterY,
 };
 
 inline constexpr std::array kCalibrationParameters = std::to_array<NamedValue<CalibrationParameter>>({
@@ -35,6 +42,18 @@ inline constexpr std::array kCalibrationParameters = std::to_array<NamedValue<Ca
     {CalibrationParameter::kGyroZBias, "imu.gyro_z_bias_radps", "Gyro reading about the vertical at rest"},
     {CalibrationParameter::kGyroZScale, "imu.gyro_z_scale",
      "Actual yaw rate / gyro reading about the vertical, without the bias"},
+    {CalibrationParameter::kGyroXBias, "imu.gyro_x_bias_radps", "Gyro reading about its x axis at rest"},
+    {CalibrationParameter::kGyroYBias, "imu.gyro_y_bias_radps", "Gyro reading about its y axis at rest"},
+    {CalibrationParameter::kAccelXBias, "imu.accel_x_bias_mps2",
+     "Accelerometer reading minus specific force along its x axis; on level ground it is confounded with tilt"},
+    {CalibrationParameter::kAccelYBias, "imu.accel_y_bias_mps2",
+     "Accelerometer reading minus specific force along its y axis; on level ground it is confounded with tilt"},
+    {CalibrationParameter::kAccelZBias, "imu.accel_z_bias_mps2",
+     "Accelerometer reading minus specific force along its z axis"},
+    {CalibrationParameter::kTurnCenterX, "odometry.turn_center_x_m",
+     "x in body of the center of rotation of a tracked robot: mean of the instantaneous centers of the tracks"},
+    {CalibrationParameter::kTurnCenterY, "odometry.turn_center_y_m",
+     "y in body of the point of a tracked robot that moves at the mean speed of the tracks while it turns"},
 });
 static_assert(is_in_order(kCalibrationParameters));
 

@@ -84,8 +84,10 @@ TimeOffset TimeOffsetEstimator::at(Time stamp) const {
   // The lag may differ between the beginning and the end.
   const double lag_drift_std = std::min(settings_.prior_drift_std_s_per_s,
                                         std::numbers::sqrt2 * settings_.odometry_lag_std_s / std::max(elapsed_s, 1.0));
+  const double noise_std_s = std::sqrt(by.dot(estimate.covariance * by));
   return {.value_s = by.dot(estimate.value),
-          .std_s = std::hypot(std::sqrt(by.dot(estimate.covariance * by)), settings_.odometry_lag_std_s),
+          .std_s = std::hypot(noise_std_s, settings_.odometry_lag_std_s),
+          .noise_std_s = noise_std_s,
           .drift_s_per_s = estimate.value[1],
           .drift_std_s_per_s = std::hypot(estimate.std(1), lag_drift_std)};
 }

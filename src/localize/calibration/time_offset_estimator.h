@@ -12,6 +12,7 @@ namespace patrol::localize {
 /// Time offset of the lidar with its uncertainty.
 struct TimeOffset {
   double value_s = 0.0, std_s = 0.0;
+  double noise_std_s = 0.0;  ///< part of `std_s` by the errors of the comparisons, without the lag of odometry
   double drift_s_per_s = 0.0, drift_std_s_per_s = 0.0;
 };
 

@@ -73,7 +73,8 @@ std::vector<ScoredParameter> run_calibration_score(const RunRecord& record, cons
                                         .T_world_body = record.T_world_body,
                                         .gyro = record.gyro,
                                         .as_built = record.as_built,
-                                        .kidnaps = references.kidnaps},
+                                        .kidnaps = references.kidnaps,
+                                        .tracks = record.tracks},
                                        references.calibration, record.calibration->stamp);
   return calibration_score(*record.calibration, truth);
 }

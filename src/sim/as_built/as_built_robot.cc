@@ -8,6 +8,11 @@
 #include "core/random.h"
 
 namespace patrol::sim {
+namespace {
+
+constexpr double kGravity_mps2 = 9.81;
+
+}  // namespace
 
 AsBuiltRobot::AsBuiltRobot(const AsBuiltSettings& settings, RobotDescription nominal, std::uint64_t seed)
     : settings_(settings), seed_(seed), nominal_(std::move(nominal)), actual_(nominal_) {
@@ -140,7 +145,7 @@ DepthCameraErrors AsBuiltRobot::depth_camera() const {
           .inverse_depth_per_m = uniform("depth_camera/inverse_depth", camera.inverse_depth_per_m)};
 }
 
-AsBuiltTruth AsBuiltRobot::truth(const std::vector<int>& uwb_anchors) const {
+AsBuiltTruth AsBuiltRobot::truth(const std::vector<int>& uwb_anchors, const ImuErrors& sensor) const {
   AsBuiltTruth truth;
   if (!settings_.enabled) return truth;
   const auto add = [&](std::string name, double value) { truth.values.emplace_back(std::move(name), value); };
@@ -161,8 +166,12 @@ AsBuiltTruth AsBuiltRobot::truth(const std::vector<int>& uwb_anchors) const {
   }
   constexpr const char* kAxes[] = {"x", "y", "z"};
   for (int axis = 0; axis < 3; ++axis) {
-    add(fmt::format("imu.gyro_{}_bias_radps", kAxes[axis]), imu_errors.gyro.bias[axis]);
-    add(fmt::format("imu.accel_{}_bias_mps2", kAxes[axis]), imu_errors.accel.bias[axis]);
+    add(fmt::format("imu.gyro_{}_bias_radps", kAxes[axis]), imu_errors.gyro.bias[axis] + sensor.gyro.bias[axis]);
+    add(fmt::format("imu.accel_{}_bias_mps2", kAxes[axis]), imu_errors.accel.bias[axis] + sensor.accel.bias[axis]);
+    add(fmt::format("imu.gyro_{}_warming_radps", kAxes[axis]), imu_errors.warming_k * imu_errors.gyro.bias_per_k[axis]);
+    add(fmt::format("imu.accel_{}_warming_mps2", kAxes[axis]),
+        imu_errors.warming_k * imu_errors.accel.bias_per_k[axis]);
+    add(fmt::format("imu.gyro_{}_by_gravity_radps", kAxes[axis]), kGravity_mps2 * imu_errors.g_sensitivity(axis, 2));
   }
   add("imu.gyro_z_scale_error", imu_errors.gyro.distortion(2, 2));
   if (nominal_.tracks) {

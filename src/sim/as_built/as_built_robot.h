@@ -52,8 +52,8 @@ class AsBuiltRobot {
   }
 
   /// Returns the drawn values that the stack can estimate, and the sensor poses relative to the nominal ones; empty for
-  /// a nominal robot.
-  AsBuiltTruth truth(const std::vector<int>& uwb_anchors) const;
+  /// a nominal robot. `sensor`: constant biases by the settings of the IMU, which add to the turn-on biases.
+  AsBuiltTruth truth(const std::vector<int>& uwb_anchors, const ImuErrors& sensor = {}) const;
 
  private:
   RandomStream stream(const std::string& term) const;

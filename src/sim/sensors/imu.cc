@@ -10,6 +10,9 @@
 namespace patrol::sim {
 namespace {
 
+constexpr const char* kGyro = "imu/gyro";
+constexpr const char* kAccel = "imu/accel";
+
 double quantized(double value, double resolution) {
   return resolution > 0.0 ? resolution * std::round(value / resolution) : value;
 }
@@ -19,15 +22,22 @@ double quantized(double value, double resolution) {
 ImuSensor::ImuSensor(const ImuSettings& settings, const mjModel& model, std::uint64_t seed, const ImuErrors& errors)
     : site_(mj_name2id(&model, mjOBJ_SITE, "imu")),
       errors_(errors),
-      gyro_(make_triad(seed, "imu/gyro", settings, model.opt.timestep, settings.gyro_noise_density_radps_per_sqrt_hz,
+      gyro_(make_triad(seed, kGyro, settings, model.opt.timestep, settings.gyro_noise_density_radps_per_sqrt_hz,
                        settings.gyro_bias_std_radps, settings.gyro_bias_random_walk_radps_per_sqrt_s,
                        settings.gyro_range_radps, settings.gyro_resolution_radps)),
-      accel_(make_triad(seed, "imu/accel", settings, model.opt.timestep, settings.accel_noise_density_mps2_per_sqrt_hz,
+      accel_(make_triad(seed, kAccel, settings, model.opt.timestep, settings.accel_noise_density_mps2_per_sqrt_hz,
                         settings.accel_bias_std_mps2, settings.accel_bias_random_walk_mps2_per_sqrt_s,
                         settings.accel_range_mps2, settings.accel_resolution_mps2)) {
   validate(settings, "sensors.imu");
   add_errors(errors.gyro, gyro_);
   add_errors(errors.accel, accel_);
+}
+
+ImuErrors ImuSensor::constant_biases(const ImuSettings& settings, std::uint64_t seed) {
+  ImuErrors errors;
+  errors.gyro.bias = make_triad(seed, kGyro, settings, 1.0, 0.0, settings.gyro_bias_std_radps, 0.0, 0.0, 0.0).bias;
+  errors.accel.bias = make_triad(seed, kAccel, settings, 1.0, 0.0, settings.accel_bias_std_mps2, 0.0, 0.0, 0.0).bias;
+  return errors;
 }
 
 void ImuSensor::add_errors(const TriadErrors& errors, Triad& triad) {

@@ -15,6 +15,9 @@ namespace patrol::sim {
 /// are sampled once per run; those of the as-built robot are added.
 class ImuSensor {
  public:
+  /// Returns the constant biases of the settings, without those of the as-built robot.
+  static ImuErrors constant_biases(const ImuSettings& settings, std::uint64_t seed);
+
   ImuSensor(const ImuSettings& settings, const mjModel& model, std::uint64_t seed, const ImuErrors& errors = {});
 
   /// Takes reading number `tick`; the bias random walk advances with it.

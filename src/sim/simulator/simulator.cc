@@ -14,6 +14,7 @@
 #include "sim/as_built/as_built_model.h"
 #include "sim/locomotion/quadruped_drive.h"
 #include "sim/locomotion/track_drive.h"
+#include "sim/sensors/imu.h"
 #include "sim/sensors/uwb.h"
 
 namespace patrol::sim {
@@ -84,7 +85,8 @@ AssembledModel assemble(const SimulatorSettings& settings, const AsBuiltRobot& r
 
 Simulator::Simulator(const SimulatorSettings& settings, const RobotDescription& robot, std::uint64_t seed,
                      const DepthImagerFactory& make_depth_imager)
-    : robot_(settings.as_built, robot, seed),
+    : seed_(seed),
+      robot_(settings.as_built, robot, seed),
       model_(assemble(settings, robot_)),
       data_(make_data(*model_.physics)),
       culler_(*model_.physics),
@@ -235,7 +237,13 @@ std::vector<SensorMessage> Simulator::take_messages() { return sensors_.take_due
 AsBuiltTruth Simulator::as_built() const {
   std::vector<int> anchors;
   for (const UwbAnchor& anchor : uwb_anchors(*model_.view)) anchors.push_back(anchor.number);
-  AsBuiltTruth truth = robot_.truth(anchors);
+  const ImuSettings& imu = settings_.sensors.imu;
+  AsBuiltTruth truth = robot_.truth(anchors, ImuSensor::constant_biases(imu, seed_));
+  if (!truth.values.empty()) {
+    truth.values.emplace_back("imu.warming_time_s", settings_.as_built.imu.warming_time_s);
+    truth.values.emplace_back("imu.gyro_bias_walk_radps_per_sqrt_s", imu.gyro_bias_random_walk_radps_per_sqrt_s);
+    truth.values.emplace_back("imu.accel_bias_walk_mps2_per_sqrt_s", imu.accel_bias_random_walk_mps2_per_sqrt_s);
+  }
   truth.stamp = now_;
   return truth;
 }

@@ -95,6 +95,7 @@ class Simulator {
   void record_collisions();
   void throw_if_diverged() const;
 
+  std::uint64_t seed_;
   AsBuiltRobot robot_;
   AssembledModel model_;
   DataPtr data_;

@@ -39,6 +39,7 @@ class LeggedOdometrySource final : public OdometrySource {
     return {position_std_mps, position_std_mps,
             drift.yaw_std_rad_per_m * speed_mps + drift.yaw_std_rad_per_rad * yaw_rate_radps};
   }
+  std::vector<CalibrationValue> calibration() const override { return odometry_.calibration(); }
 
  private:
   localize::LeggedOdometry odometry_;
@@ -61,6 +62,7 @@ class TrackedOdometrySource final : public OdometrySource {
   std::optional<Pose3> T_odom_body_at(Time stamp) const override { return odometry_.T_odom_body_at(stamp); }
   double height_above_ground_m() const override { return odometry_.height_above_ground_m(); }
   Eigen::Vector3d twist_std() const override { return odometry_.twist_std(); }
+  std::vector<CalibrationValue> calibration() const override { return odometry_.calibration(); }
 
  private:
   localize::TrackOdometry odometry_;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/calibration/calibration_estimate.h"
 #include "core/messages.h"
 #include "core/robot_description.h"
 #include "core/sensors/registry.h"
@@ -29,6 +30,8 @@ class OdometrySource {
   virtual double height_above_ground_m() const = 0;
   /// Returns the standard deviation of the systematic velocity errors, in body: forward m/s, left m/s, yaw rate rad/s.
   virtual Eigen::Vector3d twist_std() const = 0;
+  /// Returns the calibration parameters that the source estimates; empty before its first IMU reading.
+  virtual std::vector<CalibrationValue> calibration() const = 0;
 };
 
 /// Makes the source named by `settings.odometry_source`. Throws InputError if the robot lacks what the source needs.

@@ -27,6 +27,10 @@ localize::OnlineCalibratorSettings calibration_on_map(const StackSettings& setti
   return calibration;
 }
 
+UwbCalibration uwb_calibration(const localize::RangeFilterSettings& settings) {
+  return {.distance_m = settings.bias_distance_m, .bias_m = settings.bias_m};
+}
+
 std::vector<UwbAnchor> placed(std::vector<UwbAnchor> anchors, const Pose2& T_site_start) {
   for (UwbAnchor& anchor : anchors) anchor.p_m.head<2>() = T_site_start * Eigen::Vector2d(anchor.p_m.head<2>());
   return anchors;
@@ -45,12 +49,13 @@ PosePipeline::PosePipeline(const StackSettings& settings, const RobotDescription
     : settle_(from_seconds(settings.odometry_settling_time_s)),
       odometry_(make_odometry_source(settings, robot)),
       leveler_(robot.T_body("lidar"), settings.scan_leveling),
-      registrar_(for_map(settings.registration, start.map.has_value()), site, start.map_registration),
+      registrar_(for_map(settings.registration, start.map.has_value()), site, start.map_registration,
+                 uwb_calibration(settings.uwb_filter)),
       T_start_site_(site.T_site_start.inverse()),
       T_body_lidar_(robot.T_body("lidar")),
       anchors_in_site_(placed(site_in_map.anchors, site.T_site_start)),
       anchors_in_map_(site_in_map.anchors),
-      uwb_calibration_{.distance_m = settings.uwb_filter.bias_distance_m, .bias_m = settings.uwb_filter.bias_m},
+      uwb_calibration_(uwb_calibration(settings.uwb_filter)),
       line_of_sight_(settings.line_of_sight),
       calibration_period_(from_seconds(settings.calibration.period_s)) {
   start.height_above_ground_m = odometry_->height_above_ground_m();
@@ -253,14 +258,15 @@ void PosePipeline::publish_range_pose(const OdometryEstimate& odometry, const Po
 void PosePipeline::publish_calibration(Time now, StackOutput& output) {
   if (!calibrator_ || now < next_calibration_) return;
   next_calibration_ += calibration_period_;
-  output.publish(calibrator_->estimate(now));
+  CalibrationEstimate estimate = calibrator_->estimate(now);
+  const std::vector<CalibrationValue> by_odometry = odometry_->calibration();
+  estimate.values.insert(estimate.values.end(), by_odometry.begin(), by_odometry.end());
+  output.publish(std::move(estimate));
 }
 
 std::optional<LidarClock> PosePipeline::lidar_clock(Time now) const {
   if (!calibrator_) return std::nullopt;
-  const localize::TimeOffset offset = calibrator_->time_offset(now);
-  return LidarClock{
-      .offset_s = offset.value_s, .std_s = offset.std_s, .num_steps = calibrator_->num_time_offset_steps()};
+  return lidar_clock_by(calibrator_->time_offset(now), calibrator_->num_time_offset_steps());
 }
 
 std::optional<StationPose> PosePipeline::station_pose_at(Time stamp) const {

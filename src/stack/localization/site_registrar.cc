@@ -20,8 +20,11 @@ double square(double value) { return value * value; }
 }  // namespace
 
 SiteRegistrar::SiteRegistrar(const localize::RegistrationSettings& settings, const SiteFrame& site,
-                             const std::optional<SiteRegistration>& given)
-    : settings_(settings), site_(site), prior_(localize::registration_prior(site.T_site_start, settings)) {
+                             const std::optional<SiteRegistration>& given, UwbCalibration uwb)
+    : settings_(settings),
+      site_(site),
+      uwb_(std::move(uwb)),
+      prior_(localize::registration_prior(site.T_site_start, settings)) {
   if (given) prior_ = {.T_site_map = given->T_site_map, .covariance = given->covariance};
   validate(settings, "registration");
 }
@@ -119,7 +122,7 @@ std::optional<SiteRegistration> SiteRegistrar::update(Time now, const std::vecto
     if (entry.pose.scan < path.size()) entry.measurement.T_map_body = path[entry.pose.scan] * entry.pose.T_scan_body;
     measurements.push_back(entry.measurement);
   }
-  const localize::SitePoseGaussian estimate = localize::register_to_site(prior_, measurements, settings_);
+  const localize::SitePoseGaussian estimate = localize::register_to_site(prior_, measurements, settings_, uwb_);
   const bool has_changed = !published_ || published_->T_site_map.vector() != estimate.T_site_map.vector();
   if (!has_changed) return std::nullopt;
   published_ = SiteRegistration{.stamp = now, .T_site_map = estimate.T_site_map, .covariance = estimate.covariance};

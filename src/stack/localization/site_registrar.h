@@ -9,6 +9,7 @@
 #include "core/sensors/gnss.h"
 #include "core/site/site_frame.h"
 #include "core/site/site_registration.h"
+#include "core/uwb.h"
 #include "localize/registration/register_to_site.h"
 
 namespace patrol::stack {
@@ -34,10 +35,10 @@ struct GnssPosition {
 /// registration follows loop closures. Poses that a fixed map has given are kept as they were.
 class SiteRegistrar {
  public:
-  /// `given`: registration of a given map, which is the prior instead of that of the settings. Throws InputError if a
-  /// setting is out of range.
+  /// `given`: registration of a given map, which is the prior instead of that of the settings. `uwb`: bias of the
+  /// ranges. Throws InputError if a setting is out of range.
   SiteRegistrar(const localize::RegistrationSettings& settings, const SiteFrame& site,
-                const std::optional<SiteRegistration>& given = {});
+                const std::optional<SiteRegistration>& given = {}, UwbCalibration uwb = {});
 
   /// Returns whether GNSS fixes are used: the site has a datum.
   bool uses_gnss() const { return settings_.use_gnss && site_.datum.has_value(); }
@@ -72,6 +73,7 @@ class SiteRegistrar {
 
   localize::RegistrationSettings settings_;
   SiteFrame site_;
+  UwbCalibration uwb_;
   localize::SitePoseGaussian prior_;
   double spacing_factor_ = 1.0;             ///< of the minimum distances, doubled each time the entries are thinned out
   std::vector<Entry> entries_;              ///< in ascending time order

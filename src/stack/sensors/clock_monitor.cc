@@ -15,7 +15,13 @@ std::string describe(double offset_s) {
 
 }  // namespace
 
-std::optional<SensorChange> ClockMonitor::step(Time now, const LidarClock& clock) {
+LidarClock lidar_clock_by(const localize::TimeOffset& offset, int num_steps) {
+  return {.offset_s = offset.value_s, .noise_std_s = offset.noise_std_s, .num_steps = num_steps};
+}
+
+std::optional<SensorChange> ClockMonitor::step(Time now, const LidarClock& against_odometry) {
+  LidarClock clock = against_odometry;
+  clock.offset_s += settings_.odometry_lag_s;
   for (; num_steps_ < clock.num_steps; ++num_steps_) steps_.push_back(now);
   while (!steps_.empty() && now - steps_.front() > from_seconds(settings_.step_window_s)) steps_.pop_front();
   const State state = state_of(clock);
@@ -42,7 +48,7 @@ std::optional<SensorChange> ClockMonitor::step(Time now, const LidarClock& clock
 
 ClockMonitor::State ClockMonitor::state_of(const LidarClock& clock) const {
   if (static_cast<int>(steps_.size()) > settings_.max_steps) return State::kUnstable;
-  const double margin_s = settings_.sigma * clock.std_s;
+  const double margin_s = settings_.sigma * clock.noise_std_s;
   const double certain_s = std::abs(clock.offset_s) - margin_s;
   if (certain_s > settings_.max_corrected_offset_s) return State::kTooLarge;
   if (certain_s > settings_.max_offset_s) return State::kCorrected;

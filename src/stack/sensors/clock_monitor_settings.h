@@ -7,7 +7,10 @@ namespace patrol::stack {
 /// Settings of the clock monitor, for the estimated time offset of the lidar.
 struct ClockMonitorSettings {
   double max_offset_s = 0.005;  ///< a larger offset is reported
-  double sigma = 3.0;           ///< the offset exceeds a limit if it does by this many standard deviations
+  /// Mean lag of odometry behind its own stamps, which makes the lidar appear early. The rate of the simulated IMU is
+  /// the mean over the step of 2 ms that ends at its stamp (semi-implicit Euler), so it is half a step old.
+  double odometry_lag_s = 0.001;
+  double sigma = 3.0;  ///< an offset exceeds a limit by at least this many standard deviations of its noise
   /// A larger offset cannot be corrected: the robot stops. Two clocks of 20 ppm reach 0.144 s in an hour.
   double max_corrected_offset_s = 0.15;
   int max_steps = 2;  ///< more steps of the offset within `step_window_s` stop the robot
@@ -16,6 +19,7 @@ struct ClockMonitorSettings {
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("max_offset_s", self.max_offset_s, at_least(0.0));
+    visit("odometry_lag_s", self.odometry_lag_s, between(-1.0, 1.0));
     visit("sigma", self.sigma, between(0.0, 100.0));
     visit("max_corrected_offset_s", self.max_corrected_offset_s, at_least(0.0));
     visit("max_steps", self.max_steps, between(0, 1000));

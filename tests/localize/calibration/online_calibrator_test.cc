@@ -110,7 +110,7 @@ TEST(OnlineCalibrator, AppliesNothingBeforeTheEstimateIsCertain) {
 
 TEST(OnlineCalibrator, NamesItsParametersAsInTheTable) {
   const CalibrationEstimate estimate = run(0.0, 0.0, 0.2).estimate;
-  ASSERT_EQ(estimate.values.size(), kCalibrationParameters.size());
+  ASSERT_EQ(estimate.values.size(), static_cast<std::size_t>(CalibrationParameter::kGyroXBias));  // then odometry's own
   for (std::size_t i = 0; i < estimate.values.size(); ++i)
     EXPECT_EQ(estimate.values[i].name, kCalibrationParameters[i].name);
 }

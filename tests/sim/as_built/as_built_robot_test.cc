@@ -58,6 +58,21 @@ double max_magnitude(const std::vector<double>& values) {
   return max;
 }
 
+TEST(AsBuiltRobot, TruthContainsTheBiasesOfTheImuWithWarmingAndGravity) {
+  const AsBuiltRobot robot(enabled(), tracked(), 4);
+  ImuErrors sensor;
+  sensor.gyro.bias.y() = 0.5;
+  sensor.accel.bias.z() = -0.25;
+  std::map<std::string, double> values;
+  for (const auto& [name, value] : robot.truth({}, sensor).values) values.emplace(name, value);
+  const ImuErrors imu = robot.imu();
+  EXPECT_EQ(values.at("imu.gyro_y_bias_radps"), imu.gyro.bias.y() + 0.5);
+  EXPECT_EQ(values.at("imu.accel_z_bias_mps2"), imu.accel.bias.z() - 0.25);
+  EXPECT_EQ(values.at("imu.gyro_x_warming_radps"), imu.warming_k * imu.gyro.bias_per_k.x());
+  EXPECT_EQ(values.at("imu.accel_x_warming_mps2"), imu.warming_k * imu.accel.bias_per_k.x());
+  EXPECT_EQ(values.at("imu.gyro_x_by_gravity_radps"), 9.81 * imu.g_sensitivity(0, 2));
+}
+
 TEST(AsBuiltRobot, DisabledSettingsGiveTheNominalRobot) {
   const RobotDescription nominal = tracked();
   const AsBuiltRobot robot(AsBuiltSettings{}, nominal, 3);

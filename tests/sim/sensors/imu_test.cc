@@ -181,5 +181,19 @@ TEST(Imu, OnAnArmOfHalfAMetreAt4RadiansPerSecondItReads8MetresPerSquareSecondInw
   EXPECT_NEAR((reading.linear_acceleration_mps2 - Eigen::Vector3d(-8, 0, 9.81)).norm(), 0.0, 1e-9);
 }
 
+// The ground truth of the calibration is the bias that the sensor has.
+TEST(Imu, ConstantBiasesAreThoseOfTheReadings) {
+  ImuSettings settings = ideal();
+  settings.gyro_bias_std_radps = 0.002;
+  settings.accel_bias_std_mps2 = 0.03;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const Record record = record_at_rest(settings, 1, seed);
+    const ImuErrors constant = ImuSensor::constant_biases(settings, seed);
+    EXPECT_NE(constant.gyro.bias.x(), 0.0);
+    EXPECT_EQ(record.gyro[0], constant.gyro.bias.x()) << seed;
+    EXPECT_EQ(record.accel[0], constant.accel.bias.x()) << seed;
+  }
+}
+
 }  // namespace
 }  // namespace patrol::sim::imu_test

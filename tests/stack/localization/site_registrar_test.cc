@@ -76,26 +76,40 @@ TEST(SiteRegistrar, WithoutADatumIgnoresFixes) {
               test::Pose2Near(kSite.T_site_start, 1e-12, 1e-12));
 }
 
-// Anchors on alternating sides of a tunnel along x of site, every 20 m.
-TEST(SiteRegistrar, FindsThePutDownYawFromRangesWithAntennaDelays) {
-  const SiteFrame site{.T_site_start = {3.0, -2.0, 0.0}, .datum = {}};
-  SiteRegistrar registrar({}, site);
-  const Pose2 T_site_map = site.T_site_start * Pose2{0.01, -0.01, to_rad(0.5)};
+constexpr int kNumAnchors = 9;
+
+/// Anchors on alternating sides of a tunnel along x of site, every 20 m.
+UwbAnchor tunnel_anchor(int number) {
+  return {.number = number, .p_m = {20.0 * number - 14.0, number % 2 == 0 ? -5.3 : 5.3, 2.5}};
+}
+
+/// Drives 160 m through the tunnel with ranges of the given bias and delay; returns the path in map.
+std::vector<Pose2> drive_through_tunnel(SiteRegistrar& registrar, const Pose2& T_site_map, const UwbCalibration& uwb,
+                                        double delay_m) {
   const Eigen::Vector3d p_level_antenna(0.1, 0.0, 0.5);
   std::vector<Pose2> path;
   for (int i = 0; i <= 160; ++i) {
     const Pose2 T_map_body{1.0 * i, 0.0, 0.0};
     path.push_back(T_map_body);
-    for (int number = 1; number <= 9; ++number) {
-      const UwbAnchor anchor{.number = number, .p_m = {20.0 * number - 14.0, number % 2 == 0 ? -5.3 : 5.3, 2.5}};
-      const double delay_m = 0.05 * (number % 4 - 1.5);
-      const double range_m = predict_uwb_range(anchor, T_site_map * T_map_body, p_level_antenna, {}).range_m;
+    for (int number = 1; number <= kNumAnchors; ++number) {
+      const UwbAnchor anchor = tunnel_anchor(number);
+      const double range_m = predict_uwb_range(anchor, T_site_map * T_map_body, p_level_antenna, uwb).range_m;
       if (range_m > 40.0) continue;
-      registrar.add(UwbRange{.stamp = from_seconds(i + 0.1 * number), .anchor = number, .range_m = range_m + delay_m},
+      registrar.add(UwbRange{.stamp = from_seconds(i + 0.1 * number),
+                             .anchor = number,
+                             .range_m = range_m + delay_m * (number % 4 - 1.5)},
                     anchor, {.scan = static_cast<std::size_t>(i), .T_scan_body = {}, .T_map_body = T_map_body},
                     p_level_antenna);
     }
   }
+  return path;
+}
+
+TEST(SiteRegistrar, FindsThePutDownYawFromRangesWithAntennaDelays) {
+  const SiteFrame site{.T_site_start = {3.0, -2.0, 0.0}, .datum = {}};
+  SiteRegistrar registrar({}, site);
+  const Pose2 T_site_map = site.T_site_start * Pose2{0.01, -0.01, to_rad(0.5)};
+  const std::vector<Pose2> path = drive_through_tunnel(registrar, T_site_map, {}, 0.05);
   const std::optional<SiteRegistration> found = registrar.update(from_seconds(200.0), path);
   ASSERT_TRUE(found);
   EXPECT_LT(std::abs(wrap_angle(found->T_site_map.yaw - T_site_map.yaw)), to_rad(0.05));
@@ -133,6 +147,24 @@ TEST(SiteRegistrar, FindsThePutDownErrorFromTheChargingPost) {
   EXPECT_LT(std[2], to_rad(1.1));
   EXPECT_GT(std.head<2>().minCoeff(), 0.02);
   EXPECT_LT(std.head<2>().maxCoeff(), 0.08);
+}
+
+// A bias of 1 m from 10 m on moves the map by decimeters if it is not corrected. Its pose is searched with a wide
+// prior.
+TEST(SiteRegistrar, CorrectsTheBiasOfRangesByTheGivenCalibration) {
+  const SiteFrame site{.T_site_start = {3.0, -2.0, 0.0}, .datum = {}};
+  const UwbCalibration uwb{.distance_m = {6.0, 10.0}, .bias_m = {0.0, 1.0}};
+  localize::RegistrationSettings settings;
+  settings.start_position_std_m = 1.0;
+  settings.start_yaw_std_deg = 2.0;
+  const Pose2 T_site_map = site.T_site_start * Pose2{0.1, -0.2, to_rad(0.5)};
+  const auto position_error_m = [&](const UwbCalibration& calibration) {
+    SiteRegistrar registrar(settings, site, std::nullopt, calibration);
+    const std::vector<Pose2> path = drive_through_tunnel(registrar, T_site_map, uwb, 0.0);
+    return (registrar.update(from_seconds(200.0), path)->T_site_map.position() - T_site_map.position()).norm();
+  };
+  EXPECT_LT(position_error_m(uwb), 0.001);
+  EXPECT_GT(position_error_m({}), 0.01);
 }
 
 TEST(SiteRegistrar, BoundsItsMeasurements) {
