@@ -47,7 +47,7 @@ struct CalibrationReferences {
 struct TrueParameter {
   std::string name;
   double value = 0.0;
-  double std = 0.0;             ///< tolerance: standard deviation of a random walk that the log does not contain
+  double std = 0.0;                  ///< tolerance: standard deviation of a random walk that the log does not contain
   std::optional<double> drawn = {};  ///< drawn value of a related quantity, for information
 };
 
