@@ -355,12 +355,12 @@ class Summary(unittest.TestCase):
 
 
 class Tunnel(unittest.TestCase):
-    WATER = """Note: Google Test filter = WaterAhead.InRealGround*
-[ RUN      ] WaterAhead.InRealGround
+    WATER = """Note: Google Test filter = WaterAhead.OfTenSpheroidsInRealGround*
+[ RUN      ] WaterAhead.OfTenSpheroidsInRealGround
 seed 201: found yes, error 1.23 m, distance 15.0 m in [12.1, 17.9] yes, radius 5.0 m in [4.0, 6.0] no
 seed 202: found yes, error 2.50 m, distance 18.2 m in [14.0, 21.5] no, radius 6.1 m in [5.2, 7.4] yes
 seed 203: found no, error 0.00 m, distance 0.0 m in [0.0, 0.0] no, radius 0.0 m in [0.0, 0.0] no
-[       OK ] WaterAhead.InRealGround (1000 ms)
+[       OK ] WaterAhead.OfTenSpheroidsInRealGround (1000 ms)
 """
 
     def setUp(self):
@@ -376,7 +376,7 @@ seed 203: found no, error 0.00 m, distance 0.0 m in [0.0, 0.0] no, radius 0.0 m 
             "| 201 | yes | 1.23 | 15.0 [12.1, 17.9] | yes | 5.0 [4.0, 6.0] | no |",
             "| 202 | yes | 2.50 | 18.2 [14.0, 21.5] | no | 6.1 [5.2, 7.4] | yes |",
             "| 203 | no | – | – | – | – | – |",
-            "| all | 2 of 3 | mean 1.86, worst 2.50; below 2 m: 1 of 3 |  | 1 of 3 |  | 1 of 3 |"])
+            "| all | 2 of 3 | mean 1.86, worst 2.50; below 3.5 m: 2 of 3 |  | 1 of 2 |  | 1 of 2 |"])
 
     def test_other_lines_of_a_seed_and_none_are_refused(self):
         for text in (self.WATER.replace("error 1.23 m", "error 1.23"), self.WATER.replace(", error 1.23 m, distance 15.0 m in [12.1, 17.9] yes", ""),
