@@ -210,6 +210,8 @@ Adjustment adjust(const LiningInMap& lining, const LiningGrid& grid, const Refer
   const Adjuster adjuster(lining, grid, reference, target_map, source, T_map_scanner_guess, settings);
   Adjustment result;
   result.T_map_scanner = T_map_scanner_start;
+  const double angle_std_rad = settings.angle_std_arcsec / 3600.0 * kDegree;
+  result.angle_var_rad2 = 2.0 * angle_std_rad * angle_std_rad;
   for (int association = 0;; ++association) {
     result.patches = adjuster.patches(result.T_map_scanner, result.range_offset_m);
     const Vector7 step = adjuster.solve(result.patches, result);

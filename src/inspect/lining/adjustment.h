@@ -32,6 +32,7 @@ struct Adjustment {
   Matrix7 covariance = Matrix7::Identity();
   /// Factor by which the patch standard deviations were increased to match the residuals; at least 1.
   double scale = 1.0;
+  double angle_var_rad2 = 0.0;  ///< variance of the systematic angle errors of both scans together
   std::vector<Patch> patches;   ///< patches at the final pose
   std::vector<double> weights;  ///< [patch], robust weight 0 to 1; 0 for deformed patches
   double rms_m = 0.0;           ///< root mean square offset of the points in the inlier patches

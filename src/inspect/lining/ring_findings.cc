@@ -18,8 +18,18 @@ double residual_variance(const Patch& patch, const Adjustment& adjustment) {
   return patch.var_m2 * adjustment.scale * adjustment.scale;
 }
 
-double std_of(double residual_var_m2, const Vector7& J, const Adjustment& adjustment) {
-  return std::sqrt(residual_var_m2 + J.dot(adjustment.covariance * J));
+/// Returns the variance of a displacement by the systematic angle errors of both scans. They vary over the sphere, so
+/// that the registration does not fit them; neighboring sectors share them.
+double angle_variance(const Vector7& J, const Adjustment& adjustment) {
+  return J.segment<3>(3).squaredNorm() * adjustment.angle_var_rad2;
+}
+
+double std_of(double variance_m2, const Vector7& J, const Adjustment& adjustment) {
+  return std::sqrt(variance_m2 + J.dot(adjustment.covariance * J));
+}
+
+double std_of(const SectorDisplacement& move, const Adjustment& adjustment) {
+  return std_of(move.residual_var_m2 + angle_variance(move.J, adjustment), move.J, adjustment);
 }
 
 std::vector<SectorDisplacement> ring_of(const LiningGrid& grid, const Adjustment& adjustment, int ring) {
@@ -69,7 +79,8 @@ std::vector<LiningCell> lining_cells(const LiningGrid& grid, const Adjustment& a
     cells.push_back({.ring = grid.ring_of(patch.cell),
                      .clock_deg = grid.clock_deg(grid.sector_of(patch.cell)),
                      .inward_m = patch.offset_m,
-                     .std_m = std_of(residual_variance(patch, adjustment), patch.J, adjustment),
+                     .std_m = std_of(residual_variance(patch, adjustment) + angle_variance(patch.J, adjustment),
+                                     patch.J, adjustment),
                      .points = patch.points});
   }
   return cells;
@@ -101,7 +112,7 @@ std::vector<RingFinding> ring_findings(const LiningInMap& lining, const LiningGr
     for (int sector = 0; sector < grid.sectors(); ++sector) {
       const SectorDisplacement& move = sectors[static_cast<std::size_t>(sector)];
       if (!move.is_observed || (largest && std::abs(move.inward_m) <= std::abs(largest->inward_m))) continue;
-      const double std_m = std_of(move.residual_var_m2, move.J, adjustment);
+      const double std_m = std_of(move, adjustment);
       const WarningLevel level = level_of(1000.0 * std::abs(move.inward_m), settings);
       if (level == WarningLevel::kNone || std::abs(move.inward_m) < settings.significance * std_m) continue;
       largest = RingFinding{
@@ -128,18 +139,15 @@ std::vector<ConvergenceLine> convergence_lines(const LiningInMap& lining, const 
       // ends.
       const double from_part = chord.normalized().dot(outwards(line.from_deg)),
                    to_part = -chord.normalized().dot(outwards(line.to_deg));
-      const double residual_var_m2 =
-          from_part * from_part * from->residual_var_m2 + to_part * to_part * to->residual_var_m2;
+      const double variance_m2 = from_part * from_part * (from->residual_var_m2 + angle_variance(from->J, adjustment)) +
+                                 to_part * to_part * (to->residual_var_m2 + angle_variance(to->J, adjustment));
       lines.push_back({.ring = ring,
                        .name = line.name,
                        .change_m = from_part * from->inward_m + to_part * to->inward_m,
-                       .std_m = std_of(residual_var_m2, from_part * from->J + to_part * to->J, adjustment)});
+                       .std_m = std_of(variance_m2, from_part * from->J + to_part * to->J, adjustment)});
     }
     if (const auto crown = displacement_at(grid, sectors, 0.0)) {
-      lines.push_back({.ring = ring,
-                       .name = "12-",
-                       .change_m = -crown->inward_m,
-                       .std_m = std_of(crown->residual_var_m2, crown->J, adjustment)});
+      lines.push_back({.ring = ring, .name = "12-", .change_m = -crown->inward_m, .std_m = std_of(*crown, adjustment)});
     }
   }
   return lines;

@@ -74,6 +74,21 @@ TEST(RingFindings, ThreeMillimetresKnownToOneAreNoFinding) {
   EXPECT_TRUE(ring_findings(kLining, kGrid, ring_18([](double) { return 0.003; }, 0.001), {}).empty());
 }
 
+// 13.4 arc seconds in two scans, 8 m along the tunnel: 0.74 mm, which smoothing does not reduce. Cells have 0.2 mm.
+TEST(RingFindings, AngleErrorsOfTheScansGrowWithTheDistanceAlongTheTunnel) {
+  const auto std_at = [](double arm_m) {
+    Adjustment adjustment = ring_18([](double) { return 0.0060; });
+    const double angle_std_rad = 13.4 / 3600.0 * kDegree;
+    adjustment.angle_var_rad2 = 2.0 * angle_std_rad * angle_std_rad;
+    for (Patch& patch : adjustment.patches) patch.J[3] = arm_m;
+    const auto findings = ring_findings(kLining, kGrid, adjustment, {});
+    return findings.empty() ? 0.0 : findings[0].std_m;
+  };
+  EXPECT_NEAR(std_at(0.0), 2e-4, 1e-6);  // the first sector is not smoothed
+  EXPECT_NEAR(std_at(8.0), std::hypot(2e-4, 0.735e-3), 2e-6);
+  EXPECT_EQ(std_at(16.0), 0.0);  // 6 mm are less than 4.5 standard deviations
+}
+
 TEST(RingFindings, WhatTheRegistrationLeavesOpenCountsToo) {
   Adjustment adjustment = ring_18([](double) { return 0.003; });
   adjustment.covariance(2, 2) = 0.001 * 0.001;

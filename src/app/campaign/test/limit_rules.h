@@ -54,6 +54,7 @@ inline constexpr std::array kMetricRules = std::to_array<MetricRule>({
     {"pose.nees.mean", LimitRule::kError, true},
     {"pose.nees.within_95", LimitRule::kFloor, true},
     {"pose.coverage", LimitRule::kFloor, true},
+    {"calibration.within_95", LimitRule::kFloor, true},
     {"odometry.ate_rmse_m", LimitRule::kError, true},
     {"localization.max_error_m", LimitRule::kError, true},
     {"localization.min_trust", LimitRule::kFloor, false},
