@@ -121,7 +121,7 @@ Score score_seeds(std::uint64_t first_seed, const MakeGround& make_ground) {
   return score;
 }
 
-// Of ten intervals of 95 %, fewer than eight hold in 1 of 90 such tests.
+// If intervals of 95 % are correct, fewer than eight of ten contain the truth in 1 of 90 such tests.
 TEST(WaterAhead, OfTenSpheresEightAreFoundAndTheIntervalsHoldInAllButTwo) {
   const Score score = score_seeds(1, [](std::uint64_t seed) { return simplified(sample_ground(seed)); });
   EXPECT_GE(score.found, 8);
