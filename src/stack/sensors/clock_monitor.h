@@ -14,7 +14,7 @@ namespace patrol::stack {
 struct LidarClock {
   double offset_s = 0.0;     ///< positive: stamps are late
   double noise_std_s = 0.0;  ///< standard deviation without the lag of odometry
-  int num_steps = 0;         ///< steps of the offset so far
+  int num_steps = 0;         ///< number of steps of the offset since the start
 };
 
 /// Returns the clock by the estimated time offset, which has changed by `num_steps` steps.
