@@ -20,6 +20,7 @@
 #include "tests/support/simulated_quadruped.h"
 #include "tests/support/simulated_tracked_robot.h"
 #include "tests/support/temporary_file.h"
+#include "tests/support/wall_imager.h"
 
 namespace patrol::sim::as_built_wiring_test {
 namespace {
@@ -53,23 +54,6 @@ SensorSuiteSettings without_noise() {
   return settings;
 }
 
-/// Draws a wall 2 m ahead.
-class WallImager : public DepthImager {
- public:
-  explicit WallImager(const PinholeLens& lens) : pixels_(static_cast<std::size_t>(lens.width_px * lens.height_px)) {}
-  void draw(const mjData&, const Pose3&, IdealDepthImage& image) override {
-    image.depth_m.assign(pixels_, 2.0F);
-    image.reflectivity.assign(pixels_, 1.0F);
-  }
-
- private:
-  std::size_t pixels_;
-};
-
-std::unique_ptr<DepthImager> make_wall_imager(const mjModel&, const PinholeLens& lens, double, double) {
-  return std::make_unique<WallImager>(lens);
-}
-
 /// Carrier of an as-built robot and its sensor suite. Nothing moves but what the test moves.
 class Carrier {
  public:
@@ -77,7 +61,7 @@ class Carrier {
       : robot_(as_built, make_carrier(), seed),
         world_(kWorld),
         suite_(without_noise(), robot_, *world_.model, *world_.model, GasPlume(Eigen::Vector3d::Zero(), 0.0, {}), {},
-               seed, make_wall_imager) {}
+               seed, test::make_wall_imager) {}
 
   const AsBuiltRobot& robot() const { return robot_; }
 
@@ -236,7 +220,7 @@ class Room {
     settings.sensors.scanner.step_deg = 10.0;
     settings.sensors.scanner.duration_s = 0.1;
     settings.sensors.scanner.latency_s = 0.0;
-    return Simulator(settings, robot, 1, make_wall_imager);
+    return Simulator(settings, robot, 1, test::make_wall_imager);
   }
 
   test::TemporaryFile file_;

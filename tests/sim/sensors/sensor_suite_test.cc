@@ -12,6 +12,7 @@
 
 #include "core/error.h"
 #include "tests/sim/small_world.h"
+#include "tests/support/wall_imager.h"
 
 namespace patrol::sim::sensor_suite_test {
 namespace {
@@ -60,25 +61,8 @@ struct Ride {
   }
 };
 
-/// Draws a wall 2 m ahead.
-class WallImager : public DepthImager {
- public:
-  explicit WallImager(const PinholeLens& lens) : pixels_(static_cast<std::size_t>(lens.width_px * lens.height_px)) {}
-  void draw(const mjData&, const Pose3&, IdealDepthImage& image) override {
-    image.depth_m.assign(pixels_, 2.0f);
-    image.reflectivity.assign(pixels_, 1.0f);
-  }
-
- private:
-  std::size_t pixels_;
-};
-
-std::unique_ptr<DepthImager> make_wall_imager(const mjModel&, const PinholeLens& lens, double, double) {
-  return std::make_unique<WallImager>(lens);
-}
-
 Ride stand(const SensorSuiteSettings& settings, double seconds, const std::vector<FaultSettings>& faults = {},
-           const RobotDescription& robot = make_robot(), const DepthImagerFactory& make_imager = make_wall_imager,
+           const RobotDescription& robot = make_robot(), const DepthImagerFactory& make_imager = test::make_wall_imager,
            const std::vector<Time>& scans_asked = {}, const AsBuiltSettings& as_built = {}) {
   SmallWorld world(kWorld);
   SensorSuite suite(settings, AsBuiltRobot(as_built, robot, 1), *world.model, *world.model,
@@ -137,7 +121,7 @@ SensorSuiteSettings with_scanner() {
 
 /// Scans asked for at 1, 2 and 4 s, over 9 s.
 std::vector<Arrival> scans_of(const SensorSuiteSettings& settings, const std::vector<FaultSettings>& faults = {}) {
-  return stand(settings, 9.0, faults, make_robot(), make_wall_imager,
+  return stand(settings, 9.0, faults, make_robot(), test::make_wall_imager,
                {from_seconds(1.0), from_seconds(2.0), from_seconds(4.0)})
       .of<PanoramicScan>();
 }
@@ -223,8 +207,8 @@ TEST(SensorSuite, AScanIsThereTwoAndAHalfSecondsAfterItIsAskedForAndOneAskedForM
 }
 
 TEST(SensorSuite, ItIsBusyFor2SecondsAScanAndWithoutAScannerNeverAndNothingComes) {
-  EXPECT_EQ(stand(with_scanner(), 5.0, {}, make_robot(), make_wall_imager, {from_seconds(1.0)}).busy_ticks, 1000);
-  const Ride without = stand(quiet(), 5.0, {}, make_robot(), make_wall_imager, {from_seconds(1.0)});
+  EXPECT_EQ(stand(with_scanner(), 5.0, {}, make_robot(), test::make_wall_imager, {from_seconds(1.0)}).busy_ticks, 1000);
+  const Ride without = stand(quiet(), 5.0, {}, make_robot(), test::make_wall_imager, {from_seconds(1.0)});
   EXPECT_EQ(without.busy_ticks, 0);
   EXPECT_TRUE(without.arrivals.empty());
 }
@@ -319,7 +303,7 @@ TEST(AsBuilt, ClockOffsetAndDriftChangeStampsAndNotArrivals) {
   const DeviceClock clock = AsBuiltRobot(as_built, make_robot(), 1).clock("uwb");
   ASSERT_NE(clock.offset_s(), 0.0);
   const auto nominal = stand(with_uwb(), 4.0).of<UwbRange>();
-  const auto actual = stand(with_uwb(), 4.0, {}, make_robot(), make_wall_imager, {}, as_built).of<UwbRange>();
+  const auto actual = stand(with_uwb(), 4.0, {}, make_robot(), test::make_wall_imager, {}, as_built).of<UwbRange>();
   ASSERT_EQ(actual.size(), nominal.size());
   for (std::size_t i = 1; i < nominal.size(); ++i) {
     EXPECT_EQ(actual[i].at, nominal[i].at);
@@ -330,7 +314,7 @@ TEST(AsBuilt, ClockOffsetAndDriftChangeStampsAndNotArrivals) {
 
 TEST(AsBuilt, TransportJitterDelaysByItsMeanAndKeepsTheOrder) {
   const AsBuiltSettings as_built = clock_only({.offset_s = 0.0, .drift_ppm = 0.0, .transport_jitter_s = 0.02});
-  const auto ranges = stand(with_uwb(), 40.0, {}, make_robot(), make_wall_imager, {}, as_built).of<UwbRange>();
+  const auto ranges = stand(with_uwb(), 40.0, {}, make_robot(), test::make_wall_imager, {}, as_built).of<UwbRange>();
   test::Moments delay_s;
   for (std::size_t i = 0; i < ranges.size(); ++i) {
     delay_s.add(to_seconds(ranges[i].at - ranges[i].stamp()) - 0.01);
@@ -347,7 +331,7 @@ TEST(AsBuilt, AntennaDelaysShiftTheRangesOfEachAnchor) {
   as_built.uwb = {.received_power_std_db = 0.0};
   const AsBuiltRobot robot(as_built, make_robot(), 1);
   const auto nominal = stand(with_uwb(), 2.0).of<UwbRange>();
-  const auto actual = stand(with_uwb(), 2.0, {}, make_robot(), make_wall_imager, {}, as_built).of<UwbRange>();
+  const auto actual = stand(with_uwb(), 2.0, {}, make_robot(), test::make_wall_imager, {}, as_built).of<UwbRange>();
   ASSERT_EQ(actual.size(), nominal.size());
   for (std::size_t i = 0; i < nominal.size(); ++i) {
     const auto& range = std::get<UwbRange>(actual[i].message);
