@@ -42,9 +42,9 @@ int mocap_of(const mjModel& model, const std::string& name) {
 std::string known_actors(const mjModel& model) {
   std::vector<std::string> names;
   for (int body = 0; body < model.nbody; ++body) {
-    const std::string name = mj_id2name(&model, mjOBJ_BODY, body);
+    const std::string name(name_of(model, mjOBJ_BODY, body));
     const bool is_part = name.find("_thigh_") != std::string::npos || name.find("_shank_") != std::string::npos;
-    if (model.body_mocapid[body] >= 0 && !is_part) names.push_back(name);
+    if (model.body_mocapid[body] >= 0 && !name.empty() && !is_part) names.push_back(name);
   }
   return join(names, ", ");
 }

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string_view>
 
 #include <fmt/format.h>
 
 #include "core/error.h"
 #include "core/geometry/angles.h"
+#include "sim/mujoco.h"
 
 namespace patrol::sim {
 namespace {
@@ -47,8 +49,9 @@ Eigen::Vector3d leak_source(const mjModel& world, const LeakSettings& leak) {
   if (site >= 0) return Eigen::Vector3d(world.site_pos + 3 * site);
   std::string known;
   for (int i = 0; i < world.nsite; ++i) {
-    if (world.site_bodyid[i] != 0) continue;
-    known += (known.empty() ? "" : ", ") + std::string(mj_id2name(&world, mjOBJ_SITE, i));
+    const std::string_view name = name_of(world, mjOBJ_SITE, i);
+    if (world.site_bodyid[i] != 0 || name.empty()) continue;
+    known += fmt::format("{}{}", known.empty() ? "" : ", ", name);
   }
   throw InputError(fmt::format("leaks: unknown site at = '{}' (known: {})", leak.at, known));
 }

@@ -11,6 +11,7 @@
 
 #include "core/frames.h"
 #include "sim/embree_scene.h"
+#include "sim/mujoco.h"
 #include "sim/robot_model.h"
 
 namespace patrol::sim {
@@ -25,7 +26,7 @@ bool is_visible_to_lidar(const mjModel& model, int geom) {
 std::uint32_t mask_of(const mjModel& model, int body) {
   const int robot = mj_name2id(&model, mjOBJ_BODY, frame_id::kBody);
   if (robot < 0 || model.body_rootid[body] != model.body_rootid[robot]) return kRayScenery;
-  const std::string_view name = mj_id2name(&model, mjOBJ_BODY, body);
+  const std::string_view name = name_of(model, mjOBJ_BODY, body);
   if (name == "lidar") return kRayLidar2d;
   if (name == "lidar3d") return kRayLidar3d;
   return name == "scanner" ? kRayScanner : kRayRobot;

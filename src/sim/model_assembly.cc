@@ -44,9 +44,9 @@ void refuse_start_in_collision(const mjModel& model, const std::vector<double>& 
     const mjContact& contact = data->contact[i];
     if (contact.dist > -kContactDepth_m) continue;
     const bool first_is_robot = model.geom_group[contact.geom[0]] == kGroupRobotCollision;
-    const char* object = mj_id2name(&model, mjOBJ_GEOM, contact.geom[first_is_robot ? 1 : 0]);
+    const std::string_view object = name_of(model, mjOBJ_GEOM, contact.geom[first_is_robot ? 1 : 0]);
     throw InputError(fmt::format("start pose ({:.2f}, {:.2f}): in collision with {}", T_world_start.x, T_world_start.y,
-                                 object == nullptr ? "an obstacle" : object));
+                                 object.empty() ? "an obstacle" : object));
   }
 }
 
@@ -78,9 +78,8 @@ double ground_height_m(const mjModel& model, const mjData& data, const Stance& s
 
 void set_start_posture(const mjModel& model, mjtNum* qpos) {
   for (int joint = 0; joint < model.njnt; ++joint) {
-    const char* name = mj_id2name(&model, mjOBJ_JOINT, joint);
-    if (model.jnt_type[joint] != mjJNT_HINGE || name == nullptr) continue;
-    const std::string_view joint_name(name);
+    if (model.jnt_type[joint] != mjJNT_HINGE) continue;
+    const std::string_view joint_name = name_of(model, mjOBJ_JOINT, joint);
     const int kind = joint_name.ends_with("_abduction_joint") ? 0
                      : joint_name.ends_with("_hip_joint")     ? 1
                      : joint_name.ends_with("_knee_joint")    ? 2

@@ -46,4 +46,9 @@ DataPtr make_data(const mjModel& model) {
   return data;
 }
 
+std::string_view name_of(const mjModel& model, mjtObj type, int id) {
+  const char* name = mj_id2name(&model, type, id);
+  return name == nullptr ? std::string_view() : name;
+}
+
 }  // namespace patrol::sim

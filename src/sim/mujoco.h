@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include <mujoco/mujoco.h>
 
@@ -26,5 +27,8 @@ SpecPtr parse_spec(const std::string& xml);
 ModelPtr compile(mjSpec& spec, const std::string& name);
 
 DataPtr make_data(const mjModel& model);
+
+/// Returns the name of an element of the model; empty if it has none.
+std::string_view name_of(const mjModel& model, mjtObj type, int id);
 
 }  // namespace patrol::sim

@@ -207,7 +207,7 @@ TEST(Actors, ACarKeepsTheHeightAtWhichTheWorldPutsItAndLooksAlongItsWay) {
 }
 
 TEST(Actors, OneTheWorldLacksIsRefusedAndTheKnownOnesAreNamed) {
-  const Traffic traffic;
+  const Traffic traffic(R"(<body mocap="true" pos="0 9 1"><geom size="0.1"/></body>)");
   try {
     Actors(*traffic.model, {{.name = "dog", .path = {{.x_m = 0, .y_m = 0}, {.x_m = 1, .y_m = 0}}}});
     FAIL() << "accepted";

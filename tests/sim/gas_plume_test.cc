@@ -114,13 +114,13 @@ TEST(GasPlume, TwoLeaksAddAndEachBeginsAtItsTime) {
 }
 
 TEST(GasPlume, AnUnknownSiteIsRefusedAndTheKnownOnesAreNamed) {
-  const SmallWorld world(R"(<site name="box" pos="0 0 0.8"/><site name="well" pos="3 1 0.2"/>)");
+  const SmallWorld world(R"(<site pos="1 1 1"/><site name="box" pos="0 0 0.8"/><site name="well" pos="3 1 0.2"/>)");
   try {
     GasPlume(*world.model, {{.at = "bxo"}}, west_wind());
     FAIL() << "accepted";
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr("bxo"));
-    EXPECT_THAT(error.what(), testing::HasSubstr("box, well"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("known: box, well"));
   }
 }
 

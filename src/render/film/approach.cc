@@ -2,20 +2,22 @@
 
 #include <string_view>
 
+#include <fmt/format.h>
+
 #include "core/frames.h"
 #include "render/scene/model_state.h"
 
 namespace patrol::render {
 namespace {
 
-std::string_view name_of(const mjModel& model, int body) { return mj_id2name(&model, mjOBJ_BODY, body); }
-
 /// Main body of a pedestrian's limb. Pedestrians consist of several mocap bodies: "pedestrian_1",
 /// "pedestrian_1_thigh_left", ...
 int main_body(const mjModel& model, int part) {
-  const std::string_view name = name_of(model, part);
+  const std::string_view name = sim::name_of(model, mjOBJ_BODY, part);
   for (int body = 0; body < model.nbody; ++body) {
-    if (model.body_mocapid[body] >= 0 && name.starts_with(std::string(name_of(model, body)) + "_")) return body;
+    const std::string_view main = sim::name_of(model, mjOBJ_BODY, body);
+    const bool can_have_limbs = model.body_mocapid[body] >= 0 && !main.empty();
+    if (can_have_limbs && name.starts_with(std::string(main) + "_")) return body;
   }
   return part;
 }
@@ -50,8 +52,9 @@ std::optional<Approach> ApproachFinder::nearest(const SimState& state) {
   }
   if (who == nullptr) return std::nullopt;
   const double* p_world_actor = data_->xpos + 3 * who->actor;
+  const std::string_view name = sim::name_of(model_, mjOBJ_BODY, who->actor);
   return Approach{.at = state.stamp,
-                  .actor = std::string(name_of(model_, who->actor)),
+                  .actor = name.empty() ? fmt::format("body {}", who->actor) : std::string(name),
                   .clearance_m = nearest_m,
                   .p_world_actor = {p_world_actor[0], p_world_actor[1]}};
 }

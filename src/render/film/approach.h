@@ -12,7 +12,7 @@ namespace patrol::render {
 /// Closest moving actor near the robot at one time.
 struct Approach {
   Time at{};
-  std::string actor;         ///< name of the actor's body, e.g. "pedestrian_1"
+  std::string actor;         ///< name of the actor's body, e.g. "pedestrian_1"; "body 7" without one
   double clearance_m = 0.0;  ///< true distance between the surfaces of robot and actor
   Eigen::Vector2d p_world_actor = Eigen::Vector2d::Zero();
 };

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <string_view>
 #include <utility>
 
 #include "sim/robot_model.h"
@@ -36,8 +35,7 @@ const float* rgba_of(const mjModel& model, int geom) {
 }
 
 bool is_housing(const mjModel& model, int geom) {
-  const char* link = mj_id2name(&model, mjOBJ_BODY, model.geom_bodyid[geom]);
-  return link != nullptr && std::string_view(link) == "depth_camera";
+  return sim::name_of(model, mjOBJ_BODY, model.geom_bodyid[geom]) == "depth_camera";
 }
 
 bool is_drawn(const mjModel& model, int geom) {

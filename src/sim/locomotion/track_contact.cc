@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "core/error.h"
+#include "sim/mujoco.h"
 
 namespace patrol::sim {
 namespace {
@@ -22,10 +23,9 @@ TrackContact::TrackContact(const RobotDescription& robot, double friction, mjMod
     : wheel_of_geom_(static_cast<std::size_t>(physics.ngeom), -1) {
   constexpr std::array<std::string_view, 2> kWheelNames = {"left_wheel_", "right_wheel_"};
   for (int geom = 0; geom < physics.ngeom; ++geom) {
-    const char* name = mj_id2name(&physics, mjOBJ_GEOM, geom);
-    if (name == nullptr) continue;
+    const std::string_view name = name_of(physics, mjOBJ_GEOM, geom);
     for (std::size_t side = 0; side < kWheelNames.size(); ++side) {
-      if (!std::string_view(name).starts_with(kWheelNames[side])) continue;
+      if (!name.starts_with(kWheelNames[side])) continue;
       const double sprocket_radius_m = robot.tracks->sprocket_radius_m * errors.sprocket_scale[side];
       const double turns = sprocket_radius_m / physics.geom_size[3 * geom];
       wheel_of_geom_[static_cast<std::size_t>(geom)] = static_cast<int>(wheels_.size());

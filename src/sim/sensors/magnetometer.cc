@@ -1,12 +1,11 @@
 #include "sim/sensors/magnetometer.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <string_view>
 
 #include "core/geometry/angles.h"
 #include "sim/sensors/sensor.h"
+#include "sim/sensors/surface_optics.h"
 
 namespace patrol::sim {
 namespace {
@@ -18,19 +17,9 @@ Eigen::Vector3d geomagnetic_field_t(const MagnetometerSettings& settings) {
                                                 -std::sin(inclination));
 }
 
-bool has_word(const char* name, const std::vector<std::string>& words) {
-  if (name == nullptr) return false;
-  const std::string_view text = name;
-  return std::any_of(words.begin(), words.end(), [&](const std::string& word) {
-    return !word.empty() && text.find(word) != std::string_view::npos;
-  });
-}
-
 bool is_steel(const mjModel& model, int geom, const std::vector<std::string>& words) {
   if (model.geom_type[geom] == mjGEOM_PLANE || model.geom_type[geom] == mjGEOM_HFIELD) return false;
-  const int material = model.geom_matid[geom];
-  return has_word(mj_id2name(&model, mjOBJ_GEOM, geom), words) ||
-         (material >= 0 && has_word(mj_id2name(&model, mjOBJ_MATERIAL, material), words));
+  return is_named_after(model, geom, words);
 }
 
 Eigen::Quaterniond rotation_of(const mjtNum* q) { return {q[0], q[1], q[2], q[3]}; }

@@ -1,6 +1,9 @@
 #include "sim/sensors/surface_optics.h"
 
+#include <algorithm>
 #include <string_view>
+
+#include "sim/mujoco.h"
 
 namespace patrol::sim {
 namespace {
@@ -13,12 +16,20 @@ float reflectivity_of(const mjModel& model, int geom) {
 
 bool is_glass(const mjModel& model, int geom) {
   const int material = model.geom_matid[geom];
-  if (material < 0) return false;
-  const char* name = mj_id2name(&model, mjOBJ_MATERIAL, material);
-  return name != nullptr && std::string_view(name).find("glass") != std::string_view::npos;
+  return material >= 0 && name_of(model, mjOBJ_MATERIAL, material).find("glass") != std::string_view::npos;
 }
 
 }  // namespace
+
+bool is_named_after(const mjModel& view, int geom, const std::vector<std::string>& words) {
+  const int material = view.geom_matid[geom];
+  const std::string_view name = name_of(view, mjOBJ_GEOM, geom),
+                         material_name = material < 0 ? "" : name_of(view, mjOBJ_MATERIAL, material);
+  return std::any_of(words.begin(), words.end(), [&](const std::string& word) {
+    return !word.empty() &&
+           (name.find(word) != std::string_view::npos || material_name.find(word) != std::string_view::npos);
+  });
+}
 
 std::vector<SurfaceOptics> surface_optics(const mjModel& view) {
   std::vector<SurfaceOptics> surfaces;

@@ -5,7 +5,6 @@
 #include <limits>
 #include <numbers>
 #include <optional>
-#include <string_view>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
@@ -13,6 +12,7 @@
 #include "core/error.h"
 #include "core/geometry/angles.h"
 #include "sim/sensors/sensor.h"
+#include "sim/sensors/surface_optics.h"
 
 namespace patrol::sim {
 namespace {
@@ -46,20 +46,6 @@ std::vector<Eigen::Vector3d> cone(double full_angle_rad) {
   return rays;
 }
 
-bool contains_any_of(const char* name, const std::vector<std::string>& words) {
-  if (name == nullptr) return false;
-  return std::any_of(words.begin(), words.end(), [text = std::string_view(name)](const std::string& word) {
-    return !word.empty() && text.find(word) != std::string_view::npos;
-  });
-}
-
-bool is_rough(const mjModel& model, int geom, const std::vector<std::string>& words) {
-  if (model.geom_type[geom] == mjGEOM_HFIELD) return true;
-  const int material = model.geom_matid[geom];
-  return contains_any_of(mj_id2name(&model, mjOBJ_GEOM, geom), words) ||
-         (material >= 0 && contains_any_of(mj_id2name(&model, mjOBJ_MATERIAL, material), words));
-}
-
 }  // namespace
 
 UltrasonicRing::UltrasonicRing(const UltrasonicSettings& settings, const LidarScene& scene,
@@ -81,8 +67,10 @@ UltrasonicRing::UltrasonicRing(const UltrasonicSettings& settings, const LidarSc
                     "range_max_m = {} returns before the next ping",
                     settings.ping_rate_hz, max_rate_hz, settings.range_max_m));
   }
-  for (int geom = 0; geom < scene.model().ngeom; ++geom)
-    is_rough_.push_back(is_rough(scene.model(), geom, settings.rough_names));
+  const mjModel& model = scene.model();
+  for (int geom = 0; geom < model.ngeom; ++geom) {
+    is_rough_.push_back(model.geom_type[geom] == mjGEOM_HFIELD || is_named_after(model, geom, settings.rough_names));
+  }
 }
 
 /// Returns the echo strength of a ray with this cosine of incidence on a geom.

@@ -15,9 +15,8 @@ namespace patrol::sim {
 namespace {
 
 /// Returns the number in "uwb_anchor_<number>"; none for any other name.
-std::optional<int> anchor_number(const char* site) {
+std::optional<int> anchor_number(std::string_view name) {
   constexpr std::string_view kPrefix = "uwb_anchor_";
-  const std::string_view name = site == nullptr ? "" : site;
   if (!name.starts_with(kPrefix)) return std::nullopt;
   int number = 0;
   const char* const end = name.data() + name.size();
@@ -39,7 +38,7 @@ std::vector<UwbAnchor> uwb_anchors(const mjModel& view) {
   mj_kinematics(&view, data.get());
   std::vector<UwbAnchor> anchors;
   for (int site = 0; site < view.nsite; ++site) {
-    const std::optional<int> number = anchor_number(mj_id2name(&view, mjOBJ_SITE, site));
+    const std::optional<int> number = anchor_number(name_of(view, mjOBJ_SITE, site));
     if (number) anchors.push_back({*number, Eigen::Vector3d(data->site_xpos + 3 * site)});
   }
   std::sort(anchors.begin(), anchors.end(), [](const auto& a, const auto& b) { return a.number < b.number; });

@@ -28,11 +28,6 @@ bool begins_with_one_of(std::string_view name, std::initializer_list<std::string
                      [&](std::string_view prefix) { return name.starts_with(prefix); });
 }
 
-std::string_view name_of(const mjModel& model, int geom) {
-  const char* name = mj_id2name(&model, mjOBJ_GEOM, geom);
-  return name == nullptr ? std::string_view() : name;
-}
-
 /// Returns the height of the highest point of a geom's bounding box in world, m.
 double top_m(const mjModel& model, const mjData& data, int geom) {
   const mjtNum* box = model.geom_aabb + 6 * geom;  // center and half sizes, in the geom's frame
@@ -51,7 +46,7 @@ double top_m(const mjModel& model, const mjData& data, int geom) {
 /// curbs do.
 bool is_footing(const mjModel& model, const mjData& data, const mjContact& contact, int geom, double lowest_m) {
   constexpr double kMaxCurb_m = 0.15;
-  const std::string_view name = name_of(model, geom);
+  const std::string_view name = name_of(model, mjOBJ_GEOM, geom);
   if (begins_with_one_of(name, {"ground", "pavement", "carriageway", "dropped_kerb"})) return true;
   if (!name.starts_with("kerb")) return false;
   const bool is_from_above = std::abs(contact.frame[2]) >= std::sqrt(0.5);  // frame: normal first
@@ -59,9 +54,9 @@ bool is_footing(const mjModel& model, const mjData& data, const mjContact& conta
 }
 
 std::string geom_name(const mjModel& model, int geom) {
-  if (const std::string_view name = name_of(model, geom); !name.empty()) return std::string(name);
-  const char* body = mj_id2name(&model, mjOBJ_BODY, model.geom_bodyid[geom]);
-  return fmt::format("geom {} of {}", geom, body == nullptr ? "?" : body);
+  if (const std::string_view name = name_of(model, mjOBJ_GEOM, geom); !name.empty()) return std::string(name);
+  const std::string_view body = name_of(model, mjOBJ_BODY, model.geom_bodyid[geom]);
+  return fmt::format("geom {} of {}", geom, body.empty() ? "?" : body);
 }
 
 /// The firmware knows the nominal robot.

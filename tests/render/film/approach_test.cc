@@ -45,6 +45,19 @@ TEST_F(ApproachFinderTest, ALegIsPartOfItsWalker) {
   EXPECT_NEAR(nearest->p_world_actor.x(), 1.2, 1e-12);
 }
 
+TEST_F(ApproachFinderTest, AnUnnamedBodyIsCalledByItsNumberAndHasNoLimbs) {
+  const sim::ModelPtr scene = small_scene(R"(
+    <body name="base_link" pos="0 0 0.3"><freejoint/><geom type="box" size="0.3 0.15 0.1" group="4"/></body>
+    <body pos="10 0 1" mocap="true"><geom type="cylinder" size="0.2 0.9"/></body>
+    <body name="_cart" pos="10 0 0.4" mocap="true"><geom type="sphere" size="0.1"/></body>)");
+  SimState state = reference_state(*scene);
+  state.mocap[0] = 1.2;
+  const int unnamed = mj_name2id(scene.get(), mjOBJ_BODY, "base_link") + 1;
+  EXPECT_EQ(ApproachFinder(*scene).nearest(state).value().actor, "body " + std::to_string(unnamed));
+  state.mocap[7] = 0.9;
+  EXPECT_EQ(ApproachFinder(*scene).nearest(state).value().actor, "_cart");
+}
+
 TEST_F(ApproachFinderTest, WhatIsFarOffIsNoApproach) { EXPECT_FALSE(finder.nearest(with_walker(3.0, 3.0))); }
 
 TEST_F(ApproachFinderTest, RefusesAStateOfAnotherModel) { EXPECT_THROW(finder.nearest(SimState{}), InputError); }
