@@ -1,5 +1,6 @@
 #include "slam/match_points.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
@@ -39,6 +40,14 @@ std::vector<MatchPoint> downsample_scan(const LevelScan& scan, double spacing_m,
   chosen.reserve(limit);
   for (std::size_t i = 0; i < limit; ++i) chosen.push_back(points[i * points.size() / limit]);
   return chosen;
+}
+
+std::vector<Eigen::Vector2d> positions_of(const std::vector<MatchPoint>& points, int max_points) {
+  const std::size_t count = std::min(points.size(), static_cast<std::size_t>(max_points));
+  std::vector<Eigen::Vector2d> positions;
+  positions.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) positions.push_back(points[i * points.size() / count].p_body);
+  return positions;
 }
 
 }  // namespace patrol::slam

@@ -19,4 +19,7 @@ struct MatchPoint {
 /// heading, keep their weight. If more than `max_points` remain, a regular subset is returned.
 std::vector<MatchPoint> downsample_scan(const LevelScan& scan, double spacing_m, int max_points);
 
+/// Returns the positions of a regular subset of at most `max_points` points.
+std::vector<Eigen::Vector2d> positions_of(const std::vector<MatchPoint>& points, int max_points);
+
 }  // namespace patrol::slam

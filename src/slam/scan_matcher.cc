@@ -35,7 +35,7 @@ struct PointTerm {
   double log_likelihood = 0.0;
 };
 
-/// Returns none in unobserved cells.
+/// Returns none in unobserved cells, and near a surface with too few hits for a line, which the map hardly knows yet.
 std::optional<PointTerm> to_term(const GridMap& map, const MatchPoint& point, const Eigen::Matrix2d& R,
                                  const Eigen::Vector2d& t, const ScanMatcherSettings& settings) {
   const double kernel_var = squared(settings.kernel_m);
@@ -44,8 +44,9 @@ std::optional<PointTerm> to_term(const GridMap& map, const MatchPoint& point, co
   const double point_var = squared(settings.point_std_m) + squared(settings.point_angle_std_rad * point.range_m);
   term.line = fit_local_line(map, p_map, settings.surface_radius_cells);
   if (!term.line) {
-    const GridCell* cell = map.find(map.cell_at(p_map));
-    if (!cell || !cell->is_observed()) return std::nullopt;
+    const Cell at = map.cell_at(p_map);
+    const GridCell* cell = map.find(at);
+    if (!cell || !cell->is_observed() || map.is_surface_within(at, settings.surface_radius_cells)) return std::nullopt;
     term.log_likelihood = -0.5 * kernel_var / point_var *
                           std::log1p(squared(settings.surface_radius_cells * map.resolution_m()) / kernel_var);
     return term;

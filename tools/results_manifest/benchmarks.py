@@ -34,6 +34,6 @@ def mutations_text(values):
                       f"{row['all_min']:.1f}" if row["all_min"] else NONE] for row in values])
 
 
-add(name="mutations", file="tests/mutation/README.md", seeds="those of the tests", minutes=120,
+add(name="mutations", file="tests/mutation/README.md", seeds="those of the tests", minutes=40,
     steps=[Step("mutations", ["tests/mutation/run", "--out", "{out}"])], values=mutations_values, text=mutations_text, targets=(),
     files=("tests",))

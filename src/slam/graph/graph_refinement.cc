@@ -61,7 +61,7 @@ void GraphSlam::refine() {
 std::optional<MatchResult> GraphSlam::refined(const RenderedSubmap& submap, const Keyframe& keyframe,
                                               const Pose2& T_submap_body) const {
   const ScanMatcherSettings& matching = settings_.scan_odometry.matching;
-  const std::vector<MatchPoint> points = downsample_scan(keyframe.scan, matching.point_spacing_m, matching.max_points);
+  const std::vector<MatchPoint> points = keyframe.scans.match_points(matching.point_spacing_m, matching.max_points);
   std::optional<MatchResult> match =
       match_scan(submap.map(), points, T_submap_body, match_prior(T_submap_body), matching);
   if (!match || match->inlier_ratio < settings_.min_refinement_inlier_ratio) return std::nullopt;

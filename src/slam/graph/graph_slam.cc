@@ -51,7 +51,7 @@ SlamUpdate GraphSlam::update(const LevelScan& input_scan, const Pose2& T_odom_bo
   const LevelScan without_beams{.stamp = input_scan.stamp, .beams = {}};
   const LevelScan& scan = input_scan.tilt_rad <= settings_.max_tilt_rad ? input_scan : without_beams;
   const TrackedScan tracked = tracker_.update(scan, T_odom_body);
-  if (tracked.is_keyframe) add_keyframe(scan, tracked);
+  if (tracked.is_keyframe) add_keyframe(tracked);
   update_estimate(tracked, scan.stamp);
   gate_ranges(tracked, T_odom_body);
   add_positions(tracked, T_odom_body);
@@ -70,7 +70,7 @@ Pose2 GraphSlam::T_map_body(const Pose2& T_local_body) const {
   return graph_.T_map_node.back() * (keyframes_.back().T_local_body.inverse() * T_local_body);
 }
 
-void GraphSlam::add_keyframe(const LevelScan& scan, const TrackedScan& tracked) {
+void GraphSlam::add_keyframe(const TrackedScan& tracked) {
   const int node = static_cast<int>(keyframes_.size());
   if (node == 0) {
     graph_.T_map_node.push_back(tracked.T_local_body);
@@ -78,8 +78,8 @@ void GraphSlam::add_keyframe(const LevelScan& scan, const TrackedScan& tracked) 
     const Keyframe& before = keyframes_.back();
     const Pose2 T_before_node = before.T_local_body.inverse() * tracked.T_local_body;
     graph_.T_map_node.push_back(graph_.T_map_node.back() * T_before_node);
-    const PoseGaussian motion =
-        predict_motion({}, T_before_node, to_seconds(scan.stamp - before.scan.stamp), settings_.scan_odometry.motion);
+    const PoseGaussian motion = predict_motion(
+        {}, T_before_node, to_seconds(tracked.scans.stamp() - before.scans.stamp()), settings_.scan_odometry.motion);
     graph_.edges.push_back({.from = node - 1,
                             .to = node,
                             .T_from_to = T_before_node,
@@ -87,7 +87,7 @@ void GraphSlam::add_keyframe(const LevelScan& scan, const TrackedScan& tracked) 
                             .kind = PoseGraphEdge::Kind::kOdometry});
     if (tracked.inlier_ratio > 0.0) add_match_edge(tracked);
   }
-  keyframes_.push_back({scan, tracked.T_local_body});
+  keyframes_.push_back({tracked.scans, tracked.T_local_body});
   if (tracked.is_submap_start) submaps_.push_back({.first = node, .last = node});
   for (auto s = static_cast<std::size_t>(tracked.submap); s < submaps_.size(); ++s) submaps_[s].last = node;
   while (finished_submaps_ < tracked.submap) close_loops(finished_submaps_++);

@@ -77,7 +77,7 @@ class GraphSlam {
     int edge;
   };
 
-  void add_keyframe(const LevelScan& scan, const TrackedScan& tracked);
+  void add_keyframe(const TrackedScan& tracked);
   void add_match_edge(const TrackedScan& tracked);
   Pose2 T_map_body(const Pose2& T_local_body) const;
   void update_estimate(const TrackedScan& tracked, Time stamp);

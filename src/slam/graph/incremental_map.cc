@@ -25,7 +25,7 @@ const GridMap& IncrementalMap::render(const std::vector<Keyframe>& keyframes, co
     T_map_integrated_.clear();
   }
   for (std::size_t k = T_map_integrated_.size(); k < keyframes.size(); ++k) {
-    integrate_scan(keyframes[k].scan, T_map_node[k], rendering_.integration, map_);
+    keyframes[k].scans.integrate(T_map_node[k], rendering_.integration, map_);
     T_map_integrated_.push_back(T_map_node[k]);
   }
   return map_;

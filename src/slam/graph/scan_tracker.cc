@@ -5,9 +5,11 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <utility>
 
 #include <Eigen/LU>
 
+#include "slam/graph/branch_and_bound.h"
 #include "slam/graph/degeneracy.h"
 
 namespace patrol::slam {
@@ -27,13 +29,40 @@ constexpr std::size_t kSectors = 36;
 constexpr double kMinVote = 2.0;
 /// Squared Mahalanobis distance from the odometry prediction above which a match contradicts odometry.
 constexpr double kContradiction = 16.0;
-/// A match with a smaller inlier ratio triggers a window search.
-constexpr double kGoodInlierRatio = 0.6;
+/// Alternatives to the odometry prediction are tried if fewer points match than usual by this many standard deviations,
+/// or if the inlier ratio is smaller. The fraction of points varies by kUsualStd from place to place.
+constexpr double kUsualDeviations = 2.0, kUsualStd = 0.03, kMinUsualInlierRatio = 0.9;
+/// Rate of the running mean of that fraction, per scan.
+constexpr double kUsualRate = 0.05;
+/// Log likelihood of a point in an unknown cell, at least; relative to a point on a surface.
+constexpr double kMinUnknown = -3.0;
+/// A match with a larger mean loss of its points than usual, by this factor, triggers the search.
+constexpr double kUnusualLoss = 1.5;
+/// Number of points of a scan that can have independent errors.
+constexpr double kIndependentPoints = 45.0;
+/// Search over possible motions: time between scans at most, and margins.
+constexpr double kMaxSearch_s = 0.7, kSearchMargin_m = 0.1, kSearchMarginRad = 0.05;
+constexpr double kMinSearchScore = 0.2;
+constexpr int kSearchLevels = 4;
+/// Sparse scans that are mapped together are at least this far apart; a turn counts as the displacement at 1 m.
+constexpr double kDistinct_m = 0.05;
 
 double log_student_t(const PoseGaussian& prediction, const Pose2& pose) {
   const Eigen::Vector3d offset = prediction.residual_to_mean(pose);
   return -0.5 * (kStudentDegreesOfFreedom + 3.0) *
          std::log1p(offset.dot(prediction.covariance.inverse() * offset) / kStudentDegreesOfFreedom);
+}
+
+/// Returns the mean negative log likelihood of the points in known cells.
+double mean_loss(const std::vector<double>& log_likelihoods) {
+  double sum = 0.0;
+  int count = 0;
+  for (const double value : log_likelihoods) {
+    if (std::isnan(value)) continue;
+    sum -= value;
+    ++count;
+  }
+  return count > 0 ? sum / count : 0.0;
 }
 
 /// Returns the difference of two poses without its part along the direction that a match does not determine.
@@ -59,11 +88,12 @@ struct SectorGains {
   std::array<double, kSectors> gains{};
   double total = 0.0;
 
-  /// Compares at points in observed cells of both poses; other points would favor poses with fewer observed cells.
-  SectorGains(const std::vector<MatchPoint>& points, const std::vector<double>& a, const std::vector<double>& b) {
+  /// `unknown`: log likelihood of a point in an unknown cell.
+  SectorGains(const std::vector<MatchPoint>& points, const std::vector<double>& a, const std::vector<double>& b,
+              double unknown) {
+    const auto known_or = [unknown](double value) { return std::isnan(value) ? unknown : value; };
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const double difference = a[i] - b[i];
-      if (std::isnan(difference)) continue;
+      const double difference = known_or(a[i]) - known_or(b[i]);
       gains[sector_of(points[i])] += difference;
       total += difference;
     }
@@ -77,6 +107,11 @@ struct SectorGains {
     return sum;
   }
 };
+
+int num_hits(const LevelScan& scan) {
+  return static_cast<int>(
+      std::count_if(scan.beams.begin(), scan.beams.end(), [](const LevelScan::Beam& beam) { return beam.is_hit; }));
+}
 
 /// Scales a motion to another duration at constant velocity.
 Pose2 scaled(const Pose2& motion, double factor) { return {factor * motion.x, factor * motion.y, factor * motion.yaw}; }
@@ -93,17 +128,23 @@ TrackedScan ScanTracker::update(const LevelScan& scan, const Pose2& T_odom_body)
     T_odom_last_ = matched_.T_odom_body = T_odom_body;
     stamp_ = matched_.stamp = scan.stamp;
   }
-  const Step step{.seconds = to_seconds(scan.stamp - *stamp_), .T_last_odom = T_odom_last_.inverse() * T_odom_body};
-  PoseGaussian prediction = predict_motion(matched_.T_local_body, matched_.T_odom_body.inverse() * T_odom_body,
-                                           std::max(0.0, to_seconds(scan.stamp - matched_.stamp)), settings_.motion);
-  prediction.covariance *= odometry_variance_scale_;
+  const Step step{.seconds = to_seconds(scan.stamp - *stamp_),
+                  .T_last_odom = correction_.corrected(T_odom_last_.inverse() * T_odom_body),
+                  .is_sparse = num_hits(scan) < settings_.min_hits};
+  const Pose2 odometry = matched_.T_odom_body.inverse() * T_odom_body;
+  const PoseGaussian prediction = predict(scan.stamp, odometry);
   const bool can_be_matched = older_.has_surface();
   const Hypothesis best =
       track(downsample_scan(scan, settings_.matching.point_spacing_m, settings_.matching.max_points), step, prediction);
-  inflate_odometry_covariance(prediction, best);
+  update_odometry_variance(prediction, best);
+  calibrate_odometry(scan.stamp, odometry, best);
   TrackedScan tracked = to_tracked_scan(best, prediction);
   tracked.is_keyframe = is_keyframe_due(tracked.T_local_body);
-  if (tracked.is_keyframe) integrate(scan, tracked.T_local_body, tracked);
+  collect(scan, tracked.T_local_body);
+  if (tracked.is_keyframe) {
+    tracked.scans = sparse_scans_.is_empty() ? ScanGroup(scan) : std::exchange(sparse_scans_, {});
+    integrate(tracked);
+  }
   T_last_now_ = T_local_last_.inverse() * tracked.T_local_body;
   last_step_s_ = step.seconds;
   T_local_last_ = tracked.T_local_body;
@@ -114,11 +155,20 @@ TrackedScan ScanTracker::update(const LevelScan& scan, const Pose2& T_odom_body)
   return tracked;
 }
 
+PoseGaussian ScanTracker::predict(Time stamp, const Pose2& odometry) const {
+  PoseGaussian prediction = predict_motion(matched_.T_local_body, correction_.corrected(odometry),
+                                           std::max(0.0, to_seconds(stamp - matched_.stamp)), settings_.motion);
+  prediction.covariance *= odometry_variance_scale_;
+  return prediction;
+}
+
 // Matches from the odometry prediction and from alternative start poses.
 ScanTracker::Hypothesis ScanTracker::track(const std::vector<MatchPoint>& points, const Step& step,
-                                           const PoseGaussian& prediction) const {
+                                           const PoseGaussian& prediction) {
   if (!older_.has_surface() || points.empty()) return {.T_local_body = prediction.mean, .match = {}};
   Hypothesis best = match_from(prediction.mean, points, prediction, true);
+  const bool is_likely = best.match && has_usual_points(best);
+  if (is_likely && step.is_sparse) return without_moving_objects(best, points, prediction);
   const auto consider = [&](const Pose2& start) {
     const Hypothesis other = match_from(start, points, prediction, false);
     if (!other.match) return;
@@ -131,20 +181,57 @@ ScanTracker::Hypothesis ScanTracker::track(const std::vector<MatchPoint>& points
     const Pose2 start = T_local_last_ * T_last_now;
     if (is_distinct(start, prediction.mean) && is_distinct(start, best.T_local_body)) consider(start);
   }
-  if (!best.match || best.match->inlier_ratio < kGoodInlierRatio)
-    consider(search_pose(older_, points, prediction.mean, settings_.matching));
+  if (!is_likely || mean_loss(best.log_likelihoods) > kUnusualLoss * usual_loss_) {
+    if (const std::optional<Pose2> found = search_possible_motions(points, step.seconds)) consider(*found);
+  }
   return best.match ? without_moving_objects(best, points, prediction) : best;
 }
 
+bool ScanTracker::has_usual_points(const Hypothesis& match) const {
+  const auto num_points = static_cast<double>(match.log_likelihoods.size());
+  const double deviation =
+      std::sqrt(usual_matched_ratio_ * (1.0 - usual_matched_ratio_) / num_points + kUsualStd * kUsualStd);
+  return match.match->inlier_ratio >= kMinUsualInlierRatio &&
+         match.match->num_matched / num_points >= usual_matched_ratio_ - kUsualDeviations * deviation;
+}
+
+std::optional<Pose2> ScanTracker::search_possible_motions(const std::vector<MatchPoint>& points, double seconds) {
+  if (!pyramid_) pyramid_.emplace(older_, 2.0 * settings_.resolution_m, kSearchLevels);
+  const double limited_s = std::clamp(seconds, 0.0, kMaxSearch_s);
+  const SearchWindow window{.T_map_center = T_local_last_,
+                            .half_width_m = settings_.max_speed_mps * limited_s + kSearchMargin_m,
+                            .half_angle_rad = settings_.max_turn_rate_radps * limited_s + kSearchMarginRad};
+  const auto found =
+      search_window(*pyramid_, positions_of(points, settings_.matching.search_points), window, kMinSearchScore);
+  return found ? std::optional(found->T_map_points) : std::nullopt;
+}
+
 // Only the directions that the scan determines are evidence: along a smooth corridor any pose matches.
-void ScanTracker::inflate_odometry_covariance(const PoseGaussian& prediction, const Hypothesis& best) {
+void ScanTracker::update_odometry_variance(const PoseGaussian& prediction, const Hypothesis& best) {
   Eigen::Vector3d offset = prediction.residual_to_mean(best.T_local_body);
-  if (best.match) offset = determined_offset(offset, best.match->information);
+  if (best.match) {
+    offset = determined_offset(offset, best.match->information);
+    usual_loss_ += kUsualRate * (std::min(mean_loss(best.log_likelihoods), 2.0 * usual_loss_) - usual_loss_);
+    usual_matched_ratio_ += kUsualRate * (best.match->num_matched / static_cast<double>(best.log_likelihoods.size()) -
+                                          usual_matched_ratio_);
+  }
   // 3 on average if the variance is correct
   const double squared = offset.dot(prediction.covariance.inverse() * offset);
   odometry_variance_scale_ =
       std::clamp(std::max(kVarianceScaleDecay * odometry_variance_scale_, odometry_variance_scale_ * squared / 3.0),
                  1.0, kMaxVarianceScale);
+}
+
+void ScanTracker::calibrate_odometry(Time stamp, const Pose2& odometry, const Hypothesis& best) {
+  if (!best.match) return;
+  const double seconds = std::max(0.0, to_seconds(stamp - matched_.stamp));
+  const Eigen::Matrix3d motion = predict_motion(matched_.T_local_body, odometry, seconds, settings_.motion).covariance;
+  const Eigen::Matrix3d matched =
+      (motion.inverse() + tempering(best.log_likelihoods.size()) * best.match->information).inverse();
+  const Eigen::Vector3d variance = (motion + matched).diagonal();
+  correction_.update(odometry, matched_.T_local_body.inverse() * best.T_local_body,
+                     {.std_m = std::sqrt(variance.head<2>().maxCoeff()), .std_rad = std::sqrt(variance.z())},
+                     !degenerate_direction(best.match->information, kMinEvidenceRatio));
 }
 
 TrackedScan ScanTracker::to_tracked_scan(const Hypothesis& best, const PoseGaussian& prediction) const {
@@ -153,7 +240,7 @@ TrackedScan ScanTracker::to_tracked_scan(const Hypothesis& best, const PoseGauss
   if (best.match) {
     tracked.match_information = best.match->information;
     tracked.inlier_ratio = best.match->inlier_ratio;
-    information += settings_.likelihood_tempering * best.match->information;
+    information += tempering(best.log_likelihoods.size()) * best.match->information;
   }
   tracked.covariance = information.inverse();
   return tracked;
@@ -191,10 +278,21 @@ bool ScanTracker::is_determined_by_scan(const Hypothesis& a, const Hypothesis& b
   return is_distinct({determined.x(), determined.y(), determined.z()}, {});
 }
 
+// The errors of neighboring points are correlated, those of distant points are not.
+double ScanTracker::tempering(std::size_t num_points) const {
+  return std::max(settings_.likelihood_tempering, 1.0 / (1.0 + static_cast<double>(num_points) / kIndependentPoints));
+}
+
+// Where many points are usually new, as in the map of a sparse scan, a new one is no evidence against a pose.
+double ScanTracker::unknown_log_likelihood() const {
+  const double matched = std::clamp(usual_matched_ratio_, 0.05, 0.95);
+  return std::clamp(std::log((1.0 - matched) / matched), kMinUnknown, 0.0);
+}
+
 // A vehicle that passes has many points in few sectors, and they match best as if the robot moved with it.
 bool ScanTracker::is_better(const Hypothesis& a, const Hypothesis& b, const std::vector<MatchPoint>& points) const {
-  const SectorGains gains(points, a.log_likelihoods, b.log_likelihoods);
-  return gains.votes() > 0 && settings_.likelihood_tempering * gains.total + a.log_prior - b.log_prior > 0.0;
+  const SectorGains gains(points, a.log_likelihoods, b.log_likelihoods, unknown_log_likelihood());
+  return gains.votes() > 0 && tempering(points.size()) * gains.total + a.log_prior - b.log_prior > 0.0;
 }
 
 // Without the sectors in favor of a match that contradicts odometry and the majority of the sectors.
@@ -205,14 +303,37 @@ ScanTracker::Hypothesis ScanTracker::without_moving_objects(const Hypothesis& be
       determined_offset(prediction.residual_to_mean(best.T_local_body), best.match->information);
   if (offset.dot(prediction.covariance.inverse() * offset) < kContradiction) return best;
   const SectorGains gains(points, best.log_likelihoods,
-                          point_log_likelihoods(older_, points, prediction.mean, settings_.matching));
+                          point_log_likelihoods(older_, points, prediction.mean, settings_.matching),
+                          unknown_log_likelihood());
   if (gains.votes() > 0) return best;
   std::vector<MatchPoint> others = points;
   std::erase_if(others, [&](const MatchPoint& point) { return gains.vote(sector_of(point)) > 0; });
   return match_from(prediction.mean, others, prediction, true);
 }
 
-void ScanTracker::integrate(const LevelScan& scan, const Pose2& T_local_body, TrackedScan& tracked) {
+// Of sparse scans in the same place, only the newest is kept.
+void ScanTracker::collect(const LevelScan& scan, const Pose2& T_local_body) {
+  if (num_hits(scan) >= settings_.min_hits) {
+    sparse_scans_ = {};
+    return;
+  }
+  const Pose2 T_distinct_now = T_local_distinct_.inverse() * T_local_body,
+              T_before_now = T_local_sparse_.inverse() * T_local_body;
+  const bool is_distinct =
+      sparse_scans_.is_empty() || T_distinct_now.position().norm() + std::abs(T_distinct_now.yaw) > kDistinct_m;
+  if (sparse_scans_.is_empty()) {
+    sparse_scans_ = ScanGroup(scan);
+  } else if (is_distinct) {
+    sparse_scans_.add(scan, T_before_now);
+  } else {
+    sparse_scans_.replace_newest(scan, T_before_now);
+  }
+  if (is_distinct) T_local_distinct_ = T_local_body;
+  T_local_sparse_ = T_local_body;
+}
+
+void ScanTracker::integrate(TrackedScan& tracked) {
+  pyramid_.reset();
   if (keyframes_ == 0) tracked.is_submap_start = true;
   if (older_keyframes_ >= settings_.submap_keyframes) {
     older_ = std::move(newer_);
@@ -221,15 +342,15 @@ void ScanTracker::integrate(const LevelScan& scan, const Pose2& T_local_body, Tr
     newer_keyframes_ = 0;
     ++submap_;
   }
-  integrate_scan(scan, T_local_body, settings_.integration, older_);
+  tracked.scans.integrate(tracked.T_local_body, settings_.integration, older_);
   ++older_keyframes_;
   if (newer_keyframes_ > 0 || older_keyframes_ > settings_.submap_keyframes / 2) {
     tracked.is_submap_start = tracked.is_submap_start || newer_keyframes_ == 0;
-    integrate_scan(scan, T_local_body, settings_.integration, newer_);
+    tracked.scans.integrate(tracked.T_local_body, settings_.integration, newer_);
     ++newer_keyframes_;
   }
   ++keyframes_;
-  T_local_keyframe_ = T_local_body;
+  T_local_keyframe_ = tracked.T_local_body;
 }
 
 }  // namespace patrol::slam

@@ -1,10 +1,14 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <vector>
 
 #include "core/messages.h"
 #include "core/settings.h"
+#include "slam/graph/likelihood_pyramid.h"
+#include "slam/graph/odometry_correction.h"
+#include "slam/graph/scan_group.h"
 #include "slam/graph/scan_tracker_settings.h"
 #include "slam/motion_model.h"
 #include "slam/scan_integration.h"
@@ -20,6 +24,7 @@ struct TrackedScan {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   double inlier_ratio = 0.0;
   bool is_keyframe = false;
+  ScanGroup scans = {};  ///< of a keyframe
   /// Index of the matched submap: 0, 1, ...; a keyframe is part of it, including the last one, after which the next
   /// submap takes over.
   int submap = 0;
@@ -32,9 +37,15 @@ struct TrackedScan {
 /// Two maps are updated at a time; the second begins when the first is half full. Scans are matched with the older map,
 /// which thus always has at least half the full length.
 ///
-/// Robust against failures of wheel odometry (slip, frozen or reversed readings). Alternative start poses are the
-/// previous motion, no motion, the reversed motion, and a window search. An alternative replaces the odometry
-/// prediction if its gain in scan likelihood exceeds its loss under the Student's t prior of odometry.
+/// Odometry is calibrated while tracking (odometry_correction.h).
+///
+/// Robust against failures of wheel odometry (slip, frozen, constant or reversed readings). If fewer points than usual
+/// match from the odometry prediction, alternative start poses are the previous motion, no motion, the reversed motion,
+/// and the best pose of a search over all possible motions. An alternative replaces the odometry prediction if its gain
+/// in scan likelihood exceeds its loss under the Student's t prior of odometry. Odometry that contradicts a match has a
+/// larger covariance for the next scans.
+///
+/// Robust against sparse scans: keyframes consist of all scans since the last keyframe, so that the map is dense.
 ///
 /// Robust against moving objects: a match that contradicts odometry needs the majority of the sectors of bearings that
 /// distinguish the two poses. Sectors of a rejected match are left out.
@@ -58,23 +69,31 @@ class ScanTracker {
     Pose2 T_local_body, T_odom_body;
   };
 
-  /// Odometry increment since the previous scan.
+  /// Step from the previous scan, by odometry.
   struct Step {
     double seconds = 0.0;
     Pose2 T_last_odom;
+    bool is_sparse = false;  ///< the scan has few returns
   };
 
-  Hypothesis track(const std::vector<MatchPoint>& points, const Step& step, const PoseGaussian& prediction) const;
-  void inflate_odometry_covariance(const PoseGaussian& prediction, const Hypothesis& best);
+  PoseGaussian predict(Time stamp, const Pose2& odometry) const;
+  Hypothesis track(const std::vector<MatchPoint>& points, const Step& step, const PoseGaussian& prediction);
+  bool has_usual_points(const Hypothesis& match) const;
+  std::optional<Pose2> search_possible_motions(const std::vector<MatchPoint>& points, double seconds);
+  void update_odometry_variance(const PoseGaussian& prediction, const Hypothesis& best);
+  void calibrate_odometry(Time stamp, const Pose2& odometry, const Hypothesis& best);
   TrackedScan to_tracked_scan(const Hypothesis& best, const PoseGaussian& prediction) const;
   bool is_keyframe_due(const Pose2& T_local_body) const;
+  void collect(const LevelScan& scan, const Pose2& T_local_body);
   static bool is_determined_by_scan(const Hypothesis& a, const Hypothesis& b);
+  double tempering(std::size_t num_points) const;
+  double unknown_log_likelihood() const;
   bool is_better(const Hypothesis& a, const Hypothesis& b, const std::vector<MatchPoint>& points) const;
   Hypothesis without_moving_objects(const Hypothesis& best, const std::vector<MatchPoint>& points,
                                     const PoseGaussian& prediction) const;
   Hypothesis match_from(const Pose2& T_local_start, const std::vector<MatchPoint>& points,
                         const PoseGaussian& prediction, bool is_odometry) const;
-  void integrate(const LevelScan& scan, const Pose2& T_local_body, TrackedScan& tracked);
+  void integrate(TrackedScan& tracked);
 
   ScanTrackerSettings settings_;
   GridMap older_, newer_;
@@ -84,7 +103,13 @@ class ScanTracker {
   Fix matched_;       ///< last matched scan
   Pose2 T_last_now_;  ///< last motion between two scans
   double last_step_s_ = 0.0;
-  double odometry_variance_scale_ = 1.0;  ///< scale factor of the odometry variance
+  OdometryCorrection correction_;
+  double odometry_variance_scale_ = 1.0;      ///< scale factor of the odometry variance
+  double usual_matched_ratio_ = 0.5;          ///< running mean of the fraction of points on surfaces
+  double usual_loss_ = 1.0;                   ///< running mean of the loss of a point in a known cell
+  ScanGroup sparse_scans_;                    ///< since the last keyframe
+  Pose2 T_local_sparse_, T_local_distinct_;   ///< newest of them; newest but for those in the same place
+  std::optional<LikelihoodPyramid> pyramid_;  ///< of older_; none: not needed since it has changed
 };
 
 }  // namespace patrol::slam

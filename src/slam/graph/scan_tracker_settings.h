@@ -12,9 +12,14 @@ struct ScanTrackerSettings {
   double max_extent_m = 4000.0;  ///< side of the mapped square around the start
   double keyframe_distance_m = 0.25;
   double keyframe_angle_rad = 0.15;
-  int initial_keyframes = 10;         ///< the first N scans are all keyframes
-  int submap_keyframes = 60;          ///< number of keyframes per map; consecutive maps overlap by half
-  double likelihood_tempering = 0.2;  ///< tempering factor: fraction of the points with independent errors
+  int min_hits = 60;           ///< a keyframe with fewer returns also contains the scans since the last one
+  int initial_keyframes = 10;  ///< the first N scans are all keyframes
+  int submap_keyframes = 60;   ///< number of keyframes per map; consecutive maps overlap by half
+  /// Tempering factor: fraction of the points with independent errors. It is larger for scans of few, distant points.
+  double likelihood_tempering = 0.2;
+  /// Fastest motion of the robot, which limits the search for a scan that the odometry prediction does not match.
+  double max_speed_mps = 1.5;
+  double max_turn_rate_radps = 2.0;
   MotionModelSettings motion{.longitudinal_std_m_per_m = 0.05,
                              .lateral_std_m_per_m = 0.03,
                              .yaw_std_rad_per_rad = 0.1,
@@ -31,9 +36,12 @@ struct ScanTrackerSettings {
     visit("max_extent_m", self.max_extent_m, between(1.0, 20000.0));
     visit("keyframe_distance_m", self.keyframe_distance_m, between(0.0, 10.0));
     visit("keyframe_angle_rad", self.keyframe_angle_rad, between(0.0, 3.2));
+    visit("min_hits", self.min_hits, between(0, 100000));
     visit("initial_keyframes", self.initial_keyframes, between(1, 1000));
     visit("submap_keyframes", self.submap_keyframes, between(4, 10000));
     visit("likelihood_tempering", self.likelihood_tempering, between(0.0, 1.0));
+    visit("max_speed_mps", self.max_speed_mps, between(0.0, 100.0));
+    visit("max_turn_rate_radps", self.max_turn_rate_radps, between(0.0, 20.0));
     visit("motion", self.motion);
     visit("matching", self.matching);
     visit("integration", self.integration);

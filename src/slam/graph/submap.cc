@@ -14,7 +14,7 @@ GridMap render_submap(const Submap& submap, const std::vector<Keyframe>& keyfram
   const Pose2 T_first_map = T_map_node[static_cast<std::size_t>(submap.first)].inverse();
   for (int k = submap.first; k <= submap.last; ++k) {
     const auto i = static_cast<std::size_t>(k);
-    integrate_scan(keyframes[i].scan, T_first_map * T_map_node[i], rendering.integration, map);
+    keyframes[i].scans.integrate(T_first_map * T_map_node[i], rendering.integration, map);
   }
   return map;
 }

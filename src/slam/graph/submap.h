@@ -5,17 +5,17 @@
 
 #include <Eigen/Core>
 
-#include "core/messages.h"
 #include "slam/graph/likelihood_pyramid.h"
+#include "slam/graph/scan_group.h"
 #include "slam/grid_map.h"
 #include "slam/match_points.h"
 #include "slam/scan_integration.h"
 
 namespace patrol::slam {
 
-/// Stored scan with its tracked pose.
+/// Stored scans with the tracked pose of the newest.
 struct Keyframe {
-  LevelScan scan;
+  ScanGroup scans;
   Pose2 T_local_body;
 };
 

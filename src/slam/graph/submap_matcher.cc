@@ -8,13 +8,6 @@
 namespace patrol::slam {
 namespace {
 
-std::vector<Eigen::Vector2d> subsample(const std::vector<MatchPoint>& points, std::size_t limit) {
-  std::vector<Eigen::Vector2d> chosen;
-  const std::size_t count = std::min(limit, points.size());
-  for (std::size_t i = 0; i < count; ++i) chosen.push_back(points[i * points.size() / count].p_body);
-  return chosen;
-}
-
 /// Agreement of the surfaces of one submap with the map of another.
 struct Overlap {
   double overlap_ratio = 0.0;
@@ -44,8 +37,7 @@ Overlap measure_overlap(const GridMap& map, const RenderedSubmap& other, const P
 SubmapMatchResult match_submaps(const RenderedSubmap& target, const RenderedSubmap& source,
                                 const PoseGaussian& prediction, const SubmapMatcherSettings& settings,
                                 const ScanMatcherSettings& matching) {
-  const std::vector<Eigen::Vector2d> points =
-      subsample(source.surface_points(), static_cast<std::size_t>(settings.search_points));
+  const std::vector<Eigen::Vector2d> points = positions_of(source.surface_points(), settings.search_points);
   const double std_m = std::sqrt(std::max(prediction.covariance(0, 0), prediction.covariance(1, 1))),
                std_rad = std::sqrt(prediction.covariance(2, 2));
   const SearchWindow window{.T_map_center = prediction.mean,

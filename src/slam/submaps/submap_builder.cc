@@ -36,7 +36,8 @@ Pose2 SubmapBuilder::update(const LevelScan& scan, const Pose2& T_odom_body) {
 std::vector<Keyframe> SubmapBuilder::take_keyframes() {
   const std::vector<Pose2> T_submap_keyframe = filtered_.filter().best_path();
   std::vector<Keyframe> keyframes;
-  for (std::size_t k = 0; k < scans_.size(); ++k) keyframes.push_back({std::move(scans_[k]), T_submap_keyframe[k]});
+  for (std::size_t k = 0; k < scans_.size(); ++k)
+    keyframes.push_back({ScanGroup(std::move(scans_[k])), T_submap_keyframe[k]});
   scans_.clear();
   return keyframes;
 }

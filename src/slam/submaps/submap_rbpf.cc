@@ -154,7 +154,7 @@ OccupancyGrid SubmapRbpf::map() const {
   GridMap map(filter.resolution_m, settings_.scan_odometry.max_extent_m);
   for (std::size_t s = 0; s < submaps_.size(); ++s) {
     for (const Keyframe& keyframe : submaps_[s].keyframes)
-      integrate_scan(keyframe.scan, graph_.T_map_node[s] * keyframe.T_local_body, filter.integration, map);
+      keyframe.scans.integrate(graph_.T_map_node[s] * keyframe.T_local_body, filter.integration, map);
   }
   return render_map(map, settings_.min_hits_occupied, settings_.min_occupied_hit_ratio);
 }

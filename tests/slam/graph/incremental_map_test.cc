@@ -16,7 +16,7 @@ struct Drive {
     test::RoomWorld room;
     room.add_box(-2.0, -2.0, 6.0, 2.0);
     poses.push_back({x, 0.0, 0.0});
-    keyframes.push_back({room.scan(poses.back(), {}), {}});
+    keyframes.push_back({ScanGroup(room.scan(poses.back(), {})), {}});
   }
 };
 

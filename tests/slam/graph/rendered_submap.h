@@ -15,8 +15,8 @@ inline slam::RenderedSubmap drive_past(const RoomWorld& world, const std::vector
   std::vector<Pose2> poses;
   const RandomStream noise(seed, "test/submap");
   for (const DriveStep& step : drive_along(way, {.speed_mps = 0.5, .turn_radps = 0.5, .period_s = 1.0})) {
-    keyframes.push_back(
-        {world.scan(step.T_world_body, step.stamp, kOldLidar, noise, keyframes.size()), step.T_world_body});
+    keyframes.push_back({slam::ScanGroup(world.scan(step.T_world_body, step.stamp, kOldLidar, noise, keyframes.size())),
+                         step.T_world_body});
     poses.push_back(step.T_world_body);
   }
   return slam::RenderedSubmap({.first = 0, .last = static_cast<int>(keyframes.size()) - 1}, keyframes, poses, {});

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/slam/graph/office_world.h"
@@ -12,7 +13,8 @@ namespace {
 
 /// Drives a stretch of the corridor, with what odometry makes of each step.
 template <typename Odometry>
-std::vector<TrackedScan> track(const std::vector<test::DriveStep>& drive, Odometry&& odometry) {
+std::vector<TrackedScan> track(const std::vector<test::DriveStep>& drive, Odometry&& odometry,
+                               const test::RoomWorld::ScanOptions& lidar = test::kOldLidar) {
   ScanTracker tracker({});
   const test::RoomWorld office = test::make_office();
   const RandomStream noise(1, "test/tracker");
@@ -20,8 +22,7 @@ std::vector<TrackedScan> track(const std::vector<test::DriveStep>& drive, Odomet
   std::vector<TrackedScan> tracked;
   for (std::size_t k = 0; k < drive.size(); ++k) {
     if (k > 0) T_odom_body = T_odom_body * odometry(k, drive[k - 1].T_world_body.inverse() * drive[k].T_world_body);
-    tracked.push_back(
-        tracker.update(office.scan(drive[k].T_world_body, drive[k].stamp, test::kOldLidar, noise, k), T_odom_body));
+    tracked.push_back(tracker.update(office.scan(drive[k].T_world_body, drive[k].stamp, lidar, noise, k), T_odom_body));
   }
   return tracked;
 }
@@ -57,6 +58,56 @@ TEST(ScanTracker, WrongOdometryForTwoMetersCostsNoMoreThanThreeCentimeters) {
     });
     EXPECT_LT(worst_error_m(corridor_drive(), tracked), 0.03) << factor;
   }
+}
+
+const std::vector<test::DriveStep>& drive_round_corner() {
+  static const std::vector<test::DriveStep> drive =
+      test::drive_along({{28.0, 4.2}, {39.8, 4.2}, {39.8, 12.0}}, {.turn_radps = 1.0});
+  return drive;
+}
+
+// The first three scans are 0.12 m apart, and nothing tells yet that the robot moves.
+TEST(ScanTracker, OdometryThatIsAlwaysZeroCosts20CentimetersAtTheStartAnd5MoreIn20Meters) {
+  const auto& drive = drive_round_corner();
+  const auto tracked = track(drive, [](std::size_t, const Pose2&) { return Pose2{}; });
+  EXPECT_LT(worst_error_m(drive, tracked), 0.25);
+  const Pose2 T_true = drive[10].T_world_body.inverse() * drive.back().T_world_body,
+              T_tracked = tracked[10].T_local_body.inverse() * tracked.back().T_local_body;
+  EXPECT_THAT(T_tracked, test::Pose2Near(T_true, 0.05, 0.005));
+}
+
+// Every third scan, 0.36 m apart on the way and 34 degrees in the corner.
+TEST(ScanTracker, ATurnThatOdometryMissesIsFoundInTheScans) {
+  std::vector<test::DriveStep> thinned;
+  for (std::size_t k = 0; k < drive_round_corner().size(); k += 3) thinned.push_back(drive_round_corner()[k]);
+  const auto tracked = track(thinned, [](std::size_t, const Pose2& motion) { return Pose2{motion.x, motion.y, 0.0}; });
+  EXPECT_LT(worst_error_m(thinned, tracked), 0.05);
+}
+
+// Odometry alone would be 1 m and 0.3 rad off.
+TEST(ScanTracker, With24BeamsAndWrongOdometryItIsWithin25CentimetersAfter20Meters) {
+  test::RoomWorld::ScanOptions sparse = test::kOldLidar;
+  sparse.beams = 24;
+  const auto tracked = track(
+      drive_round_corner(),
+      [](std::size_t, const Pose2& motion) {
+        return Pose2{1.05 * motion.x, motion.y, motion.yaw + 0.002};
+      },
+      sparse);
+  EXPECT_LT(worst_error_m(drive_round_corner(), tracked), 0.25);
+}
+
+TEST(ScanTracker, AKeyframeOfSparseScansHasAllSinceTheLastOne) {
+  test::RoomWorld::ScanOptions sparse = test::kOldLidar;
+  sparse.beams = 24;
+  const auto steps = [](std::size_t, const Pose2& motion) { return motion; };
+  const auto scans_of_last_keyframe = [](const std::vector<TrackedScan>& tracked) {
+    std::size_t num_scans = 0;
+    for (const TrackedScan& scan : tracked) num_scans = scan.is_keyframe ? scan.scans.num_scans() : num_scans;
+    return num_scans;
+  };
+  EXPECT_EQ(scans_of_last_keyframe(track(corridor_drive(), steps, sparse)), 3U);  // 0.12 m a scan, 0.25 m a keyframe
+  EXPECT_EQ(scans_of_last_keyframe(track(corridor_drive(), steps)), 1U);
 }
 
 // Between smooth walls the scan says nothing of the way: odometry's word stands, and the covariance says how little it

@@ -19,7 +19,7 @@ TEST(RenderedSubmap, IsInTheFrameOfItsFirstKeyframeToHalfACell) {
   std::vector<Keyframe> keyframes;
   std::vector<Pose2> poses = {
       {}, T_world_first, T_world_first * Pose2{0.5, 0.0, 0.3}};  // the first node is no part of it
-  for (const Pose2& pose : poses) keyframes.push_back({room.scan(pose, {}), {}});
+  for (const Pose2& pose : poses) keyframes.push_back({ScanGroup(room.scan(pose, {})), {}});
   const RenderedSubmap submap({.first = 1, .last = 2}, keyframes, poses, {});
   ASSERT_GT(submap.surface_points().size(), 200U);  // 28 m of wall, a point every 0.1 m
   for (const MatchPoint& point : submap.surface_points())
@@ -40,7 +40,7 @@ TEST(RenderedSubmap, HasOneSurfacePointForEveryTwoByTwoCells) {
 TEST(RenderedSubmap, KeepsNothingBeyondItsExtent) {
   test::RoomWorld room;
   room.add_box(-10.0, -2.0, 10.0, 2.0);
-  const std::vector<Keyframe> keyframes = {{room.scan({}, {}), {}}, {room.scan({}, {}), {}}};
+  const std::vector<Keyframe> keyframes = {{ScanGroup(room.scan({}, {})), {}}, {ScanGroup(room.scan({}, {})), {}}};
   const RenderedSubmap submap({.first = 0, .last = 1}, keyframes, {{}, {}}, {.max_extent_m = 8.0});
   ASSERT_FALSE(submap.surface_points().empty());
   const double tile_m = 0.05 * GridTile::kSize;  // whole tiles are kept
