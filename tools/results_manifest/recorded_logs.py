@@ -1,4 +1,7 @@
 """Tables of SLAM on recorded logs."""
+import pathlib
+import runpy
+
 from results_tables import markdown
 from .declare import Step, add
 
@@ -44,3 +47,29 @@ def slam_text(values):
 
 add(name="slam_logs", file="src/slam/README.md", seeds="default", minutes=2, steps=slam_steps(), values=slam_values, text=slam_text,
     logs=tuple(file for pair_of_files in LOGS.values() for file in pair_of_files[:2]))
+
+
+VARIANTS = {name: summary for name, (summary, _) in runpy.run_path(str(pathlib.Path(__file__).parent.parent / "vary_log"))["VARIANTS"].items()}
+PUBLISHED_VARIANTS = {"beams_16": "0.085 m (11 beams) [Zhou22]"}  # of the Intel log
+
+
+def variants_step(log):
+    file, relations, scores = LOGS[log]
+    one = (f"mkdir -p {{out}}/{{}} && tools/vary_log {{logs}}/{file} {{}} {{out}}/{{}}/varied.log --relations {{logs}}/{relations} {{out}}/{{}}/relations && "
+           f"build/patrol slam {{out}}/{{}}/varied.log --out {{out}}/{{}}/map > {{out}}/{{}}/slam.txt && "
+           f"build/patrol score --estimate {{out}}/{{}}/map/estimate.tum --relations {{out}}/{{}}/relations {' '.join(scores['score'])} > {{out}}/{{}}/score.txt")
+    return Step(log, ["sh", "-c", f"echo {' '.join(VARIANTS)} | xargs -n 1 | xargs -P 2 -I {{}} sh -c '{one}'"], (0,))
+
+
+def variants_values(folders):
+    return [{"variant": name, **{log: mean_errors(folders[log] / name) for log in LOGS}} for name in VARIANTS]
+
+
+def variants_text(values):
+    return markdown(["variant", "contents", "Intel Research Lab", "Freiburg 079, `--reference-x-m 0.04`", "Intel, published"],
+                    [[f"`{row['variant']}`", VARIANTS[row["variant"]], row["intel"], row["fr079"], PUBLISHED_VARIANTS.get(row["variant"], "–")]
+                     for row in values])
+
+
+add(name="slam_variants", file="src/slam/README.md", seeds="1 (of the variants)", minutes=10, steps=[variants_step(log) for log in LOGS],
+    values=variants_values, text=variants_text, logs=tuple(file for pair_of_files in LOGS.values() for file in pair_of_files[:2]))
