@@ -29,14 +29,14 @@ constexpr std::size_t kSectors = 36;
 constexpr double kMinVote = 2.0;
 /// Squared Mahalanobis distance from the odometry prediction above which a match contradicts odometry.
 constexpr double kContradiction = 16.0;
-/// Alternatives to the odometry prediction are tried if fewer points match than usual by this many standard deviations,
-/// or if the inlier ratio is smaller. The fraction of points varies by kUsualStd from place to place.
+/// A scan matches as usual unless fewer points match by this many standard deviations, or the inlier ratio is smaller.
+/// The fraction of matched points varies by kUsualStd from place to place.
 constexpr double kUsualDeviations = 2.0, kUsualStd = 0.03, kMinUsualInlierRatio = 0.9;
-/// Rate of the running mean of that fraction, per scan.
+/// Rate of the running means of that fraction and of the loss, per scan.
 constexpr double kUsualRate = 0.05;
 /// Log likelihood of a point in an unknown cell, at least; relative to a point on a surface.
 constexpr double kMinUnknown = -3.0;
-/// A match with a larger mean loss of its points than usual, by this factor, triggers the search.
+/// A scan whose mean loss is larger than usual by this factor does not match as usual; not applied to sparse scans.
 constexpr double kUnusualLoss = 1.5;
 /// Number of points of a scan that can have independent errors.
 constexpr double kIndependentPoints = 45.0;

@@ -39,11 +39,12 @@ struct TrackedScan {
 ///
 /// Odometry is calibrated while tracking (odometry_correction.h).
 ///
-/// Robust against failures of wheel odometry (slip, frozen, constant or reversed readings). If fewer points than usual
-/// match from the odometry prediction, alternative start poses are the previous motion, no motion, the reversed motion,
-/// and the best pose of a search over all possible motions. An alternative replaces the odometry prediction if its gain
-/// in scan likelihood exceeds its loss under the Student's t prior of odometry. Odometry that contradicts a match has a
-/// larger covariance for the next scans.
+/// Robust against failures of wheel odometry (slip, frozen, constant or reversed readings). Alternative start poses are
+/// the previous motion, no motion, the reversed motion, and, if the odometry prediction does not match as usual, the
+/// best pose of a search over all possible motions. An alternative replaces the odometry prediction if its gain in scan
+/// likelihood exceeds its loss under the Student's t prior of odometry. A sparse scan that matches as usual has no
+/// alternatives: few points can match anywhere. Odometry that contradicts a match has a larger covariance for the next
+/// scans.
 ///
 /// Robust against sparse scans: keyframes consist of all scans since the last keyframe, so that the map is dense.
 ///
