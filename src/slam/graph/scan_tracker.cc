@@ -283,7 +283,7 @@ double ScanTracker::tempering(std::size_t num_points) const {
   return std::max(settings_.likelihood_tempering, 1.0 / (1.0 + static_cast<double>(num_points) / kIndependentPoints));
 }
 
-// Where many points are usually new, as in the map of a sparse scan, a new one is no evidence against a pose.
+// Follows from the usual fraction of points in unknown cells, which is large in a map of sparse scans.
 double ScanTracker::unknown_log_likelihood() const {
   const double matched = std::clamp(usual_matched_ratio_, 0.05, 0.95);
   return std::clamp(std::log((1.0 - matched) / matched), kMinUnknown, 0.0);
@@ -311,7 +311,7 @@ ScanTracker::Hypothesis ScanTracker::without_moving_objects(const Hypothesis& be
   return match_from(prediction.mean, others, prediction, true);
 }
 
-// Of sparse scans in the same place, only the newest is kept.
+// Keeps only the newest of several sparse scans in the same place.
 void ScanTracker::collect(const LevelScan& scan, const Pose2& T_local_body) {
   if (num_hits(scan) >= settings_.min_hits) {
     sparse_scans_ = {};
