@@ -1,5 +1,7 @@
 #include "slam/scan_matcher.h"
 
+#include <cmath>
+
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
@@ -142,6 +144,18 @@ TEST(SearchPose, ComesWithinReachOfTheMatchFromThirtyCentimetersAndSixDegrees) {
   const auto match = match_scan(map, points, found, std::nullopt, {});
   ASSERT_TRUE(match);
   EXPECT_THAT(match->T_map_body, Pose2Near(kTruth, 0.005, 0.1 * kDegree));
+}
+
+// A line needs three cells. A point beside a lone hit is no contradiction, a point in free space is.
+TEST(PointLogLikelihoods, APointNearASurfaceOfOneCellIsUnknownAndOneInFreeSpaceIsAnOutlier) {
+  GridMap map(0.05, 100.0);
+  map.add_free_ray({0.0, 0.02}, {4.0, 0.02}, 1, false);
+  map.add_hit({2.02, 0.07});
+  const std::vector<MatchPoint> points = {{.p_body = {2.02, 0.02}, .range_m = 2.0},
+                                          {.p_body = {1.0, 0.02}, .range_m = 1.0}};
+  const std::vector<double> log_likelihoods = point_log_likelihoods(map, points, {}, {});
+  EXPECT_TRUE(std::isnan(log_likelihoods[0]));
+  EXPECT_LT(log_likelihoods[1], -5.0);
 }
 
 }  // namespace

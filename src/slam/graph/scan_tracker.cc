@@ -137,6 +137,7 @@ TrackedScan ScanTracker::update(const LevelScan& scan, const Pose2& T_odom_body)
   const Hypothesis best =
       track(downsample_scan(scan, settings_.matching.point_spacing_m, settings_.matching.max_points), step, prediction);
   update_odometry_variance(prediction, best);
+  update_usual_match(best);
   calibrate_odometry(scan.stamp, odometry, best);
   TrackedScan tracked = to_tracked_scan(best, prediction);
   tracked.is_keyframe = is_keyframe_due(tracked.T_local_body);
@@ -209,17 +210,20 @@ std::optional<Pose2> ScanTracker::search_possible_motions(const std::vector<Matc
 // Only the directions that the scan determines are evidence: along a smooth corridor any pose matches.
 void ScanTracker::update_odometry_variance(const PoseGaussian& prediction, const Hypothesis& best) {
   Eigen::Vector3d offset = prediction.residual_to_mean(best.T_local_body);
-  if (best.match) {
-    offset = determined_offset(offset, best.match->information);
-    usual_loss_ += kUsualRate * (std::min(mean_loss(best.log_likelihoods), 2.0 * usual_loss_) - usual_loss_);
-    usual_matched_ratio_ += kUsualRate * (best.match->num_matched / static_cast<double>(best.log_likelihoods.size()) -
-                                          usual_matched_ratio_);
-  }
+  if (best.match) offset = determined_offset(offset, best.match->information);
   // 3 on average if the variance is correct
   const double squared = offset.dot(prediction.covariance.inverse() * offset);
   odometry_variance_scale_ =
       std::clamp(std::max(kVarianceScaleDecay * odometry_variance_scale_, odometry_variance_scale_ * squared / 3.0),
                  1.0, kMaxVarianceScale);
+}
+
+// Limits a loss, so that one bad match does not hide the next.
+void ScanTracker::update_usual_match(const Hypothesis& best) {
+  if (!best.match) return;
+  const double matched_ratio = best.match->num_matched / static_cast<double>(best.log_likelihoods.size());
+  usual_loss_ += kUsualRate * (std::min(mean_loss(best.log_likelihoods), 2.0 * usual_loss_) - usual_loss_);
+  usual_matched_ratio_ += kUsualRate * (matched_ratio - usual_matched_ratio_);
 }
 
 void ScanTracker::calibrate_odometry(Time stamp, const Pose2& odometry, const Hypothesis& best) {

@@ -82,6 +82,7 @@ class ScanTracker {
   bool has_usual_points(const Hypothesis& match) const;
   std::optional<Pose2> search_possible_motions(const std::vector<MatchPoint>& points, double seconds);
   void update_odometry_variance(const PoseGaussian& prediction, const Hypothesis& best);
+  void update_usual_match(const Hypothesis& best);
   void calibrate_odometry(Time stamp, const Pose2& odometry, const Hypothesis& best);
   TrackedScan to_tracked_scan(const Hypothesis& best, const PoseGaussian& prediction) const;
   bool is_keyframe_due(const Pose2& T_local_body) const;

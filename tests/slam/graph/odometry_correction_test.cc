@@ -29,25 +29,27 @@ struct Drive {
   }
 };
 
+OdometryCorrection after_100_meters(bool is_distance_determined) {
+  OdometryCorrection correction;
+  const Drive drive;
+  for (std::uint64_t step = 0; step < 1000; ++step)
+    correction.update(drive.odometry(step), drive.matched(step), kNoise, is_distance_determined);
+  return correction;
+}
+
 TEST(OdometryCorrection, IsNothingAtFirst) {
   EXPECT_THAT(OdometryCorrection().corrected({0.3, 0.01, -0.2}), test::Pose2Near(Pose2{0.3, 0.01, -0.2}, 1e-12, 1e-12));
 }
 
 TEST(OdometryCorrection, FindsScalesToTwoPercentAndSteeringTo5MilliradiansPerMeterIn100Meters) {
-  OdometryCorrection correction;
-  const Drive drive;
-  for (std::uint64_t step = 0; step < 1000; ++step)
-    correction.update(drive.odometry(step), drive.matched(step), kNoise, true);
+  const OdometryCorrection correction = after_100_meters(true);
   EXPECT_NEAR(correction.values().distance_scale, kDistanceScale, 0.01);
   EXPECT_NEAR(correction.values().turn_scale, kTurnScale, 0.02);
   EXPECT_NEAR(correction.values().steering_rad_per_m, kSteering_rad_per_m, 0.005);
 }
 
 TEST(OdometryCorrection, BackwardsTheSteeringBiasTurnsTheOtherWay) {
-  OdometryCorrection correction;
-  const Drive drive;
-  for (std::uint64_t step = 0; step < 1000; ++step)
-    correction.update(drive.odometry(step), drive.matched(step), kNoise, true);
+  const OdometryCorrection correction = after_100_meters(true);
   const Pose2 forth = correction.corrected({0.5, 0.0, 0.0}), back = correction.corrected({-0.5, 0.0, 0.0});
   EXPECT_NEAR(forth.yaw, 0.5 * kSteering_rad_per_m, 0.0025);
   EXPECT_THAT(forth * back, test::Pose2Near(Pose2{}, 1e-3, 1e-9));  // an arc, and back along it
@@ -66,10 +68,7 @@ TEST(OdometryCorrection, OneMotionInTwentyThatIsHalfAMeterOffChangesNoScaleByMor
 }
 
 TEST(OdometryCorrection, ADistanceThatTheScansDoNotDetermineIsNotUsedButTheTurnIs) {
-  OdometryCorrection correction;
-  const Drive drive;
-  for (std::uint64_t step = 0; step < 1000; ++step)
-    correction.update(drive.odometry(step), drive.matched(step), kNoise, false);
+  const OdometryCorrection correction = after_100_meters(false);
   EXPECT_DOUBLE_EQ(correction.values().distance_scale, 1.0);
   EXPECT_NEAR(correction.values().steering_rad_per_m, kSteering_rad_per_m, 0.005);
 }
