@@ -8,6 +8,7 @@
 #include "app/cli/commands.h"
 #include "app/common/output_directory.h"
 #include "app/common/process_cost.h"
+#include "app/mapping/consistency_report.h"
 #include "app/mapping/mapping_page.h"
 #include "app/mapping/read_scans.h"
 #include "app/scenario/neighbor_model.h"
@@ -23,6 +24,7 @@
 #include "io/yaml/settings_yaml.h"
 #include "report/page.h"
 #include "slam/calibration/calibration.h"
+#include "slam/consistency/map_consistency.h"
 #include "slam/methods/mapper.h"
 #include "slam/planar_scan.h"
 
@@ -77,6 +79,7 @@ struct MappedLog {
   std::vector<Time> stamps;
   std::vector<Pose2> T_odom_body;  ///< [scan], relative to the first
   double way_m = 0.0;              ///< distance traveled, by odometry
+  slam::ConsistencyCheck consistency;
   CostTable cost;
 
   double duration_s() const { return stamps.empty() ? 0.0 : to_seconds(stamps.back() - stamps.front()); }
@@ -91,7 +94,8 @@ bool map_log(io::ScanLog& log, const LogMappingSettings& settings, const std::st
   std::optional<Pose2> T_first_odom, T_odom_last;
   const bool is_whole = read_scans(log, name, guard, bar, [&](RecordedScan& recorded) {
     calibrated.correct(recorded);
-    mapper.update(slam::planar_scan(recorded, settings.scan), recorded.T_odom_body);
+    const LevelScan scan = slam::planar_scan(recorded, settings.scan);
+    mapped.consistency.add(scan, mapper.update(scan, recorded.T_odom_body));
     if (!T_first_odom) T_first_odom = recorded.T_odom_body.inverse();
     if (T_odom_last) mapped.way_m += (recorded.T_odom_body.position() - T_odom_last->position()).norm();
     T_odom_last = recorded.T_odom_body;
@@ -129,6 +133,12 @@ io::Metrics metrics_of(const io::ScanLogSummary& summary, const MappedLog& mappe
        {{"nodes", graph.T_map_node.size()}, {"edges", graph.edges.size()}, {"cross_submap_edges", num_cross_submap}}}};
 }
 
+io::Metrics to_metrics(const std::optional<slam::LoopClosureStatistics>& loops) {
+  if (!loops) return nullptr;
+  return {{"searched", loops->searched},   {"closed", loops->closed},         {"not_found", loops->not_found},
+          {"ambiguous", loops->ambiguous}, {"no_overlap", loops->no_overlap}, {"mismatched", loops->mismatched}};
+}
+
 }  // namespace
 
 ExitCode slam_command(const SlamOptions& options) {
@@ -164,27 +174,32 @@ ExitCode slam_command(const SlamOptions& options) {
   io::save_settings(options.out / "settings.yaml", settings);
   io::save_csv(options.out / "performance.csv", mapped.cost.table());
   io::Metrics metrics = metrics_of(log->summary(), mapped, estimate, graph);
+  const ConsistencyReport consistency{.consistency = mapped.consistency.check(mapper->path()), .stamps = mapped.stamps};
   const double took_s = wall_seconds() - wall_s;
   metrics["performance"] = {{"wall_s", took_s},
                             {"processor_s", thread_cpu_time_s() - thread_s},
                             {"real_time_factor", mapped.duration_s() / std::max(1e-9, took_s)},
                             {"peak_memory_mb", peak_memory_mb()}};
+  metrics["loop_closures"] = to_metrics(mapper->loop_closure_statistics());
+  metrics["consistency"] = consistency.metrics();
   io::save_metrics(options.out / "metrics.json", metrics);
   const MappingContents contents{.log = options.log.filename().string(),
                                  .method = settings.slam.method,
                                  .map = map,
                                  .estimate = estimate,
                                  .cost = mapped.cost.table(),
-                                 .metrics = metrics};
+                                 .metrics = metrics,
+                                 .consistency = consistency};
   io::save_text(options.out / "report.html", report::to_html(mapping_page(contents)));
   complete_output(options.out);
 
   fmt::print(
       "{}{} scans, {:.0f} m by odometry, mapped by {} in {:.1f} s ({:.0f} times real time), {:.0f} MB\n{} keyframes, "
-      "{} edges, {} of them to other submaps\n{}\n",
+      "{} edges, {} of them to other submaps\n{}\n{}\n",
       io::to_text(log->summary()), mapped.stamps.size(), mapped.way_m, settings.slam.method, took_s,
       mapped.duration_s() / std::max(1e-9, took_s), peak_memory_mb(), graph.T_map_node.size(), graph.edges.size(),
-      metrics["graph"]["cross_submap_edges"].get<std::size_t>(), (options.out / "map.yaml").string());
+      metrics["graph"]["cross_submap_edges"].get<std::size_t>(), consistency.line(),
+      (options.out / "map.yaml").string());
   return ExitCode::kDone;
 }
 

@@ -21,7 +21,7 @@ report::MapBlock map_block(const MappingContents& contents) {
   const report::MapLayers layers{.built = contents.map, .T_world_map = {}, .truth = {}, .error_m = {}};
   return {.picture = report::map_picture(layers, shown),
           .paths = {{"estimated path", report::SeriesColor::kEstimate, {std::move(path)}}},
-          .marks = {}};
+          .marks = contents.consistency.marks()};
 }
 
 /// Plot of one cost column, by its name, over the scans.
@@ -74,7 +74,7 @@ report::Page mapping_page(const MappingContents& contents) {
   return {.kind = "mapping",
           .title = fmt::format("{}, mapped by {}", contents.log, contents.method),
           .facts = {},
-          .sections = {{"", {key_metrics}},
+          .sections = {{"", {contents.consistency.block(), key_metrics}},
                        {"Map", {map_block(contents)}},
                        {"Computation time per scan",
                         {plot_of(contents, "ms_per_scan", "CPU time per scan", "ms"),

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "app/mapping/consistency_report.h"
 #include "core/grid.h"
 #include "core/trajectory.h"
 #include "io/files/table.h"
@@ -17,6 +18,7 @@ struct MappingContents {
   Trajectory estimate;  ///< T_map_body
   io::Table cost;       ///< scans, way_m, ms_per_scan, peak_memory_mb
   io::Metrics metrics;
+  ConsistencyReport consistency;
 };
 
 /// Report page of `patrol slam`: metrics, the map with the trajectory, and the computation time of scans as the map

@@ -14,27 +14,6 @@
 
 namespace patrol::slam {
 
-void LoopClosureStatistics::add(MatchFailure failure) {
-  ++searched;
-  switch (failure) {
-    case MatchFailure::kNone:
-      ++closed;
-      break;
-    case MatchFailure::kNotFound:
-      ++not_found;
-      break;
-    case MatchFailure::kAmbiguous:
-      ++ambiguous;
-      break;
-    case MatchFailure::kNoOverlap:
-      ++no_overlap;
-      break;
-    case MatchFailure::kMismatch:
-      ++mismatched;
-      break;
-  }
-}
-
 GraphSlam::GraphSlam(const GraphSlamSettings& settings)
     : settings_(settings),
       rendering_{.resolution_m = settings.scan_odometry.resolution_m,

@@ -9,6 +9,7 @@
 #include "core/pose_graph.h"
 #include "slam/graph/graph_slam_settings.h"
 #include "slam/graph/incremental_map.h"
+#include "slam/graph/loop_closure_statistics.h"
 #include "slam/graph/pose_graph_solver.h"
 #include "slam/graph/scan_tracker.h"
 #include "slam/graph/submap.h"
@@ -17,13 +18,6 @@
 #include "slam/slam_update.h"
 
 namespace patrol::slam {
-
-/// Numbers of loop closure searches by result.
-struct LoopClosureStatistics {
-  int searched = 0, closed = 0, not_found = 0, ambiguous = 0, no_overlap = 0, mismatched = 0;
-
-  void add(MatchFailure failure);
-};
 
 /// Graph SLAM with submaps, similar to Cartographer [Hess16].
 ///

@@ -4,33 +4,12 @@
 #include <cmath>
 
 #include "slam/graph/branch_and_bound.h"
+#include "slam/surface_overlap.h"
 
 namespace patrol::slam {
 namespace {
 
-/// Agreement of the surfaces of one submap with the map of another.
-struct Overlap {
-  double overlap_ratio = 0.0;
-  double inlier_ratio = 0.0;
-  double matched_length_m = 0.0;
-};
-
-Overlap measure_overlap(const GridMap& map, const RenderedSubmap& other, const Pose2& T_map_other) {
-  const std::vector<MatchPoint>& points = other.surface_points();
-  int num_observed = 0, matched = 0;
-  for (const MatchPoint& point : points) {
-    const Cell cell = map.cell_at(T_map_other * point.p_body);
-    const bool is_matched = map.is_surface_within(cell, 2);
-    const GridCell* there = map.find(cell);
-    if (!is_matched && (!there || !there->is_observed())) continue;
-    ++num_observed;
-    matched += is_matched ? 1 : 0;
-  }
-  return {.overlap_ratio =
-              points.empty() ? 0.0 : static_cast<double>(num_observed) / static_cast<double>(points.size()),
-          .inlier_ratio = num_observed == 0 ? 0.0 : static_cast<double>(matched) / num_observed,
-          .matched_length_m = matched * other.point_spacing_m()};
-}
+constexpr int kOverlapRadius = 2;  // cells
 
 }  // namespace
 
@@ -54,14 +33,16 @@ SubmapMatchResult match_submaps(const RenderedSubmap& target, const RenderedSubm
   const std::optional<MatchResult> fine = match_scan(target.map(), source.surface_points(), found->T_map_points,
                                                      match_prior(found->T_map_points), matching);
   if (!fine) return {.match = {}, .failure = MatchFailure::kMismatch};
-  const Overlap forth = measure_overlap(target.map(), source, fine->T_map_body);
-  const Overlap back = measure_overlap(source.map(), target, fine->T_map_body.inverse());
+  const SurfaceOverlap forth = measure_overlap(target.map(), source.surface_points(), fine->T_map_body, kOverlapRadius);
+  const SurfaceOverlap back =
+      measure_overlap(source.map(), target.surface_points(), fine->T_map_body.inverse(), kOverlapRadius);
   const SubmapMatch match{.T_target_source = fine->T_map_body,
                           .information = fine->information,
                           .score = found->score,
-                          .overlap_ratio = std::min(forth.overlap_ratio, back.overlap_ratio),
-                          .inlier_ratio = std::min(forth.inlier_ratio, back.inlier_ratio)};
-  if (match.overlap_ratio < settings.min_overlap_ratio || forth.matched_length_m < settings.min_matched_length_m)
+                          .overlap_ratio = std::min(forth.overlap_ratio(), back.overlap_ratio()),
+                          .inlier_ratio = std::min(forth.inlier_ratio(), back.inlier_ratio())};
+  if (match.overlap_ratio < settings.min_overlap_ratio ||
+      forth.num_matched * source.point_spacing_m() < settings.min_matched_length_m)
     return {.match = {}, .failure = MatchFailure::kNoOverlap};
   if (match.inlier_ratio < settings.min_inlier_ratio) return {.match = {}, .failure = MatchFailure::kMismatch};
   return {.match = match, .failure = MatchFailure::kNone};

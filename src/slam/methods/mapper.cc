@@ -44,6 +44,10 @@ class MapperAdapter final : public Mapper {
     return {};
   }
   PoseGraph graph() const override { return method_.graph(); }
+  std::optional<LoopClosureStatistics> loop_closure_statistics() const override {
+    if constexpr (requires { method_.loop_closure_statistics(); }) return method_.loop_closure_statistics();
+    return std::nullopt;
+  }
   std::vector<std::size_t> node_scan_indices() const override { return method_.node_scan_indices(); }
   ParticleSet particles() const override {
     if constexpr (requires { method_.particles(); }) return method_.particles();

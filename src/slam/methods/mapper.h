@@ -2,12 +2,14 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/boosted_stumps.h"
 #include "core/grid.h"
 #include "core/messages.h"
 #include "core/pose_graph.h"
+#include "slam/graph/loop_closure_statistics.h"
 #include "slam/mapped_range.h"
 #include "slam/methods/mapper_settings.h"
 #include "slam/position_measurement.h"
@@ -43,6 +45,8 @@ class Mapper {
   virtual ParticleSet particles() const = 0;
   /// Keyframes and the relative pose constraints between them. Methods without loop closure return odometry edges only.
   virtual PoseGraph graph() const = 0;
+  /// Results of the searches for loop closures; none for methods that do not count them.
+  virtual std::optional<LoopClosureStatistics> loop_closure_statistics() const = 0;
   /// Index of the scan taken at each node, [node of the graph].
   virtual std::vector<std::size_t> node_scan_indices() const = 0;
 };

@@ -68,6 +68,11 @@ class Slam(unittest.TestCase):
         metrics = json.loads((out / "metrics.json").read_text())
         self.assertEqual(metrics["log"]["scans"], len(self.poses))
         self.assertGreater(metrics["graph"]["cross_submap_edges"], 0)
+        self.assertEqual(set(metrics["loop_closures"]), {"searched", "closed", "not_found", "ambiguous", "no_overlap", "mismatched"})
+        self.assertEqual(metrics["loop_closures"]["searched"], sum(metrics["loop_closures"].values()) - metrics["loop_closures"]["searched"])
+        self.assertTrue(metrics["consistency"]["consistent"])
+        self.assertEqual((metrics["consistency"]["disagreeing_pairs"], metrics["consistency"]["disagreements"]), (0, []))
+        self.assertGreater(metrics["consistency"]["compared_pairs"], 0)
         self.assertLess(metrics["performance"]["peak_memory_mb"], 300)
         self.assertEqual((out / "pose_graph.g2o").read_text().count("VERTEX_SE2"), metrics["graph"]["nodes"])
 

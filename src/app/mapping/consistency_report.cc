@@ -1,0 +1,114 @@
+#include "app/mapping/consistency_report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "core/geometry/angles.h"
+
+namespace patrol::app {
+namespace {
+
+constexpr std::size_t kListed = 20;  ///< disagreements in metrics.json and on the page
+constexpr std::size_t kMarked = 3;   ///< of them, on the map
+
+std::string place(const Eigen::Vector2d& p_map) { return fmt::format("({:.1f}, {:.1f})", p_map.x(), p_map.y()); }
+
+std::size_t listed(const slam::MapConsistency& consistency) {
+  return std::min(kListed, consistency.disagreements.size());
+}
+
+}  // namespace
+
+double ConsistencyReport::seconds(std::size_t scan) const { return to_seconds(stamps.at(scan) - stamps.front()); }
+
+std::string ConsistencyReport::line() const {
+  if (consistency.is_consistent()) {
+    return fmt::format("consistent: {} pairs of stretches agree, {:.1f} % of the scans matched no surfaces",
+                       consistency.num_compared, 100.0 * consistency.unmatched_ratio());
+  }
+  if (!consistency.disagreements.empty()) {
+    const slam::Disagreement& worst = consistency.disagreements.front();
+    return fmt::format(
+        "look at {}: the surfaces seen at {:.0f} s and at {:.0f} s are {:.1f} m and {:.0f} deg apart; {} of {} pairs "
+        "of "
+        "stretches disagree",
+        place(worst.p_map), seconds(worst.first_scan), seconds(worst.second_scan), worst.offset_m,
+        std::abs(kDegPerRad * worst.offset_rad), consistency.disagreements.size(), consistency.num_compared);
+  }
+  if (consistency.num_compared > 0 || consistency.num_unmatched > 0) {
+    const slam::UnmatchedStretch& longest = consistency.longest_unmatched;
+    return fmt::format("look at {}: {:.0f} % of the scans matched no surfaces, at most {} in a row, from {:.0f} s",
+                       place(longest.p_map), 100.0 * consistency.unmatched_ratio(), longest.num_scans,
+                       seconds(longest.first_scan));
+  }
+  return "not checked: no two stretches of the path saw the same surfaces";
+}
+
+io::Metrics ConsistencyReport::metrics() const {
+  io::Metrics disagreements = io::Metrics::array();
+  for (std::size_t i = 0; i < listed(consistency); ++i) {
+    const slam::Disagreement& entry = consistency.disagreements[i];
+    disagreements.push_back({{"x_m", entry.p_map.x()},
+                             {"y_m", entry.p_map.y()},
+                             {"first_s", seconds(entry.first_scan)},
+                             {"second_s", seconds(entry.second_scan)},
+                             {"offset_m", entry.offset_m},
+                             {"offset_deg", kDegPerRad * entry.offset_rad}});
+  }
+  const slam::UnmatchedStretch& longest = consistency.longest_unmatched;
+  io::Metrics unmatched = {{"scans", longest.num_scans}};
+  if (longest.num_scans > 0) {
+    unmatched.update({{"from_s", seconds(longest.first_scan)}, {"x_m", longest.p_map.x()}, {"y_m", longest.p_map.y()}});
+  }
+  return {{"consistent", consistency.is_consistent()},
+          {"stretches", consistency.num_stretches},
+          {"compared_pairs", consistency.num_compared},
+          {"disagreeing_pairs", consistency.disagreements.size()},
+          {"disagreements", disagreements},
+          {"unmatched_scans", consistency.num_unmatched},
+          {"unmatched_ratio", consistency.unmatched_ratio()},
+          {"longest_unmatched", unmatched}};
+}
+
+report::VerdictBlock ConsistencyReport::block() const {
+  report::TableBlock table{.caption = "",
+                           .columns = {{"place in the map, m"},
+                                       {"seen at, s", true},
+                                       {"and at, s", true},
+                                       {"apart, m", true},
+                                       {"apart, deg", true}},
+                           .rows = {}};
+  for (std::size_t i = 0; i < listed(consistency); ++i) {
+    const slam::Disagreement& entry = consistency.disagreements[i];
+    table.rows.push_back({{place(entry.p_map)},
+                          {fmt::format("{:.0f}", seconds(entry.first_scan))},
+                          {fmt::format("{:.0f}", seconds(entry.second_scan))},
+                          {fmt::format("{:.2f}", entry.offset_m)},
+                          {fmt::format("{:.1f}", kDegPerRad * entry.offset_rad)}});
+  }
+  const bool is_consistent = consistency.is_consistent();
+  const std::string text = line();
+  const std::size_t colon = text.find(':');
+  return {.word = text.substr(0, colon),
+          .tone = is_consistent ? report::Tone::kGood : report::Tone::kBad,
+          .reason = text.substr(colon + 2),
+          .checks = std::move(table)};
+}
+
+std::vector<report::MapMark> ConsistencyReport::marks() const {
+  std::vector<report::MapMark> marks;
+  for (std::size_t i = 0; i < std::min(kMarked, consistency.disagreements.size()); ++i) {
+    const slam::Disagreement& entry = consistency.disagreements[i];
+    marks.push_back({.label = fmt::format("{:.1f} m apart", entry.offset_m), .p_m = entry.p_map});
+  }
+  if (!consistency.is_consistent() && consistency.longest_unmatched.num_scans > 0) {
+    marks.push_back({.label = fmt::format("{} scans unmatched", consistency.longest_unmatched.num_scans),
+                     .p_m = consistency.longest_unmatched.p_map});
+  }
+  return marks;
+}
+
+}  // namespace patrol::app

@@ -1,0 +1,161 @@
+#include "slam/consistency/map_consistency.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "slam/graph/branch_and_bound.h"
+#include "slam/surface_overlap.h"
+
+namespace patrol::slam {
+namespace {
+
+constexpr double kKeptDistance_m = 0.1, kKeptAngleRad = 0.1;
+constexpr double kStretch_m = 5.0;
+constexpr double kMaxDistance_m = 10.0;  ///< between the centers of compared stretches
+constexpr double kResolution_m = 0.1, kMaxExtent_m = 4000.0, kMaxFreeRange_m = 15.0;
+constexpr int kTracedBeams = 60;  ///< number of beams of a scan that are traced through free space
+constexpr int kMatchRadius = 2;   ///< cells
+constexpr int kMinObserved = 20;  ///< surface points in observed cells of the other stretch
+constexpr double kMinAgreement = 0.8;
+constexpr int kSearchPoints = 300;
+constexpr double kSearch_m = 2.0, kSearchRad = 0.2, kMinScore = 0.1;
+/// A match elsewhere is a disagreement if its score is better by this, and it is this far away; a rotation counts as
+/// the displacement at 3 m.
+constexpr double kMinGain = 0.2, kMinOffset_m = 0.3, kLever_m = 3.0;
+constexpr std::size_t kCachedStretches = 64;
+constexpr int kMinReturns = 3;
+constexpr double kMinMatchScore = 0.3;
+constexpr double kMaxUnmatchedRatio = 0.2;
+
+/// Kept scans of a stretch of the path.
+struct Stretch {
+  Submap range;
+  Eigen::Vector2d center_map;
+};
+
+std::vector<Stretch> divide(const std::vector<Pose2>& T_map_kept) {
+  std::vector<Stretch> stretches;
+  double way_m = 0.0;
+  for (std::size_t i = 0; i < T_map_kept.size(); ++i) {
+    const int k = static_cast<int>(i);
+    if (i > 0) way_m += (T_map_kept[i].position() - T_map_kept[i - 1].position()).norm();
+    if (stretches.empty() || way_m > kStretch_m) {
+      stretches.push_back({.range = {.first = k, .last = k}, .center_map = T_map_kept[i].position()});
+      way_m = 0.0;
+    }
+    Stretch& newest = stretches.back();
+    newest.range.last = k;
+    newest.center_map += (T_map_kept[i].position() - newest.center_map) / (k - newest.range.first + 1);
+  }
+  return stretches;
+}
+
+/// Returns the mean likelihood of points, as in a search (branch_and_bound.h).
+double score_at(const LikelihoodPyramid& map, const std::vector<Eigen::Vector2d>& points, const Pose2& T_map_points) {
+  double sum = 0.0;
+  for (const Eigen::Vector2d& point : points) {
+    const Eigen::Vector2d cell = T_map_points * point / map.resolution_m();
+    sum += map.value(0, static_cast<int>(std::floor(cell.x())), static_cast<int>(std::floor(cell.y())));
+  }
+  return sum / (LikelihoodPyramid::kOnSurface * static_cast<double>(points.size()));
+}
+
+/// Result of comparing two stretches.
+struct Comparison {
+  bool is_overlapping = false;
+  std::optional<Pose2> better = {};  ///< pose of `b` in `a`, about `p_b`, with which they match
+};
+
+/// Compares two rendered stretches; `p_b`: center of rotations, in b.
+Comparison compare(const RenderedSubmap& a, const RenderedSubmap& b, const Pose2& T_a_b, const Eigen::Vector2d& p_b) {
+  const SurfaceOverlap forth = measure_overlap(a.map(), b.surface_points(), T_a_b, kMatchRadius),
+                       back = measure_overlap(b.map(), a.surface_points(), T_a_b.inverse(), kMatchRadius);
+  if (std::min(forth.num_observed, back.num_observed) < kMinObserved) return {};
+  if (std::min(forth.inlier_ratio(), back.inlier_ratio()) >= kMinAgreement) return {.is_overlapping = true};
+  std::vector<Eigen::Vector2d> points = positions_of(b.surface_points(), kSearchPoints);
+  for (Eigen::Vector2d& point : points) point -= p_b;
+  const Pose2 here = T_a_b * Pose2{p_b.x(), p_b.y(), 0.0};
+  const std::optional<SearchResult> found = search_window(
+      a.pyramid(), points, {.T_map_center = here, .half_width_m = kSearch_m, .half_angle_rad = kSearchRad}, kMinScore);
+  if (!found || found->score < score_at(a.pyramid(), points, here) + kMinGain) return {.is_overlapping = true};
+  const double offset_m = (found->T_map_points.position() - here.position()).norm(),
+               offset_rad = std::abs(wrap_angle(found->T_map_points.yaw - here.yaw));
+  if (std::max(offset_m, kLever_m * offset_rad) < kMinOffset_m) return {.is_overlapping = true};
+  return {.is_overlapping = true, .better = here.inverse() * found->T_map_points};
+}
+
+}  // namespace
+
+bool MapConsistency::is_consistent() const {
+  return num_compared > 0 && disagreements.empty() && unmatched_ratio() <= kMaxUnmatchedRatio;
+}
+
+void ConsistencyCheck::add(const LevelScan& scan, const SlamUpdate& update) {
+  const auto returns =
+      std::count_if(scan.beams.begin(), scan.beams.end(), [](const LevelScan::Beam& beam) { return beam.is_hit; });
+  const bool is_first = scans_.empty();
+  max_beams_ = std::max(max_beams_, scan.beams.size());
+  const bool is_unmatched = !is_first && update.match_score && *update.match_score < kMinMatchScore;
+  scans_.push_back({.has_returns = returns >= kMinReturns, .is_matched = !is_unmatched});
+  if (!kept_.empty()) {
+    const Pose2 moved = kept_.back().T_local_body.inverse() * update.T_map_body;
+    if (moved.position().norm() < kKeptDistance_m && std::abs(moved.yaw) < kKeptAngleRad) return;
+  }
+  kept_.push_back({.scans = ScanGroup(scan), .T_local_body = update.T_map_body});
+  kept_indices_.push_back(scans_.size() - 1);
+}
+
+MapConsistency ConsistencyCheck::check(const std::vector<Pose2>& T_map_body) const {
+  MapConsistency result;
+  UnmatchedStretch unmatched;
+  for (std::size_t i = 0; i < scans_.size(); ++i) {
+    if (!scans_[i].has_returns) continue;
+    ++result.num_scans;
+    if (scans_[i].is_matched) {
+      unmatched = {};
+      continue;
+    }
+    ++result.num_unmatched;
+    if (unmatched.num_scans == 0) unmatched = {.first_scan = i, .p_map = T_map_body[i].position()};
+    if (++unmatched.num_scans > result.longest_unmatched.num_scans) result.longest_unmatched = unmatched;
+  }
+
+  std::vector<Pose2> T_map_kept;
+  for (const std::size_t index : kept_indices_) T_map_kept.push_back(T_map_body[index]);
+  const std::vector<Stretch> stretches = divide(T_map_kept);
+  result.num_stretches = static_cast<int>(stretches.size());
+  const MapRenderingSettings rendering{
+      .resolution_m = kResolution_m,
+      .max_extent_m = kMaxExtent_m,
+      .integration = {.free_ray_stride = std::max(1, static_cast<int>(max_beams_) / kTracedBeams),
+                      .max_free_range_m = kMaxFreeRange_m}};
+  SubmapCache cache(kCachedStretches);
+  const auto rendered = [&](std::size_t s) {
+    return cache.get(static_cast<int>(s), [&] {
+      return std::make_shared<const RenderedSubmap>(stretches[s].range, kept_, T_map_kept, rendering);
+    });
+  };
+  const auto T_map = [&](std::size_t s) { return T_map_kept[static_cast<std::size_t>(stretches[s].range.first)]; };
+  for (std::size_t b = 0; b < stretches.size(); ++b) {
+    for (std::size_t a = 0; a < b; ++a) {
+      if ((stretches[a].center_map - stretches[b].center_map).norm() > kMaxDistance_m) continue;
+      const Comparison comparison = compare(*rendered(a), *rendered(b), T_map(a).inverse() * T_map(b),
+                                            T_map(b).inverse() * stretches[b].center_map);
+      result.num_compared += comparison.is_overlapping ? 1 : 0;
+      if (!comparison.better) continue;
+      result.disagreements.push_back({.p_map = 0.5 * (stretches[a].center_map + stretches[b].center_map),
+                                      .first_scan = kept_indices_[static_cast<std::size_t>(stretches[a].range.first)],
+                                      .second_scan = kept_indices_[static_cast<std::size_t>(stretches[b].range.first)],
+                                      .offset_m = comparison.better->position().norm(),
+                                      .offset_rad = comparison.better->yaw});
+    }
+  }
+  std::stable_sort(result.disagreements.begin(), result.disagreements.end(),
+                   [](const Disagreement& a, const Disagreement& b) { return a.offset_m > b.offset_m; });
+  return result;
+}
+
+}  // namespace patrol::slam

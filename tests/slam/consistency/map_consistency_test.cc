@@ -1,0 +1,104 @@
+#include "slam/consistency/map_consistency.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/slam/graph/office_world.h"
+
+namespace patrol::slam::map_consistency_test {
+namespace {
+
+/// Two laps of the office, 0.3 m from scan to scan, in true poses from the first.
+struct Drive {
+  ConsistencyCheck check;
+  std::vector<Pose2> T_map_body;
+};
+
+/// `match_score` [scan]: fraction of matched points, for scans from `unmatched_from` to `unmatched_to` zero.
+Drive two_laps(std::size_t unmatched_from = 0, std::size_t unmatched_to = 0) {
+  const test::RoomWorld office = test::make_office();
+  const RandomStream noise(1, "test/consistency");
+  Drive drive;
+  for (const test::DriveStep& step : test::drive_along(test::office_rounds(2), {.speed_mps = 1.5})) {
+    const std::size_t k = drive.T_map_body.size();
+    drive.T_map_body.push_back(step.T_world_body);
+    drive.check.add(
+        office.scan(step.T_world_body, step.stamp, test::kOldLidar, noise, k),
+        {.T_map_body = step.T_world_body, .match_score = k >= unmatched_from && k < unmatched_to ? 0.0 : 0.9});
+  }
+  return drive;
+}
+
+TEST(MapConsistency, OfTwoLapsInTheirTruePosesIsComplete) {
+  const Drive drive = two_laps();
+  const MapConsistency result = drive.check.check(drive.T_map_body);
+  EXPECT_TRUE(result.is_consistent());
+  EXPECT_TRUE(result.disagreements.empty());
+  EXPECT_GT(result.num_compared, 2 * result.num_stretches);
+  EXPECT_EQ(result.num_unmatched, 0U);
+}
+
+TEST(MapConsistency, ASecondLap60CentimetersAsideDisagreesBy60Centimeters) {
+  Drive drive = two_laps();
+  const std::size_t half = drive.T_map_body.size() / 2;
+  for (std::size_t k = half; k < drive.T_map_body.size(); ++k) {
+    drive.T_map_body[k].x += 0.36;
+    drive.T_map_body[k].y += 0.48;
+  }
+  const MapConsistency result = drive.check.check(drive.T_map_body);
+  EXPECT_FALSE(result.is_consistent());
+  ASSERT_GE(result.disagreements.size(), 10U);
+  int about_60_cm = 0, between_laps = 0;
+  for (const Disagreement& entry : result.disagreements) {
+    about_60_cm += std::abs(entry.offset_m - 0.6) < 0.15 ? 1 : 0;
+    between_laps += entry.first_scan < half + 20 && entry.second_scan + 20 >= half ? 1 : 0;
+  }
+  const int num = static_cast<int>(result.disagreements.size());
+  EXPECT_GE(4 * about_60_cm, 3 * num);
+  EXPECT_EQ(between_laps, num);
+}
+
+// Below the distance at which a surface counts as the same.
+TEST(MapConsistency, ASecondLapTenCentimetersAsideDoesNotDisagree) {
+  Drive drive = two_laps();
+  for (std::size_t k = drive.T_map_body.size() / 2; k < drive.T_map_body.size(); ++k) drive.T_map_body[k].x += 0.1;
+  EXPECT_TRUE(drive.check.check(drive.T_map_body).is_consistent());
+}
+
+TEST(MapConsistency, UnmatchedScansAreCountedAndAQuarterOfThemIsTooMany) {
+  const Drive few = two_laps(10, 40);
+  const MapConsistency result = few.check.check(few.T_map_body);
+  EXPECT_TRUE(result.is_consistent());
+  EXPECT_EQ(result.num_unmatched, 30U);
+  EXPECT_EQ(result.longest_unmatched.first_scan, 10U);
+  EXPECT_EQ(result.longest_unmatched.num_scans, 30U);
+  EXPECT_EQ(result.longest_unmatched.p_map, few.T_map_body[10].position());
+
+  const Drive many = two_laps(10, 10 + few.T_map_body.size() / 4);
+  EXPECT_FALSE(many.check.check(many.T_map_body).is_consistent());
+}
+
+TEST(MapConsistency, OfAMethodWithoutMatchScoresCountsNoScanAsUnmatched) {
+  const test::RoomWorld office = test::make_office();
+  const RandomStream noise(1, "test/consistency");
+  ConsistencyCheck check;
+  std::vector<Pose2> T_map_body;
+  for (const test::DriveStep& step : test::drive_along(test::office_rounds(1), {.speed_mps = 1.5})) {
+    check.add(office.scan(step.T_world_body, step.stamp, test::kOldLidar, noise, T_map_body.size()),
+              {.T_map_body = step.T_world_body});
+    T_map_body.push_back(step.T_world_body);
+  }
+  EXPECT_EQ(check.check(T_map_body).num_unmatched, 0U);
+}
+
+TEST(MapConsistency, OfNoScanAndOfASingleOneIsNotConsistent) {
+  EXPECT_FALSE(ConsistencyCheck().check({}).is_consistent());
+  ConsistencyCheck one;
+  one.add(test::make_office().scan({4.2, 4.2, 0.0}, {}, test::kOldLidar, RandomStream(1, "test/consistency"), 0), {});
+  const MapConsistency result = one.check({{4.2, 4.2, 0.0}});
+  EXPECT_FALSE(result.is_consistent());
+  EXPECT_EQ(result.num_stretches, 1);
+  EXPECT_EQ(result.num_compared, 0);
+}
+
+}  // namespace
+}  // namespace patrol::slam::map_consistency_test
