@@ -11,7 +11,8 @@
 namespace patrol::app {
 namespace {
 
-constexpr std::size_t kListed = 20;  ///< disagreements in metrics.json and on the page
+constexpr std::size_t kListed = 20;  ///< disagreements in metrics.json
+constexpr std::size_t kShown = 8;    ///< of them, on the page
 constexpr std::size_t kMarked = 3;   ///< of them, on the map
 
 std::string place(const Eigen::Vector2d& p_map) { return fmt::format("({:.1f}, {:.1f})", p_map.x(), p_map.y()); }
@@ -26,7 +27,7 @@ double ConsistencyReport::seconds(std::size_t scan) const { return to_seconds(st
 
 std::string ConsistencyReport::line() const {
   if (consistency.is_consistent()) {
-    return fmt::format("consistent: {} pairs of stretches agree, {:.1f} % of the scans matched no surfaces",
+    return fmt::format("consistent: {} pairs of segmentes agree, {:.1f} % of the scans matched no surfaces",
                        consistency.num_compared, 100.0 * consistency.unmatched_ratio());
   }
   if (!consistency.disagreements.empty()) {
@@ -34,17 +35,17 @@ std::string ConsistencyReport::line() const {
     return fmt::format(
         "look at {}: the surfaces seen at {:.0f} s and at {:.0f} s are {:.1f} m and {:.0f} deg apart; {} of {} pairs "
         "of "
-        "stretches disagree",
+        "segmentes disagree",
         place(worst.p_map), seconds(worst.first_scan), seconds(worst.second_scan), worst.offset_m,
         std::abs(kDegPerRad * worst.offset_rad), consistency.disagreements.size(), consistency.num_compared);
   }
   if (consistency.num_compared > 0 || consistency.num_unmatched > 0) {
-    const slam::UnmatchedStretch& longest = consistency.longest_unmatched;
+    const slam::UnmatchedSegment& unmatched_segment = consistency.max_unmatched_segment;
     return fmt::format("look at {}: {:.0f} % of the scans matched no surfaces, at most {} in a row, from {:.0f} s",
-                       place(longest.p_map), 100.0 * consistency.unmatched_ratio(), longest.num_scans,
-                       seconds(longest.first_scan));
+                       place(unmatched_segment.p_map), 100.0 * consistency.unmatched_ratio(),
+                       unmatched_segment.num_scans, seconds(unmatched_segment.first_scan));
   }
-  return "not checked: no two stretches of the path saw the same surfaces";
+  return "not checked: no two segmentes of the path saw the same surfaces";
 }
 
 io::Metrics ConsistencyReport::metrics() const {
@@ -58,19 +59,21 @@ io::Metrics ConsistencyReport::metrics() const {
                              {"offset_m", entry.offset_m},
                              {"offset_deg", kDegPerRad * entry.offset_rad}});
   }
-  const slam::UnmatchedStretch& longest = consistency.longest_unmatched;
-  io::Metrics unmatched = {{"scans", longest.num_scans}};
-  if (longest.num_scans > 0) {
-    unmatched.update({{"from_s", seconds(longest.first_scan)}, {"x_m", longest.p_map.x()}, {"y_m", longest.p_map.y()}});
+  const slam::UnmatchedSegment& unmatched_segment = consistency.max_unmatched_segment;
+  io::Metrics unmatched = {{"scans", unmatched_segment.num_scans}};
+  if (unmatched_segment.num_scans > 0) {
+    unmatched.update({{"from_s", seconds(unmatched_segment.first_scan)},
+                      {"x_m", unmatched_segment.p_map.x()},
+                      {"y_m", unmatched_segment.p_map.y()}});
   }
   return {{"consistent", consistency.is_consistent()},
-          {"stretches", consistency.num_stretches},
+          {"segmentes", consistency.num_segmentes},
           {"compared_pairs", consistency.num_compared},
           {"disagreeing_pairs", consistency.disagreements.size()},
           {"disagreements", disagreements},
           {"unmatched_scans", consistency.num_unmatched},
           {"unmatched_ratio", consistency.unmatched_ratio()},
-          {"longest_unmatched", unmatched}};
+          {"max_unmatched_segment", unmatched}};
 }
 
 report::VerdictBlock ConsistencyReport::block() const {
@@ -81,7 +84,7 @@ report::VerdictBlock ConsistencyReport::block() const {
                                        {"apart, m", true},
                                        {"apart, deg", true}},
                            .rows = {}};
-  for (std::size_t i = 0; i < listed(consistency); ++i) {
+  for (std::size_t i = 0; i < std::min(kShown, consistency.disagreements.size()); ++i) {
     const slam::Disagreement& entry = consistency.disagreements[i];
     table.rows.push_back({{place(entry.p_map)},
                           {fmt::format("{:.0f}", seconds(entry.first_scan))},
@@ -104,9 +107,9 @@ std::vector<report::MapMark> ConsistencyReport::marks() const {
     const slam::Disagreement& entry = consistency.disagreements[i];
     marks.push_back({.label = fmt::format("{:.1f} m apart", entry.offset_m), .p_m = entry.p_map});
   }
-  if (!consistency.is_consistent() && consistency.longest_unmatched.num_scans > 0) {
-    marks.push_back({.label = fmt::format("{} scans unmatched", consistency.longest_unmatched.num_scans),
-                     .p_m = consistency.longest_unmatched.p_map});
+  if (!consistency.is_consistent() && consistency.max_unmatched_segment.num_scans > 0) {
+    marks.push_back({.label = fmt::format("{} scans unmatched", consistency.max_unmatched_segment.num_scans),
+                     .p_m = consistency.max_unmatched_segment.p_map});
   }
   return marks;
 }

@@ -20,7 +20,7 @@ struct ConsistencyReport {
   std::string line() const;
   io::Metrics metrics() const;
   report::VerdictBlock block() const;
-  /// Places of the largest disagreements and of the longest stretch without matches.
+  /// Places of the largest disagreements and of the longest segment without matches.
   std::vector<report::MapMark> marks() const;
 
  private:

@@ -13,44 +13,44 @@ namespace patrol::slam {
 namespace {
 
 constexpr double kKeptDistance_m = 0.1, kKeptAngleRad = 0.1;
-constexpr double kStretch_m = 5.0;
-constexpr double kMaxDistance_m = 10.0;  ///< between the centers of compared stretches
+constexpr double kSegment_m = 5.0;
+constexpr double kMaxDistance_m = 10.0;  ///< between the centers of compared segmentes
 constexpr double kResolution_m = 0.1, kMaxExtent_m = 4000.0, kMaxFreeRange_m = 15.0;
 constexpr int kTracedBeams = 60;  ///< number of beams of a scan that are traced through free space
 constexpr int kMatchRadius = 2;   ///< cells
-constexpr int kMinObserved = 20;  ///< surface points in observed cells of the other stretch
+constexpr int kMinObserved = 20;  ///< surface points in observed cells of the other segment
 constexpr double kMinAgreement = 0.8;
 constexpr int kSearchPoints = 300;
 constexpr double kSearch_m = 2.0, kSearchRad = 0.2, kMinScore = 0.1;
 /// A match elsewhere is a disagreement if its score is better by this, and it is this far away; a rotation counts as
 /// the displacement at 3 m.
 constexpr double kMinGain = 0.2, kMinOffset_m = 0.3, kLever_m = 3.0;
-constexpr std::size_t kCachedStretches = 64;
+constexpr std::size_t kCachedSegmentes = 64;
 constexpr int kMinReturns = 3;
 constexpr double kMinMatchScore = 0.3;
 constexpr double kMaxUnmatchedRatio = 0.2;
 
-/// Kept scans of a stretch of the path.
-struct Stretch {
+/// Kept scans of a segment of the path.
+struct Segment {
   Submap range;
   Eigen::Vector2d center_map;
 };
 
-std::vector<Stretch> divide(const std::vector<Pose2>& T_map_kept) {
-  std::vector<Stretch> stretches;
-  double way_m = 0.0;
+std::vector<Segment> divide(const std::vector<Pose2>& T_map_kept) {
+  std::vector<Segment> segmentes;
+  double length_m = 0.0;
   for (std::size_t i = 0; i < T_map_kept.size(); ++i) {
     const int k = static_cast<int>(i);
-    if (i > 0) way_m += (T_map_kept[i].position() - T_map_kept[i - 1].position()).norm();
-    if (stretches.empty() || way_m > kStretch_m) {
-      stretches.push_back({.range = {.first = k, .last = k}, .center_map = T_map_kept[i].position()});
-      way_m = 0.0;
+    if (i > 0) length_m += (T_map_kept[i].position() - T_map_kept[i - 1].position()).norm();
+    if (segmentes.empty() || length_m > kSegment_m) {
+      segmentes.push_back({.range = {.first = k, .last = k}, .center_map = T_map_kept[i].position()});
+      length_m = 0.0;
     }
-    Stretch& newest = stretches.back();
+    Segment& newest = segmentes.back();
     newest.range.last = k;
     newest.center_map += (T_map_kept[i].position() - newest.center_map) / (k - newest.range.first + 1);
   }
-  return stretches;
+  return segmentes;
 }
 
 /// Returns the mean likelihood of points, as in a search (branch_and_bound.h).
@@ -63,13 +63,13 @@ double score_at(const LikelihoodPyramid& map, const std::vector<Eigen::Vector2d>
   return sum / (LikelihoodPyramid::kOnSurface * static_cast<double>(points.size()));
 }
 
-/// Result of comparing two stretches.
+/// Result of comparing two segmentes.
 struct Comparison {
   bool is_overlapping = false;
   std::optional<Pose2> better = {};  ///< pose of `b` in `a`, about `p_b`, with which they match
 };
 
-/// Compares two rendered stretches; `p_b`: center of rotations, in b.
+/// Compares two rendered segmentes; `p_b`: center of rotations, in b.
 Comparison compare(const RenderedSubmap& a, const RenderedSubmap& b, const Pose2& T_a_b, const Eigen::Vector2d& p_b) {
   const SurfaceOverlap forth = measure_overlap(a.map(), b.surface_points(), T_a_b, kMatchRadius),
                        back = measure_overlap(b.map(), a.surface_points(), T_a_b.inverse(), kMatchRadius);
@@ -110,7 +110,7 @@ void ConsistencyCheck::add(const LevelScan& scan, const SlamUpdate& update) {
 
 MapConsistency ConsistencyCheck::check(const std::vector<Pose2>& T_map_body) const {
   MapConsistency result;
-  UnmatchedStretch unmatched;
+  UnmatchedSegment unmatched;
   for (std::size_t i = 0; i < scans_.size(); ++i) {
     if (!scans_[i].has_returns) continue;
     ++result.num_scans;
@@ -120,35 +120,35 @@ MapConsistency ConsistencyCheck::check(const std::vector<Pose2>& T_map_body) con
     }
     ++result.num_unmatched;
     if (unmatched.num_scans == 0) unmatched = {.first_scan = i, .p_map = T_map_body[i].position()};
-    if (++unmatched.num_scans > result.longest_unmatched.num_scans) result.longest_unmatched = unmatched;
+    if (++unmatched.num_scans > result.max_unmatched_segment.num_scans) result.max_unmatched_segment = unmatched;
   }
 
   std::vector<Pose2> T_map_kept;
   for (const std::size_t index : kept_indices_) T_map_kept.push_back(T_map_body[index]);
-  const std::vector<Stretch> stretches = divide(T_map_kept);
-  result.num_stretches = static_cast<int>(stretches.size());
+  const std::vector<Segment> segmentes = divide(T_map_kept);
+  result.num_segmentes = static_cast<int>(segmentes.size());
   const MapRenderingSettings rendering{
       .resolution_m = kResolution_m,
       .max_extent_m = kMaxExtent_m,
       .integration = {.free_ray_stride = std::max(1, static_cast<int>(max_beams_) / kTracedBeams),
                       .max_free_range_m = kMaxFreeRange_m}};
-  SubmapCache cache(kCachedStretches);
+  SubmapCache cache(kCachedSegmentes);
   const auto rendered = [&](std::size_t s) {
     return cache.get(static_cast<int>(s), [&] {
-      return std::make_shared<const RenderedSubmap>(stretches[s].range, kept_, T_map_kept, rendering);
+      return std::make_shared<const RenderedSubmap>(segmentes[s].range, kept_, T_map_kept, rendering);
     });
   };
-  const auto T_map = [&](std::size_t s) { return T_map_kept[static_cast<std::size_t>(stretches[s].range.first)]; };
-  for (std::size_t b = 0; b < stretches.size(); ++b) {
+  const auto T_map = [&](std::size_t s) { return T_map_kept[static_cast<std::size_t>(segmentes[s].range.first)]; };
+  for (std::size_t b = 0; b < segmentes.size(); ++b) {
     for (std::size_t a = 0; a < b; ++a) {
-      if ((stretches[a].center_map - stretches[b].center_map).norm() > kMaxDistance_m) continue;
+      if ((segmentes[a].center_map - segmentes[b].center_map).norm() > kMaxDistance_m) continue;
       const Comparison comparison = compare(*rendered(a), *rendered(b), T_map(a).inverse() * T_map(b),
-                                            T_map(b).inverse() * stretches[b].center_map);
+                                            T_map(b).inverse() * segmentes[b].center_map);
       result.num_compared += comparison.is_overlapping ? 1 : 0;
       if (!comparison.better) continue;
-      result.disagreements.push_back({.p_map = 0.5 * (stretches[a].center_map + stretches[b].center_map),
-                                      .first_scan = kept_indices_[static_cast<std::size_t>(stretches[a].range.first)],
-                                      .second_scan = kept_indices_[static_cast<std::size_t>(stretches[b].range.first)],
+      result.disagreements.push_back({.p_map = 0.5 * (segmentes[a].center_map + segmentes[b].center_map),
+                                      .first_scan = kept_indices_[static_cast<std::size_t>(segmentes[a].range.first)],
+                                      .second_scan = kept_indices_[static_cast<std::size_t>(segmentes[b].range.first)],
                                       .offset_m = comparison.better->position().norm(),
                                       .offset_rad = comparison.better->yaw});
     }

@@ -33,7 +33,7 @@ TEST(MapConsistency, OfTwoLapsInTheirTruePosesIsComplete) {
   const MapConsistency result = drive.check.check(drive.T_map_body);
   EXPECT_TRUE(result.is_consistent());
   EXPECT_TRUE(result.disagreements.empty());
-  EXPECT_GT(result.num_compared, 2 * result.num_stretches);
+  EXPECT_GT(result.num_compared, 2 * result.num_segmentes);
   EXPECT_EQ(result.num_unmatched, 0U);
 }
 
@@ -69,9 +69,9 @@ TEST(MapConsistency, UnmatchedScansAreCountedAndAQuarterOfThemIsTooMany) {
   const MapConsistency result = few.check.check(few.T_map_body);
   EXPECT_TRUE(result.is_consistent());
   EXPECT_EQ(result.num_unmatched, 30U);
-  EXPECT_EQ(result.longest_unmatched.first_scan, 10U);
-  EXPECT_EQ(result.longest_unmatched.num_scans, 30U);
-  EXPECT_EQ(result.longest_unmatched.p_map, few.T_map_body[10].position());
+  EXPECT_EQ(result.max_unmatched_segment.first_scan, 10U);
+  EXPECT_EQ(result.max_unmatched_segment.num_scans, 30U);
+  EXPECT_EQ(result.max_unmatched_segment.p_map, few.T_map_body[10].position());
 
   const Drive many = two_laps(10, 10 + few.T_map_body.size() / 4);
   EXPECT_FALSE(many.check.check(many.T_map_body).is_consistent());
@@ -96,7 +96,7 @@ TEST(MapConsistency, OfNoScanAndOfASingleOneIsNotConsistent) {
   one.add(test::make_office().scan({4.2, 4.2, 0.0}, {}, test::kOldLidar, RandomStream(1, "test/consistency"), 0), {});
   const MapConsistency result = one.check({{4.2, 4.2, 0.0}});
   EXPECT_FALSE(result.is_consistent());
-  EXPECT_EQ(result.num_stretches, 1);
+  EXPECT_EQ(result.num_segmentes, 1);
   EXPECT_EQ(result.num_compared, 0);
 }
 
