@@ -27,7 +27,7 @@ double ConsistencyReport::seconds(std::size_t scan) const { return to_seconds(st
 
 std::string ConsistencyReport::line() const {
   if (consistency.is_consistent()) {
-    return fmt::format("consistent: {} pairs of segmentes agree, {:.1f} % of the scans matched no surfaces",
+    return fmt::format("consistent: {} pairs of segments agree, {:.1f} % of the scans matched no surfaces",
                        consistency.num_compared, 100.0 * consistency.unmatched_ratio());
   }
   if (!consistency.disagreements.empty()) {
@@ -35,7 +35,7 @@ std::string ConsistencyReport::line() const {
     return fmt::format(
         "look at {}: the surfaces seen at {:.0f} s and at {:.0f} s are {:.1f} m and {:.0f} deg apart; {} of {} pairs "
         "of "
-        "segmentes disagree",
+        "segments disagree",
         place(worst.p_map), seconds(worst.first_scan), seconds(worst.second_scan), worst.offset_m,
         std::abs(kDegPerRad * worst.offset_rad), consistency.disagreements.size(), consistency.num_compared);
   }
@@ -45,7 +45,7 @@ std::string ConsistencyReport::line() const {
                        place(unmatched_segment.p_map), 100.0 * consistency.unmatched_ratio(),
                        unmatched_segment.num_scans, seconds(unmatched_segment.first_scan));
   }
-  return "not checked: no two segmentes of the path saw the same surfaces";
+  return "not checked: no two segments of the path saw the same surfaces";
 }
 
 io::Metrics ConsistencyReport::metrics() const {
@@ -67,7 +67,7 @@ io::Metrics ConsistencyReport::metrics() const {
                       {"y_m", unmatched_segment.p_map.y()}});
   }
   return {{"consistent", consistency.is_consistent()},
-          {"segmentes", consistency.num_segmentes},
+          {"segments", consistency.num_segments},
           {"compared_pairs", consistency.num_compared},
           {"disagreeing_pairs", consistency.disagreements.size()},
           {"disagreements", disagreements},

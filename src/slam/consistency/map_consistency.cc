@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kKeptDistance_m = 0.1, kKeptAngleRad = 0.1;
 constexpr double kSegment_m = 5.0;
-constexpr double kMaxDistance_m = 10.0;  ///< between the centers of compared segmentes
+constexpr double kMaxDistance_m = 10.0;  ///< between the centers of compared segments
 constexpr double kResolution_m = 0.1, kMaxExtent_m = 4000.0, kMaxFreeRange_m = 15.0;
 constexpr int kTracedBeams = 60;  ///< number of beams of a scan that are traced through free space
 constexpr int kMatchRadius = 2;   ///< cells
@@ -37,20 +37,20 @@ struct Segment {
 };
 
 std::vector<Segment> divide(const std::vector<Pose2>& T_map_kept) {
-  std::vector<Segment> segmentes;
+  std::vector<Segment> segments;
   double length_m = 0.0;
   for (std::size_t i = 0; i < T_map_kept.size(); ++i) {
     const int k = static_cast<int>(i);
     if (i > 0) length_m += (T_map_kept[i].position() - T_map_kept[i - 1].position()).norm();
-    if (segmentes.empty() || length_m > kSegment_m) {
-      segmentes.push_back({.range = {.first = k, .last = k}, .center_map = T_map_kept[i].position()});
+    if (segments.empty() || length_m > kSegment_m) {
+      segments.push_back({.range = {.first = k, .last = k}, .center_map = T_map_kept[i].position()});
       length_m = 0.0;
     }
-    Segment& newest = segmentes.back();
+    Segment& newest = segments.back();
     newest.range.last = k;
     newest.center_map += (T_map_kept[i].position() - newest.center_map) / (k - newest.range.first + 1);
   }
-  return segmentes;
+  return segments;
 }
 
 /// Returns the mean likelihood of points, as in a search (branch_and_bound.h).
@@ -63,13 +63,13 @@ double score_at(const LikelihoodPyramid& map, const std::vector<Eigen::Vector2d>
   return sum / (LikelihoodPyramid::kOnSurface * static_cast<double>(points.size()));
 }
 
-/// Result of comparing two segmentes.
+/// Result of comparing two segments.
 struct Comparison {
   bool is_overlapping = false;
   std::optional<Pose2> better = {};  ///< pose of `b` in `a`, about `p_b`, with which they match
 };
 
-/// Compares two rendered segmentes; `p_b`: center of rotations, in b.
+/// Compares two rendered segments; `p_b`: center of rotations, in b.
 Comparison compare(const RenderedSubmap& a, const RenderedSubmap& b, const Pose2& T_a_b, const Eigen::Vector2d& p_b) {
   const SurfaceOverlap forth = measure_overlap(a.map(), b.surface_points(), T_a_b, kMatchRadius),
                        back = measure_overlap(b.map(), a.surface_points(), T_a_b.inverse(), kMatchRadius);
@@ -125,8 +125,8 @@ MapConsistency ConsistencyCheck::check(const std::vector<Pose2>& T_map_body) con
 
   std::vector<Pose2> T_map_kept;
   for (const std::size_t index : kept_indices_) T_map_kept.push_back(T_map_body[index]);
-  const std::vector<Segment> segmentes = divide(T_map_kept);
-  result.num_segmentes = static_cast<int>(segmentes.size());
+  const std::vector<Segment> segments = divide(T_map_kept);
+  result.num_segments = static_cast<int>(segments.size());
   const MapRenderingSettings rendering{
       .resolution_m = kResolution_m,
       .max_extent_m = kMaxExtent_m,
@@ -135,20 +135,20 @@ MapConsistency ConsistencyCheck::check(const std::vector<Pose2>& T_map_body) con
   SubmapCache cache(kCachedSegmentes);
   const auto rendered = [&](std::size_t s) {
     return cache.get(static_cast<int>(s), [&] {
-      return std::make_shared<const RenderedSubmap>(segmentes[s].range, kept_, T_map_kept, rendering);
+      return std::make_shared<const RenderedSubmap>(segments[s].range, kept_, T_map_kept, rendering);
     });
   };
-  const auto T_map = [&](std::size_t s) { return T_map_kept[static_cast<std::size_t>(segmentes[s].range.first)]; };
-  for (std::size_t b = 0; b < segmentes.size(); ++b) {
+  const auto T_map = [&](std::size_t s) { return T_map_kept[static_cast<std::size_t>(segments[s].range.first)]; };
+  for (std::size_t b = 0; b < segments.size(); ++b) {
     for (std::size_t a = 0; a < b; ++a) {
-      if ((segmentes[a].center_map - segmentes[b].center_map).norm() > kMaxDistance_m) continue;
+      if ((segments[a].center_map - segments[b].center_map).norm() > kMaxDistance_m) continue;
       const Comparison comparison = compare(*rendered(a), *rendered(b), T_map(a).inverse() * T_map(b),
-                                            T_map(b).inverse() * segmentes[b].center_map);
+                                            T_map(b).inverse() * segments[b].center_map);
       result.num_compared += comparison.is_overlapping ? 1 : 0;
       if (!comparison.better) continue;
-      result.disagreements.push_back({.p_map = 0.5 * (segmentes[a].center_map + segmentes[b].center_map),
-                                      .first_scan = kept_indices_[static_cast<std::size_t>(segmentes[a].range.first)],
-                                      .second_scan = kept_indices_[static_cast<std::size_t>(segmentes[b].range.first)],
+      result.disagreements.push_back({.p_map = 0.5 * (segments[a].center_map + segments[b].center_map),
+                                      .first_scan = kept_indices_[static_cast<std::size_t>(segments[a].range.first)],
+                                      .second_scan = kept_indices_[static_cast<std::size_t>(segments[b].range.first)],
                                       .offset_m = comparison.better->position().norm(),
                                       .offset_rad = comparison.better->yaw});
     }

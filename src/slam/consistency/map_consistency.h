@@ -11,10 +11,10 @@
 
 namespace patrol::slam {
 
-/// Two segmentes of the path that saw the same surfaces in different places of the map.
+/// Two segments of the path that saw the same surfaces in different places of the map.
 struct Disagreement {
-  Eigen::Vector2d p_map;                        ///< between the centers of the segmentes
-  std::size_t first_scan = 0, second_scan = 0;  ///< first scans of the segmentes
+  Eigen::Vector2d p_map;                        ///< between the centers of the segments
+  std::size_t first_scan = 0, second_scan = 0;  ///< first scans of the segments
   /// Displacement and rotation of the second segment, about its center, with which its surfaces match the first.
   double offset_m = 0.0, offset_rad = 0.0;
 };
@@ -27,8 +27,8 @@ struct UnmatchedSegment {
 
 /// Agreement of a map with the scans from which it was made, without ground truth.
 struct MapConsistency {
-  int num_segmentes = 0;
-  int num_compared = 0;                     ///< pairs of segmentes that saw the same surfaces
+  int num_segments = 0;
+  int num_compared = 0;                     ///< pairs of segments that saw the same surfaces
   std::vector<Disagreement> disagreements;  ///< largest offset first
   std::size_t num_scans = 0;                ///< scans with returns
   std::size_t num_unmatched = 0;            ///< of them, scans that matched no surfaces
@@ -37,13 +37,13 @@ struct MapConsistency {
   double unmatched_ratio() const {
     return num_scans == 0 ? 0.0 : static_cast<double>(num_unmatched) / static_cast<double>(num_scans);
   }
-  /// Whether nothing indicates a wrong map: segmentes could be compared and agree, and most scans matched. A map can be
+  /// Whether nothing indicates a wrong map: segments could be compared and agree, and most scans matched. A map can be
   /// consistent and wrong, for example if a loop was not closed and its ends do not overlap in the map.
   bool is_consistent() const;
 };
 
 /// Collects scans while they are mapped, and compares them with each other at their final poses. The path is divided
-/// into segmentes of 5 m. Two of them disagree if less than 80 % of the surfaces of one lie within 0.2 m of surfaces of
+/// into segments of 5 m. Two of them disagree if less than 80 % of the surfaces of one lie within 0.2 m of surfaces of
 /// the other, where it has observed cells, and if a search within 2 m and 0.2 rad finds a pose at which clearly more
 /// of them do. Both are necessary: people and furniture move, and smooth corridors match anywhere along them.
 class ConsistencyCheck {

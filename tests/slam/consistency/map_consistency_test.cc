@@ -33,7 +33,7 @@ TEST(MapConsistency, OfTwoLapsInTheirTruePosesIsComplete) {
   const MapConsistency result = drive.check.check(drive.T_map_body);
   EXPECT_TRUE(result.is_consistent());
   EXPECT_TRUE(result.disagreements.empty());
-  EXPECT_GT(result.num_compared, 2 * result.num_segmentes);
+  EXPECT_GT(result.num_compared, 2 * result.num_segments);
   EXPECT_EQ(result.num_unmatched, 0U);
 }
 
@@ -96,7 +96,7 @@ TEST(MapConsistency, OfNoScanAndOfASingleOneIsNotConsistent) {
   one.add(test::make_office().scan({4.2, 4.2, 0.0}, {}, test::kOldLidar, RandomStream(1, "test/consistency"), 0), {});
   const MapConsistency result = one.check({{4.2, 4.2, 0.0}});
   EXPECT_FALSE(result.is_consistent());
-  EXPECT_EQ(result.num_segmentes, 1);
+  EXPECT_EQ(result.num_segments, 1);
   EXPECT_EQ(result.num_compared, 0);
 }
 
