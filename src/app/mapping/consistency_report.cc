@@ -25,27 +25,39 @@ std::size_t listed(const slam::MapConsistency& consistency) {
 
 double ConsistencyReport::seconds(std::size_t scan) const { return to_seconds(stamps.at(scan) - stamps.front()); }
 
-std::string ConsistencyReport::line() const {
+ConsistencyReport::Verdict ConsistencyReport::verdict() const {
   if (consistency.is_consistent()) {
-    return fmt::format("consistent: {} pairs of segments agree, {:.1f} % of the scans matched no surfaces",
-                       consistency.num_compared, 100.0 * consistency.unmatched_ratio());
+    return {.word = "consistent",
+            .tone = report::Tone::kGood,
+            .reason = fmt::format("{} pairs of segments agree, {:.1f} % of the scans matched no surfaces",
+                                  consistency.num_compared, 100.0 * consistency.unmatched_ratio())};
   }
   if (!consistency.disagreements.empty()) {
     const slam::Disagreement& worst = consistency.disagreements.front();
-    return fmt::format(
-        "look at {}: the surfaces seen at {:.0f} s and at {:.0f} s are {:.1f} m and {:.0f} deg apart; {} of {} pairs "
-        "of "
-        "segments disagree",
-        place(worst.p_map), seconds(worst.first_scan), seconds(worst.second_scan), worst.offset_m,
-        std::abs(kDegPerRad * worst.offset_rad), consistency.disagreements.size(), consistency.num_compared);
+    return {.word = "look at " + place(worst.p_map),
+            .tone = report::Tone::kBad,
+            .reason = fmt::format(
+                "the surfaces seen at {:.0f} s and at {:.0f} s are {:.1f} m and {:.0f} deg apart; {} of {} pairs of "
+                "segments disagree",
+                seconds(worst.first_scan), seconds(worst.second_scan), worst.offset_m,
+                std::abs(kDegPerRad * worst.offset_rad), consistency.disagreements.size(), consistency.num_compared)};
   }
-  if (consistency.num_compared > 0 || consistency.num_unmatched > 0) {
-    const slam::UnmatchedSegment& unmatched_segment = consistency.max_unmatched_segment;
-    return fmt::format("look at {}: {:.0f} % of the scans matched no surfaces, at most {} in a row, from {:.0f} s",
-                       place(unmatched_segment.p_map), 100.0 * consistency.unmatched_ratio(),
-                       unmatched_segment.num_scans, seconds(unmatched_segment.first_scan));
+  if (consistency.has_too_many_unmatched()) {
+    const slam::UnmatchedSegment& segment = consistency.max_unmatched_segment;
+    return {.word = "look at " + place(segment.p_map),
+            .tone = report::Tone::kBad,
+            .reason =
+                fmt::format("{:.0f} % of the scans matched no surfaces, at most {} in a row, from {:.0f} s",
+                            100.0 * consistency.unmatched_ratio(), segment.num_scans, seconds(segment.first_scan))};
   }
-  return "not checked: no two segments of the path saw the same surfaces";
+  return {.word = "not checked",
+          .tone = report::Tone::kWarning,
+          .reason = "no two segments of the path saw the same surfaces"};
+}
+
+std::string ConsistencyReport::line() const {
+  const Verdict result = verdict();
+  return result.word + ": " + result.reason;
 }
 
 io::Metrics ConsistencyReport::metrics() const {
@@ -59,12 +71,10 @@ io::Metrics ConsistencyReport::metrics() const {
                              {"offset_m", entry.offset_m},
                              {"offset_deg", kDegPerRad * entry.offset_rad}});
   }
-  const slam::UnmatchedSegment& unmatched_segment = consistency.max_unmatched_segment;
-  io::Metrics unmatched = {{"scans", unmatched_segment.num_scans}};
-  if (unmatched_segment.num_scans > 0) {
-    unmatched.update({{"from_s", seconds(unmatched_segment.first_scan)},
-                      {"x_m", unmatched_segment.p_map.x()},
-                      {"y_m", unmatched_segment.p_map.y()}});
+  const slam::UnmatchedSegment& segment = consistency.max_unmatched_segment;
+  io::Metrics unmatched = {{"scans", segment.num_scans}};
+  if (segment.num_scans > 0) {
+    unmatched.update({{"from_s", seconds(segment.first_scan)}, {"x_m", segment.p_map.x()}, {"y_m", segment.p_map.y()}});
   }
   return {{"consistent", consistency.is_consistent()},
           {"segments", consistency.num_segments},
@@ -92,13 +102,8 @@ report::VerdictBlock ConsistencyReport::block() const {
                           {fmt::format("{:.2f}", entry.offset_m)},
                           {fmt::format("{:.1f}", kDegPerRad * entry.offset_rad)}});
   }
-  const bool is_consistent = consistency.is_consistent();
-  const std::string text = line();
-  const std::size_t colon = text.find(':');
-  return {.word = text.substr(0, colon),
-          .tone = is_consistent ? report::Tone::kGood : report::Tone::kBad,
-          .reason = text.substr(colon + 2),
-          .checks = std::move(table)};
+  const Verdict result = verdict();
+  return {.word = result.word, .tone = result.tone, .reason = result.reason, .checks = std::move(table)};
 }
 
 std::vector<report::MapMark> ConsistencyReport::marks() const {
@@ -107,7 +112,7 @@ std::vector<report::MapMark> ConsistencyReport::marks() const {
     const slam::Disagreement& entry = consistency.disagreements[i];
     marks.push_back({.label = fmt::format("{:.1f} m apart", entry.offset_m), .p_m = entry.p_map});
   }
-  if (!consistency.is_consistent() && consistency.max_unmatched_segment.num_scans > 0) {
+  if (consistency.has_too_many_unmatched()) {
     marks.push_back({.label = fmt::format("{} scans unmatched", consistency.max_unmatched_segment.num_scans),
                      .p_m = consistency.max_unmatched_segment.p_map});
   }

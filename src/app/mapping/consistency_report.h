@@ -24,6 +24,12 @@ struct ConsistencyReport {
   std::vector<report::MapMark> marks() const;
 
  private:
+  struct Verdict {
+    std::string word;
+    report::Tone tone;
+    std::string reason;
+  };
+  Verdict verdict() const;
   double seconds(std::size_t scan) const;
 };
 

@@ -1,0 +1,61 @@
+#include "app/mapping/consistency_report.h"
+
+#include <gtest/gtest.h>
+
+namespace patrol::app::consistency_report_test {
+namespace {
+
+using report::Tone;
+
+/// 100 scans, one per second from the stamp 1000 s on.
+ConsistencyReport report_of(const slam::MapConsistency& consistency) {
+  ConsistencyReport result{.consistency = consistency, .stamps = {}};
+  for (int k = 0; k < 100; ++k) result.stamps.push_back(from_seconds(1000.0 + k));
+  return result;
+}
+
+TEST(ConsistencyReport, OfAConsistentMapIsGoodAndNamesThePairs) {
+  const ConsistencyReport result = report_of({.num_compared = 12, .num_scans = 100, .num_unmatched = 5});
+  EXPECT_EQ(result.line(), "consistent: 12 pairs of segments agree, 5.0 % of the scans matched no surfaces");
+  EXPECT_EQ(result.block().tone, Tone::kGood);
+  EXPECT_TRUE(result.marks().empty());
+  EXPECT_EQ(result.metrics()["consistent"], true);
+}
+
+TEST(ConsistencyReport, OfADisagreementIsBadAndNamesPlaceAndTimes) {
+  const ConsistencyReport result =
+      report_of({.num_compared = 12,
+                 .disagreements =
+                     {{.p_map = {1.5, -2.5}, .first_scan = 7, .second_scan = 90, .offset_m = 1.2, .offset_rad = 0.1}},
+                 .num_scans = 100});
+  EXPECT_EQ(result.line(),
+            "look at (1.5, -2.5): the surfaces seen at 7 s and at 90 s are 1.2 m and 6 deg apart; 1 of 12 pairs of "
+            "segments disagree");
+  EXPECT_EQ(result.block().word, "look at (1.5, -2.5)");
+  EXPECT_EQ(result.block().tone, Tone::kBad);
+  EXPECT_EQ(result.block().checks.rows.size(), 1U);
+  EXPECT_EQ(result.marks().size(), 1U);
+  EXPECT_EQ(result.metrics()["disagreements"][0]["second_s"], 90.0);
+}
+
+TEST(ConsistencyReport, OfAThirdOfTheScansUnmatchedIsBadAndNamesTheLongestSegment) {
+  const ConsistencyReport result =
+      report_of({.num_compared = 12,
+                 .num_scans = 90,
+                 .num_unmatched = 30,
+                 .max_unmatched_segment = {.first_scan = 40, .num_scans = 25, .p_map = {3.0, 4.0}}});
+  EXPECT_EQ(result.line(), "look at (3.0, 4.0): 33 % of the scans matched no surfaces, at most 25 in a row, from 40 s");
+  EXPECT_EQ(result.block().tone, Tone::kBad);
+  EXPECT_EQ(result.marks().size(), 1U);
+}
+
+TEST(ConsistencyReport, WithoutPairsIsNotCheckedEvenIfAScanIsUnmatched) {
+  const ConsistencyReport result =
+      report_of({.num_scans = 100, .num_unmatched = 1, .max_unmatched_segment = {.num_scans = 1}});
+  EXPECT_EQ(result.line(), "not checked: no two segments of the path saw the same surfaces");
+  EXPECT_EQ(result.block().tone, Tone::kWarning);
+  EXPECT_EQ(result.metrics()["consistent"], false);
+}
+
+}  // namespace
+}  // namespace patrol::app::consistency_report_test
