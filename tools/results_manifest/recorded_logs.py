@@ -1,4 +1,5 @@
 """Tables of SLAM on recorded logs."""
+import json
 import pathlib
 import runpy
 
@@ -61,8 +62,13 @@ def variants_step(log):
     return Step(log, ["sh", "-c", f"echo {' '.join(VARIANTS)} | xargs -n 1 | xargs -P 2 -I {{}} sh -c '{one}'"], (0,))
 
 
+def errors_and_verdict(folder):
+    metrics = json.loads((folder / "map/metrics.json").read_text())
+    return mean_errors(folder) + ("" if metrics["consistency"]["consistent"] else ", flagged")
+
+
 def variants_values(folders):
-    return [{"variant": name, **{log: mean_errors(folders[log] / name) for log in LOGS}} for name in VARIANTS]
+    return [{"variant": name, **{log: errors_and_verdict(folders[log] / name) for log in LOGS}} for name in VARIANTS]
 
 
 def variants_text(values):

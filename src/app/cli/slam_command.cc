@@ -10,6 +10,7 @@
 #include "app/common/process_cost.h"
 #include "app/mapping/consistency_report.h"
 #include "app/mapping/mapping_page.h"
+#include "app/mapping/odometry_report.h"
 #include "app/mapping/read_scans.h"
 #include "app/scenario/neighbor_model.h"
 #include "app/scenario/scenario.h"
@@ -25,6 +26,7 @@
 #include "report/page.h"
 #include "slam/calibration/calibration.h"
 #include "slam/consistency/map_consistency.h"
+#include "slam/consistency/odometry_check.h"
 #include "slam/methods/mapper.h"
 #include "slam/planar_scan.h"
 
@@ -163,7 +165,8 @@ ExitCode slam_command(const SlamOptions& options) {
     fmt::print(stderr, "patrol: interrupted; {} is incomplete\n", options.out.string());
     return ExitCode::kProgramFailed;
   }
-  const Trajectory estimate = trajectory_of(mapped.stamps, mapper->path());
+  const std::vector<Pose2> path = mapper->path();
+  const Trajectory estimate = trajectory_of(mapped.stamps, path);
   const PoseGraph graph = mapper->graph();
   io::save_tum(options.out / "estimate.tum", estimate, "T_map_body by " + settings.slam.method);
   io::save_tum(options.out / "odometry.tum", trajectory_of(mapped.stamps, mapped.T_odom_body),
@@ -174,7 +177,9 @@ ExitCode slam_command(const SlamOptions& options) {
   io::save_settings(options.out / "settings.yaml", settings);
   io::save_csv(options.out / "performance.csv", mapped.cost.table());
   io::Metrics metrics = metrics_of(log->summary(), mapped, estimate, graph);
-  const ConsistencyReport consistency{.consistency = mapped.consistency.check(mapper->path()), .stamps = mapped.stamps};
+  const ConsistencyReport consistency{.consistency = mapped.consistency.check(path), .stamps = mapped.stamps};
+  const OdometryReport odometry{.health = slam::check_odometry(mapped.T_odom_body, path, mapped.stamps),
+                                .stamps = mapped.stamps};
   const double took_s = wall_seconds() - wall_s;
   metrics["performance"] = {{"wall_s", took_s},
                             {"processor_s", thread_cpu_time_s() - thread_s},
@@ -182,6 +187,7 @@ ExitCode slam_command(const SlamOptions& options) {
                             {"peak_memory_mb", peak_memory_mb()}};
   metrics["loop_closures"] = to_metrics(mapper->loop_closure_statistics());
   metrics["consistency"] = consistency.metrics();
+  metrics["odometry"] = odometry.metrics();
   io::save_metrics(options.out / "metrics.json", metrics);
   const MappingContents contents{.log = options.log.filename().string(),
                                  .method = settings.slam.method,
@@ -189,16 +195,17 @@ ExitCode slam_command(const SlamOptions& options) {
                                  .estimate = estimate,
                                  .cost = mapped.cost.table(),
                                  .metrics = metrics,
-                                 .consistency = consistency};
+                                 .consistency = consistency,
+                                 .odometry = odometry};
   io::save_text(options.out / "report.html", report::to_html(mapping_page(contents)));
   complete_output(options.out);
 
   fmt::print(
       "{}{} scans, {:.0f} m by odometry, mapped by {} in {:.1f} s ({:.0f} times real time), {:.0f} MB\n{} keyframes, "
-      "{} edges, {} of them to other submaps\n{}\n{}\n",
+      "{} edges, {} of them to other submaps\n{}\n{}\n{}\n",
       io::to_text(log->summary()), mapped.stamps.size(), mapped.way_m, settings.slam.method, took_s,
       mapped.duration_s() / std::max(1e-9, took_s), peak_memory_mb(), graph.T_map_node.size(), graph.edges.size(),
-      metrics["graph"]["cross_submap_edges"].get<std::size_t>(), consistency.line(),
+      metrics["graph"]["cross_submap_edges"].get<std::size_t>(), consistency.line(), odometry.line(),
       (options.out / "map.yaml").string());
   return ExitCode::kDone;
 }

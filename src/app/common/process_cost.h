@@ -21,11 +21,11 @@ inline double process_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// Maximum resident memory of this process, in units of 2^20 bytes.
+/// Maximum resident memory of this process, in units of 10^6 bytes.
 inline double peak_memory_mb() {
   rusage usage{};
   ::getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024.0;  // NOLINT(cppcoreguidelines-pro-type-union-access): by glibc
+  return 1.024e-3 * static_cast<double>(usage.ru_maxrss);  // NOLINT(cppcoreguidelines-pro-type-union-access): by glibc
 }
 
 /// Current heap memory, in units of 10^6 bytes.

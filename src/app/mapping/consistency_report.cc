@@ -43,7 +43,7 @@ ConsistencyReport::Verdict ConsistencyReport::verdict() const {
                 std::abs(kDegPerRad * worst.offset_rad), consistency.disagreements.size(), consistency.num_compared)};
   }
   if (consistency.has_too_many_unmatched()) {
-    const slam::UnmatchedSegment& segment = consistency.max_unmatched_segment;
+    const slam::UnmatchedSegment& segment = consistency.unmatched_segments.front();
     return {.word = "look at " + place(segment.p_map),
             .tone = report::Tone::kBad,
             .reason =
@@ -71,10 +71,13 @@ io::Metrics ConsistencyReport::metrics() const {
                              {"offset_m", entry.offset_m},
                              {"offset_deg", kDegPerRad * entry.offset_rad}});
   }
-  const slam::UnmatchedSegment& segment = consistency.max_unmatched_segment;
-  io::Metrics unmatched = {{"scans", segment.num_scans}};
-  if (segment.num_scans > 0) {
-    unmatched.update({{"from_s", seconds(segment.first_scan)}, {"x_m", segment.p_map.x()}, {"y_m", segment.p_map.y()}});
+  io::Metrics unmatched = io::Metrics::array();
+  for (std::size_t i = 0; i < std::min(kListed, consistency.unmatched_segments.size()); ++i) {
+    const slam::UnmatchedSegment& segment = consistency.unmatched_segments[i];
+    unmatched.push_back({{"x_m", segment.p_map.x()},
+                         {"y_m", segment.p_map.y()},
+                         {"from_s", seconds(segment.first_scan)},
+                         {"scans", segment.num_scans}});
   }
   return {{"consistent", consistency.is_consistent()},
           {"segments", consistency.num_segments},
@@ -83,7 +86,7 @@ io::Metrics ConsistencyReport::metrics() const {
           {"disagreements", disagreements},
           {"unmatched_scans", consistency.num_unmatched},
           {"unmatched_ratio", consistency.unmatched_ratio()},
-          {"max_unmatched_segment", unmatched}};
+          {"unmatched_segments", unmatched}};
 }
 
 report::VerdictBlock ConsistencyReport::block() const {
@@ -113,8 +116,8 @@ std::vector<report::MapMark> ConsistencyReport::marks() const {
     marks.push_back({.label = fmt::format("{:.1f} m apart", entry.offset_m), .p_m = entry.p_map});
   }
   if (consistency.has_too_many_unmatched()) {
-    marks.push_back({.label = fmt::format("{} scans unmatched", consistency.max_unmatched_segment.num_scans),
-                     .p_m = consistency.max_unmatched_segment.p_map});
+    const slam::UnmatchedSegment& segment = consistency.unmatched_segments.front();
+    marks.push_back({.label = fmt::format("{} scans unmatched", segment.num_scans), .p_m = segment.p_map});
   }
   return marks;
 }

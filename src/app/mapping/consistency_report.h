@@ -20,7 +20,7 @@ struct ConsistencyReport {
   std::string line() const;
   io::Metrics metrics() const;
   report::VerdictBlock block() const;
-  /// Places of the largest disagreements and of the longest segment without matches.
+  /// Places of the largest disagreements and, if too many scans are unmatched, of most of them in a row.
   std::vector<report::MapMark> marks() const;
 
  private:

@@ -76,6 +76,7 @@ report::Page mapping_page(const MappingContents& contents) {
           .facts = {},
           .sections = {{"", {contents.consistency.block(), key_metrics}},
                        {"Map", {map_block(contents)}},
+                       {"Odometry", {contents.odometry.block()}},
                        {"Computation time per scan",
                         {plot_of(contents, "ms_per_scan", "CPU time per scan", "ms"),
                          plot_of(contents, "peak_memory_mb", "Peak memory", "MB")}}},

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "app/mapping/consistency_report.h"
+#include "app/mapping/odometry_report.h"
 #include "core/grid.h"
 #include "core/trajectory.h"
 #include "io/files/table.h"
@@ -19,10 +20,11 @@ struct MappingContents {
   io::Table cost;       ///< scans, way_m, ms_per_scan, peak_memory_mb
   io::Metrics metrics;
   ConsistencyReport consistency;
+  OdometryReport odometry;
 };
 
-/// Report page of `patrol slam`: metrics, the map with the trajectory, and the computation time of scans as the map
-/// grows.
+/// Report page of `patrol slam`: metrics, the map with the trajectory, the health of the odometry, and the computation
+/// time of scans as the map grows.
 report::Page mapping_page(const MappingContents& contents);
 
 }  // namespace patrol::app

@@ -224,6 +224,7 @@ CalibrationResult calibrate(const std::vector<MotionSegment>& pairs, const Pose2
   Calibrator calibrator(pairs, before, settings);
   CalibrationResult result;
   std::array<bool, kNumParameters> is_fixed{};
+  for (std::size_t i = 0; i < kNumParameters; ++i) is_fixed[i] = max_std[static_cast<Eigen::Index>(i)] == 0.0;
   while (true) {
     calibrator.solve(is_fixed);
     const std::optional<std::size_t> worst = find_worst(calibrator.curvature_covariance(is_fixed), max_std, is_fixed);

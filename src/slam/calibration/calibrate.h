@@ -23,7 +23,7 @@ struct CalibratorSettings {
                                .min_std_rad = 0.002};
   double outlier_sigma = 5.0;  ///< segments with larger errors, in standard deviations, are outliers of odometry
   int max_iterations = 100;
-  // Parameters with a larger standard deviation are not estimated.
+  // Parameters with a larger standard deviation are not estimated; with the limit 0, never.
   double max_std_lidar_m = 0.05;
   double max_std_lidar_rad = 0.02;
   double max_std_distance_scale = 0.02;

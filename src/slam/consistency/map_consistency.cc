@@ -25,7 +25,7 @@ constexpr double kSearch_m = 2.0, kSearchRad = 0.2, kMinScore = 0.1;
 /// A match elsewhere is a disagreement if its score is better by this, and it is this far away; a rotation counts as
 /// the displacement at 3 m.
 constexpr double kMinGain = 0.2, kMinOffset_m = 0.3, kLever_m = 3.0;
-constexpr std::size_t kCachedSegmentes = 64;
+constexpr std::size_t kCachedSegments = 64;
 constexpr int kMinReturns = 3;
 constexpr double kMinMatchScore = 0.3;
 constexpr double kMaxUnmatchedRatio = 0.2;
@@ -112,18 +112,19 @@ void ConsistencyCheck::add(const LevelScan& scan, const SlamUpdate& update) {
 
 MapConsistency ConsistencyCheck::check(const std::vector<Pose2>& T_map_body) const {
   MapConsistency result;
-  UnmatchedSegment unmatched;
+  bool continues = false;
   for (std::size_t i = 0; i < scans_.size(); ++i) {
     if (!scans_[i].has_returns) continue;
     ++result.num_scans;
-    if (scans_[i].is_matched) {
-      unmatched = {};
-      continue;
+    if (!scans_[i].is_matched) {
+      ++result.num_unmatched;
+      if (!continues) result.unmatched_segments.push_back({.first_scan = i, .p_map = T_map_body[i].position()});
+      ++result.unmatched_segments.back().num_scans;
     }
-    ++result.num_unmatched;
-    if (unmatched.num_scans == 0) unmatched = {.first_scan = i, .p_map = T_map_body[i].position()};
-    if (++unmatched.num_scans > result.max_unmatched_segment.num_scans) result.max_unmatched_segment = unmatched;
+    continues = !scans_[i].is_matched;
   }
+  std::stable_sort(result.unmatched_segments.begin(), result.unmatched_segments.end(),
+                   [](const UnmatchedSegment& a, const UnmatchedSegment& b) { return a.num_scans > b.num_scans; });
 
   std::vector<Pose2> T_map_kept;
   for (const std::size_t index : kept_indices_) T_map_kept.push_back(T_map_body[index]);
@@ -134,7 +135,7 @@ MapConsistency ConsistencyCheck::check(const std::vector<Pose2>& T_map_body) con
       .max_extent_m = kMaxExtent_m,
       .integration = {.free_ray_stride = std::max(1, static_cast<int>(max_beams_) / kTracedBeams),
                       .max_free_range_m = kMaxFreeRange_m}};
-  SubmapCache cache(kCachedSegmentes);
+  SubmapCache cache(kCachedSegments);
   const auto rendered = [&](std::size_t s) {
     return cache.get(static_cast<int>(s), [&] {
       return std::make_shared<const RenderedSubmap>(segments[s].range, kept_, T_map_kept, rendering);

@@ -28,11 +28,11 @@ struct UnmatchedSegment {
 /// Agreement of a map with the scans from which it was made, without ground truth.
 struct MapConsistency {
   int num_segments = 0;
-  int num_compared = 0;                          ///< pairs of segments that saw the same surfaces
-  std::vector<Disagreement> disagreements = {};  ///< largest offset first
-  std::size_t num_scans = 0;                     ///< scans with returns
-  std::size_t num_unmatched = 0;                 ///< of them, scans that matched no surfaces
-  UnmatchedSegment max_unmatched_segment = {};
+  int num_compared = 0;                                   ///< pairs of segments that saw the same surfaces
+  std::vector<Disagreement> disagreements = {};           ///< largest offset first
+  std::size_t num_scans = 0;                              ///< scans with returns
+  std::size_t num_unmatched = 0;                          ///< of them, scans that matched no surfaces
+  std::vector<UnmatchedSegment> unmatched_segments = {};  ///< most scans first
 
   double unmatched_ratio() const {
     return num_scans == 0 ? 0.0 : static_cast<double>(num_unmatched) / static_cast<double>(num_scans);

@@ -43,15 +43,17 @@ TEST(ConsistencyReport, OfAThirdOfTheScansUnmatchedIsBadAndNamesTheLongestSegmen
       report_of({.num_compared = 12,
                  .num_scans = 90,
                  .num_unmatched = 30,
-                 .max_unmatched_segment = {.first_scan = 40, .num_scans = 25, .p_map = {3.0, 4.0}}});
+                 .unmatched_segments = {{.first_scan = 40, .num_scans = 25, .p_map = {3.0, 4.0}},
+                                        {.first_scan = 80, .num_scans = 5}}});
   EXPECT_EQ(result.line(), "look at (3.0, 4.0): 33 % of the scans matched no surfaces, at most 25 in a row, from 40 s");
   EXPECT_EQ(result.block().tone, Tone::kBad);
   EXPECT_EQ(result.marks().size(), 1U);
+  EXPECT_EQ(result.metrics()["unmatched_segments"][1]["from_s"], 80.0);
 }
 
 TEST(ConsistencyReport, WithoutPairsIsNotCheckedEvenIfAScanIsUnmatched) {
   const ConsistencyReport result =
-      report_of({.num_scans = 100, .num_unmatched = 1, .max_unmatched_segment = {.num_scans = 1}});
+      report_of({.num_scans = 100, .num_unmatched = 1, .unmatched_segments = {{.num_scans = 1}}});
   EXPECT_EQ(result.line(), "not checked: no two segments of the path saw the same surfaces");
   EXPECT_EQ(result.block().tone, Tone::kWarning);
   EXPECT_EQ(result.metrics()["consistent"], false);

@@ -73,6 +73,9 @@ class Slam(unittest.TestCase):
         self.assertTrue(metrics["consistency"]["consistent"])
         self.assertEqual((metrics["consistency"]["disagreeing_pairs"], metrics["consistency"]["disagreements"]), (0, []))
         self.assertGreater(metrics["consistency"]["compared_pairs"], 0)
+        odometry = metrics["odometry"]
+        self.assertAlmostEqual(odometry["distance_scale"]["value"], 1 / 1.03, delta=0.004)
+        self.assertEqual((odometry["faulty_segments"], odometry["delay_s"], odometry["gaps"]), (0, 0, 0))
         self.assertLess(metrics["performance"]["peak_memory_mb"], 300)
         self.assertEqual((out / "pose_graph.g2o").read_text().count("VERTEX_SE2"), metrics["graph"]["nodes"])
 

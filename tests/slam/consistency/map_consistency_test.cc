@@ -69,9 +69,10 @@ TEST(MapConsistency, UnmatchedScansAreCountedAndAQuarterOfThemIsTooMany) {
   const MapConsistency result = few.check.check(few.T_map_body);
   EXPECT_TRUE(result.is_consistent());
   EXPECT_EQ(result.num_unmatched, 30U);
-  EXPECT_EQ(result.max_unmatched_segment.first_scan, 10U);
-  EXPECT_EQ(result.max_unmatched_segment.num_scans, 30U);
-  EXPECT_EQ(result.max_unmatched_segment.p_map, few.T_map_body[10].position());
+  ASSERT_EQ(result.unmatched_segments.size(), 1U);
+  EXPECT_EQ(result.unmatched_segments[0].first_scan, 10U);
+  EXPECT_EQ(result.unmatched_segments[0].num_scans, 30U);
+  EXPECT_EQ(result.unmatched_segments[0].p_map, few.T_map_body[10].position());
 
   const Drive many = two_laps(10, 10 + few.T_map_body.size() / 4);
   EXPECT_FALSE(many.check.check(many.T_map_body).is_consistent());

@@ -1,0 +1,146 @@
+#include "app/mapping/odometry_report.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace patrol::app {
+namespace {
+
+constexpr std::size_t kListedPlaces = 20;  ///< places in metrics.json
+constexpr std::size_t kShownPlaces = 8;    ///< of them, on the page
+/// More faulty segments than this are worth a warning; from kMostly on, a fault is named as a property of the log.
+constexpr double kMaxFaulty = 0.05, kMostly = 0.5;
+/// Scales further from 1, and a steering bias larger than this, are worth a warning.
+constexpr double kMaxScaleError = 0.03, kMaxSteering_radpm = 0.02;
+
+using Distances = std::array<double, slam::kOdometryFaultNames.size()>;
+
+Distances distances_by_fault(const slam::OdometryHealth& health) {
+  Distances distances{};
+  for (const slam::FaultyOdometry& place : health.faulty)
+    distances[static_cast<std::size_t>(place.fault)] += place.distance_m;
+  return distances;
+}
+
+std::string fault_name(slam::OdometryFault fault) {
+  return std::string(slam::kOdometryFaultNames[static_cast<std::size_t>(fault)]);
+}
+
+bool is_off(const std::optional<slam::OdometryScale>& scale, double nominal, double limit) {
+  return scale && std::abs(scale->value - nominal) > limit;
+}
+
+std::string text(const std::optional<slam::OdometryScale>& scale, double per_unit, const std::string& unit) {
+  if (!scale) return "not determined";
+  return fmt::format("{:.3f} ± {:.3f}{}", per_unit * scale->value, per_unit * scale->std, unit);
+}
+
+io::Metrics to_metrics(const std::optional<slam::OdometryScale>& scale) {
+  if (!scale) return nullptr;
+  return {{"value", scale->value}, {"std", scale->std}};
+}
+
+}  // namespace
+
+double OdometryReport::seconds(std::size_t scan) const { return to_seconds(stamps.at(scan) - stamps.front()); }
+
+OdometryReport::Verdict OdometryReport::verdict() const {
+  if (health.num_segments == 0) {
+    return {.word = "odometry not checked",
+            .tone = report::Tone::kWarning,
+            .reason = "it hardly moves, and neither does the robot in the map"};
+  }
+  const std::string scales =
+      fmt::format("scale of distance {}, of turn {}, steering {}", text(health.distance, 1.0, ""),
+                  text(health.turn, 1.0, ""), text(health.steering, 1.0, " rad per m"));
+  std::vector<std::string> found;
+  const Distances distances = distances_by_fault(health);
+  if (health.faulty_ratio() > kMaxFaulty) {
+    std::vector<std::string> kinds;
+    for (std::size_t k = 0; k < distances.size(); ++k) {
+      if (distances[k] > 0.0) kinds.push_back(fmt::format("{} {:.0f} m", slam::kOdometryFaultNames[k], distances[k]));
+    }
+    found.push_back(fmt::format("{:.0f} % of the segments contradict the map ({})", 100.0 * health.faulty_ratio(),
+                                fmt::join(kinds, ", ")));
+  }
+  if (health.delay_s != 0.0) {
+    found.push_back(
+        fmt::format("{} {:.2f} s", health.delay_s > 0.0 ? "late by" : "early by", std::abs(health.delay_s)));
+  }
+  const bool has_wrong_scale = is_off(health.distance, 1.0, kMaxScaleError) ||
+                               is_off(health.turn, 1.0, kMaxScaleError) ||
+                               is_off(health.steering, 0.0, kMaxSteering_radpm);
+  const auto most = std::max_element(distances.begin(), distances.end());
+  std::string word = "odometry agrees";
+  if (*most > kMostly * health.distance_m) {
+    word = fmt::format("odometry is mostly {}",
+                       slam::kOdometryFaultNames[static_cast<std::size_t>(most - distances.begin())]);
+  } else if (!found.empty()) {
+    word = "odometry has faults";
+  } else if (has_wrong_scale) {
+    word = "odometry is not calibrated";
+  }
+  found.push_back(scales);
+  if (health.num_gaps > 0) {
+    found.push_back(fmt::format("{} gaps between scans, at most {:.1f} s, at {:.0f} s", health.num_gaps,
+                                health.max_gap_s, seconds(health.max_gap_scan)));
+  }
+  const bool is_good = word == "odometry agrees";
+  return {.word = word,
+          .tone = is_good ? report::Tone::kGood : report::Tone::kWarning,
+          .reason = fmt::format("{}", fmt::join(found, "; "))};
+}
+
+std::string OdometryReport::line() const {
+  const Verdict result = verdict();
+  return result.word + ": " + result.reason;
+}
+
+io::Metrics OdometryReport::metrics() const {
+  io::Metrics places = io::Metrics::array();
+  for (std::size_t i = 0; i < std::min(kListedPlaces, health.faulty.size()); ++i) {
+    const slam::FaultyOdometry& place = health.faulty[i];
+    places.push_back({{"fault", fault_name(place.fault)},
+                      {"from_s", seconds(place.first_scan)},
+                      {"x_m", place.p_map.x()},
+                      {"y_m", place.p_map.y()},
+                      {"distance_m", place.distance_m}});
+  }
+  io::Metrics distances;
+  for (std::size_t k = 0; k < slam::kOdometryFaultNames.size(); ++k)
+    distances[std::string(slam::kOdometryFaultNames[k]) + "_m"] = distances_by_fault(health)[k];
+  return {{"segments", health.num_segments},
+          {"faulty_segments", health.num_faulty},
+          {"faulty_ratio", health.faulty_ratio()},
+          {"distance_m", health.distance_m},
+          {"faulty_distance", distances},
+          {"faults", places},
+          {"distance_scale", to_metrics(health.distance)},
+          {"turn_scale", to_metrics(health.turn)},
+          {"steering_rad_per_m", to_metrics(health.steering)},
+          {"delay_s", health.delay_s},
+          {"gaps", health.num_gaps},
+          {"max_gap_s", health.max_gap_s}};
+}
+
+report::VerdictBlock OdometryReport::block() const {
+  report::TableBlock table{.caption = "",
+                           .columns = {{"odometry"}, {"from, s", true}, {"place in the map, m"}, {"over, m", true}},
+                           .rows = {}};
+  for (std::size_t i = 0; i < std::min(kShownPlaces, health.faulty.size()); ++i) {
+    const slam::FaultyOdometry& place = health.faulty[i];
+    table.rows.push_back({{fault_name(place.fault)},
+                          {fmt::format("{:.0f}", seconds(place.first_scan))},
+                          {fmt::format("({:.1f}, {:.1f})", place.p_map.x(), place.p_map.y())},
+                          {fmt::format("{:.1f}", place.distance_m)}});
+  }
+  const Verdict result = verdict();
+  return {.word = result.word, .tone = result.tone, .reason = result.reason, .checks = std::move(table)};
+}
+
+}  // namespace patrol::app

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/time.h"
+#include "io/json/metrics_json.h"
+#include "report/blocks.h"
+#include "slam/consistency/odometry_check.h"
+
+namespace patrol::app {
+
+/// Health of the odometry of a log, as told to the user. Times are seconds since the first scan, positions are in map.
+struct OdometryReport {
+  slam::OdometryHealth health;
+  std::vector<Time> stamps;  ///< [scan]
+
+  /// Result in one line: "odometry agrees: ...", "odometry is constant: ..." and others.
+  std::string line() const;
+  io::Metrics metrics() const;
+  report::VerdictBlock block() const;
+
+ private:
+  struct Verdict {
+    std::string word;
+    report::Tone tone;
+    std::string reason;
+  };
+  Verdict verdict() const;
+  double seconds(std::size_t scan) const;
+};
+
+}  // namespace patrol::app
