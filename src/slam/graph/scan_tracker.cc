@@ -41,7 +41,7 @@ constexpr double kUnusualLoss = 1.5;
 /// Number of points of a scan that can have independent errors.
 constexpr double kIndependentPoints = 45.0;
 /// Search over possible motions: time between scans at most, and margins.
-constexpr double kMaxSearch_s = 0.7, kSearchMargin_m = 0.1, kSearchMarginRad = 0.05;
+constexpr double kMinSearch_s = 0.4, kMaxSearch_s = 0.7, kSearchMargin_m = 0.1, kSearchMarginRad = 0.05;
 constexpr double kMinSearchScore = 0.2;
 constexpr int kSearchLevels = 4;
 /// Sparse scans that are mapped together are at least this far apart; a turn counts as the displacement at 1 m.
@@ -198,7 +198,7 @@ bool ScanTracker::has_usual_points(const Hypothesis& match) const {
 
 std::optional<Pose2> ScanTracker::search_possible_motions(const std::vector<MatchPoint>& points, double seconds) {
   if (!pyramid_) pyramid_.emplace(older_, 2.0 * settings_.resolution_m, kSearchLevels);
-  const double limited_s = std::clamp(seconds, 0.0, kMaxSearch_s);
+  const double limited_s = std::clamp(seconds, kMinSearch_s, kMaxSearch_s);
   const SearchWindow window{.T_map_center = T_local_last_,
                             .half_width_m = settings_.max_speed_mps * limited_s + kSearchMargin_m,
                             .half_angle_rad = settings_.max_turn_rate_radps * limited_s + kSearchMarginRad};
