@@ -47,6 +47,11 @@ constexpr int kSearchLevels = 4;
 /// Sparse scans that are mapped together are at least this far apart; a turn counts as the displacement at 1 m.
 constexpr double kDistinct_m = 0.05;
 
+/// Tracks of sparse scans: number at most, log probability relative to the best one at least, and weight of the earlier
+/// scans per scan.
+constexpr std::size_t kMaxTracks = 8;
+constexpr double kMaxScoreLoss = 60.0, kScoreMemory = 0.9;
+
 double log_student_t(const PoseGaussian& prediction, const Pose2& pose) {
   const Eigen::Vector3d offset = prediction.residual_to_mean(pose);
   return -0.5 * (kStudentDegreesOfFreedom + 3.0) *
@@ -125,49 +130,104 @@ ScanTracker::ScanTracker(const ScanTrackerSettings& settings)
 
 TrackedScan ScanTracker::update(const LevelScan& scan, const Pose2& T_odom_body) {
   if (!stamp_) {
-    T_odom_last_ = matched_.T_odom_body = T_odom_body;
-    stamp_ = matched_.stamp = scan.stamp;
+    T_odom_last_ = tracks_[0].matched.T_odom_body = T_odom_body;
+    stamp_ = tracks_[0].matched.stamp = scan.stamp;
   }
-  const Step step{.seconds = to_seconds(scan.stamp - *stamp_),
+  const Step step{.stamp = scan.stamp,
+                  .seconds = to_seconds(scan.stamp - *stamp_),
+                  .T_odom_body = T_odom_body,
                   .T_last_odom = correction_.corrected(T_odom_last_.inverse() * T_odom_body),
                   .is_sparse = num_hits(scan) < settings_.min_hits};
-  const Pose2 odometry = matched_.T_odom_body.inverse() * T_odom_body;
-  const PoseGaussian prediction = predict(scan.stamp, odometry);
   const bool can_be_matched = older_.has_surface();
-  const Hypothesis best =
-      track(downsample_scan(scan, settings_.matching.point_spacing_m, settings_.matching.max_points), step, prediction);
-  update_odometry_variance(prediction, best);
-  update_usual_match(best);
-  calibrate_odometry(scan.stamp, odometry, best);
-  TrackedScan tracked = to_tracked_scan(best, prediction);
+  if (!step.is_sparse) tracks_.resize(1);
+  const std::vector<Branch> branches =
+      continue_tracks(downsample_scan(scan, settings_.matching.point_spacing_m, settings_.matching.max_points), step);
+  std::vector<Track> continued;
+  for (const Branch& branch : branches) {
+    const Track& before = tracks_[branch.track];
+    const Pose2& T_local_now = branch.best.T_local_body;
+    continued.push_back({.T_local_last = T_local_now,
+                         .T_last_now = before.T_local_last.inverse() * T_local_now,
+                         .matched = before.matched,
+                         .odometry_variance_scale =
+                             updated_variance_scale(before.odometry_variance_scale, branch.prediction, branch.best),
+                         .score = branch.score - branches.front().score});
+    if (branch.best.match || !can_be_matched)
+      continued.back().matched = {.stamp = scan.stamp, .T_local_body = T_local_now, .T_odom_body = T_odom_body};
+  }
+  const Branch& best = branches.front();
+  update_usual_match(best.best);
+  calibrate_odometry(scan.stamp, tracks_[best.track].matched, T_odom_body, best.best);
+  tracks_ = std::move(continued);
+  TrackedScan tracked = to_tracked_scan(best.best, best.prediction);
   tracked.is_keyframe = is_keyframe_due(tracked.T_local_body);
   collect(scan, tracked.T_local_body);
   if (tracked.is_keyframe) {
     tracked.scans = sparse_scans_.is_empty() ? ScanGroup(scan) : std::exchange(sparse_scans_, {});
     integrate(tracked);
   }
-  T_last_now_ = T_local_last_.inverse() * tracked.T_local_body;
   last_step_s_ = step.seconds;
-  T_local_last_ = tracked.T_local_body;
   T_odom_last_ = T_odom_body;
   stamp_ = scan.stamp;
-  if (best.match || !can_be_matched)
-    matched_ = {.stamp = scan.stamp, .T_local_body = tracked.T_local_body, .T_odom_body = T_odom_body};
   return tracked;
 }
 
-PoseGaussian ScanTracker::predict(Time stamp, const Pose2& odometry) const {
-  PoseGaussian prediction = predict_motion(matched_.T_local_body, correction_.corrected(odometry),
-                                           std::max(0.0, to_seconds(stamp - matched_.stamp)), settings_.motion);
-  prediction.covariance *= odometry_variance_scale_;
+PoseGaussian ScanTracker::predict(const Track& track, const Step& step) const {
+  const Fix& from = track.matched;
+  const Pose2 odometry = correction_.corrected(from.T_odom_body.inverse() * step.T_odom_body);
+  PoseGaussian prediction =
+      predict_motion(from.T_local_body, odometry, std::max(0.0, to_seconds(step.stamp - from.stamp)), settings_.motion);
+  prediction.covariance *= track.odometry_variance_scale;
   return prediction;
 }
 
-// Matches from the odometry prediction and from alternative start poses.
-ScanTracker::Hypothesis ScanTracker::track(const std::vector<MatchPoint>& points, const Step& step,
-                                           const PoseGaussian& prediction) {
-  if (!older_.has_surface() || points.empty()) return {.T_local_body = prediction.mean, .match = {}};
-  Hypothesis best = match_from(prediction.mean, points, prediction, true);
+// Of dense scans, the best continuation; of sparse scans, the most probable ones that differ.
+std::vector<ScanTracker::Branch> ScanTracker::continue_tracks(const std::vector<MatchPoint>& points, const Step& step) {
+  if (!older_.has_surface() || points.empty()) {
+    const PoseGaussian prediction = predict(tracks_[0], step);
+    return {{.track = 0, .prediction = prediction, .best = {.T_local_body = prediction.mean, .match = {}}}};
+  }
+  std::vector<Branch> branches;
+  for (std::size_t t = 0; t < tracks_.size(); ++t) {
+    const PoseGaussian prediction = predict(tracks_[t], step);
+    const Hypothesis by_odometry = match_from(prediction.mean, points, prediction, true);
+    const Hypothesis best = match_by_alternatives(tracks_[t], by_odometry, points, step, prediction);
+    branches.push_back({.track = t, .prediction = prediction, .best = best});
+    if (!step.is_sparse) return branches;
+    if (is_distinct(best.T_local_body, by_odometry.T_local_body))
+      branches.push_back({.track = t, .prediction = prediction, .best = by_odometry});
+  }
+  for (Branch& branch : branches) branch.score = score(tracks_[branch.track], branch, points);
+  std::stable_sort(branches.begin(), branches.end(),
+                   [](const Branch& a, const Branch& b) { return a.score > b.score; });
+  const double kept_from = branches.front().score - kMaxScoreLoss;
+  std::vector<Branch> kept;
+  for (Branch& branch : branches) {
+    const bool is_new = std::none_of(kept.begin(), kept.end(), [&](const Branch& better) {
+      return !is_distinct(better.best.T_local_body, branch.best.T_local_body);
+    });
+    if (is_new && kept.size() < kMaxTracks && branch.score > kept_from) kept.push_back(std::move(branch));
+  }
+  return kept;
+}
+
+double ScanTracker::score(const Track& track, const Branch& branch, const std::vector<MatchPoint>& points) const {
+  const std::vector<double> log_likelihoods =
+      branch.best.log_likelihoods.size() != points.size()
+          ? point_log_likelihoods(older_, points, branch.best.T_local_body, settings_.matching)
+          : branch.best.log_likelihoods;
+  double sum = 0.0;
+  for (const double value : log_likelihoods) sum += std::isnan(value) ? unknown_log_likelihood() : value;
+  return kScoreMemory * track.score + tempering(points.size()) * sum +
+         log_student_t(branch.prediction, branch.best.T_local_body) -
+         0.5 * std::log(branch.prediction.covariance.determinant());
+}
+
+// Matches from alternative start poses, unless the one by odometry is better.
+ScanTracker::Hypothesis ScanTracker::match_by_alternatives(const Track& track, const Hypothesis& by_odometry,
+                                                           const std::vector<MatchPoint>& points, const Step& step,
+                                                           const PoseGaussian& prediction) {
+  Hypothesis best = by_odometry;
   const bool is_likely = best.match && has_usual_points(best);
   if (is_likely && step.is_sparse) return without_moving_objects(best, points, prediction);
   const auto consider = [&](const Pose2& start) {
@@ -176,14 +236,15 @@ ScanTracker::Hypothesis ScanTracker::track(const std::vector<MatchPoint>& points
     if (!best.match || (is_determined_by_scan(other, best) && is_better(other, best, points))) best = other;
   };
   const double factor = last_step_s_ > 1e-3 ? std::clamp(step.seconds / last_step_s_, 0.0, 2.0) : 1.0;
-  const Pose2 as_before = scaled(T_last_now_, factor), none{0.0, 0.0, step.T_last_odom.yaw},
+  const Pose2 as_before = scaled(track.T_last_now, factor), none{0.0, 0.0, step.T_last_odom.yaw},
               opposite{-step.T_last_odom.x, -step.T_last_odom.y, step.T_last_odom.yaw};
   for (const Pose2& T_last_now : {as_before, none, opposite}) {
-    const Pose2 start = T_local_last_ * T_last_now;
+    const Pose2 start = track.T_local_last * T_last_now;
     if (is_distinct(start, prediction.mean) && is_distinct(start, best.T_local_body)) consider(start);
   }
   if (!is_likely || mean_loss(best.log_likelihoods) > kUnusualLoss * usual_loss_) {
-    if (const std::optional<Pose2> found = search_possible_motions(points, step.seconds)) consider(*found);
+    if (const std::optional<Pose2> found = search_possible_motions(track.T_local_last, points, step.seconds))
+      consider(*found);
   }
   return best.match ? without_moving_objects(best, points, prediction) : best;
 }
@@ -196,10 +257,11 @@ bool ScanTracker::has_usual_points(const Hypothesis& match) const {
          match.match->num_matched / num_points >= usual_matched_ratio_ - kUsualDeviations * deviation;
 }
 
-std::optional<Pose2> ScanTracker::search_possible_motions(const std::vector<MatchPoint>& points, double seconds) {
+std::optional<Pose2> ScanTracker::search_possible_motions(const Pose2& T_local_last,
+                                                          const std::vector<MatchPoint>& points, double seconds) {
   if (!pyramid_) pyramid_.emplace(older_, 2.0 * settings_.resolution_m, kSearchLevels);
   const double limited_s = std::clamp(seconds, kMinSearch_s, kMaxSearch_s);
-  const SearchWindow window{.T_map_center = T_local_last_,
+  const SearchWindow window{.T_map_center = T_local_last,
                             .half_width_m = settings_.max_speed_mps * limited_s + kSearchMargin_m,
                             .half_angle_rad = settings_.max_turn_rate_radps * limited_s + kSearchMarginRad};
   const auto found =
@@ -208,14 +270,12 @@ std::optional<Pose2> ScanTracker::search_possible_motions(const std::vector<Matc
 }
 
 // Only the directions that the scan determines are evidence: along a smooth corridor any pose matches.
-void ScanTracker::update_odometry_variance(const PoseGaussian& prediction, const Hypothesis& best) {
+double ScanTracker::updated_variance_scale(double scale, const PoseGaussian& prediction, const Hypothesis& best) {
   Eigen::Vector3d offset = prediction.residual_to_mean(best.T_local_body);
   if (best.match) offset = determined_offset(offset, best.match->information);
   // 3 on average if the variance is correct
   const double squared = offset.dot(prediction.covariance.inverse() * offset);
-  odometry_variance_scale_ =
-      std::clamp(std::max(kVarianceScaleDecay * odometry_variance_scale_, odometry_variance_scale_ * squared / 3.0),
-                 1.0, kMaxVarianceScale);
+  return std::clamp(std::max(kVarianceScaleDecay * scale, scale * squared / 3.0), 1.0, kMaxVarianceScale);
 }
 
 // Limits a loss, so that one bad match does not hide the next.
@@ -226,14 +286,15 @@ void ScanTracker::update_usual_match(const Hypothesis& best) {
   usual_matched_ratio_ += kUsualRate * (matched_ratio - usual_matched_ratio_);
 }
 
-void ScanTracker::calibrate_odometry(Time stamp, const Pose2& odometry, const Hypothesis& best) {
+void ScanTracker::calibrate_odometry(Time stamp, const Fix& before, const Pose2& T_odom_body, const Hypothesis& best) {
   if (!best.match) return;
-  const double seconds = std::max(0.0, to_seconds(stamp - matched_.stamp));
-  const Eigen::Matrix3d motion = predict_motion(matched_.T_local_body, odometry, seconds, settings_.motion).covariance;
+  const Pose2 odometry = before.T_odom_body.inverse() * T_odom_body;
+  const double seconds = std::max(0.0, to_seconds(stamp - before.stamp));
+  const Eigen::Matrix3d motion = predict_motion(before.T_local_body, odometry, seconds, settings_.motion).covariance;
   const Eigen::Matrix3d matched =
       (motion.inverse() + tempering(best.log_likelihoods.size()) * best.match->information).inverse();
   const Eigen::Vector3d variance = (motion + matched).diagonal();
-  correction_.update(odometry, matched_.T_local_body.inverse() * best.T_local_body,
+  correction_.update(odometry, before.T_local_body.inverse() * best.T_local_body,
                      {.std_m = std::sqrt(variance.head<2>().maxCoeff()), .std_rad = std::sqrt(variance.z())},
                      !degenerate_direction(best.match->information, kMinEvidenceRatio));
 }

@@ -42,11 +42,13 @@ struct TrackedScan {
 /// Robust against failures of wheel odometry (slip, frozen, constant or reversed readings). Alternative start poses are
 /// the previous motion, no motion, the reversed motion, and, if the odometry prediction does not match as usual, the
 /// best pose of a search over all possible motions. An alternative replaces the odometry prediction if its gain in scan
-/// likelihood exceeds its loss under the Student's t prior of odometry. A sparse scan that matches as usual has no
-/// alternatives: few points can match anywhere. Odometry that contradicts a match has a larger covariance for the next
-/// scans.
+/// likelihood exceeds its loss under the Student's t prior of odometry. Odometry that contradicts a match has a larger
+/// covariance for the next scans.
 ///
-/// Robust against sparse scans: keyframes consist of all scans since the last keyframe, so that the map is dense.
+/// Robust against sparse scans, whose few points can match anywhere: one that matches as usual has no alternatives, and
+/// otherwise both the alternative and the match of the odometry prediction are continued. Several such tracks exist at
+/// a time, and the one with the highest probability of its last scans is the result. Keyframes consist of all scans
+/// since the last keyframe, so that the map is dense.
 ///
 /// Robust against moving objects: a match that contradicts odometry needs the majority of the sectors of bearings that
 /// distinguish the two poses. Sectors of a rejected match are left out.
@@ -70,20 +72,44 @@ class ScanTracker {
     Pose2 T_local_body, T_odom_body;
   };
 
-  /// Step from the previous scan, by odometry.
+  /// Pose of the last scan as one of several possibilities.
+  struct Track {
+    Pose2 T_local_last;
+    Pose2 T_last_now;                      ///< last motion between two scans
+    Fix matched;                           ///< last matched scan
+    double odometry_variance_scale = 1.0;  ///< scale factor of the odometry variance
+    double score = 0.0;                    ///< log of the probability, with decaying weights of earlier scans
+  };
+
+  /// Scan to be tracked, and its step from the previous scan.
   struct Step {
+    Time stamp{};
     double seconds = 0.0;
-    Pose2 T_last_odom;
+    Pose2 T_odom_body;
+    Pose2 T_last_odom;       ///< step by calibrated odometry
     bool is_sparse = false;  ///< the scan has few returns
   };
 
-  PoseGaussian predict(Time stamp, const Pose2& odometry) const;
-  Hypothesis track(const std::vector<MatchPoint>& points, const Step& step, const PoseGaussian& prediction);
+  /// Continuation of a track.
+  struct Branch {
+    std::size_t track = 0;
+    PoseGaussian prediction;  ///< by odometry
+    Hypothesis best;
+    double score = 0.0;
+  };
+
+  PoseGaussian predict(const Track& track, const Step& step) const;
+  std::vector<Branch> continue_tracks(const std::vector<MatchPoint>& points, const Step& step);
+  double score(const Track& track, const Branch& branch, const std::vector<MatchPoint>& points) const;
+  Hypothesis match_by_alternatives(const Track& track, const Hypothesis& by_odometry,
+                                   const std::vector<MatchPoint>& points, const Step& step,
+                                   const PoseGaussian& prediction);
   bool has_usual_points(const Hypothesis& match) const;
-  std::optional<Pose2> search_possible_motions(const std::vector<MatchPoint>& points, double seconds);
-  void update_odometry_variance(const PoseGaussian& prediction, const Hypothesis& best);
+  std::optional<Pose2> search_possible_motions(const Pose2& T_local_last, const std::vector<MatchPoint>& points,
+                                               double seconds);
+  static double updated_variance_scale(double scale, const PoseGaussian& prediction, const Hypothesis& best);
   void update_usual_match(const Hypothesis& best);
-  void calibrate_odometry(Time stamp, const Pose2& odometry, const Hypothesis& best);
+  void calibrate_odometry(Time stamp, const Fix& before, const Pose2& T_odom_body, const Hypothesis& best);
   TrackedScan to_tracked_scan(const Hypothesis& best, const PoseGaussian& prediction) const;
   bool is_keyframe_due(const Pose2& T_local_body) const;
   void collect(const LevelScan& scan, const Pose2& T_local_body);
@@ -101,12 +127,10 @@ class ScanTracker {
   GridMap older_, newer_;
   int older_keyframes_ = 0, newer_keyframes_ = 0, keyframes_ = 0, submap_ = 0;
   std::optional<Time> stamp_;
-  Pose2 T_local_last_, T_odom_last_, T_local_keyframe_;
-  Fix matched_;       ///< last matched scan
-  Pose2 T_last_now_;  ///< last motion between two scans
+  Pose2 T_odom_last_, T_local_keyframe_;
+  std::vector<Track> tracks_ = std::vector<Track>(1);  ///< the most probable one first
   double last_step_s_ = 0.0;
   OdometryCorrection correction_;
-  double odometry_variance_scale_ = 1.0;      ///< scale factor of the odometry variance
   double usual_matched_ratio_ = 0.5;          ///< running mean of the fraction of points on surfaces
   double usual_loss_ = 1.0;                   ///< running mean of the loss of a point in a known cell
   ScanGroup sparse_scans_;                    ///< since the last keyframe
