@@ -42,6 +42,10 @@ constexpr double kUnusualLoss = 1.5;
 constexpr double kIndependentPoints = 45.0;
 /// Search over possible motions: time between scans at most, and margins.
 constexpr double kMinSearch_s = 0.4, kMaxSearch_s = 0.7, kSearchMargin_m = 0.1, kSearchMarginRad = 0.05;
+/// Standard deviation of a motion without odometry, as a fraction of the possible motion.
+constexpr double kPossibleMotionStd = 0.3;
+/// Motion during which odometry does not change, so that it is constant.
+constexpr double kConstantMotion_m = 0.3, kConstantMotionRad = 0.3;
 constexpr double kMinSearchScore = 0.2;
 constexpr int kSearchLevels = 4;
 /// Sparse scans that are mapped together are at least this far apart; a turn counts as the displacement at 1 m.
@@ -82,6 +86,8 @@ Eigen::Vector3d determined_offset(const Eigen::Vector3d& offset, const Eigen::Ma
 bool is_distinct(const Pose2& a, const Pose2& b) {
   return (a.position() - b.position()).norm() > 0.03 || std::abs(wrap_angle(a.yaw - b.yaw)) > 0.02;
 }
+
+bool is_same(const Pose2& a, const Pose2& b) { return a.x == b.x && a.y == b.y && a.yaw == b.yaw; }
 
 std::size_t sector_of(const MatchPoint& point) {
   const double turn = std::atan2(point.p_body.y(), point.p_body.x()) / (2.0 * std::numbers::pi);
@@ -137,7 +143,8 @@ TrackedScan ScanTracker::update(const LevelScan& scan, const Pose2& T_odom_body)
                   .seconds = to_seconds(scan.stamp - *stamp_),
                   .T_odom_body = T_odom_body,
                   .T_last_odom = correction_.corrected(T_odom_last_.inverse() * T_odom_body),
-                  .is_sparse = num_hits(scan) < settings_.min_hits};
+                  .is_sparse = num_hits(scan) < settings_.min_hits,
+                  .is_odometry_constant = is_odometry_constant_ && is_same(T_odom_last_, T_odom_body)};
   const bool can_be_matched = older_.has_surface();
   if (!step.is_sparse) tracks_.resize(1);
   const std::vector<Branch> branches =
@@ -166,6 +173,7 @@ TrackedScan ScanTracker::update(const LevelScan& scan, const Pose2& T_odom_body)
     tracked.scans = sparse_scans_.is_empty() ? ScanGroup(scan) : std::exchange(sparse_scans_, {});
     integrate(tracked);
   }
+  update_constant_odometry(T_odom_body, tracked.T_local_body);
   last_step_s_ = step.seconds;
   T_odom_last_ = T_odom_body;
   stamp_ = scan.stamp;
@@ -173,12 +181,39 @@ TrackedScan ScanTracker::update(const LevelScan& scan, const Pose2& T_odom_body)
 }
 
 PoseGaussian ScanTracker::predict(const Track& track, const Step& step) const {
+  if (step.is_odometry_constant) return predict_without_odometry(track, step);
   const Fix& from = track.matched;
   const Pose2 odometry = correction_.corrected(from.T_odom_body.inverse() * step.T_odom_body);
   PoseGaussian prediction =
       predict_motion(from.T_local_body, odometry, std::max(0.0, to_seconds(step.stamp - from.stamp)), settings_.motion);
   prediction.covariance *= track.odometry_variance_scale;
   return prediction;
+}
+
+// At constant velocity, with a covariance that contains all possible motions.
+PoseGaussian ScanTracker::predict_without_odometry(const Track& track, const Step& step) const {
+  const double seconds = std::clamp(step.seconds, 0.0, kMaxSearch_s),
+               std_m = kPossibleMotionStd * settings_.max_speed_mps * std::max(seconds, kMinSearch_s),
+               std_rad = kPossibleMotionStd * settings_.max_turn_rate_radps * std::max(seconds, kMinSearch_s);
+  return {.mean = track.T_local_last * motion_as_before(track, step),
+          .covariance = Eigen::Vector3d(std_m * std_m, std_m * std_m, std_rad * std_rad).asDiagonal()};
+}
+
+Pose2 ScanTracker::motion_as_before(const Track& track, const Step& step) const {
+  return scaled(track.T_last_now, last_step_s_ > 1e-3 ? std::clamp(step.seconds / last_step_s_, 0.0, 2.0) : 1.0);
+}
+
+// Scans that change while odometry does not are evidence of motion only along directions that they determine, because
+// elsewhere the tracked pose follows odometry.
+void ScanTracker::update_constant_odometry(const Pose2& T_odom_body, const Pose2& T_local_body) {
+  if (!is_same(T_odom_last_, T_odom_body)) {
+    T_local_constant_ = T_local_body;
+    is_odometry_constant_ = false;
+  } else {
+    const Pose2 moved = T_local_constant_.inverse() * T_local_body;
+    is_odometry_constant_ = is_odometry_constant_ || moved.position().norm() > kConstantMotion_m ||
+                            std::abs(moved.yaw) > kConstantMotionRad;
+  }
 }
 
 // Of dense scans, the best continuation; of sparse scans, the most probable ones that differ.
@@ -235,8 +270,7 @@ ScanTracker::Hypothesis ScanTracker::match_by_alternatives(const Track& track, c
     if (!other.match) return;
     if (!best.match || (is_determined_by_scan(other, best) && is_better(other, best, points))) best = other;
   };
-  const double factor = last_step_s_ > 1e-3 ? std::clamp(step.seconds / last_step_s_, 0.0, 2.0) : 1.0;
-  const Pose2 as_before = scaled(track.T_last_now, factor), none{0.0, 0.0, step.T_last_odom.yaw},
+  const Pose2 as_before = motion_as_before(track, step), none{0.0, 0.0, step.T_last_odom.yaw},
               opposite{-step.T_last_odom.x, -step.T_last_odom.y, step.T_last_odom.yaw};
   for (const Pose2& T_last_now : {as_before, none, opposite}) {
     const Pose2 start = track.T_local_last * T_last_now;

@@ -43,7 +43,8 @@ struct TrackedScan {
 /// the previous motion, no motion, the reversed motion, and, if the odometry prediction does not match as usual, the
 /// best pose of a search over all possible motions. An alternative replaces the odometry prediction if its gain in scan
 /// likelihood exceeds its loss under the Student's t prior of odometry. Odometry that contradicts a match has a larger
-/// covariance for the next scans.
+/// covariance for the next scans. Odometry that does not change at all while the robot moves is not used: the
+/// prediction is then the previous motion, with a covariance that contains all possible motions.
 ///
 /// Robust against sparse scans, whose few points can match anywhere: one that matches as usual has no alternatives, and
 /// otherwise both the alternative and the match of the odometry prediction are continued. Several such tracks exist at
@@ -86,8 +87,9 @@ class ScanTracker {
     Time stamp{};
     double seconds = 0.0;
     Pose2 T_odom_body;
-    Pose2 T_last_odom;       ///< step by calibrated odometry
-    bool is_sparse = false;  ///< the scan has few returns
+    Pose2 T_last_odom;                  ///< step by calibrated odometry
+    bool is_sparse = false;             ///< the scan has few returns
+    bool is_odometry_constant = false;  ///< although the robot moves
   };
 
   /// Continuation of a track.
@@ -99,6 +101,9 @@ class ScanTracker {
   };
 
   PoseGaussian predict(const Track& track, const Step& step) const;
+  PoseGaussian predict_without_odometry(const Track& track, const Step& step) const;
+  Pose2 motion_as_before(const Track& track, const Step& step) const;
+  void update_constant_odometry(const Pose2& T_odom_body, const Pose2& T_local_body);
   std::vector<Branch> continue_tracks(const std::vector<MatchPoint>& points, const Step& step);
   double score(const Track& track, const Branch& branch, const std::vector<MatchPoint>& points) const;
   Hypothesis match_by_alternatives(const Track& track, const Hypothesis& by_odometry,
@@ -130,6 +135,8 @@ class ScanTracker {
   Pose2 T_odom_last_, T_local_keyframe_;
   std::vector<Track> tracks_ = std::vector<Track>(1);  ///< the most probable one first
   double last_step_s_ = 0.0;
+  Pose2 T_local_constant_;  ///< where odometry changed last
+  bool is_odometry_constant_ = false;
   OdometryCorrection correction_;
   double usual_matched_ratio_ = 0.5;          ///< running mean of the fraction of points on surfaces
   double usual_loss_ = 1.0;                   ///< running mean of the loss of a point in a known cell

@@ -14,9 +14,9 @@ namespace {
 /// Drives a stretch of the corridor, with what odometry makes of each step.
 template <typename Odometry>
 std::vector<TrackedScan> track(const std::vector<test::DriveStep>& drive, Odometry&& odometry,
-                               const test::RoomWorld::ScanOptions& lidar = test::kOldLidar, std::uint64_t seed = 1) {
+                               const test::RoomWorld::ScanOptions& lidar = test::kOldLidar, std::uint64_t seed = 1,
+                               const test::RoomWorld& office = test::make_office()) {
   ScanTracker tracker({});
-  const test::RoomWorld office = test::make_office();
   const RandomStream noise(seed, "test/tracker");
   Pose2 T_odom_body;
   std::vector<TrackedScan> tracked;
@@ -74,6 +74,18 @@ TEST(ScanTracker, OdometryThatIsAlwaysZeroCosts20CentimetersAtTheStartAnd5MoreIn
   const Pose2 T_true = drive[10].T_world_body.inverse() * drive.back().T_world_body,
               T_tracked = tracked[10].T_local_body.inverse() * tracked.back().T_local_body;
   EXPECT_THAT(T_tracked, test::Pose2Near(T_true, 0.05, 0.005));
+}
+
+// 6 cm a scan, between doors of which a few are in reach.
+TEST(ScanTracker, OdometryThatStopsAfterOneMeterIsNotTrustedFor53MetersMoreInACorridorOfDoors) {
+  test::RoomWorld::ScanOptions lidar = test::kOldLidar;
+  lidar.beams = 90;
+  lidar.range_max_m = 5.0;
+  const auto drive = test::drive_along({{3.0, 0.0}, {57.0, 0.0}}, {.speed_mps = 0.3});
+  const auto tracked = track(
+      drive, [](std::size_t k, const Pose2& motion) { return k < 20 ? motion : Pose2{}; }, lidar, 1,
+      test::make_corridor_of_doors());
+  EXPECT_LT(worst_error_m(drive, tracked), 1.0);
 }
 
 // Every third scan, 0.36 m apart on the way and 34 degrees in the corner.
