@@ -56,6 +56,8 @@ class WalkingRobot {
   WalkReport walk(double vx_mps, double vy_mps, double yaw_rate_radps, double duration_s);
   WalkReport stand(double duration_s) { return walk(0.0, 0.0, 0.0, duration_s); }
 
+  /// Bias of the gyro about z in addition to the sensor's own.
+  void add_gyro_bias(double radps) { gyro_bias_radps_ += radps; }
   Pose3 T_world_body() const;
   const mjModel& view() const { return *model_.view; }
   /// Truth, in level.
@@ -87,6 +89,7 @@ class WalkingRobot {
   int body_;
   std::array<int, kNumLegs> foot_geom_;
   Imu imu_;
+  double gyro_bias_radps_ = 0.0;
   JointState joints_;
   FootContacts contacts_;
   std::uint64_t tick_ = 0;

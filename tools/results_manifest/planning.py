@@ -33,21 +33,22 @@ METHODS = {"theta_star": "**Theta\\***", "astar": "A*", "dijkstra": "Dijkstra", 
 DRIVEN = ("mission.duration_s", "mission.distance_m", "navigation.detours", "navigation.clearance.mean_m", "navigation.clearance.p05_m")
 
 
+def driven_cells(runs):
+    """Means of the runs without a fall, and the number of the others."""
+    whole = [run["metrics"] for run in runs if not run["metrics"]["mission.fell"]]
+    duration, distance, detours, mean, low = (sum(metrics[path] for metrics in whole) / len(whole) for path in DRIVEN)
+    fell = f"; {len(runs) - len(whole)} of {len(runs)} fell" if len(whole) < len(runs) else ""
+    return [f"{duration:.0f}{fell}", f"{distance:.1f}", f"{detours:.1f}", f"{mean:.2f}, {low:.2f}"]
+
+
 def driven_text(values):
-    def mean(runs, method, path):
-        found = [run["metrics"][path] for run in runs if run["variant"].endswith(f"={method}") or run["variant"] == method]
-        return sum(found) / len(found)
-    rows = []
-    for method, title in METHODS.items():
-        row = [title]
-        for key in ("tunnel", "street"):
-            cells = [mean(values[key], method, path) for path in DRIVEN]
-            row += [f"{cells[0]:.0f}", f"{cells[1]:.1f}", f"{cells[2]:.1f}", f"{cells[3]:.2f}, {cells[4]:.2f}"]
-        rows.append(row)
+    rows = [[title] + [cell for key in ("tunnel", "street") for cell in
+                       driven_cells([run for run in values[key] if run["variant"].endswith(f"={method}") or run["variant"] == method])]
+            for method, title in METHODS.items()]
     return markdown(["", "tunnel: s", "m", "detours", "clearance, m: mean, 5 % quantile", "street: s", "m", "detours", "clearance, m"], rows)
 
 
 add(name="planners_in_the_loop", file="src/plan/README.md", seeds=REPORT_FIVE, minutes=25,
     steps=[sweep(key, f"{key}/scenarios/{scenario}", REPORT_FIVE, "--vary",
                  "stack.navigation.global_planner.method=" + ",".join(METHODS)) for key, scenario in (("tunnel", "navigate"), ("street", "patrol"))],
-    values=swept(tunnel=DRIVEN, street=DRIVEN), text=driven_text)
+    values=swept(tunnel=(*DRIVEN, "mission.fell"), street=(*DRIVEN, "mission.fell")), text=driven_text)

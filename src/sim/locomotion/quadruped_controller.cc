@@ -18,10 +18,12 @@ constexpr double kGravity = 9.81;  // m/s2
 // inertia.
 constexpr double kHeightStiffness = 120.0, kHeightDamping = 14.0;  // 1/s2, 1/s
 constexpr double kVelocityGain = 5.0, kVelocityIntegral = 3.0;     // 1/s, 1/s2
-constexpr double kTiltStiffness = 400.0, kTiltDamping = 40.0;      // 1/s2, 1/s
-constexpr double kYawStiffness = 80.0, kYawDamping = 14.0;         // 1/s2, 1/s
-const Eigen::Vector3d kInertiaPerKg(0.008, 0.024, 0.028);          // inertia of the whole robot about roll, pitch and
-                                                                   // yaw, divided by its mass, m2
+constexpr double kStandingGain = 8.0;  // of the displacement over the feet, relative to the integral of velocity
+constexpr double kMaxStandingOffset_m = 0.02;                  // larger displacements count as this
+constexpr double kTiltStiffness = 400.0, kTiltDamping = 40.0;  // 1/s2, 1/s
+constexpr double kYawStiffness = 80.0, kYawDamping = 14.0;     // 1/s2, 1/s
+const Eigen::Vector3d kInertiaPerKg(0.008, 0.024, 0.028);      // inertia of the whole robot about roll, pitch and
+                                                               // yaw, divided by its mass, m2
 
 // Impedance of a swing foot about its trajectory.
 constexpr double kSwingStiffness = 700.0, kSwingDamping = 16.0;  // N/m, N s/m
@@ -97,6 +99,7 @@ void QuadrupedController::choose_mode(const TrunkState& trunk) {
   idle_s_ = is_moving_commanded ? 0.0 : idle_s_ + tick_s_;
   if (is_moving_commanded && !is_walking_) {
     is_walking_ = true;
+    standing_foot_m_.reset();
     cycle_ = 0.02;  // FL and RR are in stance, FR and RL have half a stance left
     velocity_integral_.setZero();
   }
@@ -105,7 +108,6 @@ void QuadrupedController::choose_mode(const TrunkState& trunk) {
   if (is_walking_ && idle_s_ > gait_.period_s && all_stand && trunk.velocity_mps.head<2>().norm() < 0.12) {
     is_walking_ = false;
     velocity_integral_.setZero();
-    standing_offset_m_.setZero();
   }
 }
 
@@ -192,6 +194,24 @@ Eigen::Vector3d QuadrupedController::swing_force(const TrunkState& trunk, int le
          kSwingDamping * (wanted.velocity - trunk.foot_velocity_mps[leg]);
 }
 
+/// Returns the motion of the feet relative to the trunk since the robot came to a stand. A position and a heading held
+/// by the estimated velocity and the gyro would push the trunk off its feet, at the rates of their biases.
+QuadrupedController::FeetMotion QuadrupedController::feet_motion_since_standing(const TrunkState& trunk) {
+  if (!standing_foot_m_ || awake_s_ < kWakeUp_s) standing_foot_m_ = trunk.foot_m;
+  const auto center = [](const FootVectors& feet) -> Eigen::Vector2d {
+    return (feet[0] + feet[1] + feet[2] + feet[3]).head<2>() / kNumLegs;
+  };
+  const Eigen::Vector2d first_center = center(*standing_foot_m_), center_now = center(trunk.foot_m);
+  double dot = 0.0, cross = 0.0;
+  for (int leg = 0; leg < kNumLegs; ++leg) {
+    const Eigen::Vector2d first = (*standing_foot_m_)[leg].head<2>() - first_center,
+                          now = trunk.foot_m[leg].head<2>() - center_now;
+    dot += first.dot(now);
+    cross += first.x() * now.y() - first.y() * now.x();
+  }
+  return {.p_m = center_now - first_center, .angle_rad = std::atan2(cross, dot)};
+}
+
 FootVectors QuadrupedController::stance_forces(const TrunkState& trunk) {
   const Eigen::Vector2d velocity = trunk.velocity_mps.head<2>();
   Eigen::Vector2d error = velocity_mps_ - velocity;
@@ -199,9 +219,9 @@ FootVectors QuadrupedController::stance_forces(const TrunkState& trunk) {
     velocity_integral_ += tick_s_ * error;
     velocity_integral_ = velocity_integral_.cwiseMax(-0.3).cwiseMin(0.3);
   } else {
-    standing_offset_m_ -= tick_s_ * velocity;  // returns to the point where the robot came to a stand
-    standing_offset_m_ = standing_offset_m_.cwiseMax(-0.02).cwiseMin(0.02);
-    velocity_integral_ = 4.0 * standing_offset_m_;
+    const FeetMotion feet = feet_motion_since_standing(trunk);
+    yaw_rad_ = trunk.yaw_rad + feet.angle_rad;
+    velocity_integral_ = kStandingGain * feet.p_m.cwiseMax(-kMaxStandingOffset_m).cwiseMin(kMaxStandingOffset_m);
   }
   const double height_m = -ground_offset_m_;
   Eigen::Vector3d force;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include <Eigen/Core>
 
 #include "core/messages.h"
@@ -73,6 +75,12 @@ class QuadrupedController {
   void update_ground(const TrunkState& trunk);
   void schedule_feet(const TrunkState& trunk);
   Eigen::Vector3d touch_down(const TrunkState& trunk, int leg) const;
+  /// Displacement of the center of the feet, and rotation about it, in level.
+  struct FeetMotion {
+    Eigen::Vector2d p_m;
+    double angle_rad;
+  };
+  FeetMotion feet_motion_since_standing(const TrunkState& trunk);
   FootVectors stance_forces(const TrunkState& trunk);
   Eigen::Vector3d swing_force(const TrunkState& trunk, int leg) const;
   void detect_fall(const TrunkState& trunk);
@@ -88,7 +96,7 @@ class QuadrupedController {
   double yaw_rate_radps_ = 0.0;
   double yaw_rad_ = 0.0;
   Eigen::Vector2d velocity_integral_ = Eigen::Vector2d::Zero();  ///< integral of the velocity error, m
-  Eigen::Vector2d standing_offset_m_ = Eigen::Vector2d::Zero();  ///< displacement since the robot came to a stand
+  std::optional<FootVectors> standing_foot_m_;  ///< in level, when the robot came to a stand; none: it walks
 
   // Gait state.
   bool is_walking_ = false;

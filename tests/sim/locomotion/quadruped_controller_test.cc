@@ -31,6 +31,17 @@ TEST(QuadrupedController, StandsFiveSecondsWithin1CentimetreAnd1DegreeWithoutASt
   EXPECT_FALSE(report.has_fallen);
 }
 
+// A heading held by the gyro would turn the trunk by 15 degrees against its feet.
+TEST(QuadrupedController, StandsThirtySecondsWithin1DegreeWithAGyroBiasOfHalfADegreePerSecond) {
+  WalkingRobot robot = standing_robot();
+  robot.add_gyro_bias(to_rad(0.5));
+  const WalkReport report = robot.stand(30.0);
+  EXPECT_LT(std::abs(report.moved.yaw), kDegree);
+  EXPECT_LT(report.moved.position().norm(), 0.05);
+  EXPECT_LT(report.max_tilt_rad, 2.0 * kDegree);
+  EXPECT_FALSE(report.has_fallen);
+}
+
 struct Walk {
   const char* name;
   double vx_mps, vy_mps, yaw_rate_radps;
