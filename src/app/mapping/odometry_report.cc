@@ -11,8 +11,8 @@
 namespace patrol::app {
 namespace {
 
-constexpr std::size_t kListedPlaces = 20;  ///< places in metrics.json
-constexpr std::size_t kShownPlaces = 8;    ///< of them, on the page
+constexpr std::size_t kListedFaults = 20;  ///< places in metrics.json
+constexpr std::size_t kShownFaults = 8;    ///< of them, on the page
 /// More faulty segments than this are worth a warning; from kMostly on, a fault is named as a property of the log.
 constexpr double kMaxFaulty = 0.05, kMostly = 0.5;
 /// Scales further from 1, and a steering bias larger than this, are worth a warning.
@@ -22,8 +22,8 @@ using Distances = std::array<double, slam::kOdometryFaultNames.size()>;
 
 Distances distances_by_fault(const slam::OdometryHealth& health) {
   Distances distances{};
-  for (const slam::FaultyOdometry& place : health.faulty)
-    distances[static_cast<std::size_t>(place.fault)] += place.distance_m;
+  for (const slam::FaultyOdometry& entry : health.faulty)
+    distances[static_cast<std::size_t>(entry.fault)] += entry.distance_m;
   return distances;
 }
 
@@ -75,11 +75,11 @@ OdometryReport::Verdict OdometryReport::verdict() const {
   const bool has_wrong_scale = is_off(health.distance, 1.0, kMaxScaleError) ||
                                is_off(health.turn, 1.0, kMaxScaleError) ||
                                is_off(health.steering, 0.0, kMaxSteering_radpm);
-  const auto most = std::max_element(distances.begin(), distances.end());
+  const auto main_fault = std::max_element(distances.begin(), distances.end());
   std::string word = "odometry agrees";
-  if (*most > kMostly * health.distance_m) {
+  if (*main_fault > kMostly * health.distance_m) {
     word = fmt::format("odometry is mostly {}",
-                       slam::kOdometryFaultNames[static_cast<std::size_t>(most - distances.begin())]);
+                       slam::kOdometryFaultNames[static_cast<std::size_t>(main_fault - distances.begin())]);
   } else if (!found.empty()) {
     word = "odometry has faults";
   } else if (has_wrong_scale) {
@@ -102,14 +102,14 @@ std::string OdometryReport::line() const {
 }
 
 io::Metrics OdometryReport::metrics() const {
-  io::Metrics places = io::Metrics::array();
-  for (std::size_t i = 0; i < std::min(kListedPlaces, health.faulty.size()); ++i) {
-    const slam::FaultyOdometry& place = health.faulty[i];
-    places.push_back({{"fault", fault_name(place.fault)},
-                      {"from_s", seconds(place.first_scan)},
-                      {"x_m", place.p_map.x()},
-                      {"y_m", place.p_map.y()},
-                      {"distance_m", place.distance_m}});
+  io::Metrics listed = io::Metrics::array();
+  for (std::size_t i = 0; i < std::min(kListedFaults, health.faulty.size()); ++i) {
+    const slam::FaultyOdometry& entry = health.faulty[i];
+    listed.push_back({{"fault", fault_name(entry.fault)},
+                      {"from_s", seconds(entry.first_scan)},
+                      {"x_m", entry.p_map.x()},
+                      {"y_m", entry.p_map.y()},
+                      {"distance_m", entry.distance_m}});
   }
   io::Metrics distances;
   for (std::size_t k = 0; k < slam::kOdometryFaultNames.size(); ++k)
@@ -119,7 +119,7 @@ io::Metrics OdometryReport::metrics() const {
           {"faulty_ratio", health.faulty_ratio()},
           {"distance_m", health.distance_m},
           {"faulty_distance", distances},
-          {"faults", places},
+          {"faults", listed},
           {"distance_scale", to_metrics(health.distance)},
           {"turn_scale", to_metrics(health.turn)},
           {"steering_rad_per_m", to_metrics(health.steering)},
@@ -132,12 +132,12 @@ report::VerdictBlock OdometryReport::block() const {
   report::TableBlock table{.caption = "",
                            .columns = {{"odometry"}, {"from, s", true}, {"place in the map, m"}, {"over, m", true}},
                            .rows = {}};
-  for (std::size_t i = 0; i < std::min(kShownPlaces, health.faulty.size()); ++i) {
-    const slam::FaultyOdometry& place = health.faulty[i];
-    table.rows.push_back({{fault_name(place.fault)},
-                          {fmt::format("{:.0f}", seconds(place.first_scan))},
-                          {fmt::format("({:.1f}, {:.1f})", place.p_map.x(), place.p_map.y())},
-                          {fmt::format("{:.1f}", place.distance_m)}});
+  for (std::size_t i = 0; i < std::min(kShownFaults, health.faulty.size()); ++i) {
+    const slam::FaultyOdometry& entry = health.faulty[i];
+    table.rows.push_back({{fault_name(entry.fault)},
+                          {fmt::format("{:.0f}", seconds(entry.first_scan))},
+                          {fmt::format("({:.1f}, {:.1f})", entry.p_map.x(), entry.p_map.y())},
+                          {fmt::format("{:.1f}", entry.distance_m)}});
   }
   const Verdict result = verdict();
   return {.word = result.word, .tone = result.tone, .reason = result.reason, .checks = std::move(table)};

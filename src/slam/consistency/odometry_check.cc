@@ -140,11 +140,11 @@ double turn_difference(const std::vector<double>& map, const std::vector<double>
 /// Delay of odometry in scans; 0 if none explains the yaw changes clearly better.
 double find_delay(const std::vector<Pose2>& T_odom_body, const std::vector<Pose2>& T_map_body) {
   const std::vector<double> map = unwrapped_yaw(T_map_body), odometry = unwrapped_yaw(T_odom_body);
-  double best = 0.0, least = kDelayGain * turn_difference(map, odometry, 0.0);
+  double best = 0.0, min_difference = kDelayGain * turn_difference(map, odometry, 0.0);
   for (int step = -kDelaySteps * kMaxDelay; step <= kDelaySteps * kMaxDelay; ++step) {
     const double delay = static_cast<double>(step) / kDelaySteps, difference = turn_difference(map, odometry, delay);
-    if (difference >= least) continue;
-    least = difference;
+    if (difference >= min_difference) continue;
+    min_difference = difference;
     best = delay;
   }
   return best;

@@ -151,16 +151,8 @@ TrackedScan ScanTracker::update(const LevelScan& scan, const Pose2& T_odom_body)
       continue_tracks(downsample_scan(scan, settings_.matching.point_spacing_m, settings_.matching.max_points), step);
   std::vector<Track> continued;
   for (const Branch& branch : branches) {
-    const Track& before = tracks_[branch.track];
-    const Pose2& T_local_now = branch.best.T_local_body;
-    continued.push_back({.T_local_last = T_local_now,
-                         .T_last_now = before.T_local_last.inverse() * T_local_now,
-                         .matched = before.matched,
-                         .odometry_variance_scale =
-                             updated_variance_scale(before.odometry_variance_scale, branch.prediction, branch.best),
-                         .score = branch.score - branches.front().score});
-    if (branch.best.match || !can_be_matched)
-      continued.back().matched = {.stamp = scan.stamp, .T_local_body = T_local_now, .T_odom_body = T_odom_body};
+    continued.push_back(continued_track(branch, step, branch.best.match || !can_be_matched));
+    continued.back().score -= branches.front().score;
   }
   const Branch& best = branches.front();
   update_usual_match(best.best);
@@ -178,6 +170,20 @@ TrackedScan ScanTracker::update(const LevelScan& scan, const Pose2& T_odom_body)
   T_odom_last_ = T_odom_body;
   stamp_ = scan.stamp;
   return tracked;
+}
+
+// Without a match and without odometry, the robot is assumed to stop.
+ScanTracker::Track ScanTracker::continued_track(const Branch& branch, const Step& step, bool is_fixed) const {
+  const Track& before = tracks_[branch.track];
+  const Pose2& T_local_now = branch.best.T_local_body;
+  const Pose2 moved = before.T_local_last.inverse() * T_local_now;
+  return {.T_local_last = T_local_now,
+          .T_last_now = is_fixed || !step.is_odometry_constant ? moved : Pose2{},
+          .matched = is_fixed ? Fix{.stamp = step.stamp, .T_local_body = T_local_now, .T_odom_body = step.T_odom_body}
+                              : before.matched,
+          .odometry_variance_scale =
+              updated_variance_scale(before.odometry_variance_scale, branch.prediction, branch.best),
+          .score = branch.score};
 }
 
 PoseGaussian ScanTracker::predict(const Track& track, const Step& step) const {

@@ -100,6 +100,8 @@ class ScanTracker {
     double score = 0.0;
   };
 
+  /// `is_fixed`: odometry is integrated from this scan on.
+  Track continued_track(const Branch& branch, const Step& step, bool is_fixed) const;
   PoseGaussian predict(const Track& track, const Step& step) const;
   PoseGaussian predict_without_odometry(const Track& track, const Step& step) const;
   Pose2 motion_as_before(const Track& track, const Step& step) const;

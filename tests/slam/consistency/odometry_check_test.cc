@@ -80,7 +80,7 @@ TEST(OdometryCheck, SwappedSignsOfDistanceAndOfTurnAreReversed) {
   mirrored.change(0, mirrored.stamps.size(), [](const Pose2& step) { return Pose2{step.x, step.y, -step.yaw}; });
   const OdometryHealth of_mirrored = mirrored.check();
   EXPECT_TRUE(std::ranges::any_of(of_mirrored.faulty,
-                                  [](const FaultyOdometry& place) { return place.fault == OdometryFault::kReversed; }));
+                                  [](const FaultyOdometry& entry) { return entry.fault == OdometryFault::kReversed; }));
   EXPECT_GT(of_mirrored.num_faulty, 20);  // the turns at nine corners
 }
 
