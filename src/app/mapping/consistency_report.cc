@@ -25,7 +25,7 @@ std::size_t listed(const slam::MapConsistency& consistency) {
 
 double ConsistencyReport::seconds(std::size_t scan) const { return to_seconds(stamps.at(scan) - stamps.front()); }
 
-ConsistencyReport::Verdict ConsistencyReport::verdict() const {
+MappingVerdict ConsistencyReport::verdict() const {
   if (consistency.is_consistent()) {
     return {.word = "consistent",
             .tone = report::Tone::kGood,
@@ -55,10 +55,7 @@ ConsistencyReport::Verdict ConsistencyReport::verdict() const {
           .reason = "no two segments of the path saw the same surfaces"};
 }
 
-std::string ConsistencyReport::line() const {
-  const Verdict result = verdict();
-  return result.word + ": " + result.reason;
-}
+std::string ConsistencyReport::line() const { return verdict().line(); }
 
 io::Metrics ConsistencyReport::metrics() const {
   io::Metrics disagreements = io::Metrics::array();
@@ -105,7 +102,7 @@ report::VerdictBlock ConsistencyReport::block() const {
                           {fmt::format("{:.2f}", entry.offset_m)},
                           {fmt::format("{:.1f}", kDegPerRad * entry.offset_rad)}});
   }
-  const Verdict result = verdict();
+  const MappingVerdict result = verdict();
   return {.word = result.word, .tone = result.tone, .reason = result.reason, .checks = std::move(table)};
 }
 

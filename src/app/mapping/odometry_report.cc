@@ -49,7 +49,7 @@ io::Metrics to_metrics(const std::optional<slam::OdometryScale>& scale) {
 
 double OdometryReport::seconds(std::size_t scan) const { return to_seconds(stamps.at(scan) - stamps.front()); }
 
-OdometryReport::Verdict OdometryReport::verdict() const {
+MappingVerdict OdometryReport::verdict() const {
   if (health.num_segments == 0) {
     return {.word = "odometry not checked",
             .tone = report::Tone::kWarning,
@@ -96,10 +96,7 @@ OdometryReport::Verdict OdometryReport::verdict() const {
           .reason = fmt::format("{}", fmt::join(found, "; "))};
 }
 
-std::string OdometryReport::line() const {
-  const Verdict result = verdict();
-  return result.word + ": " + result.reason;
-}
+std::string OdometryReport::line() const { return verdict().line(); }
 
 io::Metrics OdometryReport::metrics() const {
   io::Metrics listed = io::Metrics::array();
@@ -139,7 +136,7 @@ report::VerdictBlock OdometryReport::block() const {
                           {fmt::format("({:.1f}, {:.1f})", entry.p_map.x(), entry.p_map.y())},
                           {fmt::format("{:.1f}", entry.distance_m)}});
   }
-  const Verdict result = verdict();
+  const MappingVerdict result = verdict();
   return {.word = result.word, .tone = result.tone, .reason = result.reason, .checks = std::move(table)};
 }
 

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "app/mapping/mapping_verdict.h"
 #include "core/time.h"
 #include "io/json/metrics_json.h"
 #include "report/blocks.h"
@@ -21,12 +22,7 @@ struct OdometryReport {
   report::VerdictBlock block() const;
 
  private:
-  struct Verdict {
-    std::string word;
-    report::Tone tone;
-    std::string reason;
-  };
-  Verdict verdict() const;
+  MappingVerdict verdict() const;
   double seconds(std::size_t scan) const;
 };
 
