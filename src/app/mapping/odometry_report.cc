@@ -27,17 +27,16 @@ Distances distances_by_fault(const slam::OdometryHealth& health) {
   return distances;
 }
 
-std::string fault_name(slam::OdometryFault fault) {
-  return std::string(slam::kOdometryFaultNames[static_cast<std::size_t>(fault)]);
-}
+std::string fault_name(std::size_t fault) { return std::string(slam::kOdometryFaultNames[fault]); }
+std::string fault_name(slam::OdometryFault fault) { return fault_name(static_cast<std::size_t>(fault)); }
 
 bool is_off(const std::optional<slam::OdometryScale>& scale, double nominal, double limit) {
   return scale && std::abs(scale->value - nominal) > limit;
 }
 
-std::string text(const std::optional<slam::OdometryScale>& scale, double per_unit, const std::string& unit) {
+std::string text(const std::optional<slam::OdometryScale>& scale, const std::string& unit = "") {
   if (!scale) return "not determined";
-  return fmt::format("{:.3f} ± {:.3f}{}", per_unit * scale->value, per_unit * scale->std, unit);
+  return fmt::format("{:.3f} ± {:.3f}{}", scale->value, scale->std, unit);
 }
 
 io::Metrics to_metrics(const std::optional<slam::OdometryScale>& scale) {
@@ -55,15 +54,14 @@ MappingVerdict OdometryReport::verdict() const {
             .tone = report::Tone::kWarning,
             .reason = "it hardly moves, and neither does the robot in the map"};
   }
-  const std::string scales =
-      fmt::format("scale of distance {}, of turn {}, steering {}", text(health.distance, 1.0, ""),
-                  text(health.turn, 1.0, ""), text(health.steering, 1.0, " rad per m"));
+  const std::string scales = fmt::format("scale of distance {}, of turn {}, steering {}", text(health.distance),
+                                         text(health.turn), text(health.steering, " rad per m"));
   std::vector<std::string> found;
   const Distances distances = distances_by_fault(health);
   if (health.faulty_ratio() > kMaxFaulty) {
     std::vector<std::string> kinds;
     for (std::size_t k = 0; k < distances.size(); ++k) {
-      if (distances[k] > 0.0) kinds.push_back(fmt::format("{} {:.0f} m", slam::kOdometryFaultNames[k], distances[k]));
+      if (distances[k] > 0.0) kinds.push_back(fmt::format("{} {:.0f} m", fault_name(k), distances[k]));
     }
     found.push_back(fmt::format("{:.0f} % of the segments contradict the map ({})", 100.0 * health.faulty_ratio(),
                                 fmt::join(kinds, ", ")));
@@ -76,24 +74,25 @@ MappingVerdict OdometryReport::verdict() const {
                                is_off(health.turn, 1.0, kMaxScaleError) ||
                                is_off(health.steering, 0.0, kMaxSteering_radpm);
   const auto main_fault = std::max_element(distances.begin(), distances.end());
-  std::string word = "odometry agrees";
+  MappingVerdict verdict{.word = "odometry agrees", .tone = report::Tone::kGood, .reason = ""};
+  const auto warn = [&](const std::string& word) {
+    verdict.word = word;
+    verdict.tone = report::Tone::kWarning;
+  };
   if (*main_fault > kMostly * health.distance_m) {
-    word = fmt::format("odometry is mostly {}",
-                       slam::kOdometryFaultNames[static_cast<std::size_t>(main_fault - distances.begin())]);
+    warn("odometry is mostly " + fault_name(static_cast<std::size_t>(main_fault - distances.begin())));
   } else if (!found.empty()) {
-    word = "odometry has faults";
+    warn("odometry has faults");
   } else if (has_wrong_scale) {
-    word = "odometry is not calibrated";
+    warn("odometry is not calibrated");
   }
   found.push_back(scales);
   if (health.num_gaps > 0) {
     found.push_back(fmt::format("{} gaps between scans, at most {:.1f} s, at {:.0f} s", health.num_gaps,
                                 health.max_gap_s, seconds(health.max_gap_scan)));
   }
-  const bool is_good = word == "odometry agrees";
-  return {.word = word,
-          .tone = is_good ? report::Tone::kGood : report::Tone::kWarning,
-          .reason = fmt::format("{}", fmt::join(found, "; "))};
+  verdict.reason = fmt::format("{}", fmt::join(found, "; "));
+  return verdict;
 }
 
 std::string OdometryReport::line() const { return verdict().line(); }
@@ -108,14 +107,14 @@ io::Metrics OdometryReport::metrics() const {
                       {"y_m", entry.p_map.y()},
                       {"distance_m", entry.distance_m}});
   }
-  io::Metrics distances;
-  for (std::size_t k = 0; k < slam::kOdometryFaultNames.size(); ++k)
-    distances[std::string(slam::kOdometryFaultNames[k]) + "_m"] = distances_by_fault(health)[k];
+  io::Metrics by_fault;
+  const Distances distances = distances_by_fault(health);
+  for (std::size_t k = 0; k < distances.size(); ++k) by_fault[fault_name(k) + "_m"] = distances[k];
   return {{"segments", health.num_segments},
           {"faulty_segments", health.num_faulty},
           {"faulty_ratio", health.faulty_ratio()},
           {"distance_m", health.distance_m},
-          {"faulty_distance", distances},
+          {"faulty_distance", by_fault},
           {"faults", listed},
           {"distance_scale", to_metrics(health.distance)},
           {"turn_scale", to_metrics(health.turn)},

@@ -16,7 +16,7 @@ struct OdometryReport {
   slam::OdometryHealth health;
   std::vector<Time> stamps;  ///< [scan]
 
-  /// Result in one line: "odometry agrees: ...", "odometry is constant: ..." and others.
+  /// Result in one line: "odometry agrees: ...", "odometry is mostly constant: ..." and others.
   std::string line() const;
   io::Metrics metrics() const;
   report::VerdictBlock block() const;

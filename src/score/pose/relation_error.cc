@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "core/geometry/angles.h"
+#include "core/upper_median.h"
 #include "score/statistics.h"
 
 namespace patrol::score {
@@ -73,12 +74,6 @@ ErrorSpread to_spread(const std::vector<double>& values) {
 std::vector<double> squares(std::vector<double> values) {
   for (double& value : values) value *= value;
   return values;
-}
-
-double upper_median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/upper_median.h"
 #include "slam/calibration/motion_residual.h"
 
 namespace patrol::slam {
@@ -26,12 +27,6 @@ constexpr int kCauchyIterations = 15;
 constexpr std::size_t kGroups = 60, kMinGroups = 20, kSegmentsPerGroup = 4;
 /// Prior standard deviations, wide enough to have no influence, that keep unobservable parameters solvable.
 const Vector6 kLooseStd{1.0, 1.0, 0.5, 0.5, 0.5, 0.5};
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// Weight of Tukey's biweight or Cauchy's kernel at a distance in standard deviations, and its derivative divided by
 /// the distance.
@@ -135,9 +130,9 @@ class Calibrator {
       }
     }
     if (!translation_errors.empty())
-      translation_noise_scale_ = std::max(kMinNoiseScale, kStdPerMedian * median(std::move(translation_errors)));
+      translation_noise_scale_ = std::max(kMinNoiseScale, kStdPerMedian * upper_median(std::move(translation_errors)));
     if (!rotation_errors.empty())
-      rotation_noise_scale_ = std::max(kMinNoiseScale, kStdPerMedian * median(std::move(rotation_errors)));
+      rotation_noise_scale_ = std::max(kMinNoiseScale, kStdPerMedian * upper_median(std::move(rotation_errors)));
   }
 
   void update_weights(bool is_early) {

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <utility>
 
+#include "core/upper_median.h"
 #include "slam/calibration/calibrate.h"
 
 namespace patrol::slam {
@@ -22,7 +23,7 @@ constexpr double kSlipRatio = 0.5;
 constexpr double kMapStd_m = 0.01, kMapStdRad = 0.005;
 constexpr std::size_t kMaxCalibrated = 600;     ///< segments
 constexpr int kMaxDelay = 3, kDelaySteps = 10;  ///< scans; steps per scan
-/// A delay reduces the differences of the yaw changes to this fraction, at least.
+/// With a delay, the differences of the yaw changes are at most this fraction of those without.
 constexpr double kDelayGain = 0.7;
 constexpr double kMaxTurnDifferenceRad = 0.1;  ///< per scan; larger ones count as this
 constexpr double kMinGap_s = 1.0, kGapRatio = 5.0;
@@ -42,7 +43,7 @@ bool exceeds(double odometry, double map, double limit) { return std::abs(odomet
 struct OdometrySegment {
   std::size_t first_scan = 0;
   double distance_m = 0.0;
-  MotionSegment motion;  ///< of the body by map as "lidar"
+  MotionSegment motion;  ///< its lidar steps are those of the body by map
   bool has_jump = false;
 };
 
@@ -168,10 +169,7 @@ std::vector<Pose2> without_delay(const std::vector<Pose2>& T_odom_body, double d
 double median_interval_s(const std::vector<Time>& stamps) {
   std::vector<double> intervals;
   for (std::size_t i = 1; i < stamps.size(); ++i) intervals.push_back(to_seconds(stamps[i] - stamps[i - 1]));
-  if (intervals.empty()) return 0.0;
-  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
-  std::nth_element(intervals.begin(), middle, intervals.end());
-  return *middle;
+  return intervals.empty() ? 0.0 : upper_median(std::move(intervals));
 }
 
 void find_gaps(const std::vector<Time>& stamps, double median_s, OdometryHealth& health) {

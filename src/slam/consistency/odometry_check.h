@@ -30,7 +30,7 @@ struct FaultyOdometry {
   Eigen::Vector2d p_map = Eigen::Vector2d::Zero();  ///< of the first scan
 };
 
-/// Estimate with its standard deviation; none: the path does not determine it.
+/// Estimate with its standard deviation.
 struct OdometryScale {
   double value = 1.0, std = 0.0;
 };
@@ -38,8 +38,9 @@ struct OdometryScale {
 /// Agreement of wheel odometry with a mapped path.
 struct OdometryHealth {
   int num_segments = 0, num_faulty = 0;
-  double distance_m = 0.0;                ///< along the mapped path
-  std::vector<FaultyOdometry> faulty;     ///< largest distance first
+  double distance_m = 0.0;             ///< along the mapped path
+  std::vector<FaultyOdometry> faulty;  ///< largest distance first
+  // None: the path does not determine it.
   std::optional<OdometryScale> distance;  ///< true distance / odometry distance
   std::optional<OdometryScale> turn;      ///< true yaw change / odometry yaw change
   std::optional<OdometryScale> steering;  ///< unmeasured yaw change to the left per meter; rad per m
@@ -52,8 +53,7 @@ struct OdometryHealth {
 };
 
 /// Compares odometry with the mapped path in segments of 0.5 m or 0.35 rad. Where scans do not determine the position,
-/// the path follows odometry and hides its errors.
-/// All arguments: [scan].
+/// the path follows odometry and hides its errors. All arguments: [scan].
 OdometryHealth check_odometry(const std::vector<Pose2>& T_odom_body, const std::vector<Pose2>& T_map_body,
                               const std::vector<Time>& stamps);
 

@@ -1,16 +1,15 @@
 #include "slam/graph/scan_tracker.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 #include <utility>
 
 #include <Eigen/LU>
 
 #include "slam/graph/branch_and_bound.h"
 #include "slam/graph/degeneracy.h"
+#include "slam/graph/sector_gains.h"
 
 namespace patrol::slam {
 namespace {
@@ -23,24 +22,11 @@ constexpr double kMaxVarianceScale = 400.0;
 /// Along a direction with less information than this fraction of the best one, a match is not evidence against
 /// odometry.
 constexpr double kMinEvidenceRatio = 0.02;
-/// Number of sectors of bearings that vote between two poses.
-constexpr std::size_t kSectors = 36;
-/// Minimum difference of the log likelihoods of a sector's points for a vote.
-constexpr double kMinVote = 2.0;
 /// Squared Mahalanobis distance from the odometry prediction above which a match contradicts odometry.
 constexpr double kContradiction = 16.0;
-/// A scan matches as usual unless fewer points match by this many standard deviations, or the inlier ratio is smaller.
-/// The fraction of matched points varies by kUsualStd from place to place.
-constexpr double kUsualDeviations = 2.0, kUsualStd = 0.03, kMinUsualInlierRatio = 0.9;
-/// Rate of the running means of that fraction and of the loss, per scan.
-constexpr double kUsualRate = 0.05;
-/// Log likelihood of a point in an unknown cell, at least; relative to a point on a surface.
-constexpr double kMinUnknown = -3.0;
-/// A scan whose mean loss is larger than usual by this factor does not match as usual; not applied to sparse scans.
-constexpr double kUnusualLoss = 1.5;
 /// Number of points of a scan that can have independent errors.
 constexpr double kIndependentPoints = 45.0;
-/// Search over possible motions: time between scans at most, and margins.
+/// Search over possible motions: time between scans, at least because stamps of logs jitter and at most; margins.
 constexpr double kMinSearch_s = 0.4, kMaxSearch_s = 0.7, kSearchMargin_m = 0.1, kSearchMarginRad = 0.05;
 /// Standard deviation of a motion without odometry, as a fraction of the possible motion.
 constexpr double kPossibleMotionStd = 0.3;
@@ -48,9 +34,6 @@ constexpr double kPossibleMotionStd = 0.3;
 constexpr double kConstantMotion_m = 0.3, kConstantMotionRad = 0.3;
 constexpr double kMinSearchScore = 0.2;
 constexpr int kSearchLevels = 4;
-/// Sparse scans that are mapped together are at least this far apart; a turn counts as the displacement at 1 m.
-constexpr double kDistinct_m = 0.05;
-
 /// Tracks of sparse scans: number at most, log probability relative to the best one at least, and weight of the earlier
 /// scans per scan.
 constexpr std::size_t kMaxTracks = 8;
@@ -60,18 +43,6 @@ double log_student_t(const PoseGaussian& prediction, const Pose2& pose) {
   const Eigen::Vector3d offset = prediction.residual_to_mean(pose);
   return -0.5 * (kStudentDegreesOfFreedom + 3.0) *
          std::log1p(offset.dot(prediction.covariance.inverse() * offset) / kStudentDegreesOfFreedom);
-}
-
-/// Returns the mean negative log likelihood of the points in known cells.
-double mean_loss(const std::vector<double>& log_likelihoods) {
-  double sum = 0.0;
-  int count = 0;
-  for (const double value : log_likelihoods) {
-    if (std::isnan(value)) continue;
-    sum -= value;
-    ++count;
-  }
-  return count > 0 ? sum / count : 0.0;
 }
 
 /// Returns the difference of two poses without its part along the direction that a match does not determine.
@@ -88,36 +59,6 @@ bool is_distinct(const Pose2& a, const Pose2& b) {
 }
 
 bool is_same(const Pose2& a, const Pose2& b) { return a.x == b.x && a.y == b.y && a.yaw == b.yaw; }
-
-std::size_t sector_of(const MatchPoint& point) {
-  const double turn = std::atan2(point.p_body.y(), point.p_body.x()) / (2.0 * std::numbers::pi);
-  return static_cast<std::size_t>((turn + 1.0) * kSectors) % kSectors;
-}
-
-/// Gain in log likelihood of one pose over another by the bearing of the points.
-struct SectorGains {
-  std::array<double, kSectors> gains{};
-  double total = 0.0;
-
-  /// `unknown`: log likelihood of a point in an unknown cell.
-  SectorGains(const std::vector<MatchPoint>& points, const std::vector<double>& a, const std::vector<double>& b,
-              double unknown) {
-    const auto known_or = [unknown](double value) { return std::isnan(value) ? unknown : value; };
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      const double difference = known_or(a[i]) - known_or(b[i]);
-      gains[sector_of(points[i])] += difference;
-      total += difference;
-    }
-  }
-  /// Returns the vote of a sector: 1 in favor, -1 against, 0 undecided.
-  int vote(std::size_t sector) const { return (gains[sector] > kMinVote) - (gains[sector] < -kMinVote); }
-  /// Returns the number of sectors in favor minus the number against.
-  int votes() const {
-    int sum = 0;
-    for (std::size_t sector = 0; sector < kSectors; ++sector) sum += vote(sector);
-    return sum;
-  }
-};
 
 int num_hits(const LevelScan& scan) {
   return static_cast<int>(
@@ -155,14 +96,18 @@ TrackedScan ScanTracker::update(const LevelScan& scan, const Pose2& T_odom_body)
     continued.back().score -= branches.front().score;
   }
   const Branch& best = branches.front();
-  update_usual_match(best.best);
+  if (best.best.match) usual_.update(*best.best.match, best.best.log_likelihoods);
   calibrate_odometry(scan.stamp, tracks_[best.track].matched, T_odom_body, best.best);
   tracks_ = std::move(continued);
   TrackedScan tracked = to_tracked_scan(best.best, best.prediction);
   tracked.is_keyframe = is_keyframe_due(tracked.T_local_body);
-  collect(scan, tracked.T_local_body);
+  if (step.is_sparse) {
+    sparse_scans_.add(scan, tracked.T_local_body);
+  } else {
+    sparse_scans_.clear();
+  }
   if (tracked.is_keyframe) {
-    tracked.scans = sparse_scans_.is_empty() ? ScanGroup(scan) : std::exchange(sparse_scans_, {});
+    tracked.scans = step.is_sparse ? sparse_scans_.take() : ScanGroup(scan);
     integrate(tracked);
   }
   update_constant_odometry(T_odom_body, tracked.T_local_body);
@@ -222,7 +167,7 @@ void ScanTracker::update_constant_odometry(const Pose2& T_odom_body, const Pose2
   }
 }
 
-// Of dense scans, the best continuation; of sparse scans, the most probable ones that differ.
+// Of dense scans, the best continuation; of sparse scans, several that differ, the one with the highest score first.
 std::vector<ScanTracker::Branch> ScanTracker::continue_tracks(const std::vector<MatchPoint>& points, const Step& step) {
   if (!older_.has_surface() || points.empty()) {
     const PoseGaussian prediction = predict(tracks_[0], step);
@@ -258,7 +203,7 @@ double ScanTracker::score(const Track& track, const Branch& branch, const std::v
           ? point_log_likelihoods(older_, points, branch.best.T_local_body, settings_.matching)
           : branch.best.log_likelihoods;
   double sum = 0.0;
-  for (const double value : log_likelihoods) sum += std::isnan(value) ? unknown_log_likelihood() : value;
+  for (const double value : log_likelihoods) sum += std::isnan(value) ? usual_.unknown_log_likelihood() : value;
   return kScoreMemory * track.score + tempering(points.size()) * sum +
          log_student_t(branch.prediction, branch.best.T_local_body) -
          0.5 * std::log(branch.prediction.covariance.determinant());
@@ -269,7 +214,7 @@ ScanTracker::Hypothesis ScanTracker::match_by_alternatives(const Track& track, c
                                                            const std::vector<MatchPoint>& points, const Step& step,
                                                            const PoseGaussian& prediction) {
   Hypothesis best = by_odometry;
-  const bool is_likely = best.match && has_usual_points(best);
+  const bool is_likely = best.match && usual_.has_usual_points(*best.match, best.log_likelihoods);
   if (is_likely && step.is_sparse) return without_moving_objects(best, points, prediction);
   const auto consider = [&](const Pose2& start) {
     const Hypothesis other = match_from(start, points, prediction, false);
@@ -282,19 +227,11 @@ ScanTracker::Hypothesis ScanTracker::match_by_alternatives(const Track& track, c
     const Pose2 start = track.T_local_last * T_last_now;
     if (is_distinct(start, prediction.mean) && is_distinct(start, best.T_local_body)) consider(start);
   }
-  if (!is_likely || mean_loss(best.log_likelihoods) > kUnusualLoss * usual_loss_) {
+  if (!is_likely || !usual_.has_usual_loss(best.log_likelihoods)) {
     if (const std::optional<Pose2> found = search_possible_motions(track.T_local_last, points, step.seconds))
       consider(*found);
   }
   return best.match ? without_moving_objects(best, points, prediction) : best;
-}
-
-bool ScanTracker::has_usual_points(const Hypothesis& match) const {
-  const auto num_points = static_cast<double>(match.log_likelihoods.size());
-  const double deviation =
-      std::sqrt(usual_matched_ratio_ * (1.0 - usual_matched_ratio_) / num_points + kUsualStd * kUsualStd);
-  return match.match->inlier_ratio >= kMinUsualInlierRatio &&
-         match.match->num_matched / num_points >= usual_matched_ratio_ - kUsualDeviations * deviation;
 }
 
 std::optional<Pose2> ScanTracker::search_possible_motions(const Pose2& T_local_last,
@@ -316,14 +253,6 @@ double ScanTracker::updated_variance_scale(double scale, const PoseGaussian& pre
   // 3 on average if the variance is correct
   const double squared = offset.dot(prediction.covariance.inverse() * offset);
   return std::clamp(std::max(kVarianceScaleDecay * scale, scale * squared / 3.0), 1.0, kMaxVarianceScale);
-}
-
-// Limits a loss, so that one bad match does not hide the next.
-void ScanTracker::update_usual_match(const Hypothesis& best) {
-  if (!best.match) return;
-  const double matched_ratio = best.match->num_matched / static_cast<double>(best.log_likelihoods.size());
-  usual_loss_ += kUsualRate * (std::min(mean_loss(best.log_likelihoods), 2.0 * usual_loss_) - usual_loss_);
-  usual_matched_ratio_ += kUsualRate * (matched_ratio - usual_matched_ratio_);
 }
 
 void ScanTracker::calibrate_odometry(Time stamp, const Fix& before, const Pose2& T_odom_body, const Hypothesis& best) {
@@ -388,16 +317,10 @@ double ScanTracker::tempering(std::size_t num_points) const {
   return std::max(settings_.likelihood_tempering, 1.0 / (1.0 + static_cast<double>(num_points) / kIndependentPoints));
 }
 
-// Follows from the usual fraction of points in unknown cells, which is large in a map of sparse scans.
-double ScanTracker::unknown_log_likelihood() const {
-  const double matched = std::clamp(usual_matched_ratio_, 0.05, 0.95);
-  return std::clamp(std::log((1.0 - matched) / matched), kMinUnknown, 0.0);
-}
-
 // A vehicle that passes has many points in few sectors, and they match best as if the robot moved with it.
 bool ScanTracker::is_better(const Hypothesis& a, const Hypothesis& b, const std::vector<MatchPoint>& points) const {
-  const SectorGains gains(points, a.log_likelihoods, b.log_likelihoods, unknown_log_likelihood());
-  return gains.votes() > 0 && tempering(points.size()) * gains.total + a.log_prior - b.log_prior > 0.0;
+  const SectorGains gains(points, a.log_likelihoods, b.log_likelihoods, usual_.unknown_log_likelihood());
+  return gains.votes() > 0 && tempering(points.size()) * gains.total() + a.log_prior - b.log_prior > 0.0;
 }
 
 // Without the sectors in favor of a match that contradicts odometry and the majority of the sectors.
@@ -409,32 +332,11 @@ ScanTracker::Hypothesis ScanTracker::without_moving_objects(const Hypothesis& be
   if (offset.dot(prediction.covariance.inverse() * offset) < kContradiction) return best;
   const SectorGains gains(points, best.log_likelihoods,
                           point_log_likelihoods(older_, points, prediction.mean, settings_.matching),
-                          unknown_log_likelihood());
+                          usual_.unknown_log_likelihood());
   if (gains.votes() > 0) return best;
   std::vector<MatchPoint> others = points;
-  std::erase_if(others, [&](const MatchPoint& point) { return gains.vote(sector_of(point)) > 0; });
+  std::erase_if(others, [&](const MatchPoint& point) { return gains.vote(SectorGains::sector_of(point)) > 0; });
   return match_from(prediction.mean, others, prediction, true);
-}
-
-// Keeps only the newest of several sparse scans in the same place.
-void ScanTracker::collect(const LevelScan& scan, const Pose2& T_local_body) {
-  if (num_hits(scan) >= settings_.min_hits) {
-    sparse_scans_ = {};
-    return;
-  }
-  const Pose2 T_distinct_now = T_local_distinct_.inverse() * T_local_body,
-              T_before_now = T_local_sparse_.inverse() * T_local_body;
-  const bool is_distinct =
-      sparse_scans_.is_empty() || T_distinct_now.position().norm() + std::abs(T_distinct_now.yaw) > kDistinct_m;
-  if (sparse_scans_.is_empty()) {
-    sparse_scans_ = ScanGroup(scan);
-  } else if (is_distinct) {
-    sparse_scans_.add(scan, T_before_now);
-  } else {
-    sparse_scans_.replace_newest(scan, T_before_now);
-  }
-  if (is_distinct) T_local_distinct_ = T_local_body;
-  T_local_sparse_ = T_local_body;
 }
 
 void ScanTracker::integrate(TrackedScan& tracked) {

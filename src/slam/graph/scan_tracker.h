@@ -10,6 +10,8 @@
 #include "slam/graph/odometry_correction.h"
 #include "slam/graph/scan_group.h"
 #include "slam/graph/scan_tracker_settings.h"
+#include "slam/graph/sparse_scans.h"
+#include "slam/graph/usual_match.h"
 #include "slam/motion_model.h"
 #include "slam/scan_integration.h"
 #include "slam/scan_matcher.h"
@@ -111,18 +113,14 @@ class ScanTracker {
   Hypothesis match_by_alternatives(const Track& track, const Hypothesis& by_odometry,
                                    const std::vector<MatchPoint>& points, const Step& step,
                                    const PoseGaussian& prediction);
-  bool has_usual_points(const Hypothesis& match) const;
   std::optional<Pose2> search_possible_motions(const Pose2& T_local_last, const std::vector<MatchPoint>& points,
                                                double seconds);
   static double updated_variance_scale(double scale, const PoseGaussian& prediction, const Hypothesis& best);
-  void update_usual_match(const Hypothesis& best);
   void calibrate_odometry(Time stamp, const Fix& before, const Pose2& T_odom_body, const Hypothesis& best);
   TrackedScan to_tracked_scan(const Hypothesis& best, const PoseGaussian& prediction) const;
   bool is_keyframe_due(const Pose2& T_local_body) const;
-  void collect(const LevelScan& scan, const Pose2& T_local_body);
   static bool is_determined_by_scan(const Hypothesis& a, const Hypothesis& b);
   double tempering(std::size_t num_points) const;
-  double unknown_log_likelihood() const;
   bool is_better(const Hypothesis& a, const Hypothesis& b, const std::vector<MatchPoint>& points) const;
   Hypothesis without_moving_objects(const Hypothesis& best, const std::vector<MatchPoint>& points,
                                     const PoseGaussian& prediction) const;
@@ -135,15 +133,13 @@ class ScanTracker {
   int older_keyframes_ = 0, newer_keyframes_ = 0, keyframes_ = 0, submap_ = 0;
   std::optional<Time> stamp_;
   Pose2 T_odom_last_, T_local_keyframe_;
-  std::vector<Track> tracks_ = std::vector<Track>(1);  ///< the most probable one first
+  std::vector<Track> tracks_ = std::vector<Track>(1);  ///< the one with the highest score first
   double last_step_s_ = 0.0;
   Pose2 T_local_constant_;  ///< where odometry changed last
   bool is_odometry_constant_ = false;
   OdometryCorrection correction_;
-  double usual_matched_ratio_ = 0.5;          ///< running mean of the fraction of points on surfaces
-  double usual_loss_ = 1.0;                   ///< running mean of the loss of a point in a known cell
-  ScanGroup sparse_scans_;                    ///< since the last keyframe
-  Pose2 T_local_sparse_, T_local_distinct_;   ///< newest of them; newest but for those in the same place
+  UsualMatch usual_;
+  SparseScans sparse_scans_;
   std::optional<LikelihoodPyramid> pyramid_;  ///< of older_; none: not needed since it has changed
 };
 
