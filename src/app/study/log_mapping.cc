@@ -38,6 +38,8 @@ MappedRun map_log_of(const StudyRun& run, const std::string& method) {
   settings.method = method;
   const BoostedStumps neighbors = load_neighbor_model(method, find_data_root(""));
   const std::unique_ptr<io::ScanLog> log = io::open_scan_log(run.log, {});
+  // Without it, the antenna beside the lidar is mapped along the path.
+  const slam::PlanarScanSettings scan{.min_range_m = run.scenario.stack.scan_leveling.self_filter_radius_m};
   MappedRun mapped;
   std::vector<Time> stamps;
   const double before_mb = heap_mb();
@@ -45,7 +47,7 @@ MappedRun map_log_of(const StudyRun& run, const std::string& method) {
   const std::unique_ptr<slam::Mapper> mapper = slam::make_mapper(settings, neighbors, run.scenario.seed);
   while (const std::optional<RecordedScan> recorded = log->next()) {
     const double start_s = thread_cpu_time_s();
-    mapper->update(slam::planar_scan(*recorded, {}), recorded->T_odom_body);
+    mapper->update(slam::planar_scan(*recorded, scan), recorded->T_odom_body);
     mapped.seconds += thread_cpu_time_s() - start_s;
     stamps.push_back(recorded->scan.stamp);
     if (stamps.size() % kScansPerSample == 0) look();
