@@ -54,6 +54,7 @@ void WalkingRobot::drive(const VelocityCommand& command) {
   const Time now = from_seconds(data_->time);
   imu_ = imu_sensor_.read(model, *data_, now, tick_);
   imu_.angular_velocity_radps.z() += gyro_bias_radps_;
+  imu_.linear_acceleration_mps2 += accelerometer_bias_mps2_;
   joints_ = encoders_.read(*data_, now);
   contacts_ = foot_sensor_.read(model, *data_, now, tick_);
   const JointTorques torques = controller_.step({.imu = imu_, .joints = joints_, .feet = contacts_}, command);

@@ -58,6 +58,8 @@ class WalkingRobot {
 
   /// Bias of the gyro about z in addition to the sensor's own.
   void add_gyro_bias(double radps) { gyro_bias_radps_ += radps; }
+  /// Bias of the accelerometer in addition to the sensor's own; the estimated vertical tilts by it.
+  void add_accelerometer_bias(const Eigen::Vector3d& mps2) { accelerometer_bias_mps2_ += mps2; }
   Pose3 T_world_body() const;
   const mjModel& view() const { return *model_.view; }
   /// Truth, in level.
@@ -90,6 +92,7 @@ class WalkingRobot {
   std::array<int, kNumLegs> foot_geom_;
   Imu imu_;
   double gyro_bias_radps_ = 0.0;
+  Eigen::Vector3d accelerometer_bias_mps2_ = Eigen::Vector3d::Zero();
   JointState joints_;
   FootContacts contacts_;
   std::uint64_t tick_ = 0;

@@ -18,18 +18,23 @@ constexpr double kGravity = 9.81;  // m/s2
 // inertia.
 constexpr double kHeightStiffness = 120.0, kHeightDamping = 14.0;  // 1/s2, 1/s
 constexpr double kVelocityGain = 5.0, kVelocityIntegral = 3.0;     // 1/s, 1/s2
-constexpr double kStandingGain = 8.0;  // of the displacement over the feet, relative to the integral of velocity
-constexpr double kMaxStandingOffset_m = 0.02;                  // larger displacements count as this
-constexpr double kTiltStiffness = 400.0, kTiltDamping = 40.0;  // 1/s2, 1/s
-constexpr double kYawStiffness = 80.0, kYawDamping = 14.0;     // 1/s2, 1/s
-const Eigen::Vector3d kInertiaPerKg(0.008, 0.024, 0.028);      // inertia of the whole robot about roll, pitch and
-                                                               // yaw, divided by its mass, m2
+constexpr double kMaxIntegral_m = 0.3;
+constexpr double kStandingStiffness = 60.0, kStandingDamping = 10.0;  // 1/s2, 1/s; about the center of the feet
+constexpr double kMaxStandingOffset_m = 0.02;                         // of the place at which the robot came to a stand
+constexpr double kTiltStiffness = 400.0, kTiltDamping = 40.0;         // 1/s2, 1/s
+constexpr double kYawStiffness = 80.0, kYawDamping = 14.0;            // 1/s2, 1/s
+const Eigen::Vector3d kInertiaPerKg(0.008, 0.024, 0.028);  // inertia of the whole robot about roll, pitch and
+                                                           // yaw, divided by its mass, m2
 
 // Impedance of a swing foot about its trajectory.
 constexpr double kSwingStiffness = 700.0, kSwingDamping = 16.0;  // N/m, N s/m
 constexpr double kCaptureTime_s = 0.06;  // lead of the foot placement per m/s of velocity error [Raibert86]
 constexpr double kSearchSpeed_mps = 0.35, kMaxSearch_m = 0.10;
-constexpr double kWakeUp_s = 0.5;       // initial standing time, for the estimator to settle
+
+// Impedance of the feet about the standing posture, until the estimator has settled.
+constexpr double kWakeUp_s = 1.2;
+constexpr double kWakeUpStiffness = 3000.0, kWakeUpDamping = 60.0;  // N/m, N s/m
+
 constexpr double kGroundTime_s = 0.15;  // time constant of the ground estimate below the feet
 constexpr double kEarlyTouch = 0.55;    // swing fraction from which a contact counts as touch-down
 constexpr double kStandSpeed_mps = 0.02, kStandRate_radps = 0.03;
@@ -65,8 +70,9 @@ JointTorques QuadrupedController::step(const LegSensors& sensors, const Velocity
   const FootVectors stance = stance_forces(trunk);
   JointTorques torques;
   for (int leg = 0; leg < kNumLegs; ++leg) {
-    const Eigen::Vector3d force_on_ground =
-        is_stance_[leg] && !is_searching_[leg] ? stance[leg] : -swing_force(trunk, leg);
+    const Eigen::Vector3d force_on_ground = awake_s_ < kWakeUp_s                     ? wake_up_force(trunk, leg)
+                                            : is_stance_[leg] && !is_searching_[leg] ? stance[leg]
+                                                                                     : -swing_force(trunk, leg);
     torques.segment<3>(3 * leg) = -trunk.jacobian[leg].transpose() * force_on_ground;
     for (int k = 0; k < 3; ++k) {
       const double limit = robot_.joint_limits[static_cast<std::size_t>(3 * leg + k)].effort_nm;
@@ -101,7 +107,6 @@ void QuadrupedController::choose_mode(const TrunkState& trunk) {
     is_walking_ = true;
     standing_foot_m_.reset();
     cycle_ = 0.02;  // FL and RR are in stance, FR and RL have half a stance left
-    velocity_integral_.setZero();
   }
   const bool all_stand = is_stance_[0] && is_stance_[1] && is_stance_[2] && is_stance_[3] && !is_searching_[0] &&
                          !is_searching_[1] && !is_searching_[2] && !is_searching_[3];
@@ -194,39 +199,58 @@ Eigen::Vector3d QuadrupedController::swing_force(const TrunkState& trunk, int le
          kSwingDamping * (wanted.velocity - trunk.foot_velocity_mps[leg]);
 }
 
-/// Returns the motion of the feet relative to the trunk since the robot came to a stand. A position and a heading held
-/// by the estimated velocity and the gyro would push the trunk off its feet, at the rates of their biases.
-QuadrupedController::FeetMotion QuadrupedController::feet_motion_since_standing(const TrunkState& trunk) {
-  if (!standing_foot_m_ || awake_s_ < kWakeUp_s) standing_foot_m_ = trunk.foot_m;
+/// Returns the force that holds the standing posture without the estimated tilt, in level.
+Eigen::Vector3d QuadrupedController::wake_up_force(const TrunkState& trunk, int leg) const {
+  const LegGeometry& geometry = robot_.legs[static_cast<std::size_t>(leg)];
+  const Eigen::Vector3d posture = geometry.hip_in_body + Eigen::Vector3d(0.0, geometry.abduction_offset_m, 0.0);
+  const Eigen::Vector3d foot_in_body(posture.x(), posture.y(), -settings_.trunk_height_m);
+  const Eigen::Vector3d weight(0.0, 0.0, robot_.mass_kg * kGravity / kNumLegs);
+  const Eigen::Vector3d error = foot_in_body - trunk.R_level_body.transpose() * trunk.foot_m[leg];
+  const Eigen::Vector3d velocity = trunk.foot_velocity_mps[leg] - trunk.rate_radps.cross(trunk.foot_m[leg]);
+  return weight - trunk.R_level_body * (kWakeUpStiffness * error) + kWakeUpDamping * velocity;
+}
+
+/// Returns the error of the trunk's place and heading over its feet, from leg kinematics. A place held by the estimated
+/// velocity and a heading held by the gyro would push the trunk off its feet, at the rates of their biases. The place
+/// is that at which the robot came to a stand, if the trunk was about centered there: a step from an uncentered stand
+/// falls. The heading is the one relative to the feet at that time.
+QuadrupedController::StandingError QuadrupedController::standing_error(const TrunkState& trunk) {
   const auto center = [](const FootVectors& feet) -> Eigen::Vector2d {
     return (feet[0] + feet[1] + feet[2] + feet[3]).head<2>() / kNumLegs;
   };
+  if (!standing_foot_m_ || awake_s_ < kWakeUp_s) standing_foot_m_ = trunk.foot_m;
   const Eigen::Vector2d first_center = center(*standing_foot_m_), center_now = center(trunk.foot_m);
+  Eigen::Vector2d hip_center = Eigen::Vector2d::Zero();
   double dot = 0.0, cross = 0.0;
   for (int leg = 0; leg < kNumLegs; ++leg) {
     const Eigen::Vector2d first = (*standing_foot_m_)[leg].head<2>() - first_center,
                           now = trunk.foot_m[leg].head<2>() - center_now;
     dot += first.dot(now);
     cross += first.x() * now.y() - first.y() * now.x();
+    hip_center += robot_.legs[static_cast<std::size_t>(leg)].hip_in_body.head<2>() / kNumLegs;
   }
-  return {.p_m = center_now - first_center, .angle_rad = std::atan2(cross, dot)};
+  const Eigen::Vector2d offset =
+      (first_center - hip_center).cwiseMax(-kMaxStandingOffset_m).cwiseMin(kMaxStandingOffset_m);
+  return {.p_m = center_now - hip_center - offset, .angle_rad = std::atan2(cross, dot)};
 }
 
 FootVectors QuadrupedController::stance_forces(const TrunkState& trunk) {
   const Eigen::Vector2d velocity = trunk.velocity_mps.head<2>();
-  Eigen::Vector2d error = velocity_mps_ - velocity;
+  const Eigen::Vector2d velocity_error = velocity_mps_ - velocity;
   if (is_walking_) {
-    velocity_integral_ += tick_s_ * error;
-    velocity_integral_ = velocity_integral_.cwiseMax(-0.3).cwiseMin(0.3);
+    velocity_integral_ += tick_s_ * velocity_error;
   } else {
-    const FeetMotion feet = feet_motion_since_standing(trunk);
-    yaw_rad_ = trunk.yaw_rad + feet.angle_rad;
-    velocity_integral_ = kStandingGain * feet.p_m.cwiseMax(-kMaxStandingOffset_m).cwiseMin(kMaxStandingOffset_m);
+    const StandingError standing = standing_error(trunk);
+    yaw_rad_ = trunk.yaw_rad + standing.angle_rad;
+    velocity_integral_ = kStandingStiffness / kVelocityIntegral * standing.p_m;  // the first step continues with it
   }
+  velocity_integral_ = velocity_integral_.cwiseMax(-kMaxIntegral_m).cwiseMin(kMaxIntegral_m);
   const double height_m = -ground_offset_m_;
   Eigen::Vector3d force;
+  const double velocity_gain = is_walking_ ? kVelocityGain : kStandingDamping;
   const Eigen::Vector2d centripetal = yaw_rate_radps_ * Eigen::Vector2d(-velocity.y(), velocity.x());
-  force.head<2>() = robot_.mass_kg * (kVelocityGain * error + kVelocityIntegral * velocity_integral_ + centripetal);
+  force.head<2>() =
+      robot_.mass_kg * (velocity_gain * velocity_error + kVelocityIntegral * velocity_integral_ + centripetal);
   force.z() = robot_.mass_kg * (kGravity + kHeightStiffness * (settings_.trunk_height_m - height_m) -
                                 kHeightDamping * (trunk.velocity_mps.z() - slope_.dot(velocity)));
 

@@ -75,12 +75,13 @@ class QuadrupedController {
   void update_ground(const TrunkState& trunk);
   void schedule_feet(const TrunkState& trunk);
   Eigen::Vector3d touch_down(const TrunkState& trunk, int leg) const;
-  /// Displacement of the center of the feet, and rotation about it, in level.
-  struct FeetMotion {
+  /// Displacement that the trunk needs, and rotation, in level.
+  struct StandingError {
     Eigen::Vector2d p_m;
     double angle_rad;
   };
-  FeetMotion feet_motion_since_standing(const TrunkState& trunk);
+  Eigen::Vector3d wake_up_force(const TrunkState& trunk, int leg) const;
+  StandingError standing_error(const TrunkState& trunk);
   FootVectors stance_forces(const TrunkState& trunk);
   Eigen::Vector3d swing_force(const TrunkState& trunk, int leg) const;
   void detect_fall(const TrunkState& trunk);

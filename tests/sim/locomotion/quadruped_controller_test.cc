@@ -42,6 +42,24 @@ TEST(QuadrupedController, StandsThirtySecondsWithin1DegreeWithAGyroBiasOfHalfADe
   EXPECT_FALSE(report.has_fallen);
 }
 
+// Before, the trunk moved 0.13 m off its feet while the estimator settled, and fell over the first pair of feet.
+TEST(QuadrupedController, WakesUpAndStandsWithin4CentimetersAndStartsToWalkWithAVerticalTiltedBy2Degrees) {
+  for (const double angle_rad : {0.0, 0.25 * kPi, 0.5 * kPi, 0.75 * kPi, kPi, 1.25 * kPi, 1.5 * kPi, 1.75 * kPi}) {
+    SCOPED_TRACE(angle_rad);
+    WalkingRobot robot(make_flat_world());
+    robot.add_accelerometer_bias(9.81 * std::sin(2.0 * kDegree) *
+                                 Eigen::Vector3d(std::cos(angle_rad), std::sin(angle_rad), 0.0));
+    const WalkReport standing = robot.stand(4.0);
+    EXPECT_LT(standing.moved.position().norm(), 0.04);
+    EXPECT_LT(standing.max_tilt_rad, 4.0 * kDegree);
+    EXPECT_EQ(standing.steps_taken, 0);
+    const WalkReport start = robot.walk(0.8, 0.0, 0.1, 2.0);
+    EXPECT_LT(start.max_tilt_rad, 15.0 * kDegree);
+    EXPECT_LT(std::abs(start.moved.y), 0.2);
+    EXPECT_FALSE(start.has_fallen);
+  }
+}
+
 struct Walk {
   const char* name;
   double vx_mps, vy_mps, yaw_rate_radps;
