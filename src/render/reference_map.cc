@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -27,8 +29,22 @@ struct CutGeom {
   Bounds bounds;  ///< in world
 };
 
-bool is_static(const mjModel& model, int body) {
-  return model.body_weldid[body] == 0 && model.body_mocapid[model.body_rootid[body]] < 0;
+bool is_actor(const mjModel& model, int mocap_body, const std::vector<std::string>& actors) {
+  const std::string_view body = sim::name_of(model, mjOBJ_BODY, mocap_body);
+  return std::any_of(actors.begin(), actors.end(),
+                     [&](const std::string& actor) { return body == actor || body.starts_with(actor + "_"); });
+}
+
+/// Flags of all bodies: true if a body stays where the world file has it.
+std::vector<bool> static_bodies(const mjModel& model, const ReferenceMapSettings& settings) {
+  std::vector<bool> is_static(static_cast<std::size_t>(model.nbody));
+  for (int body = 0; body < model.nbody; ++body) {
+    const int root = model.body_rootid[body];
+    const bool is_mocap = model.body_mocapid[root] >= 0;
+    const bool moves = is_mocap && (!settings.actors || is_actor(model, root, *settings.actors));
+    is_static[static_cast<std::size_t>(body)] = is_mocap ? !moves : model.body_weldid[body] == 0;
+  }
+  return is_static;
 }
 
 bool lidar_can_hit(const mjModel& model, int geom) {
@@ -45,10 +61,11 @@ Bounds bounds_in_world(const mjModel& model, const mjData& data, int geom) {
   return {center - half, center + half};
 }
 
-std::vector<CutGeom> geoms_cut_at(const mjModel& model, const mjData& data, double height_m) {
+std::vector<CutGeom> geoms_cut_at(const mjModel& model, const mjData& data, const std::vector<bool>& is_static,
+                                  double height_m) {
   std::vector<CutGeom> cut;
   for (int geom = 0; geom < model.ngeom; ++geom) {
-    if (!is_static(model, model.geom_bodyid[geom]) || !lidar_can_hit(model, geom)) continue;
+    if (!is_static[static_cast<std::size_t>(model.geom_bodyid[geom])] || !lidar_can_hit(model, geom)) continue;
     if (model.geom_type[geom] == mjGEOM_PLANE) continue;  // has no interior
     const Bounds bounds = bounds_in_world(model, data, geom);
     if (bounds.min().z() < height_m && bounds.max().z() > height_m) cut.push_back({geom, bounds});
@@ -181,8 +198,8 @@ OccupancyGrid surface_of(const Grid<std::uint8_t>& solid) {
 }
 
 /// Marks the cells behind every surface crossed by rays along the center lines of rows and columns.
-Grid<std::uint8_t> cast_surfaces(const mjModel& model, const mjData& data, const GridGeometry& geometry,
-                                 double height_m) {
+Grid<std::uint8_t> cast_surfaces(const mjModel& model, const mjData& data, const std::vector<bool>& is_static,
+                                 const GridGeometry& geometry, double height_m) {
   constexpr double kStep_m = 1e-4;  // offset past a surface for the next cast
   sim::LidarScene lidar(model);
   lidar.update(data);
@@ -194,7 +211,7 @@ Grid<std::uint8_t> cast_surfaces(const mjModel& model, const mjData& data, const
       origin += (found->distance_m + kStep_m) * direction;
       length_m -= found->distance_m + kStep_m;
       const Cell cell = geometry.cell_at(origin.head<2>());
-      if (hit.contains(cell) && is_static(model, model.geom_bodyid[found->geom])) hit.at(cell) = 1;
+      if (hit.contains(cell) && is_static[static_cast<std::size_t>(model.geom_bodyid[found->geom])]) hit.at(cell) = 1;
     }
   };
   const Eigen::Vector2d size = geometry.resolution_m * Eigen::Vector2d(geometry.width, geometry.height);
@@ -248,7 +265,8 @@ ReferenceMapCheck check_and_complete(OccupancyGrid& map, const Grid<std::uint8_t
 ReferenceMap reference_map(const mjModel& view, const ReferenceMapSettings& settings) {
   const sim::DataPtr data = sim::make_data(view);
   mj_kinematics(&view, data.get());
-  const std::vector<CutGeom> cut = geoms_cut_at(view, *data, settings.height_m);
+  const std::vector<bool> is_static = static_bodies(view, settings);
+  const std::vector<CutGeom> cut = geoms_cut_at(view, *data, is_static, settings.height_m);
   if (cut.empty()) {
     throw InputError(fmt::format("reference map: no geom intersects the slice at {:.2f} m", settings.height_m));
   }
@@ -258,7 +276,8 @@ ReferenceMap reference_map(const mjModel& view, const ReferenceMapSettings& sett
 
   ReferenceMap reference;
   reference.map = surface_of(render_solid(view, *data, cut, geometry, settings.height_m));
-  reference.check = check_and_complete(reference.map, cast_surfaces(view, *data, geometry, settings.height_m));
+  reference.check =
+      check_and_complete(reference.map, cast_surfaces(view, *data, is_static, geometry, settings.height_m));
   return reference;
 }
 

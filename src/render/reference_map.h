@@ -1,6 +1,9 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include <mujoco/mujoco.h>
 
@@ -13,6 +16,8 @@ struct ReferenceMapSettings {
   double height_m = 0.4;  ///< height of the slice in world; height of the level robot's lidar
   double resolution_m = 0.025;
   double margin_m = 1.0;  ///< free cells around all objects
+  /// Names of the actors that move: mocap bodies, with their limbs ("NAME_..."). Without a value all mocap bodies do.
+  std::optional<std::vector<std::string>> actors = std::nullopt;
 };
 
 /// Agreement of rendered slice and ray casts about the surfaces.
@@ -40,7 +45,7 @@ struct ReferenceMap {
 /// Rays along the center lines of all rows and columns then check every surface and add objects that are too thin to
 /// contain a cell center.
 ///
-/// `view` is a render model (sim/model_assembly.h); the robot and all moving objects are excluded. Throws InputError
+/// `view` is a render model (sim/model_assembly.h); the robot and the moving objects are excluded. Throws InputError
 /// when no geom intersects the slice.
 ReferenceMap reference_map(const mjModel& view, const ReferenceMapSettings& settings = {});
 

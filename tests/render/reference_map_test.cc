@@ -144,6 +144,19 @@ TEST(ReferenceMapTest, LeavesOutWhatMoves) {
   EXPECT_EQ(value_at(map, 3.0, 0.0), kFree) << "a body that is free";
 }
 
+TEST(ReferenceMapTest, HasActorsThatStandStillForTheWholeRun) {
+  const auto model = small_scene(R"(<geom type="box" size="0.2 0.2 0.5" pos="0 0 0.5"/>
+      <body name="car" pos="1 0 0.5" mocap="true"><geom type="box" size="0.2 0.2 0.5"/></body>
+      <body name="walker" pos="2 0 0.5" mocap="true"><geom type="box" size="0.2 0.2 0.5"/></body>
+      <body name="walker_shank_left" pos="3 0 0.5" mocap="true"><geom type="box" size="0.2 0.2 0.5"/></body>
+      <body pos="4 0 0.5" mocap="true"><geom type="box" size="0.2 0.2 0.5"/></body>)");
+  const OccupancyGrid map = reference_map(*model, {.actors = {{"walker"}}}).map;
+  EXPECT_EQ(value_at(map, 1.0, 0.0), kUnknown);
+  EXPECT_EQ(value_at(map, 2.0, 0.0), kFree);
+  EXPECT_EQ(value_at(map, 3.0, 0.0), kFree) << "a limb";
+  EXPECT_EQ(value_at(map, 4.0, 0.0), kUnknown) << "without a name";
+}
+
 TEST(ReferenceMapTest, RaysAddWhatIsThinnerThanACell) {
   // 5 mm of sheet metal at x = 1.005 ... 1.01: no cell's centre (0.9875, 1.0125) is in it.
   const auto model = small_scene(R"(<geom type="box" size="0.0025 0.5 0.5" pos="1.0075 0.51 0.5"/>)");

@@ -1,5 +1,9 @@
 #include "app/scoring/true_map.h"
 
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "render/reference_map.h"
 
 namespace patrol::app {
@@ -20,8 +24,11 @@ TrueMap true_map(const RunRecord& record, const Scenario& scenario, const Scenar
   TrueMap truth{.world = sim::compile(*spec, files.world_xml.string()),
                 .lidar_height_m = mean_lidar_height_m(record, files),
                 .reference = {}};
-  const render::ReferenceMap map =
-      render::reference_map(*truth.world, {.height_m = truth.lidar_height_m, .resolution_m = kReferenceResolution_m});
+  std::vector<std::string> actors;
+  for (const sim::ActorSettings& actor : scenario.actors) actors.push_back(actor.name);
+  const render::ReferenceMap map = render::reference_map(
+      *truth.world,
+      {.height_m = truth.lidar_height_m, .resolution_m = kReferenceResolution_m, .actors = std::move(actors)});
   truth.reference_agreement = map.check.agreement_ratio();
   truth.reference = score::mark_observable(map.map, record.T_world_body, scenario.sensors.lidar.range_max_m);
   return truth;
