@@ -3,11 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/text.h"
+#include "io/logs/cloud_slice.h"
 #include "io/logs/run_log.h"
+#include "io/ros/point_cloud2.h"
 
 namespace patrol::io {
 namespace {
@@ -59,6 +63,21 @@ void tidy_ranges(LaserScan& scan, double no_return_m) {
   }
 }
 
+/// Splits a list separated by commas; spaces around the commas are ignored.
+std::vector<std::string> topics_of(const std::string& list) {
+  std::vector<std::string> topics;
+  std::istringstream stream(list);
+  for (std::string topic; std::getline(stream >> std::ws, topic, ',');) {
+    topic.erase(topic.find_last_not_of(' ') + 1);
+    if (!topic.empty()) topics.push_back(topic);
+  }
+  return topics;
+}
+
+bool contains(const std::vector<std::string>& topics, const std::string& topic) {
+  return std::find(topics.begin(), topics.end(), topic) != topics.end();
+}
+
 }  // namespace
 
 McapScanLog::McapScanLog(const std::filesystem::path& file, const ScanLogOptions& options,
@@ -66,7 +85,7 @@ McapScanLog::McapScanLog(const std::filesystem::path& file, const ScanLogOptions
     : file_(file),
       options_(options),
       reader_(file, {.topics = {}, .use_summary = false}),
-      scan_topic_(options.scan_topic),
+      scan_topics_(topics_of(options.scan_topic)),
       odometry_topic_(options.odometry_topic),
       imu_topic_(options.imu_topic),
       gyro_(gyro_bias_radps) {}
@@ -122,8 +141,11 @@ bool McapScanLog::read_message() {
 void McapScanLog::handle(const McapMessage& message) {
   const std::string &topic = message.channel.topic, &type = message.channel.type;
   if (type == kRosType<LaserScan>) {
-    if (scan_topic_.empty()) scan_topic_ = topic;
-    if (topic == scan_topic_) return add_scan(message);
+    if (scan_topics_.empty()) scan_topics_ = {topic};
+    if (contains(scan_topics_, topic)) return add_scan(message);
+  } else if (type == kRosType<PointCloud>) {
+    if (contains(scan_topics_, topic)) return add_cloud(message);
+    cloud_topics_.insert(topic);
   } else if (type == kRosType<OdometryEstimate>) {
     if (odometry_topic_.empty() || topic == odometry_topic_) return add_odometry(message);
   } else if (type == kRosType<Imu> && options_.imu != "off") {
@@ -137,6 +159,23 @@ void McapScanLog::handle(const McapMessage& message) {
 
 void McapScanLog::add_scan(const McapMessage& message) {
   WaitingScan waiting{.scan = decode<LaserScan>(message.cdr), .frame = frame_id_of(message.cdr)};
+  add_waiting(std::move(waiting), message);
+}
+
+/// Slices a cloud in the frame of the lidar without roll and pitch of its mount, if its mount is known by now.
+void McapScanLog::add_cloud(const McapMessage& message) {
+  const PointCloud cloud = decode_point_cloud(message.cdr);
+  WaitingScan waiting{.scan = {}, .frame = frame_id_of(message.cdr)};
+  const std::optional<Pose3> T_body_lidar = sensor_pose_in_body(waiting.frame, cloud.stamp);
+  Eigen::Quaterniond R_level_lidar = Eigen::Quaterniond::Identity();
+  if (T_body_lidar)
+    R_level_lidar = quaternion_from_yaw(to_pose2(*T_body_lidar).yaw).conjugate() * T_body_lidar->rotation;
+  waiting.scan = planar_slice(cloud, R_level_lidar, options_.cloud);
+  waiting.is_level = T_body_lidar.has_value();
+  add_waiting(std::move(waiting), message);
+}
+
+void McapScanLog::add_waiting(WaitingScan waiting, const McapMessage& message) {
   expect_scan(waiting.scan);
   tidy_ranges(waiting.scan, options_.no_return_m);
   waiting_.push_back(std::move(waiting));
@@ -206,7 +245,7 @@ void McapScanLog::add_with_pose(WaitingScan waiting, const Pose2& T_odom_body, c
            .T_odom_body = T_odom_body,
            .T_body_lidar = T_body_lidar,
            .T_begin_end = T_odom_body.inverse() * T_odom_last},
-          options_, fmt::format("{}: {}", file_.string(), scan_topic_));
+          options_, fmt::format("{}: {}", file_.string(), join(scan_topics_, ", ")));
 }
 
 std::optional<Pose3> McapScanLog::sensor_pose_in_body(const std::string& frame, Time stamp) const {
@@ -223,7 +262,7 @@ Pose3 McapScanLog::mount_of(WaitingScan& waiting) {
     return {};
   }
   const bool is_upside_down = (T_body_lidar->rotation * Eigen::Vector3d::UnitZ()).z() < 0.0;
-  if (is_upside_down) {
+  if (is_upside_down && !waiting.is_level) {
     waiting.scan.angle_min_rad *= -1.0;
     waiting.scan.angle_increment_rad *= -1.0;
   }
@@ -259,7 +298,10 @@ void McapScanLog::finish() {
       without_odometry > 0
           ? "no odometry overlaps the scans: must contain nav_msgs/msg/Odometry or tf odom -> base_link"
           : "contains no scan: must contain sensor_msgs/msg/LaserScan";
-  throw InputError(fmt::format("{}: {} ({})", file_.string(), what, counted(summary())));
+  const std::string clouds = cloud_topics_.empty() ? ""
+                                                   : fmt::format("; point clouds can be selected: log.scan_topic={}",
+                                                                 join(cloud_topics_, ","));
+  throw InputError(fmt::format("{}: {} ({}){}", file_.string(), what, counted(summary()), clouds));
 }
 
 }  // namespace patrol::io

@@ -2,7 +2,9 @@
 
 #include <deque>
 #include <optional>
+#include <set>
 #include <string>
+#include <vector>
 
 #include "io/logs/scan_log.h"
 #include "io/logs/scan_sorter.h"
@@ -12,8 +14,9 @@
 namespace patrol::io {
 
 /// Reader of 2D lidar scans from an MCAP log with ROS 2 messages, also the log.mcap of `patrol run`. Scans are
-/// sensor_msgs/LaserScan. Odometry is nav_msgs/Odometry or, if the file has none, tf (odom -> base_link), whichever
-/// covers a scan first; it is interpolated to the stamp of the scan.
+/// sensor_msgs/LaserScan, or slices of sensor_msgs/PointCloud2 if the topic is selected. Odometry is nav_msgs/Odometry
+/// or, if the file has none, tf (odom -> base_link), whichever covers a scan first; it is interpolated to the stamp of
+/// the scan.
 ///
 /// - Odometry in the frames `world` and `map` is not an estimate of odometry and is ignored, unless its topic is
 ///   selected.
@@ -40,12 +43,15 @@ class McapScanLog : public ScanLog {
   struct WaitingScan {
     LaserScan scan;
     std::string frame;
+    bool is_level = false;  ///< angles are about the vertical axis, not about that of the lidar
   };
 
   std::optional<McapMessage> next_message();
   bool read_message();
   void handle(const McapMessage& message);
   void add_scan(const McapMessage& message);
+  void add_cloud(const McapMessage& message);
+  void add_waiting(WaitingScan waiting, const McapMessage& message);
   void add_odometry(const McapMessage& message);
   void add_imu(const McapMessage& message);
   void add_transforms(const McapMessage& message, bool is_static);
@@ -61,7 +67,9 @@ class McapScanLog : public ScanLog {
   std::filesystem::path file_;
   ScanLogOptions options_;
   McapReader reader_;
-  std::string scan_topic_, odometry_topic_, imu_topic_, body_frame_;
+  std::vector<std::string> scan_topics_;
+  std::set<std::string> cloud_topics_;  ///< of clouds that are not selected
+  std::string odometry_topic_, imu_topic_, body_frame_;
   TransformBuffer odometry_;  ///< odometry topic only
   TransformBuffer frames_;    ///< transforms of /tf and /tf_static
   GyroOdometry gyro_;

@@ -10,6 +10,7 @@
 
 #include "core/sensors/recorded_scan.h"
 #include "core/settings.h"
+#include "io/logs/cloud_slice.h"
 #include "io/logs/gyro_odometry.h"
 #include "io/logs/scan_sorter.h"
 
@@ -20,13 +21,15 @@ struct ScanLogOptions {
   double no_return_m = 80.0;  ///< ranges from here on, or from the maximum of the sensor, are "no return"
   bool detect_no_return =
       true;  ///< detect a range value in the log that encodes "no return" (io/logs/no_return_detector.h)
-  std::string carmen_laser;    ///< message with the scans, e.g. "FLASER"; empty: the most informative one in the log
-  std::string scan_topic;      ///< MCAP only; empty: topic of the first scan
+  std::string carmen_laser;  ///< message with the scans, e.g. "FLASER"; empty: the most informative one in the log
+  /// MCAP only; LaserScan or PointCloud2, several separated by commas; empty: topic of the first LaserScan.
+  std::string scan_topic;
   std::string odometry_topic;  ///< MCAP only; empty: topic of the first odometry message, or tf if there is none
   /// MCAP only; on: yaw increments from the gyro (io/logs/gyro_odometry.h), auto: only if the first scans show that
   /// gyro and odometry disagree, off: never.
   std::string imu = "auto";
   std::string imu_topic = {};  ///< MCAP only; empty: topic of the first IMU message
+  CloudSliceSettings cloud = {};
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -39,6 +42,7 @@ struct ScanLogOptions {
     visit("odometry_topic", self.odometry_topic);
     visit("imu", self.imu, one_of({"auto", "on", "off"}));
     visit("imu_topic", self.imu_topic);
+    visit("cloud", self.cloud);
   }
 };
 

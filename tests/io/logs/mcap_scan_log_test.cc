@@ -127,6 +127,60 @@ TEST_F(McapScans, TopicsCanBeAskedFor) {
   EXPECT_THAT(result.summary.ignored, ElementsAre(Pair("/front/scan", 1U), Pair("/odom", 2U)));
 }
 
+TEST_F(McapScans, ScansOfSeveralLidarsEachHaveTheirMount) {
+  writer.write("/tf_static", 0s,
+               TransformSet{{placed("base_link", "lidar", {{0.3, 0.0, 0.2}, Eigen::Quaterniond::Identity()})}});
+  for (const Time t : {0s, 1s}) {
+    writer.write("/odom", t, odometry_at(t));
+    if (t == 0s) writer.write("/front/scan", t, scan_at(250ms));
+    if (t == 0s) writer.write("/rear/scan", t, scan_at(500ms));
+    if (t == 0s) writer.write("/top/scan", t, scan_at(600ms));
+  }
+  writer.close();
+  ScanLogOptions options;
+  options.scan_topic = "/front/scan, /rear/scan";
+  const Read result = read(options);
+  ASSERT_EQ(result.scans.size(), 2U);
+  EXPECT_EQ(result.scans[0].scan.stamp, 250ms);
+  EXPECT_EQ(result.scans[1].scan.stamp, 500ms);
+  EXPECT_THAT(result.summary.ignored, ElementsAre(Pair("/top/scan", 1U)));
+}
+
+/// Three points at 2 m ahead of a lidar that is pitched down by 0.5 rad: one at its height, one 1 m above, one below.
+PointCloud wall_ahead_of_a_tilted_lidar(Time stamp) {
+  PointCloud cloud{.stamp = stamp, .points = {}};
+  for (const double height_m : {0.0, 1.0, -1.0}) {
+    const Eigen::Vector3d point =
+        quaternion_from_rpy(0.0, 0.5, 0.0).conjugate() * Eigen::Vector3d(2.0 + 0.1 * height_m, 0.0, height_m);
+    cloud.points.push_back({.x = static_cast<float>(point.x()),
+                            .y = static_cast<float>(point.y()),
+                            .z = static_cast<float>(point.z()),
+                            .intensity = 0.0F,
+                            .time_s = 0.0F,
+                            .ring = 0});
+  }
+  return cloud;
+}
+
+TEST_F(McapScans, ASelectedPointCloudIsSlicedAtTheHeightOfTheLidar) {
+  writer.write("/tf_static", 0s,
+               TransformSet{{placed("base_link", "lidar3d", {{0.1, 0.0, 0.5}, quaternion_from_rpy(0.0, 0.5, 0.25)})}});
+  writer.write("/odom", 0s, odometry_at(0s));
+  writer.write("/points", 500ms, wall_ahead_of_a_tilted_lidar(500ms));
+  writer.write("/odom", 1s, odometry_at(1s));
+  writer.close();
+  EXPECT_THAT(complaint(), EndsWith("point clouds can be selected: log.scan_topic=/points"));
+  ScanLogOptions options;
+  options.scan_topic = "/points";
+  options.detect_no_return = false;  // the file has one range only
+  const RecordedScan recorded = read(options).scans.at(0);
+  EXPECT_THAT(recorded.T_body_lidar, Pose2Near(Pose2{0.1, 0.0, 0.25}, kExactTol, kExactTol));
+  EXPECT_NEAR(recorded.scan.ranges_m[360], 2.0F, 1e-5F);
+  EXPECT_EQ(std::count_if(recorded.scan.ranges_m.begin(), recorded.scan.ranges_m.end(),
+                          [](float range_m) { return std::isfinite(range_m); }),
+            1);
+}
+
 TEST_F(McapScans, ScansOutsideTheOdometrysTimeAreSkippedAndCounted) {
   writer.write("/scan", 0s, scan_at(500ms));
   writer.write("/odom", 1s, odometry_at(1s));
