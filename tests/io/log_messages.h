@@ -28,6 +28,15 @@ inline LaserScan scan_at(Time stamp, std::vector<float> ranges_m = {1.0F, 2.0F, 
           .intensities = {}};
 }
 
+inline CloudPoint cloud_point_at(const Eigen::Vector3d& position, double time_s = 0.0, int ring = 0) {
+  return {.x = static_cast<float>(position.x()),
+          .y = static_cast<float>(position.y()),
+          .z = static_cast<float>(position.z()),
+          .intensity = 0.0F,
+          .time_s = static_cast<float>(time_s),
+          .ring = static_cast<std::uint16_t>(ring)};
+}
+
 /// One metre a second along x, from x = 0 at 0 s.
 inline OdometryEstimate odometry_at(Time stamp, double lead_m = 0.0) {
   OdometryEstimate odometry;

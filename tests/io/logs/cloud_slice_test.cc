@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "core/frames.h"
+#include "core/geometry/angles.h"
+#include "tests/io/log_messages.h"
 
 namespace patrol::io::cloud_slice_test {
 namespace {
@@ -22,13 +24,9 @@ PointCloud turn_in_cylinder(double start_rad, double direction, bool has_times =
   for (int column = 0; column < kColumns; ++column) {
     const double part = static_cast<double>(column) / kColumns, azimuth = start_rad + direction * kTurn_rad * part;
     for (int ring = 0; ring < 16; ++ring) {
-      const double elevation = (2.0 * ring - 15.0) * std::numbers::pi / 180.0;
-      cloud.points.push_back({.x = static_cast<float>(5.0 * std::cos(azimuth)),
-                              .y = static_cast<float>(5.0 * std::sin(azimuth)),
-                              .z = static_cast<float>(5.0 * std::tan(elevation)),
-                              .intensity = 0.0F,
-                              .time_s = has_times ? static_cast<float>(0.1 * part) : 0.0F,
-                              .ring = static_cast<std::uint16_t>(ring)});
+      const double elevation = to_rad(2.0 * ring - 15.0);
+      const Eigen::Vector3d wall(5.0 * std::cos(azimuth), 5.0 * std::sin(azimuth), 5.0 * std::tan(elevation));
+      cloud.points.push_back(test::cloud_point_at(wall, has_times ? 0.1 * part : 0.0, ring));
     }
   }
   return cloud;
@@ -64,14 +62,12 @@ TEST(CloudSlice, TimesThatDoNotTurnAreNotUsed) {
 
 TEST(CloudSlice, TheNearestPointBetweenTheHeightsIsTheRangeAndAnEmptySectorIsNotANumber) {
   PointCloud cloud;
-  const auto add = [&](float x, float z) {
-    cloud.points.push_back({.x = x, .y = 0.0F, .z = z, .intensity = 0.0F, .time_s = 0.0F, .ring = 0});
-  };
-  add(1.0F, -0.25F);  // below
-  add(1.5F, 0.6F);    // above
-  add(3.0F, 0.0F);
-  add(2.0F, 0.4F);
-  add(4.0F, 0.0F);
+  const auto add = [&](double x, double z) { cloud.points.push_back(test::cloud_point_at({x, 0.0, z})); };
+  add(1.0, -0.25);  // below
+  add(1.5, 0.6);    // above
+  add(3.0, 0.0);
+  add(2.0, 0.4);
+  add(4.0, 0.0);
   const LaserScan scan = planar_slice(cloud, kLevel, {});
   EXPECT_EQ(scan.ranges_m[360], 2.0F);
   EXPECT_EQ(
@@ -82,13 +78,7 @@ TEST(CloudSlice, TheNearestPointBetweenTheHeightsIsTheRangeAndAnEmptySectorIsNot
 TEST(CloudSlice, HeightsAreAboveTheLidarWhenItIsMountedTilted) {
   PointCloud cloud;
   const Eigen::Quaterniond R_level_lidar = quaternion_from_rpy(0.0, 0.5, 0.0);
-  const Eigen::Vector3d point = R_level_lidar.conjugate() * Eigen::Vector3d(0.0, 6.0, 0.1);
-  cloud.points.push_back({.x = static_cast<float>(point.x()),
-                          .y = static_cast<float>(point.y()),
-                          .z = static_cast<float>(point.z()),
-                          .intensity = 0.0F,
-                          .time_s = 0.0F,
-                          .ring = 0});
+  cloud.points.push_back(test::cloud_point_at(R_level_lidar.conjugate() * Eigen::Vector3d(0.0, 6.0, 0.1)));
   EXPECT_NEAR(planar_slice(cloud, R_level_lidar, {}).ranges_m[540], 6.0F, 1e-5F);
 }
 

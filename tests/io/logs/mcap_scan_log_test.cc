@@ -150,14 +150,8 @@ TEST_F(McapScans, ScansOfSeveralLidarsEachHaveTheirMount) {
 PointCloud wall_ahead_of_a_tilted_lidar(Time stamp) {
   PointCloud cloud{.stamp = stamp, .points = {}};
   for (const double height_m : {0.0, 1.0, -1.0}) {
-    const Eigen::Vector3d point =
-        quaternion_from_rpy(0.0, 0.5, 0.0).conjugate() * Eigen::Vector3d(2.0 + 0.1 * height_m, 0.0, height_m);
-    cloud.points.push_back({.x = static_cast<float>(point.x()),
-                            .y = static_cast<float>(point.y()),
-                            .z = static_cast<float>(point.z()),
-                            .intensity = 0.0F,
-                            .time_s = 0.0F,
-                            .ring = 0});
+    cloud.points.push_back(test::cloud_point_at(quaternion_from_rpy(0.0, 0.5, 0.0).conjugate() *
+                                                Eigen::Vector3d(2.0 + 0.1 * height_m, 0.0, height_m)));
   }
   return cloud;
 }
