@@ -172,6 +172,7 @@ class Maps(unittest.TestCase):
         c, s = math.cos(origin["yaw_rad"]), math.sin(origin["yaw_rad"])
         built = occupied("map") @ np.array([[c, s], [-s, c]]) + np.array([origin["x_m"], origin["y_m"]])
         true = occupied("truth_map")
+
         def distance_to_truth(points):
             return np.concatenate([np.sqrt(((true[None] - part[:, None]) ** 2).sum(axis=2).min(axis=1))
                                    for part in np.array_split(points, 1 + len(points) // 200)])
@@ -189,7 +190,6 @@ class Maps(unittest.TestCase):
         self.assertLessEqual(float((errors - expected)[~is_saturated].max()), rounding)
         is_same = np.abs(errors - expected) <= rounding
         self.assertGreater(is_same[expected < 0.1].mean(), 0.95)
-
 
 
 class Report(unittest.TestCase):

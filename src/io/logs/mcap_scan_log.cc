@@ -88,7 +88,10 @@ McapScanLog::McapScanLog(const std::filesystem::path& file, const ScanLogOptions
       scan_topics_(topics_of(options.scan_topic)),
       odometry_topic_(options.odometry_topic),
       imu_topic_(options.imu_topic),
-      gyro_(gyro_bias_radps) {}
+      gyro_(gyro_bias_radps) {
+  if (!(options.cloud.min_height_m < options.cloud.max_height_m))
+    throw InputError("log.cloud.min_height_m: must be below log.cloud.max_height_m");
+}
 
 std::string McapScanLog::location(const McapMessage& message) const {
   return fmt::format("{}: {} at {:.9f} s: ", file_.string(), message.channel.topic, to_seconds(message.log_time));
@@ -294,10 +297,12 @@ void McapScanLog::finish() {
                                                         file_.string(), to_seconds(waiting_.front().scan.stamp)));
   }
   if (summary().num_scans > 0 || !sorter_.is_empty()) return;
-  const char* const what =
+  const std::string selected =
+      options_.scan_topic.empty() ? "" : fmt::format(" on {} (log.scan_topic)", options_.scan_topic);
+  const std::string what =
       without_odometry > 0
           ? "no odometry overlaps the scans: must contain nav_msgs/msg/Odometry or tf odom -> base_link"
-          : "contains no scan: must contain sensor_msgs/msg/LaserScan";
+          : fmt::format("contains no scan{}: must contain sensor_msgs/msg/LaserScan", selected);
   const std::string clouds = cloud_topics_.empty() ? ""
                                                    : fmt::format("; point clouds can be selected: log.scan_topic={}",
                                                                  join(cloud_topics_, ","));

@@ -64,9 +64,10 @@ double time_after(Time stamp, const std::uint8_t* point, const ros::CloudField& 
 
 void set_times(PointCloud& cloud, const std::vector<double>& times_s) {
   if (times_s.empty()) return;
+  if (!std::all_of(times_s.begin(), times_s.end(), [](double time_s) { return std::isfinite(time_s); })) return;
   const auto [first, last] = std::minmax_element(times_s.begin(), times_s.end());
   const bool is_plausible = *last - *first <= kMaxDuration_s && std::abs(*first) <= kMaxDuration_s;
-  if (!is_plausible) return;  // also if one is not a number
+  if (!is_plausible) return;
   for (std::size_t i = 0; i < times_s.size(); ++i) cloud.points[i].time_s = static_cast<float>(times_s[i] - *first);
   cloud.stamp += from_seconds(*first);
 }
@@ -90,6 +91,7 @@ Layout read_layout(std::string_view bytes, Time& stamp) {
   });
   if (layout.is_big_endian) throw DecodeError("point cloud: big-endian data");
   const std::uint64_t row_bytes = std::uint64_t{layout.point_step} * layout.width;
+  if (layout.height == 0 || layout.width == 0) layout.height = layout.width = 0;
   const bool fits = layout.height == 0 || (row_bytes <= layout.row_step &&
                                            std::uint64_t{layout.row_step} * layout.height <= layout.data.size());
   if (!fits) throw DecodeError("point cloud: less data than points");

@@ -165,7 +165,12 @@ TEST_F(McapScans, ASelectedPointCloudIsSlicedAtTheHeightOfTheLidar) {
   writer.close();
   EXPECT_THAT(complaint(), EndsWith("point clouds can be selected: log.scan_topic=/points"));
   ScanLogOptions options;
+  options.scan_topic = "/cloud";
+  EXPECT_THAT(complaint(options), HasSubstr("contains no scan on /cloud (log.scan_topic)"));
   options.scan_topic = "/points";
+  options.cloud = {.min_height_m = 0.5, .max_height_m = 0.5};
+  EXPECT_THROW(read(options), InputError);
+  options.cloud = {};
   options.detect_no_return = false;  // the file has one range only
   const RecordedScan recorded = read(options).scans.at(0);
   EXPECT_THAT(recorded.T_body_lidar, Pose2Near(Pose2{0.1, 0.0, 0.25}, kExactTol, kExactTol));

@@ -96,6 +96,16 @@ TEST(PointCloud2, ReadsAbsoluteTimesInSecondsAndTimesBeforeTheStamp) {
   EXPECT_EQ(other_clock.points[1].time_s, 0.0F);
 }
 
+TEST(PointCloud2, ReadsACloudWithoutColumnsAndOneWithTimesThatAreNotFinite) {
+  EXPECT_TRUE(decode_point_cloud(organized_cloud(kOuster, 16, "", "")).points.empty());
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<Field> fields{{"time", 0, 8}, {"x", 8, 7}, {"y", 12, 7}, {"z", 16, 7}};
+  const PointCloud cloud =
+      decode_point_cloud(organized_cloud(fields, 20, point(0.1, 1.0F, 0.0F, 0.0F), point(nan, 2.0F, 0.0F, 0.0F)));
+  EXPECT_EQ(cloud.stamp, 5s);
+  for (const CloudPoint& read : cloud.points) EXPECT_EQ(read.time_s, 0.0F);
+}
+
 TEST(PointCloud2, ReadsTheCloudsOfARun) {
   PointCloud cloud{.stamp = 3s, .points = {}};
   cloud.points.push_back({.x = 1.0F, .y = 2.0F, .z = 3.0F, .intensity = 9.0F, .time_s = 0.0F, .ring = 1});
