@@ -23,9 +23,9 @@ struct Candidate {
 class Search {
  public:
   Search(const LikelihoodPyramid& map, const std::vector<Eigen::Vector2d>& points, const SearchWindow& window,
-         int best_sum, const std::optional<SearchExclusion>& exclusion)
+         int best_sum, std::span<const SearchExclusion> exclusions)
       : map_(map),
-        exclusion_(exclusion),
+        exclusions_(exclusions),
         best_sum_(best_sum),
         cell_m_(map.resolution_m()),
         num_steps_(2 * static_cast<int>(std::ceil(window.half_width_m / cell_m_)) + 1) {
@@ -95,19 +95,21 @@ class Search {
             rotated_[static_cast<std::size_t>(candidate.rotation)].yaw_rad};
   }
 
-  /// Returns whether all translations of the candidate are excluded.
+  /// Returns whether one exclusion covers all translations of the candidate.
   bool is_excluded(const Candidate& candidate, int level) const {
-    if (!exclusion_) return false;
+    if (exclusions_.empty()) return false;
     const Pose2 pose = pose_of(candidate);
     const double half_m = 0.5 * ((1 << level) - 1) * cell_m_;
-    const Eigen::Vector2d offset =
-        pose.position() + Eigen::Vector2d::Constant(half_m) - exclusion_->T_map_center.position();
-    return (offset.cwiseAbs() + Eigen::Vector2d::Constant(half_m)).norm() <= exclusion_->radius_m &&
-           std::abs(wrap_angle(pose.yaw - exclusion_->T_map_center.yaw)) <= exclusion_->angle_rad;
+    const Eigen::Vector2d center = pose.position() + Eigen::Vector2d::Constant(half_m);
+    return std::ranges::any_of(exclusions_, [&](const SearchExclusion& exclusion) {
+      const Eigen::Vector2d offset = center - exclusion.T_map_center.position();
+      return (offset.cwiseAbs() + Eigen::Vector2d::Constant(half_m)).norm() <= exclusion.radius_m &&
+             std::abs(wrap_angle(pose.yaw - exclusion.T_map_center.yaw)) <= exclusion.angle_rad;
+    });
   }
 
   const LikelihoodPyramid& map_;
-  std::optional<SearchExclusion> exclusion_;
+  std::span<const SearchExclusion> exclusions_;
   int best_sum_;
   double cell_m_;
   int num_steps_;
@@ -120,11 +122,11 @@ class Search {
 
 std::optional<SearchResult> search_window(const LikelihoodPyramid& map, const std::vector<Eigen::Vector2d>& points,
                                           const SearchWindow& window, double min_score,
-                                          const std::optional<SearchExclusion>& exclusion) {
+                                          std::span<const SearchExclusion> exclusions) {
   if (points.empty()) return std::nullopt;
   const int min_sum =
       static_cast<int>(std::floor(min_score * LikelihoodPyramid::kOnSurface * static_cast<double>(points.size())));
-  return Search(map, points, window, min_sum, exclusion).run();
+  return Search(map, points, window, min_sum, exclusions).run();
 }
 
 }  // namespace patrol::slam

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -17,7 +18,7 @@ struct SearchWindow {
   double half_angle_rad = 0.2;
 };
 
-/// Neighborhood of a pose that is excluded from a search, to find a second-best match.
+/// Neighborhood of a pose that is excluded from a search, to find other matches.
 struct SearchExclusion {
   Pose2 T_map_center;
   double radius_m = 1.0;
@@ -35,6 +36,6 @@ struct SearchResult {
 /// points.
 std::optional<SearchResult> search_window(const LikelihoodPyramid& map, const std::vector<Eigen::Vector2d>& points,
                                           const SearchWindow& window, double min_score,
-                                          const std::optional<SearchExclusion>& exclusion = std::nullopt);
+                                          std::span<const SearchExclusion> exclusions = {});
 
 }  // namespace patrol::slam

@@ -32,8 +32,9 @@ inline PoseGaussian match_prior(const Pose2& T_submap_start) {
 }
 
 /// Matches two submaps within three standard deviations of the prediction. A branch-and-bound search gives the coarse
-/// pose, a second one checks for an ambiguous match, and Gauss-Newton on lines refines the pose. Finally, the surfaces
-/// of each submap must lie on surfaces of the other wherever the other has observed cells.
+/// pose, a second one checks for an ambiguous match, and Gauss-Newton on lines refines the pose. The surfaces of each
+/// submap must lie on surfaces of the other wherever the other has observed cells. Finally, no other pose of the same
+/// angle in the window may pass these tests with nearly the same inlier ratio.
 SubmapMatchResult match_submaps(const RenderedSubmap& target, const RenderedSubmap& source,
                                 const PoseGaussian& prediction, const SubmapMatcherSettings& settings,
                                 const ScanMatcherSettings& matching);

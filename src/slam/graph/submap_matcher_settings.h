@@ -16,6 +16,8 @@ struct SubmapMatcherSettings {
   double min_matched_length_m = 8.0;  ///< minimum length of matched surface
   /// The match is rejected if a distinct pose scores more than this fraction of the best score.
   double max_second_best_ratio = 0.9;
+  /// The match is rejected if a distinct pose would be accepted with more than this fraction of its inlier ratio.
+  double max_second_best_inlier_fraction = 0.95;
   double min_second_best_distance_m = 0.8;  ///< poses at least this far from the best are distinct
   double min_second_best_angle_rad = 0.35;
 
@@ -29,6 +31,7 @@ struct SubmapMatcherSettings {
     visit("min_inlier_ratio", self.min_inlier_ratio, between(0.0, 1.0));
     visit("min_matched_length_m", self.min_matched_length_m, at_least(0.0));
     visit("max_second_best_ratio", self.max_second_best_ratio, between(0.0, 1.0));
+    visit("max_second_best_inlier_fraction", self.max_second_best_inlier_fraction, between(0.0, 10.0));
     visit("min_second_best_distance_m", self.min_second_best_distance_m, at_least(0.0));
     visit("min_second_best_angle_rad", self.min_second_best_angle_rad, at_least(0.0));
   }

@@ -24,7 +24,7 @@ bool has_second_best(const SubmapSurfaces& target, const SubmapSurfaces& source,
                                .radius_m = settings.min_second_best_distance_m,
                                .angle_rad = settings.min_second_best_angle_rad};
   return search_window(target.pyramid, source.descriptor.points, around, settings.max_second_best_ratio * found->score,
-                       itself)
+                       std::span(&itself, 1))
       .has_value();
 }
 

@@ -71,7 +71,7 @@ TEST(SearchWindow, ExcludedPosesAreNotFoundAgainAndTheSecondBestScoresLess) {
   const auto best = search_window(office_pyramid(), points_seen(), window, 0.0);
   ASSERT_TRUE(best);
   const SearchExclusion exclusion{.T_map_center = best->T_map_points, .radius_m = 0.8, .angle_rad = 1.0};
-  const auto rival = search_window(office_pyramid(), points_seen(), window, 0.0, exclusion);
+  const auto rival = search_window(office_pyramid(), points_seen(), window, 0.0, std::span(&exclusion, 1));
   ASSERT_TRUE(rival);
   EXPECT_GT((rival->T_map_points.position() - best->T_map_points.position()).norm(), 0.8);
   EXPECT_LT(rival->score, 0.8 * best->score);

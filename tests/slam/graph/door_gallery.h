@@ -41,9 +41,9 @@ struct DoorGallery {
   }
 
   /// Drive from the hall to the niches, back, and to the niches again. The odometry's scale is drawn for each of the
-  /// three legs, with a standard deviation of `scale_std`. With the default, two passages differ by one standard
-  /// deviation of the drift that GraphSlam predicts for them (0.02 m per meter and submap).
-  static std::vector<DriveStep> drive(std::uint64_t seed, double scale_std = 0.015) {
+  /// three legs, around 1 + `scale_mean` with a standard deviation of `scale_std`. With the default, two passages
+  /// differ by one standard deviation of the drift that GraphSlam predicts for them (0.02 m per meter and submap).
+  static std::vector<DriveStep> drive(std::uint64_t seed, double scale_mean = 0.0, double scale_std = 0.015) {
     std::vector<DriveStep> steps =
         drive_along({{5.0, 0.0}, {64.0, 0.0}, {5.0, 0.0}, {64.0, 0.0}},
                     {.speed_mps = 1.0, .odometry_scale = 0.0, .odometry_drift_rad_per_m = 0.002});
@@ -57,7 +57,7 @@ struct DoorGallery {
       const bool is_turning = motion.position().norm() < 1e-9;
       if (was_turning && !is_turning) ++leg;
       was_turning = is_turning;
-      motion.x *= 1.0 + scale_std * draw.normal(leg);
+      motion.x *= 1.0 + scale_mean + scale_std * draw.normal(leg);
       steps[k].T_odom_body = steps[k - 1].T_odom_body * motion;
     }
     return steps;

@@ -47,19 +47,33 @@ inline RoomWorld make_office() {
   return office;
 }
 
+/// Points along a wall at y = `y` from x = `begin` to `end`, with a door niche 1 m wide and 0.3 m deep every `spacing`
+/// from `first` on, m.
+inline std::vector<Eigen::Vector2d> wall_with_doors(double y, double begin, double end, double first, double spacing) {
+  std::vector<Eigen::Vector2d> wall = {{begin, y}};
+  const double out = y < 0.0 ? -0.3 : 0.3;
+  for (double x = first; x < end - 1.0; x += spacing) {
+    for (const auto& [dx, depth] : {std::pair{0.0, 0.0}, {0.0, out}, {1.0, out}, {1.0, 0.0}})
+      wall.emplace_back(x + dx, y + depth);
+  }
+  wall.emplace_back(end, y);
+  return wall;
+}
+
 /// A corridor of 60 m with a door niche every three meters on both sides, all alike, closed at both ends.
 inline RoomWorld make_corridor_of_doors() {
   RoomWorld corridor;
-  for (const double side : {-1.0, 1.0}) {
-    std::vector<Eigen::Vector2d> wall = {{0.0, side}};
-    for (double x = 1.0; x < 59.0; x += 3.0) {
-      for (const auto& [dx, depth] : {std::pair{0.0, 0.0}, {0.0, 0.3}, {1.0, 0.3}, {1.0, 0.0}})
-        wall.emplace_back(x + dx, side * (1.0 + depth));
-    }
-    wall.emplace_back(60.0, side);
-    corridor.add_polyline(wall);
-  }
+  for (const double side : {-1.0, 1.0}) corridor.add_polyline(wall_with_doors(side, 0.0, 60.0, 1.0, 3.0));
   corridor.add_wall(0.0, -1.0, 0.0, 1.0).add_wall(60.0, -1.0, 60.0, 1.0);
+  return corridor;
+}
+
+/// A corridor along x, 2.4 m wide and open at both ends, 100 m and more from the origin, with a door niche every
+/// `spacing_m` on both sides.
+inline RoomWorld make_endless_corridor_of_doors(double spacing_m, double phase_m) {
+  RoomWorld corridor;
+  for (const double side : {-1.2, 1.2})
+    corridor.add_polyline(wall_with_doors(side, -110.0, 150.0, -100.0 + phase_m, spacing_m));
   return corridor;
 }
 
