@@ -7,11 +7,35 @@
 namespace patrol::slam {
 namespace {
 
-/// Rotated points in cells of the finest level.
+/// Cell of a level of the pyramid with consecutive points in it.
+struct PointCell {
+  int col = 0, row = 0;
+  int num_points = 0;
+};
+
+/// Points rotated by an angle.
 struct RotatedPoints {
   double yaw_rad = 0.0;
-  std::vector<Cell> cells;
+  /// Cells of the points at the first translation of the window, [level][cell]; empty until they are needed.
+  std::vector<std::vector<PointCell>> levels;
 };
+
+int floor_to_int(double value) {
+  const int truncated = static_cast<int>(value);
+  return truncated - (value < truncated ? 1 : 0);
+}
+
+/// Cells of a coarser level, by the cells of the finest; consecutive points in the same cell are counted together.
+std::vector<PointCell> coarser(const std::vector<PointCell>& finest, int level) {
+  std::vector<PointCell> coarse;
+  for (const PointCell& fine : finest) {
+    const int col = fine.col >> level, row = fine.row >> level;
+    if (!coarse.empty() && coarse.back().col == col && coarse.back().row == row)
+      coarse.back().num_points += fine.num_points;
+    else coarse.push_back({.col = col, .row = row, .num_points = fine.num_points});
+  }
+  return coarse;
+}
 
 /// Square of 2^level x 2^level translations, in cells from the lower left corner of the window.
 struct Candidate {
@@ -35,40 +59,92 @@ class Search {
     const int num_rotations = static_cast<int>(std::ceil(window.half_angle_rad / step_rad));
     corner_m_ = window.T_map_center.position() - Eigen::Vector2d::Constant(0.5 * (num_steps_ - 1) * cell_m_);
     for (int rotation = -num_rotations; rotation <= num_rotations; ++rotation) {
-      RotatedPoints rotated{.yaw_rad = wrap_angle(window.T_map_center.yaw + rotation * step_rad), .cells = {}};
+      RotatedPoints rotated{.yaw_rad = wrap_angle(window.T_map_center.yaw + rotation * step_rad), .levels = {}};
       const Eigen::Matrix2d R = Eigen::Rotation2Dd(rotated.yaw_rad).toRotationMatrix();
+      std::vector<PointCell> cells;
+      cells.reserve(points.size());
       for (const Eigen::Vector2d& point : points) {
         const Eigen::Vector2d cell = (R * point + corner_m_) / cell_m_;
-        rotated.cells.push_back({static_cast<int>(std::floor(cell.x())), static_cast<int>(std::floor(cell.y()))});
+        cells.push_back({.col = floor_to_int(cell.x()), .row = floor_to_int(cell.y()), .num_points = 1});
       }
+      rotated.levels.resize(static_cast<std::size_t>(map.num_levels()));
+      rotated.levels[0] = std::move(cells);
       rotated_.push_back(std::move(rotated));
     }
   }
 
   std::optional<SearchResult> run() {
-    const int top = map_.num_levels() - 1, step = 1 << top;
-    std::vector<Candidate> candidates;
-    for (int rotation = 0; rotation < static_cast<int>(rotated_.size()); ++rotation) {
-      for (int row = 0; row < num_steps_; row += step) {
-        for (int col = 0; col < num_steps_; col += step) add(rotation, col, row, top, candidates);
-      }
-    }
-    descend(candidates, top);
+    descend(coarsest_candidates(), map_.num_levels() - 1);
     if (!best_) return std::nullopt;
     return SearchResult{.T_map_points = pose_of(*best_),
                         .score = best_sum_ / (static_cast<double>(LikelihoodPyramid::kOnSurface) *
-                                              static_cast<double>(rotated_[0].cells.size()))};
+                                              static_cast<double>(rotated_[0].levels[0].size()))};
   }
 
  private:
-  void add(int rotation, int col, int row, int level, std::vector<Candidate>& candidates) const {
-    int sum = 0;
-    for (const Cell& cell : rotated_[static_cast<std::size_t>(rotation)].cells)
-      sum += map_.value(level, cell.col + col, cell.row + row);
-    if (sum > best_sum_) candidates.push_back({rotation, col, row, sum});
+  const std::vector<PointCell>& cells_of(int rotation, int level) {
+    RotatedPoints& points = rotated_[static_cast<std::size_t>(rotation)];
+    std::vector<PointCell>& cells = points.levels[static_cast<std::size_t>(level)];
+    if (cells.empty()) cells = coarser(points.levels[0], level);
+    return cells;
   }
 
-  void descend(std::vector<Candidate>& candidates, int level) {
+  // Adds a candidate if the bound of its sum exceeds the best sum.
+  void add(const Candidate& candidate, std::vector<Candidate>& candidates) const {
+    if (candidate.row < num_steps_ && candidate.col < num_steps_ && candidate.bound > best_sum_)
+      candidates.push_back(candidate);
+  }
+
+  std::vector<Candidate> coarsest_candidates() {
+    const int top = map_.num_levels() - 1, step = 1 << top;
+    const LikelihoodPyramid::Level& values = map_.level(top);
+    std::vector<Candidate> candidates;
+    for (int rotation = 0; rotation < static_cast<int>(rotated_.size()); ++rotation) {
+      for (int row = 0; row < num_steps_; row += step) {
+        for (int col = 0; col < num_steps_; col += step) {
+          int bound = 0;
+          for (const PointCell& cell : cells_of(rotation, top))
+            bound += cell.num_points * values.find(cell.col + (col >> top), cell.row + (row >> top));
+          add({rotation, col, row, bound}, candidates);
+        }
+      }
+    }
+    return candidates;
+  }
+
+  // The four quarters of a candidate, whose bounds are sums over neighboring cells of the next finer level.
+  std::vector<Candidate> children(const Candidate& parent, int level) {
+    const LikelihoodPyramid::Level& values = map_.level(level);
+    const int shift_col = (parent.col >> level) - values.first_col,
+              shift_row = (parent.row >> level) - values.first_row;
+    int bound_00 = 0, bound_01 = 0, bound_10 = 0, bound_11 = 0;  // [row][col]
+    for (const PointCell& cell : cells_of(parent.rotation, level)) {
+      const int col = cell.col + shift_col, row = cell.row + shift_row, n = cell.num_points;
+      if (col >= 0 && row >= 0 && col + 1 < values.width && row + 1 < values.height) {
+        const std::int8_t* lower = &values.values[static_cast<std::size_t>(row * values.width + col)];
+        const std::int8_t* upper = lower + values.width;
+        bound_00 += n * lower[0];
+        bound_01 += n * lower[1];
+        bound_10 += n * upper[0];
+        bound_11 += n * upper[1];
+      } else {
+        const int level_col = col + values.first_col, level_row = row + values.first_row;
+        bound_00 += n * values.find(level_col, level_row);
+        bound_01 += n * values.find(level_col + 1, level_row);
+        bound_10 += n * values.find(level_col, level_row + 1);
+        bound_11 += n * values.find(level_col + 1, level_row + 1);
+      }
+    }
+    const int half = 1 << level, right = parent.col + half, above = parent.row + half;
+    std::vector<Candidate> quarters;
+    add({parent.rotation, parent.col, parent.row, bound_00}, quarters);
+    add({parent.rotation, right, parent.row, bound_01}, quarters);
+    add({parent.rotation, parent.col, above, bound_10}, quarters);
+    add({parent.rotation, right, above, bound_11}, quarters);
+    return quarters;
+  }
+
+  void descend(std::vector<Candidate> candidates, int level) {
     std::stable_sort(candidates.begin(), candidates.end(),
                      [](const Candidate& a, const Candidate& b) { return a.bound > b.bound; });
     for (const Candidate& candidate : candidates) {
@@ -79,14 +155,7 @@ class Search {
         best_sum_ = candidate.bound;
         return;
       }
-      const int half = 1 << (level - 1);
-      std::vector<Candidate> children;
-      for (const int row : {candidate.row, candidate.row + half}) {
-        for (const int col : {candidate.col, candidate.col + half}) {
-          if (row < num_steps_ && col < num_steps_) add(candidate.rotation, col, row, level - 1, children);
-        }
-      }
-      descend(children, level - 1);
+      descend(children(candidate, level - 1), level - 1);
     }
   }
 

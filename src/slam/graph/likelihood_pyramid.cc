@@ -1,6 +1,7 @@
 #include "slam/graph/likelihood_pyramid.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -9,9 +10,19 @@ namespace {
 
 constexpr int kMargin_cells = 2;  ///< radius in cells around a surface with nonzero likelihood
 
-/// Value at a squared distance, in cells, from a surface.
-int near_surface(int squared_distance) {
-  return static_cast<int>(std::lround(LikelihoodPyramid::kOnSurface * std::exp(-0.5 * squared_distance)));
+/// Values around a surface, [row][col].
+using Kernel = std::array<std::array<std::int8_t, 2 * kMargin_cells + 1>, 2 * kMargin_cells + 1>;
+
+Kernel surface_kernel() {
+  Kernel kernel{};
+  for (int row = -kMargin_cells; row <= kMargin_cells; ++row) {
+    for (int col = -kMargin_cells; col <= kMargin_cells; ++col) {
+      const double likelihood = std::exp(-0.5 * (col * col + row * row));
+      kernel[static_cast<std::size_t>(row + kMargin_cells)][static_cast<std::size_t>(col + kMargin_cells)] =
+          static_cast<std::int8_t>(std::lround(LikelihoodPyramid::kOnSurface * likelihood));
+    }
+  }
+  return kernel;
 }
 
 }  // namespace
@@ -53,24 +64,32 @@ LikelihoodPyramid::Level LikelihoodPyramid::rasterize_finest(const GridMap& map)
   Level finest = empty_level(map);
   std::vector<Cell> surfaces;
   map.for_each_tile([&](Cell first, const GridTile& tile) {
+    std::array<Cell, GridTile::kSize> centers;  // of the cells on the tile's diagonal: the column and row of each cell
+    for (int i = 0; i < GridTile::kSize; ++i)
+      centers[static_cast<std::size_t>(i)] = cell_of(map.center_of({first.col + i, first.row + i}));
     for (int row = 0; row < GridTile::kSize; ++row) {
       for (int col = 0; col < GridTile::kSize; ++col) {
         const GridCell& cell = tile.at(col, row);
         if (!cell.is_observed()) continue;
-        const Eigen::Vector2d center = map.center_of({first.col + col, first.row + row});
         if (cell.is_surface()) {
+          const Eigen::Vector2d center = map.center_of({first.col + col, first.row + row});
           surfaces.push_back(cell_of(center + Eigen::Vector2d(cell.mean_x_m, cell.mean_y_m)));
-        } else if (const Cell coarse = cell_of(center); finest.at(coarse.col, coarse.row) == 0) {
-          finest.at(coarse.col, coarse.row) = kInFreeSpace;
+        } else if (std::int8_t& value = finest.at(centers[static_cast<std::size_t>(col)].col,
+                                                  centers[static_cast<std::size_t>(row)].row);
+                   value == 0) {
+          value = kInFreeSpace;
         }
       }
     }
   });
+  const Kernel kernel = surface_kernel();
   for (const Cell& surface : surfaces) {
-    for (int row = -kMargin_cells; row <= kMargin_cells; ++row) {
-      for (int col = -kMargin_cells; col <= kMargin_cells; ++col) {
-        std::int8_t& value = finest.at(surface.col + col, surface.row + row);
-        value = std::max(value, static_cast<std::int8_t>(near_surface(col * col + row * row)));
+    int row = surface.row - kMargin_cells;
+    for (const auto& values : kernel) {
+      std::int8_t* cell = &finest.at(surface.col - kMargin_cells, row++);
+      for (const std::int8_t value : values) {
+        *cell = std::max(*cell, value);
+        ++cell;
       }
     }
   }

@@ -30,7 +30,7 @@ class LikelihoodPyramid {
   static constexpr int kOnSurface = 100;
   static constexpr int kInFreeSpace = -40;
 
- private:
+  /// Grid of the values of one level.
   struct Level {
     int first_col = 0, first_row = 0, width = 0, height = 0;
     std::vector<std::int8_t> values;  ///< [row][col]
@@ -41,11 +41,16 @@ class LikelihoodPyramid {
     }
     /// Returns 0 outside the level.
     int find(int col, int row) const {
-      const int c = col - first_col, r = row - first_row;
-      return c < 0 || r < 0 || c >= width || r >= height ? 0 : values[static_cast<std::size_t>(r * width + c)];
+      const auto c = static_cast<unsigned>(col - first_col), r = static_cast<unsigned>(row - first_row);
+      return c < static_cast<unsigned>(width) && r < static_cast<unsigned>(height)
+                 ? values[r * static_cast<unsigned>(width) + c]
+                 : 0;
     }
   };
 
+  const Level& level(int number) const { return levels_[static_cast<std::size_t>(number)]; }
+
+ private:
   Cell cell_of(const Eigen::Vector2d& p_map) const;
   Level empty_level(const GridMap& map) const;
   Level rasterize_finest(const GridMap& map) const;

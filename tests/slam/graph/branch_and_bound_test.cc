@@ -66,6 +66,23 @@ TEST(SearchWindow, NoShiftOfAllFourHundredAndFortyOneScoresHigher) {
   EXPECT_DOUBLE_EQ(found->score, best);
 }
 
+// Windows at the edges of the map, with points inside and outside of it.
+TEST(SearchWindow, NoShiftScoresHigherInWindowsAcrossTheEdgesOfTheMap) {
+  for (const Eigen::Vector2d& center : {Eigen::Vector2d(-4.0, 1.0), Eigen::Vector2d(22.0, 5.0),
+                                        Eigen::Vector2d(9.0, -7.0), Eigen::Vector2d(8.0, 12.0)}) {
+    const SearchWindow window{
+        .T_map_center = {center.x(), center.y(), 0.5}, .half_width_m = 1.5, .half_angle_rad = 0.0};
+    const auto found = search_window(office_pyramid(), points_seen(), window, -1.0);
+    ASSERT_TRUE(found);
+    double best = -1.0;
+    for (int row = 0; row <= 30; ++row) {
+      for (int col = 0; col <= 30; ++col)
+        best = std::max(best, score_of(found->T_map_points, center - Eigen::Vector2d(1.5, 1.5), {col, row}));
+    }
+    EXPECT_DOUBLE_EQ(found->score, best) << center.transpose();
+  }
+}
+
 TEST(SearchWindow, ExcludedPosesAreNotFoundAgainAndTheSecondBestScoresLess) {
   const SearchWindow window{.T_map_center = kSeen, .half_width_m = 3.0, .half_angle_rad = 0.3};
   const auto best = search_window(office_pyramid(), points_seen(), window, 0.0);
