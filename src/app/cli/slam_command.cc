@@ -27,6 +27,7 @@
 #include "slam/calibration/calibration.h"
 #include "slam/consistency/map_consistency.h"
 #include "slam/consistency/odometry_check.h"
+#include "slam/consistency/unsupported_path.h"
 #include "slam/methods/mapper.h"
 #include "slam/planar_scan.h"
 
@@ -177,9 +178,11 @@ ExitCode slam_command(const SlamOptions& options) {
   io::save_settings(options.out / "settings.yaml", settings);
   io::save_csv(options.out / "performance.csv", mapped.cost.table());
   io::Metrics metrics = metrics_of(log->summary(), mapped, estimate, graph);
-  const ConsistencyReport consistency{.consistency = mapped.consistency.check(path), .stamps = mapped.stamps};
   const OdometryReport odometry{.health = slam::check_odometry(mapped.T_odom_body, path, mapped.stamps),
                                 .stamps = mapped.stamps};
+  ConsistencyReport consistency{.consistency = mapped.consistency.check(path), .stamps = mapped.stamps};
+  consistency.consistency.unsupported =
+      slam::find_unsupported_path(consistency.consistency.unmatched_segments, odometry.health.faulty, mapped.stamps);
   const double took_s = wall_seconds() - wall_s;
   metrics["performance"] = {{"wall_s", took_s},
                             {"processor_s", thread_cpu_time_s() - thread_s},

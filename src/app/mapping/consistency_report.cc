@@ -50,6 +50,15 @@ MappingVerdict ConsistencyReport::verdict() const {
                 fmt::format("{:.0f} % of the scans matched no surfaces, at most {} in a row, from {:.0f} s",
                             100.0 * consistency.unmatched_ratio(), segment.num_scans, seconds(segment.first_scan))};
   }
+  if (!consistency.unsupported.empty()) {
+    const slam::UnsupportedPath& worst = consistency.unsupported.front();
+    return {.word = "look at " + place(worst.scans.p_map),
+            .tone = report::Tone::kBad,
+            .reason =
+                fmt::format("from {:.0f} s, {} scans in a row matched no surfaces, and odometry contradicts {:.1f} m "
+                            "of the path there",
+                            seconds(worst.scans.first_scan), worst.scans.num_scans, worst.contradiction_m)};
+  }
   return {.word = "not checked",
           .tone = report::Tone::kWarning,
           .reason = "no two segments of the path saw the same surfaces"};
@@ -68,13 +77,18 @@ io::Metrics ConsistencyReport::metrics() const {
                              {"offset_m", entry.offset_m},
                              {"offset_deg", kDegPerRad * entry.offset_rad}});
   }
-  io::Metrics unmatched = io::Metrics::array();
-  for (std::size_t i = 0; i < std::min(kListed, consistency.unmatched_segments.size()); ++i) {
-    const slam::UnmatchedSegment& segment = consistency.unmatched_segments[i];
-    unmatched.push_back({{"x_m", segment.p_map.x()},
-                         {"y_m", segment.p_map.y()},
-                         {"from_s", seconds(segment.first_scan)},
-                         {"scans", segment.num_scans}});
+  const auto to_metrics = [&](const slam::UnmatchedSegment& segment) {
+    return io::Metrics{{"x_m", segment.p_map.x()},
+                       {"y_m", segment.p_map.y()},
+                       {"from_s", seconds(segment.first_scan)},
+                       {"scans", segment.num_scans}};
+  };
+  io::Metrics unmatched = io::Metrics::array(), unsupported = io::Metrics::array();
+  for (std::size_t i = 0; i < std::min(kListed, consistency.unmatched_segments.size()); ++i)
+    unmatched.push_back(to_metrics(consistency.unmatched_segments[i]));
+  for (std::size_t i = 0; i < std::min(kListed, consistency.unsupported.size()); ++i) {
+    unsupported.push_back(to_metrics(consistency.unsupported[i].scans));
+    unsupported.back()["contradiction_m"] = consistency.unsupported[i].contradiction_m;
   }
   return {{"consistent", consistency.is_consistent()},
           {"segments", consistency.num_segments},
@@ -83,7 +97,8 @@ io::Metrics ConsistencyReport::metrics() const {
           {"disagreements", disagreements},
           {"unmatched_scans", consistency.num_unmatched},
           {"unmatched_ratio", consistency.unmatched_ratio()},
-          {"unmatched_segments", unmatched}};
+          {"unmatched_segments", unmatched},
+          {"unsupported", unsupported}};
 }
 
 report::VerdictBlock ConsistencyReport::block() const {
@@ -116,6 +131,8 @@ std::vector<report::MapMark> ConsistencyReport::marks() const {
     const slam::UnmatchedSegment& segment = consistency.unmatched_segments.front();
     marks.push_back({.label = fmt::format("{} scans unmatched", segment.num_scans), .p_m = segment.p_map});
   }
+  for (std::size_t i = 0; i < std::min(kMarked, consistency.unsupported.size()); ++i)
+    marks.push_back({.label = "not supported", .p_m = consistency.unsupported[i].scans.p_map});
   return marks;
 }
 

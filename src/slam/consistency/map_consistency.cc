@@ -92,7 +92,7 @@ Comparison compare(const RenderedSubmap& a, const RenderedSubmap& b, const Pose2
 bool MapConsistency::has_too_many_unmatched() const { return unmatched_ratio() > kMaxUnmatchedRatio; }
 
 bool MapConsistency::is_consistent() const {
-  return num_compared > 0 && disagreements.empty() && !has_too_many_unmatched();
+  return num_compared > 0 && disagreements.empty() && unsupported.empty() && !has_too_many_unmatched();
 }
 
 void ConsistencyCheck::add(const LevelScan& scan, const SlamUpdate& update) {

@@ -25,6 +25,12 @@ struct UnmatchedSegment {
   Eigen::Vector2d p_map = Eigen::Vector2d::Zero();  ///< of its first scan
 };
 
+/// Part of the path that neither scans nor odometry support (unsupported_path.h).
+struct UnsupportedPath {
+  UnmatchedSegment scans;
+  double contradiction_m = 0.0;  ///< length of the path that odometry contradicts
+};
+
 /// Agreement of a map with the scans from which it was made, without ground truth.
 struct MapConsistency {
   int num_segments = 0;
@@ -33,13 +39,15 @@ struct MapConsistency {
   std::size_t num_scans = 0;                              ///< scans with returns
   std::size_t num_unmatched = 0;                          ///< of them, scans that matched no surfaces
   std::vector<UnmatchedSegment> unmatched_segments = {};  ///< most scans first
+  std::vector<UnsupportedPath> unsupported = {};          ///< most scans first; ConsistencyCheck leaves it empty
 
   double unmatched_ratio() const {
     return num_scans == 0 ? 0.0 : static_cast<double>(num_unmatched) / static_cast<double>(num_scans);
   }
   bool has_too_many_unmatched() const;  ///< more than a fifth of the scans
-  /// Whether nothing indicates a wrong map: segments could be compared and agree, and most scans matched. A map can be
-  /// consistent and wrong, for example if a loop was not closed and its ends do not overlap in the map.
+  /// Whether nothing indicates a wrong map: segments could be compared and agree, most scans matched, and scans or
+  /// odometry support the path. A map can be consistent and wrong, for example if a loop was not closed and its ends do
+  /// not overlap in the map.
   bool is_consistent() const;
 };
 

@@ -41,7 +41,7 @@ bool are_opposite(double a, double b, double unit) {
 bool exceeds(double odometry, double map, double limit) { return std::abs(odometry) > 2.0 * std::abs(map) + limit; }
 
 struct OdometrySegment {
-  std::size_t first_scan = 0;
+  std::size_t first_scan = 0, last_scan = 0;
   double distance_m = 0.0;
   MotionSegment motion;  ///< its lidar steps are those of the body by map
   bool has_jump = false;
@@ -67,6 +67,7 @@ std::vector<OdometrySegment> divide_odometry(const std::vector<Pose2>& T_odom_bo
       step_begin = i;
     }
     if (!is_end) continue;
+    open.last_scan = i;
     open.motion.begin = stamps[open.first_scan];
     open.motion.end = stamps[i];
     open.motion.odometry = whole_odometry;
@@ -197,6 +198,7 @@ void collect_faults(const std::vector<OdometrySegment>& segments,
                                .p_map = T_map_body[segments[s].first_scan].position()});
     }
     health.faulty.back().distance_m += segments[s].distance_m;
+    health.faulty.back().last_scan = segments[s].last_scan;
   }
   std::stable_sort(health.faulty.begin(), health.faulty.end(),
                    [](const FaultyOdometry& a, const FaultyOdometry& b) { return a.distance_m > b.distance_m; });

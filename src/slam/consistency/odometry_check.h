@@ -25,7 +25,7 @@ inline constexpr std::array<std::string_view, 4> kOdometryFaultNames = {"constan
 /// Consecutive segments of the path with the same fault.
 struct FaultyOdometry {
   OdometryFault fault{};
-  std::size_t first_scan = 0;
+  std::size_t first_scan = 0, last_scan = 0;
   double distance_m = 0.0;                          ///< along the mapped path
   Eigen::Vector2d p_map = Eigen::Vector2d::Zero();  ///< of the first scan
 };

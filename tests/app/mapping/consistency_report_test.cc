@@ -51,6 +51,22 @@ TEST(ConsistencyReport, OfAThirdOfTheScansUnmatchedIsBadAndNamesTheLongestSegmen
   EXPECT_EQ(result.metrics()["unmatched_segments"][1]["from_s"], 80.0);
 }
 
+TEST(ConsistencyReport, OfAPathThatNothingSupportsIsBadAndNamesPlaceTimeAndContradiction) {
+  const ConsistencyReport result = report_of(
+      {.num_compared = 12,
+       .num_scans = 100,
+       .num_unmatched = 6,
+       .unsupported = {{.scans = {.first_scan = 40, .num_scans = 6, .p_map = {3.0, 4.0}}, .contradiction_m = 2.9}}});
+  EXPECT_EQ(
+      result.line(),
+      "look at (3.0, 4.0): from 40 s, 6 scans in a row matched no surfaces, and odometry contradicts 2.9 m of the "
+      "path there");
+  EXPECT_EQ(result.block().tone, Tone::kBad);
+  EXPECT_EQ(result.marks().size(), 1U);
+  EXPECT_EQ(result.metrics()["consistent"], false);
+  EXPECT_EQ(result.metrics()["unsupported"][0]["contradiction_m"], 2.9);
+}
+
 TEST(ConsistencyReport, WithoutPairsIsNotCheckedEvenIfAScanIsUnmatched) {
   const ConsistencyReport result =
       report_of({.num_scans = 100, .num_unmatched = 1, .unmatched_segments = {{.num_scans = 1}}});

@@ -56,6 +56,7 @@ TEST(OdometryCheck, OdometryThatStandsFor100ScansIsConstantThere) {
   EXPECT_EQ(health.faulty[0].fault, OdometryFault::kConstant);
   EXPECT_NEAR(health.faulty[0].distance_m, 100 * 0.12, 0.7);
   EXPECT_NEAR(static_cast<double>(health.faulty[0].first_scan), 100.0, 5.0);
+  EXPECT_NEAR(static_cast<double>(health.faulty[0].last_scan), 200.0, 5.0);
   EXPECT_EQ(health.faulty[0].p_map, drive.T_map_body[health.faulty[0].first_scan].position());
   EXPECT_NEAR(health.distance->value, 1.0 / 1.03, 0.001);
 }
