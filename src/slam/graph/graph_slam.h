@@ -32,7 +32,8 @@ namespace patrol::slam {
 ///
 /// Deviations from [Hess16]:
 /// - Submaps are matched with submaps, not scans with submaps: ten meters of walls are distinctive where a scan is not.
-/// - The search window follows from the graph, and a second-best match of similar score rejects the best.
+/// - The search window follows from the graph, and a second-best match of similar score or similar inlier ratio rejects
+///   the best.
 /// - Edges are weighted with the information of the match: along a corridor a loop closure does not constrain.
 /// - Submaps are not stored but rendered from their scans at the current poses, so memory grows with the scans only.
 class GraphSlam {
