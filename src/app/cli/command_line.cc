@@ -210,6 +210,7 @@ void add_slam(CLI::App& app, Call& call) {
   command->add_option("--method", slam.method, "Mapping method (see 'patrol list')");
   command->add_option("--set", slam.overrides, kSetHelp)->take_all();
   command->add_option("--calibration", slam.calibration, "Calibration file of 'patrol calibrate'");
+  command->add_option("--map", slam.earlier_map, "Earlier output directory of 'patrol slam', whose map is extended");
   command->add_option("--seed", slam.seed, kSeedHelp);
   command->add_flag("--skip-invalid", slam.skip_invalid, kSkipHelp);
   command->add_option("--out", slam.out, kOutHelp)->capture_default_str();

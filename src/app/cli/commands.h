@@ -88,6 +88,7 @@ struct SlamOptions {
   std::optional<std::string> method;  ///< slam.method
   std::vector<std::string> overrides;
   std::optional<std::filesystem::path> calibration;  ///< calibration.yaml of `patrol calibrate`
+  std::optional<std::filesystem::path> earlier_map;  ///< directory of an earlier `patrol slam`, whose map is extended
   std::optional<std::uint64_t> seed;
   bool skip_invalid = false;
   std::filesystem::path out = "out/slam";

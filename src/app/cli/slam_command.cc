@@ -12,6 +12,7 @@
 #include "app/mapping/mapping_page.h"
 #include "app/mapping/odometry_report.h"
 #include "app/mapping/read_scans.h"
+#include "app/mapping/submap_graph_files.h"
 #include "app/scenario/neighbor_model.h"
 #include "app/scenario/scenario.h"
 #include "core/thread_cpu_time.h"
@@ -37,7 +38,7 @@ namespace {
 const OutputKind kMapping = {.name = "mapping of a log",
                              .marker_text = "The log is not completely mapped.",
                              .outputs = {"estimate.tum", "odometry.tum", "map.yaml", "map.pgm", "pose_graph.g2o",
-                                         "performance.csv", "metrics.json", "settings.yaml", "report.html"},
+                                         "submaps.csv", "keyframes.mcap", "performance.csv", "metrics.json", "settings.yaml", "report.html"},
                              .required_file = "settings.yaml",
                              .preserved = {"*.part"}};
 
@@ -157,6 +158,15 @@ ExitCode slam_command(const SlamOptions& options) {
   if (needs_neighbor_model(settings.slam.method))
     neighbors = load_neighbor_model(settings.slam.method, find_data_root(""));
   const std::unique_ptr<slam::Mapper> mapper = slam::make_mapper(settings.slam, neighbors, settings.seed);
+  std::size_t num_earlier_nodes = 0;
+  if (options.earlier_map) {
+    if (std::filesystem::weakly_canonical(*options.earlier_map) == std::filesystem::weakly_canonical(options.out))
+      throw InputError("--out: must not be the directory of --map");
+    const slam::SubmapGraph earlier = load_submap_graph(*options.earlier_map);
+    num_earlier_nodes = earlier.keyframes.size();
+    if (!mapper->extend(earlier))
+      throw InputError(fmt::format("--map: method {} cannot extend a map", settings.slam.method));
+  }
 
   const double wall_s = wall_seconds(), thread_s = thread_cpu_time_s();
   MappedLog mapped;
@@ -168,19 +178,26 @@ ExitCode slam_command(const SlamOptions& options) {
   }
   const std::vector<Pose2> path = mapper->path();
   const Trajectory estimate = trajectory_of(mapped.stamps, path);
-  const PoseGraph graph = mapper->graph();
+  const std::optional<slam::SubmapGraph> submaps = mapper->submap_graph();
+  const PoseGraph graph = submaps ? submaps->graph : mapper->graph();
+  if (!mapper->is_located()) num_earlier_nodes = 0;
   io::save_tum(options.out / "estimate.tum", estimate, "T_map_body by " + settings.slam.method);
   io::save_tum(options.out / "odometry.tum", trajectory_of(mapped.stamps, mapped.T_odom_body),
                "T_odom_body, from the first scan");
   const OccupancyGrid map = mapper->map();
   io::save_map(options.out / "map.yaml", map);
-  io::save_g2o(options.out / "pose_graph.g2o", graph);
+  if (submaps) save_submap_graph(options.out, *submaps);
+  else io::save_g2o(options.out / "pose_graph.g2o", graph);
   io::save_settings(options.out / "settings.yaml", settings);
   io::save_csv(options.out / "performance.csv", mapped.cost.table());
   io::Metrics metrics = metrics_of(log->summary(), mapped, estimate, graph);
   const OdometryReport odometry{.health = slam::check_odometry(mapped.T_odom_body, path, mapped.stamps),
                                 .stamps = mapped.stamps};
-  ConsistencyReport consistency{.consistency = mapped.consistency.check(path), .stamps = mapped.stamps};
+  std::vector<slam::Keyframe> earlier;
+  if (submaps)
+    earlier.assign(submaps->keyframes.begin(),
+                   submaps->keyframes.begin() + static_cast<std::ptrdiff_t>(num_earlier_nodes));
+  ConsistencyReport consistency{.consistency = mapped.consistency.check(path, earlier), .stamps = mapped.stamps};
   consistency.consistency.unsupported =
       slam::find_unsupported_path(consistency.consistency.unmatched_segments, odometry.health.faulty, mapped.stamps);
   const double took_s = wall_seconds() - wall_s;
@@ -189,6 +206,8 @@ ExitCode slam_command(const SlamOptions& options) {
                             {"real_time_factor", mapped.duration_s() / std::max(1e-9, took_s)},
                             {"peak_memory_mb", peak_memory_mb()}};
   metrics["loop_closures"] = to_metrics(mapper->loop_closure_statistics());
+  metrics["earlier_map"] =
+      options.earlier_map ? io::Metrics{{"located", mapper->is_located()}, {"nodes", num_earlier_nodes}} : nullptr;
   metrics["consistency"] = consistency.metrics();
   metrics["odometry"] = odometry.metrics();
   io::save_metrics(options.out / "metrics.json", metrics);

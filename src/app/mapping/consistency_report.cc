@@ -37,9 +37,10 @@ MappingVerdict ConsistencyReport::verdict() const {
     return {.word = "look at " + place(worst.p_map),
             .tone = report::Tone::kBad,
             .reason = fmt::format(
-                "the surfaces seen at {:.0f} s and at {:.0f} s are {:.1f} m and {:.0f} deg apart; {} of {} pairs of "
-                "segments disagree",
-                seconds(worst.first_scan), seconds(worst.second_scan), worst.offset_m,
+                "the surfaces seen {} and at {:.0f} s are {:.1f} m and {:.0f} deg apart; {} of {} pairs of segments "
+                "disagree",
+                worst.first_scan ? fmt::format("at {:.0f} s", seconds(*worst.first_scan)) : "in earlier sessions",
+                seconds(worst.second_scan), worst.offset_m,
                 std::abs(kDegPerRad * worst.offset_rad), consistency.disagreements.size(), consistency.num_compared)};
   }
   if (consistency.has_too_many_unmatched()) {
@@ -72,7 +73,7 @@ io::Metrics ConsistencyReport::metrics() const {
     const slam::Disagreement& entry = consistency.disagreements[i];
     disagreements.push_back({{"x_m", entry.p_map.x()},
                              {"y_m", entry.p_map.y()},
-                             {"first_s", seconds(entry.first_scan)},
+                             {"first_s", entry.first_scan ? io::Metrics(seconds(*entry.first_scan)) : nullptr},
                              {"second_s", seconds(entry.second_scan)},
                              {"offset_m", entry.offset_m},
                              {"offset_deg", kDegPerRad * entry.offset_rad}});
@@ -112,7 +113,7 @@ report::VerdictBlock ConsistencyReport::block() const {
   for (std::size_t i = 0; i < std::min(kShown, consistency.disagreements.size()); ++i) {
     const slam::Disagreement& entry = consistency.disagreements[i];
     table.rows.push_back({{place(entry.p_map)},
-                          {fmt::format("{:.0f}", seconds(entry.first_scan))},
+                          {entry.first_scan ? fmt::format("{:.0f}", seconds(*entry.first_scan)) : "earlier"},
                           {fmt::format("{:.0f}", seconds(entry.second_scan))},
                           {fmt::format("{:.2f}", entry.offset_m)},
                           {fmt::format("{:.1f}", kDegPerRad * entry.offset_rad)}});

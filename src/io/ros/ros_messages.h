@@ -26,6 +26,14 @@ struct TransformSet {
   std::vector<FrameTransform> transforms;
 };
 
+/// Scans of a keyframe of a map, in the frame of the keyframe. As a point cloud with the fields x, y, z (end of a beam),
+/// vp_x, vp_y, vp_z (position of the lidar, named as in PCL's PointWithViewpoint), scan (index, uint16) and hit (uint8;
+/// 0: the beam was free up to its end).
+struct KeyframeScans {
+  Time stamp{};                  ///< of the newest scan
+  std::vector<LevelScan> scans;  ///< oldest first
+};
+
 template <typename Message>
 inline constexpr const char* kRosType = nullptr;
 template <IsSensorMessage Message>
@@ -72,6 +80,8 @@ template <>
 inline constexpr const char* kRosType<AsBuiltTruth> = "patrol_msgs/msg/NamedValues";
 template <>
 inline constexpr const char* kRosType<Collision> = "patrol_msgs/msg/Collision";
+template <>
+inline constexpr const char* kRosType<KeyframeScans> = "sensor_msgs/msg/PointCloud2";
 template <>
 inline constexpr const char* kRosType<TransformSet> = "tf2_msgs/msg/TFMessage";
 

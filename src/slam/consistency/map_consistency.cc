@@ -36,11 +36,12 @@ struct Segment {
   Eigen::Vector2d center_map;
 };
 
-std::vector<Segment> divide(const std::vector<Pose2>& T_map_kept) {
+/// Segments of the path through `T_map_kept`, whose indices in ranges begin at `first_index`.
+std::vector<Segment> divide(const std::vector<Pose2>& T_map_kept, int first_index) {
   std::vector<Segment> segments;
   double length_m = 0.0;
   for (std::size_t i = 0; i < T_map_kept.size(); ++i) {
-    const int k = static_cast<int>(i);
+    const int k = first_index + static_cast<int>(i);
     if (i > 0) length_m += (T_map_kept[i].position() - T_map_kept[i - 1].position()).norm();
     if (segments.empty() || length_m > kSegment_m) {
       segments.push_back({.range = {.first = k, .last = k}, .center_map = T_map_kept[i].position()});
@@ -110,7 +111,8 @@ void ConsistencyCheck::add(const LevelScan& scan, const SlamUpdate& update) {
   kept_indices_.push_back(scans_.size() - 1);
 }
 
-MapConsistency ConsistencyCheck::check(const std::vector<Pose2>& T_map_body) const {
+MapConsistency ConsistencyCheck::check(const std::vector<Pose2>& T_map_body,
+                                       const std::vector<Keyframe>& earlier) const {
   MapConsistency result;
   bool continues = false;
   for (std::size_t i = 0; i < scans_.size(); ++i) {
@@ -126,10 +128,25 @@ MapConsistency ConsistencyCheck::check(const std::vector<Pose2>& T_map_body) con
   std::stable_sort(result.unmatched_segments.begin(), result.unmatched_segments.end(),
                    [](const UnmatchedSegment& a, const UnmatchedSegment& b) { return a.num_scans > b.num_scans; });
 
-  std::vector<Pose2> T_map_kept;
+  std::vector<Keyframe> joined;
+  if (!earlier.empty()) {
+    joined = earlier;
+    joined.insert(joined.end(), kept_.begin(), kept_.end());
+  }
+  const std::vector<Keyframe>& keyframes = earlier.empty() ? kept_ : joined;
+  std::vector<Pose2> T_map_earlier, T_map_kept;
+  for (const Keyframe& keyframe : earlier) T_map_earlier.push_back(keyframe.T_local_body);
   for (const std::size_t index : kept_indices_) T_map_kept.push_back(T_map_body[index]);
-  const std::vector<Segment> segments = divide(T_map_kept);
-  result.num_segments = static_cast<int>(segments.size());
+  std::vector<Segment> segments = divide(T_map_earlier, 0);
+  const std::size_t num_earlier = segments.size();
+  const std::vector<Segment> own = divide(T_map_kept, static_cast<int>(earlier.size()));
+  segments.insert(segments.end(), own.begin(), own.end());
+  result.num_segments = static_cast<int>(own.size());
+  std::vector<Pose2> T_map_keyframe = std::move(T_map_earlier);
+  T_map_keyframe.insert(T_map_keyframe.end(), T_map_kept.begin(), T_map_kept.end());
+  const auto first_scan = [&](std::size_t s) {
+    return kept_indices_[static_cast<std::size_t>(segments[s].range.first) - earlier.size()];
+  };
   const MapRenderingSettings rendering{
       .resolution_m = kResolution_m,
       .max_extent_m = kMaxExtent_m,
@@ -138,11 +155,11 @@ MapConsistency ConsistencyCheck::check(const std::vector<Pose2>& T_map_body) con
   SubmapCache cache(kCachedSegments);
   const auto rendered = [&](std::size_t s) {
     return cache.get(static_cast<int>(s), [&] {
-      return std::make_shared<const RenderedSubmap>(segments[s].range, kept_, T_map_kept, rendering);
+      return std::make_shared<const RenderedSubmap>(segments[s].range, keyframes, T_map_keyframe, rendering);
     });
   };
-  const auto T_map = [&](std::size_t s) { return T_map_kept[static_cast<std::size_t>(segments[s].range.first)]; };
-  for (std::size_t b = 0; b < segments.size(); ++b) {
+  const auto T_map = [&](std::size_t s) { return T_map_keyframe[static_cast<std::size_t>(segments[s].range.first)]; };
+  for (std::size_t b = num_earlier; b < segments.size(); ++b) {
     for (std::size_t a = 0; a < b; ++a) {
       if ((segments[a].center_map - segments[b].center_map).norm() > kMaxDistance_m) continue;
       const Comparison comparison = compare(*rendered(a), *rendered(b), T_map(a).inverse() * T_map(b),
@@ -150,8 +167,8 @@ MapConsistency ConsistencyCheck::check(const std::vector<Pose2>& T_map_body) con
       result.num_compared += comparison.is_overlapping ? 1 : 0;
       if (!comparison.better) continue;
       result.disagreements.push_back({.p_map = 0.5 * (segments[a].center_map + segments[b].center_map),
-                                      .first_scan = kept_indices_[static_cast<std::size_t>(segments[a].range.first)],
-                                      .second_scan = kept_indices_[static_cast<std::size_t>(segments[b].range.first)],
+                                      .first_scan = a < num_earlier ? std::nullopt : std::optional(first_scan(a)),
+                                      .second_scan = first_scan(b),
                                       .offset_m = comparison.better->position().norm(),
                                       .offset_rad = comparison.better->yaw});
     }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -13,8 +14,9 @@ namespace patrol::slam {
 
 /// Two segments of the path that saw the same surfaces in different places of the map.
 struct Disagreement {
-  Eigen::Vector2d p_map;                        ///< between the centers of the segments
-  std::size_t first_scan = 0, second_scan = 0;  ///< first scans of the segments
+  Eigen::Vector2d p_map;                  ///< between the centers of the segments
+  std::optional<std::size_t> first_scan;  ///< first scan of the first segment; none: it is of an earlier session
+  std::size_t second_scan = 0;            ///< first scan of the second segment
   /// Displacement and rotation of the second segment, about its center, with which its surfaces match the first.
   double offset_m = 0.0, offset_rad = 0.0;
 };
@@ -59,8 +61,9 @@ class ConsistencyCheck {
  public:
   /// Adds the next scan with the result of mapping it.
   void add(const LevelScan& scan, const SlamUpdate& update);
-  /// Compares the scans at the poses `T_map_body` [scan].
-  MapConsistency check(const std::vector<Pose2>& T_map_body) const;
+  /// Compares the scans at the poses `T_map_body` [scan] with each other and with the keyframes of earlier sessions,
+  /// whose T_local_body is their pose in the map.
+  MapConsistency check(const std::vector<Pose2>& T_map_body, const std::vector<Keyframe>& earlier = {}) const;
 
  private:
   struct MatchedScan {

@@ -9,12 +9,18 @@ namespace patrol::slam {
 
 void GraphSlam::finish() {
   while (finished_submaps_ < static_cast<int>(submaps_.size())) close_loops(finished_submaps_++);
+  if (!is_located_) locate_by_single_submap();
+  if (!is_located_) remove_earlier_map();
+  // The refinement of earlier sessions is repeated.
+  std::erase_if(graph_.edges, [&](const PoseGraphEdge& edge) {
+    return edge.kind == PoseGraphEdge::Kind::kLoop && std::max(edge.from, edge.to) < first_keyframe_;
+  });
   const std::size_t num_edges = graph_.edges.size();
   for (int round = 0; round < settings_.refinement_iterations; ++round) {
     graph_.edges.resize(num_edges);
     cache_.clear();
     refine();
-    solve(graph_, settings_.solver, survey_);
+    optimize();
   }
   is_finished_ = true;
 }

@@ -36,7 +36,7 @@ SlamUpdate GraphSlam::update(const LevelScan& input_scan, const Pose2& T_odom_bo
   add_positions(tracked, T_odom_body);
   if (tracked.is_keyframe && !survey_.ranges.ranges().empty() &&
       survey_.ranges.ranges().back().node >= smoothed_until_ + settings_.range_smoothing_period_keyframes)
-    smooth_with_ranges(tracked.submap);
+    smooth_with_ranges(first_submap_ + tracked.submap);
   path_.push_back({static_cast<int>(keyframes_.size()) - 1, tracked.T_local_body});
   now_.mean = T_map_body(tracked.T_local_body);
   return {.T_map_body = now_.mean,
@@ -51,7 +51,7 @@ Pose2 GraphSlam::T_map_body(const Pose2& T_local_body) const {
 
 void GraphSlam::add_keyframe(const TrackedScan& tracked) {
   const int node = static_cast<int>(keyframes_.size());
-  if (node == 0) {
+  if (node == first_keyframe_) {
     graph_.T_map_node.push_back(tracked.T_local_body);
   } else {
     const Keyframe& before = keyframes_.back();
@@ -68,13 +68,14 @@ void GraphSlam::add_keyframe(const TrackedScan& tracked) {
   }
   keyframes_.push_back({tracked.scans, tracked.T_local_body});
   if (tracked.is_submap_start) submaps_.push_back({.first = node, .last = node});
-  for (auto s = static_cast<std::size_t>(tracked.submap); s < submaps_.size(); ++s) submaps_[s].last = node;
-  while (finished_submaps_ < tracked.submap) close_loops(finished_submaps_++);
+  const int submap = first_submap_ + tracked.submap;
+  for (auto s = static_cast<std::size_t>(submap); s < submaps_.size(); ++s) submaps_[s].last = node;
+  while (finished_submaps_ < submap) close_loops(finished_submaps_++);
 }
 
 // Adds an edge between the newest node and its matched submap.
 void GraphSlam::add_match_edge(const TrackedScan& tracked) {
-  const int first = submaps_[static_cast<std::size_t>(tracked.submap)].first,
+  const int first = submaps_[static_cast<std::size_t>(first_submap_ + tracked.submap)].first,
             node = static_cast<int>(graph_.T_map_node.size()) - 1;
   const Pose2& T_local_first = keyframes_[static_cast<std::size_t>(first)].T_local_body;
   graph_.edges.push_back(
@@ -172,13 +173,20 @@ Eigen::Vector2d GraphSlam::submap_center(int submap) const {
   return sum / (range.last - range.first + 1);
 }
 
-// Uses the drift between consecutive submaps and the loop closures.
+// Uses the drift between consecutive submaps and the loop closures. An earlier map is optimized: its submaps do not
+// drift. Submaps of other sessions have infinite covariance until a loop is closed.
 std::vector<PoseGaussian> GraphSlam::relative_pose_distributions(int submap) const {
   std::vector<Pose2> T_map_submaps;
   for (int s = 0; s < finished_submaps_; ++s) T_map_submaps.push_back(T_map_submap(s));
   std::vector<CovarianceEdge> covariance_edges;
-  for (int s = 0; s + 1 < finished_submaps_; ++s)
-    covariance_edges.push_back({.from = s, .to = s + 1, .covariance = odometry_drift_covariance(s)});
+  const Eigen::Matrix3d earlier = Eigen::Vector3d(settings_.edge_std_m, settings_.edge_std_m, settings_.edge_std_rad)
+                                      .cwiseAbs2()
+                                      .asDiagonal();
+  for (int s = 0; s + 1 < finished_submaps_; ++s) {
+    if (s + 1 == first_submap_) continue;  // between the sessions there are only loop closures
+    covariance_edges.push_back(
+        {.from = s, .to = s + 1, .covariance = s < first_submap_ ? earlier : odometry_drift_covariance(s)});
+  }
   for (const LoopEdge& loop : loops_) {
     covariance_edges.push_back({.from = loop.target,
                                 .to = loop.source,
@@ -221,6 +229,7 @@ std::vector<int> GraphSlam::submaps_near(int source, const std::vector<PoseGauss
     // overlapping submaps
     if (submaps_[static_cast<std::size_t>(target)].last >= submaps_[static_cast<std::size_t>(source)].first) continue;
     const Eigen::Matrix3d& covariance = around[static_cast<std::size_t>(target)].covariance;
+    if (!covariance.allFinite()) continue;
     const double search_radius_m =
         settings_.max_loop_distance_m + 2.0 * std::sqrt(std::max(covariance(0, 0), covariance(1, 1)));
     const double distance_m = (submap_center(target) - center).norm();
@@ -230,7 +239,15 @@ std::vector<int> GraphSlam::submaps_near(int source, const std::vector<PoseGauss
 }
 
 void GraphSlam::close_loops(int source) {
-  const std::vector<PoseGaussian> around = relative_pose_distributions(source);
+  if (!is_located_) locate(source);
+  const bool has_closed = add_loops(source, relative_pose_distributions(source));
+  if (has_closed || is_surveyed(submaps_[static_cast<std::size_t>(source)])) optimize();
+}
+
+// The pose of a session that is not located is fixed by its first node.
+void GraphSlam::optimize() { solve(graph_, settings_.solver, survey_, is_located_ ? 1 : first_keyframe_ + 1); }
+
+bool GraphSlam::add_loops(int source, const std::vector<PoseGaussian>& around) {
   bool has_closed = false;
   for (const int target : submaps_near(source, around)) {
     PoseGaussian prediction = invert(around[static_cast<std::size_t>(target)]);  // pose of source in target
@@ -247,7 +264,7 @@ void GraphSlam::close_loops(int source) {
                             .information = match_edge_information(result.match->information),
                             .kind = PoseGraphEdge::Kind::kLoop});
   }
-  if (has_closed || is_surveyed(submaps_[static_cast<std::size_t>(source)])) solve(graph_, settings_.solver, survey_);
+  return has_closed;
 }
 
 std::shared_ptr<const RenderedSubmap> GraphSlam::rendered(int submap) {
@@ -260,7 +277,7 @@ std::shared_ptr<const RenderedSubmap> GraphSlam::rendered(int submap) {
 std::vector<std::size_t> GraphSlam::node_scan_indices() const {
   std::vector<std::size_t> scans;
   for (std::size_t i = 0; i < path_.size(); ++i) {
-    if (path_[i].keyframe == static_cast<int>(scans.size())) scans.push_back(i);
+    if (path_[i].keyframe == first_keyframe_ + static_cast<int>(scans.size())) scans.push_back(i);
   }
   return scans;
 }

@@ -13,6 +13,7 @@
 #include "slam/graph/pose_graph_solver.h"
 #include "slam/graph/scan_tracker.h"
 #include "slam/graph/submap.h"
+#include "slam/graph/submap_graph.h"
 #include "slam/graph/submap_matcher.h"
 #include "slam/mapped_range.h"
 #include "slam/slam_update.h"
@@ -30,6 +31,9 @@ namespace patrol::slam {
 ///                  add an edge from submap to submap and optimize the graph, also with new positions
 ///   finish         render all submaps again, match every keyframe with the surrounding submaps, optimize
 ///
+/// A session can extend the map of earlier sessions (extend). Its submaps are searched in the whole earlier map until
+/// two of them agree on its pose; from then on it is part of one graph, with loop closures to the earlier submaps.
+///
 /// Deviations from [Hess16]:
 /// - Submaps are matched with submaps, not scans with submaps: ten meters of walls are distinctive where a scan is not.
 /// - The search window follows from the graph, and a second-best match of similar score or similar inlier ratio rejects
@@ -39,6 +43,9 @@ namespace patrol::slam {
 class GraphSlam {
  public:
   explicit GraphSlam(const GraphSlamSettings& settings);
+
+  /// Extends a map of earlier sessions, before the first scan.
+  void extend(const SubmapGraph& earlier);
 
   /// Adds a UWB range measured before the next scan. It is rejected if NLOS (range_update.h).
   void add(const RangeMeasurement& measurement) { new_ranges_.push_back(measurement); }
@@ -50,10 +57,18 @@ class GraphSlam {
   /// Finishes mapping after the last scan: closes the remaining loops and refines all keyframes.
   void finish();
 
-  /// Current pose estimates of all scans, [scan].
+  /// Whether the pose of this session in the earlier map is known; true without an earlier map. After `finish`, a
+  /// session that was not located is a map of its own.
+  bool is_located() const { return is_located_; }
+
+  /// Current pose estimates of all scans of this session, [scan].
   std::vector<Pose2> path() const;
+  /// Nodes and edges of all sessions.
   const PoseGraph& graph() const { return graph_; }
-  /// Scan index of each keyframe, [keyframe].
+  /// Map for later sessions, after `finish`: the earlier submaps, and the submaps of this session that show surfaces
+  /// that the others do not. The number of nodes thus grows with the mapped area, not with the number of sessions.
+  SubmapGraph submap_graph() const;
+  /// Scan index of each keyframe of this session, [keyframe].
   std::vector<std::size_t> node_scan_indices() const;
   /// UWB ranges in line of sight along the path.
   std::vector<MappedRange> mapped_ranges() const;
@@ -72,6 +87,12 @@ class GraphSlam {
     int edge;
   };
 
+  /// Submap of this session that was found in the earlier map.
+  struct LocatedSubmap {
+    int submap = 0;
+    Pose2 T_map_submap;
+  };
+
   void add_keyframe(const TrackedScan& tracked);
   void add_match_edge(const TrackedScan& tracked);
   Pose2 T_map_body(const Pose2& T_local_body) const;
@@ -80,12 +101,20 @@ class GraphSlam {
   void add_positions(const TrackedScan& tracked, const Pose2& T_odom_body);
   void smooth_with_ranges(int submap);
   void close_loops(int source);
+  bool add_loops(int source, const std::vector<PoseGaussian>& around);
+  void optimize();
   std::vector<PoseGaussian> relative_pose_distributions(int submap) const;
   Eigen::Matrix3d limited_by_survey(const Eigen::Matrix3d& covariance, int target, int source) const;
   Eigen::Matrix3d odometry_drift_covariance(int submap) const;
   std::shared_ptr<const RenderedSubmap> rendered(int submap);
   std::vector<int> submaps_near(int source, const std::vector<PoseGaussian>& around) const;
   std::vector<std::vector<int>> keyframes_around_submaps() const;
+  void locate(int source);
+  bool agree(const LocatedSubmap& a, const LocatedSubmap& b) const;
+  bool align_session(const LocatedSubmap& located);
+  void locate_by_single_submap();
+  void remove_earlier_map();
+  std::vector<bool> kept_submaps() const;
   void refine();
   std::optional<MatchResult> refined(const RenderedSubmap& submap, const Keyframe& keyframe,
                                      const Pose2& T_submap_body) const;
@@ -95,6 +124,7 @@ class GraphSlam {
     return graph_.T_map_node[static_cast<std::size_t>(submaps_[static_cast<std::size_t>(submap)].first)];
   }
   Eigen::Vector2d submap_center(int submap) const;
+  bool has_earlier_map() const { return first_keyframe_ > 0; }
   bool is_surveyed(const Submap& submap) const { return survey_.constrain(submap.first, submap.last); }
 
   GraphSlamSettings settings_;
@@ -104,6 +134,10 @@ class GraphSlam {
   std::vector<TrackedPose> path_;
   std::vector<Submap> submaps_;
   int finished_submaps_ = 0;
+  int first_keyframe_ = 0, first_submap_ = 0;  ///< of this session
+  bool is_located_ = true;
+  std::optional<RenderedSubmap> earlier_map_;  ///< as one submap, while the session is not located
+  std::vector<LocatedSubmap> located_;
   PoseGraph graph_;
   SubmapCache cache_;
   std::vector<LoopEdge> loops_;

@@ -6,6 +6,10 @@ namespace patrol::slam {
 
 ScanGroup::ScanGroup(LevelScan scan) { add(std::move(scan), {}); }
 
+ScanGroup::ScanGroup(std::vector<LevelScan> scans) {
+  for (LevelScan& scan : scans) members_.push_back({std::move(scan), {}});
+}
+
 void ScanGroup::add(LevelScan scan, const Pose2& T_before_now) {
   const Pose2 T_now_before = T_before_now.inverse();
   for (Member& member : members_) member.T_group_scan = T_now_before * member.T_group_scan;
@@ -15,6 +19,18 @@ void ScanGroup::add(LevelScan scan, const Pose2& T_before_now) {
 void ScanGroup::replace_newest(LevelScan scan, const Pose2& T_before_now) {
   add(std::move(scan), T_before_now);
   members_.erase(members_.end() - 2);
+}
+
+std::vector<LevelScan> ScanGroup::scans() const {
+  std::vector<LevelScan> scans;
+  for (const Member& member : members_) {
+    LevelScan scan = member.scan;
+    scan.origin_m = member.T_group_scan * scan.origin_m;
+    for (LevelScan::Beam& beam : scan.beams)
+      beam.end_m = (member.T_group_scan * Eigen::Vector2d(beam.end_m.cast<double>())).cast<float>();
+    scans.push_back(std::move(scan));
+  }
+  return scans;
 }
 
 std::vector<MatchPoint> ScanGroup::match_points(double spacing_m, int max_points) const {

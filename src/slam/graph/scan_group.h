@@ -15,6 +15,8 @@ class ScanGroup {
  public:
   ScanGroup() = default;
   explicit ScanGroup(LevelScan scan);
+  /// Group of scans in the frame of the group, oldest first.
+  explicit ScanGroup(std::vector<LevelScan> scans);
 
   /// Appends a scan, whose frame becomes that of the group. `T_before_now` is the motion since the scan before.
   void add(LevelScan scan, const Pose2& T_before_now);
@@ -25,6 +27,8 @@ class ScanGroup {
   std::size_t num_scans() const { return members_.size(); }
   Time stamp() const { return members_.back().scan.stamp; }
 
+  /// The scans in the frame of the group, oldest first.
+  std::vector<LevelScan> scans() const;
   /// Downsampled returns of all scans in the frame of the group (match_points.h).
   std::vector<MatchPoint> match_points(double spacing_m, int max_points) const;
   /// Integrates the scans into a map, oldest first.

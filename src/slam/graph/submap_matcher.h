@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "slam/graph/branch_and_bound.h"
 #include "slam/graph/submap.h"
 #include "slam/graph/submap_matcher_settings.h"
 #include "slam/pose_gaussian.h"
@@ -38,5 +39,10 @@ inline PoseGaussian match_prior(const Pose2& T_submap_start) {
 SubmapMatchResult match_submaps(const RenderedSubmap& target, const RenderedSubmap& source,
                                 const PoseGaussian& prediction, const SubmapMatcherSettings& settings,
                                 const ScanMatcherSettings& matching);
+
+/// Finds a submap in a map that contains many of them, at any pose of its surfaces in `window`. Like match_submaps, but
+/// only the source has to overlap the map; a competing pose has the angle of the match, or a score almost as high.
+SubmapMatchResult locate_submap(const RenderedSubmap& map, const RenderedSubmap& source, const SearchWindow& window,
+                                const SubmapMatcherSettings& settings, const ScanMatcherSettings& matching);
 
 }  // namespace patrol::slam

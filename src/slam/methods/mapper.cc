@@ -48,6 +48,21 @@ class MapperAdapter final : public Mapper {
     if constexpr (requires { method_.loop_closure_statistics(); }) return method_.loop_closure_statistics();
     return std::nullopt;
   }
+  bool extend(const SubmapGraph& earlier) override {
+    if constexpr (requires { method_.extend(earlier); }) {
+      method_.extend(earlier);
+      return true;
+    }
+    return false;
+  }
+  bool is_located() const override {
+    if constexpr (requires { method_.is_located(); }) return method_.is_located();
+    return true;
+  }
+  std::optional<SubmapGraph> submap_graph() const override {
+    if constexpr (requires { method_.submap_graph(); }) return method_.submap_graph();
+    return std::nullopt;
+  }
   std::vector<std::size_t> node_scan_indices() const override { return method_.node_scan_indices(); }
   ParticleSet particles() const override {
     if constexpr (requires { method_.particles(); }) return method_.particles();

@@ -10,6 +10,7 @@
 #include "core/messages.h"
 #include "core/pose_graph.h"
 #include "slam/graph/loop_closure_statistics.h"
+#include "slam/graph/submap_graph.h"
 #include "slam/mapped_range.h"
 #include "slam/methods/mapper_settings.h"
 #include "slam/position_measurement.h"
@@ -47,6 +48,12 @@ class Mapper {
   virtual PoseGraph graph() const = 0;
   /// Results of the searches for loop closures; none for methods that do not count them.
   virtual std::optional<LoopClosureStatistics> loop_closure_statistics() const = 0;
+  /// Extends a map of earlier sessions, before the first scan. Methods that cannot do nothing and return false.
+  virtual bool extend(const SubmapGraph& earlier) = 0;
+  /// Whether the pose of this session in the earlier map is known; true without an earlier map.
+  virtual bool is_located() const = 0;
+  /// Map for later sessions, after `finish`; none for methods that cannot extend a map.
+  virtual std::optional<SubmapGraph> submap_graph() const = 0;
   /// Index of the scan taken at each node, [node of the graph].
   virtual std::vector<std::size_t> node_scan_indices() const = 0;
 };
