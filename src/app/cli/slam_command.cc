@@ -38,7 +38,8 @@ namespace {
 const OutputKind kMapping = {.name = "mapping of a log",
                              .marker_text = "The log is not completely mapped.",
                              .outputs = {"estimate.tum", "odometry.tum", "map.yaml", "map.pgm", "pose_graph.g2o",
-                                         "submaps.csv", "keyframes.mcap", "performance.csv", "metrics.json", "settings.yaml", "report.html"},
+                                         "submaps.csv", "keyframes.mcap", "performance.csv", "metrics.json",
+                                         "settings.yaml", "report.html"},
                              .required_file = "settings.yaml",
                              .preserved = {"*.part"}};
 
@@ -143,6 +144,16 @@ io::Metrics to_metrics(const std::optional<slam::LoopClosureStatistics>& loops) 
           {"ambiguous", loops->ambiguous}, {"no_overlap", loops->no_overlap}, {"mismatched", loops->mismatched}};
 }
 
+/// Result of locating a session in an earlier map, in one line with its end; empty without an earlier map.
+std::string earlier_map_line(const SlamOptions& options, bool is_located, std::size_t num_earlier_nodes,
+                             std::size_t num_nodes) {
+  if (!options.earlier_map) return "";
+  if (!is_located)
+    return fmt::format("not located in {}: the map contains this log only\n", options.earlier_map->string());
+  return fmt::format("located in {}: {} keyframes, {} of them new\n", options.earlier_map->string(), num_nodes,
+                     num_nodes - num_earlier_nodes);
+}
+
 }  // namespace
 
 ExitCode slam_command(const SlamOptions& options) {
@@ -224,11 +235,12 @@ ExitCode slam_command(const SlamOptions& options) {
 
   fmt::print(
       "{}{} scans, {:.0f} m by odometry, mapped by {} in {:.1f} s ({:.0f} times real time), {:.0f} MB\n{} keyframes, "
-      "{} edges, {} of them to other submaps\n{}\n{}\n{}\n",
+      "{} edges, {} of them to other submaps\n{}{}\n{}\n{}\n",
       io::to_text(log->summary()), mapped.stamps.size(), mapped.way_m, settings.slam.method, took_s,
       mapped.duration_s() / std::max(1e-9, took_s), peak_memory_mb(), graph.T_map_node.size(), graph.edges.size(),
-      metrics["graph"]["cross_submap_edges"].get<std::size_t>(), consistency.line(), odometry.line(),
-      (options.out / "map.yaml").string());
+      metrics["graph"]["cross_submap_edges"].get<std::size_t>(),
+      earlier_map_line(options, mapper->is_located(), num_earlier_nodes, graph.T_map_node.size()), consistency.line(),
+      odometry.line(), (options.out / "map.yaml").string());
   return ExitCode::kDone;
 }
 

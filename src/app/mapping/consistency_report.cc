@@ -40,8 +40,8 @@ MappingVerdict ConsistencyReport::verdict() const {
                 "the surfaces seen {} and at {:.0f} s are {:.1f} m and {:.0f} deg apart; {} of {} pairs of segments "
                 "disagree",
                 worst.first_scan ? fmt::format("at {:.0f} s", seconds(*worst.first_scan)) : "in earlier sessions",
-                seconds(worst.second_scan), worst.offset_m,
-                std::abs(kDegPerRad * worst.offset_rad), consistency.disagreements.size(), consistency.num_compared)};
+                seconds(worst.second_scan), worst.offset_m, std::abs(kDegPerRad * worst.offset_rad),
+                consistency.disagreements.size(), consistency.num_compared)};
   }
   if (consistency.has_too_many_unmatched()) {
     const slam::UnmatchedSegment& segment = consistency.unmatched_segments.front();

@@ -33,8 +33,7 @@ void save_keyframes(const std::filesystem::path& file, const std::vector<slam::K
   const io::McapWriter::ChannelId channel = writer.add_channel(kTopic, type, io::ros_definition(type));
   for (const slam::Keyframe& keyframe : keyframes) {
     const Time stamp = keyframe.scans.stamp();
-    writer.write(channel, stamp,
-                 io::encode(io::KeyframeScans{.stamp = stamp, .scans = keyframe.scans.scans()}));
+    writer.write(channel, stamp, io::encode(io::KeyframeScans{.stamp = stamp, .scans = keyframe.scans.scans()}));
   }
   writer.close();
 }

@@ -26,9 +26,9 @@ struct TransformSet {
   std::vector<FrameTransform> transforms;
 };
 
-/// Scans of a keyframe of a map, in the frame of the keyframe. As a point cloud with the fields x, y, z (end of a beam),
-/// vp_x, vp_y, vp_z (position of the lidar, named as in PCL's PointWithViewpoint), scan (index, uint16) and hit (uint8;
-/// 0: the beam was free up to its end).
+/// Scans of a keyframe of a map, in the frame of the keyframe. As a point cloud with the fields x, y, z (end of a
+/// beam), vp_x, vp_y, vp_z (position of the lidar, named as in PCL's PointWithViewpoint), scan (index, uint16) and hit
+/// (uint8; 0: the beam was free up to its end).
 struct KeyframeScans {
   Time stamp{};                  ///< of the newest scan
   std::vector<LevelScan> scans;  ///< oldest first

@@ -19,8 +19,9 @@ namespace {
 constexpr double kMaxDisagreement_m = 0.5, kMaxDisagreementRad = 0.05;
 // Standard deviation of a submap that was located in the earlier map as a whole, for matches with its submaps.
 constexpr double kLocatedStd_m = 0.2, kLocatedStdRad = 0.02;
-constexpr double kSearchMargin_m = 10.0;  ///< around the earlier path
-constexpr int kSameSurfaceRadius = 2;     ///< cells
+constexpr double kMinLocatingScore = 0.4;  ///< of the search in the whole map
+constexpr double kSearchMargin_m = 10.0;   ///< around the earlier path
+constexpr int kSameSurfaceRadius = 2;      ///< cells
 /// A submap is not kept if the others show more than this fraction of its surfaces.
 constexpr double kMaxKnownFraction = 0.9;
 
@@ -46,22 +47,25 @@ void GraphSlam::extend(const SubmapGraph& earlier) {
   is_located_ = !has_earlier_map();
 }
 
-// Searches a finished submap of this session in the earlier map. Two submaps without common keyframes must agree on the
-// pose of the session.
+// Searches a finished submap of this session in the earlier map, unless it overlaps the last one that was searched. Two
+// submaps must agree on the pose of the session.
 void GraphSlam::locate(int source) {
+  const Submap& submap = submaps_[static_cast<std::size_t>(source)];
+  if (submap.first <= last_located_keyframe_) return;
+  last_located_keyframe_ = submap.last;
   if (!earlier_map_) {
     earlier_map_.emplace(Submap{.first = 0, .last = first_keyframe_ - 1}, keyframes_, graph_.T_map_node, rendering_);
   }
+  SubmapMatcherSettings locating = settings_.loop_closure;
+  locating.min_search_score = std::max(locating.min_search_score, kMinLocatingScore);
   const SubmapMatchResult found = locate_submap(
       *earlier_map_, *rendered(source), window_around(graph_.T_map_node, static_cast<std::size_t>(first_keyframe_)),
-      settings_.loop_closure, settings_.scan_odometry.matching);
+      locating, settings_.scan_odometry.matching);
   if (!found.match) return;
   const LocatedSubmap located{.submap = source,
                               .T_map_submap = graph_.T_map_node.front() * found.match->T_target_source};
-  const int first = submaps_[static_cast<std::size_t>(source)].first;
-  const bool is_confirmed = std::ranges::any_of(located_, [&](const LocatedSubmap& other) {
-    return submaps_[static_cast<std::size_t>(other.submap)].last < first && agree(other, located);
-  });
+  const bool is_confirmed =
+      std::ranges::any_of(located_, [&](const LocatedSubmap& other) { return agree(other, located); });
   located_.push_back(located);
   if (is_confirmed) align_session(located);
 }
@@ -70,10 +74,8 @@ void GraphSlam::locate(int source) {
 bool GraphSlam::agree(const LocatedSubmap& a, const LocatedSubmap& b) const {
   const Pose2 T_a_b = T_map_submap(a.submap).inverse() * T_map_submap(b.submap),
               difference = T_a_b.inverse() * (a.T_map_submap.inverse() * b.T_map_submap);
-  const Eigen::Matrix3d drift =
-      relative_pose_distributions(a.submap)[static_cast<std::size_t>(b.submap)].covariance;
-  return difference.position().norm() <
-             kMaxDisagreement_m + 3.0 * std::sqrt(std::max(drift(0, 0), drift(1, 1))) &&
+  const Eigen::Matrix3d drift = relative_pose_distributions(a.submap)[static_cast<std::size_t>(b.submap)].covariance;
+  return difference.position().norm() < kMaxDisagreement_m + 3.0 * std::sqrt(std::max(drift(0, 0), drift(1, 1))) &&
          std::abs(difference.yaw) < kMaxDisagreementRad + 3.0 * std::sqrt(drift(2, 2));
 }
 
@@ -90,9 +92,10 @@ bool GraphSlam::align_session(const LocatedSubmap& located) {
     PoseGaussian& distribution = around[static_cast<std::size_t>(target)];
     distribution.mean = T_map_submap(located.submap).inverse() * T_map_submap(target);
     distribution.covariance =
-        target < first_submap_ ? covariance
-                               : Eigen::Matrix3d(Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity())
-                                                     .asDiagonal());  // closed before
+        target < first_submap_
+            ? covariance
+            : Eigen::Matrix3d(
+                  Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity()).asDiagonal());  // closed before
   }
   if (!add_loops(located.submap, around)) return false;
   is_located_ = true;

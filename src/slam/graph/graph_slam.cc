@@ -179,9 +179,8 @@ std::vector<PoseGaussian> GraphSlam::relative_pose_distributions(int submap) con
   std::vector<Pose2> T_map_submaps;
   for (int s = 0; s < finished_submaps_; ++s) T_map_submaps.push_back(T_map_submap(s));
   std::vector<CovarianceEdge> covariance_edges;
-  const Eigen::Matrix3d earlier = Eigen::Vector3d(settings_.edge_std_m, settings_.edge_std_m, settings_.edge_std_rad)
-                                      .cwiseAbs2()
-                                      .asDiagonal();
+  const Eigen::Matrix3d earlier =
+      Eigen::Vector3d(settings_.edge_std_m, settings_.edge_std_m, settings_.edge_std_rad).cwiseAbs2().asDiagonal();
   for (int s = 0; s + 1 < finished_submaps_; ++s) {
     if (s + 1 == first_submap_) continue;  // between the sessions there are only loop closures
     covariance_edges.push_back(

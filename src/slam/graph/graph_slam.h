@@ -138,6 +138,7 @@ class GraphSlam {
   bool is_located_ = true;
   std::optional<RenderedSubmap> earlier_map_;  ///< as one submap, while the session is not located
   std::vector<LocatedSubmap> located_;
+  int last_located_keyframe_ = -1;  ///< last keyframe of the last submap that was searched in the earlier map
   PoseGraph graph_;
   SubmapCache cache_;
   std::vector<LoopEdge> loops_;

@@ -83,8 +83,7 @@ SubmapGraph make_submap_graph(std::vector<ScanGroup> scans, std::vector<Submap> 
 SubmapGraph with_submaps(const SubmapGraph& map, const std::vector<bool>& is_kept, const ConnectionSettings& settings) {
   std::vector<int> new_index(map.keyframes.size(), kLeftOut);
   for (std::size_t s = 0; s < map.submaps.size(); ++s) {
-    if (is_kept[s])
-      std::fill(new_index.begin() + map.submaps[s].first, new_index.begin() + map.submaps[s].last + 1, 0);
+    if (is_kept[s]) std::fill(new_index.begin() + map.submaps[s].first, new_index.begin() + map.submaps[s].last + 1, 0);
   }
   SubmapGraph kept;
   std::vector<int> unconnected;

@@ -21,8 +21,8 @@ enum class Coverage {
 
 /// Refines the pose of `source` in `target`, and checks that the surfaces of each lie on surfaces of the other.
 SubmapMatchResult refine_and_check(const RenderedSubmap& target, const RenderedSubmap& source,
-                                   const SearchResult& found, Coverage coverage,
-                                   const SubmapMatcherSettings& settings, const ScanMatcherSettings& matching) {
+                                   const SearchResult& found, Coverage coverage, const SubmapMatcherSettings& settings,
+                                   const ScanMatcherSettings& matching) {
   const std::optional<MatchResult> fine =
       match_scan(target.map(), source.surface_points(), found.T_map_points, match_prior(found.T_map_points), matching);
   if (!fine) return {.match = {}, .failure = MatchFailure::kMismatch};
@@ -33,8 +33,8 @@ SubmapMatchResult refine_and_check(const RenderedSubmap& target, const RenderedS
                           .information = fine->information,
                           .score = found.score,
                           .overlap_ratio = coverage == Coverage::kSource
-                                             ? forth.overlap_ratio()
-                                             : std::min(forth.overlap_ratio(), back.overlap_ratio()),
+                                               ? forth.overlap_ratio()
+                                               : std::min(forth.overlap_ratio(), back.overlap_ratio()),
                           .inlier_ratio = std::min(forth.inlier_ratio(), back.inlier_ratio())};
   if (match.overlap_ratio < settings.min_overlap_ratio ||
       forth.num_matched * source.point_spacing_m() < settings.min_matched_length_m)

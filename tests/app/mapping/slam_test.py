@@ -64,7 +64,7 @@ class Slam(unittest.TestCase):
     def test_every_file_is_there_and_the_graph_has_loops(self):
         out = self.map("files")
         self.assertEqual(sorted(file.name for file in out.iterdir()),
-                         ["estimate.tum", "map.pgm", "map.yaml", "metrics.json", "odometry.tum", "performance.csv", "pose_graph.g2o", "report.html", "settings.yaml"])
+                         ["estimate.tum", "keyframes.mcap", "map.pgm", "map.yaml", "metrics.json", "odometry.tum", "performance.csv", "pose_graph.g2o", "report.html", "settings.yaml", "submaps.csv"])
         metrics = json.loads((out / "metrics.json").read_text())
         self.assertEqual(metrics["log"]["scans"], len(self.poses))
         self.assertGreater(metrics["graph"]["cross_submap_edges"], 0)
@@ -86,6 +86,40 @@ class Slam(unittest.TestCase):
             self.assertIn(text, html)
         self.patrol("report", out, "--out", self.folder / "copy.html")
         self.assertEqual((self.folder / "copy.html").read_text(), html)
+
+    def test_a_second_session_is_located_in_the_map_of_the_first(self):
+        half = len(self.lines) // 2
+        cut = next(k for k in range(half, len(self.lines)) if self.lines[k].startswith("FLASER")) + 1
+        logs = [self.folder / "first.log", self.folder / "second.log"]
+        logs[0].write_text("\n".join(self.lines[:cut]) + "\n")
+        logs[1].write_text("\n".join(self.lines[cut:]) + "\n")
+        first = self.map("first", log=logs[0])
+        second = self.map("second", "--map", first, log=logs[1])
+        metrics = [json.loads((out / "metrics.json").read_text()) for out in (first, second)]
+        self.assertIsNone(metrics[0]["earlier_map"])
+        self.assertEqual(metrics[1]["earlier_map"], {"located": True, "nodes": metrics[0]["graph"]["nodes"]})
+        self.assertLess(metrics[1]["graph"]["nodes"], 1.1 * metrics[0]["graph"]["nodes"])
+        self.assertTrue(metrics[1]["consistency"]["consistent"])
+        lines = [(out / "estimate.tum").read_text().splitlines() for out in (first, second)]
+        joined = self.folder / "joined"
+        joined.mkdir()
+        (joined / "estimate.tum").write_text("\n".join(lines[0] + lines[1][1:]) + "\n")
+        self.assertLess(max(self.errors_m(joined)), 0.1)
+        again = self.map("again", "--map", first, log=logs[1])
+        self.assertEqual((second / "keyframes.mcap").read_bytes(), (again / "keyframes.mcap").read_bytes())
+
+    def test_a_map_that_cannot_be_extended_is_refused(self):
+        refused = self.patrol("slam", self.log, "--map", self.folder / "nothing", "--out", self.folder / "refused", code=2)
+        self.assertEqual(len(refused.stderr.strip().splitlines()), 1)
+        self.assertIn("keyframes.mcap", refused.stderr)
+        out = self.map("extended")
+        before = (out / "keyframes.mcap").read_bytes()
+        refused = self.patrol("slam", self.log, "--map", out, "--out", out, code=2)
+        self.assertIn("--out: must not be the directory of --map", refused.stderr)
+        self.assertEqual((out / "keyframes.mcap").read_bytes(), before)
+        refused = self.patrol("slam", self.log, "--map", out, "--method", "rbpf", "--out", self.folder / "refused", code=2)
+        self.assertIn("method rbpf cannot extend a map", refused.stderr)
+        self.assertFalse((self.folder / "refused").exists())
 
     def test_gzip_and_a_second_time_give_the_same_bytes(self):
         packed = self.folder / "block.log.gz"

@@ -64,6 +64,34 @@ TEST(MapConsistency, ASecondLapTenCentimetersAsideDoesNotDisagree) {
   EXPECT_TRUE(drive.check.check(drive.T_map_body).is_consistent());
 }
 
+// One lap as a session after another lap; only its own segments count.
+TEST(MapConsistency, ASessionThatIs60CentimetersAsideDisagreesWithEarlierSessions) {
+  const test::RoomWorld office = test::make_office();
+  const RandomStream noise(2, "test/consistency");
+  std::vector<Keyframe> earlier;
+  ConsistencyCheck check;
+  std::vector<Pose2> right, aside;
+  for (const test::DriveStep& step : test::drive_along(test::office_rounds(1), {.speed_mps = 1.5})) {
+    const std::size_t k = right.size();
+    earlier.push_back(
+        {ScanGroup(office.scan(step.T_world_body, step.stamp, test::kOldLidar, noise, 2 * k)), step.T_world_body});
+    check.add(office.scan(step.T_world_body, step.stamp, test::kOldLidar, noise, 2 * k + 1),
+              {.T_map_body = step.T_world_body, .match_score = 0.9});
+    right.push_back(step.T_world_body);
+    aside.push_back(Pose2{0.36, 0.48, 0.0} * step.T_world_body);
+  }
+  const MapConsistency alone = check.check(aside), consistent = check.check(right, earlier),
+                       inconsistent = check.check(aside, earlier);
+  EXPECT_TRUE(alone.disagreements.empty());
+  EXPECT_TRUE(consistent.is_consistent());
+  EXPECT_GT(consistent.num_compared, alone.num_compared);
+  EXPECT_EQ(consistent.num_segments, alone.num_segments);
+  EXPECT_FALSE(inconsistent.is_consistent());
+  ASSERT_FALSE(inconsistent.disagreements.empty());
+  for (const Disagreement& entry : inconsistent.disagreements) EXPECT_FALSE(entry.first_scan);
+  EXPECT_NEAR(inconsistent.disagreements[inconsistent.disagreements.size() / 2].offset_m, 0.6, 0.15);
+}
+
 TEST(MapConsistency, UnmatchedScansAreCountedAndAQuarterOfThemIsTooMany) {
   const Drive few = two_laps(10, 40);
   const MapConsistency result = few.check.check(few.T_map_body);

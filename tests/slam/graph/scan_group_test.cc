@@ -36,6 +36,20 @@ TEST(ScanGroup, AReplacedScanLeavesTheOthersWhereTheyAre) {
   EXPECT_NEAR(points[1].p_body.x(), 4.0, 1e-6);
 }
 
+TEST(ScanGroup, ItsScansAreGivenInItsFrameAndMakeTheSameGroup) {
+  ScanGroup group(hit_at(2.0F, 1.0));
+  group.add(hit_at(3.0F, 1.5), {0.5, 0.0, std::numbers::pi / 2});
+  const std::vector<LevelScan> scans = group.scans();
+  ASSERT_EQ(scans.size(), 2U);
+  EXPECT_NEAR(scans[0].origin_m.y(), 0.5, 1e-6);  // half a meter behind, before the turn to the left
+  EXPECT_NEAR(scans[0].beams[0].end_m.y(), -1.5F, 1e-6F);
+  EXPECT_EQ(scans[1].origin_m, Eigen::Vector2d::Zero());
+  const ScanGroup same(scans);
+  EXPECT_EQ(same.num_scans(), 2U);
+  EXPECT_EQ(same.stamp(), from_seconds(1.5));
+  EXPECT_NEAR(same.match_points(0.08, 100)[0].p_body.y(), -1.5, 1e-6);
+}
+
 TEST(ScanGroup, ItsScansAreMappedAtTheirOwnPoses) {
   ScanGroup group(hit_at(2.0F, 1.0));
   LevelScan aside = hit_at(0.0F, 1.5);

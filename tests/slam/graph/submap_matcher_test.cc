@@ -41,6 +41,19 @@ TEST(MatchSubmaps, OppositeSidesOfTheBuildingAreNotMatchedForAnyPrediction) {
   }
 }
 
+TEST(LocateSubmap, FindsAPartOfTheBuildingAtAnyAngleInTheMapOfTheWholeToTwoCentimeters) {
+  const test::RoomWorld office = test::make_office();
+  const RenderedSubmap map = drive_past(office, test::office_rounds(1), 1),
+                       source = drive_past(office, {{32.0, 25.7}, {24.0, 25.7}}, 2);
+  const SearchWindow window{
+      .T_map_center = {14.0, 10.8, 0.0}, .half_width_m = 25.0, .half_angle_rad = std::numbers::pi};
+  const SubmapMatchResult result = locate_submap(map, source, window, {}, {});
+  ASSERT_TRUE(result.match);
+  const Pose2 truth = Pose2{8.0, 4.2, 0.0}.inverse() * Pose2{32.0, 25.7, std::numbers::pi};
+  EXPECT_THAT(result.match->T_target_source, Pose2Near(truth, 0.02, 0.003));
+  EXPECT_GT(result.match->inlier_ratio, 0.85);
+}
+
 // Doors every 3 m, all alike: with a meter of doubt only one place fits, with three meters there are several, and none
 // is taken.
 TEST(MatchSubmaps, AmongIdenticalDoorsAMatchIsTakenOnlyWhereNoOtherCanBeMeant) {
