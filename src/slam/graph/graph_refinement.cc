@@ -22,6 +22,7 @@ void GraphSlam::finish() {
     refine();
     optimize();
   }
+  if (has_earlier_map()) restore_map_frame();
   is_finished_ = true;
 }
 

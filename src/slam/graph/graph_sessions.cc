@@ -10,6 +10,7 @@
 #include <Eigen/Geometry>
 
 #include "slam/graph/graph_slam.h"
+#include "slam/submaps/effective_neighbor_icp.h"
 #include "slam/surface_overlap.h"
 
 namespace patrol::slam {
@@ -22,7 +23,8 @@ constexpr double kLocatedStd_m = 0.2, kLocatedStdRad = 0.02;
 constexpr double kMinLocatingScore = 0.4;  ///< of the search in the whole map
 constexpr double kSearchMargin_m = 10.0;   ///< around the earlier path
 constexpr int kSameSurfaceRadius = 2;      ///< cells
-/// A submap is not kept if the others show more than this fraction of its surfaces.
+/// A submap is not kept if more than this fraction of its surfaces lies in observed cells of the others, and agrees there
+/// as in a loop closure.
 constexpr double kMaxKnownFraction = 0.9;
 
 /// Window that contains the positions and all angles.
@@ -134,7 +136,20 @@ void GraphSlam::remove_earlier_map() {
   loops_.clear();
 }
 
-// A submap of this session is kept if it shows surfaces that neither the earlier map nor the kept ones before it show.
+// Optimization fixes the first node only. The earlier keyframes stay where they were, as far as a rigid motion of the
+// map allows.
+void GraphSlam::restore_map_frame() {
+  std::vector<Eigen::Vector2d> before, after;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(first_keyframe_); ++k) {
+    before.push_back(keyframes_[k].T_local_body.position());
+    after.push_back(graph_.T_map_node[k].position());
+  }
+  const Pose2 T_before_after = fit_rigid_motion(before, after);
+  for (Pose2& T_map_node : graph_.T_map_node) T_map_node = T_before_after * T_map_node;
+}
+
+// A submap of this session is kept if it shows places that neither the earlier map nor the kept ones before it show, or
+// places that have changed.
 std::vector<bool> GraphSlam::kept_submaps() const {
   std::vector<bool> is_kept(submaps_.size(), true);
   if (!has_earlier_map()) return is_kept;
@@ -151,7 +166,8 @@ std::vector<bool> GraphSlam::kept_submaps() const {
     const RenderedSubmap rendered(submap, keyframes_, graph_.T_map_node, rendering_);
     const SurfaceOverlap overlap =
         measure_overlap(known, rendered.surface_points(), T_map_submap(s), kSameSurfaceRadius);
-    is_kept[static_cast<std::size_t>(s)] = overlap.num_matched < kMaxKnownFraction * overlap.num_points;
+    is_kept[static_cast<std::size_t>(s)] = overlap.overlap_ratio() < kMaxKnownFraction ||
+                                           overlap.inlier_ratio() < settings_.loop_closure.min_inlier_ratio;
     if (is_kept[static_cast<std::size_t>(s)]) add_to_known(submap.first, submap.last);
   }
   return is_kept;

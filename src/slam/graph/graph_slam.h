@@ -65,8 +65,9 @@ class GraphSlam {
   std::vector<Pose2> path() const;
   /// Nodes and edges of all sessions.
   const PoseGraph& graph() const { return graph_; }
-  /// Map for later sessions, after `finish`: the earlier submaps, and the submaps of this session that show surfaces
-  /// that the others do not. The number of nodes thus grows with the mapped area, not with the number of sessions.
+  /// Map for later sessions, after `finish`: the earlier submaps, and the submaps of this session that show places that
+  /// the others do not, or that have changed. The number of nodes thus grows with the mapped area and its changes, not
+  /// with the number of sessions.
   SubmapGraph submap_graph() const;
   /// Scan index of each keyframe of this session, [keyframe].
   std::vector<std::size_t> node_scan_indices() const;
@@ -114,6 +115,7 @@ class GraphSlam {
   bool align_session(const LocatedSubmap& located);
   void locate_by_single_submap();
   void remove_earlier_map();
+  void restore_map_frame();
   std::vector<bool> kept_submaps() const;
   void refine();
   std::optional<MatchResult> refined(const RenderedSubmap& submap, const Keyframe& keyframe,
