@@ -26,7 +26,8 @@ void GraphSlam::finish() {
   is_finished_ = true;
 }
 
-// Returns [submap]: the keyframes within the search radius that are not part of the submap.
+// Returns [submap]: the keyframes within the search radius that are not part of the submap. Those of earlier sessions
+// are matched with earlier submaps only, because the submaps of this session may not be kept.
 std::vector<std::vector<int>> GraphSlam::keyframes_around_submaps() const {
   std::vector<Eigen::Vector2d> centers;
   for (int s = 0; s < static_cast<int>(submaps_.size()); ++s) centers.push_back(submap_center(s));
@@ -35,6 +36,7 @@ std::vector<std::vector<int>> GraphSlam::keyframes_around_submaps() const {
     std::vector<std::pair<double, int>> near;
     for (std::size_t s = 0; s < submaps_.size(); ++s) {
       if (k >= submaps_[s].first && k <= submaps_[s].last) continue;
+      if (k < first_keyframe_ && submaps_[s].first >= first_keyframe_) continue;
       const double distance_m = (centers[s] - graph_.T_map_node[static_cast<std::size_t>(k)].position()).norm();
       if (distance_m < settings_.max_loop_distance_m) near.emplace_back(distance_m, static_cast<int>(s));
     }
