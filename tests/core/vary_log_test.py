@@ -38,9 +38,9 @@ class Variants(unittest.TestCase):
     def run_tool(self, *words):
         return subprocess.run([sys.executable, TOOL, *map(str, words)], capture_output=True, text=True)
 
-    def scans(self, variant):
+    def scans(self, variant, *more):
         """[(ranges, first angle, step, pose, stamp)] of a variant."""
-        done = self.run_tool(self.path / "log", variant, self.path / "out")
+        done = self.run_tool(self.path / "log", variant, self.path / "out", *more)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         scans = []
         for line in (self.path / "out").read_text().splitlines():
@@ -99,6 +99,18 @@ class Variants(unittest.TestCase):
         deviation = math.sqrt(sum((error - mean) ** 2 for error in errors) / len(errors))
         self.assertAlmostEqual(mean, 0.0, delta=0.005)
         self.assertAlmostEqual(deviation, 0.1, delta=0.005)
+
+    def test_parts_together_are_the_whole(self):
+        parts = [self.scans("scans_2", "--part", f"{k}/7") for k in range(1, 8)]
+        self.assertEqual([scan for part in parts for scan in part], self.scans("scans_2"))
+        self.assertLessEqual(max(map(len, parts)) - min(map(len, parts)), 1)
+
+    def test_a_part_that_is_none_is_2_with_one_line(self):
+        for part in ("0/3", "4/3", "1/601", "1", "a/b"):
+            done = self.run_tool(self.path / "log", "as_recorded", self.path / "out", "--part", part)
+            self.assertEqual((done.returncode, len(done.stderr.splitlines())), (2, 1), part)
+            self.assertIn(f"--part {part}: must", done.stderr)
+            self.assertFalse((self.path / "out").exists())
 
     def test_variants_can_be_combined(self):
         ranges, _, _, where, _ = self.scans("beams_2,distance_1.1")[10]

@@ -1,10 +1,11 @@
 """Tables of SLAM on recorded logs."""
+import cmath
 import json
 import pathlib
 import runpy
 
 from results_tables import markdown
-from .declare import Step, add
+from .declare import REPORT, Step, add
 
 # File, relations, and the options of each of its scores: Freiburg 079 is scored with the reference point of its relations, and without.
 LOGS = {"intel": ("intel.log", "intel.relations", {"score": []}),
@@ -79,3 +80,89 @@ def variants_text(values):
 
 add(name="slam_variants", file="src/slam/README.md", seeds="1 (of the variants)", minutes=10, steps=[variants_step(log) for log in LOGS],
     values=variants_values, text=variants_text, logs=tuple(file for pair_of_files in LOGS.values() for file in pair_of_files[:2]))
+
+
+SESSION_PARTS = 3  # of a recorded log
+STREET_SEEDS = range(*(int(bound) + offset for bound, offset in zip(REPORT.split(".."), (0, 1))))
+
+
+def sessions_of_log(log):
+    """Maps the parts of a log one after the other, and scores all of them together."""
+    file, relations, scores = LOGS[log]
+    return Step(log, ["sh", "-c", f"map=; for k in $(seq {SESSION_PARTS}); do "
+                      f"tools/vary_log {{logs}}/{file} as_recorded {{out}}/$k.log --part $k/{SESSION_PARTS} && "
+                      f"build/patrol slam {{out}}/$k.log $map --out {{out}}/$k > {{out}}/$k.txt || exit 3; map=\"--map {{out}}/$k\"; done; "
+                      f"cat {{out}}/*/estimate.tum | grep -v '^#' > {{out}}/estimate.tum; "
+                      f"build/patrol score --estimate {{out}}/estimate.tum --relations {{logs}}/{relations} {' '.join(scores['score'])} > {{out}}/score.txt"], (0,))
+
+
+def sessions_of_street():
+    """Runs of as many robots, whose logs extend one map."""
+    seeds = " ".join(map(str, STREET_SEEDS))
+    return Step("street", ["sh", "-c", f"echo {seeds} | xargs -n 1 | xargs -P 2 -I {{}} sh -c 'build/patrol run worlds/street/scenarios/patrol.yaml --seed {{}} "
+                           f"--out {{out}}/run_{{}} > {{out}}/run_{{}}.txt || test $? -eq 1' && map=; for k in {seeds}; do "
+                           f"build/patrol slam {{out}}/run_$k/log.mcap $map --out {{out}}/map_$k > {{out}}/map_$k.txt || exit 3; map=\"--map {{out}}/map_$k\"; done"], (0,))
+
+
+def positions(file):
+    """Stamps and positions x + iy of a TUM trajectory."""
+    rows = [line.split() for line in file.read_text().splitlines() if not line.startswith("#")]
+    return [(float(row[0]), complex(float(row[1]), float(row[2]))) for row in rows]
+
+
+def matched(estimate, truth):
+    """Estimated positions, and true ones at their stamps."""
+    pairs, k = [], 0
+    for stamp, position in estimate:
+        while k + 2 < len(truth) and truth[k + 1][0] < stamp:
+            k += 1
+        (before_s, before), (after_s, after) = truth[k:k + 2]
+        pairs.append((position, before + (after - before) * (stamp - before_s) / (after_s - before_s)))
+    return pairs
+
+
+def rigid_motion(pairs):
+    """Rotation and translation that take the estimated positions to the true ones, by least squares."""
+    mean_estimate, mean_truth = (sum(pair[i] for pair in pairs) / len(pairs) for i in (0, 1))
+    turn = cmath.phase(sum((truth - mean_truth) * (estimate - mean_estimate).conjugate() for estimate, truth in pairs))
+    rotation = cmath.rect(1.0, turn)
+    return rotation, mean_truth - rotation * mean_estimate
+
+
+def rms_m(pairs, motion):
+    rotation, translation = motion
+    return (sum(abs(rotation * estimate + translation - truth) ** 2 for estimate, truth in pairs) / len(pairs)) ** 0.5
+
+
+def session_metrics(folder):
+    metrics = json.loads((folder / "metrics.json").read_text())
+    return {"located": metrics["earlier_map"]["located"] if metrics["earlier_map"] else None, "nodes": metrics["graph"]["nodes"],
+            "cpu_per_minute_s": 60 * metrics["performance"]["processor_s"] / metrics["log"]["duration_s"],
+            "peak_memory_mb": metrics["performance"]["peak_memory_mb"], "consistent": metrics["consistency"]["consistent"]}
+
+
+def sessions_values(folders):
+    rows = [{"site": log, "error": mean_errors(folders[log]), "sessions": [session_metrics(folders[log] / str(k + 1)) for k in range(SESSION_PARTS)]} for log in LOGS]
+    sessions, in_world = [], None
+    for seed in STREET_SEEDS:
+        folder = folders["street"] / f"map_{seed}"
+        pairs = matched(positions(folder / "estimate.tum"), positions(folders["street"] / f"run_{seed}/truth.tum"))
+        in_world = in_world or rigid_motion(pairs)
+        sessions.append({**session_metrics(folder), "rms_m": rms_m(pairs, in_world)})
+    return rows + [{"site": "street", "error": None, "sessions": sessions}]
+
+
+def sessions_text(values):
+    names = {"intel": f"Intel Research Lab in {SESSION_PARTS} parts", "fr079": f"Freiburg 079 in {SESSION_PARTS} parts", "street": "street, as-built robots"}
+    rows = []
+    for row in values:
+        for number, session in enumerate(row["sessions"], 1):
+            located = {None: "–", True: "yes", False: "no"}[session["located"]]
+            error = f"{session['rms_m']:.3f} m" if row["error"] is None else row["error"] if number == len(row["sessions"]) else ""
+            rows.append([names[row["site"]] if number == 1 else "", str(number), located, error, str(session["nodes"]),
+                         f"{session['cpu_per_minute_s']:.1f} s", f"{session['peak_memory_mb']:.0f} MB", "yes" if session["consistent"] else "no"])
+    return markdown(["site", "session", "located", "error", "nodes", "processor time per minute", "peak memory", "consistent"], rows)
+
+
+add(name="slam_sessions", file="src/slam/README.md", seeds=REPORT + " (street)", minutes=14, steps=[*map(sessions_of_log, LOGS), sessions_of_street()],
+    values=sessions_values, text=sessions_text, logs=tuple(file for pair_of_files in LOGS.values() for file in pair_of_files[:2]))

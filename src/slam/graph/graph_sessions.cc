@@ -23,8 +23,8 @@ constexpr double kLocatedStd_m = 0.2, kLocatedStdRad = 0.02;
 constexpr double kMinLocatingScore = 0.4;  ///< of the search in the whole map
 constexpr double kSearchMargin_m = 10.0;   ///< around the earlier path
 constexpr int kSameSurfaceRadius = 2;      ///< cells
-/// A submap is not kept if more than this fraction of its surfaces lies in observed cells of the others, and agrees there
-/// as in a loop closure.
+/// A submap is not kept if more than this fraction of its surfaces lies in observed cells of the others, and agrees
+/// there as in a loop closure.
 constexpr double kMaxKnownFraction = 0.9;
 
 /// Window that contains the positions and all angles.
@@ -166,8 +166,8 @@ std::vector<bool> GraphSlam::kept_submaps() const {
     const RenderedSubmap rendered(submap, keyframes_, graph_.T_map_node, rendering_);
     const SurfaceOverlap overlap =
         measure_overlap(known, rendered.surface_points(), T_map_submap(s), kSameSurfaceRadius);
-    is_kept[static_cast<std::size_t>(s)] = overlap.overlap_ratio() < kMaxKnownFraction ||
-                                           overlap.inlier_ratio() < settings_.loop_closure.min_inlier_ratio;
+    is_kept[static_cast<std::size_t>(s)] =
+        overlap.overlap_ratio() < kMaxKnownFraction || overlap.inlier_ratio() < settings_.loop_closure.min_inlier_ratio;
     if (is_kept[static_cast<std::size_t>(s)]) add_to_known(submap.first, submap.last);
   }
   return is_kept;
