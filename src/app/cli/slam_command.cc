@@ -29,6 +29,7 @@
 #include "slam/consistency/map_consistency.h"
 #include "slam/consistency/odometry_check.h"
 #include "slam/consistency/unsupported_path.h"
+#include "slam/graph/range_noise.h"
 #include "slam/methods/mapper.h"
 #include "slam/planar_scan.h"
 
@@ -48,6 +49,7 @@ struct LogMappingSettings {
   std::uint64_t seed = 1;
   io::ScanLogOptions log;
   slam::Calibration calibration;
+  double range_std_m = 0.0;  ///< standard deviation of the ranges; 0: estimated from the first scans
   slam::PlanarScanSettings scan;
   slam::MapperSettings slam;
 
@@ -56,6 +58,7 @@ struct LogMappingSettings {
     visit("seed", self.seed);
     visit("log", self.log);
     visit("calibration", self.calibration);
+    visit("range_std_m", self.range_std_m, at_least(0.0));
     visit("scan", self.scan);
     visit("slam", self.slam);
   }
@@ -89,6 +92,19 @@ struct MappedLog {
 
   double duration_s() const { return stamps.empty() ? 0.0 : to_seconds(stamps.back() - stamps.front()); }
 };
+
+/// Estimates the standard deviation of the ranges from the first scans; 0 if they do not determine it.
+double estimate_range_std_m(const std::filesystem::path& file, const io::ScanLogOptions& options) {
+  constexpr int kScans = 200;
+  const std::unique_ptr<io::ScanLog> log = io::open_scan_log(file, options);
+  slam::RangeNoiseEstimator estimator;
+  for (int i = 0; i < kScans; ++i) {
+    const std::optional<RecordedScan> recorded = log->next();
+    if (!recorded) break;
+    estimator.add(recorded->scan);
+  }
+  return estimator.std_m().value_or(0.0);
+}
 
 /// Maps a log; false if interrupted.
 bool map_log(io::ScanLog& log, const LogMappingSettings& settings, const std::string& name, slam::Mapper& mapper,
@@ -168,6 +184,8 @@ ExitCode slam_command(const SlamOptions& options) {
   BoostedStumps neighbors;
   if (needs_neighbor_model(settings.slam.method))
     neighbors = load_neighbor_model(settings.slam.method, find_data_root(""));
+  if (settings.range_std_m == 0.0) settings.range_std_m = estimate_range_std_m(options.log, settings.log);
+  const bool is_noisy = slam::adapt_to_range_noise(settings.range_std_m, settings.slam.graph.scan_odometry);
   const std::unique_ptr<slam::Mapper> mapper = slam::make_mapper(settings.slam, neighbors, settings.seed);
   std::size_t num_earlier_nodes = 0;
   if (options.earlier_map) {
@@ -202,6 +220,7 @@ ExitCode slam_command(const SlamOptions& options) {
   io::save_settings(options.out / "settings.yaml", settings);
   io::save_csv(options.out / "performance.csv", mapped.cost.table());
   io::Metrics metrics = metrics_of(log->summary(), mapped, estimate, graph);
+  metrics["log"]["range_std_m"] = settings.range_std_m;
   const OdometryReport odometry{.health = slam::check_odometry(mapped.T_odom_body, path, mapped.stamps),
                                 .stamps = mapped.stamps};
   std::vector<slam::Keyframe> earlier;
@@ -234,10 +253,12 @@ ExitCode slam_command(const SlamOptions& options) {
   complete_output(options.out);
 
   fmt::print(
-      "{}{} scans, {:.0f} m by odometry, mapped by {} in {:.1f} s ({:.0f} times real time), {:.0f} MB\n{} keyframes, "
+      "{}{}{} scans, {:.0f} m by odometry, mapped by {} in {:.1f} s ({:.0f} times real time), {:.0f} MB\n{} keyframes, "
       "{} edges, {} of them to other submaps\n{}{}\n{}\n{}\n",
-      io::to_text(log->summary()), mapped.stamps.size(), mapped.way_m, settings.slam.method, took_s,
-      mapped.duration_s() / std::max(1e-9, took_s), peak_memory_mb(), graph.T_map_node.size(), graph.edges.size(),
+      io::to_text(log->summary()),
+      is_noisy ? fmt::format("ranges have noise of {:.2f} m: settings of graph adapted\n", settings.range_std_m) : "",
+      mapped.stamps.size(), mapped.way_m, settings.slam.method, took_s, mapped.duration_s() / std::max(1e-9, took_s),
+      peak_memory_mb(), graph.T_map_node.size(), graph.edges.size(),
       metrics["graph"]["cross_submap_edges"].get<std::size_t>(),
       earlier_map_line(options, mapper->is_located(), num_earlier_nodes, graph.T_map_node.size()), consistency.line(),
       odometry.line(), (options.out / "map.yaml").string());

@@ -1,0 +1,53 @@
+#include "slam/graph/range_noise.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace patrol::slam {
+namespace {
+
+constexpr std::size_t kMinDifferences = 1000;
+constexpr double kMaxSpacing_m = 0.15;  ///< between neighboring beams
+constexpr double kMadOfStd = 0.6745;    ///< median absolute deviation of a normal distribution
+constexpr double kMinAdapted_m = 0.04;
+constexpr int kMaxRadiusCells = 10;
+/// In standard deviations of the ranges. Half of the noise is attributed to points, the remainder is the thickness of
+/// the surfaces in the map.
+constexpr double kRadius = 2.8, kFreeMargin = 3.5, kKernel = 2.5, kPointStd = 0.5;
+
+}  // namespace
+
+void RangeNoiseEstimator::add(const LaserScan& scan) {
+  const auto is_return = [&](std::size_t beam) {
+    const float range = scan.ranges_m[beam];
+    return std::isfinite(range) && range > 0.0F;
+  };
+  for (std::size_t beam = 1; beam + 1 < scan.ranges_m.size(); ++beam) {
+    if (!is_return(beam - 1) || !is_return(beam) || !is_return(beam + 1)) continue;
+    if (scan.ranges_m[beam] * std::abs(scan.angle_increment_rad) > kMaxSpacing_m) continue;
+    differences_m_.push_back(
+        std::abs(scan.ranges_m[beam] - 0.5F * (scan.ranges_m[beam - 1] + scan.ranges_m[beam + 1])));
+  }
+}
+
+std::optional<double> RangeNoiseEstimator::std_m() const {
+  if (differences_m_.size() < kMinDifferences) return std::nullopt;
+  std::vector<float> sorted = differences_m_;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  return *middle / (kMadOfStd * std::sqrt(1.5));
+}
+
+bool adapt_to_range_noise(double range_std_m, ScanTrackerSettings& settings) {
+  if (range_std_m <= kMinAdapted_m) return false;
+  ScanMatcherSettings& matching = settings.matching;
+  const int radius = static_cast<int>(std::lround(kRadius * range_std_m / settings.resolution_m));
+  matching.surface_radius_cells = std::max(matching.surface_radius_cells, std::min(radius, kMaxRadiusCells));
+  matching.kernel_m = std::max(matching.kernel_m, kKernel * range_std_m);
+  matching.point_std_m = std::max(matching.point_std_m, kPointStd * range_std_m);
+  settings.integration.free_margin_m = std::max(settings.integration.free_margin_m, kFreeMargin * range_std_m);
+  return true;
+}
+
+}  // namespace patrol::slam
