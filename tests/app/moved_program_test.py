@@ -16,8 +16,8 @@ PATROL, SOURCE = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
 
 
 def install(folder):
-    """bin/patrol and lib/libmujoco.so, with every path of the source tree in the program's bytes made one that does not exist."""
-    for name in ("bin", "lib", "elsewhere"):
+    """bin/patrol and lib/patrol/libmujoco.so, with every path of the source tree in the program's bytes made one that does not exist."""
+    for name in ("bin", "lib/patrol", "elsewhere"):
         (folder / name).mkdir(parents=True)
     source = str(SOURCE.resolve()).encode()
     nowhere = (b"/nowhere" + b"_" * len(source))[:len(source)]
@@ -27,7 +27,7 @@ def install(folder):
     for line in subprocess.run(["ldd", PATROL], capture_output=True, text=True, check=True).stdout.splitlines():
         found = re.match(r"\s*(libmujoco\S*) => (\S+)", line)
         if found:
-            shutil.copy(found[2], folder / "lib" / found[1])
+            shutil.copy(found[2], folder / "lib/patrol" / found[1])
     return program
 
 

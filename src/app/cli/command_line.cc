@@ -13,9 +13,11 @@
 #include <fmt/format.h>
 #include <mujoco/mujoco.h>
 
+#include "app/cli/command_texts.h"
 #include "app/cli/commands.h"
 #include "app/cli/number_checks.h"
 #include "app/cli/renamed_options.h"
+#include "app/scenario/scenario.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "io/files/one_line.h"
@@ -45,6 +47,7 @@ struct Call {
   TestOptions test;
   MonitorOptions monitor;
   UploadOptions upload;
+  std::string printed_text;
   std::function<ExitCode()> chosen;
 };
 
@@ -56,10 +59,16 @@ constexpr const char* kSkipHelp = "Skip unreadable records of a damaged log";
 constexpr const char* kLogHelp = "Log file: CARMEN text (plain or gzip) or MCAP";
 constexpr const char* kTokenHelp = "File with the access token (default: $PATROL_TOKEN)";
 
+void add_scenario(CLI::App& command, std::filesystem::path& scenario) {
+  command.add_option("scenario", scenario, "Scenario file (YAML), or WORLD/NAME of 'patrol list'")
+      ->required()
+      ->transform([](const std::string& name) { return find_scenario(name).string(); });
+}
+
 void add_run(CLI::App& app, Call& call) {
   RunOptions& run = call.run;
   CLI::App* command = app.add_subcommand("run", "Run a scenario headless and score it");
-  command->add_option("scenario", run.scenario, "Scenario file (YAML)")->required();
+  add_scenario(*command, run.scenario);
   command->add_option("--set", run.overrides, kSetHelp)->take_all();
   command->add_option("--seed", run.seed, kSeedHelp);
   command->add_flag("--watch", run.watch, "Show live status in the terminal");
@@ -90,7 +99,7 @@ void add_score(CLI::App& app, Call& call) {
 void add_localizability(CLI::App& app, Call& call) {
   LocalizabilityOptions& localizability = call.localizability;
   CLI::App* command = app.add_subcommand("localizability", "Map the accuracy bound of lidar localization");
-  command->add_option("scenario", localizability.scenario, "Scenario file (YAML)")->required();
+  add_scenario(*command, localizability.scenario);
   command->add_option("--set", localizability.overrides, kSetHelp)->take_all();
   command->add_option("--grid-step-m", localizability.grid_step_m, "Grid spacing, m")->capture_default_str();
   command->add_option("--out", localizability.out, kOutHelp)->capture_default_str();
@@ -140,7 +149,7 @@ void add_batch(CLI::App& command, BatchOptions& batch) {
 /// Adds the options that sweep, error-budget and fault-matrix have in common. `metrics`: help text of --metric.
 template <typename Options>
 void add_variants(CLI::App& command, Options& options, const char* metrics) {
-  command.add_option("scenario", options.scenario, "Scenario file (YAML)")->required();
+  add_scenario(command, options.scenario);
   command.add_option("--set", options.overrides, kSetAllHelp)->take_all();
   command.add_option("--seeds", options.seeds, "Seeds: N (1 ... N) or A..B")->capture_default_str();
   command.add_option("--metric", options.metrics, metrics)->take_all()->capture_default_str();
@@ -321,6 +330,21 @@ void add_list(CLI::App& app, Call& call) {
   command->callback([&] { call.chosen = [] { return list_command(); }; });
 }
 
+void add_print(CLI::App& app, Call& call) {
+  CLI::App* command = app.add_subcommand("print", "Print a shell completion script or the manual page");
+  command->add_option("text", call.printed_text, "bash-completion, zsh-completion or man-page")
+      ->required()
+      ->check(CLI::IsMember({"bash-completion", "zsh-completion", "man-page"}));
+  command->callback([&] {
+    call.chosen = [&] {
+      std::cout << (call.printed_text == "bash-completion"  ? bash_completion(app)
+                    : call.printed_text == "zsh-completion" ? zsh_completion(app)
+                                                            : man_page(app, PATROL_VERSION));
+      return ExitCode::kDone;
+    };
+  });
+}
+
 /// Throws InputError for an unknown command; the message of CLI11 would only be that a command is required.
 void refuse_unknown_command(const CLI::App& app, int argc, const char* const* argv) {
   const std::string word = argc > 1 ? argv[1] : "-";
@@ -367,7 +391,7 @@ int run_command_line(int argc, const char* const* argv) {
   for (const auto add :
        {add_run,   add_score,        add_localizability, add_replay,  add_report,    add_verify, add_sweep,
         add_merge, add_error_budget, add_fault_matrix,   add_slam,    add_calibrate, add_train,  add_solve,
-        add_plan,  add_study,        add_test,           add_monitor, add_upload,    add_list}) {
+        add_plan,  add_study,        add_test,           add_monitor, add_upload,    add_list,   add_print}) {
     add(app, call);
   }
   add_number_checks(app);

@@ -1,8 +1,10 @@
 #include "app/mapping/mapping_page.h"
 
 #include <algorithm>
+#include <string>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -44,6 +46,13 @@ report::LinePlot plot_of(const MappingContents& contents, const std::string& col
           .spans = {}};
 }
 
+std::vector<std::pair<std::string, std::string>> facts_of(const io::Metrics& earlier_map) {
+  if (earlier_map.is_null()) return {};
+  return {{"earlier map", earlier_map["located"].get<bool>()
+                              ? fmt::format("located, {} nodes", earlier_map["nodes"].get<std::size_t>())
+                              : "not located"}};
+}
+
 }  // namespace
 
 report::Page mapping_page(const MappingContents& contents) {
@@ -73,7 +82,7 @@ report::Page mapping_page(const MappingContents& contents) {
                    .note = "peak of the process"}}};
   return {.kind = "mapping",
           .title = fmt::format("{}, mapped by {}", contents.log, contents.method),
-          .facts = {},
+          .facts = facts_of(contents.metrics["earlier_map"]),
           .sections = {{"", {contents.consistency.block(), key_metrics}},
                        {"Map", {map_block(contents)}},
                        {"Odometry", {contents.odometry.block()}},

@@ -158,6 +158,18 @@ std::filesystem::path find_data_root(const std::filesystem::path& scenario) {
       "contains them");
 }
 
+std::filesystem::path find_scenario(const std::filesystem::path& name) {
+  if (std::filesystem::exists(name) || name.has_extension() || name.is_absolute() || !name.has_parent_path())
+    return name;
+  try {
+    const std::filesystem::path file =
+        find_data_root(name) / "worlds" / name.parent_path() / "scenarios" / (name.filename().string() + ".yaml");
+    return std::filesystem::exists(file) ? file : name;
+  } catch (const InputError&) {
+    return name;  // without data, the error is that the file does not exist
+  }
+}
+
 std::vector<std::filesystem::path> named_files(const Scenario& scenario, const std::filesystem::path& data_root) {
   const std::filesystem::path world = data_root / "worlds" / scenario.world;
   const std::pair<const char*, const std::string&> named[] = {{"mission", scenario.mission},

@@ -201,6 +201,10 @@ void save_scenario(const std::filesystem::path& file, const Scenario& scenario, 
 /// folder; the source tree of the build. Throws InputError if there is none, or if PATROL_DATA names another folder.
 std::filesystem::path find_data_root(const std::filesystem::path& scenario);
 
+/// Returns the file of a scenario: `name` itself if it exists, else the scenario WORLD/NAME of the data root (for
+/// example street/patrol). Returns `name` if there is neither.
+std::filesystem::path find_scenario(const std::filesystem::path& name);
+
 /// Paths of the files that a scenario names: mission, map and its image, goals, teleoperation. Throws InputError with
 /// file and key if one is missing.
 std::vector<std::filesystem::path> named_files(const Scenario& scenario, const std::filesystem::path& data_root);

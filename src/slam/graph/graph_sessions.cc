@@ -10,7 +10,7 @@
 #include <Eigen/Geometry>
 
 #include "slam/graph/graph_slam.h"
-#include "slam/submaps/effective_neighbor_icp.h"
+#include "slam/rigid_motion.h"
 #include "slam/surface_overlap.h"
 
 namespace patrol::slam {

@@ -57,11 +57,6 @@ struct IcpResult {
 /// maximum is used; among equal ones the last. If no distance is below the chord, all pairs are kept.
 double effective_threshold(const std::vector<double>& sorted_distances);
 
-/// Rigid motion that minimizes the sum of squared distances of point pairs, in closed form [Yu23, eqs. 9 to 12]. Both
-/// sets are centered, then the rotation is estimated, then T = mu_p - R mu_q. At least one pair is required.
-Pose2 fit_rigid_motion(const std::vector<Eigen::Vector2d>& points_target,
-                       const std::vector<Eigen::Vector2d>& points_source);
-
 /// ICP [Besl92] on effective neighbors [Yu23, section 2.2]. In every iteration, each source point is paired with its
 /// nearest target point, and pairs beyond the threshold are dropped. Points outside the overlap thus have no influence.
 /// Returns none if fewer than `min_pairs` remain.

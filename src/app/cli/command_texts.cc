@@ -1,0 +1,153 @@
+#include "app/cli/command_texts.h"
+
+#include <algorithm>
+#include <cctype>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "core/text.h"
+
+namespace patrol::app {
+namespace {
+
+std::vector<const CLI::App*> commands_of(const CLI::App& app) { return app.get_subcommands({}); }
+
+std::vector<const CLI::Option*> options_of(const CLI::App& command) {
+  std::vector<const CLI::Option*> options = command.get_options({});
+  std::erase_if(options, [](const CLI::Option* option) { return !option->nonpositional(); });
+  return options;
+}
+
+std::vector<const CLI::Option*> positionals_of(const CLI::App& command) {
+  std::vector<const CLI::Option*> options = command.get_options({});
+  std::erase_if(options, [](const CLI::Option* option) { return option->nonpositional(); });
+  return options;
+}
+
+bool takes_value(const CLI::Option& option) { return option.get_items_expected_max() > 0; }
+
+std::string long_name(const CLI::Option& option) { return "--" + option.get_lnames().front(); }
+
+/// Returns the text with `before` in front of each of the characters.
+std::string escaped(const std::string& text, std::string_view characters, std::string_view before) {
+  std::string result;
+  for (const char c : text) {
+    if (characters.find(c) != std::string_view::npos) result += before;
+    result += c;
+  }
+  return result;
+}
+
+/// Content of a string in single quotes of a shell.
+std::string in_quotes(const std::string& text) {
+  std::string result;
+  for (const char c : text) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return result;
+}
+
+/// Text for man(7), in which a hyphen would become a typographic one.
+std::string to_roff(const std::string& text) {
+  const std::string result = escaped(text, "\\-", "\\");
+  return result.starts_with('.') || result.starts_with('\'') ? "\\&" + result : result;
+}
+
+std::string upper(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::toupper(c); });
+  return text;
+}
+
+}  // namespace
+
+std::string bash_completion(const CLI::App& app) {
+  std::vector<std::string> names;
+  std::string cases;
+  for (const CLI::App* command : commands_of(app)) {
+    names.push_back(command->get_name());
+    std::vector<std::string> options;
+    for (const CLI::Option* option : options_of(*command)) options.push_back(long_name(*option));
+    cases += fmt::format("    {}) options='{}' ;;\n", command->get_name(), join(options, " "));
+  }
+  return fmt::format(
+      "# Completion of patrol for bash.\n"
+      "_patrol() {{\n"
+      "  local word=${{COMP_WORDS[COMP_CWORD]}} options=\n"
+      "  if [ \"$COMP_CWORD\" -eq 1 ]; then\n"
+      "    mapfile -t COMPREPLY < <(compgen -W '{} --help --version' -- \"$word\")\n"
+      "    return\n"
+      "  fi\n"
+      "  case ${{COMP_WORDS[1]}} in\n{}  esac\n"
+      "  if [[ $word == -* ]]; then\n"
+      "    mapfile -t COMPREPLY < <(compgen -W \"$options\" -- \"$word\")\n"
+      "  else\n"
+      "    mapfile -t COMPREPLY < <(compgen -f -- \"$word\")\n"
+      "  fi\n"
+      "}}\n"
+      "complete -o filenames -F _patrol patrol\n",
+      join(names, " "), cases);
+}
+
+std::string zsh_completion(const CLI::App& app) {
+  std::string names, cases;
+  for (const CLI::App* command : commands_of(app)) {
+    names +=
+        fmt::format("    '{}:{}'\n", command->get_name(), in_quotes(escaped(command->get_description(), ":", "\\")));
+    cases += fmt::format("    {}) _arguments '*:file:_files'", command->get_name());
+    for (const CLI::Option* option : options_of(*command)) {
+      cases += fmt::format(" \\\n      '*{}[{}]{}'", long_name(*option),
+                           in_quotes(escaped(option->get_description(), "[]:", "\\")),
+                           takes_value(*option) ? ":value:_files" : "");
+    }
+    cases += " ;;\n";
+  }
+  return fmt::format(
+      "#compdef patrol\n"
+      "# Completion of patrol for zsh.\n"
+      "_patrol() {{\n"
+      "  local -a commands=(\n{}  )\n"
+      "  if (( CURRENT == 2 )); then\n"
+      "    _describe 'command' commands\n"
+      "    return\n"
+      "  fi\n"
+      "  local command=$words[2]\n"
+      "  shift words\n"
+      "  (( CURRENT-- ))\n"
+      "  case $command in\n{}  esac\n"
+      "}}\n"
+      "_patrol \"$@\"\n",
+      names, cases);
+}
+
+std::string man_page(const CLI::App& app, const std::string& version) {
+  std::string text = fmt::format(
+      ".TH PATROL 1 \"\" \"Patrol {}\" \"User commands\"\n.SH NAME\npatrol \\- digital twin for inspection robots\n"
+      ".SH SYNOPSIS\n.B patrol\n.I COMMAND\n[\\fIoptions\\fR]\n.ad l\n.SH COMMANDS\n",
+      to_roff(version));
+  for (const CLI::App* command : commands_of(app)) {
+    text += fmt::format(".SS patrol {}", to_roff(command->get_name()));
+    for (const CLI::Option* positional : positionals_of(*command)) {
+      const std::string name = to_roff(upper(positional->get_name()));
+      text += positional->get_required() ? " " + name : fmt::format(" [{}]", name);
+    }
+    text += fmt::format("\n{}.\n", to_roff(command->get_description()));
+    for (const CLI::Option* positional : positionals_of(*command)) {
+      text += fmt::format(".TP\n\\fI{}\\fR\n{}\n", to_roff(upper(positional->get_name())),
+                          to_roff(positional->get_description()));
+    }
+    for (const CLI::Option* option : options_of(*command)) {
+      const std::string standard = option->get_default_str();
+      text += fmt::format(".TP\n\\fB{}\\fR{}\n{}{}\n", to_roff(long_name(*option)),
+                          takes_value(*option) ? " \\fIVALUE\\fR" : "", to_roff(option->get_description()),
+                          standard.empty() ? "" : fmt::format(" (default: {})", to_roff(standard)));
+    }
+  }
+  text +=
+      ".SH EXIT STATUS\n0: every expectation met; 1: an expectation missed; 2: invalid input or command line; 3: the "
+      "program or the simulation failed; 4: time limit; 5: nothing executed.\n"
+      ".SH ENVIRONMENT\n.TP\n\\fBPATROL_DATA\\fR\nFolder that contains the folders worlds and models.\n"
+      ".TP\n\\fBPATROL_TOKEN\\fR\nAccess token of the monitoring server.\n";
+  return text;
+}
+
+}  // namespace patrol::app
