@@ -60,7 +60,7 @@ constexpr const char* kLogHelp = "Log file: CARMEN text (plain or gzip) or MCAP"
 constexpr const char* kTokenHelp = "File with the access token (default: $PATROL_TOKEN)";
 
 void add_scenario(CLI::App& command, std::filesystem::path& scenario) {
-  command.add_option("scenario", scenario, "Scenario file (YAML), or WORLD/NAME of 'patrol list'")
+  command.add_option("scenario", scenario, "Scenario file (YAML), or WORLD/NAME, for example street/patrol")
       ->required()
       ->transform([](const std::string& name) { return find_scenario(name).string(); });
 }

@@ -14,27 +14,25 @@ namespace {
 
 std::vector<const CLI::App*> commands_of(const CLI::App& app) { return app.get_subcommands({}); }
 
-std::vector<const CLI::Option*> options_of(const CLI::App& command) {
-  std::vector<const CLI::Option*> options = command.get_options({});
-  std::erase_if(options, [](const CLI::Option* option) { return !option->nonpositional(); });
-  return options;
+std::vector<const CLI::Option*> arguments_of(const CLI::App& command, bool are_options) {
+  std::vector<const CLI::Option*> arguments = command.get_options({});
+  std::erase_if(arguments, [&](const CLI::Option* argument) { return argument->nonpositional() != are_options; });
+  return arguments;
 }
 
-std::vector<const CLI::Option*> positionals_of(const CLI::App& command) {
-  std::vector<const CLI::Option*> options = command.get_options({});
-  std::erase_if(options, [](const CLI::Option* option) { return option->nonpositional(); });
-  return options;
-}
+std::vector<const CLI::Option*> options_of(const CLI::App& command) { return arguments_of(command, true); }
+
+std::vector<const CLI::Option*> positionals_of(const CLI::App& command) { return arguments_of(command, false); }
 
 bool takes_value(const CLI::Option& option) { return option.get_items_expected_max() > 0; }
 
 std::string long_name(const CLI::Option& option) { return "--" + option.get_lnames().front(); }
 
-/// Returns the text with `before` in front of each of the characters.
-std::string escaped(const std::string& text, std::string_view characters, std::string_view before) {
+/// Returns the text with a backslash in front of each of the characters.
+std::string escaped(const std::string& text, std::string_view characters) {
   std::string result;
   for (const char c : text) {
-    if (characters.find(c) != std::string_view::npos) result += before;
+    if (characters.find(c) != std::string_view::npos) result += '\\';
     result += c;
   }
   return result;
@@ -49,7 +47,7 @@ std::string in_quotes(const std::string& text) {
 
 /// Text for man(7), in which a hyphen would become a typographic one.
 std::string to_roff(const std::string& text) {
-  const std::string result = escaped(text, "\\-", "\\");
+  const std::string result = escaped(text, "\\-");
   return result.starts_with('.') || result.starts_with('\'') ? "\\&" + result : result;
 }
 
@@ -91,12 +89,11 @@ std::string bash_completion(const CLI::App& app) {
 std::string zsh_completion(const CLI::App& app) {
   std::string names, cases;
   for (const CLI::App* command : commands_of(app)) {
-    names +=
-        fmt::format("    '{}:{}'\n", command->get_name(), in_quotes(escaped(command->get_description(), ":", "\\")));
+    names += fmt::format("    '{}:{}'\n", command->get_name(), in_quotes(escaped(command->get_description(), ":")));
     cases += fmt::format("    {}) _arguments '*:file:_files'", command->get_name());
     for (const CLI::Option* option : options_of(*command)) {
       cases += fmt::format(" \\\n      '*{}[{}]{}'", long_name(*option),
-                           in_quotes(escaped(option->get_description(), "[]:", "\\")),
+                           in_quotes(escaped(option->get_description(), "[]:")),
                            takes_value(*option) ? ":value:_files" : "");
     }
     cases += " ;;\n";

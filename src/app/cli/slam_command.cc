@@ -185,7 +185,8 @@ ExitCode slam_command(const SlamOptions& options) {
   if (needs_neighbor_model(settings.slam.method))
     neighbors = load_neighbor_model(settings.slam.method, find_data_root(""));
   if (settings.range_std_m == 0.0) settings.range_std_m = estimate_range_std_m(options.log, settings.log);
-  const bool is_noisy = slam::adapt_to_range_noise(settings.range_std_m, settings.slam.graph.scan_odometry);
+  const bool is_adapted = settings.slam.method == "graph" &&
+                          slam::adapt_to_range_noise(settings.range_std_m, settings.slam.graph.scan_odometry);
   const std::unique_ptr<slam::Mapper> mapper = slam::make_mapper(settings.slam, neighbors, settings.seed);
   std::size_t num_earlier_nodes = 0;
   if (options.earlier_map) {
@@ -256,7 +257,7 @@ ExitCode slam_command(const SlamOptions& options) {
       "{}{}{} scans, {:.0f} m by odometry, mapped by {} in {:.1f} s ({:.0f} times real time), {:.0f} MB\n{} keyframes, "
       "{} edges, {} of them to other submaps\n{}{}\n{}\n{}\n",
       io::to_text(log->summary()),
-      is_noisy ? fmt::format("ranges have noise of {:.2f} m: settings of graph adapted\n", settings.range_std_m) : "",
+      is_adapted ? fmt::format("ranges have noise of {:.2f} m: settings of graph adapted\n", settings.range_std_m) : "",
       mapped.stamps.size(), mapped.way_m, settings.slam.method, took_s, mapped.duration_s() / std::max(1e-9, took_s),
       peak_memory_mb(), graph.T_map_node.size(), graph.edges.size(),
       metrics["graph"]["cross_submap_edges"].get<std::size_t>(),

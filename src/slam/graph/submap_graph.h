@@ -20,13 +20,13 @@ struct SubmapGraph {
 /// keyframes, or if a keyframe belongs to no submap.
 SubmapGraph make_submap_graph(std::vector<ScanGroup> scans, std::vector<Submap> submaps, PoseGraph graph);
 
-/// Returns the map with the kept submaps and their keyframes only, `is_kept` [submap]. A kept keyframe whose
-/// predecessor is left out is connected to the nearest kept one before it, with standard deviations that grow with
-/// their distance: `std_m_per_m`, `std_rad_per_m`, and at least `min_std_m` and `min_std_rad`.
+/// Standard deviations of a connection: a constant part, and a part in proportion to the distance of its keyframes.
 struct ConnectionSettings {
   double std_m_per_m = 0.02, std_rad_per_m = 0.004;
   double min_std_m = 0.01, min_std_rad = 0.001;
 };
+/// Returns the map with the kept submaps and their keyframes only, `is_kept` [submap]. A kept keyframe whose
+/// predecessor is left out is connected to the nearest kept one before it.
 SubmapGraph with_submaps(const SubmapGraph& map, const std::vector<bool>& is_kept, const ConnectionSettings& settings);
 
 }  // namespace patrol::slam

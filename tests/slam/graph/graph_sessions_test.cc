@@ -88,7 +88,7 @@ TEST(GraphSessions, NewPlacesExtendTheMapAndCloseItsLoop) {
   EXPECT_LT(max_error_m(second, first.drive[0].T_world_body), 0.15);
   const SubmapGraph extended = second.slam.submap_graph();
   EXPECT_GT(extended.keyframes.size(), 2 * map.keyframes.size());
-  // What both have seen is not kept twice.
+  // Places that both sessions have seen are kept once.
   EXPECT_LT(extended.keyframes.size(), map.keyframes.size() + 9 * second.slam.node_scan_indices().size() / 10);
   const Session third = map_session(office, test::office_rounds(1), 3, &extended);
   ASSERT_TRUE(third.slam.is_located());
