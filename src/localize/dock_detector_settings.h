@@ -11,7 +11,7 @@ struct DockDetectorSettings {
   /// Free space required next to the ends of the post: hits there count against the detection.
   double end_clearance_m = 0.15;
   double min_inlier_ratio = 0.75;  ///< minimum inlier ratio of the beams around the post
-  double max_rms_m = 0.04;
+  double max_rms_m = 0.04;   ///< maximum root mean square distance of the returns from the outline of a detected post
   int min_beams = 25;        ///< minimum number of beams on the post
   double max_range_m = 4.0;  ///< maximum distance of the expected post for a search
 

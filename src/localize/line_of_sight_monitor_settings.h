@@ -6,11 +6,12 @@ namespace patrol::localize {
 
 /// Settings of the detection of UWB ranges without line of sight.
 struct LineOfSightMonitorSettings {
-  double range_std_m = 0.1;    ///< standard deviation of a range in line of sight
-  double max_std_ratio = 1.4;  ///< ranges that scatter by more than this multiple of it are not in line of sight
-  int window_ranges = 16;      ///< number of the newest ranges to an anchor that are compared
-  int min_ranges = 6;          ///< below this number the line of sight is unknown, and the ranges are not used
-  double max_age_s = 10.0;     ///< ranges that are older than the newest one by more are discarded
+  double range_std_m = 0.1;  ///< standard deviation of a range in line of sight
+  /// Ratio of the scatter of ranges to its expected value above which they are not in line of sight.
+  double max_std_ratio = 1.4;
+  int window_ranges = 16;   ///< number of the newest ranges to an anchor that are compared
+  int min_ranges = 6;       ///< number of ranges below which the line of sight is unknown, and the ranges are not used
+  double max_age_s = 10.0;  ///< age relative to the newest range above which ranges are discarded
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

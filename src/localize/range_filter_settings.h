@@ -9,30 +9,31 @@ namespace patrol::localize {
 
 struct RangeFilterSettings {
   // UWB ranges.
-  /// Bias of a line-of-sight range at each distance of `bias_distance_m`.
-  std::vector<double> bias_distance_m = UwbCalibration{}.distance_m;
-  std::vector<double> bias_m = UwbCalibration{}.bias_m;  ///< both lists empty: no bias
-  double range_std_m = 0.1;
-  double nlos_probability = 0.3;  ///< prior probability of a non-line-of-sight (NLOS) range
-  double nlos_bias_m = 0.5;       ///< mean bias of NLOS ranges
-  /// Ranges that are too long and have a smaller line-of-sight probability are rejected.
-  double min_los_probability = 0.1;
-  double negative_gate_sigma = 3.3;  ///< ranges that are too short by more standard deviations are rejected: 99.9 %
+  std::vector<double> bias_distance_m = UwbCalibration{}.distance_m;  ///< distances of the entries of `bias_m`
+  /// Bias of a line-of-sight range at each distance of `bias_distance_m`; both lists empty: no bias.
+  std::vector<double> bias_m = UwbCalibration{}.bias_m;
+  double range_std_m = 0.1;          ///< standard deviation of a line-of-sight range
+  double nlos_probability = 0.3;     ///< prior probability of a non-line-of-sight (NLOS) range
+  double nlos_bias_m = 0.5;          ///< mean bias of NLOS ranges
+  double min_los_probability = 0.1;  ///< line-of-sight probability below which a range that is too long is rejected
+  /// Number of standard deviations beyond which a range that is too short is rejected: 99.9 %.
+  double negative_gate_sigma = 3.3;
   // Odometry. The standard deviations of its errors are part of its output; here are their correlation lengths and
   // white noise.
-  double longitudinal_correlation_m = 8.0;  ///< scale, slip
-  double lateral_correlation_m = 4.0;
-  double yaw_correlation_s = 300.0;  ///< gyro bias, from one standstill to the next
-  double position_random_walk_m_per_sqrt_m = 0.003;
-  double yaw_random_walk_rad_per_sqrt_s = 3.5e-4;
-  double yaw_random_walk_rad_per_sqrt_rad = 0.002;
-  double height_std_m_per_sqrt_m = 0.02;
-  double start_height_std_m = 0.05;
+  double longitudinal_correlation_m = 8.0;  ///< correlation length of the longitudinal error of odometry: scale, slip
+  double lateral_correlation_m = 4.0;       ///< correlation length of the lateral error of odometry
+  /// Correlation time of the yaw error of odometry: gyro bias, from one standstill to the next.
+  double yaw_correlation_s = 300.0;
+  double position_random_walk_m_per_sqrt_m = 0.003;  ///< random walk of the position over the distance traveled
+  double yaw_random_walk_rad_per_sqrt_s = 3.5e-4;    ///< random walk of the yaw over time
+  double yaw_random_walk_rad_per_sqrt_rad = 0.002;   ///< random walk of the yaw over the rotation
+  double height_std_m_per_sqrt_m = 0.02;             ///< random walk of the height over the distance traveled
+  double start_height_std_m = 0.05;                  ///< standard deviation of the height at the start
   // Recovery from a wrong estimate.
   int window = 30;                  ///< number of ranges over which rejections are counted
-  double min_accepted_ratio = 0.4;  ///< minimum acceptance ratio of the window; below it the covariance is inflated
-  double reset_std_m = 0.5;         ///< standard deviation added to x and y
-  double reset_std_rad = 0.05;
+  double min_accepted_ratio = 0.4;  ///< acceptance ratio of the window below which the covariance is inflated
+  double reset_std_m = 0.5;         ///< standard deviation added to x and y when the covariance is inflated
+  double reset_std_rad = 0.05;      ///< standard deviation added to the yaw when the covariance is inflated
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

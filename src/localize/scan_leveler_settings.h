@@ -7,13 +7,14 @@ namespace patrol::localize {
 struct ScanLevelerSettings {
   /// Height limits of obstacles above the ground under the feet; a curb of 0.12 m is lower.
   double min_height_m = 0.15;
-  double max_height_m = 1.5;
+  double max_height_m = 1.5;       ///< maximum height of a point that is used, above the lidar
   double tilt_margin_rad = 0.008;  ///< margin for an apparent rise of the ground with distance: tilt error and slope
-  double self_filter_radius_m = 0.32;  ///< hits closer to the vertical axis of the body are the robot itself
+  /// Distance from the vertical axis of the body below which hits are the robot itself.
+  double self_filter_radius_m = 0.32;
   double no_return_clearing_range_m =
-      6.0;  ///< a beam without return clears this distance only: glass and black surfaces give no return
-  double max_range_m = 30.0;       ///< hits farther away are excluded
-  bool gimbal_stabilized = false;  ///< the lidar is on a stabilized gimbal: scans are level although the body tilts
+      6.0;                    ///< distance that a beam without return clears: glass and black surfaces give no return
+  double max_range_m = 30.0;  ///< maximum range of a hit that is used
+  bool gimbal_stabilized = false;  ///< presence of a stabilized gimbal: scans are level although the body tilts
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -10,11 +10,13 @@ struct TrackOdometrySettings {
   // IMU.
   double gyro_noise_density_radps_per_sqrt_hz = 3.5e-4;  ///< noise density of readings sampled at 250 Hz, unfiltered
   double gyro_bias_std_radps = 8.7e-3;                   ///< standard deviation of the bias at power-on
-  double gyro_bias_random_walk_radps_per_sqrt_s = 1e-5;
-  double accel_noise_density_mps2_per_sqrt_hz = 0.05;  ///< includes the vibration of driving
-  double accel_bias_std_mps2 = 0.2;                    ///< standard deviation of the bias at power-on
-  double accel_bias_random_walk_mps2_per_sqrt_s = 1e-3;
-  double yaw_random_walk_rad_per_sqrt_rad = 0.002;  ///< gyro scale factor and misalignment, during rotation
+  double gyro_bias_random_walk_radps_per_sqrt_s = 1e-5;  ///< random walk of the gyro bias
+  /// Noise density of the accelerometer, with the vibration of driving.
+  double accel_noise_density_mps2_per_sqrt_hz = 0.05;
+  double accel_bias_std_mps2 = 0.2;                      ///< standard deviation of the bias at power-on
+  double accel_bias_random_walk_mps2_per_sqrt_s = 1e-3;  ///< random walk of the accelerometer bias
+  /// Random walk of the yaw over the rotation: gyro scale factor and misalignment.
+  double yaw_random_walk_rad_per_sqrt_rad = 0.002;
   /// Standard deviation of the scale of the accelerometer, which the published bias along the vertical contains.
   double accel_scale_std = 0.005;
   // Track encoders and the standard deviation of the track speed, whose terms add in quadrature.
@@ -48,7 +50,7 @@ struct TrackOdometrySettings {
   double standstill_accel_std_mps2 = 0.1;
   // Faults.
   double imu_timeout_s = 0.1;                 ///< maximum delay of the IMU behind the encoders before it is bridged
-  double max_track_acceleration_mps2 = 10.0;  ///< encoder readings with larger accelerations are rejected
+  double max_track_acceleration_mps2 = 10.0;  ///< largest acceleration of an accepted encoder reading
   double buffer_s = 2.0;                      ///< length of the motion history
   double max_extrapolation_s = 0.15;          ///< maximum time after the newest reading for which a pose is given
 

@@ -91,8 +91,11 @@ struct VideoWriter::Encoder {
   Encoder& operator=(const Encoder&) = delete;
 
   void open_codec(int width, int height, double frames_per_second);
+  void set_quality() const;
   void open_container(int width, int height, const std::vector<Chapter>& chapters);
   void encode(const AVFrame* frame) const;
+
+  bool is_webp() const { return file.extension() == ".webp"; }
 
   std::filesystem::path file;
   std::filesystem::path temporary;
@@ -106,12 +109,12 @@ struct VideoWriter::Encoder {
 };
 
 void VideoWriter::Encoder::open_codec(int width, int height, double frames_per_second) {
-  checked(avformat_alloc_output_context2(&container, nullptr, "mp4", temporary.c_str()),
-          "cannot create the MP4 writer");
+  checked(avformat_alloc_output_context2(&container, nullptr, is_webp() ? "webp" : "mp4", temporary.c_str()),
+          "cannot create the writer");
   container->flags |= AVFMT_FLAG_BITEXACT;
-  const AVCodec* kind = avcodec_find_encoder_by_name("libx264");
-  const bool is_h264 = kind != nullptr;
-  if (!is_h264) kind = not_null(avcodec_find_encoder(AV_CODEC_ID_MPEG4), "encoder");
+  const AVCodec* kind = avcodec_find_encoder_by_name(is_webp() ? "libwebp_anim" : "libx264");
+  if (kind == nullptr && !is_webp()) kind = avcodec_find_encoder(AV_CODEC_ID_MPEG4);
+  not_null(kind, "encoder");
   codec = not_null(avcodec_alloc_context3(kind), "encoder");
   codec->width = width;
   codec->height = height;
@@ -124,14 +127,20 @@ void VideoWriter::Encoder::open_codec(int width, int height, double frames_per_s
   av_log_set_level(AV_LOG_ERROR);
   codec->flags |= AV_CODEC_FLAG_BITEXACT;
   if ((container->oformat->flags & AVFMT_GLOBALHEADER) != 0) codec->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
-  if (is_h264) {
+  set_quality();
+  checked(avcodec_open2(codec, kind, nullptr), "cannot start the encoder");
+}
+
+void VideoWriter::Encoder::set_quality() const {
+  if (is_webp()) {
+    av_opt_set_double(codec->priv_data, "quality", 60.0, 0);
+  } else if (codec->codec_id == AV_CODEC_ID_H264) {
     av_opt_set(codec->priv_data, "preset", "veryfast", 0);
     av_opt_set(codec->priv_data, "crf", "23", 0);
   } else {
     codec->flags |= AV_CODEC_FLAG_QSCALE;
     codec->global_quality = 4 * FF_QP2LAMBDA;
   }
-  checked(avcodec_open2(codec, kind, nullptr), "cannot start the encoder");
 }
 
 void VideoWriter::Encoder::open_container(int width, int height, const std::vector<Chapter>& chapters) {
@@ -142,9 +151,13 @@ void VideoWriter::Encoder::open_container(int width, int height, const std::vect
   if (avio_open(&container->pb, temporary.c_str(), AVIO_FLAG_WRITE) < 0) {
     throw InputError(file.string() + ": cannot be written");
   }
-  add_chapters(*container, chapters);
   AVDictionary* options = nullptr;
-  av_dict_set(&options, "movflags", "+faststart", 0);
+  if (is_webp()) {
+    av_dict_set(&options, "loop", "0", 0);  // without end
+  } else {
+    add_chapters(*container, chapters);
+    av_dict_set(&options, "movflags", "+faststart", 0);
+  }
   const int code = avformat_write_header(container, &options);
   av_dict_free(&options);
   checked(code, "file header");

@@ -16,8 +16,10 @@ struct Chapter {
   std::string title;
 };
 
-/// Writer of MP4 files with H.264 (MPEG-4 part 2 without libx264). Equal frames give equal bytes. Writes to a temporary
-/// file that is renamed on completion; without `finish` no file remains.
+/// Writer of MP4 files with H.264 (MPEG-4 part 2 without libx264), or of animated WebP if the name of the file ends
+/// with
+/// ".webp", without chapters. Equal frames give equal bytes. Writes to a temporary file that is renamed on completion;
+/// without `finish` no file remains.
 class VideoWriter {
  public:
   /// Throws InputError when the size is odd or the file cannot be written, std::runtime_error when libav fails.

@@ -103,7 +103,7 @@ std::string span_html(const Span& span, const Scale& scale) {
 }  // namespace
 
 std::string to_html(const TableBlock& block) {
-  std::string html = "<div class=\"table\"><table>";
+  std::string html = "<div class=\"table\" tabindex=\"0\"><table>";  // scrolls: reachable by keyboard
   if (!block.caption.empty()) html += fmt::format("<caption>{}</caption>", io::escaped_markup(block.caption));
   html += head_html(block.columns) + "<tbody>\n";
   for (const std::vector<TableCell>& row : block.rows) {

@@ -14,8 +14,8 @@
 namespace patrol::sim {
 
 struct WaypointSettings {
-  double x_m = 0.0;
-  double y_m = 0.0;
+  double x_m = 0.0;  ///< x of the waypoint in the world
+  double y_m = 0.0;  ///< y of the waypoint in the world
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -26,14 +26,13 @@ struct WaypointSettings {
 
 /// Settings of a pedestrian or car that moves along a path and stops for the robot.
 struct ActorSettings {
-  std::string name;  ///< name of the world's mocap body, e.g. "pedestrian_1"
-  std::string kind = "pedestrian";
+  std::string name;                 ///< name of the world's mocap body, e.g. "pedestrian_1"
+  std::string kind = "pedestrian";  ///< kind of the actor: pedestrian or car
   std::vector<WaypointSettings> path;
-  double speed_mps = 1.2;
-  double start_s = 0.0;
-  bool loop = true;               ///< true: moves back and forth along the path (a car reverses); false: stops at
-                                  ///< the end
-  double yield_distance_m = 1.5;  ///< stops while the robot's center is within this distance ahead
+  double speed_mps = 1.2;  ///< speed along the path
+  double start_s = 0.0;    ///< time of the start of the motion
+  bool loop = true;  ///< motion back and forth along the path (a car reverses); false: one way, with a stop at the end
+  double yield_distance_m = 1.5;  ///< distance to the robot's center ahead within which the actor stops
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -9,7 +9,7 @@ namespace patrol::sim {
 /// Airborne dust, for optical sensors. Sound of 8 mm and radio waves of 7 cm wavelength are not affected by grains of
 /// micrometers.
 struct DustSettings {
-  bool enabled = false;
+  bool enabled = false;        ///< presence of dust in the air
   double visibility_m = 50.0;  ///< meteorological range: distance at which the contrast of black against the sky falls
                                ///< to 2 %
   double backscatter_probability =

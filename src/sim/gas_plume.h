@@ -12,9 +12,9 @@ namespace patrol::sim {
 
 /// Methane leak at a site of the world.
 struct LeakSettings {
-  std::string at;  ///< name of the site, e.g. "regulator_box_2"
-  double rate_g_s = 1.0;
-  double start_s = 0.0;
+  std::string at;         ///< name of the site, e.g. "regulator_box_2"
+  double rate_g_s = 1.0;  ///< mass of methane released per second
+  double start_s = 0.0;   ///< time of the start of the leak
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -25,7 +25,7 @@ struct LeakSettings {
 };
 
 struct WindSettings {
-  double speed_mps = 1.5;
+  double speed_mps = 1.5;        ///< wind speed
   double direction_deg = 240.0;  ///< direction from which the wind blows, clockwise from north (+y)
   std::string stability = "D";   ///< Pasquill stability class: A very unstable ... F stable
 

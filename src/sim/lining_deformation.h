@@ -19,12 +19,12 @@ namespace patrol::sim {
 /// walls below stay.
 /// - bulge: moves inward by `inward_mm` at `clock_deg`, decreasing as cos^2 to zero at `half_width_deg` on both sides.
 struct LiningDeformationSettings {
-  std::string kind = "convergence";
-  int first_ring = 1;
-  int last_ring = 1;
-  double inward_mm = 0.0;        ///< negative: outward
-  double clock_deg = 0.0;        ///< center of a bulge
-  double half_width_deg = 20.0;  ///< half width of a bulge
+  std::string kind = "convergence";  ///< shape of the displacement: convergence of whole rings, or a bulge
+  int first_ring = 1;                ///< number of the first displaced ring
+  int last_ring = 1;                 ///< number of the last displaced ring
+  double inward_mm = 0.0;            ///< displacement toward the tunnel axis; negative: outward
+  double clock_deg = 0.0;            ///< clock position of the center of a bulge; 0: crown
+  double half_width_deg = 20.0;      ///< half width of a bulge
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -13,10 +13,10 @@ namespace patrol::sim {
 
 /// Object on a building site below the plane of a 2D lidar, or a parked truck.
 struct StaticObstacleSettings {
-  std::string kind = "rebar";
-  double x_m = 0.0;  ///< center, in world
-  double y_m = 0.0;
-  double yaw_deg = 0.0;  ///< angle of the long side from x, counterclockwise
+  std::string kind = "rebar";  ///< kind of the obstacle: rebar, kerb, hose, brick or truck
+  double x_m = 0.0;            ///< x of the center in the world
+  double y_m = 0.0;            ///< y of the center in the world
+  double yaw_deg = 0.0;        ///< angle of the long side from x, counterclockwise
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -46,7 +46,7 @@ void add_static_obstacles(mjSpec& world, const std::vector<StaticObstacleSetting
 /// Low obstacles along a robot's route. The route is divided into `count` equal parts, each with one obstacle at a
 /// random position.
 struct LowObstacleSettings {
-  int count = 0;
+  int count = 0;  ///< number of obstacles, one in each of as many equal parts of the route
   std::vector<WaypointSettings> route;
   double end_clearance_m = 4.0;       ///< length at both ends of the route that stays free of obstacles
   double max_lateral_offset_m = 0.5;  ///< maximum lateral offset of the centers from the route

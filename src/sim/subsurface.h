@@ -9,17 +9,18 @@ namespace patrol::sim {
 
 /// Cave or karst conduit filled with water or mud, in world.
 struct WaterBodySettings {
-  double x_m = 0.0;
-  double y_m = 0.0;
-  double z_m = 0.0;
-  double radius_m = 6.0;          ///< radius of the sphere of equal volume
-  double conductivity_spm = 0.6;  ///< fresh karst water: 0.05; mud and mineralized water: 0.3 to 1
+  double x_m = 0.0;       ///< x of the center in the world
+  double y_m = 0.0;       ///< y of the center in the world
+  double z_m = 0.0;       ///< z of the center in the world
+  double radius_m = 6.0;  ///< radius of the sphere of equal volume
+  /// Conductivity of the water; fresh karst water: 0.05; mud and mineralized water: 0.3 to 1.
+  double conductivity_spm = 0.6;
   /// Standard deviation of the logarithm of the conductivity over seeds; the conductivity above is its median.
   double conductivity_log_std = 0.0;
-  std::string shape = "sphere";      ///< "spheroid": the fields below
+  std::string shape = "sphere";      ///< shape of the body: "sphere", or "spheroid" with the keys below
   double aspect_ratio = 1.0;         ///< semi-axis along the axis of symmetry, relative to the one across it
-  double axis_azimuth_deg = 0.0;     ///< direction of the axis of symmetry
-  double axis_elevation_deg = 90.0;  ///< 90: vertical
+  double axis_azimuth_deg = 0.0;     ///< azimuth of the axis of symmetry
+  double axis_elevation_deg = 90.0;  ///< elevation of the axis of symmetry; 90: vertical
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -38,14 +39,14 @@ struct WaterBodySettings {
 
 /// Wet fault zone: a plane layer, thin compared with its distance from the coil.
 struct FaultZoneSettings {
-  /// Excess conductivity over that of the rock, times thickness, S; 0: no fault zone. 2 m of 0.01 S/m in rock of 0.003
-  /// S/m: 0.014.
+  /// Excess conductivity over that of the rock, times thickness, in S; 0: no fault zone. 2 m of 0.01 S/m in rock of
+  /// 0.003 S/m: 0.014.
   double conductance_s = 0.0;
-  double x_m = 0.0;  ///< point of the plane, in world
-  double y_m = 0.0;
-  double z_m = 0.0;
-  double normal_azimuth_deg = 0.0;
-  double normal_elevation_deg = 0.0;
+  double x_m = 0.0;                   ///< x of a point of the plane in the world
+  double y_m = 0.0;                   ///< y of a point of the plane in the world
+  double z_m = 0.0;                   ///< z of a point of the plane in the world
+  double normal_azimuth_deg = 0.0;    ///< azimuth of the normal of the plane
+  double normal_elevation_deg = 0.0;  ///< elevation of the normal of the plane
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -59,7 +60,7 @@ struct FaultZoneSettings {
 };
 
 struct RockSettings {
-  double conductivity_spm = 0.003;  ///< limestone: 0.0005 to 0.005
+  double conductivity_spm = 0.003;  ///< conductivity of the rock; limestone: 0.0005 to 0.005
   /// Standard deviation of the logarithm of the conductivity over seeds; the conductivity above is its median.
   double conductivity_log_std = 0.0;
   double tunnel_radius_m = 0.0;     ///< radius of the tunnel around the coil; 0: no air

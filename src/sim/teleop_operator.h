@@ -15,14 +15,14 @@
 namespace patrol::sim {
 
 struct TeleopOperatorSettings {
-  double speed_mps = 0.8;
+  double speed_mps = 0.8;                   ///< forward speed of the operator's commands
   double yaw_rate_radps = 0.6;              ///< yaw rate of a turn in place
   double reaction_time_s = 0.25;            ///< delay from an observation to the resulting command
   double steering_noise_std_radps = 0.03;   ///< standard deviation of the steering noise added to each command
-  double pedestrian_stop_distance_m = 2.0;  ///< stops while a person is within this distance ahead of the robot
-  double rate_hz = 10.0;
-  bool wait_for_robot = false;  ///< true: waits at the first waypoint until the robot has arrived and stands
-                                ///< still
+  double pedestrian_stop_distance_m = 2.0;  ///< distance to a person ahead of the robot at which the operator stops
+  double rate_hz = 10.0;                    ///< rate of the operator's commands
+  /// Whether the operator waits at the first waypoint until the robot has arrived and stands still.
+  bool wait_for_robot = false;
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -12,7 +12,7 @@ struct MotionModelSettings {
   double yaw_std_rad_per_m = 0.003;   ///< standard deviation of yaw per distance traveled
   double yaw_std_rad_per_s = 0.0015;  ///< standard deviation of yaw per time: gyro bias
   double min_std_m = 0.003;           ///< minimum standard deviation of the position: sway of the trunk
-  double min_std_rad = 0.002;
+  double min_std_rad = 0.002;         ///< minimum standard deviation of the yaw of a motion
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

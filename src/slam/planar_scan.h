@@ -7,8 +7,8 @@
 namespace patrol::slam {
 
 struct PlanarScanSettings {
-  double min_range_m = 0.05;  ///< nearer returns are from the robot itself
-  /// Beams that end farther away clear free space up to here; their end points are too sparse for walls.
+  double min_range_m = 0.05;  ///< range below which returns are from the robot itself
+  /// Range up to which beams that end farther away clear free space; their end points are too sparse for walls.
   double max_range_m = 40.0;
   /// Distance cleared by a beam without a return; small, since glass and black fabric give no return either.
   double no_return_clearing_range_m = 0.0;

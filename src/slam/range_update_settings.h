@@ -6,7 +6,7 @@
 namespace patrol::slam {
 
 struct RangeUpdateSettings {
-  bool enabled = true;
+  bool enabled = true;        ///< use of UWB ranges in SLAM
   double range_std_m = 0.15;  ///< standard deviation of a LOS range: radio noise and residual calibration bias
   /// Standard deviation of the error that the ranges to an anchor near one place have in common: reflections, antenna
   /// patterns. Used by range factors.
@@ -15,8 +15,10 @@ struct RangeUpdateSettings {
   /// meters.
   double outlier_scale_sigma = 1.0;
   double anchor_delay_std_m = 0.1;  ///< standard deviation of the constant error of the ranges to an anchor
-  double gate_sigma = 3.0;          ///< ranges shorter than predicted by more standard deviations are rejected
-  double nlos_gate_sigma = 2.0;     ///< ranges longer than predicted by more standard deviations are rejected as NLOS
+  /// Number of standard deviations beyond which a range that is shorter than predicted is rejected.
+  double gate_sigma = 3.0;
+  /// Number of standard deviations beyond which a range that is longer than predicted is rejected as NLOS.
+  double nlos_gate_sigma = 2.0;
   UwbCalibration calibration = {};  ///< bias calibration of the radio; not a scenario setting
 
   template <typename Self, typename Visitor>

@@ -5,8 +5,9 @@
 namespace patrol::slam {
 
 struct ScanIntegrationSettings {
-  int free_ray_stride = 6;         ///< one of every N beams is traced through free space, with weight N
-  double free_margin_m = 0.15;     ///< free rays end this far before the hit, so that they do not clear the wall
+  int free_ray_stride = 6;  ///< stride of the beams that are traced through free space: one of every N, with weight N
+  /// Distance before the hit at which a free ray ends, so that it does not clear the wall.
+  double free_margin_m = 0.15;
   double max_free_range_m = 30.0;  ///< maximum range of free-space updates
 
   template <typename Self, typename Visitor>

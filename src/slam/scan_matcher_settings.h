@@ -6,16 +6,16 @@ namespace patrol::slam {
 
 struct ScanMatcherSettings {
   int max_points = 800;                 ///< maximum number of scan points that are matched
-  double point_spacing_m = 0.08;        ///< consecutive beams that end within this distance are averaged
+  double point_spacing_m = 0.08;        ///< distance of consecutive beam ends below which they are averaged
   double point_std_m = 0.015;           ///< standard deviation of the range of a point
   double point_angle_std_rad = 0.0005;  ///< standard deviation of the direction of a point
-  double kernel_m = 0.05;        ///< scale of the Cauchy kernel; residuals beyond it are down-weighted as outliers
-  int surface_radius_cells = 3;  ///< neighborhood of the line fit; also the largest initial distance of a point
-  int max_iterations = 8;
-  double min_inlier_ratio = 0.3;  ///< matches with a smaller inlier ratio are rejected
-  double search_window_m = 0.3;   ///< coarse search: half width along x and y
-  double search_window_rad = 0.12;
-  int search_points = 200;
+  double kernel_m = 0.05;           ///< scale of the Cauchy kernel; residuals beyond it are down-weighted as outliers
+  int surface_radius_cells = 3;     ///< neighborhood of the line fit; also the largest initial distance of a point
+  int max_iterations = 8;           ///< maximum number of iterations of fine matching
+  double min_inlier_ratio = 0.3;    ///< minimum inlier ratio of an accepted match
+  double search_window_m = 0.3;     ///< half width of the coarse search along x and y
+  double search_window_rad = 0.12;  ///< half width of the coarse search in yaw
+  int search_points = 200;          ///< number of scan points of the coarse search
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

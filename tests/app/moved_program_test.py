@@ -50,7 +50,7 @@ class MovedProgram(unittest.TestCase):
         self.assertEqual(self.call("--help").returncode, 0)
         done = self.call("list")
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("none: folders worlds and models not found", done.stdout)
+        self.assertIn("no scenarios, worlds and robots: folders worlds and models not found", done.stderr)
         self.assertIn("global planners", done.stdout)
         log = self.folder / "elsewhere/log.log"
         ranges = " ".join(["2.0"] * 181)

@@ -19,6 +19,7 @@ from selenium import webdriver
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent.parent / "app/monitor"))
 from monitoring import PlatformCase, event  # noqa: E402
+from accessibility import violations  # noqa: E402
 
 PATROL, ROBOT = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
 CHROMIUM, DRIVER = shutil.which("chromium"), shutil.which("chromedriver")
@@ -89,6 +90,13 @@ class Page(Case):
             self.assertIn("14.6 m ahead", self.js("return document.querySelector('#water').textContent;"))
             self.show(width, "spot-1")
             self.assertGreater(self.js(INKED, "#gas-plot canvas"), 0.01)
+
+    def test_axe_finds_no_serious_violation(self):
+        for scheme in ("light", "dark"):
+            with self.subTest(scheme):
+                self.browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [{"name": "prefers-color-scheme", "value": scheme}]})
+                self.show(1280, "tracked-1")
+                self.assertEqual(violations(self.browser, pathlib.Path(__file__).resolve().parents[2]), [])
 
     def test_nothing_overflows_from_a_phone_to_a_desk(self):
         for width in (360, 400, 768, 1280):

@@ -16,6 +16,7 @@ from selenium import webdriver
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent.parent / "app"))
 from standing_still import PATROL, SOURCE, standing_still  # noqa: E402
+from accessibility import violations  # noqa: E402
 
 RUN = sys.argv[3]
 CHROMIUM, DRIVER = shutil.which("chromium"), shutil.which("chromedriver")
@@ -78,6 +79,13 @@ class PageCase:
     def test_the_verdict_comes_first(self):
         self.show(400)
         self.assertLess(self.run_script("return document.querySelector('main .word').getBoundingClientRect().bottom;"), 500)
+
+    def test_axe_finds_no_serious_violation(self):
+        for scheme in ("light", "dark"):
+            with self.subTest(scheme):
+                self.browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [{"name": "prefers-color-scheme", "value": scheme}]})
+                self.show(1280)
+                self.assertEqual(violations(self.browser, SOURCE), [])
 
     def test_it_prints(self):
         self.show(1280)

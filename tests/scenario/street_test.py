@@ -3,13 +3,13 @@
 
 usage: street_test.py PATROL SOURCE_DIR [TEST...]
 """
-import json
 import pathlib
 import subprocess
 import sys
 import tempfile
 import unittest
 
+from documented_metrics import load_metrics
 from seeds import seed_option
 
 PATROL, SOURCE = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
@@ -34,7 +34,7 @@ class Street(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 
     def metrics(self):
-        return json.loads((self.out / "metrics.json").read_text())
+        return load_metrics(PATROL, self.out)
 
     def assert_arrives(self, *settings):
         done = self.run_patrol("short", *settings)

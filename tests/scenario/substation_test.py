@@ -10,6 +10,7 @@ import sys
 import tempfile
 import unittest
 
+from documented_metrics import load_metrics
 from seeds import seed_option
 
 PATROL, SOURCE = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
@@ -34,7 +35,7 @@ class Substation(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 
     def metrics(self):
-        return json.loads((self.out / "metrics.json").read_text())
+        return load_metrics(PATROL, self.out)
 
     def test_drives_round_a_corner_and_over_a_trench_without_a_touch(self):
         self.run_as_in_ci("short")

@@ -3,13 +3,13 @@
 
 usage: tunnel_test.py PATROL SOURCE_DIR [TEST...]
 """
-import json
 import pathlib
 import subprocess
 import sys
 import tempfile
 import unittest
 
+from documented_metrics import load_metrics
 from seeds import seed_option
 
 PATROL, SOURCE = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
@@ -29,7 +29,7 @@ class Tunnel(unittest.TestCase):
                               capture_output=True, text=True, cwd=SOURCE)
 
     def metrics(self):
-        return json.loads((self.out / "metrics.json").read_text())
+        return load_metrics(PATROL, self.out)
 
     def crossings_of_the_deck(self):
         """How far along x each stay on the bridge's deck has taken the body, m: its deck lies 0.50 m up, the body's origin 0.15 m above."""

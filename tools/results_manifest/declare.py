@@ -52,6 +52,19 @@ def swept(**metrics):
     return lambda folders: {key: sweep_values(folders[key], patterns) for key, patterns in metrics.items()}
 
 
+def printed(key, folder):
+    """Values: the lines that a step printed, with `folder` in place of its output folder."""
+    def values(folders):
+        text = (folders[key].parent / f"{key}.txt").read_text()
+        return text.replace(str(folders[key]), folder).rstrip("\n").splitlines()
+    return values
+
+
+def transcript(lines):
+    """Text of what a command printed."""
+    return "\n".join(["```", *lines, "```"])
+
+
 TABLES = []
 
 

@@ -1,24 +1,11 @@
 """Tables of README.md."""
 from results_tables import NONE, markdown, span, with_count
-from .declare import Step, add
-
-
-def short_values(folders):
-    """Lines that the run printed."""
-    said = (folders["run"].parent / "run.txt").read_text()
-    return said.replace(str(folders["run"]), "out/short").strip("\n").splitlines()
-
-
-def short_text(values):
-    """The metrics with an expectation, and the run directory."""
-    metrics = [line for line in values if line.startswith("  ")]
-    shown = [line for line in metrics if line.split()[-1] in ("met", "MISSED")]
-    return "\n".join(["```", *shown, f"  ({len(metrics) - len(shown)} further metrics)", "", values[-1], "```"])
+from .declare import Step, add, printed, transcript
 
 
 add(name="street_short", file="README.md", seeds="1", minutes=0.1,
-    steps=[Step("run", ["build/patrol", "run", "worlds/street/scenarios/short.yaml", "--seed", "1", "--out", "{out}"])],
-    values=short_values, text=short_text)
+    steps=[Step("run", ["build/patrol", "run", "street/short", "--out", "{out}"])],
+    values=printed("run", "out/short"), text=transcript)
 
 
 def worst_docking(runs):

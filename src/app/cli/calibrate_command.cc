@@ -6,6 +6,7 @@
 
 #include "app/cli/commands.h"
 #include "app/common/output_directory.h"
+#include "app/common/print_result.h"
 #include "app/mapping/read_scans.h"
 #include "core/error.h"
 #include "core/geometry/angles.h"
@@ -158,10 +159,11 @@ ExitCode calibrate_command(const CalibrateOptions& options) {
   io::save_settings(options.out / "settings.yaml", settings);
   complete_output(options.out);
 
-  fmt::print("{}{} segments, {} of them rejected (wheel slip, odometry error or wrong match){}\n{}{}\n",
-             io::to_text(log->summary), result.num_segments, result.num_rejected,
-             result.converged ? "" : "; not converged", table_text(result),
-             (options.out / "calibration.yaml").string());
+  const std::string text = fmt::format(
+      "{}{} segments, {} of them rejected (wheel slip, odometry error or wrong match){}\n{}{}\n",
+      io::to_text(log->summary), result.num_segments, result.num_rejected, result.converged ? "" : "; not converged",
+      table_text(result), (options.out / "calibration.yaml").string());
+  print_result(options.form, text, metrics_of(*log));
   return result.converged ? ExitCode::kDone : ExitCode::kExpectationMissed;
 }
 

@@ -6,6 +6,7 @@
 #include <exception>
 #include <functional>
 #include <iostream>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@
 #include "app/cli/command_texts.h"
 #include "app/cli/commands.h"
 #include "app/cli/number_checks.h"
+#include "app/cli/reference.h"
 #include "app/cli/renamed_options.h"
 #include "app/scenario/scenario.h"
 #include "core/error.h"
@@ -34,8 +36,7 @@ struct Call {
   ReportOptions report;
   std::filesystem::path verify_run;
   SweepOptions sweep;
-  std::filesystem::path merge_root;
-  std::vector<std::filesystem::path> merge_parts;
+  MergeOptions merge;
   ErrorBudgetOptions error_budget;
   FaultMatrixOptions fault_matrix;
   SlamOptions slam;
@@ -47,6 +48,7 @@ struct Call {
   TestOptions test;
   MonitorOptions monitor;
   UploadOptions upload;
+  ListOptions list;
   std::string printed_text;
   std::function<ExitCode()> chosen;
 };
@@ -57,12 +59,19 @@ constexpr const char* kSeedHelp = "Random seed";
 constexpr const char* kOutHelp = "Output directory";
 constexpr const char* kSkipHelp = "Skip unreadable records of a damaged log";
 constexpr const char* kLogHelp = "Log file: CARMEN text (plain or gzip) or MCAP";
+constexpr const char* kAllHelp = "Print every metric";
 constexpr const char* kTokenHelp = "File with the access token (default: $PATROL_TOKEN)";
 
 void add_scenario(CLI::App& command, std::filesystem::path& scenario) {
   command.add_option("scenario", scenario, "Scenario file (YAML), or WORLD/NAME, for example street/patrol")
       ->required()
       ->transform([](const std::string& name) { return find_scenario(name).string(); });
+}
+
+/// Adds `--json` to a command that prints a table.
+void add_json(CLI::App& command, ResultForm& form) {
+  command.add_flag_callback(
+      "--json", [&form] { form = ResultForm::kJson; }, "Print the results as JSON");
 }
 
 void add_run(CLI::App& app, Call& call) {
@@ -76,6 +85,8 @@ void add_run(CLI::App& app, Call& call) {
   command->add_option("--monitor-url", run.monitor_url, "Monitoring server, http://host:port");
   command->add_option("--monitor-token-file", run.monitor_token_file, kTokenHelp);
   command->add_option("--robot-name", run.robot_name, "Robot name shown by the monitor (default: robot and seed)");
+  command->add_flag("--all", run.show_all, kAllHelp);
+  add_json(*command, run.form);
   command->callback([&] { call.chosen = [&] { return run_command(call.run); }; });
 }
 
@@ -93,6 +104,8 @@ void add_score(CLI::App& app, Call& call) {
       ->capture_default_str();
   command->add_option("--map", score.map, "Built map (map_server YAML)");
   command->add_option("--reference-map", score.reference_map, "Reference map (map_server YAML)");
+  command->add_flag("--all", score.show_all, kAllHelp);
+  add_json(*command, score.form);
   command->callback([&] { call.chosen = [&] { return score_command(call.score); }; });
 }
 
@@ -116,11 +129,12 @@ void add_replay(CLI::App& app, Call& call) {
       ->capture_default_str();
   command->add_option("--highlight-speed", replay.highlight_speed, "Playback speed during highlights")
       ->capture_default_str();
+  command->add_option("--fps", replay.frames_per_second, "Frames per second of the video")->capture_default_str();
   command->add_option("--renderer", replay.renderer, "OpenGL implementation: auto, egl or osmesa")
       ->capture_default_str();
   command->add_option("--size", replay.size, "Width x height, pixels")->capture_default_str();
   command->add_option("--still", replay.still_s, "Time of a single image (PNG) instead of a video, s");
-  command->add_option("--out", replay.out, "Output file");
+  command->add_option("--out", replay.out, "Output file: .mp4, .webp (animated picture), or .png with --still");
   command->callback([&] { call.chosen = [&] { return replay_command(call.replay); }; });
 }
 
@@ -178,20 +192,23 @@ void add_sweep(CLI::App& app, Call& call) {
                    "Option for sbatch (repeatable): --slurm-option=--partition=long")
       ->take_all();
   command->add_flag("--detach", sweep.detach, "Submit to Slurm without waiting");
+  add_json(*command, sweep.form);
   command->callback([&] { call.chosen = [&] { return sweep_command(call.sweep); }; });
 }
 
 void add_merge(CLI::App& app, Call& call) {
   CLI::App* command = app.add_subcommand("merge", "Merge the shards of a sweep");
-  command->add_option("sweep", call.merge_root, "Directory of the sweep")->required();
-  command->add_option("parts", call.merge_parts, "Directories of the shards");
-  command->callback([&] { call.chosen = [&] { return merge_command(call.merge_root, call.merge_parts); }; });
+  command->add_option("sweep", call.merge.root, "Directory of the sweep")->required();
+  command->add_option("parts", call.merge.parts, "Directories of the shards");
+  add_json(*command, call.merge.form);
+  command->callback([&] { call.chosen = [&] { return merge_command(call.merge); }; });
 }
 
 void add_error_budget(CLI::App& app, Call& call) {
   CLI::App* command = app.add_subcommand("error-budget", "Rerun with one error source removed at a time");
   command->alias("budget");
   add_variants(*command, call.error_budget, "Metric to analyze (repeatable)");
+  add_json(*command, call.error_budget.form);
   command->callback([&] { call.chosen = [&] { return error_budget_command(call.error_budget); }; });
 }
 
@@ -209,6 +226,7 @@ void add_fault_matrix(CLI::App& app, Call& call) {
       ->capture_default_str();
   command->add_option("--max-lost-s", faults.max_lost_s, "Longest time reported lost on a given map, s")
       ->capture_default_str();
+  add_json(*command, faults.form);
   command->callback([&] { call.chosen = [&] { return fault_matrix_command(call.fault_matrix); }; });
 }
 
@@ -223,6 +241,7 @@ void add_slam(CLI::App& app, Call& call) {
   command->add_option("--seed", slam.seed, kSeedHelp);
   command->add_flag("--skip-invalid", slam.skip_invalid, kSkipHelp);
   command->add_option("--out", slam.out, kOutHelp)->capture_default_str();
+  add_json(*command, slam.form);
   command->callback([&] { call.chosen = [&] { return slam_command(call.slam); }; });
 }
 
@@ -233,6 +252,7 @@ void add_calibrate(CLI::App& app, Call& call) {
   command->add_option("--set", calibrate.overrides, kSetHelp)->take_all();
   command->add_flag("--skip-invalid", calibrate.skip_invalid, kSkipHelp);
   command->add_option("--out", calibrate.out, kOutHelp)->capture_default_str();
+  add_json(*command, calibrate.form);
   command->callback([&] { call.chosen = [&] { return calibrate_command(call.calibrate); }; });
 }
 
@@ -243,6 +263,7 @@ void add_train(CLI::App& app, Call& call) {
   command->add_option("--validation", train.validation, "Run directories for validation");
   command->add_option("--set", train.overrides, kSetHelp)->take_all();
   command->add_option("--out", train.out, "Output file (JSON)")->capture_default_str();
+  add_json(*command, train.form);
   command->callback([&] { call.chosen = [&] { return train_command(call.train); }; });
 }
 
@@ -272,6 +293,7 @@ void add_plan(CLI::App& app, Call& call) {
   command->add_option("--seed", plan.seed, "Random seed of the planner");
   command->add_option("--set", plan.overrides, kSetHelp)->take_all();
   command->add_option("--out", plan.out, kOutHelp);
+  add_json(*command, plan.form);
   command->callback([&] { call.chosen = [&] { return plan_command(call.plan); }; });
 }
 
@@ -282,6 +304,7 @@ void add_study(CLI::App& app, Call& call) {
   command->add_option("--seeds", study.seeds, "Seeds: N (the first N that are not used for tuning) or A..B");
   command->add_option("--jobs", study.jobs, "Parallel seeds (0: one per core)")->capture_default_str();
   command->add_option("--out", study.out, "Output directory; existing seeds are reused")->capture_default_str();
+  add_json(*command, study.form);
   command->callback([&] { call.chosen = [&] { return study_command(call.study); }; });
 }
 
@@ -299,6 +322,7 @@ void add_test(CLI::App& app, Call& call) {
   command->add_flag("--widen", test.widen, "Allow proposals that are wider than the present ones")->needs(calibrate);
   add_batch(*command, test.batch);
   command->add_option("--out", test.out, "Output directory (default: out/test or out/calibration)");
+  add_json(*command, test.form);
   command->callback([&] { call.chosen = [&] { return test_command(call.test); }; });
 }
 
@@ -326,20 +350,32 @@ void add_upload(CLI::App& app, Call& call) {
 }
 
 void add_list(CLI::App& app, Call& call) {
-  CLI::App* command = app.add_subcommand("list", "List scenarios, worlds, robots, sensors and methods");
-  command->callback([&] { call.chosen = [] { return list_command(); }; });
+  CLI::App* command = app.add_subcommand("list", "List scenarios, robots, sensors, methods and metrics");
+  command->add_option("section", call.list.section, "Section to print, for example metrics (default: all)");
+  add_json(*command, call.list.form);
+  command->callback([&] { call.chosen = [&] { return list_command(call.list); }; });
 }
 
+/// Texts of `patrol print`, by name.
+const std::map<std::string, std::string (*)(const CLI::App&)> kPrintedTexts = {
+    {"bash-completion", bash_completion},
+    {"zsh-completion", zsh_completion},
+    {"man-page", [](const CLI::App& app) { return man_page(app, PATROL_VERSION); }},
+    {"reference", [](const CLI::App& app) { return reference_json(app).dump(1) + "\n"; }}};
+
 void add_print(CLI::App& app, Call& call) {
-  CLI::App* command = app.add_subcommand("print", "Print a shell completion script or the manual page");
-  command->add_option("text", call.printed_text, "bash-completion, zsh-completion or man-page")
+  CLI::App* command = app.add_subcommand("print", "Print a text about the program");
+  std::vector<std::string> names;
+  for (const auto& [name, text] : kPrintedTexts) names.push_back(name);
+  command
+      ->add_option("text", call.printed_text,
+                   "bash-completion, zsh-completion, man-page, or reference: commands, settings, metrics, events and "
+                   "topics as JSON")
       ->required()
-      ->check(CLI::IsMember({"bash-completion", "zsh-completion", "man-page"}));
+      ->check(CLI::IsMember(names));
   command->callback([&] {
     call.chosen = [&] {
-      std::cout << (call.printed_text == "bash-completion"  ? bash_completion(app)
-                    : call.printed_text == "zsh-completion" ? zsh_completion(app)
-                                                            : man_page(app, PATROL_VERSION));
+      std::cout << kPrintedTexts.at(call.printed_text)(app);
       return ExitCode::kDone;
     };
   });

@@ -7,26 +7,11 @@
 
 #include <fmt/format.h>
 
+#include "app/cli/command_arguments.h"
 #include "core/text.h"
 
 namespace patrol::app {
 namespace {
-
-std::vector<const CLI::App*> commands_of(const CLI::App& app) { return app.get_subcommands({}); }
-
-std::vector<const CLI::Option*> arguments_of(const CLI::App& command, bool are_options) {
-  std::vector<const CLI::Option*> arguments = command.get_options({});
-  std::erase_if(arguments, [&](const CLI::Option* argument) { return argument->nonpositional() != are_options; });
-  return arguments;
-}
-
-std::vector<const CLI::Option*> options_of(const CLI::App& command) { return arguments_of(command, true); }
-
-std::vector<const CLI::Option*> positionals_of(const CLI::App& command) { return arguments_of(command, false); }
-
-bool takes_value(const CLI::Option& option) { return option.get_items_expected_max() > 0; }
-
-std::string long_name(const CLI::Option& option) { return "--" + option.get_lnames().front(); }
 
 /// Returns the text with a backslash in front of each of the characters.
 std::string escaped(const std::string& text, std::string_view characters) {

@@ -9,6 +9,7 @@
 #include "app/campaign/sweep/sweep_options.h"
 #include "app/campaign/test/test_options.h"
 #include "app/common/exit_code.h"
+#include "app/common/print_result.h"
 #include "app/monitor/monitor_options.h"
 #include "app/plan/plan_options.h"
 #include "score/pose/relation_error.h"
@@ -25,6 +26,8 @@ struct RunOptions {
   std::optional<std::string> monitor_url;  ///< URL of a monitoring server
   std::optional<std::filesystem::path> monitor_token_file;
   std::optional<std::string> robot_name;  ///< name shown by the monitoring server; default: robot and seed
+  bool show_all = false;                  ///< print every metric
+  ResultForm form = ResultForm::kText;
 };
 ExitCode run_command(const RunOptions& options);
 
@@ -37,6 +40,8 @@ struct ScoreOptions {
   score::RelationSettings relation_settings;
   std::filesystem::path map;
   std::filesystem::path reference_map;
+  bool show_all = false;  ///< print every metric of a run
+  ResultForm form = ResultForm::kText;
 };
 ExitCode score_command(const ScoreOptions& options);
 
@@ -55,6 +60,7 @@ struct ReplayOptions {
   std::string camera = "chase";
   double speed = 8.0;
   double highlight_speed = 2.0;
+  double frames_per_second = 30.0;
   std::string renderer = "auto";
   std::string size = "1280x720";
   std::optional<double> still_s;
@@ -74,8 +80,13 @@ ExitCode verify_command(const std::filesystem::path& run);
 /// Runs every variant with every seed, or one shard of these runs, and compares the variants.
 ExitCode sweep_command(const SweepOptions& options);
 
-/// Copies the results of `parts`, shards of one sweep, to `root`, and writes the tables if all runs are complete.
-ExitCode merge_command(const std::filesystem::path& root, const std::vector<std::filesystem::path>& parts);
+struct MergeOptions {
+  std::filesystem::path root;                ///< directory of the sweep
+  std::vector<std::filesystem::path> parts;  ///< directories of its shards
+  ResultForm form = ResultForm::kText;
+};
+/// Copies the results of the shards of one sweep to its directory, and writes the tables if all runs are complete.
+ExitCode merge_command(const MergeOptions& options);
 
 /// Computes an error budget: reruns the scenario with one error source removed at a time.
 ExitCode error_budget_command(const ErrorBudgetOptions& options);
@@ -92,6 +103,7 @@ struct SlamOptions {
   std::optional<std::uint64_t> seed;
   bool skip_invalid = false;
   std::filesystem::path out = "out/slam";
+  ResultForm form = ResultForm::kText;
 };
 /// Builds a map from a recorded log.
 ExitCode slam_command(const SlamOptions& options);
@@ -101,6 +113,7 @@ struct CalibrateOptions {
   std::vector<std::string> overrides;
   bool skip_invalid = false;
   std::filesystem::path out = "out/calibration";
+  ResultForm form = ResultForm::kText;
 };
 /// Calibrates the lidar pose and the odometry scales from a recorded log.
 ExitCode calibrate_command(const CalibrateOptions& options);
@@ -110,6 +123,7 @@ struct TrainOptions {
   std::vector<std::filesystem::path> validation;  ///< run directories for validation
   std::vector<std::string> overrides;
   std::filesystem::path out = "submap_neighbors.json";
+  ResultForm form = ResultForm::kText;
 };
 /// Trains the classifier of neighboring submaps (`--method submap_rbpf`).
 ExitCode train_command(const TrainOptions& options);
@@ -131,6 +145,7 @@ struct StudyOptions {
   int jobs = 0;                      ///< parallel seeds; 0: one per core
   double seed_timeout_s = 3600.0;    ///< wall-clock limit per seed
   std::filesystem::path out = "out/study";
+  ResultForm form = ResultForm::kText;
 };
 /// Reproduces a published experiment and compares the results.
 ExitCode study_command(const StudyOptions& options);
@@ -152,6 +167,10 @@ struct UploadOptions {
 /// Uploads the pending results of a run to the monitoring server.
 ExitCode upload_command(const UploadOptions& options);
 
-ExitCode list_command();
+struct ListOptions {
+  std::optional<std::string> section;  ///< name of the section to print; all sections if not given
+  ResultForm form = ResultForm::kText;
+};
+ExitCode list_command(const ListOptions& options);
 
 }  // namespace patrol::app

@@ -4,16 +4,21 @@
 #include <string>
 #include <system_error>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "app/cli/commands.h"
+#include "app/common/print_result.h"
 #include "app/scenario/scenario.h"
+#include "app/scoring/metric_infos.h"
 #include "app/study/study_table.h"
 #include "core/event.h"
 #include "core/named_table.h"
 #include "core/route.h"
+#include "core/text.h"
+#include "io/logs/topics.h"
 #include "plan/routes/planners.h"
 #include "slam/methods/mapper.h"
 
@@ -33,18 +38,47 @@ std::vector<std::string> files_below(const std::filesystem::path& root, const st
   return found;
 }
 
-void print(const char* title, const std::vector<std::string>& lines) {
-  fmt::print("{}\n", title);
-  for (const std::string& line : lines) fmt::print("  {}\n", line);
+/// Named things of one kind, one per row.
+struct Section {
+  std::string title;
+  io::Table table;  ///< its name is the key of the section in JSON
+};
+
+/// Section of names without further columns.
+Section section(const std::string& title, const std::string& key, const std::vector<std::string>& names) {
+  Section result{.title = title, .table = {.name = key, .columns = {"name"}, .rows = {}}};
+  for (const std::string& name : names) result.table.rows.push_back({name});
+  return result;
 }
 
-/// Prints the names of a table's rows with their documentation.
+/// Section of a table's rows: names and their documentation.
 template <NamedTable Table>
-void print_table(const char* title, const Table& table) {
-  std::size_t width = 0;
-  for (const auto& row : table) width = std::max(width, row.name.size());
-  fmt::print("{}\n", title);
-  for (const auto& row : table) fmt::print("  {:<{}}  {}\n", row.name, width, row.summary);
+Section section(const std::string& title, const std::string& key, const Table& rows) {
+  Section result{.title = title, .table = {.name = key, .columns = {"name", "summary"}, .rows = {}}};
+  for (const auto& row : rows) result.table.rows.push_back({std::string(row.name), std::string(row.summary)});
+  return result;
+}
+
+std::string text_of(const io::TableValue& value) {
+  if (const double* number = std::get_if<double>(&value)) return fmt::format("{}", *number);
+  if (const std::string* text = std::get_if<std::string>(&value)) return *text;
+  return "";
+}
+
+/// Title and rows, in columns.
+std::string to_text(const Section& section) {
+  std::vector<std::size_t> widths(section.table.columns.size(), 0);
+  for (const auto& row : section.table.rows) {
+    for (std::size_t i = 0; i + 1 < row.size(); ++i) widths[i] = std::max(widths[i], text_of(row[i]).size());
+  }
+  std::string text = section.title + "\n";
+  for (const auto& row : section.table.rows) {
+    text += " ";
+    for (std::size_t i = 0; i < row.size(); ++i)
+      text += fmt::format(" {:<{}}", text_of(row[i]), widths[i]) + (i + 1 < row.size() ? " " : "");
+    text += "\n";
+  }
+  return text;
 }
 
 /// Visitor that collects the allowed values of one settings field.
@@ -65,79 +99,126 @@ std::vector<std::string> allowed(const std::string& field) {
   return visitor.values;
 }
 
-/// Name, topic, type and documentation of each registered sensor.
-std::vector<std::string> sensor_lines() {
-  std::vector<std::string> lines;
+Section sensor_section() {
+  Section result{.title = "sensors",
+                 .table = {.name = "sensors", .columns = {"name", "topic", "type", "summary"}, .rows = {}}};
   for (const SensorInfo& info : kSensorInfos) {
-    lines.push_back(fmt::format("{:<15} {:<16} {:<29} {}", info.name, info.topic, info.ros_type, info.summary));
+    result.table.rows.push_back(
+        {std::string(info.name), std::string(info.topic), std::string(info.ros_type), std::string(info.summary)});
   }
-  return lines;
+  return result;
 }
 
-/// Visitor that collects the tolerances of section `as_built` with their defaults and sources.
-struct ToleranceLines {
-  std::vector<std::string> lines;
+Section topic_section() {
+  Section result{.title = "topics of a log",
+                 .table = {.name = "topics", .columns = {"topic", "type", "source", "summary"}, .rows = {}}};
+  for (const io::TopicInfo& info : io::topic_infos())
+    result.table.rows.push_back({info.topic, info.type, info.source, info.summary});
+  return result;
+}
+
+Section metric_section() {
+  Section result{.title = "metrics (metrics.json, expect, --metric)",
+                 .table = {.name = "metrics", .columns = {"name", "summary"}, .rows = {}}};
+  for (const MetricInfo& info : metric_infos()) result.table.rows.push_back({info.path, info.summary});
+  return result;
+}
+
+/// Visitor that collects the tolerances of section `as_built` with their defaults, and their sources.
+struct ToleranceSections {
+  Section tolerances{.title = "as-built tolerances (as_built): defaults",
+                     .table = {.name = "as_built_tolerances", .columns = {"name", "default"}, .rows = {}}};
+  Section sources{.title = "sources of the as-built tolerances",
+                  .table = {.name = "as_built_sources", .columns = {"name", "source"}, .rows = {}}};
   std::string group;
   template <typename Value>
   void operator()(const char* name, const Value& value, const Limits& = {}) {
+    const std::string key = group.empty() ? name : fmt::format("{}.{}", group, name);
     if constexpr (requires { Value::kSource; }) {
-      group = name;
-      lines.push_back(fmt::format("{}: {}", name, Value::kSource));
+      const std::string outer = std::exchange(group, key);
+      sources.table.rows.push_back({key, std::string(Value::kSource)});
       Value::fields(value, *this);
+      group = outer;
     } else {
-      lines.push_back(fmt::format("  {:<45} {}", group.empty() ? name : fmt::format("{}.{}", group, name), value));
+      tolerances.table.rows.push_back({key, fmt::format("{}", value)});
     }
   }
 };
 
-std::vector<std::string> tolerance_lines() {
-  ToleranceLines visitor;
-  const Scenario defaults;
-  sim::AsBuiltSettings::fields(defaults.as_built, visitor);
-  return std::move(visitor.lines);
-}
-
-/// Prints scenarios, worlds and robots; a hint if the data folder is missing.
-void print_data() {
+/// Adds scenarios, worlds and robots; an explanation if the data folder is missing.
+void add_data(std::vector<Section>& sections) {
   std::filesystem::path root;
   try {
     root = find_data_root("");
   } catch (const InputError& error) {
-    fmt::print("scenarios, worlds, robots\n  none: {}\n", error.what());
+    fmt::print(stderr, "patrol: no scenarios, worlds and robots: {}\n", error.what());
     return;
   }
-  print("scenarios",
-        files_below(root, "worlds", [](const auto& file) { return file.parent_path().filename() == "scenarios"; }));
-  print("worlds", files_below(root, "worlds", [](const auto& file) {
-          return file.extension() == ".xml" && file.stem() == file.parent_path().filename();
-        }));
-  print("robots", files_below(root, "models", [](const auto& file) { return file.extension() == ".urdf"; }));
+  sections.push_back(section("scenarios", "scenarios", files_below(root, "worlds", [](const auto& file) {
+                               return file.parent_path().filename() == "scenarios";
+                             })));
+  sections.push_back(section("worlds", "worlds", files_below(root, "worlds", [](const auto& file) {
+                               return file.extension() == ".xml" && file.stem() == file.parent_path().filename();
+                             })));
+  sections.push_back(section(
+      "robots", "robots", files_below(root, "models", [](const auto& file) { return file.extension() == ".urdf"; })));
+}
+
+std::vector<Section> all_sections() {
+  std::vector<Section> sections;
+  add_data(sections);
+  sections.push_back(sensor_section());
+  sections.push_back(section("lidar presets", "lidar_presets", allowed<LidarSettings>("preset")));
+  ToleranceSections tolerances;
+  const Scenario defaults;
+  sim::AsBuiltSettings::fields(defaults.as_built, tolerances);
+  sections.push_back(tolerances.tolerances);
+  sections.push_back(tolerances.sources);
+  sections.push_back(section("sensor faults", "sensor_faults", allowed<sim::FaultSettings>("kind")));
+  sections.push_back(section("odometry sources (stack.odometry_source)", "odometry_sources",
+                             allowed<stack::StackSettings>("odometry_source")));
+  sections.push_back(section("localizers (stack.localizer)", "localizers", allowed<stack::StackSettings>("localizer")));
+  sections.push_back(
+      section("missions (stack.mission_type)", "missions", allowed<stack::StackSettings>("mission_type")));
+  sections.push_back(
+      section("SLAM methods (stack.slam.method; patrol slam --method)", "slam_methods", slam::mapping_methods()));
+  sections.push_back(
+      section("odometry of method rbpf (stack.slam.rbpf.odometry)", "rbpf_odometries", slam::kRbpfOdometries));
+  sections.push_back(
+      section("particle optimizers (stack.slam.rbpf.optimizer)", "particle_optimizers", slam::optimizers()));
+  sections.push_back(section("particle resamplers", "particle_resamplers", slam::resamplers()));
+  sections.push_back(section("localization methods", "localization_methods",
+                             {"Monte Carlo localization with KLD sampling (stack.localization)"}));
+  sections.push_back(section("sensor models of localization (stack.localization.sensor_model)", "sensor_models",
+                             localize::sensor_models()));
+  sections.push_back(section("global planners (stack.navigation.global_planner.method; patrol plan --planner)",
+                             "global_planners", plan::route_planners()));
+  sections.push_back(
+      section("local planners (stack.navigation.local_planner.method)", "local_planners", plan::local_planners()));
+  sections.push_back(section("station types (mission)", "station_types", kStationTypes));
+  sections.push_back(section("goal types (goals; stack.tunnel_mission.goal_types)", "goal_types", kGoalTypes));
+  sections.push_back(section("event kinds", "event_kinds", std::span(kEventKinds).subspan(1)));  // without foreign ones
+  sections.push_back(topic_section());
+  sections.push_back(metric_section());
+  sections.push_back(section("studies", "studies", study_names()));
+  return sections;
 }
 
 }  // namespace
 
-ExitCode list_command() {
-  print_data();
-  print("sensors", sensor_lines());
-  print("lidar presets", allowed<LidarSettings>("preset"));
-  print("as-built tolerances (as_built)", tolerance_lines());
-  print("sensor faults", allowed<sim::FaultSettings>("kind"));
-  print("odometry sources (stack.odometry_source)", allowed<stack::StackSettings>("odometry_source"));
-  print("localizers (stack.localizer)", allowed<stack::StackSettings>("localizer"));
-  print("missions (stack.mission_type)", allowed<stack::StackSettings>("mission_type"));
-  print_table("SLAM methods (stack.slam.method; patrol slam --method)", slam::mapping_methods());
-  print_table("odometry of method rbpf (stack.slam.rbpf.odometry)", slam::kRbpfOdometries);
-  print_table("particle optimizers (stack.slam.rbpf.optimizer)", slam::optimizers());
-  print_table("particle resamplers", slam::resamplers());
-  print("localization methods", {"Monte Carlo localization with KLD sampling (stack.localization)"});
-  print_table("sensor models of localization (stack.localization.sensor_model)", localize::sensor_models());
-  print_table("global planners (stack.navigation.global_planner.method; patrol plan --planner)",
-              plan::route_planners());
-  print_table("local planners (stack.navigation.local_planner.method)", plan::local_planners());
-  print_table("station types (mission)", kStationTypes);
-  print_table("goal types (goals; stack.tunnel_mission.goal_types)", kGoalTypes);
-  print_table("event kinds", std::span(kEventKinds).subspan(1));  // without foreign kinds
-  print("studies", study_names());
+ExitCode list_command(const ListOptions& options) {
+  std::string text;
+  io::Metrics json = io::Metrics::object();
+  std::vector<std::string> known;
+  for (const Section& section : all_sections()) {
+    known.push_back(section.table.name);
+    if (options.section && *options.section != section.table.name) continue;
+    text += to_text(section);
+    json[section.table.name] = to_json(section.table);
+  }
+  if (json.empty())
+    throw InputError(fmt::format("unknown section '{}' (known: {})", *options.section, join(known, ", ")));
+  print_result(options.form, text, json);
   return ExitCode::kDone;
 }
 

@@ -5,6 +5,7 @@
 
 #include "app/cli/commands.h"
 #include "app/common/output_directory.h"
+#include "app/common/progress_bar.h"
 #include "app/scoring/localizability_map.h"
 #include "core/error.h"
 #include "core/geometry/angles.h"
@@ -60,8 +61,10 @@ ExitCode localizability_command(const LocalizabilityOptions& options) {
   if (!(options.grid_step_m >= 0.05 && options.grid_step_m <= 10.0))
     throw InputError(fmt::format("--grid-step-m {}: must be in [0.05, 10]", options.grid_step_m));
   const Scenario scenario = load_scenario(options.scenario, options.overrides);
+  ProgressBar bar;
   const LocalizabilityMap map = map_localizability(
-      scenario, load_scenario_files(scenario, find_data_root(options.scenario)), options.grid_step_m);
+      scenario, load_scenario_files(scenario, find_data_root(options.scenario)), options.grid_step_m,
+      [&](double fraction) { bar.show(fmt::format("localizability  {:3.0f} %", 100.0 * fraction), fraction); });
   const OutputLock lock = begin_output(options.out, kLocalizability);
   io::save_csv(options.out / "localizability.csv", table_of(map));
   render::save_png(options.out / "localizability.png", picture_of(map, scenario.world));

@@ -15,7 +15,8 @@ std::string load_request(const SweepDirectory& directory) {
 
 }  // namespace
 
-ExitCode merge_command(const std::filesystem::path& root, const std::vector<std::filesystem::path>& parts) {
+ExitCode merge_command(const MergeOptions& options) {
+  const auto& [root, parts, form] = options;
   std::vector<SweepDirectory> sources;
   for (const std::filesystem::path& part : parts) sources.push_back({part});
   const bool is_new = !std::filesystem::exists(SweepDirectory{root}.manifest()) && !parts.empty();
@@ -37,7 +38,7 @@ ExitCode merge_command(const std::filesystem::path& root, const std::vector<std:
     throw InputError(
         fmt::format("{}: {} of {} runs are missing", root.string(), progress.needed.size(), progress.counted.size()));
   }
-  return finish_sweep(directory, manifest);
+  return finish_sweep(directory, manifest, form);
 }
 
 }  // namespace patrol::app

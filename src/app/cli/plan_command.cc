@@ -53,8 +53,9 @@ ExitCode plan_problems(const PlanOptions& options) {
     io::save_settings(*options.out / "settings.yaml", settings);
     complete_output(*options.out);
   }
-  fmt::print("{}", to_text(report));
-  if (options.out) fmt::print("{}\n", (*options.out / "problems.csv").string());
+  std::string text = to_text(report);
+  if (options.out) text += (*options.out / "problems.csv").string() + "\n";
+  print_result(options.form, text, to_json(report));
   return num_failed(report) == 0 ? ExitCode::kDone : ExitCode::kExpectationMissed;
 }
 
@@ -136,11 +137,11 @@ ExitCode plan_one(const PlanOptions& options) {
                  {{ground.p_from_m, "start", kStartColor}, {p_to_m, "goal", kGoalColor}}, route_title(report));
     complete_output(*options.out);
   }
-  fmt::print("{}", to_text(report));
-  if (route.status == plan::PlanStatus::kStartBlocked)
-    fmt::print("{}\n", ground.blocked_message("--from", ground.p_from_m));
-  if (!is_found && ground.is_blocked(p_to_m)) fmt::print("{}\n", ground.blocked_message("--to", p_to_m));
-  if (options.out) fmt::print("{}\n", (*options.out / "route.png").string());
+  std::string text = to_text(report);
+  if (route.status == plan::PlanStatus::kStartBlocked) text += ground.blocked_message("--from", ground.p_from_m) + "\n";
+  if (!is_found && ground.is_blocked(p_to_m)) text += ground.blocked_message("--to", p_to_m) + "\n";
+  if (options.out) text += (*options.out / "route.png").string() + "\n";
+  print_result(options.form, text, to_json(report));
   return is_found ? ExitCode::kDone : ExitCode::kExpectationMissed;
 }
 
@@ -180,13 +181,14 @@ ExitCode plan_stations(const PlanOptions& options) {
     save_picture(*options.out, ground, tour->points_m, marks_of(report), tour_title(report));
     complete_output(*options.out);
   }
-  fmt::print("{}", to_text(report));
-  if (ground.is_blocked(ground.p_from_m)) fmt::print("{}\n", ground.blocked_message("--from", ground.p_from_m));
+  std::string text = to_text(report);
+  if (ground.is_blocked(ground.p_from_m)) text += ground.blocked_message("--from", ground.p_from_m) + "\n";
   for (const std::size_t node : tour->unreachable) {
     const Eigen::Vector2d p_m = node <= stops.size() ? stops[node - 1].p_m : *p_end_m;
-    if (ground.is_blocked(p_m)) fmt::print("{}\n", ground.blocked_message(node_name(report, node), p_m));
+    if (ground.is_blocked(p_m)) text += ground.blocked_message(node_name(report, node), p_m) + "\n";
   }
-  if (options.out) fmt::print("{}\n", (*options.out / "route.png").string());
+  if (options.out) text += (*options.out / "route.png").string() + "\n";
+  print_result(options.form, text, to_json(report));
   return tour->order.is_found && tour->unreachable.empty() && tour->order.lateness <= 0.0
              ? ExitCode::kDone
              : ExitCode::kExpectationMissed;

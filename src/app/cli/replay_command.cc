@@ -43,6 +43,7 @@ render::ReplaySettings replay_settings(const ReplayOptions& options) {
   settings.renderer = render::parse_renderer(options.renderer);
   settings.speed.fast = checked_speed("--speed", options.speed);
   settings.speed.slow = checked_speed("--highlight-speed", options.highlight_speed);
+  settings.frames_per_second = checked_speed("--fps", options.frames_per_second);
   std::tie(settings.width, settings.height) = parse_size(options.size);
   return settings;
 }
@@ -95,7 +96,7 @@ ExitCode replay_command(const ReplayOptions& options) {
   const InterruptGuard interrupt;
   const render::ReplaySummary summary =
       render::replay(directory.log(), std::move(model), T_world_map, settings, out, [&](double done) {
-        bar.show(fmt::format("replay  {:3.0f} %", 100.0 * done));
+        bar.show(fmt::format("replay  {:3.0f} %", 100.0 * done), done);
         return !interrupt.is_interrupted();
       });
   if (summary.is_interrupted) {

@@ -5,12 +5,12 @@
 #include <fmt/format.h>
 
 #include "app/cli/commands.h"
-#include "app/common/progress_bar.h"
+#include "app/common/print_result.h"
 #include "app/monitor/reporter.h"
+#include "app/report/run_summary.h"
+#include "app/run/progress_line.h"
 #include "app/run/run_once.h"
 #include "app/run/terminal_view.h"
-#include "app/scoring/goal_table.h"
-#include "app/scoring/score_table.h"
 
 namespace patrol::app {
 namespace {
@@ -25,22 +25,6 @@ Scenario scenario_of(const RunOptions& options) {
   if (options.seed) overrides.push_back(fmt::format("seed={}", *options.seed));
   return load_scenario(options.scenario, overrides);
 }
-
-/// Observer that shows the progress of a run in one line.
-class ProgressLine final : public RunObserver {
- public:
-  explicit ProgressLine(std::string name) : name_(std::move(name)) {}
-
-  bool keep_running(Time now, double distance_m) override {
-    bar_.show(fmt::format("{}  {:6.1f} s simulated  {:6.1f} m traveled", name_, to_seconds(now), distance_m));
-    return !interrupt_.is_interrupted();
-  }
-
- private:
-  std::string name_;
-  ProgressBar bar_;
-  InterruptGuard interrupt_;
-};
 
 /// Group of observers; each may stop the run.
 class ObserverGroup final : public RunObserver {
@@ -66,9 +50,9 @@ class ObserverGroup final : public RunObserver {
   std::vector<RunObserver*> observers_;
 };
 
-std::unique_ptr<RunObserver> observer_of(const RunOptions& options, const std::string& name) {
+std::unique_ptr<RunObserver> observer_of(const RunOptions& options, const Scenario& scenario, const std::string& name) {
   if (options.watch) return std::make_unique<TerminalView>(name);
-  return std::make_unique<ProgressLine>(name);
+  return std::make_unique<ProgressLine>(name, scenario.time_limit_s);
 }
 
 std::unique_ptr<Reporter> reporter_of(const RunOptions& options, const Scenario& scenario, const std::string& name,
@@ -121,7 +105,7 @@ ExitCode run_command(const RunOptions& options) {
   const std::filesystem::path root = options.out.value_or(default_directory(options, scenario));
 
   const std::unique_ptr<Reporter> reporter = reporter_of(options, scenario, name, root);
-  std::unique_ptr<RunObserver> observer = observer_of(options, name);
+  std::unique_ptr<RunObserver> observer = observer_of(options, scenario, name);
   const std::optional<RunVerdict> verdict = run_reported(options, scenario, name, root, reporter.get(), *observer);
   observer.reset();  // restores the screen
   if (reporter) report_delivery(*reporter, *options.monitor_url, root);
@@ -130,11 +114,11 @@ ExitCode run_command(const RunOptions& options) {
     return ExitCode::kProgramFailed;
   }
 
-  fmt::print("{}\n", score_table(verdict->metrics, verdict->checks));
-  if (const std::string goals = goal_table(verdict->metrics); !goals.empty()) fmt::print("{}\n", goals);
-  for (const InjectedEvent& event : verdict->events)
-    fmt::print("{}: {}\n", event.name, event.was_triggered ? "triggered" : "not triggered");
-  fmt::print("run directory: {}\n", root.string());
+  const std::string title = fmt::format("{}/{}, seed {}", scenario.world, name, scenario.seed);
+  print_result(options.form,
+               options.show_all ? run_details(title, *verdict, root, output_style())
+                                : run_summary(title, *verdict, root, output_style()),
+               run_json(*verdict, root));
   return verdict->code();
 }
 

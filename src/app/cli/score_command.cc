@@ -2,6 +2,8 @@
 
 #include "app/cli/commands.h"
 #include "app/common/output_directory.h"
+#include "app/common/print_result.h"
+#include "app/report/run_summary.h"
 #include "app/run/run_verdict.h"
 #include "app/scoring/relation_table.h"
 #include "app/scoring/score_json.h"
@@ -15,8 +17,8 @@
 namespace patrol::app {
 namespace {
 
-ExitCode score_directory(const std::filesystem::path& root) {
-  const RunDirectory directory = open_run_directory(root);
+ExitCode score_directory(const ScoreOptions& options) {
+  const RunDirectory directory = open_run_directory(options.run);
   if (std::filesystem::exists(incomplete_marker(directory.root))) {
     throw InputError(fmt::format("{}: incomplete run; cannot be scored", directory.root.string()));
   }
@@ -31,9 +33,18 @@ ExitCode score_directory(const std::filesystem::path& root) {
   }
   io::save_metrics(directory.metrics(), metrics);
   const std::vector<CheckedExpectation> checks = check_expectations(scenario.expect, metrics);
-  fmt::print("{}", score_table(metrics, checks));
   // The log does not contain how the run ended: only the expectations count.
-  return exit_code_of(status_of(RunEnd::kMissionOver, checks));
+  const RunVerdict verdict{.end = status_of(RunEnd::kMissionOver, checks),
+                           .message = "",
+                           .metrics = std::move(metrics),
+                           .checks = checks,
+                           .events = {}};
+  const std::string title = fmt::format("{}, seed {}", directory.root.string(), scenario.seed);
+  print_result(options.form,
+               options.show_all ? run_details(title, verdict, directory.root, output_style())
+                                : run_summary(title, verdict, directory.root, output_style()),
+               run_json(verdict, directory.root));
+  return verdict.code();
 }
 
 }  // namespace
@@ -42,20 +53,22 @@ ExitCode score_command(const ScoreOptions& options) {
   const bool is_pair_of_trajectories = !options.estimate.empty() && !options.reference.empty();
   const bool is_relations = !options.estimate.empty() && !options.relations.empty();
   const bool is_pair_of_maps = !options.map.empty() && !options.reference_map.empty();
-  if (!options.run.empty()) return score_directory(options.run);
+  if (!options.run.empty()) return score_directory(options);
   if (is_relations) {
     const Trajectory estimate = io::load_tum(options.estimate, io::SameStamps::kKeepFirst);
-    fmt::print("{}", relation_table(score::relation_error(estimate, io::load_relations(options.relations),
-                                                          options.relation_settings)));
+    const score::RelationError error =
+        score::relation_error(estimate, io::load_relations(options.relations), options.relation_settings);
+    print_result(options.form, relation_table(error), relation_json(error));
     return ExitCode::kDone;
   }
   if (is_pair_of_trajectories) {
-    fmt::print("{}",
-               score_table(score_trajectories(io::load_tum(options.estimate), io::load_tum(options.reference)), {}));
+    const io::Metrics metrics = score_trajectories(io::load_tum(options.estimate), io::load_tum(options.reference));
+    print_result(options.form, score_table(metrics, {}), metrics);
     return ExitCode::kDone;
   }
   if (is_pair_of_maps) {
-    fmt::print("{}", score_table(score_maps(io::load_map(options.map), io::load_map(options.reference_map)), {}));
+    const io::Metrics metrics = score_maps(io::load_map(options.map), io::load_map(options.reference_map));
+    print_result(options.form, score_table(metrics, {}), metrics);
     return ExitCode::kDone;
   }
   throw InputError(

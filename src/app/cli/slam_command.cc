@@ -7,6 +7,7 @@
 
 #include "app/cli/commands.h"
 #include "app/common/output_directory.h"
+#include "app/common/print_result.h"
 #include "app/common/process_cost.h"
 #include "app/mapping/consistency_report.h"
 #include "app/mapping/mapping_page.h"
@@ -253,7 +254,7 @@ ExitCode slam_command(const SlamOptions& options) {
   io::save_text(options.out / "report.html", report::to_html(mapping_page(contents)));
   complete_output(options.out);
 
-  fmt::print(
+  const std::string text = fmt::format(
       "{}{}{} scans, {:.0f} m by odometry, mapped by {} in {:.1f} s ({:.0f} times real time), {:.0f} MB\n{} keyframes, "
       "{} edges, {} of them to other submaps\n{}{}\n{}\n{}\n",
       io::to_text(log->summary()),
@@ -263,6 +264,7 @@ ExitCode slam_command(const SlamOptions& options) {
       metrics["graph"]["cross_submap_edges"].get<std::size_t>(),
       earlier_map_line(options, mapper->is_located(), num_earlier_nodes, graph.T_map_node.size()), consistency.line(),
       odometry.line(), (options.out / "map.yaml").string());
+  print_result(options.form, text, metrics);
   return ExitCode::kDone;
 }
 

@@ -11,6 +11,7 @@
 #include "app/campaign/batch/run_hash.h"
 #include "app/cli/commands.h"
 #include "app/common/output_directory.h"
+#include "app/common/print_result.h"
 #include "app/common/progress_bar.h"
 #include "app/study/study_table.h"
 #include "core/error.h"
@@ -83,7 +84,8 @@ bool run_seeds(const studies::Study& study, const std::vector<std::uint64_t>& se
   }
   InterruptGuard guard;
   ProgressBar bar;
-  std::size_t num_done = seeds.size() - missing.size();
+  const std::size_t num_reused = seeds.size() - missing.size();
+  std::size_t num_done = num_reused;
   const auto task = [&](std::size_t i) {
     store.save(missing[i], study.run(missing[i]));
     return 0;
@@ -93,7 +95,9 @@ bool run_seeds(const studies::Study& study, const std::vector<std::uint64_t>& se
       throw std::runtime_error(
           fmt::format("study {}: seed {} failed: {}", study.name, missing[end.task], end.last_stderr_line));
     }
-    bar.show(fmt::format("study {}: {} of {} seeds", study.name, ++num_done, seeds.size()));
+    ++num_done;
+    bar.show(fmt::format("study {}: {} of {} seeds", study.name, num_done, seeds.size()),
+             static_cast<double>(num_done - num_reused) / static_cast<double>(missing.size()));
   };
   return run_in_processes(missing.size(), pool, task, on_end, [&] { return !guard.is_interrupted(); });
 }
@@ -123,8 +127,13 @@ ExitCode study_command(const StudyOptions& options) {
   }
   io::save_text(options.out / "report.html", report::to_html(studies::study_page(study, seeds, samples, results)));
   complete_output(options.out);
-  fmt::print("{}\nsource: {}\n{}\n\n{}{}\n", study.title, study.source, study.conditions,
-             studies::results_text(study, results), (options.out / "report.html").string());
+  print_result(options.form,
+               fmt::format("{}\nsource: {}\n{}\n\n{}{}\n", study.title, study.source, study.conditions,
+                           studies::results_text(study, results), (options.out / "report.html").string()),
+               {{"study", study.name},
+                {"source", study.source},
+                {"seeds", seeds},
+                {"results", to_json(studies::results_table(study, results))}});
   return ExitCode::kDone;
 }
 

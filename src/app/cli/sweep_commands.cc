@@ -26,10 +26,10 @@ void check(const SweepOptions& options) {
 }
 
 ExitCode perform(const std::filesystem::path& scenario, const SweepManifest& manifest, const Shard& shard,
-                 const BatchSettings& settings, const std::filesystem::path& out) {
+                 const BatchSettings& settings, const std::filesystem::path& out, ResultForm form) {
   const SweepDirectory directory = begin_sweep_directory(out, manifest);
   run_sweep(scenario, manifest, directory, shard, settings);
-  return finish_sweep(directory, manifest);
+  return finish_sweep(directory, manifest, form);
 }
 
 }  // namespace
@@ -40,17 +40,17 @@ ExitCode sweep_command(const SweepOptions& options) {
   const BatchSettings settings = batch_settings(options.batch);
   const SweepManifest manifest = plan_sweep(options);
   if (options.engine == "slurm") return sweep_on_slurm(options, begin_sweep_directory(options.out, manifest), manifest);
-  return perform(options.scenario, manifest, shard, settings, options.out);
+  return perform(options.scenario, manifest, shard, settings, options.out, options.form);
 }
 
 ExitCode error_budget_command(const ErrorBudgetOptions& options) {
   const BatchSettings settings = batch_settings(options.batch);
-  return perform(options.scenario, plan_error_budget(options), {}, settings, options.out);
+  return perform(options.scenario, plan_error_budget(options), {}, settings, options.out, options.form);
 }
 
 ExitCode fault_matrix_command(const FaultMatrixOptions& options) {
   const BatchSettings settings = batch_settings(options.batch);
-  return perform(options.scenario, plan_fault_matrix(options), {}, settings, options.out);
+  return perform(options.scenario, plan_fault_matrix(options), {}, settings, options.out, options.form);
 }
 
 }  // namespace patrol::app

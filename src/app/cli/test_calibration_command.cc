@@ -143,7 +143,7 @@ ExitCode test_calibration_command(const TestOptions& options) {
 
   ExitCode worst = ExitCode::kDone;
   std::vector<Calibration> calibrations;
-  std::string sections;
+  std::string text, sections;
   for (const PlannedScenario& one : planned) {
     std::vector<SeedRun> runs;
     for (std::size_t i = 0; i < seeds.size(); ++i)
@@ -151,15 +151,17 @@ ExitCode test_calibration_command(const TestOptions& options) {
     const Calibration& calibration = calibrations.emplace_back(calibrate(one.name, one.present, runs));
     worst = worse(worst, code_of(calibration, runs));
     sections += fmt::format("# {}\n{}\n", one.file.generic_string(), expect_section(calibration, options.widen));
-    fmt::print("{}\n", calibration_text(calibration));
+    text += calibration_text(calibration) + "\n";
     if (!options.write) continue;
     if (calibration.failures.empty()) write_expectations(one, calibration, options.widen);
-    else fmt::print("  not written: not every seed completed the mission\n\n");
+    else text += "  not written: not every seed completed the mission\n\n";
   }
-  io::save_csv(out / "calibration.csv", calibration_table(calibrations));
+  const io::Table table = calibration_table(calibrations);
+  io::save_csv(out / "calibration.csv", table);
   io::save_text(out / "expect.yaml", sections);
   complete_output(out);
-  if (!options.write) fmt::print("{}", sections);
+  if (!options.write) text += sections;
+  print_result(options.form, text, to_json(table));
   return worst;
 }
 

@@ -7,6 +7,8 @@
 #include "app/campaign/test/tested_scenario.h"
 #include "app/cli/commands.h"
 #include "app/common/output_directory.h"
+#include "app/common/print_result.h"
+#include "app/common/text_style.h"
 #include "app/report/test_page.h"
 #include "io/files/atomic_file.h"
 #include "io/files/csv.h"
@@ -30,12 +32,24 @@ std::vector<BatchRun> runs_of(const std::vector<TestedScenario>& tested) {
   return runs;
 }
 
-void print_verdicts(const std::vector<TestedScenario>& tested) {
+std::string to_text(const std::vector<TestedScenario>& tested, TextStyle style) {
+  std::string text;
   for (const TestedScenario& one : tested) {
     const RunVerdict& verdict = *one.verdict;
-    fmt::print("{:<20} {}  {}\n", verdict.code() == ExitCode::kDone ? "passed" : name_of(verdict.end), one.name,
-               verdict.message);
+    const bool has_passed = verdict.code() == ExitCode::kDone;
+    const std::string status = fmt::format("{:<20}", has_passed ? "passed" : name_of(verdict.end));
+    text += fmt::format("{} {}  {}\n", colored(status, has_passed, style), one.name, verdict.message);
   }
+  return text;
+}
+
+io::Metrics to_json(const std::vector<TestedScenario>& tested) {
+  io::Metrics scenarios = io::Metrics::array();
+  for (const TestedScenario& one : tested) {
+    io::Metrics& json = scenarios.emplace_back(io::Metrics{{"name", one.name}, {"file", one.file.generic_string()}});
+    json.update(to_json(*one.verdict));
+  }
+  return scenarios;
 }
 
 }  // namespace
@@ -68,8 +82,10 @@ ExitCode test_command(const TestOptions& options) {
   io::save_text(out / "report.html", report::to_html(test_page(tested)));
   complete_output(out);
 
-  print_verdicts(tested);
-  fmt::print("{} scenarios: {}\n", tested.size(), (out / "junit.xml").string());
+  const std::filesystem::path junit = out / "junit.xml";
+  print_result(options.form,
+               to_text(tested, output_style()) + fmt::format("{} scenarios: {}\n", tested.size(), junit.string()),
+               {{"scenarios", to_json(tested)}, {"junit", junit.string()}});
   return worst;
 }
 

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "app/cli/commands.h"
+#include "app/common/print_result.h"
 #include "app/common/progress_bar.h"
 #include "app/mapping/submap_track.h"
 #include "io/json/adaboost_json.h"
@@ -73,12 +74,22 @@ Recognized recognized_at(double min_margin, const BoostedStumps& model, const sl
   return {.precision = ratio(right, wrong), .recall = ratio(right, missed)};
 }
 
-void print_recognition(const char* of, const BoostedStumps& model, const slam::LabeledFeatures& examples) {
-  fmt::print("{}, {} examples:\n  margin above   precision   recall\n", of, examples.labels.size());
+/// Precision and recall of the model on a set of examples, by minimum margin.
+io::Table recognition_table(const BoostedStumps& model, const slam::LabeledFeatures& examples) {
+  io::Table table{.name = "recognition", .columns = {"min_margin", "precision", "recall"}, .rows = {}};
   for (const double margin : {0.0, 0.1, 0.2, 0.3, 0.4}) {
     const Recognized recognized = recognized_at(margin, model, examples);
-    fmt::print("  {:12.1f}   {:9.4f}   {:6.4f}\n", margin, recognized.precision, recognized.recall);
+    table.rows.push_back({margin, recognized.precision, recognized.recall});
   }
+  return table;
+}
+
+std::string to_text(const char* of, std::size_t num_examples, const io::Table& recognition) {
+  std::string text = fmt::format("{}, {} examples:\n  margin above   precision   recall\n", of, num_examples);
+  for (const auto& row : recognition.rows)
+    text += fmt::format("  {:12.1f}   {:9.4f}   {:6.4f}\n", std::get<double>(row[0]), std::get<double>(row[1]),
+                        std::get<double>(row[2]));
+  return text;
 }
 
 }  // namespace
@@ -95,11 +106,19 @@ ExitCode train_command(const TrainOptions& options) {
   }
   const slam::BoostingResult boosted = slam::train_adaboost(*training, settings.boosting);
   io::save_boosted_stumps(options.out, boosted.model);
-  fmt::print("{} stumps; training error {:.2f} %, bound {:.2f} %\n", boosted.model.stumps.size(),
-             100.0 * boosted.training_error, 100.0 * std::min(1.0, boosted.error_bound));
-  print_recognition("training", boosted.model, *training);
-  if (!held_out->labels.empty()) print_recognition("validation", boosted.model, *held_out);
-  fmt::print("{}\n", options.out.string());
+  std::string text = fmt::format("{} stumps; training error {:.2f} %, bound {:.2f} %\n", boosted.model.stumps.size(),
+                                 100.0 * boosted.training_error, 100.0 * std::min(1.0, boosted.error_bound));
+  io::Metrics json{{"stumps", boosted.model.stumps.size()},
+                   {"training_error", boosted.training_error},
+                   {"training_error_bound", boosted.error_bound},
+                   {"model", options.out.string()}};
+  for (const auto& [name, examples] : {std::pair("training", &*training), std::pair("validation", &*held_out)}) {
+    if (examples->labels.empty()) continue;
+    const io::Table recognition = recognition_table(boosted.model, *examples);
+    text += to_text(name, examples->labels.size(), recognition);
+    json[name] = {{"examples", examples->labels.size()}, {"recognition", to_json(recognition)}};
+  }
+  print_result(options.form, text + options.out.string() + "\n", json);
   return ExitCode::kDone;
 }
 

@@ -1,10 +1,12 @@
 #include <filesystem>
+#include <stdexcept>
 
 #include <fmt/format.h>
 
 #include "app/cli/commands.h"
 #include "app/common/temporary_folder.h"
 #include "app/record/run_directory.h"
+#include "app/run/progress_line.h"
 #include "app/run/run_loop.h"
 #include "io/logs/log_compare.h"
 
@@ -19,8 +21,9 @@ ExitCode verify_command(const std::filesystem::path& run) {
   fmt::print(stderr, "verify: rerunning {}, seed {}\n", directory.scenario().string(), scenario.seed);
   sim::Simulator simulator = make_simulator(scenario, files);
   stack::Stack stack = make_stack(scenario, files);
-  NullObserver observer;
-  run_loop(scenario, files, simulator, stack, log, observer);
+  ProgressLine observer("verify", scenario.time_limit_s);
+  if (run_loop(scenario, files, simulator, stack, log, observer).end == RunEnd::kInterrupted)
+    throw std::runtime_error("interrupted; nothing compared");
 
   const std::optional<io::LogDifference> difference = io::first_difference(directory.log(), log);
   if (!difference) {

@@ -2,8 +2,12 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
+
+#include <fmt/format.h>
 
 namespace patrol::app {
 namespace {
@@ -41,9 +45,26 @@ void ProgressBar::show(const std::string& line) {
   is_shown_ = true;
 }
 
+void ProgressBar::show(const std::string& line, double fraction, const std::string& qualifier) {
+  const auto now = std::chrono::steady_clock::now();
+  if (is_shown_ && now - last_shown_ < std::chrono::milliseconds(100)) return;
+  last_shown_ = now;
+  const std::string remaining = remaining_text(std::chrono::duration<double>(now - begin_).count(), fraction);
+  show(remaining.empty() ? line : fmt::format("{}, {}{}", line, qualifier, remaining));
+}
+
 void ProgressBar::print_line(const std::string& line) {
   write((is_shown_ ? kClear : "") + line + "\n");
   is_shown_ = false;
+}
+
+std::string remaining_text(double elapsed_s, double fraction) {
+  if (elapsed_s < 1.0 || !(fraction > 0.0) || fraction >= 1.0) return "";
+  const double left_s = elapsed_s * (1.0 - fraction) / fraction;
+  if (left_s < 90.0) return fmt::format("{:.0f} s left", std::ceil(left_s));
+  const auto left_min = static_cast<int>(std::min(std::ceil(left_s / 60.0), 1e6));
+  if (left_min < 90) return fmt::format("{} min left", left_min);
+  return fmt::format("{} h {} min left", left_min / 60, left_min % 60);
 }
 
 InterruptGuard::InterruptGuard() {

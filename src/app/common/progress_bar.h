@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <string>
 
 #include "core/time.h"
@@ -15,13 +16,22 @@ class ProgressBar {
   ProgressBar& operator=(const ProgressBar&) = delete;
 
   void show(const std::string& line);
+  /// Shows `line` with the remaining time, extrapolated from the completed `fraction` of the work, in [0, 1], and
+  /// preceded by `qualifier`, such as "at most ". Redraws at most ten times per second.
+  void show(const std::string& line, double fraction, const std::string& qualifier = "");
   /// Prints a permanent line above the progress line, also without a terminal.
   void print_line(const std::string& line);
 
  private:
   bool is_terminal_;
   bool is_shown_ = false;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  std::chrono::steady_clock::time_point last_shown_{};
 };
+
+/// Remaining time of work whose `fraction` in [0, 1] took `elapsed_s`: "40 s left", "3 min left" or "2 h 5 min left".
+/// Empty during the first second, and for a fraction of 0 or 1.
+std::string remaining_text(double elapsed_s, double fraction);
 
 /// Counts SIGINT (Ctrl-C), SIGTERM and SIGHUP (closed terminal) during its lifetime, instead of ending the process at
 /// the first one. A SIGHUP that the caller ignores (nohup) stays ignored.

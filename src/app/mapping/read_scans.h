@@ -23,7 +23,8 @@ bool read_scans(io::ScanLog& log, const std::string& name, const InterruptGuard&
     const double duration_s = to_seconds(recorded->scan.stamp - *first);
     use(*recorded);
     bar.show(fmt::format("{}  {:3.0f} %  {} scans  {:.0f} times real time", name, 100.0 * log.progress(),
-                         log.summary().num_scans, duration_s / std::max(1e-3, wall_seconds() - start_s)));
+                         log.summary().num_scans, duration_s / std::max(1e-3, wall_seconds() - start_s)),
+             log.progress());
     if (guard.is_interrupted()) return false;
   }
   return true;

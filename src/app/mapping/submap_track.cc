@@ -24,7 +24,8 @@ std::optional<SubmapTrack> build_submaps(const std::filesystem::path& run, const
     track.slam.update(slam::planar_scan(*recorded, scan), recorded->T_odom_body);
     track.stamps.push_back(recorded->scan.stamp);
     bar.show(fmt::format("{}  {:3.0f} %  {} submaps", run.string(), 100.0 * log->progress(),
-                         track.slam.first_scans().size()));
+                         track.slam.first_scans().size()),
+             log->progress());
   }
   track.slam.finish();
   for (const std::size_t first : track.slam.first_scans()) {

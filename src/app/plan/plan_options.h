@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "app/common/print_result.h"
+
 namespace patrol::app {
 
 /// Options of `patrol plan`. Points are "X,Y": meters in a map_server map's frame, or cells from the upper left, y
@@ -22,6 +24,7 @@ struct PlanOptions {
   std::optional<std::uint64_t> seed = {};
   std::vector<std::string> overrides = {};
   std::optional<std::filesystem::path> out = {};
+  ResultForm form = ResultForm::kText;
 };
 
 }  // namespace patrol::app

@@ -17,11 +17,11 @@ namespace patrol::app {
 /// robots (plan/routes/global_planner.h). For a robot, costmap, allow_unknown, routes and speed_mps come from its
 /// profile (models/<robot>/<robot>.yaml: stack.navigation).
 struct PlanSettings {
-  std::string planner = "theta_star";  ///< plan/routes/planners.h
+  std::string planner = "theta_star";  ///< global planner (`patrol list global_planners`)
   std::uint64_t seed = 1;              ///< seed of stochastic planners and station orders
-  bool allow_unknown = false;          ///< unknown cells are passable, otherwise lethal
+  bool allow_unknown = false;          ///< passability of unknown cells; false: lethal
   bool smooth = false;
-  double min_clearance_m = 0.3;  ///< smoothing keeps this or the route's clearance; MovingAI: cells
+  double min_clearance_m = 0.3;  ///< clearance that smoothing keeps, or the route's if that is smaller; MovingAI: cells
   /// Maximum number of passable cells for the any-angle optimum, which took up to 8 s. The limit for all cells is 8
   /// times as high.
   int max_any_angle_cells = 150'000;

@@ -86,7 +86,6 @@ std::optional<std::vector<SolvedProblem>> solve_problems(const std::filesystem::
   Grids grids(file);
   InterruptGuard guard;
   ProgressBar bar;
-  double shown_s = 0.0;
   std::vector<SolvedProblem> all;
   for (const io::MovingAiProblem& problem : problems) {
     const Grid<plan::Cost>& costs = grids.of(problem);
@@ -101,10 +100,8 @@ std::optional<std::vector<SolvedProblem>> solve_problems(const std::filesystem::
     solved.failure = failure_of(solved, route, costs, settings.planner);
     all.push_back(std::move(solved));
     if (guard.is_interrupted()) return std::nullopt;
-    if (const double now_s = wall_seconds(); now_s - shown_s > 0.1) {
-      shown_s = now_s;
-      bar.show(fmt::format("{}  {} of {} problems", file.filename().string(), all.size(), problems.size()));
-    }
+    bar.show(fmt::format("{}  {} of {} problems", file.filename().string(), all.size(), problems.size()),
+             static_cast<double>(all.size()) / static_cast<double>(problems.size()));
   }
   return all;
 }

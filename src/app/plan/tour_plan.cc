@@ -60,14 +60,11 @@ class PairwisePaths {
 /// Plans all `pairs`; false if interrupted.
 bool plan_paths(PairwisePaths& paths, const std::vector<std::pair<std::size_t, std::size_t>>& pairs,
                 const InterruptGuard& guard, ProgressBar& bar) {
-  double shown_s = 0.0;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     paths.plan(pairs[i].first, pairs[i].second);
     if (guard.is_interrupted()) return false;
-    if (const double now_s = wall_seconds(); now_s - shown_s > 0.1) {
-      shown_s = now_s;
-      bar.show(fmt::format("{} of {} paths", i + 1, pairs.size()));
-    }
+    bar.show(fmt::format("{} of {} paths", i + 1, pairs.size()),
+             static_cast<double>(i + 1) / static_cast<double>(pairs.size()));
   }
   return true;
 }

@@ -35,8 +35,12 @@ class KeyMetricTable {
 };
 
 void add_accuracy(KeyMetricTable& table) {
+  if (const auto rmse_m = table.at("pose.site.ate_rmse_m")) {
+    table.add("Position error in the survey, RMS", report::length(*rmse_m),
+              "at most " + report::length(table.at("pose.site.ate_max_m").value_or(0.0)).text());
+  }
   if (const auto rmse_m = table.at("pose.ate_rmse_m")) {
-    table.add("Position error, RMS", report::length(*rmse_m),
+    table.add("Position error from the start, RMS", report::length(*rmse_m),
               "at most " + report::length(table.at("pose.ate_max_m").value_or(0.0)).text());
   }
   if (const auto rmse_deg = table.at("pose.heading_rmse_deg"))
@@ -65,6 +69,16 @@ void add_goals(KeyMetricTable& table) {
   }
 }
 
+/// Adds the found ones of the true `items` of an inspection, with the number of false findings.
+void add_found(KeyMetricTable& table, const std::string& label, const std::string& inspection, const std::string& items,
+               const std::string& false_findings, const std::string& false_name) {
+  const double num_items = table.at(inspection + "." + items).value_or(0.0),
+               num_false = table.at(inspection + "." + false_findings).value_or(0.0);
+  if (num_items + num_false <= 0.0) return;
+  table.add(label, {fmt::format("{:.0f} of {:.0f}", table.at(inspection + ".found").value_or(0.0), num_items), ""},
+            fmt::format("{:.0f} {}", num_false, false_name));
+}
+
 void add_mission(KeyMetricTable& table) {
   const double leaks = table.at("inspection.leaks").value_or(0.0),
                alarms = table.at("inspection.false_alarms").value_or(0.0);
@@ -73,6 +87,8 @@ void add_mission(KeyMetricTable& table) {
               {fmt::format("{:.0f} of {:.0f}", table.at("inspection.leaks_found").value_or(0.0), leaks), ""},
               fmt::format("{:.0f} false alarms", alarms));
   }
+  add_found(table, "Moved rings found", "inspection.lining", "moved_rings", "false_findings", "false findings");
+  add_found(table, "Water bodies found", "inspection.water", "bodies", "false_alarms", "false alarms");
   if (const auto collisions = table.at("mission.collisions")) {
     table.add("Collisions", {fmt::format("{:.0f}", *collisions), ""},
               table.at("mission.fell").value_or(0.0) > 0.5 ? "and the robot fell" : "");

@@ -22,9 +22,9 @@ namespace patrol::app {
 
 /// Offset of the actual start from the surveyed start: placement error of the operator. It is not known to the stack.
 struct StartOffsetSettings {
-  double ahead_m = 0.0;
-  double left_m = 0.0;
-  double yaw_deg = 0.0;
+  double ahead_m = 0.0;  ///< displacement of the actual start ahead of the surveyed one
+  double left_m = 0.0;   ///< displacement of the actual start to the left of the surveyed one
+  double yaw_deg = 0.0;  ///< rotation of the actual start from the surveyed one, counterclockwise
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -38,7 +38,7 @@ struct StartOffsetSettings {
 struct TeleopSettings {
   std::string route;                            ///< route of the simulated operator, below the world's folder
   std::string recorded;                         ///< table of recorded commands, below the world's folder
-  sim::TeleopOperatorSettings teleop_operator;  ///< key `operator`, which is a keyword of C++
+  sim::TeleopOperatorSettings teleop_operator;  ///< simulated operator that drives along the route
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -50,10 +50,10 @@ struct TeleopSettings {
 
 /// Kidnapping of the robot: it is moved to another pose without notice to the stack.
 struct KidnapSettings {
-  double at_s = 0.0;
-  double x_m = 0.0;  ///< in world
-  double y_m = 0.0;
-  double heading_deg = 0.0;
+  double at_s = 0.0;         ///< time of the kidnapping
+  double x_m = 0.0;          ///< x of the new position in the world
+  double y_m = 0.0;          ///< y of the new position in the world
+  double heading_deg = 0.0;  ///< heading at the new position in the world
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -66,9 +66,13 @@ struct KidnapSettings {
 
 /// Sensor mounted for this scenario: an additional frame of the robot, with neither mass nor shape.
 struct MountSettings {
-  std::string frame;                       ///< name of the sensor frame, e.g. "tdlas"
-  double x_m = 0.0, y_m = 0.0, z_m = 0.0;  ///< in body
-  double roll_deg = 0.0, pitch_deg = 0.0, yaw_deg = 0.0;
+  std::string frame;       ///< name of the sensor frame, e.g. "tdlas"
+  double x_m = 0.0;        ///< x of the sensor frame in the body frame
+  double y_m = 0.0;        ///< y of the sensor frame in the body frame
+  double z_m = 0.0;        ///< z of the sensor frame in the body frame
+  double roll_deg = 0.0;   ///< roll of the sensor frame in the body frame
+  double pitch_deg = 0.0;  ///< pitch of the sensor frame in the body frame
+  double yaw_deg = 0.0;    ///< yaw of the sensor frame in the body frame
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -84,9 +88,9 @@ struct MountSettings {
 
 /// Contents of the log besides the messages.
 struct LogSettings {
-  double truth_rate_hz = 100.0;
-  double state_rate_hz = 50.0;  ///< rate of simulator states for the replay
-  double map_period_s = 5.0;
+  double truth_rate_hz = 100.0;  ///< rate of the ground truth in the log
+  double state_rate_hz = 50.0;   ///< rate of simulator states for the replay
+  double map_period_s = 5.0;     ///< time from one map in the log to the next
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -99,14 +103,15 @@ struct LogSettings {
 /// Scenario of one run. A YAML file sets what differs from the defaults, which are defined here and in the settings
 /// that this struct contains.
 struct Scenario {
-  int version = 2;  ///< version of the keys; 2 since they were renamed
-  std::string world = "street";
-  std::string robot = "quadruped";
-  std::uint64_t seed = 1;
+  int version = 2;                                     ///< version of the keys; 2 since they were renamed
+  std::string world = "street";                        ///< name of the world, a folder of `worlds`
+  std::string robot = "quadruped";                     ///< name of the robot, a folder of `models`
+  std::uint64_t seed = 1;                              ///< seed of every random draw of the run
   double time_limit_s = 900.0;                         ///< limit of the simulated time
-  std::string mission = "routes/boxes_and_well.json";  ///< below the world's folder
-  std::string map;         ///< map_server YAML below the world's folder, in map; empty: the robot builds a map
-  std::string goals;       ///< nav.json below the world's folder; empty: goals are saved during teleoperation
+  std::string mission = "routes/boxes_and_well.json";  ///< file of the mission's stations, below the world's folder
+  std::string map;  ///< map of `map_server` (YAML) below the world's folder, in map; empty: the robot builds a map
+  /// File of saved goals (nav.json) below the world's folder; empty: goals are saved during teleoperation.
+  std::string goals;
   std::string references;  ///< folder below the world's folder with scans of an earlier run (io/points/station_scans.h)
   TeleopSettings teleop;
   StartOffsetSettings start;
@@ -128,7 +133,7 @@ struct Scenario {
   std::vector<sim::FaultSettings> faults;
   std::vector<KidnapSettings> kidnaps;
   LogSettings log;
-  io::Expectations expect;
+  io::Expectations expect;  ///< bounds of metrics that the run must meet, by path of the metric
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -17,7 +17,8 @@ constexpr double kLocalizabilityCell_m = 0.05;
 
 }  // namespace
 
-LocalizabilityMap map_localizability(const Scenario& scenario, const ScenarioFiles& files, double step_m) {
+LocalizabilityMap map_localizability(const Scenario& scenario, const ScenarioFiles& files, double step_m,
+                                     const std::function<void(double)>& on_progress) {
   const WorldSurfaces world = world_surfaces(files, kLocalizabilityCell_m);
   LocalizabilityMap map{.surfaces = world.surfaces, .step_m = step_m, .positions = {}};
   const score::DistanceField clearance(score::occupied_cells(map.surfaces));
@@ -36,12 +37,16 @@ LocalizabilityMap map_localizability(const Scenario& scenario, const ScenarioFil
   for (std::deque<std::pair<int, int>> frontier = {{0, 0}}; !frontier.empty(); frontier.pop_front()) {
     const auto [i, j] = frontier.front();
     if (!is_reachable(position_at({i, j}))) continue;
-    map.positions.push_back({.p_world_m = position_at({i, j}), .truth = oracle.at(position_at({i, j}))});
+    map.positions.push_back({.p_world_m = position_at({i, j}), .truth = {}});
     for (const auto& next : {std::pair(i + 1, j), std::pair(i - 1, j), std::pair(i, j + 1), std::pair(i, j - 1)}) {
       if (visited.insert(next).second) frontier.push_back(next);
     }
   }
   if (map.positions.empty()) throw InputError("no reachable positions: start is within 0.4 m of a surface");
+  for (std::size_t i = 0; i < map.positions.size(); ++i) {
+    map.positions[i].truth = oracle.at(map.positions[i].p_world_m);
+    on_progress(static_cast<double>(i + 1) / static_cast<double>(map.positions.size()));
+  }
   return map;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "app/scenario/scenario.h"
@@ -22,7 +23,8 @@ struct LocalizabilityMap {
 
 /// Computes localizability at every reachable position on a grid of `step_m` that contains the surveyed start.
 /// Reachable positions are connected to the start and at least 0.4 m from the surfaces. Throws InputError if there are
-/// none.
-LocalizabilityMap map_localizability(const Scenario& scenario, const ScenarioFiles& files, double step_m);
+/// none. `on_progress` gets the completed fraction, in [0, 1].
+LocalizabilityMap map_localizability(const Scenario& scenario, const ScenarioFiles& files, double step_m,
+                                     const std::function<void(double)>& on_progress);
 
 }  // namespace patrol::app

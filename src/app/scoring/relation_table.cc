@@ -27,4 +27,19 @@ std::string relation_table(const score::RelationError& error) {
   return table;
 }
 
+io::Metrics relation_json(const score::RelationError& error) {
+  const auto spread = [](const score::ErrorSpread& value) {
+    return io::Metrics{{"mean", value.mean}, {"std", value.std}};
+  };
+  io::Metrics json{{"relations", error.num_relations},       {"stamps", error.num_stamps},
+                   {"interpolated", error.num_interpolated}, {"outside", error.num_outside},
+                   {"translation_m", spread(error.trans_m)}, {"squared_translation_m2", spread(error.squared_trans_m2)},
+                   {"rotation_deg", spread(error.rot_deg)},  {"squared_rotation_deg2", spread(error.squared_rot_deg2)}};
+  json["translation_m"]["median"] = error.trans_median_m;
+  json["translation_m"]["max"] = error.trans_max_m;
+  json["rotation_deg"]["median"] = error.rot_median_deg;
+  json["rotation_deg"]["max"] = error.rot_max_deg;
+  return json;
+}
+
 }  // namespace patrol::app

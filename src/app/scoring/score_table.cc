@@ -13,7 +13,7 @@ namespace {
 /// Table with one line per metric: "  pose.ate_rmse_m            0.0712  <= 0.15  met".
 class Table {
  public:
-  explicit Table(const std::vector<CheckedExpectation>& checks) : checks_(checks) {}
+  Table(const std::vector<CheckedExpectation>& checks, TextStyle style) : checks_(checks), style_(style) {}
 
   void add(const MetricLine& metric) {
     const auto check = std::find_if(checks_.begin(), checks_.end(), [&](const CheckedExpectation& candidate) {
@@ -38,11 +38,12 @@ class Table {
     const std::string gap = group == group_ ? "" : "\n";
     group_ = group;
     const std::string verdict =
-        check == nullptr ? "" : fmt::format("  {:<14} {}", check->wanted, check->is_met ? "met" : "MISSED");
+        check == nullptr ? "" : fmt::format("  {:<14} {}", check->wanted, met_text(check->is_met, style_));
     return fmt::format("{}  {:<44} {:>12}{}\n", gap, path, value, verdict);
   }
 
   const std::vector<CheckedExpectation>& checks_;
+  TextStyle style_;
   std::string text_;
   std::string group_;
   std::set<std::string> shown_;  ///< paths of the metrics shown
@@ -50,8 +51,8 @@ class Table {
 
 }  // namespace
 
-std::string score_table(const io::Metrics& metrics, const std::vector<CheckedExpectation>& checks) {
-  Table table(checks);
+std::string score_table(const io::Metrics& metrics, const std::vector<CheckedExpectation>& checks, TextStyle style) {
+  Table table(checks, style);
   for (const MetricLine& metric : metric_lines(metrics)) table.add(metric);
   table.add_rest();
   return table.text();

@@ -17,17 +17,17 @@ struct AntennaState {
 /// Two digital servos with the data of Robotis' MX-64R (emanual.robotis.com): RS-485, 12-bit contactless encoder,
 /// backlash of 20 arcmin, 6.0 N m. The torque limit is in the URDF. Alignment, gains and low speed are assumptions.
 struct AntennaSettings {
-  double rate_hz = 10.0;         ///< rate of the servo readings
-  double max_speed_radps = 1.0;  ///< commanded speed limit; low because a loop on a post oscillates
-  double max_acceleration_radps2 = 2.0;
-  double stiffness_nm_per_rad = 60.0;  ///< stiffness of the position loop
-  double damping_nms_per_rad = 6.0;
-  double dead_band_deg = 0.1;  ///< dead band: a servo at rest exerts no position torque below this error
-  double resolution_deg = 0.088;
-  double backlash_deg = 0.33;      ///< total backlash between encoder and coil
-  double alignment_std_deg = 0.3;  ///< standard deviation of the alignment of a servo on its bracket, constant
-                                   ///< over a run
-  double latency_s = 0.02;
+  double rate_hz = 10.0;                 ///< rate of the servo readings
+  double max_speed_radps = 1.0;          ///< commanded speed limit; low because a loop on a post oscillates
+  double max_acceleration_radps2 = 2.0;  ///< limit of the angular acceleration of the servo's set point
+  double stiffness_nm_per_rad = 60.0;    ///< stiffness of the position loop
+  double damping_nms_per_rad = 6.0;      ///< damping of the position loop
+  double dead_band_deg = 0.1;            ///< dead band: a servo at rest exerts no position torque below this error
+  double resolution_deg = 0.088;         ///< step of the servo's encoder
+  double backlash_deg = 0.33;            ///< total backlash between encoder and coil
+  double alignment_std_deg = 0.3;        ///< standard deviation of the alignment of a servo on its bracket, constant
+                                         ///< over a run
+  double latency_s = 0.02;               ///< delay from the measurement to the delivery of the message
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -20,8 +20,8 @@ struct FluidPressure {
 /// constant offset, of a slow drift and of the coefficient. Noise is 0.02 Pa rms and resolution 0.016 Pa at the highest
 /// oversampling with its filter. The drift's correlation time and the warming of the housing are assumptions.
 struct BarometerSettings {
-  bool enabled = false;
-  double rate_hz = 5.0;
+  bool enabled = false;                               ///< presence of the sensor; false: no messages
+  double rate_hz = 5.0;                               ///< rate of the messages
   double sea_level_pa = 101325.0;                     ///< pressure at sea level
   double sea_level_temperature_c = 15.0;              ///< air temperature at sea level
   double origin_altitude_m = 0.0;                     ///< altitude of the world's origin above sea level
@@ -34,7 +34,7 @@ struct BarometerSettings {
   double warming_k = 8.0;                             ///< final rise of the sensor's temperature above that at power-up
   double warming_time_s = 300.0;                      ///< time constant of the warming
   double resolution_pa = 0.016;                       ///< quantization step, Pa
-  double latency_s = 0.05;
+  double latency_s = 0.05;                            ///< delay from the measurement to the delivery of the message
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -27,13 +27,13 @@ struct DepthImage {
 /// subpixel / (focal length x baseline), here 0.08 px / (606 px x 0.05 m). The image has about every tenth pixel of
 /// that camera in each direction. The dropout probabilities are assumptions.
 struct DepthCameraSettings {
-  bool enabled = false;
-  double rate_hz = 5.0;
-  int width_px = 80;
-  int height_px = 60;
-  double fov_deg = 70.0;     ///< horizontal field of view; pixels are square
-  double range_min_m = 0.3;  ///< minimum depth along the optical axis
-  double range_max_m = 8.0;
+  bool enabled = false;                   ///< presence of the sensor; false: no messages
+  double rate_hz = 5.0;                   ///< rate of the messages
+  int width_px = 80;                      ///< width of the depth image
+  int height_px = 60;                     ///< height of the depth image
+  double fov_deg = 70.0;                  ///< horizontal field of view; pixels are square
+  double range_min_m = 0.3;               ///< minimum depth along the optical axis
+  double range_max_m = 8.0;               ///< maximum range of the sensor
   double depth_noise_std_per_m = 0.0026;  ///< standard deviation of the depth, divided by the squared depth
   double baseline_m = 0.05;      ///< distance between the left and the right imager; pixels occluded in the right
                                  ///< imager have no depth
@@ -43,7 +43,7 @@ struct DepthCameraSettings {
   double dropout_probability = 0.01;      ///< dropout probability of any pixel
   double max_incidence_deg = 85.0;        ///< maximum angle of incidence; pixels beyond it are lost
   double max_range_10pct_m = 6.0;         ///< maximum range on a surface of 10 % reflectivity at normal incidence
-  double latency_s = 0.05;
+  double latency_s = 0.05;                ///< delay from the measurement to the delivery of the message
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

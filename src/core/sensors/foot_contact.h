@@ -16,13 +16,13 @@ struct FootContacts {
 
 /// Force sensors in the feet: strain gauges with an offset per foot that is constant over a run.
 struct FootContactSettings {
-  bool enabled = true;
+  bool enabled = true;        ///< presence of the sensor; false: no messages
   double rate_hz = 250.0;     ///< message rate; the firmware reads the sensor at every tick
   double noise_std_n = 1.0;   ///< standard deviation of the noise
   double offset_std_n = 1.0;  ///< standard deviation of the offset
-  double resolution_n = 0.5;
-  double range_n = 500.0;
-  double latency_s = 0.0;
+  double resolution_n = 0.5;  ///< step of the reported force
+  double range_n = 500.0;     ///< largest force that the sensor reports
+  double latency_s = 0.0;     ///< delay from the measurement to the delivery of the message
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -24,17 +24,17 @@ struct GnssFix {
 
 /// RTK receiver. Defaults after u-blox's ZED-F9P data sheet (1 cm + 1 ppm with fixed ambiguities).
 struct GnssSettings {
-  bool enabled = true;
-  double rate_hz = 5.0;
-  double fix_noise_std_m = 0.01;  ///< horizontal standard deviation; the vertical one is twice as large
-  double float_noise_std_m = 0.4;
+  bool enabled = true;                     ///< presence of the sensor; false: no messages
+  double rate_hz = 5.0;                    ///< rate of the messages
+  double fix_noise_std_m = 0.01;           ///< horizontal standard deviation; the vertical one is twice as large
+  double float_noise_std_m = 0.4;          ///< standard deviation of the position with a float solution
   double error_correlation_time_s = 20.0;  ///< correlation time of the position error
   double min_open_sky_fix = 0.75;          ///< minimum fraction of visible sky for a fixed solution
   double min_open_sky_float = 0.45;        ///< minimum fraction of visible sky for a float solution
   double fix_reacquisition_time_s = 5.0;   ///< time under open sky before a fixed solution returns
   double datum_latitude_deg = 29.21;       ///< WGS 84 latitude of the world's origin
-  double datum_longitude_deg = 119.46;
-  double latency_s = 0.1;
+  double datum_longitude_deg = 119.46;     ///< longitude of the origin of the world (WGS 84)
+  double latency_s = 0.1;                  ///< delay from the measurement to the delivery of the message
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

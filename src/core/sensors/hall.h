@@ -21,12 +21,12 @@ struct TrackTicks {
 /// pairs, with every edge counted, give 24 counts per revolution; the gear multiplies them. Data sheets of flat
 /// brushless motors of this class (e.g. maxon EC flat) list 7 to 11 pole pairs and 3 sensors; the default is coarser.
 struct HallSettings {
-  bool enabled = true;
-  double rate_hz = 50.0;  ///< message rate; the firmware reads the sensor at every tick
-  int counts_per_motor_revolution = 24;
+  bool enabled = true;                   ///< presence of the sensor; false: no messages
+  double rate_hz = 50.0;                 ///< message rate; the firmware reads the sensor at every tick
+  int counts_per_motor_revolution = 24;  ///< number of encoder counts per revolution of a motor
   double gear_ratio = 30.0;              ///< motor revolutions per sprocket revolution
   double missed_edge_probability = 0.0;  ///< probability that an edge is not counted
-  double latency_s = 0.0;
+  double latency_s = 0.0;                ///< delay from the measurement to the delivery of the message
 
   /// Returns the counts per radian of the sprocket.
   double ticks_per_rad() const { return counts_per_motor_revolution * gear_ratio / (2.0 * std::numbers::pi); }

@@ -21,22 +21,22 @@ struct Imu {
 /// of the as-built robot, section as_built.imu, to which they are added. The root sum of squares of the default shares
 /// is the value of the sheet. A nominal robot has the errors of this section only.
 struct ImuSettings {
-  bool enabled = true;
+  bool enabled = true;                                   ///< presence of the sensor; false: no messages
   double rate_hz = 250.0;                                ///< message rate; the firmware reads the sensor at every tick
   double gyro_noise_density_radps_per_sqrt_hz = 2.3e-4;  ///< angle random walk, 0.66 deg/sqrt(h) plus vibration
   double gyro_bias_std_radps = 0.002;                    ///< standard deviation of the constant bias of each axis
   double gyro_bias_random_walk_radps_per_sqrt_s = 1.0e-5;  ///< rate random walk
-  double accel_noise_density_mps2_per_sqrt_hz = 0.002;
-  double accel_bias_std_mps2 = 0.03;  ///< standard deviation of the constant bias of each axis
-  double accel_bias_random_walk_mps2_per_sqrt_s = 1.0e-4;
-  double scale_error_std = 0.001;     ///< standard deviation of the scale factor of each axis
-  double misalignment_std_deg = 0.0;  ///< standard deviation of the misalignment of each axis; all of that of the
-                                      ///< sheet is in as_built.imu
-  double gyro_range_radps = 17.4;
-  double accel_range_mps2 = 176.0;
-  double gyro_resolution_radps = 7.0e-4;
-  double accel_resolution_mps2 = 0.0082;
-  double latency_s = 0.0;
+  double accel_noise_density_mps2_per_sqrt_hz = 0.002;     ///< noise density of the accelerometer
+  double accel_bias_std_mps2 = 0.03;                       ///< standard deviation of the constant bias of each axis
+  double accel_bias_random_walk_mps2_per_sqrt_s = 1.0e-4;  ///< random walk of the accelerometer bias
+  double scale_error_std = 0.001;                          ///< standard deviation of the scale factor of each axis
+  double misalignment_std_deg = 0.0;      ///< standard deviation of the misalignment of each axis; all of that of the
+                                          ///< sheet is in as_built.imu
+  double gyro_range_radps = 17.4;         ///< largest angular rate that the gyro reports
+  double accel_range_mps2 = 176.0;        ///< largest acceleration that the accelerometer reports
+  double gyro_resolution_radps = 7.0e-4;  ///< step of the reported angular rate
+  double accel_resolution_mps2 = 0.0082;  ///< step of the reported acceleration
+  double latency_s = 0.0;                 ///< delay from the measurement to the delivery of the message
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -18,11 +18,11 @@ struct JointState {
 
 /// Absolute magnetic encoders on the joints, 14 bit. The motor drive filters the velocity.
 struct JointEncoderSettings {
-  bool enabled = true;
-  double rate_hz = 250.0;  ///< message rate; the firmware reads the sensor at every tick
-  int counts_per_revolution = 16384;
+  bool enabled = true;                             ///< presence of the sensor; false: no messages
+  double rate_hz = 250.0;                          ///< message rate; the firmware reads the sensor at every tick
+  int counts_per_revolution = 16384;               ///< number of encoder counts per revolution of a joint
   double velocity_filter_time_constant_s = 0.003;  ///< time constant of the velocity filter on count differences
-  double latency_s = 0.0;
+  double latency_s = 0.0;                          ///< delay from the measurement to the delivery of the message
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

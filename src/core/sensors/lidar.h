@@ -24,16 +24,16 @@ struct LaserScan {
 
 /// Spinning lidar with one or more rings. Defaults are those of the preset.
 struct LidarSettings {
-  std::string preset = "rplidar_s2";
-  bool enabled = true;
-  double rate_hz = 10.0;  ///< revolutions per second
-  int beams = 3200;       ///< firings per revolution, within the field of view
-  int rings = 1;
-  double fov_deg = 360.0;          ///< horizontal field of view, symmetric about the front
-  double elevation_min_deg = 0.0;  ///< elevation of the lowest ring
-  double elevation_max_deg = 0.0;  ///< elevation of the highest ring
-  double range_min_m = 0.05;
-  double range_max_m = 30.0;
+  std::string preset = "rplidar_s2";     ///< model of the sensor, whose data sheet gives the defaults of the other keys
+  bool enabled = true;                   ///< presence of the sensor; false: no messages
+  double rate_hz = 10.0;                 ///< revolutions per second
+  int beams = 3200;                      ///< firings per revolution, within the field of view
+  int rings = 1;                         ///< number of rings of beams above each other
+  double fov_deg = 360.0;                ///< horizontal field of view, symmetric about the front
+  double elevation_min_deg = 0.0;        ///< elevation of the lowest ring
+  double elevation_max_deg = 0.0;        ///< elevation of the highest ring
+  double range_min_m = 0.05;             ///< minimum range of a return
+  double range_max_m = 30.0;             ///< maximum range of a return
   double range_noise_std_m = 0.015;      ///< standard deviation of the range
   double range_quantization_m = 0.013;   ///< quantization step of the range
   double angle_noise_std_deg = 0.01;     ///< standard deviation of the beam azimuth
@@ -43,9 +43,10 @@ struct LidarSettings {
   double max_range_10pct_m = 10.0;       ///< maximum range on a surface of 10 % reflectivity
   double false_return_rate_per_m = 0.0;  ///< rate of returns from raindrops or dust grains, per meter of beam
   double latency_s = 0.005;              ///< delay from the last beam to the message
-  bool motion_distortion = true;         ///< false: all beams are fired from the pose at the end of the revolution
-  bool stabilized =
-      false;  ///< true: ideal gimbal that keeps the lidar level; requires stack.scan_leveling.gimbal_stabilized
+  /// Presence of motion distortion; false: all beams are fired from the pose at the end of the revolution.
+  bool motion_distortion = true;
+  /// Presence of an ideal gimbal that keeps the lidar level; requires stack.scan_leveling.gimbal_stabilized.
+  bool stabilized = false;
 
   /// Returns the settings of a preset, from public data sheets. "rplidar_s2": Slamtec RPLIDAR S2 (10 Hz, 32,000
   /// samples/s, 0.05-30 m, 10 m on 10 %, +-30 mm, 13 mm steps). "utm30lx": Hokuyo UTM-30LX (40 Hz, 0.25 deg over 270

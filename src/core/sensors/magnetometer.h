@@ -22,8 +22,8 @@ struct MagneticField {
 /// LSB/gauss, noise of at most 4.1 mgauss rms. The geomagnetic field approximates the World Magnetic Model at the datum
 /// of the GNSS settings. Hard iron, soft iron and the polarizability of steel are assumptions.
 struct MagnetometerSettings {
-  bool enabled = false;
-  double rate_hz = 50.0;
+  bool enabled = false;             ///< presence of the sensor; false: no messages
+  double rate_hz = 50.0;            ///< rate of the messages
   double intensity_t = 4.87e-5;     ///< magnitude of the geomagnetic field, T
   double inclination_deg = 45.0;    ///< angle of the geomagnetic field below the horizon
   double declination_deg = -5.6;    ///< angle of the geomagnetic field from north (+y of world) toward east (+x)
@@ -33,9 +33,9 @@ struct MagnetometerSettings {
   double resolution_t = 1.4616e-8;  ///< quantization step, T
   double range_t = 4.0e-4;          ///< full scale of each axis, T
   double steel_fill = 0.1;          ///< polarizable fraction of a steel geom's bounding box; 0: no disturbance
-  /// Substrings of the names of steel geoms or of their materials.
+  /// Parts of the names of steel geoms or of their materials.
   std::vector<std::string> steel_names = {"steel", "iron", "metal", "car_", "rail", "reinforcement"};
-  double latency_s = 0.01;
+  double latency_s = 0.01;  ///< delay from the measurement to the delivery of the message
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -29,14 +29,14 @@ struct PanoramicScan {
 /// Field of view: 360 degrees horizontal, 300 degrees vertical, in steps of 0.009 degrees (here: every 40th). A stated
 /// "+-" is read as two standard deviations, a plain value as one.
 struct PanoramicScannerSettings {
-  bool enabled = false;
+  bool enabled = false;  ///< presence of the sensor; false: no messages
   std::string epoch =
       "inspection";        ///< measurement epoch of a scan: "reference" or "inspection"; independent noise in each
   double step_deg = 0.36;  ///< angle between beams, horizontal and vertical; default: 1000 columns of 417
-  double elevation_min_deg = -60.0;  ///< lowest elevation; below it the instrument's own tripod blocks the beams
-  double duration_s = 30.0;          ///< duration of a scan
-  double range_min_m = 0.6;
-  double range_max_m = 70.0;
+  double elevation_min_deg = -60.0;       ///< lowest elevation; below it the instrument's own tripod blocks the beams
+  double duration_s = 30.0;               ///< duration of a scan
+  double range_min_m = 0.6;               ///< minimum range of the sensor
+  double range_max_m = 70.0;              ///< maximum range of the sensor
   double max_range_2pct_m = 50.0;         ///< maximum range on a surface of 2 % reflectivity
   double range_noise_std_m = 0.0003;      ///< standard deviation of the range on a bright surface
   double gray_noise_std_m = 0.000255;     ///< additional standard deviation on 10 % reflectivity at 10 m, added in

@@ -18,15 +18,15 @@ struct GasReading {
 /// Open-path laser methane meter with its beam along x. Defaults after the data sheet of Tokyo Gas Engineering's
 /// LaserMethane mini: 1-50,000 ppm m, +-10 %, 10 Hz, 30 m.
 struct TdlasSettings {
-  bool enabled = true;
-  double rate_hz = 10.0;
-  double noise_std_ppm_m = 10.0;     ///< standard deviation of the additive noise
-  double relative_noise_std = 0.05;  ///< standard deviation of the noise, relative to the column
-  double background_ppm = 1.9;       ///< methane in clean air
-  double resolution_ppm_m = 1.0;
-  double max_column_ppm_m = 50000.0;
-  double range_m = 30.0;
-  double latency_s = 0.1;
+  bool enabled = true;                ///< presence of the sensor; false: no messages
+  double rate_hz = 10.0;              ///< rate of the messages
+  double noise_std_ppm_m = 10.0;      ///< standard deviation of the additive noise
+  double relative_noise_std = 0.05;   ///< standard deviation of the noise, relative to the column
+  double background_ppm = 1.9;        ///< methane in clean air
+  double resolution_ppm_m = 1.0;      ///< step of the reported methane column
+  double max_column_ppm_m = 50000.0;  ///< largest methane column that the meter reports
+  double range_m = 30.0;              ///< largest length of the beam path
+  double latency_s = 0.1;             ///< delay from the measurement to the delivery of the message
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -23,12 +23,12 @@ struct TemSounding {
 /// t^(-1/2) from nV/m2 at 1 ms, plus a uniform standard deviation of 3 %. The 3 % are split here into a constant part
 /// (gain, time shift) and a varying part. All other values are assumptions.
 struct TemSettings {
-  bool enabled = false;
-  double moment_am2 = 34.0;      ///< magnetic moment: turns x area x current
-  double ramp_s = 2.6e-6;        ///< duration of the linear turn-off ramp of the current
-  double first_gate_s = 2.0e-6;  ///< center of the first gate after the end of the ramp
-  double last_gate_s = 3.0e-4;   ///< upper limit of the gate centers
-  double gates_per_decade = 10.0;
+  bool enabled = false;                ///< presence of the sensor; false: no messages
+  double moment_am2 = 34.0;            ///< magnetic moment: turns x area x current
+  double ramp_s = 2.6e-6;              ///< duration of the linear turn-off ramp of the current
+  double first_gate_s = 2.0e-6;        ///< center of the first gate after the end of the ramp
+  double last_gate_s = 3.0e-4;         ///< upper limit of the gate centers
+  double gates_per_decade = 10.0;      ///< number of time gates per decade of time
   double relative_gate_width = 0.15;   ///< width of a gate relative to its center time
   double stacking_s = 1.0;             ///< stacking time of one sounding
   double noise_std_tps = 3e-9;         ///< standard deviation at 1 ms of the mean over one second of stacking
@@ -40,7 +40,7 @@ struct TemSettings {
                                        ///< m2
   double steel_log_std = 0.5;          ///< standard deviation of the logarithm of `steel_response`, over runs
   double steel_anisotropy_std = 0.2;   ///< standard deviation of the direction-dependent fraction of the steel response
-  double latency_s = 0.05;
+  double latency_s = 0.05;             ///< delay from the measurement to the delivery of the message
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

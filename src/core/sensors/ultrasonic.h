@@ -20,30 +20,31 @@ struct UltrasonicRange {
   float range_m = 0.0F;  ///< range, REP 117: -Inf too close, +Inf no echo
 };
 
-/// Ring of ultrasonic transducers of the class of MaxBotix's XL-MaxSonar-EZ (data sheet PD11840): 42 kHz, minimum range
-/// 0.2 m, steps of 1 cm, closer objects reported as too near, accuracy limited by air temperature. Reflection follows
-/// [Leonard92]: at a wavelength of 8 mm walls are mirrors. The two values of the echo strength are assumptions.
+/// Ring of ultrasonic transducers of the class of MaxBotix's XL-MaxSonar-EZ (data sheet PD11840). The frequency is 42
+/// kHz, the minimum range 0.2 m, the step 1 cm. Closer objects are reported as too near, and the accuracy is limited by
+/// the air temperature. Reflection follows [Leonard92]: at a wavelength of 8 mm walls are mirrors. The two values of
+/// the echo strength are assumptions.
 struct UltrasonicSettings {
-  bool enabled = false;
-  double ping_rate_hz = 40.0;  ///< rate of ring slots; one transducer or one group fires in each slot
-  int group_size = 1;          ///< transducers per group, spread over the ring; a group shortens the cycle and
-                               ///< causes crosstalk
-  double fov_deg = 35.0;       ///< full opening angle of the cone
-  double range_min_m = 0.2;
-  double range_max_m = 4.0;
-  double range_noise_std_m = 0.005;  ///< standard deviation of the range
-  double range_quantization_m = 0.01;
-  double specular_cutoff_deg = 25.0;  ///< maximum angle of incidence for a specular echo of a smooth surface
-  double rough_echo_ratio = 0.37;     ///< echo strength of a rough surface relative to a smooth one, both at normal
-                                      ///< incidence
+  bool enabled = false;                ///< presence of the sensor; false: no messages
+  double ping_rate_hz = 40.0;          ///< rate of ring slots; one transducer or one group fires in each slot
+  int group_size = 1;                  ///< transducers per group, spread over the ring; a group shortens the cycle and
+                                       ///< causes crosstalk
+  double fov_deg = 35.0;               ///< full opening angle of the cone
+  double range_min_m = 0.2;            ///< minimum range of an echo
+  double range_max_m = 4.0;            ///< maximum range of an echo
+  double range_noise_std_m = 0.005;    ///< standard deviation of the range
+  double range_quantization_m = 0.01;  ///< step of the reported range
+  double specular_cutoff_deg = 25.0;   ///< maximum angle of incidence for a specular echo of a smooth surface
+  double rough_echo_ratio = 0.37;      ///< echo strength of a rough surface relative to a smooth one, both at normal
+                                       ///< incidence
   double detection_threshold =
       0.02;  ///< detection threshold, relative to the echo of a smooth wall that fills the cone
-  double dropout_probability = 0.02;   ///< dropout probability of a ping
-  double crosstalk_probability = 0.5;  ///< probability that a receivable echo of another transducer is taken for the
-                                       ///< own echo
-  double air_temperature_c = 15.0;
+  double dropout_probability = 0.02;    ///< dropout probability of a ping
+  double crosstalk_probability = 0.5;   ///< probability that a receivable echo of another transducer is taken for the
+                                        ///< own echo
+  double air_temperature_c = 15.0;      ///< temperature of the air, which determines the speed of sound
   double assumed_temperature_c = 20.0;  ///< temperature for which the sensor's speed of sound is set
-  /// Substrings of the names of rough geoms or of their materials. Height fields are always rough.
+  /// Parts of the names of rough geoms or of their materials; height fields are always rough.
   std::vector<std::string> rough_names = {"rock", "rubble", "gravel", "soil", "shotcrete", "muck"};
   double latency_s = 0.03;  ///< delay that covers the echo from maximum range
 

@@ -17,7 +17,7 @@ struct UwbRange {
 /// APS011 "Sources of error in DW1000 based two-way ranging schemes" (bias). Errors are Gaussian in line of sight
 /// (LOS); an exponential NLOS bias is added off it [Alsindi09], [Bellusci09]. Loss probabilities are assumptions.
 struct UwbSettings {
-  bool enabled = false;
+  bool enabled = false;                ///< presence of the sensor; false: no messages
   double rate_hz = 30.0;               ///< total rate of polls; the anchors in range take turns
   double range_max_m = 60.0;           ///< maximum range; anchors farther away are neither polled nor answer
   double range_noise_std_m = 0.07;     ///< standard deviation of the range in line of sight
@@ -25,7 +25,7 @@ struct UwbSettings {
   double loss_probability = 0.02;      ///< loss probability of a poll at short distance
   double nlos_loss_probability = 0.3;  ///< additional loss probability off the line of sight
   double nlos_bias_m = 0.4;            ///< mean of the exponential NLOS bias
-  double latency_s = 0.01;
+  double latency_s = 0.01;             ///< delay from the measurement to the delivery of the message
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

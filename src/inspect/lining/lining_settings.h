@@ -9,8 +9,8 @@ struct RegistrationSettings {
   /// Initial maximum distance of pairs, halved each time the steps have become small.
   double initial_pair_distance_m = 1.0;
   double final_pair_distance_m = 0.05;  ///< final maximum distance of pairs
-  int sample = 6000;  ///< number of points of the new scan, balanced over the directions of the surface normals
-  int max_iterations = 80;
+  int sample = 6000;        ///< number of points of the new scan, balanced over the directions of the surface normals
+  int max_iterations = 80;  ///< maximum number of iterations
   double step_tolerance_m = 2e-4;  ///< convergence limit of a step, for points 10 m away
 
   template <typename Self, typename Visitor>
@@ -25,12 +25,12 @@ struct RegistrationSettings {
 
 /// Assumptions and thresholds of the comparison of two scans.
 struct LiningSettings {
-  double min_range_m = 1.5;          ///< points closer to the scanner are excluded as parts of the robot
-  double spacing_m = 0.08;           ///< averaging distance of the points
+  double min_range_m = 1.5;  ///< distance from the scanner below which points are excluded as parts of the robot
+  double spacing_m = 0.08;   ///< averaging distance of the points
   double comparison_range_m = 16.0;  ///< comparison range along the tunnel, to both sides of the scanner
   double sector_deg = 10.0;          ///< angular width of a cell; a cell is the part of a ring in one sector
   double lowest_clock_deg = 110.0;   ///< center of the lowest sector on each side; the ground is below
-  /// Excluded on both sides of a ring joint, because localization and registration have axial errors.
+  /// Width that is excluded on both sides of a ring joint, because localization and registration have axial errors.
   double joint_margin_m = 0.1;
   double design_tolerance_m = 0.06;  ///< maximum distance of the lining from the design, including its displacement
   int min_points = 12;  ///< minimum number of downsampled points of a cell in both scans; other cells are not reported
@@ -42,18 +42,18 @@ struct LiningSettings {
   /// Standard deviation of the systematic angle errors of a scan, which averaging does not reduce: half of the variance
   /// of the 19" that the scanner's sheet states. 8 m along the tunnel they displace the lining by 0.7 mm in two scans.
   double angle_std_arcsec = 13.4;
-  double prior_std_m = 0.3;  ///< standard deviation of the pose estimate of the robot
-  double prior_std_deg = 2.0;
+  double prior_std_m = 0.3;       ///< standard deviation of the pose estimate of the robot
+  double prior_std_deg = 2.0;     ///< standard deviation of the heading estimate of the robot
   double min_inlier_ratio = 0.5;  ///< minimum inlier ratio of the registration
   /// Maximum correction of the pose estimate of the robot; larger ones indicate a registration to another position.
   double max_correction_m = 0.8;
   /// Maximum standard deviation of the registered position along the tunnel; larger ones indicate degeneracy.
   double max_along_std_m = 0.005;
   double min_axial_overlap = 0.4;  ///< minimum axial overlap: agreement of surfaces that face along the tunnel
-  double notice_mm = 2.0;
-  double warning_mm = 5.0;
-  double alarm_mm = 10.0;
-  double significance = 4.5;  ///< minimum ratio of a finding to its standard deviation
+  double notice_mm = 2.0;          ///< displacement from which a finding is a notice
+  double warning_mm = 5.0;         ///< displacement from which a finding is a warning
+  double alarm_mm = 10.0;          ///< displacement from which a finding is an alarm
+  double significance = 4.5;       ///< minimum ratio of a finding to its standard deviation
   RegistrationSettings registration;
 
   template <typename Self, typename Visitor>

@@ -8,15 +8,15 @@ namespace patrol::inspect {
 /// six numbers per gate. The 35 orientations of [Liu21], spread over the range of the mount, separate that form from
 /// steel and noise.
 struct WaterSoundingSettings {
-  int yaws = 7;
-  double max_yaw_deg = 60.0;  ///< -60 to 60 in steps of 20
-  int pitches = 5;
-  double max_pitch_deg = 30.0;         ///< -30 to 30 in steps of 15
+  int yaws = 7;                        ///< number of antenna yaws
+  double max_yaw_deg = 60.0;           ///< largest antenna yaw to both sides
+  int pitches = 5;                     ///< number of antenna pitches
+  double max_pitch_deg = 30.0;         ///< largest antenna pitch, up and down
   double settled_tolerance_deg = 0.5;  ///< maximum angle error of a settled antenna, which must also have stopped
   double settling_time_s = 0.4;        ///< minimum duration of the settled state
-  double orientation_timeout_s = 8.0;  ///< the pose is skipped after this time
-  double sounding_timeout_s = 5.0;
-  int max_consecutive_failures = 3;  ///< maximum number of consecutively skipped poses
+  double orientation_timeout_s = 8.0;  ///< time after which an antenna pose is skipped
+  double sounding_timeout_s = 5.0;     ///< maximum time of waiting for a sounding
+  int max_consecutive_failures = 3;    ///< maximum number of consecutively skipped poses
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -72,13 +72,13 @@ struct SoundingErrorSettings {
 
 /// Prior of rock and water.
 struct WaterPriorSettings {
-  double min_rock_spm = 3e-4;  ///< limits of the rock conductivity, uniform in its logarithm
-  double max_rock_spm = 0.03;
+  double min_rock_spm = 3e-4;  ///< lower limit of the rock conductivity, uniform in its logarithm
+  double max_rock_spm = 0.03;  ///< upper limit of the rock conductivity
   double water_spm = 0.6;  ///< median conductivity of water or mud, as measured by a probe in the seepage of the face
   /// Standard deviation of the logarithm of the conductivity: mud and mineralized water have 0.3 to 1 S/m.
   double water_log_std = 0.35;
-  double min_radius_m = 2.0;  ///< limits of the radius, uniform in its logarithm
-  double max_radius_m = 10.0;
+  double min_radius_m = 2.0;   ///< lower limit of the radius, uniform in its logarithm
+  double max_radius_m = 10.0;  ///< upper limit of the radius
   /// Maximum distance to the center of the body, which is uniform in a cone ahead; behind the robot it would be
   /// indistinguishable.
   double max_distance_m = 40.0;
@@ -108,8 +108,9 @@ struct WaterSettings {
   double min_evidence = 5.0;  ///< minimum logarithm of the Bayes factor for a detection: 150 to 1
   /// Standard deviation of the antenna axis on the robot, in addition to the encoder errors.
   double alignment_std_deg = 0.4;
-  /// A body is a warning if the near limit of its nearest point is within this distance.
+  /// Distance of the near limit of a body's nearest point within which the body is a warning.
   double warning_distance_m = 30.0;
+  /// Distance of the near limit of a body's nearest point within which the body is an alarm.
   double alarm_distance_m = 15.0;
 
   template <typename Self, typename Visitor>

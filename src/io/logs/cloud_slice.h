@@ -10,9 +10,9 @@ namespace patrol::io {
 
 /// Slice of a point cloud that becomes a planar scan, as in the ROS package pointcloud_to_laserscan.
 struct CloudSliceSettings {
-  double min_height_m = -0.2;  ///< above the lidar, in the level frame
+  double min_height_m = -0.2;  ///< minimum height of a point above the lidar, in the level frame
   double max_height_m = 0.5;
-  int num_beams = 720;  ///< of one revolution
+  int num_beams = 720;  ///< number of beams of one revolution
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

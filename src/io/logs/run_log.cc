@@ -9,9 +9,6 @@
 namespace patrol::io {
 namespace {
 
-constexpr const char* kTf = "/tf";
-constexpr const char* kTfStatic = "/tf_static";
-
 /// How long odometry is kept for the estimates that come later than it.
 constexpr Time kOdometryMemory = std::chrono::seconds(2);
 
@@ -24,7 +21,7 @@ RunLogWriter::RunLogWriter(const std::filesystem::path& log_mcap, const RobotDes
     mounts.transforms.push_back(
         {.stamp = {}, .parent = frame_id::kBody, .child = frame, .T_parent_child = T_body_sensor});
   }
-  writer_.write(channel<TransformSet>(kTfStatic), Time{}, encode(mounts, names_));
+  writer_.write(channel<TransformSet>(kStaticTransforms.topic), Time{}, encode(mounts, names_));
 }
 
 McapWriter::ChannelId RunLogWriter::add_channel(const std::string& topic, const char* type) {
@@ -38,7 +35,7 @@ void RunLogWriter::write_frames(Time log_time, const OdometryEstimate& odometry)
       {odometry.stamp, frame_id::kOdom, frame_id::kLevel, T_odom_level},
       {odometry.stamp, frame_id::kLevel, frame_id::kBody, T_odom_level.inverse() * odometry.T_odom_body},
   }};
-  writer_.write(channel<TransformSet>(kTf), log_time, encode(frames, names_));
+  writer_.write(channel<TransformSet>(kTransforms.topic), log_time, encode(frames, names_));
   if (odometry_.empty() || odometry_.back().stamp < odometry.stamp)
     odometry_.push_back({odometry.stamp, odometry.T_odom_body});
   if (odometry.stamp - odometry_.front().stamp > 2 * kOdometryMemory) {
@@ -52,7 +49,7 @@ void RunLogWriter::write_frames(Time log_time, const PoseEstimate& estimate) {
   const Pose3 T_odom_body = pose_at(odometry_, estimate.stamp).value_or(odometry_.back().pose);
   const Pose2 T_map_odom = estimate.T_map_body * to_pose2(T_odom_body).inverse();
   const TransformSet frames{{{estimate.stamp, frame_id::kMap, frame_id::kOdom, to_pose3(T_map_odom)}}};
-  writer_.write(channel<TransformSet>(kTf), log_time, encode(frames, names_));
+  writer_.write(channel<TransformSet>(kTransforms.topic), log_time, encode(frames, names_));
 }
 
 std::vector<std::string> LogHandlers::topics() const {

@@ -11,60 +11,11 @@
 #include "core/ground_truth.h"
 #include "core/messages.h"
 #include "core/robot_description.h"
-#include "core/sensors/registry.h"
 #include "core/trajectory.h"
+#include "io/logs/topics.h"
 #include "io/mcap/mcap_writer.h"
-#include "io/ros/ros_messages.h"
 
 namespace patrol::io {
-
-/// Topic of each message.
-template <typename Message>
-inline constexpr const char* kTopic = nullptr;
-template <IsSensorMessage Message>
-inline constexpr const char* kTopic<Message> = SensorTraits<Message>::kInfo.topic;
-template <>
-inline constexpr const char* kTopic<ScanCommand> = "/scanner/command";
-template <>
-inline constexpr const char* kTopic<AntennaCommand> = "/tem/antenna_command";
-template <>
-inline constexpr const char* kTopic<SoundingCommand> = "/tem/command";
-template <>
-inline constexpr const char* kTopic<WarningCommand> = "/warning";
-template <>
-inline constexpr const char* kTopic<LiningResult> = "/inspection/lining";
-template <>
-inline constexpr const char* kTopic<WaterResult> = "/inspection/water";
-template <>
-inline constexpr const char* kTopic<LocalizationConfidence> = "/localization_confidence";
-template <>
-inline constexpr const char* kTopic<CalibrationEstimate> = "/calibration";
-template <>
-inline constexpr const char* kTopic<OdometryEstimate> = "/odom";
-template <>
-inline constexpr const char* kTopic<PoseEstimate> = "/pose";
-template <>
-inline constexpr const char* kTopic<UwbPoseEstimate> = "/uwb_odometry/pose";
-template <>
-inline constexpr const char* kTopic<SiteRegistration> = "/site_registration";
-template <>
-inline constexpr const char* kTopic<ParticleSet> = "/particles";
-template <>
-inline constexpr const char* kTopic<MapUpdate> = "/map";
-template <>
-inline constexpr const char* kTopic<Path> = "/plan";
-template <>
-inline constexpr const char* kTopic<VelocityCommand> = "/cmd_vel";
-template <>
-inline constexpr const char* kTopic<Event> = "/events";
-template <>
-inline constexpr const char* kTopic<GroundTruth> = "/ground_truth/odom";
-template <>
-inline constexpr const char* kTopic<SimState> = "/sim/state";
-template <>
-inline constexpr const char* kTopic<AsBuiltTruth> = "/ground_truth/as_built";
-template <>
-inline constexpr const char* kTopic<Collision> = "/ground_truth/collisions";
 
 /// Writes log.mcap: every message on its topic, and the frames on /tf and /tf_static.
 class RunLogWriter {

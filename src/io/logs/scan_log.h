@@ -17,18 +17,20 @@
 namespace patrol::io {
 
 struct ScanLogOptions {
-  bool skip_invalid = false;  ///< count and skip unreadable records instead of throwing
-  double no_return_m = 80.0;  ///< ranges from here on, or from the maximum of the sensor, are "no return"
+  bool skip_invalid = false;  ///< whether unreadable records are counted and skipped instead of an error
+  double no_return_m = 80.0;  ///< range from which on, or from the maximum of the sensor, a beam has no return
   bool detect_no_return =
-      true;  ///< detect a range value in the log that encodes "no return" (io/logs/no_return_detector.h)
+      true;  ///< whether a range value in the log that encodes "no return" is detected (io/logs/no_return_detector.h)
   std::string carmen_laser;  ///< message with the scans, e.g. "FLASER"; empty: the most informative one in the log
-  /// MCAP only; LaserScan or PointCloud2, several separated by commas; empty: topic of the first LaserScan.
+  /// Topic of LaserScan or PointCloud2 messages, several separated by commas; empty: topic of the first LaserScan; MCAP
+  /// only.
   std::string scan_topic;
-  std::string odometry_topic;  ///< MCAP only; empty: topic of the first odometry message, or tf if there is none
-  /// MCAP only; on: yaw increments from the gyro (io/logs/gyro_odometry.h), auto: only if the first scans show that
-  /// gyro and odometry disagree, off: never.
+  /// Topic of odometry; empty: topic of the first odometry message, or tf if there is none; MCAP only.
+  std::string odometry_topic;
+  /// Use of yaw increments from the gyro (io/logs/gyro_odometry.h): on, off, or auto: only if the first scans show that
+  /// gyro and odometry disagree; MCAP only.
   std::string imu = "auto";
-  std::string imu_topic = {};  ///< MCAP only; empty: topic of the first IMU message
+  std::string imu_topic = {};  ///< topic of the IMU; empty: topic of the first IMU message; MCAP only
   CloudSliceSettings cloud = {};
 
   template <typename Self, typename Visitor>

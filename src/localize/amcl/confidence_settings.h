@@ -12,8 +12,8 @@ struct ConfidenceSettings {
   double zero_confidence_fit = 0.3;              ///< inlier ratio of the scan up to which its factor is 0
   double full_confidence_cluster_weight = 0.95;  ///< cluster weight from which on its factor is 1
   double zero_confidence_cluster_weight = 0.5;   ///< cluster weight up to which its factor is 0
-  double lost_threshold = 0.1;                   ///< the robot becomes lost below this confidence
-  /// A lost robot recovers above this confidence, if the cluster weight is at least full_confidence_cluster_weight.
+  double lost_threshold = 0.1;                   ///< confidence below which the robot becomes lost
+  /// Confidence above which a lost robot recovers, if the cluster weight is at least full_confidence_cluster_weight.
   double found_threshold = 0.2;
 
   template <typename Self, typename Visitor>

@@ -5,11 +5,10 @@
 namespace patrol::localize {
 
 struct DivergenceMonitorSettings {
-  double alpha_slow = 0.02;  ///< filter constant of the long-term average of the scan likelihood, per update
-  double alpha_fast = 0.2;   ///< filter constant of the short-term average, per update
-  /// Injection begins if the short-term average is below the long-term average divided by this ratio.
-  double fast_over_slow = 1.5;
-  double alpha_range = 0.1;  ///< filter constant of the average range likelihood, per range
+  double alpha_slow = 0.02;     ///< filter constant of the long-term average of the scan likelihood, per update
+  double alpha_fast = 0.2;      ///< filter constant of the short-term average, per update
+  double fast_over_slow = 1.5;  ///< ratio of the long-term to the short-term average above which particles are injected
+  double alpha_range = 0.1;     ///< filter constant of the average range likelihood, per range
   /// Inlier ratio of the scan below which particles are injected, regardless of the averages.
   double min_scan_fit = 0.4;
   double min_range_fit = 0.25;          ///< mean range likelihood below which particles are injected

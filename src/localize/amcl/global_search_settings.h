@@ -5,9 +5,9 @@
 namespace patrol::localize {
 
 struct GlobalSearchSettings {
-  double step_m = 0.4;      ///< spacing of the coarse position grid
-  double step_rad = 0.105;  ///< spacing of the coarse heading grid: 6 degrees
-  int max_beams = 60;
+  double step_m = 0.4;           ///< spacing of the coarse position grid
+  double step_rad = 0.105;       ///< spacing of the coarse heading grid: 6 degrees
+  int max_beams = 60;            ///< maximum number of beams of a scan that the search uses
   int coarse_samples = 1000;     ///< number of samples of coarse cells that are refined
   double min_clearance_m = 0.2;  ///< minimum distance of the body from walls
 

@@ -5,13 +5,13 @@
 namespace patrol::localize {
 
 struct KldSettings {
-  double bin_m = 0.5;
-  double bin_rad = 0.1745;          ///< 10 degrees
+  double bin_m = 0.5;               ///< size of a bin of the histogram in x and y
+  double bin_rad = 0.1745;          ///< size of a bin of the histogram in yaw; 10 degrees
   double max_kl_divergence = 0.05;  ///< maximum Kullback-Leibler distance between particles and belief
   /// Upper quantile of the normal distribution for the probability of keeping max_kl_divergence: 0.99.
   double normal_quantile = 2.326;
-  int min_particles = 300;
-  int max_particles = 5000;
+  int min_particles = 300;   ///< minimum number of particles
+  int max_particles = 5000;  ///< maximum number of particles
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

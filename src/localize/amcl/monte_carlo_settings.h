@@ -32,6 +32,7 @@ std::span<const SensorModelFactory> sensor_models();
 
 /// Settings of the adaptive Monte Carlo localization (monte_carlo.h).
 struct MonteCarloSettings {
+  /// Sensor model of the particle weights (`patrol list sensor_models`).
   std::string sensor_model = "likelihood_field";
   /// Tempering: effective number of independent beams of a scan, however many are evaluated.
   double effective_beams = 20.0;
@@ -40,13 +41,14 @@ struct MonteCarloSettings {
   double update_distance_m = 0.2;  ///< distance traveled between particle updates
   double update_angle_rad = 0.05;  ///< yaw change between particle updates
   double update_period_s = 1.0;    ///< maximum time between particle updates while lost
-  double max_tilt_rad = 0.1;  ///< scans tilted by more, for example on a ramp, are not used unless the robot is lost
-  /// Resample if the effective sample size is below this fraction of the number of particles.
+  double max_tilt_rad = 0.1;  ///< tilt above which scans, for example on a ramp, are not used unless the robot is lost
+  /// Effective sample size, relative to the number of particles, below which the filter resamples.
   double resample_threshold = 0.5;
-  int min_particles_lost = 2000;  ///< with few particles, hypotheses would disappear by chance
-  double range_buffer_s = 2.0;    ///< maximum age of ranges used in a global search
-  double search_period_s = 1.0;   ///< minimum time between global searches
-  int max_logged_particles = 300;
+  /// Minimum number of particles while lost: with fewer, hypotheses would disappear by chance.
+  int min_particles_lost = 2000;
+  double range_buffer_s = 2.0;     ///< maximum age of ranges used in a global search
+  double search_period_s = 1.0;    ///< minimum time between global searches
+  int max_logged_particles = 300;  ///< maximum number of particles in a message on /particles
   OdometryModelSettings odometry;
   LikelihoodFieldSettings likelihood_field;
   BeamModelSettings beam;

@@ -6,17 +6,17 @@ namespace patrol::localize {
 
 struct PoseRefinementSettings {
   int max_points = 400;                 ///< maximum number of scan points matched to the map
-  double point_spacing_m = 0.1;         ///< consecutive beams that end within this distance are averaged
+  double point_spacing_m = 0.1;         ///< distance of consecutive beam ends below which they are averaged
   double point_std_m = 0.03;            ///< standard deviation of the range of a point and of the map cells
   double point_angle_std_rad = 0.0015;  ///< standard deviation of the direction of a point
   double kernel_m = 0.08;             ///< scale of the Cauchy kernel; residuals beyond it are down-weighted as outliers
   double likelihood_tempering = 0.1;  ///< tempering factor: fraction of the points with independent errors
-  /// A line constrains the weak direction only if the sine of its angle to that direction is larger.
+  /// Minimum sine of the angle between a line and the weak direction that the line constrains.
   double min_incidence_sine = 0.15;
-  double map_std_m = 0.01;  ///< standard deviation of the map itself, which is not reduced by averaging
-  double map_std_rad = 0.001;
-  int max_iterations = 8;
-  double min_inlier_ratio = 0.3;  ///< matches with a smaller inlier ratio are rejected
+  double map_std_m = 0.01;        ///< standard deviation of the map itself, which is not reduced by averaging
+  double map_std_rad = 0.001;     ///< standard deviation of the yaw error that the map causes
+  int max_iterations = 8;         ///< maximum number of iterations of the refinement
+  double min_inlier_ratio = 0.3;  ///< minimum inlier ratio of an accepted match
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -14,7 +14,7 @@ struct AnchorDelayEstimatorSettings {
   double prior_map_std_rad = 0.01;  ///< standard deviation of the yaw of map in the survey
   double range_std_m = 0.1;         ///< nominal standard deviation of a range in line of sight
   double bias_std_m = 0.03;         ///< error of a delay by paths off the line of sight that are not rejected
-  double outlier_sigma = 2.5;       ///< ranges with larger residuals are rejected
+  double outlier_sigma = 2.5;       ///< residual above which a range is rejected, in standard deviations
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -10,12 +10,12 @@ namespace patrol::localize {
 
 /// Settings of the calibration while the robot drives, and of the use of its estimates.
 struct OnlineCalibratorSettings {
-  bool enabled = true;
-  bool corrects_time_offset = true;     ///< scans are leveled with the estimated time offset
-  bool corrects_lidar_yaw = true;       ///< scans are leveled with the estimated yaw of the lidar
-  bool corrects_gyro_bias = true;       ///< odometry takes the bias of the gyro from scan matching
-  double max_applied_std_s = 0.002;     ///< estimates of the time offset with a larger standard deviation are not used
-  double max_applied_std_rad = 0.0025;  ///< estimates of the lidar yaw with a larger standard deviation are not used
+  bool enabled = true;                      ///< use of the calibration while the robot drives
+  bool corrects_time_offset = true;         ///< use of the estimated time offset in the leveling of scans
+  bool corrects_lidar_yaw = true;           ///< use of the estimated lidar yaw in the leveling of scans
+  bool corrects_gyro_bias = true;           ///< use of the gyro bias by scan matching in odometry
+  double max_applied_std_s = 0.002;         ///< largest standard deviation of a time offset that is used
+  double max_applied_std_rad = 0.0025;      ///< largest standard deviation of a lidar yaw that is used
   double max_offset_change_s_per_s = 0.05;  ///< maximum change of the applied time offset
   double max_yaw_change_rad_per_s = 0.001;  ///< maximum change of the applied lidar yaw
   double period_s = 1.0;                    ///< interval between published estimates

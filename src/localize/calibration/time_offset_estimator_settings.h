@@ -11,11 +11,12 @@ struct TimeOffsetEstimatorSettings {
   double odometry_std_rad = 0.0005;       ///< standard deviation of odometry from scan to scan
   /// Standard deviation of the lag of odometry behind its own stamps, which cannot be separated from the offset.
   double odometry_lag_std_s = 0.0015;
-  double translation_variance_factor = 25;  ///< of the translations, whose errors follow the gait
+  /// Factor of the variance of the translations, whose errors follow the gait.
+  double translation_variance_factor = 25;
   /// Standard deviation of the linearized effect of the offset that is not yet applied, relative to the effect.
   double linearization_error = 0.2;
   double max_gap_s = 0.3;       ///< maximum time between two scans that are compared
-  double outlier_sigma = 4.0;   ///< comparisons with larger residuals are rejected
+  double outlier_sigma = 4.0;   ///< residual above which a comparison is rejected, in standard deviations
   double step_window_s = 10.0;  ///< time span of the newest scans that detect a step of the offset
   double step_sigma = 6.0;      ///< minimum size of a detected step, in standard deviations
   double min_step_s = 0.004;    ///< minimum size of a detected step

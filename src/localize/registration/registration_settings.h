@@ -6,15 +6,17 @@ namespace patrol::localize {
 
 /// Settings of the registration of the map to the survey.
 struct RegistrationSettings {
-  bool use_gnss = true;
-  bool use_uwb = true;
-  bool use_dock = true;
-  /// Prior: the robot is put down by hand at the surveyed start, within 2 cm and 0.5 degrees. The yaw includes the
-  /// mounting yaw of the lidar, 0.3 degrees, which turns the map against the body.
+  bool use_gnss = true;  ///< use of GNSS fixes
+  bool use_uwb = true;   ///< use of UWB ranges
+  bool use_dock = true;  ///< use of detections of the charging post
+  /// Prior standard deviation of the position at the surveyed start, where the robot is put down by hand.
   double start_position_std_m = 0.02;
+  /// Prior standard deviation of the yaw at the surveyed start, with the mounting yaw of the lidar, which turns the map
+  /// against the body.
   double start_yaw_std_deg = 0.6;
-  double given_map_position_std_m = 0.02;  ///< prior for a given map, whose frame has been surveyed
-  double given_map_yaw_std_deg = 0.05;     ///< prior for a given map
+  /// Prior standard deviation of the position of a given map, whose frame has been surveyed.
+  double given_map_position_std_m = 0.02;
+  double given_map_yaw_std_deg = 0.05;     ///< prior standard deviation of the yaw of a given map
   double fix_correlation_time_s = 20.0;    ///< correlation time of the errors of RTK fixes (core/sensors/gnss.h)
   double float_correlation_time_s = 60.0;  ///< correlation time of the errors of float solutions
   double dock_std_m = 0.02;                ///< standard deviation of survey and outline of the charging post
@@ -31,10 +33,11 @@ struct RegistrationSettings {
   /// Correlation time of the map's deformation. The sum of the errors of fix and map is taken as one process with the
   /// longer of the two correlation times.
   double map_correlation_time_s = 100.0;
-  double map_yaw_std_deg = 0.15;     ///< as `map_std_m`, of the body's yaw; contains the remaining mounting yaw
+  /// Standard deviation of the body's yaw by the map's own deformation, with the remaining mounting yaw.
+  double map_yaw_std_deg = 0.15;
   double min_distance_m = 0.5;       ///< minimum distance between two GNSS fixes of one status
   double max_interval_s = 10.0;      ///< maximum time between two measurements of one source while the robot stands
-  int max_measurements = 600;        ///< bound of the stored measurements; above it every second one is dropped
+  int max_measurements = 600;        ///< maximum number of stored measurements; above it every second one is dropped
   double outlier_scale_sigma = 4.0;  ///< scale of the Cauchy loss, standard deviations
   double period_s = 1.0;             ///< period of the estimation
   /// Minimum displacement of any point of the survey by which the mission's stations and the keep-out lines follow.

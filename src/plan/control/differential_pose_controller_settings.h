@@ -6,8 +6,8 @@
 namespace patrol::plan {
 
 struct DifferentialPoseControllerSettings {
-  double speed_gain_per_s = 1.0;  ///< speed per meter of remaining distance
-  double max_speed_mps = 0.3;
+  double speed_gain_per_s = 1.0;        ///< speed per meter of remaining distance
+  double max_speed_mps = 0.3;           ///< maximum speed
   double min_speed_mps = 0.04;          ///< minimum speed that the tracks follow smoothly
   double min_yaw_rate_radps = 0.08;     ///< minimum yaw rate that the tracks follow smoothly
   double tolerance_fraction = 0.5;      ///< fraction of the goal's tolerances that a pass aims at

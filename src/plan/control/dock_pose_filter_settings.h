@@ -5,14 +5,14 @@
 namespace patrol::plan {
 
 struct DockPoseFilterSettings {
-  double position_std_m_per_m = 0.03;  ///< odometry drift between two detections
-  double yaw_std_rad_per_rad = 0.05;
-  double yaw_std_rad_per_m = 0.01;
+  double position_std_m_per_m = 0.03;             ///< drift of odometry between two detections, per distance
+  double yaw_std_rad_per_rad = 0.05;              ///< drift of the yaw of odometry per rotation
+  double yaw_std_rad_per_m = 0.01;                ///< drift of the yaw of odometry per distance
   double yaw_random_walk_rad_per_sqrt_s = 0.003;  ///< drift of the gyro bias, also at rest
   double lateral_std_m_per_rad = 0.03;            ///< sideways displacement during a skidding turn
-  double min_std_m = 0.002;                       ///< minimum std of a detection: errors common to one pose
-  double min_std_rad = 0.002;
-  double gate = 16.0;  ///< squared Mahalanobis distance from which a detection is an outlier
+  double min_std_m = 0.002;    ///< minimum standard deviation of the position of a detection: errors common to one pose
+  double min_std_rad = 0.002;  ///< minimum standard deviation of the yaw of a detection
+  double gate = 16.0;          ///< squared Mahalanobis distance from which a detection is an outlier
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

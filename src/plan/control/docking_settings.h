@@ -7,25 +7,26 @@
 namespace patrol::plan {
 
 struct DockingSettings {
-  double staging_distance_m = 1.35;  ///< distance of the staging pose, straight before the docked pose
-  double staging_tolerance_m = 0.1;  ///< tolerances of the navigator at the staging pose
-  double staging_tolerance_rad = 0.1;
-  double max_speed_mps = 0.2;
-  double min_speed_mps = 0.03;
-  double speed_gain_per_s = 0.5;  ///< speed per meter of remaining distance
-  double min_yaw_rate_radps = 0.06;
-  double corridor_half_width_m = 0.02;     ///< half-width of the approach corridor at the docked pose
-  double corridor_slope = 0.3;             ///< widening per meter before it; outside, the robot backs up and retries
-  double heading_blend_distance_m = 0.15;  ///< final distance over which the heading blends into the dock's heading
-  double position_tolerance_m = 0.012;     ///< position tolerance of the docked pose, by the robot's own estimate
-  double yaw_tolerance_rad = 0.008;
-  double settling_time_s = 1.0;       ///< stationary time before the docked pose is checked
-  int min_detections = 5;             ///< minimum number of detections before the robot moves
-  double max_detection_gap_s = 1.0;   ///< maximum age of the last detection; the robot stops beyond
-  double detection_timeout_s = 10.0;  ///< time without a detection after which docking fails
-  int max_attempts = 4;
-  double timeout_s = 120.0;
-  double undock_distance_m = 1.2;  ///< distance driven straight back
+  double staging_distance_m = 1.35;     ///< distance of the staging pose from the docked pose
+  double staging_tolerance_m = 0.1;     ///< maximum position error at the staging pose
+  double staging_tolerance_rad = 0.1;   ///< maximum heading error at the staging pose
+  double max_speed_mps = 0.2;           ///< maximum speed of the approach
+  double min_speed_mps = 0.03;          ///< minimum speed of the approach
+  double speed_gain_per_s = 0.5;        ///< gain from the remaining distance to the speed
+  double min_yaw_rate_radps = 0.06;     ///< minimum yaw rate of a turn in place
+  double corridor_half_width_m = 0.02;  ///< half width of the approach corridor at the docked pose
+  double corridor_slope = 0.3;          ///< increase of the corridor's half width per distance from the docked pose
+  /// Distance over which the heading changes from the line to the docked heading.
+  double heading_blend_distance_m = 0.15;
+  double position_tolerance_m = 0.012;  ///< maximum position error of the docked robot
+  double yaw_tolerance_rad = 0.008;     ///< maximum yaw error of the docked robot
+  double settling_time_s = 1.0;         ///< time within the tolerances after which the robot is docked
+  int min_detections = 5;               ///< minimum number of detections of the post before the approach
+  double max_detection_gap_s = 1.0;     ///< maximum time without a detection during the approach
+  double detection_timeout_s = 10.0;    ///< maximum time of waiting for a detection at the staging pose
+  int max_attempts = 4;                 ///< maximum number of attempts
+  double timeout_s = 120.0;             ///< maximum duration of an attempt
+  double undock_distance_m = 1.2;       ///< distance that the robot backs away from the post
   LineFollowingSettings line;
   DockPoseFilterSettings pose_filter;
 

@@ -5,22 +5,22 @@
 namespace patrol::plan {
 
 struct DwaLiu21Settings {
-  double min_speed_mps = 0.0;                ///< v_min
-  double max_speed_mps = 0.8;                ///< v_max
-  double max_yaw_rate_radps = 0.6;           ///< omega_max = -omega_min
-  double max_deceleration_mps2 = 0.5;        ///< a_vmin
-  double max_acceleration_mps2 = 0.5;        ///< a_vmax
-  double max_yaw_deceleration_radps2 = 1.5;  ///< a_omegamin
-  double max_yaw_acceleration_radps2 = 1.5;  ///< a_omegamax
-  double window_s = 0.3;                     ///< Delta t
+  double min_speed_mps = 0.0;                ///< minimum speed, v_min
+  double max_speed_mps = 0.8;                ///< maximum speed, v_max
+  double max_yaw_rate_radps = 0.6;           ///< maximum yaw rate in both directions, omega_max = -omega_min
+  double max_deceleration_mps2 = 0.5;        ///< maximum deceleration, a_vmin
+  double max_acceleration_mps2 = 0.5;        ///< maximum acceleration, a_vmax
+  double max_yaw_deceleration_radps2 = 1.5;  ///< maximum yaw deceleration, a_omegamin
+  double max_yaw_acceleration_radps2 = 1.5;  ///< maximum yaw acceleration, a_omegamax
+  double window_s = 0.3;                     ///< time in which a sampled command is reachable, Delta t
   double horizon_s = 2.0;                    ///< horizon of the simulated trajectory
-  int steps = 8;
-  int speed_samples = 7;
-  int yaw_rate_samples = 15;
-  double heading_weight = 0.8;   ///< alpha
-  double distance_weight = 0.2;  ///< beta
-  double velocity_weight = 0.2;  ///< gamma
-  double lookahead_m = 1.5;      ///< distance of the target point ahead along the path
+  int steps = 8;                             ///< number of poses along the simulated trajectory
+  int speed_samples = 7;                     ///< number of sampled speeds
+  int yaw_rate_samples = 15;                 ///< number of sampled yaw rates
+  double heading_weight = 0.8;               ///< weight of the heading term, alpha
+  double distance_weight = 0.2;              ///< weight of the distance term, beta
+  double velocity_weight = 0.2;              ///< weight of the velocity term, gamma
+  double lookahead_m = 1.5;                  ///< distance of the target point ahead along the path
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -6,24 +6,24 @@ namespace patrol::plan {
 
 struct DwaSettings {
   // Limits of the robot.
-  double max_speed_mps = 0.8;
-  double max_reverse_mps = 0.2;
-  double max_yaw_rate_radps = 0.9;
-  double max_acceleration_mps2 = 0.8;
-  double max_yaw_acceleration_radps2 = 2.5;
+  double max_speed_mps = 0.8;                ///< maximum forward speed
+  double max_reverse_mps = 0.2;              ///< maximum backward speed
+  double max_yaw_rate_radps = 0.9;           ///< maximum yaw rate
+  double max_acceleration_mps2 = 0.8;        ///< maximum acceleration
+  double max_yaw_acceleration_radps2 = 2.5;  ///< maximum yaw acceleration
   // Sampled commands.
-  double window_s = 0.3;   ///< time in which a sampled command is reachable
-  double horizon_s = 2.0;  ///< prediction horizon
-  int steps = 8;           ///< poses along the horizon
-  int speed_samples = 6;
-  int yaw_rate_samples = 15;
+  double window_s = 0.3;      ///< time in which a sampled command is reachable
+  double horizon_s = 2.0;     ///< prediction horizon
+  int steps = 8;              ///< number of poses along the prediction horizon
+  int speed_samples = 6;      ///< number of sampled speeds
+  int yaw_rate_samples = 15;  ///< number of sampled yaw rates
   // Weights of the cost terms.
-  double path_weight = 1.0;
-  double progress_weight = 1.2;
-  double heading_weight = 0.8;
-  double clearance_weight = 1.0;
-  double command_change_weight = 0.1;
-  double comfortable_clearance_m = 0.4;
+  double path_weight = 1.0;              ///< weight of the distance from the path
+  double progress_weight = 1.2;          ///< weight of the progress along the path
+  double heading_weight = 0.8;           ///< weight of the heading error
+  double clearance_weight = 1.0;         ///< weight of the clearance from obstacles
+  double command_change_weight = 0.1;    ///< weight of the change of the command
+  double comfortable_clearance_m = 0.4;  ///< clearance from which on obstacles have no cost
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

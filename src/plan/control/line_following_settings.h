@@ -7,8 +7,8 @@ namespace patrol::plan {
 struct LineFollowingSettings {
   double lateral_gain_per_m = 3.0;  ///< inverse of the distance over which the lateral error falls to 1/e
   double max_angle_rad = 0.5;       ///< maximum angle toward the line
-  double yaw_gain_per_s = 2.0;
-  double max_yaw_rate_radps = 0.5;
+  double yaw_gain_per_s = 2.0;      ///< gain from the yaw error to the yaw rate
+  double max_yaw_rate_radps = 0.5;  ///< maximum yaw rate
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

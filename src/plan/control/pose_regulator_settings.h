@@ -5,11 +5,11 @@
 namespace patrol::plan {
 
 struct PoseRegulatorSettings {
-  double position_gain_per_s = 1.2;
-  double yaw_gain_per_s = 1.5;
-  double max_speed_mps = 0.25;
-  double max_lateral_speed_mps = 0.15;
-  double max_yaw_rate_radps = 0.6;
+  double position_gain_per_s = 1.2;     ///< gain from the position error to the speed
+  double yaw_gain_per_s = 1.5;          ///< gain from the yaw error to the yaw rate
+  double max_speed_mps = 0.25;          ///< maximum forward and backward speed
+  double max_lateral_speed_mps = 0.15;  ///< maximum lateral speed
+  double max_yaw_rate_radps = 0.6;      ///< maximum yaw rate
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -18,7 +18,7 @@ struct LocalPlannerSettings;
 std::span<const NamedFactory<std::unique_ptr<LocalPlanner>(const LocalPlannerSettings&)>> local_planners();
 
 struct LocalPlannerSettings {
-  std::string method = "dwa";  ///< or "dwa_liu21": as printed in [Liu21]
+  std::string method = "dwa";  ///< method of the local planner: "dwa", or "dwa_liu21" as printed in [Liu21]
   DwaSettings dwa;
   DwaLiu21Settings dwa_liu21;
 

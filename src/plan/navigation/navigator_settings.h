@@ -14,20 +14,21 @@
 namespace patrol::plan {
 
 struct NavigatorSettings {
-  std::string kinematics = "omnidirectional";  ///< or "differential": a robot that cannot move sideways
-  int footprint_rows = 1;                      ///< rows of discs that cover the outline (plan/perception/footprint.h)
-  double planner_cells_per_s = 1e7;            ///< cells expanded per second by the robot's computer; delays each path
-  double replan_period_s = 4.0;                ///< period of replanning after map changes
+  /// Motion that the robot can execute: "omnidirectional", or "differential" for a robot that cannot move sideways.
+  std::string kinematics = "omnidirectional";
+  int footprint_rows = 1;              ///< rows of discs that cover the outline (plan/perception/footprint.h)
+  double planner_cells_per_s = 1e7;    ///< cells expanded per second by the robot's computer; delays each path
+  double replan_period_s = 4.0;        ///< period of replanning after map changes
   double path_check_distance_m = 6.0;  ///< range of path checks; an obstacle on the path within it triggers replanning
   double max_path_deviation_m = 0.8;   ///< distance from the path that triggers replanning
   double goal_approach_distance_m = 0.4;    ///< distance from the goal at which the goal controller takes over
   double approach_deceleration_mps2 = 0.3;  ///< deceleration by which the speed falls toward the goal
   /// Path direction relative to the heading from which the robot turns in place.
   double turn_in_place_threshold_rad = 1.0;
-  double turn_in_place_rate_radps = 0.7;
-  double blocked_timeout_s = 6.0;       ///< time blocked before a recovery begins
-  double no_progress_timeout_s = 15.0;  ///< time within half a meter before a recovery begins
-  double new_obstacle_wait_s = 0.0;     ///< wait before replanning around a new obstacle, which may be a pedestrian
+  double turn_in_place_rate_radps = 0.7;  ///< yaw rate of a turn in place
+  double blocked_timeout_s = 6.0;         ///< time blocked before a recovery begins
+  double no_progress_timeout_s = 15.0;    ///< time within half a meter before a recovery begins
+  double new_obstacle_wait_s = 0.0;       ///< wait before replanning around a new obstacle, which may be a pedestrian
   /// Distance ahead within which an unmapped obstacle limits the speed; 0: never.
   double unmapped_obstacle_slowdown_distance_m = 0.0;
   double unmapped_obstacle_max_speed_mps = 0.4;  ///< limit before an unmapped obstacle, which may be a pedestrian

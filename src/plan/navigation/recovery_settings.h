@@ -8,10 +8,11 @@
 namespace patrol::plan {
 
 struct RecoverySettings {
-  std::vector<std::string> behaviors = {"back_up"};  ///< in order: wait, clear_costmap, back_up, spin
-  int max_attempts = 8;                              ///< recoveries without progress after which the goal is aborted
-  double back_up_duration_s = 2.0;                   ///< duration of backing up, if there is room
-  double back_up_speed_mps = 0.15;
+  /// Recovery behaviors in their order: wait, clear_costmap, back_up, spin.
+  std::vector<std::string> behaviors = {"back_up"};
+  int max_attempts = 8;             ///< recoveries without progress after which the goal is aborted
+  double back_up_duration_s = 2.0;  ///< duration of backing up, if there is room
+  double back_up_speed_mps = 0.15;  ///< speed of the behavior back_up
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -6,17 +6,17 @@
 namespace patrol::plan {
 
 struct CostmapSettings {
-  double resolution_m = 0.1;
-  double inflation_radius_m = 1.0;      ///< cells nearer to an obstacle than this have a cost; from the body's center
-  double inflation_decay_m = 0.25;      ///< decay length of the inflation cost (to 1/e)
-  double safety_margin_m = 0.05;        ///< minimum distance between obstacles and the robot's outline
-  double route_margin_m = 0.0;          ///< additional margin of global paths: for disc overhang and control error
-  double unknown_cost = 0.15;           ///< cost of an unobserved cell, as a fraction of the highest passable cost
-  bool allow_unknown = true;            ///< false: unknown cells are impassable, for a robot with a complete map
-  int occupied_percent = 65;            ///< minimum occupancy of an obstacle cell of the map, percent
-  double obstacle_range_m = 8.0;        ///< maximum range of lidar hits that become obstacles of the scan layer
+  double resolution_m = 0.1;        ///< side of a cell of the costmap
+  double inflation_radius_m = 1.0;  ///< distance of the body's center from an obstacle below which cells have a cost
+  double inflation_decay_m = 0.25;  ///< decay length of the inflation cost (to 1/e)
+  double safety_margin_m = 0.05;    ///< minimum distance between obstacles and the robot's outline
+  double route_margin_m = 0.0;      ///< additional margin of global paths: for disc overhang and control error
+  double unknown_cost = 0.15;       ///< cost of an unobserved cell, as a fraction of the highest passable cost
+  bool allow_unknown = true;        ///< passability of unknown cells; false for a robot with a complete map
+  int occupied_percent = 65;        ///< minimum occupancy of an obstacle cell of the map, percent
+  double obstacle_range_m = 8.0;    ///< maximum range of lidar hits that become obstacles of the scan layer
   double obstacle_persistence_s = 8.0;  ///< persistence of an obstacle of the scan layer that is not observed again
-  int map_match_tolerance_cells = 0;    ///< hits at most this far from a map obstacle belong to it (noise)
+  int map_match_tolerance_cells = 0;    ///< largest distance of a hit from a map obstacle to which it belongs (noise)
   double keep_out_margin_m = 0.2;       ///< minimum distance between a keep-out line and the body's origin
   double keep_out_inflation_m = 0.25;   ///< range beyond the margin within which a keep-out line has a cost
   LowObstaclesSettings low = {};

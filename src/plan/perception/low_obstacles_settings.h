@@ -9,8 +9,8 @@ struct LowObstaclesSettings {
   double dynamic_persistence_s = 3.0;  ///< persistence next to a lidar obstacle, which may be a pedestrian's legs
   double sonar_persistence_s = 15.0;   ///< persistence of an obstacle detected by sonar only
   double camera_clearing_s = 2.0;      ///< age up to which ground in an image overrules sonar echoes
-  int min_camera_points = 2;           ///< points of one image in one cell
-  int confirmations = 2;               ///< images or pings that make an obstacle
+  int min_camera_points = 2;           ///< minimum number of points of one image in one cell
+  int confirmations = 2;               ///< number of images or pings that make an obstacle
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

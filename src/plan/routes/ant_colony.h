@@ -12,15 +12,15 @@
 namespace patrol::plan {
 
 struct AntColonySettings {
-  int ants = 80;
-  int iterations = 200;
+  int ants = 80;             ///< number of ants per iteration
+  int iterations = 200;      ///< number of iterations
   double alpha = 1.0;        ///< exponent of the pheromone [Li22, eq. 10]
   double beta = 7.0;         ///< exponent of 1 / distance to the goal
   double evaporation = 0.1;  ///< fraction of the pheromone lost in an iteration, rho of eq. 11
   double deposit = 1.0;      ///< Q of eq. 13, relative to the straight-line cost; pheromone starts at 1
   double elite = 20.0;       ///< pheromone of the best route found until then, in ants per iteration; extension
   bool remove_loops = true;  ///< whether steps between neighboring cells of a route replace detours; extension
-  int threads = 0;           ///< 0: one per core; has no influence on the result
+  int threads = 0;           ///< number of threads; 0: one per core; no influence on the result
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -10,15 +10,15 @@
 namespace patrol::plan {
 
 struct DualSwarmPsoSettings {
-  int particles = 40;  ///< particles per swarm
-  int iterations = 200;
-  int via_points = 5;  ///< number of via points of a particle's route, in order
-  double exploring_inertia = 0.9;
-  double refining_inertia = 0.5;
-  double cognitive_weight = 1.5;  ///< cognitive weight c_1: toward the particle's own best
-  double social_weight = 1.5;     ///< social weight c_2: toward the swarm's best
-  double max_speed = 0.1;         ///< maximum change of a coordinate, as a fraction of the grid's longer side
-  int exchange_period = 10;       ///< iterations between exchanges: each swarm's best replaces the other's worst
+  int particles = 40;              ///< particles per swarm
+  int iterations = 200;            ///< number of iterations
+  int via_points = 5;              ///< number of via points of a particle's route, in order
+  double exploring_inertia = 0.9;  ///< inertia weight of the exploring swarm
+  double refining_inertia = 0.5;   ///< inertia weight of the refining swarm
+  double cognitive_weight = 1.5;   ///< cognitive weight c_1: toward the particle's own best
+  double social_weight = 1.5;      ///< social weight c_2: toward the swarm's best
+  double max_speed = 0.1;          ///< maximum change of a coordinate, as a fraction of the grid's longer side
+  int exchange_period = 10;        ///< iterations between exchanges: each swarm's best replaces the other's worst
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -20,7 +20,7 @@ struct GlobalPlannerSettings {
   RoutePlannerSettings family = {.max_steps_millions = 100, .cost_weight = 4.0};
   double goal_tolerance_m = 0.3;   ///< search radius for a free cell if the goal is blocked
   double start_tolerance_m = 0.6;  ///< search radius for a free cell if the start is blocked
-  double min_clearance_m = 0.3;    ///< smoothing keeps this clearance, or the route's if it is smaller
+  double min_clearance_m = 0.3;    ///< clearance that smoothing keeps, or the route's if it is smaller
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -9,9 +9,9 @@
 namespace patrol::plan {
 
 struct QLearningSettings {
-  int episodes = 5000;
-  double learning_rate = 1.0;       ///< alpha
-  double discount = 1.0;            ///< gamma
+  int episodes = 5000;              ///< number of episodes
+  double learning_rate = 1.0;       ///< learning rate, alpha
+  double discount = 1.0;            ///< discount factor of future rewards, gamma
   double exploration = 0.1;         ///< epsilon, probability of a random step; falls from this value to 0
   double max_steps_per_cell = 4.0;  ///< steps after which an episode ends, as a multiple of the number of cells
 

@@ -106,7 +106,7 @@ struct JointTolerances {
 
   double zero_offset_deg = 0.3;  ///< tolerance of the zero position of each joint
   double play_deg = 0.1;         ///< maximum total play between encoder and joint; the load decides the side. The play
-                                 ///< of each joint is uniform between half of it and all of it: gears of one type
+                                 ///< of each joint is uniform between half of it and all of it. Gears of one type
                                  ///< share their clearance by design, and wear and manufacturing add up to as much
                                  ///< again (assumption)
 
@@ -161,8 +161,9 @@ struct ImuTolerances {
   double accel_bias_std_mps2 = 0.194;   ///< turn-on bias: with the 0.03 of sensors.imu, bias repeatability of 20 mg
   double scale_std = 0.0049;            ///< scale of each axis: with the 0.001 of sensors.imu, sensitivity
                                         ///< repeatability of 1 %, read as two standard deviations
-  double misalignment_std_deg = 0.025;  ///< between axes: 0.05 deg, read as two standard deviations; the alignment
-                                        ///< with the frame is part of the mounting
+  /// Standard deviation of the misalignment between axes: 0.05 deg, read as two standard deviations; the alignment with
+  /// the frame is part of the mounting.
+  double misalignment_std_deg = 0.025;
   double g_sensitivity_std_radps_per_mps2 = 2.67e-5;  ///< linear acceleration effect on the gyro bias: 0.015 deg/s/g
   double warming_k = 10.0;                    ///< rise of the sensor's temperature above that at power-up (assumption)
   double warming_time_s = 300.0;              ///< time constant of the warming (assumption)
@@ -237,7 +238,7 @@ struct PlacementTolerances {
 
 /// Section `as_built` of a scenario, where it is enabled by default.
 struct AsBuiltSettings {
-  bool enabled = false;  ///< false: the robot is nominal
+  bool enabled = false;  ///< presence of tolerances; false: the robot is nominal
   MountingTolerances mounting;
   ClockTolerances clock;
   LidarTolerances lidar;

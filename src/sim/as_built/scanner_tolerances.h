@@ -15,18 +15,21 @@ namespace patrol::sim {
 struct ScannerTolerances {
   static constexpr const char* kSource = "FARO Focus S 70 technical sheet: 19 arc seconds, 1 mm; split: assumption";
 
-  double angle_noise_ratio = 0.775;          ///< noise of the angles relative to that of sensors.scanner
-  double range_offset_ratio = 0.84;          ///< range offset of a scan relative to that of sensors.scanner
-  double collimation_std_arcsec = 8.0;       ///< line of sight not perpendicular to the horizontal axis
-  double trunnion_std_arcsec = 8.0;          ///< horizontal axis not perpendicular to the vertical axis
-  double vertical_index_std_arcsec = 8.0;    ///< zero of the vertical encoder
-  double eccentricity_std_arcsec = 8.0;      ///< each of the sine and cosine terms of both encoders
-  double encoder_harmonic_std_arcsec = 4.0;  ///< each of the second-order terms of both encoders
+  double angle_noise_ratio = 0.775;  ///< noise of the angles relative to that of sensors.scanner
+  double range_offset_ratio = 0.84;  ///< range offset of a scan relative to that of sensors.scanner
+  /// Standard deviation of the angle between the line of sight and the normal of the horizontal axis.
+  double collimation_std_arcsec = 8.0;
+  /// Standard deviation of the angle between the horizontal axis and the normal of the vertical axis.
+  double trunnion_std_arcsec = 8.0;
+  double vertical_index_std_arcsec = 8.0;  ///< standard deviation of the zero of the vertical encoder
+  double eccentricity_std_arcsec = 8.0;    ///< standard deviation of each of the sine and cosine terms of both encoders
+  double encoder_harmonic_std_arcsec = 4.0;  ///< standard deviation of each of the second-order terms of both encoders
   double beam_offset_std_m = 0.0001;         ///< distance of the beam from the center of rotation, horizontal and
                                              ///< vertical
   double range_scale_std = 1e-5;             ///< relative range error
-  double cyclic_range_std_m = 0.0002;        ///< each of the sine and cosine terms of the phase measurement
-  double cyclic_wavelength_m = 0.6;          ///< half of the shortest modulation wavelength, 1.2 m
+  /// Standard deviation of each of the sine and cosine terms of the phase measurement.
+  double cyclic_range_std_m = 0.0002;
+  double cyclic_wavelength_m = 0.6;  ///< half of the shortest modulation wavelength, 1.2 m
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -16,17 +16,19 @@ namespace patrol::sim {
 
 /// Settings of the walking firmware.
 struct LocomotionSettings {
-  double gait_period_s = 0.36;
-  double gait_duty = 0.6;
-  double trunk_height_m = 0.30;     ///< height of the trunk above the feet
-  double swing_clearance_m = 0.09;  ///< clearance of a swing foot above the higher end of its trajectory
-  double max_forward_mps = 1.0;
-  double max_backward_mps = 0.3;
-  double max_sideways_mps = 0.3;
-  double max_yaw_rate_radps = 1.0;
-  double max_acceleration_mps2 = 0.8;
-  double max_yaw_acceleration_radps2 = 2.0;
-  double slope_following = 0.6;  ///< 0 keeps the trunk level on a slope, 1 parallel to the ground
+  double gait_period_s = 0.36;               ///< duration of a gait cycle
+  double gait_duty = 0.6;                    ///< fraction of the gait cycle in which a foot is on the ground
+  double trunk_height_m = 0.30;              ///< height of the trunk above the feet
+  double swing_clearance_m = 0.09;           ///< clearance of a swing foot above the higher end of its trajectory
+  double max_forward_mps = 1.0;              ///< maximum forward speed
+  double max_backward_mps = 0.3;             ///< maximum backward speed
+  double max_sideways_mps = 0.3;             ///< maximum lateral speed
+  double max_yaw_rate_radps = 1.0;           ///< maximum yaw rate
+  double max_acceleration_mps2 = 0.8;        ///< maximum acceleration of the commanded velocity
+  double max_yaw_acceleration_radps2 = 2.0;  ///< maximum acceleration of the commanded yaw rate
+  /// Fraction of the slope of the ground that the trunk follows: 0 keeps the trunk level on a slope, 1 parallel to the
+  /// ground.
+  double slope_following = 0.6;
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

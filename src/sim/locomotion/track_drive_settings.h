@@ -6,26 +6,26 @@ namespace patrol::sim {
 
 /// Settings of the tracks, their motors and their firmware.
 struct TrackDriveSettings {
-  double friction = 0.8;       ///< friction coefficient of the rubber on ground that does not define
-                               ///< its own
-  double max_speed_mps = 1.0;  ///< speed limit of each track and of the robot
-  double max_yaw_rate_radps = 0.8;
-  double max_acceleration_mps2 = 0.8;
-  double max_yaw_acceleration_radps2 = 1.5;
-  double effective_gauge_factor = 1.41;  ///< gauge in the firmware's kinematics relative to the geometric one;
-                                         ///< above 1 because of track slip in turns
-  bool use_gyro = true;                  ///< true: the gyroscope corrects the yaw rate
-  double gyro_gain = 0.3;                ///< yaw rate correction per rad/s of yaw rate error
-  double gyro_integral_per_s = 2.0;      ///< yaw rate correction per rad of heading error
-  double max_gyro_correction_radps = 0.4;
-  double kp_nms = 8.0;                      ///< torque per rad/s of speed error
-  double ki_nm = 40.0;                      ///< torque per rad of lag angle
-  double kd_nms2 = 0.02;                    ///< torque per rad/s2 of acceleration error
-  double observer_bandwidth_radps = 100.0;  ///< bandwidth of the speed observer on the Hall counts
-  double stall_torque_nm = 120.0;           ///< stall torque of the motor at the sprocket, without its current
-                                            ///< limit
-  double brake_torque_nm = 60.0;            ///< torque of the parking brake on each sprocket
-  double brake_delay_s = 0.5;               ///< time at rest without command before the brake closes
+  double friction = 0.8;                     ///< friction coefficient of the rubber on ground that does not define
+                                             ///< its own
+  double max_speed_mps = 1.0;                ///< speed limit of each track and of the robot
+  double max_yaw_rate_radps = 0.8;           ///< maximum yaw rate
+  double max_acceleration_mps2 = 0.8;        ///< maximum acceleration of the commanded velocity
+  double max_yaw_acceleration_radps2 = 1.5;  ///< maximum acceleration of the commanded yaw rate
+  double effective_gauge_factor = 1.41;      ///< gauge in the firmware's kinematics relative to the geometric one;
+                                             ///< above 1 because of track slip in turns
+  bool use_gyro = true;                      ///< use of the gyroscope to correct the yaw rate
+  double gyro_gain = 0.3;                    ///< yaw rate correction per rad/s of yaw rate error
+  double gyro_integral_per_s = 2.0;          ///< yaw rate correction per rad of heading error
+  double max_gyro_correction_radps = 0.4;    ///< maximum correction of the yaw rate by the gyro
+  double kp_nms = 8.0;                       ///< torque per rad/s of speed error
+  double ki_nm = 40.0;                       ///< torque per rad of lag angle
+  double kd_nms2 = 0.02;                     ///< torque per rad/s2 of acceleration error
+  double observer_bandwidth_radps = 100.0;   ///< bandwidth of the speed observer on the Hall counts
+  double stall_torque_nm = 120.0;            ///< stall torque of the motor at the sprocket, without its current
+                                             ///< limit
+  double brake_torque_nm = 60.0;             ///< torque of the parking brake on each sprocket
+  double brake_delay_s = 0.5;                ///< time at rest without command before the brake closes
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -12,12 +12,12 @@ namespace patrol::sim {
 
 /// Temporary fault of a sensor.
 struct FaultSettings {
-  std::string sensor = "lidar";
-  std::string kind = "dropout";
-  double start_s = 0.0;
-  double duration_s = 1.0;
-  /// Magnitude of the fault. delay: s; jitter: standard deviation of a random delay per message, s; clock_offset: s
-  /// added to the stamps; drift: units of the sensor per s; outliers: units of the sensor; dropout, freeze: unused.
+  std::string sensor = "lidar";  ///< name of the sensor
+  std::string kind = "dropout";  ///< kind of the fault (`patrol list sensor_faults`)
+  double start_s = 0.0;          ///< time of the start of the fault
+  double duration_s = 1.0;       ///< duration of the fault
+  /// Magnitude of the fault. For a delay in s; for jitter the standard deviation of a random delay per message in s;
+  /// for a clock offset in s. For a drift in units of the sensor per s; for outliers in units of the sensor.
   double magnitude = 1.0;
 
   template <typename Self, typename Visitor>

@@ -20,7 +20,7 @@ namespace patrol::slam {
 /// reports. On a tracked vehicle, which turns about its instantaneous center of rotation, that point differs slightly
 /// from the body origin.
 struct Calibration {
-  bool override_lidar_pose = false;  ///< true: the following lidar pose replaces that of the log
+  bool override_lidar_pose = false;  ///< use of the following lidar pose in place of that of the log
   double lidar_x_m = 0.0;            ///< lidar pose in body
   double lidar_y_m = 0.0;
   double lidar_yaw_rad = 0.0;

@@ -29,8 +29,8 @@ struct MotionSegment {
 };
 
 struct MotionSegmentSettings {
-  double length_m = 0.5;       ///< a segment ends when lidar or odometry has moved by this distance
-  double rotation_rad = 0.35;  ///< or rotated by this angle
+  double length_m = 0.5;       ///< distance by lidar or odometry after which a segment ends
+  double rotation_rad = 0.35;  ///< rotation by lidar or odometry after which a segment ends
   /// Standard deviation of the systematic error of a match, independent of the number of points.
   double match_std_m = 0.002;
   double match_std_rad = 0.0005;

@@ -12,9 +12,9 @@ namespace patrol::slam {
 struct GraphSlamSettings {
   ScanTrackerSettings scan_odometry;
   // Odometry drift between consecutive submaps, for the prediction of loop closures.
-  double drift_std_m_per_m = 0.02;
-  double drift_std_rad_per_m = 0.004;
-  double drift_std_rad_per_rad = 0.01;
+  double drift_std_m_per_m = 0.02;      ///< drift of the position over the distance between submaps
+  double drift_std_rad_per_m = 0.004;   ///< drift of the yaw over the distance between submaps
+  double drift_std_rad_per_rad = 0.01;  ///< drift of the yaw over the rotation between submaps
   int max_loop_candidates = 4;  ///< maximum number of older submaps that each new one is matched with, nearest first
   /// Maximum distance between the mean positions of two submaps, plus two standard deviations.
   double max_loop_distance_m = 10.0;
@@ -22,28 +22,31 @@ struct GraphSlamSettings {
   PoseGraphSolverSettings solver;
   /// Standard deviation of the systematic error of a match, independent of the number of points.
   double edge_std_m = 0.01;
+  /// Standard deviation of the systematic yaw error of a match, independent of the number of points.
   double edge_std_rad = 0.001;
   double min_eigenvalue_ratio =
-      0.02;  ///< a direction is degenerate if its information is below this fraction of the largest
+      0.02;  ///< information along a direction, relative to the largest, below which the direction is degenerate
   /// Final optimization: number of passes that match every keyframe with the submaps around it.
   int refinement_iterations = 2;
   int max_refinement_submaps = 3;            ///< maximum number of submaps matched with each keyframe
   double min_refinement_inlier_ratio = 0.6;  ///< minimum inlier ratio of a keyframe in a submap
-  double max_refinement_m = 0.3;             ///< matches that move a keyframe farther are rejected
-  double max_refinement_rad = 0.1;
-  int cached_submaps = 16;  ///< maximum number of rendered submaps in the cache
-  int min_hits_occupied = 2;
+  double max_refinement_m = 0.3;  ///< largest displacement of a keyframe by an accepted match of the final optimization
+  double max_refinement_rad = 0.1;  ///< largest rotation of a keyframe by an accepted match of the final optimization
+  int cached_submaps = 16;          ///< maximum number of rendered submaps in the cache
+  int min_hits_occupied = 2;        ///< minimum number of hits of an occupied cell of the published map
+  /// Minimum ratio of hits to hits plus passes of an occupied cell of the published map.
   double min_occupied_hit_ratio = 0.3;
   // Online only.
-  double max_tilt_rad = 1.6;  ///< scans tilted by more are not used, for example on a ramp between inclined walls
+  double max_tilt_rad = 1.6;  ///< tilt above which scans are not used, for example on a ramp between inclined walls
   double map_update_threshold_m =
-      0.03;  ///< the map is rendered again if a keyframe or its view at 10 m has moved by more
+      0.03;  ///< displacement of a keyframe, or of its view at 10 m, above which the map is rendered again
   /// Standard deviation of the position of submaps that ranges or positions constrain, which limits the search for loop
   /// closures: in a tunnel, one ring resembles the next.
   double surveyed_submap_std_m = 0.3;
   RangeUpdateSettings ranges;
   PositionFactorsSettings positions;
-  int range_smoothing_period_keyframes = 4;  ///< run the fixed-lag smoothing with UWB ranges every N keyframes
+  /// Number of keyframes from one fixed-lag smoothing with UWB ranges to the next.
+  int range_smoothing_period_keyframes = 4;
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

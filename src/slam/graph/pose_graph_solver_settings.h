@@ -5,8 +5,8 @@
 namespace patrol::slam {
 
 struct PoseGraphSolverSettings {
-  int max_iterations = 50;
-  bool robust_loop_closures = true;
+  int max_iterations = 50;           ///< maximum number of iterations of the optimization
+  bool robust_loop_closures = true;  ///< use of a robust loss on edges that are not odometry
   /// Scale of the Cauchy kernel, in standard deviations; used for loop closures if robust_loop_closures, and always for
   /// ranges.
   double loop_closure_loss_scale = 3.0;

@@ -6,7 +6,7 @@ namespace patrol::slam {
 
 /// Settings of the position factors of a pose graph.
 struct PositionFactorsSettings {
-  bool enabled = true;
+  bool enabled = true;                  ///< use of position measurements in the pose graph
   double survey_position_std_m = 0.02;  ///< standard deviation of the position of survey in map before the first factor
   double survey_yaw_std_rad = 0.01;     ///< standard deviation of the yaw of survey in map before the first factor
   double min_interval_s = 1.0;          ///< minimum time between two positions

@@ -8,25 +8,27 @@
 namespace patrol::slam {
 
 struct ScanTrackerSettings {
-  double resolution_m = 0.05;
-  double max_extent_m = 4000.0;  ///< side of the mapped square around the start
-  double keyframe_distance_m = 0.25;
-  double keyframe_angle_rad = 0.15;
-  int min_hits = 60;           ///< a keyframe with fewer returns also contains the scans since the last one
-  int initial_keyframes = 10;  ///< the first N scans are all keyframes
+  double resolution_m = 0.05;         ///< side of a cell of the tracker's maps
+  double max_extent_m = 4000.0;       ///< side of the mapped square around the start
+  double keyframe_distance_m = 0.25;  ///< distance after which a new keyframe begins
+  double keyframe_angle_rad = 0.15;   ///< rotation after which a new keyframe begins
+  int min_hits = 60;           ///< number of returns below which a keyframe also contains the scans since the last one
+  int initial_keyframes = 10;  ///< number of scans from the first on that are all keyframes
   int submap_keyframes = 60;   ///< number of keyframes per map; consecutive maps overlap by half
   /// Tempering factor: fraction of the points with independent errors. It is larger for scans of few, distant points.
   double likelihood_tempering = 0.2;
   /// Fastest motion of the robot, which limits the search for a scan that the odometry prediction does not match.
   double max_speed_mps = 1.5;
+  /// Fastest rotation of the robot, which limits the search for a scan that the odometry prediction does not match.
   double max_turn_rate_radps = 2.0;
+  /// Uncertainty of the motion between scans; the defaults suit uncalibrated wheel odometry.
   MotionModelSettings motion{.longitudinal_std_m_per_m = 0.05,
                              .lateral_std_m_per_m = 0.03,
                              .yaw_std_rad_per_rad = 0.1,
                              .yaw_std_rad_per_m = 0.03,
                              .yaw_std_rad_per_s = 0.003,
                              .min_std_m = 0.005,
-                             .min_std_rad = 0.005};  ///< for uncalibrated wheel odometry
+                             .min_std_rad = 0.005};
   ScanMatcherSettings matching;
   ScanIntegrationSettings integration;
 

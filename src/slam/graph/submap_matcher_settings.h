@@ -7,19 +7,19 @@ namespace patrol::slam {
 struct SubmapMatcherSettings {
   double min_search_score = 0.35;  ///< minimum mean likelihood of the points in the search
   double max_window_m = 15.0;      ///< maximum half width of the search window
-  double max_window_rad = 0.8;
-  int search_points = 300;
+  double max_window_rad = 0.8;     ///< maximum half width of the search window in yaw
+  int search_points = 300;         ///< number of points of the search
   /// Minimum overlap ratio: points in observed cells of the other map, in both directions.
   double min_overlap_ratio = 0.35;
   /// Minimum inlier ratio: points in the overlap that lie on a surface of the other map, in both directions.
   double min_inlier_ratio = 0.75;
   double min_matched_length_m = 8.0;  ///< minimum length of matched surface
-  /// The match is rejected if a distinct pose scores more than this fraction of the best score.
+  /// Largest score of a distinct pose, relative to the best score, of an accepted match.
   double max_second_best_ratio = 0.9;
-  /// The match is rejected if a distinct pose would be accepted with more than this fraction of its inlier ratio.
+  /// Largest inlier ratio of a distinct acceptable pose, relative to that of the match, of an accepted match.
   double max_second_best_inlier_fraction = 0.95;
-  double min_second_best_distance_m = 0.8;  ///< poses at least this far from the best are distinct
-  double min_second_best_angle_rad = 0.35;
+  double min_second_best_distance_m = 0.8;  ///< distance from the best pose at which another pose is distinct
+  double min_second_best_angle_rad = 0.35;  ///< rotation from the best pose at which another pose is distinct
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

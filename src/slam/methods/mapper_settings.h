@@ -29,7 +29,7 @@ std::span<const MappingMethod> mapping_methods();
 
 /// Settings of all SLAM methods and the selected one.
 struct MapperSettings {
-  std::string method = "graph";
+  std::string method = "graph";  ///< SLAM method (`patrol list`)
   GraphSlamSettings graph;
   ScanOdometryRbpfSettings rbpf;
   SubmapRbpfSettings submap_rbpf;

@@ -13,24 +13,28 @@ namespace patrol::slam {
 
 struct GridSlamSettings {
   // Map representation.
-  double resolution_m = 0.05;
+  double resolution_m = 0.05;   ///< side of a cell of the map
   double max_extent_m = 400.0;  ///< side of the mapped square around the origin
-  int min_hits_occupied = 2;    ///< published map only: cells with fewer hits are treated as outliers
-  /// Published map only: minimum ratio of hits to hits plus passes; below it the cell was occupied by a moving object.
+  /// Minimum number of hits of an occupied cell of the published map; cells with fewer are outliers.
+  int min_hits_occupied = 2;
+  /// Minimum ratio of hits to hits plus passes of an occupied cell of the published map; below it the cell was occupied
+  /// by a moving object.
   double min_occupied_hit_ratio = 0.5;
   // Map updates.
-  double keyframe_distance_m = 0.5;
-  double keyframe_angle_rad = 0.12;
-  /// Scans tilted by more are neither matched nor integrated, for example on a ramp between inclined walls.
+  double keyframe_distance_m = 0.5;  ///< distance after which a new keyframe begins
+  double keyframe_angle_rad = 0.12;  ///< rotation after which a new keyframe begins
+  /// Tilt above which scans are neither matched nor integrated, for example on a ramp between inclined walls.
   double max_tilt_rad = 1.6;
-  int initial_keyframes = 25;  ///< the first N scans are all keyframes, because the map heading depends on them
+  /// Number of scans from the first on that are all keyframes, because the map heading depends on them.
+  int initial_keyframes = 25;
   // Filter; the cost is proportional to the number of particles.
-  int particles = 8;
+  int particles = 8;                  ///< number of particles
   double likelihood_tempering = 0.2;  ///< tempering factor: fraction of the points with independent errors (proposal.h)
-  std::string proposal = "scan_match";  ///< scan_match; or motion: sample from odometry only, as in FastSLAM
+  /// Proposal of the filter: scan_match, or motion, which samples from odometry only, as in FastSLAM.
+  std::string proposal = "scan_match";
   /// Optimizer applied to the odometry samples, with the resampler of its source; only with `proposal: motion`.
   std::string optimizer = "none";
-  /// Resample if the effective sample size is below this fraction of the number of particles.
+  /// Effective sample size, relative to the number of particles, below which the filter resamples.
   double resample_threshold = 0.5;
   MotionModelSettings motion;
   RangeUpdateSettings ranges;

@@ -12,7 +12,7 @@ struct NdtSettings {
   double min_std_per_cell = 0.15;
   int max_points = 800;     ///< maximum number of source points; a regular subset of more points is used
   int max_iterations = 60;  ///< maximum number of iterations per level
-  /// Convergence of a level: displacement by a step at 10 m from the origin, relative to the cell size.
+  /// Displacement by a step at 10 m from the origin, relative to the cell size, below which a level has converged.
   double step_tolerance_per_cell = 5e-4;
 
   template <typename Self, typename Visitor>

@@ -5,17 +5,16 @@
 namespace patrol::slam {
 
 struct SubmapConstraintSettings {
-  double min_margin = 0.2;  ///< minimum classifier margin (-1 ... 1) of neighbors
-  /// The match is rejected if fine matching moves a submap farther from the coarse pose.
-  double max_fine_shift_m = 0.5;
-  double max_fine_shift_rad = 0.1;
+  double min_margin = 0.2;          ///< minimum classifier margin (-1 ... 1) of neighbors
+  double max_fine_shift_m = 0.5;    ///< largest displacement of a submap from its coarse pose by an accepted fine match
+  double max_fine_shift_rad = 0.1;  ///< largest rotation of a submap from its coarse pose by an accepted fine match
   double min_overlap_consistency = 0.6;  ///< minimum inlier ratio (mutual_overlap_consistency)
-  double max_window_m = 15.0;  ///< maximum half width of the search for a second-best match around the prediction
-  double max_window_rad = 0.8;
+  double max_window_m = 15.0;   ///< maximum half width of the search for a second-best match around the prediction
+  double max_window_rad = 0.8;  ///< maximum half width in yaw of the search for a second-best match
   double max_second_best_ratio =
-      0.9;  ///< the match is rejected if a distinct pose scores more than this fraction of its score
-  double min_second_best_distance_m = 0.8;  ///< poses at least this far from the match are distinct
-  double min_second_best_angle_rad = 0.35;
+      0.9;  ///< largest score of a distinct pose, relative to that of the match, of an accepted match
+  double min_second_best_distance_m = 0.8;  ///< distance from the match at which another pose is distinct
+  double min_second_best_angle_rad = 0.35;  ///< rotation from the match at which another pose is distinct
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

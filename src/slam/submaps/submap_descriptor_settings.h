@@ -6,12 +6,12 @@
 namespace patrol::slam {
 
 struct SubmapDescriptorSettings {
-  int max_points = 300;          ///< maximum number of compared points; a regular subset of larger submaps is used
-  double normal_radius_m = 0.4;  ///< radius of the neighborhood whose principal axis is the direction of the wall
-  double distance_bin_m = 1.0;   ///< bin width of the histogram of distances between points
-  int distance_bins = 40;        ///< number of distance bins; the last one includes all larger distances
-  int direction_bins = 36;       ///< number of direction bins over half a turn
-  double observed_cell_m = 0.25;
+  int max_points = 300;           ///< maximum number of compared points; a regular subset of larger submaps is used
+  double normal_radius_m = 0.4;   ///< radius of the neighborhood whose principal axis is the direction of the wall
+  double distance_bin_m = 1.0;    ///< bin width of the histogram of distances between points
+  int distance_bins = 40;         ///< number of distance bins; the last one includes all larger distances
+  int direction_bins = 36;        ///< number of direction bins over half a turn
+  double observed_cell_m = 0.25;  ///< side of a cell of the grid of observed space
   NdtSettings ndt;
 
   template <typename Self, typename Visitor>

@@ -15,17 +15,19 @@ struct SubmapRbpfSettings {
   SubmapSurfaceSettings surfaces;
   SubmapConstraintSettings constraints;
   // Odometry drift over a submap, for the prediction of loop closures.
-  double drift_std_m_per_m = 0.003;
-  double drift_std_rad_per_m = 0.0005;
-  double drift_std_rad_per_rad = 0.005;
-  int max_candidates = 8;             ///< maximum number of older submaps compared with each new one, nearest first
-  double likelihood_tempering = 0.2;  ///< tempering factor: fraction of the matched points with independent errors
+  double drift_std_m_per_m = 0.003;      ///< drift of the position over a submap, per distance
+  double drift_std_rad_per_m = 0.0005;   ///< drift of the yaw over a submap, per distance
+  double drift_std_rad_per_rad = 0.005;  ///< drift of the yaw over a submap, per rotation
+  int max_candidates = 8;                ///< maximum number of older submaps compared with each new one, nearest first
+  double likelihood_tempering = 0.2;     ///< tempering factor: fraction of the matched points with independent errors
   /// Standard deviation of the systematic error of a match, independent of the number of points.
   double constraint_std_m = 0.02;
+  /// Standard deviation of the systematic yaw error of a match, independent of the number of points.
   double constraint_std_rad = 0.002;
-  /// Narrow kernel: each submap has many constraints, of which only a few need to be inliers.
+  /// Optimization with a narrow kernel: each submap has many constraints, of which only a few need to be inliers.
   PoseGraphSolverSettings solver = {.max_iterations = 50, .robust_loop_closures = true, .loop_closure_loss_scale = 0.3};
-  int min_hits_occupied = 2;
+  int min_hits_occupied = 2;  ///< minimum number of hits of an occupied cell of the published map
+  /// Minimum ratio of hits to hits plus passes of an occupied cell of the published map.
   double min_occupied_hit_ratio = 0.3;
 
   template <typename Self, typename Visitor>

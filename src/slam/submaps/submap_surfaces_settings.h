@@ -11,7 +11,7 @@ struct SubmapSurfaceSettings {
   SubmapDescriptorSettings descriptor;
   IcpSettings icp;
   double free_space_radius_m = 0.2;  ///< radius of the free cells that determine the free-space normal of a point
-  double pyramid_cell_m = 0.1;
+  double pyramid_cell_m = 0.1;       ///< side of a cell of the finest level of the pyramid
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -7,18 +7,18 @@
 namespace patrol::stack {
 
 struct GasMissionSettings {
-  std::string station_order = "given";  ///< "given" or "optimized": earliest completion subject to priorities
-                                        ///< and time windows
+  /// Order of the stations: "given", or "optimized" for the earliest completion subject to priorities and time windows.
+  std::string station_order = "given";
   double expected_speed_mps = 0.7;      ///< travel speed assumed for the order
   double init_wait_s = 4.0;             ///< initial standing time, for sensors to settle and biases to be estimated
   double settling_time_s = 0.5;         ///< settling time after arrival, before readings are used
   double measurement_duration_s = 3.0;  ///< duration of the readings at each station
   double measurement_timeout_s = 8.0;   ///< timeout; a station without enough readings by then is "not measured"
-  int min_readings = 10;
-  double alarm_column_ppm_m = 200.0;   ///< alarm threshold, equal to the column over approximately a hundred meters of
-                                       ///< clean air
-  double position_tolerance_m = 0.08;  ///< tolerance at a station; the route's own accuracy applies if tighter
-  double yaw_tolerance_rad = 0.06;
+  int min_readings = 10;                ///< minimum number of gas readings of a measurement
+  double alarm_column_ppm_m = 200.0;    ///< alarm threshold, equal to the column over approximately a hundred meters of
+                                        ///< clean air
+  double position_tolerance_m = 0.08;   ///< tolerance at a station; the route's own accuracy applies if tighter
+  double yaw_tolerance_rad = 0.06;      ///< maximum heading error of the robot at a station
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -9,17 +9,19 @@
 namespace patrol::stack {
 
 struct TunnelMissionSettings {
-  int num_runs = 10;               ///< number of runs to all goals, each after a restart of the localization
-  bool start_docked = true;        ///< false: the initial pose is unknown, and the robot localizes globally
-  bool start_at_survey = false;    ///< true: a robot without a post starts at the surveyed start, localizes from there,
-                                   ///< and continues between runs without a restart
-  bool dock_after_run = true;      ///< true: dock after the mapping drive and after each run
+  int num_runs = 10;  ///< number of runs to all goals, each after a restart of the localization
+  /// Whether the robot starts at its post; false: the initial pose is unknown, and the robot localizes globally.
+  bool start_docked = true;
+  /// Whether a robot without a post starts at the surveyed start, localizes from there, and continues between runs
+  /// without a restart.
+  bool start_at_survey = false;
+  bool dock_after_run = true;      ///< whether the robot docks after the mapping drive and after each run
   double init_wait_s = 4.0;        ///< initial standing time, for sensors to settle and biases to be estimated
   double first_scan_wait_s = 1.5;  ///< minimum of the initial standing time after the first step; the map's first scan
                                    ///< is taken at rest
   double dwell_s = 1.0;            ///< standing time at a goal before it is reported
-  double position_tolerance_m = 0.03;  ///< tolerance at a goal; the goal's own accuracy applies if tighter
-  double yaw_tolerance_rad = 0.017;
+  double position_tolerance_m = 0.03;      ///< tolerance at a goal; the goal's own accuracy applies if tighter
+  double yaw_tolerance_rad = 0.017;        ///< maximum heading error of the robot at a goal
   double teleop_timeout_s = 2.0;           ///< timeout after which the teleoperation counts as switched off
   double relocalization_timeout_s = 30.0;  ///< relocalization timeout; the robot stands still meanwhile
   std::string goal_types = {};  ///< types of the goals saved on the mapping drive, in order (core/route.h); N for the

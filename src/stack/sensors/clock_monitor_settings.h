@@ -6,15 +6,16 @@ namespace patrol::stack {
 
 /// Settings of the clock monitor, for the estimated time offset of the lidar.
 struct ClockMonitorSettings {
-  double max_offset_s = 0.005;  ///< a larger offset is reported
+  double max_offset_s = 0.005;  ///< offset above which the monitor reports it
   /// Mean lag of odometry behind its own stamps, which makes the lidar appear early: 1.0 and 1.1 ms for a nominal robot
   /// (two seeds). Probable cause, not tested: the rate of the simulated IMU is half a step of 2 ms old.
   double odometry_lag_s = 0.001;
-  double sigma = 3.0;  ///< an offset exceeds a limit by at least this many standard deviations of its noise
-  /// A larger offset cannot be corrected: the robot stops. Two clocks of 20 ppm reach 0.144 s in an hour.
+  double sigma = 3.0;  ///< number of standard deviations by which an offset exceeds a limit before it is reported
+  /// Largest offset that the stack corrects; at a larger one the robot stops: two clocks of 20 ppm reach 0.144 s in an
+  /// hour.
   double max_corrected_offset_s = 0.15;
-  int max_steps = 2;  ///< more steps of the offset within `step_window_s` stop the robot
-  double step_window_s = 60.0;
+  int max_steps = 2;            ///< number of steps of the offset within `step_window_s` above which the robot stops
+  double step_window_s = 60.0;  ///< time in which steps of the offset are counted
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

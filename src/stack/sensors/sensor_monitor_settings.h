@@ -11,11 +11,12 @@ struct SensorMonitorSettings {
   double lidar_timeout_s = 0.6;  ///< age limit of sensors with SensorTimeout::kLidar (core/sensors/registry.h)
   double proprioception_timeout_s = 0.15;  ///< age limit of sensors with SensorTimeout::kMotion
   double instrument_timeout_s = 5.0;       ///< age limit of sensors with SensorTimeout::kInstrument
-  double max_clock_lead_s = 0.05;          ///< a stamp further ahead of now indicates a clock error
-  /// Relative rate error of a clock up to which stamps may drift from now without indicating an error: quartz
+  double max_clock_lead_s = 0.05;          ///< lead of a stamp over the present time above which the clock is wrong
+  /// Relative rate error of a clock up to which stamps may drift from the present time without an error: quartz
   /// oscillator.
   double max_clock_drift = 1e-4;
-  double frozen_path_m = 0.1;  ///< travel or rotation of the robot during which the readings are bitwise identical
+  double frozen_path_m = 0.1;  ///< distance traveled during which the readings of a frozen sensor are bitwise identical
+  /// Rotation of the robot during which the readings of a frozen sensor are bitwise identical.
   double frozen_turn_rad = 0.1;
   int frozen_repeats = 3;         ///< minimum number of repeated readings
   double abort_timeout_s = 60.0;  ///< time unable to drive after which the mission is aborted

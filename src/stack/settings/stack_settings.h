@@ -35,9 +35,10 @@ slam::MapperSettings default_slam_settings();
 /// it is composed of.
 struct StackSettings {
   std::string odometry_source = "legged";  ///< odometry source: legged or tracked
-  std::string localizer = "automatic";     ///< automatic, slam, monte_carlo or slam_then_monte_carlo
-                                           ///< (stack/localization/make_localizer.h)
-  std::string mission_type = "gas";        ///< gas: stations of a route; tunnel: saved goals, docking, instruments
+  /// Localizer: automatic, slam, monte_carlo or slam_then_monte_carlo (stack/localization/make_localizer.h).
+  std::string localizer = "automatic";
+  /// Type of the mission: gas for the stations of a route; tunnel for saved goals, docking and instruments.
+  std::string mission_type = "gas";
   /// Time from the start of odometry to the first scan, which defines the map's origin.
   double odometry_settling_time_s = 1.0;
   OdometrySettings odometry;

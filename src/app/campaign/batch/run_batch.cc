@@ -1,7 +1,5 @@
 #include "app/campaign/batch/run_batch.h"
 
-#include <chrono>
-#include <cmath>
 #include <csignal>
 #include <cstring>
 #include <set>
@@ -113,12 +111,8 @@ class Batch {
   }
 
   void show() {
-    const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
-    const double left_s =
-        num_done_ == 0 ? 0.0
-                       : elapsed_s / static_cast<double>(num_done_) * static_cast<double>(runs_.size() - num_done_);
-    bar_.show(fmt::format("{} of {} runs, {} failed{}", num_done_, runs_.size(), num_failed_,
-                          num_done_ == 0 ? "" : fmt::format(", about {:.0f} min left", std::ceil(left_s / 60.0))));
+    bar_.show(fmt::format("{} of {} runs, {} failed", num_done_, runs_.size(), num_failed_),
+              static_cast<double>(num_done_) / static_cast<double>(runs_.size()));
   }
 
   const std::vector<BatchRun>& runs_;
@@ -128,7 +122,6 @@ class Batch {
   std::vector<std::size_t> pending_;
   std::set<std::size_t> killed_once_;
   std::size_t num_done_ = 0, num_failed_ = 0;
-  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   ProgressBar bar_;
   InterruptGuard interrupt_;
 };

@@ -81,8 +81,10 @@ std::string faults_summary(const std::vector<FaultRow>& rows) {
 }
 
 std::string fault_legend() {
-  return "Survived: mission completed without fall or collision, every expectation met, among them bounds of the "
-         "position error at every instant, of the map's coverage and, on a given map, of the time reported lost. "
+  return "Survived: mission completed without fall or collision, every expectation met. Among the "
+         "expectations are bounds of the position error at every instant, of the map's coverage and, on a given map, "
+         "of "
+         "the time reported lost. "
          "Degraded: completed, an expectation missed. Stopped: not completed, no fall, no collision. UNSAFE: a fall or "
          "a collision. NO RESULT: the run crashed, timed out or was not scored. No effect: every metric equals that of "
          "the run without fault, so the scenario does not need the sensor. Detected: number of reported timeouts, "

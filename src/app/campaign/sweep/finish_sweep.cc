@@ -51,19 +51,27 @@ ExitCode worst_of(const SweepRows& rows, const SweepProgress& progress) {
 
 }  // namespace
 
-ExitCode finish_sweep(const SweepDirectory& directory, const SweepManifest& manifest) {
+ExitCode finish_sweep(const SweepDirectory& directory, const SweepManifest& manifest, ResultForm form) {
   const SweepRows rows = load_rows(manifest, directory.store());
   const SweepProgress progress = evaluate_progress(manifest, rows);
+  io::Metrics json{{"directory", directory.root.string()},
+                   {"runs", progress.counted.size()},
+                   {"missing_runs", progress.needed.size()}};
   if (!progress.needed.empty()) {
-    fmt::print("{}: {} of {} runs are missing; merge shards with 'patrol merge'\n", directory.root.string(),
-               progress.needed.size(), progress.counted.size());
+    print_result(form,
+                 fmt::format("{}: {} of {} runs are missing; merge shards with 'patrol merge'\n",
+                             directory.root.string(), progress.needed.size(), progress.counted.size()),
+                 json);
     return ExitCode::kDone;
   }
   const Findings findings = findings_of(manifest, rows, progress);
   if (!findings.markdown.empty()) io::save_text(directory.root / "faults.md", findings.markdown);
   complete_sweep_directory(directory, findings.tables);
-  fmt::print("{}{} runs: {}\n", findings.text, progress.counted.size(),
-             directory.table(findings.tables.back().name).string());
+  for (const io::Table& table : findings.tables) json["tables"][table.name] = to_json(table);
+  print_result(form,
+               fmt::format("{}{} runs: {}\n", findings.text, progress.counted.size(),
+                           directory.table(findings.tables.back().name).string()),
+               json);
   return worst_of(rows, progress);
 }
 

@@ -2,11 +2,12 @@
 
 #include "app/campaign/sweep/sweep_directory.h"
 #include "app/common/exit_code.h"
+#include "app/common/print_result.h"
 
 namespace patrol::app {
 
 /// Completes a sweep with all results: writes the tables, prints the comparison, and returns the exit code of the worst
 /// run. Otherwise prints the number of missing runs.
-ExitCode finish_sweep(const SweepDirectory& directory, const SweepManifest& manifest);
+ExitCode finish_sweep(const SweepDirectory& directory, const SweepManifest& manifest, ResultForm form);
 
 }  // namespace patrol::app

@@ -112,7 +112,7 @@ ExitCode sweep_on_slurm(const SweepOptions& options, const SweepDirectory& direc
       std::this_thread::sleep_for(kPoll);
     }
     const std::vector<std::size_t> missing = needed();
-    if (missing.empty()) return finish_sweep(directory, manifest);
+    if (missing.empty()) return finish_sweep(directory, manifest, options.form);
     if (submissions == kMaxSubmissions) {
       throw std::runtime_error(fmt::format("{}: {} runs are missing after {} submissions; see slurm/ for task logs",
                                            directory.root.string(), missing.size(), submissions));

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/campaign/batch/batch_options.h"
+#include "app/common/print_result.h"
 
 namespace patrol::app {
 
@@ -26,6 +27,7 @@ struct SweepOptions {
   std::vector<std::string> slurm_options;  ///< for sbatch, "--partition=long"
   bool detach = false;                     ///< submit without waiting
   std::filesystem::path out = "out/sweep";
+  ResultForm form = ResultForm::kText;
 };
 
 /// Options of `patrol error-budget`.
@@ -36,6 +38,7 @@ struct ErrorBudgetOptions {
   std::vector<std::string> metrics = {"pose.ate_rmse_m", "map.nearest_mean_m"};
   BatchOptions batch;
   std::filesystem::path out = "out/budget";
+  ResultForm form = ResultForm::kText;
 };
 
 /// Options of `patrol fault-matrix`.
@@ -53,6 +56,7 @@ struct FaultMatrixOptions {
   double max_lost_s = 10.0;       ///< `localization.lost_s` that a survived run on a given map may have
   BatchOptions batch;
   std::filesystem::path out = "out/faults";
+  ResultForm form = ResultForm::kText;
 };
 
 /// Part of the runs: those whose number modulo `count` is `index`.

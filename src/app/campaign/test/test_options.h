@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/campaign/batch/batch_options.h"
+#include "app/common/print_result.h"
 
 namespace patrol::app {
 
@@ -19,6 +20,7 @@ struct TestOptions {
   bool widen = false;                            ///< proposals may be wider than the present expectations
   BatchOptions batch{.keep_runs = "failed"};
   std::filesystem::path out;  ///< empty: out/test or out/calibration
+  ResultForm form = ResultForm::kText;
 };
 
 }  // namespace patrol::app

@@ -75,7 +75,7 @@ TEST(FaultMatrix, WithoutStationsAndTeleoperationScannerAndTeleopAreNotInIt) {
 
 TEST(ListCommand, ListsEverySensorOfTheRegistryWithItsTopic) {
   ::testing::internal::CaptureStdout();
-  list_command();
+  list_command({});
   const std::string listed = ::testing::internal::GetCapturedStdout();
   for (const SensorInfo& info : kSensorInfos) {
     EXPECT_NE(listed.find(std::string("  ") + info.name + " "), std::string::npos) << info.name;

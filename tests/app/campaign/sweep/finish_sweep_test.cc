@@ -37,7 +37,7 @@ SweepDirectory finished(const std::filesystem::path& root, const SweepManifest& 
                                                      .checks = {},
                                                      .events = {}});
   }
-  EXPECT_EQ(finish_sweep(directory, manifest), ExitCode::kDone);
+  EXPECT_EQ(finish_sweep(directory, manifest, ResultForm::kText), ExitCode::kDone);
   return directory;
 }
 
@@ -45,7 +45,7 @@ TEST(FinishSweep, ABudgetsTableIsThereAndCollectWritesTheSameAgain) {
   const test::TemporaryFolder folder;
   const SweepDirectory directory = finished(folder / "budget", small_budget("a.yaml"));
   const std::string table = test::read_bytes(directory.table("budget")), sqlite = test::read_bytes(directory.sqlite());
-  EXPECT_EQ(merge_command(directory.root, {}), ExitCode::kDone);
+  EXPECT_EQ(merge_command({.root = directory.root, .parts = {}}), ExitCode::kDone);
   EXPECT_EQ(test::read_bytes(directory.table("budget")), table);
   EXPECT_EQ(test::read_bytes(directory.sqlite()), sqlite);
 }
@@ -54,8 +54,8 @@ TEST(FinishSweep, APartOfAnotherSweepIsRefusedAndWhatIsCompleteStaysSo) {
   const test::TemporaryFolder folder;
   const SweepDirectory directory = finished(folder / "budget", small_budget("a.yaml"));
   const SweepDirectory other = finished(folder / "other", small_budget("b.yaml"));
-  EXPECT_THROW(merge_command(directory.root, {other.root}), InputError);
-  EXPECT_THROW(merge_command(directory.root, {folder / "nowhere"}), InputError);
+  EXPECT_THROW(merge_command({.root = directory.root, .parts = {other.root}}), InputError);
+  EXPECT_THROW(merge_command({.root = directory.root, .parts = {folder / "nowhere"}}), InputError);
   EXPECT_TRUE(std::filesystem::exists(directory.table("budget")));
   EXPECT_FALSE(std::filesystem::exists(incomplete_marker(directory.root)));
 }

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+/// Access to the commands of the program and to their arguments, for the texts that are generated from them.
+namespace patrol::app {
+
+inline std::vector<const CLI::App*> commands_of(const CLI::App& app) { return app.get_subcommands({}); }
+
+inline std::vector<const CLI::Option*> arguments_of(const CLI::App& command, bool are_options) {
+  std::vector<const CLI::Option*> arguments = command.get_options({});
+  std::erase_if(arguments, [&](const CLI::Option* argument) { return argument->nonpositional() != are_options; });
+  return arguments;
+}
+
+inline std::vector<const CLI::Option*> options_of(const CLI::App& command) { return arguments_of(command, true); }
+
+inline std::vector<const CLI::Option*> positionals_of(const CLI::App& command) { return arguments_of(command, false); }
+
+inline bool takes_value(const CLI::Option& option) { return option.get_items_expected_max() > 0; }
+
+/// Name of an option with its two hyphens.
+inline std::string long_name(const CLI::Option& option) { return "--" + option.get_lnames().front(); }
+
+}  // namespace patrol::app

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "io/files/table.h"
+#include "io/json/metrics_json.h"
+
+namespace patrol::app {
+
+/// Form in which a command prints its results to standard output.
+enum class ResultForm : std::uint8_t { kText, kJson };
+
+/// Prints `text`, or `json` indented by two spaces. NaN and infinity become null.
+void print_result(ResultForm form, const std::string& text, const io::Metrics& json);
+
+/// Rows of a table as a list of objects, one key per column; an empty cell is null.
+io::Metrics to_json(const io::Table& table);
+
+}  // namespace patrol::app

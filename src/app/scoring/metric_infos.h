@@ -1,0 +1,22 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace patrol::app {
+
+/// Documentation of one metric.
+struct MetricInfo {
+  /// path as in `expect`; `*` stands for parts that depend on the run, such as the name of a station
+  std::string path;
+  std::string summary;  ///< meaning: a noun phrase
+};
+
+/// Documentation of all metrics, in the order of metrics.json.
+std::vector<MetricInfo> metric_infos();
+
+/// Entry of the metric at `path`; nullopt if there is none.
+std::optional<MetricInfo> find_metric_info(const std::string& path);
+
+}  // namespace patrol::app
