@@ -26,8 +26,8 @@ struct FrameSettings {
 
 /// Renders finished replay frames in a pipeline of two threads: one draws the world, the other smooths edges and draws
 /// the overlay. Only the first uses OpenGL. With one context in each of two threads, OSMesa 22.3 crashed in one of 13
-/// films (cause unknown). Its rasterizer uses every core with one context already. A frame depends only on the
-/// arguments of `paint`.
+/// films (cause unknown). Several cores are used by several processes (render/film/replay.h). A frame depends only on
+/// the arguments of `paint`.
 class FrameRenderer {
  public:
   /// Waits until OpenGL and fonts are ready, or rethrows the error of the thread that failed. `view` must outlive this

@@ -222,14 +222,112 @@ void VideoWriter::finish() {
   if (error) throw InputError(encoder.file.string() + ": cannot be written: " + error.message());
 }
 
-VideoInfo inspect_video(const std::filesystem::path& file) {
+bool can_join(const std::filesystem::path& file) { return file.extension() != ".webp"; }
+
+namespace {
+
+struct CloseInput {
+  void operator()(AVFormatContext* context) const { avformat_close_input(&context); }
+};
+using InputVideo = std::unique_ptr<AVFormatContext, CloseInput>;
+
+InputVideo open_input(const std::filesystem::path& file) {
   AVFormatContext* opened = nullptr;
-  if (avformat_open_input(&opened, file.c_str(), nullptr, nullptr) < 0) {
+  if (avformat_open_input(&opened, file.c_str(), nullptr, nullptr) < 0)
     throw InputError(file.string() + ": cannot read as a video");
-  }
-  const auto close = [](AVFormatContext* context) { avformat_close_input(&context); };
-  const std::unique_ptr<AVFormatContext, decltype(close)> container(opened, close);
+  InputVideo video(opened);
   checked(avformat_find_stream_info(opened, nullptr), "no stream");
+  return video;
+}
+
+struct FreePacket {
+  void operator()(AVPacket* packet) const { av_packet_free(&packet); }
+};
+using Packet = std::unique_ptr<AVPacket, FreePacket>;
+
+/// Video file without an encoder: packets are copied into it.
+class JoinedVideo {
+ public:
+  JoinedVideo(std::filesystem::path file, const AVStream& like, const std::vector<Chapter>& chapters)
+      : file_(std::move(file)), temporary_(file_.string() + ".part") {
+    checked(avformat_alloc_output_context2(&container_, nullptr, "mp4", temporary_.c_str()),
+            "cannot create the writer");
+    container_->flags |= AVFMT_FLAG_BITEXACT;
+    stream_ = not_null(avformat_new_stream(container_, nullptr), "stream");
+    checked(avcodec_parameters_copy(stream_->codecpar, like.codecpar), "stream parameters");
+    stream_->codecpar->codec_tag = 0;
+    stream_->time_base = like.time_base;
+    stream_->avg_frame_rate = like.avg_frame_rate;
+    if (avio_open(&container_->pb, temporary_.c_str(), AVIO_FLAG_WRITE) < 0)
+      throw InputError(file_.string() + ": cannot be written");
+    add_chapters(*container_, chapters);
+    AVDictionary* options = nullptr;
+    av_dict_set(&options, "movflags", "+faststart", 0);
+    const int code = avformat_write_header(container_, &options);
+    av_dict_free(&options);
+    checked(code, "file header");
+  }
+  ~JoinedVideo() {
+    if (container_ != nullptr) {
+      avio_closep(&container_->pb);
+      avformat_free_context(container_);
+    }
+    std::error_code ignored;
+    std::filesystem::remove(temporary_, ignored);
+  }
+  JoinedVideo(const JoinedVideo&) = delete;
+  JoinedVideo& operator=(const JoinedVideo&) = delete;
+
+  /// Appends the packets of a video, `num_frames` frames after the beginning.
+  void append(AVFormatContext& video, int num_frames) {
+    const AVStream& from = *video.streams[0];
+    const std::int64_t shift = av_rescale_q(num_frames, av_inv_q(stream_->avg_frame_rate), from.time_base);
+    const Packet packet(not_null(av_packet_alloc(), "packet"));
+    while (av_read_frame(&video, packet.get()) >= 0) {
+      packet->pts += shift;
+      packet->dts += shift;
+      packet->stream_index = 0;
+      packet->pos = -1;
+      av_packet_rescale_ts(packet.get(), from.time_base, stream_->time_base);
+      checked(av_interleaved_write_frame(container_, packet.get()), "cannot write a frame");
+    }
+  }
+
+  void finish() {
+    checked(av_write_trailer(container_), "file trailer");
+    checked(avio_closep(&container_->pb), "cannot close the file");
+    std::error_code error;
+    std::filesystem::rename(temporary_, file_, error);
+    if (error) throw InputError(file_.string() + ": cannot be written: " + error.message());
+  }
+
+ private:
+  std::filesystem::path file_;
+  std::filesystem::path temporary_;
+  AVFormatContext* container_ = nullptr;
+  AVStream* stream_ = nullptr;
+};
+
+}  // namespace
+
+void join_videos(const std::vector<std::filesystem::path>& videos, int frames_per_video,
+                 const std::vector<Chapter>& chapters, const std::filesystem::path& out) {
+  if (!can_join(out)) {
+    std::error_code error;
+    std::filesystem::rename(videos.at(0), out, error);
+    if (error) throw InputError(out.string() + ": cannot be written: " + error.message());
+    return;
+  }
+  const InputVideo first = open_input(videos.at(0));
+  JoinedVideo joined(out, *first->streams[0], chapters);
+  for (std::size_t i = 0; i < videos.size(); ++i)
+    joined.append(*open_input(videos[i]), static_cast<int>(i) * frames_per_video);
+  joined.finish();
+}
+
+VideoInfo inspect_video(const std::filesystem::path& file) {
+  const InputVideo container = open_input(file);
+  AVFormatContext* opened = container.get();
   const int index = checked(av_find_best_stream(opened, AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0), "no picture");
   const AVStream* stream = opened->streams[index];
   VideoInfo info{.width = stream->codecpar->width,
@@ -243,8 +341,7 @@ VideoInfo inspect_video(const std::filesystem::path& file) {
                              .end_s = unit_s * static_cast<double>(mark->end),
                              .title = title != nullptr ? title->value : ""});
   }
-  const auto free_packet = [](AVPacket* packet) { av_packet_free(&packet); };
-  const std::unique_ptr<AVPacket, decltype(free_packet)> packet(not_null(av_packet_alloc(), "packet"), free_packet);
+  const Packet packet(not_null(av_packet_alloc(), "packet"));
   while (av_read_frame(opened, packet.get()) >= 0) {
     if (packet->stream_index == index) ++info.num_frames;
     av_packet_unref(packet.get());

@@ -6,7 +6,7 @@ usage: document_commands_test.py PATROL SOURCE_DIR [DOCUMENT]...    tests; docum
 
 Code fences of a document:
   sh         runs from top to bottom in one shell with `set -e`, in a copy of the source tree
-  sh long    takes minutes: its options are checked, and the table long_commands of tools/results has its duration
+  sh long    takes minutes: its options are checked; --run-long runs it
   sh manual  needs what the test does not have (nothing built yet, a cluster, the whole machine): its options are checked
   yaml       part of a scenario: loads without an error
   yml        a file of another program: parses

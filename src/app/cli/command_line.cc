@@ -130,6 +130,7 @@ void add_replay(CLI::App& app, Call& call) {
   command->add_option("--highlight-speed", replay.highlight_speed, "Playback speed during highlights")
       ->capture_default_str();
   command->add_option("--fps", replay.frames_per_second, "Frames per second of the video")->capture_default_str();
+  command->add_option("--jobs", replay.jobs, "Processes that render (0: one per core)")->capture_default_str();
   command->add_option("--renderer", replay.renderer, "OpenGL implementation: auto, egl or osmesa")
       ->capture_default_str();
   command->add_option("--size", replay.size, "Width x height, pixels")->capture_default_str();

@@ -61,6 +61,7 @@ struct ReplayOptions {
   double speed = 8.0;
   double highlight_speed = 2.0;
   double frames_per_second = 30.0;
+  int jobs = 0;  ///< processes; 0: one per core
   std::string renderer = "auto";
   std::string size = "1280x720";
   std::optional<double> still_s;

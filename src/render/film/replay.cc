@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <optional>
+#include <system_error>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -70,41 +72,75 @@ InputError no_states(const std::filesystem::path& log_mcap) {
   return InputError(log_mcap.string() + ": contains no states (topic " + io::kTopic<SimState> + ")");
 }
 
-}  // namespace
-
-ReplaySummary replay(const std::filesystem::path& log_mcap, sim::AssembledModel model, const Pose2& T_world_map,
-                     const ReplaySettings& settings, const std::filesystem::path& out_mp4,
-                     const ReplayProgress& progress) {
+ShotPlan plan_of(const std::filesystem::path& log_mcap, const RunHistory& history, const Pose2& T_world_map,
+                 const ReplaySettings& settings) {
   if (!(settings.speed.fast > 0.0) || !(settings.speed.slow > 0.0) || !(settings.frames_per_second > 0.0)) {
     throw InputError(fmt::format("speed = {}, highlight speed = {}: must be greater than 0", settings.speed.fast,
                                  settings.speed.slow));
   }
-  const mjModel& view = *model.view;
-  prepare(*model.view, settings);
-  const RunHistory history = read_run_history(log_mcap, view, T_world_map);
   if (history.num_states == 0) throw no_states(log_mcap);
-  ShotPlan plan =
-      plan_shots(history, find_highlights(history, T_world_map, settings.announced), settings.style, settings.speed);
-  const double length_s = std::max(plan.speed.length_s(), 1e-9);
-  ReplaySummary summary{.end = history.end, .num_chapters = static_cast<int>(plan.chapters.size())};
+  return plan_shots(history, find_highlights(history, T_world_map, settings.announced), settings.style, settings.speed);
+}
 
-  SnapshotBuilder follower(view, T_world_map);
-  if (settings.map) follower.add(MapUpdate{.stamp = {}, .map = *settings.map});
-  Director director(std::move(plan), camera_on(follower, settings.camera), free_distance_in(follower));
-  Film film(view, frame_settings(settings, view), settings.frames_per_second, std::move(director), out_mp4);
+}  // namespace
+
+ReplayFilm::ReplayFilm(std::filesystem::path log_mcap, sim::AssembledModel model, const Pose2& T_world_map,
+                       ReplaySettings settings, std::filesystem::path out)
+    : log_mcap_(std::move(log_mcap)),
+      model_(std::move(model)),
+      T_world_map_(T_world_map),
+      settings_(std::move(settings)),
+      out_(std::move(out)),
+      history_(read_run_history(log_mcap_, *model_.view, T_world_map)),
+      plan_(plan_of(log_mcap_, history_, T_world_map, settings_)) {
+  prepare(*model_.view, settings_);
+  while (history_.end >= plan_.speed.run_time(num_frames_ / settings_.frames_per_second)) ++num_frames_;
+}
+
+FilmSegments ReplayFilm::segments(int part, int num_parts) const {
+  return {.folder = out_.string() + ".segments",
+          .extension = out_.extension().string(),
+          .frames_per_segment = can_join(out_) ? settings_.frames_per_segment : std::max(1, num_frames_),
+          .part = part,
+          .num_parts = num_parts};
+}
+
+int ReplayFilm::num_segments() const {
+  const int size = segments(0, 1).frames_per_segment;
+  return (num_frames_ + size - 1) / size;
+}
+
+bool ReplayFilm::render(int part, int num_parts, const ReplayProgress& progress) const {
+  const FilmSegments parts = segments(part, num_parts);
+  std::filesystem::create_directories(parts.folder);
+  const mjModel& view = *model_.view;
+  SnapshotBuilder follower(view, T_world_map_);
+  if (settings_.map) follower.add(MapUpdate{.stamp = {}, .map = *settings_.map});
+  Director director(plan_, camera_on(follower, settings_.camera), free_distance_in(follower));
+  Film film(view, frame_settings(settings_, view), settings_.frames_per_second, std::move(director), parts);
   try {
-    summary.log_is_complete = io::read_run_log(log_mcap, handlers_for(follower, [&](Time) {
-                                                 film.add_snapshot(follower.snapshot());
-                                                 if (progress && !progress(std::min(1.0, film.length_s() / length_s)))
-                                                   throw Interrupted();
-                                               }));
+    io::read_run_log(log_mcap_, handlers_for(follower, [&](Time) {
+                       film.add_snapshot(follower.snapshot());
+                       if (progress && !progress(std::min(1.0, static_cast<double>(film.num_frames()) / num_frames_)))
+                         throw Interrupted();
+                     }));
   } catch (const Interrupted&) {
-    summary.is_interrupted = true;
-    return summary;
+    return false;
   }
   film.finish();
-  summary.num_frames = film.num_frames();
-  return summary;
+  return true;
+}
+
+void ReplayFilm::join() const {
+  const FilmSegments parts = segments(0, 1);
+  std::vector<std::filesystem::path> files;
+  for (int i = 0; i < num_segments(); ++i) files.push_back(parts.file(i));
+  join_videos(files, parts.frames_per_segment, plan_.chapters, out_);
+}
+
+void ReplayFilm::remove_segments() const {
+  std::error_code ignored;
+  std::filesystem::remove_all(segments(0, 1).folder, ignored);
 }
 
 void still(const std::filesystem::path& log_mcap, sim::AssembledModel model, const Pose2& T_world_map,

@@ -7,7 +7,9 @@
 #include "core/frames.h"
 #include "core/grid.h"
 #include "core/time.h"
+#include "render/film/film.h"
 #include "render/film/highlight.h"
+#include "render/film/run_history.h"
 #include "render/film/shot_plan.h"
 #include "render/scene/camera.h"
 #include "render/scene/gl_context.h"
@@ -26,6 +28,7 @@ struct ReplaySettings {
   int width = 1280;
   int height = 720;
   double frames_per_second = 30.0;
+  int frames_per_segment = 300;  ///< frames that one process renders in a row
   Renderer renderer = Renderer::kAuto;
   std::optional<OccupancyGrid> map = {};      ///< map that the robot was given, in map; none for a mapping run
   sim::DustSettings dust = {};                ///< dust of the run
@@ -38,21 +41,43 @@ struct ReplaySettings {
 /// Called with the completed fraction, 0 ... 1. Returns false to interrupt the replay.
 using ReplayProgress = std::function<bool(double done)>;
 
-/// Result of a replay.
-struct ReplaySummary {
-  int num_frames = 0;
-  Time end{};  ///< end of the logged run
-  int num_chapters = 0;
-  bool log_is_complete = true;
-  bool is_interrupted = false;  ///< interrupted by the progress callback; no film is written
-};
+/// Film of a logged run. Planned once; its segments can be rendered by several processes that are forked afterwards.
+class ReplayFilm {
+ public:
+  /// Reads the log for the highlights and plans the film. `T_world_map` is the start pose, at which map and world are
+  /// aligned. Sets the model's render quality. Throws InputError when the log cannot be read, has no states, or belongs
+  /// to another world.
+  ReplayFilm(std::filesystem::path log_mcap, sim::AssembledModel model, const Pose2& T_world_map,
+             ReplaySettings settings, std::filesystem::path out);
 
-/// Renders a film of a logged run. Reads the log twice: once for the highlights, once for the frames. `T_world_map` is
-/// the start pose, at which map and world are aligned. Sets the model's render quality. Throws InputError when the log
-/// cannot be read, has no states, or belongs to another world.
-ReplaySummary replay(const std::filesystem::path& log_mcap, sim::AssembledModel model, const Pose2& T_world_map,
-                     const ReplaySettings& settings, const std::filesystem::path& out_mp4,
-                     const ReplayProgress& progress = {});
+  /// Renders the segments of part `part` of `num_parts` into files beside the film. Returns false if the progress
+  /// callback interrupted it.
+  bool render(int part, int num_parts, const ReplayProgress& progress = {}) const;
+  /// Joins the segments to the film when all parts are rendered. The same run and settings give the same bytes with any
+  /// number of parts.
+  void join() const;
+  /// Removes the files of the segments.
+  void remove_segments() const;
+
+  /// Maximum number of parts that have a segment each.
+  int num_segments() const;
+  int num_frames() const { return num_frames_; }
+  int num_chapters() const { return static_cast<int>(plan_.chapters.size()); }
+  Time end() const { return history_.end; }  ///< end of the logged run
+  bool log_is_complete() const { return history_.log_is_complete; }
+
+ private:
+  FilmSegments segments(int part, int num_parts) const;
+
+  std::filesystem::path log_mcap_;
+  sim::AssembledModel model_;
+  Pose2 T_world_map_;
+  ReplaySettings settings_;
+  std::filesystem::path out_;
+  RunHistory history_;
+  ShotPlan plan_;
+  int num_frames_ = 0;
+};
 
 /// Renders one picture of the last state up to `at`.
 void still(const std::filesystem::path& log_mcap, sim::AssembledModel model, const Pose2& T_world_map,

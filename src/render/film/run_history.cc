@@ -35,7 +35,7 @@ RunHistory read_run_history(const std::filesystem::path& log_mcap, const mjModel
     last_approach = state.stamp;
     if (const std::optional<Approach> nearest = approaches.nearest(state)) history.approaches.push_back(*nearest);
   });
-  io::read_run_log(log_mcap, handlers);
+  history.log_is_complete = io::read_run_log(log_mcap, handlers);
   return history;
 }
 

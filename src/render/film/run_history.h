@@ -21,8 +21,9 @@ struct EstimateError {
 
 /// Data of a whole run for the detection of highlights.
 struct RunHistory {
-  int num_states = 0;       ///< number of states that a replay can show
-  Time begin{}, end{};      ///< times of the first and last state
+  int num_states = 0;   ///< number of states that a replay can show
+  Time begin{}, end{};  ///< times of the first and last state
+  bool log_is_complete = true;
   Trajectory T_world_body;  ///< ground truth
   std::vector<EstimateError> errors;
   std::vector<Approach> approaches;  ///< to pedestrians and vehicles, within ApproachFinder::kMaxRange_m

@@ -37,7 +37,9 @@ class Watch(unittest.TestCase):
         self.assertGreater(text.count("\x1b[H"), 2)
         self.assertIn("x real time", text)
         self.assertLess(text.index("\x1b[?1049h"), text.index("\x1b[?1049l"))
-        self.assertIn("run directory", text[text.index("\x1b[?1049l"):])
+        summary = text[text.index("\x1b[?1049l"):]
+        self.assertIn("all with option --all", summary)
+        self.assertIn("\x1b[32m", summary)  # colors on a terminal
         subprocess.run([PATROL, "run", self.scenario, "--out", self.path / "alone"], check=True, capture_output=True, cwd=SOURCE)
         for name in ("estimate.tum", "truth.tum", "map.pgm"):
             self.assertEqual((self.path / "watched" / name).read_bytes(), (self.path / "alone" / name).read_bytes(), name)

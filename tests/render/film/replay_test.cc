@@ -37,6 +37,30 @@ sim::AssembledModel model() {
   return {.physics = nullptr, .view = small_scene(kRobotBeforeWall), .start_qpos = {}, .stance = {}};
 }
 
+struct ReplaySummary {
+  int num_frames = 0;
+  Time end{};
+  int num_chapters = 0;
+  bool log_is_complete = true;
+  bool is_interrupted = false;
+};
+
+/// Renders and joins a film in `num_parts` parts.
+ReplaySummary replay(const std::filesystem::path& log, sim::AssembledModel model, const Pose2& T_world_map,
+                     const ReplaySettings& settings, const std::filesystem::path& out,
+                     const ReplayProgress& progress = {}, int num_parts = 1) {
+  const ReplayFilm film(log, std::move(model), T_world_map, settings, out);
+  bool is_whole = true;
+  for (int part = 0; part < num_parts && is_whole; ++part) is_whole = film.render(part, num_parts, progress);
+  if (is_whole) film.join();
+  film.remove_segments();
+  return {.num_frames = film.num_frames(),
+          .end = film.end(),
+          .num_chapters = film.num_chapters(),
+          .log_is_complete = film.log_is_complete(),
+          .is_interrupted = !is_whole};
+}
+
 class Replay : public ::testing::Test {
  protected:
   void SetUp() override { write_log(log); }
@@ -70,6 +94,29 @@ TEST_F(Replay, IsTheSameFilmEachTime) {
   replay(log, model(), {}, settings, folder / "one.mp4");
   replay(log, model(), {}, settings, folder / "again.mp4");
   EXPECT_EQ(test::read_bytes(folder / "one.mp4"), test::read_bytes(folder / "again.mp4"));
+}
+
+TEST_F(Replay, InThreePartsOfSegmentsIsTheSameFilm) {
+  settings.frames_per_segment = 4;
+  settings.speed.fast = 1.0;
+  const int num_frames = replay(log, model(), {}, settings, folder / "one.mp4").num_frames;
+  replay(log, model(), {}, settings, folder / "three.mp4", {}, 3);
+  EXPECT_EQ(test::read_bytes(folder / "one.mp4"), test::read_bytes(folder / "three.mp4"));
+  const VideoInfo info = inspect_video(folder / "three.mp4");
+  EXPECT_EQ(info.num_frames, num_frames);
+  EXPECT_NEAR(info.duration_s, num_frames / settings.frames_per_second, 0.5 / settings.frames_per_second);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 3) << "no segments are left";
+}
+
+TEST_F(Replay, IsAnAnimatedPictureOfTheSameFrames) {
+  const int num_frames = replay(log, model(), {}, settings, folder / "film.webp").num_frames;
+  const std::string bytes = test::read_bytes(folder / "film.webp");
+  EXPECT_EQ(bytes.substr(0, 4), "RIFF");
+  EXPECT_EQ(bytes.substr(8, 4), "WEBP");
+  int num_animated = 0;
+  for (std::size_t at = bytes.find("ANMF"); at != std::string::npos; at = bytes.find("ANMF", at + 4)) ++num_animated;
+  EXPECT_GE(num_animated, 1);
+  EXPECT_LE(num_animated, num_frames);  // equal frames are one
 }
 
 // 1.98 s at 8 would be 0.2475 s of film. The fault's scene reaches over the whole run: 1.98 / 2 = 0.99 s, frames at 0
