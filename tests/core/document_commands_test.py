@@ -6,7 +6,7 @@ usage: document_commands_test.py PATROL SOURCE_DIR [DOCUMENT]...    tests; docum
 
 Code fences of a document:
   sh         runs from top to bottom in one shell with `set -e`, in a copy of the source tree
-  sh long    takes minutes: its options are checked; --run-long runs it
+  sh long    takes a minute or more: its options are checked; --run-long runs the long fences of each document from top to bottom
   sh manual  needs what the test does not have (nothing built yet, a cluster, the whole machine): its options are checked
   yaml       part of a scenario: loads without an error
   yml        a file of another program: parses
@@ -83,17 +83,17 @@ def run_shell(text, folder):
 
 
 def run_long(file):
-    """Runs the long fences, each in a folder of its own."""
+    """Runs all fences of every document with long ones, from top to bottom."""
     rows = []
     for document in DOCUMENTS:
-        for info, text in fences(document):
-            if info == "sh long":
-                with tempfile.TemporaryDirectory() as folder:
-                    begin = time.monotonic()
-                    code, said = run_shell(text, copy_of(SOURCE, pathlib.Path(folder)))
-                    rows.append({"document": str(document.relative_to(SOURCE)), "commands": patrol_calls(text), "code": code,
-                                 "minutes": (time.monotonic() - begin) / 60})
-                    print(f"{rows[-1]['document']}: exit code {code}, {rows[-1]['minutes']:.1f} min", *([said] if code else []), sep="\n", flush=True)
+        if not any(info == "sh long" for info, _ in fences(document)):
+            continue
+        text = "\n".join(text for info, text in fences(document) if info in ("sh", "sh long"))
+        with tempfile.TemporaryDirectory() as folder:
+            begin = time.monotonic()
+            code, said = run_shell(text, copy_of(SOURCE, pathlib.Path(folder)))
+            rows.append({"document": str(document.relative_to(SOURCE)), "code": code, "minutes": (time.monotonic() - begin) / 60})
+            print(f"{rows[-1]['document']}: exit code {code}, {rows[-1]['minutes']:.1f} min", *([said] if code else []), sep="\n", flush=True)
     pathlib.Path(file).write_text(json.dumps(rows, indent=1))
 
 

@@ -81,14 +81,12 @@ std::string faults_summary(const std::vector<FaultRow>& rows) {
 }
 
 std::string fault_legend() {
-  return "Survived: mission completed without fall or collision, every expectation met. Among the "
-         "expectations are bounds of the position error at every instant, of the map's coverage and, on a given map, "
-         "of "
-         "the time reported lost. "
-         "Degraded: completed, an expectation missed. Stopped: not completed, no fall, no collision. UNSAFE: a fall or "
-         "a collision. NO RESULT: the run crashed, timed out or was not scored. No effect: every metric equals that of "
-         "the run without fault, so the scenario does not need the sensor. Detected: number of reported timeouts, "
-         "frozen readings and clock errors; drift and outliers are not detectable.";
+  return "Survived: mission completed without fall or collision, every expectation met. Among the expectations are "
+         "bounds of the position error at every instant, of the map's coverage and, on a given map, of the time "
+         "reported lost. Degraded: completed, an expectation missed. Stopped: not completed, no fall, no collision. "
+         "UNSAFE: a fall or a collision. NO RESULT: the run crashed, timed out or was not scored. No effect: every "
+         "metric equals that of the run without fault, so the scenario does not need the sensor. Detected: number of "
+         "reported timeouts, frozen readings and clock errors; drift and outliers are not detectable.";
 }
 
 }  // namespace patrol::app
