@@ -4,16 +4,18 @@
 
 namespace patrol::localize {
 
+/// Settings of the detection of the charging post in a scan (dock_detector.h).
 struct DockDetectorSettings {
-  double search_m = 0.3;       ///< search range around the expected position, longitudinal and lateral
-  double search_rad = 0.2;     ///< search range around the expected heading
-  double range_std_m = 0.025;  ///< standard deviation of the range of one beam
-  /// Free space required next to the ends of the post: hits there count against the detection.
+  /// Search range to either side of the expected position of the post, longitudinal and lateral.
+  double search_m = 0.3;
+  double search_rad = 0.2;     ///< search range to either side of the expected heading of the post
+  double range_std_m = 0.025;  ///< standard deviation of the range of a beam on the post
+  /// Width of the free space required next to the ends of the post: hits in it count against the detection.
   double end_clearance_m = 0.15;
-  double min_inlier_ratio = 0.75;  ///< minimum inlier ratio of the beams around the post
+  double min_inlier_ratio = 0.75;  ///< minimum inlier ratio of the beams around a detected post
   double max_rms_m = 0.04;   ///< maximum root mean square distance of the returns from the outline of a detected post
-  int min_beams = 25;        ///< minimum number of beams on the post
-  double max_range_m = 4.0;  ///< maximum distance of the expected post for a search
+  int min_beams = 25;        ///< minimum number of beams on a detected post
+  double max_range_m = 4.0;  ///< maximum distance between the lidar and the expected post for a search
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

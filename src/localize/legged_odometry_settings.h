@@ -8,44 +8,47 @@ namespace patrol::localize {
 struct LeggedOdometrySettings {
   // IMU.
   double gyro_noise_density_radps_per_sqrt_hz = 2e-4;    ///< noise density of the gyro
-  double gyro_bias_std_radps = 5e-3;                     ///< standard deviation of the bias at power-on
+  double gyro_bias_std_radps = 5e-3;                     ///< prior standard deviation of the gyro bias at power-on
   double gyro_bias_random_walk_radps_per_sqrt_s = 1e-5;  ///< random walk of the gyro bias
   /// Noise density of the accelerometer, with the aliasing of walking shocks.
   double accel_noise_density_mps2_per_sqrt_hz = 0.1;
-  double accel_bias_std_mps2 = 0.05;                     ///< standard deviation of the bias at power-on
+  double accel_bias_std_mps2 = 0.05;  ///< prior standard deviation of the accelerometer bias in the filter
   double accel_bias_random_walk_mps2_per_sqrt_s = 1e-3;  ///< random walk of the accelerometer bias
   // Errors of the published biases beyond the covariance of the filter (imu_calibration.h). The filter takes the errors
   // of walking as white noise; the shocks of the gait and the motion of the feet bias it for minutes. Systematic
   // errors: root mean square at the end of street/patrol, seeds 11 to 14.
-  /// Standard deviation of the systematic error of the published gyro bias, about x and y.
+  /// Standard deviation of the systematic error of the published gyro bias, about x and y of the IMU.
   double gyro_bias_systematic_std_radps = 0.0013;
   /// Standard deviation of the systematic error of the published accelerometer bias.
   double accel_bias_systematic_std_mps2 = 0.12;
-  double accel_bias_sheet_std_mps2 = 0.2;  ///< standard deviation of the bias at power-on by the data sheet
-  /// Standard deviation of the error along the vertical relative to gravity. The scale of the accelerometer has
-  /// 0.005. The shocks of the gait shift the bias by 0.2 m/s2 in five minutes (seeds 11 to 16).
+  /// Standard deviation of the accelerometer bias at power-on by the data sheet, for the published standard deviation.
+  double accel_bias_sheet_std_mps2 = 0.2;
+  /// Standard deviation of the error of the published accelerometer bias along the vertical, relative to gravity. The
+  /// scale of the accelerometer has 0.005. The shocks of the gait shift the bias by 0.2 m/s2 in five minutes (seeds 11
+  /// to 16).
   double accel_scale_std = 0.02;
   // Legs.
-  double contact_on_force_n = 15.0;  ///< foot force above which contact starts
-  double contact_off_force_n = 8.0;  ///< foot force below which contact ends
-  /// Foot force from which a foot has its full weight in the filter; proportional below.
+  double contact_on_force_n = 15.0;  ///< foot force above which a contact starts
+  double contact_off_force_n = 8.0;  ///< foot force below which a contact ends
+  /// Minimum foot force of a foot with its full weight in the filter; the weight is proportional to a smaller force.
   double full_weight_force_n = 30.0;
-  double contact_settling_time_s = 0.012;  ///< time after touch-down before a foot is used
+  double contact_settling_time_s = 0.012;  ///< time from the touch-down of a foot to its use in the filter
   double foot_velocity_std_mps = 0.06;     ///< standard deviation of the velocity of a stance foot
   /// Difference of a foot's velocity from the IMU prediction above which the foot is down-weighted.
   double slip_speed_mps = 0.15;
-  /// Height above the lowest foot up to which feet are in stance, without foot sensors.
+  /// Maximum height of a stance foot above the lowest foot, without foot sensors.
   double stance_height_tolerance_m = 0.012;
   // Standstill.
-  double standstill_window_s = 1.0;     ///< window of one gyro bias measurement
+  double standstill_window_s = 1.0;     ///< duration of one measurement of the gyro bias at standstill
   double standstill_foot_std_m = 3e-5;  ///< standard deviation of a foot position at rest
   // Errors that are not white noise of a reading.
   double position_random_walk_m_per_sqrt_m = 0.01;  ///< random walk of the position over the distance traveled
   double yaw_random_walk_rad_per_sqrt_rad = 0.003;  ///< random walk of the yaw over the rotation
   // Faults.
-  double imu_timeout_s = 0.1;         ///< maximum delay of the IMU behind the joints before it is bridged
-  double buffer_s = 2.0;              ///< length of the motion history
-  double max_extrapolation_s = 0.15;  ///< maximum time after the newest IMU reading for which a pose is given
+  /// Maximum delay of the IMU behind the joint readings, after which the feet alone propagate the estimate.
+  double imu_timeout_s = 0.1;
+  double buffer_s = 2.0;              ///< length of the motion history, with which late readings are compared
+  double max_extrapolation_s = 0.15;  ///< maximum time after the newest reading to which a pose is extrapolated
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

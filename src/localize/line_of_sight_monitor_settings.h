@@ -6,12 +6,13 @@ namespace patrol::localize {
 
 /// Settings of the detection of UWB ranges without line of sight.
 struct LineOfSightMonitorSettings {
-  double range_std_m = 0.1;  ///< standard deviation of a range in line of sight
-  /// Ratio of the scatter of ranges to its expected value above which they are not in line of sight.
+  double range_std_m = 0.1;  ///< standard deviation of a UWB range in line of sight
+  /// Maximum ratio of the scatter of UWB ranges in line of sight to its expected value [Wylie96].
   double max_std_ratio = 1.4;
-  int window_ranges = 16;   ///< number of the newest ranges to an anchor that are compared
-  int min_ranges = 6;       ///< number of ranges below which the line of sight is unknown, and the ranges are not used
-  double max_age_s = 10.0;  ///< age relative to the newest range above which ranges are discarded
+  int window_ranges = 16;  ///< maximum number of the newest ranges to an anchor whose scatter is evaluated
+  /// Minimum number of ranges to an anchor; with fewer, the line of sight is unknown and the ranges are not used.
+  int min_ranges = 6;
+  double max_age_s = 10.0;  ///< maximum age of a range relative to the newest range to the same anchor
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -7,16 +7,20 @@
 
 namespace patrol::localize {
 
+/// Settings of the localization by odometry and UWB ranges (range_filter.h).
 struct RangeFilterSettings {
   // UWB ranges.
-  std::vector<double> bias_distance_m = UwbCalibration{}.distance_m;  ///< distances of the entries of `bias_m`
-  /// Bias of a line-of-sight range at each distance of `bias_distance_m`; both lists empty: no bias.
+  /// Strictly increasing distances of the entries of `bias_m`; both lists empty: no bias.
+  std::vector<double> bias_distance_m = UwbCalibration{}.distance_m;
+  /// Bias of a line-of-sight range at each distance of `bias_distance_m`, interpolated linearly; both lists empty: no
+  /// bias.
   std::vector<double> bias_m = UwbCalibration{}.bias_m;
-  double range_std_m = 0.1;          ///< standard deviation of a line-of-sight range
-  double nlos_probability = 0.3;     ///< prior probability of a non-line-of-sight (NLOS) range
-  double nlos_bias_m = 0.5;          ///< mean bias of NLOS ranges
-  double min_los_probability = 0.1;  ///< line-of-sight probability below which a range that is too long is rejected
-  /// Number of standard deviations beyond which a range that is too short is rejected: 99.9 %.
+  double range_std_m = 0.1;       ///< standard deviation of a line-of-sight range
+  double nlos_probability = 0.3;  ///< prior probability of a non-line-of-sight (NLOS) range
+  double nlos_bias_m = 0.5;       ///< mean bias of non-line-of-sight (NLOS) ranges
+  /// Minimum line-of-sight probability of an accepted range; ranges below it are too long.
+  double min_los_probability = 0.1;
+  /// Maximum deviation of an accepted range that is too short, in standard deviations of the innovation; 3.3: 99.9 %.
   double negative_gate_sigma = 3.3;
   // Odometry. The standard deviations of its errors are part of its output; here are their correlation lengths and
   // white noise.
@@ -27,13 +31,14 @@ struct RangeFilterSettings {
   double position_random_walk_m_per_sqrt_m = 0.003;  ///< random walk of the position over the distance traveled
   double yaw_random_walk_rad_per_sqrt_s = 3.5e-4;    ///< random walk of the yaw over time
   double yaw_random_walk_rad_per_sqrt_rad = 0.002;   ///< random walk of the yaw over the rotation
-  double height_std_m_per_sqrt_m = 0.02;             ///< random walk of the height over the distance traveled
-  double start_height_std_m = 0.05;                  ///< standard deviation of the height at the start
+  double height_std_m_per_sqrt_m = 0.02;  ///< random walk of the height of the body over the distance traveled
+  double start_height_std_m = 0.05;       ///< standard deviation of the height of the body at the start
   // Recovery from a wrong estimate.
-  int window = 30;                  ///< number of ranges over which rejections are counted
-  double min_accepted_ratio = 0.4;  ///< acceptance ratio of the window below which the covariance is inflated
-  double reset_std_m = 0.5;         ///< standard deviation added to x and y when the covariance is inflated
-  double reset_std_rad = 0.05;      ///< standard deviation added to the yaw when the covariance is inflated
+  int window = 30;  ///< number of the newest ranges over which rejections are counted
+  /// Minimum ratio of accepted ranges in the window, below which the covariance is inflated.
+  double min_accepted_ratio = 0.4;
+  double reset_std_m = 0.5;     ///< standard deviation added to x and y when the covariance is inflated
+  double reset_std_rad = 0.05;  ///< standard deviation added to the yaw when the covariance is inflated
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -4,17 +4,20 @@
 
 namespace patrol::localize {
 
+/// Settings of the leveling and motion compensation of scans (scan_leveler.h).
 struct ScanLevelerSettings {
-  /// Height limits of obstacles above the ground under the feet; a curb of 0.12 m is lower.
+  /// Minimum height of a hit that is an obstacle, above the ground under the robot; a curb of 0.12 m is lower.
   double min_height_m = 0.15;
-  double max_height_m = 1.5;       ///< maximum height of a point that is used, above the lidar
-  double tilt_margin_rad = 0.008;  ///< margin for an apparent rise of the ground with distance: tilt error and slope
-  /// Distance from the vertical axis of the body below which hits are the robot itself.
+  double max_height_m = 1.5;  ///< maximum height of a hit that is an obstacle, above the ground under the robot
+  /// Slope of the minimum height over the distance: margin for tilt error and rising ground.
+  double tilt_margin_rad = 0.008;
+  /// Radius about the vertical axis of the body within which hits are the robot itself and beams are discarded.
   double self_filter_radius_m = 0.32;
-  double no_return_clearing_range_m =
-      6.0;                    ///< distance that a beam without return clears: glass and black surfaces give no return
+  /// Distance that a beam without return clears: glass and black surfaces give no return.
+  double no_return_clearing_range_m = 6.0;
   double max_range_m = 30.0;  ///< maximum range of a hit that is used
-  bool gimbal_stabilized = false;  ///< presence of a stabilized gimbal: scans are level although the body tilts
+  /// Presence of a stabilized gimbal under the lidar: scans are level although the body tilts.
+  bool gimbal_stabilized = false;
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

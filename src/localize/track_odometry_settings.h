@@ -8,51 +8,73 @@ namespace patrol::localize {
 /// ADIS16448 data sheet, table 1: 0.5 deg/s, 20 mg) and tracks on rock, gravel and concrete.
 struct TrackOdometrySettings {
   // IMU.
-  double gyro_noise_density_radps_per_sqrt_hz = 3.5e-4;  ///< noise density of readings sampled at 250 Hz, unfiltered
-  double gyro_bias_std_radps = 8.7e-3;                   ///< standard deviation of the bias at power-on
+  /// Noise density of the gyro; readings sampled at 250 Hz, unfiltered.
+  double gyro_noise_density_radps_per_sqrt_hz = 3.5e-4;
+  double gyro_bias_std_radps = 8.7e-3;                   ///< prior standard deviation of the gyro bias at power-on
   double gyro_bias_random_walk_radps_per_sqrt_s = 1e-5;  ///< random walk of the gyro bias
   /// Noise density of the accelerometer, with the vibration of driving.
   double accel_noise_density_mps2_per_sqrt_hz = 0.05;
-  double accel_bias_std_mps2 = 0.2;                      ///< standard deviation of the bias at power-on
+  double accel_bias_std_mps2 = 0.2;  ///< prior standard deviation of the accelerometer bias at power-on
   double accel_bias_random_walk_mps2_per_sqrt_s = 1e-3;  ///< random walk of the accelerometer bias
   /// Random walk of the yaw over the rotation: gyro scale factor and misalignment.
   double yaw_random_walk_rad_per_sqrt_rad = 0.002;
   /// Standard deviation of the scale of the accelerometer, which the published bias along the vertical contains.
   double accel_scale_std = 0.005;
   // Track encoders and the standard deviation of the track speed, whose terms add in quadrature.
-  double ticks_per_sprocket_turn = 720.0;  ///< edges of the Hall sensors of the motor, through the gear
-  double skid_ratio = 1.5;           ///< track speed difference over the gauge, relative to the true yaw rate: scrub
-  double speed_std_mps = 0.01;       ///< mean track speed during straight motion
-  double scrub_std = 0.02;           ///< additional term per difference of the track speeds
-  double acceleration_std_s = 0.01;  ///< additional term per acceleration of the tracks
-  double disagreement_std_m = 0.05;  ///< additional term per disagreement of the yaw rates of tracks and gyro
-  double lateral_std_mps = 0.02;     ///< lateral velocity, which is zero on average
-  double lateral_std_m = 0.02;       ///< additional lateral term per yaw rate
-  double vertical_std_mps = 0.05;    ///< vertical velocity, which is zero on average
+  /// Number of Hall sensor edges of the motor per turn of the sprocket, through the gear.
+  double ticks_per_sprocket_turn = 720.0;
+  double skid_ratio = 1.5;      ///< ratio of the track speed difference over the gauge to the true yaw rate: scrub
+  double speed_std_mps = 0.01;  ///< standard deviation of the mean track speed during straight motion
+  /// Term of the standard deviation of the mean track speed per difference of the track speeds, added in quadrature.
+  double scrub_std = 0.02;
+  /// Term of the standard deviation of the mean track speed per acceleration of the tracks, added in quadrature.
+  double acceleration_std_s = 0.01;
+  /// Term of the standard deviation of the mean track speed per disagreement of the yaw rates of tracks and gyro, added
+  /// in quadrature.
+  double disagreement_std_m = 0.05;
+  /// Standard deviation of the lateral velocity of the instantaneous center of rotation, which is zero on average.
+  double lateral_std_mps = 0.02;
+  /// Term of the standard deviation of the lateral velocity per yaw rate, added in quadrature.
+  double lateral_std_m = 0.02;
+  double vertical_std_mps = 0.05;  ///< standard deviation of the vertical velocity, which is zero on average
   // Slip. The terms of its standard deviation add in quadrature.
-  double scale_std = 0.01;                  ///< constant relative error of the track distance: wear, tension
-  double slip_std = 0.015;                  ///< slip per distance, straight motion on level ground
-  double slip_std_per_radps = 0.05;         ///< additional term per yaw rate
-  double slip_std_per_tilt = 0.1;           ///< additional term per sine of the tilt, on slopes
-  double slip_std_per_disagreement = 0.05;  ///< additional term per disagreement of the yaw rates, rad/s
-  double slip_correlation_m = 3.0;          ///< correlation length of slip: distance over which the ground changes
-  double icr_x_std_m = 0.05;                ///< longitudinal offset of the instantaneous center of rotation (ICR)
-  double icr_y_std_m = 0.02;                ///< lateral offset of the ICR
-  double icr_correlation_rad = 2.0;         ///< correlation angle of the ICR
-  double slip_window_s = 1.0;               ///< window over which tracks and accelerometer are compared
-  double slip_disagreement_mps = 0.2;       ///< speed gain of the tracks over the body that indicates loss of traction
+  double scale_std = 0.01;  ///< standard deviation of the constant relative error of the track distance: wear, tension
+  double slip_std = 0.015;  ///< standard deviation of the slip ratio during straight motion on level ground
+  /// Term of the standard deviation of the slip ratio per yaw rate, added in quadrature.
+  double slip_std_per_radps = 0.05;
+  /// Term of the standard deviation of the slip ratio per sine of the tilt, on slopes, added in quadrature.
+  double slip_std_per_tilt = 0.1;
+  /// Term of the standard deviation of the slip ratio per disagreement of the yaw rates of tracks and gyro, in rad/s,
+  /// added in quadrature.
+  double slip_std_per_disagreement = 0.05;
+  double slip_correlation_m = 3.0;  ///< correlation length of slip: distance over which the ground changes
+  /// Standard deviation of the longitudinal offset of the instantaneous center of rotation: lateral slip during
+  /// rotation.
+  double icr_x_std_m = 0.05;
+  /// Standard deviation of the lateral offset of the instantaneous center of rotation: different traction of the two
+  /// sides.
+  double icr_y_std_m = 0.02;
+  double icr_correlation_rad = 2.0;  ///< correlation angle of the offset of the instantaneous center of rotation
+  double slip_window_s = 1.0;        ///< duration over which the speed changes of tracks and accelerometer are compared
+  /// Minimum difference of the speed changes of tracks and body that indicates a loss of traction; increased on a rough
+  /// ride.
+  double slip_disagreement_mps = 0.2;
   // Standstill.
-  double settling_time_s = 1.5;      ///< time at rest before the first estimate
-  double init_timeout_s = 6.0;       ///< time after which an estimate is published without any rest
-  double standstill_window_s = 1.0;  ///< window of one gyro bias measurement, and of the detection of rest
-  /// Standard deviation of the acceleration up to which the body is at rest: 0.05 m/s2 at rest, at least 0.16 m/s2
-  /// while driving (simulated ADIS16448 on tracks).
+  double settling_time_s = 1.5;  ///< minimum time at rest before the first estimate
+  /// Maximum time before the first estimate, which is then published without a standstill.
+  double init_timeout_s = 6.0;
+  /// Duration of one measurement of the gyro bias at standstill and of the detection of rest.
+  double standstill_window_s = 1.0;
+  /// Maximum standard deviation of the acceleration of a body at rest, along each axis. Simulated ADIS16448 on tracks:
+  /// 0.05 m/s2 at rest, at least 0.16 m/s2 while driving.
   double standstill_accel_std_mps2 = 0.1;
   // Faults.
-  double imu_timeout_s = 0.1;                 ///< maximum delay of the IMU behind the encoders before it is bridged
-  double max_track_acceleration_mps2 = 10.0;  ///< largest acceleration of an accepted encoder reading
-  double buffer_s = 2.0;                      ///< length of the motion history
-  double max_extrapolation_s = 0.15;          ///< maximum time after the newest reading for which a pose is given
+  /// Maximum delay of the IMU behind the encoders, after which the tracks alone propagate the estimate.
+  double imu_timeout_s = 0.1;
+  /// Maximum track acceleration of an accepted encoder reading; larger ones are accepted only if they persist.
+  double max_track_acceleration_mps2 = 10.0;
+  double buffer_s = 2.0;              ///< length of the motion history, with which late readings are compared
+  double max_extrapolation_s = 0.15;  ///< maximum time after the newest reading to which a pose is extrapolated
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -4,16 +4,17 @@
 
 namespace patrol::localize {
 
-/// Weights of the mixture components, normalized by their sum, and their parameters.
+/// Settings of the beam model of a scan (beam_model.h). The mixture weights are normalized by their sum.
 struct BeamModelSettings {
-  double z_hit = 0.75;        ///< weight of a return from the surface of the map
-  double z_short = 0.1;       ///< weight of a return from an unmapped obstacle in front of the surface
-  double z_max = 0.1;         ///< weight of no return
-  double z_rand = 0.05;       ///< weight of a random return
-  double hit_std_m = 0.1;     ///< standard deviation of a return from the surface of the map
-  double short_mean_m = 5.0;  ///< mean of the exponential distribution of unmapped obstacles: 1 / lambda_short
-  double max_range_m = 30.0;  ///< maximum range of the model
-  int max_beams = 60;         ///< maximum number of beams of a scan that are used
+  double z_hit = 0.75;     ///< mixture weight of a return from the surface of the map
+  double z_short = 0.1;    ///< mixture weight of a return from an unmapped obstacle in front of the surface
+  double z_max = 0.1;      ///< mixture weight of a beam without return
+  double z_rand = 0.05;    ///< mixture weight of a random return
+  double hit_std_m = 0.1;  ///< standard deviation of the range of a return from the surface of the map
+  /// Mean of the exponential distribution of the ranges to unmapped obstacles: 1 / lambda_short in [Thrun05].
+  double short_mean_m = 5.0;
+  double max_range_m = 30.0;  ///< maximum range of the beam model; longer ranges count as no return
+  int max_beams = 60;         ///< maximum number of beams of a scan that the beam model evaluates
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

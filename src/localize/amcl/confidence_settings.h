@@ -4,15 +4,22 @@
 
 namespace patrol::localize {
 
+/// Settings of the confidence of the localization (confidence.h). The confidence is the product of factors for the
+/// standard deviation of the position, the scan, the ranges and the dominant particle cluster.
 struct ConfidenceSettings {
-  double std_at_confidence_1_m = 0.05;           ///< largest principal standard deviation up to which its factor is 1
-  double std_at_confidence_half_m = 0.25;        ///< standard deviation at which the factor is 0.5
-  double std_at_confidence_0_m = 1.0;            ///< standard deviation from which on the factor is 0
-  double full_confidence_fit = 0.6;              ///< inlier ratio of the scan from which on its factor is 1
-  double zero_confidence_fit = 0.3;              ///< inlier ratio of the scan up to which its factor is 0
-  double full_confidence_cluster_weight = 0.95;  ///< cluster weight from which on its factor is 1
-  double zero_confidence_cluster_weight = 0.5;   ///< cluster weight up to which its factor is 0
-  double lost_threshold = 0.1;                   ///< confidence below which the robot becomes lost
+  /// Maximum standard deviation of the position, along its major axis, with a confidence factor of 1.
+  double std_at_confidence_1_m = 0.05;
+  /// Standard deviation of the position, along its major axis, with a confidence factor of 0.5.
+  double std_at_confidence_half_m = 0.25;
+  /// Minimum standard deviation of the position, along its major axis, with a confidence factor of 0.
+  double std_at_confidence_0_m = 1.0;
+  double full_confidence_fit = 0.6;  ///< minimum inlier ratio of the scan with a confidence factor of 1
+  double zero_confidence_fit = 0.3;  ///< maximum inlier ratio of the scan with a confidence factor of 0
+  /// Minimum weight of the dominant particle cluster with a confidence factor of 1.
+  double full_confidence_cluster_weight = 0.95;
+  /// Maximum weight of the dominant particle cluster with a confidence factor of 0.
+  double zero_confidence_cluster_weight = 0.5;
+  double lost_threshold = 0.1;  ///< confidence below which the robot becomes lost
   /// Confidence above which a lost robot recovers, if the cluster weight is at least full_confidence_cluster_weight.
   double found_threshold = 0.2;
 

@@ -4,15 +4,22 @@
 
 namespace patrol::localize {
 
+/// Settings of the injection of particles when the localization diverges (divergence_monitor.h).
 struct DivergenceMonitorSettings {
-  double alpha_slow = 0.02;     ///< filter constant of the long-term average of the scan likelihood, per update
-  double alpha_fast = 0.2;      ///< filter constant of the short-term average, per update
-  double fast_over_slow = 1.5;  ///< ratio of the long-term to the short-term average above which particles are injected
-  double alpha_range = 0.1;     ///< filter constant of the average range likelihood, per range
-  /// Inlier ratio of the scan below which particles are injected, regardless of the averages.
+  /// Filter constant of the long-term average of the scan likelihood, per update [Thrun05, table 8.3].
+  double alpha_slow = 0.02;
+  /// Filter constant of the short-term average of the scan likelihood, per update [Thrun05, table 8.3], and of the mean
+  /// inlier ratio, per scan.
+  double alpha_fast = 0.2;
+  /// Ratio of the long-term to the short-term average of the scan likelihood above which particles are injected, nu in
+  /// [Gutmann02].
+  double fast_over_slow = 1.5;
+  double alpha_range = 0.1;  ///< filter constant of the mean range likelihood, per range
+  /// Mean inlier ratio of the scans below which particles are injected, regardless of the averages of the scan
+  /// likelihood.
   double min_scan_fit = 0.4;
-  double min_range_fit = 0.25;          ///< mean range likelihood below which particles are injected
-  double max_injection_fraction = 0.5;  ///< maximum fraction of injected particles
+  double min_range_fit = 0.25;  ///< mean range likelihood, relative to its maximum, below which particles are injected
+  double max_injection_fraction = 0.5;  ///< maximum fraction of the particles that are replaced by injected ones
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -4,12 +4,13 @@
 
 namespace patrol::localize {
 
+/// Settings of the global search for the pose on the whole map (global_search.h).
 struct GlobalSearchSettings {
-  double step_m = 0.4;           ///< spacing of the coarse position grid
-  double step_rad = 0.105;       ///< spacing of the coarse heading grid: 6 degrees
-  int max_beams = 60;            ///< maximum number of beams of a scan that the search uses
-  int coarse_samples = 1000;     ///< number of samples of coarse cells that are refined
-  double min_clearance_m = 0.2;  ///< minimum distance of the body from walls
+  double step_m = 0.4;           ///< spacing of the coarse position grid of a global search
+  double step_rad = 0.105;       ///< spacing of the coarse heading grid of a global search; 0.105: 6 degrees
+  int max_beams = 60;            ///< maximum number of beams of a scan that a global search uses
+  int coarse_samples = 1000;     ///< number of samples of coarse cells, drawn by their likelihood, that are refined
+  double min_clearance_m = 0.2;  ///< minimum distance of a candidate position from walls
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

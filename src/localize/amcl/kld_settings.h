@@ -4,11 +4,14 @@
 
 namespace patrol::localize {
 
+/// Settings of KLD sampling, which adapts the number of particles to their spread (kld.h).
 struct KldSettings {
-  double bin_m = 0.5;               ///< size of a bin of the histogram in x and y
-  double bin_rad = 0.1745;          ///< size of a bin of the histogram in yaw; 10 degrees
-  double max_kl_divergence = 0.05;  ///< maximum Kullback-Leibler distance between particles and belief
-  /// Upper quantile of the normal distribution for the probability of keeping max_kl_divergence: 0.99.
+  double bin_m = 0.5;       ///< size of a bin of the particle histogram in x and y
+  double bin_rad = 0.1745;  ///< size of a bin of the particle histogram in yaw; 0.1745: 10 degrees
+  /// Maximum Kullback-Leibler divergence between particles and belief, epsilon in [Fox03].
+  double max_kl_divergence = 0.05;
+  /// Upper quantile of the standard normal distribution for the probability of keeping max_kl_divergence, z in [Fox03];
+  /// 2.326: probability of 0.99.
   double normal_quantile = 2.326;
   int min_particles = 300;   ///< minimum number of particles
   int max_particles = 5000;  ///< maximum number of particles

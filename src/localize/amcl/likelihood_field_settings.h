@@ -4,11 +4,13 @@
 
 namespace patrol::localize {
 
+/// Settings of the likelihood-field model of a scan (likelihood_field.h).
 struct LikelihoodFieldSettings {
-  /// Standard deviation of a beam's end from the nearest surface: range noise, map error and tilt.
+  /// Standard deviation of the distance of a beam's end from the nearest surface of the map: range noise, map error and
+  /// tilt.
   double hit_std_m = 0.1;
-  double z_rand = 0.05;  ///< likelihood of an end far from all surfaces relative to one on a surface
-  int max_beams = 180;   ///< maximum number of evaluated beams; the cost is proportional to it
+  double z_rand = 0.05;  ///< likelihood of a beam's end far from all surfaces, relative to an end on a surface
+  int max_beams = 180;   ///< maximum number of evaluated beams of a scan; the cost is proportional to it
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -34,20 +34,21 @@ std::span<const SensorModelFactory> sensor_models();
 struct MonteCarloSettings {
   /// Sensor model of the particle weights (`patrol list sensor_models`).
   std::string sensor_model = "likelihood_field";
-  /// Tempering: effective number of independent beams of a scan, however many are evaluated.
+  /// Maximum effective number of independent beams of a scan, however many are evaluated: tempering of the likelihood.
   double effective_beams = 20.0;
   /// Tolerance of the mean log likelihood per beam for errors of map and model: 3 cm for a standard deviation of 0.1 m.
   double scan_fit_tolerance = 0.05;
-  double update_distance_m = 0.2;  ///< distance traveled between particle updates
-  double update_angle_rad = 0.05;  ///< yaw change between particle updates
-  double update_period_s = 1.0;    ///< maximum time between particle updates while lost
-  double max_tilt_rad = 0.1;  ///< tilt above which scans, for example on a ramp, are not used unless the robot is lost
-  /// Effective sample size, relative to the number of particles, below which the filter resamples.
+  double update_distance_m = 0.2;  ///< distance traveled between two updates of the particles
+  double update_angle_rad = 0.05;  ///< yaw change between two updates of the particles
+  double update_period_s = 1.0;    ///< maximum time between two updates of the particles while the robot is lost
+  /// Maximum tilt of a scan that is used, for example on a ramp; unlimited while the robot is lost.
+  double max_tilt_rad = 0.1;
+  /// Effective sample size, relative to the number of particles, below which the particles are resampled.
   double resample_threshold = 0.5;
-  /// Minimum number of particles while lost: with fewer, hypotheses would disappear by chance.
+  /// Minimum number of particles while the robot is lost: with fewer, hypotheses would disappear by chance.
   int min_particles_lost = 2000;
-  double range_buffer_s = 2.0;     ///< maximum age of ranges used in a global search
-  double search_period_s = 1.0;    ///< minimum time between global searches
+  double range_buffer_s = 2.0;     ///< maximum age of UWB ranges used in a global search
+  double search_period_s = 1.0;    ///< minimum time between two global searches
   int max_logged_particles = 300;  ///< maximum number of particles in a message on /particles
   OdometryModelSettings odometry;
   LikelihoodFieldSettings likelihood_field;

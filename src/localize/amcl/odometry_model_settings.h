@@ -5,11 +5,12 @@
 
 namespace patrol::localize {
 
+/// Settings of the motion model of the particles (odometry_model.h).
 struct OdometryModelSettings {
-  /// Standard deviation of the persistent scale error of the distance: track wear, steady slip.
+  /// Standard deviation of the persistent scale error of odometry's distance: track wear, steady slip.
   double scale_std = 0.02;
-  double scale_correlation_length_m = 50.0;  ///< correlation length of the scale error
-  slam::MotionModelSettings noise;           ///< independent error of each step
+  double scale_correlation_length_m = 50.0;  ///< correlation length of the scale error of odometry's distance
+  slam::MotionModelSettings noise;           ///< independent errors of an odometry step
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

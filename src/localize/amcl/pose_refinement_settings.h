@@ -4,19 +4,28 @@
 
 namespace patrol::localize {
 
+/// Settings of the refinement of the pose by matching a scan to the map (pose_refinement.h).
 struct PoseRefinementSettings {
-  int max_points = 400;                 ///< maximum number of scan points matched to the map
-  double point_spacing_m = 0.1;         ///< distance of consecutive beam ends below which they are averaged
-  double point_std_m = 0.03;            ///< standard deviation of the range of a point and of the map cells
-  double point_angle_std_rad = 0.0015;  ///< standard deviation of the direction of a point
-  double kernel_m = 0.08;             ///< scale of the Cauchy kernel; residuals beyond it are down-weighted as outliers
-  double likelihood_tempering = 0.1;  ///< tempering factor: fraction of the points with independent errors
-  /// Minimum sine of the angle between a line and the weak direction that the line constrains.
+  int max_points = 400;  ///< maximum number of scan points matched to the map
+  /// Maximum distance between the first and last of the consecutive beam ends averaged to one scan point.
+  double point_spacing_m = 0.1;
+  /// Standard deviation of the distance of a scan point from its line: range noise and map cells.
+  double point_std_m = 0.03;
+  double point_angle_std_rad = 0.0015;  ///< standard deviation of the direction of a scan point from the lidar
+  /// Scale of the Cauchy kernel of the point-to-line distances; residuals beyond it are down-weighted as outliers.
+  /// Points within twice the scale are inliers.
+  double kernel_m = 0.08;
+  /// Tempering factor of the information of a scan: fraction of the points with independent errors.
+  double likelihood_tempering = 0.1;
+  /// Minimum sine of the angle to the weak direction of a scan for a map line that constrains this direction (solution
+  /// remapping [Zhang16]).
   double min_incidence_sine = 0.15;
-  double map_std_m = 0.01;        ///< standard deviation of the map itself, which is not reduced by averaging
-  double map_std_rad = 0.001;     ///< standard deviation of the yaw error that the map causes
-  int max_iterations = 8;         ///< maximum number of iterations of the refinement
-  double min_inlier_ratio = 0.3;  ///< minimum inlier ratio of an accepted match
+  /// Standard deviation of the position error that the map causes, which is not reduced by averaging.
+  double map_std_m = 0.01;
+  /// Standard deviation of the yaw error that the map causes, which is not reduced by averaging.
+  double map_std_rad = 0.001;
+  int max_iterations = 8;         ///< maximum number of iterations of the pose refinement
+  double min_inlier_ratio = 0.3;  ///< minimum inlier ratio of an accepted scan match
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

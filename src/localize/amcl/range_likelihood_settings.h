@@ -4,13 +4,16 @@
 
 namespace patrol::localize {
 
+/// Settings of the likelihood of a UWB range for a particle (range_likelihood.h).
 struct RangeLikelihoodSettings {
-  /// Standard deviation of a LOS range; larger than that of the radio, because consecutive ranges have correlated
-  /// errors.
+  /// Standard deviation of a line-of-sight (LOS) range; larger than that of the radio, because consecutive ranges have
+  /// correlated errors.
   double range_std_m = 0.15;
-  double nlos_probability = 0.1;      ///< likelihood of a marginal NLOS path relative to that of an exact range
-  double nlos_bias_m = 0.5;           ///< mean NLOS bias
-  double outlier_probability = 0.02;  ///< likelihood of any other range
+  /// Likelihood of a non-line-of-sight (NLOS) range with a small bias, relative to an exact range.
+  double nlos_probability = 0.1;
+  double nlos_bias_m = 0.5;  ///< mean bias of non-line-of-sight (NLOS) ranges
+  /// Likelihood of an outlier relative to an exact range: lower bound of the range likelihood.
+  double outlier_probability = 0.02;
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -9,12 +9,13 @@ namespace patrol::localize {
 
 /// Settings of the estimation of the range delays of UWB anchors.
 struct AnchorDelayEstimatorSettings {
-  double prior_delay_std_m = 0.15;  ///< standard deviation of the delay of an anchor
-  double prior_map_std_m = 0.05;    ///< standard deviation of the origin of map in the survey: put-down error
-  double prior_map_std_rad = 0.01;  ///< standard deviation of the yaw of map in the survey
+  double prior_delay_std_m = 0.15;  ///< prior standard deviation of the range delay of an anchor
+  double prior_map_std_m = 0.05;    ///< prior standard deviation of the origin of map in the survey: put-down error
+  double prior_map_std_rad = 0.01;  ///< prior standard deviation of the yaw of map in the survey: put-down error
   double range_std_m = 0.1;         ///< nominal standard deviation of a range in line of sight
-  double bias_std_m = 0.03;         ///< error of a delay by paths off the line of sight that are not rejected
-  double outlier_sigma = 2.5;       ///< residual above which a range is rejected, in standard deviations
+  /// Standard deviation of the error of a delay by non-line-of-sight (NLOS) ranges that are not rejected.
+  double bias_std_m = 0.03;
+  double outlier_sigma = 2.5;  ///< maximum residual of an accepted range, in standard deviations
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

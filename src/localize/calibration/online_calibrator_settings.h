@@ -10,15 +10,17 @@ namespace patrol::localize {
 
 /// Settings of the calibration while the robot drives, and of the use of its estimates.
 struct OnlineCalibratorSettings {
-  bool enabled = true;                      ///< use of the calibration while the robot drives
-  bool corrects_time_offset = true;         ///< use of the estimated time offset in the leveling of scans
-  bool corrects_lidar_yaw = true;           ///< use of the estimated lidar yaw in the leveling of scans
-  bool corrects_gyro_bias = true;           ///< use of the gyro bias by scan matching in odometry
-  double max_applied_std_s = 0.002;         ///< largest standard deviation of a time offset that is used
-  double max_applied_std_rad = 0.0025;      ///< largest standard deviation of a lidar yaw that is used
-  double max_offset_change_s_per_s = 0.05;  ///< maximum change of the applied time offset
-  double max_yaw_change_rad_per_s = 0.001;  ///< maximum change of the applied lidar yaw
-  double period_s = 1.0;                    ///< interval between published estimates
+  bool enabled = true;               ///< use of the calibration while the robot drives
+  bool corrects_time_offset = true;  ///< use of the estimated time offset in the leveling of scans
+  bool corrects_lidar_yaw = true;    ///< use of the estimated lidar yaw in the leveling of scans
+  bool corrects_gyro_bias = true;    ///< use of the gyro bias by scan matching in odometry
+  /// Maximum standard deviation of an applied time offset. A less certain offset is applied if it differs from the
+  /// present one by more than five standard deviations.
+  double max_applied_std_s = 0.002;
+  double max_applied_std_rad = 0.0025;      ///< maximum standard deviation of an applied lidar yaw
+  double max_offset_change_s_per_s = 0.05;  ///< maximum rate of change of the applied time offset
+  double max_yaw_change_rad_per_s = 0.001;  ///< maximum rate of change of the applied lidar yaw
+  double period_s = 1.0;                    ///< interval between published estimates of the calibration
   ScanMotionSettings scan_motion;
   TimeOffsetEstimatorSettings time_offset;
   OdometryCalibratorSettings odometry;

@@ -8,16 +8,17 @@ namespace patrol::localize {
 
 /// Settings of the scan matching that measures the lidar's motion for the calibration.
 struct ScanMotionSettings {
-  double resolution_m = 0.05;         ///< resolution of the local maps
-  double map_length_m = 6.0;          ///< distance after which a new local map starts
-  double keyframe_distance_m = 0.3;   ///< distance after which a scan is added to the local map
-  double keyframe_angle_rad = 0.3;    ///< rotation after which a scan is added to the local map
-  double min_inlier_ratio = 0.6;      ///< minimum inlier ratio of a scan that is used
-  double start_std_m = 0.1;           ///< standard deviation of the weak position prior around the odometry prediction
-  double start_std_rad = 0.05;        ///< standard deviation of the weak yaw prior around the odometry prediction
-  double likelihood_tempering = 0.2;  ///< fraction of the points with independent errors
-  double match_std_m = 0.001;         ///< standard deviation of the systematic error of a match
-  double match_std_rad = 0.0002;      ///< standard deviation of the systematic rotation error of a match
+  double resolution_m = 0.05;        ///< resolution of the local maps of the calibration
+  double map_length_m = 6.0;         ///< distance traveled after which a new local map starts
+  double keyframe_distance_m = 0.3;  ///< distance traveled after which a scan is added to the local map
+  double keyframe_angle_rad = 0.3;   ///< rotation after which a scan is added to the local map
+  double min_inlier_ratio = 0.6;     ///< minimum inlier ratio of a matched scan
+  double start_std_m = 0.1;          ///< standard deviation of the weak position prior around the odometry prediction
+  double start_std_rad = 0.05;       ///< standard deviation of the weak yaw prior around the odometry prediction
+  /// Tempering factor of the information of a match: fraction of the points with independent errors.
+  double likelihood_tempering = 0.2;
+  double match_std_m = 0.001;     ///< standard deviation of the systematic position error of a match
+  double match_std_rad = 0.0002;  ///< standard deviation of the systematic yaw error of a match
   slam::ScanMatcherSettings matching{.max_points = 300, .point_spacing_m = 0.1};
   slam::ScanIntegrationSettings integration{.free_ray_stride = 12};
 

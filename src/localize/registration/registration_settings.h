@@ -6,9 +6,9 @@ namespace patrol::localize {
 
 /// Settings of the registration of the map to the survey.
 struct RegistrationSettings {
-  bool use_gnss = true;  ///< use of GNSS fixes
-  bool use_uwb = true;   ///< use of UWB ranges
-  bool use_dock = true;  ///< use of detections of the charging post
+  bool use_gnss = true;  ///< use of GNSS fixes in the registration of the map
+  bool use_uwb = true;   ///< use of UWB ranges in the registration of the map
+  bool use_dock = true;  ///< use of detections of the charging post in the registration of the map
   /// Prior standard deviation of the position at the surveyed start, where the robot is put down by hand.
   double start_position_std_m = 0.02;
   /// Prior standard deviation of the yaw at the surveyed start, with the mounting yaw of the lidar, which turns the map
@@ -16,31 +16,37 @@ struct RegistrationSettings {
   double start_yaw_std_deg = 0.6;
   /// Prior standard deviation of the position of a given map, whose frame has been surveyed.
   double given_map_position_std_m = 0.02;
-  double given_map_yaw_std_deg = 0.05;     ///< prior standard deviation of the yaw of a given map
-  double fix_correlation_time_s = 20.0;    ///< correlation time of the errors of RTK fixes (core/sensors/gnss.h)
-  double float_correlation_time_s = 60.0;  ///< correlation time of the errors of float solutions
-  double dock_std_m = 0.02;                ///< standard deviation of survey and outline of the charging post
-  /// Standard deviation of the yaw of the charging post. It contains the bend of the map beyond the post: a yaw that
+  /// Prior standard deviation of the yaw of a given map, whose frame has been surveyed.
+  double given_map_yaw_std_deg = 0.05;
+  double fix_correlation_time_s = 20.0;  ///< correlation time of the errors of RTK fixes (core/sensors/gnss.h)
+  /// Correlation time of the errors of RTK float solutions (core/sensors/gnss.h).
+  double float_correlation_time_s = 60.0;
+  double dock_std_m = 0.02;  ///< standard deviation of the position of the charging post: survey and outline
+  /// Standard deviation of the yaw of the charging post. It contains the bend of the map beyond the post. A yaw that
   /// holds at the post moves the other end of a bent map of 150 m.
   double dock_yaw_std_deg = 1.0;
-  double range_std_m = 0.12;              ///< standard deviation of a UWB range in line of sight, without its delay
+  /// Standard deviation of a UWB range in line of sight, without the constant error of its anchor.
+  double range_std_m = 0.12;
   double range_correlation_time_s = 2.0;  ///< correlation time of the errors of UWB ranges: reflections
   double anchor_delay_std_m = 0.1;        ///< standard deviation of the constant error of the ranges to an anchor
-  double range_min_distance_m = 2.0;      ///< minimum distance between two ranges to one anchor
-  /// Standard deviation of the map's own deformation at a position. It is added to that of each measurement, and to the
-  /// published pose.
+  double range_min_distance_m = 2.0;      ///< minimum distance between two UWB ranges to one anchor
+  /// Standard deviation of the map's own deformation at a position. It is added in quadrature to the standard deviation
+  /// of each measurement and of the published pose.
   double map_std_m = 0.02;
-  /// Correlation time of the map's deformation. The sum of the errors of fix and map is taken as one process with the
-  /// longer of the two correlation times.
+  /// Correlation time of the map's deformation. The sum of the errors of a GNSS position and of the map is one process
+  /// with the longer of their correlation times.
   double map_correlation_time_s = 100.0;
-  /// Standard deviation of the body's yaw by the map's own deformation, with the remaining mounting yaw.
+  /// Standard deviation of the body's yaw by the map's own deformation, with the remaining error of the lidar's
+  /// mounting yaw.
   double map_yaw_std_deg = 0.15;
-  double min_distance_m = 0.5;       ///< minimum distance between two GNSS fixes of one status
+  /// Minimum distance between two GNSS fixes of one status, or between two detections of the charging post.
+  double min_distance_m = 0.5;
   double max_interval_s = 10.0;      ///< maximum time between two measurements of one source while the robot stands
   int max_measurements = 600;        ///< maximum number of stored measurements; above it every second one is dropped
-  double outlier_scale_sigma = 4.0;  ///< scale of the Cauchy loss, standard deviations
-  double period_s = 1.0;             ///< period of the estimation
-  /// Minimum displacement of any point of the survey by which the mission's stations and the keep-out lines follow.
+  double outlier_scale_sigma = 4.0;  ///< scale of the Cauchy loss of a measurement, in standard deviations
+  double period_s = 1.0;             ///< period of the registration of the map
+  /// Minimum displacement of any point of the survey for which the mission's stations and the keep-out lines follow the
+  /// registration.
   double min_site_shift_m = 0.03;
 
   template <typename Self, typename Visitor>
