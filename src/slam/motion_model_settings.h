@@ -4,6 +4,7 @@
 
 namespace patrol::slam {
 
+/// Noise of the motion measured by odometry.
 struct MotionModelSettings {
   /// Standard deviation of the distance along the motion; for leg odometry: scale error.
   double longitudinal_std_m_per_m = 0.01;

@@ -4,6 +4,7 @@
 
 namespace patrol::slam {
 
+/// Insertion of scans into an occupancy grid.
 struct ScanIntegrationSettings {
   int free_ray_stride = 6;  ///< stride of the beams that are traced through free space: one of every N, with weight N
   /// Distance before the hit at which a free ray ends, so that it does not clear the wall.

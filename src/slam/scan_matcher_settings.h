@@ -4,6 +4,7 @@
 
 namespace patrol::slam {
 
+/// Matching of a scan to a map: coarse search, then least squares on the points.
 struct ScanMatcherSettings {
   int max_points = 800;                 ///< maximum number of scan points that are matched
   double point_spacing_m = 0.08;        ///< distance of consecutive beam ends below which they are averaged

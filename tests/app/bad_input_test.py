@@ -202,6 +202,10 @@ class BadInput(unittest.TestCase):
     def test_unwritable_output(self):
         self.refuse("run", SHORT, "--out", "/proc/patrol", says=["/proc/patrol"])
 
+    def test_replay_into_a_file_of_an_unknown_format(self):
+        self.refuse("replay", "absent", "--out", "film.gif", says=["--out film.gif: must end with .mp4 or .webp"])
+        self.refuse("replay", "absent", "--still=1", "--out", "still.jpg", says=["--out still.jpg: must end with .png"])
+
     def test_unknown_command(self):
         self.refuse("fly", says=["unknown command 'fly' (known: run, score, "])
 

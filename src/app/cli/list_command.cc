@@ -18,6 +18,7 @@
 #include "core/named_table.h"
 #include "core/route.h"
 #include "core/text.h"
+#include "io/json/table_json.h"
 #include "io/logs/topics.h"
 #include "plan/routes/planners.h"
 #include "slam/methods/mapper.h"
@@ -214,7 +215,7 @@ ExitCode list_command(const ListOptions& options) {
     known.push_back(section.table.name);
     if (options.section && *options.section != section.table.name) continue;
     text += to_text(section);
-    json[section.table.name] = to_json(section.table);
+    json[section.table.name] = io::to_json(section.table);
   }
   if (json.empty())
     throw InputError(fmt::format("unknown section '{}' (known: {})", *options.section, join(known, ", ")));

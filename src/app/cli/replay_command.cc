@@ -1,22 +1,16 @@
-#include <sys/mman.h>
-
-#include <algorithm>
-#include <atomic>
 #include <charconv>
-#include <cstdlib>
-#include <new>
-#include <numeric>
-#include <stdexcept>
+#include <string>
+#include <system_error>
+#include <tuple>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
-#include "app/campaign/batch/batch_options.h"
-#include "app/campaign/batch/process_pool.h"
 #include "app/cli/commands.h"
-#include "app/common/progress_bar.h"
+#include "app/film/render_film.h"
 #include "app/record/run_directory.h"
 #include "app/record/run_record.h"
-#include "app/run/run_loop.h"
 #include "core/error.h"
 #include "render/film/replay.h"
 
@@ -24,7 +18,6 @@ namespace patrol::app {
 namespace {
 
 constexpr int kMinSize = 64, kMaxSize = 3840;
-constexpr double kRenderTimeout_s = 86400.0;  // of one process
 
 /// Parses "1280x720". The encoder takes even sizes only.
 std::pair<int, int> parse_size(const std::string& text) {
@@ -59,6 +52,14 @@ render::ReplaySettings replay_settings(const ReplayOptions& options) {
   return settings;
 }
 
+/// Throws InputError unless the name of the output file ends with a format that can be written.
+void check_output_name(const std::filesystem::path& out, bool is_still) {
+  const std::string extension = out.extension().string();
+  if (is_still && extension != ".png") throw InputError(fmt::format("--out {}: must end with .png", out.string()));
+  if (!is_still && extension != ".mp4" && extension != ".webp")
+    throw InputError(fmt::format("--out {}: must end with .mp4 or .webp", out.string()));
+}
+
 /// Highlights at the start of faults. They come from the scenario because the log does not contain them.
 std::vector<render::Highlight> fault_highlights(const std::vector<sim::FaultSettings>& faults) {
   std::vector<render::Highlight> highlights;
@@ -71,73 +72,11 @@ std::vector<render::Highlight> fault_highlights(const std::vector<sim::FaultSett
   return highlights;
 }
 
-/// Memory that this process has in common with processes forked from it: completed fraction of each part.
-class SharedProgress {
- public:
-  explicit SharedProgress(std::size_t num_parts) : num_parts_(num_parts) {
-    void* memory = ::mmap(nullptr, bytes(), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-    if (memory == MAP_FAILED) throw std::runtime_error("cannot allocate shared memory");
-    done_ = static_cast<std::atomic<double>*>(memory);
-    for (std::size_t i = 0; i < num_parts_; ++i) new (done_ + i) std::atomic<double>(0.0);
-  }
-  ~SharedProgress() { ::munmap(done_, bytes()); }
-  SharedProgress(const SharedProgress&) = delete;
-  SharedProgress& operator=(const SharedProgress&) = delete;
-
-  void set(std::size_t part, double done) { done_[part] = done; }
-  double mean() const { return std::accumulate(done_, done_ + num_parts_, 0.0) / static_cast<double>(num_parts_); }
-
- private:
-  std::size_t bytes() const { return num_parts_ * sizeof(std::atomic<double>); }
-
-  std::size_t num_parts_;
-  std::atomic<double>* done_ = nullptr;
-};
-
-/// Removes the segments of a film at the end of its lifetime, also after an error.
-struct SegmentRemover {
-  const render::ReplayFilm& film;
-  ~SegmentRemover() { film.remove_segments(); }
-};
-
-/// Renders all segments of a film, in up to `jobs` processes (0: one per core). Returns false if interrupted.
-bool render_in_processes(const render::ReplayFilm& film, int jobs) {
-  const BatchSettings batch = batch_settings({.jobs = jobs, .run_timeout_s = kRenderTimeout_s, .keep_runs = "none"});
-  const int num_parts = std::clamp(film.num_segments(), 1, batch.pool.num_processes);
-  ProgressBar bar;
-  const InterruptGuard interrupt;
-  const auto show = [&](double done) { bar.show(fmt::format("replay  {:3.0f} %", 100.0 * done), done); };
-  if (num_parts == 1) {
-    return film.render(0, 1, [&](double done) {
-      show(done);
-      return !interrupt.is_interrupted();
-    });
-  }
-  SharedProgress progress(static_cast<std::size_t>(num_parts));
-  ProcessPoolSettings pool = batch.pool;
-  pool.num_processes = num_parts;
-  const auto render_part = [&](std::size_t part) {
-    ::setenv("LP_NUM_THREADS", "1", 1);  // the rasterizer of OSMesa would start a thread per core in each process
-    film.render(static_cast<int>(part), num_parts, [&](double done) {
-      progress.set(part, done);
-      return true;
-    });
-    return 0;
-  };
-  const auto on_end = [&](const TaskEnd& end) {
-    if (end.exit_code != 0 || end.signal != 0)
-      throw std::runtime_error(fmt::format("replay: part {} failed: {}", end.task, end.last_stderr_line));
-  };
-  return run_in_processes(static_cast<std::size_t>(num_parts), pool, render_part, on_end, [&] {
-    show(progress.mean());
-    return !interrupt.is_interrupted();
-  });
-}
-
 }  // namespace
 
 ExitCode replay_command(const ReplayOptions& options) {
   render::ReplaySettings settings = replay_settings(options);
+  if (options.out) check_output_name(*options.out, options.still_s.has_value());
   const RunDirectory directory = open_run_directory(options.run);
   const Scenario scenario = load_scenario(directory.scenario());
   const ScenarioFiles files = load_scenario_files(scenario, find_data_root(directory.scenario()));
@@ -167,10 +106,7 @@ ExitCode replay_command(const ReplayOptions& options) {
   }
   const std::filesystem::path out = options.out.value_or(directory.root / "replay.mp4");
   const render::ReplayFilm film(directory.log(), std::move(model), T_world_map, settings, out);
-  const SegmentRemover segments{film};
-  if (render_in_processes(film, options.jobs)) {
-    film.join();
-  } else {
+  if (!render_film(film, options.jobs)) {
     fmt::print(stderr, "patrol: interrupted; no video written\n");
     return ExitCode::kProgramFailed;
   }

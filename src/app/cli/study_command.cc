@@ -18,6 +18,7 @@
 #include "io/files/atomic_file.h"
 #include "io/files/csv.h"
 #include "io/json/metrics_json.h"
+#include "io/json/table_json.h"
 #include "report/page.h"
 #include "studies/study_results.h"
 

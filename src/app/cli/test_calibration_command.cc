@@ -20,6 +20,7 @@
 #include "core/error.h"
 #include "io/files/atomic_file.h"
 #include "io/files/csv.h"
+#include "io/json/table_json.h"
 
 namespace patrol::app {
 namespace {
@@ -161,7 +162,7 @@ ExitCode test_calibration_command(const TestOptions& options) {
   io::save_text(out / "expect.yaml", sections);
   complete_output(out);
   if (!options.write) text += sections;
-  print_result(options.form, text, to_json(table));
+  print_result(options.form, text, io::to_json(table));
   return worst;
 }
 

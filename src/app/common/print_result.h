@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <string>
 
-#include "io/files/table.h"
 #include "io/json/metrics_json.h"
 
 namespace patrol::app {
@@ -13,8 +12,5 @@ enum class ResultForm : std::uint8_t { kText, kJson };
 
 /// Prints `text`, or `json` indented by two spaces. NaN and infinity become null.
 void print_result(ResultForm form, const std::string& text, const io::Metrics& json);
-
-/// Rows of a table as a list of objects, one key per column; an empty cell is null.
-io::Metrics to_json(const io::Table& table);
 
 }  // namespace patrol::app

@@ -8,7 +8,7 @@ namespace patrol::localize {
 struct KldSettings {
   double bin_m = 0.5;       ///< size of a bin of the particle histogram in x and y
   double bin_rad = 0.1745;  ///< size of a bin of the particle histogram in yaw; 0.1745: 10 degrees
-  /// Maximum Kullback-Leibler divergence between particles and belief, epsilon in [Fox03].
+  /// Maximum Kullback-Leibler divergence between particles and posterior, epsilon in [Fox03].
   double max_kl_divergence = 0.05;
   /// Upper quantile of the standard normal distribution for the probability of keeping max_kl_divergence, z in [Fox03];
   /// 2.326: probability of 0.99.

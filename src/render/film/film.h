@@ -8,7 +8,7 @@
 #include "render/film/director.h"
 #include "render/frame_renderer.h"
 #include "render/run_snapshot.h"
-#include "render/video.h"
+#include "render/video/video_writer.h"
 
 namespace patrol::render {
 

@@ -16,6 +16,7 @@
 #include "render/frame_renderer.h"
 #include "render/scene/scene_painter.h"
 #include "render/snapshot_builder.h"
+#include "render/video/join_videos.h"
 
 namespace patrol::render {
 namespace {

@@ -59,7 +59,7 @@ class ReplayFilm {
   /// Removes the files of the segments.
   void remove_segments() const;
 
-  /// Maximum number of parts that have a segment each.
+  /// Number of segments. Parts beyond this number have nothing to render.
   int num_segments() const;
   int num_frames() const { return num_frames_; }
   int num_chapters() const { return static_cast<int>(plan_.chapters.size()); }

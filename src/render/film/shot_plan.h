@@ -8,7 +8,7 @@
 #include "render/film/highlight.h"
 #include "render/film/run_history.h"
 #include "render/film/speed_plan.h"
-#include "render/video.h"
+#include "render/video/chapter.h"
 
 namespace patrol::render {
 

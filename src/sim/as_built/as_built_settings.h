@@ -107,7 +107,7 @@ struct JointTolerances {
   double zero_offset_deg = 0.3;  ///< tolerance of the zero position of each joint
   double play_deg = 0.1;         ///< maximum total play between encoder and joint; the load decides the side. The play
                                  ///< of each joint is uniform between half of it and all of it. Gears of one type
-                                 ///< share their clearance by design, and wear and manufacturing add up to as much
+                                 ///< have the same clearance by design, and wear and manufacturing add up to as much
                                  ///< again (assumption)
 
   template <typename Self, typename Visitor>

@@ -11,7 +11,7 @@ struct SubmapMatcherSettings {
   int search_points = 300;         ///< number of points of the search
   /// Minimum overlap ratio: points in observed cells of the other map, in both directions.
   double min_overlap_ratio = 0.35;
-  /// Minimum inlier ratio: points in the overlap that lie on a surface of the other map, in both directions.
+  /// Minimum inlier ratio: points in the overlap that are on a surface of the other map, in both directions.
   double min_inlier_ratio = 0.75;
   double min_matched_length_m = 8.0;  ///< minimum length of matched surface
   /// Largest score of a distinct pose, relative to the best score, of an accepted match.

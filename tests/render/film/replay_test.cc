@@ -7,7 +7,7 @@
 #include "core/error.h"
 #include "io/logs/run_log.h"
 #include "render/scene/palette.h"
-#include "render/video.h"
+#include "render/video/inspect_video.h"
 #include "tests/render/small_scene.h"
 #include "tests/support/temporary_file.h"
 

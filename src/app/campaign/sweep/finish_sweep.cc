@@ -7,6 +7,7 @@
 #include "app/campaign/sweep/fault_tables.h"
 #include "app/campaign/sweep/sweep_tables.h"
 #include "io/files/atomic_file.h"
+#include "io/json/table_json.h"
 
 namespace patrol::app {
 namespace {
@@ -67,7 +68,7 @@ ExitCode finish_sweep(const SweepDirectory& directory, const SweepManifest& mani
   const Findings findings = findings_of(manifest, rows, progress);
   if (!findings.markdown.empty()) io::save_text(directory.root / "faults.md", findings.markdown);
   complete_sweep_directory(directory, findings.tables);
-  for (const io::Table& table : findings.tables) json["tables"][table.name] = to_json(table);
+  for (const io::Table& table : findings.tables) json["tables"][table.name] = io::to_json(table);
   print_result(form,
                fmt::format("{}{} runs: {}\n", findings.text, progress.counted.size(),
                            directory.table(findings.tables.back().name).string()),

@@ -1,4 +1,4 @@
-#include "render/video.h"
+#include "render/video/video_writer.h"
 
 #include <filesystem>
 #include <string>
@@ -6,9 +6,10 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "render/video/inspect_video.h"
 #include "tests/support/temporary_file.h"
 
-namespace patrol::render::video_test {
+namespace patrol::render::video_writer_test {
 namespace {
 
 void write_film(const std::filesystem::path& file, int num_frames) {
@@ -23,7 +24,7 @@ void write_film(const std::filesystem::path& file, int num_frames) {
   video.finish();
 }
 
-TEST(Video, HoldsEveryFrameAtItsSizeAndRate) {
+TEST(VideoWriter, HoldsEveryFrameAtItsSizeAndRate) {
   const test::TemporaryFolder folder;
   write_film(folder / "film.mp4", 30);
   const VideoInfo info = inspect_video(folder / "film.mp4");
@@ -33,21 +34,21 @@ TEST(Video, HoldsEveryFrameAtItsSizeAndRate) {
   EXPECT_NEAR(info.duration_s, 30 / 25.0, 0.05);
 }
 
-TEST(Video, SameFramesGiveTheSameBytes) {
+TEST(VideoWriter, SameFramesGiveTheSameBytes) {
   const test::TemporaryFolder folder;
   write_film(folder / "a.mp4", 12);
   write_film(folder / "b.mp4", 12);
   EXPECT_EQ(test::read_bytes(folder / "a.mp4"), test::read_bytes(folder / "b.mp4"));
 }
 
-TEST(Video, CanBePlayedBeforeAllOfItHasCome) {
+TEST(VideoWriter, CanBePlayedBeforeAllOfItHasCome) {
   const test::TemporaryFolder folder;
   write_film(folder / "film.mp4", 12);
   const std::string bytes = test::read_bytes(folder / "film.mp4");
   EXPECT_LT(bytes.find("moov"), bytes.find("mdat"));
 }
 
-TEST(Video, LeavesNothingBehindWhenItIsNotFinished) {
+TEST(VideoWriter, LeavesNothingBehindWhenItIsNotFinished) {
   const test::TemporaryFolder folder;
   {
     VideoWriter video(folder / "film.mp4", 160, 90, 25.0);
@@ -56,7 +57,7 @@ TEST(Video, LeavesNothingBehindWhenItIsNotFinished) {
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
-TEST(Video, KeepsItsChapters) {
+TEST(VideoWriter, KeepsItsChapters) {
   const test::TemporaryFolder folder;
   VideoWriter video(folder / "film.mp4", 160, 90, 25.0, {{0.0, 0.4, "Start"}, {0.4, 1.0, "Leak at box 2: 4070 ppm m"}});
   for (int i = 0; i < 25; ++i) video.add(Frame(160, 90));
@@ -69,15 +70,20 @@ TEST(Video, KeepsItsChapters) {
   EXPECT_EQ(info.chapters[1].title, "Leak at box 2: 4070 ppm m");
 }
 
-TEST(Video, RefusesAnOddSize) {
+TEST(VideoWriter, RefusesAnOddSize) {
   const test::TemporaryFolder folder;
   EXPECT_THROW(VideoWriter(folder / "film.mp4", 161, 90, 25.0), InputError);
 }
 
-TEST(Video, NamesThePlaceThatCannotBeWritten) {
+TEST(VideoWriter, NamesThePlaceThatCannotBeWritten) {
   EXPECT_THROW(VideoWriter("/nowhere/at/all/film.mp4", 160, 90, 25.0), InputError);
-  EXPECT_THROW(inspect_video("/nowhere/at/all/film.mp4"), InputError);
+}
+
+TEST(VideoWriter, RefusesANameOfAnUnknownFormat) {
+  const test::TemporaryFolder folder;
+  EXPECT_THROW(VideoWriter(folder / "film.gif", 160, 90, 25.0), InputError);
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
 }  // namespace
-}  // namespace patrol::render::video_test
+}  // namespace patrol::render::video_writer_test

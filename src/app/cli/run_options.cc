@@ -1,0 +1,108 @@
+#include "app/cli/command_options.h"
+
+namespace patrol::app {
+namespace {
+
+void add_run(CLI::App& app, Call& call) {
+  RunOptions& run = call.run;
+  CLI::App* command = app.add_subcommand("run", "Run a scenario headless and score it");
+  add_scenario(*command, run.scenario);
+  command->add_option("--set", run.overrides, kSetHelp)->take_all();
+  command->add_option("--seed", run.seed, kSeedHelp);
+  command->add_flag("--watch", run.watch, "Show live status in the terminal");
+  command->add_option("--out", run.out, kOutHelp);
+  command->add_option("--monitor-url", run.monitor_url, "Monitoring server, http://host:port");
+  command->add_option("--monitor-token-file", run.monitor_token_file, kTokenHelp);
+  command->add_option("--robot-name", run.robot_name, "Robot name shown by the monitor (default: robot and seed)");
+  command->add_flag("--all", run.show_all, kAllHelp);
+  add_json(*command, run.form);
+  command->callback([&] { call.chosen = [&] { return run_command(call.run); }; });
+}
+
+void add_score(CLI::App& app, Call& call) {
+  ScoreOptions& score = call.score;
+  CLI::App* command = app.add_subcommand("score", "Evaluate a run, a trajectory or a map");
+  command->add_option("run", score.run, "Run directory");
+  command->add_option("--estimate", score.estimate, "Estimated trajectory (TUM)");
+  command->add_option("--reference", score.reference, "Reference trajectory (TUM)");
+  command->add_option("--relations", score.relations, "Reference relations (Freiburg: t1 t2 x y z roll pitch yaw)");
+  score::RelationSettings& relations = score.relation_settings;
+  command->add_option("--max-dt-s", relations.max_dt_s, "Maximum time difference for nearest-pose association, s")
+      ->capture_default_str();
+  command->add_option("--reference-x-m", relations.reference_x_m, "Offset of the reference point along body x, m")
+      ->capture_default_str();
+  command->add_option("--map", score.map, "Built map (map_server YAML)");
+  command->add_option("--reference-map", score.reference_map, "Reference map (map_server YAML)");
+  command->add_flag("--all", score.show_all, kAllHelp);
+  add_json(*command, score.form);
+  command->callback([&] { call.chosen = [&] { return score_command(call.score); }; });
+}
+
+void add_localizability(CLI::App& app, Call& call) {
+  LocalizabilityOptions& localizability = call.localizability;
+  CLI::App* command = app.add_subcommand("localizability", "Map the accuracy bound of lidar localization");
+  add_scenario(*command, localizability.scenario);
+  command->add_option("--set", localizability.overrides, kSetHelp)->take_all();
+  command->add_option("--grid-step-m", localizability.grid_step_m, "Grid spacing, m")->capture_default_str();
+  command->add_option("--out", localizability.out, kOutHelp)->capture_default_str();
+  command->callback([&] { call.chosen = [&] { return localizability_command(call.localizability); }; });
+}
+
+void add_replay(CLI::App& app, Call& call) {
+  ReplayOptions& replay = call.replay;
+  CLI::App* command = app.add_subcommand("replay", "Render a video or a still image from a run log");
+  command->add_option("run", replay.run, "Run directory")->required();
+  command->add_option("--style", replay.style, "Editing style: highlights or continuous")->capture_default_str();
+  command->add_option("--camera", replay.camera, "Camera: chase, top or onboard")->capture_default_str();
+  command->add_option("--speed", replay.speed, "Playback speed, simulated seconds per second of video")
+      ->capture_default_str();
+  command->add_option("--highlight-speed", replay.highlight_speed, "Playback speed during highlights")
+      ->capture_default_str();
+  command->add_option("--fps", replay.frames_per_second, "Frames per second of the video")->capture_default_str();
+  command->add_option("--jobs", replay.jobs, "Processes that render (0: one per core)")->capture_default_str();
+  command->add_option("--renderer", replay.renderer, "OpenGL implementation: auto, egl or osmesa")
+      ->capture_default_str();
+  command->add_option("--size", replay.size, "Width x height, pixels")->capture_default_str();
+  command->add_option("--still", replay.still_s, "Time of a single image (PNG) instead of a video, s");
+  command->add_option("--out", replay.out, "Output file: .mp4, .webp (animated picture), or .png with --still");
+  command->callback([&] { call.chosen = [&] { return replay_command(call.replay); }; });
+}
+
+void add_report(CLI::App& app, Call& call) {
+  CLI::App* command = app.add_subcommand("report", "Generate a self-contained HTML report");
+  command
+      ->add_option("directory", call.report.directory, "Directory of a run, a sweep, an error budget or a fault matrix")
+      ->required();
+  command->add_option("--out", call.report.out, "Output file (default: report.html in the directory)");
+  command->callback([&] { call.chosen = [&] { return report_command(call.report); }; });
+}
+
+void add_verify(CLI::App& app, Call& call) {
+  CLI::App* command = app.add_subcommand("verify", "Rerun a scenario and compare the logs byte by byte");
+  command->add_option("run", call.verify_run, "Run directory")->required();
+  command->callback([&] { call.chosen = [&] { return verify_command(call.verify_run); }; });
+}
+
+void add_upload(CLI::App& app, Call& call) {
+  UploadOptions& upload = call.upload;
+  CLI::App* command = app.add_subcommand("upload", "Upload pending results of a run");
+  command->add_option("run", upload.run, "Run directory")->required();
+  command->add_option("--monitor-url", upload.monitor_url, "Monitoring server, http://host:port")->required();
+  command->add_option("--token-file", upload.token_file, kTokenHelp);
+  command->add_option("--timeout-s", upload.timeout_s, "Maximum time without progress, s")->capture_default_str();
+  command->callback([&] { call.chosen = [&] { return upload_command(call.upload); }; });
+}
+
+}  // namespace
+
+void add_run_commands(CLI::App& app, Call& call) {
+  add_run(app, call);
+  add_score(app, call);
+  add_localizability(app, call);
+  add_replay(app, call);
+  add_report(app, call);
+  add_verify(app, call);
+  add_upload(app, call);
+}
+
+}  // namespace patrol::app
