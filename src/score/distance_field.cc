@@ -24,7 +24,7 @@ DistanceField::DistanceField(const Grid<std::uint8_t>& occupied)
                  [resolution_m](double squared) { return resolution_m * std::sqrt(static_cast<float>(squared)); });
 }
 
-DistanceField::GridPosition DistanceField::to_tunnel_coordinates(const Eigen::Vector2d& p_m) const {
+DistanceField::GridPosition DistanceField::grid_position(const Eigen::Vector2d& p_m) const {
   const Eigen::Vector2d last(geometry_.width - 1, geometry_.height - 1);
   const Eigen::Vector2d q = (p_m - geometry_.origin_m) / geometry_.resolution_m - Eigen::Vector2d(0.5, 0.5);
   const Eigen::Vector2d inside = q.cwiseMax(0.0).cwiseMin(last);
@@ -42,7 +42,7 @@ DistanceField::GridPosition DistanceField::to_tunnel_coordinates(const Eigen::Ve
 
 double DistanceField::distance_m(const Eigen::Vector2d& p_m) const {
   if (is_empty_) return std::numeric_limits<double>::infinity();
-  const auto [corners, f, offset_to_grid] = to_tunnel_coordinates(p_m);
+  const auto [corners, f, offset_to_grid] = grid_position(p_m);
   const double low = (1.0 - f.x()) * corners[0] + f.x() * corners[1];
   const double high = (1.0 - f.x()) * corners[2] + f.x() * corners[3];
   return (1.0 - f.y()) * low + f.y() * high + geometry_.resolution_m * offset_to_grid.norm();
@@ -52,7 +52,7 @@ double DistanceField::distance_m(const Eigen::Vector2d& p_m) const {
 // where the distance has a kink.
 Eigen::Vector2d DistanceField::gradient(const Eigen::Vector2d& p_m) const {
   if (is_empty_) return Eigen::Vector2d::Zero();
-  const auto [corners, f, offset_to_grid] = to_tunnel_coordinates(p_m);
+  const auto [corners, f, offset_to_grid] = grid_position(p_m);
   const Eigen::Vector2d rise((1.0 - f.y()) * (corners[1] - corners[0]) + f.y() * (corners[3] - corners[2]),
                              (1.0 - f.x()) * (corners[2] - corners[0]) + f.x() * (corners[3] - corners[1]));
   const Eigen::Vector2d is_inside = (offset_to_grid.array() == 0.0).cast<double>();

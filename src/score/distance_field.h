@@ -31,7 +31,7 @@ class DistanceField {
     /// offset of the point from the outermost cell centers, in cells; zero inside the grid
     Eigen::Vector2d offset_to_grid;
   };
-  GridPosition to_tunnel_coordinates(const Eigen::Vector2d& p_m) const;
+  GridPosition grid_position(const Eigen::Vector2d& p_m) const;
 
   GridGeometry geometry_;
   std::vector<float> distance_m_;  ///< [row * width + column]

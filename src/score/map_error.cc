@@ -3,7 +3,6 @@
 #include <limits>
 
 #include "core/error.h"
-#include "score/distance_field.h"
 #include "score/statistics.h"
 
 namespace patrol::score {
@@ -69,14 +68,18 @@ double intersection_over_union(const Grid<std::uint8_t>& built, const Pose2& T_m
 std::vector<Eigen::Vector2d> occupied_points(const OccupancyGrid& map) { return centers_of(occupied_cells(map)); }
 
 MapError map_error(const OccupancyGrid& built, const Pose2& T_world_map, const ReferenceMap& reference) {
+  return map_error(built, T_world_map, reference, DistanceField(occupied_cells(reference.cells)));
+}
+
+MapError map_error(const OccupancyGrid& built, const Pose2& T_world_map, const ReferenceMap& reference,
+                   const DistanceField& reference_field) {
   const Grid<std::uint8_t> built_occupied = occupied_cells(built);
-  const Grid<std::uint8_t> reference_occupied = occupied_cells(reference.cells);
   const std::vector<Eigen::Vector2d> built_points = centers_of(built_occupied);
   const std::vector<Eigen::Vector2d> observable_points = centers_of(occupied_cells(observable_part(reference)));
   if (built_points.empty()) throw InputError("built map: no occupied cells");
   if (observable_points.empty()) throw InputError("reference map: no observable occupied cells");
 
-  const std::vector<double> nearest_m = distances_m(DistanceField(reference_occupied), T_world_map, built_points);
+  const std::vector<double> nearest_m = distances_m(reference_field, T_world_map, built_points);
   const Pose2 T_map_world = T_world_map.inverse();
   const std::vector<double> recall_distances_m =
       distances_m(DistanceField(built_occupied), T_map_world, observable_points);

@@ -8,7 +8,6 @@
 
 #include "core/geometry/angles.h"
 #include "core/geometry/linear_algebra.h"
-#include "score/distance_field.h"
 #include "score/map_error.h"
 
 namespace patrol::score {
@@ -123,25 +122,26 @@ Pose2 search(const DistanceField& field, const std::vector<Eigen::Vector2d>& all
 }  // namespace
 
 std::optional<double> map_displacement_m(const OccupancyGrid& built, const Pose2& T_world_map,
-                                         const ReferenceMap& reference, const Eigen::Vector2d& p_world_target,
+                                         const DistanceField& reference, const Eigen::Vector2d& p_world_target,
                                          double radius_m) {
   const std::vector<Eigen::Vector2d> points = points_near(built, T_world_map, p_world_target, radius_m);
   if (points.size() < kMinPoints) return std::nullopt;
-  const DistanceField field(occupied_cells(reference.cells));
-  if (!std::isfinite(field.distance_m(p_world_target))) return std::nullopt;
-  const auto score = [&](const Pose2& motion) { return mean_weight(field, points, p_world_target, motion, kRobust_m); };
-  const Pose2 near = refine(field, points, p_world_target, {}, radius_m);
+  if (!std::isfinite(reference.distance_m(p_world_target))) return std::nullopt;
+  const auto score = [&](const Pose2& motion) {
+    return mean_weight(reference, points, p_world_target, motion, kRobust_m);
+  };
+  const Pose2 near = refine(reference, points, p_world_target, {}, radius_m);
   if (score(near) >= kEquivalentScoreRatio) return near.position().norm();  // the score is at most 1
-  const Pose2 far = refine(field, points, p_world_target, search(field, points, p_world_target, radius_m), radius_m);
+  const Pose2 far =
+      refine(reference, points, p_world_target, search(reference, points, p_world_target, radius_m), radius_m);
   const bool is_near_as_good = score(near) >= kEquivalentScoreRatio * score(far);
   return (is_near_as_good ? near : far).position().norm();
 }
 
 Pose2 fit_map_to_reference(const OccupancyGrid& built, std::span<const Pose2> T_world_map,
-                           const ReferenceMap& reference) {
+                           const DistanceField& reference) {
   const std::vector<Eigen::Vector2d> cells = occupied_points(built);
   if (cells.size() < kMinPoints) return T_world_map.front();
-  const DistanceField field(occupied_cells(reference.cells));
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
   for (const Eigen::Vector2d& cell : cells) mean += cell / static_cast<double>(cells.size());
   double squares_m2 = 0.0;
@@ -156,8 +156,8 @@ Pose2 fit_map_to_reference(const OccupancyGrid& built, std::span<const Pose2> T_
     points.reserve(cells.size());
     for (const Eigen::Vector2d& cell : cells) points.emplace_back(start * cell - center);
     const Pose2 T_world_center{center.x(), center.y(), 0.0};
-    for (const Pose2& motion : {Pose2{}, refine(field, points, center, {}, radius_m)}) {
-      const double score = mean_weight(field, points, center, motion, kSearchRobust_m);
+    for (const Pose2& motion : {Pose2{}, refine(reference, points, center, {}, radius_m)}) {
+      const double score = mean_weight(reference, points, center, motion, kSearchRobust_m);
       if (score <= best_score) continue;
       best_score = score;
       best = T_world_center * motion * T_world_center.inverse() * start;
@@ -168,7 +168,7 @@ Pose2 fit_map_to_reference(const OccupancyGrid& built, std::span<const Pose2> T_
 
 std::vector<StationError> station_errors(const Route& route_in_world, const std::vector<Event>& events,
                                          const Pose2& T_world_map, const MapInSite& map, const Trajectory& T_world_body,
-                                         const OccupancyGrid& built, const ReferenceMap& reference) {
+                                         const OccupancyGrid& built, const DistanceField& reference) {
   std::vector<StationError> errors;
   for (const Station& station : route_in_world.stations) {
     StationError error;

@@ -11,7 +11,7 @@
 #include "core/route.h"
 #include "core/site/map_in_site.h"
 #include "core/trajectory.h"
-#include "score/visibility.h"
+#include "score/distance_field.h"
 
 namespace patrol::score {
 
@@ -27,27 +27,27 @@ struct StationError {
 };
 
 /// Displacement of a station's target in the built map, m. The occupied cells within `radius_m` of the target are
-/// registered to the reference by a rigid motion (Gauss-Newton on the reference's distance field, robust loss). The
-/// displacement is the distance by which this motion moves the target.
+/// registered to the surfaces of the reference by a rigid motion (Gauss-Newton on their distance field, robust loss).
+/// The displacement is the distance by which this motion moves the target.
 ///
 /// Gauss-Newton starts twice: from the identity, and from the best of a grid of motions up to 3 m along either axis and
 /// 4 degrees. The second result counts only where it fits clearly better, so larger errors are found up to that limit.
 /// Degenerate directions (along a single straight wall) are not moved. Returns none when there are too few occupied
 /// cells.
 std::optional<double> map_displacement_m(const OccupancyGrid& built, const Pose2& T_world_map,
-                                         const ReferenceMap& reference, const Eigen::Vector2d& p_world_target,
+                                         const DistanceField& reference, const Eigen::Vector2d& p_world_target,
                                          double radius_m = 6.0);
 
 /// Returns the pose of the built map in world for which its occupied cells fit the reference best: Gauss-Newton as for
 /// map_displacement_m over the whole map, from each of the given poses. Degenerate directions (along a tunnel without
 /// features) are not moved. Returns the first pose when there are too few occupied cells. Precondition: there is one.
 Pose2 fit_map_to_reference(const OccupancyGrid& built, std::span<const Pose2> T_world_map,
-                           const ReferenceMap& reference);
+                           const DistanceField& reference);
 
 /// One entry per station in the order of the route. `route_in_world` is the survey, the ground truth of the stations.
 /// `T_world_map`: true pose of the built map; `map`: its pose in site as the robot knows it.
 std::vector<StationError> station_errors(const Route& route_in_world, const std::vector<Event>& events,
                                          const Pose2& T_world_map, const MapInSite& map, const Trajectory& T_world_body,
-                                         const OccupancyGrid& built, const ReferenceMap& reference);
+                                         const OccupancyGrid& built, const DistanceField& reference);
 
 }  // namespace patrol::score

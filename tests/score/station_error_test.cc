@@ -24,18 +24,18 @@ OccupancyGrid make_walls(bool has_corner = true) {
   return map;
 }
 
-ReferenceMap all_seeable(const OccupancyGrid& cells) { return {cells, Grid<std::uint8_t>(cells.geometry(), 1)}; }
+DistanceField field_of(const OccupancyGrid& cells) { return DistanceField(occupied_cells(cells)); }
 
 const Eigen::Vector2d kTarget(4.8, 4.8);
 
 TEST(MapDisplacement, OfTheTrueMapIsNone) {
-  const auto displacement = map_displacement_m(make_walls(), {}, all_seeable(make_walls()), kTarget);
+  const auto displacement = map_displacement_m(make_walls(), {}, field_of(make_walls()), kTarget);
   ASSERT_TRUE(displacement);
   EXPECT_LT(*displacement, 0.001);
 }
 
 TEST(MapDisplacement, OfAMapTenCentimetresOffIsTenToTwoMillimetres) {
-  const auto displacement = map_displacement_m(make_walls(), {0.06, -0.08, 0.0}, all_seeable(make_walls()), kTarget);
+  const auto displacement = map_displacement_m(make_walls(), {0.06, -0.08, 0.0}, field_of(make_walls()), kTarget);
   ASSERT_TRUE(displacement);
   EXPECT_NEAR(*displacement, 0.10, 0.002);
 }
@@ -45,7 +45,7 @@ TEST(MapDisplacement, OfAMapTenCentimetresOffIsTenToTwoMillimetres) {
 TEST(MapDisplacement, OfATurnedMapIsThatOfTheTarget) {
   const double expected_m = kTarget.norm() * 2.0 * std::sin(0.25 * kDegree);
   const auto displacement =
-      map_displacement_m(make_walls(), {0.0, 0.0, 0.5 * kDegree}, all_seeable(make_walls()), kTarget);
+      map_displacement_m(make_walls(), {0.0, 0.0, 0.5 * kDegree}, field_of(make_walls()), kTarget);
   ASSERT_TRUE(displacement);
   EXPECT_NEAR(*displacement, expected_m, 0.002);
 }
@@ -59,7 +59,7 @@ TEST(MapDisplacement, OfAMapUpToTwoMetersOffIsThatAlongEitherAxisAndDiagonally) 
           Eigen::Vector2d(half, half), Eigen::Vector2d(-half, half), Eigen::Vector2d(half, -half),
           Eigen::Vector2d(-half, -half)}) {
       const Pose2 T_world_map{off_m * direction.x(), off_m * direction.y(), 0.0};
-      const auto displacement = map_displacement_m(make_walls(), T_world_map, all_seeable(make_walls()), kTarget);
+      const auto displacement = map_displacement_m(make_walls(), T_world_map, field_of(make_walls()), kTarget);
       ASSERT_TRUE(displacement);
       EXPECT_NEAR(*displacement, off_m, 0.01) << direction.transpose();
     }
@@ -69,7 +69,7 @@ TEST(MapDisplacement, OfAMapUpToTwoMetersOffIsThatAlongEitherAxisAndDiagonally) 
 TEST(MapDisplacement, OfAMapThatIsFarOffAndTurnedIsThatOfTheTarget) {
   for (const double yaw_deg : {-3.0, 3.0}) {
     const Pose2 T_world_map{1.2, -0.9, yaw_deg * kDegree};
-    const auto displacement = map_displacement_m(make_walls(), T_world_map, all_seeable(make_walls()), kTarget);
+    const auto displacement = map_displacement_m(make_walls(), T_world_map, field_of(make_walls()), kTarget);
     const double expected_m = (T_world_map * kTarget - kTarget).norm();
     ASSERT_TRUE(displacement);
     EXPECT_NEAR(*displacement, expected_m, 0.1) << yaw_deg << " degrees";
@@ -78,20 +78,20 @@ TEST(MapDisplacement, OfAMapThatIsFarOffAndTurnedIsThatOfTheTarget) {
 
 TEST(MapDisplacement, AcrossASingleWallAMeterIsAMeterAndAlongItNothing) {
   const auto displacement =
-      map_displacement_m(make_walls(false), {0.2, 1.0, 0.0}, all_seeable(make_walls(false)), {2.5, 4.8}, 1.5);
+      map_displacement_m(make_walls(false), {0.2, 1.0, 0.0}, field_of(make_walls(false)), {2.5, 4.8}, 1.5);
   ASSERT_TRUE(displacement);
   EXPECT_NEAR(*displacement, 1.0, 0.01);
 }
 
 TEST(MapDisplacement, OfAReferenceWithoutSurfacesThereIsNone) {
   const OccupancyGrid empty({.resolution_m = 0.025, .width = 400, .height = 400}, kFree);
-  EXPECT_FALSE(map_displacement_m(make_walls(), {}, all_seeable(empty), kTarget));
+  EXPECT_FALSE(map_displacement_m(make_walls(), {}, field_of(empty), kTarget));
 }
 
 TEST(MapDisplacement, AlongASingleWallNothingIsSaid) {
   const Eigen::Vector2d before_the_middle(2.5, 4.8);
   const auto displacement =
-      map_displacement_m(make_walls(false), {0.2, 0.05, 0.0}, all_seeable(make_walls(false)), before_the_middle, 1.5);
+      map_displacement_m(make_walls(false), {0.2, 0.05, 0.0}, field_of(make_walls(false)), before_the_middle, 1.5);
   ASSERT_TRUE(displacement);
   EXPECT_NEAR(*displacement, 0.05, 0.002) << "across only";
 }
@@ -100,7 +100,7 @@ TEST(MapDisplacement, AlongASingleWallNothingIsSaid) {
 TEST(MapDisplacement, ALonePostDoesNotTellTheLengthOfAWall) {
   OccupancyGrid wall = make_walls(false);
   wall.at({100, 180}) = wall.at({100, 181}) = kOccupied;
-  const auto displacement = map_displacement_m(wall, {0.03, 0.05, 0.0}, all_seeable(wall), {2.5, 4.8}, 1.5);
+  const auto displacement = map_displacement_m(wall, {0.03, 0.05, 0.0}, field_of(wall), {2.5, 4.8}, 1.5);
   ASSERT_TRUE(displacement);
   EXPECT_NEAR(*displacement, 0.05, 0.002);
 }
@@ -108,7 +108,7 @@ TEST(MapDisplacement, ALonePostDoesNotTellTheLengthOfAWall) {
 TEST(MapDisplacement, WithFewerThanThirtyCellsThereIsNone) {
   OccupancyGrid map({.resolution_m = 0.025, .width = 400, .height = 400}, kFree);
   for (int i = 0; i < 29; ++i) map.at({180 + i, 200}) = kOccupied;
-  EXPECT_FALSE(map_displacement_m(map, {}, all_seeable(make_walls()), kTarget));
+  EXPECT_FALSE(map_displacement_m(map, {}, field_of(make_walls()), kTarget));
 }
 
 Station make_station(const std::string& name, const Pose2& T_route_body) {
@@ -140,7 +140,7 @@ TEST(StationErrors, TellBeliefTruthAndSurveyApart) {
                             {Time(2s), to_pose3({3.0, 1.1, 3.0 * kDegree})}};
   const Pose2 T_world_map{0.5, 0.0, 0.0};
   const auto errors = station_errors(route, {reached("box_1", 1s, {1.53, 1.14, 5.0 * kDegree})}, T_world_map,
-                                     T_world_map, truth, make_walls(), all_seeable(make_walls()));
+                                     T_world_map, truth, make_walls(), field_of(make_walls()));
   ASSERT_EQ(errors.size(), 2U);
   EXPECT_EQ(errors[0].name, "box_1");
   EXPECT_TRUE(errors[0].is_reached);
@@ -154,7 +154,7 @@ TEST(StationErrors, TellBeliefTruthAndSurveyApart) {
 
 TEST(FitMapToReference, FindsAMapTenCentimetersAndOneDegreeOff) {
   const Pose2 off{0.06, -0.08, 1.0 * kDegree};
-  const Pose2 fitted = fit_map_to_reference(make_walls(), std::array{off}, all_seeable(make_walls()));
+  const Pose2 fitted = fit_map_to_reference(make_walls(), std::array{off}, field_of(make_walls()));
   EXPECT_LT(fitted.position().norm(), 0.003);
   EXPECT_NEAR(fitted.yaw, 0.0, 0.02 * kDegree);
 }
@@ -162,7 +162,7 @@ TEST(FitMapToReference, FindsAMapTenCentimetersAndOneDegreeOff) {
 // Along a single wall the cells fit everywhere.
 TEST(FitMapToReference, DoesNotMoveTheMapAlongAWall) {
   const Pose2 off{0.06, -0.08, 0.0};
-  const Pose2 fitted = fit_map_to_reference(make_walls(false), std::array{off}, all_seeable(make_walls(false)));
+  const Pose2 fitted = fit_map_to_reference(make_walls(false), std::array{off}, field_of(make_walls(false)));
   EXPECT_NEAR(fitted.x, off.x, 0.005);
   EXPECT_NEAR(fitted.y, 0.0, 0.003);
 }
@@ -180,12 +180,15 @@ OccupancyGrid make_tunnel(double bend_m, double waves) {
 }
 
 TEST(FitMapToReference, OfABentTunnelDoesNotFitWorseThanTheStart) {
-  const ReferenceMap reference = all_seeable(make_tunnel(0.0, 1.0));
+  const OccupancyGrid straight = make_tunnel(0.0, 1.0);
+  const ReferenceMap reference{straight, Grid<std::uint8_t>(straight.geometry(), 1)};
+  const DistanceField field = field_of(straight);
   for (const double bend_m : {0.1, 0.3, 0.6, 1.0}) {
     for (const double waves : {0.5, 1.0, 1.5, 2.0, 3.0}) {
       const OccupancyGrid bent = make_tunnel(bend_m, waves);
-      const Pose2 fitted = fit_map_to_reference(bent, std::array{Pose2{}}, reference);
-      EXPECT_LE(map_error(bent, fitted, reference).nearest_mean_m, map_error(bent, {}, reference).nearest_mean_m + 0.02)
+      const Pose2 fitted = fit_map_to_reference(bent, std::array{Pose2{}}, field);
+      EXPECT_LE(map_error(bent, fitted, reference, field).nearest_mean_m,
+                map_error(bent, {}, reference, field).nearest_mean_m + 0.02)
           << bend_m << " m, " << waves << " waves";
     }
   }
@@ -194,14 +197,14 @@ TEST(FitMapToReference, OfABentTunnelDoesNotFitWorseThanTheStart) {
 TEST(FitMapToReference, StartsFromTheNearerOfTwoPoses) {
   const std::array<Pose2, 2> starts{Pose2{0.0, 1.4, 1.0 * kDegree}, Pose2{0.05, -0.1, 0.1 * kDegree}};
   const OccupancyGrid tunnel = make_tunnel(0.0, 1.0);
-  const Pose2 fitted = fit_map_to_reference(tunnel, starts, all_seeable(tunnel));
+  const Pose2 fitted = fit_map_to_reference(tunnel, starts, field_of(tunnel));
   EXPECT_NEAR(fitted.y, 0.0, 0.02);
   EXPECT_NEAR(fitted.yaw, 0.0, 0.02 * kDegree);
 }
 
 TEST(FitMapToReference, OfAnEmptyMapIsWhereItWas) {
   const OccupancyGrid empty(make_walls().geometry(), kFree);
-  EXPECT_EQ(fit_map_to_reference(empty, std::array{Pose2{1.0, 2.0, 0.3}}, all_seeable(make_walls())).vector(),
+  EXPECT_EQ(fit_map_to_reference(empty, std::array{Pose2{1.0, 2.0, 0.3}}, field_of(make_walls())).vector(),
             Eigen::Vector3d(1.0, 2.0, 0.3));
 }
 

@@ -84,14 +84,16 @@ Mapped map_by(const GridMethod& method, const StudyRun& patrol) {
 
 std::vector<double> flatten_metrics(const Mapped& mapped, const StudyRun& patrol) {
   const Pose2 T_world_map = score::align_at_start(mapped.T_map_body, patrol.record.T_world_body);
+  const score::ReferenceMap& reference = patrol.truth.reference;
+  const score::DistanceField reference_field(score::occupied_cells(reference.cells));
   std::vector<double> metrics;
   for (const score::StationError& station :
        score::station_errors(patrol.files.route, patrol.record.events, T_world_map, T_world_map,
-                             patrol.record.T_world_body, mapped.map, patrol.truth.reference)) {
+                             patrol.record.T_world_body, mapped.map, reference_field)) {
     metrics.push_back(station.map_error_m.value_or(kNoStreetMetric));
   }
   metrics.resize(3, kNoStreetMetric);
-  metrics.push_back(score::map_error(mapped.map, T_world_map, patrol.truth.reference).nearest_mean_m);
+  metrics.push_back(score::map_error(mapped.map, T_world_map, reference, reference_field).nearest_mean_m);
   metrics.push_back(score::trajectory_error(mapped.T_map_body, T_world_map, patrol.record.T_world_body).ate_rmse_m);
   metrics.push_back(mapped.seconds);
   metrics.push_back(mapped.memory_mb);

@@ -29,14 +29,14 @@ class LowerEnvelope {
  public:
   explicit LowerEnvelope(std::size_t length) : vertex_(length), boundary_(length + 1), input_(length) {}
 
-  /// `line[i * stride]` becomes the minimum over j of line[j * stride] + (i - j)^2.
-  void apply(double* line, std::size_t stride) {
-    for (std::size_t q = 0; q < input_.size(); ++q) input_[q] = line[q * stride];
+  /// `line[i]` becomes the minimum over j of line[j] + (i - j)^2.
+  void apply(double* line) {
+    std::copy_n(line, input_.size(), input_.begin());
     build();
     for (std::size_t q = 0, k = 0; q < input_.size(); ++q) {
       while (boundary_[k + 1] < static_cast<double>(q)) ++k;
       const double step = static_cast<double>(q) - static_cast<double>(vertex_[k]);
-      line[q * stride] = step * step + input_[vertex_[k]];
+      line[q] = step * step + input_[vertex_[k]];
     }
   }
 
@@ -116,8 +116,18 @@ std::vector<double> squared_distances(const std::vector<std::uint8_t>& is_obstac
   for (std::size_t row = 0; row < rows; ++row) {
     transform_row(is_obstacle.data() + row * columns, width, width + 1, square, squared.data() + row * columns);
   }
+  // Columns are copied in blocks of a cache line, because a step from row to row leaves the cache.
+  constexpr std::size_t kBlock = 8;
+  std::vector<double> block(kBlock * rows);
   LowerEnvelope envelope(rows);
-  for (std::size_t col = 0; col < columns; ++col) envelope.apply(squared.data() + col, columns);
+  for (std::size_t first = 0; first < columns; first += kBlock) {
+    const std::size_t num_columns = std::min(kBlock, columns - first);
+    for (std::size_t row = 0; row < rows; ++row)
+      for (std::size_t i = 0; i < num_columns; ++i) block[i * rows + row] = squared[row * columns + first + i];
+    for (std::size_t i = 0; i < num_columns; ++i) envelope.apply(block.data() + i * rows);
+    for (std::size_t row = 0; row < rows; ++row)
+      for (std::size_t i = 0; i < num_columns; ++i) squared[row * columns + first + i] = block[i * rows + row];
+  }
   return squared;
 }
 

@@ -40,8 +40,9 @@ std::optional<AlignedError> aligned_if_possible(const Trajectory& estimate, cons
 }
 
 /// Error of the run's map. A map without occupied cells covers nothing and has no distances.
-MapError run_map_error(const OccupancyGrid& built, const Pose2& T_world_map, const ReferenceMap& reference) {
-  if (!occupied_points(built).empty()) return map_error(built, T_world_map, reference);
+MapError run_map_error(const OccupancyGrid& built, const Pose2& T_world_map, const ReferenceMap& reference,
+                       const DistanceField& reference_field) {
+  if (!occupied_points(built).empty()) return map_error(built, T_world_map, reference, reference_field);
   MapError error;
   error.cells_m = Grid<float>(built.geometry(), std::numeric_limits<float>::quiet_NaN());
   return error;
@@ -60,10 +61,11 @@ std::optional<KnownMapScore> known_map_score(const RunRecord& record, const Traj
 }
 
 /// Adds the error of each station in the map as the robot places it in site.
-void add_site_map_errors(const RunRecord& record, const RunReferences& references, EstimateScore& score) {
+void add_site_map_errors(const RunRecord& record, const Route& route, const DistanceField& reference_field,
+                         EstimateScore& score) {
   for (std::size_t i = 0; i < score.stations.size(); ++i) {
-    score.stations[i].site_map_error_m = map_displacement_m(record.map, score.site.T_site_map, references.map,
-                                                            references.route.stations[i].p_route_target.head<2>());
+    score.stations[i].site_map_error_m = map_displacement_m(record.map, score.site.T_site_map, reference_field,
+                                                            route.stations[i].p_route_target.head<2>());
   }
 }
 
@@ -107,9 +109,10 @@ EstimateScore estimate_score(const RunRecord& record, const RunReferences& refer
   const MapInSite map(references.T_site_start, record.registrations);
   // A given map has its origin where its registration says; a map of the run has it where its cells fit the surfaces.
   // The final optimization may have turned it against the poses estimated before.
+  const DistanceField reference_field(occupied_cells(references.map.cells));
   const std::array starts{fit_map_frame(live.T_map_body, truth), map.last().T_site_map};
   const Pose2 T_world_map =
-      references.T_world_map ? *references.T_world_map : fit_map_to_reference(record.map, starts, references.map);
+      references.T_world_map ? *references.T_world_map : fit_map_to_reference(record.map, starts, reference_field);
   const Pose2 T_world_start =
       references.T_world_map ? *references.T_world_map : align_at_start(record.T_map_body, truth);
   EstimateScore score{
@@ -120,11 +123,11 @@ EstimateScore estimate_score(const RunRecord& record, const RunReferences& refer
       .nees = pose_nees(record.T_map_body, record.covariances, map, truth),
       .aligned_pose = aligned_if_possible(record.T_map_body, truth),
       .odometry = trajectory_error(live.T_odom_body, align_at_start(record.T_odom_body, truth), truth),
-      .map = run_map_error(record.map, T_world_map, references.map),
+      .map = run_map_error(record.map, T_world_map, references.map, reference_field),
       .map_agreement = references.map_agreement,
       .localizability = track_localizability(record, T_world_map, references.localizability),
       .navigation = navigation_score(record, references),
-      .stations = station_errors(references.route, record.events, T_world_map, map, truth, record.map, references.map),
+      .stations = station_errors(references.route, record.events, T_world_map, map, truth, record.map, reference_field),
       .calibration = run_calibration_score(record, references),
       .goals = goal_errors(record.events, references.goals, T_world_map, truth),
       .docking = {},
@@ -133,7 +136,7 @@ EstimateScore estimate_score(const RunRecord& record, const RunReferences& refer
       .inspection = {},
       .lining = {},
       .water = {}};
-  add_site_map_errors(record, references, score);
+  add_site_map_errors(record, references.route, reference_field, score);
   if (references.route.dock) score.docking = docking_error(record.events, references.route.dock->T_route_docked, truth);
   if (!record.T_map_body_by_ranges.empty())
     score.range_pose = trajectory_error(map.place(live.T_map_body_by_ranges), {}, truth);
