@@ -38,6 +38,8 @@ std::string status_text(const RunSnapshot& snapshot, const std::optional<FilmNot
   return text;
 }
 
+Color color_of(const LiningMark& mark) { return mark.is_alarm ? kAlarmColor : kFindingColor; }
+
 }  // namespace
 
 Overlay::Overlay(int frame_height, GasCloud gas)
@@ -57,12 +59,35 @@ void Overlay::draw(Frame& frame, const std::vector<float>& depth, const View& vi
   overlay.polyline(snapshot.true_path, 0.06, {kTruthColor, 0.85});
   overlay.polyline(snapshot.estimated_path, 0.03, {kEstimateColor, 0.95});
   overlay.dots(snapshot.scan, 0.02, {kScanColor, 0.9});
+  for (const LiningMark& mark : snapshot.lining_marks) overlay.polyline(mark.outline, 0.06, {color_of(mark), 0.95});
+  draw_lining_labels(frame, depth, projector, snapshot);
   inset_.draw(frame, snapshot);
   draw_figures(frame, snapshot, note);
   const int free_bottom = draw_legend(frame, snapshot);
   if (!note) return;
   draw_caption(frame, note->caption, free_bottom);
   draw_timeline(frame, *note);
+}
+
+/// Texts beside the findings on the lining that are in view.
+void Overlay::draw_lining_labels(Frame& frame, const std::vector<float>& depth, const Projector& projector,
+                                 const RunSnapshot& snapshot) {
+  constexpr double kReadable_m = 25.0, kBehind_m = 0.5;
+  for (const LiningMark& mark : snapshot.lining_marks) {
+    const Eigen::Vector3d in_camera = projector.to_camera(mark.p_world_m);
+    if (in_camera.z() < projector.near_m() || in_camera.z() > kReadable_m) continue;
+    const Projected at = projector.project_camera(in_camera);
+    const int x = static_cast<int>(std::lround(at.pixel.x())), y = static_cast<int>(std::lround(at.pixel.y()));
+    const int above_px = static_cast<int>(projector.focal_px() * kLiningMarkRadius_m / at.distance_m);
+    if (x < 0 || y < 0 || x >= frame.width() || y >= frame.height()) continue;
+    if (at.distance_m > projector.distance_m(depth[static_cast<std::size_t>(y * frame.width() + x)]) + kBehind_m)
+      continue;
+    const int pad = texts_.height_px() / 3, width = texts_.width_px(mark.text);
+    const int baseline = y - above_px - 2 * pad;
+    fill_rectangle(frame, x - width / 2 - pad, baseline - texts_.height_px(), width + 2 * pad,
+                   texts_.height_px() + 2 * pad, {kPanelColor, 0.6});
+    texts_.draw(frame, x - width / 2, baseline, mark.text, {color_of(mark), 1.0});
+  }
 }
 
 void Overlay::draw_figures(Frame& frame, const RunSnapshot& snapshot, const std::optional<FilmNote>& note) {
@@ -83,6 +108,7 @@ int Overlay::draw_legend(Frame& frame, const RunSnapshot& snapshot) {
   std::vector<std::pair<const char*, Color>> entries = {
       {"true path", kTruthColor}, {"estimated path", kEstimateColor}, {"plan", kPlanColor}, {"scan", kScanColor}};
   if (!snapshot.particles.empty()) entries.emplace_back("particles", kParticleColor);
+  if (!snapshot.lining_marks.empty()) entries.emplace_back("lining finding", kFindingColor);
   if (!gas_.is_empty()) entries.emplace_back("methane", kGasColor);
   if (ghost_opacity(snapshot.T_true_estimate) > 0.0) entries.emplace_back("estimated pose", kEstimateColor);
   const int line = texts_.height_px() + texts_.height_px() / 2;

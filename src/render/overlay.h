@@ -24,6 +24,8 @@ class Overlay {
             const std::optional<FilmNote>& note = {});
 
  private:
+  void draw_lining_labels(Frame& frame, const std::vector<float>& depth, const Projector& projector,
+                          const RunSnapshot& snapshot);
   void draw_figures(Frame& frame, const RunSnapshot& snapshot, const std::optional<FilmNote>& note);
   /// Returns the upper edge of the legend, px.
   int draw_legend(Frame& frame, const RunSnapshot& snapshot);

@@ -13,6 +13,17 @@
 
 namespace patrol::render {
 
+inline constexpr double kLiningMarkRadius_m = 0.4;
+
+/// Finding of the lining inspection, marked on the lining.
+struct LiningMark {
+  /// closed line on the lining around the maximum displacement, with the radius kLiningMarkRadius_m
+  std::vector<Eigen::Vector3d> outline;
+  Eigen::Vector3d p_world_m = Eigen::Vector3d::Zero();
+  std::string text;  ///< ring and displacement
+  bool is_alarm = false;
+};
+
 /// Drawable state of a run at one time of its log. Points are in world, m. Estimates are transformed to world by
 /// `T_world_map`, the alignment at the start.
 struct RunSnapshot {
@@ -30,8 +41,9 @@ struct RunSnapshot {
   double traveled_m = 0.0;
   std::optional<GasReading> gas;  ///< newest reading; none without a methane meter
   bool is_driving = false;        ///< tracked robot, not a walking one
-  std::string event;              ///< text of the newest event
-  bool is_alarm = false;          ///< the newest event is an alarm
+  std::vector<LiningMark> lining_marks;
+  std::string event;      ///< text of the newest event
+  bool is_alarm = false;  ///< the newest event is an alarm
 };
 
 }  // namespace patrol::render

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "core/error.h"
 #include "sim/mujoco.h"
 
@@ -10,6 +12,7 @@ namespace {
 
 constexpr double kPathStep_m = 0.05;  // minimum distance between points of a drawn path
 constexpr double kAboveGround_m = 0.01;
+constexpr double kScannerHeight_m = 0.5;  // of the viewpoint over the body
 constexpr double kMinKidnapStep_m =
     0.5;  // a larger step between two true poses is a kidnapping, not a motion of the robot
 
@@ -93,6 +96,39 @@ void SnapshotBuilder::add(const GroundTruth& truth) {
   truth_.push_back({truth.stamp, truth.T_world_body});
   snapshot_.T_world_body = truth.T_world_body;
   extend(snapshot_.true_path, on_ground(truth.T_world_body.position.head<2>()));
+}
+
+void SnapshotBuilder::add(const LiningResult& result) {
+  const double height_m = snapshot_.T_world_body.position.z();
+  const Pose3 T_world_map = to_pose3(snapshot_.T_world_map, height_m);
+  const Eigen::Vector3d eye_m =
+      (T_world_map * to_pose3(result.T_map_body)).position + kScannerHeight_m * Eigen::Vector3d::UnitZ();
+  for (const RingFinding& finding : result.findings) {
+    const Eigen::Vector3d p_world_m = T_world_map * finding.p_map;
+    snapshot_.lining_marks.push_back({.outline = outline_on_scenery(eye_m, p_world_m),
+                                      .p_world_m = p_world_m,
+                                      .text = fmt::format("ring {}: {:+.1f} mm", finding.ring, 1e3 * finding.inward_m),
+                                      .is_alarm = finding.level == WarningLevel::kAlarm});
+  }
+}
+
+// Circle about the line of sight from the robot to the point, projected to the surfaces that the robot sees there.
+std::vector<Eigen::Vector3d> SnapshotBuilder::outline_on_scenery(const Eigen::Vector3d& eye_m,
+                                                                 const Eigen::Vector3d& p_world_m) const {
+  constexpr int kNumPoints = 32;
+  constexpr double kInFront_m = 0.02, kReach = 1.5;
+  const Eigen::Vector3d sight = p_world_m - eye_m;
+  const Eigen::Vector3d right = sight.cross(Eigen::Vector3d::UnitZ()).stableNormalized();
+  const Eigen::Vector3d up = right.cross(sight).stableNormalized();
+  std::vector<Eigen::Vector3d> outline;
+  for (int i = 0; i <= kNumPoints; ++i) {
+    const double angle = 2.0 * M_PI * i / kNumPoints;
+    const Eigen::Vector3d direction =
+        (sight + kLiningMarkRadius_m * (std::cos(angle) * right + std::sin(angle) * up)).normalized();
+    const auto hit = scenery_.cast(eye_m, direction, kReach * sight.norm(), sim::kRayScenery);
+    if (hit) outline.push_back(eye_m + (hit->distance_m - kInFront_m) * direction);
+  }
+  return outline;
 }
 
 double SnapshotBuilder::free_distance_m(const Eigen::Vector3d& from_m, const Eigen::Vector3d& direction,

@@ -2,6 +2,7 @@
 
 #include <deque>
 #include <optional>
+#include <vector>
 
 #include <mujoco/mujoco.h>
 
@@ -26,6 +27,7 @@ class SnapshotBuilder {
   void add(const Path& plan);
   void add(const Event& event);
   void add(const GasReading& reading) { snapshot_.gas = reading; }
+  void add(const LiningResult& result);
   void add(const GroundTruth& truth);
   void add(const SimState& state) { snapshot_.state = state; }
 
@@ -36,6 +38,7 @@ class SnapshotBuilder {
   double free_distance_m(const Eigen::Vector3d& from_m, const Eigen::Vector3d& direction, double max_m) const;
 
  private:
+  std::vector<Eigen::Vector3d> outline_on_scenery(const Eigen::Vector3d& eye_m, const Eigen::Vector3d& p_world_m) const;
   Eigen::Vector3d on_ground(const Eigen::Vector2d& p_world_m) const;
   void transform_scan(const PoseEstimate& estimate);
 

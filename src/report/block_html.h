@@ -20,6 +20,8 @@ std::string to_html(const WaterfallChart& block);
 std::string to_html(const LinePlot& block);
 std::string to_html(const EventTimeline& block);
 std::string to_html(const MapBlock& block);
+std::string to_html(const HeatMap& block);
+std::string to_html(const PlanView& block);
 std::string to_html(const VideoBlock& block);
 
 /// CSS class of report.css.

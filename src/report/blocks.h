@@ -162,6 +162,44 @@ struct MapBlock {
   std::vector<MapMark> marks;
 };
 
+/// Signed values on a grid, in colors from negative over zero to positive.
+struct HeatMap {
+  struct Cell {
+    int column = 0, row = 0;
+    double value = 0.0;
+  };
+  /// Outlined cell with a text beside it.
+  struct Mark {
+    int column = 0, row = 0;
+    std::string text;
+  };
+  struct ColumnNote {
+    int column = 0;
+    std::string text;
+    Tone tone = Tone::kPlain;
+  };
+  std::string caption;
+  std::string unit;
+  std::string negative, positive;  ///< meanings of the signs, in the legend
+  double max = 1.0;                ///< absolute value with the full color
+  std::string column_title;
+  std::vector<std::string> columns;  ///< label of each column
+  std::vector<std::string> rows;     ///< label of each row from the top, often empty
+  std::vector<Cell> cells;           ///< a cell that is missing has no value
+  std::vector<Mark> marks;
+  std::string notes_title;
+  std::vector<ColumnNote> notes;  ///< below the column labels
+};
+
+/// Paths and marks in a plane, with meters on both axes at the same scale.
+struct PlanView {
+  std::string caption;
+  std::string x_title, y_title;
+  Eigen::Vector2d low_m = Eigen::Vector2d::Zero(), high_m = Eigen::Vector2d::Zero();  ///< limits of the axes
+  std::vector<MapPath> paths;
+  std::vector<MapMark> marks;
+};
+
 /// MP4 video: embedded bytes, or a URL relative to the page.
 struct VideoBlock {
   std::string mp4;
@@ -170,7 +208,7 @@ struct VideoBlock {
 };
 
 using Block = std::variant<TextBlock, VerdictBlock, KeyMetrics, TableBlock, CollapsibleTables, BarBlock, BoxPlot,
-                           WaterfallChart, LinePlot, EventTimeline, MapBlock, VideoBlock>;
+                           WaterfallChart, LinePlot, EventTimeline, MapBlock, HeatMap, PlanView, VideoBlock>;
 
 /// Section of a page. Consecutive line plots form a grid.
 struct Section {

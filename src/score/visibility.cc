@@ -2,51 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 
 namespace patrol::score {
 namespace {
-
-/// Visits the cells along a ray in order [Amanatides87].
-class CellWalk {
- public:
-  CellWalk(const GridGeometry& geometry, const Eigen::Vector2d& from_m, const Eigen::Vector2d& direction)
-      : cell_(geometry.cell_at(from_m)), step_{sign(direction.x()), sign(direction.y())} {
-    const Eigen::Vector2d q = (from_m - geometry.origin_m) / geometry.resolution_m;
-    for (int axis = 0; axis < 2; ++axis) {
-      const double speed = std::abs(direction[axis]);
-      const double to_border =
-          direction[axis] > 0.0 ? std::floor(q[axis]) + 1.0 - q[axis] : q[axis] - std::floor(q[axis]);
-      const bool moves = speed > 1e-12;
-      stride_[axis] = moves ? geometry.resolution_m / speed : std::numeric_limits<double>::infinity();
-      next_[axis] = moves ? to_border * geometry.resolution_m / speed : std::numeric_limits<double>::infinity();
-    }
-  }
-
-  Cell cell() const { return cell_; }
-  double entered_at_m() const { return entered_at_m_; }
-
-  void advance() {
-    if (next_[0] < next_[1]) {
-      entered_at_m_ = next_[0];
-      next_[0] += stride_[0];
-      cell_.col += step_.col;
-    } else {
-      entered_at_m_ = next_[1];
-      next_[1] += stride_[1];
-      cell_.row += step_.row;
-    }
-  }
-
- private:
-  static int sign(double value) { return value > 0.0 ? 1 : -1; }
-
-  Cell cell_;
-  Cell step_;
-  double next_[2] = {}, stride_[2] = {};
-  double entered_at_m_ = 0.0;
-};
 
 std::vector<Eigen::Vector2d> thin_out(const Trajectory& T_world_body, double spacing_m) {
   std::vector<Eigen::Vector2d> positions;
@@ -67,13 +29,48 @@ void mark_neighborhood(ReferenceMap& reference, Cell hit) {
   }
 }
 
+/// Marks the cells along a ray in order [Amanatides87], up to the first that is occupied or unknown. A run has 10^9
+/// steps: cells are addressed by their index, and the border is found by counting steps.
 void mark_ray(ReferenceMap& reference, const Eigen::Vector2d& from_m, double angle_rad, double max_range_m) {
-  CellWalk walk(reference.cells.geometry(), from_m, {std::cos(angle_rad), std::sin(angle_rad)});
-  for (; reference.cells.contains(walk.cell()) && walk.entered_at_m() <= max_range_m; walk.advance()) {
-    const std::int8_t value = reference.cells.at(walk.cell());
+  const GridGeometry& geometry = reference.cells.geometry();
+  const Cell first = geometry.cell_at(from_m);
+  if (!geometry.contains(first)) return;
+  const Eigen::Vector2d direction(std::cos(angle_rad), std::sin(angle_rad));
+  const Eigen::Vector2d q = (from_m - geometry.origin_m) / geometry.resolution_m;
+  double next_m[2], stride_m[2];
+  for (int axis = 0; axis < 2; ++axis) {
+    const double speed = std::abs(direction[axis]);
+    const double to_border =
+        direction[axis] > 0.0 ? std::floor(q[axis]) + 1.0 - q[axis] : q[axis] - std::floor(q[axis]);
+    const bool moves = speed > 1e-12;
+    stride_m[axis] = moves ? geometry.resolution_m / speed : std::numeric_limits<double>::infinity();
+    next_m[axis] = moves ? to_border * geometry.resolution_m / speed : std::numeric_limits<double>::infinity();
+  }
+  const std::ptrdiff_t width = geometry.width;
+  const std::ptrdiff_t column_step = direction.x() > 0.0 ? 1 : -1, row_step = direction.y() > 0.0 ? width : -width;
+  int columns_left = direction.x() > 0.0 ? geometry.width - 1 - first.col : first.col;
+  int rows_left = direction.y() > 0.0 ? geometry.height - 1 - first.row : first.row;
+  const std::int8_t* values = reference.cells.values().data();
+  std::uint8_t* is_observable = reference.is_observable.values().data();
+  std::ptrdiff_t at = first.row * width + first.col;
+  while (true) {
+    const std::int8_t value = values[at];
     if (value == kUnknown) return;
-    reference.is_observable.at(walk.cell()) = 1;
-    if (value == kOccupied) return mark_neighborhood(reference, walk.cell());
+    is_observable[at] = 1;
+    if (value == kOccupied) {
+      return mark_neighborhood(reference, {static_cast<int>(at % width), static_cast<int>(at / width)});
+    }
+    const bool is_column_next = next_m[0] < next_m[1];
+    if ((is_column_next ? next_m[0] : next_m[1]) > max_range_m) return;
+    if (is_column_next) {
+      if (--columns_left < 0) return;
+      next_m[0] += stride_m[0];
+      at += column_step;
+    } else {
+      if (--rows_left < 0) return;
+      next_m[1] += stride_m[1];
+      at += row_step;
+    }
   }
 }
 

@@ -51,6 +51,25 @@ TEST_F(RunFollowerTest, ErrorsAreThoseOfTheEstimatesOwnInstant) {
   EXPECT_NEAR(follower.snapshot().T_true_estimate.yaw, -0.1, 1e-9);
 }
 
+// The wall's face is at x = 4 m; the finding is on it, 1 m above the body.
+TEST_F(RunFollowerTest, AFindingIsOutlinedOnTheSurfaceWithARadiusOf40Centimeters) {
+  SnapshotBuilder at_origin(*model, {});
+  at_origin.add(truth_at(0s, 0.0, 0.0, 0.0));
+  LiningResult result;
+  result.findings = {{.ring = 29, .inward_m = 0.0042, .level = WarningLevel::kAlarm, .p_map = {4.0, 0.0, 1.0}}};
+  at_origin.add(result);
+  ASSERT_EQ(at_origin.snapshot().lining_marks.size(), 1u);
+  const LiningMark& mark = at_origin.snapshot().lining_marks[0];
+  EXPECT_EQ(mark.text, "ring 29: +4.2 mm");
+  EXPECT_TRUE(mark.is_alarm);
+  EXPECT_THAT(mark.p_world_m, VectorNear(Eigen::Vector3d(4.0, 0.0, 1.3), 1e-9));
+  ASSERT_EQ(mark.outline.size(), 33u);
+  for (const Eigen::Vector3d& p_m : mark.outline) {
+    EXPECT_NEAR(p_m.x(), 4.0, 0.03);
+    EXPECT_NEAR((p_m - mark.p_world_m).norm(), 0.4, 0.05);
+  }
+}
+
 TEST_F(RunFollowerTest, AddsUpTheWayWalked) {
   for (int i = 0; i <= 100; ++i) follower.add(truth_at(i * 10ms, 0.03 * i, 0.04 * i, 0.0));
   EXPECT_NEAR(follower.snapshot().traveled_m, 5.0, 1e-9);

@@ -6,6 +6,7 @@
 
 #include "app/report/error_plots.h"
 #include "app/report/event_timeline.h"
+#include "app/report/inspection_pictures.h"
 #include "app/report/metric_blocks.h"
 #include "app/report/run_map.h"
 #include "app/report/settings_difference.h"
@@ -79,7 +80,10 @@ report::Page run_page(const RunContents& run, const std::filesystem::path& page_
   add("Error over time", error_blocks(run));
   add("Stations", station_blocks(run.metrics));
   add("Goals", goal_blocks(run.metrics));
-  add("Inspection", inspection_blocks(run.metrics));
+  Blocks inspection = inspection_blocks(run.metrics);
+  for (const Blocks& pictures : {lining_pictures(run), water_pictures(run)})
+    inspection.insert(inspection.end(), pictures.begin(), pictures.end());
+  add("Inspection", std::move(inspection));
   add("Settings", settings_blocks(run));
   add("Performance", performance_blocks(run.metrics));
   if (!run.record.events.empty()) add("Events", {event_table(run)});

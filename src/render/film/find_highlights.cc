@@ -57,12 +57,23 @@ std::string title_of(const Event& event) {
   return without_full_stop(event.text);
 }
 
+/// Height of a subject over the robot's body: that of the ring finding at its position, else 0.
+double height_of(const Eigen::Vector2d& p_map_m, const std::vector<RingFinding>& findings) {
+  constexpr double kSame_m = 0.01;
+  const auto found = std::ranges::find_if(
+      findings, [&](const RingFinding& finding) { return (finding.p_map.head<2>() - p_map_m).norm() < kSame_m; });
+  return found == findings.end() ? 0.0 : found->p_map.z();
+}
+
 void add_events(const RunHistory& history, const Pose2& T_world_map, Highlights& highlights) {
   for (const Event& event : history.events) {
     const std::optional<HighlightKind> kind = moment_of(event.kind);
     if (!kind) continue;
     Highlight highlight{.at = event.stamp, .kind = *kind, .title = title_of(event)};
-    if (*kind == HighlightKind::kAlarm) highlight.p_world_subject = T_world_map * event.p_map_target;
+    if (*kind == HighlightKind::kAlarm) {
+      highlight.p_world_subject = T_world_map * event.p_map_target;
+      highlight.subject_height_m = height_of(event.p_map_target, history.ring_findings);
+    }
     highlights.push_back(std::move(highlight));
   }
 }

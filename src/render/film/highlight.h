@@ -33,6 +33,7 @@ struct Highlight {
   HighlightKind kind{};
   std::string title;                                    ///< short description
   std::optional<Eigen::Vector2d> p_world_subject = {};  ///< position of the highlight, m; none if it is the robot's own
+  double subject_height_m = 0.0;                        ///< height of the subject over the robot's body
 };
 
 }  // namespace patrol::render

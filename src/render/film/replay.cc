@@ -33,6 +33,7 @@ io::LogHandlers handlers_for(SnapshotBuilder& follower, std::function<void(Time)
   handlers.on<Path>(feed);
   handlers.on<Event>(feed);
   handlers.on<GasReading>(feed);
+  handlers.on<LiningResult>(feed);
   handlers.on<GroundTruth>(feed);
   handlers.on<SimState>([&follower, on_state = std::move(on_state)](Time, const SimState& state) {
     follower.add(state);

@@ -27,6 +27,9 @@ RunHistory read_run_history(const std::filesystem::path& log_mcap, const mjModel
         {estimate.stamp, T_world_map * estimate.T_map_body.position() - truth->position.head<2>()});
   });
   handlers.on<Event>([&](Time, const Event& event) { history.events.push_back(event); });
+  handlers.on<LiningResult>([&](Time, const LiningResult& result) {
+    history.ring_findings.insert(history.ring_findings.end(), result.findings.begin(), result.findings.end());
+  });
   handlers.on<Collision>([&](Time, const Collision& collision) { history.collisions.push_back(collision); });
   handlers.on<SimState>([&](Time, const SimState& state) {
     if (history.num_states++ == 0) history.begin = state.stamp;

@@ -7,6 +7,7 @@
 #include <mujoco/mujoco.h>
 
 #include "core/ground_truth.h"
+#include "core/inspection_result.h"
 #include "core/messages.h"
 #include "core/trajectory.h"
 #include "render/film/approach.h"
@@ -29,6 +30,7 @@ struct RunHistory {
   std::vector<Approach> approaches;  ///< to pedestrians and vehicles, within ApproachFinder::kMaxRange_m
   std::vector<Event> events;
   std::vector<Collision> collisions;
+  std::vector<RingFinding> ring_findings;  ///< of all lining results
 };
 
 /// Reads the whole log. Throws InputError when the log cannot be read or belongs to another model than `view`.

@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kClearance_m = 0.25;  // between camera and obstacle
 constexpr double kFollow_s = 0.12;     // time constant
+constexpr double kHigh_m = 2.0;        // subjects higher than this are seen from below
 
 }  // namespace
 
@@ -25,6 +26,7 @@ ShotCamera::ShotCamera(Shot shot, FreeDistance free_distance, const Pose3& T_wor
 Eigen::Vector3d ShotCamera::focus_of(const Pose3& T_world_body) const {
   constexpr double kTowardsSubject = 0.4;
   Eigen::Vector3d focus = T_world_body.position;
+  focus.z() += 0.5 * shot_.subject_height_m;
   if (shot_.p_world_subject) focus.head<2>() += kTowardsSubject * (*shot_.p_world_subject - focus.head<2>());
   return focus;
 }
@@ -32,8 +34,10 @@ Eigen::Vector3d ShotCamera::focus_of(const Pose3& T_world_body) const {
 /// Offset from the focus to the camera at a bearing of zero.
 Eigen::Vector3d ShotCamera::offset_m(const Eigen::Vector3d& p_world_body) const {
   if (!shot_.p_world_subject) return {1.8, 0.0, 0.55};
-  const double apart_m = (*shot_.p_world_subject - p_world_body.head<2>()).norm();
+  const double apart_m = std::hypot((*shot_.p_world_subject - p_world_body.head<2>()).norm(), shot_.subject_height_m);
   const double away_m = std::clamp(1.7 + 0.9 * apart_m, 2.2, 6.5);
+  // A subject above the robot is seen from below, with the camera as high as the robot.
+  if (shot_.subject_height_m > kHigh_m) return {away_m, 0.0, -0.5 * shot_.subject_height_m + 0.3};
   return {away_m, 0.0, 0.4 + 0.25 * away_m};
 }
 

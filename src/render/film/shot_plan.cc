@@ -77,7 +77,8 @@ std::vector<Shot> shots_of(std::vector<Scene> scenes, const Trajectory& T_world_
                      .kind = shot_kind(highlight),
                      .caption = scene.titles,
                      .T_world_body = pose_at(T_world_body, highlight.at).value_or(last),
-                     .p_world_subject = highlight.p_world_subject});
+                     .p_world_subject = highlight.p_world_subject,
+                     .subject_height_m = highlight.subject_height_m});
   }
   return shots;
 }

@@ -35,6 +35,7 @@ struct Shot {
   std::vector<std::string> caption;                     ///< text lines
   Pose3 T_world_body;                                   ///< true pose at the highlight
   std::optional<Eigen::Vector2d> p_world_subject = {};  ///< subject of a two-shot, m
+  double subject_height_m = 0.0;                        ///< height of the subject over the robot's body
 };
 
 /// Composition of highlights into shots.

@@ -12,6 +12,7 @@ inline constexpr Color kScanColor{255, 48, 112};
 inline constexpr Color kParticleColor{180, 60, 220};
 inline constexpr Color kRobotColor{220, 30, 30};
 inline constexpr Color kGasColor{196, 232, 64};
+inline constexpr Color kFindingColor{255, 214, 64};
 inline constexpr Color kTextColor{245, 247, 250};
 inline constexpr Color kAlarmColor{255, 96, 72};
 inline constexpr Color kPanelColor{12, 16, 24};

@@ -19,7 +19,8 @@ Director director_of_a_fault() {
                      .errors = {},
                      .approaches = {},
                      .events = {},
-                     .collisions = {}};
+                     .collisions = {},
+                     .ring_findings = {}};
   for (const Time at : {Time(0s), Time(60s)}) history.T_world_body.push_back({at, {}});
   const ShotSettings settings{.lead_s = 4.0, .lag_s = 3.0};
   ShotPlan plan = plan_shots(history, {{30s, HighlightKind::kFault, "Fault"}}, FilmStyle::kHighlights, {}, settings);

@@ -21,7 +21,8 @@ RunHistory quiet_minute() {
                      .errors = {},
                      .approaches = {},
                      .events = {},
-                     .collisions = {}};
+                     .collisions = {},
+                     .ring_findings = {}};
   for (Time now = 0s; now <= 60s; now += 100ms) {
     history.T_world_body.push_back({now, {}});
     history.errors.push_back({now, Eigen::Vector2d::Zero()});
@@ -60,8 +61,10 @@ TEST(FindMoments, ALiningAlarmIsOneAndLooksAtTheRing) {
                             .text = "Ring 31 has moved inward by 12.0 mm.",
                             .T_map_body = {},
                             .p_map_target = {3.0, 4.0}});
+  history.ring_findings = {{.ring = 30, .p_map = {3.5, 4.0, 1.0}}, {.ring = 31, .p_map = {3.0, 4.0, 5.5}}};
   const std::vector<Highlight> highlights = moments_of(history);
   ASSERT_THAT(instants(highlights, HighlightKind::kAlarm), ElementsAre(20s));
+  EXPECT_EQ(highlights[0].subject_height_m, 5.5);
   EXPECT_EQ(highlights[0].title, "Ring 31 has moved inward by 12.0 mm");
   EXPECT_EQ(highlights[0].p_world_subject, Eigen::Vector2d(3.0, 4.0));
 }

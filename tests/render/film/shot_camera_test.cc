@@ -29,6 +29,19 @@ TEST(ShotCamera, OfTwoHasBothInThePicture) {
   EXPECT_TRUE(is_in_picture(view, {subject.x(), subject.y(), 0.5}));
 }
 
+TEST(ShotCamera, OfASubjectFiveMetersUpLooksUpwardFromTheHeightOfTheRobot) {
+  const Shot shot{.span = {},
+                  .kind = ShotKind::kTwoSubjects,
+                  .caption = {},
+                  .T_world_body = kOrigin,
+                  .p_world_subject = Eigen::Vector2d(0.0, 2.0),
+                  .subject_height_m = 5.0};
+  const View view = ShotCamera(shot, {}, kOrigin).follow(kOrigin, {0.0, 0.0}, kFrame_s);
+  EXPECT_GT(view.forward.z(), 0.1);
+  EXPECT_NEAR(view.eye.z(), kOrigin.position.z(), 0.5);
+  EXPECT_TRUE(is_in_picture(view, {0.0, 2.0, 5.3}));
+}
+
 TEST(ShotCamera, DoesNotGoWhereAWallIs) {
   const auto wall_on_the_left = [](const Eigen::Vector3d& from, const Eigen::Vector3d& direction, double max_m) {
     return direction.y() > 1e-9 ? std::min(max_m, (0.5 - from.y()) / direction.y()) : max_m;

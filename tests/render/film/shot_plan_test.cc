@@ -24,7 +24,8 @@ RunHistory two_minutes() {
                      .errors = {},
                      .approaches = {},
                      .events = {},
-                     .collisions = {}};
+                     .collisions = {},
+                     .ring_findings = {}};
   for (const Time at : {Time(0s), Time(120s)})
     history.T_world_body.push_back({at, {{to_seconds(at), 0.0, 0.3}, Eigen::Quaterniond::Identity()}});
   return history;
