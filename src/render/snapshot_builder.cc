@@ -117,15 +117,15 @@ std::vector<Eigen::Vector3d> SnapshotBuilder::outline_on_scenery(const Eigen::Ve
                                                                  const Eigen::Vector3d& p_world_m) const {
   constexpr int kNumPoints = 32;
   constexpr double kInFront_m = 0.02, kReach = 1.5;
-  const Eigen::Vector3d sight = p_world_m - eye_m;
-  const Eigen::Vector3d right = sight.cross(Eigen::Vector3d::UnitZ()).stableNormalized();
-  const Eigen::Vector3d up = right.cross(sight).stableNormalized();
+  const Eigen::Vector3d line_of_sight = p_world_m - eye_m;
+  const Eigen::Vector3d right = line_of_sight.cross(Eigen::Vector3d::UnitZ()).stableNormalized();
+  const Eigen::Vector3d up = right.cross(line_of_sight).stableNormalized();
   std::vector<Eigen::Vector3d> outline;
   for (int i = 0; i <= kNumPoints; ++i) {
     const double angle = 2.0 * M_PI * i / kNumPoints;
     const Eigen::Vector3d direction =
-        (sight + kLiningMarkRadius_m * (std::cos(angle) * right + std::sin(angle) * up)).normalized();
-    const auto hit = scenery_.cast(eye_m, direction, kReach * sight.norm(), sim::kRayScenery);
+        (line_of_sight + kLiningMarkRadius_m * (std::cos(angle) * right + std::sin(angle) * up)).normalized();
+    const auto hit = scenery_.cast(eye_m, direction, kReach * line_of_sight.norm(), sim::kRayScenery);
     if (hit) outline.push_back(eye_m + (hit->distance_m - kInFront_m) * direction);
   }
   return outline;

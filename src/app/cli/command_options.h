@@ -6,7 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "app/cli/commands.h"
+#include "app/commands/commands.h"
 
 namespace patrol::app {
 

@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "app/cli/commands.h"
+#include "app/commands/commands.h"
 
 namespace patrol::app::fault_matrix_test {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "app/cli/commands.h"
+#include "app/commands/commands.h"
 #include "app/common/temporary_folder.h"
 #include "app/record/run_directory.h"
 #include "app/run/progress_line.h"

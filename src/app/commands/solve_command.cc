@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "app/cli/commands.h"
+#include "app/commands/commands.h"
 #include "core/error.h"
 #include "io/trajectories/g2o.h"
 #include "slam/graph/pose_graph_solver.h"

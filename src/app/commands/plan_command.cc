@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "app/cli/commands.h"
+#include "app/commands/commands.h"
 #include "app/plan/plan_grid.h"
 #include "app/plan/plan_map.h"
 #include "app/plan/plan_settings.h"

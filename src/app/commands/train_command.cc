@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "app/cli/commands.h"
+#include "app/commands/commands.h"
 #include "app/common/print_result.h"
 #include "app/common/progress_bar.h"
 #include "app/mapping/submap_track.h"

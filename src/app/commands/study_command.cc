@@ -9,7 +9,7 @@
 #include "app/campaign/batch/batch_options.h"
 #include "app/campaign/batch/process_pool.h"
 #include "app/campaign/batch/run_hash.h"
-#include "app/cli/commands.h"
+#include "app/commands/commands.h"
 #include "app/common/output_directory.h"
 #include "app/common/print_result.h"
 #include "app/common/progress_bar.h"

@@ -14,7 +14,7 @@
 #include "app/campaign/test/expect_editor.h"
 #include "app/campaign/test/limit_rules.h"
 #include "app/campaign/test/tested_scenario.h"
-#include "app/cli/commands.h"
+#include "app/commands/commands.h"
 #include "app/common/output_directory.h"
 #include "app/scenario/scenario.h"
 #include "core/error.h"

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "app/cli/commands.h"
+#include "app/commands/commands.h"
 #include "app/common/output_directory.h"
 #include "app/common/print_result.h"
 #include "app/report/run_summary.h"

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "app/cli/commands.h"
+#include "app/commands/commands.h"
 #include "app/common/output_directory.h"
 #include "app/common/progress_bar.h"
 #include "app/scoring/localizability_map.h"

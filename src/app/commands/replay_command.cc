@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "app/cli/commands.h"
+#include "app/commands/commands.h"
 #include "app/film/render_film.h"
 #include "app/record/run_directory.h"
 #include "app/record/run_record.h"

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "app/cli/commands.h"
+#include "app/commands/commands.h"
 #include "app/common/print_result.h"
 #include "app/monitor/reporter.h"
 #include "app/report/run_summary.h"

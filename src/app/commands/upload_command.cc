@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "app/cli/commands.h"
+#include "app/commands/commands.h"
 #include "app/common/process_cost.h"
 #include "app/common/progress_bar.h"
 #include "app/monitor/delivery.h"

@@ -2,7 +2,7 @@
 
 #include "app/campaign/sweep/comparison.h"
 #include "app/campaign/sweep/finish_sweep.h"
-#include "app/cli/commands.h"
+#include "app/commands/commands.h"
 #include "core/error.h"
 #include "io/files/atomic_file.h"
 

@@ -5,7 +5,7 @@
 #include "app/campaign/batch/result_store.h"
 #include "app/campaign/batch/run_batch.h"
 #include "app/campaign/test/tested_scenario.h"
-#include "app/cli/commands.h"
+#include "app/commands/commands.h"
 #include "app/common/output_directory.h"
 #include "app/common/print_result.h"
 #include "app/common/text_style.h"

@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include "app/cli/commands.h"
+#include "app/commands/commands.h"
 #include "app/common/print_result.h"
 #include "app/scenario/scenario.h"
 #include "app/scoring/metric_infos.h"

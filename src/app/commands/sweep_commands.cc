@@ -4,7 +4,7 @@
 #include "app/campaign/sweep/plan.h"
 #include "app/campaign/sweep/run_sweep.h"
 #include "app/campaign/sweep/slurm_engine.h"
-#include "app/cli/commands.h"
+#include "app/commands/commands.h"
 #include "core/error.h"
 
 namespace patrol::app {

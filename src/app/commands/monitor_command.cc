@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "app/cli/commands.h"
+#include "app/commands/commands.h"
 #include "monitor/host_names.h"
 #include "monitor/http_server.h"
 #include "monitor/line_log.h"

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "app/cli/commands.h"
+#include "app/commands/commands.h"
 #include "app/common/output_directory.h"
 #include "app/common/print_result.h"
 #include "app/mapping/read_scans.h"

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "app/campaign/sweep/sweep_directory.h"
-#include "app/cli/commands.h"
+#include "app/commands/commands.h"
 #include "app/report/run_page.h"
 #include "app/report/sweep_page.h"
 #include "core/error.h"
