@@ -2,6 +2,7 @@
 
 #include "app/campaign/sweep/sweep_directory.h"
 #include "app/commands/commands.h"
+#include "app/common/progress_bar.h"
 #include "app/report/run_page.h"
 #include "app/report/sweep_page.h"
 #include "core/error.h"
@@ -35,6 +36,8 @@ report::Page page_of(const std::filesystem::path& root, const std::filesystem::p
 ExitCode report_command(const ReportOptions& options) {
   const std::filesystem::path out = options.out.value_or(options.directory / "report.html");
   std::string html;
+  ProgressBar bar;
+  bar.show("report  reading the run");
   try {
     const bool is_generated = std::filesystem::exists(options.directory / "study.json") ||
                               std::filesystem::exists(options.directory / "pose_graph.g2o");

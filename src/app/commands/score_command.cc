@@ -3,6 +3,7 @@
 #include "app/commands/commands.h"
 #include "app/common/output_directory.h"
 #include "app/common/print_result.h"
+#include "app/common/progress_bar.h"
 #include "app/report/run_summary.h"
 #include "app/run/run_verdict.h"
 #include "app/scoring/relation_table.h"
@@ -24,7 +25,11 @@ ExitCode score_directory(const ScoreOptions& options) {
   }
   const Scenario scenario = load_scenario(directory.scenario());
   const ScenarioFiles files = load_scenario_files(scenario, find_data_root(directory.scenario()));
-  const ScoredRun scored = score_run(directory.log(), scenario, files);
+  const ScoredRun scored = [&] {
+    ProgressBar bar;
+    return score_run(directory.log(), scenario, files,
+                     [&](const char* stage, double done) { bar.show(fmt::format("score  {}", stage), done); });
+  }();
   save_scored_run(directory, scored, scenario);
   io::Metrics metrics = to_json(scored.score);
   if (std::filesystem::exists(directory.metrics())) {

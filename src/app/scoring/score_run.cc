@@ -6,12 +6,20 @@
 
 namespace patrol::app {
 
-ScoredRun score_run(const std::filesystem::path& log_mcap, const Scenario& scenario, const ScenarioFiles& files) {
+ScoredRun score_run(const std::filesystem::path& log_mcap, const Scenario& scenario, const ScenarioFiles& files,
+                    const ScoreProgress& on_stage) {
+  const auto show = [&](const char* stage, double done) {
+    if (on_stage) on_stage(stage, done);
+  };
+  show("reading the log", 0.0);
   ScoredRun run{.record = read_run_record(log_mcap), .score = {}, .truth = {}, .scans = {}};
   run.score.mission = score::mission_score(run.record);
   if (!run.record.has_estimate()) return run;
+  show("station scans", 0.35);
   run.scans = station_scans(log_mcap, run.record, scenario, files);
+  show("true map", 0.45);
   run.truth = true_map(run.record, scenario, files);
+  show("metrics", 0.8);
   run.score.estimate = score::estimate_score(run.record, run_references(scenario, files, *run.truth));
   return run;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -24,9 +25,13 @@ struct ScoredRun {
   std::vector<io::StationScan> scans;  ///< first panoramic scan of each station
 };
 
+/// Called at the start of each stage with its name and the fraction of the whole work that is usually done by then.
+using ScoreProgress = std::function<void(const char* stage, double done)>;
+
 /// Scores a run from its log alone, and writes nothing. A run that ended before the first estimate has only the
 /// mission's score.
-ScoredRun score_run(const std::filesystem::path& log_mcap, const Scenario& scenario, const ScenarioFiles& files);
+ScoredRun score_run(const std::filesystem::path& log_mcap, const Scenario& scenario, const ScenarioFiles& files,
+                    const ScoreProgress& on_stage = {});
 
 /// Writes trajectories, maps, localizability, station scans, and the commands and goals of a teleoperated drive to the
 /// run's directory. Writes nothing for a run without an estimate. The caller writes metrics.json, because `performance`

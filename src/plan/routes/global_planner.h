@@ -16,7 +16,7 @@
 namespace patrol::plan {
 
 struct GlobalPlannerSettings {
-  std::string method = "theta_star";  ///< name in plan/routes/planners.h
+  std::string method = "theta_star";  ///< method of the global planner, see `patrol list`
   RoutePlannerSettings family = {.max_steps_millions = 100, .cost_weight = 4.0};
   double goal_tolerance_m = 0.3;   ///< search radius for a free cell if the goal is blocked
   double start_tolerance_m = 0.6;  ///< search radius for a free cell if the start is blocked

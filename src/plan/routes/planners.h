@@ -16,7 +16,7 @@ namespace patrol::plan {
 
 /// Settings of all global planners; each planner uses its own section.
 struct RoutePlannerSettings {
-  int max_steps_millions = 0;         ///< limit of RoutePlanner::limit_steps, 10^6 steps; 0: none
+  int max_steps_millions = 0;         ///< maximum number of steps of an iterative planner, in millions; 0: none
   double cost_weight = 0.0;           ///< number of additional cells that a cell at the highest passable cost counts as
   AntColonySettings ant_colony = {};  ///< ant system, plain and improved
   ImprovedColonySettings improved_colony = {};  ///< improved colony only [Li22]

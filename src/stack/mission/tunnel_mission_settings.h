@@ -24,8 +24,9 @@ struct TunnelMissionSettings {
   double yaw_tolerance_rad = 0.017;        ///< maximum heading error of the robot at a goal
   double teleop_timeout_s = 2.0;           ///< timeout after which the teleoperation counts as switched off
   double relocalization_timeout_s = 30.0;  ///< relocalization timeout; the robot stands still meanwhile
-  std::string goal_types = {};  ///< types of the goals saved on the mapping drive, in order (core/route.h); N for the
-                                ///< rest
+  /// Types of the goals saved on the mapping drive, in order; N for the rest. N: stop; V: pass without a stop; D: stop
+  /// and scan the lining; R: stop for an operator.
+  std::string goal_types = {};
   double operator_timeout_s = 120.0;  ///< timeout for teleoperation commands at a goal of type R; the robot then
                                       ///< continues autonomously
 

@@ -8,9 +8,9 @@ namespace patrol::stack {
 /// Settings of the sensor monitor. The age of a reading is counted from its stamp, less the slow drift of its clock, so
 /// late readings count as missing.
 struct SensorMonitorSettings {
-  double lidar_timeout_s = 0.6;  ///< age limit of sensors with SensorTimeout::kLidar (core/sensors/registry.h)
-  double proprioception_timeout_s = 0.15;  ///< age limit of sensors with SensorTimeout::kMotion
-  double instrument_timeout_s = 5.0;       ///< age limit of sensors with SensorTimeout::kInstrument
+  double lidar_timeout_s = 0.6;            ///< age limit of messages of lidars and the depth camera
+  double proprioception_timeout_s = 0.15;  ///< age limit of messages of IMU, encoders and foot contacts
+  double instrument_timeout_s = 5.0;       ///< age limit of messages of instruments, GNSS, UWB and sonar
   double max_clock_lead_s = 0.05;          ///< lead of a stamp over the present time above which the clock is wrong
   /// Relative rate error of a clock up to which stamps may drift from the present time without an error: quartz
   /// oscillator.
