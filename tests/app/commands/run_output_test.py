@@ -4,6 +4,7 @@
 usage: run_output_test.py PATROL SOURCE_DIR
 """
 import json
+import os
 import pathlib
 import subprocess
 import sys
@@ -42,6 +43,20 @@ class RunOutput(unittest.TestCase):
         self.assertEqual(run["directory"], str(out))
         self.assertEqual(score["metrics"]["map"], run["metrics"]["map"])
         self.assertEqual(score["metrics"], json.loads((out / "metrics.json").read_text()))
+
+    def on_terminal(self, *arguments):
+        """What a terminal gets on standard error."""
+        here, there = os.openpty()
+        done = subprocess.run([PATROL, *arguments], stdout=subprocess.DEVNULL, stderr=there, timeout=120, cwd=SOURCE)
+        os.close(there)
+        self.assertEqual(done.returncode, 0)
+        return os.read(here, 65536).decode()
+
+    def test_score_and_report_show_progress_on_a_terminal(self):
+        out = self.path / "progress"
+        self.call("run", self.scenario, "--out", out)
+        self.assertIn("score  reading the log", self.on_terminal("score", out))
+        self.assertIn("report  reading the run", self.on_terminal("report", out))
 
     def test_other_tables_as_json(self):
         sweep = json.loads(self.call("sweep", self.scenario, "--vary", "sensors.lidar.range_noise_std_m=0.01,0.02", "--seeds", "2", "--out",
