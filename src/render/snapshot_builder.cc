@@ -12,7 +12,6 @@ namespace {
 
 constexpr double kPathStep_m = 0.05;  // minimum distance between points of a drawn path
 constexpr double kAboveGround_m = 0.01;
-constexpr double kScannerHeight_m = 0.5;  // of the viewpoint over the body
 constexpr double kMinKidnapStep_m =
     0.5;  // a larger step between two true poses is a kidnapping, not a motion of the robot
 
@@ -101,8 +100,7 @@ void SnapshotBuilder::add(const GroundTruth& truth) {
 void SnapshotBuilder::add(const LiningResult& result) {
   const double height_m = snapshot_.T_world_body.position.z();
   const Pose3 T_world_map = to_pose3(snapshot_.T_world_map, height_m);
-  const Eigen::Vector3d eye_m =
-      (T_world_map * to_pose3(result.T_map_body)).position + kScannerHeight_m * Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d eye_m = (T_world_map * to_pose3(result.T_map_body) * T_body_lidar_).position;
   for (const RingFinding& finding : result.findings) {
     const Eigen::Vector3d p_world_m = T_world_map * finding.p_map;
     snapshot_.lining_marks.push_back({.outline = outline_on_scenery(eye_m, p_world_m),

@@ -7,6 +7,7 @@
 #include "io/files/markup_text.h"
 #include "report/block_html.h"
 #include "report/html.h"
+#include "report/round_step.h"
 
 /// Figures as SVG in pixels, without a script.
 namespace patrol::report {
@@ -16,6 +17,7 @@ constexpr int kCellWidth = 18, kCellHeight = 9;
 constexpr int kLeft = 100, kLine = 16;  // margins for labels
 constexpr int kNumLevels = 10;          // steps of a color from zero to the maximum
 constexpr double kPlanWidth = 420.0;
+constexpr int kMaxTicks = 8;
 
 std::string text_html(double x, double y, const char* anchor, const std::string& text, const char* css = "") {
   return fmt::format("<text class=\"{}\" x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>\n", css, x, y, anchor,
@@ -86,13 +88,6 @@ std::string labels_html(const HeatMap& block) {
   return html;
 }
 
-/// Distance between the ticks of an axis: 1, 2, 5, 10, 20 ... m, at most eight steps.
-double tick_step_m(double length_m) {
-  double step_m = 1.0;
-  for (int i = 0; length_m / step_m > 8.0; ++i) step_m *= i % 3 == 1 ? 2.5 : 2.0;
-  return step_m;
-}
-
 }  // namespace
 
 std::string to_html(const HeatMap& block) {
@@ -115,14 +110,15 @@ std::string to_html(const PlanView& block) {
   std::string html =
       fmt::format("<rect class=\"frame\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/>\n", kMargin,
                   kTop, size.x(), size.y());
-  const double step_m = tick_step_m(size_m.maxCoeff());
-  for (double x_m = step_m * std::ceil(block.low_m.x() / step_m); x_m <= block.high_m.x(); x_m += step_m) {
+  // The ticks add 0.0 because the first one may be -0.
+  const double step_m = round_step(size_m.maxCoeff(), kMaxTicks);
+  for (double x_m = step_m * std::ceil(block.low_m.x() / step_m) + 0.0; x_m <= block.high_m.x(); x_m += step_m) {
     html += fmt::format("<path class=\"tick\" d=\"M{:.1f} {:.1f}v{:.1f}\"/>\n", to_x(x_m), kTop, size.y());
-    html += text_html(to_x(x_m), kTop + size.y() + kLine, "middle", fmt::format("{:g}", x_m + 0.0));
+    html += text_html(to_x(x_m), kTop + size.y() + kLine, "middle", fmt::format("{:g}", x_m));
   }
-  for (double y_m = step_m * std::ceil(block.low_m.y() / step_m); y_m <= block.high_m.y(); y_m += step_m) {
+  for (double y_m = step_m * std::ceil(block.low_m.y() / step_m) + 0.0; y_m <= block.high_m.y(); y_m += step_m) {
     html += fmt::format("<path class=\"tick\" d=\"M{:.1f} {:.1f}h{:.1f}\"/>\n", kMargin, to_y(y_m), size.x());
-    html += text_html(kMargin - 6, to_y(y_m) + 4, "end", fmt::format("{:g}", y_m + 0.0));
+    html += text_html(kMargin - 6, to_y(y_m) + 4, "end", fmt::format("{:g}", y_m));
   }
   std::string legend;
   for (const MapPath& path : block.paths) {

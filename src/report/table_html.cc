@@ -7,6 +7,7 @@
 #include "io/files/markup_text.h"
 #include "report/block_html.h"
 #include "report/html.h"
+#include "report/round_step.h"
 
 /// Tables, and charts made of tables with a bar or box per row, without a script.
 namespace patrol::report {
@@ -37,15 +38,6 @@ std::string head_html(const std::vector<Column>& columns) {
     html += fmt::format("<th{}>{}</th>", column.is_number ? " class=\"number\"" : "", io::escaped_markup(column.title));
   }
   return html + "</tr></thead>";
-}
-
-/// Minimum of 1, 2 or 5 times a power of ten that covers `end` with at most `max_steps` steps.
-double round_step(double end, int max_steps) {
-  const double min = end / max_steps, power = std::pow(10.0, std::floor(std::log10(min)));
-  for (const double factor : {1.0, 2.0, 5.0}) {
-    if (factor * power >= min * (1.0 - 1e-9)) return factor * power;
-  }
-  return 10.0 * power;
 }
 
 /// Axis with round ticks from at most `min` to at least `max`, including zero.

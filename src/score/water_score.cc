@@ -4,13 +4,11 @@
 
 #include <Eigen/Cholesky>
 
+#include "core/chi_squared.h"
 #include "core/geometry/linear_algebra.h"
 
 namespace patrol::score {
 namespace {
-
-/// 95 % quantile of the chi-squared distribution with three degrees of freedom.
-constexpr double kChiSquared3 = 7.815;
 
 std::optional<std::size_t> nearest_body(const std::vector<WaterGroundTruth>& bodies, const Eigen::Vector3d& p_world_m,
                                         double max_distance_m) {
@@ -53,7 +51,7 @@ WaterScore water_score(const std::vector<WaterResult>& results, const std::vecto
       finding.distance_in_interval =
           offset_m.norm() >= result.distance_low_m && offset_m.norm() <= result.distance_high_m;
       finding.radius_in_interval = body.radius_m >= result.radius_low_m && body.radius_m <= result.radius_high_m;
-      finding.position_in_ellipsoid = error_m.dot(solve_symmetric(covariance_m2, error_m)) <= kChiSquared3;
+      finding.position_in_ellipsoid = error_m.dot(solve_symmetric(covariance_m2, error_m)) <= kChiSquared95Of3;
     }
     score.findings.push_back(finding);
   }

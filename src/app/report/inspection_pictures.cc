@@ -6,10 +6,10 @@
 #include <string>
 #include <utility>
 
-#include <Eigen/Dense>
 #include <fmt/format.h>
 
-#include "core/geometry/angles.h"
+#include "core/chi_squared.h"
+#include "core/geometry/linear_algebra.h"
 #include "core/trajectory.h"
 
 namespace patrol::app {
@@ -17,25 +17,26 @@ namespace {
 
 using report::SeriesColor;
 
-constexpr double kRow_deg = 10.0;  // angular size of a cell
-constexpr int kNumRows = 36;
 constexpr double kMinColorRange_mm = 3.0;
 constexpr double kShownRadius_m = 60.0;  // true bodies farther from the robot are not shown
 constexpr double kMargin_m = 2.0;
-constexpr double kChi2_95_3d = 7.815;  // 95 % quantile of the chi-square distribution, 3 degrees of freedom
 
-/// Row of a clock position in the unrolled lining: the invert's left edge is at the top, the crown in the middle.
-int lining_row(double clock_deg) {
-  const double from_invert_deg = std::fmod(clock_deg + 180.0 + 360.0, 360.0);
-  return std::min(kNumRows - 1, static_cast<int>(from_invert_deg / kRow_deg));
+/// Number of sectors of the lining from the crown to the invert.
+int half_sectors(double sector_deg) { return static_cast<int>(180.0 / sector_deg); }
+
+/// Row of a sector's center in the unrolled lining: the invert's left edge is at the top, the crown in the middle.
+int lining_row(double clock_deg, double sector_deg) {
+  const double from_crown_deg = clock_deg > 180.0 ? clock_deg - 360.0 : clock_deg;
+  const int half = half_sectors(sector_deg);
+  return half + std::clamp(static_cast<int>(std::lround(from_crown_deg / sector_deg)), -half, half);
 }
 
 /// Labels of the rows, named for a viewer who looks along the axis.
-std::vector<std::string> row_labels() {
-  std::vector<std::string> labels(kNumRows);
-  labels[static_cast<std::size_t>(lining_row(270.0))] = "left wall";
-  labels[static_cast<std::size_t>(lining_row(0.0))] = "crown";
-  labels[static_cast<std::size_t>(lining_row(90.0))] = "right wall";
+std::vector<std::string> row_labels(double sector_deg) {
+  std::vector<std::string> labels(static_cast<std::size_t>(2 * half_sectors(sector_deg) + 1));
+  labels[static_cast<std::size_t>(lining_row(270.0, sector_deg))] = "left wall";
+  labels[static_cast<std::size_t>(lining_row(0.0, sector_deg))] = "crown";
+  labels[static_cast<std::size_t>(lining_row(90.0, sector_deg))] = "right wall";
   return labels;
 }
 
@@ -64,7 +65,7 @@ void trim_rows(report::HeatMap& map) {
   for (report::HeatMap::Mark& mark : map.marks) mark.row = std::clamp(mark.row - first, 0, last - first);
 }
 
-report::HeatMap unrolled_lining(const LiningResult& result, const io::Metrics& metrics) {
+report::HeatMap unrolled_lining(const LiningResult& result, const io::Metrics& metrics, double sector_deg) {
   const auto [first, last] = std::ranges::minmax_element(result.cells, {}, &LiningCell::ring);
   const int first_ring = first->ring, num_rings = last->ring - first->ring + 1;
   report::HeatMap map{.caption =
@@ -75,20 +76,21 @@ report::HeatMap unrolled_lining(const LiningResult& result, const io::Metrics& m
                       .max = kMinColorRange_mm,
                       .column_title = "ring",
                       .columns = {},
-                      .rows = row_labels(),
+                      .rows = row_labels(sector_deg),
                       .cells = {},
                       .marks = {},
                       .notes_title = "true peak, mm",
                       .notes = true_peaks(metrics, result.station, first_ring)};
   for (int i = 0; i < num_rings; ++i) map.columns.push_back(fmt::format("{}", first_ring + i));
   for (const LiningCell& cell : result.cells) {
-    map.cells.push_back(
-        {.column = cell.ring - first_ring, .row = lining_row(cell.clock_deg), .value = 1e3 * cell.inward_m});
+    map.cells.push_back({.column = cell.ring - first_ring,
+                         .row = lining_row(cell.clock_deg, sector_deg),
+                         .value = 1e3 * cell.inward_m});
   }
   for (const RingFinding& finding : result.findings) {
     map.max = std::max(map.max, std::ceil(1e3 * std::abs(finding.inward_m)));
     map.marks.push_back({.column = finding.ring - first_ring,
-                         .row = lining_row(finding.clock_deg),
+                         .row = lining_row(finding.clock_deg, sector_deg),
                          .text = fmt::format("{:+.1f} ± {:.1f} mm", 1e3 * finding.inward_m, 2e3 * finding.std_m)});
   }
   trim_rows(map);
@@ -100,8 +102,8 @@ report::HeatMap unrolled_lining(const LiningResult& result, const io::Metrics& m
 std::vector<Eigen::Vector2d> ellipse(const Eigen::Vector2d& center_m, const Eigen::Matrix2d& covariance_m2,
                                      double radius) {
   constexpr int kNumPoints = 72;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(covariance_m2);
-  const Eigen::Matrix2d half_axes = axes.eigenvectors() * axes.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  const SymmetricEigen<2> axes = symmetric_eigen(covariance_m2);
+  const Eigen::Matrix2d half_axes = axes.vectors * axes.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
   std::vector<Eigen::Vector2d> points;
   for (int i = 0; i <= kNumPoints; ++i) {
     const double angle = 2.0 * M_PI * i / kNumPoints;
@@ -157,7 +159,7 @@ report::PlanView view_of(const WaterScene& scene, const std::string& caption, Ei
       {.name = "reported body", .color = SeriesColor::kEstimate, .pieces_m = {circle(center_m, scene.radius_m)}},
       {.name = "95 % ellipsoid of its center",
        .color = SeriesColor::kConfidence,
-       .pieces_m = {ellipse(center_m, covariance_m2, std::sqrt(kChi2_95_3d))}}};
+       .pieces_m = {ellipse(center_m, covariance_m2, std::sqrt(kChiSquared95Of3))}}};
   for (const report::MapPath& path : view.paths) {
     for (const std::vector<Eigen::Vector2d>& piece : path.pieces_m) {
       for (const Eigen::Vector2d& p_m : piece) {
@@ -176,7 +178,8 @@ report::PlanView view_of(const WaterScene& scene, const std::string& caption, Ei
 std::vector<report::Block> lining_pictures(const RunContents& run) {
   std::vector<report::Block> blocks;
   for (const LiningResult& result : run.record.linings) {
-    if (result.is_registered && !result.cells.empty()) blocks.emplace_back(unrolled_lining(result, run.metrics));
+    if (!result.is_registered || result.cells.empty()) continue;
+    blocks.emplace_back(unrolled_lining(result, run.metrics, run.scenario.stack.inspection.lining.sector_deg));
   }
   return blocks;
 }

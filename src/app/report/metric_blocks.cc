@@ -190,7 +190,7 @@ std::vector<report::Block> lining_blocks(const io::Metrics& metrics) {
   }
   const auto value = [&](const char* name) { return io::metric_at(lining, name).value_or(0.0); };
   return {table, report::TextBlock{fmt::format("{:.0f} of {:.0f} scans were registered to their references. {:.0f} "
-                                               "cells (10 degrees of a ring): RMS error {:.2f} mm; {:.1f} % of their "
+                                               "cells (sectors of a ring): RMS error {:.2f} mm; {:.1f} % of their "
                                                "95 % intervals contain the true value.",
                                                value("registered"), value("stations"), value("cells"),
                                                value("cell_rmse_mm"), 100.0 * value("cell_coverage_95"))}};

@@ -5,13 +5,13 @@
 
 #include <Eigen/Geometry>
 
+#include "core/chi_squared.h"
 #include "core/geometry/linear_algebra.h"
 
 namespace patrol::score {
 namespace {
 
-constexpr double kChiSquared95 = 7.814728;  ///< 95 % point of chi squared with 3 degrees of freedom
-constexpr double kMinStd = 1e-6;            ///< m and rad
+constexpr double kMinStd = 1e-6;  ///< m and rad
 
 bool is_singular(const Eigen::Matrix3d& covariance) {
   return !covariance.allFinite() || symmetric_eigen(covariance).values[0] <= kMinStd * kMinStd;
@@ -50,7 +50,7 @@ PoseNees pose_nees(const Trajectory& T_map_body, const std::vector<Eigen::Matrix
     const Eigen::Matrix3d covariance = covariance_in_site(estimate, covariances[i], registration);
     const double nees = error.dot(solve_symmetric(covariance, error));
     sum += nees;
-    num_within += nees <= kChiSquared95 ? 1 : 0;
+    num_within += nees <= kChiSquared95Of3 ? 1 : 0;
   }
   if (score.has_mean()) score.mean = sum / static_cast<double>(score.num_instants - score.num_singular);
   if (score.num_instants > 0)

@@ -19,9 +19,9 @@ RunContents run_with_lining() {
   LiningResult result;
   result.station = "goal_1";
   result.is_registered = true;
-  result.cells = {{.ring = 20, .clock_deg = 5.0, .inward_m = 0.0042},
-                  {.ring = 22, .clock_deg = 275.0, .inward_m = -0.001}};
-  result.findings = {{.ring = 20, .clock_deg = 5.0, .inward_m = 0.0042, .std_m = 0.0003}};
+  result.cells = {{.ring = 20, .clock_deg = 0.0, .inward_m = 0.0042},
+                  {.ring = 22, .clock_deg = 270.0, .inward_m = -0.001}};
+  result.findings = {{.ring = 20, .clock_deg = 0.0, .inward_m = 0.0042, .std_m = 0.0003}};
   run.record.linings = {result};
   run.metrics = io::Metrics::parse(R"({"inspection": {"lining": {"stations": 1, "rings": [
       {"station": "goal_1", "ring": 20, "true_peak_mm": 4.5, "is_found": true},
@@ -45,6 +45,17 @@ TEST(LiningPictures, AreUnrolledFromTheInvertOverTheLeftWallAndTheCrown) {
   EXPECT_DOUBLE_EQ(map.max, 5.0);
   ASSERT_EQ(map.marks.size(), 1u);
   EXPECT_EQ(map.marks[0].text, "+4.2 ± 0.6 mm");
+}
+
+TEST(LiningPictures, OfSectorsOfFiveDegreesHaveARowForEach) {
+  RunContents run = run_with_lining();
+  run.scenario.stack.inspection.lining.sector_deg = 5.0;
+  run.record.linings[0].cells = {
+      {.ring = 20, .clock_deg = 355.0}, {.ring = 20, .clock_deg = 0.0}, {.ring = 20, .clock_deg = 5.0}};
+  const std::vector<report::Block> blocks = lining_pictures(run);
+  const auto& map = std::get<report::HeatMap>(blocks.at(0));
+  EXPECT_EQ(map.rows, (std::vector<std::string>{"", "crown", ""}));
+  EXPECT_EQ(map.cells[2].row, 2);
 }
 
 TEST(LiningPictures, ShowTheTruthOfTheirOwnRingsAndMissedOnesInRed) {
