@@ -25,6 +25,20 @@ struct VelocityCommand {
   double yaw_rate_radps = 0.0;
 };
 
+/// Report of the firmware that the robot has fallen.
+struct FallReport {
+  Time stamp{};
+};
+
+/// Record of a turn of a stack: when its messages take effect, and when the next turn is.
+struct StackTurnRecord {
+  Time turn{};       ///< start of the turn
+  Time delay{};      ///< time from the start until the messages of the turn take effect
+  Time next_turn{};  ///< time that the stack asked for
+  bool is_last = false;
+  bool mission_is_over = false;
+};
+
 /// Request for one panoramic scan, taken at once. The robot stands still until the scan is complete.
 struct ScanCommand {
   Time stamp{};

@@ -17,7 +17,8 @@ struct Call {
   LocalizabilityOptions localizability;
   ReplayOptions replay;
   ReportOptions report;
-  std::filesystem::path verify_run;
+  VerifyOptions verify;
+  std::optional<std::string> stack_address;
   SweepOptions sweep;
   MergeOptions merge;
   ErrorBudgetOptions error_budget;
@@ -40,6 +41,8 @@ struct Call {
 inline constexpr const char* kSetHelp = "Override a setting, path=value (repeatable)";
 inline constexpr const char* kSetAllHelp = "Override a setting in every run, path=value (repeatable)";
 inline constexpr const char* kSeedHelp = "Random seed";
+inline constexpr const char* kStackHelp =
+    "Command of a stack, or unix:PATH or tcp:127.0.0.1:PORT where it connects (default: by the scenario)";
 inline constexpr const char* kOutHelp = "Output directory";
 inline constexpr const char* kSkipHelp = "Skip unreadable records of a damaged log";
 inline constexpr const char* kLogHelp = "Log file: CARMEN text (plain or gzip) or MCAP";

@@ -9,6 +9,7 @@ void add_run(CLI::App& app, Call& call) {
   add_scenario(*command, run.scenario);
   command->add_option("--set", run.overrides, kSetHelp)->take_all();
   command->add_option("--seed", run.seed, kSeedHelp);
+  command->add_option("--stack", run.stack, kStackHelp);
   command->add_flag("--watch", run.watch, "Show live status in the terminal");
   command->add_option("--out", run.out, kOutHelp);
   command->add_option("--monitor-url", run.monitor_url, "Monitoring server, http://host:port");
@@ -78,9 +79,18 @@ void add_report(CLI::App& app, Call& call) {
 }
 
 void add_verify(CLI::App& app, Call& call) {
-  CLI::App* command = app.add_subcommand("verify", "Rerun a scenario and compare the logs byte by byte");
-  command->add_option("run", call.verify_run, "Run directory")->required();
-  command->callback([&] { call.chosen = [&] { return verify_command(call.verify_run); }; });
+  VerifyOptions& verify = call.verify;
+  CLI::App* command = app.add_subcommand("verify", "Repeat a run's simulator and its stack, and compare every byte");
+  command->add_option("run", verify.run, "Run directory")->required();
+  command->add_option("--stack", verify.stack, kStackHelp);
+  command->callback([&] { call.chosen = [&] { return verify_command(call.verify); }; });
+}
+
+void add_stack(CLI::App& app, Call& call) {
+  CLI::App* command = app.add_subcommand("stack", "Take part in a run as the built-in stack in another process");
+  command->add_option("--connect", call.stack_address,
+                      "Address of the simulator, unix:PATH or tcp:HOST:PORT (default: by PATROL_STACK_SOCKET)");
+  command->callback([&] { call.chosen = [&] { return stack_command(call.stack_address); }; });
 }
 
 void add_upload(CLI::App& app, Call& call) {
@@ -102,6 +112,7 @@ void add_run_commands(CLI::App& app, Call& call) {
   add_replay(app, call);
   add_report(app, call);
   add_verify(app, call);
+  add_stack(app, call);
   add_upload(app, call);
 }
 

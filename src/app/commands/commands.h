@@ -21,6 +21,7 @@ struct RunOptions {
   std::filesystem::path scenario;
   std::vector<std::string> overrides;  ///< "path=value"
   std::optional<std::uint64_t> seed;
+  std::optional<std::string> stack;  ///< command or address of a stack instead of that of the scenario
   bool watch = false;  ///< show live status in the terminal
   std::optional<std::filesystem::path> out;
   std::optional<std::string> monitor_url;  ///< URL of a monitoring server
@@ -75,8 +76,17 @@ struct ReportOptions {
 };
 ExitCode report_command(const ReportOptions& options);
 
-/// Reruns `run` in a temporary directory and compares the logs.
-ExitCode verify_command(const std::filesystem::path& run);
+struct VerifyOptions {
+  std::filesystem::path run;
+  std::optional<std::string> stack;  ///< command or address of the stack; a run with the built-in stack needs none
+};
+/// Repeats the two halves of a run in a temporary directory and compares the logs: the simulator with the recorded
+/// answers of the stack, and the stack with the recorded messages of the simulator.
+ExitCode verify_command(const VerifyOptions& options);
+
+/// Takes part in a run as the built-in stack in a process of its own. `address`: of the simulator; none: as the process
+/// that `patrol run --stack` starts.
+ExitCode stack_command(const std::optional<std::string>& address);
 
 /// Runs every variant with every seed, or one shard of these runs, and compares the variants.
 ExitCode sweep_command(const SweepOptions& options);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -23,7 +24,9 @@ std::filesystem::path default_directory(const RunOptions& options, const Scenari
 Scenario scenario_of(const RunOptions& options) {
   std::vector<std::string> overrides = options.overrides;
   if (options.seed) overrides.push_back(fmt::format("seed={}", *options.seed));
-  return load_scenario(options.scenario, overrides);
+  Scenario scenario = load_scenario(options.scenario, overrides);
+  if (options.stack) scenario.stack.command = *options.stack;
+  return scenario;
 }
 
 /// Group of observers; each may stop the run.
@@ -39,6 +42,9 @@ class ObserverGroup final : public RunObserver {
   }
   void on_ground_truth(const GroundTruth& truth) override {
     for (RunObserver* one : observers_) one->on_ground_truth(truth);
+  }
+  bool is_interrupted() const override {
+    return std::ranges::any_of(observers_, [](const RunObserver* one) { return one->is_interrupted(); });
   }
   bool keep_running(Time now, double distance_m) override {
     bool keeps_running = true;

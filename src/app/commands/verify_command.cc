@@ -1,37 +1,73 @@
-#include <filesystem>
+#include <memory>
+#include <optional>
 #include <stdexcept>
+#include <string>
 
 #include <fmt/format.h>
 
 #include "app/commands/commands.h"
 #include "app/common/temporary_folder.h"
 #include "app/record/run_directory.h"
+#include "app/run/feed_loop.h"
+#include "app/run/make_stack_port.h"
 #include "app/run/progress_line.h"
+#include "app/run/recorded_stack.h"
 #include "app/run/run_loop.h"
 #include "io/logs/log_compare.h"
 
 namespace patrol::app {
-ExitCode verify_command(const std::filesystem::path& run) {
-  const RunDirectory directory = open_run_directory(run);
-  const Scenario scenario = load_scenario(directory.scenario());
-  const ScenarioFiles files = load_scenario_files(scenario, find_data_root(directory.scenario()));
+namespace {
 
+void throw_if_ended_early(const RunOutcome& outcome) {
+  if (outcome.end == RunEnd::kInterrupted) throw std::runtime_error("interrupted; nothing compared");
+  if (!outcome.stack_failure.empty()) throw std::runtime_error(outcome.stack_failure);
+}
+
+/// Prints the result of one half of the verification. Returns whether it is reproduced.
+bool report(const char* half, const std::optional<io::LogDifference>& difference) {
+  if (difference) fmt::print("{} differs: {}\n", half, io::describe(*difference));
+  else fmt::print("{} reproduced\n", half);
+  return !difference;
+}
+
+}  // namespace
+
+ExitCode verify_command(const VerifyOptions& options) {
+  const RunDirectory directory = open_run_directory(options.run);
+  Scenario scenario = load_scenario(directory.scenario());
+  const std::filesystem::path data_root = find_data_root(directory.scenario());
+  const ScenarioFiles files = load_scenario_files(scenario, data_root);
+  const std::string name = directory.root.filename().string();
   const TemporaryFolder again("verify");
-  const std::filesystem::path log = again.path() / "log.mcap";
+
   fmt::print(stderr, "verify: rerunning {}, seed {}\n", directory.scenario().string(), scenario.seed);
   sim::Simulator simulator = make_simulator(scenario, files);
-  stack::Stack stack = make_stack(scenario, files);
-  ProgressLine observer("verify", scenario.time_limit_s);
-  if (run_loop(scenario, files, simulator, stack, log, observer).end == RunEnd::kInterrupted)
-    throw std::runtime_error("interrupted; nothing compared");
-
-  const std::optional<io::LogDifference> difference = io::first_difference(directory.log(), log);
-  if (!difference) {
-    fmt::print("reproduced: {} is byte-identical\n", directory.log().string());
-    return ExitCode::kDone;
+  bool is_same = false;
+  {
+    RecordedStack recorded(directory.log(), simulator.tick());
+    ProgressLine observer("verify simulator", scenario.time_limit_s);
+    const std::filesystem::path log = again.path() / "simulator.mcap";
+    throw_if_ended_early(run_loop(scenario, files, simulator, recorded, log, observer));
+    is_same = report("simulator", io::first_difference(directory.log(), log));
   }
-  fmt::print("differs: {}\n", io::describe(*difference));
-  return ExitCode::kExpectationMissed;
+
+  const bool is_external = !scenario.stack.command.empty();
+  if (is_external && !options.stack) {
+    fmt::print("stack not verified: give its command with --stack, for example {}\n", scenario.stack.command);
+    return is_same ? ExitCode::kDone : ExitCode::kExpectationMissed;
+  }
+  if (options.stack) scenario.stack.command = *options.stack;
+  ProgressLine observer("verify stack", scenario.time_limit_s);
+  const std::unique_ptr<StackPort> stack =
+      make_stack_port(scenario, files, {.scenario = name,
+                                        .data_root = data_root,
+                                        .tick = simulator.tick(),
+                                        .output = again.path() / "stack.log",
+                                        .is_interrupted = [&] { return observer.is_interrupted(); }});
+  const std::filesystem::path log = again.path() / "stack.mcap";
+  throw_if_ended_early(feed_loop(directory.log(), files, simulator.tick(), *stack, log, observer));
+  is_same = report("stack", io::first_difference(directory.log(), log, is_published_by_stack)) && is_same;
+  return is_same ? ExitCode::kDone : ExitCode::kExpectationMissed;
 }
 
 }  // namespace patrol::app

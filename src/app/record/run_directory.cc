@@ -19,7 +19,7 @@ const OutputKind kRun = {.name = "run",
                                      "teleop.csv",     "scans/scans.json",   "scans/*.ply",
                                      "map_errors.pgm", "localizability.csv", "still_*.png",
                                      "outbox.jsonl",   "outbox.sent",        "outbox.refused.jsonl",
-                                     "*.part"},
+                                     "stack.log",      "*.part"},
                          .required_file = "scenario.yaml",
                          .preserved = {}};
 

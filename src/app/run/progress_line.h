@@ -13,6 +13,7 @@ class ProgressLine final : public RunObserver {
   /// `time_limit_s`: limit of the simulated time, from which the line bounds the remaining time.
   ProgressLine(std::string name, double time_limit_s);
 
+  bool is_interrupted() const override { return interrupt_.is_interrupted(); }
   bool keep_running(Time now, double distance_m) override;
 
  private:

@@ -13,7 +13,8 @@ io::JunitCase end_case(const std::string& name, const RunVerdict& verdict, doubl
                      .message = "",
                      .details = ""};
   if (verdict.end == RunStatus::kDone || verdict.end == RunStatus::kExpectationMissed) return test;  // own cases
-  const bool came_to_a_score = !verdict.metrics.empty();
+  const bool is_stack_failure = verdict.end == RunStatus::kStackFailed || verdict.end == RunStatus::kStackSilent;
+  const bool came_to_a_score = !verdict.metrics.empty() && !is_stack_failure;
   test.result = came_to_a_score ? io::JunitResult::kFailure : io::JunitResult::kError;
   test.message = came_to_a_score ? verdict.message : fmt::format("{}: {}", name_of(verdict.end), verdict.message);
   return test;

@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <chrono>
 #include <ctime>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "core/geometry/angles.h"
 #include "core/overloaded.h"
-#include "inspect/route_frame.h"
 #include "io/logs/run_log.h"
 #include "render/scene/depth_renderer.h"
-#include "stack/make_stack.h"
 
 namespace patrol::app {
 namespace {
@@ -29,6 +29,9 @@ class Schedule {
   Time period_;
   Time next_{};
 };
+
+/// Time without a velocity command after which the robot's base stops.
+constexpr Time kCommandTimeout = std::chrono::milliseconds(500);
 
 /// Message that is a command to the simulator's instruments.
 template <typename Message>
@@ -57,19 +60,10 @@ sim::SimulatorSettings simulator_settings(const Scenario& scenario, const Scenar
           .recorded = files.recorded};
 }
 
-stack::LiningReferences references_of(const ScenarioFiles& files) {
-  stack::LiningReferences references;
-  for (const io::StationScan& scan : files.references) {
-    references.emplace(scan.station,
-                       inspect::LiningReference{.T_map_scanner = scan.T_map_scanner, .points = scan.points});
-  }
-  return references;
-}
-
 /// Closed loop of simulator and stack: exchanges their messages, writes the log and notifies the observer.
 class ClosedLoop {
  public:
-  ClosedLoop(const Scenario& scenario, const ScenarioFiles& files, sim::Simulator& simulator, stack::Stack& stack,
+  ClosedLoop(const Scenario& scenario, const ScenarioFiles& files, sim::Simulator& simulator, StackPort& stack,
              const std::filesystem::path& log_mcap, RunObserver& observer)
       : simulator_(simulator),
         stack_(stack),
@@ -86,46 +80,89 @@ class ClosedLoop {
   RunOutcome run(const ScenarioFiles& files) {
     observer_.begin(files);
     if (const AsBuiltTruth as_built = simulator_.as_built(); !as_built.values.empty()) log_.write(Time{}, as_built);
-    for (bool is_running = true; is_running;) {
-      const Time now = simulator_.now();
-      handle_sensor_messages(now);
-      if (simulator_.has_fallen()) {
-        stack_.handle_fall(now);
-        outcome_.end = RunEnd::kFall;
+    try {
+      for (bool is_running = true; is_running;) {
+        const Time now = simulator_.now();
+        deliver_sensor_messages(now);
+        deliver_fall(now);
+        give_turn(now);
+        if (now - command_time_ > kCommandTimeout) simulator_.set_command({});
+        trigger_kidnaps(now);
+        record_ground_truth(now);
+        is_running = keep_running(now);
+        if (is_running) simulator_.step();
       }
-      stack_.step(now);
-      publish_stack_messages(now);
-      simulator_.set_command(stack_.command());
-      trigger_kidnaps(now);
-      record_ground_truth(now);
-      is_running = keep_running(now);
-      if (is_running) simulator_.step();
+      finish_stack(simulator_.now());
+    } catch (const link::LinkError& error) {
+      record_ground_truth(simulator_.now());
+      set_failure(outcome_, error);
     }
     finish();
     return std::move(outcome_);
   }
 
  private:
-  void handle_sensor_messages(Time now) {
-    for (const SensorMessage& message : simulator_.take_messages()) {
-      {
-        const auto timer = profiler_.time_stage("log");
-        log_.write(now, message);
-      }
-      stack_.handle(message);
-    }
+  void deliver_sensor_messages(Time now) {
+    const auto timer = profiler_.time_stage("log");
+    for (const SensorMessage& message : simulator_.take_messages())
+      std::visit([&](const auto& content) { deliver(now, content); }, message);
   }
 
-  void publish_stack_messages(Time now) {
-    for (const stack::StackMessage& message : stack_.take_messages()) {
+  void deliver_fall(Time now) {
+    if (fall_time_ || !simulator_.has_fallen()) return;
+    fall_time_ = now;
+    deliver(now, FallReport{now});
+    outcome_.end = RunEnd::kFall;
+  }
+
+  /// Writes a message and adds it to the next turn of the stack.
+  template <typename Message>
+  void deliver(Time now, const Message& message) {
+    turn_.messages.push_back(
+        {.topic = io::kTopic<Message>, .log_time = now, .cdr = log_.write(now, message)});
+  }
+
+  /// Publishes what the stack has computed by now, and lets it take a turn when it is due.
+  void give_turn(Time now) {
+    publish_answer(now);
+    if (answer_ || now < next_turn_) return;
+    turn_.now = now;
+    answer_ = stack_.take_turn(turn_);
+    turn_.messages.clear();
+    answer_time_ = now + answer_->delay;
+    next_turn_ = answer_->next_turn;
+    record_turn({.turn = now,
+                 .delay = answer_->delay,
+                 .next_turn = answer_->next_turn,
+                 .is_last = false,
+                 .mission_is_over = answer_->mission_is_over});
+    publish_answer(now);
+  }
+
+  void record_turn(const StackTurnRecord& record) {
+    if (stack_.records_turns()) log_.write(record.turn, record);
+  }
+
+  void publish_answer(Time now) {
+    if (!answer_ || now < answer_time_) return;
+    publish(now, answer_->messages);
+    mission_is_over_ = answer_->mission_is_over || (fall_time_ && turn_.now >= *fall_time_);
+    answer_.reset();
+  }
+
+  void publish(Time now, const std::vector<PublishedMessage>& messages) {
+    for (const PublishedMessage& message : messages) {
       const auto timer = profiler_.time_stage("log");
-      std::visit(Overloaded{[&](const auto& content) { log_.write(now, content); },
-                            [&]<InstrumentOrder Command>(const Command& order) {
-                              log_.write(now, order);
-                              simulator_.command(order);
-                            }},
-                 message);
-      observer_.on_message(message);
+      write_published(log_, now, message);
+      if (!message.content) continue;
+      std::visit(Overloaded{[](const auto&) {},
+                            [&](const VelocityCommand& command) {
+                              simulator_.set_command(command);
+                              command_time_ = now;
+                            },
+                            [&]<InstrumentOrder Command>(const Command& order) { simulator_.command(order); }},
+                 *message.content);
+      observer_.on_message(*message.content);
     }
   }
 
@@ -156,19 +193,27 @@ class ClosedLoop {
       outcome_.end = RunEnd::kInterrupted;
       return false;
     }
-    return !stack_.mission_is_over() && now < limit_;
+    return !mission_is_over_ && now < limit_;
   }
 
-  /// Lets the stack complete its map, closes the log and completes the outcome.
+  /// Lets the stack publish its last results.
+  void finish_stack(Time now) {
+    if (answer_) publish(now, answer_->messages);
+    turn_.now = now;
+    const std::vector<PublishedMessage> messages = stack_.finish(turn_);
+    record_turn({.turn = now, .delay = {}, .next_turn = now, .is_last = true, .mission_is_over = true});
+    publish(now, messages);
+  }
+
+  /// Closes the log and completes the outcome.
   void finish() {
-    stack_.finish(simulator_.now());
-    publish_stack_messages(simulator_.now());
     log_.close();
     outcome_.duration = simulator_.now();
     outcome_.faults = simulator_.sensors().faults();
     outcome_.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_start_).count();
     outcome_.cpu_s = cpu_seconds() - cpu_start_;
-    for (const StageProfiler* part : {&simulator_.clock(), &stack_.clock(), &std::as_const(profiler_)}) {
+    outcome_.seconds_by_stage = stack_.seconds_by_stage();
+    for (const StageProfiler* part : {&simulator_.clock(), &std::as_const(profiler_)}) {
       for (const auto& [name, seconds] : part->seconds()) outcome_.seconds_by_stage[name] += seconds;
     }
     // Expensive sensors are stages of their own.
@@ -181,7 +226,7 @@ class ClosedLoop {
   const std::chrono::steady_clock::time_point wall_start_ = std::chrono::steady_clock::now();
   const double cpu_start_ = cpu_seconds();
   sim::Simulator& simulator_;
-  stack::Stack& stack_;
+  StackPort& stack_;
   RunObserver& observer_;
   io::RunLogWriter log_;
   StageProfiler profiler_;
@@ -190,6 +235,12 @@ class ClosedLoop {
   std::vector<KidnapSettings> kidnaps_;  ///< by time
   Eigen::Vector3d last_position_;
   double distance_m_ = 0.0;
+  StackTurn turn_;                     ///< next turn, or the one that is being answered
+  std::optional<StackAnswer> answer_;  ///< answer that has not taken effect
+  Time answer_time_{}, next_turn_{};
+  Time command_time_{};  ///< of the last velocity command
+  std::optional<Time> fall_time_;
+  bool mission_is_over_ = false;
   RunOutcome outcome_;
 };
 
@@ -207,25 +258,35 @@ std::vector<sim::StaticObstacleSettings> all_static_obstacles(const Scenario& sc
   return obstacles;
 }
 
+void write_published(io::RunLogWriter& log, Time now, const PublishedMessage& message) {
+  if (message.content) {
+    std::visit([&]<typename Content>(const Content&) { log.write_encoded<Content>(now, message.cdr); },
+               *message.content);
+  } else {
+    log.write_foreign(now, message.topic, message.type, message.definition, message.cdr);
+  }
+}
+
+void set_failure(RunOutcome& outcome, const link::LinkError& error) {
+  outcome.stack_failure = error.what();
+  switch (error.fault()) {
+    case link::LinkFault::kInterrupted:
+      outcome.end = RunEnd::kInterrupted;
+      break;
+    case link::LinkFault::kTimeout:
+      outcome.end = RunEnd::kStackSilent;
+      break;
+    default:
+      outcome.end = RunEnd::kStackFailed;
+  }
+}
+
 sim::Simulator make_simulator(const Scenario& scenario, const ScenarioFiles& files) {
   return {simulator_settings(scenario, files), files.robot, scenario.seed, render::make_depth_renderer};
 }
 
-stack::Stack make_stack(const Scenario& scenario, const ScenarioFiles& files) {
-  return stack::make_stack(scenario.stack, files.robot, inspect::to_map(files.route, files.T_site_start),
-                           {.map = files.map,
-                            .map_registration = files.map_registration,
-                            .goals = files.goals,
-                            .references = references_of(files),
-                            .neighbor_model = files.neighbor_model,
-                            .has_teleop = files.has_teleop(),
-                            .site = {.T_site_start = files.T_site_start, .datum = files.datum},
-                            .map_period_s = scenario.log.map_period_s,
-                            .seed = scenario.seed});
-}
-
-RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::Simulator& simulator,
-                    stack::Stack& stack, const std::filesystem::path& log_mcap, RunObserver& observer) {
+RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::Simulator& simulator, StackPort& stack,
+                    const std::filesystem::path& log_mcap, RunObserver& observer) {
   return ClosedLoop(scenario, files, simulator, stack, log_mcap, observer).run(files);
 }
 

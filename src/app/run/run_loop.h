@@ -6,18 +6,21 @@
 #include <string>
 #include <vector>
 
+#include "app/run/stack_port.h"
 #include "app/scenario/scenario.h"
+#include "io/logs/run_log.h"
+#include "link/link_error.h"
 #include "core/time.h"
-#include "stack/stack.h"
 
 namespace patrol::app {
 
-enum class RunEnd { kMissionOver, kFall, kTimeLimit, kInterrupted };
+enum class RunEnd { kMissionOver, kFall, kTimeLimit, kInterrupted, kStackFailed, kStackSilent };
 
 /// Outcome of a run beyond its log.
 struct RunOutcome {
   RunEnd end = RunEnd::kMissionOver;
-  Time duration{};  ///< simulated time
+  std::string stack_failure;  ///< sentence for kStackFailed and kStackSilent
+  Time duration{};            ///< simulated time
   double wall_s = 0.0;
   double cpu_s = 0.0;
   std::map<std::string, double> seconds_by_stage;  ///< wall time by stage
@@ -33,6 +36,8 @@ class RunObserver {
   virtual void begin(const ScenarioFiles&) {}
   virtual void on_message(const stack::StackMessage&) {}
   virtual void on_ground_truth(const GroundTruth&) {}
+  /// Returns whether the user has interrupted the run. Polled while Patrol waits for a stack in another process.
+  virtual bool is_interrupted() const { return false; }
   /// Called every 0.5 s of simulated time; false stops the run.
   virtual bool keep_running(Time now, double distance_m) = 0;
 };
@@ -49,13 +54,17 @@ Pose2 start_in_world(const Scenario& scenario, const ScenarioFiles& files);
 /// Static obstacles of the scenario: the listed ones and the randomly scattered ones.
 std::vector<sim::StaticObstacleSettings> all_static_obstacles(const Scenario& scenario);
 
+/// Writes a message of the stack to the log.
+void write_published(io::RunLogWriter& log, Time now, const PublishedMessage& message);
+/// Sets the end of a run whose stack failed.
+void set_failure(RunOutcome& outcome, const link::LinkError& error);
+
 /// Creates the simulator. Throws InputError if the settings of the scenario are inconsistent.
 sim::Simulator make_simulator(const Scenario& scenario, const ScenarioFiles& files);
-/// Creates the stack. Throws InputError if the settings of the scenario are inconsistent.
-stack::Stack make_stack(const Scenario& scenario, const ScenarioFiles& files);
 
-/// Runs simulator and stack in a closed loop until the mission ends, and writes everything to `log_mcap`.
-RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::Simulator& simulator,
-                    stack::Stack& stack, const std::filesystem::path& log_mcap, RunObserver& observer);
+/// Runs simulator and stack in a closed loop until the mission ends, and writes everything to `log_mcap`. The run also
+/// ends when the stack fails.
+RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::Simulator& simulator, StackPort& stack,
+                    const std::filesystem::path& log_mcap, RunObserver& observer);
 
 }  // namespace patrol::app

@@ -6,6 +6,7 @@
 #include "app/common/output_directory.h"
 #include "app/common/process_cost.h"
 #include "app/record/run_directory.h"
+#include "app/run/make_stack_port.h"
 #include "app/run/run_junit.h"
 #include "app/scoring/score_json.h"
 #include "app/scoring/score_run.h"
@@ -35,12 +36,17 @@ std::optional<RunVerdict> run_once(const Scenario& scenario, const std::string& 
                                    RunObserver& observer) {
   const ScenarioFiles files = load_scenario_files(scenario, data_root);
   sim::Simulator simulator = make_simulator(scenario, files);  // these throw InputError before anything is written
-  stack::Stack stack = make_stack(scenario, files);
+  const std::unique_ptr<StackPort> stack =
+      make_stack_port(scenario, files, {.scenario = name,
+                                        .data_root = data_root,
+                                        .tick = simulator.tick(),
+                                        .output = RunDirectory{root}.stack_output(),
+                                        .is_interrupted = [&] { return observer.is_interrupted(); }});
   const RunDirectory directory = begin_run_directory(root);
   io::save_junit(directory.junit(), {unfinished_suite(name, junit_properties(scenario))});
   save_scenario(directory.scenario(), scenario, origin_comment(name));
 
-  const RunOutcome outcome = run_loop(scenario, files, simulator, stack, directory.log(), observer);
+  const RunOutcome outcome = run_loop(scenario, files, simulator, *stack, directory.log(), observer);
   if (outcome.end == RunEnd::kInterrupted) return std::nullopt;
 
   const ScoredRun scored = score_run(directory.log(), scenario, files);

@@ -26,6 +26,8 @@ std::string name_of(const KidnapSettings& kidnap) { return fmt::format("kidnap a
 RunStatus status_of(RunEnd end, const std::vector<CheckedExpectation>& checks) {
   if (end == RunEnd::kFall) return RunStatus::kFall;
   if (end == RunEnd::kTimeLimit) return RunStatus::kTimeLimit;
+  if (end == RunEnd::kStackFailed) return RunStatus::kStackFailed;
+  if (end == RunEnd::kStackSilent) return RunStatus::kStackSilent;
   return all_met(checks) ? RunStatus::kDone : RunStatus::kExpectationMissed;
 }
 
@@ -44,6 +46,8 @@ RunVerdict verdict_of(const RunOutcome& outcome, const std::vector<KidnapSetting
     verdict.message = fmt::format("the robot fell at {:.2f} s", to_seconds(outcome.duration));
   } else if (verdict.end == RunStatus::kTimeLimit) {
     verdict.message = fmt::format("time limit: {:.0f} s", to_seconds(outcome.duration));
+  } else if (!outcome.stack_failure.empty()) {
+    verdict.message = outcome.stack_failure;
   }
   return verdict;
 }

@@ -29,7 +29,9 @@ enum class RunStatus : std::uint8_t {
   kWrongInput,
   kFailed,
   kCrashed,
-  kWallTimeLimit
+  kWallTimeLimit,
+  kStackFailed,
+  kStackSilent
 };
 
 /// Row of the table of run statuses.
@@ -51,6 +53,10 @@ inline constexpr std::array kRunStatuses = std::to_array<RunStatusRow>({
     {RunStatus::kFailed, "failed", "No score: the simulation or the program failed", ExitCode::kProgramFailed},
     {RunStatus::kCrashed, "crashed", "No score: the process of the run crashed", ExitCode::kProgramFailed},
     {RunStatus::kWallTimeLimit, "wall time limit", "No score: the process of the run reached its wall-clock timeout",
+     ExitCode::kTimeLimit},
+    {RunStatus::kStackFailed, "stack failed", "The stack in another process ended or violated the protocol",
+     ExitCode::kProgramFailed},
+    {RunStatus::kStackSilent, "stack silent", "The stack in another process did not answer within stack.timeout_s",
      ExitCode::kTimeLimit},
 });
 static_assert(is_in_order(kRunStatuses));

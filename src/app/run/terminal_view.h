@@ -21,6 +21,7 @@ class TerminalView final : public RunObserver {
   void begin(const ScenarioFiles& files) override;
   void on_message(const stack::StackMessage& message) override;
   void on_ground_truth(const GroundTruth& truth) override;
+  bool is_interrupted() const override { return interrupt_.is_interrupted(); }
   bool keep_running(Time now, double distance_m) override;
 
  private:

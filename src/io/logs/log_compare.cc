@@ -58,18 +58,38 @@ std::optional<LogDifference> message_difference(const McapMessage& was, const Mc
   return LogDifference{was.channel.topic, was.log_time, content_difference(was, is)};
 }
 
-}  // namespace
+using TopicFilter = std::function<bool(const std::string& topic)>;
 
-std::optional<LogDifference> first_difference(const std::filesystem::path& log, const std::filesystem::path& rerun) {
-  if (same_bytes(log, rerun)) return std::nullopt;
-  McapReader before(log), after(rerun);
+std::optional<McapMessage> next_of(McapReader& reader, const TopicFilter& is_compared) {
+  while (std::optional<McapMessage> message = reader.next()) {
+    if (!is_compared || is_compared(message->channel.topic)) return message;
+  }
+  return std::nullopt;
+}
+
+/// Returns the next difference between two logs; nullopt when both have ended.
+std::optional<LogDifference> next_difference(McapReader& before, McapReader& after, const TopicFilter& is_compared) {
   while (true) {
-    const std::optional<McapMessage> was = before.next(), is = after.next();
-    if (!was && !is) break;
+    const std::optional<McapMessage> was = next_of(before, is_compared), is = next_of(after, is_compared);
+    if (!was && !is) return std::nullopt;
     if (!is) return LogDifference{was->channel.topic, was->log_time, "the other log ended before this message"};
     if (!was) return LogDifference{is->channel.topic, is->log_time, "the log ended before this message of the other"};
     if (auto difference = message_difference(*was, *is)) return difference;
   }
+}
+
+}  // namespace
+
+std::optional<LogDifference> first_difference(const std::filesystem::path& log, const std::filesystem::path& rerun,
+                                              const TopicFilter& is_compared) {
+  McapReader before(log), after(rerun);
+  return next_difference(before, after, is_compared);
+}
+
+std::optional<LogDifference> first_difference(const std::filesystem::path& log, const std::filesystem::path& rerun) {
+  if (same_bytes(log, rerun)) return std::nullopt;
+  McapReader before(log), after(rerun);
+  if (auto difference = next_difference(before, after, {})) return difference;
   if (before.is_complete() != after.is_complete()) {
     return LogDifference{
         "", {}, fmt::format("identical messages, but the {} is truncated", after.is_complete() ? "log" : "other log")};

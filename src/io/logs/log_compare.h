@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -15,8 +16,12 @@ struct LogDifference {
   std::string what;  ///< phrase such as "ranges[417] is 3.26, was 3.25"
 };
 
-/// Returns the first message of `again` that is not byte-identical to that of `log`; nullopt if the files are equal.
+/// Returns the first message of `rerun` that is not byte-identical to that of `log`; nullopt if the files are equal.
 std::optional<LogDifference> first_difference(const std::filesystem::path& log, const std::filesystem::path& rerun);
+
+/// Compares only the messages on the topics of which `is_compared` is true; nullopt if they are equal.
+std::optional<LogDifference> first_difference(const std::filesystem::path& log, const std::filesystem::path& rerun,
+                                              const std::function<bool(const std::string& topic)>& is_compared);
 
 /// Formats a difference: "/scan at 12.300000000 s: ranges[417] is 3.26, was 3.25".
 std::string describe(const LogDifference& difference);

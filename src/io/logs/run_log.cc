@@ -14,14 +14,25 @@ constexpr Time kOdometryMemory = std::chrono::seconds(2);
 
 }  // namespace
 
-RunLogWriter::RunLogWriter(const std::filesystem::path& log_mcap, const RobotDescription& robot)
-    : writer_(log_mcap), names_{.joints = robot.joint_names} {
+TransformSet sensor_mounts(const RobotDescription& robot) {
   TransformSet mounts;
   for (const auto& [frame, T_body_sensor] : robot.T_body_sensor) {
     mounts.transforms.push_back(
         {.stamp = {}, .parent = frame_id::kBody, .child = frame, .T_parent_child = T_body_sensor});
   }
-  writer_.write(channel<TransformSet>(kStaticTransforms.topic), Time{}, encode(mounts, names_));
+  return mounts;
+}
+
+RunLogWriter::RunLogWriter(const std::filesystem::path& log_mcap, const RobotDescription& robot)
+    : writer_(log_mcap), names_{.joints = robot.joint_names} {
+  writer_.write(channel<TransformSet>(kStaticTransforms.topic), Time{}, encode(sensor_mounts(robot), names_));
+}
+
+void RunLogWriter::write_foreign(Time log_time, const std::string& topic, const std::string& type,
+                                 const std::string& definition, std::string_view cdr) {
+  auto known = channels_.find(topic);
+  if (known == channels_.end()) known = channels_.emplace(topic, writer_.add_channel(topic, type, definition)).first;
+  writer_.write(known->second, log_time, cdr);
 }
 
 McapWriter::ChannelId RunLogWriter::add_channel(const std::string& topic, const char* type) {

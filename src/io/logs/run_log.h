@@ -17,20 +17,31 @@
 
 namespace patrol::io {
 
+/// Returns the transforms from the body to the sensor frames, by the robot's model: the message on /tf_static.
+TransformSet sensor_mounts(const RobotDescription& robot);
+
 /// Writes log.mcap: every message on its topic, and the frames on /tf and /tf_static.
 class RunLogWriter {
  public:
   RunLogWriter(const std::filesystem::path& log_mcap, const RobotDescription& robot);
 
+  /// Writes a message and returns its encoding.
   template <typename Message>
-  void write(Time log_time, const Message& message) {
-    writer_.write(channel<Message>(kTopic<Message>), log_time, encode(message, names_));
-    if constexpr (std::is_same_v<Message, OdometryEstimate>) write_frames(log_time, message);
-    if constexpr (std::is_same_v<Message, PoseEstimate>) write_frames(log_time, message);
+  std::string write(Time log_time, const Message& message) {
+    std::string cdr = encode(message, names_);
+    write_encoded<Message>(log_time, cdr);
+    return cdr;
   }
-  void write(Time log_time, const SensorMessage& message) {
-    std::visit([this, log_time](const auto& content) { write(log_time, content); }, message);
+  /// Writes an encoded message.
+  template <typename Message>
+  void write_encoded(Time log_time, std::string_view cdr) {
+    writer_.write(channel<Message>(kTopic<Message>), log_time, cdr);
+    if constexpr (std::is_same_v<Message, OdometryEstimate> || std::is_same_v<Message, PoseEstimate>)
+      write_frames(log_time, decode<Message>(cdr));  // a reader of the log computes the same frames
   }
+  /// Writes an encoded message with its own type. `definition`: ROS 2 message definition.
+  void write_foreign(Time log_time, const std::string& topic, const std::string& type, const std::string& definition,
+                     std::string_view cdr);
 
   void close() { writer_.close(); }
 

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <optional>
+#include <string_view>
 #include <tuple>
+#include <variant>
 #include <vector>
 
 #include "core/ground_truth.h"
@@ -14,7 +17,7 @@ namespace patrol::io {
 struct TopicInfo {
   const char* topic = nullptr;
   const char* type = nullptr;     ///< ROS message type
-  const char* source = nullptr;   ///< writer: "sensor", "stack" or "ground truth"
+  const char* source = nullptr;   ///< writer: "sensor", "firmware", "stack", "simulator" or "ground truth"
   const char* summary = nullptr;  ///< line of documentation in `patrol list`
 };
 
@@ -26,6 +29,16 @@ struct TopicOf : TopicInfo {};
 template <typename Message>
 constexpr TopicOf<Message> stack_topic(const char* topic, const char* summary) {
   return {{topic, kRosType<Message>, "stack", summary}};
+}
+/// Row of a message of the robot's firmware to the stack.
+template <typename Message>
+constexpr TopicOf<Message> firmware_topic(const char* topic, const char* summary) {
+  return {{topic, kRosType<Message>, "firmware", summary}};
+}
+/// Row of a record of the simulator about the run.
+template <typename Message>
+constexpr TopicOf<Message> simulator_topic(const char* topic, const char* summary) {
+  return {{topic, kRosType<Message>, "simulator", summary}};
 }
 /// Row of a message that the simulator writes to the log and that the stack never gets.
 template <typename Message>
@@ -54,6 +67,9 @@ inline constexpr std::tuple kTopicTable{
     stack_topic<LiningResult>("/inspection/lining", "Lining deformation around a station"),
     stack_topic<WaterResult>("/inspection/water", "Water ahead of the tunnel face"),
     stack_topic<Event>("/events", "Events, such as alarms and reached stations"),
+    firmware_topic<FallReport>("/fall", "Report of the firmware that the robot has fallen"),
+    simulator_topic<StackTurnRecord>("/stack/turns", "Turns of a stack that takes part by the turn protocol or has a "
+                                                 "computing delay"),
     truth_topic<GroundTruth>("/ground_truth/odom", "True pose and velocity of the body"),
     truth_topic<SimState>("/sim/state", "State of the physics model, for the replay"),
     truth_topic<AsBuiltTruth>("/ground_truth/as_built", "Calibration and manufacturing errors drawn for this robot"),
@@ -79,6 +95,18 @@ constexpr TopicInfo topic_info() {
 /// Topic of a message.
 template <typename Message>
 inline constexpr const char* kTopic = topic_info<Message>().topic;
+
+/// Decodes a message of a topic into the alternative of a variant that has this topic; nullopt if there is none. Throws
+/// DecodeError.
+template <typename Variant, std::size_t kIndex = 0>
+std::optional<Variant> decode_as(std::string_view topic, std::string_view cdr) {
+  if constexpr (kIndex == std::variant_size_v<Variant>) return std::nullopt;
+  else {
+    using Message = std::variant_alternative_t<kIndex, Variant>;
+    if (topic == kTopic<Message>) return Variant(decode<Message>(cdr));
+    return decode_as<Variant, kIndex + 1>(topic, cdr);
+  }
+}
 
 /// Every topic that a log can have: sensors, stack, ground truth.
 std::vector<TopicInfo> topic_infos();

@@ -20,6 +20,7 @@ struct Definition {
 
 constexpr Definition kDefinitions[] = {
     {"builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n"},
+    {"builtin_interfaces/Duration", "int32 sec\nuint32 nanosec\n"},
     {"std_msgs/Header", "builtin_interfaces/Time stamp\nstring frame_id\n"},
     {"geometry_msgs/Point", "float64 x\nfloat64 y\nfloat64 z\n"},
     {"geometry_msgs/Vector3", "float64 x\nfloat64 y\nfloat64 z\n"},
@@ -108,6 +109,24 @@ constexpr Definition kDefinitions[] = {
     {"patrol_msgs/Collision",
      "# Contact of geom `first` of the robot with geom `second`.\nstd_msgs/Header header\nstring first\nstring "
      "second\n"},
+    {"patrol_msgs/FallReport", "# Report of the firmware that the robot has fallen.\nstd_msgs/Header header\n"},
+    {"patrol_msgs/StackTurn",
+     "# Turn of the stack: the time from its start until its messages take effect, and the time of the next one.\n"
+     "builtin_interfaces/Time turn\nbuiltin_interfaces/Duration delay\nbuiltin_interfaces/Time next_turn\n"
+     "bool is_last\nbool mission_is_over\n"},
+    {"patrol_msgs/LinkHello",
+     "# First message of the simulator: URDF of the robot, survey of the site (JSON), settings (YAML).\n"
+     "uint32 protocol\nstring program\nstring scenario\nuint64 seed\nbuiltin_interfaces/Duration tick\n"
+     "string robot\nstring site\nstring documents\n"},
+    {"patrol_msgs/LinkHelloReply",
+     "# Answer of the stack; no topics: all.\n"
+     "uint32 protocol\nstring stack\nstring[] topics\nbuiltin_interfaces/Duration turn_period\n"},
+    {"patrol_msgs/LinkTurn",
+     "# Turn of the stack, after all messages that are due.\nbuiltin_interfaces/Time now\nbool is_last\n"},
+    {"patrol_msgs/LinkDone",
+     "# End of the turn at `now`, after all messages of the stack.\n"
+     "builtin_interfaces/Time now\nbuiltin_interfaces/Time next_turn\nbool mission_is_over\n"},
+    {"patrol_msgs/LinkFailure", "# Reason for the end of the connection.\nstring text\n"},
 };
 
 /// Converts "sensor_msgs/msg/Imu" to "sensor_msgs/Imu"; empty if the text is not a ROS 2 type name.

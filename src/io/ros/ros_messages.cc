@@ -148,6 +148,20 @@ void describe(Codec& codec, Event& event) {
 }
 
 template <typename Codec>
+void describe(Codec& codec, FallReport& report) {
+  header(codec, report.stamp, frame_id::kBody);
+}
+
+template <typename Codec>
+void describe(Codec& codec, StackTurnRecord& record) {
+  time_field(codec, record.turn);
+  time_field(codec, record.delay);
+  time_field(codec, record.next_turn);
+  codec(record.is_last);
+  codec(record.mission_is_over);
+}
+
+template <typename Codec>
 void describe(Codec& codec, SimState& state) {
   header(codec, state.stamp, frame_id::kWorld);
   codec(state.qpos);
@@ -210,6 +224,8 @@ PATROL_ROS_MESSAGE(MapUpdate);
 PATROL_ROS_MESSAGE(Path);
 PATROL_ROS_MESSAGE(VelocityCommand);
 PATROL_ROS_MESSAGE(Event);
+PATROL_ROS_MESSAGE(FallReport);
+PATROL_ROS_MESSAGE(StackTurnRecord);
 PATROL_ROS_MESSAGE(GroundTruth);
 PATROL_ROS_MESSAGE(SimState);
 PATROL_ROS_MESSAGE(AsBuiltTruth);

@@ -73,6 +73,10 @@ inline constexpr const char* kRosType<VelocityCommand> = "geometry_msgs/msg/Twis
 template <>
 inline constexpr const char* kRosType<Event> = "patrol_msgs/msg/Event";
 template <>
+inline constexpr const char* kRosType<FallReport> = "patrol_msgs/msg/FallReport";
+template <>
+inline constexpr const char* kRosType<StackTurnRecord> = "patrol_msgs/msg/StackTurn";
+template <>
 inline constexpr const char* kRosType<GroundTruth> = "nav_msgs/msg/Odometry";
 template <>
 inline constexpr const char* kRosType<SimState> = "patrol_msgs/msg/SimState";

@@ -63,6 +63,8 @@ class Simulator {
 
   /// Returns the time since the start, of the state that `truth` describes.
   Time now() const { return now_; }
+  /// Returns the time from one physics step to the next.
+  Time tick() const { return tick_; }
   void set_command(const VelocityCommand& command) { command_ = command; }
   /// Passes a command to the inspection instruments; effective at once.
   void command(const InstrumentCommand& command);

@@ -31,6 +31,21 @@ slam::ScanOdometryRbpfSettings default_rbpf_settings();
 /// `default_rbpf_settings`.
 slam::MapperSettings default_slam_settings();
 
+/// Computing time of the stack in simulated time.
+struct ComputeSettings {
+  /// Model: free takes no simulated time; fixed takes delay_s for every turn; measured takes the CPU time of the turn.
+  std::string model = "free";
+  double delay_s = 0.02;  ///< time from the start of a turn until its messages take effect, model fixed
+  double factor = 1.0;    ///< ratio of the robot's computing time to that of this computer, model measured
+
+  template <typename Self, typename Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("model", self.model, one_of({"free", "fixed", "measured"}));
+    visit("delay_s", self.delay_s, between(0.0, 10.0));
+    visit("factor", self.factor, between(0.0, 1000.0));
+  }
+};
+
 /// Settings of the stack: three selectors and the settings of all components. A stack uses those of the components that
 /// it is composed of.
 struct StackSettings {
@@ -55,6 +70,13 @@ struct StackSettings {
   GasMissionSettings gas_mission;
   TunnelMissionSettings tunnel_mission;
   InspectionSettings inspection;  ///< settings for a robot with inspection instruments
+  /// Command of a stack that replaces the built-in one, or the address unix:PATH or tcp:127.0.0.1:PORT at which it
+  /// connects (src/link/README.md); empty: the built-in stack.
+  std::string command;
+  double timeout_s = 30.0;        ///< limit of the wall time that a stack in another process takes for a turn
+  double memory_limit_mb = 0.0;   ///< limit of the memory of a stack that is started by its command; 0: none
+  bool allow_remote = false;      ///< true: `command` may be an address that other machines reach
+  ComputeSettings compute;
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -76,6 +98,11 @@ struct StackSettings {
     visit("gas_mission", self.gas_mission);
     visit("tunnel_mission", self.tunnel_mission);
     visit("inspection", self.inspection);
+    visit("command", self.command);
+    visit("timeout_s", self.timeout_s, between(0.1, 86400.0));
+    visit("memory_limit_mb", self.memory_limit_mb, at_least(0.0));
+    visit("allow_remote", self.allow_remote);
+    visit("compute", self.compute);
   }
 };
 

@@ -76,8 +76,8 @@ TEST_F(RunLog, BringsEveryMessageToItsHandlerAtItsTime) {
 
 TEST_F(RunLog, SensorMessagesGoToTheTopicOfTheirKind) {
   RunLogWriter writer(file, make_robot());
-  writer.write(1s, SensorMessage(test::sample_gas()));
-  writer.write(2s, SensorMessage(test::sample_imu()));
+  writer.write(1s, test::sample_gas());
+  writer.write(2s, test::sample_imu());
   writer.close();
   std::vector<std::string> topics;
   read_mcap(file, [&](const McapMessage& message) { topics.push_back(message.channel.topic); });

@@ -1,0 +1,71 @@
+#include <fstream>
+#include <variant>
+
+#include <fmt/format.h>
+
+#include "app/commands/commands.h"
+#include "app/common/temporary_folder.h"
+#include "app/run/built_in_stack.h"
+#include "app/run/make_stack_port.h"
+#include "link/stack_client.h"
+
+namespace patrol::app {
+namespace {
+
+/// Creates the built-in stack by the documents of a hello.
+BuiltInStack stack_for(const link::Hello& hello) {
+  const TemporaryFolder folder("stack");
+  const std::filesystem::path file = folder.path() / "documents.yaml";
+  std::ofstream(file) << hello.documents;
+  const Scenario scenario = load_scenario(file);
+  const ScenarioFiles files = load_scenario_files(scenario, find_data_root(file));
+  return {make_stack(scenario, files), hello.tick, {}};
+}
+
+void publish(link::StackClient& client, Time now, const std::vector<PublishedMessage>& messages) {
+  for (const PublishedMessage& message : messages) {
+    std::visit(
+        [&]<typename Message>(const Message&) {
+          client.publish_encoded(now, message.topic, io::kRosType<Message>, message.cdr);
+        },
+        message.content.value());
+  }
+}
+
+void take_turns(link::StackClient& client) {
+  BuiltInStack stack = stack_for(client.hello());
+  client.begin("patrol stack", {}, client.hello().tick);
+  for (bool is_last = false; !is_last;) {
+    link::ReceivedTurn received = client.next_turn();
+    is_last = received.is_last;
+    StackTurn turn{.now = received.now, .messages = {}};
+    for (link::ReceivedMessage& message : received.messages) {
+      turn.messages.push_back(
+          {.topic = std::move(message.topic), .log_time = message.log_time, .cdr = std::move(message.cdr)});
+    }
+    if (is_last) {
+      publish(client, turn.now, stack.finish(turn));
+      client.done({.now = turn.now, .next_turn = {}, .mission_is_over = true});
+    } else {
+      const StackAnswer answer = stack.take_turn(turn);
+      publish(client, turn.now, answer.messages);
+      client.done({.now = turn.now, .next_turn = answer.next_turn, .mission_is_over = answer.mission_is_over});
+    }
+  }
+}
+
+}  // namespace
+
+ExitCode stack_command(const std::optional<std::string>& address) {
+  link::StackClient client =
+      address ? link::StackClient::connect(link::parse_address(*address)) : link::StackClient::connect();
+  try {
+    take_turns(client);
+  } catch (const std::exception& error) {
+    client.fail(error.what());
+    throw;
+  }
+  return ExitCode::kDone;
+}
+
+}  // namespace patrol::app

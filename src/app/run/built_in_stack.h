@@ -1,0 +1,36 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "app/run/stack_port.h"
+#include "stack/stack.h"
+
+namespace patrol::app {
+
+/// The built-in stack, with a turn at every tick. It decodes the messages of the simulator as a stack in another
+/// process does, so that both compute with the same numbers.
+class BuiltInStack final : public StackPort {
+ public:
+  /// `tick`: of the simulator.
+  BuiltInStack(stack::Stack stack, Time tick, const stack::ComputeSettings& compute);
+
+  StackAnswer take_turn(const StackTurn& turn) override;
+  std::vector<PublishedMessage> finish(const StackTurn& turn) override;
+  bool records_turns() const override { return compute_.model != "free"; }
+  std::map<std::string, double> seconds_by_stage() const override { return stack_.clock().seconds(); }
+
+ private:
+  void handle(const StackTurn& turn);
+  std::vector<PublishedMessage> published();
+
+  stack::Stack stack_;
+  Time tick_;
+  stack::ComputeSettings compute_;
+};
+
+/// Returns the time from the start of a turn until its messages take effect. `cpu_s`: CPU time of the turn.
+Time delay_of(const stack::ComputeSettings& compute, double cpu_s);
+
+}  // namespace patrol::app

@@ -1,0 +1,253 @@
+#include "app/run/external_stack.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <stdexcept>
+#include <utility>
+#include <variant>
+
+#include <fmt/format.h>
+
+#include "app/run/built_in_stack.h"
+#include "core/error.h"
+#include "core/overloaded.h"
+#include "io/files/one_line.h"
+#include "io/logs/topics.h"
+#include "link/stack_client.h"
+
+namespace patrol::app {
+namespace {
+
+using link::LinkError;
+using link::LinkFault;
+
+constexpr std::chrono::seconds kTimeToEnd{2};       ///< of the process after the last turn
+constexpr std::chrono::milliseconds kTimeToDie{200};  ///< of a process whose connection has closed
+constexpr std::size_t kMostNameBytes = 200;
+
+/// Folder that only the user can access. Throws std::runtime_error.
+std::filesystem::path make_private_folder() {
+  std::string name = (std::filesystem::temp_directory_path() / "patrol-stack-XXXXXX").string();
+  if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error(name + ": cannot be created");
+  return name;
+}
+
+bool is_finite(const Pose2& pose) { return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.yaw); }
+bool is_finite(const Pose3& pose) { return pose.position.allFinite() && pose.rotation.coeffs().allFinite(); }
+
+/// Returns whether the numbers that Patrol computes with are finite.
+bool is_finite(const stack::StackMessage& message) {
+  return std::visit(
+      Overloaded{[](const VelocityCommand& command) {
+                   return std::isfinite(command.vx_mps) && std::isfinite(command.vy_mps) &&
+                          std::isfinite(command.yaw_rate_radps);
+                 },
+                 [](const AntennaCommand& command) {
+                   return std::isfinite(command.yaw_rad) && std::isfinite(command.pitch_rad);
+                 },
+                 [](const OdometryEstimate& odometry) {
+                   return is_finite(odometry.T_odom_body) && odometry.planar_covariance.allFinite();
+                 },
+                 [](const PoseEstimate& estimate) {
+                   return is_finite(estimate.T_map_body) && estimate.covariance.allFinite();
+                 },
+                 [](const SiteRegistration& registration) { return is_finite(registration.T_site_map); },
+                 [](const MapUpdate& update) {
+                   const GridGeometry& geometry = update.map.geometry();
+                   return geometry.resolution_m > 0.0 && geometry.origin_m.allFinite();
+                 },
+                 [](const auto&) { return true; }},
+      message);
+}
+
+/// Entry of a topic; nullopt if Patrol does not know it.
+std::optional<io::TopicInfo> info_of(const std::string& topic) {
+  const std::vector<io::TopicInfo> infos = io::topic_infos();
+  const auto info = std::ranges::find_if(infos, [&](const io::TopicInfo& one) { return topic == one.topic; });
+  return info != infos.end() ? std::optional(*info) : std::nullopt;
+}
+
+/// Returns whether only the simulator writes a topic: inputs and records of the run, and what it derives from messages.
+bool is_written_by_simulator(const std::string& topic, const std::optional<io::TopicInfo>& info) {
+  const bool is_transform = topic == io::kTransforms.topic || topic == io::kStaticTransforms.topic;
+  return is_transform || topic.starts_with("/link/") || (info && std::string_view(info->source) != "stack");
+}
+
+std::string quoted_name(const std::string& name) { return io::on_one_line(name.substr(0, kMostNameBytes)); }
+
+}  // namespace
+
+ExternalStack::ExternalStack(StackDocuments documents, StackConnection connection, stack::StackSettings settings)
+    : documents_(std::move(documents)), connection_(std::move(connection)), settings_(std::move(settings)) {
+  if (!link::is_address(connection_.command)) {
+    link::check_program(link::command_words(connection_.command).front());
+    return;
+  }
+  address_ = link::parse_address(connection_.command);
+  if (!address_->is_loopback() && !settings_.allow_remote) {
+    throw InputError(fmt::format("stack.command = {}: address that other machines reach: allowed only with "
+                                 "stack.allow_remote = true",
+                                 connection_.command));
+  }
+  if (settings_.compute.model == "measured" && !address_->is_unix) {
+    throw InputError(fmt::format("stack.compute.model = measured: not possible with stack.command = {}, because the "
+                                 "process behind a TCP address is unknown: use a Unix socket or a command",
+                                 connection_.command));
+  }
+}
+
+ExternalStack::~ExternalStack() {
+  server_.reset();
+  if (process_) process_->stop(kTimeToEnd);
+  std::error_code ignored;
+  if (!folder_.empty()) std::filesystem::remove_all(folder_, ignored);
+}
+
+void ExternalStack::connect() {
+  const link::Patience patience{.timeout = std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                                    std::chrono::duration<double>(settings_.timeout_s)),
+                                .is_interrupted = connection_.is_interrupted};
+  if (!address_) folder_ = make_private_folder();
+  const link::Address address = address_.value_or(link::Address{.is_unix = true, .path = folder_ / "socket"});
+  const link::Socket listener = link::Socket::listen(address);
+  if (address_) fmt::print(stderr, "patrol: waiting for a stack at {}\n", connection_.command);
+  else start_process();
+  server_.emplace(accept(listener, patience), patience);
+  std::error_code ignored;
+  if (address.is_unix) std::filesystem::remove(address.path, ignored);
+  for (const io::TopicInfo& info : io::topic_infos()) {
+    const std::string_view source = info.source;
+    if (source == "sensor" || source == "firmware" || source == "stack") server_->declare(info.topic, info.type);
+  }
+  server_->declare(link::kSiteMapTopic, io::kRosType<MapUpdate>);
+  server_->send(io::kStaticTransforms.topic, Time{}, documents_.static_transforms);
+  if (!documents_.known_map.empty()) server_->send(link::kSiteMapTopic, Time{}, documents_.known_map);
+  server_->greet(documents_.hello);
+}
+
+void ExternalStack::start_process() {
+  link::ProcessSettings start{.words = link::command_words(connection_.command),
+                              .environment = documents_.environment,
+                              .output = connection_.output};
+  start.environment[link::kSocketVariable] = folder_ / "socket";
+  if (settings_.memory_limit_mb > 0.0)
+    start.memory_bytes = static_cast<std::uint64_t>(std::llround(settings_.memory_limit_mb * 1e6));
+  process_.emplace(start);
+}
+
+/// Waits for the stack. A process that ends without connecting ends the wait.
+link::Socket ExternalStack::accept(const link::Socket& listener, const link::Patience& patience) {
+  const auto has_ended = [&] { return process_ && !process_->is_running(); };
+  link::Patience until_end = patience;
+  until_end.is_interrupted = [&] { return has_ended() || (patience.is_interrupted && patience.is_interrupted()); };
+  try {
+    return listener.accept(until_end);
+  } catch (const LinkError&) {
+    if (has_ended()) throw LinkError(LinkFault::kClosed, "did not connect");
+    throw;
+  }
+}
+
+void ExternalStack::send(const StackTurn& turn) {
+  for (const DeliveredMessage& message : turn.messages) server_->send(message.topic, message.log_time, message.cdr);
+}
+
+StackAnswer ExternalStack::take_turn(const StackTurn& turn) {
+  if (!server_) {
+    try {
+      connect();
+    } catch (const LinkError& error) {
+      fail(error, "before the start");
+    }
+  }
+  const std::optional<double> cpu_start_s = cpu_seconds();
+  link::TurnAnswer answer = exchange(turn, false);
+  StackAnswer checked{.messages = {}, .next_turn = answer.next_turn, .mission_is_over = answer.mission_is_over};
+  const std::optional<double> cpu_end_s = cpu_seconds();
+  checked.delay = delay_of(settings_.compute, cpu_start_s && cpu_end_s ? *cpu_end_s - *cpu_start_s : 0.0);
+  for (link::PublishedMessage& message : answer.messages) {
+    try {
+      checked.messages.push_back(checked_message(std::move(message)));
+    } catch (const LinkError& error) {
+      fail(error, fmt::format("at {:.3f} s", to_seconds(turn.now)));
+    }
+  }
+  return checked;
+}
+
+std::vector<PublishedMessage> ExternalStack::finish(const StackTurn& turn) {
+  std::vector<PublishedMessage> messages;
+  for (link::PublishedMessage& message : exchange(turn, true).messages)
+    messages.push_back(checked_message(std::move(message)));
+  return messages;
+}
+
+link::TurnAnswer ExternalStack::exchange(const StackTurn& turn, bool is_last) {
+  const auto start = std::chrono::steady_clock::now();
+  try {
+    send(turn);
+    link::TurnAnswer answer = server_->turn(turn.now, is_last);
+    wait_s_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return answer;
+  } catch (const LinkError& error) {
+    fail(error, fmt::format("at {:.3f} s", to_seconds(turn.now)));
+  }
+}
+
+/// Throws the error again, with a sentence about the stack.
+void ExternalStack::fail(const LinkError& error, const std::string& when) {
+  if (error.fault() == LinkFault::kInterrupted) throw error;
+  std::string text = fmt::format("the stack failed {}: {}", when, error.what());
+  if (error.fault() == LinkFault::kTimeout) text = fmt::format("the stack was silent {}: {}", when, error.what());
+  if (error.fault() == LinkFault::kInvalid && server_) server_->fail(error.what());
+  if (process_) {
+    if (error.fault() == LinkFault::kClosed) {
+      const auto deadline = std::chrono::steady_clock::now() + kTimeToDie;
+      while (process_->is_running() && std::chrono::steady_clock::now() < deadline) ::usleep(1000);
+      if (const std::string end = process_->end_text(); !end.empty()) text = fmt::format("the stack {} {}", end, when);
+    }
+    text += fmt::format("; its output: {}", connection_.output.filename().string());
+  }
+  throw LinkError(error.fault(), text);
+}
+
+/// CPU time of the stack so far, if it matters.
+std::optional<double> ExternalStack::cpu_seconds() const {
+  if (settings_.compute.model != "measured") return std::nullopt;
+  const pid_t id = process_ ? process_->id() : server_->peer_process();
+  return id > 0 ? link::cpu_seconds_of(id) : std::nullopt;
+}
+
+PublishedMessage checked_message(link::PublishedMessage message) {
+  const auto refuse = [&](const std::string& reason) {
+    throw LinkError(LinkFault::kInvalid, fmt::format("message on {}: {}", quoted_name(message.topic), reason));
+  };
+  if (!message.topic.starts_with('/') || message.topic.size() > kMostNameBytes ||
+      io::has_control_characters(message.topic)) {
+    refuse("name of a topic must begin with / and have at most 200 printable characters");
+  }
+  const std::optional<io::TopicInfo> info = info_of(message.topic);
+  if (is_written_by_simulator(message.topic, info)) refuse("only the simulator writes this topic");
+  if (!info) {
+    return {.content = {},
+            .topic = std::move(message.topic),
+            .type = std::move(message.type),
+            .definition = std::move(message.definition),
+            .cdr = std::move(message.cdr)};
+  }
+  if (message.type != info->type) refuse(fmt::format("type is {}: must be {}", quoted_name(message.type), info->type));
+  PublishedMessage checked{.content = {}, .topic = std::move(message.topic), .cdr = std::move(message.cdr)};
+  try {
+    checked.content = io::decode_as<stack::StackMessage>(checked.topic, checked.cdr);
+  } catch (const InputError& error) {
+    refuse(error.what());
+  }
+  if (checked.content && !is_finite(*checked.content)) refuse("contains a number that is not finite");
+  return checked;
+}
+
+}  // namespace patrol::app

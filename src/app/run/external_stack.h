@@ -1,0 +1,72 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/run/stack_port.h"
+#include "link/link_error.h"
+#include "link/protocol.h"
+#include "link/stack_process.h"
+#include "link/stack_server.h"
+#include "stack/settings/stack_settings.h"
+
+namespace patrol::app {
+
+/// Documents for a stack in another process.
+struct StackDocuments {
+  link::Hello hello;
+  std::map<std::string, std::string> environment;  ///< variables for a process that Patrol starts
+  std::string static_transforms;                   ///< encoded message on /tf_static
+  std::string known_map;                           ///< encoded message on /site_map; empty: the robot builds a map
+};
+
+/// Connection to a stack in another process.
+struct StackConnection {
+  std::string command;                      ///< command line, or address at which the stack connects
+  std::filesystem::path output;             ///< file for the output of a process that Patrol starts
+  std::function<bool()> is_interrupted;     ///< polled while Patrol waits
+};
+
+/// A stack in another process, by the turn protocol (src/link/README.md). Its messages are checked before the log and
+/// the simulator get them.
+class ExternalStack final : public StackPort {
+ public:
+  /// The first turn starts the process, or waits for it to connect. Throws InputError if the command or the address is
+  /// invalid.
+  ExternalStack(StackDocuments documents, StackConnection connection, stack::StackSettings settings);
+  ~ExternalStack() override;
+
+  StackAnswer take_turn(const StackTurn& turn) override;
+  std::vector<PublishedMessage> finish(const StackTurn& turn) override;
+  bool records_turns() const override { return true; }
+  std::map<std::string, double> seconds_by_stage() const override { return {{"stack", wait_s_}}; }
+
+ private:
+  void connect();
+  link::Socket accept(const link::Socket& listener, const link::Patience& patience);
+  void start_process();
+  void send(const StackTurn& turn);
+  link::TurnAnswer exchange(const StackTurn& turn, bool is_last);
+  [[noreturn]] void fail(const link::LinkError& error, const std::string& when);
+  std::optional<double> cpu_seconds() const;
+
+  StackDocuments documents_;
+  StackConnection connection_;
+  stack::StackSettings settings_;
+  std::optional<link::Address> address_;  ///< at which a process of the user connects
+  std::filesystem::path folder_;  ///< of the socket of a process that Patrol starts; removed at the end
+  std::optional<link::StackProcess> process_;
+  std::optional<link::StackServer> server_;
+  double wait_s_ = 0.0;
+};
+
+/// Returns a message of a stack in another process with its content. Throws link::LinkError (kInvalid) if a topic that
+/// Patrol knows has another type or invalid content, or is one that only the simulator writes.
+PublishedMessage checked_message(link::PublishedMessage message);
+
+}  // namespace patrol::app

@@ -1,0 +1,172 @@
+#include "app/run/feed_loop.h"
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "core/error.h"
+#include "io/logs/run_log.h"
+#include "io/mcap/mcap_reader.h"
+#include "link/link_error.h"
+
+namespace patrol::app {
+namespace {
+
+constexpr Time kProgressPeriod = std::chrono::milliseconds(500);
+
+/// Topics that a stack receives.
+std::vector<std::string> input_topics() {
+  std::vector<std::string> topics;
+  for (const io::TopicInfo& info : io::topic_infos()) {
+    const std::string_view source = info.source;
+    if (source == "sensor" || source == "firmware") topics.emplace_back(info.topic);
+  }
+  return topics;
+}
+
+std::vector<StackTurnRecord> recorded_turns(const std::filesystem::path& log_mcap) {
+  std::vector<StackTurnRecord> turns;
+  io::LogHandlers handlers;
+  handlers.on<StackTurnRecord>([&](Time, const StackTurnRecord& turn) { turns.push_back(turn); });
+  io::read_run_log(log_mcap, handlers);
+  return turns;
+}
+
+/// Stack that is fed with a log.
+class FeedLoop {
+ public:
+  FeedLoop(const std::filesystem::path& input_mcap, const ScenarioFiles& files, Time tick, StackPort& stack,
+           const std::filesystem::path& log_mcap, RunObserver& observer)
+      : tick_(tick),
+        stack_(stack),
+        observer_(observer),
+        input_(input_mcap, {.topics = input_topics()}),
+        turns_(recorded_turns(input_mcap)),
+        log_(log_mcap, files.robot) {
+    if (!input_.last_time()) throw InputError(input_mcap.string() + ": is incomplete");
+    end_ = *input_.last_time();
+    observer.begin(files);
+  }
+
+  RunOutcome run() {
+    try {
+      if (turns_.empty()) take_turns_at_ticks();
+      else take_recorded_turns();
+    } catch (const link::LinkError& error) {
+      set_failure(outcome_, error);
+    }
+    log_.close();
+    return std::move(outcome_);
+  }
+
+ private:
+  /// Message of the log for the stack.
+  struct Input {
+    DeliveredMessage message;
+    std::string type, definition;
+  };
+
+  void take_turns_at_ticks() {
+    bool mission_is_over = false;
+    for (Time now{}; now <= end_ && !mission_is_over && keep_running(now); now += tick_) {
+      const StackAnswer answer = take_turn(now);
+      publish(now, answer.messages);
+      mission_is_over = answer.mission_is_over;
+      outcome_.duration = now;
+    }
+    finish(outcome_.duration);
+  }
+
+  void take_recorded_turns() {
+    for (const StackTurnRecord& record : turns_) {
+      if (!keep_running(record.turn)) return;
+      outcome_.duration = record.turn;
+      if (record.is_last) return finish(record.turn);
+      const StackAnswer answer = take_turn(record.turn);
+      log_.write(record.turn, StackTurnRecord{.turn = record.turn,
+                                              .delay = record.delay,
+                                              .next_turn = answer.next_turn,
+                                              .is_last = false,
+                                              .mission_is_over = answer.mission_is_over});
+      const Time ready = (record.turn + record.delay + tick_ - Time{1}) / tick_ * tick_;
+      publish(std::min(ready, end_), answer.messages);
+    }
+  }
+
+  StackAnswer take_turn(Time now) {
+    deliver_until(now);
+    StackAnswer answer = stack_.take_turn(turn_);
+    turn_.messages.clear();
+    return answer;
+  }
+
+  void finish(Time now) {
+    deliver_until(now);
+    const std::vector<PublishedMessage> messages = stack_.finish(turn_);
+    if (stack_.records_turns())
+      log_.write(now, StackTurnRecord{now, {}, now, true, true});
+    publish(now, messages);
+  }
+
+  void deliver_until(Time now) {
+    turn_.now = now;
+    while (true) {
+      if (!next_input_) next_input_ = read_input();
+      if (!next_input_ || next_input_->message.log_time > now) return;
+      const DeliveredMessage& message = next_input_->message;
+      log_.write_foreign(message.log_time, message.topic, next_input_->type, next_input_->definition, message.cdr);
+      turn_.messages.push_back(std::move(next_input_->message));
+      next_input_.reset();
+    }
+  }
+
+  std::optional<Input> read_input() {
+    const std::optional<io::McapMessage> message = input_.next();
+    if (!message) return std::nullopt;
+    return Input{.message = {.topic = message->channel.topic,
+                             .log_time = message->log_time,
+                             .cdr = std::string(message->cdr)},
+                 .type = message->channel.type,
+                 .definition = message->channel.definition};
+  }
+
+  void publish(Time now, const std::vector<PublishedMessage>& messages) {
+    for (const PublishedMessage& message : messages) {
+      write_published(log_, now, message);
+      if (message.content) observer_.on_message(*message.content);
+    }
+  }
+
+  bool keep_running(Time now) {
+    if (now < next_progress_) return true;
+    next_progress_ = now + kProgressPeriod;
+    if (observer_.keep_running(now, 0.0)) return true;
+    outcome_.end = RunEnd::kInterrupted;
+    return false;
+  }
+
+  Time tick_;
+  StackPort& stack_;
+  RunObserver& observer_;
+  io::McapReader input_;
+  std::vector<StackTurnRecord> turns_;
+  io::RunLogWriter log_;
+  Time end_{};
+  Time next_progress_{};
+  std::optional<Input> next_input_;
+  StackTurn turn_;
+  RunOutcome outcome_;
+};
+
+}  // namespace
+
+RunOutcome feed_loop(const std::filesystem::path& input_mcap, const ScenarioFiles& files, Time tick, StackPort& stack,
+                     const std::filesystem::path& log_mcap, RunObserver& observer) {
+  return FeedLoop(input_mcap, files, tick, stack, log_mcap, observer).run();
+}
+
+}  // namespace patrol::app

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <filesystem>
+
+#include "app/run/run_loop.h"
+
+namespace patrol::app {
+
+/// Feeds a stack with the messages of a run's log, at the times of the turns of that run or, if the log has no record
+/// of them, at every tick. Writes the messages and the answers to `log_mcap`. `tick`: of the simulator of the run.
+RunOutcome feed_loop(const std::filesystem::path& input_mcap, const ScenarioFiles& files, Time tick, StackPort& stack,
+                     const std::filesystem::path& log_mcap, RunObserver& observer);
+
+}  // namespace patrol::app

@@ -1,0 +1,49 @@
+#include "app/run/make_stack_port.h"
+
+#include <utility>
+
+#include "app/run/built_in_stack.h"
+#include "app/run/external_stack.h"
+#include "app/run/stack_documents.h"
+#include "inspect/route_frame.h"
+#include "stack/make_stack.h"
+
+namespace patrol::app {
+namespace {
+
+stack::LiningReferences references_of(const ScenarioFiles& files) {
+  stack::LiningReferences references;
+  for (const io::StationScan& scan : files.references) {
+    references.emplace(scan.station,
+                       inspect::LiningReference{.T_map_scanner = scan.T_map_scanner, .points = scan.points});
+  }
+  return references;
+}
+
+}  // namespace
+
+std::unique_ptr<StackPort> make_stack_port(const Scenario& scenario, const ScenarioFiles& files, StackContext context) {
+  if (scenario.stack.command.empty())
+    return std::make_unique<BuiltInStack>(make_stack(scenario, files), context.tick, scenario.stack.compute);
+  StackConnection connection{.command = scenario.stack.command,
+                             .output = std::move(context.output),
+                             .is_interrupted = std::move(context.is_interrupted)};
+  return std::make_unique<ExternalStack>(
+      stack_documents(scenario, context.scenario, files, context.data_root, context.tick), std::move(connection),
+      scenario.stack);
+}
+
+stack::Stack make_stack(const Scenario& scenario, const ScenarioFiles& files) {
+  return stack::make_stack(scenario.stack, files.robot, inspect::to_map(files.route, files.T_site_start),
+                           {.map = files.map,
+                            .map_registration = files.map_registration,
+                            .goals = files.goals,
+                            .references = references_of(files),
+                            .neighbor_model = files.neighbor_model,
+                            .has_teleop = files.has_teleop(),
+                            .site = {.T_site_start = files.T_site_start, .datum = files.datum},
+                            .map_period_s = scenario.log.map_period_s,
+                            .seed = scenario.seed});
+}
+
+}  // namespace patrol::app

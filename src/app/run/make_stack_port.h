@@ -1,0 +1,29 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "app/run/stack_port.h"
+#include "app/scenario/scenario.h"
+
+namespace patrol::app {
+
+/// Surroundings of the stack of a run.
+struct StackContext {
+  std::string scenario;  ///< name of the scenario
+  std::filesystem::path data_root;
+  Time tick{};                           ///< of the simulator
+  std::filesystem::path output;          ///< file for the output of a stack in another process
+  std::function<bool()> is_interrupted;  ///< polled while Patrol waits for such a stack
+};
+
+/// Creates the built-in stack, or the connection to the stack of `stack.command`. Throws InputError if the settings of
+/// the scenario are inconsistent.
+std::unique_ptr<StackPort> make_stack_port(const Scenario& scenario, const ScenarioFiles& files, StackContext context);
+
+/// Creates the built-in stack. Throws InputError if the settings of the scenario are inconsistent.
+stack::Stack make_stack(const Scenario& scenario, const ScenarioFiles& files);
+
+}  // namespace patrol::app

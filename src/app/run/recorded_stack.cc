@@ -1,0 +1,91 @@
+#include "app/run/recorded_stack.h"
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+
+#include "core/error.h"
+#include "io/logs/topics.h"
+
+namespace patrol::app {
+namespace {
+
+/// Returns the source of a topic: "sensor", "stack" and so on. A topic that Patrol does not know is the stack's.
+std::string_view source_of(const std::string& topic) {
+  static const std::vector<io::TopicInfo> infos = io::topic_infos();
+  const auto info = std::ranges::find_if(infos, [&](const io::TopicInfo& one) { return topic == one.topic; });
+  return info != infos.end() ? info->source : "stack";
+}
+
+}  // namespace
+
+RecordedStack::RecordedStack(const std::filesystem::path& log_mcap, Time tick)
+    : tick_(tick), has_turns_(has_turn_records(log_mcap)), reader_(log_mcap) {
+  if (!reader_.last_time()) throw InputError(log_mcap.string() + ": is incomplete");
+  end_ = *reader_.last_time();
+  next_ = next_entry();
+}
+
+StackAnswer RecordedStack::take_turn(const StackTurn& turn) {
+  StackAnswer answer{.messages = {}, .next_turn = turn.now + tick_};
+  if (has_turns_) {
+    answer.mission_is_over = !next_;
+    if (!next_ || !next_->turn || next_->turn->turn != turn.now) return answer;
+    const StackTurnRecord record = *next_->turn;
+    answer.next_turn = record.next_turn;
+    answer.delay = record.delay;
+    answer.mission_is_over = record.mission_is_over;
+    answer.messages = take_until_next_turn();
+    return answer;
+  }
+  answer.mission_is_over = turn.now >= end_;
+  while (next_ && !next_->follows_truth && next_->log_time <= turn.now) {
+    answer.messages.push_back(std::move(next_->message));
+    next_ = next_entry();
+  }
+  return answer;
+}
+
+std::vector<PublishedMessage> RecordedStack::finish(const StackTurn&) { return take_until_next_turn(); }
+
+/// Removes and returns the messages of a turn, whose record is next in a log that has them.
+std::vector<PublishedMessage> RecordedStack::take_until_next_turn() {
+  std::vector<PublishedMessage> messages;
+  if (next_ && next_->turn) next_ = next_entry();
+  for (; next_ && !next_->turn; next_ = next_entry()) messages.push_back(std::move(next_->message));
+  return messages;
+}
+
+std::optional<RecordedStack::Entry> RecordedStack::next_entry() {
+  while (const std::optional<io::McapMessage> message = reader_.next()) {
+    const std::string& topic = message->channel.topic;
+    if (topic == io::kTopic<StackTurnRecord>) {
+      return Entry{.log_time = message->log_time, .message = {}, .turn = io::decode<StackTurnRecord>(message->cdr)};
+    }
+    if (source_of(topic) == "ground truth" && topic != io::kTopic<AsBuiltTruth>) truth_time_ = message->log_time;
+    if (!is_published_by_stack(topic)) continue;
+    Entry entry{.log_time = message->log_time,
+                .message = {.content = io::decode_as<stack::StackMessage>(topic, message->cdr),
+                            .topic = topic,
+                            .cdr = std::string(message->cdr)},
+                .turn = {},
+                .follows_truth = truth_time_ == message->log_time};
+    if (!entry.message.content) {
+      entry.message.type = message->channel.type;
+      entry.message.definition = message->channel.definition;
+    }
+    return entry;
+  }
+  return std::nullopt;
+}
+
+bool is_published_by_stack(const std::string& topic) {
+  const bool is_transform = topic == io::kTransforms.topic || topic == io::kStaticTransforms.topic;
+  return !is_transform && source_of(topic) == "stack";
+}
+
+bool has_turn_records(const std::filesystem::path& log_mcap) {
+  return io::McapReader(log_mcap, {.topics = {io::kTopic<StackTurnRecord>}}).next().has_value();
+}
+
+}  // namespace patrol::app

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/run/stack_port.h"
+#include "io/mcap/mcap_reader.h"
+
+namespace patrol::app {
+
+/// Stack that publishes what a stack published in an earlier run, at the same times, whatever it receives: the
+/// simulator alone is repeated.
+class RecordedStack final : public StackPort {
+ public:
+  /// `tick`: of the simulator. Throws InputError.
+  RecordedStack(const std::filesystem::path& log_mcap, Time tick);
+
+  StackAnswer take_turn(const StackTurn& turn) override;
+  std::vector<PublishedMessage> finish(const StackTurn& turn) override;
+  bool records_turns() const override { return has_turns_; }
+  std::map<std::string, double> seconds_by_stage() const override { return {}; }
+
+ private:
+  /// Message of the log that has a part in the answers: of the stack, or the record of a turn.
+  struct Entry {
+    Time log_time{};
+    PublishedMessage message;                ///< of the stack
+    std::optional<StackTurnRecord> turn;     ///< record of a turn instead
+    bool follows_truth = false;              ///< the ground truth of the same time precedes it: published at the end
+  };
+
+  std::optional<Entry> next_entry();
+  std::vector<PublishedMessage> take_until_next_turn();
+
+  Time tick_;
+  Time end_{};
+  bool has_turns_ = false;
+  io::McapReader reader_;
+  Time truth_time_ = Time::min();  ///< of the last message of the ground truth
+  std::optional<Entry> next_;
+};
+
+/// Returns whether a stack publishes a topic. A topic that Patrol does not know is a stack's.
+bool is_published_by_stack(const std::string& topic);
+
+/// Returns whether a log has records of the turns of its stack.
+bool has_turn_records(const std::filesystem::path& log_mcap);
+
+}  // namespace patrol::app

@@ -1,0 +1,57 @@
+#include "app/run/stack_documents.h"
+
+#include <fstream>
+#include <iterator>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "io/logs/run_log.h"
+
+namespace patrol::app {
+namespace {
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw InputError(file.string() + ": cannot be read");
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+}  // namespace
+
+Scenario documented_scenario(const Scenario& scenario) {
+  Scenario documented;
+  documented.version = scenario.version;
+  documented.world = scenario.world;
+  documented.robot = scenario.robot;
+  documented.seed = scenario.seed;
+  documented.mission = scenario.mission;
+  documented.map = scenario.map;
+  documented.goals = scenario.goals;
+  documented.references = scenario.references;
+  documented.teleop.route = scenario.teleop.route;
+  documented.teleop.recorded = scenario.teleop.recorded;
+  documented.mounts = scenario.mounts;
+  documented.stack = scenario.stack;
+  documented.log.map_period_s = scenario.log.map_period_s;
+  return documented;
+}
+
+StackDocuments stack_documents(const Scenario& scenario, const std::string& name, const ScenarioFiles& files,
+                               const std::filesystem::path& data_root, Time tick) {
+  StackDocuments documents{
+      .hello = {.program = fmt::format("patrol {}", PATROL_VERSION),
+                .scenario = name,
+                .seed = scenario.seed,
+                .tick = tick,
+                .robot = text_of(files.robot_urdf),
+                .site = text_of(files.world_xml.parent_path() / scenario.mission),
+                .documents = to_yaml(documented_scenario(scenario))},
+      .environment = {{"PATROL_DATA", data_root.string()}},
+      .static_transforms = io::encode(io::sensor_mounts(files.robot)),
+      .known_map = {}};
+  if (files.map) documents.known_map = io::encode(MapUpdate{.stamp = {}, .map = *files.map});
+  return documents;
+}
+
+}  // namespace patrol::app

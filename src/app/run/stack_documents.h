@@ -1,0 +1,19 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "app/run/external_stack.h"
+#include "app/scenario/scenario.h"
+
+namespace patrol::app {
+
+/// Returns the part of a scenario that describes the robot's documents and its software. The rest has its defaults: a
+/// stack does not know the as-built robot, the faults, the obstacles or the leaks.
+Scenario documented_scenario(const Scenario& scenario);
+
+/// Documents of a scenario for a stack in another process. `tick`: of the simulator.
+StackDocuments stack_documents(const Scenario& scenario, const std::string& name, const ScenarioFiles& files,
+                               const std::filesystem::path& data_root, Time tick);
+
+}  // namespace patrol::app

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/time.h"
+#include "stack/output/stack_message.h"
+
+namespace patrol::app {
+
+/// Message of the simulator, as the log has it: of a sensor, or the firmware's report of a fall.
+struct DeliveredMessage {
+  std::string topic;
+  Time log_time{};
+  std::string cdr;
+};
+
+/// Message that the stack publishes. A topic that Patrol does not know has no content, but the name and the definition
+/// of its type.
+struct PublishedMessage {
+  std::optional<stack::StackMessage> content;
+  std::string topic;
+  std::string type = {}, definition = {};
+  std::string cdr;
+};
+
+/// Turn of the stack, with the messages that were delivered since the last one.
+struct StackTurn {
+  Time now{};
+  std::vector<DeliveredMessage> messages;
+};
+
+/// Answer of the stack to a turn.
+struct StackAnswer {
+  std::vector<PublishedMessage> messages;
+  Time next_turn{};
+  bool mission_is_over = false;
+  Time delay{};  ///< time from the start of the turn until its messages take effect
+};
+
+/// The robot's software in the closed loop of a run. Throws link::LinkError if software in another process fails.
+class StackPort {
+ public:
+  StackPort() = default;
+  virtual ~StackPort() = default;
+  StackPort(const StackPort&) = delete;
+  StackPort& operator=(const StackPort&) = delete;
+
+  virtual StackAnswer take_turn(const StackTurn& turn) = 0;
+  /// Ends the run: the stack completes its map and publishes its last results.
+  virtual std::vector<PublishedMessage> finish(const StackTurn& turn) = 0;
+  /// Returns whether the log has a StackTurn of every turn. Otherwise there is a turn at every tick, without delay.
+  virtual bool records_turns() const = 0;
+  /// Returns the wall time by stage.
+  virtual std::map<std::string, double> seconds_by_stage() const = 0;
+};
+
+}  // namespace patrol::app

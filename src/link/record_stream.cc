@@ -1,0 +1,101 @@
+#include "link/record_stream.h"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "io/files/one_line.h"
+#include "io/ros/ros_definitions.h"
+#include "link/link_error.h"
+
+namespace patrol::link {
+namespace {
+
+constexpr std::size_t kReceiveBytes = std::size_t{64} << 10;
+constexpr std::size_t kMostTextBytes = 400;  ///< of another program's text in a message
+
+}  // namespace
+
+RecordStream::RecordStream(Socket socket, Patience patience, const RecordLimits& limits)
+    : socket_(std::move(socket)), patience_(std::move(patience)), parser_(limits) {
+  io::mcap::RecordWriter header;
+  header.text("ros2");
+  header.text("patrol");
+  unsent_.raw(io::mcap::kMagic);
+  unsent_.record(io::mcap::kHeader, header);
+}
+
+void RecordStream::declare(const std::string& topic, const std::string& type, const std::string& definition) {
+  const auto [known_schema, is_new_schema] =
+      schemas_.emplace(type, static_cast<std::uint16_t>(schemas_.size() + 1));
+  if (is_new_schema) {
+    io::mcap::RecordWriter schema;
+    schema.number(known_schema->second);
+    schema.text(type);
+    schema.text("ros2msg");
+    schema.text(definition);
+    unsent_.record(io::mcap::kSchema, schema);
+  }
+  const auto [known, is_new] = channels_.emplace(topic, static_cast<std::uint16_t>(channels_.size() + 1));
+  if (!is_new) return;
+  io::mcap::RecordWriter channel;
+  channel.number(known->second);
+  channel.number(known_schema->second);
+  channel.text(topic);
+  channel.text("cdr");
+  channel.number(std::uint32_t{0});  // no metadata
+  unsent_.record(io::mcap::kChannel, channel);
+}
+
+void RecordStream::declare_known(const std::string& topic, const std::string& type) {
+  declare(topic, type, io::ros_definition(type));
+}
+
+void RecordStream::write(const std::string& topic, Time log_time, std::string_view cdr) {
+  const auto time = static_cast<std::uint64_t>(log_time.count());
+  unsent_.record_head(io::mcap::kMessage, 2 + 4 + 8 + 8 + cdr.size());
+  unsent_.number(channels_.at(topic));
+  unsent_.number(std::uint32_t{0});  // sequence number
+  unsent_.number(time);
+  unsent_.number(time);
+  unsent_.raw(cdr);
+}
+
+void RecordStream::flush() {
+  socket_.send(unsent_.view(), patience_);
+  unsent_.clear();
+}
+
+io::McapMessage RecordStream::read() {
+  while (true) {
+    if (const std::optional<io::McapMessage> message = parser_.next()) {
+      if (message->channel.topic != kControlTopic<Failure>) return *message;
+      const auto failure = control_message<Failure>(*message);
+      throw LinkError(LinkFault::kInvalid, io::on_one_line(failure.text.substr(0, kMostTextBytes)));
+    }
+    char* const room = parser_.prepare(kReceiveBytes);
+    parser_.commit(socket_.receive(room, kReceiveBytes, patience_));
+  }
+}
+
+template <typename Message>
+Message control_message(const io::McapMessage& message) {
+  if (message.channel.topic != kControlTopic<Message>) {
+    throw LinkError(LinkFault::kInvalid, fmt::format("message on {} where one on {} is due",
+                                                     io::on_one_line(message.channel.topic.substr(0, kMostTextBytes)),
+                                                     kControlTopic<Message>));
+  }
+  try {
+    return io::decode<Message>(message.cdr);
+  } catch (const io::DecodeError& error) {
+    throw LinkError(LinkFault::kInvalid, fmt::format("{}: {}", kControlTopic<Message>, error.what()));
+  }
+}
+
+template Hello control_message<Hello>(const io::McapMessage&);
+template HelloReply control_message<HelloReply>(const io::McapMessage&);
+template Turn control_message<Turn>(const io::McapMessage&);
+template Done control_message<Done>(const io::McapMessage&);
+template Failure control_message<Failure>(const io::McapMessage&);
+
+}  // namespace patrol::link

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+
+#include "core/time.h"
+#include "io/mcap/mcap_format.h"
+#include "io/ros/ros_messages.h"
+#include "link/protocol.h"
+#include "link/record_parser.h"
+#include "link/socket.h"
+
+namespace patrol::link {
+
+/// Connection that carries messages in both directions. Throws LinkError when it ends or the other side is silent.
+class RecordStream {
+ public:
+  RecordStream(Socket socket, Patience patience, const RecordLimits& limits = {});
+
+  /// Declares a topic to the other side. `definition`: ROS 2 message definition with all types that it uses.
+  void declare(const std::string& topic, const std::string& type, const std::string& definition);
+  bool is_declared(const std::string& topic) const { return channels_.contains(topic); }
+  /// Adds a message to those that `flush` sends. Declares the topic of a message of the protocol by itself; any other
+  /// topic must have been declared.
+  void write(const std::string& topic, Time log_time, std::string_view cdr);
+  template <typename Message>
+  void write_control(Time log_time, const Message& message) {
+    if (!is_declared(kControlTopic<Message>)) declare_known(kControlTopic<Message>, io::kRosType<Message>);
+    write(kControlTopic<Message>, log_time, io::encode(message));
+  }
+  /// Declares a topic with a type that the program knows (io/ros/ros_definitions.h).
+  void declare_known(const std::string& topic, const std::string& type);
+  void flush();
+
+  /// Waits for the next message, valid until the next call. Throws LinkError (kInvalid) also with the text of a Failure
+  /// of the other side.
+  io::McapMessage read();
+
+  const Patience& patience() const { return patience_; }
+  int peer_process() const { return socket_.peer_process(); }
+
+ private:
+  Socket socket_;
+  Patience patience_;
+  RecordParser parser_;
+  std::map<std::string, std::uint16_t> schemas_;   ///< ids of the sent schemas by type
+  std::map<std::string, std::uint16_t> channels_;  ///< ids of the sent channels by topic
+  io::mcap::RecordWriter unsent_;
+};
+
+/// Decodes a message of the protocol. Throws LinkError (kInvalid) if the message is another one.
+template <typename Message>
+Message control_message(const io::McapMessage& message);
+
+}  // namespace patrol::link

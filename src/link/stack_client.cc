@@ -1,0 +1,80 @@
+#include "link/stack_client.h"
+
+#include <cstdlib>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "link/link_error.h"
+
+namespace patrol::link {
+namespace {
+
+/// A stack waits as long as the simulator needs; a simulator that is gone closes the connection.
+Patience endless() { return {.timeout = std::chrono::hours(24 * 365)}; }
+
+ReceivedMessage copy_of(const io::McapMessage& message) {
+  return {.topic = message.channel.topic, .log_time = message.log_time, .cdr = std::string(message.cdr)};
+}
+
+}  // namespace
+
+StackClient::StackClient(Socket socket) : stream_(std::move(socket), endless()) {
+  while (true) {
+    const io::McapMessage message = stream_.read();
+    if (message.channel.topic == kControlTopic<Hello>) {
+      hello_ = control_message<Hello>(message);
+      break;
+    }
+    documents_.push_back(copy_of(message));
+  }
+  if (hello_.protocol != kProtocolVersion) {
+    const std::string text =
+        fmt::format("version {} of the protocol: must be {}", hello_.protocol, kProtocolVersion);
+    fail(text);
+    throw LinkError(LinkFault::kInvalid, text);
+  }
+}
+
+StackClient StackClient::connect() {
+  const char* const path = std::getenv(kSocketVariable);
+  if (path == nullptr || *path == '\0') {
+    throw InputError(fmt::format("{} is not set: start the stack with patrol run --stack COMMAND, or give an address",
+                                 kSocketVariable));
+  }
+  return connect({.is_unix = true, .path = path});
+}
+
+void StackClient::begin(const std::string& stack, const std::vector<std::string>& topics, Time turn_period) {
+  stream_.write_control(Time{}, HelloReply{.stack = stack, .topics = topics, .turn_period = turn_period});
+  stream_.flush();
+}
+
+ReceivedTurn StackClient::next_turn() {
+  ReceivedTurn received;
+  while (true) {
+    const io::McapMessage message = stream_.read();
+    if (message.channel.topic == kControlTopic<Turn>) {
+      const Turn turn = control_message<Turn>(message);
+      received.now = turn.now;
+      received.is_last = turn.is_last;
+      return received;
+    }
+    received.messages.push_back(copy_of(message));
+  }
+}
+
+void StackClient::done(const Done& done) {
+  stream_.write_control(done.now, done);
+  stream_.flush();
+}
+
+void StackClient::fail(const std::string& text) noexcept {
+  try {
+    stream_.write_control(Time{}, Failure{text});
+    stream_.flush();
+  } catch (const std::exception&) {}  // the simulator may be gone
+}
+
+}  // namespace patrol::link

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/time.h"
+#include "io/logs/topics.h"
+#include "link/protocol.h"
+#include "link/record_stream.h"
+
+namespace patrol::link {
+
+/// Name of the environment variable with the path of the simulator's socket, set for a stack that Patrol starts.
+inline constexpr const char* kSocketVariable = "PATROL_STACK_SOCKET";
+
+/// Message from the simulator.
+struct ReceivedMessage {
+  std::string topic;
+  Time log_time{};  ///< time of delivery, at most that of the turn
+  std::string cdr;
+};
+
+/// Turn with the messages that were delivered since the last one.
+struct ReceivedTurn {
+  Time now{};
+  bool is_last = false;
+  std::vector<ReceivedMessage> messages;
+};
+
+/// Side of the stack of a connection to the simulator. Use: connect; hello; begin; then for each turn: next_turn,
+/// publish, done. Throws LinkError.
+class StackClient {
+ public:
+  /// `socket`: connected to the simulator.
+  explicit StackClient(Socket socket);
+  /// Connects to the socket of kSocketVariable. Throws InputError if the variable is not set.
+  static StackClient connect();
+  static StackClient connect(const Address& address) { return StackClient(Socket::connect(address)); }
+
+  const Hello& hello() const { return hello_; }
+  /// Messages that preceded the hello's answer: transforms of the sensors on /tf_static, and the known map on /site_map.
+  const std::vector<ReceivedMessage>& documents() const { return documents_; }
+  /// Answers the hello. `topics`: to receive; empty: all. `turn_period`: 0: one tick of the simulator.
+  void begin(const std::string& stack, const std::vector<std::string>& topics, Time turn_period);
+
+  /// Waits for the turn after the last `done`. Ask for no turn after the last one.
+  ReceivedTurn next_turn();
+
+  template <typename Message>
+  void publish(Time now, const Message& message) {
+    publish_encoded(now, io::kTopic<Message>, io::kRosType<Message>, io::encode(message));
+  }
+  /// Publishes an encoded message of a type that the program knows.
+  void publish_encoded(Time now, const std::string& topic, const std::string& type, std::string_view cdr) {
+    if (!stream_.is_declared(topic)) stream_.declare_known(topic, type);
+    stream_.write(topic, now, cdr);
+  }
+  /// Ends the turn at `now`.
+  void done(const Done& done);
+  /// Tells the simulator why the stack fails. Throws nothing.
+  void fail(const std::string& text) noexcept;
+
+ private:
+  RecordStream stream_;
+  Hello hello_;
+  std::vector<ReceivedMessage> documents_;
+};
+
+}  // namespace patrol::link

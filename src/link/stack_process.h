@@ -1,0 +1,56 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace patrol::link {
+
+/// Splits a command line into words at blanks. Quotation marks (' or ") and backslashes protect blanks; nothing else is
+/// special: no shell reads the command. Throws InputError if it has no word or a quotation mark is not closed.
+std::vector<std::string> command_words(const std::string& command);
+
+/// Throws InputError if a program is not found by PATH or cannot be executed.
+void check_program(const std::string& program);
+
+/// Start of the process of a stack.
+struct ProcessSettings {
+  std::vector<std::string> words;                  ///< program, found by PATH, and its arguments
+  std::map<std::string, std::string> environment;  ///< variables in addition to those of this process
+  std::filesystem::path output;                    ///< file for standard output and standard error
+  std::optional<std::uint64_t> memory_bytes = {};  ///< limit of the address space
+};
+
+/// Child process in a process group of its own, which the destructor kills.
+class StackProcess {
+ public:
+  /// Throws InputError if the program cannot be started.
+  explicit StackProcess(const ProcessSettings& settings);
+  ~StackProcess();
+  StackProcess(const StackProcess&) = delete;
+  StackProcess& operator=(const StackProcess&) = delete;
+
+  pid_t id() const { return id_; }
+  bool is_running();
+  /// Waits for the end of the process, for at most `timeout`, then asks it to end, and kills it.
+  void stop(std::chrono::steady_clock::duration timeout);
+  /// Description of the end: "exited with code 1" or "was killed by signal 9 (Killed)"; empty while it runs.
+  std::string end_text();
+
+ private:
+  bool wait_for(std::chrono::steady_clock::duration timeout);
+
+  pid_t id_ = -1;
+  std::optional<int> status_;
+};
+
+/// CPU time of a process; nullopt if it is gone or belongs to another user.
+std::optional<double> cpu_seconds_of(pid_t process);
+
+}  // namespace patrol::link
