@@ -10,7 +10,9 @@ std::size_t RunRecord::num_events(EventKind kind) const {
 
 bool RunRecord::has_estimate() const {
   constexpr std::size_t kMinPoses = 3;  // a trajectory can be fitted to them
-  return T_map_body.size() >= kMinPoses && !T_odom_body.empty() && !map.values().empty();
+  return T_map_body.size() >= kMinPoses;
 }
+
+bool RunRecord::has_map() const { return !map.values().empty(); }
 
 }  // namespace patrol::score

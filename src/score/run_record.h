@@ -42,8 +42,9 @@ struct RunRecord {
 
   std::size_t num_events(EventKind kind) const;
   bool has_event(EventKind kind) const { return num_events(kind) > 0; }
-  /// Whether the run lasted until the stack had an estimate and a map.
+  /// Whether the stack published enough pose estimates to score them. It need not publish odometry or a map.
   bool has_estimate() const;
+  bool has_map() const;
 };
 
 }  // namespace patrol::score

@@ -12,6 +12,7 @@ Code fences of a document:
   yml        a file of another program: parses
 """
 import json
+import os
 import pathlib
 import re
 import shlex
@@ -78,7 +79,10 @@ def copy_of(source, folder):
 
 def run_shell(text, folder):
     """Exit code and end of the output of a shell text."""
-    done = subprocess.run(["bash", "-euo", "pipefail", "-c", text], cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    # python3 is that of the tests, and finds the client of the turn protocol.
+    environment = dict(os.environ, PATH=f"{pathlib.Path(sys.executable).parent}:{os.environ['PATH']}",
+                       PYTHONPATH=str(SOURCE / "src/link/python"))
+    done = subprocess.run(["bash", "-euo", "pipefail", "-c", text], cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment)
     return done.returncode, done.stdout[-2000:]
 
 

@@ -58,7 +58,7 @@ class Verify(unittest.TestCase):
     def test_the_run_is_its_own_repetition(self):
         done = verify(RUN)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
-        self.assertIn("byte-identical", done.stdout)
+        self.assertEqual(done.stdout, "simulator: byte-identical\nstack: byte-identical\n")
 
     def test_one_changed_number_is_named_by_topic_time_and_field(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -68,7 +68,7 @@ class Verify(unittest.TestCase):
             log_time, was = copy_with_one_change(RUN / "log.mcap", copy / "log.mcap")
             done = verify(copy)
         self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
-        self.assertIn(f"/scan at {log_time // 10**9}.{log_time % 10**9:09} s: ranges[{BEAM}] is ", done.stdout)
+        self.assertIn(f"simulator: differs: /scan at {log_time // 10**9}.{log_time % 10**9:09} s: ranges[{BEAM}] is ", done.stdout)
         self.assertIn(f", was {CHANGED_RANGE_M}", done.stdout)
         self.assertNotEqual(was, CHANGED_RANGE_M)
 

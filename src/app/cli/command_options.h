@@ -18,6 +18,7 @@ struct Call {
   ReplayOptions replay;
   ReportOptions report;
   VerifyOptions verify;
+  FeedOptions feed;
   std::optional<std::string> stack_address;
   SweepOptions sweep;
   MergeOptions merge;

@@ -86,6 +86,17 @@ void add_verify(CLI::App& app, Call& call) {
   command->callback([&] { call.chosen = [&] { return verify_command(call.verify); }; });
 }
 
+void add_feed(CLI::App& app, Call& call) {
+  FeedOptions& feed = call.feed;
+  CLI::App* command = app.add_subcommand("feed", "Feed a stack with the log of a run, and score its answers");
+  command->add_option("run", feed.run, "Run directory")->required();
+  command->add_option("--stack", feed.stack, kStackHelp);
+  command->add_option("--out", feed.out, kOutHelp)->capture_default_str();
+  command->add_flag("--all", feed.show_all, kAllHelp);
+  add_json(*command, feed.form);
+  command->callback([&] { call.chosen = [&] { return feed_command(call.feed); }; });
+}
+
 void add_stack(CLI::App& app, Call& call) {
   CLI::App* command = app.add_subcommand("stack", "Take part in a run as the built-in stack in another process");
   command->add_option("--connect", call.stack_address,
@@ -112,6 +123,7 @@ void add_run_commands(CLI::App& app, Call& call) {
   add_replay(app, call);
   add_report(app, call);
   add_verify(app, call);
+  add_feed(app, call);
   add_stack(app, call);
   add_upload(app, call);
 }

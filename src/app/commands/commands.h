@@ -84,6 +84,16 @@ struct VerifyOptions {
 /// answers of the stack, and the stack with the recorded messages of the simulator.
 ExitCode verify_command(const VerifyOptions& options);
 
+struct FeedOptions {
+  std::filesystem::path run;
+  std::optional<std::string> stack;  ///< command or address of the stack; default: that of the run
+  std::filesystem::path out = "out/feed";
+  bool show_all = false;  ///< print every metric
+  ResultForm form = ResultForm::kText;
+};
+/// Feeds a stack with the log of a run and scores its answers, which have no effect on the robot.
+ExitCode feed_command(const FeedOptions& options);
+
 /// Takes part in a run as the built-in stack in a process of its own. `address`: of the simulator; none: as the process
 /// that `patrol run --stack` starts.
 ExitCode stack_command(const std::optional<std::string>& address);

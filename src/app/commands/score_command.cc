@@ -31,7 +31,7 @@ ExitCode score_directory(const ScoreOptions& options) {
                      [&](const char* stage, double done) { bar.show(fmt::format("score  {}", stage), done); });
   }();
   save_scored_run(directory, scored, scenario);
-  io::Metrics metrics = to_json(scored.score);
+  io::Metrics metrics = metrics_of(scored);
   if (std::filesystem::exists(directory.metrics())) {
     const io::Metrics before = io::load_metrics(directory.metrics());
     if (before.contains("performance")) metrics["performance"] = before["performance"];

@@ -25,8 +25,7 @@ void throw_if_ended_early(const RunOutcome& outcome) {
 
 /// Prints the result of one half of the verification. Returns whether it is reproduced.
 bool report(const char* half, const std::optional<io::LogDifference>& difference) {
-  if (difference) fmt::print("{} differs: {}\n", half, io::describe(*difference));
-  else fmt::print("{} reproduced\n", half);
+  fmt::print("{}: {}\n", half, difference ? "differs: " + io::describe(*difference) : "byte-identical");
   return !difference;
 }
 
@@ -53,7 +52,7 @@ ExitCode verify_command(const VerifyOptions& options) {
 
   const bool is_external = !scenario.stack.command.empty();
   if (is_external && !options.stack) {
-    fmt::print("stack not verified: give its command with --stack, for example {}\n", scenario.stack.command);
+    fmt::print("stack: not verified: start it with --stack, in this run: {}\n", scenario.stack.command);
     return is_same ? ExitCode::kDone : ExitCode::kExpectationMissed;
   }
   if (options.stack) scenario.stack.command = *options.stack;

@@ -1,6 +1,7 @@
 #include "app/report/run_summary.h"
 
 #include <algorithm>
+#include <span>
 #include <vector>
 
 #include <fmt/format.h>
@@ -16,6 +17,7 @@ namespace {
 
 constexpr std::size_t kMaxExpectations = 8;
 constexpr std::size_t kMaxKeyMetrics = 10;
+constexpr std::size_t kMinValueWidth = 12;
 
 std::size_t num_met(const std::vector<CheckedExpectation>& checks) {
   return static_cast<std::size_t>(
@@ -36,10 +38,12 @@ std::string status_line(const std::string& title, const RunVerdict& verdict, Tex
 std::string expectation_lines(const std::vector<CheckedExpectation>& checks, TextStyle style) {
   std::vector<CheckedExpectation> sorted = checks;
   std::stable_partition(sorted.begin(), sorted.end(), [](const CheckedExpectation& check) { return !check.is_met; });
+  const std::span<const CheckedExpectation> shown(sorted.data(), std::min(sorted.size(), kMaxExpectations));
+  std::size_t got_width = kMinValueWidth;
+  for (const CheckedExpectation& check : shown) got_width = std::max(got_width, check.got.size());
   std::string text;
-  for (std::size_t i = 0; i < std::min(sorted.size(), kMaxExpectations); ++i) {
-    const CheckedExpectation& check = sorted[i];
-    text += fmt::format("  {:<44} {:>12}  {:<18} {}\n", check.metric, check.got, check.wanted,
+  for (const CheckedExpectation& check : shown) {
+    text += fmt::format("  {:<44} {:>{}}  {:<18} {}\n", check.metric, check.got, got_width, check.wanted,
                         met_text(check.is_met, style));
   }
   if (sorted.size() > kMaxExpectations) {
@@ -63,6 +67,11 @@ std::string key_metric_lines(const io::Metrics& metrics) {
   return text;
 }
 
+std::string unpublished_line(const io::Metrics& metrics) {
+  const std::vector<std::string> topics = unpublished_topics(metrics);
+  return topics.empty() ? "" : fmt::format("not published by the stack: {}\n", join(topics, ", "));
+}
+
 std::string untriggered_line(const std::vector<InjectedEvent>& events) {
   std::vector<std::string> names;
   for (const InjectedEvent& event : events) {
@@ -77,7 +86,7 @@ std::string run_summary(const std::string& title, const RunVerdict& verdict, con
                         TextStyle style) {
   std::string text = status_line(title, verdict, style);
   for (const std::string& part : {expectation_lines(verdict.checks, style), key_metric_lines(verdict.metrics),
-                                  untriggered_line(verdict.events) +
+                                  unpublished_line(verdict.metrics) + untriggered_line(verdict.events) +
                                       fmt::format("{} metrics: {}; all with option --all; page: patrol report {}\n",
                                                   metric_lines(verdict.metrics).size(),
                                                   (directory / "metrics.json").string(), directory.string())}) {

@@ -223,8 +223,8 @@ std::optional<double> ExternalStack::cpu_seconds() const {
 }
 
 PublishedMessage checked_message(link::PublishedMessage message) {
-  const auto refuse = [&](const std::string& reason) {
-    throw LinkError(LinkFault::kInvalid, fmt::format("message on {}: {}", quoted_name(message.topic), reason));
+  const auto refuse = [name = quoted_name(message.topic)](const std::string& reason) {
+    throw LinkError(LinkFault::kInvalid, fmt::format("message on {}: {}", name, reason));
   };
   if (!message.topic.starts_with('/') || message.topic.size() > kMostNameBytes ||
       io::has_control_characters(message.topic)) {

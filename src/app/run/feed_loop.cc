@@ -18,14 +18,21 @@ namespace {
 
 constexpr Time kProgressPeriod = std::chrono::milliseconds(500);
 
-/// Topics that a stack receives.
-std::vector<std::string> input_topics() {
+/// Topics of the simulator in a log: inputs of the stack, and ground truth.
+std::vector<std::string> simulator_topics() {
   std::vector<std::string> topics;
   for (const io::TopicInfo& info : io::topic_infos()) {
     const std::string_view source = info.source;
-    if (source == "sensor" || source == "firmware") topics.emplace_back(info.topic);
+    if (source == "sensor" || source == "firmware" || source == "ground truth") topics.emplace_back(info.topic);
   }
   return topics;
+}
+
+/// Returns whether a stack receives a topic of the simulator.
+bool is_input(const std::string& topic) {
+  const std::vector<io::TopicInfo> infos = io::topic_infos();
+  const auto info = std::ranges::find_if(infos, [&](const io::TopicInfo& one) { return topic == one.topic; });
+  return std::string_view(info->source) != "ground truth";
 }
 
 std::vector<StackTurnRecord> recorded_turns(const std::filesystem::path& log_mcap) {
@@ -44,7 +51,7 @@ class FeedLoop {
       : tick_(tick),
         stack_(stack),
         observer_(observer),
-        input_(input_mcap, {.topics = input_topics()}),
+        input_(input_mcap, {.topics = simulator_topics()}),
         turns_(recorded_turns(input_mcap)),
         log_(log_mcap, files.robot) {
     if (!input_.last_time()) throw InputError(input_mcap.string() + ": is incomplete");
@@ -64,7 +71,7 @@ class FeedLoop {
   }
 
  private:
-  /// Message of the log for the stack.
+  /// Message of the simulator in the log.
   struct Input {
     DeliveredMessage message;
     std::string type, definition;
@@ -72,7 +79,8 @@ class FeedLoop {
 
   void take_turns_at_ticks() {
     bool mission_is_over = false;
-    for (Time now{}; now <= end_ && !mission_is_over && keep_running(now); now += tick_) {
+    for (Time now{}; now <= end_ && !mission_is_over; now += tick_) {
+      if (!keep_running(now)) return;
       const StackAnswer answer = take_turn(now);
       publish(now, answer.messages);
       mission_is_over = answer.mission_is_over;
@@ -98,28 +106,32 @@ class FeedLoop {
   }
 
   StackAnswer take_turn(Time now) {
-    deliver_until(now);
+    deliver_until(now, false);
     StackAnswer answer = stack_.take_turn(turn_);
     turn_.messages.clear();
     return answer;
   }
 
   void finish(Time now) {
-    deliver_until(now);
+    deliver_until(now, true);
     const std::vector<PublishedMessage> messages = stack_.finish(turn_);
     if (stack_.records_turns())
       log_.write(now, StackTurnRecord{now, {}, now, true, true});
     publish(now, messages);
   }
 
-  void deliver_until(Time now) {
+  /// Writes the messages of the simulator up to a time, and adds those for the stack to its next turn. The ground truth of
+  /// that time is written after the answers, unless the run ends.
+  void deliver_until(Time now, bool is_end) {
     turn_.now = now;
     while (true) {
       if (!next_input_) next_input_ = read_input();
-      if (!next_input_ || next_input_->message.log_time > now) return;
-      const DeliveredMessage& message = next_input_->message;
+      if (!next_input_) return;
+      DeliveredMessage& message = next_input_->message;
+      const bool is_for_stack = is_input(message.topic);
+      if (message.log_time > now || (!is_for_stack && !is_end && message.log_time == now)) return;
       log_.write_foreign(message.log_time, message.topic, next_input_->type, next_input_->definition, message.cdr);
-      turn_.messages.push_back(std::move(next_input_->message));
+      if (is_for_stack) turn_.messages.push_back(std::move(message));
       next_input_.reset();
     }
   }

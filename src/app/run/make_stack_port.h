@@ -7,6 +7,7 @@
 
 #include "app/run/stack_port.h"
 #include "app/scenario/scenario.h"
+#include "stack/stack.h"
 
 namespace patrol::app {
 

@@ -51,7 +51,7 @@ std::optional<RunVerdict> run_once(const Scenario& scenario, const std::string& 
 
   const ScoredRun scored = score_run(directory.log(), scenario, files);
   save_scored_run(directory, scored, scenario);
-  io::Metrics metrics = to_json(scored.score);
+  io::Metrics metrics = metrics_of(scored);
   metrics["performance"] = performance_of(outcome);
   io::save_metrics(directory.metrics(), metrics);
   RunVerdict verdict = verdict_of(outcome, scenario.kidnaps, metrics, check_expectations(scenario.expect, metrics));

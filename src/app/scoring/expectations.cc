@@ -1,10 +1,14 @@
 #include "app/scoring/expectations.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
+#include <string_view>
 
 #include <fmt/format.h>
+
+#include "io/logs/topics.h"
 
 namespace patrol::app {
 namespace {
@@ -15,6 +19,35 @@ std::string describe_limits(const io::Expectation& expectation) {
   if (has_min && has_max && expectation.min == expectation.max) return fmt::format("= {}", expectation.min);
   if (has_min && has_max) return fmt::format("{} ... {}", expectation.min, expectation.max);
   return has_min ? fmt::format(">= {}", expectation.min) : fmt::format("<= {}", expectation.max);
+}
+
+constexpr const char* kNotMeasured = "not measured";
+
+/// Messages of the stack that a group of metrics is computed from.
+struct ScoredTopic {
+  std::string_view metrics;  ///< beginning of their names
+  const char* topic;
+  bool (*is_published)(const score::RunRecord& record);
+};
+
+/// The group of each metric is the first whose name it begins with.
+constexpr std::array kScoredTopics = std::to_array<ScoredTopic>({
+    {"odometry.", io::kTopic<OdometryEstimate>, [](const score::RunRecord& record) { return !record.T_odom_body.empty(); }},
+    {"map.", io::kTopic<MapUpdate>, [](const score::RunRecord& record) { return record.has_map(); }},
+    {"mission.completed", io::kTopic<Event>, [](const score::RunRecord& record) { return !record.events.empty(); }},
+    {"inspection.", io::kTopic<Event>, [](const score::RunRecord& record) { return !record.events.empty(); }},
+    {"navigation.paths", io::kTopic<Path>, [](const score::RunRecord& record) { return record.num_paths > 0; }},
+    {"", io::kTopic<PoseEstimate>, [](const score::RunRecord& record) { return !record.T_map_body.empty(); }},
+});
+
+/// Explanation of a metric that the run did not measure.
+std::string reason_for_none(const std::string& metric, const std::vector<std::string>& unpublished) {
+  const auto is_unpublished = [&](const char* topic) { return std::ranges::find(unpublished, topic) != unpublished.end(); };
+  for (const ScoredTopic& scored : kScoredTopics) {
+    if (metric.starts_with(scored.metrics) && is_unpublished(scored.topic))
+      return fmt::format("not published: {}", scored.topic);
+  }
+  return kNotMeasured;
 }
 
 constexpr double kMinMapCoverage = 0.5;
@@ -30,17 +63,43 @@ io::Expectations with_map_coverage(io::Expectations expectations) {
 }  // namespace
 
 std::vector<CheckedExpectation> check_expectations(const io::Expectations& expectations, const io::Metrics& metrics) {
+  const std::vector<std::string> unpublished = unpublished_topics(metrics);
   std::vector<CheckedExpectation> checks;
   for (const auto& [metric, expectation] : with_map_coverage(expectations)) {
-    CheckedExpectation check{.metric = metric, .wanted = describe_limits(expectation), .got = "not measured"};
+    CheckedExpectation check{
+        .metric = metric, .wanted = describe_limits(expectation), .got = reason_for_none(metric, unpublished)};
     if (const std::optional<double> value = io::metric_at(metrics, metric)) {
       check.is_measured = true;
-      check.got = expectation.is_boolean ? (*value > 0.5 ? "true" : "false") : fmt::format("{:.4g}", *value);
       check.is_met = *value >= expectation.min && *value <= expectation.max;
+      // Without events, a mission counts as not completed.
+      const bool is_unknown = metric == "mission.completed" && *value < 0.5 && check.got != kNotMeasured;
+      if (!is_unknown)
+        check.got = expectation.is_boolean ? (*value > 0.5 ? "true" : "false") : fmt::format("{:.4g}", *value);
     }
     checks.push_back(check);
   }
   return checks;
+}
+
+std::vector<std::string> published_topics(const score::RunRecord& record) {
+  std::vector<std::string> topics;
+  for (const ScoredTopic& scored : kScoredTopics) {
+    const bool is_listed = std::ranges::find(topics, scored.topic) != topics.end();
+    if (!is_listed && scored.is_published(record)) topics.emplace_back(scored.topic);
+  }
+  return topics;
+}
+
+std::vector<std::string> unpublished_topics(const io::Metrics& metrics) {
+  const auto published = metrics.find("published_topics");
+  if (published == metrics.end()) return {};
+  std::vector<std::string> topics;
+  for (const ScoredTopic& scored : kScoredTopics) {
+    const bool is_listed = std::ranges::find(topics, scored.topic) != topics.end();
+    if (!is_listed && std::ranges::find(*published, scored.topic) == published->end())
+      topics.emplace_back(scored.topic);
+  }
+  return topics;
 }
 
 bool all_met(const std::vector<CheckedExpectation>& checks) {

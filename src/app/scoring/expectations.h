@@ -5,6 +5,7 @@
 
 #include "io/json/metrics_json.h"
 #include "io/yaml/expectations.h"
+#include "score/run_record.h"
 
 namespace patrol::app {
 
@@ -12,14 +13,20 @@ namespace patrol::app {
 struct CheckedExpectation {
   std::string metric;
   std::string wanted;  ///< "<= 0.15", "true"
-  std::string got;     ///< "0.07", or "not measured"
+  std::string got;     ///< "0.07", "not measured", or "not published: /map"
   bool is_measured = false;
   bool is_met = false;
 };
 
 /// Checks all expectations. An expectation of a metric that the run did not measure is not met. A nearly empty map can
 /// meet any bound of `map.nearest_*`: with such a bound and none of `map.coverage`, the coverage must be at least 0.5.
+/// For a metric of a topic that the stack does not publish, `got` says so.
 std::vector<CheckedExpectation> check_expectations(const io::Expectations& expectations, const io::Metrics& metrics);
+
+/// Topics with scored messages that the stack published, in the order of kScoredTopics.
+std::vector<std::string> published_topics(const score::RunRecord& record);
+/// Topics with scored messages that the stack did not publish; empty if metrics.json does not say.
+std::vector<std::string> unpublished_topics(const io::Metrics& metrics);
 
 bool all_met(const std::vector<CheckedExpectation>& checks);
 

@@ -64,11 +64,11 @@ void save_scored_run(const RunDirectory& directory, const ScoredRun& run, const 
   save_trajectories(directory, run.record);
   save_drive(directory, scenario, run.record);
   if (!run.scans.empty()) io::save_station_scans(directory.scans(), run.scans);
-  io::save_map(directory.map(), run.record.map);
+  if (run.record.has_map()) io::save_map(directory.map(), run.record.map);
   if (!run.record.registrations.empty())
     io::save_registration(directory.registration(), run.record.registrations.back());
   io::save_map(directory.truth_map(), score::observable_part(run.truth->reference));
-  io::save_map_errors(directory.map_errors(), run.score.estimate->map.cells_m);
+  if (run.score.estimate->map) io::save_map_errors(directory.map_errors(), run.score.estimate->map->cells_m);
   save_localizability(directory.localizability(), run.score.estimate->localizability);
 }
 

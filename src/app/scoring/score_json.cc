@@ -284,10 +284,10 @@ io::Metrics to_json(const score::RunScore& run) {
   metrics["pose"]["nees"] = to_json(score.nees);
   metrics["registration"] = registration_json(score.site);
   if (!score.calibration.empty()) metrics["calibration"] = to_json(score.calibration);
-  metrics["odometry"] = to_json(score.odometry);
-  metrics["map"] = to_json(score.map);
+  if (score.odometry) metrics["odometry"] = to_json(*score.odometry);
+  if (score.map) metrics["map"] = to_json(*score.map);
   metrics["map"]["origin_in_world"] = pose_json(score.T_world_map);
-  metrics["map"]["reference_agreement"] = score.map_agreement;
+  if (score.map) metrics["map"]["reference_agreement"] = score.map_agreement;
   metrics["localizability"] = to_json(score_of(score.localizability));
   metrics["navigation"] = navigation_json(score.navigation);
   metrics["stations"] = to_json(score.stations);

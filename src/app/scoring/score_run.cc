@@ -1,5 +1,6 @@
 #include "app/scoring/score_run.h"
 
+#include "app/scoring/expectations.h"
 #include "app/scoring/run_references.h"
 #include "app/scoring/run_scans.h"
 #include "app/scoring/score_json.h"
@@ -22,6 +23,12 @@ ScoredRun score_run(const std::filesystem::path& log_mcap, const Scenario& scena
   show("metrics", 0.8);
   run.score.estimate = score::estimate_score(run.record, run_references(scenario, files, *run.truth));
   return run;
+}
+
+io::Metrics metrics_of(const ScoredRun& run) {
+  io::Metrics metrics = to_json(run.score);
+  metrics["published_topics"] = published_topics(run.record);
+  return metrics;
 }
 
 io::Metrics score_trajectories(const Trajectory& estimate, const Trajectory& reference) {

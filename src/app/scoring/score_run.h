@@ -33,6 +33,9 @@ using ScoreProgress = std::function<void(const char* stage, double done)>;
 ScoredRun score_run(const std::filesystem::path& log_mcap, const Scenario& scenario, const ScenarioFiles& files,
                     const ScoreProgress& on_stage = {});
 
+/// Content of metrics.json but `performance`: the score, and the topics that the stack published.
+io::Metrics metrics_of(const ScoredRun& run);
+
 /// Writes trajectories, maps, localizability, station scans, and the commands and goals of a teleoperated drive to the
 /// run's directory. Writes nothing for a run without an estimate. The caller writes metrics.json, because `performance`
 /// is not known here.

@@ -68,8 +68,7 @@ inline constexpr std::tuple kTopicTable{
     stack_topic<WaterResult>("/inspection/water", "Water ahead of the tunnel face"),
     stack_topic<Event>("/events", "Events, such as alarms and reached stations"),
     firmware_topic<FallReport>("/fall", "Report of the firmware that the robot has fallen"),
-    simulator_topic<StackTurnRecord>("/stack/turns", "Turns of a stack that takes part by the turn protocol or has a "
-                                                 "computing delay"),
+    simulator_topic<StackTurnRecord>("/stack/turns", "Turns of a stack in another process, or with a computing time"),
     truth_topic<GroundTruth>("/ground_truth/odom", "True pose and velocity of the body"),
     truth_topic<SimState>("/sim/state", "State of the physics model, for the replay"),
     truth_topic<AsBuiltTruth>("/ground_truth/as_built", "Calibration and manufacturing errors drawn for this robot"),

@@ -122,8 +122,8 @@ EstimateScore estimate_score(const RunRecord& record, const RunReferences& refer
       .pose_coverage = time_coverage(timely_poses({record.T_map_body, record.T_map_body_received}), truth),
       .nees = pose_nees(record.T_map_body, record.covariances, map, truth),
       .aligned_pose = aligned_if_possible(record.T_map_body, truth),
-      .odometry = trajectory_error(live.T_odom_body, align_at_start(record.T_odom_body, truth), truth),
-      .map = run_map_error(record.map, T_world_map, references.map, reference_field),
+      .odometry = {},
+      .map = {},
       .map_agreement = references.map_agreement,
       .localizability = track_localizability(record, T_world_map, references.localizability),
       .navigation = navigation_score(record, references),
@@ -136,6 +136,9 @@ EstimateScore estimate_score(const RunRecord& record, const RunReferences& refer
       .inspection = {},
       .lining = {},
       .water = {}};
+  if (!live.T_odom_body.empty())
+    score.odometry = trajectory_error(live.T_odom_body, align_at_start(record.T_odom_body, truth), truth);
+  if (record.has_map()) score.map = run_map_error(record.map, T_world_map, references.map, reference_field);
   add_site_map_errors(record, references.route, reference_field, score);
   if (references.route.dock) score.docking = docking_error(record.events, references.route.dock->T_route_docked, truth);
   if (!record.T_map_body_by_ranges.empty())

@@ -63,16 +63,17 @@ struct KnownMapScore {
   std::vector<RelocalizationScore> kidnaps;
 };
 
-/// Scores that need an estimate and a map.
+/// Scores that need an estimate.
 struct EstimateScore {
-  Pose2 T_world_map;           ///< true pose of the map's frame: of the given map, or by fit_map_to_reference
+  /// True pose of the map's frame: of the given map, or by fit_map_to_reference, or by fit_map_frame without a map.
+  Pose2 T_world_map;
   TrajectoryError pose;        ///< on the common clock (live_trajectory.h), as are `odometry` and `range_pose`
   SiteScore site;              ///< pose and registration in the survey frame
   double pose_coverage = 0.0;  ///< fraction of the run within 0.2 s of a timely pose (live_trajectory.h)
   PoseNees nees;
   std::optional<AlignedError> aligned_pose;  ///< none when no fit is possible, e.g. of an estimate that never moves
-  TrajectoryError odometry;
-  MapError map;
+  std::optional<TrajectoryError> odometry;     ///< with odometry in the log
+  std::optional<MapError> map;                 ///< with a map in the log
   double map_agreement = 0.0;
   std::vector<TrackedLocalizability> localizability;
   NavigationScore navigation;
@@ -89,7 +90,7 @@ struct EstimateScore {
 
 struct RunScore {
   MissionScore mission;
-  std::optional<EstimateScore> estimate;  ///< none: the run ended before the stack had an estimate
+  std::optional<EstimateScore> estimate;  ///< none: the stack published no estimate
 };
 
 MissionScore mission_score(const RunRecord& record);

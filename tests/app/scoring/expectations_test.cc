@@ -110,5 +110,31 @@ TEST(Expectations, OneMissedOfManyIsNotAllMet) {
       {{"mission.completed", boolean(true)}, {"mission.collisions", band(0.0, 0.0)}}, make_metrics())));
 }
 
+// A stack in another process publishes what its author has written.
+TEST(Expectations, AMetricOfATopicThatTheStackDoesNotPublishSaysSo) {
+  io::Metrics metrics = make_metrics();
+  metrics["mission"]["completed"] = false;
+  metrics["published_topics"] = {"/pose", "/plan"};
+  const auto got = [&](const std::string& metric) {
+    const std::vector<CheckedExpectation> checks = check_expectations({{metric, at_least(0.5)}}, metrics);
+    EXPECT_FALSE(checks.front().is_met) << metric;
+    return checks.front().got;
+  };
+  EXPECT_EQ(got("map.coverage"), "not published: /map");
+  EXPECT_EQ(got("odometry.ate_rmse_m"), "not published: /odom");
+  EXPECT_EQ(got("inspection.leaks_found"), "not published: /events");
+  EXPECT_EQ(got("mission.completed"), "not published: /events");
+  EXPECT_EQ(got("pose.coverage"), "not measured");  // published, but not enough of it
+  metrics["published_topics"] = {"/map", "/odom", "/events", "/plan"};
+  EXPECT_EQ(got("pose.coverage"), "not published: /pose");
+  EXPECT_EQ(got("map.coverage"), "not published: /pose");  // the map is scored with an estimate
+  EXPECT_EQ(unpublished_topics(metrics), std::vector<std::string>{"/pose"});
+}
+
+TEST(Expectations, MetricsOfAnOlderRunDoNotSayWhatWasPublished) {
+  EXPECT_TRUE(unpublished_topics(make_metrics()).empty());
+  EXPECT_EQ(check("map.coverage", at_least(0.5)).got, "not measured");
+}
+
 }  // namespace
 }  // namespace patrol::app::expectations_test

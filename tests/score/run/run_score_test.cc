@@ -61,11 +61,26 @@ TEST(MissionScore, CountsEventsByTheirKind) {
   EXPECT_NEAR(score.distance_m, 4.0, 1e-6);
 }
 
-TEST(RunRecord, HasAnEstimateWithThreePosesOdometryAndAMap) {
+TEST(RunRecord, HasAnEstimateWithThreePoses) {
   RunRecord record = perfect_run();
-  EXPECT_TRUE(record.has_estimate());
   record.map = {};
+  record.T_odom_body.clear();
+  record.T_map_body.resize(3);
+  EXPECT_TRUE(record.has_estimate());
+  EXPECT_FALSE(record.has_map());
+  record.T_map_body.resize(2);
   EXPECT_FALSE(record.has_estimate());
+}
+
+TEST(EstimateScore, OfAStackThatPublishesOnlyPosesHasNoOdometryAndNoMap) {
+  RunRecord record = perfect_run();
+  record.map = {};
+  record.T_odom_body.clear();
+  record.T_odom_body_received.clear();
+  const EstimateScore score = estimate_score(record, wall_references());
+  EXPECT_NEAR(score.pose.ate_rmse_m, 0.0, 1e-9);  // poses come at the common clock
+  EXPECT_NEAR(score.T_world_map.x, 0.0, 1e-9);
+  EXPECT_FALSE(score.odometry || score.map);
 }
 
 TEST(EstimateScore, OfAPerfectRunHasNoErrorAndOnlyThePartsThatTheLogHas) {
@@ -74,11 +89,11 @@ TEST(EstimateScore, OfAPerfectRunHasNoErrorAndOnlyThePartsThatTheLogHas) {
                    event_of(EventKind::kRecovery, 3s)};
   const EstimateScore score = estimate_score(record, wall_references());
   EXPECT_NEAR(score.pose.ate_rmse_m, 0.0, 1e-9);
-  EXPECT_NEAR(score.odometry.ate_rmse_m, 0.0, 1e-9);
+  EXPECT_NEAR(score.odometry.value().ate_rmse_m, 0.0, 1e-9);
   EXPECT_NEAR(score.pose_coverage, 1.0, 1e-9);
   EXPECT_EQ(score.nees.num_instants, 41U);
   EXPECT_NEAR(score.nees.mean, 0.0, 1e-9);
-  EXPECT_NEAR(score.map.nearest_mean_m, 0.0, 1e-9);
+  EXPECT_NEAR(score.map.value().nearest_mean_m, 0.0, 1e-9);
   EXPECT_EQ(score.navigation.num_detours, 1U);
   EXPECT_EQ(score.navigation.num_recoveries, 2U);
   EXPECT_EQ(score.localizability.size(), 9U) << "two a second";
@@ -117,7 +132,7 @@ TEST(EstimateScore, ScoresTheLocalizationOverItsSilence) {
 TEST(EstimateScore, OfAnEmptyMapCoversNothingAndHasNoDistances) {
   RunRecord record = perfect_run();
   record.map = OccupancyGrid(record.map.geometry(), kFree);
-  const MapError error = estimate_score(record, wall_references()).map;
+  const MapError error = estimate_score(record, wall_references()).map.value();
   EXPECT_EQ(error.num_occupied, 0U);
   EXPECT_EQ(error.coverage, 0.0);
   EXPECT_EQ(error.iou, 0.0);
@@ -148,7 +163,7 @@ TEST(EstimateScore, PlacesAMapOfTheRunWhereItFitsTheSurfaces) {
   for (StampedPose& pose : record.T_odom_body) pose.pose.position *= 3.0;
   const EstimateScore score = estimate_score(record, wall_references());
   EXPECT_NEAR(to_deg(score.T_world_map.yaw), 3.0, 0.3);
-  EXPECT_LT(score.map.nearest_mean_m, 0.05);
+  EXPECT_LT(score.map.value().nearest_mean_m, 0.05);
   EXPECT_NEAR(score.pose.ate_max_m, std::hypot(6.0, 6.0) * to_rad(3.0), 0.03);
 }
 

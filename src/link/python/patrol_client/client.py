@@ -150,8 +150,12 @@ class Client:
         return self._types[topic]
 
     def declare(self, topic, type_name, definition):
-        """Declares a topic of the software's own, with a ROS 2 message definition (cdr.message_type)."""
+        """Declares a topic of the software's own, with a ROS 2 message definition (cdr.message_type). Raises ValueError if
+        a message of another type has been published on it."""
+        if topic in self._sent_channels and self._definitions[topic][0] != type_name:
+            raise ValueError(f"{topic}: has messages of another type")
         self._definitions[topic] = (type_name, definition)
+        self._types.pop(topic, None)
 
     def begin(self, stack, topics=(), turn_period=0.0):
         """Answers the hello. `stack`: name; `topics`: to receive, all if empty; `turn_period`: time between turns, s, where

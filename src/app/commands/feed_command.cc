@@ -1,0 +1,60 @@
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "app/commands/commands.h"
+#include "app/common/print_result.h"
+#include "app/record/run_directory.h"
+#include "app/report/run_summary.h"
+#include "app/run/feed_loop.h"
+#include "app/run/make_stack_port.h"
+#include "app/run/progress_line.h"
+#include "app/run/run_junit.h"
+#include "app/scoring/score_run.h"
+#include "core/error.h"
+
+namespace patrol::app {
+ExitCode feed_command(const FeedOptions& options) {
+  const RunDirectory fed = open_run_directory(options.run);
+  Scenario scenario = load_scenario(fed.scenario());
+  if (options.stack) scenario.stack.command = *options.stack;
+  const std::filesystem::path data_root = find_data_root(fed.scenario());
+  const ScenarioFiles files = load_scenario_files(scenario, data_root);
+  const Time tick = make_simulator(scenario, files).tick();
+  const std::string name = options.run.filename().string();
+  if (std::filesystem::exists(options.out) && std::filesystem::equivalent(options.out, options.run))
+    throw InputError(fmt::format("--out = {}: must not be the directory of the run", options.out.string()));
+
+  ProgressLine observer("feed " + name, scenario.time_limit_s);
+  const std::unique_ptr<StackPort> stack =
+      make_stack_port(scenario, files, {.scenario = name,
+                                        .data_root = data_root,
+                                        .tick = tick,
+                                        .output = RunDirectory{options.out}.stack_output(),
+                                        .is_interrupted = [&] { return observer.is_interrupted(); }});
+  const RunDirectory directory = begin_run_directory(options.out);
+  io::save_junit(directory.junit(), {unfinished_suite(name, junit_properties(scenario))});
+  save_scenario(directory.scenario(), scenario, fmt::format("stack fed with {}", fed.log().string()));
+  const RunOutcome outcome = feed_loop(fed.log(), files, tick, *stack, directory.log(), observer);
+  if (outcome.end == RunEnd::kInterrupted) {
+    fmt::print(stderr, "patrol: interrupted; {} is incomplete\n", directory.root.string());
+    return ExitCode::kProgramFailed;
+  }
+  const ScoredRun scored = score_run(directory.log(), scenario, files);
+  save_scored_run(directory, scored, scenario);
+  const io::Metrics metrics = metrics_of(scored);
+  io::save_metrics(directory.metrics(), metrics);
+  const RunVerdict verdict =
+      verdict_of(outcome, scenario.kidnaps, metrics, check_expectations(scenario.expect, metrics));
+  io::save_junit(directory.junit(), {junit_suite(name, junit_properties(scenario), verdict)});
+  complete_output(directory.root);
+
+  const std::string title = fmt::format("stack fed with {}", options.run.string());
+  print_result(options.form,
+               options.show_all ? run_details(title, verdict, directory.root, output_style())
+                                : run_summary(title, verdict, directory.root, output_style()),
+               run_json(verdict, directory.root));
+  return verdict.code();
+}
+
+}  // namespace patrol::app

@@ -1,0 +1,145 @@
+#!/usr/bin/env python3
+"""A stack that ends, hangs or violates the protocol gives its run a verdict and a complete directory.
+
+usage: failing_stack_test.py PATROL SOURCE
+"""
+import json
+import pathlib
+import random
+import sys
+import tempfile
+import unittest
+import xml.etree.ElementTree
+
+import stack_runs
+from stack_runs import messages, run, write_stack
+
+AT = """
+import os
+import signal
+import time
+import patrol_client
+
+def on_turn(turn):
+    if turn.now_ns >= {at_ns}:
+        {action}
+    turn.publish_velocity(0.3)
+
+patrol_client.run(on_turn, topics=["/scan"], turn_period=0.02)
+"""
+
+# Speaks bytes that are no records.
+GARBAGE = """
+import os
+import socket
+
+connection = socket.socket(socket.AF_UNIX)
+connection.connect(os.environ["PATROL_STACK_SOCKET"])
+connection.recv(100)
+connection.sendall({data!r})
+connection.recv(10 ** 6)
+while connection.recv(10 ** 6):
+    pass
+"""
+
+DIES = "os.kill(os.getpid(), signal.SIGKILL)"
+
+
+class FailingStack(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.path = pathlib.Path(self.folder.name)
+
+    def assert_verdict(self, out, done, code, reason):
+        """The run has ended with the exit code and the reason, and its directory is complete."""
+        self.assertEqual(done.returncode, code, done.stdout + done.stderr)
+        self.assertIn(reason, done.stdout)
+        self.assertFalse(list(out.glob("INCOMPLETE*")), "marked incomplete")
+        json.loads((out / "metrics.json").read_text())
+        error = xml.etree.ElementTree.parse(out / "junit.xml").getroot().find(".//error")
+        self.assertIsNotNone(error)
+        self.assertIn(reason, error.get("message"))
+        self.assertTrue(messages(out))  # the log has its summary
+        self.assertTrue((out / "stack.log").exists())
+
+    def run_stack(self, text, **options):
+        out = self.path / "run"
+        return out, run(out, write_stack(self.path, "stack.py", text), **options)
+
+    def run_until(self, at_s, action, **options):
+        return self.run_stack(AT.format(at_ns=round(at_s * 1e9), action=action), **options)
+
+    def test_a_stack_that_is_killed_at_twenty_moments(self):
+        draw = random.Random(24)
+        for _ in range(20):
+            at_s = round(draw.uniform(0.0, 2.0), 3)
+            out, done = self.run_until(at_s, DIES)
+            turn_s = -(-round(at_s * 1000) // 20) * 20 / 1000
+            self.assert_verdict(out, done, 3, f"the stack was killed by signal 9 (Killed) at {turn_s:.3f} s")
+
+    def test_a_stack_that_hangs(self):
+        out, done = self.run_until(1.0, "time.sleep(1000)", settings=["stack.timeout_s=0.5"])
+        self.assert_verdict(out, done, 4, "the stack was silent at 1.000 s: no answer within 0.5 s")
+
+    def test_a_stack_that_never_connects(self):
+        out, done = self.run_stack("import time\ntime.sleep(1000)", settings=["stack.timeout_s=0.5"])
+        self.assert_verdict(out, done, 4, "the stack was silent before the start: no stack connected within 0.5 s")
+
+    def test_a_stack_that_ends_without_connecting(self):
+        out, done = self.run_stack("print('no license')\nraise SystemExit(5)")
+        self.assert_verdict(out, done, 3, "the stack exited with code 5 before the start; its output: stack.log")
+        self.assertEqual((out / "stack.log").read_text(), "no license\n")
+
+    def test_an_exception_of_a_stack(self):
+        out, done = self.run_until(1.0, "print(1 / 0)")
+        self.assert_verdict(out, done, 3, "the stack failed at 1.000 s: ZeroDivisionError: division by zero")
+        self.assertIn("Traceback", (out / "stack.log").read_text())
+
+    def test_bytes_that_are_no_records(self):
+        for data, reason in ((b"HTTP/1.1 200 OK\r\n", "does not begin with the magic of MCAP"),
+                             (b"\x89MCAP0\r\n\x05" + b"\xff" * 8, "record of 18446744073709551615 bytes"),
+                             (b"\x89MCAP0\r\n\x05" + (30).to_bytes(8, "little") + bytes(30), "not declared")):
+            out, done = self.run_stack(GARBAGE.format(data=data))
+            self.assert_verdict(out, done, 3, reason)
+
+    def test_messages_that_patrol_cannot_use(self):
+        publish = "turn.publish('{0}', turn.client.type_of('{0}')())"
+        declare = ("turn.client.declare('{0}', '{1}', 'float64 x\\n'); "
+                   "turn.publish('{0}', turn.client.type_of('{0}')(x=1.0)); return")
+        for action, reason in ((publish.format("/scan"), "message on /scan: only the simulator writes this topic"),
+                               (publish.format("/tf_static"), "/tf_static: only the simulator writes this topic"),
+                               (declare.format("/ground_truth/odom", "a/msg/B"), "only the simulator writes this topic"),
+                               (declare.format("/pose", "a/msg/B"), "/pose: type is a/msg/B: must be geometry_msgs"),
+                               (declare.format("speed", "a/msg/B"), "name of a topic must begin with /"),
+                               ("turn.publish_velocity(float('nan'))", "/cmd_vel: contains a number that is not finite"),
+                               ("turn.next_turn_ns = turn.now_ns - 1", "next turn at"),
+                               ("turn.now_ns += 1", "end of the turn at")):
+            out, done = self.run_until(1.0, action)
+            self.assert_verdict(out, done, 3, reason)
+
+    def test_a_topic_of_the_stacks_own_is_in_the_log(self):
+        out, done = self.run_until(1.0, "turn.client.declare('/mine', 'my_msgs/msg/Mine', 'float64 x\\n'); "
+                                        "turn.publish('/mine', turn.client.type_of('/mine')(x=1.5))", time_limit_s=1.5)
+        self.assertEqual(done.returncode, 4, done.stderr)
+        mine = [data for topic, _, data in messages(out) if topic == "/mine"]
+        self.assertEqual(len(mine), 27)  # turns from 1.00 to 1.50 s, and the last one
+
+    def test_a_stack_that_needs_more_memory_than_it_may(self):
+        out, done = self.run_until(1.0, "bytearray(10 ** 9)", settings=["stack.memory_limit_mb=600"])
+        self.assert_verdict(out, done, 3, "the stack failed at 1.000 s: MemoryError")
+
+    def test_an_invalid_command_is_invalid_input_and_writes_nothing(self):
+        for stack, reason in (("no-such-program", "stack no-such-program: program not found"),
+                              ("python3 'a", "quotation mark is not closed"),
+                              ("tcp:0.0.0.0:5000", "allowed only with stack.allow_remote = true"),
+                              ("tcp:localhost", "must be unix:PATH or tcp:HOST:PORT")):
+            out = self.path / "refused"
+            done = run(out, stack)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn(reason, done.stderr)
+            self.assertFalse(out.exists())
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], "-v"])

@@ -1,0 +1,127 @@
+#!/usr/bin/env python3
+"""A run has the same bytes wherever its stack runs, however slow its process is, and `patrol verify` tells which half of a
+run differs.
+
+usage: same_bytes_test.py PATROL SOURCE
+"""
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+
+import stack_runs
+from stack_runs import messages, run, verify, without_turns, write_stack
+
+BUILT_IN = f"{stack_runs.PATROL} stack"
+WALL_FOLLOWER = f"{stack_runs.PYTHON} {stack_runs.SOURCE / 'src/link/python/examples/wall_follower.py'}"
+
+# Drives straight ahead; at 1.30 s of simulated time it draws a speed that no seed determines.
+UNSEEDED = """
+import random
+import patrol_client
+
+def on_turn(turn):
+    speed = 0.3
+    if turn.now_ns == 1_300_000_000:
+        speed += 1e-3 * random.SystemRandom().random()
+    turn.publish_velocity(speed)
+
+patrol_client.run(on_turn, topics=["/scan"], turn_period=0.05)
+"""
+
+# Writes its process id, so that the test can stop it, and drives a circle.
+CIRCLE = """
+import os
+import pathlib
+import sys
+import patrol_client
+
+pathlib.Path(sys.argv[1]).write_text(str(os.getpid()))
+patrol_client.run(lambda turn: turn.publish_velocity(0.3, 0.0, 0.3), topics=["/scan"], turn_period=0.05)
+"""
+
+
+class SameBytes(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.path = pathlib.Path(self.folder.name)
+
+    def run_to(self, name, *arguments, **options):
+        done = run(self.path / name, *arguments, **options)
+        self.assertIn(done.returncode, (1, 4), done.stderr)  # 4: time limit
+        return self.path / name
+
+    def test_the_built_in_stack_in_a_process_of_its_own_writes_the_same_log(self):
+        inside, outside = self.run_to("inside"), self.run_to("outside", BUILT_IN)
+        self.assertEqual(without_turns(messages(outside)), messages(inside))
+
+    def test_both_halves_of_a_run_are_verified(self):
+        outside = self.run_to("outside", BUILT_IN)
+        done = verify(outside, BUILT_IN)
+        self.assertEqual(done.stdout, "simulator: byte-identical\nstack: byte-identical\n", done.stderr)
+        done = verify(outside)
+        self.assertIn("simulator: byte-identical\nstack: not verified", done.stdout)
+
+    def test_a_python_stack_that_is_stopped_for_a_while_writes_the_same_log(self):
+        process_id = self.path / "process_id"
+        stack = write_stack(self.path, "circle.py", CIRCLE) + f" {process_id}"
+        undisturbed = self.run_to("undisturbed", stack)
+        process_id.unlink()
+
+        def stop_for_a_while():
+            while not process_id.exists() or not process_id.read_text():
+                time.sleep(0.001)
+            os.kill(int(process_id.read_text()), signal.SIGSTOP)
+            time.sleep(2.0)
+            os.kill(int(process_id.read_text()), signal.SIGCONT)
+
+        disturber = threading.Thread(target=stop_for_a_while)
+        disturber.start()
+        stopped = self.run_to("stopped", stack)
+        disturber.join()
+        self.assertEqual(messages(stopped), messages(undisturbed))
+
+    def test_a_python_stack_writes_the_same_log_on_a_loaded_computer(self):
+        alone = self.run_to("alone", WALL_FOLLOWER)
+        load = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(os.cpu_count() or 2)]
+        try:
+            loaded = self.run_to("loaded", WALL_FOLLOWER)
+        finally:
+            for process in load:
+                process.kill()
+                process.wait()
+        self.assertEqual(messages(loaded), messages(alone))
+
+    def test_the_first_unseeded_draw_of_a_stack_is_named(self):
+        stack = write_stack(self.path, "unseeded.py", UNSEEDED)
+        done = verify(self.run_to("unseeded", stack), stack)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertRegex(done.stdout, r"simulator: byte-identical\n"
+                                      r"stack: differs: /cmd_vel at 1\.300000000 s: twist\.linear\.x is 0\.3\d+, was 0\.3\d+")
+
+    def test_measured_computing_time_is_in_the_log_and_repeated_from_it(self):
+        # A tenth of this computer's speed: the delays are longer than a tick, and differ from run to run.
+        slow = self.run_to("slow", BUILT_IN, settings=["stack.compute.model=measured", "stack.compute.factor=10"])
+        turns = [data for topic, _, data in messages(slow) if topic == "/stack/turns"]
+        self.assertLess(len(turns), 1900)  # of the 2001 ticks: the stack is busy in the others
+        self.assertGreater(len(turns), 10)
+        done = verify(slow, BUILT_IN)
+        self.assertEqual(done.stdout, "simulator: byte-identical\nstack: byte-identical\n", done.stderr)
+
+    def test_a_fixed_computing_time_delays_every_message(self):
+        for stack in (None, BUILT_IN):
+            delayed = self.run_to("delayed", stack,
+                                  settings=["stack.compute.model=fixed", "stack.compute.delay_s=0.0301"])
+            # Delay of 30.1 ms: until the tick at 32 ms.
+            odometry = [log_time for topic, log_time, _ in messages(delayed) if topic == "/odom"]
+            self.assertEqual({time % 32_000_000 for time in odometry}, {0})
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], "-v"])
