@@ -13,6 +13,10 @@ void describe(Codec& codec, Hello& hello) {
   codec(hello.scenario);
   codec(hello.seed);
   time_field(codec, hello.tick);
+  codec(hello.limits.forward_mps);
+  codec(hello.limits.backward_mps);
+  codec(hello.limits.sideways_mps);
+  codec(hello.limits.yaw_rate_radps);
   codec(hello.robot);
   codec(hello.site);
   codec(hello.documents);

@@ -13,6 +13,14 @@ namespace patrol::link {
 /// Version of the protocol. Programs of different versions refuse each other.
 inline constexpr std::uint32_t kProtocolVersion = 1;
 
+/// Limits of the robot's base, in level, by its data sheet. Faster commands are limited.
+struct VelocityLimits {
+  double forward_mps = 0.0;
+  double backward_mps = 0.0;
+  double sideways_mps = 0.0;  ///< 0: the base does not move sideways
+  double yaw_rate_radps = 0.0;
+};
+
 /// First message of the simulator: the run, and the documents of the robot and the site. None of them depends on the
 /// values that were drawn for the simulated robot.
 struct Hello {
@@ -21,6 +29,7 @@ struct Hello {
   std::string scenario;   ///< name of the scenario
   std::uint64_t seed = 0;
   Time tick{};            ///< physics tick; turns are at multiples of it
+  VelocityLimits limits = {};
   std::string robot;      ///< URDF of the robot
   std::string site;       ///< survey of the site and stations of the mission (io/json/route_json.h), JSON
   std::string documents;  ///< settings that the stack may know, YAML with the keys of a scenario

@@ -34,11 +34,13 @@ TEST(Protocol, MessagesSurviveEncodingAndDecoding) {
                     .scenario = "a/b",
                     .seed = ~0ULL,
                     .tick = 2ms,
+                    .limits = {.forward_mps = 1.0, .backward_mps = 0.5, .sideways_mps = 0.25, .yaw_rate_radps = 2.0},
                     .robot = "<robot/>",
                     .site = "{}",
                     .documents = "x: 1\n"};
   EXPECT_EQ(encoded_twice(hello), io::encode(hello));
   EXPECT_EQ(io::decode<Hello>(io::encode(hello)).seed, ~0ULL);
+  EXPECT_EQ(io::decode<Hello>(io::encode(hello)).limits.sideways_mps, 0.25);
   const HelloReply reply{.stack = "s", .topics = {"/a", "/b"}, .turn_period = 1500ms};
   EXPECT_EQ(io::decode<HelloReply>(io::encode(reply)).topics, reply.topics);
   EXPECT_EQ(io::decode<HelloReply>(io::encode(reply)).turn_period, 1500ms);

@@ -17,6 +17,21 @@ std::string text_of(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
+link::VelocityLimits limits_of(const Scenario& scenario, const RobotDescription& robot) {
+  const sim::LocomotionSettings& legs = scenario.locomotion;
+  const sim::TrackDriveSettings& tracks = scenario.track_drive;
+  if (robot.legs.empty()) {
+    return {.forward_mps = tracks.max_speed_mps,
+            .backward_mps = tracks.max_speed_mps,
+            .sideways_mps = 0.0,
+            .yaw_rate_radps = tracks.max_yaw_rate_radps};
+  }
+  return {.forward_mps = legs.max_forward_mps,
+          .backward_mps = legs.max_backward_mps,
+          .sideways_mps = legs.max_sideways_mps,
+          .yaw_rate_radps = legs.max_yaw_rate_radps};
+}
+
 }  // namespace
 
 Scenario documented_scenario(const Scenario& scenario) {
@@ -44,6 +59,7 @@ StackDocuments stack_documents(const Scenario& scenario, const std::string& name
                 .scenario = name,
                 .seed = scenario.seed,
                 .tick = tick,
+                .limits = limits_of(scenario, files.robot),
                 .robot = text_of(files.robot_urdf),
                 .site = text_of(files.world_xml.parent_path() / scenario.mission),
                 .documents = to_yaml(documented_scenario(scenario))},

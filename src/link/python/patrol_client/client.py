@@ -33,6 +33,16 @@ def _nanoseconds(time):
 
 
 @dataclass
+class VelocityLimits:
+    """Limits of the robot's base in its level frame, m/s and rad/s. Faster commands are limited."""
+
+    forward: float
+    backward: float
+    sideways: float  #: 0: the base does not move sideways
+    yaw_rate: float
+
+
+@dataclass
 class Hello:
     """The run, and the documents of the robot and the site."""
 
@@ -40,6 +50,7 @@ class Hello:
     scenario: str       #: name of the scenario
     seed: int
     tick: float         #: physics tick, s; turns are at multiples of it
+    limits: "VelocityLimits"
     robot: str          #: URDF
     site: dict          #: survey of the site and stations of the mission
     documents: str      #: settings that a stack may know, YAML with the keys of a scenario
@@ -120,7 +131,8 @@ class Client:
 
     def __init__(self, address=None):
         self._socket = _connect(address)
-        self._stream = data_stream.ReadDataStream(self._socket.makefile("rb"))
+        self._file = self._socket.makefile("rb")
+        self._stream = data_stream.ReadDataStream(self._file)
         self._unsent = data_stream.RecordBuilder()
         self._unsent.write(_MAGIC)
         records.Header(profile="ros2", library="patrol_client").write(self._unsent)
@@ -141,6 +153,7 @@ class Client:
         self.close()
 
     def close(self):
+        self._file.close()
         self._socket.close()
 
     def type_of(self, topic):
@@ -252,7 +265,9 @@ class Client:
             if hello.protocol != PROTOCOL_VERSION:
                 raise LinkError(f"version {hello.protocol} of the protocol: must be {PROTOCOL_VERSION}")
             return Hello(program=hello.program, scenario=hello.scenario, seed=hello.seed,
-                         tick=1e-9 * _nanoseconds(hello.tick), robot=hello.robot, site=json.loads(hello.site),
+                         tick=1e-9 * _nanoseconds(hello.tick),
+                         limits=VelocityLimits(hello.forward_mps, hello.backward_mps, hello.sideways_mps, hello.yaw_rate_radps),
+                         robot=hello.robot, site=json.loads(hello.site),
                          documents=hello.documents)
 
 
