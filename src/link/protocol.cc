@@ -19,6 +19,8 @@ void describe(Codec& codec, Hello& hello) {
   codec(hello.limits.yaw_rate_radps);
   codec(hello.robot);
   codec(hello.site);
+  codec(hello.goals);
+  codec(hello.registration);
   codec(hello.documents);
 }
 

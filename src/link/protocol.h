@@ -25,14 +25,17 @@ struct VelocityLimits {
 /// values that were drawn for the simulated robot.
 struct Hello {
   std::uint32_t protocol = kProtocolVersion;
-  std::string program;    ///< name and version, e.g. "patrol 0.2.0"
-  std::string scenario;   ///< name of the scenario
+  std::string program;   ///< name and version, e.g. "patrol 0.2.0"
+  std::string scenario;  ///< name of the scenario
   std::uint64_t seed = 0;
-  Time tick{};            ///< physics tick; turns are at multiples of it
+  Time tick{};  ///< physics tick; turns are at multiples of it
   VelocityLimits limits = {};
-  std::string robot;      ///< URDF of the robot
-  std::string site;       ///< survey of the site and stations of the mission (io/json/route_json.h), JSON
-  std::string documents;  ///< settings that the stack may know, YAML with the keys of a scenario
+  std::string robot;              ///< URDF of the robot
+  std::string site;               ///< survey of the site and stations of the mission (io/json/route_json.h), JSON
+  std::string goals = {};         ///< saved goals in map (io/json/nav_json.h), JSON; empty: none are given
+  std::string registration = {};  ///< pose of a known map in site (io/json/registration_json.h), JSON; empty: the map's
+                                  ///< origin is the surveyed start
+  std::string documents;          ///< settings that the stack may know, YAML with the keys of a scenario
 };
 
 /// Answer of the stack to the hello.

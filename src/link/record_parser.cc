@@ -88,8 +88,7 @@ void RecordParser::add_channel(std::string_view content) {
   const auto id = reader.number<std::uint16_t>();
   const auto schema = schemas_.find(reader.number<std::uint16_t>());
   if (schema == schemas_.end()) fail(fmt::format("channel {} has an unknown schema", id));
-  io::McapChannel channel{
-      .topic = reader.text(), .type = schema->second.type, .definition = schema->second.definition};
+  io::McapChannel channel{.topic = reader.text(), .type = schema->second.type, .definition = schema->second.definition};
   if (const std::string encoding = reader.text(); encoding != "cdr")
     fail(fmt::format("channel {} has the encoding {}: must be cdr", id, encoding.substr(0, 40)));
   if (channels_.size() >= limits_.num_channels && !channels_.contains(id))

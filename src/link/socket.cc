@@ -4,7 +4,6 @@
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
-#include <sched.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
@@ -17,6 +16,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <sched.h>
 
 #include "core/error.h"
 #include "link/link_error.h"
@@ -32,7 +32,8 @@ constexpr std::chrono::microseconds kSpin{100};
 void wait_for(int descriptor, short events, const Patience& patience, const char* activity) {
   const auto deadline = std::chrono::steady_clock::now() + patience.timeout;
   while (true) {
-    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
+    const auto left =
+        std::chrono::duration_cast<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
     pollfd ready{.fd = descriptor, .events = events, .revents = 0};
     const auto slice = std::clamp(left, std::chrono::milliseconds(0), kSlice);
     if (::poll(&ready, 1, static_cast<int>(slice.count())) > 0) return;
@@ -48,8 +49,8 @@ sockaddr_un unix_address(const std::string& path) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   if (path.size() >= sizeof(address.sun_path)) {
-    throw InputError(fmt::format("unix:{}: path of the socket is longer than {} bytes", path,
-                                 sizeof(address.sun_path) - 1));
+    throw InputError(
+        fmt::format("unix:{}: path of the socket is longer than {} bytes", path, sizeof(address.sun_path) - 1));
   }
   std::memcpy(address.sun_path, path.c_str(), path.size() + 1);
   return address;
@@ -121,9 +122,8 @@ Socket Socket::listen(const Address& address) {
   const int on = 1;
   ::setsockopt(socket.descriptor_, SOL_SOCKET, SO_REUSEADDR, &on, sizeof(on));
   const mode_t mask = ::umask(0077);
-  const int bound = call_with(address, [&](const sockaddr* name, socklen_t size) {
-    return ::bind(socket.descriptor_, name, size);
-  });
+  const int bound =
+      call_with(address, [&](const sockaddr* name, socklen_t size) { return ::bind(socket.descriptor_, name, size); });
   const int error = errno;
   ::umask(mask);
   if (bound != 0 || ::listen(socket.descriptor_, 1) != 0)
@@ -133,12 +133,10 @@ Socket Socket::listen(const Address& address) {
 
 Socket Socket::connect(const Address& address) {
   Socket socket = open_socket(address);
-  const int connected = call_with(address, [&](const sockaddr* name, socklen_t size) {
-    return ::connect(socket.descriptor_, name, size);
-  });
+  const int connected = call_with(
+      address, [&](const sockaddr* name, socklen_t size) { return ::connect(socket.descriptor_, name, size); });
   if (connected != 0) {
-    throw LinkError(LinkFault::kClosed,
-                    fmt::format("{}: cannot connect: {}", text_of(address), std::strerror(errno)));
+    throw LinkError(LinkFault::kClosed, fmt::format("{}: cannot connect: {}", text_of(address), std::strerror(errno)));
   }
   const int on = 1;
   if (!address.is_unix) ::setsockopt(socket.descriptor_, IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
@@ -172,8 +170,7 @@ std::size_t Socket::receive(char* bytes, std::size_t size, const Patience& patie
   while (true) {
     const ssize_t received = ::recv(descriptor_, bytes, size, MSG_DONTWAIT);
     if (received > 0) return static_cast<std::size_t>(received);
-    if (received == 0 || (errno != EINTR && errno != EAGAIN))
-      throw LinkError(LinkFault::kClosed, "connection closed");
+    if (received == 0 || (errno != EINTR && errno != EAGAIN)) throw LinkError(LinkFault::kClosed, "connection closed");
     if (std::chrono::steady_clock::now() > spin_end) wait_for(descriptor_, POLLIN, patience, "no answer");
     else ::sched_yield();
   }

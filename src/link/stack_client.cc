@@ -30,8 +30,7 @@ StackClient::StackClient(Socket socket) : stream_(std::move(socket), endless()) 
     documents_.push_back(copy_of(message));
   }
   if (hello_.protocol != kProtocolVersion) {
-    const std::string text =
-        fmt::format("version {} of the protocol: must be {}", hello_.protocol, kProtocolVersion);
+    const std::string text = fmt::format("version {} of the protocol: must be {}", hello_.protocol, kProtocolVersion);
     fail(text);
     throw LinkError(LinkFault::kInvalid, text);
   }

@@ -39,7 +39,8 @@ class StackClient {
   static StackClient connect(const Address& address) { return StackClient(Socket::connect(address)); }
 
   const Hello& hello() const { return hello_; }
-  /// Messages that preceded the hello's answer: transforms of the sensors on /tf_static, and the known map on /site_map.
+  /// Messages that preceded the hello's answer: transforms of the sensors on /tf_static, and the known map on
+  /// /site_map.
   const std::vector<ReceivedMessage>& documents() const { return documents_; }
   /// Answers the hello. `topics`: to receive; empty: all. `turn_period`: 0: one tick of the simulator.
   void begin(const std::string& stack, const std::vector<std::string>& topics, Time turn_period);

@@ -129,7 +129,8 @@ StackProcess::StackProcess(const ProcessSettings& settings) {
   if (::pipe2(error_pipe, O_CLOEXEC) != 0) throw std::runtime_error(fmt::format("pipe: {}", std::strerror(errno)));
   const pid_t parent = ::getpid();
   id_ = ::fork();
-  if (id_ == 0) execute(arguments.data(), variables.data(), output.c_str(), parent, error_pipe[1], settings.memory_bytes);
+  if (id_ == 0)
+    execute(arguments.data(), variables.data(), output.c_str(), parent, error_pipe[1], settings.memory_bytes);
   ::close(error_pipe[1]);
   int error = 0;
   const bool failed = id_ < 0 || ::read(error_pipe[0], &error, sizeof(error)) > 0;

@@ -17,8 +17,8 @@ const HelloReply& StackServer::greet(const Hello& hello) {
   stream_.flush();
   reply_ = control_message<HelloReply>(stream_.read());
   if (reply_.protocol != hello.protocol) {
-    throw LinkError(LinkFault::kInvalid, fmt::format("version {} of the protocol: must be {}", reply_.protocol,
-                                                     hello.protocol));
+    throw LinkError(LinkFault::kInvalid,
+                    fmt::format("version {} of the protocol: must be {}", reply_.protocol, hello.protocol));
   }
   if (reply_.turn_period < Time{}) throw LinkError(LinkFault::kInvalid, "turn period is negative");
   wanted_ = {reply_.topics.begin(), reply_.topics.end()};

@@ -128,7 +128,8 @@ TEST(RecordParser, RefusesWhatIsNoStreamOfMessages) {
 TEST(RecordParser, RefusesARecordByItsHeadBeforeItsBytesArrive) {
   io::mcap::RecordWriter head;
   head.record_head(io::mcap::kMessage, 1ULL << 40);
-  EXPECT_THAT(error_of(kStart + std::string(head.view())), HasSubstr("record of 1099511627776 bytes: at most 67108864"));
+  EXPECT_THAT(error_of(kStart + std::string(head.view())),
+              HasSubstr("record of 1099511627776 bytes: at most 67108864"));
 }
 
 TEST(RecordParser, LimitsTheNumberOfChannelsAndSchemas) {

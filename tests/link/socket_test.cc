@@ -51,7 +51,8 @@ TEST(Socket, CarriesBytesOverTcp) {
 }
 
 TEST(Socket, UnixSocketIsForTheUserAloneAndReplacesNoFile) {
-  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / ("patrol_" + std::to_string(::getpid()));
+  const std::filesystem::path path =
+      std::filesystem::path(testing::TempDir()) / ("patrol_" + std::to_string(::getpid()));
   {
     const Socket listener = Socket::listen({.is_unix = true, .path = path});
     struct stat status {};

@@ -30,7 +30,8 @@ class StackProcessTest : public testing::Test {
     return {std::istreambuf_iterator<char>(file), {}};
   }
 
-  std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / ("stack_process_" + std::to_string(::getpid()));
+  std::filesystem::path folder_ =
+      std::filesystem::path(testing::TempDir()) / ("stack_process_" + std::to_string(::getpid()));
   std::filesystem::path output_ = folder_ / "output.log";
 };
 

@@ -22,7 +22,7 @@ struct RunOptions {
   std::vector<std::string> overrides;  ///< "path=value"
   std::optional<std::uint64_t> seed;
   std::optional<std::string> stack;  ///< command or address of a stack instead of that of the scenario
-  bool watch = false;  ///< show live status in the terminal
+  bool watch = false;                ///< show live status in the terminal
   std::optional<std::filesystem::path> out;
   std::optional<std::string> monitor_url;  ///< URL of a monitoring server
   std::optional<std::filesystem::path> monitor_token_file;

@@ -27,11 +27,12 @@ ExitCode feed_command(const FeedOptions& options) {
 
   ProgressLine observer("feed " + name, scenario.time_limit_s);
   const std::unique_ptr<StackPort> stack =
-      make_stack_port(scenario, files, {.scenario = name,
-                                        .data_root = data_root,
-                                        .tick = tick,
-                                        .output = RunDirectory{options.out}.stack_output(),
-                                        .is_interrupted = [&] { return observer.is_interrupted(); }});
+      make_stack_port(scenario, files,
+                      {.scenario = name,
+                       .data_root = data_root,
+                       .tick = tick,
+                       .output = RunDirectory{options.out}.stack_output(),
+                       .is_interrupted = [&] { return observer.is_interrupted(); }});
   const RunDirectory directory = begin_run_directory(options.out);
   io::save_junit(directory.junit(), {unfinished_suite(name, junit_properties(scenario))});
   save_scenario(directory.scenario(), scenario, fmt::format("stack fed with {}", fed.log().string()));

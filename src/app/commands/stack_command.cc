@@ -24,11 +24,9 @@ BuiltInStack stack_for(const link::Hello& hello) {
 
 void publish(link::StackClient& client, Time now, const std::vector<PublishedMessage>& messages) {
   for (const PublishedMessage& message : messages) {
-    std::visit(
-        [&]<typename Message>(const Message&) {
-          client.publish_encoded(now, message.topic, io::kRosType<Message>, message.cdr);
-        },
-        message.content.value());
+    std::visit([&]<typename Message>(
+                   const Message&) { client.publish_encoded(now, message.topic, io::kRosType<Message>, message.cdr); },
+               message.content.value());
   }
 }
 

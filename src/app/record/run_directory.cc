@@ -11,15 +11,13 @@ namespace {
 
 const OutputKind kRun = {.name = "run",
                          .marker_text = "Incomplete run: these files are not a result.",
-                         .outputs = {"scenario.yaml",  "log.mcap",           "registration.json",
-                                     "metrics.json",   "junit.xml",          "estimate.tum",
-                                     "truth.tum",      "odometry.tum",       "map.yaml",
-                                     "map.pgm",        "truth_map.yaml",     "truth_map.pgm",
-                                     "report.html",    "replay.mp4",         "nav.json",
-                                     "teleop.csv",     "scans/scans.json",   "scans/*.ply",
-                                     "map_errors.pgm", "localizability.csv", "still_*.png",
-                                     "outbox.jsonl",   "outbox.sent",        "outbox.refused.jsonl",
-                                     "stack.log",      "*.part"},
+                         .outputs = {"scenario.yaml",    "log.mcap",     "registration.json", "metrics.json",
+                                     "junit.xml",        "estimate.tum", "truth.tum",         "odometry.tum",
+                                     "map.yaml",         "map.pgm",      "truth_map.yaml",    "truth_map.pgm",
+                                     "report.html",      "replay.mp4",   "nav.json",          "teleop.csv",
+                                     "scans/scans.json", "scans/*.ply",  "map_errors.pgm",    "localizability.csv",
+                                     "still_*.png",      "outbox.jsonl", "outbox.sent",       "outbox.refused.jsonl",
+                                     "stack.log",        "*.part"},
                          .required_file = "scenario.yaml",
                          .preserved = {}};
 

@@ -25,7 +25,7 @@ namespace {
 using link::LinkError;
 using link::LinkFault;
 
-constexpr std::chrono::seconds kTimeToEnd{2};       ///< of the process after the last turn
+constexpr std::chrono::seconds kTimeToEnd{2};         ///< of the process after the last turn
 constexpr std::chrono::milliseconds kTimeToDie{200};  ///< of a process whose connection has closed
 constexpr std::size_t kMostNameBytes = 200;
 
@@ -41,27 +41,26 @@ bool is_finite(const Pose3& pose) { return pose.position.allFinite() && pose.rot
 
 /// Returns whether the numbers that Patrol computes with are finite.
 bool is_finite(const stack::StackMessage& message) {
-  return std::visit(
-      Overloaded{[](const VelocityCommand& command) {
-                   return std::isfinite(command.vx_mps) && std::isfinite(command.vy_mps) &&
-                          std::isfinite(command.yaw_rate_radps);
-                 },
-                 [](const AntennaCommand& command) {
-                   return std::isfinite(command.yaw_rad) && std::isfinite(command.pitch_rad);
-                 },
-                 [](const OdometryEstimate& odometry) {
-                   return is_finite(odometry.T_odom_body) && odometry.planar_covariance.allFinite();
-                 },
-                 [](const PoseEstimate& estimate) {
-                   return is_finite(estimate.T_map_body) && estimate.covariance.allFinite();
-                 },
-                 [](const SiteRegistration& registration) { return is_finite(registration.T_site_map); },
-                 [](const MapUpdate& update) {
-                   const GridGeometry& geometry = update.map.geometry();
-                   return geometry.resolution_m > 0.0 && geometry.origin_m.allFinite();
-                 },
-                 [](const auto&) { return true; }},
-      message);
+  return std::visit(Overloaded{[](const VelocityCommand& command) {
+                                 return std::isfinite(command.vx_mps) && std::isfinite(command.vy_mps) &&
+                                        std::isfinite(command.yaw_rate_radps);
+                               },
+                               [](const AntennaCommand& command) {
+                                 return std::isfinite(command.yaw_rad) && std::isfinite(command.pitch_rad);
+                               },
+                               [](const OdometryEstimate& odometry) {
+                                 return is_finite(odometry.T_odom_body) && odometry.planar_covariance.allFinite();
+                               },
+                               [](const PoseEstimate& estimate) {
+                                 return is_finite(estimate.T_map_body) && estimate.covariance.allFinite();
+                               },
+                               [](const SiteRegistration& registration) { return is_finite(registration.T_site_map); },
+                               [](const MapUpdate& update) {
+                                 const GridGeometry& geometry = update.map.geometry();
+                                 return geometry.resolution_m > 0.0 && geometry.origin_m.allFinite();
+                               },
+                               [](const auto&) { return true; }},
+                    message);
 }
 
 /// Entry of a topic; nullopt if Patrol does not know it.
@@ -89,14 +88,16 @@ ExternalStack::ExternalStack(StackDocuments documents, StackConnection connectio
   }
   address_ = link::parse_address(connection_.command);
   if (!address_->is_loopback() && !settings_.allow_remote) {
-    throw InputError(fmt::format("stack.command = {}: address that other machines reach: allowed only with "
-                                 "stack.allow_remote = true",
-                                 connection_.command));
+    throw InputError(
+        fmt::format("stack.command = {}: address that other machines reach: allowed only with "
+                    "stack.allow_remote = true",
+                    connection_.command));
   }
   if (settings_.compute.model == "measured" && !address_->is_unix) {
-    throw InputError(fmt::format("stack.compute.model = measured: not possible with stack.command = {}, because the "
-                                 "process behind a TCP address is unknown: use a Unix socket or a command",
-                                 connection_.command));
+    throw InputError(
+        fmt::format("stack.compute.model = measured: not possible with stack.command = {}, because the "
+                    "process behind a TCP address is unknown: use a Unix socket or a command",
+                    connection_.command));
   }
 }
 

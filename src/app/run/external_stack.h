@@ -27,9 +27,9 @@ struct StackDocuments {
 
 /// Connection to a stack in another process.
 struct StackConnection {
-  std::string command;                      ///< command line, or address at which the stack connects
-  std::filesystem::path output;             ///< file for the output of a process that Patrol starts
-  std::function<bool()> is_interrupted;     ///< polled while Patrol waits
+  std::string command;                   ///< command line, or address at which the stack connects
+  std::filesystem::path output;          ///< file for the output of a process that Patrol starts
+  std::function<bool()> is_interrupted;  ///< polled while Patrol waits
 };
 
 /// A stack in another process, by the turn protocol (src/link/README.md). Its messages are checked before the log and
@@ -59,7 +59,7 @@ class ExternalStack final : public StackPort {
   StackConnection connection_;
   stack::StackSettings settings_;
   std::optional<link::Address> address_;  ///< at which a process of the user connects
-  std::filesystem::path folder_;  ///< of the socket of a process that Patrol starts; removed at the end
+  std::filesystem::path folder_;          ///< of the socket of a process that Patrol starts; removed at the end
   std::optional<link::StackProcess> process_;
   std::optional<link::StackServer> server_;
   double wait_s_ = 0.0;

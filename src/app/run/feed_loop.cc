@@ -115,13 +115,12 @@ class FeedLoop {
   void finish(Time now) {
     deliver_until(now, true);
     const std::vector<PublishedMessage> messages = stack_.finish(turn_);
-    if (stack_.records_turns())
-      log_.write(now, StackTurnRecord{now, {}, now, true, true});
+    if (stack_.records_turns()) log_.write(now, StackTurnRecord{now, {}, now, true, true});
     publish(now, messages);
   }
 
-  /// Writes the messages of the simulator up to a time, and adds those for the stack to its next turn. The ground truth of
-  /// that time is written after the answers, unless the run ends.
+  /// Writes the messages of the simulator up to a time, and adds those for the stack to its next turn. The ground truth
+  /// of that time is written after the answers, unless the run ends.
   void deliver_until(Time now, bool is_end) {
     turn_.now = now;
     while (true) {
@@ -139,11 +138,10 @@ class FeedLoop {
   std::optional<Input> read_input() {
     const std::optional<io::McapMessage> message = input_.next();
     if (!message) return std::nullopt;
-    return Input{.message = {.topic = message->channel.topic,
-                             .log_time = message->log_time,
-                             .cdr = std::string(message->cdr)},
-                 .type = message->channel.type,
-                 .definition = message->channel.definition};
+    return Input{
+        .message = {.topic = message->channel.topic, .log_time = message->log_time, .cdr = std::string(message->cdr)},
+        .type = message->channel.type,
+        .definition = message->channel.definition};
   }
 
   void publish(Time now, const std::vector<PublishedMessage>& messages) {

@@ -27,9 +27,9 @@ class RecordedStack final : public StackPort {
   /// Message of the log that has a part in the answers: of the stack, or the record of a turn.
   struct Entry {
     Time log_time{};
-    PublishedMessage message;                ///< of the stack
-    std::optional<StackTurnRecord> turn;     ///< record of a turn instead
-    bool follows_truth = false;              ///< the ground truth of the same time precedes it: published at the end
+    PublishedMessage message;             ///< of the stack
+    std::optional<StackTurnRecord> turn;  ///< record of a turn instead
+    bool follows_truth = false;           ///< the ground truth of the same time precedes it: published at the end
   };
 
   std::optional<Entry> next_entry();

@@ -118,8 +118,7 @@ class ClosedLoop {
   /// Writes a message and adds it to the next turn of the stack.
   template <typename Message>
   void deliver(Time now, const Message& message) {
-    turn_.messages.push_back(
-        {.topic = io::kTopic<Message>, .log_time = now, .cdr = log_.write(now, message)});
+    turn_.messages.push_back({.topic = io::kTopic<Message>, .log_time = now, .cdr = log_.write(now, message)});
   }
 
   /// Publishes what the stack has computed by now, and lets it take a turn when it is due.

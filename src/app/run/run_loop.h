@@ -8,9 +8,9 @@
 
 #include "app/run/stack_port.h"
 #include "app/scenario/scenario.h"
+#include "core/time.h"
 #include "io/logs/run_log.h"
 #include "link/link_error.h"
-#include "core/time.h"
 
 namespace patrol::app {
 

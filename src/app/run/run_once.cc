@@ -37,11 +37,12 @@ std::optional<RunVerdict> run_once(const Scenario& scenario, const std::string& 
   const ScenarioFiles files = load_scenario_files(scenario, data_root);
   sim::Simulator simulator = make_simulator(scenario, files);  // these throw InputError before anything is written
   const std::unique_ptr<StackPort> stack =
-      make_stack_port(scenario, files, {.scenario = name,
-                                        .data_root = data_root,
-                                        .tick = simulator.tick(),
-                                        .output = RunDirectory{root}.stack_output(),
-                                        .is_interrupted = [&] { return observer.is_interrupted(); }});
+      make_stack_port(scenario, files,
+                      {.scenario = name,
+                       .data_root = data_root,
+                       .tick = simulator.tick(),
+                       .output = RunDirectory{root}.stack_output(),
+                       .is_interrupted = [&] { return observer.is_interrupted(); }});
   const RunDirectory directory = begin_run_directory(root);
   io::save_junit(directory.junit(), {unfinished_suite(name, junit_properties(scenario))});
   save_scenario(directory.scenario(), scenario, origin_comment(name));

@@ -54,6 +54,7 @@ Scenario documented_scenario(const Scenario& scenario) {
 
 StackDocuments stack_documents(const Scenario& scenario, const std::string& name, const ScenarioFiles& files,
                                const std::filesystem::path& data_root, Time tick) {
+  const std::filesystem::path world = files.world_xml.parent_path();
   StackDocuments documents{
       .hello = {.program = fmt::format("patrol {}", PATROL_VERSION),
                 .scenario = name,
@@ -61,7 +62,9 @@ StackDocuments stack_documents(const Scenario& scenario, const std::string& name
                 .tick = tick,
                 .limits = limits_of(scenario, files.robot),
                 .robot = text_of(files.robot_urdf),
-                .site = text_of(files.world_xml.parent_path() / scenario.mission),
+                .site = text_of(world / scenario.mission),
+                .goals = scenario.goals.empty() ? "" : text_of(world / scenario.goals),
+                .registration = files.map_registration ? text_of(registration_beside(world / scenario.map)) : "",
                 .documents = to_yaml(documented_scenario(scenario))},
       .environment = {{"PATROL_DATA", data_root.string()}},
       .static_transforms = io::encode(io::sensor_mounts(files.robot)),

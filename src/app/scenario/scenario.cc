@@ -103,7 +103,7 @@ void read_with_lidar_tolerances(const std::filesystem::path& file, const std::ve
 
 /// Returns the file with the registration of a map to the site; none if there is none beside the map.
 std::optional<std::filesystem::path> registration_of(const std::filesystem::path& map_yaml) {
-  const std::filesystem::path file = map_yaml.parent_path() / "registration.json";
+  const std::filesystem::path file = registration_beside(map_yaml);
   return std::filesystem::exists(file) ? std::optional(file) : std::nullopt;
 }
 
@@ -132,6 +132,10 @@ Scenario load_scenario(const std::filesystem::path& file, const std::vector<std:
 }
 
 std::string to_yaml(const Scenario& scenario) { return io::to_yaml(scenario); }
+
+std::filesystem::path registration_beside(const std::filesystem::path& map_yaml) {
+  return map_yaml.parent_path() / "registration.json";
+}
 
 void save_scenario(const std::filesystem::path& file, const Scenario& scenario, const std::string& comment) {
   io::save_settings(file, scenario, comment);

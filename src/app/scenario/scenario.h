@@ -214,6 +214,9 @@ std::filesystem::path find_scenario(const std::filesystem::path& name);
 /// file and key if one is missing.
 std::vector<std::filesystem::path> named_files(const Scenario& scenario, const std::filesystem::path& data_root);
 
+/// Path of the registration of a map to the site, which need not exist.
+std::filesystem::path registration_beside(const std::filesystem::path& map_yaml);
+
 /// Files that a scenario names, loaded.
 struct ScenarioFiles {
   std::filesystem::path world_xml;

@@ -32,7 +32,8 @@ struct ScoredTopic {
 
 /// The group of each metric is the first whose name it begins with.
 constexpr std::array kScoredTopics = std::to_array<ScoredTopic>({
-    {"odometry.", io::kTopic<OdometryEstimate>, [](const score::RunRecord& record) { return !record.T_odom_body.empty(); }},
+    {"odometry.", io::kTopic<OdometryEstimate>,
+     [](const score::RunRecord& record) { return !record.T_odom_body.empty(); }},
     {"map.", io::kTopic<MapUpdate>, [](const score::RunRecord& record) { return record.has_map(); }},
     {"mission.completed", io::kTopic<Event>, [](const score::RunRecord& record) { return !record.events.empty(); }},
     {"inspection.", io::kTopic<Event>, [](const score::RunRecord& record) { return !record.events.empty(); }},
@@ -42,7 +43,9 @@ constexpr std::array kScoredTopics = std::to_array<ScoredTopic>({
 
 /// Explanation of a metric that the run did not measure.
 std::string reason_for_none(const std::string& metric, const std::vector<std::string>& unpublished) {
-  const auto is_unpublished = [&](const char* topic) { return std::ranges::find(unpublished, topic) != unpublished.end(); };
+  const auto is_unpublished = [&](const char* topic) {
+    return std::ranges::find(unpublished, topic) != unpublished.end();
+  };
   for (const ScoredTopic& scored : kScoredTopics) {
     if (metric.starts_with(scored.metrics) && is_unpublished(scored.topic))
       return fmt::format("not published: {}", scored.topic);

@@ -115,11 +115,11 @@ constexpr Definition kDefinitions[] = {
      "builtin_interfaces/Time turn\nbuiltin_interfaces/Duration delay\nbuiltin_interfaces/Time next_turn\n"
      "bool is_last\nbool mission_is_over\n"},
     {"patrol_msgs/LinkHello",
-     "# First message of the simulator: limits of the base's velocity, URDF of the robot, survey of the site (JSON), "
-     "settings (YAML).\n"
+     "# First message of the simulator: limits of the base's velocity, URDF of the robot, survey of the site, goals, "
+     "registration of the known map (JSON), settings (YAML).\n"
      "uint32 protocol\nstring program\nstring scenario\nuint64 seed\nbuiltin_interfaces/Duration tick\n"
      "float64 forward_mps\nfloat64 backward_mps\nfloat64 sideways_mps\nfloat64 yaw_rate_radps\n"
-     "string robot\nstring site\nstring documents\n"},
+     "string robot\nstring site\nstring goals\nstring registration\nstring documents\n"},
     {"patrol_msgs/LinkHelloReply",
      "# Answer of the stack; no topics: all.\n"
      "uint32 protocol\nstring stack\nstring[] topics\nbuiltin_interfaces/Duration turn_period\n"},

@@ -72,8 +72,8 @@ struct EstimateScore {
   double pose_coverage = 0.0;  ///< fraction of the run within 0.2 s of a timely pose (live_trajectory.h)
   PoseNees nees;
   std::optional<AlignedError> aligned_pose;  ///< none when no fit is possible, e.g. of an estimate that never moves
-  std::optional<TrajectoryError> odometry;     ///< with odometry in the log
-  std::optional<MapError> map;                 ///< with a map in the log
+  std::optional<TrajectoryError> odometry;   ///< with odometry in the log
+  std::optional<MapError> map;               ///< with a map in the log
   double map_agreement = 0.0;
   std::vector<TrackedLocalizability> localizability;
   NavigationScore navigation;

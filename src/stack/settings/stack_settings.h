@@ -73,9 +73,9 @@ struct StackSettings {
   /// Command of a stack that replaces the built-in one, or the address unix:PATH or tcp:127.0.0.1:PORT at which it
   /// connects (src/link/README.md); empty: the built-in stack.
   std::string command;
-  double timeout_s = 30.0;        ///< limit of the wall time that a stack in another process takes for a turn
-  double memory_limit_mb = 0.0;   ///< limit of the memory of a stack that is started by its command; 0: none
-  bool allow_remote = false;      ///< true: `command` may be an address that other machines reach
+  double timeout_s = 30.0;       ///< limit of the wall time that a stack in another process takes for a turn
+  double memory_limit_mb = 0.0;  ///< limit of the memory of a stack that is started by its command; 0: none
+  bool allow_remote = false;     ///< true: `command` may be an address that other machines reach
   ComputeSettings compute;
 
   template <typename Self, typename Visitor>

@@ -53,6 +53,8 @@ class Hello:
     limits: "VelocityLimits"
     robot: str          #: URDF
     site: dict          #: survey of the site and stations of the mission
+    goals: list         #: saved goals in map; empty: none are given
+    registration: dict  #: pose of a known map in site; empty: the origin of the map is the surveyed start
     documents: str      #: settings that a stack may know, YAML with the keys of a scenario
 
 
@@ -268,6 +270,7 @@ class Client:
                          tick=1e-9 * _nanoseconds(hello.tick),
                          limits=VelocityLimits(hello.forward_mps, hello.backward_mps, hello.sideways_mps, hello.yaw_rate_radps),
                          robot=hello.robot, site=json.loads(hello.site),
+                         goals=json.loads(hello.goals or "[]"), registration=json.loads(hello.registration or "{}"),
                          documents=hello.documents)
 
 
