@@ -12,12 +12,12 @@ namespace patrol::link {
 namespace {
 
 constexpr std::size_t kReceiveBytes = std::size_t{64} << 10;
-constexpr std::size_t kMostTextBytes = 400;  ///< of another program's text in a message
+constexpr std::size_t kMaxTextBytes = 400;  ///< of another program's text in a message
 
 }  // namespace
 
-RecordStream::RecordStream(Socket socket, Patience patience, const RecordLimits& limits)
-    : socket_(std::move(socket)), patience_(std::move(patience)), parser_(limits) {
+RecordStream::RecordStream(Socket socket, WaitLimit wait, const RecordLimits& limits)
+    : socket_(std::move(socket)), wait_(std::move(wait)), parser_(limits) {
   io::mcap::RecordWriter header;
   header.text("ros2");
   header.text("patrol");
@@ -61,7 +61,7 @@ void RecordStream::write(const std::string& topic, Time log_time, std::string_vi
 }
 
 void RecordStream::flush() {
-  socket_.send(unsent_.view(), patience_);
+  socket_.send(unsent_.view(), wait_);
   unsent_.clear();
 }
 
@@ -70,10 +70,10 @@ io::McapMessage RecordStream::read() {
     if (const std::optional<io::McapMessage> message = parser_.next()) {
       if (message->channel.topic != kControlTopic<Failure>) return *message;
       const auto failure = control_message<Failure>(*message);
-      throw LinkError(LinkFault::kInvalid, io::on_one_line(failure.text.substr(0, kMostTextBytes)));
+      throw LinkError(LinkFault::kInvalid, io::on_one_line(failure.text.substr(0, kMaxTextBytes)));
     }
     char* const room = parser_.prepare(kReceiveBytes);
-    parser_.commit(socket_.receive(room, kReceiveBytes, patience_));
+    parser_.commit(socket_.receive(room, kReceiveBytes, wait_));
   }
 }
 
@@ -81,7 +81,7 @@ template <typename Message>
 Message control_message(const io::McapMessage& message) {
   if (message.channel.topic != kControlTopic<Message>) {
     throw LinkError(LinkFault::kInvalid, fmt::format("message on {} where one on {} is due",
-                                                     io::on_one_line(message.channel.topic.substr(0, kMostTextBytes)),
+                                                     io::on_one_line(message.channel.topic.substr(0, kMaxTextBytes)),
                                                      kControlTopic<Message>));
   }
   try {

@@ -17,7 +17,7 @@ namespace patrol::link {
 /// Connection that carries messages in both directions. Throws LinkError when it ends or the other side is silent.
 class RecordStream {
  public:
-  RecordStream(Socket socket, Patience patience, const RecordLimits& limits = {});
+  RecordStream(Socket socket, WaitLimit wait, const RecordLimits& limits = {});
 
   /// Declares a topic to the other side. `definition`: ROS 2 message definition with all types that it uses.
   void declare(const std::string& topic, const std::string& type, const std::string& definition);
@@ -38,12 +38,11 @@ class RecordStream {
   /// of the other side.
   io::McapMessage read();
 
-  const Patience& patience() const { return patience_; }
   int peer_process() const { return socket_.peer_process(); }
 
  private:
   Socket socket_;
-  Patience patience_;
+  WaitLimit wait_;
   RecordParser parser_;
   std::map<std::string, std::uint16_t> schemas_;   ///< ids of the sent schemas by type
   std::map<std::string, std::uint16_t> channels_;  ///< ids of the sent channels by topic

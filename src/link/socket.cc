@@ -28,19 +28,19 @@ constexpr std::chrono::milliseconds kSlice{100};  ///< between two checks for an
 /// Time before a thread sleeps until an answer comes: waking up takes longer than most answers.
 constexpr std::chrono::microseconds kSpin{100};
 
-/// Waits until the descriptor is ready. Throws LinkError if that takes longer than the patience.
-void wait_for(int descriptor, short events, const Patience& patience, const char* activity) {
-  const auto deadline = std::chrono::steady_clock::now() + patience.timeout;
+/// Waits until the descriptor is ready. Throws LinkError if that takes longer than the wait.
+void wait_for(int descriptor, short events, const WaitLimit& wait, const char* activity) {
+  const auto deadline = std::chrono::steady_clock::now() + wait.timeout;
   while (true) {
     const auto left =
         std::chrono::duration_cast<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
     pollfd ready{.fd = descriptor, .events = events, .revents = 0};
     const auto slice = std::clamp(left, std::chrono::milliseconds(0), kSlice);
     if (::poll(&ready, 1, static_cast<int>(slice.count())) > 0) return;
-    if (patience.is_interrupted && patience.is_interrupted()) throw LinkError(LinkFault::kInterrupted, "interrupted");
+    if (wait.is_interrupted && wait.is_interrupted()) throw LinkError(LinkFault::kInterrupted, "interrupted");
     if (left.count() <= 0) {
-      throw LinkError(LinkFault::kTimeout, fmt::format("{} within {:g} s", activity,
-                                                       std::chrono::duration<double>(patience.timeout).count()));
+      throw LinkError(LinkFault::kTimeout,
+                      fmt::format("{} within {:g} s", activity, std::chrono::duration<double>(wait.timeout).count()));
     }
   }
 }
@@ -143,8 +143,8 @@ Socket Socket::connect(const Address& address) {
   return socket;
 }
 
-Socket Socket::accept(const Patience& patience) const {
-  wait_for(descriptor_, POLLIN, patience, "no stack connected");
+Socket Socket::accept(const WaitLimit& wait) const {
+  wait_for(descriptor_, POLLIN, wait, "no stack connected");
   const int accepted = ::accept4(descriptor_, nullptr, nullptr, SOCK_CLOEXEC);
   if (accepted < 0) throw LinkError(LinkFault::kClosed, fmt::format("no stack connected: {}", std::strerror(errno)));
   const int on = 1;
@@ -152,26 +152,26 @@ Socket Socket::accept(const Patience& patience) const {
   return Socket(accepted);
 }
 
-void Socket::send(std::string_view bytes, const Patience& patience) {
+void Socket::send(std::string_view bytes, const WaitLimit& wait) {
   while (!bytes.empty()) {
     const ssize_t sent = ::send(descriptor_, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
     if (sent > 0) {
       bytes.remove_prefix(static_cast<std::size_t>(sent));
     } else if (errno == EAGAIN) {
-      wait_for(descriptor_, POLLOUT, patience, "no messages accepted");
+      wait_for(descriptor_, POLLOUT, wait, "no messages accepted");
     } else if (errno != EINTR) {
       throw LinkError(LinkFault::kClosed, "connection closed");
     }
   }
 }
 
-std::size_t Socket::receive(char* bytes, std::size_t size, const Patience& patience) {
+std::size_t Socket::receive(char* bytes, std::size_t size, const WaitLimit& wait) {
   const auto spin_end = std::chrono::steady_clock::now() + kSpin;
   while (true) {
     const ssize_t received = ::recv(descriptor_, bytes, size, MSG_DONTWAIT);
     if (received > 0) return static_cast<std::size_t>(received);
     if (received == 0 || (errno != EINTR && errno != EAGAIN)) throw LinkError(LinkFault::kClosed, "connection closed");
-    if (std::chrono::steady_clock::now() > spin_end) wait_for(descriptor_, POLLIN, patience, "no answer");
+    if (std::chrono::steady_clock::now() > spin_end) wait_for(descriptor_, POLLIN, wait, "no answer");
     else ::sched_yield();
   }
 }

@@ -25,12 +25,12 @@ bool is_address(std::string_view text);
 Address parse_address(const std::string& text);
 
 /// Limit of waiting for the other side.
-struct Patience {
+struct WaitLimit {
   std::chrono::steady_clock::duration timeout = std::chrono::seconds(10);
   std::function<bool()> is_interrupted = {};  ///< polled ten times per second while a call waits
 };
 
-/// Connected or listening stream socket. Calls wait as long as the patience allows and throw LinkError.
+/// Connected or listening stream socket. Calls wait as long as the wait allows and throw LinkError.
 class Socket {
  public:
   explicit Socket(int descriptor) : descriptor_(descriptor) {}
@@ -47,10 +47,10 @@ class Socket {
   static Socket connect(const Address& address);
 
   /// Waits for a client.
-  Socket accept(const Patience& patience) const;
-  void send(std::string_view bytes, const Patience& patience);
+  Socket accept(const WaitLimit& wait) const;
+  void send(std::string_view bytes, const WaitLimit& wait);
   /// Waits for bytes and returns how many were received, at least one.
-  std::size_t receive(char* bytes, std::size_t size, const Patience& patience);
+  std::size_t receive(char* bytes, std::size_t size, const WaitLimit& wait);
 
   /// Port of a listening TCP socket.
   std::uint16_t port() const;

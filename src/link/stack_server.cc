@@ -9,8 +9,8 @@
 
 namespace patrol::link {
 
-StackServer::StackServer(Socket socket, Patience patience, const RecordLimits& records, const TurnLimits& turns)
-    : stream_(std::move(socket), std::move(patience), records), limits_(turns) {}
+StackServer::StackServer(Socket socket, WaitLimit wait, const RecordLimits& records, const TurnLimits& turns)
+    : stream_(std::move(socket), std::move(wait), records), limits_(turns) {}
 
 const HelloReply& StackServer::greet(const Hello& hello) {
   stream_.write_control(Time{}, hello);

@@ -34,7 +34,7 @@ struct TurnLimits {
 /// Side of the simulator of a connection to a stack. Throws LinkError whose text does not name the stack.
 class StackServer {
  public:
-  StackServer(Socket socket, Patience patience, const RecordLimits& records = {}, const TurnLimits& turns = {});
+  StackServer(Socket socket, WaitLimit wait, const RecordLimits& records = {}, const TurnLimits& turns = {});
 
   /// Declares a topic that the simulator can send, or that the stack can publish: before `greet`.
   void declare(const std::string& topic, const std::string& type) { stream_.declare_known(topic, type); }

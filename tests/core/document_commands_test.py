@@ -28,7 +28,7 @@ import yaml
 from documents_test import documents
 
 FENCE = re.compile(r"^```([^\n]*)\n(.*?)^```", re.M | re.S)
-KNOWN = {"sh", "sh long", "sh manual", "yaml", "yml", "cpp", "xml", "json", "cmake", ""}
+KNOWN = {"sh", "sh long", "sh manual", "yaml", "yml", "cpp", "python", "xml", "json", "cmake", ""}
 
 
 def fences(document):

@@ -18,6 +18,7 @@ SOURCE = pathlib.Path(sys.argv[1]) / "src"
 MAY_USE = {
     "core": set(),
     "io": {"core"},
+    "link": {"core", "io"},
     "sim": {"core"},
     "slam": {"core"},
     "localize": {"core", "slam"},
@@ -29,7 +30,7 @@ MAY_USE = {
     "report": {"core", "io", "score"},
     "monitor": {"core", "io"},
     "studies": {"core", "io", "slam", "localize", "plan", "inspect", "stack", "score", "report"},
-    "app": {"core", "io", "sim", "slam", "localize", "plan", "inspect", "stack", "score", "render", "report", "monitor", "studies"},
+    "app": {"core", "io", "link", "sim", "slam", "localize", "plan", "inspect", "stack", "score", "render", "report", "monitor", "studies"},
 }
 
 STACK = ("slam", "localize", "plan", "inspect", "stack")  # folders of the robot's software

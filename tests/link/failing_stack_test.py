@@ -132,7 +132,7 @@ class FailingStack(unittest.TestCase):
     def test_an_invalid_command_is_invalid_input_and_writes_nothing(self):
         for stack, reason in (("no-such-program", "stack no-such-program: program not found"),
                               ("python3 'a", "quotation mark is not closed"),
-                              ("tcp:0.0.0.0:5000", "allowed only with stack.allow_remote = true"),
+                              ("tcp:0.0.0.0:5000", "allowed only with stack.allow_network = true"),
                               ("tcp:localhost", "must be unix:PATH or tcp:HOST:PORT")):
             out = self.path / "refused"
             done = run(out, stack)

@@ -64,7 +64,7 @@ TEST(Protocol, TheDocumentShowsTheBytesOfTheEndOfATurn) {
   std::ifstream file(std::string(PATROL_SOURCE_DIR) + "/src/link/README.md");
   const std::string document{std::istreambuf_iterator<char>(file), {}};
   std::string shown;
-  const std::regex row("^    [0-9a-f]{4}  ((?:[0-9a-f]{2} )+)", std::regex::multiline);
+  const std::regex row("^[0-9a-f]{4}  ((?:[0-9a-f]{2} )+)", std::regex::multiline);
   for (std::sregex_iterator match(document.begin(), document.end(), row), end; match != end; ++match)
     shown += std::regex_replace((*match)[1].str(), std::regex(" "), "");
   EXPECT_EQ(shown, hex(record.view()));

@@ -74,7 +74,8 @@ TEST_F(StackProcessTest, EndTextIsEmptyWhileItRunsAndNamesTheSignalAfterwards) {
 
 TEST_F(StackProcessTest, StopsAProcessThatIsStoppedAndIgnoresTheRequest) {
   const auto start = std::chrono::steady_clock::now();
-  StackProcess process(settings({"sh", "-c", "trap '' TERM; kill -STOP $$; while :; do sleep 0.05; done"}));
+  StackProcess process(settings({"sh", "-c", "trap '' TERM; echo ready; kill -STOP $$; while :; do sleep 0.05; done"}));
+  while (output() != "ready\n") ASSERT_LT(std::chrono::steady_clock::now() - start, 30s);
   process.stop({});
   EXPECT_EQ(process.end_text(), "was killed by signal 9 (Killed)");
   EXPECT_LT(std::chrono::steady_clock::now() - start, 30s);

@@ -32,13 +32,14 @@ MUTATIONS = [
              "got.range_m += 0.0 * settings_.range_noise_std_m * range_noise_.normal(tick, index);",
              ("sim_test",), r"^Lidar\."),
     Mutation("truth_in_odometry", "the published odometry is the true motion", "src/app/run/run_loop.cc",
-             "std::visit(Overloaded{[&](const auto& content) { log_.write(now, content); },",
-             "std::visit(Overloaded{[&](const auto& content) { log_.write(now, content); },\n"
-             "                            [&](const OdometryEstimate& content) {\n"
-             "                              OdometryEstimate leaked = content;\n"
-             "                              leaked.T_odom_body = simulator_.truth().T_world_body;\n"
-             "                              log_.write(now, leaked);\n"
-             "                            },",
+             "      write_published(log_, now, message);\n",
+             "      if (const auto* odometry = std::get_if<OdometryEstimate>(&message.content.value())) {\n"
+             "        OdometryEstimate leaked = *odometry;\n"
+             "        leaked.T_odom_body = simulator_.truth().T_world_body;\n"
+             "        log_.write(now, leaked);\n"
+             "      } else {\n"
+             "        write_published(log_, now, message);\n"
+             "      }\n",
              ("patrol",), r"^(Scenario|Street|Substation|Tunnel)\."),
     Mutation("ate_halved", "the ATE is half of what it is", "src/score/pose/trajectory_error.cc",
              ".ate_rmse_m = root_mean_square(position_m),", ".ate_rmse_m = 0.5 * root_mean_square(position_m),",

@@ -27,7 +27,7 @@ using link::LinkFault;
 
 constexpr std::chrono::seconds kTimeToEnd{2};         ///< of the process after the last turn
 constexpr std::chrono::milliseconds kTimeToDie{200};  ///< of a process whose connection has closed
-constexpr std::size_t kMostNameBytes = 200;
+constexpr std::size_t kMaxNameBytes = 200;
 
 /// Folder that only the user can access. Throws std::runtime_error.
 std::filesystem::path make_private_folder() {
@@ -76,7 +76,7 @@ bool is_written_by_simulator(const std::string& topic, const std::optional<io::T
   return is_transform || topic.starts_with("/link/") || (info && std::string_view(info->source) != "stack");
 }
 
-std::string quoted_name(const std::string& name) { return io::on_one_line(name.substr(0, kMostNameBytes)); }
+std::string quoted_name(const std::string& name) { return io::on_one_line(name.substr(0, kMaxNameBytes)); }
 
 }  // namespace
 
@@ -87,10 +87,10 @@ ExternalStack::ExternalStack(StackDocuments documents, StackConnection connectio
     return;
   }
   address_ = link::parse_address(connection_.command);
-  if (!address_->is_loopback() && !settings_.allow_remote) {
+  if (!address_->is_loopback() && !settings_.allow_network) {
     throw InputError(
         fmt::format("stack.command = {}: address that other machines reach: allowed only with "
-                    "stack.allow_remote = true",
+                    "stack.allow_network = true",
                     connection_.command));
   }
   if (settings_.compute.model == "measured" && !address_->is_unix) {
@@ -109,15 +109,15 @@ ExternalStack::~ExternalStack() {
 }
 
 void ExternalStack::connect() {
-  const link::Patience patience{.timeout = std::chrono::duration_cast<std::chrono::steady_clock::duration>(
-                                    std::chrono::duration<double>(settings_.timeout_s)),
-                                .is_interrupted = connection_.is_interrupted};
+  const link::WaitLimit wait{.timeout = std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                                 std::chrono::duration<double>(settings_.timeout_s)),
+                             .is_interrupted = connection_.is_interrupted};
   if (!address_) folder_ = make_private_folder();
   const link::Address address = address_.value_or(link::Address{.is_unix = true, .path = folder_ / "socket"});
   const link::Socket listener = link::Socket::listen(address);
   if (address_) fmt::print(stderr, "patrol: waiting for a stack at {}\n", connection_.command);
   else start_process();
-  server_.emplace(accept(listener, patience), patience);
+  server_.emplace(accept(listener, wait), wait);
   std::error_code ignored;
   if (address.is_unix) std::filesystem::remove(address.path, ignored);
   for (const io::TopicInfo& info : io::topic_infos()) {
@@ -141,10 +141,10 @@ void ExternalStack::start_process() {
 }
 
 /// Waits for the stack. A process that ends without connecting ends the wait.
-link::Socket ExternalStack::accept(const link::Socket& listener, const link::Patience& patience) {
+link::Socket ExternalStack::accept(const link::Socket& listener, const link::WaitLimit& wait) {
   const auto has_ended = [&] { return process_ && !process_->is_running(); };
-  link::Patience until_end = patience;
-  until_end.is_interrupted = [&] { return has_ended() || (patience.is_interrupted && patience.is_interrupted()); };
+  link::WaitLimit until_end = wait;
+  until_end.is_interrupted = [&] { return has_ended() || (wait.is_interrupted && wait.is_interrupted()); };
   try {
     return listener.accept(until_end);
   } catch (const LinkError&) {
@@ -227,7 +227,7 @@ PublishedMessage checked_message(link::PublishedMessage message) {
   const auto refuse = [name = quoted_name(message.topic)](const std::string& reason) {
     throw LinkError(LinkFault::kInvalid, fmt::format("message on {}: {}", name, reason));
   };
-  if (!message.topic.starts_with('/') || message.topic.size() > kMostNameBytes ||
+  if (!message.topic.starts_with('/') || message.topic.size() > kMaxNameBytes ||
       io::has_control_characters(message.topic)) {
     refuse("name of a topic must begin with / and have at most 200 printable characters");
   }

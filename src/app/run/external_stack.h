@@ -48,7 +48,7 @@ class ExternalStack final : public StackPort {
 
  private:
   void connect();
-  link::Socket accept(const link::Socket& listener, const link::Patience& patience);
+  link::Socket accept(const link::Socket& listener, const link::WaitLimit& wait);
   void start_process();
   void send(const StackTurn& turn);
   link::TurnAnswer exchange(const StackTurn& turn, bool is_last);

@@ -220,6 +220,10 @@ constexpr Row kWater[] = {
     {"position_error_m", "maximum position error of the findings that are assigned to a body; null without one"},
 };
 
+constexpr Row kPublishedTopics[] = {
+    {"*", "topic with scored messages that the stack published"},
+};
+
 constexpr Row kPerformance[] = {
     {"real_time_factor", "simulated seconds per second of wall time"},
     {"wall_s", "wall time of the simulation"},
@@ -285,6 +289,7 @@ std::vector<MetricInfo> metric_infos() {
   collector.add("inspection", kInspection);
   collector.add("inspection.lining", kLining);
   collector.add("inspection.water", kWater);
+  collector.add("published_topics", kPublishedTopics);
   collector.add("performance", kPerformance);
   return collector.take();
 }

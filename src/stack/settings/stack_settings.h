@@ -75,7 +75,7 @@ struct StackSettings {
   std::string command;
   double timeout_s = 30.0;       ///< limit of the wall time that a stack in another process takes for a turn
   double memory_limit_mb = 0.0;  ///< limit of the memory of a stack that is started by its command; 0: none
-  bool allow_remote = false;     ///< true: `command` may be an address that other machines reach
+  bool allow_network = false;    ///< true: `command` may be an address that other machines reach
   ComputeSettings compute;
 
   template <typename Self, typename Visitor>
@@ -101,7 +101,7 @@ struct StackSettings {
     visit("command", self.command);
     visit("timeout_s", self.timeout_s, between(0.1, 86400.0));
     visit("memory_limit_mb", self.memory_limit_mb, at_least(0.0));
-    visit("allow_remote", self.allow_remote);
+    visit("allow_network", self.allow_network);
     visit("compute", self.compute);
   }
 };

@@ -14,6 +14,7 @@ DEFINITION = f"""# a message with every kind of field
 uint8 NONE=0
 string NAME=beam
 std_msgs/Header header
+string[] fields
 bool flag
 int8 small
 uint16 number
@@ -44,8 +45,8 @@ POINT = cdr.message_type("geometry_msgs/msg/Point", "float64 x\nfloat64 y\n")
 
 def random_message(draw):
     text = lambda: "".join(draw.choice("aé_0 ") for _ in range(draw.randrange(6)))
-    point = lambda: TYPE.fields[8].type(x=draw.gauss(0, 1), y=draw.gauss(0, 1))
-    message = TYPE(flag=draw.random() < 0.5, small=draw.randrange(-128, 128), number=draw.randrange(2**16),
+    point = lambda: TYPE._fields[9].type(x=draw.gauss(0, 1), y=draw.gauss(0, 1))
+    message = TYPE(fields=[text()], flag=draw.random() < 0.5, small=draw.randrange(-128, 128), number=draw.randrange(2**16),
                    fixed=np.array([draw.gauss(0, 1) for _ in range(3)]),
                    ranges=np.array([draw.random() for _ in range(draw.randrange(5))], np.float32),
                    names=[text() for _ in range(draw.randrange(4))], points=[point() for _ in range(draw.randrange(3))],
@@ -93,8 +94,8 @@ class Cdr(unittest.TestCase):
         self.assertEqual(len(message.ends), 2)
 
     def test_types_are_found_without_their_package(self):
-        names = [field.type.type_name for field in cdr.message_type(
-            "test_msgs/msg/Short", f"Point p\nHeader h\n{LINE}\n" + DEFINITION.split(f"{LINE}\n", 1)[1]).fields]
+        names = [field.type._type_name for field in cdr.message_type(
+            "test_msgs/msg/Short", f"Point p\nHeader h\n{LINE}\n" + DEFINITION.split(f"{LINE}\n", 1)[1])._fields]
         self.assertEqual(names, ["geometry_msgs/Point", "std_msgs/Header"])
 
     def test_big_endian_messages_are_read(self):

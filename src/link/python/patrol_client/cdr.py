@@ -100,7 +100,7 @@ class _Field:
     def _read_one(self, reader):
         if self.is_text:
             return reader.text()
-        return reader.number(*self.number) if self.number else self.type.read(reader)
+        return reader.number(*self.number) if self.number else self.type._read(reader)
 
     def read(self, reader):
         if self.count is None:
@@ -118,7 +118,7 @@ class _Field:
         elif self.number:
             writer.number(*self.number, value)
         else:
-            value.write(writer)
+            value._write(writer)
 
     def write(self, writer, value):
         if self.count is None:
@@ -137,41 +137,41 @@ class RosMessage:
     """Message of a type made by `message_type`. Arguments set fields; the others have their defaults."""
 
     __slots__ = ()
-    type_name = ""
-    fields = ()
+    _type_name = ""
+    _fields = ()
 
     def __init__(self, **values):
-        for field in self.fields:
+        for field in self._fields:
             setattr(self, field.name, values.pop(field.name) if field.name in values else field.default())
         if values:
-            raise AttributeError(f"{self.type_name} has no field {next(iter(values))}")
+            raise AttributeError(f"{self._type_name} has no field {next(iter(values))}")
 
     def __repr__(self):
-        return f"{self.type_name}({', '.join(f'{field.name}={getattr(self, field.name)!r}' for field in self.fields)})"
+        return f"{self._type_name}({', '.join(f'{field.name}={getattr(self, field.name)!r}' for field in self._fields)})"
 
     @classmethod
-    def read(cls, reader):
+    def _read(cls, reader):
         message = cls.__new__(cls)
-        for field in cls.fields:
+        for field in cls._fields:
             setattr(message, field.name, field.read(reader))
         return message
 
-    def write(self, writer):
-        for field in self.fields:
+    def _write(self, writer):
+        for field in self._fields:
             try:
                 field.write(writer, getattr(self, field.name))
             except (struct.error, TypeError, ValueError, AttributeError) as error:
-                raise CdrError(f"{self.type_name}.{field.name}: {error}") from error
+                raise CdrError(f"{self._type_name}.{field.name}: {error}") from error
 
     @classmethod
     def decode(cls, data):
         """Returns the message of encoded bytes. Raises CdrError."""
-        return cls.read(_Reader(data))
+        return cls._read(_Reader(data))
 
     def encode(self):
         """Returns the message as bytes. Raises CdrError."""
         writer = _Writer()
-        self.write(writer)
+        self._write(writer)
         return _HEADER + bytes(writer.data)
 
 
@@ -221,7 +221,7 @@ def message_type(type_name, definition):
                 field.default = lambda value=default: value
             fields.append(field)
         made[name] = type(name.split("/")[-1], (RosMessage,), {
-            "__slots__": tuple(field.name for field in fields), "type_name": name, "fields": tuple(fields), **constants})
+            "__slots__": tuple(field.name for field in fields), "_type_name": name, "_fields": tuple(fields), **constants})
         return made[name]
 
     return make(type_name.replace("/msg/", "/"))
