@@ -13,10 +13,22 @@
 #include "app/run/progress_line.h"
 #include "app/run/recorded_stack.h"
 #include "app/run/run_loop.h"
+#include "core/error.h"
 #include "io/logs/log_compare.h"
 
 namespace patrol::app {
 namespace {
+
+/// Throws InputError if the stack of a run did not reach its last turn.
+void check_last_turn(const std::filesystem::path& log_mcap) {
+  std::optional<StackTurnRecord> last;
+  io::LogHandlers handlers;
+  handlers.on<StackTurnRecord>([&](Time, const StackTurnRecord& turn) { last = turn; });
+  io::read_run_log(log_mcap, handlers);
+  if (last && !last->is_last)
+    throw InputError(fmt::format("{}: its stack failed at {:.3f} s: only a complete run can be verified",
+                                 log_mcap.string(), to_seconds(last->turn)));
+}
 
 void throw_if_ended_early(const RunOutcome& outcome) {
   if (outcome.end == RunEnd::kInterrupted) throw std::runtime_error("interrupted; nothing compared");
@@ -33,6 +45,7 @@ bool report(const char* half, const std::optional<io::LogDifference>& difference
 
 ExitCode verify_command(const VerifyOptions& options) {
   const RunDirectory directory = open_run_directory(options.run);
+  check_last_turn(directory.log());
   Scenario scenario = load_scenario(directory.scenario());
   const std::filesystem::path data_root = find_data_root(directory.scenario());
   const ScenarioFiles files = load_scenario_files(scenario, data_root);

@@ -1,0 +1,50 @@
+"""Tables of stacks that take part by the turn protocol."""
+from results_tables import Row, as_text, by_seed, markdown, pair, span
+from .declare import REPORT, REPORT_FIVE, add, sweep, swept
+
+
+def reached(metrics):
+    return sum(value > 0 for path, value in metrics.items() if path.startswith("goals.") and path.endswith(".arrivals"))
+
+
+def at_goal(number):
+    def value(metrics):
+        error = metrics.get(f"goals.goal_{number}.position_error_m.mean")
+        return None if error is None else f"{100 * error:.0f}"
+    return value
+
+
+MRPT_ROWS = [
+    Row("goals reached, of 3", reached, as_text, None),
+    Row("collisions", "mission.collisions", ".0f", max),
+    *(Row(f"error at goal {i}, cm", at_goal(i), as_text, None) for i in (1, 2, 3)),
+    Row("`pose.site.ate_rmse_m`", "pose.site.ate_rmse_m", ".2f"),
+    Row("simulated time, s", "mission.duration_s", ".0f", max),
+]
+
+add(name="stack_mrpt", file="src/link/README.md", seeds=REPORT, minutes=12,
+    steps=[sweep("built_in", "tunnel/scenarios/navigate", REPORT),
+           sweep("mrpt", "tunnel/scenarios/navigate", REPORT, "--set", "stack.command=build/tests/interop/mrpt/mrpt_stack")],
+    values=swept(**{key: ("mission.*", "goals.*.arrivals", "goals.*.position_error_m.mean", "pose.site.ate_rmse_m") for key in ("built_in", "mrpt")}),
+    text=lambda values: "Built-in stack:\n\n" + by_seed(values["built_in"], MRPT_ROWS) + "\n\nMRPT:\n\n" + by_seed(values["mrpt"], MRPT_ROWS),
+    targets=("patrol", "mrpt_stack"), files=("tests/interop/mrpt",))
+
+FACTORS = (0, 1, 3, 10, 30)
+
+
+def compute_text(values):
+    rows = []
+    for factor in FACTORS:
+        runs = [run for run in values["compute"] if run["variant"].endswith(f"={factor}")]
+        metrics = [run["metrics"] for run in runs]
+        rows.append([factor, f"{sum(bool(one.get('mission.completed')) for one in metrics)} of {len(runs)}",
+                     span(runs, "mission.collisions", ".0f"), span(runs, "pose.site.ate_rmse_m", ".3f"),
+                     span(runs, "map.nearest_mean_m", ".3f")])
+    return markdown(["`stack.compute.factor`", "missions completed", "collisions", "`pose.site.ate_rmse_m`", "`map.nearest_mean_m`"], rows)
+
+
+add(name="stack_compute", file="src/link/README.md", seeds=REPORT_FIVE, minutes=12,
+    steps=[sweep("compute", "street/scenarios/patrol", REPORT_FIVE, "--set", "stack.compute.model=measured", "--jobs", "1",
+                 "--vary", "stack.compute.factor=" + ",".join(map(str, FACTORS)))],
+    values=swept(compute=("mission.completed", "mission.collisions", "pose.site.ate_rmse_m", "map.nearest_mean_m")),
+    text=compute_text)
