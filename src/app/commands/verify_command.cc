@@ -79,7 +79,7 @@ ExitCode verify_command(const VerifyOptions& options) {
                        .is_interrupted = [&] { return observer.is_interrupted(); }});
   const std::filesystem::path log = again.path() / "stack.mcap";
   throw_if_ended_early(feed_loop(directory.log(), files, simulator.tick(), *stack, log, observer));
-  is_same = report("stack", io::first_difference(directory.log(), log, is_published_by_stack)) && is_same;
+  is_same = report("stack", io::first_difference(directory.log(), log, io::is_stack_output)) && is_same;
   return is_same ? ExitCode::kDone : ExitCode::kExpectationMissed;
 }
 

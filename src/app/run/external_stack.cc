@@ -2,7 +2,6 @@
 
 #include <unistd.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
@@ -63,19 +62,6 @@ bool is_finite(const stack::StackMessage& message) {
                     message);
 }
 
-/// Entry of a topic; nullopt if Patrol does not know it.
-std::optional<io::TopicInfo> info_of(const std::string& topic) {
-  const std::vector<io::TopicInfo> infos = io::topic_infos();
-  const auto info = std::ranges::find_if(infos, [&](const io::TopicInfo& one) { return topic == one.topic; });
-  return info != infos.end() ? std::optional(*info) : std::nullopt;
-}
-
-/// Returns whether only the simulator writes a topic: inputs and records of the run, and what it derives from messages.
-bool is_written_by_simulator(const std::string& topic, const std::optional<io::TopicInfo>& info) {
-  const bool is_transform = topic == io::kTransforms.topic || topic == io::kStaticTransforms.topic;
-  return is_transform || topic.starts_with("/link/") || (info && std::string_view(info->source) != "stack");
-}
-
 std::string quoted_name(const std::string& name) { return io::on_one_line(name.substr(0, kMaxNameBytes)); }
 
 }  // namespace
@@ -121,9 +107,9 @@ void ExternalStack::connect() {
   std::error_code ignored;
   if (address.is_unix) std::filesystem::remove(address.path, ignored);
   for (const io::TopicInfo& info : io::topic_infos()) {
-    const std::string_view source = info.source;
-    if (source == "sensor" || source == "firmware" || source == "stack") server_->declare(info.topic, info.type);
+    if (io::is_stack_input(info.topic) || io::is_stack_output(info.topic)) server_->declare(info.topic, info.type);
   }
+  server_->declare(io::kStaticTransforms.topic, io::kStaticTransforms.type);
   server_->declare(link::kSiteMapTopic, io::kRosType<MapUpdate>);
   server_->send(io::kStaticTransforms.topic, Time{}, documents_.static_transforms);
   if (!documents_.known_map.empty()) server_->send(link::kSiteMapTopic, Time{}, documents_.known_map);
@@ -231,8 +217,9 @@ PublishedMessage checked_message(link::PublishedMessage message) {
       io::has_control_characters(message.topic)) {
     refuse("name of a topic must begin with / and have at most 200 printable characters");
   }
-  const std::optional<io::TopicInfo> info = info_of(message.topic);
-  if (is_written_by_simulator(message.topic, info)) refuse("only the simulator writes this topic");
+  if (message.topic.starts_with("/link/") || !io::is_stack_output(message.topic))
+    refuse("only the simulator writes this topic");
+  const std::optional<io::TopicInfo> info = io::find_topic(message.topic);
   if (!info) {
     return {.content = {},
             .topic = std::move(message.topic),

@@ -22,17 +22,10 @@ constexpr Time kProgressPeriod = std::chrono::milliseconds(500);
 std::vector<std::string> simulator_topics() {
   std::vector<std::string> topics;
   for (const io::TopicInfo& info : io::topic_infos()) {
-    const std::string_view source = info.source;
-    if (source == "sensor" || source == "firmware" || source == "ground truth") topics.emplace_back(info.topic);
+    if (io::is_stack_input(info.topic) || std::string_view(info.source) == "ground truth")
+      topics.emplace_back(info.topic);
   }
   return topics;
-}
-
-/// Returns whether a stack receives a topic of the simulator.
-bool is_input(const std::string& topic) {
-  const std::vector<io::TopicInfo> infos = io::topic_infos();
-  const auto info = std::ranges::find_if(infos, [&](const io::TopicInfo& one) { return topic == one.topic; });
-  return std::string_view(info->source) != "ground truth";
 }
 
 std::vector<StackTurnRecord> recorded_turns(const std::filesystem::path& log_mcap) {
@@ -127,7 +120,7 @@ class FeedLoop {
       if (!next_input_) next_input_ = read_input();
       if (!next_input_) return;
       DeliveredMessage& message = next_input_->message;
-      const bool is_for_stack = is_input(message.topic);
+      const bool is_for_stack = io::is_stack_input(message.topic);
       if (message.log_time > now || (!is_for_stack && !is_end && message.log_time == now)) return;
       log_.write_foreign(message.log_time, message.topic, next_input_->type, next_input_->definition, message.cdr);
       if (is_for_stack) turn_.messages.push_back(std::move(message));

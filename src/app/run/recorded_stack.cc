@@ -1,6 +1,5 @@
 #include "app/run/recorded_stack.h"
 
-#include <algorithm>
 #include <string_view>
 #include <utility>
 
@@ -10,11 +9,10 @@
 namespace patrol::app {
 namespace {
 
-/// Returns the source of a topic: "sensor", "stack" and so on. A topic that Patrol does not know is the stack's.
-std::string_view source_of(const std::string& topic) {
-  static const std::vector<io::TopicInfo> infos = io::topic_infos();
-  const auto info = std::ranges::find_if(infos, [&](const io::TopicInfo& one) { return topic == one.topic; });
-  return info != infos.end() ? info->source : "stack";
+/// Returns whether the simulator writes a topic at the end of a tick.
+bool is_ground_truth(const std::string& topic) {
+  const std::optional<io::TopicInfo> info = io::find_topic(topic);
+  return info && std::string_view(info->source) == "ground truth" && topic != io::kTopic<AsBuiltTruth>;
 }
 
 }  // namespace
@@ -62,8 +60,8 @@ std::optional<RecordedStack::Entry> RecordedStack::next_entry() {
     if (topic == io::kTopic<StackTurnRecord>) {
       return Entry{.log_time = message->log_time, .message = {}, .turn = io::decode<StackTurnRecord>(message->cdr)};
     }
-    if (source_of(topic) == "ground truth" && topic != io::kTopic<AsBuiltTruth>) truth_time_ = message->log_time;
-    if (!is_published_by_stack(topic)) continue;
+    if (is_ground_truth(topic)) truth_time_ = message->log_time;
+    if (!io::is_stack_output(topic)) continue;
     Entry entry{.log_time = message->log_time,
                 .message = {.content = io::decode_as<stack::StackMessage>(topic, message->cdr),
                             .topic = topic,
@@ -77,11 +75,6 @@ std::optional<RecordedStack::Entry> RecordedStack::next_entry() {
     return entry;
   }
   return std::nullopt;
-}
-
-bool is_published_by_stack(const std::string& topic) {
-  const bool is_transform = topic == io::kTransforms.topic || topic == io::kStaticTransforms.topic;
-  return !is_transform && source_of(topic) == "stack";
 }
 
 bool has_turn_records(const std::filesystem::path& log_mcap) {

@@ -43,9 +43,6 @@ class RecordedStack final : public StackPort {
   std::optional<Entry> next_;
 };
 
-/// Returns whether a stack publishes a topic. A topic that Patrol does not know is a stack's.
-bool is_published_by_stack(const std::string& topic);
-
 /// Returns whether a log has records of the turns of its stack.
 bool has_turn_records(const std::filesystem::path& log_mcap);
 

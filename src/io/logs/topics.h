@@ -107,7 +107,15 @@ std::optional<Variant> decode_as(std::string_view topic, std::string_view cdr) {
   }
 }
 
-/// Every topic that a log can have: sensors, stack, ground truth.
+/// Every topic that a log can have: sensors, firmware, stack, simulator, ground truth.
 std::vector<TopicInfo> topic_infos();
+/// Returns the entry of a topic; nullopt for one that the program does not know.
+std::optional<TopicInfo> find_topic(std::string_view topic);
+
+/// Returns whether the stack receives a topic: one of a sensor or of the firmware.
+bool is_stack_input(std::string_view topic);
+/// Returns whether the stack publishes a topic. One that the program does not know is a stack's; transforms are
+/// derived.
+bool is_stack_output(std::string_view topic);
 
 }  // namespace patrol::io

@@ -1,37 +1,35 @@
 #include "io/logs/topics.h"
 
-#include <algorithm>
-#include <set>
-#include <string>
+#include <variant>
 
 #include <gtest/gtest.h>
 
-#include "tests/io/sample_messages.h"
-
-namespace patrol::io::topics_test {
+namespace patrol::io {
 namespace {
 
-TEST(Topics, EachIsListedOnceWithATypeAndASummary) {
-  std::set<std::string> topics;
-  for (const TopicInfo& info : topic_infos()) {
-    ASSERT_NE(info.topic, nullptr);
-    EXPECT_TRUE(topics.insert(info.topic).second) << info.topic;
-    EXPECT_TRUE(std::string(info.topic).starts_with("/")) << info.topic;
-    EXPECT_NE(std::string(info.type).find("/msg/"), std::string::npos) << info.topic;
-    EXPECT_GT(std::string(info.summary).size(), 6U) << info.topic;
+TEST(Topics, TheStackReceivesSensorsAndFirmwareOnly) {
+  for (const char* topic : {"/scan", "/imu/data", "/track_ticks", "/fall"}) EXPECT_TRUE(is_stack_input(topic)) << topic;
+  for (const char* topic :
+       {"/ground_truth/odom", "/ground_truth/as_built", "/sim/state", "/stack/turns", "/cmd_vel", "/tf", "/mine"}) {
+    EXPECT_FALSE(is_stack_input(topic)) << topic;
   }
 }
 
-TEST(Topics, EveryLoggedMessageIsListed) {
-  const std::vector<TopicInfo> infos = topic_infos();
-  const auto expect_listed = [&]<typename Message>(const Message&) {
-    if constexpr (!std::is_same_v<Message, TransformSet>) {
-      const std::string topic = kTopic<Message>;
-      EXPECT_TRUE(std::ranges::any_of(infos, [&](const TopicInfo& info) { return info.topic == topic; })) << topic;
-    }
-  };
-  std::apply([&](const auto&... message) { (expect_listed(message), ...); }, test::all_samples());
+TEST(Topics, TheStackPublishesItsOwnTopicsAndThoseThatTheProgramDoesNotKnow) {
+  for (const char* topic : {"/cmd_vel", "/pose", "/events", "/mine"}) EXPECT_TRUE(is_stack_output(topic)) << topic;
+  for (const char* topic : {"/scan", "/fall", "/ground_truth/odom", "/sim/state", "/stack/turns", "/tf", "/tf_static"})
+    EXPECT_FALSE(is_stack_output(topic)) << topic;
+}
+
+TEST(Topics, AMessageIsDecodedIntoTheAlternativeOfItsTopic) {
+  using Variant = std::variant<VelocityCommand, FallReport>;
+  const std::string cdr = encode(FallReport{std::chrono::milliseconds(1500)});
+  const std::optional<Variant> decoded = decode_as<Variant>("/fall", cdr);
+  ASSERT_TRUE(decoded && std::holds_alternative<FallReport>(*decoded));
+  EXPECT_EQ(std::get<FallReport>(*decoded).stamp, std::chrono::milliseconds(1500));
+  EXPECT_FALSE(decode_as<Variant>("/scan", cdr).has_value());
+  EXPECT_THROW(decode_as<Variant>("/cmd_vel", cdr), DecodeError);
 }
 
 }  // namespace
-}  // namespace patrol::io::topics_test
+}  // namespace patrol::io
