@@ -135,6 +135,15 @@ class FailingStack(unittest.TestCase):
         out, done = self.run_until(1.0, "bytearray(10 ** 9)", settings=["stack.memory_limit_mb=600"])
         self.assert_verdict(out, done, 3, "the stack failed at 1.000 s: MemoryError")
 
+    def test_a_socket_that_exists_is_not_replaced(self):
+        path, out = self.path / "socket", self.path / "refused"
+        path.write_text("")
+        done = run(out, f"unix:{path}")
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn(f"unix:{path}: Address already in use", done.stderr)
+        self.assertFalse(out.exists())
+        self.assertTrue(path.exists())
+
     def test_an_invalid_command_is_invalid_input_and_writes_nothing(self):
         for stack, reason in (("no-such-program", "stack no-such-program: program not found"),
                               ("python3 'a", "quotation mark is not closed"),

@@ -4,9 +4,11 @@ run differs.
 
 usage: same_bytes_test.py PATROL SOURCE
 """
+import concurrent.futures
 import os
 import pathlib
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
@@ -15,7 +17,7 @@ import time
 import unittest
 
 import stack_runs
-from stack_runs import messages, run, verify, without_turns, write_stack
+from stack_runs import feed, messages, run, verify, without_turns, write_stack
 
 BUILT_IN = f"{stack_runs.PATROL} stack"
 WALL_FOLLOWER = f"{stack_runs.PYTHON} {stack_runs.SOURCE / 'src/link/python/examples/wall_follower.py'}"
@@ -46,6 +48,15 @@ patrol_client.run(lambda turn: turn.publish_velocity(0.3, 0.0, 0.3), topics=["/s
 """
 
 
+STRAIGHT = """
+import sys
+import patrol_client
+
+patrol_client.run(lambda turn: turn.publish_velocity(0.3), topics=["/scan"], turn_period=0.05,
+                  address=sys.argv[1] if len(sys.argv) > 1 else None)
+"""
+
+
 class SameBytes(unittest.TestCase):
     def setUp(self):
         self.folder = tempfile.TemporaryDirectory()
@@ -60,6 +71,20 @@ class SameBytes(unittest.TestCase):
     def test_the_built_in_stack_in_a_process_of_its_own_writes_the_same_log(self):
         inside, outside = self.run_to("inside"), self.run_to("outside", BUILT_IN)
         self.assertEqual(without_turns(messages(outside)), messages(inside))
+
+    def test_a_stack_that_is_fed_with_its_run_writes_the_log_of_the_run(self):
+        inside = self.run_to("inside")
+        self.assertEqual(feed(inside, self.path / "fed").returncode, 1)
+        self.assertEqual((self.path / "fed/log.mcap").read_bytes(), (inside / "log.mcap").read_bytes())
+        feed(inside, self.path / "fed_outside", BUILT_IN)
+        self.assertEqual(without_turns(messages(self.path / "fed_outside")), messages(inside))
+
+    def test_feed_refuses_to_overwrite_the_run(self):
+        inside = self.run_to("inside")
+        done = feed(inside, inside)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("must not be the directory of the run", done.stderr)
+        self.assertTrue((inside / "log.mcap").exists())
 
     def test_both_halves_of_a_run_are_verified(self):
         outside = self.run_to("outside", BUILT_IN)
@@ -86,6 +111,21 @@ class SameBytes(unittest.TestCase):
         stopped = self.run_to("stopped", stack)
         disturber.join()
         self.assertEqual(messages(stopped), messages(undisturbed))
+
+    def test_a_stack_that_connects_by_tcp_writes_the_same_log(self):
+        started = self.run_to("started", write_stack(self.path, "straight.py", STRAIGHT))
+        with socket.socket() as free:
+            free.bind(("127.0.0.1", 0))
+            address = f"tcp:127.0.0.1:{free.getsockname()[1]}"
+        with concurrent.futures.ThreadPoolExecutor() as pool:
+            waiting = pool.submit(self.run_to, "waiting", address)
+            deadline = time.monotonic() + 60
+            while True:
+                stack = subprocess.run([sys.executable, self.path / "straight.py", address], capture_output=True, text=True)
+                if "ConnectionRefusedError" not in stack.stderr or time.monotonic() > deadline:
+                    break
+            self.assertEqual(stack.returncode, 0, stack.stderr)
+            self.assertEqual(messages(waiting.result()), messages(started))
 
     def test_a_python_stack_writes_the_same_log_on_a_loaded_computer(self):
         alone = self.run_to("alone", WALL_FOLLOWER)

@@ -31,6 +31,11 @@ def verify(run_directory, stack=None):
     return subprocess.run(command, cwd=SOURCE, capture_output=True, text=True, timeout=280)
 
 
+def feed(run_directory, out, stack=None):
+    command = [PATROL, "feed", str(run_directory), "--out", str(out)] + (["--stack", stack] if stack else [])
+    return subprocess.run(command, cwd=SOURCE, capture_output=True, text=True, timeout=280)
+
+
 def messages(run_directory):
     """Topic, time and bytes of the messages of a run's log in file order."""
     with open(pathlib.Path(run_directory) / "log.mcap", "rb") as file:

@@ -90,7 +90,8 @@ void add_feed(CLI::App& app, Call& call) {
   FeedOptions& feed = call.feed;
   CLI::App* command = app.add_subcommand("feed", "Feed a stack with the log of a run, and score its answers");
   command->add_option("run", feed.run, "Run directory")->required();
-  command->add_option("--stack", feed.stack, kStackHelp);
+  command->add_option("--stack", feed.stack,
+                      "Command of a stack, or unix:PATH or tcp:127.0.0.1:PORT where it connects (default: built in)");
   command->add_option("--out", feed.out, kOutHelp)->capture_default_str();
   command->add_flag("--all", feed.show_all, kAllHelp);
   add_json(*command, feed.form);

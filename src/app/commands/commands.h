@@ -86,7 +86,7 @@ ExitCode verify_command(const VerifyOptions& options);
 
 struct FeedOptions {
   std::filesystem::path run;
-  std::optional<std::string> stack;  ///< command or address of the stack; default: that of the run
+  std::optional<std::string> stack;  ///< command or address of the stack; default: the built-in one
   std::filesystem::path out = "out/feed";
   bool show_all = false;  ///< print every metric
   ResultForm form = ResultForm::kText;

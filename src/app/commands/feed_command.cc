@@ -17,7 +17,7 @@ namespace patrol::app {
 ExitCode feed_command(const FeedOptions& options) {
   const RunDirectory fed = open_run_directory(options.run);
   Scenario scenario = load_scenario(fed.scenario());
-  if (options.stack) scenario.stack.command = *options.stack;
+  scenario.stack.command = options.stack.value_or("");  // never starts a command that a run directory names
   const std::filesystem::path data_root = find_data_root(fed.scenario());
   const ScenarioFiles files = load_scenario_files(scenario, data_root);
   const Time tick = make_simulator(scenario, files).tick();

@@ -85,27 +85,38 @@ ExternalStack::ExternalStack(StackDocuments documents, StackConnection connectio
                     "process behind a TCP address is unknown: use a Unix socket or a command",
                     connection_.command));
   }
+  listener_.emplace(link::Socket::listen(*address_));
 }
 
 ExternalStack::~ExternalStack() {
   server_.reset();
   if (process_) process_->stop(kTimeToEnd);
+  close_listener();
   std::error_code ignored;
   if (!folder_.empty()) std::filesystem::remove_all(folder_, ignored);
+}
+
+/// Closes the socket for connections, and removes its name.
+void ExternalStack::close_listener() {
+  std::error_code ignored;
+  if (listener_ && address_->is_unix) std::filesystem::remove(address_->path, ignored);
+  listener_.reset();
 }
 
 void ExternalStack::connect() {
   const link::WaitLimit wait{.timeout = std::chrono::duration_cast<std::chrono::steady_clock::duration>(
                                  std::chrono::duration<double>(settings_.timeout_s)),
                              .is_interrupted = connection_.is_interrupted};
-  if (!address_) folder_ = make_private_folder();
-  const link::Address address = address_.value_or(link::Address{.is_unix = true, .path = folder_ / "socket"});
-  const link::Socket listener = link::Socket::listen(address);
-  if (address_) fmt::print(stderr, "patrol: waiting for a stack at {}\n", connection_.command);
-  else start_process();
-  server_.emplace(accept(listener, wait), wait);
-  std::error_code ignored;
-  if (address.is_unix) std::filesystem::remove(address.path, ignored);
+  if (listener_) {
+    fmt::print(stderr, "patrol: waiting for a stack at {}\n", connection_.command);
+  } else {
+    folder_ = make_private_folder();
+    address_ = link::Address{.is_unix = true, .path = folder_ / "socket"};
+    listener_.emplace(link::Socket::listen(*address_));
+    start_process();
+  }
+  server_.emplace(accept(wait), wait);
+  close_listener();
   for (const io::TopicInfo& info : io::topic_infos()) {
     if (io::is_stack_input(info.topic) || io::is_stack_output(info.topic)) server_->declare(info.topic, info.type);
   }
@@ -120,19 +131,19 @@ void ExternalStack::start_process() {
   link::ProcessSettings start{.words = link::command_words(connection_.command),
                               .environment = documents_.environment,
                               .output = connection_.output};
-  start.environment[link::kSocketVariable] = folder_ / "socket";
+  start.environment[link::kSocketVariable] = address_->path;
   if (settings_.memory_limit_mb > 0.0)
     start.memory_bytes = static_cast<std::uint64_t>(std::llround(settings_.memory_limit_mb * 1e6));
   process_.emplace(start);
 }
 
 /// Waits for the stack. A process that ends without connecting ends the wait.
-link::Socket ExternalStack::accept(const link::Socket& listener, const link::WaitLimit& wait) {
+link::Socket ExternalStack::accept(const link::WaitLimit& wait) {
   const auto has_ended = [&] { return process_ && !process_->is_running(); };
   link::WaitLimit until_end = wait;
   until_end.is_interrupted = [&] { return has_ended() || (wait.is_interrupted && wait.is_interrupted()); };
   try {
-    return listener.accept(until_end);
+    return listener_->accept(until_end);
   } catch (const LinkError&) {
     if (has_ended()) throw LinkError(LinkFault::kClosed, "did not connect");
     throw;

@@ -36,8 +36,8 @@ struct StackConnection {
 /// the simulator get them.
 class ExternalStack final : public StackPort {
  public:
-  /// The first turn starts the process, or waits for it to connect. Throws InputError if the command or the address is
-  /// invalid.
+  /// The first turn starts the process, or waits for it to connect. Throws InputError if the command is invalid or the
+  /// address cannot be used.
   ExternalStack(StackDocuments documents, StackConnection connection, stack::StackSettings settings);
   ~ExternalStack() override;
 
@@ -48,7 +48,8 @@ class ExternalStack final : public StackPort {
 
  private:
   void connect();
-  link::Socket accept(const link::Socket& listener, const link::WaitLimit& wait);
+  link::Socket accept(const link::WaitLimit& wait);
+  void close_listener();
   void start_process();
   void send(const StackTurn& turn);
   link::TurnAnswer exchange(const StackTurn& turn, bool is_last);
@@ -58,7 +59,8 @@ class ExternalStack final : public StackPort {
   StackDocuments documents_;
   StackConnection connection_;
   stack::StackSettings settings_;
-  std::optional<link::Address> address_;  ///< at which a process of the user connects
+  std::optional<link::Address> address_;  ///< at which the stack connects
+  std::optional<link::Socket> listener_;  ///< until the stack has connected
   std::filesystem::path folder_;          ///< of the socket of a process that Patrol starts; removed at the end
   std::optional<link::StackProcess> process_;
   std::optional<link::StackServer> server_;

@@ -75,7 +75,7 @@ struct StackSettings {
   std::string command;
   double timeout_s = 30.0;       ///< limit of the wall time that a stack in another process takes for a turn
   double memory_limit_mb = 0.0;  ///< limit of the memory of a stack that is started by its command; 0: none
-  bool allow_network = false;    ///< true: `command` may be an address that other machines reach
+  bool allow_network = false;    ///< permission for an address that other machines reach
   ComputeSettings compute;
 
   template <typename Self, typename Visitor>

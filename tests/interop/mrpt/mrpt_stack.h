@@ -21,8 +21,9 @@
 #include "core/robot_description.h"
 #include "core/sensors/registry.h"
 
-/// Software of a tracked robot made of the parts of MRPT [Blanco]: particle filter localization on a known map, planner
-/// on the map, and reactive navigator with PTGs. It knows what `patrol run --stack` sends, and nothing else of Patrol.
+/// Software of a tracked robot made of the parts of MRPT (mrpt.org): particle filter localization on a known map,
+/// planner on the map, and reactive navigator with PTGs. It knows what `patrol run --stack` sends, and nothing else of
+/// Patrol.
 namespace mrpt_stack {
 
 using patrol::Pose2;
