@@ -32,8 +32,7 @@ constexpr std::chrono::microseconds kSpin{100};
 void wait_for(int descriptor, short events, const WaitLimit& wait, const char* activity) {
   const auto deadline = std::chrono::steady_clock::now() + wait.timeout;
   while (true) {
-    const auto left =
-        std::chrono::duration_cast<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
     pollfd ready{.fd = descriptor, .events = events, .revents = 0};
     const auto slice = std::clamp(left, std::chrono::milliseconds(0), kSlice);
     if (::poll(&ready, 1, static_cast<int>(slice.count())) > 0) return;
