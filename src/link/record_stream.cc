@@ -72,6 +72,7 @@ io::McapMessage RecordStream::read() {
       const auto failure = control_message<Failure>(*message);
       throw LinkError(LinkFault::kInvalid, io::on_one_line(failure.text.substr(0, kMaxTextBytes)));
     }
+    wait_.check("no answer");  // a side that keeps sending has no more time than a silent one
     char* const room = parser_.prepare(kReceiveBytes);
     parser_.commit(socket_.receive(room, kReceiveBytes, wait_));
   }

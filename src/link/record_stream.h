@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -14,7 +15,8 @@
 
 namespace patrol::link {
 
-/// Connection that carries messages in both directions. Throws LinkError when it ends or the other side is silent.
+/// Connection that carries messages in both directions. Throws LinkError when it ends or the other side exceeds the
+/// wait.
 class RecordStream {
  public:
   RecordStream(Socket socket, WaitLimit wait, const RecordLimits& limits = {});
@@ -33,6 +35,8 @@ class RecordStream {
   /// Declares a topic with a type that the program knows (io/ros/ros_definitions.h).
   void declare_known(const std::string& topic, const std::string& type);
   void flush();
+  /// Begins the time that the other side has for its next answer, of any number of messages.
+  void restart_wait() { wait_.start = std::chrono::steady_clock::now(); }
 
   /// Waits for the next message, valid until the next call. Throws LinkError (kInvalid) also with the text of a Failure
   /// of the other side.

@@ -30,17 +30,14 @@ constexpr std::chrono::microseconds kSpin{100};
 
 /// Waits until the descriptor is ready. Throws LinkError if that takes longer than the wait.
 void wait_for(int descriptor, short events, const WaitLimit& wait, const char* activity) {
-  const auto deadline = std::chrono::steady_clock::now() + wait.timeout;
   while (true) {
-    const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
+    const auto left =
+        std::chrono::ceil<std::chrono::milliseconds>(wait.start + wait.timeout - std::chrono::steady_clock::now());
     pollfd ready{.fd = descriptor, .events = events, .revents = 0};
     const auto slice = std::clamp(left, std::chrono::milliseconds(0), kSlice);
     if (::poll(&ready, 1, static_cast<int>(slice.count())) > 0) return;
     if (wait.is_interrupted && wait.is_interrupted()) throw LinkError(LinkFault::kInterrupted, "interrupted");
-    if (left.count() <= 0) {
-      throw LinkError(LinkFault::kTimeout,
-                      fmt::format("{} within {:g} s", activity, std::chrono::duration<double>(wait.timeout).count()));
-    }
+    wait.check(activity);
   }
 }
 
@@ -87,6 +84,12 @@ Socket open_socket(const Address& address) {
 }
 
 }  // namespace
+
+void WaitLimit::check(const char* activity) const {
+  if (std::chrono::steady_clock::now() - start < timeout) return;
+  throw LinkError(LinkFault::kTimeout,
+                  fmt::format("{} within {:g} s", activity, std::chrono::duration<double>(timeout).count()));
+}
 
 bool Address::is_loopback() const { return is_unix || host == "localhost" || host.starts_with("127."); }
 

@@ -24,10 +24,14 @@ bool is_address(std::string_view text);
 /// Parses "unix:PATH" or "tcp:HOST:PORT". Throws InputError.
 Address parse_address(const std::string& text);
 
-/// Limit of waiting for the other side.
+/// Limit of waiting for the other side. It counts from `start`, over several calls.
 struct WaitLimit {
   std::chrono::steady_clock::duration timeout = std::chrono::seconds(10);
   std::function<bool()> is_interrupted = {};  ///< polled ten times per second while a call waits
+  std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
+
+  /// Throws LinkError if the time is over. `activity`: what did not happen, "no answer".
+  void check(const char* activity) const;
 };
 
 /// Connected or listening stream socket. Calls wait as long as the wait allows and throw LinkError.

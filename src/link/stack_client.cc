@@ -14,7 +14,7 @@ namespace {
 /// A stack waits as long as the simulator needs; a simulator that is gone closes the connection.
 WaitLimit endless() { return {.timeout = std::chrono::hours(24 * 365)}; }
 
-ReceivedMessage copy_of(const io::McapMessage& message) {
+DeliveredMessage copy_of(const io::McapMessage& message) {
   return {.topic = message.channel.topic, .log_time = message.log_time, .cdr = std::string(message.cdr)};
 }
 

@@ -6,6 +6,7 @@
 
 #include "core/time.h"
 #include "io/logs/topics.h"
+#include "link/delivered_message.h"
 #include "link/protocol.h"
 #include "link/record_stream.h"
 
@@ -14,18 +15,11 @@ namespace patrol::link {
 /// Name of the environment variable with the path of the simulator's socket, set for a stack that Patrol starts.
 inline constexpr const char* kSocketVariable = "PATROL_STACK_SOCKET";
 
-/// Message from the simulator.
-struct ReceivedMessage {
-  std::string topic;
-  Time log_time{};  ///< time of delivery, at most that of the turn
-  std::string cdr;
-};
-
 /// Turn with the messages that were delivered since the last one.
 struct ReceivedTurn {
   Time now{};
   bool is_last = false;
-  std::vector<ReceivedMessage> messages;
+  std::vector<DeliveredMessage> messages;
 };
 
 /// Side of the stack of a connection to the simulator. Use: connect; hello; begin; then for each turn: next_turn,
@@ -41,7 +35,7 @@ class StackClient {
   const Hello& hello() const { return hello_; }
   /// Messages that preceded the hello's answer: transforms of the sensors on /tf_static, and the known map on
   /// /site_map.
-  const std::vector<ReceivedMessage>& documents() const { return documents_; }
+  const std::vector<DeliveredMessage>& documents() const { return documents_; }
   /// Answers the hello. `topics`: to receive; empty: all. `turn_period`: 0: one tick of the simulator.
   void begin(const std::string& stack, const std::vector<std::string>& topics, Time turn_period);
 
@@ -57,6 +51,8 @@ class StackClient {
     if (!stream_.is_declared(topic)) stream_.declare_known(topic, type);
     stream_.write(topic, now, cdr);
   }
+  /// Sends what has been published so far in this turn; `done` does so too.
+  void flush() { stream_.flush(); }
   /// Ends the turn at `now`.
   void done(const Done& done);
   /// Tells the simulator why the stack fails. Throws nothing.
@@ -65,7 +61,7 @@ class StackClient {
  private:
   RecordStream stream_;
   Hello hello_;
-  std::vector<ReceivedMessage> documents_;
+  std::vector<DeliveredMessage> documents_;
 };
 
 }  // namespace patrol::link

@@ -13,6 +13,7 @@ StackServer::StackServer(Socket socket, WaitLimit wait, const RecordLimits& reco
     : stream_(std::move(socket), std::move(wait), records), limits_(turns) {}
 
 const HelloReply& StackServer::greet(const Hello& hello) {
+  stream_.restart_wait();
   stream_.write_control(Time{}, hello);
   stream_.flush();
   reply_ = control_message<HelloReply>(stream_.read());
@@ -30,6 +31,7 @@ void StackServer::send(const std::string& topic, Time log_time, std::string_view
 }
 
 TurnAnswer StackServer::turn(Time now, bool is_last) {
+  stream_.restart_wait();
   stream_.write_control(now, Turn{.now = now, .is_last = is_last});
   stream_.flush();
   TurnAnswer answer;
@@ -65,6 +67,7 @@ TurnAnswer StackServer::turn(Time now, bool is_last) {
 
 void StackServer::fail(const std::string& text) noexcept {
   try {
+    stream_.restart_wait();
     stream_.write_control(Time{}, Failure{text});
     stream_.flush();
   } catch (const std::exception&) {}  // the stack may be gone

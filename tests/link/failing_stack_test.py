@@ -97,6 +97,20 @@ class FailingStack(unittest.TestCase):
         self.assert_verdict(out, done, 3, "the stack exited with code 5 before the start; its output: stack.log")
         self.assertEqual((out / "stack.log").read_text(), "no license\n")
 
+    def test_a_file_that_is_no_program(self):
+        broken, out = self.path / "broken", self.path / "run"
+        broken.write_text("#!/no/such/interpreter\n")
+        broken.chmod(0o755)
+        done = run(out, str(broken))
+        self.assertEqual(done.returncode, 3, done.stdout + done.stderr)
+        self.assertIn("cannot be started: No such file or directory", done.stdout)
+        self.assertTrue((out / "metrics.json").exists())
+        self.assertFalse(list(out.glob("INCOMPLETE*")))
+
+    def test_a_message_that_patrol_cannot_use_in_the_last_turn(self):
+        out, done = self.run_until(1.5, "turn.is_last and turn.publish_velocity(float('nan'))", time_limit_s=1.5)
+        self.assert_verdict(out, done, 3, "the stack failed at 1.500 s: message on /cmd_vel: contains a number")
+
     def test_an_exception_of_a_stack(self):
         out, done = self.run_until(1.0, "print(1 / 0)")
         self.assert_verdict(out, done, 3, "the stack failed at 1.000 s: ZeroDivisionError: division by zero")

@@ -79,6 +79,14 @@ class SameBytes(unittest.TestCase):
         feed(inside, self.path / "fed_outside", BUILT_IN)
         self.assertEqual(without_turns(messages(self.path / "fed_outside")), messages(inside))
 
+    def test_a_fed_stack_has_its_turns_when_it_asks_for_them(self):
+        # The run has a turn every 50 ms, the fed stack at every tick: it publishes odometry every 20 ms.
+        circle = self.run_to("circle", write_stack(self.path, "circle.py", CIRCLE) + f" {self.path / 'process_id'}")
+        feed(circle, self.path / "fed")
+        times = [log_time for topic, log_time, _ in messages(self.path / "fed") if topic == "/odom"]
+        self.assertGreater(len(times), 100)
+        self.assertEqual({later - earlier for earlier, later in zip(times, times[1:])}, {20_000_000})
+
     def test_feed_refuses_to_overwrite_the_run(self):
         inside = self.run_to("inside")
         done = feed(inside, inside)

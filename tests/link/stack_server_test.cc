@@ -164,6 +164,26 @@ TEST(StackServer, ASilentStackIsATimeout) {
   EXPECT_GE(std::chrono::steady_clock::now() - start, 300ms);
 }
 
+TEST(StackServer, AStackThatKeepsPublishingHasNoMoreTimeThanASilentOne) {
+  const std::string error = run_both(
+      [](StackServer& server) {
+        server.greet(kHello);
+        server.turn({}, false);
+      },
+      [](Socket socket) {
+        StackClient client(std::move(socket));
+        client.begin("talker", {}, 50ms);
+        client.next_turn();
+        while (true) {  // until the simulator gives up
+          client.publish({}, VelocityCommand{});
+          client.flush();
+          std::this_thread::sleep_for(20ms);
+        }
+      },
+      300ms, {.num_messages = 1'000'000});
+  EXPECT_EQ(error, "no answer within 0.3 s");
+}
+
 TEST(StackServer, AClosedConnectionIsNoticedAtOnce) {
   const std::string error = run_both(
       [](StackServer& server) {

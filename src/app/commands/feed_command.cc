@@ -10,7 +10,7 @@
 #include "app/run/make_stack_port.h"
 #include "app/run/progress_line.h"
 #include "app/run/run_junit.h"
-#include "app/scoring/score_run.h"
+#include "app/run/run_once.h"
 #include "core/error.h"
 
 namespace patrol::app {
@@ -41,15 +41,7 @@ ExitCode feed_command(const FeedOptions& options) {
     fmt::print(stderr, "patrol: interrupted; {} is incomplete\n", directory.root.string());
     return ExitCode::kProgramFailed;
   }
-  const ScoredRun scored = score_run(directory.log(), scenario, files);
-  save_scored_run(directory, scored, scenario);
-  const io::Metrics metrics = metrics_of(scored);
-  io::save_metrics(directory.metrics(), metrics);
-  const RunVerdict verdict =
-      verdict_of(outcome, scenario.kidnaps, metrics, check_expectations(scenario.expect, metrics));
-  io::save_junit(directory.junit(), {junit_suite(name, junit_properties(scenario), verdict)});
-  complete_output(directory.root);
-
+  const RunVerdict verdict = complete_run(directory, scenario, name, files, outcome);
   const std::string title = fmt::format("stack fed with {}", options.run.string());
   print_result(options.form,
                options.show_all ? run_details(title, verdict, directory.root, output_style())

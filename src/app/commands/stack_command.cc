@@ -1,4 +1,5 @@
 #include <fstream>
+#include <utility>
 #include <variant>
 
 #include <fmt/format.h>
@@ -36,11 +37,7 @@ void take_turns(link::StackClient& client) {
   for (bool is_last = false; !is_last;) {
     link::ReceivedTurn received = client.next_turn();
     is_last = received.is_last;
-    StackTurn turn{.now = received.now, .messages = {}};
-    for (link::ReceivedMessage& message : received.messages) {
-      turn.messages.push_back(
-          {.topic = std::move(message.topic), .log_time = message.log_time, .cdr = std::move(message.cdr)});
-    }
+    const StackTurn turn{.now = received.now, .messages = std::move(received.messages)};
     if (is_last) {
       publish(client, turn.now, stack.finish(turn));
       client.done({.now = turn.now, .next_turn = {}, .mission_is_over = true});

@@ -2,6 +2,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -19,17 +20,6 @@
 namespace patrol::app {
 namespace {
 
-/// Throws InputError if the stack of a run did not reach its last turn.
-void check_last_turn(const std::filesystem::path& log_mcap) {
-  std::optional<StackTurnRecord> last;
-  io::LogHandlers handlers;
-  handlers.on<StackTurnRecord>([&](Time, const StackTurnRecord& turn) { last = turn; });
-  io::read_run_log(log_mcap, handlers);
-  if (last && !last->is_last)
-    throw InputError(fmt::format("{}: its stack failed at {:.3f} s: only a complete run can be verified",
-                                 log_mcap.string(), to_seconds(last->turn)));
-}
-
 void throw_if_ended_early(const RunOutcome& outcome) {
   if (outcome.end == RunEnd::kInterrupted) throw std::runtime_error("interrupted; nothing compared");
   if (!outcome.stack_failure.empty()) throw std::runtime_error(outcome.stack_failure);
@@ -45,7 +35,11 @@ bool report(const char* half, const std::optional<io::LogDifference>& difference
 
 ExitCode verify_command(const VerifyOptions& options) {
   const RunDirectory directory = open_run_directory(options.run);
-  check_last_turn(directory.log());
+  const std::vector<StackTurnRecord> turns = read_turn_records(directory.log());
+  if (!turns.empty() && !turns.back().is_last) {
+    throw InputError(fmt::format("{}: its stack failed at {:.3f} s: only a complete run can be verified",
+                                 directory.log().string(), to_seconds(turns.back().turn)));
+  }
   Scenario scenario = load_scenario(directory.scenario());
   const std::filesystem::path data_root = find_data_root(directory.scenario());
   const ScenarioFiles files = load_scenario_files(scenario, data_root);
@@ -56,7 +50,7 @@ ExitCode verify_command(const VerifyOptions& options) {
   sim::Simulator simulator = make_simulator(scenario, files);
   bool is_same = false;
   {
-    RecordedStack recorded(directory.log(), simulator.tick());
+    RecordedStack recorded(directory.log(), simulator.tick(), !turns.empty());
     ProgressLine observer("verify simulator", scenario.time_limit_s);
     const std::filesystem::path log = again.path() / "simulator.mcap";
     throw_if_ended_early(run_loop(scenario, files, simulator, recorded, log, observer));
@@ -78,7 +72,7 @@ ExitCode verify_command(const VerifyOptions& options) {
                        .output = again.path() / "stack.log",
                        .is_interrupted = [&] { return observer.is_interrupted(); }});
   const std::filesystem::path log = again.path() / "stack.mcap";
-  throw_if_ended_early(feed_loop(directory.log(), files, simulator.tick(), *stack, log, observer));
+  throw_if_ended_early(feed_loop(directory.log(), files, simulator.tick(), *stack, log, observer, turns));
   is_same = report("stack", io::first_difference(directory.log(), log, io::is_stack_output)) && is_same;
   return is_same ? ExitCode::kDone : ExitCode::kExpectationMissed;
 }

@@ -3,6 +3,7 @@
 #include <utility>
 #include <variant>
 
+#include "app/run/compute_delay.h"
 #include "core/sensors/registry.h"
 #include "core/thread_cpu_time.h"
 #include "io/logs/topics.h"
@@ -30,7 +31,7 @@ std::vector<PublishedMessage> BuiltInStack::finish(const StackTurn& turn) {
 }
 
 void BuiltInStack::handle(const StackTurn& turn) {
-  for (const DeliveredMessage& message : turn.messages) {
+  for (const link::DeliveredMessage& message : turn.messages) {
     if (message.topic == io::kTopic<FallReport>) {
       stack_.handle_fall(message.log_time);
     } else if (const auto content = io::decode_as<SensorMessage>(message.topic, message.cdr)) {
@@ -53,11 +54,6 @@ std::vector<PublishedMessage> BuiltInStack::published() {
     messages.push_back(std::move(message));
   }
   return messages;
-}
-
-Time delay_of(const stack::ComputeSettings& compute, double cpu_s) {
-  if (compute.model == "fixed") return from_seconds(compute.delay_s);
-  return compute.model == "measured" ? from_seconds(compute.factor * cpu_s) : Time{};
 }
 
 }  // namespace patrol::app

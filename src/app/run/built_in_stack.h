@@ -30,7 +30,4 @@ class BuiltInStack final : public StackPort {
   stack::ComputeSettings compute_;
 };
 
-/// Returns the time from the start of a turn until its messages take effect. `cpu_s`: CPU time of the turn.
-Time delay_of(const stack::ComputeSettings& compute, double cpu_s);
-
 }  // namespace patrol::app

@@ -11,7 +11,7 @@
 
 #include <fmt/format.h>
 
-#include "app/run/built_in_stack.h"
+#include "app/run/compute_delay.h"
 #include "core/error.h"
 #include "core/overloaded.h"
 #include "io/files/one_line.h"
@@ -134,7 +134,11 @@ void ExternalStack::start_process() {
   start.environment[link::kSocketVariable] = address_->path;
   if (settings_.memory_limit_mb > 0.0)
     start.memory_bytes = static_cast<std::uint64_t>(std::llround(settings_.memory_limit_mb * 1e6));
-  process_.emplace(start);
+  try {
+    process_.emplace(start);
+  } catch (const InputError& error) {  // found, but not a program: the run has begun and gets a verdict
+    throw LinkError(LinkFault::kClosed, error.what());
+  }
 }
 
 /// Waits for the stack. A process that ends without connecting ends the wait.
@@ -151,7 +155,8 @@ link::Socket ExternalStack::accept(const link::WaitLimit& wait) {
 }
 
 void ExternalStack::send(const StackTurn& turn) {
-  for (const DeliveredMessage& message : turn.messages) server_->send(message.topic, message.log_time, message.cdr);
+  for (const link::DeliveredMessage& message : turn.messages)
+    server_->send(message.topic, message.log_time, message.cdr);
 }
 
 StackAnswer ExternalStack::take_turn(const StackTurn& turn) {
@@ -163,33 +168,23 @@ StackAnswer ExternalStack::take_turn(const StackTurn& turn) {
     }
   }
   const std::optional<double> cpu_start_s = cpu_seconds();
-  link::TurnAnswer answer = exchange(turn, false);
-  StackAnswer checked{.messages = {}, .next_turn = answer.next_turn, .mission_is_over = answer.mission_is_over};
+  StackAnswer answer = exchange(turn, false);
   const std::optional<double> cpu_end_s = cpu_seconds();
-  checked.delay = delay_of(settings_.compute, cpu_start_s && cpu_end_s ? *cpu_end_s - *cpu_start_s : 0.0);
-  for (link::PublishedMessage& message : answer.messages) {
-    try {
-      checked.messages.push_back(checked_message(std::move(message)));
-    } catch (const LinkError& error) {
-      fail(error, fmt::format("at {:.3f} s", to_seconds(turn.now)));
-    }
-  }
-  return checked;
+  answer.delay = delay_of(settings_.compute, cpu_start_s && cpu_end_s ? *cpu_end_s - *cpu_start_s : 0.0);
+  return answer;
 }
 
-std::vector<PublishedMessage> ExternalStack::finish(const StackTurn& turn) {
-  std::vector<PublishedMessage> messages;
-  for (link::PublishedMessage& message : exchange(turn, true).messages)
-    messages.push_back(checked_message(std::move(message)));
-  return messages;
-}
+std::vector<PublishedMessage> ExternalStack::finish(const StackTurn& turn) { return exchange(turn, true).messages; }
 
-link::TurnAnswer ExternalStack::exchange(const StackTurn& turn, bool is_last) {
+StackAnswer ExternalStack::exchange(const StackTurn& turn, bool is_last) {
   const auto start = std::chrono::steady_clock::now();
   try {
     send(turn);
-    link::TurnAnswer answer = server_->turn(turn.now, is_last);
+    link::TurnAnswer received = server_->turn(turn.now, is_last);
     wait_s_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    StackAnswer answer{.messages = {}, .next_turn = received.next_turn, .mission_is_over = received.mission_is_over};
+    for (link::PublishedMessage& message : received.messages)
+      answer.messages.push_back(checked_message(std::move(message)));
     return answer;
   } catch (const LinkError& error) {
     fail(error, fmt::format("at {:.3f} s", to_seconds(turn.now)));
@@ -213,7 +208,7 @@ void ExternalStack::fail(const LinkError& error, const std::string& when) {
   throw LinkError(error.fault(), text);
 }
 
-/// CPU time of the stack so far, if it matters.
+/// CPU time of the stack since its start; nullopt unless it delays the commands.
 std::optional<double> ExternalStack::cpu_seconds() const {
   if (settings_.compute.model != "measured") return std::nullopt;
   const pid_t id = process_ ? process_->id() : server_->peer_process();

@@ -52,7 +52,7 @@ class ExternalStack final : public StackPort {
   void close_listener();
   void start_process();
   void send(const StackTurn& turn);
-  link::TurnAnswer exchange(const StackTurn& turn, bool is_last);
+  StackAnswer exchange(const StackTurn& turn, bool is_last);
   [[noreturn]] void fail(const link::LinkError& error, const std::string& when);
   std::optional<double> cpu_seconds() const;
 

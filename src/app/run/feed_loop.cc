@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "app/common/process_cost.h"
 #include "core/error.h"
 #include "io/logs/run_log.h"
 #include "io/mcap/mcap_reader.h"
@@ -28,24 +29,16 @@ std::vector<std::string> simulator_topics() {
   return topics;
 }
 
-std::vector<StackTurnRecord> recorded_turns(const std::filesystem::path& log_mcap) {
-  std::vector<StackTurnRecord> turns;
-  io::LogHandlers handlers;
-  handlers.on<StackTurnRecord>([&](Time, const StackTurnRecord& turn) { turns.push_back(turn); });
-  io::read_run_log(log_mcap, handlers);
-  return turns;
-}
-
 /// Stack that is fed with a log.
 class FeedLoop {
  public:
   FeedLoop(const std::filesystem::path& input_mcap, const ScenarioFiles& files, Time tick, StackPort& stack,
-           const std::filesystem::path& log_mcap, RunObserver& observer)
+           const std::filesystem::path& log_mcap, RunObserver& observer, const std::vector<StackTurnRecord>& turns)
       : tick_(tick),
         stack_(stack),
         observer_(observer),
         input_(input_mcap, {.topics = simulator_topics()}),
-        turns_(recorded_turns(input_mcap)),
+        turns_(turns),
         log_(log_mcap, files.robot) {
     if (!input_.last_time()) throw InputError(input_mcap.string() + ": is incomplete");
     end_ = *input_.last_time();
@@ -54,31 +47,36 @@ class FeedLoop {
 
   RunOutcome run() {
     try {
-      if (turns_.empty()) take_turns_at_ticks();
+      if (turns_.empty()) take_own_turns();
       else take_recorded_turns();
     } catch (const link::LinkError& error) {
       set_failure(outcome_, error);
     }
     log_.close();
+    outcome_.wall_s = wall_seconds() - wall_start_s_;
+    outcome_.cpu_s = process_seconds() - cpu_start_s_;
+    outcome_.seconds_by_stage = stack_.seconds_by_stage();
     return std::move(outcome_);
   }
 
  private:
   /// Message of the simulator in the log.
   struct Input {
-    DeliveredMessage message;
+    link::DeliveredMessage message;
     std::string type, definition;
   };
 
-  void take_turns_at_ticks() {
+  void take_own_turns() {
     bool mission_is_over = false;
-    for (Time now{}; now <= end_ && !mission_is_over; now += tick_) {
+    Time next_turn{};
+    for (Time now{}; now <= end_ && !mission_is_over; now = std::max(now + tick_, tick_at(next_turn))) {
       if (!keep_running(now)) return;
-      const StackAnswer answer = take_turn(now);
-      publish(now, answer.messages);
-      mission_is_over = answer.mission_is_over;
       outcome_.duration = now;
+      const StackAnswer answer = take_turn(now, std::nullopt);
+      mission_is_over = answer.mission_is_over;
+      next_turn = std::max(answer.next_turn, now + answer.delay);
     }
+    if (!mission_is_over) outcome_.duration = end_;
     finish(outcome_.duration);
   }
 
@@ -87,28 +85,36 @@ class FeedLoop {
       if (!keep_running(record.turn)) return;
       outcome_.duration = record.turn;
       if (record.is_last) return finish(record.turn);
-      const StackAnswer answer = take_turn(record.turn);
-      log_.write(record.turn, StackTurnRecord{.turn = record.turn,
-                                              .delay = record.delay,
-                                              .next_turn = answer.next_turn,
-                                              .is_last = false,
-                                              .mission_is_over = answer.mission_is_over});
-      const Time ready = (record.turn + record.delay + tick_ - Time{1}) / tick_ * tick_;
-      publish(std::min(ready, end_), answer.messages);
+      take_turn(record.turn, record.delay);
     }
   }
 
-  StackAnswer take_turn(Time now) {
+  /// First tick that is not earlier than a time.
+  Time tick_at(Time time) const { return (time + tick_ - Time{1}) / tick_ * tick_; }
+
+  /// Lets the stack take a turn and publishes its answer. `recorded_delay`: instead of the delay of the answer.
+  StackAnswer take_turn(Time now, const std::optional<Time>& recorded_delay) {
     deliver_until(now, false);
     StackAnswer answer = stack_.take_turn(turn_);
     turn_.messages.clear();
+    answer.delay = recorded_delay.value_or(answer.delay);
+    record_turn({.turn = now,
+                 .delay = answer.delay,
+                 .next_turn = answer.next_turn,
+                 .is_last = false,
+                 .mission_is_over = answer.mission_is_over});
+    publish(std::min(tick_at(now + answer.delay), end_), answer.messages);
     return answer;
+  }
+
+  void record_turn(const StackTurnRecord& record) {
+    if (stack_.records_turns()) log_.write(record.turn, record);
   }
 
   void finish(Time now) {
     deliver_until(now, true);
     const std::vector<PublishedMessage> messages = stack_.finish(turn_);
-    if (stack_.records_turns()) log_.write(now, StackTurnRecord{now, {}, now, true, true});
+    record_turn({.turn = now, .delay = {}, .next_turn = now, .is_last = true, .mission_is_over = true});
     publish(now, messages);
   }
 
@@ -119,7 +125,7 @@ class FeedLoop {
     while (true) {
       if (!next_input_) next_input_ = read_input();
       if (!next_input_) return;
-      DeliveredMessage& message = next_input_->message;
+      link::DeliveredMessage& message = next_input_->message;
       const bool is_for_stack = io::is_stack_input(message.topic);
       if (message.log_time > now || (!is_for_stack && !is_end && message.log_time == now)) return;
       log_.write_foreign(message.log_time, message.topic, next_input_->type, next_input_->definition, message.cdr);
@@ -152,11 +158,12 @@ class FeedLoop {
     return false;
   }
 
+  const double wall_start_s_ = wall_seconds(), cpu_start_s_ = process_seconds();
   Time tick_;
   StackPort& stack_;
   RunObserver& observer_;
   io::McapReader input_;
-  std::vector<StackTurnRecord> turns_;
+  const std::vector<StackTurnRecord>& turns_;
   io::RunLogWriter log_;
   Time end_{};
   Time next_progress_{};
@@ -168,8 +175,9 @@ class FeedLoop {
 }  // namespace
 
 RunOutcome feed_loop(const std::filesystem::path& input_mcap, const ScenarioFiles& files, Time tick, StackPort& stack,
-                     const std::filesystem::path& log_mcap, RunObserver& observer) {
-  return FeedLoop(input_mcap, files, tick, stack, log_mcap, observer).run();
+                     const std::filesystem::path& log_mcap, RunObserver& observer,
+                     const std::vector<StackTurnRecord>& turns) {
+  return FeedLoop(input_mcap, files, tick, stack, log_mcap, observer, turns).run();
 }
 
 }  // namespace patrol::app

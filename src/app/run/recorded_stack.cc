@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "io/logs/run_log.h"
 #include "io/logs/topics.h"
 
 namespace patrol::app {
@@ -17,8 +18,8 @@ bool is_ground_truth(const std::string& topic) {
 
 }  // namespace
 
-RecordedStack::RecordedStack(const std::filesystem::path& log_mcap, Time tick)
-    : tick_(tick), has_turns_(has_turn_records(log_mcap)), reader_(log_mcap) {
+RecordedStack::RecordedStack(const std::filesystem::path& log_mcap, Time tick, bool has_turns)
+    : tick_(tick), has_turns_(has_turns), reader_(log_mcap) {
   if (!reader_.last_time()) throw InputError(log_mcap.string() + ": is incomplete");
   end_ = *reader_.last_time();
   next_ = next_entry();
@@ -77,8 +78,12 @@ std::optional<RecordedStack::Entry> RecordedStack::next_entry() {
   return std::nullopt;
 }
 
-bool has_turn_records(const std::filesystem::path& log_mcap) {
-  return io::McapReader(log_mcap, {.topics = {io::kTopic<StackTurnRecord>}}).next().has_value();
+std::vector<StackTurnRecord> read_turn_records(const std::filesystem::path& log_mcap) {
+  std::vector<StackTurnRecord> turns;
+  io::LogHandlers handlers;
+  handlers.on<StackTurnRecord>([&](Time, const StackTurnRecord& turn) { turns.push_back(turn); });
+  io::read_run_log(log_mcap, handlers);
+  return turns;
 }
 
 }  // namespace patrol::app

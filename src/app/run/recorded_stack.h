@@ -15,8 +15,8 @@ namespace patrol::app {
 /// simulator alone is repeated.
 class RecordedStack final : public StackPort {
  public:
-  /// `tick`: of the simulator. Throws InputError.
-  RecordedStack(const std::filesystem::path& log_mcap, Time tick);
+  /// `tick`: of the simulator. `has_turns`: whether the log has records of turns. Throws InputError.
+  RecordedStack(const std::filesystem::path& log_mcap, Time tick, bool has_turns);
 
   StackAnswer take_turn(const StackTurn& turn) override;
   std::vector<PublishedMessage> finish(const StackTurn& turn) override;
@@ -43,7 +43,7 @@ class RecordedStack final : public StackPort {
   std::optional<Entry> next_;
 };
 
-/// Returns whether a log has records of the turns of its stack.
-bool has_turn_records(const std::filesystem::path& log_mcap);
+/// Reads the records of the turns of a stack; empty for a log whose stack had a turn at every tick, without delay.
+std::vector<StackTurnRecord> read_turn_records(const std::filesystem::path& log_mcap);
 
 }  // namespace patrol::app

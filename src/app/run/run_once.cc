@@ -31,6 +31,19 @@ io::Metrics performance_of(const RunOutcome& outcome) {
 
 }  // namespace
 
+RunVerdict complete_run(const RunDirectory& directory, const Scenario& scenario, const std::string& name,
+                        const ScenarioFiles& files, const RunOutcome& outcome) {
+  const ScoredRun scored = score_run(directory.log(), scenario, files);
+  save_scored_run(directory, scored, scenario);
+  io::Metrics metrics = metrics_of(scored);
+  metrics["performance"] = performance_of(outcome);
+  io::save_metrics(directory.metrics(), metrics);
+  RunVerdict verdict = verdict_of(outcome, scenario.kidnaps, metrics, check_expectations(scenario.expect, metrics));
+  io::save_junit(directory.junit(), {junit_suite(name, junit_properties(scenario), verdict)});
+  complete_output(directory.root);
+  return verdict;
+}
+
 std::optional<RunVerdict> run_once(const Scenario& scenario, const std::string& name,
                                    const std::filesystem::path& data_root, const std::filesystem::path& root,
                                    RunObserver& observer) {
@@ -50,15 +63,7 @@ std::optional<RunVerdict> run_once(const Scenario& scenario, const std::string& 
   const RunOutcome outcome = run_loop(scenario, files, simulator, *stack, directory.log(), observer);
   if (outcome.end == RunEnd::kInterrupted) return std::nullopt;
 
-  const ScoredRun scored = score_run(directory.log(), scenario, files);
-  save_scored_run(directory, scored, scenario);
-  io::Metrics metrics = metrics_of(scored);
-  metrics["performance"] = performance_of(outcome);
-  io::save_metrics(directory.metrics(), metrics);
-  RunVerdict verdict = verdict_of(outcome, scenario.kidnaps, metrics, check_expectations(scenario.expect, metrics));
-  io::save_junit(directory.junit(), {junit_suite(name, junit_properties(scenario), verdict)});
-  complete_output(directory.root);
-  return verdict;
+  return complete_run(directory, scenario, name, files, outcome);
 }
 
 }  // namespace patrol::app

@@ -7,16 +7,10 @@
 #include <vector>
 
 #include "core/time.h"
+#include "link/delivered_message.h"
 #include "stack/output/stack_message.h"
 
 namespace patrol::app {
-
-/// Message of the simulator, as the log has it: of a sensor, or the firmware's report of a fall.
-struct DeliveredMessage {
-  std::string topic;
-  Time log_time{};
-  std::string cdr;
-};
 
 /// Message that the stack publishes. A topic that Patrol does not know has no content, but the name and the definition
 /// of its type.
@@ -30,7 +24,7 @@ struct PublishedMessage {
 /// Turn of the stack, with the messages that were delivered since the last one.
 struct StackTurn {
   Time now{};
-  std::vector<DeliveredMessage> messages;
+  std::vector<link::DeliveredMessage> messages;
 };
 
 /// Answer of the stack to a turn.

@@ -37,7 +37,7 @@ patrol::RobotDescription robot_of(const std::string& urdf) {
 }
 
 std::string document(const StackClient& client, const std::string& topic) {
-  for (const patrol::link::ReceivedMessage& message : client.documents()) {
+  for (const patrol::link::DeliveredMessage& message : client.documents()) {
     if (message.topic == topic) return message.cdr;
   }
   throw std::runtime_error("the scenario gives no " + topic);
@@ -72,7 +72,7 @@ void run() {
   while (true) {
     const patrol::link::ReceivedTurn turn = client.next_turn();
     std::optional<patrol::LaserScan> scan;
-    for (const patrol::link::ReceivedMessage& message : turn.messages) {
+    for (const patrol::link::DeliveredMessage& message : turn.messages) {
       if (message.topic == patrol::io::kTopic<patrol::Imu>) {
         odometry.add(patrol::io::decode<patrol::Imu>(message.cdr));
       } else if (message.topic == patrol::io::kTopic<patrol::TrackTicks>) {

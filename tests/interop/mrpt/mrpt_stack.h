@@ -78,7 +78,7 @@ class Localization {
 /// Converts a scan to MRPT's. `T_body_lidar`: mount of the lidar.
 mrpt::obs::CObservation2DRangeScan to_mrpt(const patrol::LaserScan& scan, const patrol::Pose3& T_body_lidar);
 
-/// What the reactive navigator reads from the robot and writes to it.
+/// Interface of the reactive navigator to the robot: pose, obstacles and command.
 class RobotInterface final : public mrpt::nav::CRobot2NavInterface {
  public:
   Time now{};
