@@ -25,7 +25,7 @@ std::vector<CheckedExpectation> check_expectations(const io::Expectations& expec
 
 /// Topics with scored messages that the stack published, in the order of kScoredTopics.
 std::vector<std::string> published_topics(const score::RunRecord& record);
-/// Topics with scored messages that the stack did not publish; empty if metrics.json does not say.
+/// Topics with scored messages of every stack that the stack did not publish; empty if metrics.json does not list them.
 std::vector<std::string> unpublished_topics(const io::Metrics& metrics);
 
 bool all_met(const std::vector<CheckedExpectation>& checks);
