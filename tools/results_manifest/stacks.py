@@ -1,5 +1,7 @@
 """Tables of stacks that take part by the turn protocol."""
-from results_tables import Row, as_text, by_seed
+import dataclasses
+
+from results_tables import Row, as_text, by_seed, markdown, pair, span
 from .declare import REPORT, add, sweep, swept
 
 
@@ -28,3 +30,25 @@ add(name="stack_mrpt", file="src/link/README.md", seeds=REPORT, minutes=12,
     values=swept(**{key: ("mission.*", "goals.*.arrivals", "goals.*.position_error_m.mean", "pose.site.ate_rmse_m") for key in ("built_in", "mrpt")}),
     text=lambda values: "Built-in stack:\n\n" + by_seed(values["built_in"], MRPT_ROWS) + "\n\nMRPT:\n\n" + by_seed(values["mrpt"], MRPT_ROWS),
     targets=("patrol", "mrpt_stack"), files=("tests/interop/mrpt",))
+
+FACTORS = (0, 1, 3, 10, 20, 30)
+
+
+def compute_text(values):
+    rows = []
+    for factor in FACTORS:
+        runs = [run for run in values["compute"] if run["variant"].endswith(f"={factor}")]
+        metrics = [run["metrics"] for run in runs]
+        rows.append([factor, f"{sum(bool(one.get('mission.completed')) for one in metrics)} of {len(runs)}",
+                     span(runs, "mission.collisions", ".0f"), span(runs, "pose.site.ate_rmse_m", ".3f"),
+                     span(runs, "map.nearest_mean_m", ".3f")])
+    return markdown(["`stack.compute.factor`", "missions completed", "collisions", "`pose.site.ate_rmse_m`", "`map.nearest_mean_m`"], rows)
+
+
+# Runs of the slowest computer go on to the time limit.
+COMPUTE_SEEDS = "2001..2003"
+add(name="stack_compute", file="src/link/README.md", seeds=COMPUTE_SEEDS, minutes=11,
+    steps=[dataclasses.replace(sweep("compute", "street/scenarios/patrol", COMPUTE_SEEDS, "--set", "stack.compute.model=measured", "--jobs", "1",
+                                     "--vary", "stack.compute.factor=" + ",".join(map(str, FACTORS))), good_codes=(0, 1, 4))],
+    values=swept(compute=("mission.completed", "mission.collisions", "pose.site.ate_rmse_m", "map.nearest_mean_m")),
+    text=compute_text)
