@@ -12,6 +12,7 @@
 #include "core/grid.h"
 #include "core/inspection_result.h"
 #include "core/time.h"
+#include "core/trajectory.h"
 
 /// Messages between the components of a robot. Sensor messages are in core/sensors/<name>.h, listed in
 /// core/sensors/registry.h. SI units. A stamp is the instant at which the content is valid, not the instant of sending.
@@ -107,6 +108,18 @@ struct MapUpdate {
 struct Path {
   Time stamp{};
   std::vector<Pose2> T_map_body;
+};
+
+/// Poses of the body in `map`, with all corrections of a SLAM method up to now.
+struct TrajectoryEstimate {
+  Time stamp{};
+  std::vector<StampedPose> T_map_body;  ///< one pose per processed scan, in the order of the scans
+};
+
+/// Odometry of a recorded log, at the stamp of the first or of the last beam of a scan.
+struct RecordedOdometry {
+  Time stamp{};
+  Pose2 T_odom_body;
 };
 
 /// 2D scan after motion compensation: beams in `level` at `stamp`, without beam ends on the ground.

@@ -22,7 +22,7 @@ struct VelocityLimits {
 };
 
 /// First message of the simulator: the run, and the documents of the robot and the site. None of them depends on the
-/// values that were drawn for the simulated robot.
+/// values that were drawn for the simulated robot. A recorded log has neither robot nor site: both are empty.
 struct Hello {
   std::uint32_t protocol = kProtocolVersion;
   std::string program;   ///< name and version, e.g. "patrol 0.2.0"

@@ -51,6 +51,42 @@ add(name="slam_logs", file="src/slam/README.md", seeds="default", minutes=2, ste
     logs=tuple(file for pair_of_files in LOGS.values() for file in pair_of_files[:2]))
 
 
+FED_STACKS = {"built_in": ("built-in mapping", []),
+              "process": ("built-in mapping, `patrol stack`", ["--stack", "build/patrol stack"]),
+              "kiss_icp": ("KISS-ICP, started from the odometry of the log",
+                           ["--stack", "env PYTHONPATH=src/link/python .deps/python/bin/python src/link/python/examples/kiss_icp_scans.py"])}
+
+
+def fed_steps():
+    return [Step(f"{log}_{stack}", ["build/patrol", "feed", f"{{logs}}/{file}", "--relations", f"{{logs}}/{relations}", *scores["score"],
+                                    *options, "--out", "{out}"], (0,))
+            for log, (file, relations, scores) in LOGS.items() for stack, (_, options) in FED_STACKS.items()]
+
+
+def fed_values(folders):
+    values = []
+    for log in LOGS:
+        for stack in FED_STACKS:
+            metrics = json.loads((folders[f"{log}_{stack}"] / "metrics.json").read_text())
+            values.append({"log": log, "stack": stack, "wall_s": metrics["performance"]["wall_s"],
+                           **{name: {key: metrics[name]["relations"][key]["mean"] for key in ("translation_m", "rotation_deg")}
+                              for name in ("estimate", "online") if name in metrics}})
+    return values
+
+
+def fed_text(values):
+    def cell(log, stack, name):
+        errors = next(row for row in values if (row["log"], row["stack"]) == (log, stack)).get(name)
+        return f"{errors['translation_m']:.4f} m, {errors['rotation_deg']:.3f}°" if errors else "–"
+    return markdown(["stack", "Intel Research Lab", "its poses during the log", "Freiburg 079", "its poses during the log"],
+                    [[summary, *(cell(log, stack, name) for log in LOGS for name in ("estimate", "online"))]
+                     for stack, (summary, _) in FED_STACKS.items()])
+
+
+add(name="feed_logs", file="src/link/README.md", seeds="default", minutes=5, steps=fed_steps(), values=fed_values, text=fed_text,
+    logs=tuple(file for pair_of_files in LOGS.values() for file in pair_of_files[:2]), files=("src/link/python",))
+
+
 VARIANTS = {name: summary for name, (summary, _) in runpy.run_path(str(pathlib.Path(__file__).parent.parent / "vary_log"))["VARIANTS"].items()}
 PUBLISHED_VARIANTS = {"beams_16": "0.085 m (11 beams) [Zhou22]"}  # of the Intel log
 

@@ -20,18 +20,24 @@ void add_run(CLI::App& app, Call& call) {
   command->callback([&] { call.chosen = [&] { return run_command(call.run); }; });
 }
 
+constexpr const char* kReferenceHelp = "Reference trajectory (TUM)";
+constexpr const char* kRelationsHelp = "Reference relations (Freiburg: t1 t2 x y z roll pitch yaw)";
+
+void add_relation_settings(CLI::App& command, score::RelationSettings& relations) {
+  command.add_option("--max-dt-s", relations.max_dt_s, "Maximum time difference for nearest-pose association, s")
+      ->capture_default_str();
+  command.add_option("--reference-x-m", relations.reference_x_m, "Offset of the reference point along body x, m")
+      ->capture_default_str();
+}
+
 void add_score(CLI::App& app, Call& call) {
   ScoreOptions& score = call.score;
   CLI::App* command = app.add_subcommand("score", "Evaluate a run, a trajectory or a map");
   command->add_option("run", score.run, "Run directory");
   command->add_option("--estimate", score.estimate, "Estimated trajectory (TUM)");
-  command->add_option("--reference", score.reference, "Reference trajectory (TUM)");
-  command->add_option("--relations", score.relations, "Reference relations (Freiburg: t1 t2 x y z roll pitch yaw)");
-  score::RelationSettings& relations = score.relation_settings;
-  command->add_option("--max-dt-s", relations.max_dt_s, "Maximum time difference for nearest-pose association, s")
-      ->capture_default_str();
-  command->add_option("--reference-x-m", relations.reference_x_m, "Offset of the reference point along body x, m")
-      ->capture_default_str();
+  command->add_option("--reference", score.reference, kReferenceHelp);
+  command->add_option("--relations", score.relations, kRelationsHelp);
+  add_relation_settings(*command, score.relation_settings);
   command->add_option("--map", score.map, "Built map (map_server YAML)");
   command->add_option("--reference-map", score.reference_map, "Reference map (map_server YAML)");
   command->add_flag("--all", score.show_all, kAllHelp);
@@ -88,10 +94,15 @@ void add_verify(CLI::App& app, Call& call) {
 
 void add_feed(CLI::App& app, Call& call) {
   FeedOptions& feed = call.feed;
-  CLI::App* command = app.add_subcommand("feed", "Feed a stack with the log of a run, and score its answers");
-  command->add_option("run", feed.run, "Run directory")->required();
+  CLI::App* command =
+      app.add_subcommand("feed", "Feed a stack with a run's log or a recorded log, and score its answers");
+  command->add_option("input", feed.input, "Run directory, or recorded log (CARMEN, MCAP)")->required();
   command->add_option("--stack", feed.stack,
                       "Command of a stack, or unix:PATH or tcp:127.0.0.1:PORT where it connects (default: built in)");
+  command->add_option("--set", feed.overrides, kSetHelp)->take_all();
+  command->add_option("--relations", feed.relations, kRelationsHelp);
+  command->add_option("--reference", feed.reference, kReferenceHelp);
+  add_relation_settings(*command, feed.relation_settings);
   command->add_option("--out", feed.out, kOutHelp)->capture_default_str();
   command->add_flag("--all", feed.show_all, kAllHelp);
   add_json(*command, feed.form);

@@ -85,13 +85,18 @@ struct VerifyOptions {
 ExitCode verify_command(const VerifyOptions& options);
 
 struct FeedOptions {
-  std::filesystem::path run;
+  std::filesystem::path input;       ///< run directory, or recorded log (CARMEN or MCAP)
   std::optional<std::string> stack;  ///< command or address of the stack; default: the built-in one
+  std::vector<std::string> overrides;
+  std::filesystem::path relations;  ///< of a recorded log
+  std::filesystem::path reference;  ///< of a recorded log
+  score::RelationSettings relation_settings;
   std::filesystem::path out = "out/feed";
   bool show_all = false;  ///< print every metric
   ResultForm form = ResultForm::kText;
 };
-/// Feeds a stack with the log of a run and scores its answers, which have no effect on the robot.
+/// Feeds a stack with the log of a run, or with the scans and the odometry of a recorded log, and scores its answers,
+/// which have no effect on the robot.
 ExitCode feed_command(const FeedOptions& options);
 
 /// Takes part in a run as the built-in stack in a process of its own. `address`: of the simulator; none: as the process

@@ -10,12 +10,11 @@
 #include "app/common/print_result.h"
 #include "app/common/process_cost.h"
 #include "app/mapping/consistency_report.h"
+#include "app/mapping/log_mapping.h"
 #include "app/mapping/mapping_page.h"
 #include "app/mapping/odometry_report.h"
 #include "app/mapping/read_scans.h"
 #include "app/mapping/submap_graph_files.h"
-#include "app/scenario/neighbor_model.h"
-#include "app/scenario/scenario.h"
 #include "core/thread_cpu_time.h"
 #include "io/files/atomic_file.h"
 #include "io/files/csv.h"
@@ -30,8 +29,6 @@
 #include "slam/consistency/map_consistency.h"
 #include "slam/consistency/odometry_check.h"
 #include "slam/consistency/unsupported_path.h"
-#include "slam/graph/range_noise.h"
-#include "slam/methods/mapper.h"
 #include "slam/planar_scan.h"
 
 namespace patrol::app {
@@ -44,26 +41,6 @@ const OutputKind kMapping = {.name = "mapping of a log",
                                          "settings.yaml", "report.html"},
                              .required_file = "settings.yaml",
                              .preserved = {"*.part"}};
-
-/// Settings of `patrol slam --set`.
-struct LogMappingSettings {
-  std::uint64_t seed = 1;
-  io::ScanLogOptions log;
-  slam::Calibration calibration;
-  double range_std_m = 0.0;  ///< standard deviation of the ranges; 0: estimated from the first scans
-  slam::PlanarScanSettings scan;
-  slam::MapperSettings slam;
-
-  template <typename Self, typename Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("seed", self.seed);
-    visit("log", self.log);
-    visit("calibration", self.calibration);
-    visit("range_std_m", self.range_std_m, at_least(0.0));
-    visit("scan", self.scan);
-    visit("slam", self.slam);
-  }
-};
 
 /// Computation time by segment of scans, which shows whether it grows with the map.
 class CostTable {
@@ -93,19 +70,6 @@ struct MappedLog {
 
   double duration_s() const { return stamps.empty() ? 0.0 : to_seconds(stamps.back() - stamps.front()); }
 };
-
-/// Estimates the standard deviation of the ranges from the first scans; 0 if they do not determine it.
-double estimate_range_std_m(const std::filesystem::path& file, const io::ScanLogOptions& options) {
-  constexpr int kScans = 200;
-  const std::unique_ptr<io::ScanLog> log = io::open_scan_log(file, options);
-  slam::RangeNoiseEstimator estimator;
-  for (int i = 0; i < kScans; ++i) {
-    const std::optional<RecordedScan> recorded = log->next();
-    if (!recorded) break;
-    estimator.add(recorded->scan);
-  }
-  return estimator.std_m().value_or(0.0);
-}
 
 /// Maps a log; false if interrupted.
 bool map_log(io::ScanLog& log, const LogMappingSettings& settings, const std::string& name, slam::Mapper& mapper,
@@ -182,13 +146,8 @@ ExitCode slam_command(const SlamOptions& options) {
   if (options.calibration) settings.calibration = io::load_settings<slam::Calibration>(*options.calibration, {});
   io::SettingsReader::read_section("--set", io::parse_overrides(overrides), "", settings);
   const std::unique_ptr<io::ScanLog> log = io::open_scan_log(options.log, settings.log);
-  BoostedStumps neighbors;
-  if (needs_neighbor_model(settings.slam.method))
-    neighbors = load_neighbor_model(settings.slam.method, find_data_root(""));
-  if (settings.range_std_m == 0.0) settings.range_std_m = estimate_range_std_m(options.log, settings.log);
-  const bool is_adapted = settings.slam.method == "graph" &&
-                          slam::adapt_to_range_noise(settings.range_std_m, settings.slam.graph.scan_odometry);
-  const std::unique_ptr<slam::Mapper> mapper = slam::make_mapper(settings.slam, neighbors, settings.seed);
+  const bool is_adapted = adapt_to_log(options.log, settings);
+  const std::unique_ptr<slam::Mapper> mapper = make_log_mapper(settings);
   std::size_t num_earlier_nodes = 0;
   if (options.earlier_map) {
     if (std::filesystem::weakly_canonical(*options.earlier_map) == std::filesystem::weakly_canonical(options.out))

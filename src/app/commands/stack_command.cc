@@ -1,11 +1,17 @@
+#include <algorithm>
 #include <fstream>
+#include <memory>
+#include <string>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "app/commands/commands.h"
 #include "app/common/temporary_folder.h"
+#include "app/mapping/log_documents.h"
+#include "app/mapping/mapping_stack.h"
 #include "app/run/built_in_stack.h"
 #include "app/run/make_stack_port.h"
 #include "link/stack_client.h"
@@ -13,14 +19,24 @@
 namespace patrol::app {
 namespace {
 
-/// Creates the built-in stack by the documents of a hello.
-BuiltInStack stack_for(const link::Hello& hello) {
+/// Transforms of the sensors, among the messages that preceded the first turn.
+io::TransformSet mounts_of(const std::vector<link::DeliveredMessage>& documents) {
+  const auto mounts =
+      std::ranges::find(documents, std::string(io::kStaticTransforms.topic), &link::DeliveredMessage::topic);
+  return mounts != documents.end() ? io::decode<io::TransformSet>(mounts->cdr) : io::TransformSet{};
+}
+
+/// Creates the built-in stack by the documents of a hello: for a recorded log the mapping alone.
+std::unique_ptr<StackPort> stack_for(const link::StackClient& client) {
+  const link::Hello& hello = client.hello();
+  if (is_recorded_log(hello))
+    return std::make_unique<MappingStack>(mapping_settings_of(hello), mounts_of(client.documents()));
   const TemporaryFolder folder("stack");
   const std::filesystem::path file = folder.path() / "documents.yaml";
   std::ofstream(file) << hello.documents;
   const Scenario scenario = load_scenario(file);
   const ScenarioFiles files = load_scenario_files(scenario, find_data_root(file));
-  return {make_stack(scenario, files), hello.tick, {}};
+  return std::make_unique<BuiltInStack>(make_stack(scenario, files), hello.tick, stack::ComputeSettings{});
 }
 
 void publish(link::StackClient& client, Time now, const std::vector<PublishedMessage>& messages) {
@@ -32,17 +48,17 @@ void publish(link::StackClient& client, Time now, const std::vector<PublishedMes
 }
 
 void take_turns(link::StackClient& client) {
-  BuiltInStack stack = stack_for(client.hello());
+  const std::unique_ptr<StackPort> stack = stack_for(client);
   client.begin("patrol stack", {}, client.hello().tick);
   for (bool is_last = false; !is_last;) {
     link::ReceivedTurn received = client.next_turn();
     is_last = received.is_last;
     const StackTurn turn{.now = received.now, .messages = std::move(received.messages)};
     if (is_last) {
-      publish(client, turn.now, stack.finish(turn));
+      publish(client, turn.now, stack->finish(turn));
       client.done({.now = turn.now, .next_turn = {}, .mission_is_over = true});
     } else {
-      const StackAnswer answer = stack.take_turn(turn);
+      const StackAnswer answer = stack->take_turn(turn);
       publish(client, turn.now, answer.messages);
       client.done({.now = turn.now, .next_turn = answer.next_turn, .mission_is_over = answer.mission_is_over});
     }

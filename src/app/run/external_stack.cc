@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
@@ -52,6 +53,11 @@ bool is_finite(const stack::StackMessage& message) {
                                },
                                [](const PoseEstimate& estimate) {
                                  return is_finite(estimate.T_map_body) && estimate.covariance.allFinite();
+                               },
+                               [](const TrajectoryEstimate& estimate) {
+                                 return std::ranges::all_of(estimate.T_map_body, [](const StampedPose& stamped) {
+                                   return is_finite(stamped.pose);
+                                 });
                                },
                                [](const SiteRegistration& registration) { return is_finite(registration.T_site_map); },
                                [](const MapUpdate& update) {

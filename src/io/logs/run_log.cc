@@ -1,5 +1,7 @@
 #include "io/logs/run_log.h"
 
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "core/error.h"
@@ -24,8 +26,11 @@ TransformSet sensor_mounts(const RobotDescription& robot) {
 }
 
 RunLogWriter::RunLogWriter(const std::filesystem::path& log_mcap, const RobotDescription& robot)
-    : writer_(log_mcap), names_{.joints = robot.joint_names} {
-  writer_.write(channel<TransformSet>(kStaticTransforms.topic), Time{}, encode(sensor_mounts(robot), names_));
+    : RunLogWriter(log_mcap, sensor_mounts(robot), {.joints = robot.joint_names}) {}
+
+RunLogWriter::RunLogWriter(const std::filesystem::path& log_mcap, const TransformSet& mounts, RosNames names)
+    : writer_(log_mcap), names_(std::move(names)) {
+  writer_.write(channel<TransformSet>(kStaticTransforms.topic), Time{}, encode(mounts, names_));
 }
 
 void RunLogWriter::write_foreign(Time log_time, const std::string& topic, const std::string& type,

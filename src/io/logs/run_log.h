@@ -24,6 +24,8 @@ TransformSet sensor_mounts(const RobotDescription& robot);
 class RunLogWriter {
  public:
   RunLogWriter(const std::filesystem::path& log_mcap, const RobotDescription& robot);
+  /// Log of a robot of which only the poses of the sensors are known.
+  RunLogWriter(const std::filesystem::path& log_mcap, const TransformSet& mounts, RosNames names = {});
 
   /// Writes a message and returns its encoding.
   template <typename Message>

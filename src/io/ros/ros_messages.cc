@@ -122,6 +122,24 @@ void describe(Codec& codec, Path& path) {
 }
 
 template <typename Codec>
+void describe(Codec& codec, TrajectoryEstimate& estimate) {
+  header(codec, estimate.stamp, frame_id::kMap);
+  list(codec, estimate.T_map_body, [&](StampedPose& stamped) {
+    header(codec, stamped.stamp, frame_id::kMap);
+    pose3(codec, stamped.pose);
+  });
+}
+
+template <typename Codec>
+void describe(Codec& codec, RecordedOdometry& odometry) {
+  Pose3 pose = to_pose3(odometry.T_odom_body);
+  Eigen::Matrix3d unstated = Eigen::Matrix3d::Zero();
+  Twist3 twist;
+  odometry_fields(codec, odometry.stamp, frame_id::kOdom, pose, unstated, twist);
+  odometry.T_odom_body = to_pose2(pose);
+}
+
+template <typename Codec>
 void describe(Codec& codec, VelocityCommand& command) {
   header(codec, command.stamp, frame_id::kLevel);
   Twist3 twist{.linear = {command.vx_mps, command.vy_mps, 0.0}, .angular = {0.0, 0.0, command.yaw_rate_radps}};
@@ -222,6 +240,8 @@ PATROL_ROS_MESSAGE(SiteRegistration);
 PATROL_ROS_MESSAGE(ParticleSet);
 PATROL_ROS_MESSAGE(MapUpdate);
 PATROL_ROS_MESSAGE(Path);
+PATROL_ROS_MESSAGE(TrajectoryEstimate);
+PATROL_ROS_MESSAGE(RecordedOdometry);
 PATROL_ROS_MESSAGE(VelocityCommand);
 PATROL_ROS_MESSAGE(Event);
 PATROL_ROS_MESSAGE(FallReport);

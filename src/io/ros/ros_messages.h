@@ -69,6 +69,10 @@ inline constexpr const char* kRosType<MapUpdate> = "nav_msgs/msg/OccupancyGrid";
 template <>
 inline constexpr const char* kRosType<Path> = "nav_msgs/msg/Path";
 template <>
+inline constexpr const char* kRosType<TrajectoryEstimate> = "nav_msgs/msg/Path";
+template <>
+inline constexpr const char* kRosType<RecordedOdometry> = "nav_msgs/msg/Odometry";
+template <>
 inline constexpr const char* kRosType<VelocityCommand> = "geometry_msgs/msg/TwistStamped";
 template <>
 inline constexpr const char* kRosType<Event> = "patrol_msgs/msg/Event";

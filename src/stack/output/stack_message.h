@@ -9,8 +9,9 @@
 namespace patrol::stack {
 
 /// Message published by the robot's software: estimates, map, commands, events and results.
-using StackMessage = std::variant<OdometryEstimate, PoseEstimate, UwbPoseEstimate, LocalizationConfidence, ParticleSet,
-                                  MapUpdate, Path, VelocityCommand, Event, ScanCommand, AntennaCommand, SoundingCommand,
-                                  WarningCommand, LiningResult, WaterResult, SiteRegistration, CalibrationEstimate>;
+using StackMessage =
+    std::variant<OdometryEstimate, PoseEstimate, UwbPoseEstimate, LocalizationConfidence, ParticleSet, MapUpdate, Path,
+                 TrajectoryEstimate, VelocityCommand, Event, ScanCommand, AntennaCommand, SoundingCommand,
+                 WarningCommand, LiningResult, WaterResult, SiteRegistration, CalibrationEstimate>;
 
 }  // namespace patrol::stack

@@ -205,6 +205,24 @@ TEST(Decode, CommandsEventsAndTruthKeepEveryField) {
   EXPECT_THAT(there_and_back(test::sample_path()).T_map_body[1], Pose2Near((Pose2{3.0, 4.0, -0.5}), 0.0, kExactTol));
 }
 
+TEST(Decode, ATrajectoryKeepsTheStampOfEveryPose) {
+  const TrajectoryEstimate was{
+      .stamp = from_seconds(9.0),
+      .T_map_body = {{from_seconds(1.5), to_pose3({1.0, 2.0, 0.25})}, {from_seconds(1.5), to_pose3({3.0, 4.0, -3.0})}}};
+  const TrajectoryEstimate is = there_and_back(was);
+  EXPECT_EQ(is.stamp, was.stamp);
+  ASSERT_EQ(is.T_map_body.size(), 2U);
+  EXPECT_EQ(is.T_map_body[1].stamp, from_seconds(1.5));
+  EXPECT_THAT(is.T_map_body[1].pose, Pose3Near(was.T_map_body[1].pose, 0.0, kQuaternionTol));
+}
+
+TEST(Decode, RecordedOdometryKeepsItsPose) {
+  const RecordedOdometry is =
+      there_and_back(RecordedOdometry{.stamp = from_seconds(7.25), .T_odom_body = {-31.0, 12.5, 3.0}});
+  EXPECT_EQ(is.stamp, from_seconds(7.25));
+  EXPECT_THAT(is.T_odom_body, Pose2Near((Pose2{-31.0, 12.5, 3.0}), 0.0, kExactTol));
+}
+
 TEST(Decode, EmptyListsStayEmpty) {
   EXPECT_TRUE(there_and_back(LaserScan{}).ranges_m.empty());
   EXPECT_TRUE(there_and_back(PointCloud{}).points.empty());

@@ -51,11 +51,12 @@ class Hello:
     seed: int
     tick: float         #: physics tick, s; turns are at multiples of it
     limits: "VelocityLimits"
-    robot: str          #: URDF
-    site: dict          #: survey of the site and stations of the mission
+    robot: str          #: URDF; empty: the robot of a recorded log is not described
+    site: dict          #: survey of the site and stations of the mission; empty for a recorded log
     goals: list         #: saved goals in map; empty: none are given
     registration: dict  #: pose of a known map in site; empty: the origin of the map is the surveyed start
-    documents: str      #: settings that a stack may know, YAML with the keys of a scenario
+    documents: str      #: settings that a stack may know, YAML with the keys of a scenario, or of patrol slam --set for a
+                        #: recorded log
 
 
 class Message:
@@ -269,7 +270,7 @@ class Client:
             return Hello(program=hello.program, scenario=hello.scenario, seed=hello.seed,
                          tick=1e-9 * _nanoseconds(hello.tick),
                          limits=VelocityLimits(hello.forward_mps, hello.backward_mps, hello.sideways_mps, hello.yaw_rate_radps),
-                         robot=hello.robot, site=json.loads(hello.site),
+                         robot=hello.robot, site=json.loads(hello.site or "{}"),
                          goals=json.loads(hello.goals or "[]"), registration=json.loads(hello.registration or "{}"),
                          documents=hello.documents)
 

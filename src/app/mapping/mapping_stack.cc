@@ -1,0 +1,84 @@
+#include "app/mapping/mapping_stack.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/error.h"
+#include "core/thread_cpu_time.h"
+#include "io/logs/topics.h"
+
+namespace patrol::app {
+namespace {
+
+constexpr const char* kLidarFrame = "lidar";  // frame_id of a LaserScan
+
+template <typename Message>
+PublishedMessage published_message(Message message) {
+  PublishedMessage published{
+      .content = {}, .topic = io::kTopic<Message>, .type = {}, .definition = {}, .cdr = io::encode(message)};
+  published.content = std::move(message);
+  return published;
+}
+
+Pose2 lidar_mount(const io::TransformSet& mounts) {
+  const auto mount = std::ranges::find(mounts.transforms, kLidarFrame, &io::FrameTransform::child);
+  if (mount == mounts.transforms.end()) throw InputError("the recorded log has no transform of the lidar");
+  return to_pose2(mount->T_parent_child);
+}
+
+}  // namespace
+
+MappingStack::MappingStack(const LogMappingSettings& settings, const io::TransformSet& mounts)
+    : settings_(settings),
+      mapper_(make_log_mapper(settings)),
+      calibrated_(settings.calibration),
+      T_body_lidar_(lidar_mount(mounts)) {}
+
+StackAnswer MappingStack::take_turn(const StackTurn& turn) {
+  StackAnswer answer{.messages = {}, .next_turn = turn.now + Time{1}, .mission_is_over = false, .delay = {}};
+  handle(turn, answer.messages);
+  return answer;
+}
+
+std::vector<PublishedMessage> MappingStack::finish(const StackTurn& turn) {
+  std::vector<PublishedMessage> published;
+  handle(turn, published);
+  const double start_s = thread_cpu_time_s();
+  mapper_->finish();
+  TrajectoryEstimate trajectory{.stamp = turn.now, .T_map_body = {}};
+  const std::vector<Pose2> path = mapper_->path();
+  for (std::size_t i = 0; i < path.size(); ++i) trajectory.T_map_body.push_back({stamps_[i], to_pose3(path[i])});
+  published.push_back(published_message(std::move(trajectory)));
+  published.push_back(published_message(MapUpdate{.stamp = turn.now, .map = mapper_->map()}));
+  seconds_ += thread_cpu_time_s() - start_s;
+  return published;
+}
+
+void MappingStack::handle(const StackTurn& turn, std::vector<PublishedMessage>& published) {
+  const double start_s = thread_cpu_time_s();
+  for (const link::DeliveredMessage& message : turn.messages) {
+    if (message.topic == io::kTopic<RecordedOdometry>) {
+      T_odom_last_ = io::decode<RecordedOdometry>(message.cdr).T_odom_body;
+      if (!T_odom_first_) T_odom_first_ = T_odom_last_;
+    } else if (message.topic == io::kTopic<LaserScan>) {
+      map_scan(io::decode<LaserScan>(message.cdr), published);
+    }
+  }
+  seconds_ += thread_cpu_time_s() - start_s;
+}
+
+void MappingStack::map_scan(LaserScan scan, std::vector<PublishedMessage>& published) {
+  if (!T_odom_first_) throw InputError("the recorded log has a scan without odometry");
+  RecordedScan recorded{.scan = std::move(scan),
+                        .T_odom_body = *T_odom_first_,
+                        .T_body_lidar = T_body_lidar_,
+                        .T_begin_end = T_odom_first_->inverse() * *T_odom_last_};
+  T_odom_first_.reset();
+  calibrated_.correct(recorded);
+  const slam::SlamUpdate update = mapper_->update(slam::planar_scan(recorded, settings_.scan), recorded.T_odom_body);
+  stamps_.push_back(recorded.scan.stamp);
+  published.push_back(published_message(
+      PoseEstimate{.stamp = recorded.scan.stamp, .T_map_body = update.T_map_body, .covariance = update.covariance}));
+}
+
+}  // namespace patrol::app

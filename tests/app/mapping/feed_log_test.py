@@ -1,0 +1,179 @@
+#!/usr/bin/env python3
+"""patrol feed with recorded logs: a stack gets every scan with its odometry, and its estimates are scored.
+
+usage: feed_log_test.py PATROL SOURCE
+"""
+import json
+import math
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+from mcap.reader import make_reader
+
+from block_log import START_S, carmen_lines, drive
+
+PATROL, SOURCE = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
+EXAMPLES = SOURCE / "src/link/python/examples"
+
+# Publishes the recorded odometry as its pose, every second scan by its turn period.
+ODOMETRY = """
+import patrol_client
+
+def on_turn(turn):
+    for message in turn.messages:
+        pose = turn.new("/pose")
+        pose.header.stamp = message.content.header.stamp
+        pose.pose.pose = message.content.pose.pose
+        turn.publish("/pose", pose)
+
+patrol_client.run(on_turn, topics=["/recorded_odometry"], turn_period=0.35)
+"""
+
+# Checks the documents of a recorded log, and publishes nothing.
+SILENT = """
+import patrol_client
+
+def on_start(client):
+    hello = client.hello
+    assert (hello.robot, hello.site, hello.scenario, hello.limits.forward) == ("", {}, "block.log", 0.0), hello
+    assert "method: graph" in hello.documents
+
+patrol_client.run(lambda turn: None, on_start=on_start)
+"""
+
+FAILING = """
+import patrol_client
+
+def on_turn(turn):
+    if turn.now > 976052900.0:
+        raise ValueError("no more scans")
+    turn.publish("/pose", turn.new("/pose"))
+
+patrol_client.run(on_turn, turn_period=0.0)
+"""
+
+
+class FeedLog(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder_object = tempfile.TemporaryDirectory()
+        cls.folder = pathlib.Path(cls.folder_object.name)
+        cls.poses = drive()
+        cls.lines = carmen_lines(cls.poses)
+        cls.log = cls.folder / "block.log"
+        cls.log.write_text("\n".join(cls.lines) + "\n")
+        cls.relations = cls.folder / "block.relations"
+        cls.relations.write_text("".join(cls.relation(i, i + 40) for i in range(0, len(cls.poses) - 40, 20)))
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder_object.cleanup()
+
+    @classmethod
+    def relation(cls, i, j):
+        """True relative pose of two scans, in the format of the benchmark."""
+        (x0, y0, yaw0), (x1, y1, yaw1) = cls.poses[i], cls.poses[j]
+        dx, dy = x1 - x0, y1 - y0
+        x, y = math.cos(yaw0) * dx + math.sin(yaw0) * dy, -math.sin(yaw0) * dx + math.cos(yaw0) * dy
+        return f"{START_S + 0.2 * i:.6f} {START_S + 0.2 * j:.6f} {x:.6f} {y:.6f} 0 0 0 {math.remainder(yaw1 - yaw0, 2 * math.pi):.6f}\n"
+
+    def patrol(self, *arguments, code=0):
+        done = subprocess.run([PATROL, *map(str, arguments)], capture_output=True, text=True, timeout=280, cwd=SOURCE)
+        self.assertEqual(done.returncode, code, done.stdout + done.stderr)
+        return done
+
+    def stack(self, name, text):
+        path = self.folder / name
+        path.write_text(text)
+        return f"{sys.executable} {path}"
+
+    def feed(self, name, *more, log=None, code=0):
+        out = self.folder / name
+        done = self.patrol("feed", log or self.log, "--out", out, *more, code=code)
+        return json.loads((out / "metrics.json").read_text()), out, done
+
+    def rows(self, file):
+        return [line.split() for line in file.read_text().splitlines() if not line.startswith("#")]
+
+    def messages(self, out):
+        with open(out / "log.mcap", "rb") as file:
+            return [(channel.topic, message.log_time, message.data) for _, channel, message in make_reader(file).iter_messages(log_time_order=False)]
+
+    def test_the_built_in_mapping_has_the_error_of_patrol_slam(self):
+        fed, out, _ = self.feed("built_in", "--relations", self.relations)
+        self.patrol("slam", self.log, "--out", self.folder / "mapped")
+        score = json.loads(self.patrol("score", "--estimate", self.folder / "mapped/estimate.tum", "--relations", self.relations, "--json").stdout)
+        error = fed["estimate"]["relations"]["translation_m"]["mean"]
+        self.assertEqual(fed["estimate"]["topic"], "/trajectory")
+        self.assertGreater(error, 0.0005)
+        self.assertAlmostEqual(error, score["translation_m"]["mean"], delta=0.05 * score["translation_m"]["mean"])
+        self.assertEqual((fed["estimate"]["poses"], fed["online"]["poses"]), (len(self.poses), len(self.poses)))
+        self.assertGreater(fed["online"]["relations"]["translation_m"]["max"], error)
+        self.assertEqual(sorted(file.name for file in out.iterdir()), ["estimate.tum", "log.mcap", "map.pgm", "map.yaml", "metrics.json", "online.tum", "settings.yaml"])
+
+    def test_another_process_gives_the_same_messages(self):
+        _, here, _ = self.feed("here")
+        _, there, _ = self.feed("there", "--stack", f"{PATROL} stack")
+        self.assertEqual([one for one in self.messages(there) if one[0] != "/stack/turns"], self.messages(here))
+        self.assertEqual((there / "estimate.tum").read_bytes(), (here / "estimate.tum").read_bytes())
+
+    def test_every_scan_is_delivered_at_any_turn_period(self):
+        fed, out, done = self.feed("odometry", "--stack", self.stack("odometry.py", ODOMETRY), "--relations", self.relations)
+        self.assertEqual((fed["estimate"]["topic"], fed["estimate"]["poses"]), ("/pose", len(self.poses)))
+        self.assertNotIn("online", fed)
+        self.assertGreater(fed["estimate"]["relations"]["translation_m"]["mean"], 0.1)  # odometry 3 % too long
+        topics = [one[0] for one in self.messages(out)]
+        self.assertEqual((topics.count("/scan"), topics.count("/recorded_odometry")), (len(self.poses), len(self.poses)))
+        self.assertAlmostEqual(topics.count("/stack/turns"), len(self.poses) / 2, delta=2)
+        self.assertIn("/pose: ", done.stdout)
+
+    def test_a_reference_trajectory_scores_as_well(self):
+        self.patrol("slam", self.log, "--out", self.folder / "reference")
+        fed, _, _ = self.feed("referred", "--reference", self.folder / "reference/estimate.tum")
+        self.assertLess(fed["estimate"]["reference"]["pose"]["ate_rmse_m"], 0.005)
+        self.assertEqual(fed["estimate"]["reference"]["pose"]["coverage"], 1.0)
+
+    def test_a_stack_that_publishes_nothing_is_said_to(self):
+        fed, out, done = self.feed("silent", "--stack", self.stack("silent.py", SILENT), "--relations", self.relations)
+        self.assertIsNone(fed["estimate"])
+        self.assertIn("not published: /pose", done.stdout)
+        self.assertFalse((out / "estimate.tum").exists())
+
+    def test_a_failing_stack_has_a_verdict_and_its_poses(self):
+        fed, out, done = self.feed("failing", "--stack", self.stack("failing.py", FAILING), code=3)
+        self.assertEqual(fed["status"], "stack failed")
+        self.assertIn("ValueError: no more scans", fed["message"])
+        self.assertGreater(fed["estimate"]["poses"], 20)
+        self.assertIn("stack failed: ", done.stdout)
+        self.assertIn("no more scans", (out / "stack.log").read_text())
+
+    def test_wrong_input_has_one_line_and_leaves_nothing(self):
+        out = self.folder / "refused"
+        broken = self.folder / "broken.relations"
+        broken.write_text("1 2 three\n")
+        run = self.folder / "no_run"
+        run.mkdir()
+        for arguments, text in [((self.folder / "nothing.log",), "nothing.log"),
+                                ((self.log, "--relations", broken), "broken.relations:1"),
+                                ((self.log, "--reference", self.folder / "nothing.tum"), "nothing.tum"),
+                                ((self.log, "--set", "slam.methd=rbpf"), "slam.methd"),
+                                ((self.log, "--stack", "no_such_program"), "no_such_program"),
+                                ((run, "--relations", self.relations), "only for a recorded log")]:
+            done = self.patrol("feed", *arguments, "--out", out, code=2)
+            self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
+            self.assertIn(text, done.stderr)
+            self.assertFalse(out.exists())
+
+    def test_kiss_icp_keeps_the_recorded_odometry_straight(self):
+        fed, _, _ = self.feed("kiss", "--stack", f"{sys.executable} {EXAMPLES / 'kiss_icp_scans.py'}", "--relations", self.relations)
+        error = fed["estimate"]["relations"]["translation_m"]["mean"]
+        self.assertEqual(fed["estimate"]["poses"], len(self.poses))
+        self.assertGreater(error, 0.001)
+        self.assertLess(error, 0.1)  # recorded odometry: 0.18 m
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], "-v"])
