@@ -41,6 +41,12 @@ class Examples(unittest.TestCase):
         self.assertGreater(metrics["mission"]["distance_m"], 10.0)
         self.assertLess(metrics["mission"]["distance_m"], 25.0)
 
+    def test_the_session_of_the_document_is_that_of_the_raw_client(self):
+        out = self.path / "raw"
+        self.metrics(patrol("run", "street/short", "--set", "time_limit_s=0.2", "--stack", f"{sys.executable} {EXAMPLES / 'raw_session.py'}",
+                            "--out", out), out)
+        self.assertIn("```\n" + (out / "stack.log").read_text() + "```", (SOURCE / "src/link/README.md").read_text())
+
     def test_ompl_and_pure_pursuit_reach_the_first_goal(self):
         out = self.path / "ompl"
         metrics = self.metrics(patrol("run", "tunnel/navigate", "--stack", command("ompl_navigator.py"), "--set",
