@@ -3,6 +3,7 @@
 #include <chrono>
 #include <utility>
 
+#include "core/cycle.h"
 #include "core/overloaded.h"
 
 namespace patrol::stack {
@@ -57,16 +58,16 @@ void Stack::step(Time now) {
   const std::optional<OdometryEstimate> odometry = parts_.pose.update_odometry();
   if (!odometry) return;
   if (now >= next_odometry_) {
-    next_odometry_ += kOdometryPeriod;
+    next_odometry_ = next_in_cycle(next_odometry_, kOdometryPeriod, now);
     output_.publish(*odometry);
   }
   parts_.pose.publish_calibration(now, output_);
   if (parts_.pose.is_mapping() && now >= next_map_) {
-    next_map_ += map_period_;
+    next_map_ = next_in_cycle(next_map_, map_period_, now);
     publish_map(now);
   }
   if (now < next_control_) return;
-  next_control_ += kControlPeriod;
+  next_control_ = next_in_cycle(next_control_, kControlPeriod, now);
   const auto timer = output_.time_stage("planning");
   const Pose2 T_odom_body = to_pose2(odometry->T_odom_body);
   monitor_sensors(now, T_odom_body);

@@ -36,7 +36,7 @@ std::unique_ptr<StackPort> stack_for(const link::StackClient& client) {
   std::ofstream(file) << hello.documents;
   const Scenario scenario = load_scenario(file);
   const ScenarioFiles files = load_scenario_files(scenario, find_data_root(file));
-  return std::make_unique<BuiltInStack>(make_stack(scenario, files), hello.tick, stack::ComputeSettings{});
+  return std::make_unique<BuiltInStack>(make_stack(scenario, files), stack::ComputeSettings{});
 }
 
 void publish(link::StackClient& client, Time now, const std::vector<PublishedMessage>& messages) {
@@ -49,7 +49,7 @@ void publish(link::StackClient& client, Time now, const std::vector<PublishedMes
 
 void take_turns(link::StackClient& client) {
   const std::unique_ptr<StackPort> stack = stack_for(client);
-  client.begin("patrol stack", {}, client.hello().tick);
+  client.begin("patrol stack", {}, BuiltInStack::kTurnPeriod);
   for (bool is_last = false; !is_last;) {
     link::ReceivedTurn received = client.next_turn();
     is_last = received.is_last;

@@ -10,8 +10,8 @@
 
 namespace patrol::app {
 
-BuiltInStack::BuiltInStack(stack::Stack stack, Time tick, const stack::ComputeSettings& compute)
-    : stack_(std::move(stack)), tick_(tick), compute_(compute) {}
+BuiltInStack::BuiltInStack(stack::Stack stack, const stack::ComputeSettings& compute)
+    : stack_(std::move(stack)), compute_(compute) {}
 
 StackAnswer BuiltInStack::take_turn(const StackTurn& turn) {
   const double start_s = thread_cpu_time_s();
@@ -19,7 +19,7 @@ StackAnswer BuiltInStack::take_turn(const StackTurn& turn) {
   stack_.step(turn.now);
   const double cpu_s = thread_cpu_time_s() - start_s;
   return {.messages = published(),
-          .next_turn = turn.now + tick_,
+          .next_turn = turn.now + kTurnPeriod,
           .mission_is_over = stack_.mission_is_over(),
           .delay = delay_of(compute_, cpu_s)};
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <map>
 #include <string>
 #include <vector>
@@ -9,24 +10,24 @@
 
 namespace patrol::app {
 
-/// The built-in stack, with a turn at every tick. It decodes the messages of the simulator as a stack in another
+/// The built-in stack, with a turn every 10 ms: its periods of odometry and control are multiples of that. It decodes the messages of the simulator as a stack in another
 /// process does, so that both compute with the same numbers.
 class BuiltInStack final : public StackPort {
  public:
-  /// `tick`: of the simulator.
-  BuiltInStack(stack::Stack stack, Time tick, const stack::ComputeSettings& compute);
+  BuiltInStack(stack::Stack stack, const stack::ComputeSettings& compute);
 
   StackAnswer take_turn(const StackTurn& turn) override;
   std::vector<PublishedMessage> finish(const StackTurn& turn) override;
   bool records_turns() const override { return compute_.model != "free"; }
   std::map<std::string, double> seconds_by_stage() const override { return stack_.clock().seconds(); }
 
+  static constexpr Time kTurnPeriod = std::chrono::milliseconds(10);
+
  private:
   void handle(const StackTurn& turn);
   std::vector<PublishedMessage> published();
 
   stack::Stack stack_;
-  Time tick_;
   stack::ComputeSettings compute_;
 };
 

@@ -46,7 +46,8 @@ class StackPort {
   virtual StackAnswer take_turn(const StackTurn& turn) = 0;
   /// Ends the run: the stack completes its map and publishes its last results.
   virtual std::vector<PublishedMessage> finish(const StackTurn& turn) = 0;
-  /// Returns whether the log has a StackTurn of every turn. Otherwise there is a turn at every tick, without delay.
+  /// Returns whether the log has a StackTurn of every turn. Otherwise the turns are those of the built-in stack,
+  /// without delay.
   virtual bool records_turns() const = 0;
   /// Returns the wall time by stage.
   virtual std::map<std::string, double> seconds_by_stage() const = 0;

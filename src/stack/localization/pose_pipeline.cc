@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/cycle.h"
 namespace patrol::stack {
 namespace {
 
@@ -257,7 +258,7 @@ void PosePipeline::publish_range_pose(const OdometryEstimate& odometry, const Po
 
 void PosePipeline::publish_calibration(Time now, StackOutput& output) {
   if (!calibrator_ || now < next_calibration_) return;
-  next_calibration_ += calibration_period_;
+  next_calibration_ = next_in_cycle(next_calibration_, calibration_period_, now);
   CalibrationEstimate estimate = calibrator_->estimate(now);
   const std::vector<CalibrationValue> by_odometry = odometry_->calibration();
   estimate.values.insert(estimate.values.end(), by_odometry.begin(), by_odometry.end());
