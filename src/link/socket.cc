@@ -29,11 +29,11 @@ constexpr std::chrono::milliseconds kSlice{100};  ///< between two checks for an
 /// other threads.
 constexpr std::chrono::microseconds kSpin{1000};
 
-/// Leaves the core to other threads that are ready, and for about a microsecond to the other thread of the core.
+/// Leaves the core to other threads that are ready, and for some microseconds to the other thread of the core.
 void yield() {
   ::sched_yield();
 #if defined(__x86_64__)
-  for (int i = 0; i < 24; ++i) __builtin_ia32_pause();
+  for (int i = 0; i < 200; ++i) __builtin_ia32_pause();
 #endif
 }
 

@@ -10,8 +10,8 @@
 
 namespace patrol::app {
 
-/// The built-in stack, with a turn every 10 ms: its periods of odometry and control are multiples of that. It decodes the messages of the simulator as a stack in another
-/// process does, so that both compute with the same numbers.
+/// The built-in stack, with a turn every 10 ms: its periods of odometry and control are multiples of that. It decodes
+/// the messages of the simulator as a stack in another process does, so that both compute with the same numbers.
 class BuiltInStack final : public StackPort {
  public:
   BuiltInStack(stack::Stack stack, const stack::ComputeSettings& compute);
