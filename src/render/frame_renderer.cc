@@ -67,7 +67,7 @@ void FrameRenderer::run_world_thread(const mjModel& view, const FrameSettings& s
   while (std::optional<FrameRequest> order = queued_.take()) {
     try {
       painter->set_state(order->snapshot.state);
-      painter->set_estimate(order->snapshot.T_true_estimate);
+      painter->set_estimate(order->snapshot.T_true_estimate.value_or(Pose2{}));
       painter->draw(order->view, order->frame, order->depth);
       drawn_.put(std::move(*order));
     } catch (...) {

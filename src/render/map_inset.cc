@@ -74,7 +74,7 @@ void MapInset::draw(Frame& frame, const RunSnapshot& snapshot) {
     draw_disc(inset, middle, 4.5 * size, {color, 1.0});
   };
   draw_robot(to_pose2(snapshot.T_world_body), 1.25 * scale, kTruthColor);
-  draw_robot(snapshot.T_world_map * snapshot.T_map_body, scale, kRobotColor);
+  if (snapshot.T_map_body) draw_robot(snapshot.T_world_map * *snapshot.T_map_body, scale, kRobotColor);
 
   const int margin = static_cast<int>(std::lround(16 * scale)),
             border = std::max(1, static_cast<int>(std::lround(2 * scale)));

@@ -24,10 +24,13 @@ std::string clock_text(Time time) {
 }
 
 std::string values_text(const RunSnapshot& snapshot) {
-  return fmt::format("{}    position error {:.3f} m    heading error {:.2f}°    {} {:.1f} m",
-                     clock_text(snapshot.state.stamp), snapshot.T_true_estimate.position().norm(),
-                     to_deg(std::abs(snapshot.T_true_estimate.yaw)), snapshot.is_driving ? "driven" : "walked",
-                     snapshot.traveled_m);
+  const std::string errors =
+      snapshot.T_true_estimate
+          ? fmt::format("    position error {:.3f} m    heading error {:.2f}°",
+                        snapshot.T_true_estimate->position().norm(), to_deg(std::abs(snapshot.T_true_estimate->yaw)))
+          : "";
+  return fmt::format("{}{}    {} {:.1f} m", clock_text(snapshot.state.stamp), errors,
+                     snapshot.is_driving ? "driven" : "walked", snapshot.traveled_m);
 }
 
 /// Reading of the methane meter and playback speed.
@@ -110,7 +113,8 @@ int Overlay::draw_legend(Frame& frame, const RunSnapshot& snapshot) {
   if (!snapshot.particles.empty()) entries.emplace_back("particles", kParticleColor);
   if (!snapshot.lining_marks.empty()) entries.emplace_back("lining finding", kFindingColor);
   if (!gas_.is_empty()) entries.emplace_back("methane", kGasColor);
-  if (ghost_opacity(snapshot.T_true_estimate) > 0.0) entries.emplace_back("estimated pose", kEstimateColor);
+  if (snapshot.T_true_estimate && ghost_opacity(*snapshot.T_true_estimate) > 0.0)
+    entries.emplace_back("estimated pose", kEstimateColor);
   const int line = texts_.height_px() + texts_.height_px() / 2;
   const int left = line, text_left = left + 2 * texts_.height_px();
   int width = 9 * texts_.height_px();

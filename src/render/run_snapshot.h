@@ -30,14 +30,15 @@ struct RunSnapshot {
   SimState state;
   Pose3 T_world_body;  ///< ground truth
   Pose2 T_world_map;
-  Pose2 T_map_body;                             ///< newest estimate
+  std::optional<Pose2> T_map_body;              ///< newest estimate; none before the first
   std::vector<Eigen::Vector3d> true_path;       ///< on the ground
   std::vector<Eigen::Vector3d> estimated_path;  ///< on the ground
   std::vector<Eigen::Vector3d> planned_path;    ///< on the ground
   std::vector<Eigen::Vector3d> scan;            ///< scan hits at the estimated pose
   std::vector<Pose2> particles;                 ///< in map
   std::shared_ptr<const OccupancyGrid> map;     ///< in map; null before the first map
-  Pose2 T_true_estimate;  ///< newest estimate of the level body relative to its true pose at that stamp
+  /// Newest estimate of the level body relative to its true pose at that stamp; none before the first.
+  std::optional<Pose2> T_true_estimate;
   double traveled_m = 0.0;
   std::optional<GasReading> gas;  ///< newest reading; none without a methane meter
   bool is_driving = false;        ///< tracked robot, not a walking one

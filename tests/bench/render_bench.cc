@@ -52,7 +52,7 @@ RunSnapshot busy_snapshot(const mjModel& model, std::vector<double> qpos, double
   }
   snapshot.T_world_body = {{11.0, y_m, 0.32}, quaternion_from_yaw(std::numbers::pi / 2.0)};
   snapshot.T_world_map = {11.0, 8.0, std::numbers::pi / 2.0};
-  snapshot.T_map_body = {y_m - 8.0, 0.0, 0.0};
+  snapshot.T_map_body = Pose2{y_m - 8.0, 0.0, 0.0};
   for (int i = 0; i < 3000; ++i) {
     const double along = i < 1500 ? 0.05 * i : 0.05 * (3000 - i);
     snapshot.true_path.emplace_back(11.0, 8.0 + along, 0.01);
@@ -63,7 +63,7 @@ RunSnapshot busy_snapshot(const mjModel& model, std::vector<double> qpos, double
     const double angle = 2.0 * std::numbers::pi * i / 1440.0;
     snapshot.scan.emplace_back(11.0 + 4.0 * std::cos(angle), y_m + 6.0 * std::sin(angle), 0.4);
   }
-  snapshot.particles.assign(30, snapshot.T_map_body);
+  snapshot.particles.assign(30, *snapshot.T_map_body);
   snapshot.map = map;
   snapshot.event = "regulator_box_1: 6 ppm m of methane.";
   return snapshot;

@@ -85,10 +85,13 @@ TEST(MapInsetTest, TheRobotStandsWhereItBelievesToBe) {
   RunSnapshot snapshot = snapshot_with_map();
   Frame frame(640, 360);
   MapInset().draw(frame, snapshot);
+  EXPECT_GT(extent_of(frame, is_robot).left, extent_of(frame, is_robot).right) << "no estimate: not drawn";
+  snapshot.T_map_body = Pose2{};
+  MapInset().draw(frame, snapshot);
   const Extent floor = extent_of(frame, is_floor), in_middle = extent_of(frame, is_robot);
   EXPECT_NEAR(0.5 * (in_middle.left + in_middle.right), 0.5 * (floor.left + floor.right), 6.0);
   EXPECT_NEAR(0.5 * (in_middle.top + in_middle.bottom), 0.5 * (floor.top + floor.bottom), 4.0);
-  snapshot.T_map_body = {0.0, 4.0, 0.0};
+  snapshot.T_map_body = Pose2{0.0, 4.0, 0.0};
   MapInset().draw(frame, snapshot);
   EXPECT_LT(extent_of(frame, is_robot).bottom, floor.top + 0.25 * (floor.bottom - floor.top));
 }

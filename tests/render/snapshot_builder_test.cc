@@ -40,6 +40,12 @@ class RunFollowerTest : public ::testing::Test {
   SnapshotBuilder follower{*model, T_world_map};
 };
 
+TEST_F(RunFollowerTest, ThereIsNoErrorBeforeTheFirstEstimate) {
+  follower.add(truth_at(0s, 10.0, 20.0, 1.6));
+  EXPECT_FALSE(follower.snapshot().T_map_body);
+  EXPECT_FALSE(follower.snapshot().T_true_estimate);
+}
+
 TEST_F(RunFollowerTest, ErrorsAreThoseOfTheEstimatesOwnInstant) {
   follower.add(truth_at(0s, 10.0, 20.0, 1.6));
   follower.add(truth_at(1s, 10.0, 21.0, 1.6));
@@ -47,8 +53,8 @@ TEST_F(RunFollowerTest, ErrorsAreThoseOfTheEstimatesOwnInstant) {
   // At 1 s the truth was 1 m north; the estimate says 1.03 m north, 0.04 m west (map's y), and 0.1 rad less
   // heading.
   follower.add(estimate_at(1s, {1.03, 0.04, 1.5 - std::numbers::pi / 2.0}));
-  EXPECT_NEAR(follower.snapshot().T_true_estimate.position().norm(), 0.05, 1e-9);
-  EXPECT_NEAR(follower.snapshot().T_true_estimate.yaw, -0.1, 1e-9);
+  EXPECT_NEAR(follower.snapshot().T_true_estimate.value().position().norm(), 0.05, 1e-9);
+  EXPECT_NEAR(follower.snapshot().T_true_estimate.value().yaw, -0.1, 1e-9);
 }
 
 // The wall's face is at x = 4 m; the finding is on it, 1 m above the body.

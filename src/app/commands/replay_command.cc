@@ -87,7 +87,6 @@ ExitCode replay_command(const ReplayOptions& options) {
   settings.announced = fault_highlights(scenario.faults);
   settings.map = files.map;
   const RunRecord record = read_run_record(directory.log());
-  if (!record.has_estimate()) throw InputError(fmt::format("{}: contains no pose estimate", directory.log().string()));
   const Pose2 T_world_map = pose_of_map(record, files.map ? std::optional(files.T_site_map()) : std::nullopt);
   sim::AssembledModel model = sim::assemble_model(files.world_xml.string(), files.robot_urdf.string(),
                                                   start_in_world(scenario, files), all_static_obstacles(scenario));

@@ -62,6 +62,7 @@ RunRecord read_run_record(const std::filesystem::path& log_mcap) {
 Pose2 pose_of_map(const RunRecord& record, const std::optional<Pose2>& T_world_given_map) {
   if (T_world_given_map) return *T_world_given_map;
   if (!record.registrations.empty()) return record.registrations.back().T_site_map;
+  if (!record.has_estimate()) return to_pose2(record.T_world_body.front().pose);
   return score::align_at_start(record.T_map_body, record.T_world_body);
 }
 

@@ -13,7 +13,7 @@ using score::RunRecord;
 RunRecord read_run_record(const std::filesystem::path& log_mcap);
 
 /// Returns the pose of map in world for views of a run: that of a given map, or else of the last registration to the
-/// survey. Without one, the trajectories are aligned at the start.
+/// survey. Without one, the trajectories are aligned at the start; without estimates, it is the first true pose.
 Pose2 pose_of_map(const RunRecord& record, const std::optional<Pose2>& T_world_given_map);
 
 }  // namespace patrol::app

@@ -20,7 +20,9 @@ View Director::view(const RunSnapshot& snapshot, double elapsed_s) {
   }
   if (shot != shot_) camera_.emplace(*shot, free_distance_, T_world_body);
   shot_ = shot;
-  return camera_->follow(T_world_body, snapshot.T_world_map * snapshot.T_map_body.position(), elapsed_s);
+  const Eigen::Vector2d p_world_estimate = snapshot.T_map_body ? snapshot.T_world_map * snapshot.T_map_body->position()
+                                                               : Eigen::Vector2d(T_world_body.position.head<2>());
+  return camera_->follow(T_world_body, p_world_estimate, elapsed_s);
 }
 
 FilmNote Director::note(Time now) const {

@@ -27,5 +27,12 @@ TEST(PoseOfMap, IsThatOfAGivenMapElseOfTheLastRegistrationElseOfTheStart) {
   EXPECT_EQ(pose_of_map(record, std::nullopt).vector(), Eigen::Vector3d(2.0, 1.0, 0.0));
 }
 
+TEST(PoseOfMap, IsTheFirstTruePoseOfAStackThatPublishesNoPose) {
+  RunRecord record;
+  record.T_world_body = {{Time{}, to_pose3({4.0, -1.0, 0.5}, 0.3)}, {from_seconds(1.0), to_pose3({5.0, -1.0, 0.5})}};
+  const Pose2 pose = pose_of_map(record, std::nullopt);
+  EXPECT_NEAR((pose.vector() - Eigen::Vector3d(4.0, -1.0, 0.5)).norm(), 0.0, 1e-12);
+}
+
 }  // namespace
 }  // namespace patrol::app::run_record_test

@@ -40,6 +40,9 @@ class Examples(unittest.TestCase):
         self.assertFalse(metrics["mission"]["fell"])
         self.assertGreater(metrics["mission"]["distance_m"], 10.0)
         self.assertLess(metrics["mission"]["distance_m"], 25.0)
+        still = patrol("replay", out, "--still", 5, "--size", "320x180")  # of a run without poses
+        self.assertEqual(still.returncode, 0, still.stderr)
+        self.assertGreater((out / "still_chase_5s.png").stat().st_size, 2000)
 
     def test_the_session_of_the_document_is_that_of_the_raw_client(self):
         out = self.path / "raw"
