@@ -80,7 +80,7 @@ class SameBytes(unittest.TestCase):
         self.assertEqual(without_turns(messages(self.path / "fed_outside")), messages(inside))
 
     def test_a_fed_stack_has_its_turns_when_it_asks_for_them(self):
-        # The run has a turn every 50 ms, the fed stack at every tick: it publishes odometry every 20 ms.
+        # The run has a turn every 50 ms, the fed stack every 10 ms: it publishes odometry every 20 ms.
         circle = self.run_to("circle", write_stack(self.path, "circle.py", CIRCLE) + f" {self.path / 'process_id'}")
         feed(circle, self.path / "fed")
         times = [log_time for topic, log_time, _ in messages(self.path / "fed")

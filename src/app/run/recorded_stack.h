@@ -43,7 +43,7 @@ class RecordedStack final : public StackPort {
   std::optional<Entry> next_;
 };
 
-/// Reads the records of the turns of a stack; empty for a log whose stack had a turn at every tick, without delay.
+/// Reads the records of the turns of a stack; empty for a log of the built-in stack without computing time.
 std::vector<StackTurnRecord> read_turn_records(const std::filesystem::path& log_mcap);
 
 }  // namespace patrol::app
