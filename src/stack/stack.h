@@ -38,7 +38,7 @@ class Stack {
   void handle(const SensorMessage& message);
   /// Processes the firmware's report of a fall.
   void handle_fall(Time now);
-  /// Runs odometry, map, mission and control, each at its own period, a multiple of 10 ms. Call at least that often.
+  /// Runs odometry, map, mission and control, each at its own period. Call at least every 10 ms.
   void step(Time now);
 
   const VelocityCommand& command() const { return command_; }

@@ -88,8 +88,8 @@ struct FeedOptions {
   std::filesystem::path input;       ///< run directory, or recorded log (CARMEN or MCAP)
   std::optional<std::string> stack;  ///< command or address of the stack; default: the built-in one
   std::vector<std::string> overrides;
-  std::filesystem::path relations;  ///< of a recorded log
-  std::filesystem::path reference;  ///< of a recorded log
+  std::filesystem::path relations;  ///< reference relations of a recorded log; empty: none
+  std::filesystem::path reference;  ///< reference trajectory of a recorded log; empty: none
   score::RelationSettings relation_settings;
   std::filesystem::path out = "out/feed";
   bool show_all = false;  ///< print every metric

@@ -87,6 +87,7 @@ std::unique_ptr<StackPort> make_stack_of_log(const FeedOptions& options, const L
 struct FedEstimate {
   std::string topic;
   std::size_t num_poses = 0;
+  std::string why_not_scored;  ///< empty: scored by all references
   std::optional<score::RelationError> relations;
   io::Metrics reference;  ///< null: not scored by a reference trajectory
 
@@ -94,11 +95,13 @@ struct FedEstimate {
     io::Metrics metrics{{"topic", topic}, {"poses", num_poses}};
     if (relations) metrics["relations"] = relation_json(*relations);
     if (!reference.is_null()) metrics["reference"] = reference;
+    if (!why_not_scored.empty()) metrics["not_scored"] = why_not_scored;
     return metrics;
   }
   std::string text() const {
-    return fmt::format("\n{}: {} poses\n{}{}", topic, num_poses, relations ? relation_table(*relations) : "",
-                       reference.is_null() ? "" : score_table(reference, {}));
+    return fmt::format("\n{}: {} poses\n{}{}{}", topic, num_poses, relations ? relation_table(*relations) : "",
+                       reference.is_null() ? "" : score_table(reference, {}),
+                       why_not_scored.empty() ? "" : fmt::format("not scored: {}\n", why_not_scored));
   }
 };
 
@@ -109,6 +112,7 @@ struct LogReferences {
 };
 
 LogReferences load_references(const FeedOptions& options) {
+  validate(options.relation_settings, "relations");
   LogReferences references;
   if (!options.relations.empty()) references.relations = io::load_relations(options.relations);
   if (!options.reference.empty()) references.trajectory = io::load_tum(options.reference);
@@ -122,29 +126,44 @@ std::optional<FedEstimate> score_estimate(const FeedOptions& options, const LogR
   if (poses.empty()) return std::nullopt;
   std::ranges::stable_sort(poses, {}, &StampedPose::stamp);
   io::save_tum(options.out / file, poses, "T_map_body on " + topic);
-  FedEstimate estimate{.topic = topic, .num_poses = poses.size(), .relations = {}, .reference = nullptr};
+  FedEstimate estimate{
+      .topic = topic, .num_poses = poses.size(), .why_not_scored = {}, .relations = {}, .reference = nullptr};
   const Trajectory trajectory = io::load_tum(options.out / file, io::SameStamps::kKeepFirst);
-  if (references.relations)
-    estimate.relations = score::relation_error(trajectory, *references.relations, options.relation_settings);
-  if (references.trajectory) estimate.reference = score_trajectories(trajectory, *references.trajectory);
+  try {
+    if (references.relations)
+      estimate.relations = score::relation_error(trajectory, *references.relations, options.relation_settings);
+    if (references.trajectory) estimate.reference = score_trajectories(trajectory, *references.trajectory);
+  } catch (const InputError& error) {  // too few poses, or none at the times of the reference
+    estimate.why_not_scored = error.what();
+  }
   return estimate;
 }
 
-std::string log_text(const FeedOptions& options, const io::ScanLogSummary& summary, const RunOutcome& outcome) {
-  return fmt::format("{}fed to {} in {:.1f} s ({:.0f} times real time)\n", io::to_text(summary),
-                     options.stack.value_or("the built-in mapping"), outcome.wall_s,
+/// Refuses files of the output directory, which would be removed before they are read.
+void check_output(const FeedOptions& options) {
+  for (const std::filesystem::path& file : {options.input, options.relations, options.reference}) {
+    if (!file.empty() &&
+        std::filesystem::weakly_canonical(file).parent_path() == std::filesystem::weakly_canonical(options.out))
+      throw InputError(fmt::format("--out = {}: must not be the directory of {}", options.out.string(), file.string()));
+  }
+}
+
+std::string log_text(const FeedOptions& options, const std::string& adaptation, const io::ScanLogSummary& summary,
+                     const RunOutcome& outcome) {
+  return fmt::format("{}{}fed to {} in {:.1f} s ({:.0f} times real time)\n", io::to_text(summary),
+                     options.stack ? "" : adaptation, options.stack.value_or("the built-in mapping"), outcome.wall_s,
                      to_seconds(outcome.duration) / std::max(1e-9, outcome.wall_s));
 }
 
 /// Scores the answers of a stack, and completes the directory.
-ExitCode complete_fed_log(const FeedOptions& options, const LogReferences& references,
+ExitCode complete_fed_log(const FeedOptions& options, const LogReferences& references, const std::string& adaptation,
                           const io::ScanLogSummary& summary, const FedScans& fed) {
   if (fed.map) io::save_map(options.out / "map.yaml", *fed.map);
   const RunStatus status = status_of(fed.outcome.end, {});
   io::Metrics metrics{{"status", name_of(status)},
                       {"log", {{"scans", summary.num_scans}, {"duration_s", to_seconds(fed.outcome.duration)}}},
                       {"performance", {{"wall_s", fed.outcome.wall_s}, {"cpu_s", fed.outcome.cpu_s}}}};
-  std::string text = log_text(options, summary, fed.outcome);
+  std::string text = log_text(options, adaptation, summary, fed.outcome);
   const auto add = [&](const char* name, const char* topic, const std::vector<StampedPose>& poses) {
     const std::optional<FedEstimate> estimate =
         score_estimate(options, references, fmt::format("{}.tum", name), topic, poses);
@@ -170,9 +189,11 @@ ExitCode complete_fed_log(const FeedOptions& options, const LogReferences& refer
 /// Feeds a stack with a recorded log.
 ExitCode feed_recorded_log(const FeedOptions& options) {
   auto settings = io::parse_settings<LogFeedSettings>(options.overrides);
+  check_output(options);
   const LogReferences references = load_references(options);
+  check_scans(*io::open_scan_log(options.input, settings.mapping.log), options.input.string());
   const std::unique_ptr<io::ScanLog> log = io::open_scan_log(options.input, settings.mapping.log);
-  adapt_to_log(options.input, settings.mapping);
+  const std::string adaptation = adapt_to_log(options.input, settings.mapping);
 
   const InterruptGuard guard;
   std::optional<OutputLock> lock;
@@ -188,13 +209,21 @@ ExitCode feed_recorded_log(const FeedOptions& options) {
     fmt::print(stderr, "patrol: interrupted; {} is incomplete\n", options.out.string());
     return ExitCode::kProgramFailed;
   }
-  return complete_fed_log(options, references, log->summary(), fed);
+  return complete_fed_log(options, references, adaptation, log->summary(), fed);
 }
 
 /// Feeds a stack with the log of a run.
 ExitCode feed_run(const FeedOptions& options) {
   if (!options.relations.empty() || !options.reference.empty())
     throw InputError("--relations and --reference: only for a recorded log: a run has its own ground truth");
+  for (const std::string& setting : options.overrides) {
+    const bool is_stack = setting.starts_with("stack.") && !setting.starts_with("stack.command=");
+    if (is_stack || setting.starts_with("seed=")) continue;
+    throw InputError(
+        fmt::format("--set {}: must be stack.… or seed, but not stack.command: the data are those of the run, "
+                    "and --stack selects the stack",
+                    setting));
+  }
   const RunDirectory fed = open_run_directory(options.input);
   Scenario scenario = load_scenario(fed.scenario(), options.overrides);
   scenario.stack.command = options.stack.value_or("");  // never starts a command that a run directory names

@@ -146,7 +146,7 @@ ExitCode slam_command(const SlamOptions& options) {
   if (options.calibration) settings.calibration = io::load_settings<slam::Calibration>(*options.calibration, {});
   io::SettingsReader::read_section("--set", io::parse_overrides(overrides), "", settings);
   const std::unique_ptr<io::ScanLog> log = io::open_scan_log(options.log, settings.log);
-  const bool is_adapted = adapt_to_log(options.log, settings);
+  const std::string adaptation = adapt_to_log(options.log, settings);
   const std::unique_ptr<slam::Mapper> mapper = make_log_mapper(settings);
   std::size_t num_earlier_nodes = 0;
   if (options.earlier_map) {
@@ -216,10 +216,8 @@ ExitCode slam_command(const SlamOptions& options) {
   const std::string text = fmt::format(
       "{}{}{} scans, {:.0f} m by odometry, mapped by {} in {:.1f} s ({:.0f} times real time), {:.0f} MB\n{} keyframes, "
       "{} edges, {} of them to other submaps\n{}{}\n{}\n{}\n",
-      io::to_text(log->summary()),
-      is_adapted ? fmt::format("ranges have noise of {:.2f} m: settings of graph adapted\n", settings.range_std_m) : "",
-      mapped.stamps.size(), mapped.way_m, settings.slam.method, took_s, mapped.duration_s() / std::max(1e-9, took_s),
-      peak_memory_mb(), graph.T_map_node.size(), graph.edges.size(),
+      io::to_text(log->summary()), adaptation, mapped.stamps.size(), mapped.way_m, settings.slam.method, took_s,
+      mapped.duration_s() / std::max(1e-9, took_s), peak_memory_mb(), graph.T_map_node.size(), graph.edges.size(),
       metrics["graph"]["cross_submap_edges"].get<std::size_t>(),
       earlier_map_line(options, mapper->is_located(), num_earlier_nodes, graph.T_map_node.size()), consistency.line(),
       odometry.line(), (options.out / "map.yaml").string());

@@ -30,22 +30,28 @@ io::TransformSet mounts_of(const RecordedScan& recorded) {
       {{.stamp = {}, .parent = frame_id::kBody, .child = "lidar", .T_parent_child = to_pose3(recorded.T_body_lidar)}}};
 }
 
+void check_mount(const Pose2& T_body_lidar, const RecordedScan& recorded, const std::string& file) {
+  const Pose2 difference = T_body_lidar.inverse() * recorded.T_body_lidar;
+  if (difference.position().norm() <= kMountTolerance_m && std::abs(difference.yaw) <= kMountTolerance_rad) return;
+  throw InputError(
+      fmt::format("{}: the lidar has another pose on the body at {:.3f} s: a stack is fed with one lidar: choose its "
+                  "scans with --set log.scan_topic or log.carmen_laser",
+                  file, to_seconds(recorded.scan.stamp)));
+}
+
 /// Stack that is fed with the scans of a log, from the first one on.
 class ScanFeeder {
  public:
   ScanFeeder(const RecordedScan& first, std::unique_ptr<StackPort> stack, const std::filesystem::path& log_mcap)
-      : T_body_lidar_(first.T_body_lidar), stack_(std::move(stack)), log_(log_mcap, mounts_of(first)) {}
+      : stack_(std::move(stack)), log_(log_mcap, mounts_of(first)) {}
 
   void add(const RecordedScan& recorded) {
-    check_mount(recorded);
     const Time now = std::max(turn_.now, end_of(recorded.scan));
     if (now > turn_.now) take_turn();
     turn_.now = now;
-    const Pose2& step = recorded.T_begin_end;
     deliver(RecordedOdometry{.stamp = recorded.scan.stamp, .T_odom_body = recorded.T_odom_body});
-    if (step.x != 0.0 || step.y != 0.0 || step.yaw != 0.0) {
-      deliver(RecordedOdometry{.stamp = end_of(recorded.scan), .T_odom_body = recorded.T_odom_body * step});
-    }
+    if (const Time end = end_of(recorded.scan); end > recorded.scan.stamp)
+      deliver(RecordedOdometry{.stamp = end, .T_odom_body = recorded.T_odom_body * recorded.T_begin_end});
     deliver(recorded.scan);
   }
 
@@ -63,16 +69,6 @@ class ScanFeeder {
   }
 
  private:
-  void check_mount(const RecordedScan& recorded) const {
-    const Pose2 difference = T_body_lidar_.inverse() * recorded.T_body_lidar;
-    if (difference.position().norm() > kMountTolerance_m || std::abs(difference.yaw) > kMountTolerance_rad) {
-      throw InputError(
-          fmt::format("the lidar has another pose on the body at {:.3f} s: a stack is fed with one lidar: choose its "
-                      "scans with --set log.scan_topic or log.carmen_laser",
-                      to_seconds(recorded.scan.stamp)));
-    }
-  }
-
   template <typename Message>
   void deliver(const Message& message) {
     turn_.messages.push_back(
@@ -111,7 +107,6 @@ class ScanFeeder {
     }
   }
 
-  Pose2 T_body_lidar_;
   std::unique_ptr<StackPort> stack_;
   io::RunLogWriter log_;
   StackTurn turn_;
@@ -120,6 +115,14 @@ class ScanFeeder {
 };
 
 }  // namespace
+
+void check_scans(io::ScanLog& log, const std::string& file) {
+  std::optional<Pose2> T_body_lidar;
+  while (const std::optional<RecordedScan> recorded = log.next()) {
+    if (!T_body_lidar) T_body_lidar = recorded->T_body_lidar;
+    check_mount(*T_body_lidar, *recorded, file);
+  }
+}
 
 FedScans feed_scans(io::ScanLog& log, const std::string& name, const MakeStack& make_stack,
                     const std::function<void()>& begin, const std::filesystem::path& log_mcap,
@@ -140,9 +143,13 @@ FedScans feed_scans(io::ScanLog& log, const std::string& name, const MakeStack& 
       feeder->add(recorded);
       outcome.duration = recorded.scan.stamp - *first_stamp;
     });
-    if (is_whole) feeder->finish();
-    else outcome.end = RunEnd::kInterrupted;
+    if (is_whole) {
+      bar.show(fmt::format("{}  {} scans, last turn", name, log.summary().num_scans));
+      feeder->finish();
+    }
+    if (!is_whole || guard.is_interrupted()) outcome.end = RunEnd::kInterrupted;
   } catch (const link::LinkError& error) {
+    if (!feeder) throw;
     set_failure(outcome, error);
   }
   FedScans fed = feeder->result();

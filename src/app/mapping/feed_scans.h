@@ -19,17 +19,21 @@ namespace patrol::app {
 /// Answers of a stack to a recorded log.
 struct FedScans {
   RunOutcome outcome;
-  std::vector<StampedPose> poses;       ///< on /pose, in the order in which they were published
-  std::vector<StampedPose> trajectory;  ///< newest on /trajectory; empty: not published
-  std::optional<OccupancyGrid> map;     ///< newest on /map
+  std::vector<StampedPose> poses;       ///< poses on /pose, in order of publication
+  std::vector<StampedPose> trajectory;  ///< newest trajectory on /trajectory; empty: none
+  std::optional<OccupancyGrid> map;     ///< newest map on /map
 };
 
 /// Creates the stack of a log whose sensors have these transforms to the body.
 using MakeStack = std::function<std::unique_ptr<StackPort>(const io::TransformSet& mounts)>;
 
+/// Reads a log to its end. Throws InputError for an unreadable record, and if the pose of the lidar on the body
+/// changes.
+void check_scans(io::ScanLog& log, const std::string& file);
+
 /// Feeds a stack with the scans and the odometry of a recorded log, lossless, and writes them with the answers to
 /// `log_mcap`. The stack has its turns at the ends of scans, the first at the end of the first scan. Each scan is
-/// preceded by odometry at its stamp and, if the log has beam times, at its last beam. `begin`: called once before
+/// preceded by odometry at its stamp and, if its beams have times, at its last beam. `begin`: called once before
 /// anything is written. Throws InputError.
 FedScans feed_scans(io::ScanLog& log, const std::string& name, const MakeStack& make_stack,
                     const std::function<void()>& begin, const std::filesystem::path& log_mcap,

@@ -2,6 +2,8 @@
 
 #include <optional>
 
+#include <fmt/format.h>
+
 #include "app/scenario/neighbor_model.h"
 #include "app/scenario/scenario.h"
 #include "slam/graph/range_noise.h"
@@ -24,10 +26,12 @@ double estimate_range_std_m(const std::filesystem::path& file, const io::ScanLog
 
 }  // namespace
 
-bool adapt_to_log(const std::filesystem::path& log, LogMappingSettings& settings) {
+std::string adapt_to_log(const std::filesystem::path& log, LogMappingSettings& settings) {
   if (settings.range_std_m == 0.0) settings.range_std_m = estimate_range_std_m(log, settings.log);
-  return settings.slam.method == "graph" &&
-         slam::adapt_to_range_noise(settings.range_std_m, settings.slam.graph.scan_odometry);
+  if (settings.slam.method != "graph" ||
+      !slam::adapt_to_range_noise(settings.range_std_m, settings.slam.graph.scan_odometry))
+    return "";
+  return fmt::format("ranges have noise of {:.2f} m: settings of graph adapted\n", settings.range_std_m);
 }
 
 std::unique_ptr<slam::Mapper> make_log_mapper(const LogMappingSettings& settings) {

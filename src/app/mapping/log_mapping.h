@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <string>
 
 #include "core/settings.h"
 #include "io/logs/scan_log.h"
@@ -33,8 +34,9 @@ struct LogMappingSettings {
 };
 
 /// Sets the standard deviation of the ranges, unless it is given, from the first scans of a log, and adapts the
-/// settings of the method `graph` to it. Returns whether it changed these. Throws InputError.
-bool adapt_to_log(const std::filesystem::path& log, LogMappingSettings& settings);
+/// settings of the method `graph` to it. Returns a line about the adaptation; empty if there was none. Throws
+/// InputError.
+std::string adapt_to_log(const std::filesystem::path& log, LogMappingSettings& settings);
 
 /// Creates the mapper of `settings.slam`. Throws InputError.
 std::unique_ptr<slam::Mapper> make_log_mapper(const LogMappingSettings& settings);

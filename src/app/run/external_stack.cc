@@ -68,6 +68,15 @@ bool is_finite(const stack::StackMessage& message) {
                     message);
 }
 
+/// Returns whether the rotations of a trajectory, which are written to files as they are, are unit quaternions.
+bool has_unit_quaternions(const stack::StackMessage& message) {
+  constexpr double kTolerance = 1e-3;
+  const auto* estimate = std::get_if<TrajectoryEstimate>(&message);
+  return estimate == nullptr || std::ranges::all_of(estimate->T_map_body, [](const StampedPose& stamped) {
+           return std::abs(stamped.pose.rotation.norm() - 1.0) < kTolerance;
+         });
+}
+
 std::string quoted_name(const std::string& name) { return io::on_one_line(name.substr(0, kMaxNameBytes)); }
 
 }  // namespace
@@ -165,14 +174,18 @@ void ExternalStack::send(const StackTurn& turn) {
     server_->send(message.topic, message.log_time, message.cdr);
 }
 
-StackAnswer ExternalStack::take_turn(const StackTurn& turn) {
-  if (!server_) {
-    try {
-      connect();
-    } catch (const LinkError& error) {
-      fail(error, "before the start");
-    }
+/// Connects before the first turn, which is the last one if there is no other.
+void ExternalStack::ensure_connected() {
+  if (server_) return;
+  try {
+    connect();
+  } catch (const LinkError& error) {
+    fail(error, "before the start");
   }
+}
+
+StackAnswer ExternalStack::take_turn(const StackTurn& turn) {
+  ensure_connected();
   const std::optional<double> cpu_start_s = cpu_seconds();
   StackAnswer answer = exchange(turn, false);
   const std::optional<double> cpu_end_s = cpu_seconds();
@@ -180,7 +193,10 @@ StackAnswer ExternalStack::take_turn(const StackTurn& turn) {
   return answer;
 }
 
-std::vector<PublishedMessage> ExternalStack::finish(const StackTurn& turn) { return exchange(turn, true).messages; }
+std::vector<PublishedMessage> ExternalStack::finish(const StackTurn& turn) {
+  ensure_connected();
+  return exchange(turn, true).messages;
+}
 
 StackAnswer ExternalStack::exchange(const StackTurn& turn, bool is_last) {
   const auto start = std::chrono::steady_clock::now();
@@ -247,6 +263,7 @@ PublishedMessage checked_message(link::PublishedMessage message) {
     refuse(error.what());
   }
   if (checked.content && !is_finite(*checked.content)) refuse("contains a number that is not finite");
+  if (checked.content && !has_unit_quaternions(*checked.content)) refuse("contains a quaternion whose norm is not 1");
   return checked;
 }
 

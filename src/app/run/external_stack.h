@@ -47,6 +47,7 @@ class ExternalStack final : public StackPort {
   std::map<std::string, double> seconds_by_stage() const override { return {{"stack", wait_s_}}; }
 
  private:
+  void ensure_connected();
   void connect();
   link::Socket accept(const link::WaitLimit& wait);
   void close_listener();

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/cycle.h"
+
 namespace patrol::stack {
 namespace {
 

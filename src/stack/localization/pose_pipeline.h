@@ -46,7 +46,7 @@ class PosePipeline {
 
   /// Processes a sensor message other than a scan; `level` and `localize` process scans.
   void add(const SensorMessage& message, StackOutput& output);
-  /// Returns the newest odometry. Call once per tick: the first estimate starts the settling time of odometry.
+  /// Returns the newest odometry. Call at every step: the first estimate starts the settling time of odometry.
   std::optional<OdometryEstimate> update_odometry();
   /// Returns the level scan; none before odometry has settled, because the first scan defines the map's origin.
   std::optional<LevelScan> level(const LaserScan& scan, StackOutput& output);

@@ -56,6 +56,20 @@ patrol_client.run(on_turn, turn_period=0.0)
 """
 
 
+# Publishes a trajectory of one pose whose quaternion is zero.
+NO_ROTATION = """
+import patrol_client
+
+def on_turn(turn):
+    trajectory = turn.new("/trajectory")
+    trajectory.poses.append(trajectory.element("poses"))
+    trajectory.poses[0].pose.orientation.w = 0.0
+    turn.publish("/trajectory", trajectory)
+
+patrol_client.run(on_turn, turn_period=0.0)
+"""
+
+
 class FeedLog(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -95,8 +109,11 @@ class FeedLog(unittest.TestCase):
         done = self.patrol("feed", log or self.log, "--out", out, *more, code=code)
         return json.loads((out / "metrics.json").read_text()), out, done
 
-    def rows(self, file):
-        return [line.split() for line in file.read_text().splitlines() if not line.startswith("#")]
+    def reference(self):
+        """True trajectory (TUM)."""
+        path = self.folder / "true.tum"
+        path.write_text("".join(f"{START_S + 0.2 * k:.6f} {x} {y} 0 0 0 {math.sin(yaw / 2)} {math.cos(yaw / 2)}\n" for k, (x, y, yaw) in enumerate(self.poses)))
+        return path
 
     def messages(self, out):
         with open(out / "log.mcap", "rb") as file:
@@ -136,7 +153,7 @@ class FeedLog(unittest.TestCase):
         self.assertLess(fed["estimate"]["reference"]["pose"]["ate_rmse_m"], 0.005)
         self.assertEqual(fed["estimate"]["reference"]["pose"]["coverage"], 1.0)
 
-    def test_a_stack_that_publishes_nothing_is_said_to(self):
+    def test_a_stack_that_publishes_nothing_is_reported(self):
         fed, out, done = self.feed("silent", "--stack", self.stack("silent.py", SILENT), "--relations", self.relations)
         self.assertIsNone(fed["estimate"])
         self.assertIn("not published: /pose", done.stdout)
@@ -161,11 +178,46 @@ class FeedLog(unittest.TestCase):
                                 ((self.log, "--reference", self.folder / "nothing.tum"), "nothing.tum"),
                                 ((self.log, "--set", "slam.methd=rbpf"), "slam.methd"),
                                 ((self.log, "--stack", "no_such_program"), "no_such_program"),
-                                ((run, "--relations", self.relations), "only for a recorded log")]:
+                                ((self.log, "--max-dt-s", "-1"), "max_dt_s"),
+                                ((run, "--relations", self.relations), "only for a recorded log"),
+                                ((run, "--set", "world=tunnel"), "--set world=tunnel: must be stack."),
+                                ((run, "--set", "stack.command=true"), "--stack selects the stack")]:
             done = self.patrol("feed", *arguments, "--out", out, code=2)
             self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
             self.assertIn(text, done.stderr)
             self.assertFalse(out.exists())
+
+    def test_a_log_of_one_scan_has_one_turn(self):
+        one = self.folder / "block.log.one" / "block.log"
+        one.parent.mkdir()
+        one.write_text(next(line for line in self.lines if line.startswith("FLASER")) + "\n")
+        fed, out, _ = self.feed("one", "--stack", f"{PATROL} stack", "--reference", self.reference(), log=one)
+        self.assertEqual(fed["estimate"]["poses"], 1)
+        self.assertIn("not_scored", fed["estimate"])  # a trajectory of one pose
+
+    def test_a_trajectory_without_rotations_is_refused(self):
+        fed, _, _ = self.feed("no_rotation", "--stack", self.stack("no_rotation.py", NO_ROTATION), code=3)
+        self.assertIn("/trajectory: contains a quaternion whose norm is not 1", fed["message"])
+
+    def test_a_silent_stack_ends_the_feeding(self):
+        sleeper = self.stack("sleeper.py", "import time, patrol_client\npatrol_client.run(lambda turn: time.sleep(30))\n")
+        fed, _, _ = self.feed("sleeper", "--stack", sleeper, "--set", "stack.timeout_s=1", code=4)
+        self.assertEqual(fed["status"], "stack silent")
+
+    def test_a_fed_log_can_be_fed_again(self):
+        _, first, _ = self.feed("first")
+        again, _, _ = self.feed("again", log=first / "log.mcap")
+        self.assertEqual(again["estimate"]["poses"], len(self.poses))
+        done = self.patrol("feed", first / "log.mcap", "--out", first, code=2)
+        self.assertIn("must not be the directory of", done.stderr)
+        self.assertTrue((first / "log.mcap").exists())
+
+    def test_a_damaged_log_leaves_nothing(self):
+        damaged = self.folder / "damaged.log"
+        damaged.write_text("\n".join(self.lines[:40]) + "\n" + self.lines[40][:300] + "\n")
+        done = self.patrol("feed", damaged, "--out", self.folder / "damaged", code=2)
+        self.assertIn("damaged.log:41", done.stderr)
+        self.assertFalse((self.folder / "damaged").exists())
 
     def test_kiss_icp_keeps_the_recorded_odometry_straight(self):
         fed, _, _ = self.feed("kiss", "--stack", f"{sys.executable} {EXAMPLES / 'kiss_icp_scans.py'}", "--relations", self.relations)

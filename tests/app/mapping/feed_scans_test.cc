@@ -147,9 +147,11 @@ TEST_F(FeedScans, AMovingScanHasOdometryAtItsFirstAndAtItsLastBeam) {
 TEST_F(FeedScans, ALidarThatMovesBy6MmOnTheBodyIsRefused) {
   RecordedScan moved = scan_at(ms(1100));
   moved.T_body_lidar.x += 0.004;
-  feed({scan_at(ms(1000)), moved});
+  GivenLog still({scan_at(ms(1000)), moved});
+  check_scans(still, "log");
   moved.T_body_lidar.x += 0.002;
-  EXPECT_THROW(feed({scan_at(ms(1000)), moved}), InputError);
+  GivenLog moving({scan_at(ms(1000)), moved});
+  EXPECT_THROW(check_scans(moving, "log"), InputError);
 }
 
 TEST_F(FeedScans, TheLogOfAFailedStackHasTheMessagesUpToTheFailure) {

@@ -93,6 +93,16 @@ class Cdr(unittest.TestCase):
         self.assertEqual((TYPE.NONE, TYPE.NAME), (0, "beam"))
         self.assertEqual(len(message.ends), 2)
 
+    def test_an_element_of_a_list_of_messages_is_new_each_time(self):
+        message = TYPE()
+        message.points.append(message.element("points"))
+        message.points.append(message.element("points"))
+        message.points[0].x = 2.5
+        self.assertEqual([point.x for point in TYPE.decode(message.encode()).points], [2.5, 0.0])
+        for field in ("names", "ranges", "header", "nothing"):
+            with self.assertRaisesRegex(KeyError, f"no list of messages {field}"):
+                message.element(field)
+
     def test_types_are_found_without_their_package(self):
         names = [field.type._type_name for field in cdr.message_type(
             "test_msgs/msg/Short", f"Point p\nHeader h\n{LINE}\n" + DEFINITION.split(f"{LINE}\n", 1)[1])._fields]

@@ -164,6 +164,15 @@ class RosMessage:
                 raise CdrError(f"{self._type_name}.{field.name}: {error}") from error
 
     @classmethod
+    def element(cls, field):
+        """Returns a new message for a list of messages: path.poses.append(path.element("poses")). Raises KeyError if the
+        type has no such list."""
+        for one in cls._fields:
+            if one.name == field and one.count is not None and one.type is not None:
+                return one.type()
+        raise KeyError(f"{cls._type_name} has no list of messages {field}")
+
+    @classmethod
     def decode(cls, data):
         """Returns the message of encoded bytes. Raises CdrError."""
         return cls._read(_Reader(data))
