@@ -51,7 +51,7 @@ class StackClient {
     if (!stream_.is_declared(topic)) stream_.declare_known(topic, type);
     stream_.write(topic, now, cdr);
   }
-  /// Sends what has been published so far in this turn; `done` does so too.
+  /// Sends the messages that were published in this turn; `done` does so too.
   void flush() { stream_.flush(); }
   /// Ends the turn at `now`.
   void done(const Done& done);

@@ -98,6 +98,8 @@ struct FeedOptions {
 /// Feeds a stack with the log of a run, or with the scans and the odometry of a recorded log, and scores its answers,
 /// which have no effect on the robot.
 ExitCode feed_command(const FeedOptions& options);
+/// `feed_command` for a recorded log.
+ExitCode feed_log_command(const FeedOptions& options);
 
 /// Takes part in a run as the built-in stack in a process of its own. `address`: of the simulator; none: as the process
 /// that `patrol run --stack` starts.

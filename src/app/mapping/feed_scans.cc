@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "app/common/process_cost.h"
+#include "app/mapping/log_documents.h"
 #include "core/error.h"
 #include "core/overloaded.h"
 #include "io/logs/run_log.h"
@@ -25,11 +26,6 @@ Time end_of(const LaserScan& scan) {
   return scan.stamp + from_seconds(std::max(0.0, last_beam * scan.time_increment_s));
 }
 
-io::TransformSet mounts_of(const RecordedScan& recorded) {
-  return {
-      {{.stamp = {}, .parent = frame_id::kBody, .child = "lidar", .T_parent_child = to_pose3(recorded.T_body_lidar)}}};
-}
-
 void check_mount(const Pose2& T_body_lidar, const RecordedScan& recorded, const std::string& file) {
   const Pose2 difference = T_body_lidar.inverse() * recorded.T_body_lidar;
   if (difference.position().norm() <= kMountTolerance_m && std::abs(difference.yaw) <= kMountTolerance_rad) return;
@@ -43,7 +39,7 @@ void check_mount(const Pose2& T_body_lidar, const RecordedScan& recorded, const 
 class ScanFeeder {
  public:
   ScanFeeder(const RecordedScan& first, std::unique_ptr<StackPort> stack, const std::filesystem::path& log_mcap)
-      : stack_(std::move(stack)), log_(log_mcap, mounts_of(first)) {}
+      : stack_(std::move(stack)), log_(log_mcap, lidar_mount(first.T_body_lidar)) {}
 
   void add(const RecordedScan& recorded) {
     const Time now = std::max(turn_.now, end_of(recorded.scan));
@@ -135,7 +131,7 @@ FedScans feed_scans(io::ScanLog& log, const std::string& name, const MakeStack& 
   try {
     const bool is_whole = read_scans(log, name, guard, bar, [&](const RecordedScan& recorded) {
       if (!feeder) {
-        std::unique_ptr<StackPort> stack = make_stack(mounts_of(recorded));
+        std::unique_ptr<StackPort> stack = make_stack(lidar_mount(recorded.T_body_lidar));
         begin();
         feeder.emplace(recorded, std::move(stack), log_mcap);
         first_stamp = recorded.scan.stamp;

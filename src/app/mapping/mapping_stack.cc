@@ -1,16 +1,14 @@
 #include "app/mapping/mapping_stack.h"
 
-#include <algorithm>
 #include <utility>
 
+#include "app/mapping/log_documents.h"
 #include "core/error.h"
 #include "core/thread_cpu_time.h"
 #include "io/logs/topics.h"
 
 namespace patrol::app {
 namespace {
-
-constexpr const char* kLidarFrame = "lidar";  // frame_id of a LaserScan
 
 template <typename Message>
 PublishedMessage published_message(Message message) {
@@ -20,19 +18,13 @@ PublishedMessage published_message(Message message) {
   return published;
 }
 
-Pose2 lidar_mount(const io::TransformSet& mounts) {
-  const auto mount = std::ranges::find(mounts.transforms, kLidarFrame, &io::FrameTransform::child);
-  if (mount == mounts.transforms.end()) throw InputError("the recorded log has no transform of the lidar");
-  return to_pose2(mount->T_parent_child);
-}
-
 }  // namespace
 
 MappingStack::MappingStack(const LogMappingSettings& settings, const io::TransformSet& mounts)
     : settings_(settings),
       mapper_(make_log_mapper(settings)),
       calibrated_(settings.calibration),
-      T_body_lidar_(lidar_mount(mounts)) {}
+      T_body_lidar_(T_body_lidar_of(mounts)) {}
 
 StackAnswer MappingStack::take_turn(const StackTurn& turn) {
   StackAnswer answer{.messages = {}, .next_turn = turn.now + Time{1}, .mission_is_over = false, .delay = {}};
