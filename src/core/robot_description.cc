@@ -12,6 +12,13 @@ double RobotDescription::outline_radius_m() const {
   return radius_m;
 }
 
+double RobotDescription::body_height_m() const {
+  if (tracks) return tracks->body_height_m;
+  double height_m = 0.0;
+  for (const WheelGeometry& wheel : wheels) height_m = std::max(height_m, wheel.radius_m - wheel.center_in_body.z());
+  return height_m;
+}
+
 const Pose3& RobotDescription::T_body(const std::string& sensor) const {
   const auto frame = T_body_sensor.find(sensor);
   if (frame == T_body_sensor.end()) throw InputError("robot " + name + ": link not found: " + sensor);

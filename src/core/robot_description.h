@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <numbers>
 #include <optional>
@@ -39,6 +40,21 @@ struct TrackGeometry {
   double body_height_m = 0.0;      ///< height of the body origin above level ground
 };
 
+/// Wheel that rolls about a lateral axis. Its rotation joint is in `RobotDescription::joint_names` if a motor drives it.
+struct WheelGeometry {
+  std::string link;
+  Eigen::Vector3d center_in_body = Eigen::Vector3d::Zero();  ///< m, with the steering joint at zero
+  double radius_m = 0.0;
+  double width_m = 0.0;
+  std::optional<std::size_t> drive_joint = std::nullopt;     ///< index in `joint_names`; none for a wheel without a motor
+  std::optional<std::size_t> steering_joint = std::nullopt;  ///< index in `joint_names`; none for a wheel that is not steered
+  double forward_sign = 1.0;                  ///< sign of the joint's rotation when the robot drives forward
+  double left_sign = 1.0;                     ///< sign of the steering angle when the wheel points to the left
+  bool is_caster = false;                     ///< the wheel turns freely about a vertical joint
+
+  bool is_left() const { return center_in_body.y() > 0.0; }
+};
+
 /// Pan-tilt mount of the TEM coil: a yaw joint (positive to the left) followed by a pitch joint (positive downward).
 /// Both axes intersect in the center of the coil.
 struct AntennaGeometry {
@@ -58,8 +74,10 @@ struct RobotDescription {
   double mass_kg = 0.0;
   std::vector<LegGeometry> legs;           ///< FL, FR, RL, RR; empty for a robot without legs
   std::optional<TrackGeometry> tracks;     ///< tracked robots only
+  std::vector<WheelGeometry> wheels;       ///< wheels on the ground; empty for a robot without wheels
   std::optional<AntennaGeometry> antenna;  ///< robots with a link `tem_mount` only
-  /// Leg by leg: abduction, hip, knee; for tracked robots the sprockets: left, right.
+  /// Leg by leg: abduction, hip, knee; for tracked robots the sprockets: left, right; for wheeled robots the driven
+  /// wheels and then the steering joints.
   std::vector<std::string> joint_names;
   std::vector<JointLimit> joint_limits;      ///< [joint]
   std::vector<Eigen::Vector2d> footprint_m;  ///< convex hull of the collision shapes in level, counterclockwise
@@ -69,6 +87,10 @@ struct RobotDescription {
 
   /// Returns the radius of the circle around the body origin that encloses the footprint.
   double outline_radius_m() const;
+
+  /// Returns the height of the body origin above level ground by the geometry of tracks or wheels, m; 0 for a robot
+  /// with legs.
+  double body_height_m() const;
 
   /// Returns the pose of a sensor frame in body. Throws InputError if the robot has no such frame.
   const Pose3& T_body(const std::string& sensor) const;

@@ -17,6 +17,7 @@
 #include "core/error.h"
 #include "core/geometry/convex_polygon.h"
 #include "core/leg_kinematics.h"
+#include "core/wheel_kinematics.h"
 #include "io/files/atomic_file.h"
 
 namespace patrol::io {
@@ -25,6 +26,8 @@ namespace {
 constexpr std::array kLegNames = {"FL", "FR", "RL", "RR"};
 constexpr std::array kSideNames = {"left", "right"};
 constexpr std::array kTrackNames = {"left_track", "right_track"};
+
+constexpr double kParallelCosine = 0.999;  // axes within 2.6 degrees are parallel
 
 /// Nominal standing posture (abduction, hip, knee), rad, for the footprint.
 const Eigen::Vector3d kStandingPosture(0.0, 0.8, -1.6);
@@ -37,7 +40,7 @@ int line_of(const std::string& text, const std::string& name) {
 }
 
 /// Wheel inside the belt of a track: a cylinder across the robot.
-struct Wheel {
+struct TrackWheel {
   Eigen::Vector3d center_m;  ///< position in body
   double radius_m;
   double width_m;
@@ -71,11 +74,18 @@ class UrdfReader {
   LegGeometry read_leg(const std::string& name) const;
   void read_legs(RobotDescription& robot) const;
   void read_tracks(RobotDescription& robot) const;
+  bool has_wheels() const;
+  WheelGeometry read_wheel_shape(const urdf::Link& link) const;
+  std::size_t add_joint(const std::string& name, RobotDescription& robot) const;
+  void read_wheels(RobotDescription& robot) const;
+  void check_wheels(const RobotDescription& robot) const;
+  std::vector<Eigen::Vector2d> read_wheeled_footprint() const;
   AntennaGeometry read_antenna() const;
   JointLimit read_limit(const std::string& name) const;
   double foot_radius_m(const std::string& link) const;
   double sprocket_radius_m(const std::string& link) const;
-  std::vector<Wheel> read_wheels(const std::string& track) const;
+  std::vector<TrackWheel> read_track_wheels(const std::string& track) const;
+  Pose3 T_body_link(const urdf::Link& link) const;
   std::vector<Eigen::Vector2d> read_footprint(const RobotDescription& robot) const;
 
   std::string path_;
@@ -220,14 +230,14 @@ double UrdfReader::sprocket_radius_m(const std::string& link) const {
   return std::static_pointer_cast<const urdf::Cylinder>(sprocket->collision->geometry)->radius;
 }
 
-std::vector<Wheel> UrdfReader::read_wheels(const std::string& track) const {
+std::vector<TrackWheel> UrdfReader::read_track_wheels(const std::string& track) const {
   const urdf::LinkConstSharedPtr link = model_->getLink(track);
   if (!link || !link->parent_joint || link->parent_joint->type != urdf::Joint::FIXED ||
       link->parent_joint->parent_link_name != frame_id::kBody) {
     fail(track, fmt::format("a track must be fixed to {}", frame_id::kBody));
   }
   const Pose3 T_body_track = to_pose(link->parent_joint->parent_to_joint_origin_transform);
-  std::vector<Wheel> wheels;
+  std::vector<TrackWheel> wheels;
   for (const urdf::CollisionSharedPtr& collision : link->collision_array) {
     const Pose3 T_body_wheel = T_body_track * to_pose(collision->origin);
     const bool is_across = std::abs((T_body_wheel.rotation * Eigen::Vector3d::UnitZ()).y()) > 0.9999;
@@ -252,19 +262,19 @@ JointLimit UrdfReader::read_limit(const std::string& name) const {
 }
 
 /// Returns the height of the contact with level ground in body.
-double underside_m(const std::vector<Wheel>& wheels) {
+double underside_m(const std::vector<TrackWheel>& wheels) {
   double bottom = std::numeric_limits<double>::infinity();
-  for (const Wheel& wheel : wheels) bottom = std::min(bottom, wheel.center_m.z() - wheel.radius_m);
+  for (const TrackWheel& wheel : wheels) bottom = std::min(bottom, wheel.center_m.z() - wheel.radius_m);
   return bottom;
 }
 
 /// Returns the distance between the first and the last road wheel. Road wheels are the lowest wheels, between which the
 /// belt is on the ground.
-double contact_length_m(const std::vector<Wheel>& wheels) {
+double contact_length_m(const std::vector<TrackWheel>& wheels) {
   constexpr double kLevel_m = 1e-3;
   const double bottom = underside_m(wheels);
   double front = -std::numeric_limits<double>::infinity(), rear = -front;
-  for (const Wheel& wheel : wheels) {
+  for (const TrackWheel& wheel : wheels) {
     if (wheel.center_m.z() - wheel.radius_m > bottom + kLevel_m) continue;
     front = std::max(front, wheel.center_m.x());
     rear = std::min(rear, wheel.center_m.x());
@@ -291,7 +301,7 @@ std::vector<Eigen::Vector2d> UrdfReader::read_footprint(const RobotDescription& 
   }
   for (const char* track : kTrackNames) {
     if (!robot.tracks) break;
-    for (const Wheel& wheel : read_wheels(track)) {
+    for (const TrackWheel& wheel : read_track_wheels(track)) {
       for (const double x : {-wheel.radius_m, wheel.radius_m}) {
         for (const double y : {-0.5, 0.5})
           points.emplace_back(wheel.center_m.head<2>() + Eigen::Vector2d(x, y * wheel.width_m));
@@ -312,7 +322,7 @@ void UrdfReader::read_legs(RobotDescription& robot) const {
 }
 
 void UrdfReader::read_tracks(RobotDescription& robot) const {
-  const std::vector<Wheel> left = read_wheels(kTrackNames[0]), right = read_wheels(kTrackNames[1]);
+  const std::vector<TrackWheel> left = read_track_wheels(kTrackNames[0]), right = read_track_wheels(kTrackNames[1]);
   if (left.size() < 2 || left.size() != right.size())
     fail(kTrackNames[0], "must have at least two wheels, as many as the other track");
   for (const char* side : kSideNames) {
@@ -326,6 +336,154 @@ void UrdfReader::read_tracks(RobotDescription& robot) const {
                                .body_height_m = -underside_m(left)};
   if (robot.tracks->gauge_m <= robot.tracks->width_m) fail(kTrackNames[0], "must be to the left of the right track");
   if (robot.tracks->contact_length_m <= 0.0) fail(kTrackNames[0], "at least two wheels must touch the ground");
+}
+
+bool turns_endlessly(const urdf::Link& link) {
+  return link.parent_joint && link.parent_joint->type == urdf::Joint::CONTINUOUS;
+}
+
+/// Returns the vector of a joint's axis in body with all joints at zero.
+Eigen::Vector3d axis_in_body(const urdf::Joint& joint, const Pose3& T_body_child) {
+  return T_body_child.rotation * Eigen::Vector3d(joint.axis.x, joint.axis.y, joint.axis.z).stableNormalized();
+}
+
+bool UrdfReader::has_wheels() const {
+  return std::any_of(model_->links_.begin(), model_->links_.end(),
+                     [](const auto& entry) { return turns_endlessly(*entry.second); });
+}
+
+/// Returns the pose of a link in body with all joints at zero.
+Pose3 UrdfReader::T_body_link(const urdf::Link& link) const {
+  if (link.name == frame_id::kBody) return {};
+  const urdf::LinkConstSharedPtr parent = link.getParent();
+  if (!parent) fail(link.name, fmt::format("is not connected to {}", frame_id::kBody));
+  return T_body_link(*parent) * to_pose(link.parent_joint->parent_to_joint_origin_transform);
+}
+
+/// Reads the shape of a wheel: a cylinder about the axis of its joint, or a sphere.
+WheelGeometry UrdfReader::read_wheel_shape(const urdf::Link& link) const {
+  const Pose3 T_body_wheel = T_body_link(link);
+  const Eigen::Vector3d axis = axis_in_body(*link.parent_joint, T_body_wheel);
+  if (std::abs(axis.y()) < kParallelCosine)
+    fail(link.parent_joint->name, fmt::format("the axis of a wheel must be along y of {}", frame_id::kBody));
+  if (link.collision_array.size() != 1) fail(link.name, "a wheel must have one collision shape: a cylinder or a sphere");
+  const urdf::Collision& shape = *link.collision_array.front();
+  const Pose3 T_body_shape = T_body_wheel * to_pose(shape.origin);
+  WheelGeometry wheel{.link = link.name,
+                      .center_in_body = T_body_shape.position,
+                      .forward_sign = axis.y() > 0.0 ? 1.0 : -1.0};
+  if (shape.geometry->type == urdf::Geometry::CYLINDER) {
+    const auto& cylinder = dynamic_cast<const urdf::Cylinder&>(*shape.geometry);
+    if (std::abs((T_body_shape.rotation * Eigen::Vector3d::UnitZ()).dot(axis)) < kParallelCosine)
+      fail(link.name, "the collision cylinder of a wheel must be about the axis of its joint");
+    wheel.radius_m = cylinder.radius;
+    wheel.width_m = cylinder.length;
+  } else if (shape.geometry->type == urdf::Geometry::SPHERE) {
+    wheel.radius_m = dynamic_cast<const urdf::Sphere&>(*shape.geometry).radius;
+    wheel.width_m = 2.0 * wheel.radius_m;
+  } else {
+    fail(link.name, "the collision shape of a wheel must be a cylinder or a sphere");
+  }
+  return wheel;
+}
+
+/// Returns the joint that turns the carrier of a wheel; null for a wheel on the chassis.
+urdf::JointConstSharedPtr carrier_joint(const urdf::Link& wheel) {
+  for (urdf::LinkConstSharedPtr at = wheel.getParent(); at && at->parent_joint; at = at->getParent()) {
+    if (at->parent_joint->type != urdf::Joint::FIXED) return at->parent_joint;
+  }
+  return nullptr;
+}
+
+std::size_t UrdfReader::add_joint(const std::string& name, RobotDescription& robot) const {
+  robot.joint_names.push_back(name);
+  robot.joint_limits.push_back(read_limit(name));
+  return robot.joint_names.size() - 1;
+}
+
+/// Reads the wheels: links without children on continuous joints. A motor drives a wheel whose joint has a <limit>. A
+/// wheel is steered if a joint with a <limit> turns its carrier, and a caster if a joint without <limit> does.
+void UrdfReader::read_wheels(RobotDescription& robot) const {
+  std::vector<urdf::JointConstSharedPtr> carrier_joints;  // [wheel]
+  for (const auto& [name, link] : model_->links_) {
+    if (!turns_endlessly(*link) || !link->child_links.empty()) continue;
+    robot.wheels.push_back(read_wheel_shape(*link));
+    if (link->parent_joint->limits) robot.wheels.back().drive_joint = add_joint(link->parent_joint->name, robot);
+    carrier_joints.push_back(carrier_joint(*link));
+  }
+  for (std::size_t i = 0; i < robot.wheels.size(); ++i) {
+    if (!carrier_joints[i]) continue;
+    const urdf::Joint& carrier = *carrier_joints[i];
+    const double up = axis_in_body(carrier, T_body_link(*model_->getLink(carrier.child_link_name))).z();
+    if (std::abs(up) < kParallelCosine)
+      fail(carrier.name, fmt::format("the joint above a wheel must turn about z of {}", frame_id::kBody));
+    robot.wheels[i].is_caster = !carrier.limits;
+    if (!carrier.limits) continue;
+    robot.wheels[i].left_sign = up > 0.0 ? 1.0 : -1.0;
+    robot.wheels[i].steering_joint = add_joint(carrier.name, robot);
+  }
+  check_wheels(robot);
+}
+
+void UrdfReader::check_wheels(const RobotDescription& robot) const {
+  constexpr double kLevel_m = 0.01;
+  const double height_m = robot.body_height_m();
+  bool is_driven = false;
+  for (const WheelGeometry& wheel : robot.wheels) {
+    is_driven = is_driven || wheel.drive_joint;
+    const double above_m = height_m + wheel.center_in_body.z() - wheel.radius_m;
+    if (above_m <= kLevel_m) continue;
+    fail(wheel.link, fmt::format("is {:.3f} m above the lowest wheel: all wheels must stand on one plane", above_m));
+  }
+  if (!is_driven)
+    throw InputError(path_ + ": no wheel has a motor: the joint of a driven wheel has a <limit> with effort and velocity");
+  try {
+    differential_geometry(robot);
+    wheel_drive_type(robot);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", path_, error.what()));
+  }
+}
+
+/// Returns points on the outline of a shape, seen along any axis, in its frame.
+std::vector<Eigen::Vector3d> outline_points(const urdf::Geometry& geometry) {
+  std::vector<Eigen::Vector3d> points;
+  constexpr int kNumOnCircle = 16;
+  const auto add_circle = [&points](double radius_m, double z_m) {
+    for (int i = 0; i < kNumOnCircle; ++i) {
+      const double angle = 2.0 * M_PI * i / kNumOnCircle;
+      points.emplace_back(radius_m * std::cos(angle), radius_m * std::sin(angle), z_m);
+    }
+  };
+  if (geometry.type == urdf::Geometry::BOX) {
+    const urdf::Vector3& size = dynamic_cast<const urdf::Box&>(geometry).dim;
+    for (const double x : {-0.5, 0.5}) {
+      for (const double y : {-0.5, 0.5}) {
+        for (const double z : {-0.5, 0.5}) points.emplace_back(x * size.x, y * size.y, z * size.z);
+      }
+    }
+  } else if (geometry.type == urdf::Geometry::CYLINDER) {
+    const auto& cylinder = dynamic_cast<const urdf::Cylinder&>(geometry);
+    for (const double end : {-0.5, 0.5}) add_circle(cylinder.radius, end * cylinder.length);
+  } else if (geometry.type == urdf::Geometry::SPHERE) {
+    add_circle(dynamic_cast<const urdf::Sphere&>(geometry).radius, 0.0);
+  }
+  return points;
+}
+
+/// Returns all collision shapes seen from above.
+std::vector<Eigen::Vector2d> UrdfReader::read_wheeled_footprint() const {
+  std::vector<Eigen::Vector2d> points;
+  for (const auto& [name, link] : model_->links_) {
+    const Pose3 T_body = T_body_link(*link);
+    for (const urdf::CollisionSharedPtr& collision : link->collision_array) {
+      Pose3 T_body_shape = T_body * to_pose(collision->origin);
+      if (collision->geometry->type == urdf::Geometry::SPHERE) T_body_shape.rotation.setIdentity();
+      for (const Eigen::Vector3d& point : outline_points(*collision->geometry))
+        points.emplace_back((T_body_shape * point).head<2>());
+    }
+  }
+  return convex_hull(std::move(points));
 }
 
 AntennaGeometry UrdfReader::read_antenna() const {
@@ -365,11 +523,13 @@ RobotDescription UrdfReader::read() const {
     throw InputError(fmt::format("{}: link not found: {}", path_, frame_id::kBody));
   if (model_->getLink(kTrackNames[0])) {
     read_tracks(robot);
+  } else if (has_wheels()) {
+    read_wheels(robot);
   } else {
     read_legs(robot);
   }
   if (model_->getLink("tem_mount")) robot.antenna = read_antenna();
-  robot.footprint_m = read_footprint(robot);
+  robot.footprint_m = robot.wheels.empty() ? read_footprint(robot) : read_wheeled_footprint();
   return robot;
 }
 

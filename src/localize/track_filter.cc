@@ -103,7 +103,7 @@ void TrackFilter::propagate_slip(double distance_m, double turn_rad, double slip
 void TrackFilter::correct_speed(double dt_s, double track_mps, const TrunkMotion& then,
                                 const Eigen::Vector3d& std_mps) {
   smooth_track_mps_ += std::min(1.0, dt_s / kTrackSmoothing_s) * (track_mps - smooth_track_mps_);
-  const Eigen::Vector3d p(icr_m_.x(), icr_m_.y(), -settings_.height_m);
+  const Eigen::Vector3d p(settings_.turn_center_x_m + icr_m_.x(), icr_m_.y(), -settings_.height_m);
   const Eigen::Vector3d innovation = Eigen::Vector3d(track_mps - (scale_ + slip_) * smooth_track_mps_, 0.0, 0.0) -
                                      then.v_body - then.omega_body.cross(p);
 

@@ -26,13 +26,7 @@ const TrackOdometrySettings& checked(const TrackOdometrySettings& settings) {
   return settings;
 }
 
-const RobotDescription& checked(const RobotDescription& robot) {
-  if (!robot.tracks)
-    throw InputError(fmt::format("robot {}: has no tracks: tracked odometry requires a tracked robot", robot.name));
-  return robot;
-}
-
-TrackFilter::Settings filter_settings(const TrackOdometrySettings& s, const TrackGeometry& tracks) {
+TrackFilter::Settings filter_settings(const TrackOdometrySettings& s, const RobotDescription& robot) {
   return {.gyro_noise_density_radps_per_sqrt_hz = s.gyro_noise_density_radps_per_sqrt_hz,
           .gyro_bias_std_radps = s.gyro_bias_std_radps,
           .gyro_bias_random_walk_radps_per_sqrt_s = s.gyro_bias_random_walk_radps_per_sqrt_s,
@@ -45,15 +39,16 @@ TrackFilter::Settings filter_settings(const TrackOdometrySettings& s, const Trac
           .icr_x_std_m = s.icr_x_std_m,
           .icr_y_std_m = s.icr_y_std_m,
           .icr_correlation_rad = s.icr_correlation_rad,
-          .height_m = tracks.body_height_m};
+          .turn_center_x_m = differential_geometry(robot).turn_center_x_m,
+          .height_m = robot.body_height_m()};
 }
 
-/// Returns the four ends of the two tracks as stance feet.
-StanceFeet track_ends(const TrackGeometry& tracks) {
+/// Returns the four ends of the two tracks or wheel rows as stance feet.
+StanceFeet track_ends(const DifferentialGeometry& tracks, double body_height_m) {
   StanceFeet ends;
   for (int end = 0; end < kNumLegs; ++end) {
     const double x = (end < 2 ? 0.5 : -0.5) * tracks.contact_length_m, y = (end % 2 == 0 ? 0.5 : -0.5) * tracks.gauge_m;
-    ends.push_back({.leg = end, .p_contact = {x, y, -tracks.body_height_m}});
+    ends.push_back({.leg = end, .p_contact = {x, y, -body_height_m}});
   }
   return ends;
 }
@@ -61,10 +56,12 @@ StanceFeet track_ends(const TrackGeometry& tracks) {
 }  // namespace
 
 TrackOdometry::TrackOdometry(const RobotDescription& robot, const TrackOdometrySettings& settings)
-    : robot_(checked(robot)),
+    : robot_(robot),
       settings_(checked(settings)),
-      meters_per_tick_(2.0 * std::numbers::pi * robot.tracks->sprocket_radius_m / settings.ticks_per_sprocket_turn),
-      track_ends_(track_ends(*robot.tracks)),
+      geometry_(differential_geometry(robot)),
+      skid_ratio_(settings.skid_ratio > 0.0 ? settings.skid_ratio : skid_ratio(robot)),
+      meters_per_tick_(2.0 * std::numbers::pi * geometry_.rolling_radius_m / settings.ticks_per_sprocket_turn),
+      track_ends_(track_ends(geometry_, robot.body_height_m())),
       imu_(robot.T_body("imu"),
            {.standstill = {.window_s = settings.standstill_window_s,
                            .gyro_noise_density_radps_per_sqrt_hz = settings.gyro_noise_density_radps_per_sqrt_hz,
@@ -99,7 +96,7 @@ void TrackOdometry::advance(Time stamp, const InertialSample& sample) {
   using Step = ImuFrontEnd<TrackFilter>::Step;
   const Time before = imu_.now();
   const auto make_filter = [this](const InertialSample& first) {
-    return TrackFilter(filter_settings(settings_, *robot_.tracks), first);
+    return TrackFilter(filter_settings(settings_, robot_), first);
   };
   const Step step = imu_.advance(stamp, sample, make_filter);
   if (step == Step::kIgnored) return;
@@ -141,7 +138,7 @@ void TrackOdometry::coast_to(const TrackTicks& ticks) {
   if (const auto& last = encoders_.last()) {
     const auto turn_ticks = static_cast<double>((ticks.right - last->right) - (ticks.left - last->left));
     yaw_rate = turn_ticks * meters_per_tick_ / to_seconds(ticks.stamp - last->stamp) /
-               (robot_.tracks->gauge_m * settings_.skid_ratio);
+               (geometry_.gauge_m * skid_ratio_);
   }
   imu_.coast_to(ticks.stamp, yaw_rate);
 }
@@ -169,7 +166,7 @@ void TrackOdometry::use_ticks(const TrackTicks& ticks) {
 }
 
 double TrackOdometry::yaw_rate_disagreement_radps(const EncoderInterval& interval, const TrunkMotion& then) const {
-  const double by_tracks = interval.smooth.difference_mps() / (robot_.tracks->gauge_m * settings_.skid_ratio);
+  const double by_tracks = interval.smooth.difference_mps() / (geometry_.gauge_m * skid_ratio_);
   return std::abs(by_tracks - then.omega_body.z());
 }
 

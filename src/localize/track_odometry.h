@@ -8,6 +8,7 @@
 #include "core/messages.h"
 #include "core/robot_description.h"
 #include "core/sensors/registry.h"
+#include "core/wheel_kinematics.h"
 #include "localize/imu_front_end.h"
 #include "localize/pending_readings.h"
 #include "localize/rest_detector.h"
@@ -29,6 +30,7 @@ struct TrackOdometryHealth {
 };
 
 /// Tracked odometry: pose of the body in `odom` from track encoders and IMU (track_filter.h), at the newest reading.
+/// Also for wheels that are not steered: the wheels of a side are then one track.
 /// The origin of odom is the gravity-aligned pose after the first standstill.
 ///
 /// Messages may be late or missing. Encoder readings wait for the IMU reading of their stamp, at most `imu_timeout_s`;
@@ -38,7 +40,7 @@ struct TrackOdometryHealth {
 /// `slip_disagreement_mps` in `slip_window_s`.
 class TrackOdometry {
  public:
-  /// Throws InputError for a robot without tracks or without a frame `imu`.
+  /// Throws InputError for a robot without tracks and wheels, or without a frame `imu`.
   TrackOdometry(const RobotDescription& robot, const TrackOdometrySettings& settings);
 
   void add(const Imu& imu);
@@ -56,7 +58,7 @@ class TrackOdometry {
   /// left m/s, yaw rate rad/s. The pose error that they cause grows with the distance, not with its square root.
   Eigen::Vector3d twist_std() const;
   /// Returns the height of the body origin above the ground by the geometry of the robot, m.
-  double height_above_ground_m() const { return robot_.tracks->body_height_m; }
+  double height_above_ground_m() const { return robot_.body_height_m(); }
 
   TrackOdometryHealth health() const;
   /// Returns the estimates of the calibration, in the order of `kCalibrationParameters`: biases of the IMU and center
@@ -83,6 +85,8 @@ class TrackOdometry {
 
   RobotDescription robot_;
   TrackOdometrySettings settings_;
+  DifferentialGeometry geometry_;
+  double skid_ratio_;
   double meters_per_tick_;
   StanceFeet track_ends_;  ///< at rest while the tracks are
   ImuFrontEnd<TrackFilter> imu_;

@@ -4,7 +4,7 @@
 
 namespace patrol::localize {
 
-/// Settings of the tracked odometry. The defaults fit a MEMS IMU of robotics grade (biases at power-on: Analog Devices
+/// Settings of the odometry of a robot on tracks or on wheels. The defaults fit a MEMS IMU of robotics grade (biases at power-on: Analog Devices
 /// ADIS16448 data sheet, table 1: 0.5 deg/s, 20 mg) and tracks on rock, gravel and concrete.
 struct TrackOdometrySettings {
   // IMU.
@@ -21,9 +21,12 @@ struct TrackOdometrySettings {
   /// Standard deviation of the scale of the accelerometer, which the published bias along the vertical contains.
   double accel_scale_std = 0.005;
   // Track encoders and the standard deviation of the track speed, whose terms add in quadrature.
-  /// Number of Hall sensor edges of the motor per turn of the sprocket, through the gear.
+  /// Number of counts per turn of the sprocket or wheel: Hall sensor edges of the motor through the gear, or counts of
+  /// the wheel encoder.
   double ticks_per_sprocket_turn = 720.0;
-  double skid_ratio = 1.5;      ///< ratio of the track speed difference over the gauge to the true yaw rate: scrub
+  /// Ratio of the track speed difference over the gauge to the true yaw rate: scrub. 0 is the closed form of Coulomb
+  /// friction for the geometry of the robot.
+  double skid_ratio = 1.5;
   double speed_std_mps = 0.01;  ///< standard deviation of the mean track speed during straight motion
   /// Term of the standard deviation of the mean track speed per difference of the track speeds, added in quadrature.
   double scrub_std = 0.02;
@@ -87,7 +90,7 @@ struct TrackOdometrySettings {
     visit("yaw_random_walk_rad_per_sqrt_rad", self.yaw_random_walk_rad_per_sqrt_rad, between(0.0, 0.5));
     visit("accel_scale_std", self.accel_scale_std, between(0.0, 0.5));
     visit("ticks_per_sprocket_turn", self.ticks_per_sprocket_turn, between(1.0, 1e6));
-    visit("skid_ratio", self.skid_ratio, between(1.0, 10.0));
+    visit("skid_ratio", self.skid_ratio, between(0.0, 10.0));
     visit("speed_std_mps", self.speed_std_mps, between(1e-4, 1.0));
     visit("scrub_std", self.scrub_std, between(0.0, 1.0));
     visit("acceleration_std_s", self.acceleration_std_s, between(0.0, 1.0));

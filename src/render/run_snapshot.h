@@ -41,7 +41,7 @@ struct RunSnapshot {
   std::optional<Pose2> T_true_estimate;
   double traveled_m = 0.0;
   std::optional<GasReading> gas;  ///< newest reading; none without a methane meter
-  bool is_driving = false;        ///< tracked robot, not a walking one
+  bool is_driving = false;        ///< robot on tracks or wheels, not a walking one
   std::vector<LiningMark> lining_marks;
   std::string event;      ///< text of the newest event
   bool is_alarm = false;  ///< the newest event is an alarm

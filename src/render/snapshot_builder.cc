@@ -40,7 +40,13 @@ Pose3 lidar_on_body(const mjModel& model) {
   return *T_body_lidar;
 }
 
-bool has_tracks(const mjModel& model) { return mj_name2id(&model, mjOBJ_BODY, "left_sprocket") >= 0; }
+/// Returns whether the robot has sprockets or wheels: hinges that turn endlessly.
+bool has_drive(const mjModel& model) {
+  for (int joint = 0; joint < model.njnt; ++joint) {
+    if (model.jnt_type[joint] == mjJNT_HINGE && !model.jnt_limited[joint]) return true;
+  }
+  return false;
+}
 
 }  // namespace
 
@@ -48,7 +54,7 @@ SnapshotBuilder::SnapshotBuilder(const mjModel& view, const Pose2& T_world_map)
     : scenery_(view), T_body_lidar_(lidar_on_body(view)) {
   if (const auto T_body_camera = sensor_on_body(view, "depth_camera")) head_m_ = T_body_camera->position;
   snapshot_.T_world_map = T_world_map;
-  snapshot_.is_driving = has_tracks(view);
+  snapshot_.is_driving = has_drive(view);
   // Move actors away: paths are projected to the ground, not onto actors.
   constexpr double kOutOfView_m = -1000.0;
   const sim::DataPtr data = sim::make_data(view);

@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/geometry/angles.h"
 #include "sim/track_model.h"
+#include "sim/wheel_model.h"
 
 namespace patrol::sim {
 namespace {
@@ -108,15 +109,27 @@ void add_collisions(const urdf::Link& link, mjsBody& body) {
   }
 }
 
+/// Sets mass and inertia. MuJoCo takes a full tensor in the frame of the body only.
 void set_inertia(const urdf::Inertial& inertial, mjsBody& body) {
   body.explicitinertial = true;
   body.mass = inertial.mass;
   double quaternion[4];
   set_pose(inertial.origin, body.ipos, quaternion);
-  std::copy(quaternion, quaternion + 4, body.iquat);
-  body.inertia[0] = inertial.ixx;
-  body.inertia[1] = inertial.iyy;
-  body.inertia[2] = inertial.izz;
+  if (inertial.ixy == 0.0 && inertial.ixz == 0.0 && inertial.iyz == 0.0) {
+    std::copy(quaternion, quaternion + 4, body.iquat);
+    body.inertia[0] = inertial.ixx;
+    body.inertia[1] = inertial.iyy;
+    body.inertia[2] = inertial.izz;
+    return;
+  }
+  Eigen::Matrix3d tensor;
+  tensor << inertial.ixx, inertial.ixy, inertial.ixz, inertial.ixy, inertial.iyy, inertial.iyz, inertial.ixz,
+      inertial.iyz, inertial.izz;
+  const Eigen::Matrix3d R =
+      Eigen::Quaterniond(quaternion[0], quaternion[1], quaternion[2], quaternion[3]).toRotationMatrix();
+  tensor = R * tensor * R.transpose();
+  const double full[6] = {tensor(0, 0), tensor(1, 1), tensor(2, 2), tensor(0, 1), tensor(0, 2), tensor(1, 2)};
+  std::copy_n(full, 6, body.fullinertia);
 }
 
 bool is_antenna(const urdf::Joint& joint) { return joint.name.starts_with("tem_"); }
@@ -128,34 +141,9 @@ void set_servo_gear(mjsJoint& hinge) {
   hinge.damping[0] = 0.3;
 }
 
-void add_joint(mjSpec& spec, const urdf::Joint& joint, mjsBody& body) {
-  const bool is_sprocket = joint.type == urdf::Joint::CONTINUOUS;
-  if (joint.type != urdf::Joint::REVOLUTE && !is_sprocket) return;
-  mjsJoint* hinge = mjs_addJoint(&body, nullptr);
-  mjs_setName(hinge->element, joint.name.c_str());
-  hinge->type = mjJNT_HINGE;
-  hinge->axis[0] = joint.axis.x;
-  hinge->axis[1] = joint.axis.y;
-  hinge->axis[2] = joint.axis.z;
-  if (is_antenna(joint)) {
-    set_servo_gear(*hinge);
-  } else if (is_sprocket) {
-    hinge->armature = sprocket_armature();
-    hinge->frictionloss = joint.dynamics ? joint.dynamics->friction : 0.0;
-    hinge->solref_friction[0] = 0.01;  // as stiff as the ground, because this friction is also the parking brake
-    hinge->solimp_friction[0] = hinge->solimp_friction[1] = 0.999;
-  } else {
-    hinge->armature = kArmature;
-    hinge->damping[0] = kDamping;
-    hinge->frictionloss = kFrictionLoss;
-  }
-  if (!is_sprocket) {
-    hinge->limited = mjLIMITED_TRUE;
-    const double unit = spec.compiler.degree ? kDegPerRad : 1.0;  // a spec uses the angle unit of its world file
-    hinge->range[0] = joint.limits->lower * unit;
-    hinge->range[1] = joint.limits->upper * unit;
-  }
+bool has_tracks(const urdf::ModelInterface& model) { return model.getLink("left_track") != nullptr; }
 
+void add_motor(mjSpec& spec, const urdf::Joint& joint) {
   mjsActuator* motor = mjs_addActuator(&spec, nullptr);
   mjs_setToMotor(motor);
   mjs_setName(motor->element, joint.name.c_str());
@@ -166,25 +154,69 @@ void add_joint(mjSpec& spec, const urdf::Joint& joint, mjsBody& body) {
   motor->ctrlrange[1] = joint.limits->effort;
 }
 
-bool is_sprocket(const urdf::Link& link) {
+/// Sets the friction of a gear or bearing, which is also the parking brake and therefore as stiff as the ground.
+void set_drive_friction(const urdf::Joint& joint, mjsJoint& hinge) {
+  hinge.frictionloss = joint.dynamics ? joint.dynamics->friction : 0.0;
+  hinge.solref_friction[0] = 0.01;
+  hinge.solimp_friction[0] = hinge.solimp_friction[1] = 0.999;
+}
+
+void add_joint(mjSpec& spec, const urdf::Joint& joint, bool is_tracked, mjsBody& body) {
+  const bool is_endless = joint.type == urdf::Joint::CONTINUOUS;
+  if (joint.type != urdf::Joint::REVOLUTE && !is_endless) return;
+  mjsJoint* hinge = mjs_addJoint(&body, nullptr);
+  mjs_setName(hinge->element, joint.name.c_str());
+  hinge->type = mjJNT_HINGE;
+  hinge->axis[0] = joint.axis.x;
+  hinge->axis[1] = joint.axis.y;
+  hinge->axis[2] = joint.axis.z;
+  if (is_antenna(joint)) {
+    set_servo_gear(*hinge);
+  } else if (is_endless && is_tracked) {
+    hinge->armature = sprocket_armature();
+    set_drive_friction(joint, *hinge);
+  } else if (is_endless) {
+    set_drive_friction(joint, *hinge);
+  } else {
+    hinge->armature = kArmature;
+    hinge->damping[0] = kDamping;
+    hinge->frictionloss = kFrictionLoss;
+  }
+  if (!is_endless) {
+    hinge->limited = mjLIMITED_TRUE;
+    const double unit = spec.compiler.degree ? kDegPerRad : 1.0;  // a spec uses the angle unit of its world file
+    hinge->range[0] = joint.limits->lower * unit;
+    hinge->range[1] = joint.limits->upper * unit;
+  }
+  if (joint.limits) add_motor(spec, joint);
+}
+
+bool turns_endlessly(const urdf::Link& link) {
   return link.parent_joint && link.parent_joint->type == urdf::Joint::CONTINUOUS;
 }
 
-/// `load_n` is the load of each road wheel, if the robot has any.
-void add_link(mjSpec& spec, const urdf::Link& link, double load_n, mjsBody& body) {
+/// Properties of the whole robot that its links need.
+struct RobotParts {
+  bool is_tracked;
+  double road_wheel_load_n;  ///< load of each road wheel, if the robot has any
+};
+
+void add_link(mjSpec& spec, const urdf::Link& link, const RobotParts& robot, mjsBody& body) {
   mjs_setName(body.element, link.name.c_str());
   if (link.inertial) set_inertia(*link.inertial, body);
   add_visuals(link, body);
   if (is_track(link)) {
-    add_wheels(link, load_n, body);
-  } else if (!is_sprocket(link)) {  // covered by the track
+    add_wheels(link, robot.road_wheel_load_n, body);
+  } else if (!robot.is_tracked && is_wheel(link)) {
+    add_rolling_shape(link, body);
+  } else if (!robot.is_tracked || !turns_endlessly(link)) {  // the track covers its sprockets
     add_collisions(link, body);
   }
   for (const urdf::LinkSharedPtr& child : link.child_links) {
     mjsBody* child_body = mjs_addBody(&body, nullptr);
     set_pose(child->parent_joint->parent_to_joint_origin_transform, child_body->pos, child_body->quat);
-    add_joint(spec, *child->parent_joint, *child_body);
-    add_link(spec, *child, load_n, *child_body);
+    add_joint(spec, *child->parent_joint, robot.is_tracked, *child_body);
+    add_link(spec, *child, robot, *child_body);
     if (child->parent_joint->type == urdf::Joint::FIXED && !is_foot(*child)) {
       mjsSite* site = mjs_addSite(child_body, nullptr);
       mjs_setName(site->element, child->name.c_str());
@@ -208,13 +240,12 @@ Stance stance_on_feet() {
   return {.height_m = 0.322, .support_points_m = {Eigen::Vector2d::Zero()}, .max_ground_height_m = 0.3};
 }
 
-bool has_tracks(const urdf::ModelInterface& model) { return model.getLink("left_track") != nullptr; }
-
 }  // namespace
 
 Stance to_stance(const std::string& urdf_path) {
   const urdf::ModelInterfaceSharedPtr model = parse(urdf_path);
-  return has_tracks(*model) ? stance_on_tracks(*model) : stance_on_feet();
+  if (has_tracks(*model)) return stance_on_tracks(*model);
+  return has_wheels(*model) ? stance_on_wheels(*model) : stance_on_feet();
 }
 
 void add_robot(mjSpec& world, const std::string& urdf_path, const Pose3& T_world_body) {
@@ -227,8 +258,10 @@ void add_robot(mjSpec& world, const std::string& urdf_path, const Pose3& T_world
   base->quat[3] = T_world_body.rotation.z();
   mjsJoint* freejoint = mjs_addFreeJoint(base);
   mjs_setName(freejoint->element, "robot");
-  add_link(world, *model->getRoot(), road_wheel_load_n(*model), *base);
-  if (has_tracks(*model)) use_track_friction(world.option);
+  const RobotParts parts{.is_tracked = has_tracks(*model), .road_wheel_load_n = road_wheel_load_n(*model)};
+  add_link(world, *model->getRoot(), parts, *base);
+  if (parts.is_tracked) use_track_friction(world.option);
+  else if (has_wheels(*model)) use_wheel_friction(world.option);
 }
 
 }  // namespace patrol::sim

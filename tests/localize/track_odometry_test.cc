@@ -224,7 +224,7 @@ TEST(TrackOdometry, ARobotWithoutTracksOrImuIsRefusedWithASentence) {
     TrackOdometry odometry(robot, {});
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "robot tracked: has no tracks: tracked odometry requires a tracked robot");
+    EXPECT_STREQ(error.what(), "robot tracked: has neither tracks nor wheels on both sides that are not steered");
   }
   EXPECT_THROW(TrackOdometry(make_tracked_robot(), {.slip_correlation_m = 0.0}), InputError);
 }

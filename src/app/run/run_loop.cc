@@ -47,6 +47,7 @@ sim::SimulatorSettings simulator_settings(const Scenario& scenario, const Scenar
           .sensors = scenario.sensors,
           .locomotion = scenario.locomotion,
           .track_drive = scenario.track_drive,
+          .wheel_drive = scenario.wheel_drive,
           .static_obstacles = all_static_obstacles(scenario),
           .lining = files.route.lining,  // site is world
           .lining_deformations = scenario.lining_deformation,

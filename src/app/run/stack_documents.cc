@@ -19,13 +19,14 @@ std::string text_of(const std::filesystem::path& file) {
 
 link::VelocityLimits limits_of(const Scenario& scenario, const RobotDescription& robot) {
   const sim::LocomotionSettings& legs = scenario.locomotion;
-  const sim::TrackDriveSettings& tracks = scenario.track_drive;
-  if (robot.legs.empty()) {
-    return {.forward_mps = tracks.max_speed_mps,
-            .backward_mps = tracks.max_speed_mps,
-            .sideways_mps = 0.0,
-            .yaw_rate_radps = tracks.max_yaw_rate_radps};
-  }
+  const auto along = [](double speed_mps, double yaw_rate_radps) {
+    return link::VelocityLimits{.forward_mps = speed_mps,
+                                .backward_mps = speed_mps,
+                                .sideways_mps = 0.0,
+                                .yaw_rate_radps = yaw_rate_radps};
+  };
+  if (robot.tracks) return along(scenario.track_drive.max_speed_mps, scenario.track_drive.max_yaw_rate_radps);
+  if (!robot.wheels.empty()) return along(scenario.wheel_drive.max_speed_mps, scenario.wheel_drive.max_yaw_rate_radps);
   return {.forward_mps = legs.max_forward_mps,
           .backward_mps = legs.max_backward_mps,
           .sideways_mps = legs.max_sideways_mps,

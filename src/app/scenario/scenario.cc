@@ -119,6 +119,7 @@ Scenario default_scenario(const std::string& robot, const std::filesystem::path&
     scenario.sensors = profile.sensors;
     scenario.locomotion = profile.locomotion;
     scenario.track_drive = profile.track_drive;
+    scenario.wheel_drive = profile.wheel_drive;
     scenario.stack = profile.stack;
   }
   return scenario;

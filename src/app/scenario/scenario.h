@@ -120,6 +120,7 @@ struct Scenario {
   sim::SensorSuiteSettings sensors;
   sim::LocomotionSettings locomotion;   ///< locomotion of a legged robot
   sim::TrackDriveSettings track_drive;  ///< drive of a tracked robot
+  sim::WheelDriveSettings wheel_drive;  ///< drive of a wheeled robot
   stack::StackSettings stack;
   std::vector<sim::StaticObstacleSettings> static_obstacles;
   sim::LowObstacleSettings low_obstacles;  ///< random obstacles by the seed, in addition to the static obstacles
@@ -153,6 +154,7 @@ struct Scenario {
     visit("sensors", self.sensors);
     visit("locomotion", self.locomotion);
     visit("track_drive", self.track_drive);
+    visit("wheel_drive", self.wheel_drive);
     visit("stack", self.stack);
     visit("static_obstacles", self.static_obstacles);
     visit("low_obstacles", self.low_obstacles);
@@ -176,6 +178,7 @@ struct RobotProfile {
   sim::SensorSuiteSettings sensors;
   sim::LocomotionSettings locomotion;
   sim::TrackDriveSettings track_drive;
+  sim::WheelDriveSettings wheel_drive;
   stack::StackSettings stack;
 
   template <typename Self, typename Visitor>
@@ -184,6 +187,7 @@ struct RobotProfile {
     visit("sensors", self.sensors);
     visit("locomotion", self.locomotion);
     visit("track_drive", self.track_drive);
+    visit("wheel_drive", self.wheel_drive);
     visit("stack", self.stack);
   }
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <numbers>
 #include <vector>
 
 #include "core/sensors/sensor_traits.h"
@@ -16,13 +17,16 @@ struct JointState {
   std::vector<double> effort_nm;
 };
 
-/// Absolute magnetic encoders on the joints, 14 bit. The motor drive filters the velocity.
+/// Absolute magnetic encoders on the joints of legs, or encoders of driven wheels and steering joints; 14 bit. The motor drive filters the velocity.
 struct JointEncoderSettings {
   bool enabled = true;                             ///< presence of the sensor; false: no messages
   double rate_hz = 250.0;                          ///< message rate; the firmware reads the sensor at every tick
   int counts_per_revolution = 16384;               ///< number of encoder counts per revolution of a joint
   double velocity_filter_time_constant_s = 0.003;  ///< time constant of the velocity filter on count differences
   double latency_s = 0.0;                          ///< delay from the measurement to the delivery of the message
+
+  /// Returns the counts per radian of a joint.
+  double ticks_per_rad() const { return counts_per_revolution / (2.0 * std::numbers::pi); }
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -43,7 +47,7 @@ struct SensorTraits<JointState> {
   static constexpr SensorInfo kInfo = {.name = "joint_encoders",
                                        .topic = "/joint_states",
                                        .ros_type = "sensor_msgs/msg/JointState",
-                                       .summary = "joint encoders of the legs",
+                                       .summary = "encoders of leg joints, or of wheels and steering",
                                        .timeout = SensorTimeout::kMotion,
                                        .freeze_check = FreezeCheck::kCommand,
                                        .is_required_to_drive = true,
@@ -57,7 +61,7 @@ struct SensorTraits<JointState> {
   static bool repeats(const JointState& now, const JointState& before) {
     return now.position_rad == before.position_rad;
   }
-  static bool is_fitted(const RobotDescription& robot) { return !robot.legs.empty(); }
+  static bool is_fitted(const RobotDescription& robot) { return !robot.legs.empty() || !robot.wheels.empty(); }
   static std::vector<ErrorSource> error_sources() {
     return {{"joint encoders: counts", {"sensors.joint_encoders.counts_per_revolution=1000000"}}};
   }

@@ -11,9 +11,6 @@ namespace {
 constexpr double kPathStep_m = 0.25;  // spacing of the poses of the published path
 constexpr double kLookAhead_s = 0.5;  // time for which a command of the approach must be safe
 
-/// Height of the body's origin above the ground; 0 for legged robots, which have no sensors that need it.
-double body_height_m(const RobotDescription& robot) { return robot.tracks ? robot.tracks->body_height_m : 0.0; }
-
 bool is_stationary(const VelocityCommand& command) {
   return std::abs(command.vx_mps) < 0.03 && std::abs(command.vy_mps) < 0.03 && std::abs(command.yaw_rate_radps) < 0.05;
 }
@@ -49,13 +46,13 @@ void Navigator::set_keep_out_lines(std::vector<Polyline> lines_in_map) {
 
 void Navigator::add_depth(const DepthImage& image, const Pose3& T_level_body, const Pose2& T_map_body) {
   const Pose3 T_level_camera = T_level_body * robot_.T_body("depth_camera");
-  costmap_.add_image(segment_obstacles(settings_.depth_obstacles, image, T_level_camera, body_height_m(robot_)),
+  costmap_.add_image(segment_obstacles(settings_.depth_obstacles, image, T_level_camera, robot_.body_height_m()),
                      image.stamp, T_map_body);
 }
 
 void Navigator::add_range(const UltrasonicRange& ping, const Pose3& T_level_body, const Pose2& T_map_body) {
   const Pose3 T_level_transducer = T_level_body * robot_.T_body("ultrasonic_" + std::to_string(ping.transducer));
-  const SonarCone cone = inverse_sonar_model(settings_.sonar_obstacles, ping, T_level_transducer, body_height_m(robot_),
+  const SonarCone cone = inverse_sonar_model(settings_.sonar_obstacles, ping, T_level_transducer, robot_.body_height_m(),
                                              settings_.costmap.resolution_m);
   costmap_.add_ping(cone, ping.stamp, T_map_body);
 }

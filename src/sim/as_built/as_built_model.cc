@@ -31,12 +31,22 @@ void move_tracks(double gauge_error_m, mjModel& physics) {
   }
 }
 
+/// Moves each wheel that is not steered by half of the error along y.
+void move_wheels(const AsBuiltRobot& robot, mjModel& physics) {
+  for (const WheelGeometry& wheel : robot.nominal().wheels) {
+    const int body = mj_name2id(&physics, mjOBJ_BODY, wheel.link.c_str());
+    if (body < 0 || wheel.steering_joint || wheel.is_caster) continue;
+    physics.body_pos[3 * body + 1] += (wheel.is_left() ? 0.5 : -0.5) * robot.wheels().gauge_error_m;
+  }
+}
+
 }  // namespace
 
 void apply_as_built(const AsBuiltRobot& robot, mjModel& physics) {
   if (!robot.is_as_built()) return;
   move_site(robot, "imu", physics);
   if (robot.nominal().tracks) move_tracks(robot.tracks().gauge_error_m, physics);
+  move_wheels(robot, physics);
   for (const LegGeometry& leg : robot.nominal().legs) {
     const int foot = mj_name2id(&physics, mjOBJ_GEOM, (leg.name + "_foot").c_str());
     if (foot >= 0) physics.geom_friction[3 * foot] *= robot.foot_friction_scale();

@@ -106,7 +106,7 @@ ImuErrors AsBuiltRobot::imu() const {
 }
 
 JointErrors AsBuiltRobot::joints() const {
-  if (!settings_.enabled) return {};
+  if (!settings_.enabled || !nominal_.wheels.empty()) return {};
   const double zero_offset_rad = to_rad(settings_.joint_encoders.zero_offset_deg),
                play_rad = to_rad(settings_.joint_encoders.play_deg);
   JointErrors errors;
@@ -126,6 +126,17 @@ TrackErrors AsBuiltRobot::tracks() const {
           .missed_edge_probability =
               0.5 * (tracks.missed_edge_probability + uniform("tracks/missed_edge", tracks.missed_edge_probability)),
           .gauge_error_m = uniform("tracks/gauge", tracks.gauge_m)};
+}
+
+WheelErrors AsBuiltRobot::wheels() const {
+  if (!settings_.enabled) return {};
+  const WheelTolerances& wheels = settings_.wheels;
+  WheelErrors errors{.radius_scale = {},
+                     .friction_scale = 1.0 + uniform("wheels/friction", wheels.friction_scale),
+                     .gauge_error_m = uniform("wheels/gauge", wheels.gauge_m)};
+  for (std::size_t wheel = 0; wheel < nominal_.wheels.size(); ++wheel)
+    errors.radius_scale.push_back(1.0 + uniform("wheels/radius", wheels.radius_scale, wheel));
+  return errors;
 }
 
 double AsBuiltRobot::foot_friction_scale() const {
@@ -179,6 +190,10 @@ AsBuiltTruth AsBuiltRobot::truth(const std::vector<int>& uwb_anchors, const ImuE
     add("tracks.right_sprocket_scale", tracks().sprocket_scale[1]);
     add("tracks.gauge_error_m", tracks().gauge_error_m);
   }
+  const WheelErrors wheel_errors = wheels();
+  for (std::size_t wheel = 0; wheel < nominal_.wheels.size(); ++wheel)
+    add(fmt::format("wheels.{}.radius_scale", nominal_.wheels[wheel].link), wheel_errors.radius_scale[wheel]);
+  if (!nominal_.wheels.empty()) add("wheels.gauge_error_m", wheel_errors.gauge_error_m);
   for (const int anchor : uwb_anchors) add(fmt::format("uwb.anchor_{}.delay_m", anchor), uwb_delay_m(anchor));
   add("placement.x_m", T_surveyed_start_.x);
   add("placement.y_m", T_surveyed_start_.y);

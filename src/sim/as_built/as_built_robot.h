@@ -40,8 +40,10 @@ class AsBuiltRobot {
   /// Returns the errors of a lidar by its frame.
   LidarErrors lidar(const std::string& frame) const;
   ImuErrors imu() const;
+  /// Returns the errors of the joint encoders of the legs.
   JointErrors joints() const;
   TrackErrors tracks() const;
+  WheelErrors wheels() const;
   double foot_friction_scale() const;
   /// Returns the range error of an anchor and the robot's antenna.
   double uwb_delay_m(int anchor) const;

@@ -138,6 +138,23 @@ struct TrackTolerances {
   }
 };
 
+/// Wheels (assumptions: manufacturing, wear and pressure of pneumatic tires; frame as for tracks).
+struct WheelTolerances {
+  static constexpr const char* kSource =
+      "assumption: manufacturing, wear and pressure of tires; frame welded within ISO 13920, class A";
+
+  double radius_scale = 0.01;   ///< tolerance of the relative radius of each wheel
+  double friction_scale = 0.2;  ///< tolerance of the relative friction of the tires on the ground
+  double gauge_m = 0.002;       ///< tolerance of the distance between the wheels of the two sides
+
+  template <typename Self, typename Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("radius_scale", self.radius_scale, between(0.0, 0.2));
+    visit("friction_scale", self.friction_scale, between(0.0, 0.9));
+    visit("gauge_m", self.gauge_m, between(0.0, 0.1));
+  }
+};
+
 /// Legs and ground.
 struct LegTolerances {
   static constexpr const char* kSource = "assumption: dry and wet ground";
@@ -244,6 +261,7 @@ struct AsBuiltSettings {
   LidarTolerances lidar;
   JointTolerances joint_encoders;
   TrackTolerances tracks;
+  WheelTolerances wheels;
   LegTolerances legs;
   ImuTolerances imu;
   UwbTolerances uwb;
@@ -266,6 +284,7 @@ struct AsBuiltSettings {
     visit("lidar", self.lidar);
     visit("joint_encoders", self.joint_encoders);
     visit("tracks", self.tracks);
+    visit("wheels", self.wheels);
     visit("legs", self.legs);
     visit("imu", self.imu);
     visit("uwb", self.uwb);

@@ -59,6 +59,13 @@ struct TrackErrors {
   double gauge_error_m = 0.0;  ///< actual minus nominal distance between the center lines of the tracks
 };
 
+/// Errors of the wheels of a robot.
+struct WheelErrors {
+  std::vector<double> radius_scale;  ///< [wheel]: radius relative to the nominal one; empty without errors
+  double friction_scale = 1.0;
+  double gauge_error_m = 0.0;  ///< actual minus nominal distance between the wheels of the two sides
+};
+
 /// Errors of a depth camera's calibration: published minus actual values.
 struct DepthCameraErrors {
   double focal_scale = 1.0;          ///< published over actual focal length

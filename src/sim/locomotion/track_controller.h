@@ -7,8 +7,10 @@
 #include "core/messages.h"
 #include "core/robot_description.h"
 #include "core/sensors/registry.h"
-#include "sim/locomotion/sprocket_speed_controller.h"
+#include "sim/locomotion/drive_speed_controller.h"
+#include "sim/locomotion/fall_detector.h"
 #include "sim/locomotion/track_drive_settings.h"
+#include "sim/locomotion/velocity_ramp.h"
 
 namespace patrol::sim {
 
@@ -30,32 +32,27 @@ class TrackController {
 
   TrackDriveCommand step(const Imu& imu, const TrackTicks& ticks, const VelocityCommand& command);
 
-  /// Returns true once the robot has been tilted beyond 60 degrees for 0.3 s.
-  bool has_fallen() const { return fallen_s_ > 0.3; }
+  /// Returns true once the robot has fallen over.
+  bool has_fallen() const { return fall_detector_.has_fallen(); }
 
  private:
-  void detect_fall(const Imu& imu);
-  void follow_command(const VelocityCommand& command);
   double corrected_yaw_rate(const Imu& imu);
   void update_gyro_bias(const Imu& imu);
   double measured_yaw_rate(const Imu& imu) const;
   std::array<double, 2> sprocket_speeds(double speed_mps, double yaw_rate_radps) const;
   void update_brake();
-  bool is_commanded_to_rest() const;
 
   TrackDriveSettings settings_;
   TrackGeometry tracks_;
   double tick_s_;
   Eigen::Matrix3d R_body_imu_;
-  std::array<SprocketSpeedController, 2> speed_controllers_;  ///< left, right
-  double speed_mps_ = 0.0, yaw_rate_radps_ = 0.0;             ///< rate-limited command
+  std::array<DriveSpeedController, 2> speed_controllers_;  ///< left, right
+  VelocityRamp ramp_;
   double yaw_lag_rad_ = 0.0;
   double gyro_bias_radps_ = 0.0, bias_averaging_s_ = 0.0;  ///< estimated at rest
   double idle_s_ = 0.0;
   bool is_brake_closed_ = false;
-  Eigen::Vector3d up_in_body_ = Eigen::Vector3d::UnitZ();
-  double age_s_ = 0.0;  ///< time since switch-on
-  double fallen_s_ = 0.0;
+  FallDetector fall_detector_;
 };
 
 }  // namespace patrol::sim

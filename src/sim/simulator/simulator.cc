@@ -14,6 +14,7 @@
 #include "sim/as_built/as_built_model.h"
 #include "sim/locomotion/quadruped_drive.h"
 #include "sim/locomotion/track_drive.h"
+#include "sim/locomotion/wheel_drive.h"
 #include "sim/sensors/imu.h"
 #include "sim/sensors/uwb.h"
 
@@ -63,9 +64,13 @@ std::string geom_name(const mjModel& model, int geom) {
 std::unique_ptr<Locomotion> make_locomotion(const SimulatorSettings& settings, const AsBuiltRobot& robot,
                                             mjModel& physics) {
   const RobotDescription& nominal = robot.nominal();
-  if (!nominal.tracks) return std::make_unique<QuadrupedDrive>(nominal, settings.locomotion);
-  return std::make_unique<TrackDrive>(nominal, settings.track_drive, settings.sensors.hall.ticks_per_rad(), physics,
-                                      robot.tracks());
+  if (nominal.tracks) {
+    return std::make_unique<TrackDrive>(nominal, settings.track_drive, settings.sensors.hall.ticks_per_rad(), physics,
+                                        robot.tracks());
+  }
+  if (nominal.wheels.empty()) return std::make_unique<QuadrupedDrive>(nominal, settings.locomotion);
+  return std::make_unique<WheelDrive>(nominal, settings.wheel_drive, settings.sensors.joint_encoders.ticks_per_rad(),
+                                      physics, robot.wheels());
 }
 
 AssembledModel assemble(const SimulatorSettings& settings, const AsBuiltRobot& robot) {

@@ -20,6 +20,7 @@
 #include "sim/locomotion/locomotion.h"
 #include "sim/locomotion/quadruped_controller.h"
 #include "sim/locomotion/track_drive_settings.h"
+#include "sim/locomotion/wheel_drive_settings.h"
 #include "sim/model_assembly.h"
 #include "sim/sensors/sensor_suite.h"
 #include "sim/static_obstacles.h"
@@ -37,6 +38,7 @@ struct SimulatorSettings {
   SensorSuiteSettings sensors;
   LocomotionSettings locomotion;   ///< settings for a robot with legs
   TrackDriveSettings track_drive;  ///< settings for a robot with tracks
+  WheelDriveSettings wheel_drive;  ///< settings for a robot with wheels
   std::vector<StaticObstacleSettings> static_obstacles;
   std::optional<TunnelLining> lining;  ///< lining of the world, in world
   std::vector<LiningDeformationSettings> lining_deformations;

@@ -1,6 +1,9 @@
 #include "stack/localization/odometry_source.h"
 
 #include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -45,15 +48,15 @@ class LeggedOdometrySource final : public OdometrySource {
   localize::LeggedOdometry odometry_;
 };
 
-/// Odometry from IMU and the Hall counters of the tracks.
-class TrackedOdometrySource final : public OdometrySource {
+/// Odometry from IMU and the counters of tracks or wheels.
+class DifferentialOdometrySource : public OdometrySource {
  public:
-  TrackedOdometrySource(const RobotDescription& robot, const StackSettings& settings)
-      : odometry_(robot, settings.odometry.tracked) {}
+  DifferentialOdometrySource(const RobotDescription& robot, const localize::TrackOdometrySettings& settings)
+      : odometry_(robot, settings) {}
 
   void add(const SensorMessage& message) override {
     if (const auto* imu = std::get_if<Imu>(&message)) odometry_.add(*imu);
-    if (const auto* ticks = std::get_if<TrackTicks>(&message)) odometry_.add(*ticks);
+    if (const auto ticks = ticks_of(message)) odometry_.add(*ticks);
   }
   void correct_gyro_bias(double bias_radps, double std_radps) override {
     odometry_.correct_gyro_bias(bias_radps, std_radps);
@@ -65,13 +68,65 @@ class TrackedOdometrySource final : public OdometrySource {
   std::vector<CalibrationValue> calibration() const override { return odometry_.calibration(); }
 
  private:
+  /// Returns the counts of the two sides in a message; none if it has no counts.
+  virtual std::optional<TrackTicks> ticks_of(const SensorMessage& message) const = 0;
+
   localize::TrackOdometry odometry_;
+};
+
+class TrackedOdometrySource final : public DifferentialOdometrySource {
+ public:
+  TrackedOdometrySource(const RobotDescription& robot, const StackSettings& settings)
+      : DifferentialOdometrySource(robot, settings.odometry.tracked) {
+    if (!robot.tracks)
+      throw InputError(fmt::format("stack.odometry_source = tracked: robot {} has no tracks", robot.name));
+  }
+
+ private:
+  std::optional<TrackTicks> ticks_of(const SensorMessage& message) const override {
+    const auto* ticks = std::get_if<TrackTicks>(&message);
+    return ticks ? std::optional(*ticks) : std::nullopt;
+  }
+};
+
+/// The wheels of a side, which are not steered, count as one with the mean of their angles.
+class WheeledOdometrySource final : public DifferentialOdometrySource {
+ public:
+  WheeledOdometrySource(const RobotDescription& robot, const StackSettings& settings)
+      : DifferentialOdometrySource(robot, settings.odometry.wheeled),
+        ticks_per_rad_(settings.odometry.wheeled.ticks_per_sprocket_turn / (2.0 * std::numbers::pi)) {
+    for (const WheelGeometry& wheel : robot.wheels) {
+      if (wheel.drive_joint && !wheel.steering_joint) (wheel.is_left() ? left_ : right_).push_back(wheel);
+    }
+    if (left_.empty() || right_.empty()) {
+      throw InputError(fmt::format(
+          "stack.odometry_source = wheeled: robot {} has no driven wheels on both sides that are not steered",
+          robot.name));
+    }
+  }
+
+ private:
+  std::optional<TrackTicks> ticks_of(const SensorMessage& message) const override {
+    const auto* joints = std::get_if<JointState>(&message);
+    if (!joints) return std::nullopt;
+    return TrackTicks{.stamp = joints->stamp, .left = ticks(left_, *joints), .right = ticks(right_, *joints)};
+  }
+  std::int64_t ticks(const std::vector<WheelGeometry>& side, const JointState& joints) const {
+    double angle_rad = 0.0;
+    for (const WheelGeometry& wheel : side)
+      angle_rad += wheel.forward_sign * joints.position_rad[*wheel.drive_joint];
+    return std::llround(angle_rad / static_cast<double>(side.size()) * ticks_per_rad_);
+  }
+
+  double ticks_per_rad_;
+  std::vector<WheelGeometry> left_, right_;
 };
 
 }  // namespace
 
 std::unique_ptr<OdometrySource> make_odometry_source(const StackSettings& settings, const RobotDescription& robot) {
   if (settings.odometry_source == "tracked") return std::make_unique<TrackedOdometrySource>(robot, settings);
+  if (settings.odometry_source == "wheeled") return std::make_unique<WheeledOdometrySource>(robot, settings);
   if (robot.legs.empty()) {
     throw InputError(
         fmt::format("stack.odometry_source = {}: robot {} has no legs", settings.odometry_source, robot.name));

@@ -49,7 +49,7 @@ struct ComputeSettings {
 /// Settings of the stack: three selectors and the settings of all components. A stack uses those of the components that
 /// it is composed of.
 struct StackSettings {
-  std::string odometry_source = "legged";  ///< odometry source: legged or tracked
+  std::string odometry_source = "legged";  ///< odometry source: legged, tracked or wheeled
   /// Localizer: automatic, slam, monte_carlo or slam_then_monte_carlo (stack/localization/make_localizer.h).
   std::string localizer = "automatic";
   /// Type of the mission: gas for the stations of a route; tunnel for saved goals, docking and instruments.
@@ -80,7 +80,7 @@ struct StackSettings {
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("odometry_source", self.odometry_source, one_of({"legged", "tracked"}));
+    visit("odometry_source", self.odometry_source, one_of({"legged", "tracked", "wheeled"}));
     visit("localizer", self.localizer, one_of({"automatic", "slam", "monte_carlo", "slam_then_monte_carlo"}));
     visit("mission_type", self.mission_type, one_of({"gas", "tunnel"}));
     visit("odometry_settling_time_s", self.odometry_settling_time_s, between(0.0, 60.0));

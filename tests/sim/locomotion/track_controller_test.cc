@@ -13,9 +13,10 @@ namespace {
 
 constexpr double kTick_s = 0.002;
 const double kTicksPerRad = HallSettings{}.ticks_per_rad();
-constexpr TrackMotor kMotor{.max_torque_nm = 45.0, .stall_torque_nm = 120.0, .no_load_radps = 18.7};
+constexpr DriveSpeedGains kGains{.kp_nms = 8.0, .ki_nm = 40.0, .kd_nms2 = 0.02, .observer_bandwidth_radps = 100.0};
+constexpr DriveMotor kMotor{.max_torque_nm = 45.0, .stall_torque_nm = 120.0, .no_load_radps = 18.7};
 
-TEST(TrackMotor, DrivesWithNoMoreThanItsLineAndBrakesWithAllItsCurrent) {
+TEST(DriveMotor, DrivesWithNoMoreThanItsLineAndBrakesWithAllItsCurrent) {
   EXPECT_DOUBLE_EQ(kMotor.feasible_torque_nm(100.0, 0.0), 45.0);
   EXPECT_NEAR(kMotor.feasible_torque_nm(100.0, 0.75 * 18.7), 30.0, 1e-12);  // 120 * (1 - 0.75)
   EXPECT_DOUBLE_EQ(kMotor.feasible_torque_nm(100.0, 18.7), 0.0);
@@ -25,7 +26,7 @@ TEST(TrackMotor, DrivesWithNoMoreThanItsLineAndBrakesWithAllItsCurrent) {
 
 /// A sprocket with nothing but its inertia and a load against it.
 struct LoneSprocket {
-  SprocketSpeedController regulator{{}, kMotor, kTicksPerRad, kTick_s};
+  DriveSpeedController regulator{kGains, kMotor, kTicksPerRad, kTick_s};
   double inertia_kgm2 = 0.5;
   double angle_rad = 0.0, speed_radps = 0.0;
 
@@ -41,7 +42,7 @@ struct LoneSprocket {
   }
 };
 
-TEST(SprocketSpeedController, UnderALoadOf15NmItTurnsAt7RadPerSecondToWithin1PercentByTheTicks) {
+TEST(DriveSpeedController, UnderALoadOf15NmItTurnsAt7RadPerSecondToWithin1PercentByTheTicks) {
   LoneSprocket sprocket;
   sprocket.run(7.0, 2.0, 15.0);
   const double start = sprocket.angle_rad;
@@ -50,7 +51,7 @@ TEST(SprocketSpeedController, UnderALoadOf15NmItTurnsAt7RadPerSecondToWithin1Per
   EXPECT_NEAR(sprocket.regulator.speed_radps(), 7.0, 0.5);
 }
 
-TEST(SprocketSpeedController, IsStableWithTheInertiaOfABeltOnIceAndOfTheWholeRobot) {
+TEST(DriveSpeedController, IsStableWithTheInertiaOfABeltOnIceAndOfTheWholeRobot) {
   for (const double inertia : {0.16, 0.6}) {
     LoneSprocket sprocket{.inertia_kgm2 = inertia};
     sprocket.run(5.0, 2.0);
@@ -65,7 +66,7 @@ TEST(SprocketSpeedController, IsStableWithTheInertiaOfABeltOnIceAndOfTheWholeRob
   }
 }
 
-TEST(SprocketSpeedController, AfterTenSecondsOfStallItOvershootsByLessThanAFifthOfARadian) {
+TEST(DriveSpeedController, AfterTenSecondsOfStallItOvershootsByLessThanAFifthOfARadian) {
   LoneSprocket sprocket;
   for (double t = 0.0; t < 10.0; t += kTick_s) EXPECT_LE(sprocket.regulator.step(5.0, 0), 45.0);
   sprocket.run(0.0, 1.0);

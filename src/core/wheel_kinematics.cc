@@ -1,0 +1,159 @@
+#include "core/wheel_kinematics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+
+namespace patrol {
+namespace {
+
+constexpr double kStanding_mps = 1e-3;  // slower wheels have no direction
+
+bool is_any_driven(const RobotDescription& robot) {
+  return std::any_of(robot.wheels.begin(), robot.wheels.end(), [](const WheelGeometry& wheel) {
+    return !wheel.steering_joint && wheel.drive_joint;
+  });
+}
+
+/// Returns the wheels that are not steered; if a motor drives any of them, the driven ones.
+std::vector<WheelGeometry> fixed_wheels(const RobotDescription& robot) {
+  const bool needs_motor = is_any_driven(robot);
+  std::vector<WheelGeometry> wheels;
+  for (const WheelGeometry& wheel : robot.wheels) {
+    if (wheel.steering_joint || wheel.is_caster) continue;
+    if (wheel.drive_joint || !needs_motor) wheels.push_back(wheel);
+  }
+  return wheels;
+}
+
+/// Returns the yaw rate whose steering angles are within the limits of the joints, at this forward speed.
+double within_steering_limits(const RobotDescription& robot, double forward_mps, double yaw_rate_radps,
+                              double turn_center_x_m) {
+  double allowed = std::abs(yaw_rate_radps);
+  for (const WheelGeometry& wheel : robot.wheels) {
+    if (!wheel.steering_joint) continue;
+    const JointLimit& limit = robot.joint_limits[*wheel.steering_joint];
+    const double lever_m = wheel.center_in_body.x() - turn_center_x_m;
+    const bool is_to_left = (yaw_rate_radps > 0.0) == (forward_mps > 0.0);
+    const bool is_positive = (is_to_left == (lever_m > 0.0)) == (wheel.left_sign > 0.0);
+    const double max_angle = is_positive ? limit.upper_rad : -limit.lower_rad;
+    if (max_angle >= 0.5 * M_PI) continue;
+    // tan(angle) = w lever / (v - w y), with w of the sign of the turn.
+    const double tangent = std::tan(std::max(0.0, max_angle));
+    const double y_m = is_to_left ? wheel.center_in_body.y() : -wheel.center_in_body.y();
+    const double reach_m = std::abs(lever_m) + tangent * y_m;
+    if (reach_m > 0.0) allowed = std::min(allowed, std::abs(forward_mps) * tangent / reach_m);
+  }
+  return std::copysign(allowed, yaw_rate_radps);
+}
+
+/// Returns the longitudinal positions of the contacts of one side relative to the turn center, with equal loads.
+std::vector<double> contacts_x_m(const RobotDescription& robot, const DifferentialGeometry& geometry) {
+  std::vector<double> x_m;
+  if (robot.tracks) {
+    constexpr int kNumContacts = 20;
+    for (int i = 0; i < kNumContacts; ++i)
+      x_m.push_back(((i + 0.5) / kNumContacts - 0.5) * geometry.contact_length_m);
+    return x_m;
+  }
+  for (const WheelGeometry& wheel : fixed_wheels(robot))
+    x_m.push_back(wheel.center_in_body.x() - geometry.turn_center_x_m);
+  return x_m;
+}
+
+}  // namespace
+
+WheelDriveType wheel_drive_type(const RobotDescription& robot) {
+  bool is_left_driven = false, is_right_driven = false, is_steered = false;
+  for (const WheelGeometry& wheel : robot.wheels) {
+    if (wheel.drive_joint) (wheel.is_left() ? is_left_driven : is_right_driven) = true;
+    is_steered = is_steered || wheel.steering_joint;
+  }
+  if (!is_left_driven || !is_right_driven)
+    throw InputError(fmt::format("robot {}: has no driven wheels on both sides", robot.name));
+  return is_steered ? WheelDriveType::kAckermann : WheelDriveType::kDifferential;
+}
+
+DifferentialGeometry differential_geometry(const RobotDescription& robot) {
+  if (robot.tracks) {
+    return {.gauge_m = robot.tracks->gauge_m,
+            .contact_length_m = robot.tracks->contact_length_m,
+            .rolling_radius_m = robot.tracks->sprocket_radius_m};
+  }
+  const std::vector<WheelGeometry> wheels = fixed_wheels(robot);
+  double left_y = 0.0, right_y = 0.0, radius = 0.0, x = 0.0, num_left = 0.0;
+  double front = -std::numeric_limits<double>::infinity(), rear = -front;
+  for (const WheelGeometry& wheel : wheels) {
+    (wheel.is_left() ? left_y : right_y) += wheel.center_in_body.y();
+    num_left += wheel.is_left() ? 1.0 : 0.0;
+    radius += wheel.radius_m;
+    x += wheel.center_in_body.x();
+    front = std::max(front, wheel.center_in_body.x());
+    rear = std::min(rear, wheel.center_in_body.x());
+  }
+  const auto count = static_cast<double>(wheels.size());
+  if (num_left == 0.0 || num_left == count)
+    throw InputError(fmt::format("robot {}: has neither tracks nor wheels on both sides that are not steered",
+                                 robot.name));
+  return {.gauge_m = left_y / num_left - right_y / (count - num_left),
+          .contact_length_m = front - rear,
+          .rolling_radius_m = radius / count,
+          .turn_center_x_m = x / count};
+}
+
+// With the sides at -+u and the robot at yaw rate w, contact i of the right side slides over the ground at
+// (w B/2 - u, w x_i). Friction along the opposite direction gives no moment if, with k = (u - w B/2) / w,
+//   sum_i (B/2 k - x_i^2) / sqrt(k^2 + x_i^2) = 0.
+double skid_ratio(const RobotDescription& robot) {
+  const DifferentialGeometry geometry = differential_geometry(robot);
+  if (geometry.contact_length_m < 1e-6) return 1.0;
+  const double half_gauge_m = 0.5 * geometry.gauge_m;
+  const std::vector<double> x_m = contacts_x_m(robot, geometry);
+  double low = 1e-9, high = 0.5 * geometry.contact_length_m * geometry.contact_length_m / geometry.gauge_m + low;
+  for (int i = 0; i < 60; ++i) {
+    const double k = 0.5 * (low + high);
+    double moment = 0.0;
+    for (const double x : x_m) moment += (half_gauge_m * k - x * x) / std::hypot(k, x);
+    (moment > 0.0 ? high : low) = k;
+  }
+  return (half_gauge_m + 0.5 * (low + high)) / half_gauge_m;
+}
+
+WheelCommand wheel_command(const RobotDescription& robot, double forward_mps, double yaw_rate_radps,
+                           double effective_gauge_ratio, const std::vector<double>& last_angle_rad) {
+  const double center_x_m = differential_geometry(robot).turn_center_x_m;
+  const double yaw_rate = wheel_drive_type(robot) == WheelDriveType::kAckermann
+                              ? within_steering_limits(robot, forward_mps, yaw_rate_radps, center_x_m)
+                              : yaw_rate_radps * effective_gauge_ratio;
+  WheelCommand command{.speed_radps = std::vector<double>(robot.joint_names.size(), 0.0),
+                       .angle_rad = std::vector<double>(robot.joint_names.size(), 0.0)};
+  for (const WheelGeometry& wheel : robot.wheels) {
+    double along_mps = forward_mps - yaw_rate * wheel.center_in_body.y();
+    if (wheel.steering_joint) {
+      const double across_mps = yaw_rate * (wheel.center_in_body.x() - center_x_m);
+      const double speed_mps = std::hypot(along_mps, across_mps);
+      const double direction = along_mps < 0.0 ? -1.0 : 1.0;
+      command.angle_rad[*wheel.steering_joint] =
+          speed_mps < kStanding_mps ? last_angle_rad.at(*wheel.steering_joint)
+                                    : wheel.left_sign * std::atan2(direction * across_mps, direction * along_mps);
+      along_mps = direction * speed_mps;
+    }
+    if (wheel.drive_joint) command.speed_radps[*wheel.drive_joint] = wheel.forward_sign * along_mps / wheel.radius_m;
+  }
+  return command;
+}
+
+double min_turning_radius_m(const RobotDescription& robot) {
+  if (wheel_drive_type(robot) == WheelDriveType::kDifferential) return 0.0;
+  const double center_x_m = differential_geometry(robot).turn_center_x_m;
+  constexpr double kMore_radps = 1e6;
+  const double left = within_steering_limits(robot, 1.0, kMore_radps, center_x_m),
+               right = -within_steering_limits(robot, 1.0, -kMore_radps, center_x_m);
+  return 1.0 / std::max(1e-9, std::min(left, right));
+}
+
+}  // namespace patrol

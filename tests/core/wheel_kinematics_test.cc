@@ -1,0 +1,158 @@
+#include "core/wheel_kinematics.h"
+
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "core/geometry/angles.h"
+
+namespace patrol {
+namespace {
+
+/// Wheel at (x, y), driven by joint `joint`.
+WheelGeometry driven(double x_m, double y_m, std::size_t joint, double radius_m = 0.1) {
+  return {.link = "w", .center_in_body = {x_m, y_m, 0.0}, .radius_m = radius_m, .drive_joint = joint};
+}
+
+RobotDescription four_wheels(double wheelbase_m, double gauge_m) {
+  RobotDescription robot;
+  robot.name = "four";
+  std::size_t joint = 0;
+  for (const double x : {0.5, -0.5}) {
+    for (const double y : {0.5, -0.5}) {
+      robot.wheels.push_back(driven(x * wheelbase_m, y * gauge_m, joint++));
+      robot.joint_names.push_back("j" + std::to_string(joint));
+      robot.joint_limits.push_back({.velocity_radps = 10.0, .effort_nm = 10.0});
+    }
+  }
+  return robot;
+}
+
+/// Front wheels at `wheelbase` on steering joints, driven rear axle at the origin.
+RobotDescription cart(double wheelbase_m, double gauge_m, double limit_rad) {
+  RobotDescription robot;
+  robot.name = "cart";
+  robot.joint_names = {"rl", "rr", "fl_steer", "fr_steer"};
+  robot.joint_limits.assign(4, {.lower_rad = -limit_rad, .upper_rad = limit_rad, .velocity_radps = 10.0, .effort_nm = 9.0});
+  robot.wheels = {driven(0.0, 0.5 * gauge_m, 0), driven(0.0, -0.5 * gauge_m, 1)};
+  for (const std::size_t side : {0, 1}) {
+    WheelGeometry front{.link = "f", .center_in_body = {wheelbase_m, side == 0 ? 0.5 * gauge_m : -0.5 * gauge_m, 0.0}};
+    front.radius_m = 0.1;
+    front.steering_joint = 2 + side;
+    robot.wheels.push_back(front);
+  }
+  return robot;
+}
+
+const std::vector<double> kStraight(4, 0.0);
+
+TEST(SkidRatio, OfFourWheelsIsOnePlusTheSquareOfWheelbaseOverGauge) {
+  for (const double wheelbase : {0.1, 0.3, 0.5, 1.0}) {
+    EXPECT_NEAR(skid_ratio(four_wheels(wheelbase, 0.6)), 1.0 + std::pow(wheelbase / 0.6, 2), 1e-6) << wheelbase;
+  }
+}
+
+// The published multipliers of the wheel separation of two skid-steer robots, found by tuning: 1.875 for a wheelbase of
+// 0.512 m and a gauge of 0.5708 m, 1.5 for 0.262 m and 0.3765 m.
+TEST(SkidRatio, IsWithin4PercentOfThePublishedRatiosOfTwoRealRobots) {
+  EXPECT_NEAR(skid_ratio(four_wheels(0.512, 0.5708)), 1.875, 0.04 * 1.875);
+  EXPECT_NEAR(skid_ratio(four_wheels(0.262, 0.3765)), 1.5, 0.04 * 1.5);
+}
+
+TEST(SkidRatio, OfSixWheelsIsBetweenThatOfTwoAndThatOfFour) {
+  RobotDescription six = four_wheels(0.8, 0.6);
+  six.wheels.push_back(driven(0.0, 0.3, 0));
+  six.wheels.push_back(driven(0.0, -0.3, 1));
+  EXPECT_GT(skid_ratio(six), 1.1);
+  EXPECT_LT(skid_ratio(six), skid_ratio(four_wheels(0.8, 0.6)) - 0.1);
+}
+
+TEST(SkidRatio, OfTwoWheelsIsOneWhereverTheAxleAndTheCasterAre) {
+  RobotDescription two;
+  two.wheels = {driven(0.2, 0.3, 0), driven(0.2, -0.3, 1)};
+  WheelGeometry caster{.link = "c", .center_in_body = {-0.4, 0.0, 0.0}};
+  caster.radius_m = 0.05;
+  caster.is_caster = true;
+  two.wheels.push_back(caster);
+  EXPECT_DOUBLE_EQ(skid_ratio(two), 1.0);
+  EXPECT_DOUBLE_EQ(differential_geometry(two).turn_center_x_m, 0.2);
+  EXPECT_DOUBLE_EQ(differential_geometry(two).gauge_m, 0.6);
+}
+
+TEST(SkidRatio, OfTracksIsThatOfTwentyEvenlySpreadContacts) {
+  RobotDescription robot;
+  robot.tracks = TrackGeometry{.gauge_m = 0.55, .contact_length_m = 0.6, .sprocket_radius_m = 0.07};
+  EXPECT_NEAR(skid_ratio(robot), 1.248, 1e-3);
+}
+
+TEST(WheelCommand, OfASkidSteerTurnHasOppositeSpeedsOfTheEffectiveGauge) {
+  const RobotDescription robot = four_wheels(0.5, 0.6);
+  const WheelCommand command = wheel_command(robot, 0.0, 0.5, 1.7, kStraight);
+  EXPECT_NEAR(command.speed_radps[0], -0.5 * 1.7 * 0.3 / 0.1, 1e-12);
+  EXPECT_NEAR(command.speed_radps[1], 0.5 * 1.7 * 0.3 / 0.1, 1e-12);
+}
+
+TEST(WheelCommand, AWheelWhoseAxisPointsToTheRightTurnsBackwardToDriveForward) {
+  RobotDescription robot = four_wheels(0.5, 0.6);
+  robot.wheels[1].forward_sign = -1.0;
+  const WheelCommand command = wheel_command(robot, 0.4, 0.0, 1.7, kStraight);
+  EXPECT_NEAR(command.speed_radps[0], 4.0, 1e-12);
+  EXPECT_NEAR(command.speed_radps[1], -4.0, 1e-12);
+}
+
+// Ackermann: the axes of all wheels meet in one point, on the line of the rear axle.
+TEST(WheelCommand, TheAxesOfSteeredWheelsMeetInTheTurnCenterOfTheCommand) {
+  const double wheelbase = 1.1, gauge = 0.7;
+  const RobotDescription robot = cart(wheelbase, gauge, 1.2);
+  for (const double forward : {0.8, -0.8}) {
+    for (const double radius : {1.0, 3.0, -2.0}) {
+      const WheelCommand command = wheel_command(robot, forward, forward / radius, 1.0, kStraight);
+      for (const std::size_t side : {0, 1}) {
+        const double y = side == 0 ? 0.5 * gauge : -0.5 * gauge;
+        EXPECT_NEAR(std::tan(command.angle_rad[2 + side]), wheelbase / (radius - y), 1e-9);
+        EXPECT_NEAR(command.speed_radps[side], forward * (radius - y) / radius / 0.1, 1e-9);
+      }
+    }
+  }
+}
+
+TEST(WheelCommand, ATighterTurnThanTheSteeringAllowsBecomesTheTightestOne) {
+  const RobotDescription robot = cart(1.0, 0.6, to_rad(30.0));
+  const double radius = 1.0 / std::tan(to_rad(30.0)) + 0.3;  // the inner wheel reaches its limit
+  EXPECT_NEAR(min_turning_radius_m(robot), radius, 1e-9);
+  for (const double rate : {5.0, -5.0}) {
+    const WheelCommand command = wheel_command(robot, 0.5, rate, 1.0, kStraight);
+    EXPECT_NEAR(std::max(std::abs(command.angle_rad[2]), std::abs(command.angle_rad[3])), to_rad(30.0), 1e-9);
+    EXPECT_NEAR(0.1 * (command.speed_radps[1] - command.speed_radps[0]) / 0.6, std::copysign(0.5 / radius, rate), 1e-9);
+  }
+}
+
+TEST(WheelCommand, StandingCartKeepsItsSteeringAndDoesNotTurn) {
+  const RobotDescription robot = cart(1.0, 0.6, 0.5);
+  const WheelCommand command = wheel_command(robot, 0.0, 1.0, 1.0, {0.0, 0.0, 0.3, 0.25});
+  EXPECT_THAT(command.speed_radps, ::testing::Each(0.0));
+  EXPECT_DOUBLE_EQ(command.angle_rad[2], 0.3);
+  EXPECT_DOUBLE_EQ(command.angle_rad[3], 0.25);
+}
+
+TEST(WheelCommand, ASteeringJointAboutTheDownwardAxisHasTheOppositeAngleAndLimits) {
+  RobotDescription robot = cart(1.0, 0.6, 0.5);
+  robot.wheels[2].left_sign = robot.wheels[3].left_sign = -1.0;
+  robot.joint_limits[2].lower_rad = robot.joint_limits[3].lower_rad = -0.2;  // to the left
+  const WheelCommand command = wheel_command(robot, 0.5, 5.0, 1.0, kStraight);
+  EXPECT_NEAR(std::min(command.angle_rad[2], command.angle_rad[3]), -0.2, 1e-9);
+}
+
+TEST(WheelDriveType, FollowsFromTheJointsAndNeedsMotorsOnBothSides) {
+  EXPECT_EQ(wheel_drive_type(four_wheels(0.5, 0.6)), WheelDriveType::kDifferential);
+  EXPECT_EQ(wheel_drive_type(cart(1.0, 0.6, 0.5)), WheelDriveType::kAckermann);
+  RobotDescription one_sided = four_wheels(0.5, 0.6);
+  one_sided.wheels[0].drive_joint.reset();
+  one_sided.wheels[2].drive_joint.reset();
+  EXPECT_THROW(wheel_drive_type(one_sided), InputError);
+}
+
+}  // namespace
+}  // namespace patrol
