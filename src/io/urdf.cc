@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <map>
 #include <regex>
@@ -79,6 +80,8 @@ class UrdfReader {
   std::size_t add_joint(const std::string& name, RobotDescription& robot) const;
   void read_wheels(RobotDescription& robot) const;
   void check_wheels(const RobotDescription& robot) const;
+  std::vector<Eigen::Vector3d> read_vertices(const urdf::Mesh& mesh) const;
+  std::vector<Eigen::Vector3d> outline_points(const urdf::Geometry& geometry) const;
   std::vector<Eigen::Vector2d> read_wheeled_footprint() const;
   AntennaGeometry read_antenna() const;
   JointLimit read_limit(const std::string& name) const;
@@ -338,6 +341,12 @@ void UrdfReader::read_tracks(RobotDescription& robot) const {
   if (robot.tracks->contact_length_m <= 0.0) fail(kTrackNames[0], "at least two wheels must touch the ground");
 }
 
+/// Returns whether only fixed joints connect a link, other than the body itself, to the body.
+bool is_fixed_to_body(const urdf::Link& link) {
+  if (!link.parent_joint || link.parent_joint->type != urdf::Joint::FIXED) return false;
+  return link.parent_joint->parent_link_name == frame_id::kBody || is_fixed_to_body(*link.getParent());
+}
+
 bool turns_endlessly(const urdf::Link& link) {
   return link.parent_joint && link.parent_joint->type == urdf::Joint::CONTINUOUS;
 }
@@ -357,7 +366,8 @@ Pose3 UrdfReader::T_body_link(const urdf::Link& link) const {
   if (link.name == frame_id::kBody) return {};
   const urdf::LinkConstSharedPtr parent = link.getParent();
   if (!parent) fail(link.name, fmt::format("is not connected to {}", frame_id::kBody));
-  return T_body_link(*parent) * to_pose(link.parent_joint->parent_to_joint_origin_transform);
+  const Pose3 T_parent_link = to_pose(link.parent_joint->parent_to_joint_origin_transform);
+  return parent->name == frame_id::kBody ? T_parent_link : T_body_link(*parent) * T_parent_link;
 }
 
 /// Reads the shape of a wheel: a cylinder about the axis of its joint, or a sphere.
@@ -445,8 +455,26 @@ void UrdfReader::check_wheels(const RobotDescription& robot) const {
   }
 }
 
+/// Reads the vertices of a mesh. Only Wavefront OBJ, without scale.
+std::vector<Eigen::Vector3d> UrdfReader::read_vertices(const urdf::Mesh& mesh) const {
+  const std::filesystem::path file = std::filesystem::path(path_).parent_path() / mesh.filename;
+  const bool is_scaled = mesh.scale.x != 1.0 || mesh.scale.y != 1.0 || mesh.scale.z != 1.0;
+  if (file.extension() != ".obj" || is_scaled)
+    fail(mesh.filename, "a mesh must be an OBJ file in meters without scale (patrol import robot converts others)");
+  std::vector<Eigen::Vector3d> vertices;
+  std::istringstream lines(load_text(file.string()));
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::string kind;
+    Eigen::Vector3d p;
+    if (words >> kind && kind == "v" && words >> p.x() >> p.y() >> p.z()) vertices.push_back(p);
+  }
+  return vertices;
+}
+
 /// Returns points on the outline of a shape, seen along any axis, in its frame.
-std::vector<Eigen::Vector3d> outline_points(const urdf::Geometry& geometry) {
+std::vector<Eigen::Vector3d> UrdfReader::outline_points(const urdf::Geometry& geometry) const {
+  if (const auto* mesh = dynamic_cast<const urdf::Mesh*>(&geometry)) return read_vertices(*mesh);
   std::vector<Eigen::Vector3d> points;
   constexpr int kNumOnCircle = 16;
   const auto add_circle = [&points](double radius_m, double z_m) {
@@ -514,10 +542,7 @@ RobotDescription UrdfReader::read() const {
     if (link->inertial && link->inertial->mass <= 0.0) fail(name, "mass must be positive");
     const bool moves = link->parent_joint && link->parent_joint->type != urdf::Joint::FIXED;
     if (moves && !link->inertial) fail(name, "<inertial> is missing: required for a moving link");
-    if (link->parent_joint && link->parent_joint->type == urdf::Joint::FIXED &&
-        link->parent_joint->parent_link_name == frame_id::kBody) {
-      robot.T_body_sensor[name] = to_pose(link->parent_joint->parent_to_joint_origin_transform);
-    }
+    if (is_fixed_to_body(*link)) robot.T_body_sensor[name] = T_body_link(*link);
   }
   if (!model_->getLink(frame_id::kBody))
     throw InputError(fmt::format("{}: link not found: {}", path_, frame_id::kBody));

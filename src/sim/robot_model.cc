@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
@@ -35,7 +36,28 @@ void set_pose(const urdf::Pose& pose, double position[3], double quaternion[4]) 
   quaternion[3] = pose.rotation.z;
 }
 
-void set_shape(const urdf::Geometry& geometry, mjsGeom& geom) {
+/// Properties of the whole robot that its links need.
+struct RobotParts {
+  std::filesystem::path folder;  ///< of the URDF file, where its meshes are
+  bool is_tracked;
+  double road_wheel_load_n;  ///< load of each road wheel, if the robot has any
+};
+
+/// Adds the mesh of a file once and returns its name.
+std::string add_mesh(const urdf::Mesh& mesh, const RobotParts& robot, mjSpec& spec) {
+  const std::filesystem::path file = robot.folder / mesh.filename;
+  if (file.extension() != ".obj")
+    throw InputError(fmt::format("robot URDF: mesh {}: must be an OBJ file (patrol import robot)", mesh.filename));
+  std::string name = "robot/" + mesh.filename;
+  if (mjs_findElement(&spec, mjOBJ_MESH, name.c_str()) != nullptr) return name;
+  mjsMesh* asset = mjs_addMesh(&spec, nullptr);
+  mjs_setName(asset->element, name.c_str());
+  mjs_setString(asset->file, std::filesystem::absolute(file).c_str());
+  asset->inertia = mjMESH_INERTIA_SHELL;  // thin meshes have no volume; inertias are those of the URDF
+  return name;
+}
+
+void set_shape(const urdf::Geometry& geometry, const RobotParts& robot, mjSpec& spec, mjsGeom& geom) {
   switch (geometry.type) {
     case urdf::Geometry::BOX: {
       const urdf::Vector3& size = dynamic_cast<const urdf::Box&>(geometry).dim;
@@ -56,8 +78,10 @@ void set_shape(const urdf::Geometry& geometry, mjsGeom& geom) {
       geom.type = mjGEOM_SPHERE;
       geom.size[0] = dynamic_cast<const urdf::Sphere&>(geometry).radius;
       return;
-    default:
-      throw InputError("robot URDF: meshes are not supported: must be boxes, cylinders or spheres");
+    case urdf::Geometry::MESH:
+      geom.type = mjGEOM_MESH;
+      mjs_setString(geom.meshname, add_mesh(dynamic_cast<const urdf::Mesh&>(geometry), robot, spec).c_str());
+      return;
   }
 }
 
@@ -69,11 +93,11 @@ void set_color(const urdf::Material* material, mjsGeom& geom) {
   geom.rgba[3] = material->color.a;
 }
 
-void add_visuals(const urdf::Link& link, mjsBody& body) {
+void add_visuals(const urdf::Link& link, const RobotParts& robot, mjSpec& spec, mjsBody& body) {
   for (const urdf::VisualSharedPtr& visual : link.visual_array) {
     mjsGeom* geom = mjs_addGeom(&body, nullptr);
     set_pose(visual->origin, geom->pos, geom->quat);
-    set_shape(*visual->geometry, *geom);
+    set_shape(*visual->geometry, robot, spec, *geom);
     set_color(visual->material.get(), *geom);
     geom->contype = geom->conaffinity = 0;
     geom->group = kGroupRobotVisual;
@@ -83,11 +107,11 @@ void add_visuals(const urdf::Link& link, mjsBody& body) {
 
 bool is_foot(const urdf::Link& link) { return link.name.ends_with("_foot"); }
 
-void add_collisions(const urdf::Link& link, mjsBody& body) {
+void add_collisions(const urdf::Link& link, const RobotParts& robot, mjSpec& spec, mjsBody& body) {
   for (const urdf::CollisionSharedPtr& collision : link.collision_array) {
     mjsGeom* geom = mjs_addGeom(&body, nullptr);
     set_pose(collision->origin, geom->pos, geom->quat);
-    set_shape(*collision->geometry, *geom);
+    set_shape(*collision->geometry, robot, spec, *geom);
     // MuJoCo's capsules collide faster and more smoothly than its cylinders; the length remains that of the URDF.
     if (geom->type == mjGEOM_CYLINDER) geom->type = mjGEOM_CAPSULE;
     geom->contype = kRobotContype;
@@ -195,22 +219,16 @@ bool turns_endlessly(const urdf::Link& link) {
   return link.parent_joint && link.parent_joint->type == urdf::Joint::CONTINUOUS;
 }
 
-/// Properties of the whole robot that its links need.
-struct RobotParts {
-  bool is_tracked;
-  double road_wheel_load_n;  ///< load of each road wheel, if the robot has any
-};
-
 void add_link(mjSpec& spec, const urdf::Link& link, const RobotParts& robot, mjsBody& body) {
   mjs_setName(body.element, link.name.c_str());
   if (link.inertial) set_inertia(*link.inertial, body);
-  add_visuals(link, body);
+  add_visuals(link, robot, spec, body);
   if (is_track(link)) {
     add_wheels(link, robot.road_wheel_load_n, body);
   } else if (!robot.is_tracked && is_wheel(link)) {
     add_rolling_shape(link, body);
   } else if (!robot.is_tracked || !turns_endlessly(link)) {  // the track covers its sprockets
-    add_collisions(link, body);
+    add_collisions(link, robot, spec, body);
   }
   for (const urdf::LinkSharedPtr& child : link.child_links) {
     mjsBody* child_body = mjs_addBody(&body, nullptr);
@@ -258,7 +276,9 @@ void add_robot(mjSpec& world, const std::string& urdf_path, const Pose3& T_world
   base->quat[3] = T_world_body.rotation.z();
   mjsJoint* freejoint = mjs_addFreeJoint(base);
   mjs_setName(freejoint->element, "robot");
-  const RobotParts parts{.is_tracked = has_tracks(*model), .road_wheel_load_n = road_wheel_load_n(*model)};
+  const RobotParts parts{.folder = std::filesystem::path(urdf_path).parent_path(),
+                         .is_tracked = has_tracks(*model),
+                         .road_wheel_load_n = road_wheel_load_n(*model)};
   add_link(world, *model->getRoot(), parts, *base);
   if (parts.is_tracked) use_track_friction(world.option);
   else if (has_wheels(*model)) use_wheel_friction(world.option);

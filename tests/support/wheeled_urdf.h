@@ -72,7 +72,7 @@ inline std::string UrdfRobot::text() const {
       R"(<link name="base_link">{}<collision><geometry><box size="{}"/></geometry></collision></link>)",
       inertial(mass_kg, 0.02 * mass_kg, 0.05 * mass_kg, 0.06 * mass_kg), chassis_box);
   for (const UrdfWheel& wheel : wheels) {
-    std::string parent = "base_link", origin = fmt::format("{} {} {}", wheel.x_m, wheel.y_m, wheel.radius_m - height_m);
+    std::string parent = "base_link", origin = fmt::format("{} {} {:.6g}", wheel.x_m, wheel.y_m, wheel.radius_m - height_m);
     if (wheel.is_caster || wheel.steering_limit_rad > 0.0) {
       parent = wheel.name + "_carrier";
       links += fmt::format(R"(<link name="{}">{}</link>)", parent, inertial(0.3, 0.001, 0.001, 0.001));
