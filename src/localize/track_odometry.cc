@@ -43,11 +43,13 @@ TrackFilter::Settings filter_settings(const TrackOdometrySettings& s, const Robo
           .height_m = robot.body_height_m()};
 }
 
-/// Returns the four ends of the two tracks or wheel rows as stance feet.
+/// Returns the four ends of the two tracks or wheel rows as stance feet. A single axle would leave the rotation about
+/// it open; other points of the chassis rest as well.
 StanceFeet track_ends(const DifferentialGeometry& tracks, double body_height_m) {
   StanceFeet ends;
+  const double length_m = tracks.contact_length_m > 0.0 ? tracks.contact_length_m : tracks.gauge_m;
   for (int end = 0; end < kNumLegs; ++end) {
-    const double x = (end < 2 ? 0.5 : -0.5) * tracks.contact_length_m, y = (end % 2 == 0 ? 0.5 : -0.5) * tracks.gauge_m;
+    const double x = (end < 2 ? 0.5 : -0.5) * length_m, y = (end % 2 == 0 ? 0.5 : -0.5) * tracks.gauge_m;
     ends.push_back({.leg = end, .p_contact = {x, y, -body_height_m}});
   }
   return ends;

@@ -3,7 +3,10 @@
 #include <cmath>
 #include <utility>
 
+#include "core/wheel_kinematics.h"
 #include "plan/control/pose_regulator.h"
+#include "plan/navigation/maneuver_follower.h"
+#include "plan/navigation/path_follower.h"
 
 namespace patrol::plan {
 namespace {
@@ -20,6 +23,17 @@ const NavigatorSettings& checked(const NavigatorSettings& settings) {
   return settings;
 }
 
+std::optional<ManeuverPlanner> maneuver_planner(const NavigatorSettings& settings, const RobotDescription& robot) {
+  if (settings.kinematics != "ackermann") return std::nullopt;
+  return ManeuverPlanner(settings.maneuver_planner, robot);
+}
+
+std::unique_ptr<RouteFollower> make_follower(const NavigatorSettings& settings, const RobotDescription& robot) {
+  const std::optional<ManeuverPlanner> maneuvers = maneuver_planner(settings, robot);
+  if (!maneuvers) return std::make_unique<PathFollower>(settings);
+  return std::make_unique<ManeuverFollower>(settings, maneuvers->T_body_center(), 1.0 / min_turning_radius_m(robot));
+}
+
 }  // namespace
 
 Navigator::Navigator(const NavigatorSettings& settings, const RobotDescription& robot,
@@ -28,8 +42,8 @@ Navigator::Navigator(const NavigatorSettings& settings, const RobotDescription& 
       robot_(robot),
       costmap_(settings.costmap, Footprint(robot.footprint_m, settings.footprint_rows),
                std::move(keep_out_lines_in_map)),
-      search_(settings, seed),
-      follower_(settings),
+      search_(settings, seed, maneuver_planner(settings, robot)),
+      follower_(make_follower(settings, robot)),
       approach_(settings.goal_controller.differential),
       recoveries_(settings),
       progress_(settings.no_progress_timeout_s) {}
@@ -61,7 +75,7 @@ void Navigator::set_goal(const std::optional<NavigationGoal>& goal) {
   if (goal == goal_) return;
   goal_ = goal;
   state_ = goal ? State::kFollowing : State::kIdle;
-  follower_.clear();
+  follower_->clear();
   search_.reset();
   recoveries_.reset();
   progress_.reset();
@@ -136,7 +150,7 @@ NavigationStatus Navigator::navigate(Time now, const Pose2& T_map_body, Navigati
   }
   search_if_needed(now, T_map_body);
   take_route(now, T_map_body, step);
-  if (follower_.has_path()) return drive(now, T_map_body, step.command);
+  if (follower_->has_path()) return drive(now, T_map_body, step.command);
   if (search_.is_running()) return wait_for_route(now);
   return wait_blocked(now, T_map_body, step.command);
 }
@@ -144,15 +158,17 @@ NavigationStatus Navigator::navigate(Time now, const Pose2& T_map_body, Navigati
 /// Begins a route search if there is no path, or the path is outdated, blocked, or too far from the robot.
 void Navigator::search_if_needed(Time now, const Pose2& T_map_body) {
   bool is_blocked = false;
-  if (follower_.has_path()) {
-    const double path_deviation_m = follower_.advance(T_map_body);
-    is_blocked = follower_.is_blocked(costmap_);
-    if (is_blocked && settings_.new_obstacle_wait_s > 0.0 && follower_.is_blocked_by_new_obstacles_only(costmap_, now))
+  if (follower_->has_path()) {
+    const double path_deviation_m = follower_->advance(T_map_body);
+    is_blocked = follower_->is_blocked(costmap_);
+    if (is_blocked && settings_.new_obstacle_wait_s > 0.0 && follower_->is_blocked_by_new_obstacles_only(costmap_, now))
       return;
-    if (!is_blocked && !search_.is_outdated(now) && path_deviation_m <= settings_.max_path_deviation_m) return;
+    const bool is_outdated = search_.is_outdated(now) && follower_->may_be_replaced();
+    const bool is_off = path_deviation_m > settings_.max_path_deviation_m || follower_->has_ended();
+    if (!is_blocked && !is_outdated && !is_off) return;
   }
   if (!search_.may_begin(now)) return;
-  search_.begin(now, costmap_, T_map_body.position(), goal_->T_map_body.position(), is_blocked);
+  search_.begin(now, costmap_, T_map_body, *goal_, is_blocked, last_.vx_mps < 0.0);
 }
 
 /// Takes the route of a completed search.
@@ -160,18 +176,18 @@ void Navigator::take_route(Time now, const Pose2& T_map_body, NavigationStep& st
   const std::optional<RouteSearch::Result> result = search_.take(now);
   if (!result) return;
   if (result->route.status != PlanStatus::kFound) {
-    if (result->is_detour) follower_.clear();
-    if (follower_.has_path()) return;
+    if (result->is_detour) follower_->clear();
+    if (follower_->has_path()) return;
     if (!no_path_since_) no_path_since_ = now;
     report(to_failure(result->route.status));
     return;
   }
   no_path_since_.reset();
   failure_ = NavigationFailure::kNone;
-  follower_.set_path(PlannedPath(result->route.points_m), T_map_body);
+  follower_->set_route(result->route, T_map_body);
   step.replanned = true;
   step.is_detour = result->is_detour;
-  step.path = follower_.path().sample(kPathStep_m);
+  step.path = follower_->path().sample(kPathStep_m);
 }
 
 NavigationStatus Navigator::drive(Time now, const Pose2& T_map_body, VelocityCommand& command) {
@@ -181,9 +197,9 @@ NavigationStatus Navigator::drive(Time now, const Pose2& T_map_body, VelocityCom
   if (state_ == State::kApproaching) return approach(now, T_map_body, command);
 
   const VelocityCommand straight = regulate_pose(settings_.goal_controller.holonomic, T_map_body, *goal_);
-  const bool is_near = !is_differential && goal_distance_m <= settings_.goal_approach_distance_m;
+  const bool is_near = settings_.kinematics == "omnidirectional" && goal_distance_m <= settings_.goal_approach_distance_m;
   const bool is_straight = is_near && is_motion_safe(costmap_, T_map_body, straight, kLookAhead_s);
-  command = is_straight ? straight : follower_.command(costmap_, T_map_body, last_);
+  command = is_straight ? straight : follower_->command(costmap_, T_map_body, last_);
   update_progress(T_map_body);
   if (is_stationary(command) && !is_near) return wait_blocked(now, T_map_body, command);
   blocked_since_.reset();
@@ -198,7 +214,7 @@ void Navigator::choose_approach(double goal_distance_m) {
                                   ? goal_distance_m <= settings_.goal_approach_distance_m +
                                                            settings_.goal_controller.differential.max_back_off_m
                                   : goal_distance_m <= settings_.goal_approach_distance_m &&
-                                        follower_.remaining_m() <= settings_.goal_approach_distance_m;
+                                        follower_->remaining_m() <= settings_.goal_approach_distance_m;
   state_ = is_approaching ? State::kApproaching : State::kFollowing;
 }
 
@@ -245,7 +261,7 @@ NavigationStatus Navigator::continue_recovery(Time now, const Pose2& T_map_body,
   if (const std::optional<VelocityCommand> recovery = recoveries_.step(now, T_map_body, costmap_)) {
     command = *recovery;
   } else {
-    follower_.clear();
+    follower_->clear();
     state_ = State::kFollowing;
   }
   return NavigationStatus::kRecovering;
@@ -253,7 +269,7 @@ NavigationStatus Navigator::continue_recovery(Time now, const Pose2& T_map_body,
 
 void Navigator::update_progress(const Pose2& T_map_body) {
   const double goal_distance_m = (goal_->T_map_body.position() - T_map_body.position()).norm();
-  if (progress_.has_progressed(goal_distance_m + follower_.path().length_m() - follower_.along_m()))
+  if (progress_.has_progressed(goal_distance_m + follower_->path().length_m() - follower_->along_m()))
     recoveries_.reset();
 }
 

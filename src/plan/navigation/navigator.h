@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,9 +14,9 @@
 #include "plan/navigation/motion_check.h"
 #include "plan/navigation/navigation_step.h"
 #include "plan/navigation/navigator_settings.h"
-#include "plan/navigation/path_follower.h"
 #include "plan/navigation/progress_monitor.h"
 #include "plan/navigation/recovery_sequence.h"
+#include "plan/navigation/route_follower.h"
 #include "plan/navigation/route_search.h"
 #include "plan/perception/costmap.h"
 #include "plan/routes/planned_path.h"
@@ -51,7 +52,7 @@ class Navigator {
   }
 
   const Costmap& costmap() const { return costmap_; }
-  const PlannedPath& path() const { return follower_.path(); }
+  const PlannedPath& path() const { return follower_->path(); }
 
  private:
   /// kFollowing: driving along a path, or waiting for one. kApproaching: the differential approach is active.
@@ -83,7 +84,7 @@ class Navigator {
   RobotDescription robot_;
   Costmap costmap_;
   RouteSearch search_;
-  PathFollower follower_;
+  std::unique_ptr<RouteFollower> follower_;
   DifferentialPoseController approach_;
   RecoverySequence recoveries_;
   ProgressMonitor progress_;

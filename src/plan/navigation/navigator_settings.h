@@ -6,6 +6,7 @@
 #include "plan/navigation/goal_controller_settings.h"
 #include "plan/navigation/local_planner_settings.h"
 #include "plan/navigation/recovery_settings.h"
+#include "plan/maneuvers/maneuver_planner_settings.h"
 #include "plan/perception/costmap_settings.h"
 #include "plan/perception/depth_obstacles_settings.h"
 #include "plan/perception/sonar_cone_settings.h"
@@ -14,7 +15,8 @@
 namespace patrol::plan {
 
 struct NavigatorSettings {
-  /// Motion that the robot can execute: "omnidirectional", or "differential" for a robot that cannot move sideways.
+  /// Motion that the robot can execute: "omnidirectional", "differential" for a robot that cannot move sideways, or
+  /// "ackermann" for a robot with steered wheels, which cannot turn in place.
   std::string kinematics = "omnidirectional";
   int footprint_rows = 1;              ///< rows of discs that cover the outline (plan/perception/footprint.h)
   double planner_cells_per_s = 1e7;    ///< cells expanded per second by the robot's computer; delays each path
@@ -38,12 +40,13 @@ struct NavigatorSettings {
   DepthObstaclesSettings depth_obstacles;
   SonarConeSettings sonar_obstacles;
   GlobalPlannerSettings global_planner;
+  ManeuverPlannerSettings maneuver_planner;  ///< planner of a robot with steered wheels
   LocalPlannerSettings local_planner;
   GoalControllerSettings goal_controller;
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("kinematics", self.kinematics, one_of({"omnidirectional", "differential"}));
+    visit("kinematics", self.kinematics, one_of({"omnidirectional", "differential", "ackermann"}));
     visit("footprint_rows", self.footprint_rows, between(1, 4));
     visit("planner_cells_per_s", self.planner_cells_per_s, between(1e3, 1e12));
     visit("replan_period_s", self.replan_period_s, between(0.1, 600.0));
@@ -64,6 +67,7 @@ struct NavigatorSettings {
     visit("depth_obstacles", self.depth_obstacles);
     visit("sonar_obstacles", self.sonar_obstacles);
     visit("global_planner", self.global_planner);
+    visit("maneuver_planner", self.maneuver_planner);
     visit("local_planner", self.local_planner);
     visit("goal_controller", self.goal_controller);
   }

@@ -1,5 +1,6 @@
 #include "plan/navigation/route_search.h"
 
+#include <cstdint>
 #include <utility>
 
 namespace patrol::plan {
@@ -8,11 +9,14 @@ namespace {
 constexpr Time kAtOnce = std::chrono::milliseconds(50);      // a search at most this long causes no delay
 constexpr Time kMinPeriod = std::chrono::milliseconds(500);  // searches without a route are the most expensive
 constexpr double kMargin_m = 5.0;                            // of the costmap around start and goal
+constexpr std::int64_t kCellsPerState = 100;                 // time of a state of a maneuver search, in cells
 
 }  // namespace
 
-RouteSearch::RouteSearch(const NavigatorSettings& settings, std::uint64_t seed)
+RouteSearch::RouteSearch(const NavigatorSettings& settings, std::uint64_t seed,
+                         std::optional<ManeuverPlanner> maneuvers)
     : planner_(settings.global_planner, seed),
+      maneuvers_(std::move(maneuvers)),
       planner_cells_per_s_(settings.planner_cells_per_s),
       replan_period_s_(settings.replan_period_s) {}
 
@@ -29,16 +33,32 @@ bool RouteSearch::may_begin(Time now) const {
   return !running_ && (begun_at_ == Time::min() || now - begun_at_ >= kMinPeriod);
 }
 
-void RouteSearch::begin(Time now, Costmap& costmap, const Eigen::Vector2d& p_map_start,
-                        const Eigen::Vector2d& p_map_goal, bool is_detour) {
+void RouteSearch::begin(Time now, Costmap& costmap, const Pose2& T_map_start, const NavigationGoal& goal,
+                        bool is_detour, bool is_reversing) {
   begun_at_ = now;
   has_new_map_ = false;
-  costmap.include(p_map_start, kMargin_m);
-  costmap.include(p_map_goal, kMargin_m);
-  PlanResult route = planner_.plan(costmap.cost(), p_map_start, p_map_goal);
+  costmap.include(T_map_start.position(), kMargin_m);
+  costmap.include(goal.T_map_body.position(), kMargin_m);
+  PlanResult route = plan(costmap, T_map_start, goal, is_reversing);
   const Time takes = from_seconds(static_cast<double>(route.num_expanded) / planner_cells_per_s_);
   running_ = Running{.result = {.route = std::move(route), .is_detour = is_detour},
                      .ready = now + (takes < kAtOnce ? Time{} : takes)};
+}
+
+PlanResult RouteSearch::plan(Costmap& costmap, const Pose2& T_map_start, const NavigationGoal& goal,
+                             bool is_reversing) {
+  if (!maneuvers_) return planner_.plan(costmap.cost(), T_map_start.position(), goal.T_map_body.position());
+  ManeuverResult found = maneuvers_->plan(costmap, T_map_start, is_reversing, goal);
+  PlanResult route{.status = found.status,
+                   .cost_m = found.cost_m,
+                   .num_expanded = kCellsPerState * found.num_expanded + found.num_cells};
+  if (found.status != PlanStatus::kFound) return route;
+  const Pose2 T_center_body = maneuvers_->T_body_center().inverse();
+  for (const ManeuverPose& pose : found.maneuver)
+    route.points_m.push_back((pose.T_map_center * T_center_body).position());
+  route.length_m = found.maneuver.back().along_m;
+  route.maneuver = std::move(found.maneuver);
+  return route;
 }
 
 std::optional<RouteSearch::Result> RouteSearch::take(Time now) {

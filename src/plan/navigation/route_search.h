@@ -3,14 +3,17 @@
 #include <cstdint>
 #include <optional>
 
+#include "core/navigation_goal.h"
 #include "core/time.h"
+#include "plan/maneuvers/maneuver_planner.h"
 #include "plan/navigation/navigator_settings.h"
 #include "plan/perception/costmap.h"
 #include "plan/routes/global_planner.h"
 
 namespace patrol::plan {
 
-/// Searches of the global planner, with a model of their computation time on the robot.
+/// Searches of the global planner, or of maneuvers for a robot that cannot turn in place, with a model of their
+/// computation time on the robot.
 class RouteSearch {
  public:
   struct Result {
@@ -18,7 +21,8 @@ class RouteSearch {
     bool is_detour = false;  ///< searched because of an obstacle on the path
   };
 
-  RouteSearch(const NavigatorSettings& settings, std::uint64_t seed);
+  /// `maneuvers`: planner that replaces the global planner, if any.
+  RouteSearch(const NavigatorSettings& settings, std::uint64_t seed, std::optional<ManeuverPlanner> maneuvers = {});
 
   /// Resets the search for another goal: the next search may begin at once.
   void reset();
@@ -30,9 +34,9 @@ class RouteSearch {
   bool is_outdated(Time now) const;
   /// Whether no search is running and the minimum period since the last one has passed.
   bool may_begin(Time now) const;
-  /// Begins a search; the costmap grows to contain start and goal.
-  void begin(Time now, Costmap& costmap, const Eigen::Vector2d& p_map_start, const Eigen::Vector2d& p_map_goal,
-             bool is_detour);
+  /// Begins a search; the costmap grows to contain start and goal. `is_reversing`: present direction of travel.
+  void begin(Time now, Costmap& costmap, const Pose2& T_map_start, const NavigationGoal& goal, bool is_detour,
+             bool is_reversing = false);
   /// Result of the running search when its computation time has passed; else none.
   std::optional<Result> take(Time now);
 
@@ -42,7 +46,10 @@ class RouteSearch {
     Time ready{};
   };
 
+  PlanResult plan(Costmap& costmap, const Pose2& T_map_start, const NavigationGoal& goal, bool is_reversing);
+
   GlobalPlanner planner_;
+  std::optional<ManeuverPlanner> maneuvers_;
   double planner_cells_per_s_, replan_period_s_;
   std::optional<Running> running_;
   Time begun_at_ = Time::min();  ///< start of the last search

@@ -10,6 +10,7 @@
 
 #include "core/grid.h"
 #include "core/settings.h"
+#include "plan/maneuvers/maneuver.h"
 #include "plan/perception/costmap.h"
 #include "plan/routes/planners.h"
 
@@ -34,7 +35,8 @@ struct GlobalPlannerSettings {
 
 struct PlanResult {
   PlanStatus status = PlanStatus::kNoRoute;
-  std::vector<Eigen::Vector2d> points_m;  ///< path in map, from start to goal
+  std::vector<Eigen::Vector2d> points_m = {};  ///< path in map, from start to goal
+  Maneuver maneuver = {};                 ///< the path with headings, for a robot that cannot turn in place
   double length_m = 0.0;                  ///< length of the path
   double cost_m = 0.0;                    ///< length from cell to cell, each meter weighted by its cells' costs
   bool is_goal_moved = false;             ///< the goal was blocked; the path ends at the nearest free position
