@@ -443,7 +443,7 @@ void UrdfReader::check_wheels(const RobotDescription& robot) const {
     is_driven = is_driven || wheel.drive_joint;
     const double above_m = height_m + wheel.center_in_body.z() - wheel.radius_m;
     if (above_m <= kLevel_m) continue;
-    fail(wheel.link, fmt::format("is {:.3f} m above the lowest wheel: all wheels must stand on one plane", above_m));
+    fail(wheel.link, fmt::format("is {:.3f} m above the lowest wheel: all wheels must touch one plane", above_m));
   }
   if (!is_driven)
     throw InputError(path_ + ": no wheel has a motor: the joint of a driven wheel has a <limit> with effort and velocity");

@@ -201,6 +201,7 @@ void add_joint(mjSpec& spec, const urdf::Joint& joint, bool is_tracked, mjsBody&
     set_drive_friction(joint, *hinge);
   } else if (is_endless) {
     set_drive_friction(joint, *hinge);
+    hinge->damping[0] = joint.dynamics ? joint.dynamics->damping : 0.0;
   } else {
     hinge->armature = kArmature;
     hinge->damping[0] = kDamping;

@@ -18,6 +18,7 @@ SOURCE = pathlib.Path(sys.argv[1]) / "src"
 MAY_USE = {
     "core": set(),
     "io": {"core"},
+    "importer": {"core", "io"},
     "link": {"core", "io"},
     "sim": {"core"},
     "slam": {"core"},
@@ -30,7 +31,7 @@ MAY_USE = {
     "report": {"core", "io", "score"},
     "monitor": {"core", "io"},
     "studies": {"core", "io", "slam", "localize", "plan", "inspect", "stack", "score", "report"},
-    "app": {"core", "io", "link", "sim", "slam", "localize", "plan", "inspect", "stack", "score", "render", "report", "monitor", "studies"},
+    "app": {"core", "io", "importer", "link", "sim", "slam", "localize", "plan", "inspect", "stack", "score", "render", "report", "monitor", "studies"},
 }
 
 STACK = ("slam", "localize", "plan", "inspect", "stack")  # folders of the robot's software

@@ -128,7 +128,7 @@ TEST(WheeledUrdf, ErrorsNameTheElement) {
   EXPECT_THAT(error_of(changed(R"(<origin rpy="1.5707963267948966 0 0"/>)", "")),
               HasSubstr("w0: the collision cylinder of a wheel must be about the axis of its joint"));
   EXPECT_THAT(error_of(changed(R"(<origin xyz="0.25 0.3 -0.05"/>)", R"(<origin xyz="0.25 0.3 0.1"/>)")),
-              HasSubstr("w0: is 0.150 m above the lowest wheel: all wheels must stand on one plane"));
+              HasSubstr("w0: is 0.150 m above the lowest wheel: all wheels must touch one plane"));
   EXPECT_THAT(error_of(changed(R"(<limit effort="30" velocity="20"/>)", R"(<limit effort="0" velocity="20"/>)")),
               HasSubstr("w0_roll: limit effort and velocity must be positive"));
 }

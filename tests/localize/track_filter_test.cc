@@ -24,6 +24,7 @@ TrackFilter::Settings quiet() {
           .icr_x_std_m = 0.05,
           .icr_y_std_m = 0.02,
           .icr_correlation_rad = 2.0,
+          .turn_center_x_m = 0.0,
           .height_m = 0.0};
 }
 

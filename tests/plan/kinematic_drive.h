@@ -29,6 +29,26 @@ inline RobotDescription make_tracked_robot() {
   return robot;
 }
 
+/// 1.0 by 0.7 m with steered wheels 0.65 m ahead of the driven axle, which is at the origin, 0.2 m before the middle. The
+/// minimum turning radius is 1.3 m.
+inline RobotDescription make_cart() {
+  RobotDescription robot;
+  robot.name = "cart";
+  robot.footprint_m = {{-0.2, -0.35}, {0.8, -0.35}, {0.8, 0.35}, {-0.2, 0.35}};
+  robot.joint_names = {"rear_left", "rear_right", "steer_left", "steer_right"};
+  const double limit_rad = std::atan(0.65 / (1.3 - 0.3));
+  robot.joint_limits.assign(
+      4, {.lower_rad = -limit_rad, .upper_rad = limit_rad, .velocity_radps = 10.0, .effort_nm = 10.0});
+  for (const std::size_t side : {0, 1}) {
+    const double y_m = side == 0 ? 0.3 : -0.3;
+    robot.wheels.push_back({.link = "rear", .center_in_body = {0.0, y_m, 0.0}, .radius_m = 0.15, .drive_joint = side});
+    WheelGeometry front{.link = "front", .center_in_body = {0.65, y_m, 0.0}, .radius_m = 0.15};
+    front.steering_joint = 2 + side;
+    robot.wheels.push_back(front);
+  }
+  return robot;
+}
+
 /// Between the robot's outline and the nearest wall; 0 if they cross.
 inline double gap_m(const test::RoomWorld& world, const RobotDescription& robot, const Pose2& T_map_body) {
   const auto cross = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); };
@@ -77,6 +97,7 @@ struct DriveRecord {
   double way_m = 0.0;
   double min_gap_m = std::numeric_limits<double>::infinity();
   double max_lateral_speed_mps = 0.0;  ///< asked for
+  double max_curvature_per_m = 0.0;    ///< asked for: yaw rate over speed
   int num_plans = 0;
   int num_detours = 0;
   double turned_rad = 0.0;                               ///< to both sides
@@ -122,6 +143,10 @@ inline DriveRecord drive(Navigator& navigator, const WorldAt& world_at, Pose2 T_
     record.way.push_back(T_map_body.position());
     if (step.status == NavigationStatus::kArrived || step.status == NavigationStatus::kFailed) break;
     record.max_lateral_speed_mps = std::max(record.max_lateral_speed_mps, std::abs(step.command.vy_mps));
+    if (step.command.yaw_rate_radps != 0.0) {
+      record.max_curvature_per_m = std::max(record.max_curvature_per_m,
+                                            std::abs(step.command.yaw_rate_radps / step.command.vx_mps));
+    }
     const Eigen::Vector3d asked(step.command.vx_mps, step.command.vy_mps,
                                 (1.0 - turn_slip) * step.command.yaw_rate_radps);
     velocity += (asked - velocity) * (lag_s > 0.0 ? 1.0 - std::exp(-kPeriod_s / lag_s) : 1.0);

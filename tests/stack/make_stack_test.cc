@@ -98,6 +98,9 @@ TEST(MakeStack, RefusesPartsThatDoNotGoTogether) {
   settings.odometry_source = "tracked";
   EXPECT_THAT([&] { make_stack(settings, quadruped, route_with_a_station(), {}); },
               ThrowsMessage<InputError>(HasSubstr("has no tracks")));
+  settings.odometry_source = "wheeled";
+  EXPECT_THAT([&] { make_stack(settings, quadruped, route_with_a_station(), {}); },
+              ThrowsMessage<InputError>(HasSubstr("neither tracks nor wheels")));
   settings = {};
   settings.localizer = "monte_carlo";
   EXPECT_THAT([&] { make_stack(settings, quadruped, route_with_a_station(), {}); },

@@ -24,6 +24,17 @@ add(name="street_patrol", file="worlds/street/README.md", seeds=REPORT, minutes=
     text=lambda values: by_seed(values["patrol"], PATROL_ROWS, WU25))
 
 
+CART_ROWS = [*PATROL_ROWS[:-3],
+             Row("outline to the nearest kerb, minimum: `navigation.clearance.keep_out_min_m`", "navigation.clearance.keep_out_min_m", ".2f", min),
+             Row("collisions", "mission.collisions", ".0f"), VERDICT_ROW,
+             Row("simulated s per wall s", "performance.real_time_factor", ".1f", min)]
+
+add(name="street_cart", file="worlds/street/README.md", seeds=REPORT, minutes=5,
+    steps=[sweep("cart", "street/scenarios/cart", REPORT)],
+    values=swept(cart=("mission.*", *POSE_METRICS, "stations.*.site_map_error_m", "map.nearest_mean_m", "inspection.*", "navigation.clearance.*",
+                       "performance.real_time_factor")),
+    text=lambda values: by_seed(values["cart"], CART_ROWS))
+
 LEAK_STATIONS = {"regulator_box_1": "regulator box 1", "regulator_box_2": "regulator box 2", "valve_well_3": "valve well 3"}
 WIND_DIRECTIONS = (240, 60)
 

@@ -16,3 +16,12 @@ add(name="substation_mapping", file="worlds/substation/README.md", seeds=REPORT,
     values=swept(mapping=("mission.*", *POSE_METRICS,
                           "map.nearest_mean_m", "map.coverage")),
     text=lambda values: by_seed(values["mapping"], MAPPING_ROWS))
+
+PATROL_ROWS = [*MAPPING_ROWS[:-1],
+               Row("outline to the nearest kerb, minimum: `navigation.clearance.keep_out_min_m`", "navigation.clearance.keep_out_min_m", ".2f", min),
+               VERDICT_ROW, Row("simulated s per wall s", "performance.real_time_factor", ".1f", min)]
+
+add(name="substation_patrol", file="worlds/substation/README.md", seeds=REPORT, minutes=3,
+    steps=[sweep("patrol", "substation/scenarios/patrol", REPORT)],
+    values=swept(patrol=("mission.*", *POSE_METRICS, "map.nearest_mean_m", "map.coverage", "navigation.clearance.*", "performance.real_time_factor")),
+    text=lambda values: by_seed(values["patrol"], PATROL_ROWS))

@@ -27,6 +27,8 @@ struct Call {
   SlamOptions slam;
   CalibrateOptions calibrate;
   TrainOptions train;
+  ImportRobotOptions import_robot;
+  std::string imported_kind;
   SolveOptions solve;
   PlanOptions plan;
   StudyOptions study;

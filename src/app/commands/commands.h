@@ -156,6 +156,19 @@ struct TrainOptions {
 /// Trains the classifier of neighboring submaps (`--method submap_rbpf`).
 ExitCode train_command(const TrainOptions& options);
 
+struct ImportRobotOptions {
+  std::filesystem::path file;                ///< .urdf or .xacro
+  std::vector<std::string> packages;         ///< NAME=FOLDER of package:// and $(find NAME)
+  std::vector<std::string> xacro_arguments;  ///< NAME=VALUE
+  std::vector<std::string> frames;           ///< FRAME=LINK: sensor frames of Patrol
+  std::string base_link;
+  std::string forward;  ///< direction of travel in the base link
+  std::string drive;
+  std::filesystem::path out;  ///< folder models/NAME
+};
+/// Makes a robot of `models` from a robot description.
+ExitCode import_robot_command(const ImportRobotOptions& options);
+
 struct SolveOptions {
   std::filesystem::path graph;        ///< g2o
   bool robust_loop_closures = false;  ///< robust loss on edges that are not odometry

@@ -29,21 +29,20 @@ plan::Footprint outline_of_disc(double radius_m) {
   return plan::Footprint(corners_m);
 }
 
-std::filesystem::path urdf_of(const std::string& robot, const std::filesystem::path& models) {
+std::filesystem::path urdf_of(const std::string& robot, const std::filesystem::path& data_root) {
+  const std::filesystem::path urdf = robot_file(robot, ".urdf", data_root);
+  if (std::filesystem::exists(urdf)) return urdf;
   std::vector<std::string> known;
-  for (const auto& entry : std::filesystem::directory_iterator(models)) {
+  for (const auto& entry : std::filesystem::directory_iterator(data_root / "models")) {
     const std::string name = entry.path().filename().string();
     if (std::filesystem::exists(entry.path() / (name + ".urdf"))) known.push_back(name);
   }
   std::sort(known.begin(), known.end());
-  if (std::find(known.begin(), known.end(), robot) == known.end()) {
-    throw InputError(fmt::format("--robot: unknown robot '{}' (known: {})", robot, join(known, ", ")));
-  }
-  return models / robot / (robot + ".urdf");
+  throw InputError(fmt::format("--robot: unknown robot '{}' (known: {})", robot, join(known, ", ")));
 }
 
 void set_robot(const std::string& robot, const std::filesystem::path& data_root, PlanSetup& setup) {
-  const std::filesystem::path urdf = urdf_of(robot, data_root / "models");
+  const std::filesystem::path urdf = urdf_of(robot, data_root);
   setup.body = {.name = robot, .footprint = plan::Footprint(io::load_robot_description(urdf.string()).footprint_m)};
   const plan::NavigatorSettings drives_with = default_scenario(robot, data_root).stack.navigation;
   setup.settings.costmap = drives_with.costmap;

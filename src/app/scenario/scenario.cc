@@ -109,9 +109,16 @@ std::optional<std::filesystem::path> registration_of(const std::filesystem::path
 
 }  // namespace
 
+std::filesystem::path robot_file(const std::string& robot, const std::string& extension,
+                                 const std::filesystem::path& data_root) {
+  const std::filesystem::path own = std::filesystem::path("models") / robot;
+  const bool is_own = !robot.empty() && std::filesystem::exists(own / (robot + ".urdf"));
+  return (is_own ? std::filesystem::absolute(own) : data_root / "models" / robot) / (robot + extension);
+}
+
 Scenario default_scenario(const std::string& robot, const std::filesystem::path& data_root) {
   Scenario scenario;
-  const std::filesystem::path profile_file = data_root / "models" / robot / (robot + ".yaml");
+  const std::filesystem::path profile_file = robot_file(robot, ".yaml", data_root);
   if (std::filesystem::exists(profile_file)) {
     RobotProfile profile;
     read_with_lidar_tolerances(profile_file, {}, profile);
@@ -201,7 +208,8 @@ std::vector<std::filesystem::path> named_files(const Scenario& scenario, const s
 ScenarioFiles load_scenario_files(const Scenario& scenario, const std::filesystem::path& data_root) {
   ScenarioFiles files;
   files.world_xml = find_definition(data_root, "worlds", "world", scenario.world, ".xml");
-  files.robot_urdf = find_definition(data_root, "models", "robot", scenario.robot, ".urdf");
+  files.robot_urdf = robot_file(scenario.robot, ".urdf", data_root);
+  if (!std::filesystem::exists(files.robot_urdf)) find_definition(data_root, "models", "robot", scenario.robot, ".urdf");
   files.robot = io::load_robot_description(files.robot_urdf.string());
   add_mounts(files.robot, scenario.mounts);
   const auto named_file = [&](const char* key, const std::string& name) {

@@ -192,6 +192,11 @@ struct RobotProfile {
   }
 };
 
+/// Path of a file of a robot, models/ROBOT/ROBOT<extension>: below the working directory if the robot's URDF is there,
+/// else below the data root. The file need not exist.
+std::filesystem::path robot_file(const std::string& robot, const std::string& extension,
+                                 const std::filesystem::path& data_root);
+
 /// Default scenario of a robot: the robot's profile, if it has one, over the defaults.
 Scenario default_scenario(const std::string& robot, const std::filesystem::path& data_root);
 

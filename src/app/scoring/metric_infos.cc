@@ -120,6 +120,8 @@ constexpr Row kNavigation[] = {
      "mean clearance between the outline of the robot and the nearest obstacle along the driven path"},
     {"clearance.p05_m", "5th percentile of the clearance along the driven path"},
     {"clearance.min_m", "minimum of the clearance along the driven path"},
+    {"clearance.keep_out_min_m",
+     "minimum distance between the outline of the robot and the keep-out lines of the survey; 0: crossed"},
 };
 
 constexpr Row kStations[] = {

@@ -38,7 +38,9 @@ io::Metrics to_json(const score::TrajectoryError& error) {
 }
 
 io::Metrics to_json(const score::DrivenClearance& clearance) {
-  return {{"mean_m", clearance.mean_m}, {"p05_m", clearance.p05_m}, {"min_m", clearance.min_m}};
+  io::Metrics metrics = {{"mean_m", clearance.mean_m}, {"p05_m", clearance.p05_m}, {"min_m", clearance.min_m}};
+  if (clearance.keep_out_min_m) metrics["keep_out_min_m"] = *clearance.keep_out_min_m;
+  return metrics;
 }
 
 io::Metrics to_json(const score::AlignedError& error) {

@@ -14,7 +14,7 @@ class GoalDistance {
   /// `cost_weight`: additional meters of a meter at the highest passable cost.
   GoalDistance(const Grid<Cost>& costs, const Eigen::Vector2d& p_map_goal, double cost_weight);
 
-  /// Returns the distance at a position, m; infinity where there is no way.
+  /// Returns the distance at a position, m; infinity where there is no path.
   double at(const Eigen::Vector2d& p_map) const;
   int num_expanded() const { return num_expanded_; }
 

@@ -27,7 +27,7 @@ constexpr double kCell_m = 0.25;        // positions closer than this are one st
 constexpr int kNumHeadings = 72;        // headings within 5 degrees are one state
 constexpr int kShotPeriod = 8;          // one of this many expanded states tries to reach the goal by a Dubins path
 constexpr double kNear_m = 12.0;        // distance from the goal within which every state tries
-constexpr double kNearStart_m = 2.0;    // way from the start on which a clearance as at the start is enough
+constexpr double kNearStart_m = 2.0;    // distance from the start within which its clearance is enough
 constexpr int kNoParent = -1;
 
 struct State {
@@ -40,7 +40,7 @@ struct State {
   bool is_closed = false;
 };
 
-/// A way to the exact goal from a state: arcs in one direction.
+/// A path to the exact goal from a state: arcs in one direction.
 struct Shot {
   int from = kNoParent;
   bool is_reverse = false;
@@ -230,8 +230,8 @@ Maneuver Search::trace(const Shot& shot) const {
   return maneuver;
 }
 
-/// Returns the heading at the goal on the way from the start: from a point before it.
-double heading_of_way(const Costmap& costmap, const Eigen::Vector2d& p_map_start, const Eigen::Vector2d& p_map_goal) {
+/// Returns the heading at the goal of the shortest path from the start.
+double arrival_heading(const Costmap& costmap, const Eigen::Vector2d& p_map_start, const Eigen::Vector2d& p_map_goal) {
   constexpr double kRing_m = 2.0;
   const Eigen::Vector2d direct = p_map_goal - p_map_start;
   if (direct.norm() < kRing_m) return std::atan2(direct.y(), direct.x());
@@ -266,7 +266,7 @@ ManeuverResult ManeuverPlanner::plan(const Costmap& costmap, const Pose2& T_map_
                                      const NavigationGoal& goal) const {
   Pose2 T_map_goal = goal.T_map_body;
   if (goal.yaw_tolerance_rad >= std::numbers::pi)
-    T_map_goal.yaw = heading_of_way(costmap, T_map_body.position(), T_map_goal.position());
+    T_map_goal.yaw = arrival_heading(costmap, T_map_body.position(), T_map_goal.position());
   if (costmap.clearance_m(T_map_goal) < 0.0) return {.status = PlanStatus::kGoalBlocked};
   Search search(settings_, costmap, T_body_center_.inverse(), radius_m_, T_map_body * T_body_center_,
                 T_map_goal * T_body_center_);

@@ -3,7 +3,7 @@
 #include "core/frames.h"
 #include "core/navigation_goal.h"
 #include "core/robot_description.h"
-#include "plan/maneuvers/maneuver.h"
+#include "plan/routes/maneuver.h"
 #include "plan/maneuvers/maneuver_planner_settings.h"
 #include "plan/perception/costmap.h"
 #include "plan/routes/route_planner.h"
@@ -19,7 +19,7 @@ struct ManeuverResult {
 };
 
 /// Plans maneuvers of a robot with a minimum turning radius: search over position, heading and direction of travel by
-/// arcs [Dolgov08], with the distance to the goal on the costmap as the estimate. Dubins paths forward and backward from
+/// arcs [Dolgov10], with the distance to the goal on the costmap as the estimate. Dubins paths forward and backward from
 /// expanded states reach the exact goal.
 class ManeuverPlanner {
  public:
@@ -27,7 +27,7 @@ class ManeuverPlanner {
   ManeuverPlanner(const ManeuverPlannerSettings& settings, const RobotDescription& robot);
 
   /// Plans from the pose of the body to a goal. `is_reversing`: direction in which the robot moves now. A goal without
-  /// heading (tolerance of pi) takes that of the way from the start.
+  /// heading (tolerance of pi) takes that of the shortest path.
   ManeuverResult plan(const Costmap& costmap, const Pose2& T_map_body, bool is_reversing,
                       const NavigationGoal& goal) const;
 

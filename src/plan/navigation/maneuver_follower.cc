@@ -9,7 +9,8 @@
 namespace patrol::plan {
 namespace {
 
-constexpr double kCorrection_m = 0.6;      // distance over which the errors decay
+constexpr double kCorrection_m = 0.6;      // distance over which the errors decay at low speed,
+constexpr double kCorrection_s = 0.6;      // and the additional distance by the speed: steering takes time
 constexpr double kStop_m = 0.02;           // a stop this close to the end of a part is at its end
 constexpr double kMaxLateral_mps2 = 0.8;   // lateral acceleration in curves
 constexpr double kSafe_s = 0.8;            // time for which a command must be safe
@@ -79,8 +80,9 @@ VelocityCommand ManeuverFollower::command(const Costmap& costmap, const Pose2& T
   const double heading_rad = wrap_angle(T_map_center.yaw - next.T_map_center.yaw);
   // The poses are at the ends of their arcs: on the way to `next`, the path still turns by this angle.
   const double turn_rad = next.curvature_per_m * (next.along_m - along_m_);
-  const double curvature = std::clamp(next.curvature_per_m - lateral_m / (kCorrection_m * kCorrection_m) -
-                                          2.0 * (heading_rad + turn_rad) / kCorrection_m,
+  const double correction_m = kCorrection_m + kCorrection_s * std::abs(last.vx_mps);
+  const double curvature = std::clamp(next.curvature_per_m - lateral_m / (correction_m * correction_m) -
+                                          2.0 * (heading_rad + turn_rad) / correction_m,
                                       -max_curvature_per_m_, max_curvature_per_m_);
   const DwaSettings& limits = settings_.local_planner.dwa;
   const double bend_per_m = std::max(std::abs(curvature), 1e-6);

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "plan/maneuvers/maneuver.h"
+#include "plan/routes/maneuver.h"
 #include "plan/navigation/route_follower.h"
 
 namespace patrol::plan {

@@ -10,7 +10,7 @@
 
 #include "core/grid.h"
 #include "core/settings.h"
-#include "plan/maneuvers/maneuver.h"
+#include "plan/routes/maneuver.h"
 #include "plan/perception/costmap.h"
 #include "plan/routes/planners.h"
 

@@ -13,7 +13,8 @@ NavigationScore navigation_score(const RunRecord& record, const RunReferences& r
   return {.num_paths = record.num_paths,
           .num_detours = record.num_events(EventKind::kReplan),
           .num_recoveries = record.num_events(EventKind::kRecovery),
-          .clearance = driven_clearance(record.T_world_body, references.footprint_m, references.map.cells)};
+          .clearance = driven_clearance(record.T_world_body, references.footprint_m, references.map.cells,
+                                        references.route.keep_out_lines)};
 }
 
 /// Estimates of a run on the common clock.

@@ -106,7 +106,7 @@ ImuErrors AsBuiltRobot::imu() const {
 }
 
 JointErrors AsBuiltRobot::joints() const {
-  if (!settings_.enabled || !nominal_.wheels.empty()) return {};
+  if (!settings_.enabled || (!nominal_.wheels.empty() && !nominal_.tracks)) return {};
   const double zero_offset_rad = to_rad(settings_.joint_encoders.zero_offset_deg),
                play_rad = to_rad(settings_.joint_encoders.play_deg);
   JointErrors errors;

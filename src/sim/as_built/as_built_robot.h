@@ -40,7 +40,7 @@ class AsBuiltRobot {
   /// Returns the errors of a lidar by its frame.
   LidarErrors lidar(const std::string& frame) const;
   ImuErrors imu() const;
-  /// Returns the errors of the joint encoders of the legs.
+  /// Returns the errors of the joint encoders; none of wheels, whose angle has no zero.
   JointErrors joints() const;
   TrackErrors tracks() const;
   WheelErrors wheels() const;

@@ -10,7 +10,7 @@ namespace patrol::sim {
 
 /// Sets the contact of the wheels with the ground in `physics`, and the friction of their joints.
 ///
-/// A tire is a soft spring: it deflects by `tire_deflection_ratio` of its radius under its share of the weight. With the
+/// A tire is a soft spring: it deflects by `tire_deflection_ratio` of its radius under the weight on its wheel. With the
 /// usual stiff contacts of MuJoCo, wheels that slide sideways lift off and bounce, and the robot turns at half the yaw
 /// rate. The shape is enlarged by half of the deflection, so that the rolling radius under the nominal load is that of
 /// the URDF. Friction is 1000 times as stiff (`impratio`), so that a standing robot does not creep.

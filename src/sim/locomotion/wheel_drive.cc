@@ -1,5 +1,6 @@
 #include "sim/locomotion/wheel_drive.h"
 
+#include <algorithm>
 #include <string>
 
 #include "core/error.h"
@@ -15,6 +16,21 @@ int find(const mjModel& physics, mjtObj type, const std::string& name, const Rob
   return id;
 }
 
+/// Gives joints of wheels without motors, and of casters, an inertia of 1 % of the mass that the wheel carries times its
+/// squared radius. The forces of the tires would accelerate lighter parts too fast for the time step.
+void set_carried_inertia(const RobotDescription& robot, const WheelGeometry& wheel, mjModel& physics) {
+  constexpr double kRatio = 0.01;
+  const double inertia_kgm2 =
+      kRatio * robot.mass_kg / static_cast<double>(robot.wheels.size()) * wheel.radius_m * wheel.radius_m;
+  const int body = find(physics, mjOBJ_BODY, wheel.link, robot);
+  const auto set = [&](int of_body) {
+    double& armature = physics.dof_armature[physics.body_dofadr[of_body]];
+    armature = std::max(armature, inertia_kgm2);
+  };
+  if (!wheel.drive_joint) set(body);
+  if (wheel.is_caster) set(physics.body_parentid[body]);
+}
+
 }  // namespace
 
 WheelDrive::WheelDrive(const RobotDescription& robot, const WheelDriveSettings& settings, double ticks_per_rad,
@@ -25,6 +41,7 @@ WheelDrive::WheelDrive(const RobotDescription& robot, const WheelDriveSettings& 
     const int id = find(physics, mjOBJ_JOINT, robot.joint_names[joint], robot);
     physics.dof_armature[physics.jnt_dofadr[id]] = rotor_inertia_kgm2(robot, settings, joint);
   }
+  for (const WheelGeometry& wheel : robot.wheels) set_carried_inertia(robot, wheel, physics);
   const DataPtr scratch = make_data(physics);
   mj_setConst(&physics, scratch.get());
   set_tires(robot, settings, errors, physics);

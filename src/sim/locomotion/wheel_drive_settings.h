@@ -9,11 +9,11 @@ namespace patrol::sim {
 struct WheelDriveSettings {
   double friction = 0.8;               ///< friction coefficient of the tires on ground that does not define its own
   double rolling_resistance = 0.015;   ///< rolling resistance of each wheel relative to its load
-  double tire_deflection_ratio = 0.02;  ///< deflection of each tire under its share of the weight relative to its
+  double tire_deflection_ratio = 0.02;  ///< deflection of each tire under the weight on its wheel relative to its
                                         ///< radius
   double tire_damping_ratio = 0.15;     ///< damping ratio of the robot on its tires
-  double rotor_inertia_ratio = 0.2;    ///< inertia of each motor behind its gear relative to the share of the robot's
-                                       ///< mass on its wheel times the squared wheel radius
+  double rotor_inertia_ratio = 0.2;    ///< inertia of each motor behind its gear relative to the mass on its wheel
+                                       ///< times the squared wheel radius
   double max_speed_mps = 1.0;          ///< maximum speed of the robot
   double max_yaw_rate_radps = 1.0;     ///< maximum yaw rate
   double max_acceleration_mps2 = 1.0;  ///< maximum acceleration of the commanded velocity

@@ -218,6 +218,11 @@ class DrawnValues {
     add("tracks.friction_scale", "", tracks.friction_scale);
     add("tracks.missed_edge_probability", "", tracks.missed_edge_probability);
     add("tracks.gauge_m", "", tracks.gauge_error_m);
+    const WheelErrors wheels = robot.wheels();
+    for (std::size_t wheel = 0; wheel < robot.nominal().wheels.size(); ++wheel)
+      add("wheels.radius_scale", std::to_string(wheel), wheels.radius_scale.empty() ? 1.0 : wheels.radius_scale[wheel]);
+    add("wheels.friction_scale", "", wheels.friction_scale);
+    add("wheels.gauge_m", "", wheels.gauge_error_m);
     add("legs.friction_scale", "", robot.foot_friction_scale());
     add_imu(robot.imu());
     for (const int anchor : {0, 1, 5}) {
@@ -306,7 +311,8 @@ class DrawnValues {
 /// Every number of section `as_built`, set to its lowest value, changes each value of its own and no bit of any other.
 /// For a tolerance, the value becomes that of the nominal robot.
 TEST(AsBuiltRobot, RemovingOneTermKeepsAllOthers) {
-  const RobotDescription robot = tracked();
+  RobotDescription robot = tracked();
+  robot.wheels.resize(2);
   const DrawnValues all(AsBuiltRobot(enabled(), robot, 7)), nominal((AsBuiltRobot(robot)));
   AsBuiltSettings settings = enabled();
   int num_numbers = 0;
@@ -333,6 +339,22 @@ TEST(AsBuiltRobot, RemovingOneTermKeepsAllOthers) {
 }
 
 /// The delay of an anchor is the sum of its own and the robot's.
+TEST(AsBuiltRobot, WheelsAreUniformWithin1PercentOfTheirRadiusAnd2MillimetersOfTheirGauge) {
+  const RobotDescription wheeled =
+      io::load_robot_description(PATROL_SOURCE_DIR "/models/wheeled/wheeled.urdf");
+  double largest = 0.0, largest_gauge_m = 0.0;
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    const WheelErrors errors = AsBuiltRobot(enabled(), wheeled, seed).wheels();
+    ASSERT_EQ(errors.radius_scale.size(), 4U);
+    for (const double scale : errors.radius_scale) largest = std::max(largest, std::abs(scale - 1.0));
+    largest_gauge_m = std::max(largest_gauge_m, std::abs(errors.gauge_error_m));
+  }
+  EXPECT_LE(largest, 0.01);
+  EXPECT_GT(largest, 0.0095);
+  EXPECT_LE(largest_gauge_m, 0.002);
+  EXPECT_GT(largest_gauge_m, 0.0019);
+}
+
 TEST(AsBuiltRobot, AntennaDelaysAreDrawnOnTheirOwn) {
   const RobotDescription robot = tracked();
   const AsBuiltRobot all(enabled(), robot, 7), anchors(without(enabled(), "uwb.tag_delay_m"), robot, 7),

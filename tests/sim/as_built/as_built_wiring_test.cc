@@ -19,6 +19,7 @@
 #include "tests/sim/lidar_scans.h"
 #include "tests/support/simulated_quadruped.h"
 #include "tests/support/simulated_tracked_robot.h"
+#include "tests/support/simulated_wheeled_robot.h"
 #include "tests/support/temporary_file.h"
 #include "tests/support/wall_imager.h"
 
@@ -308,6 +309,27 @@ TEST(AsBuiltWiring, TheRowsOfWheelsAreTheDrawnGaugeApart) {
   }
 }
 
+/// The wheels of the two sides are the gauge of the URDF and the drawn error apart, with the drawn radius and friction.
+TEST(AsBuiltWiring, WheelsHaveTheDrawnGaugeRadiusAndFriction) {
+  AsBuiltSettings as_built = exact();
+  as_built.wheels = WheelTolerances{};
+  const AsBuiltRobot robot(as_built, io::load_robot_description(kWheeledUrdf), 1);
+  const WheelErrors errors = robot.wheels();
+  ASSERT_GT(std::abs(errors.gauge_error_m), 0.0002);
+  const Room nominal(kWheeledUrdf, exact()), actual(kWheeledUrdf, as_built);
+  const DataPtr data = make_data(actual.physics());
+  mj_kinematics(&actual.physics(), data.get());
+  for (std::size_t wheel = 0; wheel < 4; ++wheel) {
+    const WheelGeometry& geometry = robot.nominal().wheels[wheel];
+    const int geom = mj_name2id(&actual.physics(), mjOBJ_GEOM, geometry.link.c_str());
+    ASSERT_GE(geom, 0);
+    EXPECT_NEAR(actual.physics().geom_size[3 * geom] / nominal.physics().geom_size[3 * geom],
+                errors.radius_scale[wheel], 1e-12);
+    EXPECT_NEAR(std::abs(data->geom_xpos[3 * geom + 1]), 0.5 * (0.5708 + errors.gauge_error_m), 1e-9);
+  }
+  expect_friction(kWheeledUrdf, as_built, "_wheel", errors.friction_scale, 4);
+}
+
 /// Completeness: a number of section `as_built` that reaches no sensor and no physics fails here. Each of them has a
 /// tenth of its largest value; then one of them at a time has its lowest.
 TEST(AsBuiltWiring, RemovingAnyErrorChangesMessagesOrMotion) {
@@ -320,12 +342,15 @@ TEST(AsBuiltWiring, RemovingAnyErrorChangesMessagesOrMotion) {
   all.mounting = MountingTolerances{};   // the lidar stays outside of its post
   all.clock.transport_jitter_s = 0.003;  // messages arrive within the drive
   ASSERT_GT(names.size(), 40U);
-  const std::string tracked = Room(kTrackedUrdf, all).drive(), legged = Room(kRobotUrdf, all).drive();
+  const std::string tracked = Room(kTrackedUrdf, all).drive(), legged = Room(kRobotUrdf, all).drive(),
+                    wheeled = Room(kWheeledUrdf, all).drive();
   EXPECT_TRUE(Room(kTrackedUrdf, all).drive() == tracked) << "a run is repeatable";
   for (const std::string& name : names) {
     const bool is_of_legs = name.starts_with("legs.") || name.starts_with("joint_encoders.");
-    const std::string changed = Room(is_of_legs ? kRobotUrdf : kTrackedUrdf, without(all, name)).drive();
-    EXPECT_TRUE(changed != (is_of_legs ? legged : tracked)) << name << " changes nothing";
+    const bool is_of_wheels = name.starts_with("wheels.");
+    const std::string& urdf = is_of_legs ? kRobotUrdf : is_of_wheels ? kWheeledUrdf : kTrackedUrdf;
+    const std::string& with_all = is_of_legs ? legged : is_of_wheels ? wheeled : tracked;
+    EXPECT_TRUE(Room(urdf, without(all, name)).drive() != with_all) << name << " changes nothing";
   }
 }
 

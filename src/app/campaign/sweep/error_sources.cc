@@ -10,6 +10,7 @@ namespace patrol::app {
 namespace {
 
 bool has_tracks(const Scenario&, const ScenarioFiles& files) { return files.robot.tracks.has_value(); }
+bool has_wheels(const Scenario&, const ScenarioFiles& files) { return !files.robot.wheels.empty(); }
 
 template <IsSensorMessage Message>
 bool has_sensor(const Scenario& scenario, const ScenarioFiles& files) {
@@ -48,6 +49,14 @@ bool is_as_built_with(const Scenario& scenario, const ScenarioFiles& files) {
   return is_as_built(scenario, files) && has_sensor<Message>(scenario, files);
 }
 
+bool is_as_built_with_legs(const Scenario& scenario, const ScenarioFiles& files) {
+  return is_as_built_with<JointState>(scenario, files) && !files.robot.legs.empty();
+}
+
+bool is_as_built_with_wheels(const Scenario& scenario, const ScenarioFiles& files) {
+  return is_as_built(scenario, files) && has_wheels(scenario, files);
+}
+
 /// Collects the tolerances of section `as_built`, each as one error source that 0 removes.
 class ToleranceCollector {
  public:
@@ -75,7 +84,8 @@ class ToleranceCollector {
   /// Groups of sensors that a robot may lack.
   Applies condition() const {
     if (group_ == "lidar") return is_as_built_with<LaserScan>;
-    if (group_ == "joint_encoders" || group_ == "legs") return is_as_built_with<JointState>;
+    if (group_ == "joint_encoders" || group_ == "legs") return is_as_built_with_legs;
+    if (group_ == "wheels") return is_as_built_with_wheels;
     if (group_ == "tracks") return is_as_built_with<TrackTicks>;
     if (group_ == "imu") return is_as_built_with<Imu>;
     if (group_ == "uwb") return is_as_built_with<UwbRange>;
@@ -98,6 +108,7 @@ std::vector<ScenarioErrorSource> as_built_error_sources() {
 std::vector<ScenarioErrorSource> other_error_sources() {
   return {
       {"tracks: slip (friction 2)", {"track_drive.friction=2"}, has_tracks},
+      {"wheels: slip (friction 2)", {"wheel_drive.friction=2"}, has_wheels},
       {"latency of all sensors", latency_overrides()},
       {"people and vehicles", {"actors=[]"}},
       {"faults", {"faults=[]"}},

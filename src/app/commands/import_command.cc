@@ -1,0 +1,56 @@
+#include <map>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "app/commands/commands.h"
+#include "core/error.h"
+#include "importer/robot_import.h"
+
+namespace patrol::app {
+namespace {
+
+/// Splits texts NAME=VALUE. Throws InputError for a text without "=" or a name that is given twice.
+template <typename Value>
+std::map<std::string, Value> to_map(const std::vector<std::string>& texts, const char* option) {
+  std::map<std::string, Value> values;
+  for (const std::string& text : texts) {
+    const std::size_t at = text.find('=');
+    if (at == std::string::npos || at == 0)
+      throw InputError(fmt::format("{} {}: must be NAME=VALUE", option, text));
+    if (!values.emplace(text.substr(0, at), text.substr(at + 1)).second)
+      throw InputError(fmt::format("{} {}: {} is given twice", option, text, text.substr(0, at)));
+  }
+  return values;
+}
+
+/// Returns the last part of a path, also of one that ends with a slash.
+std::string folder_name(const std::filesystem::path& folder) {
+  const std::filesystem::path normal = folder.lexically_normal();
+  return (normal.has_filename() ? normal : normal.parent_path()).filename().string();
+}
+
+}  // namespace
+
+ExitCode import_robot_command(const ImportRobotOptions& options) {
+  const importer::ImportedRobot robot = importer::import_robot(
+      {.file = options.file,
+       .name = folder_name(options.out),
+       .packages = to_map<std::filesystem::path>(options.packages, "--package"),
+       .xacro_arguments = to_map<std::string>(options.xacro_arguments, "--xacro-arg"),
+       .base_link = options.base_link,
+       .forward = options.forward,
+       .frames = to_map<std::string>(options.frames, "--frame"),
+       .drive = options.drive});
+  importer::write_robot(robot, options.out);
+  for (const importer::Assumption& assumption : robot.assumptions) {
+    fmt::print("{}: {}{}\n", assumption.subject, assumption.text,
+               assumption.override_with.empty() ? "" : fmt::format(" [{}]", assumption.override_with));
+  }
+  fmt::print("{}{} assumptions; {}\n", robot.assumptions.empty() ? "" : "\n", robot.assumptions.size(),
+             options.out.string());
+  return ExitCode::kDone;
+}
+
+}  // namespace patrol::app

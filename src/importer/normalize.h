@@ -1,0 +1,23 @@
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "importer/normalized_robot.h"
+#include "importer/source_robot.h"
+
+namespace patrol::importer {
+
+/// Choices of the user where a rule would decide.
+struct NormalizeOptions {
+  std::string name;                           ///< of the robot
+  std::string base_link;                      ///< link of the file; empty: by rule
+  std::string forward;                        ///< direction of travel in the base: x, -x, y or -y; empty: by the axles
+  std::map<std::string, std::string> frames;  ///< sensor frame of Patrol to link of the file
+  std::string drive;                          ///< differential, ackermann or mecanum; empty: by rule
+};
+
+/// Turns a description into Patrol's conventions (importer/README.md). Throws InputError with file, line and element.
+NormalizedRobot normalize(const SourceRobot& source, const NormalizeOptions& options);
+
+}  // namespace patrol::importer

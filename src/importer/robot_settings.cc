@@ -1,0 +1,67 @@
+#include "importer/robot_settings.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace patrol::importer {
+namespace {
+
+const char* kinematics_of(DriveType drive) {
+  switch (drive) {
+    case DriveType::kAckermann:
+      return "ackermann";
+    case DriveType::kMecanum:
+      return "omnidirectional";
+    default:
+      return "differential";
+  }
+}
+
+/// Rounds down to a multiple of `step`, within bounds.
+double rounded_down(double value, double step, double min, double max) {
+  return std::clamp(std::floor(value / step + 1e-9) * step, min, max);
+}
+
+}  // namespace
+
+std::string settings_of(const NormalizedRobot& robot, const std::string& comment) {
+  const auto has = [&robot](const char* frame) {
+    return std::find(robot.sensor_frames.begin(), robot.sensor_frames.end(), frame) != robot.sensor_frames.end()
+               ? "true"
+               : "false";
+  };
+  const bool is_ackermann = robot.drive == DriveType::kAckermann;
+  const double max_speed_mps = rounded_down(robot.max_speed_mps, 0.01, 0.05, 1.5);
+  const double planner_speed_mps = std::min(1.0, max_speed_mps);
+  const double approach_m = rounded_down(0.8 * robot.length_m, 0.05, 0.3, is_ackermann ? 3.0 : 1.5);
+  std::string text = fmt::format("# {}\n", comment);
+  text += "sensors:\n";
+  text += fmt::format("  lidar: {{enabled: {}}}\n", has("lidar"));
+  text += fmt::format("  lidar3d: {{enabled: {}}}\n", has("lidar3d"));
+  text += fmt::format("  gnss: {{enabled: {}}}\n", has("gnss"));
+  text += fmt::format("  depth_camera: {{enabled: {}}}\n", has("depth_camera"));
+  text += fmt::format("  tdlas: {{enabled: {}}}\n", has("tdlas"));
+  text += fmt::format("  uwb: {{enabled: {}}}\n", has("uwb"));
+  text += "  joint_encoders: {rate_hz: 50.0, counts_per_revolution: 16384}\n";
+  text += "  foot_contact: {enabled: false}\n";
+  text += "  hall: {enabled: false}\n";
+  text += fmt::format("wheel_drive: {{max_speed_mps: {:.2f}}}\n", max_speed_mps);
+  text += "stack:\n";
+  text += "  odometry_source: wheeled\n";
+  text += "  odometry:\n";
+  text += "    wheeled: {ticks_per_sprocket_turn: 16384}\n";
+  text += "  navigation:\n";
+  text += fmt::format("    kinematics: {}\n", kinematics_of(robot.drive));
+  text += "    footprint_rows: 2\n";
+  text += fmt::format("    goal_approach_distance_m: {:.2f}\n", approach_m);
+  text += "    approach_deceleration_mps2: 0.25\n";
+  text += fmt::format("    recovery: {{behaviors: [{}], max_attempts: 6}}\n",
+                      is_ackermann ? "wait, back_up" : "wait, back_up, spin");
+  text += "    local_planner:\n";
+  text += fmt::format("      dwa: {{max_speed_mps: {:.2f}, max_acceleration_mps2: 0.5}}\n", planner_speed_mps);
+  return text;
+}
+
+}  // namespace patrol::importer

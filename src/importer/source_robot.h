@@ -1,0 +1,120 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "core/frames.h"
+#include "importer/mesh.h"
+#include "importer/packages.h"
+
+namespace patrol::importer {
+
+/// Decision that the description did not determine.
+struct Assumption {
+  std::string subject;        ///< link, joint or setting
+  std::string text;           ///< what is assumed and why
+  std::string override_with;  ///< element of the description, option or key that overrides it
+};
+
+enum class ShapeType { kBox, kCylinder, kSphere, kMesh };
+
+/// Shape of a link. A cylinder's axis is z.
+struct Shape {
+  ShapeType type = ShapeType::kBox;
+  Pose3 T_link_shape = {};
+  Eigen::Vector3d size_m = Eigen::Vector3d::Zero();        ///< box
+  double radius_m = 0.0;                                   ///< cylinder, sphere
+  double length_m = 0.0;                                   ///< cylinder
+  std::shared_ptr<const std::vector<MeshPart>> mesh = {};  ///< parts by color, scaled to meters
+  std::string mesh_name = {};                              ///< stem of the mesh's file
+  std::optional<Eigen::Vector4d> rgba = {};                ///< color of the description
+  int line = 0;
+};
+
+/// Returns all triangles of a mesh shape in the frame of the shape.
+Mesh whole_mesh(const Shape& shape);
+
+/// Returns points whose convex hull is that of the shape, in the frame of its link. Circles have 48 corners outside.
+std::vector<Eigen::Vector3d> outline(const Shape& shape);
+
+/// Returns volume, center and inertia of a shape of density 1, in the frame of its link. Meshes that are not closed are
+/// replaced by their convex hull.
+SolidProperties solid_of(const Shape& shape);
+
+/// Mass and inertia of a link.
+struct SourceInertial {
+  double mass_kg = 0.0;
+  Pose3 T_link_inertia = {};
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< kg m^2, about the center of mass, along T_link_inertia
+  int line = 0;
+};
+
+struct SourceLink {
+  std::string name;
+  int line = 0;
+  std::optional<SourceInertial> inertial = {};
+  std::vector<Shape> visuals = {};
+  std::vector<Shape> collisions = {};
+
+  bool has_shapes() const { return !visuals.empty() || !collisions.empty(); }
+};
+
+enum class JointType { kFixed, kContinuous, kRevolute, kPrismatic, kFloating, kPlanar };
+
+struct SourceJoint {
+  std::string name;
+  int line = 0;
+  JointType type = JointType::kFixed;
+  std::string parent = {};
+  std::string child = {};
+  Pose3 T_parent_child = {};
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< unit vector in the child
+  double lower = 0.0, upper = 0.0;
+  std::optional<double> effort = {}, velocity = {};
+  double damping = 0.0, friction = 0.0;
+  bool is_mimic = false;
+
+  /// Whether the joint turns without end: continuous, or at least two full turns.
+  bool is_endless() const;
+};
+
+/// Sensor of the description.
+struct SourceSensor {
+  std::string frame = {};  ///< sensor frame of Patrol: lidar, lidar3d, imu, gnss, depth_camera
+  std::string link = {};
+  Pose3 T_link_sensor = {};
+  int line = 0;
+};
+
+/// Vendor's robot description as written: a tree of links and joints.
+struct SourceRobot {
+  std::string file;  ///< for messages; of an expanded xacro file with a remark
+  std::string name;
+  std::vector<SourceLink> links;
+  std::vector<SourceJoint> joints;
+  std::set<std::string> motors;  ///< joints named by a transmission, a command interface or a drive plugin
+  std::vector<SourceSensor> sensors;
+  std::vector<Assumption> assumptions;  ///< made by the reader
+
+  const SourceLink* find_link(const std::string& link_name) const;
+  const SourceLink& link(const std::string& link_name) const;
+  const SourceJoint* parent_joint(const std::string& link_name) const;  ///< null for the root
+  std::vector<const SourceJoint*> child_joints(const std::string& link_name) const;
+  const SourceLink& root() const;
+
+  [[noreturn]] void fail(int line, const std::string& element, const std::string& what) const;
+};
+
+/// Parses a URDF text and loads its meshes. Throws InputError with "file:line: element: what" for a description that is
+/// not a tree of links with physical masses.
+SourceRobot read_source_robot(const std::string& file, const std::string& text, const Packages& packages);
+
+}  // namespace patrol::importer

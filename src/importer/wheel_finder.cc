@@ -1,0 +1,273 @@
+#include "importer/wheel_finder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+
+namespace patrol::importer {
+namespace {
+
+constexpr double kRoundness = 0.035;  // a regular polygon of twelve sides is round
+constexpr double kHorizontal = 0.05;  // 2.9 degrees
+constexpr double kVertical = 0.966;   // 15 degrees, for king pins and caster angles
+constexpr int kMinRollers = 4;
+
+/// Shape in cylindrical coordinates about the axis of a joint.
+struct AxialShape {
+  bool is_round = false;
+  bool is_sphere = false;
+  double radius_m = 0.0;            ///< largest distance from the axis
+  double min_m = 0.0, max_m = 0.0;  ///< extent along the axis
+};
+
+/// Returns whether points have the same extent in all directions across the z axis.
+bool is_round_about_z(const std::vector<Eigen::Vector3d>& points) {
+  constexpr int kNumDirections = 72;
+  double min_extent = std::numeric_limits<double>::infinity(), max_extent = 0.0;
+  for (int i = 0; i < kNumDirections; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / kNumDirections;
+    const Eigen::Vector2d direction(std::cos(angle), std::sin(angle));
+    double extent = -std::numeric_limits<double>::infinity();
+    for (const Eigen::Vector3d& p : points) extent = std::max(extent, direction.dot(p.head<2>()));
+    min_extent = std::min(min_extent, extent);
+    max_extent = std::max(max_extent, extent);
+  }
+  return max_extent > 0.0 && max_extent - min_extent <= kRoundness * max_extent;
+}
+
+AxialShape measure(const Shape& shape, const Pose3& T_axis_link) {
+  AxialShape result;
+  const Pose3 T_axis_shape = T_axis_link * shape.T_link_shape;
+  const double offset_m = T_axis_shape.position.head<2>().norm();
+  const bool is_centered = offset_m <= kRoundness * shape.radius_m;
+  const bool is_parallel = std::abs((T_axis_shape.rotation * Eigen::Vector3d::UnitZ()).z()) > 0.9985;
+  if ((shape.type == ShapeType::kCylinder && is_centered && is_parallel) ||
+      (shape.type == ShapeType::kSphere && is_centered)) {
+    result.is_round = true;
+    result.is_sphere = shape.type == ShapeType::kSphere;
+    result.radius_m = shape.radius_m;
+    const double half_m = result.is_sphere ? shape.radius_m : 0.5 * shape.length_m;
+    result.min_m = T_axis_shape.position.z() - half_m;
+    result.max_m = T_axis_shape.position.z() + half_m;
+    return result;
+  }
+  std::vector<Eigen::Vector3d> points = outline(shape);
+  for (Eigen::Vector3d& point : points) point = T_axis_link * point;
+  result.min_m = std::numeric_limits<double>::infinity();
+  result.max_m = -result.min_m;
+  for (const Eigen::Vector3d& point : points) {
+    result.radius_m = std::max(result.radius_m, point.head<2>().norm());
+    result.min_m = std::min(result.min_m, point.z());
+    result.max_m = std::max(result.max_m, point.z());
+  }
+  result.is_round = shape.type == ShapeType::kMesh && is_round_about_z(points);
+  return result;
+}
+
+/// Finder of the wheels of one description.
+class WheelFinder {
+ public:
+  explicit WheelFinder(const SourceRobot& robot) : robot_(robot), T_root_link_(link_poses(robot)) {
+    for (const SourceJoint& joint : robot.joints) {
+      if (joint.is_endless()) endless_.insert(&joint);
+    }
+  }
+
+  FoundWheels find();
+
+ private:
+  std::optional<FoundWheel> measure_wheel(const SourceJoint& joint);
+  void check_rollers(const SourceJoint& joint) const;
+  void find_carrier(FoundWheel& wheel);
+  void keep_wheels_on_ground();
+  void leave_out_passive_balls();
+  std::vector<AxialShape> axial_shapes(const std::vector<const SourceLink*>& links, const Pose3& T_root_axis,
+                                       bool is_visual) const;
+
+  const SourceRobot& robot_;
+  std::map<std::string, Pose3> T_root_link_;
+  std::set<const SourceJoint*> endless_;
+  FoundWheels found_;
+  std::string reason_;  ///< why the last candidate is no wheel
+};
+
+std::vector<AxialShape> WheelFinder::axial_shapes(const std::vector<const SourceLink*>& links, const Pose3& T_root_axis,
+                                                  bool is_visual) const {
+  std::vector<AxialShape> shapes;
+  for (const SourceLink* link : links) {
+    const Pose3 T_axis_link = T_root_axis.inverse() * T_root_link_.at(link->name);
+    for (const Shape& shape : is_visual ? link->visuals : link->collisions)
+      shapes.push_back(measure(shape, T_axis_link));
+  }
+  return shapes;
+}
+
+/// Returns the largest round shapes as one: the wheel. None if another shape protrudes.
+std::optional<AxialShape> round_hull(const std::vector<AxialShape>& shapes) {
+  std::optional<AxialShape> wheel;
+  double max_other_m = 0.0;
+  for (const AxialShape& shape : shapes) {
+    if (!shape.is_round) max_other_m = std::max(max_other_m, shape.radius_m);
+    else if (!wheel || shape.radius_m > wheel->radius_m) wheel = shape;
+  }
+  if (!wheel || max_other_m > 1.1 * wheel->radius_m) return std::nullopt;
+  for (const AxialShape& shape : shapes) {
+    if (!shape.is_round || shape.radius_m < 0.97 * wheel->radius_m) continue;
+    wheel->min_m = std::min(wheel->min_m, shape.min_m);
+    wheel->max_m = std::max(wheel->max_m, shape.max_m);
+    wheel->is_sphere = wheel->is_sphere && shape.is_sphere;
+  }
+  return wheel;
+}
+
+void WheelFinder::check_rollers(const SourceJoint& joint) const {
+  int num_rollers = 0;
+  for (const SourceJoint* other : endless_) {
+    for (const SourceJoint* at = robot_.parent_joint(other->parent); at != nullptr;
+         at = robot_.parent_joint(at->parent)) {
+      if (at == &joint) ++num_rollers;
+    }
+  }
+  if (num_rollers < kMinRollers) return;
+  robot_.fail(
+      joint.line, joint.child,
+      fmt::format("has {} rollers on joints: not supported: remove the rollers, describe the wheel as a cylinder "
+                  "and select the drive mecanum",
+                  num_rollers));
+}
+
+std::optional<FoundWheel> WheelFinder::measure_wheel(const SourceJoint& joint) {
+  const Pose3& T_root_child = T_root_link_.at(joint.child);
+  const Eigen::Vector3d axis = T_root_child.rotation * joint.axis;
+  if (std::abs(axis.z()) > kHorizontal) return std::nullopt;
+  check_rollers(joint);
+  const Pose3 T_root_axis{T_root_child.position, Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), axis)};
+  const std::vector<const SourceLink*> links = rigid_group(robot_, joint.child, endless_);
+  const std::vector<AxialShape> collisions = axial_shapes(links, T_root_axis, false);
+  const std::vector<AxialShape> visuals = axial_shapes(links, T_root_axis, true);
+  const std::optional<AxialShape> by_collision = round_hull(collisions), by_visual = round_hull(visuals);
+  const std::optional<AxialShape>& wheel = by_collision ? by_collision : by_visual;
+  if (!wheel) {
+    reason_ = fmt::format("line {}: {} is not round about the axis of joint {}", joint.line, joint.child, joint.name);
+    return std::nullopt;
+  }
+  FoundWheel result{.joint = &joint,
+                    .axis = Eigen::Vector3d(axis.x(), axis.y(), 0.0).normalized(),
+                    .radius_m = wheel->radius_m,
+                    .width_m = wheel->max_m - wheel->min_m};
+  double middle_m = 0.5 * (wheel->max_m + wheel->min_m);
+  if (wheel->is_sphere) {
+    result.is_ball = true;
+    result.width_m = wheel->radius_m;
+    if (by_visual && !by_visual->is_sphere &&
+        std::abs(by_visual->radius_m - wheel->radius_m) < 0.15 * wheel->radius_m) {
+      result.width_m = by_visual->max_m - by_visual->min_m;
+      middle_m = 0.5 * (by_visual->max_m + by_visual->min_m);
+      result.is_ball = false;
+    }
+  }
+  result.center_m = T_root_axis * Eigen::Vector3d(0.0, 0.0, middle_m);
+  return result;
+}
+
+/// Finds the nearest vertical joint above a wheel. A joint with a range is a steering joint, an endless one a caster's.
+void WheelFinder::find_carrier(FoundWheel& wheel) {
+  for (const SourceJoint* at = robot_.parent_joint(wheel.joint->parent); at != nullptr;
+       at = robot_.parent_joint(at->parent)) {
+    if (at->type != JointType::kRevolute && at->type != JointType::kContinuous) continue;
+    const Eigen::Vector3d axis = T_root_link_.at(at->child).rotation * at->axis;
+    if (std::abs(axis.z()) < kVertical) continue;
+    wheel.carrier = at;
+    wheel.carrier_type = at->is_endless() ? CarrierType::kCaster : CarrierType::kSteering;
+    if (at->is_endless() && robot_.motors.contains(at->name)) wheel.carrier_type = CarrierType::kSteering;
+    return;
+  }
+}
+
+/// Keeps the wheels on the ground plane. A candidate far above it is another round part, for example a spinning sensor.
+void WheelFinder::keep_wheels_on_ground() {
+  found_.ground_m = std::numeric_limits<double>::infinity();
+  for (const FoundWheel& wheel : found_.wheels) found_.ground_m = std::min(found_.ground_m, wheel.bottom_m());
+  std::erase_if(found_.wheels, [this](const FoundWheel& wheel) {
+    const double above_m = wheel.bottom_m() - found_.ground_m;
+    constexpr double kMaxReaderGap_m = 0.01;
+    if (above_m <= std::min(0.02 * wheel.radius_m + 0.005, kMaxReaderGap_m)) return false;
+    if (above_m < 0.5 * wheel.radius_m) {
+      robot_.fail(wheel.joint->line, wheel.joint->child,
+                  fmt::format("is {:.3f} m above the lowest wheel: all wheels must touch one plane", above_m));
+    }
+    found_.assumptions.push_back(
+        {.subject = wheel.joint->name,
+         .text = fmt::format("is fixed at zero: its link is round, but {:.3f} m above the ground", above_m),
+         .override_with = "<origin> of the joint"});
+    return true;
+  });
+}
+
+/// Leaves out balls without motors beside two other wheels: casters, whose joint about one axis is a stopgap.
+void WheelFinder::leave_out_passive_balls() {
+  const auto is_passive_ball = [this](const FoundWheel& wheel) {
+    const bool has_motor = robot_.motors.contains(wheel.joint->name) || wheel.joint->effort.value_or(0.0) > 0.0;
+    return wheel.is_ball && !has_motor && !wheel.joint->is_mimic;
+  };
+  const auto num_balls = std::count_if(found_.wheels.begin(), found_.wheels.end(), is_passive_ball);
+  if (static_cast<std::ptrdiff_t>(found_.wheels.size()) - num_balls < 2) return;
+  std::erase_if(found_.wheels, is_passive_ball);
+}
+
+FoundWheels WheelFinder::find() {
+  for (const SourceJoint& joint : robot_.joints) {
+    if (!joint.is_endless()) continue;
+    if (const auto wheel = measure_wheel(joint)) found_.wheels.push_back(*wheel);
+  }
+  if (found_.wheels.empty()) {
+    throw InputError(fmt::format(
+        "{}: no wheels found: a wheel is a round link on a continuous joint about a horizontal axis that touches the "
+        "ground{}",
+        robot_.file, reason_.empty() ? "" : " (" + reason_ + ")"));
+  }
+  keep_wheels_on_ground();
+  leave_out_passive_balls();
+  for (FoundWheel& wheel : found_.wheels) find_carrier(wheel);
+  return std::move(found_);
+}
+
+}  // namespace
+
+std::map<std::string, Pose3> link_poses(const SourceRobot& robot) {
+  std::map<std::string, Pose3> poses;
+  std::vector<std::string> open = {robot.root().name};
+  poses[open.front()] = {};
+  while (!open.empty()) {
+    const std::string parent = open.back();
+    open.pop_back();
+    for (const SourceJoint* joint : robot.child_joints(parent)) {
+      Pose3 pose = poses.at(parent) * joint->T_parent_child;
+      pose.rotation.normalize();
+      poses[joint->child] = pose;
+      open.push_back(joint->child);
+    }
+  }
+  return poses;
+}
+
+std::vector<const SourceLink*> rigid_group(const SourceRobot& robot, const std::string& link,
+                                           const std::set<const SourceJoint*>& kept) {
+  std::vector<const SourceLink*> group = {&robot.link(link)};
+  for (std::size_t i = 0; i < group.size(); ++i) {
+    for (const SourceJoint* joint : robot.child_joints(group[i]->name)) {
+      if (!kept.contains(joint)) group.push_back(&robot.link(joint->child));
+    }
+  }
+  return group;
+}
+
+FoundWheels find_wheels(const SourceRobot& robot) { return WheelFinder(robot).find(); }
+
+}  // namespace patrol::importer

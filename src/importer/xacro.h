@@ -1,0 +1,20 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "importer/packages.h"
+
+namespace patrol::importer {
+
+/// Returns whether the name of the file ends in `.xacro`.
+bool is_xacro(const std::filesystem::path& file);
+
+/// Expands a xacro file by the Python package xacro, without ROS. The interpreter is python3, or the one that the
+/// environment variable PATROL_PYTHON names. Throws InputError with the file and xacro's message in one line if the
+/// package is missing or the expansion fails.
+std::string expand_xacro(const std::filesystem::path& file, const std::map<std::string, std::string>& arguments,
+                         const std::map<std::string, std::filesystem::path>& packages);
+
+}  // namespace patrol::importer

@@ -1,0 +1,828 @@
+#include "importer/robot_import.h"
+
+#include <algorithm>
+#include <cstdlib>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "core/wheel_kinematics.h"
+#include "importer/normalized_robot.h"
+#include "importer/xacro.h"
+#include "io/urdf.h"
+#include "tests/importer/description.h"
+#include "tests/support/pose_near.h"
+#include "tests/support/temporary_file.h"
+
+namespace patrol::importer::robot_import_test {
+namespace {
+
+using test::TemporaryFolder, test::VectorNear, test::write_bytes;
+using ::testing::HasSubstr, ::testing::MatchesRegex, ::testing::Not;
+
+/// Description written to a folder and imported from there.
+class Import {
+ public:
+  explicit Import(const std::string& text, const std::string& file = "vendor.urdf") {
+    options.file = folder / file;
+    options.name = "imported";
+    write_bytes(options.file, text);
+  }
+
+  /// Imports, writes and loads the result.
+  const RobotDescription& load() {
+    robot = import_robot(options);
+    write_robot(robot, folder / "imported");
+    description = io::load_robot_description((folder / "imported/imported.urdf").string());
+    return description;
+  }
+
+  const WheelGeometry& wheel(const std::string& link) const {
+    const auto found = std::find_if(description.wheels.begin(), description.wheels.end(),
+                                    [&](const WheelGeometry& wheel) { return wheel.link == link; });
+    if (found == description.wheels.end()) throw std::runtime_error("no wheel " + link);
+    return *found;
+  }
+
+  std::string assumptions() const { return report_of(robot); }
+
+  TemporaryFolder folder;
+  RobotImportOptions options;
+  ImportedRobot robot;
+  RobotDescription description;
+};
+
+/// Expects an exact wheel.
+void expect_wheel(const Import& import, const std::string& link, const Eigen::Vector3d& center, double radius_m,
+                  double width_m, double tolerance = 1e-6) {
+  const WheelGeometry& wheel = import.wheel(link);
+  EXPECT_THAT(wheel.center_in_body, VectorNear(center, tolerance)) << link;
+  EXPECT_NEAR(wheel.radius_m, radius_m, tolerance) << link;
+  EXPECT_NEAR(wheel.width_m, width_m, tolerance) << link;
+}
+
+/// Expects the bounding box of the footprint.
+void expect_footprint(const RobotDescription& robot, double min_x, double max_x, double min_y, double max_y) {
+  Eigen::Vector2d lower(1e9, 1e9), upper(-1e9, -1e9);
+  for (const Eigen::Vector2d& corner : robot.footprint_m) {
+    lower = lower.cwiseMin(corner);
+    upper = upper.cwiseMax(corner);
+  }
+  EXPECT_THAT(lower, VectorNear(Eigen::Vector2d(min_x, min_y), 0.005));
+  EXPECT_THAT(upper, VectorNear(Eigen::Vector2d(max_x, max_y), 0.005));
+}
+
+std::string four_wheels(double radius_m, double width_m) {
+  std::string text;
+  for (const auto& [name, xyz] : {std::pair{"fl", "0.2 0.25 -0.05"},
+                                  {"fr", "0.2 -0.25 -0.05"},
+                                  {"rl", "-0.2 0.25 -0.05"},
+                                  {"rr", "-0.2 -0.25 -0.05"}})
+    text += wheel(name, "base_link", xyz, radius_m, width_m);
+  return text;
+}
+
+TEST(ImportRobot, ADifferentialDriveWithACasterKeepsWheelsMassAndFootprint) {
+  Import import(robot(chassis() + two_wheels() + caster()));
+  const RobotDescription& robot = import.load();
+  ASSERT_EQ(robot.wheels.size(), 3U);
+  expect_wheel(import, "left", {0.0, 0.25, -0.05}, 0.1, 0.04);
+  expect_wheel(import, "right", {0.0, -0.25, -0.05}, 0.1, 0.04);
+  expect_wheel(import, "small", {-0.28, 0.0, -0.1}, 0.05, 0.03);
+  EXPECT_TRUE(import.wheel("small").is_caster);
+  EXPECT_FALSE(import.wheel("small").drive_joint.has_value());
+  EXPECT_TRUE(import.wheel("left").drive_joint.has_value());
+  EXPECT_EQ(wheel_drive_type(robot), WheelDriveType::kDifferential);
+  EXPECT_NEAR(robot.mass_kg, 22.5, 1e-6);
+  EXPECT_NEAR(robot.joint_limits[*import.wheel("left").drive_joint].effort_nm, 10.0, 1e-9);
+  expect_footprint(robot, -0.33, 0.3, -0.27, 0.27);
+  EXPECT_EQ(robot.name, "imported");
+}
+
+TEST(ImportRobot, AFixedSphereThatTouchesTheGroundBecomesAFreeBallWithoutChangeOfMass) {
+  const std::string ball =
+      joint("ball_joint", "fixed", "base_link", "ball", "-0.25 0 -0.11") +
+      link("ball", inertial(0.1, "0 0 0", 1e-4) + shape("visual", sphere(0.04)) + shape("collision", sphere(0.04)));
+  Import import(robot(chassis() + two_wheels() + ball));
+  const RobotDescription& robot = import.load();
+  ASSERT_EQ(robot.wheels.size(), 3U);
+  expect_wheel(import, "ball_ball", {-0.25, 0.0, -0.11}, 0.04, 0.08);
+  EXPECT_TRUE(import.wheel("ball_ball").is_caster);
+  EXPECT_NEAR(robot.mass_kg, 22.1, 1e-6);
+  EXPECT_THAT(import.assumptions(), HasSubstr("| ball | is fixed and touches the ground"));
+}
+
+TEST(ImportRobot, ABallOnAJointAboutOneAxisIsAFreeBall) {
+  const std::string ball = joint("ball_joint", "continuous", "base_link", "ball", "-0.25 0 -0.11", axis("1 0 0")) +
+                           link("ball", inertial(0.8, "0 0 0", 1e-4) + shape("collision", sphere(0.04)));
+  Import import(robot(chassis() + two_wheels() + ball));
+  const RobotDescription& robot = import.load();
+  ASSERT_EQ(robot.wheels.size(), 3U);
+  EXPECT_TRUE(import.wheel("ball_ball").is_caster);
+  EXPECT_NEAR(robot.mass_kg, 22.8, 1e-6);
+}
+
+TEST(ImportRobot, ACenterOfMassBesideTheContactsIsReported) {
+  Import import(robot(link("base_link", inertial(20.0, "0.1 0 0", 0.5) + shape("collision", box(0.6, 0.4, 0.2))) +
+                      two_wheels() + caster()));
+  import.load();
+  EXPECT_THAT(import.assumptions(), HasSubstr("the robot tips over"));
+  Import balanced(robot(link("base_link", inertial(20.0, "-0.1 0 0", 0.5) + shape("collision", box(0.6, 0.4, 0.2))) +
+                        two_wheels() + caster()));
+  balanced.load();
+  EXPECT_THAT(balanced.assumptions(), Not(HasSubstr("the robot tips over")));
+}
+
+TEST(ImportRobot, LinksFixedToAWheelAreMergedByTheParallelAxisTheorem) {
+  const Inertial wheel{.mass_kg = 1.0, .inertia = 0.01 * Eigen::Matrix3d::Identity()};
+  const Inertial cap{.mass_kg = 1.0, .inertia = 0.02 * Eigen::Matrix3d::Identity()};
+  const Inertial both = combine({{Pose3{}, wheel}, {Pose3{.position = {0.0, 0.2, 0.0}}, cap}});
+  EXPECT_NEAR(both.mass_kg, 2.0, 1e-12);
+  EXPECT_THAT(both.T_link_inertia.position, VectorNear(Eigen::Vector3d(0.0, 0.1, 0.0), 1e-12));
+  EXPECT_NEAR(both.inertia(0, 0), 0.03 + 2.0 * 0.01, 1e-12);
+  EXPECT_NEAR(both.inertia(1, 1), 0.03, 1e-12);
+}
+
+TEST(ImportRobot, AFixedBoxCasterIsASupportOfARobotWithOneAxle) {
+  const std::string skid = joint("skid_joint", "fixed", "base_link", "skid", "-0.2 0 -0.14") +
+                           link("skid", inertial(0.005, "0 0 0", 1e-5) + shape("collision", box(0.03, 0.09, 0.02)));
+  Import import(robot(chassis() + two_wheels() + skid));
+  const RobotDescription& robot = import.load();
+  ASSERT_EQ(robot.wheels.size(), 3U);
+  expect_wheel(import, "skid_ball", {-0.2, 0.0, -0.125}, 0.025, 0.05);
+  EXPECT_NEAR(robot.mass_kg, 22.005, 1e-6);
+}
+
+TEST(ImportRobot, ARobotWithOneAxleAndNothingElseGetsASupportWithAnAssumption) {
+  Import import(robot(chassis() + two_wheels()));
+  const RobotDescription& robot = import.load();
+  EXPECT_EQ(robot.wheels.size(), 4U) << "center of mass above the axle: front and rear";
+  EXPECT_NEAR(robot.mass_kg, 22.0, 1e-6);
+  EXPECT_THAT(import.assumptions(), HasSubstr("keeps the robot upright"));
+}
+
+TEST(ImportRobot, FourFixedWheelsAreADifferentialDrive) {
+  Import import(robot(chassis() + four_wheels(0.1, 0.05)));
+  const RobotDescription& robot = import.load();
+  ASSERT_EQ(robot.wheels.size(), 4U);
+  EXPECT_EQ(robot.joint_names.size(), 4U);
+  expect_wheel(import, "rr", {-0.2, -0.25, -0.05}, 0.1, 0.05);
+  EXPECT_EQ(wheel_drive_type(robot), WheelDriveType::kDifferential);
+  EXPECT_NEAR(robot.mass_kg, 24.0, 1e-6);
+  EXPECT_THAT(import.robot.settings, HasSubstr("kinematics: differential"));
+}
+
+TEST(ImportRobot, SixWheelsAreKept) {
+  Import import(robot(chassis() + four_wheels(0.1, 0.05) + wheel("ml", "base_link", "0 0.25 -0.05", 0.1, 0.05) +
+                      wheel("mr", "base_link", "0 -0.25 -0.05", 0.1, 0.05)));
+  EXPECT_EQ(import.load().wheels.size(), 6U);
+}
+
+std::string ackermann(const std::string& steering_axis) {
+  std::string text = chassis();
+  for (const auto& [side, y] : {std::pair{"l", "0.25"}, {"r", "-0.25"}}) {
+    text += joint(std::string("steer_") + side, "revolute", "base_link", std::string("knuckle_") + side,
+                  fmt::format("0.4 {} -0.05", y),
+                  axis(steering_axis) + R"(<limit lower="-0.5" upper="0.6" effort="20" velocity="3"/>)");
+    text += link(std::string("knuckle_") + side, inertial(0.5));
+    text += wheel(std::string("f") + side, std::string("knuckle_") + side, "0 0 0", 0.1, 0.05, "");
+    text += wheel(std::string("r") + side, "base_link", fmt::format("-0.1 {} -0.05", y), 0.1, 0.05);
+  }
+  return robot(text);
+}
+
+TEST(ImportRobot, SteeredFrontWheelsAreAnAckermannDrive) {
+  Import import(ackermann("0 0 1"));
+  const RobotDescription& robot = import.load();
+  ASSERT_EQ(robot.wheels.size(), 4U);
+  EXPECT_EQ(wheel_drive_type(robot), WheelDriveType::kAckermann);
+  const WheelGeometry& front = import.wheel("fl");
+  ASSERT_TRUE(front.steering_joint.has_value());
+  EXPECT_FALSE(front.drive_joint.has_value());
+  EXPECT_EQ(front.left_sign, 1.0);
+  EXPECT_NEAR(robot.joint_limits[*front.steering_joint].lower_rad, -0.5, 1e-9);
+  EXPECT_NEAR(robot.joint_limits[*front.steering_joint].upper_rad, 0.6, 1e-9);
+  EXPECT_TRUE(import.wheel("rl").drive_joint.has_value());
+  EXPECT_NEAR(robot.mass_kg, 25.0, 1e-6);
+  expect_footprint(robot, -0.3, 0.5, -0.275, 0.275);
+  EXPECT_THAT(import.robot.settings, HasSubstr("kinematics: ackermann"));
+}
+
+TEST(ImportRobot, ASteeringAxisThatPointsDownKeepsItsSign) {
+  Import import(ackermann("0 0 -1"));
+  import.load();
+  EXPECT_EQ(import.wheel("fl").left_sign, -1.0);
+}
+
+TEST(ImportRobot, TheDriveDifferentialFixesTheSteering) {
+  Import import(ackermann("0 0 1"));
+  import.options.drive = "differential";
+  EXPECT_EQ(wheel_drive_type(import.load()), WheelDriveType::kDifferential);
+  EXPECT_NEAR(import.description.mass_kg, 25.0, 1e-6);
+}
+
+TEST(ImportRobot, WheelsWithReversedAxesAndTurnedFramesAreFound) {
+  const std::string turned = joint("l_joint", "continuous", "base_link", "l", "0 0.25 -0.05", axis("0 0 1") + kMotor,
+                                   "-1.5707963267948966 0 0") +
+                             link("l", inertial(1.0) + shape("collision", cylinder(0.1, 0.04), "0 0 0.01"));
+  Import import(
+      robot(chassis() + turned + wheel("r", "base_link", "0 -0.25 -0.05", 0.1, 0.04, kMotor, "0 -1 0") + caster()));
+  import.load();
+  expect_wheel(import, "l", {0.0, 0.26, -0.05}, 0.1, 0.04);
+  expect_wheel(import, "r", {0.0, -0.25, -0.05}, 0.1, 0.04);
+  EXPECT_EQ(import.wheel("l").forward_sign, 1.0);
+  EXPECT_EQ(import.wheel("r").forward_sign, -1.0);
+}
+
+TEST(ImportRobot, NamesInAnotherLanguageOrWithAMeaningInPatrolDecideNothing) {
+  std::string text =
+      robot(chassis("车体") + two_wheels("车体") + caster("车体") +
+            joint("tem_yaw_joint", "fixed", "车体", "left_track", "0 0 0.1") + link("left_track", inertial(0.5)) +
+            joint("j & <k>", "fixed", "车体", "FL_foot", "0 0 0.1") + link("FL_foot", inertial(0.25)));
+  for (std::size_t at = 0; (at = text.find("j & <k>", at)) != std::string::npos;)
+    text.replace(at, 7, "j &amp; &lt;k&gt;");
+  const auto rename = [&text](const std::string& from, const std::string& to) {
+    for (std::size_t at = 0; (at = text.find("\"" + from + "\"", at)) != std::string::npos; at += to.size())
+      text.replace(at, from.size() + 2, "\"" + to + "\"");
+  };
+  rename("left", "колесо");
+  rename("right", "base_link");
+  Import import(text);
+  const RobotDescription& robot = import.load();
+  EXPECT_EQ(robot.wheels.size(), 3U);
+  expect_wheel(import, "колесо", {0.0, 0.25, -0.05}, 0.1, 0.04);
+  expect_wheel(import, "base_link_part", {0.0, -0.25, -0.05}, 0.1, 0.04);
+  EXPECT_NEAR(robot.mass_kg, 23.25, 1e-6);
+  EXPECT_TRUE(robot.legs.empty());
+  EXPECT_FALSE(robot.tracks.has_value());
+  EXPECT_FALSE(robot.antenna.has_value());
+}
+
+TEST(ImportRobot, OffsetAndTurnedInertialFramesAreKept) {
+  const std::string offset = R"(<inertial><origin xyz="0.1 0.02 -0.03" rpy="0.1 0.2 0.3"/><mass value="30"/>
+    <inertia ixx="0.5" ixy="0.01" ixz="0.02" iyy="0.6" iyz="0.03" izz="0.7"/></inertial>)";
+  Import import(robot(link("base_link", offset + shape("collision", box(0.6, 0.4, 0.2))) + two_wheels() + caster()));
+  EXPECT_NEAR(import.load().mass_kg, 32.5, 1e-6);
+  EXPECT_THAT(import.robot.urdf, HasSubstr(R"(<origin xyz="0.1 0.02 -0.03" rpy="0.1 0.2 0.3"/>)"));
+  EXPECT_THAT(import.robot.urdf, HasSubstr(R"(ixx="0.5" ixy="0.01" ixz="0.02" iyy="0.6" iyz="0.03" izz="0.7")"));
+}
+
+TEST(ImportRobot, NestedFixedJointsAreFlattenedAndMasslessFramesAboveTheBaseAreDropped) {
+  const std::string text =
+      link("base_footprint") + joint("a", "fixed", "base_footprint", "base_link", "0 0 0.15") + link("base_link") +
+      joint("b", "fixed", "base_link", "body", "0.1 0 0") + chassis("body") +
+      joint("c", "fixed", "body", "axle", "0 0 -0.05") + link("axle", inertial(2.0)) +
+      wheel("left", "axle", "0 0.25 0", 0.1, 0.04) + wheel("right", "axle", "0 -0.25 0", 0.1, 0.04) +
+      joint("hub_joint", "fixed", "left", "hub", "0 0.03 0") +
+      link("hub", inertial(0.5) + shape("visual", cylinder(0.03, 0.01), "0 0 0", kAcross)) + caster("body");
+  Import import(robot(text));
+  const RobotDescription& robot = import.load();
+  EXPECT_EQ(robot.wheels.size(), 3U);
+  expect_wheel(import, "left", {0.0, 0.25, -0.05}, 0.1, 0.04);
+  EXPECT_NEAR(robot.mass_kg, 25.0, 1e-6);
+  EXPECT_THAT(import.robot.urdf, Not(HasSubstr("base_footprint")));
+  EXPECT_THAT(import.assumptions(), HasSubstr("is the link body of the file"));
+  EXPECT_TRUE(robot.T_body_sensor.contains("axle"));
+}
+
+TEST(ImportRobot, TheBaseLinkOptionSelectsTheFrame) {
+  Import import(robot(link("base_footprint") + joint("a", "fixed", "base_footprint", "body", "0 0 0.15") +
+                      chassis("body") + two_wheels("body") + caster("body")));
+  import.options.base_link = "base_footprint";
+  import.load();
+  expect_wheel(import, "left", {0.0, 0.25, 0.1}, 0.1, 0.04);
+}
+
+std::string mesh_wheel(const std::string& name, const std::string& xyz, const std::string& mesh) {
+  return joint(name + "_joint", "continuous", "base_link", name, xyz, axis("0 1 0") + kMotor) +
+         link(name, inertial(1.0) + shape("visual", mesh) + shape("collision", mesh));
+}
+
+TEST(ImportRobot, WheelsOfScaledMeshesAreMeasured) {
+  const std::string mesh =
+      R"(<mesh filename="package://vendor_description/meshes/wheel.stl" scale="0.001 0.001 0.001"/>)";
+  Import import(
+      robot(chassis() + mesh_wheel("l", "0 0.25 -0.05", mesh) + mesh_wheel("r", "0 -0.25 -0.05", mesh) + caster()));
+  std::filesystem::create_directories(import.folder / "pkg/meshes");
+  write_bytes(import.folder / "pkg/meshes/wheel.stl", stl(wheel_triangles(100.0, 40.0)));
+  import.options.packages["vendor_description"] = import.folder / "pkg";
+  import.load();
+  expect_wheel(import, "l", {0.0, 0.25, -0.05}, 0.1, 0.04, 1e-5);
+  ASSERT_EQ(import.robot.meshes.size(), 1U) << "one file for both wheels";
+  EXPECT_TRUE(std::filesystem::exists(import.folder / "imported/meshes" / import.robot.meshes[0].first));
+}
+
+TEST(ImportRobot, PackagesAreFoundAboveTheFileByFolderAndByPackageXml) {
+  const std::string mesh = R"(<mesh filename="package://{}/meshes/wheel.stl"/>)";
+  for (const char* package : {"robot_meshes", "other_name"}) {
+    const std::string text = fmt::format(fmt::runtime(mesh), package);
+    Import import(
+        robot(chassis() + mesh_wheel("l", "0 0.25 -0.05", text) + mesh_wheel("r", "0 -0.25 -0.05", text) + caster()));
+    const auto folder = import.folder / "robot_meshes";
+    std::filesystem::create_directories(folder / "meshes");
+    std::filesystem::create_directories(folder / "urdf");
+    write_bytes(folder / "package.xml", "<package><name>other_name</name></package>");
+    write_bytes(folder / "meshes/wheel.stl", stl(wheel_triangles(0.1, 0.04)));
+    std::filesystem::rename(import.options.file, folder / "urdf/vendor.urdf");
+    import.options.file = folder / "urdf/vendor.urdf";
+    import.load();
+    expect_wheel(import, "l", {0.0, 0.25, -0.05}, 0.1, 0.04, 1e-5);
+  }
+}
+
+TEST(ImportRobot, MeshesInMillimetersWithoutScaleAreScaledWithAnAssumption) {
+  const std::string mesh = R"(<mesh filename="wheel.stl"/>)", body = R"(<mesh filename="body.stl"/>)";
+  Import import(
+      robot(link("base_link", inertial(20.0, "0 0 0", 0.5) + shape("visual", body) + shape("collision", body)) +
+            mesh_wheel("l", "0 0.25 -0.05", mesh) + mesh_wheel("r", "0 -0.25 -0.05", mesh) + caster()));
+  write_bytes(import.folder / "wheel.stl", stl(wheel_triangles(100.0, 40.0)));
+  write_bytes(import.folder / "body.stl", stl(box_triangles({600.0, 400.0, 200.0})));
+  import.load();
+  expect_wheel(import, "r", {0.0, -0.25, -0.05}, 0.1, 0.04, 1e-5);
+  EXPECT_THAT(import.assumptions(), HasSubstr("| meshes *.stl | are in millimeters"));
+  EXPECT_THAT(
+      import.robot.urdf,
+      HasSubstr(R"(<collision><origin xyz="0 0 0" rpy="0 0 0"/><geometry><mesh filename="meshes/body_hull.obj"/>)"));
+  EXPECT_THAT(import.assumptions(), HasSubstr("collision mesh body is replaced by 1 convex piece,"));
+}
+
+TEST(ImportRobot, VisualsKeepTheColorOfTheDescriptionOrElseOfTheirMesh) {
+  const std::string mesh = R"(<mesh filename="part.dae"/>)",
+                    blue = R"(<material name="blue"><color rgba="0 0 1 1"/></material>)";
+  const std::string own = R"(<visual><geometry>)" + mesh + R"(</geometry>)" + blue + "</visual>";
+  Import import(robot(
+      chassis("base_link", shape("visual", mesh)) + two_wheels() + caster() +
+      joint("j", "fixed", "base_link", "x", "0 0 0") + link("x", own) + joint("k", "fixed", "base_link", "y", "0 0 0") +
+      link("y", R"(<visual><geometry><box size="1 1 1"/></geometry><material name="blue"/></visual>)")));
+  write_bytes(import.folder / "part.dae", dae("0.1", "Z_UP"));
+  import.load();
+  EXPECT_EQ(import.robot.meshes.size(), 1U);
+  EXPECT_THAT(import.robot.urdf, HasSubstr(R"(<material name="color_0"><color rgba="1 0.5 0 1"/></material>)"));
+  EXPECT_THAT(import.robot.urdf, HasSubstr(R"(<material name="color_1"><color rgba="0 0 1 1"/></material>)"));
+  EXPECT_THAT(import.robot.urdf, HasSubstr(R"(<box size="1 1 1"/></geometry><material name="color_1"/>)"));
+  EXPECT_THAT(import.robot.meshes[0].second, Not(HasSubstr("mtllib")));
+}
+
+TEST(ImportRobot, AChassisOfSeveralMeshPartsHasOneConvexPieceForEach) {
+  Import import(
+      robot(link("base_link", inertial(20.0, "0 0 0", 0.5) + shape("collision", R"(<mesh filename="body.stl"/>)")) +
+            two_wheels() + caster()));
+  std::vector<Triangle> parts = box_triangles({0.6, 0.4, 0.1});
+  for (const Triangle& triangle : box_triangles({0.1, 0.1, 0.3}, {0.2, 0.0, 0.3})) parts.push_back(triangle);
+  write_bytes(import.folder / "body.stl", stl(parts));
+  import.load();
+  ASSERT_EQ(import.robot.meshes.size(), 2U);
+  EXPECT_THAT(import.robot.urdf, HasSubstr(R"(<mesh filename="meshes/body_hull_2.obj"/>)"));
+}
+
+TEST(ImportRobot, TheSettingsHaveTheSpeedOfTheSlowestWheelMotor) {
+  std::string text = robot(chassis() + two_wheels() + caster());
+  text.replace(text.find("velocity=\"12\""), 13, "velocity=\"7\"");
+  Import import(text);
+  import.load();
+  EXPECT_THAT(import.robot.settings, HasSubstr("wheel_drive: {max_speed_mps: 0.70}"));
+  EXPECT_THAT(import.robot.settings, HasSubstr("dwa: {max_speed_mps: 0.70,"));
+  Import mecanum(robot(chassis() + four_wheels(0.1, 0.05)));
+  mecanum.options.drive = "mecanum";
+  mecanum.load();
+  EXPECT_THAT(mecanum.robot.settings, HasSubstr("kinematics: omnidirectional"));
+}
+
+TEST(ImportRobot, AChassisThatDragsOnTheGroundIsReported) {
+  Import import(robot(link("base_link", inertial(20.0, "-0.1 0 0", 0.5) + shape("collision", box(0.6, 0.4, 0.3))) +
+                      two_wheels() + caster()));
+  import.load();
+  EXPECT_THAT(import.assumptions(),
+              HasSubstr("| base_link | its collision shape is 0.000 m above the ground: it drags |"));
+}
+
+TEST(ImportRobot, AMimickingWheelHasAMotor) {
+  const std::string follower = joint("fl_joint", "continuous", "base_link", "fl", "0.2 0.25 -0.05",
+                                     axis("0 1 0") + R"(<mimic joint="left_joint"/>)") +
+                               link("fl", inertial(1.0) + shape("collision", cylinder(0.1, 0.04), "0 0 0", kAcross)) +
+                               wheel("fr", "base_link", "0.2 -0.25 -0.05", 0.1, 0.04, "");
+  Import import(robot(chassis() + two_wheels() + follower));
+  import.load();
+  EXPECT_TRUE(import.wheel("fl").drive_joint.has_value());
+  EXPECT_FALSE(import.wheel("fr").drive_joint.has_value());
+  EXPECT_THAT(import.assumptions(), HasSubstr("has a motor: its &lt;mimic> follows a driven wheel"));
+}
+
+TEST(ImportRobot, MissingInertiasAreThoseOfTheShapes) {
+  const std::string bare = joint("l_joint", "continuous", "base_link", "l", "0 0.25 -0.05", axis("0 1 0")) +
+                           link("l", shape("collision", cylinder(0.1, 0.04), "0 0 0", kAcross)) +
+                           joint("r_joint", "continuous", "base_link", "r", "0 -0.25 -0.05", axis("0 1 0")) +
+                           link("r", shape("visual", cylinder(0.1, 0.04), "0 0 0", kAcross));
+  Import import(robot(link("base_link", shape("visual", box(0.6, 0.4, 0.2))) + bare + caster()));
+  const RobotDescription& robot = import.load();
+  const double wheel_kg = 500.0 * M_PI * 0.01 * 0.04, body_kg = 500.0 * 0.6 * 0.4 * 0.2;
+  EXPECT_NEAR(robot.mass_kg, body_kg + 2.0 * wheel_kg + 0.5, 1e-6);
+  const JointLimit& limit = robot.joint_limits[*import.wheel("l").drive_joint];
+  EXPECT_NEAR(limit.velocity_radps, 15.0, 1e-9);
+  EXPECT_NEAR(limit.effort_nm, 0.8 * (body_kg + 0.5) * 9.81 * 0.1 / 2.0, 0.06 * limit.effort_nm);
+  EXPECT_THAT(import.assumptions(), HasSubstr("the file names no motors"));
+  EXPECT_THAT(import.assumptions(), HasSubstr("has no &lt;collision>"));
+  expect_footprint(robot, -0.33, 0.3, -0.27, 0.27);
+}
+
+TEST(ImportRobot, ARobotThatFacesYIsTurned) {
+  const std::string text = link("base_link", inertial(20.0, "0 0 0", 0.5) + shape("collision", box(0.4, 0.6, 0.2))) +
+                           wheel("right", "base_link", "0.25 0 -0.05", 0.1, 0.04, kMotor, "1 0 0") +
+                           wheel("left", "base_link", "-0.25 0 -0.05", 0.1, 0.04, kMotor, "1 0 0");
+  std::string turned = text;
+  for (std::size_t at = 0; (at = turned.find(kAcross, at)) != std::string::npos;)
+    turned.replace(at, kAcross.size(), "0 1.5707963267948966 0");
+  Import import(robot(turned));
+  import.load();
+  expect_wheel(import, "left", {0.0, 0.25, -0.05}, 0.1, 0.04);
+  expect_wheel(import, "right", {0.0, -0.25, -0.05}, 0.1, 0.04);
+  EXPECT_THAT(import.assumptions(), HasSubstr("is turned by 90.0 degrees"));
+  expect_footprint(import.description, -0.3, 0.3, -0.27, 0.27);
+
+  Import opposite(robot(turned));
+  opposite.options.forward = "-y";
+  opposite.load();
+  expect_wheel(opposite, "left", {0.0, -0.25, -0.05}, 0.1, 0.04);
+}
+
+TEST(ImportRobot, ArmsAreFixedAtZeroWithTheirMass) {
+  const std::string arm = joint("shoulder", "revolute", "base_link", "upper", "0.1 0 0.1",
+                                axis("0 1 0") + R"(<limit lower="-1" upper="1" effort="5" velocity="1"/>)") +
+                          link("upper", inertial(1.0) + shape("collision", box(0.05, 0.05, 0.3))) +
+                          joint("wrist", "continuous", "upper", "hand", "0 0 0.15", axis("0 0 1")) +
+                          link("hand", inertial(0.5)) +
+                          joint("lift", "prismatic", "base_link", "mast", "0 0 0.1",
+                                axis("0 0 1") + R"(<limit lower="0" upper="1" effort="5" velocity="1"/>)") +
+                          link("mast", inertial(0.25));
+  Import import(robot(chassis() + two_wheels() + caster() + arm));
+  const RobotDescription& robot = import.load();
+  EXPECT_EQ(robot.wheels.size(), 3U);
+  EXPECT_NEAR(robot.mass_kg, 24.25, 1e-6);
+  EXPECT_THAT(import.assumptions(), HasSubstr("| shoulder, wrist, lift | fixed at zero"));
+  EXPECT_THAT(robot.T_body_sensor.at("hand").position, VectorNear(Eigen::Vector3d(0.1, 0.0, 0.25), 1e-9));
+}
+
+TEST(ImportRobot, AWheelOnASuspensionIsFixedToTheChassis) {
+  const std::string suspended = joint("spring", "prismatic", "base_link", "arm", "0 0.25 -0.05",
+                                      axis("0 0 1") + R"(<limit lower="-0.1" upper="0.1" effort="5" velocity="1"/>)") +
+                                link("arm", inertial(0.5)) + wheel("left", "arm", "0 0 0", 0.1, 0.04) +
+                                wheel("right", "base_link", "0 -0.25 -0.05", 0.1, 0.04) + caster();
+  Import import(robot(chassis() + suspended));
+  import.load();
+  expect_wheel(import, "left", {0.0, 0.25, -0.05}, 0.1, 0.04);
+  EXPECT_THAT(import.assumptions(), HasSubstr("| spring | fixed at zero"));
+}
+
+TEST(ImportRobot, ACasterThatIsTurnedAtZeroIsAligned) {
+  std::string text = caster();
+  const std::string origin = R"(<origin xyz="-0.25 0 -0.08" rpy="0 0 0"/>)";
+  ASSERT_NE(text.find(origin), std::string::npos);
+  text.replace(text.find(origin), origin.size(), R"(<origin xyz="-0.25 0 -0.08" rpy="0 0 1.2"/>)");
+  Import import(robot(chassis() + two_wheels() + text));
+  import.load();
+  expect_wheel(import, "small", {-0.28, 0.0, -0.1}, 0.05, 0.03);
+}
+
+TEST(ImportRobot, TransmissionsCommandInterfacesAndPluginsNameTheMotors) {
+  const std::string wheels = wheel("fl", "base_link", "0.2 0.25 -0.05", 0.1, 0.04, "") +
+                             wheel("fr", "base_link", "0.2 -0.25 -0.05", 0.1, 0.04, "") +
+                             wheel("rl", "base_link", "-0.2 0.25 -0.05", 0.1, 0.04, "") +
+                             wheel("rr", "base_link", "-0.2 -0.25 -0.05", 0.1, 0.04, "");
+  for (
+      const std::string motors :
+      {R"(<transmission name="a"><joint name="rl_joint"/></transmission><transmission name="b"><joint name="rr_joint"/></transmission>)",
+       R"(<ros2_control name="c" type="system"><joint name="rl_joint"><command_interface name="velocity"/></joint>
+           <joint name="rr_joint"><command_interface name="velocity"/></joint><joint name="fl_joint"><state_interface name="velocity"/></joint></ros2_control>)",
+       R"(<gazebo><plugin name="drive" filename="libgazebo_ros_diff_drive.so"><left_joint>rl_joint</left_joint><right_joint>rr_joint</right_joint></plugin>
+           <plugin name="states" filename="libgazebo_ros_joint_state_publisher.so"><joint_name>fl_joint</joint_name></plugin></gazebo>)"}) {
+    Import import(robot(chassis() + wheels + motors));
+    import.load();
+    EXPECT_TRUE(import.wheel("rl").drive_joint.has_value()) << motors;
+    EXPECT_TRUE(import.wheel("rr").drive_joint.has_value()) << motors;
+    EXPECT_FALSE(import.wheel("fl").drive_joint.has_value()) << motors;
+  }
+}
+
+TEST(ImportRobot, SensorsAreFoundByTypeAndByOption) {
+  const std::string sensors =
+      joint("s1", "fixed", "base_link", "scanner_thing", "0.2 0 0.3", "", "0 0 0.5") +
+      link("scanner_thing", inertial(0.2)) + joint("s2", "fixed", "base_link", "rtk", "-0.1 0 0.2") + link("rtk") +
+      R"(<gazebo reference="scanner_thing"><sensor type="gpu_lidar" name="x"><pose>0 0 0.05 0 0 0</pose><lidar><scan><vertical><samples>1</samples></vertical></scan></lidar></sensor></gazebo>)"
+      R"(<gazebo reference="scanner_thing"><sensor type="ray" name="y"><ray><scan><vertical><samples>16</samples></vertical></scan></ray></sensor></gazebo>)"
+      R"(<gazebo reference="base_link"><sensor type="imu" name="z"/></gazebo>)"
+      R"(<gazebo reference="base_link"><sensor type="camera" name="c"/></gazebo>)";
+  Import import(robot(chassis() + two_wheels() + caster() + sensors));
+  import.options.frames["gnss"] = "rtk";
+  const RobotDescription& robot = import.load();
+  EXPECT_THAT(robot.T_body("lidar").position, VectorNear(Eigen::Vector3d(0.2, 0.0, 0.35), 1e-9));
+  EXPECT_NEAR(to_yaw(robot.T_body("lidar").rotation), 0.5, 1e-9);
+  EXPECT_THAT(robot.T_body("lidar3d").position, VectorNear(Eigen::Vector3d(0.2, 0.0, 0.3), 1e-9));
+  EXPECT_THAT(robot.T_body("imu").position, VectorNear(Eigen::Vector3d(0.0, 0.0, 0.0), 1e-9));
+  EXPECT_THAT(robot.T_body("gnss").position, VectorNear(Eigen::Vector3d(-0.1, 0.0, 0.2), 1e-9));
+  EXPECT_FALSE(robot.T_body_sensor.contains("depth_camera"));
+  EXPECT_THAT(import.robot.settings, HasSubstr("lidar: {enabled: true}"));
+  EXPECT_THAT(import.robot.settings, HasSubstr("depth_camera: {enabled: false}"));
+}
+
+TEST(ImportRobot, WithoutSensorsAnImuIsAtTheCenterOfMassAndNoLidarIsAdded) {
+  Import import(robot(link("base_link", inertial(20.0, "0.05 0 0.02", 0.5) + shape("collision", box(0.6, 0.4, 0.2))) +
+                      two_wheels() + caster()));
+  const RobotDescription& robot = import.load();
+  EXPECT_THAT(robot.T_body("imu").position, VectorNear(Eigen::Vector3d(0.05, 0.0, 0.02), 1e-9));
+  EXPECT_FALSE(robot.T_body_sensor.contains("lidar"));
+  EXPECT_THAT(import.robot.settings, HasSubstr("lidar: {enabled: false}"));
+}
+
+TEST(ImportRobot, ASpinningSensorAboveTheGroundIsNoWheel) {
+  const std::string drum = joint("spin", "continuous", "base_link", "drum", "0 0 0.3", axis("0 1 0")) +
+                           link("drum", inertial(0.5) + shape("collision", cylinder(0.05, 0.1), "0 0 0", kAcross));
+  Import import(robot(chassis() + two_wheels() + caster() + drum));
+  EXPECT_EQ(import.load().wheels.size(), 3U);
+}
+
+TEST(ImportRobot, AnInertiaOfZeroIsReplacedByThatOfTheShape) {
+  std::string text = robot(chassis() + two_wheels() + caster());
+  const std::string zero = R"(<inertia ixx="0.01" ixy="0" ixz="0" iyy="0.01" iyz="0" izz="0.01"/>)";
+  text.replace(text.find(zero), zero.size(), R"(<inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/>)");
+  Import import(text);
+  EXPECT_NEAR(import.load().mass_kg, 22.5, 1e-6);
+  EXPECT_THAT(import.robot.urdf, HasSubstr(fmt::format("iyy=\"{}\"", 0.005))) << "m r^2 / 2";
+  EXPECT_THAT(import.assumptions(), HasSubstr("its inertia of nearly zero is replaced"));
+}
+
+TEST(ImportRobot, OurOwnWheeledRobotKeepsItsWheelsAndMass) {
+  TemporaryFolder folder;
+  RobotImportOptions options{.file = PATROL_SOURCE_DIR "/models/wheeled/wheeled.urdf"};
+  options.frames = {{"lidar", "lidar"}, {"imu", "imu"}, {"gnss", "gnss"}};
+  const ImportedRobot robot = import_robot(options);
+  write_robot(robot, folder / "again");
+  const RobotDescription before = io::load_robot_description(options.file.string());
+  const RobotDescription after = io::load_robot_description((folder / "again/wheeled.urdf").string());
+  EXPECT_NEAR(after.mass_kg, before.mass_kg, 1e-6);
+  ASSERT_EQ(after.wheels.size(), before.wheels.size());
+  EXPECT_EQ(after.joint_names.size(), before.joint_names.size());
+  for (const char* frame : {"lidar", "imu", "gnss"})
+    EXPECT_THAT(after.T_body(frame).position, VectorNear(before.T_body(frame).position, 1e-9)) << frame;
+  ASSERT_EQ(after.footprint_m.size(), before.footprint_m.size());
+  for (std::size_t i = 0; i < after.footprint_m.size(); ++i)
+    EXPECT_THAT(after.footprint_m[i], VectorNear(before.footprint_m[i], 1e-6));
+}
+
+TEST(ImportRobot, TheResultPassesCheckUrdf) {
+  Import import(robot(chassis() + two_wheels() + caster()));
+  import.load();
+  const std::string command = "check_urdf " + (import.folder / "imported/imported.urdf").string() + " > /dev/null";
+  EXPECT_EQ(std::system(command.c_str()), 0);
+}
+
+TEST(WriteRobot, RefusesAFolderThatIsNotEmptyAndLeavesNothingBehind) {
+  Import import(robot(chassis() + two_wheels() + caster()));
+  import.load();
+  EXPECT_THROW(write_robot(import.robot, import.folder / "imported"), InputError);
+  std::size_t num_entries = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(import.folder.path()))
+    num_entries += entry.exists() ? 1 : 0;
+  EXPECT_EQ(num_entries, 2U) << "the file and the result";
+  EXPECT_TRUE(std::filesystem::exists(import.folder / "imported/README.md"));
+  EXPECT_TRUE(std::filesystem::exists(import.folder / "imported/imported.yaml"));
+  ImportedRobot misnamed = import.robot;
+  misnamed.name = "../up";
+  EXPECT_THROW(write_robot(misnamed, import.folder / "other"), InputError);
+  EXPECT_THROW(write_robot(import.robot, "/proc/nowhere"), InputError);
+  ImportedRobot broken = import.robot;
+  broken.urdf = "<robot/>";
+  EXPECT_THROW(write_robot(broken, import.folder / "other"), InputError);
+  EXPECT_FALSE(std::filesystem::exists(import.folder / "other"));
+  std::filesystem::create_directory(import.folder / "empty");
+  EXPECT_NO_THROW(write_robot(import.robot, import.folder / "empty"));
+}
+
+/// Returns whether xacro is installed, in the interpreter of the tests that tools/setup makes or in another.
+bool has_xacro() {
+  const std::string python = PATROL_SOURCE_DIR "/.deps/python/bin/python";
+  if (std::filesystem::exists(python)) ::setenv("PATROL_PYTHON", python.c_str(), 0);
+  return std::system("${PATROL_PYTHON:-python3} -c 'import xacro' 2> /dev/null") == 0;
+}
+
+TEST(Xacro, MacrosArgumentsAndFoundPackagesAreExpanded) {
+  if (!has_xacro()) GTEST_SKIP() << "the Python package xacro is not installed";
+  std::string text = robot(
+      "<xacro:arg name=\"radius\" default=\"0.3\"/>\n<xacro:include filename=\"$(find my_robot)/body.xacro\"/>\n" +
+      two_wheels() + caster());
+  text.replace(text.find("<robot "), 7, "<robot xmlns:xacro=\"http://www.ros.org/wiki/xacro\" ");
+  for (std::size_t at = 0; (at = text.find("radius=\"0.1\"", at)) != std::string::npos;)
+    text.replace(at, 12, "radius=\"$(arg radius)\"");
+  Import import(text, "vendor.urdf.xacro");
+  std::filesystem::create_directory(import.folder / "elsewhere");
+  write_bytes(import.folder / "elsewhere/body.xacro",
+              "<robot xmlns:xacro=\"http://www.ros.org/wiki/xacro\">" + chassis() + "</robot>");
+  import.options.packages["my_robot"] = import.folder / "elsewhere";
+  import.options.xacro_arguments["radius"] = "0.1";
+  import.load();
+  expect_wheel(import, "left", {0.0, 0.25, -0.05}, 0.1, 0.04);
+}
+
+TEST(Xacro, AFailedExpansionIsReportedInOneLine) {
+  if (!has_xacro()) GTEST_SKIP() << "the Python package xacro is not installed";
+  Import import("<robot xmlns:xacro=\"http://www.ros.org/wiki/xacro\" name=\"a\"><xacro:unknown_macro/></robot>",
+                "a.xacro");
+  try {
+    import_robot(import.options);
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("a.xacro: xacro: "));
+    EXPECT_THAT(error.what(), HasSubstr("unknown_macro"));
+    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+  }
+}
+
+TEST(Xacro, AMissingInterpreterIsReportedInOneLine) {
+  const char* before = std::getenv("PATROL_PYTHON");
+  const std::string saved = before != nullptr ? before : "";
+  ::setenv("PATROL_PYTHON", "/nowhere/python", 1);
+  Import import("<robot/>", "a.xacro");
+  try {
+    import_robot(import.options);
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("a.xacro: xacro is not available"));
+  }
+  if (before != nullptr) ::setenv("PATROL_PYTHON", saved.c_str(), 1);
+  else ::unsetenv("PATROL_PYTHON");
+}
+
+/// Message of a refused description, from the file's name on.
+std::string complaint(const std::string& text, const RobotImportOptions& options = {}) {
+  Import import(text, "v.urdf");
+  RobotImportOptions all = options;
+  all.file = import.options.file;
+  all.name = "imported";
+  try {
+    import_robot(all);
+  } catch (const InputError& error) {
+    const std::string what = error.what();
+    EXPECT_EQ(what.find('\n'), std::string::npos) << "one line";
+    return what.substr(std::min(what.size(), what.find("v.urdf")));
+  }
+  return "";
+}
+
+/// A good description with the first `old` behind `after` replaced.
+std::string changed(const std::string& old, const std::string& by, const std::string& after = "") {
+  std::string text = robot(chassis() + two_wheels() + caster());
+  const std::size_t at = text.find(old, text.find(after));
+  if (at == std::string::npos) ADD_FAILURE() << "the description does not hold " << old;
+  else text.replace(at, old.size(), by);
+  return text;
+}
+
+std::string with(const std::string& more) { return robot(chassis() + two_wheels() + caster() + more); }
+
+TEST(BrokenDescription, TheUnchangedOneIsAccepted) { EXPECT_EQ(complaint(with("")), ""); }
+
+TEST(BrokenDescription, AFileThatIsNoDescription) {
+  EXPECT_THROW(import_robot({.file = "/nowhere/v.urdf"}), InputError);
+  EXPECT_THROW(import_robot({.file = "/tmp"}), InputError);
+  EXPECT_THAT(complaint(""), HasSubstr("v.urdf: is empty"));
+  EXPECT_THAT(complaint("no XML"), HasSubstr("v.urdf"));
+  EXPECT_THAT(complaint(with("<link")), MatchesRegex("v.urdf:[0-9]+: not an XML file.*"));
+  EXPECT_THAT(complaint("<sdf/>"), MatchesRegex("v.urdf:1: <robot> is missing.*"));
+  EXPECT_THAT(complaint(robot("")), MatchesRegex("v.urdf:2: <robot>: has no links"));
+}
+
+TEST(BrokenDescription, Duplicates) {
+  EXPECT_THAT(complaint(with(link("fork"))), MatchesRegex("v.urdf:[0-9]+: fork: duplicate link: also in line [0-9]+"));
+  EXPECT_THAT(complaint(with(link("x") + joint("roll", "fixed", "fork", "x", "0 0 0"))),
+              MatchesRegex("v.urdf:[0-9]+: roll: duplicate joint: also in line [0-9]+"));
+}
+
+TEST(BrokenDescription, LinksThatAreNoTree) {
+  EXPECT_THAT(complaint(changed("<parent link=\"fork\"/>", "<parent link=\"spoon\"/>")),
+              MatchesRegex("v.urdf:[0-9]+: roll: unknown parent link: spoon"));
+  EXPECT_THAT(complaint(changed("<child link=\"fork\"/>", "<child link=\"spoon\"/>")),
+              MatchesRegex("v.urdf:[0-9]+: swivel: unknown child link: spoon"));
+  EXPECT_THAT(complaint(with(link("alone"))),
+              MatchesRegex("v.urdf:[0-9]+: alone: is not connected: .*two roots, base_link and alone"));
+  EXPECT_THAT(complaint(changed("<parent link=\"base_link\"/>", "<parent link=\"small\"/>", "swivel")),
+              MatchesRegex("v.urdf:[0-9]+: (fork|small): the joints form a cycle"));
+  EXPECT_THAT(complaint(with(joint("twice", "fixed", "left", "small", "0 0 0"))),
+              MatchesRegex("v.urdf:[0-9]+: small: child of two joints, roll and twice.*"));
+  EXPECT_THAT(complaint(changed("<parent link=\"fork\"/>", "")),
+              MatchesRegex("v.urdf:[0-9]+: roll: <parent link=\"...\"/> is missing"));
+}
+
+TEST(BrokenDescription, Joints) {
+  EXPECT_THAT(complaint(changed("<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 0 0\"/>")),
+              MatchesRegex("v.urdf:[0-9]+: left_joint: axis: must not be zero"));
+  EXPECT_THAT(complaint(changed("type=\"continuous\"", "type=\"ball\"")),
+              MatchesRegex("v.urdf:[0-9]+: left_joint: unknown joint type \"ball\".*"));
+  EXPECT_THAT(complaint(with(link("x") +
+                             joint("j", "revolute", "base_link", "x", "0 0 0", R"(<limit lower="1" upper="-1"/>)"))),
+              MatchesRegex("v.urdf:[0-9]+: j: limit lower = 1: must be below upper = -1"));
+  EXPECT_THAT(complaint(with(link("x") + joint("j", "revolute", "base_link", "x", "0 0 0"))),
+              MatchesRegex("v.urdf:[0-9]+: j: <limit> is missing.*"));
+}
+
+TEST(BrokenDescription, MassesAndInertias) {
+  EXPECT_THAT(complaint(changed("<mass value=\"1\"/>", "<mass value=\"-1\"/>")),
+              MatchesRegex("v.urdf:[0-9]+: left: mass = -1: must be positive"));
+  EXPECT_THAT(complaint(changed("<mass value=\"1\"/>", "<mass value=\"0\"/>")),
+              MatchesRegex("v.urdf:[0-9]+: left: mass = 0: must be positive.*"));
+  EXPECT_THAT(complaint(changed("ixx=\"0.01\"", "ixx=\"0.03\"")),
+              MatchesRegex("v.urdf:[0-9]+: left: invalid inertia: principal moments.*"));
+  EXPECT_THAT(complaint(changed("ixx=\"0.01\"", "ixx=\"-0.01\"")),
+              MatchesRegex("v.urdf:[0-9]+: left: invalid inertia: principal moments.*"));
+}
+
+TEST(BrokenDescription, Numbers) {
+  for (const char* bad : {"nan", "inf", "1e999", "one", "1,0", "0x"}) {
+    EXPECT_THAT(complaint(changed("<mass value=\"1\"/>", fmt::format("<mass value=\"{}\"/>", bad))),
+                MatchesRegex("v.urdf:[0-9]+: left: value = .*: must be finite numbers"))
+        << bad;
+    EXPECT_THAT(complaint(changed("iyy=\"0.01\"", fmt::format("iyy=\"{}\"", bad))),
+                MatchesRegex("v.urdf:[0-9]+: left: iyy = .*: must be finite numbers"))
+        << bad;
+    EXPECT_THAT(complaint(changed("xyz=\"0 0.25 -0.05\"", fmt::format("xyz=\"0 {} -0.05\"", bad))),
+                MatchesRegex("v.urdf:[0-9]+: left_joint: xyz = .*: must be finite numbers"))
+        << bad;
+  }
+  EXPECT_THAT(complaint(changed("xyz=\"0 0.25 -0.05\"", "xyz=\"0 0.25\"")),
+              MatchesRegex("v.urdf:[0-9]+: left_joint: xyz = .*: must be 3 numbers"));
+  EXPECT_THAT(complaint(changed("radius=\"0.1\"", "radius=\"0\"")),
+              MatchesRegex("v.urdf:[0-9]+: left: radius = 0: must be positive"));
+}
+
+TEST(BrokenDescription, Meshes) {
+  const auto mesh = [](const std::string& file) {
+    return with(link("x", shape("visual", "<mesh filename=\"" + file + "\"/>")) +
+                joint("j", "fixed", "base_link", "x", "0 0 0"));
+  };
+  EXPECT_THAT(complaint(mesh("nowhere.stl")), MatchesRegex("v.urdf:[0-9]+: x: .*nowhere.stl: mesh file not found"));
+  EXPECT_THAT(complaint(mesh("v.urdf")), MatchesRegex("v.urdf:[0-9]+: x: .*must be an STL, OBJ or DAE file"));
+  EXPECT_THAT(complaint(mesh("package://who/a.stl")), MatchesRegex("v.urdf:[0-9]+: x: unknown package \"who\".*"));
+  EXPECT_THAT(complaint(with(link("x", shape("visual", "<cone/>")) + joint("j", "fixed", "base_link", "x", "0 0 0"))),
+              MatchesRegex("v.urdf:[0-9]+: x: <cone>: unknown shape.*"));
+  Import large(with(link("x", shape("visual", R"(<mesh filename="m.stl" scale="1 1 1"/>)")) +
+                    joint("j", "fixed", "base_link", "x", "0 0 0")),
+               "v.urdf");
+  write_bytes(large.folder / "m.stl", stl(box_triangles({600.0, 400.0, 200.0})));
+  try {
+    import_robot(large.options);
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr(": x: mesh m is 748 m large: at most 20 m: check its scale"));
+  }
+  Import import(mesh("bad.stl"), "v.urdf");
+  write_bytes(import.folder / "bad.stl", "solid nothing");
+  try {
+    import_robot(import.options);
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("bad.stl: mesh "));
+    EXPECT_THAT(error.what(), HasSubstr(": x: "));
+  }
+}
+
+TEST(BrokenDescription, Wheels) {
+  EXPECT_THAT(complaint(changed("xyz=\"0 0.25 -0.05\"", "xyz=\"0 0.25 -0.02\"")),
+              MatchesRegex("v.urdf:[0-9]+: left: is 0.030 m above the lowest wheel: all wheels must touch one plane"));
+  EXPECT_THAT(complaint(robot(chassis())), HasSubstr("v.urdf: no wheels found"));
+  EXPECT_THAT(complaint(robot(chassis() + wheel("fl", "base_link", "0.2 0.25 -0.05", 0.1, 0.04) +
+                              wheel("rl", "base_link", "-0.2 0.25 -0.05", 0.1, 0.04) +
+                              wheel("fr", "base_link", "0.2 -0.25 -0.05", 0.1, 0.04, "") +
+                              wheel("rr", "base_link", "-0.2 -0.25 -0.05", 0.1, 0.04, ""))),
+              MatchesRegex("v.urdf:[0-9]+: [fr]l_joint: driven wheels on one side only.*"));
+  std::string rollers;
+  for (int i = 0; i < 6; ++i)
+    rollers +=
+        joint(fmt::format("r{}", i), "continuous", "left", fmt::format("roller{}", i), "0 0 0.1", axis("1 1 0")) +
+        link(fmt::format("roller{}", i), inertial(0.01));
+  EXPECT_THAT(complaint(with(rollers)), MatchesRegex("v.urdf:[0-9]+: left: has 6 rollers on joints: not supported.*"));
+  EXPECT_THAT(complaint(robot(chassis() +
+                              joint("pivot", "revolute", "base_link", "axle", "0.2 0 -0.05",
+                                    axis("0 0 1") + R"(<limit lower="-1" upper="1"/>)") +
+                              link("axle", inertial(1.0)) + wheel("fl", "axle", "0 0.25 0", 0.1, 0.04) +
+                              wheel("fr", "axle", "0 -0.25 0", 0.1, 0.04) + two_wheels())),
+              MatchesRegex("v.urdf:[0-9]+: pivot: steers a whole axle.*"));
+  EXPECT_THAT(complaint(changed("<cylinder radius=\"0.1\" length=\"0.04\"/>", "<box size=\"0.2 0.2 0.04\"/>")),
+              HasSubstr("v.urdf:"));
+}
+
+TEST(BrokenDescription, Options) {
+  EXPECT_THAT(complaint(with(""), {.file = "", .base_link = "torso"}),
+              HasSubstr("v.urdf: base link torso: unknown link"));
+  EXPECT_THAT(complaint(with(""), {.file = "", .base_link = "left"}),
+              MatchesRegex("v.urdf:[0-9]+: left: is on a wheel.*"));
+  EXPECT_THAT(complaint(with(""), {.file = "", .frames = {{"lidar", "mast"}}}),
+              HasSubstr("v.urdf: frame lidar: unknown link mast"));
+  EXPECT_THAT(complaint(with(""), {.file = "", .frames = {{"sonar", "fork"}}}),
+              HasSubstr("v.urdf: frame sonar: unknown sensor frame"));
+  EXPECT_THAT(complaint(with(""), {.file = "", .drive = "hover"}), HasSubstr("v.urdf: drive hover: must be"));
+  EXPECT_THAT(complaint(with(""), {.file = "", .drive = "ackermann"}),
+              HasSubstr("v.urdf: drive ackermann: no wheel is below"));
+  EXPECT_THAT(complaint(with(""), {.file = "", .forward = "up"}), HasSubstr("v.urdf: forward up: must be"));
+}
+
+}  // namespace
+}  // namespace patrol::importer::robot_import_test
