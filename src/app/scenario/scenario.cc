@@ -109,6 +109,10 @@ std::optional<std::filesystem::path> registration_of(const std::filesystem::path
 
 }  // namespace
 
+std::filesystem::path find_robot(const std::string& name, const std::filesystem::path& data_root) {
+  return find_definition(data_root, "models", "robot", name, ".urdf");
+}
+
 Scenario default_scenario(const std::string& robot, const std::filesystem::path& data_root) {
   Scenario scenario;
   const std::filesystem::path profile_file = data_root / "models" / robot / (robot + ".yaml");
@@ -201,7 +205,7 @@ std::vector<std::filesystem::path> named_files(const Scenario& scenario, const s
 ScenarioFiles load_scenario_files(const Scenario& scenario, const std::filesystem::path& data_root) {
   ScenarioFiles files;
   files.world_xml = find_definition(data_root, "worlds", "world", scenario.world, ".xml");
-  files.robot_urdf = find_definition(data_root, "models", "robot", scenario.robot, ".urdf");
+  files.robot_urdf = find_robot(scenario.robot, data_root);
   files.robot = io::load_robot_description(files.robot_urdf.string());
   add_mounts(files.robot, scenario.mounts);
   const auto named_file = [&](const char* key, const std::string& name) {
