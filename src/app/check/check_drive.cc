@@ -106,13 +106,14 @@ void CheckDrive::measure() {
   const PhysicsProbe::MotorLoad load = probe_.motor_load(simulator_.data());
   next_.max_torque_ratio = std::max(next_.max_torque_ratio, load.max_torque_ratio);
   next_.mean_torque_ratio += load.mean_torque_ratio / static_cast<double>(ticks_per_sample_);
-  next_.max_speed_ratio = std::max(next_.max_speed_ratio, load.max_speed_ratio);
+  next_.max_speed_ratio += load.max_speed_ratio / static_cast<double>(ticks_per_sample_);
   next_.tilt_rad = std::max(next_.tilt_rad, tilt_of(truth.T_world_body));
   const PhysicsProbe::GroundContact ground = probe_.ground_contact(simulator_.data());
   record_.friction = std::max(record_.friction, ground.friction);
   if (ground.is_of_hull) {
     if (next_.time_s - last_hull_contact_s_ > kContactGap_s) ++record_.num_hull_contacts;
     last_hull_contact_s_ = next_.time_s;
+    record_.hull_contact_s += tick_s_;
   }
   record_.has_fallen = simulator_.has_fallen();
 }

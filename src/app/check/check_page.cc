@@ -29,8 +29,7 @@ report::VerdictBlock verdict_block(const CheckResult& result) {
 }
 
 report::TableCell value_cell(const Figure& figure) {
-  if (!figure.min && !figure.max) return {value_text(figure)};
-  return {value_text(figure), figure.is_met() ? Tone::kGood : Tone::kBad};
+  return {value_text(figure), figure.is_met() ? Tone::kPlain : Tone::kBad};
 }
 
 report::TableBlock figure_table(const CheckResult& result) {

@@ -35,7 +35,13 @@ struct CheckRobot {
   DriveKind kind = DriveKind::kLegs;
   DriveLimits limits;
   double turn_center_x_m = 0.0;  ///< longitudinal position in body of the point that the velocity commands refer to
+  /// Gauge in the firmware's kinematics relative to the geometric one; 0 for legs and Ackermann wheels.
+  double effective_gauge_ratio = 0.0;
   double expected_height_m = 0.0;  ///< height of the body origin above level ground by geometry or firmware
+  /// Bound of the yaw rate error of a firmware that follows its gyro without an estimate of the bias: three standard
+  /// deviations of the as-built bias. Only robots with legs do so.
+  double max_gyro_bias_radps = 0.0;
+  double reaction_s = 0.1;  ///< time in which the firmware follows a command: with legs a period of the gait
   sim::SimulatorSettings simulator;  ///< without world and start pose
 
   bool turns_in_place() const { return limits.min_turning_radius_m == 0.0; }

@@ -9,10 +9,10 @@ namespace patrol::app {
 inline constexpr double kRampAngle_deg = 10.0;
 inline constexpr double kRampLength_m = 3.0;   ///< along the slope, up and down
 inline constexpr double kRampTop_m = 2.0;      ///< level part between the slopes
-inline constexpr double kStepHeight_m = 0.03;  ///< of each of the steps up
+inline constexpr double kStepHeight_m = 0.03;  ///< of each step
 inline constexpr int kNumSteps = 3;
 inline constexpr double kStepSpacing_m = 0.5;
-inline constexpr double kStepTop_m = 1.5;  ///< level part between the last step and the drop
+inline constexpr double kStepTop_m = 1.5;  ///< level part between the steps up and down
 
 /// World with its extent along x.
 struct CheckWorld {
@@ -25,9 +25,9 @@ struct CheckWorld {
 CheckWorld plane_world();
 /// Ramp up, level top and ramp down that begin at `begin_x_m`.
 CheckWorld ramp_world(double begin_x_m);
-/// Steps up that begin at `begin_x_m`, a level top, and a drop to the ground.
+/// Steps up that begin at `begin_x_m`, a level top, and the same steps down.
 CheckWorld steps_world(double begin_x_m);
-/// Plane that rises along x.
-CheckWorld slope_world();
+/// Long slope up that begins at `begin_x_m`.
+CheckWorld slope_world(double begin_x_m);
 
 }  // namespace patrol::app

@@ -24,7 +24,8 @@ struct DriveSample {
   double right_travel_m = 0.0;   ///< travel of the right wheels or track
   double max_torque_ratio = 0.0;   ///< largest torque of a motor relative to its limit
   double mean_torque_ratio = 0.0;  ///< mean over the motors and the time
-  double max_speed_ratio = 0.0;    ///< largest speed of a motor relative to its limit
+  double max_speed_ratio = 0.0;    ///< largest speed of a motor relative to its limit, mean over the time: a
+                                   ///< foot that hits the ground turns its motors faster for a moment
   double tilt_rad = 0.0;           ///< largest angle between the z axis of the body and the vertical
 };
 
@@ -32,6 +33,7 @@ struct DriveSample {
 struct DriveRecord {
   std::vector<DriveSample> samples;       ///< every `kSamplePeriod_s`; at least one
   std::vector<std::size_t> segment_ends;  ///< index of the first sample after each segment, its rest included
+  double hull_contact_s = 0.0;            ///< time with a contact of the hull
   std::size_t num_hull_contacts = 0;      ///< contacts of parts that are neither wheel, track nor foot with the ground
   double friction = 0.0;                  ///< largest friction coefficient of a contact of wheel, track or foot
   bool has_fallen = false;                ///< according to the firmware
