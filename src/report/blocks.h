@@ -214,8 +214,9 @@ struct PictureBlock {
   int width_px = 640, height_px = 400;  ///< size of the picture
 };
 
-using Block = std::variant<TextBlock, VerdictBlock, KeyMetrics, TableBlock, CollapsibleTables, BarBlock, BoxPlot,
-                           WaterfallChart, LinePlot, EventTimeline, MapBlock, HeatMap, PlanView, VideoBlock, PictureBlock>;
+using Block =
+    std::variant<TextBlock, VerdictBlock, KeyMetrics, TableBlock, CollapsibleTables, BarBlock, BoxPlot, WaterfallChart,
+                 LinePlot, EventTimeline, MapBlock, HeatMap, PlanView, VideoBlock, PictureBlock>;
 
 /// Section of a page. Consecutive line plots form a grid.
 struct Section {

@@ -55,8 +55,8 @@ CheckDrive::CheckDrive(const CheckRobot& robot, const std::filesystem::path& wor
 
 void CheckDrive::run(const DriveSegment& segment) {
   // A short segment never reaches the full command: its integral is that of a triangle.
-  const double stop_s = segment.duration_s >= segment.ramp_s ? segment.duration_s
-                                                             : std::sqrt(segment.duration_s * segment.ramp_s);
+  const double stop_s =
+      segment.duration_s >= segment.ramp_s ? segment.duration_s : std::sqrt(segment.duration_s * segment.ramp_s);
   const double change = segment.ramp_s > 0.0 ? tick_s_ / segment.ramp_s : 1.0;
   double factor = 0.0;
   for (double time_s = 0.0; time_s < stop_s && !record_.has_fallen; time_s += tick_s_) {
@@ -93,8 +93,7 @@ void CheckDrive::measure() {
   next_.T_world_body = truth.T_world_body;
   const double yaw = to_yaw(truth.T_world_body.rotation);
   next_.yaw_rad += wrap_angle(yaw - std::exchange(last_yaw_rad_, yaw));
-  next_.T_start_center =
-      T_world_start_.inverse() * to_pose2(truth.T_world_body) * Pose2{turn_center_x_m_, 0.0, 0.0};
+  next_.T_start_center = T_world_start_.inverse() * to_pose2(truth.T_world_body) * Pose2{turn_center_x_m_, 0.0, 0.0};
   const double commanded_yaw_rad = tick_s_ * next_.commanded_yaw_rate_radps;
   next_.T_start_commanded = moved(next_.T_start_commanded, tick_s_ * next_.commanded_speed_mps, commanded_yaw_rad);
   next_.commanded_yaw_rad += commanded_yaw_rad;

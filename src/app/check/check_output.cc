@@ -19,9 +19,7 @@ std::string key_figures(const ManeuverResult& result) {
 }
 
 /// Rounds to nine significant digits, so that the file has no digits without meaning.
-double rounded(double value) {
-  return std::isfinite(value) ? std::stod(fmt::format("{:.9g}", value)) : value;
-}
+double rounded(double value) { return std::isfinite(value) ? std::stod(fmt::format("{:.9g}", value)) : value; }
 
 io::Metrics json_of(const Figure& figure) {
   io::Metrics limits;

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "app/check/check_output.h"
+#include "core/geometry/angles.h"
 #include "core/text.h"
 
 namespace patrol::app {
@@ -18,13 +19,15 @@ report::TableCell verdict_cell(const ManeuverResult& result) {
 }
 
 report::VerdictBlock verdict_block(const CheckResult& result) {
-  report::VerdictBlock verdict{
-      .word = result.is_passed() ? "Passed" : "Failed",
-      .tone = result.is_passed() ? Tone::kGood : Tone::kBad,
-      .reason = verdict_text(result),
-      .checks = {.caption = "", .columns = {{"maneuver"}, {"verdict"}, {"reason"}}, .rows = {}}};
-  for (const ManeuverResult& each : result.maneuvers)
-    verdict.checks.rows.push_back({{each.maneuver.title}, verdict_cell(each), {join(each.failures, "; ")}});
+  report::VerdictBlock verdict{.word = result.is_passed() ? "Passed" : "Failed",
+                               .tone = result.is_passed() ? Tone::kGood : Tone::kBad,
+                               .reason = verdict_text(result),
+                               .checks = {.caption = "", .columns = {{"maneuver"}, {"verdict"}}, .rows = {}}};
+  if (!result.is_passed()) verdict.checks.columns.push_back({"reason"});
+  for (const ManeuverResult& each : result.maneuvers) {
+    verdict.checks.rows.push_back({{each.maneuver.title}, verdict_cell(each)});
+    if (!result.is_passed()) verdict.checks.rows.back().push_back({join(each.failures, "; ")});
+  }
   return verdict;
 }
 
@@ -108,7 +111,7 @@ std::vector<report::Block> time_plots(const ManeuverResult& result) {
                    curve_of(result, "speed", SeriesColor::kConfidence,
                             [](const DriveSample& sample) { return 100.0 * sample.max_speed_ratio; })}),
           plot_of(result, "Tilt", "°", {curve_of(result, "tilt", SeriesColor::kOdometry, [](const DriveSample& sample) {
-                    return sample.tilt_rad * 180.0 / M_PI;
+                    return to_deg(sample.tilt_rad);
                   })})};
 }
 

@@ -58,9 +58,9 @@ DriveLimits limits_of_wheels(const CheckRobot& robot) {
   }
   const double radius_m = min_turning_radius_m(robot.description);
   const double kinematic_radps =
-      radius_m > 0.0 ? speed_mps / radius_m
-                     : yaw_rate_of_sides(speed_mps, differential_geometry(robot.description).gauge_m,
-                                         robot.effective_gauge_ratio);
+      radius_m > 0.0
+          ? speed_mps / radius_m
+          : yaw_rate_of_sides(speed_mps, differential_geometry(robot.description).gauge_m, robot.effective_gauge_ratio);
   return {.max_speed_mps = speed_mps,
           .max_yaw_rate_radps = std::min(settings.max_yaw_rate_radps, kinematic_radps),
           .max_acceleration_mps2 = settings.max_acceleration_mps2,

@@ -41,15 +41,15 @@ struct CheckRobot {
   /// Bound of the yaw rate error of a firmware that follows its gyro without an estimate of the bias: three standard
   /// deviations of the as-built bias. Only robots with legs do so.
   double max_gyro_bias_radps = 0.0;
-  double reaction_s = 0.1;  ///< time in which the firmware follows a command: with legs a period of the gait
+  double reaction_s = 0.1;           ///< time in which the firmware follows a command: with legs a period of the gait
   sim::SimulatorSettings simulator;  ///< without world and start pose
 
   bool turns_in_place() const { return limits.min_turning_radius_m == 0.0; }
 };
 
-/// Loads a robot of `models` with its profile and "path=value" overrides of scenario settings. Sensors that the firmware
-/// does not read are switched off. Without `seed`, the seed is that of the settings. Throws InputError for an unknown
-/// robot and for invalid overrides.
+/// Loads a robot of `models` with its profile and "path=value" overrides of scenario settings. Sensors that the
+/// firmware does not read are switched off. Without `seed`, the seed is that of the settings. Throws InputError for an
+/// unknown robot and for invalid overrides.
 CheckRobot load_check_robot(const std::string& name, const std::vector<std::string>& overrides,
                             std::optional<std::uint64_t> seed, const std::filesystem::path& data_root);
 

@@ -58,9 +58,9 @@ CheckWorld ramp_world(double begin_x_m) {
   const double a = to_rad(kRampAngle_deg);
   const double run_m = kRampLength_m * std::cos(a), rise_m = kRampLength_m * std::sin(a);
   const double top_x_m = begin_x_m + run_m, down_x_m = top_x_m + kRampTop_m;
-  const std::string top = fmt::format(
-      "<geom name=\"ground_top\" type=\"box\" size=\"{} {} {}\" pos=\"{} 0 {}\" material=\"top\"/>\n", 0.5 * kRampTop_m,
-      kHalfWidth_m, 0.5 * rise_m, top_x_m + 0.5 * kRampTop_m, 0.5 * rise_m);
+  const std::string top =
+      fmt::format("<geom name=\"ground_top\" type=\"box\" size=\"{} {} {}\" pos=\"{} 0 {}\" material=\"top\"/>\n",
+                  0.5 * kRampTop_m, kHalfWidth_m, 0.5 * rise_m, top_x_m + 0.5 * kRampTop_m, 0.5 * rise_m);
   return {.mjcf = world_of(plane() + board("ground_up", begin_x_m, 0.0, kRampLength_m, kRampAngle_deg) + top +
                            board("ground_down", down_x_m, rise_m, kRampLength_m, -kRampAngle_deg)),
           .begin_x_m = begin_x_m,
@@ -79,10 +79,10 @@ CheckWorld steps_world(double begin_x_m) {
   std::string geoms = plane();
   for (int step = 0; step < kNumSteps; ++step) {
     const double half_length_m = 0.5 * (end_x_m - begin_x_m) - step * kStepSpacing_m;
-    geoms += fmt::format(
-        "<geom name=\"ground_step_{}\" type=\"box\" size=\"{} {} {}\" pos=\"{} 0 {}\" material=\"{}\"/>\n", step + 1,
-        half_length_m, kHalfWidth_m, 0.5 * kStepHeight_m, 0.5 * (begin_x_m + end_x_m), (step + 0.5) * kStepHeight_m,
-        step % 2 == 0 ? "board" : "top");
+    geoms +=
+        fmt::format("<geom name=\"ground_step_{}\" type=\"box\" size=\"{} {} {}\" pos=\"{} 0 {}\" material=\"{}\"/>\n",
+                    step + 1, half_length_m, kHalfWidth_m, 0.5 * kStepHeight_m, 0.5 * (begin_x_m + end_x_m),
+                    (step + 0.5) * kStepHeight_m, step % 2 == 0 ? "board" : "top");
   }
   return {.mjcf = world_of(geoms), .begin_x_m = begin_x_m, .end_x_m = end_x_m};
 }

@@ -19,9 +19,9 @@ struct DriveSample {
   double yaw_rate_radps = 0.0;
   double commanded_speed_mps = 0.0;
   double commanded_yaw_rate_radps = 0.0;
-  double ground_travel_m = 0.0;  ///< integral of the forward speed
-  double left_travel_m = 0.0;    ///< mean travel of the left wheels or track by their joints and nominal radii
-  double right_travel_m = 0.0;   ///< travel of the right wheels or track
+  double ground_travel_m = 0.0;    ///< integral of the forward speed
+  double left_travel_m = 0.0;      ///< mean travel of the left wheels or track by their joints and nominal radii
+  double right_travel_m = 0.0;     ///< travel of the right wheels or track
   double max_torque_ratio = 0.0;   ///< largest torque of a motor relative to its limit
   double mean_torque_ratio = 0.0;  ///< mean over the motors and the time
   double max_speed_ratio = 0.0;    ///< largest speed of a motor relative to its limit, mean over the time: a

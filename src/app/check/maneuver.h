@@ -19,7 +19,7 @@ struct Maneuver {
   std::string title;  ///< "10 m straight"
   CheckWorld world;
   std::vector<DriveSegment> segments;
-  double settle_s = 1.5;  ///< time before the record begins
+  double settle_s = 1.5;    ///< time before the record begins
   double duration_s = 0.0;  ///< simulated time at most, for the progress
   /// Distance ahead of the start at which the robot is rendered, m; none: no picture.
   std::optional<double> picture_ahead_m = std::nullopt;

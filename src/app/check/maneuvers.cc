@@ -17,18 +17,16 @@ constexpr double kNominalRatio = 0.6;       // nominal speed and yaw rate relati
 constexpr double kAccelerationRatio = 0.5;  // acceleration of nominal driving relative to the maximum
 constexpr double kStraight_m = 10.0, kSquare_m = 3.0;
 constexpr double kStand_s = 3.0, kSlopeStand_s = 5.0;
-constexpr double kCircleRatio = 1.2;  // radius of the wide circle relative to the minimum
-constexpr double kFreeAhead_m = 1.0;  // level ground between robot and obstacle
-constexpr double kRest_s = 1.5;       // time at rest after a segment: drives decelerate and close their brakes
+constexpr double kCircleRatio = 1.2;    // radius of the wide circle relative to the minimum
+constexpr double kFreeAhead_m = 1.0;    // level ground between robot and obstacle
+constexpr double kRest_s = 1.5;         // time at rest after a segment: drives decelerate and close their brakes
 constexpr double kMaxDelayRatio = 2.0;  // time limit of an obstacle relative to its nominal time
 
 // Limits, each with the reason that the page prints.
-constexpr const char* kTiltOfPlane =
-    "a planar lidar 0.5 m above the ground at this tilt hits the ground at 5.7 m, within the range of its matching";
-constexpr const char* kTiltOfObstacle =
-    "half of the 60 degrees at which the firmware reports a fall, in addition to the inclination of the ground";
+constexpr const char* kTiltOfPlane = "with this tilt, a planar lidar 0.5 m above the ground hits it at 5.7 m";
+constexpr const char* kTiltOfObstacle = "half of the 60 degrees at which the firmware reports a fall";
 constexpr const char* kTorqueMargin = "a tenth of the torque remains for obstacles and wear";
-constexpr const char* kMeanTorque = "gear motors of this kind hold half of their peak torque without overheating";
+constexpr const char* kMeanTorque = "geared motors hold half of their peak torque without overheating";
 constexpr const char* kSpeedMargin = "a tenth of the speed remains for the control";
 constexpr const char* kTiltOfTrot = "twice the swing of the trunk when a trot begins and ends";
 constexpr double kMaxPlaneTilt_deg = 5.0, kMaxTrotTilt_deg = 15.0, kMaxFallTilt_deg = 30.0;
@@ -60,14 +58,14 @@ DriveSegment turn_segment(const CheckRobot& robot, double angle_rad) {
 
 /// Full circle to the left.
 DriveSegment circle_segment(const CheckRobot& robot, double radius_m) {
-  const double speed_mps = kNominalRatio * std::min(robot.limits.max_speed_mps, robot.limits.max_yaw_rate_radps * radius_m);
+  const double speed_mps =
+      kNominalRatio * std::min(robot.limits.max_speed_mps, robot.limits.max_yaw_rate_radps * radius_m);
   return nominal_segment(robot, speed_mps, speed_mps / radius_m, 2.0 * M_PI * radius_m / speed_mps);
 }
 
 double duration_of(const Maneuver& maneuver) {
   double sum_s = maneuver.settle_s;
-  for (const DriveSegment& segment : maneuver.segments)
-    sum_s += segment.duration_s + segment.ramp_s + segment.rest_s;
+  for (const DriveSegment& segment : maneuver.segments) sum_s += segment.duration_s + segment.ramp_s + segment.rest_s;
   return sum_s;
 }
 
@@ -142,8 +140,19 @@ double gyro_drift_rad(const CheckRobot& robot, const DriveRecord& record) {
   return robot.max_gyro_bias_radps * record.samples.back().time_s;
 }
 
-Figure symmetric(std::string name, double value, double max, const char* reason, bool is_key = false) {
-  return {.name = std::move(name), .value = value, .min = -max, .max = max, .limit_reason = reason, .is_key = is_key};
+/// Adds the gyro's bias to the reason of a limit that includes it.
+std::string with_gyro(const CheckRobot& robot, std::string reason) {
+  return robot.max_gyro_bias_radps > 0.0 ? std::move(reason) + ", and three standard deviations of the gyro's bias"
+                                         : std::move(reason);
+}
+
+Figure symmetric(std::string name, double value, double max, std::string reason, bool is_key = false) {
+  return {.name = std::move(name),
+          .value = value,
+          .min = -max,
+          .max = max,
+          .limit_reason = std::move(reason),
+          .is_key = is_key};
 }
 
 std::vector<Figure> measure_straight(const CheckRobot& robot, const Maneuver&, const DriveRecord& record) {
@@ -153,9 +162,9 @@ std::vector<Figure> measure_straight(const CheckRobot& robot, const Maneuver&, c
       symmetric("distance_error_ratio", end.ground_travel_m / commanded_m - 1.0, 0.1,
                 "navigation corrects a speed error of a tenth within its acceleration", true),
       symmetric("lateral_drift_m", end.T_start_center.y, (0.1 + 0.5 * drift_rad) * commanded_m,
-                "a tenth of the distance, and the effect of the gyro's bias on legs"),
+                with_gyro(robot, "a tenth of the distance")),
       symmetric("heading_drift_deg", to_deg(end.yaw_rad), commanded_m + to_deg(drift_rad),
-                "1 degree per meter by as-built radii, and the gyro's bias on legs", true)};
+                with_gyro(robot, "1 degree per meter by as-built radii"), true)};
   add_slip_figure(robot, record, 0.05, "rolling wheels and tracks slip by less than 1 %, and their radii vary by 1 %",
                   figures);
   add_motor_figures(record, figures);
@@ -172,7 +181,7 @@ Figure yaw_ratio_figure(const CheckRobot& robot, const DriveRecord& record) {
           .value = yaw_ratio(record),
           .min = 1.0 - tolerance,
           .max = 1.0 + tolerance,
-          .limit_reason = "navigation plans with the commanded yaw rate ±15 %; the gyro's bias on legs",
+          .limit_reason = with_gyro(robot, "navigation plans with the commanded yaw rate, ±15 %"),
           .is_key = true};
 }
 
@@ -186,11 +195,11 @@ std::vector<Figure> measure_loop(const CheckRobot& robot, const Maneuver& maneuv
       {.name = "closing_error_m",
        .value = error.position().norm(),
        .max = (0.2 + 0.25 * drift_rad) * length_m,
-       .limit_reason = "a fifth of the path: the corners of a square turned by 15 %; the gyro's bias on legs",
+       .limit_reason = with_gyro(robot, "a fifth of the path: yaw errors of 15 % at the corners of a square"),
        .is_key = true},
       symmetric("closing_yaw_deg", to_deg(end.yaw_rad - end.commanded_yaw_rad),
                 to_deg(kYawTolerance * std::abs(end.commanded_yaw_rad) + drift_rad),
-                "15 % of 360 degrees, and the gyro's bias on legs", true),
+                with_gyro(robot, "15 % of 360 degrees"), true),
       yaw_ratio_figure(robot, record)};
   if (!robot.turns_in_place()) {
     const double radius_m = kCircleRatio * robot.limits.min_turning_radius_m;
@@ -210,7 +219,7 @@ std::vector<Figure> measure_turn(const CheckRobot& robot, const Maneuver&, const
   figures.push_back({.name = "center_drift_m",
                      .value = max_center_distance_m(record),
                      .max = 0.3,
-                     .limit_reason = "free space that the costmap's inflation leaves around a robot",
+                     .limit_reason = "free space that navigation keeps around a turning robot",
                      .is_key = true});
   if (robot.kind != DriveKind::kLegs) {
     figures.push_back({.name = "effective_gauge_ratio",
@@ -267,23 +276,23 @@ std::vector<Figure> measure_ramp(const CheckRobot& robot, const Maneuver& maneuv
                      .max = kRampAngle_deg + 10.0,
                      .limit_reason = "inclination of the ramp, and 10 degrees at its edges",
                      .is_key = true});
-  figures.push_back({.name = "hull_contacts", .value = static_cast<double>(record.num_hull_contacts), .max = 0.0,
-                     .limit_reason = "the hull scrapes over the edges of the ramp"});
+  figures.push_back({.name = "hull_contacts",
+                     .value = static_cast<double>(record.num_hull_contacts),
+                     .max = 0.0,
+                     .limit_reason = "the hull does not scrape over the edges of the ramp"});
   return figures;
 }
 
 std::vector<Figure> measure_steps(const CheckRobot& robot, const Maneuver& maneuver, const DriveRecord& record) {
   std::vector<Figure> figures = {reached_figure(maneuver, record)};
-  add_slip_figure(robot, record, 0.2, "a fifth: the tire turns by a twentieth of its radius at every edge", figures);
+  add_slip_figure(robot, record, 0.2, "wheels slip at the edges of the steps", figures);
   figures.push_back({.name = "max_torque_ratio", .value = motor_margins(record).max_torque_ratio});
   figures.push_back({.name = "max_tilt_deg",
                      .value = max_tilt_deg(record),
                      .max = kMaxFallTilt_deg,
                      .limit_reason = kTiltOfObstacle,
                      .is_key = true});
-  figures.push_back({.name = "hull_contacts",
-                     .value = static_cast<double>(record.num_hull_contacts),
-                     .is_key = true});
+  figures.push_back({.name = "hull_contacts", .value = static_cast<double>(record.num_hull_contacts), .is_key = true});
   figures.push_back({.name = "hull_contact_s",
                      .value = record.hull_contact_s,
                      .max = 0.5,
@@ -297,24 +306,25 @@ std::vector<Figure> measure_emergency_stop(const CheckRobot& robot, const Maneuv
   const double v = stop.speed_mps, friction = std::max(record.friction, 1e-3);
   const double firmware_m = v * v / (2.0 * robot.limits.max_acceleration_mps2);
   const double friction_m = v * v / (2.0 * friction * kGravity_mps2);
-  return {{.name = "speed_mps",
-           .value = v,
-           .min = 0.85 * robot.limits.max_speed_mps,
-           .limit_reason = "the stop begins at the full speed, -15 %",
-           .is_key = true},
-          {.name = "stop_distance_m",
-           .value = stop.distance_m,
-           .min = 0.9 * friction_m,
-           .max = 1.2 * std::max(firmware_m, friction_m) + robot.reaction_s * v,
-           .limit_reason = "v² / (2 a) by the firmware's deceleration or friction, +20 % and the reaction time; at least "
-                           "the friction limit, -10 %",
-           .is_key = true},
-          {.name = "stop_time_s", .value = stop.duration_s, .is_key = true},
-          {.name = "firmware_limit_m", .value = firmware_m},
-          {.name = "friction_limit_m", .value = friction_m},
-          {.name = "friction", .value = friction},
-          {.name = "at_rest", .value = stop.is_at_rest ? 1.0 : 0.0, .min = 1.0, .limit_reason = "the robot comes to rest"},
-          tilt_figure(record, kMaxFallTilt_deg, kTiltOfObstacle)};
+  return {
+      {.name = "speed_mps",
+       .value = v,
+       .min = 0.85 * robot.limits.max_speed_mps,
+       .limit_reason = "the stop begins at the full speed, -15 %",
+       .is_key = true},
+      {.name = "stop_distance_m",
+       .value = stop.distance_m,
+       .min = 0.9 * friction_m,
+       .max = 1.2 * std::max(firmware_m, friction_m) + robot.reaction_s * v,
+       .limit_reason = "v² / (2 a) by the firmware's deceleration or friction, +20 % and the reaction time; at least "
+                       "the friction limit, -10 %",
+       .is_key = true},
+      {.name = "stop_time_s", .value = stop.duration_s, .is_key = true},
+      {.name = "firmware_limit_m", .value = firmware_m},
+      {.name = "friction_limit_m", .value = friction_m},
+      {.name = "friction", .value = friction},
+      {.name = "at_rest", .value = stop.is_at_rest ? 1.0 : 0.0, .min = 1.0, .limit_reason = "the robot comes to rest"},
+      tilt_figure(record, kMaxFallTilt_deg, kTiltOfObstacle)};
 }
 
 std::vector<Figure> measure_slope(const CheckRobot& robot, const Maneuver& maneuver, const DriveRecord& record) {
@@ -420,13 +430,13 @@ std::vector<Maneuver> maneuvers_of(const CheckRobot& robot) {
                     .world = plane_world(),
                     .segments = {straight_segment(robot, kStraight_m)},
                     .measure = measure_straight};
-  Maneuver ramp = obstacle(robot, "ramp", fmt::format("Ramp of {:g}°, up and down", kRampAngle_deg),
-                           ramp_world(obstacle_x_m));
+  Maneuver ramp =
+      obstacle(robot, "ramp", fmt::format("Ramp of {:g}°, up and down", kRampAngle_deg), ramp_world(obstacle_x_m));
   ramp.picture_ahead_m = obstacle_x_m + 0.6 * kRampLength_m;
   ramp.measure = measure_ramp;
-  Maneuver steps = obstacle(robot, "steps",
-                            fmt::format("{} steps of {:g} cm up and down", kNumSteps, 100.0 * kStepHeight_m),
-                            steps_world(obstacle_x_m));
+  Maneuver steps =
+      obstacle(robot, "steps", fmt::format("{} steps of {:g} cm up and down", kNumSteps, 100.0 * kStepHeight_m),
+               steps_world(obstacle_x_m));
   steps.picture_ahead_m = obstacle_x_m + 0.5 * kStepSpacing_m;
   steps.measure = measure_steps;
   Maneuver slope{.name = "slope_stand",
@@ -443,8 +453,7 @@ std::vector<Maneuver> maneuvers_of(const CheckRobot& robot) {
 std::vector<std::string> failures_of(const CheckRobot& robot, const Maneuver& maneuver, const DriveRecord& record,
                                      const std::vector<Figure>& figures) {
   std::vector<std::string> failures;
-  if (record.has_fallen)
-    failures.push_back(fmt::format("falls over after {:.1f} s", record.samples.back().time_s));
+  if (record.has_fallen) failures.push_back(fmt::format("falls over after {:.1f} s", record.samples.back().time_s));
   for (const Figure& figure : figures) {
     if (!figure.is_met())
       failures.push_back(fmt::format("{} {}: {}", label_of(figure), value_text(figure), limit_text(figure)));

@@ -32,16 +32,16 @@ double max_center_distance_m(const DriveRecord& record);
 /// Returns the circle of the turn center from one fraction of the commanded yaw to another.
 Circle driven_circle(const DriveRecord& record, double from, double to);
 
-/// Returns the gauge of a differential drive without slip that turns by the true yaw with the same travels of the sides,
-/// relative to `gauge_m`.
+/// Returns the gauge of a differential drive without slip that turns by the true yaw with the same travels of the
+/// sides, relative to `gauge_m`.
 double effective_gauge_ratio(const DriveRecord& record, double gauge_m);
 
 /// A stop after the command has fallen to zero.
 struct Stop {
-  double speed_mps = 0.0;     ///< forward speed when the command fell
-  double distance_m = 0.0;    ///< distance over ground until rest
-  double duration_s = 0.0;    ///< time until rest
-  bool is_at_rest = false;    ///< the robot is at rest at the end of the record
+  double speed_mps = 0.0;   ///< forward speed when the command fell
+  double distance_m = 0.0;  ///< distance over ground until rest
+  double duration_s = 0.0;  ///< time until rest
+  bool is_at_rest = false;  ///< the robot is at rest at the end of the record
 };
 /// Rest is a speed below 2 cm/s from then on; of a robot with legs, whose body swings, below 5 cm/s.
 Stop measure_stop(const DriveRecord& record, double rest_speed_mps);

@@ -24,8 +24,8 @@ class PhysicsProbe {
   /// servos are left out: they use their full speed at every change of the curvature.
   MotorLoad motor_load(const mjData& data) const;
 
-  /// Returns the mean travel of the driven wheels or of the track of a side, by the angles of the joints and the nominal
-  /// radii, m; 0 for legs.
+  /// Returns the mean travel of the driven wheels or of the track of a side, by the angles of the joints and the
+  /// nominal radii, m; 0 for legs.
   double travel_m(const mjData& data, bool is_left) const;
 
   struct GroundContact {
