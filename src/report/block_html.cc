@@ -38,6 +38,13 @@ std::string to_html(const VideoBlock& block) {
                      source, caption);
 }
 
+std::string to_html(const PictureBlock& block) {
+  return fmt::format(
+      "<figure class=\"svg picture\"><svg viewBox=\"0 0 {0} {1}\" role=\"img\" aria-label=\"{2}\"><image width=\"{0}\" "
+      "height=\"{1}\" href=\"{3}\"/></svg><figcaption>{2}</figcaption></figure>\n",
+      block.width_px, block.height_px, io::escaped_markup(block.caption), data_uri("image/png", block.png));
+}
+
 const char* css_class(Tone tone) {
   switch (tone) {
     case Tone::kGood:

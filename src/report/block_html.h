@@ -23,6 +23,7 @@ std::string to_html(const MapBlock& block);
 std::string to_html(const HeatMap& block);
 std::string to_html(const PlanView& block);
 std::string to_html(const VideoBlock& block);
+std::string to_html(const PictureBlock& block);
 
 /// CSS class of report.css.
 const char* css_class(Tone tone);

@@ -207,8 +207,16 @@ struct VideoBlock {
   std::string caption;
 };
 
-using Block = std::variant<TextBlock, VerdictBlock, KeyMetrics, TableBlock, CollapsibleTables, BarBlock, BoxPlot,
-                           WaterfallChart, LinePlot, EventTimeline, MapBlock, HeatMap, PlanView, VideoBlock>;
+/// Rendered picture with the pixels of a PNG.
+struct PictureBlock {
+  std::string png;
+  std::string caption;
+  int width_px = 640, height_px = 400;  ///< size of the picture
+};
+
+using Block =
+    std::variant<TextBlock, VerdictBlock, KeyMetrics, TableBlock, CollapsibleTables, BarBlock, BoxPlot, WaterfallChart,
+                 LinePlot, EventTimeline, MapBlock, HeatMap, PlanView, VideoBlock, PictureBlock>;
 
 /// Section of a page. Consecutive line plots form a grid.
 struct Section {

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -88,6 +89,14 @@ std::string labels_html(const HeatMap& block) {
   return html;
 }
 
+/// Multiples of the step from `low_m` to `high_m`; 0 is exactly 0.
+std::vector<double> ticks_m(double low_m, double high_m, double step_m) {
+  std::vector<double> ticks;
+  for (double index = std::ceil(low_m / step_m); index * step_m <= high_m; index += 1.0)
+    ticks.push_back(step_m * index + 0.0);
+  return ticks;
+}
+
 }  // namespace
 
 std::string to_html(const HeatMap& block) {
@@ -110,13 +119,12 @@ std::string to_html(const PlanView& block) {
   std::string html =
       fmt::format("<rect class=\"frame\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/>\n", kMargin,
                   kTop, size.x(), size.y());
-  // The ticks add 0.0 because the first one may be -0.
   const double step_m = round_step(size_m.maxCoeff(), kMaxTicks);
-  for (double x_m = step_m * std::ceil(block.low_m.x() / step_m) + 0.0; x_m <= block.high_m.x(); x_m += step_m) {
+  for (const double x_m : ticks_m(block.low_m.x(), block.high_m.x(), step_m)) {
     html += fmt::format("<path class=\"tick\" d=\"M{:.1f} {:.1f}v{:.1f}\"/>\n", to_x(x_m), kTop, size.y());
     html += text_html(to_x(x_m), kTop + size.y() + kLine, "middle", fmt::format("{:g}", x_m));
   }
-  for (double y_m = step_m * std::ceil(block.low_m.y() / step_m) + 0.0; y_m <= block.high_m.y(); y_m += step_m) {
+  for (const double y_m : ticks_m(block.low_m.y(), block.high_m.y(), step_m)) {
     html += fmt::format("<path class=\"tick\" d=\"M{:.1f} {:.1f}h{:.1f}\"/>\n", kMargin, to_y(y_m), size.x());
     html += text_html(kMargin - 6, to_y(y_m) + 4, "end", fmt::format("{:g}", y_m));
   }

@@ -42,7 +42,8 @@ Page page_of_everything(const std::string& text) {
                                MapBlock{map_picture({}, {}),
                                         {{text, SeriesColor::kTruth, {{{0, 0}, {1, 1}}}}},
                                         {{text, SeriesColor::kEvent, {0, 0}}}},
-                               VideoBlock{text, "", text}, VideoBlock{"", text, text}}}},
+                               VideoBlock{text, "", text}, VideoBlock{"", text, text},
+                               PictureBlock{.png = text, .caption = text}}}},
       .footer = text};
 }
 

@@ -15,6 +15,7 @@ struct Call {
   RunOptions run;
   ScoreOptions score;
   LocalizabilityOptions localizability;
+  CheckOptions check;
   ReplayOptions replay;
   ReportOptions report;
   VerifyOptions verify;

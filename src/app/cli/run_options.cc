@@ -55,6 +55,17 @@ void add_localizability(CLI::App& app, Call& call) {
   command->callback([&] { call.chosen = [&] { return localizability_command(call.localizability); }; });
 }
 
+void add_check(CLI::App& app, Call& call) {
+  CheckOptions& check = call.check;
+  CLI::App* command = app.add_subcommand("check", "Check a robot on plane, ramp and steps");
+  command->add_option("robot", check.robot, "Name of the robot, a folder of models")->required();
+  command->add_option("--set", check.overrides, kSetHelp)->take_all();
+  command->add_option("--seed", check.seed, kSeedHelp);
+  command->add_option("--out", check.out, kOutHelp)->capture_default_str();
+  add_json(*command, check.form);
+  command->callback([&] { call.chosen = [&] { return check_command(call.check); }; });
+}
+
 void add_replay(CLI::App& app, Call& call) {
   ReplayOptions& replay = call.replay;
   CLI::App* command = app.add_subcommand("replay", "Render a video or a still image from a run log");
@@ -132,6 +143,7 @@ void add_run_commands(CLI::App& app, Call& call) {
   add_run(app, call);
   add_score(app, call);
   add_localizability(app, call);
+  add_check(app, call);
   add_replay(app, call);
   add_report(app, call);
   add_verify(app, call);

@@ -55,6 +55,16 @@ struct LocalizabilityOptions {
 /// Maps the accuracy bound of a single scan over a scenario's world.
 ExitCode localizability_command(const LocalizabilityOptions& options);
 
+struct CheckOptions {
+  std::string robot;  ///< name of a folder of `models`
+  std::vector<std::string> overrides;
+  std::optional<std::uint64_t> seed;
+  std::filesystem::path out = "out/check";
+  ResultForm form = ResultForm::kText;
+};
+/// Drives a robot through the maneuvers of a check (app/check) and writes the verdict.
+ExitCode check_command(const CheckOptions& options);
+
 struct ReplayOptions {
   std::filesystem::path run;
   std::string style = "highlights";

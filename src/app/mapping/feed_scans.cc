@@ -10,6 +10,7 @@
 #include "app/common/process_cost.h"
 #include "app/mapping/log_documents.h"
 #include "core/error.h"
+#include "core/geometry/angles.h"
 #include "core/overloaded.h"
 #include "io/logs/run_log.h"
 #include "link/link_error.h"

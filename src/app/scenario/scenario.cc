@@ -116,6 +116,11 @@ std::filesystem::path robot_file(const std::string& robot, const std::string& ex
   return (is_own ? std::filesystem::absolute(own) : data_root / "models" / robot) / (robot + extension);
 }
 
+std::filesystem::path find_robot(const std::string& name, const std::filesystem::path& data_root) {
+  std::filesystem::path urdf = robot_file(name, ".urdf", data_root);
+  return std::filesystem::exists(urdf) ? urdf : find_definition(data_root, "models", "robot", name, ".urdf");
+}
+
 Scenario default_scenario(const std::string& robot, const std::filesystem::path& data_root) {
   Scenario scenario;
   const std::filesystem::path profile_file = robot_file(robot, ".yaml", data_root);
@@ -208,8 +213,7 @@ std::vector<std::filesystem::path> named_files(const Scenario& scenario, const s
 ScenarioFiles load_scenario_files(const Scenario& scenario, const std::filesystem::path& data_root) {
   ScenarioFiles files;
   files.world_xml = find_definition(data_root, "worlds", "world", scenario.world, ".xml");
-  files.robot_urdf = robot_file(scenario.robot, ".urdf", data_root);
-  if (!std::filesystem::exists(files.robot_urdf)) find_definition(data_root, "models", "robot", scenario.robot, ".urdf");
+  files.robot_urdf = find_robot(scenario.robot, data_root);
   files.robot = io::load_robot_description(files.robot_urdf.string());
   add_mounts(files.robot, scenario.mounts);
   const auto named_file = [&](const char* key, const std::string& name) {

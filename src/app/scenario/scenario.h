@@ -197,6 +197,9 @@ struct RobotProfile {
 std::filesystem::path robot_file(const std::string& robot, const std::string& extension,
                                  const std::filesystem::path& data_root);
 
+/// Returns the URDF file of a robot of `models`. Throws InputError with the known robots if there is none.
+std::filesystem::path find_robot(const std::string& name, const std::filesystem::path& data_root);
+
 /// Default scenario of a robot: the robot's profile, if it has one, over the defaults.
 Scenario default_scenario(const std::string& robot, const std::filesystem::path& data_root);
 

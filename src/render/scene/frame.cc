@@ -1,5 +1,6 @@
 #include "render/scene/frame.h"
 
+#include <stdexcept>
 #include <string>
 
 #include <png.h>
@@ -19,18 +20,19 @@ png_image rgb_image() {
 
 }  // namespace
 
-void save_png(const std::filesystem::path& file, const Frame& frame) {
+std::string to_png(const Frame& frame) {
   png_image image = rgb_image();
   image.width = static_cast<png_uint_32>(frame.width());
   image.height = static_cast<png_uint_32>(frame.height());
   png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
   std::string png(size, '\0');
-  if (png_image_write_to_memory(&image, png.data(), &size, 0, frame.bytes(), 0, nullptr) == 0) {
-    throw InputError(file.string() + ": cannot be written: " + image.message);
-  }
+  if (png_image_write_to_memory(&image, png.data(), &size, 0, frame.bytes(), 0, nullptr) == 0)
+    throw std::runtime_error(std::string("cannot encode a PNG: ") + image.message);
   png.resize(size);
-  io::save_text(file, png);
+  return png;
 }
+
+void save_png(const std::filesystem::path& file, const Frame& frame) { io::save_text(file, to_png(frame)); }
 
 Frame load_png(const std::filesystem::path& file) {
   const std::string png = io::load_text(file);

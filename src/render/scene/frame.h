@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "core/color.h"
@@ -38,6 +39,9 @@ class Frame {
   int height_ = 0;
   std::vector<Color> pixels_;
 };
+
+/// Encodes a picture as PNG. Throws std::runtime_error if that fails.
+std::string to_png(const Frame& frame);
 
 /// Saves or loads a PNG. Throws InputError when the file cannot be written, or cannot be read as a PNG.
 void save_png(const std::filesystem::path& file, const Frame& frame);

@@ -91,6 +91,8 @@ class Simulator {
 
   const SensorSuite& sensors() const { return sensors_; }
   const mjModel& physics() const { return *model_.physics; }
+  /// Returns the physical state after the last step, for measurements by ground truth.
+  const mjData& data() const { return *data_; }
   const StageProfiler& clock() const { return clock_; }
 
  private:

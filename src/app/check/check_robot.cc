@@ -1,0 +1,138 @@
+#include "app/check/check_robot.h"
+
+#include <algorithm>
+
+#include "app/scenario/scenario.h"
+#include "core/sensors/registry.h"
+#include "core/wheel_kinematics.h"
+#include "io/urdf.h"
+#include "io/yaml/settings_yaml.h"
+#include "sim/sensors/sensor_suite_settings.h"
+
+namespace patrol::app {
+namespace {
+
+DriveKind kind_of(const RobotDescription& robot) {
+  if (robot.tracks) return DriveKind::kTracks;
+  if (robot.wheels.empty()) return DriveKind::kLegs;
+  return wheel_drive_type(robot) == WheelDriveType::kAckermann ? DriveKind::kAckermannWheels
+                                                               : DriveKind::kDifferentialWheels;
+}
+
+DriveLimits limits_of_legs(const sim::LocomotionSettings& settings) {
+  return {.max_speed_mps = settings.max_forward_mps,
+          .max_yaw_rate_radps = settings.max_yaw_rate_radps,
+          .max_acceleration_mps2 = settings.max_acceleration_mps2,
+          .max_yaw_acceleration_radps2 = settings.max_yaw_acceleration_radps2};
+}
+
+double effective_gauge_ratio_of(const CheckRobot& robot) {
+  if (robot.kind == DriveKind::kTracks) return robot.simulator.track_drive.effective_gauge_factor;
+  if (robot.kind != DriveKind::kDifferentialWheels) return 0.0;
+  const double factor = robot.simulator.wheel_drive.effective_gauge_factor;
+  return factor > 0.0 ? factor : skid_ratio(robot.description);
+}
+
+/// Yaw rate of a differential drive whose sides move at the speeds -+`speed_mps`.
+double yaw_rate_of_sides(double speed_mps, double gauge_m, double effective_gauge_ratio) {
+  return 2.0 * speed_mps / (gauge_m * effective_gauge_ratio);
+}
+
+DriveLimits limits_of_tracks(const CheckRobot& robot) {
+  const sim::TrackDriveSettings& settings = robot.simulator.track_drive;
+  const double side_radps =
+      yaw_rate_of_sides(settings.max_speed_mps, robot.description.tracks->gauge_m, robot.effective_gauge_ratio);
+  return {.max_speed_mps = settings.max_speed_mps,
+          .max_yaw_rate_radps = std::min(settings.max_yaw_rate_radps, side_radps),
+          .max_acceleration_mps2 = settings.max_acceleration_mps2,
+          .max_yaw_acceleration_radps2 = settings.max_yaw_acceleration_radps2};
+}
+
+DriveLimits limits_of_wheels(const CheckRobot& robot) {
+  const sim::WheelDriveSettings& settings = robot.simulator.wheel_drive;
+  double speed_mps = settings.max_speed_mps;
+  for (const WheelGeometry& wheel : robot.description.wheels) {
+    if (!wheel.drive_joint) continue;
+    const double no_load_radps = robot.description.joint_limits.at(*wheel.drive_joint).velocity_radps;
+    speed_mps = std::min(speed_mps, wheel.radius_m * no_load_radps);
+  }
+  const double radius_m = min_turning_radius_m(robot.description);
+  const double kinematic_radps =
+      radius_m > 0.0
+          ? speed_mps / radius_m
+          : yaw_rate_of_sides(speed_mps, differential_geometry(robot.description).gauge_m, robot.effective_gauge_ratio);
+  return {.max_speed_mps = speed_mps,
+          .max_yaw_rate_radps = std::min(settings.max_yaw_rate_radps, kinematic_radps),
+          .max_acceleration_mps2 = settings.max_acceleration_mps2,
+          .max_yaw_acceleration_radps2 = settings.max_yaw_acceleration_radps2,
+          .min_turning_radius_m = radius_m};
+}
+
+DriveLimits limits_of(const CheckRobot& robot) {
+  switch (robot.kind) {
+    case DriveKind::kLegs:
+      return limits_of_legs(robot.simulator.locomotion);
+    case DriveKind::kTracks:
+      return limits_of_tracks(robot);
+    default:
+      return limits_of_wheels(robot);
+  }
+}
+
+void disable_other_sensors(sim::SensorSuiteSettings& sensors) {
+  Sensors::for_each([&]<typename Message>(std::type_identity<Message>) {
+    if constexpr (HasSensorSettings<Message>) {
+      auto& settings = sensors.*SensorTraits<Message>::kSettings;
+      if constexpr (requires { settings.enabled; }) {
+        if (!SensorTraits<Message>::kInfo.is_read_by_firmware) settings.enabled = false;
+      }
+    }
+  });
+}
+
+}  // namespace
+
+const char* name_of(DriveKind kind) {
+  switch (kind) {
+    case DriveKind::kLegs:
+      return "legs";
+    case DriveKind::kTracks:
+      return "tracks";
+    case DriveKind::kDifferentialWheels:
+      return "differential wheels";
+    default:
+      return "Ackermann wheels";
+  }
+}
+
+CheckRobot load_check_robot(const std::string& name, const std::vector<std::string>& overrides,
+                            std::optional<std::uint64_t> seed, const std::filesystem::path& data_root) {
+  const std::filesystem::path urdf = find_robot(name, data_root);
+  Scenario scenario = default_scenario(name, data_root);
+  io::SettingsReader::read_section("--set", io::parse_overrides(overrides), "", scenario);
+  CheckRobot robot;
+  robot.name = name;
+  robot.seed = seed.value_or(scenario.seed);
+  robot.overrides = overrides;
+  robot.description = io::load_robot_description(urdf.string());
+  robot.simulator.robot_urdf = urdf.string();
+  robot.simulator.as_built = scenario.as_built;
+  robot.simulator.sensors = scenario.sensors;
+  robot.simulator.locomotion = scenario.locomotion;
+  robot.simulator.track_drive = scenario.track_drive;
+  robot.simulator.wheel_drive = scenario.wheel_drive;
+  disable_other_sensors(robot.simulator.sensors);
+  robot.kind = kind_of(robot.description);
+  robot.effective_gauge_ratio = effective_gauge_ratio_of(robot);
+  robot.limits = limits_of(robot);
+  const bool has_legs = robot.kind == DriveKind::kLegs;
+  robot.turn_center_x_m = has_legs ? 0.0 : differential_geometry(robot.description).turn_center_x_m;
+  if (has_legs) {
+    if (scenario.as_built.enabled) robot.max_gyro_bias_radps = 3.0 * scenario.as_built.imu.gyro_bias_std_radps;
+    robot.reaction_s = scenario.locomotion.gait_period_s;
+  }
+  robot.expected_height_m = has_legs ? scenario.locomotion.trunk_height_m : robot.description.body_height_m();
+  return robot;
+}
+
+}  // namespace patrol::app

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/robot_description.h"
+#include "sim/simulator/simulator.h"
+
+namespace patrol::app {
+
+/// Drive of a robot, which decides on the maneuvers of its check.
+enum class DriveKind { kLegs, kTracks, kDifferentialWheels, kAckermannWheels };
+
+/// "legs", "tracks", "differential wheels" or "Ackermann wheels".
+const char* name_of(DriveKind kind);
+
+/// Speeds and accelerations that the firmware of a robot accepts.
+struct DriveLimits {
+  double max_speed_mps = 0.0;                ///< forward; on wheels at most the no-load speed of the slowest motor
+  double max_yaw_rate_radps = 0.0;           ///< at the maximum speed of the outer wheels or track
+  double max_acceleration_mps2 = 0.0;        ///< of the commanded velocity, also when stopping
+  double max_yaw_acceleration_radps2 = 0.0;  ///< of the commanded yaw rate
+  double min_turning_radius_m = 0.0;         ///< 0: the robot turns in place
+};
+
+/// Robot of a check drive.
+struct CheckRobot {
+  std::string name;
+  std::uint64_t seed = 1;
+  std::vector<std::string> overrides;  ///< "path=value"
+  RobotDescription description;
+  DriveKind kind = DriveKind::kLegs;
+  DriveLimits limits;
+  double turn_center_x_m = 0.0;  ///< longitudinal position in body of the point that the velocity commands refer to
+  /// Gauge in the firmware's kinematics relative to the geometric one; 0 for legs and Ackermann wheels.
+  double effective_gauge_ratio = 0.0;
+  double expected_height_m = 0.0;  ///< height of the body origin above level ground by geometry or firmware
+  /// Bound of the yaw rate error of a firmware that follows its gyro without an estimate of the bias: three standard
+  /// deviations of the as-built bias. Only robots with legs do so.
+  double max_gyro_bias_radps = 0.0;
+  double reaction_s = 0.1;           ///< time in which the firmware follows a command: with legs a period of the gait
+  sim::SimulatorSettings simulator;  ///< without world and start pose
+
+  bool turns_in_place() const { return limits.min_turning_radius_m == 0.0; }
+};
+
+/// Loads a robot of `models` with its profile and "path=value" overrides of scenario settings. Sensors that the
+/// firmware does not read are switched off. Without `seed`, the seed is that of the settings. Throws InputError for an
+/// unknown robot and for invalid overrides.
+CheckRobot load_check_robot(const std::string& name, const std::vector<std::string>& overrides,
+                            std::optional<std::uint64_t> seed, const std::filesystem::path& data_root);
+
+}  // namespace patrol::app

@@ -1,0 +1,71 @@
+#include "app/check/check_robot.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "core/wheel_kinematics.h"
+
+namespace patrol::app::check_robot_test {
+namespace {
+
+CheckRobot load(const std::string& name, const std::vector<std::string>& overrides = {}) {
+  return load_check_robot(name, overrides, {}, PATROL_SOURCE_DIR);
+}
+
+std::string error_of(const std::string& name, const std::vector<std::string>& overrides) {
+  try {
+    load(name, overrides);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(CheckRobot, TheDriveIsThatOfTheDescription) {
+  EXPECT_EQ(load("quadruped").kind, DriveKind::kLegs);
+  EXPECT_EQ(load("tracked").kind, DriveKind::kTracks);
+  EXPECT_EQ(load("wheeled").kind, DriveKind::kDifferentialWheels);
+}
+
+TEST(CheckRobot, TheLimitsAreThoseOfTheFirmware) {
+  const DriveLimits limits =
+      load("wheeled", {"wheel_drive.max_speed_mps=0.7", "wheel_drive.max_acceleration_mps2=0.4"}).limits;
+  EXPECT_DOUBLE_EQ(limits.max_speed_mps, 0.7);
+  EXPECT_DOUBLE_EQ(limits.max_acceleration_mps2, 0.4);
+  EXPECT_EQ(limits.min_turning_radius_m, 0.0);
+}
+
+// 8 rad/s without load and a radius of 0.1651 m: 1.32 m/s.
+TEST(CheckRobot, WheelsAreNoFasterThanTheirMotorsWithoutLoad) {
+  EXPECT_NEAR(load("wheeled", {"wheel_drive.max_speed_mps=5"}).limits.max_speed_mps, 8.0 * 0.1651, 1e-9);
+}
+
+TEST(CheckRobot, TheYawRateOfSkidSteeringIsLimitedByTheSpeedOfItsSides) {
+  const CheckRobot robot = load("wheeled", {"wheel_drive.max_speed_mps=0.3"});
+  const double effective_gauge_m = differential_geometry(robot.description).gauge_m * skid_ratio(robot.description);
+  EXPECT_NEAR(robot.limits.max_yaw_rate_radps, 2.0 * 0.3 / effective_gauge_m, 1e-9);
+}
+
+TEST(CheckRobot, OnlyTheSensorsOfTheFirmwareAreOn) {
+  const sim::SensorSuiteSettings sensors = load("tracked").simulator.sensors;
+  EXPECT_FALSE(sensors.lidar.enabled);
+  EXPECT_FALSE(sensors.depth_camera.enabled);
+  EXPECT_TRUE(sensors.hall.enabled);
+}
+
+TEST(CheckRobot, AnUnknownRobotIsRefusedWithTheKnownOnes) {
+  EXPECT_THAT(error_of("unknown", {}), testing::HasSubstr("(known: quadruped, tracked, wheeled)"));
+}
+
+TEST(CheckRobot, AnUnknownSettingIsRefusedWithItsKey) {
+  EXPECT_THAT(error_of("wheeled", {"wheel_drive.frictoin=0.1"}), testing::HasSubstr("--set: wheel_drive.frictoin"));
+}
+
+TEST(CheckRobot, TheSeedOfTheCallReplacesThatOfTheSettings) {
+  EXPECT_EQ(load_check_robot("wheeled", {"seed=5"}, {}, PATROL_SOURCE_DIR).seed, 5U);
+  EXPECT_EQ(load_check_robot("wheeled", {"seed=5"}, 7, PATROL_SOURCE_DIR).seed, 7U);
+}
+
+}  // namespace
+}  // namespace patrol::app::check_robot_test
