@@ -1,0 +1,80 @@
+#!/usr/bin/env python3
+"""`patrol import robot`: writes a robot that the program drives, or one line and nothing.
+
+usage: import_robot_test.py PATROL SOURCE_DIR [TEST]...
+"""
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PATROL = SOURCE = None
+
+
+def wheel(name, x, y):
+    return f"""<joint name="{name}_j" type="continuous"><parent link="chassis"/><child link="{name}"/><origin xyz="{x} {y} 0"/><axis xyz="0 1 0"/></joint>
+<link name="{name}"><inertial><mass value="1"/><inertia ixx="0.003" ixy="0" ixz="0" iyy="0.005" iyz="0" izz="0.003"/></inertial>
+<collision><origin rpy="1.5708 0 0"/><geometry><cylinder radius="0.1" length="0.05"/></geometry></collision></link>
+"""
+
+
+def vendor_urdf():
+    wheels = "".join(wheel(f"roue{i}", x, y) for i, (x, y) in enumerate([(0.2, 0.25), (0.2, -0.25), (-0.2, 0.25), (-0.2, -0.25)]))
+    return f"""<robot name="four"><link name="chassis"><inertial><mass value="20"/><inertia ixx="0.5" ixy="0" ixz="0" iyy="0.8" iyz="0" izz="1"/></inertial>
+<collision><origin xyz="0 0 0.08"/><geometry><box size="0.6 0.4 0.1"/></geometry></collision></link>
+<joint name="laser_j" type="fixed"><parent link="chassis"/><child link="laser"/><origin xyz="0 0 0.3"/></joint><link name="laser"/>
+{wheels}</robot>"""
+
+
+class ImportRobot(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.urdf = self.folder / "four.urdf"
+        self.urdf.write_text(vendor_urdf())
+
+    def patrol(self, *arguments):
+        return subprocess.run([PATROL, *map(str, arguments)], cwd=self.folder, capture_output=True, text=True)
+
+    def refuse(self, text, *arguments):
+        result = self.patrol("import", "robot", *arguments)
+        self.assertEqual(result.returncode, 2, result.stderr)
+        self.assertEqual(len(result.stderr.splitlines()), 1, result.stderr)
+        self.assertIn(text, result.stderr)
+        self.assertFalse((self.folder / "models/four").exists(), "nothing is half-written")
+
+    def test_the_imported_robot_is_found_in_the_working_directory_and_drives_ten_seconds_of_a_scenario(self):
+        result = self.patrol("import", "robot", self.urdf, "--frame", "lidar=laser", "--out", "models/four")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("assumptions; models/four", result.stdout)
+        for name in ("four.urdf", "four.yaml", "README.md"):
+            self.assertTrue((self.folder / "models/four" / name).exists(), name)
+        run = self.patrol("run", SOURCE / "worlds/substation/scenarios/short.yaml", "--set", "robot=four", "--set", "time_limit_s=10",
+                          "--out", "run")
+        self.assertIn(run.returncode, (0, 1), run.stderr)
+        self.assertIn("Distance", run.stdout)
+        self.assertTrue((self.folder / "run/metrics.json").exists())
+
+    def test_a_broken_file_is_one_line_with_file_line_and_element(self):
+        self.urdf.write_text(vendor_urdf().replace('<parent link="chassis"/><child link="roue1"/>', '<parent link="nowhere"/><child link="roue1"/>'))
+        line = 1 + self.urdf.read_text().split("nowhere")[0].count("\n")
+        self.refuse(f"four.urdf:{line}: ", self.urdf, "--out", "models/four")
+
+    def test_options_out_of_their_form_are_one_line(self):
+        self.refuse("--package courier: must be NAME=VALUE", self.urdf, "--package", "courier", "--out", "models/four")
+        self.refuse("is given twice", self.urdf, "--frame", "lidar=laser", "--frame", "lidar=chassis", "--out", "models/four")
+        self.refuse("--drive", self.urdf, "--drive", "legs", "--out", "models/four")
+        self.refuse("missing.urdf", self.folder / "missing.urdf", "--out", "models/four")
+
+    def test_a_folder_with_content_is_not_overwritten(self):
+        (self.folder / "models/other").mkdir(parents=True)
+        (self.folder / "models/other/notes.txt").write_text("mine")
+        self.refuse("models/other", self.urdf, "--out", "models/other")
+        self.assertEqual((self.folder / "models/other/notes.txt").read_text(), "mine")
+
+
+if __name__ == "__main__":
+    PATROL, SOURCE = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
+    unittest.main(argv=sys.argv[:1] + sys.argv[3:], verbosity=2)
