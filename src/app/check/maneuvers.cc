@@ -440,7 +440,7 @@ std::vector<Maneuver> maneuvers_of(const CheckRobot& robot) {
   steps.picture_ahead_m = obstacle_x_m + 0.5 * kStepSpacing_m;
   steps.measure = measure_steps;
   Maneuver slope{.name = "slope_stand",
-                 .title = fmt::format("Stand on a slope of {:g}° for {:g} s", kRampAngle_deg, kSlopeStand_s),
+                 .title = fmt::format("Rest on a slope of {:g}° for {:g} s", kRampAngle_deg, kSlopeStand_s),
                  .world = slope_world(obstacle_x_m),
                  .segments = {slope_segment(robot, obstacle_x_m), {.rest_s = kSlopeStand_s}},
                  .measure = measure_slope};
