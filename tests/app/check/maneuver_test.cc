@@ -1,5 +1,3 @@
-#include "app/check/maneuver.h"
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -7,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "app/check/maneuver_figures.h"
 #include "tests/app/check/straight_record.h"
 
 namespace patrol::app::maneuver_test {

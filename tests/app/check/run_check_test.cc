@@ -64,7 +64,7 @@ TEST(RunCheck, TwoDrivenWheelsWithACasterTurnByTheirGaugeTo1PercentAndPassEveryt
 }
 
 // Slope force and rolling resistance of 0.015: the mean torque of the motors on the way up, T / T_max.
-TEST(RunCheck, OnTheRampTheLargestMeanTorqueIsThatOfTheSlopeTo10Percent) {
+TEST(RunCheck, OnTheRampTheMeanTorqueIsThatOfTheSlopeTo10Percent) {
   const CheckResult result = check_of(test::skid_steer_urdf(0.5, 0.6).text());
   const double slope = std::sin(to_rad(kRampAngle_deg)) + 0.015;
   const double expected = result.robot.description.mass_kg * 9.81 * slope * 0.15 / 4.0 / 30.0;
