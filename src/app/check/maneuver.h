@@ -27,6 +27,9 @@ struct Maneuver {
                                  const DriveRecord& record) = nullptr;
 };
 
+/// Radius of the circle of a robot that does not turn in place, m: 1.2 times its minimum radius.
+inline double wide_circle_radius_m(const CheckRobot& robot) { return 1.2 * robot.limits.min_turning_radius_m; }
+
 /// Returns the maneuvers of a robot, in the order of the check.
 std::vector<Maneuver> maneuvers_of(const CheckRobot& robot);
 
@@ -48,9 +51,5 @@ struct ManeuverResult {
 
   bool is_passed() const { return failures.empty(); }
 };
-
-/// Returns why a maneuver failed: the fall first, then the figures out of their limits; empty if it passed.
-std::vector<std::string> failures_of(const CheckRobot& robot, const Maneuver& maneuver, const DriveRecord& record,
-                                     const std::vector<Figure>& figures);
 
 }  // namespace patrol::app

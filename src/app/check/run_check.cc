@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "app/check/check_drive.h"
+#include "app/check/maneuver_figures.h"
 #include "app/common/temporary_folder.h"
 #include "io/files/atomic_file.h"
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "app/check/check_page.h"
+#include "app/check/maneuver_figures.h"
 #include "report/page.h"
 #include "tests/app/check/straight_record.h"
 

@@ -1,10 +1,11 @@
-#include "app/check/maneuver.h"
-
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "app/check/maneuver_figures.h"
 #include "tests/app/check/straight_record.h"
 
 namespace patrol::app::maneuver_test {
@@ -50,7 +51,8 @@ TEST(CheckManeuvers, ACarDrivesCirclesOf1_2And1TimesItsMinimumRadius) {
 
 TEST(CheckManeuvers, TheCommandsOfTheSquareAdd12MetersAnd360Degrees) {
   double length_m = 0.0, yaw_rad = 0.0;
-  for (const DriveSegment& segment : named(maneuvers_of(robot_of(DriveKind::kLegs, 0.0)), "square").segments) {
+  const Maneuver square = named(maneuvers_of(robot_of(DriveKind::kLegs, 0.0)), "square");
+  for (const DriveSegment& segment : square.segments) {
     length_m += segment.vx_mps * segment.duration_s;
     yaw_rad += segment.yaw_rate_radps * segment.duration_s;
   }

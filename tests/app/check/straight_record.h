@@ -2,13 +2,13 @@
 
 #include "app/check/drive_record.h"
 
-namespace patrol::app::test {
+namespace patrol::test {
 
 /// Record of a straight drive at a constant speed. Wheels or tracks travel at `travel_mps`.
-inline DriveRecord straight_record(double speed_mps, double travel_mps, double duration_s) {
-  DriveRecord record;
-  for (double time_s = 0.0; time_s < duration_s + 0.5 * kSamplePeriod_s; time_s += kSamplePeriod_s) {
-    DriveSample sample;
+inline app::DriveRecord straight_record(double speed_mps, double travel_mps, double duration_s) {
+  app::DriveRecord record;
+  for (double time_s = 0.0; time_s < duration_s + 0.5 * app::kSamplePeriod_s; time_s += app::kSamplePeriod_s) {
+    app::DriveSample sample;
     sample.time_s = time_s;
     sample.T_start_center.x = sample.ground_travel_m = speed_mps * time_s;
     sample.speed_mps = speed_mps;
@@ -20,4 +20,4 @@ inline DriveRecord straight_record(double speed_mps, double travel_mps, double d
   return record;
 }
 
-}  // namespace patrol::app::test
+}  // namespace patrol::test
