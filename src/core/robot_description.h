@@ -40,17 +40,19 @@ struct TrackGeometry {
   double body_height_m = 0.0;      ///< height of the body origin above level ground
 };
 
-/// Wheel that rolls about a lateral axis. Its rotation joint is in `RobotDescription::joint_names` if a motor drives it.
+/// Wheel that rolls about a lateral axis. Its rotation joint is in `RobotDescription::joint_names` if a motor drives
+/// it.
 struct WheelGeometry {
   std::string link;
   Eigen::Vector3d center_in_body = Eigen::Vector3d::Zero();  ///< m, with the steering joint at zero
   double radius_m = 0.0;
   double width_m = 0.0;
-  std::optional<std::size_t> drive_joint = std::nullopt;     ///< index in `joint_names`; none for a wheel without a motor
-  std::optional<std::size_t> steering_joint = std::nullopt;  ///< index in `joint_names`; none for a wheel that is not steered
-  double forward_sign = 1.0;                  ///< sign of the joint's rotation when the robot drives forward
-  double left_sign = 1.0;                     ///< sign of the steering angle when the wheel points to the left
-  bool is_caster = false;                     ///< the wheel turns freely about a vertical joint
+  std::optional<std::size_t> drive_joint = std::nullopt;  ///< index in `joint_names`; none for a wheel without a motor
+  std::optional<std::size_t> steering_joint =
+      std::nullopt;           ///< index in `joint_names`; none for a wheel that is not steered
+  double forward_sign = 1.0;  ///< sign of the joint's rotation when the robot drives forward
+  double left_sign = 1.0;     ///< sign of the steering angle when the wheel points to the left
+  bool is_caster = false;     ///< the wheel turns freely about a vertical joint
 
   bool is_left() const { return center_in_body.y() > 0.0; }
 };

@@ -14,9 +14,8 @@ namespace {
 constexpr double kStanding_mps = 1e-3;  // slower wheels have no direction
 
 bool is_any_driven(const RobotDescription& robot) {
-  return std::any_of(robot.wheels.begin(), robot.wheels.end(), [](const WheelGeometry& wheel) {
-    return !wheel.steering_joint && wheel.drive_joint;
-  });
+  return std::any_of(robot.wheels.begin(), robot.wheels.end(),
+                     [](const WheelGeometry& wheel) { return !wheel.steering_joint && wheel.drive_joint; });
 }
 
 /// Returns the wheels that are not steered; if a motor drives any of them, the driven ones.
@@ -56,8 +55,7 @@ std::vector<double> contacts_x_m(const RobotDescription& robot, const Differenti
   std::vector<double> x_m;
   if (robot.tracks) {
     constexpr int kNumContacts = 20;
-    for (int i = 0; i < kNumContacts; ++i)
-      x_m.push_back(((i + 0.5) / kNumContacts - 0.5) * geometry.contact_length_m);
+    for (int i = 0; i < kNumContacts; ++i) x_m.push_back(((i + 0.5) / kNumContacts - 0.5) * geometry.contact_length_m);
     return x_m;
   }
   for (const WheelGeometry& wheel : fixed_wheels(robot))
@@ -97,8 +95,8 @@ DifferentialGeometry differential_geometry(const RobotDescription& robot) {
   }
   const auto count = static_cast<double>(wheels.size());
   if (num_left == 0.0 || num_left == count)
-    throw InputError(fmt::format("robot {}: has neither tracks nor wheels on both sides that are not steered",
-                                 robot.name));
+    throw InputError(
+        fmt::format("robot {}: has neither tracks nor wheels on both sides that are not steered", robot.name));
   return {.gauge_m = left_y / num_left - right_y / (count - num_left),
           .contact_length_m = front - rear,
           .rolling_radius_m = radius / count,

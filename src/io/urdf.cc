@@ -376,12 +376,12 @@ WheelGeometry UrdfReader::read_wheel_shape(const urdf::Link& link) const {
   const Eigen::Vector3d axis = axis_in_body(*link.parent_joint, T_body_wheel);
   if (std::abs(axis.y()) < kParallelCosine)
     fail(link.parent_joint->name, fmt::format("the axis of a wheel must be along y of {}", frame_id::kBody));
-  if (link.collision_array.size() != 1) fail(link.name, "a wheel must have one collision shape: a cylinder or a sphere");
+  if (link.collision_array.size() != 1)
+    fail(link.name, "a wheel must have one collision shape: a cylinder or a sphere");
   const urdf::Collision& shape = *link.collision_array.front();
   const Pose3 T_body_shape = T_body_wheel * to_pose(shape.origin);
-  WheelGeometry wheel{.link = link.name,
-                      .center_in_body = T_body_shape.position,
-                      .forward_sign = axis.y() > 0.0 ? 1.0 : -1.0};
+  WheelGeometry wheel{
+      .link = link.name, .center_in_body = T_body_shape.position, .forward_sign = axis.y() > 0.0 ? 1.0 : -1.0};
   if (shape.geometry->type == urdf::Geometry::CYLINDER) {
     const auto& cylinder = dynamic_cast<const urdf::Cylinder&>(*shape.geometry);
     if (std::abs((T_body_shape.rotation * Eigen::Vector3d::UnitZ()).dot(axis)) < kParallelCosine)
@@ -446,7 +446,8 @@ void UrdfReader::check_wheels(const RobotDescription& robot) const {
     fail(wheel.link, fmt::format("is {:.3f} m above the lowest wheel: all wheels must touch one plane", above_m));
   }
   if (!is_driven)
-    throw InputError(path_ + ": no wheel has a motor: the joint of a driven wheel has a <limit> with effort and velocity");
+    throw InputError(path_ +
+                     ": no wheel has a motor: the joint of a driven wheel has a <limit> with effort and velocity");
   try {
     differential_geometry(robot);
     wheel_drive_type(robot);

@@ -6,12 +6,13 @@
 
 namespace patrol::localize {
 
-/// Error-state Kalman filter of a robot on tracks or on wheels that are not steered: position, attitude, velocity, gyro and accelerometer bias as in
-/// InertialFilter, and the states of the track-soil interaction:
+/// Error-state Kalman filter of a robot on tracks or on wheels that are not steered: position, attitude, velocity, gyro
+/// and accelerometer bias as in InertialFilter, and the states of the track-soil interaction:
 ///
 ///   scale        relative track distance error (wear, tension): constant; positive if the encoders read too much
 ///   slip         longitudinal slip ratio; Gauss-Markov process over distance
-///   ICR          (x, y) from the turn center of the geometry, in body, m: mean of the instantaneous centers of rotation of the tracks [Mandow07], the point
+///   ICR          (x, y) from the turn center of the geometry, in body, m: mean of the instantaneous centers of
+///   rotation of the tracks [Mandow07], the point
 ///                that moves straight ahead while the body rotates; Gauss-Markov process over rotation
 ///
 /// The tracks measure the velocity of the ICR p at ground level: v + omega x p = ((1 - scale - slip) u, 0, 0),

@@ -139,8 +139,8 @@ void TrackOdometry::coast_to(const TrackTicks& ticks) {
   double yaw_rate = imu_.filter()->yaw_rate_radps();
   if (const auto& last = encoders_.last()) {
     const auto turn_ticks = static_cast<double>((ticks.right - last->right) - (ticks.left - last->left));
-    yaw_rate = turn_ticks * meters_per_tick_ / to_seconds(ticks.stamp - last->stamp) /
-               (geometry_.gauge_m * skid_ratio_);
+    yaw_rate =
+        turn_ticks * meters_per_tick_ / to_seconds(ticks.stamp - last->stamp) / (geometry_.gauge_m * skid_ratio_);
   }
   imu_.coast_to(ticks.stamp, yaw_rate);
 }

@@ -4,8 +4,8 @@
 
 namespace patrol::localize {
 
-/// Settings of the odometry of a robot on tracks or on wheels. The defaults fit a MEMS IMU of robotics grade (biases at power-on: Analog Devices
-/// ADIS16448 data sheet, table 1: 0.5 deg/s, 20 mg) and tracks on rock, gravel and concrete.
+/// Settings of the odometry of a robot on tracks or on wheels. The defaults fit a MEMS IMU of robotics grade (biases at
+/// power-on: Analog Devices ADIS16448 data sheet, table 1: 0.5 deg/s, 20 mg) and tracks on rock, gravel and concrete.
 struct TrackOdometrySettings {
   // IMU.
   /// Noise density of the gyro; readings sampled at 250 Hz, unfiltered.

@@ -14,9 +14,9 @@ namespace patrol::score {
 /// Clearance between the robot's outline and the nearest obstacle along the driven path.
 struct DrivenClearance {
   double mean_m = 0.0;
-  double p05_m = 0.0;             ///< 5th percentile
-  double min_m = 0.0;             ///< minimum; 0 at a collision
-  std::size_t num_positions = 0;  ///< number of evaluated path positions
+  double p05_m = 0.0;                    ///< 5th percentile
+  double min_m = 0.0;                    ///< minimum; 0 at a collision
+  std::size_t num_positions = 0;         ///< number of evaluated path positions
   std::optional<double> keep_out_min_m;  ///< minimum distance from the keep-out lines; 0 if the outline crossed one
 };
 

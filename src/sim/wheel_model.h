@@ -10,9 +10,9 @@ namespace patrol::sim {
 
 // Wheel in the physics model: a rolling ellipsoid with the radius and the width of the wheel in the URDF.
 //
-// On level ground it touches at one point in the middle of the tread, so that the gauge is that of the URDF. The friction
-// is the same in all directions; stiffness and friction come from locomotion/tire_contact.h. Not modeled: the moment of
-// the contact patch about its own center, and the side slip angle of a tire.
+// On level ground it touches at one point in the middle of the tread, so that the gauge is that of the URDF. The
+// friction is the same in all directions; stiffness and friction come from locomotion/tire_contact.h. Not modeled: the
+// moment of the contact patch about its own center, and the side slip angle of a tire.
 
 /// Returns whether the link is a wheel of a robot with wheels: on a continuous joint and without children.
 bool is_wheel(const urdf::Link& link);

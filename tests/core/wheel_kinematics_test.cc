@@ -35,7 +35,8 @@ RobotDescription cart(double wheelbase_m, double gauge_m, double limit_rad) {
   RobotDescription robot;
   robot.name = "cart";
   robot.joint_names = {"rl", "rr", "fl_steer", "fr_steer"};
-  robot.joint_limits.assign(4, {.lower_rad = -limit_rad, .upper_rad = limit_rad, .velocity_radps = 10.0, .effort_nm = 9.0});
+  robot.joint_limits.assign(
+      4, {.lower_rad = -limit_rad, .upper_rad = limit_rad, .velocity_radps = 10.0, .effort_nm = 9.0});
   robot.wheels = {driven(0.0, 0.5 * gauge_m, 0), driven(0.0, -0.5 * gauge_m, 1)};
   for (const std::size_t side : {0, 1}) {
     WheelGeometry front{.link = "f", .center_in_body = {wheelbase_m, side == 0 ? 0.5 * gauge_m : -0.5 * gauge_m, 0.0}};

@@ -1,3 +1,5 @@
+#include "tests/support/wheeled_urdf.h"
+
 #include <algorithm>
 
 #include <gmock/gmock.h>
@@ -8,7 +10,6 @@
 #include "io/urdf.h"
 #include "tests/support/pose_near.h"
 #include "tests/support/temporary_file.h"
-#include "tests/support/wheeled_urdf.h"
 
 namespace patrol::io {
 namespace {
@@ -82,8 +83,10 @@ TEST(WheeledUrdf, FindsSteeringJointsAboveWheelsAfterTheDrivenWheels) {
 
 TEST(WheeledUrdf, AWheelFrameMayBeRotatedAboutTheAxis) {
   std::string text = test::skid_steer_urdf(0.5, 0.6).text();
-  // The first wheel: joint frame rolled by a quarter turn, so that its axis is z of the link and the cylinder is along it.
-  text.replace(text.find(R"(<origin xyz="0.25 0.3 -0.05"/>)"), 30, R"(<origin xyz="0.25 0.3 -0.05" rpy="-1.5707963267948966 0 0"/>)");
+  // The first wheel: joint frame rolled by a quarter turn, so that its axis is z of the link and the cylinder is along
+  // it.
+  text.replace(text.find(R"(<origin xyz="0.25 0.3 -0.05"/>)"), 30,
+               R"(<origin xyz="0.25 0.3 -0.05" rpy="-1.5707963267948966 0 0"/>)");
   text.replace(text.find(R"(<axis xyz="0 1 0"/>)"), 19, R"(<axis xyz="0 0 1"/>)");
   text.replace(text.find(R"(<origin rpy="1.5707963267948966 0 0"/>)"), 38, "");
   const RobotDescription robot = load(text);
@@ -101,7 +104,8 @@ TEST(WheeledUrdf, FramesBehindSeveralFixedJointsHaveTheirPoseInBody) {
 
 TEST(WheeledUrdf, MeshesInTheFootprintAreReadFromTheirFile) {
   const test::TemporaryFolder folder;
-  test::write_bytes(folder / "bumper.obj", "v 1 0.1 0\nv 1 -0.1 0\nv 1 0 0.1\nv 0 0 0\nf 1 2 3\nf 1 2 4\nf 2 3 4\nf 1 3 4\n");
+  test::write_bytes(folder / "bumper.obj",
+                    "v 1 0.1 0\nv 1 -0.1 0\nv 1 0 0.1\nv 0 0 0\nf 1 2 3\nf 1 2 4\nf 2 3 4\nf 1 3 4\n");
   std::string text = test::skid_steer_urdf(0.5, 0.6).text();
   const std::string base = "<link name=\"base_link\">";
   text.insert(text.find(base) + base.size(),

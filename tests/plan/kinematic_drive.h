@@ -29,8 +29,8 @@ inline RobotDescription make_tracked_robot() {
   return robot;
 }
 
-/// 1.0 by 0.7 m with steered wheels 0.65 m ahead of the driven axle, which is at the origin, 0.2 m before the middle. The
-/// minimum turning radius is 1.3 m.
+/// 1.0 by 0.7 m with steered wheels 0.65 m ahead of the driven axle, which is at the origin, 0.2 m before the middle.
+/// The minimum turning radius is 1.3 m.
 inline RobotDescription make_cart() {
   RobotDescription robot;
   robot.name = "cart";
@@ -144,8 +144,8 @@ inline DriveRecord drive(Navigator& navigator, const WorldAt& world_at, Pose2 T_
     if (step.status == NavigationStatus::kArrived || step.status == NavigationStatus::kFailed) break;
     record.max_lateral_speed_mps = std::max(record.max_lateral_speed_mps, std::abs(step.command.vy_mps));
     if (step.command.yaw_rate_radps != 0.0) {
-      record.max_curvature_per_m = std::max(record.max_curvature_per_m,
-                                            std::abs(step.command.yaw_rate_radps / step.command.vx_mps));
+      record.max_curvature_per_m =
+          std::max(record.max_curvature_per_m, std::abs(step.command.yaw_rate_radps / step.command.vx_mps));
     }
     const Eigen::Vector3d asked(step.command.vx_mps, step.command.vy_mps,
                                 (1.0 - turn_slip) * step.command.yaw_rate_radps);

@@ -120,7 +120,8 @@ TEST(Wheels, ADifferentialDriveTurnsAboutItsAxleByItsGaugeTo1PercentWithAnAxisTo
   WheeledRobot robot(make_flat_world(), differential_urdf().text());
   const WheelReport turn = robot.drive(0.0, 0.5, 2.0 * M_PI / 0.5);
   EXPECT_NEAR((turn.right_m - turn.left_m) / 0.5, turn.moved.yaw, 0.01 * turn.moved.yaw);
-  const Eigen::Vector2d axle = robot.description().wheels[0].center_in_body.head<2>().cwiseProduct(Eigen::Vector2d(1, 0));
+  const Eigen::Vector2d axle =
+      robot.description().wheels[0].center_in_body.head<2>().cwiseProduct(Eigen::Vector2d(1, 0));
   const Eigen::Vector2d axle_moved = turn.moved * axle - axle;
   EXPECT_LT(axle_moved.norm(), 0.01);
 }

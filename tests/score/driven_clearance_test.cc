@@ -53,7 +53,8 @@ TEST(DrivenClearance, CountsPlacesATenthOfAMetreApart) {
 }
 
 TEST(DrivenClearance, FromAKeepOutLineIsThatOfTheOutlinesSideAndNoughtWhereItCrossesTheLine) {
-  const std::vector<std::vector<Eigen::Vector2d>> beside = {{{0.0, 6.0}, {10.0, 6.0}}}, across = {{{5.0, 4.0}, {5.0, 6.0}}};
+  const std::vector<std::vector<Eigen::Vector2d>> beside = {{{0.0, 6.0}, {10.0, 6.0}}},
+                                                  across = {{{5.0, 4.0}, {5.0, 6.0}}};
   const Trajectory way = drive_along_x(5.0, 0.0, 1.0, 9.0);
   EXPECT_NEAR(driven_clearance(way, kOutline, map_with({}), beside).keep_out_min_m.value(), 1.0 - 0.2, kExactTol);
   EXPECT_EQ(driven_clearance(way, kOutline, map_with({}), across).keep_out_min_m, 0.0);

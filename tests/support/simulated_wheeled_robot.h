@@ -18,8 +18,8 @@ inline const std::string kWheeledUrdf = PATROL_SOURCE_DIR "/models/wheeled/wheel
 
 /// Result of a drive on wheels, by ground truth.
 struct WheelReport {
-  Pose2 moved;                 ///< end in the frame of the start; the yaw is unwrapped
-  double left_m = 0.0;         ///< mean travel of the driven wheels of a side by their joints and nominal radii
+  Pose2 moved;          ///< end in the frame of the start; the yaw is unwrapped
+  double left_m = 0.0;  ///< mean travel of the driven wheels of a side by their joints and nominal radii
   double right_m = 0.0;
   double max_tilt_rad = 0.0;
   double max_abs_torque_nm = 0.0;  ///< of any motor

@@ -37,7 +37,8 @@ inline UrdfRobot skid_steer_urdf(double wheelbase_m, double gauge_m) {
   UrdfRobot robot;
   for (const double x : {0.5, -0.5}) {
     for (const double y : {0.5, -0.5})
-      robot.wheels.push_back({.name = fmt::format("w{}", robot.wheels.size()), .x_m = x * wheelbase_m, .y_m = y * gauge_m});
+      robot.wheels.push_back(
+          {.name = fmt::format("w{}", robot.wheels.size()), .x_m = x * wheelbase_m, .y_m = y * gauge_m});
   }
   return robot;
 }
@@ -46,15 +47,26 @@ inline UrdfRobot skid_steer_urdf(double wheelbase_m, double gauge_m) {
 inline UrdfRobot differential_urdf() {
   return {.wheels = {{.name = "port", .x_m = 0.1, .y_m = 0.25},
                      {.name = "starboard", .x_m = 0.1, .y_m = -0.25, .axis = "0 -1 0"},
-                     {.name = "trailing", .x_m = -0.35, .y_m = 0.0, .radius_m = 0.06, .width_m = 0.04, .is_driven = false,
+                     {.name = "trailing",
+                      .x_m = -0.35,
+                      .y_m = 0.0,
+                      .radius_m = 0.06,
+                      .width_m = 0.04,
+                      .is_driven = false,
                       .is_caster = true}}};
 }
 
 /// Front wheels on steering joints, driven rear axle.
 inline UrdfRobot ackermann_urdf(double wheelbase_m, double gauge_m, double steering_limit_rad) {
-  return {.wheels = {{.name = "fl", .x_m = wheelbase_m, .y_m = 0.5 * gauge_m, .is_driven = false,
+  return {.wheels = {{.name = "fl",
+                      .x_m = wheelbase_m,
+                      .y_m = 0.5 * gauge_m,
+                      .is_driven = false,
                       .steering_limit_rad = steering_limit_rad},
-                     {.name = "fr", .x_m = wheelbase_m, .y_m = -0.5 * gauge_m, .is_driven = false,
+                     {.name = "fr",
+                      .x_m = wheelbase_m,
+                      .y_m = -0.5 * gauge_m,
+                      .is_driven = false,
                       .steering_limit_rad = steering_limit_rad},
                      {.name = "rl", .x_m = 0.0, .y_m = 0.5 * gauge_m},
                      {.name = "rr", .x_m = 0.0, .y_m = -0.5 * gauge_m}},
@@ -63,16 +75,17 @@ inline UrdfRobot ackermann_urdf(double wheelbase_m, double gauge_m, double steer
 
 inline std::string inertial(double mass_kg, double ixx, double iyy, double izz) {
   return fmt::format(
-      R"(<inertial><mass value="{}"/><inertia ixx="{}" ixy="0" ixz="0" iyy="{}" iyz="0" izz="{}"/></inertial>)", mass_kg,
-      ixx, iyy, izz);
+      R"(<inertial><mass value="{}"/><inertia ixx="{}" ixy="0" ixz="0" iyy="{}" iyz="0" izz="{}"/></inertial>)",
+      mass_kg, ixx, iyy, izz);
 }
 
 inline std::string UrdfRobot::text() const {
-  std::string links = fmt::format(
-      R"(<link name="base_link">{}<collision><geometry><box size="{}"/></geometry></collision></link>)",
-      inertial(mass_kg, 0.02 * mass_kg, 0.05 * mass_kg, 0.06 * mass_kg), chassis_box);
+  std::string links =
+      fmt::format(R"(<link name="base_link">{}<collision><geometry><box size="{}"/></geometry></collision></link>)",
+                  inertial(mass_kg, 0.02 * mass_kg, 0.05 * mass_kg, 0.06 * mass_kg), chassis_box);
   for (const UrdfWheel& wheel : wheels) {
-    std::string parent = "base_link", origin = fmt::format("{} {} {:.6g}", wheel.x_m, wheel.y_m, wheel.radius_m - height_m);
+    std::string parent = "base_link",
+                origin = fmt::format("{} {} {:.6g}", wheel.x_m, wheel.y_m, wheel.radius_m - height_m);
     if (wheel.is_caster || wheel.steering_limit_rad > 0.0) {
       parent = wheel.name + "_carrier";
       links += fmt::format(R"(<link name="{}">{}</link>)", parent, inertial(0.3, 0.001, 0.001, 0.001));

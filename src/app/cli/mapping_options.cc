@@ -73,13 +73,16 @@ void add_plan(CLI::App& app, Call& call) {
 void add_import(CLI::App& app, Call& call) {
   ImportRobotOptions& robot = call.import_robot;
   CLI::App* command = app.add_subcommand("import", "Make a robot of Patrol from a robot description (URDF, xacro)");
-  command->add_option("kind", call.imported_kind, "Kind of the input: robot")->required()->check(CLI::IsMember({"robot"}));
+  command->add_option("kind", call.imported_kind, "Kind of the input: robot")
+      ->required()
+      ->check(CLI::IsMember({"robot"}));
   command->add_option("file", robot.file, "Robot description: .urdf or .xacro")->required();
   command->add_option("--out", robot.out, "Folder models/NAME, which must be empty or new")->required();
   command->add_option("--package", robot.packages, "Folder of a package, NAME=FOLDER (repeatable)")->take_all();
   command->add_option("--xacro-arg", robot.xacro_arguments, "Argument of xacro, NAME=VALUE (repeatable)")->take_all();
-  command->add_option("--frame", robot.frames,
-                      "Link that carries a sensor, FRAME=LINK with a frame of Patrol, such as lidar (repeatable)")
+  command
+      ->add_option("--frame", robot.frames,
+                   "Link that carries a sensor, FRAME=LINK with a frame of Patrol, such as lidar (repeatable)")
       ->take_all();
   command->add_option("--base-link", robot.base_link, "Link of the chassis (default: by rule)");
   command->add_option("--forward", robot.forward, "Direction of travel in the base link (default: by rule)")

@@ -17,8 +17,7 @@ std::map<std::string, Value> to_map(const std::vector<std::string>& texts, const
   std::map<std::string, Value> values;
   for (const std::string& text : texts) {
     const std::size_t at = text.find('=');
-    if (at == std::string::npos || at == 0)
-      throw InputError(fmt::format("{} {}: must be NAME=VALUE", option, text));
+    if (at == std::string::npos || at == 0) throw InputError(fmt::format("{} {}: must be NAME=VALUE", option, text));
     if (!values.emplace(text.substr(0, at), text.substr(at + 1)).second)
       throw InputError(fmt::format("{} {}: {} is given twice", option, text, text.substr(0, at)));
   }
@@ -34,15 +33,15 @@ std::string folder_name(const std::filesystem::path& folder) {
 }  // namespace
 
 ExitCode import_robot_command(const ImportRobotOptions& options) {
-  const importer::ImportedRobot robot = importer::import_robot(
-      {.file = options.file,
-       .name = folder_name(options.out),
-       .packages = to_map<std::filesystem::path>(options.packages, "--package"),
-       .xacro_arguments = to_map<std::string>(options.xacro_arguments, "--xacro-arg"),
-       .base_link = options.base_link,
-       .forward = options.forward,
-       .frames = to_map<std::string>(options.frames, "--frame"),
-       .drive = options.drive});
+  const importer::ImportedRobot robot =
+      importer::import_robot({.file = options.file,
+                              .name = folder_name(options.out),
+                              .packages = to_map<std::filesystem::path>(options.packages, "--package"),
+                              .xacro_arguments = to_map<std::string>(options.xacro_arguments, "--xacro-arg"),
+                              .base_link = options.base_link,
+                              .forward = options.forward,
+                              .frames = to_map<std::string>(options.frames, "--frame"),
+                              .drive = options.drive});
   importer::write_robot(robot, options.out);
   for (const importer::Assumption& assumption : robot.assumptions) {
     fmt::print("{}: {}{}\n", assumption.subject, assumption.text,

@@ -20,10 +20,8 @@ std::string text_of(const std::filesystem::path& file) {
 link::VelocityLimits limits_of(const Scenario& scenario, const RobotDescription& robot) {
   const sim::LocomotionSettings& legs = scenario.locomotion;
   const auto along = [](double speed_mps, double yaw_rate_radps) {
-    return link::VelocityLimits{.forward_mps = speed_mps,
-                                .backward_mps = speed_mps,
-                                .sideways_mps = 0.0,
-                                .yaw_rate_radps = yaw_rate_radps};
+    return link::VelocityLimits{
+        .forward_mps = speed_mps, .backward_mps = speed_mps, .sideways_mps = 0.0, .yaw_rate_radps = yaw_rate_radps};
   };
   if (robot.tracks) return along(scenario.track_drive.max_speed_mps, scenario.track_drive.max_yaw_rate_radps);
   if (!robot.wheels.empty()) return along(scenario.wheel_drive.max_speed_mps, scenario.wheel_drive.max_yaw_rate_radps);

@@ -45,8 +45,7 @@ std::vector<io::StationScan> station_scans(const std::filesystem::path& log_mcap
     if (!station || std::any_of(scans.begin(), scans.end(),
                                 [&](const io::StationScan& known) { return known.station == *station; }))
       return;
-    const auto station_pose =
-        to_tunnel_coordinates(scan, *station, record, files.robot.body_height_m());
+    const auto station_pose = to_tunnel_coordinates(scan, *station, record, files.robot.body_height_m());
     if (!station_pose) return;
     const Pose3 T_map_scanner = station_pose->T_map_scanner(files.robot.T_body("scanner"));
     scans.push_back({.station = *station,

@@ -17,7 +17,8 @@ struct JointState {
   std::vector<double> effort_nm;
 };
 
-/// Absolute magnetic encoders on the joints of legs, or encoders of driven wheels and steering joints; 14 bit. The motor drive filters the velocity.
+/// Absolute magnetic encoders on the joints of legs, or encoders of driven wheels and steering joints; 14 bit. The
+/// motor drive filters the velocity.
 struct JointEncoderSettings {
   bool enabled = true;                             ///< presence of the sensor; false: no messages
   double rate_hz = 250.0;                          ///< message rate; the firmware reads the sensor at every tick

@@ -59,7 +59,8 @@ GoalDistance::GoalDistance(const Grid<Cost>& costs, const Eigen::Vector2d& p_map
         const Cell next{.col = entry.col + dc, .row = entry.row + dr};
         if ((dc == 0 && dr == 0) || !geometry.contains(next) || blocks.at(next) == kLethalCost) continue;
         const double weight = 1.0 + cost_weight * blocks.at(next) / kMaxPassableCost;
-        const auto distance_m = static_cast<float>(entry.distance_m + weight * geometry.resolution_m * std::hypot(dc, dr));
+        const auto distance_m =
+            static_cast<float>(entry.distance_m + weight * geometry.resolution_m * std::hypot(dc, dr));
         if (distance_m >= distance_m_.at(next)) continue;
         distance_m_.at(next) = distance_m;
         open.push({distance_m, next.col, next.row});

@@ -22,12 +22,12 @@
 namespace patrol::plan {
 namespace {
 
-constexpr double kPoseStep_m = 0.1;     // spacing of checked and returned poses
-constexpr double kCell_m = 0.25;        // positions closer than this are one state
-constexpr int kNumHeadings = 72;        // headings within 5 degrees are one state
-constexpr int kShotPeriod = 8;          // one of this many expanded states tries to reach the goal by a Dubins path
-constexpr double kNear_m = 12.0;        // distance from the goal within which every state tries
-constexpr double kNearStart_m = 2.0;    // distance from the start within which its clearance is enough
+constexpr double kPoseStep_m = 0.1;   // spacing of checked and returned poses
+constexpr double kCell_m = 0.25;      // positions closer than this are one state
+constexpr int kNumHeadings = 72;      // headings within 5 degrees are one state
+constexpr int kShotPeriod = 8;        // one of this many expanded states tries to reach the goal by a Dubins path
+constexpr double kNear_m = 12.0;      // distance from the goal within which every state tries
+constexpr double kNearStart_m = 2.0;  // distance from the start within which its clearance is enough
 constexpr int kNoParent = -1;
 
 struct State {
@@ -52,7 +52,8 @@ std::uint64_t key_of(const Pose2& pose, bool is_reverse) {
   const auto cell = [](double value_m) { return static_cast<std::int64_t>(std::floor(value_m / kCell_m)); };
   const double turns = pose.yaw / (2.0 * std::numbers::pi);
   const auto heading = static_cast<std::int64_t>(std::floor((turns - std::floor(turns)) * kNumHeadings));
-  const auto x = static_cast<std::uint64_t>(cell(pose.x) + (1 << 20)), y = static_cast<std::uint64_t>(cell(pose.y) + (1 << 20));
+  const auto x = static_cast<std::uint64_t>(cell(pose.x) + (1 << 20)),
+             y = static_cast<std::uint64_t>(cell(pose.y) + (1 << 20));
   return (((x << 22U) | y) << 8U) | (static_cast<std::uint64_t>(heading) << 1U) | (is_reverse ? 1U : 0U);
 }
 

@@ -3,9 +3,9 @@
 #include "core/frames.h"
 #include "core/navigation_goal.h"
 #include "core/robot_description.h"
-#include "plan/routes/maneuver.h"
 #include "plan/maneuvers/maneuver_planner_settings.h"
 #include "plan/perception/costmap.h"
+#include "plan/routes/maneuver.h"
 #include "plan/routes/route_planner.h"
 
 namespace patrol::plan {
@@ -13,14 +13,14 @@ namespace patrol::plan {
 struct ManeuverResult {
   PlanStatus status = PlanStatus::kNoRoute;
   Maneuver maneuver = {};
-  double cost_m = 0.0;  ///< weighted length
-  int num_expanded = 0; ///< states of the search
-  int num_cells = 0;    ///< blocks of the distance to the goal
+  double cost_m = 0.0;   ///< weighted length
+  int num_expanded = 0;  ///< states of the search
+  int num_cells = 0;     ///< blocks of the distance to the goal
 };
 
 /// Plans maneuvers of a robot with a minimum turning radius: search over position, heading and direction of travel by
-/// arcs [Dolgov10], with the distance to the goal on the costmap as the estimate. Dubins paths forward and backward from
-/// expanded states reach the exact goal.
+/// arcs [Dolgov10], with the distance to the goal on the costmap as the estimate. Dubins paths forward and backward
+/// from expanded states reach the exact goal.
 class ManeuverPlanner {
  public:
   /// Throws InputError for a robot without steered wheels.

@@ -6,14 +6,14 @@ namespace patrol::plan {
 
 /// Settings of the planner for robots that cannot turn in place.
 struct ManeuverPlannerSettings {
-  double radius_factor = 1.15;        ///< ratio of the planned to the robot's minimum turning radius: room for control
-  double step_m = 0.5;                ///< length of an arc of the search
-  double reverse_weight = 2.0;        ///< cost of a meter driven backward relative to a meter driven forward
-  double direction_change_m = 2.0;    ///< cost of a change of direction, in meters
-  double cost_weight = 4.0;           ///< cost of a meter at the highest passable cost of the costmap, in more meters
-  double greediness = 1.5;            ///< weight of the estimated remaining cost; above 1, the search is faster and the
-                                      ///< maneuver at most as many times as costly as the best
-  int max_expanded_thousands = 100;   ///< maximum number of expanded states, in thousands
+  double radius_factor = 1.15;       ///< ratio of the planned to the robot's minimum turning radius: room for control
+  double step_m = 0.5;               ///< length of an arc of the search
+  double reverse_weight = 2.0;       ///< cost of a meter driven backward relative to a meter driven forward
+  double direction_change_m = 2.0;   ///< cost of a change of direction, in meters
+  double cost_weight = 4.0;          ///< cost of a meter at the highest passable cost of the costmap, in more meters
+  double greediness = 1.5;           ///< weight of the estimated remaining cost; above 1, the search is faster and the
+                                     ///< maneuver at most as many times as costly as the best
+  int max_expanded_thousands = 100;  ///< maximum number of expanded states, in thousands
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -9,11 +9,11 @@
 namespace patrol::plan {
 namespace {
 
-constexpr double kCorrection_m = 0.6;      // distance over which the errors decay at low speed,
-constexpr double kCorrection_s = 0.6;      // and the additional distance by the speed: steering takes time
-constexpr double kStop_m = 0.02;           // a stop this close to the end of a part is at its end
-constexpr double kMaxLateral_mps2 = 0.8;   // lateral acceleration in curves
-constexpr double kSafe_s = 0.8;            // time for which a command must be safe
+constexpr double kCorrection_m = 0.6;     // distance over which the errors decay at low speed,
+constexpr double kCorrection_s = 0.6;     // and the additional distance by the speed: steering takes time
+constexpr double kStop_m = 0.02;          // a stop this close to the end of a part is at its end
+constexpr double kMaxLateral_mps2 = 0.8;  // lateral acceleration in curves
+constexpr double kSafe_s = 0.8;           // time for which a command must be safe
 
 /// Position of the robot relative to a pose, along the direction of travel: forward, left.
 Eigen::Vector2d travel_offset(const ManeuverPose& pose, const Pose2& T_map_center) {
@@ -72,7 +72,8 @@ double ManeuverFollower::advance(const Pose2& T_map_body) {
   return std::abs(offset.y());
 }
 
-VelocityCommand ManeuverFollower::command(const Costmap& costmap, const Pose2& T_map_body, const VelocityCommand& last) {
+VelocityCommand ManeuverFollower::command(const Costmap& costmap, const Pose2& T_map_body,
+                                          const VelocityCommand& last) {
   if (maneuver_.empty() || has_ended()) return {};
   const ManeuverPose& next = maneuver_[next_];
   const Pose2 T_map_center = T_map_body * T_body_center_;
@@ -104,7 +105,8 @@ bool ManeuverFollower::is_blocked_at(const Costmap& costmap, double along_m) con
 
 double ManeuverFollower::obstacle_radius_m(const Costmap& costmap) const {
   double radius_m = 0.0;
-  for (const Disc& disc : costmap.footprint().discs()) radius_m = std::max(radius_m, disc.center_m.norm() + disc.radius_m);
+  for (const Disc& disc : costmap.footprint().discs())
+    radius_m = std::max(radius_m, disc.center_m.norm() + disc.radius_m);
   return radius_m + costmap.settings().safety_margin_m;
 }
 

@@ -2,8 +2,8 @@
 
 #include <cstddef>
 
-#include "plan/routes/maneuver.h"
 #include "plan/navigation/route_follower.h"
+#include "plan/routes/maneuver.h"
 
 namespace patrol::plan {
 
@@ -35,7 +35,7 @@ class ManeuverFollower final : public RouteFollower {
   Pose2 T_body_center_, T_center_body_;
   double max_curvature_per_m_;
   Maneuver maneuver_;
-  std::size_t next_ = 0;      ///< index of the next pose to reach
+  std::size_t next_ = 0;  ///< index of the next pose to reach
 };
 
 }  // namespace patrol::plan

@@ -66,8 +66,8 @@ void Navigator::add_depth(const DepthImage& image, const Pose3& T_level_body, co
 
 void Navigator::add_range(const UltrasonicRange& ping, const Pose3& T_level_body, const Pose2& T_map_body) {
   const Pose3 T_level_transducer = T_level_body * robot_.T_body("ultrasonic_" + std::to_string(ping.transducer));
-  const SonarCone cone = inverse_sonar_model(settings_.sonar_obstacles, ping, T_level_transducer, robot_.body_height_m(),
-                                             settings_.costmap.resolution_m);
+  const SonarCone cone = inverse_sonar_model(settings_.sonar_obstacles, ping, T_level_transducer,
+                                             robot_.body_height_m(), settings_.costmap.resolution_m);
   costmap_.add_ping(cone, ping.stamp, T_map_body);
 }
 
@@ -197,7 +197,8 @@ NavigationStatus Navigator::drive(Time now, const Pose2& T_map_body, VelocityCom
   if (state_ == State::kApproaching) return approach(now, T_map_body, command);
 
   const VelocityCommand straight = regulate_pose(settings_.goal_controller.holonomic, T_map_body, *goal_);
-  const bool is_near = settings_.kinematics == "omnidirectional" && goal_distance_m <= settings_.goal_approach_distance_m;
+  const bool is_near =
+      settings_.kinematics == "omnidirectional" && goal_distance_m <= settings_.goal_approach_distance_m;
   const bool is_straight = is_near && is_motion_safe(costmap_, T_map_body, straight, kLookAhead_s);
   command = is_straight ? straight : follower_->command(costmap_, T_map_body, last_);
   update_progress(T_map_body);

@@ -3,10 +3,10 @@
 #include <string>
 
 #include "core/settings.h"
+#include "plan/maneuvers/maneuver_planner_settings.h"
 #include "plan/navigation/goal_controller_settings.h"
 #include "plan/navigation/local_planner_settings.h"
 #include "plan/navigation/recovery_settings.h"
-#include "plan/maneuvers/maneuver_planner_settings.h"
 #include "plan/perception/costmap_settings.h"
 #include "plan/perception/depth_obstacles_settings.h"
 #include "plan/perception/sonar_cone_settings.h"

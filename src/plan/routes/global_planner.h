@@ -10,8 +10,8 @@
 
 #include "core/grid.h"
 #include "core/settings.h"
-#include "plan/routes/maneuver.h"
 #include "plan/perception/costmap.h"
+#include "plan/routes/maneuver.h"
 #include "plan/routes/planners.h"
 
 namespace patrol::plan {
@@ -36,10 +36,10 @@ struct GlobalPlannerSettings {
 struct PlanResult {
   PlanStatus status = PlanStatus::kNoRoute;
   std::vector<Eigen::Vector2d> points_m = {};  ///< path in map, from start to goal
-  Maneuver maneuver = {};                 ///< the path with headings, for a robot that cannot turn in place
-  double length_m = 0.0;                  ///< length of the path
-  double cost_m = 0.0;                    ///< length from cell to cell, each meter weighted by its cells' costs
-  bool is_goal_moved = false;             ///< the goal was blocked; the path ends at the nearest free position
+  Maneuver maneuver = {};                      ///< the path with headings, for a robot that cannot turn in place
+  double length_m = 0.0;                       ///< length of the path
+  double cost_m = 0.0;                         ///< length from cell to cell, each meter weighted by its cells' costs
+  bool is_goal_moved = false;                  ///< the goal was blocked; the path ends at the nearest free position
   std::int64_t num_expanded = 0;
 };
 

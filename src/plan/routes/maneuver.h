@@ -6,8 +6,8 @@
 
 namespace patrol::plan {
 
-/// Pose on a maneuver of a robot that cannot turn in place. The point of the robot is its turn center: the middle of the
-/// axle that is not steered.
+/// Pose on a maneuver of a robot that cannot turn in place. The point of the robot is its turn center: the middle of
+/// the axle that is not steered.
 struct ManeuverPose {
   Pose2 T_map_center;
   double curvature_per_m = 0.0;  ///< change of the yaw per meter driven, of the arc that leads here

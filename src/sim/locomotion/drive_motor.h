@@ -5,8 +5,8 @@
 
 namespace patrol::sim {
 
-/// Geared brushless motor of a sprocket or wheel. The current limits the torque; with rising speed the battery voltage reduces
-/// it along the straight speed-torque line of a direct-current motor.
+/// Geared brushless motor of a sprocket or wheel. The current limits the torque; with rising speed the battery voltage
+/// reduces it along the straight speed-torque line of a direct-current motor.
 struct DriveMotor {
   double max_torque_nm = 0.0;    ///< torque at the current limit
   double stall_torque_nm = 0.0;  ///< torque of the line at zero speed, without current limit

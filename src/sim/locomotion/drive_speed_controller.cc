@@ -17,8 +17,8 @@ double DriveSpeedController::step(double requested_radps, std::int64_t count) {
   last_angle_rad_ = angle_rad;
   last_requested_radps_ = requested_radps;
 
-  const double rest_nm = gains_.kp_nms * (requested_radps - speed_radps_) +
-                         gains_.kd_nms2 * (requested_radps2 - acceleration_radps2_);
+  const double rest_nm =
+      gains_.kp_nms * (requested_radps - speed_radps_) + gains_.kd_nms2 * (requested_radps2 - acceleration_radps2_);
   const double requested_nm = rest_nm + gains_.ki_nm * lag_rad_;
   const double torque_nm = motor_.feasible_torque_nm(requested_nm, speed_radps_);
   // Anti-windup: the integral never requests more than the motor's torque.

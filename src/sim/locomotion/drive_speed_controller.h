@@ -14,9 +14,9 @@ struct DriveSpeedGains {
   double observer_bandwidth_radps;  ///< bandwidth of the speed observer on the counts
 };
 
-/// PID speed controller of one sprocket or wheel, with the counts of its encoder as the only measurement. The integral of the speed error is
-/// the lag angle, known to one count. A tracking loop on the counter (second-order observer, critically damped)
-/// estimates speed and acceleration.
+/// PID speed controller of one sprocket or wheel, with the counts of its encoder as the only measurement. The integral
+/// of the speed error is the lag angle, known to one count. A tracking loop on the counter (second-order observer,
+/// critically damped) estimates speed and acceleration.
 class DriveSpeedController {
  public:
   DriveSpeedController(const DriveSpeedGains& gains, const DriveMotor& motor, double ticks_per_rad, double tick_s);

@@ -6,8 +6,8 @@
 namespace patrol::sim {
 namespace {
 
-constexpr double kRestSprocket_radps = 0.5;                        // a single count back and forth appears as 0.3
-constexpr double kBiasTime_s = 5.0;                                // averaging time of the gyroscope bias at rest
+constexpr double kRestSprocket_radps = 0.5;  // a single count back and forth appears as 0.3
+constexpr double kBiasTime_s = 5.0;          // averaging time of the gyroscope bias at rest
 
 DriveSpeedGains gains_of(const TrackDriveSettings& settings) {
   return {.kp_nms = settings.kp_nms,
@@ -68,7 +68,8 @@ double TrackController::corrected_yaw_rate(const Imu& imu) {
   const double limit = settings_.max_gyro_correction_radps;
   const double gain = settings_.gyro_integral_per_s;
   if (gain > 0.0) yaw_lag_rad_ = std::clamp(yaw_lag_rad_ + tick_s_ * yaw_rate_error_radps, -limit / gain, limit / gain);
-  return ramp_.yaw_rate_radps() + std::clamp(settings_.gyro_gain * yaw_rate_error_radps + gain * yaw_lag_rad_, -limit, limit);
+  return ramp_.yaw_rate_radps() +
+         std::clamp(settings_.gyro_gain * yaw_rate_error_radps + gain * yaw_lag_rad_, -limit, limit);
 }
 
 /// Updates the gyroscope bias: mean over the first seconds at rest, running mean afterward.

@@ -8,7 +8,7 @@
 namespace patrol::sim {
 namespace {
 
-constexpr double kRestWheel_mps = 0.02;                            // slower wheels are at rest
+constexpr double kRestWheel_mps = 0.02;  // slower wheels are at rest
 
 // Steering servo: full torque at an error of 0.1 rad, critically damped on its own rotor.
 constexpr double kSteeringRotor_radps2 = 100.0, kSteeringFullTorque_rad = 0.1;
@@ -107,7 +107,8 @@ std::vector<double> WheelController::wheel_speeds_radps() {
 
 double WheelController::steering_torque_nm(std::size_t joint, const JointState& joints) {
   const JointLimit& limit = robot_.joint_limits[joint];
-  slewed_angle_rad_[joint] = moved_toward(slewed_angle_rad_[joint], target_angle_rad_[joint], limit.velocity_radps * tick_s_);
+  slewed_angle_rad_[joint] =
+      moved_toward(slewed_angle_rad_[joint], target_angle_rad_[joint], limit.velocity_radps * tick_s_);
   const double stiffness_nm = limit.effort_nm / kSteeringFullTorque_rad;
   const double rotor_kgm2 = limit.effort_nm / kSteeringRotor_radps2;
   const double torque_nm = stiffness_nm * (slewed_angle_rad_[joint] - joints.position_rad[joint]) -

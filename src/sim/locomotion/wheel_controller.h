@@ -43,8 +43,8 @@ class WheelController {
   std::vector<DriveSpeedController> speed_controllers_;  ///< [wheel]; unused for wheels without a motor
   VelocityRamp ramp_;
   FallDetector fall_detector_;
-  std::vector<double> target_angle_rad_;           ///< [joint]: steering angle of the kinematics
-  std::vector<double> slewed_angle_rad_;           ///< [joint]: approaches the target at the speed of the joint
+  std::vector<double> target_angle_rad_;  ///< [joint]: steering angle of the kinematics
+  std::vector<double> slewed_angle_rad_;  ///< [joint]: approaches the target at the speed of the joint
   double idle_s_ = 0.0;
   bool is_brake_closed_ = false;
 };

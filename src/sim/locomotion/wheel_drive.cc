@@ -16,8 +16,8 @@ int find(const mjModel& physics, mjtObj type, const std::string& name, const Rob
   return id;
 }
 
-/// Gives joints of wheels without motors, and of casters, an inertia of 1 % of the mass that the wheel carries times its
-/// squared radius. The forces of the tires would accelerate lighter parts too fast for the time step.
+/// Gives joints of wheels without motors, and of casters, an inertia of 1 % of the mass that the wheel carries times
+/// its squared radius. The forces of the tires would accelerate lighter parts too fast for the time step.
 void set_carried_inertia(const RobotDescription& robot, const WheelGeometry& wheel, mjModel& physics) {
   constexpr double kRatio = 0.01;
   const double inertia_kgm2 =
@@ -50,9 +50,8 @@ WheelDrive::WheelDrive(const RobotDescription& robot, const WheelDriveSettings& 
     const int id = find(physics, mjOBJ_JOINT, robot.joint_names[*wheel.drive_joint], robot);
     const int dof = physics.jnt_dofadr[id];
     const double brake_nm = settings.brake_torque_ratio * robot.joint_limits[*wheel.drive_joint].effort_nm;
-    brakes_.push_back({.dof = dof,
-                       .open_nm = physics.dof_frictionloss[dof],
-                       .closed_nm = physics.dof_frictionloss[dof] + brake_nm});
+    brakes_.push_back(
+        {.dof = dof, .open_nm = physics.dof_frictionloss[dof], .closed_nm = physics.dof_frictionloss[dof] + brake_nm});
   }
 }
 

@@ -7,16 +7,16 @@ namespace patrol::sim {
 /// Settings of the wheels, their motors and their firmware. Torques and speeds of the motors are the limits of the
 /// joints in the URDF.
 struct WheelDriveSettings {
-  double friction = 0.8;               ///< friction coefficient of the tires on ground that does not define its own
-  double rolling_resistance = 0.015;   ///< rolling resistance of each wheel relative to its load
+  double friction = 0.8;                ///< friction coefficient of the tires on ground that does not define its own
+  double rolling_resistance = 0.015;    ///< rolling resistance of each wheel relative to its load
   double tire_deflection_ratio = 0.02;  ///< deflection of each tire under the weight on its wheel relative to its
                                         ///< radius
   double tire_damping_ratio = 0.15;     ///< damping ratio of the robot on its tires
-  double rotor_inertia_ratio = 0.2;    ///< inertia of each motor behind its gear relative to the mass on its wheel
-                                       ///< times the squared wheel radius
-  double max_speed_mps = 1.0;          ///< maximum speed of the robot
-  double max_yaw_rate_radps = 1.0;     ///< maximum yaw rate
-  double max_acceleration_mps2 = 1.0;  ///< maximum acceleration of the commanded velocity
+  double rotor_inertia_ratio = 0.2;     ///< inertia of each motor behind its gear relative to the mass on its wheel
+                                        ///< times the squared wheel radius
+  double max_speed_mps = 1.0;           ///< maximum speed of the robot
+  double max_yaw_rate_radps = 1.0;      ///< maximum yaw rate
+  double max_acceleration_mps2 = 1.0;   ///< maximum acceleration of the commanded velocity
   double max_yaw_acceleration_radps2 = 2.0;  ///< maximum acceleration of the commanded yaw rate
   double effective_gauge_factor = 0.0;       ///< gauge in the firmware's kinematics relative to the geometric one; 0 is
                                              ///< the closed form of Coulomb friction for the wheels of the robot

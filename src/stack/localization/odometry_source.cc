@@ -77,10 +77,7 @@ class DifferentialOdometrySource : public OdometrySource {
 class TrackedOdometrySource final : public DifferentialOdometrySource {
  public:
   TrackedOdometrySource(const RobotDescription& robot, const StackSettings& settings)
-      : DifferentialOdometrySource(robot, settings.odometry.tracked) {
-    if (!robot.tracks)
-      throw InputError(fmt::format("stack.odometry_source = tracked: robot {} has no tracks", robot.name));
-  }
+      : DifferentialOdometrySource(robot, settings.odometry.tracked) {}
 
  private:
   std::optional<TrackTicks> ticks_of(const SensorMessage& message) const override {
@@ -113,8 +110,7 @@ class WheeledOdometrySource final : public DifferentialOdometrySource {
   }
   std::int64_t ticks(const std::vector<WheelGeometry>& side, const JointState& joints) const {
     double angle_rad = 0.0;
-    for (const WheelGeometry& wheel : side)
-      angle_rad += wheel.forward_sign * joints.position_rad[*wheel.drive_joint];
+    for (const WheelGeometry& wheel : side) angle_rad += wheel.forward_sign * joints.position_rad[*wheel.drive_joint];
     return std::llround(angle_rad / static_cast<double>(side.size()) * ticks_per_rad_);
   }
 
@@ -125,7 +121,11 @@ class WheeledOdometrySource final : public DifferentialOdometrySource {
 }  // namespace
 
 std::unique_ptr<OdometrySource> make_odometry_source(const StackSettings& settings, const RobotDescription& robot) {
-  if (settings.odometry_source == "tracked") return std::make_unique<TrackedOdometrySource>(robot, settings);
+  if (settings.odometry_source == "tracked") {
+    if (!robot.tracks)
+      throw InputError(fmt::format("stack.odometry_source = tracked: robot {} has no tracks", robot.name));
+    return std::make_unique<TrackedOdometrySource>(robot, settings);
+  }
   if (settings.odometry_source == "wheeled") return std::make_unique<WheeledOdometrySource>(robot, settings);
   if (robot.legs.empty()) {
     throw InputError(

@@ -36,9 +36,9 @@ TEST(Dubins, TenThousandRandomPathsEndAtTheirGoalWithinAMicrometer) {
 TEST(Dubins, KnownPathsHaveTheirClosedFormLength) {
   const double pi = std::numbers::pi;
   EXPECT_NEAR(length_m(dubins_path({5.0, 0.0, 0.0}, 1.0)), 5.0, 1e-9);
-  EXPECT_NEAR(length_m(dubins_path({0.0, 2.0, pi}, 1.0)), pi, 1e-9);             // half a circle
+  EXPECT_NEAR(length_m(dubins_path({0.0, 2.0, pi}, 1.0)), pi, 1e-9);  // half a circle
   EXPECT_NEAR(length_m(dubins_path({10.0, 10.0, pi / 2.0}, 2.0)), 8.0 * std::sqrt(2.0) + pi, 1e-9);
-  EXPECT_NEAR(length_m(dubins_path({0.0, 0.0, pi}, 1.0)), 7.0 * pi / 3.0, 1e-9);     // to turn around: three turns
+  EXPECT_NEAR(length_m(dubins_path({0.0, 0.0, pi}, 1.0)), 7.0 * pi / 3.0, 1e-9);  // to turn around: three turns
 }
 
 }  // namespace

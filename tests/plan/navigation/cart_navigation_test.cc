@@ -75,8 +75,7 @@ TEST(CartNavigation, TurnsAroundInADeadEndByDrivingBackAndForth) {
   world.add_box(-8.0, -1.9, 8.0, 1.9);
   Navigator navigator(cart_settings(), make_cart(), {});
   navigator.set_map(draw_map(world, -8.5, -2.5, 8.5, 2.5));
-  const NavigationGoal goal{
-      .T_map_body = {-4.0, 0.0, M_PI}, .position_tolerance_m = 0.1, .yaw_tolerance_rad = 0.1};
+  const NavigationGoal goal{.T_map_body = {-4.0, 0.0, M_PI}, .position_tolerance_m = 0.1, .yaw_tolerance_rad = 0.1};
   const DriveRecord record = drive(navigator, world, {4.0, 0.0, 0.0}, goal, 180.0, 0.1, make_cart());
   EXPECT_EQ(record.end, NavigationStatus::kArrived) << record.T_map_body.vector().transpose();
   EXPECT_GT(record.min_gap_m, 0.0);

@@ -340,8 +340,7 @@ TEST(AsBuiltRobot, RemovingOneTermKeepsAllOthers) {
 
 /// The delay of an anchor is the sum of its own and the robot's.
 TEST(AsBuiltRobot, WheelsAreUniformWithin1PercentOfTheirRadiusAnd2MillimetersOfTheirGauge) {
-  const RobotDescription wheeled =
-      io::load_robot_description(PATROL_SOURCE_DIR "/models/wheeled/wheeled.urdf");
+  const RobotDescription wheeled = io::load_robot_description(PATROL_SOURCE_DIR "/models/wheeled/wheeled.urdf");
   double largest = 0.0, largest_gauge_m = 0.0;
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     const WheelErrors errors = AsBuiltRobot(enabled(), wheeled, seed).wheels();
