@@ -51,7 +51,7 @@ class ImportRobot(unittest.TestCase):
         self.assertIn("assumptions; models/four", result.stdout)
         for name in ("four.urdf", "four.yaml", "README.md"):
             self.assertTrue((self.folder / "models/four" / name).exists(), name)
-        run = self.patrol("run", SOURCE / "worlds/substation/scenarios/short.yaml", "--set", "robot=four", "--set", "time_limit_s=10",
+        run = self.patrol("run", SOURCE / "worlds/substation/scenarios/patrol.yaml", "--set", "robot=four", "--set", "time_limit_s=10",
                           "--out", "run")
         self.assertIn(run.returncode, (0, 1), run.stderr)
         self.assertIn("Distance", run.stdout)

@@ -111,9 +111,11 @@ std::optional<std::filesystem::path> registration_of(const std::filesystem::path
 
 std::filesystem::path robot_file(const std::string& robot, const std::string& extension,
                                  const std::filesystem::path& data_root) {
-  const std::filesystem::path own = std::filesystem::path("models") / robot;
-  const bool is_own = !robot.empty() && std::filesystem::exists(own / (robot + ".urdf"));
-  return (is_own ? std::filesystem::absolute(own) : data_root / "models" / robot) / (robot + extension);
+  const std::filesystem::path given = data_root / "models" / robot,
+                              own = std::filesystem::absolute("models") / robot;
+  const std::string urdf = robot + ".urdf";
+  const bool is_own = !std::filesystem::exists(given / urdf) && std::filesystem::exists(own / urdf);
+  return (is_own ? own : given) / (robot + extension);
 }
 
 std::filesystem::path find_robot(const std::string& name, const std::filesystem::path& data_root) {

@@ -55,7 +55,7 @@ TEST(CheckRobot, OnlyTheSensorsOfTheFirmwareAreOn) {
 }
 
 TEST(CheckRobot, AnUnknownRobotIsRefusedWithTheKnownOnes) {
-  EXPECT_THAT(error_of("unknown", {}), testing::HasSubstr("(known: quadruped, tracked, wheeled)"));
+  EXPECT_THAT(error_of("unknown", {}), testing::HasSubstr("(known: cart, quadruped, tracked, wheeled)"));
 }
 
 TEST(CheckRobot, AnUnknownSettingIsRefusedWithItsKey) {

@@ -13,7 +13,7 @@ import tempfile
 import unittest
 
 PATROL, SOURCE = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2])
-ROBOTS = ("quadruped", "tracked", "wheeled")
+ROBOTS = ("quadruped", "tracked", "wheeled", "cart")
 GRAVITY = 9.81
 MAX_CPU_S = 60.0  # of one check, on one core
 

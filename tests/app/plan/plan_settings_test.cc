@@ -70,8 +70,8 @@ TEST(PlanSettings, WhatIsWrongIsNamed) {
   EXPECT_NE(unknown_planner.find("planner: fly is out of range: must be one of astar, dijkstra, theta_star"),
             std::string::npos)
       << unknown_planner;
-  EXPECT_EQ(complaint({.map = "m.yaml", .robot = "wheeled"}),
-            "--robot: unknown robot 'wheeled' (known: quadruped, tracked)");
+  EXPECT_EQ(complaint({.map = "m.yaml", .robot = "hovering"}),
+            "--robot: unknown robot 'hovering' (known: cart, quadruped, tracked, wheeled)");
   EXPECT_EQ(complaint({.map = "m.yaml", .robot = "tracked", .radius_m = 0.3}),
             "--robot and --radius-m are mutually exclusive");
   EXPECT_EQ(complaint({.map = "m.yaml", .radius_m = 0.0}), "--radius-m: 0: must be in [0.01, 10]");
