@@ -111,8 +111,7 @@ std::optional<std::filesystem::path> registration_of(const std::filesystem::path
 
 std::filesystem::path robot_file(const std::string& robot, const std::string& extension,
                                  const std::filesystem::path& data_root) {
-  const std::filesystem::path given = data_root / "models" / robot,
-                              own = std::filesystem::absolute("models") / robot;
+  const std::filesystem::path given = data_root / "models" / robot, own = std::filesystem::absolute("models") / robot;
   const std::string urdf = robot + ".urdf";
   const bool is_own = !std::filesystem::exists(given / urdf) && std::filesystem::exists(own / urdf);
   return (is_own ? own : given) / (robot + extension);

@@ -192,8 +192,8 @@ struct RobotProfile {
   }
 };
 
-/// Path of a file of a robot, models/ROBOT/ROBOT<extension>: below the data root, or below the working directory if only
-/// this has the robot's URDF. The file need not exist.
+/// Path of a file of a robot, models/ROBOT/ROBOT<extension>: below the data root, or below the working directory if
+/// only this has the robot's URDF. The file need not exist.
 std::filesystem::path robot_file(const std::string& robot, const std::string& extension,
                                  const std::filesystem::path& data_root);
 
