@@ -24,7 +24,7 @@ add(name="street_patrol", file="worlds/street/README.md", seeds=REPORT, minutes=
     text=lambda values: by_seed(values["patrol"], PATROL_ROWS, WU25))
 
 
-CART_ROWS = [*PATROL_ROWS[:-3],
+CART_ROWS = [*PATROL_ROWS[:-5], Row("distance driven, m", "mission.distance_m", ".0f", min), PATROL_ROWS[-4],
              Row("outline to the nearest kerb, minimum: `navigation.clearance.keep_out_min_m`", "navigation.clearance.keep_out_min_m", ".2f", min),
              Row("collisions", "mission.collisions", ".0f"), VERDICT_ROW,
              Row("simulated s per wall s", "performance.real_time_factor", ".1f", min)]
