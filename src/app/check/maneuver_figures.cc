@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -24,6 +26,7 @@ constexpr const char* kSpeedMargin = "a tenth of the speed remains for the contr
 constexpr const char* kTiltOfTrot = "twice the swing of the trunk when a trot begins and ends";
 constexpr double kMaxPlaneTilt_deg = 5.0, kMaxTrotTilt_deg = 15.0, kMaxFallTilt_deg = 30.0;
 constexpr double kYawTolerance = 0.15;  // of the yaw rate
+constexpr double kMaxDrift_rad = 0.5;   // by the gyro bias; limits that allow more would reject nothing
 constexpr double kMaxTorqueRatio = 0.9, kMaxMeanTorqueRatio = 0.5, kMaxSpeedRatio = 0.9, kMaxSwingSpeedRatio = 1.2;
 
 Figure tilt_figure(const DriveRecord& record, double max_deg, const char* reason) {
@@ -168,6 +171,13 @@ std::vector<Figure> measure_loop(const CheckRobot& robot, const Maneuver& maneuv
                 to_deg(kYawTolerance * std::abs(end.commanded_yaw_rad) + drift_rad),
                 with_gyro(robot, "15 % of 360 degrees"), true),
       yaw_ratio_figure(robot, record)};
+  if (drift_rad > kMaxDrift_rad) {
+    for (Figure& figure : std::span(figures).first(2)) {
+      figure.min = figure.max = std::nullopt;
+      figure.limit_reason =
+          fmt::format("no limit: the gyro bias may turn the robot by {:.0f} degrees", to_deg(drift_rad));
+    }
+  }
   if (!robot.turns_in_place()) {
     const double radius_m = wide_circle_radius_m(robot);
     figures.push_back({.name = "radius_m",
