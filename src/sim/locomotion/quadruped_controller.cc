@@ -8,6 +8,7 @@
 #include "core/frames.h"
 #include "core/geometry/linear_algebra.h"
 #include "sim/locomotion/swing_trajectory.h"
+#include "sim/locomotion/velocity_ramp.h"
 
 namespace patrol::sim {
 namespace {
@@ -38,10 +39,6 @@ constexpr double kWakeUpStiffness = 3000.0, kWakeUpDamping = 60.0;  // N/m, N s/
 constexpr double kGroundTime_s = 0.15;  // time constant of the ground estimate below the feet
 constexpr double kEarlyTouch = 0.55;    // swing fraction from which a contact counts as touch-down
 constexpr double kStandSpeed_mps = 0.02, kStandRate_radps = 0.03;
-
-double approach(double value, double target, double max_change) {
-  return value + std::clamp(target - value, -max_change, max_change);
-}
 
 }  // namespace
 
@@ -89,9 +86,9 @@ void QuadrupedController::follow_command(const VelocityCommand& command) {
   const double vx = std::clamp(command.vx_mps, -settings_.max_backward_mps, settings_.max_forward_mps);
   const double vy = std::clamp(command.vy_mps, -settings_.max_sideways_mps, settings_.max_sideways_mps);
   const double rate = std::clamp(command.yaw_rate_radps, -settings_.max_yaw_rate_radps, settings_.max_yaw_rate_radps);
-  velocity_mps_.x() = approach(velocity_mps_.x(), vx, change);
-  velocity_mps_.y() = approach(velocity_mps_.y(), vy, change);
-  yaw_rate_radps_ = approach(yaw_rate_radps_, rate, settings_.max_yaw_acceleration_radps2 * tick_s_);
+  velocity_mps_.x() = moved_toward(velocity_mps_.x(), vx, change);
+  velocity_mps_.y() = moved_toward(velocity_mps_.y(), vy, change);
+  yaw_rate_radps_ = moved_toward(yaw_rate_radps_, rate, settings_.max_yaw_acceleration_radps2 * tick_s_);
   yaw_rad_ += tick_s_ * yaw_rate_radps_;
   // The requested heading leads the reached heading by at most 0.3 rad.
   const double lead = std::clamp(wrap_angle(yaw_rad_ - estimator_.state().yaw_rad), -0.3, 0.3);

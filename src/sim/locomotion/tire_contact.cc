@@ -9,7 +9,7 @@ namespace patrol::sim {
 namespace {
 
 constexpr double kGravity_mps2 = 9.81;
-constexpr double kImpedance = 0.1;         // share of the constraint in MuJoCo's contact: low for a spring
+constexpr double kImpedance = 0.1;         // of the constraint in MuJoCo's contact: low for a spring
 constexpr double kFrictionRatio = 1000.0;  // impratio
 
 /// Sets spring and damper for a deflection under a load (MuJoCo documentation, "Computation", "Reference"). With the

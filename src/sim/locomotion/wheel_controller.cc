@@ -20,7 +20,7 @@ double carried_inertia_kgm2(const RobotDescription& robot, const WheelGeometry& 
   return robot.mass_kg / static_cast<double>(num_driven) * wheel.radius_m * wheel.radius_m;
 }
 
-/// Critically damped PI control of the wheel with its share of the robot.
+/// Critically damped PI control of the wheel with the mass that it carries.
 DriveSpeedGains gains_of(const RobotDescription& robot, const WheelDriveSettings& settings,
                          const WheelGeometry& wheel) {
   const double inertia_kgm2 = (1.0 + settings.rotor_inertia_ratio) * carried_inertia_kgm2(robot, wheel);
