@@ -1,0 +1,162 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "core/geometry/convex_polygon.h"
+#include "importer/hull.h"
+#include "importer/normalizer.h"
+
+namespace patrol::importer {
+namespace {
+
+/// Joins assumptions that differ in the subject only.
+std::vector<Assumption> joined(const std::vector<Assumption>& assumptions) {
+  std::vector<Assumption> rows;
+  for (const Assumption& next : assumptions) {
+    const auto same = std::find_if(rows.begin(), rows.end(), [&next](const Assumption& row) {
+      return row.text == next.text && row.override_with == next.override_with;
+    });
+    if (same == rows.end()) rows.push_back(next);
+    else if (same->subject != next.subject) same->subject += ", " + next.subject;
+  }
+  return rows;
+}
+
+}  // namespace
+
+void Normalizer::add_frame(const std::string& frame, const Pose3& T_base_frame, const std::string& link) {
+  result_.sensor_frames.push_back(frame);
+  NormalizedLink target{.name = frame};
+  target.joint = NormalizedJoint{
+      .name = unique(used_joints_, frame + "_joint", "_frame"), .parent = "base_link", .T_parent_link = T_base_frame};
+  result_.links.push_back(std::move(target));
+  if (!link.empty()) assume(frame, fmt::format("is the frame of {}", link), fmt::format("--frame {}=LINK", frame));
+}
+
+void Normalizer::add_sensors() {
+  std::map<std::string, std::vector<std::string>> others;
+  std::set<std::string> added;
+  for (const auto& [frame, link] : options_.frames) {
+    if (!chassis_.contains(link))
+      source_.fail(source_.link(link).line, link, fmt::format("frame {}: must be on the chassis", frame));
+    add_frame(frame, T_base(link), "");
+    added.insert(frame);
+  }
+  for (const SourceSensor& sensor : source_.sensors) {
+    if (!chassis_.contains(sensor.link)) {
+      assume(sensor.link, fmt::format("its sensor of type {} is on a moving part and left out", sensor.frame),
+             fmt::format("--frame {}=LINK", sensor.frame));
+      continue;
+    }
+    if (!added.insert(sensor.frame).second) {
+      if (!options_.frames.contains(sensor.frame)) others[sensor.frame].push_back(sensor.link);
+      continue;
+    }
+    add_frame(sensor.frame, T_base(sensor.link) * sensor.T_link_sensor, sensor.link);
+  }
+  for (const auto& [frame, links] : others)
+    assume(frame, fmt::format("further sensors of this type are left out: {}", list_of(links)),
+           fmt::format("--frame {}=LINK", frame));
+  if (!added.contains("imu")) {
+    std::vector<std::pair<Pose3, Inertial>> parts;
+    for (const NormalizedLink& link : result_.links) {
+      const bool is_fixed = !link.joint || link.joint->is_fixed;
+      if (link.inertial && is_fixed)
+        parts.push_back({link.joint ? link.joint->T_parent_link : Pose3{}, *link.inertial});
+    }
+    add_frame("imu", translation(combine(parts).T_link_inertia.position), "");
+    assume("imu", "is at the center of mass of the chassis: the file has none", "--frame imu=LINK");
+  }
+  if (!added.contains("lidar") && !added.contains("lidar3d"))
+    assume("lidar", "the robot has none: the file has no sensor of type ray or lidar", "--frame lidar=LINK");
+}
+
+/// Reports a center of mass that is not between the contacts with the ground.
+void Normalizer::check_balance() {
+  std::map<std::string, Pose3> T_base_new;
+  std::vector<std::pair<Pose3, Inertial>> parts;
+  std::vector<Eigen::Vector2d> contacts;
+  for (const NormalizedLink& link : result_.links) {
+    T_base_new[link.name] = link.joint ? T_base_new.at(link.joint->parent) * link.joint->T_parent_link : Pose3{};
+    if (link.inertial) parts.push_back({T_base_new.at(link.name), *link.inertial});
+    const bool is_wheel = link.joint && !link.joint->is_fixed && std::abs(link.joint->axis.y()) > 0.5;
+    if (is_wheel) contacts.push_back(T_base_new.at(link.name).position.head<2>());
+  }
+  const Eigen::Vector2d center = combine(parts).T_link_inertia.position.head<2>();
+  const ConvexPolygon polygon = patrol::convex_hull(contacts);
+  double margin_m = polygon.size() < 3 ? 0.0 : std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < polygon.size() && polygon.size() >= 3; ++i) {
+    const Eigen::Vector2d side = (polygon[(i + 1) % polygon.size()] - polygon[i]).normalized(),
+                          to = center - polygon[i];
+    margin_m = std::min(margin_m, side.x() * to.y() - side.y() * to.x());
+  }
+  if (margin_m >= 0.01) return;
+  assume("center of mass",
+         fmt::format(
+             "is at x = {:.3f}, y = {:.3f} m in base_link, {:.3f} m {} the area between the contacts of the wheels: "
+             "the robot {}",
+             center.x(), center.y(), std::abs(margin_m), margin_m < 0.0 ? "outside" : "inside the edge of",
+             margin_m < 0.0 ? "tips over" : "tips when it brakes"),
+         "<inertial> of the links");
+}
+
+/// Reports a part of the chassis that touches the ground.
+void Normalizer::check_clearance() {
+  constexpr double kMinClearance_m = 0.005;
+  for (const std::string& name : chassis_) {
+    const SourceLink& link = source_.link(name);
+    double lowest_m = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < link.collisions.size(); ++i) {
+      if (support_shapes_.contains({name, i})) continue;
+      for (const Eigen::Vector3d& point : outline(link.collisions[i]))
+        lowest_m = std::min(lowest_m, (T_base(name) * point).z() - ground_m_);
+    }
+    if (lowest_m >= kMinClearance_m) continue;
+    assume(name,
+           fmt::format("its collision shape is {:.3f} m {} the ground: it drags", std::abs(lowest_m),
+                       lowest_m < 0.0 ? "below" : "above"),
+           "<collision> of the link");
+  }
+}
+
+/// Computes the length and the turning radius, for the settings.
+void Normalizer::finish() {
+  check_balance();
+  check_clearance();
+  result_.assumptions = joined(result_.assumptions);
+  double front_m = -std::numeric_limits<double>::infinity(), rear_m = -front_m;
+  for (const std::string& name : chassis_) {
+    const SourceLink& link = source_.link(name);
+    for (const Shape& shape : link.collisions.empty() ? link.visuals : link.collisions) {
+      for (const Eigen::Vector3d& point : outline(shape)) {
+        front_m = std::max(front_m, (T_base(name) * point).x());
+        rear_m = std::min(rear_m, (T_base(name) * point).x());
+      }
+    }
+  }
+  double fixed_x = 0.0, num_fixed = 0.0, steered_x = 0.0, num_steered = 0.0, max_angle = 0.6;
+  for (const FoundWheel& wheel : found_.wheels) {
+    front_m = std::max(front_m, wheel.center_m.x() + wheel.radius_m);
+    rear_m = std::min(rear_m, wheel.center_m.x() - wheel.radius_m);
+    if (wheel.carrier_type == CarrierType::kSteering) {
+      steered_x += wheel.center_m.x();
+      ++num_steered;
+      if (!wheel.carrier->is_endless())
+        max_angle = std::min(std::abs(wheel.carrier->lower), std::abs(wheel.carrier->upper));
+    } else if (wheel.carrier_type == CarrierType::kNone) {
+      fixed_x += wheel.center_m.x();
+      ++num_fixed;
+    }
+  }
+  result_.length_m = front_m - rear_m;
+  if (num_steered > 0.0) {
+    const double wheelbase_m = std::abs(steered_x / num_steered - fixed_x / num_fixed);
+    result_.min_turning_radius_m = wheelbase_m / std::tan(std::clamp(max_angle, 0.05, 1.5));
+  }
+}
+
+}  // namespace patrol::importer

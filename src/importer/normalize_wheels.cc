@@ -1,0 +1,301 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "core/geometry/angles.h"
+#include "core/geometry/linear_algebra.h"
+#include "importer/normalizer.h"
+
+namespace patrol::importer {
+
+Motor Normalizer::motor_of(const FoundWheel& wheel, std::size_t num_driven, double mass_kg) {
+  Motor motor{.effort_nm = wheel.joint->effort.value_or(0.0), .velocity_radps = wheel.joint->velocity.value_or(0.0)};
+  const double traction_nm = kFriction * mass_kg * kGravity * wheel.radius_m / static_cast<double>(num_driven);
+  if (motor.effort_nm <= 0.0) {
+    motor.effort_nm = traction_nm;
+    assume(wheel.joint->name,
+           fmt::format("torque limit {:.3g} N m: friction {} on all driven wheels", motor.effort_nm, kFriction),
+           "<limit effort> of the joint");
+  } else if (motor.effort_nm > 20.0 * traction_nm) {
+    assume(wheel.joint->name,
+           fmt::format("torque limit {:.3g} N m of the file is kept: {:.0f} times the friction limit", motor.effort_nm,
+                       motor.effort_nm / traction_nm),
+           "<limit effort> of the joint");
+  }
+  if (motor.velocity_radps <= 0.0) {
+    motor.velocity_radps = kAssumedSpeed_mps / wheel.radius_m;
+    assume(wheel.joint->name, fmt::format("speed limit {:.3g} rad/s: {} m/s", motor.velocity_radps, kAssumedSpeed_mps),
+           "<limit velocity> of the joint");
+  }
+  return motor;
+}
+
+/// Adds carriers and wheels. The frames of both are parallel to base_link; a wheel's origin is its center.
+void Normalizer::add_wheels() {
+  double mass_kg = total_mass_kg();
+  for (const FoundWheel& wheel : found_.wheels) {
+    for (const SourceLink* link : moving_group(*wheel.joint)) mass_kg += link->inertial ? link->inertial->mass_kg : 0.0;
+  }
+  std::map<const SourceJoint*, std::pair<std::string, Pose3>> carriers;  // joint to link and T_base_carrier
+  std::map<const SourceJoint*, Pose3> adjustments;
+  for (const FoundWheel& wheel : found_.wheels) {
+    const bool is_caster = wheel.carrier_type == CarrierType::kCaster;
+    if (wheel.carrier_type == CarrierType::kNone || carriers.contains(wheel.carrier)) continue;
+    const SourceJoint& joint = *wheel.carrier;
+    const Pose3 T_base_source = T_base(joint.child);
+    const Pose3 T_base_carrier = translation(T_base_source.position);
+    const Eigen::Vector3d axis = T_base_source.rotation * joint.axis;
+    Pose3 T_adjust;
+    if (is_caster) {
+      const double angle = axle_angle_rad(wheel.axis);
+      if (std::abs(angle) > 1e-6) {
+        T_adjust = T_base_carrier * Pose3{.rotation = quaternion_from_yaw(-angle)} * T_base_carrier.inverse();
+        assume(
+            joint.name,
+            fmt::format("caster is turned by {:.1f} degrees at zero, so that its axle is along y", -angle * kDegPerRad),
+            "<origin rpy> of the joint");
+      }
+    }
+    if (std::abs(axis.z()) < 0.9998) {
+      assume(joint.name,
+             fmt::format("axis is tilted by {:.1f} degrees and made vertical",
+                         std::acos(std::min(1.0, std::abs(axis.z()))) * kDegPerRad),
+             "<axis> of the joint");
+    }
+    adjustments[&joint] = T_adjust;
+    NormalizedLink target{.name = link_name(joint.child)};
+    target.joint = NormalizedJoint{.name = joint_name(joint.name),
+                                   .parent = "base_link",
+                                   .T_parent_link = T_base_carrier,
+                                   .is_fixed = false,
+                                   .axis = {0.0, 0.0, axis.z() > 0.0 ? 1.0 : -1.0},
+                                   .damping = joint.damping,
+                                   .friction = joint.friction};
+    if (!is_caster) {
+      JointRange range{joint.lower, joint.upper};
+      if (joint.is_endless()) {
+        range = {-0.6, 0.6};
+        assume(joint.name, "steering angle is limited to 0.6 rad: the joint has no limits",
+               "<limit lower upper> of the joint");
+      } else if (joint.lower >= joint.upper) {
+        source_.fail(joint.line, joint.name,
+                     fmt::format("limit lower = {}: must be below upper = {}", joint.lower, joint.upper));
+      }
+      target.joint->range = range;
+      Motor motor{joint.effort.value_or(0.0), joint.velocity.value_or(0.0)};
+      if (motor.effort_nm <= 0.0) {
+        motor.effort_nm =
+            std::max(2.0, kFriction * mass_kg * kGravity / static_cast<double>(found_.wheels.size()) * wheel.width_m);
+        assume(joint.name,
+               fmt::format("torque limit {:.3g} N m: friction {} on the width of the tire", motor.effort_nm, kFriction),
+               "<limit effort> of the joint");
+      }
+      if (motor.velocity_radps <= 0.0) {
+        motor.velocity_radps = 2.0;
+        assume(joint.name, "speed limit 2 rad/s", "<limit velocity> of the joint");
+      }
+      target.joint->motor = motor;
+    }
+    const std::vector<const SourceLink*> links = moving_group(joint);
+    std::vector<Shape> shapes;
+    for (const SourceLink* link : links) {
+      const Pose3 T_carrier_link = T_base_carrier.inverse() * (T_adjust * T_base(link->name));
+      add_visuals(*link, T_carrier_link, target);
+      add_collisions(*link, T_carrier_link, false, target);
+      for (Shape shape : link->collisions.empty() ? link->visuals : link->collisions) {
+        shape.T_link_shape = T_carrier_link * shape.T_link_shape;
+        shapes.push_back(shape);
+      }
+    }
+    target.inertial = moving_inertial(links, T_base_carrier, T_adjust, shapes, joint);
+    carriers[&joint] = {target.name, T_base_carrier};
+    result_.links.push_back(std::move(target));
+  }
+
+  double max_speed_mps = kAssumedSpeed_mps;
+  for (const FoundWheel& wheel : found_.wheels) {
+    const SourceJoint& joint = *wheel.joint;
+    const bool has_carrier = wheel.carrier_type != CarrierType::kNone;
+    const Pose3 T_adjust = has_carrier ? adjustments.at(wheel.carrier) : Pose3{};
+    const Eigen::Vector3d center = T_adjust * wheel.center_m, axis = T_adjust.rotation * wheel.axis;
+    const Pose3 T_base_wheel = translation(center);
+    const Pose3 T_base_parent = has_carrier ? carriers.at(wheel.carrier).second : Pose3{};
+    const double skew = std::abs(axle_angle_rad(axis));
+    const double camber = std::asin(std::min(1.0, std::abs((T_root_link_.at(joint.child).rotation * joint.axis).z())));
+    if (std::max(skew, camber) > 0.002) {
+      assume(joint.name,
+             fmt::format("axle is made lateral: toe {:.1f} and camber {:.1f} degrees are left out", skew * kDegPerRad,
+                         camber * kDegPerRad),
+             "<axis> of the joint");
+    }
+    NormalizedLink target{.name = link_name(joint.child)};
+    target.joint = NormalizedJoint{.name = joint_name(joint.name),
+                                   .parent = has_carrier ? carriers.at(wheel.carrier).first : "base_link",
+                                   .T_parent_link = T_base_parent.inverse() * T_base_wheel,
+                                   .is_fixed = false,
+                                   .axis = {0.0, axis.y() > 0.0 ? 1.0 : -1.0, 0.0},
+                                   .damping = joint.damping,
+                                   .friction = joint.friction};
+    if (driven_.contains(&joint)) {
+      target.joint->motor = motor_of(wheel, driven_.size(), mass_kg);
+      max_speed_mps = std::min(max_speed_mps, target.joint->motor->velocity_radps * wheel.radius_m);
+    }
+    if (wheel.is_ball)
+      assume(joint.child, fmt::format("width {:.3g} m: its shape is a sphere", wheel.width_m),
+             "<collision> of the link");
+    Shape tread{.type = ShapeType::kCylinder,
+                .T_link_shape = {.rotation = quaternion_from_rpy(0.5 * std::numbers::pi, 0.0, 0.0)},
+                .radius_m = wheel.radius_m,
+                .length_m = wheel.width_m};
+    target.collisions.push_back({.shape = tread});
+    const std::vector<const SourceLink*> links = moving_group(joint);
+    for (const SourceLink* link : links)
+      add_visuals(*link, T_base_wheel.inverse() * (T_adjust * T_base(link->name)), target);
+    target.inertial = moving_inertial(links, T_base_wheel, T_adjust, {tread}, joint);
+    result_.links.push_back(std::move(target));
+  }
+  result_.max_speed_mps = max_speed_mps;
+}
+
+/// Finds fixed parts that touch the ground beside the wheels. Boxes and meshes count only if the robot would tip over
+/// without them.
+void Normalizer::add_supports() {
+  double min_x = std::numeric_limits<double>::infinity(), max_x = -min_x, min_y = min_x, max_y = -min_x;
+  for (const FoundWheel& wheel : found_.wheels) {
+    min_x = std::min(min_x, wheel.center_m.x());
+    max_x = std::max(max_x, wheel.center_m.x());
+    min_y = std::min(min_y, wheel.center_m.y());
+    max_y = std::max(max_y, wheel.center_m.y());
+  }
+  const double gauge_m = max_y - min_y;
+  bool needs_support = max_x - min_x < 0.1 * gauge_m;
+  const auto find = [&](bool with_any_shape) {
+    for (const std::string& name : chassis_) {
+      const SourceLink& link = source_.link(name);
+      const bool is_leaf = name != base_;
+      const auto consider = [&](const std::vector<Shape>& shapes, bool is_collision) {
+        for (std::size_t i = 0; i < shapes.size(); ++i) {
+          const Shape& shape = shapes[i];
+          const bool is_round = shape.type == ShapeType::kSphere || shape.type == ShapeType::kCylinder;
+          if (!is_round && !(with_any_shape && is_leaf)) continue;
+          const Pose3 T_base_link = T_base(name);
+          Eigen::Vector3d lower = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity()), upper = -lower;
+          for (const Eigen::Vector3d& point : outline(shape)) {
+            lower = lower.cwiseMin(T_base_link * point);
+            upper = upper.cwiseMax(T_base_link * point);
+          }
+          double radius_m = 0.5 * (upper - lower).minCoeff();
+          double bottom_m = lower.z();
+          if (shape.type == ShapeType::kSphere) {
+            radius_m = shape.radius_m;
+            bottom_m = (T_base_link * shape.T_link_shape.position).z() - radius_m;
+          } else if (shape.type == ShapeType::kCylinder) {
+            const Eigen::Vector3d axis =
+                T_base_link.rotation * (shape.T_link_shape.rotation * Eigen::Vector3d::UnitZ());
+            const double lateral = std::hypot(axis.x(), axis.y());
+            radius_m = std::abs(axis.z()) < 0.1 ? shape.radius_m : std::min(shape.radius_m, 0.5 * shape.length_m);
+            bottom_m = (T_base_link * shape.T_link_shape.position).z() - shape.radius_m * lateral -
+                       0.5 * shape.length_m * std::abs(axis.z());
+          }
+          if (!is_round)
+            radius_m = std::max(radius_m, 0.25 * found_.wheels.front().radius_m);  // a ball for its contact
+          if (!is_near_ground(bottom_m) || radius_m <= 0.0) continue;
+          const Eigen::Vector3d middle = 0.5 * (lower + upper);
+          if (!is_round && std::max(upper.x() - lower.x(), upper.y() - lower.y()) > gauge_m) continue;
+          if (is_collision) support_shapes_.insert({name, i});
+          supports_.push_back({.name = name,
+                               .center_m = {middle.x(), middle.y(), ground_m_ + radius_m},
+                               .radius_m = radius_m,
+                               .link = name == base_ ? "" : name});
+          if (std::abs(middle.x() - min_x) > 0.1 * gauge_m) needs_support = false;
+        }
+      };
+      consider(link.collisions, true);
+      if (link.collisions.empty()) consider(link.visuals, false);
+    }
+  };
+  find(false);
+  if (needs_support) find(true);
+  for (const Support& support : supports_) {
+    assume(support.name,
+           fmt::format("is fixed and touches the ground: replaced by a ball of radius {:.3g} m that rolls and swivels "
+                       "freely, with 3 % of the mass",
+                       support.radius_m),
+           "a wheel on two continuous joints");
+  }
+  if (!needs_support) return;
+  // The robot would tip over: a ball below the chassis, on the side of the center of mass.
+  std::vector<std::pair<Pose3, Inertial>> parts;
+  double front_m = max_x, rear_m = min_x;
+  for (const std::string& name : chassis_) {
+    const SourceLink& link = source_.link(name);
+    if (link.inertial && link.inertial->mass_kg > 0.0) parts.push_back({T_base(name), to_inertial(*link.inertial)});
+    for (const Shape& shape : link.collisions.empty() ? link.visuals : link.collisions) {
+      for (const Eigen::Vector3d& point : outline(shape)) {
+        front_m = std::max(front_m, (T_base(name) * point).x());
+        rear_m = std::min(rear_m, (T_base(name) * point).x());
+      }
+    }
+  }
+  const double axle_m = 0.5 * (min_x + max_x);
+  const double center_m = parts.empty() ? axle_m : combine(parts).T_link_inertia.position.x();
+  const double radius_m = 0.25 * found_.wheels.front().radius_m;
+  std::vector<double> positions_m;
+  if (center_m <= axle_m + 0.02) positions_m.push_back(axle_m + 0.8 * std::min(rear_m - axle_m, -2.0 * radius_m));
+  if (center_m >= axle_m - 0.02) positions_m.push_back(axle_m + 0.8 * std::max(front_m - axle_m, 2.0 * radius_m));
+  for (const double x : positions_m) {
+    supports_.push_back({.name = "support",
+                         .center_m = {x, 0.5 * (min_y + max_y), ground_m_ + radius_m},
+                         .radius_m = radius_m,
+                         .link = ""});
+    assume("support",
+           fmt::format(
+               "a ball of radius {:.3g} m at x = {:.3f} m keeps the robot upright: the file has one axle and no caster",
+               radius_m, x),
+           "a caster, or a fixed sphere that touches the ground");
+  }
+}
+
+/// Adds a ball that rolls about y in a carrier that swivels about z, with half the radius of trail.
+void Normalizer::add_support(const Support& support, double robot_mass_kg) {
+  // Lighter balls make the contact of the simulation unstable.
+  const double wanted_kg = kSupportMassRatio * robot_mass_kg / static_cast<double>(supports_.size());
+  double mass_kg = 0.0;
+  if (!support.link.empty()) {  // the mass of a light part goes to the ball
+    for (NormalizedLink& link : result_.links) {
+      if (link.name != link_name(support.link) || !link.inertial || link.inertial->mass_kg > 1.5 * wanted_kg) continue;
+      mass_kg = link.inertial->mass_kg;
+      link.inertial.reset();
+    }
+  }
+  if (mass_kg < wanted_kg) {
+    Inertial& inertial = *base().inertial;
+    const double taken_kg = std::min(wanted_kg - mass_kg, 0.2 * inertial.mass_kg);
+    inertial.inertia *= 1.0 - taken_kg / inertial.mass_kg;
+    inertial.mass_kg -= taken_kg;
+    mass_kg += taken_kg;
+  }
+  const double half_kg = 0.5 * mass_kg, trail_m = 0.5 * support.radius_m;
+  const Inertial ball{.mass_kg = half_kg,
+                      .inertia = 0.4 * half_kg * support.radius_m * support.radius_m * Eigen::Matrix3d::Identity()};
+  NormalizedLink carrier{.name = unique(used_links_, file_stem(support.name) + "_swivel", ""), .inertial = ball};
+  carrier.joint = NormalizedJoint{.name = unique(used_joints_, carrier.name + "_joint", ""),
+                                  .parent = "base_link",
+                                  .T_parent_link = translation(support.center_m + Eigen::Vector3d(trail_m, 0.0, 0.0)),
+                                  .is_fixed = false,
+                                  .axis = Eigen::Vector3d::UnitZ()};
+  NormalizedLink wheel{.name = unique(used_links_, file_stem(support.name) + "_ball", ""), .inertial = ball};
+  wheel.joint = NormalizedJoint{.name = unique(used_joints_, wheel.name + "_joint", ""),
+                                .parent = carrier.name,
+                                .T_parent_link = translation({-trail_m, 0.0, 0.0}),
+                                .is_fixed = false};
+  wheel.collisions.push_back({.shape = {.type = ShapeType::kSphere, .radius_m = support.radius_m}});
+  result_.links.push_back(std::move(carrier));
+  result_.links.push_back(std::move(wheel));
+}
+
+}  // namespace patrol::importer

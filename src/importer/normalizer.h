@@ -1,0 +1,143 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "importer/normalize.h"
+#include "importer/wheel_finder.h"
+
+namespace patrol::importer {
+
+inline constexpr double kGravity = 9.81;
+inline constexpr double kFriction = 0.8;         // rubber on asphalt
+inline constexpr double kDensity_kgpm3 = 500.0;  // of a link without mass
+inline constexpr double kParallel_rad = 0.0447;  // 2.6 degrees, as io/urdf.cc
+inline constexpr double kAssumedSpeed_mps = 1.5;
+inline constexpr double kSupportMassRatio = 0.03;  // of balls in place of fixed supports, to the robot
+inline constexpr std::size_t kManyTriangles = 20000;
+inline constexpr std::array kSensorFrames = {"lidar", "lidar3d", "imu", "gnss", "depth_camera", "tdlas", "uwb"};
+
+inline Pose3 translation(const Eigen::Vector3d& position) { return {.position = position}; }
+
+/// Returns whether a name of a link has a meaning in Patrol.
+inline bool is_reserved_link(const std::string& name) {
+  static const std::set<std::string> kReserved = {
+      "base_link",   "world",         "scanner",        "tem_mount",      "tem", "left_track",
+      "right_track", "left_sprocket", "right_sprocket", "base_footprint", "map", "odom"};
+  return kReserved.contains(name) ||
+         std::find(kSensorFrames.begin(), kSensorFrames.end(), name) != kSensorFrames.end() ||
+         name.starts_with("ultrasonic_") || name.ends_with("_foot");
+}
+
+inline bool is_reserved_joint(const std::string& name) { return name.starts_with("tem_") || name == "robot"; }
+
+/// Returns a file name of ASCII letters, digits and underscores.
+inline std::string file_stem(const std::string& name) {
+  std::string stem;
+  for (const char c : name) {
+    const bool is_plain =
+        static_cast<unsigned char>(c) < 128 && (std::isalnum(static_cast<unsigned char>(c)) || c == '-');
+    if (is_plain) stem += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    else if (!stem.ends_with('_')) stem += '_';
+  }
+  return stem.empty() || stem == "_" ? "mesh" : stem;
+}
+
+inline std::string list_of(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+inline Inertial to_inertial(const SourceInertial& source) {
+  return {.mass_kg = source.mass_kg, .T_link_inertia = source.T_link_inertia, .inertia = source.inertia};
+}
+
+/// Fixed part that slides on the ground: center in the base and radius.
+struct Support {
+  std::string name;
+  Eigen::Vector3d center_m;
+  double radius_m;
+  std::string link;  ///< of the file, from which mass is taken; empty: base
+};
+
+/// Turns one description into the result.
+class Normalizer {
+ public:
+  Normalizer(const SourceRobot& source, const NormalizeOptions& options)
+      : source_(source), options_(options), T_root_link_(link_poses(source)) {
+    result_.name = options.name.empty() ? source.name : options.name;
+    result_.assumptions = source.assumptions;
+  }
+
+  NormalizedRobot run();
+
+ private:
+  void check_options() const;
+  void assume(const std::string& subject, const std::string& text, const std::string& override_with) {
+    result_.assumptions.push_back({subject, text, override_with});
+  }
+  void choose_base();
+  void choose_frame();
+  void choose_carriers();
+  void choose_drive();
+  void check_fixed_sides(const std::vector<const FoundWheel*>& wheels) const;
+  void report_frozen_joints();
+  void reserve_names();
+  std::string unique(std::set<std::string>& used, const std::string& wanted, const std::string& suffix) const;
+  std::string link_name(const std::string& source_name);
+  std::string joint_name(const std::string& source_name);
+  Pose3 T_base(const std::string& link) const { return T_root_base_.inverse() * T_root_link_.at(link); }
+  bool is_near_ground(double bottom_m) const;
+
+  void add_chassis();
+  void add_wheels();
+  void add_supports();
+  void add_support(const Support& support, double robot_mass_kg);
+  void add_sensors();
+  void check_balance();
+  void check_clearance();
+  void add_frame(const std::string& frame, const Pose3& T_base_frame, const std::string& link);
+  void finish();
+
+  std::vector<const SourceLink*> moving_group(const SourceJoint& joint) const;
+  Inertial moving_inertial(const std::vector<const SourceLink*>& links, const Pose3& T_base_new, const Pose3& T_adjust,
+                           const std::vector<Shape>& fallback, const SourceJoint& joint);
+  std::optional<Inertial> checked_inertial(const SourceLink& link);
+  Inertial solid_inertial(const std::vector<Shape>& shapes, double mass_kg) const;
+  void add_visuals(const SourceLink& link, const Pose3& T_new_link, NormalizedLink& target);
+  void add_collisions(const SourceLink& link, const Pose3& T_new_link, bool from_visuals, NormalizedLink& target);
+  std::string add_mesh(const std::string& stem, const Mesh& mesh);
+  double total_mass_kg() const;
+  Motor motor_of(const FoundWheel& wheel, std::size_t num_driven, double mass_kg);
+  NormalizedLink& base() { return result_.links.front(); }
+
+  const SourceRobot& source_;
+  const NormalizeOptions& options_;
+  std::map<std::string, Pose3> T_root_link_;
+  FoundWheels found_;
+  std::set<const SourceJoint*> kept_;    ///< movable joints of the result
+  std::set<const SourceJoint*> driven_;  ///< wheel joints with motors
+  std::set<std::string> chassis_;        ///< links of the base's rigid group
+  std::string base_;                     ///< link of the file
+  Pose3 T_root_base_;
+  double ground_m_ = 0.0;  ///< height of the ground in the base
+  std::set<std::string> used_links_, used_joints_;
+  std::map<std::string, std::string> link_names_, joint_names_;  ///< source to result
+  std::map<const void*, std::vector<std::pair<std::string, std::optional<Eigen::Vector4d>>>> mesh_files_;
+  std::map<const void*, std::vector<std::string>> hull_files_;
+  std::set<std::string> used_files_;
+  std::set<std::pair<std::string, std::size_t>> support_shapes_;  ///< link and index of collisions made into supports
+  std::vector<Support> supports_;
+  std::vector<std::string> massless_;
+  NormalizedRobot result_;
+};
+
+}  // namespace patrol::importer

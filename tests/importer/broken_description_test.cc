@@ -1,0 +1,193 @@
+#include <algorithm>
+#include <cstdlib>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "importer/robot_import.h"
+#include "importer/source_robot.h"
+#include "tests/importer/description.h"
+#include "tests/importer/import.h"
+#include "tests/support/temporary_file.h"
+
+namespace patrol::importer::broken_description_test {
+namespace {
+
+using test::TemporaryFolder, test::write_bytes;
+using ::testing::HasSubstr, ::testing::MatchesRegex, ::testing::Not;
+
+/// Message of a refused description, from the file's name on.
+std::string complaint(const std::string& text, const RobotImportOptions& options = {}) {
+  Import import(text, "v.urdf");
+  RobotImportOptions all = options;
+  all.file = import.options.file;
+  all.name = "imported";
+  try {
+    import_robot(all);
+  } catch (const InputError& error) {
+    const std::string what = error.what();
+    EXPECT_EQ(what.find('\n'), std::string::npos) << "one line";
+    return what.substr(std::min(what.size(), what.find("v.urdf")));
+  }
+  return "";
+}
+
+/// A good description with the first `old` behind `after` replaced.
+std::string changed(const std::string& old, const std::string& by, const std::string& after = "") {
+  std::string text = robot(chassis() + two_wheels() + caster());
+  const std::size_t at = text.find(old, text.find(after));
+  if (at == std::string::npos) ADD_FAILURE() << "the description does not hold " << old;
+  else text.replace(at, old.size(), by);
+  return text;
+}
+
+std::string with(const std::string& more) { return robot(chassis() + two_wheels() + caster() + more); }
+
+TEST(BrokenDescription, TheUnchangedOneIsAccepted) { EXPECT_EQ(complaint(with("")), ""); }
+
+TEST(BrokenDescription, AFileThatIsNoDescription) {
+  EXPECT_THROW(import_robot({.file = "/nowhere/v.urdf"}), InputError);
+  EXPECT_THROW(import_robot({.file = "/tmp"}), InputError);
+  EXPECT_THAT(complaint(""), HasSubstr("v.urdf: is empty"));
+  EXPECT_THAT(complaint("no XML"), HasSubstr("v.urdf"));
+  EXPECT_THAT(complaint(with("<link")), MatchesRegex("v.urdf:[0-9]+: not an XML file.*"));
+  EXPECT_THAT(complaint("<sdf/>"), MatchesRegex("v.urdf:1: <robot> is missing.*"));
+  EXPECT_THAT(complaint(robot("")), MatchesRegex("v.urdf:2: <robot>: has no links"));
+}
+
+TEST(BrokenDescription, Duplicates) {
+  EXPECT_THAT(complaint(with(link("fork"))), MatchesRegex("v.urdf:[0-9]+: fork: duplicate link: also in line [0-9]+"));
+  EXPECT_THAT(complaint(with(link("x") + joint("roll", "fixed", "fork", "x", "0 0 0"))),
+              MatchesRegex("v.urdf:[0-9]+: roll: duplicate joint: also in line [0-9]+"));
+}
+
+TEST(BrokenDescription, LinksThatAreNoTree) {
+  EXPECT_THAT(complaint(changed("<parent link=\"fork\"/>", "<parent link=\"spoon\"/>")),
+              MatchesRegex("v.urdf:[0-9]+: roll: unknown parent link: spoon"));
+  EXPECT_THAT(complaint(changed("<child link=\"fork\"/>", "<child link=\"spoon\"/>")),
+              MatchesRegex("v.urdf:[0-9]+: swivel: unknown child link: spoon"));
+  EXPECT_THAT(complaint(with(link("alone"))),
+              MatchesRegex("v.urdf:[0-9]+: alone: is not connected: .*two roots, base_link and alone"));
+  EXPECT_THAT(complaint(changed("<parent link=\"base_link\"/>", "<parent link=\"small\"/>", "swivel")),
+              MatchesRegex("v.urdf:[0-9]+: (fork|small): the joints form a cycle"));
+  EXPECT_THAT(complaint(with(joint("twice", "fixed", "left", "small", "0 0 0"))),
+              MatchesRegex("v.urdf:[0-9]+: small: child of two joints, roll and twice.*"));
+  EXPECT_THAT(complaint(changed("<parent link=\"fork\"/>", "")),
+              MatchesRegex("v.urdf:[0-9]+: roll: <parent link=\"...\"/> is missing"));
+}
+
+TEST(BrokenDescription, Joints) {
+  EXPECT_THAT(complaint(changed("<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 0 0\"/>")),
+              MatchesRegex("v.urdf:[0-9]+: left_joint: axis: must not be zero"));
+  EXPECT_THAT(complaint(changed("type=\"continuous\"", "type=\"ball\"")),
+              MatchesRegex("v.urdf:[0-9]+: left_joint: unknown joint type \"ball\".*"));
+  EXPECT_THAT(complaint(with(link("x") +
+                             joint("j", "revolute", "base_link", "x", "0 0 0", R"(<limit lower="1" upper="-1"/>)"))),
+              MatchesRegex("v.urdf:[0-9]+: j: limit lower = 1: must be below upper = -1"));
+  EXPECT_THAT(complaint(with(link("x") + joint("j", "revolute", "base_link", "x", "0 0 0"))),
+              MatchesRegex("v.urdf:[0-9]+: j: <limit> is missing.*"));
+}
+
+TEST(BrokenDescription, MassesAndInertias) {
+  EXPECT_THAT(complaint(changed("<mass value=\"1\"/>", "<mass value=\"-1\"/>")),
+              MatchesRegex("v.urdf:[0-9]+: left: mass = -1: must be positive"));
+  EXPECT_THAT(complaint(changed("<mass value=\"1\"/>", "<mass value=\"0\"/>")),
+              MatchesRegex("v.urdf:[0-9]+: left: mass = 0: must be positive.*"));
+  EXPECT_THAT(complaint(changed("ixx=\"0.01\"", "ixx=\"0.03\"")),
+              MatchesRegex("v.urdf:[0-9]+: left: invalid inertia: principal moments.*"));
+  EXPECT_THAT(complaint(changed("ixx=\"0.01\"", "ixx=\"-0.01\"")),
+              MatchesRegex("v.urdf:[0-9]+: left: invalid inertia: principal moments.*"));
+}
+
+TEST(BrokenDescription, Numbers) {
+  for (const char* bad : {"nan", "inf", "1e999", "one", "1,0", "0x"}) {
+    EXPECT_THAT(complaint(changed("<mass value=\"1\"/>", fmt::format("<mass value=\"{}\"/>", bad))),
+                MatchesRegex("v.urdf:[0-9]+: left: value = .*: must be finite numbers"))
+        << bad;
+    EXPECT_THAT(complaint(changed("iyy=\"0.01\"", fmt::format("iyy=\"{}\"", bad))),
+                MatchesRegex("v.urdf:[0-9]+: left: iyy = .*: must be finite numbers"))
+        << bad;
+    EXPECT_THAT(complaint(changed("xyz=\"0 0.25 -0.05\"", fmt::format("xyz=\"0 {} -0.05\"", bad))),
+                MatchesRegex("v.urdf:[0-9]+: left_joint: xyz = .*: must be finite numbers"))
+        << bad;
+  }
+  EXPECT_THAT(complaint(changed("xyz=\"0 0.25 -0.05\"", "xyz=\"0 0.25\"")),
+              MatchesRegex("v.urdf:[0-9]+: left_joint: xyz = .*: must be 3 numbers"));
+  EXPECT_THAT(complaint(changed("radius=\"0.1\"", "radius=\"0\"")),
+              MatchesRegex("v.urdf:[0-9]+: left: radius = 0: must be positive"));
+}
+
+TEST(BrokenDescription, Meshes) {
+  const auto mesh = [](const std::string& file) {
+    return with(link("x", shape("visual", "<mesh filename=\"" + file + "\"/>")) +
+                joint("j", "fixed", "base_link", "x", "0 0 0"));
+  };
+  EXPECT_THAT(complaint(mesh("nowhere.stl")), MatchesRegex("v.urdf:[0-9]+: x: .*nowhere.stl: mesh file not found"));
+  EXPECT_THAT(complaint(mesh("v.urdf")), MatchesRegex("v.urdf:[0-9]+: x: .*must be an STL, OBJ or DAE file"));
+  EXPECT_THAT(complaint(mesh("package://who/a.stl")), MatchesRegex("v.urdf:[0-9]+: x: unknown package \"who\".*"));
+  EXPECT_THAT(complaint(with(link("x", shape("visual", "<cone/>")) + joint("j", "fixed", "base_link", "x", "0 0 0"))),
+              MatchesRegex("v.urdf:[0-9]+: x: <cone>: unknown shape.*"));
+  Import large(with(link("x", shape("visual", R"(<mesh filename="m.stl" scale="1 1 1"/>)")) +
+                    joint("j", "fixed", "base_link", "x", "0 0 0")),
+               "v.urdf");
+  write_bytes(large.folder / "m.stl", stl(box_triangles({600.0, 400.0, 200.0})));
+  try {
+    import_robot(large.options);
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr(": x: mesh m is 748 m large: at most 20 m: check its scale"));
+  }
+  Import import(mesh("bad.stl"), "v.urdf");
+  write_bytes(import.folder / "bad.stl", "solid nothing");
+  try {
+    import_robot(import.options);
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("bad.stl: mesh "));
+    EXPECT_THAT(error.what(), HasSubstr(": x: "));
+  }
+}
+
+TEST(BrokenDescription, Wheels) {
+  EXPECT_THAT(complaint(changed("xyz=\"0 0.25 -0.05\"", "xyz=\"0 0.25 -0.02\"")),
+              MatchesRegex("v.urdf:[0-9]+: left: is 0.030 m above the lowest wheel: all wheels must touch one plane"));
+  EXPECT_THAT(complaint(robot(chassis())), HasSubstr("v.urdf: no wheels found"));
+  EXPECT_THAT(complaint(robot(chassis() + wheel("fl", "base_link", "0.2 0.25 -0.05", 0.1, 0.04) +
+                              wheel("rl", "base_link", "-0.2 0.25 -0.05", 0.1, 0.04) +
+                              wheel("fr", "base_link", "0.2 -0.25 -0.05", 0.1, 0.04, "") +
+                              wheel("rr", "base_link", "-0.2 -0.25 -0.05", 0.1, 0.04, ""))),
+              MatchesRegex("v.urdf:[0-9]+: [fr]l_joint: driven wheels on one side only.*"));
+  std::string rollers;
+  for (int i = 0; i < 6; ++i)
+    rollers +=
+        joint(fmt::format("r{}", i), "continuous", "left", fmt::format("roller{}", i), "0 0 0.1", axis("1 1 0")) +
+        link(fmt::format("roller{}", i), inertial(0.01));
+  EXPECT_THAT(complaint(with(rollers)), MatchesRegex("v.urdf:[0-9]+: left: has 6 rollers on joints: not supported.*"));
+  EXPECT_THAT(complaint(robot(chassis() +
+                              joint("pivot", "revolute", "base_link", "axle", "0.2 0 -0.05",
+                                    axis("0 0 1") + R"(<limit lower="-1" upper="1"/>)") +
+                              link("axle", inertial(1.0)) + wheel("fl", "axle", "0 0.25 0", 0.1, 0.04) +
+                              wheel("fr", "axle", "0 -0.25 0", 0.1, 0.04) + two_wheels())),
+              MatchesRegex("v.urdf:[0-9]+: pivot: steers a whole axle.*"));
+  EXPECT_THAT(complaint(changed("<cylinder radius=\"0.1\" length=\"0.04\"/>", "<box size=\"0.2 0.2 0.04\"/>")),
+              HasSubstr("v.urdf:"));
+}
+
+TEST(BrokenDescription, Options) {
+  EXPECT_THAT(complaint(with(""), {.file = "", .base_link = "torso"}),
+              HasSubstr("v.urdf: base link torso: unknown link"));
+  EXPECT_THAT(complaint(with(""), {.file = "", .base_link = "left"}),
+              MatchesRegex("v.urdf:[0-9]+: left: is on a wheel.*"));
+  EXPECT_THAT(complaint(with(""), {.file = "", .frames = {{"lidar", "mast"}}}),
+              HasSubstr("v.urdf: frame lidar: unknown link mast"));
+  EXPECT_THAT(complaint(with(""), {.file = "", .frames = {{"sonar", "fork"}}}),
+              HasSubstr("v.urdf: frame sonar: unknown sensor frame"));
+  EXPECT_THAT(complaint(with(""), {.file = "", .drive = "hover"}), HasSubstr("v.urdf: drive hover: must be"));
+  EXPECT_THAT(complaint(with(""), {.file = "", .drive = "ackermann"}),
+              HasSubstr("v.urdf: drive ackermann: no wheel is below"));
+  EXPECT_THAT(complaint(with(""), {.file = "", .forward = "up"}), HasSubstr("v.urdf: forward up: must be"));
+}
+
+}  // namespace
+}  // namespace patrol::importer::broken_description_test

@@ -1,0 +1,80 @@
+#include "importer/xacro.h"
+
+#include <algorithm>
+#include <cstdlib>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "importer/robot_import.h"
+#include "tests/importer/description.h"
+#include "tests/importer/import.h"
+#include "tests/support/pose_near.h"
+#include "tests/support/temporary_file.h"
+
+namespace patrol::importer::xacro_test {
+namespace {
+
+using test::TemporaryFolder, test::write_bytes;
+using ::testing::HasSubstr, ::testing::MatchesRegex, ::testing::Not;
+
+/// Returns whether xacro is installed, in the interpreter of the tests that tools/setup makes or in another.
+bool has_xacro() {
+  const std::string python = PATROL_SOURCE_DIR "/.deps/python/bin/python";
+  if (std::filesystem::exists(python)) ::setenv("PATROL_PYTHON", python.c_str(), 0);
+  return std::system("${PATROL_PYTHON:-python3} -c 'import xacro' 2> /dev/null") == 0;
+}
+
+TEST(Xacro, MacrosArgumentsAndFoundPackagesAreExpanded) {
+  if (!has_xacro()) GTEST_SKIP() << "the Python package xacro is not installed";
+  std::string text = robot(
+      "<xacro:arg name=\"radius\" default=\"0.3\"/>\n<xacro:include filename=\"$(find my_robot)/body.xacro\"/>\n" +
+      two_wheels() + caster());
+  text.replace(text.find("<robot "), 7, "<robot xmlns:xacro=\"http://www.ros.org/wiki/xacro\" ");
+  for (std::size_t at = 0; (at = text.find("radius=\"0.1\"", at)) != std::string::npos;)
+    text.replace(at, 12, "radius=\"$(arg radius)\"");
+  Import import(text, "vendor.urdf.xacro");
+  std::filesystem::create_directory(import.folder / "elsewhere");
+  write_bytes(import.folder / "elsewhere/body.xacro",
+              "<robot xmlns:xacro=\"http://www.ros.org/wiki/xacro\">" + chassis() + "</robot>");
+  import.options.packages["my_robot"] = import.folder / "elsewhere";
+  import.options.xacro_arguments["radius"] = "0.1";
+  import.load();
+  const WheelGeometry& wheel = import.wheel("left");
+  EXPECT_THAT(wheel.center_in_body, test::VectorNear(Eigen::Vector3d(0.0, 0.25, -0.05), 1e-6));
+  EXPECT_NEAR(wheel.radius_m, 0.1, 1e-6);
+  EXPECT_NEAR(wheel.width_m, 0.04, 1e-6);
+}
+
+TEST(Xacro, AFailedExpansionIsReportedInOneLine) {
+  if (!has_xacro()) GTEST_SKIP() << "the Python package xacro is not installed";
+  Import import("<robot xmlns:xacro=\"http://www.ros.org/wiki/xacro\" name=\"a\"><xacro:unknown_macro/></robot>",
+                "a.xacro");
+  try {
+    import_robot(import.options);
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("a.xacro: xacro: "));
+    EXPECT_THAT(error.what(), HasSubstr("unknown_macro"));
+    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+  }
+}
+
+TEST(Xacro, AMissingInterpreterIsReportedInOneLine) {
+  const char* before = std::getenv("PATROL_PYTHON");
+  const std::string saved = before != nullptr ? before : "";
+  ::setenv("PATROL_PYTHON", "/nowhere/python", 1);
+  Import import("<robot/>", "a.xacro");
+  try {
+    import_robot(import.options);
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("a.xacro: xacro is not available"));
+  }
+  if (before != nullptr) ::setenv("PATROL_PYTHON", saved.c_str(), 1);
+  else ::unsetenv("PATROL_PYTHON");
+}
+
+}  // namespace
+}  // namespace patrol::importer::xacro_test
