@@ -102,6 +102,8 @@ void UrdfReader::read_wheels(RobotDescription& robot) const {
       fail(carrier.name, fmt::format("the joint above a wheel must turn about z of {}", frame_id::kBody));
     robot.wheels[i].is_caster = !carrier.limits;
     if (!carrier.limits) continue;
+    if (std::find(robot.joint_names.begin(), robot.joint_names.end(), carrier.name) != robot.joint_names.end())
+      fail(carrier.name, "steers several wheels: each steered wheel must have a joint of its own");
     robot.wheels[i].left_sign = up > 0.0 ? 1.0 : -1.0;
     robot.wheels[i].steering_joint = add_joint(carrier.name, robot);
   }

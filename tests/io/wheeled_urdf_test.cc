@@ -137,6 +137,13 @@ TEST(WheeledUrdf, ErrorsNameTheElement) {
               HasSubstr("w0_roll: limit effort and velocity must be positive"));
 }
 
+TEST(WheeledUrdf, AJointThatSteersTwoWheelsIsRefused) {
+  std::string text = test::ackermann_urdf(1.0, 0.6, 0.5).text();
+  const std::string parent = R"(<parent link="fr_carrier"/>)";
+  text.replace(text.find(parent), parent.size(), R"(<parent link="fl_carrier"/>)");
+  EXPECT_THAT(error_of(text), HasSubstr("fl_steer: steers several wheels"));
+}
+
 TEST(WheeledUrdf, WheelsWithoutMotorsOrOnOneSideAreRefused) {
   UrdfRobot robot = test::skid_steer_urdf(0.5, 0.6);
   for (test::UrdfWheel& wheel : robot.wheels) wheel.is_driven = false;
