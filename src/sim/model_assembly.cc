@@ -76,32 +76,30 @@ double ground_height_m(const mjModel& model, const mjData& data, const Stance& s
   return max_ground_height_m - nearest_m;
 }
 
-void set_start_posture(const mjModel& model, mjtNum* qpos) {
-  for (int joint = 0; joint < model.njnt; ++joint) {
-    if (model.jnt_type[joint] != mjJNT_HINGE) continue;
-    const std::string_view joint_name = name_of(model, mjOBJ_JOINT, joint);
-    const int kind = joint_name.ends_with("_abduction_joint") ? 0
-                     : joint_name.ends_with("_hip_joint")     ? 1
-                     : joint_name.ends_with("_knee_joint")    ? 2
-                                                              : -1;
-    if (kind >= 0) qpos[model.jnt_qposadr[joint]] = kStartPosture[kind];
+void set_standing_posture(const mjModel& model, const RobotDescription& robot, mjtNum* qpos) {
+  for (std::size_t i = 0; i < 3 * robot.legs.size(); ++i) {
+    const int joint = mj_name2id(&model, mjOBJ_JOINT, robot.joint_names[i].c_str());
+    if (joint < 0) throw InputError("robot model: joint not found: " + robot.joint_names[i]);
+    qpos[model.jnt_qposadr[joint]] = robot.legs[i / 3].standing_rad[static_cast<Eigen::Index>(i % 3)];
   }
 }
 
-AssembledModel assemble_model(const std::string& world_xml, const std::string& robot_urdf, const Pose2& T_world_start,
+AssembledModel assemble_model(const std::string& world_xml, const std::string& robot_urdf,
+                              const RobotDescription& robot, const Pose2& T_world_start,
                               const std::vector<StaticObstacleSettings>& obstacles) {
   AssembledModel assembled;
-  assembled.stance = to_stance(robot_urdf);
+  assembled.stance = to_stance(robot_urdf, robot);
   const double height_m = start_height_m(world_xml, *load_world(world_xml, obstacles), assembled.stance, T_world_start);
   const SpecPtr view = load_world(world_xml, obstacles), physics = load_world(world_xml, obstacles);
-  for (mjSpec* spec : {view.get(), physics.get()}) add_robot(*spec, robot_urdf, to_pose3(T_world_start, height_m));
+  for (mjSpec* spec : {view.get(), physics.get()})
+    add_robot(*spec, robot_urdf, robot, to_pose3(T_world_start, height_m));
   strip_visual_geoms(*physics);
   enable_sleep(*physics);
   assembled.view = compile(*view, world_xml);
   assembled.physics = compile(*physics, world_xml);
   const mjModel& model = *assembled.physics;
   assembled.start_qpos.assign(model.qpos0, model.qpos0 + model.nq);
-  set_start_posture(model, assembled.start_qpos.data());
+  set_standing_posture(model, robot, assembled.start_qpos.data());
   stow_antenna(model, assembled.start_qpos.data());
   refuse_start_in_collision(model, assembled.start_qpos, T_world_start);
   return assembled;

@@ -6,6 +6,7 @@
 #include <mujoco/mujoco.h>
 
 #include "core/frames.h"
+#include "core/robot_description.h"
 
 namespace patrol::sim {
 
@@ -28,13 +29,14 @@ struct Stance {
   double max_ground_height_m = 0.0;               ///< surfaces above this height, in world, are not ground at the start
 };
 
-Stance to_stance(const std::string& urdf_path);
+/// Returns the stance of the robot of a URDF, which `robot` describes.
+Stance to_stance(const std::string& urdf_path, const RobotDescription& robot);
 
-/// Adds the robot of a URDF to a world.
+/// Adds the robot of a URDF, which `robot` describes, to a world.
 ///
 /// Bodies, inertias, joints and shapes come from the URDF; actuators, contact parameters and rotor inertias, which URDF
 /// cannot express, come from here. The base gets a free joint at `T_world_body`. Names: bodies as links, joints and
 /// their motors as joints, foot geoms as their links, sensor frames as sites.
-void add_robot(mjSpec& world, const std::string& urdf_path, const Pose3& T_world_body);
+void add_robot(mjSpec& world, const std::string& urdf_path, const RobotDescription& robot, const Pose3& T_world_body);
 
 }  // namespace patrol::sim

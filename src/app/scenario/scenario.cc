@@ -20,6 +20,8 @@
 #include "io/maps/map_server.h"
 #include "io/urdf.h"
 #include "io/yaml/settings_yaml.h"
+#include "sim/locomotion/leg_gains.h"
+#include "sim/locomotion/locomotion_settings.h"
 #include "stack/mission/known_map.h"
 
 namespace patrol::app {
@@ -122,11 +124,31 @@ std::filesystem::path find_robot(const std::string& name, const std::filesystem:
   return std::filesystem::exists(urdf) ? urdf : find_definition(data_root, "models", "robot", name, ".urdf");
 }
 
+namespace {
+
+/// Returns the settings with which the profile of a robot starts: those that depend on its size.
+RobotProfile profile_of_size(const RobotDescription& robot) {
+  RobotProfile profile;
+  if (robot.legs.empty()) return profile;
+  profile.locomotion = sim::scaled_locomotion(robot);
+  const double force = sim::leg_scale(robot).force;
+  localize::LeggedOdometrySettings& odometry = profile.stack.odometry.legged;
+  for (double* force_n : {&odometry.contact_on_force_n, &odometry.contact_off_force_n, &odometry.full_weight_force_n,
+                          &profile.sensors.foot_contact.range_n}) {
+    *force_n *= force;
+  }
+  return profile;
+}
+
+}  // namespace
+
 Scenario default_scenario(const std::string& robot, const std::filesystem::path& data_root) {
   Scenario scenario;
-  const std::filesystem::path profile_file = robot_file(robot, ".yaml", data_root);
+  const std::filesystem::path profile_file = robot_file(robot, ".yaml", data_root),
+                              urdf_file = robot_file(robot, ".urdf", data_root);
   if (std::filesystem::exists(profile_file)) {
-    RobotProfile profile;
+    RobotProfile profile =
+        std::filesystem::exists(urdf_file) ? profile_of_size(io::load_robot_description(urdf_file)) : RobotProfile{};
     read_with_lidar_tolerances(profile_file, {}, profile);
     scenario.as_built = profile.as_built;
     scenario.sensors = profile.sensors;
