@@ -95,7 +95,8 @@ struct RobotDescription {
   std::string name;
   double mass_kg = 0.0;
   std::vector<LegGeometry> legs;  ///< FL, FR, RL, RR; empty for a robot without legs
-  /// Moments of inertia of the standing robot about its center of mass; robots with legs only.
+  /// Center of mass in body and moments of inertia about it, in the standing posture; robots with legs only.
+  Eigen::Vector3d standing_center_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d standing_inertia_kgm2 = Eigen::Vector3d::Zero();
   std::optional<TrackGeometry> tracks;     ///< tracked robots only
   std::vector<WheelGeometry> wheels;       ///< wheels on the ground; empty for a robot without wheels

@@ -289,7 +289,7 @@ RobotDescription UrdfReader::read() const {
     robot.footprint_m = read_wheeled_footprint();
   } else {
     read_legs(robot);
-    robot.standing_inertia_kgm2 = standing_inertia_kgm2(robot);
+    read_standing_inertia(robot);
     robot.footprint_m = read_legged_footprint(robot);
   }
   if (model_->getLink("tem_mount")) robot.antenna = read_antenna();

@@ -271,8 +271,8 @@ Pose3 UrdfReader::T_body_standing(const urdf::Link& link, const RobotDescription
   return T_body_standing(*link.getParent(), robot) * T_parent_link;
 }
 
-/// Computes the moments of inertia of the standing robot about its center of mass.
-Eigen::Vector3d UrdfReader::standing_inertia_kgm2(const RobotDescription& robot) const {
+/// Computes the center of mass of the standing robot and the moments of inertia about it.
+void UrdfReader::read_standing_inertia(RobotDescription& robot) const {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  // about the origin of body
   const auto point_inertia = [](double mass, const Eigen::Vector3d& p) -> Eigen::Matrix3d {
@@ -288,7 +288,8 @@ Eigen::Vector3d UrdfReader::standing_inertia_kgm2(const RobotDescription& robot)
     inertia += R * own * R.transpose() + point_inertia(part.mass, T_body_part.position);
     center += part.mass / robot.mass_kg * T_body_part.position;
   }
-  return (inertia - point_inertia(robot.mass_kg, center)).diagonal();
+  robot.standing_center_m = center;
+  robot.standing_inertia_kgm2 = (inertia - point_inertia(robot.mass_kg, center)).diagonal();
 }
 
 /// Returns the footprint of the standing robot: the shapes of base_link and the feet, and any other part that stands

@@ -66,7 +66,7 @@ class UrdfReader {
   void read_legs(RobotDescription& robot) const;
   void check_joints(const RobotDescription& robot) const;
   Pose3 T_body_standing(const urdf::Link& link, const RobotDescription& robot) const;
-  Eigen::Vector3d standing_inertia_kgm2(const RobotDescription& robot) const;
+  void read_standing_inertia(RobotDescription& robot) const;
   std::vector<Eigen::Vector2d> read_legged_footprint(const RobotDescription& robot) const;
   void read_tracks(RobotDescription& robot) const;
   bool has_wheels() const;

@@ -12,6 +12,7 @@ namespace {
 // Robot for which the gains are tuned (models/quadruped).
 constexpr double kTunedMass_kg = 13.56;
 constexpr double kTunedLeg_m = 0.426;
+const Eigen::Vector3d kTunedCenter_m(-0.0012, 0.0, -0.0093);
 const Eigen::Vector3d kTunedInertiaPerKg_m2(0.01104, 0.03059, 0.03026);
 
 double rounded_to_percent(double ratio) { return std::round(100.0 * ratio) / 100.0; }
@@ -49,6 +50,8 @@ LegGains scaled_leg_gains(const RobotDescription& robot) {
     const double per_kg_m2 = robot.standing_inertia_kgm2[axis] / robot.mass_kg;
     gains.inertia_per_kg_m2[axis] *= rounded_to_percent(per_kg_m2 / kTunedInertiaPerKg_m2[axis]);
   }
+  constexpr double kStep_m = 0.005;
+  gains.center_m = kStep_m * ((robot.standing_center_m - length * kTunedCenter_m) / kStep_m).array().round();
   return gains;
 }
 

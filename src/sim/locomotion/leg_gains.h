@@ -26,6 +26,9 @@ struct LegGains {
   double yaw_damping = 14.0;             ///< 1/s
   Eigen::Vector3d inertia_per_kg_m2 = {0.008, 0.024, 0.028};  ///< about roll, pitch and yaw, per kg of robot mass
 
+  /// Point in body on which the virtual model acts: the center of mass, relative to its place in the tuned robot.
+  Eigen::Vector3d center_m = Eigen::Vector3d::Zero();
+
   // Impedance of a swing foot about its trajectory.
   double swing_stiffness_npm = 700.0;
   double swing_damping_nspm = 16.0;

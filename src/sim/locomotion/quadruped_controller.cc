@@ -230,7 +230,9 @@ QuadrupedController::StandingError QuadrupedController::standing_error(const Tru
 }
 
 FootVectors QuadrupedController::stance_forces(const TrunkState& trunk) {
-  const Eigen::Vector2d velocity = trunk.velocity_mps.head<2>();
+  const Eigen::Vector3d center_m = trunk.R_level_body * gains_.center_m;  // in level
+  const Eigen::Vector3d center_mps = trunk.velocity_mps + trunk.rate_radps.cross(center_m);
+  const Eigen::Vector2d velocity = center_mps.head<2>();
   const Eigen::Vector2d velocity_error = velocity_mps_ - velocity;
   if (is_walking_) {
     velocity_integral_ += tick_s_ * velocity_error;
@@ -249,7 +251,7 @@ FootVectors QuadrupedController::stance_forces(const TrunkState& trunk) {
   force.head<2>() =
       robot_.mass_kg * (velocity_gain * velocity_error + gains_.velocity_integral * velocity_integral_ + centripetal);
   force.z() = robot_.mass_kg * (kGravity + gains_.height_stiffness * (settings_.trunk_height_m - height_m) -
-                                gains_.height_damping * (trunk.velocity_mps.z() - slope_.dot(velocity)));
+                                gains_.height_damping * (center_mps.z() - slope_.dot(velocity)));
 
   const double wanted_pitch = -settings_.slope_following * std::atan(slope_.x());
   const double wanted_roll = settings_.slope_following * std::atan(slope_.y());
@@ -262,9 +264,11 @@ FootVectors QuadrupedController::stance_forces(const TrunkState& trunk) {
   const Eigen::Vector3d moment =
       robot_.mass_kg *
       gains_.inertia_per_kg_m2.cwiseProduct(stiffness.cwiseProduct(tilt_error) + damping.cwiseProduct(rate_error));
+  FootVectors feet_m;  // from the center
+  for (int leg = 0; leg < kNumLegs; ++leg) feet_m[leg] = trunk.foot_m[leg] - center_m;
   FootFlags is_loaded;
   for (int leg = 0; leg < kNumLegs; ++leg) is_loaded[leg] = is_stance_[leg] && !is_searching_[leg];
-  return distribute_wrench(force, moment, trunk.foot_m, is_loaded,
+  return distribute_wrench(force, moment, feet_m, is_loaded,
                            {.min_normal_n = gains_.min_foot_force_n, .max_normal_n = gains_.max_foot_force_n});
 }
 
