@@ -79,10 +79,6 @@ class Search {
     const double clearance = clearance_m(T_map_center);
     return clearance > margin_m_ || (from_start_m < kNearStart_m && clearance > start_clearance_m_ - 0.01);
   }
-  double weight_at(const Pose2& T_map_center) const {
-    return 1.0 + settings_.cost_weight * std::min(costmap_.cost_at(T_map_center.position()), kMaxPassableCost) /
-                     kMaxPassableCost;
-  }
   std::optional<double> cost_of(const Pose2& T_map_from, double from_start_m, const Arc& arc, bool is_reverse) const;
   void add(const Pose2& T_map_center, bool is_reverse, double cost_m, double from_start_m, int parent, const Arc& arc);
   void expand(int index);
@@ -112,7 +108,7 @@ std::optional<double> Search::cost_of(const Pose2& T_map_from, double from_start
   for (int step = 1; step <= steps; ++step) {
     const Pose2 pose = along_arc(T_map_from, direction * arc.curvature_per_m, direction * step * step_m);
     if (!is_free(pose, from_start_m + step * step_m)) return std::nullopt;
-    cost_m += step_m * weight_at(pose);
+    cost_m += step_m * travel_weight(costmap_, pose.position(), settings_.cost_weight);
   }
   return (is_reverse ? settings_.reverse_weight : 1.0) * cost_m;
 }
@@ -255,6 +251,10 @@ const RobotDescription& steered(const RobotDescription& robot) {
 }
 
 }  // namespace
+
+double travel_weight(const Costmap& costmap, const Eigen::Vector2d& p_map, double cost_weight) {
+  return 1.0 + cost_weight * std::min(costmap.cost_at(p_map), kMaxPassableCost) / kMaxPassableCost;
+}
 
 ManeuverPlanner::ManeuverPlanner(const ManeuverPlannerSettings& settings, const RobotDescription& robot)
     : settings_(settings),

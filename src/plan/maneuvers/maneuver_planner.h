@@ -18,6 +18,10 @@ struct ManeuverResult {
   int num_cells = 0;     ///< blocks of the distance to the goal
 };
 
+/// Returns the cost of a meter driven at a place, in meters: 1 far from obstacles, 1 + `cost_weight` at the highest
+/// passable cost.
+double travel_weight(const Costmap& costmap, const Eigen::Vector2d& p_map, double cost_weight);
+
 /// Plans maneuvers of a robot with a minimum turning radius: search over position, heading and direction of travel by
 /// arcs [Dolgov10], with the distance to the goal on the costmap as the estimate. Dubins paths forward and backward
 /// from expanded states reach the exact goal.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "plan/maneuvers/maneuver_planner.h"
 #include "plan/navigation/motion_check.h"
 
 namespace patrol::plan {
@@ -34,12 +35,14 @@ void ManeuverFollower::set_route(const PlanResult& route, const Pose2& T_map_bod
   maneuver_ = route.maneuver;
   path_ = PlannedPath(route.points_m);
   next_ = std::min<std::size_t>(1, maneuver_.size() - 1);
+  weights_.clear();
   advance(T_map_body);
 }
 
 void ManeuverFollower::clear() {
   RouteFollower::clear();
   maneuver_.clear();
+  weights_.clear();
   next_ = 0;
 }
 
@@ -51,6 +54,25 @@ std::size_t ManeuverFollower::end_of_part() const {
 
 double ManeuverFollower::to_stop_m() const {
   return maneuver_.empty() ? 0.0 : maneuver_[end_of_part()].along_m - along_m_;
+}
+
+bool ManeuverFollower::may_be_replaced(const Costmap& costmap) {
+  constexpr double kKept_m = 2.0;
+  constexpr double kMoreCost = 1.1, kMoreCost_m = 1.0;
+  if (to_stop_m() <= kKept_m) return false;
+  const bool is_new = weights_.empty();
+  double cost_m = 0.0, planned_m = 0.0;
+  for (std::size_t i = is_new ? 0 : next_; i < maneuver_.size(); ++i) {
+    const double weight =
+        travel_weight(costmap, maneuver_[i].T_map_center.position(), settings_.maneuver_planner.cost_weight);
+    if (is_new) weights_.push_back(weight);
+    if (i < next_) continue;
+    if (costmap.clearance_m(maneuver_[i].T_map_center * T_center_body_) < 0.0) return true;
+    const double length_m = i > 0 ? maneuver_[i].along_m - maneuver_[i - 1].along_m : 0.0;
+    cost_m += length_m * weight;
+    planned_m += length_m * weights_[i];
+  }
+  return cost_m > kMoreCost * planned_m + kMoreCost_m;
 }
 
 bool ManeuverFollower::has_ended() const {

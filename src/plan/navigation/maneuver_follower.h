@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include "plan/navigation/route_follower.h"
 #include "plan/routes/maneuver.h"
@@ -21,7 +22,9 @@ class ManeuverFollower final : public RouteFollower {
   void clear() override;
   double advance(const Pose2& T_map_body) override;
   /// The last two meters before a stop are driven to the end: a new maneuver would begin with another correction.
-  bool may_be_replaced() const override { return to_stop_m() > 2.0; }
+  /// Before, a maneuver is replaced only if its rest has become blocked or costs at least a tenth more: searches are
+  /// expensive.
+  bool may_be_replaced(const Costmap& costmap) override;
   bool has_ended() const override;
   VelocityCommand command(const Costmap& costmap, const Pose2& T_map_body, const VelocityCommand& last) override;
 
@@ -35,7 +38,8 @@ class ManeuverFollower final : public RouteFollower {
   Pose2 T_body_center_, T_center_body_;
   double max_curvature_per_m_;
   Maneuver maneuver_;
-  std::size_t next_ = 0;  ///< index of the next pose to reach
+  std::size_t next_ = 0;         ///< index of the next pose to reach
+  std::vector<double> weights_;  ///< cost of a meter when the maneuver was new, [pose]; empty until then
 };
 
 }  // namespace patrol::plan

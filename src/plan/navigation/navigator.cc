@@ -163,7 +163,7 @@ void Navigator::search_if_needed(Time now, const Pose2& T_map_body) {
     is_blocked = follower_->is_blocked(costmap_);
     if (is_blocked && settings_.new_obstacle_wait_s > 0.0 && follower_->is_blocked_by_new_obstacles_only(costmap_, now))
       return;
-    const bool is_outdated = search_.is_outdated(now) && follower_->may_be_replaced();
+    const bool is_outdated = search_.is_outdated(now) && follower_->may_be_replaced(costmap_);
     const bool is_off = path_deviation_m > settings_.max_path_deviation_m || follower_->has_ended();
     if (!is_blocked && !is_outdated && !is_off) return;
   }

@@ -28,7 +28,7 @@ class RouteFollower {
   /// Whether all obstacles on that part of the path have been observed for less than `new_obstacle_wait_s`.
   bool is_blocked_by_new_obstacles_only(const Costmap& costmap, Time now) const;
   /// Whether a changed map may replace the route.
-  virtual bool may_be_replaced() const { return true; }
+  virtual bool may_be_replaced(const Costmap& /*costmap*/) { return true; }
   /// Whether the route has ended, although the robot is not at the goal.
   virtual bool has_ended() const { return false; }
 
