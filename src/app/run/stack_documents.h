@@ -8,7 +8,8 @@
 
 namespace patrol::app {
 
-/// Returns the part of a scenario that describes the robot's documents and its software. The rest has its defaults: a
+/// Returns the part of a scenario that describes the robot, its documents and its software: of the drive only the type
+/// and the rollers. The rest has its defaults: a
 /// stack does not know the as-built robot, the faults, the obstacles or the leaks.
 Scenario documented_scenario(const Scenario& scenario);
 

@@ -10,8 +10,8 @@ namespace patrol::sim {
 /// Settings of the wheels, their motors and their firmware. Torques and speeds of the motors are the limits of the
 /// joints in the URDF.
 struct WheelDriveSettings {
-  /// Type of the drive: auto for the type that follows from the joints of the URDF (differential or Ackermann), mecanum
-  /// for four driven wheels with rollers, which a URDF cannot express.
+  /// Type of the drive: auto (differential or Ackermann, by the joints of the URDF) or mecanum (four driven wheels with
+  /// rollers).
   std::string type = "auto";
   /// Pattern of the axes of the upper rollers of mecanum wheels, seen from above: x if they point toward the middle of
   /// the robot, o for the other direction.
