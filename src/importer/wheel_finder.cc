@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/geometry/angles.h"
 
 namespace patrol::importer {
 namespace {
@@ -199,7 +200,7 @@ void WheelFinder::use_rollers(const Pose3& T_root_axis, FoundWheel& wheel) const
   const double to_axle_rad = 0.5 * std::numbers::pi - std::abs(wheel.roller_axis_rad);
   if (to_axle_rad < kMinRollerAngle_rad || to_axle_rad > kMaxRollerAngle_rad) {
     fail(fmt::format("not supported: their axes are at {:.0f} degrees to the axle, those of a mecanum wheel are at 45",
-                     to_axle_rad * 180.0 / std::numbers::pi));
+                     to_deg(to_axle_rad)));
   }
   std::nth_element(radii_m.begin(), radii_m.begin() + static_cast<std::ptrdiff_t>(radii_m.size() / 2), radii_m.end());
   wheel.radius_m = radii_m[radii_m.size() / 2];
