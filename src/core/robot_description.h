@@ -73,6 +73,9 @@ struct WheelGeometry {
   double forward_sign = 1.0;  ///< sign of the joint's rotation when the robot drives forward
   double left_sign = 1.0;     ///< sign of the steering angle when the wheel points to the left
   bool is_caster = false;     ///< the wheel turns freely about a vertical joint
+  /// Direction of the axis of the roller on the ground, from x of body to the left, in (-pi/2, pi/2); none for a wheel
+  /// without rollers. Only mecanum wheels have rollers (`add_rollers` in core/wheel_kinematics.h).
+  std::optional<double> roller_axis_rad = std::nullopt;
 
   bool is_left() const { return center_in_body.y() > 0.0; }
 };

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include <Eigen/QR>
+#include <Eigen/SVD>
 #include <fmt/format.h>
 
 #include "core/error.h"
@@ -63,7 +65,80 @@ std::vector<double> contacts_x_m(const RobotDescription& robot, const Differenti
   return x_m;
 }
 
+/// Returns the speed of the rim of a mecanum wheel per velocity of the body origin: forward, left, yaw. The rim and the
+/// ground have the same velocity along the axis of the roller.
+Eigen::RowVector3d rim_speed_row(const WheelGeometry& wheel) {
+  const double slope = std::tan(wheel.roller_axis_rad.value());
+  return {1.0, slope, slope * wheel.center_in_body.x() - wheel.center_in_body.y()};
+}
+
+/// Returns the rows of the wheels, [wheel].
+Eigen::MatrixX3d rim_speed_rows(const RobotDescription& robot) {
+  Eigen::MatrixX3d rows(robot.wheels.size(), 3);
+  for (std::size_t i = 0; i < robot.wheels.size(); ++i)
+    rows.row(static_cast<Eigen::Index>(i)) = rim_speed_row(robot.wheels[i]);
+  return rows;
+}
+
+/// Returns the ratio of the mean lever of the wheels to half of the gauge.
+double mecanum_gauge_ratio(const RobotDescription& robot) {
+  double lever_m = 0.0;
+  for (const WheelGeometry& wheel : robot.wheels) lever_m += (wheel.is_left() ? -1.0 : 1.0) * rim_speed_row(wheel).z();
+  lever_m /= static_cast<double>(robot.wheels.size());
+  return lever_m / (0.5 * differential_geometry(robot).gauge_m);
+}
+
+/// Throws InputError unless the wheels determine the yaw rate: with the pattern O on a square, none has a lever.
+void check_levers(const RobotDescription& robot) {
+  Eigen::MatrixX3d rows = rim_speed_rows(robot);
+  double reach_m = 0.0;
+  for (const WheelGeometry& wheel : robot.wheels) reach_m = std::max(reach_m, wheel.center_in_body.head<2>().norm());
+  rows.col(2) /= reach_m;
+  constexpr double kMinRatio = 0.05;
+  const Eigen::Vector3d values = Eigen::JacobiSVD<Eigen::MatrixXd>(rows).singularValues();
+  if (values[2] >= kMinRatio * values[0]) return;
+  throw InputError(
+      fmt::format("robot {}: the mecanum wheels do not turn it: their rollers point at its middle", robot.name));
+}
+
+WheelCommand mecanum_command(const RobotDescription& robot, const Eigen::Vector3d& velocity) {
+  WheelCommand command{.speed_radps = std::vector<double>(robot.joint_names.size(), 0.0),
+                       .angle_rad = std::vector<double>(robot.joint_names.size(), 0.0)};
+  for (const WheelGeometry& wheel : robot.wheels)
+    command.speed_radps[*wheel.drive_joint] = wheel.forward_sign * rim_speed_row(wheel).dot(velocity) / wheel.radius_m;
+  return command;
+}
+
 }  // namespace
+
+bool has_rollers(const RobotDescription& robot) {
+  return std::any_of(robot.wheels.begin(), robot.wheels.end(),
+                     [](const WheelGeometry& wheel) { return wheel.roller_axis_rad.has_value(); });
+}
+
+void add_rollers(RollerPattern pattern, double angle_rad, RobotDescription& robot) {
+  const auto fail = [&robot](const std::string& what) {
+    throw InputError(fmt::format("robot {}: mecanum wheels: {}", robot.name, what));
+  };
+  if (robot.wheels.size() != 4) fail(fmt::format("{} wheels: must be four", robot.wheels.size()));
+  double middle_x_m = 0.0;
+  for (const WheelGeometry& wheel : robot.wheels) {
+    if (wheel.steering_joint) fail(fmt::format("wheel {} is steered: must not be steered", wheel.link));
+    if (!wheel.drive_joint) fail(fmt::format("wheel {} has no motor: all four must be driven", wheel.link));
+    middle_x_m += 0.25 * wheel.center_in_body.x();
+  }
+  int num_front_left = 0, num_front_right = 0, num_left = 0;
+  for (WheelGeometry& wheel : robot.wheels) {
+    const bool is_front = wheel.center_in_body.x() > middle_x_m;
+    num_left += wheel.is_left() ? 1 : 0;
+    if (is_front) ++(wheel.is_left() ? num_front_left : num_front_right);
+    const bool is_to_right = (is_front == wheel.is_left()) == (pattern == RollerPattern::kX);
+    wheel.roller_axis_rad = (is_to_right ? -1.0 : 1.0) * (0.5 * M_PI - angle_rad);
+  }
+  if (num_left != 2 || num_front_left != 1 || num_front_right != 1)
+    fail("each side must have a front and a rear wheel");
+  check_levers(robot);
+}
 
 WheelDriveType wheel_drive_type(const RobotDescription& robot) {
   bool is_left_driven = false, is_right_driven = false, is_steered = false;
@@ -73,6 +148,7 @@ WheelDriveType wheel_drive_type(const RobotDescription& robot) {
   }
   if (!is_left_driven || !is_right_driven)
     throw InputError(fmt::format("robot {}: has no driven wheels on both sides", robot.name));
+  if (has_rollers(robot)) return WheelDriveType::kMecanum;
   return is_steered ? WheelDriveType::kAckermann : WheelDriveType::kDifferential;
 }
 
@@ -100,13 +176,14 @@ DifferentialGeometry differential_geometry(const RobotDescription& robot) {
   return {.gauge_m = left_y / num_left - right_y / (count - num_left),
           .contact_length_m = front - rear,
           .rolling_radius_m = radius / count,
-          .turn_center_x_m = x / count};
+          .turn_center_x_m = has_rollers(robot) ? 0.0 : x / count};
 }
 
 // With the sides at -+u and the robot at yaw rate w, contact i of the right side slides over the ground at
 // (w B/2 - u, w x_i). Friction along the opposite direction gives no moment if, with k = (u - w B/2) / w,
 //   sum_i (B/2 k - x_i^2) / sqrt(k^2 + x_i^2) = 0.
 double skid_ratio(const RobotDescription& robot) {
+  if (has_rollers(robot)) return mecanum_gauge_ratio(robot);
   const DifferentialGeometry geometry = differential_geometry(robot);
   if (geometry.contact_length_m < 1e-6) return 1.0;
   const double half_gauge_m = 0.5 * geometry.gauge_m;
@@ -122,7 +199,9 @@ double skid_ratio(const RobotDescription& robot) {
 }
 
 WheelCommand wheel_command(const RobotDescription& robot, double forward_mps, double yaw_rate_radps,
-                           double effective_gauge_ratio, const std::vector<double>& last_angle_rad) {
+                           double effective_gauge_ratio, const std::vector<double>& last_angle_rad,
+                           double lateral_mps) {
+  if (has_rollers(robot)) return mecanum_command(robot, {forward_mps, lateral_mps, yaw_rate_radps});
   const double center_x_m = differential_geometry(robot).turn_center_x_m;
   const double yaw_rate = wheel_drive_type(robot) == WheelDriveType::kAckermann
                               ? within_steering_limits(robot, forward_mps, yaw_rate_radps, center_x_m)
@@ -145,8 +224,30 @@ WheelCommand wheel_command(const RobotDescription& robot, double forward_mps, do
   return command;
 }
 
+void limit_wheel_speeds(const RobotDescription& robot, std::vector<double>& speed_radps) {
+  double scale = 1.0;
+  for (std::size_t joint = 0; joint < speed_radps.size(); ++joint)
+    scale = std::max(scale, std::abs(speed_radps[joint]) / robot.joint_limits[joint].velocity_radps);
+  for (double& speed : speed_radps) speed /= scale;
+}
+
+WheelMotion mecanum_motion(const RobotDescription& robot, const std::vector<double>& speed_radps) {
+  if (!has_rollers(robot)) throw InputError(fmt::format("robot {}: has no mecanum wheels", robot.name));
+  const Eigen::MatrixX3d rows = rim_speed_rows(robot);
+  Eigen::VectorXd rim_mps(rows.rows());
+  for (std::size_t i = 0; i < robot.wheels.size(); ++i) {
+    const WheelGeometry& wheel = robot.wheels[i];
+    rim_mps[static_cast<Eigen::Index>(i)] =
+        wheel.forward_sign * wheel.radius_m * speed_radps.at(wheel.drive_joint.value());
+  }
+  WheelMotion motion{.velocity = rows.colPivHouseholderQr().solve(rim_mps)};
+  const Eigen::VectorXd rest_mps = rim_mps - rows * motion.velocity;
+  motion.residual_mps = std::copysign(rest_mps.norm() / std::sqrt(static_cast<double>(rows.rows())), rest_mps[0]);
+  return motion;
+}
+
 double min_turning_radius_m(const RobotDescription& robot) {
-  if (wheel_drive_type(robot) == WheelDriveType::kDifferential) return 0.0;
+  if (wheel_drive_type(robot) != WheelDriveType::kAckermann) return 0.0;
   const double center_x_m = differential_geometry(robot).turn_center_x_m;
   constexpr double kMore_radps = 1e6;
   const double left = within_steering_limits(robot, 1.0, kMore_radps, center_x_m),

@@ -3,6 +3,8 @@
 #include <optional>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "core/robot_description.h"
 
 namespace patrol {
@@ -11,12 +13,29 @@ namespace patrol {
 enum class WheelDriveType {
   kDifferential,  ///< the sides turn at different speeds: two driven wheels with casters, or skid steering
   kAckermann,     ///< wheels on steering joints
+  kMecanum,       ///< four wheels with rollers at an angle to the axle
 };
+
+/// Pattern of the axes of the upper rollers of four mecanum wheels, seen from above. The axes of the lower rollers, on
+/// the ground, form the other pattern.
+enum class RollerPattern {
+  kX,  ///< the axes point toward the middle of the robot
+  kO,  ///< the axes form a rhombus
+};
+
+/// Makes the wheels of a robot mecanum wheels: sets the direction of their rollers. `angle_rad`: angle between the axes
+/// of the rollers and the axle, in (0, pi/2). Throws InputError unless the robot has exactly four wheels, all driven
+/// and none steered, a front and a rear one on each side, or if the wheels do not determine the yaw rate.
+void add_rollers(RollerPattern pattern, double angle_rad, RobotDescription& robot);
+
+/// Returns whether the robot has mecanum wheels.
+bool has_rollers(const RobotDescription& robot);
 
 /// Returns the type of drive. Throws InputError for a robot without driven wheels on both sides.
 WheelDriveType wheel_drive_type(const RobotDescription& robot);
 
-/// Left and right wheels or tracks that are not steered. Their mean speed is the forward speed of the turn center.
+/// Left and right wheels or tracks that are not steered. Their mean speed is the forward speed of the turn center,
+/// which is the body origin for mecanum wheels.
 struct DifferentialGeometry {
   double gauge_m = 0.0;           ///< distance between the center lines of the two sides
   double contact_length_m = 0.0;  ///< distance between the first and the last contact of a side with the ground
@@ -29,8 +48,10 @@ struct DifferentialGeometry {
 DifferentialGeometry differential_geometry(const RobotDescription& robot);
 
 /// Returns the ratio of the gauge of a differential drive without slip to the geometric gauge, for the same wheel
-/// speeds and yaw rate: 1 for two driven wheels, more for skid steering.
+/// speeds and yaw rate: 1 for two driven wheels, more for skid steering and mecanum wheels.
 ///
+/// Mecanum wheels turn without slip: the ratio is 1 + (wheelbase / gauge) / tan(angle of the rollers to the axle).
+/// Others:
 /// Closed form of Coulomb friction on level ground: all wheels carry the same load, and the moment of their friction
 /// about the turn center is zero. For four wheels it is 1 + (wheelbase / gauge)^2. The ratio depends neither on the
 /// friction coefficient nor on the speed.
@@ -42,13 +63,31 @@ struct WheelCommand {
   std::vector<double> angle_rad;    ///< steering joints; 0 for driven wheels
 };
 
-/// Returns the wheel speeds and steering angles of a planar motion: forward speed and yaw rate at the turn center.
+/// Returns the wheel speeds and steering angles of a planar motion: forward speed and yaw rate at the turn center, and
+/// for mecanum wheels the lateral speed, positive to the left. Other drives ignore the lateral speed.
 ///
 /// Steered wheels point along their velocity in the plane; the yaw rate is reduced until every steering angle is within
 /// the limits of its joint. If the robot stands, the steering angles are those of `last_angle_rad` [joint].
 /// `effective_gauge_ratio` multiplies the gauge of a differential drive (`skid_ratio`).
 WheelCommand wheel_command(const RobotDescription& robot, double forward_mps, double yaw_rate_radps,
-                           double effective_gauge_ratio, const std::vector<double>& last_angle_rad);
+                           double effective_gauge_ratio, const std::vector<double>& last_angle_rad,
+                           double lateral_mps = 0.0);
+
+/// Scales wheel speeds [joint] so that none exceeds the limit of its joint; the direction and the curvature of the
+/// motion stay.
+void limit_wheel_speeds(const RobotDescription& robot, std::vector<double>& speed_radps);
+
+/// Motion of a robot by its mecanum wheels [Muir87].
+struct WheelMotion {
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< of the body origin: forward m/s, left m/s, yaw rate rad/s
+  /// Part of the wheel speeds that no motion without slip explains, root mean square over the wheels, m/s; with the
+  /// sign of its speed of the first wheel.
+  double residual_mps = 0.0;
+};
+
+/// Returns the motion of mecanum wheels at the speeds [joint], by least squares. The function is linear: angles yield a
+/// displacement along constant directions in body. Throws InputError for a robot without mecanum wheels.
+WheelMotion mecanum_motion(const RobotDescription& robot, const std::vector<double>& speed_radps);
 
 /// Returns the minimum turning radius of the turn center, m: 0 for a robot that turns in place.
 double min_turning_radius_m(const RobotDescription& robot);

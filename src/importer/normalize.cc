@@ -197,9 +197,14 @@ void Normalizer::choose_carriers() {
     throw InputError(
         fmt::format("{}: drive ackermann: no wheel is below a revolute joint about the vertical", source_.file));
   }
-  result_.drive = options_.drive == "mecanum" ? DriveType::kMecanum
-                  : num_steered > 0           ? DriveType::kAckermann
-                                              : DriveType::kDifferential;
+  const bool has_rollers = std::any_of(found_.wheels.begin(), found_.wheels.end(),
+                                       [](const FoundWheel& wheel) { return wheel.num_rollers > 0; });
+  if (has_rollers && options_.drive != "" && options_.drive != "mecanum")
+    throw InputError(
+        fmt::format("{}: drive {}: the wheels have rollers: must be mecanum", source_.file, options_.drive));
+  result_.drive = has_rollers || options_.drive == "mecanum" ? DriveType::kMecanum
+                  : num_steered > 0                          ? DriveType::kAckermann
+                                                             : DriveType::kDifferential;
 }
 
 /// Checks that wheels that are not steered are on both sides; if motors drive any of these, that driven ones are.
@@ -256,10 +261,64 @@ void Normalizer::choose_drive() {
   check_fixed_sides(candidates);
 }
 
+/// Checks the wheels of a mecanum drive, and takes the pattern of the rollers from their joints.
+void Normalizer::choose_rollers() {
+  if (result_.drive != DriveType::kMecanum) return;
+  if (found_.wheels.size() != 4) {
+    const SourceJoint& joint = *found_.wheels.back().joint;
+    source_.fail(joint.line, joint.name,
+                 fmt::format("one of {} wheels: a mecanum drive must have four", found_.wheels.size()));
+  }
+  double middle_x_m = 0.0;
+  for (const FoundWheel& wheel : found_.wheels) middle_x_m += 0.25 * wheel.center_m.x();
+  int num_x = 0, num_o = 0;
+  double sum_rad = 0.0;
+  std::set<std::pair<bool, bool>> corners;
+  for (const FoundWheel& wheel : found_.wheels) {
+    const SourceJoint& joint = *wheel.joint;
+    if (wheel.carrier_type != CarrierType::kNone)
+      source_.fail(joint.line, joint.name, "is below a vertical joint: a wheel of a mecanum drive must not swivel");
+    if (!driven_.contains(&joint))
+      source_.fail(joint.line, joint.name, "has no motor: all wheels of a mecanum drive must be driven");
+    const bool is_front = wheel.center_m.x() > middle_x_m, is_left = wheel.center_m.y() > 0.0;
+    if (!corners.insert({is_front, is_left}).second)
+      source_.fail(joint.line, joint.name, "each side of a mecanum drive must have a front and a rear wheel");
+    if (wheel.num_rollers == 0) continue;
+    ++((wheel.roller_axis_rad < 0.0) == (is_front == is_left) ? num_x : num_o);
+    sum_rad += 0.5 * std::numbers::pi - std::abs(wheel.roller_axis_rad);
+  }
+  if (num_x + num_o == 0) {
+    assume("rollers",
+           "axes at 45 degrees to the axle; seen from above, those of the upper rollers form an X: the file has none",
+           "wheel_drive: roller_pattern, roller_angle_rad in the settings");
+    return;
+  }
+  if (num_x != 4 && num_o != 4) {
+    const SourceJoint& joint = *found_.wheels.front().joint;
+    source_.fail(joint.line, joint.name,
+                 fmt::format("rollers of {} wheels form an X seen from above, those of {} an O: must be four of a kind",
+                             num_x, num_o));
+  }
+  for (const FoundWheel& wheel : found_.wheels) {
+    const double x_m = std::abs(wheel.center_m.x() - middle_x_m), y_m = std::abs(wheel.center_m.y());
+    const double reach_m = x_m * std::tan(std::abs(wheel.roller_axis_rad));
+    if (num_x == 4 || std::abs(reach_m - y_m) > 0.1 * (reach_m + y_m)) continue;
+    source_.fail(wheel.joint->line, wheel.joint->name,
+                 "rollers on the ground point at the middle of the robot: the wheels do not turn it");
+  }
+  result_.roller_pattern = num_x == 4 ? "x" : "o";
+  result_.roller_angle_rad = 0.25 * sum_rad;
+  assume("rollers",
+         fmt::format("{} links on joints are fixed to their wheels: the simulator replaces them by the friction of the "
+                     "wheels",
+                     found_.roller_joints.size()),
+         "none: rollers have no bodies in the simulator");
+}
+
 void Normalizer::report_frozen_joints() {
   std::vector<std::string> names;
   for (const SourceJoint& joint : source_.joints) {
-    if (joint.type == JointType::kFixed || kept_.contains(&joint)) continue;
+    if (joint.type == JointType::kFixed || kept_.contains(&joint) || found_.roller_joints.contains(&joint)) continue;
     const bool is_above_base =
         !T_root_link_.contains(joint.child) || (joint.child == base_ && source_.root().name == joint.parent);
     if (is_above_base && joint.type == JointType::kFloating) continue;
@@ -312,6 +371,7 @@ NormalizedRobot Normalizer::run() {
   } else {
     choose_frame();
     choose_drive();
+    choose_rollers();
   }
   report_frozen_joints();
   reserve_names();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
@@ -73,6 +74,9 @@ struct NormalizedRobot {
   double length_m = 0.0;       ///< of the collision shapes, along x
   double min_turning_radius_m = 0.0;
   double leg_m = 0.0;  ///< length of the longest leg; robots with legs only
+  // Mecanum drives, as the settings of wheel_drive.
+  std::string roller_pattern = "x";
+  double roller_angle_rad = 0.25 * std::numbers::pi;
   std::vector<Assumption> assumptions = {};
 };
 

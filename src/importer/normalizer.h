@@ -92,6 +92,7 @@ class Normalizer {
   void choose_legged_frame();
   void choose_carriers();
   void choose_drive();
+  void choose_rollers();
   void check_fixed_sides(const std::vector<const FoundWheel*>& wheels) const;
   void report_frozen_joints();
   void reserve_names();

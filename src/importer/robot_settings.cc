@@ -24,6 +24,19 @@ double rounded_down(double value, double step, double min, double max) {
   return std::clamp(std::floor(value / step + 1e-9) * step, min, max);
 }
 
+/// Returns half of the lateral speed at which the wheels turn as fast as at the maximum forward speed.
+double max_lateral_mps(const NormalizedRobot& robot, double max_speed_mps) {
+  return rounded_down(0.5 * max_speed_mps * std::tan(robot.roller_angle_rad), 0.01, 0.05, 0.5);
+}
+
+std::string mecanum_settings(const NormalizedRobot& robot, double max_speed_mps) {
+  std::string text = "wheel_drive:\n  type: mecanum\n";
+  text += fmt::format("  roller_pattern: {}\n", robot.roller_pattern);
+  text += fmt::format("  roller_angle_rad: {:.4f}\n", robot.roller_angle_rad);
+  text += fmt::format("  max_speed_mps: {:.2f}\n", max_speed_mps);
+  return text + fmt::format("  max_lateral_speed_mps: {:.2f}\n", max_lateral_mps(robot, max_speed_mps));
+}
+
 /// Returns the settings of a robot on wheels.
 std::string wheel_settings(const NormalizedRobot& robot) {
   const bool is_ackermann = robot.drive == DriveType::kAckermann;
@@ -34,7 +47,8 @@ std::string wheel_settings(const NormalizedRobot& robot) {
   text += "  joint_encoders: {rate_hz: 50.0, counts_per_revolution: 16384}\n";
   text += "  foot_contact: {enabled: false}\n";
   text += "  hall: {enabled: false}\n";
-  text += fmt::format("wheel_drive: {{max_speed_mps: {:.2f}}}\n", max_speed_mps);
+  text += robot.drive == DriveType::kMecanum ? mecanum_settings(robot, max_speed_mps)
+                                             : fmt::format("wheel_drive: {{max_speed_mps: {:.2f}}}\n", max_speed_mps);
   text += "stack:\n";
   text += "  odometry_source: wheeled\n";
   text += "  odometry:\n";
@@ -47,7 +61,11 @@ std::string wheel_settings(const NormalizedRobot& robot) {
   text += fmt::format("    recovery: {{behaviors: [{}], max_attempts: 6}}\n",
                       is_ackermann ? "wait, back_up" : "wait, back_up, spin");
   text += "    local_planner:\n";
-  text += fmt::format("      dwa: {{max_speed_mps: {:.2f}, max_acceleration_mps2: 0.5}}\n", planner_speed_mps);
+  text += fmt::format("      dwa: {{max_speed_mps: {:.2f}, max_acceleration_mps2: 0.5{}}}\n", planner_speed_mps,
+                      robot.drive == DriveType::kMecanum
+                          ? fmt::format(", max_lateral_speed_mps: {:.2f}",
+                                        rounded_down(0.5 * max_lateral_mps(robot, max_speed_mps), 0.01, 0.02, 0.25))
+                          : "");
   return text;
 }
 

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/geometry/angles.h"
 
 namespace patrol::importer {
 namespace {
@@ -17,6 +18,8 @@ constexpr double kRoundness = 0.035;  // a regular polygon of twelve sides is ro
 constexpr double kHorizontal = 0.05;  // 2.9 degrees
 constexpr double kVertical = 0.966;   // 15 degrees, for king pins and caster angles
 constexpr int kMinRollers = 4;
+constexpr double kMinRollerAngle_rad = 0.35, kMaxRollerAngle_rad = 1.22;  // to the axle, of mecanum wheels
+constexpr double kMaxRollerSpread_rad = 0.1;                              // of the angles of a wheel
 
 /// Shape in cylindrical coordinates about the axis of a joint.
 struct AxialShape {
@@ -83,7 +86,8 @@ class WheelFinder {
 
  private:
   std::optional<FoundWheel> measure_wheel(const SourceJoint& joint);
-  void check_rollers(const SourceJoint& joint) const;
+  void find_rollers();
+  void use_rollers(const Pose3& T_root_axis, FoundWheel& wheel) const;
   void find_carrier(FoundWheel& wheel);
   void keep_wheels_on_ground();
   void leave_out_passive_balls();
@@ -92,7 +96,8 @@ class WheelFinder {
 
   const SourceRobot& robot_;
   std::map<std::string, Pose3> T_root_link_;
-  std::set<const SourceJoint*> endless_;
+  std::set<const SourceJoint*> endless_;                                   ///< without the joints of rollers
+  std::map<const SourceJoint*, std::vector<const SourceJoint*>> rollers_;  ///< by the joint of the wheel
   FoundWheels found_;
   std::string reason_;  ///< why the last candidate is no wheel
 };
@@ -126,33 +131,99 @@ std::optional<AxialShape> round_hull(const std::vector<AxialShape>& shapes) {
   return wheel;
 }
 
-void WheelFinder::check_rollers(const SourceJoint& joint) const {
-  int num_rollers = 0;
-  for (const SourceJoint* other : endless_) {
-    for (const SourceJoint* at = robot_.parent_joint(other->parent); at != nullptr;
+/// Finds the rollers of wheels and takes their joints from the endless ones. A motor never drives a roller.
+void WheelFinder::find_rollers() {
+  const auto wheel_above = [this](const SourceJoint& joint) -> const SourceJoint* {
+    for (const SourceJoint* at = robot_.parent_joint(joint.parent); at != nullptr;
          at = robot_.parent_joint(at->parent)) {
-      if (at == &joint) ++num_rollers;
+      const Eigen::Vector3d axis = T_root_link_.at(at->child).rotation * at->axis;
+      if (endless_.contains(at) && std::abs(axis.z()) <= kHorizontal) return at;
     }
+    return nullptr;
+  };
+  for (const SourceJoint& joint : robot_.joints) {
+    if (!endless_.contains(&joint) || robot_.motors.contains(joint.name)) continue;
+    if (const SourceJoint* wheel = wheel_above(joint)) rollers_[wheel].push_back(&joint);
   }
-  if (num_rollers < kMinRollers) return;
-  robot_.fail(
-      joint.line, joint.child,
-      fmt::format("has {} rollers on joints: not supported: remove the rollers, describe the wheel as a cylinder "
-                  "and select the drive mecanum",
-                  num_rollers));
+  std::erase_if(rollers_, [](const auto& entry) { return static_cast<int>(entry.second.size()) < kMinRollers; });
+  for (const auto& [wheel, joints] : rollers_) found_.roller_joints.insert(joints.begin(), joints.end());
+  std::erase_if(rollers_, [this](const auto& entry) { return found_.roller_joints.contains(entry.first); });
+  for (const SourceJoint* joint : found_.roller_joints) endless_.erase(joint);
+}
+
+/// Takes the radius, the width and the middle of a wheel from its rollers, and the direction of their axes. With the
+/// axle y and the outward direction u of a roller, the forward direction at the ground is -y x u in its frame.
+void WheelFinder::use_rollers(const Pose3& T_root_axis, FoundWheel& wheel) const {
+  const auto found = rollers_.find(wheel.joint);
+  if (found == rollers_.end()) return;
+  const auto fail = [&wheel, this](const std::string& what) {
+    robot_.fail(wheel.joint->line, wheel.joint->child,
+                fmt::format("has {} rollers on joints: {}", wheel.num_rollers, what));
+  };
+  wheel.num_rollers = static_cast<int>(found->second.size());
+  std::vector<double> radii_m, angles_rad;
+  double min_m = std::numeric_limits<double>::infinity(), max_m = -min_m;
+  for (const SourceJoint* joint : found->second) {
+    const Pose3& T_root_roller = T_root_link_.at(joint->child);
+    const Eigen::Vector3d direction = T_root_axis.rotation.conjugate() * (T_root_roller.rotation * joint->axis);
+    const Pose3 T_root_own{T_root_roller.position, Eigen::Quaterniond::FromTwoVectors(
+                                                       Eigen::Vector3d::UnitZ(), T_root_roller.rotation * joint->axis)};
+    const std::vector<const SourceLink*> links = rigid_group(robot_, joint->child, endless_);
+    std::vector<AxialShape> shapes = axial_shapes(links, T_root_own, false);
+    if (shapes.empty()) shapes = axial_shapes(links, T_root_own, true);
+    if (shapes.empty()) fail(fmt::format("roller {} has no shape", joint->child));
+    AxialShape roller = shapes.front();
+    for (const AxialShape& shape : shapes) {
+      roller.radius_m = std::max(roller.radius_m, shape.radius_m);
+      roller.min_m = std::min(roller.min_m, shape.min_m);
+      roller.max_m = std::max(roller.max_m, shape.max_m);
+    }
+    const Eigen::Vector3d center =
+        T_root_axis.inverse() * (T_root_own * Eigen::Vector3d(0.0, 0.0, 0.5 * (roller.min_m + roller.max_m)));
+    const Eigen::Vector3d outward = Eigen::Vector3d(center.x(), center.y(), 0.0);
+    if (outward.norm() < roller.radius_m) fail(fmt::format("roller {} is on the axle of the wheel", joint->child));
+    radii_m.push_back(outward.norm() + roller.radius_m);
+    const double half_m = 0.5 * (roller.max_m - roller.min_m) * std::abs(direction.z());
+    min_m = std::min(min_m, center.z() - half_m);
+    max_m = std::max(max_m, center.z() + half_m);
+    const Eigen::Vector3d forward = outward.normalized().cross(Eigen::Vector3d::UnitZ());
+    const double along = direction.dot(forward);
+    angles_rad.push_back(std::atan2(along < 0.0 ? -direction.z() : direction.z(), std::abs(along)));
+  }
+  double sum_rad = 0.0;
+  for (const double angle : angles_rad) sum_rad += angle;
+  wheel.roller_axis_rad = sum_rad / static_cast<double>(angles_rad.size());
+  for (const double angle : angles_rad) {
+    if (std::abs(angle - wheel.roller_axis_rad) > kMaxRollerSpread_rad)
+      fail("not supported: their axes are at different angles to the axle");
+  }
+  const double to_axle_rad = 0.5 * std::numbers::pi - std::abs(wheel.roller_axis_rad);
+  if (to_axle_rad < kMinRollerAngle_rad || to_axle_rad > kMaxRollerAngle_rad) {
+    fail(fmt::format("not supported: their axes are at {:.0f} degrees to the axle, those of a mecanum wheel are at 45",
+                     to_deg(to_axle_rad)));
+  }
+  std::nth_element(radii_m.begin(), radii_m.begin() + static_cast<std::ptrdiff_t>(radii_m.size() / 2), radii_m.end());
+  wheel.radius_m = radii_m[radii_m.size() / 2];
+  wheel.width_m = max_m - min_m;
+  wheel.center_m = T_root_axis * Eigen::Vector3d(0.0, 0.0, 0.5 * (min_m + max_m));
+  wheel.is_ball = false;
 }
 
 std::optional<FoundWheel> WheelFinder::measure_wheel(const SourceJoint& joint) {
   const Pose3& T_root_child = T_root_link_.at(joint.child);
   const Eigen::Vector3d axis = T_root_child.rotation * joint.axis;
   if (std::abs(axis.z()) > kHorizontal) return std::nullopt;
-  check_rollers(joint);
   const Pose3 T_root_axis{T_root_child.position, Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), axis)};
   const std::vector<const SourceLink*> links = rigid_group(robot_, joint.child, endless_);
   const std::vector<AxialShape> collisions = axial_shapes(links, T_root_axis, false);
   const std::vector<AxialShape> visuals = axial_shapes(links, T_root_axis, true);
   const std::optional<AxialShape> by_collision = round_hull(collisions), by_visual = round_hull(visuals);
   const std::optional<AxialShape>& wheel = by_collision ? by_collision : by_visual;
+  if (!wheel && rollers_.contains(&joint)) {
+    FoundWheel result{.joint = &joint, .axis = Eigen::Vector3d(axis.x(), axis.y(), 0.0).normalized()};
+    use_rollers(T_root_axis, result);
+    return result;
+  }
   if (!wheel) {
     reason_ = fmt::format("line {}: {} is not round about the axis of joint {}", joint.line, joint.child, joint.name);
     return std::nullopt;
@@ -173,6 +244,7 @@ std::optional<FoundWheel> WheelFinder::measure_wheel(const SourceJoint& joint) {
     }
   }
   result.center_m = T_root_axis * Eigen::Vector3d(0.0, 0.0, middle_m);
+  use_rollers(T_root_axis, result);
   return result;
 }
 
@@ -222,8 +294,9 @@ void WheelFinder::leave_out_passive_balls() {
 }
 
 FoundWheels WheelFinder::find() {
+  find_rollers();
   for (const SourceJoint& joint : robot_.joints) {
-    if (!joint.is_endless()) continue;
+    if (!endless_.contains(&joint)) continue;
     if (const auto wheel = measure_wheel(joint)) found_.wheels.push_back(*wheel);
   }
   if (found_.wheels.empty()) {

@@ -25,6 +25,10 @@ struct FoundWheel {
   double radius_m = 0.0;
   double width_m = 0.0;
   bool is_ball = false;  ///< all its shapes are spheres: the width is assumed
+  int num_rollers = 0;   ///< links on passive endless joints around the wheel
+  /// Direction of the axis of the lowest roller, from forward to the left, with the axle to the left, in (-pi/2, pi/2);
+  /// only with rollers.
+  double roller_axis_rad = 0.0;
 
   double bottom_m() const { return center_m.z() - radius_m; }
 };
@@ -32,6 +36,7 @@ struct FoundWheel {
 /// Wheels of a description and the height of the ground below them.
 struct FoundWheels {
   std::vector<FoundWheel> wheels;
+  std::set<const SourceJoint*> roller_joints;
   double ground_m = 0.0;  ///< in the root
   std::vector<Assumption> assumptions;
 };
@@ -44,8 +49,9 @@ std::vector<const SourceLink*> rigid_group(const SourceRobot& robot, const std::
                                            const std::set<const SourceJoint*>& kept);
 
 /// Finds the wheels: links on endless joints about a horizontal axis, round about it within 3.5 %, whose lowest point
-/// is within 2 % of the radius plus 5 mm of the common ground plane. Throws InputError if there are none, if they are
-/// not on one plane or if a wheel has rollers.
+/// is within 2 % of the radius plus 5 mm of the common ground plane. The links on at least four passive endless joints
+/// below the joint of a wheel are its rollers; they determine its radius. Throws InputError if there are no wheels, if
+/// they are not on one plane, or if the rollers of a wheel are not those of a mecanum wheel.
 FoundWheels find_wheels(const SourceRobot& robot);
 
 }  // namespace patrol::importer

@@ -14,14 +14,15 @@ constexpr double kSmoothing_s = 0.1;
 
 }  // namespace
 
-std::optional<EncoderInterval> TrackEncoders::add(const TrackTicks& ticks) {
-  const std::optional<TrackTicks> before = std::exchange(last_, ticks);
+std::optional<EncoderInterval> TrackEncoders::add(const DriveTicks& ticks) {
+  const std::optional<DriveTicks> before = std::exchange(last_, ticks);
   if (!before || ticks.stamp - before->stamp > kMaxInterval) {
     stationary_since_.reset();
     smooth_.reset();
     return std::nullopt;
   }
-  if (ticks.left != before->left || ticks.right != before->right) {
+  if (ticks.left != before->left || ticks.right != before->right || ticks.lateral != before->lateral ||
+      ticks.residual != before->residual) {
     stationary_since_.reset();
   } else if (!stationary_since_) {
     stationary_since_ = before->stamp;
@@ -29,22 +30,34 @@ std::optional<EncoderInterval> TrackEncoders::add(const TrackTicks& ticks) {
   EncoderInterval interval{.start = before->stamp, .end = ticks.stamp};
   interval.step_mps = settings_.meters_per_tick / interval.dt_s();
   interval.speed = {.left_mps = interval.step_mps * static_cast<double>(ticks.left - before->left),
-                    .right_mps = interval.step_mps * static_cast<double>(ticks.right - before->right)};
+                    .right_mps = interval.step_mps * static_cast<double>(ticks.right - before->right),
+                    .lateral_mps = interval.step_mps * static_cast<double>(ticks.lateral - before->lateral),
+                    .residual_mps = interval.step_mps * static_cast<double>(ticks.residual - before->residual)};
   if (!accept_change(interval)) return std::nullopt;
 
   const TrackSpeed before_mps = smooth_.value_or(interval.speed);
   const double blend = std::min(1.0, interval.dt_s() / kSmoothing_s);
-  smooth_ = TrackSpeed{.left_mps = before_mps.left_mps + blend * (interval.speed.left_mps - before_mps.left_mps),
-                       .right_mps = before_mps.right_mps + blend * (interval.speed.right_mps - before_mps.right_mps)};
+  const auto blended = [&](double TrackSpeed::*part) {
+    return before_mps.*part + blend * (interval.speed.*part - before_mps.*part);
+  };
+  smooth_ = TrackSpeed{.left_mps = blended(&TrackSpeed::left_mps),
+                       .right_mps = blended(&TrackSpeed::right_mps),
+                       .lateral_mps = blended(&TrackSpeed::lateral_mps),
+                       .residual_mps = blended(&TrackSpeed::residual_mps)};
   const double acceleration = (smooth_->mean_mps() - before_mps.mean_mps()) / interval.dt_s();
   acceleration_mps2_ += blend * (acceleration - acceleration_mps2_);
+  const double lateral = (smooth_->lateral_mps - before_mps.lateral_mps) / interval.dt_s();
+  lateral_acceleration_mps2_ += blend * (lateral - lateral_acceleration_mps2_);
   interval.smooth = *smooth_;
   interval.acceleration_mps2 = acceleration_mps2_;
+  interval.lateral_acceleration_mps2 = lateral_acceleration_mps2_;
   return interval;
 }
 
 bool TrackEncoders::accept_change(const EncoderInterval& interval) {
-  const double change = std::abs(interval.speed.mean_mps() - smooth_.value_or(interval.speed).mean_mps());
+  const TrackSpeed before_mps = smooth_.value_or(interval.speed);
+  const double change = std::hypot(interval.speed.mean_mps() - before_mps.mean_mps(),
+                                   interval.speed.lateral_mps - before_mps.lateral_mps);
   const double possible = settings_.max_acceleration_mps2 * (interval.dt_s() + kSmoothing_s) + 2.0 * interval.step_mps;
   if (change <= possible) {
     rejected_since_.reset();

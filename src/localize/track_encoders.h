@@ -1,15 +1,33 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 #include "core/sensors/registry.h"
 
 namespace patrol::localize {
 
+/// Running counts of the encoders of tracks or wheels: those of the two sides, and for mecanum wheels those of the
+/// lateral motion.
+struct DriveTicks : TrackTicks {
+  /// Counts of the sides without lateral motion.
+  DriveTicks(const TrackTicks& sides) : TrackTicks(sides) {}  // NOLINT(google-explicit-constructor)
+  DriveTicks(Time time, std::int64_t left_count, std::int64_t right_count, std::int64_t lateral_count = 0,
+             std::int64_t residual_count = 0)
+      : TrackTicks{.stamp = time, .left = left_count, .right = right_count},
+        lateral(lateral_count),
+        residual(residual_count) {}
+
+  std::int64_t lateral = 0;   ///< of the motion to the left
+  std::int64_t residual = 0;  ///< of the motion that only slip explains (WheelMotion::residual_mps)
+};
+
 /// Speed of the two tracks relative to the robot's body, from the track encoders; forward is positive.
 struct TrackSpeed {
   double left_mps = 0.0;
   double right_mps = 0.0;
+  double lateral_mps = 0.0;   ///< lateral speed of the robot by mecanum wheels, positive to the left
+  double residual_mps = 0.0;  ///< speed of mecanum wheels that only slip explains
 
   double mean_mps() const { return 0.5 * (left_mps + right_mps); }
   double difference_mps() const { return right_mps - left_mps; }
@@ -22,7 +40,8 @@ struct EncoderInterval {
   TrackSpeed smooth{};  ///< smoothed with a time constant of 0.1 s
   /// Derivative of the smoothed mean speed, smoothed again; nearly free of quantization.
   double acceleration_mps2 = 0.0;
-  double step_mps = 0.0;  ///< speed of one tick in the interval
+  double lateral_acceleration_mps2 = 0.0;  ///< derivative of the smoothed lateral speed, smoothed again
+  double step_mps = 0.0;                   ///< speed of one tick in the interval
 
   double dt_s() const { return to_seconds(end - start); }
   Time middle() const { return start + (end - start) / 2; }
@@ -39,14 +58,14 @@ class TrackEncoders {
 
   /// Adds a reading; stamps must increase. Returns nullopt for the first reading, after a long gap, and for implausible
   /// counts.
-  std::optional<EncoderInterval> add(const TrackTicks& ticks);
+  std::optional<EncoderInterval> add(const DriveTicks& ticks);
 
   /// Returns whether there was no tick for at least `kStandstill`.
   bool is_stationary() const { return stationary_since_ && last_ && last_->stamp - *stationary_since_ >= kStandstill; }
   /// Returns the start of the standstill; valid only while `is_stationary()` is true.
   Time stationary_since() const { return *stationary_since_; }
   /// Returns the most recent reading.
-  const std::optional<TrackTicks>& last() const { return last_; }
+  const std::optional<DriveTicks>& last() const { return last_; }
 
   static constexpr Time kStandstill = std::chrono::milliseconds(300);
 
@@ -54,10 +73,10 @@ class TrackEncoders {
   bool accept_change(const EncoderInterval& interval);
 
   Settings settings_;
-  std::optional<TrackTicks> last_;
+  std::optional<DriveTicks> last_;
   std::optional<Time> stationary_since_;
   std::optional<TrackSpeed> smooth_;
-  double acceleration_mps2_ = 0.0;
+  double acceleration_mps2_ = 0.0, lateral_acceleration_mps2_ = 0.0;
   std::optional<Time> rejected_since_;
 };
 

@@ -51,6 +51,7 @@ void TrackFilter::predict(double dt_s, const InertialSample& sample) {
   const InertialStep step = integrate(motion_, dt_s, omega, force);
   forward_acceleration_mps2_ = (step.after.v_body - motion_.v_body).x() / dt_s;
   smooth_track_mps_ += dt_s * forward_acceleration_mps2_;
+  if (settings_.is_lateral_measured) smooth_lateral_mps_ += (step.after.v_body - motion_.v_body).y();
   motion_ = step.after;
   motion_.omega_body = sample.rate_radps - gyro_bias_;
 
@@ -95,22 +96,37 @@ void TrackFilter::propagate_slip(double distance_m, double turn_rad, double slip
   decay(kIcr + 1, icr_m_.y(), a_turn, settings_.icr_y_std_m);
 }
 
+// The variance of the integral of a Gauss-Markov process with the variance s^2 and the correlation length L grows with
+// 2 s^2 L per distance.
+void TrackFilter::add_lateral_drift(const Eigen::Vector2d& motion_m, double slip_std) {
+  const double distance_m = motion_m.norm();
+  if (distance_m <= 0.0) return;
+  const Eigen::Vector3d left = motion_.T_odom_body.rotation * Eigen::Vector3d(-motion_m.y(), motion_m.x(), 0.0);
+  P_.block<3, 3>(Error::kPosition, Error::kPosition) +=
+      2.0 * slip_std * slip_std * settings_.slip_correlation_m / distance_m * left * left.transpose();
+}
+
 // With p = p_true - dp, omega = omega_true + dbg and s = scale + slip = s_true - ds, the innovation
-// ((1 - s) u, 0, 0) - v - omega x p is dv + [p]x dbg + [omega]x dp + u (ds, 0, 0) + noise.
+// ((1 - s) u, (1 - s) w, 0) - v - omega x p is dv + [p]x dbg + [omega]x dp + (u, w, 0) ds + noise. Only mecanum wheels
+// have a lateral speed w.
 //
 // The speed u that multiplies slip must not share the noise of the reading. Encoder steps of 1 to 2 mm would otherwise
 // bias the scale by several percent. It is therefore smoothed over one second and predicted with the IMU in between.
-void TrackFilter::correct_speed(double dt_s, double track_mps, const TrunkMotion& then,
-                                const Eigen::Vector3d& std_mps) {
+void TrackFilter::correct_speed(double dt_s, double track_mps, const TrunkMotion& then, const Eigen::Vector3d& std_mps,
+                                double lateral_mps) {
+  if (settings_.is_lateral_measured)
+    smooth_lateral_mps_ += std::min(1.0, dt_s / kTrackSmoothing_s) * (lateral_mps - smooth_lateral_mps_);
   smooth_track_mps_ += std::min(1.0, dt_s / kTrackSmoothing_s) * (track_mps - smooth_track_mps_);
   const Eigen::Vector3d p(settings_.turn_center_x_m + icr_m_.x(), icr_m_.y(), -settings_.height_m);
-  const Eigen::Vector3d innovation = Eigen::Vector3d(track_mps - (scale_ + slip_) * smooth_track_mps_, 0.0, 0.0) -
+  const Eigen::Vector3d innovation = Eigen::Vector3d(track_mps - (scale_ + slip_) * smooth_track_mps_,
+                                                     lateral_mps - (scale_ + slip_) * smooth_lateral_mps_, 0.0) -
                                      then.v_body - then.omega_body.cross(p);
 
   Eigen::Matrix<double, 3, kSize> H = Eigen::Matrix<double, 3, kSize>::Zero();
   H.middleCols<3>(Error::kVelocity).setIdentity();
   H.middleCols<3>(Error::kGyroBias) = cross_matrix(p);
   H(0, kScale) = H(0, kSlip) = smooth_track_mps_;
+  H(1, kScale) = H(1, kSlip) = smooth_lateral_mps_;
   H.middleCols<2>(kIcr) = cross_matrix(then.omega_body).leftCols<2>();
 
   const Gain W = P_ * H.transpose();
@@ -145,9 +161,10 @@ void TrackFilter::start_slip(double forward_mps, double position_std_m) {
   P_.block<3, 3>(Error::kPosition, Error::kPosition) += along * along.transpose();
 }
 
-void TrackFilter::end_slip(double track_mps, double slip_std) {
+void TrackFilter::end_slip(double track_mps, double slip_std, double lateral_mps) {
   pose_correction_time_s_ = std::min(pose_correction_time_s_, kPoseCorrectionTime_s);
   smooth_track_mps_ = track_mps;
+  smooth_lateral_mps_ = lateral_mps;
   slip_ = 0.0;
   decorrelate_state(kSlip, slip_std * slip_std);
 }
@@ -205,7 +222,7 @@ void TrackFilter::apply_error(const Eigen::Matrix<double, kSize, 1>& error) {
   icr_m_ += error.segment<2>(kIcr);
 }
 
-// v = ((1 - scale - slip) u, 0) - omega x p
+// v = (1 - scale - slip) (u, w) - omega x p
 double TrackFilter::forward_acceleration_std_mps2() const {
   const Eigen::Matrix3d R = motion_.T_odom_body.rotation.toRotationMatrix();
   const Eigen::Matrix3d by_rotation = R.transpose() * cross_matrix(Eigen::Vector3d(0.0, 0.0, -kGravity_mps2));
@@ -219,8 +236,8 @@ double TrackFilter::forward_acceleration_std_mps2() const {
 }
 
 Eigen::Vector2d TrackFilter::systematic_velocity_variance() const {
-  const double u = smooth_track_mps_, omega = motion_.omega_body.z();
-  const Eigen::Vector4d ahead(-u, -u, 0.0, omega), left(0.0, 0.0, -omega, 0.0);
+  const double u = smooth_track_mps_, w = smooth_lateral_mps_, omega = motion_.omega_body.z();
+  const Eigen::Vector4d ahead(-u, -u, 0.0, omega), left(-w, -w, -omega, 0.0);
   const Eigen::Matrix4d P = P_.bottomRightCorner<4, 4>();
   return {ahead.dot(P * ahead), left.dot(P * left)};
 }

@@ -16,7 +16,8 @@ namespace patrol::localize {
 ///                that moves straight ahead while the body rotates; Gauss-Markov process over rotation
 ///
 /// The tracks measure the velocity of the ICR p at ground level: v + omega x p = ((1 - scale - slip) u, 0, 0),
-/// with u the mean track speed. The yaw rate is that of the gyro, because the difference of the track speeds is
+/// with u the mean track speed. Mecanum wheels also measure the lateral speed w: the second component is then
+/// (1 - scale - slip) w. The yaw rate is that of the gyro, because the difference of the track speeds is
 /// dominated by scrub. Yaw and position are not measured, and later estimates do not correct them: odom must not jump.
 /// (After a kilometer a tiny change of scale would repeatedly shift the position by a centimeter.) Exception: the drift
 /// of the IMU during a loss of traction is corrected.
@@ -31,12 +32,13 @@ class TrackFilter {
     double accel_bias_random_walk_mps2_per_sqrt_s;
     double yaw_random_walk_rad_per_sqrt_rad;  ///< gyro scale factor and misalignment, during rotation
     double scale_std;
-    double slip_correlation_m;   ///< correlation length of slip, in track distance
-    double icr_x_std_m;          ///< longitudinal offset: lateral slip during rotation
-    double icr_y_std_m;          ///< lateral offset: different traction of the two sides
-    double icr_correlation_rad;  ///< correlation angle of the ICR
-    double turn_center_x_m;      ///< longitudinal position of the ICR without offset, in body
-    double height_m;             ///< height of the body origin above the ground
+    double slip_correlation_m;         ///< correlation length of slip, in track distance
+    double icr_x_std_m;                ///< longitudinal offset: lateral slip during rotation
+    double icr_y_std_m;                ///< lateral offset: different traction of the two sides
+    double icr_correlation_rad;        ///< correlation angle of the ICR
+    double turn_center_x_m;            ///< longitudinal position of the ICR without offset, in body
+    double height_m;                   ///< height of the body origin above the ground
+    bool is_lateral_measured = false;  ///< mecanum wheels, which measure the lateral speed
   };
 
   /// Starts at the origin of odom with heading along x; tilt from gravity in the first sample.
@@ -50,10 +52,14 @@ class TrackFilter {
   /// Propagates slip and ICR over a track motion. `slip_std`: stationary standard deviation of slip on this
   /// ground in this maneuver.
   void propagate_slip(double distance_m, double turn_rad, double slip_std);
+  /// Adds the position error across a motion in body, m, of a lateral slip with this standard deviation relative to the
+  /// distance: a Gauss-Markov process over a distance that is long compared with `slip_correlation_m`.
+  void add_lateral_drift(const Eigen::Vector2d& motion_m, double slip_std);
   /// Corrects with the track speed over `dt_s`, during which the body motion was `then`. `std_mps`: standard deviations
   /// of the velocity of the ICR, in body. An innovation beyond the 99.9 % bound is down-weighted instead of
-  /// rejected.
-  void correct_speed(double dt_s, double track_mps, const TrunkMotion& then, const Eigen::Vector3d& std_mps);
+  /// rejected. `lateral_mps`: lateral speed by mecanum wheels; 0 for other drives.
+  void correct_speed(double dt_s, double track_mps, const TrunkMotion& then, const Eigen::Vector3d& std_mps,
+                     double lateral_mps = 0.0);
   /// Corrects with a velocity estimate, when no better measurement is available.
   void correct_velocity(const Eigen::Vector3d& v_body, double std_mps);
   void correct_gyro_bias(const Eigen::Vector3d& bias_radps, const Eigen::Vector3d& variance);
@@ -61,8 +67,8 @@ class TrackFilter {
   /// Starts a loss of traction: the body speed is set to the IMU estimate `forward_mps`. `position_std_m`: standard
   /// deviation of the distance error accumulated so far.
   void start_slip(double forward_mps, double position_std_m);
-  /// Ends a loss of traction, at rest or at this speed; resets the slip estimate.
-  void end_slip(double track_mps, double slip_std);
+  /// Ends a loss of traction, at rest or at this speed, forward and lateral; resets the slip estimate.
+  void end_slip(double track_mps, double slip_std, double lateral_mps = 0.0);
   /// Resets odom: its origin and x axis become those of the present pose.
   void set_origin();
 
@@ -111,6 +117,7 @@ class TrackFilter {
   double forward_acceleration_mps2_ = 0.0;
   double pose_correction_time_s_ = 0.0;  ///< remaining time in which corrections also change position and yaw
   double smooth_track_mps_ = 0.0;        ///< track speed, predicted with the IMU and slowly corrected by the encoders
+  double smooth_lateral_mps_ = 0.0;      ///< lateral speed by mecanum wheels, predicted and corrected like it
   Covariance P_ = Covariance::Zero();
 };
 

@@ -40,7 +40,8 @@ TrackFilter::Settings filter_settings(const TrackOdometrySettings& s, const Robo
           .icr_y_std_m = s.icr_y_std_m,
           .icr_correlation_rad = s.icr_correlation_rad,
           .turn_center_x_m = differential_geometry(robot).turn_center_x_m,
-          .height_m = robot.body_height_m()};
+          .height_m = robot.body_height_m(),
+          .is_lateral_measured = has_rollers(robot)};
 }
 
 /// Returns the four ends of the two tracks or wheel rows as stance feet. A single axle would leave the rotation about
@@ -62,6 +63,7 @@ TrackOdometry::TrackOdometry(const RobotDescription& robot, const TrackOdometryS
       settings_(checked(settings)),
       geometry_(differential_geometry(robot)),
       skid_ratio_(settings.skid_ratio > 0.0 ? settings.skid_ratio : skid_ratio(robot)),
+      is_mecanum_(has_rollers(robot)),
       meters_per_tick_(2.0 * std::numbers::pi * geometry_.rolling_radius_m / settings.ticks_per_sprocket_turn),
       track_ends_(track_ends(geometry_, robot.body_height_m())),
       imu_(robot.T_body("imu"),
@@ -82,8 +84,8 @@ void TrackOdometry::add(const Imu& imu) {
   process_pending();
 }
 
-void TrackOdometry::add(const TrackTicks& ticks) {
-  const TrackTicks* newest = !pending_.is_empty() ? &pending_.newest()
+void TrackOdometry::add(const DriveTicks& ticks) {
+  const DriveTicks* newest = !pending_.is_empty() ? &pending_.newest()
                              : encoders_.last()   ? &*encoders_.last()
                                                   : nullptr;
   if ((newest && ticks.stamp <= newest->stamp) || pending_.is_full()) {
@@ -124,7 +126,7 @@ void TrackOdometry::process_pending() {
     return;
   }
   while (!pending_.is_empty()) {
-    const TrackTicks ticks = pending_.oldest();
+    const DriveTicks ticks = pending_.oldest();
     if (ticks.stamp > imu_.now()) {
       if (to_seconds(pending_.newest().stamp - imu_.now()) <= settings_.imu_timeout_s) return;
       coast_to(ticks);
@@ -134,7 +136,7 @@ void TrackOdometry::process_pending() {
   }
 }
 
-void TrackOdometry::coast_to(const TrackTicks& ticks) {
+void TrackOdometry::coast_to(const DriveTicks& ticks) {
   slip_detector_.reset();
   double yaw_rate = imu_.filter()->yaw_rate_radps();
   if (const auto& last = encoders_.last()) {
@@ -145,7 +147,7 @@ void TrackOdometry::coast_to(const TrackTicks& ticks) {
   imu_.coast_to(ticks.stamp, yaw_rate);
 }
 
-void TrackOdometry::use_ticks(const TrackTicks& ticks) {
+void TrackOdometry::use_ticks(const DriveTicks& ticks) {
   const bool is_first = !encoders_.last();
   const std::optional<EncoderInterval> interval = encoders_.add(ticks);
   const std::optional<TrunkMotion> then = interval ? imu_.motion_at(interval->middle()) : std::nullopt;
@@ -157,11 +159,17 @@ void TrackOdometry::use_ticks(const TrackTicks& ticks) {
 
   const double disagreement = yaw_rate_disagreement_radps(*interval, *then);
   const double yaw_rate = std::abs(then->omega_body.z());
-  imu_.filter()->propagate_slip(0.5 * (std::abs(interval->speed.left_mps) + std::abs(interval->speed.right_mps)) *
-                                    interval->dt_s(),
-                                yaw_rate * interval->dt_s(), stationary_slip_std(yaw_rate, disagreement));
+  const double along_mps = 0.5 * (std::abs(interval->speed.left_mps) + std::abs(interval->speed.right_mps));
+  const double distance_m = is_mecanum_ ? std::hypot(along_mps, interval->speed.lateral_mps) * interval->dt_s()
+                                        : along_mps * interval->dt_s();
+  imu_.filter()->propagate_slip(distance_m, yaw_rate * interval->dt_s(), stationary_slip_std(yaw_rate, disagreement));
   imu_.filter()->correct_speed(interval->dt_s(), interval->speed.mean_mps(), *then,
-                               speed_std(*interval, *then, disagreement));
+                               speed_std(*interval, *then, disagreement), interval->speed.lateral_mps);
+  if (is_mecanum_) {
+    const Eigen::Vector2d motion_m =
+        interval->dt_s() * Eigen::Vector2d(interval->speed.mean_mps(), interval->speed.lateral_mps);
+    imu_.filter()->add_lateral_drift(motion_m, settings_.cross_slip_std);
+  }
   last_speed_update_ = interval->end;
   last_speed_ = imu_.filter()->motion().v_body;
   imu_.remember();
@@ -188,8 +196,12 @@ Eigen::Vector3d TrackOdometry::speed_std(const EncoderInterval& interval, const 
   Eigen::Matrix<double, 5, 1> along;
   along << settings_.speed_std_mps, step_std, settings_.scrub_std * interval.smooth.difference_mps(),
       settings_.acceleration_std_s * interval.acceleration_mps2, settings_.disagreement_std_m * disagreement_radps;
-  return {along.norm(), std::hypot(settings_.lateral_std_mps, settings_.lateral_std_m * then.omega_body.z()),
-          settings_.vertical_std_mps};
+  const double lateral_std = std::hypot(settings_.lateral_std_mps, settings_.lateral_std_m * then.omega_body.z());
+  if (!is_mecanum_) return {along.norm(), lateral_std, settings_.vertical_std_mps};
+  const double residual_std = interval.smooth.residual_mps;
+  const Eigen::Vector4d lateral(lateral_std, step_std,
+                                settings_.acceleration_std_s * interval.lateral_acceleration_mps2, residual_std);
+  return {std::hypot(along.norm(), residual_std), lateral.norm(), settings_.vertical_std_mps};
 }
 
 // Loss of traction and frozen encoders are alike: the track speeds differ from the body speed. The IMU alone propagates
@@ -205,7 +217,7 @@ bool TrackOdometry::update_slip_state(const EncoderInterval& interval) {
     else if (!agree_since_ || interval.end - *agree_since_ < kAgreement) return false;
     is_slipping_ = false;
     slip_detector_.reset();
-    imu_.filter()->end_slip(track_mps, settings_.slip_std);
+    imu_.filter()->end_slip(track_mps, settings_.slip_std, interval.smooth.lateral_mps);
   }
   const auto evidence = slip_detector_.add_speed(interval.end, interval.speed.mean_mps(), estimated_mps);
   if (!evidence) return true;
@@ -259,7 +271,12 @@ Eigen::Vector3d TrackOdometry::twist_std() const {
   const auto& P = imu_.filter()->covariance();
   Eigen::Vector2d variance = P.diagonal().segment<2>(kVelocity);
   if (!encoders_timed_out()) variance = variance.cwiseMin(imu_.filter()->systematic_velocity_variance());
-  const double lateral_mps = kSystematicLateral * imu_.filter()->motion().v_body.x();
+  const Eigen::Vector3d& v = imu_.filter()->motion().v_body;
+  if (is_mecanum_) {
+    return {std::hypot(std::sqrt(variance.x()), settings_.cross_slip_std * v.y()),
+            std::hypot(std::sqrt(variance.y()), settings_.cross_slip_std * v.x()), std::sqrt(P(kBias, kBias))};
+  }
+  const double lateral_mps = kSystematicLateral * v.x();
   return {std::sqrt(variance.x()), std::hypot(std::sqrt(variance.y()), lateral_mps), std::sqrt(P(kBias, kBias))};
 }
 

@@ -30,8 +30,9 @@ struct TrackOdometryHealth {
 };
 
 /// Tracked odometry: pose of the body in `odom` from track encoders and IMU (track_filter.h), at the newest reading.
-/// Also for wheels that are not steered: the wheels of a side are then one track.
-/// The origin of odom is the gravity-aligned pose after the first standstill.
+/// Also for wheels that are not steered: the wheels of a side are then one track. Mecanum wheels also measure the
+/// lateral speed; their speeds that contradict each other increase the standard deviation. The origin of odom is the
+/// gravity-aligned pose after the first standstill.
 ///
 /// Messages may be late or missing. Encoder readings wait for the IMU reading of their stamp, at most `imu_timeout_s`;
 /// then the tracks alone propagate the estimate. They are compared with the motion history at the middle of their
@@ -44,7 +45,7 @@ class TrackOdometry {
   TrackOdometry(const RobotDescription& robot, const TrackOdometrySettings& settings);
 
   void add(const Imu& imu);
-  void add(const TrackTicks& ticks);
+  void add(const DriveTicks& ticks);
   /// Corrects the gyro bias about the vertical by a measurement from other sensors, rad/s.
   void correct_gyro_bias(double bias_radps, double std_radps) {
     imu_.correct_vertical_gyro_bias(bias_radps, std_radps);
@@ -69,10 +70,10 @@ class TrackOdometry {
 
  private:
   void advance(Time stamp, const InertialSample& sample);
-  void coast_to(const TrackTicks& ticks);
+  void coast_to(const DriveTicks& ticks);
   /// Processes the encoder readings that are due.
   void process_pending();
-  void use_ticks(const TrackTicks& ticks);
+  void use_ticks(const DriveTicks& ticks);
   double yaw_rate_disagreement_radps(const EncoderInterval& interval, const TrunkMotion& then) const;
   double stationary_slip_std(double yaw_rate_radps, double disagreement_radps) const;
   Eigen::Vector3d speed_std(const EncoderInterval& interval, const TrunkMotion& then, double disagreement_radps) const;
@@ -87,6 +88,7 @@ class TrackOdometry {
   TrackOdometrySettings settings_;
   DifferentialGeometry geometry_;
   double skid_ratio_;
+  bool is_mecanum_;
   double meters_per_tick_;
   StanceFeet track_ends_;  ///< at rest while the tracks are
   ImuFrontEnd<TrackFilter> imu_;
@@ -97,7 +99,7 @@ class TrackOdometry {
   SlipDetector slip_detector_;
 
   TrackEncoders encoders_;
-  PendingReadings<TrackTicks> pending_;  ///< waiting for the IMU
+  PendingReadings<DriveTicks> pending_;  ///< waiting for the IMU
   std::optional<Time> last_speed_update_;
   Eigen::Vector3d last_speed_ = Eigen::Vector3d::Zero();  ///< body velocity at the last accepted encoder reading, m/s
 

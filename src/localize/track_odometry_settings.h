@@ -43,6 +43,9 @@ struct TrackOdometrySettings {
   // Slip. The terms of its standard deviation add in quadrature.
   double scale_std = 0.01;  ///< standard deviation of the constant relative error of the track distance: wear, tension
   double slip_std = 0.015;  ///< standard deviation of the slip ratio during straight motion on level ground
+  /// Standard deviation of the velocity across the direction of motion relative to the speed, for mecanum wheels, whose
+  /// unequal radii move the robot sideways. Other drives move along the direction of their wheels.
+  double cross_slip_std = 0.01;
   /// Term of the standard deviation of the slip ratio per yaw rate, added in quadrature.
   double slip_std_per_radps = 0.05;
   /// Term of the standard deviation of the slip ratio per sine of the tilt, on slopes, added in quadrature.
@@ -100,6 +103,7 @@ struct TrackOdometrySettings {
     visit("vertical_std_mps", self.vertical_std_mps, between(1e-4, 1.0));
     visit("scale_std", self.scale_std, between(0.0, 0.5));
     visit("slip_std", self.slip_std, between(0.0, 0.5));
+    visit("cross_slip_std", self.cross_slip_std, between(0.0, 0.5));
     visit("slip_std_per_radps", self.slip_std_per_radps, between(0.0, 1.0));
     visit("slip_std_per_tilt", self.slip_std_per_tilt, between(0.0, 2.0));
     visit("slip_std_per_disagreement", self.slip_std_per_disagreement, between(0.0, 1.0));

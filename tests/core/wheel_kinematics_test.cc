@@ -155,5 +155,106 @@ TEST(WheelDriveType, FollowsFromTheJointsAndNeedsMotorsOnBothSides) {
   EXPECT_THROW(wheel_drive_type(one_sided), InputError);
 }
 
+/// Four mecanum wheels of 0.1 m radius, 0.4 m long and 0.3 m wide, with an axis to either side.
+RobotDescription mecanum(RollerPattern pattern = RollerPattern::kX, double angle_rad = M_PI / 4.0) {
+  RobotDescription robot = four_wheels(0.4, 0.3);
+  robot.wheels[1].forward_sign = -1.0;
+  add_rollers(pattern, angle_rad, robot);
+  return robot;
+}
+
+std::vector<double> forward_speeds(const RobotDescription& robot, const WheelCommand& command) {
+  std::vector<double> speeds;
+  for (const WheelGeometry& wheel : robot.wheels)
+    speeds.push_back(wheel.forward_sign * command.speed_radps[*wheel.drive_joint]);
+  return speeds;
+}
+
+// r w = vx -+ vy -+ (l + w) wz with half the wheelbase l = 0.2 m and half the gauge w = 0.15 m [Muir87]; order: front
+// left, front right, rear left, rear right.
+TEST(MecanumKinematics, WheelSpeedsOfTheThreeMotionsAreThoseOfTheClosedForm) {
+  const RobotDescription robot = mecanum();
+  using testing::DoubleNear, testing::ElementsAre;
+  const auto speeds = [&](double vx, double vy, double wz) {
+    return forward_speeds(robot, wheel_command(robot, vx, wz, 1.0, kStraight, vy));
+  };
+  EXPECT_THAT(speeds(0.5, 0.0, 0.0),
+              ElementsAre(DoubleNear(5, 1e-9), DoubleNear(5, 1e-9), DoubleNear(5, 1e-9), DoubleNear(5, 1e-9)));
+  EXPECT_THAT(speeds(0.0, 0.5, 0.0),
+              ElementsAre(DoubleNear(-5, 1e-9), DoubleNear(5, 1e-9), DoubleNear(5, 1e-9), DoubleNear(-5, 1e-9)));
+  EXPECT_THAT(speeds(0.0, 0.0, 1.0), ElementsAre(DoubleNear(-3.5, 1e-9), DoubleNear(3.5, 1e-9), DoubleNear(-3.5, 1e-9),
+                                                 DoubleNear(3.5, 1e-9)));
+}
+
+TEST(MecanumKinematics, ARollerAngleOf30DegreesToTheAxleRaisesTheWheelSpeedOfALateralMotionByTheRootOf3) {
+  const RobotDescription robot = mecanum(RollerPattern::kX, M_PI / 6.0);
+  EXPECT_NEAR(forward_speeds(robot, wheel_command(robot, 0.0, 0.0, 1.0, kStraight, 0.5))[1], 5.0 * std::sqrt(3.0),
+              1e-9);
+}
+
+TEST(MecanumKinematics, ThePatternOReversesTheWheelsInALateralMotionAndItsLeverIsTheDifference) {
+  const RobotDescription robot = mecanum(RollerPattern::kO);
+  EXPECT_NEAR(forward_speeds(robot, wheel_command(robot, 0.0, 0.0, 1.0, kStraight, 0.5))[0], 5.0, 1e-9);
+  EXPECT_NEAR(forward_speeds(robot, wheel_command(robot, 0.0, 1.0, 1.0, kStraight))[0], 0.5, 1e-9);
+}
+
+TEST(MecanumKinematics, ForwardKinematicsInvertTheWheelSpeedsTo1e9WithoutResidual) {
+  for (const RollerPattern pattern : {RollerPattern::kX, RollerPattern::kO}) {
+    const RobotDescription robot = mecanum(pattern, 0.7);
+    const WheelMotion motion = mecanum_motion(robot, wheel_command(robot, 0.3, -0.7, 1.0, kStraight, 0.2).speed_radps);
+    EXPECT_LT((motion.velocity - Eigen::Vector3d(0.3, 0.2, -0.7)).norm(), 1e-9);
+    EXPECT_NEAR(motion.residual_mps, 0.0, 1e-9);
+  }
+}
+
+// Front and rear wheels against each other: the only speeds that no motion explains.
+TEST(MecanumKinematics, AWheelThatSpins1MeterPerSecondFasterLeavesAResidualOf0_25AndIsAQuarterOfTheSpeed) {
+  const RobotDescription robot = mecanum();
+  std::vector<double> speeds = wheel_command(robot, 0.3, 0.0, 1.0, kStraight).speed_radps;
+  speeds[2] += 10.0;
+  const WheelMotion motion = mecanum_motion(robot, speeds);
+  EXPECT_NEAR(motion.velocity.x(), 0.3 + 0.25, 1e-9);
+  EXPECT_NEAR(motion.residual_mps, -0.25, 1e-9);
+}
+
+TEST(MecanumKinematics, AtTheLimitOf10RadiansPerSecondAllWheelsAreScaledSoThatTheDirectionStays) {
+  const RobotDescription robot = mecanum();
+  std::vector<double> speeds = wheel_command(robot, 1.0, 0.0, 1.0, kStraight, 0.5).speed_radps;
+  limit_wheel_speeds(robot, speeds);
+  const WheelMotion motion = mecanum_motion(robot, speeds);
+  EXPECT_NEAR(motion.velocity.x(), 1.0 / 1.5, 1e-9);
+  EXPECT_NEAR(motion.velocity.y(), 0.5 / 1.5, 1e-9);
+}
+
+TEST(MecanumKinematics, TheGaugeRatioIsOnePlusWheelbaseOverGaugeAndTheRobotTurnsInPlaceAboutItsOrigin) {
+  const RobotDescription robot = mecanum();
+  EXPECT_EQ(wheel_drive_type(robot), WheelDriveType::kMecanum);
+  EXPECT_NEAR(skid_ratio(robot), 1.0 + 0.4 / 0.3, 1e-9);
+  EXPECT_EQ(min_turning_radius_m(robot), 0.0);
+  EXPECT_EQ(differential_geometry(robot).turn_center_x_m, 0.0);
+}
+
+TEST(MecanumKinematics, RefusesOtherWheelsThanFourDrivenOnesThatAreNotSteeredAndRollersWithoutLever) {
+  const auto error_of = [](RobotDescription robot, RollerPattern pattern) -> std::string {
+    try {
+      add_rollers(pattern, M_PI / 4.0, robot);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  using testing::HasSubstr;
+  RobotDescription three = four_wheels(0.4, 0.3), passive = four_wheels(0.4, 0.3), one_sided = four_wheels(0.4, 0.3);
+  three.wheels.pop_back();
+  passive.wheels[2].drive_joint.reset();
+  one_sided.wheels[0].center_in_body.x() = -0.3;
+  EXPECT_THAT(error_of(three, RollerPattern::kX), HasSubstr("3 wheels: must be four"));
+  EXPECT_THAT(error_of(passive, RollerPattern::kX), HasSubstr("has no motor: all four must be driven"));
+  EXPECT_THAT(error_of(one_sided, RollerPattern::kX), HasSubstr("each side must have a front and a rear wheel"));
+  EXPECT_THAT(error_of(cart(1.0, 0.6, 0.5), RollerPattern::kX), HasSubstr("is steered: must not be steered"));
+  EXPECT_THAT(error_of(four_wheels(0.4, 0.4), RollerPattern::kO), HasSubstr("do not turn it"));
+  EXPECT_EQ(error_of(four_wheels(0.4, 0.4), RollerPattern::kX), "");
+}
+
 }  // namespace
 }  // namespace patrol

@@ -163,7 +163,8 @@ TEST(BrokenDescription, Wheels) {
     rollers +=
         joint(fmt::format("r{}", i), "continuous", "left", fmt::format("roller{}", i), "0 0 0.1", axis("1 1 0")) +
         link(fmt::format("roller{}", i), inertial(0.01));
-  EXPECT_THAT(complaint(with(rollers)), MatchesRegex("v.urdf:[0-9]+: left: has 6 rollers on joints: not supported.*"));
+  EXPECT_THAT(complaint(with(rollers)),
+              MatchesRegex("v.urdf:[0-9]+: left: has 6 rollers on joints: roller roller0 has no shape"));
   EXPECT_THAT(complaint(robot(chassis() +
                               joint("pivot", "revolute", "base_link", "axle", "0.2 0 -0.05",
                                     axis("0 0 1") + R"(<limit lower="-1" upper="1"/>)") +

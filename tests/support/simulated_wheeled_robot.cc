@@ -10,8 +10,10 @@
 namespace patrol::sim {
 namespace {
 
-RobotDescription describe(const std::string& urdf_text) {
-  return io::load_robot_description(test::TemporaryFile("robot.urdf", urdf_text).path());
+RobotDescription describe(const std::string& urdf_text, const WheelDriveSettings& settings) {
+  RobotDescription robot = io::load_robot_description(test::TemporaryFile("robot.urdf", urdf_text).path());
+  set_drive_type(settings, robot);
+  return robot;
 }
 
 AssembledModel assemble(const std::string& world, const std::string& urdf_text, const Pose2& T_world_start) {
@@ -25,7 +27,7 @@ std::string wheeled_urdf_text() { return test::read_bytes(kWheeledUrdf); }
 
 WheeledRobot::WheeledRobot(const std::string& world, const std::string& urdf_text, const WheelDriveSettings& settings,
                            const WheelErrors& errors, const Pose2& T_world_start)
-    : robot_(describe(urdf_text)),
+    : robot_(describe(urdf_text, settings)),
       model_(assemble(world, urdf_text, T_world_start)),
       data_(make_data(*model_.physics)),
       imu_sensor_({}, *model_.physics, 1),
@@ -33,18 +35,18 @@ WheeledRobot::WheeledRobot(const std::string& world, const std::string& urdf_tex
       drive_(robot_, settings, encoder_settings_.ticks_per_rad(), *model_.physics, errors),
       body_(mj_name2id(model_.physics.get(), mjOBJ_BODY, frame_id::kBody)) {
   std::copy(model_.start_qpos.begin(), model_.start_qpos.end(), data_->qpos);
-  mj_forward(model_.physics.get(), data_.get());
+  drive_.evaluate(*model_.physics, *data_);
   drive(0.0, 0.0, 1.0);
 }
 
 void WheeledRobot::advance() {
   mj_Euler(model_.physics.get(), data_.get());
-  mj_forward(model_.physics.get(), data_.get());
+  drive_.evaluate(*model_.physics, *data_);
   ++tick_;
 }
 
-WheelReport WheeledRobot::drive(double vx_mps, double yaw_rate_radps, double duration_s) {
-  const VelocityCommand command{.stamp = {}, .vx_mps = vx_mps, .vy_mps = 0.0, .yaw_rate_radps = yaw_rate_radps};
+WheelReport WheeledRobot::drive(double vx_mps, double yaw_rate_radps, double duration_s, double vy_mps) {
+  const VelocityCommand command{.stamp = {}, .vx_mps = vx_mps, .vy_mps = vy_mps, .yaw_rate_radps = yaw_rate_radps};
   const auto travel = [this](bool is_left) {
     double sum_m = 0.0, count = 0.0;
     for (const WheelGeometry& wheel : robot_.wheels) {
@@ -90,15 +92,22 @@ void WheeledRobot::roll(double duration_s) {
 }
 
 void WheeledRobot::push(double speed_mps) {
-  drive(0.1, 0.0, 0.2);  // opens the brakes
+  open_brakes();
+  std::vector<double> wheel_radps;
+  for (const WheelGeometry& wheel : robot_.wheels)
+    wheel_radps.push_back(wheel.forward_sign * speed_mps / wheel.radius_m);
+  push({speed_mps, 0.0}, wheel_radps);
+}
+
+void WheeledRobot::push(const Eigen::Vector2d& velocity_mps, const std::vector<double>& wheel_radps) {
   const int root = model_.physics->jnt_dofadr[model_.physics->body_jntadr[body_]];
-  const Eigen::Vector3d v = T_world_body().rotation * Eigen::Vector3d(speed_mps, 0.0, 0.0);
+  const Eigen::Vector3d v = T_world_body().rotation * Eigen::Vector3d(velocity_mps.x(), velocity_mps.y(), 0.0);
   std::copy_n(v.data(), 3, data_->qvel + root);
-  for (const WheelGeometry& wheel : robot_.wheels) {
-    const int body = mj_name2id(model_.physics.get(), mjOBJ_BODY, wheel.link.c_str());
-    data_->qvel[model_.physics->body_dofadr[body]] = wheel.forward_sign * speed_mps / wheel.radius_m;
+  for (std::size_t i = 0; i < robot_.wheels.size(); ++i) {
+    const int body = mj_name2id(model_.physics.get(), mjOBJ_BODY, robot_.wheels[i].link.c_str());
+    data_->qvel[model_.physics->body_dofadr[body]] = wheel_radps.at(i);
   }
-  mj_forward(model_.physics.get(), data_.get());
+  drive_.evaluate(*model_.physics, *data_);
 }
 
 void WheeledRobot::lock_wheels() {
@@ -109,9 +118,9 @@ void WheeledRobot::lock_wheels() {
   }
 }
 
-double WheeledRobot::speed_mps() const {
+Eigen::Vector3d WheeledRobot::velocity_mps() const {
   const int root = model_.physics->jnt_dofadr[model_.physics->body_jntadr[body_]];
-  return (T_world_body().rotation.conjugate() * Eigen::Vector3d(data_->qvel + root)).x();
+  return T_world_body().rotation.conjugate() * Eigen::Vector3d(data_->qvel + root);
 }
 
 Pose3 WheeledRobot::T_world_body() const {

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/frames.h"
 #include "core/messages.h"
@@ -33,16 +34,22 @@ class WheeledRobot {
   explicit WheeledRobot(const std::string& world, const std::string& urdf_text, const WheelDriveSettings& settings = {},
                         const WheelErrors& errors = {}, const Pose2& T_world_start = {});
 
-  WheelReport drive(double vx_mps, double yaw_rate_radps, double duration_s);
+  WheelReport drive(double vx_mps, double yaw_rate_radps, double duration_s, double vy_mps = 0.0);
   /// Advances without firmware: motors off and brakes open.
   void roll(double duration_s);
   /// Sets the velocity of the robot along its x axis, with all wheels rolling.
   void push(double speed_mps);
+  /// Sets the velocity of the robot in the plane, in body; the wheels turn at `wheel_radps` [wheel].
+  void push(const Eigen::Vector2d& velocity_mps, const std::vector<double>& wheel_radps);
+  /// Opens the brakes with a short motion.
+  void open_brakes() { drive(0.1, 0.0, 0.2); }
   /// Locks all wheels.
   void lock_wheels();
 
   Pose3 T_world_body() const;
-  double speed_mps() const;
+  double speed_mps() const { return velocity_mps().x(); }
+  /// Returns the velocity of the body origin in body.
+  Eigen::Vector3d velocity_mps() const;
   const RobotDescription& description() const { return robot_; }
   const mjModel& model() const { return *model_.physics; }
   mjOption& options() { return model_.physics->opt; }

@@ -22,10 +22,10 @@ double tilt_of(const Pose3& T_world_body) {
 }
 
 /// Moves a pose in the plane by a velocity for a time, by the midpoint rule.
-Pose2 moved(const Pose2& pose, double forward_m, double yaw_rad) {
+Pose2 moved(const Pose2& pose, double forward_m, double left_m, double yaw_rad) {
   const double direction = pose.yaw + 0.5 * yaw_rad;
-  return {pose.x + forward_m * std::cos(direction), pose.y + forward_m * std::sin(direction),
-          wrap_angle(pose.yaw + yaw_rad)};
+  return {pose.x + (forward_m * std::cos(direction) - left_m * std::sin(direction)),
+          pose.y + (forward_m * std::sin(direction) + left_m * std::cos(direction)), wrap_angle(pose.yaw + yaw_rad)};
 }
 
 }  // namespace
@@ -76,10 +76,11 @@ double CheckDrive::ahead_m() const {
 
 void CheckDrive::step(double factor, const DriveSegment& segment) {
   next_.commanded_speed_mps = factor * segment.vx_mps;
+  next_.commanded_lateral_mps = factor * segment.vy_mps;
   next_.commanded_yaw_rate_radps = factor * segment.yaw_rate_radps;
   simulator_.set_command({.stamp = simulator_.now(),
                           .vx_mps = next_.commanded_speed_mps,
-                          .vy_mps = 0.0,
+                          .vy_mps = next_.commanded_lateral_mps,
                           .yaw_rate_radps = next_.commanded_yaw_rate_radps});
   simulator_.step();
   simulator_.take_messages();
@@ -95,7 +96,8 @@ void CheckDrive::measure() {
   next_.yaw_rad += wrap_angle(yaw - std::exchange(last_yaw_rad_, yaw));
   next_.T_start_center = T_world_start_.inverse() * to_pose2(truth.T_world_body) * Pose2{turn_center_x_m_, 0.0, 0.0};
   const double commanded_yaw_rad = tick_s_ * next_.commanded_yaw_rate_radps;
-  next_.T_start_commanded = moved(next_.T_start_commanded, tick_s_ * next_.commanded_speed_mps, commanded_yaw_rad);
+  next_.T_start_commanded = moved(next_.T_start_commanded, tick_s_ * next_.commanded_speed_mps,
+                                  tick_s_ * next_.commanded_lateral_mps, commanded_yaw_rad);
   next_.commanded_yaw_rad += commanded_yaw_rad;
   next_.speed_mps = truth.twist.linear.x();
   next_.yaw_rate_radps = truth.twist.angular.z();

@@ -86,6 +86,8 @@ io::Metrics check_json(const CheckResult& result) {
                         {"max_yaw_acceleration_radps2", rounded(limits.max_yaw_acceleration_radps2)},
                         {"min_turning_radius_m", rounded(limits.min_turning_radius_m)}}},
                       {"maneuvers", io::Metrics::array()}};
+  if (limits.max_lateral_speed_mps > 0.0)
+    json["limits"]["max_lateral_speed_mps"] = rounded(limits.max_lateral_speed_mps);
   for (const ManeuverResult& each : result.maneuvers) json["maneuvers"].push_back(json_of(each));
   return json;
 }

@@ -1,12 +1,14 @@
 #include "app/check/check_robot.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "app/scenario/scenario.h"
 #include "core/sensors/registry.h"
 #include "core/wheel_kinematics.h"
 #include "io/urdf.h"
 #include "io/yaml/settings_yaml.h"
+#include "sim/locomotion/roller_contact.h"
 #include "sim/sensors/sensor_suite_settings.h"
 
 namespace patrol::app {
@@ -15,8 +17,14 @@ namespace {
 DriveKind kind_of(const RobotDescription& robot) {
   if (robot.tracks) return DriveKind::kTracks;
   if (robot.wheels.empty()) return DriveKind::kLegs;
-  return wheel_drive_type(robot) == WheelDriveType::kAckermann ? DriveKind::kAckermannWheels
-                                                               : DriveKind::kDifferentialWheels;
+  switch (wheel_drive_type(robot)) {
+    case WheelDriveType::kAckermann:
+      return DriveKind::kAckermannWheels;
+    case WheelDriveType::kMecanum:
+      return DriveKind::kMecanumWheels;
+    default:
+      return DriveKind::kDifferentialWheels;
+  }
 }
 
 DriveLimits limits_of_legs(const sim::LocomotionSettings& settings) {
@@ -28,6 +36,7 @@ DriveLimits limits_of_legs(const sim::LocomotionSettings& settings) {
 
 double effective_gauge_ratio_of(const CheckRobot& robot) {
   if (robot.kind == DriveKind::kTracks) return robot.simulator.track_drive.effective_gauge_factor;
+  if (robot.kind == DriveKind::kMecanumWheels) return skid_ratio(robot.description);
   if (robot.kind != DriveKind::kDifferentialWheels) return 0.0;
   const double factor = robot.simulator.wheel_drive.effective_gauge_factor;
   return factor > 0.0 ? factor : skid_ratio(robot.description);
@@ -50,11 +59,14 @@ DriveLimits limits_of_tracks(const CheckRobot& robot) {
 
 DriveLimits limits_of_wheels(const CheckRobot& robot) {
   const sim::WheelDriveSettings& settings = robot.simulator.wheel_drive;
-  double speed_mps = settings.max_speed_mps;
+  double speed_mps = settings.max_speed_mps, lateral_mps = 0.0;
+  if (robot.kind == DriveKind::kMecanumWheels) lateral_mps = settings.max_lateral_speed_mps;
   for (const WheelGeometry& wheel : robot.description.wheels) {
     if (!wheel.drive_joint) continue;
     const double no_load_radps = robot.description.joint_limits.at(*wheel.drive_joint).velocity_radps;
     speed_mps = std::min(speed_mps, wheel.radius_m * no_load_radps);
+    if (wheel.roller_axis_rad)
+      lateral_mps = std::min(lateral_mps, wheel.radius_m * no_load_radps / std::abs(std::tan(*wheel.roller_axis_rad)));
   }
   const double radius_m = min_turning_radius_m(robot.description);
   const double kinematic_radps =
@@ -65,7 +77,8 @@ DriveLimits limits_of_wheels(const CheckRobot& robot) {
           .max_yaw_rate_radps = std::min(settings.max_yaw_rate_radps, kinematic_radps),
           .max_acceleration_mps2 = settings.max_acceleration_mps2,
           .max_yaw_acceleration_radps2 = settings.max_yaw_acceleration_radps2,
-          .min_turning_radius_m = radius_m};
+          .min_turning_radius_m = radius_m,
+          .max_lateral_speed_mps = lateral_mps};
 }
 
 DriveLimits limits_of(const CheckRobot& robot) {
@@ -100,6 +113,8 @@ const char* name_of(DriveKind kind) {
       return "tracks";
     case DriveKind::kDifferentialWheels:
       return "differential wheels";
+    case DriveKind::kMecanumWheels:
+      return "mecanum wheels";
     default:
       return "Ackermann wheels";
   }
@@ -115,6 +130,7 @@ CheckRobot load_check_robot(const std::string& name, const std::vector<std::stri
   robot.seed = seed.value_or(scenario.seed);
   robot.overrides = overrides;
   robot.description = io::load_robot_description(urdf.string());
+  sim::set_drive_type(scenario.wheel_drive, robot.description);
   robot.simulator.robot_urdf = urdf.string();
   robot.simulator.as_built = scenario.as_built;
   robot.simulator.sensors = scenario.sensors;

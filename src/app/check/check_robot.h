@@ -12,9 +12,9 @@
 namespace patrol::app {
 
 /// Drive of a robot, which decides on the maneuvers of its check.
-enum class DriveKind { kLegs, kTracks, kDifferentialWheels, kAckermannWheels };
+enum class DriveKind { kLegs, kTracks, kDifferentialWheels, kAckermannWheels, kMecanumWheels };
 
-/// "legs", "tracks", "differential wheels" or "Ackermann wheels".
+/// "legs", "tracks", "differential wheels", "Ackermann wheels" or "mecanum wheels".
 const char* name_of(DriveKind kind);
 
 /// Speeds and accelerations that the firmware of a robot accepts.
@@ -24,6 +24,7 @@ struct DriveLimits {
   double max_acceleration_mps2 = 0.0;        ///< of the commanded velocity, also when stopping
   double max_yaw_acceleration_radps2 = 0.0;  ///< of the commanded yaw rate
   double min_turning_radius_m = 0.0;         ///< 0: the robot turns in place
+  double max_lateral_speed_mps = 0.0;        ///< of mecanum wheels; 0: the check has no lateral motion
 };
 
 /// Robot of a check drive.

@@ -18,6 +18,7 @@ struct DriveSample {
   double speed_mps = 0.0;          ///< forward, in body
   double yaw_rate_radps = 0.0;
   double commanded_speed_mps = 0.0;
+  double commanded_lateral_mps = 0.0;  ///< to the left
   double commanded_yaw_rate_radps = 0.0;
   double ground_travel_m = 0.0;    ///< integral of the forward speed
   double left_travel_m = 0.0;      ///< mean travel of the left wheels or track by their joints and nominal radii

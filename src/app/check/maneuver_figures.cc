@@ -155,6 +155,26 @@ std::vector<Figure> measure_straight(const CheckRobot& robot, const Maneuver&, c
   return figures;
 }
 
+std::vector<Figure> measure_sideways(const CheckRobot& robot, const Maneuver&, const DriveRecord& record) {
+  const DriveSample& end = record.samples.back();
+  const double commanded_m = end.T_start_commanded.y;
+  std::vector<Figure> figures = {
+      {.name = "distance_m", .value = end.T_start_center.y, .is_key = true},
+      {.name = "distance_ratio",
+       .value = end.T_start_center.y / commanded_m,
+       .min = 0.9,
+       .max = 1.1,
+       .limit_reason = "navigation plans with the commanded speed, ±10 %",
+       .is_key = true},
+      symmetric("forward_drift_m", end.T_start_center.x, 0.1 * std::abs(commanded_m), "a tenth of the distance"),
+      symmetric("heading_drift_deg", to_deg(end.yaw_rad), std::abs(commanded_m), "1 degree per meter by as-built radii",
+                true)};
+  add_motor_figures(record, figures);
+  limit_mean_torque(figures);
+  figures.push_back(plane_tilt_figure(robot, record));
+  return figures;
+}
+
 std::vector<Figure> measure_loop(const CheckRobot& robot, const Maneuver& maneuver, const DriveRecord& record) {
   const DriveSample& end = record.samples.back();
   double length_m = 0.0;

@@ -13,6 +13,7 @@ namespace patrol::app {
 
 std::vector<Figure> measure_stand(const CheckRobot& robot, const Maneuver& maneuver, const DriveRecord& record);
 std::vector<Figure> measure_straight(const CheckRobot& robot, const Maneuver& maneuver, const DriveRecord& record);
+std::vector<Figure> measure_sideways(const CheckRobot& robot, const Maneuver& maneuver, const DriveRecord& record);
 std::vector<Figure> measure_loop(const CheckRobot& robot, const Maneuver& maneuver, const DriveRecord& record);
 std::vector<Figure> measure_turn(const CheckRobot& robot, const Maneuver& maneuver, const DriveRecord& record);
 std::vector<Figure> measure_circle(const CheckRobot& robot, const Maneuver& maneuver, const DriveRecord& record);

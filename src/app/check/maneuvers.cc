@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kNominalRatio = 0.6;       // nominal speed and yaw rate relative to the maximum
 constexpr double kAccelerationRatio = 0.5;  // acceleration of nominal driving relative to the maximum
-constexpr double kStraight_m = 10.0, kSquare_m = 3.0;
+constexpr double kStraight_m = 10.0, kSideways_m = 5.0, kSquare_m = 3.0;
 constexpr double kStand_s = 3.0, kSlopeStand_s = 5.0;
 constexpr double kFreeAhead_m = 1.0;    // level ground between robot and obstacle
 constexpr double kRest_s = 1.5;         // time at rest after a segment: drives decelerate and close their brakes
@@ -105,6 +105,17 @@ Maneuver turn(const CheckRobot& robot) {
           .measure = measure_circle};
 }
 
+Maneuver sideways(const CheckRobot& robot) {
+  const double speed_mps = kNominalRatio * robot.limits.max_lateral_speed_mps;
+  DriveSegment segment = nominal_segment(robot, speed_mps, 0.0, kSideways_m / speed_mps);
+  segment.vy_mps = std::exchange(segment.vx_mps, 0.0);
+  return {.name = "sideways",
+          .title = fmt::format("{:g} m sideways at {:.2f} m/s", kSideways_m, speed_mps),
+          .world = plane_world(),
+          .segments = {segment},
+          .measure = measure_sideways};
+}
+
 Maneuver emergency_stop(const CheckRobot& robot) {
   const double v = robot.limits.max_speed_mps, ramp_s = v / (kAccelerationRatio * robot.limits.max_acceleration_mps2);
   constexpr double kFullSpeed_s = 2.0, kStop_s = 4.0;
@@ -150,6 +161,7 @@ std::vector<Maneuver> maneuvers_of(const CheckRobot& robot) {
                  .measure = measure_slope};
   std::vector<Maneuver> maneuvers = {std::move(stand), std::move(straight), loop(robot),           turn(robot),
                                      std::move(ramp),  std::move(steps),    emergency_stop(robot), std::move(slope)};
+  if (robot.limits.max_lateral_speed_mps > 0.0) maneuvers.insert(maneuvers.begin() + 2, sideways(robot));
   for (Maneuver& maneuver : maneuvers) maneuver.duration_s = duration_of(maneuver);
   return maneuvers;
 }

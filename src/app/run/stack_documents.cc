@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/wheel_kinematics.h"
 #include "io/logs/run_log.h"
 
 namespace patrol::app {
@@ -24,7 +25,11 @@ link::VelocityLimits limits_of(const Scenario& scenario, const RobotDescription&
         .forward_mps = speed_mps, .backward_mps = speed_mps, .sideways_mps = 0.0, .yaw_rate_radps = yaw_rate_radps};
   };
   if (robot.tracks) return along(scenario.track_drive.max_speed_mps, scenario.track_drive.max_yaw_rate_radps);
-  if (!robot.wheels.empty()) return along(scenario.wheel_drive.max_speed_mps, scenario.wheel_drive.max_yaw_rate_radps);
+  if (!robot.wheels.empty()) {
+    link::VelocityLimits limits = along(scenario.wheel_drive.max_speed_mps, scenario.wheel_drive.max_yaw_rate_radps);
+    if (has_rollers(robot)) limits.sideways_mps = scenario.wheel_drive.max_lateral_speed_mps;
+    return limits;
+  }
   return {.forward_mps = legs.max_forward_mps,
           .backward_mps = legs.max_backward_mps,
           .sideways_mps = legs.max_sideways_mps,
@@ -46,6 +51,9 @@ Scenario documented_scenario(const Scenario& scenario) {
   documented.teleop.route = scenario.teleop.route;
   documented.teleop.recorded = scenario.teleop.recorded;
   documented.mounts = scenario.mounts;
+  documented.wheel_drive.type = scenario.wheel_drive.type;
+  documented.wheel_drive.roller_pattern = scenario.wheel_drive.roller_pattern;
+  documented.wheel_drive.roller_angle_rad = scenario.wheel_drive.roller_angle_rad;
   documented.stack = scenario.stack;
   documented.log.map_period_s = scenario.log.map_period_s;
   return documented;

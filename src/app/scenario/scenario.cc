@@ -22,6 +22,7 @@
 #include "io/yaml/settings_yaml.h"
 #include "sim/locomotion/leg_gains.h"
 #include "sim/locomotion/locomotion_settings.h"
+#include "sim/locomotion/roller_contact.h"
 #include "stack/mission/known_map.h"
 
 namespace patrol::app {
@@ -239,6 +240,7 @@ ScenarioFiles load_scenario_files(const Scenario& scenario, const std::filesyste
   files.robot_urdf = find_robot(scenario.robot, data_root);
   files.robot = io::load_robot_description(files.robot_urdf.string());
   add_mounts(files.robot, scenario.mounts);
+  sim::set_drive_type(scenario.wheel_drive, files.robot);
   const auto named_file = [&](const char* key, const std::string& name) {
     return find_named_file(files.world_xml.parent_path(), key, name);
   };

@@ -29,6 +29,15 @@ double DynamicWindow::cost(const Rollout& rollout, const RolloutScene& scene) co
          settings_.command_change_weight * change_(rollout, scene);
 }
 
+std::vector<double> DynamicWindow::reachable_lateral_speeds(double lateral_mps) const {
+  const double max_mps = settings_.max_lateral_speed_mps;
+  if (max_mps <= 0.0) return {0.0};
+  const double window_mps = settings_.max_acceleration_mps2 * settings_.window_s;
+  const double now_mps = std::clamp(lateral_mps, -max_mps, max_mps);
+  return samples(std::max(-max_mps, now_mps - window_mps), std::min(max_mps, now_mps + window_mps),
+                 settings_.lateral_samples);
+}
+
 std::optional<VelocityCommand> DynamicWindow::choose(const Costmap& costmap, const PlannedPath& path, double along_m,
                                                      const Pose2& T_map_body, const Twist3& twist,
                                                      double speed_limit_mps) const {
@@ -49,7 +58,9 @@ std::optional<VelocityCommand> DynamicWindow::choose(const Costmap& costmap, con
                                std::max(max_reachable, kMinReachableSpeed_mps) * settings_.horizon_s,
                            .twist = twist,
                            .max_speed_mps = settings_.max_speed_mps,
-                           .max_yaw_rate_radps = settings_.max_yaw_rate_radps};
+                           .max_yaw_rate_radps = settings_.max_yaw_rate_radps,
+                           .max_lateral_speed_mps = settings_.max_lateral_speed_mps};
+  const std::vector<double> lateral_speeds = reachable_lateral_speeds(twist.linear.y());
   const double clearance_now = costmap.clearance_m(T_map_body);
   std::optional<VelocityCommand> best;
   double best_cost = std::numeric_limits<double>::infinity();
@@ -57,15 +68,17 @@ std::optional<VelocityCommand> DynamicWindow::choose(const Costmap& costmap, con
     for (const double yaw :
          samples(std::max(-settings_.max_yaw_rate_radps, yaw_rate - yaw_window),
                  std::min(settings_.max_yaw_rate_radps, yaw_rate + yaw_window), settings_.yaw_rate_samples)) {
-      const Rollout rollout = roll_out(costmap, T_map_body, vx, yaw, settings_.horizon_s, settings_.steps);
-      const bool leads_away = clearance_now < 0.0 &&
-                              costmap.clearance_m(rollout.T_map_body.back()) > clearance_now + 0.02 &&
-                              rollout.min_clearance_m > clearance_now - 0.02;
-      if (rollout.min_clearance_m <= 0.0 && !leads_away) continue;
-      const double total = cost(rollout, scene);
-      if (total < best_cost) {
-        best_cost = total;
-        best = VelocityCommand{.stamp = {}, .vx_mps = vx, .vy_mps = 0.0, .yaw_rate_radps = yaw};
+      for (const double vy : lateral_speeds) {
+        const Rollout rollout = roll_out(costmap, T_map_body, vx, yaw, settings_.horizon_s, settings_.steps, vy);
+        const bool leads_away = clearance_now < 0.0 &&
+                                costmap.clearance_m(rollout.T_map_body.back()) > clearance_now + 0.02 &&
+                                rollout.min_clearance_m > clearance_now - 0.02;
+        if (rollout.min_clearance_m <= 0.0 && !leads_away) continue;
+        const double total = cost(rollout, scene);
+        if (total < best_cost) {
+          best_cost = total;
+          best = VelocityCommand{.stamp = {}, .vx_mps = vx, .vy_mps = vy, .yaw_rate_radps = yaw};
+        }
       }
     }
   }

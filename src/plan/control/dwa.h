@@ -18,7 +18,8 @@ namespace patrol::plan {
 
 /// Local planner by the dynamic window approach [Fox97]. Of the commands reachable within `window_s` it chooses the one
 /// whose constant-velocity arc has the minimum cost. An arc with negative clearance is rejected, unless the robot is
-/// already in such a pose and the arc leads away from the obstacle.
+/// already in such a pose and the arc leads away from the obstacle. With `max_lateral_speed_mps` the commands also have
+/// a lateral speed.
 class DynamicWindow final : public LocalPlanner {
  public:
   explicit DynamicWindow(const DwaSettings& settings);
@@ -28,6 +29,7 @@ class DynamicWindow final : public LocalPlanner {
                                         double speed_limit_mps) const override;
 
  private:
+  std::vector<double> reachable_lateral_speeds(double lateral_mps) const;
   double cost(const Rollout& rollout, const RolloutScene& scene) const;
 
   DwaSettings settings_;

@@ -24,6 +24,9 @@ class Locomotion {
   virtual void step(const FirmwareReadings& readings, const VelocityCommand& command, mjModel& physics,
                     mjData& data) = 0;
 
+  /// Evaluates the physics at its state, as mj_forward does. Overridden by drives that change the contacts.
+  virtual void evaluate(const mjModel& physics, mjData& data) const { mj_forward(&physics, &data); }
+
   /// Restarts the firmware.
   virtual void restart() = 0;
 

@@ -31,6 +31,14 @@ DriveSpeedGains gains_of(const RobotDescription& robot, const WheelDriveSettings
           .observer_bandwidth_radps = settings.observer_bandwidth_radps};
 }
 
+VelocityRamp::Limits limits_of(const RobotDescription& robot, const WheelDriveSettings& settings) {
+  return {.speed_mps = settings.max_speed_mps,
+          .yaw_rate_radps = settings.max_yaw_rate_radps,
+          .acceleration_mps2 = settings.max_acceleration_mps2,
+          .yaw_acceleration_radps2 = settings.max_yaw_acceleration_radps2,
+          .lateral_mps = has_rollers(robot) ? settings.max_lateral_speed_mps : 0.0};
+}
+
 DriveMotor wheel_motor(const JointLimit& limit, const WheelDriveSettings& settings) {
   return {.max_torque_nm = limit.effort_nm,
           .stall_torque_nm = settings.stall_torque_ratio * limit.effort_nm,
@@ -54,11 +62,7 @@ WheelController::WheelController(const RobotDescription& robot, const WheelDrive
                                                                    : skid_ratio(robot)),
       ticks_per_rad_(ticks_per_rad),
       tick_s_(tick_s),
-      ramp_({.speed_mps = settings.max_speed_mps,
-             .yaw_rate_radps = settings.max_yaw_rate_radps,
-             .acceleration_mps2 = settings.max_acceleration_mps2,
-             .yaw_acceleration_radps2 = settings.max_yaw_acceleration_radps2},
-            tick_s),
+      ramp_(limits_of(robot, settings), tick_s),
       fall_detector_(robot.T_body("imu").rotation.toRotationMatrix(), tick_s),
       target_angle_rad_(robot.joint_names.size(), 0.0),
       slewed_angle_rad_(robot.joint_names.size(), 0.0) {
@@ -95,13 +99,10 @@ WheelDriveCommand WheelController::step(const Imu& imu, const JointState& joints
 
 /// Returns the wheel speeds [joint]. If a motor exceeds its no-load speed, all are scaled to keep the curvature.
 std::vector<double> WheelController::wheel_speeds_radps() {
-  WheelCommand command =
-      wheel_command(robot_, ramp_.speed_mps(), ramp_.yaw_rate_radps(), effective_gauge_ratio_, target_angle_rad_);
+  WheelCommand command = wheel_command(robot_, ramp_.speed_mps(), ramp_.yaw_rate_radps(), effective_gauge_ratio_,
+                                       target_angle_rad_, ramp_.lateral_mps());
   target_angle_rad_ = std::move(command.angle_rad);
-  double scale = 1.0;
-  for (std::size_t joint = 0; joint < command.speed_radps.size(); ++joint)
-    scale = std::max(scale, std::abs(command.speed_radps[joint]) / robot_.joint_limits[joint].velocity_radps);
-  for (double& speed : command.speed_radps) speed /= scale;
+  limit_wheel_speeds(robot_, command.speed_radps);
   return std::move(command.speed_radps);
 }
 

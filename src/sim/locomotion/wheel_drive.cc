@@ -35,7 +35,9 @@ void set_carried_inertia(const RobotDescription& robot, const WheelGeometry& whe
 
 WheelDrive::WheelDrive(const RobotDescription& robot, const WheelDriveSettings& settings, double ticks_per_rad,
                        mjModel& physics, const WheelErrors& errors)
-    : initial_(robot, settings, ticks_per_rad, physics.opt.timestep), controller_(initial_) {
+    : initial_(robot, settings, ticks_per_rad, physics.opt.timestep),
+      controller_(initial_),
+      rollers_(robot, settings, physics) {
   for (const std::string& joint : robot.joint_names) motors_.push_back(find(physics, mjOBJ_ACTUATOR, joint, robot));
   for (std::size_t joint = 0; joint < robot.joint_names.size(); ++joint) {
     const int id = find(physics, mjOBJ_JOINT, robot.joint_names[joint], robot);
@@ -62,6 +64,11 @@ void WheelDrive::step(const FirmwareReadings& readings, const VelocityCommand& c
     data.ctrl[motors_[joint]] = drive_command.torque_nm[joint];
   for (const Brake& brake : brakes_)
     physics.dof_frictionloss[brake.dof] = drive_command.is_brake_closed ? brake.closed_nm : brake.open_nm;
+}
+
+void WheelDrive::evaluate(const mjModel& physics, mjData& data) const {
+  if (rollers_.is_empty()) Locomotion::evaluate(physics, data);
+  else rollers_.evaluate(physics, data);
 }
 
 }  // namespace patrol::sim

@@ -106,7 +106,7 @@ Simulator::Simulator(const SimulatorSettings& settings, const RobotDescription& 
   std::copy(model_.start_qpos.begin(), model_.start_qpos.end(), data_->qpos);
   actors_.advance(now_, {.p_world = robot_.start(settings.T_world_start).position(), .radius_m = robot_radius_m_},
                   *data_);
-  mj_forward(model_.physics.get(), data_.get());
+  locomotion_->evaluate(*model_.physics, *data_);
   sensors_.step(*model_.physics, *data_, now_);
 }
 
@@ -136,7 +136,7 @@ void Simulator::step() {
     mj_Euler(model, data_.get());
     now_ += tick_;
     culler_.update(*data_);
-    mj_forward(model, data_.get());
+    locomotion_->evaluate(*model, *data_);
     throw_if_diverged();
     record_collisions();
   }
@@ -192,7 +192,7 @@ void Simulator::teleport(const Pose2& T_world_body) {
   locomotion_->restart();
   mj_kinematics(&model, data_.get());
   culler_.update(*data_);
-  mj_forward(&model, data_.get());
+  locomotion_->evaluate(model, *data_);
 }
 
 void Simulator::record_collisions() {

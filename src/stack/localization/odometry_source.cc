@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/wheel_kinematics.h"
 #include "localize/legged_odometry.h"
 #include "localize/map_pose_tracker.h"
 #include "localize/track_odometry.h"
@@ -69,7 +70,7 @@ class DifferentialOdometrySource : public OdometrySource {
 
  private:
   /// Returns the counts of the two sides in a message; none if it has no counts.
-  virtual std::optional<TrackTicks> ticks_of(const SensorMessage& message) const = 0;
+  virtual std::optional<localize::DriveTicks> ticks_of(const SensorMessage& message) const = 0;
 
   localize::TrackOdometry odometry_;
 };
@@ -80,9 +81,9 @@ class TrackedOdometrySource final : public DifferentialOdometrySource {
       : DifferentialOdometrySource(robot, settings.odometry.tracked) {}
 
  private:
-  std::optional<TrackTicks> ticks_of(const SensorMessage& message) const override {
+  std::optional<localize::DriveTicks> ticks_of(const SensorMessage& message) const override {
     const auto* ticks = std::get_if<TrackTicks>(&message);
-    return ticks ? std::optional(*ticks) : std::nullopt;
+    return ticks ? std::optional<localize::DriveTicks>(*ticks) : std::nullopt;
   }
 };
 
@@ -103,7 +104,7 @@ class WheeledOdometrySource final : public DifferentialOdometrySource {
   }
 
  private:
-  std::optional<TrackTicks> ticks_of(const SensorMessage& message) const override {
+  std::optional<localize::DriveTicks> ticks_of(const SensorMessage& message) const override {
     const auto* joints = std::get_if<JointState>(&message);
     if (!joints) return std::nullopt;
     return TrackTicks{.stamp = joints->stamp, .left = ticks(left_, *joints), .right = ticks(right_, *joints)};
@@ -118,6 +119,33 @@ class WheeledOdometrySource final : public DifferentialOdometrySource {
   std::vector<WheelGeometry> left_, right_;
 };
 
+/// The angles of the four mecanum wheels yield a displacement in body (mecanum_motion): its forward part and its
+/// rotation are the counts of the two sides.
+class MecanumOdometrySource final : public DifferentialOdometrySource {
+ public:
+  MecanumOdometrySource(const RobotDescription& robot, const StackSettings& settings)
+      : DifferentialOdometrySource(robot, settings.odometry.wheeled),
+        robot_(robot),
+        half_gauge_m_(0.5 * differential_geometry(robot).gauge_m * skid_ratio(robot)),
+        ticks_per_m_(settings.odometry.wheeled.ticks_per_sprocket_turn /
+                     (2.0 * std::numbers::pi * differential_geometry(robot).rolling_radius_m)) {}
+
+ private:
+  std::optional<localize::DriveTicks> ticks_of(const SensorMessage& message) const override {
+    const auto* joints = std::get_if<JointState>(&message);
+    if (!joints) return std::nullopt;
+    const WheelMotion moved = mecanum_motion(robot_, joints->position_rad);
+    const double turned_m = half_gauge_m_ * moved.velocity.z();
+    return localize::DriveTicks(joints->stamp, to_ticks(moved.velocity.x() - turned_m),
+                                to_ticks(moved.velocity.x() + turned_m), to_ticks(moved.velocity.y()),
+                                to_ticks(moved.residual_mps));
+  }
+  std::int64_t to_ticks(double distance_m) const { return std::llround(distance_m * ticks_per_m_); }
+
+  RobotDescription robot_;
+  double half_gauge_m_, ticks_per_m_;
+};
+
 }  // namespace
 
 std::unique_ptr<OdometrySource> make_odometry_source(const StackSettings& settings, const RobotDescription& robot) {
@@ -126,6 +154,8 @@ std::unique_ptr<OdometrySource> make_odometry_source(const StackSettings& settin
       throw InputError(fmt::format("stack.odometry_source = tracked: robot {} has no tracks", robot.name));
     return std::make_unique<TrackedOdometrySource>(robot, settings);
   }
+  if (settings.odometry_source == "wheeled" && has_rollers(robot))
+    return std::make_unique<MecanumOdometrySource>(robot, settings);
   if (settings.odometry_source == "wheeled") return std::make_unique<WheeledOdometrySource>(robot, settings);
   if (robot.legs.empty()) {
     throw InputError(

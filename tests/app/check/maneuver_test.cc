@@ -49,6 +49,23 @@ TEST(CheckManeuvers, ACarDrivesCirclesOf1_2And1TimesItsMinimumRadius) {
   }
 }
 
+TEST(CheckManeuvers, MecanumWheelsAlsoDrive5MetersSidewaysAt0_6TimesTheirLateralSpeedAndFailFor20PercentLess) {
+  CheckRobot robot = robot_of(DriveKind::kMecanumWheels, 0.0);
+  robot.limits.max_lateral_speed_mps = 0.5;
+  const std::vector<Maneuver> maneuvers = maneuvers_of(robot);
+  EXPECT_THAT(names_of(maneuvers), ElementsAre("stand", "straight", "sideways", "square", "turn", "ramp", "steps",
+                                               "emergency_stop", "slope_stand"));
+  const Maneuver& sideways = named(maneuvers, "sideways");
+  EXPECT_NEAR(sideways.segments.front().vy_mps, 0.3, 1e-12);
+  EXPECT_NEAR(sideways.segments.front().vy_mps * sideways.segments.front().duration_s, 5.0, 1e-12);
+  EXPECT_EQ(sideways.segments.front().vx_mps, 0.0);
+  DriveRecord record = test::straight_record(0.0, 0.0, 10.0);
+  record.samples.back().T_start_commanded.y = 5.0;
+  record.samples.back().T_start_center.y = 4.0;
+  EXPECT_THAT(failures_of(robot, sideways, record, sideways.measure(robot, sideways, record)),
+              ElementsAre("distance ratio 0.800: 0.900 to 1.100"));
+}
+
 TEST(CheckManeuvers, TheCommandsOfTheSquareAdd12MetersAnd360Degrees) {
   double length_m = 0.0, yaw_rad = 0.0;
   const Maneuver square = named(maneuvers_of(robot_of(DriveKind::kLegs, 0.0)), "square");

@@ -53,6 +53,17 @@ TEST(FollowArc, EqualsManySmallSteps) {
   EXPECT_THAT(follow_arc({0.3, 0.1, -2.0}, 0.6, 0.9, 1.5), Pose2Near(stepped, 1e-8, 1e-8));
 }
 
+TEST(FollowArc, ALateralMotionWithATurnEqualsManySmallSteps) {
+  Pose2 stepped{0.3, 0.1, -2.0};
+  constexpr int kSteps = 20000;
+  for (int i = 0; i < kSteps; ++i) {
+    const double dt = 1.5 / kSteps, c = std::cos(0.45 * dt), s = std::sin(0.45 * dt);
+    stepped = stepped * Pose2{dt * (0.6 * c + 0.4 * s), dt * (0.6 * s - 0.4 * c), 0.9 * dt};
+  }
+  EXPECT_THAT(follow_arc({0.3, 0.1, -2.0}, 0.6, 0.9, 1.5, -0.4), Pose2Near(stepped, 1e-8, 1e-8));
+  EXPECT_THAT(follow_arc({}, 0.0, 0.0, 2.0, 0.3), Pose2Near(Pose2{0.0, 0.6, 0.0}, kExactTol, kExactTol));
+}
+
 /// 12 m by 12 m of free ground about the origin, with the walls that a test adds.
 class Ground {
  public:
@@ -143,6 +154,30 @@ TEST(DynamicWindow, ReturnsToAPathHalfAMetreAside) {
   const Pose2 end = drive(DynamicWindow({}), costmap, make_path({{-5.0, 0.0}, {5.5, 0.0}}), {-4.0, 0.5, 0.0}, 10.0);
   EXPECT_NEAR(end.y, 0.0, 0.08);
   EXPECT_GT(end.x, 1.0);
+}
+
+TEST(DynamicWindow, WithALateralSpeedOf0_3ReturnsToAPathHalfAMeterAsideInLessThanThreeQuartersOfTheTime) {
+  const Costmap costmap = Ground().costmap();
+  const PlannedPath path = make_path({{-5.0, 0.0}, {5.5, 0.0}});
+  const auto return_time_s = [&](const DwaSettings& settings) {
+    const DynamicWindow window(settings);
+    Pose2 pose{-4.0, 0.5, 0.0};
+    VelocityCommand command;
+    double time_s = 0.0;
+    for (double t = 0.0; t < 10.0; t += kControlPeriod_s) {
+      Twist3 twist = moving(command.vx_mps, command.yaw_rate_radps);
+      twist.linear.y() = command.vy_mps;
+      command =
+          window.choose(costmap, path, path.project(pose.position(), 0.0, 10.0).along_m, pose, twist, 10.0).value();
+      EXPECT_LE(std::abs(command.vy_mps), settings.max_lateral_speed_mps + kExactTol);
+      pose = follow_arc(pose, command.vx_mps, command.yaw_rate_radps, kControlPeriod_s, command.vy_mps);
+      if (std::abs(pose.y) > 0.08) time_s = t;
+    }
+    EXPECT_NEAR(pose.y, 0.0, 0.08);
+    EXPECT_GT(pose.x, 1.0);
+    return time_s;
+  };
+  EXPECT_LT(return_time_s({.max_lateral_speed_mps = 0.3}), 0.75 * return_time_s({}));
 }
 
 // The path leads into a wall with its surface at x = 2: the nose is 0.35 m before the body.

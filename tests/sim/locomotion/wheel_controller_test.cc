@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "io/urdf.h"
+#include "sim/locomotion/roller_contact.h"
 #include "tests/support/temporary_file.h"
 #include "tests/support/wheeled_urdf.h"
 
@@ -28,11 +29,11 @@ struct Stand {
     joints.velocity_radps.assign(robot.joint_names.size(), 0.0);
     imu.linear_acceleration_mps2 = {0.0, 0.0, 9.81};
   }
-  WheelDriveCommand run(double vx_mps, double yaw_rate_radps, double duration_s) {
+  WheelDriveCommand run(double vx_mps, double yaw_rate_radps, double duration_s, double vy_mps = 0.0) {
     WheelDriveCommand command;
     for (double t = 0.0; t < duration_s; t += kTick_s) {
       command = controller.step(imu, joints,
-                                {.stamp = {}, .vx_mps = vx_mps, .vy_mps = 0.0, .yaw_rate_radps = yaw_rate_radps});
+                                {.stamp = {}, .vx_mps = vx_mps, .vy_mps = vy_mps, .yaw_rate_radps = yaw_rate_radps});
       for (std::size_t joint = 0; joint < joints.position_rad.size(); ++joint) {
         joints.velocity_radps[joint] += kTick_s * command.torque_nm[joint] / inertia;
         joints.position_rad[joint] += kTick_s * joints.velocity_radps[joint];
@@ -64,6 +65,23 @@ TEST(WheelController, AMotorAtItsSpeedLimitSlowsAllWheelsSoThatTheCurvatureStays
   const double left = std::min(speeds[0], speeds[1]), right = std::max(speeds[0], speeds[1]);
   EXPECT_NEAR(right, 5.0, 0.05);
   EXPECT_NEAR(left / right, 1.0 / 3.0, 0.02);
+}
+
+// Front left, front right, rear left, rear right; the order of the wheels of skid_steer_urdf.
+TEST(WheelController, MecanumWheelsTurnAgainstEachOtherAtTheLimitOf0_5MetersPerSecondForACommandOf2ToTheLeft) {
+  RobotDescription robot = describe(test::skid_steer_urdf(0.5, 0.6));
+  WheelDriveSettings settings;
+  settings.type = "mecanum";
+  set_drive_type(settings, robot);
+  Stand stand(robot, 0.3, settings);
+  stand.run(0.0, 0.0, 3.0, 2.0);
+  using ::testing::DoubleNear;
+  const double w = 0.5 / 0.15;
+  EXPECT_THAT(stand.joints.velocity_radps, ::testing::ElementsAre(DoubleNear(-w, 0.04), DoubleNear(w, 0.04),
+                                                                  DoubleNear(w, 0.04), DoubleNear(-w, 0.04)));
+  Stand other(describe(test::skid_steer_urdf(0.5, 0.6)), 0.3);
+  other.run(0.0, 0.0, 1.0, 2.0);
+  EXPECT_THAT(other.joints.velocity_radps, ::testing::Each(DoubleNear(0.0, 1e-6)));
 }
 
 TEST(WheelController, TheBrakesCloseHalfASecondAfterRestAndOpenOnCommand) {

@@ -13,6 +13,7 @@ namespace patrol::plan {
 struct Rollout {
   double vx_mps = 0.0;
   double yaw_rate_radps = 0.0;
+  double vy_mps = 0.0;            ///< to the left
   std::vector<Pose2> T_map_body;  ///< poses at equal time steps, without the current pose
   double min_clearance_m = 0.0;   ///< minimum clearance of the robot's outline over all poses
 };
@@ -25,13 +26,14 @@ struct RolloutScene {
   Twist3 twist;                       ///< current twist, in body
   double max_speed_mps = 0.0;
   double max_yaw_rate_radps = 0.0;
+  double max_lateral_speed_mps = 0.0;  ///< 0: no lateral motion
 };
 
-/// Pose after moving at constant velocity for a time: an arc, or a turn in place.
-Pose2 follow_arc(const Pose2& T_map_body, double vx_mps, double yaw_rate_radps, double time_s);
+/// Pose after moving at constant velocity in body for a time: an arc, or a turn in place.
+Pose2 follow_arc(const Pose2& T_map_body, double vx_mps, double yaw_rate_radps, double time_s, double vy_mps = 0.0);
 
 /// Simulates a constant command for `horizon_s` in `steps` equal steps.
 Rollout roll_out(const Costmap& costmap, const Pose2& T_map_body, double vx_mps, double yaw_rate_radps,
-                 double horizon_s, int steps);
+                 double horizon_s, int steps, double vy_mps = 0.0);
 
 }  // namespace patrol::plan
