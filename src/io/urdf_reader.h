@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 #include <urdf_model/model.h>
+#include <urdf_world/types.h>
 
 #include "core/error.h"
 #include "core/robot_description.h"
@@ -35,7 +37,8 @@ struct TrackWheel {
 /// Reader of the elements of one URDF file. Errors contain the line.
 class UrdfReader {
  public:
-  explicit UrdfReader(const std::string& path) : path_(path), text_(load_text(path)) {
+  explicit UrdfReader(const std::string& path) : UrdfReader(path, load_text(path)) {}
+  UrdfReader(std::string path, std::string text) : path_(std::move(path)), text_(std::move(text)) {
     check_numbers();
     check_links();
     parse();

@@ -88,7 +88,20 @@ void set_start_posture(const mjModel& model, mjtNum* qpos) {
   }
 }
 
-AssembledModel assemble_model(const std::string& world_xml, const std::string& robot_urdf, const Pose2& T_world_start,
+std::string mjcf_of(const RobotUrdf& robot_urdf, double height_m) {
+  const SpecPtr spec = parse_spec(R"(<mujoco><option timestep="0.002"/><worldbody><light pos="0 0 3"/>
+      <geom name="ground" type="plane" size="10 10 0.1" conaffinity="2"/></worldbody></mujoco>)");
+  add_robot(*spec, robot_urdf, to_pose3(Pose2{}, height_m));
+  const ModelPtr model = compile(*spec, robot_urdf.path);
+  std::string xml(std::size_t{1} << 24, '\0'), error(1000, '\0');
+  if (mj_saveXMLString(spec.get(), xml.data(), static_cast<int>(xml.size()), error.data(),
+                       static_cast<int>(error.size())) != 0)
+    throw InputError(fmt::format("{}: cannot be written as MJCF: {}", robot_urdf.path, error.c_str()));
+  xml.resize(xml.find('\0'));
+  return xml;
+}
+
+AssembledModel assemble_model(const std::string& world_xml, const RobotUrdf& robot_urdf, const Pose2& T_world_start,
                               const std::vector<StaticObstacleSettings>& obstacles) {
   AssembledModel assembled;
   assembled.stance = to_stance(robot_urdf);

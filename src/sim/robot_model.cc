@@ -245,12 +245,17 @@ void add_link(mjSpec& spec, const urdf::Link& link, const RobotParts& robot, mjs
   }
 }
 
-urdf::ModelInterfaceSharedPtr parse(const std::string& path) {
-  std::ifstream file(path);
+std::string text_of(const RobotUrdf& urdf) {
+  if (!urdf.text.empty()) return urdf.text;
+  std::ifstream file(urdf.path);
   std::ostringstream text;
   text << file.rdbuf();
-  urdf::ModelInterfaceSharedPtr model = file ? urdf::parseURDF(text.str()) : nullptr;
-  if (!model) throw InputError(path + ": not a valid URDF file");
+  return file ? text.str() : "";
+}
+
+urdf::ModelInterfaceSharedPtr parse(const RobotUrdf& urdf) {
+  urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text_of(urdf));
+  if (!model) throw InputError(urdf.path + ": not a valid URDF file");
   return model;
 }
 
@@ -261,14 +266,14 @@ Stance stance_on_feet() {
 
 }  // namespace
 
-Stance to_stance(const std::string& urdf_path) {
-  const urdf::ModelInterfaceSharedPtr model = parse(urdf_path);
+Stance to_stance(const RobotUrdf& urdf) {
+  const urdf::ModelInterfaceSharedPtr model = parse(urdf);
   if (has_tracks(*model)) return stance_on_tracks(*model);
   return has_wheels(*model) ? stance_on_wheels(*model) : stance_on_feet();
 }
 
-void add_robot(mjSpec& world, const std::string& urdf_path, const Pose3& T_world_body) {
-  const urdf::ModelInterfaceSharedPtr model = parse(urdf_path);
+void add_robot(mjSpec& world, const RobotUrdf& urdf, const Pose3& T_world_body) {
+  const urdf::ModelInterfaceSharedPtr model = parse(urdf);
   mjsBody* base = mjs_addBody(mjs_findBody(&world, "world"), nullptr);
   std::copy_n(T_world_body.position.data(), 3, base->pos);
   base->quat[0] = T_world_body.rotation.w();
@@ -277,7 +282,7 @@ void add_robot(mjSpec& world, const std::string& urdf_path, const Pose3& T_world
   base->quat[3] = T_world_body.rotation.z();
   mjsJoint* freejoint = mjs_addFreeJoint(base);
   mjs_setName(freejoint->element, "robot");
-  const RobotParts parts{.folder = std::filesystem::path(urdf_path).parent_path(),
+  const RobotParts parts{.folder = std::filesystem::path(urdf.path).parent_path(),
                          .is_tracked = has_tracks(*model),
                          .road_wheel_load_n = road_wheel_load_n(*model)};
   add_link(world, *model->getRoot(), parts, *base);

@@ -31,6 +31,16 @@ link::VelocityLimits limits_of(const Scenario& scenario, const RobotDescription&
           .yaw_rate_radps = legs.max_yaw_rate_radps};
 }
 
+/// Sets which sensors the robot has; their error models are not documented.
+void document_sensors(const sim::SensorSuiteSettings& sensors, sim::SensorSuiteSettings& documented) {
+  Sensors::for_each([&]<typename Message>(std::type_identity<Message>) {
+    if constexpr (HasSensorSettings<Message>) {
+      auto& own = documented.*SensorTraits<Message>::kSettings;
+      if constexpr (requires { own.enabled; }) own.enabled = sim::is_enabled<Message>(sensors);
+    }
+  });
+}
+
 }  // namespace
 
 Scenario documented_scenario(const Scenario& scenario) {
@@ -46,6 +56,7 @@ Scenario documented_scenario(const Scenario& scenario) {
   documented.teleop.route = scenario.teleop.route;
   documented.teleop.recorded = scenario.teleop.recorded;
   documented.mounts = scenario.mounts;
+  document_sensors(scenario.sensors, documented.sensors);
   documented.stack = scenario.stack;
   documented.log.map_period_s = scenario.log.map_period_s;
   return documented;
@@ -60,7 +71,7 @@ StackDocuments stack_documents(const Scenario& scenario, const std::string& name
                 .seed = scenario.seed,
                 .tick = tick,
                 .limits = limits_of(scenario, files.robot),
-                .robot = text_of(files.robot_urdf),
+                .robot = files.robot_urdf_text,
                 .site = text_of(world / scenario.mission),
                 .goals = scenario.goals.empty() ? "" : text_of(world / scenario.goals),
                 .registration = files.map_registration ? text_of(registration_beside(world / scenario.map)) : "",
