@@ -24,9 +24,9 @@ struct AssembledModel {
 AssembledModel assemble_model(const std::string& world_xml, const RobotUrdf& robot_urdf, const Pose2& T_world_start,
                               const std::vector<StaticObstacleSettings>& obstacles = {});
 
-/// Returns the MJCF of a robot on a plane, with its base at a height above it and its joints at zero. It contains
-/// absolute paths of the robot's meshes. Throws InputError if the URDF is invalid.
-std::string mjcf_of(const RobotUrdf& robot_urdf, double height_m);
+/// Returns the MJCF of a robot on a plane, with the keyframe "standing" of its start posture. It contains absolute
+/// paths of the robot's meshes. Throws InputError if the URDF is invalid.
+std::string mjcf_of(const RobotUrdf& robot_urdf);
 
 /// Returns the ground height below the robot with its base at `T_world_body`, m: the highest collision surface below
 /// `max_ground_height_m` under any support point of its stance. The robot itself is ignored. Throws InputError if there

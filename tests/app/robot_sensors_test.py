@@ -156,7 +156,7 @@ class RobotSensors(unittest.TestCase):
 
     def test_the_built_in_stack_drives_with_two_lidars_and_uses_the_first(self):
         scenario = self.courier([], REAR + "  - {frame: tdlas, x_m: 0.4, z_m: 0.2}\n")
-        plain, both = (self.patrol("run", scenario, "--set", "time_limit_s=4", *more, "--out", name)
+        plain, both = (self.patrol("run", scenario, "--set", "time_limit_s=8", *more, "--out", name)
                        for name, more in (("plain", ("--set", "sensors.lidar_rear.enabled=false")), ("both", ())))
         self.assertEqual((plain.returncode, both.returncode), (4, 4), both.stderr)
         poses = [[content for _, content in messages(self.folder / run, "/pose")] for run in ("plain", "both")]

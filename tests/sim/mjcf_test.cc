@@ -25,7 +25,7 @@ TEST(Mjcf, StockMujocoReadsTheFileOfEachRobotWithTheSameCoordinatesBodiesAndMass
   for (const std::string& name : kRobots) {
     SCOPED_TRACE(name);
     const test::TemporaryFolder folder;
-    test::write_bytes(folder / "robot.xml", mjcf_of(urdf_of(name), 0.4));
+    test::write_bytes(folder / "robot.xml", mjcf_of(urdf_of(name)));
     char error[1000] = "";
     const ModelPtr read(mj_loadXML((folder / "robot.xml").c_str(), nullptr, error, sizeof(error)));
     ASSERT_TRUE(read) << error;
@@ -38,6 +38,15 @@ TEST(Mjcf, StockMujocoReadsTheFileOfEachRobotWithTheSameCoordinatesBodiesAndMass
     EXPECT_EQ(read->nbody, built.view->nbody);
     EXPECT_EQ(read->ngeom, built.view->ngeom);
     EXPECT_NEAR(mj_getTotalmass(read.get()), mj_getTotalmass(built.view.get()), 1e-6);
+    ASSERT_EQ(read->nbody, built.view->nbody);
+    for (int i = 0; i < 3 * read->nbody; ++i) {
+      EXPECT_NEAR(read->body_ipos[i], built.view->body_ipos[i], 1e-5) << name_of(*read, mjOBJ_BODY, i / 3);
+      EXPECT_NEAR(read->body_inertia[i], built.view->body_inertia[i], 1e-5 + 1e-5 * built.view->body_inertia[i])
+          << name_of(*read, mjOBJ_BODY, i / 3);
+    }
+    ASSERT_EQ(read->nkey, 1);
+    for (int i = 7; i < read->nq; ++i)
+      EXPECT_NEAR(read->key_qpos[i], built.start_qpos[static_cast<std::size_t>(i)], 1e-5);
     EXPECT_NEAR(mj_getTotalmass(read.get()), io::load_robot_description(urdf_of(name)).mass_kg, 1e-6);
   }
 }

@@ -103,7 +103,7 @@ void complete_mounts(const std::filesystem::path& file, const YAML::Node& docume
   std::set<std::string> frames;
   for (std::size_t i = 0; i < mounts.size(); ++i) {
     MountSettings& mount = mounts[i];
-    mount.location = location_of(file, list[i], fmt::format("mounts.{}", i));
+    mount.location = location_of(file, list.IsDefined() ? list[i] : list, fmt::format("mounts.{}", i));
     check_frame(mount);
     check_preset(mount);
     if (!frames.insert(mount.frame).second)

@@ -11,8 +11,8 @@
 
 namespace patrol::app {
 
-/// Completes the mounts of a file: sets their locations and checks frames and presets. `document` is the file with its
-/// overrides. Throws InputError with file, line and key.
+/// Completes the mounts of a file: sets their locations and checks frames and presets. `document` is the file; without
+/// its list of mounts, locations have no line. Throws InputError with file, line and key.
 void complete_mounts(const std::filesystem::path& file, const YAML::Node& document, std::vector<MountSettings>& mounts);
 
 /// Switches the sensor of a mount on and applies its preset.

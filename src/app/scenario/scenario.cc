@@ -75,6 +75,19 @@ std::filesystem::path find_named_file(const std::filesystem::path& world, const 
   return file;
 }
 
+/// Returns whether an override sets a key or a part of it. Overrides have no lines.
+bool is_overridden(const std::string& key, const std::vector<std::string>& overrides) {
+  return std::ranges::any_of(overrides, [&](const std::string& one) {
+    return one.starts_with(key) && (one.substr(key.size()).starts_with("=") || one.substr(key.size()).starts_with("."));
+  });
+}
+
+/// Returns a document of which the messages contain the lines; empty if an override sets the key.
+YAML::Node lines_of(const std::filesystem::path& file, const std::string& key,
+                    const std::vector<std::string>& overrides) {
+  return is_overridden(key, overrides) ? YAML::Node() : io::load_document(file, {});
+}
+
 /// Reads a scenario or a robot profile over the values in `settings`. Mounts of the file switch their sensors on before
 /// the settings of the sensors are read, and extend the mounts in `settings`. If the file selects another lidar, the
 /// as-built tolerances of that lidar are the defaults.
@@ -85,7 +98,7 @@ void read_over(const std::filesystem::path& file, const std::vector<std::string>
   Settings read = settings;
   io::read_settings(file, overrides, read);
   std::vector<MountSettings> mounts = std::move(read.mounts);
-  complete_mounts(file, io::load_document(file, overrides), mounts);
+  complete_mounts(file, lines_of(file, "mounts", overrides), mounts);
   for (const MountSettings& mount : mounts) mount_sensor(mount, settings.sensors);
   read = settings;
   io::read_settings(file, overrides, read);
@@ -182,11 +195,10 @@ Scenario load_scenario(const std::filesystem::path& file, const std::vector<std:
   const Scenario of_profile = scenario_of_profile(profile);
   Scenario scenario = of_profile;
   read_over(file, overrides, scenario);
-  const YAML::Node document = io::load_document(file, overrides);
-  scenario.robot_location = location_of(file, find_node(document, {"robot"}), "robot");
+  scenario.robot_location = location_of(file, find_node(lines_of(file, "robot", overrides), {"robot"}), "robot");
   if (const std::optional<RobotDescription> described = robot_of(robot, data_root, scenario.mounts)) {
     check_profile(profile, *described, of_profile);
-    disable_absent_sensors(*described, enabled_by_name(document), scenario);
+    disable_absent_sensors(*described, enabled_by_name(io::load_document(file, overrides)), scenario);
   }
   return scenario;
 }
