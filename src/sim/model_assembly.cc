@@ -57,12 +57,15 @@ void enable_sleep(mjSpec& spec) {
   mjs_findBody(&spec, frame_id::kBody)->sleep = mjSLEEP_NEVER;
 }
 
-/// Sets the inertial frames that bodies leave at the default: MuJoCo writes no inertia without one.
+/// Sets the inertial frames that bodies leave undefined, as MuJoCo's compiler does: to the pose of the body in its
+/// parent. MuJoCo writes no inertia without one.
 void complete_inertial_frames(mjSpec& spec) {
   for (mjsElement* element = mjs_firstElement(&spec, mjOBJ_BODY); element != nullptr;
        element = mjs_nextElement(&spec, element)) {
     mjsBody* body = mjs_asBody(element);
-    if (body->explicitinertial && !std::isfinite(body->ipos[0])) std::fill_n(body->ipos, 3, 0.0);
+    if (!body->explicitinertial || std::isfinite(body->ipos[0])) continue;
+    std::copy_n(body->pos, 3, body->ipos);
+    std::copy_n(body->quat, 4, body->iquat);
   }
 }
 

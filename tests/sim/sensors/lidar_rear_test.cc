@@ -65,6 +65,15 @@ std::vector<Scan> scans_of(const std::vector<SensorMessage>& messages) {
   return scans;
 }
 
+/// Ranges of a scan with a number for beams without a return, which compare unequal to themselves.
+std::vector<float> comparable(const LaserScan& scan) {
+  std::vector<float> ranges_m = scan.ranges_m;
+  for (float& range_m : ranges_m) {
+    if (std::isnan(range_m)) range_m = -1.0f;
+  }
+  return ranges_m;
+}
+
 /// Distance to the walls of the room by geometry.
 double wall_distance_m(const Pose3& T_room_lidar, double angle_rad) {
   const Eigen::Vector3d direction =
@@ -106,7 +115,7 @@ TEST(LidarRear, HasARandomStreamOfItsOwnAndChangesNoScanOfTheFirstLidar) {
   const auto rear = scans_of<RearLaserScan>(both);
   ASSERT_EQ(front.size(), alone.size());
   ASSERT_GE(front.size(), 4U);
-  for (std::size_t i = 0; i < front.size(); ++i) EXPECT_EQ(front[i].ranges_m, alone[i].ranges_m);
+  for (std::size_t i = 0; i < front.size(); ++i) EXPECT_EQ(comparable(front[i]), comparable(alone[i]));
   std::size_t num_equal_errors = 0;
   for (std::size_t beam = 0; beam < 360; ++beam) {
     const double angle_rad = rear[0].angle_min_rad + static_cast<double>(beam) * rear[0].angle_increment_rad;
