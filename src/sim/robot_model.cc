@@ -254,7 +254,8 @@ std::string text_of(const RobotUrdf& urdf) {
 }
 
 urdf::ModelInterfaceSharedPtr parse(const RobotUrdf& urdf) {
-  urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text_of(urdf));
+  const std::string text = text_of(urdf);
+  urdf::ModelInterfaceSharedPtr model = text.empty() ? nullptr : urdf::parseURDF(text);
   if (!model) throw InputError(urdf.path + ": not a valid URDF file");
   return model;
 }

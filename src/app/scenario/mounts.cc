@@ -73,6 +73,9 @@ void check_preset(const MountSettings& mount) {
     throw InputError(fmt::format("{}.preset = {}: only lidars have presets", mount.location, mount.preset));
   PresetNames presets;
   LidarSettings::fields(*lidar, presets);
+  std::erase_if(presets.names, [&](const std::string& name) {
+    return (LidarSettings::of_preset(name).rings > 1) != (mount.frame == "lidar3d");
+  });
   if (std::ranges::find(presets.names, mount.preset) == presets.names.end())
     throw InputError(
         fmt::format("{}.preset = {}: must be one of {}", mount.location, mount.preset, join(presets.names, ", ")));

@@ -64,8 +64,8 @@ struct KidnapSettings {
   }
 };
 
-/// Mount of a sensor: a frame that is added to the robot, with neither mass nor shape, or a frame of its URDF that is
-/// moved together with the shapes of its link. It switches the sensor on unless the settings of the sensor say
+/// Mount of a sensor: adds a frame to the robot, or moves a frame of its URDF together with the shapes of its link. An
+/// added frame has neither mass nor shape. A mount switches its sensor on unless the settings of the sensor say
 /// otherwise.
 struct MountSettings {
   std::string frame;                 ///< name of the sensor frame, e.g. "tdlas"

@@ -21,8 +21,8 @@ std::vector<SensorNeed> firmware_needs(const RobotDescription& robot);
 void require_sensors(const std::vector<SensorNeed>& needs, const RobotDescription& robot, const std::string& robot_name,
                      const std::string& location);
 
-/// Disables the sensors for which the robot has no frame. A sensor that a document of the file enables is kept and
-/// added to `scenario.requested`.
+/// Disables the sensors for which the robot has no frame. Those of `enabled_by_name` stay enabled and are added to
+/// `scenario.requested`.
 void disable_absent_sensors(const RobotDescription& robot, const std::vector<std::string>& enabled_by_name,
                             Scenario& scenario);
 

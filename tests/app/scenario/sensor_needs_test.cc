@@ -179,7 +179,10 @@ TEST(Mounts, MalformedMountsOfTheProfileAreRefusedWithFileLineAndKey) {
   EXPECT_THAT(refusal("{frame: lidar, parent: rear_left_wheel}"),
               HasSubstr(":3: mounts.0.parent = rear_left_wheel: not fixed to base_link"));
   EXPECT_THAT(refusal("{frame: lidar, preset: sick}"),
-              HasSubstr(":3: mounts.0.preset = sick: must be one of rplidar_s2, utm30lx, tim571, vlp16"));
+              HasSubstr(":3: mounts.0.preset = sick: must be one of rplidar_s2, utm30lx, tim571"));
+  EXPECT_THAT(refusal("{frame: lidar_rear, preset: vlp16}"), HasSubstr(":3: mounts.0.preset = vlp16: must be one of"));
+  EXPECT_THAT(refusal("{frame: lidar3d, preset: tim571}"),
+              HasSubstr(":3: mounts.0.preset = tim571: must be one of vlp16"));
   EXPECT_THAT(refusal("{frame: gnss, preset: utm30lx}"), HasSubstr(":3: mounts.0.preset = utm30lx: only lidars have"));
   EXPECT_THAT(refusal("{frame: lidar, x_m: 9.0}"), HasSubstr(":3: mounts.0.x_m: 9.0 is out of range"));
   EXPECT_THAT(refusal("{frame: lidar, x: 0.1}"), HasSubstr(":3: mounts.0.x: unknown key"));
