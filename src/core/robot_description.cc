@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "core/leg_kinematics.h"
 
 namespace patrol {
 
@@ -15,6 +16,8 @@ double RobotDescription::outline_radius_m() const {
 double RobotDescription::body_height_m() const {
   if (tracks) return tracks->body_height_m;
   double height_m = 0.0;
+  for (const LegGeometry& leg : legs)
+    height_m = std::max(height_m, leg.foot_radius_m - foot_position(leg, leg.standing_rad).z());
   for (const WheelGeometry& wheel : wheels) height_m = std::max(height_m, wheel.radius_m - wheel.center_in_body.z());
   return height_m;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <map>
 #include <numbers>
@@ -13,8 +14,22 @@
 
 namespace patrol {
 
-/// Geometry of a leg with three joints (abduction about x, hip about y, knee about y); all lengths are from the URDF.
-/// Left legs have positive `abduction_offset_m`.
+/// Joint of a leg with an arbitrary frame.
+struct LegJoint {
+  Pose3 T_parent_joint;  ///< pose in the frame of the previous joint, of the first joint in body, at angle 0
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< unit vector, in the frame of the joint
+};
+
+/// Three joints of a leg and its foot.
+struct LegChain {
+  std::array<LegJoint, 3> joints = {};             ///< from the body to the foot
+  Eigen::Vector3d foot = Eigen::Vector3d::Zero();  ///< center of the foot in the frame of the last joint, m
+};
+
+/// Geometry of a leg with three joints; all lengths are from the URDF. Left legs have positive `abduction_offset_m`.
+///
+/// Most legs have their abduction about x, then hip and knee about y, and hang straight down at zero; the lengths here
+/// describe them completely. Other legs have a `chain`, and the lengths are those of their standing posture.
 struct LegGeometry {
   std::string name;                                       ///< "FL", "FR", "RL", "RR"
   Eigen::Vector3d hip_in_body = Eigen::Vector3d::Zero();  ///< position of the abduction axis in body, m
@@ -22,6 +37,11 @@ struct LegGeometry {
   double thigh_m = 0.0;
   double shank_m = 0.0;
   double foot_radius_m = 0.0;
+  std::string foot_link = {};                       ///< link with the sphere of the foot
+  Eigen::Vector3d standing_rad = {0.0, 0.8, -1.6};  ///< joint angles of the standing posture
+  std::optional<LegChain> chain = std::nullopt;     ///< joints in general position
+
+  double length_m() const { return thigh_m + shank_m; }
 };
 
 struct JointLimit {
@@ -74,12 +94,14 @@ struct AntennaGeometry {
 struct RobotDescription {
   std::string name;
   double mass_kg = 0.0;
-  std::vector<LegGeometry> legs;           ///< FL, FR, RL, RR; empty for a robot without legs
+  std::vector<LegGeometry> legs;  ///< FL, FR, RL, RR; empty for a robot without legs
+  /// Moments of inertia of the standing robot about its center of mass; robots with legs only.
+  Eigen::Vector3d standing_inertia_kgm2 = Eigen::Vector3d::Zero();
   std::optional<TrackGeometry> tracks;     ///< tracked robots only
   std::vector<WheelGeometry> wheels;       ///< wheels on the ground; empty for a robot without wheels
   std::optional<AntennaGeometry> antenna;  ///< robots with a link `tem_mount` only
-  /// Leg by leg: abduction, hip, knee; for tracked robots the sprockets: left, right; for wheeled robots the driven
-  /// wheels and then the steering joints.
+  /// Leg by leg, from the body to the foot: three joints; for tracked robots the sprockets: left, right; for wheeled
+  /// robots the driven wheels and then the steering joints.
   std::vector<std::string> joint_names;
   std::vector<JointLimit> joint_limits;      ///< [joint]
   std::vector<Eigen::Vector2d> footprint_m;  ///< convex hull of the collision shapes in level, counterclockwise
@@ -90,8 +112,8 @@ struct RobotDescription {
   /// Returns the radius of the circle around the body origin that encloses the footprint.
   double outline_radius_m() const;
 
-  /// Returns the height of the body origin above level ground by the geometry of tracks or wheels, m; 0 for a robot
-  /// with legs.
+  /// Returns the height of the body origin above level ground by the geometry of tracks, wheels, or legs in their
+  /// standing posture, m.
   double body_height_m() const;
 
   /// Returns the pose of a sensor frame in body. Throws InputError if the robot has no such frame.

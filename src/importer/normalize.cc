@@ -37,9 +37,9 @@ void Normalizer::check_options() const {
     if (source_.find_link(link) == nullptr)
       throw InputError(fmt::format("{}: frame {}: unknown link {}", source_.file, frame, io::on_one_line(link)));
   }
-  const std::set<std::string> drives = {"", "differential", "ackermann", "mecanum"};
+  const std::set<std::string> drives = {"", "differential", "ackermann", "mecanum", "legs"};
   if (!drives.contains(options_.drive)) {
-    throw InputError(fmt::format("{}: drive {}: must be differential, ackermann or mecanum", source_.file,
+    throw InputError(fmt::format("{}: drive {}: must be differential, ackermann, mecanum or legs", source_.file,
                                  io::on_one_line(options_.drive)));
   }
   const std::set<std::string> directions = {"", "x", "-x", "y", "-y"};
@@ -47,6 +47,24 @@ void Normalizer::check_options() const {
     throw InputError(
         fmt::format("{}: forward {}: must be x, -x, y or -y", source_.file, io::on_one_line(options_.forward)));
   }
+}
+
+/// Finds the legs or the wheels.
+void Normalizer::find_drive() {
+  const bool may_have_legs = options_.drive.empty() || options_.drive == "legs";
+  if (may_have_legs) legs_ = find_legs(source_);
+  if (!legs_.empty()) {
+    result_.drive = DriveType::kLegs;
+    for (const FoundLeg& leg : legs_) kept_.insert(leg.joints.begin(), leg.joints.end());
+    return;
+  }
+  if (options_.drive == "legs") {
+    throw InputError(source_.file +
+                     ": drive legs: the robot must have four legs of three revolute joints each, one behind the other");
+  }
+  found_ = find_wheels(source_);
+  for (const Assumption& assumption : found_.assumptions) result_.assumptions.push_back(assumption);
+  choose_carriers();
 }
 
 /// Chooses the base: the root, without the massless links above the first one with mass, shapes or several children.
@@ -60,7 +78,7 @@ void Normalizer::choose_base() {
   base_ = options_.base_link;
   if (!base_.empty()) {
     if (!chassis_.contains(base_))
-      source_.fail(source_.link(base_).line, base_, "is on a wheel: the base link must be on the chassis");
+      source_.fail(source_.link(base_).line, base_, "moves against the body: the base link must be on the chassis");
     return;
   }
   base_ = root;
@@ -77,8 +95,8 @@ void Normalizer::choose_base() {
   }
 }
 
-/// Chooses the frame base_link: the frame of the base link, level, with the axles along y and between the wheels.
-void Normalizer::choose_frame() {
+/// Makes the frame of the base link level.
+void Normalizer::level_base() {
   const Pose3 T_root_link = T_root_link_.at(base_);
   T_root_base_ = remove_tilt(T_root_link);
   const double tilt = std::acos(std::clamp((T_root_link.rotation * Eigen::Vector3d::UnitZ()).z(), -1.0, 1.0));
@@ -86,7 +104,11 @@ void Normalizer::choose_frame() {
   else
     assume("base_link", fmt::format("is leveled: {} is tilted by {:.1f} degrees", base_, tilt * kDegPerRad),
            "--base-link LINK");
+}
 
+/// Chooses the frame base_link: the frame of the base link, level, with the axles along y and between the wheels.
+void Normalizer::choose_frame() {
+  level_base();
   const std::map<std::string, double> yaws = {
       {"x", 0.0}, {"y", 0.5 * std::numbers::pi}, {"-x", std::numbers::pi}, {"-y", -0.5 * std::numbers::pi}};
   double yaw = 0.0;
@@ -244,7 +266,7 @@ void Normalizer::report_frozen_joints() {
     names.push_back(joint.name);
   }
   if (names.empty()) return;
-  assume(list_of(names), "fixed at zero: not joints of wheels", "none: other joints are not simulated");
+  assume(list_of(names), "fixed at zero: not joints of wheels or legs", "none: other joints are not simulated");
 }
 
 std::string Normalizer::unique(std::set<std::string>& used, const std::string& wanted,
@@ -283,19 +305,26 @@ std::string Normalizer::joint_name(const std::string& source_name) {
 
 NormalizedRobot Normalizer::run() {
   check_options();
-  found_ = find_wheels(source_);
-  for (const Assumption& assumption : found_.assumptions) result_.assumptions.push_back(assumption);
-  choose_carriers();
+  find_drive();
   choose_base();
-  choose_frame();
-  choose_drive();
+  if (result_.drive == DriveType::kLegs) {
+    choose_legged_frame();
+  } else {
+    choose_frame();
+    choose_drive();
+  }
   report_frozen_joints();
   reserve_names();
-  add_supports();
-  add_chassis();
-  add_wheels();
-  const double mass_kg = total_mass_kg();
-  for (const Support& support : supports_) add_support(support, mass_kg);
+  if (result_.drive == DriveType::kLegs) {
+    add_chassis();
+    add_legs();
+  } else {
+    add_supports();
+    add_chassis();
+    add_wheels();
+    const double mass_kg = total_mass_kg();
+    for (const Support& support : supports_) add_support(support, mass_kg);
+  }
   add_sensors();
   finish();
   return std::move(result_);

@@ -169,8 +169,12 @@ void Normalizer::check_clearance() {
 
 /// Computes the length and the turning radius, for the settings.
 void Normalizer::finish() {
-  check_balance();
-  check_clearance();
+  if (result_.drive == DriveType::kLegs) {
+    check_legged_balance();
+  } else {
+    check_balance();
+    check_clearance();
+  }
   result_.assumptions = joined(result_.assumptions);
   double front_m = -std::numeric_limits<double>::infinity(), rear_m = -front_m;
   for (const std::string& name : chassis_) {

@@ -60,9 +60,10 @@ struct NormalizedLink {
 };
 
 /// Drive of the result.
-enum class DriveType { kDifferential, kAckermann, kMecanum };
+enum class DriveType { kDifferential, kAckermann, kMecanum, kLegs };
 
-/// Robot in Patrol's conventions: base_link is the root, wheels roll about y, other links are fixed.
+/// Robot in Patrol's conventions: base_link is the root, wheels roll about y, legs have three joints and a ball as
+/// foot, other links are fixed.
 struct NormalizedRobot {
   std::string name = {};
   DriveType drive = DriveType::kDifferential;
@@ -73,6 +74,7 @@ struct NormalizedRobot {
   double max_speed_mps = 0.0;                       ///< by the slowest driven wheel
   double length_m = 0.0;                            ///< of the collision shapes, along x
   double min_turning_radius_m = 0.0;
+  double leg_m = 0.0;  ///< length of the longest leg; robots with legs only
   std::vector<Assumption> assumptions = {};
 };
 

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "importer/leg_finder.h"
 #include "importer/normalize.h"
 #include "importer/wheel_finder.h"
 
@@ -34,7 +35,7 @@ inline bool is_reserved_link(const std::string& name) {
       "right_track", "left_sprocket", "right_sprocket", "base_footprint", "map", "odom"};
   return kReserved.contains(name) ||
          std::find(kSensorFrames.begin(), kSensorFrames.end(), name) != kSensorFrames.end() ||
-         name.starts_with("ultrasonic_") || name.ends_with("_foot");
+         name.starts_with("ultrasonic_");
 }
 
 inline bool is_reserved_joint(const std::string& name) { return name.starts_with("tem_") || name == "robot"; }
@@ -85,8 +86,11 @@ class Normalizer {
   void assume(const std::string& subject, const std::string& text, const std::string& override_with) {
     result_.assumptions.push_back({subject, text, override_with});
   }
+  void find_drive();
   void choose_base();
+  void level_base();
   void choose_frame();
+  void choose_legged_frame();
   void choose_carriers();
   void choose_drive();
   void check_fixed_sides(const std::vector<const FoundWheel*>& wheels) const;
@@ -100,6 +104,19 @@ class Normalizer {
 
   void add_chassis();
   void add_wheels();
+  /// Ball at the end of a leg, in the frame of the last joint.
+  struct Foot {
+    Eigen::Vector3d center_m = Eigen::Vector3d::Zero();
+    double radius_m = 0.0;
+    std::string link = {};   ///< link of the file whose collision shape it is; empty: none
+    bool is_sphere = false;  ///< the file has this ball
+  };
+  Foot find_foot(const FoundLeg& leg);
+  Motor motor_of_leg(const SourceJoint& joint, double mass_kg, double leg_m);
+  JointRange range_of_leg(const SourceJoint& joint);
+  Shape shank_of(const Foot& foot) const;
+  void add_legs();
+  void check_legged_balance();
   void add_supports();
   void add_support(const Support& support, double robot_mass_kg);
   void add_sensors();
@@ -124,6 +141,7 @@ class Normalizer {
   const SourceRobot& source_;
   const NormalizeOptions& options_;
   std::map<std::string, Pose3> T_root_link_;
+  std::vector<FoundLeg> legs_;  ///< four; none for a robot on wheels
   FoundWheels found_;
   std::set<const SourceJoint*> kept_;    ///< movable joints of the result
   std::set<const SourceJoint*> driven_;  ///< wheel joints with motors

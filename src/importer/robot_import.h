@@ -19,7 +19,7 @@ struct RobotImportOptions {
   std::string base_link = {};  ///< link of the file; empty: by rule
   std::string forward = {};    ///< direction of travel in the base link: x, -x, y, -y; empty: by rule
   std::map<std::string, std::string> frames = {};  ///< sensor frame of Patrol to link of the file
-  std::string drive = {};                          ///< differential, ackermann or mecanum; empty: by rule
+  std::string drive = {};                          ///< differential, ackermann, mecanum or legs; empty: by rule
 };
 
 /// Robot in Patrol's conventions, not yet written.

@@ -24,30 +24,13 @@ double rounded_down(double value, double step, double min, double max) {
   return std::clamp(std::floor(value / step + 1e-9) * step, min, max);
 }
 
-}  // namespace
-
-std::string settings_of(const NormalizedRobot& robot, const std::string& comment) {
-  const auto has = [&robot](const char* frame) {
-    return std::find(robot.sensor_frames.begin(), robot.sensor_frames.end(), frame) != robot.sensor_frames.end()
-               ? "true"
-               : "false";
-  };
+/// Returns the settings of a robot on wheels.
+std::string wheel_settings(const NormalizedRobot& robot) {
   const bool is_ackermann = robot.drive == DriveType::kAckermann;
   const double max_speed_mps = rounded_down(robot.max_speed_mps, 0.01, 0.05, 1.5);
   const double planner_speed_mps = std::min(1.0, max_speed_mps);
   const double approach_m = rounded_down(0.8 * robot.length_m, 0.05, 0.3, is_ackermann ? 3.0 : 1.5);
-  std::string text = fmt::format("# {}\n", comment);
-  text += "sensors:\n";
-  const auto preset = [&robot](const char* frame) {
-    const auto chosen = robot.presets.find(frame);
-    return chosen == robot.presets.end() ? "" : ", preset: " + chosen->second;
-  };
-  for (const char* frame : {"lidar", "lidar_rear", "lidar3d"})
-    text += fmt::format("  {}: {{enabled: {}{}}}\n", frame, has(frame), preset(frame));
-  text += fmt::format("  gnss: {{enabled: {}}}\n", has("gnss"));
-  text += fmt::format("  depth_camera: {{enabled: {}}}\n", has("depth_camera"));
-  text += fmt::format("  tdlas: {{enabled: {}}}\n", has("tdlas"));
-  text += fmt::format("  uwb: {{enabled: {}}}\n", has("uwb"));
+  std::string text;
   text += "  joint_encoders: {rate_hz: 50.0, counts_per_revolution: 16384}\n";
   text += "  foot_contact: {enabled: false}\n";
   text += "  hall: {enabled: false}\n";
@@ -66,6 +49,43 @@ std::string settings_of(const NormalizedRobot& robot, const std::string& comment
   text += "    local_planner:\n";
   text += fmt::format("      dwa: {{max_speed_mps: {:.2f}, max_acceleration_mps2: 0.5}}\n", planner_speed_mps);
   return text;
+}
+
+/// Returns the settings of a robot with legs. Gait and gains are scaled when the robot is loaded.
+std::string leg_settings(const NormalizedRobot& robot) {
+  // Froude number of the default speed with legs of 0.426 m.
+  const double planner_speed_mps = rounded_down(0.8 * std::sqrt(robot.leg_m / 0.426), 0.01, 0.05, 1.5);
+  std::string text = "  hall: {enabled: false}\n";
+  text += "stack:\n";
+  text += "  odometry_source: legged\n";
+  text += "  navigation:\n";
+  text += "    kinematics: omnidirectional\n";
+  text += "    local_planner:\n";
+  text += fmt::format("      dwa: {{max_speed_mps: {:.2f}}}\n", planner_speed_mps);
+  return text;
+}
+
+}  // namespace
+
+std::string settings_of(const NormalizedRobot& robot, const std::string& comment) {
+  const auto has = [&robot](const char* frame) {
+    return std::find(robot.sensor_frames.begin(), robot.sensor_frames.end(), frame) != robot.sensor_frames.end()
+               ? "true"
+               : "false";
+  };
+  std::string text = fmt::format("# {}\n", comment);
+  text += "sensors:\n";
+  const auto preset = [&robot](const char* frame) {
+    const auto chosen = robot.presets.find(frame);
+    return chosen == robot.presets.end() ? "" : ", preset: " + chosen->second;
+  };
+  for (const char* frame : {"lidar", "lidar_rear", "lidar3d"})
+    text += fmt::format("  {}: {{enabled: {}{}}}\n", frame, has(frame), preset(frame));
+  text += fmt::format("  gnss: {{enabled: {}}}\n", has("gnss"));
+  text += fmt::format("  depth_camera: {{enabled: {}}}\n", has("depth_camera"));
+  text += fmt::format("  tdlas: {{enabled: {}}}\n", has("tdlas"));
+  text += fmt::format("  uwb: {{enabled: {}}}\n", has("uwb"));
+  return text + (robot.drive == DriveType::kLegs ? leg_settings(robot) : wheel_settings(robot));
 }
 
 }  // namespace patrol::importer

@@ -16,18 +16,13 @@
 
 #include "core/error.h"
 #include "core/geometry/convex_polygon.h"
-#include "core/leg_kinematics.h"
 #include "io/urdf_reader.h"
 
 namespace patrol::io {
 namespace {
 
-constexpr std::array kLegNames = {"FL", "FR", "RL", "RR"};
 constexpr std::array kSideNames = {"left", "right"};
 constexpr std::array kTrackNames = {"left_track", "right_track"};
-
-/// Nominal standing posture (abduction, hip, knee), rad, for the footprint.
-const Eigen::Vector3d kStandingPosture(0.0, 0.8, -1.6);
 
 /// Returns whether all words are finite numbers.
 bool are_numbers(const std::string& words_text) {
@@ -142,23 +137,6 @@ Pose3 UrdfReader::joint_origin(const std::string& name) const {
   return to_pose(joint(name)->parent_to_joint_origin_transform);
 }
 
-double UrdfReader::foot_radius_m(const std::string& link) const {
-  const urdf::LinkConstSharedPtr foot = model_->getLink(link);
-  if (!foot || !foot->collision || foot->collision->geometry->type != urdf::Geometry::SPHERE) {
-    fail(link, "collision shape of a foot must be a sphere");
-  }
-  return std::static_pointer_cast<const urdf::Sphere>(foot->collision->geometry)->radius;
-}
-
-LegGeometry UrdfReader::read_leg(const std::string& name) const {
-  return {.name = name,
-          .hip_in_body = joint_origin(name + "_abduction_joint").position,
-          .abduction_offset_m = joint_origin(name + "_hip_joint").position.y(),
-          .thigh_m = -joint_origin(name + "_knee_joint").position.z(),
-          .shank_m = -joint_origin(name + "_foot_joint").position.z(),
-          .foot_radius_m = foot_radius_m(name + "_foot")};
-}
-
 double UrdfReader::sprocket_radius_m(const std::string& link) const {
   const urdf::LinkConstSharedPtr sprocket = model_->getLink(link);
   if (!sprocket || !sprocket->collision || sprocket->collision->geometry->type != urdf::Geometry::CYLINDER) {
@@ -223,8 +201,8 @@ double contact_length_m(const std::vector<TrackWheel>& wheels) {
 
 }  // namespace
 
-/// Returns the footprint: the trunk box and the feet in the standing posture, or the tracks, seen from above.
-std::vector<Eigen::Vector2d> UrdfReader::read_footprint(const RobotDescription& robot) const {
+/// Returns the footprint of a tracked robot: the box of the body and the tracks, seen from above.
+std::vector<Eigen::Vector2d> UrdfReader::read_tracked_footprint() const {
   std::vector<Eigen::Vector2d> points;
   const urdf::LinkConstSharedPtr base = model_->getLink(frame_id::kBody);
   if (base && base->collision && base->collision->geometry->type == urdf::Geometry::BOX) {
@@ -233,15 +211,7 @@ std::vector<Eigen::Vector2d> UrdfReader::read_footprint(const RobotDescription& 
       for (const double y : {-0.5, 0.5}) points.emplace_back(x * size.x, y * size.y);
     }
   }
-  for (const LegGeometry& leg : robot.legs) {
-    const Eigen::Vector3d foot = foot_position(leg, kStandingPosture);
-    for (int corner = 0; corner < 8; ++corner) {
-      const double angle = corner * M_PI / 4.0;
-      points.emplace_back(foot.head<2>() + leg.foot_radius_m * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
-    }
-  }
   for (const char* track : kTrackNames) {
-    if (!robot.tracks) break;
     for (const TrackWheel& wheel : read_track_wheels(track)) {
       for (const double x : {-wheel.radius_m, wheel.radius_m}) {
         for (const double y : {-0.5, 0.5})
@@ -250,16 +220,6 @@ std::vector<Eigen::Vector2d> UrdfReader::read_footprint(const RobotDescription& 
     }
   }
   return convex_hull(std::move(points));
-}
-
-void UrdfReader::read_legs(RobotDescription& robot) const {
-  for (const char* leg : kLegNames) {
-    robot.legs.push_back(read_leg(leg));
-    for (const char* joint_suffix : {"_abduction_joint", "_hip_joint", "_knee_joint"}) {
-      robot.joint_names.push_back(std::string(leg) + joint_suffix);
-      robot.joint_limits.push_back(read_limit(robot.joint_names.back()));
-    }
-  }
 }
 
 void UrdfReader::read_tracks(RobotDescription& robot) const {
@@ -323,13 +283,16 @@ RobotDescription UrdfReader::read() const {
     throw InputError(fmt::format("{}: link not found: {}", path_, frame_id::kBody));
   if (model_->getLink(kTrackNames[0])) {
     read_tracks(robot);
-  } else if (has_wheels()) {
+    robot.footprint_m = read_tracked_footprint();
+  } else if (has_wheels() && !has_legs()) {
     read_wheels(robot);
+    robot.footprint_m = read_wheeled_footprint();
   } else {
     read_legs(robot);
+    robot.standing_inertia_kgm2 = standing_inertia_kgm2(robot);
+    robot.footprint_m = read_legged_footprint(robot);
   }
   if (model_->getLink("tem_mount")) robot.antenna = read_antenna();
-  robot.footprint_m = robot.wheels.empty() ? read_footprint(robot) : read_wheeled_footprint();
   return robot;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <utility>
 #include <vector>
@@ -60,8 +61,15 @@ class UrdfReader {
   void check_inertias() const;
   urdf::JointConstSharedPtr joint(const std::string& name) const;
   Pose3 joint_origin(const std::string& name) const;
-  LegGeometry read_leg(const std::string& name) const;
+  std::vector<urdf::LinkConstSharedPtr> leg_ends() const;
+  bool has_legs() const;
+  LegGeometry read_chain(const urdf::LinkConstSharedPtr& end) const;
+  void choose_standing(const std::array<JointLimit, 3>& limits, double mass_kg, LegGeometry& leg) const;
   void read_legs(RobotDescription& robot) const;
+  void check_joints(const RobotDescription& robot) const;
+  Pose3 T_body_standing(const urdf::Link& link, const RobotDescription& robot) const;
+  Eigen::Vector3d standing_inertia_kgm2(const RobotDescription& robot) const;
+  std::vector<Eigen::Vector2d> read_legged_footprint(const RobotDescription& robot) const;
   void read_tracks(RobotDescription& robot) const;
   bool has_wheels() const;
   WheelGeometry read_wheel_shape(const urdf::Link& link) const;
@@ -70,14 +78,14 @@ class UrdfReader {
   void check_wheels(const RobotDescription& robot) const;
   std::vector<Eigen::Vector3d> read_vertices(const urdf::Mesh& mesh) const;
   std::vector<Eigen::Vector3d> outline_points(const urdf::Geometry& geometry) const;
+  void add_outline(const urdf::Link& link, const Pose3& T_body_link, std::vector<Eigen::Vector2d>& points) const;
   std::vector<Eigen::Vector2d> read_wheeled_footprint() const;
   AntennaGeometry read_antenna() const;
   JointLimit read_limit(const std::string& name) const;
-  double foot_radius_m(const std::string& link) const;
   double sprocket_radius_m(const std::string& link) const;
   std::vector<TrackWheel> read_track_wheels(const std::string& track) const;
   Pose3 T_body_link(const urdf::Link& link) const;
-  std::vector<Eigen::Vector2d> read_footprint(const RobotDescription& robot) const;
+  std::vector<Eigen::Vector2d> read_tracked_footprint() const;
 
   std::string path_;
   std::string text_;

@@ -175,18 +175,21 @@ std::vector<Eigen::Vector3d> UrdfReader::outline_points(const urdf::Geometry& ge
   return points;
 }
 
+/// Appends the outlines of the collision shapes of a link, seen from above.
+void UrdfReader::add_outline(const urdf::Link& link, const Pose3& T_body_link,
+                             std::vector<Eigen::Vector2d>& points) const {
+  for (const urdf::CollisionSharedPtr& collision : link.collision_array) {
+    Pose3 T_body_shape = T_body_link * to_pose(collision->origin);
+    if (collision->geometry->type == urdf::Geometry::SPHERE) T_body_shape.rotation.setIdentity();
+    for (const Eigen::Vector3d& point : outline_points(*collision->geometry))
+      points.emplace_back((T_body_shape * point).head<2>());
+  }
+}
+
 /// Returns all collision shapes seen from above.
 std::vector<Eigen::Vector2d> UrdfReader::read_wheeled_footprint() const {
   std::vector<Eigen::Vector2d> points;
-  for (const auto& [name, link] : model_->links_) {
-    const Pose3 T_body = T_body_link(*link);
-    for (const urdf::CollisionSharedPtr& collision : link->collision_array) {
-      Pose3 T_body_shape = T_body * to_pose(collision->origin);
-      if (collision->geometry->type == urdf::Geometry::SPHERE) T_body_shape.rotation.setIdentity();
-      for (const Eigen::Vector3d& point : outline_points(*collision->geometry))
-        points.emplace_back((T_body_shape * point).head<2>());
-    }
-  }
+  for (const auto& [name, link] : model_->links_) add_outline(*link, T_body_link(*link), points);
   return convex_hull(std::move(points));
 }
 

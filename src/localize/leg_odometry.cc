@@ -25,11 +25,9 @@ StanceFoot stance_foot(const LegGeometry& leg, int index, const LegSample& sampl
   const Eigen::Vector3d angle = sample.angle_rad.col(index);
   const Eigen::Vector3d speed = sample.speed_radps.col(index);
   const Eigen::Vector3d center_to_contact = -leg.foot_radius_m * up_in_body;
-  const Eigen::Vector3d pitch_axis(0.0, std::cos(angle[0]), std::sin(angle[0]));
-  const Eigen::Vector3d shank_rate = speed[0] * Eigen::Vector3d::UnitX() + (speed[1] + speed[2]) * pitch_axis;
   return {.leg = index,
           .p_contact = foot_position(leg, angle) + center_to_contact,
-          .v_contact = foot_jacobian(leg, angle) * speed + shank_rate.cross(center_to_contact)};
+          .v_contact = foot_jacobian(leg, angle) * speed + shank_rate(leg, angle, speed).cross(center_to_contact)};
 }
 
 std::optional<LegVelocity> fuse_feet(const StanceFeet& feet, const Eigen::Vector3d& omega_body,

@@ -8,16 +8,36 @@
 namespace patrol::sim {
 namespace {
 
-constexpr double kRobotExtent_m = 0.8;  // maximum extent of a robot from its origin, lying on its side with its legs
-                                        // stretched
+constexpr double kMinRobotExtent_m = 0.8;   // extent of a robot from its origin, if its parts reach less
 constexpr double kRebuildDistance_m = 0.2;  // travel after which the tree is rebuilt
 constexpr double kMotionMargin_m = 0.05;    // exceeds the motion of any body in one tick
+
+/// Returns the largest distance of a part of the robot from its origin in any posture.
+double robot_extent_m(const mjModel& physics, int robot) {
+  std::vector<double> reach_m(static_cast<std::size_t>(physics.nbody), 0.0);  // of the origin of each body
+  double extent_m = kMinRobotExtent_m;
+  for (int body = std::max(robot, 1); body < physics.nbody; ++body) {
+    if (physics.body_rootid[body] != robot) continue;
+    const auto index = static_cast<std::size_t>(body);
+    if (body != robot) {
+      reach_m[index] = reach_m[static_cast<std::size_t>(physics.body_parentid[body])] +
+                       Eigen::Vector3d(physics.body_pos + 3 * body).norm();
+    }
+    for (int i = 0; i < physics.body_geomnum[body]; ++i) {
+      const int geom = physics.body_geomadr[body] + i;
+      extent_m = std::max(extent_m, reach_m[index] + Eigen::Vector3d(physics.geom_pos + 3 * geom).norm() +
+                                        physics.geom_rbound[geom]);
+    }
+  }
+  return extent_m;
+}
 
 }  // namespace
 
 CollisionCuller::CollisionCuller(mjModel& physics)
     : physics_(physics),
       robot_(mj_name2id(&physics, mjOBJ_BODY, frame_id::kBody)),
+      robot_extent_m_(robot_extent_m(physics, robot_)),
       bvh_center_(Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity())) {
   const int root = physics.body_bvhadr[0];
   for (int node = root; node < root + physics.body_bvhnum[0]; ++node) {
@@ -45,7 +65,7 @@ void CollisionCuller::update(const mjData& data) {
   const Eigen::Vector3d robot(data.xpos + 3 * robot_);
   if (!leaves_.empty() && !((robot - bvh_center_).cwiseAbs().maxCoeff() < kRebuildDistance_m)) rebuild_bvh(robot);
   for (const Actor& actor : actors_) {
-    const double reach = actor.radius_m + kRobotExtent_m + kMotionMargin_m;
+    const double reach = actor.radius_m + robot_extent_m_ + kMotionMargin_m;
     const bool is_near = (Eigen::Vector3d(data.xpos + 3 * actor.body) - robot).squaredNorm() < reach * reach;
     physics_.body_contype[actor.body] = is_near ? actor.contype : 0;
     physics_.body_conaffinity[actor.body] = is_near ? actor.conaffinity : 0;
@@ -55,7 +75,7 @@ void CollisionCuller::update(const mjData& data) {
 void CollisionCuller::rebuild_bvh(const Eigen::Vector3d& robot) {
   bvh_center_ = robot;
   near_leaves_.clear();
-  const Eigen::Array3d reach = Eigen::Array3d::Constant(kRobotExtent_m + kRebuildDistance_m + kMotionMargin_m);
+  const Eigen::Array3d reach = Eigen::Array3d::Constant(robot_extent_m_ + kRebuildDistance_m + kMotionMargin_m);
   for (const Leaf& leaf : leaves_) {
     if (((leaf.center - robot).array().abs() < leaf.half.array() + reach).all()) near_leaves_.push_back(leaf);
   }

@@ -37,6 +37,7 @@ class CollisionCuller {
 
   mjModel& physics_;
   int robot_;
+  double robot_extent_m_;
   std::vector<Leaf> leaves_;  ///< all geoms of the world body
   std::vector<Actor> actors_;
   std::vector<Leaf> near_leaves_;  ///< geoms in the present tree

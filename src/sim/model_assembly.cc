@@ -88,29 +88,25 @@ double ground_height_m(const mjModel& model, const mjData& data, const Stance& s
   return max_ground_height_m - nearest_m;
 }
 
-void set_start_posture(const mjModel& model, mjtNum* qpos) {
-  for (int joint = 0; joint < model.njnt; ++joint) {
-    if (model.jnt_type[joint] != mjJNT_HINGE) continue;
-    const std::string_view joint_name = name_of(model, mjOBJ_JOINT, joint);
-    const int kind = joint_name.ends_with("_abduction_joint") ? 0
-                     : joint_name.ends_with("_hip_joint")     ? 1
-                     : joint_name.ends_with("_knee_joint")    ? 2
-                                                              : -1;
-    if (kind >= 0) qpos[model.jnt_qposadr[joint]] = kStartPosture[kind];
+void set_standing_posture(const mjModel& model, const RobotDescription& robot, mjtNum* qpos) {
+  for (std::size_t i = 0; i < 3 * robot.legs.size(); ++i) {
+    const int joint = mj_name2id(&model, mjOBJ_JOINT, robot.joint_names[i].c_str());
+    if (joint < 0) throw InputError("robot model: joint not found: " + robot.joint_names[i]);
+    qpos[model.jnt_qposadr[joint]] = robot.legs[i / 3].standing_rad[static_cast<Eigen::Index>(i % 3)];
   }
 }
 
-std::string mjcf_of(const RobotUrdf& robot_urdf) {
+std::string mjcf_of(const RobotUrdf& robot_urdf, const RobotDescription& robot) {
   constexpr double kStraightLegs_m = 0.2;
   const SpecPtr spec = parse_spec(R"(<mujoco><option timestep="0.002"/><worldbody><light pos="0 0 3"/>
       <geom name="ground" type="plane" size="10 10 0.1" conaffinity="2"/></worldbody></mujoco>)");
-  const double height_m = to_stance(robot_urdf).height_m;
-  add_robot(*spec, robot_urdf, to_pose3(Pose2{}, height_m));
+  const double height_m = to_stance(robot_urdf, robot).height_m;
+  add_robot(*spec, robot_urdf, robot, to_pose3(Pose2{}, height_m));
   complete_inertial_frames(*spec);
   const ModelPtr model = compile(*spec, robot_urdf.path);
   std::vector<double> qpos(model->qpos0, model->qpos0 + model->nq);
-  set_start_posture(*model, qpos.data());
-  if (!std::equal(qpos.begin(), qpos.end(), model->qpos0))  // legs that are straight at zero reach below the ground
+  set_standing_posture(*model, robot, qpos.data());
+  if (!robot.legs.empty())  // legs that are straight at zero reach below the ground
     mjs_findBody(spec.get(), frame_id::kBody)->pos[2] += kStraightLegs_m;
   stow_antenna(*model, qpos.data());
   mjsKey* key = mjs_addKey(spec.get());
@@ -125,20 +121,21 @@ std::string mjcf_of(const RobotUrdf& robot_urdf) {
   return xml;
 }
 
-AssembledModel assemble_model(const std::string& world_xml, const RobotUrdf& robot_urdf, const Pose2& T_world_start,
-                              const std::vector<StaticObstacleSettings>& obstacles) {
+AssembledModel assemble_model(const std::string& world_xml, const RobotUrdf& robot_urdf, const RobotDescription& robot,
+                              const Pose2& T_world_start, const std::vector<StaticObstacleSettings>& obstacles) {
   AssembledModel assembled;
-  assembled.stance = to_stance(robot_urdf);
+  assembled.stance = to_stance(robot_urdf, robot);
   const double height_m = start_height_m(world_xml, *load_world(world_xml, obstacles), assembled.stance, T_world_start);
   const SpecPtr view = load_world(world_xml, obstacles), physics = load_world(world_xml, obstacles);
-  for (mjSpec* spec : {view.get(), physics.get()}) add_robot(*spec, robot_urdf, to_pose3(T_world_start, height_m));
+  for (mjSpec* spec : {view.get(), physics.get()})
+    add_robot(*spec, robot_urdf, robot, to_pose3(T_world_start, height_m));
   strip_visual_geoms(*physics);
   enable_sleep(*physics);
   assembled.view = compile(*view, world_xml);
   assembled.physics = compile(*physics, world_xml);
   const mjModel& model = *assembled.physics;
   assembled.start_qpos.assign(model.qpos0, model.qpos0 + model.nq);
-  set_start_posture(model, assembled.start_qpos.data());
+  set_standing_posture(model, robot, assembled.start_qpos.data());
   stow_antenna(model, assembled.start_qpos.data());
   refuse_start_in_collision(model, assembled.start_qpos, T_world_start);
   return assembled;

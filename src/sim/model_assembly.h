@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/frames.h"
+#include "core/robot_description.h"
 #include "sim/mujoco.h"
 #include "sim/robot_model.h"
 #include "sim/static_obstacles.h"
@@ -19,14 +20,15 @@ struct AssembledModel {
   Stance stance;                   ///< stance of `start_qpos`
 };
 
-/// Adds the robot of a URDF and static obstacles to the world of an MJCF file, with the robot standing on the ground at
-/// `T_world_start`. Throws InputError when a file is invalid or the start pose is inside an object.
-AssembledModel assemble_model(const std::string& world_xml, const RobotUrdf& robot_urdf, const Pose2& T_world_start,
-                              const std::vector<StaticObstacleSettings>& obstacles = {});
+/// Adds the robot of a URDF, which `robot` describes, and static obstacles to the world of an MJCF file, with the robot
+/// standing on the ground at `T_world_start`. Throws InputError when a file is invalid or the start pose is inside an
+/// object.
+AssembledModel assemble_model(const std::string& world_xml, const RobotUrdf& robot_urdf, const RobotDescription& robot,
+                              const Pose2& T_world_start, const std::vector<StaticObstacleSettings>& obstacles = {});
 
-/// Returns the MJCF of a robot on a plane, with the keyframe "standing" of its start posture. It contains absolute
-/// paths of the robot's meshes. Throws InputError if the URDF is invalid.
-std::string mjcf_of(const RobotUrdf& robot_urdf);
+/// Returns the MJCF of a robot, which `robot` describes, on a plane, with the keyframe "standing" of its start posture.
+/// It contains absolute paths of the robot's meshes. Throws InputError if the URDF is invalid.
+std::string mjcf_of(const RobotUrdf& robot_urdf, const RobotDescription& robot);
 
 /// Returns the ground height below the robot with its base at `T_world_body`, m: the highest collision surface below
 /// `max_ground_height_m` under any support point of its stance. The robot itself is ignored. Throws InputError if there
@@ -34,10 +36,7 @@ std::string mjcf_of(const RobotUrdf& robot_urdf);
 double ground_height_m(const mjModel& model, const mjData& data, const Stance& stance, const Pose2& T_world_body,
                        double max_ground_height_m);
 
-/// Standing posture at the start, for robots with legs: abduction, hip, knee of each leg, rad.
-inline constexpr double kStartPosture[3] = {0.0, 0.8, -1.6};
-
-/// Sets the leg joints in `qpos` (nq) to `kStartPosture` and changes nothing else.
-void set_start_posture(const mjModel& model, mjtNum* qpos);
+/// Sets the leg joints in `qpos` (nq) to the standing posture and changes nothing else.
+void set_standing_posture(const mjModel& model, const RobotDescription& robot, mjtNum* qpos);
 
 }  // namespace patrol::sim

@@ -17,11 +17,12 @@
 namespace patrol::sim {
 namespace {
 
-// Leg joints: reflected rotor inertia typical of legs of this class, friction of a good bearing. Tuned so that the
-// passive leg swings like the damping in the public robot description.
+// Leg joints: reflected rotor inertia typical of motors of 23.7 N m, friction of a good bearing. Tuned so that the
+// passive leg swings like the damping in the public robot description. Other motors are proportional to their torque.
 constexpr double kArmature = 0.01;
 constexpr double kDamping = 0.1;
 constexpr double kFrictionLoss = 0.2;
+constexpr double kLegTorque_nm = 23.7;
 
 // Rubber foot on asphalt: time constant of 6 ms; the friction of the foot applies on any ground.
 constexpr double kFootFriction = 0.8;
@@ -38,6 +39,7 @@ void set_pose(const urdf::Pose& pose, double position[3], double quaternion[4]) 
 
 /// Properties of the whole robot that its links need.
 struct RobotParts {
+  const RobotDescription& description;
   std::filesystem::path folder;  ///< of the URDF file, where its meshes are
   bool is_tracked;
   double road_wheel_load_n;  ///< load of each road wheel, if the robot has any
@@ -105,7 +107,19 @@ void add_visuals(const urdf::Link& link, const RobotParts& robot, mjSpec& spec, 
   }
 }
 
-bool is_foot(const urdf::Link& link) { return link.name.ends_with("_foot"); }
+bool is_foot(const urdf::Link& link, const RobotParts& robot) {
+  const std::vector<LegGeometry>& legs = robot.description.legs;
+  return std::any_of(legs.begin(), legs.end(), [&](const LegGeometry& leg) { return leg.foot_link == link.name; });
+}
+
+/// Returns the torque of the motors of the leg with a joint relative to `kLegTorque_nm`, by the first joint of the leg;
+/// 1 for a joint of no leg.
+double leg_torque_ratio(const std::string& joint, const RobotParts& robot) {
+  const std::vector<std::string>& names = robot.description.joint_names;
+  if (robot.description.legs.empty()) return 1.0;
+  const auto index = static_cast<std::size_t>(std::find(names.begin(), names.end(), joint) - names.begin());
+  return index < names.size() ? robot.description.joint_limits[index - index % 3].effort_nm / kLegTorque_nm : 1.0;
+}
 
 void add_collisions(const urdf::Link& link, const RobotParts& robot, mjSpec& spec, mjsBody& body) {
   for (const urdf::CollisionSharedPtr& collision : link.collision_array) {
@@ -118,7 +132,7 @@ void add_collisions(const urdf::Link& link, const RobotParts& robot, mjSpec& spe
     geom->conaffinity = kRobotConaffinity;
     geom->group = kGroupRobotCollision;
     geom->condim = 3;
-    if (is_foot(link)) {
+    if (is_foot(link, robot)) {
       mjs_setName(geom->element, link.name.c_str());
       geom->priority = 1;
       geom->friction[0] = kFootFriction;
@@ -185,7 +199,7 @@ void set_drive_friction(const urdf::Joint& joint, mjsJoint& hinge) {
   hinge.solimp_friction[0] = hinge.solimp_friction[1] = 0.999;
 }
 
-void add_joint(mjSpec& spec, const urdf::Joint& joint, bool is_tracked, mjsBody& body) {
+void add_joint(mjSpec& spec, const urdf::Joint& joint, const RobotParts& robot, mjsBody& body) {
   const bool is_endless = joint.type == urdf::Joint::CONTINUOUS;
   if (joint.type != urdf::Joint::REVOLUTE && !is_endless) return;
   mjsJoint* hinge = mjs_addJoint(&body, nullptr);
@@ -196,16 +210,17 @@ void add_joint(mjSpec& spec, const urdf::Joint& joint, bool is_tracked, mjsBody&
   hinge->axis[2] = joint.axis.z;
   if (is_antenna(joint)) {
     set_servo_gear(*hinge);
-  } else if (is_endless && is_tracked) {
+  } else if (is_endless && robot.is_tracked) {
     hinge->armature = sprocket_armature();
     set_drive_friction(joint, *hinge);
   } else if (is_endless) {
     set_drive_friction(joint, *hinge);
     hinge->damping[0] = joint.dynamics ? joint.dynamics->damping : 0.0;
   } else {
-    hinge->armature = kArmature;
-    hinge->damping[0] = kDamping;
-    hinge->frictionloss = kFrictionLoss;
+    const double ratio = leg_torque_ratio(joint.name, robot);
+    hinge->armature = ratio * kArmature;
+    hinge->damping[0] = ratio * kDamping;
+    hinge->frictionloss = ratio * kFrictionLoss;
   }
   if (!is_endless) {
     hinge->limited = mjLIMITED_TRUE;
@@ -226,7 +241,7 @@ void add_link(mjSpec& spec, const urdf::Link& link, const RobotParts& robot, mjs
   add_visuals(link, robot, spec, body);
   if (is_track(link)) {
     add_wheels(link, robot.road_wheel_load_n, body);
-  } else if (!robot.is_tracked && is_wheel(link)) {
+  } else if (!robot.is_tracked && robot.description.legs.empty() && is_wheel(link)) {
     add_rolling_shape(link, body);
   } else if (!robot.is_tracked || !turns_endlessly(link)) {  // the track covers its sprockets
     add_collisions(link, robot, spec, body);
@@ -234,9 +249,9 @@ void add_link(mjSpec& spec, const urdf::Link& link, const RobotParts& robot, mjs
   for (const urdf::LinkSharedPtr& child : link.child_links) {
     mjsBody* child_body = mjs_addBody(&body, nullptr);
     set_pose(child->parent_joint->parent_to_joint_origin_transform, child_body->pos, child_body->quat);
-    add_joint(spec, *child->parent_joint, robot.is_tracked, *child_body);
+    add_joint(spec, *child->parent_joint, robot, *child_body);
     add_link(spec, *child, robot, *child_body);
-    if (child->parent_joint->type == urdf::Joint::FIXED && !is_foot(*child)) {
+    if (child->parent_joint->type == urdf::Joint::FIXED && !is_foot(*child, robot)) {
       mjsSite* site = mjs_addSite(child_body, nullptr);
       mjs_setName(site->element, child->name.c_str());
       site->group = 5;
@@ -260,20 +275,23 @@ urdf::ModelInterfaceSharedPtr parse(const RobotUrdf& urdf) {
   return model;
 }
 
-/// Returns the stance on feet: two links of 0.213 m at 0.8 rad, plus the foot.
-Stance stance_on_feet() {
-  return {.height_m = 0.322, .support_points_m = {Eigen::Vector2d::Zero()}, .max_ground_height_m = 0.3};
+/// Returns the stance 5 mm above the ground, in whole millimeters.
+Stance stance_on_feet(const RobotDescription& robot) {
+  constexpr double kGap_m = 0.005;
+  return {.height_m = std::round((robot.body_height_m() + kGap_m) * 1000.0) / 1000.0,
+          .support_points_m = {Eigen::Vector2d::Zero()},
+          .max_ground_height_m = 0.3};
 }
 
 }  // namespace
 
-Stance to_stance(const RobotUrdf& urdf) {
+Stance to_stance(const RobotUrdf& urdf, const RobotDescription& robot) {
+  if (!robot.legs.empty()) return stance_on_feet(robot);
   const urdf::ModelInterfaceSharedPtr model = parse(urdf);
-  if (has_tracks(*model)) return stance_on_tracks(*model);
-  return has_wheels(*model) ? stance_on_wheels(*model) : stance_on_feet();
+  return has_tracks(*model) ? stance_on_tracks(*model) : stance_on_wheels(*model);
 }
 
-void add_robot(mjSpec& world, const RobotUrdf& urdf, const Pose3& T_world_body) {
+void add_robot(mjSpec& world, const RobotUrdf& urdf, const RobotDescription& robot, const Pose3& T_world_body) {
   const urdf::ModelInterfaceSharedPtr model = parse(urdf);
   mjsBody* base = mjs_addBody(mjs_findBody(&world, "world"), nullptr);
   std::copy_n(T_world_body.position.data(), 3, base->pos);
@@ -283,12 +301,13 @@ void add_robot(mjSpec& world, const RobotUrdf& urdf, const Pose3& T_world_body) 
   base->quat[3] = T_world_body.rotation.z();
   mjsJoint* freejoint = mjs_addFreeJoint(base);
   mjs_setName(freejoint->element, "robot");
-  const RobotParts parts{.folder = std::filesystem::path(urdf.path).parent_path(),
+  const RobotParts parts{.description = robot,
+                         .folder = std::filesystem::path(urdf.path).parent_path(),
                          .is_tracked = has_tracks(*model),
                          .road_wheel_load_n = road_wheel_load_n(*model)};
   add_link(world, *model->getRoot(), parts, *base);
   if (parts.is_tracked) use_track_friction(world.option);
-  else if (has_wheels(*model)) use_wheel_friction(world.option);
+  else if (robot.legs.empty()) use_wheel_friction(world.option);
 }
 
 }  // namespace patrol::sim

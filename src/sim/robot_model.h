@@ -7,6 +7,7 @@
 #include <mujoco/mujoco.h>
 
 #include "core/frames.h"
+#include "core/robot_description.h"
 
 namespace patrol::sim {
 
@@ -40,13 +41,14 @@ struct RobotUrdf {
   std::string text;  ///< content with the mounts of the robot (io/urdf.h); empty: that of the file
 };
 
-Stance to_stance(const RobotUrdf& urdf);
+/// Returns the stance of the robot of a URDF, which `robot` describes.
+Stance to_stance(const RobotUrdf& urdf, const RobotDescription& robot);
 
-/// Adds the robot of a URDF to a world.
+/// Adds the robot of a URDF, which `robot` describes, to a world.
 ///
 /// Bodies, inertias, joints and shapes come from the URDF; actuators, contact parameters and rotor inertias, which URDF
 /// cannot express, come from here. The base gets a free joint at `T_world_body`. Names: bodies as links, joints and
 /// their motors as joints, foot geoms as their links, sensor frames as sites.
-void add_robot(mjSpec& world, const RobotUrdf& urdf, const Pose3& T_world_body);
+void add_robot(mjSpec& world, const RobotUrdf& urdf, const RobotDescription& robot, const Pose3& T_world_body);
 
 }  // namespace patrol::sim

@@ -31,7 +31,8 @@ constexpr double kRange_m = 30.0;
 /// The robot some steps into its way through the street, and the rays of one revolution of its lidar.
 struct Street {
   Street()
-      : robot(sim::assemble_model(sim::kStreetXml, sim::kRobotUrdf, sim::kStreetStart)),
+      : robot(sim::assemble_model(sim::kStreetXml, sim::kRobotUrdf, io::load_robot_description(sim::kRobotUrdf),
+                                  sim::kStreetStart)),
         data(sim::make_data(robot.view())),
         scene(robot.view()) {
     robot.stand(1.0);

@@ -5,6 +5,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include "io/urdf.h"
 #include "tests/bench/ratio.h"
 #include "tests/sim/rubble.h"
 #include "tests/support/simulated_quadruped.h"
@@ -20,7 +21,8 @@ constexpr int kTicksPerTurn = 25;
 void StreetAgainstBarePlane(benchmark::State& state) {
   const VelocityCommand walk{
       .stamp = {}, .vx_mps = static_cast<double>(state.range(0)) / 100.0, .vy_mps = 0.0, .yaw_rate_radps = 0.0};
-  WalkingRobot in_street(sim::assemble_model(sim::kStreetXml, sim::kRobotUrdf, sim::kStreetStart));
+  WalkingRobot in_street(sim::assemble_model(sim::kStreetXml, sim::kRobotUrdf,
+                                             io::load_robot_description(sim::kRobotUrdf), sim::kStreetStart));
   WalkingRobot on_plane(sim::make_flat_world(), sim::kStreetStart);
   in_street.stand(1.0);
   on_plane.stand(1.0);

@@ -12,6 +12,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include "io/urdf.h"
 #include "render/overlay.h"
 #include "render/scene/antialias.h"
 #include "render/scene/depth_renderer.h"
@@ -71,9 +72,9 @@ RunSnapshot busy_snapshot(const mjModel& model, std::vector<double> qpos, double
 
 void ReplayFrameAgainstBareRender(benchmark::State& state) {
   const std::string root = PATROL_SOURCE_DIR;
-  sim::AssembledModel model =
-      sim::assemble_model(root + "/worlds/street/street.xml", root + "/models/quadruped/quadruped.urdf",
-                          {11.0, 8.0, std::numbers::pi / 2.0});
+  sim::AssembledModel model = sim::assemble_model(
+      root + "/worlds/street/street.xml", root + "/models/quadruped/quadruped.urdf",
+      io::load_robot_description(root + "/models/quadruped/quadruped.urdf"), {11.0, 8.0, std::numbers::pi / 2.0});
   set_replay_quality(*model.view);
   SceneRenderer painter(*model.view, kWidth, kHeight);
   Overlay overlay(kHeight);
@@ -121,7 +122,8 @@ void DepthFrame(benchmark::State& state, const std::string& world, const std::st
                 const std::vector<Pose2>& places) {
   const std::string root = PATROL_SOURCE_DIR;
   const sim::AssembledModel model =
-      sim::assemble_model(root + "/worlds/" + world, root + "/models/" + robot, places.front());
+      sim::assemble_model(root + "/worlds/" + world, root + "/models/" + robot,
+                          io::load_robot_description(root + "/models/" + robot), places.front());
   const sim::DataPtr data = sim::make_data(*model.view);
   mj_forward(model.view.get(), data.get());
   const DepthCameraSettings camera;

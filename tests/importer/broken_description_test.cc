@@ -178,7 +178,7 @@ TEST(BrokenDescription, Options) {
   EXPECT_THAT(complaint(with(""), {.file = "", .base_link = "torso"}),
               HasSubstr("v.urdf: base link torso: unknown link"));
   EXPECT_THAT(complaint(with(""), {.file = "", .base_link = "left"}),
-              MatchesRegex("v.urdf:[0-9]+: left: is on a wheel.*"));
+              MatchesRegex("v.urdf:[0-9]+: left: moves against the body.*"));
   EXPECT_THAT(complaint(with(""), {.file = "", .frames = {{"lidar", "mast"}}}),
               HasSubstr("v.urdf: frame lidar: unknown link mast"));
   EXPECT_THAT(complaint(with(""), {.file = "", .frames = {{"sonar", "fork"}}}),

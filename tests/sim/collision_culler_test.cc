@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "core/random.h"
+#include "io/urdf.h"
 #include "tests/sim/rubble.h"
 #include "tests/support/simulated_quadruped.h"
 #include "tests/support/simulated_tracked_robot.h"
@@ -26,8 +27,10 @@ std::vector<Touch> touches(const mjData& data) {
 }
 
 TEST(CollisionCuller, At600PlacesOfTheStreetAndAnyPostureTheContactsAreThoseOfTheWholeStreet) {
-  const AssembledModel whole = assemble_model(kStreetXml, kRobotUrdf, kStreetStart);
-  const AssembledModel spared = assemble_model(kStreetXml, kRobotUrdf, kStreetStart);
+  const AssembledModel whole =
+      assemble_model(kStreetXml, kRobotUrdf, io::load_robot_description(kRobotUrdf), kStreetStart);
+  const AssembledModel spared =
+      assemble_model(kStreetXml, kRobotUrdf, io::load_robot_description(kRobotUrdf), kStreetStart);
   const DataPtr a = make_data(*whole.physics), b = make_data(*spared.physics);
   CollisionCuller nearby(*spared.physics);
   const RandomStream random(1, "places");

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/random.h"
+#include "io/urdf.h"
 #include "tests/sim/small_world.h"
 #include "tests/support/simulated_quadruped.h"
 
@@ -103,7 +104,7 @@ TEST(LidarScene, HitsEveryTypeOfGeomWithin1MillimetreOfMjRayStillOrMoving) {
 }
 
 TEST(LidarScene, InTheStreetWithRobotAndTrafficUnderWayItIsWithin1MillimetreOfMjRay) {
-  WalkingRobot robot(assemble_model(kStreetXml, kRobotUrdf, kStreetStart));
+  WalkingRobot robot(assemble_model(kStreetXml, kRobotUrdf, io::load_robot_description(kRobotUrdf), kStreetStart));
   const mjModel& view = robot.view();
   const DataPtr data = make_data(view);
   LidarScene scene(view);

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/geometry/angles.h"
 #include "core/geometry/convex_polygon.h"
 #include "io/urdf.h"
 #include "sim/model_assembly.h"
@@ -25,13 +26,14 @@ TEST(Mjcf, StockMujocoReadsTheFileOfEachRobotWithTheSameCoordinatesBodiesAndMass
   for (const std::string& name : kRobots) {
     SCOPED_TRACE(name);
     const test::TemporaryFolder folder;
-    test::write_bytes(folder / "robot.xml", mjcf_of(urdf_of(name)));
+    test::write_bytes(folder / "robot.xml", mjcf_of(urdf_of(name), io::load_robot_description(urdf_of(name))));
     char error[1000] = "";
     const ModelPtr read(mj_loadXML((folder / "robot.xml").c_str(), nullptr, error, sizeof(error)));
     ASSERT_TRUE(read) << error;
     const test::TemporaryFile world("world.xml", R"(<mujoco><option timestep="0.002"/><worldbody>
         <geom type="plane" size="20 20 0.1" conaffinity="2"/></worldbody></mujoco>)");
-    const AssembledModel built = assemble_model(world.path(), urdf_of(name), {});
+    const AssembledModel built =
+        assemble_model(world.path(), urdf_of(name), io::load_robot_description(urdf_of(name)), {});
     EXPECT_EQ(read->nq, built.view->nq);
     EXPECT_EQ(read->nv, built.view->nv);
     EXPECT_EQ(read->nu, built.view->nu);
@@ -89,7 +91,8 @@ std::vector<Eigen::Vector2d> outline_of(const mjModel& model, const mjData& data
 std::vector<Eigen::Vector2d> drawn_outline(const std::string& robot) {
   const test::TemporaryFile world("world.xml", R"(<mujoco><option timestep="0.002"/><worldbody>
       <geom type="plane" size="20 20 0.1" conaffinity="2"/></worldbody></mujoco>)");
-  const AssembledModel built = assemble_model(world.path(), urdf_of(robot), {});
+  const AssembledModel built =
+      assemble_model(world.path(), urdf_of(robot), io::load_robot_description(urdf_of(robot)), {});
   const DataPtr data = make_data(*built.view);
   std::copy(built.start_qpos.begin(), built.start_qpos.end(), data->qpos);
   mj_kinematics(built.view.get(), data.get());
@@ -126,7 +129,7 @@ Excess excess_of(const std::string& robot) {
                                      drawn = drawn_outline(robot);
   Excess excess;
   for (int degrees = 0; degrees < 360; ++degrees) {
-    const double difference_m = extent_difference_m(drawn, footprint, degrees * std::numbers::pi / 180.0);
+    const double difference_m = extent_difference_m(drawn, footprint, kDegree * degrees);
     excess.drawn_m = std::max(excess.drawn_m, difference_m);
     excess.footprint_m = std::max(excess.footprint_m, -difference_m);
   }

@@ -25,7 +25,8 @@ using testing::HasSubstr;
 class StreetAssembly : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    street_ = std::make_unique<AssembledModel>(assemble_model(kStreetXml, kRobotUrdf, kStreetStart));
+    street_ = std::make_unique<AssembledModel>(
+        assemble_model(kStreetXml, kRobotUrdf, io::load_robot_description(kRobotUrdf), kStreetStart));
   }
   static void TearDownTestSuite() { street_.reset(); }
   static const AssembledModel& street() { return *street_; }
@@ -36,7 +37,7 @@ class StreetAssembly : public testing::Test {
 
 AssembledModel on_plane(const std::string& geoms, const Pose2& T_world_start = {}) {
   const test::TemporaryFile world("world.xml", make_flat_world(geoms));
-  return assemble_model(world.path(), kRobotUrdf, T_world_start);
+  return assemble_model(world.path(), kRobotUrdf, io::load_robot_description(kRobotUrdf), T_world_start);
 }
 
 std::string read(const std::string& path) {
@@ -157,7 +158,7 @@ TEST_F(StreetAssembly, EachJointHasAMotorLimitedToTheUrdfsTorque) {
 
 AssembledModel tracked_on(const std::string& world, const Pose2& T_world_start = {}) {
   const test::TemporaryFile file("world.xml", world);
-  return assemble_model(file.path(), kTrackedUrdf, T_world_start);
+  return assemble_model(file.path(), kTrackedUrdf, io::load_robot_description(kTrackedUrdf), T_world_start);
 }
 
 TEST(ModelAssembly, TheTrackedRobotWeighsItsUrdfs85KilogramsWithItsWheelsTakenOffTheTracks) {
@@ -180,8 +181,9 @@ TEST(ModelAssembly, TheTrackedRobotStartsAHandsBreadthAboveRubbleAndAboveAKerbUn
 
 TEST(ModelAssembly, PropsAreThereToBeTouchedAndSeen) {
   const test::TemporaryFile file("world.xml", make_flat_world());
-  const AssembledModel model = assemble_model(
-      file.path(), kTrackedUrdf, {}, {StaticObstacleSettings{.kind = "kerb", .x_m = 2.0, .y_m = 0.0, .yaw_deg = 0.0}});
+  const AssembledModel model =
+      assemble_model(file.path(), kTrackedUrdf, io::load_robot_description(kTrackedUrdf), {},
+                     {StaticObstacleSettings{.kind = "kerb", .x_m = 2.0, .y_m = 0.0, .yaw_deg = 0.0}});
   EXPECT_GE(mj_name2id(model.physics.get(), mjOBJ_GEOM, "static_obstacle_1"), 0);
   EXPECT_GE(mj_name2id(model.view.get(), mjOBJ_GEOM, "static_obstacle_1"), 0);
 }
@@ -196,15 +198,24 @@ TEST(ModelAssembly, AStartInsideAWallIsRefusedWithTheWallsName) {
 
 TEST(ModelAssembly, AStartOverNothingIsRefused) {
   const test::TemporaryFile world("world.xml", make_world(R"(<geom type="box" pos="0 0 -0.1" size="1 1 0.1"/>)"));
-  EXPECT_THAT(error_text([&] { assemble_model(world.path(), kRobotUrdf, {20.0, 0.0, 0.0}); }), HasSubstr("no ground"));
+  EXPECT_THAT(error_text([&] {
+                assemble_model(world.path(), kRobotUrdf, io::load_robot_description(kRobotUrdf), {20.0, 0.0, 0.0});
+              }),
+              HasSubstr("no ground"));
 }
 
 TEST(ModelAssembly, AMissingOrBrokenFileIsRefusedByName) {
-  EXPECT_THAT(error_text([] { assemble_model("no/such/world.xml", kRobotUrdf, {}); }), HasSubstr("no/such/world.xml"));
+  EXPECT_THAT(
+      error_text([] { assemble_model("no/such/world.xml", kRobotUrdf, io::load_robot_description(kRobotUrdf), {}); }),
+      HasSubstr("no/such/world.xml"));
   const test::TemporaryFile broken("broken.xml", "<mujoco><worldbody><geom tipe=\"box\"/></worldbody></mujoco>");
-  EXPECT_THAT(error_text([&] { assemble_model(broken.path(), kRobotUrdf, {}); }), HasSubstr("broken.xml"));
+  EXPECT_THAT(
+      error_text([&] { assemble_model(broken.path(), kRobotUrdf, io::load_robot_description(kRobotUrdf), {}); }),
+      HasSubstr("broken.xml"));
   const test::TemporaryFile world("world.xml", make_flat_world());
-  EXPECT_THAT(error_text([&] { assemble_model(world.path(), "no/such/robot.urdf", {}); }),
+  EXPECT_THAT(error_text([&] {
+                assemble_model(world.path(), "no/such/robot.urdf", io::load_robot_description(kRobotUrdf), {});
+              }),
               HasSubstr("no/such/robot.urdf"));
 }
 

@@ -50,9 +50,9 @@ Pose3 site_in_base(const mjModel& model, const std::string& frame) {
 const std::string kFlat = R"(<mujoco><option timestep="0.002"/><worldbody>
     <geom type="plane" size="20 20 0.1" conaffinity="2"/></worldbody></mujoco>)";
 
-AssembledModel on_plane(const RobotUrdf& urdf) {
+AssembledModel on_plane(const std::string& urdf, const io::MountedRobot& robot) {
   const test::TemporaryFile world("world.xml", kFlat);
-  return assemble_model(world.path(), urdf, {});
+  return assemble_model(world.path(), {urdf, robot.urdf}, robot.description, {});
 }
 
 void expect_same_frames(const io::MountedRobot& robot, const mjModel& model, const std::vector<std::string>& frames) {
@@ -74,7 +74,7 @@ TEST(Mounts, AMovedAndAnAddedFrameAreTheSameInTheTwinAndTheDescriptionOfEveryRob
                                                mount("lidar_rear", {-0.4, 0.1, 0.3}, {0, 0, 180}),
                                                mount("depth_camera", {0.02, 0, 0.1}, {0, 20, 0}, "lidar")});
     EXPECT_EQ(robot.description.T_body("lidar").position, p_m);
-    const AssembledModel model = on_plane({urdf_of(name), robot.urdf});
+    const AssembledModel model = on_plane(urdf_of(name), robot);
     expect_same_frames(robot, *model.physics, {"lidar", "imu", "lidar_rear", "depth_camera"});
     expect_same_frames(robot, *model.view, {"lidar", "imu", "lidar_rear", "depth_camera"});
   }
@@ -84,7 +84,7 @@ TEST(Mounts, AMountOnTheMastIsRelativeToTheMast) {
   const io::MountedRobot robot =
       io::load_mounted_robot(urdf_of("wheeled"), {mount("lidar_rear", {-0.05, 0.0, 0.1}, {0, 0, 180}, "mast")});
   EXPECT_LT((robot.description.T_body("lidar_rear").position - Eigen::Vector3d(0.05, 0.0, 0.34)).norm(), 1e-12);
-  expect_same_frames(robot, *on_plane({urdf_of("wheeled"), robot.urdf}).physics, {"lidar_rear"});
+  expect_same_frames(robot, *on_plane(urdf_of("wheeled"), robot).physics, {"lidar_rear"});
 }
 
 TEST(Mounts, AMountAddsNeitherMassNorJointsAndWithoutMountsTheTextIsThatOfTheFile) {
@@ -98,14 +98,14 @@ TEST(Mounts, AMountAddsNeitherMassNorJointsAndWithoutMountsTheTextIsThatOfTheFil
     EXPECT_EQ(robot.description.T_body_sensor.size(), plain.description.T_body_sensor.size() + 1);
     for (const auto& [frame, T_body_frame] : plain.description.T_body_sensor)
       EXPECT_EQ(robot.description.T_body(frame).position, T_body_frame.position) << name << " " << frame;
-    EXPECT_EQ(on_plane({urdf_of(name), robot.urdf}).physics->nv, on_plane(urdf_of(name)).physics->nv) << name;
+    EXPECT_EQ(on_plane(urdf_of(name), robot).physics->nv, on_plane(urdf_of(name), plain).physics->nv) << name;
   }
 }
 
 TEST(Mounts, TheHousingOfAMovedLidarMovesWithIt) {
   const io::MountedRobot robot =
       io::load_mounted_robot(urdf_of("wheeled"), {mount("lidar", {-0.2, 0.1, 0.6}, {0, 0, 0})});
-  const AssembledModel model = on_plane({urdf_of("wheeled"), robot.urdf});
+  const AssembledModel model = on_plane(urdf_of("wheeled"), robot);
   const int body = mj_name2id(model.view.get(), mjOBJ_BODY, "lidar");
   ASSERT_GE(body, 0);
   EXPECT_EQ(model.view->body_pos[3 * body], -0.2);

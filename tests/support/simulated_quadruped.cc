@@ -13,7 +13,7 @@ namespace {
 
 AssembledModel assemble_quadruped(const std::string& world, const Pose2& T_world_start) {
   const test::TemporaryFile file("world.xml", world);
-  return assemble_model(file.path(), kRobotUrdf, T_world_start);
+  return assemble_model(file.path(), kRobotUrdf, io::load_robot_description(kRobotUrdf), T_world_start);
 }
 
 }  // namespace
@@ -33,7 +33,11 @@ WalkingRobot::WalkingRobot(const std::string& world, const Pose2& T_world_start,
     : WalkingRobot(assemble_quadruped(world, T_world_start), seed, settings) {}
 
 WalkingRobot::WalkingRobot(AssembledModel model, std::uint64_t seed, const LocomotionSettings& settings)
-    : robot_(io::load_robot_description(kRobotUrdf)),
+    : WalkingRobot(std::move(model), io::load_robot_description(kRobotUrdf), seed, settings) {}
+
+WalkingRobot::WalkingRobot(AssembledModel model, RobotDescription robot, std::uint64_t seed,
+                           const LocomotionSettings& settings)
+    : robot_(std::move(robot)),
       model_(std::move(model)),
       data_(make_data(*model_.physics)),
       culler_(*model_.physics),
@@ -41,10 +45,13 @@ WalkingRobot::WalkingRobot(AssembledModel model, std::uint64_t seed, const Locom
       encoders_({}, *model_.physics, robot_.joint_names),
       foot_sensor_({}, *model_.physics, robot_.legs, seed),
       controller_(robot_, settings, model_.physics->opt.timestep),
-      body_(mj_name2id(model_.physics.get(), mjOBJ_BODY, frame_id::kBody)) {
+      body_(mj_name2id(model_.physics.get(), mjOBJ_BODY, frame_id::kBody)),
+      loaded_n_(20.0 * leg_scale(robot_).force) {
   for (std::size_t leg = 0; leg < kNumLegs; ++leg) {
-    foot_geom_[leg] = mj_name2id(model_.physics.get(), mjOBJ_GEOM, (robot_.legs[leg].name + "_foot").c_str());
+    foot_geom_[leg] = mj_name2id(model_.physics.get(), mjOBJ_GEOM, robot_.legs[leg].foot_link.c_str());
   }
+  for (std::size_t joint = 0; joint < motor_.size(); ++joint)
+    motor_[joint] = mj_name2id(model_.physics.get(), mjOBJ_ACTUATOR, robot_.joint_names[joint].c_str());
   std::copy(model_.start_qpos.begin(), model_.start_qpos.end(), data_->qpos);
   mj_forward(model_.physics.get(), data_.get());
 }
@@ -58,7 +65,8 @@ void WalkingRobot::drive(const VelocityCommand& command) {
   joints_ = encoders_.read(*data_, now);
   contacts_ = foot_sensor_.read(model, *data_, now, tick_);
   const JointTorques torques = controller_.step({.imu = imu_, .joints = joints_, .feet = contacts_}, command);
-  std::copy(torques.begin(), torques.end(), data_->ctrl);
+  for (std::size_t joint = 0; joint < motor_.size(); ++joint)
+    data_->ctrl[motor_[joint]] = torques[static_cast<Eigen::Index>(joint)];
 }
 
 void WalkingRobot::advance() {

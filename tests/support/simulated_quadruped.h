@@ -52,6 +52,7 @@ class WalkingRobot {
   explicit WalkingRobot(const std::string& world, const Pose2& T_world_start = {}, std::uint64_t seed = 1,
                         const LocomotionSettings& settings = {});
   explicit WalkingRobot(AssembledModel model, std::uint64_t seed = 1, const LocomotionSettings& settings = {});
+  WalkingRobot(AssembledModel model, RobotDescription robot, std::uint64_t seed, const LocomotionSettings& settings);
 
   WalkReport walk(double vx_mps, double vy_mps, double yaw_rate_radps, double duration_s);
   WalkReport stand(double duration_s) { return walk(0.0, 0.0, 0.0, duration_s); }
@@ -78,7 +79,7 @@ class WalkingRobot {
 
  private:
   double loaded_slip_mps(int leg) const;
-  bool is_loaded(int leg) const { return contacts_.force_n[static_cast<std::size_t>(leg)] > 20.0; }
+  bool is_loaded(int leg) const { return contacts_.force_n[static_cast<std::size_t>(leg)] > loaded_n_; }
 
   RobotDescription robot_;
   AssembledModel model_;
@@ -90,6 +91,8 @@ class WalkingRobot {
   QuadrupedController controller_;
   int body_;
   std::array<int, kNumLegs> foot_geom_;
+  std::array<int, 3 * kNumLegs> motor_;  ///< [joint]
+  double loaded_n_;                      ///< 20 N for a robot of 13.6 kg
   Imu imu_;
   double gyro_bias_radps_ = 0.0;
   Eigen::Vector3d accelerometer_bias_mps2_ = Eigen::Vector3d::Zero();

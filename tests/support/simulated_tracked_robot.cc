@@ -11,7 +11,7 @@ namespace {
 
 AssembledModel assemble_tracked(const std::string& world, const Pose2& T_world_start) {
   const test::TemporaryFile file("world.xml", world);
-  return assemble_model(file.path(), kTrackedUrdf, T_world_start);
+  return assemble_model(file.path(), kTrackedUrdf, io::load_robot_description(kTrackedUrdf), T_world_start);
 }
 
 double tilt_from_gravity(const Pose3& pose) { return std::acos(std::min(1.0, pose.rotation.toRotationMatrix()(2, 2))); }

@@ -16,7 +16,7 @@ RobotDescription describe(const std::string& urdf_text) {
 
 AssembledModel assemble(const std::string& world, const std::string& urdf_text, const Pose2& T_world_start) {
   const test::TemporaryFile world_file("world.xml", world), urdf("robot.urdf", urdf_text);
-  return assemble_model(world_file.path(), urdf.path(), T_world_start);
+  return assemble_model(world_file.path(), urdf.path(), io::load_robot_description(urdf.path()), T_world_start);
 }
 
 }  // namespace

@@ -24,7 +24,8 @@ render::View view_of(const CheckRobot& robot, const PictureScene& scene) {
 CheckPicture render_scene(const CheckRobot& robot, const PictureScene& scene, const std::filesystem::path& folder) {
   const std::filesystem::path world_xml = folder / "world.xml";
   io::save_text(world_xml, scene.world_mjcf);
-  const sim::AssembledModel model = sim::assemble_model(world_xml.string(), robot.simulator.robot_urdf, {});
+  const sim::AssembledModel model =
+      sim::assemble_model(world_xml.string(), robot.simulator.robot_urdf, robot.description, {});
   render::set_replay_quality(*model.view);
   render::SceneRenderer renderer(*model.view, kWidth, kHeight);
   renderer.set_state(scene.state);

@@ -29,7 +29,7 @@ bool is_steering(const RobotDescription& robot, std::size_t joint) {
 bool is_footing(const RobotDescription& robot, std::string_view geom) {
   if (robot.tracks) return geom.starts_with("left_wheel_") || geom.starts_with("right_wheel_");
   const auto is_wheel = [&](const WheelGeometry& wheel) { return geom == wheel.link; };
-  const auto is_foot = [&](const LegGeometry& leg) { return geom == leg.name + "_foot"; };
+  const auto is_foot = [&](const LegGeometry& leg) { return geom == leg.foot_link; };
   return std::any_of(robot.wheels.begin(), robot.wheels.end(), is_wheel) ||
          std::any_of(robot.legs.begin(), robot.legs.end(), is_foot);
 }

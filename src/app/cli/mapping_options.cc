@@ -87,8 +87,8 @@ void add_import(CLI::App& app, Call& call) {
   command->add_option("--base-link", robot.base_link, "Link of the chassis (default: by rule)");
   command->add_option("--forward", robot.forward, "Direction of travel in the base link (default: by rule)")
       ->check(CLI::IsMember({"x", "-x", "y", "-y"}));
-  command->add_option("--drive", robot.drive, "Drive of the wheels (default: by rule)")
-      ->check(CLI::IsMember({"differential", "ackermann", "mecanum"}));
+  command->add_option("--drive", robot.drive, "Drive (default: by rule)")
+      ->check(CLI::IsMember({"differential", "ackermann", "mecanum", "legs"}));
   command->callback([&] { call.chosen = [&] { return import_robot_command(call.import_robot); }; });
 }
 

@@ -39,7 +39,7 @@ CheckResult run_with_progress(const CheckRobot& robot) {
 ExitCode check_command(const CheckOptions& options) {
   const CheckRobot robot = load_check_robot(options.robot, options.overrides, options.seed, find_data_root({}));
   if (options.mjcf) {
-    io::save_text(*options.mjcf, sim::mjcf_of(robot.simulator.robot_urdf));
+    io::save_text(*options.mjcf, sim::mjcf_of(robot.simulator.robot_urdf, robot.description));
     fmt::print("{}\n", options.mjcf->string());
     return ExitCode::kDone;
   }

@@ -21,6 +21,8 @@
 #include "io/maps/map_server.h"
 #include "io/urdf.h"
 #include "io/yaml/settings_yaml.h"
+#include "sim/locomotion/leg_gains.h"
+#include "sim/locomotion/locomotion_settings.h"
 #include "stack/mission/known_map.h"
 
 namespace patrol::app {
@@ -111,11 +113,26 @@ void read_over(const std::filesystem::path& file, const std::vector<std::string>
   settings = std::move(read);
 }
 
+/// Returns the settings with which the profile of a robot starts: those that depend on its size.
+RobotProfile profile_of_size(const RobotDescription& robot) {
+  RobotProfile profile;
+  if (robot.legs.empty()) return profile;
+  profile.locomotion = sim::scaled_locomotion(robot);
+  const double force = sim::leg_scale(robot).force;
+  localize::LeggedOdometrySettings& odometry = profile.stack.odometry.legged;
+  for (double* force_n : {&odometry.contact_on_force_n, &odometry.contact_off_force_n, &odometry.full_weight_force_n,
+                          &profile.sensors.foot_contact.range_n}) {
+    *force_n *= force;
+  }
+  return profile;
+}
+
 /// The robot's profile, if it has one, over the defaults.
-Scenario scenario_of_profile(const std::filesystem::path& profile_file) {
+Scenario scenario_of_profile(const std::filesystem::path& profile_file, const std::filesystem::path& urdf_file) {
   Scenario scenario;
   if (!std::filesystem::exists(profile_file)) return scenario;
-  RobotProfile profile;
+  RobotProfile profile =
+      std::filesystem::exists(urdf_file) ? profile_of_size(io::load_robot_description(urdf_file)) : RobotProfile{};
   read_over(profile_file, {}, profile);
   scenario.mounts = std::move(profile.mounts);
   scenario.as_built = profile.as_built;
@@ -180,7 +197,7 @@ std::filesystem::path find_robot(const std::string& name, const std::filesystem:
 
 Scenario default_scenario(const std::string& robot, const std::filesystem::path& data_root) {
   const std::filesystem::path profile = robot_file(robot, ".yaml", data_root);
-  Scenario scenario = scenario_of_profile(profile);
+  Scenario scenario = scenario_of_profile(profile, robot_file(robot, ".urdf", data_root));
   if (const std::optional<RobotDescription> described = robot_of(robot, data_root, scenario.mounts)) {
     check_profile(profile, *described, scenario);
     disable_absent_sensors(*described, {}, scenario);
@@ -192,7 +209,7 @@ Scenario load_scenario(const std::filesystem::path& file, const std::vector<std:
   const std::filesystem::path data_root = find_data_root(file);
   const std::string robot = io::load_settings<Scenario>(file, overrides).robot;
   const std::filesystem::path profile = robot_file(robot, ".yaml", data_root);
-  const Scenario of_profile = scenario_of_profile(profile);
+  const Scenario of_profile = scenario_of_profile(profile, robot_file(robot, ".urdf", data_root));
   Scenario scenario = of_profile;
   read_over(file, overrides, scenario);
   scenario.robot_location = location_of(file, find_node(lines_of(file, "robot", overrides), {"robot"}), "robot");

@@ -48,7 +48,7 @@ void apply_as_built(const AsBuiltRobot& robot, mjModel& physics) {
   if (robot.nominal().tracks) move_tracks(robot.tracks().gauge_error_m, physics);
   move_wheels(robot, physics);
   for (const LegGeometry& leg : robot.nominal().legs) {
-    const int foot = mj_name2id(&physics, mjOBJ_GEOM, (leg.name + "_foot").c_str());
+    const int foot = mj_name2id(&physics, mjOBJ_GEOM, leg.foot_link.c_str());
     if (foot >= 0) physics.geom_friction[3 * foot] *= robot.foot_friction_scale();
   }
 }

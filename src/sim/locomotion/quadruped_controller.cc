@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include <Eigen/Cholesky>
+#include <fmt/format.h>
 
+#include "core/error.h"
 #include "core/frames.h"
 #include "core/geometry/linear_algebra.h"
 #include "sim/locomotion/swing_trajectory.h"
@@ -15,30 +17,22 @@ namespace {
 
 constexpr double kGravity = 9.81;  // m/s2
 
-// Virtual model of the trunk. Translation: stiffness and damping per kg of robot mass. Rotation: per kg m2 of trunk
-// inertia.
-constexpr double kHeightStiffness = 120.0, kHeightDamping = 14.0;  // 1/s2, 1/s
-constexpr double kVelocityGain = 5.0, kVelocityIntegral = 3.0;     // 1/s, 1/s2
-constexpr double kMaxIntegral_m = 0.3;
-constexpr double kStandingStiffness = 60.0, kStandingDamping = 10.0;  // 1/s2, 1/s; about the center of the feet
-constexpr double kMaxStandingOffset_m = 0.02;                         // of the place at which the robot came to a stand
-constexpr double kTiltStiffness = 400.0, kTiltDamping = 40.0;         // 1/s2, 1/s
-constexpr double kYawStiffness = 80.0, kYawDamping = 14.0;            // 1/s2, 1/s
-const Eigen::Vector3d kInertiaPerKg(0.008, 0.024, 0.028);  // inertia of the whole robot about roll, pitch and
-                                                           // yaw, divided by its mass, m2
-
-// Impedance of a swing foot about its trajectory.
-constexpr double kSwingStiffness = 700.0, kSwingDamping = 16.0;  // N/m, N s/m
-constexpr double kCaptureTime_s = 0.06;  // lead of the foot placement per m/s of velocity error [Raibert86]
-constexpr double kSearchSpeed_mps = 0.35, kMaxSearch_m = 0.10;
-
-// Impedance of the feet about the standing posture, until the estimator has settled.
-constexpr double kWakeUp_s = 1.2;
-constexpr double kWakeUpStiffness = 3000.0, kWakeUpDamping = 60.0;  // N/m, N s/m
-
-constexpr double kGroundTime_s = 0.15;  // time constant of the ground estimate below the feet
-constexpr double kEarlyTouch = 0.55;    // swing fraction from which a contact counts as touch-down
+constexpr double kWakeUp_s = 1.2;     // until the estimator has settled
+constexpr double kEarlyTouch = 0.55;  // swing fraction from which a contact counts as touch-down
 constexpr double kStandSpeed_mps = 0.02, kStandRate_radps = 0.03;
+
+/// Checks that the feet can be `trunk_height_m` below the body. Throws InputError.
+void check_trunk_height(const RobotDescription& robot, double trunk_height_m) {
+  constexpr double kMinReach = 0.3, kMaxReach = 0.99;  // of the length of a leg
+  for (const LegGeometry& leg : robot.legs) {
+    const double hip_m = leg.hip_in_body.z();
+    const double min_m = kMinReach * leg.length_m() - hip_m, max_m = kMaxReach * leg.length_m() - hip_m;
+    if (trunk_height_m > min_m && trunk_height_m < max_m) continue;
+    throw InputError(
+        fmt::format("locomotion.trunk_height_m = {:g}: must be in ({:.2f}, {:.2f}), the reach of the legs of {}",
+                    trunk_height_m, min_m, max_m, robot.name));
+  }
+}
 
 }  // namespace
 
@@ -47,10 +41,12 @@ QuadrupedController::QuadrupedController(const RobotDescription& robot, const Lo
     : robot_(robot),
       settings_(settings),
       gait_{.period_s = settings.gait_period_s, .duty = settings.gait_duty},
+      gains_(scaled_leg_gains(robot)),
       tick_s_(tick_s),
-      estimator_(robot, tick_s),
+      estimator_(robot, gains_.touch_force_n, tick_s),
       ground_offset_m_(-settings.trunk_height_m) {
   validate(settings, "locomotion");
+  check_trunk_height(robot, settings.trunk_height_m);
   is_stance_.fill(true);
   lift_off_m_.fill(Eigen::Vector3d::Zero());
   foothold_m_.fill(Eigen::Vector3d(0.0, 0.0, -settings.trunk_height_m));
@@ -107,7 +103,8 @@ void QuadrupedController::choose_mode(const TrunkState& trunk) {
   }
   const bool all_stand = is_stance_[0] && is_stance_[1] && is_stance_[2] && is_stance_[3] && !is_searching_[0] &&
                          !is_searching_[1] && !is_searching_[2] && !is_searching_[3];
-  if (is_walking_ && idle_s_ > gait_.period_s && all_stand && trunk.velocity_mps.head<2>().norm() < 0.12) {
+  if (is_walking_ && idle_s_ > gait_.period_s && all_stand &&
+      trunk.velocity_mps.head<2>().norm() < gains_.max_stop_speed_mps) {
     is_walking_ = false;
     velocity_integral_.setZero();
   }
@@ -136,7 +133,8 @@ void QuadrupedController::schedule_feet(const TrunkState& trunk) {
     if (found_early) is_stance_[leg] = true;
     if (is_searching_[leg]) {
       search_s_[leg] += tick_s_;
-      if (trunk.is_touching[leg] || search_s_[leg] * kSearchSpeed_mps > kMaxSearch_m) is_searching_[leg] = false;
+      if (trunk.is_touching[leg] || search_s_[leg] * gains_.search_speed_mps > gains_.max_search_m)
+        is_searching_[leg] = false;
     }
     phase_[leg] = phase;
   }
@@ -160,7 +158,7 @@ void QuadrupedController::update_ground(const TrunkState& trunk) {
   }
   normal.diagonal().head<2>().array() += 1e-3;
   const Eigen::Vector3d plane = solve_symmetric(normal, right);
-  const double blend = tick_s_ / kGroundTime_s;
+  const double blend = tick_s_ / gains_.ground_time_s;
   slope_ += blend * (plane.head<2>() - slope_);
   slope_ = slope_.cwiseMax(-0.4).cwiseMin(0.4);
   ground_offset_m_ = plane.z();
@@ -173,14 +171,14 @@ Eigen::Vector3d QuadrupedController::touch_down(const TrunkState& trunk, int leg
   const Eigen::Vector2d turning = trunk.rate_radps.z() * Eigen::Vector2d(-hip.y(), hip.x());
   const Eigen::Vector2d velocity = trunk.velocity_mps.head<2>();
   const Eigen::Vector2d step =
-      (velocity + turning) * gait_.stance_s() / 2.0 + kCaptureTime_s * (velocity - velocity_mps_);
+      (velocity + turning) * gait_.stance_s() / 2.0 + gains_.capture_time_s * (velocity - velocity_mps_);
   // The ground pushes the feet sideways in a turn, and lastingly when the estimate of the vertical is tilted (bias of
   // the accelerometer). This offset keeps the push in line with the trunk, which would roll over otherwise. Pitch needs
   // no offset: the feet are farther apart along x.
   const Eigen::Vector2d push_mps2 = yaw_rate_radps_ * Eigen::Vector2d(-velocity.y(), velocity.x()) +
-                                    Eigen::Vector2d(0.0, kVelocityIntegral * velocity_integral_.y());
+                                    Eigen::Vector2d(0.0, gains_.velocity_integral * velocity_integral_.y());
   const Eigen::Vector2d outwards = -settings_.trunk_height_m / kGravity * push_mps2;
-  const Eigen::Vector2d foot = hip + outwards + step.cwiseMax(-0.2).cwiseMin(0.2);
+  const Eigen::Vector2d foot = hip + outwards + step.cwiseMax(-gains_.max_step_m).cwiseMin(gains_.max_step_m);
   return {foot.x(), foot.y(), ground_offset_m_ + slope_.dot(foot)};
 }
 
@@ -189,11 +187,11 @@ Eigen::Vector3d QuadrupedController::swing_force(const TrunkState& trunk, int le
   FootMotion wanted = swing_foot(lift_off_m_[leg], touch_down(trunk, leg), settings_.swing_clearance_m,
                                  phase_[leg].is_stance ? 1.0 : phase_[leg].fraction, gait_.swing_s());
   if (is_searching_[leg]) {
-    wanted.position.z() -= kSearchSpeed_mps * search_s_[leg];
-    wanted.velocity = Eigen::Vector3d(0.0, 0.0, -kSearchSpeed_mps);
+    wanted.position.z() -= gains_.search_speed_mps * search_s_[leg];
+    wanted.velocity = Eigen::Vector3d(0.0, 0.0, -gains_.search_speed_mps);
   }
-  return kSwingStiffness * (wanted.position - trunk.foot_m[leg]) +
-         kSwingDamping * (wanted.velocity - trunk.foot_velocity_mps[leg]);
+  return gains_.swing_stiffness_npm * (wanted.position - trunk.foot_m[leg]) +
+         gains_.swing_damping_nspm * (wanted.velocity - trunk.foot_velocity_mps[leg]);
 }
 
 /// Returns the force that holds the standing posture without the estimated tilt, in level.
@@ -204,7 +202,7 @@ Eigen::Vector3d QuadrupedController::wake_up_force(const TrunkState& trunk, int 
   const Eigen::Vector3d weight(0.0, 0.0, robot_.mass_kg * kGravity / kNumLegs);
   const Eigen::Vector3d error = foot_in_body - trunk.R_level_body.transpose() * trunk.foot_m[leg];
   const Eigen::Vector3d velocity = trunk.foot_velocity_mps[leg] - trunk.rate_radps.cross(trunk.foot_m[leg]);
-  return weight - trunk.R_level_body * (kWakeUpStiffness * error) + kWakeUpDamping * velocity;
+  return weight - trunk.R_level_body * (gains_.wake_up_stiffness_npm * error) + gains_.wake_up_damping_nspm * velocity;
 }
 
 /// Returns the error of the trunk's place and heading over its feet, from leg kinematics. A place held by the estimated
@@ -227,7 +225,7 @@ QuadrupedController::StandingError QuadrupedController::standing_error(const Tru
     hip_center += robot_.legs[static_cast<std::size_t>(leg)].hip_in_body.head<2>() / kNumLegs;
   }
   const Eigen::Vector2d offset =
-      (first_center - hip_center).cwiseMax(-kMaxStandingOffset_m).cwiseMin(kMaxStandingOffset_m);
+      (first_center - hip_center).cwiseMax(-gains_.max_standing_offset_m).cwiseMin(gains_.max_standing_offset_m);
   return {.p_m = center_now - hip_center - offset, .angle_rad = std::atan2(cross, dot)};
 }
 
@@ -239,17 +237,19 @@ FootVectors QuadrupedController::stance_forces(const TrunkState& trunk) {
   } else {
     const StandingError standing = standing_error(trunk);
     yaw_rad_ = trunk.yaw_rad + standing.angle_rad;
-    velocity_integral_ = kStandingStiffness / kVelocityIntegral * standing.p_m;  // the first step continues with it
+    velocity_integral_ =
+        gains_.standing_stiffness / gains_.velocity_integral * standing.p_m;  // the first step continues with it
   }
-  velocity_integral_ = velocity_integral_.cwiseMax(-kMaxIntegral_m).cwiseMin(kMaxIntegral_m);
+  velocity_integral_ =
+      velocity_integral_.cwiseMax(-gains_.max_velocity_integral_m).cwiseMin(gains_.max_velocity_integral_m);
   const double height_m = -ground_offset_m_;
   Eigen::Vector3d force;
-  const double velocity_gain = is_walking_ ? kVelocityGain : kStandingDamping;
+  const double velocity_gain = is_walking_ ? gains_.velocity_gain : gains_.standing_damping;
   const Eigen::Vector2d centripetal = yaw_rate_radps_ * Eigen::Vector2d(-velocity.y(), velocity.x());
   force.head<2>() =
-      robot_.mass_kg * (velocity_gain * velocity_error + kVelocityIntegral * velocity_integral_ + centripetal);
-  force.z() = robot_.mass_kg * (kGravity + kHeightStiffness * (settings_.trunk_height_m - height_m) -
-                                kHeightDamping * (trunk.velocity_mps.z() - slope_.dot(velocity)));
+      robot_.mass_kg * (velocity_gain * velocity_error + gains_.velocity_integral * velocity_integral_ + centripetal);
+  force.z() = robot_.mass_kg * (kGravity + gains_.height_stiffness * (settings_.trunk_height_m - height_m) -
+                                gains_.height_damping * (trunk.velocity_mps.z() - slope_.dot(velocity)));
 
   const double wanted_pitch = -settings_.slope_following * std::atan(slope_.x());
   const double wanted_roll = settings_.slope_following * std::atan(slope_.y());
@@ -257,19 +257,21 @@ FootVectors QuadrupedController::stance_forces(const TrunkState& trunk) {
                                    wrap_angle(yaw_rad_ - trunk.yaw_rad));
   const Eigen::Vector3d rate_error(-trunk.rate_radps.x(), -trunk.rate_radps.y(),
                                    yaw_rate_radps_ - trunk.rate_radps.z());
-  const Eigen::Vector3d stiffness(kTiltStiffness, kTiltStiffness, kYawStiffness);
-  const Eigen::Vector3d damping(kTiltDamping, kTiltDamping, kYawDamping);
-  const Eigen::Vector3d moment = robot_.mass_kg * kInertiaPerKg.cwiseProduct(stiffness.cwiseProduct(tilt_error) +
-                                                                             damping.cwiseProduct(rate_error));
+  const Eigen::Vector3d stiffness(gains_.tilt_stiffness, gains_.tilt_stiffness, gains_.yaw_stiffness);
+  const Eigen::Vector3d damping(gains_.tilt_damping, gains_.tilt_damping, gains_.yaw_damping);
+  const Eigen::Vector3d moment =
+      robot_.mass_kg *
+      gains_.inertia_per_kg_m2.cwiseProduct(stiffness.cwiseProduct(tilt_error) + damping.cwiseProduct(rate_error));
   FootFlags is_loaded;
   for (int leg = 0; leg < kNumLegs; ++leg) is_loaded[leg] = is_stance_[leg] && !is_searching_[leg];
-  return distribute_wrench(force, moment, trunk.foot_m, is_loaded, {});
+  return distribute_wrench(force, moment, trunk.foot_m, is_loaded,
+                           {.min_normal_n = gains_.min_foot_force_n, .max_normal_n = gains_.max_foot_force_n});
 }
 
 void QuadrupedController::detect_fall(const TrunkState& trunk) {
-  constexpr double kFallenTilt_rad = M_PI / 3.0, kCollapsed_m = 0.12;
+  constexpr double kFallenTilt_rad = M_PI / 3.0;
   const bool is_tilted = std::cos(trunk.roll_rad) * std::cos(trunk.pitch_rad) < std::cos(kFallenTilt_rad);
-  const bool is_collapsed = -ground_offset_m_ < kCollapsed_m;
+  const bool is_collapsed = -ground_offset_m_ < gains_.collapsed_m;
   fallen_s_ = is_tilted || is_collapsed ? fallen_s_ + tick_s_ : 0.0;
 }
 

@@ -7,44 +7,13 @@
 #include "core/messages.h"
 #include "core/robot_description.h"
 #include "core/sensors/registry.h"
-#include "core/settings.h"
 #include "sim/locomotion/force_distribution.h"
 #include "sim/locomotion/gait.h"
+#include "sim/locomotion/leg_gains.h"
+#include "sim/locomotion/locomotion_settings.h"
 #include "sim/locomotion/trunk_estimator.h"
 
 namespace patrol::sim {
-
-/// Settings of the walking firmware.
-struct LocomotionSettings {
-  double gait_period_s = 0.36;               ///< duration of a gait cycle
-  double gait_duty = 0.6;                    ///< fraction of the gait cycle in which a foot is on the ground
-  double trunk_height_m = 0.30;              ///< height of the trunk above the feet
-  double swing_clearance_m = 0.09;           ///< clearance of a swing foot above the higher end of its trajectory
-  double max_forward_mps = 1.0;              ///< maximum forward speed
-  double max_backward_mps = 0.3;             ///< maximum backward speed
-  double max_sideways_mps = 0.3;             ///< maximum lateral speed
-  double max_yaw_rate_radps = 1.0;           ///< maximum yaw rate
-  double max_acceleration_mps2 = 0.8;        ///< maximum acceleration of the commanded velocity
-  double max_yaw_acceleration_radps2 = 2.0;  ///< maximum acceleration of the commanded yaw rate
-  /// Fraction of the slope of the ground that the trunk follows: 0 keeps the trunk level on a slope, 1 parallel to the
-  /// ground.
-  double slope_following = 0.6;
-
-  template <typename Self, typename Visitor>
-  static void fields(Self& self, Visitor& visit) {
-    visit("gait_period_s", self.gait_period_s, between(0.25, 1.0));
-    visit("gait_duty", self.gait_duty, between(0.5, 0.8));
-    visit("trunk_height_m", self.trunk_height_m, between(0.2, 0.36));
-    visit("swing_clearance_m", self.swing_clearance_m, between(0.02, 0.15));
-    visit("max_forward_mps", self.max_forward_mps, between(0.1, 1.2));
-    visit("max_backward_mps", self.max_backward_mps, between(0.0, 0.5));
-    visit("max_sideways_mps", self.max_sideways_mps, between(0.0, 0.4));
-    visit("max_yaw_rate_radps", self.max_yaw_rate_radps, between(0.1, 1.2));
-    visit("max_acceleration_mps2", self.max_acceleration_mps2, between(0.1, 3.0));
-    visit("max_yaw_acceleration_radps2", self.max_yaw_acceleration_radps2, between(0.1, 10.0));
-    visit("slope_following", self.slope_following, between(0.0, 1.0));
-  }
-};
 
 /// Newest sensor readings at a tick.
 struct LegSensors {
@@ -91,6 +60,7 @@ class QuadrupedController {
   RobotDescription robot_;
   LocomotionSettings settings_;
   Gait gait_;
+  LegGains gains_;
   double tick_s_;
   TrunkEstimator estimator_;
 

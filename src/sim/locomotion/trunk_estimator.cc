@@ -16,17 +16,22 @@ constexpr double kSettlingTime_s = 0.1;  // time constant of the accelerometer i
                                          // estimate has converged
 constexpr double kSettling_s = 1.0;
 constexpr double kVelocityTime_s = 0.02;  // time constant of the stance feet in the velocity
-constexpr double kTouch_n = 12.0;         // force threshold of a contact
 
 }  // namespace
 
-TrunkEstimator::TrunkEstimator(RobotDescription robot, double tick_s) : robot_(std::move(robot)), tick_s_(tick_s) {
+TrunkEstimator::TrunkEstimator(RobotDescription robot, double touch_force_n, double tick_s)
+    : robot_(std::move(robot)), touch_force_n_(touch_force_n), tick_s_(tick_s) {
+  if (const auto imu = robot_.T_body_sensor.find("imu"); imu != robot_.T_body_sensor.end())
+    R_body_imu_ = imu->second.rotation.toRotationMatrix();
   state_.foot_m.fill(Eigen::Vector3d::Zero());
   state_.foot_velocity_mps.fill(Eigen::Vector3d::Zero());
   foot_roll_mps_.fill(Eigen::Vector3d::Zero());
 }
 
-const TrunkState& TrunkEstimator::update(const Imu& imu, const JointState& joints, const FootContacts& contacts) {
+const TrunkState& TrunkEstimator::update(const Imu& reading, const JointState& joints, const FootContacts& contacts) {
+  Imu imu = reading;  // in body
+  imu.angular_velocity_radps = R_body_imu_ * reading.angular_velocity_radps;
+  imu.linear_acceleration_mps2 = R_body_imu_ * reading.linear_acceleration_mps2;
   update_attitude(imu);
   update_feet(imu, joints, contacts);
   update_velocity(imu);
@@ -67,12 +72,11 @@ void TrunkEstimator::update_feet(const Imu& imu, const JointState& joints, const
     state_.foot_m[leg] = state_.R_level_body * foot_position(geometry, angle);
     state_.jacobian[leg] = state_.R_level_body * foot_jacobian(geometry, angle);
     state_.foot_velocity_mps[leg] = state_.jacobian[leg] * speed + state_.rate_radps.cross(state_.foot_m[leg]);
-    state_.is_touching[leg] = contacts.force_n[static_cast<std::size_t>(leg)] > kTouch_n;
-    // The shank rotates with the trunk, the abduction and the two pitch joints; its round foot rolls on the ground.
-    const Eigen::Vector3d shank_rate =
-        state_.R_level_body * (imu.angular_velocity_radps + Eigen::Vector3d(speed[0], 0.0, 0.0) +
-                               (speed[1] + speed[2]) * Eigen::Vector3d(0.0, std::cos(angle[0]), std::sin(angle[0])));
-    foot_roll_mps_[leg] = shank_rate.cross(geometry.foot_radius_m * Eigen::Vector3d::UnitZ());
+    state_.is_touching[leg] = contacts.force_n[static_cast<std::size_t>(leg)] > touch_force_n_;
+    // The round foot rolls on the ground with the trunk and the shank.
+    const Eigen::Vector3d foot_rate =
+        state_.R_level_body * (imu.angular_velocity_radps + shank_rate(geometry, angle, speed));
+    foot_roll_mps_[leg] = foot_rate.cross(geometry.foot_radius_m * Eigen::Vector3d::UnitZ());
   }
 }
 

@@ -14,9 +14,8 @@ FootContactSensor::FootContactSensor(const FootContactSettings& settings, const 
   validate(settings, "sensors.foot_contact");
   const RandomStream offset(seed, "foot_contact/offset");
   for (const LegGeometry& leg : legs) {
-    const std::string name = leg.name + "_foot";
-    const int geom = mj_name2id(&model, mjOBJ_GEOM, name.c_str());
-    if (geom < 0) throw InputError("robot model: foot geom not found: " + name);
+    const int geom = mj_name2id(&model, mjOBJ_GEOM, leg.foot_link.c_str());
+    if (geom < 0) throw InputError("robot model: foot geom not found: " + leg.foot_link);
     offset_n_.push_back(settings.offset_std_n * offset.normal(0, foot_geoms_.size()));
     foot_geoms_.push_back(geom);
   }

@@ -68,14 +68,14 @@ std::unique_ptr<Locomotion> make_locomotion(const SimulatorSettings& settings, c
     return std::make_unique<TrackDrive>(nominal, settings.track_drive, settings.sensors.hall.ticks_per_rad(), physics,
                                         robot.tracks());
   }
-  if (nominal.wheels.empty()) return std::make_unique<QuadrupedDrive>(nominal, settings.locomotion);
+  if (nominal.wheels.empty()) return std::make_unique<QuadrupedDrive>(nominal, settings.locomotion, physics);
   return std::make_unique<WheelDrive>(nominal, settings.wheel_drive, settings.sensors.joint_encoders.ticks_per_rad(),
                                       physics, robot.wheels());
 }
 
 AssembledModel assemble(const SimulatorSettings& settings, const AsBuiltRobot& robot) {
-  AssembledModel model = assemble_model(settings.world_xml, settings.robot_urdf, robot.start(settings.T_world_start),
-                                        settings.static_obstacles);
+  AssembledModel model = assemble_model(settings.world_xml, settings.robot_urdf, robot.nominal(),
+                                        robot.start(settings.T_world_start), settings.static_obstacles);
   apply_as_built(robot, *model.physics);
   deform_lining(settings.lining_deformations, settings.lining, *model.view);
   return model;
@@ -183,7 +183,7 @@ void Simulator::teleport(const Pose2& T_world_body) {
   const Pose3 pose = to_pose3(T_world_body, ground_m + model_.stance.height_m);
 
   const int root = model.jnt_qposadr[model.body_jntadr[robot_body_]];
-  set_start_posture(model, data_->qpos);
+  set_standing_posture(model, robot_.nominal(), data_->qpos);
   std::copy_n(pose.position.data(), 3, data_->qpos + root);
   const double quaternion[4] = {pose.rotation.w(), pose.rotation.x(), pose.rotation.y(), pose.rotation.z()};
   std::copy_n(quaternion, 4, data_->qpos + root + 3);

@@ -17,8 +17,8 @@ const std::string kTwoFeet = R"(<geom type="plane" size="5 5 1"/>
 
 std::vector<LegGeometry> two_legs() {
   std::vector<LegGeometry> legs(2);
-  legs[0].name = "left";
-  legs[1].name = "right";
+  legs[0].foot_link = "left_foot";
+  legs[1].foot_link = "right_foot";
   return legs;
 }
 

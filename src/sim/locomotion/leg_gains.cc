@@ -1,0 +1,72 @@
+#include "sim/locomotion/leg_gains.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/leg_kinematics.h"
+#include "sim/locomotion/locomotion_settings.h"
+
+namespace patrol::sim {
+namespace {
+
+// Robot for which the gains are tuned (models/quadruped).
+constexpr double kTunedMass_kg = 13.56;
+constexpr double kTunedLeg_m = 0.426;
+const Eigen::Vector3d kTunedInertiaPerKg_m2(0.01104, 0.03059, 0.03026);
+
+double rounded_to_percent(double ratio) { return std::round(100.0 * ratio) / 100.0; }
+
+}  // namespace
+
+LegScale leg_scale(const RobotDescription& robot) {
+  double leg_m = 0.0;
+  for (const LegGeometry& leg : robot.legs) leg_m = std::max(leg_m, leg.length_m());
+  const double length = leg_m / kTunedLeg_m;
+  return {.length = length, .time = std::sqrt(length), .force = rounded_to_percent(robot.mass_kg / kTunedMass_kg)};
+}
+
+LegGains scaled_leg_gains(const RobotDescription& robot) {
+  const auto [length, time, force] = leg_scale(robot);
+  LegGains gains;
+  for (double* stiffness : {&gains.height_stiffness, &gains.velocity_integral, &gains.standing_stiffness,
+                            &gains.tilt_stiffness, &gains.yaw_stiffness}) {
+    *stiffness /= time * time;
+  }
+  for (double* damping : {&gains.height_damping, &gains.velocity_gain, &gains.standing_damping, &gains.tilt_damping,
+                          &gains.yaw_damping}) {
+    *damping /= time;
+  }
+  for (double* distance_m : {&gains.max_velocity_integral_m, &gains.max_standing_offset_m, &gains.max_step_m,
+                             &gains.max_search_m, &gains.collapsed_m}) {
+    *distance_m *= length;
+  }
+  for (double* speed_mps : {&gains.search_speed_mps, &gains.max_stop_speed_mps}) *speed_mps *= length / time;
+  for (double* time_s : {&gains.capture_time_s, &gains.ground_time_s}) *time_s *= time;
+  for (double* stiffness : {&gains.swing_stiffness_npm, &gains.wake_up_stiffness_npm}) *stiffness *= force / length;
+  for (double* damping : {&gains.swing_damping_nspm, &gains.wake_up_damping_nspm}) *damping *= force / time;
+  for (double* force_n : {&gains.touch_force_n, &gains.min_foot_force_n, &gains.max_foot_force_n}) *force_n *= force;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    const double per_kg_m2 = robot.standing_inertia_kgm2[axis] / robot.mass_kg;
+    gains.inertia_per_kg_m2[axis] *= rounded_to_percent(per_kg_m2 / kTunedInertiaPerKg_m2[axis]);
+  }
+  return gains;
+}
+
+LocomotionSettings scaled_locomotion(const RobotDescription& robot) {
+  constexpr double kAboveStanding = 1.0108;  // 0.300 m for the tuned robot, whose standing posture is 0.297 m high
+  const auto [length, time, force] = leg_scale(robot);
+  double height_m = 0.0;
+  for (const LegGeometry& leg : robot.legs) height_m = std::max(height_m, -foot_position(leg, leg.standing_rad).z());
+
+  LocomotionSettings settings;
+  settings.gait_period_s *= time;
+  settings.trunk_height_m = std::round(1000.0 * kAboveStanding * height_m) / 1000.0;
+  settings.swing_clearance_m *= length;
+  for (double* speed_mps : {&settings.max_forward_mps, &settings.max_backward_mps, &settings.max_sideways_mps})
+    *speed_mps *= length / time;
+  settings.max_yaw_rate_radps /= time;
+  settings.max_yaw_acceleration_radps2 /= time * time;
+  return settings;
+}
+
+}  // namespace patrol::sim
