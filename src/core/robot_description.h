@@ -109,8 +109,8 @@ struct RobotDescription {
   std::vector<std::string> joint_names;
   std::vector<JointLimit> joint_limits;      ///< [joint]
   std::vector<Eigen::Vector2d> footprint_m;  ///< convex hull of the collision shapes in level, counterclockwise
-  /// Poses of the fixed frames: "lidar", "lidar3d", "imu", "tdlas", "gnss", "uwb", "scanner", "tem_mount",
-  /// "depth_camera", "ultrasonic_0", "ultrasonic_1" ...
+  /// Poses of the fixed frames: "lidar", "lidar_rear", "lidar3d", "imu", "tdlas", "gnss", "uwb", "scanner",
+  /// "tem_mount", "depth_camera", "ultrasonic_0", "ultrasonic_1" ...
   std::map<std::string, Pose3> T_body_sensor;
 
   /// Returns the radius of the circle around the body origin that encloses the footprint.

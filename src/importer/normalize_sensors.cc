@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/geometry/convex_polygon.h"
+#include "core/sensors/lidar.h"
 #include "importer/hull.h"
 #include "importer/normalizer.h"
 
@@ -37,6 +38,40 @@ void Normalizer::add_frame(const std::string& frame, const Pose3& T_base_frame, 
   if (!link.empty()) assume(frame, fmt::format("is the frame of {}", link), fmt::format("--frame {}=LINK", frame));
 }
 
+namespace {
+
+/// Returns the preset whose field of view and range are those of a lidar; empty if there is none.
+std::string preset_of(const SourceSensor& sensor, bool is_3d) {
+  constexpr double kFov_deg = 5.0, kRange = 0.1;
+  for (const char* name : {"rplidar_s2", "utm30lx", "tim571", "vlp16"}) {
+    const LidarSettings preset = LidarSettings::of_preset(name);
+    const bool has_fov = std::abs(preset.fov_deg - sensor.fov_deg) <= kFov_deg;
+    const bool has_range = std::abs(preset.range_max_m / sensor.range_max_m - 1.0) <= kRange;
+    if ((preset.rings > 1) == is_3d && has_fov && has_range) return name;
+  }
+  return "";
+}
+
+}  // namespace
+
+/// Chooses the preset of a lidar by the numbers of the file, if it states them.
+void Normalizer::choose_preset(const std::string& frame, const SourceSensor& sensor) {
+  if (!frame.starts_with("lidar") || sensor.fov_deg <= 0.0 || sensor.range_max_m <= 0.0) return;
+  const std::string preset = preset_of(sensor, frame == "lidar3d");
+  const std::string key = fmt::format("sensors.{}.preset in {}.yaml", frame, result_.name);
+  if (preset.empty()) {
+    assume(
+        frame,
+        fmt::format("no preset has its field of view of {:.0f} degrees and its range of {:.0f} m: the default preset "
+                    "is simulated",
+                    sensor.fov_deg, sensor.range_max_m),
+        key);
+    return;
+  }
+  result_.presets[frame] = preset;
+  assume(frame, fmt::format("is simulated as {}, by its field of view and its range", preset), key);
+}
+
 void Normalizer::add_sensors() {
   std::map<std::string, std::vector<std::string>> others;
   std::set<std::string> added;
@@ -52,11 +87,19 @@ void Normalizer::add_sensors() {
              fmt::format("--frame {}=LINK", sensor.frame));
       continue;
     }
-    if (!added.insert(sensor.frame).second) {
-      if (!options_.frames.contains(sensor.frame)) others[sensor.frame].push_back(sensor.link);
+    const auto chosen = options_.frames.find(sensor.frame);
+    if (chosen != options_.frames.end() && chosen->second == sensor.link) {
+      choose_preset(sensor.frame, sensor);
       continue;
     }
-    add_frame(sensor.frame, T_base(sensor.link) * sensor.T_link_sensor, sensor.link);
+    std::string frame = sensor.frame;
+    if (frame == "lidar" && added.contains(frame)) frame = "lidar_rear";
+    if (!added.insert(frame).second) {
+      if (!options_.frames.contains(frame)) others[frame].push_back(sensor.link);
+      continue;
+    }
+    add_frame(frame, T_base(sensor.link) * sensor.T_link_sensor, sensor.link);
+    choose_preset(frame, sensor);
   }
   for (const auto& [frame, links] : others)
     assume(frame, fmt::format("further sensors of this type are left out: {}", list_of(links)),
@@ -72,7 +115,8 @@ void Normalizer::add_sensors() {
     assume("imu", "is at the center of mass of the chassis: the file has none", "--frame imu=LINK");
   }
   if (!added.contains("lidar") && !added.contains("lidar3d"))
-    assume("lidar", "the robot has none: the file has no sensor of type ray or lidar", "--frame lidar=LINK");
+    assume("lidar", "the robot has none: the file has no sensor of type ray or lidar",
+           fmt::format("--frame lidar=LINK, or mounts in {}.yaml", result_.name));
 }
 
 /// Reports a center of mass that is not between the contacts with the ground.

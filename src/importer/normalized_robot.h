@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -70,8 +71,9 @@ struct NormalizedRobot {
   std::vector<NormalizedLink> links = {};
   std::vector<std::pair<std::string, std::string>> meshes = {};  ///< file name below meshes/ and OBJ text
   std::vector<std::string> sensor_frames = {};
-  double max_speed_mps = 0.0;  ///< by the slowest driven wheel
-  double length_m = 0.0;       ///< of the collision shapes, along x
+  std::map<std::string, std::string> presets = {};  ///< sensor frame to the preset of its lidar
+  double max_speed_mps = 0.0;                       ///< by the slowest driven wheel
+  double length_m = 0.0;                            ///< of the collision shapes, along x
   double min_turning_radius_m = 0.0;
   double leg_m = 0.0;  ///< length of the longest leg; robots with legs only
   // Mecanum drives, as the settings of wheel_drive.

@@ -23,7 +23,8 @@ inline constexpr double kParallel_rad = 0.0447;  // 2.6 degrees, as io/urdf.cc
 inline constexpr double kAssumedSpeed_mps = 1.5;
 inline constexpr double kSupportMassRatio = 0.03;  // of balls in place of fixed supports, to the robot
 inline constexpr std::size_t kManyTriangles = 20000;
-inline constexpr std::array kSensorFrames = {"lidar", "lidar3d", "imu", "gnss", "depth_camera", "tdlas", "uwb"};
+inline constexpr std::array kSensorFrames = {"lidar", "lidar_rear",   "lidar3d", "imu",
+                                             "gnss",  "depth_camera", "tdlas",   "uwb"};
 
 inline Pose3 translation(const Eigen::Vector3d& position) { return {.position = position}; }
 
@@ -123,6 +124,7 @@ class Normalizer {
   void check_balance();
   void check_clearance();
   void add_frame(const std::string& frame, const Pose3& T_base_frame, const std::string& link);
+  void choose_preset(const std::string& frame, const SourceSensor& sensor);
   void finish();
 
   std::vector<const SourceLink*> moving_group(const SourceJoint& joint) const;

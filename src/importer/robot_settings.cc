@@ -93,8 +93,12 @@ std::string settings_of(const NormalizedRobot& robot, const std::string& comment
   };
   std::string text = fmt::format("# {}\n", comment);
   text += "sensors:\n";
-  text += fmt::format("  lidar: {{enabled: {}}}\n", has("lidar"));
-  text += fmt::format("  lidar3d: {{enabled: {}}}\n", has("lidar3d"));
+  const auto preset = [&robot](const char* frame) {
+    const auto chosen = robot.presets.find(frame);
+    return chosen == robot.presets.end() ? "" : ", preset: " + chosen->second;
+  };
+  for (const char* frame : {"lidar", "lidar_rear", "lidar3d"})
+    text += fmt::format("  {}: {{enabled: {}{}}}\n", frame, has(frame), preset(frame));
   text += fmt::format("  gnss: {{enabled: {}}}\n", has("gnss"));
   text += fmt::format("  depth_camera: {{enabled: {}}}\n", has("depth_camera"));
   text += fmt::format("  tdlas: {{enabled: {}}}\n", has("tdlas"));

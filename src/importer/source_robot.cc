@@ -12,6 +12,7 @@
 #include <tinyxml2.h>
 
 #include "core/error.h"
+#include "core/geometry/angles.h"
 #include "core/geometry/linear_algebra.h"
 #include "io/files/one_line.h"
 
@@ -381,6 +382,34 @@ int vertical_samples(const XMLElement& sensor) {
   return samples;
 }
 
+/// Returns a number of an element, of its child or attribute; none if it has neither.
+std::optional<double> number_in(const XMLElement& element, const char* name) {
+  double value = 0.0;
+  if (element.QueryDoubleAttribute(name, &value) == tinyxml2::XML_SUCCESS) return value;
+  const XMLElement* child = element.FirstChildElement(name);
+  if (child != nullptr && child->QueryDoubleText(&value) == tinyxml2::XML_SUCCESS) return value;
+  return std::nullopt;
+}
+
+/// Reads field of view and range of a lidar. A field of view that is not symmetric turns the frame to its middle.
+void read_scan_field(const XMLElement& sensor, SourceSensor& found) {
+  double middle_rad = 0.0;
+  for_each_below(sensor, [&](const XMLElement& element) {
+    const std::string tag = element.Name();
+    if (tag == "horizontal") {
+      const std::optional<double> min = number_in(element, "min_angle"), max = number_in(element, "max_angle");
+      if (!min || !max || !(*max > *min)) return;
+      found.fov_deg = kDegPerRad * (*max - *min);
+      middle_rad = 0.5 * (*min + *max);
+    } else if (tag == "range") {
+      found.range_max_m = number_in(element, "max").value_or(0.0);
+    }
+  });
+  constexpr double kSymmetric_rad = 0.02;
+  if (std::abs(middle_rad) > kSymmetric_rad && found.fov_deg < 359.0)
+    found.T_link_sensor = found.T_link_sensor * Pose3{Eigen::Vector3d::Zero(), quaternion_from_yaw(middle_rad)};
+}
+
 void SourceReader::read_gazebo_sensor(const XMLElement& sensor, const std::string& link) {
   const std::string type = attribute_text(sensor, "type");
   SourceSensor found{.link = link, .line = sensor.GetLineNum()};
@@ -403,6 +432,7 @@ void SourceReader::read_gazebo_sensor(const XMLElement& sensor, const std::strin
       found.T_link_sensor = {{values[0], values[1], values[2]}, quaternion_from_rpy(values[3], values[4], values[5])};
     }
   }
+  if (found.frame.starts_with("lidar")) read_scan_field(sensor, found);
   robot_.sensors.push_back(found);
 }
 

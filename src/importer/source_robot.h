@@ -92,6 +92,8 @@ struct SourceSensor {
   std::string link = {};
   Pose3 T_link_sensor = {};
   int line = 0;
+  double fov_deg = 0.0;      ///< horizontal field of view of a lidar; 0: not stated
+  double range_max_m = 0.0;  ///< maximum range of a lidar; 0: not stated
 };
 
 /// Vendor's robot description as written: a tree of links and joints.

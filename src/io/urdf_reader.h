@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -37,7 +38,8 @@ struct TrackWheel {
 /// Reader of the elements of one URDF file. Errors contain the line.
 class UrdfReader {
  public:
-  explicit UrdfReader(const std::string& path) : path_(path), text_(load_text(path)) {
+  explicit UrdfReader(const std::string& path) : UrdfReader(path, load_text(path)) {}
+  UrdfReader(std::string path, std::string text) : path_(std::move(path)), text_(std::move(text)) {
     check_numbers();
     check_links();
     parse();

@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "core/error.h"
 #include "sim/mujoco.h"
 
 namespace patrol::render {
@@ -34,12 +33,6 @@ std::optional<Pose3> sensor_on_body(const mjModel& model, const char* name) {
   return T_world_body.inverse() * T_world_sensor;
 }
 
-Pose3 lidar_on_body(const mjModel& model) {
-  const std::optional<Pose3> T_body_lidar = sensor_on_body(model, "lidar");
-  if (!T_body_lidar) throw InputError("robot: link 'lidar' not found");
-  return *T_body_lidar;
-}
-
 /// Returns whether the robot has sprockets or wheels: hinges that turn endlessly.
 bool has_drive(const mjModel& model) {
   for (int joint = 0; joint < model.njnt; ++joint) {
@@ -51,7 +44,7 @@ bool has_drive(const mjModel& model) {
 }  // namespace
 
 SnapshotBuilder::SnapshotBuilder(const mjModel& view, const Pose2& T_world_map)
-    : scenery_(view), T_body_lidar_(lidar_on_body(view)) {
+    : scenery_(view), T_body_lidar_(sensor_on_body(view, "lidar").value_or(Pose3{})) {
   if (const auto T_body_camera = sensor_on_body(view, "depth_camera")) head_m_ = T_body_camera->position;
   snapshot_.T_world_map = T_world_map;
   snapshot_.is_driving = has_drive(view);

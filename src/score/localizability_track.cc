@@ -22,6 +22,7 @@ std::optional<double> confidence_at(const std::vector<LocalizationConfidence>& c
 std::vector<TrackedLocalizability> track_localizability(const RunRecord& record, const Pose2& T_world_map,
                                                         const LocalizabilityOracle& oracle) {
   std::vector<TrackedLocalizability> track;
+  if (!oracle) return track;
   for (std::size_t i = 0; i < record.T_map_body.size(); ++i) {
     const Time stamp = record.T_map_body[i].stamp;
     if (!track.empty() && stamp - track.back().stamp < kSpacing) continue;

@@ -29,6 +29,7 @@ std::uint32_t mask_of(const mjModel& model, int body) {
   const std::string_view name = name_of(model, mjOBJ_BODY, body);
   if (name == "lidar") return kRayLidar2d;
   if (name == "lidar3d") return kRayLidar3d;
+  if (name == "lidar_rear") return kRayLidarRear;
   return name == "scanner" ? kRayScanner : kRayRobot;
 }
 

@@ -15,12 +15,13 @@ namespace patrol::sim {
 
 /// Objects that a ray can hit, as bits of a mask.
 enum RayMask : std::uint32_t {
-  kRayScenery = 1u << 0,  ///< world and actors
-  kRayRobot = 1u << 1,    ///< robot without its lidars and its scanner
-  kRayLidar2d = 1u << 2,  ///< housing of the link `lidar`
-  kRayLidar3d = 1u << 3,  ///< housing of the link `lidar3d`
-  kRayScanner = 1u << 4,  ///< housing of the link `scanner`
-  kRayEverything = 0x1fu,
+  kRayScenery = 1u << 0,    ///< world and actors
+  kRayRobot = 1u << 1,      ///< robot without its lidars and its scanner
+  kRayLidar2d = 1u << 2,    ///< housing of the link `lidar`
+  kRayLidar3d = 1u << 3,    ///< housing of the link `lidar3d`
+  kRayScanner = 1u << 4,    ///< housing of the link `scanner`
+  kRayLidarRear = 1u << 5,  ///< housing of the link `lidar_rear`
+  kRayEverything = 0x3fu,
 };
 
 struct RayHit {

@@ -57,6 +57,18 @@ void enable_sleep(mjSpec& spec) {
   mjs_findBody(&spec, frame_id::kBody)->sleep = mjSLEEP_NEVER;
 }
 
+/// Sets the inertial frames that bodies leave undefined, as MuJoCo's compiler does: to the pose of the body in its
+/// parent. MuJoCo writes no inertia without one.
+void complete_inertial_frames(mjSpec& spec) {
+  for (mjsElement* element = mjs_firstElement(&spec, mjOBJ_BODY); element != nullptr;
+       element = mjs_nextElement(&spec, element)) {
+    mjsBody* body = mjs_asBody(element);
+    if (!body->explicitinertial || std::isfinite(body->ipos[0])) continue;
+    std::copy_n(body->pos, 3, body->ipos);
+    std::copy_n(body->quat, 4, body->iquat);
+  }
+}
+
 }  // namespace
 
 double ground_height_m(const mjModel& model, const mjData& data, const Stance& stance, const Pose2& T_world_body,
@@ -84,9 +96,33 @@ void set_standing_posture(const mjModel& model, const RobotDescription& robot, m
   }
 }
 
-AssembledModel assemble_model(const std::string& world_xml, const std::string& robot_urdf,
-                              const RobotDescription& robot, const Pose2& T_world_start,
-                              const std::vector<StaticObstacleSettings>& obstacles) {
+std::string mjcf_of(const RobotUrdf& robot_urdf, const RobotDescription& robot) {
+  constexpr double kStraightLegs_m = 0.2;
+  const SpecPtr spec = parse_spec(R"(<mujoco><option timestep="0.002"/><worldbody><light pos="0 0 3"/>
+      <geom name="ground" type="plane" size="10 10 0.1" conaffinity="2"/></worldbody></mujoco>)");
+  const double height_m = to_stance(robot_urdf, robot).height_m;
+  add_robot(*spec, robot_urdf, robot, to_pose3(Pose2{}, height_m));
+  complete_inertial_frames(*spec);
+  const ModelPtr model = compile(*spec, robot_urdf.path);
+  std::vector<double> qpos(model->qpos0, model->qpos0 + model->nq);
+  set_standing_posture(*model, robot, qpos.data());
+  if (!robot.legs.empty())  // legs that are straight at zero reach below the ground
+    mjs_findBody(spec.get(), frame_id::kBody)->pos[2] += kStraightLegs_m;
+  stow_antenna(*model, qpos.data());
+  mjsKey* key = mjs_addKey(spec.get());
+  mjs_setName(key->element, "standing");
+  mjs_setDouble(key->qpos, qpos.data(), static_cast<int>(model->nq));
+  compile(*spec, robot_urdf.path);
+  std::string xml(std::size_t{1} << 24, '\0'), error(1000, '\0');
+  if (mj_saveXMLString(spec.get(), xml.data(), static_cast<int>(xml.size()), error.data(),
+                       static_cast<int>(error.size())) != 0)
+    throw InputError(fmt::format("{}: cannot be written as MJCF: {}", robot_urdf.path, error.c_str()));
+  xml.resize(xml.find('\0'));
+  return xml;
+}
+
+AssembledModel assemble_model(const std::string& world_xml, const RobotUrdf& robot_urdf, const RobotDescription& robot,
+                              const Pose2& T_world_start, const std::vector<StaticObstacleSettings>& obstacles) {
   AssembledModel assembled;
   assembled.stance = to_stance(robot_urdf, robot);
   const double height_m = start_height_m(world_xml, *load_world(world_xml, obstacles), assembled.stance, T_world_start);

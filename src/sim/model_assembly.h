@@ -23,9 +23,12 @@ struct AssembledModel {
 /// Adds the robot of a URDF, which `robot` describes, and static obstacles to the world of an MJCF file, with the robot
 /// standing on the ground at `T_world_start`. Throws InputError when a file is invalid or the start pose is inside an
 /// object.
-AssembledModel assemble_model(const std::string& world_xml, const std::string& robot_urdf,
-                              const RobotDescription& robot, const Pose2& T_world_start,
-                              const std::vector<StaticObstacleSettings>& obstacles = {});
+AssembledModel assemble_model(const std::string& world_xml, const RobotUrdf& robot_urdf, const RobotDescription& robot,
+                              const Pose2& T_world_start, const std::vector<StaticObstacleSettings>& obstacles = {});
+
+/// Returns the MJCF of a robot, which `robot` describes, on a plane, with the keyframe "standing" of its start posture.
+/// It contains absolute paths of the robot's meshes. Throws InputError if the URDF is invalid.
+std::string mjcf_of(const RobotUrdf& robot_urdf, const RobotDescription& robot);
 
 /// Returns the ground height below the robot with its base at `T_world_body`, m: the highest collision surface below
 /// `max_ground_height_m` under any support point of its stance. The robot itself is ignored. Throws InputError if there

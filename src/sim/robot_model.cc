@@ -260,12 +260,18 @@ void add_link(mjSpec& spec, const urdf::Link& link, const RobotParts& robot, mjs
   }
 }
 
-urdf::ModelInterfaceSharedPtr parse(const std::string& path) {
-  std::ifstream file(path);
+std::string text_of(const RobotUrdf& urdf) {
+  if (!urdf.text.empty()) return urdf.text;
+  std::ifstream file(urdf.path);
   std::ostringstream text;
   text << file.rdbuf();
-  urdf::ModelInterfaceSharedPtr model = file ? urdf::parseURDF(text.str()) : nullptr;
-  if (!model) throw InputError(path + ": not a valid URDF file");
+  return file ? text.str() : "";
+}
+
+urdf::ModelInterfaceSharedPtr parse(const RobotUrdf& urdf) {
+  const std::string text = text_of(urdf);
+  urdf::ModelInterfaceSharedPtr model = text.empty() ? nullptr : urdf::parseURDF(text);
+  if (!model) throw InputError(urdf.path + ": not a valid URDF file");
   return model;
 }
 
@@ -279,14 +285,14 @@ Stance stance_on_feet(const RobotDescription& robot) {
 
 }  // namespace
 
-Stance to_stance(const std::string& urdf_path, const RobotDescription& robot) {
+Stance to_stance(const RobotUrdf& urdf, const RobotDescription& robot) {
   if (!robot.legs.empty()) return stance_on_feet(robot);
-  const urdf::ModelInterfaceSharedPtr model = parse(urdf_path);
+  const urdf::ModelInterfaceSharedPtr model = parse(urdf);
   return has_tracks(*model) ? stance_on_tracks(*model) : stance_on_wheels(*model);
 }
 
-void add_robot(mjSpec& world, const std::string& urdf_path, const RobotDescription& robot, const Pose3& T_world_body) {
-  const urdf::ModelInterfaceSharedPtr model = parse(urdf_path);
+void add_robot(mjSpec& world, const RobotUrdf& urdf, const RobotDescription& robot, const Pose3& T_world_body) {
+  const urdf::ModelInterfaceSharedPtr model = parse(urdf);
   mjsBody* base = mjs_addBody(mjs_findBody(&world, "world"), nullptr);
   std::copy_n(T_world_body.position.data(), 3, base->pos);
   base->quat[0] = T_world_body.rotation.w();
@@ -296,7 +302,7 @@ void add_robot(mjSpec& world, const std::string& urdf_path, const RobotDescripti
   mjsJoint* freejoint = mjs_addFreeJoint(base);
   mjs_setName(freejoint->element, "robot");
   const RobotParts parts{.description = robot,
-                         .folder = std::filesystem::path(urdf_path).parent_path(),
+                         .folder = std::filesystem::path(urdf.path).parent_path(),
                          .is_tracked = has_tracks(*model),
                          .road_wheel_load_n = road_wheel_load_n(*model)};
   add_link(world, *model->getRoot(), parts, *base);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <mujoco/mujoco.h>
@@ -29,14 +30,25 @@ struct Stance {
   double max_ground_height_m = 0.0;               ///< surfaces above this height, in world, are not ground at the start
 };
 
+/// URDF of a robot.
+struct RobotUrdf {
+  // NOLINTBEGIN(google-explicit-constructor): a file is the usual case
+  RobotUrdf(std::string file = {}, std::string content = {}) : path(std::move(file)), text(std::move(content)) {}
+  RobotUrdf(const char* file) : path(file) {}
+  // NOLINTEND(google-explicit-constructor)
+
+  std::string path;  ///< file, for messages and for the folder of its meshes
+  std::string text;  ///< content with the mounts of the robot (io/urdf.h); empty: that of the file
+};
+
 /// Returns the stance of the robot of a URDF, which `robot` describes.
-Stance to_stance(const std::string& urdf_path, const RobotDescription& robot);
+Stance to_stance(const RobotUrdf& urdf, const RobotDescription& robot);
 
 /// Adds the robot of a URDF, which `robot` describes, to a world.
 ///
 /// Bodies, inertias, joints and shapes come from the URDF; actuators, contact parameters and rotor inertias, which URDF
 /// cannot express, come from here. The base gets a free joint at `T_world_body`. Names: bodies as links, joints and
 /// their motors as joints, foot geoms as their links, sensor frames as sites.
-void add_robot(mjSpec& world, const std::string& urdf_path, const RobotDescription& robot, const Pose3& T_world_body);
+void add_robot(mjSpec& world, const RobotUrdf& urdf, const RobotDescription& robot, const Pose3& T_world_body);
 
 }  // namespace patrol::sim

@@ -57,6 +57,17 @@ class ImportRobot(unittest.TestCase):
         self.assertIn("Distance", run.stdout)
         self.assertTrue((self.folder / "run/metrics.json").exists())
 
+    def test_a_robot_without_a_lidar_is_imported_and_checked_as_the_same_robot_with_one(self):
+        self.assertEqual(self.patrol("import", "robot", self.urdf, "--out", "models/four").returncode, 0)
+        self.assertEqual(self.patrol("import", "robot", self.urdf, "--frame", "lidar=laser", "--out", "models/seeing").returncode, 0)
+        self.assertIn("lidar: {enabled: false}", (self.folder / "models/four/four.yaml").read_text())
+        check, seeing = self.patrol("check", "four", "--out", "check"), self.patrol("check", "seeing", "--out", "check")
+        self.assertIn("passed   square", check.stdout, check.stderr)
+        self.assertEqual((check.returncode, check.stdout.replace("four", "seeing")), (seeing.returncode, seeing.stdout))
+        refused = self.patrol("run", SOURCE / "worlds/street/scenarios/short.yaml", "--set", "robot=four", "--out", "run")
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("robot: four has no lidar (2D lidar), which stack.slam requires, and no tdlas", refused.stderr)
+
     def test_a_broken_file_is_one_line_with_file_line_and_element(self):
         self.urdf.write_text(vendor_urdf().replace('<parent link="chassis"/><child link="roue1"/>', '<parent link="nowhere"/><child link="roue1"/>'))
         line = 1 + self.urdf.read_text().split("nowhere")[0].count("\n")

@@ -19,7 +19,7 @@ namespace patrol::importer::robot_import_test {
 namespace {
 
 using test::TemporaryFolder, test::VectorNear, test::write_bytes;
-using ::testing::HasSubstr, ::testing::MatchesRegex, ::testing::Not;
+using ::testing::AllOf, ::testing::HasSubstr, ::testing::MatchesRegex, ::testing::Not;
 
 /// Expects an exact wheel.
 void expect_wheel(const Import& import, const std::string& link, const Eigen::Vector3d& center, double radius_m,
@@ -500,6 +500,50 @@ TEST(ImportRobot, WithoutSensorsAnImuIsAtTheCenterOfMassAndNoLidarIsAdded) {
   EXPECT_THAT(robot.T_body("imu").position, VectorNear(Eigen::Vector3d(0.05, 0.0, 0.02), 1e-9));
   EXPECT_FALSE(robot.T_body_sensor.contains("lidar"));
   EXPECT_THAT(import.robot.settings, HasSubstr("lidar: {enabled: false}"));
+}
+
+/// Fixed link with a lidar of Gazebo.
+std::string lidar_on(const std::string& name, const std::string& xyz, const std::string& yaw, double half_fov_rad,
+                     double range_m) {
+  return joint(name + "_joint", "fixed", "base_link", name, xyz, "", "0 0 " + yaw) + link(name, inertial(0.2)) +
+         fmt::format(
+             R"(<gazebo reference="{}"><sensor type="ray" name="x"><ray><scan><horizontal><samples>720</samples>)"
+             R"(<min_angle>-{}</min_angle><max_angle>{}</max_angle></horizontal></scan><range><min>0.1</min>)"
+             R"(<max>{}</max></range></ray></sensor></gazebo>)",
+             name, half_fov_rad, half_fov_rad, range_m);
+}
+
+TEST(ImportRobot, ASecondLidarBecomesLidarRearWithThePresetOfItsNumbersAndAThirdIsLeftOut) {
+  Import import(robot(chassis() + two_wheels() + caster() + lidar_on("bow", "0.2 0 0.3", "0", 2.356, 30.0) +
+                      lidar_on("stern", "-0.2 0 0.3", "3.14159265", 2.356, 25.0) +
+                      lidar_on("top", "0 0 0.6", "0", 1.0, 8.0)));
+  const RobotDescription& robot = import.load();
+  EXPECT_THAT(robot.T_body("lidar").position, VectorNear(Eigen::Vector3d(0.2, 0.0, 0.3), 1e-9));
+  EXPECT_THAT(robot.T_body("lidar_rear").position, VectorNear(Eigen::Vector3d(-0.2, 0.0, 0.3), 1e-9));
+  EXPECT_NEAR(std::abs(to_yaw(robot.T_body("lidar_rear").rotation)), M_PI, 1e-6);
+  EXPECT_THAT(import.robot.settings, AllOf(HasSubstr("  lidar: {enabled: true, preset: utm30lx}\n"),
+                                           HasSubstr("  lidar_rear: {enabled: true, preset: tim571}\n")));
+  EXPECT_THAT(import.assumptions(),
+              AllOf(HasSubstr("| lidar_rear | is the frame of stern | --frame lidar_rear=LINK |"),
+                    HasSubstr("| lidar | is simulated as utm30lx, by its field of view and its range | "
+                              "sensors.lidar.preset in imported.yaml |"),
+                    HasSubstr("further sensors of this type are left out: top")));
+}
+
+TEST(ImportRobot, ALidarOfNoKnownNumbersKeepsTheDefaultPresetWithARow) {
+  Import import(robot(chassis() + two_wheels() + caster() + lidar_on("bow", "0.2 0 0.3", "0", 1.0, 8.0)));
+  import.load();
+  EXPECT_THAT(import.robot.settings, HasSubstr("  lidar: {enabled: true}\n  lidar_rear: {enabled: false}\n"));
+  EXPECT_THAT(import.assumptions(), HasSubstr("no preset has its field of view of 115 degrees and its range of 8 m"));
+}
+
+TEST(ImportRobot, TheOptionForTheLidarLeavesTheOtherLidarOfTheFileAsTheRearOne) {
+  Import import(robot(chassis() + two_wheels() + caster() + lidar_on("bow", "0.2 0 0.3", "0", 2.356, 30.0) +
+                      lidar_on("stern", "-0.2 0 0.3", "0", 2.356, 30.0)));
+  import.options.frames["lidar"] = "stern";
+  const RobotDescription& robot = import.load();
+  EXPECT_NEAR(robot.T_body("lidar").position.x(), -0.2, 1e-9);
+  EXPECT_NEAR(robot.T_body("lidar_rear").position.x(), 0.2, 1e-9);
 }
 
 TEST(ImportRobot, ASpinningSensorAboveTheGroundIsNoWheel) {

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "app/scenario/mounts.h"
 #include "app/scenario/scenario.h"
+#include "app/scenario/sensor_needs.h"
 #include "core/sensors/registry.h"
 #include "core/wheel_kinematics.h"
 #include "io/urdf.h"
@@ -124,14 +127,20 @@ CheckRobot load_check_robot(const std::string& name, const std::vector<std::stri
                             std::optional<std::uint64_t> seed, const std::filesystem::path& data_root) {
   const std::filesystem::path urdf = find_robot(name, data_root);
   Scenario scenario = default_scenario(name, data_root);
-  io::SettingsReader::read_section("--set", io::parse_overrides(overrides), "", scenario);
+  const std::vector<MountSettings> mounts = std::exchange(scenario.mounts, {});
+  const YAML::Node given = io::parse_overrides(overrides);
+  io::SettingsReader::read_section("--set", given, "", scenario);
+  complete_mounts("--set", YAML::Node(), scenario.mounts);
+  io::MountedRobot mounted =
+      io::load_mounted_robot(urdf.string(), sensor_mounts(merge_mounts(mounts, scenario.mounts)));
+  require_sensors(firmware_needs(mounted.description), mounted.description, name, "patrol check");
   CheckRobot robot;
   robot.name = name;
   robot.seed = seed.value_or(scenario.seed);
   robot.overrides = overrides;
-  robot.description = io::load_robot_description(urdf.string());
+  robot.description = std::move(mounted.description);
   sim::set_drive_type(scenario.wheel_drive, robot.description);
-  robot.simulator.robot_urdf = urdf.string();
+  robot.simulator.robot_urdf = {urdf.string(), std::move(mounted.urdf)};
   robot.simulator.as_built = scenario.as_built;
   robot.simulator.sensors = scenario.sensors;
   robot.simulator.locomotion = scenario.locomotion;

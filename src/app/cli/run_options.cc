@@ -62,6 +62,7 @@ void add_check(CLI::App& app, Call& call) {
   command->add_option("--set", check.overrides, kSetHelp)->take_all();
   command->add_option("--seed", check.seed, kSeedHelp);
   command->add_option("--out", check.out, kOutHelp)->capture_default_str();
+  command->add_option("--mjcf", check.mjcf, "Write the robot on a plane as MJCF to this file instead of driving it");
   add_json(*command, check.form);
   command->callback([&] { call.chosen = [&] { return check_command(call.check); }; });
 }

@@ -14,6 +14,7 @@
 #include "io/files/atomic_file.h"
 #include "io/json/metrics_json.h"
 #include "report/page.h"
+#include "sim/model_assembly.h"
 
 namespace patrol::app {
 namespace {
@@ -37,6 +38,11 @@ CheckResult run_with_progress(const CheckRobot& robot) {
 
 ExitCode check_command(const CheckOptions& options) {
   const CheckRobot robot = load_check_robot(options.robot, options.overrides, options.seed, find_data_root({}));
+  if (options.mjcf) {
+    io::save_text(*options.mjcf, sim::mjcf_of(robot.simulator.robot_urdf, robot.description));
+    fmt::print("{}\n", options.mjcf->string());
+    return ExitCode::kDone;
+  }
   const OutputLock lock = begin_output(options.out, kCheck);
   const CheckResult result = run_with_progress(robot);
   const io::Metrics json = check_json(result);

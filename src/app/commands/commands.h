@@ -60,6 +60,7 @@ struct CheckOptions {
   std::vector<std::string> overrides;
   std::optional<std::uint64_t> seed;
   std::filesystem::path out = "out/check";
+  std::optional<std::filesystem::path> mjcf;  ///< file for the model of the robot, which is not driven then
   ResultForm form = ResultForm::kText;
 };
 /// Drives a robot through the maneuvers of a check (app/check) and writes the verdict.

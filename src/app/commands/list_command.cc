@@ -12,6 +12,7 @@
 #include "app/commands/commands.h"
 #include "app/common/print_result.h"
 #include "app/scenario/scenario.h"
+#include "app/scenario/sensor_needs.h"
 #include "app/scoring/metric_infos.h"
 #include "app/study/study_table.h"
 #include "core/event.h"
@@ -146,6 +147,31 @@ struct ToleranceSections {
   }
 };
 
+/// Robot of a scenario and the sensors that it needs; the message of a scenario that is refused.
+std::pair<std::string, std::string> robot_and_needs_of(const std::filesystem::path& file,
+                                                       const std::filesystem::path& root) {
+  try {
+    const Scenario scenario = load_scenario(file);
+    std::vector<std::string> sensors;
+    for (const SensorNeed& need : sensor_needs(scenario, load_scenario_files(scenario, root)))
+      sensors.push_back(need.sensor);
+    return {scenario.robot, join(sensors, ", ")};
+  } catch (const InputError& error) {
+    return {"refused", error.what()};
+  }
+}
+
+Section scenario_section(const std::filesystem::path& root) {
+  Section result{.title = "scenarios, their robots and the sensors that they need",
+                 .table = {.name = "scenarios", .columns = {"name", "robot", "needed_sensors"}, .rows = {}}};
+  const auto is_scenario = [](const auto& file) { return file.parent_path().filename() == "scenarios"; };
+  for (const std::string& name : files_below(root, "worlds", is_scenario)) {
+    const auto [robot, needs] = robot_and_needs_of(root / name, root);
+    result.table.rows.push_back({name, robot, needs});
+  }
+  return result;
+}
+
 /// Adds scenarios, worlds and robots; an explanation if the data folder is missing.
 void add_data(std::vector<Section>& sections) {
   std::filesystem::path root;
@@ -155,9 +181,7 @@ void add_data(std::vector<Section>& sections) {
     fmt::print(stderr, "patrol: no scenarios, worlds and robots: {}\n", error.what());
     return;
   }
-  sections.push_back(section("scenarios", "scenarios", files_below(root, "worlds", [](const auto& file) {
-                               return file.parent_path().filename() == "scenarios";
-                             })));
+  sections.push_back(scenario_section(root));
   sections.push_back(section("worlds", "worlds", files_below(root, "worlds", [](const auto& file) {
                                return file.extension() == ".xml" && file.stem() == file.parent_path().filename();
                              })));

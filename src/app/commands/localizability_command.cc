@@ -6,6 +6,7 @@
 #include "app/commands/commands.h"
 #include "app/common/output_directory.h"
 #include "app/common/progress_bar.h"
+#include "app/scenario/sensor_needs.h"
 #include "app/scoring/localizability_map.h"
 #include "core/error.h"
 #include "core/geometry/angles.h"
@@ -61,10 +62,13 @@ ExitCode localizability_command(const LocalizabilityOptions& options) {
   if (!(options.grid_step_m >= 0.05 && options.grid_step_m <= 10.0))
     throw InputError(fmt::format("--grid-step-m {}: must be in [0.05, 10]", options.grid_step_m));
   const Scenario scenario = load_scenario(options.scenario, options.overrides);
+  const ScenarioFiles files = load_scenario_files(scenario, find_data_root(options.scenario));
+  require_sensors({{.sensor = "lidar", .by = "patrol localizability"}}, files.robot, scenario.robot,
+                  scenario.robot_location);
   ProgressBar bar;
-  const LocalizabilityMap map = map_localizability(
-      scenario, load_scenario_files(scenario, find_data_root(options.scenario)), options.grid_step_m,
-      [&](double fraction) { bar.show(fmt::format("localizability  {:3.0f} %", 100.0 * fraction), fraction); });
+  const LocalizabilityMap map = map_localizability(scenario, files, options.grid_step_m, [&](double fraction) {
+    bar.show(fmt::format("localizability  {:3.0f} %", 100.0 * fraction), fraction);
+  });
   const OutputLock lock = begin_output(options.out, kLocalizability);
   io::save_csv(options.out / "localizability.csv", table_of(map));
   render::save_png(options.out / "localizability.png", picture_of(map, scenario.world));

@@ -88,7 +88,7 @@ ExitCode replay_command(const ReplayOptions& options) {
   settings.map = files.map;
   const RunRecord record = read_run_record(directory.log());
   const Pose2 T_world_map = pose_of_map(record, files.map ? std::optional(files.T_site_map()) : std::nullopt);
-  sim::AssembledModel model = sim::assemble_model(files.world_xml.string(), files.robot_urdf.string(), files.robot,
+  sim::AssembledModel model = sim::assemble_model(files.world_xml.string(), files.simulated_robot(), files.robot,
                                                   start_in_world(scenario, files), all_static_obstacles(scenario));
 
   if (options.still_s) {

@@ -34,7 +34,8 @@ std::unique_ptr<StackPort> stack_for(const link::StackClient& client) {
   const TemporaryFolder folder("stack");
   const std::filesystem::path file = folder.path() / "documents.yaml";
   std::ofstream(file) << hello.documents;
-  const Scenario scenario = load_scenario(file);
+  Scenario scenario = load_scenario(file);
+  scenario.stack.command.clear();  // the built-in stack needs its sensors in this process as well
   const ScenarioFiles files = load_scenario_files(scenario, find_data_root(file));
   return std::make_unique<BuiltInStack>(make_stack(scenario, files), stack::ComputeSettings{});
 }

@@ -36,6 +36,16 @@ link::VelocityLimits limits_of(const Scenario& scenario, const RobotDescription&
           .yaw_rate_radps = legs.max_yaw_rate_radps};
 }
 
+/// Sets which sensors the robot has; their error models are not documented.
+void document_sensors(const sim::SensorSuiteSettings& sensors, sim::SensorSuiteSettings& documented) {
+  Sensors::for_each([&]<typename Message>(std::type_identity<Message>) {
+    if constexpr (HasSensorSettings<Message>) {
+      auto& own = documented.*SensorTraits<Message>::kSettings;
+      if constexpr (requires { own.enabled; }) own.enabled = sim::is_enabled<Message>(sensors);
+    }
+  });
+}
+
 }  // namespace
 
 Scenario documented_scenario(const Scenario& scenario) {
@@ -54,6 +64,7 @@ Scenario documented_scenario(const Scenario& scenario) {
   documented.wheel_drive.type = scenario.wheel_drive.type;
   documented.wheel_drive.roller_pattern = scenario.wheel_drive.roller_pattern;
   documented.wheel_drive.roller_angle_rad = scenario.wheel_drive.roller_angle_rad;
+  document_sensors(scenario.sensors, documented.sensors);
   documented.stack = scenario.stack;
   documented.log.map_period_s = scenario.log.map_period_s;
   return documented;
@@ -68,7 +79,7 @@ StackDocuments stack_documents(const Scenario& scenario, const std::string& name
                 .seed = scenario.seed,
                 .tick = tick,
                 .limits = limits_of(scenario, files.robot),
-                .robot = text_of(files.robot_urdf),
+                .robot = files.robot_urdf_text,
                 .site = text_of(world / scenario.mission),
                 .goals = scenario.goals.empty() ? "" : text_of(world / scenario.goals),
                 .registration = files.map_registration ? text_of(registration_beside(world / scenario.map)) : "",

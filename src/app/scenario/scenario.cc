@@ -8,9 +8,10 @@
 
 #include <fmt/format.h>
 
+#include "app/scenario/mounts.h"
 #include "app/scenario/neighbor_model.h"
+#include "app/scenario/sensor_needs.h"
 #include "core/error.h"
-#include "core/geometry/angles.h"
 #include "core/text.h"
 #include "io/files/teleop_csv.h"
 #include "io/json/nav_json.h"
@@ -77,31 +78,101 @@ std::filesystem::path find_named_file(const std::filesystem::path& world, const 
   return file;
 }
 
-/// Adds the frames of the scenario's mounts to the robot's frames.
-void add_mounts(RobotDescription& robot, const std::vector<MountSettings>& mounts) {
-  for (std::size_t i = 0; i < mounts.size(); ++i) {
-    const MountSettings& mount = mounts[i];
-    const Pose3 T_body_mount{
-        {mount.x_m, mount.y_m, mount.z_m},
-        quaternion_from_rpy(kDegree * mount.roll_deg, kDegree * mount.pitch_deg, kDegree * mount.yaw_deg)};
-    if (robot.T_body_sensor.emplace(mount.frame, T_body_mount).second) continue;
-    throw InputError(fmt::format("mounts.{}.frame = {}: duplicate frame of the robot {}: must be a new name", i,
-                                 mount.frame, robot.name));
+/// Returns whether an override sets a key or a part of it. Overrides have no lines.
+bool is_overridden(const std::string& key, const std::vector<std::string>& overrides) {
+  return std::ranges::any_of(overrides, [&](const std::string& one) {
+    return one.starts_with(key) && (one.substr(key.size()).starts_with("=") || one.substr(key.size()).starts_with("."));
+  });
+}
+
+/// Returns a document of which the messages contain the lines; empty if an override sets the key.
+YAML::Node lines_of(const std::filesystem::path& file, const std::string& key,
+                    const std::vector<std::string>& overrides) {
+  return is_overridden(key, overrides) ? YAML::Node() : io::load_document(file, {});
+}
+
+/// Reads a scenario or a robot profile over the values in `settings`. Mounts of the file switch their sensors on before
+/// the settings of the sensors are read, and extend the mounts in `settings`. If the file selects another lidar, the
+/// as-built tolerances of that lidar are the defaults.
+template <typename Settings>
+void read_over(const std::filesystem::path& file, const std::vector<std::string>& overrides, Settings& settings) {
+  const std::string preset = settings.sensors.lidar.preset;
+  const std::vector<MountSettings> inherited = std::exchange(settings.mounts, {});
+  Settings read = settings;
+  io::read_settings(file, overrides, read);
+  std::vector<MountSettings> mounts = std::move(read.mounts);
+  complete_mounts(file, lines_of(file, "mounts", overrides), mounts);
+  for (const MountSettings& mount : mounts) mount_sensor(mount, settings.sensors);
+  read = settings;
+  io::read_settings(file, overrides, read);
+  if (read.sensors.lidar.preset != preset) {
+    settings.as_built.lidar = sim::LidarTolerances::for_preset(read.sensors.lidar.preset);
+    read = settings;
+    io::read_settings(file, overrides, read);
+  }
+  read.mounts = merge_mounts(inherited, mounts);
+  settings = std::move(read);
+}
+
+/// Returns the settings with which the profile of a robot starts: those that depend on its size.
+RobotProfile profile_of_size(const RobotDescription& robot) {
+  RobotProfile profile;
+  if (robot.legs.empty()) return profile;
+  profile.locomotion = sim::scaled_locomotion(robot);
+  const double force = sim::leg_scale(robot).force;
+  localize::LeggedOdometrySettings& odometry = profile.stack.odometry.legged;
+  for (double* force_n : {&odometry.contact_on_force_n, &odometry.contact_off_force_n, &odometry.full_weight_force_n,
+                          &profile.sensors.foot_contact.range_n}) {
+    *force_n *= force;
+  }
+  return profile;
+}
+
+/// The robot's profile, if it has one, over the defaults.
+Scenario scenario_of_profile(const std::filesystem::path& profile_file, const std::filesystem::path& urdf_file) {
+  Scenario scenario;
+  if (!std::filesystem::exists(profile_file)) return scenario;
+  RobotProfile profile =
+      std::filesystem::exists(urdf_file) ? profile_of_size(io::load_robot_description(urdf_file)) : RobotProfile{};
+  read_over(profile_file, {}, profile);
+  scenario.mounts = std::move(profile.mounts);
+  scenario.as_built = profile.as_built;
+  scenario.sensors = profile.sensors;
+  scenario.locomotion = profile.locomotion;
+  scenario.track_drive = profile.track_drive;
+  scenario.wheel_drive = profile.wheel_drive;
+  scenario.stack = profile.stack;
+  return scenario;
+}
+
+/// Refuses a profile that enables a sensor without a frame of the robot.
+void check_profile(const std::filesystem::path& profile_file, const RobotDescription& robot,
+                   const Scenario& of_profile) {
+  if (!std::filesystem::exists(profile_file)) return;
+  const YAML::Node document = io::load_document(profile_file, {});
+  for (const std::string& sensor : absent_sensors(robot, of_profile.sensors)) {
+    const YAML::Node enabled = find_node(document, {"sensors", sensor, "enabled"});
+    if (!enabled.IsDefined()) continue;
+    throw InputError(fmt::format("{} = true: the robot has no frame of this sensor: add a mount (mounts)",
+                                 location_of(profile_file, enabled, fmt::format("sensors.{}.enabled", sensor))));
   }
 }
 
-/// Reads a scenario or a robot profile over the values in `settings`. If it selects another lidar, the as-built
-/// tolerances of that lidar are the defaults.
-template <typename Settings>
-void read_with_lidar_tolerances(const std::filesystem::path& file, const std::vector<std::string>& overrides,
-                                Settings& settings) {
-  Settings defaults = settings;
-  io::read_settings(file, overrides, settings);
-  const std::string preset = settings.sensors.lidar.preset;
-  if (preset == defaults.sensors.lidar.preset) return;
-  defaults.as_built.lidar = sim::LidarTolerances::for_preset(preset);
-  io::read_settings(file, overrides, defaults);
-  settings = std::move(defaults);
+/// Returns the sensors that a document enables by name.
+std::vector<std::string> enabled_by_name(const YAML::Node& document) {
+  std::vector<std::string> names;
+  for (const std::string& sensor : sensor_names()) {
+    if (find_node(document, {"sensors", sensor, "enabled"}).IsDefined()) names.push_back(sensor);
+  }
+  return names;
+}
+
+/// Returns the robot with its mounts; none if it has no URDF.
+std::optional<RobotDescription> robot_of(const std::string& name, const std::filesystem::path& data_root,
+                                         const std::vector<MountSettings>& mounts) {
+  const std::filesystem::path urdf = robot_file(name, ".urdf", data_root);
+  if (!std::filesystem::exists(urdf)) return std::nullopt;
+  return io::load_mounted_robot(urdf.string(), sensor_mounts(mounts)).description;
 }
 
 /// Returns the file with the registration of a map to the site; none if there is none beside the map.
@@ -125,46 +196,28 @@ std::filesystem::path find_robot(const std::string& name, const std::filesystem:
   return std::filesystem::exists(urdf) ? urdf : find_definition(data_root, "models", "robot", name, ".urdf");
 }
 
-namespace {
-
-/// Returns the settings with which the profile of a robot starts: those that depend on its size.
-RobotProfile profile_of_size(const RobotDescription& robot) {
-  RobotProfile profile;
-  if (robot.legs.empty()) return profile;
-  profile.locomotion = sim::scaled_locomotion(robot);
-  const double force = sim::leg_scale(robot).force;
-  localize::LeggedOdometrySettings& odometry = profile.stack.odometry.legged;
-  for (double* force_n : {&odometry.contact_on_force_n, &odometry.contact_off_force_n, &odometry.full_weight_force_n,
-                          &profile.sensors.foot_contact.range_n}) {
-    *force_n *= force;
-  }
-  return profile;
-}
-
-}  // namespace
-
 Scenario default_scenario(const std::string& robot, const std::filesystem::path& data_root) {
-  Scenario scenario;
-  const std::filesystem::path profile_file = robot_file(robot, ".yaml", data_root),
-                              urdf_file = robot_file(robot, ".urdf", data_root);
-  if (std::filesystem::exists(profile_file)) {
-    RobotProfile profile =
-        std::filesystem::exists(urdf_file) ? profile_of_size(io::load_robot_description(urdf_file)) : RobotProfile{};
-    read_with_lidar_tolerances(profile_file, {}, profile);
-    scenario.as_built = profile.as_built;
-    scenario.sensors = profile.sensors;
-    scenario.locomotion = profile.locomotion;
-    scenario.track_drive = profile.track_drive;
-    scenario.wheel_drive = profile.wheel_drive;
-    scenario.stack = profile.stack;
+  const std::filesystem::path profile = robot_file(robot, ".yaml", data_root);
+  Scenario scenario = scenario_of_profile(profile, robot_file(robot, ".urdf", data_root));
+  if (const std::optional<RobotDescription> described = robot_of(robot, data_root, scenario.mounts)) {
+    check_profile(profile, *described, scenario);
+    disable_absent_sensors(*described, {}, scenario);
   }
   return scenario;
 }
 
 Scenario load_scenario(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  const std::filesystem::path data_root = find_data_root(file);
   const std::string robot = io::load_settings<Scenario>(file, overrides).robot;
-  Scenario scenario = default_scenario(robot, find_data_root(file));
-  read_with_lidar_tolerances(file, overrides, scenario);
+  const std::filesystem::path profile = robot_file(robot, ".yaml", data_root);
+  const Scenario of_profile = scenario_of_profile(profile, robot_file(robot, ".urdf", data_root));
+  Scenario scenario = of_profile;
+  read_over(file, overrides, scenario);
+  scenario.robot_location = location_of(file, find_node(lines_of(file, "robot", overrides), {"robot"}), "robot");
+  if (const std::optional<RobotDescription> described = robot_of(robot, data_root, scenario.mounts)) {
+    check_profile(profile, *described, of_profile);
+    disable_absent_sensors(*described, enabled_by_name(io::load_document(file, overrides)), scenario);
+  }
   return scenario;
 }
 
@@ -238,8 +291,9 @@ ScenarioFiles load_scenario_files(const Scenario& scenario, const std::filesyste
   ScenarioFiles files;
   files.world_xml = find_definition(data_root, "worlds", "world", scenario.world, ".xml");
   files.robot_urdf = find_robot(scenario.robot, data_root);
-  files.robot = io::load_robot_description(files.robot_urdf.string());
-  add_mounts(files.robot, scenario.mounts);
+  io::MountedRobot robot = io::load_mounted_robot(files.robot_urdf.string(), sensor_mounts(scenario.mounts));
+  files.robot_urdf_text = std::move(robot.urdf);
+  files.robot = std::move(robot.description);
   sim::set_drive_type(scenario.wheel_drive, files.robot);
   const auto named_file = [&](const char* key, const std::string& name) {
     return find_named_file(files.world_xml.parent_path(), key, name);
@@ -259,6 +313,8 @@ ScenarioFiles load_scenario_files(const Scenario& scenario, const std::filesyste
     files.goals = io::load_nav(file);
     stack::validate_goals(file.string(), files.goals, files.map);
   }
+  require_sensors(sensor_needs(scenario, files), files.robot, scenario.robot,
+                  scenario.robot_location.empty() ? "robot" : scenario.robot_location);
   files.neighbor_model = load_neighbor_model(scenario.stack.slam.method, data_root);
   if (!scenario.references.empty())
     files.references = io::load_station_scans(files.world_xml.parent_path() / scenario.references);

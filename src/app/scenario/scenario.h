@@ -64,26 +64,39 @@ struct KidnapSettings {
   }
 };
 
-/// Sensor mounted for this scenario: an additional frame of the robot, with neither mass nor shape.
+/// Mount of a sensor: adds a frame to the robot, or moves a frame of its URDF together with the shapes of its link. An
+/// added frame has neither mass nor shape. A mount switches its sensor on unless the settings of the sensor say
+/// otherwise.
 struct MountSettings {
-  std::string frame;       ///< name of the sensor frame, e.g. "tdlas"
-  double x_m = 0.0;        ///< x of the sensor frame in the body frame
-  double y_m = 0.0;        ///< y of the sensor frame in the body frame
-  double z_m = 0.0;        ///< z of the sensor frame in the body frame
-  double roll_deg = 0.0;   ///< roll of the sensor frame in the body frame
-  double pitch_deg = 0.0;  ///< pitch of the sensor frame in the body frame
-  double yaw_deg = 0.0;    ///< yaw of the sensor frame in the body frame
+  std::string frame;                 ///< name of the sensor frame, e.g. "tdlas"
+  std::string parent = "base_link";  ///< link that is fixed to `base_link`, or `base_link`
+  double x_m = 0.0;                  ///< x of the sensor frame in the parent
+  double y_m = 0.0;                  ///< y of the sensor frame in the parent
+  double z_m = 0.0;                  ///< z of the sensor frame in the parent
+  double roll_deg = 0.0;             ///< roll of the sensor frame in the parent
+  double pitch_deg = 0.0;            ///< pitch of the sensor frame in the parent
+  double yaw_deg = 0.0;              ///< yaw of the sensor frame in the parent
+  std::string preset;                ///< model of a lidar (sensors.lidar.preset); empty: that of the settings
+  std::string location;              ///< file, line and key for messages; not a setting
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("frame", self.frame);
+    visit("parent", self.parent);
     visit("x_m", self.x_m, between(-2.0, 2.0));
     visit("y_m", self.y_m, between(-2.0, 2.0));
     visit("z_m", self.z_m, between(-2.0, 2.0));
     visit("roll_deg", self.roll_deg, between(-180.0, 180.0));
     visit("pitch_deg", self.pitch_deg, between(-90.0, 90.0));
     visit("yaw_deg", self.yaw_deg, between(-180.0, 180.0));
+    visit("preset", self.preset);
   }
+};
+
+/// Reason for which a scenario needs a sensor.
+struct SensorNeed {
+  std::string sensor;  ///< name in the registry, "lidar"
+  std::string by;      ///< settings key or part of the scenario that requires it, "stack.slam"
 };
 
 /// Contents of the log besides the messages.
@@ -115,7 +128,7 @@ struct Scenario {
   std::string references;  ///< folder below the world's folder with scans of an earlier run (io/points/station_scans.h)
   TeleopSettings teleop;
   StartOffsetSettings start;
-  std::vector<MountSettings> mounts;  ///< sensors in addition to those of the robot's URDF
+  std::vector<MountSettings> mounts;  ///< sensors added to the robot or moved; they extend those of its file
   sim::AsBuiltSettings as_built = sim::AsBuiltSettings::as_delivered();  ///< tolerances of the simulated robot
   sim::SensorSuiteSettings sensors;
   sim::LocomotionSettings locomotion;   ///< locomotion of a legged robot
@@ -134,7 +147,9 @@ struct Scenario {
   std::vector<sim::FaultSettings> faults;
   std::vector<KidnapSettings> kidnaps;
   LogSettings log;
-  io::Expectations expect;  ///< bounds of metrics that the run must meet, by path of the metric
+  io::Expectations expect;            ///< bounds of metrics that the run must meet, by path of the metric
+  std::string robot_location;         ///< file, line and key of `robot` for messages; not a setting
+  std::vector<SensorNeed> requested;  ///< sensors that the file enables and the robot lacks; not a setting
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -174,6 +189,7 @@ struct Scenario {
 
 /// Robot profile, models/<robot>/<robot>.yaml: settings that differ from the defaults.
 struct RobotProfile {
+  std::vector<MountSettings> mounts;
   sim::AsBuiltSettings as_built = sim::AsBuiltSettings::as_delivered();
   sim::SensorSuiteSettings sensors;
   sim::LocomotionSettings locomotion;
@@ -183,6 +199,7 @@ struct RobotProfile {
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
+    visit("mounts", self.mounts);
     visit("as_built", self.as_built);
     visit("sensors", self.sensors);
     visit("locomotion", self.locomotion);
@@ -200,11 +217,13 @@ std::filesystem::path robot_file(const std::string& robot, const std::string& ex
 /// Returns the URDF file of a robot of `models`. Throws InputError with the known robots if there is none.
 std::filesystem::path find_robot(const std::string& name, const std::filesystem::path& data_root);
 
-/// Default scenario of a robot: the robot's profile, if it has one, over the defaults.
+/// Default scenario of a robot: the robot's profile, if it has one, over the defaults. Sensors that only the defaults
+/// enable are disabled if the robot has no frame for them.
 Scenario default_scenario(const std::string& robot, const std::filesystem::path& data_root);
 
-/// Loads a scenario file with "path=value" overrides, over its robot's profile, over the defaults. Throws InputError
-/// with file, line and key.
+/// Loads a scenario file with "path=value" overrides, over its robot's profile, over the defaults. Sensors that neither
+/// the file nor an override enables are disabled if the robot has no frame for them. Throws InputError with file, line
+/// and key.
 Scenario load_scenario(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
 
 /// Formats every setting as YAML.
@@ -233,6 +252,7 @@ std::filesystem::path registration_beside(const std::filesystem::path& map_yaml)
 struct ScenarioFiles {
   std::filesystem::path world_xml;
   std::filesystem::path robot_urdf;
+  std::string robot_urdf_text;  ///< content of the URDF with the mounts
   RobotDescription robot;
   Route route;                          ///< in site
   Pose2 T_site_start;                   ///< surveyed start
@@ -247,10 +267,13 @@ struct ScenarioFiles {
 
   /// Pose in site of the frame of the given map: its registration; without one, the surveyed start.
   Pose2 T_site_map() const { return map_registration ? map_registration->T_site_map : T_site_start; }
+  /// Robot of the simulator: the URDF with the mounts.
+  sim::RobotUrdf simulated_robot() const { return {robot_urdf.string(), robot_urdf_text}; }
   bool has_teleop() const { return !teleop_route.empty() || !recorded.empty(); }
 };
 
-/// Loads the files of a scenario. Throws InputError with file and key if one is missing or invalid.
+/// Loads the files of a scenario. Throws InputError with file and key if one is missing or invalid, and if the robot
+/// lacks a sensor that the scenario needs (sensor_needs.h).
 ScenarioFiles load_scenario_files(const Scenario& scenario, const std::filesystem::path& data_root);
 
 }  // namespace patrol::app

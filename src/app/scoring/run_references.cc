@@ -1,6 +1,7 @@
 #include "app/scoring/run_references.h"
 
 #include <memory>
+#include <utility>
 
 #include "app/scoring/localizability_oracle.h"
 #include "sim/lining_deformation.h"
@@ -35,8 +36,12 @@ double lidar_clock_fault_s(const std::vector<sim::FaultSettings>& faults, Time n
 }  // namespace
 
 score::RunReferences run_references(const Scenario& scenario, const ScenarioFiles& files, const TrueMap& truth) {
-  const auto oracle =
-      std::make_shared<LocalizabilityOracle>(*truth.world, scenario.sensors.lidar, truth.lidar_height_m);
+  score::LocalizabilityOracle localizability;
+  if (files.robot.T_body_sensor.contains("lidar")) {
+    const auto oracle =
+        std::make_shared<LocalizabilityOracle>(*truth.world, scenario.sensors.lidar, truth.lidar_height_m);
+    localizability = [oracle](const Eigen::Vector2d& p_world_m) { return oracle->at(p_world_m); };
+  }
   score::RunReferences references{
       .map = truth.reference,
       .map_agreement = truth.reference_agreement,
@@ -53,7 +58,7 @@ score::RunReferences run_references(const Scenario& scenario, const ScenarioFile
       .calibration = {.R_body_imu = files.robot.T_body("imu").rotation,
                       .lidar_clock_fault_s =
                           [faults = scenario.faults](Time now) { return lidar_clock_fault_s(faults, now); }},
-      .localizability = [oracle](const Eigen::Vector2d& p_world_m) { return oracle->at(p_world_m); }};
+      .localizability = std::move(localizability)};
   if (files.map) references.T_world_map = files.T_site_map();
   if (files.route.lining) {
     references.lining =

@@ -11,10 +11,18 @@ namespace {
 
 constexpr double kReferenceResolution_m = 0.025;
 
+/// Returns the height of the frame that maps: the lidar, the 3D lidar, or the body of a robot without lidars.
+double lidar_height_in_body_m(const RobotDescription& robot) {
+  for (const char* frame : {"lidar", "lidar3d"}) {
+    if (robot.T_body_sensor.contains(frame)) return robot.T_body(frame).position.z();
+  }
+  return 0.0;
+}
+
 double mean_lidar_height_m(const RunRecord& record, const ScenarioFiles& files) {
   double height_m = 0.0;
   for (const StampedPose& entry : record.T_world_body) height_m += entry.pose.position.z();
-  return height_m / static_cast<double>(record.T_world_body.size()) + files.robot.T_body("lidar").position.z();
+  return height_m / static_cast<double>(record.T_world_body.size()) + lidar_height_in_body_m(files.robot);
 }
 
 }  // namespace

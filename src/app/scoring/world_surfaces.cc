@@ -10,7 +10,7 @@ namespace {
 
 double lidar_height_m(const ScenarioFiles& files) {
   const sim::AssembledModel assembled =
-      sim::assemble_model(files.world_xml.string(), files.robot_urdf.string(), files.robot, files.T_site_start);
+      sim::assemble_model(files.world_xml.string(), files.simulated_robot(), files.robot, files.T_site_start);
   const sim::DataPtr data = sim::make_data(*assembled.physics);
   std::copy(assembled.start_qpos.begin(), assembled.start_qpos.end(), data->qpos);
   mj_kinematics(assembled.physics.get(), data.get());

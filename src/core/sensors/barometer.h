@@ -65,6 +65,7 @@ struct SensorTraits<FluidPressure> {
                                        .topic = "/imu/pressure",
                                        .ros_type = "sensor_msgs/msg/FluidPressure",
                                        .summary = "barometer",
+                                       .frame = "imu",
                                        .timeout = SensorTimeout::kInstrument,
                                        .fault = {.unit = "Pa", .drift_per_s = 5.0, .outlier = 200.0}};
 

@@ -75,6 +75,7 @@ struct SensorTraits<DepthImage> {
                                        .topic = "/depth",
                                        .ros_type = "patrol_msgs/msg/DepthImage",
                                        .summary = "infrared stereo depth camera",
+                                       .frame = "depth_camera",
                                        .timeout = SensorTimeout::kLidar,
                                        .fault = {.unit = "m", .drift_per_s = 0.02, .outlier = 0.5}};
 

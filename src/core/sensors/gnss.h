@@ -62,6 +62,7 @@ struct SensorTraits<GnssFix> {
                                        .topic = "/gnss/fix",
                                        .ros_type = "sensor_msgs/msg/NavSatFix",
                                        .summary = "RTK GNSS receiver",
+                                       .frame = "gnss",
                                        .timeout = SensorTimeout::kInstrument,
                                        .fault = {.unit = "m", .drift_per_s = 0.2, .outlier = 5.0}};
 

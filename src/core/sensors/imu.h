@@ -68,6 +68,7 @@ struct SensorTraits<Imu> {
                                        .topic = "/imu/data",
                                        .ros_type = "sensor_msgs/msg/Imu",
                                        .summary = "inertial measurement unit",
+                                       .frame = "imu",
                                        .timeout = SensorTimeout::kMotion,
                                        .freeze_check = FreezeCheck::kOdometry,
                                        .is_read_by_firmware = true,

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "core/sensors/lidar_rear.h"
+
 namespace patrol {
 
 LidarSettings LidarSettings::of_preset(const std::string& name, bool enabled) {
@@ -30,6 +32,17 @@ bool SensorTraits<LaserScan>::repeats(const LaserScan& now, const LaserScan& bef
     if (now.ranges_m[i] != before.ranges_m[i]) return false;
   }
   return has_return;  // scans without returns are identical, which is not a fault
+}
+
+std::vector<ErrorSource> SensorTraits<RearLaserScan>::error_sources() {
+  return {{"lidar_rear: range noise", {"sensors.lidar_rear.range_noise_std_m=0"}},
+          {"lidar_rear: range quantization", {"sensors.lidar_rear.range_quantization_m=0"}},
+          {"lidar_rear: beam angle", {"sensors.lidar_rear.angle_noise_std_deg=0"}},
+          {"lidar_rear: mixed pixels", {"sensors.lidar_rear.beam_width_deg=0"}},
+          {"lidar_rear: dropouts",
+           {"sensors.lidar_rear.dropout_probability=0", "sensors.lidar_rear.max_incidence_deg=90",
+            "sensors.lidar_rear.max_range_10pct_m=1000"}},
+          {"lidar_rear: motion distortion", {"sensors.lidar_rear.motion_distortion=false"}}};
 }
 
 std::vector<ErrorSource> SensorTraits<LaserScan>::error_sources() {

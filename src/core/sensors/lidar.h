@@ -100,6 +100,7 @@ struct SensorTraits<LaserScan> {
                                        .topic = "/scan",
                                        .ros_type = "sensor_msgs/msg/LaserScan",
                                        .summary = "2D lidar",
+                                       .frame = "lidar",
                                        .timeout = SensorTimeout::kLidar,
                                        .freeze_check = FreezeCheck::kOdometry,
                                        .is_required_to_drive = true,

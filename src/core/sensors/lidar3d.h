@@ -32,6 +32,7 @@ struct SensorTraits<PointCloud> {
                                        .topic = "/points",
                                        .ros_type = "sensor_msgs/msg/PointCloud2",
                                        .summary = "3D lidar",
+                                       .frame = "lidar3d",
                                        .timeout = SensorTimeout::kLidar,
                                        .fault = {.unit = "m", .drift_per_s = 0.02, .outlier = 1.0}};
 

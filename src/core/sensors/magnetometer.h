@@ -65,6 +65,7 @@ struct SensorTraits<MagneticField> {
                                        .topic = "/imu/mag",
                                        .ros_type = "sensor_msgs/msg/MagneticField",
                                        .summary = "three-axis magnetometer",
+                                       .frame = "imu",
                                        .timeout = SensorTimeout::kInstrument,
                                        .fault = {.unit = "T", .drift_per_s = 1.0e-6, .outlier = 3.0e-5}};
 

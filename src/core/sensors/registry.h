@@ -17,6 +17,7 @@
 #include "core/sensors/joint_encoders.h"
 #include "core/sensors/lidar.h"
 #include "core/sensors/lidar3d.h"
+#include "core/sensors/lidar_rear.h"
 #include "core/sensors/magnetometer.h"
 #include "core/sensors/scanner.h"
 #include "core/sensors/tdlas.h"
@@ -60,7 +61,8 @@ using Sensors = SensorList<  //
     AntennaState,            //
     TemSounding,             //
     MagneticField,           //
-    FluidPressure            //
+    FluidPressure,           //
+    RearLaserScan            //
     >;
 
 /// Message of any sensor.

@@ -84,6 +84,7 @@ struct SensorTraits<PanoramicScan> {
                                        .topic = "/scanner/points",
                                        .ros_type = "sensor_msgs/msg/PointCloud2",
                                        .summary = "terrestrial laser scanner, on command",
+                                       .frame = "scanner",
                                        .trigger = SensorTrigger::kScanStation,
                                        .fault = {.unit = "m", .drift_per_s = 0.001, .outlier = 0.05}};
 

@@ -36,6 +36,7 @@ struct SensorInfo {
   const char* topic = "";     ///< topic in the log
   const char* ros_type = "";  ///< ROS message type, e.g. "sensor_msgs/msg/Imu"
   const char* summary = "";   ///< line of documentation in `patrol list`
+  const char* frame = "";     ///< frame of the robot that the sensor needs; empty: it needs none
   SensorTimeout timeout = SensorTimeout::kNone;
   FreezeCheck freeze_check = FreezeCheck::kNone;
   bool is_required_to_drive = false;  ///< true: the robot stops while the sensor monitor reports a fault of this

@@ -52,6 +52,7 @@ struct SensorTraits<GasReading> {
                                        .topic = "/gas",
                                        .ros_type = "patrol_msgs/msg/GasReading",
                                        .summary = "open-path laser methane meter",
+                                       .frame = "tdlas",
                                        .timeout = SensorTimeout::kInstrument,
                                        .fault = {.unit = "ppm m", .drift_per_s = 20.0, .outlier = 300.0}};
 

@@ -74,6 +74,7 @@ struct SensorTraits<TemSounding> {
                                        .topic = "/tem/sounding",
                                        .ros_type = "patrol_msgs/msg/TemSounding",
                                        .summary = "transient-electromagnetic water detector, on command",
+                                       .frame = "tem_mount",
                                        .fault_matrix_exclusion_reason =
                                            "used only for TEM soundings, outside the fault window of the matrix"};
 

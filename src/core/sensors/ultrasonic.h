@@ -80,6 +80,7 @@ struct SensorTraits<UltrasonicRange> {
                                        .topic = "/ultrasonic",
                                        .ros_type = "sensor_msgs/msg/Range",
                                        .summary = "ultrasonic ring",
+                                       .frame = "ultrasonic_0",
                                        .timeout = SensorTimeout::kInstrument,
                                        .fault = {.unit = "m", .drift_per_s = 0.02, .outlier = 0.5}};
 

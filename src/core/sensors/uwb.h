@@ -51,6 +51,7 @@ struct SensorTraits<UwbRange> {
                                        .topic = "/uwb/range",
                                        .ros_type = "patrol_msgs/msg/UwbRange",
                                        .summary = "ultra-wideband ranges to surveyed anchors",
+                                       .frame = "uwb",
                                        .timeout = SensorTimeout::kInstrument,
                                        .fault = {.unit = "m", .drift_per_s = 0.05, .outlier = 3.0}};
 

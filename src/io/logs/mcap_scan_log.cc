@@ -144,7 +144,7 @@ bool McapScanLog::read_message() {
 void McapScanLog::handle(const McapMessage& message) {
   const std::string &topic = message.channel.topic, &type = message.channel.type;
   if (type == kRosType<LaserScan>) {
-    if (scan_topics_.empty()) scan_topics_ = {topic};
+    if (scan_topics_.empty() && topic != SensorTraits<RearLaserScan>::kInfo.topic) scan_topics_ = {topic};
     if (contains(scan_topics_, topic)) return add_scan(message);
   } else if (type == kRosType<PointCloud>) {
     if (contains(scan_topics_, topic)) return add_cloud(message);

@@ -65,6 +65,28 @@ void float_field(Codec& codec, double& value) {
   if constexpr (!Codec::kWrites) value = single;
 }
 
+/// Fields of a sensor_msgs/LaserScan.
+inline constexpr const char* kLaserScanFields =
+    "std_msgs/Header header\nfloat32 angle_min\nfloat32 angle_max\nfloat32 angle_increment\nfloat32 time_increment\n"
+    "float32 scan_time\nfloat32 range_min\nfloat32 range_max\nfloat32[] ranges\nfloat32[] intensities\n";
+
+/// Scan of a 2D lidar whose frame is `frame`.
+template <typename Codec>
+void scan_fields(Codec& codec, LaserScan& scan, const char* frame) {
+  header(codec, scan.stamp, frame);
+  float_field(codec, scan.angle_min_rad);
+  double angle_max_rad =
+      scan.angle_min_rad + scan.angle_increment_rad * (static_cast<double>(scan.ranges_m.size()) - 1.0);
+  float_field(codec, angle_max_rad);
+  float_field(codec, scan.angle_increment_rad);
+  float_field(codec, scan.time_increment_s);
+  float_field(codec, scan.scan_time_s);
+  float_field(codec, scan.range_min_m);
+  float_field(codec, scan.range_max_m);
+  codec(scan.ranges_m);
+  codec(scan.intensities);
+}
+
 template <typename Codec>
 void vector3(Codec& codec, Eigen::Vector3d& v) {
   codec(v.x());

@@ -9,18 +9,7 @@ namespace patrol::io::ros {
 
 template <typename Codec>
 void describe(Codec& codec, LaserScan& scan) {
-  header(codec, scan.stamp, "lidar");
-  float_field(codec, scan.angle_min_rad);
-  double angle_max_rad =
-      scan.angle_min_rad + scan.angle_increment_rad * (static_cast<double>(scan.ranges_m.size()) - 1.0);
-  float_field(codec, angle_max_rad);
-  float_field(codec, scan.angle_increment_rad);
-  float_field(codec, scan.time_increment_s);
-  float_field(codec, scan.scan_time_s);
-  float_field(codec, scan.range_min_m);
-  float_field(codec, scan.range_max_m);
-  codec(scan.ranges_m);
-  codec(scan.intensities);
+  scan_fields(codec, scan, "lidar");
 }
 
 template <typename Codec>
@@ -205,10 +194,7 @@ void describe(Codec& codec, TeleopCommand& command) {
 
 namespace patrol::io {
 
-PATROL_ROS_SENSOR(
-    LaserScan,
-    "std_msgs/Header header\nfloat32 angle_min\nfloat32 angle_max\nfloat32 angle_increment\nfloat32 time_increment\n"
-    "float32 scan_time\nfloat32 range_min\nfloat32 range_max\nfloat32[] ranges\nfloat32[] intensities\n");
+PATROL_ROS_SENSOR(LaserScan, ros::kLaserScanFields);
 PATROL_ROS_SENSOR(PointCloud, "");
 PATROL_ROS_SENSOR(Imu,
                   "std_msgs/Header header\ngeometry_msgs/Quaternion orientation\nfloat64[9] orientation_covariance\n"

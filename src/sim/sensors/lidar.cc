@@ -230,6 +230,8 @@ Lidar::Return Lidar::to_return(const RayHit& hit, const Eigen::Vector3d& directi
 
 namespace {
 
+/// Lidar that publishes its scans as messages of the type `Scan`.
+template <typename Scan>
 class LidarOnBody : public Sensor {
  public:
   LidarOnBody(const SensorContext& context, const LidarSettings& settings, const std::string& frame, RayMask housing)
@@ -240,7 +242,7 @@ class LidarOnBody : public Sensor {
     if (tick.is_first()) return;
     const auto timer = tick.clock.time_stage("lidar");
     lidar_.advance(tick.last, tick.now, tick.T_world_body_last, tick.T_world_body);
-    for (LaserScan& scan : lidar_.take_scans()) readings.emplace_back(std::move(scan));
+    for (LaserScan& scan : lidar_.take_scans()) readings.emplace_back(Scan{std::move(scan)});
     for (PointCloud& cloud : lidar_.take_clouds()) readings.emplace_back(std::move(cloud));
   }
 
@@ -253,13 +255,21 @@ class LidarOnBody : public Sensor {
 template <>
 std::unique_ptr<Sensor> make_sensor<LaserScan>(const SensorContext& context) {
   const LidarSettings& settings = context.settings.lidar;
-  return settings.enabled ? std::make_unique<LidarOnBody>(context, settings, "lidar", kRayLidar2d) : nullptr;
+  return settings.enabled ? std::make_unique<LidarOnBody<LaserScan>>(context, settings, "lidar", kRayLidar2d) : nullptr;
 }
 
 template <>
 std::unique_ptr<Sensor> make_sensor<PointCloud>(const SensorContext& context) {
   const LidarSettings& settings = context.settings.lidar3d;
-  return settings.enabled ? std::make_unique<LidarOnBody>(context, settings, "lidar3d", kRayLidar3d) : nullptr;
+  return settings.enabled ? std::make_unique<LidarOnBody<LaserScan>>(context, settings, "lidar3d", kRayLidar3d)
+                          : nullptr;
+}
+
+template <>
+std::unique_ptr<Sensor> make_sensor<RearLaserScan>(const SensorContext& context) {
+  const LidarSettings& settings = context.settings.lidar_rear;
+  return settings.enabled ? std::make_unique<LidarOnBody<RearLaserScan>>(context, settings, "lidar_rear", kRayLidarRear)
+                          : nullptr;
 }
 
 }  // namespace patrol::sim

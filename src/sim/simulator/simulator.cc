@@ -102,7 +102,8 @@ Simulator::Simulator(const SimulatorSettings& settings, const RobotDescription& 
       tick_(from_seconds(model_.physics->opt.timestep)) {
   if (!settings.teleop_route.empty()) operator_.emplace(settings.teleop_operator, settings.teleop_route, seed);
   if (robot.antenna) antenna_.emplace(settings.sensors.antenna, *robot.antenna, *model_.physics, seed);
-  if (robot_body_ < 0) throw InputError(fmt::format("{}: link not found: {}", settings.robot_urdf, frame_id::kBody));
+  if (robot_body_ < 0)
+    throw InputError(fmt::format("{}: link not found: {}", settings.robot_urdf.path, frame_id::kBody));
   std::copy(model_.start_qpos.begin(), model_.start_qpos.end(), data_->qpos);
   actors_.advance(now_, {.p_world = robot_.start(settings.T_world_start).position(), .radius_m = robot_radius_m_},
                   *data_);

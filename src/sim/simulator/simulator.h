@@ -32,7 +32,7 @@ namespace patrol::sim {
 /// Physical side of a scenario: world, robot, environment and traffic.
 struct SimulatorSettings {
   std::string world_xml;
-  std::string robot_urdf;
+  RobotUrdf robot_urdf;
   Pose2 T_world_start;  ///< start pose of the robot, before the placement error of the as-built robot
   AsBuiltSettings as_built;
   SensorSuiteSettings sensors;

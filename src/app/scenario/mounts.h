@@ -1,0 +1,33 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <yaml-cpp/yaml.h>
+
+#include "app/scenario/scenario.h"
+#include "io/urdf.h"
+
+namespace patrol::app {
+
+/// Completes the mounts of a file: sets their locations and checks frames and presets. `document` is the file; without
+/// its list of mounts, locations have no line. Throws InputError with file, line and key.
+void complete_mounts(const std::filesystem::path& file, const YAML::Node& document, std::vector<MountSettings>& mounts);
+
+/// Switches the sensor of a mount on and applies its preset.
+void mount_sensor(const MountSettings& mount, sim::SensorSuiteSettings& sensors);
+
+/// Returns the mounts of a robot with those of a scenario, which replace mounts of the same frame.
+std::vector<MountSettings> merge_mounts(std::vector<MountSettings> of_robot, const std::vector<MountSettings>& own);
+
+/// Returns the mounts for the reader of URDF files.
+std::vector<io::SensorMount> sensor_mounts(const std::vector<MountSettings>& mounts);
+
+/// Returns the node of a path below a node; undefined if there is none.
+YAML::Node find_node(const YAML::Node& document, const std::vector<std::string>& path);
+
+/// Returns "file:line: key", the location of a node in messages.
+std::string location_of(const std::filesystem::path& file, const YAML::Node& node, const std::string& key);
+
+}  // namespace patrol::app
