@@ -105,7 +105,7 @@ std::vector<urdf::LinkConstSharedPtr> UrdfReader::leg_ends() const {
 
 bool UrdfReader::has_legs() const { return leg_ends().size() == kNumLegs; }
 
-/// Reads the chain of a leg. Its foot is the sphere that is farthest from the knee.
+/// Reads the chain of a leg. Its foot is the sphere with the largest distance from the knee.
 LegGeometry UrdfReader::read_chain(const urdf::LinkConstSharedPtr& end) const {
   LegGeometry leg;
   leg.chain.emplace();
@@ -118,14 +118,14 @@ LegGeometry UrdfReader::read_chain(const urdf::LinkConstSharedPtr& end) const {
   }
   std::vector<urdf::LinkConstSharedPtr> group;
   add_rigid_group(end, group);
-  double farthest_m = -1.0;
+  double reach_m = -1.0;
   for (const urdf::LinkConstSharedPtr& link : group) {
     if (link->collision_array.size() != 1) continue;
     const urdf::Collision& shape = *link->collision_array.front();
     if (shape.geometry->type != urdf::Geometry::SPHERE) continue;
     const Eigen::Vector3d center = T_first_link(*end, *link) * to_pose(shape.origin).position;
-    if (center.norm() <= farthest_m) continue;
-    farthest_m = center.norm();
+    if (center.norm() <= reach_m) continue;
+    reach_m = center.norm();
     leg.chain->foot = center;
     leg.foot_link = link->name;
     leg.foot_radius_m = dynamic_cast<const urdf::Sphere&>(*shape.geometry).radius;
@@ -203,7 +203,7 @@ void UrdfReader::choose_standing(const std::array<JointLimit, 3>& limits, double
   leg.abduction_offset_m = standing.foot.y() - standing.position[0].y();
 }
 
-/// Reads four legs. Names do not matter: the place of the first joint says which leg it is.
+/// Reads four legs. Names do not matter: the position of the first joint says which leg it is.
 void UrdfReader::read_legs(RobotDescription& robot) const {
   const std::vector<urdf::LinkConstSharedPtr> ends = leg_ends();
   if (ends.size() != kNumLegs) {
@@ -214,15 +214,15 @@ void UrdfReader::read_legs(RobotDescription& robot) const {
   }
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
   const auto first_joint = [](const urdf::LinkConstSharedPtr& end) { return movable_joints_above(*end).front(); };
-  const auto hip_place = [&](const urdf::LinkConstSharedPtr& end) {
+  const auto hip_position = [&](const urdf::LinkConstSharedPtr& end) {
     return T_body_link(*model_->getLink(first_joint(end)->child_link_name)).position;
   };
-  for (const urdf::LinkConstSharedPtr& end : ends) center += hip_place(end) / kNumLegs;
+  for (const urdf::LinkConstSharedPtr& end : ends) center += hip_position(end) / kNumLegs;
   constexpr std::array kLegNames = {"FL", "FR", "RL", "RR"};
   std::array<urdf::LinkConstSharedPtr, kNumLegs> corners;
   for (const urdf::LinkConstSharedPtr& end : ends) {
-    const Eigen::Vector3d place = hip_place(end) - center;
-    urdf::LinkConstSharedPtr& corner = corners[(place.x() > 0.0 ? 0 : 2) + (place.y() > 0.0 ? 0 : 1)];
+    const Eigen::Vector3d offset = hip_position(end) - center;
+    urdf::LinkConstSharedPtr& corner = corners[(offset.x() > 0.0 ? 0 : 2) + (offset.y() > 0.0 ? 0 : 1)];
     if (corner)
       fail(end->name,
            fmt::format("is at the same corner of the robot as {}: a leg must be at each corner", corner->name));
@@ -292,8 +292,8 @@ void UrdfReader::read_standing_inertia(RobotDescription& robot) const {
   robot.standing_inertia_kgm2 = (inertia - point_inertia(robot.mass_kg, center)).diagonal();
 }
 
-/// Returns the footprint of the standing robot: the shapes of base_link and the feet, and any other part that stands
-/// out by more than 1 cm.
+/// Returns the footprint of the standing robot: the shapes of base_link and the feet, and any other part on the body
+/// that stands out by more than 1 cm. Thighs and shanks do not count.
 std::vector<Eigen::Vector2d> UrdfReader::read_legged_footprint(const RobotDescription& robot) const {
   constexpr double kNegligible_m = 0.01;
   std::vector<Eigen::Vector2d> points;
@@ -316,6 +316,7 @@ std::vector<Eigen::Vector2d> UrdfReader::read_legged_footprint(const RobotDescri
     return distance_m;
   };
   for (const auto& [name, link] : model_->links_) {
+    if (!movable_joints_above(*link).empty()) continue;
     std::vector<Eigen::Vector2d> others;
     add_outline(*link, T_body_standing(*link, robot), others);
     const bool stands_out = std::any_of(

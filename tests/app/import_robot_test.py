@@ -76,7 +76,7 @@ class ImportRobot(unittest.TestCase):
     def test_options_out_of_their_form_are_one_line(self):
         self.refuse("--package courier: must be NAME=VALUE", self.urdf, "--package", "courier", "--out", "models/four")
         self.refuse("is given twice", self.urdf, "--frame", "lidar=laser", "--frame", "lidar=chassis", "--out", "models/four")
-        self.refuse("--drive", self.urdf, "--drive", "legs", "--out", "models/four")
+        self.refuse("--drive", self.urdf, "--drive", "hover", "--out", "models/four")
         self.refuse("missing.urdf", self.folder / "missing.urdf", "--out", "models/four")
 
     def test_a_folder_with_content_is_not_overwritten(self):

@@ -107,7 +107,7 @@ TEST(FootContact, SwitchingTheOffsetOffLeavesTheNoiseAsItWas) {
 TEST(FootContact, AModelWithoutTheFootIsRefused) {
   const TwoFeet feet;
   std::vector<LegGeometry> legs = two_legs();
-  legs[1].name = "hind";
+  legs[1].foot_link = "hind";
   EXPECT_THROW(FootContactSensor({}, *feet.model, legs, 1), InputError);
 }
 
