@@ -5,7 +5,6 @@
 
 #include <gtest/gtest.h>
 
-#include "core/error.h"
 #include "tests/render/small_scene.h"
 #include "tests/support/pose_near.h"
 
@@ -180,9 +179,13 @@ TEST(RunFollowerOf, ATrackedRobotDrivesAndLooksOutOfItsDepthCamera) {
   EXPECT_THAT(follower.head_m().value(), VectorNear(Eigen::Vector3d(0.4, 0.0, 0.2), 1e-9));
 }
 
-TEST(RunFollowerWithout, ALidarIsRefused) {
+TEST(RunFollowerWithout, ALidarHasTheErrorsOfTheEstimateAsWithOne) {
   const auto model = small_scene(R"(<body name="base_link"><geom size="0.1"/></body>)");
-  EXPECT_THROW(SnapshotBuilder(*model, {}), InputError);
+  SnapshotBuilder follower(*model, {});
+  follower.add(truth_at(0s, 1.0, 2.0, 0.0));
+  follower.add(truth_at(1s, 1.0, 2.0, 0.0));
+  follower.add(estimate_at(1s, {1.03, 2.04, 0.1}));
+  EXPECT_NEAR(follower.snapshot().T_true_estimate.value().position().norm(), 0.05, 1e-9);
 }
 
 }  // namespace
