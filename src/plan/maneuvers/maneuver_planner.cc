@@ -76,8 +76,8 @@ class Search {
  private:
   double clearance_m(const Pose2& T_map_center) const { return costmap_.clearance_m(T_map_center * T_center_body_); }
   bool is_free(const Pose2& T_map_center, double from_start_m) const {
-    const double clearance = clearance_m(T_map_center);
-    return clearance > margin_m_ || (from_start_m < kNearStart_m && clearance > start_clearance_m_ - 0.01);
+    if (costmap_.is_clear(T_map_center * T_center_body_, margin_m_)) return true;
+    return from_start_m < kNearStart_m && clearance_m(T_map_center) > start_clearance_m_ - 0.01;
   }
   std::optional<double> cost_of(const Pose2& T_map_from, double from_start_m, const Arc& arc, bool is_reverse) const;
   void add(const Pose2& T_map_center, bool is_reverse, double cost_m, double from_start_m, int parent, const Arc& arc);

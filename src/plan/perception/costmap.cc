@@ -141,4 +141,18 @@ double Costmap::clearance_m(const Pose2& T_map_body) const {
   return clearance;
 }
 
+bool Costmap::is_clear(const Pose2& T_map_body, double margin_m) const {
+  double reach_m = 0.0, center_reach_m = 0.0;  // of the discs and of their centers from the body origin
+  for (const Disc& disc : footprint_.discs()) {
+    center_reach_m = std::max(center_reach_m, disc.center_m.norm());
+    reach_m = std::max(reach_m, disc.center_m.norm() + disc.radius_m);
+  }
+  const Eigen::Vector2d p_map = T_map_body.position();
+  if (obstacle_distance_m(p_map) - reach_m - settings_.safety_margin_m > margin_m &&
+      keep_out_distance_m(p_map) - center_reach_m - settings_.keep_out_margin_m > margin_m) {
+    return true;
+  }
+  return clearance_m(T_map_body) > margin_m;
+}
+
 }  // namespace patrol::plan

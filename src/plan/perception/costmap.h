@@ -68,6 +68,9 @@ class Costmap {
   double keep_out_distance_m(const Eigen::Vector2d& p_map) const { return keep_out_.distance_m(p_map); }
   /// Clearance around the robot's outline, from obstacles and keep-out lines; negative in collision.
   double clearance_m(const Pose2& T_map_body) const;
+  /// Returns whether the clearance exceeds a margin. Faster than `clearance_m` far from obstacles; there, the
+  /// interpolation of distances may differ by a fraction of a cell.
+  bool is_clear(const Pose2& T_map_body, double margin_m) const;
   double max_distance_m() const { return inflation_.max_distance_m(); }
 
  private:

@@ -190,6 +190,24 @@ TEST(Costmap, RoutesKeepTheirMarginBeyondTheOutlines) {
             costmap.clearance_m({0.65, 0.05, 1.57}));
 }
 
+TEST(Costmap, IsClearWhereTheClearanceExceedsTheMarginToOneCell) {
+  OccupancyGrid map = make_free_map();
+  const RandomStream stream(5, "test/clear");
+  for (std::uint64_t i = 0; i < 12; ++i)
+    occupy(map, {9.9 * stream.uniform(i, 0) - 4.95, 9.9 * stream.uniform(i, 1) - 4.95});
+  const Costmap costmap = make_costmap(map, {.safety_margin_m = 0.05});
+  int num_clear = 0, num_blocked = 0;
+  for (std::uint64_t i = 0; i < 2000; ++i) {
+    const Pose2 pose{9.0 * stream.uniform(i, 2) - 4.5, 9.0 * stream.uniform(i, 3) - 4.5, 6.3 * stream.uniform(i, 4)};
+    const double clearance_m = costmap.clearance_m(pose), margin_m = 0.3 * stream.uniform(i, 5);
+    ++(clearance_m > margin_m ? num_clear : num_blocked);
+    if (std::abs(clearance_m - margin_m) < costmap.settings().resolution_m) continue;
+    EXPECT_EQ(costmap.is_clear(pose, margin_m), clearance_m > margin_m) << clearance_m << ' ' << margin_m;
+  }
+  EXPECT_GT(num_clear, 200);
+  EXPECT_GT(num_blocked, 200);
+}
+
 TEST(Costmap, WhatTheMapHasIsNoLiveObstacle) {
   OccupancyGrid map = make_free_map();
   occupy(map, {2.05, 0.05});
