@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <filesystem>
 #include <map>
 #include <numbers>
 
@@ -75,6 +76,7 @@ void configure(mrpt::config::CConfigFileMemory& config, const std::vector<Eigen:
   config.write(abstract, "robotMax_W_degps", patrol::to_deg(kYawRate_radps));
   config.write(abstract, "holonomic_method", "mrpt::nav::CHolonomicFullEval");
   config.write(abstract, "motion_decider_method", "mrpt::nav::CMultiObjMotionOpt_Scalarization");
+  config.write(abstract, "ptg_cache_files_directory", std::filesystem::temp_directory_path().string());
   config.write(abstract, "ref_distance", 5.0);
   config.write(abstract, "secure_distance_start", 0.05);
   config.write(abstract, "secure_distance_end", 0.2);
