@@ -76,7 +76,6 @@ void configure(mrpt::config::CConfigFileMemory& config, const std::vector<Eigen:
   config.write(abstract, "robotMax_W_degps", patrol::to_deg(kYawRate_radps));
   config.write(abstract, "holonomic_method", "mrpt::nav::CHolonomicFullEval");
   config.write(abstract, "motion_decider_method", "mrpt::nav::CMultiObjMotionOpt_Scalarization");
-  config.write(abstract, "ptg_cache_files_directory", std::filesystem::temp_directory_path().string());
   config.write(abstract, "ref_distance", 5.0);
   config.write(abstract, "secure_distance_start", 0.05);
   config.write(abstract, "secure_distance_end", 0.2);
@@ -301,6 +300,7 @@ Navigation::Navigation(const std::vector<Eigen::Vector2d>& footprint_m, std::vec
   config.setContent(text);  // what MRPT has saved is padded for people, and is read after parsing only
   configure(config, footprint_m);
   navigator_->loadConfigFile(config);
+  navigator_->params_abstract_ptg_navigator.ptg_cache_files_directory = std::filesystem::temp_directory_path().string();
   navigator_->initialize();
 }
 
