@@ -3,49 +3,25 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <functional>
 #include <numbers>
 #include <sstream>
 #include <utility>
 
 #include <fmt/format.h>
-#include <tinyxml2.h>
 
 #include "core/error.h"
-#include "core/geometry/angles.h"
-#include "core/geometry/linear_algebra.h"
+#include "importer/source_reader.h"
 #include "io/files/one_line.h"
 
 namespace patrol::importer {
-namespace {
 
 using tinyxml2::XMLElement;
 
-constexpr double kMaxRobot_m = 20.0;
+namespace {
 
 const std::map<std::string, JointType> kJointTypes = {
     {"fixed", JointType::kFixed},         {"continuous", JointType::kContinuous}, {"revolute", JointType::kRevolute},
     {"prismatic", JointType::kPrismatic}, {"floating", JointType::kFloating},     {"planar", JointType::kPlanar}};
-
-std::string attribute_text(const XMLElement& element, const char* name) {
-  const char* text = element.Attribute(name);
-  return text == nullptr ? "" : text;
-}
-
-/// Calls `visit` with every element below `root`.
-void for_each_below(const XMLElement& root, const std::function<void(const XMLElement&)>& visit) {
-  for (const XMLElement* child = root.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) {
-    visit(*child);
-    for_each_below(*child, visit);
-  }
-}
-
-std::string trimmed(const char* text) {
-  std::string word = text == nullptr ? "" : text;
-  word.erase(0, word.find_first_not_of(" \t\r\n"));
-  word.erase(word.find_last_not_of(" \t\r\n") + 1);
-  return word;
-}
 
 /// Returns XML_ERROR_MISMATCHED_ELEMENT as "mismatched element".
 std::string plain_words(std::string name) {
@@ -55,57 +31,16 @@ std::string plain_words(std::string name) {
   return name;
 }
 
-/// Reader of the elements of a description.
-class SourceReader {
- public:
-  SourceReader(const std::string& file, const std::string& text, const Packages& packages)
-      : packages_(packages), document_(true, tinyxml2::COLLAPSE_WHITESPACE) {
-    robot_.file = file;
-    if (trimmed(text.c_str()).empty()) throw InputError(file + ": is empty: must be a URDF file");
-    if (document_.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
-      throw input_error(file, document_.ErrorLineNum(), "not an XML file: " + plain_words(document_.ErrorName()));
-    }
+}  // namespace
+
+SourceReader::SourceReader(const std::string& file, const std::string& text, const Packages& packages)
+    : packages_(packages), document_(true, tinyxml2::COLLAPSE_WHITESPACE) {
+  robot_.file = file;
+  if (trimmed(text.c_str()).empty()) throw InputError(file + ": is empty: must be a URDF file");
+  if (document_.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
+    throw input_error(file, document_.ErrorLineNum(), "not an XML file: " + plain_words(document_.ErrorName()));
   }
-
-  SourceRobot read();
-
- private:
-  [[noreturn]] void fail(const XMLElement& element, const std::string& name, const std::string& what) const {
-    robot_.fail(element.GetLineNum(), name, what);
-  }
-
-  std::vector<double> numbers(const XMLElement& element, const char* attribute, std::size_t count,
-                              const std::string& name) const;
-  double number(const XMLElement& element, const char* attribute, const std::string& name) const;
-  std::optional<double> optional_number(const XMLElement& element, const char* attribute,
-                                        const std::string& name) const;
-  double positive(const XMLElement& element, const char* attribute, const std::string& name) const;
-  Eigen::Vector3d vector(const XMLElement& element, const char* attribute, const std::string& name) const;
-  Pose3 origin(const XMLElement& parent, const std::string& name) const;
-  std::string required_name(const XMLElement& element) const;
-  void read_materials(const XMLElement& root);
-  std::optional<Eigen::Vector4d> read_color(const XMLElement& material, const std::string& name) const;
-  Shape read_shape(const XMLElement& element, const std::string& link);
-  SourceInertial read_inertial(const XMLElement& element, const std::string& link) const;
-  void read_link(const XMLElement& element);
-  void read_joint(const XMLElement& element);
-  void read_mesh(const XMLElement& element, const std::string& link, Shape& shape);
-  void read_motors(const XMLElement& root);
-  void read_plugin(const XMLElement& plugin);
-  void read_sensors(const XMLElement& root);
-  void read_gazebo_sensor(const XMLElement& sensor, const std::string& link);
-  void check_tree() const;
-  void check_joints() const;
-  void scale_millimeters();
-  void check_sizes() const;
-
-  const Packages& packages_;
-  tinyxml2::XMLDocument document_;
-  SourceRobot robot_;
-  std::map<std::string, Eigen::Vector4d> materials_;
-  std::map<std::string, std::shared_ptr<const std::vector<MeshPart>>> meshes_;  ///< by path and scale
-  std::map<std::string, std::string> unscaled_;  ///< key of `meshes_` without scale, to the extension
-};
+}
 
 std::vector<double> SourceReader::numbers(const XMLElement& element, const char* attribute, std::size_t count,
                                           const std::string& name) const {
@@ -335,228 +270,6 @@ void SourceReader::read_joint(const XMLElement& element) {
   robot_.joints.push_back(std::move(joint));
 }
 
-/// Reads the joints that a drive plugin names: texts of its elements that are names of joints.
-void SourceReader::read_plugin(const XMLElement& plugin) {
-  const std::string name = attribute_text(plugin, "filename") + attribute_text(plugin, "name");
-  if (name.find("joint_state") != std::string::npos || name.find("joint-state") != std::string::npos ||
-      name.find("JointState") != std::string::npos)
-    return;  // publishes all joints
-  for_each_below(plugin, [this](const XMLElement& element) {
-    std::istringstream words(trimmed(element.GetText()));
-    for (std::string word; words >> word;) {
-      while (word.ends_with(',')) word.pop_back();
-      for (const SourceJoint& joint : robot_.joints) {
-        if (joint.name == word) robot_.motors.insert(word);
-      }
-    }
-  });
-}
-
-void SourceReader::read_motors(const XMLElement& root) {
-  for_each_below(root, [this](const XMLElement& element) {
-    const std::string tag = element.Name();
-    if (tag == "plugin") read_plugin(element);
-    if (tag != "transmission" && tag != "ros2_control") return;
-    const bool needs_interface = tag == "ros2_control";
-    for (const XMLElement* joint = element.FirstChildElement("joint"); joint != nullptr;
-         joint = joint->NextSiblingElement("joint")) {
-      if (needs_interface && joint->FirstChildElement("command_interface") == nullptr) continue;
-      const std::string name =
-          joint->Attribute("name") != nullptr ? attribute_text(*joint, "name") : trimmed(joint->GetText());
-      robot_.motors.insert(name);
-    }
-  });
-}
-
-/// Returns the number of rings of a lidar element; 1 if it has none.
-int vertical_samples(const XMLElement& sensor) {
-  int samples = 1;
-  for_each_below(sensor, [&samples](const XMLElement& element) {
-    if (element.Name() != std::string("vertical")) return;
-    int value = 1;
-    if (element.QueryIntAttribute("samples", &value) == tinyxml2::XML_SUCCESS) samples = value;
-    if (const XMLElement* child = element.FirstChildElement("samples")) {
-      if (child->QueryIntText(&value) == tinyxml2::XML_SUCCESS) samples = value;
-    }
-  });
-  return samples;
-}
-
-/// Returns a number of an element, of its child or attribute; none if it has neither.
-std::optional<double> number_in(const XMLElement& element, const char* name) {
-  double value = 0.0;
-  if (element.QueryDoubleAttribute(name, &value) == tinyxml2::XML_SUCCESS) return value;
-  const XMLElement* child = element.FirstChildElement(name);
-  if (child != nullptr && child->QueryDoubleText(&value) == tinyxml2::XML_SUCCESS) return value;
-  return std::nullopt;
-}
-
-/// Reads field of view and range of a lidar. A field of view that is not symmetric turns the frame to its middle.
-void read_scan_field(const XMLElement& sensor, SourceSensor& found) {
-  double middle_rad = 0.0;
-  for_each_below(sensor, [&](const XMLElement& element) {
-    const std::string tag = element.Name();
-    if (tag == "horizontal") {
-      const std::optional<double> min = number_in(element, "min_angle"), max = number_in(element, "max_angle");
-      if (!min || !max || !(*max > *min)) return;
-      found.fov_deg = kDegPerRad * (*max - *min);
-      middle_rad = 0.5 * (*min + *max);
-    } else if (tag == "range") {
-      found.range_max_m = number_in(element, "max").value_or(0.0);
-    }
-  });
-  constexpr double kSymmetric_rad = 0.02;
-  if (std::abs(middle_rad) > kSymmetric_rad && found.fov_deg < 359.0)
-    found.T_link_sensor = found.T_link_sensor * Pose3{Eigen::Vector3d::Zero(), quaternion_from_yaw(middle_rad)};
-}
-
-void SourceReader::read_gazebo_sensor(const XMLElement& sensor, const std::string& link) {
-  const std::string type = attribute_text(sensor, "type");
-  SourceSensor found{.link = link, .line = sensor.GetLineNum()};
-  if (type == "ray" || type == "gpu_ray" || type == "lidar" || type == "gpu_lidar") {
-    found.frame = vertical_samples(sensor) > 1 ? "lidar3d" : "lidar";
-  } else if (type == "imu") {
-    found.frame = "imu";
-  } else if (type == "gps" || type == "navsat") {
-    found.frame = "gnss";
-  } else if (type == "depth" || type == "depth_camera" || type == "rgbd_camera" || type == "rgbd") {
-    found.frame = "depth_camera";
-  } else {
-    return;
-  }
-  if (const XMLElement* pose = sensor.FirstChildElement("pose")) {
-    std::istringstream words(trimmed(pose->GetText()));
-    std::array<double, 6> values{};
-    for (double& value : values) words >> value;
-    if (words) {
-      found.T_link_sensor = {{values[0], values[1], values[2]}, quaternion_from_rpy(values[3], values[4], values[5])};
-    }
-  }
-  if (found.frame.starts_with("lidar")) read_scan_field(sensor, found);
-  robot_.sensors.push_back(found);
-}
-
-void SourceReader::read_sensors(const XMLElement& root) {
-  for (const XMLElement* gazebo = root.FirstChildElement("gazebo"); gazebo != nullptr;
-       gazebo = gazebo->NextSiblingElement("gazebo")) {
-    const std::string link = attribute_text(*gazebo, "reference");
-    if (robot_.find_link(link) == nullptr) continue;
-    for (const XMLElement* sensor = gazebo->FirstChildElement("sensor"); sensor != nullptr;
-         sensor = sensor->NextSiblingElement("sensor"))
-      read_gazebo_sensor(*sensor, link);
-  }
-  for (const XMLElement* sensor = root.FirstChildElement("sensor"); sensor != nullptr;
-       sensor = sensor->NextSiblingElement("sensor")) {
-    const XMLElement* parent = sensor->FirstChildElement("parent");
-    if (parent == nullptr || robot_.find_link(attribute_text(*parent, "link")) == nullptr) continue;
-    if (sensor->FirstChildElement("ray") == nullptr) continue;
-    robot_.sensors.push_back({.frame = vertical_samples(*sensor) > 1 ? "lidar3d" : "lidar",
-                              .link = attribute_text(*parent, "link"),
-                              .T_link_sensor = origin(*sensor, attribute_text(*sensor, "name")),
-                              .line = sensor->GetLineNum()});
-  }
-}
-
-/// Checks that links and joints are one tree.
-void SourceReader::check_tree() const {
-  std::map<std::string, const SourceJoint*> joint_of;  // child link to joint
-  for (const SourceJoint& joint : robot_.joints) {
-    const auto [found, is_new] = joint_of.emplace(joint.child, &joint);
-    if (!is_new) {
-      robot_.fail(joint.line, joint.child,
-                  fmt::format("child of two joints, {} and {}: only one is allowed", found->second->name, joint.name));
-    }
-  }
-  for (const SourceLink& link : robot_.links) {
-    std::size_t steps = 0;
-    for (auto at = joint_of.find(link.name); at != joint_of.end(); at = joint_of.find(at->second->parent)) {
-      if (++steps > joint_of.size()) robot_.fail(at->second->line, link.name, "the joints form a cycle");
-    }
-  }
-  const SourceLink* root = nullptr;
-  for (const SourceLink& link : robot_.links) {
-    if (joint_of.contains(link.name)) continue;
-    if (root != nullptr)
-      robot_.fail(link.line, link.name,
-                  fmt::format("is not connected: the robot has two roots, {} and {}", root->name, link.name));
-    root = &link;
-  }
-}
-
-/// Checks masses and inertias of links below movable joints.
-void SourceReader::check_joints() const {
-  for (const SourceJoint& joint : robot_.joints) {
-    if (joint.type == JointType::kFixed) continue;
-    const SourceLink& child = robot_.link(joint.child);
-    if (child.inertial && child.inertial->mass_kg <= 0.0)
-      robot_.fail(child.inertial->line, child.name, "mass = 0: must be positive for a moving link");
-  }
-  for (const SourceLink& link : robot_.links) {
-    if (!link.inertial || link.inertial->mass_kg <= 0.0) continue;
-    const Eigen::Vector3d moments = symmetric_eigen(link.inertial->inertia).values;
-    const bool is_physical =
-        moments[0] >= -1e-2 * moments[2] && moments[2] >= 0.0 && moments[2] <= 1.01 * (moments[0] + moments[1]);
-    if (!is_physical && moments.cwiseAbs().maxCoeff() > 1e-12) {
-      robot_.fail(
-          link.inertial->line, link.name,
-          fmt::format("invalid inertia: principal moments {:.3g}, {:.3g} and {:.3g} kg m2: the largest must not "
-                      "exceed the sum of the others",
-                      moments[0], moments[1], moments[2]));
-    }
-  }
-}
-
-/// Scales meshes without a unit by 0.001 if one of their format is larger than 20 m.
-void SourceReader::scale_millimeters() {
-  std::set<std::string> extensions;  // in millimeters
-  std::map<const std::vector<MeshPart>*, std::string> extension_of;
-  for (const auto& [key, extension] : unscaled_) {
-    const auto& mesh = meshes_.at(key);
-    extension_of[mesh.get()] = extension;
-    for (const MeshPart& part : *mesh) {
-      if (std::max(diagonal_m(part.mesh), max_coordinate_m(part.mesh)) > kMaxRobot_m) extensions.insert(extension);
-    }
-  }
-  if (extensions.empty()) return;
-  std::map<const std::vector<MeshPart>*, std::shared_ptr<const std::vector<MeshPart>>> replaced;
-  for (SourceLink& link : robot_.links) {
-    for (std::vector<Shape>* shapes : {&link.visuals, &link.collisions}) {
-      for (Shape& shape : *shapes) {
-        const auto found = extension_of.find(shape.mesh.get());
-        if (found == extension_of.end() || !extensions.contains(found->second)) continue;
-        auto& small = replaced[shape.mesh.get()];
-        if (!small) {
-          std::vector<MeshPart> parts = *shape.mesh;
-          for (MeshPart& part : parts) part.mesh = scaled(part.mesh, Eigen::Vector3d::Constant(1e-3));
-          small = std::make_shared<const std::vector<MeshPart>>(std::move(parts));
-        }
-        shape.mesh = small;
-      }
-    }
-  }
-  for (const std::string& extension : extensions) {
-    robot_.assumptions.push_back(
-        {.subject = fmt::format("meshes *{}", extension),
-         .text = "are in millimeters and scaled by 0.001: in meters the robot would be larger than 20 m",
-         .override_with = "attribute scale of <mesh>"});
-  }
-}
-
-void SourceReader::check_sizes() const {
-  for (const SourceLink& link : robot_.links) {
-    for (const std::vector<Shape>* shapes : {&link.visuals, &link.collisions}) {
-      for (const Shape& shape : *shapes) {
-        if (shape.type != ShapeType::kMesh) continue;
-        const double size_m = diagonal_m(whole_mesh(shape));
-        if (size_m <= kMaxRobot_m) continue;
-        robot_.fail(shape.line, link.name,
-                    fmt::format("mesh {} is {:.0f} m large: at most {} m: check its scale", shape.mesh_name, size_m,
-                                kMaxRobot_m));
-      }
-    }
-  }
-}
-
 SourceRobot SourceReader::read() {
   const XMLElement* root = document_.FirstChildElement("robot");
   if (root == nullptr) {
@@ -582,8 +295,6 @@ SourceRobot SourceReader::read() {
   check_sizes();
   return std::move(robot_);
 }
-
-}  // namespace
 
 bool SourceJoint::is_endless() const {
   constexpr double kTwoTurns_rad = 4.0 * std::numbers::pi - 1e-3;

@@ -24,7 +24,7 @@ RobotDescription describe(const std::string& text) {
   return load_robot_description(test::TemporaryFile("legs.urdf", text).path());
 }
 
-/// What is said of a description with the first `old` behind `after` replaced.
+/// Returns the error text of a description in which the first `old` behind `after` is replaced.
 std::string refusal_of(std::string text, const std::string& old, const std::string& by, const std::string& after = "") {
   const std::size_t at = text.find(old, text.find(after));
   if (at == std::string::npos) return "the description no longer has " + old;

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tinyxml2.h>
+
+#include "importer/source_robot.h"
+
+namespace patrol::importer {
+
+inline std::string attribute_text(const tinyxml2::XMLElement& element, const char* name) {
+  const char* text = element.Attribute(name);
+  return text == nullptr ? "" : text;
+}
+
+/// Calls `visit` with every element below `root`.
+inline void for_each_below(const tinyxml2::XMLElement& root,
+                           const std::function<void(const tinyxml2::XMLElement&)>& visit) {
+  for (const tinyxml2::XMLElement* child = root.FirstChildElement(); child != nullptr;
+       child = child->NextSiblingElement()) {
+    visit(*child);
+    for_each_below(*child, visit);
+  }
+}
+
+inline std::string trimmed(const char* text) {
+  std::string word = text == nullptr ? "" : text;
+  word.erase(0, word.find_first_not_of(" \t\r\n"));
+  word.erase(word.find_last_not_of(" \t\r\n") + 1);
+  return word;
+}
+
+/// Reader of the elements of a description.
+class SourceReader {
+ public:
+  /// Throws InputError with file and line if the text is not XML.
+  SourceReader(const std::string& file, const std::string& text, const Packages& packages);
+
+  SourceRobot read();
+
+ private:
+  [[noreturn]] void fail(const tinyxml2::XMLElement& element, const std::string& name, const std::string& what) const {
+    robot_.fail(element.GetLineNum(), name, what);
+  }
+
+  std::vector<double> numbers(const tinyxml2::XMLElement& element, const char* attribute, std::size_t count,
+                              const std::string& name) const;
+  double number(const tinyxml2::XMLElement& element, const char* attribute, const std::string& name) const;
+  std::optional<double> optional_number(const tinyxml2::XMLElement& element, const char* attribute,
+                                        const std::string& name) const;
+  double positive(const tinyxml2::XMLElement& element, const char* attribute, const std::string& name) const;
+  Eigen::Vector3d vector(const tinyxml2::XMLElement& element, const char* attribute, const std::string& name) const;
+  Pose3 origin(const tinyxml2::XMLElement& parent, const std::string& name) const;
+  std::string required_name(const tinyxml2::XMLElement& element) const;
+  void read_materials(const tinyxml2::XMLElement& root);
+  std::optional<Eigen::Vector4d> read_color(const tinyxml2::XMLElement& material, const std::string& name) const;
+  Shape read_shape(const tinyxml2::XMLElement& element, const std::string& link);
+  SourceInertial read_inertial(const tinyxml2::XMLElement& element, const std::string& link) const;
+  void read_link(const tinyxml2::XMLElement& element);
+  void read_joint(const tinyxml2::XMLElement& element);
+  void read_mesh(const tinyxml2::XMLElement& element, const std::string& link, Shape& shape);
+  void read_motors(const tinyxml2::XMLElement& root);
+  void read_plugin(const tinyxml2::XMLElement& plugin);
+  void read_sensors(const tinyxml2::XMLElement& root);
+  void read_gazebo_sensor(const tinyxml2::XMLElement& sensor, const std::string& link);
+  void check_tree() const;
+  void check_joints() const;
+  void scale_millimeters();
+  void check_sizes() const;
+
+  const Packages& packages_;
+  tinyxml2::XMLDocument document_;
+  SourceRobot robot_;
+  std::map<std::string, Eigen::Vector4d> materials_;
+  std::map<std::string, std::shared_ptr<const std::vector<MeshPart>>> meshes_;  ///< by path and scale
+  std::map<std::string, std::string> unscaled_;  ///< key of `meshes_` without scale, to the extension
+};
+
+}  // namespace patrol::importer

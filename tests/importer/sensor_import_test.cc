@@ -1,0 +1,92 @@
+#include <cmath>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/importer/description.h"
+#include "tests/importer/import.h"
+#include "tests/support/pose_near.h"
+
+namespace patrol::importer::sensor_import_test {
+namespace {
+
+using test::VectorNear;
+using ::testing::AllOf, ::testing::HasSubstr;
+
+TEST(ImportSensors, SensorsAreFoundByTypeAndByOption) {
+  const std::string sensors =
+      joint("s1", "fixed", "base_link", "scanner_thing", "0.2 0 0.3", "", "0 0 0.5") +
+      link("scanner_thing", inertial(0.2)) + joint("s2", "fixed", "base_link", "rtk", "-0.1 0 0.2") + link("rtk") +
+      R"(<gazebo reference="scanner_thing"><sensor type="gpu_lidar" name="x"><pose>0 0 0.05 0 0 0</pose><lidar><scan><vertical><samples>1</samples></vertical></scan></lidar></sensor></gazebo>)"
+      R"(<gazebo reference="scanner_thing"><sensor type="ray" name="y"><ray><scan><vertical><samples>16</samples></vertical></scan></ray></sensor></gazebo>)"
+      R"(<gazebo reference="base_link"><sensor type="imu" name="z"/></gazebo>)"
+      R"(<gazebo reference="base_link"><sensor type="camera" name="c"/></gazebo>)";
+  Import import(robot(chassis() + two_wheels() + caster() + sensors));
+  import.options.frames["gnss"] = "rtk";
+  const RobotDescription& robot = import.load();
+  EXPECT_THAT(robot.T_body("lidar").position, VectorNear(Eigen::Vector3d(0.2, 0.0, 0.35), 1e-9));
+  EXPECT_NEAR(to_yaw(robot.T_body("lidar").rotation), 0.5, 1e-9);
+  EXPECT_THAT(robot.T_body("lidar3d").position, VectorNear(Eigen::Vector3d(0.2, 0.0, 0.3), 1e-9));
+  EXPECT_THAT(robot.T_body("imu").position, VectorNear(Eigen::Vector3d(0.0, 0.0, 0.0), 1e-9));
+  EXPECT_THAT(robot.T_body("gnss").position, VectorNear(Eigen::Vector3d(-0.1, 0.0, 0.2), 1e-9));
+  EXPECT_FALSE(robot.T_body_sensor.contains("depth_camera"));
+  EXPECT_THAT(import.robot.settings, HasSubstr("lidar: {enabled: true}"));
+  EXPECT_THAT(import.robot.settings, HasSubstr("depth_camera: {enabled: false}"));
+}
+
+TEST(ImportSensors, WithoutSensorsAnImuIsAtTheCenterOfMassAndNoLidarIsAdded) {
+  Import import(robot(link("base_link", inertial(20.0, "0.05 0 0.02", 0.5) + shape("collision", box(0.6, 0.4, 0.2))) +
+                      two_wheels() + caster()));
+  const RobotDescription& robot = import.load();
+  EXPECT_THAT(robot.T_body("imu").position, VectorNear(Eigen::Vector3d(0.05, 0.0, 0.02), 1e-9));
+  EXPECT_FALSE(robot.T_body_sensor.contains("lidar"));
+  EXPECT_THAT(import.robot.settings, HasSubstr("lidar: {enabled: false}"));
+}
+
+/// Fixed link with a lidar of Gazebo.
+std::string lidar_on(const std::string& name, const std::string& xyz, const std::string& yaw, double half_fov_rad,
+                     double range_m) {
+  return joint(name + "_joint", "fixed", "base_link", name, xyz, "", "0 0 " + yaw) + link(name, inertial(0.2)) +
+         fmt::format(
+             R"(<gazebo reference="{}"><sensor type="ray" name="x"><ray><scan><horizontal><samples>720</samples>)"
+             R"(<min_angle>-{}</min_angle><max_angle>{}</max_angle></horizontal></scan><range><min>0.1</min>)"
+             R"(<max>{}</max></range></ray></sensor></gazebo>)",
+             name, half_fov_rad, half_fov_rad, range_m);
+}
+
+TEST(ImportSensors, ASecondLidarBecomesLidarRearWithThePresetOfItsNumbersAndAThirdIsLeftOut) {
+  Import import(robot(chassis() + two_wheels() + caster() + lidar_on("bow", "0.2 0 0.3", "0", 2.356, 30.0) +
+                      lidar_on("stern", "-0.2 0 0.3", "3.14159265", 2.356, 25.0) +
+                      lidar_on("top", "0 0 0.6", "0", 1.0, 8.0)));
+  const RobotDescription& robot = import.load();
+  EXPECT_THAT(robot.T_body("lidar").position, VectorNear(Eigen::Vector3d(0.2, 0.0, 0.3), 1e-9));
+  EXPECT_THAT(robot.T_body("lidar_rear").position, VectorNear(Eigen::Vector3d(-0.2, 0.0, 0.3), 1e-9));
+  EXPECT_NEAR(std::abs(to_yaw(robot.T_body("lidar_rear").rotation)), M_PI, 1e-6);
+  EXPECT_THAT(import.robot.settings, AllOf(HasSubstr("  lidar: {enabled: true, preset: utm30lx}\n"),
+                                           HasSubstr("  lidar_rear: {enabled: true, preset: tim571}\n")));
+  EXPECT_THAT(import.assumptions(),
+              AllOf(HasSubstr("| lidar_rear | is the frame of stern | --frame lidar_rear=LINK |"),
+                    HasSubstr("| lidar | is simulated as utm30lx, by its field of view and its range | "
+                              "sensors.lidar.preset in imported.yaml |"),
+                    HasSubstr("further sensors of this type are left out: top")));
+}
+
+TEST(ImportSensors, ALidarOfNoKnownNumbersKeepsTheDefaultPresetWithARow) {
+  Import import(robot(chassis() + two_wheels() + caster() + lidar_on("bow", "0.2 0 0.3", "0", 1.0, 8.0)));
+  import.load();
+  EXPECT_THAT(import.robot.settings, HasSubstr("  lidar: {enabled: true}\n  lidar_rear: {enabled: false}\n"));
+  EXPECT_THAT(import.assumptions(), HasSubstr("no preset has its field of view of 115 degrees and its range of 8 m"));
+}
+
+TEST(ImportSensors, TheOptionForTheLidarLeavesTheOtherLidarOfTheFileAsTheRearOne) {
+  Import import(robot(chassis() + two_wheels() + caster() + lidar_on("bow", "0.2 0 0.3", "0", 2.356, 30.0) +
+                      lidar_on("stern", "-0.2 0 0.3", "0", 2.356, 30.0)));
+  import.options.frames["lidar"] = "stern";
+  const RobotDescription& robot = import.load();
+  EXPECT_NEAR(robot.T_body("lidar").position.x(), -0.2, 1e-9);
+  EXPECT_NEAR(robot.T_body("lidar_rear").position.x(), 0.2, 1e-9);
+}
+
+}  // namespace
+}  // namespace patrol::importer::sensor_import_test
