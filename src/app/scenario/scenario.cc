@@ -128,13 +128,12 @@ RobotProfile profile_of_size(const RobotDescription& robot) {
   return profile;
 }
 
-/// The robot's profile, if it has one, over the defaults.
+/// The robot's profile, if it has one, over the defaults for the size of the robot.
 Scenario scenario_of_profile(const std::filesystem::path& profile_file, const std::filesystem::path& urdf_file) {
-  Scenario scenario;
-  if (!std::filesystem::exists(profile_file)) return scenario;
   RobotProfile profile =
       std::filesystem::exists(urdf_file) ? profile_of_size(io::load_robot_description(urdf_file)) : RobotProfile{};
-  read_over(profile_file, {}, profile);
+  if (std::filesystem::exists(profile_file)) read_over(profile_file, {}, profile);
+  Scenario scenario;
   scenario.mounts = std::move(profile.mounts);
   scenario.as_built = profile.as_built;
   scenario.sensors = profile.sensors;

@@ -1,9 +1,13 @@
 #include "app/scenario/scenario.h"
 
+#include <cmath>
+#include <string>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "tests/support/legged_urdf.h"
 #include "tests/support/temporary_file.h"
 
 namespace patrol::app::scenario_test {
@@ -161,6 +165,31 @@ TEST(Scenario, ARobotProfileSelectsTheTolerancesOfItsLidarAndAScenarioThoseOfAno
       load_scenario(write("worlds/other.yaml", "robot: sick\nsensors: {lidar: {preset: utm30lx}}\n")).as_built.lidar;
   EXPECT_EQ(other.range_offset_m, 0.015);
   EXPECT_EQ(other.cone_deg, 1.5) << "that of the profile is of its own lidar";
+}
+
+TEST(Scenario, ALeggedRobotHasAGaitAndThresholdsOfItsSizeWithAndWithoutAProfile) {
+  const TemporaryFolder root;
+  test::UrdfQuadruped heavy;
+  heavy.mass_kg = 4.0 * 13.56;
+  heavy.thigh_m = heavy.shank_m = 0.426;
+  heavy.effort_nm = heavy.knee_effort_nm = 300.0;
+  for (const std::string name : {"plain", "profiled"}) {
+    std::filesystem::create_directories(root / "models" / name);
+    test::write_bytes(root / "models" / name / (name + ".urdf"), heavy.text());
+  }
+  test::write_bytes(root / "models/profiled/profiled.yaml", "locomotion: {swing_clearance_m: 0.1}\n");
+  const sim::LocomotionSettings tuned;
+  const stack::StackSettings stack;
+  for (const char* name : {"plain", "profiled"}) {
+    SCOPED_TRACE(name);
+    const Scenario scenario = default_scenario(name, root.path());
+    EXPECT_NEAR(scenario.locomotion.gait_period_s, std::sqrt(2.0) * tuned.gait_period_s, 1e-9);
+    EXPECT_NEAR(scenario.locomotion.trunk_height_m, 2.0 * tuned.trunk_height_m, 2e-3);
+    const double contact_on_n = scenario.stack.odometry.legged.contact_on_force_n;
+    EXPECT_NEAR(contact_on_n / stack.odometry.legged.contact_on_force_n, 4.0, 0.02);
+  }
+  EXPECT_NEAR(default_scenario("plain", root.path()).locomotion.swing_clearance_m, 2.0 * tuned.swing_clearance_m, 1e-9);
+  EXPECT_EQ(default_scenario("profiled", root.path()).locomotion.swing_clearance_m, 0.1);
 }
 
 TEST(Scenario, TheLightIsAsTheWorldHasItUnlessOneDimsIt) {
