@@ -248,17 +248,23 @@ SolidProperties integrate(const Mesh& mesh) {
   return solid;
 }
 
-std::string to_obj(const Mesh& mesh) {
+std::string to_obj(const Mesh& mesh, const std::vector<Eigen::Vector2d>& texture_coordinates) {
   std::string text;
   const auto number = [](double value) { return std::abs(value) < 5e-9 ? 0.0 : value; };
   for (const Eigen::Vector3d& v : mesh.vertices_m)
     text += fmt::format("v {:.8g} {:.8g} {:.8g}\n", number(v.x()), number(v.y()), number(v.z()));
+  for (const Eigen::Vector2d& uv : texture_coordinates)
+    text += fmt::format("vt {:.6g} {:.6g}\n", number(uv.x()), number(uv.y()));
   for (const Eigen::Vector3d& n : mesh.normals)
     text += fmt::format("vn {:.5g} {:.5g} {:.5g}\n", number(n.x()), number(n.y()), number(n.z()));
-  for (const std::array<int, 3>& t : mesh.triangles) {
-    text += mesh.normals.empty() ? fmt::format("f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1)
-                                 : fmt::format("f {0}//{0} {1}//{1} {2}//{2}\n", t[0] + 1, t[1] + 1, t[2] + 1);
-  }
+  const bool has_uv = !texture_coordinates.empty(), has_normals = !mesh.normals.empty();
+  const auto corner = [&](int vertex) {
+    const int i = vertex + 1;
+    if (has_normals) return has_uv ? fmt::format("{0}/{0}/{0}", i) : fmt::format("{0}//{0}", i);
+    return has_uv ? fmt::format("{0}/{0}", i) : fmt::format("{}", i);
+  };
+  for (const std::array<int, 3>& t : mesh.triangles)
+    text += fmt::format("f {} {} {}\n", corner(t[0]), corner(t[1]), corner(t[2]));
   return text;
 }
 

@@ -67,7 +67,8 @@ struct SolidProperties {
 /// Integrates over the inside of a closed mesh by signed tetrahedra.
 SolidProperties integrate(const Mesh& mesh);
 
-/// Returns the text of a Wavefront OBJ file with only `v`, `vn` and `f`.
-std::string to_obj(const Mesh& mesh);
+/// Returns the text of a Wavefront OBJ file with only `v`, `vt`, `vn` and `f`. `texture_coordinates`: [vertex], or
+/// empty.
+std::string to_obj(const Mesh& mesh, const std::vector<Eigen::Vector2d>& texture_coordinates = {});
 
 }  // namespace patrol::importer

@@ -14,17 +14,7 @@
 #include "io/files/one_line.h"
 
 namespace patrol::importer {
-namespace {
-
-/// Returns the angle of an axle relative to y of the base, in (-pi/2, pi/2].
-double axle_angle_rad(const Eigen::Vector3d& axis) {
-  double angle = std::atan2(-axis.x(), axis.y());
-  if (angle <= -0.5 * std::numbers::pi + 1e-9) angle += std::numbers::pi;
-  if (angle > 0.5 * std::numbers::pi + 1e-9) angle -= std::numbers::pi;
-  return angle;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 void Normalizer::check_options() const {
   if (!options_.base_link.empty() && source_.find_link(options_.base_link) == nullptr)

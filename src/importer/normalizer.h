@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <set>
 #include <string>
@@ -15,6 +17,14 @@
 #include "importer/wheel_finder.h"
 
 namespace patrol::importer {
+
+/// Returns the angle of an axle relative to y of the base, in (-pi/2, pi/2].
+inline double axle_angle_rad(const Eigen::Vector3d& axis) {
+  double angle = std::atan2(-axis.x(), axis.y());
+  if (angle <= -0.5 * std::numbers::pi + 1e-9) angle += std::numbers::pi;
+  if (angle > 0.5 * std::numbers::pi + 1e-9) angle -= std::numbers::pi;
+  return angle;
+}
 
 inline constexpr double kGravity = 9.81;
 inline constexpr double kFriction = 0.8;         // rubber on asphalt

@@ -12,18 +12,11 @@
 #include <Eigen/Core>
 
 #include "core/frames.h"
+#include "importer/assumptions.h"
 #include "importer/mesh.h"
 #include "importer/packages.h"
 
 namespace patrol::importer {
-
-/// Decision that the description did not determine.
-struct Assumption {
-  std::string subject;        ///< link, joint or setting
-  std::string text;           ///< what is assumed and why
-  std::string override_with;  ///< element of the description, option or key that overrides it
-};
-
 enum class ShapeType { kBox, kCylinder, kSphere, kMesh };
 
 /// Shape of a link. A cylinder's axis is z.

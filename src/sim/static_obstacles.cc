@@ -41,7 +41,7 @@ mjsGeom* add_geom(mjsBody& body, mjtGeom type, const StaticObstacleSettings& obs
 
 /// Makes a geom collidable and names it.
 void make_solid(mjsGeom& geom, int number) {
-  mjs_setName(geom.element, fmt::format("static_obstacle_{}", number).c_str());
+  mjs_setName(geom.element, fmt::format("{}{}", kStaticObstacle, number).c_str());
   geom.contype = 1;
   geom.conaffinity = 2;
 }

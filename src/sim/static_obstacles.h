@@ -11,6 +11,9 @@
 
 namespace patrol::sim {
 
+/// Begin of the names of the geoms of static obstacles, which are never ground.
+inline constexpr const char* kStaticObstacle = "static_obstacle_";
+
 /// Object on a building site below the plane of a 2D lidar, or a parked truck.
 struct StaticObstacleSettings {
   std::string kind = "rebar";  ///< kind of the obstacle: rebar, kerb, hose, brick or truck

@@ -18,7 +18,7 @@ SOURCE = pathlib.Path(sys.argv[1]) / "src"
 MAY_USE = {
     "core": set(),
     "io": {"core"},
-    "importer": {"core", "io"},
+    "importer": {"core", "io", "sim"},
     "link": {"core", "io"},
     "sim": {"core"},
     "slam": {"core"},

@@ -141,6 +141,8 @@ CheckRobot load_check_robot(const std::string& name, const std::vector<std::stri
   robot.description = std::move(mounted.description);
   sim::set_drive_type(scenario.wheel_drive, robot.description);
   robot.simulator.robot_urdf = {urdf.string(), std::move(mounted.urdf)};
+  robot.simulator.site.ground = {
+      .all = {.geoms = {"ground*"}, .materials = {}, .groups = {}}, .curbs = {}, .max_step_m = 0.0};
   robot.simulator.as_built = scenario.as_built;
   robot.simulator.sensors = scenario.sensors;
   robot.simulator.locomotion = scenario.locomotion;

@@ -68,6 +68,7 @@ int run_command_line(int argc, const char* const* argv) {
   add_run_commands(app, call);
   add_campaign_commands(app, call);
   add_mapping_commands(app, call);
+  add_import_command(app, call);
   add_program_commands(app, call);
   add_number_checks(app);
 

@@ -29,6 +29,7 @@ struct Call {
   CalibrateOptions calibrate;
   TrainOptions train;
   ImportRobotOptions import_robot;
+  ImportSiteOptions import_site;
   std::string imported_kind;
   SolveOptions solve;
   PlanOptions plan;
@@ -64,6 +65,7 @@ void add_json(CLI::App& command, ResultForm& form);
 void add_run_commands(CLI::App& app, Call& call);
 void add_campaign_commands(CLI::App& app, Call& call);
 void add_mapping_commands(CLI::App& app, Call& call);
+void add_import_command(CLI::App& app, Call& call);
 void add_program_commands(CLI::App& app, Call& call);
 
 }  // namespace patrol::app

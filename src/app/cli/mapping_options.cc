@@ -70,28 +70,6 @@ void add_plan(CLI::App& app, Call& call) {
   command->callback([&] { call.chosen = [&] { return plan_command(call.plan); }; });
 }
 
-void add_import(CLI::App& app, Call& call) {
-  ImportRobotOptions& robot = call.import_robot;
-  CLI::App* command = app.add_subcommand("import", "Make a robot of Patrol from a robot description (URDF, xacro)");
-  command->add_option("kind", call.imported_kind, "Kind of the input: robot")
-      ->required()
-      ->check(CLI::IsMember({"robot"}));
-  command->add_option("file", robot.file, "Robot description: .urdf or .xacro")->required();
-  command->add_option("--out", robot.out, "Folder models/NAME, which must be empty or new")->required();
-  command->add_option("--package", robot.packages, "Folder of a package, NAME=FOLDER (repeatable)")->take_all();
-  command->add_option("--xacro-arg", robot.xacro_arguments, "Argument of xacro, NAME=VALUE (repeatable)")->take_all();
-  command
-      ->add_option("--frame", robot.frames,
-                   "Link that carries a sensor, FRAME=LINK with a frame of Patrol, such as lidar (repeatable)")
-      ->take_all();
-  command->add_option("--base-link", robot.base_link, "Link of the chassis (default: by rule)");
-  command->add_option("--forward", robot.forward, "Direction of travel in the base link (default: by rule)")
-      ->check(CLI::IsMember({"x", "-x", "y", "-y"}));
-  command->add_option("--drive", robot.drive, "Drive (default: by rule)")
-      ->check(CLI::IsMember({"differential", "ackermann", "mecanum", "legs"}));
-  command->callback([&] { call.chosen = [&] { return import_robot_command(call.import_robot); }; });
-}
-
 }  // namespace
 
 void add_mapping_commands(CLI::App& app, Call& call) {
@@ -100,7 +78,6 @@ void add_mapping_commands(CLI::App& app, Call& call) {
   add_train(app, call);
   add_solve(app, call);
   add_plan(app, call);
-  add_import(app, call);
 }
 
 }  // namespace patrol::app

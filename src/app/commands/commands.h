@@ -180,6 +180,16 @@ struct ImportRobotOptions {
 /// Makes a robot of `models` from a robot description.
 ExitCode import_robot_command(const ImportRobotOptions& options);
 
+struct ImportSiteOptions {
+  std::filesystem::path file;  ///< floor plan
+  std::filesystem::path out;   ///< folder worlds/NAME
+  double wall_height_m = 2.5;
+  double scale = 0.0;  ///< meters per unit of the file; 0: by rule
+  std::string up;      ///< axis of the file that points up; empty: by rule
+};
+/// Makes a site of `worlds` from a file.
+ExitCode import_site_command(const ImportSiteOptions& options);
+
 struct SolveOptions {
   std::filesystem::path graph;        ///< g2o
   bool robust_loop_closures = false;  ///< robust loss on edges that are not odometry

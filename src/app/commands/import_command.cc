@@ -7,6 +7,7 @@
 #include "app/commands/commands.h"
 #include "core/error.h"
 #include "importer/robot_import.h"
+#include "importer/site/site_import.h"
 
 namespace patrol::app {
 namespace {
@@ -30,6 +31,14 @@ std::string folder_name(const std::filesystem::path& folder) {
   return (normal.has_filename() ? normal : normal.parent_path()).filename().string();
 }
 
+void print(const std::vector<importer::Assumption>& assumptions, const std::filesystem::path& out) {
+  for (const importer::Assumption& assumption : assumptions) {
+    fmt::print("{}: {}{}\n", assumption.subject, assumption.text,
+               assumption.override_with.empty() ? "" : fmt::format(" [{}]", assumption.override_with));
+  }
+  fmt::print("{}{} assumptions; {}\n", assumptions.empty() ? "" : "\n", assumptions.size(), out.string());
+}
+
 }  // namespace
 
 ExitCode import_robot_command(const ImportRobotOptions& options) {
@@ -43,12 +52,18 @@ ExitCode import_robot_command(const ImportRobotOptions& options) {
                               .frames = to_map<std::string>(options.frames, "--frame"),
                               .drive = options.drive});
   importer::write_robot(robot, options.out);
-  for (const importer::Assumption& assumption : robot.assumptions) {
-    fmt::print("{}: {}{}\n", assumption.subject, assumption.text,
-               assumption.override_with.empty() ? "" : fmt::format(" [{}]", assumption.override_with));
-  }
-  fmt::print("{}{} assumptions; {}\n", robot.assumptions.empty() ? "" : "\n", robot.assumptions.size(),
-             options.out.string());
+  print(robot.assumptions, options.out);
+  return ExitCode::kDone;
+}
+
+ExitCode import_site_command(const ImportSiteOptions& options) {
+  const importer::ImportedSite site = importer::import_site({.file = options.file,
+                                                             .name = folder_name(options.out),
+                                                             .wall_height_m = options.wall_height_m,
+                                                             .scale = options.scale,
+                                                             .up = options.up});
+  importer::write_site(site, options.out);
+  print(site.assumptions, options.out);
   return ExitCode::kDone;
 }
 

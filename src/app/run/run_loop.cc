@@ -41,6 +41,7 @@ double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC
 
 sim::SimulatorSettings simulator_settings(const Scenario& scenario, const ScenarioFiles& files) {
   return {.world_xml = files.world_xml.string(),
+          .site = files.site,
           .robot_urdf = files.simulated_robot(),
           .T_world_start = start_in_world(scenario, files),
           .as_built = scenario.as_built,

@@ -69,6 +69,21 @@ std::filesystem::path find_definition(const std::filesystem::path& root, const s
   return file;
 }
 
+/// Folder of a robot or a world: below the data root, or below the working directory if only this has its definition.
+std::filesystem::path folder_of(const std::filesystem::path& root, const std::string& kind, const std::string& name,
+                                const std::string& extension) {
+  const std::filesystem::path given = root / kind / name, own = std::filesystem::absolute(kind) / name;
+  const std::string definition = name + extension;
+  const bool is_own = !std::filesystem::exists(given / definition) && std::filesystem::exists(own / definition);
+  return is_own ? own : given;
+}
+
+/// Settings of a world; the defaults if it has none.
+sim::SiteSettings site_settings_of(const std::filesystem::path& world_xml) {
+  const std::filesystem::path file = std::filesystem::path(world_xml).replace_extension(".yaml");
+  return std::filesystem::exists(file) ? io::load_settings<sim::SiteSettings>(file, {}) : sim::SiteSettings{};
+}
+
 /// Path of a file below the world's folder that a key names. Throws InputError if it does not exist.
 std::filesystem::path find_named_file(const std::filesystem::path& world, const char* key, const std::string& name) {
   std::filesystem::path file = world / name;
@@ -184,10 +199,11 @@ std::optional<std::filesystem::path> registration_of(const std::filesystem::path
 
 std::filesystem::path robot_file(const std::string& robot, const std::string& extension,
                                  const std::filesystem::path& data_root) {
-  const std::filesystem::path given = data_root / "models" / robot, own = std::filesystem::absolute("models") / robot;
-  const std::string urdf = robot + ".urdf";
-  const bool is_own = !std::filesystem::exists(given / urdf) && std::filesystem::exists(own / urdf);
-  return (is_own ? own : given) / (robot + extension);
+  return folder_of(data_root, "models", robot, ".urdf") / (robot + extension);
+}
+
+std::filesystem::path world_folder(const std::string& world, const std::filesystem::path& data_root) {
+  return folder_of(data_root, "worlds", world, ".xml");
 }
 
 std::filesystem::path find_robot(const std::string& name, const std::filesystem::path& data_root) {
@@ -255,8 +271,8 @@ std::filesystem::path find_scenario(const std::filesystem::path& name) {
   if (std::filesystem::exists(name) || name.has_extension() || name.is_absolute() || !name.has_parent_path())
     return name;
   try {
-    const std::filesystem::path file =
-        find_data_root(name) / "worlds" / name.parent_path() / "scenarios" / (name.filename().string() + ".yaml");
+    const std::filesystem::path file = world_folder(name.parent_path().string(), find_data_root(name)) / "scenarios" /
+                                       (name.filename().string() + ".yaml");
     return std::filesystem::exists(file) ? file : name;
   } catch (const InputError&) {
     return name;  // without data, the error is that the file does not exist
@@ -264,7 +280,7 @@ std::filesystem::path find_scenario(const std::filesystem::path& name) {
 }
 
 std::vector<std::filesystem::path> named_files(const Scenario& scenario, const std::filesystem::path& data_root) {
-  const std::filesystem::path world = data_root / "worlds" / scenario.world;
+  const std::filesystem::path world = world_folder(scenario.world, data_root);
   const std::pair<const char*, const std::string&> named[] = {{"mission", scenario.mission},
                                                               {"map", scenario.map},
                                                               {"goals", scenario.goals},
@@ -288,7 +304,10 @@ std::vector<std::filesystem::path> named_files(const Scenario& scenario, const s
 
 ScenarioFiles load_scenario_files(const Scenario& scenario, const std::filesystem::path& data_root) {
   ScenarioFiles files;
-  files.world_xml = find_definition(data_root, "worlds", "world", scenario.world, ".xml");
+  files.world_xml = world_folder(scenario.world, data_root) / (scenario.world + ".xml");
+  if (!std::filesystem::exists(files.world_xml))
+    files.world_xml = find_definition(data_root, "worlds", "world", scenario.world, ".xml");
+  files.site = site_settings_of(files.world_xml);
   files.robot_urdf = find_robot(scenario.robot, data_root);
   io::MountedRobot robot = io::load_mounted_robot(files.robot_urdf.string(), sensor_mounts(scenario.mounts));
   files.robot_urdf_text = std::move(robot.urdf);

@@ -214,6 +214,10 @@ struct RobotProfile {
 std::filesystem::path robot_file(const std::string& robot, const std::string& extension,
                                  const std::filesystem::path& data_root);
 
+/// Folder of a world, worlds/WORLD: below the data root, or below the working directory if only this has the world's
+/// MJCF. It need not exist.
+std::filesystem::path world_folder(const std::string& world, const std::filesystem::path& data_root);
+
 /// Returns the URDF file of a robot of `models`. Throws InputError with the known robots if there is none.
 std::filesystem::path find_robot(const std::string& name, const std::filesystem::path& data_root);
 
@@ -237,8 +241,8 @@ void save_scenario(const std::filesystem::path& file, const Scenario& scenario, 
 /// folder; the source tree of the build. Throws InputError if there is none, or if PATROL_DATA names another folder.
 std::filesystem::path find_data_root(const std::filesystem::path& scenario);
 
-/// Returns the file of a scenario: `name` itself if it exists, else the scenario WORLD/NAME of the data root (for
-/// example street/patrol). Returns `name` if there is neither.
+/// Returns the file of a scenario: `name` itself if it exists, else the scenario WORLD/NAME of the data root or the
+/// working directory (for example street/patrol). Returns `name` if there is neither.
 std::filesystem::path find_scenario(const std::filesystem::path& name);
 
 /// Paths of the files that a scenario names: mission, map and its image, goals, teleoperation. Throws InputError with
@@ -251,6 +255,7 @@ std::filesystem::path registration_beside(const std::filesystem::path& map_yaml)
 /// Files that a scenario names, loaded.
 struct ScenarioFiles {
   std::filesystem::path world_xml;
+  sim::SiteSettings site;  ///< settings of the world, WORLD.yaml beside its MJCF; the defaults without one
   std::filesystem::path robot_urdf;
   std::string robot_urdf_text;  ///< content of the URDF with the mounts
   RobotDescription robot;

@@ -2,10 +2,12 @@
 
 #include <cmath>
 #include <set>
+#include <stdexcept>
 
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "io/files/atomic_file.h"
 #include "io/json/json_object.h"
 
 namespace patrol::io {
@@ -111,6 +113,11 @@ GeodeticDatum read_datum(const std::string& file, const Json& json) {
   return datum;
 }
 
+nlohmann::ordered_json pose_members(const Pose2& pose) {
+  return {{"position", {pose.x, pose.y, 0.0}},
+          {"orientation", {0.0, 0.0, std::sin(pose.yaw / 2.0), std::cos(pose.yaw / 2.0)}}};
+}
+
 }  // namespace
 
 RouteFile load_route(const std::filesystem::path& file) {
@@ -140,6 +147,25 @@ RouteFile load_route(const std::filesystem::path& file) {
   if (root.has("lining")) route.route.lining = read_lining(name, root.member("lining"));
   if (root.has("datum")) route.datum = read_datum(name, root.member("datum"));
   return route;
+}
+
+void save_route(const std::filesystem::path& file, const Route& route, const Pose2& T_site_start) {
+  if (!route.keep_out_lines.empty() || !route.anchors.empty() || route.dock || route.lining)
+    throw std::invalid_argument("save_route: only start and stations are written");
+  nlohmann::ordered_json json = {{"version", 1}, {"frame", "site"}, {"start", pose_members(T_site_start)}};
+  json["stations"] = nlohmann::ordered_json::array();
+  for (const Station& station : route.stations) {
+    nlohmann::ordered_json entry = {
+        {"number", station.number}, {"name", station.name}, {"type", name_of(station.type)}};
+    entry.update(pose_members(station.T_route_body));
+    entry["accuracy"] = station.accuracy_m;
+    if (station.type == StationType::kInspect) {
+      const Eigen::Vector3d& target = station.p_route_target;
+      entry["target"] = {target.x(), target.y(), target.z()};
+    }
+    json["stations"].push_back(entry);
+  }
+  save_text(file, json.dump(1) + "\n");
 }
 
 }  // namespace patrol::io

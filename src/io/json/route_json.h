@@ -21,4 +21,7 @@ struct RouteFile {
 /// Throws InputError with file and JSON path.
 RouteFile load_route(const std::filesystem::path& file);
 
+/// Writes start and stations of a route in the form that `load_route` reads. Its other parts must be empty.
+void save_route(const std::filesystem::path& file, const Route& route, const Pose2& T_site_start);
+
 }  // namespace patrol::io

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
 #include <limits>
 #include <stdexcept>
 #include <string_view>
@@ -23,36 +22,6 @@ namespace {
 
 /// Contacts interrupted for less than this are one contact.
 constexpr Time kContactGap = std::chrono::milliseconds(500);
-
-bool begins_with_one_of(std::string_view name, std::initializer_list<std::string_view> prefixes) {
-  return std::any_of(prefixes.begin(), prefixes.end(),
-                     [&](std::string_view prefix) { return name.starts_with(prefix); });
-}
-
-/// Returns the height of the highest point of a geom's bounding box in world, m.
-double top_m(const mjModel& model, const mjData& data, int geom) {
-  const mjtNum* box = model.geom_aabb + 6 * geom;  // center and half sizes, in the geom's frame
-  const mjtNum* up = data.geom_xmat + 9 * geom + 6;
-  double top = data.geom_xpos[3 * geom + 2];
-  for (int axis = 0; axis < 3; ++axis) top += up[axis] * box[axis] + std::abs(up[axis]) * box[3 + axis];
-  return top;
-}
-
-/// Returns whether a contact is normal walking or driving instead of a collision. `lowest_m`: height of the robot's
-/// lowest contact at this instant.
-///
-/// Worlds name the ground ("ground", "pavement", "carriageway", "dropped_kerb"); contacts with it are never collisions.
-/// Contacts with curb stones ("kerb") from above (normal within 45 degrees of the vertical) are not collisions either.
-/// Contacts with the side of a stone are accepted if it rises at most 15 cm above the robot's lowest contact, as street
-/// curbs do.
-bool is_footing(const mjModel& model, const mjData& data, const mjContact& contact, int geom, double lowest_m) {
-  constexpr double kMaxCurb_m = 0.15;
-  const std::string_view name = name_of(model, mjOBJ_GEOM, geom);
-  if (begins_with_one_of(name, {"ground", "pavement", "carriageway", "dropped_kerb"})) return true;
-  if (!name.starts_with("kerb")) return false;
-  const bool is_from_above = std::abs(contact.frame[2]) >= std::sqrt(0.5);  // frame: normal first
-  return is_from_above || top_m(model, data, geom) - lowest_m <= kMaxCurb_m;
-}
 
 std::string geom_name(const mjModel& model, int geom) {
   if (const std::string_view name = name_of(model, mjOBJ_GEOM, geom); !name.empty()) return std::string(name);
@@ -90,6 +59,7 @@ Simulator::Simulator(const SimulatorSettings& settings, const RobotDescription& 
       model_(assemble(settings, robot_)),
       data_(make_data(*model_.physics)),
       culler_(*model_.physics),
+      ground_(settings.site.ground, *model_.physics),
       robot_body_(mj_name2id(model_.physics.get(), mjOBJ_BODY, frame_id::kBody)),
       robot_radius_m_(robot.outline_radius_m()),
       settings_(settings),
@@ -209,7 +179,7 @@ void Simulator::record_collisions() {
     int robot_geom = contact.geom[0], other = contact.geom[1];
     if (!is_robot(robot_geom)) std::swap(robot_geom, other);
     if (!is_robot(robot_geom) || is_robot(other)) continue;
-    if (is_footing(model, *data_, contact, other, lowest_m)) continue;
+    if (ground_.is_footing(model, *data_, contact, other, lowest_m)) continue;
 
     const Collision collision{.stamp = now_, .first = geom_name(model, robot_geom), .second = geom_name(model, other)};
     const std::string& object = collision.second;

@@ -16,6 +16,7 @@
 #include "sim/as_built/as_built_robot.h"
 #include "sim/collision_culler.h"
 #include "sim/gas_plume.h"
+#include "sim/ground.h"
 #include "sim/lining_deformation.h"
 #include "sim/locomotion/locomotion.h"
 #include "sim/locomotion/quadruped_controller.h"
@@ -23,6 +24,7 @@
 #include "sim/locomotion/wheel_drive_settings.h"
 #include "sim/model_assembly.h"
 #include "sim/sensors/sensor_suite.h"
+#include "sim/site_settings.h"
 #include "sim/static_obstacles.h"
 #include "sim/subsurface.h"
 #include "sim/teleop_operator.h"
@@ -32,6 +34,7 @@ namespace patrol::sim {
 /// Physical side of a scenario: world, robot, environment and traffic.
 struct SimulatorSettings {
   std::string world_xml;
+  SiteSettings site;
   RobotUrdf robot_urdf;
   Pose2 T_world_start;  ///< start pose of the robot, before the placement error of the as-built robot
   AsBuiltSettings as_built;
@@ -106,6 +109,7 @@ class Simulator {
   AssembledModel model_;
   DataPtr data_;
   CollisionCuller culler_;
+  Ground ground_;
   int robot_body_;
   double robot_radius_m_;
   SimulatorSettings settings_;

@@ -1,0 +1,95 @@
+#include "importer/site/imported_site.h"
+
+#include <set>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "importer/output_folder.h"
+#include "importer/site/site_mjcf.h"
+#include "io/files/atomic_file.h"
+#include "io/files/one_line.h"
+#include "io/json/route_json.h"
+#include "io/maps/map_server.h"
+#include "io/yaml/settings_yaml.h"
+#include "sim/mujoco.h"
+
+namespace patrol::importer {
+namespace {
+
+void write_shape_files(const ImportedSite& site, const std::filesystem::path& folder) {
+  for (const SiteShape& shape : site.shapes) {
+    if (shape.type != SiteShapeType::kMesh && shape.type != SiteShapeType::kHeightField) continue;
+    std::filesystem::create_directories(folder / "meshes");
+    io::save_text(folder / shape_file(shape), shape_content(shape));
+  }
+  for (const SiteFile& file : site.files) {
+    std::filesystem::create_directories((folder / file.path).parent_path());
+    io::save_text(folder / file.path, file.content);
+  }
+}
+
+void write_mission(const ImportedSite& site, const std::filesystem::path& folder) {
+  if (!site.route) return;
+  std::filesystem::create_directories(folder / "routes");
+  std::filesystem::create_directories(folder / "scenarios");
+  io::save_route(folder / "routes" / "patrol.json", *site.route, site.T_site_start);
+  io::save_text(folder / "scenarios" / "patrol.yaml",
+                fmt::format("# Patrol of {} stations, made by patrol import site from {}.\nworld: {}\nrobot: {}\n"
+                            "mission: routes/patrol.json\n",
+                            site.route->stations.size(), io::on_one_line(site.source), site.name, site.robot));
+}
+
+void check(const ImportedSite& site) {
+  std::set<std::string> materials, shapes;
+  for (const SiteMaterial& material : site.materials) {
+    if (!materials.insert(material.name).second) throw std::invalid_argument("site: material twice: " + material.name);
+  }
+  for (const SiteShape& shape : site.shapes) {
+    if (!shapes.insert(shape.name).second) throw std::invalid_argument("site: shape twice: " + shape.name);
+    if (!materials.contains(shape.material)) throw std::invalid_argument("site: no material of " + shape.name);
+  }
+  if (site.shapes.empty()) throw InputError(site.source + ": has no shapes");
+}
+
+}  // namespace
+
+void write_site(const ImportedSite& site, const std::filesystem::path& folder) {
+  require_folder_name(site.name, site.source, "site");
+  check(site);
+  OutputFolder output(folder);
+  const std::filesystem::path xml = output.staging() / (site.name + ".xml");
+  io::save_text(xml, to_mjcf(site));
+  io::save_settings(output.staging() / (site.name + ".yaml"), sim::SiteSettings{.ground = site.ground},
+                    "Settings of the site (src/sim/site_settings.h)");
+  io::save_text(output.staging() / "README.md", report_of(site));
+  write_shape_files(site, output.staging());
+  if (site.map) {
+    std::filesystem::create_directories(output.staging() / "map");
+    io::save_map(output.staging() / "map" / "map.yaml", *site.map);
+  }
+  write_mission(site, output.staging());
+  try {
+    sim::compile(*sim::load_spec(xml.string()), site.name + ".xml");
+  } catch (const InputError& refused) {
+    throw InputError(fmt::format("{}: MuJoCo refuses the site: {}", site.source, io::on_one_line(refused.what())));
+  }
+  output.publish();
+}
+
+std::string report_of(const ImportedSite& site) {
+  std::size_t triangles = 0, solid = 0;
+  for (const SiteShape& shape : site.shapes) {
+    triangles += shape.mesh.triangles.size();
+    if (shape.use == ShapeUse::kSolid || shape.use == ShapeUse::kContactOnly) ++solid;
+  }
+  return fmt::format(
+             "# {}\n\nMade by `patrol import site` from `{}`: {} shapes, {} of them with contact, {} triangles. "
+             "`patrol check --site {}` reports the ground and the obstacles.\n\n## Assumptions\n\n",
+             io::on_one_line(site.name), io::on_one_line(site.source), site.shapes.size(), solid, triangles,
+             site.name) +
+         to_markdown(site.assumptions, "None: the file determines the site.\n");
+}
+
+}  // namespace patrol::importer

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "core/frames.h"
+#include "core/grid.h"
+#include "core/route.h"
+#include "importer/assumptions.h"
+#include "importer/mesh.h"
+#include "sim/site_settings.h"
+
+namespace patrol::importer {
+
+/// Use of a shape of a site. Physics keeps the shapes with contact only.
+enum class ShapeUse : std::uint8_t {
+  kSolid,        ///< visible to cameras and lidars, with contact
+  kSeen,         ///< visible to cameras and lidars, without contact
+  kVisualOnly,   ///< visible to cameras only
+  kLidarOnly,    ///< visible to lidars only
+  kContactOnly,  ///< contact only
+};
+
+/// Type of a shape of a site.
+enum class SiteShapeType : std::uint8_t { kBox, kCylinder, kSphere, kPlane, kMesh, kHeightField };
+
+/// Heights on a regular grid; the height of a vertex is that of the surface at the cell's center; the
+/// geom ends at the centers of the outermost cells.
+struct HeightField {
+  Grid<float> height_m;  ///< in the frame of the shape
+};
+
+/// Shape of a site. Lengths are in meters.
+struct SiteShape {
+  std::string name;  ///< unique within the site
+  SiteShapeType type = SiteShapeType::kBox;
+  ShapeUse use = ShapeUse::kSolid;
+  Pose3 T_site_shape = {};
+  /// Box: half sizes. Cylinder along z: radius, half length, 0. Sphere: radius, 0, 0. Plane: half sizes of the drawn
+  /// part, 0 for infinite; it is infinite for contact and lidar.
+  Eigen::Vector3d size_m = Eigen::Vector3d::Zero();
+  std::string material;                                   ///< name of a material of the site
+  Mesh mesh = {};                                         ///< for kMesh. With contact, MuJoCo uses its convex hull
+  std::vector<Eigen::Vector2d> texture_coordinates = {};  ///< [vertex of the mesh]; empty: none
+  HeightField height_field = {};                          ///< for kHeightField
+};
+
+/// Material of a site. The luminance of its color is the reflectivity for lidars (sim/sensors/surface_optics.h); a
+/// material with "glass" in its name lets beams through.
+struct SiteMaterial {
+  std::string name;  ///< unique within the site
+  Eigen::Vector4d rgba = {0.7, 0.7, 0.7, 1.0};
+  std::string texture = {};       ///< file below textures/; empty: none
+  double texture_length_m = 1.0;  ///< length that the image covers on shapes without texture coordinates
+};
+
+/// File to be written below the folder of a site.
+struct SiteFile {
+  std::string path;     ///< "textures/wall.png"
+  std::string content;  ///< bytes
+};
+
+/// Site in Patrol's form, not yet written. All poses are in the frame `site`, z up.
+struct ImportedSite {
+  std::string name;    ///< of the site, its folder and its files
+  std::string source;  ///< file that it was read from
+  std::vector<SiteMaterial> materials = {};
+  std::vector<SiteShape> shapes = {};
+  std::vector<SiteFile> files = {};       ///< textures and other files of the shapes
+  sim::GroundSettings ground = {};        ///< written to NAME.yaml
+  std::optional<OccupancyGrid> map = {};  ///< floor plan in `site`, written to map/ for runs on a known map
+  std::optional<Route> route = {};        ///< mission in `site`; none: neither routes/ nor scenarios/ are written
+  Pose2 T_site_start = {};                ///< start of the mission
+  std::string robot = "wheeled";          ///< robot of the scenario
+  std::vector<Assumption> assumptions = {};
+};
+
+/// Returns the MJCF of a site, in which meshes, height fields and textures are files below its folder.
+std::string to_mjcf(const ImportedSite& site);
+
+/// Writes NAME.xml, NAME.yaml, README.md with the assumptions, meshes/, textures/, for a floor plan map/, and for a
+/// mission routes/patrol.json and scenarios/patrol.yaml: first into a folder beside it, in which MuJoCo compiles the
+/// site, then renamed. Throws InputError if the folder exists and is not empty, cannot be written, or MuJoCo refuses
+/// the site; nothing is left behind then.
+void write_site(const ImportedSite& site, const std::filesystem::path& folder);
+
+/// Returns a Markdown page with the numbers of shapes and triangles and the table of assumptions.
+std::string report_of(const ImportedSite& site);
+
+}  // namespace patrol::importer
