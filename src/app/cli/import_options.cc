@@ -51,6 +51,14 @@ void add_site(CLI::App& command, ImportSiteOptions& site) {
   command.add_option("--up", site.up, "Axis of the file that points up (default: by rule)")
       ->check(CLI::IsMember({"y", "z"}))
       ->group(kSites);
+  command.add_option("--stations", site.stations, "Stations of the mission: CSV with the columns name, x, y")
+      ->group(kSites);
+  command.add_option("--random-stations", site.random_stations, "Number of random stations of the mission")
+      ->check(CLI::Range(1, 1000))
+      ->group(kSites);
+  command.add_option("--seed", site.seed, "Random seed of the stations")->capture_default_str()->group(kSites);
+  command.add_option("--start", site.start, "Start of the mission, X,Y or X,Y,DEG (default: by rule)")->group(kSites);
+  command.add_option("--robot", site.robot, "Robot of the scenario")->capture_default_str()->group(kSites);
 }
 
 }  // namespace

@@ -9,6 +9,12 @@ void add_run(CLI::App& app, Call& call) {
   add_scenario(*command, run.scenario);
   command->add_option("--set", run.overrides, kSetHelp)->take_all();
   command->add_option("--seed", run.seed, kSeedHelp);
+  command->add_option("--robot", run.robot, "Robot instead of that of the scenario");
+  command
+      ->add_option("--goal", run.goals,
+                   "Goal X,Y or X,Y,DEG in the site instead of the mission (repeatable); the scenario may be a world")
+      ->take_all();
+  command->add_option("--start", run.start, "Start X,Y or X,Y,DEG in the site, with --goal")->needs("--goal");
   command->add_option("--stack", run.stack, kStackHelp);
   command->add_flag("--watch", run.watch, "Show live status in the terminal");
   command->add_option("--out", run.out, kOutHelp);

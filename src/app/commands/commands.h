@@ -18,7 +18,10 @@
 namespace patrol::app {
 
 struct RunOptions {
-  std::filesystem::path scenario;
+  std::filesystem::path scenario;      ///< scenario file, or a folder of worlds for a run with goals
+  std::vector<std::string> goals;      ///< "X,Y" or "X,Y,DEG" in the site: a tour instead of the scenario's mission
+  std::string start;                   ///< start of the tour, in the same form; empty: that of the scenario
+  std::optional<std::string> robot;    ///< robot instead of that of the scenario
   std::vector<std::string> overrides;  ///< "path=value"
   std::optional<std::uint64_t> seed;
   std::optional<std::string> stack;  ///< command or address of a stack instead of that of the scenario
@@ -184,8 +187,13 @@ struct ImportSiteOptions {
   std::filesystem::path file;  ///< floor plan
   std::filesystem::path out;   ///< folder worlds/NAME
   double wall_height_m = 2.5;
-  double scale = 0.0;  ///< meters per unit of the file; 0: by rule
-  std::string up;      ///< axis of the file that points up; empty: by rule
+  double scale = 0.0;              ///< meters per unit of the file; 0: by rule
+  std::string up;                  ///< axis of the file that points up; empty: by rule
+  std::filesystem::path stations;  ///< CSV of stations; empty: none
+  int random_stations = 0;
+  std::uint64_t seed = 1;
+  std::string start;  ///< "X,Y" or "X,Y,DEG"; empty: by rule
+  std::string robot = "wheeled";
 };
 /// Makes a site of `worlds` from a file.
 ExitCode import_site_command(const ImportSiteOptions& options);

@@ -1,13 +1,17 @@
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "app/commands/commands.h"
+#include "app/mapping/log_site.h"
+#include "app/scenario/scenario.h"
 #include "core/error.h"
 #include "importer/robot_import.h"
 #include "importer/site/site_import.h"
+#include "io/urdf.h"
 
 namespace patrol::app {
 namespace {
@@ -39,6 +43,12 @@ void print(const std::vector<importer::Assumption>& assumptions, const std::file
   fmt::print("{}{} assumptions; {}\n", assumptions.empty() ? "" : "\n", assumptions.size(), out.string());
 }
 
+/// Returns the clearance in which a robot can turn in place with a margin.
+double turning_clearance_m(const std::string& robot) {
+  constexpr double kMargin_m = 0.1;
+  return io::load_robot_description(find_robot(robot, find_data_root({})).string()).outline_radius_m() + kMargin_m;
+}
+
 }  // namespace
 
 ExitCode import_robot_command(const ImportRobotOptions& options) {
@@ -57,13 +67,25 @@ ExitCode import_robot_command(const ImportRobotOptions& options) {
 }
 
 ExitCode import_site_command(const ImportSiteOptions& options) {
-  const importer::ImportedSite site = importer::import_site({.file = options.file,
-                                                             .name = folder_name(options.out),
-                                                             .wall_height_m = options.wall_height_m,
-                                                             .scale = options.scale,
-                                                             .up = options.up});
-  importer::write_site(site, options.out);
-  print(site.assumptions, options.out);
+  importer::SiteImportOptions import{.file = options.file,
+                                     .name = folder_name(options.out),
+                                     .wall_height_m = options.wall_height_m,
+                                     .scale = options.scale,
+                                     .up = options.up,
+                                     .mission = {.stations = options.stations,
+                                                 .num_random = options.random_stations,
+                                                 .seed = options.seed,
+                                                 .robot = options.robot}};
+  if (!options.start.empty()) import.mission.start = parse_pose(options.start, "--start", {}).pose();
+  import.mission.clearance_m = turning_clearance_m(options.robot);
+  const std::optional<importer::ImportedSite> site =
+      is_scan_log(options.file) ? import_log_site(import) : importer::import_site(import);
+  if (!site) {
+    fmt::print(stderr, "patrol: interrupted; nothing was written\n");
+    return ExitCode::kProgramFailed;
+  }
+  importer::write_site(*site, options.out);
+  print(site->assumptions, options.out);
   return ExitCode::kDone;
 }
 

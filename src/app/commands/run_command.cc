@@ -12,19 +12,67 @@
 #include "app/run/progress_line.h"
 #include "app/run/run_once.h"
 #include "app/run/terminal_view.h"
+#include "core/error.h"
+#include "core/geometry/angles.h"
 
 namespace patrol::app {
 namespace {
 
+/// Returns whether a run with goals names a world instead of a scenario.
+bool names_world(const RunOptions& options) {
+  const std::string name = options.scenario.string();
+  return !options.goals.empty() && !options.scenario.has_extension() &&
+         std::filesystem::exists(world_folder(name, find_data_root({})) / (name + ".xml"));
+}
+
+/// Name of the run's scenario.
+std::string name_of(const RunOptions& options) {
+  return names_world(options) ? "goals" : options.scenario.stem().string();
+}
+
 std::filesystem::path default_directory(const RunOptions& options, const Scenario& scenario) {
-  return std::filesystem::path("out") /
-         fmt::format("{}_{}_seed{}", scenario.world, options.scenario.stem().string(), scenario.seed);
+  return std::filesystem::path("out") / fmt::format("{}_{}_seed{}", scenario.world, name_of(options), scenario.seed);
+}
+
+/// Returns the tour of the goals on the command line; `scenario` gives the start unless an option does.
+TourSettings tour_of(const RunOptions& options, const Scenario* scenario, const std::filesystem::path& data_root) {
+  TourSettings tour;
+  if (!options.start.empty()) {
+    tour.start = parse_pose(options.start, "--start", {});
+  } else if (scenario != nullptr) {
+    const Pose2 start = load_scenario_files(*scenario, data_root).T_site_start;
+    tour.start = {.x_m = start.x, .y_m = start.y, .heading_deg = to_deg(start.yaw)};
+  } else {
+    throw InputError("--goal: a run in a world needs --start X,Y[,DEG]");
+  }
+  PlanarPoseSettings from = tour.start;
+  for (const std::string& goal : options.goals) {
+    from = parse_pose(goal, "--goal", from);
+    tour.stations.push_back({.name = fmt::format("goal_{}", tour.stations.size() + 1),
+                             .x_m = from.x_m,
+                             .y_m = from.y_m,
+                             .heading_deg = from.heading_deg});
+  }
+  return tour;
 }
 
 Scenario scenario_of(const RunOptions& options) {
   std::vector<std::string> overrides = options.overrides;
   if (options.seed) overrides.push_back(fmt::format("seed={}", *options.seed));
-  Scenario scenario = load_scenario(options.scenario, overrides);
+  if (options.robot) overrides.push_back(fmt::format("robot={}", *options.robot));
+  std::filesystem::path file = options.scenario;
+  if (names_world(options)) {
+    file.clear();
+    overrides.push_back(fmt::format("world={}", options.scenario.string()));
+  }
+  if (!options.goals.empty()) {
+    const std::filesystem::path data_root = find_data_root(file);
+    std::optional<Scenario> given;
+    if (!file.empty()) given = load_scenario(file, overrides);
+    const std::vector<std::string> tour = overrides_of(tour_of(options, given ? &*given : nullptr, data_root));
+    overrides.insert(overrides.end(), tour.begin(), tour.end());
+  }
+  Scenario scenario = load_scenario(file, overrides);
   if (options.stack) scenario.stack.command = *options.stack;
   return scenario;
 }
@@ -73,7 +121,7 @@ std::unique_ptr<Reporter> reporter_of(const RunOptions& options, const Scenario&
 
 std::optional<RunVerdict> run_reported(const RunOptions& options, const Scenario& scenario, const std::string& name,
                                        const std::filesystem::path& root, Reporter* reporter, RunObserver& screen) {
-  const std::filesystem::path data_root = find_data_root(options.scenario);
+  const std::filesystem::path data_root = find_data_root(names_world(options) ? "" : options.scenario);
   if (reporter == nullptr) return run_once(scenario, name, data_root, root, screen);
   ObserverGroup observers({&screen, reporter});
   try {
@@ -107,7 +155,7 @@ void report_delivery(const Reporter& reporter, const std::string& to, const std:
 
 ExitCode run_command(const RunOptions& options) {
   const Scenario scenario = scenario_of(options);
-  const std::string name = options.scenario.stem().string();
+  const std::string name = name_of(options);
   const std::filesystem::path root = options.out.value_or(default_directory(options, scenario));
 
   const std::unique_ptr<Reporter> reporter = reporter_of(options, scenario, name, root);

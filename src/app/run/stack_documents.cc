@@ -55,6 +55,7 @@ Scenario documented_scenario(const Scenario& scenario) {
   documented.robot = scenario.robot;
   documented.seed = scenario.seed;
   documented.mission = scenario.mission;
+  documented.tour = scenario.tour;
   documented.map = scenario.map;
   documented.goals = scenario.goals;
   documented.references = scenario.references;
@@ -80,7 +81,7 @@ StackDocuments stack_documents(const Scenario& scenario, const std::string& name
                 .tick = tick,
                 .limits = limits_of(scenario, files.robot),
                 .robot = files.robot_urdf_text,
-                .site = text_of(world / scenario.mission),
+                .site = files.mission_text,
                 .goals = scenario.goals.empty() ? "" : text_of(world / scenario.goals),
                 .registration = files.map_registration ? text_of(registration_beside(world / scenario.map)) : "",
                 .documents = to_yaml(documented_scenario(scenario))},

@@ -195,6 +195,25 @@ std::optional<std::filesystem::path> registration_of(const std::filesystem::path
   return std::filesystem::exists(file) ? std::optional(file) : std::nullopt;
 }
 
+/// Loads the mission of a scenario: that of its file, or its tour.
+void load_mission(const Scenario& scenario, ScenarioFiles& files) {
+  if (!scenario.tour.stations.empty()) {
+    if (!scenario.mission.empty())
+      throw InputError("mission and tour are mutually exclusive: only one of them is allowed");
+    files.route = route_of(scenario.tour);
+    files.T_site_start = scenario.tour.start.pose();
+    files.mission_text = io::to_json_text(files.route, files.T_site_start);
+    return;
+  }
+  if (scenario.mission.empty()) throw InputError("mission: missing: name a mission file, or give tour.stations");
+  const std::filesystem::path file = find_named_file(files.world_xml.parent_path(), "mission", scenario.mission);
+  const io::RouteFile route = io::load_route(file);
+  files.mission_text = io::load_text(file);
+  files.route = route.route;
+  files.T_site_start = route.T_site_start;
+  files.datum = route.datum;
+}
+
 }  // namespace
 
 std::filesystem::path robot_file(const std::string& robot, const std::string& extension,
@@ -304,6 +323,7 @@ std::vector<std::filesystem::path> named_files(const Scenario& scenario, const s
 
 ScenarioFiles load_scenario_files(const Scenario& scenario, const std::filesystem::path& data_root) {
   ScenarioFiles files;
+  if (scenario.world.empty()) throw InputError("world: missing: name a folder of worlds");
   files.world_xml = world_folder(scenario.world, data_root) / (scenario.world + ".xml");
   if (!std::filesystem::exists(files.world_xml))
     files.world_xml = find_definition(data_root, "worlds", "world", scenario.world, ".xml");
@@ -316,10 +336,7 @@ ScenarioFiles load_scenario_files(const Scenario& scenario, const std::filesyste
   const auto named_file = [&](const char* key, const std::string& name) {
     return find_named_file(files.world_xml.parent_path(), key, name);
   };
-  const io::RouteFile route = io::load_route(named_file("mission", scenario.mission));
-  files.route = route.route;
-  files.T_site_start = route.T_site_start;
-  files.datum = route.datum;
+  load_mission(scenario, files);
   if (!scenario.map.empty()) {
     const std::filesystem::path file = named_file("map", scenario.map);
     files.map = io::load_map(file);

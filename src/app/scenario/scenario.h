@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/scenario/tour.h"
 #include "core/boosted_stumps.h"
 #include "core/route.h"
 #include "core/settings.h"
@@ -116,12 +117,13 @@ struct LogSettings {
 /// Scenario of one run. A YAML file sets what differs from the defaults, which are defined here and in the settings
 /// that this struct contains.
 struct Scenario {
-  int version = 2;                                     ///< version of the keys; 2 since they were renamed
-  std::string world = "street";                        ///< name of the world, a folder of `worlds`
-  std::string robot = "quadruped";                     ///< name of the robot, a folder of `models`
-  std::uint64_t seed = 1;                              ///< seed of every random draw of the run
-  double time_limit_s = 900.0;                         ///< limit of the simulated time
-  std::string mission = "routes/boxes_and_well.json";  ///< file of the mission's stations, below the world's folder
+  int version = 2;                  ///< version of the keys; 2 since they were renamed
+  std::string world;                ///< name of the world, a folder of `worlds`
+  std::string robot = "quadruped";  ///< name of the robot, a folder of `models`
+  std::uint64_t seed = 1;           ///< seed of every random draw of the run
+  double time_limit_s = 900.0;      ///< limit of the simulated time
+  std::string mission;              ///< file of the mission's stations, below the world's folder; empty: the tour
+  TourSettings tour;                ///< mission without a file; excludes `mission`
   std::string map;  ///< map of `map_server` (YAML) below the world's folder, in map; empty: the robot builds a map
   /// File of saved goals (nav.json) below the world's folder; empty: goals are saved during teleoperation.
   std::string goals;
@@ -159,6 +161,7 @@ struct Scenario {
     visit("seed", self.seed);
     visit("time_limit_s", self.time_limit_s, between(0.1, 86400.0));
     visit("mission", self.mission);
+    visit("tour", self.tour);
     visit("map", self.map);
     visit("goals", self.goals);
     visit("references", self.references);
@@ -225,9 +228,9 @@ std::filesystem::path find_robot(const std::string& name, const std::filesystem:
 /// enable are disabled if the robot has no frame for them.
 Scenario default_scenario(const std::string& robot, const std::filesystem::path& data_root);
 
-/// Loads a scenario file with "path=value" overrides, over its robot's profile, over the defaults. Sensors that neither
-/// the file nor an override enables are disabled if the robot has no frame for them. Throws InputError with file, line
-/// and key.
+/// Loads a scenario file, or no file for an empty path, with "path=value" overrides, over its robot's profile, over the
+/// defaults. Sensors that neither the file nor an override enables are disabled if the robot has no frame for them.
+/// Throws InputError with file, line and key.
 Scenario load_scenario(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
 
 /// Formats every setting as YAML.
@@ -259,6 +262,7 @@ struct ScenarioFiles {
   std::filesystem::path robot_urdf;
   std::string robot_urdf_text;  ///< content of the URDF with the mounts
   RobotDescription robot;
+  std::string mission_text;             ///< content of the mission file, or that of a tour
   Route route;                          ///< in site
   Pose2 T_site_start;                   ///< surveyed start
   std::optional<GeodeticDatum> datum;   ///< WGS 84 position of the origin of site

@@ -10,6 +10,7 @@
 #include "importer/site/site_mjcf.h"
 #include "io/files/atomic_file.h"
 #include "io/files/one_line.h"
+#include "io/json/registration_json.h"
 #include "io/json/route_json.h"
 #include "io/maps/map_server.h"
 #include "io/yaml/settings_yaml.h"
@@ -30,11 +31,18 @@ void write_shape_files(const ImportedSite& site, const std::filesystem::path& fo
   }
 }
 
+/// Registration of a plan that is drawn in site: exact, with the covariance of a micrometer and a microradian.
+SiteRegistration identity_registration() {
+  SiteRegistration registration;
+  registration.covariance = 1e-12 * Eigen::Matrix3d::Identity();
+  return registration;
+}
+
 void write_mission(const ImportedSite& site, const std::filesystem::path& folder) {
   if (!site.route) return;
   std::filesystem::create_directories(folder / "routes");
   std::filesystem::create_directories(folder / "scenarios");
-  io::save_route(folder / "routes" / "patrol.json", *site.route, site.T_site_start);
+  io::save_text(folder / "routes" / "patrol.json", io::to_json_text(*site.route, site.T_site_start));
   io::save_text(folder / "scenarios" / "patrol.yaml",
                 fmt::format("# Patrol of {} stations, made by patrol import site from {}.\nworld: {}\nrobot: {}\n"
                             "mission: routes/patrol.json\n",
@@ -68,6 +76,7 @@ void write_site(const ImportedSite& site, const std::filesystem::path& folder) {
   if (site.map) {
     std::filesystem::create_directories(output.staging() / "map");
     io::save_map(output.staging() / "map" / "map.yaml", *site.map);
+    io::save_registration(output.staging() / "map" / "registration.json", identity_registration());
   }
   write_mission(site, output.staging());
   try {

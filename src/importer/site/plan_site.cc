@@ -1,54 +1,91 @@
 #include "importer/site/plan_site.h"
 
-#include <algorithm>
+#include <cmath>
+#include <functional>
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "core/error.h"
 #include "importer/site/cell_rectangles.h"
+#include "importer/site/plan_cells.h"
 #include "io/maps/map_server.h"
 
 namespace patrol::importer {
 namespace {
 
-constexpr int kOccupied_percent = 65;  // as map_server: from this occupancy on a cell is a wall
+constexpr double kWallThickness_m = 0.04;  // of a face that a lidar saw, behind it
 
-}  // namespace
-
-ImportedSite read_plan_site(const SiteImportOptions& options) {
-  return site_of_plan(io::load_map(options.file), options.file.filename().string(), options);
+SiteShape wall(std::size_t number, const Eigen::Vector2d& center_m, double yaw_rad, const Eigen::Vector2d& half_m,
+               double height_m) {
+  return {.name = fmt::format("wall_{}", number),
+          .T_site_shape = to_pose3(Pose2{center_m.x(), center_m.y(), yaw_rad}, 0.5 * height_m),
+          .size_m = {half_m.x(), half_m.y(), 0.5 * height_m},
+          .material = "wall"};
 }
 
-ImportedSite site_of_plan(const OccupancyGrid& plan, const std::string& source, const SiteImportOptions& options) {
+void add_cells(const GridGeometry& grid, const std::function<bool(Cell)>& is_selected, double height_m,
+               ImportedSite& site) {
+  for (const CellRectangle& part : rectangles_of(grid, is_selected)) {
+    const Eigen::Vector2d half_m = 0.5 * grid.resolution_m * Eigen::Vector2d(part.width, part.height);
+    const Eigen::Vector2d center =
+        grid.origin_m + grid.resolution_m * Eigen::Vector2d(part.begin.col, part.begin.row) + half_m;
+    site.shapes.push_back(wall(site.shapes.size(), center, 0.0, half_m, height_m));
+  }
+}
+
+ImportedSite empty_site(const OccupancyGrid& plan, const std::string& source, const SiteImportOptions& options) {
+  constexpr double kMargin_m = 5.0;
   const GridGeometry& grid = plan.geometry();
-  const std::vector<CellRectangle> walls =
-      rectangles_of(grid, [&](Cell cell) { return plan.at(cell) >= kOccupied_percent; });
-  if (walls.empty()) throw InputError(options.file.string() + ": the plan has no occupied cell");
   ImportedSite site{.name = options.name, .source = source};
-  site.materials = {{.name = "wall", .rgba = {0.82, 0.80, 0.76, 1.0}},
-                    {.name = "floor", .rgba = {0.55, 0.55, 0.53, 1.0}}};
+  site.materials = {{.name = "floor", .rgba = {0.55, 0.55, 0.53, 1.0}},
+                    {.name = "wall", .rgba = {0.82, 0.80, 0.76, 1.0}}};
   const Eigen::Vector2d half_m = 0.5 * grid.resolution_m * Eigen::Vector2d(grid.width, grid.height);
   const Eigen::Vector2d middle = grid.origin_m + half_m;
   site.shapes.push_back({.name = "floor",
                          .type = SiteShapeType::kPlane,
-                         .T_site_shape = {{middle.x(), middle.y(), 0.0}, Eigen::Quaterniond::Identity()},
-                         .size_m = {half_m.x() + 5.0, half_m.y() + 5.0, 0.0},
+                         .T_site_shape = to_pose3(Pose2{middle.x(), middle.y(), 0.0}, 0.0),
+                         .size_m = {half_m.x() + kMargin_m, half_m.y() + kMargin_m, 0.0},
                          .material = "floor"});
-  for (const CellRectangle& wall : walls) {
-    const Eigen::Vector2d size_m = grid.resolution_m * Eigen::Vector2d(wall.width, wall.height);
-    const Eigen::Vector2d center =
-        grid.origin_m + grid.resolution_m * Eigen::Vector2d(wall.begin.col, wall.begin.row) + 0.5 * size_m;
-    site.shapes.push_back(
-        {.name = fmt::format("wall_{}", site.shapes.size()),
-         .T_site_shape = {{center.x(), center.y(), 0.5 * options.wall_height_m}, Eigen::Quaterniond::Identity()},
-         .size_m = {0.5 * size_m.x(), 0.5 * size_m.y(), 0.5 * options.wall_height_m},
-         .material = "wall"});
-  }
   site.map = plan;
-  site.assumptions = {{"walls", fmt::format("occupied cells are solid from the floor to {:g} m", options.wall_height_m),
-                       "--wall-height"},
-                      {"floor", "level at height 0, also below unknown cells", ""},
+  site.assumptions = {{"floor", "level at height 0, also below unknown cells", ""},
                       {"frame", "the frame of the plan is the frame site", ""}};
+  return site;
+}
+
+}  // namespace
+
+ImportedSite read_plan_site(const SiteImportOptions& options) {
+  const OccupancyGrid plan = io::load_map(options.file);
+  ImportedSite site = empty_site(plan, options.file.filename().string(), options);
+  add_cells(
+      plan.geometry(), [&](Cell cell) { return is_wall(plan.at(cell)); }, options.wall_height_m, site);
+  if (site.shapes.size() == 1) throw InputError(options.file.string() + ": the plan has no occupied cell");
+  site.assumptions.push_back({"walls",
+                              fmt::format("occupied cells are solid from the floor to {:g} m", options.wall_height_m),
+                              "--wall-height"});
+  return site;
+}
+
+ImportedSite site_of_walls(const OccupancyGrid& plan, const WallFitter& walls, const std::string& source,
+                           const SiteImportOptions& options) {
+  ImportedSite site = empty_site(plan, source, options);
+  for (const WallSegment& segment : walls.segments()) {
+    const Eigen::Vector2d along = segment.end_m - segment.begin_m;
+    const Eigen::Vector2d center = 0.5 * (segment.begin_m + segment.end_m) - 0.5 * kWallThickness_m * segment.normal;
+    site.shapes.push_back(wall(site.shapes.size(), center, std::atan2(along.y(), along.x()),
+                               {0.5 * along.norm(), 0.5 * kWallThickness_m}, options.wall_height_m));
+  }
+  const std::size_t num_faces = site.shapes.size() - 1;
+  add_cells(
+      plan.geometry(), [&](Cell cell) { return walls.is_uncovered(cell); }, options.wall_height_m, site);
+  site.assumptions.push_back(
+      {"walls",
+       fmt::format(
+           "{} straight faces fitted to the hits, {:g} cm thick, and {} rectangles of cells with few hits, from "
+           "the floor to {:g} m",
+           num_faces, 100.0 * kWallThickness_m, site.shapes.size() - 1 - num_faces, options.wall_height_m),
+       "--wall-height"});
   return site;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "importer/site/site_import.h"
+#include "importer/site/wall_segments.h"
 
 namespace patrol::importer {
 
@@ -9,7 +10,9 @@ namespace patrol::importer {
 /// `site`. Throws InputError if the file is invalid or has no occupied cell.
 ImportedSite read_plan_site(const SiteImportOptions& options);
 
-/// Returns the site of a floor plan. `source` is named in the report.
-ImportedSite site_of_plan(const OccupancyGrid& plan, const std::string& source, const SiteImportOptions& options);
+/// Returns the site of a floor plan of which a lidar saw the walls: the faces of `walls` instead of the cells that they
+/// cover. `source` is named in the report.
+ImportedSite site_of_walls(const OccupancyGrid& plan, const WallFitter& walls, const std::string& source,
+                           const SiteImportOptions& options);
 
 }  // namespace patrol::importer

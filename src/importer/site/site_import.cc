@@ -27,7 +27,11 @@ constexpr std::array kReaders = std::to_array<SiteReader>({
 ImportedSite import_site(const SiteImportOptions& options) {
   std::vector<std::string> known;
   for (const SiteReader& reader : kReaders) {
-    if (options.file.extension() == reader.extension) return reader.read(options);
+    if (options.file.extension() == reader.extension) {
+      ImportedSite site = reader.read(options);
+      add_mission(options.mission, site);
+      return site;
+    }
     known.emplace_back(reader.extension);
   }
   throw InputError(

@@ -1,11 +1,24 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "importer/site/imported_site.h"
 
 namespace patrol::importer {
+
+/// Mission of an imported site. At most one of `stations` and `num_random`.
+struct MissionOptions {
+  std::filesystem::path stations =
+      {};                           ///< CSV with the columns name, x, y and optionally heading_deg, type; empty: none
+  int num_random = 0;               ///< number of random stations in free space
+  std::uint64_t seed = 1;           ///< seed of random stations
+  std::optional<Pose2> start = {};  ///< in site; none: by rule
+  double clearance_m = 0.5;         ///< distance of random stations from walls and unknown space
+  std::string robot = "wheeled";    ///< robot of the scenario
+};
 
 /// Options of `patrol import site`. Each kind of file uses those that its reader names.
 struct SiteImportOptions {
@@ -14,10 +27,15 @@ struct SiteImportOptions {
   double wall_height_m = 2.5;  ///< floor plans: height of the walls
   double scale = 0.0;          ///< meshes and points: meters per unit of the file; 0: by rule
   std::string up = {};         ///< meshes and points: axis of the file that points up, y or z; empty: by rule
+  MissionOptions mission = {};
 };
 
-/// Reads a site file of any known kind, chosen by its extension. Throws InputError with one line, "file:line: element:
-/// what", or with the known extensions.
+/// Gives a site the mission of the options; without stations it has none. Random stations need the floor plan of the
+/// site. Throws InputError.
+void add_mission(const MissionOptions& options, ImportedSite& site);
+
+/// Reads a site file of any known kind, chosen by its extension, and adds its mission. Throws InputError with one line,
+/// "file:line: element: what", or with the known extensions.
 ImportedSite import_site(const SiteImportOptions& options);
 
 }  // namespace patrol::importer

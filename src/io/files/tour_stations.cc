@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string_view>
@@ -17,7 +18,8 @@ namespace {
 
 constexpr std::size_t kMaxStations = 200;  // paths between all pairs are planned
 constexpr double kMaxDuration_s = 1e7;
-constexpr const char* kStationColumns = "name, x, y and optionally service_s, earliest_s, latest_s, priority";
+constexpr const char* kStationColumns =
+    "name, x, y and optionally heading_deg, service_s, earliest_s, latest_s, priority";
 
 /// Splits a line into cells. `refuse` does not return.
 template <typename Refuse>
@@ -72,7 +74,7 @@ class StationReader {
 
   void read_header(const std::vector<std::string>& cells) {
     for (std::size_t i = 0; i < cells.size(); ++i) {
-      const auto known = {"name", "x", "y", "service_s", "earliest_s", "latest_s", "priority"};
+      const auto known = {"name", "x", "y", "heading_deg", "service_s", "earliest_s", "latest_s", "priority"};
       if (std::find(known.begin(), known.end(), cells[i]) == known.end()) {
         refuse(fmt::format("{}: unknown column: the first line must name {}", cells[i], kStationColumns));
       }
@@ -104,6 +106,9 @@ class StationReader {
     constexpr double kMaxCoordinate = 1e8;
     take("x", station.x, -kMaxCoordinate, kMaxCoordinate);
     take("y", station.y, -kMaxCoordinate, kMaxCoordinate);
+    double heading_deg = std::numeric_limits<double>::quiet_NaN();
+    take("heading_deg", heading_deg, -360.0, 360.0);
+    if (std::isfinite(heading_deg)) station.heading_deg = heading_deg;
     take("service_s", station.service_s, 0.0, kMaxDuration_s);
     take("earliest_s", station.earliest_s, 0.0, kMaxDuration_s);
     take("latest_s", station.latest_s, 0.0, kMaxDuration_s);

@@ -1,5 +1,6 @@
 #include "io/json/route_json.h"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <stdexcept>
@@ -7,11 +8,12 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "io/files/atomic_file.h"
 #include "io/json/json_object.h"
 
 namespace patrol::io {
 namespace {
+
+constexpr double kMaxWindow_s = 1e7;
 
 Station read_station(const std::string& place, const Json& json) {
   const JsonObject reader(
@@ -33,8 +35,7 @@ Station read_station(const std::string& place, const Json& json) {
   if (reader.has("window")) {
     const std::vector<double> window = reader.numbers("window", 2);
     station.earliest_s = window[0], station.latest_s = window[1];
-    constexpr double kMaxDuration_s = 1e7;
-    if (station.earliest_s < 0.0 || station.latest_s < station.earliest_s || station.latest_s > kMaxDuration_s) {
+    if (station.earliest_s < 0.0 || station.latest_s < station.earliest_s || station.latest_s > kMaxWindow_s) {
       reader.fail("window must be two times in s, from 0 to 1e7 and in order");
     }
   }
@@ -149,9 +150,9 @@ RouteFile load_route(const std::filesystem::path& file) {
   return route;
 }
 
-void save_route(const std::filesystem::path& file, const Route& route, const Pose2& T_site_start) {
+std::string to_json_text(const Route& route, const Pose2& T_site_start) {
   if (!route.keep_out_lines.empty() || !route.anchors.empty() || route.dock || route.lining)
-    throw std::invalid_argument("save_route: only start and stations are written");
+    throw std::invalid_argument("to_json_text: only start and stations are written");
   nlohmann::ordered_json json = {{"version", 1}, {"frame", "site"}, {"start", pose_members(T_site_start)}};
   json["stations"] = nlohmann::ordered_json::array();
   for (const Station& station : route.stations) {
@@ -159,13 +160,16 @@ void save_route(const std::filesystem::path& file, const Route& route, const Pos
         {"number", station.number}, {"name", station.name}, {"type", name_of(station.type)}};
     entry.update(pose_members(station.T_route_body));
     entry["accuracy"] = station.accuracy_m;
+    if (station.priority != 0) entry["priority"] = station.priority;
+    if (station.earliest_s > 0.0 || std::isfinite(station.latest_s))
+      entry["window"] = {station.earliest_s, std::min(station.latest_s, kMaxWindow_s)};
     if (station.type == StationType::kInspect) {
       const Eigen::Vector3d& target = station.p_route_target;
       entry["target"] = {target.x(), target.y(), target.z()};
     }
     json["stations"].push_back(entry);
   }
-  save_text(file, json.dump(1) + "\n");
+  return json.dump(1) + "\n";
 }
 
 }  // namespace patrol::io

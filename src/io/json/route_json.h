@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include "core/route.h"
 #include "core/site/geodetic_datum.h"
@@ -21,7 +22,7 @@ struct RouteFile {
 /// Throws InputError with file and JSON path.
 RouteFile load_route(const std::filesystem::path& file);
 
-/// Writes start and stations of a route in the form that `load_route` reads. Its other parts must be empty.
-void save_route(const std::filesystem::path& file, const Route& route, const Pose2& T_site_start);
+/// Returns start and stations of a route as the text of a mission file. Its other parts must be empty.
+std::string to_json_text(const Route& route, const Pose2& T_site_start);
 
 }  // namespace patrol::io

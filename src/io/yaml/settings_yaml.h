@@ -143,7 +143,7 @@ class SettingsWriter {
   YAML::Emitter& out_;
 };
 
-/// Loads a file and applies overrides ("a.b.0.c=value"). Throws InputError.
+/// Loads a file, or no file for an empty path, and applies overrides ("a.b.0.c=value"). Throws InputError.
 YAML::Node load_document(const std::filesystem::path& file, const std::vector<std::string>& overrides);
 
 /// Returns a document that contains only the overrides; all other values are defaults.
@@ -155,7 +155,7 @@ int line_of(const YAML::Node& node);
 /// Reads a file with overrides into `settings`; keys that are missing keep their present values.
 template <typename Settings>
 void read_settings(const std::filesystem::path& file, const std::vector<std::string>& overrides, Settings& settings) {
-  SettingsReader::read_section(file.string(), load_document(file, overrides), "", settings);
+  SettingsReader::read_section(file.empty() ? "--set" : file.string(), load_document(file, overrides), "", settings);
 }
 
 template <typename Settings>

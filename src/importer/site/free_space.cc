@@ -1,0 +1,163 @@
+#include "importer/site/free_space.h"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "core/geometry/distance_transform.h"
+#include "core/random.h"
+#include "importer/site/plan_cells.h"
+
+namespace patrol::importer {
+namespace {
+
+constexpr double kAccuracy_m = 0.3;  // position tolerance of a station
+
+/// Returns the cells with enough clearance to the next cell that is not free.
+Grid<std::uint8_t> cells_with_clearance(const OccupancyGrid& plan, double min_clearance_m) {
+  const GridGeometry& grid = plan.geometry();
+  std::vector<std::uint8_t> is_blocked(grid.size());
+  std::transform(plan.values().begin(), plan.values().end(), is_blocked.begin(),
+                 [](std::int8_t percent) { return static_cast<std::uint8_t>(is_free(percent) ? 0 : 1); });
+  const std::vector<double> squared = squared_distances(is_blocked, grid.width, grid.height);
+  const double min_cells = min_clearance_m / grid.resolution_m;
+  Grid<std::uint8_t> result(grid);
+  for (std::size_t i = 0; i < squared.size(); ++i) result.values()[i] = squared[i] >= min_cells * min_cells ? 1 : 0;
+  return result;
+}
+
+/// Marks the cells connected to `from` with `label`, and returns their number. Cells of the value 1 are open.
+std::size_t flood(Grid<std::uint8_t>& open, Cell from, std::uint8_t label) {
+  std::deque<Cell> front = {from};
+  open.at(from) = label;
+  std::size_t count = 0;
+  while (!front.empty()) {
+    const Cell cell = front.front();
+    front.pop_front();
+    ++count;
+    for (const Cell next : {Cell{cell.col + 1, cell.row}, Cell{cell.col - 1, cell.row}, Cell{cell.col, cell.row + 1},
+                            Cell{cell.col, cell.row - 1}}) {
+      if (!open.geometry().contains(next) || open.at(next) != 1) continue;
+      open.at(next) = label;
+      front.push_back(next);
+    }
+  }
+  return count;
+}
+
+std::optional<Cell> nearest_open(const Grid<std::uint8_t>& open, const Eigen::Vector2d& p_m) {
+  std::optional<Cell> best;
+  double least = std::numeric_limits<double>::infinity();
+  const GridGeometry& grid = open.geometry();
+  for (int row = 0; row < grid.height; ++row) {
+    for (int col = 0; col < grid.width; ++col) {
+      const double distance = (grid.center_of({col, row}) - p_m).squaredNorm();
+      if (open.at({col, row}) != 0 && distance < least) best = Cell{col, row}, least = distance;
+    }
+  }
+  return best;
+}
+
+std::optional<Cell> seed_of_largest(const Grid<std::uint8_t>& open) {
+  Grid<std::uint8_t> rest = open;
+  std::optional<Cell> best;
+  std::size_t most = 0;
+  for (int row = 0; row < open.geometry().height; ++row) {
+    for (int col = 0; col < open.geometry().width; ++col) {
+      if (rest.at({col, row}) != 1) continue;
+      const std::size_t count = flood(rest, {col, row}, 2);
+      if (count > most) most = count, best = Cell{col, row};
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+FreeSpace::FreeSpace(const OccupancyGrid& plan, double min_clearance_m, const std::optional<Eigen::Vector2d>& p_start_m)
+    : grid_(plan.geometry()), region_(cells_with_clearance(plan, min_clearance_m)) {
+  const std::optional<Cell> seed = p_start_m ? nearest_open(region_, *p_start_m) : seed_of_largest(region_);
+  if (!seed) throw InputError(fmt::format("the plan has no free cell with a clearance of {:g} m", min_clearance_m));
+  flood(region_, *seed, 2);
+  for (int row = 0; row < grid_.height; ++row) {
+    for (int col = 0; col < grid_.width; ++col) {
+      std::uint8_t& cell = region_.at({col, row});
+      cell = cell == 2 ? 1 : 0;
+      if (cell == 1) cells_m_.push_back(grid_.center_of({col, row}));
+    }
+  }
+}
+
+bool FreeSpace::contains(const Eigen::Vector2d& p_m) const {
+  const Cell cell = grid_.cell_at(p_m);
+  return grid_.contains(cell) && region_.at(cell) != 0;
+}
+
+Eigen::Vector2d FreeSpace::nearest(const Eigen::Vector2d& p_m) const {
+  return grid_.center_of(*nearest_open(region_, p_m));
+}
+
+std::vector<Station> random_stations(const FreeSpace& space, const Pose2& start, int count, std::uint64_t seed,
+                                     double separation_m) {
+  constexpr int kDraws = 100;
+  const RandomStream stream(seed, "stations");
+  const std::vector<Eigen::Vector2d>& cells = space.cells_m();
+  std::vector<Station> stations;
+  std::vector<Eigen::Vector2d> taken = {start.position()};
+  Eigen::Vector2d last = start.position();
+  std::uint64_t draw = 0;
+  for (int number = 1; number <= count; ++number) {
+    const auto is_apart = [&](const Eigen::Vector2d& p, double distance_m) {
+      return std::all_of(taken.begin(), taken.end(),
+                         [&](const auto& other) { return (p - other).norm() >= distance_m; });
+    };
+    Eigen::Vector2d p = start.position();
+    double distance_m = separation_m;
+    for (int tries = 0;; ++tries) {
+      if (tries == kDraws) tries = 0, distance_m /= 2.0;
+      const auto index = static_cast<std::size_t>(stream.uniform(draw++) * static_cast<double>(cells.size()));
+      p = cells[std::min(index, cells.size() - 1)];
+      if (is_apart(p, distance_m) || distance_m < 1e-3) break;
+    }
+    const Eigen::Vector2d way = p - last;
+    stations.push_back({.number = number,
+                        .name = fmt::format("station_{}", number),
+                        .type = StationType::kPass,
+                        .T_route_body = {p.x(), p.y(), std::atan2(way.y(), way.x())},
+                        .accuracy_m = kAccuracy_m});
+    taken.push_back(p);
+    last = p;
+  }
+  stations.push_back({.number = count + 1,
+                      .name = "home",
+                      .type = StationType::kHome,
+                      .T_route_body = start,
+                      .accuracy_m = kAccuracy_m});
+  return stations;
+}
+
+std::vector<Station> stations_along(const std::vector<Pose2>& path, const FreeSpace& space, double spacing_m) {
+  std::vector<Station> stations;
+  double way_m = 0.0, next_m = spacing_m;
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    way_m += (path[i].position() - path[i - 1].position()).norm();
+    const bool is_last = i + 1 == path.size();
+    if ((way_m < next_m && !is_last) || !space.contains(path[i].position())) continue;
+    next_m = way_m + spacing_m;
+    const int number = static_cast<int>(stations.size()) + 1;
+    stations.push_back({.number = number,
+                        .name = fmt::format("way_{}", number),
+                        .type = StationType::kPass,
+                        .T_route_body = path[i],
+                        .accuracy_m = kAccuracy_m});
+  }
+  if (stations.empty()) throw InputError("no pose of the recorded path is in free space");
+  stations.back().type = StationType::kHome;
+  return stations;
+}
+
+}  // namespace patrol::importer

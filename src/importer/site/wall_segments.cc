@@ -1,0 +1,217 @@
+#include "importer/site/wall_segments.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "core/error.h"
+#include "core/geometry/principal_axes.h"
+#include "importer/site/plan_cells.h"
+
+namespace patrol::importer {
+namespace {
+
+constexpr int kNeighborhood_cells = 2;  // half width of the neighborhood that gives the direction of a face
+constexpr double kMaxFlatness = 0.25;   // maximum ratio of the variances across and along a straight face
+constexpr double kMinSamePart = 0.2;    // part of the weight from which a side of a face is kept
+
+Eigen::Vector2d direction_of_sector(int sector, int sectors) {
+  const double angle = 2.0 * std::numbers::pi * (sector + 0.5) / sectors;
+  return {std::cos(angle), std::sin(angle)};
+}
+
+int sector_of(const Eigen::Vector2d& direction, int sectors) {
+  const double turn = std::atan2(direction.y(), direction.x()) / (2.0 * std::numbers::pi);
+  return std::clamp(static_cast<int>(std::floor((turn - std::floor(turn)) * sectors)), 0, sectors - 1);
+}
+
+Eigen::Vector2d left_of(const Eigen::Vector2d& direction) { return {-direction.y(), direction.x()}; }
+
+}  // namespace
+
+void WallFitter::Moments::add(const Moments& other) {
+  weight += other.weight;
+  sum += other.sum;
+  products += other.products;
+}
+
+WallFitter::WallFitter(const OccupancyGrid& plan, const WallFitterSettings& settings)
+    : grid_(plan.geometry()), settings_(settings), slot_of_(plan.geometry(), -1) {
+  int count = 0;
+  for (int row = 0; row < grid_.height; ++row) {
+    for (int col = 0; col < grid_.width; ++col) {
+      if (is_wall(plan.at({col, row}))) slot_of_.at({col, row}) = count++;
+    }
+  }
+  if (count == 0) throw InputError("the plan has no occupied cell");
+  sums_.resize(static_cast<std::size_t>(count));
+}
+
+void WallFitter::add(const Eigen::Vector2d& p_hit_m, const Eigen::Vector2d& p_sensor_m) {
+  const Cell cell = grid_.cell_at(p_hit_m);
+  if (!grid_.contains(cell) || slot_of_.at(cell) < 0) return;
+  const Eigen::Vector2d toward_sensor = p_sensor_m - p_hit_m, p = p_hit_m - grid_.origin_m;
+  const double ratio = toward_sensor.norm() / settings_.half_weight_range_m, weight = 1.0 / (1.0 + ratio * ratio);
+  Moments& sums =
+      sums_[static_cast<std::size_t>(slot_of_.at(cell))][static_cast<std::size_t>(sector_of(toward_sensor, kSectors))];
+  sums.add({.weight = weight, .sum = weight * p, .products = weight * p * p.transpose()});
+}
+
+/// Returns the sums of the cells around one, of all hits or of those seen from the side of `normal`.
+WallFitter::Moments WallFitter::moments_around(Cell cell, int reach_cells, const Eigen::Vector2d* normal) const {
+  Moments total;
+  for (int row = cell.row - reach_cells; row <= cell.row + reach_cells; ++row) {
+    for (int col = cell.col - reach_cells; col <= cell.col + reach_cells; ++col) {
+      if (!grid_.contains({col, row}) || slot_of_.at({col, row}) < 0) continue;
+      const auto& sectors = sums_[static_cast<std::size_t>(slot_of_.at({col, row}))];
+      for (int sector = 0; sector < kSectors; ++sector) {
+        if (normal == nullptr || normal->dot(direction_of_sector(sector, kSectors)) > 0.0)
+          total.add(sectors[static_cast<std::size_t>(sector)]);
+      }
+    }
+  }
+  return total;
+}
+
+std::vector<WallFitter::Surfel> WallFitter::surfels() const {
+  const auto covariance = [](const Moments& m) -> Eigen::Matrix2d {
+    const Eigen::Vector2d mean = m.sum / m.weight;
+    return m.products / m.weight - mean * mean.transpose();
+  };
+  std::vector<Surfel> surfels;
+  for (int row = 0; row < grid_.height; ++row) {
+    for (int col = 0; col < grid_.width; ++col) {
+      const Cell cell{col, row};
+      if (slot_of_.at(cell) < 0) continue;
+      const Moments whole = moments_around(cell, 0, nullptr);
+      if (whole.weight < settings_.min_weight) continue;
+      // Direction from all hits around, then from those of each side of it.
+      Eigen::Vector2d normal = left_of(PrincipalAxes::along(
+          principal_axes(covariance(moments_around(cell, kNeighborhood_cells, nullptr))).large_direction_rad));
+      for (const double side : {1.0, -1.0}) {
+        const Eigen::Vector2d facing = side * normal;
+        const Moments own = moments_around(cell, 0, &facing);
+        if (own.weight < settings_.min_weight || own.weight < kMinSamePart * whole.weight) continue;
+        const PrincipalAxes axes = principal_axes(covariance(moments_around(cell, kNeighborhood_cells, &facing)));
+        Surfel surfel{.p_m = own.sum / own.weight,
+                      .along = PrincipalAxes::along(axes.large_direction_rad),
+                      .normal = {},
+                      .weight = own.weight,
+                      .is_straight = axes.small < kMaxFlatness * axes.large,
+                      .cell = cell};
+        surfel.normal = left_of(surfel.along);
+        if (surfel.normal.dot(facing) < 0.0) surfel.normal = -surfel.normal;
+        surfels.push_back(surfel);
+      }
+    }
+  }
+  return surfels;
+}
+
+/// Extends a segment from its seed in both directions as long as neighbors fit, and refits the line.
+WallSegment WallFitter::grow(std::size_t seed, const std::vector<Surfel>& surfels, const Grid<int>& first_of,
+                             std::vector<char>& is_used) const {
+  const double half_cell_m = 0.5 * grid_.resolution_m;
+  std::vector<std::size_t> members = {seed};
+  is_used[seed] = 1;
+  Eigen::Vector2d center = surfels[seed].p_m, along = surfels[seed].along;
+  const Eigen::Vector2d normal_of_seed = surfels[seed].normal;
+  double begin = 0.0, end = 0.0;  // along the line, from the center
+  const auto refit = [&] {
+    Moments m;
+    for (const std::size_t i : members) {
+      const Eigen::Vector2d& p = surfels[i].p_m;
+      m.add({.weight = surfels[i].weight,
+             .sum = surfels[i].weight * p,
+             .products = surfels[i].weight * p * p.transpose()});
+    }
+    center = m.sum / m.weight;
+    if (members.size() > 2) {
+      const Eigen::Matrix2d spread = m.products / m.weight - center * center.transpose();
+      const Eigen::Vector2d line = PrincipalAxes::along(principal_axes(spread).large_direction_rad);
+      along = line.dot(along) < 0.0 ? Eigen::Vector2d(-line) : line;
+    }
+    begin = end = 0.0;
+    for (const std::size_t i : members) {
+      const double at = along.dot(surfels[i].p_m - center);
+      begin = std::min(begin, at), end = std::max(end, at);
+    }
+  };
+  const auto fits_all = [&] {
+    const Eigen::Vector2d normal = left_of(along);
+    return std::all_of(members.begin(), members.end(), [&](std::size_t i) {
+      return std::abs(normal.dot(surfels[i].p_m - center)) <= settings_.max_offset_m;
+    });
+  };
+  const int reach = static_cast<int>(std::ceil(settings_.max_gap_m / grid_.resolution_m)) + 1;
+  for (bool has_grown = surfels[seed].is_straight; has_grown;) {
+    has_grown = false;
+    for (const double tip : {begin, end}) {
+      const Cell around = grid_.cell_at(grid_.origin_m + center + tip * along);
+      std::size_t best = surfels.size();
+      double best_gap = settings_.max_gap_m;
+      for (int row = around.row - reach; row <= around.row + reach; ++row) {
+        for (int col = around.col - reach; col <= around.col + reach; ++col) {
+          if (!grid_.contains({col, row})) continue;
+          const int first = first_of.at({col, row});
+          for (int i = first; i >= 0 && i < static_cast<int>(surfels.size()) &&
+                              surfels[static_cast<std::size_t>(i)].cell == Cell{col, row};
+               ++i) {
+            const Surfel& other = surfels[static_cast<std::size_t>(i)];
+            if (is_used[static_cast<std::size_t>(i)] != 0 || !other.is_straight) continue;
+            if (other.normal.dot(normal_of_seed) < 0.0) continue;
+            if (std::abs(other.along.dot(along)) < std::cos(settings_.max_turn_rad)) continue;
+            const Eigen::Vector2d from_center = other.p_m - center;
+            if (std::abs(left_of(along).dot(from_center)) > settings_.max_offset_m) continue;
+            const double at = along.dot(from_center), gap = at < begin ? begin - at : at > end ? at - end : 0.0;
+            if (gap < best_gap) best_gap = gap, best = static_cast<std::size_t>(i);
+          }
+        }
+      }
+      if (best == surfels.size()) continue;
+      const Eigen::Vector2d center_before = center, along_before = along;
+      members.push_back(best);
+      refit();
+      if (fits_all()) {
+        is_used[best] = 1;
+        has_grown = true;
+        break;
+      }
+      members.pop_back();
+      center = center_before, along = along_before;
+      refit();
+    }
+  }
+  WallSegment segment{.begin_m = grid_.origin_m + center + (begin - half_cell_m) * along,
+                      .end_m = grid_.origin_m + center + (end + half_cell_m) * along,
+                      .normal = left_of(along)};
+  if (segment.normal.dot(normal_of_seed) < 0.0) segment.normal = -segment.normal;
+  return segment;
+}
+
+std::vector<WallSegment> WallFitter::segments() const {
+  const std::vector<Surfel> all = surfels();
+  Grid<int> first_of(grid_, -1);
+  for (std::size_t i = all.size(); i-- > 0;) first_of.at(all[i].cell) = static_cast<int>(i);
+  std::vector<std::size_t> order(all.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return std::pair(all[a].is_straight, all[a].weight) > std::pair(all[b].is_straight, all[b].weight);
+  });
+  std::vector<char> is_used(all.size(), 0);
+  std::vector<WallSegment> segments;
+  for (const std::size_t seed : order) {
+    if (is_used[seed] == 0) segments.push_back(grow(seed, all, first_of, is_used));
+  }
+  std::stable_sort(segments.begin(), segments.end(), [](const WallSegment& a, const WallSegment& b) {
+    return (a.end_m - a.begin_m).squaredNorm() > (b.end_m - b.begin_m).squaredNorm();
+  });
+  return segments;
+}
+
+bool WallFitter::is_uncovered(Cell cell) const {
+  return slot_of_.at(cell) >= 0 && moments_around(cell, 0, nullptr).weight < settings_.min_weight;
+}
+
+}  // namespace patrol::importer
