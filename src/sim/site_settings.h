@@ -9,9 +9,9 @@ namespace patrol::sim {
 
 /// Geoms of a site, by pattern. A pattern matches the whole name; `*` stands for any text.
 struct GeomPatterns {
-  std::vector<std::string> geoms;      ///< patterns of names of geoms
-  std::vector<std::string> materials;  ///< patterns of names of materials
-  std::vector<std::string> groups;     ///< geom groups, 0 to 5
+  std::vector<std::string> geoms = {};      ///< patterns of names of geoms
+  std::vector<std::string> materials = {};  ///< patterns of names of materials
+  std::vector<std::string> groups = {};     ///< geom groups, 0 to 5
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -25,8 +25,8 @@ struct GeomPatterns {
 /// static geom is also one with the ground if it is from above (normal within 45 degrees of the vertical) and at most
 /// `max_step_m` higher than the robot's lowest contact.
 struct GroundSettings {
-  GeomPatterns all;          ///< geoms that are ground, also at their sides
-  GeomPatterns curbs;        ///< geoms that are ground from above, and at their sides up to `max_curb_m`
+  GeomPatterns all = {};     ///< geoms that are ground, also at their sides
+  GeomPatterns curbs = {};   ///< geoms that are ground from above, and at their sides up to `max_curb_m`
   double max_curb_m = 0.15;  ///< maximum height of a curb's top above the robot's lowest contact
   double max_step_m = 0.25;  ///< maximum height above the robot's lowest contact; 0: only the patterns decide
 

@@ -69,6 +69,7 @@ int run_command_line(int argc, const char* const* argv) {
   add_campaign_commands(app, call);
   add_mapping_commands(app, call);
   add_import_command(app, call);
+  add_generate_command(app, call);
   add_program_commands(app, call);
   add_number_checks(app);
 

@@ -30,6 +30,8 @@ struct Call {
   TrainOptions train;
   ImportRobotOptions import_robot;
   ImportSiteOptions import_site;
+  GenerateOptions generate;
+  std::string generated_kind;
   std::string imported_kind;
   SolveOptions solve;
   PlanOptions plan;
@@ -66,6 +68,7 @@ void add_run_commands(CLI::App& app, Call& call);
 void add_campaign_commands(CLI::App& app, Call& call);
 void add_mapping_commands(CLI::App& app, Call& call);
 void add_import_command(CLI::App& app, Call& call);
+void add_generate_command(CLI::App& app, Call& call);
 void add_program_commands(CLI::App& app, Call& call);
 
 }  // namespace patrol::app

@@ -86,4 +86,20 @@ void add_import_command(CLI::App& app, Call& call) {
   });
 }
 
+void add_generate_command(CLI::App& app, Call& call) {
+  GenerateOptions& generate = call.generate;
+  CLI::App* command = app.add_subcommand("generate", "Generate obstacle courses with start, goal and optimal time");
+  command->add_option("kind", call.generated_kind, "Kind of the site: courses")
+      ->required()
+      ->check(CLI::IsMember({"courses"}));
+  command->add_option("--number", generate.number, "Number of the first course")->capture_default_str();
+  command->add_option("--count", generate.count, "Number of courses")
+      ->check(CLI::Range(1, 10000))
+      ->capture_default_str();
+  command->add_option("--robot", generate.robot, "Robot, whose size and speed the courses fit")->capture_default_str();
+  command->add_option("--out", generate.out, "Folder that receives a folder course_NUMBER for each course")
+      ->capture_default_str();
+  command->callback([&] { call.chosen = [&] { return generate_command(call.generate); }; });
+}
+
 }  // namespace patrol::app

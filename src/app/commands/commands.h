@@ -198,6 +198,15 @@ struct ImportSiteOptions {
 /// Makes a site of `worlds` from a file.
 ExitCode import_site_command(const ImportSiteOptions& options);
 
+struct GenerateOptions {
+  std::uint64_t number = 1;  ///< number of the first course
+  int count = 1;
+  std::string robot = "wheeled";
+  std::filesystem::path out = "worlds";  ///< folder that receives a folder for each course
+};
+/// Generates obstacle courses for a robot as sites.
+ExitCode generate_command(const GenerateOptions& options);
+
 struct SolveOptions {
   std::filesystem::path graph;        ///< g2o
   bool robust_loop_closures = false;  ///< robust loss on edges that are not odometry

@@ -100,6 +100,18 @@ struct SensorNeed {
   std::string by;      ///< settings key or part of the scenario that requires it, "stack.slam"
 };
 
+/// Scoring of an obstacle course: the run ends successfully at the last station, without a collision.
+struct CourseSettings {
+  double optimal_time_s = 0.0;  ///< time of the shortest path at the maximum speed; 0: not a course
+  double arrival_m = 1.0;       ///< distance from the goal at which the time ends
+
+  template <typename Self, typename Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("optimal_time_s", self.optimal_time_s, at_least(0.0));
+    visit("arrival_m", self.arrival_m, between(0.01, 100.0));
+  }
+};
+
 /// Contents of the log besides the messages.
 struct LogSettings {
   double truth_rate_hz = 100.0;  ///< rate of the ground truth in the log
@@ -148,6 +160,7 @@ struct Scenario {
   render::LightSettings light;                       ///< light of the replay; for dust see sensors.dust
   std::vector<sim::FaultSettings> faults;
   std::vector<KidnapSettings> kidnaps;
+  CourseSettings course;
   LogSettings log;
   io::Expectations expect;            ///< bounds of metrics that the run must meet, by path of the metric
   std::string robot_location;         ///< file, line and key of `robot` for messages; not a setting
@@ -185,6 +198,7 @@ struct Scenario {
     visit("light", self.light);
     visit("faults", self.faults);
     visit("kidnaps", self.kidnaps);
+    visit("course", self.course);
     visit("log", self.log);
     visit("expect", self.expect);
   }

@@ -26,7 +26,7 @@ struct PlanarPoseSettings {
 
 /// Station of a tour.
 struct TourStationSettings {
-  std::string name;           ///< name of the station; empty: "station_" and its number
+  std::string name = {};      ///< name of the station; empty: "station_" and its number
   std::string type = "pass";  ///< task: pass, or home, which ends the mission
   double x_m = 0.0;           ///< x in the site
   double y_m = 0.0;           ///< y in the site
@@ -46,8 +46,8 @@ struct TourStationSettings {
 
 /// Mission given in the scenario instead of in a file. The last station ends the mission.
 struct TourSettings {
-  PlanarPoseSettings start;                   ///< surveyed start
-  std::vector<TourStationSettings> stations;  ///< stations in their order; empty: no tour
+  PlanarPoseSettings start = {};                   ///< surveyed start
+  std::vector<TourStationSettings> stations = {};  ///< stations in their order; empty: no tour
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

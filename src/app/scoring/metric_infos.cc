@@ -25,6 +25,13 @@ constexpr Row kMission[] = {
     {"distance_m", "length of the true path of the robot"},
 };
 
+constexpr Row kCourse[] = {
+    {"successful", "whether the robot came to the goal of the obstacle course without a collision"},
+    {"collided", "whether the robot collided before it came to the goal of the obstacle course"},
+    {"duration_s", "time from the first 0.1 m of the way to the arrival at the goal of the obstacle course"},
+    {"score", "optimal time of the obstacle course divided by 2 to 8 times as much for the time taken; 0 to 0.5"},
+};
+
 constexpr Row kTrajectory[] = {
     {"ate_rmse_m", "root mean square of the position error of {}"},
     {"ate_mean_m", "mean of the position error of {}"},
@@ -272,6 +279,7 @@ bool matches(const std::string& pattern, const std::string& path) {
 std::vector<MetricInfo> metric_infos() {
   Collector collector;
   collector.add("mission", kMission);
+  collector.add("course", kCourse);
   collector.add("pose", kTrajectory, "the online pose, in the frame of the start");
   collector.add("pose", kPose);
   collector.add("pose.site", kTrajectory, "the online pose in the survey frame, by the robot's registration");

@@ -236,6 +236,13 @@ io::Metrics mission_json(const score::MissionScore& mission) {
           {"duration_s", mission.duration_s},     {"distance_m", mission.distance_m}};
 }
 
+io::Metrics course_json(const score::CourseScore& course) {
+  return {{"successful", course.is_successful},
+          {"collided", course.has_collided},
+          {"duration_s", optional_json(course.duration_s)},
+          {"score", course.score}};
+}
+
 io::Metrics navigation_json(const score::NavigationScore& navigation) {
   return {{"paths", navigation.num_paths},
           {"detours", navigation.num_detours},
@@ -277,6 +284,7 @@ void add_localization(const score::EstimateScore& score, io::Metrics& metrics) {
 io::Metrics to_json(const score::RunScore& run) {
   io::Metrics metrics;
   metrics["mission"] = mission_json(run.mission);
+  if (run.course) metrics["course"] = course_json(*run.course);
   if (!run.estimate) return metrics;
   const score::EstimateScore& score = *run.estimate;
   metrics["pose"] = to_json(score.pose);

@@ -15,6 +15,11 @@ ScoredRun score_run(const std::filesystem::path& log_mcap, const Scenario& scena
   show("reading the log", 0.0);
   ScoredRun run{.record = read_run_record(log_mcap), .score = {}, .truth = {}, .scans = {}};
   run.score.mission = score::mission_score(run.record);
+  if (scenario.course.optimal_time_s > 0.0 && !files.route.stations.empty()) {
+    const Eigen::Vector2d p_world_goal = files.route.stations.back().T_route_body.position();  // site is world
+    run.score.course =
+        score::course_score(run.record, p_world_goal, scenario.course.arrival_m, scenario.course.optimal_time_s);
+  }
   if (!run.record.has_estimate()) return run;
   show("station scans", 0.35);
   run.scans = station_scans(log_mcap, run.record, scenario, files);

@@ -45,8 +45,9 @@ void write_mission(const ImportedSite& site, const std::filesystem::path& folder
   io::save_text(folder / "routes" / "patrol.json", io::to_json_text(*site.route, site.T_site_start));
   io::save_text(folder / "scenarios" / "patrol.yaml",
                 fmt::format("# Patrol of {} stations, made by patrol import site from {}.\nworld: {}\nrobot: {}\n"
-                            "mission: routes/patrol.json\n",
-                            site.route->stations.size(), io::on_one_line(site.source), site.name, site.robot));
+                            "mission: routes/patrol.json\n{}",
+                            site.route->stations.size(), io::on_one_line(site.source), site.name, site.robot,
+                            site.scenario_keys));
 }
 
 void check(const ImportedSite& site) {

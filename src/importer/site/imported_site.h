@@ -76,6 +76,7 @@ struct ImportedSite {
   std::optional<OccupancyGrid> map = {};  ///< floor plan in `site`, written to map/ for runs on a known map
   std::optional<Route> route = {};        ///< mission in `site`; none: neither routes/ nor scenarios/ are written
   Pose2 T_site_start = {};                ///< start of the mission
+  std::string scenario_keys = {};         ///< further lines of the scenario
   std::string robot = "wheeled";          ///< robot of the scenario
   std::vector<Assumption> assumptions = {};
 };

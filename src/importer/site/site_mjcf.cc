@@ -173,7 +173,15 @@ std::string shape_file(const SiteShape& shape) {
 
 std::string shape_content(const SiteShape& shape) {
   if (shape.type == SiteShapeType::kHeightField) return height_field_bytes(shape.height_field.height_m);
-  return to_obj(shape.mesh, shape.texture_coordinates);
+  // MuJoCo wants at least four vertices: the last one of a single triangle is repeated.
+  constexpr std::size_t kFewest = 4;
+  if (shape.mesh.vertices_m.size() >= kFewest) return to_obj(shape.mesh, shape.texture_coordinates);
+  Mesh mesh = shape.mesh;
+  std::vector<Eigen::Vector2d> texture_coordinates = shape.texture_coordinates;
+  mesh.vertices_m.resize(kFewest, mesh.vertices_m.back());
+  if (!mesh.normals.empty()) mesh.normals.resize(kFewest, mesh.normals.back());
+  if (!texture_coordinates.empty()) texture_coordinates.resize(kFewest, texture_coordinates.back());
+  return to_obj(mesh, texture_coordinates);
 }
 
 std::string to_mjcf(const ImportedSite& site) {

@@ -15,6 +15,7 @@
 #include "score/pose/pose_nees.h"
 #include "score/pose/site_score.h"
 #include "score/pose/trajectory_error.h"
+#include "score/run/course_score.h"
 #include "score/run_record.h"
 #include "score/station_error.h"
 #include "score/visibility.h"
@@ -90,6 +91,7 @@ struct EstimateScore {
 
 struct RunScore {
   MissionScore mission;
+  std::optional<CourseScore> course;      ///< none: the scenario is not an obstacle course
   std::optional<EstimateScore> estimate;  ///< none: the stack published no estimate
 };
 

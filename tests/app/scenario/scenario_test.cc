@@ -48,7 +48,10 @@ TEST(Scenario, EveryOneOfEveryWorldIsReadFindsItsFilesAndExpectsSomething) {
 }
 
 TEST(Scenario, FindsTheQuadrupedByItsName) {
-  const ScenarioFiles files = load_scenario_files(Scenario{}, kSource);
+  Scenario scenario;
+  scenario.world = "street";
+  scenario.mission = "routes/short.json";
+  const ScenarioFiles files = load_scenario_files(scenario, kSource);
   EXPECT_EQ(files.world_xml, kSource / "worlds/street/street.xml");
   EXPECT_EQ(files.robot_urdf, kSource / "models/quadruped/quadruped.urdf");
   EXPECT_EQ(files.robot.legs.size(), 4u);
@@ -67,6 +70,7 @@ TEST(Scenario, AnUnknownWorldOrRobotNamesTheKnownOnes) {
 
 TEST(Scenario, AMissingMissionIsNamed) {
   Scenario scenario;
+  scenario.world = "street";
   scenario.mission = "routes/absent.json";
   EXPECT_THAT([&] { load_scenario_files(scenario, kSource); },
               ThrowsMessage<InputError>(AllOf(HasSubstr("mission = routes/absent.json"), HasSubstr("worlds/street"))));

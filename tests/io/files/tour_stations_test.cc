@@ -75,6 +75,14 @@ TEST(TourStations, WhatIsWrongIsNamedWithItsLineAndColumn) {
   EXPECT_EQ(complaint(""), "stations.csv: contains no stations");
 }
 
+TEST(TourStations, AHeadingIsOptional) {
+  const std::vector<TourStation> stations = load("name,x,y,heading_deg\na,1,2,-90\nb,1,2,\n");
+  ASSERT_EQ(stations.size(), 2u);
+  EXPECT_EQ(stations[0].heading_deg, -90.0);
+  EXPECT_FALSE(stations[1].heading_deg);
+  EXPECT_EQ(complaint("name,x,y,heading_deg\na,1,2,400\n"), "stations.csv:2: heading_deg: 400: must be in [-360, 360]");
+}
+
 TEST(TourStations, MoreThanTwoHundredAreRefused) {
   std::string text = "name,x,y\n";
   for (int i = 0; i < 201; ++i) text += std::to_string(i) + ",0,0\n";

@@ -201,5 +201,35 @@ TEST(LoadRoute, WhatIsNotJsonIsNamedByItsLine) {
   EXPECT_THROW(load_route("/nowhere/r.json"), InputError);
 }
 
+TEST(RouteJson, ItsTextReadsBackAsTheSameStationsAndStart) {
+  Route route;
+  route.stations = {{.number = 1,
+                     .name = "pump",
+                     .type = StationType::kInspect,
+                     .T_route_body = {1.5, -2.0, 0.7},
+                     .p_route_target = {2.0, -2.5, 1.0},
+                     .accuracy_m = 0.25,
+                     .priority = 3,
+                     .earliest_s = 10.0,
+                     .latest_s = 90.0},
+                    {.number = 2, .name = "home", .type = StationType::kHome, .T_route_body = {0.0, 1.0, -3.0}}};
+  const TemporaryFile file("tour.json", to_json_text(route, {4.0, 5.0, 3.1}));
+  const RouteFile read = load_route(file.path());
+  EXPECT_THAT(read.T_site_start, Pose2Near(Pose2{4.0, 5.0, 3.1}, 1e-12, 1e-12));
+  ASSERT_EQ(read.route.stations.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(read.route.stations[i].name, route.stations[i].name);
+    EXPECT_EQ(read.route.stations[i].type, route.stations[i].type);
+    EXPECT_THAT(read.route.stations[i].T_route_body, Pose2Near(route.stations[i].T_route_body, 1e-12, 1e-12));
+    EXPECT_EQ(read.route.stations[i].accuracy_m, route.stations[i].accuracy_m);
+  }
+  EXPECT_EQ(read.route.stations[0].p_route_target, route.stations[0].p_route_target);
+  EXPECT_EQ(read.route.stations[0].priority, 3);
+  EXPECT_EQ(read.route.stations[0].earliest_s, 10.0);
+  EXPECT_EQ(read.route.stations[0].latest_s, 90.0);
+  route.anchors.emplace_back();
+  EXPECT_THROW(to_json_text(route, {}), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace patrol::io::route_json_test

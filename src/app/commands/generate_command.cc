@@ -1,0 +1,43 @@
+#include <fmt/format.h>
+
+#include "app/commands/commands.h"
+#include "app/common/progress_bar.h"
+#include "app/scenario/scenario.h"
+#include "importer/site/course.h"
+#include "io/urdf.h"
+
+namespace patrol::app {
+namespace {
+
+/// Radius of the circle around the benchmark's robot, which is 0.508 m long and 0.43 m wide.
+constexpr double kBenchmarkRadius_m = 0.333;
+
+/// Returns the courses of the benchmark for the size and the speed of a robot.
+importer::CourseSettings settings_for(const std::string& robot) {
+  const std::filesystem::path data_root = find_data_root({});
+  const RobotDescription description = io::load_robot_description(find_robot(robot, data_root).string());
+  const Scenario scenario = default_scenario(robot, data_root);
+  return {.scale = description.outline_radius_m() / kBenchmarkRadius_m,
+          .max_speed_mps = scenario.stack.navigation.local_planner.dwa.max_speed_mps};
+}
+
+}  // namespace
+
+ExitCode generate_command(const GenerateOptions& options) {
+  const importer::CourseSettings settings = settings_for(options.robot);
+  const InterruptGuard guard;
+  ProgressBar bar;
+  for (int i = 0; i < options.count && !guard.is_interrupted(); ++i) {
+    const std::uint64_t number = options.number + static_cast<std::uint64_t>(i);
+    const std::string name = fmt::format("course_{:03}", number);
+    importer::write_site(site_of_course(importer::draw_course(number, settings), settings, name, options.robot),
+                         options.out / name);
+    bar.show(fmt::format("{} of {} courses", i + 1, options.count), (i + 1.0) / options.count);
+  }
+  if (guard.is_interrupted()) return ExitCode::kProgramFailed;
+  fmt::print("{} courses for {}: sizes of the benchmark times {:.2f}, maximum speed {:g} m/s; {}\n", options.count,
+             options.robot, settings.scale, settings.max_speed_mps, options.out.string());
+  return ExitCode::kDone;
+}
+
+}  // namespace patrol::app

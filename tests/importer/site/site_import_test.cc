@@ -1,0 +1,157 @@
+#include "importer/site/site_import.h"
+
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "io/json/route_json.h"
+#include "io/maps/map_server.h"
+#include "io/yaml/settings_yaml.h"
+#include "sim/lidar_scene.h"
+#include "sim/mujoco.h"
+#include "tests/support/temporary_file.h"
+
+namespace patrol::importer::site_import_test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+/// Room of 4 x 3 m between walls of one cell of 10 cm, with a door of 1 m in the east wall; (0, 0) is its middle.
+OccupancyGrid room_plan() {
+  OccupancyGrid plan({.resolution_m = 0.1, .width = 60, .height = 50, .origin_m = {-3.0, -2.5}}, -1);
+  for (int row = 9; row <= 40; ++row) {
+    for (int col = 9; col <= 50; ++col) {
+      const bool is_edge = row == 9 || row == 40 || col == 9 || col == 50;
+      const bool is_door = col == 50 && row >= 20 && row < 30;
+      plan.at({col, row}) = is_edge && !is_door ? 100 : 0;
+    }
+  }
+  return plan;
+}
+
+class PlanImport : public ::testing::Test {
+ protected:
+  PlanImport() { io::save_map(folder_ / "room.yaml", room_plan()); }
+
+  SiteImportOptions options(const MissionOptions& mission = {}) const {
+    return {.file = folder_ / "room.yaml", .name = "room", .wall_height_m = 2.0, .mission = mission};
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(PlanImport, WritesASiteWhoseWallsALidarSeesWithin1MillimeterAndLeavesTheDoorOpen) {
+  write_site(import_site(options()), folder_ / "worlds/room");
+  const sim::ModelPtr model = sim::compile(*sim::load_spec(folder_ / "worlds/room/room.xml"), "room");
+  const sim::LidarScene scene(*model);
+  const auto range_m = [&](double azimuth_rad, double height_m) {
+    const auto hit = scene.cast({0.0, 0.0, height_m}, {std::cos(azimuth_rad), std::sin(azimuth_rad), 0.0}, 30.0,
+                                sim::kRayEverything);
+    return hit ? hit->distance_m : -1.0;
+  };
+  EXPECT_NEAR(range_m(M_PI, 0.3), 2.0, 1e-3);
+  EXPECT_NEAR(range_m(M_PI / 2.0, 0.3), 1.5, 1e-3);
+  EXPECT_NEAR(range_m(-M_PI / 2.0, 1.99), 1.5, 1e-3);
+  EXPECT_EQ(range_m(M_PI, 2.01), -1.0);
+  EXPECT_EQ(range_m(0.0, 0.3), -1.0);
+  EXPECT_NEAR(range_m(0.5, 0.3), 2.0 / std::cos(0.5), 1e-3);
+  const auto floor = scene.cast({0.0, 0.0, 1.0}, {0.0, 0.0, -1.0}, 3.0, sim::kRayEverything);
+  ASSERT_TRUE(floor);
+  EXPECT_NEAR(floor->distance_m, 1.0, 1e-6);
+}
+
+TEST_F(PlanImport, KeepsThePlanAsTheMapAndTheDefaultGroundRules) {
+  write_site(import_site(options()), folder_ / "worlds/room");
+  EXPECT_EQ(io::load_map(folder_ / "worlds/room/map/map.yaml").values(), room_plan().values());
+  const auto settings = io::load_settings<sim::SiteSettings>(folder_ / "worlds/room/room.yaml", {});
+  EXPECT_EQ(settings.ground.max_step_m, 0.25);
+  EXPECT_TRUE(settings.ground.all.geoms.empty());
+  EXPECT_THAT(test::read_bytes(folder_ / "worlds/room/README.md"), HasSubstr("--wall-height"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "worlds/room/scenarios"));
+}
+
+TEST_F(PlanImport, RandomStationsAreAMissionInTheFreeSpaceOfThePlan) {
+  write_site(import_site(options({.num_random = 3, .seed = 5, .clearance_m = 0.4, .robot = "tracked"})),
+             folder_ / "worlds/room");
+  const io::RouteFile mission = io::load_route(folder_ / "worlds/room/routes/patrol.json");
+  ASSERT_EQ(mission.route.stations.size(), 4u);
+  for (const Station& station : mission.route.stations) {
+    EXPECT_LE(std::abs(station.T_route_body.x), 2.2);
+    EXPECT_LE(std::abs(station.T_route_body.y), 1.2);
+  }
+  EXPECT_THAT(test::read_bytes(folder_ / "worlds/room/scenarios/patrol.yaml"), HasSubstr("robot: tracked\n"));
+}
+
+TEST_F(PlanImport, ATableOfStationsIsAMissionThatEndsAtTheLastOneAndFacesAwayFromTheOneBefore) {
+  test::write_bytes(folder_ / "stations.csv", "name,x,y,heading_deg\npump,1.0,0.0,\nvalve,1.0,1.0,180\n");
+  const ImportedSite site = import_site(options({.stations = folder_ / "stations.csv"}));
+  ASSERT_TRUE(site.route);
+  ASSERT_EQ(site.route->stations.size(), 2u);
+  EXPECT_EQ(site.route->stations[0].name, "pump");
+  EXPECT_EQ(site.route->stations[0].type, StationType::kPass);
+  EXPECT_NEAR(site.route->stations[0].T_route_body.yaw, 0.0, 1e-12);
+  EXPECT_NEAR(site.route->stations[1].T_route_body.yaw, M_PI, 1e-12);
+  EXPECT_EQ(site.route->stations[1].type, StationType::kHome);
+}
+
+TEST_F(PlanImport, WrongInputsAreRefusedAndNothingIsWritten) {
+  test::write_bytes(folder_ / "stations.csv", "name,x,y\npump,1.0,north\n");
+  EXPECT_THAT([&] { import_site(options({.stations = folder_ / "stations.csv"})); },
+              ThrowsMessage<InputError>(HasSubstr("stations.csv:2: y: north: must be a number")));
+  EXPECT_THAT([&] { import_site(options({.stations = "a.csv", .num_random = 1})); },
+              ThrowsMessage<InputError>(HasSubstr("--stations and --random-stations are mutually exclusive")));
+  EXPECT_THAT([&] { import_site(options({.num_random = 1, .clearance_m = 1.6})); },
+              ThrowsMessage<InputError>(HasSubstr("no free cell with a clearance of 1.6 m")));
+  SiteImportOptions unknown = options();
+  unknown.file = folder_ / "room.dwg";
+  EXPECT_THAT([&] { import_site(unknown); },
+              ThrowsMessage<InputError>(HasSubstr("room.dwg: extension of a site file")));
+  io::save_map(folder_ / "empty.yaml", OccupancyGrid({.width = 5, .height = 5}, 0));
+  SiteImportOptions empty = options();
+  empty.file = folder_ / "empty.yaml";
+  EXPECT_THAT([&] { import_site(empty); }, ThrowsMessage<InputError>(HasSubstr("the plan has no occupied cell")));
+  test::write_bytes(folder_ / "taken/file", "");
+  std::filesystem::create_directories(folder_ / "taken");
+  test::write_bytes(folder_ / "taken/file", "");
+  EXPECT_THAT([&] { write_site(import_site(options()), folder_ / "taken"); },
+              ThrowsMessage<InputError>(HasSubstr("exists and is not an empty folder")));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "worlds"));
+}
+
+// Heights of 0, 1 and 2 m from west to east over 2 m, and a triangle above it.
+TEST(WriteSite, HeightFieldsAndMeshesKeepTheirHeightsAndPlacesTo1Millimeter) {
+  const test::TemporaryFolder folder;
+  Grid<float> heights({.resolution_m = 1.0, .width = 3, .height = 2, .origin_m = {3.5, 4.5}});
+  heights.values() = {0.0F, 1.0F, 2.0F, 0.0F, 1.0F, 2.0F};
+  ImportedSite site{.name = "slope", .source = "test"};
+  site.materials = {{.name = "grass"}};
+  site.shapes.push_back({.name = "terrain",
+                         .type = SiteShapeType::kHeightField,
+                         .material = "grass",
+                         .height_field = {.height_m = heights}});
+  site.shapes.push_back({.name = "roof",
+                         .type = SiteShapeType::kMesh,
+                         .use = ShapeUse::kSeen,
+                         .T_site_shape = to_pose3(Pose2{5.0, 5.0, 0.0}, 6.0),
+                         .material = "grass",
+                         .mesh = {.vertices_m = {{-1.0, -1.0, 0.0}, {1.0, -1.0, 0.0}, {0.0, 1.0, 0.0}},
+                                  .normals = {},
+                                  .triangles = {{0, 1, 2}}}});
+  write_site(site, folder / "slope");
+  const sim::ModelPtr model = sim::compile(*sim::load_spec(folder / "slope/slope.xml"), "slope");
+  const sim::LidarScene scene(*model);
+  const auto height_m = [&](double x, double y, double from_m) {
+    const auto hit = scene.cast({x, y, from_m}, {0.0, 0.0, -1.0}, 20.0, sim::kRayEverything);
+    return hit ? from_m - hit->distance_m : -1.0;
+  };
+  EXPECT_NEAR(height_m(4.1, 5.3, 5.0), 0.1, 1e-3);  // the first column of heights is at x = 4 m
+  EXPECT_NEAR(height_m(5.9, 5.7, 5.0), 1.9, 1e-3);
+  EXPECT_NEAR(height_m(5.0, 5.1, 9.0), 6.0, 1e-3);
+  EXPECT_EQ(height_m(3.8, 5.5, 5.0), -1.0);
+}
+
+}  // namespace
+}  // namespace patrol::importer::site_import_test
