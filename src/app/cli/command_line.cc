@@ -70,6 +70,7 @@ int run_command_line(int argc, const char* const* argv) {
   add_mapping_commands(app, call);
   add_import_command(app, call);
   add_generate_command(app, call);
+  add_site_command(app, call);
   add_program_commands(app, call);
   add_number_checks(app);
 

@@ -31,6 +31,7 @@ struct Call {
   ImportRobotOptions import_robot;
   ImportSiteOptions import_site;
   GenerateOptions generate;
+  SiteOptions site;
   std::string generated_kind;
   std::string imported_kind;
   SolveOptions solve;
@@ -69,6 +70,7 @@ void add_campaign_commands(CLI::App& app, Call& call);
 void add_mapping_commands(CLI::App& app, Call& call);
 void add_import_command(CLI::App& app, Call& call);
 void add_generate_command(CLI::App& app, Call& call);
+void add_site_command(CLI::App& app, Call& call);
 void add_program_commands(CLI::App& app, Call& call);
 
 }  // namespace patrol::app

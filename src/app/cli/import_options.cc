@@ -102,4 +102,11 @@ void add_generate_command(CLI::App& app, Call& call) {
   command->callback([&] { call.chosen = [&] { return generate_command(call.generate); }; });
 }
 
+void add_site_command(CLI::App& app, Call& call) {
+  CLI::App* command = app.add_subcommand("site", "Report the ground, walls and obstacles of a site");
+  command->add_option("world", call.site.world, "Name of the site, a folder of worlds")->required();
+  add_json(*command, call.site.form);
+  command->callback([&] { call.chosen = [&] { return site_command(call.site); }; });
+}
+
 }  // namespace patrol::app

@@ -198,6 +198,13 @@ struct ImportSiteOptions {
 /// Makes a site of `worlds` from a file.
 ExitCode import_site_command(const ImportSiteOptions& options);
 
+struct SiteOptions {
+  std::string world;  ///< name of a folder of `worlds`
+  ResultForm form = ResultForm::kText;
+};
+/// Reports the surfaces of a site: ground, walls and obstacles.
+ExitCode site_command(const SiteOptions& options);
+
 struct GenerateOptions {
   std::uint64_t number = 1;  ///< number of the first course
   int count = 1;

@@ -24,6 +24,7 @@
 #include "sim/locomotion/leg_gains.h"
 #include "sim/locomotion/locomotion_settings.h"
 #include "sim/locomotion/roller_contact.h"
+#include "sim/sensors/uwb.h"
 #include "stack/mission/known_map.h"
 
 namespace patrol::app {
@@ -181,6 +182,12 @@ std::vector<std::string> enabled_by_name(const YAML::Node& document) {
   return names;
 }
 
+/// Returns whether the MJCF of a world names UWB anchors; true if there is no such world.
+bool has_uwb_anchors(const std::string& world, const std::filesystem::path& data_root) {
+  const std::filesystem::path xml = world_folder(world, data_root) / (world + ".xml");
+  return !std::filesystem::exists(xml) || io::load_text(xml).find(sim::kUwbAnchor) != std::string::npos;
+}
+
 /// Returns the robot with its mounts; none if it has no URDF.
 std::optional<RobotDescription> robot_of(const std::string& name, const std::filesystem::path& data_root,
                                          const std::vector<MountSettings>& mounts) {
@@ -225,6 +232,15 @@ std::filesystem::path world_folder(const std::string& world, const std::filesyst
   return folder_of(data_root, "worlds", world, ".xml");
 }
 
+LoadedSite load_site(const std::string& world, const std::filesystem::path& data_root) {
+  if (world.empty()) throw InputError("world: missing: name a folder of worlds");
+  LoadedSite site{.world_xml = world_folder(world, data_root) / (world + ".xml"), .settings = {}};
+  if (!std::filesystem::exists(site.world_xml))
+    site.world_xml = find_definition(data_root, "worlds", "world", world, ".xml");
+  site.settings = site_settings_of(site.world_xml);
+  return site;
+}
+
 std::filesystem::path find_robot(const std::string& name, const std::filesystem::path& data_root) {
   std::filesystem::path urdf = robot_file(name, ".urdf", data_root);
   return std::filesystem::exists(urdf) ? urdf : find_definition(data_root, "models", "robot", name, ".urdf");
@@ -250,7 +266,10 @@ Scenario load_scenario(const std::filesystem::path& file, const std::vector<std:
   scenario.robot_location = location_of(file, find_node(lines_of(file, "robot", overrides), {"robot"}), "robot");
   if (const std::optional<RobotDescription> described = robot_of(robot, data_root, scenario.mounts)) {
     check_profile(profile, *described, of_profile);
-    disable_absent_sensors(*described, enabled_by_name(io::load_document(file, overrides)), scenario);
+    const std::vector<std::string> enabled = enabled_by_name(io::load_document(file, overrides));
+    disable_absent_sensors(*described, enabled, scenario);
+    const bool is_asked_for_uwb = std::ranges::find(enabled, "uwb") != enabled.end();
+    if (!is_asked_for_uwb && !has_uwb_anchors(scenario.world, data_root)) scenario.sensors.uwb.enabled = false;
   }
   return scenario;
 }
@@ -323,11 +342,9 @@ std::vector<std::filesystem::path> named_files(const Scenario& scenario, const s
 
 ScenarioFiles load_scenario_files(const Scenario& scenario, const std::filesystem::path& data_root) {
   ScenarioFiles files;
-  if (scenario.world.empty()) throw InputError("world: missing: name a folder of worlds");
-  files.world_xml = world_folder(scenario.world, data_root) / (scenario.world + ".xml");
-  if (!std::filesystem::exists(files.world_xml))
-    files.world_xml = find_definition(data_root, "worlds", "world", scenario.world, ".xml");
-  files.site = site_settings_of(files.world_xml);
+  LoadedSite site = load_site(scenario.world, data_root);
+  files.world_xml = std::move(site.world_xml);
+  files.site = std::move(site.settings);
   files.robot_urdf = find_robot(scenario.robot, data_root);
   io::MountedRobot robot = io::load_mounted_robot(files.robot_urdf.string(), sensor_mounts(scenario.mounts));
   files.robot_urdf_text = std::move(robot.urdf);

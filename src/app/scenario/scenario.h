@@ -235,6 +235,15 @@ std::filesystem::path robot_file(const std::string& robot, const std::string& ex
 /// MJCF. It need not exist.
 std::filesystem::path world_folder(const std::string& world, const std::filesystem::path& data_root);
 
+/// MJCF and settings of a world.
+struct LoadedSite {
+  std::filesystem::path world_xml;
+  sim::SiteSettings settings;  ///< those of WORLD.yaml beside the MJCF; the defaults without one
+};
+
+/// Finds a world and loads its settings. Throws InputError with the known worlds if there is none.
+LoadedSite load_site(const std::string& world, const std::filesystem::path& data_root);
+
 /// Returns the URDF file of a robot of `models`. Throws InputError with the known robots if there is none.
 std::filesystem::path find_robot(const std::string& name, const std::filesystem::path& data_root);
 

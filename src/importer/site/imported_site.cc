@@ -96,7 +96,7 @@ std::string report_of(const ImportedSite& site) {
   }
   return fmt::format(
              "# {}\n\nMade by `patrol import site` from `{}`: {} shapes, {} of them with contact, {} triangles. "
-             "`patrol check --site {}` reports the ground and the obstacles.\n\n## Assumptions\n\n",
+             "`patrol site {}` reports the ground and the obstacles.\n\n## Assumptions\n\n",
              io::on_one_line(site.name), io::on_one_line(site.source), site.shapes.size(), solid, triangles,
              site.name) +
          to_markdown(site.assumptions, "None: the file determines the site.\n");

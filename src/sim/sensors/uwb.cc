@@ -16,11 +16,10 @@ namespace {
 
 /// Returns the number in "uwb_anchor_<number>"; none for any other name.
 std::optional<int> anchor_number(std::string_view name) {
-  constexpr std::string_view kPrefix = "uwb_anchor_";
-  if (!name.starts_with(kPrefix)) return std::nullopt;
+  if (!name.starts_with(kUwbAnchor)) return std::nullopt;
   int number = 0;
   const char* const end = name.data() + name.size();
-  const auto [stop, error] = std::from_chars(name.data() + kPrefix.size(), end, number);
+  const auto [stop, error] = std::from_chars(name.data() + kUwbAnchor.size(), end, number);
   if (error != std::errc() || stop != end) return std::nullopt;
   return number;
 }

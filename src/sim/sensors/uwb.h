@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
@@ -14,6 +15,9 @@
 #include "sim/lidar_scene.h"
 
 namespace patrol::sim {
+
+/// Begin of the names of the MJCF sites of UWB anchors.
+inline constexpr std::string_view kUwbAnchor = "uwb_anchor_";
 
 /// UWB anchor: a site `uwb_anchor_<number>` of the world.
 struct UwbAnchor {
