@@ -176,11 +176,11 @@ ImportedSite site_of_course(const Course& course, const CourseSettings& settings
                                    .T_route_body = {course.goal_m.x(), course.goal_m.y(), 0.0},
                                    .accuracy_m = kArrival_m}}};
   site.robot = robot;
-  site.scenario_keys = fmt::format(
-      "time_limit_s: {:.1f}\ncourse: {{optimal_time_s: {:.3f}, arrival_m: {:g}}}\n"
-      "stack:  # passages little wider than the robot\n"
-      "  navigation: {{costmap: {{resolution_m: 0.05, route_margin_m: 0.02}}}}\n",
-      100.0 * settings.scale, course.optimal_time_s, kArrival_m);
+  site.scenario_keys = fmt::format("time_limit_s: {:.1f}\ncourse: {{optimal_time_s: {:.3f}, arrival_m: {:g}}}\n",
+                                   100.0 * settings.scale, course.optimal_time_s, kArrival_m);
+  site.stack_keys =
+      "  # The passages are little wider than the robot.\n"
+      "  navigation: {costmap: {resolution_m: 0.05, route_margin_m: 0.02}}\n";
   site.assumptions = {
       {"field",
        fmt::format("fill {:g}, {} smoothing steps, shortest path {:.2f} m, optimal time {:.2f} s at {:g} "

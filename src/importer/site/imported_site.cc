@@ -43,11 +43,12 @@ void write_mission(const ImportedSite& site, const std::filesystem::path& folder
   std::filesystem::create_directories(folder / "routes");
   std::filesystem::create_directories(folder / "scenarios");
   io::save_text(folder / "routes" / "patrol.json", io::to_json_text(*site.route, site.T_site_start));
-  io::save_text(folder / "scenarios" / "patrol.yaml",
-                fmt::format("# Patrol of {} stations, made by patrol import site from {}.\nworld: {}\nrobot: {}\n"
-                            "mission: routes/patrol.json\n{}",
-                            site.route->stations.size(), io::on_one_line(site.source), site.name, site.robot,
-                            site.scenario_keys));
+  io::save_text(
+      folder / "scenarios" / "patrol.yaml",
+      fmt::format("# Patrol of {} stations, made by patrol import site from {}.\nworld: {}\nrobot: {}\n"
+                  "mission: routes/patrol.json\n{}stack:\n  mission_type: gas  # stations of the mission file\n{}",
+                  site.route->stations.size(), io::on_one_line(site.source), site.name, site.robot, site.scenario_keys,
+                  site.stack_keys));
 }
 
 void check(const ImportedSite& site) {

@@ -77,6 +77,7 @@ struct ImportedSite {
   std::optional<Route> route = {};        ///< mission in `site`; none: neither routes/ nor scenarios/ are written
   Pose2 T_site_start = {};                ///< start of the mission
   std::string scenario_keys = {};         ///< further lines of the scenario
+  std::string stack_keys = {};            ///< further lines of its section `stack`
   std::string robot = "wheeled";          ///< robot of the scenario
   std::vector<Assumption> assumptions = {};
 };
