@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -174,6 +175,8 @@ class Fitter {
   }
 
   static FittedParameter parameter_of(const char* name, const HitFit& fit, std::size_t j, double factor = 1.0) {
+    constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+    if (!fit.is_free[j]) return {.name = name, .low = j < kNoise_m ? -kUnbounded : 0.0, .high = kUnbounded};
     return {.name = name,
             .value = factor * fit.values[j],
             .low = factor * fit.low[j],
@@ -223,7 +226,7 @@ class Fitter {
                           .low = std::min(incidence.low, kMaxIncidence_deg),
                           .high = std::min(incidence.high, kMaxIncidence_deg),
                           .is_seen = incidence.has_upper};
-    if (!angle.is_seen) angle.reason = fmt::format("no loss of beams up to the largest angles in the log, about {:.0f} deg", angle.low);
+    if (!angle.is_seen) angle.reason = fmt::format("most beams return up to the largest angles in the log; not below {:.0f} deg", angle.low);
     angle.value = std::min(angle.value, kMaxIncidence_deg);
     add(std::move(angle));
     FittedParameter reach{.name = "max_range_10pct_m",

@@ -15,6 +15,15 @@ double log_binomial(double count, double total) {
   return count * std::log(count / total) + (total - count) * std::log1p(-count / total);
 }
 
+/// Largest probability of a return beyond a limit: it is none if most beams return there.
+constexpr double kMaxStray = 0.5;
+
+/// Log-likelihood of the returns beyond a limit.
+double log_beyond(double count, double total) {
+  if (count <= kMaxStray * total) return log_binomial(count, total);
+  return count * std::log(kMaxStray) + (total - count) * std::log1p(-kMaxStray);
+}
+
 /// Likelihood of a limit over samples in the order of their values.
 class LimitLikelihood {
  public:
@@ -35,12 +44,10 @@ class LimitLikelihood {
     const double below = static_cast<double>(begin), returns_below = num_returns_[begin];
     const double beyond = static_cast<double>(samples_.size() - end),
                  returns_beyond = num_returns_.back() - num_returns_[end];
-    if (returns_beyond * below > returns_below * beyond) 
-      return log_binomial(num_returns_.back(), static_cast<double>(samples_.size()));
     // Rates of the decided beams, with half a beam more so that no beam is impossible.
     const double dropout = (below - returns_below + 0.5) / (below + 1.0);
-    const double stray = (returns_beyond + 0.5) / (beyond + 1.0);
-    double sum = log_binomial(returns_below, below) + log_binomial(returns_beyond, beyond);
+    const double stray = std::min(kMaxStray, (returns_beyond + 0.5) / (beyond + 1.0));
+    double sum = log_binomial(returns_below, below) + log_beyond(returns_beyond, beyond);
     for (std::size_t i = begin; i < end; ++i) {
       const double inside =
           samples_[i].blur > 0.0
@@ -139,8 +146,7 @@ std::pair<double, double> rough_limits(const std::vector<TwoLimitSample>& sample
     for (std::size_t j = 1; j <= kSecond; ++j) {
       const double inside = beams[i * kColumns + j], inside_returns = returns[i * kColumns + j];
       const double beyond = all - inside, beyond_returns = all_returns - inside_returns;
-      if (beyond_returns * inside > inside_returns * beyond) continue;
-      const double value = log_binomial(inside_returns, inside) + log_binomial(beyond_returns, beyond);
+      const double value = log_binomial(inside_returns, inside) + log_beyond(beyond_returns, beyond);
       if (value <= best) continue;
       best = value;
       limits = {first_limit(i), second_limit(j)};

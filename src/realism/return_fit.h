@@ -23,8 +23,8 @@ struct LimitFit {
   std::size_t num_beyond = 0;    ///< beams beyond the limit
 };
 
-/// Fits a limit by the likelihood of returns: 1 - `dropout` below, a small probability of unexplained returns beyond,
-/// both fitted with it. The search is from the smallest value to `end`. The interval is where the log-likelihood is at
+/// Fits a limit by the likelihood of returns: 1 - `dropout` below, a probability of unexplained returns of at most 0.5
+/// beyond, both fitted with it. The search is from the smallest value to `end`. The interval is where the log-likelihood is at
 /// most 3.0 below its maximum: a limit is a change point, whose likelihood ratio has about two degrees of freedom.
 LimitFit fit_limit(std::vector<ReturnSample> samples, double end);
 

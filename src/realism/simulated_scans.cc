@@ -41,7 +41,7 @@ LidarSettings settings_of(const LidarDevice& device, const LaserScan& scan, doub
   settings.fov_deg = std::min(360.0, to_deg(fov_rad));
   settings.elevation_min_deg = settings.elevation_max_deg = 0.0;
   settings.range_min_m = scan.range_min_m;
-  settings.range_max_m = scan.range_max_m;
+  settings.range_max_m = std::min(settings.range_max_m, scan.range_max_m);
   settings.motion_distortion = true;
   settings.stabilized = false;
   return settings;

@@ -121,7 +121,8 @@ struct PlotSpan {
 /// x axis shared by several plots, which zoom together.
 struct PlotAxis {
   std::string label;
-  double max = 1.0;  ///< the axis begins at 0
+  double max = 1.0;
+  double min = 0.0;
 };
 
 struct LinePlot {
