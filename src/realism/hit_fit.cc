@@ -185,32 +185,37 @@ class HitLikelihood {
   /// Standard deviations in the coordinates of the fit, by the last `inflation`.
   const HitVector& standard_deviations() const { return std_; }
 
-  /// Returns the end of the profile interval on one side (-1 or 1), in natural units.
+  /// Returns the end of the profile interval on one side (-1 or 1), in natural units: the loss of log-likelihood there
+  /// is `threshold`. The root of the loss is nearly linear in the distance, so that few steps suffice.
   double profile_end(const HitVector& best, double best_value, const FreeMask& is_free, std::size_t j, double side,
                      double threshold) const {
     FreeMask others = is_free;
     others[j] = false;
     HitVector p = best;
-    const double start = to_fit(j, best[j]);
-    double step = std::clamp(1.5 * std_[j], 1e-7, is_logarithmic(j) ? 1.0 : 0.5);
-    double inside = start, outside = start;
-    bool is_outside = false;
-    for (int k = 0; k < 40 && !is_outside; ++k) {
-      const double at = outside + side * step;
-      const double bounded = std::clamp(from_fit(j, at), kFloor[j], kCeiling[j]);
-      p[j] = bounded;
-      is_outside = best_value - maximize(p, others, 30) > threshold;
-      if (!is_outside) inside = at;
-      outside = at;
-      if (!is_outside && (bounded == kFloor[j] || bounded == kCeiling[j])) return bounded == kFloor[j] && is_logarithmic(j) ? 0.0 : bounded;
+    const auto root_of_loss = [&](double at) {
+      p[j] = std::clamp(from_fit(j, at), kFloor[j], kCeiling[j]);
+      return std::sqrt(std::max(0.0, best_value - maximize(p, others, 30)));
+    };
+    const double wanted = std::sqrt(threshold), start = to_fit(j, best[j]);
+    double inside = start, root_inside = 0.0, outside = start, root_outside = 0.0;
+    double step = std::clamp(1.5 * wanted * std_[j], 1e-7, is_logarithmic(j) ? 1.0 : 0.5);
+    for (int k = 0; k < 40 && root_outside <= wanted; ++k) {
+      inside = outside, root_inside = root_outside;
+      outside += side * step;
+      root_outside = root_of_loss(outside);
+      const bool is_at_floor = p[j] <= kFloor[j];
+      if (root_outside <= wanted && (is_at_floor || p[j] >= kCeiling[j]))
+        return is_at_floor && is_logarithmic(j) ? 0.0 : p[j];
       step *= 1.5;
     }
-    for (int k = 0; k < 7; ++k) {
-      const double middle = 0.5 * (inside + outside);
-      p[j] = std::clamp(from_fit(j, middle), kFloor[j], kCeiling[j]);
-      (best_value - maximize(p, others, 30) > threshold ? outside : inside) = middle;
+    for (int k = 0; k < 3; ++k) {
+      const double fraction = std::clamp((wanted - root_inside) / (root_outside - root_inside), 0.05, 0.95);
+      const double at = inside + fraction * (outside - inside), root = root_of_loss(at);
+      if (root > wanted) outside = at, root_outside = root;
+      else inside = at, root_inside = root;
     }
-    return from_fit(j, 0.5 * (inside + outside));
+    const double fraction = std::clamp((wanted - root_inside) / (root_outside - root_inside), 0.0, 1.0);
+    return from_fit(j, inside + fraction * (outside - inside));
   }
 
  private:

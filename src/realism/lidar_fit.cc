@@ -133,11 +133,15 @@ class Fitter {
                          .darkness = std::log(0.5 / std::min(1.0, beam.expected.reflectivity)) / std::log(5.0),
                          .block = block_of(beam)});
     }
-    const auto max_hits = static_cast<std::size_t>(settings_.max_hits);
-    if (samples.size() <= max_hits) return samples;
-    std::vector<HitSample> thinned;
-    for (std::size_t k = 0; k < max_hits; ++k) thinned.push_back(samples[k * samples.size() / max_hits]);
-    return thinned;
+    return thinned(samples, static_cast<std::size_t>(settings_.max_hits));
+  }
+
+  /// Returns at most `count` samples, evenly over the log.
+  static std::vector<HitSample> thinned(const std::vector<HitSample>& samples, std::size_t count) {
+    if (samples.size() <= count) return samples;
+    std::vector<HitSample> kept;
+    for (std::size_t k = 0; k < count; ++k) kept.push_back(samples[k * samples.size() / count]);
+    return kept;
   }
 
   /// Systematic errors that the log does not constrain are named and fixed at zero for the others.
@@ -146,7 +150,7 @@ class Fitter {
     HitModel model{.range_step_m = device_.settings.range_quantization_m,
                    .range_max_m = scan.range_max_m,
                    .range_min_m = scan.range_min_m};
-    const double angle_noise_rad = fit_hits(hit_samples(0.1 * kDegree), model, false).values[kAngleNoise_rad];
+    const double angle_noise_rad = fit_hits(thinned(hit_samples(0.1 * kDegree), 5000), model, false).values[kAngleNoise_rad];
     const std::vector<HitSample> samples = hit_samples(angle_noise_rad);
     const HitFit first = fit_hits(samples, model);
     const auto is_loose = [&](std::size_t j, double half_width) {

@@ -161,6 +161,7 @@ struct MapBlock {
   MapPicture picture;
   std::vector<MapPath> paths;
   std::vector<MapMark> marks;
+  std::string error_name = {};  ///< meaning of the colors of the errors; empty: distance to the nearest true surface
 };
 
 /// Signed values on a grid, in colors from negative over zero to positive.

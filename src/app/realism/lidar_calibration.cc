@@ -54,6 +54,8 @@ std::string yaml_bound(double value) {
 }
 
 std::string interval_text(const realism::FittedParameter& p) {
+  if (!std::isfinite(p.low) && !std::isfinite(p.high)) return "unbounded";
+  if (!std::isfinite(p.high)) return fmt::format("from {}", number(p.low));
   return fmt::format("{} ... {}", number(p.low), number(p.high));
 }
 

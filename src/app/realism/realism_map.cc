@@ -60,7 +60,8 @@ report::MapBlock residual_map(const realism::ScanSet& set) {
   const report::MapLayers layers{.built = cells, .T_world_map = {}, .truth = {}, .error_m = errors};
   return {.picture = report::map_picture(layers, box),
           .paths = {{"path of the lidar", report::SeriesColor::kEstimate, {std::move(path)}}},
-          .marks = {}};
+          .marks = {},
+          .error_name = "mean |residual|"};
 }
 
 report::PlanView scan_overlay(const realism::ScanSet& recorded, const realism::ScanSet& simulated, std::size_t scan) {
@@ -77,7 +78,7 @@ report::PlanView scan_overlay(const realism::ScanSet& recorded, const realism::S
   Eigen::AlignedBox2d extent = box;
   points_of(posed, "", report::SeriesColor::kTruth, 0.0, extent);
   const double half_m = kSize * extent.sizes().maxCoeff();
-  view.paths.push_back(points_of(simulated.scans[scan], "simulated", report::SeriesColor::kBound, half_m, box));
+  view.paths.push_back(points_of(simulated.scans[scan], "simulated", report::SeriesColor::kTruth, half_m, box));
   view.paths.push_back(points_of(posed, "recorded", report::SeriesColor::kEstimate, half_m, box));
   view.low_m = box.min().array() - 0.5;
   view.high_m = box.max().array() + 0.5;

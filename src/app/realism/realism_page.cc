@@ -59,16 +59,26 @@ report::LinePlot histogram_plot(const RealismResult& result) {
           .spans = {}};
 }
 
-/// Curve over the bins with at least 30 values.
+constexpr std::size_t kMinShown = 30;  ///< beams of a bin from which on it is shown
+
+/// Curve over the bins with enough beams.
 report::Curve bin_curve(const std::vector<ResidualBin>& bins, const char* name, SeriesColor color, bool is_dashed,
                         double (*value)(const ResidualBin&)) {
-  constexpr std::size_t kMinCount = 30;
   report::Curve curve{.name = name, .color = color, .is_dashed = is_dashed, .points = {}};
   for (const ResidualBin& bin : bins) {
-    if (bin.residual.count >= kMinCount || bin.num_expected >= kMinCount)
+    if (bin.num_expected >= kMinShown)
       curve.points.emplace_back(0.5 * (bin.low + bin.high), value(bin));
   }
   return curve;
+}
+
+/// Limits of the bins with enough beams.
+std::pair<double, double> shown_range(const std::vector<ResidualBin>& bins) {
+  std::pair<double, double> shown = {bins.back().high, bins.front().low};
+  for (const ResidualBin& bin : bins) {
+    if (bin.num_expected >= kMinShown) shown = {std::min(shown.first, bin.low), std::max(shown.second, bin.high)};
+  }
+  return shown.first < shown.second ? shown : std::pair(bins.front().low, bins.back().high);
 }
 
 report::LinePlot bin_plot(const BinnedResiduals& group, const std::string& title, const std::string& unit,
@@ -76,8 +86,8 @@ report::LinePlot bin_plot(const BinnedResiduals& group, const std::string& title
   return {.title = fmt::format("{} by {}", title, group.name),
           .unit = unit,
           .axis = {.label = fmt::format("{}, {}", group.name, group.unit),
-                   .max = group.recorded.back().high,
-                   .min = group.recorded.front().low},
+                   .max = shown_range(group.recorded).second,
+                   .min = shown_range(group.recorded).first},
           .max = {},
           .curves = {bin_curve(group.recorded, "recorded", SeriesColor::kEstimate, false, value),
                      bin_curve(group.simulated, "simulated", SeriesColor::kTruth, true, value)},
@@ -168,8 +178,7 @@ report::Page realism_page(const RealismContents& contents, const RealismResult& 
   page.sections.push_back(
       {"Map of the residuals",
        {residual_map(result.recorded.set),
-        report::TextBlock{"Returns on static surfaces at their expected points, in cells of 5 cm. Color: mean absolute "
-                          "residual in the cell."}}});
+        report::TextBlock{"Returns on static surfaces at their expected points, in cells of 5 cm."}}});
   report::Section scans{.title = "Scans", .blocks = {}};
   const std::size_t count = result.recorded.set.scans.size();
   for (const std::size_t scan : {count / 6, count / 2, 5 * count / 6})
