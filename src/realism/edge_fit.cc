@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kStep_deg = 0.005;
 constexpr int kHalf = 340, kPreviousHalf = 180;  // offsets to each side of a fan
+constexpr double kAimStep_deg = 0.02;  // between the aims of a beam that the angle noise is sampled at
 constexpr double kMaxWidth_deg = 2.0, kCoarse_deg = 0.05, kFine_deg = 0.005;
 // Of the lidar model (sim/sensors/lidar.cc): rays of a mixed pixel, and the jumps that cause one.
 constexpr std::array<double, 4> kRays = {-0.375, -0.125, 0.125, 0.375};
@@ -155,9 +156,8 @@ class WidthProfile {
  public:
   WidthProfile(const std::vector<EdgeSample>& samples, const LidarSettings& lidar, const AngleNoiseRange& angle_noise)
       : samples_(samples), lidar_(lidar) {
-    constexpr double kMaxStep_deg = 0.02;
     const auto add = [&](double noise_deg, double log_prior) {
-      const Nodes nodes = noise_deg > 1e-3 ? normal_nodes(kMaxStep_deg / noise_deg) : Nodes{{0.0, 1.0}};
+      const Nodes nodes = noise_deg > 1e-3 ? normal_nodes(kAimStep_deg / noise_deg) : Nodes{{0.0, 1.0}};
       const Nodes previous = noise_deg > 1e-3 ? normal_nodes(0.35) : nodes;
       Noise& noise = noises_.emplace_back(Noise{.log_prior = log_prior});
       for (const EdgeSample& sample : samples) noise.aims.push_back(aims_of(sample, noise_deg, nodes, previous));
@@ -221,7 +221,8 @@ bool EdgeSample::has_both_returns() const {
 
 EdgeFit fit_beam_width(const std::vector<EdgeSample>& samples, const LidarDevice& device,
                        const AngleNoiseRange& angle_noise) {
-  constexpr double kThreshold = 1.9207;
+  // The rays of a mixed pixel cross an edge one by one: the likelihood has steps, like that of a change point.
+  constexpr double kThreshold = 3.0;
   EdgeFit fit{.high_deg = kMaxWidth_deg, .num_samples = samples.size()};
   if (samples.size() < 30) return fit;
   const WidthProfile profile(samples, device.settings, angle_noise);
@@ -259,6 +260,9 @@ EdgeFit fit_beam_width(const std::vector<EdgeSample>& samples, const LidarDevice
     fit.low_deg = std::min(fit.low_deg, std::max(0.0, width_deg - kFine_deg));
     fit.high_deg = std::max(fit.high_deg, std::min(kMaxWidth_deg, width_deg + kFine_deg));
   }
+  // The aims of a beam are kAimStep_deg apart.
+  fit.low_deg = std::max(0.0, fit.low_deg - 0.5 * kAimStep_deg);
+  fit.high_deg = std::min(kMaxWidth_deg, fit.high_deg + 0.5 * kAimStep_deg);
   fit.has_upper = fit.high_deg < kMaxWidth_deg;
   return fit;
 }

@@ -40,7 +40,8 @@ struct AngleNoiseRange {
 
 /// Fits the beam width to mixed pixels: the mean range over the width by the lidar model, where the range jumps by 0.1
 /// to 1.5 m from the previous beam, marginalized over the angle noise of both beams. The angle noise is profiled within
-/// its interval. `device`: range noise and quantization step.
+/// its interval. The interval is where the log-likelihood is at most 3.0 below its maximum, and 0.01 deg more to each
+/// side, half the step of the sampled angle noise. `device`: range noise and quantization step.
 EdgeFit fit_beam_width(const std::vector<EdgeSample>& samples, const LidarDevice& device,
                        const AngleNoiseRange& angle_noise);
 
