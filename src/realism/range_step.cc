@@ -12,15 +12,16 @@ constexpr double kMinStep_m = 1e-4;
 /// Rounding error of a range in single precision, with a margin for texts of few digits.
 double tolerance_m(double range_m) { return 2e-7 * range_m + 1e-8; }
 
-/// Refines a step on ranges in increasing order: the number of steps of each range is certain once the step is known
-/// well enough from the shorter ones. Returns 0 if a range is off the lattice.
+/// Refines a step on the differences of ranges in increasing order to the first one: the number of steps of each is
+/// certain once the step is known well enough from the shorter ones. Returns 0 if a difference is off the lattice.
 double refined_step(const std::vector<double>& sorted_m, double step_m) {
+  constexpr double kMaxOff = 0.2;  // of a step
   double sum_nn = 0.0, sum_nr = 0.0;
   for (const double range_m : sorted_m) {
-    const double n = std::round(range_m / step_m);
-    if (n < 1.0) return 0.0;
-    if (std::abs(range_m - n * step_m) > std::max(4.0 * tolerance_m(range_m), 0.02 * step_m)) return 0.0;
-    sum_nn += n * n, sum_nr += n * range_m;
+    const double difference_m = range_m - sorted_m.front(), n = std::round(difference_m / step_m);
+    if (n < 1.0) continue;
+    if (std::abs(difference_m - n * step_m) > kMaxOff * step_m) return 0.0;
+    sum_nn += n * n, sum_nr += n * difference_m;
     step_m = sum_nr / sum_nn;
   }
   return step_m;

@@ -1,30 +1,55 @@
 #include "realism/planted_lidar.h"
 
-#include <cstdlib>
-#include "realism/edge_fit.h"
-
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace patrol::realism {
 namespace {
 
-TEST(PlantedTry, Print) {
-  const char* first = std::getenv("TRY_FIRST");
-  const char* last = std::getenv("TRY_LAST");
-  const bool noisy = std::getenv("TRY_NOISY") != nullptr;
-  const Site site = planted_site(false);
-  for (int seed = first ? std::atoi(first) : 1; seed <= (last ? std::atoi(last) : 1); ++seed) {
-    PlantedTrialSettings settings;
-    if (noisy) settings.path_std_m = 0.03, settings.path_yaw_std_deg = 0.5;
-    const PlantedTrial trial = run_planted_trial(site, settings, static_cast<std::uint64_t>(seed));
-    std::printf("seed %d hits %zu edges %zu returns %zu out %.4f edge out %.3f\n", seed, trial.fit.num_hits, trial.fit.num_edges,
-                trial.fit.num_returns, trial.fit.outlier_ratio, trial.fit.edge_outlier_ratio);
-    for (const auto& [name, value] : trial.values) {
-      const FittedParameter& p = trial.fit.of(name);
-      std::printf("  %-26s true %10.6f fit %10.6f [%10.6f, %10.6f] %s %s %s\n", name.c_str(), value, p.value, p.low, p.high,
-                  p.contains(value) ? "in " : "OUT", p.is_seen ? "seen" : "not", p.reason.c_str());
-    }
+using ::testing::HasSubstr;
+
+std::size_t num_held(const PlantedTrial& trial) {
+  std::size_t held = 0;
+  for (const auto& [name, value] : trial.values) held += trial.fit.of(name).contains(value) ? 1 : 0;
+  return held;
+}
+
+std::string text_of(const PlantedTrial& trial) {
+  std::string text;
+  for (const auto& [name, value] : trial.values) {
+    const FittedParameter& p = trial.fit.of(name);
+    text += name + ": planted " + std::to_string(value) + ", fitted " + std::to_string(p.value) + " [" +
+            std::to_string(p.low) + ", " + std::to_string(p.high) + "] " + p.reason + "\n";
   }
+  return text;
+}
+
+// 40 trials of full size: patrol study lidar-calibration.
+TEST(PlantedLidar, ElevenOfTwelveIntervalsHoldInATrialOf30Scans) {
+  const Site site = planted_site(false);
+  const PlantedTrial trial = run_planted_trial(site, {.scans = 30}, 2001);
+  ASSERT_EQ(trial.values.size(), 12u);
+  EXPECT_GE(num_held(trial), 11u) << text_of(trial);
+  for (const char* name : {"range_noise_std_m", "range_quantization_m", "dropout_probability", "max_incidence_deg",
+                           "max_range_10pct_m", "beam_width_deg", "measured_range_offset_m"}) {
+    EXPECT_TRUE(trial.fit.of(name).is_seen) << name;
+  }
+  const double noise_m = trial.planted.settings.range_noise_std_m;
+  EXPECT_NEAR(trial.fit.of("range_noise_std_m").value, noise_m, 0.1 * noise_m);
+}
+
+TEST(PlantedLidar, APlainRoomDoesNotTellTheBeamWidth) {
+  const PlantedTrial trial = run_planted_trial(planted_site(true), {.scans = 12, .is_plain_room = true}, 2002);
+  const FittedParameter& width = trial.fit.of("beam_width_deg");
+  EXPECT_FALSE(width.is_seen);
+  EXPECT_THAT(width.reason, HasSubstr("beams after jumps"));
+  EXPECT_FALSE(trial.fit.of("max_incidence_deg").is_seen);
+  EXPECT_FALSE(trial.fit.of("angle_noise_std_deg").is_seen);
+  EXPECT_GE(num_held(trial), 10u) << text_of(trial);  // three misses of twelve have a probability of 2 %
+  // The device of the fit keeps the base's value of what the log does not tell.
+  LidarDevice base;
+  base.settings.beam_width_deg = 0.33;
+  EXPECT_EQ(trial.fit.device(base).settings.beam_width_deg, 0.33);
 }
 
 }  // namespace
