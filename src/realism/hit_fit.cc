@@ -108,14 +108,9 @@ class HitLikelihood {
     }
     return sums;
   }
-  double value(const HitVector& p) const {
-    double sum = 0.0;
-    for (const HitSample& sample : samples_) sum += sample_log_likelihood(sample, model_, p, nullptr);
-    return sum;
-  }
 
-  /// Maximizes over the free parameters from `p`; returns the log-likelihood.
-  double maximize(HitVector& p, const FreeMask& is_free, int max_iterations) const {
+  /// Maximizes over the free parameters from `p`, until a step gains less than `min_gain`; returns the log-likelihood.
+  double maximize(HitVector& p, const FreeMask& is_free, int max_iterations, double min_gain = 1e-3) const {
     double damping = 1e-3;
     HitSums at = sums(p);
     for (int iteration = 0; iteration < max_iterations; ++iteration) {
@@ -138,17 +133,17 @@ class HitLikelihood {
                                                  : step[static_cast<Eigen::Index>(j)];
         next[j] = std::clamp(from_fit(j, to_fit(j, p[j]) + bounded), kFloor[j], kCeiling[j]);
       }
-      const double value_there = value(next);
-      if (!(value_there > at.log_likelihood)) {
+      HitSums there = sums(next);
+      if (!(there.log_likelihood > at.log_likelihood)) {
         if (at.gradient.dot(step) < 1e-3 || damping > 1e6) break;
         damping = std::max(1e-3, 10.0 * damping);
         continue;
       }
-      const double gain = value_there - at.log_likelihood;
+      const double gain = there.log_likelihood - at.log_likelihood;
       p = next;
       damping = std::max(1e-9, 0.1 * damping);
-      at = sums(p);
-      if (gain < 1e-3) break;
+      at = there;
+      if (gain < min_gain) break;
     }
     return at.log_likelihood;
   }
@@ -194,7 +189,7 @@ class HitLikelihood {
     HitVector p = best;
     const auto root_of_loss = [&](double at) {
       p[j] = std::clamp(from_fit(j, at), kFloor[j], kCeiling[j]);
-      return std::sqrt(std::max(0.0, best_value - maximize(p, others, 30)));
+      return std::sqrt(std::max(0.0, best_value - maximize(p, others, 30, 0.01)));
     };
     const double wanted = std::sqrt(threshold), start = to_fit(j, best[j]);
     double inside = start, root_inside = 0.0, outside = start, root_outside = 0.0;

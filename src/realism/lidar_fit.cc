@@ -203,6 +203,8 @@ class Fitter {
       const bool is_fixed = model.is_fixed[j];
       FittedParameter p = parameter_of(name, is_fixed ? first : hits_, j);
       p.is_seen = has_samples && p.is_seen && !is_fixed;
+      p.low = p.value - set_.interval_factors[j] * (p.value - p.low);
+      p.high = p.value + set_.interval_factors[j] * (p.high - p.value);
       if (!p.is_seen) p.reason = has_samples ? loose : too_few;
       add(std::move(p));
     };

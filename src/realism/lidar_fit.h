@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -36,6 +37,8 @@ struct ScanSet {
   std::vector<Beam> beams;     ///< of all scans, in order
   BeamRules rules;             ///< of the classes of the beams
   double absorbed_bias = 0.0;  ///< mean fraction of a constant range error that the alignment of the scans removes
+  /// Factors on the intervals of offset, scale, incidence and reflectivity for the poses that were fitted with them.
+  std::array<double, 4> interval_factors = {1.0, 1.0, 1.0, 1.0};
 
   void append(PosedScan posed, const std::vector<ExpectedBeam>& expected);
 };

@@ -1,11 +1,15 @@
 #pragma once
 
+#include <array>
+#include <vector>
+
 #include <Eigen/Core>
 
 #include "core/settings.h"
 #include "realism/beam.h"
 #include "realism/posed_scan.h"
 #include "realism/site.h"
+#include "sim/as_built/sensor_errors.h"
 
 namespace patrol::realism {
 
@@ -40,8 +44,30 @@ struct ScanAlignment {
   double absorbed_bias = 0.0;
 };
 
-/// Aligns a scan after subtracting `bias_m` (an estimate of the lidar's range offset) from its ranges.
+/// Aligns a scan after subtracting systematic range errors (an estimate) from its ranges.
 ScanAlignment align_scan(const Site& site, const PosedScan& posed, const BeamRules& rules,
-                         const AlignmentSettings& settings, double bias_m = 0.0);
+                         const AlignmentSettings& settings, const sim::LidarErrors& errors = {});
+
+/// Least squares of the systematic range errors - offset, scale, incidence, reflectivity - over aligned scans, with the
+/// planar correction of every scan as a nuisance (eliminated scan by scan). Weak priors keep errors finite that the
+/// scans do not constrain.
+class SystematicErrorFit {
+ public:
+  explicit SystematicErrorFit(const AlignmentSettings& settings);
+
+  /// Adds an aligned scan with its expected beams; `errors` are those that its alignment subtracted.
+  void add(const ScanAlignment& aligned, const std::vector<ExpectedBeam>& expected, const sim::LidarErrors& errors);
+
+  /// Returns `errors` with the remaining ones added.
+  sim::LidarErrors improved(const sim::LidarErrors& errors) const;
+
+  /// Ratio of the standard deviation of each error to that at known poses, at least 1.
+  std::array<double, 4> interval_factors() const;
+
+ private:
+  AlignmentSettings settings_;
+  Eigen::Matrix4d information_, information_at_known_poses_;
+  Eigen::Vector4d gradient_ = Eigen::Vector4d::Zero();
+};
 
 }  // namespace patrol::realism

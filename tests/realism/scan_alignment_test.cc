@@ -4,6 +4,7 @@
 
 #include "core/geometry/angles.h"
 #include "realism/expected_scan.h"
+#include "realism/scan_positions.h"
 #include "tests/realism/sites.h"
 
 namespace patrol::realism {
@@ -40,6 +41,24 @@ TEST(AlignScan, AbsorbsNoConstantRangeErrorInAClosedRoomAndAllOfItAtOneWall) {
   const ScanAlignment at_wall = align_scan(open, scan_off_by(open, test::posed_scan(100, 10.0 * kDegree), {0, 0, 0}, 0.03), {}, loose);
   EXPECT_GE(at_wall.absorbed_bias, 0.99);
   EXPECT_NEAR(at_wall.correction.x(), -0.03, 1e-3);
+}
+
+TEST(PositionScans, RangeErrorsComeOutBesideErrorsOfThePathOf5CentimetersAnd1Degree) {
+  const Site site = test::site_of(test::room() + test::box("3.0 2.0 0", "0.2 0.3 3") + test::box("-2.0 -2.2 0", "0.3 0.2 3"));
+  const sim::LidarErrors planted{.range_offset_m = 0.03, .range_scale = 0.002};
+  std::vector<PosedScan> scans;
+  for (int k = 0; k < 12; ++k) {
+    PosedScan posed = test::posed_scan(360, 2.0 * kPi, {-1.5 + 0.25 * k, -0.6 + 0.1 * k, 0.5 * k});
+    const std::vector<ExpectedBeam> expected = expected_beams(site, posed, {});
+    for (std::size_t i = 0; i < expected.size(); ++i)
+      posed.scan.ranges_m[i] = static_cast<float>(expected[i].range_m + planted.range_error_m(expected[i].range_m, 0.5, 1.0));
+    const double sign = k % 2 == 0 ? 1.0 : -1.0;
+    scans.push_back(corrected(posed, {0.05 * sign, -0.05, sign * 1.0 * kDegree}));
+  }
+  const PositionedScans positioned = position_scans(site, scans, {});
+  EXPECT_NEAR(positioned.errors.range_offset_m, 0.03, 0.001);
+  EXPECT_NEAR(positioned.errors.range_scale, 0.002, 0.0003);
+  for (std::size_t k = 0; k < scans.size(); ++k) EXPECT_NEAR(positioned.corrections[k].y(), 0.05, 0.002) << k;
 }
 
 TEST(AlignScan, KeepsThePoseOfAScanWithFewReturns) {

@@ -147,7 +147,7 @@ io::Metrics metrics_of(const RealismResult& result) {
   if (!result.recorded.corrections.empty()) {
     metrics["alignment"] = to_metrics(result.recorded.corrections);
     metrics["alignment"]["absorbed_bias"] = result.recorded.set.absorbed_bias;
-    metrics["alignment"]["bias_m"] = result.recorded.bias_m;
+    metrics["alignment"]["range_offset_m"] = result.recorded.errors.range_offset_m;
   }
   return metrics;
 }
