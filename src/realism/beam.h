@@ -44,9 +44,9 @@ struct ExpectedBeam {
 /// Beam with its recorded range.
 struct Beam {
   ExpectedBeam expected;
-  double recorded_m = 0.0;  ///< range, REP 117
-  std::uint32_t scan = 0;   ///< number of the scan in the set
-  std::uint32_t index = 0;  ///< number of the beam in the scan
+  double recorded_m = 0.0;       ///< range, REP 117
+  std::uint32_t scan = 0;        ///< number of the scan in the set
+  std::uint32_t index = 0;       ///< number of the beam in the scan
   float x_m = 0.0f, y_m = 0.0f;  ///< expected point, in site
   BeamClass kind = BeamClass::kEmpty;
 

@@ -15,11 +15,11 @@ namespace {
 
 constexpr double kStep_deg = 0.005;
 constexpr int kHalf = 340, kPreviousHalf = 180;  // offsets to each side of a fan
-constexpr double kAimStep_deg = 0.02;  // between the aims of a beam that the angle noise is sampled at
+constexpr double kAimStep_deg = 0.02;            // between the aims of a beam that the angle noise is sampled at
 constexpr double kMaxWidth_deg = 2.0, kCoarse_deg = 0.05, kFine_deg = 0.005;
 // Of the lidar model (sim/sensors/lidar.cc): rays of a mixed pixel, and the jumps that cause one.
 constexpr std::array<double, 4> kRays = {-0.375, -0.125, 0.125, 0.375};
-constexpr double kLeastJump_m = 0.1, kPulseLength_m = 1.5;
+constexpr double kMixedFrom_m = 0.1, kPulseLength_m = 1.5;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 struct Ray {
@@ -58,7 +58,8 @@ Nodes normal_nodes(double max_step) {
 }
 
 std::size_t index_at(double offset_deg, int half) {
-  return static_cast<std::size_t>(std::clamp(static_cast<int>(std::lround(offset_deg / kStep_deg)), -half, half) + half);
+  return static_cast<std::size_t>(std::clamp(static_cast<int>(std::lround(offset_deg / kStep_deg)), -half, half) +
+                                  half);
 }
 
 /// Mean range over the width about an offset, weighted by light.
@@ -78,7 +79,8 @@ double edge_density(double deviation_m, double std_m, double step_m) {
   if (step_m < 0.05 * std_m)
     return std::exp(-0.5 * deviation_m * deviation_m / (std_m * std_m)) / (std_m * std::sqrt(2.0 * std::numbers::pi));
   const double scale = std_m * std::numbers::sqrt2;
-  return 0.5 * (std::erf((deviation_m + 0.5 * step_m) / scale) - std::erf((deviation_m - 0.5 * step_m) / scale)) / step_m;
+  return 0.5 * (std::erf((deviation_m + 0.5 * step_m) / scale) - std::erf((deviation_m - 0.5 * step_m) / scale)) /
+         step_m;
 }
 
 /// Possible aim of a beam with its probability.
@@ -100,7 +102,7 @@ std::vector<Aim> aims_of(const EdgeSample& sample, double angle_noise_deg, const
     for (const auto& [previous_node, previous_weight] : previous) {
       const double jump_m =
           std::abs(aim.range_m - sample.previous_m[index_at(previous_node * angle_noise_deg, kPreviousHalf)]);
-      if (jump_m > kLeastJump_m && jump_m < kPulseLength_m) aim.jump_probability += previous_weight;
+      if (jump_m > kMixedFrom_m && jump_m < kPulseLength_m) aim.jump_probability += previous_weight;
     }
     aim.jump_probability = std::min(1.0, aim.jump_probability);
     total += weight;
@@ -111,7 +113,8 @@ std::vector<Aim> aims_of(const EdgeSample& sample, double angle_noise_deg, const
 }
 
 /// Density of the return at one width.
-double density_of(const EdgeSample& sample, const std::vector<Aim>& aims, double width_deg, const LidarSettings& lidar) {
+double density_of(const EdgeSample& sample, const std::vector<Aim>& aims, double width_deg,
+                  const LidarSettings& lidar) {
   const double noise_m = std::max(1e-4, lidar.range_noise_std_m), step_m = lidar.range_quantization_m;
   double density = 0.0;
   for (const Aim& aim : aims) {
@@ -142,8 +145,7 @@ std::pair<double, double> mixture_log_likelihood(const std::vector<double>& dens
     ratio = std::clamp(sum / static_cast<double>(densities.size()), 1e-4, 0.99);
   }
   double log_likelihood = 0.0;
-  for (const double density : densities)
-    log_likelihood += std::log(ratio * outlier_density + (1.0 - ratio) * density);
+  for (const double density : densities) log_likelihood += std::log(ratio * outlier_density + (1.0 - ratio) * density);
   return {log_likelihood, ratio};
 }
 
@@ -202,7 +204,8 @@ EdgeSample edge_sample(const Site& site, const PosedScan& posed, const Beam& bea
   const double sign = posed.scan.angle_increment_rad < 0.0 ? -1.0 : 1.0;
   for (int k = -kHalf; k <= kHalf; ++k) {
     const double azimuth_rad = posed.azimuth_rad(beam.index) + sign * k * kStep_deg * kDegree;
-    const Ray ray = trace(site, pose.position, pose.rotation * direction_of(azimuth_rad), device, posed.scan.range_max_m);
+    const Ray ray =
+        trace(site, pose.position, pose.rotation * direction_of(azimuth_rad), device, posed.scan.range_max_m);
     sample.range_m.push_back(static_cast<float>(ray.range_m));
     sample.light.push_back(static_cast<float>(ray.light));
   }

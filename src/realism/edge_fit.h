@@ -13,8 +13,8 @@ namespace patrol::realism {
 /// Return of the first beam after a jump of the range, with the ranges of the site about it.
 struct EdgeSample {
   double recorded_m = 0.0;
-  std::vector<float> range_m = {};     ///< expected with systematic errors, [offset of the azimuth]; infinite: no return
-  std::vector<float> light = {};       ///< returned light, [offset]; 0 without return
+  std::vector<float> range_m = {};  ///< expected with systematic errors, [offset of the azimuth]; infinite: no return
+  std::vector<float> light = {};    ///< returned light, [offset]; 0 without return
   std::vector<float> previous_m = {};  ///< expected range of the previous beam, [offset], over half of the offsets
 
   /// Whether the surfaces of this and the previous beam return without angle noise.
@@ -28,7 +28,7 @@ EdgeSample edge_sample(const Site& site, const PosedScan& posed, const Beam& bea
 struct EdgeFit {
   double width_deg = 0.0;
   double low_deg = 0.0, high_deg = 0.0;
-  bool has_upper = false;  ///< whether the interval ends below the largest width of the search, 2 degrees
+  bool has_upper = false;      ///< whether the interval ends below the largest width of the search, 2 degrees
   double outlier_ratio = 0.0;  ///< fraction of the samples that no width explains
   std::size_t num_samples = 0;
 };

@@ -67,9 +67,8 @@ ExpectedBeam expected_beam(const BeamFan& fan, double step_rad, const BeamRules&
       break;
     }
     if (std::exchange(is_first, false)) beam.slope_m_per_rad = (high->range_m - low->range_m) / (2.0 * offset_rad);
-    beam.is_smooth =
-        is_same_surface(*hit, *low, rules) && is_same_surface(*hit, *high, rules) &&
-        is_continuous(beam.range_m, low->range_m, high->range_m, beam.slope_m_per_rad, offset_rad, rules);
+    beam.is_smooth = is_same_surface(*hit, *low, rules) && is_same_surface(*hit, *high, rules) &&
+                     is_continuous(beam.range_m, low->range_m, high->range_m, beam.slope_m_per_rad, offset_rad, rules);
     if (!beam.is_smooth) break;
   }
   return beam;
@@ -101,7 +100,8 @@ std::vector<Beam> beams_of(const PosedScan& posed, const std::vector<ExpectedBea
               .index = static_cast<std::uint32_t>(i)};
     if (expected[i].has_surface()) {
       const Pose3 T_site_lidar = posed.pose_of(i);
-      const Eigen::Vector3d point = T_site_lidar * Eigen::Vector3d(expected[i].range_m * direction_of(posed.azimuth_rad(i)));
+      const Eigen::Vector3d point =
+          T_site_lidar * Eigen::Vector3d(expected[i].range_m * direction_of(posed.azimuth_rad(i)));
       beam.x_m = static_cast<float>(point.x()), beam.y_m = static_cast<float>(point.y());
     }
     beams.push_back(beam);

@@ -55,8 +55,7 @@ CoreDensity core_density(double deviation_m, double std_m, double step_m) {
 /// Log-likelihood of one sample; `score` is its gradient in the coordinates of the fit.
 double sample_log_likelihood(const HitSample& sample, const HitModel& model, const HitVector& p, HitColumn* score) {
   // A plane at the azimuth a has the second derivative r (1 + 2 tan^2).
-  const double curvature_m =
-      sample.range_m + 2.0 * sample.slope_m_per_rad * sample.slope_m_per_rad / sample.range_m;
+  const double curvature_m = sample.range_m + 2.0 * sample.slope_m_per_rad * sample.slope_m_per_rad / sample.range_m;
   const double from_curvature_m = 0.5 * curvature_m * p[kAngleNoise_rad] * p[kAngleNoise_rad];
   const double mean_m = p[kOffset_m] + p[kScale] * sample.range_m + p[kIncidence_m] * (1.0 - sample.cosine) +
                         p[kReflectivity_m] * sample.darkness + from_curvature_m;

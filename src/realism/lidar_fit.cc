@@ -20,7 +20,7 @@ namespace patrol::realism {
 namespace {
 
 constexpr double kMaxIncidence_deg = 90.0, kMaxReach_m = 100.0;
-constexpr double kFarthestHit_deg = 80.0;  ///< incidence up to which the site's normals are used for noise
+constexpr double kMaxHitIncidence_deg = 80.0;  ///< incidence up to which the site's normals are used for noise
 
 double incidence_deg(const Beam& beam) { return std::acos(std::clamp(beam.expected.cosine, -1.0, 1.0)) * kDegPerRad; }
 
@@ -61,7 +61,7 @@ class Fitter {
   }
   double range_max_m(const Beam& beam) const { return set_.scans[beam.scan].scan.range_max_m; }
 
-  /// Whether the beam tells whether its surface returns.
+  /// Whether the beam shows if its surface returns.
   bool is_return_sample(const Beam& beam) const {
     return beam.expected.is_smooth && !beam.expected.is_glass && beam.kind != BeamClass::kNear &&
            beam.kind != BeamClass::kMoving && beam.expected.range_m < range_max_m(beam) - 0.5;
@@ -122,7 +122,7 @@ class Fitter {
     for (const Beam& beam : set_.beams) {
       const bool is_hit =
           beam.kind == BeamClass::kStatic || beam.kind == BeamClass::kShort || beam.kind == BeamClass::kFar;
-      if (!is_hit || incidence_deg(beam) > kFarthestHit_deg || !limits_.is_inside(beam, 2.0, 0.95)) continue;
+      if (!is_hit || incidence_deg(beam) > kMaxHitIncidence_deg || !limits_.is_inside(beam, 2.0, 0.95)) continue;
       // Where consecutive beams differ by the jump of a mixed pixel, the range is a mean over the beam width.
       const double step_rad = std::abs(set_.scans[beam.scan].scan.angle_increment_rad) + 4.3 * angle_noise_rad;
       if (std::abs(beam.expected.slope_m_per_rad) * step_rad > 0.1) continue;
@@ -150,7 +150,8 @@ class Fitter {
     HitModel model{.range_step_m = device_.settings.range_quantization_m,
                    .range_max_m = scan.range_max_m,
                    .range_min_m = scan.range_min_m};
-    const double angle_noise_rad = fit_hits(thinned(hit_samples(0.1 * kDegree), 5000), model, false).values[kAngleNoise_rad];
+    const double angle_noise_rad =
+        fit_hits(thinned(hit_samples(0.1 * kDegree), 5000), model, false).values[kAngleNoise_rad];
     const std::vector<HitSample> samples = hit_samples(angle_noise_rad);
     const HitFit first = fit_hits(samples, model);
     const auto is_loose = [&](std::size_t j, double half_width) {
@@ -167,6 +168,7 @@ class Fitter {
     const double lost_per_rate_m = 4.0 * set_.rules.neighbor_m;
     for (HitVector* values : {&hits_.values, &hits_.low, &hits_.high})
       (*values)[kFalseRate_per_m] /= 1.0 - std::min(0.5, lost_per_rate_m * (*values)[kFalseRate_per_m]);
+    for (HitVector* values : {&hits_.values, &hits_.low, &hits_.high}) (*values)[kNoise_m] *= set_.noise_factor;
     add_noise(first, model);
     device_.settings.range_noise_std_m = hits_.values[kNoise_m];
     device_.settings.false_return_rate_per_m = hits_.values[kFalseRate_per_m];
@@ -198,7 +200,8 @@ class Fitter {
       if (!p.is_seen) p.reason = !has_samples ? too_few : hits_.is_free[j] ? zero : fixed;
       add(std::move(p));
     };
-    positive("range_noise_std_m", kNoise_m, 1.0, "not told from 0 beside the quantization step and the angle noise", "");
+    positive("range_noise_std_m", kNoise_m, 1.0, "consistent with 0 beside the quantization step and the angle noise",
+             "");
     const auto systematic = [&](const char* name, std::size_t j, const std::string& loose) {
       const bool is_fixed = model.is_fixed[j];
       FittedParameter p = parameter_of(name, is_fixed ? first : hits_, j);
@@ -212,17 +215,19 @@ class Fitter {
     FittedParameter& offset = result_.parameters.back();
     if (set_.absorbed_bias > 0.9 && offset.is_seen) {
       offset.is_seen = false;
-      offset.reason = fmt::format("the alignment of the scans removes {:.0f} % of a constant range error: the surfaces "
-                                  "are on one side of the lidar", 100.0 * set_.absorbed_bias);
+      offset.reason = fmt::format(
+          "the alignment of the scans removes {:.0f} % of a constant range error: the surfaces "
+          "are on one side of the lidar",
+          100.0 * set_.absorbed_bias);
     }
     systematic("measured_range_scale", kScale,
                fmt::format("the ranges vary by only {:.2f} m (standard deviation)", first.range_spread_m));
     systematic("measured_incidence_m", kIncidence_m, "the angles of incidence vary too little");
     systematic("measured_reflectivity_m", kReflectivity_m, "the surfaces of the site have nearly one reflectivity");
     positive("angle_noise_std_deg", kAngleNoise_rad, kDegPerRad,
-             "not told from 0: below the range noise on the slopes in the log", "all walls are seen head-on");
+             "consistent with 0: below the range noise on the slopes in the log", "all walls are seen head-on");
     positive("false_return_rate_per_m", kFalseRate_per_m, 1.0,
-             "not told from 0: no isolated returns before the surfaces beyond the outliers", "");
+             "consistent with 0: no isolated returns before the surfaces beyond the outliers", "");
   }
 
   void add_limits() {
@@ -232,7 +237,9 @@ class Fitter {
                           .low = std::min(incidence.low, kMaxIncidence_deg),
                           .high = std::min(incidence.high, kMaxIncidence_deg),
                           .is_seen = incidence.has_upper};
-    if (!angle.is_seen) angle.reason = fmt::format("most beams return up to the largest angles in the log; not below {:.0f} deg", angle.low);
+    if (!angle.is_seen)
+      angle.reason =
+          fmt::format("most beams return up to the largest angles in the log; not below {:.0f} deg", angle.low);
     angle.value = std::min(angle.value, kMaxIncidence_deg);
     add(std::move(angle));
     FittedParameter reach{.name = "max_range_10pct_m",
@@ -261,7 +268,7 @@ class Fitter {
                       .low = rate.low,
                       .high = rate.high,
                       .is_seen = rate.count > 0 && rate.low > 0.0};
-    if (!p.is_seen) p.reason = fmt::format("not told from 0: {} of {} beams are lost", rate.count, rate.total);
+    if (!p.is_seen) p.reason = fmt::format("consistent with 0: {} of {} beams are lost", rate.count, rate.total);
     add(std::move(p));
     device_.settings.dropout_probability = rate.value;
   }
@@ -289,8 +296,11 @@ class Fitter {
                       .is_seen = fit.low_deg > 0.0 && fit.has_upper};
     if (fit.num_samples < 30) p.reason = fmt::format("only {} beams after jumps of 0.1 to 1.5 m", fit.num_samples);
     else if (fit.outlier_ratio > 0.5)
-      p.is_seen = false, p.reason = fmt::format("{:.0f} % of the returns beside edges agree with no width: the edges of the site are not exact enough", 100.0 * fit.outlier_ratio);
-    else if (!p.is_seen) p.reason = "no width is told from 0 or from 2 deg by the returns beside edges";
+      p.is_seen = false,
+      p.reason = fmt::format(
+          "{:.0f} % of the returns beside edges agree with no width: the edges of the site are not exact enough",
+          100.0 * fit.outlier_ratio);
+    else if (!p.is_seen) p.reason = "the returns beside edges are consistent with 0 or with more than 2 deg";
     add(std::move(p));
   }
 

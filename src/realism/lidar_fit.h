@@ -15,11 +15,11 @@
 namespace patrol::realism {
 
 struct LidarFitSettings {
-  int max_hits = 20000;              ///< returns on smooth surfaces that are used, evenly over the log
-  int max_edges = 1500;              ///< beams after jumps of the range that are used
-  int blocks = 20;                   ///< groups of consecutive scans for correlated errors
-  double path_yaw_std_deg = 0.0;     ///< remaining error of the heading of the path; blurs the limit of the incidence
-  double path_std_m = 0.0;           ///< remaining error of the position of the path; blurs the limit of the range
+  int max_hits = 20000;           ///< returns on smooth surfaces that are used, evenly over the log
+  int max_edges = 1500;           ///< beams after jumps of the range that are used
+  int blocks = 20;                ///< groups of consecutive scans for correlated errors
+  double path_yaw_std_deg = 0.0;  ///< remaining error of the heading of the path; blurs the limit of the incidence
+  double path_std_m = 0.0;        ///< remaining error of the position of the path; blurs the limit of the range
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -39,6 +39,8 @@ struct ScanSet {
   double absorbed_bias = 0.0;  ///< mean fraction of a constant range error that the alignment of the scans removes
   /// Factors on the intervals of offset, scale, incidence and reflectivity for the poses that were fitted with them.
   std::array<double, 4> interval_factors = {1.0, 1.0, 1.0, 1.0};
+  /// Factor on the range noise for the three parameters of each scan's pose that were fitted to its returns.
+  double noise_factor = 1.0;
 
   void append(PosedScan posed, const std::vector<ExpectedBeam>& expected);
 };
@@ -46,8 +48,8 @@ struct ScanSet {
 /// Parameters of a lidar by its recorded scans.
 struct LidarFit {
   std::vector<FittedParameter> parameters;  ///< settings and systematic errors, each once
-  double outlier_ratio = 0.0;       ///< fraction of the returns that the site and the model do not explain
-  double edge_outlier_ratio = 0.0;  ///< fraction of the returns after jumps that no beam width explains
+  double outlier_ratio = 0.0;               ///< fraction of the returns that the site and the model do not explain
+  double edge_outlier_ratio = 0.0;          ///< fraction of the returns after jumps that no beam width explains
   std::size_t num_hits = 0, num_edges = 0, num_returns = 0;
 
   const FittedParameter& of(const std::string& name) const;

@@ -32,8 +32,7 @@ std::string inner_walls() {
                       wall(21.0, 8.0, 26.0, 8.2, 0.5) + wall(9.0, 0.0, 9.2, 3.0, 0.5) + wall(9.0, 4.0, 9.2, 8.0, 0.6) +
                       wall(17.0, 0.0, 17.2, 5.0, 0.3) + wall(17.0, 6.0, 17.2, 8.0, 0.5);
   // Posts and boxes: edges with jumps of 0.2 to 1.2 m to the wall behind.
-  for (int k = 0; k < 10; ++k)
-    geoms += wall(1.5 + 2.4 * k, 15.3 - 0.05 * k, 1.8 + 2.4 * k, 15.6 - 0.05 * k, 0.5);
+  for (int k = 0; k < 10; ++k) geoms += wall(1.5 + 2.4 * k, 15.3 - 0.05 * k, 1.8 + 2.4 * k, 15.6 - 0.05 * k, 0.5);
   for (int k = 0; k < 8; ++k) geoms += wall(1.0 + 3.1 * k, 0.4 + 0.08 * k, 1.6 + 3.1 * k, 0.7 + 0.08 * k, 0.6);
   // Dark and bright panels on the walls.
   for (int k = 0; k < 6; ++k) geoms += wall(3.0 + 4.0 * k, 15.95, 4.5 + 4.0 * k, 16.0, k % 2 == 0 ? 0.04 : 0.10);
@@ -44,8 +43,11 @@ std::string inner_walls() {
 }
 
 /// Rectangles without obstacles: x0, y0, x1, y1.
-constexpr std::array<std::array<double, 4>, 5> kFree = {
-    {{1.0, 2.0, 8.0, 7.0}, {10.0, 2.0, 16.0, 7.0}, {18.0, 2.0, 25.0, 7.0}, {1.0, 9.2, 13.0, 14.0}, {13.0, 9.2, 25.0, 14.0}}};
+constexpr std::array<std::array<double, 4>, 5> kFree = {{{1.0, 2.0, 8.0, 7.0},
+                                                         {10.0, 2.0, 16.0, 7.0},
+                                                         {18.0, 2.0, 25.0, 7.0},
+                                                         {1.0, 9.2, 13.0, 14.0},
+                                                         {13.0, 9.2, 25.0, 14.0}}};
 
 Pose3 draw_pose(const RandomStream& random, std::uint64_t scan) {
   const auto& [x0, y0, x1, y1] = kFree[scan % kFree.size()];
@@ -54,11 +56,11 @@ Pose3 draw_pose(const RandomStream& random, std::uint64_t scan) {
                   0.5);
 }
 
-/// Draws within limits by number: evenly, or evenly in the logarithm.
+/// Draws within limits: uniform, or uniform in the logarithm.
 class Draw {
  public:
   explicit Draw(std::uint64_t seed) : random_(seed, "planted/lidar") {}
-  double evenly(double low, double high) { return low + (high - low) * random_.uniform(0, next_++); }
+  double uniform(double low, double high) { return low + (high - low) * random_.uniform(0, next_++); }
   double by_ratio(double low, double high) { return low * std::pow(high / low, random_.uniform(0, next_++)); }
 
  private:
@@ -73,15 +75,15 @@ LidarDevice draw_device(std::uint64_t seed) {
   lidar.range_noise_std_m = draw.by_ratio(0.004, 0.04);
   lidar.range_quantization_m = draw.by_ratio(0.0005, 0.02);
   lidar.angle_noise_std_deg = draw.by_ratio(0.02, 0.25);
-  lidar.beam_width_deg = draw.evenly(0.1, 1.5);
+  lidar.beam_width_deg = draw.uniform(0.1, 1.5);
   lidar.dropout_probability = draw.by_ratio(0.002, 0.08);
-  lidar.max_incidence_deg = draw.evenly(65.0, 86.0);
-  lidar.max_range_10pct_m = draw.evenly(4.0, 14.0);
+  lidar.max_incidence_deg = draw.uniform(65.0, 86.0);
+  lidar.max_range_10pct_m = draw.uniform(4.0, 14.0);
   lidar.false_return_rate_per_m = draw.by_ratio(0.001, 0.02);
-  device.errors.range_offset_m = draw.evenly(-0.05, 0.05);
-  device.errors.range_scale = draw.evenly(-0.004, 0.004);
-  device.errors.incidence_m = draw.evenly(-0.03, 0.03);
-  device.errors.reflectivity_m = draw.evenly(-0.02, 0.02);
+  device.errors.range_offset_m = draw.uniform(-0.05, 0.05);
+  device.errors.range_scale = draw.uniform(-0.004, 0.004);
+  device.errors.incidence_m = draw.uniform(-0.03, 0.03);
+  device.errors.reflectivity_m = draw.uniform(-0.02, 0.02);
   return device;
 }
 
@@ -128,7 +130,8 @@ PlantedTrial run_planted_trial(const Site& site, const PlantedTrialSettings& set
   const RandomStream poses(seed, "planted/pose"), errors(seed, "planted/path");
   std::vector<PosedScan> scans;
   for (int k = 0; k < settings.scans; ++k)
-    scans.push_back({.scan = empty_scan(settings.beams), .T_site_lidar = {draw_pose(poses, static_cast<std::uint64_t>(k))}});
+    scans.push_back(
+        {.scan = empty_scan(settings.beams), .T_site_lidar = {draw_pose(poses, static_cast<std::uint64_t>(k))}});
   const std::vector<std::vector<float>> ranges_m = simulate_scans(site, trial.planted, scans, seed);
   for (std::size_t k = 0; k < scans.size(); ++k) {
     scans[k].scan.ranges_m = ranges_m[k];

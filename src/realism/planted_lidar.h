@@ -16,7 +16,7 @@ struct PlantedTrialSettings {
   /// Errors of the path that the fit is given, standard deviations; the scans are then aligned to the site.
   double path_std_m = 0.0;
   double path_yaw_std_deg = 0.0;
-  /// Whether the walls are without openings, dark surfaces and obstacles: several parameters cannot be told there.
+  /// Whether the walls are without openings, dark surfaces and obstacles: several parameters are not observable there.
   bool is_plain_room = false;
 };
 

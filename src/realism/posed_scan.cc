@@ -16,7 +16,7 @@ Pose3 PosedScan::pose_of(std::size_t beam) const {
 }
 
 bool place_scan(const LaserScan& scan, const Trajectory& T_site_body, const Pose3& T_body_lidar, PosedScan& posed) {
-  constexpr int kIntervals = 8;      // 12 ms at 10 Hz: short against the motion of a robot
+  constexpr int kIntervals = 8;       // 12 ms at 10 Hz: short against the motion of a robot
   constexpr double kMaxScan_s = 1.0;  // longer times of beams are an error of the log
   if (scan.ranges_m.empty()) return false;
   const double duration_s = scan.time_increment_s * static_cast<double>(scan.ranges_m.size() - 1);

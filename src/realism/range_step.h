@@ -7,7 +7,7 @@
 namespace patrol::realism {
 
 /// Finds the quantization step of ranges: the largest step of which all ranges are multiples within the precision of
-/// single floats. No site and no pose is needed. A step below 0.1 mm is not told from none.
+/// single floats. No site and no pose is needed. A step below 0.1 mm counts as none.
 FittedParameter fit_range_step(const std::vector<float>& ranges_m);
 
 }  // namespace patrol::realism

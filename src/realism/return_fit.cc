@@ -16,12 +16,12 @@ double log_binomial(double count, double total) {
 }
 
 /// Largest probability of a return beyond a limit: it is none if most beams return there.
-constexpr double kMaxStray = 0.5;
+constexpr double kMaxReturnsBeyond = 0.5;
 
 /// Log-likelihood of the returns beyond a limit.
 double log_beyond(double count, double total) {
-  if (count <= kMaxStray * total) return log_binomial(count, total);
-  return count * std::log(kMaxStray) + (total - count) * std::log1p(-kMaxStray);
+  if (count <= kMaxReturnsBeyond * total) return log_binomial(count, total);
+  return count * std::log(kMaxReturnsBeyond) + (total - count) * std::log1p(-kMaxReturnsBeyond);
 }
 
 /// Likelihood of a limit over samples in the order of their values.
@@ -46,14 +46,14 @@ class LimitLikelihood {
                  returns_beyond = num_returns_.back() - num_returns_[end];
     // Rates of the decided beams, with half a beam more so that no beam is impossible.
     const double dropout = (below - returns_below + 0.5) / (below + 1.0);
-    const double stray = std::min(kMaxStray, (returns_beyond + 0.5) / (beyond + 1.0));
+    const double outliers = std::min(kMaxReturnsBeyond, (returns_beyond + 0.5) / (beyond + 1.0));
     double sum = log_binomial(returns_below, below) + log_beyond(returns_beyond, beyond);
     for (std::size_t i = begin; i < end; ++i) {
       const double inside =
           samples_[i].blur > 0.0
               ? 0.5 * std::erfc((samples_[i].value - limit) / (samples_[i].blur * std::numbers::sqrt2))
               : (samples_[i].value < limit ? 1.0 : 0.0);
-      const double probability = inside * (1.0 - dropout) + (1.0 - inside) * stray;
+      const double probability = inside * (1.0 - dropout) + (1.0 - inside) * outliers;
       sum += std::log(std::max(1e-12, samples_[i].is_return ? probability : 1.0 - probability));
     }
     return sum;
@@ -120,13 +120,17 @@ std::pair<double, double> rough_limits(const std::vector<TwoLimitSample>& sample
   constexpr std::size_t kFirst = 100, kSecond = 100;
   constexpr double kSecondRatio = 1.05;
   const auto first_limit = [&](std::size_t i) { return first_end * static_cast<double>(i) / kFirst; };
-  const auto second_limit = [&](std::size_t j) { return second_end * std::pow(kSecondRatio, static_cast<double>(j) - kSecond); };
+  const auto second_limit = [&](std::size_t j) {
+    return second_end * std::pow(kSecondRatio, static_cast<double>(j) - kSecond);
+  };
   // Counts of beams and returns inside of each pair of limits: by cell, then cumulative in both directions.
   constexpr std::size_t kColumns = kSecond + 1;
   std::vector<double> beams((kFirst + 1) * kColumns, 0.0), returns(beams.size(), 0.0);
   for (const TwoLimitSample& sample : samples) {
-    const auto i = static_cast<std::size_t>(std::clamp(std::ceil(sample.first / first_end * kFirst), 0.0, double{kFirst}));
-    const double column = kSecond + std::ceil(std::log(std::max(1e-9, sample.second / second_end)) / std::log(kSecondRatio));
+    const auto i =
+        static_cast<std::size_t>(std::clamp(std::ceil(sample.first / first_end * kFirst), 0.0, double{kFirst}));
+    const double column =
+        kSecond + std::ceil(std::log(std::max(1e-9, sample.second / second_end)) / std::log(kSecondRatio));
     const auto j = static_cast<std::size_t>(std::clamp(column, 0.0, double{kSecond}));
     beams[i * kColumns + j] += 1.0;
     if (sample.is_return) returns[i * kColumns + j] += 1.0;

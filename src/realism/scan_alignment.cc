@@ -84,7 +84,8 @@ ScanAlignment align_scan(const Site& site, const PosedScan& posed, const BeamRul
     if (sums.num_beams < static_cast<std::size_t>(settings.min_beams)) return result;
     const Eigen::Matrix3d information = sums.information + Eigen::Matrix3d(prior.asDiagonal());
     const Eigen::LDLT<Eigen::Matrix3d> solver(information);
-    result.absorbed_bias = std::clamp(sums.with_bias.dot(solver.solve(sums.with_bias)) / sums.bias_information, 0.0, 1.0);
+    result.absorbed_bias =
+        std::clamp(sums.with_bias.dot(solver.solve(sums.with_bias)) / sums.bias_information, 0.0, 1.0);
     const Eigen::Vector3d step = -solver.solve(sums.gradient + prior.cwiseProduct(result.correction));
     result.correction += step;
     result.posed = corrected(posed, result.correction);

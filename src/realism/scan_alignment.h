@@ -16,12 +16,12 @@ namespace patrol::realism {
 /// Alignment of single scans to the site: planar correction of the pose by the distances of the returns from the
 /// tangent planes of the expected surfaces, with Tukey's robust weights and the accuracy of the path as a prior.
 struct AlignmentSettings {
-  int iterations = 4;                ///< re-casts of the expected surfaces
-  double position_std_m = 0.10;      ///< prior standard deviation of each coordinate of the path
-  double yaw_std_deg = 1.0;          ///< prior standard deviation of the heading of the path
-  double distance_std_m = 0.03;      ///< standard deviation of a return from its surface
-  double max_distance_m = 0.3;       ///< distance from which on a return has no weight
-  int min_beams = 20;                ///< scans with fewer returns on smooth surfaces keep the pose of the path
+  int iterations = 4;            ///< re-casts of the expected surfaces
+  double position_std_m = 0.10;  ///< prior standard deviation of each coordinate of the path
+  double yaw_std_deg = 1.0;      ///< prior standard deviation of the heading of the path
+  double distance_std_m = 0.03;  ///< standard deviation of a return from its surface
+  double max_distance_m = 0.3;   ///< distance from which on a return has no weight
+  int min_beams = 20;            ///< scans with fewer returns on smooth surfaces keep the pose of the path
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -27,7 +27,7 @@ PositionedScans position_scans(const Site& site, const std::vector<PosedScan>& s
     SystematicErrorFit fit(settings.alignment);
     ScanSet set;
     set.rules = settings.rules;
-    double absorbed = 0.0;
+    double absorbed = 0.0, num_beams = 0.0;
     for (std::size_t k = 0; k < scans.size(); k += is_last ? 1 : stride) {
       ScanAlignment aligned = settings.align
                                   ? align_scan(site, scans[k], settings.rules, settings.alignment, result.errors)
@@ -35,6 +35,7 @@ PositionedScans position_scans(const Site& site, const std::vector<PosedScan>& s
       const std::vector<ExpectedBeam> expected = expected_beams(site, aligned.posed, settings.rules);
       if (settings.align) fit.add(aligned, expected, result.errors);
       absorbed += aligned.absorbed_bias;
+      num_beams += static_cast<double>(aligned.num_beams);
       if (is_last && settings.align) result.corrections.push_back(aligned.correction);
       if (is_last) set.append(std::move(aligned.posed), expected);
       if (on_scan && !on_scan(++done, total)) return result;
@@ -44,7 +45,13 @@ PositionedScans position_scans(const Site& site, const std::vector<PosedScan>& s
       continue;
     }
     set.absorbed_bias = set.scans.empty() ? 0.0 : absorbed / static_cast<double>(set.scans.size());
-    if (settings.align) set.interval_factors = fit.interval_factors();
+    if (settings.align) {
+      constexpr double kParameters = 3.0;  // x, y, yaw
+      const double per_scan =
+          std::max(2.0 * kParameters, num_beams / std::max(1.0, static_cast<double>(set.scans.size())));
+      set.interval_factors = fit.interval_factors();
+      set.noise_factor = std::sqrt(per_scan / (per_scan - kParameters));
+    }
     result.set = std::move(set);
   }
   return result;

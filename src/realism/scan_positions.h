@@ -10,7 +10,7 @@
 namespace patrol::realism {
 
 struct PositionSettings {
-  bool align = true;  ///< whether each scan is aligned to the site; false: the path is exact
+  bool align = true;     ///< whether each scan is aligned to the site; false: the path is exact
   int error_passes = 4;  ///< alignments, each with the systematic range errors that the one before leaves
   BeamRules rules;
   AlignmentSettings alignment;

@@ -57,8 +57,8 @@ void fire(sim::Lidar& lidar, std::int64_t revolution, const PosedScan& posed, do
   lidar.advance(from, to, posed.T_site_lidar.front(), posed.T_site_lidar.front());
   const std::size_t last = posed.T_site_lidar.size() - 1;
   for (std::size_t knot = 1; knot <= last; ++knot) {
-    from = std::exchange(to, begin + from_seconds(first_s + (1.0 - first_s) * static_cast<double>(knot) /
-                                                                static_cast<double>(last)));
+    from = std::exchange(
+        to, begin + from_seconds(first_s + (1.0 - first_s) * static_cast<double>(knot) / static_cast<double>(last)));
     lidar.advance(from, to, posed.T_site_lidar[knot - 1], posed.T_site_lidar[knot]);
   }
   const Time end = begin + from_seconds(1.0);

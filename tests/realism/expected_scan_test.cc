@@ -30,7 +30,9 @@ TEST(ExpectedBeams, InARoomAreItsRangeIncidenceAndSlopeInClosedForm) {
     const bool is_x_wall = std::abs(beams[i].normal.x()) > 0.5;
     EXPECT_NEAR(beams[i].cosine, is_x_wall ? cosine : sine, 1e-6) << i;
     const double tangent = is_x_wall ? std::tan(angle) : -1.0 / std::tan(angle);
-    EXPECT_NEAR(beams[i].slope_m_per_rad, beams[i].range_m * tangent, 0.002 * beams[i].range_m * (1.0 + tangent * tangent)) << i;
+    EXPECT_NEAR(beams[i].slope_m_per_rad, beams[i].range_m * tangent,
+                0.002 * beams[i].range_m * (1.0 + tangent * tangent))
+        << i;
   }
   EXPECT_GE(num_smooth, 340u);  // all but those at the four corners
   EXPECT_LE(num_smooth, 356u);
@@ -38,8 +40,9 @@ TEST(ExpectedBeams, InARoomAreItsRangeIncidenceAndSlopeInClosedForm) {
 
 TEST(ExpectedBeams, ResidualsAreThePlantedBiasAndEachClassHasItsBeam) {
   // A wall at x = 4 m with glass in the middle of the upper half, and a post of 0.2 m before it: a jump of 0.5 m.
-  const Site site = test::site_of(box("4.5 -5 0", "0.5 5 3") + "<geom pos=\"4.5 2 0\" size=\"0.5 2 3\" rgba=\"0.5 0.5 0.5 1\"/>" +
-                                  box("3.45 -1 0", "0.05 0.1 3"));
+  const Site site =
+      test::site_of(box("4.5 -5 0", "0.5 5 3") + "<geom pos=\"4.5 2 0\" size=\"0.5 2 3\" rgba=\"0.5 0.5 0.5 1\"/>" +
+                    box("3.45 -1 0", "0.05 0.1 3"));
   PosedScan posed = test::posed_scan(180, kPi);
   const std::vector<ExpectedBeam> expected = expected_beams(site, posed, {});
   for (std::size_t i = 0; i < expected.size(); ++i)
@@ -53,7 +56,7 @@ TEST(ExpectedBeams, ResidualsAreThePlantedBiasAndEachClassHasItsBeam) {
   ASSERT_GT(middle, 0u);
   posed.scan.ranges_m[0] = 12.0f;  // along -y: no wall there
   posed.scan.ranges_m[middle - 4] = kNone;
-  posed.scan.ranges_m[middle - 2] -= 1.0f;  // isolated: a false return
+  posed.scan.ranges_m[middle - 2] -= 1.0f;                                           // isolated: a false return
   posed.scan.ranges_m[middle + 1] -= 1.5f, posed.scan.ranges_m[middle + 2] -= 1.5f;  // two: an object
   posed.scan.ranges_m[middle + 4] += 2.0f;
   posed.scan.ranges_m[middle + 5] = -kNone;
@@ -89,7 +92,8 @@ TEST(ExpectedBeams, AChangeOfReflectivityOrOfTheNormalIsNoSmoothSurface) {
 }
 
 TEST(PlaceScan, BeamsHaveThePoseOfTheirOwnInstant) {
-  const Trajectory path = {{from_seconds(0.0), to_pose3({0.0, 0.0, 0.0})}, {from_seconds(1.0), to_pose3({2.0, 0.0, 1.0})}};
+  const Trajectory path = {{from_seconds(0.0), to_pose3({0.0, 0.0, 0.0})},
+                           {from_seconds(1.0), to_pose3({2.0, 0.0, 1.0})}};
   LaserScan scan = test::posed_scan(101).scan;
   scan.stamp = from_seconds(0.2);
   scan.time_increment_s = 0.001;

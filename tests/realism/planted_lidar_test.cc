@@ -38,7 +38,7 @@ TEST(PlantedLidar, ElevenOfTwelveIntervalsHoldInATrialOf30Scans) {
   EXPECT_NEAR(trial.fit.of("range_noise_std_m").value, noise_m, 0.1 * noise_m);
 }
 
-TEST(PlantedLidar, APlainRoomDoesNotTellTheBeamWidth) {
+TEST(PlantedLidar, APlainRoomDoesNotConstrainTheBeamWidth) {
   const PlantedTrial trial = run_planted_trial(planted_site(true), {.scans = 12, .is_plain_room = true}, 2002);
   const FittedParameter& width = trial.fit.of("beam_width_deg");
   EXPECT_FALSE(width.is_seen);
@@ -46,7 +46,7 @@ TEST(PlantedLidar, APlainRoomDoesNotTellTheBeamWidth) {
   EXPECT_FALSE(trial.fit.of("max_incidence_deg").is_seen);
   EXPECT_FALSE(trial.fit.of("angle_noise_std_deg").is_seen);
   EXPECT_GE(num_held(trial), 10u) << text_of(trial);  // three misses of twelve have a probability of 2 %
-  // The device of the fit keeps the base's value of what the log does not tell.
+  // The device of the fit keeps the base's value of a parameter that is not observable.
   LidarDevice base;
   base.settings.beam_width_deg = 0.33;
   EXPECT_EQ(trial.fit.device(base).settings.beam_width_deg, 0.33);

@@ -8,7 +8,8 @@ namespace patrol::realism {
 namespace {
 
 TEST(KsDistance, IsTheOneComputedByHand) {
-  // Cumulative distributions of {1, 2, 3, 4} and {2.5, 3.5}: largest difference 1/2 at 2, before the first of the second.
+  // Cumulative distributions of {1, 2, 3, 4} and {2.5, 3.5}: largest difference 1/2 at 2, before the first of the
+  // second.
   EXPECT_DOUBLE_EQ(ks_distance({4.0, 1.0, 3.0, 2.0}, {3.5, 2.5}), 0.5);
   EXPECT_DOUBLE_EQ(ks_distance({1.0, 2.0}, {1.0, 2.0}), 0.0);
   EXPECT_DOUBLE_EQ(ks_distance({1.0, 1.0, 2.0}, {1.0, 2.0, 2.0}), 1.0 / 3.0);  // ties
@@ -36,7 +37,8 @@ TEST(Bins, CountDropoutsAndResidualsOfSmoothSurfacesOnly) {
   lost.kind = BeamClass::kDropout;
   edge.expected.is_smooth = false;
   far.expected.range_m = 9.0;  // beyond the bins
-  const auto bins = bins_of({hit, lost, lost, edge, far}, [](const Beam& beam) { return beam.expected.range_m; }, 0.0, 1.0, 4);
+  const auto bins = bins_of(
+      {hit, lost, lost, edge, far}, [](const Beam& beam) { return beam.expected.range_m; }, 0.0, 1.0, 4);
   EXPECT_EQ(bins[2].num_expected, 3u);
   EXPECT_EQ(bins[2].num_dropouts, 2u);
   EXPECT_NEAR(bins[2].dropout_rate(), 2.0 / 3.0, 1e-12);

@@ -23,7 +23,8 @@ PosedScan scan_off_by(const Site& site, PosedScan posed, const Eigen::Vector3d& 
 TEST(AlignScan, RecoversAnErrorOfThePathInAClosedRoomToAMillimeter) {
   const Site site = test::site_of(test::room());
   const Eigen::Vector3d error(0.05, -0.03, 1.0 * kDegree);
-  const ScanAlignment aligned = align_scan(site, scan_off_by(site, test::posed_scan(360, 2.0 * kPi, {0.5, 0.2, 0.7}), error, 0.0), {}, {});
+  const ScanAlignment aligned =
+      align_scan(site, scan_off_by(site, test::posed_scan(360, 2.0 * kPi, {0.5, 0.2, 0.7}), error, 0.0), {}, {});
   EXPECT_NEAR(aligned.correction.x(), -0.05, 1e-3);
   EXPECT_NEAR(aligned.correction.y(), 0.03, 1e-3);
   EXPECT_NEAR(aligned.correction.z(), -1.0 * kDegree, 3e-4);
@@ -38,20 +39,23 @@ TEST(AlignScan, AbsorbsNoConstantRangeErrorInAClosedRoomAndAllOfItAtOneWall) {
   // A field of view of 10 degrees onto one wall: the bias is a shift along the normal.
   AlignmentSettings loose;
   loose.position_std_m = 10.0;
-  const ScanAlignment at_wall = align_scan(open, scan_off_by(open, test::posed_scan(100, 10.0 * kDegree), {0, 0, 0}, 0.03), {}, loose);
+  const ScanAlignment at_wall =
+      align_scan(open, scan_off_by(open, test::posed_scan(100, 10.0 * kDegree), {0, 0, 0}, 0.03), {}, loose);
   EXPECT_GE(at_wall.absorbed_bias, 0.99);
   EXPECT_NEAR(at_wall.correction.x(), -0.03, 1e-3);
 }
 
 TEST(PositionScans, RangeErrorsComeOutBesideErrorsOfThePathOf5CentimetersAnd1Degree) {
-  const Site site = test::site_of(test::room() + test::box("3.0 2.0 0", "0.2 0.3 3") + test::box("-2.0 -2.2 0", "0.3 0.2 3"));
+  const Site site =
+      test::site_of(test::room() + test::box("3.0 2.0 0", "0.2 0.3 3") + test::box("-2.0 -2.2 0", "0.3 0.2 3"));
   const sim::LidarErrors planted{.range_offset_m = 0.03, .range_scale = 0.002};
   std::vector<PosedScan> scans;
   for (int k = 0; k < 12; ++k) {
     PosedScan posed = test::posed_scan(360, 2.0 * kPi, {-1.5 + 0.25 * k, -0.6 + 0.1 * k, 0.5 * k});
     const std::vector<ExpectedBeam> expected = expected_beams(site, posed, {});
     for (std::size_t i = 0; i < expected.size(); ++i)
-      posed.scan.ranges_m[i] = static_cast<float>(expected[i].range_m + planted.range_error_m(expected[i].range_m, 0.5, 1.0));
+      posed.scan.ranges_m[i] =
+          static_cast<float>(expected[i].range_m + planted.range_error_m(expected[i].range_m, 0.5, 1.0));
     const double sign = k % 2 == 0 ? 1.0 : -1.0;
     scans.push_back(corrected(posed, {0.05 * sign, -0.05, sign * 1.0 * kDegree}));
   }
@@ -65,7 +69,8 @@ TEST(AlignScan, KeepsThePoseOfAScanWithFewReturns) {
   const Site site = test::site_of(test::room());
   AlignmentSettings settings;
   settings.min_beams = 1000;
-  const ScanAlignment aligned = align_scan(site, scan_off_by(site, test::posed_scan(360), {0.05, 0, 0}, 0.0), {}, settings);
+  const ScanAlignment aligned =
+      align_scan(site, scan_off_by(site, test::posed_scan(360), {0.05, 0, 0}, 0.0), {}, settings);
   EXPECT_EQ(aligned.correction, Eigen::Vector3d::Zero());
 }
 

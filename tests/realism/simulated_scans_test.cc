@@ -36,7 +36,8 @@ TEST(SimulatedScans, OfAnIdealLidarAreTheExpectedBeamsWhateverTheFieldOfViewAndT
   for (std::size_t k = 0; k < scans.size(); ++k) {
     const std::vector<ExpectedBeam> expected = expected_beams(site, scans[k], {});
     ASSERT_EQ(ranges_m[k].size(), expected.size());
-    for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(ranges_m[k][i], expected[i].range_m, 1e-4) << k << ", beam " << i;
+    for (std::size_t i = 0; i < expected.size(); ++i)
+      EXPECT_NEAR(ranges_m[k][i], expected[i].range_m, 1e-4) << k << ", beam " << i;
   }
 }
 

@@ -14,19 +14,21 @@ namespace patrol::realism::test {
 inline constexpr double kPi = std::numbers::pi;
 
 inline Site site_of(const std::string& geoms) {
-  const sim::SpecPtr spec = sim::parse_spec(
-      "<mujoco><default><geom type=\"box\" rgba=\"0.5 0.5 0.5 1\"/></default><worldbody>" + geoms +
-      "</worldbody></mujoco>");
+  const sim::SpecPtr spec =
+      sim::parse_spec("<mujoco><default><geom type=\"box\" rgba=\"0.5 0.5 0.5 1\"/></default><worldbody>" + geoms +
+                      "</worldbody></mujoco>");
   return Site(sim::compile(*spec, "test site"));
 }
 
-inline std::string box(const std::string& position, const std::string& half_size, const std::string& rgba = "0.5 0.5 0.5 1") {
+inline std::string box(const std::string& position, const std::string& half_size,
+                       const std::string& rgba = "0.5 0.5 0.5 1") {
   return "<geom pos=\"" + position + "\" size=\"" + half_size + "\" rgba=\"" + rgba + "\"/>";
 }
 
 /// Walls at x = +-4 m and y = +-3 m.
 inline std::string room() {
-  return box("4.5 0 0", "0.5 4 3") + box("-4.5 0 0", "0.5 4 3") + box("0 3.5 0", "5 0.5 3") + box("0 -3.5 0", "5 0.5 3");
+  return box("4.5 0 0", "0.5 4 3") + box("-4.5 0 0", "0.5 4 3") + box("0 3.5 0", "5 0.5 3") +
+         box("0 -3.5 0", "5 0.5 3");
 }
 
 /// Range in that room from (x, y) along an angle in site.

@@ -46,7 +46,8 @@ ExitCode calibrate_lidar_command(const CalibrateOptions& options) {
     fmt::print(stderr, "patrol: interrupted; {} is incomplete\n", options.out.string());
     return ExitCode::kProgramFailed;
   }
-  const std::string source = fmt::format("from {} in {}", options.log.filename().string(), input->source.world_xml.filename().string());
+  const std::string source =
+      fmt::format("from {} in {}", options.log.filename().string(), input->source.world_xml.filename().string());
   const io::Metrics metrics = metrics_of(*calibration);
   const RealismContents contents{.kind = "lidar calibration",
                                  .title = fmt::format("Lidar of {}", options.log.filename().string()),

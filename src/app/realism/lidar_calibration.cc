@@ -76,13 +76,13 @@ std::optional<LidarCalibration> calibrate_lidar(const RealismInput& input, const
   const realism::PositionedScans second =
       position_scans(input.site, half_of(input, true), positions, progress.of("second half"));
   if (progress.is_interrupted()) return std::nullopt;
-  const auto judged = [&](const realism::LidarDevice& device, const char* name) {
-    return RealismResult{.recorded = second,
-                         .simulated = simulate_like(input.site, second, device, positions, settings.realism.seed,
-                                                    progress.of(name))};
+  const auto evaluated = [&](const realism::LidarDevice& device, const char* name) {
+    return RealismResult{
+        .recorded = second,
+        .simulated = simulate_like(input.site, second, device, positions, settings.realism.seed, progress.of(name))};
   };
-  calibration.by_preset = judged(input.source.device, "second half by the preset");
-  calibration.by_fit = judged(calibration.fitted, "second half by the fit");
+  calibration.by_preset = evaluated(input.source.device, "second half by the preset");
+  calibration.by_fit = evaluated(calibration.fitted, "second half by the fit");
   if (progress.is_interrupted()) return std::nullopt;
   return calibration;
 }
@@ -140,31 +140,42 @@ std::string table_text(const LidarCalibration& calibration) {
   std::string text = fmt::format("{:<25} {:>11}  {:<25}\n", "", "fitted", "95 % interval");
   for (const realism::FittedParameter& p : calibration.fit.parameters) {
     text += fmt::format("{:<25} {:>11}  {:<25}", p.name, p.is_seen ? number(p.value) : "-", interval_text(p));
-    text += p.is_seen ? "\n" : fmt::format(" cannot be told from this log: {}\n", p.reason);
+    text += p.is_seen ? "\n" : fmt::format(" not observable in this log: {}\n", p.reason);
   }
   text += fmt::format("{:.2f} % of the returns on smooth surfaces are outliers of the model\n",
                       100.0 * calibration.fit.outlier_ratio);
-  return text + fmt::format("Kolmogorov-Smirnov distance of the residuals on the held-out half: preset {:.3f}, fitted "
-                            "{:.3f} ({:.0f} % of the preset's)\n",
-                            calibration.by_preset.ks(), calibration.by_fit.ks(), 100.0 * calibration.ks_ratio());
+  return text + fmt::format(
+                    "Kolmogorov-Smirnov distance of the residuals on the held-out half: preset {:.3f}, fitted "
+                    "{:.3f} ({:.0f} % of the preset's)\n",
+                    calibration.by_preset.ks(), calibration.by_fit.ks(), 100.0 * calibration.ks_ratio());
 }
 
 report::Section parameter_section(const LidarCalibration& calibration) {
-  report::TableBlock table{.caption = "Fitted on the first half of the log",
-                           .columns = {{"setting"}, {"fitted", true}, {"95 % interval", true}, {"cannot be told from this log"}},
-                           .rows = {}};
+  report::TableBlock table{
+      .caption = "Fitted on the first half of the log",
+      .columns = {{"setting"}, {"fitted", true}, {"95 % interval", true}, {"not observable in this log"}},
+      .rows = {}};
   for (const realism::FittedParameter& p : calibration.fit.parameters)
-    table.rows.push_back({{p.name}, {p.is_seen ? number(p.value) : "–"}, {interval_text(p)}, {p.reason, report::Tone::kWarning}});
-  report::TableBlock judged{.caption = "Judged on the second half of the log",
-                            .columns = {{"lidar"}, {"Kolmogorov-Smirnov distance", true}, {"median |residual|, mm", true}, {"95 %, mm", true}},
-                            .rows = {}};
+    table.rows.push_back(
+        {{p.name}, {p.is_seen ? number(p.value) : "–"}, {interval_text(p)}, {p.reason, report::Tone::kWarning}});
+  report::TableBlock held_out{.caption = "Evaluated on the second half of the log",
+                              .columns = {{"lidar"},
+                                          {"Kolmogorov-Smirnov distance", true},
+                                          {"median |residual|, mm", true},
+                                          {"95 %, mm", true}},
+                              .rows = {}};
   const auto row = [](const char* name, const std::string& ks, const realism::ResidualDistribution& residual) {
-    return std::vector<report::TableCell>{{name}, {ks}, {fmt::format("{:.1f}", 1e3 * residual.median_abs_m)}, {fmt::format("{:.1f}", 1e3 * residual.p95_abs_m)}};
+    return std::vector<report::TableCell>{{name},
+                                          {ks},
+                                          {fmt::format("{:.1f}", 1e3 * residual.median_abs_m)},
+                                          {fmt::format("{:.1f}", 1e3 * residual.p95_abs_m)}};
   };
-  judged.rows = {row("recorded", "", calibration.by_fit.residual()),
-                 row("simulated by the preset", fmt::format("{:.3f}", calibration.by_preset.ks()), calibration.by_preset.simulated_residual()),
-                 row("simulated by the fit", fmt::format("{:.3f}", calibration.by_fit.ks()), calibration.by_fit.simulated_residual())};
-  return {.title = "", .blocks = {std::move(table), std::move(judged)}};
+  held_out.rows = {row("recorded", "", calibration.by_fit.residual()),
+                   row("simulated by the preset", fmt::format("{:.3f}", calibration.by_preset.ks()),
+                       calibration.by_preset.simulated_residual()),
+                   row("simulated by the fit", fmt::format("{:.3f}", calibration.by_fit.ks()),
+                       calibration.by_fit.simulated_residual())};
+  return {.title = "", .blocks = {std::move(table), std::move(held_out)}};
 }
 
 }  // namespace patrol::app

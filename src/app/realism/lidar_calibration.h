@@ -30,7 +30,7 @@ struct LidarCalibration {
   double ks_ratio() const { return by_fit.ks() / by_preset.ks(); }
 };
 
-/// Fits and judges; none if interrupted.
+/// Fits on the first half and evaluates on the second; none if interrupted.
 std::optional<LidarCalibration> calibrate_lidar(const RealismInput& input, const LidarCalibrationSettings& settings);
 
 /// Preset of the fitted device for scenarios, with field of view, beams and range limits of the log.

@@ -57,7 +57,8 @@ Trajectory lifted(const Trajectory& path, const Pose2& T_site_path, const Trajec
 Trajectory path_of_run(const std::filesystem::path& log, const std::string& name) {
   const RunRecord record = read_run_record(log);
   if (name == "truth") return record.T_world_body;
-  if (record.T_map_body.size() < 2) throw InputError(fmt::format("{}: no poses on /pose: use --trajectory truth", log.string()));
+  if (record.T_map_body.size() < 2)
+    throw InputError(fmt::format("{}: no poses on /pose: use --trajectory truth", log.string()));
   return lifted(record.T_map_body, pose_of_map(record, std::nullopt), record.T_world_body);
 }
 
@@ -107,15 +108,16 @@ std::optional<ScansOnPath> read_scans_on_path(const LogOnSite& source, const Log
   {
     const InterruptGuard guard;
     ProgressBar bar;
-    const bool is_whole = read_scans(*log, source.log.filename().string(), guard, bar, [&](const RecordedScan& recorded) {
-      if (result.num_read++ % stride != 0) return;
-      kept.push_back(recorded);
-      if (kept.size() < 2 * max_scans) return;
-      // Keep every other scan: an even sample of a log of unknown length.
-      for (std::size_t k = 0; 2 * k < kept.size(); ++k) kept[k] = std::move(kept[2 * k]);
-      kept.resize(max_scans);
-      stride *= 2;
-    });
+    const bool is_whole =
+        read_scans(*log, source.log.filename().string(), guard, bar, [&](const RecordedScan& recorded) {
+          if (result.num_read++ % stride != 0) return;
+          kept.push_back(recorded);
+          if (kept.size() < 2 * max_scans) return;
+          // Keep every other scan: an even sample of a log of unknown length.
+          for (std::size_t k = 0; 2 * k < kept.size(); ++k) kept[k] = std::move(kept[2 * k]);
+          kept.resize(max_scans);
+          stride *= 2;
+        });
     if (!is_whole) return std::nullopt;
   }
   result.summary = log->summary();

@@ -56,11 +56,11 @@ struct LogOnSiteOptions {
 /// Sources of the comparison, resolved.
 struct LogOnSite {
   std::filesystem::path log, world_xml;
-  std::string path_name, lidar_name;   ///< for display
-  bool is_run = false;                 ///< log of `patrol run`
+  std::string path_name, lidar_name;  ///< for display
+  bool is_run = false;                ///< log of `patrol run`
   Trajectory T_site_body;
-  std::optional<Pose3> T_body_lidar;   ///< mount by the robot's description; none: planar, by the log
-  realism::LidarDevice device;         ///< of the preset
+  std::optional<Pose3> T_body_lidar;  ///< mount by the robot's description; none: planar, by the log
+  realism::LidarDevice device;        ///< of the preset
 };
 
 /// Returns whether the options name the ground truth of a run as the path.
@@ -72,9 +72,9 @@ LogOnSite find_log_on_site(const LogOnSiteOptions& options, const LogOnSiteSetti
 /// Scans of a log at the poses of a path.
 struct ScansOnPath {
   std::vector<realism::PosedScan> scans;
-  std::size_t num_read = 0;         ///< scans of the log
-  std::size_t num_outside = 0;      ///< of those used, outside of the time of the path
-  double lidar_height_m = 0.0;      ///< of the first scan
+  std::size_t num_read = 0;     ///< scans of the log
+  std::size_t num_outside = 0;  ///< of those used, outside of the time of the path
+  double lidar_height_m = 0.0;  ///< of the first scan
   bool is_height_assumed = false;
   io::ScanLogSummary summary;
 };

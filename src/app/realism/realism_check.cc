@@ -39,25 +39,27 @@ std::optional<RealismInput> read_realism_input(const LogOnSiteOptions& options, 
 
 std::vector<std::pair<std::string, std::string>> facts_of(const RealismInput& input, const RealismSettings& settings) {
   const LaserScan& scan = input.scans.scans.front().scan;
-  return {{"log", input.source.log.filename().string()},
-          {"site", input.source.world_xml.filename().string()},
-          {"path", input.source.path_name},
-          {"scans", fmt::format("{} of {}", input.scans.scans.size(), input.scans.num_read)},
-          {"beams", fmt::format("{} over {:.0f}°", scan.ranges_m.size(),
-                                std::abs(to_deg(scan.angle_increment_rad)) * static_cast<double>(scan.ranges_m.size()))},
-          {"height of the lidar", fmt::format("{:.2f} m{}", input.scans.lidar_height_m,
-                                              input.scans.is_height_assumed ? " (assumed)" : "")},
-          {"simulated lidar", input.source.lidar_name},
-          {"alignment of the scans", settings.positions.align ? "on" : "off"},
-          {"seed", std::to_string(settings.seed)},
-          {"patrol", PATROL_VERSION}};
+  return {
+      {"log", input.source.log.filename().string()},
+      {"site", input.source.world_xml.filename().string()},
+      {"path", input.source.path_name},
+      {"scans", fmt::format("{} of {}", input.scans.scans.size(), input.scans.num_read)},
+      {"beams", fmt::format("{} over {:.0f}°", scan.ranges_m.size(),
+                            std::abs(to_deg(scan.angle_increment_rad)) * static_cast<double>(scan.ranges_m.size()))},
+      {"height of the lidar",
+       fmt::format("{:.2f} m{}", input.scans.lidar_height_m, input.scans.is_height_assumed ? " (assumed)" : "")},
+      {"simulated lidar", input.source.lidar_name},
+      {"alignment of the scans", settings.positions.align ? "on" : "off"},
+      {"seed", std::to_string(settings.seed)},
+      {"patrol", PATROL_VERSION}};
 }
 
 std::vector<std::string> notes_of(const RealismInput& input, const RealismSettings& settings,
                                   const RealismResult& result) {
   const realism::BeamRules& rules = settings.positions.rules;
   std::vector<std::string> notes = {fmt::format(
-      "A residual is the recorded range minus the range that a beam without errors has in the site, from the pose of its "
+      "A residual is the recorded range minus the range that a beam without errors has in the site, from the pose of "
+      "its "
       "own instant. Static surfaces: smooth surfaces of the site whose return is within {:g} m. Returns farther off, "
       "like their neighbors, are moving or unmapped objects and are excluded: {:.1f} % of all beams.",
       rules.max_residual_m,
@@ -68,7 +70,8 @@ std::vector<std::string> notes_of(const RealismInput& input, const RealismSettin
       "that are off by 1 to 3 cm even where nothing has changed; a fitted noise includes them.");
   if (settings.positions.align) {
     notes.push_back(fmt::format(
-        "Each scan is aligned to the site (x, y, yaw), recorded and simulated ones alike, so that errors of the path are "
+        "Each scan is aligned to the site (x, y, yaw), recorded and simulated ones alike, so that errors of the path "
+        "are "
         "not counted as errors of the lidar. The alignment also removes {:.0f} % of a constant range error of all "
         "beams (mean over the scans, computed from their surfaces); the rest stays in the residuals. It removes a "
         "constant error of the azimuth completely.",

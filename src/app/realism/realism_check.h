@@ -39,7 +39,7 @@ RealismSettings realism_settings(const LogOnSiteOptions& options, std::vector<st
 /// Reads log and site; none if interrupted.
 std::optional<RealismInput> read_realism_input(const LogOnSiteOptions& options, const RealismSettings& settings);
 
-/// Facts of the page header, and notes about what the comparison assumes and cannot tell.
+/// Facts of the page header, and notes about assumptions and limits of the comparison.
 std::vector<std::pair<std::string, std::string>> facts_of(const RealismInput& input, const RealismSettings& settings);
 std::vector<std::string> notes_of(const RealismInput& input, const RealismSettings& settings,
                                   const RealismResult& result);

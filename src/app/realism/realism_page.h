@@ -13,7 +13,7 @@ namespace patrol::app {
 struct RealismContents {
   std::string kind, title;
   std::vector<std::pair<std::string, std::string>> facts;
-  std::vector<std::string> notes;           ///< what the comparison assumes and cannot tell
+  std::vector<std::string> notes;           ///< assumptions and limits of the comparison
   std::vector<report::Section> first = {};  ///< sections before the comparison
 };
 

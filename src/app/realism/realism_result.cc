@@ -61,7 +61,8 @@ io::Metrics to_metrics(const std::vector<Eigen::Vector3d>& corrections) {
     moved_m.push_back(correction.head<2>().norm());
     turned_deg.push_back(std::abs(correction.z()) * kDegPerRad);
   }
-  const realism::ResidualDistribution moved = realism::distribution_of(moved_m), turned = realism::distribution_of(turned_deg);
+  const realism::ResidualDistribution moved = realism::distribution_of(moved_m),
+                                      turned = realism::distribution_of(turned_deg);
   return {{"scans", corrections.size()},
           {"median_m", moved.median_m},
           {"p95_m", moved.p95_abs_m},
@@ -163,9 +164,10 @@ std::string summary_text(const RealismResult& result) {
                      "95 % |mm|", "robust std", "drop-out %") +
          row("recorded", recorded, rate_of(result.recorded.set.beams, BeamClass::kDropout, is_on_smooth)) +
          row("simulated", simulated, rate_of(result.simulated.set.beams, BeamClass::kDropout, is_on_smooth)) +
-         fmt::format("Kolmogorov-Smirnov distance of the residuals on static surfaces: {:.3f}\n"
-                     "moving or unmapped: {:.1f} % of the beams on smooth surfaces\n",
-                     result.ks(), 100.0 * rate_of(result.recorded.set.beams, BeamClass::kMoving, is_on_smooth));
+         fmt::format(
+             "Kolmogorov-Smirnov distance of the residuals on static surfaces: {:.3f}\n"
+             "moving or unmapped: {:.1f} % of the beams on smooth surfaces\n",
+             result.ks(), 100.0 * rate_of(result.recorded.set.beams, BeamClass::kMoving, is_on_smooth));
 }
 
 }  // namespace patrol::app

@@ -81,8 +81,8 @@ std::optional<LidarPreset> named_preset(const std::filesystem::path& file, const
   const std::optional<std::filesystem::path> found = preset_file(name.Scalar(), find_data_root(file));
   if (found) return load_lidar_preset(*found);
   if (!is_path(name.Scalar())) return std::nullopt;
-  throw InputError(fmt::format("{} = {}: file not found, below the working directory", location_of(file, name, key),
-                               name.Scalar()));
+  throw InputError(
+      fmt::format("{} = {}: file not found, below the working directory", location_of(file, name, key), name.Scalar()));
 }
 
 }  // namespace
