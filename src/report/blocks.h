@@ -121,7 +121,8 @@ struct PlotSpan {
 /// x axis shared by several plots, which zoom together.
 struct PlotAxis {
   std::string label;
-  double max = 1.0;  ///< the axis begins at 0
+  double max = 1.0;
+  double min = 0.0;
 };
 
 struct LinePlot {
@@ -160,6 +161,7 @@ struct MapBlock {
   MapPicture picture;
   std::vector<MapPath> paths;
   std::vector<MapMark> marks;
+  std::string error_name = {};  ///< meaning of the colors of the errors; empty: distance to the nearest true surface
 };
 
 /// Signed values on a grid, in colors from negative over zero to positive.

@@ -45,21 +45,23 @@ std::string sheet_html(const char* name, const MapPicture::Sheet& sheet) {
 
 std::string css_color(Color color) { return fmt::format("#{:02x}{:02x}{:02x}", color.r, color.g, color.b); }
 
-std::string error_key() {
+std::string error_key(const std::string& name) {
   std::string colors;
   for (int i = 0; i < kNumRampColors; ++i) {
     colors +=
         fmt::format("{}{}", i == 0 ? "" : ",", css_color(map_error_color(kMapErrorEnd_m * i / (kNumRampColors - 1))));
   }
   return fmt::format(
-      "<span class=\"ramp\">map: distance to the nearest true surface 0<i "
+      "<span class=\"ramp\">map: {} 0<i "
       "style=\"background:linear-gradient(90deg,{})\"></i>{:.0f} cm or more"
-      "</span><span class=\"key\" style=\"--ink:{}\">true surface</span>",
-      colors, 100.0 * kMapErrorEnd_m, css_color(kMapTruth));
+      "</span>{}",
+      name.empty() ? "distance to the nearest true surface" : io::escaped_markup(name), colors, 100.0 * kMapErrorEnd_m,
+      name.empty() ? fmt::format("<span class=\"key\" style=\"--ink:{}\">true surface</span>", css_color(kMapTruth))
+                   : "");
 }
 
 std::string legend_html(const MapBlock& block) {
-  std::string html = block.picture.has_errors ? error_key() : "";
+  std::string html = block.picture.has_errors ? error_key(block.error_name) : "";
   for (const MapPath& path : block.paths) {
     html += fmt::format("<span class=\"key {}\">{}</span>", css_class(path.color), io::escaped_markup(path.name));
   }

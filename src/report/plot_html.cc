@@ -95,6 +95,7 @@ std::string to_html(const LinePlot& block) {
   const bool is_signed = std::any_of(block.curves.begin(), block.curves.end(), has_sign);
   const bool is_log = !block.max && !is_signed && std::any_of(block.curves.begin(), block.curves.end(), has_far_peak);
   Json data = {{"label", block.axis.label}, {"end", block.axis.max}, {"log", is_log}, {"curves", Json::array()}};
+  if (block.axis.min != 0.0) data["begin"] = block.axis.min;
   if (block.max) data["max"] = *block.max;
   for (const Curve& curve : block.curves) data["curves"].push_back(curve_json(curve));
   data["marks"] = marks_json(block.marks);

@@ -65,14 +65,14 @@
     const range = data.log ? decades : (plot, least, greatest) => [Math.min(0, 1.08 * least), data.max || 1.08 * greatest || 1];
     return new uPlot({
       width: 300, height: kPlotHeight, legend: { show: false }, padding: [8, 10, 0, 0],
-      scales: { x: { time: false, range: (plot, from, to) => [from ?? 0, to ?? data.end] }, y: { distr: data.log ? 3 : 1, range } },
+      scales: { x: { time: false, range: (plot, from, to) => [from ?? data.begin ?? 0, to ?? data.end] }, y: { distr: data.log ? 3 : 1, range } },
       axes: [timeAxis(data), axis({ size: 54, space: 32, splits: data.log ? powersOfTen : undefined, filter: (plot, splits) => splits, values: (plot, splits) => splits.map(short) })],
       series: [{}, ...data.curves.map((curve) => ({
         stroke: color(curve.ink), width: curve.dashed ? 1.25 : 1.5, dash: curve.dashed ? [4, 4] : undefined, spanGaps: true, points: { show: false },
       }))],
       cursor: { ...cursor, dataIdx: nearestSample },
       hooks: { drawClear: [(plot) => drawEvents(plot, data)], setCursor: [(plot) => showValues(plot, figure)] },
-    }, uPlot.join([[[0, data.end], [null, null]], ...curves]).filter((_, i) => i !== 1), figure.querySelector('.drawing'));
+    }, uPlot.join([[[data.begin ?? 0, data.end], [null, null]], ...curves]).filter((_, i) => i !== 1), figure.querySelector('.drawing'));
   }
 
   function drawLanes(plot, data) {

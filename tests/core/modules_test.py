@@ -21,6 +21,7 @@ MAY_USE = {
     "importer": {"core", "io", "sim"},
     "link": {"core", "io"},
     "sim": {"core"},
+    "realism": {"core", "sim"},
     "slam": {"core"},
     "localize": {"core", "slam"},
     "plan": {"core"},
@@ -31,7 +32,7 @@ MAY_USE = {
     "report": {"core", "io", "score"},
     "monitor": {"core", "io"},
     "studies": {"core", "io", "slam", "localize", "plan", "inspect", "stack", "score", "report"},
-    "app": {"core", "io", "importer", "link", "sim", "slam", "localize", "plan", "inspect", "stack", "score", "render", "report", "monitor", "studies"},
+    "app": {"core", "io", "importer", "link", "sim", "realism", "slam", "localize", "plan", "inspect", "stack", "score", "render", "report", "monitor", "studies"},
 }
 
 STACK = ("slam", "localize", "plan", "inspect", "stack")  # folders of the robot's software

@@ -27,6 +27,7 @@ struct Call {
   FaultMatrixOptions fault_matrix;
   SlamOptions slam;
   CalibrateOptions calibrate;
+  RealismOptions realism;
   TrainOptions train;
   ImportRobotOptions import_robot;
   ImportSiteOptions import_site;

@@ -18,10 +18,36 @@ void add_slam(CLI::App& app, Call& call) {
   command->callback([&] { call.chosen = [&] { return slam_command(call.slam); }; });
 }
 
+void add_site_options(CLI::App& command, LogOnSiteOptions& options) {
+  command.add_option("--site", options.site, "Site: MJCF file or name of a world (default: the world of a run)");
+  command.add_option("--trajectory", options.trajectory,
+                     "Path of the body in the site: TUM file, or truth or pose of a run (default: truth of a run)");
+  command.add_option("--lidar", options.lidar,
+                     "Simulated lidar: preset, or preset file (default: that of a run, or rplidar_s2)");
+}
+
+void add_realism(CLI::App& app, Call& call) {
+  RealismOptions& realism = call.realism;
+  CLI::App* command = app.add_subcommand("realism", "Compare recorded scans with simulated ones in a site");
+  command->add_option("log", realism.input.log, "Log file (CARMEN or MCAP) or run directory")->required();
+  add_site_options(*command, realism.input);
+  command->add_option("--set", realism.overrides, kSetHelp)->take_all();
+  command->add_flag("--skip-invalid", realism.skip_invalid, kSkipHelp);
+  command->add_option("--out", realism.out, kOutHelp)->capture_default_str();
+  add_json(*command, realism.form);
+  command->callback([&] { call.chosen = [&] { return realism_command(call.realism); }; });
+}
+
 void add_calibrate(CLI::App& app, Call& call) {
   CalibrateOptions& calibrate = call.calibrate;
-  CLI::App* command = app.add_subcommand("calibrate", "Calibrate lidar pose and odometry scale from a log");
+  CLI::App* command = app.add_subcommand("calibrate", "Calibrate odometry, lidar pose or lidar settings from a log");
   command->add_option("log", calibrate.log, kLogHelp)->required();
+  command
+      ->add_option("--sensor", calibrate.sensor,
+                   "odometry: lidar pose and odometry scales; lidar: noise and other settings of the lidar, in a site")
+      ->check(CLI::IsMember({"odometry", "lidar"}))
+      ->capture_default_str();
+  add_site_options(*command, calibrate.site);
   command->add_option("--set", calibrate.overrides, kSetHelp)->take_all();
   command->add_flag("--skip-invalid", calibrate.skip_invalid, kSkipHelp);
   command->add_option("--out", calibrate.out, kOutHelp)->capture_default_str();
@@ -75,6 +101,7 @@ void add_plan(CLI::App& app, Call& call) {
 void add_mapping_commands(CLI::App& app, Call& call) {
   add_slam(app, call);
   add_calibrate(app, call);
+  add_realism(app, call);
   add_train(app, call);
   add_solve(app, call);
   add_plan(app, call);

@@ -136,6 +136,9 @@ std::string table_text(const slam::CalibrationResult& result) {
 }  // namespace
 
 ExitCode calibrate_command(const CalibrateOptions& options) {
+  if (options.sensor == "lidar") return calibrate_lidar_command(options);
+  if (!options.site.site.empty() || !options.site.trajectory.empty() || !options.site.lidar.empty())
+    throw InputError("--site, --trajectory and --lidar: only with --sensor lidar");
   std::vector<std::string> overrides = options.overrides;
   if (options.skip_invalid) overrides.emplace_back("log.skip_invalid=true");
   const auto settings = io::parse_settings<LogCalibrationSettings>(overrides);

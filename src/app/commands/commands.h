@@ -12,6 +12,7 @@
 #include "app/common/print_result.h"
 #include "app/monitor/monitor_options.h"
 #include "app/plan/plan_options.h"
+#include "app/realism/log_on_site.h"
 #include "score/pose/relation_error.h"
 
 /// Functions of the program's commands, one each. Results are printed to standard output, messages to standard error.
@@ -150,15 +151,29 @@ struct SlamOptions {
 /// Builds a map from a recorded log.
 ExitCode slam_command(const SlamOptions& options);
 
+struct RealismOptions {
+  LogOnSiteOptions input;
+  std::vector<std::string> overrides;
+  bool skip_invalid = false;
+  std::filesystem::path out = "out/realism";
+  ResultForm form = ResultForm::kText;
+};
+/// Compares the recorded scans of a log with simulated ones in a site.
+ExitCode realism_command(const RealismOptions& options);
+
 struct CalibrateOptions {
-  std::filesystem::path log;  ///< CARMEN or MCAP
+  std::filesystem::path log;        ///< CARMEN or MCAP
+  std::string sensor = "odometry";  ///< odometry: lidar pose and odometry scales; lidar: settings of the lidar
+  LogOnSiteOptions site;            ///< site, path and lidar for the sensor lidar
   std::vector<std::string> overrides;
   bool skip_invalid = false;
   std::filesystem::path out = "out/calibration";
   ResultForm form = ResultForm::kText;
 };
-/// Calibrates the lidar pose and the odometry scales from a recorded log.
+/// Calibrates the lidar pose and the odometry scales, or the settings of the lidar, from a recorded log.
 ExitCode calibrate_command(const CalibrateOptions& options);
+/// Fits the settings of the lidar to a log in a known site.
+ExitCode calibrate_lidar_command(const CalibrateOptions& options);
 
 struct TrainOptions {
   std::vector<std::filesystem::path> runs;        ///< run directories for training

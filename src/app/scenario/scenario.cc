@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "app/scenario/lidar_preset.h"
 #include "app/scenario/mounts.h"
 #include "app/scenario/neighbor_model.h"
 #include "app/scenario/sensor_needs.h"
@@ -107,6 +108,13 @@ YAML::Node lines_of(const std::filesystem::path& file, const std::string& key,
   return is_overridden(key, overrides) ? YAML::Node() : io::load_document(file, {});
 }
 
+/// Loads the document of a scenario or a robot profile, with the values of preset files in place of their names.
+YAML::Node load_with_presets(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  YAML::Node document = io::load_document(file, overrides);
+  expand_lidar_presets(file, document);
+  return document;
+}
+
 /// Reads a scenario or a robot profile over the values in `settings`. Mounts of the file switch their sensors on before
 /// the settings of the sensors are read, and extend the mounts in `settings`. If the file selects another lidar, the
 /// as-built tolerances of that lidar are the defaults.
@@ -114,17 +122,21 @@ template <typename Settings>
 void read_over(const std::filesystem::path& file, const std::vector<std::string>& overrides, Settings& settings) {
   const std::string preset = settings.sensors.lidar.preset;
   const std::vector<MountSettings> inherited = std::exchange(settings.mounts, {});
+  const YAML::Node document = load_with_presets(file, overrides);
+  const auto read_document = [&](Settings& into) {
+    io::SettingsReader::read_section(file.string(), document, "", into);
+  };
   Settings read = settings;
-  io::read_settings(file, overrides, read);
+  read_document(read);
   std::vector<MountSettings> mounts = std::move(read.mounts);
   complete_mounts(file, lines_of(file, "mounts", overrides), mounts);
   for (const MountSettings& mount : mounts) mount_sensor(mount, settings.sensors);
   read = settings;
-  io::read_settings(file, overrides, read);
+  read_document(read);
   if (read.sensors.lidar.preset != preset) {
     settings.as_built.lidar = sim::LidarTolerances::for_preset(read.sensors.lidar.preset);
     read = settings;
-    io::read_settings(file, overrides, read);
+    read_document(read);
   }
   read.mounts = merge_mounts(inherited, mounts);
   settings = std::move(read);
@@ -258,7 +270,9 @@ Scenario default_scenario(const std::string& robot, const std::filesystem::path&
 
 Scenario load_scenario(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   const std::filesystem::path data_root = find_data_root(file);
-  const std::string robot = io::load_settings<Scenario>(file, overrides).robot;
+  Scenario named;
+  io::SettingsReader::read_section(file.string(), load_with_presets(file, overrides), "", named);
+  const std::string robot = named.robot;
   const std::filesystem::path profile = robot_file(robot, ".yaml", data_root);
   const Scenario of_profile = scenario_of_profile(profile, robot_file(robot, ".urdf", data_root));
   Scenario scenario = of_profile;

@@ -79,6 +79,13 @@ struct LidarTolerances {
   double rate_std = 0.01;         ///< standard deviation of the relative revolution rate, which varies with a
                                   ///< correlation time of 5 s; the sheet bounds fluctuations by 5 %. Messages state the
                                   ///< nominal rate
+  double measured_range_offset_m = 0.0;  ///< range offset of one device by calibration (patrol calibrate --sensor
+                                         ///< lidar), added to the draw within the tolerance
+  double measured_range_scale = 0.0;     ///< relative range error by calibration, added to the draw
+  double measured_reflectivity_m = 0.0;  ///< range error on 10 % reflectivity relative to 50 % by calibration, added
+                                         ///< to the draw
+  double measured_incidence_m = 0.0;     ///< range error at grazing incidence relative to normal incidence by
+                                         ///< calibration, added to the draw
 
   /// Returns the tolerances of a preset of sensors.lidar.
   static LidarTolerances for_preset(const std::string& preset) {
@@ -97,6 +104,10 @@ struct LidarTolerances {
     visit("axis_tilt_deg", self.axis_tilt_deg, between(0.0, 10.0));
     visit("cone_deg", self.cone_deg, between(0.0, 10.0));
     visit("rate_std", self.rate_std, between(0.0, 0.1));
+    visit("measured_range_offset_m", self.measured_range_offset_m, between(-1.0, 1.0));
+    visit("measured_range_scale", self.measured_range_scale, between(-0.1, 0.1));
+    visit("measured_reflectivity_m", self.measured_reflectivity_m, between(-1.0, 1.0));
+    visit("measured_incidence_m", self.measured_incidence_m, between(-1.0, 1.0));
   }
 };
 

@@ -1,0 +1,146 @@
+#include "app/realism/log_on_site.h"
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "app/mapping/read_scans.h"
+#include "app/record/run_record.h"
+#include "app/scenario/lidar_preset.h"
+#include "app/scenario/scenario.h"
+#include "core/error.h"
+#include "core/geometry/angles.h"
+#include "io/trajectories/tum.h"
+
+namespace patrol::app {
+namespace {
+
+constexpr double kAssumedHeight_m = 0.4;
+
+/// Scenario of the run that wrote a log; none for other logs.
+std::optional<std::filesystem::path> scenario_of_log(const std::filesystem::path& log) {
+  std::filesystem::path scenario = log.parent_path() / "scenario.yaml";
+  if (log.filename() != "log.mcap" || !std::filesystem::exists(scenario)) return std::nullopt;
+  return scenario;
+}
+
+std::filesystem::path find_world(const std::string& site, const std::filesystem::path& near) {
+  if (std::filesystem::is_regular_file(site)) return site;
+  const std::filesystem::path file = find_data_root(near) / "worlds" / site / (site + ".xml");
+  if (site.find('/') == std::string::npos && std::filesystem::is_regular_file(file)) return file;
+  throw InputError(fmt::format("--site = {}: must be an MJCF file or the name of a world", site));
+}
+
+realism::LidarDevice device_of(const LidarPreset& preset) {
+  return {.settings = preset.lidar,
+          .errors = {.range_offset_m = preset.as_built.measured_range_offset_m,
+                     .range_scale = preset.as_built.measured_range_scale,
+                     .reflectivity_m = preset.as_built.measured_reflectivity_m,
+                     .incidence_m = preset.as_built.measured_incidence_m}};
+}
+
+/// Lifts a planar path to the mean height of another one.
+Trajectory lifted(const Trajectory& path, const Pose2& T_site_path, const Trajectory& heights) {
+  double z_m = 0.0;
+  for (const StampedPose& entry : heights) z_m += entry.pose.position.z() / static_cast<double>(heights.size());
+  Trajectory result;
+  for (const StampedPose& entry : path) {
+    Pose3 pose = to_pose3(T_site_path) * entry.pose;
+    pose.position.z() += z_m;
+    result.push_back({entry.stamp, pose});
+  }
+  return result;
+}
+
+Trajectory path_of_run(const std::filesystem::path& log, const std::string& name) {
+  const RunRecord record = read_run_record(log);
+  if (name == "truth") return record.T_world_body;
+  if (record.T_map_body.size() < 2)
+    throw InputError(fmt::format("{}: no poses on /pose: use --trajectory truth", log.string()));
+  return lifted(record.T_map_body, pose_of_map(record, std::nullopt), record.T_world_body);
+}
+
+}  // namespace
+
+bool is_path_exact(const LogOnSiteOptions& options) {
+  return options.trajectory == "truth" || options.trajectory.empty();
+}
+
+LogOnSite find_log_on_site(const LogOnSiteOptions& options, const LogOnSiteSettings& settings) {
+  LogOnSite source;
+  source.log = std::filesystem::is_directory(options.log) ? options.log / "log.mcap" : options.log;
+  if (!std::filesystem::exists(source.log)) throw InputError(fmt::format("{}: log not found", source.log.string()));
+  const std::optional<std::filesystem::path> scenario_file = scenario_of_log(source.log);
+  source.is_run = scenario_file.has_value();
+  std::string site = options.site, lidar = options.lidar;
+  source.path_name = options.trajectory;
+  if (scenario_file) {
+    const Scenario scenario = load_scenario(*scenario_file);
+    if (site.empty()) site = scenario.world;
+    if (lidar.empty()) lidar = scenario.sensors.lidar.preset;
+    if (source.path_name.empty()) source.path_name = "truth";
+    const RobotDescription robot = load_scenario_files(scenario, find_data_root(*scenario_file)).robot;
+    source.T_body_lidar = robot.T_body("lidar");
+  }
+  if (site.empty()) throw InputError("--site: required for a log that is not of patrol run");
+  if (source.path_name.empty()) throw InputError("--trajectory: required for a log that is not of patrol run");
+  source.world_xml = find_world(site, scenario_file.value_or(std::filesystem::path()));
+  source.lidar_name = lidar.empty() ? "rplidar_s2" : lidar;
+  source.device = device_of(find_lidar_preset(source.lidar_name, find_data_root({}), "--lidar"));
+  const bool is_of_run = source.path_name == "truth" || source.path_name == "pose";
+  if (is_of_run && !source.is_run)
+    throw InputError(fmt::format("--trajectory = {}: only for a run directory: give a TUM file", source.path_name));
+  source.T_site_body = is_of_run ? path_of_run(source.log, source.path_name)
+                                 : io::load_tum(source.path_name, io::SameStamps::kKeepFirst);
+  const Pose3 T_site_path = to_pose3({settings.path.x_m, settings.path.y_m, to_rad(settings.path.yaw_deg)});
+  for (StampedPose& entry : source.T_site_body) entry.pose = T_site_path * entry.pose;
+  return source;
+}
+
+std::optional<ScansOnPath> read_scans_on_path(const LogOnSite& source, const LogOnSiteSettings& settings) {
+  const std::unique_ptr<io::ScanLog> log = io::open_scan_log(source.log, settings.log);
+  const auto max_scans = static_cast<std::size_t>(settings.max_scans);
+  ScansOnPath result;
+  std::vector<RecordedScan> kept;
+  std::size_t stride = 1;
+  {
+    const InterruptGuard guard;
+    ProgressBar bar;
+    const bool is_whole =
+        read_scans(*log, source.log.filename().string(), guard, bar, [&](const RecordedScan& recorded) {
+          if (result.num_read++ % stride != 0) return;
+          kept.push_back(recorded);
+          if (kept.size() < 2 * max_scans) return;
+          // Keep every other scan: an even sample of a log of unknown length.
+          for (std::size_t k = 0; 2 * k < kept.size(); ++k) kept[k] = std::move(kept[2 * k]);
+          kept.resize(max_scans);
+          stride *= 2;
+        });
+    if (!is_whole) return std::nullopt;
+  }
+  result.summary = log->summary();
+  const std::size_t count = std::min(kept.size(), max_scans);
+  for (std::size_t k = 0; k < count; ++k) {
+    const RecordedScan& recorded = kept[k * kept.size() / count];
+    realism::PosedScan posed;
+    const Pose3 T_body_lidar = source.T_body_lidar.value_or(to_pose3(recorded.T_body_lidar));
+    if (!realism::place_scan(recorded.scan, source.T_site_body, T_body_lidar, posed)) {
+      ++result.num_outside;
+      continue;
+    }
+    double lift_m = 0.0;
+    if (settings.lidar_height_m > 0.0) lift_m = settings.lidar_height_m - posed.T_site_lidar.front().position.z();
+    else if (!source.is_run) lift_m = kAssumedHeight_m, result.is_height_assumed = true;
+    for (Pose3& pose : posed.T_site_lidar) pose.position.z() += lift_m;
+    result.scans.push_back(std::move(posed));
+  }
+  if (result.scans.size() < 4)
+    throw InputError(fmt::format("{}: only {} of {} scans are within the time of the path {}", source.log.string(),
+                                 result.scans.size(), count, source.path_name));
+  result.lidar_height_m = result.scans.front().T_site_lidar.front().position.z();
+  return result;
+}
+
+}  // namespace patrol::app

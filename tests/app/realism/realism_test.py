@@ -1,0 +1,116 @@
+#!/usr/bin/env python3
+"""patrol realism and patrol calibrate --sensor lidar on a CARMEN log made here: a lidar with a noise of 12 mm, an offset of 30 mm and lost beams in a known site.
+
+usage: realism_test.py PATROL SOURCE_DIR
+"""
+import json
+import math
+import pathlib
+import random
+import subprocess
+import sys
+import tempfile
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "mapping"))
+from block_log import BEAMS, START_S, drive, ranges_from, walls  # noqa: E402
+
+PATROL, SOURCE = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
+NOISE_M, OFFSET_M, LOST = 0.012, 0.030, 0.05
+HALF_WALL_M = 0.0005  # the surfaces of the site are nearer than the walls of the log by this
+
+
+def site():
+    """The walls of the log as thin boxes."""
+    geoms = []
+    for (ax, ay), (bx, by) in walls():
+        length, angle = math.hypot(bx - ax, by - ay), math.degrees(math.atan2(by - ay, bx - ax))
+        geoms.append(f'<geom type="box" pos="{(ax + bx) / 2} {(ay + by) / 2} 0.5" size="{length / 2} {HALF_WALL_M} 0.5" euler="0 0 {angle}" rgba="0.5 0.5 0.5 1"/>')
+    return "<mujoco>\n<worldbody>\n" + "\n".join(geoms) + "\n</worldbody>\n</mujoco>\n"
+
+
+def write_log(folder):
+    draw = random.Random(3)
+    segments = walls()
+    log, path = ["# CARMEN Logfile", "PARAM robot_frontlaser_offset 0.0 0.0 host 0.0"], []
+    for k, (x, y, yaw) in enumerate(drive()[::3]):
+        ranges = []
+        for range_m in ranges_from(x, y, yaw, segments):
+            if draw.random() < LOST or range_m > 80.0:
+                ranges.append("81.83")
+            else:
+                ranges.append(f"{round((range_m + OFFSET_M + draw.gauss(0.0, NOISE_M)) / 0.01) * 0.01:.2f}")
+        stamp = START_S + 0.4 * k
+        pose = f"{x:.6f} {y:.6f} {yaw:.6f}"
+        log.append(f"FLASER {BEAMS} {' '.join(ranges)} {pose} {pose} {stamp:.6f} host {stamp:.6f}")
+        path.append(f"{stamp:.6f} {x:.6f} {y:.6f} 0 0 0 {math.sin(yaw / 2):.9f} {math.cos(yaw / 2):.9f}")
+    (folder / "log.clf").write_text("\n".join(log) + "\n")
+    (folder / "path.tum").write_text("\n".join(path) + "\n")
+    (folder / "site.xml").write_text(site())
+
+
+class Realism(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder_object = tempfile.TemporaryDirectory()
+        cls.folder = pathlib.Path(cls.folder_object.name)
+        write_log(cls.folder)
+        cls.inputs = [cls.folder / "log.clf", "--site", cls.folder / "site.xml", "--trajectory", cls.folder / "path.tum"]
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder_object.cleanup()
+
+    def patrol(self, *arguments, code=0):
+        done = subprocess.run([PATROL, *map(str, arguments)], capture_output=True, text=True, timeout=200, cwd=SOURCE)
+        self.assertEqual(done.returncode, code, done.stdout + done.stderr)
+        return done
+
+    def test_realism_measures_offset_noise_and_drop_outs(self):
+        out = self.folder / "realism"
+        self.patrol("realism", *self.inputs, "--out", out, "--set", "input.max_scans=60")
+        self.assertEqual(sorted(file.name for file in out.iterdir()), ["index.html", "metrics.json", "residuals.csv", "settings.yaml"])
+        recorded = json.loads((out / "metrics.json").read_text())["recorded"]
+        self.assertAlmostEqual(recorded["static"]["median_m"], OFFSET_M, delta=0.002)
+        self.assertAlmostEqual(recorded["static"]["robust_std_m"], math.hypot(NOISE_M, 0.01 / math.sqrt(12)), delta=0.001)
+        self.assertAlmostEqual(recorded["dropout_rate"], LOST, delta=0.01)
+        self.assertIn("Map of the residuals", (out / "index.html").read_text())
+
+    def test_calibrate_finds_them_and_its_preset_halves_the_distance(self):
+        out = self.folder / "calibration"
+        text = self.patrol("calibrate", "--sensor", "lidar", *self.inputs, "--lidar", "tim571", "--out", out).stdout
+        metrics = json.loads((out / "metrics.json").read_text())
+        for name, planted in [("range_noise_std_m", NOISE_M), ("measured_range_offset_m", OFFSET_M + HALF_WALL_M), ("dropout_probability", LOST), ("range_quantization_m", 0.01)]:
+            fitted = metrics["parameters"][name]
+            self.assertTrue(fitted["seen"], name)
+            self.assertLessEqual(fitted["low"], planted * 1.0001 + 1e-9, name)
+            self.assertGreaterEqual(fitted["high"], planted * 0.9999 - 1e-9, name)
+        self.assertFalse(metrics["parameters"]["measured_reflectivity_m"]["seen"])
+        self.assertIn("not observable in this log: the surfaces of the site have nearly one reflectivity", text)
+        self.assertLess(metrics["held_out"]["ks_ratio"], 0.5)
+        again = self.patrol("realism", *self.inputs, "--lidar", out / "lidar.yaml", "--set", "input.max_scans=60", "--out", self.folder / "again")
+        self.assertIn("Kolmogorov-Smirnov", again.stdout)
+        self.assertLess(json.loads((self.folder / "again/metrics.json").read_text())["ks_distance"], 0.06)
+
+    def test_what_is_missing_or_does_not_fit_is_refused_without_output(self):
+        log, out = self.folder / "log.clf", self.folder / "refused"
+        site, path = ["--site", self.folder / "site.xml"], ["--trajectory", self.folder / "path.tum"]
+        for arguments, message in [
+                ([log, *path], "--site: required"),
+                ([log, *site], "--trajectory: required"),
+                ([log, *site, "--trajectory", "truth"], "only for a run directory"),
+                ([log, *path, "--site", "moon"], "--site = moon: must be an MJCF file or the name of a world"),
+                ([log, *site, *path, "--lidar", "sick"], "--lidar = sick: must be one of"),
+                ([self.folder / "absent", *site, *path], "log not found"),
+                ([log, *site, *path, "--set", "input.max_scans=1"], "input.max_scans: 1 is out of range")]:
+            for command in (["realism"], ["calibrate", "--sensor", "lidar"]):
+                done = self.patrol(*command, *arguments, "--out", out, code=2)
+                self.assertIn(message, done.stderr)
+                self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
+                self.assertFalse(out.exists())
+        done = self.patrol("calibrate", log, *site, "--out", out, code=2)
+        self.assertIn("only with --sensor lidar", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
