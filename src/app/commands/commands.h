@@ -181,11 +181,14 @@ struct ImportRobotOptions {
 ExitCode import_robot_command(const ImportRobotOptions& options);
 
 struct ImportSiteOptions {
-  std::filesystem::path file;  ///< floor plan
-  std::filesystem::path out;   ///< folder worlds/NAME
+  std::filesystem::path file;         ///< floor plan, mesh, SDF world or MJCF
+  std::filesystem::path out;          ///< folder worlds/NAME
+  std::vector<std::string> packages;  ///< NAME=FOLDER
   double wall_height_m = 2.5;
-  double scale = 0.0;  ///< meters per unit of the file; 0: by rule
-  std::string up;      ///< axis of the file that points up; empty: by rule
+  double scale = 0.0;            ///< meters per unit of the file; 0: by rule
+  std::string up;                ///< axis of the file that points up; empty: by rule
+  std::vector<double> start_m;   ///< x and y of a point on the ground; empty: by rule
+  double contact_cell_m = 0.05;  ///< cell of the contact geometry of meshes
 };
 /// Makes a site of `worlds` from a file.
 ExitCode import_site_command(const ImportSiteOptions& options);
