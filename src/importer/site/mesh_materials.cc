@@ -85,6 +85,14 @@ bool MeshMaterials::is_two_sided(unsigned index) const {
   return !is_linear_ || is_two_sided != 0;
 }
 
+bool MeshMaterials::is_gray(unsigned index) const {
+  const aiMaterial& material = *source_.mMaterials[index];
+  aiColor4D color(1.0F, 1.0F, 1.0F, 1.0F);
+  if (material.Get(AI_MATKEY_BASE_COLOR, color) != AI_SUCCESS) material.Get(AI_MATKEY_COLOR_DIFFUSE, color);
+  const auto [least, most] = std::minmax({color.r, color.g, color.b});
+  return texture_path(material).empty() && most - least < 1e-3F;
+}
+
 std::string MeshMaterials::unique_name(const std::string& wanted) {
   std::string name = prefix_ + (wanted.empty() ? "material" : wanted);
   for (int i = 2; !names_.insert(name).second; ++i) name = fmt::format("{}{} {}", prefix_, wanted, i);

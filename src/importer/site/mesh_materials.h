@@ -26,10 +26,13 @@ class MeshMaterials {
   /// Returns whether the surfaces are visible from both sides: by glTF's "doubleSided"; in other formats, always.
   bool is_two_sided(unsigned index) const;
 
+  /// Returns whether the material has no texture and a gray color, so that colors of vertices determine the color.
+  bool is_gray(unsigned index) const;
+
+ private:
   /// Returns whether the material determines a color or has a texture.
   bool has_color(unsigned index) const;
 
- private:
   /// Texture of a material: a file below textures/, or only a color.
   struct Texture {
     std::string file;  ///< empty: cannot be read

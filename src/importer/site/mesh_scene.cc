@@ -90,7 +90,7 @@ class PartCollector {
 
   void add_mesh(const aiMesh& mesh, const Eigen::Affine3d& T) {
     const bool has_coordinates = mesh.HasTextureCoords(0) && mesh.mNumUVComponents[0] >= 2;
-    const bool by_vertex = mesh.HasVertexColors(0) && !materials_.has_color(mesh.mMaterialIndex);
+    const bool by_vertex = mesh.HasVertexColors(0) && materials_.is_gray(mesh.mMaterialIndex);
     has_vertex_colors_ |= mesh.HasVertexColors(0);
     const Eigen::Matrix3d for_normals = T.linear().inverse().transpose();
     const bool is_mirrored = T.linear().determinant() < 0.0;
@@ -210,7 +210,7 @@ void add_rows(const aiScene& source, const PartCollector& collector, MeshScene& 
   ignored(morphs, "morph targets", "ignored, meshes have their base shape");
   if (collector.has_vertex_colors())
     scene.rows.push_back(
-        {"vertex colors", "of surfaces without material: four levels of each channel, by triangle; others ignored", ""});
+        {"vertex colors", "of gray surfaces: four levels of each channel, by triangle; others ignored", ""});
   if (collector.num_degenerate() > 0)
     scene.rows.push_back(
         {"triangles", fmt::format("{} without area are left out", collector.num_degenerate()), "the file"});
@@ -229,8 +229,12 @@ const aiScene& read_scene(const std::filesystem::path& file, Assimp::Importer& i
   const std::size_t count = count_triangles(raw, *raw.mRootNode);
   if (count > kMaxTriangles)
     throw InputError(fmt::format("{}: {} triangles: must be at most {}", file.string(), count, kMaxTriangles));
-  return check(importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_GenSmoothNormals | aiProcess_SortByPType |
-                                            aiProcess_JoinIdenticalVertices));
+  unsigned steps = aiProcess_Triangulate | aiProcess_GenSmoothNormals | aiProcess_SortByPType;
+  // It would join vertices of different colors.
+  const bool has_colors = std::any_of(raw.mMeshes, raw.mMeshes + raw.mNumMeshes,
+                                      [](const aiMesh* mesh) { return mesh->HasVertexColors(0); });
+  if (!has_colors) steps |= aiProcess_JoinIdenticalVertices;
+  return check(importer.ApplyPostProcessing(steps));
 }
 
 }  // namespace

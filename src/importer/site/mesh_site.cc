@@ -66,6 +66,22 @@ double unit_by_rule(const Eigen::AlignedBox3d& box, char up, SceneFrame& frame) 
   return unit_m;
 }
 
+/// Splits the triangle of a mesh of three vertices, because MuJoCo requires four.
+void split_single_triangle(SiteShape& shape) {
+  Mesh& mesh = shape.mesh;
+  if (mesh.vertices_m.size() != 3 || mesh.triangles.empty()) return;
+  const std::array<int, 3> t = mesh.triangles.front();
+  const auto middle = [&](auto& values) {
+    if (values.empty()) return;
+    const auto a = values[static_cast<std::size_t>(t[0])], b = values[static_cast<std::size_t>(t[1])];
+    values.push_back(0.5 * (a + b));
+  };
+  middle(mesh.vertices_m);
+  middle(mesh.normals);
+  middle(shape.texture_coordinates);
+  mesh.triangles = {{t[0], 3, t[2]}, {3, t[1], t[2]}};
+}
+
 void add_far_row(const MeshScene& scene, std::vector<Assumption>& rows) {
   constexpr double kFar_m = 2000.0;
   double max_m = 0.0;
@@ -118,6 +134,7 @@ std::vector<SiteShape> seen_shapes(const MeshScene& scene, const std::string& na
                        .material = scene.materials[part.material].name,
                        .mesh = part.mesh,
                        .texture_coordinates = part.texture_coordinates};
+    split_single_triangle(shape);
     shapes.push_back(shape);
     if (!part.is_two_sided || part.mesh.triangles.size() > kMaxTested || is_closed(welded(part.mesh))) continue;
     shape.name = fmt::format("{}_{}", name, shapes.size() + 1);

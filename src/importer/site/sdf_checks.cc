@@ -93,7 +93,8 @@ class ElementChecker {
     std::vector<Assumption> rows;
     for (const auto& [key, found] : found_) {
       const std::string more = found.count > 1 ? fmt::format(" ({}, the first in line {})", found.count, found.line)
-                                               : fmt::format(" (line {})", found.line);
+                               : found.line > 0 ? fmt::format(" (line {})", found.line)
+                                                : std::string();
       rows.push_back({"<" + key.first + ">", key.second + more, "the file"});
     }
     return rows;

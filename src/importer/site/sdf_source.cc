@@ -90,6 +90,21 @@ std::optional<int> SdfSource::line_of(const std::string& name) const {
   return line;
 }
 
+std::vector<SdfSource::Part> SdfSource::parts() const {
+  std::vector<Part> parts;
+  const tinyxml2::XMLElement& root = *document_.RootElement();
+  for (const auto* child = root.FirstChildElement("world")->FirstChildElement(); child != nullptr;
+       child = child->NextSiblingElement()) {
+    tinyxml2::XMLPrinter printer;
+    child->Accept(&printer);
+    parts.push_back({.line = child->GetLineNum(),
+                     .element = child->Name(),
+                     .text = fmt::format("<sdf version=\"{}\"><world name=\"part\">{}</world></sdf>",
+                                         root.Attribute("version"), printer.CStr())});
+  }
+  return parts;
+}
+
 std::optional<std::string> SdfSource::text_at(int line, std::string_view name) const {
   std::optional<std::string> text;
   for_each_element(*document_.RootElement(), [&](const tinyxml2::XMLElement& element) {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <tinyxml2.h>
 
@@ -21,6 +22,16 @@ class SdfSource {
 
   /// Returns the line of the last element with this name in its attribute "name".
   std::optional<int> line_of(const std::string& name) const;
+
+  /// Element of the world alone in a world.
+  struct Part {
+    int line = 0;
+    std::string element;
+    std::string text;  ///< SDF
+  };
+
+  /// Returns each element of the world, to find which one is invalid.
+  std::vector<Part> parts() const;
 
   /// Returns the text of the element at the line if it has no elements below it.
   std::optional<std::string> text_at(int line, std::string_view element) const;

@@ -30,9 +30,18 @@ constexpr const char* kGroundPlane = R"(<sdf version="1.6"><model name="ground_p
 constexpr const char* kSun = R"(<sdf version="1.6"><light name="sun" type="directional"><pose>0 0 10 0 0 0</pose>
 <diffuse>0.8 0.8 0.8 1</diffuse><direction>-0.5 0.1 -0.9</direction></light></sdf>)";
 
+/// Mutes the reader of URDF, which libsdformat tries when it cannot read a file.
+class QuietUrdf {
+ public:
+  QuietUrdf() { console_bridge::noOutputHandler(); }
+  ~QuietUrdf() { console_bridge::restorePreviousOutputHandler(); }
+  QuietUrdf(const QuietUrdf&) = delete;
+  QuietUrdf& operator=(const QuietUrdf&) = delete;
+};
+
 /// Returns the place of an error of libsdformat, with the name of the file as it was given.
 std::string place_of(const std::filesystem::path& file, const std::string& path, std::optional<int> line) {
-  const bool is_file = path.empty() || path == file.string() || path.starts_with('<') || path.starts_with("data-");
+  const bool is_file = path.empty() || path == std::filesystem::absolute(file).string() || path.starts_with('<') || path.starts_with("data-");
   return (is_file ? file.string() : path) + (line ? fmt::format(":{}", *line) : "");
 }
 
@@ -46,10 +55,10 @@ SdfWorld::SdfWorld(const std::filesystem::path& file, const std::map<std::string
   config.SetUnrecognizedElementsPolicy(sdf::EnforcementPolicy::LOG);
   config.SetDeprecatedElementsPolicy(sdf::EnforcementPolicy::LOG);
   config.SetFindCallback([this](const std::string& uri) { return find(uri); });
-  console_bridge::noOutputHandler();  // libsdformat tries URDF when it cannot read a file
-  const sdf::Errors errors = root_.Load(file.string(), config);
-  console_bridge::restorePreviousOutputHandler();
-  if (!errors.empty()) fail(errors.front());
+  const QuietUrdf quiet;
+  // Absolute: libsdformat would read its own file for a name such as "joint.sdf".
+  const sdf::Errors errors = root_.Load(std::filesystem::absolute(file).string(), config);
+  if (!errors.empty()) fail(errors.front(), config);
 }
 
 SdfWorld::~SdfWorld() {
@@ -57,11 +66,33 @@ SdfWorld::~SdfWorld() {
   if (!built_in_.empty()) std::filesystem::remove_all(built_in_, ignored);
 }
 
-void SdfWorld::fail(const sdf::Error& error) const {
+std::string SdfWorld::text_of_unlocated(const sdf::Error& error, const sdf::ParserConfig& config,
+                                        std::optional<int>& line) const {
+  const std::string text = io::on_one_line(error.Message());
+  if (const std::size_t at = text.find("with name["); at != std::string::npos) {
+    const std::size_t begin = at + 10;
+    line = source_.line_of(text.substr(begin, text.find(']', begin) - begin));
+    if (line) return text;
+  }
+  const bool is_unreadable = error.Code() == sdf::ErrorCode::FILE_READ;
+  for (const SdfSource::Part& part : source_.parts()) {
+    const sdf::Errors errors = sdf::Root().LoadSdfString(part.text, config);
+    const bool is_cause = std::any_of(errors.begin(), errors.end(), [&](const sdf::Error& other) {
+      return is_unreadable || other.Message() == error.Message();
+    });
+    if (!is_cause || errors.front().Code() == sdf::ErrorCode::URI_LOOKUP) continue;
+    line = part.line;
+    const char* why = "a required element is missing, or a value is not one of those allowed";
+    return fmt::format("<{}>: {}", part.element, is_unreadable ? why : text);
+  }
+  return text;
+}
+
+void SdfWorld::fail(const sdf::Error& error, const sdf::ParserConfig& config) const {
   std::string text = io::on_one_line(error.Message());
-  if (text.find("http://") != std::string::npos || text.find("https://") != std::string::npos)
+  if (text.find("http://") != std::string::npos || text.find("https://") != std::string::npos) {
     text = "models of a network are not supported: download it and give its folder with --package: " + text;
-  else if (const std::size_t at = text.find(kModelScheme); at != std::string::npos) {
+  } else if (const std::size_t at = text.find(kModelScheme); at != std::string::npos) {
     const std::size_t begin = at + kModelScheme.size();
     const std::string name = text.substr(begin, text.find_first_of("]/\"' ", begin) - begin);
     text = fmt::format("<include>: unknown model \"{0}\": give its folder with --package {0}=FOLDER", name);
@@ -75,10 +106,7 @@ void SdfWorld::fail(const sdf::Error& error) const {
     text = value ? fmt::format("<{}>: \"{}\" is not a valid value", element, *value)
                  : fmt::format("<{}>: is incomplete or invalid", element);
   } else if (!line) {
-    if (const std::size_t at = text.find("with name["); at != std::string::npos) {
-      const std::size_t begin = at + 10;
-      line = source_.line_of(text.substr(begin, text.find(']', begin) - begin));
-    }
+    text = text_of_unlocated(error, config, line);
   }
   throw InputError(place_of(file_, path, line) + ": " + text);
 }

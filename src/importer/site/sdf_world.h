@@ -41,7 +41,8 @@ class SdfWorld {
   std::string find(const std::string& uri);
   std::optional<std::filesystem::path> find_model(const std::string& name) const;
   std::string built_in(const std::string& name);
-  [[noreturn]] void fail(const sdf::Error& error) const;
+  [[noreturn]] void fail(const sdf::Error& error, const sdf::ParserConfig& config) const;
+  std::string text_of_unlocated(const sdf::Error& error, const sdf::ParserConfig& config, std::optional<int>& line) const;
 
   std::filesystem::path file_;
   SdfSource source_;
