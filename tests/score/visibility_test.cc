@@ -95,5 +95,14 @@ TEST(MarkSeeable, PlacesNearerThanTheSpacingAreLeftOut) {
             drawing_of(mark_observable(draw(room), at({{3.9, 1.5}}), 30.0)));
 }
 
+TEST(MarkSeeable, APlaceOutsideTheMapSeesIntoIt) {
+  const OccupancyGrid map = draw({".....", ".....", "..#..", ".....", "....."});
+  const ReferenceMap seen = mark_observable(map, at({{-2.5, 2.5}}), 30.0);
+  EXPECT_EQ(drawing_of(seen)[2], "..#??");
+  EXPECT_EQ(drawing_of(seen)[0], ".....");
+  EXPECT_EQ(drawing_of(mark_observable(map, at({{-2.5, 2.5}}), 4.0))[2], "..???");
+  EXPECT_EQ(drawing_of(mark_observable(map, at({{-2.5, 2.5}}), 2.0))[2], "?????");
+}
+
 }  // namespace
 }  // namespace patrol::score::visibility_test

@@ -61,15 +61,15 @@ ExitCode import_robot_command(const ImportRobotOptions& options) {
 ExitCode import_site_command(const ImportSiteOptions& options) {
   std::optional<Eigen::Vector2d> start;
   if (!options.start_m.empty()) start = Eigen::Vector2d(options.start_m[0], options.start_m[1]);
-  const importer::ImportedSite site = importer::import_site({.file = options.file,
-                                                             .name = folder_name(options.out),
-                                                             .wall_height_m = options.wall_height_m,
-                                                             .scale = options.scale,
-                                                             .up = options.up,
-                                                             .start = start,
-                                                             .contact_cell_m = options.contact_cell_m,
-                                                             .packages = to_map<std::filesystem::path>(
-                                                                 options.packages, "--package")});
+  const importer::ImportedSite site =
+      importer::import_site({.file = options.file,
+                             .name = folder_name(options.out),
+                             .wall_height_m = options.wall_height_m,
+                             .scale = options.scale,
+                             .up = options.up,
+                             .start = start,
+                             .contact_cell_m = options.contact_cell_m,
+                             .packages = to_map<std::filesystem::path>(options.packages, "--package")});
   importer::write_site(site, options.out);
   print(site.assumptions, options.out);
   return ExitCode::kDone;

@@ -16,14 +16,14 @@
 namespace patrol::importer {
 namespace {
 
-constexpr double kConvex_m = 0.02;             // deviation of a convex component from its hull
-constexpr double kHullGap_m2 = 0.01;           // area that a hull may have more than its component
+constexpr double kConvex_m = 0.02;    // deviation of a convex component from its hull
+constexpr double kHullGap_m2 = 0.01;  // area that a hull may have more than its component
 constexpr int kHullVertices = 128;
 constexpr std::size_t kHullTriangles = 20000;  // larger components are not tested
 constexpr std::size_t kMaxHulls = 4000;
-constexpr double kMinHull_m = 0.2;             // diagonal; smaller components become boxes
-constexpr double kLevel_m = 0.01;              // deviation of a level ground from its plane
-constexpr double kAboveGround_m = 0.03;        // surfaces nearer to the ground belong to it
+constexpr double kMinHull_m = 0.2;       // diagonal; smaller components become boxes
+constexpr double kLevel_m = 0.01;        // deviation of a level ground from its plane
+constexpr double kAboveGround_m = 0.03;  // surfaces nearer to the ground belong to it
 
 const Eigen::Vector3d& corner(const Mesh& mesh, const std::array<int, 3>& triangle, std::size_t k) {
   return mesh.vertices_m[static_cast<std::size_t>(triangle[k])];
@@ -68,8 +68,9 @@ bool is_at_surface(const Mesh& mesh, const std::vector<FacePlane>& planes) {
   }
   for (const std::array<int, 3>& t : mesh.triangles) {
     const Eigen::Vector3d &a = corner(mesh, t, 0), &b = corner(mesh, t, 1), &c = corner(mesh, t, 2);
-    const double longest_m = std::sqrt(std::max({(b - a).squaredNorm(), (c - a).squaredNorm(), (c - b).squaredNorm()}));
-    const int parts = std::clamp(static_cast<int>(std::ceil(longest_m / 0.05)), 1, 10);
+    const double max_edge_m =
+        std::sqrt(std::max({(b - a).squaredNorm(), (c - a).squaredNorm(), (c - b).squaredNorm()}));
+    const int parts = std::clamp(static_cast<int>(std::ceil(max_edge_m / 0.05)), 1, 10);
     for (int i = 0; i <= parts; ++i) {
       for (int k = 0; i + k <= parts; ++k) {
         const double u = double(i) / parts, v = double(k) / parts;
@@ -148,17 +149,15 @@ SiteShape contact_shape(std::string name, SiteShapeType type) {
 
 /// Adds the ground, unless it consists of given surfaces only.
 void add_ground(const GroundSurface& ground, const GridGeometry& grid, ContactGeometry& contact) {
-  const auto [lowest, highest] =
-      std::minmax_element(ground.height_m.values().begin(), ground.height_m.values().end());
+  const auto [lowest, highest] = std::minmax_element(ground.height_m.values().begin(), ground.height_m.values().end());
   contact.ground_area_m2 = ground.area_m2;
   if (ground.is_found && ground.own_area_m2 < 1e-3 * ground.area_m2) {
     contact.rows.push_back({"ground", "the surfaces with contact of their own", ""});
     return;
   }
-  const std::string found =
-      ground.is_found ? fmt::format("{:.4g} m2 of walkable surface{}", ground.area_m2,
-                                    ground.faces_up ? "" : " whose triangles face down")
-                      : "no walkable surface of 1 m2, the lowest point of the mesh";
+  const std::string found = ground.is_found ? fmt::format("{:.4g} m2 of walkable surface{}", ground.area_m2,
+                                                          ground.faces_up ? "" : " whose triangles face down")
+                                            : "no walkable surface of 1 m2, the lowest point of the mesh";
   const double middle_m = 0.5 * (double{*lowest} + double{*highest});
   if (double{*highest} - middle_m <= kLevel_m) {
     SiteShape plane = contact_shape("contact_ground", SiteShapeType::kPlane);
@@ -173,11 +172,12 @@ void add_ground(const GroundSurface& ground, const GridGeometry& grid, ContactGe
   SiteShape field = contact_shape("contact_ground", SiteShapeType::kHeightField);
   field.height_field.height_m = ground.height_m;
   contact.shapes.push_back(std::move(field));
-  contact.rows.push_back({"ground",
-                          fmt::format("{}: a height field of {} x {} cells of {:g} m from {:.4g} to {:.4g} m; cells "
-                                      "without ground have the height of a drop or of the nearest ground",
-                                      found, grid.width, grid.height, grid.resolution_m, double{*lowest}, double{*highest}),
-                          "--start, --contact-cell"});
+  contact.rows.push_back(
+      {"ground",
+       fmt::format("{}: a height field of {} x {} cells of {:g} m from {:.4g} to {:.4g} m; cells "
+                   "without ground have the height of a drop or of the nearest ground",
+                   found, grid.width, grid.height, grid.resolution_m, double{*lowest}, double{*highest}),
+       "--start, --contact-cell"});
 }
 
 int add_hulls(const Split& parts, const GroundSurface& ground, double height_m, ContactGeometry& contact) {
@@ -211,17 +211,17 @@ ContactGeometry contact_geometry(const Mesh& mesh, const Mesh& given, const Cont
   for (int attempt = 0;; ++attempt, cell_m *= 2.0) {
     const GridGeometry grid = grid_of(mesh, options, cell_m);
     const GroundSurface ground = find_ground(mesh, given, grid, options.start);
-    const std::vector<Eigen::AlignedBox3d> boxes =
-        obstacle_boxes(parts.rest, ground, kAboveGround_m, options.height_m);
+    const std::vector<Eigen::AlignedBox3d> boxes = obstacle_boxes(parts.rest, ground, kAboveGround_m, options.height_m);
     if (boxes.size() > options.max_boxes && attempt < 2) continue;
     ContactGeometry contact;
     add_ground(ground, grid, contact);
     const int num_hulls = add_hulls(parts, ground, options.height_m, contact);
     add_boxes(boxes, contact);
     contact.rows.push_back(
-        {"contact", fmt::format("{} convex components as their hulls, other surfaces up to {:g} m above the ground as {} "
-                                "boxes of cells of {:g} m",
-                                num_hulls, options.height_m, boxes.size(), cell_m),
+        {"contact",
+         fmt::format("{} convex components as their hulls, other surfaces up to {:g} m above the ground as {} "
+                     "boxes of cells of {:g} m",
+                     num_hulls, options.height_m, boxes.size(), cell_m),
          "--contact-cell"});
     return contact;
   }

@@ -13,11 +13,11 @@ namespace patrol::importer {
 
 /// Options of `contact_geometry`.
 struct ContactOptions {
-  double cell_m = 0.05;                          ///< side of the cells of the ground and of the boxes
-  double height_m = 2.5;                         ///< surfaces up to this height above the ground have contact, at most 3
-  std::optional<Eigen::Vector2d> start = {};     ///< point in site on the ground; none: by rule
-  std::size_t max_cells = 6'000'000;             ///< the cell is doubled until the site has at most this number
-  std::size_t max_boxes = 60'000;                ///< the cell is doubled, at most twice, above this number of boxes
+  double cell_m = 0.05;                       ///< side of the cells of the ground and of the boxes
+  double height_m = 2.5;                      ///< surfaces up to this height above the ground have contact, at most 3
+  std::optional<Eigen::Vector2d> start = {};  ///< point in site on the ground; none: by rule
+  std::size_t max_cells = 6'000'000;          ///< the cell is doubled until the site has at most this number
+  std::size_t max_boxes = 60'000;             ///< the cell is doubled, at most twice, above this number of boxes
 };
 
 /// Contact geometry of triangles.

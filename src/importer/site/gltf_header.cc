@@ -40,8 +40,7 @@ GltfHeader read_gltf_header(const std::filesystem::path& file) {
     const nlohmann::json json = nlohmann::json::parse(text);
     const std::string version = json.at("asset").at("version").get<std::string>();
     if (!version.starts_with("2."))
-      throw InputError(
-          fmt::format("{}: asset.version: \"{}\": must be 2.x", file.string(), io::on_one_line(version)));
+      throw InputError(fmt::format("{}: asset.version: \"{}\": must be 2.x", file.string(), io::on_one_line(version)));
     for (const std::string& extension : json.value("extensionsRequired", std::vector<std::string>())) {
       if (!is_supported(extension))
         throw InputError(fmt::format("{}: extensionsRequired: {}: this extension is not supported", file.string(),

@@ -16,7 +16,7 @@ namespace {
 constexpr double kMinFree_m = 0.2;        // free height above a walkable surface
 constexpr double kSame_m = 1e-3;          // samples closer than this are one
 constexpr double kMinGround_m2 = 1.0;     // smaller surfaces are no ground by rule
-constexpr double kMinGroundShare = 0.25;  // of the largest surface
+constexpr double kMinGroundRatio = 0.25;  // of the largest surface
 
 /// Surface at the center of a cell.
 struct SurfaceSample {
@@ -186,7 +186,9 @@ int surface_at(SurfaceSamples& samples, const GridGeometry& grid, const Eigen::V
 int surface_by_rule(const std::vector<WalkableSurface>& surfaces, double cell_m2) {
   std::size_t largest = 0;
   bool has_up = false;
-  const auto is_large = [&](const WalkableSurface& s) { return static_cast<double>(s.count) * cell_m2 >= kMinGround_m2; };
+  const auto is_large = [&](const WalkableSurface& s) {
+    return static_cast<double>(s.count) * cell_m2 >= kMinGround_m2;
+  };
   for (const WalkableSurface& s : surfaces) has_up |= s.faces_up() && is_large(s);
   for (const WalkableSurface& s : surfaces) {
     if (s.faces_up() || !has_up) largest = std::max(largest, s.count);
@@ -195,7 +197,7 @@ int surface_by_rule(const std::vector<WalkableSurface>& surfaces, double cell_m2
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     const WalkableSurface& s = surfaces[i];
     if ((has_up && !s.faces_up()) || !is_large(s)) continue;
-    if (static_cast<double>(s.count) < kMinGroundShare * static_cast<double>(largest)) continue;
+    if (static_cast<double>(s.count) < kMinGroundRatio * static_cast<double>(largest)) continue;
     if (best < 0 || s.mean_z_m() < surfaces[static_cast<std::size_t>(best)].mean_z_m()) best = static_cast<int>(i);
   }
   return best;
@@ -234,8 +236,7 @@ void fill(SurfaceSamples& samples, double rise_m, std::vector<char>& is_known, G
 double GroundSurface::at(const Eigen::Vector2d& p_m) const {
   const GridGeometry& grid = height_m.geometry();
   const Eigen::Array2d position = (p_m - grid.origin_m).array() / grid.resolution_m - 0.5;
-  const Eigen::Array2d limited =
-      position.max(0.0).min(Eigen::Array2d(grid.width - 1 - 1e-9, grid.height - 1 - 1e-9));
+  const Eigen::Array2d limited = position.max(0.0).min(Eigen::Array2d(grid.width - 1 - 1e-9, grid.height - 1 - 1e-9));
   const int col = static_cast<int>(limited.x()), row = static_cast<int>(limited.y());
   const double u = limited.x() - col, v = limited.y() - row;
   const auto z = [&](int c, int r) {

@@ -68,8 +68,8 @@ struct SiteFile {
 
 /// Site in Patrol's form, not yet written. All poses are in the frame `site`, z up.
 struct ImportedSite {
-  std::string name;    ///< of the site, its folder and its files
-  std::string source;  ///< file that it was read from
+  std::string name;       ///< of the site, its folder and its files
+  std::string source;     ///< file that it was read from
   std::string mjcf = {};  ///< model of the site, which replaces materials and shapes; empty: made of these
   std::vector<SiteMaterial> materials = {};
   std::vector<SiteShape> shapes = {};

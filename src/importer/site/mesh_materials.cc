@@ -28,7 +28,8 @@ std::string plain_path(std::string path) {
   std::replace(path.begin(), path.end(), '\\', '/');
   std::string plain;
   for (std::size_t i = 0; i < path.size(); ++i) {
-    const bool is_code = path[i] == '%' && i + 2 < path.size() && std::isxdigit(static_cast<unsigned char>(path[i + 1])) &&
+    const bool is_code = path[i] == '%' && i + 2 < path.size() &&
+                         std::isxdigit(static_cast<unsigned char>(path[i + 1])) &&
                          std::isxdigit(static_cast<unsigned char>(path[i + 2]));
     if (is_code) plain += static_cast<char>(std::stoi(path.substr(i + 1, 2), nullptr, 16)), i += 2;
     else plain += path[i];
@@ -74,23 +75,16 @@ MeshMaterials::MeshMaterials(const aiScene& source, const std::filesystem::path&
 bool MeshMaterials::has_color(unsigned index) const {
   const aiMaterial& material = *source_.mMaterials[index];
   aiColor4D color;
-  return !texture_path(material).empty() ||
-         (material.Get(AI_MATKEY_COLOR_DIFFUSE, color) == AI_SUCCESS &&
-          name_of_material(material) != AI_DEFAULT_MATERIAL_NAME);
-}
-
-bool MeshMaterials::is_two_sided(unsigned index) const {
-  int is_two_sided = 0;
-  source_.mMaterials[index]->Get(AI_MATKEY_TWOSIDED, is_two_sided);
-  return !is_linear_ || is_two_sided != 0;
+  return !texture_path(material).empty() || (material.Get(AI_MATKEY_COLOR_DIFFUSE, color) == AI_SUCCESS &&
+                                             name_of_material(material) != AI_DEFAULT_MATERIAL_NAME);
 }
 
 bool MeshMaterials::is_gray(unsigned index) const {
   const aiMaterial& material = *source_.mMaterials[index];
   aiColor4D color(1.0F, 1.0F, 1.0F, 1.0F);
   if (material.Get(AI_MATKEY_BASE_COLOR, color) != AI_SUCCESS) material.Get(AI_MATKEY_COLOR_DIFFUSE, color);
-  const auto [least, most] = std::minmax({color.r, color.g, color.b});
-  return texture_path(material).empty() && most - least < 1e-3F;
+  const auto [low, high] = std::minmax({color.r, color.g, color.b});
+  return texture_path(material).empty() && high - low < 1e-3F;
 }
 
 std::string MeshMaterials::unique_name(const std::string& wanted) {
@@ -117,7 +111,8 @@ MeshMaterials::Texture MeshMaterials::load(const std::string& path) {
     else why = "file not found";
   }
   if (!image) {
-    scene_.rows.push_back({"texture " + io::on_one_line(path), why + ": the color of the material is used", "the file"});
+    scene_.rows.push_back(
+        {"texture " + io::on_one_line(path), why + ": the color of the material is used", "the file"});
     return {};
   }
   Texture texture{.file = fmt::format("{}{}.png", prefix_, scene_.textures.size() + 1), .mean = mean_color(*image)};

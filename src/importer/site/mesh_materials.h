@@ -23,9 +23,6 @@ class MeshMaterials {
   /// Returns the index of a material of one color, which is created at its first use.
   std::size_t plain(const std::string& name, const Eigen::Vector4d& rgba);
 
-  /// Returns whether the surfaces are visible from both sides: by glTF's "doubleSided"; in other formats, always.
-  bool is_two_sided(unsigned index) const;
-
   /// Returns whether the material has no texture and a gray color, so that colors of vertices determine the color.
   bool is_gray(unsigned index) const;
 

@@ -69,9 +69,9 @@ class PartCollector {
   bool has_vertex_colors() const { return has_vertex_colors_; }
 
  private:
-  ScenePart& part_of(std::size_t material, bool has_coordinates, bool is_two_sided) {
+  ScenePart& part_of(std::size_t material, bool has_coordinates) {
     const auto [found, is_new] = index_of_.try_emplace({material, has_coordinates}, scene_.parts.size());
-    if (is_new) scene_.parts.push_back({.mesh = {}, .material = material, .is_two_sided = is_two_sided});
+    if (is_new) scene_.parts.push_back({.mesh = {}, .material = material});
     return scene_.parts[found->second];
   }
 
@@ -96,13 +96,12 @@ class PartCollector {
     const bool is_mirrored = T.linear().determinant() < 0.0;
     const std::size_t material = by_vertex ? 0 : materials_.of(mesh.mMaterialIndex, has_coordinates);
     const bool keeps_coordinates = has_coordinates && !by_vertex && !scene_.materials[material].texture.empty();
-    const bool is_two_sided = materials_.is_two_sided(mesh.mMaterialIndex);
     std::map<std::size_t, std::vector<int>> new_index;  // of vertices, by material
     for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
       const aiFace& face = mesh.mFaces[i];
       if (face.mNumIndices != 3) continue;
       const std::size_t of_face = by_vertex ? colored(mesh, face) : material;
-      ScenePart& part = part_of(of_face, keeps_coordinates, is_two_sided);
+      ScenePart& part = part_of(of_face, keeps_coordinates);
       std::vector<int>& index = new_index[of_face];
       if (index.empty()) index.assign(mesh.mNumVertices, -1);
       std::array<int, 3> triangle{};
@@ -249,8 +248,7 @@ MeshScene read_mesh_scene(const std::filesystem::path& file, const std::string& 
                           const SceneSelection& selection) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) throw InputError(file.string() + ": mesh file not found");
-  if (std::filesystem::file_size(file, error) > kMaxFile_bytes)
-    throw InputError(file.string() + ": larger than 3 GiB");
+  if (std::filesystem::file_size(file, error) > kMaxFile_bytes) throw InputError(file.string() + ": larger than 3 GiB");
   MeshScene scene;
   if (is_gltf(file)) {
     const GltfHeader header = read_gltf_header(file);
@@ -268,8 +266,7 @@ MeshScene read_mesh_scene(const std::filesystem::path& file, const std::string& 
   collector.add_node(*source.mRootNode, Eigen::Affine3d::Identity());
   std::erase_if(scene.parts, [](const ScenePart& part) { return part.mesh.empty(); });
   if (scene.parts.empty() && !selection.submesh.empty())
-    throw InputError(
-        fmt::format("{}: submesh \"{}\" not found", file.string(), io::on_one_line(selection.submesh)));
+    throw InputError(fmt::format("{}: submesh \"{}\" not found", file.string(), io::on_one_line(selection.submesh)));
   if (scene.parts.empty()) throw InputError(file.string() + ": mesh has no triangles");
   for (const ScenePart& part : scene.parts) {
     for (const Eigen::Vector3d& vertex : part.mesh.vertices_m) {

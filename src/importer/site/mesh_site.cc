@@ -44,8 +44,9 @@ char up_by_rule(const MeshScene& scene, const Eigen::AlignedBox3d& box, SceneFra
   const char up = y > z ? 'y' : 'z';
   frame.rows.push_back(
       {"up axis",
-       fmt::format("{}: its level surfaces in the lowest third have the larger area ({:.3g} against {:.3g} square units)", up,
-                   std::max(y, z), std::min(y, z)),
+       fmt::format(
+           "{}: its level surfaces in the lowest third have the larger area ({:.3g} against {:.3g} square units)", up,
+           std::max(y, z), std::min(y, z)),
        "--up"});
   return up;
 }
@@ -55,7 +56,9 @@ double unit_by_rule(const Eigen::AlignedBox3d& box, char up, SceneFrame& frame) 
   const double height = box.sizes()[up - 'x'], length = box.sizes().maxCoeff();
   double unit_m = 1.0;
   if (length > kMaxLength_m || height > kMaxHeight_m) {
-    const auto deviation = [&](double unit) { return std::abs(std::log(std::max(1e-9, unit * height) / kUsualHeight_m)); };
+    const auto deviation = [&](double unit) {
+      return std::abs(std::log(std::max(1e-9, unit * height) / kUsualHeight_m));
+    };
     unit_m = deviation(0.01) < deviation(0.001) ? 0.01 : 0.001;
   }
   const Eigen::Vector3d size_m = unit_m * box.sizes();
@@ -87,9 +90,10 @@ void add_far_row(const MeshScene& scene, std::vector<Assumption>& rows) {
   double max_m = 0.0;
   for (const ScenePart& part : scene.parts) max_m = std::max(max_m, max_coordinate_m(part.mesh));
   if (max_m > kFar_m)
-    rows.push_back({"coordinates",
-                    fmt::format("up to {:.0f} m from the origin: single precision is {:.1g} m there", max_m, max_m * 6e-8),
-                    "the file"});
+    rows.push_back(
+        {"coordinates",
+         fmt::format("up to {:.0f} m from the origin: single precision is {:.1g} m there", max_m, max_m * 6e-8),
+         "the file"});
 }
 
 }  // namespace
@@ -104,9 +108,9 @@ SceneFrame frame_of(const MeshScene& scene, double scale, const std::string& up)
   else if (scene.unit_m > 0.0) frame.unit_m = scene.unit_m;
   else frame.unit_m = unit_by_rule(box, frame.up, frame);
   if (up.empty() && scene.up != 0)
-    frame.rows.push_back({"up axis", fmt::format("{}, as the format says", scene.up), "--up"});
+    frame.rows.push_back({"up axis", fmt::format("{}, by the format", scene.up), "--up"});
   if (scale <= 0.0 && scene.unit_m > 0.0)
-    frame.rows.push_back({"scale", fmt::format("{:g} m per unit, as the format says", scene.unit_m), "--scale"});
+    frame.rows.push_back({"scale", fmt::format("{:g} m per unit, by the format", scene.unit_m), "--scale"});
   return frame;
 }
 
@@ -136,7 +140,7 @@ std::vector<SiteShape> seen_shapes(const MeshScene& scene, const std::string& na
                        .texture_coordinates = part.texture_coordinates};
     split_single_triangle(shape);
     shapes.push_back(shape);
-    if (!part.is_two_sided || part.mesh.triangles.size() > kMaxTested || is_closed(welded(part.mesh))) continue;
+    if (part.mesh.triangles.size() > kMaxTested || is_closed(welded(part.mesh))) continue;
     shape.name = fmt::format("{}_{}", name, shapes.size() + 1);
     shape.use = ShapeUse::kVisualOnly;
     for (std::array<int, 3>& triangle : shape.mesh.triangles) std::swap(triangle[1], triangle[2]);

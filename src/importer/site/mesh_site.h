@@ -16,8 +16,9 @@ namespace patrol::importer {
 ImportedSite read_mesh_site(const SiteImportOptions& options);
 
 /// Meters per unit and axis that points up of a mesh file, by its format, the options, or rules:
-/// meters, unless the file is then longer than 1,000 m or higher than 100 m: centimeters or millimeters, whichever gives
-/// a height nearer to 5 m. The axis, y or z, whose surfaces facing along it have the larger area in the lowest third.
+/// meters, unless the file is then longer than 1,000 m or higher than 100 m: centimeters or millimeters, whichever
+/// gives a height nearer to 5 m. The axis, y or z, whose surfaces facing along it have the larger area in the lowest
+/// third.
 struct SceneFrame {
   double unit_m = 1.0;
   char up = 'z';
@@ -29,8 +30,8 @@ SceneFrame frame_of(const MeshScene& scene, double scale, const std::string& up)
 void to_site_axes(MeshScene& scene, const SceneFrame& frame);
 
 /// Returns the parts of a scene as shapes that cameras and lidars see, with names NAME_1, NAME_2 and so on, and the
-/// materials of the scene. Parts that are visible from both sides and not closed have a second mesh for cameras, because
-/// MuJoCo draws the front of triangles only.
+/// materials of the scene. Parts that are not closed have a second mesh for cameras,
+/// because MuJoCo draws the front of triangles only.
 std::vector<SiteShape> seen_shapes(const MeshScene& scene, const std::string& name);
 
 /// Returns the options for the contact geometry of a site.

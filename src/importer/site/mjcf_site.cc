@@ -96,7 +96,8 @@ class MjcfCopy {
       parse(included, document);
       insert_includes(*document.RootElement(), included);
       tinyxml2::XMLNode* last = child;
-      for (const tinyxml2::XMLNode* node = document.RootElement()->FirstChild(); node != nullptr; node = node->NextSibling())
+      for (const tinyxml2::XMLNode* node = document.RootElement()->FirstChild(); node != nullptr;
+           node = node->NextSibling())
         last = parent.InsertAfterChild(last, node->DeepClone(parent.GetDocument()));
       parent.DeleteChild(child);
       child = next;
@@ -120,7 +121,8 @@ class MjcfCopy {
   }
 
   void copy_files(XMLElement& root) {
-    for (XMLElement* asset = root.FirstChildElement("asset"); asset != nullptr; asset = asset->NextSiblingElement("asset")) {
+    for (XMLElement* asset = root.FirstChildElement("asset"); asset != nullptr;
+         asset = asset->NextSiblingElement("asset")) {
       for (XMLElement* child = asset->FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) {
         if (std::string_view(child->Name()) == "model") fail(*child, file_, "attached models are not supported");
         for (const FileAttribute& entry : kFileAttributes) {
@@ -174,7 +176,8 @@ ImportedSite read_mjcf_site(const SiteImportOptions& options) {
        fmt::format("contacts from above up to {:g} m above the robot's lowest contact, and no geom by name",
                    site.ground.max_step_m),
        "ground in " + options.name + ".yaml"},
-      {"groups", "geoms of groups 0 and 1 are seen by cameras, 0 and 2 by lidars, 4 and 5 are those of robots", "group"}};
+      {"groups", "geoms of groups 0 and 1 are seen by cameras, 0 and 2 by lidars, 4 and 5 are those of robots",
+       "group"}};
   return site;
 }
 

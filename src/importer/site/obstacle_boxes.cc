@@ -115,14 +115,14 @@ class ObstacleColumns {
   }
 
   void mark(Cell cell, const Polygon& part) {
-    double lowest = part.corners[0].z(), highest = lowest, above = -1.0, least = 1e9;
+    double lowest = part.corners[0].z(), highest = lowest, above = -1.0, below = 1e9;
     for (int k = 0; k < part.size; ++k) {
       const Eigen::Vector3d& p = part.corners[static_cast<std::size_t>(k)];
       const double over = p.z() - ground_.at(p.head<2>());
-      above = std::max(above, over), least = std::min(least, over);
+      above = std::max(above, over), below = std::min(below, over);
       lowest = std::min(lowest, p.z()), highest = std::max(highest, p.z());
     }
-    if (above <= tolerance_m_ || least > height_m_) return;
+    if (above <= tolerance_m_ || below > height_m_) return;
     const std::size_t i = index(cell.col, cell.row);
     const int from = static_cast<int>(std::floor(std::max(lowest / kStep_m, -1e8) + 0.01)) - base(i);
     const int to = static_cast<int>(std::ceil(std::min(highest / kStep_m, 1e8) - 0.01)) - 1 - base(i);

@@ -25,9 +25,9 @@ std::vector<std::array<int, 3>> clip_ears(const std::vector<Eigen::Vector2d>& co
       const double area = cross(at(a), at(b), at(c));
       if (area < 0.0) continue;
       const bool is_ear = area == 0.0 || std::none_of(open.begin(), open.end(), [&](int k) {
-        return k != a && k != b && k != c && cross(at(a), at(b), at(k)) >= 0.0 && cross(at(b), at(c), at(k)) >= 0.0 &&
-               cross(at(c), at(a), at(k)) >= 0.0;
-      });
+                            return k != a && k != b && k != c && cross(at(a), at(b), at(k)) >= 0.0 &&
+                                   cross(at(b), at(c), at(k)) >= 0.0 && cross(at(c), at(a), at(k)) >= 0.0;
+                          });
       if (!is_ear) continue;
       if (area > 0.0) triangles.push_back({a, b, c});
       open.erase(open.begin() + static_cast<std::ptrdiff_t>(i));

@@ -8,7 +8,7 @@
 
 namespace patrol::importer {
 
-/// Returns the prism over a simple polygon, from z = 0 to `height_m`, by ear clipping [ORourke98, ch. 1]; empty if
+/// Returns the prism over a simple polygon, from z = 0 to `height_m`, by ear clipping; empty if
 /// the polygon is not simple. The corners run in either direction; a last one equal to the first is left out.
 Mesh extruded_polygon(std::vector<Eigen::Vector2d> corners_m, double height_m);
 

@@ -46,17 +46,63 @@ constexpr std::array kIgnored = std::to_array<ElementNote>({
 });
 
 /// Elements without content for a site, and those that the reader uses.
-const std::set<std::string_view> kKnown = {
-    "world", "model", "link", "collision", "visual", "geometry", "material", "pose", "frame", "static", "include", "uri",
-    "name", "state", "inertial", "mass", "inertia", "box", "cylinder", "sphere", "plane", "mesh", "capsule", "ellipsoid",
-    "polyline", "heightmap", "empty", "gravity", "magnetic_field", "self_collide", "kinematic", "allow_auto_disable",
-    "enable_wind", "must_be_base_link", "velocity_decay", "cast_shadows", "transparency", "meta", "visibility_flags",
-    "max_contacts", "script", "ambient", "diffuse", "specular", "emissive", "lighting", "shader", "render_order",
-    "double_sided", "density", "placement_frame", "merge"};
+const std::set<std::string_view> kKnown = {"world",
+                                           "model",
+                                           "link",
+                                           "collision",
+                                           "visual",
+                                           "geometry",
+                                           "material",
+                                           "pose",
+                                           "frame",
+                                           "static",
+                                           "include",
+                                           "uri",
+                                           "name",
+                                           "state",
+                                           "inertial",
+                                           "mass",
+                                           "inertia",
+                                           "box",
+                                           "cylinder",
+                                           "sphere",
+                                           "plane",
+                                           "mesh",
+                                           "capsule",
+                                           "ellipsoid",
+                                           "polyline",
+                                           "heightmap",
+                                           "empty",
+                                           "gravity",
+                                           "magnetic_field",
+                                           "self_collide",
+                                           "kinematic",
+                                           "allow_auto_disable",
+                                           "enable_wind",
+                                           "must_be_base_link",
+                                           "velocity_decay",
+                                           "cast_shadows",
+                                           "transparency",
+                                           "meta",
+                                           "visibility_flags",
+                                           "max_contacts",
+                                           "script",
+                                           "ambient",
+                                           "diffuse",
+                                           "specular",
+                                           "emissive",
+                                           "lighting",
+                                           "shader",
+                                           "render_order",
+                                           "double_sided",
+                                           "density",
+                                           "placement_frame",
+                                           "merge"};
 
 template <typename Notes>
 const ElementNote* note_of(const Notes& notes, std::string_view element) {
-  const auto found = std::find_if(notes.begin(), notes.end(), [&](const ElementNote& note) { return note.element == element; });
+  const auto found =
+      std::find_if(notes.begin(), notes.end(), [&](const ElementNote& note) { return note.element == element; });
   return found == notes.end() ? nullptr : &*found;
 }
 
@@ -92,7 +138,7 @@ class ElementChecker {
   std::vector<Assumption> rows() const {
     std::vector<Assumption> rows;
     for (const auto& [key, found] : found_) {
-      const std::string more = found.count > 1 ? fmt::format(" ({}, the first in line {})", found.count, found.line)
+      const std::string more = found.count > 1  ? fmt::format(" ({}, the first in line {})", found.count, found.line)
                                : found.line > 0 ? fmt::format(" (line {})", found.line)
                                                 : std::string();
       rows.push_back({"<" + key.first + ">", key.second + more, "the file"});
@@ -123,7 +169,8 @@ class ElementChecker {
 
   void check_gravity(const sdf::ElementPtr& element) const {
     const auto gravity = element->Get<ignition::math::Vector3d>();
-    const bool is_down = std::abs(gravity.X()) < 0.1 && std::abs(gravity.Y()) < 0.1 && std::abs(gravity.Z() + 9.81) < 0.1;
+    const bool is_down =
+        std::abs(gravity.X()) < 0.1 && std::abs(gravity.Y()) < 0.1 && std::abs(gravity.Z() + 9.81) < 0.1;
     if (!is_down) world_.fail(element, "must be that of the earth, 0 0 -9.8");
   }
 

@@ -19,22 +19,29 @@
 namespace patrol::importer {
 namespace {
 
-/// Diffuse color of a material script of Gazebo Classic.
+/// Diffuse color of a material script of Gazebo Classic, in American spelling.
 struct GazeboColor {
   std::string_view name;
   double r, g, b;
 };
 
 constexpr std::array kGazeboColors = std::to_array<GazeboColor>({
-    {"Gazebo/Grey", 0.7, 0.7, 0.7},          {"Gazebo/Gray", 0.7, 0.7, 0.7},
-    {"Gazebo/DarkGrey", 0.175, 0.175, 0.175}, {"Gazebo/DarkGray", 0.175, 0.175, 0.175},
-    {"Gazebo/White", 1.0, 1.0, 1.0},         {"Gazebo/FlatBlack", 0.1, 0.1, 0.1},
-    {"Gazebo/Black", 0.0, 0.0, 0.0},         {"Gazebo/Red", 1.0, 0.0, 0.0},
-    {"Gazebo/RedBright", 0.87, 0.26, 0.07},  {"Gazebo/Green", 0.0, 1.0, 0.0},
-    {"Gazebo/Blue", 0.0, 0.0, 1.0},          {"Gazebo/SkyBlue", 0.13, 0.44, 0.7},
-    {"Gazebo/Yellow", 1.0, 1.0, 0.0},        {"Gazebo/DarkYellow", 0.7, 0.7, 0.0},
-    {"Gazebo/Purple", 1.0, 0.0, 1.0},        {"Gazebo/Turquoise", 0.0, 1.0, 1.0},
-    {"Gazebo/Orange", 1.0, 0.5, 0.05},       {"Gazebo/Indigo", 0.33, 0.0, 0.5},
+    {"Gazebo/Gray", 0.7, 0.7, 0.7},
+    {"Gazebo/DarkGray", 0.175, 0.175, 0.175},
+    {"Gazebo/White", 1.0, 1.0, 1.0},
+    {"Gazebo/FlatBlack", 0.1, 0.1, 0.1},
+    {"Gazebo/Black", 0.0, 0.0, 0.0},
+    {"Gazebo/Red", 1.0, 0.0, 0.0},
+    {"Gazebo/RedBright", 0.87, 0.26, 0.07},
+    {"Gazebo/Green", 0.0, 1.0, 0.0},
+    {"Gazebo/Blue", 0.0, 0.0, 1.0},
+    {"Gazebo/SkyBlue", 0.13, 0.44, 0.7},
+    {"Gazebo/Yellow", 1.0, 1.0, 0.0},
+    {"Gazebo/DarkYellow", 0.7, 0.7, 0.0},
+    {"Gazebo/Purple", 1.0, 0.0, 1.0},
+    {"Gazebo/Turquoise", 0.0, 1.0, 1.0},
+    {"Gazebo/Orange", 1.0, 0.5, 0.05},
+    {"Gazebo/Indigo", 0.33, 0.0, 0.5},
 });
 
 Eigen::Vector4d to_rgba(const ignition::math::Color& c) {
@@ -91,8 +98,10 @@ std::string SdfShapes::material_of(const sdf::Visual& visual) {
   if (has_set(material->Element(), "diffuse")) rgba = to_rgba(material->Diffuse());
   else if (has_set(material->Element(), "ambient")) rgba = to_rgba(material->Ambient());
   else if (!script.empty()) {
+    std::string spelled = script;
+    if (const std::size_t at = spelled.find("rey"); at != std::string::npos) spelled[at + 1] = 'a';
     const auto found = std::find_if(kGazeboColors.begin(), kGazeboColors.end(),
-                                    [&](const GazeboColor& color) { return color.name == script; });
+                                    [&](const GazeboColor& color) { return color.name == spelled; });
     if (found != kGazeboColors.end()) rgba.head<3>() = Eigen::Vector3d(found->r, found->g, found->b);
     const Assumption row = {"script " + script, "unknown material: gray", "<diffuse>"};
     const bool is_new = std::none_of(site_.assumptions.begin(), site_.assumptions.end(),
@@ -120,7 +129,8 @@ const MeshScene& SdfShapes::scene_of(const sdf::Mesh& mesh) {
   const bool is_gltf = file.extension() == ".gltf" || file.extension() == ".glb";
   to_site_axes(scene, {.unit_m = 1.0, .up = is_gltf ? 'y' : 'z'});
   if (!is_gltf && scene.up == 'y')
-    site_.assumptions.push_back({"mesh " + file.filename().string(), "its up axis is not applied, as in RViz", "the file"});
+    site_.assumptions.push_back(
+        {"mesh " + file.filename().string(), "its up axis is not applied, as in RViz", "the file"});
   for (const Assumption& row : scene.rows)
     site_.assumptions.push_back({file.filename().string() + ": " + row.subject, row.text, row.override_with});
   site_.materials.insert(site_.materials.end(), scene.materials.begin(), scene.materials.end());
@@ -150,7 +160,8 @@ SiteShape SdfShapes::height_map(const sdf::Heightmap& map, const SiteShape& comm
   const std::filesystem::path file = world_.resolve(map.Uri(), map.Element());
   const auto image = decode_image(io::load_text(file), file.extension().string(), 1 << 14);
   if (!image) world_.fail(map.Element(), map.Uri() + ": must be a picture, elevation models are not supported");
-  if (image->width < 2 || image->height < 2) world_.fail(map.Element(), map.Uri() + ": must have at least 2 x 2 pixels");
+  if (image->width < 2 || image->height < 2)
+    world_.fail(map.Element(), map.Uri() + ": must have at least 2 x 2 pixels");
   const double step_m = map.Size().X() / (image->width - 1);
   require_positive(world_, map.Element(), {map.Size().X(), map.Size().Y(), map.Size().Z()});
   if (std::abs(map.Size().Y() / (image->height - 1) - step_m) > 1e-6 * step_m)
@@ -176,7 +187,8 @@ SiteShape SdfShapes::height_map(const sdf::Heightmap& map, const SiteShape& comm
 
 std::vector<SiteShape> SdfShapes::polylines(const sdf::ElementPtr& element, const SiteShape& common) {
   const sdf::ElementPtr polyline = element->GetElement("polyline");
-  if (polyline->GetNextElement("polyline")) world_.fail(polyline, "several polylines of one geometry are not supported");
+  if (polyline->GetNextElement("polyline"))
+    world_.fail(polyline, "several polylines of one geometry are not supported");
   std::vector<Eigen::Vector2d> corners;
   for (sdf::ElementPtr point = polyline->GetElement("point"); point; point = point->GetNextElement("point")) {
     const auto p = point->Get<ignition::math::Vector2d>();
@@ -191,8 +203,11 @@ std::vector<SiteShape> SdfShapes::polylines(const sdf::ElementPtr& element, cons
 
 std::vector<SiteShape> SdfShapes::shapes_of(const sdf::Geometry& geometry, const std::string& name,
                                             const Pose3& T_site_shape, const std::string& material) {
-  if (geometry.Type() == sdf::GeometryType::MESH) return mesh_shapes(*geometry.MeshShape(), name, T_site_shape, material);
-  SiteShape shape = {.name = unique_name(name), .use = ShapeUse::kSeen, .T_site_shape = T_site_shape,
+  if (geometry.Type() == sdf::GeometryType::MESH)
+    return mesh_shapes(*geometry.MeshShape(), name, T_site_shape, material);
+  SiteShape shape = {.name = unique_name(name),
+                     .use = ShapeUse::kSeen,
+                     .T_site_shape = T_site_shape,
                      .material = material.empty() ? gray() : material};
   const sdf::ElementPtr element = geometry.Element();
   switch (geometry.Type()) {
@@ -233,8 +248,9 @@ std::vector<SiteShape> SdfShapes::shapes_of(const sdf::Geometry& geometry, const
       const ignition::math::Vector2d size = geometry.PlaneShape()->Size();
       shape.type = SiteShapeType::kPlane;
       shape.size_m = {0.5 * size.X(), 0.5 * size.Y(), 0.0};
-      shape.T_site_shape.rotation = shape.T_site_shape.rotation * Eigen::Quaterniond::FromTwoVectors(
-                                                                      Eigen::Vector3d::UnitZ(), Eigen::Vector3d(n.X(), n.Y(), n.Z()));
+      shape.T_site_shape.rotation =
+          shape.T_site_shape.rotation *
+          Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), Eigen::Vector3d(n.X(), n.Y(), n.Z()));
       return {shape};
     }
     case sdf::GeometryType::HEIGHTMAP:

@@ -32,12 +32,14 @@ Mesh tessellated(const SiteShape& shape, const Eigen::AlignedBox3d& box) {
   Mesh mesh;
   if (shape.type == SiteShapeType::kBox) {
     for (int i = 0; i < 8; ++i)
-      mesh.vertices_m.push_back(shape.size_m.cwiseProduct(Eigen::Vector3d((i & 1) * 2 - 1, (i & 2) - 1, (i & 4) / 2 - 1)));
+      mesh.vertices_m.push_back(
+          shape.size_m.cwiseProduct(Eigen::Vector3d((i & 1) * 2 - 1, (i & 2) - 1, (i & 4) / 2 - 1)));
     mesh.triangles = {{0, 3, 1}, {0, 2, 3}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
                       {2, 7, 3}, {2, 6, 7}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
   } else if (shape.type == SiteShapeType::kPlane) {
     const double reach_m = (box.center() - shape.T_site_shape.position).norm() + box.diagonal().norm() + 1.0;
-    mesh.vertices_m = {{-reach_m, -reach_m, 0.0}, {reach_m, -reach_m, 0.0}, {reach_m, reach_m, 0.0}, {-reach_m, reach_m, 0.0}};
+    mesh.vertices_m = {
+        {-reach_m, -reach_m, 0.0}, {reach_m, -reach_m, 0.0}, {reach_m, reach_m, 0.0}, {-reach_m, reach_m, 0.0}};
     mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
   }
   return transformed(mesh, shape.T_site_shape);
@@ -106,7 +108,8 @@ class SdfSiteBuilder {
       const sdf::Visual& visual = *link.VisualByIndex(i);
       if (visual.Geom() == nullptr) continue;
       const std::string material = shapes_.material_of(visual);
-      add(shapes_.shapes_of(*visual.Geom(), name + "." + visual.Name(), T_site_link * resolved(world_, visual), material));
+      add(shapes_.shapes_of(*visual.Geom(), name + "." + visual.Name(), T_site_link * resolved(world_, visual),
+                            material));
     }
     for (std::uint64_t i = 0; i < link.CollisionCount(); ++i) {
       const sdf::Collision& collision = *link.CollisionByIndex(i);

@@ -28,11 +28,12 @@ constexpr std::array kRefusedElements = std::to_array<RefusedElement>({
     {"deletions", "deletions of a state are not supported: remove the models"},
 });
 
-const std::set<std::string_view> kGeometries = {"box",       "capsule", "cylinder", "ellipsoid", "empty", "heightmap",
-                                                "image",     "mesh",    "plane",    "polyline",  "sphere"};
+const std::set<std::string_view> kGeometries = {"box",   "capsule", "cylinder", "ellipsoid", "empty", "heightmap",
+                                                "image", "mesh",    "plane",    "polyline",  "sphere"};
 
 /// Calls `visit` with the element and all below it, in the order of the file.
-void for_each_element(const tinyxml2::XMLElement& element, const std::function<void(const tinyxml2::XMLElement&)>& visit) {
+void for_each_element(const tinyxml2::XMLElement& element,
+                      const std::function<void(const tinyxml2::XMLElement&)>& visit) {
   visit(element);
   for (const auto* child = element.FirstChildElement(); child != nullptr; child = child->NextSiblingElement())
     for_each_element(*child, visit);
@@ -64,7 +65,8 @@ SdfSource::SdfSource(const std::filesystem::path& file) : file_(file) {
   if (digits.size() != 3 || !digits.starts_with("1.") || digits[2] < '0' || digits[2] > '9')
     fail(root, fmt::format("version = \"{}\": must be 1.0 to 1.9", digits));
   int num_worlds = 0;
-  for (const auto* child = root.FirstChildElement("world"); child != nullptr; child = child->NextSiblingElement("world")) {
+  for (const auto* child = root.FirstChildElement("world"); child != nullptr;
+       child = child->NextSiblingElement("world")) {
     if (++num_worlds > 1) fail(*child, "second world: must be one");
   }
   if (num_worlds == 0) fail(root, "has no <world>: import a world that includes the model");

@@ -22,7 +22,8 @@ bool is_of_network(std::string_view uri) {
   return uri.starts_with("http://") || uri.starts_with("https://") || uri.starts_with("fuel://");
 }
 
-constexpr const char* kGroundPlane = R"(<sdf version="1.6"><model name="ground_plane"><static>true</static><link name="link">
+constexpr const char* kGroundPlane =
+    R"(<sdf version="1.6"><model name="ground_plane"><static>true</static><link name="link">
 <collision name="collision"><geometry><plane><normal>0 0 1</normal><size>100 100</size></plane></geometry></collision>
 <visual name="visual"><geometry><plane><normal>0 0 1</normal><size>100 100</size></plane></geometry>
 <material><diffuse>0.7 0.7 0.7 1</diffuse></material></visual></link></model></sdf>)";
@@ -41,7 +42,8 @@ class QuietUrdf {
 
 /// Returns the place of an error of libsdformat, with the name of the file as it was given.
 std::string place_of(const std::filesystem::path& file, const std::string& path, std::optional<int> line) {
-  const bool is_file = path.empty() || path == std::filesystem::absolute(file).string() || path.starts_with('<') || path.starts_with("data-");
+  const bool is_file = path.empty() || path == std::filesystem::absolute(file).string() || path.starts_with('<') ||
+                       path.starts_with("data-");
   return (is_file ? file.string() : path) + (line ? fmt::format(":{}", *line) : "");
 }
 
@@ -133,10 +135,12 @@ std::string SdfWorld::built_in(const std::string& name) {
                 fmt::format("patrol_sdf_{}_{:x}", ::getpid(), reinterpret_cast<std::uintptr_t>(this));
   const std::filesystem::path folder = built_in_ / name;
   std::filesystem::create_directories(folder);
-  io::save_text(folder / "model.config",
-                fmt::format("<model><name>{}</name><version>1.0</version><sdf version=\"1.6\">model.sdf</sdf></model>", name));
+  io::save_text(
+      folder / "model.config",
+      fmt::format("<model><name>{}</name><version>1.0</version><sdf version=\"1.6\">model.sdf</sdf></model>", name));
   io::save_text(folder / "model.sdf", name == "sun" ? kSun : kGroundPlane);
-  const bool is_new = std::none_of(rows_.begin(), rows_.end(), [&](const Assumption& row) { return row.subject == "model://" + name; });
+  const bool is_new =
+      std::none_of(rows_.begin(), rows_.end(), [&](const Assumption& row) { return row.subject == "model://" + name; });
   if (is_new)
     rows_.push_back({"model://" + name,
                      name == "sun" ? "no folder is given: a directional light" : "no folder is given: the plane z = 0",

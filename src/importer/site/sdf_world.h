@@ -30,8 +30,8 @@ class SdfWorld {
   const sdf::World& world() const { return *root_.WorldByIndex(0); }
   const std::vector<Assumption>& rows() const { return rows_; }
 
-  /// Returns the path of a mesh or a picture. `uri` as for Packages, or relative to the file that has the element. Throws
-  /// InputError with file and line if the file does not exist.
+  /// Returns the path of a mesh or a picture. `uri` as for Packages, or relative to the file that has the element.
+  /// Throws InputError with file and line if the file does not exist.
   std::filesystem::path resolve(const std::string& uri, const sdf::ElementPtr& element) const;
 
   /// Throws InputError "file:line: <element>: what".
@@ -42,7 +42,8 @@ class SdfWorld {
   std::optional<std::filesystem::path> find_model(const std::string& name) const;
   std::string built_in(const std::string& name);
   [[noreturn]] void fail(const sdf::Error& error, const sdf::ParserConfig& config) const;
-  std::string text_of_unlocated(const sdf::Error& error, const sdf::ParserConfig& config, std::optional<int>& line) const;
+  std::string text_of_unlocated(const sdf::Error& error, const sdf::ParserConfig& config,
+                                std::optional<int>& line) const;
 
   std::filesystem::path file_;
   SdfSource source_;

@@ -104,7 +104,8 @@ class SurfacePoints {
     const Eigen::Vector3d &a = corner(t, 0), &b = corner(t, 1), &c = corner(t, 2);
     const Eigen::Vector3d n = (b - a).cross(c - a).normalized();
     const Eigen::Vector3d q = p - n.dot(p - a) * n;
-    const bool is_inside = n.dot((b - a).cross(q - a)) >= 0 && n.dot((c - b).cross(q - b)) >= 0 && n.dot((a - c).cross(q - c)) >= 0;
+    const bool is_inside =
+        n.dot((b - a).cross(q - a)) >= 0 && n.dot((c - b).cross(q - b)) >= 0 && n.dot((a - c).cross(q - c)) >= 0;
     if (is_inside) return q;
     Eigen::Vector3d best = a;
     for (const auto& [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {
@@ -177,9 +178,9 @@ TEST(ContactGeometry, ConvexObjectsAreTheirHullsAndALShapeIsNot) {
 
 TEST(ContactGeometry, TheGroundIsTheFloorAndNotTheRoofTheCeilingOrTheUndersideOfTheSlab) {
   Mesh mesh;
-  add_box(mesh, {0, 0, -0.3}, {8, 6, 0});                      // slab
-  add_box(mesh, {0, 0, 2.8}, {8, 6, 3.1});                     // roof
-  add_box(mesh, {0.1, 0.1, 0}, {0.3, 5.9, 2.8});               // wall
+  add_box(mesh, {0, 0, -0.3}, {8, 6, 0});         // slab
+  add_box(mesh, {0, 0, 2.8}, {8, 6, 3.1});        // roof
+  add_box(mesh, {0.1, 0.1, 0}, {0.3, 5.9, 2.8});  // wall
   const ContactGeometry contact = contact_geometry(mesh, {}, {});
   EXPECT_EQ(ground_of(contact).type, SiteShapeType::kPlane);
   EXPECT_NEAR(ground_of(contact).T_site_shape.position.z(), 0.0, 1e-6);

@@ -11,9 +11,9 @@
 #include <fmt/format.h>
 
 #include "importer/mesh.h"
-#include "sim/mujoco.h"
 #include "importer/site/imported_site.h"
 #include "importer/site/site_import.h"
+#include "sim/mujoco.h"
 #include "tests/support/temporary_file.h"
 
 namespace patrol::importer {
@@ -48,7 +48,7 @@ inline void add_box(Mesh& mesh, const Eigen::Vector3d& lower, const Eigen::Vecto
 struct GltfText {
   std::string material = R"({"pbrMetallicRoughness":{"baseColorFactor":[1,1,1,1]}})";
   std::string node = R"("mesh":0)";
-  std::string more = "";               ///< members of the root, each with a comma before it
+  std::string more = "";  ///< members of the root, each with a comma before it
   std::vector<Eigen::Vector2d> uv = {};
 
   static std::string base64(const std::string& bytes) {
@@ -56,7 +56,8 @@ struct GltfText {
     std::string text;
     for (std::size_t i = 0; i < bytes.size(); i += 3) {
       std::uint32_t bits = 0;
-      for (std::size_t k = 0; k < 3; ++k) bits = bits << 8 | (i + k < bytes.size() ? static_cast<std::uint8_t>(bytes[i + k]) : 0u);
+      for (std::size_t k = 0; k < 3; ++k)
+        bits = bits << 8 | (i + k < bytes.size() ? static_cast<std::uint8_t>(bytes[i + k]) : 0u);
       for (std::size_t k = 0; k < 4; ++k) text += i + k > bytes.size() ? '=' : kDigits[bits >> (18 - 6 * k) & 63];
     }
     return text;
@@ -123,7 +124,8 @@ class SiteFileImport {
     } catch (const std::exception& error) {
       std::string text = error.what();
       const std::string prefix = folder.path().string() + "/";
-      for (std::size_t at = text.find(prefix); at != std::string::npos; at = text.find(prefix)) text.erase(at, prefix.size());
+      for (std::size_t at = text.find(prefix); at != std::string::npos; at = text.find(prefix))
+        text.erase(at, prefix.size());
       return text;
     }
     return "accepted";

@@ -1,12 +1,12 @@
 #include "importer/site/mesh_site.h"
 
 #include <cmath>
-#include <numbers>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "core/geometry/angles.h"
 #include "importer/site/texture_image.h"
 #include "io/urdf.h"
 #include "sim/lidar_scene.h"
@@ -55,7 +55,7 @@ TEST(MeshSite, AGltfRoomIsTurnedUprightWithItsTrianglesToAMicrometer) {
   EXPECT_THAT(box_of_shape(seen(site)).min(), VectorNear(Eigen::Vector3d(0, 0, 0), 1e-6));
   EXPECT_THAT(box_of_shape(seen(site)).max(), VectorNear(Eigen::Vector3d(8, 6, 3), 1e-6));
   EXPECT_NEAR(integrate(seen(site).mesh).volume_m3, -8.0 * 6.0 * 3.0 + 1.0, 1e-3);  // the room is seen from inside
-  EXPECT_EQ(import.assumption("up axis"), "y, as the format says");
+  EXPECT_EQ(import.assumption("up axis"), "y, by the format");
   EXPECT_THAT(import.assumption("ground"), HasSubstr("a level plane at 0 m"));
 }
 
@@ -74,7 +74,7 @@ TEST(MeshSite, LidarRangesInARoomAreThoseOfTheClosedFormToAMillimeter) {
   EXPECT_NEAR(range({0, 0, 1}), 2.5, 1e-3);  // ceiling
   EXPECT_NEAR(range({0, 0, -1}), 0.5, 1e-3);
   for (int i = 0; i < 360; ++i) {
-    const double angle = i * std::numbers::pi / 180.0;
+    const double angle = to_rad(i);
     const Eigen::Vector3d d(std::cos(angle), std::sin(angle), 0.0);
     const double to_x = d.x() > 0 ? 6.0 / d.x() : (d.x() < 0 ? -2.0 / d.x() : 1e9);
     const double to_y = d.y() > 0 ? 3.5 / d.y() : (d.y() < 0 ? -2.5 / d.y() : 1e9);
@@ -119,7 +119,7 @@ TEST(MeshSite, AnEmbeddedTextureIsWrittenAsPngWithItsCoordinates) {
   ASSERT_EQ(seen(import.site).texture_coordinates.size(), 4U);
   EXPECT_NEAR(seen(import.site).texture_coordinates[0].y(), 0.0, 1e-6);  // v upward
   EXPECT_NEAR(seen(import.site).texture_coordinates[2].y(), 2.0, 1e-6);
-  EXPECT_EQ(model->nmeshtexcoord, 4);
+  EXPECT_EQ(model->nmeshtexcoord, 8);  // front and back
 }
 
 TEST(MeshSite, ATextureThatIsMissingBecomesTheColorOfTheMaterialWithARow) {
@@ -137,7 +137,28 @@ TEST(MeshSite, ATextureThatIsMissingBecomesTheColorOfTheMaterialWithARow) {
 }
 
 /// 16 x 16 pixels of the color (200, 60, 40), by libjpeg at quality 90.
-constexpr std::array<char, 288> kJpeg = {'\xff', '\xd8', '\xff', '\xe0', '\x00', '\x10', '\x4a', '\x46', '\x49', '\x46', '\x00', '\x01', '\x01', '\x00', '\x00', '\x01', '\x00', '\x01', '\x00', '\x00', '\xff', '\xdb', '\x00', '\x43', '\x00', '\x03', '\x02', '\x02', '\x03', '\x02', '\x02', '\x03', '\x03', '\x03', '\x03', '\x04', '\x03', '\x03', '\x04', '\x05', '\x08', '\x05', '\x05', '\x04', '\x04', '\x05', '\x0a', '\x07', '\x07', '\x06', '\x08', '\x0c', '\x0a', '\x0c', '\x0c', '\x0b', '\x0a', '\x0b', '\x0b', '\x0d', '\x0e', '\x12', '\x10', '\x0d', '\x0e', '\x11', '\x0e', '\x0b', '\x0b', '\x10', '\x16', '\x10', '\x11', '\x13', '\x14', '\x15', '\x15', '\x15', '\x0c', '\x0f', '\x17', '\x18', '\x16', '\x14', '\x18', '\x12', '\x14', '\x15', '\x14', '\xff', '\xdb', '\x00', '\x43', '\x01', '\x03', '\x04', '\x04', '\x05', '\x04', '\x05', '\x09', '\x05', '\x05', '\x09', '\x14', '\x0d', '\x0b', '\x0d', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\xff', '\xc0', '\x00', '\x11', '\x08', '\x00', '\x10', '\x00', '\x10', '\x03', '\x01', '\x22', '\x00', '\x02', '\x11', '\x01', '\x03', '\x11', '\x01', '\xff', '\xc4', '\x00', '\x15', '\x00', '\x01', '\x01', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x07', '\xff', '\xc4', '\x00', '\x14', '\x10', '\x01', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\xff', '\xc4', '\x00', '\x15', '\x01', '\x01', '\x01', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x07', '\x08', '\xff', '\xc4', '\x00', '\x14', '\x11', '\x01', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\xff', '\xda', '\x00', '\x0c', '\x03', '\x01', '\x00', '\x02', '\x11', '\x03', '\x11', '\x00', '\x3f', '\x00', '\x9a', '\x00', '\x24', '\x58', '\x0f', '\xff', '\xd9'};
+constexpr std::array<char, 288> kJpeg = {
+    '\xff', '\xd8', '\xff', '\xe0', '\x00', '\x10', '\x4a', '\x46', '\x49', '\x46', '\x00', '\x01', '\x01', '\x00',
+    '\x00', '\x01', '\x00', '\x01', '\x00', '\x00', '\xff', '\xdb', '\x00', '\x43', '\x00', '\x03', '\x02', '\x02',
+    '\x03', '\x02', '\x02', '\x03', '\x03', '\x03', '\x03', '\x04', '\x03', '\x03', '\x04', '\x05', '\x08', '\x05',
+    '\x05', '\x04', '\x04', '\x05', '\x0a', '\x07', '\x07', '\x06', '\x08', '\x0c', '\x0a', '\x0c', '\x0c', '\x0b',
+    '\x0a', '\x0b', '\x0b', '\x0d', '\x0e', '\x12', '\x10', '\x0d', '\x0e', '\x11', '\x0e', '\x0b', '\x0b', '\x10',
+    '\x16', '\x10', '\x11', '\x13', '\x14', '\x15', '\x15', '\x15', '\x0c', '\x0f', '\x17', '\x18', '\x16', '\x14',
+    '\x18', '\x12', '\x14', '\x15', '\x14', '\xff', '\xdb', '\x00', '\x43', '\x01', '\x03', '\x04', '\x04', '\x05',
+    '\x04', '\x05', '\x09', '\x05', '\x05', '\x09', '\x14', '\x0d', '\x0b', '\x0d', '\x14', '\x14', '\x14', '\x14',
+    '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14',
+    '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14',
+    '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14', '\x14',
+    '\x14', '\x14', '\x14', '\x14', '\xff', '\xc0', '\x00', '\x11', '\x08', '\x00', '\x10', '\x00', '\x10', '\x03',
+    '\x01', '\x22', '\x00', '\x02', '\x11', '\x01', '\x03', '\x11', '\x01', '\xff', '\xc4', '\x00', '\x15', '\x00',
+    '\x01', '\x01', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00',
+    '\x00', '\x00', '\x00', '\x07', '\xff', '\xc4', '\x00', '\x14', '\x10', '\x01', '\x00', '\x00', '\x00', '\x00',
+    '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\xff', '\xc4',
+    '\x00', '\x15', '\x01', '\x01', '\x01', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00',
+    '\x00', '\x00', '\x00', '\x00', '\x00', '\x07', '\x08', '\xff', '\xc4', '\x00', '\x14', '\x11', '\x01', '\x00',
+    '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00', '\x00',
+    '\x00', '\xff', '\xda', '\x00', '\x0c', '\x03', '\x01', '\x00', '\x02', '\x11', '\x03', '\x11', '\x00', '\x3f',
+    '\x00', '\x9a', '\x00', '\x24', '\x58', '\x0f', '\xff', '\xd9'};
 
 TEST(MeshSite, AJpegIsDecodedToItsColorsWithinItsLoss) {
   const auto image = decode_image({kJpeg.data(), kJpeg.size()}, ".jpg");
@@ -169,7 +190,8 @@ TEST(MeshSite, UnitsAndTheUpAxisOfAnObjFollowTheRulesAndTheOptions) {
 }
 
 TEST(MeshSite, ColladaUnitsAndUpAxisAreThoseOfTheFile) {
-  const std::string dae = R"(<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+  const std::string dae =
+      R"(<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
 <asset><unit name="centimeter" meter="0.01"/><up_axis>{}</up_axis></asset>
 <library_geometries><geometry id="g"><mesh><source id="p"><float_array id="a" count="12">{}</float_array><technique_common>
 <accessor source="#a" count="4" stride="3"><param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/></accessor>
@@ -198,7 +220,8 @@ TEST(MeshSite, LightsAndAnimationsAreRowsAndDegenerateTrianglesAreLeftOut) {
   room.triangles.push_back({0, 0, 1});
   room.triangles.push_back({0, 1, 1});
   GltfText gltf;
-  gltf.more = R"(,"extensionsUsed":["KHR_lights_punctual"],"extensions":{"KHR_lights_punctual":{"lights":[{"type":"point"}]}})";
+  gltf.more =
+      R"(,"extensionsUsed":["KHR_lights_punctual"],"extensions":{"KHR_lights_punctual":{"lights":[{"type":"point"}]}})";
   gltf.node = R"("mesh":0,"extensions":{"KHR_lights_punctual":{"light":0}})";
   SiteFileImport import("room.gltf", gltf.of(y_up(room)));
   import.model();
@@ -217,8 +240,10 @@ TEST(MeshSite, BrokenFilesAreRefusedByOneLine) {
   EXPECT_EQ(SiteFileImport("a.gltf", draco.of(room)).error(),
             "a.gltf: extensionsRequired: KHR_draco_mesh_compression: this extension is not supported");
   EXPECT_EQ(SiteFileImport("a.gltf", GltfText().of(bad)).error(), "a.gltf: mesh has vertices that are not finite");
-  EXPECT_THAT(SiteFileImport("a.gltf", text.substr(0, text.size() / 2)).error(), HasSubstr("a.gltf: not a glTF file: "));
-  EXPECT_EQ(SiteFileImport("a.gltf", R"({"asset":{"version":"1.0"}})").error(), "a.gltf: asset.version: \"1.0\": must be 2.x");
+  EXPECT_THAT(SiteFileImport("a.gltf", text.substr(0, text.size() / 2)).error(),
+              HasSubstr("a.gltf: not a glTF file: "));
+  EXPECT_EQ(SiteFileImport("a.gltf", R"({"asset":{"version":"1.0"}})").error(),
+            "a.gltf: asset.version: \"1.0\": must be 2.x");
   EXPECT_EQ(SiteFileImport("a.glb", "glTF").error(), "a.glb: GLB header: must be of version 2 with a JSON chunk");
   EXPECT_THAT(SiteFileImport("a.obj", "").error(), HasSubstr("a.obj: mesh cannot be read: "));
   EXPECT_THAT(SiteFileImport("a.stl", "solid x\nendsolid x\n").error(), HasSubstr("a.stl: "));
@@ -226,8 +251,9 @@ TEST(MeshSite, BrokenFilesAreRefusedByOneLine) {
   SiteFileImport absent("a.obj", "");
   absent.options.file = absent.folder / "b.obj";
   EXPECT_EQ(absent.error(), "b.obj: mesh file not found");
-  EXPECT_EQ(SiteFileImport("a.fbx", "").error(),
-            "a.fbx: extension of a site file must be one of .yaml, .gltf, .glb, .obj, .dae, .ply, .stl, .sdf, .world, .xml");
+  EXPECT_EQ(
+      SiteFileImport("a.fbx", "").error(),
+      "a.fbx: extension of a site file must be one of .yaml, .gltf, .glb, .obj, .dae, .ply, .stl, .sdf, .world, .xml");
   SiteFileImport start("a.obj", to_obj(room));
   start.options.start = Eigen::Vector2d(50.0, 0.0);
   EXPECT_EQ(start.error(), "a.obj: --start 50,0: no walkable surface there");
@@ -242,7 +268,8 @@ TEST(MeshSite, AMissingMaterialLibraryOfAnObjIsARow) {
 
 TEST(MeshSite, VertexColorsOfAPlyBecomeMaterials) {
   std::string ply =
-      "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\n"
+      "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\nproperty uchar "
+      "red\n"
       "property uchar green\nproperty uchar blue\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n"
       "0 0 0 255 0 0\n4 0 0 255 0 0\n4 4 0 255 0 0\n0 0 0 0 0 255\n4 4 0 0 0 255\n0 4 0 0 0 255\n3 0 1 2\n3 3 4 5\n";
   SiteFileImport import("floor.ply", ply);

@@ -24,7 +24,8 @@ TEST(MjcfSite, AModelIsCopiedWithItsIncludesMeshesAndTextures) {
 <worldbody><geom name="floor" type="plane" size="5 5 1"/><geom name="crate" type="mesh" mesh="crate" material="brick"/>
 <body name="door" pos="2 0 1"><joint name="hinge"/><geom type="box" size="0.5 0.05 1" mass="3"/></body></worldbody>
 <actuator><motor joint="hinge"/></actuator></mujoco>)");
-  for (const char* folder : {"assets/a", "assets/b", "pictures", "parts"}) std::filesystem::create_directories(import.folder / folder);
+  for (const char* folder : {"assets/a", "assets/b", "pictures", "parts"})
+    std::filesystem::create_directories(import.folder / folder);
   test::write_bytes(import.folder / "assets/a/crate.obj", box_obj());
   test::write_bytes(import.folder / "assets/b/crate.obj", box_obj());
   test::write_bytes(import.folder / "pictures/brick.png", encode_png({.width = 1, .height = 1, .rgb = {200, 80, 60}}));
@@ -44,9 +45,12 @@ TEST(MjcfSite, AModelIsCopiedWithItsIncludesMeshesAndTextures) {
 }
 
 TEST(MjcfSite, BrokenModelsAreRefusedByOneLineAndNothingIsWritten) {
-  EXPECT_EQ(SiteFileImport("a.xml", "<mujoco>\n<include file=\"b.xml\"/></mujoco>").error(), "a.xml:2: <include>: b.xml: file not found");
-  EXPECT_EQ(SiteFileImport("a.xml", "<mujoco><asset>\n<mesh file=\"b.obj\"/></asset></mujoco>").error(), "a.xml:2: <mesh>: b.obj: file not found");
-  EXPECT_EQ(SiteFileImport("a.xml", "<mujoco><asset>\n<model file=\"b.xml\"/></asset></mujoco>").error(), "a.xml:2: <model>: attached models are not supported");
+  EXPECT_EQ(SiteFileImport("a.xml", "<mujoco>\n<include file=\"b.xml\"/></mujoco>").error(),
+            "a.xml:2: <include>: b.xml: file not found");
+  EXPECT_EQ(SiteFileImport("a.xml", "<mujoco><asset>\n<mesh file=\"b.obj\"/></asset></mujoco>").error(),
+            "a.xml:2: <mesh>: b.obj: file not found");
+  EXPECT_EQ(SiteFileImport("a.xml", "<mujoco><asset>\n<model file=\"b.xml\"/></asset></mujoco>").error(),
+            "a.xml:2: <model>: attached models are not supported");
   EXPECT_EQ(SiteFileImport("a.xml", "<robot name=\"r\"/>").error(), "a.xml:1: <robot>: must be <mujoco>");
   EXPECT_EQ(SiteFileImport("a.xml", "<mujoco>").error(), "a.xml:1: not XML: XML_ERROR_MISMATCHED_ELEMENT");
   SiteFileImport refused("a.xml", "<mujoco><worldbody><geom type=\"box\" size=\"-1 1 1\"/></worldbody></mujoco>");
