@@ -18,6 +18,7 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "importer/site/gltf_header.h"
+#include "importer/site/mesh_checks.h"
 #include "importer/site/mesh_materials.h"
 #include "io/files/atomic_file.h"
 #include "io/files/one_line.h"
@@ -225,6 +226,7 @@ const aiScene& read_scene(const std::filesystem::path& file, Assimp::Importer& i
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_LINE | aiPrimitiveType_POINT);
   importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, 40.0F);
   const aiScene& raw = check(importer.ReadFile(file.string(), 0));
+  check_faces(file, raw);
   const std::size_t count = count_triangles(raw, *raw.mRootNode);
   if (count > kMaxTriangles)
     throw InputError(fmt::format("{}: {} triangles: must be at most {}", file.string(), count, kMaxTriangles));
@@ -258,6 +260,7 @@ MeshScene read_mesh_scene(const std::filesystem::path& file, const std::string& 
     scene.up = 'y';
   }
   if (file.extension() == ".dae") read_collada_asset(file, scene);
+  check_mesh_file(file);
   if (file.extension() == ".obj") check_material_libraries(file, scene);
   Assimp::Importer importer;
   const aiScene& source = read_scene(file, importer);

@@ -3,6 +3,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <iostream>
+#include <sstream>
 #include <string_view>
 #include <system_error>
 
@@ -31,13 +33,20 @@ constexpr const char* kGroundPlane =
 constexpr const char* kSun = R"(<sdf version="1.6"><light name="sun" type="directional"><pose>0 0 10 0 0 0</pose>
 <diffuse>0.8 0.8 0.8 1</diffuse><direction>-0.5 0.1 -0.9</direction></light></sdf>)";
 
-/// Mutes the reader of URDF, which libsdformat tries when it cannot read a file.
-class QuietUrdf {
+/// Mutes the reader of URDF, which libsdformat tries when it cannot read a file, and what Ignition Math prints.
+class QuietLibraries {
  public:
-  QuietUrdf() { console_bridge::noOutputHandler(); }
-  ~QuietUrdf() { console_bridge::restorePreviousOutputHandler(); }
-  QuietUrdf(const QuietUrdf&) = delete;
-  QuietUrdf& operator=(const QuietUrdf&) = delete;
+  QuietLibraries() : before_(std::cerr.rdbuf(muted_.rdbuf())) { console_bridge::noOutputHandler(); }
+  ~QuietLibraries() {
+    console_bridge::restorePreviousOutputHandler();
+    std::cerr.rdbuf(before_);
+  }
+  QuietLibraries(const QuietLibraries&) = delete;
+  QuietLibraries& operator=(const QuietLibraries&) = delete;
+
+ private:
+  std::ostringstream muted_;
+  std::streambuf* before_;
 };
 
 /// Returns the place of an error of libsdformat, with the name of the file as it was given.
@@ -57,7 +66,7 @@ SdfWorld::SdfWorld(const std::filesystem::path& file, const std::map<std::string
   config.SetUnrecognizedElementsPolicy(sdf::EnforcementPolicy::LOG);
   config.SetDeprecatedElementsPolicy(sdf::EnforcementPolicy::LOG);
   config.SetFindCallback([this](const std::string& uri) { return find(uri); });
-  const QuietUrdf quiet;
+  const QuietLibraries quiet;
   // Absolute: libsdformat would read its own file for a name such as "joint.sdf".
   const sdf::Errors errors = root_.Load(std::filesystem::absolute(file).string(), config);
   if (!errors.empty()) fail(errors.front(), config);
