@@ -41,7 +41,8 @@ SiteMaterial contact_material();
 /// tops are equal. Surfaces below the ground and above that height have no contact.
 ///
 /// `mesh`: triangles in site, z up. `given`: surfaces with contact of their own, which take part in the search for the
-/// ground only. Throws InputError without file if there is no walkable surface at `start`.
+/// ground only. Throws InputError without file if there is no walkable surface at `start`, or for coordinates above
+/// 100 km.
 ContactGeometry contact_geometry(const Mesh& mesh, const Mesh& given, const ContactOptions& options);
 
 }  // namespace patrol::importer

@@ -28,6 +28,23 @@ struct SurfaceSample {
   int surface = -1;  ///< connected surface; -1: not walkable
 };
 
+/// Range of x of a triangle on the line y; the lower end is above the upper one if it misses the line.
+std::pair<double, double> range_on_line(const std::array<Eigen::Vector3d, 3>& corners, double y) {
+  double lower = std::numeric_limits<double>::infinity(), upper = -lower;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Eigen::Vector3d &a = corners[k], &b = corners[(k + 1) % 3];
+    if (std::min(a.y(), b.y()) > y + 1e-9 || std::max(a.y(), b.y()) < y - 1e-9) continue;
+    const double rise = b.y() - a.y();
+    if (std::abs(rise) < 1e-12) {
+      lower = std::min({lower, a.x(), b.x()}), upper = std::max({upper, a.x(), b.x()});
+      continue;
+    }
+    const double x = a.x() + std::clamp((y - a.y()) / rise, 0.0, 1.0) * (b.x() - a.x());
+    lower = std::min(lower, x), upper = std::max(upper, x);
+  }
+  return {lower, upper};
+}
+
 /// Adds the heights of a triangle at the centers of the cells inside of it.
 void sample_triangle(const std::array<Eigen::Vector3d, 3>& corners, const GridGeometry& grid, bool is_given,
                      std::vector<SurfaceSample>& samples) {
@@ -46,7 +63,11 @@ void sample_triangle(const std::array<Eigen::Vector3d, 3>& corners, const GridGe
   const auto [first_row, last_row] = cell_range(1, grid.height);
   const double sign = normal.z() > 0.0 ? 1.0 : -1.0;
   for (int row = first_row; row <= last_row; ++row) {
-    for (int col = first_col; col <= last_col; ++col) {
+    const auto [left, right] = range_on_line(corners, grid.center_of({0, row}).y());
+    if (left > right) continue;
+    const int begin_col = std::max(first_col, grid.cell_at({left - 1e-6, 0.0}).col);
+    const int end_col = std::min(last_col, grid.cell_at({right + 1e-6, 0.0}).col);
+    for (int col = begin_col; col <= end_col; ++col) {
       const Eigen::Vector2d center = grid.center_of({col, row});
       bool is_inside = true;
       for (std::size_t k = 0; k < 3 && is_inside; ++k) {

@@ -1,6 +1,8 @@
 #include "importer/site/contact_geometry.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <random>
 
 #include <Eigen/Geometry>
@@ -252,6 +254,18 @@ TEST(ContactGeometry, GivenSurfacesAreGroundWithoutAnotherOne) {
   const ContactGeometry contact = contact_geometry(mesh, given, {});
   EXPECT_EQ(contact.shapes.front().type, SiteShapeType::kBox);
   EXPECT_THAT(contact.rows.front().text, HasSubstr("contact of their own"));
+}
+
+TEST(ContactGeometry, AFanOfSliversIsWholeGround) {
+  Mesh mesh;  // disk of 20 m radius: 4,000 triangles across thousands of cells
+  constexpr int kNum = 4000;
+  mesh.vertices_m.emplace_back(0, 0, 0);
+  for (int i = 0; i < kNum; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / kNum;
+    mesh.vertices_m.emplace_back(20.0 * std::cos(angle), 20.0 * std::sin(angle), 0.0);
+    mesh.triangles.push_back({0, i + 1, (i + 1) % kNum + 1});
+  }
+  EXPECT_NEAR(contact_geometry(mesh, {}, {}).ground_area_m2, std::numbers::pi * 400.0, 2.0);
 }
 
 TEST(ContactGeometry, TheCellGrowsWithTheSiteAndIsReported) {

@@ -261,6 +261,9 @@ TEST(MeshSite, BrokenFilesAreRefusedByOneLine) {
   EXPECT_EQ(
       SiteFileImport("a.fbx", "").error(),
       "a.fbx: extension of a site file must be one of .yaml, .gltf, .glb, .obj, .dae, .ply, .stl, .sdf, .world, .xml");
+  SiteFileImport large("a.obj", to_obj(room));
+  large.options.scale = 1e5;
+  EXPECT_EQ(large.error(), "a.obj: coordinates up to 8e+05 m: must be at most 100000 m");
   SiteFileImport start("a.obj", to_obj(room));
   start.options.start = Eigen::Vector2d(50.0, 0.0);
   EXPECT_EQ(start.error(), "a.obj: --start 50,0: no walkable surface there");
