@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 namespace patrol::score {
 namespace {
@@ -29,13 +30,40 @@ void mark_neighborhood(ReferenceMap& reference, Cell hit) {
   }
 }
 
+/// Returns the distance after which a ray from outside is inside of the grid; none if it misses the grid.
+std::optional<double> entry_m(const GridGeometry& geometry, const Eigen::Vector2d& from_m,
+                              const Eigen::Vector2d& direction) {
+  constexpr double kInside_m = 1e-9;
+  double enter_m = 0.0, leave_m = std::numeric_limits<double>::infinity();
+  const Eigen::Vector2d size_m = geometry.resolution_m * Eigen::Vector2d(geometry.width, geometry.height);
+  for (int axis = 0; axis < 2; ++axis) {
+    const double low_m = geometry.origin_m[axis] - from_m[axis], high_m = low_m + size_m[axis];
+    if (std::abs(direction[axis]) < 1e-12) {
+      if (low_m > 0.0 || high_m <= 0.0) return std::nullopt;
+      continue;
+    }
+    const double a = low_m / direction[axis], b = high_m / direction[axis];
+    enter_m = std::max(enter_m, std::min(a, b));
+    leave_m = std::min(leave_m, std::max(a, b));
+  }
+  if (enter_m + kInside_m >= leave_m) return std::nullopt;
+  return enter_m + kInside_m;
+}
+
 /// Marks the cells along a ray in order [Amanatides87], up to the first that is occupied or unknown. A run has 10^9
 /// steps: cells are addressed by their index, and the border is found by counting steps.
 void mark_ray(ReferenceMap& reference, const Eigen::Vector2d& from_m, double angle_rad, double max_range_m) {
   const GridGeometry& geometry = reference.cells.geometry();
-  const Cell first = geometry.cell_at(from_m);
-  if (!geometry.contains(first)) return;
   const Eigen::Vector2d direction(std::cos(angle_rad), std::sin(angle_rad));
+  const Cell first = geometry.cell_at(from_m);
+  if (!geometry.contains(first)) {
+    const std::optional<double> outside_m = entry_m(geometry, from_m, direction);
+    if (!outside_m || *outside_m > max_range_m) return;
+    const Eigen::Vector2d border_m = from_m + *outside_m * direction;
+    if (geometry.contains(geometry.cell_at(border_m)))
+      mark_ray(reference, border_m, angle_rad, max_range_m - *outside_m);
+    return;
+  }
   const Eigen::Vector2d q = (from_m - geometry.origin_m) / geometry.resolution_m;
   double next_m[2], stride_m[2];
   for (int axis = 0; axis < 2; ++axis) {

@@ -15,9 +15,9 @@ struct ReferenceMap {
 };
 
 /// Marks the cells that a lidar on the trajectory could have observed. These are the cells that a ray of at most
-/// `max_range_m` crosses or ends in before it is blocked. Poses nearer than `spacing_m` to the previous one are
-/// skipped. Occupied cells within one cell of a ray's end are observable too, because a ray is thinner than a lidar
-/// beam.
+/// `max_range_m` crosses or ends in before it is blocked, also from poses outside of the map. Poses nearer than
+/// `spacing_m` to the previous one are skipped. Occupied cells within one cell of a ray's end are observable too,
+/// because a ray is thinner than a lidar beam.
 ReferenceMap mark_observable(OccupancyGrid reference, const Trajectory& T_world_body, double max_range_m,
                              double spacing_m = 0.5);
 

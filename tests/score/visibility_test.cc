@@ -77,12 +77,10 @@ TEST(MarkSeeable, TheInsideOfSolidThingsIsNotSeen) {
   EXPECT_EQ(seen.is_observable.at({5, 2}), 0) << "the far side";
 }
 
-TEST(MarkSeeable, FromInsideASolidThingOrOutsideTheMapNothingIsSeen) {
-  for (const Eigen::Vector2d& place : {Eigen::Vector2d(3.5, 2.5), Eigen::Vector2d(-5.0, 2.5)}) {
-    const std::vector<std::string> block = {".......", ".#####.", ".#   #.", ".#####.", "......."};
-    const ReferenceMap seen = mark_observable(draw(block), at({place}), 30.0);
-    for (const std::uint8_t is_seen : seen.is_observable.values()) ASSERT_EQ(is_seen, 0);
-  }
+TEST(MarkSeeable, FromInsideASolidThingNothingIsSeen) {
+  const std::vector<std::string> block = {".......", ".#####.", ".#   #.", ".#####.", "......."};
+  const ReferenceMap seen = mark_observable(draw(block), at({{3.5, 2.5}}), 30.0);
+  for (const std::uint8_t is_seen : seen.is_observable.values()) ASSERT_EQ(is_seen, 0);
 }
 
 TEST(MarkSeeable, PlacesNearerThanTheSpacingAreLeftOut) {
@@ -93,6 +91,15 @@ TEST(MarkSeeable, PlacesNearerThanTheSpacingAreLeftOut) {
             drawing_of(mark_observable(draw(room), at({{3.9, 1.5}}), 30.0)));
   EXPECT_NE(drawing_of(mark_observable(draw(room), walk, 30.0, 0.3)),
             drawing_of(mark_observable(draw(room), at({{3.9, 1.5}}), 30.0)));
+}
+
+TEST(MarkSeeable, APlaceOutsideTheMapSeesIntoIt) {
+  const OccupancyGrid map = draw({".....", ".....", "..#..", ".....", "....."});
+  const ReferenceMap seen = mark_observable(map, at({{-2.5, 2.5}}), 30.0);
+  EXPECT_EQ(drawing_of(seen)[2], "..#??");
+  EXPECT_EQ(drawing_of(seen)[0], ".....");
+  EXPECT_EQ(drawing_of(mark_observable(map, at({{-2.5, 2.5}}), 4.0))[2], "..???");
+  EXPECT_EQ(drawing_of(mark_observable(map, at({{-2.5, 2.5}}), 2.0))[2], "?????");
 }
 
 }  // namespace

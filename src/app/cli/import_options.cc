@@ -10,6 +10,7 @@ namespace {
 
 constexpr const char* kRobots = "Options of import robot";
 constexpr const char* kSites = "Options of import site";
+constexpr const char* kBoth = "Options of both";
 
 /// Throws InputError if an option of the other kind of input is given.
 void refuse_options(const CLI::App& command, const std::string& kind, const char* other_group) {
@@ -20,9 +21,9 @@ void refuse_options(const CLI::App& command, const std::string& kind, const char
 }
 
 void add_robot(CLI::App& command, ImportRobotOptions& robot) {
-  command.add_option("--package", robot.packages, "Folder of a package, NAME=FOLDER (repeatable)")
+  command.add_option("--package", robot.packages, "Folder of a package or of a model of SDF, NAME=FOLDER (repeatable)")
       ->take_all()
-      ->group(kRobots);
+      ->group(kBoth);
   command.add_option("--xacro-arg", robot.xacro_arguments, "Argument of xacro, NAME=VALUE (repeatable)")
       ->take_all()
       ->group(kRobots);
@@ -57,8 +58,12 @@ void add_site(CLI::App& command, ImportSiteOptions& site) {
       ->check(CLI::Range(1, 1000))
       ->group(kSites);
   command.add_option("--seed", site.seed, "Random seed of the stations")->capture_default_str()->group(kSites);
-  command.add_option("--start", site.start, "Start of the mission, X,Y or X,Y,DEG (default: by rule)")->group(kSites);
+  command.add_option("--start", site.start, "Start of the mission, X,Y or X,Y,DEG, and point of a mesh's ground (default: by rule)")->group(kSites);
   command.add_option("--robot", site.robot, "Robot of the scenario")->capture_default_str()->group(kSites);
+  command.add_option("--contact-cell", site.contact_cell_m, "Cell of a mesh's contact geometry, m")
+      ->check(CLI::Range(0.02, 1.0))
+      ->capture_default_str()
+      ->group(kSites);
 }
 
 }  // namespace
@@ -81,6 +86,7 @@ void add_import_command(CLI::App& app, Call& call) {
       if (is_robot) return import_robot_command(call.import_robot);
       call.import_site.file = call.import_robot.file;
       call.import_site.out = call.import_robot.out;
+      call.import_site.packages = call.import_robot.packages;
       return import_site_command(call.import_site);
     };
   });

@@ -199,8 +199,9 @@ struct ImportRobotOptions {
 ExitCode import_robot_command(const ImportRobotOptions& options);
 
 struct ImportSiteOptions {
-  std::filesystem::path file;  ///< floor plan
-  std::filesystem::path out;   ///< folder worlds/NAME
+  std::filesystem::path file;         ///< floor plan, mesh, SDF world or MJCF
+  std::filesystem::path out;          ///< folder worlds/NAME
+  std::vector<std::string> packages;  ///< NAME=FOLDER
   double wall_height_m = 2.5;
   double scale = 0.0;              ///< meters per unit of the file; 0: by rule
   std::string up;                  ///< axis of the file that points up; empty: by rule
@@ -209,6 +210,7 @@ struct ImportSiteOptions {
   std::uint64_t seed = 1;
   std::string start;  ///< "X,Y" or "X,Y,DEG"; empty: by rule
   std::string robot = "wheeled";
+  double contact_cell_m = 0.05;  ///< cell of the contact geometry of meshes
 };
 /// Makes a site of `worlds` from a file.
 ExitCode import_site_command(const ImportSiteOptions& options);

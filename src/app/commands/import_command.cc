@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
 #include <fmt/format.h>
 
 #include "app/commands/commands.h"
@@ -72,6 +73,8 @@ ExitCode import_site_command(const ImportSiteOptions& options) {
                                      .wall_height_m = options.wall_height_m,
                                      .scale = options.scale,
                                      .up = options.up,
+                                     .contact_cell_m = options.contact_cell_m,
+                                     .packages = to_map<std::filesystem::path>(options.packages, "--package"),
                                      .mission = {.stations = options.stations,
                                                  .num_random = options.random_stations,
                                                  .seed = options.seed,

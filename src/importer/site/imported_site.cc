@@ -60,7 +60,7 @@ void check(const ImportedSite& site) {
     if (!shapes.insert(shape.name).second) throw std::invalid_argument("site: shape twice: " + shape.name);
     if (!materials.contains(shape.material)) throw std::invalid_argument("site: no material of " + shape.name);
   }
-  if (site.shapes.empty()) throw InputError(site.source + ": has no shapes");
+  if (site.shapes.empty() && site.mjcf.empty()) throw InputError(site.source + ": has no shapes");
 }
 
 }  // namespace
@@ -70,7 +70,7 @@ void write_site(const ImportedSite& site, const std::filesystem::path& folder) {
   check(site);
   OutputFolder output(folder);
   const std::filesystem::path xml = output.staging() / (site.name + ".xml");
-  io::save_text(xml, to_mjcf(site));
+  io::save_text(xml, site.mjcf.empty() ? to_mjcf(site) : site.mjcf);
   io::save_settings(output.staging() / (site.name + ".yaml"), sim::SiteSettings{.ground = site.ground},
                     "Settings of the site (src/sim/site_settings.h)");
   io::save_text(output.staging() / "README.md", report_of(site));
@@ -95,11 +95,13 @@ std::string report_of(const ImportedSite& site) {
     triangles += shape.mesh.triangles.size();
     if (shape.use == ShapeUse::kSolid || shape.use == ShapeUse::kContactOnly) ++solid;
   }
+  const std::string content = site.mjcf.empty() ? fmt::format("{} shapes, {} of them with contact, {} triangles",
+                                                              site.shapes.size(), solid, triangles)
+                                                : fmt::format("a MuJoCo model with {} files", site.files.size());
   return fmt::format(
-             "# {}\n\nMade by `patrol import site` from `{}`: {} shapes, {} of them with contact, {} triangles. "
-             "`patrol site {}` reports the ground and the obstacles.\n\n## Assumptions\n\n",
-             io::on_one_line(site.name), io::on_one_line(site.source), site.shapes.size(), solid, triangles,
-             site.name) +
+             "# {}\n\nMade by `patrol import site` from `{}`: {}. `patrol site {}` reports the ground and the "
+             "obstacles.\n\n## Assumptions\n\n",
+             io::on_one_line(site.name), io::on_one_line(site.source), content, site.name) +
          to_markdown(site.assumptions, "None: the file determines the site.\n");
 }
 

@@ -27,7 +27,7 @@ enum class ShapeUse : std::uint8_t {
 };
 
 /// Type of a shape of a site.
-enum class SiteShapeType : std::uint8_t { kBox, kCylinder, kSphere, kPlane, kMesh, kHeightField };
+enum class SiteShapeType : std::uint8_t { kBox, kCylinder, kSphere, kPlane, kMesh, kHeightField, kCapsule, kEllipsoid };
 
 /// Heights on a regular grid; the height of a vertex is that of the surface at the cell's center; the
 /// geom ends at the centers of the outermost cells.
@@ -41,7 +41,8 @@ struct SiteShape {
   SiteShapeType type = SiteShapeType::kBox;
   ShapeUse use = ShapeUse::kSolid;
   Pose3 T_site_shape = {};
-  /// Box: half sizes. Cylinder along z: radius, half length, 0. Sphere: radius, 0, 0. Plane: half sizes of the drawn
+  /// Box: half sizes. Cylinder along z: radius, half length, 0. Capsule along z: radius, half length
+  /// between the centers of its ends, 0. Ellipsoid: its radii. Sphere: radius, 0, 0. Plane: half sizes of the drawn
   /// part, 0 for infinite; it is infinite for contact and lidar.
   Eigen::Vector3d size_m = Eigen::Vector3d::Zero();
   std::string material;                                   ///< name of a material of the site
@@ -56,7 +57,7 @@ struct SiteMaterial {
   std::string name;  ///< unique within the site
   Eigen::Vector4d rgba = {0.7, 0.7, 0.7, 1.0};
   std::string texture = {};       ///< file below textures/; empty: none
-  double texture_length_m = 1.0;  ///< length that the image covers on shapes without texture coordinates
+  double texture_length_m = 1.0;  ///< length that the image covers; 0: by the texture coordinates of the shapes
 };
 
 /// File to be written below the folder of a site.
@@ -67,8 +68,9 @@ struct SiteFile {
 
 /// Site in Patrol's form, not yet written. All poses are in the frame `site`, z up.
 struct ImportedSite {
-  std::string name;    ///< of the site, its folder and its files
-  std::string source;  ///< file that it was read from
+  std::string name;       ///< of the site, its folder and its files
+  std::string source;     ///< file that it was read from
+  std::string mjcf = {};  ///< model of the site, which replaces materials and shapes; empty: made of these
   std::vector<SiteMaterial> materials = {};
   std::vector<SiteShape> shapes = {};
   std::vector<SiteFile> files = {};       ///< textures and other files of the shapes

@@ -7,7 +7,10 @@
 
 #include "core/error.h"
 #include "core/text.h"
+#include "importer/site/mesh_site.h"
+#include "importer/site/mjcf_site.h"
 #include "importer/site/plan_site.h"
+#include "importer/site/sdf_site.h"
 
 namespace patrol::importer {
 namespace {
@@ -20,6 +23,15 @@ struct SiteReader {
 
 constexpr std::array kReaders = std::to_array<SiteReader>({
     {".yaml", read_plan_site},
+    {".gltf", read_mesh_site},
+    {".glb", read_mesh_site},
+    {".obj", read_mesh_site},
+    {".dae", read_mesh_site},
+    {".ply", read_mesh_site},
+    {".stl", read_mesh_site},
+    {".sdf", read_sdf_site},
+    {".world", read_sdf_site},
+    {".xml", read_mjcf_site},
 });
 
 }  // namespace

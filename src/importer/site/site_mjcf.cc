@@ -74,7 +74,8 @@ std::string material_asset(const SiteMaterial& material) {
   text +=
       fmt::format("    <material name=\"{}\" rgba=\"{:.4g} {:.4g} {:.4g} {:.4g}\" specular=\"0.05\" shininess=\"0.2\"",
                   name, c.x(), c.y(), c.z(), c.w());
-  if (!texture.empty()) {
+  if (!texture.empty() && material.texture_length_m <= 0.0) text += fmt::format(" texture=\"{}\"", name);
+  if (!texture.empty() && material.texture_length_m > 0.0) {
     const double repeat = 1.0 / material.texture_length_m;
     text += fmt::format(" texture=\"{0}\" texuniform=\"true\" texrepeat=\"{1:.6g} {1:.6g}\"", name, repeat);
   }
@@ -118,6 +119,12 @@ std::string geom(const SiteShape& shape) {
       break;
     case SiteShapeType::kCylinder:
       form = fmt::format("type=\"cylinder\" size=\"{:.9g} {:.9g}\"", shape.size_m.x(), shape.size_m.y());
+      break;
+    case SiteShapeType::kCapsule:
+      form = fmt::format("type=\"capsule\" size=\"{:.9g} {:.9g}\"", shape.size_m.x(), shape.size_m.y());
+      break;
+    case SiteShapeType::kEllipsoid:
+      form = fmt::format("type=\"ellipsoid\" size=\"{}\"", vector_text(shape.size_m));
       break;
     case SiteShapeType::kSphere:
       form = fmt::format("type=\"sphere\" size=\"{:.9g}\"", shape.size_m.x());

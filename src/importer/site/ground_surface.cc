@@ -1,0 +1,298 @@
+#include "importer/site/ground_surface.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+#include "core/error.h"
+
+namespace patrol::importer {
+namespace {
+
+constexpr double kMinFree_m = 0.2;        // free height above a walkable surface
+constexpr double kSame_m = 1e-3;          // samples closer than this are one
+constexpr double kMinGround_m2 = 1.0;     // smaller surfaces are no ground by rule
+constexpr double kMinGroundRatio = 0.25;  // of the largest surface
+
+/// Surface at the center of a cell.
+struct SurfaceSample {
+  std::uint32_t cell = 0;
+  float z_m = 0.0F;
+  bool is_gentle = false;  ///< slope up to 45 degrees
+  bool faces_up = false;
+  bool is_given = false;
+  int surface = -1;  ///< connected surface; -1: not walkable
+};
+
+/// Range of x of a triangle on the line y; the lower end is above the upper one if it misses the line.
+std::pair<double, double> range_on_line(const std::array<Eigen::Vector3d, 3>& corners, double y) {
+  double lower = std::numeric_limits<double>::infinity(), upper = -lower;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Eigen::Vector3d &a = corners[k], &b = corners[(k + 1) % 3];
+    if (std::min(a.y(), b.y()) > y + 1e-9 || std::max(a.y(), b.y()) < y - 1e-9) continue;
+    const double rise = b.y() - a.y();
+    if (std::abs(rise) < 1e-12) {
+      lower = std::min({lower, a.x(), b.x()}), upper = std::max({upper, a.x(), b.x()});
+      continue;
+    }
+    const double x = a.x() + std::clamp((y - a.y()) / rise, 0.0, 1.0) * (b.x() - a.x());
+    lower = std::min(lower, x), upper = std::max(upper, x);
+  }
+  return {lower, upper};
+}
+
+/// Adds the heights of a triangle at the centers of the cells inside of it.
+void sample_triangle(const std::array<Eigen::Vector3d, 3>& corners, const GridGeometry& grid, bool is_given,
+                     std::vector<SurfaceSample>& samples) {
+  const Eigen::Vector3d normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+  if (std::abs(normal.z()) <= 1e-9 * normal.norm()) return;
+  const bool is_gentle = std::abs(normal.z()) >= std::sqrt(0.5) * normal.norm() * (1.0 - 1e-9);
+  const auto cell_range = [&](int axis, int count) {
+    double lower = corners[0][axis], upper = lower;
+    for (const Eigen::Vector3d& corner : corners)
+      lower = std::min(lower, corner[axis]), upper = std::max(upper, corner[axis]);
+    const double first = std::ceil((lower - grid.origin_m[axis]) / grid.resolution_m - 0.5 - 1e-9);
+    const double last = std::floor((upper - grid.origin_m[axis]) / grid.resolution_m - 0.5 + 1e-9);
+    return std::pair(static_cast<int>(std::max(0.0, first)), static_cast<int>(std::min(count - 1.0, last)));
+  };
+  const auto [first_col, last_col] = cell_range(0, grid.width);
+  const auto [first_row, last_row] = cell_range(1, grid.height);
+  const double sign = normal.z() > 0.0 ? 1.0 : -1.0;
+  for (int row = first_row; row <= last_row; ++row) {
+    const auto [left, right] = range_on_line(corners, grid.center_of({0, row}).y());
+    if (left > right) continue;
+    const int begin_col = std::max(first_col, grid.cell_at({left - 1e-6, 0.0}).col);
+    const int end_col = std::min(last_col, grid.cell_at({right + 1e-6, 0.0}).col);
+    for (int col = begin_col; col <= end_col; ++col) {
+      const Eigen::Vector2d center = grid.center_of({col, row});
+      bool is_inside = true;
+      for (std::size_t k = 0; k < 3 && is_inside; ++k) {
+        const Eigen::Vector2d edge = (corners[(k + 1) % 3] - corners[k]).head<2>(), to = center - corners[k].head<2>();
+        is_inside = sign * (edge.x() * to.y() - edge.y() * to.x()) >= -1e-9 * edge.norm();
+      }
+      if (!is_inside) continue;
+      const double z = corners[0].z() - (normal.head<2>().dot(center - corners[0].head<2>())) / normal.z();
+      const std::size_t cell =
+          static_cast<std::size_t>(row) * static_cast<std::size_t>(grid.width) + static_cast<std::size_t>(col);
+      samples.push_back({.cell = static_cast<std::uint32_t>(cell),
+                         .z_m = static_cast<float>(z),
+                         .is_gentle = is_gentle,
+                         .faces_up = sign > 0.0,
+                         .is_given = is_given});
+    }
+  }
+}
+
+void sample_mesh(const Mesh& mesh, const GridGeometry& grid, bool is_given, std::vector<SurfaceSample>& samples) {
+  for (const std::array<int, 3>& t : mesh.triangles) {
+    sample_triangle({mesh.vertices_m[static_cast<std::size_t>(t[0])], mesh.vertices_m[static_cast<std::size_t>(t[1])],
+                     mesh.vertices_m[static_cast<std::size_t>(t[2])]},
+                    grid, is_given, samples);
+  }
+}
+
+/// Samples of all cells, from the lowest up in each.
+class SurfaceSamples {
+ public:
+  SurfaceSamples(const Mesh& mesh, const Mesh& given, const GridGeometry& grid) : grid_(grid) {
+    sample_mesh(mesh, grid, false, samples_);
+    sample_mesh(given, grid, true, samples_);
+    std::stable_sort(samples_.begin(), samples_.end(), [](const SurfaceSample& a, const SurfaceSample& b) {
+      return a.cell != b.cell ? a.cell < b.cell : a.z_m < b.z_m;
+    });
+    merge();
+    begin_.assign(grid.size() + 1, 0);
+    for (const SurfaceSample& sample : samples_) ++begin_[sample.cell + 1];
+    for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
+  }
+
+  std::vector<SurfaceSample>& all() { return samples_; }
+  std::size_t begin(std::size_t cell) const { return begin_[cell]; }
+  std::size_t end(std::size_t cell) const { return begin_[cell + 1]; }
+
+  bool is_walkable(std::size_t i) const {
+    const bool is_last = i + 1 >= samples_.size() || samples_[i + 1].cell != samples_[i].cell;
+    return samples_[i].is_gentle && (is_last || double{samples_[i + 1].z_m} - double{samples_[i].z_m} >= kMinFree_m);
+  }
+
+  /// Calls `visit` with the index of each of the four neighbors of a cell.
+  template <typename Visit>
+  void for_neighbors(std::size_t cell, Visit visit) const {
+    const auto width = static_cast<std::size_t>(grid_.width);
+    if (cell % width > 0) visit(cell - 1);
+    if (cell % width + 1 < width) visit(cell + 1);
+    if (cell >= width) visit(cell - width);
+    if (cell + width < grid_.size()) visit(cell + width);
+  }
+
+ private:
+  void merge() {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
+      const SurfaceSample& next = samples_[i];
+      if (kept > 0 && samples_[kept - 1].cell == next.cell &&
+          double{next.z_m} - double{samples_[kept - 1].z_m} < kSame_m) {
+        SurfaceSample& last = samples_[kept - 1];
+        last.is_gentle |= next.is_gentle;
+        last.faces_up |= next.faces_up;
+        last.is_given |= next.is_given;
+      } else {
+        samples_[kept++] = next;
+      }
+    }
+    samples_.resize(kept);
+  }
+
+  GridGeometry grid_;
+  std::vector<SurfaceSample> samples_;
+  std::vector<std::size_t> begin_;  ///< [cell]
+};
+
+/// Connected walkable surface.
+struct WalkableSurface {
+  std::size_t count = 0;
+  std::size_t num_up = 0;
+  double sum_z_m = 0.0;
+
+  double mean_z_m() const { return sum_z_m / static_cast<double>(count); }
+  bool faces_up() const { return 2 * num_up > count; }
+};
+
+std::vector<WalkableSurface> label_surfaces(SurfaceSamples& samples, double rise_m) {
+  std::vector<WalkableSurface> surfaces;
+  std::vector<std::size_t> queue;
+  for (std::size_t seed = 0; seed < samples.all().size(); ++seed) {
+    if (samples.all()[seed].surface >= 0 || !samples.is_walkable(seed)) continue;
+    const int label = static_cast<int>(surfaces.size());
+    WalkableSurface surface;
+    samples.all()[seed].surface = label;
+    queue.assign(1, seed);
+    while (!queue.empty()) {
+      const SurfaceSample here = samples.all()[queue.back()];
+      queue.pop_back();
+      ++surface.count;
+      surface.num_up += here.faces_up ? 1 : 0;
+      surface.sum_z_m += double{here.z_m};
+      samples.for_neighbors(here.cell, [&](std::size_t cell) {
+        for (std::size_t i = samples.begin(cell); i < samples.end(cell); ++i) {
+          SurfaceSample& next = samples.all()[i];
+          const bool is_near = std::abs(double{next.z_m} - double{here.z_m}) <= rise_m;
+          if (next.surface >= 0 || !is_near || !samples.is_walkable(i)) continue;
+          next.surface = label;
+          queue.push_back(i);
+        }
+      });
+    }
+    surfaces.push_back(surface);
+  }
+  return surfaces;
+}
+
+int surface_at(SurfaceSamples& samples, const GridGeometry& grid, const Eigen::Vector2d& start) {
+  const Cell at = grid.cell_at(start);
+  if (grid.contains(at)) {
+    const std::size_t cell =
+        static_cast<std::size_t>(at.row) * static_cast<std::size_t>(grid.width) + static_cast<std::size_t>(at.col);
+    for (std::size_t i = samples.begin(cell); i < samples.end(cell); ++i) {
+      if (samples.all()[i].surface >= 0) return samples.all()[i].surface;
+    }
+  }
+  throw InputError(fmt::format("--start {:g},{:g}: no walkable surface there", start.x(), start.y()));
+}
+
+int surface_by_rule(const std::vector<WalkableSurface>& surfaces, double cell_m2) {
+  std::size_t largest = 0;
+  bool has_up = false;
+  const auto is_large = [&](const WalkableSurface& s) {
+    return static_cast<double>(s.count) * cell_m2 >= kMinGround_m2;
+  };
+  for (const WalkableSurface& s : surfaces) has_up |= s.faces_up() && is_large(s);
+  for (const WalkableSurface& s : surfaces) {
+    if (s.faces_up() || !has_up) largest = std::max(largest, s.count);
+  }
+  int best = -1;
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    const WalkableSurface& s = surfaces[i];
+    if ((has_up && !s.faces_up()) || !is_large(s)) continue;
+    if (static_cast<double>(s.count) < kMinGroundRatio * static_cast<double>(largest)) continue;
+    if (best < 0 || s.mean_z_m() < surfaces[static_cast<std::size_t>(best)].mean_z_m()) best = static_cast<int>(i);
+  }
+  return best;
+}
+
+/// Gives cells without ground the height of a drop there, or that of the nearest ground.
+void fill(SurfaceSamples& samples, double rise_m, std::vector<char>& is_known, Grid<float>& height_m) {
+  std::vector<std::size_t> queue;
+  for (std::size_t cell = 0; cell < is_known.size(); ++cell) {
+    if (is_known[cell] != 0) queue.push_back(cell);
+  }
+  std::vector<float> nearest = height_m.values();
+  for (std::size_t next = 0; next < queue.size(); ++next) {
+    const std::size_t from = queue[next];
+    samples.for_neighbors(from, [&](std::size_t cell) {
+      if (is_known[cell] != 0) return;
+      is_known[cell] = 1;
+      nearest[cell] = nearest[from];
+      height_m.values()[cell] = nearest[from];
+      queue.push_back(cell);
+      float drop_m = -std::numeric_limits<float>::infinity();
+      bool has_ground_above = false;
+      for (std::size_t i = samples.begin(cell); i < samples.end(cell); ++i) {
+        const SurfaceSample& sample = samples.all()[i];
+        const double depth_m = double{nearest[from]} - double{sample.z_m};
+        if (std::abs(depth_m) <= rise_m) has_ground_above = true;
+        else if (depth_m > 0.0 && sample.surface >= 0) drop_m = sample.z_m;
+      }
+      if (!has_ground_above && std::isfinite(drop_m)) height_m.values()[cell] = drop_m;
+    });
+  }
+}
+
+}  // namespace
+
+double GroundSurface::at(const Eigen::Vector2d& p_m) const {
+  const GridGeometry& grid = height_m.geometry();
+  const Eigen::Array2d position = (p_m - grid.origin_m).array() / grid.resolution_m - 0.5;
+  const Eigen::Array2d limited = position.max(0.0).min(Eigen::Array2d(grid.width - 1 - 1e-9, grid.height - 1 - 1e-9));
+  const int col = static_cast<int>(limited.x()), row = static_cast<int>(limited.y());
+  const double u = limited.x() - col, v = limited.y() - row;
+  const auto z = [&](int c, int r) {
+    return double{height_m.at({std::min(c, grid.width - 1), std::min(r, grid.height - 1)})};
+  };
+  return (1.0 - v) * ((1.0 - u) * z(col, row) + u * z(col + 1, row)) +
+         v * ((1.0 - u) * z(col, row + 1) + u * z(col + 1, row + 1));
+}
+
+GroundSurface find_ground(const Mesh& mesh, const Mesh& given, const GridGeometry& grid,
+                          const std::optional<Eigen::Vector2d>& start) {
+  const double rise_m = grid.resolution_m, cell_m2 = grid.resolution_m * grid.resolution_m;
+  SurfaceSamples samples(mesh, given, grid);
+  const std::vector<WalkableSurface> surfaces = label_surfaces(samples, 1.001 * rise_m);
+  const int chosen = start ? surface_at(samples, grid, *start) : surface_by_rule(surfaces, cell_m2);
+  GroundSurface ground;
+  ground.height_m = Grid<float>(grid);
+  if (chosen < 0) {
+    double lowest_m = std::numeric_limits<double>::infinity();
+    for (const Eigen::Vector3d& vertex : mesh.vertices_m) lowest_m = std::min(lowest_m, vertex.z());
+    std::fill(ground.height_m.values().begin(), ground.height_m.values().end(), static_cast<float>(lowest_m));
+    return ground;
+  }
+  ground.is_found = true;
+  ground.faces_up = surfaces[static_cast<std::size_t>(chosen)].faces_up();
+  std::vector<char> is_known(grid.size(), 0);
+  for (const SurfaceSample& sample : samples.all()) {
+    if (sample.surface != chosen || is_known[sample.cell] != 0) continue;
+    is_known[sample.cell] = 1;
+    ground.height_m.values()[sample.cell] = sample.z_m;
+    ground.area_m2 += cell_m2;
+    if (!sample.is_given) ground.own_area_m2 += cell_m2;
+  }
+  fill(samples, rise_m, is_known, ground.height_m);
+  return ground;
+}
+
+}  // namespace patrol::importer

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "importer/mesh.h"
+
+namespace patrol::importer {
+
+/// Returns the prism over a simple polygon, from z = 0 to `height_m`, by ear clipping; empty if
+/// the polygon is not simple. The corners run in either direction; a last one equal to the first is left out.
+Mesh extruded_polygon(std::vector<Eigen::Vector2d> corners_m, double height_m);
+
+}  // namespace patrol::importer
