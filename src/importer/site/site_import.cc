@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "importer/site/plan_site.h"
+#include "importer/site/points/points_site.h"
 
 namespace patrol::importer {
 namespace {
@@ -20,11 +21,14 @@ struct SiteReader {
 
 constexpr std::array kReaders = std::to_array<SiteReader>({
     {".yaml", read_plan_site},
+    {".ply", read_cloud_site},
+    {".pcd", read_cloud_site},
 });
 
 }  // namespace
 
 ImportedSite import_site(const SiteImportOptions& options) {
+  if (std::filesystem::is_directory(options.file)) return read_scans_site(options);
   std::vector<std::string> known;
   for (const SiteReader& reader : kReaders) {
     if (options.file.extension() == reader.extension) return reader.read(options);
