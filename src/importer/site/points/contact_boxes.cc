@@ -15,7 +15,8 @@ Grid<char> near_measured(const GroundSurface& ground, double distance_m) {
   Grid<char> rows(grid, 0), near(grid, 0);
   const auto mark = [](Grid<char>& to, Cell low, Cell high) {
     for (int row = std::max(0, low.row); row <= std::min(high.row, to.geometry().height - 1); ++row) {
-      for (int col = std::max(0, low.col); col <= std::min(high.col, to.geometry().width - 1); ++col) to.at({col, row}) = 1;
+      for (int col = std::max(0, low.col); col <= std::min(high.col, to.geometry().width - 1); ++col)
+        to.at({col, row}) = 1;
     }
   };
   for (int row = 0; row < grid.height; ++row) {
@@ -98,7 +99,8 @@ std::vector<VoxelBox> join_along(const std::vector<VoxelBox>& boxes, int axis, i
              along = static_cast<std::size_t>(axis);
   std::vector<VoxelBox> sorted = boxes;
   const auto key = [&](const VoxelBox& box) {
-    return std::array<int, 6>{box.begin[one], box.end[one], box.begin[two], box.end[two], box.begin[along], box.end[along]};
+    return std::array<int, 6>{box.begin[one], box.end[one],     box.begin[two],
+                              box.end[two],   box.begin[along], box.end[along]};
   };
   std::sort(sorted.begin(), sorted.end(), [&](const VoxelBox& a, const VoxelBox& b) { return key(a) < key(b); });
   std::vector<VoxelBox> joined;

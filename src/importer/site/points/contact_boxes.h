@@ -20,7 +20,8 @@ struct ContactBoxSettings {
 };
 
 /// Returns boxes around the measured surfaces between two heights above the ground: the bounds of the surfaces within
-/// each voxel, joined along z, x and y where their bounds along the other axes agree. Gaps of up to 0.3 m along z are closed.
+/// each voxel, joined along z, x and y where their bounds along the other axes agree. Gaps of up to 0.3 m along z are
+/// closed.
 std::vector<Eigen::AlignedBox3d> contact_boxes(const std::vector<Patch>& patches, const GroundSurface& ground,
                                                const ContactBoxSettings& settings);
 

@@ -30,7 +30,7 @@ struct GroundSurface {
 struct GroundSurfaceSettings {
   double resolution_m = 0.1;  ///< size of the cells
   double max_step_m = 0.12;   ///< largest step between neighboring cells
-  double max_gap_m = 3.0;     ///< largest distance of an interpolated cell from a measured one, and of joined parts
+  double max_gap_m = 8.0;     ///< largest distance of an interpolated cell from a measured one, and of joined parts
   double min_cosine = 0.7;    ///< smallest cosine of the slope
   std::size_t max_cells = 6'000'000;  ///< cells become larger for larger sites
 };

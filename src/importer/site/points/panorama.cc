@@ -61,7 +61,7 @@ double elevation_of(const Eigen::Vector3f& direction) {
 
 bool is_continuous(float a_m, float b_m, float c_m, float d_m, double angle_rad) {
   if (b_m <= 0.0f || c_m <= 0.0f) return false;
-  constexpr double kSteepest = 10.0;  // tangent of the largest incidence, 84 degrees
+  constexpr double kSteepest = 12.0;  // tangent of the largest incidence, 85 degrees
   const double b = double{b_m}, c = double{c_m};
   const double jump = std::abs(b - c), lateral = angle_rad * std::min(b, c);
   if (jump <= 1.5 * lateral + 0.004) return true;

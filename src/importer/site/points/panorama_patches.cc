@@ -174,6 +174,19 @@ class PatchMaker {
     return true;
   }
 
+  /// Returns the normal toward the scanner: that of the plane, or for rectangles of one column or row, which determine
+  /// no plane, the mean of those of the pixels with their neighbors.
+  Eigen::Vector3d normal_of(const PixelRectangle& rectangle, const FittedPlane& plane) const {
+    if (rectangle.width > 1 && rectangle.height > 1)
+      return plane.normal().dot(plane.center) > 0.0 ? Eigen::Vector3d(-plane.normal()) : plane.normal();
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (int col = 0; col < rectangle.width; ++col) {
+      for (int row = 0; row < rectangle.height; ++row)
+        sum += scan_.normal({rectangle.begin.col + col, rectangle.begin.row + row});
+    }
+    return sum.norm() > 1e-6 ? Eigen::Vector3d(sum.normalized()) : Eigen::Vector3d(-plane.center.normalized());
+  }
+
   /// Returns whether the surface continues nowhere across the edge of a rectangle on the side (dc, dr).
   bool is_end(const PixelRectangle& rectangle, int dc, int dr) const {
     const int width = dc == 0 ? rectangle.width : 1, height = dr == 0 ? rectangle.height : 1;
@@ -192,9 +205,8 @@ class PatchMaker {
 
   Patch patch_of(const PixelRectangle& rectangle) const {
     const FittedPlane plane = fit_plane(rectangle.moments);
-    Eigen::Vector3d normal = plane.normal();
+    const Eigen::Vector3d normal = normal_of(rectangle, plane);
     const double range_m = plane.center.norm();
-    if (normal.dot(plane.center) > 0.0) normal = -normal;
     double nearest_m = 1e9, farthest_m = 0.0;
     for (int col = 0; col < rectangle.width; ++col) {
       for (int row = 0; row < rectangle.height; ++row) {

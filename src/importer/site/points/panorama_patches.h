@@ -13,8 +13,8 @@ struct PanoramaPatchSettings {
   double max_residual_m = 0.005;        ///< largest distance of a point from its patch near the scanner
   double max_residual_per_m = 0.0003;   ///< additional distance per meter of range, for errors of the angles
   double max_reflectivity_step = 0.12;  ///< largest difference of the reflectivities of two patches that are joined
-  double silhouette_px = 0.3;              ///< width of the outer half of a pixel where the surface ends. The union of
-                                           ///< several scans would be too wide with half a pixel
+  double silhouette_px = 0.3;           ///< width of the outer half of a pixel where the surface ends. The union of
+                                        ///< several scans would be too wide with half a pixel
   double overlap_m = 0.003;             ///< length by which patches extend at their edges, against gaps
 };
 

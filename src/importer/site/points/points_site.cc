@@ -13,6 +13,7 @@
 #include "importer/site/points/panorama.h"
 #include "importer/site/points/panorama_patches.h"
 #include "importer/site/points/static_points.h"
+#include "importer/site/points/thin_objects.h"
 
 namespace patrol::importer {
 namespace {
@@ -137,6 +138,10 @@ void complete(ImportedSite& site, std::vector<Patch> patches, const GroundSurfac
   const float reflectivity = ground_reflectivity_of(patches);
   double measured_m2 = 0.0, filled_m2 = 0.0;
   for (const Patch& patch : patches) measured_m2 += patch.area_m2();
+  const std::vector<Patch> sides = close_thin_objects(patches, ground, {});
+  double sides_m2 = 0.0;
+  for (const Patch& patch : sides) sides_m2 += patch.area_m2();
+  patches.insert(patches.end(), sides.begin(), sides.end());
   for (const Patch& patch : filled_ground(ground, reflectivity)) {
     filled_m2 += patch.area_m2();
     patches.push_back(patch);
@@ -146,9 +151,15 @@ void complete(ImportedSite& site, std::vector<Patch> patches, const GroundSurfac
        ""});
   site.assumptions.push_back(
       {"filled in",
-       fmt::format("{:.0f} m2 of ground in holes and within 3 m of the measured ground ({:.0f} m2) are interpolated, "
+       fmt::format("{:.0f} m2 of ground in holes and within 8 m of the measured ground ({:.0f} m2) are interpolated, "
                    "material filled_in",
                    filled_m2, ground.area_m2(GroundOrigin::kMeasured)),
+       ""});
+  site.assumptions.push_back(
+      {"thin objects",
+       fmt::format(
+           "{:.0f} m2 of sides of objects of at most 0.6 m are filled in by convex outlines, material filled_in",
+           sides_m2),
        ""});
   add_contact(site, patches, ground);
   add_surfaces(site, patches, reflectivity);

@@ -110,7 +110,8 @@ Evidence evidence_of(const Panorama& other, const SeenPoint& seen) {
       nearest_m = std::min(nearest_m, range_m);
       if (std::abs(range_m - distance_m) > tolerance_m) continue;
       is_observed = true;
-      if (other.is_usable(pixel)) nearest_point_m = std::min(nearest_point_m, (other.point(pixel) - seen.position).norm());
+      if (other.is_usable(pixel))
+        nearest_point_m = std::min(nearest_point_m, (other.point(pixel) - seen.position).norm());
     }
   }
   const double center_m = double{other.range_m(*center)};
@@ -129,10 +130,11 @@ Evidence evidence_of(const Panorama& other, const SeenPoint& seen) {
     }
   }
   // A surface that is not flat, such as a thin post: near a point of the other scan with beams much closer together.
-  if (nearest_point_m < std::max(0.02, 0.5 * seen.spacing_m) && 2.0 * footprint_m < seen.spacing_m)
+  if (nearest_point_m < std::max(0.03, 0.7 * seen.spacing_m) && 1.5 * footprint_m < seen.spacing_m)
     return Evidence::kCovered;
   if (is_observed) return Evidence::kObserved;
-  if (1.5 * footprint_m > seen.width_m) return Evidence::kNone;
+  // At least one of three neighboring beams would meet the surface.
+  if (1.15 * footprint_m > seen.width_m) return Evidence::kNone;
   constexpr double kMinReturnCosine = 0.35, kMaxReturnRange_m = 45.0;
   const bool would_return = cosine > kMinReturnCosine && distance_m < kMaxReturnRange_m && distance_m > 1.0;
   if (num_empty == 9) return would_return ? Evidence::kFree : Evidence::kNone;
@@ -170,9 +172,58 @@ void compare(std::vector<Panorama>& scans, std::size_t i) {
   }
 }
 
-/// Extends moving objects to neighbors on the same surface within a distance that no other scan observes.
+/// Removes the state kPixelMoving where less than most of the surface around a pixel has it: along rows and columns
+/// within a distance.
+void erode_moving(Panorama& scan) {
+  constexpr double kReach_m = 0.1, kMinFraction = 0.6;
+  constexpr int kMinReach_px = 2, kMaxReach_px = 12;
+  std::vector<Pixel> rejected;
+  for (int col = 0; col < scan.columns(); ++col) {
+    for (int row = 0; row < scan.rows(); ++row) {
+      const Pixel pixel{col, row};
+      if (!scan.has(pixel, kPixelMoving)) continue;
+      const int reach = std::clamp(static_cast<int>(kReach_m / (scan.step_rad() * double{scan.range_m(pixel)})),
+                                   kMinReach_px, kMaxReach_px);
+      int num_seen = 0, num_moving = 0;
+      const auto look = [&](Pixel other, bool is_connected) {
+        if (!is_connected) return false;
+        ++num_seen;
+        num_moving += scan.has(other, kPixelMoving) ? 1 : 0;
+        return true;
+      };
+      Pixel at = pixel;
+      for (int k = 0; k < reach; ++k) {
+        const Pixel next{scan.wrapped(at.col + 1), at.row};
+        if (!look(next, scan.is_connected_right(at))) break;
+        at = next;
+      }
+      at = pixel;
+      for (int k = 0; k < reach; ++k) {
+        const Pixel next{scan.wrapped(at.col - 1), at.row};
+        if (!look(next, scan.is_connected_left(at))) break;
+        at = next;
+      }
+      at = pixel;
+      for (int k = 0; k < reach; ++k) {
+        const Pixel next{at.col, at.row + 1};
+        if (!look(next, scan.is_connected_up(at))) break;
+        at = next;
+      }
+      at = pixel;
+      for (int k = 0; k < reach; ++k) {
+        const Pixel next{at.col, at.row - 1};
+        if (!look(next, scan.is_connected_down(at))) break;
+        at = next;
+      }
+      if (num_moving < kMinFraction * num_seen) rejected.push_back(pixel);
+    }
+  }
+  for (const Pixel pixel : rejected) scan.state(pixel) &= static_cast<std::uint8_t>(~kPixelMoving);
+}
+
+/// Extends moving objects to neighbors at similar ranges, within a distance, that no other scan observes.
 void grow_moving(Panorama& scan) {
-  constexpr double kReach_m = 0.5;
+  constexpr double kReach_m = 0.5, kMaxJump_m = 0.1;
   struct Front {
     Pixel pixel;
     int steps;
@@ -183,18 +234,20 @@ void grow_moving(Panorama& scan) {
       if (scan.has({col, row}, kPixelMoving)) open.push_back({{col, row}, 0});
     }
   }
-  const auto visit = [&](bool is_connected, Pixel pixel, int steps) {
-    if (!is_connected || scan.has(pixel, kPixelMoving) || scan.has(pixel, kPixelObserved)) return;
-    if (steps * scan.step_rad() * double{scan.range_m(pixel)} > kReach_m) return;
+  const auto visit = [&](Pixel from, Pixel pixel, int steps) {
+    if (!scan.contains_row(pixel.row) || !scan.is_usable(pixel) || scan.has(pixel, kPixelObserved)) return;
+    const double range_m = double{scan.range_m(pixel)};
+    if (std::abs(double{scan.range_m(from)} - range_m) > kMaxJump_m || steps * scan.step_rad() * range_m > kReach_m)
+      return;
     scan.state(pixel) |= kPixelMoving;
     open.push_back({pixel, steps});
   };
   for (std::size_t i = 0; i < open.size(); ++i) {
     const auto [at, steps] = open[i];
-    visit(scan.is_connected_right(at), {scan.wrapped(at.col + 1), at.row}, steps + 1);
-    visit(scan.is_connected_left(at), {scan.wrapped(at.col - 1), at.row}, steps + 1);
-    visit(scan.is_connected_up(at), {at.col, at.row + 1}, steps + 1);
-    visit(scan.is_connected_down(at), {at.col, at.row - 1}, steps + 1);
+    visit(at, {scan.wrapped(at.col + 1), at.row}, steps + 1);
+    visit(at, {scan.wrapped(at.col - 1), at.row}, steps + 1);
+    visit(at, {at.col, at.row + 1}, steps + 1);
+    visit(at, {at.col, at.row - 1}, steps + 1);
   }
 }
 
@@ -205,6 +258,7 @@ StaticPointCounts find_static_points(std::vector<Panorama>& scans) {
   for (std::size_t i = 0; i < scans.size(); ++i) compare(scans, i);
   StaticPointCounts counts;
   for (Panorama& scan : scans) {
+    erode_moving(scan);
     grow_moving(scan);
     for (int col = 0; col < scan.columns(); ++col) {
       for (int row = 0; row < scan.rows(); ++row) {

@@ -18,8 +18,8 @@ struct StaticPointCounts {
 /// - Outlier: a pixel whose range continues to none of its eight neighbors, as that of a beam on two surfaces.
 /// - Moving: another scan looks through the point (its beams around the point return from farther away, or return
 ///   nothing although the surface would return them), and no scan observes it. A scan decides only if its beams are
-///   closer together than the surface is wide, so that thin posts stay. Neighbors on the same surface that no scan
-///   observes follow. An object that at least two scans observe at one position stays.
+///   closer together than the surface is wide, so that thin posts stay. Neighbors within 0.5 m that no scan observes
+///   follow. An object that at least two scans observe at one position stays.
 /// - Covered: another scan measured the surface with beams that are closer together on it.
 StaticPointCounts find_static_points(std::vector<Panorama>& scans);
 
