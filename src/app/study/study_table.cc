@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "app/study/planner_study.h"
+#include "app/study/scan_import_study.h"
 #include "app/study/street_study.h"
 #include "app/study/substation_study.h"
 #include "core/error.h"
@@ -16,7 +17,7 @@
 namespace patrol::app {
 namespace {
 
-constexpr std::array<std::pair<const char*, studies::Study (*)()>, 8> kStudies = {
+constexpr std::array<std::pair<const char*, studies::Study (*)()>, 9> kStudies = {
     {{"ungm", studies::growth_study},
      {"landmarks-circle", studies::circle_study},
      {"landmarks-noncircular", studies::noncircular_study},
@@ -24,7 +25,8 @@ constexpr std::array<std::pair<const char*, studies::Study (*)()>, 8> kStudies =
      {"street-map", street_study},
      {"substation", substation_study},
      {"substation-row", row_study},
-     {"planners", planner_study}}};
+     {"planners", planner_study},
+     {"scan-import", scan_import_study}}};
 
 }  // namespace
 

@@ -159,6 +159,11 @@ class CloudOctree {
   }
 
   void divide(std::size_t begin, std::size_t end, int level) {
+    constexpr std::size_t kMinPoints = 3;
+    if (end - begin < kMinPoints) {
+      num_outliers_ += end - begin;
+      return;
+    }
     const FittedPlane plane = plane_of(begin, end);
     if (level > leaf_) {
       if (is_filled_plane(begin, end, level, plane)) {
@@ -168,8 +173,7 @@ class CloudOctree {
       visit_cells(begin, end, level - 1, [&](std::size_t b, std::size_t e) { divide(b, e, level - 1); });
       return;
     }
-    constexpr std::size_t kMinPoints = 3;
-    if (end - begin < kMinPoints || !has_neighbor(sorted_[begin].key >> (3 * leaf_))) {
+    if (!has_neighbor(sorted_[begin].key >> (3 * leaf_))) {
       num_outliers_ += end - begin;
       return;
     }

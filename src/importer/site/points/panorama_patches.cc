@@ -231,6 +231,7 @@ class PatchMaker {
       r = std::clamp(r, 0.94 * nearest_m, 1.06 * farthest_m);
       patch.corners_m[i] = (scan_.origin() + r * d).cast<float>();
     }
+    patch.spacing_m = static_cast<float>(scan_.step_rad() * range_m);
     const double cosine = std::max(0.1, -normal.dot(plane.center) / range_m);
     patch.reflectivity = reflectivity_(static_cast<float>(rectangle.light_sum / rectangle.moments.n), cosine);
     return patch;

@@ -15,6 +15,7 @@ struct Patch {
   std::uint8_t num_corners = 0;
   float reflectivity = 0.5f;  ///< 0 ... 1
   bool is_filled_in = false;  ///< interpolated between measured surfaces
+  float spacing_m = 0.0f;     ///< distance between the beams on it
 
   /// Returns the normal with a length of twice the area.
   Eigen::Vector3d area_normal() const;

@@ -10,7 +10,11 @@ namespace {
 
 /// Outline of surfaces in a cell of a layer.
 struct OutlineCell {
-  std::vector<Eigen::Vector2d> points_m;
+  struct Point {
+    Eigen::Vector3d p_m;
+    std::size_t patch;
+  };
+  std::vector<Point> points;
   float reflectivity = 0.0f;
   bool is_visited = false;
 };
@@ -84,8 +88,8 @@ void add_sides(const std::vector<Eigen::Vector2d>& outline, float reflectivity, 
 }
 
 /// Adds the sides of the thin objects of a layer.
-void close_layer(OutlineLayer& layer, double low_m, double high_m, const ThinObjectSettings& settings,
-                 std::vector<Patch>& sides) {
+void close_layer(OutlineLayer& layer, const std::vector<Patch>& patches, double low_m, double high_m,
+                 const ThinObjectSettings& settings, std::vector<Patch>& sides) {
   const int max_cells = static_cast<int>(std::ceil(settings.max_extent_m / settings.cell_m));
   for (auto& [first, cell] : layer) {
     if (cell.is_visited) continue;
@@ -106,12 +110,22 @@ void close_layer(OutlineLayer& layer, double low_m, double high_m, const ThinObj
       }
     }
     if (high[0] - low[0] >= max_cells || high[1] - low[1] >= max_cells) continue;
-    std::vector<Eigen::Vector2d> outline;
-    float light = 0.0f;
+    float closest_m = 1e9f, light = 0.0f;
     for (const std::array<int, 2>& at : object) {
       const OutlineCell& part = layer.at(at);
-      outline.insert(outline.end(), part.points_m.begin(), part.points_m.end());
+      for (const OutlineCell::Point& point : part.points)
+        closest_m = std::min(closest_m, patches[point.patch].spacing_m);
       light += part.reflectivity;
+    }
+    std::vector<Eigen::Vector2d> outline;
+    double low_m = 1e9, high_m = -1e9;
+    for (const std::array<int, 2>& at : object) {
+      for (const OutlineCell::Point& point : layer.at(at).points) {
+        if (patches[point.patch].spacing_m > settings.max_spacing_ratio * closest_m) continue;
+        outline.emplace_back(point.p_m.head<2>());
+        low_m = std::min(low_m, point.p_m.z());
+        high_m = std::max(high_m, point.p_m.z());
+      }
     }
     add_sides(outline, light / static_cast<float>(object.size()), low_m, high_m, settings, sides);
   }
@@ -123,22 +137,22 @@ std::vector<Patch> close_thin_objects(const std::vector<Patch>& patches, const G
                                       const ThinObjectSettings& settings) {
   constexpr double kSteep = 0.7;
   std::map<int, OutlineLayer> layers;
-  for (const Patch& patch : patches) {
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    const Patch& patch = patches[i];
     const Eigen::Vector3d normal = patch.area_normal();
     if (patch.is_filled_in || std::abs(normal.z()) > kSteep * normal.norm()) continue;
     for (const Eigen::Vector3d& p : sample(patch, 0.6 * settings.cell_m)) {
       const double above_m = p.z() - ground.height_at(p.head<2>());
       if (above_m < settings.lowest_m || above_m > settings.highest_m) continue;
-      OutlineCell& cell = layers[static_cast<int>(std::floor(p.z() / settings.layer_m))]
-                                [{static_cast<int>(std::floor(p.x() / settings.cell_m)),
-                                  static_cast<int>(std::floor(p.y() / settings.cell_m))}];
-      cell.points_m.emplace_back(p.head<2>());
+      const int layer = static_cast<int>(std::floor(p.z() / settings.layer_m));
+      OutlineCell& cell = layers[layer][{static_cast<int>(std::floor(p.x() / settings.cell_m)),
+                                         static_cast<int>(std::floor(p.y() / settings.cell_m))}];
+      cell.points.push_back({p, i});
       cell.reflectivity = patch.reflectivity;
     }
   }
   std::vector<Patch> sides;
-  for (auto& [index, layer] : layers)
-    close_layer(layer, settings.layer_m * index, settings.layer_m * (index + 1), settings, sides);
+  for (auto& [index, layer] : layers) close_layer(layer, patches, settings, sides);
   return sides;
 }
 
