@@ -60,7 +60,7 @@ TEST(ScansSite, GroundForContactIsWithinThreeMillimetersAwayFromWalls) {
                                    [](const SiteShape& shape) { return shape.type == SiteShapeType::kHeightField; });
   ASSERT_NE(ground, site.shapes.end());
   const Grid<float>& heights = ground->height_field.height_m;
-  EXPECT_NEAR(heights.geometry().width * heights.geometry().resolution_m, 8.2, 0.2);
+  EXPECT_NEAR(heights.geometry().width * heights.geometry().resolution_m, 8.3, 0.3);
   std::size_t num_cells = 0;
   for (int row = 0; row < heights.geometry().height; ++row) {
     for (int col = 0; col < heights.geometry().width; ++col) {

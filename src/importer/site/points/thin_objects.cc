@@ -88,8 +88,8 @@ void add_sides(const std::vector<Eigen::Vector2d>& outline, float reflectivity, 
 }
 
 /// Adds the sides of the thin objects of a layer.
-void close_layer(OutlineLayer& layer, const std::vector<Patch>& patches, double low_m, double high_m,
-                 const ThinObjectSettings& settings, std::vector<Patch>& sides) {
+void close_layer(OutlineLayer& layer, const std::vector<Patch>& patches, const ThinObjectSettings& settings,
+                 std::vector<Patch>& sides) {
   const int max_cells = static_cast<int>(std::ceil(settings.max_extent_m / settings.cell_m));
   for (auto& [first, cell] : layer) {
     if (cell.is_visited) continue;
