@@ -215,8 +215,10 @@ class PatchMaker {
         farthest_m = std::max(farthest_m, r);
       }
     }
-    const double overlap = settings_.overlap_m / (scan_.step_rad() * range_m);
-    const auto more = [&](bool is_end) { return (is_end ? settings_.silhouette_px : 0.5) + overlap; };
+    const double pixel_m = scan_.step_rad() * range_m;
+    const auto more = [&](bool is_end) {
+      return is_end ? settings_.silhouette_px + settings_.end_overlap_m / pixel_m : 0.5 + settings_.overlap_m / pixel_m;
+    };
     const double left = rectangle.begin.col + rectangle.width - 1 + more(is_end(rectangle, 1, 0)),
                  right = rectangle.begin.col - more(is_end(rectangle, -1, 0));
     const double bottom = rectangle.begin.row - more(is_end(rectangle, 0, -1)),
