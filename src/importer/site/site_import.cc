@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "importer/site/plan_site.h"
-#include "importer/site/points/points_site.h"
+#include "importer/site/points_site.h"
 
 namespace patrol::importer {
 namespace {

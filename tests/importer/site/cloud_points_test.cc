@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
-#include "importer/site/points/points_site.h"
+#include "importer/site/points_site.h"
 #include "io/points/pcd.h"
 #include "io/points/ply.h"
 #include "tests/importer/site/scanned_room.h"

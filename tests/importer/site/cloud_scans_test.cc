@@ -3,7 +3,7 @@
 
 #include "core/error.h"
 #include "importer/site/points/panorama.h"
-#include "importer/site/points/points_site.h"
+#include "importer/site/points_site.h"
 #include "importer/site/site_mjcf.h"
 #include "tests/importer/site/scanned_room.h"
 #include "tests/support/temporary_file.h"
@@ -36,16 +36,17 @@ TEST(ScansSite, BoxRoomOfTwoScansIsWithinThreeMillimetersAndFacesTheScanners) {
     if (triangle.area_normal.dot(Eigen::Vector3d(0.0, 0.0, 1.5) - triangle.center) > 0.0)
       facing_m2 += triangle.area_m2();
   }
-  // 2 (8 x 6 + 8 x 3 + 6 x 3) = 180 m2; patches of both scans overlap where the distances of their beams are similar.
+  // 2 (8 x 6 + 8 x 3 + 6 x 3) = 180 m2. Patches of both scans overlap where the distances of their beams are similar,
+  // and each patch overlaps its neighbors by 2 cm.
   EXPECT_GT(area_m2, 178.0);
-  EXPECT_LT(area_m2, 240.0);
+  EXPECT_LT(area_m2, 280.0);
   EXPECT_GT(near_m2 / area_m2, 0.99);
   EXPECT_GT(facing_m2 / area_m2, 0.999);
 }
 
 TEST(ScansSite, HoleBelowTheScannerIsFilledInAndMarked) {
   const ImportedSite site = site_of_rooms({ScannedRoom{}}, {kWest});
-  const double radius_m = 1.7 / std::tan(60.0 * std::numbers::pi / 180.0);
+  const double radius_m = 1.7 / std::tan(to_rad(60.0));
   const Eigen::AlignedBox3d around(kWest - Eigen::Vector3d(1.4, 1.4, 1.71), kWest + Eigen::Vector3d(1.4, 1.4, -1.69));
   const double hole_m2 = std::numbers::pi * radius_m * radius_m;
   EXPECT_NEAR(area_in(site, around, true), hole_m2, 0.1 * hole_m2);
@@ -103,7 +104,8 @@ TEST(ScansSite, ObjectInAllScansStaysWithContact) {
     const Eigen::AlignedBox3d box(shape.T_site_shape.position - shape.size_m,
                                   shape.T_site_shape.position + shape.size_m);
     if (box.intersects(kCabinet)) ++num_boxes;
-    if (box.exteriorDistance(kCabinet) > 0.05 && distance_to_walls_m(with, shape.T_site_shape.position) > 0.1)
+    // The top is seen 0.3 m below the scanner: half a pixel beyond its edge is 0.12 m.
+    if (box.exteriorDistance(kCabinet) > 0.12 && distance_to_walls_m(with, shape.T_site_shape.position) > 0.1)
       ++num_astray;
   }
   EXPECT_GE(num_boxes, 4U);

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <string>
 #include <vector>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "core/geometry/angles.h"
 #include "core/random.h"
 #include "importer/site/imported_site.h"
 #include "io/points/point_reading.h"
@@ -43,8 +43,7 @@ struct ScannedRoom {
     for (int col = 0; col < columns; ++col) {
       for (int row = 0; row < rows; ++row) {
         // Off the axes, so that no component of a direction is zero.
-        const double azimuth = (col + 0.37) * step_deg * std::numbers::pi / 180.0,
-                     elevation = (-60.0 + (row + 0.21) * step_deg) * std::numbers::pi / 180.0;
+        const double azimuth = to_rad((col + 0.37) * step_deg), elevation = to_rad(-60.0 + (row + 0.21) * step_deg);
         const Eigen::Vector3d d(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
                                 std::sin(elevation));
         const double range = range_m(origin, d) + 0.0005 * noise.normal(static_cast<std::uint64_t>(col * rows + row));

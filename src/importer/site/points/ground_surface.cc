@@ -94,10 +94,10 @@ class GroundFinder {
     constexpr double kBin_m = 0.2;
     std::map<int, std::size_t> cells;
     for (const Level& level : levels_) ++cells[static_cast<int>(std::floor(double{level.height_m} / kBin_m))];
-    std::size_t most = 0;
-    for (const auto& [bin, count] : cells) most = std::max(most, count);
+    std::size_t max_count = 0;
+    for (const auto& [bin, count] : cells) max_count = std::max(max_count, count);
     for (const auto& [bin, count] : cells) {
-      if (4 * count < most) continue;
+      if (4 * count < max_count) continue;
       for (const Level& level : levels_) {
         if (static_cast<int>(std::floor(double{level.height_m} / kBin_m)) == bin) accept(level.cell, level.height_m);
       }

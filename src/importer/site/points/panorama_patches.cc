@@ -207,12 +207,12 @@ class PatchMaker {
     const FittedPlane plane = fit_plane(rectangle.moments);
     const Eigen::Vector3d normal = normal_of(rectangle, plane);
     const double range_m = plane.center.norm();
-    double nearest_m = 1e9, farthest_m = 0.0;
+    double nearest_m = 1e9, max_range_m = 0.0;
     for (int col = 0; col < rectangle.width; ++col) {
       for (int row = 0; row < rectangle.height; ++row) {
         const double r = double{scan_.range_m({rectangle.begin.col + col, rectangle.begin.row + row})};
         nearest_m = std::min(nearest_m, r);
-        farthest_m = std::max(farthest_m, r);
+        max_range_m = std::max(max_range_m, r);
       }
     }
     const double pixel_m = scan_.step_rad() * range_m;
@@ -230,7 +230,7 @@ class PatchMaker {
       const Eigen::Vector3d d = scan_.direction(corners[i][0], corners[i][1]);
       const double cosine = normal.dot(d);
       double r = std::abs(cosine) > 1e-3 ? normal.dot(plane.center) / cosine : range_m;
-      r = std::clamp(r, 0.94 * nearest_m, 1.06 * farthest_m);
+      r = std::clamp(r, 0.94 * nearest_m, 1.06 * max_range_m);
       patch.corners_m[i] = (scan_.origin() + r * d).cast<float>();
     }
     patch.spacing_m = static_cast<float>(scan_.step_rad() * range_m);

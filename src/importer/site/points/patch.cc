@@ -32,8 +32,8 @@ std::vector<Eigen::Vector3d> sample(const Patch& patch, double spacing_m) {
   const Eigen::Vector3d a = patch.corners_m[0].cast<double>();
   for (std::size_t k = 1; k + 1 < patch.num_corners; ++k) {
     const Eigen::Vector3d ab = patch.corners_m[k].cast<double>() - a, ac = patch.corners_m[k + 1].cast<double>() - a;
-    const double longest_m = std::max({ab.norm(), ac.norm(), (ac - ab).norm()});
-    const int steps = std::max(1, static_cast<int>(std::ceil(longest_m / spacing_m)));
+    const double max_length_m = std::max({ab.norm(), ac.norm(), (ac - ab).norm()});
+    const int steps = std::max(1, static_cast<int>(std::ceil(max_length_m / spacing_m)));
     for (int i = 0; i <= steps; ++i) {
       for (int j = 0; j <= steps - i; ++j) points.push_back(a + (i * ab + j * ac) / steps);
     }

@@ -1,4 +1,4 @@
-#include "importer/site/points/points_site.h"
+#include "importer/site/points_site.h"
 
 #include <algorithm>
 #include <array>
@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/geometry/angles.h"
 #include "importer/site/points/cloud_patches.h"
 #include "importer/site/points/contact_boxes.h"
 #include "importer/site/points/ground_surface.h"
@@ -220,7 +221,7 @@ ImportedSite site_of_scans(io::RelativeScans scans, const std::string& source, c
     for (Patch& patch : patches_of(panorama, {}, reflectivity)) patches.push_back(patch);
     scanners_m.push_back(panorama.origin());
   }
-  const double step_deg = panoramas.front().step_rad() * 180.0 / M_PI;
+  const double step_deg = to_deg(panoramas.front().step_rad());
   panoramas.clear();
   add_frame_rows(site, scans.origin, scans.num_dropped, options);
   site.assumptions.push_back({"points",
