@@ -5,6 +5,8 @@
 #include <cmath>
 #include <map>
 
+#include "core/geometry/convex_polygon.h"
+
 namespace patrol::importer {
 namespace {
 
@@ -20,36 +22,6 @@ struct OutlineCell {
 };
 
 using OutlineLayer = std::map<std::array<int, 2>, OutlineCell>;
-
-/// Returns the convex hull, counterclockwise, by monotone chains.
-std::vector<Eigen::Vector2d> outline_hull(std::vector<Eigen::Vector2d> points) {
-  std::sort(points.begin(), points.end(), [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-    return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
-  });
-  const auto turn = [](const Eigen::Vector2d& o, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-    return (a.x() - o.x()) * (b.y() - o.y()) - (a.y() - o.y()) * (b.x() - o.x());
-  };
-  std::vector<Eigen::Vector2d> hull;
-  for (int half = 0; half < 2; ++half) {
-    const std::size_t begin = hull.size();
-    for (const Eigen::Vector2d& p : points) {
-      while (hull.size() >= begin + 2 && turn(hull[hull.size() - 2], hull.back(), p) <= 0.0) hull.pop_back();
-      hull.push_back(p);
-    }
-    hull.pop_back();
-    std::reverse(points.begin(), points.end());
-  }
-  return hull;
-}
-
-double area_of(const std::vector<Eigen::Vector2d>& polygon) {
-  double twice = 0.0;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Eigen::Vector2d &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
-    twice += a.x() * b.y() - a.y() * b.x();
-  }
-  return 0.5 * twice;
-}
 
 /// Removes corners of the hull that are closer than a centimeter to the line between their neighbors.
 std::vector<Eigen::Vector2d> simplified(const std::vector<Eigen::Vector2d>& hull) {
@@ -68,8 +40,8 @@ std::vector<Eigen::Vector2d> simplified(const std::vector<Eigen::Vector2d>& hull
 void add_sides(const std::vector<Eigen::Vector2d>& outline, float reflectivity, double low_m, double high_m,
                const ThinObjectSettings& settings, std::vector<Patch>& sides) {
   constexpr double kMinArea_m2 = 4e-4;
-  std::vector<Eigen::Vector2d> hull = simplified(outline_hull(outline));
-  if (hull.size() < 3 || area_of(hull) < kMinArea_m2) return;
+  std::vector<Eigen::Vector2d> hull = simplified(convex_hull(outline));
+  if (hull.size() < 3 || polygon_area(hull) < kMinArea_m2) return;
   Eigen::Vector2d center = Eigen::Vector2d::Zero();
   for (const Eigen::Vector2d& corner : hull) center += corner / static_cast<double>(hull.size());
   for (Eigen::Vector2d& corner : hull) {
