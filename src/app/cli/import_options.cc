@@ -58,7 +58,10 @@ void add_site(CLI::App& command, ImportSiteOptions& site) {
       ->check(CLI::Range(1, 1000))
       ->group(kSites);
   command.add_option("--seed", site.seed, "Random seed of the stations")->capture_default_str()->group(kSites);
-  command.add_option("--start", site.start, "Start of the mission, X,Y or X,Y,DEG, and point of a mesh's ground (default: by rule)")->group(kSites);
+  command
+      .add_option("--start", site.start,
+                  "Start of the mission, X,Y or X,Y,DEG, and point of a mesh's ground (default: by rule)")
+      ->group(kSites);
   command.add_option("--robot", site.robot, "Robot of the scenario")->capture_default_str()->group(kSites);
   command.add_option("--contact-cell", site.contact_cell_m, "Cell of a mesh's contact geometry, m")
       ->check(CLI::Range(0.02, 1.0))
@@ -74,7 +77,7 @@ void add_import_command(CLI::App& app, Call& call) {
   command->add_option("kind", call.imported_kind, "Kind of the input: robot or site")
       ->required()
       ->check(CLI::IsMember({"robot", "site"}));
-  command->add_option("file", call.import_robot.file, "File of the robot or the site")->required();
+  command->add_option("file", call.import_robot.file, "File of the robot or the site, or folder of scans")->required();
   command->add_option("--out", call.import_robot.out, "Folder models/NAME or worlds/NAME, which must be empty or new")
       ->required();
   add_robot(*command, call.import_robot);

@@ -7,6 +7,7 @@
 
 #include "app/study/lidar_study.h"
 #include "app/study/planner_study.h"
+#include "app/study/scan_import_study.h"
 #include "app/study/street_study.h"
 #include "app/study/substation_study.h"
 #include "core/error.h"
@@ -17,7 +18,7 @@
 namespace patrol::app {
 namespace {
 
-constexpr std::array<std::pair<const char*, studies::Study (*)()>, 9> kStudies = {
+constexpr std::array<std::pair<const char*, studies::Study (*)()>, 10> kStudies = {
     {{"ungm", studies::growth_study},
      {"landmarks-circle", studies::circle_study},
      {"landmarks-noncircular", studies::noncircular_study},
@@ -26,7 +27,8 @@ constexpr std::array<std::pair<const char*, studies::Study (*)()>, 9> kStudies =
      {"substation", substation_study},
      {"substation-row", row_study},
      {"planners", planner_study},
-     {"lidar-calibration", lidar_study}}};
+     {"lidar-calibration", lidar_study},
+     {"scan-import", scan_import_study}}};
 
 }  // namespace
 

@@ -48,6 +48,9 @@ ImportedSite empty_site(const OccupancyGrid& plan, const std::string& source, co
                          .size_m = {half_m.x() + kMargin_m, half_m.y() + kMargin_m, 0.0},
                          .material = "floor"});
   site.map = plan;
+  site.stack_keys =
+      "  # Doors are little wider than a robot.\n"
+      "  navigation: {costmap: {resolution_m: 0.05, route_margin_m: 0.02}}\n";
   site.assumptions = {{"floor", "level at height 0, also below unknown cells", ""},
                       {"frame", "the frame of the plan is the frame site", ""}};
   return site;

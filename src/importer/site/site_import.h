@@ -26,11 +26,11 @@ struct MissionOptions {
 /// Options of `patrol import site`. Each kind of file uses those that its reader names.
 struct SiteImportOptions {
   std::filesystem::path file;
-  std::string name;            ///< of the site, its folder and its files
-  double wall_height_m = 2.5;  ///< floor plans: height of the walls
-  double scale = 0.0;          ///< meshes and points: meters per unit of the file; 0: by rule
-  std::string up = {};         ///< meshes and points: axis of the file that points up, y or z; empty: by rule
-  double contact_cell_m = 0.05;               ///< meshes: cell of the contact geometry
+  std::string name;              ///< of the site, its folder and its files
+  double wall_height_m = 2.5;    ///< floor plans: height of the walls
+  double scale = 0.0;            ///< meshes and points: meters per unit of the file; 0: by rule
+  std::string up = {};           ///< meshes and points: axis of the file that points up, y or z; empty: by rule
+  double contact_cell_m = 0.05;  ///< meshes: cell of the contact geometry
   std::map<std::string, std::filesystem::path> packages = {};  ///< SDF: folders of models, by name
   MissionOptions mission = {};
 };

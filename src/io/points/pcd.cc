@@ -101,6 +101,15 @@ PcdHeader read_pcd_header(FileText& text) {
   return header;
 }
 
+std::vector<ScannerPoint> read_pcd_points(const std::filesystem::path& file, PointShift* shift) {
+  FileText text(file);
+  PcdHeader header = read_pcd_header(text);
+  PointTable table(text, std::move(header.columns), static_cast<std::size_t>(header.width * header.height), shift);
+  std::vector<ScannerPoint> points = header.data == "ascii" ? table.read_ascii() : table.read_binary();
+  table.expect_end();
+  return points;
+}
+
 }  // namespace
 
 void save_pcd(const std::filesystem::path& file, const std::vector<ScannerPoint>& points) {
@@ -112,13 +121,10 @@ void save_pcd(const std::filesystem::path& file, const std::vector<ScannerPoint>
   save_text(file, header + to_rows(points));
 }
 
-std::vector<ScannerPoint> load_pcd(const std::filesystem::path& file) {
-  FileText text(file);
-  PcdHeader header = read_pcd_header(text);
-  PointTable table(text, std::move(header.columns), static_cast<std::size_t>(header.width * header.height));
-  std::vector<ScannerPoint> points = header.data == "ascii" ? table.read_ascii() : table.read_binary();
-  table.expect_end();
-  return points;
+std::vector<ScannerPoint> load_pcd(const std::filesystem::path& file) { return read_pcd_points(file, nullptr); }
+
+std::vector<ScannerPoint> load_shifted_pcd(const std::filesystem::path& file, PointShift& shift) {
+  return read_pcd_points(file, &shift);
 }
 
 }  // namespace patrol::io

@@ -8,6 +8,8 @@
 /// Point clouds in PCD, the format of the Point Cloud Library, version 0.7.
 namespace patrol::io {
 
+struct PointShift;  // io/points/point_table.h
+
 /// Writes binary PCD: x, y, z in meters and intensity, as floats; one row, viewpoint at the origin.
 void save_pcd(const std::filesystem::path& file, const std::vector<ScannerPoint>& points);
 
@@ -15,5 +17,8 @@ void save_pcd(const std::filesystem::path& file, const std::vector<ScannerPoint>
 /// of the file; VIEWPOINT is ignored. Throws InputError for an invalid file. Memory is bounded by a small multiple of
 /// the file size.
 std::vector<ScannerPoint> load_pcd(const std::filesystem::path& file);
+
+/// Reads points as `load_pcd`, shifted to an origin, and leaves out points that are not finite.
+std::vector<ScannerPoint> load_shifted_pcd(const std::filesystem::path& file, PointShift& shift);
 
 }  // namespace patrol::io

@@ -7,6 +7,7 @@
 
 #include "io/files/atomic_file.h"
 #include "io/files/line_tokenizer.h"
+#include "io/points/point_reading.h"
 #include "io/points/point_table.h"
 
 namespace patrol::io {
@@ -28,6 +29,7 @@ struct PlyHeader {
   std::size_t num_points = 0;
   std::vector<PointColumn> columns;
   int num_elements = 0;
+  std::int64_t num_faces = 0;
 };
 
 PointColumn read_property(FileText& text, LineTokenizer& fields) {
@@ -41,6 +43,7 @@ PointColumn read_property(FileText& text, LineTokenizer& fields) {
 void read_element(FileText& text, LineTokenizer& fields, PlyHeader& header) {
   const std::string_view name = fields.word("name");
   const std::int64_t count = fields.integer("count", 0, kMaxPlyPoints);
+  if (name == "face") header.num_faces = count;
   if (header.num_elements++ > 0) return;
   if (name != "vertex") text.refuse("the first element must be vertex");
   header.num_points = static_cast<std::size_t>(count);
@@ -87,6 +90,15 @@ PlyHeader read_ply_header(FileText& text) {
   return header;
 }
 
+std::vector<ScannerPoint> read_ply_points(const std::filesystem::path& file, PointShift* shift) {
+  FileText text(file);
+  PlyHeader header = read_ply_header(text);
+  PointTable table(text, std::move(header.columns), header.num_points, shift);
+  std::vector<ScannerPoint> points = header.format == "ascii" ? table.read_ascii() : table.read_binary();
+  if (header.num_elements == 1) table.expect_end();
+  return points;
+}
+
 }  // namespace
 
 void save_ply(const std::filesystem::path& file, const std::vector<ScannerPoint>& points, const std::string& comment) {
@@ -98,13 +110,15 @@ void save_ply(const std::filesystem::path& file, const std::vector<ScannerPoint>
   save_text(file, text + to_rows(points));
 }
 
-std::vector<ScannerPoint> load_ply(const std::filesystem::path& file) {
-  FileText text(file);
-  PlyHeader header = read_ply_header(text);
-  PointTable table(text, std::move(header.columns), header.num_points);
-  std::vector<ScannerPoint> points = header.format == "ascii" ? table.read_ascii() : table.read_binary();
-  if (header.num_elements == 1) table.expect_end();
-  return points;
+std::vector<ScannerPoint> load_ply(const std::filesystem::path& file) { return read_ply_points(file, nullptr); }
+
+std::vector<ScannerPoint> load_shifted_ply(const std::filesystem::path& file, PointShift& shift) {
+  return read_ply_points(file, &shift);
+}
+
+bool has_faces(const std::filesystem::path& ply_file) {
+  FileText text(ply_file);
+  return read_ply_header(text).num_faces > 0;
 }
 
 }  // namespace patrol::io

@@ -91,8 +91,14 @@ std::optional<std::string_view> FileText::next_line() {
 
 void FileText::refuse(const std::string& what) const { throw input_error(file_, line_, what); }
 
-PointTable::PointTable(FileText& text, std::vector<PointColumn> columns, std::size_t num_points)
-    : text_(text), columns_(std::move(columns)), num_points_(num_points) {
+Eigen::Vector3d origin_of(const Eigen::Vector3d& first_m) {
+  constexpr double kNear_m = 10'000.0, kStep_m = 100.0;
+  if (first_m.cwiseAbs().maxCoeff() <= kNear_m) return Eigen::Vector3d::Zero();
+  return kStep_m * (first_m / kStep_m).array().round();
+}
+
+PointTable::PointTable(FileText& text, std::vector<PointColumn> columns, std::size_t num_points, PointShift* shift)
+    : text_(text), shift_(shift), columns_(std::move(columns)), num_points_(num_points) {
   for (const PointColumn& column : columns_) {
     for (std::size_t i = 0; i < kNames.size(); ++i) {
       if (column.name != kNames[i]) continue;
@@ -107,20 +113,36 @@ PointTable::PointTable(FileText& text, std::vector<PointColumn> columns, std::si
   }
 }
 
+bool PointTable::append(std::array<double, 4> numbers, std::vector<ScannerPoint>& points) {
+  ScannerPoint point{};
+  if (shift_ != nullptr) {
+    const Eigen::Vector3d position(numbers[0], numbers[1], numbers[2]);
+    if (!position.allFinite() || !std::isfinite(numbers[3])) {
+      ++shift_->num_dropped;
+      return true;
+    }
+    if (!shift_->origin) shift_->origin = origin_of(position);
+    for (int axis = 0; axis < 3; ++axis) numbers[static_cast<std::size_t>(axis)] -= (*shift_->origin)[axis];
+  }
+  if (!make_point(numbers, point)) return false;
+  points.push_back(point);
+  return true;
+}
+
 std::vector<ScannerPoint> PointTable::read_binary() {
   const std::string_view rows = text_.rest();
   if (num_points_ > rows.size() / row_bytes_) {
     throw InputError(
         fmt::format("{}: ends too early for {} points of {} bytes", text_.file(), num_points_, row_bytes_));
   }
-  std::vector<ScannerPoint> points(num_points_);
+  std::vector<ScannerPoint> points;
+  points.reserve(num_points_);
   for (std::size_t i = 0; i < num_points_; ++i) {
     std::array<double, 4> numbers{};
     for (std::size_t k = 0; k < numbers.size(); ++k) {
       if (sources_[k]) numbers[k] = number_at(rows.data() + i * row_bytes_ + sources_[k]->byte, sources_[k]->type);
     }
-    if (!make_point(numbers, points[i]))
-      throw InputError(fmt::format("{}: point {} is not finite", text_.file(), i + 1));
+    if (!append(numbers, points)) throw InputError(fmt::format("{}: point {} is not finite", text_.file(), i + 1));
   }
   num_bytes_read_ = num_points_ * row_bytes_;
   return points;
@@ -131,8 +153,9 @@ std::vector<ScannerPoint> PointTable::read_ascii() {
   if (num_points_ > (text_.rest().size() + 1) / (2 * row_numbers_)) {
     throw InputError(fmt::format("{}: ends too early for {} points", text_.file(), num_points_));
   }
-  std::vector<ScannerPoint> points(num_points_);
-  for (ScannerPoint& point : points) {
+  std::vector<ScannerPoint> points;
+  points.reserve(num_points_);
+  for (std::size_t i = 0; i < num_points_; ++i) {
     const auto line = text_.next_line();
     if (!line) throw InputError(fmt::format("{}: ends too early for {} points", text_.file(), num_points_));
     try {
@@ -145,7 +168,7 @@ std::vector<ScannerPoint> PointTable::read_ascii() {
         }
       }
       if (!fields.is_empty()) text_.refuse(fmt::format("more than {} numbers", row_numbers_));
-      if (!make_point(numbers, point)) text_.refuse("is not finite");
+      if (!append(numbers, points)) text_.refuse("is not finite");
     } catch (const ParseError&) {
       text_.refuse(fmt::format("must be {} numbers", row_numbers_));
     }

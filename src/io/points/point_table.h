@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -7,6 +8,8 @@
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "core/sensors/registry.h"
 
@@ -53,12 +56,21 @@ class FileText {
   int line_ = 0;
 };
 
+/// Shift of the points to an origin, in double precision.
+struct PointShift {
+  std::optional<Eigen::Vector3d> origin;  ///< none: set by the first finite point (io/points/point_reading.h)
+  std::size_t num_dropped = 0;            ///< number of points that are not finite, which are left out
+};
+
+/// Returns zero for a position within 10 km of zero on each axis, else the position rounded to 100 m.
+Eigen::Vector3d origin_of(const Eigen::Vector3d& first_m);
+
 /// Reader of x, y, z and intensity (0 if missing) from rows of columns, little-endian binary or ASCII. All rows must be
-/// complete, and all four values finite.
+/// complete, and without a shift all four values finite.
 class PointTable {
  public:
   /// Throws InputError through `text` if x, y or z is missing or duplicate.
-  PointTable(FileText& text, std::vector<PointColumn> columns, std::size_t num_points);
+  PointTable(FileText& text, std::vector<PointColumn> columns, std::size_t num_points, PointShift* shift = nullptr);
 
   std::vector<ScannerPoint> read_binary();
   std::vector<ScannerPoint> read_ascii();
@@ -66,7 +78,11 @@ class PointTable {
   void expect_end() const;
 
  private:
+  /// Appends a point; returns false if it is not finite and there is no shift.
+  bool append(std::array<double, 4> numbers, std::vector<ScannerPoint>& points);
+
   FileText& text_;
+  PointShift* shift_;
   std::vector<PointColumn> columns_;
   std::size_t num_points_;
   std::size_t row_bytes_ = 0, row_numbers_ = 0;

@@ -9,6 +9,8 @@
 #include "io/files/atomic_file.h"
 #include "io/json/json_object.h"
 #include "io/points/ply.h"
+#include "io/points/point_reading.h"
+#include "io/points/point_table.h"
 
 namespace patrol::io {
 namespace {
@@ -75,6 +77,20 @@ std::vector<StationScan> load_station_scans(const std::filesystem::path& folder)
         {.station = station, .T_map_scanner = T_map_scanner, .points = load_ply(cloud_file(folder, station))});
   }
   return scans;
+}
+
+RelativeScans load_relative_scans(const std::filesystem::path& folder) {
+  RelativeScans relative;
+  const std::vector<Entry> entries = load_index(folder);
+  if (!entries.empty()) relative.origin = origin_of(entries.front().T_map_scanner.position);
+  for (const auto& [station, T_map_scanner] : entries) {
+    PointShift shift{.origin = relative.origin, .num_dropped = 0};
+    relative.scans.push_back({.station = station,
+                              .T_map_scanner = {T_map_scanner.position - relative.origin, T_map_scanner.rotation},
+                              .points = load_shifted_ply(cloud_file(folder, station), shift)});
+    relative.num_dropped += shift.num_dropped;
+  }
+  return relative;
 }
 
 std::vector<std::filesystem::path> station_scan_files(const std::filesystem::path& folder) {

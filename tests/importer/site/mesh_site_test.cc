@@ -265,7 +265,7 @@ TEST(MeshSite, BrokenFilesAreRefusedByOneLine) {
   large.options.scale = 1e5;
   EXPECT_EQ(large.error(), "a.obj: coordinates up to 8e+05 m: must be at most 100000 m");
   SiteFileImport start("a.obj", to_obj(room));
-  start.options.start = Eigen::Vector2d(50.0, 0.0);
+  start.options.mission.start = Pose2{50.0, 0.0, 0.0};
   EXPECT_EQ(start.error(), "a.obj: --start 50,0: no walkable surface there");
   EXPECT_FALSE(std::filesystem::exists(start.folder / "site"));
 }

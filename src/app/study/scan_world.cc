@@ -1,0 +1,334 @@
+#include "app/study/scan_world.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "core/geometry/angles.h"
+#include "core/random.h"
+#include "sim/sensors/panoramic_scanner.h"
+#include "sim/sensors/surface_optics.h"
+#include "sim/static_obstacles.h"
+
+namespace patrol::app {
+namespace {
+
+constexpr double kScannerHeight_m = 1.7;
+constexpr double kMaxRange2d_m = 30.0, kMaxRange3d_m = 100.0;
+constexpr double kLidarHeight_m = 0.55, kLidar3dHeight_m = 0.8;
+constexpr double kMinCosine = 0.0872;  // 85 degrees, the incidence beyond which lidars get no return
+
+/// Adds a standing person of capsules.
+void add_person(mjsBody& world, const Eigen::Vector2d& p_m, double ground_m) {
+  const auto capsule = [&](double x, double y, double low, double high, double radius) {
+    mjsGeom* geom = mjs_addGeom(&world, nullptr);
+    geom->type = mjGEOM_CAPSULE;
+    geom->pos[0] = p_m.x() + x;
+    geom->pos[1] = p_m.y() + y;
+    geom->pos[2] = ground_m + 0.5 * (low + high);
+    geom->size[0] = radius;
+    geom->size[1] = 0.5 * (high - low) - radius;
+    geom->group = 0;
+    geom->contype = geom->conaffinity = 0;
+    const float gray[4] = {0.4f, 0.4f, 0.4f, 1.0f};
+    std::copy_n(gray, 4, geom->rgba);
+  };
+  for (const double side : {-0.11, 0.11}) capsule(0.0, side, 0.0, 0.9, 0.08);
+  for (const double side : {-0.25, 0.25}) capsule(0.0, side, 0.75, 1.42, 0.05);
+  capsule(0.0, 0.0, 0.8, 1.5, 0.17);
+  capsule(0.0, 0.0, 1.45, 1.78, 0.1);
+}
+
+std::string world_xml(const ScannedWorld& world) { return fmt::format("worlds/{0}/{0}.xml", world.name); }
+
+/// Pose of a held-out scan: position on the ground.
+std::vector<Eigen::Vector3d> held_out_poses(const ScannedWorld& world, const RayWorld& truth, int count,
+                                            std::uint64_t seed) {
+  constexpr double kClearance_m = 0.6;
+  constexpr int kMaxDraws = 100'000;
+  std::vector<double> ends_m;
+  std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> legs;
+  for (const auto& road : world.roads_m) {
+    for (std::size_t i = 1; i < road.size(); ++i) {
+      legs.emplace_back(road[i - 1], road[i]);
+      ends_m.push_back((ends_m.empty() ? 0.0 : ends_m.back()) + (road[i] - road[i - 1]).norm());
+    }
+  }
+  const RandomStream draw(seed, "scan_import/poses");
+  std::vector<Eigen::Vector3d> poses;
+  for (int i = 0; i < kMaxDraws && static_cast<int>(poses.size()) < count; ++i) {
+    const auto random = draw.uniforms(static_cast<std::uint64_t>(i));
+    const auto leg = static_cast<std::size_t>(
+        std::lower_bound(ends_m.begin(), ends_m.end(), random[0] * ends_m.back()) - ends_m.begin());
+    const auto& [a, b] = legs[leg];
+    const Eigen::Vector2d along = (b - a).normalized(), left(-along.y(), along.x());
+    const Eigen::Vector2d p = a + random[1] * (b - a) + world.half_road_m * (2.0 * random[2] - 1.0) * left;
+    constexpr double kSameLevel_m = 0.15;
+    const double ground_m = truth.ground_m(p);
+    if (!(std::abs(ground_m - truth.ground_m(a + random[1] * (b - a))) < kSameLevel_m)) continue;
+    bool is_free = true;
+    for (int beam = 0; beam < 48 && is_free; ++beam) {
+      const double angle = 2.0 * std::numbers::pi * beam / 48;
+      for (const double height_m : {0.25, kLidarHeight_m, kLidar3dHeight_m}) {
+        is_free =
+            is_free && !truth.scene().cast({p.x(), p.y(), ground_m + height_m}, {std::cos(angle), std::sin(angle), 0.0},
+                                           kClearance_m, sim::kRayScenery);
+      }
+    }
+    if (is_free) poses.emplace_back(p.x(), p.y(), ground_m);
+  }
+  return poses;
+}
+
+/// First surface on a beam.
+struct FirstSurface {
+  double range_m = std::numeric_limits<double>::infinity();
+  bool is_returned = false;
+};
+
+FirstSurface first_surface(const RayWorld& world, const std::vector<sim::SurfaceOptics>& surfaces,
+                           const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double max_range_m) {
+  const auto hit = world.scene().cast(origin, direction, max_range_m, sim::kRayScenery);
+  if (!hit) return {};
+  const double cosine = std::abs(hit->normal.dot(direction));
+  return {.range_m = hit->distance_m,
+          .is_returned =
+              cosine >= kMinCosine && !surfaces[static_cast<std::size_t>(hit->geom)].is_transparent_at(cosine)};
+}
+
+class DifferenceSampler {
+ public:
+  DifferenceSampler(const RayWorld& truth, const RayWorld& site)
+      : truth_(truth),
+        site_(site),
+        truth_optics_(sim::surface_optics(truth.scene().model())),
+        site_optics_(sim::surface_optics(site.scene().model())) {}
+
+  void add(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double max_range_m) {
+    constexpr double kSame_m = 0.1, kInfinite = std::numeric_limits<double>::infinity();
+    const FirstSurface a = first_surface(truth_, truth_optics_, origin, direction, max_range_m),
+                       b = first_surface(site_, site_optics_, origin, direction, max_range_m);
+    const double difference_m =
+        std::isfinite(a.range_m) && std::isfinite(b.range_m) ? std::abs(a.range_m - b.range_m) : kInfinite;
+    if (a.is_returned) {
+      differences_m_.push_back(difference_m);
+    } else if (b.is_returned && difference_m > kSame_m) {
+      differences_m_.push_back(kInfinite);
+    }
+  }
+
+  RangeDifferences take() {
+    std::sort(differences_m_.begin(), differences_m_.end());
+    const std::size_t n = differences_m_.size();
+    if (n == 0) return {};
+    return {.median_m = differences_m_[n / 2],
+            .p95_m = differences_m_[n * 95 / 100],
+            .within_10cm = static_cast<double>(std::upper_bound(differences_m_.begin(), differences_m_.end(), 0.1) -
+                                               differences_m_.begin()) /
+                           static_cast<double>(n),
+            .one_sided = static_cast<double>(std::count_if(differences_m_.begin(), differences_m_.end(),
+                                                           [](double d) { return std::isinf(d); })) /
+                         static_cast<double>(n),
+            .num_beams = n};
+  }
+
+ private:
+  const RayWorld &truth_, &site_;
+  std::vector<sim::SurfaceOptics> truth_optics_, site_optics_;
+  std::vector<double> differences_m_;
+};
+
+double bilinear(const Grid<float>& heights_m, const Eigen::Vector2d& p_m) {
+  const GridGeometry& grid = heights_m.geometry();
+  const Eigen::Vector2d at = (p_m - grid.origin_m) / grid.resolution_m - Eigen::Vector2d::Constant(0.5);
+  const int col = std::clamp(static_cast<int>(std::floor(at.x())), 0, grid.width - 2),
+            row = std::clamp(static_cast<int>(std::floor(at.y())), 0, grid.height - 2);
+  const double u = at.x() - col, v = at.y() - row;
+  const auto height = [&](int dc, int dr) { return double{heights_m.at({col + dc, row + dr})}; };
+  return (1 - u) * (1 - v) * height(0, 0) + u * (1 - v) * height(1, 0) + (1 - u) * v * height(0, 1) +
+         u * v * height(1, 1);
+}
+
+double quantile(std::vector<double> values, double fraction) {
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  std::sort(values.begin(), values.end());
+  return values[std::min(values.size() - 1, static_cast<std::size_t>(fraction * static_cast<double>(values.size())))];
+}
+
+/// Returns the fraction of beams from the poses to a box that hit something in it in the site and not in the world.
+double hits_in(const Eigen::AlignedBox3d& box, const std::vector<Eigen::Vector3d>& poses, const RayWorld& truth,
+               const RayWorld& site, std::uint64_t seed) {
+  constexpr double kNear_m = 30.0;
+  const RandomStream draw(seed, "scan_import/guests");
+  std::size_t num_beams = 0, num_hits = 0;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const Eigen::Vector3d origin = poses[i] + Eigen::Vector3d(0.0, 0.0, kLidar3dHeight_m);
+    if (box.exteriorDistance(origin) > kNear_m || box.contains(origin)) continue;
+    for (std::uint64_t k = 0; k < 50; ++k) {
+      const auto random = draw.uniforms(i, k);
+      const Eigen::Vector3d target =
+          box.min() + Eigen::Vector3d(random[0], random[1], random[2]).cwiseProduct(box.sizes());
+      const Eigen::Vector3d direction = (target - origin).normalized();
+      const auto in_box = [&](const RayWorld& world) {
+        const auto hit = world.scene().cast(origin, direction, 100.0, sim::kRayScenery);
+        return hit && box.contains(origin + hit->distance_m * direction);
+      };
+      ++num_beams;
+      if (in_box(site) && !in_box(truth)) ++num_hits;
+    }
+  }
+  return num_beams == 0 ? std::numeric_limits<double>::quiet_NaN()
+                        : static_cast<double>(num_hits) / static_cast<double>(num_beams);
+}
+
+}  // namespace
+
+const std::vector<ScannedWorld>& scanned_worlds() {
+  static const std::vector<ScannedWorld> worlds = {
+      {.name = "tunnel",
+       .scanners_m = {{5.0, 1.5},
+                      {18.0, -1.5},
+                      {31.0, 1.5},
+                      {44.0, -1.5},
+                      {57.0, 1.5},
+                      {70.0, -1.5},
+                      {83.0, 1.0},
+                      {96.0, -1.0},
+                      {109.0, 2.0},
+                      {122.0, 1.0},
+                      {135.0, 1.95},
+                      {148.0, 5.0}},
+       .roads_m = {{{4.0, 0.0}, {80.0, 0.0}, {121.1, 0.2}, {128.1, 1.0}, {142.0, 2.9}, {147.0, 4.1}}},
+       .half_road_m = 2.5,
+       .guest_scan = 4,
+       .person_m = {62.0, 2.0},
+       .truck_m = {50.0, 0.0},
+       .truck_yaw_deg = 180.0},
+      {.name = "substation",
+       .scanners_m = {{8.0, 8.0},
+                      {40.0, 8.0},
+                      {75.0, 8.0},
+                      {111.0, 9.0},
+                      {112.0, 45.0},
+                      {86.0, 34.0},
+                      {59.0, 40.0},
+                      {32.0, 55.5},
+                      {85.0, 56.0},
+                      {8.0, 60.0},
+                      {35.0, 82.0},
+                      {90.0, 82.0}},
+       .roads_m = {{{7.0, 7.0}, {113.0, 7.0}, {113.0, 83.0}, {7.0, 83.0}, {7.0, 7.0}},
+                   {{62.5, 34.0}, {110.5, 34.0}},
+                   {{60.0, 36.5}, {60.0, 80.5}},
+                   {{9.5, 55.5}, {110.5, 55.5}}},
+       .half_road_m = 1.5,
+       .guest_scan = 2,
+       .person_m = {70.0, 6.0},
+       .truck_m = {88.0, 7.0},
+       .truck_yaw_deg = 0.0}};
+  return worlds;
+}
+
+RayWorld::RayWorld(const std::string& xml, const ScannedWorld* guests) {
+  const sim::SpecPtr spec = sim::load_spec(xml);
+  if (guests != nullptr) {
+    sim::add_static_obstacles(
+        *spec,
+        {{.kind = "truck", .x_m = guests->truck_m.x(), .y_m = guests->truck_m.y(), .yaw_deg = guests->truck_yaw_deg}});
+    add_person(*mjs_findBody(spec.get(), "world"), guests->person_m, 0.0);
+  }
+  model_ = sim::compile(*spec, xml);
+  scene_ = std::make_unique<sim::LidarScene>(*model_);
+}
+
+double RayWorld::ground_m(const Eigen::Vector2d& p_m, double from_m) const {
+  const auto hit = scene_->cast({p_m.x(), p_m.y(), from_m}, -Eigen::Vector3d::UnitZ(), 10.0, sim::kRayScenery);
+  return hit ? from_m - hit->distance_m : std::numeric_limits<double>::quiet_NaN();
+}
+
+std::vector<io::StationScan> take_scans(const ScannedWorld& world, double step_deg, std::uint64_t seed) {
+  const RayWorld empty(world_xml(world)), busy(world_xml(world), &world);
+  PanoramicScannerSettings settings;
+  settings.enabled = true;
+  settings.step_deg = step_deg;
+  std::vector<io::StationScan> scans;
+  for (std::size_t i = 0; i < world.scanners_m.size(); ++i) {
+    const RayWorld& rays = i == world.guest_scan ? busy : empty;
+    const Eigen::Vector2d& p = world.scanners_m[i];
+    const Pose3 T_world_scanner{{p.x(), p.y(), rays.ground_m(p) + kScannerHeight_m},
+                                quaternion_from_yaw(0.3 * static_cast<double>(i))};
+    // A stream of its own for each scan.
+    sim::PanoramicScanner scanner(settings, rays.scene(), Pose3{}, 1000 * seed + i);
+    scanner.begin(Time{}, T_world_scanner);
+    scanner.advance(Time{}, from_seconds(settings.duration_s + 1.0), T_world_scanner, T_world_scanner);
+    io::StationScan scan{.station = fmt::format("station_{}", i + 1), .T_map_scanner = T_world_scanner, .points = {}};
+    for (PanoramicScan& taken : scanner.take_scans()) scan.points = std::move(taken.points);
+    for (ScannerPoint& point : scan.points) {
+      const Eigen::Vector3f moved =
+          (T_world_scanner * Eigen::Vector3f(point.x, point.y, point.z).cast<double>()).cast<float>();
+      point = {moved.x(), moved.y(), moved.z(), point.intensity};
+    }
+    scans.push_back(std::move(scan));
+  }
+  return scans;
+}
+
+SiteComparison compare_site(const ScannedWorld& world, const importer::ImportedSite& site, const std::string& site_xml,
+                            int num_poses, std::uint64_t seed) {
+  constexpr int kBeams2d = 720, kRings = 16, kBeams3d = 360;
+  const RayWorld truth(world_xml(world)), imported(site_xml);
+  const std::vector<Eigen::Vector3d> poses = held_out_poses(world, truth, num_poses, seed);
+  DifferenceSampler planar(truth, imported), spatial(truth, imported);
+  const Grid<float>* ground = nullptr;
+  std::vector<Eigen::AlignedBox3d> boxes;
+  for (const importer::SiteShape& shape : site.shapes) {
+    if (shape.type == importer::SiteShapeType::kHeightField) ground = &shape.height_field.height_m;
+    if (shape.type == importer::SiteShapeType::kBox) {
+      boxes.emplace_back(shape.T_site_shape.position - shape.size_m, shape.T_site_shape.position + shape.size_m);
+    }
+  }
+  std::vector<double> ground_errors_m;
+  SiteComparison comparison;
+  for (const Eigen::Vector3d& pose : poses) {
+    const Eigen::Vector3d at_2d = pose + Eigen::Vector3d(0, 0, kLidarHeight_m),
+                          at_3d = pose + Eigen::Vector3d(0, 0, kLidar3dHeight_m);
+    for (int beam = 0; beam < kBeams2d; ++beam) {
+      const double angle = 2.0 * std::numbers::pi * beam / kBeams2d;
+      planar.add(at_2d, {std::cos(angle), std::sin(angle), 0.0}, kMaxRange2d_m);
+    }
+    for (int ring = 0; ring < kRings; ++ring) {
+      const double elevation = to_rad(-15.0 + 2.0 * ring);
+      for (int beam = 0; beam < kBeams3d; ++beam) {
+        const double angle = 2.0 * std::numbers::pi * beam / kBeams3d;
+        spatial.add(at_3d,
+                    {std::cos(elevation) * std::cos(angle), std::cos(elevation) * std::sin(angle), std::sin(elevation)},
+                    kMaxRange3d_m);
+      }
+    }
+    if (ground != nullptr) ground_errors_m.push_back(std::abs(bilinear(*ground, pose.head<2>()) - pose.z()));
+    constexpr double kRobot_m = 0.4;
+    const Eigen::Vector3d middle = pose + Eigen::Vector3d(0, 0, 0.5);
+    if (std::any_of(boxes.begin(), boxes.end(), [&](const Eigen::AlignedBox3d& box) {
+          if (box.min().z() > pose.z() + 0.8 || box.max().z() < pose.z() + 0.1) return false;
+          const Eigen::Vector2d nearest = middle.head<2>().cwiseMax(box.min().head<2>()).cwiseMin(box.max().head<2>());
+          return (nearest - middle.head<2>()).norm() < kRobot_m;
+        }))
+      ++comparison.num_phantoms;
+  }
+  comparison.planar = planar.take();
+  comparison.spatial = spatial.take();
+  comparison.ground_median_m = quantile(ground_errors_m, 0.5);
+  comparison.ground_p95_m = quantile(ground_errors_m, 0.95);
+  Eigen::AlignedBox3d truck(Eigen::Vector3d(world.truck_m.x() - 3.5, world.truck_m.y() - 1.2, 0.3),
+                            Eigen::Vector3d(world.truck_m.x() + 3.5, world.truck_m.y() + 1.2, 2.9));
+  Eigen::AlignedBox3d person(Eigen::Vector3d(world.person_m.x() - 0.3, world.person_m.y() - 0.3, 0.2),
+                             Eigen::Vector3d(world.person_m.x() + 0.3, world.person_m.y() + 0.3, 1.8));
+  comparison.person_hits = hits_in(person, poses, truth, imported, seed);
+  comparison.truck_hits = hits_in(truck, poses, truth, imported, seed);
+  return comparison;
+}
+
+}  // namespace patrol::app

@@ -1,0 +1,275 @@
+#include "importer/site/points/static_points.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace patrol::importer {
+namespace {
+
+constexpr int kMaxRun_px = 64;
+constexpr std::array<std::array<int, 2>, 8> kAround = {
+    {{-1, -1}, {-1, 0}, {-1, 1}, {0, -1}, {0, 1}, {1, -1}, {1, 0}, {1, 1}}};
+
+void mark_outliers(Panorama& scan) {
+  for (int col = 0; col < scan.columns(); ++col) {
+    for (int row = 0; row < scan.rows(); ++row) {
+      const Pixel pixel{col, row};
+      const float range = scan.range_m(pixel);
+      if (range <= 0.0f || scan.is_connected_right(pixel) || scan.is_connected_left(pixel) ||
+          scan.is_connected_up(pixel) || scan.is_connected_down(pixel))
+        continue;
+      const double reach_m = 3.0 * scan.step_rad() * double{range} + 0.004;
+      const bool is_lone = std::none_of(kAround.begin(), kAround.end(), [&](const auto& step) {
+        const Pixel other{scan.wrapped(col + step[0]), row + step[1]};
+        return scan.contains_row(other.row) && scan.range_m(other) > 0.0f &&
+               std::abs(double{scan.range_m(other)} - double{range}) < reach_m;
+      });
+      if (is_lone) scan.state(pixel) |= kPixelOutlier;
+    }
+  }
+}
+
+/// Lengths of the connected runs through each pixel, along rows and columns, in pixels, at most kMaxRun_px.
+class Runs {
+ public:
+  explicit Runs(const Panorama& scan) : rows_(static_cast<std::size_t>(scan.rows())) {
+    const std::size_t size = static_cast<std::size_t>(scan.columns()) * rows_;
+    along_row_.assign(size, 0);
+    along_column_.assign(size, 0);
+    for (int row = 0; row < scan.rows(); ++row) {
+      for (int col = 0; col < scan.columns();) {
+        int end = col + 1;
+        while (end < scan.columns() && scan.is_connected_right({end - 1, row})) ++end;
+        for (int c = col; c < end; ++c) along_row_[index({c, row})] = clipped(end - col);
+        col = end;
+      }
+    }
+    for (int col = 0; col < scan.columns(); ++col) {
+      for (int row = 0; row < scan.rows();) {
+        int end = row + 1;
+        while (end < scan.rows() && scan.is_connected_up({col, end - 1})) ++end;
+        for (int r = row; r < end; ++r) along_column_[index({col, r})] = clipped(end - row);
+        row = end;
+      }
+    }
+  }
+
+  /// Returns the smaller extent of the surface through a pixel, m.
+  double width_m(const Panorama& scan, Pixel pixel) const {
+    const std::size_t at = index(pixel);
+    return double{scan.range_m(pixel)} *
+           std::min(scan.column_angle_rad(pixel.row) * along_row_[at], scan.step_rad() * along_column_[at]);
+  }
+
+ private:
+  static std::uint8_t clipped(int length) { return static_cast<std::uint8_t>(std::min(length, kMaxRun_px)); }
+  std::size_t index(Pixel pixel) const {
+    return static_cast<std::size_t>(pixel.col) * rows_ + static_cast<std::size_t>(pixel.row);
+  }
+
+  std::size_t rows_;
+  std::vector<std::uint8_t> along_row_, along_column_;
+};
+
+/// Evidence of another scan about a point.
+enum class Evidence : std::uint8_t { kNone, kFree, kObserved, kCovered };
+
+struct SeenPoint {
+  Eigen::Vector3d position, normal;
+  double spacing_m;  ///< distance between the beams of its own scan on the surface
+  double width_m;    ///< smaller extent of its surface
+};
+
+/// Mean distance between beams on a surface: the geometric mean along both directions.
+double spacing_on_surface_m(double range_m, double step_rad, double cosine) {
+  return range_m * step_rad / std::sqrt(std::max(cosine, 0.05));
+}
+
+Evidence evidence_of(const Panorama& other, const SeenPoint& seen) {
+  const Eigen::Vector3d offset = seen.position - other.origin();
+  const double distance_m = offset.norm();
+  if (distance_m < 0.1) return Evidence::kNone;
+  const std::optional<Pixel> center = other.pixel_of(seen.position);
+  if (!center || center->row < 1 || center->row + 1 >= other.rows()) return Evidence::kNone;
+  const double cosine = std::abs(seen.normal.dot(offset)) / distance_m;
+  const double footprint_m = other.step_rad() * distance_m;
+  const double tolerance_m = 0.03 + 0.002 * distance_m;
+  double nearest_m = 1e9, nearest_point_m = 1e9;
+  int num_empty = 0;
+  bool is_observed = false;
+  for (int dc = -1; dc <= 1; ++dc) {
+    for (int dr = -1; dr <= 1; ++dr) {
+      const Pixel pixel{other.wrapped(center->col + dc), center->row + dr};
+      const double range_m = double{other.range_m(pixel)};
+      if (range_m <= 0.0) {
+        ++num_empty;
+        continue;
+      }
+      nearest_m = std::min(nearest_m, range_m);
+      if (std::abs(range_m - distance_m) > tolerance_m) continue;
+      is_observed = true;
+      if (other.is_usable(pixel))
+        nearest_point_m = std::min(nearest_point_m, (other.point(pixel) - seen.position).norm());
+    }
+  }
+  const double center_m = double{other.range_m(*center)};
+  if (center_m > 0.0 && std::abs(center_m - distance_m) < 0.1 * distance_m && other.is_usable(*center)) {
+    // On a surface at a flat angle the ranges of neighbors differ: compare the distance from the other's plane.
+    const Eigen::Vector3d normal = other.normal(*center), p = other.point(*center);
+    const double off_m = std::abs(normal.dot(seen.position - p));
+    const double other_cosine = std::max(0.08, std::abs(normal.dot(offset)) / distance_m);
+    const bool is_near = (seen.position - p).norm() < 1.5 * footprint_m / other_cosine;
+    if (is_near && off_m < tolerance_m) {
+      is_observed = true;
+      const double other_spacing_m = spacing_on_surface_m(center_m, other.step_rad(), other_cosine);
+      if (off_m < 0.008 + 0.0005 * distance_m && normal.dot(seen.normal) > 0.7 &&
+          other_spacing_m < 0.75 * seen.spacing_m)
+        return Evidence::kCovered;
+    }
+  }
+  // A surface that is not flat, such as a thin post: near a point of the other scan with beams much closer together.
+  if (nearest_point_m < std::max(0.03, 0.7 * seen.spacing_m) && 1.5 * footprint_m < seen.spacing_m)
+    return Evidence::kCovered;
+  if (is_observed) return Evidence::kObserved;
+  // At least one of three neighboring beams would meet the surface.
+  if (1.15 * footprint_m > seen.width_m) return Evidence::kNone;
+  constexpr double kMinReturnCosine = 0.35, kMaxReturnRange_m = 45.0;
+  const bool would_return = cosine > kMinReturnCosine && distance_m < kMaxReturnRange_m && distance_m > 1.0;
+  if (num_empty == 9) return would_return ? Evidence::kFree : Evidence::kNone;
+  if (num_empty > 0 && !would_return) return Evidence::kNone;
+  const double margin_m = 0.08 + 0.01 * distance_m;
+  return nearest_m > distance_m + margin_m ? Evidence::kFree : Evidence::kNone;
+}
+
+/// Sets kPixelObserved, kPixelCovered, and kPixelMoving for pixels with evidence of their own.
+void compare(std::vector<Panorama>& scans, std::size_t i) {
+  Panorama& scan = scans[i];
+  const Runs runs(scan);
+  for (int col = 0; col < scan.columns(); ++col) {
+    for (int row = 0; row < scan.rows(); ++row) {
+      const Pixel pixel{col, row};
+      if (scan.range_m(pixel) <= 0.0f || scan.has(pixel, kPixelOutlier)) continue;
+      const Eigen::Vector3d normal = scan.normal(pixel);
+      const double cosine = std::abs(normal.dot(scan.direction(pixel)));
+      const SeenPoint seen{.position = scan.point(pixel),
+                           .normal = normal,
+                           .spacing_m = spacing_on_surface_m(double{scan.range_m(pixel)}, scan.step_rad(), cosine),
+                           .width_m = runs.width_m(scan, pixel)};
+      bool is_free = false, is_observed = false, is_covered = false;
+      for (std::size_t k = 0; k < scans.size() && !(is_covered && is_observed); ++k) {
+        if (k == i) continue;
+        const Evidence evidence = evidence_of(scans[k], seen);
+        is_free = is_free || evidence == Evidence::kFree;
+        is_observed = is_observed || evidence == Evidence::kObserved || evidence == Evidence::kCovered;
+        is_covered = is_covered || evidence == Evidence::kCovered;
+      }
+      if (is_observed) scan.state(pixel) |= kPixelObserved;
+      if (is_covered) scan.state(pixel) |= kPixelCovered;
+      if (is_free && !is_observed) scan.state(pixel) |= kPixelMoving;
+    }
+  }
+}
+
+/// Removes the state kPixelMoving where less than most of the surface around a pixel has it: along rows and columns
+/// within a distance.
+void erode_moving(Panorama& scan) {
+  constexpr double kReach_m = 0.1, kMinFraction = 0.6;
+  constexpr int kMinReach_px = 2, kMaxReach_px = 12;
+  std::vector<Pixel> rejected;
+  for (int col = 0; col < scan.columns(); ++col) {
+    for (int row = 0; row < scan.rows(); ++row) {
+      const Pixel pixel{col, row};
+      if (!scan.has(pixel, kPixelMoving)) continue;
+      const int reach = std::clamp(static_cast<int>(kReach_m / (scan.step_rad() * double{scan.range_m(pixel)})),
+                                   kMinReach_px, kMaxReach_px);
+      int num_seen = 0, num_moving = 0;
+      const auto look = [&](Pixel other, bool is_connected) {
+        if (!is_connected) return false;
+        ++num_seen;
+        num_moving += scan.has(other, kPixelMoving) ? 1 : 0;
+        return true;
+      };
+      Pixel at = pixel;
+      for (int k = 0; k < reach; ++k) {
+        const Pixel next{scan.wrapped(at.col + 1), at.row};
+        if (!look(next, scan.is_connected_right(at))) break;
+        at = next;
+      }
+      at = pixel;
+      for (int k = 0; k < reach; ++k) {
+        const Pixel next{scan.wrapped(at.col - 1), at.row};
+        if (!look(next, scan.is_connected_left(at))) break;
+        at = next;
+      }
+      at = pixel;
+      for (int k = 0; k < reach; ++k) {
+        const Pixel next{at.col, at.row + 1};
+        if (!look(next, scan.is_connected_up(at))) break;
+        at = next;
+      }
+      at = pixel;
+      for (int k = 0; k < reach; ++k) {
+        const Pixel next{at.col, at.row - 1};
+        if (!look(next, scan.is_connected_down(at))) break;
+        at = next;
+      }
+      if (num_moving < kMinFraction * num_seen) rejected.push_back(pixel);
+    }
+  }
+  for (const Pixel pixel : rejected) scan.state(pixel) &= static_cast<std::uint8_t>(~kPixelMoving);
+}
+
+/// Extends moving objects to neighbors at similar ranges, within a distance, that no other scan observes.
+void grow_moving(Panorama& scan) {
+  constexpr double kReach_m = 0.5, kMaxJump_m = 0.1;
+  struct Front {
+    Pixel pixel;
+    int steps;
+  };
+  std::vector<Front> open;
+  for (int col = 0; col < scan.columns(); ++col) {
+    for (int row = 0; row < scan.rows(); ++row) {
+      if (scan.has({col, row}, kPixelMoving)) open.push_back({{col, row}, 0});
+    }
+  }
+  const auto visit = [&](Pixel from, Pixel pixel, int steps) {
+    if (!scan.contains_row(pixel.row) || !scan.is_usable(pixel) || scan.has(pixel, kPixelObserved)) return;
+    const double range_m = double{scan.range_m(pixel)};
+    if (std::abs(double{scan.range_m(from)} - range_m) > kMaxJump_m || steps * scan.step_rad() * range_m > kReach_m)
+      return;
+    scan.state(pixel) |= kPixelMoving;
+    open.push_back({pixel, steps});
+  };
+  for (std::size_t i = 0; i < open.size(); ++i) {
+    const auto [at, steps] = open[i];
+    visit(at, {scan.wrapped(at.col + 1), at.row}, steps + 1);
+    visit(at, {scan.wrapped(at.col - 1), at.row}, steps + 1);
+    visit(at, {at.col, at.row + 1}, steps + 1);
+    visit(at, {at.col, at.row - 1}, steps + 1);
+  }
+}
+
+}  // namespace
+
+StaticPointCounts find_static_points(std::vector<Panorama>& scans) {
+  for (Panorama& scan : scans) mark_outliers(scan);
+  for (std::size_t i = 0; i < scans.size(); ++i) compare(scans, i);
+  StaticPointCounts counts;
+  for (Panorama& scan : scans) {
+    erode_moving(scan);
+    grow_moving(scan);
+    for (int col = 0; col < scan.columns(); ++col) {
+      for (int row = 0; row < scan.rows(); ++row) {
+        const Pixel pixel{col, row};
+        counts.num_points += scan.range_m(pixel) > 0.0f ? 1 : 0;
+        counts.num_outliers += scan.has(pixel, kPixelOutlier) ? 1 : 0;
+        counts.num_moving += scan.has(pixel, kPixelMoving) ? 1 : 0;
+      }
+    }
+  }
+  return counts;
+}
+
+}  // namespace patrol::importer

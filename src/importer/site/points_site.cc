@@ -1,0 +1,276 @@
+#include "importer/site/points_site.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "core/geometry/angles.h"
+#include "importer/site/points/cloud_patches.h"
+#include "importer/site/points/contact_boxes.h"
+#include "importer/site/points/panorama.h"
+#include "importer/site/points/panorama_patches.h"
+#include "importer/site/points/scanned_ground.h"
+#include "importer/site/points/static_points.h"
+#include "importer/site/points/thin_objects.h"
+
+namespace patrol::importer {
+namespace {
+
+/// Reflectivities of the materials of measured surfaces.
+constexpr std::array kReflectivities = {0.04, 0.1, 0.2, 0.3, 0.4, 0.5, 0.65, 0.85};
+constexpr double kUnknownReflectivity = 0.5;
+
+/// Linear map from intensities to the light of a surface, reflectivity times cosine of incidence.
+struct IntensityScale {
+  float factor = 0.0f;  ///< 0: the points have no intensity
+  std::string rule;
+};
+
+IntensityScale scale_of(float largest) {
+  if (largest <= 0.0f) return {.factor = 0.0f, .rule = "the points have no intensity: reflectivity 0.5 everywhere"};
+  const float full = largest <= 1.0f ? 1.0f : (largest <= 255.0f ? 255.0f : std::max(largest, 65535.0f));
+  return {.factor = 1.0f / full, .rule = fmt::format("an intensity of {:g} is that of a white surface", full)};
+}
+
+std::size_t class_of(float reflectivity) {
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < kReflectivities.size(); ++i) {
+    if (std::abs(kReflectivities[i] - double{reflectivity}) < std::abs(kReflectivities[best] - double{reflectivity}))
+      best = i;
+  }
+  return best;
+}
+
+std::string name_of_class(std::size_t i) { return fmt::format("measured_{:02.0f}", 100.0 * kReflectivities[i]); }
+
+/// Rotation from the frame of the file to z up.
+Eigen::Matrix3d upright(const SiteImportOptions& options) {
+  if (options.up != "y") return Eigen::Matrix3d::Identity();
+  Eigen::Matrix3d R;
+  R << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+  return R;
+}
+
+void transform(std::vector<ScannerPoint>& points, const Eigen::Matrix3d& A) {
+  if (A.isIdentity()) return;
+  for (ScannerPoint& point : points) {
+    const Eigen::Vector3f p = (A * Eigen::Vector3f(point.x, point.y, point.z).cast<double>()).cast<float>();
+    point.x = p.x();
+    point.y = p.y();
+    point.z = p.z();
+  }
+}
+
+void append(Mesh& mesh, const Patch& patch) {
+  const int first = static_cast<int>(mesh.vertices_m.size());
+  for (std::size_t i = 0; i < patch.num_corners; ++i) mesh.vertices_m.push_back(patch.corners_m[i].cast<double>());
+  for (int i = 1; i + 1 < patch.num_corners; ++i) mesh.triangles.push_back({first, first + i, first + i + 1});
+}
+
+/// Adds the materials and the meshes of the patches, one for each reflectivity, and one of the filled-in surfaces.
+void add_surfaces(ImportedSite& site, const std::vector<Patch>& patches, float ground_reflectivity) {
+  std::array<Mesh, kReflectivities.size()> measured;
+  Mesh filled_in;
+  for (const Patch& patch : patches)
+    append(patch.is_filled_in ? filled_in : measured[class_of(patch.reflectivity)], patch);
+  const auto add = [&](const std::string& name, const Eigen::Vector4d& rgba, Mesh mesh) {
+    if (mesh.empty()) return;
+    site.materials.push_back({.name = name, .rgba = rgba});
+    site.shapes.push_back({.name = name,
+                           .type = SiteShapeType::kMesh,
+                           .use = ShapeUse::kSeen,
+                           .material = name,
+                           .mesh = std::move(mesh)});
+  };
+  for (std::size_t i = 0; i < measured.size(); ++i) {
+    const double gray = kReflectivities[i];
+    add(name_of_class(i), {gray, gray, gray, 1.0}, std::move(measured[i]));
+  }
+  // Bluish, with the luminance of the measured ground.
+  const Eigen::Vector3d tint(0.7, 1.0, 1.9);
+  const double luminance = 0.2126 * tint.x() + 0.7152 * tint.y() + 0.0722 * tint.z();
+  const Eigen::Vector3d color = (double{ground_reflectivity} / luminance * tint).cwiseMin(1.0);
+  add("filled_in", {color.x(), color.y(), color.z(), 1.0}, std::move(filled_in));
+}
+
+void add_contact(ImportedSite& site, const std::vector<Patch>& patches, const ScannedGround& ground) {
+  site.materials.push_back({.name = "contact", .rgba = {0.5, 0.5, 0.5, 1.0}});
+  site.shapes.push_back({.name = "ground",
+                         .type = SiteShapeType::kHeightField,
+                         .use = ShapeUse::kContactOnly,
+                         .material = "contact",
+                         .height_field = {.height_m = ground.height_m}});
+  const ContactBoxSettings settings;
+  const std::vector<Eigen::AlignedBox3d> boxes = contact_boxes(patches, ground, settings);
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    site.shapes.push_back({.name = fmt::format("obstacle_{}", i + 1),
+                           .use = ShapeUse::kContactOnly,
+                           .T_site_shape = {boxes[i].center(), Eigen::Quaterniond::Identity()},
+                           .size_m = 0.5 * boxes[i].sizes(),
+                           .material = "contact"});
+  }
+  site.ground.all.geoms = {"ground"};
+  site.ground.max_step_m = 0.0;
+  site.assumptions.push_back(
+      {"contact",
+       fmt::format(
+           "height field of the ground with cells of {:g} m, and {} boxes around the surfaces {:g} to {:g} m above it",
+           ground.height_m.geometry().resolution_m, boxes.size(), settings.lowest_m, settings.highest_m),
+       ""});
+}
+
+/// Returns the median reflectivity of patches that face upward.
+float ground_reflectivity_of(const std::vector<Patch>& patches) {
+  std::vector<float> values;
+  for (const Patch& patch : patches) {
+    const Eigen::Vector3d normal = patch.area_normal();
+    if (std::abs(normal.z()) > 0.9 * normal.norm()) values.push_back(patch.reflectivity);
+  }
+  if (values.empty()) return static_cast<float>(kUnknownReflectivity);
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+  return values[values.size() / 2];
+}
+
+/// Adds the filled-in ground, the meshes and the contact geometry.
+void complete(ImportedSite& site, std::vector<Patch> patches, const ScannedGround& ground) {
+  const float reflectivity = ground_reflectivity_of(patches);
+  double measured_m2 = 0.0, filled_m2 = 0.0;
+  for (const Patch& patch : patches) measured_m2 += patch.area_m2();
+  const std::vector<Patch> sides = close_thin_objects(patches, ground, {});
+  double sides_m2 = 0.0;
+  for (const Patch& patch : sides) sides_m2 += patch.area_m2();
+  patches.insert(patches.end(), sides.begin(), sides.end());
+  for (const Patch& patch : filled_ground(ground, reflectivity)) {
+    filled_m2 += patch.area_m2();
+    patches.push_back(patch);
+  }
+  site.assumptions.push_back(
+      {"measured", fmt::format("{:.0f} m2 of surfaces, materials measured_NN with a reflectivity of NN %", measured_m2),
+       ""});
+  site.assumptions.push_back(
+      {"filled in",
+       fmt::format("{:.0f} m2 of ground in holes and within 8 m of the measured ground ({:.0f} m2) are interpolated, "
+                   "material filled_in",
+                   filled_m2, ground.area_m2(GroundOrigin::kMeasured)),
+       ""});
+  site.assumptions.push_back(
+      {"thin objects",
+       fmt::format(
+           "{:.0f} m2 of sides of objects of at most 0.6 m are filled in by convex outlines, material filled_in",
+           sides_m2),
+       ""});
+  add_contact(site, patches, ground);
+  add_surfaces(site, patches, reflectivity);
+}
+
+void add_frame_rows(ImportedSite& site, const Eigen::Vector3d& origin, std::size_t num_dropped,
+                    const SiteImportOptions& options) {
+  const double scale = options.scale > 0.0 ? options.scale : 1.0;
+  site.assumptions.push_back({"scale", fmt::format("{:g} m per unit of the file", scale), "--scale"});
+  site.assumptions.push_back({"up", fmt::format("axis {}", options.up.empty() ? "z" : options.up), "--up"});
+  if (!origin.isZero()) {
+    site.assumptions.push_back(
+        {"origin",
+         fmt::format("the origin of site is ({:.0f}, {:.0f}, {:.0f}) in the file", origin.x(), origin.y(), origin.z()),
+         ""});
+  }
+  if (num_dropped > 0)
+    site.assumptions.push_back({"invalid points", fmt::format("{} points are not finite: left out", num_dropped), ""});
+}
+
+}  // namespace
+
+ImportedSite read_scans_site(const SiteImportOptions& options) {
+  return site_of_scans(io::load_relative_scans(options.file), options.file.filename().string(), options);
+}
+
+ImportedSite read_cloud_site(const SiteImportOptions& options) {
+  if (options.file.extension() == ".ply" && io::has_faces(options.file))
+    throw InputError(options.file.string() + ": has faces: is a mesh and not a point cloud");
+  return site_of_cloud(io::load_points(options.file), options.file.filename().string(), options);
+}
+
+ImportedSite site_of_scans(io::RelativeScans scans, const std::string& source, const SiteImportOptions& options) {
+  if (scans.scans.empty()) throw InputError(source + ": has no scans");
+  ImportedSite site{.name = options.name, .source = source};
+  const Eigen::Matrix3d R = upright(options), A = (options.scale > 0.0 ? options.scale : 1.0) * R;
+  float largest = 0.0f;
+  std::vector<Panorama> panoramas;
+  for (io::StationScan& scan : scans.scans) {
+    transform(scan.points, A);
+    scan.T_map_scanner.position = A * scan.T_map_scanner.position;
+    // The frame of the scanner stays upright.
+    scan.T_map_scanner.rotation = quaternion_from_yaw(
+        to_yaw(Eigen::Quaterniond(R * scan.T_map_scanner.rotation.toRotationMatrix() * R.transpose())));
+    for (const ScannerPoint& point : scan.points) largest = std::max(largest, point.intensity);
+    panoramas.emplace_back(scan);
+    scan.points = {};
+  }
+  const StaticPointCounts counts = find_static_points(panoramas);
+  const IntensityScale scale = scale_of(largest);
+  const auto reflectivity = [&](float intensity, double cosine) {
+    if (scale.factor <= 0.0f) return static_cast<float>(kUnknownReflectivity);
+    return std::clamp(scale.factor * intensity / static_cast<float>(cosine), 0.0f, 1.0f);
+  };
+  std::vector<Patch> patches;
+  std::vector<Eigen::Vector3d> scanners_m;
+  for (Panorama& panorama : panoramas) {
+    for (Patch& patch : patches_of(panorama, {}, reflectivity)) patches.push_back(patch);
+    scanners_m.push_back(panorama.origin());
+  }
+  const double step_deg = to_deg(panoramas.front().step_rad());
+  panoramas.clear();
+  add_frame_rows(site, scans.origin, scans.num_dropped, options);
+  site.assumptions.push_back({"points",
+                              fmt::format("{} of {} scans; the first has a step of {:.3f} degrees", counts.num_points,
+                                          scanners_m.size(), step_deg),
+                              ""});
+  site.assumptions.push_back(
+      {"outliers", fmt::format("{} points between surfaces are removed", counts.num_outliers), ""});
+  site.assumptions.push_back(
+      {"moving objects",
+       fmt::format("{} points that another scan looks through and none observes are removed", counts.num_moving), ""});
+  site.assumptions.push_back({"reflectivity", scale.rule + ", divided by the cosine of incidence", ""});
+  site.assumptions.push_back(
+      {"ground", "the surface around the scanners and what is connected by steps of at most 0.12 m", ""});
+  const ScannedGround ground = find_scanned_ground(patches, scanners_m, true, {}, source);
+  complete(site, std::move(patches), ground);
+  return site;
+}
+
+ImportedSite site_of_cloud(io::RelativePoints cloud, const std::string& source, const SiteImportOptions& options) {
+  ImportedSite site{.name = options.name, .source = source};
+  transform(cloud.points, (options.scale > 0.0 ? options.scale : 1.0) * upright(options));
+  float largest = 0.0f;
+  for (const ScannerPoint& point : cloud.points) largest = std::max(largest, point.intensity);
+  const IntensityScale scale = scale_of(largest);
+  CloudPatches found = patches_of_cloud(
+      cloud.points,
+      [&](float intensity) {
+        return scale.factor <= 0.0f ? static_cast<float>(kUnknownReflectivity)
+                                    : std::clamp(scale.factor * intensity, 0.0f, 1.0f);
+      },
+      source);
+  add_frame_rows(site, cloud.origin, cloud.num_dropped, options);
+  site.assumptions.push_back(
+      {"points",
+       fmt::format("{}; smallest cell {:g} m, noise {:.4f} m", cloud.points.size(), found.cell_m, found.noise_m), ""});
+  site.assumptions.push_back(
+      {"outliers", fmt::format("{} points without a surface are removed", found.num_outliers), ""});
+  site.assumptions.push_back(
+      {"moving objects", "remain: the file has no scanner positions, so that no point can be looked through", ""});
+  site.assumptions.push_back(
+      {"normals", "surfaces face the nearest place where a person can stand, 1.5 m above the ground", ""});
+  site.assumptions.push_back({"reflectivity", scale.rule + ", at any incidence", ""});
+  site.assumptions.push_back(
+      {"ground", "the lowest large level surface and what is connected by steps of at most 0.12 m", ""});
+  const ScannedGround ground = find_scanned_ground(found.patches, {}, false, {}, source);
+  orient(found.patches, ground);
+  complete(site, std::move(found.patches), ground);
+  return site;
+}
+
+}  // namespace patrol::importer

@@ -1,0 +1,27 @@
+#include "io/points/point_reading.h"
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "io/points/pcd.h"
+#include "io/points/ply.h"
+#include "io/points/point_table.h"
+
+namespace patrol::io {
+
+RelativePoints load_points(const std::filesystem::path& file, const std::optional<Eigen::Vector3d>& origin) {
+  PointShift shift{.origin = origin, .num_dropped = 0};
+  RelativePoints relative;
+  if (file.extension() == ".ply") {
+    relative.points = load_shifted_ply(file, shift);
+  } else if (file.extension() == ".pcd") {
+    relative.points = load_shifted_pcd(file, shift);
+  } else {
+    throw InputError(fmt::format("{}: extension of a point cloud must be .ply or .pcd", file.string()));
+  }
+  relative.origin = shift.origin.value_or(Eigen::Vector3d::Zero());
+  relative.num_dropped = shift.num_dropped;
+  return relative;
+}
+
+}  // namespace patrol::io
