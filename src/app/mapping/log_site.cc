@@ -34,15 +34,15 @@ bool for_each_scan(const std::filesystem::path& file, const LogMappingSettings& 
 void add_recorded_path(const std::vector<Pose2>& path, const importer::MissionOptions& options,
                        importer::ImportedSite& site) {
   constexpr double kSpacing_m = 5.0;
-  constexpr double kMostStations = 100.0;
-  double way_m = 0.0;
-  for (std::size_t i = 1; i < path.size(); ++i) way_m += (path[i].position() - path[i - 1].position()).norm();
+  constexpr double kMaxStations = 100.0;
+  double length_m = 0.0;
+  for (std::size_t i = 1; i < path.size(); ++i) length_m += (path[i].position() - path[i - 1].position()).norm();
   const importer::FreeSpace space(*site.map, options.clearance_m, path.front().position());
-  const double spacing_m = std::max(kSpacing_m, way_m / kMostStations);
+  const double spacing_m = std::max(kSpacing_m, length_m / kMaxStations);
   site.route = Route{.stations = importer::stations_along(path, space, spacing_m)};
   site.assumptions.push_back(
       {"mission",
-       fmt::format("the recorded path, {:.0f} m, a station every {:.1f} m where the clearance is {:g} m", way_m,
+       fmt::format("the recorded path, {:.0f} m, a station every {:.1f} m where the clearance is {:g} m", length_m,
                    spacing_m, options.clearance_m),
        "--stations or --random-stations"});
 }

@@ -51,12 +51,12 @@ std::size_t flood(Grid<std::uint8_t>& open, Cell from, std::uint8_t label) {
 
 std::optional<Cell> nearest_open(const Grid<std::uint8_t>& open, const Eigen::Vector2d& p_m) {
   std::optional<Cell> best;
-  double least = std::numeric_limits<double>::infinity();
+  double min_distance = std::numeric_limits<double>::infinity();
   const GridGeometry& grid = open.geometry();
   for (int row = 0; row < grid.height; ++row) {
     for (int col = 0; col < grid.width; ++col) {
       const double distance = (grid.center_of({col, row}) - p_m).squaredNorm();
-      if (open.at({col, row}) != 0 && distance < least) best = Cell{col, row}, least = distance;
+      if (open.at({col, row}) != 0 && distance < min_distance) best = Cell{col, row}, min_distance = distance;
     }
   }
   return best;
@@ -65,12 +65,12 @@ std::optional<Cell> nearest_open(const Grid<std::uint8_t>& open, const Eigen::Ve
 std::optional<Cell> seed_of_largest(const Grid<std::uint8_t>& open) {
   Grid<std::uint8_t> rest = open;
   std::optional<Cell> best;
-  std::size_t most = 0;
+  std::size_t max_count = 0;
   for (int row = 0; row < open.geometry().height; ++row) {
     for (int col = 0; col < open.geometry().width; ++col) {
       if (rest.at({col, row}) != 1) continue;
       const std::size_t count = flood(rest, {col, row}, 2);
-      if (count > most) most = count, best = Cell{col, row};
+      if (count > max_count) max_count = count, best = Cell{col, row};
     }
   }
   return best;
@@ -123,11 +123,11 @@ std::vector<Station> random_stations(const FreeSpace& space, const Pose2& start,
       p = cells[std::min(index, cells.size() - 1)];
       if (is_apart(p, distance_m) || distance_m < 1e-3) break;
     }
-    const Eigen::Vector2d way = p - last;
+    const Eigen::Vector2d moved = p - last;
     stations.push_back({.number = number,
                         .name = fmt::format("station_{}", number),
                         .type = StationType::kPass,
-                        .T_route_body = {p.x(), p.y(), std::atan2(way.y(), way.x())},
+                        .T_route_body = {p.x(), p.y(), std::atan2(moved.y(), moved.x())},
                         .accuracy_m = kAccuracy_m});
     taken.push_back(p);
     last = p;
@@ -142,15 +142,15 @@ std::vector<Station> random_stations(const FreeSpace& space, const Pose2& start,
 
 std::vector<Station> stations_along(const std::vector<Pose2>& path, const FreeSpace& space, double spacing_m) {
   std::vector<Station> stations;
-  double way_m = 0.0, next_m = spacing_m;
+  double length_m = 0.0, next_m = spacing_m;
   for (std::size_t i = 1; i < path.size(); ++i) {
-    way_m += (path[i].position() - path[i - 1].position()).norm();
+    length_m += (path[i].position() - path[i - 1].position()).norm();
     const bool is_last = i + 1 == path.size();
-    if ((way_m < next_m && !is_last) || !space.contains(path[i].position())) continue;
-    next_m = way_m + spacing_m;
+    if ((length_m < next_m && !is_last) || !space.contains(path[i].position())) continue;
+    next_m = length_m + spacing_m;
     const int number = static_cast<int>(stations.size()) + 1;
     stations.push_back({.number = number,
-                        .name = fmt::format("way_{}", number),
+                        .name = fmt::format("station_{}", number),
                         .type = StationType::kPass,
                         .T_route_body = path[i],
                         .accuracy_m = kAccuracy_m});

@@ -36,8 +36,8 @@ class FreeSpace {
 std::vector<Station> random_stations(const FreeSpace& space, const Pose2& start, int count, std::uint64_t seed,
                                      double separation_m = 3.0);
 
-/// Returns stations along a path, one every `spacing_m` of the way, without those outside the region. The last one is
-/// of type home. Throws InputError if none is inside.
+/// Returns stations along a path, one every `spacing_m` of its length, without those outside the region. The last one
+/// is of type home. Throws InputError if none is inside.
 std::vector<Station> stations_along(const std::vector<Pose2>& path, const FreeSpace& space, double spacing_m);
 
 }  // namespace patrol::importer

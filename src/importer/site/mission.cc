@@ -19,12 +19,12 @@ std::vector<Station> stations_of_table(const std::filesystem::path& file, const 
   std::vector<Station> stations;
   Eigen::Vector2d last = start.position();
   for (const io::TourStation& row : io::load_tour_stations(file)) {
-    const Eigen::Vector2d p(row.x, row.y), way = p - last;
+    const Eigen::Vector2d p(row.x, row.y), moved = p - last;
     stations.push_back(
         {.number = static_cast<int>(stations.size()) + 1,
          .name = row.name,
          .type = StationType::kPass,
-         .T_route_body = {p.x(), p.y(), row.heading_deg ? to_rad(*row.heading_deg) : std::atan2(way.y(), way.x())},
+         .T_route_body = {p.x(), p.y(), row.heading_deg ? to_rad(*row.heading_deg) : std::atan2(moved.y(), moved.x())},
          .accuracy_m = kStationAccuracy_m,
          .priority = row.priority,
          .earliest_s = row.earliest_s,

@@ -188,8 +188,6 @@ ImportedSite read_scans_site(const SiteImportOptions& options) {
 }
 
 ImportedSite read_cloud_site(const SiteImportOptions& options) {
-  if (options.file.extension() == ".ply" && io::has_faces(options.file))
-    throw InputError(options.file.string() + ": has faces: is a mesh and not a point cloud");
   return site_of_cloud(io::load_points(options.file), options.file.filename().string(), options);
 }
 

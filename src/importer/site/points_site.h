@@ -14,7 +14,7 @@ namespace patrol::importer {
 ImportedSite read_scans_site(const SiteImportOptions& options);
 
 /// Reads a point cloud without scanner positions, PLY or PCD, and reconstructs the surfaces by an octree of planes.
-/// Throws InputError if the file is invalid, has faces, or its points form no surface.
+/// Throws InputError if the file is invalid or its points form no surface.
 ImportedSite read_cloud_site(const SiteImportOptions& options);
 
 /// Returns the site of scans, which are consumed.

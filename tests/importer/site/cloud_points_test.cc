@@ -103,10 +103,6 @@ TEST(CloudSite, BrokenFilesAreRefusedInOneLine) {
               testing::HasSubstr("has fewer than three points"));
   EXPECT_THAT(complaint_about("two.ply", ply_text({{0, 0, 0, 0}, {5, 0, 0, 0}, {0, 9, 0, 0}}, {0, 0, 0})),
               testing::HasSubstr("the points form no surface"));
-  EXPECT_THAT(complaint_about("mesh.ply", ply_text({{0, 0, 0, 0}, {5, 0, 0, 0}, {0, 9, 0, 0}}, {0, 0, 0},
-                                                   "element face 1\nproperty list uchar int vertex_indices\n") +
-                                              "3 0 1 2\n"),
-              testing::HasSubstr("is a mesh and not a point cloud"));
   EXPECT_THAT(complaint_about("text.pcd", "hello\n"), testing::HasSubstr("is not a line of a PCD header"));
   EXPECT_THAT(complaint_about("cloud.las", "LASF"), testing::HasSubstr("extension of a site file must be one of"));
 }

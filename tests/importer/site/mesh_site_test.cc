@@ -247,9 +247,10 @@ TEST(MeshSite, BrokenFilesAreRefusedByOneLine) {
   EXPECT_EQ(SiteFileImport("a.glb", "glTF").error(), "a.glb: GLB header: must be of version 2 with a JSON chunk");
   EXPECT_THAT(SiteFileImport("a.obj", "").error(), HasSubstr("a.obj: mesh cannot be read: "));
   EXPECT_THAT(SiteFileImport("a.stl", "solid x\nendsolid x\n").error(), HasSubstr("a.stl: "));
-  EXPECT_THAT(SiteFileImport("a.ply", "ply\nformat ascii 1.0\nend_header\n").error(), HasSubstr("a.ply: mesh "));
+  EXPECT_EQ(SiteFileImport("a.ply", "ply\nformat ascii 1.0\nend_header\n").error(),
+            "a.ply:3: the header contains no element");
   EXPECT_EQ(SiteFileImport("a.ply", "ply\nformat ascii 1.0\nelement vertex 4\n").error(),
-            "a.ply: mesh cannot be read: the header of a PLY file is incomplete");
+            "a.ply:3: the header is incomplete");
   const std::string ply =
       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
       "property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n";
@@ -258,9 +259,9 @@ TEST(MeshSite, BrokenFilesAreRefusedByOneLine) {
   SiteFileImport absent("a.obj", "");
   absent.options.file = absent.folder / "b.obj";
   EXPECT_EQ(absent.error(), "b.obj: mesh file not found");
-  EXPECT_EQ(
-      SiteFileImport("a.fbx", "").error(),
-      "a.fbx: extension of a site file must be one of .yaml, .gltf, .glb, .obj, .dae, .ply, .stl, .sdf, .world, .xml");
+  EXPECT_EQ(SiteFileImport("a.fbx", "").error(),
+            "a.fbx: extension of a site file must be one of .yaml, .gltf, .glb, .obj, .dae, .stl, .sdf, .world, .xml, "
+            ".ply, .pcd");
   SiteFileImport large("a.obj", to_obj(room));
   large.options.scale = 1e5;
   EXPECT_EQ(large.error(), "a.obj: coordinates up to 8e+05 m: must be at most 100000 m");
