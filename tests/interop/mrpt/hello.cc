@@ -47,12 +47,18 @@ NavigationSettings wheeled_settings(const YAML::Node& built_in) {
   const YAML::Node dwa = built_in["local_planner"]["dwa"];
   return {.speed_mps = dwa["max_speed_mps"].as<double>(),
           .yaw_rate_radps = dwa["max_yaw_rate_radps"].as<double>(),
-          .margin_m = 0.05,
-          .planner_radii_m = {0.5, 0.45, 0.4, 0.36},
-          .min_occupancy = 0.6,
-          .carrot_m = 1.5,
+          .margin_m = 0.03,
+          .ref_distance_m = 3.0,
+          .resolution_m = 0.03,
+          .too_close = 0.02,
+          .score = "free_distance + 3 * nearness + 0.3 * same_as_before + toward_target",
+          .planner_radii_m = {0.5, 0.42, 0.39, 0.36},
+          .min_occupancy = 0.8,
+          .carrot_m = 2.0,
+          .carrot_clearance_m = 0.42,
           .undocking_m = 0.0,
-          .turning_radius_m = 0.62};
+          .turning_radius_m = 0.6,
+          .backing_up_m = 0.5};
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 namespace mrpt_stack {
@@ -9,16 +10,18 @@ namespace mrpt_stack {
 struct NavigationSettings {
   double speed_mps = 0.6;
   double yaw_rate_radps = 0.6;
-  double margin_m = 0.08;                        ///< of the footprint's corners
-  double ref_distance_m = 5.0;                   ///< length of the trajectories
-  double secure_distance_end = 0.2;              ///< free part of a trajectory from which on the speed is not reduced
-  std::vector<double> planner_radii_m = {0.65};  ///< radii of the planner's disk, in the order of their trial
+  double margin_m = 0.08;       ///< distance of the footprint's corners beyond those of the robot
+  double ref_distance_m = 5.0;  ///< length of the trajectories
+  double resolution_m = 0.05;   ///< cell size of the trajectories' collision grids
+  double too_close = 0.15;      ///< directions with a smaller free fraction of `ref_distance_m` are not used
+  std::string score = "free_distance + nearness + 0.3 * same_as_before + toward_target";  ///< score of a trajectory
+  std::vector<double> planner_radii_m = {0.65};  ///< radii of the planner's disk: the first with a path counts
   double min_occupancy = 0.5;                    ///< occupancy from which on a cell blocks the planner
   double carrot_m = 3.0;                         ///< distance of the target on the path
-  bool is_carrot_visible = false;                ///< the target is not beyond the first bend of the path
-  double undocking_m = 1.5;                      ///< way backward at the start
-  double turning_radius_m = 0.0;                 ///< free radius that a turn on the spot needs
-  bool has_reverse = false;                      ///< backward arcs are among the trajectories
+  double carrot_clearance_m = 0.0;  ///< minimum distance of obstacles from the line to the target, unless it is near
+  double undocking_m = 1.5;         ///< distance backward from the charging post at the start
+  double turning_radius_m = 0.0;    ///< free radius that a turn in place needs
+  double backing_up_m = 0.0;        ///< distance backward if the navigator finds no trajectory; 0: none
 };
 
 }  // namespace mrpt_stack

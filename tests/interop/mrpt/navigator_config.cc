@@ -19,7 +19,8 @@ void configure(mrpt::config::CConfigFileMemory& config, const std::vector<Eigen:
   config.write(abstract, "motion_decider_method", "mrpt::nav::CMultiObjMotionOpt_Scalarization");
   config.write(abstract, "ref_distance", settings.ref_distance_m);
   config.write(abstract, "secure_distance_start", 0.05);
-  config.write(abstract, "secure_distance_end", settings.secure_distance_end);
+  config.write(abstract, "secure_distance_end", 0.2);
+  config.write("CHolonomicFullEval", "TOO_CLOSE_OBSTACLE", settings.too_close);
   config.write(abstract, "use_delays_model", false);
   config.write(abstract, "enable_obstacle_filtering", false);
   // Scores of a candidate; an empty name ends the list.
@@ -37,8 +38,7 @@ void configure(mrpt::config::CConfigFileMemory& config, const std::vector<Eigen:
     config.write(optimizer, prefix + "_formula", std::string(scores[i].second));
   }
   config.write(optimizer, "scores_to_normalize", std::string());
-  config.write("CMultiObjMotionOpt_Scalarization", "scalar_score_formula",
-               "free_distance + nearness + 0.3 * same_as_before + toward_target");
+  config.write("CMultiObjMotionOpt_Scalarization", "scalar_score_formula", settings.score);
   config.write(reactive, "min_obstacles_height", -1.0);
   config.write(reactive, "max_obstacles_height", 2.0);
   std::string xs, ys;
@@ -50,24 +50,21 @@ void configure(mrpt::config::CConfigFileMemory& config, const std::vector<Eigen:
   config.write(reactive, "RobotModel_shape2D_xs", xs);
   config.write(reactive, "RobotModel_shape2D_ys", ys);
   config.write(reactive, "RobotModel_circular_shape_radius", 0.62);
-  // Circular arcs forward, turns toward a heading, and circular arcs backward.
-  const std::pair<const char*, double> types[] = {
-      {"CPTG_DiffDrive_C", 1.0}, {"CPTG_DiffDrive_alpha", 1.0}, {"CPTG_DiffDrive_C", -1.0}};
-  const std::size_t num_types = settings.has_reverse ? 3 : 2;
-  config.write(reactive, "PTG_COUNT", static_cast<int>(num_types));
-  for (std::size_t i = 0; i < num_types; ++i) {
-    const auto [type, direction] = types[i];
+  // Circular arcs forward, and turns toward a heading.
+  const char* const types[] = {"CPTG_DiffDrive_C", "CPTG_DiffDrive_alpha"};
+  config.write(reactive, "PTG_COUNT", 2);
+  for (int i = 0; i < 2; ++i) {
     const std::string prefix = "PTG" + std::to_string(i) + "_";
-    config.write(reactive, prefix + "Type", std::string(type));
-    config.write(reactive, prefix + "resolution", 0.05);
+    config.write(reactive, prefix + "Type", types[i]);
+    config.write(reactive, prefix + "resolution", settings.resolution_m);
     config.write(reactive, prefix + "refDistance", settings.ref_distance_m);
     config.write(reactive, prefix + "num_paths", 121);
     config.write(reactive, prefix + "v_max_mps", settings.speed_mps);
     config.write(reactive, prefix + "w_max_dps", patrol::to_deg(settings.yaw_rate_radps));
-    config.write(reactive, prefix + "K", direction);
+    config.write(reactive, prefix + "K", 1.0);
     config.write(reactive, prefix + "cte_a0v_deg", 57.0);
     config.write(reactive, prefix + "cte_a0w_deg", 57.0);
-    config.write(reactive, prefix + "score_priority", direction > 0.0 ? 1.0 : 0.3);
+    config.write(reactive, prefix + "score_priority", 1.0);
   }
 }
 

@@ -9,7 +9,8 @@
 namespace mrpt_stack {
 namespace {
 
-constexpr double kMaxRestSpeed_mps = 0.01;  // of a wheel: a few counts of its encoder
+constexpr double kMaxRest_m = 2e-4;  // motion of a wheel at rest: a few counts of its encoder
+constexpr int kSettlingReadings = 100;
 constexpr Time kHistory = std::chrono::milliseconds(500);
 
 }  // namespace
@@ -39,31 +40,38 @@ void Odometry::add(const patrol::TrackTicks& ticks) {
 void Odometry::add(const patrol::JointState& joints) {
   if (last_joints_ && joints.stamp > last_joints_->stamp) {
     const double dt_s = patrol::to_seconds(joints.stamp - last_joints_->stamp);
-    double sum_m = 0.0, max_m = 0.0;
+    double sum_m = 0.0, since_rest_m = 0.0;
     int num_wheels = 0;
     for (const patrol::WheelGeometry& wheel : robot_.wheels) {
       if (!wheel.drive_joint) continue;
-      const double turned_rad =
-          joints.position_rad[*wheel.drive_joint] - last_joints_->position_rad[*wheel.drive_joint];
-      const double distance_m = wheel.forward_sign * wheel.radius_m * patrol::wrap_angle(turned_rad);
-      sum_m += distance_m;
-      max_m = std::max(max_m, std::abs(distance_m));
+      const std::size_t joint = *wheel.drive_joint;
+      const auto distance_m = [&](const patrol::JointState& from) {
+        return wheel.forward_sign * wheel.radius_m *
+               patrol::wrap_angle(joints.position_rad[joint] - from.position_rad[joint]);
+      };
+      sum_m += distance_m(*last_joints_);
+      since_rest_m = std::max(since_rest_m, std::abs(distance_m(*rest_joints_)));
       ++num_wheels;
     }
     advance(sum_m / num_wheels, dt_s);
-    is_at_rest_ = max_m < kMaxRestSpeed_mps * dt_s;
-    if (!is_at_rest_) num_at_rest_ = 0;
+    is_at_rest_ = since_rest_m < kMaxRest_m;
+    if (!is_at_rest_) {
+      num_at_rest_ = 0;
+      rest_joints_ = joints;
+    }
+  } else if (!last_joints_) {
+    rest_joints_ = joints;
   }
   last_joints_ = joints;
 }
 
 void Odometry::add(const patrol::Imu& imu) {
-  constexpr double kWindow = 400.0;  // readings, 2 s and more
   const double rate_radps = imu.angular_velocity_radps.z();
   // The bias is the mean while the robot stands still, and not just after it stopped.
-  if (is_at_rest_ && ++num_at_rest_ > 100) {
-    const double count = std::min(static_cast<double>(num_at_rest_ - 100), kWindow);
-    gyro_bias_radps_ += (rate_radps - gyro_bias_radps_) / count;
+  if (is_at_rest_ && ++num_at_rest_ > kSettlingReadings) {
+    // Tracks begin a new mean at each stop, wheels continue the last one: their stops are short.
+    num_in_mean_ = robot_.tracks ? num_at_rest_ - kSettlingReadings : num_in_mean_ + 1;
+    gyro_bias_radps_ += (rate_radps - gyro_bias_radps_) / std::min(num_in_mean_, robot_.tracks ? 400 : 4000);
   }
   yaw_rate_radps_ = rate_radps - gyro_bias_radps_;
   if (last_imu_) T_odom_body_.yaw += yaw_rate_radps_ * patrol::to_seconds(imu.stamp - *last_imu_);

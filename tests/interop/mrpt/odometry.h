@@ -38,6 +38,7 @@ class Odometry {
   double meters_per_tick_ = 0.0;
   std::optional<patrol::TrackTicks> last_ticks_;
   std::optional<patrol::JointState> last_joints_;
+  std::optional<patrol::JointState> rest_joints_;  ///< angles since which the wheels are at rest
   std::optional<Time> last_imu_;
   Pose2 T_odom_body_;
   std::deque<std::pair<Time, Pose2>> history_;
@@ -47,6 +48,7 @@ class Odometry {
   double gyro_bias_radps_ = 0.0;
   bool is_at_rest_ = true;
   int num_at_rest_ = 0;  ///< number of gyro readings since the robot stands
+  int num_in_mean_ = 0;  ///< number of gyro readings in the bias
 };
 
 }  // namespace mrpt_stack

@@ -52,11 +52,11 @@ std::vector<Eigen::Vector2d> to_points(const patrol::LaserScan& scan, const patr
                                        const Odometry& odometry, double max_range_m);
 
 /// Without a map: the pose is that of odometry from the surveyed start, without localization. The grid is made of the
-/// scans by MRPT's Bayesian update of cells, and covers a square around start and goals.
+/// scans by MRPT's Bayesian update of cells, and covers a rectangle around start and goals.
 class ScanMap final : public Positioning {
  public:
-  /// `reach_m`: distance of the farthest goal from the start. The start is the origin of map.
-  ScanMap(double reach_m, const patrol::Pose3& T_body_lidar);
+  /// `goals`: in map, whose origin is the start.
+  ScanMap(const std::vector<Pose2>& goals, const patrol::Pose3& T_body_lidar);
 
   void update(const patrol::LaserScan& scan, const Odometry& odometry) override;
   Pose2 pose_at(const Pose2& T_odom_body) const override { return T_odom_body; }

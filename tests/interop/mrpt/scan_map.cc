@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 #include "conversions.h"
 #include "core/geometry/angles.h"
 #include "positioning.h"
@@ -8,8 +10,8 @@
 namespace mrpt_stack {
 namespace {
 
-constexpr double kCell_m = 0.05, kBorder_m = 3.0;  // of the grid
-constexpr double kMappedRange_m = 10.0;
+constexpr double kCell_m = 0.05, kMappedRange_m = 8.0;
+constexpr float kBorder_m = 8.0F;                // of the grid
 constexpr float kOccupied = 0.7F, kFree = 0.4F;  // occupancy probability by one beam that ends in or crosses a cell
 constexpr double kBeforeReturn_m = 0.1;          // end of the crossed part of a beam
 constexpr double kDriftRatio = 0.02, kYawStd_rad = 0.01;
@@ -32,9 +34,11 @@ std::vector<Eigen::Vector2d> to_points(const patrol::LaserScan& scan, const patr
   return points;
 }
 
-ScanMap::ScanMap(double reach_m, const patrol::Pose3& T_body_lidar) : T_body_lidar_(T_body_lidar) {
-  const auto half_m = static_cast<float>(reach_m + kBorder_m);
-  grid_.setSize(-half_m, half_m, -half_m, half_m, static_cast<float>(kCell_m));
+ScanMap::ScanMap(const std::vector<Pose2>& goals, const patrol::Pose3& T_body_lidar) : T_body_lidar_(T_body_lidar) {
+  Eigen::AlignedBox2f box(Eigen::Vector2f::Zero());
+  for (const Pose2& goal : goals) box.extend(goal.position().cast<float>());
+  const Eigen::Vector2f low = box.min().array() - kBorder_m, high = box.max().array() + kBorder_m;
+  grid_.setSize(low.x(), high.x(), low.y(), high.y(), static_cast<float>(kCell_m));
 }
 
 void ScanMap::update(const patrol::LaserScan& scan, const Odometry& odometry) {

@@ -1,6 +1,7 @@
 #include "stack.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <utility>
 
 #include "conversions.h"
@@ -15,9 +16,14 @@ constexpr double kObstacleRange_m = 8.0;
 std::unique_ptr<Positioning> positioning_for(const Task& task) {
   const patrol::Pose3& T_body_lidar = task.robot.T_body("lidar");
   if (task.map) return std::make_unique<Localization>(*task.map, task.T_map_start, T_body_lidar, task.seed);
-  double reach_m = 0.0;
-  for (const Pose2& goal : task.goals) reach_m = std::max(reach_m, goal.position().norm());
-  return std::make_unique<ScanMap>(reach_m, T_body_lidar);
+  return std::make_unique<ScanMap>(task.goals, T_body_lidar);
+}
+
+/// Folder of the collision grids, which MRPT computes in seconds and names by their number only.
+std::filesystem::path cache_of(const std::string& robot) {
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / ("mrpt_stack_" + robot);
+  std::filesystem::create_directories(folder);
+  return folder;
 }
 
 }  // namespace
@@ -28,7 +34,7 @@ Stack::Stack(patrol::link::StackClient client)
       T_body_lidar_(task_.robot.T_body("lidar")),
       odometry_(task_.robot, task_.ticks_per_turn),
       positioning_(positioning_for(task_)),
-      navigation_(task_.robot.footprint_m, task_.goals, task_.navigation) {
+      navigation_(task_.robot.footprint_m, task_.goals, task_.navigation, cache_of(task_.robot.name)) {
   if (task_.robot.tracks)
     low_obstacles_.emplace(task_.robot.T_body("depth_camera"), -task_.robot.tracks->body_height_m);
 }
