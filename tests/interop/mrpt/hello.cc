@@ -47,9 +47,10 @@ NavigationSettings wheeled_settings(const YAML::Node& built_in) {
   const YAML::Node dwa = built_in["local_planner"]["dwa"];
   return {.speed_mps = dwa["max_speed_mps"].as<double>(),
           .yaw_rate_radps = dwa["max_yaw_rate_radps"].as<double>(),
-          .margin_m = 0.03,
+          .margin_m = 0.05,
           .ref_distance_m = 3.0,
           .resolution_m = 0.03,
+          .full_speed = 0.35,
           .too_close = 0.02,
           .score = "free_distance + 3 * nearness + 0.3 * same_as_before + toward_target",
           .planner_radii_m = {0.5, 0.42, 0.39, 0.36},

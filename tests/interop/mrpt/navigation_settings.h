@@ -13,6 +13,7 @@ struct NavigationSettings {
   double margin_m = 0.08;       ///< distance of the footprint's corners beyond those of the robot
   double ref_distance_m = 5.0;  ///< length of the trajectories
   double resolution_m = 0.05;   ///< cell size of the trajectories' collision grids
+  double full_speed = 0.2;      ///< free fraction of `ref_distance_m` from which on the speed is not reduced
   double too_close = 0.15;      ///< directions with a smaller free fraction of `ref_distance_m` are not used
   std::string score = "free_distance + nearness + 0.3 * same_as_before + toward_target";  ///< score of a trajectory
   std::vector<double> planner_radii_m = {0.65};  ///< radii of the planner's disk: the first with a path counts

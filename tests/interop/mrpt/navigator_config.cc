@@ -19,7 +19,7 @@ void configure(mrpt::config::CConfigFileMemory& config, const std::vector<Eigen:
   config.write(abstract, "motion_decider_method", "mrpt::nav::CMultiObjMotionOpt_Scalarization");
   config.write(abstract, "ref_distance", settings.ref_distance_m);
   config.write(abstract, "secure_distance_start", 0.05);
-  config.write(abstract, "secure_distance_end", 0.2);
+  config.write(abstract, "secure_distance_end", settings.full_speed);
   config.write("CHolonomicFullEval", "TOO_CLOSE_OBSTACLE", settings.too_close);
   config.write(abstract, "use_delays_model", false);
   config.write(abstract, "enable_obstacle_filtering", false);
