@@ -2,7 +2,9 @@
 import csv
 import dataclasses
 import json
+import math
 import re
+import statistics
 import typing
 import xml.etree.ElementTree
 
@@ -163,6 +165,36 @@ def span(runs, path, form, unit=""):
     """Least and largest value of a metric with its unit; the number of runs that have it, unless all have."""
     values = [run["metrics"][path] for run in runs if path in run["metrics"]]
     return with_count(f"{format(min(values), form)} to {format(max(values), form)}{unit}", len(values), len(runs)) if values else NONE
+
+
+# --- Obstacle courses ---------------------------------------------------------------------------------------------------------
+
+
+def wilson_interval(successes, runs, z=1.959964):
+    """Limits of the 95 % interval of a proportion after Wilson."""
+    if runs == 0:
+        return 0.0, 1.0
+    ratio, square = successes / runs, z * z / runs
+    middle = (ratio + square / 2) / (1 + square)
+    half = z / (1 + square) * math.sqrt(ratio * (1 - ratio) / runs + square / (4 * runs))
+    return max(0.0, middle - half), min(1.0, middle + half)
+
+
+def course_table(results):
+    """Runs of tools/courses: one line per stack."""
+    lines = ["| stack | runs | success | 95 % interval | collision | no arrival | median time / optimal time | mean score |",
+             "| --- | --- | --- | --- | --- | --- | --- | --- |"]
+    for stack in dict.fromkeys(run["stack"] for run in results):
+        runs = [run for run in results if run["stack"] == stack]
+        successes = sum(run["successful"] for run in runs)
+        low, high = wilson_interval(successes, len(runs))
+        collided = sum(run["collided"] for run in runs)
+        ratios = [run["duration_s"] / run["optimal_time_s"] for run in runs if run["successful"]]
+        ratio = f"{statistics.median(ratios):.2f}" if ratios else "–"
+        score = sum(run["score"] for run in runs) / len(runs)
+        lines.append(f"| {stack.replace('_', '-')} | {len(runs)} | {successes / len(runs):.3f} | {low:.3f} to {high:.3f} | {collided / len(runs):.3f} | "
+                     f"{(len(runs) - successes - collided) / len(runs):.3f} | {ratio} | {score:.3f} |")
+    return "\n".join(lines) + "\n\nThe score is at most 0.5. The times are those of the successes. The interval is Wilson's.\n"
 
 
 # --- Studies ------------------------------------------------------------------------------------------------------------------

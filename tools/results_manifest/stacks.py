@@ -1,8 +1,9 @@
 """Tables of stacks that take part by the turn protocol."""
 import dataclasses
+import json
 
-from results_tables import Row, as_text, by_seed, markdown, pair, span
-from .declare import REPORT, add, sweep, swept
+from results_tables import Row, as_text, by_seed, course_table, markdown, pair, span
+from .declare import REPORT, Step, add, sweep, swept
 
 
 def reached(metrics):
@@ -52,3 +53,10 @@ add(name="stack_compute", file="src/link/README.md", seeds=COMPUTE_SEEDS, minute
                                      "--vary", "stack.compute.factor=" + ",".join(map(str, FACTORS))), good_codes=(0, 1, 4))],
     values=swept(compute=("mission.completed", "mission.collisions", "pose.site.ate_rmse_m", "map.nearest_mean_m")),
     text=compute_text)
+
+# 50 courses, of which none has been used to choose a setting.
+COURSES, COURSE_SEEDS = "1..50", "2001..2003"
+add(name="courses", file="worlds/README.md", seeds=COURSE_SEEDS, minutes=25,
+    steps=[Step("courses", ["tools/courses", COURSES, "--seeds", COURSE_SEEDS, "--stack", "built_in", "--stack", "mrpt=build/tests/interop/mrpt/mrpt_stack", "--jobs", "2", "--out", "{out}"])],
+    values=lambda folders: json.loads((folders["courses"] / "courses.json").read_text()),
+    text=course_table, targets=("patrol", "mrpt_stack"), files=("tests/interop/mrpt", "tools/courses"))

@@ -7,7 +7,7 @@ namespace patrol::score {
 CourseScore course_score(const RunRecord& record, const Eigen::Vector2d& p_world_goal_m, double arrival_m,
                          double optimal_time_s) {
   constexpr double kStartDistance_m = 0.1;
-  constexpr double kMin = 2.0, kMax = 8.0;  // multiples of the optimal time
+  constexpr double kMinRatio = 2.0, kMaxRatio = 8.0;  // multiples of the optimal time
   CourseScore result;
   std::optional<Time> start, arrival;
   for (const StampedPose& pose : record.T_world_body) {
@@ -24,7 +24,8 @@ CourseScore course_score(const RunRecord& record, const Eigen::Vector2d& p_world
   result.duration_s = to_seconds(*arrival - start.value_or(*arrival));
   result.is_successful = !result.has_collided;
   if (result.is_successful)
-    result.score = optimal_time_s / std::clamp(*result.duration_s, kMin * optimal_time_s, kMax * optimal_time_s);
+    result.score =
+        optimal_time_s / std::clamp(*result.duration_s, kMinRatio * optimal_time_s, kMaxRatio * optimal_time_s);
   return result;
 }
 
