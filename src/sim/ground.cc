@@ -32,8 +32,10 @@ bool selects(const GeomPatterns& patterns, const mjModel& model, int geom) {
          std::find(patterns.groups.begin(), patterns.groups.end(), group) != patterns.groups.end();
 }
 
-bool is_from_above(const mjContact& contact) {
-  return std::abs(contact.frame[2]) >= std::sqrt(0.5);  // frame: normal first
+/// Returns whether the normal from the geom to the robot is within 45 degrees of the vertical.
+bool is_from_above(const mjContact& contact, int geom) {
+  const mjtNum up = contact.frame[2];  // of the normal, from the first geom to the second
+  return (contact.geom[0] == geom ? up : -up) >= std::sqrt(0.5);
 }
 
 }  // namespace
@@ -67,9 +69,9 @@ bool Ground::is_footing(const mjModel& model, const mjData& data, const mjContac
     case SurfaceClass::kGround:
       return true;
     case SurfaceClass::kCurb:
-      return is_from_above(contact) || top_m(model, data, geom) - lowest_m <= settings_.max_curb_m;
+      return is_from_above(contact, geom) || top_m(model, data, geom) - lowest_m <= settings_.max_curb_m;
     case SurfaceClass::kByContact:
-      return is_from_above(contact) && contact.pos[2] - lowest_m <= settings_.max_step_m;
+      return is_from_above(contact, geom) && contact.pos[2] - lowest_m <= settings_.max_step_m;
     case SurfaceClass::kObstacle:
       break;
   }

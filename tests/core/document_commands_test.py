@@ -70,10 +70,13 @@ def unknown_options(text, reference):
 
 def copy_of(source, folder):
     """Working folder with links to what the commands read; what they write stays in it."""
-    for name in ("build", "src", "tests", "tools", "worlds", ".deps", "CMakeLists.txt", "CMakePresets.json"):
+    for name in ("build", "src", "tests", "tools", ".deps", "CMakeLists.txt", "CMakePresets.json"):
         if (source / name).exists():
             (folder / name).symlink_to(source / name)
     shutil.copytree(source / "models", folder / "models")  # a command trains a model
+    (folder / "worlds").mkdir()  # a command imports sites
+    for entry in (source / "worlds").iterdir():
+        (folder / "worlds" / entry.name).symlink_to(entry)
     return folder
 
 
@@ -128,7 +131,10 @@ class Commands(unittest.TestCase):
                     continue
                 with self.subTest(document=str(document.relative_to(SOURCE))), tempfile.TemporaryDirectory() as folder:
                     scenario = copy_of(SOURCE, pathlib.Path(folder)) / "part.yaml"
-                    scenario.write_text(text if re.search(r"^version:", text, re.M) else "version: 2\n" + text)
+                    for key, value in (("version", "2"), ("world", "street"), ("mission", "routes/short.json")):
+                        if not re.search(rf"^({key}|tour):", text, re.M):
+                            text = f"{key}: {value}\n{text}"
+                    scenario.write_text(text)
                     done = subprocess.run([PATROL, "run", scenario, "--set", "time_limit_s=0.2", "--out", "out"], cwd=folder, capture_output=True, text=True)
                     self.assertNotIn(done.returncode, (2, 3), done.stderr)
 

@@ -74,6 +74,13 @@ TEST(Ground, ByHeightAStepUpTo25CentimetersFromAboveIsGroundAndAHigherOneIsNot) 
   EXPECT_FALSE(ball.is_footing(0.14));
 }
 
+// The box hangs over the ball.
+TEST(Ground, AContactFromBelowIsACollision) {
+  const BallOn ball(R"(<geom name="stage" type="box" size="1 1 0.2" pos="0 0 0.4"/>)", "0 0 0.101", {});
+  ASSERT_EQ(ball.num_contacts(), 1);
+  EXPECT_FALSE(ball.is_footing(0.1));
+}
+
 TEST(Ground, ByHeightTheSideOfABoxIsACollision) {
   const BallOn ball(kBox, kAtSide, {});
   ASSERT_EQ(ball.num_contacts(), 1);

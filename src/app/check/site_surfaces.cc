@@ -11,10 +11,18 @@
 namespace patrol::app {
 namespace {
 
+using RowMatrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+/// Center of a geom's bounding box in world, m.
+Eigen::Vector3d box_center_m(const mjModel& model, const mjData& data, int geom) {
+  const Eigen::Map<const RowMatrix> rotation(data.geom_xmat + 9 * geom);
+  const Eigen::Map<const Eigen::Vector3d> position(data.geom_xpos + 3 * geom), center(model.geom_aabb + 6 * geom);
+  return position + rotation * center;
+}
+
 /// Half sizes of a geom's bounding box along the axes of the world, m.
 Eigen::Vector3d half_box_m(const mjModel& model, const mjData& data, int geom) {
-  using Matrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-  const Eigen::Map<const Matrix> rotation(data.geom_xmat + 9 * geom);
+  const Eigen::Map<const RowMatrix> rotation(data.geom_xmat + 9 * geom);
   return rotation.cwiseAbs() * Eigen::Map<const Eigen::Vector3d>(model.geom_aabb + 6 * geom + 3);
 }
 
@@ -63,8 +71,7 @@ SiteSurfaces site_surfaces(const mjModel& site, const sim::GroundSettings& setti
     if (group.examples.size() < kExamples)
       group.examples.push_back(name.empty() ? fmt::format("geom {}", geom) : std::string(name));
     if (kind == SurfaceKind::kUntouchable || is_endless(site, geom)) continue;
-    const Eigen::Map<const Eigen::Vector3d> center(data->geom_xpos + 3 * geom);
-    const Eigen::Vector3d half = half_box_m(site, *data, geom);
+    const Eigen::Vector3d center = box_center_m(site, *data, geom), half = half_box_m(site, *data, geom);
     surfaces.lower_m = is_first ? Eigen::Vector3d(center - half) : surfaces.lower_m.cwiseMin(center - half);
     surfaces.upper_m = is_first ? Eigen::Vector3d(center + half) : surfaces.upper_m.cwiseMax(center + half);
     is_first = false;

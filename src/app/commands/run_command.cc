@@ -21,7 +21,7 @@ namespace {
 /// Returns whether a run with goals names a world instead of a scenario.
 bool names_world(const RunOptions& options) {
   const std::string name = options.scenario.string();
-  return !options.goals.empty() && !options.scenario.has_extension() &&
+  return !options.goals.empty() && options.scenario.extension() != ".yaml" && options.scenario.extension() != ".yml" &&
          std::filesystem::exists(world_folder(name, find_data_root({})) / (name + ".xml"));
 }
 

@@ -77,7 +77,7 @@ std::optional<importer::ImportedSite> import_log_site(const importer::SiteImport
   importer::ImportedSite site = importer::site_of_walls(plan, walls, options.file.filename().string(), options);
   importer::MissionOptions mission = options.mission;
   if (!mission.start && !path.empty()) mission.start = path.front();
-  site.T_site_start = path.empty() ? Pose2{} : path.front();
+  if (mission.start) site.T_site_start = *mission.start;
   importer::add_mission(mission, site);
   if (!site.route) add_recorded_path(path, mission, site);
   return site;

@@ -28,8 +28,7 @@ std::optional<std::filesystem::path> scenario_of_log(const std::filesystem::path
 
 std::filesystem::path find_world(const std::string& site, const std::filesystem::path& near) {
   if (std::filesystem::is_regular_file(site)) return site;
-  const std::filesystem::path file = find_data_root(near) / "worlds" / site / (site + ".xml");
-  if (site.find('/') == std::string::npos && std::filesystem::is_regular_file(file)) return file;
+  if (site.find('/') == std::string::npos) return load_site(site, find_data_root(near)).world_xml;
   throw InputError(fmt::format("--site = {}: must be an MJCF file or the name of a world", site));
 }
 
@@ -76,10 +75,11 @@ LogOnSite find_log_on_site(const LogOnSiteOptions& options, const LogOnSiteSetti
   source.is_run = scenario_file.has_value();
   std::string site = options.site, lidar = options.lidar;
   source.path_name = options.trajectory;
+  std::optional<LidarPreset> of_run;  // lidar of the run, unless an option names another
   if (scenario_file) {
     const Scenario scenario = load_scenario(*scenario_file);
     if (site.empty()) site = scenario.world;
-    if (lidar.empty()) lidar = scenario.sensors.lidar.preset;
+    if (lidar.empty()) of_run = LidarPreset{.lidar = scenario.sensors.lidar, .as_built = scenario.as_built.lidar};
     if (source.path_name.empty()) source.path_name = "truth";
     const RobotDescription robot = load_scenario_files(scenario, find_data_root(*scenario_file)).robot;
     source.T_body_lidar = robot.T_body("lidar");
@@ -87,8 +87,8 @@ LogOnSite find_log_on_site(const LogOnSiteOptions& options, const LogOnSiteSetti
   if (site.empty()) throw InputError("--site: required for a log that is not of patrol run");
   if (source.path_name.empty()) throw InputError("--trajectory: required for a log that is not of patrol run");
   source.world_xml = find_world(site, scenario_file.value_or(std::filesystem::path()));
-  source.lidar_name = lidar.empty() ? "rplidar_s2" : lidar;
-  source.device = device_of(find_lidar_preset(source.lidar_name, find_data_root({}), "--lidar"));
+  source.lidar_name = of_run ? of_run->lidar.preset : lidar.empty() ? "rplidar_s2" : lidar;
+  source.device = device_of(of_run ? *of_run : find_lidar_preset(source.lidar_name, find_data_root({}), "--lidar"));
   const bool is_of_run = source.path_name == "truth" || source.path_name == "pose";
   if (is_of_run && !source.is_run)
     throw InputError(fmt::format("--trajectory = {}: only for a run directory: give a TUM file", source.path_name));

@@ -42,9 +42,12 @@ report::MapBlock residual_map(const realism::ScanSet& set) {
     path.emplace_back(posed.T_site_lidar.front().position.head<2>());
     box.extend(path.back());
   }
-  const GridGeometry geometry{.resolution_m = kCell_m,
-                              .width = static_cast<int>(std::ceil(box.sizes().x() / kCell_m)) + 1,
-                              .height = static_cast<int>(std::ceil(box.sizes().y() / kCell_m)) + 1,
+  constexpr double kMaxCells = 4e6;
+  double cell_m = kCell_m;
+  while (box.sizes().prod() > kMaxCells * cell_m * cell_m) cell_m *= 2.0;
+  const GridGeometry geometry{.resolution_m = cell_m,
+                              .width = static_cast<int>(std::ceil(box.sizes().x() / cell_m)) + 1,
+                              .height = static_cast<int>(std::ceil(box.sizes().y() / cell_m)) + 1,
                               .origin_m = box.min()};
   OccupancyGrid cells(geometry, kUnknown);
   Grid<float> sums(geometry, 0.0f), counts(geometry, 0.0f);

@@ -71,13 +71,14 @@ std::filesystem::path find_definition(const std::filesystem::path& root, const s
   return file;
 }
 
-/// Folder of a robot or a world: below the data root, or below the working directory if only this has its definition.
+/// Folder of a robot or a world: the first that has its definition, below the data root, the working directory or the
+/// data of the program; below the data root if none has.
 std::filesystem::path folder_of(const std::filesystem::path& root, const std::string& kind, const std::string& name,
                                 const std::string& extension) {
-  const std::filesystem::path given = root / kind / name, own = std::filesystem::absolute(kind) / name;
-  const std::string definition = name + extension;
-  const bool is_own = !std::filesystem::exists(given / definition) && std::filesystem::exists(own / definition);
-  return is_own ? own : given;
+  for (const std::filesystem::path& place : {root, std::filesystem::current_path(), data_root_of_program()}) {
+    if (!place.empty() && std::filesystem::exists(place / kind / name / (name + extension))) return place / kind / name;
+  }
+  return root / kind / name;
 }
 
 /// Settings of a world; the defaults if it has none.

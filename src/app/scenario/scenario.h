@@ -226,13 +226,13 @@ struct RobotProfile {
   }
 };
 
-/// Path of a file of a robot, models/ROBOT/ROBOT<extension>: below the data root, or below the working directory if
-/// only this has the robot's URDF. The file need not exist.
+/// Path of a file of a robot, models/ROBOT/ROBOT<extension>: below the data root, the working directory or the data of
+/// the program, the first that has the robot's URDF. The file need not exist.
 std::filesystem::path robot_file(const std::string& robot, const std::string& extension,
                                  const std::filesystem::path& data_root);
 
-/// Folder of a world, worlds/WORLD: below the data root, or below the working directory if only this has the world's
-/// MJCF. It need not exist.
+/// Folder of a world, worlds/WORLD: below the data root, the working directory or the data of the program, the first
+/// that has the world's MJCF. It need not exist.
 std::filesystem::path world_folder(const std::string& world, const std::filesystem::path& data_root);
 
 /// MJCF and settings of a world.

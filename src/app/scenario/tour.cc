@@ -53,7 +53,7 @@ std::vector<std::string> overrides_of(const TourSettings& tour) {
                             stations.empty() ? "" : ", ", station.name, station.type, station.x_m, station.y_m,
                             station.heading_deg, station.accuracy_m);
   }
-  return {"mission=\"\"", "stack.mission_type=gas",
+  return {"mission=\"\"", "stack.mission_type=gas", "course.optimal_time_s=0",
           fmt::format("tour.start={{x_m: {}, y_m: {}, heading_deg: {}}}", tour.start.x_m, tour.start.y_m,
                       tour.start.heading_deg),
           fmt::format("tour.stations=[{}]", stations)};

@@ -38,6 +38,27 @@ SiteRegistration identity_registration() {
   return registration;
 }
 
+/// Writes the MJCF and the files that it names.
+void write_model(const ImportedSite& site, const std::filesystem::path& folder) {
+  io::save_text(folder / (site.name + ".xml"), site.mjcf.empty() ? to_mjcf(site) : site.mjcf);
+  write_shape_files(site, folder);
+}
+
+sim::ModelPtr compile_in(const ImportedSite& site, const std::filesystem::path& folder) {
+  try {
+    return sim::compile(*sim::load_spec((folder / (site.name + ".xml")).string()), site.name + ".xml");
+  } catch (const InputError& refused) {
+    throw InputError(fmt::format("{}: MuJoCo refuses the site: {}", site.source, io::on_one_line(refused.what())));
+  }
+}
+
+/// Text as a YAML scalar, quoted where YAML needs it.
+std::string yaml_text(const std::string& text) {
+  YAML::Emitter out;
+  out << text;
+  return out.c_str();
+}
+
 void write_mission(const ImportedSite& site, const std::filesystem::path& folder) {
   if (!site.route) return;
   std::filesystem::create_directories(folder / "routes");
@@ -47,8 +68,8 @@ void write_mission(const ImportedSite& site, const std::filesystem::path& folder
       folder / "scenarios" / "patrol.yaml",
       fmt::format("# Patrol of {} stations, made by patrol import site from {}.\nworld: {}\nrobot: {}\n"
                   "mission: routes/patrol.json\n{}stack:\n  mission_type: gas  # stations of the mission file\n{}",
-                  site.route->stations.size(), io::on_one_line(site.source), site.name, site.robot, site.scenario_keys,
-                  site.stack_keys));
+                  site.route->stations.size(), io::on_one_line(site.source), yaml_text(site.name),
+                  yaml_text(site.robot), site.scenario_keys, site.stack_keys));
 }
 
 void check(const ImportedSite& site) {
@@ -69,24 +90,26 @@ void write_site(const ImportedSite& site, const std::filesystem::path& folder) {
   require_folder_name(site.name, site.source, "site");
   check(site);
   OutputFolder output(folder);
-  const std::filesystem::path xml = output.staging() / (site.name + ".xml");
-  io::save_text(xml, site.mjcf.empty() ? to_mjcf(site) : site.mjcf);
+  write_model(site, output.staging());
   io::save_settings(output.staging() / (site.name + ".yaml"), sim::SiteSettings{.ground = site.ground},
                     "Settings of the site (src/sim/site_settings.h)");
   io::save_text(output.staging() / "README.md", report_of(site));
-  write_shape_files(site, output.staging());
   if (site.map) {
     std::filesystem::create_directories(output.staging() / "map");
     io::save_map(output.staging() / "map" / "map.yaml", *site.map);
     io::save_registration(output.staging() / "map" / "registration.json", identity_registration());
   }
   write_mission(site, output.staging());
-  try {
-    sim::compile(*sim::load_spec(xml.string()), site.name + ".xml");
-  } catch (const InputError& refused) {
-    throw InputError(fmt::format("{}: MuJoCo refuses the site: {}", site.source, io::on_one_line(refused.what())));
-  }
+  compile_in(site, output.staging());
   output.publish();
+}
+
+sim::ModelPtr compile_site(const ImportedSite& site) {
+  require_folder_name(site.name, site.source, "site");
+  check(site);
+  const OutputFolder output(std::filesystem::temp_directory_path() / ("site_" + site.name));
+  write_model(site, output.staging());
+  return compile_in(site, output.staging());
 }
 
 std::string report_of(const ImportedSite& site) {

@@ -13,6 +13,7 @@
 #include "core/route.h"
 #include "importer/assumptions.h"
 #include "importer/mesh.h"
+#include "sim/mujoco.h"
 #include "sim/site_settings.h"
 
 namespace patrol::importer {
@@ -92,6 +93,10 @@ std::string to_mjcf(const ImportedSite& site);
 /// site, then renamed. Throws InputError if the folder exists and is not empty, cannot be written, or MuJoCo refuses
 /// the site; nothing is left behind then.
 void write_site(const ImportedSite& site, const std::filesystem::path& folder);
+
+/// Compiles a site without writing its folder: its files lie in a temporary folder meanwhile. Throws InputError if
+/// MuJoCo refuses the site.
+sim::ModelPtr compile_site(const ImportedSite& site);
 
 /// Returns a Markdown page with the numbers of shapes and triangles and the table of assumptions.
 std::string report_of(const ImportedSite& site);

@@ -6,6 +6,7 @@
 #include "core/geometry/angles.h"
 #include "importer/site/free_space.h"
 #include "importer/site/site_import.h"
+#include "importer/site/site_plan.h"
 #include "io/files/tour_stations.h"
 
 namespace patrol::importer {
@@ -45,8 +46,15 @@ void add_mission(const MissionOptions& options, ImportedSite& site) {
     if (options.start) site.T_site_start = *options.start;
     site.route = Route{.stations = stations_of_table(options.stations, site.T_site_start)};
   } else if (options.num_random > 0) {
-    if (!site.map) throw InputError(site.source + ": random stations need a floor plan");
     const std::optional<Eigen::Vector2d> near = options.start ? std::optional(options.start->position()) : std::nullopt;
+    if (!site.map) {
+      site.map = plan_of(*compile_site(site), near);
+      site.assumptions.push_back(
+          {"map",
+           fmt::format("floor plan of the {} ground by what lidars see, cells of {:g} m",
+                       near ? "start's" : "largest connected", site.map->geometry().resolution_m),
+           "--start"});
+    }
     const FreeSpace space(*site.map, options.clearance_m, near);
     if (options.start) {
       site.T_site_start = *options.start;

@@ -59,6 +59,8 @@ ImportedSite empty_site(const OccupancyGrid& plan, const std::string& source, co
 }  // namespace
 
 ImportedSite read_plan_site(const SiteImportOptions& options) {
+  if (options.mission.start && options.mission.stations.empty() && options.mission.num_random == 0)
+    throw InputError("--start: a floor plan has a start only with --stations or --random-stations");
   const OccupancyGrid plan = io::load_map(options.file);
   ImportedSite site = empty_site(plan, options.file.filename().string(), options);
   add_cells(

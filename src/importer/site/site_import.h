@@ -15,7 +15,7 @@ namespace patrol::importer {
 /// Mission of an imported site. At most one of `stations` and `num_random`.
 struct MissionOptions {
   std::filesystem::path stations =
-      {};                           ///< CSV with the columns name, x, y and optionally heading_deg, type; empty: none
+      {};  ///< CSV with the columns name, x, y and optionally heading_deg, priority, earliest_s, latest_s; empty: none
   int num_random = 0;               ///< number of random stations in free space
   std::uint64_t seed = 1;           ///< seed of random stations
   std::optional<Pose2> start = {};  ///< in site; none: by rule
@@ -35,8 +35,8 @@ struct SiteImportOptions {
   MissionOptions mission = {};
 };
 
-/// Gives a site the mission of the options; without stations it has none. Random stations need the floor plan of the
-/// site. Throws InputError.
+/// Gives a site the mission of the options; without stations it has none. Random stations of a site
+/// without a floor plan add one (site_plan.h). Throws InputError.
 void add_mission(const MissionOptions& options, ImportedSite& site);
 
 /// Reads a site file of any known kind, chosen by its extension, and adds its mission. Throws InputError with one line,

@@ -173,8 +173,11 @@ Eigen::AlignedBox3d box_of(const ImportedSite& site) {
 }  // namespace
 
 std::string shape_file(const SiteShape& shape) {
-  std::string name = shape.name;
-  std::replace(name.begin(), name.end(), '/', '_');
+  std::string name;  // one name of a file for each name of a shape
+  for (const char c : shape.name) {
+    if (c == '/' || c == '%') name += fmt::format("%{:02X}", static_cast<int>(c));
+    else name += c;
+  }
   return "meshes/" + name + (shape.type == SiteShapeType::kMesh ? ".obj" : ".hfield");
 }
 

@@ -48,6 +48,24 @@ std::vector<std::string> split_cells(std::string_view line, const Refuse& refuse
   return cells;
 }
 
+/// Returns whether the bytes are well-formed as UTF-8: lead bytes with their number of continuation bytes.
+bool is_utf8(std::string_view text) {
+  for (std::size_t i = 0; i < text.size();) {
+    const auto lead = static_cast<unsigned char>(text[i]);
+    const std::size_t length = lead < 0x80                   ? 1
+                               : lead >= 0xC2 && lead < 0xE0 ? 2
+                               : lead >= 0xE0 && lead < 0xF0 ? 3
+                               : lead >= 0xF0 && lead < 0xF5 ? 4
+                                                             : 0;
+    if (length == 0 || i + length > text.size()) return false;
+    for (std::size_t k = 1; k < length; ++k) {
+      if ((static_cast<unsigned char>(text[i + k]) & 0xC0) != 0x80) return false;
+    }
+    i += length;
+  }
+  return true;
+}
+
 class StationReader {
  public:
   explicit StationReader(const std::filesystem::path& file) : lines_(file) {}
@@ -91,6 +109,7 @@ class StationReader {
       refuse(fmt::format("has {} cells, must have {}", cells.size(), columns_.size()));
     TourStation station{.name = cells[columns_.at("name")], .line = number_};
     if (station.name.empty()) refuse("name: is empty");
+    if (!is_utf8(station.name)) refuse("name: is not valid UTF-8");
     if (std::any_of(stations_.begin(), stations_.end(),
                     [&](const TourStation& other) { return other.name == station.name; })) {
       refuse(fmt::format("name: {}: duplicate", station.name));

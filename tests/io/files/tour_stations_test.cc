@@ -71,6 +71,8 @@ TEST(TourStations, WhatIsWrongIsNamedWithItsLineAndColumn) {
   EXPECT_EQ(complaint(header + "b,1,2,-1,,,\n"), "stations.csv:2: service_s: -1: must be in [0, 10000000]");
   EXPECT_EQ(complaint(header + "b,1,2,,9,8,\n"), "stations.csv:2: latest_s: 8: must not be before earliest_s = 9");
   EXPECT_EQ(complaint(header + "b,1,2,,,,1.5\n"), "stations.csv:2: priority: 1.5: must be an integer");
+  EXPECT_EQ(complaint("name,x,y\nT\xFCr,1,2\n"), "stations.csv:2: name: is not valid UTF-8");
+  EXPECT_EQ(complaint("name,x,y\nT\xC3\xBCr,1,2\n"), "");
   EXPECT_EQ(complaint(header), "stations.csv: contains no stations");
   EXPECT_EQ(complaint(""), "stations.csv: contains no stations");
 }

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <optional>
+
+#include <Eigen/Core>
+#include <mujoco/mujoco.h>
+
+#include "core/grid.h"
+
+namespace patrol::importer {
+
+/// Settings of `plan_of`.
+struct SitePlanSettings {
+  double cell_m = 0.05;          ///< cells; twice as large for each factor of four above `max_cells`
+  double max_cells = 1.5e6;      ///< maximum number of cells
+  double height_m = 1.5;         ///< height of the space that a robot needs above the ground
+  double max_step_m = 0.1;       ///< maximum difference of the ground's heights of neighboring cells
+  double min_obstacle_m = 0.05;  ///< minimum height of an obstacle above the ground
+  double margin_m = 2.0;         ///< width of the plan beyond the surfaces that have an end
+};
+
+/// Returns the floor plan of a site by what its lidars see: cells of the connected ground are free, cells with a
+/// surface up to `height_m` above it are occupied, all others are unknown. The ground is the lowest surface that faces
+/// up with the height above it; it is flooded from the cell at `p_start_m`, or from the start that floods the largest
+/// region. Throws InputError if there is no ground.
+OccupancyGrid plan_of(const mjModel& site, const std::optional<Eigen::Vector2d>& p_start_m,
+                      const SitePlanSettings& settings = {});
+
+}  // namespace patrol::importer

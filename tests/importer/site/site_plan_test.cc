@@ -1,0 +1,69 @@
+#include "importer/site/site_plan.h"
+
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "sim/mujoco.h"
+
+namespace patrol::importer::site_plan_test {
+namespace {
+
+/// Room of 6 x 4 m with thin walls and a ceiling, a table, a low sill and a ramp of 5 degrees; outside is a field.
+constexpr const char* kRoom = R"(<mujoco><compiler angle="degree"/><worldbody>
+  <geom type="plane" size="20 20 1"/>
+  <geom type="box" size="3 0.01 1.25" pos="0 2 1.25"/>
+  <geom type="box" size="3 0.01 1.25" pos="0 -2 1.25"/>
+  <geom type="box" size="0.01 2 1.25" pos="3 0 1.25"/>
+  <geom type="box" size="0.01 2 1.25" pos="-3 0 1.25"/>
+  <geom type="box" size="3 2 0.05" pos="0 0 2.55"/>
+  <geom type="box" size="0.5 0.5 0.02" pos="1.5 0 0.7"/>
+  <geom type="box" size="0.05 1.9 0.02" pos="-1.5 0 0.02"/>
+  <geom type="box" size="0.3 0.3 0.05" pos="-2.4 0 1.9"/>
+  </worldbody></mujoco>)";
+
+int value_at(const OccupancyGrid& plan, double x, double y) { return plan.at(plan.geometry().cell_at({x, y})); }
+
+TEST(SitePlan, TheGroundOfARoomIsFreeItsWallsAndATableAreOccupiedAndTheFieldOutsideIsUnknown) {
+  const sim::ModelPtr site = sim::compile(*sim::parse_spec(kRoom), "room");
+  const OccupancyGrid plan = plan_of(*site, Eigen::Vector2d(0.0, 0.5));
+  EXPECT_EQ(plan.geometry().resolution_m, 0.05);
+  EXPECT_EQ(value_at(plan, 0.0, 0.0), 0);
+  EXPECT_EQ(value_at(plan, 2.8, 1.8), 0);
+  EXPECT_EQ(value_at(plan, -1.5, 0.0), 0);  // the sill is 4 cm high
+  EXPECT_EQ(value_at(plan, -2.4, 0.0), 0);  // the lamp hangs higher than a robot
+  EXPECT_EQ(value_at(plan, 1.02, 0.0), 100);
+  EXPECT_NE(value_at(plan, 1.5, 0.0), 0);
+  EXPECT_NE(value_at(plan, 4.0, 0.0), 0);
+  int occupied = 0, free = 0;
+  for (const std::int8_t percent : plan.values()) occupied += percent == 100 ? 1 : 0, free += percent == 0 ? 1 : 0;
+  EXPECT_NEAR(free * 0.0025, 6.0 * 4.0 - 1.0, 1.0);
+  // Walls are crossed once: 20 m of them and 4 m around the table.
+  EXPECT_NEAR(occupied, 24.0 / 0.05, 60);
+}
+
+TEST(SitePlan, WithoutAStartTheLargestGroundIsTaken) {
+  const sim::ModelPtr site = sim::compile(*sim::parse_spec(kRoom), "room");
+  const OccupancyGrid plan = plan_of(*site, std::nullopt, {.margin_m = 10.0});
+  EXPECT_EQ(value_at(plan, 8.0, 0.0), 0);
+  EXPECT_NE(value_at(plan, 0.0, 0.0), 0);
+}
+
+TEST(SitePlan, AStartWithoutGroundAndASiteWithoutGroundAreRefused) {
+  const sim::ModelPtr site = sim::compile(
+      *sim::parse_spec("<mujoco><worldbody><geom type=\"box\" size=\"1 1 0.1\" pos=\"0 0 1\"/></worldbody></mujoco>"),
+      "board");
+  EXPECT_EQ(value_at(plan_of(*site, Eigen::Vector2d(0.0, 0.0)), 0.5, 0.5), 0);
+  EXPECT_THROW(plan_of(*site, Eigen::Vector2d(1.5, 0.0)), InputError);
+  EXPECT_THROW(plan_of(*site, Eigen::Vector2d(50.0, 0.0)), InputError);
+  const sim::ModelPtr nothing = sim::compile(*sim::parse_spec("<mujoco/>"), "nothing");
+  EXPECT_THROW(plan_of(*nothing, std::nullopt), InputError);
+}
+
+TEST(SitePlan, ALargeSiteHasLargerCells) {
+  const sim::ModelPtr site = sim::compile(
+      *sim::parse_spec("<mujoco><worldbody><geom type=\"box\" size=\"60 50 0.1\"/></worldbody></mujoco>"), "field");
+  EXPECT_EQ(plan_of(*site, Eigen::Vector2d(0.0, 0.0)).geometry().resolution_m, 0.1);
+}
+
+}  // namespace
+}  // namespace patrol::importer::site_plan_test
