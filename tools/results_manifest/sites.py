@@ -44,3 +44,33 @@ def twin_text(values):
 add(name="twin_logs", file="src/importer/README.md", seeds=REPORT_FIVE, minutes=4,
     steps=[twin_step(log, file, seed) for log, (file, _, _) in LOGS.items() for seed in SEEDS],
     values=twin_values, text=twin_text, logs=tuple(file for file, _, _ in LOGS.values()))
+
+
+def realism_steps():
+    # The site lies below worlds/ of the step's folder. Its frame is that of the map.
+    steps = []
+    for log, (file, _, _) in LOGS.items():
+        script = (f"program=$PWD/build/patrol && cd {{out}} && $program slam {{logs}}/{file} --out slam && $program import site {{logs}}/{file} --out worlds/{log} "
+                  f"&& $program calibrate --sensor lidar {{logs}}/{file} --site {log} --trajectory slam/estimate.tum --lidar tim571 --out lidar")
+        steps.append(Step(log, ["sh", "-c", script], (0,)))
+    return steps
+
+
+def realism_values(folders):
+    values = []
+    for log in LOGS:
+        held_out = json.loads((folders[log] / "lidar" / "metrics.json").read_text())["held_out"]
+        static = held_out["fit"]["recorded"]["static"]
+        values.append({"log": log, **{key: static[key] for key in ("median_m", "median_abs_m", "p95_abs_m")},
+                       **{key: held_out[key] for key in ("ks_preset", "ks_fit", "ks_ratio")}})
+    return values
+
+
+def realism_text(values):
+    return markdown(["log", "median residual", "its absolute value", "95 %", "distance, preset", "distance, fit", "ratio"],
+                    [[{"intel": "Intel Research Lab", "fr079": "Freiburg 079"}[row["log"]], f"{1000 * row['median_m']:.1f} mm", f"{1000 * row['median_abs_m']:.1f} mm",
+                      f"{1000 * row['p95_abs_m']:.0f} mm", f"{row['ks_preset']:.3f}", f"{row['ks_fit']:.3f}", f"{row['ks_ratio']:.3f}"] for row in values])
+
+
+add(name="realism_logs", file="src/realism/README.md", seeds="default", minutes=2, steps=realism_steps(), values=realism_values, text=realism_text,
+    logs=tuple(file for file, _, _ in LOGS.values()))
