@@ -66,7 +66,7 @@ TEST(SettingsDifferences, ARobotsOwnFileIsItsStandard) {
   const Differences differences = settings_differences(default_scenario("tracked", kSource), load_scenario(docking));
   for (const SettingDifference& difference : differences)
     EXPECT_FALSE(difference.path.starts_with("sensors.")) << difference.path;
-  EXPECT_NE(std::find(differences.begin(), differences.end(), SettingDifference{"world", "", "tunnel"}),
+  EXPECT_NE(std::find(differences.begin(), differences.end(), SettingDifference{"world", "–", "tunnel"}),
             differences.end());
 }
 
