@@ -71,7 +71,8 @@ bool Ground::is_footing(const mjModel& model, const mjData& data, const mjContac
     case SurfaceClass::kCurb:
       return is_from_above(contact, geom) || top_m(model, data, geom) - lowest_m <= settings_.max_curb_m;
     case SurfaceClass::kByContact:
-      return is_from_above(contact, geom) && contact.pos[2] - lowest_m <= settings_.max_step_m;
+      return (is_from_above(contact, geom) && contact.pos[2] - lowest_m <= settings_.max_step_m) ||
+             top_m(model, data, geom) - lowest_m <= settings_.max_curb_m;
     case SurfaceClass::kObstacle:
       break;
   }

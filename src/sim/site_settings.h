@@ -23,7 +23,7 @@ struct GeomPatterns {
 
 /// Rules for the ground of a site: contacts with it are driving or walking, all others are collisions. A contact with a
 /// static geom is also one with the ground if it is from above (normal within 45 degrees of the vertical) and at most
-/// `max_step_m` higher than the robot's lowest contact.
+/// `max_step_m` higher than the robot's lowest contact, or if the geom's top is at most `max_curb_m` higher.
 struct GroundSettings {
   GeomPatterns all = {};     ///< geoms that are ground, also at their sides
   GeomPatterns curbs = {};   ///< geoms that are ground from above, and at their sides up to `max_curb_m`

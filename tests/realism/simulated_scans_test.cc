@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "core/geometry/angles.h"
 #include "realism/expected_scan.h"
 #include "tests/realism/sites.h"
 
@@ -63,8 +64,8 @@ TEST(SimulatedScans, HaveThePlantedNoiseAndOffset) {
 
 TEST(SimulatedScans, RefuseMoreThanOneRevolution) {
   const Site site = test::site_of(test::room());
-  EXPECT_THROW(simulate_scans(site, ideal_device(), {test::posed_scan(361, 361.0 * kPi / 180.0)}, 1), InputError);
-  EXPECT_THROW(simulate_scans(site, ideal_device(), {test::posed_scan(3, 0.5 * kPi / 180.0)}, 1), InputError);
+  EXPECT_THROW(simulate_scans(site, ideal_device(), {test::posed_scan(361, to_rad(361.0))}, 1), InputError);
+  EXPECT_THROW(simulate_scans(site, ideal_device(), {test::posed_scan(3, to_rad(0.5))}, 1), InputError);
 }
 
 }  // namespace

@@ -74,6 +74,12 @@ TEST(Ground, ByHeightAStepUpTo25CentimetersFromAboveIsGroundAndAHigherOneIsNot) 
   EXPECT_FALSE(ball.is_footing(0.14));
 }
 
+TEST(Ground, ByHeightABoxAsLowAsACurbIsGroundAtItsSides) {
+  const BallOn ball(kBox, kAtSide, {});
+  EXPECT_TRUE(ball.is_footing(0.26));
+  EXPECT_FALSE(ball.is_footing(0.24));
+}
+
 // The box hangs over the ball.
 TEST(Ground, AContactFromBelowIsACollision) {
   const BallOn ball(R"(<geom name="stage" type="box" size="1 1 0.2" pos="0 0 0.4"/>)", "0 0 0.101", {});

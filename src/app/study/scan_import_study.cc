@@ -96,8 +96,9 @@ studies::Study scan_import_study() {
                    {.name = "time", .unit = "s", .is_processor_time = true},
                    {.name = "memory", .unit = "MB", .is_processor_time = true}};
   for (const ScanResolution& resolution : kScanResolutions)
-    study.variants.push_back(
-        {.world = resolution.world, .method = fmt::format("step {:g} degrees", resolution.step_deg)});
+    study.variants.push_back({.world = resolution.world,
+                              .method = fmt::format("step {:g} degrees", resolution.step_deg),
+                              .reference = study.variants.size()});
   study.run = [](std::uint64_t seed) {
     studies::StudySample sample;
     for (const ScanResolution& resolution : kScanResolutions) sample.push_back(import_scans(resolution, seed));

@@ -31,7 +31,8 @@ class List(unittest.TestCase):
     def test_the_lidar_has_its_defaults_and_its_data_sheet(self):
         self.assertIn("Slamtec RPLIDAR C1 and S series data sheets", self.sources["lidar"])
         expected = {"lidar.noise_ratio": "0.64", "lidar.range_offset_m": "0.015", "lidar.range_scale": "0.0002", "lidar.reflectivity_m": "0.01",
-                    "lidar.incidence_m": "0.008", "lidar.axis_tilt_deg": "0.2", "lidar.cone_deg": "1.5", "lidar.rate_std": "0.01"}
+                    "lidar.incidence_m": "0.008", "lidar.axis_tilt_deg": "0.2", "lidar.cone_deg": "1.5", "lidar.rate_std": "0.01",
+                    **{f"lidar.measured_{name}": "0" for name in ("range_offset_m", "range_scale", "reflectivity_m", "incidence_m")}}
         self.assertEqual({name: value for name, value in self.tolerances.items() if name.startswith("lidar.")}, expected)
 
     def test_every_group_has_a_source_and_every_tolerance_a_unit_or_no_dimension(self):

@@ -40,7 +40,7 @@ class CourierData {
 
   /// Writes a scenario in street; its key `robot` is in line 2.
   std::filesystem::path scenario(const std::string& more) const {
-    test::write_bytes(folder_ / "my.yaml", "mission: routes/short.json\nrobot: courier\n" + more);
+    test::write_bytes(folder_ / "my.yaml", "mission: routes/short.json\nrobot: courier\nworld: street\n" + more);
     return folder_ / "my.yaml";
   }
   Scenario load(const std::string& more, const std::vector<std::string>& overrides = {}) const {
