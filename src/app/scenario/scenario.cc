@@ -75,8 +75,8 @@ std::filesystem::path find_definition(const std::filesystem::path& root, const s
 /// data of the program; below the data root if none has.
 std::filesystem::path folder_of(const std::filesystem::path& root, const std::string& kind, const std::string& name,
                                 const std::string& extension) {
-  for (const std::filesystem::path& place : {root, std::filesystem::current_path(), data_root_of_program()}) {
-    if (!place.empty() && std::filesystem::exists(place / kind / name / (name + extension))) return place / kind / name;
+  for (const std::filesystem::path& data : {root, std::filesystem::current_path(), data_root_of_program()}) {
+    if (!data.empty() && std::filesystem::exists(data / kind / name / (name + extension))) return data / kind / name;
   }
   return root / kind / name;
 }

@@ -99,7 +99,7 @@ class Realism(unittest.TestCase):
                 ([log, *path], "--site: required"),
                 ([log, *site], "--trajectory: required"),
                 ([log, *site, "--trajectory", "truth"], "only for a run directory"),
-                ([log, *path, "--site", "moon"], "--site = moon: must be an MJCF file or the name of a world"),
+                ([log, *path, "--site", "moon"], "world = moon: "),
                 ([log, *site, *path, "--lidar", "sick"], "--lidar = sick: must be one of"),
                 ([self.folder / "absent", *site, *path], "log not found"),
                 ([log, *site, *path, "--set", "input.max_scans=1"], "input.max_scans: 1 is out of range")]:
