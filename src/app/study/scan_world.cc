@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "app/scenario/scenario.h"
 #include "core/geometry/angles.h"
 #include "core/random.h"
 #include "sim/sensors/panoramic_scanner.h"
@@ -42,7 +43,9 @@ void add_person(mjsBody& world, const Eigen::Vector2d& p_m, double ground_m) {
   capsule(0.0, 0.0, 1.45, 1.78, 0.1);
 }
 
-std::string world_xml(const ScannedWorld& world) { return fmt::format("worlds/{0}/{0}.xml", world.name); }
+std::string world_xml(const ScannedWorld& world) {
+  return load_site(world.name, find_data_root("")).world_xml.string();
+}
 
 /// Pose of a held-out scan: position on the ground.
 std::vector<Eigen::Vector3d> held_out_poses(const ScannedWorld& world, const RayWorld& truth, int count,
