@@ -17,7 +17,7 @@ constexpr double kStep_deg = 0.005;
 constexpr int kHalf = 340, kPreviousHalf = 180;  // offsets to each side of a fan
 constexpr double kAimStep_deg = 0.02;            // between the aims of a beam that the angle noise is sampled at
 constexpr double kMaxWidth_deg = 2.0, kCoarse_deg = 0.05, kFine_deg = 0.005;
-// Of the lidar model (sim/sensors/lidar.cc): rays of a mixed pixel, and the jumps that cause one.
+// Constants of the lidar model (sim/sensors/lidar.cc): number of rays of a mixed pixel, jumps with mixed pixels.
 constexpr std::array<double, 4> kRays = {-0.375, -0.125, 0.125, 0.375};
 constexpr double kMixedFrom_m = 0.1, kPulseLength_m = 1.5;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();

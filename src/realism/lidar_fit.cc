@@ -123,7 +123,7 @@ class Fitter {
       const bool is_hit =
           beam.kind == BeamClass::kStatic || beam.kind == BeamClass::kShort || beam.kind == BeamClass::kFar;
       if (!is_hit || incidence_deg(beam) > kMaxHitIncidence_deg || !limits_.is_inside(beam, 2.0, 0.95)) continue;
-      // Where consecutive beams differ by the jump of a mixed pixel, the range is a mean over the beam width.
+      // After a jump of the range, the range is a mean over the beam width.
       const double step_rad = std::abs(set_.scans[beam.scan].scan.angle_increment_rad) + 4.3 * angle_noise_rad;
       if (std::abs(beam.expected.slope_m_per_rad) * step_rad > 0.1) continue;
       samples.push_back({.residual_m = beam.residual_m(),
@@ -307,7 +307,7 @@ class Fitter {
   const Site& site_;
   const ScanSet& set_;
   LidarFitSettings settings_;
-  LidarDevice device_;  ///< by the fits so far
+  LidarDevice device_;  ///< lidar with the parameters that are fitted
   Limits limits_;
   HitFit hits_;
   LidarFit result_;

@@ -5,26 +5,12 @@
 
 #include <fmt/format.h>
 
+#include "sim/geom_box.h"
 #include "sim/ground.h"
 #include "sim/robot_model.h"
 
 namespace patrol::app {
 namespace {
-
-using RowMatrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-
-/// Center of a geom's bounding box in world, m.
-Eigen::Vector3d box_center_m(const mjModel& model, const mjData& data, int geom) {
-  const Eigen::Map<const RowMatrix> rotation(data.geom_xmat + 9 * geom);
-  const Eigen::Map<const Eigen::Vector3d> position(data.geom_xpos + 3 * geom), center(model.geom_aabb + 6 * geom);
-  return position + rotation * center;
-}
-
-/// Half sizes of a geom's bounding box along the axes of the world, m.
-Eigen::Vector3d half_box_m(const mjModel& model, const mjData& data, int geom) {
-  const Eigen::Map<const RowMatrix> rotation(data.geom_xmat + 9 * geom);
-  return rotation.cwiseAbs() * Eigen::Map<const Eigen::Vector3d>(model.geom_aabb + 6 * geom + 3);
-}
 
 bool is_endless(const mjModel& model, int geom) { return model.geom_type[geom] == mjGEOM_PLANE; }
 
@@ -39,12 +25,12 @@ SurfaceKind kind_of(const mjModel& model, const mjData& data, const sim::Ground&
       return SurfaceKind::kCurb;
     case sim::SurfaceClass::kObstacle:
       if (model.body_weldid[model.geom_bodyid[geom]] != 0) return SurfaceKind::kMoving;
-      return is_upright(half_box_m(model, data, geom)) ? SurfaceKind::kWall : SurfaceKind::kObstacle;
+      return is_upright(0.5 * sim::geom_box(model, data, geom).sizes()) ? SurfaceKind::kWall : SurfaceKind::kObstacle;
     case sim::SurfaceClass::kByContact:
       break;
   }
   if (is_endless(model, geom) || model.geom_type[geom] == mjGEOM_HFIELD) return SurfaceKind::kGround;
-  const Eigen::Vector3d half = half_box_m(model, data, geom);
+  const Eigen::Vector3d half = 0.5 * sim::geom_box(model, data, geom).sizes();
   if (2.0 * half.z() <= max_step_m) return SurfaceKind::kStep;
   return is_upright(half) ? SurfaceKind::kWall : SurfaceKind::kObstacle;
 }
@@ -61,7 +47,7 @@ SiteSurfaces site_surfaces(const mjModel& site, const sim::GroundSettings& setti
   mj_kinematics(&site, data.get());
   const sim::Ground ground(settings, site);
   SiteSurfaces surfaces;
-  bool is_first = true;
+  Eigen::AlignedBox3d box;
   for (int geom = 0; geom < site.ngeom; ++geom) {
     const SurfaceKind kind = kind_of(site, *data, ground, settings.max_step_m, geom);
     SurfaceGroup& group = surfaces.groups[static_cast<std::size_t>(kind)];
@@ -71,11 +57,9 @@ SiteSurfaces site_surfaces(const mjModel& site, const sim::GroundSettings& setti
     if (group.examples.size() < kExamples)
       group.examples.push_back(name.empty() ? fmt::format("geom {}", geom) : std::string(name));
     if (kind == SurfaceKind::kUntouchable || is_endless(site, geom)) continue;
-    const Eigen::Vector3d center = box_center_m(site, *data, geom), half = half_box_m(site, *data, geom);
-    surfaces.lower_m = is_first ? Eigen::Vector3d(center - half) : surfaces.lower_m.cwiseMin(center - half);
-    surfaces.upper_m = is_first ? Eigen::Vector3d(center + half) : surfaces.upper_m.cwiseMax(center + half);
-    is_first = false;
+    box.extend(sim::geom_box(site, *data, geom));
   }
+  if (!box.isEmpty()) surfaces.lower_m = box.min(), surfaces.upper_m = box.max();
   return surfaces;
 }
 

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "sim/geom_box.h"
 #include "sim/lidar_scene.h"
 #include "sim/mujoco.h"
 
@@ -22,17 +23,12 @@ constexpr double kAboveSurface_m = 1e-3;  // distance of a ray's origin from the
 
 /// Box around the visible geoms that have an end, in world.
 Eigen::AlignedBox3d box_around(const mjModel& site) {
-  using Matrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
   const sim::DataPtr data = sim::make_data(site);
   mj_kinematics(&site, data.get());
   Eigen::AlignedBox3d box;
   for (int geom = 0; geom < site.ngeom; ++geom) {
     if (site.geom_type[geom] == mjGEOM_PLANE) continue;
-    const Eigen::Map<const Eigen::Vector3d> position(data->geom_xpos + 3 * geom);
-    const Eigen::Map<const Matrix> rotation(data->geom_xmat + 9 * geom);
-    const Eigen::Map<const Eigen::Vector3d> middle(site.geom_aabb + 6 * geom), half(site.geom_aabb + 6 * geom + 3);
-    const Eigen::Vector3d center = position + rotation * middle, reach = rotation.cwiseAbs() * half;
-    box.extend(Eigen::AlignedBox3d(center - reach, center + reach));
+    box.extend(sim::geom_box(site, *data, geom));
   }
   if (box.isEmpty()) box.extend(Eigen::Vector3d::Zero());
   return box;
