@@ -33,17 +33,6 @@ std::uint32_t mask_of(const mjModel& model, int body) {
   return name == "scanner" ? kRayScanner : kRayRobot;
 }
 
-/// Rigid group of geoms: a body and everything welded to it.
-struct MovingPart {
-  int body;
-  std::uint32_t mask;
-  std::vector<PlacedGeom> geoms;                       ///< poses in the body's frame
-  std::unique_ptr<EmbreeScene> assets;                 ///< meshes and height fields of `geoms`; null if there are none
-  Eigen::AlignedBox3d box;                             ///< bounding box of all geoms, in the body's frame
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< position of the body, in world
-  Matrix3 rotation = Matrix3::Identity();
-};
-
 /// Returns whether the ray enters the box before `reach_m` or starts inside it.
 bool intersects(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
                 double reach_m) {
@@ -54,13 +43,18 @@ bool intersects(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& origin, c
   return !(enter > leave || leave < 0.0 || enter > reach_m);
 }
 
-/// Axis-aligned bounding boxes of the moving parts in world, stored so that the compiler can test four at a time.
+/// Axis-aligned bounding boxes, stored so that the compiler can test four at a time.
 class Boxes {
  public:
   void resize(std::size_t count) {
     for (auto* side : {&lower_, &upper_}) {
       for (std::vector<float>& axis : *side) axis.resize(count);
     }
+  }
+
+  void add(const Eigen::AlignedBox3d& box) {
+    resize(lower_[0].size() + 1);
+    set(lower_[0].size() - 1, box.center(), box.sizes() / 2.0);
   }
 
   void set(std::size_t i, const Eigen::Vector3d& center, const Eigen::Vector3d& half) {
@@ -102,6 +96,18 @@ class Boxes {
   std::array<std::vector<float>, 3> lower_, upper_;  ///< bounds, [axis][part]
 };
 
+/// Rigid group of geoms: a body and everything welded to it.
+struct MovingPart {
+  int body;
+  std::uint32_t mask;
+  std::vector<PlacedGeom> shapes = {};                 ///< geoms that are not assets, with poses in the body's frame
+  Boxes shape_boxes = {};                              ///< bounding boxes, [shape], in the body's frame
+  std::unique_ptr<EmbreeScene> assets = nullptr;       ///< meshes and height fields; null if there are none
+  Eigen::AlignedBox3d box = {};                        ///< bounding box of all geoms, in the body's frame
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< position of the body, in world
+  Matrix3 rotation = Matrix3::Identity();
+};
+
 /// One instruction set for every processor: with another one hits differ in the last bits, and runs after minutes.
 constexpr const char* kEmbreeConfiguration = "threads=1,isa=avx2";
 
@@ -119,7 +125,6 @@ struct LidarScene::Impl {
     static_scene->build();
     for (MovingPart& part : parts) {
       if (part.assets) part.assets->build();
-      enclose(part);
     }
     boxes.resize(parts.size());
     update_poses(*data);
@@ -147,8 +152,13 @@ struct LidarScene::Impl {
       return;
     }
     MovingPart& part = part_of(body, mask_of(model, model.geom_bodyid[geom]));
-    part.geoms.push_back(placed);
-    if (!is_asset(type)) return;
+    const Eigen::AlignedBox3d box = box_of(placed);
+    part.box.extend(box);
+    if (!is_asset(type)) {
+      part.shapes.push_back(placed);
+      part.shape_boxes.add(box);
+      return;
+    }
     if (!part.assets) part.assets = std::make_unique<EmbreeScene>(device, RTC_BUILD_QUALITY_MEDIUM);
     part.assets->add(model, placed);
   }
@@ -157,19 +167,17 @@ struct LidarScene::Impl {
     for (MovingPart& part : parts) {
       if (part.body == body && part.mask == mask) return part;
     }
-    return parts.emplace_back(MovingPart{.body = body, .mask = mask, .geoms = {}, .assets = nullptr, .box = {}});
+    return parts.emplace_back(MovingPart{.body = body, .mask = mask});
   }
 
-  /// Computes the bounding box of a part.
-  void enclose(MovingPart& part) const {
-    for (const PlacedGeom& placed : part.geoms) {
-      const Eigen::Map<const Eigen::Vector3d> position(placed.position), middle(model.geom_aabb + 6 * placed.geom);
-      const Eigen::Map<const Matrix3> rotation(placed.rotation);
-      const Eigen::Vector3d half =
-          rotation.cwiseAbs() * Eigen::Map<const Eigen::Vector3d>(model.geom_aabb + 6 * placed.geom + 3);
-      const Eigen::Vector3d center = position + rotation * middle;
-      part.box.extend(Eigen::AlignedBox3d(center - half, center + half));
-    }
+  /// Returns the bounding box of a geom, along the axes of the frame in which it is placed.
+  Eigen::AlignedBox3d box_of(const PlacedGeom& placed) const {
+    const Eigen::Map<const Eigen::Vector3d> position(placed.position), middle(model.geom_aabb + 6 * placed.geom);
+    const Eigen::Map<const Matrix3> rotation(placed.rotation);
+    const Eigen::Vector3d half =
+        rotation.cwiseAbs() * Eigen::Map<const Eigen::Vector3d>(model.geom_aabb + 6 * placed.geom + 3);
+    const Eigen::Vector3d center = position + rotation * middle;
+    return {center - half, center + half};
   }
 
   void update_poses(const mjData& data) {
@@ -196,16 +204,18 @@ struct LidarScene::Impl {
         is_nearer = true;
       }
     }
-    for (const PlacedGeom& geom : part.geoms) {
-      if (is_asset(geom.type)) continue;
+    const auto cast_at_shape = [&](std::size_t i) {
+      const PlacedGeom& shape = part.shapes[i];
       Eigen::Vector3d normal;
       const double distance_m =
-          mju_rayGeom(geom.position, geom.rotation, geom.size, from.data(), along.data(), geom.type, normal.data());
-      if (distance_m < 0.0 || distance_m >= reach_m) continue;
-      best = RayHit{.distance_m = distance_m, .geom = geom.geom, .normal = normal};
+          mju_rayGeom(shape.position, shape.rotation, shape.size, from.data(), along.data(), shape.type, normal.data());
+      if (distance_m < 0.0 || distance_m >= reach_m) return;
+      best = RayHit{.distance_m = distance_m, .geom = shape.geom, .normal = normal};
       reach_m = distance_m;
       is_nearer = true;
-    }
+    };
+    part.shape_boxes.visit_intersected(from.cast<float>(), along.cast<float>(), static_cast<float>(reach_m),
+                                       cast_at_shape);
     if (is_nearer) best->normal = part.rotation * best->normal;
   }
 
