@@ -76,15 +76,44 @@ Pose2 refine(const DistanceField& field, const std::vector<Eigen::Vector2d>& poi
   return motion;
 }
 
-/// Mean weight of the moved points: 1 when all lie on surfaces, near 0 when all are much farther than `robust_m`.
+/// Points rotated by an angle, for the scores of many translations.
+class RotatedPoints {
+ public:
+  RotatedPoints(const std::vector<Eigen::Vector2d>& points, double yaw) {
+    const double c = std::cos(yaw), s = std::sin(yaw);
+    for (const Eigen::Vector2d& p : points) points_.push_back({c * p.x(), s * p.y(), s * p.x(), c * p.y()});
+  }
+
+  /// Mean weight of the points after a translation: 1 when all lie on surfaces, near 0 when all are much farther than
+  /// `robust_m`. A score below `min_score` may be replaced by a lower one.
+  double mean_weight(const DistanceField& field, const Eigen::Vector2d& center, const Eigen::Vector2d& translation,
+                     double robust_m, double min_score = 0.0) const {
+    constexpr std::size_t kPointsPerCheck = 16;
+    constexpr double kRounding = 1e-9;
+    const auto count = static_cast<double>(points_.size());
+    double sum = 0.0;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const bool is_hopeless = sum + (count - static_cast<double>(i)) < (min_score - kRounding) * count;
+      if (i % kPointsPerCheck == 0 && is_hopeless) break;
+      const Products& p = points_[i];
+      const Eigen::Vector2d moved(translation.x() + p.cx - p.sy, translation.y() + p.sx + p.cy);
+      const double ratio = field.distance_m(center + moved) / robust_m;
+      sum += 1.0 / (1.0 + ratio * ratio);
+    }
+    return sum / count;
+  }
+
+ private:
+  /// Products of a point's coordinates with cosine and sine.
+  struct Products {
+    double cx, sy, sx, cy;
+  };
+  std::vector<Products> points_;
+};
+
 double mean_weight(const DistanceField& field, const std::vector<Eigen::Vector2d>& points,
                    const Eigen::Vector2d& center, const Pose2& motion, double robust_m) {
-  double sum = 0.0;
-  for (const Eigen::Vector2d& point : points) {
-    const double ratio = field.distance_m(center + motion * point) / robust_m;
-    sum += 1.0 / (1.0 + ratio * ratio);
-  }
-  return sum / static_cast<double>(points.size());
+  return RotatedPoints(points, motion.yaw).mean_weight(field, center, motion.position(), robust_m);
 }
 
 /// Smallest motion of a grid whose score is within `kEquivalentScoreRatio` of the best. Along a straight wall many
@@ -101,14 +130,16 @@ Pose2 search(const DistanceField& field, const std::vector<Eigen::Vector2d>& all
     double size_m;
   };
   std::vector<Candidate> candidates;
-  double best = 0.0;
+  double best = mean_weight(field, points, center, {}, kSearchRobust_m);
   const int steps = static_cast<int>(std::lround(kSearch_m / kSearchStep_m));
   for (int turn = -kSearchYawSteps; turn <= kSearchYawSteps; ++turn) {
     const double yaw = turn * to_rad(kSearchYawStep_deg);
+    const RotatedPoints rotated(points, yaw);
     for (int i = -steps; i <= steps; ++i) {
       for (int j = -steps; j <= steps; ++j) {
         const Pose2 motion{kSearchStep_m * i, kSearchStep_m * j, yaw};
-        const double score = mean_weight(field, points, center, motion, kSearchRobust_m);
+        const double score = rotated.mean_weight(field, center, motion.position(), kSearchRobust_m,
+                                                 kEquivalentScoreRatio * best);
         candidates.push_back({motion, score, std::hypot(motion.x, motion.y, yaw * radius_m)});
         best = std::max(best, score);
       }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <future>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -20,12 +22,10 @@ std::vector<Eigen::Vector2d> thin_out(const Trajectory& T_world_body, double spa
   return positions;
 }
 
-void mark_neighborhood(ReferenceMap& reference, Cell hit) {
+void mark_neighborhood(const OccupancyGrid& cells, Grid<std::uint8_t>& marked, Cell hit) {
   for (int row = hit.row - 1; row <= hit.row + 1; ++row) {
     for (int col = hit.col - 1; col <= hit.col + 1; ++col) {
-      if (reference.cells.contains({col, row}) && reference.cells.at({col, row}) == kOccupied) {
-        reference.is_observable.at({col, row}) = 1;
-      }
+      if (cells.contains({col, row}) && cells.at({col, row}) == kOccupied) marked.at({col, row}) = 1;
     }
   }
 }
@@ -52,8 +52,9 @@ std::optional<double> entry_m(const GridGeometry& geometry, const Eigen::Vector2
 
 /// Marks the cells along a ray in order [Amanatides87], up to the first that is occupied or unknown. A run has 10^9
 /// steps: cells are addressed by their index, and the border is found by counting steps.
-void mark_ray(ReferenceMap& reference, const Eigen::Vector2d& from_m, double angle_rad, double max_range_m) {
-  const GridGeometry& geometry = reference.cells.geometry();
+void mark_ray(const OccupancyGrid& cells, Grid<std::uint8_t>& marked, const Eigen::Vector2d& from_m, double angle_rad,
+              double max_range_m) {
+  const GridGeometry& geometry = cells.geometry();
   const Eigen::Vector2d direction(std::cos(angle_rad), std::sin(angle_rad));
   const Cell first = geometry.cell_at(from_m);
   if (!geometry.contains(first)) {
@@ -61,7 +62,7 @@ void mark_ray(ReferenceMap& reference, const Eigen::Vector2d& from_m, double ang
     if (!outside_m || *outside_m > max_range_m) return;
     const Eigen::Vector2d border_m = from_m + *outside_m * direction;
     if (geometry.contains(geometry.cell_at(border_m)))
-      mark_ray(reference, border_m, angle_rad, max_range_m - *outside_m);
+      mark_ray(cells, marked, border_m, angle_rad, max_range_m - *outside_m);
     return;
   }
   const Eigen::Vector2d q = (from_m - geometry.origin_m) / geometry.resolution_m;
@@ -78,15 +79,15 @@ void mark_ray(ReferenceMap& reference, const Eigen::Vector2d& from_m, double ang
   const std::ptrdiff_t column_step = direction.x() > 0.0 ? 1 : -1, row_step = direction.y() > 0.0 ? width : -width;
   int columns_left = direction.x() > 0.0 ? geometry.width - 1 - first.col : first.col;
   int rows_left = direction.y() > 0.0 ? geometry.height - 1 - first.row : first.row;
-  const std::int8_t* values = reference.cells.values().data();
-  std::uint8_t* is_observable = reference.is_observable.values().data();
+  const std::int8_t* values = cells.values().data();
+  std::uint8_t* is_observable = marked.values().data();
   std::ptrdiff_t at = first.row * width + first.col;
   while (true) {
     const std::int8_t value = values[at];
     if (value == kUnknown) return;
     is_observable[at] = 1;
     if (value == kOccupied) {
-      return mark_neighborhood(reference, {static_cast<int>(at % width), static_cast<int>(at / width)});
+      return mark_neighborhood(cells, marked, {static_cast<int>(at % width), static_cast<int>(at / width)});
     }
     const bool is_column_next = next_m[0] < next_m[1];
     if ((is_column_next ? next_m[0] : next_m[1]) > max_range_m) return;
@@ -111,11 +112,24 @@ ReferenceMap mark_observable(OccupancyGrid reference, const Trajectory& T_world_
   // Adjacent rays are two cells apart at full range; `mark_neighborhood` fills the gap.
   const double step_rad = 2.0 * geometry.resolution_m / max_range_m;
   const int num_rays = static_cast<int>(std::ceil(2.0 * std::numbers::pi / step_rad));
-  for (const Eigen::Vector2d& p_world : thin_out(T_world_body, spacing_m)) {
-    for (int ray = 0; ray < num_rays; ++ray) {
-      mark_ray(marked, p_world, 2.0 * std::numbers::pi * ray / num_rays, max_range_m);
+  const std::vector<Eigen::Vector2d> positions = thin_out(T_world_body, spacing_m);
+  const auto mark_from = [&](std::size_t first, std::size_t step, Grid<std::uint8_t>& is_observable) {
+    for (std::size_t i = first; i < positions.size(); i += step) {
+      for (int ray = 0; ray < num_rays; ++ray) {
+        mark_ray(marked.cells, is_observable, positions[i], 2.0 * std::numbers::pi * ray / num_rays, max_range_m);
+      }
     }
-  }
+  };
+  // Two threads, each with every other position; a cell is observable if one of them marks it.
+  auto other_half = std::async(std::launch::async, [&] {
+    Grid<std::uint8_t> is_observable(geometry);
+    mark_from(1, 2, is_observable);
+    return is_observable;
+  });
+  mark_from(0, 2, marked.is_observable);
+  const Grid<std::uint8_t> other = other_half.get();
+  std::transform(other.values().begin(), other.values().end(), marked.is_observable.values().begin(),
+                 marked.is_observable.values().begin(), std::bit_or<>());
   return marked;
 }
 

@@ -100,18 +100,27 @@ class Boxes {
 struct MovingPart {
   int body;
   std::uint32_t mask;
-  std::vector<PlacedGeom> shapes = {};                 ///< geoms that are not assets, with poses in the body's frame
-  Boxes shape_boxes = {};                              ///< bounding boxes, [shape], in the body's frame
-  std::unique_ptr<EmbreeScene> assets = nullptr;       ///< meshes and height fields; null if there are none
-  Eigen::AlignedBox3d box = {};                        ///< bounding box of all geoms, in the body's frame
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< position of the body, in world
-  Matrix3 rotation = Matrix3::Identity();
+  std::vector<PlacedGeom> shapes = {};            ///< geoms that are not assets, with poses in the body's frame
+  Boxes shape_boxes = {};                         ///< bounding boxes, [shape], in the body's frame
+  std::unique_ptr<EmbreeScene> assets = nullptr;  ///< meshes and height fields; null if there are none
+  Eigen::AlignedBox3d box = {};                   ///< bounding box of all geoms, in the body's frame
 };
 
 /// One instruction set for every processor: with another one hits differ in the last bits, and runs after minutes.
 constexpr const char* kEmbreeConfiguration = "threads=1,isa=avx2";
 
+/// Pose of a body in world.
+struct BodyPose {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  Matrix3 rotation = Matrix3::Zero();  ///< not yet set
+};
+
 }  // namespace
+
+struct LidarScene::Poses {
+  std::vector<BodyPose> parts;  ///< [part]
+  Boxes boxes;                  ///< bounding boxes in world, [part]
+};
 
 struct LidarScene::Impl {
   explicit Impl(const mjModel& view) : model(view), device(rtcNewDevice(kEmbreeConfiguration)) {
@@ -126,7 +135,9 @@ struct LidarScene::Impl {
     for (MovingPart& part : parts) {
       if (part.assets) part.assets->build();
     }
-    boxes.resize(parts.size());
+    poses = std::make_shared<Poses>();
+    poses->parts.resize(parts.size());
+    poses->boxes.resize(parts.size());
     update_poses(*data);
   }
 
@@ -181,20 +192,24 @@ struct LidarScene::Impl {
   }
 
   void update_poses(const mjData& data) {
+    if (poses.use_count() > 1) poses = std::make_shared<Poses>(*poses);
     for (std::size_t i = 0; i < parts.size(); ++i) {
-      MovingPart& part = parts[i];
-      part.position = Eigen::Map<const Eigen::Vector3d>(data.xpos + 3 * part.body);
-      part.rotation = Eigen::Map<const Matrix3>(data.xmat + 9 * part.body);
-      boxes.set(i, part.position + part.rotation * part.box.center(),
-                part.rotation.cwiseAbs() * part.box.sizes() / 2.0);
+      const MovingPart& part = parts[i];
+      BodyPose& pose = poses->parts[i];
+      const Eigen::Map<const Eigen::Vector3d> position(data.xpos + 3 * part.body);
+      const Eigen::Map<const Matrix3> rotation(data.xmat + 9 * part.body);
+      if (pose.position == position && pose.rotation == rotation) continue;
+      pose = {position, rotation};
+      poses->boxes.set(i, pose.position + pose.rotation * part.box.center(),
+                       pose.rotation.cwiseAbs() * part.box.sizes() / 2.0);
     }
   }
 
   /// Replaces `best` by the hit on a part if it is nearer than `reach_m`, and reduces `reach_m`.
-  static void cast_at_part(const MovingPart& part, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
-                           double& reach_m, std::optional<RayHit>& best) {
-    const Eigen::Vector3d from = part.rotation.transpose() * (origin - part.position);
-    const Eigen::Vector3d along = part.rotation.transpose() * direction;
+  static void cast_at_part(const MovingPart& part, const BodyPose& pose, const Eigen::Vector3d& origin,
+                           const Eigen::Vector3d& direction, double& reach_m, std::optional<RayHit>& best) {
+    const Eigen::Vector3d from = pose.rotation.transpose() * (origin - pose.position);
+    const Eigen::Vector3d along = pose.rotation.transpose() * direction;
     if (!intersects(part.box, from, along, reach_m)) return;
     bool is_nearer = false;
     if (part.assets) {
@@ -216,18 +231,18 @@ struct LidarScene::Impl {
     };
     part.shape_boxes.visit_intersected(from.cast<float>(), along.cast<float>(), static_cast<float>(reach_m),
                                        cast_at_shape);
-    if (is_nearer) best->normal = part.rotation * best->normal;
+    if (is_nearer) best->normal = pose.rotation * best->normal;
   }
 
-  std::optional<RayHit> cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double max_range_m,
-                             std::uint32_t mask) const {
+  std::optional<RayHit> cast(const Poses& at, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+                             double max_range_m, std::uint32_t mask) const {
     std::optional<RayHit> best;
     if (mask & kRayScenery) best = static_scene->cast(origin, direction, max_range_m);
     double reach_m = best ? best->distance_m : max_range_m;
-    boxes.visit_intersected(origin.cast<float>(), direction.cast<float>(), static_cast<float>(reach_m),
-                            [&](std::size_t i) {
-                              if (parts[i].mask & mask) cast_at_part(parts[i], origin, direction, reach_m, best);
-                            });
+    const auto cast_at = [&](std::size_t i) {
+      if (parts[i].mask & mask) cast_at_part(parts[i], at.parts[i], origin, direction, reach_m, best);
+    };
+    at.boxes.visit_intersected(origin.cast<float>(), direction.cast<float>(), static_cast<float>(reach_m), cast_at);
     if (best && best->normal.dot(direction) > 0.0) best->normal = -best->normal;
     return best;
   }
@@ -236,7 +251,7 @@ struct LidarScene::Impl {
   RTCDevice device;
   std::unique_ptr<EmbreeScene> static_scene;
   std::vector<MovingPart> parts;
-  Boxes boxes;  ///< bounding boxes, [part]
+  std::shared_ptr<Poses> poses;  ///< present poses; copied before a change if others have them
 };
 
 LidarScene::LidarScene(const mjModel& view) : impl_(std::make_unique<Impl>(view)) {}
@@ -248,7 +263,14 @@ void LidarScene::update(const mjData& data) { impl_->update_poses(data); }
 
 std::optional<RayHit> LidarScene::cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
                                        double max_range_m, std::uint32_t mask) const {
-  return impl_->cast(origin, direction, max_range_m, mask);
+  return impl_->cast(*impl_->poses, origin, direction, max_range_m, mask);
+}
+
+std::shared_ptr<const LidarScene::Poses> LidarScene::poses() const { return impl_->poses; }
+
+std::optional<RayHit> LidarScene::cast(const Poses& poses, const Eigen::Vector3d& origin,
+                                       const Eigen::Vector3d& direction, double max_range_m, std::uint32_t mask) const {
+  return impl_->cast(poses, origin, direction, max_range_m, mask);
 }
 
 }  // namespace patrol::sim

@@ -53,6 +53,14 @@ class LidarScene {
   std::optional<RayHit> cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double max_range_m,
                              std::uint32_t mask) const;
 
+  /// Poses of the moving bodies at an instant.
+  struct Poses;
+  /// Returns the present poses. They do not change with later updates.
+  std::shared_ptr<const Poses> poses() const;
+  /// Returns the first hit with the bodies at `poses`. May be called in any thread, also during `update`.
+  std::optional<RayHit> cast(const Poses& poses, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+                             double max_range_m, std::uint32_t mask) const;
+
   const mjModel& model() const;
   /// Returns Embree's scene of the static geometry, for benchmarks.
   RTCSceneTy* static_scene() const;

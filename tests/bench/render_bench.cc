@@ -131,12 +131,12 @@ void DepthFrame(benchmark::State& state, const std::string& world, const std::st
   sim::IdealDepthImage image;
   std::size_t frame = 0;
   int num_drawn = 0;
-  renderer.draw(*data, {}, image);  // compiles the shaders
+  renderer.draw({*model.view, *data}, {}, image);  // compiles the shaders
   const double start_s = process_seconds();
   for (auto _ : state) {
     const std::size_t step = frame++ % 40;
     const Pose2 place = places[frame / 40 % places.size()] * Pose2{0.2 * static_cast<double>(step), 0.0, 0.0};
-    renderer.draw(*data, {{place.x, place.y, 0.4}, quaternion_from_rpy(0.0, 0.48, place.yaw)}, image);
+    renderer.draw({*model.view, *data}, {{place.x, place.y, 0.4}, quaternion_from_rpy(0.0, 0.48, place.yaw)}, image);
     num_drawn += renderer.num_drawn();
   }
   state.counters["cpu_ms"] = 1e3 * (process_seconds() - start_s) / static_cast<double>(state.iterations());

@@ -12,7 +12,7 @@ class WallImager : public sim::DepthImager {
  public:
   explicit WallImager(const sim::PinholeLens& lens)
       : pixels_(static_cast<std::size_t>(lens.width_px * lens.height_px)) {}
-  void draw(const mjData&, const Pose3&, sim::IdealDepthImage& image) override {
+  void draw(const sim::BodyPoses&, const Pose3&, sim::IdealDepthImage& image) override {
     image.depth_m.assign(pixels_, 2.0F);
     image.reflectivity.assign(pixels_, 1.0F);
   }

@@ -17,6 +17,8 @@ void add_run(CLI::App& app, Call& call) {
   command->add_option("--start", run.start, "Start X,Y or X,Y,DEG in the site, with --goal")->needs("--goal");
   command->add_option("--stack", run.stack, kStackHelp);
   command->add_flag("--watch", run.watch, "Show live status in the terminal");
+  command->add_option("--threads", run.threads, "Threads, 1 or 2, with the same results (default: 2 on several cores)")
+      ->check(CLI::Range(1, 2));
   command->add_option("--out", run.out, kOutHelp);
   command->add_option("--monitor-url", run.monitor_url, "Monitoring server, http://host:port");
   command->add_option("--monitor-token-file", run.monitor_token_file, kTokenHelp);

@@ -27,6 +27,7 @@ struct RunOptions {
   std::optional<std::uint64_t> seed;
   std::optional<std::string> stack;  ///< command or address of a stack instead of that of the scenario
   bool watch = false;                ///< show live status in the terminal
+  std::optional<int> threads;        ///< threads of the simulation, 1 or 2; default: 2 on several cores
   std::optional<std::filesystem::path> out;
   std::optional<std::string> monitor_url;  ///< URL of a monitoring server
   std::optional<std::filesystem::path> monitor_token_file;

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <memory>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -122,10 +123,11 @@ std::unique_ptr<Reporter> reporter_of(const RunOptions& options, const Scenario&
 std::optional<RunVerdict> run_reported(const RunOptions& options, const Scenario& scenario, const std::string& name,
                                        const std::filesystem::path& root, Reporter* reporter, RunObserver& screen) {
   const std::filesystem::path data_root = find_data_root(names_world(options) ? "" : options.scenario);
-  if (reporter == nullptr) return run_once(scenario, name, data_root, root, screen);
+  const int num_threads = options.threads.value_or(std::thread::hardware_concurrency() > 1 ? 2 : 1);
+  if (reporter == nullptr) return run_once(scenario, name, data_root, root, screen, num_threads);
   ObserverGroup observers({&screen, reporter});
   try {
-    std::optional<RunVerdict> verdict = run_once(scenario, name, data_root, root, observers);
+    std::optional<RunVerdict> verdict = run_once(scenario, name, data_root, root, observers, num_threads);
     if (!verdict) reporter->finish("interrupted", "interrupted by user");
     else
       reporter->finish(verdict->code() == ExitCode::kDone ? "finished" : "failed",

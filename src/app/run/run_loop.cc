@@ -282,8 +282,10 @@ void set_failure(RunOutcome& outcome, const link::LinkError& error) {
   }
 }
 
-sim::Simulator make_simulator(const Scenario& scenario, const ScenarioFiles& files) {
-  return {simulator_settings(scenario, files), files.robot, scenario.seed, render::make_depth_renderer};
+sim::Simulator make_simulator(const Scenario& scenario, const ScenarioFiles& files, bool has_sensor_thread) {
+  sim::SimulatorSettings settings = simulator_settings(scenario, files);
+  settings.has_sensor_thread = has_sensor_thread;
+  return {settings, files.robot, scenario.seed, render::make_depth_renderer};
 }
 
 RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::Simulator& simulator, StackPort& stack,

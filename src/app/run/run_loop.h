@@ -59,8 +59,9 @@ void write_published(io::RunLogWriter& log, Time now, const PublishedMessage& me
 /// Sets the end of a run whose stack failed.
 void set_failure(RunOutcome& outcome, const link::LinkError& error);
 
-/// Creates the simulator. Throws InputError if the settings of the scenario are inconsistent.
-sim::Simulator make_simulator(const Scenario& scenario, const ScenarioFiles& files);
+/// Creates the simulator, with a thread of its own for expensive sensors if requested. Throws InputError if the
+/// settings of the scenario are inconsistent.
+sim::Simulator make_simulator(const Scenario& scenario, const ScenarioFiles& files, bool has_sensor_thread = false);
 
 /// Runs simulator and stack in a closed loop until the mission ends, and writes everything to `log_mcap`. The run also
 /// ends when the stack fails.

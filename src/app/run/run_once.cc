@@ -46,9 +46,10 @@ RunVerdict complete_run(const RunDirectory& directory, const Scenario& scenario,
 
 std::optional<RunVerdict> run_once(const Scenario& scenario, const std::string& name,
                                    const std::filesystem::path& data_root, const std::filesystem::path& root,
-                                   RunObserver& observer) {
+                                   RunObserver& observer, int num_threads) {
   const ScenarioFiles files = load_scenario_files(scenario, data_root);
-  sim::Simulator simulator = make_simulator(scenario, files);  // these throw InputError before anything is written
+  // These throw InputError before anything is written.
+  sim::Simulator simulator = make_simulator(scenario, files, num_threads > 1);
   const std::unique_ptr<StackPort> stack =
       make_stack_port(scenario, files,
                       {.scenario = name,

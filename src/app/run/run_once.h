@@ -16,9 +16,10 @@ RunVerdict complete_run(const RunDirectory& directory, const Scenario& scenario,
 
 /// Runs a scenario, scores it, and writes a complete run directory at `root`. Returns none if `observer` stopped the
 /// run: the directory stays marked incomplete. Throws InputError, before anything is written, if a file of the scenario
-/// is missing or its settings are inconsistent.
+/// is missing or its settings are inconsistent. With two threads, expensive sensors have a thread of their own; the
+/// results are the same.
 std::optional<RunVerdict> run_once(const Scenario& scenario, const std::string& name,
                                    const std::filesystem::path& data_root, const std::filesystem::path& root,
-                                   RunObserver& observer);
+                                   RunObserver& observer, int num_threads = 1);
 
 }  // namespace patrol::app

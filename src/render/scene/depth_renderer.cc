@@ -192,11 +192,10 @@ int DepthRenderer::num_near_faces() const {
 }
 
 /// Sets the geom's pose from the pose of its body.
-void DepthRenderer::update_pose(Shape& shape, const mjData& data) {
+void DepthRenderer::update_pose(Shape& shape, const sim::BodyPoses& bodies) {
   if (shape.body == 0) return;
-  const Eigen::Map<const RowMajor3> R_world_body(data.xmat + 9 * shape.body);
-  const Eigen::Vector3d position =
-      Eigen::Map<const Eigen::Vector3d>(data.xpos + 3 * shape.body) + R_world_body * shape.position;
+  const Eigen::Map<const RowMajor3> R_world_body = bodies.rotation(shape.body);
+  const Eigen::Vector3d position = bodies.position(shape.body) + R_world_body * shape.position;
   const RowMajor3 R = R_world_body * shape.rotation;
   for (int i = 0; i < 3; ++i) shape.drawn.pos[i] = static_cast<float>(position[i]);
   for (int i = 0; i < 9; ++i) shape.drawn.mat[i] = static_cast<float>(R.data()[i]);
@@ -239,14 +238,14 @@ void DepthRenderer::aim(const Camera& camera) {
   scene_.camera[0] = scene_.camera[1] = gl;
 }
 
-void DepthRenderer::draw(const mjData& data, const Pose3& T_world_camera, sim::IdealDepthImage& image) {
+void DepthRenderer::draw(const sim::BodyPoses& bodies, const Pose3& T_world_camera, sim::IdealDepthImage& image) {
   const Camera camera(T_world_camera, lens_);
   offscreen_.make_current();
   upload_near(camera.eye);
   aim(camera);
   scene_.ngeom = 0;
   for (Shape& shape : shapes_) {
-    update_pose(shape, data);
+    update_pose(shape, bodies);
     limit_infinite_plane(shape, camera);
     if (is_in_view(shape, camera)) scene_.geoms[scene_.ngeom++] = shape.drawn;
   }

@@ -34,7 +34,7 @@ class DepthRenderer : public sim::DepthImager {
   DepthRenderer& operator=(const DepthRenderer&) = delete;
 
   /// Renders depth and reflectivity, row 0 at the top. Depth is along the viewing axis, infinite without a surface.
-  void draw(const mjData& data, const Pose3& T_world_camera, sim::IdealDepthImage& image) override;
+  void draw(const sim::BodyPoses& bodies, const Pose3& T_world_camera, sim::IdealDepthImage& image) override;
 
   /// Number of geoms in the last picture.
   int num_drawn() const { return scene_.ngeom; }
@@ -64,7 +64,7 @@ class DepthRenderer : public sim::DepthImager {
   void collect();
   void find_large_meshes();
   void upload_near(const Eigen::Vector3d& eye);
-  static void update_pose(Shape& shape, const mjData& data);
+  static void update_pose(Shape& shape, const sim::BodyPoses& bodies);
   void limit_infinite_plane(Shape& shape, const Camera& camera) const;
   bool is_in_view(const Shape& shape, const Camera& camera) const;
   void aim(const Camera& camera);

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
+#include <memory>
+#include <optional>
 #include <utility>
 
 #include "core/error.h"
@@ -97,8 +100,8 @@ bool DepthCamera::is_visible(int u, int v) const {
   return dust_.equivalent_clear_distance_m(static_cast<double>(ideal_.depth_m[index_of(u, v)])) <= reach_m;
 }
 
-DepthImage DepthCamera::take(const mjData& data, const Pose3& T_world_camera, Time now, std::uint64_t tick) {
-  imager_->draw(data, T_world_camera, ideal_);
+DepthImage DepthCamera::take(const BodyPoses& bodies, const Pose3& T_world_camera, Time now, std::uint64_t tick) {
+  imager_->draw(bodies, T_world_camera, ideal_);
   compute_inverse_depth();
   DepthImage image{.stamp = now,
                    .width = lens_.width_px,
@@ -128,22 +131,58 @@ DepthImage DepthCamera::take(const mjData& data, const Pose3& T_world_camera, Ti
 
 namespace {
 
+/// Depth camera whose images the worker computes while they are in transit. Its imager lives in the worker's thread.
 class DepthCameraOnBody : public PeriodicSensor {
  public:
-  DepthCameraOnBody(const SensorContext& context, std::unique_ptr<DepthImager> imager)
-      : PeriodicSensor(context.settings.depth_camera.rate_hz),
+  DepthCameraOnBody(const SensorContext& context, const DepthCameraSettings& settings)
+      : PeriodicSensor(settings.rate_hz),
         T_body_camera_(context.robot.T_body("depth_camera")),
-        camera_(context.settings.depth_camera, context.settings.dust, std::move(imager), context.seed,
-                context.as_built.depth_camera()) {}
+        worker_(context.worker) {
+    constexpr double kNear_m = 0.05;  // minimum distance; closer surfaces belong to the housing
+    worker_.run([&] {
+      camera_.emplace(settings, context.settings.dust,
+                      context.make_depth_imager(context.view, make_lens(settings), kNear_m, 1.1 * settings.range_max_m),
+                      context.seed, context.as_built.depth_camera());
+    });
+  }
+  ~DepthCameraOnBody() override {
+    try {
+      worker_.run([this] { camera_.reset(); });
+    } catch (...) {  // the run ends with the error that `complete` has thrown
+    }
+  }
+  DepthCameraOnBody(const DepthCameraOnBody&) = delete;
+  DepthCameraOnBody& operator=(const DepthCameraOnBody&) = delete;
+
+  void complete(SensorMessage& reading) override {
+    auto& image = std::get<DepthImage>(reading);
+    const Time stamp = image.stamp;
+    worker_.wait(pending_.front().ticket);
+    image = std::move(*pending_.front().image);
+    image.stamp = stamp;
+    pending_.pop_front();
+  }
 
  private:
+  struct Pending {
+    BackgroundWorker::Ticket ticket;
+    std::shared_ptr<DepthImage> image;
+  };
+
   void read(const SensorTick& tick, std::uint64_t index, std::vector<SensorMessage>& readings) override {
     const auto timer = tick.clock.time_stage("depth_camera");
-    readings.emplace_back(camera_.take(tick.data, tick.T_world_body * T_body_camera_, tick.now, index));
+    const auto image = std::make_shared<DepthImage>();
+    const auto take = [this, image, bodies = BodyPoses(tick.physics, tick.data),
+                       T_world_camera = tick.T_world_body * T_body_camera_, now = tick.now,
+                       index] { *image = camera_->take(bodies, T_world_camera, now, index); };
+    pending_.push_back({worker_.submit(take), image});
+    readings.emplace_back(DepthImage{.stamp = tick.now, .depth_mm = {}});
   }
 
   Pose3 T_body_camera_;
-  DepthCamera camera_;
+  BackgroundWorker& worker_;
+  std::optional<DepthCamera> camera_;
+  std::deque<Pending> pending_;  ///< images to be completed, in order
 };
 
 }  // namespace
@@ -156,9 +195,7 @@ std::unique_ptr<Sensor> make_sensor<DepthImage>(const SensorContext& context) {
   context.robot.T_body("depth_camera");  // throws if the robot has no such frame
   if (!context.make_depth_imager)
     throw InputError("sensors.depth_camera.enabled = true: requires a renderer, which this command lacks");
-  constexpr double kNear_m = 0.05;  // minimum distance; closer surfaces belong to the housing
-  return std::make_unique<DepthCameraOnBody>(
-      context, context.make_depth_imager(context.view, make_lens(settings), kNear_m, 1.1 * settings.range_max_m));
+  return std::make_unique<DepthCameraOnBody>(context, settings);
 }
 
 }  // namespace patrol::sim

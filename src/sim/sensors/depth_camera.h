@@ -11,6 +11,7 @@
 #include "core/sensors/registry.h"
 #include "core/settings.h"
 #include "sim/as_built/sensor_errors.h"
+#include "sim/body_poses.h"
 #include "sim/dust.h"
 
 namespace patrol::sim {
@@ -37,9 +38,8 @@ struct IdealDepthImage {
 class DepthImager {
  public:
   virtual ~DepthImager() = default;
-  /// Renders an ideal image. `data` is of the view model or of the physics model, which have identical bodies.
-  /// `T_world_camera` has x along the optical axis and z up in the image.
-  virtual void draw(const mjData& data, const Pose3& T_world_camera, IdealDepthImage& image) = 0;
+  /// Renders an ideal image. `T_world_camera` has x along the optical axis and z up in the image.
+  virtual void draw(const BodyPoses& bodies, const Pose3& T_world_camera, IdealDepthImage& image) = 0;
 };
 
 /// Factory of the imager of a view model, which must outlive it, for depths from `near_m` to `far_m`.
@@ -59,7 +59,7 @@ class DepthCamera {
               std::uint64_t seed, const DepthCameraErrors& errors = {});
 
   /// Takes frame number `tick`.
-  DepthImage take(const mjData& data, const Pose3& T_world_camera, Time now, std::uint64_t tick);
+  DepthImage take(const BodyPoses& bodies, const Pose3& T_world_camera, Time now, std::uint64_t tick);
 
  private:
   void compute_inverse_depth();

@@ -30,7 +30,8 @@ Pose3 move_between(const Pose3& a, const Pose3& b, double fraction) {
 }  // namespace
 
 Lidar::Lidar(const LidarSettings& settings, const LidarScene& scene, Pose3 T_body_lidar, RayMask own_housing,
-             std::uint64_t seed, const std::string& name, const DustSettings& dust, const LidarErrors& errors)
+             std::uint64_t seed, const std::string& name, const DustSettings& dust, const LidarErrors& errors,
+             BackgroundWorker* worker)
     : settings_(settings),
       scene_(scene),
       T_body_lidar_(std::move(T_body_lidar)),
@@ -46,7 +47,8 @@ Lidar::Lidar(const LidarSettings& settings, const LidarScene& scene, Pose3 T_bod
       rain_(seed, name + "/rain"),
       rain_range_(seed, name + "/rain_range"),
       rate_noise_(seed, name + "/rate"),
-      revolution_ns_(1e9 / settings.rate_hz) {
+      revolution_ns_(1e9 / settings.rate_hz),
+      worker_(worker) {
   validate(settings, name);
   settings_.range_noise_std_m *= errors.noise_ratio;
   const double step = settings.fov_deg * kDegree / settings.beams;
@@ -61,6 +63,14 @@ Lidar::Lidar(const LidarSettings& settings, const LidarScene& scene, Pose3 T_bod
     elevation_.emplace_back(std::cos(angle), std::sin(angle));
   }
   begin_revolution();
+}
+
+Lidar::~Lidar() {
+  if (!worker_) return;
+  try {
+    worker_->wait(submitted_);
+  } catch (...) {  // the run ends with the error that the owner has seen
+  }
 }
 
 /// The beams are distributed over the fraction of the revolution that the field of view covers; the last one ends it.
@@ -86,77 +96,103 @@ void Lidar::update_rate() {
 
 void Lidar::begin_revolution() {
   if (errors_.rate_std > 0.0) update_rate();
-  last_range_m_.assign(elevation_.size(), kInfinity);
+  revolution_ = std::make_shared<Revolution>();
+  revolution_->last_range_m.assign(elevation_.size(), kInfinity);
   if (settings_.rings > 1) {
-    cloud_ = {.stamp = instant_of(next_beam_), .points = {}};
+    revolution_->cloud.stamp = instant_of(next_beam_);
     return;
   }
   const double step = settings_.fov_deg * kDegree / settings_.beams;
-  scan_ = {.stamp = instant_of(next_beam_),
-           .angle_min_rad = -settings_.fov_deg * kDegree / 2.0,
-           .angle_increment_rad = step,
-           .time_increment_s = settings_.fov_deg / 360.0 / settings_.rate_hz / settings_.beams,
-           .scan_time_s = 1.0 / settings_.rate_hz,
-           .range_min_m = settings_.range_min_m,
-           .range_max_m = settings_.range_max_m,
-           .ranges_m = {},
-           .intensities = {}};
-  scan_.ranges_m.reserve(static_cast<std::size_t>(settings_.beams));
-  scan_.intensities.reserve(static_cast<std::size_t>(settings_.beams));
+  LaserScan& scan = revolution_->scan;
+  scan = {.stamp = instant_of(next_beam_),
+          .angle_min_rad = -settings_.fov_deg * kDegree / 2.0,
+          .angle_increment_rad = step,
+          .time_increment_s = settings_.fov_deg / 360.0 / settings_.rate_hz / settings_.beams,
+          .scan_time_s = 1.0 / settings_.rate_hz,
+          .range_min_m = settings_.range_min_m,
+          .range_max_m = settings_.range_max_m,
+          .ranges_m = {},
+          .intensities = {}};
+  scan.ranges_m.reserve(static_cast<std::size_t>(settings_.beams));
+  scan.intensities.reserve(static_cast<std::size_t>(settings_.beams));
 }
 
 void Lidar::advance(Time from, Time to, const Pose3& T_world_body_from, const Pose3& T_world_body_to) {
+  constexpr std::size_t kTicksPerTask = 8;
+  Shots* shots = nullptr;
   for (Time instant = instant_of(next_beam_); instant <= to; instant = instant_of(next_beam_)) {
     const double fraction = to_seconds(instant - from) / to_seconds(to - from);
     Pose3 T_world_lidar = move_between(T_world_body_from, T_world_body_to, fraction) * T_body_lidar_;
     if (settings_.stabilized) T_world_lidar = remove_tilt(T_world_lidar);
     const bool is_last = next_beam_ % settings_.beams == settings_.beams - 1;
+    if (!shots) shots = &shots_.emplace_back(Shots{.bodies = scene_.poses(), .beams = {}});
     if (settings_.motion_distortion) {
-      fire(next_beam_, T_world_lidar);
+      shots->beams.push_back({next_beam_, instant, T_world_lidar});
     } else if (is_last) {
-      for (std::int64_t beam = next_beam_ - settings_.beams + 1; beam <= next_beam_; ++beam) fire(beam, T_world_lidar);
+      for (std::int64_t beam = next_beam_ - settings_.beams + 1; beam <= next_beam_; ++beam)
+        shots->beams.push_back({beam, instant_of(beam), T_world_lidar});
     }
     ++next_beam_;
     if (!is_last) continue;
-    if (settings_.rings > 1) {
-      clouds_.push_back(std::move(cloud_));
-    } else {
-      if (!settings_.motion_distortion) {
-        scan_.stamp = instant_of(next_beam_ - 1);
-        scan_.time_increment_s = 0.0;
-      }
-      scans_.push_back(std::move(scan_));
-    }
+    finish_revolution();
     begin_revolution();
+    shots = nullptr;
   }
+  if (shots_.size() >= kTicksPerTask) submit();
 }
 
-void Lidar::fire(std::int64_t beam, const Pose3& T_world_lidar) {
-  const auto tick = static_cast<std::uint64_t>(beam / settings_.beams);
-  const auto column = static_cast<std::size_t>(beam % settings_.beams);
+/// Measures the beams, or gives them to the worker.
+void Lidar::submit() {
+  const auto measure_beams = [this, shots = std::exchange(shots_, {}), revolution = revolution_] {
+    for (const Shots& of_tick : shots) {
+      for (const Beam& beam : of_tick.beams) fire(beam, *of_tick.bodies, *revolution);
+    }
+  };
+  if (worker_) submitted_ = worker_->submit(measure_beams);
+  else measure_beams();
+}
+
+void Lidar::finish_revolution() {
+  submit();
+  if (worker_) worker_->wait(submitted_);
+  if (settings_.rings > 1) {
+    clouds_.push_back(std::move(revolution_->cloud));
+    return;
+  }
+  if (!settings_.motion_distortion) {
+    revolution_->scan.stamp = instant_of(next_beam_ - 1);
+    revolution_->scan.time_increment_s = 0.0;
+  }
+  scans_.push_back(std::move(revolution_->scan));
+}
+
+void Lidar::fire(const Beam& beam, const LidarScene::Poses& bodies, Revolution& revolution) const {
+  const auto tick = static_cast<std::uint64_t>(beam.number / settings_.beams);
+  const auto column = static_cast<std::size_t>(beam.number % settings_.beams);
   for (std::size_t ring = 0; ring < elevation_.size(); ++ring) {
     const std::uint64_t index = column * elevation_.size() + ring;
     const Eigen::Vector3d direction(elevation_[ring].x() * azimuth_[column].x(),
                                     elevation_[ring].x() * azimuth_[column].y(), elevation_[ring].y());
-    const Return got = measure(tick, index, T_world_lidar, direction, last_range_m_[ring]);
+    const Return got = measure(tick, index, bodies, beam.T_world_lidar, direction, revolution.last_range_m[ring]);
     if (settings_.rings == 1) {
-      scan_.ranges_m.push_back(static_cast<float>(got.range_m));
-      scan_.intensities.push_back(static_cast<float>(got.intensity));
+      revolution.scan.ranges_m.push_back(static_cast<float>(got.range_m));
+      revolution.scan.intensities.push_back(static_cast<float>(got.intensity));
     } else if (std::isfinite(got.range_m)) {
       const Eigen::Vector3f point = (got.range_m * direction).cast<float>();
-      cloud_.points.push_back({.x = point.x(),
-                               .y = point.y(),
-                               .z = point.z(),
-                               .intensity = static_cast<float>(got.intensity),
-                               .time_s = static_cast<float>(to_seconds(instant_of(beam) - cloud_.stamp)),
-                               .ring = static_cast<std::uint16_t>(ring)});
+      revolution.cloud.points.push_back(
+          {.x = point.x(),
+           .y = point.y(),
+           .z = point.z(),
+           .intensity = static_cast<float>(got.intensity),
+           .time_s = static_cast<float>(to_seconds(beam.instant - revolution.cloud.stamp)),
+           .ring = static_cast<std::uint16_t>(ring)});
     }
   }
 }
 
 /// Returns the reading of one beam with all error sources.
-Lidar::Return Lidar::measure(std::uint64_t tick, std::uint64_t index, const Pose3& T_world_lidar,
-                             const Eigen::Vector3d& direction, double& last_range_m) const {
+Lidar::Return Lidar::measure(std::uint64_t tick, std::uint64_t index, const LidarScene::Poses& bodies,
+                             const Pose3& T_world_lidar, const Eigen::Vector3d& direction, double& last_range_m) const {
   Eigen::Vector3d aimed = direction;
   if (settings_.angle_noise_std_deg > 0.0) {
     const double turn = settings_.angle_noise_std_deg * kDegree * angle_noise_.normal(tick, index);
@@ -164,10 +200,10 @@ Lidar::Return Lidar::measure(std::uint64_t tick, std::uint64_t index, const Pose
     aimed.normalize();
   }
   aimed = errors_.actual_direction(aimed);
-  Return got = trace(T_world_lidar, aimed);
+  Return got = trace(bodies, T_world_lidar, aimed);
   const double jump_m = std::abs(got.range_m - std::exchange(last_range_m, got.range_m));
   if (jump_m > kMinJump_m && jump_m < kPulseLength_m && settings_.beam_width_deg > 0.0) {
-    got = mixed_pixel_return(T_world_lidar, aimed, got);
+    got = mixed_pixel_return(bodies, T_world_lidar, aimed, got);
   }
   if (false_return_rate_per_m_ > 0.0) {
     const double path_m = std::min(got.range_m, settings_.range_max_m);
@@ -188,22 +224,23 @@ Lidar::Return Lidar::measure(std::uint64_t tick, std::uint64_t index, const Pose
 }
 
 /// Returns the reading of an ideal ray without width.
-Lidar::Return Lidar::trace(const Pose3& T_world_lidar, const Eigen::Vector3d& direction) const {
+Lidar::Return Lidar::trace(const LidarScene::Poses& bodies, const Pose3& T_world_lidar,
+                           const Eigen::Vector3d& direction) const {
   const Eigen::Vector3d ray = T_world_lidar.rotation * direction;
-  const std::optional<RayHit> hit = scene_.cast(T_world_lidar.position, ray, settings_.range_max_m, mask_);
+  const std::optional<RayHit> hit = scene_.cast(bodies, T_world_lidar.position, ray, settings_.range_max_m, mask_);
   return hit ? to_return(*hit, ray, hit->distance_m) : Return{kInfinity, 0.0};
 }
 
 /// Returns the mean over the beam width, weighted by the returned light, of surfaces within one pulse length only.
-Lidar::Return Lidar::mixed_pixel_return(const Pose3& T_world_lidar, const Eigen::Vector3d& direction,
-                                        const Return& middle) const {
+Lidar::Return Lidar::mixed_pixel_return(const LidarScene::Poses& bodies, const Pose3& T_world_lidar,
+                                        const Eigen::Vector3d& direction, const Return& middle) const {
   constexpr int kRays = 4;
   const Eigen::Vector3d sideways =
       settings_.beam_width_deg * kDegree * Eigen::Vector3d(-direction.y(), direction.x(), 0.0);
   double light = 0.0, light_range = 0.0, light_intensity = 0.0;
   for (int i = 0; i < kRays; ++i) {
     const double fraction = (i + 0.5) / kRays - 0.5;
-    const Return part = trace(T_world_lidar, (direction + fraction * sideways).normalized());
+    const Return part = trace(bodies, T_world_lidar, (direction + fraction * sideways).normalized());
     if (!(std::abs(part.range_m - middle.range_m) < kPulseLength_m)) continue;
     const double returned = part.intensity / (part.range_m * part.range_m);
     light += returned;
@@ -236,7 +273,7 @@ class LidarOnBody : public Sensor {
  public:
   LidarOnBody(const SensorContext& context, const LidarSettings& settings, const std::string& frame, RayMask housing)
       : lidar_(settings, context.scene, context.robot.T_body(frame), housing, context.seed, frame,
-               context.settings.dust, context.as_built.lidar(frame)) {}
+               context.settings.dust, context.as_built.lidar(frame), &context.worker) {}
 
   void step(const SensorTick& tick, std::vector<SensorMessage>& readings) override {
     if (tick.is_first()) return;

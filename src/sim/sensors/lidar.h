@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "core/background_worker.h"
 #include "core/random.h"
 #include "core/sensors/registry.h"
 #include "core/settings.h"
@@ -25,9 +27,13 @@ class Lidar {
  public:
   /// One ring yields scans, several yield clouds. `name` is the prefix of the random streams; `own_housing` is the
   /// housing that contains the beam origin and is ignored. Dust reduces the range and causes false returns. Messages
-  /// state the nominal revolution rate.
+  /// state the nominal revolution rate. A worker, which must outlive this, measures the beams.
   Lidar(const LidarSettings& settings, const LidarScene& scene, Pose3 T_body_lidar, RayMask own_housing,
-        std::uint64_t seed, const std::string& name, const DustSettings& dust = {}, const LidarErrors& errors = {});
+        std::uint64_t seed, const std::string& name, const DustSettings& dust = {}, const LidarErrors& errors = {},
+        BackgroundWorker* worker = nullptr);
+  ~Lidar();
+  Lidar(const Lidar&) = delete;
+  Lidar& operator=(const Lidar&) = delete;
 
   /// Fires the beams whose instants are in (from, to]; the body pose is interpolated in between.
   void advance(Time from, Time to, const Pose3& T_world_body_from, const Pose3& T_world_body_to);
@@ -42,12 +48,32 @@ class Lidar {
     double intensity;
   };
 
+  /// Readings of one revolution, being measured.
+  struct Revolution {
+    LaserScan scan;
+    PointCloud cloud;
+    std::vector<double> last_range_m;  ///< [ring], range of the last beam without noise
+  };
+  struct Beam {
+    std::int64_t number;  ///< since the start
+    Time instant;
+    Pose3 T_world_lidar;
+  };
+  /// Beams of one tick.
+  struct Shots {
+    std::shared_ptr<const LidarScene::Poses> bodies;
+    std::vector<Beam> beams;
+  };
+
   Time instant_of(std::int64_t beam) const;
-  void fire(std::int64_t beam, const Pose3& T_world_lidar);
-  Return measure(std::uint64_t tick, std::uint64_t index, const Pose3& T_world_lidar, const Eigen::Vector3d& direction,
-                 double& last_range_m) const;
-  Return trace(const Pose3& T_world_lidar, const Eigen::Vector3d& direction) const;
-  Return mixed_pixel_return(const Pose3& T_world_lidar, const Eigen::Vector3d& direction, const Return& middle) const;
+  void submit();
+  void finish_revolution();
+  void fire(const Beam& beam, const LidarScene::Poses& bodies, Revolution& revolution) const;
+  Return measure(std::uint64_t tick, std::uint64_t index, const LidarScene::Poses& bodies, const Pose3& T_world_lidar,
+                 const Eigen::Vector3d& direction, double& last_range_m) const;
+  Return trace(const LidarScene::Poses& bodies, const Pose3& T_world_lidar, const Eigen::Vector3d& direction) const;
+  Return mixed_pixel_return(const LidarScene::Poses& bodies, const Pose3& T_world_lidar,
+                            const Eigen::Vector3d& direction, const Return& middle) const;
   Return to_return(const RayHit& hit, const Eigen::Vector3d& direction, double range_m) const;
   void begin_revolution();
   void update_rate();
@@ -66,9 +92,10 @@ class Lidar {
   double rate_error_ = 0.0;                                 ///< relative error of the revolution rate
   std::vector<Eigen::Vector2d> azimuth_;                    ///< [beam], cosine and sine of the azimuth
   std::vector<Eigen::Vector2d> elevation_;                  ///< [ring], cosine and sine of the elevation
-  std::vector<double> last_range_m_;                        ///< [ring], range of the last beam without noise
-  LaserScan scan_;
-  PointCloud cloud_;
+  std::shared_ptr<Revolution> revolution_ = std::make_shared<Revolution>();
+  std::vector<Shots> shots_;  ///< not yet submitted, [tick]
+  BackgroundWorker* worker_;
+  BackgroundWorker::Ticket submitted_ = 0;
   std::vector<LaserScan> scans_;
   std::vector<PointCloud> clouds_;
 };

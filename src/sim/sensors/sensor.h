@@ -6,6 +6,7 @@
 
 #include <mujoco/mujoco.h>
 
+#include "core/background_worker.h"
 #include "core/messages.h"
 #include "core/robot_description.h"
 #include "core/sensors/registry.h"
@@ -19,7 +20,7 @@
 
 namespace patrol::sim {
 
-/// Arguments for making a sensor. Sensors may keep references to `scene` and `view` only.
+/// Arguments for making a sensor. Sensors may keep references to `scene`, `view` and `worker` only.
 struct SensorContext {
   const SensorSuiteSettings& settings;
   const AsBuiltRobot& as_built;
@@ -30,6 +31,7 @@ struct SensorContext {
   const GasPlume& plume;
   const Subsurface& subsurface;
   const DepthImagerFactory& make_depth_imager;
+  BackgroundWorker& worker;  ///< for expensive readings
   std::uint64_t seed;
 };
 
@@ -63,6 +65,10 @@ class Sensor {
 
   /// Appends the readings that are complete to `readings`. Called once per tick.
   virtual void step(const SensorTick& tick, std::vector<SensorMessage>& readings) = 0;
+
+  /// Waits for the parts of a reading that the worker computes, and fills them in. Called once for each reading, in
+  /// order, before the reading is changed or delivered.
+  virtual void complete(SensorMessage& /*reading*/) {}
 
   /// Passes a command of the stack; `now` and the pose are of the newest tick.
   virtual void command(const InstrumentCommand&, Time /*now*/, const Pose3& /*T_world_body*/) {}

@@ -15,10 +15,12 @@ Pose3 body_pose(const mjData& data, int body) {
 
 SensorSuite::SensorSuite(const SensorSuiteSettings& settings, const AsBuiltRobot& robot, const mjModel& physics,
                          const mjModel& view, const GasPlume& plume, const std::vector<FaultSettings>& faults,
-                         std::uint64_t seed, const DepthImagerFactory& make_depth_imager, const Subsurface& subsurface)
+                         std::uint64_t seed, const DepthImagerFactory& make_depth_imager, const Subsurface& subsurface,
+                         bool has_thread)
     : settings_(settings),
       body_(mj_name2id(&physics, mjOBJ_BODY, frame_id::kBody)),
       scene_(view),
+      worker_(has_thread),
       faults_(faults, seed) {
   validate(settings.dust, "sensors.dust");
   const SensorContext context{.settings = settings_,
@@ -30,6 +32,7 @@ SensorSuite::SensorSuite(const SensorSuiteSettings& settings, const AsBuiltRobot
                               .plume = plume,
                               .subsurface = subsurface,
                               .make_depth_imager = make_depth_imager,
+                              .worker = worker_,
                               .seed = seed};
   for (std::size_t type = 0; type < channels_.size(); ++type) {
     const SensorInfo& info = kSensorInfos[type];
@@ -69,7 +72,7 @@ void SensorSuite::step(const mjModel& physics, mjData& data, Time now) {
 void SensorSuite::step_sensor(Entry& entry, const SensorTick& tick) {
   readings_.clear();
   entry.sensor->step(tick, readings_);
-  for (SensorMessage& reading : readings_) deliver(tick.now, entry.latency_s, std::move(reading));
+  for (SensorMessage& reading : readings_) deliver(tick.now, entry.latency_s, std::move(reading), entry.sensor.get());
 }
 
 void SensorSuite::command(const InstrumentCommand& command) {
@@ -81,13 +84,23 @@ bool SensorSuite::is_busy() const {
   return std::any_of(sensors_.begin(), sensors_.end(), [](const Entry& entry) { return entry.sensor->is_busy(); });
 }
 
-void SensorSuite::deliver(Time ready, double latency_s, SensorMessage message) {
+void SensorSuite::deliver(Time ready, double latency_s, SensorMessage message, Sensor* incomplete) {
   Channel& channel = channels_[message.index()];
   std::visit([&](auto& content) { content.stamp = channel.clock.stamp(content.stamp); }, message);
   const Time delay = channel.clock.transport_delay(channel.num_messages++);
   Time due = std::max(channel.last_due, ready + from_seconds(latency_s) + delay);
   channel.last_due = due;
-  if (faults_.apply(ready, due, message)) queue_.push(due, std::move(message));
+  if (incomplete && !faults_.reports().empty()) std::exchange(incomplete, nullptr)->complete(message);
+  if (faults_.apply(ready, due, message)) queue_.push(due, {std::move(message), incomplete});
+}
+
+std::vector<SensorMessage> SensorSuite::take_due(Time now) {
+  std::vector<SensorMessage> due;
+  for (auto& [message, incomplete] : queue_.take_due(now)) {
+    if (incomplete) incomplete->complete(message);
+    due.push_back(std::move(message));
+  }
+  return due;
 }
 
 }  // namespace patrol::sim

@@ -9,6 +9,7 @@
 
 #include <mujoco/mujoco.h>
 
+#include "core/background_worker.h"
 #include "core/messages.h"
 #include "core/sensors/registry.h"
 #include "core/stage_profiler.h"
@@ -30,10 +31,12 @@ class SensorSuite {
  public:
   /// `view` must outlive the suite; `plume` is in world. Throws InputError when an enabled sensor has no frame on the
   /// robot or requires something that the world lacks. Throws InputError also when the depth camera is enabled without
-  /// `make_depth_imager`.
+  /// `make_depth_imager`. With `has_thread`, lidars and depth camera are computed in a thread of their own, with the
+  /// same messages.
   SensorSuite(const SensorSuiteSettings& settings, const AsBuiltRobot& robot, const mjModel& physics,
               const mjModel& view, const GasPlume& plume, const std::vector<FaultSettings>& faults, std::uint64_t seed,
-              const DepthImagerFactory& make_depth_imager = {}, const Subsurface& subsurface = {});
+              const DepthImagerFactory& make_depth_imager = {}, const Subsurface& subsurface = {},
+              bool has_thread = false);
 
   /// Steps all sensors. Called once per tick, with kinematics and accelerations of `now` in `data`.
   void step(const mjModel& physics, mjData& data, Time now);
@@ -51,7 +54,7 @@ class SensorSuite {
   bool is_busy() const;
 
   /// Removes and returns the messages due by `now`, in order of delivery.
-  std::vector<SensorMessage> take_due(Time now) { return queue_.take_due(now); }
+  std::vector<SensorMessage> take_due(Time now);
 
   /// Returns the readings of this tick for the firmware.
   const NewestReadings& newest() const { return newest_; }
@@ -78,12 +81,14 @@ class SensorSuite {
 
   void add_sensors(const SensorContext& context, bool are_read_by_firmware);
   void step_sensor(Entry& entry, const SensorTick& tick);
-  void deliver(Time ready, double latency_s, SensorMessage message);
+  /// `incomplete` is the sensor that still has to complete the message, or null.
+  void deliver(Time ready, double latency_s, SensorMessage message, Sensor* incomplete = nullptr);
 
   SensorSuiteSettings settings_;
   std::array<Channel, std::variant_size_v<SensorMessage>> channels_;  ///< [type of the message]
   int body_;
   LidarScene scene_;
+  BackgroundWorker worker_;
   std::vector<Entry> sensors_;  ///< sensors in the order of their steps
   FaultInjector faults_;
   DeliveryQueue queue_;

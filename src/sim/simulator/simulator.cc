@@ -67,7 +67,7 @@ Simulator::Simulator(const SimulatorSettings& settings, const RobotDescription& 
       actors_(*model_.physics, settings.actors),
       sensors_(settings.sensors, robot_, *model_.physics, *model_.view,
                GasPlume(*model_.view, settings.leaks, settings.wind), settings.faults, seed, make_depth_imager,
-               settings.subsurface),
+               settings.subsurface, settings.has_sensor_thread),
       recorded_(settings.recorded),
       tick_(from_seconds(model_.physics->opt.timestep)) {
   if (!settings.teleop_route.empty()) operator_.emplace(settings.teleop_operator, settings.teleop_route, seed);

@@ -53,6 +53,7 @@ struct SimulatorSettings {
   TeleopRoute teleop_route;  ///< teleoperated route, in world; empty: no operator
   TeleopOperatorSettings teleop_operator;
   std::vector<TeleopCommand> recorded;  ///< recorded teleoperation commands, replayed instead of `teleop_route`
+  bool has_sensor_thread = false;       ///< expensive sensors have a thread of their own, with the same results
 };
 
 /// Simulator of robot, world, sensors and actors, advanced tick by tick. Takes velocity commands and returns sensor

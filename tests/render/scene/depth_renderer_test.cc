@@ -29,7 +29,7 @@ struct Look {
       : model(small_scene(geoms)), data(sim::make_data(*model)), T(T_world_camera) {
     mj_forward(model.get(), data.get());
     DepthRenderer renderer(*model, kLens, near_m, far_m);
-    renderer.draw(*data, T, image);
+    renderer.draw({*model, *data}, T, image);
     num_drawn = renderer.num_drawn();
   }
   float depth_m(int u, int v) const { return image.depth_m[static_cast<std::size_t>(80 * v + u)]; }
@@ -157,7 +157,7 @@ TEST(DepthRenderer, OfALongMeshOnlyWhatIsNearIsDrawnAndTheDepthIsThatOfRaysAlong
   DepthRenderer renderer(*look.model, kLens, 0.1, 10.0);
   for (double y = -30.0; y < 30.0; y += 1.3) {
     look.T.position = {0.0, y, 0.5};
-    renderer.draw(*look.data, look.T, look.image);
+    renderer.draw({*look.model, *look.data}, look.T, look.image);
     int compared = 0;
     EXPECT_LT(worst_against_rays(look, 7.0, &compared), 0.001) << y;
     EXPECT_GT(compared, 1000) << y;
@@ -186,7 +186,7 @@ TEST(DepthRenderer, ARobotsOwnArmBeforeTheCameraIsSeenWhereItsBodyIs) {
   DepthRenderer renderer(*look.model, kLens, 0.1, 10.0);
   look.data->qpos[0] = 1.5;
   mj_kinematics(look.model.get(), look.data.get());
-  renderer.draw(*look.data, look.T, look.image);
+  renderer.draw({*look.model, *look.data}, look.T, look.image);
   EXPECT_NEAR(look.depth_m(40, 30), 2.4, 1e-4);
 }
 
@@ -205,9 +205,9 @@ TEST(DepthRenderer, TwoInOneThreadTakeTurns) {
   DepthRenderer near_camera(*near_wall, kLens, 0.1, 10.0), far_camera(*far_wall, kLens, 0.1, 10.0);
   sim::IdealDepthImage image;
   for (int round = 0; round < 3; ++round) {
-    near_camera.draw(*near_data, kAhead, image);
+    near_camera.draw({*near_wall, *near_data}, kAhead, image);
     EXPECT_NEAR(image.depth_m[2440], 2.0, 1e-4);
-    far_camera.draw(*far_data, kAhead, image);
+    far_camera.draw({*far_wall, *far_data}, kAhead, image);
     EXPECT_NEAR(image.depth_m[2440], 5.0, 1e-4);
   }
 }

@@ -21,7 +21,7 @@ class Painted : public DepthImager {
  public:
   using Depth = std::function<double(int u, int v)>;
   explicit Painted(Depth depth_m, double reflectivity) : depth_m_(std::move(depth_m)), reflectivity_(reflectivity) {}
-  void draw(const mjData&, const Pose3&, IdealDepthImage& image) override {
+  void draw(const BodyPoses&, const Pose3&, IdealDepthImage& image) override {
     image.depth_m.clear();
     for (int v = 0; v < kHeight; ++v) {
       for (int u = 0; u < kWidth; ++u) image.depth_m.push_back(static_cast<float>(depth_m_(u, v)));
@@ -46,8 +46,7 @@ DepthCameraSettings ideal() {
 DepthImage take(const DepthCameraSettings& settings, Painted::Depth depth_m, double reflectivity = 1.0,
                 const DustSettings& dust = {}, std::uint64_t seed = 1) {
   DepthCamera camera(settings, dust, std::make_unique<Painted>(std::move(depth_m), reflectivity), seed);
-  const mjData unused{};
-  return camera.take(unused, {}, from_seconds(1.5), 3);
+  return camera.take({}, {}, from_seconds(1.5), 3);
 }
 
 Painted::Depth wall(double depth_m) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <map>
 #include <memory>
 #include <string>
@@ -63,10 +64,10 @@ struct Ride {
 
 Ride stand(const SensorSuiteSettings& settings, double seconds, const std::vector<FaultSettings>& faults = {},
            const RobotDescription& robot = make_robot(), const DepthImagerFactory& make_imager = test::make_wall_imager,
-           const std::vector<Time>& scans_asked = {}, const AsBuiltSettings& as_built = {}) {
+           const std::vector<Time>& scans_asked = {}, const AsBuiltSettings& as_built = {}, bool has_thread = false) {
   SmallWorld world(kWorld);
   SensorSuite suite(settings, AsBuiltRobot(as_built, robot, 1), *world.model, *world.model,
-                    GasPlume(Eigen::Vector3d::Zero(), 0.0, {}), faults, 1, make_imager);
+                    GasPlume(Eigen::Vector3d::Zero(), 0.0, {}), faults, 1, make_imager, {}, has_thread);
   Ride ride;
   for (Time now{}; now <= from_seconds(seconds); now += std::chrono::milliseconds(2)) {
     suite.step(*world.model, *world.data, now);
@@ -340,16 +341,59 @@ TEST(AsBuilt, AntennaDelaysShiftTheRangesOfEachAnchor) {
   EXPECT_NE(robot.uwb_delay_m(1), robot.uwb_delay_m(2));
 }
 
+/// A lidar, a 3D lidar and a depth camera, with noise.
+SensorSuiteSettings with_expensive_sensors() {
+  SensorSuiteSettings settings = quiet();
+  settings.lidar.enabled = settings.lidar3d.enabled = settings.depth_camera.enabled = true;
+  settings.lidar.beams = 360;
+  settings.lidar3d.beams = 90;
+  return settings;
+}
+
+void expect_same_with_a_thread(const std::vector<FaultSettings>& faults) {
+  RobotDescription robot = make_robot();
+  robot.T_body_sensor["lidar3d"] = {};
+  const auto ride = [&](bool has_thread) {
+    return stand(with_expensive_sensors(), 2.0, faults, robot, test::make_wall_imager, {}, {}, has_thread);
+  };
+  const Ride alone = ride(false), beside = ride(true);
+  EXPECT_GT(alone.of<LaserScan>().size(), 5u);
+  EXPECT_GT(alone.of<DepthImage>().size(), 5u);
+  ASSERT_EQ(alone.arrivals.size(), beside.arrivals.size());
+  for (std::size_t i = 0; i < alone.arrivals.size(); ++i) {
+    const Arrival &a = alone.arrivals[i], &b = beside.arrivals[i];
+    EXPECT_EQ(a.at, b.at);
+    EXPECT_EQ(a.stamp(), b.stamp());
+    ASSERT_EQ(a.message.index(), b.message.index());
+    if (const auto* scan = std::get_if<LaserScan>(&a.message)) {
+      EXPECT_EQ(std::memcmp(scan->ranges_m.data(), std::get<LaserScan>(b.message).ranges_m.data(),
+                            scan->ranges_m.size() * sizeof(float)),
+                0);
+    }
+    if (const auto* image = std::get_if<DepthImage>(&a.message)) {
+      EXPECT_FALSE(image->depth_mm.empty());
+      EXPECT_EQ(image->depth_mm, std::get<DepthImage>(b.message).depth_mm);
+    }
+  }
+}
+
+TEST(SensorSuite, MessagesWithAThreadForExpensiveSensorsAreThoseWithout) { expect_same_with_a_thread({}); }
+
+TEST(SensorSuite, MessagesWithAThreadAndFaultsAreThoseWithout) {
+  expect_same_with_a_thread({fault("depth_camera", "freeze", 0.5, 0.5), fault("lidar", "outliers", 1.0, 0.5),
+                             fault("depth_camera", "dropout", 1.5, 0.2)});
+}
+
 TEST(DeliveryQueue, DeliversInOrderOfTheInstantDueAndAtOneInstantInTheOrderPutIn) {
   DeliveryQueue queue;
-  const auto tagged = [](int anchor) { return UwbRange{.stamp = {}, .anchor = anchor}; };
+  const auto tagged = [](int anchor) { return QueuedMessage{.message = UwbRange{.stamp = {}, .anchor = anchor}}; };
   queue.push(from_seconds(2.0), tagged(1));
   queue.push(from_seconds(1.0), tagged(2));
   queue.push(from_seconds(2.0), tagged(3));
   queue.push(from_seconds(3.0), tagged(4));
   std::vector<int> order;
-  for (const SensorMessage& message : queue.take_due(from_seconds(2.0)))
-    order.push_back(std::get<UwbRange>(message).anchor);
+  for (const QueuedMessage& queued : queue.take_due(from_seconds(2.0)))
+    order.push_back(std::get<UwbRange>(queued.message).anchor);
   EXPECT_EQ(order, (std::vector<int>{2, 1, 3}));
   EXPECT_TRUE(queue.take_due(from_seconds(2.5)).empty());
   EXPECT_EQ(queue.take_due(from_seconds(3.0)).size(), 1u);
