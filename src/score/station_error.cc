@@ -138,8 +138,8 @@ Pose2 search(const DistanceField& field, const std::vector<Eigen::Vector2d>& all
     for (int i = -steps; i <= steps; ++i) {
       for (int j = -steps; j <= steps; ++j) {
         const Pose2 motion{kSearchStep_m * i, kSearchStep_m * j, yaw};
-        const double score = rotated.mean_weight(field, center, motion.position(), kSearchRobust_m,
-                                                 kEquivalentScoreRatio * best);
+        const double score =
+            rotated.mean_weight(field, center, motion.position(), kSearchRobust_m, kEquivalentScoreRatio * best);
         candidates.push_back({motion, score, std::hypot(motion.x, motion.y, yaw * radius_m)});
         best = std::max(best, score);
       }
