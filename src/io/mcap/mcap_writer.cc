@@ -42,6 +42,7 @@ McapWriter::McapWriter(const std::filesystem::path& path)
 McapWriter::~McapWriter() {
   try {
     if (!is_closed_) flush_chunk();
+    worker_.wait(written_);
   } catch (const std::exception&) {}
 }
 
@@ -74,20 +75,21 @@ McapWriter::ChannelId McapWriter::add_channel(const std::string& topic, const st
   channel.number(std::uint32_t{0});  // no metadata
   channels_.record(mcap::kChannel, channel);
   records.record(mcap::kChannel, channel);
-  chunk_.raw(records.view());
+  chunk_.records.raw(records.view());
   return id;
 }
 
 void McapWriter::write(ChannelId channel, Time log_time, std::string_view cdr) {
   const auto time = static_cast<std::uint64_t>(log_time.count());
   begin_chunk(time);
-  chunk_index_[channel].push_back({.log_time = time, .offset_in_chunk = chunk_.size()});
-  chunk_.record_head(mcap::kMessage, sizeof(channel) + sizeof(std::uint32_t) + 2 * sizeof(time) + cdr.size());
-  chunk_.number(channel);
-  chunk_.number(message_count_[channel - 1u]++);
-  chunk_.number(time);  // log time
-  chunk_.number(time);  // publish time
-  chunk_.raw(cdr);
+  mcap::RecordWriter& records = chunk_.records;
+  chunk_.index[channel].push_back({.log_time = time, .offset_in_chunk = records.size()});
+  records.record_head(mcap::kMessage, sizeof(channel) + sizeof(std::uint32_t) + 2 * sizeof(time) + cdr.size());
+  records.number(channel);
+  records.number(message_count_[channel - 1u]++);
+  records.number(time);  // log time
+  records.number(time);  // publish time
+  records.raw(cdr);
 
   first_time_ = total_count_ == 0 ? time : std::min(first_time_, time);
   last_time_ = std::max(last_time_, time);
@@ -95,51 +97,56 @@ void McapWriter::write(ChannelId channel, Time log_time, std::string_view cdr) {
 }
 
 void McapWriter::begin_chunk(std::uint64_t log_time) {
-  const bool is_full = chunk_.size() > kChunkBytes;
-  const bool is_old = !chunk_index_.empty() && log_time > chunk_start_ + kChunkNanoseconds;
+  const bool is_full = chunk_.records.size() > kChunkBytes;
+  const bool is_old = !chunk_.index.empty() && log_time > chunk_.start + kChunkNanoseconds;
   if (is_full || is_old) flush_chunk();
-  if (chunk_index_.empty()) chunk_start_ = chunk_end_ = log_time;
-  chunk_start_ = std::min(chunk_start_, log_time);
-  chunk_end_ = std::max(chunk_end_, log_time);
+  if (chunk_.index.empty()) chunk_.start = chunk_.end = log_time;
+  chunk_.start = std::min(chunk_.start, log_time);
+  chunk_.end = std::max(chunk_.end, log_time);
 }
 
+/// Gives the chunk to the worker, after the one before is written.
 void McapWriter::flush_chunk() {
-  if (chunk_.is_empty()) return;
-  packed_.resize(ZSTD_compressBound(chunk_.size()));
-  const std::size_t packed_size = ZSTD_compressCCtx(compressor_.get(), packed_.data(), packed_.size(),
-                                                    chunk_.view().data(), chunk_.size(), kZstdLevel);
+  if (chunk_.records.is_empty()) return;
+  worker_.wait(written_);
+  written_ = worker_.submit([this, chunk = std::exchange(chunk_, {})] { write_chunk(chunk); });
+}
+
+void McapWriter::write_chunk(const Chunk& chunk) {
+  const std::string_view records = chunk.records.view();
+  packed_.resize(ZSTD_compressBound(records.size()));
+  const std::size_t packed_size =
+      ZSTD_compressCCtx(compressor_.get(), packed_.data(), packed_.size(), records.data(), records.size(), kZstdLevel);
   if (ZSTD_isError(packed_size) != 0) throw std::runtime_error(std::string("zstd: ") + ZSTD_getErrorName(packed_size));
 
   mcap::RecordWriter fields, head;
-  fields.number(chunk_start_);
-  fields.number(chunk_end_);
-  fields.number(std::uint64_t{chunk_.size()});
-  fields.number(crc_of(chunk_.view()));
+  fields.number(chunk.start);
+  fields.number(chunk.end);
+  fields.number(std::uint64_t{records.size()});
+  fields.number(crc_of(records));
   fields.text(kCompression);
   fields.number(std::uint64_t{packed_size});
   head.record_head(mcap::kChunk, fields.size() + packed_size);
   head.raw(fields.view());
-  ChunkIndex index{.start_time = chunk_start_,
-                   .end_time = chunk_end_,
+  ChunkIndex index{.start_time = chunk.start,
+                   .end_time = chunk.end,
                    .offset = offset_,
                    .length = head.size() + packed_size,
                    .index_length = 0,
                    .compressed_size = packed_size,
-                   .uncompressed_size = chunk_.size(),
+                   .uncompressed_size = records.size(),
                    .message_index_offsets = {}};
   put(head.view());
   put(std::string_view(packed_).substr(0, packed_size));
-  write_message_indexes(index);
+  write_message_indexes(chunk, index);
   chunks_.push_back(std::move(index));
   file_.flush();
-  chunk_.clear();
-  chunk_index_.clear();
 }
 
-void McapWriter::write_message_indexes(ChunkIndex& chunk) {
+void McapWriter::write_message_indexes(const Chunk& chunk, ChunkIndex& index) {
   const std::uint64_t start = offset_;
-  for (const auto& [channel, entries] : chunk_index_) {
-    chunk.message_index_offsets.emplace_back(channel, offset_);
+  for (const auto& [channel, entries] : chunk.index) {
+    index.message_index_offsets.emplace_back(channel, offset_);
     mcap::RecordWriter content, record;
     content.number(channel);
     content.number(static_cast<std::uint32_t>(sizeof(IndexEntry) * entries.size()));
@@ -150,12 +157,13 @@ void McapWriter::write_message_indexes(ChunkIndex& chunk) {
     record.record(mcap::kMessageIndex, content);
     put(record.view());
   }
-  chunk.index_length = offset_ - start;
+  index.index_length = offset_ - start;
 }
 
 void McapWriter::close() {
   if (is_closed_) return;
   flush_chunk();
+  worker_.wait(written_);
   is_closed_ = true;
   mcap::RecordWriter data_crc, record;
   data_crc.number(crc_);

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/background_worker.h"
 #include "core/time.h"
 #include "io/mcap/mcap_format.h"
 
@@ -20,8 +21,9 @@ namespace patrol::io {
 /// Writer of MCAP files: profile ros2, schemas ros2msg, messages cdr, zstd-compressed chunks, a summary with indexes,
 /// and checksums throughout. The same calls produce the same bytes.
 ///
-/// Each chunk (1 MB or one second) is written when it is complete: after a crash the file is readable up to the last
-/// complete chunk. Without `close` the file has no summary, by which readers recognize truncation.
+/// Each chunk (1 MB or one second) is written when it is complete, by a thread that compresses it: after a crash the
+/// file is readable up to the last complete chunk. Without `close` the file has no summary, by which readers recognize
+/// truncation. An error of writing is thrown by a later call.
 class McapWriter {
  public:
   using ChannelId = std::uint16_t;
@@ -45,11 +47,18 @@ class McapWriter {
   struct IndexEntry {
     std::uint64_t log_time, offset_in_chunk;
   };
+  /// Messages that are written together.
+  struct Chunk {
+    mcap::RecordWriter records;
+    std::uint64_t start = 0, end = 0;  ///< first and last log time
+    std::map<ChannelId, std::vector<IndexEntry>> index;
+  };
 
   void put(std::string_view bytes);
   void begin_chunk(std::uint64_t log_time);
   void flush_chunk();
-  void write_message_indexes(ChunkIndex& chunk);
+  void write_chunk(const Chunk& chunk);
+  void write_message_indexes(const Chunk& chunk, ChunkIndex& index);
   void write_summary();
   mcap::RecordWriter statistics() const;
   mcap::RecordWriter chunk_indexes() const;
@@ -68,10 +77,10 @@ class McapWriter {
   std::uint64_t total_count_ = 0;
   std::uint64_t first_time_ = 0, last_time_ = 0;
 
-  mcap::RecordWriter chunk_;
-  std::uint64_t chunk_start_ = 0, chunk_end_ = 0;
-  std::map<ChannelId, std::vector<IndexEntry>> chunk_index_;
+  Chunk chunk_;  ///< not yet complete
   std::vector<ChunkIndex> chunks_;
+  BackgroundWorker worker_{true};  ///< writes complete chunks; until it is done, the file is its own
+  BackgroundWorker::Ticket written_ = 0;
 };
 
 }  // namespace patrol::io
