@@ -281,7 +281,7 @@ void add_wide_noise(const HitLikelihood& likelihood, HitFit& fit) {
   p[kWideNoise_m] = 2.0 * p[kNoise_m];
   p[kNoise_m] *= 0.7;
   p[kWideProbability] = 0.2;
-  const double value = likelihood.maximize(p, is_free, 200);
+  const double value = likelihood.maximize(p, is_free, 200, 1e-6);
   if (value < fit.log_likelihood + kMinGain) return;
   fit.log_likelihood = value;
   fit.values = p;
