@@ -116,15 +116,20 @@ std::vector<Aim> aims_of(const EdgeSample& sample, double angle_noise_deg, const
 double density_of(const EdgeSample& sample, const std::vector<Aim>& aims, double width_deg,
                   const LidarSettings& lidar) {
   const double noise_m = std::max(1e-4, lidar.range_noise_std_m), step_m = lidar.range_quantization_m;
+  const double wide = lidar.wide_noise_probability, wide_noise_m = std::hypot(noise_m, lidar.wide_noise_std_m);
+  const auto noise_density = [&](double deviation_m) {
+    const double narrow = edge_density(deviation_m, noise_m, step_m);
+    return wide > 0.0 ? (1.0 - wide) * narrow + wide * edge_density(deviation_m, wide_noise_m, step_m) : narrow;
+  };
   double density = 0.0;
   for (const Aim& aim : aims) {
     double of_aim = 0.0;
     if (aim.jump_probability > 0.0) {
       const double mixed_m = mixed_range_m(sample, aim.offset_deg, width_deg);
-      of_aim += aim.jump_probability * edge_density(sample.recorded_m - mixed_m, noise_m, step_m);
+      of_aim += aim.jump_probability * noise_density(sample.recorded_m - mixed_m);
     }
     if (aim.jump_probability < 1.0)
-      of_aim += (1.0 - aim.jump_probability) * edge_density(sample.recorded_m - aim.range_m, noise_m, step_m);
+      of_aim += (1.0 - aim.jump_probability) * noise_density(sample.recorded_m - aim.range_m);
     const double through = std::exp(-lidar.false_return_rate_per_m * aim.range_m);
     of_aim *= through;
     if (sample.recorded_m < aim.range_m) of_aim += (1.0 - through) / aim.range_m;

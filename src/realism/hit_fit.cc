@@ -18,8 +18,8 @@ using HitColumn = Eigen::Matrix<double, kNum, 1>;
 using HitMatrix = Eigen::Matrix<double, kNum, kNum>;
 
 /// Lower bounds in the fit; below them a parameter is zero.
-constexpr HitVector kFloor = {-10.0, -1.0, -10.0, -10.0, 1e-5, 2e-6, 1e-7, 1e-7};
-constexpr HitVector kCeiling = {10.0, 1.0, 10.0, 10.0, 2.0, 0.1, 1.0, 0.9};
+constexpr HitVector kFloor = {-10.0, -1.0, -10.0, -10.0, 1e-5, 2e-6, 1e-7, 1e-7, 1e-7, 1e-5};
+constexpr HitVector kCeiling = {10.0, 1.0, 10.0, 10.0, 2.0, 0.1, 1.0, 0.9, 0.9, 1.0};
 
 bool is_logarithmic(std::size_t parameter) { return parameter >= kNoise_m; }
 
@@ -34,6 +34,13 @@ double normal_density(double z) { return std::exp(-0.5 * z * z) / std::sqrt(2.0 
 double normal_between(double low, double high) {
   if (low > 0.0) return normal_between(-high, -low);
   return 0.5 * (std::erfc(-high / std::numbers::sqrt2) - std::erfc(-low / std::numbers::sqrt2));
+}
+
+/// Returns whether a parameter is at a bound and its gradient points beyond. It is left out of a step: the step of a
+/// parameter without information would be unlimited, and would carry those of the others along.
+bool is_pushed_out(std::size_t parameter, double value, double gradient) {
+  return (value <= kFloor[parameter] * (is_logarithmic(parameter) ? 1.001 : 1.0) && gradient < 0.0) ||
+         (value >= kCeiling[parameter] && gradient > 0.0);
 }
 
 /// Density of a residual about a mean, with its derivatives.
@@ -52,6 +59,32 @@ CoreDensity core_density(double deviation_m, double std_m, double step_m) {
           (low * at_low - high * at_high) / (std_m * step_m)};
 }
 
+/// Density of a residual without false returns and outliers, with its derivatives in the coordinates of the fit.
+struct MixedDensity {
+  double value = 0.0, by_mean = 0.0, by_noise = 0.0, by_angle_noise = 0.0, by_wide_probability = 0.0,
+         by_wide_noise = 0.0;
+};
+
+MixedDensity mixed_density(double deviation_m, double from_angle_m, double step_m, const HitVector& p) {
+  MixedDensity sum;
+  const auto add = [&](double weight, double std_m) {
+    const CoreDensity core = core_density(deviation_m, std_m, step_m);
+    const double by_std = weight * core.by_std / std_m;
+    sum.value += weight * core.value;
+    sum.by_mean += weight * core.by_mean;
+    sum.by_noise += by_std * p[kNoise_m] * p[kNoise_m];
+    sum.by_angle_noise += by_std * from_angle_m * from_angle_m;
+    return std::pair(core.value, by_std);
+  };
+  const double wide = p[kWideProbability], std_m = std::hypot(p[kNoise_m], from_angle_m);
+  const double narrow_value = add(1.0 - wide, std_m).first;
+  if (wide <= kFloor[kWideProbability]) return sum;
+  const auto [wide_value, by_wide_std] = add(wide, std::hypot(std_m, p[kWideNoise_m]));
+  sum.by_wide_probability = wide * (wide_value - narrow_value);
+  sum.by_wide_noise = by_wide_std * p[kWideNoise_m] * p[kWideNoise_m];
+  return sum;
+}
+
 /// Log-likelihood of one sample; `score` is its gradient in the coordinates of the fit.
 double sample_log_likelihood(const HitSample& sample, const HitModel& model, const HitVector& p, HitColumn* score) {
   // A plane at the azimuth a has the second derivative r (1 + 2 tan^2).
@@ -60,8 +93,7 @@ double sample_log_likelihood(const HitSample& sample, const HitModel& model, con
   const double mean_m = p[kOffset_m] + p[kScale] * sample.range_m + p[kIncidence_m] * (1.0 - sample.cosine) +
                         p[kReflectivity_m] * sample.darkness + from_curvature_m;
   const double from_angle_m = sample.slope_m_per_rad * p[kAngleNoise_rad];
-  const double std_m = std::hypot(p[kNoise_m], from_angle_m);
-  const CoreDensity core = core_density(sample.residual_m - mean_m, std_m, model.range_step_m);
+  const MixedDensity core = mixed_density(sample.residual_m - mean_m, from_angle_m, model.range_step_m, p);
   const double through = std::exp(-p[kFalseRate_per_m] * sample.range_m);
   const double observed = 1.0 - (1.0 - through) * std::min(1.0, model.range_min_m / sample.range_m);
   const double is_before = sample.residual_m < 0.0 ? 1.0 : 0.0;
@@ -69,13 +101,15 @@ double sample_log_likelihood(const HitSample& sample, const HitModel& model, con
   const double rest = inside * (1.0 - through) / sample.range_m * is_before + p[kOutlierRatio] / model.range_max_m;
   const double density = std::max(inside * through * core.value + rest, 1e-300);
   if (score != nullptr) {
-    const double by_mean = inside * through * core.by_mean / density, by_std = inside * through * core.by_std / density;
+    const double of_core = inside * through / density, by_mean = of_core * core.by_mean;
     (*score)[kOffset_m] = by_mean;
     (*score)[kScale] = by_mean * sample.range_m;
     (*score)[kIncidence_m] = by_mean * (1.0 - sample.cosine);
     (*score)[kReflectivity_m] = by_mean * sample.darkness;
-    (*score)[kNoise_m] = by_std * p[kNoise_m] * p[kNoise_m] / std_m;
-    (*score)[kAngleNoise_rad] = by_std * from_angle_m * from_angle_m / std_m + 2.0 * by_mean * from_curvature_m;
+    (*score)[kNoise_m] = of_core * core.by_noise;
+    (*score)[kAngleNoise_rad] = of_core * core.by_angle_noise + 2.0 * by_mean * from_curvature_m;
+    (*score)[kWideProbability] = of_core * core.by_wide_probability;
+    (*score)[kWideNoise_m] = of_core * core.by_wide_noise;
     const double by_rate = inside * through * (is_before - sample.range_m * core.value);
     (*score)[kFalseRate_per_m] = p[kFalseRate_per_m] * (by_rate / density + through * model.range_min_m / observed);
     const double by_outliers =
@@ -117,7 +151,7 @@ class HitLikelihood {
       HitColumn gradient = at.gradient;
       for (std::size_t j = 0; j < kNum; ++j) {
         const auto k = static_cast<Eigen::Index>(j);
-        if (is_free[j]) {
+        if (is_free[j] && !is_pushed_out(j, p[j], gradient[k])) {
           system(k, k) += damping * system(k, k) + 1e-9;
           continue;
         }
@@ -238,6 +272,22 @@ std::pair<double, double> robust_start(const std::vector<HitSample>& samples) {
   return {median, std::max(1e-4, 1.4826 * *middle)};
 }
 
+/// Adds the additional noise to a fit without it if the log-likelihood rises enough.
+void add_wide_noise(const HitLikelihood& likelihood, HitFit& fit) {
+  constexpr double kMinGain = 6.0;
+  FreeMask is_free = fit.is_free;
+  is_free[kWideProbability] = is_free[kWideNoise_m] = true;
+  HitVector p = fit.values;
+  p[kWideNoise_m] = 2.0 * p[kNoise_m];
+  p[kNoise_m] *= 0.7;
+  p[kWideProbability] = 0.2;
+  const double value = likelihood.maximize(p, is_free, 200, 1e-6);
+  if (value < fit.log_likelihood + kMinGain) return;
+  fit.log_likelihood = value;
+  fit.values = p;
+  fit.is_free = is_free;
+}
+
 }  // namespace
 
 HitFit fit_hits(const std::vector<HitSample>& samples, const HitModel& model, bool with_intervals) {
@@ -258,12 +308,13 @@ HitFit fit_hits(const std::vector<HitSample>& samples, const HitModel& model, bo
   fit.is_free[kIncidence_m] = fit.incidence_spread > 0.01;
   fit.is_free[kReflectivity_m] = fit.darkness_spread > 0.05;
   fit.is_free[kAngleNoise_rad] = fit.max_slope_m_per_rad > 0.05;
+  fit.is_free[kWideProbability] = fit.is_free[kWideNoise_m] = false;
   for (std::size_t j = 0; j < kNum; ++j) fit.is_free[j] = fit.is_free[j] && !model.is_fixed[j];
   const HitLikelihood likelihood(samples, model);
   const auto [median_m, spread_m] = robust_start(samples);
   fit.log_likelihood = -std::numeric_limits<double>::infinity();
   for (const double angle_deg : {0.01, 0.15}) {
-    HitVector p = {median_m, 0.0, 0.0, 0.0, 0.8 * spread_m, angle_deg * kDegree, 1e-3, 1e-3};
+    HitVector p = {median_m, 0.0, 0.0, 0.0, 0.8 * spread_m, angle_deg * kDegree, 1e-3, 1e-3, 0.0, 0.0};
     for (std::size_t j = 0; j < kNum; ++j) {
       if (!fit.is_free[j]) p[j] = is_logarithmic(j) ? kFloor[j] : 0.0;
     }
@@ -272,6 +323,7 @@ HitFit fit_hits(const std::vector<HitSample>& samples, const HitModel& model, bo
     fit.log_likelihood = value;
     fit.values = p;
   }
+  if (!model.is_fixed[kWideProbability]) add_wide_noise(likelihood, fit);
   if (!with_intervals) return fit;
   const HitVector ratio = likelihood.inflation(fit.values, fit.is_free);
   for (std::size_t j = 0; j < kNum; ++j) {

@@ -18,7 +18,7 @@ struct HitSample {
   std::size_t block = 0;         ///< group of scans, within which errors may be correlated
 };
 
-/// Parameters of the fit, in the order of `HitModel::values`. The last six are logarithms inside of the fit.
+/// Parameters of the fit, in the order of `HitModel::values`. The last eight are logarithms inside of the fit.
 enum HitParameter : std::size_t {
   kOffset_m,         ///< range error at range 0, normal incidence and 50 % reflectivity
   kScale,            ///< relative range error
@@ -28,13 +28,16 @@ enum HitParameter : std::size_t {
   kAngleNoise_rad,   ///< standard deviation of the azimuth
   kFalseRate_per_m,  ///< rate of false returns
   kOutlierRatio,     ///< fraction of returns that the model does not explain (errors of the site), uniform in range
+  kWideProbability,  ///< fraction of returns with additional noise
+  kWideNoise_m,      ///< standard deviation of the additional noise
   kNumHitParameters
 };
 using HitVector = std::array<double, kNumHitParameters>;
 
 /// Likelihood of residuals: normal with variance noise^2 + (slope angle_noise)^2 about the systematic error and the
-/// effect of the angle noise on a plane of second order, integrated over the quantization step, mixed with false
-/// returns (uniform before the surface) and outliers (uniform up to the maximum range).
+/// effect of the angle noise on a plane of second order, integrated over the quantization step. It is mixed with normal
+/// residuals of the additional noise, false returns (uniform before the surface) and outliers (uniform up to the
+/// maximum range).
 struct HitModel {
   double range_step_m = 0.0;
   double range_max_m = 30.0;
@@ -57,7 +60,7 @@ struct HitFit {
 
 /// Fits the parameters by maximum likelihood [Berndt74] with profile intervals. The threshold of the profiles is
 /// enlarged by the ratio of the block-clustered to the model's variance where this exceeds 1. Systematic errors whose
-/// regressor does not vary are fixed at 0.
+/// regressor does not vary are fixed at 0, and so is additional noise that raises the log-likelihood by less than 6.
 HitFit fit_hits(const std::vector<HitSample>& samples, const HitModel& model, bool with_intervals = true);
 
 }  // namespace patrol::realism

@@ -171,6 +171,8 @@ class Fitter {
     for (HitVector* values : {&hits_.values, &hits_.low, &hits_.high}) (*values)[kNoise_m] *= set_.noise_factor;
     add_noise(first, model);
     device_.settings.range_noise_std_m = hits_.values[kNoise_m];
+    device_.settings.wide_noise_probability = hits_.is_free[kWideProbability] ? hits_.values[kWideProbability] : 0.0;
+    device_.settings.wide_noise_std_m = hits_.is_free[kWideNoise_m] ? hits_.values[kWideNoise_m] : 0.0;
     device_.settings.false_return_rate_per_m = hits_.values[kFalseRate_per_m];
     device_.settings.range_max_m = model.range_max_m;
     device_.errors = {.noise_ratio = 1.0,
@@ -202,6 +204,9 @@ class Fitter {
     };
     positive("range_noise_std_m", kNoise_m, 1.0, "consistent with 0 beside the quantization step and the angle noise",
              "");
+    const std::string no_tails = "the residuals have no longer tails than noise, false returns and outliers";
+    positive("wide_noise_probability", kWideProbability, 1.0, no_tails, no_tails);
+    positive("wide_noise_std_m", kWideNoise_m, 1.0, no_tails, no_tails);
     const auto systematic = [&](const char* name, std::size_t j, const std::string& loose) {
       const bool is_fixed = model.is_fixed[j];
       FittedParameter p = parameter_of(name, is_fixed ? first : hits_, j);
@@ -337,6 +342,8 @@ LidarDevice LidarFit::device(const LidarDevice& base) const {
   };
   LidarSettings& lidar = device.settings;
   set("range_noise_std_m", lidar.range_noise_std_m);
+  set("wide_noise_probability", lidar.wide_noise_probability);
+  set("wide_noise_std_m", lidar.wide_noise_std_m);
   set("range_quantization_m", lidar.range_quantization_m);
   set("angle_noise_std_deg", lidar.angle_noise_std_deg);
   set("beam_width_deg", lidar.beam_width_deg);

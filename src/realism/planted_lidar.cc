@@ -84,12 +84,16 @@ LidarDevice draw_device(std::uint64_t seed) {
   device.errors.range_scale = draw.uniform(-0.004, 0.004);
   device.errors.incidence_m = draw.uniform(-0.03, 0.03);
   device.errors.reflectivity_m = draw.uniform(-0.02, 0.02);
+  lidar.wide_noise_probability = draw.by_ratio(0.03, 0.3);
+  lidar.wide_noise_std_m = lidar.range_noise_std_m * draw.uniform(2.5, 5.0);
   return device;
 }
 
 std::vector<std::pair<std::string, double>> values_of(const LidarDevice& device) {
   const LidarSettings& lidar = device.settings;
   return {{"range_noise_std_m", lidar.range_noise_std_m},
+          {"wide_noise_probability", lidar.wide_noise_probability},
+          {"wide_noise_std_m", lidar.wide_noise_std_m},
           {"range_quantization_m", lidar.range_quantization_m},
           {"angle_noise_std_deg", lidar.angle_noise_std_deg},
           {"beam_width_deg", lidar.beam_width_deg},

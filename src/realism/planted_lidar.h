@@ -30,7 +30,7 @@ struct PlantedTrial {
 /// room without anything.
 Site planted_site(bool is_plain_room);
 
-/// Draws twelve parameters of a lidar, simulates scans at drawn poses and fits the parameters to them.
+/// Draws fourteen parameters of a lidar, simulates scans at drawn poses and fits the parameters to them.
 PlantedTrial run_planted_trial(const Site& site, const PlantedTrialSettings& settings, std::uint64_t seed);
 
 }  // namespace patrol::realism

@@ -7,12 +7,12 @@
 #include <png.h>
 
 #include "core/error.h"
+#include "core/map_cells.h"
 
 namespace patrol::report {
 namespace {
 
-constexpr std::int8_t kOccupiedFrom = 65;  // percent, threshold of map_server
-constexpr int kNumErrors = 40;             // number of error colors
+constexpr int kNumErrors = 40;  // number of error colors
 constexpr std::uint8_t kNothing = 0, kFreePixel = 1, kTruthPixel = 2, kFirstError = 3;
 
 /// Palette image, row 0 at the top.
@@ -105,7 +105,7 @@ void for_each_cell(const Grid<Value>& grid, const Use& use) {
   }
 }
 
-bool is_occupied(const OccupancyGrid& map, Cell cell) { return map.at(cell) >= kOccupiedFrom; }
+bool is_occupied(const OccupancyGrid& map, Cell cell) { return patrol::is_occupied(map.at(cell)); }
 
 /// Extends the area to the known cells of the built map and the true surfaces, in world.
 void extend_to_map(Eigen::AlignedBox2d& shown, const MapLayers& layers) {

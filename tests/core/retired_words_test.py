@@ -114,7 +114,7 @@ ALLOWED = [
     ("neighbour", "src/slam/submaps/neighbor_examples.cc", r"^slam/neighbour_examples$", STREAM),
     ("sighting", "src/studies/landmark_world.cc", r"^study/sights$", STREAM),
     ("remote", "src/monitor/http_server.cc", r"^remote_endpoint$", "function of Boost.Asio"),
-    ("share", "src/app/scenario/scenario.cc", r"^share/patrol$", "folder of the installed data"),
+    ("share", "src/app/scenario/data_folders.cc", r"^share/patrol$", "folder of the installed data"),
     ("share", "src/render/canvas.cc", r"^/usr/share/fonts/", "folder of the system's fonts"),
     ("place", "src/io/*/*", r"^place_?$", "position in a file, which an error message names"),
 ]

@@ -87,6 +87,41 @@ TEST(HitFit, NoiseBelowTheQuantizationStepIsResolved) {
   EXPECT_NEAR(fit.values[kNoise_m], 0.006, 0.0006);  // the residuals have a standard deviation of 8.3 mm
 }
 
+// Least squares on ranges that are uniform from 1 to 11 m: variance 100/12 m^2 about 6 m. No return is an outlier, so
+// that the outlier ratio is at its lower bound.
+TEST(HitFit, WithoutOutliersTheIntervalsOfOffsetAndScaleAreThoseOfLeastSquares) {
+  const HitFit fit = fit_hits(hit_samples(0.01, 0.0, 0.02, -0.001, 0.0), {});
+  const double variance_m2 = 100.0 / 12.0, of_mean_m = 0.01 / std::sqrt(8000.0);
+  const double scale_std = of_mean_m / std::sqrt(variance_m2);
+  const double offset_std_m = of_mean_m * std::sqrt(1.0 + 36.0 / variance_m2);
+  const auto ratio = [&](HitParameter j, double std) { return (fit.high[j] - fit.low[j]) / (2.0 * 1.96 * std); };
+  EXPECT_GT(ratio(kOffset_m, offset_std_m), 0.95);
+  EXPECT_LT(ratio(kOffset_m, offset_std_m), 1.25);  // by blocks of scans
+  EXPECT_GT(ratio(kScale, scale_std), 0.95);
+  EXPECT_LT(ratio(kScale, scale_std), 1.25);
+}
+
+TEST(HitFit, AQuarterOfTheReturnsWithFourTimesTheNoiseIsRecoveredWithin10Percent) {
+  std::vector<HitSample> samples = hit_samples(0.01, 0.0, 0.003, 0.0, 0.0);
+  const RandomStream random(12, "wide");
+  for (std::uint64_t k = 0; k < samples.size(); ++k) {
+    if (k % 4 == 0) samples[k].residual_m += 0.04 * random.normal(k);
+  }
+  const HitFit fit = fit_hits(samples, {});
+  EXPECT_NEAR(fit.values[kNoise_m], 0.01, 0.0005);
+  EXPECT_NEAR(fit.values[kWideNoise_m], 0.04, 0.004);
+  EXPECT_NEAR(fit.values[kWideProbability], 0.25, 0.025);
+  EXPECT_LE(fit.low[kWideProbability], 0.25);
+  EXPECT_GE(fit.high[kWideProbability], 0.25);
+  EXPECT_LT(fit.high[kWideProbability] - fit.low[kWideProbability], 0.08);
+  EXPECT_LE(fit.low[kWideNoise_m], 0.04);
+  EXPECT_GE(fit.high[kWideNoise_m], 0.04);
+}
+
+TEST(HitFit, NormalNoiseHasNoAdditionalNoise) {
+  EXPECT_FALSE(fit_hits(hit_samples(0.01, 0.0, 0.003, 0.0, 0.0), {}).is_free[kWideProbability]);
+}
+
 TEST(ReturnFit, FindsALimitAndNamesItsAbsence) {
   const RandomStream random(5, "returns");
   std::vector<ReturnSample> samples, unlimited;

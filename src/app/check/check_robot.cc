@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "app/scenario/data_folders.h"
 #include "app/scenario/mounts.h"
 #include "app/scenario/scenario.h"
 #include "app/scenario/sensor_needs.h"

@@ -1,5 +1,6 @@
 #include "app/cli/command_options.h"
 
+#include "app/scenario/data_folders.h"
 #include "app/scenario/scenario.h"
 
 namespace patrol::app {

@@ -10,7 +10,7 @@
 #include "app/common/output_directory.h"
 #include "app/common/progress_bar.h"
 #include "app/common/text_style.h"
-#include "app/scenario/scenario.h"
+#include "app/scenario/data_folders.h"
 #include "io/files/atomic_file.h"
 #include "io/json/metrics_json.h"
 #include "report/page.h"

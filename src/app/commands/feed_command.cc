@@ -12,6 +12,7 @@
 #include "app/run/progress_line.h"
 #include "app/run/run_junit.h"
 #include "app/run/run_once.h"
+#include "app/scenario/data_folders.h"
 #include "core/error.h"
 
 namespace patrol::app {

@@ -2,6 +2,7 @@
 
 #include "app/commands/commands.h"
 #include "app/common/progress_bar.h"
+#include "app/scenario/data_folders.h"
 #include "app/scenario/scenario.h"
 #include "importer/site/course.h"
 #include "io/urdf.h"

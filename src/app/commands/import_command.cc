@@ -8,7 +8,7 @@
 
 #include "app/commands/commands.h"
 #include "app/mapping/log_site.h"
-#include "app/scenario/scenario.h"
+#include "app/scenario/data_folders.h"
 #include "core/error.h"
 #include "importer/robot_import.h"
 #include "importer/site/site_import.h"

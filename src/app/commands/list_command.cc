@@ -11,6 +11,7 @@
 
 #include "app/commands/commands.h"
 #include "app/common/print_result.h"
+#include "app/scenario/data_folders.h"
 #include "app/scenario/scenario.h"
 #include "app/scenario/sensor_needs.h"
 #include "app/scoring/metric_infos.h"
@@ -27,16 +28,30 @@
 namespace patrol::app {
 namespace {
 
-/// Files below `folder` that `keep` accepts, as paths relative to `root`, sorted.
+/// File of a data folder.
+struct DataFile {
+  std::filesystem::path path;
+  std::string name;    ///< path relative to the data folder
+  std::string folder;  ///< name of the data folder
+};
+
+/// Files below `kind` ("worlds" or "models") of the data folders that `keep` accepts, sorted within each folder.
 template <typename Keep>
-std::vector<std::string> files_below(const std::filesystem::path& root, const std::string& folder, const Keep& keep) {
-  std::vector<std::string> found;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(root / folder)) {
-    std::error_code ignored;  // a link to itself
-    if (entry.is_regular_file(ignored) && keep(entry.path()))
-      found.push_back(std::filesystem::relative(entry.path(), root).string());
+std::vector<DataFile> data_files(const std::vector<DataFolder>& folders, const std::string& kind, const Keep& keep) {
+  std::vector<DataFile> found;
+  for (const DataFolder& folder : folders) {
+    const auto first = static_cast<std::ptrdiff_t>(found.size());
+    std::error_code ignored;
+    if (!std::filesystem::is_directory(folder.path / kind, ignored)) continue;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder.path / kind)) {
+      // A link to itself is no regular file.
+      if (!entry.is_regular_file(ignored) || !keep(entry.path())) continue;
+      found.push_back({.path = entry.path(),
+                       .name = std::filesystem::relative(entry.path(), folder.path).string(),
+                       .folder = folder.name});
+    }
+    std::sort(found.begin() + first, found.end(), [](const DataFile& a, const DataFile& b) { return a.name < b.name; });
   }
-  std::sort(found.begin(), found.end());
   return found;
 }
 
@@ -148,12 +163,11 @@ struct ToleranceSections {
 };
 
 /// Robot of a scenario and the sensors that it needs; the message of a scenario that is refused.
-std::pair<std::string, std::string> robot_and_needs_of(const std::filesystem::path& file,
-                                                       const std::filesystem::path& root) {
+std::pair<std::string, std::string> robot_and_needs_of(const std::filesystem::path& file) {
   try {
     const Scenario scenario = load_scenario(file);
     std::vector<std::string> sensors;
-    for (const SensorNeed& need : sensor_needs(scenario, load_scenario_files(scenario, root)))
+    for (const SensorNeed& need : sensor_needs(scenario, load_scenario_files(scenario, find_data_root(file))))
       sensors.push_back(need.sensor);
     return {scenario.robot, join(sensors, ", ")};
   } catch (const InputError& error) {
@@ -161,32 +175,39 @@ std::pair<std::string, std::string> robot_and_needs_of(const std::filesystem::pa
   }
 }
 
-Section scenario_section(const std::filesystem::path& root) {
-  Section result{.title = "scenarios, their robots and the sensors that they need",
-                 .table = {.name = "scenarios", .columns = {"name", "robot", "needed_sensors"}, .rows = {}}};
+Section scenario_section(const std::vector<DataFolder>& folders) {
+  Section result{.title = "scenarios, their robots, the sensors that they need and their folders",
+                 .table = {.name = "scenarios", .columns = {"name", "robot", "needed_sensors", "folder"}, .rows = {}}};
   const auto is_scenario = [](const auto& file) { return file.parent_path().filename() == "scenarios"; };
-  for (const std::string& name : files_below(root, "worlds", is_scenario)) {
-    const auto [robot, needs] = robot_and_needs_of(root / name, root);
-    result.table.rows.push_back({name, robot, needs});
+  for (const DataFile& file : data_files(folders, "worlds", is_scenario)) {
+    const auto [robot, needs] = robot_and_needs_of(file.path);
+    result.table.rows.push_back({file.name, robot, needs, file.folder});
   }
+  return result;
+}
+
+Section file_section(const std::string& name, const std::vector<DataFile>& files) {
+  Section result{.title = name + " and their folders",
+                 .table = {.name = name, .columns = {"name", "folder"}, .rows = {}}};
+  for (const DataFile& file : files) result.table.rows.push_back({file.name, file.folder});
   return result;
 }
 
 /// Adds scenarios, worlds and robots; an explanation if the data folder is missing.
 void add_data(std::vector<Section>& sections) {
-  std::filesystem::path root;
+  std::vector<DataFolder> folders;
   try {
-    root = find_data_root("");
+    folders = data_folders();
   } catch (const InputError& error) {
     fmt::print(stderr, "patrol: no scenarios, worlds and robots: {}\n", error.what());
     return;
   }
-  sections.push_back(scenario_section(root));
-  sections.push_back(section("worlds", "worlds", files_below(root, "worlds", [](const auto& file) {
-                               return file.extension() == ".xml" && file.stem() == file.parent_path().filename();
-                             })));
-  sections.push_back(section(
-      "robots", "robots", files_below(root, "models", [](const auto& file) { return file.extension() == ".urdf"; })));
+  sections.push_back(scenario_section(folders));
+  sections.push_back(file_section("worlds", data_files(folders, "worlds", [](const auto& file) {
+                                    return file.extension() == ".xml" && file.stem() == file.parent_path().filename();
+                                  })));
+  sections.push_back(file_section(
+      "robots", data_files(folders, "models", [](const auto& file) { return file.extension() == ".urdf"; })));
 }
 
 std::vector<Section> all_sections() {

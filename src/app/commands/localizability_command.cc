@@ -6,6 +6,7 @@
 #include "app/commands/commands.h"
 #include "app/common/output_directory.h"
 #include "app/common/progress_bar.h"
+#include "app/scenario/data_folders.h"
 #include "app/scenario/sensor_needs.h"
 #include "app/scoring/localizability_map.h"
 #include "core/error.h"

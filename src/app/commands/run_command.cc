@@ -13,6 +13,7 @@
 #include "app/run/progress_line.h"
 #include "app/run/run_once.h"
 #include "app/run/terminal_view.h"
+#include "app/scenario/data_folders.h"
 #include "core/error.h"
 #include "core/geometry/angles.h"
 

@@ -6,6 +6,7 @@
 #include "app/common/progress_bar.h"
 #include "app/report/run_summary.h"
 #include "app/run/run_verdict.h"
+#include "app/scenario/data_folders.h"
 #include "app/scoring/relation_table.h"
 #include "app/scoring/score_json.h"
 #include "app/scoring/score_run.h"

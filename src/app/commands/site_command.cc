@@ -2,6 +2,7 @@
 
 #include "app/check/site_surfaces.h"
 #include "app/commands/commands.h"
+#include "app/scenario/data_folders.h"
 #include "app/scenario/scenario.h"
 #include "core/text.h"
 

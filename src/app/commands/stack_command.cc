@@ -14,6 +14,7 @@
 #include "app/mapping/mapping_stack.h"
 #include "app/run/built_in_stack.h"
 #include "app/run/make_stack_port.h"
+#include "app/scenario/data_folders.h"
 #include "link/stack_client.h"
 
 namespace patrol::app {

@@ -16,6 +16,7 @@
 #include "app/campaign/test/tested_scenario.h"
 #include "app/commands/commands.h"
 #include "app/common/output_directory.h"
+#include "app/scenario/data_folders.h"
 #include "app/scenario/scenario.h"
 #include "core/error.h"
 #include "io/files/atomic_file.h"

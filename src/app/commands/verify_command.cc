@@ -14,6 +14,7 @@
 #include "app/run/progress_line.h"
 #include "app/run/recorded_stack.h"
 #include "app/run/run_loop.h"
+#include "app/scenario/data_folders.h"
 #include "core/error.h"
 #include "io/logs/log_compare.h"
 

@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "app/scenario/data_folders.h"
 #include "app/scenario/neighbor_model.h"
-#include "app/scenario/scenario.h"
 #include "slam/graph/range_noise.h"
 
 namespace patrol::app {

@@ -8,6 +8,7 @@
 
 #include "app/mapping/read_scans.h"
 #include "app/record/run_record.h"
+#include "app/scenario/data_folders.h"
 #include "app/scenario/lidar_preset.h"
 #include "app/scenario/scenario.h"
 #include "core/error.h"
@@ -26,7 +27,7 @@ std::optional<std::filesystem::path> scenario_of_log(const std::filesystem::path
   return scenario;
 }
 
-std::filesystem::path find_world(const std::string& site, const std::filesystem::path& near) {
+std::filesystem::path world_of_site(const std::string& site, const std::filesystem::path& near) {
   if (std::filesystem::is_regular_file(site)) return site;
   if (site.find('/') == std::string::npos) return load_site(site, find_data_root(near)).world_xml;
   throw InputError(fmt::format("--site = {}: must be an MJCF file or the name of a world", site));
@@ -86,7 +87,7 @@ LogOnSite find_log_on_site(const LogOnSiteOptions& options, const LogOnSiteSetti
   }
   if (site.empty()) throw InputError("--site: required for a log that is not of patrol run");
   if (source.path_name.empty()) throw InputError("--trajectory: required for a log that is not of patrol run");
-  source.world_xml = find_world(site, scenario_file.value_or(std::filesystem::path()));
+  source.world_xml = world_of_site(site, scenario_file.value_or(std::filesystem::path()));
   source.lidar_name = of_run ? of_run->lidar.preset : lidar.empty() ? "rplidar_s2" : lidar;
   source.device = device_of(of_run ? *of_run : find_lidar_preset(source.lidar_name, find_data_root({}), "--lidar"));
   const bool is_of_run = source.path_name == "truth" || source.path_name == "pose";

@@ -11,6 +11,7 @@
 #include "app/report/run_map.h"
 #include "app/report/settings_difference.h"
 #include "app/report/verdict.h"
+#include "app/scenario/data_folders.h"
 #include "io/files/atomic_file.h"
 
 namespace patrol::app {

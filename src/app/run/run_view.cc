@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "core/geometry/angles.h"
+#include "core/map_cells.h"
 
 namespace patrol::app {
 namespace {
@@ -116,8 +117,7 @@ std::string map_text(const RunView& run, int columns, int rows) {
   DotMap dots(columns, rows, center_m);
   for (int row = 0; row < run.map.geometry().height; ++row) {
     for (int col = 0; col < run.map.geometry().width; ++col) {
-      constexpr std::int8_t kOccupiedFrom = 65;
-      if (run.map.at({col, row}) >= kOccupiedFrom) dots.put(run.map.geometry().center_of({col, row}), Layer::kWall);
+      if (is_occupied(run.map.at({col, row}))) dots.put(run.map.geometry().center_of({col, row}), Layer::kWall);
     }
   }
   for (const Eigen::Vector2d& p_m : run.traveled_m) dots.put(p_m, Layer::kDriven);

@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "app/scenario/data_folders.h"
 #include "app/scenario/mounts.h"
-#include "app/scenario/scenario.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "io/yaml/settings_yaml.h"

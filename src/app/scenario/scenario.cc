@@ -1,19 +1,17 @@
 #include "app/scenario/scenario.h"
 
 #include <algorithm>
-#include <cstdlib>
-#include <system_error>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "app/scenario/data_folders.h"
 #include "app/scenario/lidar_preset.h"
 #include "app/scenario/mounts.h"
 #include "app/scenario/neighbor_model.h"
 #include "app/scenario/sensor_needs.h"
 #include "core/error.h"
-#include "core/text.h"
 #include "io/files/teleop_csv.h"
 #include "io/json/nav_json.h"
 #include "io/json/registration_json.h"
@@ -30,56 +28,6 @@
 
 namespace patrol::app {
 namespace {
-
-bool contains_data(const std::filesystem::path& root) {
-  std::error_code ignored;
-  return std::filesystem::is_directory(root / "worlds", ignored) &&
-         std::filesystem::is_directory(root / "models", ignored);
-}
-
-/// Data folder of the program's own installation (bin/patrol and share/patrol) or of the source tree of its build
-/// folder; empty if there is none.
-std::filesystem::path data_root_of_program() {
-  std::error_code error;
-  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
-  if (error) return {};
-  const std::filesystem::path outer = program.parent_path().parent_path();
-  for (const std::filesystem::path& root : {outer / "share/patrol", outer}) {
-    if (contains_data(root)) return root;
-  }
-  return {};
-}
-
-/// Names of the folders in `parent`, sorted, for "known: ..." in messages.
-std::string folders_in(const std::filesystem::path& parent) {
-  std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(parent)) {
-    if (entry.is_directory()) names.push_back(entry.path().filename().string());
-  }
-  std::sort(names.begin(), names.end());
-  return join(names, ", ");
-}
-
-/// Path <root>/<kind>/<name>/<name><extension>. Throws InputError if it does not exist.
-std::filesystem::path find_definition(const std::filesystem::path& root, const std::string& kind,
-                                      const std::string& key, const std::string& name, const std::string& extension) {
-  std::filesystem::path file = root / kind / name / (name + extension);
-  if (!std::filesystem::exists(file)) {
-    throw InputError(
-        fmt::format("{} = {}: {} not found (known: {})", key, name, file.string(), folders_in(root / kind)));
-  }
-  return file;
-}
-
-/// Folder of a robot or a world: the first that has its definition, below the data root, the working directory or the
-/// data of the program; below the data root if none has.
-std::filesystem::path folder_of(const std::filesystem::path& root, const std::string& kind, const std::string& name,
-                                const std::string& extension) {
-  for (const std::filesystem::path& data : {root, std::filesystem::current_path(), data_root_of_program()}) {
-    if (!data.empty() && std::filesystem::exists(data / kind / name / (name + extension))) return data / kind / name;
-  }
-  return root / kind / name;
-}
 
 /// Settings of a world; the defaults if it has none.
 sim::SiteSettings site_settings_of(const std::filesystem::path& world_xml) {
@@ -236,27 +184,11 @@ void load_mission(const Scenario& scenario, ScenarioFiles& files) {
 
 }  // namespace
 
-std::filesystem::path robot_file(const std::string& robot, const std::string& extension,
-                                 const std::filesystem::path& data_root) {
-  return folder_of(data_root, "models", robot, ".urdf") / (robot + extension);
-}
-
-std::filesystem::path world_folder(const std::string& world, const std::filesystem::path& data_root) {
-  return folder_of(data_root, "worlds", world, ".xml");
-}
-
 LoadedSite load_site(const std::string& world, const std::filesystem::path& data_root) {
   if (world.empty()) throw InputError("world: missing: name a folder of worlds");
-  LoadedSite site{.world_xml = world_folder(world, data_root) / (world + ".xml"), .settings = {}};
-  if (!std::filesystem::exists(site.world_xml))
-    site.world_xml = find_definition(data_root, "worlds", "world", world, ".xml");
-  site.settings = site_settings_of(site.world_xml);
-  return site;
-}
-
-std::filesystem::path find_robot(const std::string& name, const std::filesystem::path& data_root) {
-  std::filesystem::path urdf = robot_file(name, ".urdf", data_root);
-  return std::filesystem::exists(urdf) ? urdf : find_definition(data_root, "models", "robot", name, ".urdf");
+  std::filesystem::path world_xml = find_world(world, data_root);
+  const sim::SiteSettings settings = site_settings_of(world_xml);
+  return {.world_xml = std::move(world_xml), .settings = settings};
 }
 
 Scenario default_scenario(const std::string& robot, const std::filesystem::path& data_root) {
@@ -297,39 +229,6 @@ std::filesystem::path registration_beside(const std::filesystem::path& map_yaml)
 
 void save_scenario(const std::filesystem::path& file, const Scenario& scenario, const std::string& comment) {
   io::save_settings(file, scenario, comment);
-}
-
-std::filesystem::path find_data_root(const std::filesystem::path& scenario) {
-  if (const char* named = std::getenv("PATROL_DATA"); named != nullptr && *named != '\0') {
-    if (!contains_data(named)) {
-      throw InputError(
-          fmt::format("PATROL_DATA = {}: must be a folder that contains the folders worlds and models", named));
-    }
-    return std::filesystem::absolute(named);
-  }
-  std::filesystem::path folder =
-      scenario.empty() ? std::filesystem::current_path() : std::filesystem::absolute(scenario).parent_path();
-  for (; folder != folder.parent_path(); folder = folder.parent_path()) {
-    if (contains_data(folder)) return folder;
-  }
-  if (contains_data(std::filesystem::current_path())) return std::filesystem::current_path();
-  if (std::filesystem::path found = data_root_of_program(); !found.empty()) return found;
-  if (contains_data(PATROL_SOURCE_DIR)) return PATROL_SOURCE_DIR;
-  throw InputError(
-      "folders worlds and models not found near the scenario or the program: set PATROL_DATA to the folder that "
-      "contains them");
-}
-
-std::filesystem::path find_scenario(const std::filesystem::path& name) {
-  if (std::filesystem::exists(name) || name.has_extension() || name.is_absolute() || !name.has_parent_path())
-    return name;
-  try {
-    const std::filesystem::path file = world_folder(name.parent_path().string(), find_data_root(name)) / "scenarios" /
-                                       (name.filename().string() + ".yaml");
-    return std::filesystem::exists(file) ? file : name;
-  } catch (const InputError&) {
-    return name;  // without data, the error is that the file does not exist
-  }
 }
 
 std::vector<std::filesystem::path> named_files(const Scenario& scenario, const std::filesystem::path& data_root) {

@@ -226,15 +226,6 @@ struct RobotProfile {
   }
 };
 
-/// Path of a file of a robot, models/ROBOT/ROBOT<extension>: below the data root, the working directory or the data of
-/// the program, the first that has the robot's URDF. The file need not exist.
-std::filesystem::path robot_file(const std::string& robot, const std::string& extension,
-                                 const std::filesystem::path& data_root);
-
-/// Folder of a world, worlds/WORLD: below the data root, the working directory or the data of the program, the first
-/// that has the world's MJCF. It need not exist.
-std::filesystem::path world_folder(const std::string& world, const std::filesystem::path& data_root);
-
 /// MJCF and settings of a world.
 struct LoadedSite {
   std::filesystem::path world_xml;
@@ -243,9 +234,6 @@ struct LoadedSite {
 
 /// Finds a world and loads its settings. Throws InputError with the known worlds if there is none.
 LoadedSite load_site(const std::string& world, const std::filesystem::path& data_root);
-
-/// Returns the URDF file of a robot of `models`. Throws InputError with the known robots if there is none.
-std::filesystem::path find_robot(const std::string& name, const std::filesystem::path& data_root);
 
 /// Default scenario of a robot: the robot's profile, if it has one, over the defaults. Sensors that only the defaults
 /// enable are disabled if the robot has no frame for them.
@@ -261,15 +249,6 @@ std::string to_yaml(const Scenario& scenario);
 
 /// Writes every setting, below a line of comment.
 void save_scenario(const std::filesystem::path& file, const Scenario& scenario, const std::string& comment);
-
-/// Finds the folder that contains `worlds/` and `models/`. Candidates in order: the environment variable PATROL_DATA;
-/// the nearest such folder above `scenario`; the working directory; ../share/patrol or .. relative to the program's
-/// folder; the source tree of the build. Throws InputError if there is none, or if PATROL_DATA names another folder.
-std::filesystem::path find_data_root(const std::filesystem::path& scenario);
-
-/// Returns the file of a scenario: `name` itself if it exists, else the scenario WORLD/NAME of the data root or the
-/// working directory (for example street/patrol). Returns `name` if there is neither.
-std::filesystem::path find_scenario(const std::filesystem::path& name);
 
 /// Paths of the files that a scenario names: mission, map and its image, goals, teleoperation. Throws InputError with
 /// file and key if one is missing.

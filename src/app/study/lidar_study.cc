@@ -29,9 +29,10 @@ const std::vector<LidarVariant>& lidar_variants() {
 /// Parameters by their names in the fit.
 const std::vector<std::string>& planted_names() {
   static const std::vector<std::string> kNames = {
-      "range_noise_std_m",       "range_quantization_m", "angle_noise_std_deg",  "beam_width_deg",
-      "dropout_probability",     "max_incidence_deg",    "max_range_10pct_m",    "false_return_rate_per_m",
-      "measured_range_offset_m", "measured_range_scale", "measured_incidence_m", "measured_reflectivity_m"};
+      "range_noise_std_m",    "wide_noise_probability",  "wide_noise_std_m",        "range_quantization_m",
+      "angle_noise_std_deg",  "beam_width_deg",          "dropout_probability",     "max_incidence_deg",
+      "max_range_10pct_m",    "false_return_rate_per_m", "measured_range_offset_m", "measured_range_scale",
+      "measured_incidence_m", "measured_reflectivity_m"};
   return kNames;
 }
 

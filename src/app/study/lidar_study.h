@@ -4,7 +4,7 @@
 
 namespace patrol::app {
 
-/// Study "lidar-calibration": twelve planted settings of a lidar, recovered from its simulated scans.
+/// Study "lidar-calibration": fourteen planted settings of a lidar, recovered from its simulated scans.
 studies::Study lidar_study();
 
 }  // namespace patrol::app

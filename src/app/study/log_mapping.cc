@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "app/common/process_cost.h"
+#include "app/scenario/data_folders.h"
 #include "app/scenario/neighbor_model.h"
-#include "app/scenario/scenario.h"
 #include "core/error.h"
 #include "core/thread_cpu_time.h"
 #include "io/logs/scan_log.h"

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/scenario/data_folders.h"
 #include "app/scenario/scenario.h"
 #include "app/scoring/world_surfaces.h"
 #include "core/error.h"

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "app/scenario/data_folders.h"
 #include "app/scenario/scenario.h"
 #include "core/geometry/angles.h"
 #include "core/random.h"

@@ -4,6 +4,7 @@
 
 #include "app/record/run_directory.h"
 #include "app/run/run_once.h"
+#include "app/scenario/data_folders.h"
 #include "report/map_picture.h"
 #include "score/map_error.h"
 #include "score/pose/trajectory_error.h"

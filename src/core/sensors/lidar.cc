@@ -35,7 +35,8 @@ bool SensorTraits<LaserScan>::repeats(const LaserScan& now, const LaserScan& bef
 }
 
 std::vector<ErrorSource> SensorTraits<RearLaserScan>::error_sources() {
-  return {{"lidar_rear: range noise", {"sensors.lidar_rear.range_noise_std_m=0"}},
+  return {{"lidar_rear: range noise",
+           {"sensors.lidar_rear.range_noise_std_m=0", "sensors.lidar_rear.wide_noise_probability=0"}},
           {"lidar_rear: range quantization", {"sensors.lidar_rear.range_quantization_m=0"}},
           {"lidar_rear: beam angle", {"sensors.lidar_rear.angle_noise_std_deg=0"}},
           {"lidar_rear: mixed pixels", {"sensors.lidar_rear.beam_width_deg=0"}},
@@ -47,7 +48,7 @@ std::vector<ErrorSource> SensorTraits<RearLaserScan>::error_sources() {
 
 std::vector<ErrorSource> SensorTraits<LaserScan>::error_sources() {
   return {
-      {"lidar: range noise", {"sensors.lidar.range_noise_std_m=0"}},
+      {"lidar: range noise", {"sensors.lidar.range_noise_std_m=0", "sensors.lidar.wide_noise_probability=0"}},
       {"lidar: range quantization", {"sensors.lidar.range_quantization_m=0"}},
       {"lidar: beam angle", {"sensors.lidar.angle_noise_std_deg=0"}},
       {"lidar: mixed pixels", {"sensors.lidar.beam_width_deg=0"}},

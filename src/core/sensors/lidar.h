@@ -36,6 +36,8 @@ struct LidarSettings {
   double range_max_m = 30.0;             ///< maximum range of a return
   double range_noise_std_m = 0.015;      ///< standard deviation of the range
   double range_quantization_m = 0.013;   ///< quantization step of the range
+  double wide_noise_probability = 0.0;   ///< probability of additional noise of a range, which gives it long tails
+  double wide_noise_std_m = 0.0;         ///< standard deviation of the additional noise
   double angle_noise_std_deg = 0.01;     ///< standard deviation of the beam azimuth
   double beam_width_deg = 0.12;          ///< azimuthal width of the beam; causes mixed pixels at edges
   double dropout_probability = 0.002;    ///< dropout probability of a beam
@@ -78,6 +80,8 @@ struct LidarSettings {
     visit("range_max_m", self.range_max_m, between(0.1, 400.0));
     visit("range_noise_std_m", self.range_noise_std_m, at_least(0.0));
     visit("range_quantization_m", self.range_quantization_m, at_least(0.0));
+    visit("wide_noise_probability", self.wide_noise_probability, between(0.0, 1.0));
+    visit("wide_noise_std_m", self.wide_noise_std_m, at_least(0.0));
     visit("angle_noise_std_deg", self.angle_noise_std_deg, between(0.0, 10.0));
     visit("beam_width_deg", self.beam_width_deg, between(0.0, 5.0));
     visit("dropout_probability", self.dropout_probability, between(0.0, 1.0));

@@ -9,8 +9,8 @@
 
 #include "core/error.h"
 #include "core/geometry/distance_transform.h"
+#include "core/map_cells.h"
 #include "core/random.h"
-#include "importer/site/plan_cells.h"
 
 namespace patrol::importer {
 namespace {

@@ -7,14 +7,12 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/map_cells.h"
 #include "importer/site/cell_rectangles.h"
-#include "importer/site/plan_cells.h"
 #include "io/maps/map_server.h"
 
 namespace patrol::importer {
 namespace {
-
-constexpr double kWallThickness_m = 0.04;  // of a face that a lidar saw, behind it
 
 SiteShape wall(std::size_t number, const Eigen::Vector2d& center_m, double yaw_rad, const Eigen::Vector2d& half_m,
                double height_m) {
@@ -64,7 +62,7 @@ ImportedSite read_plan_site(const SiteImportOptions& options) {
   const OccupancyGrid plan = io::load_map(options.file);
   ImportedSite site = empty_site(plan, options.file.filename().string(), options);
   add_cells(
-      plan.geometry(), [&](Cell cell) { return is_wall(plan.at(cell)); }, options.wall_height_m, site);
+      plan.geometry(), [&](Cell cell) { return is_occupied(plan.at(cell)); }, options.wall_height_m, site);
   if (site.shapes.size() == 1) throw InputError(options.file.string() + ": the plan has no occupied cell");
   site.assumptions.push_back({"walls",
                               fmt::format("occupied cells are solid from the floor to {:g} m", options.wall_height_m),
@@ -77,9 +75,9 @@ ImportedSite site_of_walls(const OccupancyGrid& plan, const WallFitter& walls, c
   ImportedSite site = empty_site(plan, source, options);
   for (const WallSegment& segment : walls.segments()) {
     const Eigen::Vector2d along = segment.end_m - segment.begin_m;
-    const Eigen::Vector2d center = 0.5 * (segment.begin_m + segment.end_m) - 0.5 * kWallThickness_m * segment.normal;
+    const Eigen::Vector2d center = 0.5 * (segment.begin_m + segment.end_m) - 0.5 * segment.thickness_m * segment.normal;
     site.shapes.push_back(wall(site.shapes.size(), center, std::atan2(along.y(), along.x()),
-                               {0.5 * along.norm(), 0.5 * kWallThickness_m}, options.wall_height_m));
+                               {0.5 * along.norm(), 0.5 * segment.thickness_m}, options.wall_height_m));
   }
   const std::size_t num_faces = site.shapes.size() - 1;
   add_cells(
@@ -87,9 +85,10 @@ ImportedSite site_of_walls(const OccupancyGrid& plan, const WallFitter& walls, c
   site.assumptions.push_back(
       {"walls",
        fmt::format(
-           "{} straight faces fitted to the hits, {:g} cm thick, and {} rectangles of cells with few hits, from "
+           "{} straight faces fitted to the hits, up to {:g} cm thick, and {} rectangles of cells with few hits, from "
            "the floor to {:g} m",
-           num_faces, 100.0 * kWallThickness_m, site.shapes.size() - 1 - num_faces, options.wall_height_m),
+           num_faces, 100.0 * WallFitterSettings{}.max_thickness_m, site.shapes.size() - 1 - num_faces,
+           options.wall_height_m),
        "--wall-height"});
   return site;
 }

@@ -27,7 +27,33 @@ Pose3 resolved(const SdfWorld& world, const Element& element) {
   return T;
 }
 
-/// Triangles of a box or of a plane, which is cut to the surroundings of `box`; empty for other shapes.
+/// Triangles of a height field in its frame, of the cells whose centers are within a horizontal distance.
+Mesh triangles_near(const Grid<float>& height_m, const Eigen::Vector2d& center, double distance_m) {
+  const GridGeometry& grid = height_m.geometry();
+  Mesh mesh;
+  Grid<int> vertex_of(grid, -1);
+  const auto vertex = [&](Cell cell) {
+    int& index = vertex_of.at(cell);
+    if (index >= 0) return index;
+    index = static_cast<int>(mesh.vertices_m.size());
+    const Eigen::Vector2d p_m = grid.center_of(cell);
+    mesh.vertices_m.emplace_back(p_m.x(), p_m.y(), double{height_m.at(cell)});
+    return index;
+  };
+  for (int row = 0; row + 1 < grid.height; ++row) {
+    for (int col = 0; col + 1 < grid.width; ++col) {
+      if ((grid.center_of({col, row}) - center).norm() > distance_m) continue;
+      const int a = vertex({col, row}), b = vertex({col + 1, row}), c = vertex({col + 1, row + 1}),
+                d = vertex({col, row + 1});
+      mesh.triangles.push_back({a, b, c});
+      mesh.triangles.push_back({a, c, d});
+    }
+  }
+  return mesh;
+}
+
+/// Triangles of a box, or of a plane or a height field, which are cut to the surroundings of `box`; empty for other
+/// shapes.
 Mesh tessellated(const SiteShape& shape, const Eigen::AlignedBox3d& box) {
   Mesh mesh;
   if (shape.type == SiteShapeType::kBox) {
@@ -41,6 +67,11 @@ Mesh tessellated(const SiteShape& shape, const Eigen::AlignedBox3d& box) {
     mesh.vertices_m = {
         {-reach_m, -reach_m, 0.0}, {reach_m, -reach_m, 0.0}, {reach_m, reach_m, 0.0}, {-reach_m, reach_m, 0.0}};
     mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  } else if (shape.type == SiteShapeType::kHeightField) {
+    const Grid<float>& height_m = shape.height_field.height_m;
+    const Eigen::Vector3d center = shape.T_site_shape.inverse() * Eigen::Vector3d(box.center());
+    mesh = triangles_near(height_m, center.head<2>(),
+                          0.5 * box.diagonal().norm() + 2.0 * height_m.geometry().resolution_m + 1.0);
   }
   return transformed(mesh, shape.T_site_shape);
 }

@@ -72,9 +72,23 @@ SdfWorld::SdfWorld(const std::filesystem::path& file, const std::map<std::string
   if (!errors.empty()) fail(errors.front(), config);
 }
 
-SdfWorld::~SdfWorld() {
+BuiltInModels::~BuiltInModels() {
   std::error_code ignored;
-  if (!built_in_.empty()) std::filesystem::remove_all(built_in_, ignored);
+  if (!folder_.empty()) std::filesystem::remove_all(folder_, ignored);
+}
+
+std::filesystem::path BuiltInModels::write(const std::string& name) {
+  if (name != "ground_plane" && name != "sun") return {};
+  if (folder_.empty())
+    folder_ = std::filesystem::temp_directory_path() /
+              fmt::format("patrol_sdf_{}_{:x}", ::getpid(), reinterpret_cast<std::uintptr_t>(this));
+  const std::filesystem::path folder = folder_ / name;
+  std::filesystem::create_directories(folder);
+  io::save_text(
+      folder / "model.config",
+      fmt::format("<model><name>{}</name><version>1.0</version><sdf version=\"1.6\">model.sdf</sdf></model>", name));
+  io::save_text(folder / "model.sdf", name == "sun" ? kSun : kGroundPlane);
+  return folder;
 }
 
 std::string SdfWorld::text_of_unlocated(const sdf::Error& error, const sdf::ParserConfig& config,
@@ -138,16 +152,8 @@ std::optional<std::filesystem::path> SdfWorld::find_model(const std::string& nam
 }
 
 std::string SdfWorld::built_in(const std::string& name) {
-  if (name != "ground_plane" && name != "sun") return {};
-  if (built_in_.empty())
-    built_in_ = std::filesystem::temp_directory_path() /
-                fmt::format("patrol_sdf_{}_{:x}", ::getpid(), reinterpret_cast<std::uintptr_t>(this));
-  const std::filesystem::path folder = built_in_ / name;
-  std::filesystem::create_directories(folder);
-  io::save_text(
-      folder / "model.config",
-      fmt::format("<model><name>{}</name><version>1.0</version><sdf version=\"1.6\">model.sdf</sdf></model>", name));
-  io::save_text(folder / "model.sdf", name == "sun" ? kSun : kGroundPlane);
+  const std::filesystem::path folder = built_in_.write(name);
+  if (folder.empty()) return {};
   const bool is_new =
       std::none_of(rows_.begin(), rows_.end(), [&](const Assumption& row) { return row.subject == "model://" + name; });
   if (is_new)

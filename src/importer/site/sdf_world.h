@@ -16,6 +16,21 @@
 
 namespace patrol::importer {
 
+/// Temporary folder of the models that libsdformat is given without a folder of the user; removed at the end.
+class BuiltInModels {
+ public:
+  BuiltInModels() = default;
+  ~BuiltInModels();
+  BuiltInModels(const BuiltInModels&) = delete;
+  BuiltInModels& operator=(const BuiltInModels&) = delete;
+
+  /// Writes the model `ground_plane` or `sun`; returns its folder, empty for other names.
+  std::filesystem::path write(const std::string& name);
+
+ private:
+  std::filesystem::path folder_;  ///< empty: no model is written
+};
+
 /// SDF world as libsdformat reads it, with its models included.
 class SdfWorld {
  public:
@@ -23,7 +38,6 @@ class SdfWorld {
   /// of these; `model://ground_plane` and `model://sun` are known without a folder. Throws InputError with one line,
   /// "file:line: what", for the first error of libsdformat, for URIs of a network, and unless there is one world.
   SdfWorld(const std::filesystem::path& file, const std::map<std::string, std::filesystem::path>& packages);
-  ~SdfWorld();
   SdfWorld(const SdfWorld&) = delete;
   SdfWorld& operator=(const SdfWorld&) = delete;
 
@@ -48,7 +62,7 @@ class SdfWorld {
   std::filesystem::path file_;
   SdfSource source_;
   Packages packages_;
-  std::filesystem::path built_in_;  ///< temporary folder of built-in models; empty: not needed
+  BuiltInModels built_in_;
   sdf::Root root_;
   std::vector<Assumption> rows_;
 };

@@ -7,13 +7,15 @@
 
 #include "core/error.h"
 #include "core/geometry/principal_axes.h"
-#include "importer/site/plan_cells.h"
+#include "core/map_cells.h"
 
 namespace patrol::importer {
 namespace {
 
 constexpr int kNeighborhood_cells = 2;  // half width of the neighborhood that gives the direction of a face
 constexpr double kMaxFlatness = 0.25;   // maximum ratio of the variances across and along a straight face
+constexpr double kMinThickness_m = 0.005;
+constexpr double kMinBackCosine = 0.4;  // of sectors of which no direction is that of the front
 constexpr double kMinSamePart = 0.2;    // part of the weight from which a side of a face is kept
 
 Eigen::Vector2d direction_of_sector(int sector, int sectors) {
@@ -41,7 +43,7 @@ WallFitter::WallFitter(const OccupancyGrid& plan, const WallFitterSettings& sett
   int count = 0;
   for (int row = 0; row < grid_.height; ++row) {
     for (int col = 0; col < grid_.width; ++col) {
-      if (is_wall(plan.at({col, row}))) slot_of_.at({col, row}) = count++;
+      if (is_occupied(plan.at({col, row}))) slot_of_.at({col, row}) = count++;
     }
   }
   if (count == 0) throw InputError("the plan has no occupied cell");
@@ -58,15 +60,17 @@ void WallFitter::add(const Eigen::Vector2d& p_hit_m, const Eigen::Vector2d& p_se
   sums.add({.weight = weight, .sum = weight * p, .products = weight * p * p.transpose()});
 }
 
-/// Returns the sums of the cells around one, of all hits or of those seen from the side of `normal`.
-WallFitter::Moments WallFitter::moments_around(Cell cell, int reach_cells, const Eigen::Vector2d* normal) const {
+/// Returns the sums of the cells around one, of all hits or of those seen from the side of `normal`: the cosine of the
+/// angle between the normal and the middle of their sector exceeds `min_cosine`.
+WallFitter::Moments WallFitter::moments_around(Cell cell, int reach_cells, const Eigen::Vector2d* normal,
+                                               double min_cosine) const {
   Moments total;
   for (int row = cell.row - reach_cells; row <= cell.row + reach_cells; ++row) {
     for (int col = cell.col - reach_cells; col <= cell.col + reach_cells; ++col) {
       if (!grid_.contains({col, row}) || slot_of_.at({col, row}) < 0) continue;
       const auto& sectors = sums_[static_cast<std::size_t>(slot_of_.at({col, row}))];
       for (int sector = 0; sector < kSectors; ++sector) {
-        if (normal == nullptr || normal->dot(direction_of_sector(sector, kSectors)) > 0.0)
+        if (normal == nullptr || normal->dot(direction_of_sector(sector, kSectors)) > min_cosine)
           total.add(sectors[static_cast<std::size_t>(sector)]);
       }
     }
@@ -187,7 +191,34 @@ WallSegment WallFitter::grow(std::size_t seed, const std::vector<Surfel>& surfel
                       .end_m = grid_.origin_m + center + (end + half_cell_m) * along,
                       .normal = left_of(along)};
   if (segment.normal.dot(normal_of_seed) < 0.0) segment.normal = -segment.normal;
+  segment.thickness_m = thickness_behind(segment);
   return segment;
+}
+
+/// Returns half of the distance from a face to the hits behind it that are seen from its back, within limits.
+double WallFitter::thickness_behind(const WallSegment& segment) const {
+  const Eigen::Vector2d back = -segment.normal, whole = segment.end_m - segment.begin_m;
+  const int steps = std::max(1, static_cast<int>(std::ceil(whole.norm() / grid_.resolution_m)));
+  const int reach = static_cast<int>(std::ceil(2.0 * settings_.max_thickness_m / grid_.resolution_m)) + 1;
+  double thickness_m = settings_.max_thickness_m;
+  for (int step = 0; step < steps; ++step) {
+    const Eigen::Vector2d p_m = segment.begin_m + whole * (step + 0.5) / steps;
+    const Cell around = grid_.cell_at(p_m);
+    double weight = 0.0, sum_m = 0.0;
+    for (int row = around.row - reach; row <= around.row + reach; ++row) {
+      for (int col = around.col - reach; col <= around.col + reach; ++col) {
+        const Moments seen = moments_around({col, row}, 0, &back, kMinBackCosine);
+        if (seen.weight <= 0.0) continue;
+        const Eigen::Vector2d from_face = grid_.origin_m + seen.sum / seen.weight - p_m;
+        const double distance_m = back.dot(from_face);
+        if (std::abs(left_of(back).dot(from_face)) > 0.5 * grid_.resolution_m) continue;
+        if (std::abs(distance_m) > 2.0 * settings_.max_thickness_m) continue;
+        weight += seen.weight, sum_m += seen.weight * distance_m;
+      }
+    }
+    if (weight >= settings_.min_weight) thickness_m = std::clamp(0.5 * sum_m / weight, kMinThickness_m, thickness_m);
+  }
+  return thickness_m;
 }
 
 std::vector<WallSegment> WallFitter::segments() const {

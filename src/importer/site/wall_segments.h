@@ -14,6 +14,7 @@ struct WallSegment {
   Eigen::Vector2d begin_m = Eigen::Vector2d::Zero();
   Eigen::Vector2d end_m = Eigen::Vector2d::Zero();
   Eigen::Vector2d normal = Eigen::Vector2d::UnitX();  ///< unit normal of the face, toward the free side
+  double thickness_m = 0.0;                           ///< of the wall behind the face
 };
 
 /// Settings of `WallFitter`.
@@ -23,11 +24,13 @@ struct WallFitterSettings {
   double max_gap_m = 0.11;           ///< maximum distance along the segment between cells with hits
   double half_weight_range_m = 5.0;  ///< range at which a hit has half the weight of a near one
   double min_weight = 2.0;           ///< minimum weight of the hits of a cell
+  double max_thickness_m = 0.04;     ///< thickness of a wall of which no other side is seen
 };
 
 /// Fits straight faces of walls to the hits of a lidar in the occupied cells of a plan. Positions are finer than the
 /// cells: the face of a cell is the mean of its hits, its direction that of the hits around. The two faces of a thin
-/// wall are kept apart by the directions from which they are seen.
+/// wall are kept apart by the directions from which they are seen. A wall with two faces is at most as thick as their
+/// distance, so that none of the two sticks out of the other.
 class WallFitter {
  public:
   /// Throws InputError for an empty plan.
@@ -64,8 +67,9 @@ class WallFitter {
     Cell cell = {};
   };
 
-  Moments moments_around(Cell cell, int reach_cells, const Eigen::Vector2d* normal) const;
+  Moments moments_around(Cell cell, int reach_cells, const Eigen::Vector2d* normal, double min_cosine = 0.0) const;
   std::vector<Surfel> surfels() const;
+  double thickness_behind(const WallSegment& segment) const;
   WallSegment grow(std::size_t seed, const std::vector<Surfel>& surfels, const Grid<int>& index_of,
                    std::vector<char>& is_used) const;
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/geometry/distance_transform.h"
+#include "core/map_cells.h"
 
 namespace patrol::localize {
 

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "core/map_cells.h"
 #include "core/particle_weights.h"
 #include "localize/amcl/distance_to_occupied.h"
 

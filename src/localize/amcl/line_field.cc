@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "localize/amcl/distance_to_occupied.h"
+#include "core/map_cells.h"
 #include "slam/grid_map.h"
 #include "slam/local_line.h"
 

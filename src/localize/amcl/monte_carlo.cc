@@ -11,8 +11,8 @@
 
 #include "core/error.h"
 #include "core/geometry/linear_algebra.h"
+#include "core/map_cells.h"
 #include "core/particle_weights.h"
-#include "localize/amcl/distance_to_occupied.h"
 
 namespace patrol::localize {
 namespace {

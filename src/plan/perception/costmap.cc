@@ -19,6 +19,19 @@ const CostmapSettings& checked(const CostmapSettings& settings) {
   return settings;
 }
 
+/// Throws InputError unless the cells around a position have numbers.
+void require_valid_position(const Eigen::Vector2d& p_map) {
+  constexpr double kMaxCoordinate_m = 1e5;
+  if (!(p_map.cwiseAbs().maxCoeff() <= kMaxCoordinate_m && p_map.allFinite()))
+    throw InputError(fmt::format("costmap: position ({:g}, {:g}) m: must be finite and within {:g} m", p_map.x(),
+                                 p_map.y(), kMaxCoordinate_m));
+}
+
+void require_finite_yaw(const Pose2& T_map_body) {
+  if (!std::isfinite(T_map_body.yaw))
+    throw InputError(fmt::format("costmap: yaw {:g} rad: must be finite", T_map_body.yaw));
+}
+
 }  // namespace
 
 Costmap::Costmap(const CostmapSettings& settings, const Footprint& footprint,
@@ -48,6 +61,7 @@ void Costmap::set_keep_out_lines(std::vector<Polyline> lines_in_map) {
 }
 
 void Costmap::include(const Eigen::Vector2d& p_map, double margin_m) {
+  require_valid_position(p_map);
   const double res = settings_.resolution_m;
   const auto lattice = [res](double x) { return static_cast<int>(std::floor(x / res)); };
   const Cell min{lattice(p_map.x() - margin_m), lattice(p_map.y() - margin_m)};
@@ -88,16 +102,19 @@ void Costmap::set_map(const OccupancyGrid& map) {
 }
 
 void Costmap::add_scan(const LevelScan& scan, const Pose2& T_map_body) {
+  require_finite_yaw(T_map_body);
   include(T_map_body.position(), settings_.obstacle_range_m + settings_.resolution_m);
   refresh(scan_.add_scan(scan, T_map_body, static_map_));
 }
 
 void Costmap::add_image(const DepthPoints& points, Time stamp, const Pose2& T_map_body) {
+  require_finite_yaw(T_map_body);
   include(T_map_body.position(), settings_.obstacle_range_m);
   refresh(low_.add_image(points, stamp, T_map_body, scan_));
 }
 
 void Costmap::add_ping(const SonarCone& cone, Time stamp, const Pose2& T_map_body) {
+  require_finite_yaw(T_map_body);
   include(T_map_body.position(), settings_.obstacle_range_m);
   refresh(low_.add_ping(cone, stamp, T_map_body, scan_, static_map_));
 }

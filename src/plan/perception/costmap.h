@@ -37,6 +37,7 @@ class Costmap {
   void set_map(const OccupancyGrid& map);
   /// Replaces the keep-out lines and refreshes all cells.
   void set_keep_out_lines(std::vector<Polyline> lines_in_map);
+  /// Throws InputError if the pose is not finite or beyond 100 km, as the functions for images and pings.
   void add_scan(const LevelScan& scan, const Pose2& T_map_body);
   /// Adds the points of a depth image, in level at its stamp.
   void add_image(const DepthPoints& points, Time stamp, const Pose2& T_map_body);
@@ -45,6 +46,7 @@ class Costmap {
   /// Clears the obstacles of the scan layer within a radius, and the evidence of sonar; later messages mark them again.
   void clear_obstacles(const Eigen::Vector2d& p_map, double radius_m);
   /// Grows the grid, if needed, so that the square of half-width `margin_m` around the point lies inside.
+  /// Throws InputError if the point is not finite or beyond 100 km.
   void include(const Eigen::Vector2d& p_map, double margin_m);
 
   const CostmapSettings& settings() const { return settings_; }

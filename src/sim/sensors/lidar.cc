@@ -42,6 +42,8 @@ Lidar::Lidar(const LidarSettings& settings, const LidarScene& scene, Pose3 T_bod
       false_return_rate_per_m_(settings.false_return_rate_per_m +
                                dust.backscatter_probability * dust.extinction_per_m()),
       range_noise_(seed, name + "/range"),
+      is_wide_(seed, name + "/is_wide"),
+      wide_noise_(seed, name + "/wide"),
       angle_noise_(seed, name + "/angle"),
       dropout_(seed, name + "/dropout"),
       rain_(seed, name + "/rain"),
@@ -216,6 +218,8 @@ Lidar::Return Lidar::measure(std::uint64_t tick, std::uint64_t index, const Lida
   if (!std::isfinite(got.range_m)) return got;
   if (got.range_m < settings_.range_min_m) return {-kInfinity, got.intensity};
   got.range_m += settings_.range_noise_std_m * range_noise_.normal(tick, index);
+  if (settings_.wide_noise_probability > 0.0 && is_wide_.uniform(tick, index) < settings_.wide_noise_probability)
+    got.range_m += settings_.wide_noise_std_m * wide_noise_.normal(tick, index);
   if (settings_.range_quantization_m > 0.0) {
     got.range_m = settings_.range_quantization_m * std::round(got.range_m / settings_.range_quantization_m);
   }

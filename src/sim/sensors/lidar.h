@@ -86,7 +86,7 @@ class Lidar {
   LidarErrors errors_;
   std::vector<SurfaceOptics> surfaces_;  ///< [geom] of the view model
   double false_return_rate_per_m_;       ///< rate of false returns from rain and dust
-  RandomStream range_noise_, angle_noise_, dropout_, rain_, rain_range_, rate_noise_;
+  RandomStream range_noise_, is_wide_, wide_noise_, angle_noise_, dropout_, rain_, rain_range_, rate_noise_;
   std::int64_t next_beam_ = 0;                              ///< number of the next beam since the start
   double revolution_begin_ns_ = 0.0, revolution_ns_ = 0.0;  ///< begin and duration of the revolution of the next beam
   double rate_error_ = 0.0;                                 ///< relative error of the revolution rate

@@ -4,10 +4,12 @@
 usage: list_test.py PATROL SOURCE_DIR
 """
 import json
+import os
 import pathlib
 import re
 import subprocess
 import sys
+import tempfile
 import unittest
 
 PATROL, SOURCE = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
@@ -15,8 +17,8 @@ UNIT = re.compile(r"_(?:m|deg|s|ppm|px|k|db|arcsec|radps|mps2)(?:_per_\w+)?$|_pe
 NO_DIMENSION = re.compile(r"[._](?:ratio|scale|scale_std|rate_std|probability)$")
 
 
-def run_list(*arguments):
-    return subprocess.run([PATROL, "list", *arguments], capture_output=True, text=True, timeout=60, cwd=SOURCE)
+def run_list(*arguments, cwd=SOURCE, env=None):
+    return subprocess.run([PATROL, "list", *arguments], capture_output=True, text=True, timeout=60, cwd=cwd, env=env)
 
 
 class List(unittest.TestCase):
@@ -53,6 +55,29 @@ class List(unittest.TestCase):
             self.assertGreater(len(rows), 0, section)
             for row in rows:
                 self.assertIn(next(iter(row.values())), text)
+
+    def test_worlds_and_robots_of_the_working_directory_follow_those_of_the_program_and_are_marked(self):
+        with tempfile.TemporaryDirectory() as folder:
+            here = pathlib.Path(folder)
+            (here / "worlds/mine/scenarios").mkdir(parents=True)
+            (here / "worlds/mine/mine.xml").write_text("<mujoco/>")
+            (here / "worlds/mine/scenarios/short.yaml").write_text("world: mine\n")
+            (here / "models/robot").mkdir(parents=True)
+            (here / "models/robot/robot.urdf").write_text("<robot name='robot'/>")
+            environment = {**os.environ, "PATROL_DATA": str(SOURCE)}
+            done = run_list("--json", cwd=here, env=environment)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            found = json.loads(done.stdout)
+            for section, name in (("worlds", "worlds/mine/mine.xml"), ("robots", "models/robot/robot.urdf"),
+                                  ("scenarios", "worlds/mine/scenarios/short.yaml")):
+                own = [row["name"] for row in found[section] if row["folder"] == "working directory"]
+                self.assertEqual(own, [name])
+                self.assertEqual([row["name"] for row in found[section][:-1]], [row["name"] for row in self.sections[section]])
+            self.assertIn("worlds/mine/mine.xml", run_list(cwd=here, env=environment).stdout)
+
+    def test_without_worlds_in_the_working_directory_nothing_is_of_it(self):
+        for section in ("worlds", "robots", "scenarios"):
+            self.assertNotIn("working directory", [row["folder"] for row in self.sections[section]], section)
 
     def test_one_section_can_be_chosen(self):
         done = run_list("studies", "--json")

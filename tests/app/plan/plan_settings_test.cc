@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "app/scenario/data_folders.h"
 #include "app/scenario/scenario.h"
 #include "core/error.h"
 #include "plan/routes/global_planner.h"

@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "app/scenario/data_folders.h"
 #include "core/error.h"
 #include "tests/support/legged_urdf.h"
 #include "tests/support/temporary_file.h"

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "app/scenario/data_folders.h"
 #include "app/scenario/scenario.h"
 #include "core/error.h"
 #include "core/geometry/angles.h"

@@ -1,6 +1,9 @@
 #include "importer/site/sdf_site.h"
 
+#include <unistd.h>
+
 #include <cmath>
+#include <filesystem>
 #include <numbers>
 
 #include <gmock/gmock.h>
@@ -291,6 +294,39 @@ TEST(SdfSite, ARoomAsMeshCollisionHasAnOpenInside) {
     EXPECT_TRUE(is_outside) << shape.name;
   }
   EXPECT_GE(boxes, 4);
+}
+
+TEST(SdfSite, ALevelHeightmapIsTheGroundOfAMeshThatFloats50CentimetersAboveIt) {
+  Mesh slab;
+  add_box(slab, {-1, -1, 1.5}, {1, 1, 1.7});
+  SiteFileImport import("a.sdf",
+                        world(model("t", collision("<heightmap><uri>h.png</uri><size>8 8 2.55</size><pos>0 0 1</pos>"
+                                                   "</heightmap>")) +
+                              model("slab", collision("<mesh><uri>slab.obj</uri></mesh>"))));
+  TextureImage image{.width = 9, .height = 9};
+  image.rgb.assign(3 * 81, 0);
+  test::write_bytes(import.folder / "h.png", encode_png(image));
+  test::write_bytes(import.folder / "slab.obj", to_obj(slab));
+  import.read();
+  EXPECT_EQ(import.assumption("ground"), "the surfaces with contact of their own");
+  for (const SiteShape& shape : import.site.shapes) EXPECT_NE(shape.name, "contact_ground");
+}
+
+int num_temporary_folders() {
+  int count = 0;
+  const std::string prefix = fmt::format("patrol_sdf_{}_", ::getpid());
+  for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::temp_directory_path()))
+    count += entry.path().filename().string().starts_with(prefix) ? 1 : 0;
+  return count;
+}
+
+TEST(SdfSite, NeitherAReadNorARefusedWorldLeavesATemporaryFolder) {
+  const std::string sun = "<include><uri>model://sun</uri></include>\n";
+  SiteFileImport good("a.sdf", world(sun + model("b", visual(kBox))));
+  good.read();
+  SiteFileImport broken("b.sdf", world(sun + "<include><uri>model://absent</uri></include>"));
+  EXPECT_THAT(broken.error(), HasSubstr("unknown model \"absent\""));
+  EXPECT_EQ(num_temporary_folders(), 0);
 }
 
 /// A broken world with its message.

@@ -1,5 +1,6 @@
 #include "importer/site/wall_segments.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -74,6 +75,29 @@ TEST(WallFitter, TheTwoFacesOfAWallOf10CentimetersKeepTheirDistanceTo5Millimeter
   }
   EXPECT_NEAR(below_m, 4.0, 0.3);
   EXPECT_NEAR(above_m, 4.0, 0.3);
+}
+
+double min_thickness_m(const WallFitter& fitter) {
+  double thickness_m = 1.0;
+  for (const WallSegment& segment : fitter.segments()) thickness_m = std::min(thickness_m, segment.thickness_m);
+  return thickness_m;
+}
+
+TEST(WallFitter, APartitionOf3CentimetersIsAtMostHalfAsThickBehindEachFaceAndAWallSeenFromOneSideHas4Centimeters) {
+  SeenWalls partition;
+  partition.add_face({-2.0, 0.03}, {2.0, 0.03}, {0.0, -1.0});
+  partition.add_face({-2.0, 0.06}, {2.0, 0.06}, {0.0, 1.0});
+  int num_long = 0;
+  for (const WallSegment& segment : partition.fitted().segments()) {
+    EXPECT_LE(segment.thickness_m, 0.017);
+    if (length_m(segment) < 0.3) continue;
+    ++num_long;
+    EXPECT_GE(segment.thickness_m, 0.010);
+  }
+  EXPECT_GE(num_long, 2);
+  SeenWalls one_side;
+  one_side.add_face({-2.0, 0.03}, {2.0, 0.03}, {0.0, -1.0});
+  EXPECT_EQ(min_thickness_m(one_side.fitted()), 0.04);
 }
 
 TEST(WallFitter, ACircleOf2MetersIsCoveredWithin15MillimetersOfItsRadius) {

@@ -1,5 +1,9 @@
 #include "plan/perception/costmap.h"
 
+#include <limits>
+#include <string>
+
+#include "core/error.h"
 #include "tests/plan/perception/costmap_parts.h"
 
 namespace patrol::plan::costmap_test {
@@ -46,6 +50,30 @@ TEST(Costmap, UnknownGroundIsNoWayForARobotThatKeepsToItsMap) {
   EXPECT_EQ(costmap.cost_at({2.05, 0.05}), kLethalCost);
   EXPECT_EQ(costmap.cost_at({2.15, 0.05}), kFreeCost) << "it is no obstacle: nothing is kept from it";
   EXPECT_EQ(costmap.cost_at({900.0, 1.0}), kLethalCost) << "outside";
+}
+
+/// Message of the refusal of an empty scan from a pose; empty if it is accepted.
+std::string refusal_of_scan_from(const Pose2& T_map_body) {
+  Costmap costmap = make_costmap(make_free_map());
+  const std::size_t cells = costmap.geometry().size();
+  try {
+    costmap.add_scan(LevelScan{}, T_map_body);
+  } catch (const InputError& error) {
+    EXPECT_EQ(costmap.geometry().size(), cells);
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Costmap, PosesThatAreNotFiniteOrBeyond100KilometersAreRefused) {
+  const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(refusal_of_scan_from({nan, 1.0, 0.0}), "costmap: position (nan, 1) m: must be finite and within 100000 m");
+  EXPECT_EQ(refusal_of_scan_from({0.0, -infinity, 0.0}),
+            "costmap: position (0, -inf) m: must be finite and within 100000 m");
+  EXPECT_EQ(refusal_of_scan_from({1.1e5, 0.0, 0.0}),
+            "costmap: position (110000, 0) m: must be finite and within 100000 m");
+  EXPECT_EQ(refusal_of_scan_from({1.0, 2.0, nan}), "costmap: yaw nan rad: must be finite");
+  EXPECT_EQ(refusal_of_scan_from({50.0, -40.0, 3.0}), "");
 }
 
 TEST(Costmap, AFinerMapLosesNoObstacle) {

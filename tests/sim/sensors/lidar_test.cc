@@ -116,6 +116,30 @@ TEST(Lidar, DropsTwoOfAThousandBeams) {
   EXPECT_NEAR(static_cast<double>(lost) / all, 0.002, 4.0 * std::sqrt(0.002 / all));
 }
 
+TEST(Lidar, AdditionalNoiseOf5CentimetersChangesATenthOfTheRanges) {
+  const SmallWorld world(kWallAt2m);
+  LidarSettings settings = narrow();
+  const std::vector<LaserScan> exact = scans_at_rest(world, settings, 5.01);
+  settings.wide_noise_probability = 0.1;
+  settings.wide_noise_std_m = 0.05;
+  const std::vector<LaserScan> noisy = scans_at_rest(world, settings, 5.01);
+  test::Moments errors;
+  int changed = 0, all = 0;
+  for (std::size_t scan = 0; scan < exact.size(); ++scan) {
+    for (std::size_t beam = 0; beam < exact[scan].ranges_m.size(); ++beam) {
+      const double error_m = noisy[scan].ranges_m[beam] - exact[scan].ranges_m[beam];
+      ++all;
+      if (error_m == 0.0) continue;
+      ++changed;
+      errors.add(error_m);
+    }
+  }
+  EXPECT_GE(all, 99000);
+  EXPECT_NEAR(static_cast<double>(changed) / all, 0.1, 4.0 * std::sqrt(0.09 / all));
+  EXPECT_NEAR(errors.std(), 0.05, 4.0 * 0.05 / std::sqrt(2.0 * changed));
+  EXPECT_NEAR(errors.mean(), 0.0, 4.0 * 0.05 / std::sqrt(changed));
+}
+
 TEST(Lidar, AngularJitterOfATenthOfADegreeIsReadOffAWallMetAt60Degrees) {
   // At 60 degrees to the normal of a wall 2 m away the range changes by r tan(60 deg) = 6.93 m per radian.
   const SmallWorld world(box("2.5 0 0", "0.5 20 5"));

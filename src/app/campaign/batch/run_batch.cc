@@ -10,6 +10,7 @@
 #include "app/campaign/batch/work_folder.h"
 #include "app/common/progress_bar.h"
 #include "app/run/run_once.h"
+#include "app/scenario/data_folders.h"
 #include "core/error.h"
 
 namespace patrol::app {

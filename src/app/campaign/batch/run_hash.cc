@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <mujoco/mujoco.h>
 
+#include "app/scenario/data_folders.h"
 #include "io/files/digest.h"
 #include "io/yaml/settings_yaml.h"
 

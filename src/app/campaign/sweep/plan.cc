@@ -9,6 +9,7 @@
 #include "app/campaign/sweep/axis.h"
 #include "app/campaign/sweep/error_sources.h"
 #include "app/campaign/sweep/fault_matrix.h"
+#include "app/scenario/data_folders.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "io/yaml/settings_yaml.h"
