@@ -15,6 +15,11 @@ class DeliveryQueue {
   /// Removes and returns the messages due by `now`.
   std::vector<SensorMessage> take_due(Time now);
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(queue_);
+  }
+
  private:
   struct Delivery {
     Time due;

@@ -246,6 +246,8 @@ class LidarOnBody : public Sensor {
     for (PointCloud& cloud : lidar_.take_clouds()) readings.emplace_back(std::move(cloud));
   }
 
+  void serialize_state(StateArchive& archive) override { archive(lidar_); }
+
  private:
   Lidar lidar_;
 };

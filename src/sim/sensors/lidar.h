@@ -36,6 +36,12 @@ class Lidar {
   std::vector<LaserScan> take_scans() { return std::exchange(scans_, {}); }
   std::vector<PointCloud> take_clouds() { return std::exchange(clouds_, {}); }
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(next_beam_, revolution_begin_ns_, revolution_ns_, rate_error_, last_range_m_, scan_, cloud_, scans_,
+            clouds_);
+  }
+
  private:
   struct Return {
     double range_m;  ///< range, REP 117

@@ -60,6 +60,14 @@ class SensorSuite {
   /// Returns the computing time of the sensors that report it separately: "lidar", "depth_camera", "scanner".
   const StageProfiler& clock() const { return clock_; }
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive.section("sensors");
+    for (Channel& channel : channels_) archive(channel.num_messages, channel.last_due);
+    for (Entry& entry : sensors_) archive(entry.sensor);
+    archive(faults_, queue_, newest_, tick_, last_body_);
+  }
+
  private:
   /// Way of one type of messages from the device to the stack.
   struct Channel {
