@@ -18,6 +18,11 @@ class GasMeasurement {
   /// Returns the mean beam length of the readings with a return; nullopt if there are none.
   std::optional<double> beam_m() const;
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(last_stamp_, count_, mean_ppm_m_, sum_of_squares_, num_returns_, sum_of_lengths_m_);
+  }
+
  private:
   Time last_stamp_ = Time::min();
   int count_ = 0;

@@ -16,6 +16,11 @@ class FrozenReadings {
     return count_ >= kMaxRepeats;
   }
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(last_, count_);
+  }
+
  private:
   static constexpr int kMaxRepeats = 10;
 

@@ -142,6 +142,12 @@ class ImuFrontEnd {
   void reject() { ++num_rejected_messages_; }
   std::uint64_t num_rejected_messages() const { return num_rejected_messages_; }
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(mount_, filter_, now_, history_, bias_estimator_, last_velocity_limit_, frozen_, has_timed_out_,
+            num_rejected_messages_);
+  }
+
  private:
   static constexpr double kMaxStartAcceleration_mps2 = 1.0;        // the initial tilt is that of gravity alone
   static constexpr Time kMaxStep = std::chrono::milliseconds(50);  // a longer gap is not integrated across

@@ -21,6 +21,11 @@ class ImuMount {
 
   const Eigen::Quaterniond& R_body_imu() const { return T_body_imu_.rotation; }
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(last_rate_radps_, last_);
+  }
+
  private:
   Pose3 T_body_imu_;
   Eigen::Vector3d last_rate_radps_ = Eigen::Vector3d::Zero();

@@ -61,6 +61,11 @@ class InertialFilter {
   /// Returns the covariance of x, y, yaw in odom.
   Eigen::Matrix3d planar_covariance() const;
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(settings_, motion_, gyro_bias_, accel_bias_, last_, P_);
+  }
+
  private:
   using Gain = Eigen::Matrix<double, 15, 3>;
   void add_dead_reckoning_noise(double dt_s);

@@ -40,6 +40,11 @@ class ContactDetector {
   /// Updates the contacts; stamps must increase.
   ContactWeights update(Time stamp, const std::array<double, kNumLegs>& force_n);
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(is_loaded_, loaded_since_);
+  }
+
  private:
   Settings settings_;
   std::array<bool, kNumLegs> is_loaded_{};

@@ -58,6 +58,12 @@ class LeggedOdometry {
   /// Returns the filter; nullopt before the first IMU reading.
   const std::optional<InertialFilter>& filter() const { return imu_.filter(); }
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(imu_, contact_, pending_, last_contacts_, contact_weights_, last_leg_update_, height_m_, frozen_joints_,
+            frozen_contacts_, joints_move_, contacts_timed_out_, num_slips_);
+  }
+
  private:
   void advance(Time stamp, const InertialSample& sample);
   /// Processes the leg readings that are due.

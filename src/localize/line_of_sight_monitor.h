@@ -22,6 +22,11 @@ class LineOfSightMonitor {
   /// Discards the ranges of all anchors.
   void reset() { windows_.clear(); }
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(windows_);
+  }
+
  private:
   struct Sample {
     Time stamp{};

@@ -28,6 +28,11 @@ class MapPoseTracker {
   PoseEstimate at(Time stamp, const Pose2& T_odom_body) const;
   const Pose2& T_map_odom() const { return T_map_odom_; }
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(corrected_, T_map_odom_, T_odom_corrected_, covariance_);
+  }
+
  private:
   OdometryDrift drift_;
   Time corrected_{};

@@ -28,6 +28,11 @@ class MotionHistory {
   std::optional<TrunkMotion> motion_at(Time stamp) const;
   std::optional<Pose3> pose_at(Time stamp) const;
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(ring_, first_, size_);
+  }
+
  private:
   struct Entry {
     Time stamp{};

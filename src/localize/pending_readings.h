@@ -29,6 +29,11 @@ class PendingReadings {
   auto begin() { return readings_.begin(); }
   auto end() { return readings_.end(); }
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(readings_);
+  }
+
  private:
   static constexpr std::size_t kMaxReadings = 256;
 

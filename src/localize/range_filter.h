@@ -72,6 +72,11 @@ class RangeFilter {
   /// Returns the acceptance ratio over the last window of ranges; 1 before the first range.
   double accepted_ratio() const;
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(anchors_, has_started_, state_, twist_std_, last_ranges_, accepted_, num_resets_);
+  }
+
  private:
   static constexpr int kYaw = 2, kHeight = 3, kDrift = 4, kSize = 7;
   using Vector = Eigen::Matrix<double, kSize, 1>;

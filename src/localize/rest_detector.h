@@ -23,6 +23,11 @@ class RestDetector {
   /// Returns whether the body has been at rest over the whole window; false before the window is full.
   bool is_at_rest() const;
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(samples_);
+  }
+
  private:
   struct Sample {
     Time stamp{};

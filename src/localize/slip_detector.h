@@ -34,6 +34,11 @@ class SlipDetector {
   /// Starts a new window.
   void reset();
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(sums_, readings_, last_acceleration_);
+  }
+
  private:
   struct Sum {
     Time stamp{};

@@ -35,6 +35,11 @@ class StationaryGyroBiasEstimator {
   /// Starts a new window, after a foot was lifted or data were missing.
   void reset() { is_open_ = false; }
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(is_open_, start_, last_, last_gyro_, gyro_angle_rad_, first_, final_);
+  }
+
  private:
   using FootPositions = std::array<Eigen::Vector3d, kNumLegs>;
   /// Mean over the samples at one end of the window.

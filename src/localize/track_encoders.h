@@ -18,6 +18,11 @@ struct DriveTicks : TrackTicks {
         lateral(lateral_count),
         residual(residual_count) {}
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(stamp, left, right, lateral, residual);
+  }
+
   std::int64_t lateral = 0;   ///< of the motion to the left
   std::int64_t residual = 0;  ///< of the motion that only slip explains (WheelMotion::residual_mps)
 };
@@ -68,6 +73,11 @@ class TrackEncoders {
   const std::optional<DriveTicks>& last() const { return last_; }
 
   static constexpr Time kStandstill = std::chrono::milliseconds(300);
+
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(last_, stationary_since_, smooth_, acceleration_mps2_, lateral_acceleration_mps2_, rejected_since_);
+  }
 
  private:
   bool accept_change(const EncoderInterval& interval);

@@ -96,6 +96,12 @@ class TrackFilter {
   /// Returns the covariance of x, y, yaw in odom.
   Eigen::Matrix3d planar_covariance() const;
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(settings_, motion_, gyro_bias_, accel_bias_, scale_, slip_, icr_m_, last_, forward_acceleration_mps2_,
+            pose_correction_time_s_, smooth_track_mps_, smooth_lateral_mps_, P_);
+  }
+
  private:
   using Gain = Eigen::Matrix<double, kSize, 3>;
   void apply_error(const Eigen::Matrix<double, kSize, 1>& error);

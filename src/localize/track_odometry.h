@@ -68,6 +68,12 @@ class TrackOdometry {
   /// Returns the filter; nullopt before the first IMU reading.
   const std::optional<TrackFilter>& filter() const { return imu_.filter(); }
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(imu_, started_, has_settled_, rest_detector_, slip_detector_, encoders_, pending_, last_speed_update_,
+            last_speed_, is_slipping_, agree_since_, num_slip_events_);
+  }
+
  private:
   void advance(Time stamp, const InertialSample& sample);
   void coast_to(const DriveTicks& ticks);

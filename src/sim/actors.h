@@ -88,6 +88,12 @@ class Actors {
   /// Returns the positions of all actors, in world.
   std::vector<Eigen::Vector2d> positions() const;
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    for (Actor& actor : actors_) archive(actor.walked_m, actor.speed_mps);
+    archive(last_);
+  }
+
  private:
   struct Actor {
     ActorSettings settings;

@@ -36,6 +36,11 @@ class AntennaMount {
   /// Returns whether the antenna is not stowed, according to the encoders.
   bool is_deployed(const mjData& data) const;
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(servos_, count_);
+  }
+
  private:
   struct Servo {
     int qpos = 0, dof = 0, motor = 0;

@@ -20,6 +20,13 @@ class CollisionCuller {
   /// Updates the culling with the poses in `data`, which may be one tick old.
   void update(const mjData& data);
 
+  /// Saves or restores the center of the tree, and rebuilds the tree. The contact bits are part of the model.
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(bvh_center_);
+    if (archive.is_loading() && bvh_center_.allFinite()) rebuild_bvh(bvh_center_);
+  }
+
  private:
   /// Geom of the world body and its axis-aligned bounding box, as stored in a tree node.
   struct Leaf {

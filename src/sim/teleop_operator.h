@@ -51,6 +51,11 @@ class TeleopOperator {
   std::optional<TeleopCommand> step(Time now, const Pose2& T_world_body,
                                     const std::vector<Eigen::Vector2d>& p_world_people, bool is_busy = false);
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(phase_, next_, leg_start_m_, has_started_, stationary_since_, phase_start_, count_, observed_);
+  }
+
  private:
   enum class Phase { kWaiting, kDriving, kTurning, kLooking, kSaved, kDone };
 

@@ -86,6 +86,12 @@ class GridMap {
   std::size_t num_unshared_tiles() const;
   std::size_t num_tiles() const;
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(resolution_m_, inverse_resolution_, max_tile_, first_col_, first_row_, num_cols_, num_rows_, tiles_,
+            has_surface_);
+  }
+
  private:
   static int tile_of(int index) { return index >> GridTile::kBits; }
   static int local(int index) { return index & (GridTile::kSize - 1); }

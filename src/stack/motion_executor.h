@@ -52,6 +52,11 @@ class MotionExecutor {
   /// Returns whether the robot is teleoperated.
   bool is_teleoperated() const { return motion_ == Motion::kTeleop; }
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(navigator_, docking_, dock_, next_dock_search_, last_teleop_, motion_, navigation_, docking_feedback_);
+  }
+
  private:
   VelocityCommand navigate(Time now, const std::optional<NavigationGoal>& goal, const Pose2& T_map_body,
                            StackOutput& output);

@@ -7,6 +7,7 @@
 
 #include "core/messages.h"
 #include "core/sensors/registry.h"
+#include "core/state/state_archive_fwd.h"
 #include "stack/instruments/instrument_set.h"
 #include "stack/localization/pose_pipeline.h"
 #include "stack/localization/site_follower.h"
@@ -48,6 +49,10 @@ class Stack {
   /// Removes and returns the messages published since the last call, in order.
   std::vector<StackMessage> take_messages() { return output_.take_messages(); }
   const StageProfiler& clock() const { return output_.clock(); }
+
+  /// Saves or restores the state, between two steps. The stack has been made from the same settings. Throws
+  /// std::runtime_error if the state is that of another stack.
+  void serialize_state(StateArchive& archive);
 
  private:
   /// State of the robot in a control period.

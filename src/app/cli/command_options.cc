@@ -5,8 +5,8 @@
 
 namespace patrol::app {
 
-void add_scenario(CLI::App& command, std::filesystem::path& scenario) {
-  command.add_option("scenario", scenario, "Scenario file (YAML), or WORLD/NAME, for example street/patrol")
+CLI::Option* add_scenario(CLI::App& command, std::filesystem::path& scenario) {
+  return command.add_option("scenario", scenario, "Scenario file (YAML), or WORLD/NAME, for example street/patrol")
       ->required()
       ->transform([](const std::string& name) { return find_scenario(name).string(); });
 }

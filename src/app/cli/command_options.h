@@ -13,6 +13,8 @@ namespace patrol::app {
 /// Options of all commands, and the command to call.
 struct Call {
   RunOptions run;
+  TraceOptions trace;
+  BisectOptions bisect;
   ScoreOptions score;
   LocalizabilityOptions localizability;
   CheckOptions check;
@@ -59,7 +61,7 @@ inline constexpr const char* kAllHelp = "Print every metric";
 inline constexpr const char* kTokenHelp = "File with the access token (default: $PATROL_TOKEN)";
 
 /// Adds the positional argument that names a scenario.
-void add_scenario(CLI::App& command, std::filesystem::path& scenario);
+CLI::Option* add_scenario(CLI::App& command, std::filesystem::path& scenario);
 
 /// Adds `--json` to a command that prints a table.
 void add_json(CLI::App& command, ResultForm& form);

@@ -6,7 +6,7 @@ namespace {
 void add_run(CLI::App& app, Call& call) {
   RunOptions& run = call.run;
   CLI::App* command = app.add_subcommand("run", "Run a scenario headless and score it");
-  add_scenario(*command, run.scenario);
+  add_scenario(*command, run.scenario)->required(false);
   command->add_option("--set", run.overrides, kSetHelp)->take_all();
   command->add_option("--seed", run.seed, kSeedHelp);
   command->add_option("--robot", run.robot, "Robot instead of that of the scenario");
@@ -19,6 +19,9 @@ void add_run(CLI::App& app, Call& call) {
   command->add_flag("--watch", run.watch, "Show live status in the terminal");
   command->add_option("--threads", run.threads, "Threads, 1 or 2, with the same results (default: 2 on several cores)")
       ->check(CLI::Range(1, 2));
+  command->add_option("--snapshot-every", run.snapshot_period_s, "Simulated time between two snapshots, s")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--from", run.from, "Branch RUN@SECONDS: continue that run, with --set from there on");
   command->add_option("--out", run.out, kOutHelp);
   command->add_option("--monitor-url", run.monitor_url, "Monitoring server, http://host:port");
   command->add_option("--monitor-token-file", run.monitor_token_file, kTokenHelp);
@@ -26,6 +29,29 @@ void add_run(CLI::App& app, Call& call) {
   command->add_flag("--all", run.show_all, kAllHelp);
   add_json(*command, run.form);
   command->callback([&] { call.chosen = [&] { return run_command(call.run); }; });
+}
+
+void add_trace(CLI::App& app, Call& call) {
+  TraceOptions& trace = call.trace;
+  CLI::App* command = app.add_subcommand("trace", "Print hashes of the state of a run at every tick");
+  command->add_option("run", trace.run, "Run directory")->required();
+  command->add_option("--from-s", trace.from_s, "First instant, s")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command->add_option("--to-s", trace.to_s, "Last instant, s")->check(CLI::NonNegativeNumber)->required();
+  command->callback([&] { call.chosen = [&] { return trace_command(call.trace); }; });
+}
+
+void add_bisect(CLI::App& app, Call& call) {
+  BisectOptions& bisect = call.bisect;
+  CLI::App* command = app.add_subcommand("bisect", "Find the first tick at which two runs differ");
+  command->add_option("a", bisect.a, "Run directory")->required();
+  command->add_option("b", bisect.b, "Run directory of the same scenario by other settings or another build")
+      ->required();
+  command->add_option("--program-a", bisect.program_a, "Program that made A (default: this one)");
+  command->add_option("--program-b", bisect.program_b, "Program that made B (default: this one)");
+  add_json(*command, bisect.form);
+  command->callback([&] { call.chosen = [&] { return bisect_command(call.bisect); }; });
 }
 
 constexpr const char* kReferenceHelp = "Reference trajectory (TUM)";
@@ -150,6 +176,8 @@ void add_upload(CLI::App& app, Call& call) {
 
 void add_run_commands(CLI::App& app, Call& call) {
   add_run(app, call);
+  add_trace(app, call);
+  add_bisect(app, call);
   add_score(app, call);
   add_localizability(app, call);
   add_check(app, call);

@@ -28,6 +28,8 @@ struct RunOptions {
   std::optional<std::string> stack;  ///< command or address of a stack instead of that of the scenario
   bool watch = false;                ///< show live status in the terminal
   std::optional<int> threads;        ///< threads of the simulation, 1 or 2; default: 2 on several cores
+  double snapshot_period_s = 0.0;    ///< simulated time between two snapshots; 0: none
+  std::string from;                  ///< "RUN@SECONDS": branch of that run instead of a run of `scenario`
   std::optional<std::filesystem::path> out;
   std::optional<std::string> monitor_url;  ///< URL of a monitoring server
   std::optional<std::filesystem::path> monitor_token_file;
@@ -36,6 +38,23 @@ struct RunOptions {
   ResultForm form = ResultForm::kText;
 };
 ExitCode run_command(const RunOptions& options);
+
+/// Input of `patrol trace`: a part of a run.
+struct TraceOptions {
+  std::filesystem::path run;
+  double from_s = 0.0;
+  double to_s = 0.0;
+};
+/// Prints a line with hashes of the state for every tick.
+ExitCode trace_command(const TraceOptions& options);
+
+/// Input of `patrol bisect`: two runs, each with the program that made it; this one without.
+struct BisectOptions {
+  std::filesystem::path a, b;
+  std::optional<std::string> program_a, program_b;
+  ResultForm form = ResultForm::kText;
+};
+ExitCode bisect_command(const BisectOptions& options);
 
 /// Input of `patrol score`: a run directory, two trajectories, a trajectory and relations, or two maps.
 struct ScoreOptions {

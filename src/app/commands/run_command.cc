@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <fstream>
 #include <memory>
 #include <thread>
 #include <utility>
@@ -9,6 +10,7 @@
 #include "app/commands/commands.h"
 #include "app/common/print_result.h"
 #include "app/monitor/reporter.h"
+#include "app/record/run_directory.h"
 #include "app/report/run_summary.h"
 #include "app/run/progress_line.h"
 #include "app/run/run_once.h"
@@ -27,12 +29,27 @@ bool names_world(const RunOptions& options) {
          std::filesystem::exists(world_folder(name, find_data_root({})) / (name + ".xml"));
 }
 
+/// Returns the name in the comment at the head of a scenario of a run directory.
+std::string name_in(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  std::string line;
+  std::getline(stream, line);
+  const std::size_t end = line.find(',');
+  return line.starts_with("# ") && end != std::string::npos ? line.substr(2, end - 2)
+                                                            : file.parent_path().filename().string();
+}
+
 /// Name of the run's scenario.
 std::string name_of(const RunOptions& options) {
+  if (!options.from.empty()) return name_in(RunDirectory{parse_branch(options.from).run}.scenario());
   return names_world(options) ? "goals" : options.scenario.stem().string();
 }
 
 std::filesystem::path default_directory(const RunOptions& options, const Scenario& scenario) {
+  if (!options.from.empty()) {
+    const BranchOrigin branch = parse_branch(options.from);
+    return fmt::format("{}_at_{}s", branch.run.lexically_normal().string(), to_seconds(branch.at));
+  }
   return std::filesystem::path("out") / fmt::format("{}_{}_seed{}", scenario.world, name_of(options), scenario.seed);
 }
 
@@ -58,7 +75,20 @@ TourSettings tour_of(const RunOptions& options, const Scenario* scenario, const 
   return tour;
 }
 
+/// Scenario of a branch: that of the other run with the overrides.
+Scenario branch_scenario(const RunOptions& options) {
+  for (const auto& [option, is_given] :
+       {std::pair{"a scenario", !options.scenario.empty()}, std::pair{"--goal", !options.goals.empty()},
+        std::pair{"--robot", options.robot.has_value()}, std::pair{"--seed", options.seed.has_value()},
+        std::pair{"--stack", options.stack.has_value()}}) {
+    if (is_given) throw InputError(fmt::format("--from: excludes {}: those of the run apply", option));
+  }
+  return load_scenario(open_run_directory(parse_branch(options.from).run).scenario(), options.overrides);
+}
+
 Scenario scenario_of(const RunOptions& options) {
+  if (!options.from.empty()) return branch_scenario(options);
+  if (options.scenario.empty()) throw InputError("run: needs a scenario, or --from RUN@SECONDS");
   std::vector<std::string> overrides = options.overrides;
   if (options.seed) overrides.push_back(fmt::format("seed={}", *options.seed));
   if (options.robot) overrides.push_back(fmt::format("robot={}", *options.robot));
@@ -123,12 +153,18 @@ std::unique_ptr<Reporter> reporter_of(const RunOptions& options, const Scenario&
 
 std::optional<RunVerdict> run_reported(const RunOptions& options, const Scenario& scenario, const std::string& name,
                                        const std::filesystem::path& root, Reporter* reporter, RunObserver& screen) {
-  const std::filesystem::path data_root = find_data_root(names_world(options) ? "" : options.scenario);
-  const int num_threads = options.threads.value_or(std::thread::hardware_concurrency() > 1 ? 2 : 1);
-  if (reporter == nullptr) return run_once(scenario, name, data_root, root, screen, num_threads);
+  RunMode mode{.snapshot_period_s = options.snapshot_period_s,
+               .num_threads = options.threads.value_or(std::thread::hardware_concurrency() > 1 ? 2 : 1)};
+  std::filesystem::path file = names_world(options) ? "" : options.scenario;
+  if (!options.from.empty()) {
+    mode.branch = parse_branch(options.from);
+    file = RunDirectory{mode.branch->run}.scenario();
+  }
+  const std::filesystem::path data_root = find_data_root(file);
+  if (reporter == nullptr) return run_once(scenario, name, data_root, root, screen, mode);
   ObserverGroup observers({&screen, reporter});
   try {
-    std::optional<RunVerdict> verdict = run_once(scenario, name, data_root, root, observers, num_threads);
+    std::optional<RunVerdict> verdict = run_once(scenario, name, data_root, root, observers, mode);
     if (!verdict) reporter->finish("interrupted", "interrupted by user");
     else
       reporter->finish(verdict->code() == ExitCode::kDone ? "finished" : "failed",

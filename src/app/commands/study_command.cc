@@ -8,11 +8,11 @@
 
 #include "app/campaign/batch/batch_options.h"
 #include "app/campaign/batch/process_pool.h"
-#include "app/campaign/batch/run_hash.h"
 #include "app/commands/commands.h"
 #include "app/common/output_directory.h"
 #include "app/common/print_result.h"
 #include "app/common/progress_bar.h"
+#include "app/scenario/run_hash.h"
 #include "app/study/study_table.h"
 #include "core/error.h"
 #include "io/files/atomic_file.h"

@@ -8,7 +8,6 @@
 
 #include "app/campaign/batch/result_store.h"
 #include "app/campaign/batch/run_batch.h"
-#include "app/campaign/batch/run_hash.h"
 #include "app/campaign/sweep/sweep_options.h"
 #include "app/campaign/test/calibration.h"
 #include "app/campaign/test/expect_editor.h"
@@ -17,6 +16,7 @@
 #include "app/commands/commands.h"
 #include "app/common/output_directory.h"
 #include "app/scenario/data_folders.h"
+#include "app/scenario/run_hash.h"
 #include "app/scenario/scenario.h"
 #include "core/error.h"
 #include "io/files/atomic_file.h"

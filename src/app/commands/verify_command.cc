@@ -16,6 +16,7 @@
 #include "app/run/run_loop.h"
 #include "app/scenario/data_folders.h"
 #include "core/error.h"
+#include "io/json/metrics_json.h"
 #include "io/logs/log_compare.h"
 
 namespace patrol::app {
@@ -40,6 +41,12 @@ ExitCode verify_command(const VerifyOptions& options) {
   if (!turns.empty() && !turns.back().is_last) {
     throw InputError(fmt::format("{}: its stack failed at {:.3f} s: only a complete run can be verified",
                                  directory.log().string(), to_seconds(turns.back().turn)));
+  }
+  if (std::filesystem::exists(directory.branch()) &&
+      io::load_metrics(directory.branch()).value("has_other_settings", true)) {
+    throw InputError(
+        fmt::format("{}: is a branch with other settings: only a whole run of one scenario can be verified",
+                    directory.root.string()));
   }
   Scenario scenario = load_scenario(directory.scenario());
   const std::filesystem::path data_root = find_data_root(directory.scenario());

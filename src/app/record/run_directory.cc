@@ -17,7 +17,7 @@ const OutputKind kRun = {.name = "run",
                                      "report.html",      "replay.mp4",   "nav.json",          "teleop.csv",
                                      "scans/scans.json", "scans/*.ply",  "map_errors.pgm",    "localizability.csv",
                                      "still_*.png",      "outbox.jsonl", "outbox.sent",       "outbox.refused.jsonl",
-                                     "stack.log",        "*.part"},
+                                     "stack.log",        "branch.json",  "snapshots/*.snap",  "*.part"},
                          .required_file = "scenario.yaml",
                          .preserved = {}};
 

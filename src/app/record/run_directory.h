@@ -30,6 +30,9 @@ struct RunDirectory {
   std::filesystem::path localizability() const { return root / "localizability.csv"; }
   std::filesystem::path truth_map() const { return root / "truth_map.yaml"; }
 
+  std::filesystem::path snapshots() const { return root / "snapshots"; }
+  std::filesystem::path branch() const { return root / "branch.json"; }  ///< origin of a branch
+
   bool is_complete() const;
 };
 

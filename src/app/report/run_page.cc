@@ -9,9 +9,9 @@
 #include "app/report/inspection_pictures.h"
 #include "app/report/metric_blocks.h"
 #include "app/report/run_map.h"
-#include "app/report/settings_difference.h"
 #include "app/report/verdict.h"
 #include "app/scenario/data_folders.h"
+#include "app/scenario/settings_difference.h"
 #include "io/files/atomic_file.h"
 
 namespace patrol::app {

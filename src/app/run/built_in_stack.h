@@ -18,6 +18,7 @@ class BuiltInStack final : public StackPort {
 
   StackAnswer take_turn(const StackTurn& turn) override;
   std::vector<PublishedMessage> finish(const StackTurn& turn) override;
+  void serialize_state(StateArchive& archive) override { stack_.serialize_state(archive); }
   bool records_turns() const override { return compute_.model != "free"; }
   std::map<std::string, double> seconds_by_stage() const override { return stack_.clock().seconds(); }
 

@@ -4,11 +4,15 @@
 #include <chrono>
 #include <ctime>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "core/geometry/angles.h"
 #include "core/overloaded.h"
+#include "core/state/message_state.h"
 #include "io/logs/run_log.h"
 #include "render/scene/depth_renderer.h"
 
@@ -23,6 +27,11 @@ class Schedule {
     if (now < next_) return false;
     next_ += period_;
     return true;
+  }
+
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(next_);
   }
 
  private:
@@ -65,34 +74,47 @@ sim::SimulatorSettings simulator_settings(const Scenario& scenario, const Scenar
 /// Closed loop of simulator and stack: exchanges their messages, writes the log and notifies the observer.
 class ClosedLoop {
  public:
-  ClosedLoop(const Scenario& scenario, const ScenarioFiles& files, sim::Simulator& simulator, StackPort& stack,
-             const std::filesystem::path& log_mcap, RunObserver& observer)
+  ClosedLoop(const Scenario& scenario, sim::Simulator& simulator, StackPort& stack, io::RunLogWriter& log,
+             RunObserver& observer, const RunPart& part)
       : simulator_(simulator),
         stack_(stack),
         observer_(observer),
-        log_(log_mcap, files.robot),
+        log_(log),
+        part_(part),
         truth_due_(scenario.log.truth_rate_hz),
         state_due_(scenario.log.state_rate_hz),
         limit_(from_seconds(scenario.time_limit_s)),
         kidnaps_(scenario.kidnaps),
         last_position_(simulator.truth().T_world_body.position) {
     std::stable_sort(kidnaps_.begin(), kidnaps_.end(), [](const auto& a, const auto& b) { return a.at_s < b.at_s; });
+    if (!part_.start.empty()) {
+      restore();
+    } else if (const AsBuiltTruth as_built = simulator_.as_built(); !as_built.values.empty()) {
+      log_.write(Time{}, as_built);
+    }
+    next_snapshot_ = simulator_.now() + part_.snapshot_period;
   }
 
-  RunOutcome run(const ScenarioFiles& files) {
-    observer_.begin(files);
-    if (const AsBuiltTruth as_built = simulator_.as_built(); !as_built.values.empty()) log_.write(Time{}, as_built);
+  /// Runs until a time and returns the state; empty if the run ends before.
+  std::string run_until(Time end) {
+    for (bool is_running = true; is_running;) {
+      save_snapshot();
+      trace();
+      if (simulator_.now() >= end) return state();
+      is_running = tick();
+    }
+    trace();
+    return {};
+  }
+
+  const RunOutcome& outcome() const { return outcome_; }
+
+  RunOutcome run() {
     try {
       for (bool is_running = true; is_running;) {
-        const Time now = simulator_.now();
-        deliver_sensor_messages(now);
-        deliver_fall(now);
-        give_turn(now);
-        if (now - command_time_ > kCommandTimeout) simulator_.set_command({});
-        trigger_kidnaps(now);
-        record_ground_truth(now);
-        is_running = keep_running(now);
-        if (is_running) simulator_.step();
+        save_snapshot();
+        trace();
+        is_running = tick();
       }
       finish_stack(simulator_.now());
     } catch (const link::LinkError& error) {
@@ -104,6 +126,74 @@ class ClosedLoop {
   }
 
  private:
+  /// Exchanges the messages of an instant and advances the simulator. Returns false at the end of the run.
+  bool tick() {
+    const Time now = simulator_.now();
+    deliver_sensor_messages(now);
+    deliver_fall(now);
+    give_turn(now);
+    if (now - command_time_ > kCommandTimeout) simulator_.set_command({});
+    trigger_kidnaps(now);
+    record_ground_truth(now);
+    if (!keep_running(now)) return false;
+    simulator_.step();
+    return true;
+  }
+
+  void serialize_state(StateArchive& archive) {
+    archive.section("loop");
+    simulator_.serialize_state(archive);
+    stack_.serialize_state(archive);
+    archive(truth_due_, state_due_, progress_due_, last_position_, distance_m_, turn_, answer_, answer_time_,
+            next_turn_, command_time_, fall_time_, mission_is_over_, outcome_.end, outcome_.num_kidnaps);
+  }
+
+  std::string state() {
+    StateArchive archive;
+    serialize_state(archive);
+    return archive.bytes();
+  }
+
+  void restore() {
+    StateArchive archive(part_.start);
+    serialize_state(archive);
+    if (!archive.is_at_end()) throw std::runtime_error("state is longer than expected");
+    start_ = simulator_.now();
+  }
+
+  void save_snapshot() {
+    const Time now = simulator_.now();
+    bool is_due = false;
+    if (part_.snapshot_period > Time{} && now >= next_snapshot_) {
+      next_snapshot_ += part_.snapshot_period;
+      is_due = true;
+    }
+    for (; num_snapshots_ < part_.snapshot_times.size() && now >= part_.snapshot_times[num_snapshots_];
+         ++num_snapshots_)
+      is_due = true;
+    if (is_due) part_.save(now, state());
+  }
+
+  /// Reports the hashes of a tick.
+  void trace() {
+    if (!part_.trace || simulator_.now() < part_.trace_from) return;
+    const auto hash_of = [](auto& part) {
+      StateArchive archive;
+      archive(part);
+      return hash_bytes(archive.bytes());
+    };
+    SimState motion = simulator_.state();
+    part_.trace({.time = simulator_.now(),
+                 .motion = hash_of(motion),
+                 .messages = messages_,
+                 .simulator = hash_of(simulator_),
+                 .stack = hash_of(stack_)});
+  }
+
+  void trace_message(const std::string& topic, const std::string& cdr) {
+    if (part_.trace && simulator_.now() >= part_.trace_from) messages_ = hash_bytes(cdr, hash_bytes(topic, messages_));
+  }
+
   void deliver_sensor_messages(Time now) {
     const auto timer = profiler_.time_stage("log");
     for (const SensorMessage& message : simulator_.take_messages())
@@ -121,6 +211,7 @@ class ClosedLoop {
   template <typename Message>
   void deliver(Time now, const Message& message) {
     turn_.messages.push_back({.topic = io::kTopic<Message>, .log_time = now, .cdr = log_.write(now, message)});
+    trace_message(turn_.messages.back().topic, turn_.messages.back().cdr);
   }
 
   /// Publishes what the stack has computed by now, and lets it take a turn when it is due.
@@ -155,6 +246,7 @@ class ClosedLoop {
     for (const PublishedMessage& message : messages) {
       const auto timer = profiler_.time_stage("log");
       write_published(log_, now, message);
+      trace_message(message.topic, message.cdr);
       if (!message.content) continue;
       std::visit(Overloaded{[](const auto&) {},
                             [&](const VelocityCommand& command) {
@@ -210,6 +302,7 @@ class ClosedLoop {
   void finish() {
     log_.close();
     outcome_.duration = simulator_.now();
+    outcome_.start = start_;
     outcome_.faults = simulator_.sensors().faults();
     outcome_.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_start_).count();
     outcome_.cpu_s = cpu_seconds() - cpu_start_;
@@ -229,7 +322,8 @@ class ClosedLoop {
   sim::Simulator& simulator_;
   StackPort& stack_;
   RunObserver& observer_;
-  io::RunLogWriter log_;
+  io::RunLogWriter& log_;
+  const RunPart& part_;
   StageProfiler profiler_;
   Schedule truth_due_, state_due_, progress_due_{2.0};
   Time limit_;
@@ -243,6 +337,10 @@ class ClosedLoop {
   std::optional<Time> fall_time_;
   bool mission_is_over_ = false;
   RunOutcome outcome_;
+  Time start_{};                   ///< of this part
+  std::uint64_t messages_ = 0;     ///< hash of the traced messages
+  Time next_snapshot_{};           ///< periodic
+  std::size_t num_snapshots_ = 0;  ///< of the given instants
 };
 
 }  // namespace
@@ -288,9 +386,27 @@ sim::Simulator make_simulator(const Scenario& scenario, const ScenarioFiles& fil
   return {settings, files.robot, scenario.seed, render::make_depth_renderer};
 }
 
+std::string run_until(Time end, const Scenario& scenario, sim::Simulator& simulator, StackPort& stack,
+                      io::RunLogWriter& log, RunObserver& observer, const RunPart& part) {
+  ClosedLoop loop(scenario, simulator, stack, log, observer, part);
+  std::string state = loop.run_until(end);
+  if (state.empty() && !part.trace && loop.outcome().end != RunEnd::kInterrupted) {
+    throw InputError(
+        fmt::format("--from: the run ends at {} s, before {} s", to_seconds(simulator.now()), to_seconds(end)));
+  }
+  return state;
+}
+
+RunOutcome run_to_end(const Scenario& scenario, sim::Simulator& simulator, StackPort& stack, io::RunLogWriter& log,
+                      RunObserver& observer, const RunPart& part) {
+  return ClosedLoop(scenario, simulator, stack, log, observer, part).run();
+}
+
 RunOutcome run_loop(const Scenario& scenario, const ScenarioFiles& files, sim::Simulator& simulator, StackPort& stack,
                     const std::filesystem::path& log_mcap, RunObserver& observer) {
-  return ClosedLoop(scenario, files, simulator, stack, log_mcap, observer).run(files);
+  observer.begin(files);
+  io::RunLogWriter log(log_mcap, files.robot);
+  return run_to_end(scenario, simulator, stack, log, observer, {});
 }
 
 }  // namespace patrol::app

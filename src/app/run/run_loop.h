@@ -1,12 +1,14 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "app/run/stack_port.h"
+#include "app/run/tick_digest.h"
 #include "app/scenario/scenario.h"
 #include "core/time.h"
 #include "io/logs/run_log.h"
@@ -20,7 +22,8 @@ enum class RunEnd { kMissionOver, kFall, kTimeLimit, kInterrupted, kStackFailed,
 struct RunOutcome {
   RunEnd end = RunEnd::kMissionOver;
   std::string stack_failure;  ///< sentence for kStackFailed and kStackSilent
-  Time duration{};            ///< simulated time
+  Time duration{};            ///< simulated time from the start of the run to its end
+  Time start{};               ///< instant from which this process ran it; zero unless it is a branch
   double wall_s = 0.0;
   double cpu_s = 0.0;
   std::map<std::string, double> seconds_by_stage;  ///< wall time by stage
@@ -62,6 +65,25 @@ void set_failure(RunOutcome& outcome, const link::LinkError& error);
 /// Creates the simulator, with a thread of its own for expensive sensors if requested. Throws InputError if the
 /// settings of the scenario are inconsistent.
 sim::Simulator make_simulator(const Scenario& scenario, const ScenarioFiles& files, bool has_sensor_thread = false);
+
+/// Start, end and snapshots of a part of a run.
+struct RunPart {
+  std::string start;                                  ///< state by StateArchive; empty: start of the run
+  Time snapshot_period{};                             ///< zero: no periodic snapshots
+  std::vector<Time> snapshot_times = {};              ///< instants of further snapshots, in ascending order
+  std::function<void(const TickDigest&)> trace = {};  ///< receives every tick from `trace_from` on
+  Time trace_from{};
+  std::function<void(Time, std::string)> save = {};  ///< receives the state of each snapshot
+};
+
+/// Runs a part of a run, writes its messages to `log`, and returns the state at `end`. Throws InputError if the run
+/// ends before. Returns an empty state if the observer stops the run.
+std::string run_until(Time end, const Scenario& scenario, sim::Simulator& simulator, StackPort& stack,
+                      io::RunLogWriter& log, RunObserver& observer, const RunPart& part);
+
+/// Runs the last part of a run and closes the log.
+RunOutcome run_to_end(const Scenario& scenario, sim::Simulator& simulator, StackPort& stack, io::RunLogWriter& log,
+                      RunObserver& observer, const RunPart& part);
 
 /// Runs simulator and stack in a closed loop until the mission ends, and writes everything to `log_mcap`. The run also
 /// ends when the stack fails.

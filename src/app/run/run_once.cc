@@ -1,15 +1,24 @@
 #include "app/run/run_once.h"
 
+#include <sstream>
+#include <utility>
+
 #include <fmt/format.h>
 #include <mujoco/mujoco.h>
 
 #include "app/common/output_directory.h"
 #include "app/common/process_cost.h"
+#include "app/common/temporary_folder.h"
 #include "app/record/run_directory.h"
 #include "app/run/make_stack_port.h"
 #include "app/run/run_junit.h"
+#include "app/run/snapshot.h"
 #include "app/scoring/score_json.h"
 #include "app/scoring/score_run.h"
+#include "core/error.h"
+#include "core/state/state_archive.h"
+#include "io/logs/run_log.h"
+#include "io/mcap/mcap_reader.h"
 
 namespace patrol::app {
 namespace {
@@ -21,13 +30,92 @@ std::string origin_comment(const std::string& name) {
 
 io::Metrics performance_of(const RunOutcome& outcome) {
   io::Metrics performance;
-  performance["real_time_factor"] = to_seconds(outcome.duration) / outcome.wall_s;
+  performance["real_time_factor"] = to_seconds(outcome.duration - outcome.start) / outcome.wall_s;
   performance["wall_s"] = outcome.wall_s;
   performance["cpu_s"] = outcome.cpu_s;
   performance["peak_memory_mb"] = peak_memory_mb();
   for (const auto& [part, seconds] : outcome.seconds_by_stage) performance["parts_s"][part] = seconds;
   return performance;
 }
+
+/// Simulator and stack of a scenario.
+struct RunSystem {
+  RunSystem(const Scenario& scenario, StackContext context, int num_threads = 1)
+      : files(load_scenario_files(scenario, context.data_root)),
+        simulator(make_simulator(scenario, files, num_threads > 1)) {
+    context.tick = simulator.tick();
+    stack = make_stack_port(scenario, files, std::move(context));
+  }
+
+  ScenarioFiles files;
+  sim::Simulator simulator;
+  std::unique_ptr<StackPort> stack;
+};
+
+/// Throws InputError if the state of a stack cannot be saved.
+void check_state(StackPort& stack) {
+  StateArchive trial;
+  stack.serialize_state(trial);
+}
+
+/// Beginning of a branch: the other run up to an instant.
+class Branch {
+ public:
+  /// Throws InputError if the run cannot be continued with the scenario.
+  Branch(BranchOrigin origin, const Scenario& scenario, const StackContext& context, const std::filesystem::path& root)
+      : origin_(std::move(origin)), parent_(open_run_directory(origin_.run)), context_(context) {
+    if (!parent_.is_complete()) throw InputError(origin_.run.string() + ": the run is incomplete");
+    if (std::filesystem::exists(root) && std::filesystem::equivalent(root, origin_.run))
+      throw InputError(origin_.run.string() + ": a branch needs another --out directory");
+    scenario_ = load_scenario(parent_.scenario());
+    origin_.at = (origin_.at + context_.tick - Time{1}) / context_.tick * context_.tick;
+    check_branch_settings(scenario_, scenario, origin_.at);
+    is_changed_ = to_yaml(scenario_) != to_yaml(scenario);
+    const std::optional<Time> end = io::McapReader(parent_.log()).last_time();
+    if (!end || origin_.at > *end)
+      throw InputError(fmt::format("{}: the run ends before {} s", origin_.run.string(), to_seconds(origin_.at)));
+    snapshot_ = load_snapshot(parent_.snapshots(), origin_.at, content_hash(scenario_, context_.data_root));
+    if (!snapshot_ && std::filesystem::exists(parent_.branch())) {
+      throw InputError(
+          fmt::format("{}: is a branch without a snapshot at or before {} s: repeat it with "
+                      "--snapshot-every",
+                      origin_.run.string(), to_seconds(origin_.at)));
+    }
+  }
+
+  /// Writes the file that names the other run.
+  void save_origin(const std::filesystem::path& file) const {
+    io::Metrics origin;
+    origin["branch_of"] = std::filesystem::absolute(origin_.run).lexically_normal().string();
+    origin["at_s"] = to_seconds(origin_.at);
+    origin["has_other_settings"] = is_changed_;
+    io::save_metrics(file, origin);
+  }
+
+  /// Writes the messages up to the instant and returns the state there; none if the observer stops the run.
+  std::optional<std::string> begin(io::RunLogWriter& log, RunObserver& observer) {
+    if (snapshot_) copy_log(log);
+    if (snapshot_ && (snapshot_->time == origin_.at || !is_changed_)) return std::move(snapshot_->bytes);
+    RunSystem run(scenario_, context_);
+    RunPart part;
+    if (snapshot_) part.start = std::move(snapshot_->bytes);
+    std::string state = run_until(origin_.at, scenario_, run.simulator, *run.stack, log, observer, part);
+    return state.empty() ? std::nullopt : std::optional(std::move(state));
+  }
+
+ private:
+  void copy_log(io::RunLogWriter& log) const {
+    io::McapReader reader(parent_.log(), {.topics = {}, .to = snapshot_->time - Time{1}});
+    while (const std::optional<io::McapMessage> message = reader.next()) log.copy(*message);
+  }
+
+  BranchOrigin origin_;
+  RunDirectory parent_;
+  StackContext context_;
+  Scenario scenario_;
+  bool is_changed_ = false;
+  std::optional<RunState> snapshot_;
+};
 
 }  // namespace
 
@@ -44,27 +132,73 @@ RunVerdict complete_run(const RunDirectory& directory, const Scenario& scenario,
   return verdict;
 }
 
+BranchOrigin parse_branch(const std::string& text) {
+  const std::size_t at = text.rfind('@');
+  double seconds = 0.0;
+  std::istringstream number(at == std::string::npos ? "" : text.substr(at + 1));
+  if (!(number >> seconds) || !number.eof() || !(seconds > 0.0))
+    throw InputError(fmt::format("--from {}: must be RUN@SECONDS, for example out/run@63.2", text));
+  return {.run = text.substr(0, at), .at = from_seconds(seconds)};
+}
+
+void trace_run(const std::filesystem::path& root, Time from, Time to,
+               const std::function<void(const TickDigest&)>& on_tick) {
+  const RunDirectory directory = open_run_directory(root);
+  const std::filesystem::path data_root = find_data_root(directory.scenario());
+  const Scenario scenario = load_scenario(directory.scenario());
+  const TemporaryFolder folder("trace");
+  NullObserver observer;
+  RunSystem run(scenario, {.scenario = "trace",
+                           .data_root = data_root,
+                           .output = folder.path() / "stack.log",
+                           .is_interrupted = [] { return false; }});
+  check_state(*run.stack);
+  RunPart part;
+  part.trace = on_tick;
+  part.trace_from = from;
+  if (const auto snapshot = load_snapshot(directory.snapshots(), from, content_hash(scenario, data_root)))
+    part.start = snapshot->bytes;
+  io::RunLogWriter log(folder.path() / "log.mcap", run.files.robot);
+  run_until(to, scenario, run.simulator, *run.stack, log, observer, part);
+}
+
 std::optional<RunVerdict> run_once(const Scenario& scenario, const std::string& name,
                                    const std::filesystem::path& data_root, const std::filesystem::path& root,
-                                   RunObserver& observer, int num_threads) {
-  const ScenarioFiles files = load_scenario_files(scenario, data_root);
-  // These throw InputError before anything is written.
-  sim::Simulator simulator = make_simulator(scenario, files, num_threads > 1);
-  const std::unique_ptr<StackPort> stack =
-      make_stack_port(scenario, files,
-                      {.scenario = name,
+                                   RunObserver& observer, const RunMode& mode) {
+  StackContext context{.scenario = name,
                        .data_root = data_root,
-                       .tick = simulator.tick(),
                        .output = RunDirectory{root}.stack_output(),
-                       .is_interrupted = [&] { return observer.is_interrupted(); }});
+                       .is_interrupted = [&] { return observer.is_interrupted(); }};
+  RunSystem run(scenario, context, mode.num_threads);  // these throw InputError before anything is written
+  if (mode.has_snapshots() || mode.branch) check_state(*run.stack);
+  context.tick = run.simulator.tick();
+  std::optional<Branch> branch;
+  if (mode.branch) branch.emplace(*mode.branch, scenario, context, root);
+  const std::string content = mode.has_snapshots() ? content_hash(scenario, data_root) : "";
+
   const RunDirectory directory = begin_run_directory(root);
   io::save_junit(directory.junit(), {unfinished_suite(name, junit_properties(scenario))});
   save_scenario(directory.scenario(), scenario, origin_comment(name));
+  if (branch) branch->save_origin(directory.branch());
 
-  const RunOutcome outcome = run_loop(scenario, files, simulator, *stack, directory.log(), observer);
+  observer.begin(run.files);
+  io::RunLogWriter log(directory.log(), run.files.robot);
+  RunPart part;
+  if (branch) {
+    const std::optional<std::string> state = branch->begin(log, observer);
+    if (!state) return std::nullopt;
+    part.start = *state;
+  }
+  const SnapshotFolder snapshots(directory.snapshots(), content, name);
+  if (mode.has_snapshots()) {
+    part.snapshot_period = from_seconds(mode.snapshot_period_s);
+    part.snapshot_times = mode.snapshot_times;
+    part.save = [&](Time now, std::string state) { snapshots.save({.time = now, .bytes = std::move(state)}); };
+  }
+  const RunOutcome outcome = run_to_end(scenario, run.simulator, *run.stack, log, observer, part);
   if (outcome.end == RunEnd::kInterrupted) return std::nullopt;
 
-  return complete_run(directory, scenario, name, files, outcome);
+  return complete_run(directory, scenario, name, run.files, outcome);
 }
 
 }  // namespace patrol::app

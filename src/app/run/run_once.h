@@ -1,8 +1,10 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "app/record/run_directory.h"
 #include "app/run/run_loop.h"
@@ -14,12 +16,36 @@ namespace patrol::app {
 RunVerdict complete_run(const RunDirectory& directory, const Scenario& scenario, const std::string& name,
                         const ScenarioFiles& files, const RunOutcome& outcome);
 
+/// Start of a run from an instant of another run.
+struct BranchOrigin {
+  std::filesystem::path run;  ///< complete run directory
+  Time at{};                  ///< instant from which the scenario of the branch applies, rounded up to a tick
+};
+
+/// Snapshots of a run, and its start.
+struct RunMode {
+  double snapshot_period_s = 0.0;         ///< 0: no periodic snapshots
+  std::vector<Time> snapshot_times = {};  ///< instants of further snapshots, in ascending order
+  std::optional<BranchOrigin> branch = {};
+  int num_threads = 1;  ///< 2: expensive sensors have a thread of their own; the results are the same
+
+  bool has_snapshots() const { return snapshot_period_s > 0.0 || !snapshot_times.empty(); }
+};
+
+/// Returns the run directory and the instant of "RUN@SECONDS". Throws InputError.
+BranchOrigin parse_branch(const std::string& text);
+
+/// Repeats a part of a run, from the newest snapshot before it, and reports the hashes of its ticks, both ends
+/// included. Throws InputError if `root` is not a run of this program.
+void trace_run(const std::filesystem::path& root, Time from, Time to,
+               const std::function<void(const TickDigest&)>& on_tick);
+
 /// Runs a scenario, scores it, and writes a complete run directory at `root`. Returns none if `observer` stopped the
 /// run: the directory stays marked incomplete. Throws InputError, before anything is written, if a file of the scenario
-/// is missing or its settings are inconsistent. With two threads, expensive sensors have a thread of their own; the
-/// results are the same.
+/// is missing or its settings are inconsistent. A branch begins with the messages of the other run up to the instant,
+/// so that its log, score and report are those of a whole run.
 std::optional<RunVerdict> run_once(const Scenario& scenario, const std::string& name,
                                    const std::filesystem::path& data_root, const std::filesystem::path& root,
-                                   RunObserver& observer, int num_threads = 1);
+                                   RunObserver& observer, const RunMode& mode = {});
 
 }  // namespace patrol::app

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/state/state_archive_fwd.h"
 #include "core/time.h"
 #include "link/delivered_message.h"
 #include "stack/output/stack_message.h"
@@ -49,6 +50,8 @@ class StackPort {
   /// Returns whether the log has a StackTurn of every turn. Otherwise the turns are those of the built-in stack,
   /// without delay.
   virtual bool records_turns() const = 0;
+  /// Saves or restores the state between two turns. Throws InputError if the stack has none that can be saved.
+  virtual void serialize_state(StateArchive& archive);
   /// Returns the wall time by stage.
   virtual std::map<std::string, double> seconds_by_stage() const = 0;
 };

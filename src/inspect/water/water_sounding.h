@@ -45,6 +45,12 @@ class WaterSounding {
   /// Returns the root mean square angle between commanded and measured axes over the soundings.
   double antenna_error_deg() const;
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(stowed_, poses_, next_, phase_, has_begun_, is_stowed_, commanded_, since_, state_, steady_since_,
+            soundings_, sum_squared_error_rad2_, num_skipped_, num_skipped_in_a_row_);
+  }
+
  private:
   enum class Phase { kTurning, kSounding, kStowing, kOver };
 

@@ -40,6 +40,13 @@ void RunLogWriter::write_foreign(Time log_time, const std::string& topic, const 
   writer_.write(known->second, log_time, cdr);
 }
 
+void RunLogWriter::copy(const McapMessage& message) {
+  const std::string& topic = message.channel.topic;
+  if (topic == kStaticTransforms.topic) return;
+  write_foreign(message.log_time, topic, message.channel.type, message.channel.definition, message.cdr);
+  if (topic == kTopic<OdometryEstimate>) remember(decode<OdometryEstimate>(message.cdr));
+}
+
 McapWriter::ChannelId RunLogWriter::add_channel(const std::string& topic, const char* type) {
   return channels_[topic] = writer_.add_channel(topic, type, ros_definition(type));
 }
@@ -52,6 +59,10 @@ void RunLogWriter::write_frames(Time log_time, const OdometryEstimate& odometry)
       {odometry.stamp, frame_id::kLevel, frame_id::kBody, T_odom_level.inverse() * odometry.T_odom_body},
   }};
   writer_.write(channel<TransformSet>(kTransforms.topic), log_time, encode(frames, names_));
+  remember(odometry);
+}
+
+void RunLogWriter::remember(const OdometryEstimate& odometry) {
   if (odometry_.empty() || odometry_.back().stamp < odometry.stamp)
     odometry_.push_back({odometry.stamp, odometry.T_odom_body});
   if (odometry.stamp - odometry_.front().stamp > 2 * kOdometryMemory) {

@@ -13,6 +13,7 @@
 #include "core/robot_description.h"
 #include "core/trajectory.h"
 #include "io/logs/topics.h"
+#include "io/mcap/mcap_reader.h"
 #include "io/mcap/mcap_writer.h"
 
 namespace patrol::io {
@@ -45,6 +46,10 @@ class RunLogWriter {
   void write_foreign(Time log_time, const std::string& topic, const std::string& type, const std::string& definition,
                      std::string_view cdr);
 
+  /// Copies a message of another log of the same robot, so that writing continues as after it. Messages on /tf_static
+  /// are skipped: each log has its own.
+  void copy(const McapMessage& message);
+
   void close() { writer_.close(); }
 
  private:
@@ -56,6 +61,7 @@ class RunLogWriter {
   }
   McapWriter::ChannelId add_channel(const std::string& topic, const char* type);
   void write_frames(Time log_time, const OdometryEstimate& odometry);
+  void remember(const OdometryEstimate& odometry);
   void write_frames(Time log_time, const PoseEstimate& estimate);
 
   McapWriter writer_;

@@ -30,6 +30,11 @@ class DivergenceMonitor {
   /// Fraction of the particles to replace, 0 ... max_injection_fraction.
   double injection_fraction() const;
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(slow_, fast_, scan_fit_, range_fit_);
+  }
+
  private:
   DivergenceMonitorSettings settings_;
   double slow_ = 0.0, fast_ = 0.0;  ///< 0: no scan yet

@@ -75,6 +75,12 @@ class MonteCarloLocalizer {
 
   const ParticleCloud& particles() const { return cloud_; }
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(ranges_, divergence_monitor_, cloud_, is_globally_started_, starts_, updates_, cluster_gaussian_,
+            cluster_weight_, is_lost_, T_odom_last_, last_update_stamp_, last_scan_, last_search_);
+  }
+
  private:
   void start_from(const LevelScan& scan, const Pose2& T_odom_body);
   bool is_due(const Pose2& T_before_now, Time stamp) const;

@@ -25,6 +25,11 @@ class RangeBiasMap {
   /// approaches the mean of all positions where there are few of them.
   double bias_m(int anchor, const Eigen::Vector2d& p_map) const;
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(anchors_);
+  }
+
  private:
   struct LocalBias {
     Eigen::Vector2d p_map;

@@ -24,6 +24,11 @@ class RangeBuffer {
   /// Returns the ranges newer than `since` in the body frame at `T_odom_now`, sorted by anchor number.
   std::vector<AnchoredRange> ranges_since(Time since, const Pose2& T_odom_now) const;
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(p_map_anchor_, newest_);
+  }
+
  private:
   struct BufferedRange {
     Time stamp{};

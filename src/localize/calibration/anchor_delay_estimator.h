@@ -33,6 +33,11 @@ class AnchorDelayEstimator {
   /// Returns the delays of the anchors that have been measured.
   std::vector<CalibrationValue> delays() const;
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(anchors_, filter_);
+  }
+
  private:
   struct Anchor {
     UwbAnchor anchor;

@@ -58,6 +58,11 @@ class ClusteredLeastSquares {
 
   int num_measurements() const { return num_measurements_; }
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(prior_information_, group_s_, groups_, H_, g_, squared_errors_, num_rows_, num_measurements_);
+  }
+
  private:
   struct Group {
     Time begin{};

@@ -19,6 +19,11 @@ class GyroYaw {
   /// Returns the integral at a stamp of the last seconds; none outside that span or across a gap of the readings.
   std::optional<double> at(Time stamp) const;
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(samples_);
+  }
+
  private:
   struct Sample {
     Time stamp{};

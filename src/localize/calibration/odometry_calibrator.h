@@ -39,6 +39,11 @@ class OdometryCalibrator {
   /// are constant, like `gyro_bias_radps`, do not hold for a sensor that warms up.
   std::optional<ScalarEstimate> take_recent_gyro_bias() { return std::exchange(recent_gyro_bias_, std::nullopt); }
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(odometry_, gyro_, begin_, gyro_drift_, recent_gyro_bias_);
+  }
+
  private:
   struct SegmentBegin {
     CalibrationScan scan;

@@ -49,6 +49,11 @@ class OnlineCalibrator {
   int num_time_offset_steps() const { return time_offset_.num_steps(); }
   CalibrationEstimate estimate(Time stamp) const;
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(scan_motion_, time_offset_, odometry_, gyro_, anchor_delays_, applied_, corrected_);
+  }
+
  private:
   OnlineCalibratorSettings settings_;
   ScanMotion scan_motion_;

@@ -27,6 +27,11 @@ class ScanMotion {
   /// Returns the matched pose; none for the first scan of a local map and for scans that do not match.
   std::optional<MatchedScan> add(const LevelScan& scan, const Pose2& T_odom_level);
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(map_, map_number_, T_odom_last_, T_local_last_, T_local_keyframe_, length_m_);
+  }
+
  private:
   void begin_map(const LevelScan& scan);
   void integrate(const LevelScan& scan);

@@ -39,6 +39,11 @@ class TimeOffsetEstimator {
   /// Returns how many times the offset has changed by a step.
   int num_steps() const { return num_steps_; }
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(filter_, last_, origin_, recent_, num_steps_);
+  }
+
  private:
   /// Scalar normal equation of one comparison for the offset alone.
   struct Term {

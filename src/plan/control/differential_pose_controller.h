@@ -23,6 +23,11 @@ class DifferentialPoseController {
   /// Reports that the last command is blocked; the next backing-up maneuver begins at the other end.
   void block();
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(phase_, forward_, back_off_side_);
+  }
+
  private:
   enum class Phase { kChoose, kTurnToPosition, kDriveToPosition, kTurnToHeading, kBackOff, kDriveLine, kDone };
 

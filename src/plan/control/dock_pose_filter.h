@@ -26,6 +26,11 @@ class DockPoseFilter {
   int num_detections() const { return num_detections_; }
   Time last_stamp() const { return last_stamp_; }
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(T_odom_docked_, covariance_, T_odom_before_, last_stamp_, num_detections_, num_outliers_);
+  }
+
  private:
   void drift(const Pose2& T_odom_body, double time_s);
 

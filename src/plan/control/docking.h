@@ -50,6 +50,11 @@ class Docking {
 
   DockingStatus status() const;
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(pose_filter_, phase_, text_, start_, stationary_since_, T_odom_left_, num_attempts_);
+  }
+
  private:
   enum class Phase { kIdle, kDetect, kTurn, kDriveIn, kCheck, kCorrect, kBackUp, kDocked, kUndock, kFree, kFailed };
 

@@ -12,6 +12,7 @@ class BackUp : public RecoveryBehavior {
   const char* sentence() const override { return "Recovery: backing up."; }
   void begin(Time now, const Pose2& T_map_body, Costmap& costmap) override;
   std::optional<VelocityCommand> step(Time now, const Pose2& T_map_body) override;
+  void serialize_state(StateArchive& archive) override;
 
  private:
   double duration_s_, speed_mps_;

@@ -27,6 +27,7 @@ class ManeuverFollower final : public RouteFollower {
   bool may_be_replaced(const Costmap& costmap) override;
   bool has_ended() const override;
   VelocityCommand command(const Costmap& costmap, const Pose2& T_map_body, const VelocityCommand& last) override;
+  void serialize_state(StateArchive& archive) override;
 
  private:
   bool is_blocked_at(const Costmap& costmap, double along_m) const override;

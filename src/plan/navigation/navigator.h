@@ -54,6 +54,12 @@ class Navigator {
   const Costmap& costmap() const { return costmap_; }
   const PlannedPath& path() const { return follower_->path(); }
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(costmap_, search_, follower_, approach_, recoveries_, progress_, state_, goal_, last_, blocked_since_,
+            no_path_since_, failure_, text_, recovery_text_);
+  }
+
  private:
   /// kFollowing: driving along a path, or waiting for one. kApproaching: the differential approach is active.
   enum class State { kIdle, kFollowing, kApproaching, kRecovering, kArrived, kFailed };

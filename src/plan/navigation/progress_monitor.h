@@ -24,6 +24,11 @@ class ProgressMonitor {
   /// Whether the remaining path is shorter than the previous minimum for this goal, by enough to count as progress.
   bool has_progressed(double remaining_m);
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(anchor_, min_remaining_m_);
+  }
+
  private:
   struct Anchor {
     Eigen::Vector2d p_map;

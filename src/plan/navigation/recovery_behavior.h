@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "core/messages.h"
+#include "core/state/state_archive_fwd.h"
 #include "plan/perception/costmap.h"
 
 namespace patrol::plan {
@@ -18,6 +19,9 @@ class RecoveryBehavior {
   virtual void begin(Time now, const Pose2& T_map_body, Costmap& costmap) = 0;
   /// Command of a control period; none when the behavior is completed.
   virtual std::optional<VelocityCommand> step(Time now, const Pose2& T_map_body) = 0;
+
+  /// Saves or restores the state.
+  virtual void serialize_state(StateArchive& /*archive*/) {}
 };
 
 }  // namespace patrol::plan

@@ -27,6 +27,12 @@ class RecoverySequence {
   /// Command of the recovery begun last; none when it is completed or blocked.
   std::optional<VelocityCommand> step(Time now, const Pose2& T_map_body, const Costmap& costmap);
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive.in_place(behaviors_);
+    archive(num_begun_, active_);
+  }
+
  private:
   std::vector<std::unique_ptr<RecoveryBehavior>> behaviors_;  ///< in order of the settings
   int max_attempts_;

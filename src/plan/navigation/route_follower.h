@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/messages.h"
+#include "core/state/state_archive_fwd.h"
 #include "plan/navigation/navigator_settings.h"
 #include "plan/perception/costmap.h"
 #include "plan/routes/global_planner.h"
@@ -34,6 +35,9 @@ class RouteFollower {
 
   /// Command of a control period. `last` is the previous command; it replaces the noisy measured twist.
   virtual VelocityCommand command(const Costmap& costmap, const Pose2& T_map_body, const VelocityCommand& last) = 0;
+
+  /// Saves or restores the state.
+  virtual void serialize_state(StateArchive& archive);
 
  protected:
   virtual bool is_blocked_at(const Costmap& costmap, double along_m) const = 0;

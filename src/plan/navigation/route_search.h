@@ -40,6 +40,11 @@ class RouteSearch {
   /// Result of the running search when its computation time has passed; else none.
   std::optional<Result> take(Time now);
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(running_, begun_at_, has_new_map_);
+  }
+
  private:
   struct Running {
     Result result;

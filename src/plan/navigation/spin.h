@@ -13,6 +13,7 @@ class Spin : public RecoveryBehavior {
   const char* sentence() const override { return "Recovery: spinning in place."; }
   void begin(Time now, const Pose2& T_map_body, Costmap& costmap) override;
   std::optional<VelocityCommand> step(Time now, const Pose2& T_map_body) override;
+  void serialize_state(StateArchive& archive) override;
 
  private:
   double rate_radps_;

@@ -12,6 +12,7 @@ class Wait : public RecoveryBehavior {
   const char* sentence() const override { return "Recovery: waiting."; }
   void begin(Time now, const Pose2& T_map_body, Costmap& costmap) override;
   std::optional<VelocityCommand> step(Time now, const Pose2& T_map_body) override;
+  void serialize_state(StateArchive& archive) override;
 
  private:
   double duration_s_;

@@ -21,6 +21,11 @@ struct CellLattice {
 
   Cell to_grid(Cell lattice) const { return {lattice.col - origin.col, lattice.row - origin.row}; }
   Cell to_lattice(Cell grid) const { return {grid.col + origin.col, grid.row + origin.row}; }
+
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(geometry, origin);
+  }
 };
 
 /// Whether a predicate holds for any cell at most `radius_cells` columns and rows away.

@@ -75,6 +75,11 @@ class Costmap {
   bool is_clear(const Pose2& T_map_body, double margin_m) const;
   double max_distance_m() const { return inflation_.max_distance_m(); }
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(lattice_, static_map_, scan_, low_, inflation_, keep_out_, cost_);
+  }
+
  private:
   /// Moves all layers to a new lattice, from the lattice cell `min` up to, but without, `end`.
   void resize(Cell min, Cell end);

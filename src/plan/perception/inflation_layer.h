@@ -43,6 +43,11 @@ class InflationLayer {
   /// Sets the costs of `count` cells of a row.
   void set_costs(Cell first, int count, Cost* cost) const;
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(squared_);
+  }
+
  private:
   /// Computes the distances of the cells of `target` from the obstacles in `window`.
   void update_distances(const CellBox& window, const CellBox& target);

@@ -27,6 +27,11 @@ class KeepOutLayer {
   /// Raises the costs of `count` cells of a row to those of the lines.
   void raise_costs(Cell first, int count, Cost* cost) const;
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(lines_, distance_m_);
+  }
+
  private:
   void rasterize(const Eigen::Vector2d& a, const Eigen::Vector2d& b);
 

@@ -34,6 +34,11 @@ class LowObstacleLayer {
   bool contains_obstacle(Cell cell) const { return is_low_.contains(cell) && is_obstacle(cell); }
   std::size_t num_obstacles() const { return low_.num_obstacles(); }
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(lattice_, low_, is_low_);
+  }
+
  private:
   /// Lattice cells inside the grid with at least `min_count` of the points.
   std::vector<Cell> lattice_cells(const std::vector<Eigen::Vector2d>& p_level, const Pose2& T_map_body,

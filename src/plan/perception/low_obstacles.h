@@ -45,6 +45,11 @@ class LowObstacles {
   /// All obstacles, row by row.
   std::vector<Cell> obstacles() const;
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(cells_, changed_, num_obstacles_);
+  }
+
  private:
   using Key = std::pair<int, int>;  ///< row, column
   struct Evidence {

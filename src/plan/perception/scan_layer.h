@@ -33,6 +33,11 @@ class ScanLayer {
   std::optional<Time> first_seen(const Eigen::Vector2d& p_map, double radius_m) const;
   std::size_t num_obstacles() const { return obstacles_.size(); }
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(lattice_, index_, obstacles_);
+  }
+
  private:
   struct Obstacle {
     Cell lattice;

@@ -26,6 +26,11 @@ class StaticMapLayer {
   /// Raises the costs of `count` cells of a row to those of unknown cells.
   void raise_costs(Cell first, int count, Cost* cost) const;
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(lattice_, map_);
+  }
+
  private:
   OccupancyGrid pooled(const OccupancyGrid& map) const;
 

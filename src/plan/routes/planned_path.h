@@ -34,6 +34,11 @@ class PlannedPath {
   /// Poses at most `step_m` apart, with the heading along the path.
   std::vector<Pose2> sample(double step_m) const;
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(points_m_, along_m_);
+  }
+
  private:
   std::size_t segment_at(double along_m) const;
 

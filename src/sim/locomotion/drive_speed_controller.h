@@ -29,6 +29,12 @@ class DriveSpeedController {
 
   double speed_radps() const { return speed_radps_; }
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(has_started_, angle_rad_, speed_radps_, acceleration_radps2_, last_requested_radps_, lag_rad_,
+            last_angle_rad_);
+  }
+
  private:
   void observe(double angle_rad);
 

@@ -19,6 +19,11 @@ class FallDetector {
 
   const Eigen::Vector3d& up_in_body() const { return up_in_body_; }
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(up_in_body_, age_s_, fallen_s_);
+  }
+
  private:
   Eigen::Matrix3d R_body_imu_;
   double tick_s_;

@@ -4,6 +4,7 @@
 
 #include "core/messages.h"
 #include "core/sensors/registry.h"
+#include "core/state/state_archive_fwd.h"
 
 namespace patrol::sim {
 
@@ -32,6 +33,9 @@ class Locomotion {
 
   /// Returns whether the robot has fallen, according to the firmware's own sensors.
   virtual bool has_fallen() const = 0;
+
+  /// Saves or restores the state.
+  virtual void serialize_state(StateArchive& archive) = 0;
 };
 
 }  // namespace patrol::sim

@@ -40,6 +40,13 @@ class QuadrupedController {
   bool has_fallen() const { return fallen_s_ > 0.3; }
   const TrunkState& trunk() const { return estimator_.state(); }
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(estimator_, velocity_mps_, yaw_rate_radps_, yaw_rad_, velocity_integral_, standing_foot_m_, is_walking_,
+            idle_s_, cycle_, phase_, is_stance_, is_searching_, search_s_, awake_s_, lift_off_m_, foothold_m_, slope_,
+            ground_offset_m_, fallen_s_);
+  }
+
  private:
   void follow_command(const VelocityCommand& command);
   void choose_mode(const TrunkState& trunk);

@@ -26,6 +26,7 @@ class QuadrupedDrive : public Locomotion {
   }
   void restart() override { controller_ = initial_; }
   bool has_fallen() const override { return controller_.has_fallen(); }
+  void serialize_state(StateArchive& archive) override;
 
  private:
   QuadrupedController initial_, controller_;

@@ -35,6 +35,12 @@ class TrackController {
   /// Returns true once the robot has fallen over.
   bool has_fallen() const { return fall_detector_.has_fallen(); }
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(speed_controllers_, ramp_, yaw_lag_rad_, gyro_bias_radps_, bias_averaging_s_, idle_s_, is_brake_closed_,
+            fall_detector_);
+  }
+
  private:
   double corrected_yaw_rate(const Imu& imu);
   void update_gyro_bias(const Imu& imu);

@@ -18,6 +18,7 @@ class TrackDrive : public Locomotion {
   void step(const FirmwareReadings& readings, const VelocityCommand& command, mjModel& physics, mjData& data) override;
   void restart() override { controller_ = initial_; }
   bool has_fallen() const override { return controller_.has_fallen(); }
+  void serialize_state(StateArchive& archive) override;
 
  private:
   TrackController initial_, controller_;

@@ -35,6 +35,11 @@ class TrunkEstimator {
   const TrunkState& update(const Imu& reading, const JointState& joints, const FootContacts& contacts);
   const TrunkState& state() const { return state_; }
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(age_s_, up_in_body_, foot_roll_mps_, state_);
+  }
+
  private:
   void update_attitude(const Imu& imu);
   void update_feet(const Imu& imu, const JointState& joints, const FootContacts& contacts);

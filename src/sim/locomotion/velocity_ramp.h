@@ -42,6 +42,11 @@ class VelocityRamp {
     return std::abs(speed_mps_) < 0.005 && std::abs(lateral_mps_) < 0.005 && std::abs(yaw_rate_radps_) < 0.005;
   }
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(speed_mps_, lateral_mps_, yaw_rate_radps_);
+  }
+
  private:
   Limits limits_;
   double tick_s_;

@@ -31,6 +31,12 @@ class WheelController {
   /// Returns true once the robot has fallen over.
   bool has_fallen() const { return fall_detector_.has_fallen(); }
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive.in_place(speed_controllers_);
+    archive(ramp_, fall_detector_, target_angle_rad_, slewed_angle_rad_, idle_s_, is_brake_closed_);
+  }
+
  private:
   std::vector<double> wheel_speeds_radps();
   double steering_torque_nm(std::size_t joint, const JointState& joints);

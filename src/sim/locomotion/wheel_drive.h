@@ -22,6 +22,7 @@ class WheelDrive : public Locomotion {
   void evaluate(const mjModel& physics, mjData& data) const override;
   void restart() override { controller_ = initial_; }
   bool has_fallen() const override { return controller_.has_fallen(); }
+  void serialize_state(StateArchive& archive) override;
 
  private:
   struct Brake {

@@ -47,6 +47,11 @@ class BarometerOnBody : public PeriodicSensor {
         T_body_imu_(context.robot.T_body("imu")),
         barometer_(context.settings.barometer, context.seed) {}
 
+  void serialize_state(StateArchive& archive) override {
+    PeriodicSensor::serialize_state(archive);
+    archive(barometer_);
+  }
+
  private:
   void read(const SensorTick& tick, std::uint64_t index, std::vector<SensorMessage>& readings) override {
     readings.emplace_back(barometer_.read((tick.T_world_body * T_body_imu_).position.z(), tick.now, index));

@@ -20,6 +20,11 @@ class Barometer {
   /// Takes reading number `index`, counted without gaps, `height_m` above the world's origin.
   FluidPressure read(double height_m, Time now, std::uint64_t index);
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(drift_pa_);
+  }
+
  private:
   BarometerSettings settings_;
   double offset_pa_, coefficient_pa_per_k_;  ///< constants of this sensor

@@ -1,6 +1,8 @@
 #include "sim/sensors/fault_injector.h"
 
+#include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace patrol::sim {
 namespace {
@@ -24,7 +26,6 @@ FaultInjector::FaultInjector(const std::vector<FaultSettings>& faults, std::uint
 }
 
 bool FaultInjector::apply(Time ready, Time& due, SensorMessage& message) {
-  if (reports_.empty()) return true;
   const std::string_view sensor = kSensorInfos[message.index()].name;
   std::optional<SensorMessage>& last_good = last_good_[message.index()];
   bool is_frozen = false;
@@ -34,8 +35,21 @@ bool FaultInjector::apply(Time ready, Time& due, SensorMessage& message) {
     if (!change(report, ready, due, message)) return false;
     if (fault.kind == "freeze" && last_good) is_frozen = true;
   }
-  if (!is_frozen) last_good = message;
+  if (!is_frozen && (!std::holds_alternative<PanoramicScan>(message) || has_fault(sensor))) last_good = message;
   return true;
+}
+
+bool FaultInjector::has_fault(std::string_view sensor) const {
+  return std::ranges::any_of(reports_, [&](const FaultStatus& report) { return report.fault.sensor == sensor; });
+}
+
+void FaultInjector::set_triggered(const FaultStatus& status) {
+  const auto key = [](const FaultSettings& fault) {
+    return std::tie(fault.sensor, fault.kind, fault.start_s, fault.duration_s, fault.magnitude);
+  };
+  for (FaultStatus& report : reports_) {
+    if (key(report.fault) == key(status.fault)) report.was_triggered = status.was_triggered;
+  }
 }
 
 /// Applies one active fault. Returns false when the message is lost.

@@ -55,6 +55,8 @@ class SensorsOnFeet : public Sensor {
     if (is_enabled_ && schedule_.is_due(tick.now)) readings.emplace_back(tick.newest.feet);
   }
 
+  void serialize_state(StateArchive& archive) override { archive(schedule_); }
+
  private:
   bool is_enabled_;
   SensorSchedule schedule_;

@@ -66,6 +66,11 @@ class GnssOnBody : public PeriodicSensor {
         T_body_gnss_(context.robot.T_body("gnss")),
         gnss_(context.settings.gnss, context.seed) {}
 
+  void serialize_state(StateArchive& archive) override {
+    PeriodicSensor::serialize_state(archive);
+    archive(gnss_);
+  }
+
  private:
   void read(const SensorTick& tick, std::uint64_t index, std::vector<SensorMessage>& readings) override {
     readings.emplace_back(gnss_.read(scene_, tick.T_world_body * T_body_gnss_.position, tick.now, index));

@@ -16,6 +16,11 @@ class Gnss {
 
   GnssFix read(const LidarScene& scene, const Eigen::Vector3d& p_world_antenna, Time now, std::uint64_t tick);
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(error_, open_since_, was_open_);
+  }
+
  private:
   static double open_sky_fraction(const LidarScene& scene, const Eigen::Vector3d& antenna);
 

@@ -61,6 +61,8 @@ class HallOnMotors : public Sensor {
     if (is_enabled_ && schedule_.is_due(tick.now)) readings.emplace_back(tick.newest.ticks);
   }
 
+  void serialize_state(StateArchive& archive) override { archive(schedule_, hall_); }
+
  private:
   bool is_enabled_;
   SensorSchedule schedule_;

@@ -23,6 +23,11 @@ class HallSensors {
   /// Takes the reading of one tick. Call at every tick.
   TrackTicks read(const mjData& data, Time now);
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(counters_);
+  }
+
  private:
   struct Counter {
     int qpos = 0;

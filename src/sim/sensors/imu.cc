@@ -114,6 +114,8 @@ class ImuOnBody : public Sensor {
     if (is_enabled_ && schedule_.is_due(tick.now)) readings.emplace_back(tick.newest.imu);
   }
 
+  void serialize_state(StateArchive& archive) override { archive(schedule_, imu_); }
+
  private:
   bool is_enabled_;
   SensorSchedule schedule_;

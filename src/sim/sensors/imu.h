@@ -26,6 +26,11 @@ class ImuSensor {
   /// Returns the reading of a given ground truth, in `imu`.
   Imu corrupt(const Eigen::Vector3d& rate_radps, const Eigen::Vector3d& force_mps2, Time now, std::uint64_t tick);
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(gyro_.bias, accel_.bias);
+  }
+
  private:
   /// Triad of axes: gyroscope or accelerometer.
   struct Triad {

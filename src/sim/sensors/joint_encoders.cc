@@ -66,6 +66,8 @@ class EncodersOnLegs : public Sensor {
     if (is_enabled_ && schedule_.is_due(tick.now)) readings.emplace_back(tick.newest.joints);
   }
 
+  void serialize_state(StateArchive& archive) override { archive(schedule_, encoders_); }
+
  private:
   bool is_enabled_;
   SensorSchedule schedule_;

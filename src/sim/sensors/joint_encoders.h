@@ -21,6 +21,11 @@ class JointEncoders {
   /// Takes the reading of one tick. Call at every tick.
   JointState read(const mjData& data, Time now);
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(last_);
+  }
+
  private:
   double error_rad(std::size_t joint, const mjData& data) const;
 

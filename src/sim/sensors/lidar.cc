@@ -154,9 +154,14 @@ void Lidar::submit() {
   else measure_beams();
 }
 
-void Lidar::finish_revolution() {
+/// Waits until all beams so far are measured.
+void Lidar::finish_shots() {
   submit();
   if (worker_) worker_->wait(submitted_);
+}
+
+void Lidar::finish_revolution() {
+  finish_shots();
   if (settings_.rings > 1) {
     clouds_.push_back(std::move(revolution_->cloud));
     return;
@@ -286,6 +291,8 @@ class LidarOnBody : public Sensor {
     for (LaserScan& scan : lidar_.take_scans()) readings.emplace_back(Scan{std::move(scan)});
     for (PointCloud& cloud : lidar_.take_clouds()) readings.emplace_back(std::move(cloud));
   }
+
+  void serialize_state(StateArchive& archive) override { archive(lidar_); }
 
  private:
   Lidar lidar_;

@@ -42,6 +42,12 @@ class Lidar {
   std::vector<LaserScan> take_scans() { return std::exchange(scans_, {}); }
   std::vector<PointCloud> take_clouds() { return std::exchange(clouds_, {}); }
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    finish_shots();
+    archive(next_beam_, revolution_begin_ns_, revolution_ns_, rate_error_, *revolution_, scans_, clouds_);
+  }
+
  private:
   struct Return {
     double range_m;  ///< range, REP 117
@@ -67,6 +73,7 @@ class Lidar {
 
   Time instant_of(std::int64_t beam) const;
   void submit();
+  void finish_shots();
   void finish_revolution();
   void fire(const Beam& beam, const LidarScene::Poses& bodies, Revolution& revolution) const;
   Return measure(std::uint64_t tick, std::uint64_t index, const LidarScene::Poses& bodies, const Pose3& T_world_lidar,

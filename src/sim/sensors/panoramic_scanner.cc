@@ -233,6 +233,8 @@ class ScannerOnBody : public Sensor {
   }
   bool is_busy() const override { return scanner_.is_busy(); }
 
+  void serialize_state(StateArchive& archive) override { archive(scanner_); }
+
  private:
   PanoramicScanner scanner_;
 };

@@ -51,6 +51,11 @@ class PanoramicScanner {
   int columns() const { return 2 * static_cast<int>(azimuth_.size()); }
   int rows() const { return static_cast<int>(elevation_.size()); }
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(num_begun_, scan_, scans_);
+  }
+
  private:
   /// Return of one beam.
   struct Return {

@@ -11,6 +11,7 @@
 #include "core/robot_description.h"
 #include "core/sensors/registry.h"
 #include "core/stage_profiler.h"
+#include "core/state/message_state.h"
 #include "sim/as_built/as_built_robot.h"
 #include "sim/gas_plume.h"
 #include "sim/lidar_scene.h"
@@ -75,6 +76,9 @@ class Sensor {
 
   /// Returns whether the sensor is taking a measurement for which the robot must stand still.
   virtual bool is_busy() const { return false; }
+
+  /// Saves or restores the state.
+  virtual void serialize_state(StateArchive& /*archive*/) {}
 };
 
 /// Schedule of a constant rate, starting at time 0.
@@ -91,6 +95,11 @@ class SensorSchedule {
   /// Returns the number of the last reading that was due, from 0.
   std::uint64_t index() const { return count_ - 1; }
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(count_);
+  }
+
  private:
   double rate_hz_;
   std::uint64_t count_ = 0;
@@ -104,6 +113,8 @@ class PeriodicSensor : public Sensor {
   void step(const SensorTick& tick, std::vector<SensorMessage>& readings) final {
     if (schedule_.is_due(tick.now)) read(tick, schedule_.index(), readings);
   }
+
+  void serialize_state(StateArchive& archive) override { schedule_.serialize_state(archive); }
 
  protected:
   /// Takes reading number `index`.

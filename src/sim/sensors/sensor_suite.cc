@@ -96,11 +96,17 @@ void SensorSuite::deliver(Time ready, double latency_s, SensorMessage message, S
 
 std::vector<SensorMessage> SensorSuite::take_due(Time now) {
   std::vector<SensorMessage> due;
-  for (auto& [message, incomplete] : queue_.take_due(now)) {
-    if (incomplete) incomplete->complete(message);
-    due.push_back(std::move(message));
+  for (QueuedMessage& queued : queue_.take_due(now)) {
+    complete(queued);
+    due.push_back(std::move(queued.message));
   }
   return due;
+}
+
+void SensorSuite::complete(QueuedMessage& queued) {
+  if (!queued.incomplete) return;
+  std::exchange(queued.incomplete, nullptr)->complete(queued.message);
+  faults_.remember(queued.message);
 }
 
 }  // namespace patrol::sim

@@ -63,6 +63,15 @@ class SensorSuite {
   /// Returns the computing time of the sensors that report it separately: "lidar", "depth_camera", "scanner".
   const StageProfiler& clock() const { return clock_; }
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive.section("sensors");
+    queue_.for_each([this](QueuedMessage& queued) { complete(queued); });
+    for (Channel& channel : channels_) archive(channel.num_messages, channel.last_due);
+    for (Entry& entry : sensors_) archive(entry.sensor);
+    archive(faults_, queue_, newest_, tick_, last_body_);
+  }
+
  private:
   /// Way of one type of messages from the device to the stack.
   struct Channel {
@@ -79,6 +88,7 @@ class SensorSuite {
     Pose3 T_world_body;
   };
 
+  void complete(QueuedMessage& queued);
   void add_sensors(const SensorContext& context, bool are_read_by_firmware);
   void step_sensor(Entry& entry, const SensorTick& tick);
   /// `incomplete` is the sensor that still has to complete the message, or null.

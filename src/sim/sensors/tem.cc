@@ -127,6 +127,8 @@ class TemOnMount : public Sensor {
   }
   bool is_busy() const override { return tem_.is_sounding(); }
 
+  void serialize_state(StateArchive& archive) override { archive(tem_); }
+
  private:
   int coil_;  ///< body id of the link `tem`
   Tem tem_;

@@ -39,6 +39,11 @@ class Tem {
   /// over the stack.
   TemSounding sound(const Eigen::Vector3d& p_world, const Eigen::Matrix3d& axes, std::uint64_t count, Time end) const;
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(start_, count_, ticks_, sum_p_, sum_axes_);
+  }
+
  private:
   TemSettings settings_;
   TemGateLayout window_;  ///< reported gates

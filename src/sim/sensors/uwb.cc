@@ -133,6 +133,11 @@ class UwbOnBody : public PeriodicSensor {
         T_body_uwb_(context.robot.T_body("uwb")),
         uwb_(context.settings.uwb, context.view, context.seed, context.as_built.uwb_power()) {}
 
+  void serialize_state(StateArchive& archive) override {
+    PeriodicSensor::serialize_state(archive);
+    archive(uwb_);
+  }
+
  private:
   void read(const SensorTick& tick, std::uint64_t index, std::vector<SensorMessage>& readings) override {
     auto range = uwb_.read(scene_, tick.T_world_body * T_body_uwb_.position, tick.now, index);

@@ -49,6 +49,11 @@ class Uwb {
 
   const std::vector<UwbAnchor>& anchors() const { return anchors_; }
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(turn_);
+  }
+
  private:
   const UwbAnchor* next_in_range(const Eigen::Vector3d& p_world_antenna);
 

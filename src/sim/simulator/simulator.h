@@ -11,6 +11,7 @@
 #include "core/robot_description.h"
 #include "core/sensors/registry.h"
 #include "core/stage_profiler.h"
+#include "core/state/state_archive_fwd.h"
 #include "sim/actors.h"
 #include "sim/antenna_mount.h"
 #include "sim/as_built/as_built_robot.h"
@@ -98,6 +99,10 @@ class Simulator {
   /// Returns the physical state after the last step, for measurements by ground truth.
   const mjData& data() const { return *data_; }
   const StageProfiler& clock() const { return clock_; }
+
+  /// Saves or restores the state. The simulator has been created from the same scenario; faults that have not begun may
+  /// differ. Throws std::runtime_error if the state is that of another scenario.
+  void serialize_state(StateArchive& archive);
 
  private:
   void suppress_slip();

@@ -76,6 +76,13 @@ class GraphSlam {
   const LoopClosureStatistics& loop_closure_statistics() const { return loop_closure_statistics_; }
   OccupancyGrid map();
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(tracker_, keyframes_, path_, submaps_, finished_submaps_, first_keyframe_, first_submap_, is_located_,
+            earlier_map_, located_, last_located_keyframe_, graph_, cache_, loops_, loop_closure_statistics_,
+            incremental_map_, is_finished_, now_, stamp_, new_ranges_, new_positions_, survey_, smoothed_until_);
+  }
+
  private:
   /// Tracked pose of a scan and its preceding keyframe.
   struct TrackedPose {

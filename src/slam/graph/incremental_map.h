@@ -19,6 +19,11 @@ class IncrementalMap {
   const GridMap& render(const std::vector<Keyframe>& keyframes, const std::vector<Pose2>& T_map_node,
                         double max_displacement_m);
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(map_, T_map_integrated_);
+  }
+
  private:
   MapRenderingSettings rendering_;
   GridMap map_;

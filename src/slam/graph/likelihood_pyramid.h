@@ -50,6 +50,11 @@ class LikelihoodPyramid {
 
   const Level& level(int number) const { return levels_[static_cast<std::size_t>(number)]; }
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(resolution_m_, levels_);
+  }
+
  private:
   Cell cell_of(const Eigen::Vector2d& p_map) const;
   Level empty_level(const GridMap& map) const;

@@ -31,6 +31,11 @@ class OdometryCorrection {
 
   const Values& values() const { return values_; }
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(values_, distance_variance_, turn_covariance_);
+  }
+
  private:
   Values values_;
   double distance_variance_ = 0.05 * 0.05;

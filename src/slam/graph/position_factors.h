@@ -37,6 +37,11 @@ class PositionFactors {
   const Pose2& T_survey_map() const { return T_survey_map_; }
   void set_survey(const Pose2& T_survey_map) { T_survey_map_ = T_survey_map; }
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(positions_, last_, T_survey_map_);
+  }
+
  private:
   PositionFactorsSettings settings_;
   std::vector<PositionFactor> positions_;

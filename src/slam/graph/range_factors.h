@@ -47,6 +47,11 @@ class RangeFactors {
   void set_delays(std::map<int, double> delays_m) { delays_m_ = std::move(delays_m); }
   const std::map<int, double>& delays_m() const { return delays_m_; }
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(delays_m_, ranges_);
+  }
+
  private:
   RangeUpdateSettings settings_;
   std::map<int, double> delays_m_;  ///< [anchor number]

@@ -34,6 +34,11 @@ class ScanGroup {
   /// Integrates the scans into a map, oldest first.
   void integrate(const Pose2& T_map_group, const ScanIntegrationSettings& settings, GridMap& map) const;
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(members_);
+  }
+
  private:
   struct Member {
     LevelScan scan;

@@ -61,6 +61,13 @@ class ScanTracker {
 
   TrackedScan update(const LevelScan& scan, const Pose2& T_odom_body);
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(older_, newer_, older_keyframes_, newer_keyframes_, keyframes_, submap_, stamp_, T_odom_last_,
+            T_local_keyframe_, tracks_, last_step_s_, T_local_constant_, is_odometry_constant_, correction_, usual_,
+            sparse_scans_, pyramid_);
+  }
+
  private:
   struct Hypothesis {
     Pose2 T_local_body;

@@ -14,6 +14,11 @@ class SparseScans {
   /// Returns the scans and removes them.
   ScanGroup take();
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(scans_, T_local_newest_, T_local_distinct_);
+  }
+
  private:
   ScanGroup scans_;
   Pose2 T_local_newest_, T_local_distinct_;  ///< newest scan; newest but for those in the same place

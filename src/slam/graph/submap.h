@@ -45,6 +45,11 @@ class RenderedSubmap {
   double point_spacing_m() const { return 2.0 * map_.resolution_m(); }
   const LikelihoodPyramid& pyramid() const { return pyramid_; }
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(map_, surface_points_, pyramid_);
+  }
+
  private:
   GridMap map_;
   std::vector<MatchPoint> surface_points_;
@@ -59,6 +64,11 @@ class SubmapCache {
   template <typename Render>
   std::shared_ptr<const RenderedSubmap> get(int submap, Render&& render);
   void clear() { entries_.clear(); }
+
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(entries_);
+  }
 
  private:
   struct Entry {

@@ -20,6 +20,11 @@ class UsualMatch {
   /// large in a map of sparse scans.
   double unknown_log_likelihood() const;
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(matched_ratio_, loss_);
+  }
+
  private:
   double matched_ratio_ = 0.5;  ///< fraction of points on surfaces
   double loss_ = 1.0;           ///< of a point in a known cell

@@ -4,9 +4,12 @@
 #include <type_traits>
 #include <utility>
 
+#include "core/error.h"
 #include "core/named_table.h"
+#include "core/state/state_archive.h"
 #include "slam/graph/graph_slam.h"
 #include "slam/rbpf/scan_odometry_rbpf.h"
+#include "slam/state/slam_state.h"
 #include "slam/submaps/submap_rbpf.h"
 
 namespace patrol::slam {
@@ -67,6 +70,15 @@ class MapperAdapter final : public Mapper {
   ParticleSet particles() const override {
     if constexpr (requires { method_.particles(); }) return method_.particles();
     return {};
+  }
+
+  void serialize_state(StateArchive& archive) override {
+    archive.section("mapper");
+    if constexpr (requires { method_.serialize_state(archive); }) {
+      method_.serialize_state(archive);
+    } else {
+      throw InputError("snapshots: this SLAM method has none: use stack.slam.method = graph or rbpf");
+    }
   }
 
  private:

@@ -9,6 +9,7 @@
 #include "core/grid.h"
 #include "core/messages.h"
 #include "core/pose_graph.h"
+#include "core/state/state_archive_fwd.h"
 #include "slam/graph/loop_closure_statistics.h"
 #include "slam/graph/submap_graph.h"
 #include "slam/mapped_range.h"
@@ -56,6 +57,9 @@ class Mapper {
   virtual std::optional<SubmapGraph> submap_graph() const = 0;
   /// Index of the scan taken at each node, [node of the graph].
   virtual std::vector<std::size_t> node_scan_indices() const = 0;
+
+  /// Saves or restores the state.
+  virtual void serialize_state(StateArchive& archive) = 0;
 };
 
 /// Builds the method of that name. `neighbors` classifies pairs of submaps, for methods that need it.

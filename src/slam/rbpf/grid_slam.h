@@ -56,6 +56,12 @@ class GridSlam {
   /// Particles at the last keyframe.
   ParticleSet particles() const;
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(particles_, best_, keyframes_, T_map_last_, T_odom_last_, T_odom_keyframe_, keyframe_stamp_, new_ranges_,
+            ranges_);
+  }
+
  private:
   /// Pose predicted by odometry and ranges, and the log probability density of the ranges.
   struct Prediction {

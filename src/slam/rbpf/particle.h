@@ -21,6 +21,11 @@ struct TrajectoryNode {
   ~TrajectoryNode() {
     while (before && before.use_count() == 1) before = std::move(before->before);
   }
+
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(T_map_body, before);
+  }
 };
 
 /// Particle of the grid RBPF: body pose at the last keyframe and the map that follows from its trajectory.

@@ -32,6 +32,12 @@ class ScanOdometryRbpf {
   PoseGraph graph() const { return filtered_.graph(); }
   std::vector<std::size_t> node_scan_indices() const { return filtered_.node_scan_indices(); }
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive.part(tracker_);
+    archive(newest_, filtered_);
+  }
+
  private:
   /// Poses of the newest scan in the given and in the corrected odometry.
   struct OdometryPair {

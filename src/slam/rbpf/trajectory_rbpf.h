@@ -28,6 +28,11 @@ class TrajectoryRbpf {
   /// Chain of keyframes; the edges have identity information.
   PoseGraph graph() const;
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(filter_, path_, T_odom_keyframe_, keyframe_scans_);
+  }
+
  private:
   /// Pose of a scan relative to the preceding keyframe.
   struct TrackedPose {

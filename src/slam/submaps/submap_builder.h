@@ -34,6 +34,11 @@ class SubmapBuilder {
   /// Moves the scans out with their poses; no update may follow.
   std::vector<Keyframe> take_keyframes();
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(filtered_, scans_, T_odom_last_, distance_m_, rotation_rad_);
+  }
+
  private:
   SubmapBuilderSettings settings_;
   TrajectoryRbpf filtered_;

@@ -31,6 +31,7 @@ class GasInstrument final : public Instrument {
   void add(const SensorMessage& message, const StationPoseLookup& station_pose_at) override;
   void begin(const InspectionOrder& order, Time now) override;
   InspectionProgress step(const InspectionContext& context) override;
+  void serialize_state(StateArchive& archive) override;
 
  private:
   void report(const InspectionContext& context) const;

@@ -5,6 +5,7 @@
 
 #include "core/messages.h"
 #include "core/sensors/registry.h"
+#include "core/state/state_archive_fwd.h"
 #include "stack/instruments/inspection_order.h"
 #include "stack/instruments/station_pose.h"
 #include "stack/instruments/warning_light.h"
@@ -48,6 +49,9 @@ class Instrument {
   virtual InspectionProgress step(const InspectionContext& context) = 0;
   /// Ends the order, complete or not.
   virtual void end() {}
+
+  /// Saves or restores the state.
+  virtual void serialize_state(StateArchive& archive) = 0;
 };
 
 }  // namespace patrol::stack

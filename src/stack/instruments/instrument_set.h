@@ -19,6 +19,12 @@ class InstrumentSet {
   InspectionProgress step(Time now, const std::optional<InspectionOrder>& order, const StationPose& station_pose,
                           StackOutput& output);
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive.in_place(instruments_);
+    archive(light_, order_);
+  }
+
  private:
   Instrument* find(InstrumentKind kind) const;
 

@@ -29,6 +29,7 @@ class LiningInstrument final : public Instrument {
   void begin(const InspectionOrder& order, Time now) override;
   InspectionProgress step(const InspectionContext& context) override;
   void end() override { is_active_ = false; }
+  void serialize_state(StateArchive& archive) override;
 
  private:
   InspectionFeedback evaluate(const InspectionContext& context, const PanoramicScan& scan,

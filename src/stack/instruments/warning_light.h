@@ -16,6 +16,11 @@ class WarningLight {
   /// Switches the siren off after its duration. Call once per control period.
   void step(Time now, StackOutput& output);
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(max_warning_, siren_until_);
+  }
+
  private:
   double siren_s_;
   WarningLevel max_warning_ = WarningLevel::kNone;

@@ -23,6 +23,7 @@ class WaterInstrument final : public Instrument {
   void add(const SensorMessage& message, const StationPoseLookup& station_pose_at) override;
   void begin(const InspectionOrder& order, Time now) override;
   InspectionProgress step(const InspectionContext& context) override;
+  void serialize_state(StateArchive& archive) override;
 
  private:
   WaterResult estimate(const InspectionContext& context) const;

@@ -31,6 +31,7 @@ class KnownMapLocalizer final : public Localizer {
   }
   void start_global_localization() override { localizer_.start_global_localization(); }
   void set_anchors(const std::vector<UwbAnchor>& anchors_in_map) override;
+  void serialize_state(StateArchive& archive) override;
 
  private:
   OccupancyGrid map_;

@@ -5,6 +5,7 @@
 #include "core/grid.h"
 #include "core/messages.h"
 #include "core/sensors/registry.h"
+#include "core/state/state_archive_fwd.h"
 #include "core/uwb.h"
 #include "slam/mapped_range.h"
 #include "slam/position_measurement.h"
@@ -51,6 +52,9 @@ class Localizer {
   virtual void start_global_localization() {}
   /// Moves the UWB anchors in `map`, above the ground of map. Ignored by localizers without ranges.
   virtual void set_anchors(const std::vector<UwbAnchor>& /*anchors_in_map*/) {}
+
+  /// Saves or restores the state.
+  virtual void serialize_state(StateArchive& archive) = 0;
 };
 
 }  // namespace patrol::stack

@@ -33,6 +33,7 @@ class MapThenLocalize final : public Localizer {
   }
   void start_global_localization() override { current_->start_global_localization(); }
   void set_anchors(const std::vector<UwbAnchor>& anchors_in_map) override;
+  void serialize_state(StateArchive& archive) override;
 
  private:
   std::unique_ptr<Localizer> current_;

@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/wheel_kinematics.h"
 #include "localize/legged_odometry.h"
+#include "localize/localize_state.h"
 #include "localize/map_pose_tracker.h"
 #include "localize/track_odometry.h"
 
@@ -44,6 +45,7 @@ class LeggedOdometrySource final : public OdometrySource {
             drift.yaw_std_rad_per_m * speed_mps + drift.yaw_std_rad_per_rad * yaw_rate_radps};
   }
   std::vector<CalibrationValue> calibration() const override { return odometry_.calibration(); }
+  void serialize_state(StateArchive& archive) override { archive(odometry_); }
 
  private:
   localize::LeggedOdometry odometry_;
@@ -67,6 +69,7 @@ class DifferentialOdometrySource : public OdometrySource {
   double height_above_ground_m() const override { return odometry_.height_above_ground_m(); }
   Eigen::Vector3d twist_std() const override { return odometry_.twist_std(); }
   std::vector<CalibrationValue> calibration() const override { return odometry_.calibration(); }
+  void serialize_state(StateArchive& archive) override { archive(odometry_); }
 
  private:
   /// Returns the counts of the two sides in a message; none if it has no counts.

@@ -9,6 +9,7 @@
 #include "core/messages.h"
 #include "core/robot_description.h"
 #include "core/sensors/registry.h"
+#include "core/state/state_archive_fwd.h"
 #include "stack/settings/stack_settings.h"
 
 namespace patrol::stack {
@@ -32,6 +33,9 @@ class OdometrySource {
   virtual Eigen::Vector3d twist_std() const = 0;
   /// Returns the calibration parameters that the source estimates; empty before its first IMU reading.
   virtual std::vector<CalibrationValue> calibration() const = 0;
+
+  /// Saves or restores the state.
+  virtual void serialize_state(StateArchive& archive) = 0;
 };
 
 /// Makes the source named by `settings.odometry_source`. Throws InputError if the robot lacks what the source needs.

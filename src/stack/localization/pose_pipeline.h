@@ -82,6 +82,14 @@ class PosePipeline {
   /// Restarts at a surveyed pose; every component discards its previous pose.
   void restart_at(const Pose2& T_map_body, const OdometryEstimate& odometry);
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(odometry_, localizer_, tracker_, registrar_, num_scans_, mapped_, T_map_mapped_, T_odom_scan_,
+            anchors_in_map_, line_of_sight_, next_calibration_, first_odometry_);
+    archive.part(range_pose_);
+    archive.part(calibrator_);
+  }
+
  private:
   bool has_settled(Time stamp) const { return first_odometry_ && stamp >= *first_odometry_ + settle_; }
   double height_m() const;

@@ -32,6 +32,11 @@ class RangePoseTracker {
     return {filter_.estimate(odometry.stamp, odometry.T_odom_body)};
   }
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(filter_, has_anchors_);
+  }
+
  private:
   localize::RangeFilter filter_;
   bool has_anchors_;

@@ -22,6 +22,11 @@ class SiteFollower {
   /// Returns the survey in map by a new registration; none if no point has moved by the minimum.
   std::optional<Route> update(const SiteRegistration& registration);
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(T_start_map_);
+  }
+
  private:
   static Eigen::AlignedBox2d extent_of(const Route& route);
 

@@ -61,6 +61,11 @@ class SiteRegistrar {
   /// all scans, [scan]; empty for a fixed map. Precondition: `is_due(now)`.
   std::optional<SiteRegistration> update(Time now, const std::vector<Pose2>& path);
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(prior_, spacing_factor_, entries_, last_poses_, last_stamps_, published_, next_);
+  }
+
  private:
   struct Entry {
     localize::SiteMeasurement measurement;

@@ -32,6 +32,7 @@ class SlamLocalizer final : public Localizer {
   void set_anchors(const std::vector<UwbAnchor>& anchors_in_map) override {
     if (!mapper_->estimates_survey()) anchors_ = anchors_in_map;
   }
+  void serialize_state(StateArchive& archive) override;
 
  private:
   std::unique_ptr<slam::Mapper> mapper_;

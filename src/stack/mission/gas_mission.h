@@ -40,6 +40,7 @@ class GasMission final : public Mission {
   Event abort(Time now, EventKind kind, const std::string& text) override;
   TaskTiming timing() const override { return TaskTiming::kNext; }
   bool starts_at_survey() const override { return true; }
+  void serialize_state(StateArchive& archive) override;
 
  private:
   enum class Phase { kWaiting, kDriving, kMeasuring, kOver };

@@ -7,6 +7,7 @@
 #include "core/messages.h"
 #include "core/route.h"
 #include "core/sensors/registry.h"
+#include "core/state/state_archive_fwd.h"
 #include "localize/map_correction.h"
 #include "stack/mission/task.h"
 
@@ -55,6 +56,9 @@ class Mission {
   virtual TaskTiming timing() const = 0;
   /// Returns whether the robot starts at the surveyed start, the origin of map.
   virtual bool starts_at_survey() const = 0;
+
+  /// Saves or restores the state.
+  virtual void serialize_state(StateArchive& archive) = 0;
 };
 
 }  // namespace patrol::stack

@@ -42,6 +42,7 @@ class TunnelMission final : public Mission {
   TaskTiming timing() const override { return TaskTiming::kNow; }
   bool starts_at_survey() const override { return settings_.start_at_survey; }
   const std::vector<SavedGoal>& goals() const { return goals_; }
+  void serialize_state(StateArchive& archive) override;
 
  private:
   enum class Phase {

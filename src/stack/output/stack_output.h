@@ -33,6 +33,11 @@ class StackOutput {
   [[nodiscard]] StageProfiler::ScopedTimer time_stage(const std::string& part) { return clock_.time_stage(part); }
   const StageProfiler& clock() const { return clock_; }
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(messages_);
+  }
+
  private:
   std::vector<StackMessage> messages_;
   StageProfiler clock_;

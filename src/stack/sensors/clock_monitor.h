@@ -37,6 +37,11 @@ class ClockMonitor {
   std::optional<SensorChange> step(Time now, const LidarClock& against_odometry);
   bool can_drive() const { return state_ != State::kTooLarge && state_ != State::kUnstable; }
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(state_, num_steps_, steps_);
+  }
+
  private:
   enum class State { kFine, kCorrected, kTooLarge, kUnstable };
   State state_of(const LidarClock& clock) const;

@@ -43,6 +43,11 @@ class SensorMonitor {
     return halted_since_ && now - *halted_since_ > from_seconds(settings_.abort_timeout_s);
   }
 
+  template <typename Archive>
+  void serialize_state(Archive& archive) {
+    archive(clock_monitor_, sensors_, last_step_, halted_since_);
+  }
+
  private:
   enum class State { kFine, kTimedOut, kWrongClock, kFrozen };
 

@@ -2,25 +2,32 @@
 
 #include <csignal>
 #include <cstring>
+#include <map>
+#include <optional>
 #include <set>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "app/campaign/batch/shared_beginning.h"
 #include "app/campaign/batch/work_folder.h"
 #include "app/common/progress_bar.h"
 #include "app/run/run_once.h"
 #include "app/scenario/data_folders.h"
 #include "core/error.h"
+#include "io/mcap/mcap_reader.h"
 
 namespace patrol::app {
 namespace {
 
-RunVerdict verdict_of_run(const BatchRun& run, const std::filesystem::path& work) {
+/// Shortest beginning that is worth a snapshot.
+constexpr double kMinShared_s = 3.0;
+
+RunVerdict verdict_of_run(const BatchRun& run, const std::filesystem::path& work, const RunMode& mode) {
   try {
     const Scenario scenario = load_scenario(run.scenario, run.overrides);
     NullObserver observer;
-    return run_once(scenario, run.scenario.stem().string(), find_data_root(run.scenario), work, observer).value();
+    return run_once(scenario, run.scenario.stem().string(), find_data_root(run.scenario), work, observer, mode).value();
   } catch (const InputError& error) {
     return {.end = RunStatus::kWrongInput, .message = error.what(), .metrics = {}, .checks = {}, .events = {}};
   } catch (const std::exception& error) {
@@ -46,18 +53,56 @@ RunVerdict verdict_of_crash(const TaskEnd& end, double timeout_s) {
           .events = {}};
 }
 
+/// Whether a complete run has reached an instant.
+bool has_reached(const std::filesystem::path& root, Time instant) {
+  const RunDirectory run{root};
+  if (!run.is_complete()) return false;
+  const std::optional<Time> end = io::McapReader(run.log()).last_time();
+  return end && *end >= instant;
+}
+
+/// Shared beginnings of the runs; none if a scenario is invalid, which its own run reports.
+std::vector<std::optional<SharedBeginning>> beginnings_of(const std::vector<BatchRun>& runs) {
+  std::vector<Scenario> scenarios;
+  try {
+    for (const BatchRun& run : runs) scenarios.push_back(load_scenario(run.scenario, run.overrides));
+  } catch (const InputError&) {
+    return std::vector<std::optional<SharedBeginning>>(runs.size());
+  }
+  return shared_beginnings(scenarios, kMinShared_s);
+}
+
 class Batch {
  public:
   Batch(const std::vector<BatchRun>& runs, const BatchSettings& settings, const std::filesystem::path& root)
       : runs_(runs), settings_(settings), work_(root), store_(runs_folder(root)) {
-    for (std::size_t i = 0; i < runs.size(); ++i) pending_.push_back(i);
+    beginnings_ = beginnings_of(runs);
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      (beginnings_[i] ? branches_ : pending_).push_back(i);
+      if (beginnings_[i]) snapshot_times_[beginnings_[i]->leader].insert(beginnings_[i]->until);
+    }
   }
 
+  /// Makes the runs from which others branch first.
   bool run() {
+    bool is_through = run_pending();
+    if (is_through) {
+      pending_ = std::exchange(branches_, {});
+      is_through = run_pending();
+    }
+    for (const auto& [leader, times] : snapshot_times_) {
+      const std::string& key = runs_[leader].key;
+      if (store_.has(key)) keep_or_remove(key, store_.load(key)->code());
+    }
+    return is_through;
+  }
+
+ private:
+  bool run_pending() {
     while (!pending_.empty()) {
       const std::vector<std::size_t> iteration = std::exchange(pending_, {});
       const bool is_through = run_in_processes(
-          iteration.size(), settings_.pool, [&](std::size_t i) { return run_child(runs_[iteration[i]]); },
+          iteration.size(), settings_.pool, [&](std::size_t i) { return run_child(iteration[i]); },
           [&](const TaskEnd& end) { handle(iteration[end.task], end); },
           [&] {
             show();
@@ -68,15 +113,28 @@ class Batch {
     return true;
   }
 
- private:
+  /// Snapshots of a run from which others branch, or the origin of a branch. Without a complete origin, a run is made
+  /// from its start.
+  RunMode mode_of(std::size_t i) const {
+    RunMode mode;
+    if (const auto times = snapshot_times_.find(i); times != snapshot_times_.end())
+      mode.snapshot_times.assign(times->second.begin(), times->second.end());
+    if (beginnings_[i]) {
+      const std::filesystem::path origin = work_.path(runs_[beginnings_[i]->leader].key);
+      if (has_reached(origin, beginnings_[i]->until)) mode.branch = {.run = origin, .at = beginnings_[i]->until};
+    }
+    return mode;
+  }
+
   /// Executes a run in the child process.
-  int run_child(const BatchRun& run) const {
+  int run_child(std::size_t i) const {
+    const BatchRun& run = runs_[i];
     const std::filesystem::path work = work_.path(run.key);
-    RunVerdict verdict = verdict_of_run(run, work);
+    RunVerdict verdict = verdict_of_run(run, work, mode_of(i));
     std::string& message = verdict.message;  // must not depend on the work folder
     for (std::size_t at = 0; (at = message.find(work.string())) != std::string::npos;)
       message.replace(at, work.string().size(), "RUN");
-    keep_or_remove(run.key, verdict.code());
+    if (!snapshot_times_.contains(i)) keep_or_remove(run.key, verdict.code());
     store_.save(run.key, verdict);
     return static_cast<int>(verdict.code());
   }
@@ -120,7 +178,10 @@ class Batch {
   BatchSettings settings_;
   WorkFolder work_;
   ResultStore store_;
+  std::vector<std::optional<SharedBeginning>> beginnings_;  ///< [run]
+  std::map<std::size_t, std::set<Time>> snapshot_times_;    ///< [run from which others branch]
   std::vector<std::size_t> pending_;
+  std::vector<std::size_t> branches_;  ///< runs after these
   std::set<std::size_t> killed_once_;
   std::size_t num_done_ = 0, num_failed_ = 0;
   ProgressBar bar_;

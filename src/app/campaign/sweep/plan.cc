@@ -5,11 +5,11 @@
 
 #include <fmt/format.h>
 
-#include "app/campaign/batch/run_hash.h"
 #include "app/campaign/sweep/axis.h"
 #include "app/campaign/sweep/error_sources.h"
 #include "app/campaign/sweep/fault_matrix.h"
 #include "app/scenario/data_folders.h"
+#include "app/scenario/run_hash.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "io/yaml/settings_yaml.h"

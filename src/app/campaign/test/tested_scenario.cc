@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
-#include "app/campaign/batch/run_hash.h"
 #include "app/run/run_junit.h"
+#include "app/scenario/run_hash.h"
 #include "app/scenario/scenario.h"
 #include "core/error.h"
 

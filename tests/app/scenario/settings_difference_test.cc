@@ -1,4 +1,4 @@
-#include "app/report/settings_difference.h"
+#include "app/scenario/settings_difference.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "app/campaign/batch/run_hash.h"
+#include "app/scenario/run_hash.h"
 
 #include <fmt/format.h>
 #include <mujoco/mujoco.h>

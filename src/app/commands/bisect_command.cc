@@ -1,0 +1,132 @@
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "app/campaign/batch/program.h"
+#include "app/commands/commands.h"
+#include "app/common/print_result.h"
+#include "app/record/run_directory.h"
+#include "app/run/run_once.h"
+#include "app/run/snapshot.h"
+#include "core/error.h"
+#include "core/text.h"
+#include "io/json/metrics_json.h"
+#include "io/logs/log_compare.h"
+
+namespace patrol::app {
+namespace {
+
+/// Run and the program that made it.
+struct TracedRun {
+  std::filesystem::path root;
+  std::string program;
+};
+
+/// Traces a run from one instant to another by its own program: a line for each tick.
+std::vector<TickDigest> trace(const TracedRun& run, Time from, Time to) {
+  const ProgramResult result =
+      run_program({run.program, "trace", run.root.string(), "--from-s", fmt::format("{}", to_seconds(from)), "--to-s",
+                   fmt::format("{}", to_seconds(to))});
+  if (result.exit_code != 0)
+    throw InputError(fmt::format("{}: cannot be traced by {}", run.root.string(), run.program));
+  std::vector<TickDigest> ticks;
+  std::istringstream lines(result.output);
+  for (std::string line; std::getline(lines, line);) ticks.push_back(parse_tick_digest(line));
+  return ticks;
+}
+
+/// Compares the traces of two runs. Between different builds or scenarios the bytes of a state may differ without a
+/// difference in their values; then only motion and messages are compared.
+class TracePair {
+ public:
+  TracePair(TracedRun a, TracedRun b) : a_(std::move(a)), b_(std::move(b)) {
+    const TickDigest first_a = trace(a_, Time{}, Time{}).at(0), first_b = trace(b_, Time{}, Time{}).at(0);
+    has_states_ = first_a.simulator == first_b.simulator && first_a.stack == first_b.stack;
+  }
+
+  /// Names of the parts that differ.
+  std::vector<std::string> different_parts(const TickDigest& a, const TickDigest& b) const {
+    std::vector<std::string> parts;
+    if (a.motion != b.motion) parts.emplace_back("motion");
+    if (a.messages != b.messages) parts.emplace_back("messages");
+    if (has_states_ && a.simulator != b.simulator) parts.emplace_back("state of the simulator");
+    if (has_states_ && a.stack != b.stack) parts.emplace_back("state of the stack");
+    return parts;
+  }
+
+  bool are_equal_at(Time time) const {
+    return different_parts(trace(a_, time, time).at(0), trace(b_, time, time).at(0)).empty();
+  }
+
+  struct Difference {
+    Time time{};
+    std::vector<std::string> parts;
+  };
+  std::optional<Difference> first_difference(Time from, Time to) const {
+    const std::vector<TickDigest> ticks_a = trace(a_, from, to), ticks_b = trace(b_, from, to);
+    for (std::size_t i = 0; i < std::min(ticks_a.size(), ticks_b.size()); ++i) {
+      std::vector<std::string> parts = different_parts(ticks_a[i], ticks_b[i]);
+      if (!parts.empty()) return Difference{ticks_a[i].time, std::move(parts)};
+    }
+    return std::nullopt;
+  }
+
+ private:
+  TracedRun a_, b_;
+  bool has_states_ = false;
+};
+
+/// Instants at which both runs have a snapshot, before `end`, in ascending order; the start is the first.
+std::vector<Time> common_instants(const RunDirectory& a, const RunDirectory& b, Time end) {
+  const std::vector<Time> of_a = snapshot_times(a.snapshots()), of_b = snapshot_times(b.snapshots());
+  std::vector<Time> common = {Time{}};
+  std::ranges::set_intersection(of_a, of_b, std::back_inserter(common));
+  std::erase_if(common, [&](Time time) { return time > end; });
+  return common;
+}
+
+}  // namespace
+
+ExitCode trace_command(const TraceOptions& options) {
+  trace_run(options.run, from_seconds(options.from_s), from_seconds(options.to_s),
+            [](const TickDigest& tick) { fmt::print("{}\n", to_text(tick)); });
+  return ExitCode::kDone;
+}
+
+ExitCode bisect_command(const BisectOptions& options) {
+  const RunDirectory a = open_run_directory(options.a), b = open_run_directory(options.b);
+  const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
+  const std::optional<io::LogDifference> in_logs = io::first_difference(a.log(), b.log());
+  if (!in_logs) {
+    print_result(options.form, "equal: no message differs\n", {{"equal", true}});
+    return ExitCode::kDone;
+  }
+  const TracePair pair({a.root, options.program_a.value_or(self)}, {b.root, options.program_b.value_or(self)});
+  const std::vector<Time> instants = common_instants(a, b, in_logs->log_time);
+  const auto last_equal = std::prev(
+      std::partition_point(instants.begin() + 1, instants.end(), [&](Time time) { return pair.are_equal_at(time); }));
+  const auto next = std::next(last_equal);
+  const std::optional<TracePair::Difference> difference =
+      pair.first_difference(*last_equal, next == instants.end() ? in_logs->log_time + Time{1} : *next);
+  if (!difference)
+    throw InputError(fmt::format("{} and {}: their programs do not repeat the difference of their logs: {}",
+                                 a.root.string(), b.root.string(), io::describe(*in_logs)));
+  io::Metrics json;
+  json["equal"] = false;
+  json["first_difference_s"] = to_seconds(difference->time);
+  json["parts"] = difference->parts;
+  json["first_message"] = io::describe(*in_logs);
+  print_result(options.form,
+               fmt::format("first difference at {} s: {}\nfirst message that differs: {}\n",
+                           to_seconds(difference->time), join(difference->parts, ", "), io::describe(*in_logs)),
+               json);
+  return ExitCode::kExpectationMissed;
+}
+
+}  // namespace patrol::app

@@ -1,0 +1,7 @@
+#pragma once
+
+namespace patrol {
+
+class StateArchive;
+
+}  // namespace patrol

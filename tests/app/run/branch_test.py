@@ -1,0 +1,104 @@
+#!/usr/bin/env python3
+"""`patrol run --snapshot-every` and `--from`: a branch leaves the files of the whole run, and what cannot be a branch is refused in one line.
+`patrol bisect` finds a planted change at its tick.
+
+usage: branch_test.py PATROL SOURCE_DIR
+"""
+import json
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent.parent))
+from standing_still import PATROL, SOURCE  # noqa: E402
+
+SHORT = "street/short"
+TICK_S = 0.002
+
+
+def run_patrol(*words):
+    return subprocess.run([PATROL, *map(str, words)], capture_output=True, text=True, timeout=300, cwd=SOURCE)
+
+
+class Branch(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.path = pathlib.Path(folder.name)
+        cls.parent = cls.path / "parent"
+        done = run_patrol("run", SHORT, "--set", "time_limit_s=6", "--snapshot-every", 2, "--out", cls.parent)
+        assert done.returncode == 4, done.stderr
+
+    def refused(self, what, *words):
+        done = run_patrol("run", *words, "--out", self.path / "refused")
+        self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1), done.stderr)
+        self.assertIn(what, done.stderr)
+        self.assertFalse((self.path / "refused").exists())
+
+    def test_an_unchanged_branch_leaves_the_files_of_the_run(self):
+        self.assertEqual(sorted(file.name for file in (self.parent / "snapshots").iterdir()), ["2.snap", "4.snap"])
+        for at_s in (1.2, 4, 5.3):
+            branch = self.path / f"at_{at_s}"
+            self.assertEqual(run_patrol("run", "--from", f"{self.parent}@{at_s}", "--out", branch).returncode, 4)
+            for name in ("log.mcap", "estimate.tum", "truth.tum", "map.pgm", "scenario.yaml"):
+                self.assertEqual((branch / name).read_bytes(), (self.parent / name).read_bytes(), f"{name} at {at_s}")
+            origin = json.loads((branch / "branch.json").read_text())
+            self.assertEqual((origin["at_s"], origin["has_other_settings"]), (at_s, False))
+
+    def test_what_cannot_be_a_branch_is_refused(self):
+        self.refused("must be RUN@SECONDS", "--from", self.parent)
+        self.refused("the run ends before 7 s", "--from", f"{self.parent}@7")
+        self.refused("--set seed: cannot change in a branch", "--from", f"{self.parent}@4", "--set", "seed=2")
+        self.refused("excludes --seed", "--from", f"{self.parent}@4", "--seed", 2)
+        self.refused("needs a scenario", "--set", "seed=2")
+        self.refused("cannot be saved", SHORT, "--snapshot-every", 2, "--stack", "some program")
+
+    def test_a_snapshot_of_another_scenario_is_refused(self):
+        other = self.path / "other"
+        shutil.copytree(self.parent, other)
+        text = (other / "scenario.yaml").read_text().replace("seed: 1\n", "seed: 2\n")
+        (other / "scenario.yaml").write_text(text)
+        self.refused("4.snap: belongs to another build of patrol, or the scenario", "--from", f"{other}@4")
+
+    def test_bisect_finds_a_fault_of_the_lidar_at_its_first_message(self):
+        other = self.path / "with_fault"
+        start_s = 4.356
+        fault = f"faults=[{{sensor: imu, kind: drift, start_s: {start_s}, duration_s: 1, magnitude: 1.0e-6}}]"
+        run_patrol("run", SHORT, "--set", "time_limit_s=6", fault, "--snapshot-every", 2, "--out", other)
+        done = run_patrol("bisect", self.parent, other, "--json")
+        self.assertEqual(done.returncode, 1, done.stderr)
+        found = json.loads(done.stdout)
+        self.assertGreaterEqual(found["first_difference_s"], start_s)
+        self.assertLessEqual(found["first_difference_s"], start_s + 2 * TICK_S)  # the drift is zero at its start
+        self.assertIn("state of the simulator", found["parts"])
+
+    def test_bisect_finds_no_difference_of_a_repeated_run(self):
+        again = self.path / "again"
+        run_patrol("run", SHORT, "--set", "time_limit_s=6", "--out", again)
+        done = run_patrol("bisect", self.parent, again)
+        self.assertEqual((done.returncode, done.stdout), (0, "equal: no message differs\n"), done.stderr)
+
+    def test_bisect_finds_the_tick_at_which_another_program_differs(self):
+        """The other program is this one, but it kidnaps the robot by a millimeter at 3.1 s."""
+        other = self.path / "other_program"
+        kidnap_s = 3.1
+        program = self.path / "patrol"
+        scenario = SOURCE / "worlds/street/scenarios/short.yaml"
+        truth = [line.split() for line in (self.parent / "truth.tum").read_text().splitlines() if not line.startswith("#")]
+        x, y = next((float(row[1]), float(row[2])) for row in truth if float(row[0]) >= kidnap_s)
+        kidnap = f"kidnaps=[{{at_s: {kidnap_s}, x_m: {x + 0.001}, y_m: {y}, heading_deg: 90}}]"
+        run_patrol("run", scenario, "--set", "time_limit_s=6", kidnap, "--snapshot-every", 2, "--out", other)
+        program.write_text(f'#!/bin/sh\necho "$1" >> {self.path}/called\nexec {PATROL} "$@"\n')
+        program.chmod(0o755)
+        done = run_patrol("bisect", self.parent, other, "--program-b", program, "--json")
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertAlmostEqual(json.loads(done.stdout)["first_difference_s"], kidnap_s + TICK_S, delta=1e-9)
+        self.assertEqual(set((self.path / "called").read_text().split()), {"trace"})
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], "-v"])
