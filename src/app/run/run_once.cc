@@ -47,7 +47,12 @@ RunVerdict complete_run(const RunDirectory& directory, const Scenario& scenario,
 std::optional<RunVerdict> run_once(const Scenario& scenario, const std::string& name,
                                    const std::filesystem::path& data_root, const std::filesystem::path& root,
                                    RunObserver& observer) {
-  const ScenarioFiles files = load_scenario_files(scenario, data_root);
+  return run_once(scenario, load_scenario_files(scenario, data_root), name, data_root, root, observer);
+}
+
+std::optional<RunVerdict> run_once(const Scenario& scenario, const ScenarioFiles& files, const std::string& name,
+                                   const std::filesystem::path& data_root, const std::filesystem::path& root,
+                                   RunObserver& observer) {
   sim::Simulator simulator = make_simulator(scenario, files);  // these throw InputError before anything is written
   const std::unique_ptr<StackPort> stack =
       make_stack_port(scenario, files,
