@@ -48,7 +48,8 @@ std::vector<double> navigate(const Scenario& scenario, const ScenarioFiles& file
 void compare_navigation(const ScannedWorld& world, std::uint64_t seed, studies::StudySample& sample) {
   const TemporaryFolder folder(fmt::format("scan-navigation-{}-{}", world.name, seed));
   const std::filesystem::path data_root = find_data_root("");
-  const Scenario scenario = load_scenario(data_root / world.scenario, {fmt::format("seed={}", seed)});
+  Scenario scenario = load_scenario(data_root / world.scenario, {fmt::format("seed={}", seed)});
+  scenario.actors.clear();  // they are bodies of the world
   ScenarioFiles files = load_scenario_files(scenario, data_root);
   sample.push_back(navigate(scenario, files, data_root, folder.path() / "world_run"));
 
@@ -61,32 +62,37 @@ void compare_navigation(const ScannedWorld& world, std::uint64_t seed, studies::
   sample.push_back(navigate(scenario, files, data_root, folder.path() / "site_run"));
 }
 
-}  // namespace
-
-studies::Study scan_navigation_study() {
+/// `world`: index in scanned_worlds().
+studies::Study navigation_study(const std::string& name, std::size_t index) {
+  const ScannedWorld& world = scanned_worlds()[index];
   studies::Study study{
-      .name = "scan-navigation",
-      .title = "Navigation in sites from panoramic scans",
+      .name = name,
+      .title = "Navigation in a site from panoramic scans",
       .source = "no publication; test of the import of sites",
-      .conditions =
-          "Each seed: worlds/tunnel/scenarios/navigate.yaml and worlds/substation/scenarios/patrol.yaml in the world, "
-          "and with the same mission, map, actors and seed in the site of 12 panoramic scans, taken with that seed "
-          "(study scan-import). The clearance is that from the surfaces of the world or of the site.",
+      .conditions = fmt::format(
+          "Each seed: {} without its actors in the world, and with the same mission, map and seed in the site of 12 "
+          "panoramic "
+          "scans, taken with that seed (study scan-import). The clearance is that from the surfaces of the world or of "
+          "the site.",
+          world.scenario),
       .default_seeds = 10,
       .compared_with = "the world"};
   for (const RunMetric& metric : run_metrics()) study.metrics.push_back(metric.metric);
-  for (const ScannedWorld& world : scanned_worlds()) {
-    const std::size_t reference = study.variants.size();
-    study.variants.push_back({.world = world.name, .method = "world", .reference = reference});
-    study.variants.push_back({.world = world.name, .method = "site of scans", .reference = reference});
-  }
-  study.run = [](std::uint64_t seed) {
+  study.variants.push_back({.world = world.name, .method = "world"});
+  study.variants.push_back({.world = world.name, .method = "site of scans"});
+  study.run = [&world](std::uint64_t seed) {
     studies::StudySample sample;
-    for (const ScannedWorld& world : scanned_worlds()) compare_navigation(world, seed, sample);
+    compare_navigation(world, seed, sample);
     return sample;
   };
   study.illustrate = [](std::uint64_t) { return std::vector<report::Section>{}; };
   return study;
 }
+
+}  // namespace
+
+studies::Study scan_navigation_study() { return navigation_study("scan-navigation", 0); }
+
+studies::Study scan_navigation_substation_study() { return navigation_study("scan-navigation-substation", 1); }
 
 }  // namespace patrol::app

@@ -4,7 +4,9 @@
 
 namespace patrol::app {
 
-/// Study of navigation in sites that are made of panoramic scans, compared with navigation in the scanned worlds.
+/// Studies of navigation in a site that is made of panoramic scans, compared with navigation in the scanned world: in
+/// the tunnel and in the substation.
 studies::Study scan_navigation_study();
+studies::Study scan_navigation_substation_study();
 
 }  // namespace patrol::app

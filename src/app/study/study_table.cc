@@ -19,7 +19,7 @@
 namespace patrol::app {
 namespace {
 
-constexpr std::array<std::pair<const char*, studies::Study (*)()>, 11> kStudies = {
+constexpr std::array<std::pair<const char*, studies::Study (*)()>, 12> kStudies = {
     {{"ungm", studies::growth_study},
      {"landmarks-circle", studies::circle_study},
      {"landmarks-noncircular", studies::noncircular_study},
@@ -30,7 +30,8 @@ constexpr std::array<std::pair<const char*, studies::Study (*)()>, 11> kStudies 
      {"planners", planner_study},
      {"lidar-calibration", lidar_study},
      {"scan-import", scan_import_study},
-     {"scan-navigation", scan_navigation_study}}};
+     {"scan-navigation", scan_navigation_study},
+     {"scan-navigation-substation", scan_navigation_substation_study}}};
 
 }  // namespace
 

@@ -102,7 +102,8 @@ PlanCrossing crossing_of(const PlanBeam& beam, const ConvexPolygon& outline_m, c
     if (rate > 0.0) enter = std::max(enter, outside / rate);
     if (rate < 0.0) leave = std::min(leave, outside / rate);
   }
-  return {.clearance_m = std::max(lowest, -highest), .entry_m = enter, .chord_m = std::max(0.0, leave - enter)};
+  const double clearance_m = std::max(lowest, -highest);
+  return {.clearance_m = clearance_m, .entry_m = enter, .chord_m = clearance_m < 0.0 ? leave - enter : 0.0};
 }
 
 PlanCrossing crossing_of(const PlanBeam& beam, const Eigen::Vector2d& center_m, double radius_m,

@@ -12,7 +12,8 @@ namespace patrol::importer {
 namespace {
 
 constexpr double kScale_m = 0.02;
-constexpr double kMinHalf_m = 0.005, kMaxHalf_m = 0.9, kSlopeStep = 0.08;
+constexpr double kMinHalf_m = 0.005, kMaxHalf_m = 0.9;
+constexpr double kSlopeStep = 0.08, kMaxSlope = 0.6;
 constexpr std::size_t kMinHits = 8;
 
 template <typename Crossing>
@@ -58,6 +59,21 @@ double search(std::array<double, kSize>& parameters, std::array<double, kSize> s
   return best;
 }
 
+/// Returns the cost of a slope: upright posts are likely. 1 beyond the steepest one.
+double cost_of_slope(double x, double y) {
+  constexpr double kPerSlope = 0.05;
+  const double slope = std::hypot(x, y);
+  return slope > kMaxSlope ? 1.0 : kPerSlope * slope;
+}
+
+/// Returns the first step of the search for the slope; 0 if the beams are within too small a height.
+double slope_step(const std::vector<PlanBeam>& beams) {
+  constexpr double kMinHeight_m = 0.15;
+  const auto [low, high] = std::minmax_element(
+      beams.begin(), beams.end(), [](const PlanBeam& a, const PlanBeam& b) { return a.height_m < b.height_m; });
+  return low != beams.end() && high->height_m - low->height_m > kMinHeight_m ? kSlopeStep : 0.0;
+}
+
 std::size_t num_hits(const std::vector<PlanBeam>& beams) {
   return static_cast<std::size_t>(
       std::count_if(beams.begin(), beams.end(), [](const PlanBeam& beam) { return beam.is_hit; }));
@@ -66,7 +82,7 @@ std::size_t num_hits(const std::vector<PlanBeam>& beams) {
 /// Searches with tolerances that become smaller, so that it finds the outline from afar.
 template <std::size_t kSize, typename Cost>
 double search_from_afar(std::array<double, kSize>& parameters, const std::array<double, kSize>& steps, Cost cost) {
-  double best = 1.0;
+  double best = 2.0;
   for (const double scale_m : {3.0 * kScale_m, kScale_m})
     best = search(parameters, steps, [&](const std::array<double, kSize>& p) { return cost(p, scale_m); });
   return best;
@@ -151,7 +167,7 @@ std::optional<FittedOutline> fit_circle(const std::vector<PlanBeam>& beams, cons
   const double step_m = 0.25 * circle[2];
   FittedOutline fitted;
   fitted.cost =
-      search_from_afar(circle, {step_m, step_m, step_m, kSlopeStep, kSlopeStep},
+      search_from_afar(circle, {step_m, step_m, step_m, slope_step(beams), slope_step(beams)},
                        [&](const CircleParameters& c, double scale_m) { return cost_of_circle(beams, c, scale_m); });
   fitted.slope = {circle[3], circle[4]};
   constexpr int kCorners = 16;
@@ -170,16 +186,17 @@ std::optional<FittedOutline> fit_rectangle(const std::vector<PlanBeam>& beams, c
   RectangleParameters rectangle = {
       around.yaw_rad, -around.half_m.x(), around.half_m.x(), -around.half_m.y(), around.half_m.y(), 0.0, 0.0};
   FittedOutline fitted;
-  fitted.cost = search_from_afar(rectangle, {0.1, 0.016, 0.016, 0.016, 0.016, kSlopeStep, kSlopeStep},
-                                 [&](const RectangleParameters& r, double scale_m) {
-                                   const double smaller = std::min(r[2] - r[1], r[4] - r[3]),
-                                                larger = std::max(r[2] - r[1], r[4] - r[3]);
-                                   if (smaller < 2.0 * kMinHalf_m || larger > 2.0 * kMaxHalf_m) return 1.0;
-                                   const ConvexPolygon corners = corners_of(around.center_m, r);
-                                   return mean_cost(beams, scale_m, [&](const PlanBeam& beam) {
-                                     return crossing_of(beam, corners, {r[5], r[6]});
-                                   });
-                                 });
+  fitted.cost =
+      search_from_afar(rectangle, {0.1, 0.016, 0.016, 0.016, 0.016, slope_step(beams), slope_step(beams)},
+                       [&](const RectangleParameters& r, double scale_m) {
+                         const double smaller = std::min(r[2] - r[1], r[4] - r[3]),
+                                      larger = std::max(r[2] - r[1], r[4] - r[3]);
+                         if (smaller < 2.0 * kMinHalf_m || larger > 2.0 * kMaxHalf_m) return 1.0;
+                         const ConvexPolygon corners = corners_of(around.center_m, r);
+                         return cost_of_slope(r[5], r[6]) + mean_cost(beams, scale_m, [&](const PlanBeam& beam) {
+                                  return crossing_of(beam, corners, {r[5], r[6]});
+                                });
+                       });
   fitted.outline_m = corners_of(around.center_m, rectangle);
   fitted.slope = {rectangle[5], rectangle[6]};
   return fitted;

@@ -159,7 +159,7 @@ Evidence evidence_of(const Panorama& other, const SeenPoint& seen) {
   }
   if (is_observed) return Evidence::kObserved;
   // At least one of three neighboring beams would meet the surface. Beams along it pass at one of its sides.
-  constexpr double kMinCosine = 0.2;
+  constexpr double kMinCosine = 0.1;
   if (1.15 * footprint_m > seen.width_m || cosine < kMinCosine) return Evidence::kNone;
   constexpr double kMinReturnCosine = 0.35, kMaxReturnRange_m = 45.0;
   const bool would_return = cosine > kMinReturnCosine && distance_m < kMaxReturnRange_m && distance_m > 1.0;

@@ -16,6 +16,8 @@
 namespace patrol::importer {
 namespace {
 
+constexpr double kSampleRatio = 0.6;  // of the distance of samples and the size of cells
+
 /// Point of a surface on the outline of an object.
 struct OutlinePoint {
   Eigen::Vector3d p_m;
@@ -63,7 +65,7 @@ class ThinObjectCloser {
   /// Closes the thin objects of a layer.
   void close_layer(const std::vector<OutlinePoint>& points, double low_m, double height_m, double cell_m) {
     for (const std::vector<OutlinePoint>& object : connected(points, cell_m)) {
-      if (extent_m(object) <= settings_.max_extent_m && close_object(object)) continue;
+      if (extent_m(object) <= settings_.max_extent_m && close_object(object, low_m, height_m)) continue;
       if (cell_m > settings_.fine_cell_m) {
         close_layer(object, low_m, height_m, settings_.fine_cell_m);
         continue;
@@ -112,7 +114,7 @@ class ThinObjectCloser {
   }
 
   /// Closes an object. Returns false if beams pass through it.
-  bool close_object(const std::vector<OutlinePoint>& object) {
+  bool close_object(const std::vector<OutlinePoint>& object, double layer_low_m, double layer_height_m) {
     constexpr double kMinArea_m2 = 4e-4, kStrip_m = 0.01;
     float closest_m = 1e9f;
     for (const OutlinePoint& point : object) closest_m = std::min(closest_m, patches_[point.patch].spacing_m);
@@ -127,6 +129,10 @@ class ThinObjectCloser {
       prism.low_m = std::min(prism.low_m, point.p_m.z());
       prism.high_m = std::max(prism.high_m, point.p_m.z());
     }
+    // No gap between an object and its continuation in the next layer.
+    const double gap_m = kSampleRatio * settings_.cell_m, layer_high_m = layer_low_m + layer_height_m;
+    if (prism.low_m < layer_low_m + gap_m) prism.low_m = layer_low_m;
+    if (prism.high_m > layer_high_m - gap_m) prism.high_m = layer_high_m;
     prism.outline_m = simplified(convex_hull(outline));
     if (prism.outline_m.size() < 3) {
       // A post that was seen from one side as a flat strip.
@@ -227,7 +233,7 @@ std::vector<Patch> close_thin_objects(const std::vector<Patch>& patches, std::ve
     const Patch& patch = patches[i];
     const Eigen::Vector3d normal = patch.area_normal();
     if (patch.is_filled_in || std::abs(normal.z()) > kSteep * normal.norm()) continue;
-    for (const Eigen::Vector3d& p : sample(patch, 0.6 * settings.cell_m)) {
+    for (const Eigen::Vector3d& p : sample(patch, kSampleRatio * settings.cell_m)) {
       const double above_m = p.z() - ground.height_at(p.head<2>());
       if (above_m < settings.lowest_m || above_m > settings.highest_m) continue;
       layers[static_cast<int>(std::floor(p.z() / settings.layer_m))].push_back({p, i});
