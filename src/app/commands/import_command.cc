@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "app/commands/commands.h"
+#include "app/common/progress_bar.h"
 #include "app/mapping/log_site.h"
 #include "app/scenario/data_folders.h"
 #include "core/error.h"
@@ -50,6 +51,14 @@ double turning_clearance_m(const std::string& robot) {
   return io::load_robot_description(find_robot(robot, find_data_root({})).string()).outline_radius_m() + kMargin_m;
 }
 
+importer::ImportedSite import_with_progress(importer::SiteImportOptions options) {
+  ProgressBar bar;
+  options.on_progress = [&bar, name = options.name](const std::string& work, double fraction) {
+    bar.show(fmt::format("import {}: {}", name, work), fraction);
+  };
+  return importer::import_site(options);
+}
+
 }  // namespace
 
 ExitCode import_robot_command(const ImportRobotOptions& options) {
@@ -82,7 +91,7 @@ ExitCode import_site_command(const ImportSiteOptions& options) {
   if (!options.start.empty()) import.mission.start = parse_pose(options.start, "--start", {}).pose();
   import.mission.clearance_m = turning_clearance_m(options.robot);
   const std::optional<importer::ImportedSite> site =
-      is_scan_log(options.file) ? import_log_site(import) : importer::import_site(import);
+      is_scan_log(options.file) ? import_log_site(import) : import_with_progress(import);
   if (!site) {
     fmt::print(stderr, "patrol: interrupted; nothing was written\n");
     return ExitCode::kProgramFailed;

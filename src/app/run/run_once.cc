@@ -40,8 +40,10 @@ io::Metrics performance_of(const RunOutcome& outcome) {
 
 /// Simulator and stack of a scenario.
 struct RunSystem {
-  RunSystem(const Scenario& scenario, StackContext context, int num_threads = 1)
-      : files(load_scenario_files(scenario, context.data_root)),
+  RunSystem(const Scenario& scenario, StackContext context)
+      : RunSystem(scenario, load_scenario_files(scenario, context.data_root), std::move(context)) {}
+  RunSystem(const Scenario& scenario, ScenarioFiles scenario_files, StackContext context, int num_threads = 1)
+      : files(std::move(scenario_files)),
         simulator(make_simulator(scenario, files, num_threads > 1)) {
     context.tick = simulator.tick();
     stack = make_stack_port(scenario, files, std::move(context));
@@ -165,11 +167,17 @@ void trace_run(const std::filesystem::path& root, Time from, Time to,
 std::optional<RunVerdict> run_once(const Scenario& scenario, const std::string& name,
                                    const std::filesystem::path& data_root, const std::filesystem::path& root,
                                    RunObserver& observer, const RunMode& mode) {
+  return run_once(scenario, load_scenario_files(scenario, data_root), name, data_root, root, observer, mode);
+}
+
+std::optional<RunVerdict> run_once(const Scenario& scenario, const ScenarioFiles& files, const std::string& name,
+                                   const std::filesystem::path& data_root, const std::filesystem::path& root,
+                                   RunObserver& observer, const RunMode& mode) {
   StackContext context{.scenario = name,
                        .data_root = data_root,
                        .output = RunDirectory{root}.stack_output(),
                        .is_interrupted = [&] { return observer.is_interrupted(); }};
-  RunSystem run(scenario, context, mode.num_threads);  // these throw InputError before anything is written
+  RunSystem run(scenario, files, context, mode.num_threads);  // these throw InputError before anything is written
   if (mode.has_snapshots() || mode.branch) check_state(*run.stack);
   context.tick = run.simulator.tick();
   std::optional<Branch> branch;

@@ -48,4 +48,9 @@ std::optional<RunVerdict> run_once(const Scenario& scenario, const std::string& 
                                    const std::filesystem::path& data_root, const std::filesystem::path& root,
                                    RunObserver& observer, const RunMode& mode = {});
 
+/// Same, with files that are loaded already, such as those of another world.
+std::optional<RunVerdict> run_once(const Scenario& scenario, const ScenarioFiles& files, const std::string& name,
+                                   const std::filesystem::path& data_root, const std::filesystem::path& root,
+                                   RunObserver& observer, const RunMode& mode = {});
+
 }  // namespace patrol::app

@@ -1,8 +1,5 @@
 #include "app/study/scan_import_study.h"
 
-#include <algorithm>
-#include <array>
-
 #include <fmt/format.h>
 
 #include "app/common/process_cost.h"
@@ -15,23 +12,9 @@ namespace {
 
 constexpr int kPoses = 200;
 
-struct ScanResolution {
-  const char* world;
-  double step_deg;  ///< the 12 scans together have about 19 million points
-};
-constexpr std::array kScanResolutions = {ScanResolution{"tunnel", 0.18}, ScanResolution{"substation", 0.12}};
-
-std::vector<double> import_scans(const ScanResolution& resolution, std::uint64_t seed) {
-  const auto& worlds = scanned_worlds();
-  const ScannedWorld& world =
-      *std::find_if(worlds.begin(), worlds.end(), [&](const ScannedWorld& w) { return w.name == resolution.world; });
+std::vector<double> import_scans(const ScannedWorld& world, std::uint64_t seed) {
   const TemporaryFolder folder(fmt::format("scan-import-{}-{}", world.name, seed));
-  double num_points = 0.0;
-  {
-    const std::vector<io::StationScan> scans = take_scans(world, resolution.step_deg, seed);
-    for (const io::StationScan& scan : scans) num_points += static_cast<double>(scan.points.size());
-    io::save_station_scans(folder.path() / "scans", scans);
-  }
+  const std::size_t num_points = save_scans(world, seed, folder.path() / "scans");
   const std::string name = "imported_" + world.name;
   const double begin_s = process_seconds();
   const importer::ImportedSite site = importer::import_site({.file = folder.path() / "scans", .name = name});
@@ -46,15 +29,19 @@ std::vector<double> import_scans(const ScanResolution& resolution, std::uint64_t
   return {100.0 * c.planar.median_m,
           100.0 * c.planar.p95_m,
           100.0 * c.planar.within_10cm,
+          100.0 * c.planar.seen,
+          100.0 * c.planar.seen_within_10cm,
           100.0 * c.spatial.median_m,
           100.0 * c.spatial.p95_m,
           100.0 * c.spatial.within_10cm,
+          100.0 * c.spatial.seen,
+          100.0 * c.spatial.seen_within_10cm,
           100.0 * c.ground_median_m,
           100.0 * c.ground_p95_m,
           100.0 * c.person_hits,
           100.0 * c.truck_hits,
           static_cast<double>(c.num_phantoms),
-          1e-6 * num_points,
+          1e-6 * static_cast<double>(num_points),
           1e-6 * num_triangles,
           num_boxes,
           time_s,
@@ -75,16 +62,23 @@ studies::Study scan_import_study() {
           "held-out poses on the roads with a clearance of 0.6 m: a 2D lidar 0.55 m above the ground, 720 beams to 30 "
           "m, and a 3D lidar 0.8 m above it, 16 rings within 15 degrees of 360 beams to 100 m, both without noise and "
           "with returns up to an incidence of 85 degrees. A beam that the world returns and the site has no surface "
-          "for, or the reverse, has an infinite error. Hits: beams to the places of the person and the truck that "
+          "for, or the reverse, has an infinite error. Seen: beams whose surface a scanner has a free line to, at most "
+          "70 m "
+          "long and at an incidence of at most 85 degrees; the others cannot be measured. Hits: beams to the places of "
+          "the person and the truck that "
           "meet a surface there in the site and not in the world. Blocked: poses, free in the world, at which a robot "
           "of 0.4 m in radius touches the site's geometry for contact.",
       .default_seeds = 3};
   study.metrics = {{.name = "2D median", .unit = "cm", .is_compared = true},
                    {.name = "2D 95 %", .unit = "cm"},
                    {.name = "2D within 10 cm", .unit = "%", .is_compared = true},
+                   {.name = "2D seen", .unit = "%"},
+                   {.name = "2D seen within 10 cm", .unit = "%"},
                    {.name = "3D median", .unit = "cm", .is_compared = true},
                    {.name = "3D 95 %", .unit = "cm"},
                    {.name = "3D within 10 cm", .unit = "%", .is_compared = true},
+                   {.name = "3D seen", .unit = "%"},
+                   {.name = "3D seen within 10 cm", .unit = "%"},
                    {.name = "ground median", .unit = "cm"},
                    {.name = "ground 95 %", .unit = "cm"},
                    {.name = "person hits", .unit = "%"},
@@ -95,13 +89,13 @@ studies::Study scan_import_study() {
                    {.name = "contact boxes", .unit = ""},
                    {.name = "time", .unit = "s", .is_processor_time = true},
                    {.name = "memory", .unit = "MB", .is_processor_time = true}};
-  for (const ScanResolution& resolution : kScanResolutions)
-    study.variants.push_back({.world = resolution.world,
-                              .method = fmt::format("step {:g} degrees", resolution.step_deg),
+  for (const ScannedWorld& world : scanned_worlds())
+    study.variants.push_back({.world = world.name,
+                              .method = fmt::format("step {:g} degrees", world.step_deg),
                               .reference = study.variants.size()});
   study.run = [](std::uint64_t seed) {
     studies::StudySample sample;
-    for (const ScanResolution& resolution : kScanResolutions) sample.push_back(import_scans(resolution, seed));
+    for (const ScannedWorld& world : scanned_worlds()) sample.push_back(import_scans(world, seed));
     return sample;
   };
   study.illustrate = [](std::uint64_t) { return std::vector<report::Section>{}; };

@@ -11,6 +11,7 @@
 #include "app/scenario/scenario.h"
 #include "core/geometry/angles.h"
 #include "core/random.h"
+#include "importer/site/height_grid.h"
 #include "sim/sensors/panoramic_scanner.h"
 #include "sim/sensors/surface_optics.h"
 #include "sim/static_obstacles.h"
@@ -103,58 +104,82 @@ FirstSurface first_surface(const RayWorld& world, const std::vector<sim::Surface
               cosine >= kMinCosine && !surfaces[static_cast<std::size_t>(hit->geom)].is_transparent_at(cosine)};
 }
 
+/// Surfaces of a world that its scanners see.
+class SeenSurfaces {
+ public:
+  SeenSurfaces(const ScannedWorld& world, const RayWorld& truth) : truth_(truth) {
+    for (const Eigen::Vector2d& p : world.scanners_m)
+      scanners_m_.emplace_back(p.x(), p.y(), truth.ground_m(p) + kScannerHeight_m);
+  }
+
+  /// Returns whether the line from a scanner to a point of a surface is free and within the limits of the scanner.
+  bool contain(const Eigen::Vector3d& p_m) const {
+    constexpr double kSame_m = 0.02;
+    const double max_range_m = PanoramicScannerSettings{}.range_max_m;
+    return std::any_of(scanners_m_.begin(), scanners_m_.end(), [&](const Eigen::Vector3d& scanner_m) {
+      const double distance_m = (p_m - scanner_m).norm();
+      if (distance_m > max_range_m) return false;
+      const Eigen::Vector3d direction = (p_m - scanner_m) / distance_m;
+      const auto hit = truth_.scene().cast(scanner_m, direction, distance_m + kSame_m, sim::kRayScenery);
+      return hit && hit->distance_m > distance_m - kSame_m && std::abs(hit->normal.dot(direction)) >= kMinCosine;
+    });
+  }
+
+ private:
+  const RayWorld& truth_;
+  std::vector<Eigen::Vector3d> scanners_m_;
+};
+
 class DifferenceSampler {
  public:
-  DifferenceSampler(const RayWorld& truth, const RayWorld& site)
+  DifferenceSampler(const RayWorld& truth, const RayWorld& site, const SeenSurfaces& seen)
       : truth_(truth),
         site_(site),
+        seen_(seen),
         truth_optics_(sim::surface_optics(truth.scene().model())),
         site_optics_(sim::surface_optics(site.scene().model())) {}
 
   void add(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double max_range_m) {
-    constexpr double kSame_m = 0.1, kInfinite = std::numeric_limits<double>::infinity();
+    constexpr double kInfinite = std::numeric_limits<double>::infinity();
     const FirstSurface a = first_surface(truth_, truth_optics_, origin, direction, max_range_m),
                        b = first_surface(site_, site_optics_, origin, direction, max_range_m);
-    const double difference_m =
+    double difference_m =
         std::isfinite(a.range_m) && std::isfinite(b.range_m) ? std::abs(a.range_m - b.range_m) : kInfinite;
-    if (a.is_returned) {
-      differences_m_.push_back(difference_m);
-    } else if (b.is_returned && difference_m > kSame_m) {
-      differences_m_.push_back(kInfinite);
+    if (!a.is_returned) {
+      if (!b.is_returned || difference_m <= kSame_m) return;
+      difference_m = kInfinite;
     }
+    differences_m_.push_back(difference_m);
+    if (std::isfinite(a.range_m) && !seen_.contain(origin + a.range_m * direction)) return;
+    ++num_seen_;
+    num_seen_within_ += difference_m <= kSame_m ? 1 : 0;
   }
 
   RangeDifferences take() {
     std::sort(differences_m_.begin(), differences_m_.end());
     const std::size_t n = differences_m_.size();
     if (n == 0) return {};
+    const auto fraction = [](std::size_t part, std::size_t whole) {
+      return static_cast<double>(part) / static_cast<double>(std::max<std::size_t>(1, whole));
+    };
+    const auto within = std::upper_bound(differences_m_.begin(), differences_m_.end(), kSame_m);
     return {.median_m = differences_m_[n / 2],
             .p95_m = differences_m_[n * 95 / 100],
-            .within_10cm = static_cast<double>(std::upper_bound(differences_m_.begin(), differences_m_.end(), 0.1) -
-                                               differences_m_.begin()) /
-                           static_cast<double>(n),
-            .one_sided = static_cast<double>(std::count_if(differences_m_.begin(), differences_m_.end(),
-                                                           [](double d) { return std::isinf(d); })) /
-                         static_cast<double>(n),
+            .within_10cm = fraction(static_cast<std::size_t>(within - differences_m_.begin()), n),
+            .seen = fraction(num_seen_, n),
+            .seen_within_10cm = fraction(num_seen_within_, num_seen_),
             .num_beams = n};
   }
 
  private:
+  static constexpr double kSame_m = 0.1;
+
   const RayWorld &truth_, &site_;
+  const SeenSurfaces& seen_;
   std::vector<sim::SurfaceOptics> truth_optics_, site_optics_;
   std::vector<double> differences_m_;
+  std::size_t num_seen_ = 0, num_seen_within_ = 0;
 };
-
-double bilinear(const Grid<float>& heights_m, const Eigen::Vector2d& p_m) {
-  const GridGeometry& grid = heights_m.geometry();
-  const Eigen::Vector2d at = (p_m - grid.origin_m) / grid.resolution_m - Eigen::Vector2d::Constant(0.5);
-  const int col = std::clamp(static_cast<int>(std::floor(at.x())), 0, grid.width - 2),
-            row = std::clamp(static_cast<int>(std::floor(at.y())), 0, grid.height - 2);
-  const double u = at.x() - col, v = at.y() - row;
-  const auto height = [&](int dc, int dr) { return double{heights_m.at({col + dc, row + dr})}; };
-  return (1 - u) * (1 - v) * height(0, 0) + u * (1 - v) * height(1, 0) + (1 - u) * v * height(0, 1) +
-         u * v * height(1, 1);
-}
 
 double quantile(std::vector<double> values, double fraction) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
@@ -193,6 +218,8 @@ double hits_in(const Eigen::AlignedBox3d& box, const std::vector<Eigen::Vector3d
 const std::vector<ScannedWorld>& scanned_worlds() {
   static const std::vector<ScannedWorld> worlds = {
       {.name = "tunnel",
+       .scenario = "worlds/tunnel/scenarios/navigate.yaml",
+       .step_deg = 0.18,
        .scanners_m = {{5.0, 1.5},
                       {18.0, -1.5},
                       {31.0, 1.5},
@@ -212,6 +239,8 @@ const std::vector<ScannedWorld>& scanned_worlds() {
        .truck_m = {50.0, 0.0},
        .truck_yaw_deg = 180.0},
       {.name = "substation",
+       .scenario = "worlds/substation/scenarios/patrol.yaml",
+       .step_deg = 0.12,
        .scanners_m = {{8.0, 8.0},
                       {40.0, 8.0},
                       {75.0, 8.0},
@@ -253,11 +282,11 @@ double RayWorld::ground_m(const Eigen::Vector2d& p_m, double from_m) const {
   return hit ? from_m - hit->distance_m : std::numeric_limits<double>::quiet_NaN();
 }
 
-std::vector<io::StationScan> take_scans(const ScannedWorld& world, double step_deg, std::uint64_t seed) {
+std::vector<io::StationScan> take_scans(const ScannedWorld& world, std::uint64_t seed) {
   const RayWorld empty(world_xml(world)), busy(world_xml(world), &world);
   PanoramicScannerSettings settings;
   settings.enabled = true;
-  settings.step_deg = step_deg;
+  settings.step_deg = world.step_deg;
   std::vector<io::StationScan> scans;
   for (std::size_t i = 0; i < world.scanners_m.size(); ++i) {
     const RayWorld& rays = i == world.guest_scan ? busy : empty;
@@ -280,12 +309,21 @@ std::vector<io::StationScan> take_scans(const ScannedWorld& world, double step_d
   return scans;
 }
 
+std::size_t save_scans(const ScannedWorld& world, std::uint64_t seed, const std::filesystem::path& folder) {
+  const std::vector<io::StationScan> scans = take_scans(world, seed);
+  io::save_station_scans(folder, scans);
+  std::size_t num_points = 0;
+  for (const io::StationScan& scan : scans) num_points += scan.points.size();
+  return num_points;
+}
+
 SiteComparison compare_site(const ScannedWorld& world, const importer::ImportedSite& site, const std::string& site_xml,
                             int num_poses, std::uint64_t seed) {
   constexpr int kBeams2d = 720, kRings = 16, kBeams3d = 360;
   const RayWorld truth(world_xml(world)), imported(site_xml);
   const std::vector<Eigen::Vector3d> poses = held_out_poses(world, truth, num_poses, seed);
-  DifferenceSampler planar(truth, imported), spatial(truth, imported);
+  const SeenSurfaces seen(world, truth);
+  DifferenceSampler planar(truth, imported, seen), spatial(truth, imported, seen);
   const Grid<float>* ground = nullptr;
   std::vector<Eigen::AlignedBox3d> boxes;
   for (const importer::SiteShape& shape : site.shapes) {
@@ -312,7 +350,8 @@ SiteComparison compare_site(const ScannedWorld& world, const importer::ImportedS
                     kMaxRange3d_m);
       }
     }
-    if (ground != nullptr) ground_errors_m.push_back(std::abs(bilinear(*ground, pose.head<2>()) - pose.z()));
+    if (ground != nullptr)
+      ground_errors_m.push_back(std::abs(importer::interpolated(*ground, pose.head<2>()) - pose.z()));
     constexpr double kRobot_m = 0.4;
     const Eigen::Vector3d middle = pose + Eigen::Vector3d(0, 0, 0.5);
     if (std::any_of(boxes.begin(), boxes.end(), [&](const Eigen::AlignedBox3d& box) {

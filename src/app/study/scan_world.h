@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,9 @@ namespace patrol::app {
 
 /// World with positions for panoramic scans, and with roads on which its site is compared.
 struct ScannedWorld {
-  std::string name;  ///< of the world in worlds/
+  std::string name;       ///< of the world in worlds/
+  std::string scenario;   ///< navigation in the world, below the data root
+  double step_deg = 0.0;  ///< of the scanner; the 12 scans together have about 19 million points
   std::vector<Eigen::Vector2d> scanners_m;
   std::vector<std::vector<Eigen::Vector2d>> roads_m;  ///< center lines
   double half_road_m = 1.5;                           ///< half the width of the roads
@@ -42,15 +45,20 @@ class RayWorld {
 
 /// Takes panoramic scans 1.7 m above the ground at the positions of the world. Noise as in the data sheet of the
 /// scanner (core/sensors/scanner.h), of the seed; poses are exact.
-std::vector<io::StationScan> take_scans(const ScannedWorld& world, double step_deg, std::uint64_t seed);
+std::vector<io::StationScan> take_scans(const ScannedWorld& world, std::uint64_t seed);
+
+/// Takes scans and writes them to `folder`. Returns the number of points.
+std::size_t save_scans(const ScannedWorld& world, std::uint64_t seed, const std::filesystem::path& folder);
 
 /// Differences of ranges at held-out poses. A beam returns up to an incidence of 85 degrees. Its difference is that of
 /// the first surfaces; it is infinite if the world returns it and the site has no surface, or if the site returns it
-/// and the world has no surface within 0.1 m of that range.
+/// and the world has no surface within 0.1 m of that range. A scanner sees a surface if the line to it is free, at most
+/// 70 m long and at most at an incidence of 85 degrees. Beams past all surfaces of the world count as seen.
 struct RangeDifferences {
   double median_m = 0.0, p95_m = 0.0;
-  double within_10cm = 0.0;  ///< fraction of beams
-  double one_sided = 0.0;    ///< fraction of beams with an infinite difference
+  double within_10cm = 0.0;       ///< fraction of beams
+  double seen = 0.0;              ///< fraction of beams whose first surface in the world is seen by a scanner
+  double seen_within_10cm = 0.0;  ///< fraction of these
   std::size_t num_beams = 0;
 };
 

@@ -8,6 +8,7 @@
 #include "app/study/lidar_study.h"
 #include "app/study/planner_study.h"
 #include "app/study/scan_import_study.h"
+#include "app/study/scan_navigation_study.h"
 #include "app/study/street_study.h"
 #include "app/study/substation_study.h"
 #include "core/error.h"
@@ -18,7 +19,7 @@
 namespace patrol::app {
 namespace {
 
-constexpr std::array<std::pair<const char*, studies::Study (*)()>, 10> kStudies = {
+constexpr std::array<std::pair<const char*, studies::Study (*)()>, 12> kStudies = {
     {{"ungm", studies::growth_study},
      {"landmarks-circle", studies::circle_study},
      {"landmarks-noncircular", studies::noncircular_study},
@@ -28,7 +29,9 @@ constexpr std::array<std::pair<const char*, studies::Study (*)()>, 10> kStudies 
      {"substation-row", row_study},
      {"planners", planner_study},
      {"lidar-calibration", lidar_study},
-     {"scan-import", scan_import_study}}};
+     {"scan-import", scan_import_study},
+     {"scan-navigation", scan_navigation_study},
+     {"scan-navigation-substation", scan_navigation_substation_study}}};
 
 }  // namespace
 

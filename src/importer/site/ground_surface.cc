@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "importer/site/height_grid.h"
+#include "importer/site/triangle_cells.h"
 
 namespace patrol::importer {
 namespace {
@@ -28,63 +30,20 @@ struct SurfaceSample {
   int surface = -1;  ///< connected surface; -1: not walkable
 };
 
-/// Range of x of a triangle on the line y; the lower end is above the upper one if it misses the line.
-std::pair<double, double> range_on_line(const std::array<Eigen::Vector3d, 3>& corners, double y) {
-  double lower = std::numeric_limits<double>::infinity(), upper = -lower;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Eigen::Vector3d &a = corners[k], &b = corners[(k + 1) % 3];
-    if (std::min(a.y(), b.y()) > y + 1e-9 || std::max(a.y(), b.y()) < y - 1e-9) continue;
-    const double rise = b.y() - a.y();
-    if (std::abs(rise) < 1e-12) {
-      lower = std::min({lower, a.x(), b.x()}), upper = std::max({upper, a.x(), b.x()});
-      continue;
-    }
-    const double x = a.x() + std::clamp((y - a.y()) / rise, 0.0, 1.0) * (b.x() - a.x());
-    lower = std::min(lower, x), upper = std::max(upper, x);
-  }
-  return {lower, upper};
-}
-
 /// Adds the heights of a triangle at the centers of the cells inside of it.
 void sample_triangle(const std::array<Eigen::Vector3d, 3>& corners, const GridGeometry& grid, bool is_given,
                      std::vector<SurfaceSample>& samples) {
   const Eigen::Vector3d normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-  if (std::abs(normal.z()) <= 1e-9 * normal.norm()) return;
   const bool is_gentle = std::abs(normal.z()) >= std::sqrt(0.5) * normal.norm() * (1.0 - 1e-9);
-  const auto cell_range = [&](int axis, int count) {
-    double lower = corners[0][axis], upper = lower;
-    for (const Eigen::Vector3d& corner : corners)
-      lower = std::min(lower, corner[axis]), upper = std::max(upper, corner[axis]);
-    const double first = std::ceil((lower - grid.origin_m[axis]) / grid.resolution_m - 0.5 - 1e-9);
-    const double last = std::floor((upper - grid.origin_m[axis]) / grid.resolution_m - 0.5 + 1e-9);
-    return std::pair(static_cast<int>(std::max(0.0, first)), static_cast<int>(std::min(count - 1.0, last)));
-  };
-  const auto [first_col, last_col] = cell_range(0, grid.width);
-  const auto [first_row, last_row] = cell_range(1, grid.height);
-  const double sign = normal.z() > 0.0 ? 1.0 : -1.0;
-  for (int row = first_row; row <= last_row; ++row) {
-    const auto [left, right] = range_on_line(corners, grid.center_of({0, row}).y());
-    if (left > right) continue;
-    const int begin_col = std::max(first_col, grid.cell_at({left - 1e-6, 0.0}).col);
-    const int end_col = std::min(last_col, grid.cell_at({right + 1e-6, 0.0}).col);
-    for (int col = begin_col; col <= end_col; ++col) {
-      const Eigen::Vector2d center = grid.center_of({col, row});
-      bool is_inside = true;
-      for (std::size_t k = 0; k < 3 && is_inside; ++k) {
-        const Eigen::Vector2d edge = (corners[(k + 1) % 3] - corners[k]).head<2>(), to = center - corners[k].head<2>();
-        is_inside = sign * (edge.x() * to.y() - edge.y() * to.x()) >= -1e-9 * edge.norm();
-      }
-      if (!is_inside) continue;
-      const double z = corners[0].z() - (normal.head<2>().dot(center - corners[0].head<2>())) / normal.z();
-      const std::size_t cell =
-          static_cast<std::size_t>(row) * static_cast<std::size_t>(grid.width) + static_cast<std::size_t>(col);
-      samples.push_back({.cell = static_cast<std::uint32_t>(cell),
-                         .z_m = static_cast<float>(z),
-                         .is_gentle = is_gentle,
-                         .faces_up = sign > 0.0,
-                         .is_given = is_given});
-    }
-  }
+  visit_cell_centers(corners, grid, [&](Cell at, double z_m) {
+    const std::size_t cell =
+        static_cast<std::size_t>(at.row) * static_cast<std::size_t>(grid.width) + static_cast<std::size_t>(at.col);
+    samples.push_back({.cell = static_cast<std::uint32_t>(cell),
+                       .z_m = static_cast<float>(z_m),
+                       .is_gentle = is_gentle,
+                       .faces_up = normal.z() > 0.0,
+                       .is_given = is_given});
+  });
 }
 
 void sample_mesh(const Mesh& mesh, const GridGeometry& grid, bool is_given, std::vector<SurfaceSample>& samples) {
@@ -254,18 +213,7 @@ void fill(SurfaceSamples& samples, double rise_m, std::vector<char>& is_known, G
 
 }  // namespace
 
-double GroundSurface::at(const Eigen::Vector2d& p_m) const {
-  const GridGeometry& grid = height_m.geometry();
-  const Eigen::Array2d position = (p_m - grid.origin_m).array() / grid.resolution_m - 0.5;
-  const Eigen::Array2d limited = position.max(0.0).min(Eigen::Array2d(grid.width - 1 - 1e-9, grid.height - 1 - 1e-9));
-  const int col = static_cast<int>(limited.x()), row = static_cast<int>(limited.y());
-  const double u = limited.x() - col, v = limited.y() - row;
-  const auto z = [&](int c, int r) {
-    return double{height_m.at({std::min(c, grid.width - 1), std::min(r, grid.height - 1)})};
-  };
-  return (1.0 - v) * ((1.0 - u) * z(col, row) + u * z(col + 1, row)) +
-         v * ((1.0 - u) * z(col, row + 1) + u * z(col + 1, row + 1));
-}
+double GroundSurface::at(const Eigen::Vector2d& p_m) const { return interpolated(height_m, p_m); }
 
 GroundSurface find_ground(const Mesh& mesh, const Mesh& given, const GridGeometry& grid,
                           const std::optional<Eigen::Vector2d>& start) {

@@ -10,6 +10,7 @@
 #include "core/geometry/angles.h"
 #include "importer/site/points/cloud_patches.h"
 #include "importer/site/points/contact_boxes.h"
+#include "importer/site/points/filled_ground.h"
 #include "importer/site/points/panorama.h"
 #include "importer/site/points/panorama_patches.h"
 #include "importer/site/points/scanned_ground.h"
@@ -134,17 +135,16 @@ float ground_reflectivity_of(const std::vector<Patch>& patches) {
   return values[values.size() / 2];
 }
 
-/// Adds the filled-in ground, the meshes and the contact geometry.
-void complete(ImportedSite& site, std::vector<Patch> patches, const ScannedGround& ground) {
+/// Adds the filled-in ground, the meshes and the contact geometry. `closed`: sides of thin objects.
+void complete(ImportedSite& site, std::vector<Patch> patches, const std::vector<Patch>& closed,
+              const ScannedGround& ground) {
   const float reflectivity = ground_reflectivity_of(patches);
-  double measured_m2 = 0.0, filled_m2 = 0.0;
-  for (const Patch& patch : patches) measured_m2 += patch.area_m2();
-  const std::vector<Patch> sides = close_thin_objects(patches, ground, {});
-  double sides_m2 = 0.0;
-  for (const Patch& patch : sides) sides_m2 += patch.area_m2();
-  patches.insert(patches.end(), sides.begin(), sides.end());
+  double measured_m2 = 0.0, sides_m2 = 0.0, ground_m2 = 0.0;
+  patches.insert(patches.end(), closed.begin(), closed.end());
+  for (const Patch& patch : patches) (patch.is_filled_in ? sides_m2 : measured_m2) += patch.area_m2();
+  add_contact(site, patches, ground);
   for (const Patch& patch : filled_ground(ground, reflectivity)) {
-    filled_m2 += patch.area_m2();
+    ground_m2 += patch.area_m2();
     patches.push_back(patch);
   }
   site.assumptions.push_back(
@@ -154,16 +154,19 @@ void complete(ImportedSite& site, std::vector<Patch> patches, const ScannedGroun
       {"filled in",
        fmt::format("{:.0f} m2 of ground in holes and within 8 m of the measured ground ({:.0f} m2) are interpolated, "
                    "material filled_in",
-                   filled_m2, ground.area_m2(GroundOrigin::kMeasured)),
+                   ground_m2, ground.area_m2(GroundOrigin::kMeasured)),
        ""});
   site.assumptions.push_back(
       {"thin objects",
-       fmt::format(
-           "{:.0f} m2 of sides of objects of at most 0.6 m are filled in by convex outlines, material filled_in",
-           sides_m2),
+       fmt::format("of objects of at most {:g} m as circles, rectangles or convex outlines, {:.0f} m2 of sides that no "
+                   "scan measured are filled in, material filled_in",
+                   ThinObjectSettings{}.max_extent_m, sides_m2),
        ""});
-  add_contact(site, patches, ground);
   add_surfaces(site, patches, reflectivity);
+}
+
+ImportProgress progress_of(const SiteImportOptions& options) {
+  return options.on_progress ? options.on_progress : [](const std::string&, double) {};
 }
 
 void add_frame_rows(ImportedSite& site, const Eigen::Vector3d& origin, std::size_t num_dropped,
@@ -184,20 +187,25 @@ void add_frame_rows(ImportedSite& site, const Eigen::Vector3d& origin, std::size
 }  // namespace
 
 ImportedSite read_scans_site(const SiteImportOptions& options) {
+  progress_of(options)("read scans", 0.0);
   return site_of_scans(io::load_relative_scans(options.file), options.file.filename().string(), options);
 }
 
 ImportedSite read_cloud_site(const SiteImportOptions& options) {
+  progress_of(options)("read points", 0.0);
   return site_of_cloud(io::load_points(options.file), options.file.filename().string(), options);
 }
 
 ImportedSite site_of_scans(io::RelativeScans scans, const std::string& source, const SiteImportOptions& options) {
   if (scans.scans.empty()) throw InputError(source + ": has no scans");
+  const auto progress = progress_of(options);
   ImportedSite site{.name = options.name, .source = source};
   const Eigen::Matrix3d R = upright(options), A = (options.scale > 0.0 ? options.scale : 1.0) * R;
   float largest = 0.0f;
   std::vector<Panorama> panoramas;
   for (io::StationScan& scan : scans.scans) {
+    progress(fmt::format("sort scan {}", panoramas.size() + 1),
+             0.15 + 0.1 * static_cast<double>(panoramas.size()) / static_cast<double>(scans.scans.size()));
     transform(scan.points, A);
     scan.T_map_scanner.position = A * scan.T_map_scanner.position;
     // The frame of the scanner stays upright.
@@ -207,12 +215,16 @@ ImportedSite site_of_scans(io::RelativeScans scans, const std::string& source, c
     panoramas.emplace_back(scan);
     scan.points = {};
   }
-  const StaticPointCounts counts = find_static_points(panoramas);
+  const double num_scans = static_cast<double>(scans.scans.size());
+  const StaticPointCounts counts = find_static_points(panoramas, [&](std::size_t i) {
+    progress(fmt::format("compare scan {} with the others", i + 1), 0.25 + 0.35 * static_cast<double>(i) / num_scans);
+  });
   const IntensityScale scale = scale_of(largest);
   const auto reflectivity = [&](float intensity, double cosine) {
     if (scale.factor <= 0.0f) return static_cast<float>(kUnknownReflectivity);
     return std::clamp(scale.factor * intensity / static_cast<float>(cosine), 0.0f, 1.0f);
   };
+  progress("find surfaces", 0.6);
   std::vector<Patch> patches;
   std::vector<Eigen::Vector3d> scanners_m;
   for (Panorama& panorama : panoramas) {
@@ -220,7 +232,6 @@ ImportedSite site_of_scans(io::RelativeScans scans, const std::string& source, c
     scanners_m.push_back(panorama.origin());
   }
   const double step_deg = to_deg(panoramas.front().step_rad());
-  panoramas.clear();
   add_frame_rows(site, scans.origin, scans.num_dropped, options);
   site.assumptions.push_back({"points",
                               fmt::format("{} of {} scans; the first has a step of {:.3f} degrees", counts.num_points,
@@ -235,11 +246,21 @@ ImportedSite site_of_scans(io::RelativeScans scans, const std::string& source, c
   site.assumptions.push_back(
       {"ground", "the surface around the scanners and what is connected by steps of at most 0.12 m", ""});
   const ScannedGround ground = find_scanned_ground(patches, scanners_m, true, {}, source);
-  complete(site, std::move(patches), ground);
+  progress("close thin objects", 0.7);
+  const std::vector<Patch> sides = close_thin_objects(patches, panoramas, ground, {});
+  progress("find surfaces without thin objects", 0.85);
+  patches.clear();
+  for (const Panorama& panorama : panoramas) {
+    for (Patch& patch : patches_of(panorama, {}, reflectivity)) patches.push_back(patch);
+  }
+  progress("make contact geometry", 0.95);
+  complete(site, std::move(patches), sides, ground);
   return site;
 }
 
 ImportedSite site_of_cloud(io::RelativePoints cloud, const std::string& source, const SiteImportOptions& options) {
+  const auto progress = progress_of(options);
+  progress("find surfaces", 0.3);
   ImportedSite site{.name = options.name, .source = source};
   transform(cloud.points, (options.scale > 0.0 ? options.scale : 1.0) * upright(options));
   float largest = 0.0f;
@@ -265,9 +286,14 @@ ImportedSite site_of_cloud(io::RelativePoints cloud, const std::string& source, 
   site.assumptions.push_back({"reflectivity", scale.rule + ", at any incidence", ""});
   site.assumptions.push_back(
       {"ground", "the lowest large level surface and what is connected by steps of at most 0.12 m", ""});
+  progress("find the ground", 0.8);
   const ScannedGround ground = find_scanned_ground(found.patches, {}, false, {}, source);
   orient(found.patches, ground);
-  complete(site, std::move(found.patches), ground);
+  constexpr double kUnseenExtent_m = 0.6;  // without beams, only small convex hulls are likely
+  std::vector<Panorama> no_scans;
+  const std::vector<Patch> sides =
+      close_thin_objects(found.patches, no_scans, ground, {.max_extent_m = kUnseenExtent_m});
+  complete(site, std::move(found.patches), sides, ground);
   return site;
 }
 

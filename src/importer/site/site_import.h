@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -23,6 +24,9 @@ struct MissionOptions {
   std::string robot = "wheeled";    ///< robot of the scenario
 };
 
+/// Receives the kind of work that begins, such as "compare scans", and the completed fraction of all work, 0 ... 1.
+using ImportProgress = std::function<void(const std::string& work, double fraction)>;
+
 /// Options of `patrol import site`. Each kind of file uses those that its reader names.
 struct SiteImportOptions {
   std::filesystem::path file;
@@ -33,6 +37,7 @@ struct SiteImportOptions {
   double contact_cell_m = 0.05;  ///< meshes: cell of the contact geometry
   std::map<std::string, std::filesystem::path> packages = {};  ///< SDF: folders of models, by name
   MissionOptions mission = {};
+  ImportProgress on_progress = {};  ///< scans and points: called during the import; empty: not called
 };
 
 /// Gives a site the mission of the options; without stations it has none. Random stations of a site

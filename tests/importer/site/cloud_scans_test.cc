@@ -87,6 +87,20 @@ TEST(ScansSite, ObjectInOneOfThreeScansIsRemoved) {
   EXPECT_THAT(assumption(site, "moving objects"), testing::HasSubstr("points that another scan looks through"));
 }
 
+TEST(ScansSite, UnseenSideOfABoxPostIsFilledInAndSeenSidesAreMeasured) {
+  ScannedRoom with;
+  const Eigen::AlignedBox3d post(Eigen::Vector3d(-0.15, -0.1, 0.0), Eigen::Vector3d(0.15, 0.1, 2.2));
+  with.objects = {post};
+  // Both scanners see the sides at the low y and at the low or the high x; none sees the side at the high y.
+  const ImportedSite site = site_of_rooms({with}, {{-2.0, -2.0, 1.7}, {2.0, -2.0, 1.7}});
+  Eigen::AlignedBox3d back(Eigen::Vector3d(-0.13, 0.08, 0.3), Eigen::Vector3d(0.13, 0.12, 1.9));
+  EXPECT_NEAR(area_in(site, back, true), 0.3 * 1.6, 0.2);
+  EXPECT_EQ(area_in(site, back, false), 0.0);
+  Eigen::AlignedBox3d front(Eigen::Vector3d(-0.13, -0.12, 0.3), Eigen::Vector3d(0.13, -0.08, 1.9));
+  EXPECT_NEAR(area_in(site, front, false), 0.3 * 1.6, 0.25);
+  EXPECT_EQ(area_in(site, front, true), 0.0);
+}
+
 TEST(ScansSite, ObjectInAllScansStaysWithContact) {
   ScannedRoom with;
   with.objects = {kCabinet};

@@ -5,31 +5,18 @@
 #include <cmath>
 #include <unordered_map>
 
+#include "importer/site/cell_regions.h"
+
 namespace patrol::importer {
 namespace {
 
 /// Marks the cells of the ground within a distance of measured ground.
 Grid<char> near_measured(const ScannedGround& ground, double distance_m) {
   const GridGeometry& grid = ground.origin.geometry();
-  const int reach = static_cast<int>(std::ceil(distance_m / grid.resolution_m));
-  Grid<char> rows(grid, 0), near(grid, 0);
-  const auto mark = [](Grid<char>& to, Cell low, Cell high) {
-    for (int row = std::max(0, low.row); row <= std::min(high.row, to.geometry().height - 1); ++row) {
-      for (int col = std::max(0, low.col); col <= std::min(high.col, to.geometry().width - 1); ++col)
-        to.at({col, row}) = 1;
-    }
-  };
-  for (int row = 0; row < grid.height; ++row) {
-    for (int col = 0; col < grid.width; ++col) {
-      if (ground.origin.at({col, row}) == GroundOrigin::kMeasured) mark(rows, {col - reach, row}, {col + reach, row});
-    }
-  }
-  for (int row = 0; row < grid.height; ++row) {
-    for (int col = 0; col < grid.width; ++col) {
-      if (rows.at({col, row}) != 0) mark(near, {col, row - reach}, {col, row + reach});
-    }
-  }
-  return near;
+  Grid<char> measured(grid, 0);
+  std::transform(ground.origin.values().begin(), ground.origin.values().end(), measured.values().begin(),
+                 [](GroundOrigin origin) { return static_cast<char>(origin == GroundOrigin::kMeasured); });
+  return dilated(measured, static_cast<int>(std::ceil(distance_m / grid.resolution_m)));
 }
 
 struct Voxel {
@@ -53,7 +40,7 @@ std::vector<Voxel> occupied_voxels(const std::vector<Patch>& patches, const Scan
   std::unordered_map<VoxelKey, Voxel> voxels;
   const Grid<char> reachable = near_measured(ground, settings.max_distance_m);
   for (const Patch& patch : patches) {
-    if (patch.is_filled_in || patch.num_corners < 3) continue;
+    if (patch.num_corners < 3) continue;
     double low_m = 1e9, high_m = -1e9;
     for (std::size_t i = 0; i < patch.num_corners; ++i) {
       const Eigen::Vector3d corner = patch.corners_m[i].cast<double>();

@@ -19,7 +19,7 @@ struct ContactBoxSettings {
   double min_thickness_m = 0.02;  ///< smallest edge of a box
 };
 
-/// Returns boxes around the measured surfaces between two heights above the ground: the bounds of the surfaces within
+/// Returns boxes around the surfaces between two heights above the ground: the bounds of the surfaces within
 /// each voxel, joined along z, x and y where their bounds along the other axes agree. Gaps of up to 0.3 m along z are
 /// closed.
 std::vector<Eigen::AlignedBox3d> contact_boxes(const std::vector<Patch>& patches, const ScannedGround& ground,

@@ -168,14 +168,19 @@ Eigen::Vector3d Panorama::direction(Pixel pixel) const {
   return R_site_scanner_ * Eigen::Vector3d(c * ahead.x(), c * ahead.y(), double{row_sine_[row]});
 }
 
-std::optional<Pixel> Panorama::pixel_of(const Eigen::Vector3d& p_site) const {
+Pixel Panorama::nearest_pixel(const Eigen::Vector3d& p_site) const {
   const Eigen::Vector3d p = R_site_scanner_.transpose() * (p_site - origin());
   const double elevation = std::atan2(p.z(), p.head<2>().norm());
-  const int row = static_cast<int>(std::lround((elevation - elevation_rad_) / step_rad_));
-  if (!contains_row(row)) return std::nullopt;
   double turn = (std::atan2(p.y(), p.x()) - azimuth_rad_) / step_rad_;
   if (turn < -0.5) turn += columns_;
-  return Pixel{.col = wrapped(static_cast<int>(std::lround(turn))), .row = row};
+  return {.col = wrapped(static_cast<int>(std::lround(turn))),
+          .row = static_cast<int>(std::lround((elevation - elevation_rad_) / step_rad_))};
+}
+
+std::optional<Pixel> Panorama::pixel_of(const Eigen::Vector3d& p_site) const {
+  const Pixel pixel = nearest_pixel(p_site);
+  if (!contains_row(pixel.row)) return std::nullopt;
+  return pixel;
 }
 
 void Panorama::interpolate_gaps() {

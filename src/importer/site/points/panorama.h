@@ -57,6 +57,8 @@ class Panorama {
   Eigen::Vector3d direction(Pixel pixel) const;
   /// Returns the point of a pixel with a return, in site.
   Eigen::Vector3d point(Pixel pixel) const { return origin() + double{range_m(pixel)} * direction(pixel); }
+  /// Returns the pixel of a point in site; its row may be outside the panorama.
+  Pixel nearest_pixel(const Eigen::Vector3d& p_site) const;
   /// Returns the pixel of a point in site; none outside the rows.
   std::optional<Pixel> pixel_of(const Eigen::Vector3d& p_site) const;
   /// Returns the column of `col` on the circle.

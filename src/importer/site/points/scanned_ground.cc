@@ -7,6 +7,9 @@
 #include <optional>
 
 #include "core/error.h"
+#include "importer/site/cell_regions.h"
+#include "importer/site/height_grid.h"
+#include "importer/site/triangle_cells.h"
 
 namespace patrol::importer {
 namespace {
@@ -20,28 +23,6 @@ struct Level {
   }
 };
 
-/// Calls `visit` with each cell whose center is within the patch seen from above, and with the height there.
-template <typename Visit>
-void visit_cells(const Patch& patch, const GridGeometry& grid, Visit visit) {
-  Eigen::AlignedBox2d box;
-  for (std::size_t i = 0; i < patch.num_corners; ++i) box.extend(patch.corners_m[i].head<2>().cast<double>());
-  const Cell low = grid.cell_at(box.min()), high = grid.cell_at(box.max());
-  const Eigen::Vector3d a = patch.corners_m[0].cast<double>();
-  for (std::size_t k = 1; k + 1 < patch.num_corners; ++k) {
-    const Eigen::Vector3d ab = patch.corners_m[k].cast<double>() - a, ac = patch.corners_m[k + 1].cast<double>() - a;
-    const double area = ab.x() * ac.y() - ab.y() * ac.x();
-    if (std::abs(area) < 1e-9) continue;
-    for (int row = std::max(0, low.row); row <= std::min(grid.height - 1, high.row); ++row) {
-      for (int col = std::max(0, low.col); col <= std::min(grid.width - 1, high.col); ++col) {
-        const Eigen::Vector2d p = grid.center_of({col, row}) - a.head<2>();
-        const double u = (p.x() * ac.y() - p.y() * ac.x()) / area, v = (ab.x() * p.y() - ab.y() * p.x()) / area;
-        if (u < 0.0 || v < 0.0 || u + v > 1.0) continue;
-        visit(Cell{col, row}, a.z() + u * ab.z() + v * ac.z());
-      }
-    }
-  }
-}
-
 class GroundFinder {
  public:
   GroundFinder(const GridGeometry& grid, const ScannedGroundSettings& settings)
@@ -52,9 +33,13 @@ class GroundFinder {
       const Eigen::Vector3d normal = patch.area_normal();
       const double up = is_oriented ? normal.z() : std::abs(normal.z());
       if (up < settings_.min_cosine * normal.norm()) continue;
-      visit_cells(patch, grid_, [&](Cell cell, double height_m) {
-        levels_.push_back({index(cell), static_cast<float>(height_m)});
-      });
+      for (std::size_t k = 1; k + 1 < patch.num_corners; ++k) {
+        visit_cell_centers({patch.corners_m[0].cast<double>(), patch.corners_m[k].cast<double>(),
+                            patch.corners_m[k + 1].cast<double>()},
+                           grid_, [&](Cell cell, double height_m) {
+                             levels_.push_back({index(cell), static_cast<float>(height_m)});
+                           });
+      }
     }
     std::sort(levels_.begin(), levels_.end());
     begin_.assign(grid_.size() + 1, 0);
@@ -114,7 +99,7 @@ class GroundFinder {
     for (int round = 0; round < kMaxRounds; ++round) {
       Grid<float> filled = height_m_;
       fill_smoothly(filled, is_known_);
-      const Grid<char> near = near_known();
+      const Grid<char> near = dilated(is_known_, max_gap_cells());
       for (int row = 0; row < grid_.height; ++row) {
         for (int col = 0; col < grid_.width; ++col) {
           if (is_known_.at({col, row}) != 0 || near.at({col, row}) == 0) continue;
@@ -130,7 +115,7 @@ class GroundFinder {
   ScannedGround take() {
     ScannedGround ground{.height_m = height_m_, .origin = Grid<GroundOrigin>(grid_, GroundOrigin::kExtrapolated)};
     fill_smoothly(ground.height_m, is_known_);
-    const Grid<char> near = near_known(), outside = outside_region();
+    const Grid<char> near = dilated(is_known_, max_gap_cells()), outside = outer_cells(is_known_);
     for (int row = 0; row < grid_.height; ++row) {
       for (int col = 0; col < grid_.width; ++col) {
         const Cell cell{col, row};
@@ -145,6 +130,7 @@ class GroundFinder {
   }
 
  private:
+  int max_gap_cells() const { return static_cast<int>(settings_.max_gap_m / grid_.resolution_m); }
   std::uint32_t index(Cell cell) const {
     return static_cast<std::uint32_t>(cell.row) * static_cast<std::uint32_t>(grid_.width) +
            static_cast<std::uint32_t>(cell.col);
@@ -194,61 +180,6 @@ class GroundFinder {
       }
     }
     open_.clear();
-  }
-
-  /// Marks cells within the largest gap of a known one, by a square dilation along rows, then columns.
-  Grid<char> near_known() const {
-    const int reach = static_cast<int>(settings_.max_gap_m / grid_.resolution_m);
-    Grid<char> along_rows(grid_, 0), near(grid_, 0);
-    for (int row = 0; row < grid_.height; ++row) {
-      for (int col = 0, last = -reach - 1; col < grid_.width; ++col) {
-        if (is_known_.at({col, row}) != 0) last = col;
-        if (col - last <= reach) along_rows.at({col, row}) = 1;
-      }
-      for (int col = grid_.width - 1, last = grid_.width + reach; col >= 0; --col) {
-        if (is_known_.at({col, row}) != 0) last = col;
-        if (last - col <= reach) along_rows.at({col, row}) = 1;
-      }
-    }
-    for (int col = 0; col < grid_.width; ++col) {
-      for (int row = 0, last = -reach - 1; row < grid_.height; ++row) {
-        if (along_rows.at({col, row}) != 0) last = row;
-        if (row - last <= reach) near.at({col, row}) = 1;
-      }
-      for (int row = grid_.height - 1, last = grid_.height + reach; row >= 0; --row) {
-        if (along_rows.at({col, row}) != 0) last = row;
-        if (last - row <= reach) near.at({col, row}) = 1;
-      }
-    }
-    return near;
-  }
-
-  /// Marks unknown cells that are connected to the edge of the grid.
-  Grid<char> outside_region() const {
-    Grid<char> outside(grid_, 0);
-    std::vector<Cell> open;
-    const auto visit = [&](Cell cell) {
-      if (!grid_.contains(cell) || is_known_.at(cell) != 0 || outside.at(cell) != 0) return;
-      outside.at(cell) = 1;
-      open.push_back(cell);
-    };
-    for (int col = 0; col < grid_.width; ++col) {
-      visit({col, 0});
-      visit({col, grid_.height - 1});
-    }
-    for (int row = 0; row < grid_.height; ++row) {
-      visit({0, row});
-      visit({grid_.width - 1, row});
-    }
-    while (!open.empty()) {
-      const Cell at = open.back();
-      open.pop_back();
-      visit({at.col + 1, at.row});
-      visit({at.col - 1, at.row});
-      visit({at.col, at.row + 1});
-      visit({at.col, at.row - 1});
-    }
-    return outside;
   }
 
   GridGeometry grid_;
@@ -306,152 +237,6 @@ ScannedGround find_scanned_ground(const std::vector<Patch>& patches, const std::
   if (!finder.has_seeds()) throw InputError(source + ": has no level surface, which the ground must be");
   finder.grow();
   return finder.take();
-}
-
-void fill_smoothly(Grid<float>& values, const Grid<char>& is_known) {
-  const GridGeometry& grid = values.geometry();
-  if (grid.width <= 1 && grid.height <= 1) return;
-  // Means of 2 x 2 cells, recursively, are the values of the unknown cells before smoothing.
-  GridGeometry half = grid;
-  half.resolution_m *= 2.0;
-  half.width = (grid.width + 1) / 2;
-  half.height = (grid.height + 1) / 2;
-  Grid<float> coarse(half, 0.0f);
-  Grid<char> is_coarse_known(half, 0);
-  bool has_unknown = false;
-  for (int row = 0; row < half.height; ++row) {
-    for (int col = 0; col < half.width; ++col) {
-      float sum = 0.0f;
-      int count = 0;
-      for (const Cell cell : {Cell{2 * col, 2 * row}, Cell{2 * col + 1, 2 * row}, Cell{2 * col, 2 * row + 1},
-                              Cell{2 * col + 1, 2 * row + 1}}) {
-        if (!grid.contains(cell)) continue;
-        if (is_known.at(cell) == 0) {
-          has_unknown = true;
-          continue;
-        }
-        sum += values.at(cell);
-        ++count;
-      }
-      if (count == 0) continue;
-      coarse.at({col, row}) = sum / static_cast<float>(count);
-      is_coarse_known.at({col, row}) = 1;
-    }
-  }
-  if (!has_unknown) return;
-  fill_smoothly(coarse, is_coarse_known);
-  std::vector<Cell> unknown;
-  for (int row = 0; row < grid.height; ++row) {
-    for (int col = 0; col < grid.width; ++col) {
-      if (is_known.at({col, row}) != 0) continue;
-      values.at({col, row}) = coarse.at({col / 2, row / 2});
-      unknown.push_back({col, row});
-    }
-  }
-  constexpr int kSweeps = 12;
-  for (int sweep = 0; sweep < kSweeps; ++sweep) {
-    for (const Cell& cell : unknown) {
-      float sum = 0.0f;
-      int count = 0;
-      for (const Cell next : {Cell{cell.col + 1, cell.row}, Cell{cell.col - 1, cell.row}, Cell{cell.col, cell.row + 1},
-                              Cell{cell.col, cell.row - 1}}) {
-        if (!grid.contains(next)) continue;
-        sum += values.at(next);
-        ++count;
-      }
-      values.at(cell) = sum / static_cast<float>(count);
-    }
-  }
-}
-
-namespace {
-
-/// Squares of interpolated cells that are flat within a tolerance.
-class FilledGround {
- public:
-  FilledGround(const ScannedGround& ground, float reflectivity) : ground_(ground), reflectivity_(reflectivity) {}
-
-  std::vector<Patch> make() {
-    const GridGeometry& grid = ground_.height_m.geometry();
-    for (int row = 0; row < grid.height; row += kLargest) {
-      for (int col = 0; col < grid.width; col += kLargest) divide({col, row}, kLargest);
-    }
-    return std::move(patches_);
-  }
-
- private:
-  static constexpr int kLargest = 32;
-
-  /// Height at the corner of cells (col, row): mean of the cells around it.
-  double corner_height_m(int col, int row) const {
-    double sum = 0.0;
-    int count = 0;
-    for (const Cell cell : {Cell{col, row}, Cell{col - 1, row}, Cell{col, row - 1}, Cell{col - 1, row - 1}}) {
-      if (!ground_.height_m.contains(cell)) continue;
-      sum += double{ground_.height_m.at(cell)};
-      ++count;
-    }
-    return sum / std::max(1, count);
-  }
-
-  void divide(Cell begin, int side) {
-    const GridGeometry& grid = ground_.height_m.geometry();
-    bool is_any = false, is_whole = begin.col + side <= grid.width && begin.row + side <= grid.height;
-    for (int row = begin.row; row < std::min(begin.row + side, grid.height); ++row) {
-      for (int col = begin.col; col < std::min(begin.col + side, grid.width); ++col) {
-        const bool is_filled = ground_.origin.at({col, row}) == GroundOrigin::kInterpolated;
-        is_any = is_any || is_filled;
-        is_whole = is_whole && is_filled;
-      }
-    }
-    if (!is_any) return;
-    if (is_whole && (side == 1 || is_flat(begin, side))) {
-      add(begin, side);
-      return;
-    }
-    const int half = side / 2;
-    for (const int dc : {0, half}) {
-      for (const int dr : {0, half}) divide({begin.col + dc, begin.row + dr}, half);
-    }
-  }
-
-  bool is_flat(Cell begin, int side) const {
-    constexpr double kFlat_m = 0.004;
-    const double a = corner_height_m(begin.col, begin.row), b = corner_height_m(begin.col + side, begin.row),
-                 c = corner_height_m(begin.col, begin.row + side),
-                 d = corner_height_m(begin.col + side, begin.row + side);
-    if (std::abs(a + d - b - c) > kFlat_m) return false;
-    for (int row = 0; row <= side; ++row) {
-      for (int col = 0; col <= side; ++col) {
-        const double u = static_cast<double>(col) / side, v = static_cast<double>(row) / side;
-        const double flat = (1 - u) * (1 - v) * a + u * (1 - v) * b + (1 - u) * v * c + u * v * d;
-        if (std::abs(corner_height_m(begin.col + col, begin.row + row) - flat) > kFlat_m) return false;
-      }
-    }
-    return true;
-  }
-
-  void add(Cell begin, int side) {
-    const GridGeometry& grid = ground_.height_m.geometry();
-    Patch patch{.corners_m = {}, .num_corners = 4, .reflectivity = reflectivity_, .is_filled_in = true};
-    const int corners[4][2] = {{0, 0}, {side, 0}, {side, side}, {0, side}};
-    for (std::size_t i = 0; i < 4; ++i) {
-      const int col = begin.col + corners[i][0], row = begin.row + corners[i][1];
-      const Eigen::Vector2d p = grid.origin_m + grid.resolution_m * Eigen::Vector2d(col, row);
-      patch.corners_m[i] = Eigen::Vector3d(p.x(), p.y(), corner_height_m(col, row)).cast<float>();
-    }
-    patches_.push_back(patch);
-  }
-
-  const ScannedGround& ground_;
-  float reflectivity_;
-  std::vector<Patch> patches_;
-};
-
-}  // namespace
-
-std::vector<Patch> filled_ground(const ScannedGround& ground, float reflectivity) {
-  return FilledGround(ground, reflectivity).make();
 }
 
 }  // namespace patrol::importer

@@ -41,10 +41,4 @@ struct ScannedGroundSettings {
 ScannedGround find_scanned_ground(const std::vector<Patch>& patches, const std::vector<Eigen::Vector3d>& scanners_m,
                                   bool is_oriented, const ScannedGroundSettings& settings, const std::string& source);
 
-/// Returns patches of the interpolated cells, filled in, flat within 4 mm.
-std::vector<Patch> filled_ground(const ScannedGround& ground, float reflectivity);
-
-/// Replaces unknown cells by smooth interpolation of the known ones. At least one must be known.
-void fill_smoothly(Grid<float>& values, const Grid<char>& is_known);
-
 }  // namespace patrol::importer

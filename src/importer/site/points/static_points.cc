@@ -12,11 +12,26 @@ constexpr int kMaxRun_px = 64;
 constexpr std::array<std::array<int, 2>, 8> kAround = {
     {{-1, -1}, {-1, 0}, {-1, 1}, {0, -1}, {0, 1}, {1, -1}, {1, 0}, {1, 1}}};
 
+/// Returns whether a beam met two surfaces: its range continues to neither neighbor along a row or a column and is
+/// between theirs.
+bool is_mixed(const Panorama& scan, Pixel pixel) {
+  const auto is_between = [&](Pixel a, Pixel b) {
+    const float low = std::min(scan.range_m(a), scan.range_m(b)), high = std::max(scan.range_m(a), scan.range_m(b));
+    return low > 0.0f && low < scan.range_m(pixel) && scan.range_m(pixel) < high;
+  };
+  if (!scan.is_connected_left(pixel) && !scan.is_connected_right(pixel) &&
+      is_between({scan.wrapped(pixel.col - 1), pixel.row}, {scan.wrapped(pixel.col + 1), pixel.row}))
+    return true;
+  return pixel.row > 0 && pixel.row + 1 < scan.rows() && !scan.is_connected_down(pixel) &&
+         !scan.is_connected_up(pixel) && is_between({pixel.col, pixel.row - 1}, {pixel.col, pixel.row + 1});
+}
+
 void mark_outliers(Panorama& scan) {
   for (int col = 0; col < scan.columns(); ++col) {
     for (int row = 0; row < scan.rows(); ++row) {
       const Pixel pixel{col, row};
       const float range = scan.range_m(pixel);
+      if (range > 0.0f && is_mixed(scan, pixel)) scan.state(pixel) |= kPixelOutlier;
       if (range <= 0.0f || scan.is_connected_right(pixel) || scan.is_connected_left(pixel) ||
           scan.is_connected_up(pixel) || scan.is_connected_down(pixel))
         continue;
@@ -78,8 +93,9 @@ enum class Evidence : std::uint8_t { kNone, kFree, kObserved, kCovered };
 
 struct SeenPoint {
   Eigen::Vector3d position, normal;
-  double spacing_m;  ///< distance between the beams of its own scan on the surface
-  double width_m;    ///< smaller extent of its surface
+  double spacing_m;    ///< distance between the beams of its own scan on the surface
+  double width_m;      ///< smaller extent of its surface
+  double footprint_m;  ///< distance between the beams of its own scan across them
 };
 
 /// Mean distance between beams on a surface: the geometric mean along both directions.
@@ -99,6 +115,7 @@ Evidence evidence_of(const Panorama& other, const SeenPoint& seen) {
   double nearest_m = 1e9, nearest_point_m = 1e9;
   int num_empty = 0;
   bool is_observed = false;
+  Pixel nearest = *center;
   for (int dc = -1; dc <= 1; ++dc) {
     for (int dr = -1; dr <= 1; ++dr) {
       const Pixel pixel{other.wrapped(center->col + dc), center->row + dr};
@@ -110,8 +127,11 @@ Evidence evidence_of(const Panorama& other, const SeenPoint& seen) {
       nearest_m = std::min(nearest_m, range_m);
       if (std::abs(range_m - distance_m) > tolerance_m) continue;
       is_observed = true;
-      if (other.is_usable(pixel))
-        nearest_point_m = std::min(nearest_point_m, (other.point(pixel) - seen.position).norm());
+      if (!other.is_usable(pixel)) continue;
+      const double off_m = (other.point(pixel) - seen.position).norm();
+      if (off_m >= nearest_point_m) continue;
+      nearest_point_m = off_m;
+      nearest = pixel;
     }
   }
   const double center_m = double{other.range_m(*center)};
@@ -130,11 +150,17 @@ Evidence evidence_of(const Panorama& other, const SeenPoint& seen) {
     }
   }
   // A surface that is not flat, such as a thin post: near a point of the other scan with beams much closer together.
-  if (nearest_point_m < std::max(0.03, 0.7 * seen.spacing_m) && 1.5 * footprint_m < seen.spacing_m)
-    return Evidence::kCovered;
+  if (nearest_point_m < std::max(0.03, 0.7 * seen.spacing_m)) {
+    constexpr double kThin_m = 0.3, kAlike = 0.3;
+    const bool is_thin = seen.width_m < kThin_m;
+    if (is_thin ? 1.5 * footprint_m < seen.spacing_m
+                : 1.05 * footprint_m < seen.footprint_m && other.normal(nearest).dot(seen.normal) > kAlike)
+      return Evidence::kCovered;
+  }
   if (is_observed) return Evidence::kObserved;
-  // At least one of three neighboring beams would meet the surface.
-  if (1.15 * footprint_m > seen.width_m) return Evidence::kNone;
+  // At least one of three neighboring beams would meet the surface. Beams along it pass at one of its sides.
+  constexpr double kMinCosine = 0.1;
+  if (1.15 * footprint_m > seen.width_m || cosine < kMinCosine) return Evidence::kNone;
   constexpr double kMinReturnCosine = 0.35, kMaxReturnRange_m = 45.0;
   const bool would_return = cosine > kMinReturnCosine && distance_m < kMaxReturnRange_m && distance_m > 1.0;
   if (num_empty == 9) return would_return ? Evidence::kFree : Evidence::kNone;
@@ -156,7 +182,8 @@ void compare(std::vector<Panorama>& scans, std::size_t i) {
       const SeenPoint seen{.position = scan.point(pixel),
                            .normal = normal,
                            .spacing_m = spacing_on_surface_m(double{scan.range_m(pixel)}, scan.step_rad(), cosine),
-                           .width_m = runs.width_m(scan, pixel)};
+                           .width_m = runs.width_m(scan, pixel),
+                           .footprint_m = scan.step_rad() * double{scan.range_m(pixel)}};
       bool is_free = false, is_observed = false, is_covered = false;
       for (std::size_t k = 0; k < scans.size() && !(is_covered && is_observed); ++k) {
         if (k == i) continue;
@@ -253,9 +280,12 @@ void grow_moving(Panorama& scan) {
 
 }  // namespace
 
-StaticPointCounts find_static_points(std::vector<Panorama>& scans) {
+StaticPointCounts find_static_points(std::vector<Panorama>& scans, const std::function<void(std::size_t)>& on_scan) {
   for (Panorama& scan : scans) mark_outliers(scan);
-  for (std::size_t i = 0; i < scans.size(); ++i) compare(scans, i);
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    on_scan(i);
+    compare(scans, i);
+  }
   StaticPointCounts counts;
   for (Panorama& scan : scans) {
     erode_moving(scan);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "importer/site/points/panorama.h"
@@ -21,6 +22,7 @@ struct StaticPointCounts {
 ///   closer together than the surface is wide, so that thin posts stay. Neighbors within 0.5 m that no scan observes
 ///   follow. An object that at least two scans observe at one position stays.
 /// - Covered: another scan measured the surface with beams that are closer together on it.
-StaticPointCounts find_static_points(std::vector<Panorama>& scans);
+/// `on_scan` is called before each scan is compared with the others, with its index.
+StaticPointCounts find_static_points(std::vector<Panorama>& scans, const std::function<void(std::size_t)>& on_scan);
 
 }  // namespace patrol::importer
