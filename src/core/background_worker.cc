@@ -1,5 +1,6 @@
 #include "core/background_worker.h"
 
+#include <chrono>
 #include <utility>
 
 namespace patrol {
@@ -39,6 +40,11 @@ void BackgroundWorker::wait(Ticket ticket) {
   if (failure_) std::rethrow_exception(failure_);
 }
 
+double BackgroundWorker::busy_s() const {
+  const std::lock_guard lock(mutex_);
+  return busy_s_;
+}
+
 void BackgroundWorker::execute_tasks() {
   std::unique_lock lock(mutex_);
   while (true) {
@@ -49,12 +55,15 @@ void BackgroundWorker::execute_tasks() {
     if (!failure_) {
       lock.unlock();
       std::exception_ptr failure;
+      const auto start = std::chrono::steady_clock::now();
       try {
         task();
       } catch (...) {
         failure = std::current_exception();
       }
+      const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
       lock.lock();
+      busy_s_ += seconds;
       failure_ = failure;
     }
     ++num_done_;

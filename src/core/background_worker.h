@@ -32,14 +32,18 @@ class BackgroundWorker {
   /// Executes a task and waits for it.
   void run(std::function<void()> task) { wait(submit(std::move(task))); }
 
+  /// Returns the wall time that the thread has spent on tasks.
+  double busy_s() const;
+
  private:
   void execute_tasks();
 
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::condition_variable has_task_, has_done_;
   std::deque<std::function<void()>> tasks_;
   Ticket num_submitted_ = 0, num_done_ = 0;
   bool is_ending_ = false;
+  double busy_s_ = 0.0;
   std::exception_ptr failure_;
   std::thread thread_;
 };

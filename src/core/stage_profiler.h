@@ -1,12 +1,13 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <map>
 #include <string>
 
 namespace patrol {
 
-/// Profiler of wall-clock time by stage ("physics", "lidar", "slam", ...). The results go to `performance` in
+/// Profiler of wall-clock time and calls by stage ("physics", "lidar", "slam", ...). The results go to `performance` in
 /// metrics.json only: no decision may depend on them.
 class StageProfiler {
  public:
@@ -23,11 +24,16 @@ class StageProfiler {
     std::chrono::steady_clock::time_point start_;
   };
 
-  [[nodiscard]] ScopedTimer time_stage(const std::string& part) { return ScopedTimer(seconds_[part]); }
+  [[nodiscard]] ScopedTimer time_stage(const std::string& part) {
+    ++calls_[part];
+    return ScopedTimer(seconds_[part]);
+  }
   const std::map<std::string, double>& seconds() const { return seconds_; }
+  const std::map<std::string, std::uint64_t>& calls() const { return calls_; }
 
  private:
   std::map<std::string, double> seconds_;
+  std::map<std::string, std::uint64_t> calls_;
 };
 
 }  // namespace patrol

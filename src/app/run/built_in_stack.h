@@ -21,6 +21,7 @@ class BuiltInStack final : public StackPort {
   void serialize_state(StateArchive& archive) override { stack_.serialize_state(archive); }
   bool records_turns() const override { return compute_.model != "free"; }
   std::map<std::string, double> seconds_by_stage() const override { return stack_.clock().seconds(); }
+  std::map<std::string, std::uint64_t> calls_by_stage() const override { return stack_.clock().calls(); }
 
   static constexpr Time kTurnPeriod = std::chrono::milliseconds(10);
 

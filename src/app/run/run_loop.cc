@@ -307,14 +307,19 @@ class ClosedLoop {
     outcome_.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_start_).count();
     outcome_.cpu_s = cpu_seconds() - cpu_start_;
     outcome_.seconds_by_stage = stack_.seconds_by_stage();
+    outcome_.calls_by_stage = stack_.calls_by_stage();
     for (const StageProfiler* part : {&simulator_.clock(), &std::as_const(profiler_)}) {
       for (const auto& [name, seconds] : part->seconds()) outcome_.seconds_by_stage[name] += seconds;
+      for (const auto& [name, calls] : part->calls()) outcome_.calls_by_stage[name] += calls;
     }
     // Expensive sensors are stages of their own.
     for (const auto& [name, seconds] : simulator_.sensors().clock().seconds()) {
       outcome_.seconds_by_stage[name] += seconds;
       outcome_.seconds_by_stage["sensors"] -= seconds;
     }
+    for (const auto& [name, calls] : simulator_.sensors().clock().calls()) outcome_.calls_by_stage[name] += calls;
+    if (const double thread_s = simulator_.sensors().thread_s(); thread_s > 0.0)
+      outcome_.seconds_by_stage["sensor_thread"] = thread_s;
   }
 
   const std::chrono::steady_clock::time_point wall_start_ = std::chrono::steady_clock::now();

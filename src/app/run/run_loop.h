@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -26,7 +27,8 @@ struct RunOutcome {
   Time start{};               ///< instant from which this process ran it; zero unless it is a branch
   double wall_s = 0.0;
   double cpu_s = 0.0;
-  std::map<std::string, double> seconds_by_stage;  ///< wall time by stage
+  std::map<std::string, double> seconds_by_stage;       ///< wall time by stage
+  std::map<std::string, std::uint64_t> calls_by_stage;  ///< number of calls by stage
   std::vector<sim::FaultStatus> faults;
   std::size_t num_kidnaps = 0;  ///< number of declared kidnaps, in order, that were triggered
 };

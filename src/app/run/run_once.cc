@@ -35,6 +35,7 @@ io::Metrics performance_of(const RunOutcome& outcome) {
   performance["cpu_s"] = outcome.cpu_s;
   performance["peak_memory_mb"] = peak_memory_mb();
   for (const auto& [part, seconds] : outcome.seconds_by_stage) performance["parts_s"][part] = seconds;
+  for (const auto& [part, calls] : outcome.calls_by_stage) performance["parts_calls"][part] = calls;
   return performance;
 }
 

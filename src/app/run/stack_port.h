@@ -54,6 +54,8 @@ class StackPort {
   virtual void serialize_state(StateArchive& archive);
   /// Returns the wall time by stage.
   virtual std::map<std::string, double> seconds_by_stage() const = 0;
+  /// Returns the number of calls by stage; empty for software in another process.
+  virtual std::map<std::string, std::uint64_t> calls_by_stage() const { return {}; }
 };
 
 }  // namespace patrol::app

@@ -62,6 +62,8 @@ class SensorSuite {
   const std::vector<FaultStatus>& faults() const { return faults_.reports(); }
   /// Returns the computing time of the sensors that report it separately: "lidar", "depth_camera", "scanner".
   const StageProfiler& clock() const { return clock_; }
+  /// Returns the computing time of the thread for expensive sensors.
+  double thread_s() const { return worker_.busy_s(); }
 
   template <typename Archive>
   void serialize_state(Archive& archive) {
