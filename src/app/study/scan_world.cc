@@ -11,7 +11,7 @@
 #include "app/scenario/scenario.h"
 #include "core/geometry/angles.h"
 #include "core/random.h"
-#include "importer/site/height_grid.h"
+#include "importer/grid/height_grid.h"
 #include "sim/sensors/panoramic_scanner.h"
 #include "sim/sensors/surface_optics.h"
 #include "sim/static_obstacles.h"

@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "importer/site/height_grid.h"
-#include "importer/site/triangle_cells.h"
+#include "importer/grid/height_grid.h"
+#include "importer/grid/triangle_cells.h"
 
 namespace patrol::importer {
 namespace {

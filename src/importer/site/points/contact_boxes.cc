@@ -5,7 +5,7 @@
 #include <cmath>
 #include <unordered_map>
 
-#include "importer/site/cell_regions.h"
+#include "importer/grid/cell_regions.h"
 
 namespace patrol::importer {
 namespace {

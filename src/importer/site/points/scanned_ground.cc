@@ -7,9 +7,9 @@
 #include <optional>
 
 #include "core/error.h"
-#include "importer/site/cell_regions.h"
-#include "importer/site/height_grid.h"
-#include "importer/site/triangle_cells.h"
+#include "importer/grid/cell_regions.h"
+#include "importer/grid/height_grid.h"
+#include "importer/grid/triangle_cells.h"
 
 namespace patrol::importer {
 namespace {

@@ -1,4 +1,4 @@
-#include "importer/site/height_grid.h"
+#include "importer/grid/height_grid.h"
 
 #include <algorithm>
 #include <vector>

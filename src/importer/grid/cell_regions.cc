@@ -1,4 +1,4 @@
-#include "importer/site/cell_regions.h"
+#include "importer/grid/cell_regions.h"
 
 #include <vector>
 

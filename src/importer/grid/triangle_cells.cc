@@ -1,4 +1,4 @@
-#include "importer/site/triangle_cells.h"
+#include "importer/grid/triangle_cells.h"
 
 namespace patrol::importer {
 
