@@ -28,6 +28,7 @@ class RecordingMission final : public Mission {
   }
   TaskTiming timing() const override { return timing_; }
   bool starts_at_survey() const override { return true; }
+  void serialize_state(StateArchive&) override {}
 
  private:
   TaskTiming timing_;

@@ -22,6 +22,7 @@ class CountingInstrument final : public Instrument {
     return {.feedback = InspectionFeedback::kDone};
   }
   void end() override { log_.push_back("end"); }
+  void serialize_state(StateArchive&) override {}
 
  private:
   std::vector<std::string>& log_;
