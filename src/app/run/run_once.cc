@@ -44,8 +44,7 @@ struct RunSystem {
   RunSystem(const Scenario& scenario, StackContext context)
       : RunSystem(scenario, load_scenario_files(scenario, context.data_root), std::move(context)) {}
   RunSystem(const Scenario& scenario, ScenarioFiles scenario_files, StackContext context, int num_threads = 1)
-      : files(std::move(scenario_files)),
-        simulator(make_simulator(scenario, files, num_threads > 1)) {
+      : files(std::move(scenario_files)), simulator(make_simulator(scenario, files, num_threads > 1)) {
     context.tick = simulator.tick();
     stack = make_stack_port(scenario, files, std::move(context));
   }

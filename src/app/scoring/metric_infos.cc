@@ -238,8 +238,9 @@ constexpr Row kPerformance[] = {
     {"wall_s", "wall time of the simulation"},
     {"cpu_s", "processor time of the simulation, over all threads"},
     {"peak_memory_mb", "maximum memory of the process"},
-    {"parts_s.*", "wall time of one part of the simulation or of the stack; sensor_thread is the time of the thread of lidars and "
-                  "depth camera"},
+    {"parts_s.*",
+     "wall time of one part of the simulation or of the stack; sensor_thread is the time of the thread of lidars and "
+     "depth camera"},
     {"parts_calls.*", "number of calls of the part"},
 };
 

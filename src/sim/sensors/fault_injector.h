@@ -46,8 +46,8 @@ class FaultInjector {
   bool change(FaultStatus& report, Time ready, Time& due, SensorMessage& message);
 
   std::vector<FaultStatus> reports_;
-  /// [type of the message], last message before a freeze; kept without faults as well, so that a branch may begin one; a panoramic scan, which is
-  /// large, only with a fault of the scanner
+  /// [type of the message], last message before a freeze; kept without faults as well, so that a branch may begin one;
+  /// a panoramic scan, which is large, only with a fault of the scanner
   std::array<std::optional<SensorMessage>, std::variant_size_v<SensorMessage>> last_good_;
   RandomStream outliers_, jitter_;
   std::uint64_t outlier_count_ = 0, jitter_count_ = 0;
