@@ -54,6 +54,12 @@ struct RunSystem {
   std::unique_ptr<StackPort> stack;
 };
 
+/// Throws InputError if the stack is in another process.
+void refuse_other_process(const Scenario& scenario) {
+  if (!scenario.stack.command.empty())
+    throw InputError("--snapshot-every, --from: the state of a stack in another process cannot be saved");
+}
+
 /// Throws InputError if the state of a stack cannot be saved.
 void check_state(StackPort& stack) {
   StateArchive trial;
@@ -148,6 +154,7 @@ void trace_run(const std::filesystem::path& root, Time from, Time to,
   const RunDirectory directory = open_run_directory(root);
   const std::filesystem::path data_root = find_data_root(directory.scenario());
   const Scenario scenario = load_scenario(directory.scenario());
+  refuse_other_process(scenario);
   const TemporaryFolder folder("trace");
   NullObserver observer;
   RunSystem run(scenario, {.scenario = "trace",
@@ -177,6 +184,7 @@ std::optional<RunVerdict> run_once(const Scenario& scenario, const ScenarioFiles
                        .data_root = data_root,
                        .output = RunDirectory{root}.stack_output(),
                        .is_interrupted = [&] { return observer.is_interrupted(); }};
+  if (mode.has_snapshots() || mode.branch) refuse_other_process(scenario);
   RunSystem run(scenario, files, context, mode.num_threads);  // these throw InputError before anything is written
   if (mode.has_snapshots() || mode.branch) check_state(*run.stack);
   context.tick = run.simulator.tick();

@@ -30,6 +30,14 @@ std::string read_bytes(const std::filesystem::path& file) {
   return std::move(text).str();
 }
 
+/// Name of the snapshot of an instant: its seconds, exact to the nanosecond.
+std::string name_of(Time time) {
+  std::string seconds = fmt::format("{}.{:09}", time.count() / 1'000'000'000, time.count() % 1'000'000'000);
+  seconds.erase(seconds.find_last_not_of('0') + 1);
+  if (seconds.ends_with('.')) seconds.pop_back();
+  return seconds + kExtension;
+}
+
 /// Time by the name of a snapshot, none for other files.
 std::optional<Time> time_of(const std::filesystem::path& file) {
   if (file.extension() != kExtension) return std::nullopt;
@@ -93,7 +101,7 @@ SnapshotFolder::SnapshotFolder(std::filesystem::path folder, std::string content
 
 void SnapshotFolder::save(const RunState& state) const {
   std::filesystem::create_directories(folder_);
-  const std::filesystem::path file = folder_ / fmt::format("{}{}", to_seconds(state.time), kExtension);
+  const std::filesystem::path file = folder_ / name_of(state.time);
   const std::filesystem::path part = file.string() + ".part";
   const nlohmann::ordered_json header = {
       {"name", name_}, {"content", content_}, {"time_ns", state.time.count()}, {"size", state.bytes.size()}};

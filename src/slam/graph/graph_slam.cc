@@ -273,6 +273,15 @@ std::shared_ptr<const RenderedSubmap> GraphSlam::rendered(int submap) {
   });
 }
 
+std::shared_ptr<const RenderedSubmap> GraphSlam::render_again(int submap,
+                                                              const std::vector<Pose2>& T_map_submap_node) const {
+  const int first = submaps_.at(static_cast<std::size_t>(submap)).first;
+  std::vector<Pose2> T_map_node(keyframes_.size());
+  std::ranges::copy(T_map_submap_node, T_map_node.begin() + first);
+  const Submap then{.first = first, .last = first + static_cast<int>(T_map_submap_node.size()) - 1};
+  return std::make_shared<const RenderedSubmap>(then, keyframes_, T_map_node, rendering_);
+}
+
 std::vector<std::size_t> GraphSlam::node_scan_indices() const {
   std::vector<std::size_t> scans;
   for (std::size_t i = 0; i < path_.size(); ++i) {

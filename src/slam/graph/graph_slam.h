@@ -79,8 +79,11 @@ class GraphSlam {
   template <typename Archive>
   void serialize_state(Archive& archive) {
     archive(tracker_, keyframes_, path_, submaps_, finished_submaps_, first_keyframe_, first_submap_, is_located_,
-            earlier_map_, located_, last_located_keyframe_, graph_, cache_, loops_, loop_closure_statistics_,
-            incremental_map_, is_finished_, now_, stamp_, new_ranges_, new_positions_, survey_, smoothed_until_);
+            earlier_map_, located_, last_located_keyframe_, graph_, loops_, loop_closure_statistics_, is_finished_,
+            now_, stamp_, new_ranges_, new_positions_, survey_, smoothed_until_);
+    incremental_map_.serialize_state(archive, keyframes_);
+    cache_.serialize_state(
+        archive, [this](int submap, const std::vector<Pose2>& T_map_node) { return render_again(submap, T_map_node); });
   }
 
  private:
@@ -115,6 +118,8 @@ class GraphSlam {
   Eigen::Matrix3d limited_by_survey(const Eigen::Matrix3d& covariance, int target, int source) const;
   Eigen::Matrix3d odometry_drift_covariance(int submap) const;
   std::shared_ptr<const RenderedSubmap> rendered(int submap);
+  /// Renders a submap at the poses of its keyframes at another time.
+  std::shared_ptr<const RenderedSubmap> render_again(int submap, const std::vector<Pose2>& T_map_submap_node) const;
   std::vector<int> submaps_near(int source, const std::vector<PoseGaussian>& around) const;
   std::vector<std::vector<int>> keyframes_around_submaps() const;
   void locate(int source);

@@ -31,4 +31,10 @@ const GridMap& IncrementalMap::render(const std::vector<Keyframe>& keyframes, co
   return map_;
 }
 
+void IncrementalMap::integrate_again(const std::vector<Keyframe>& keyframes) {
+  map_ = GridMap(rendering_.resolution_m, rendering_.max_extent_m);
+  for (std::size_t k = 0; k < T_map_integrated_.size(); ++k)
+    keyframes.at(k).scans.integrate(T_map_integrated_[k], rendering_.integration, map_);
+}
+
 }  // namespace patrol::slam

@@ -19,12 +19,16 @@ class IncrementalMap {
   const GridMap& render(const std::vector<Keyframe>& keyframes, const std::vector<Pose2>& T_map_node,
                         double max_displacement_m);
 
+  /// Saves the poses at which the keyframes were integrated, or integrates them again.
   template <typename Archive>
-  void serialize_state(Archive& archive) {
-    archive(map_, T_map_integrated_);
+  void serialize_state(Archive& archive, const std::vector<Keyframe>& keyframes) {
+    archive(T_map_integrated_);
+    if (archive.is_loading()) integrate_again(keyframes);
   }
 
  private:
+  void integrate_again(const std::vector<Keyframe>& keyframes);
+
   MapRenderingSettings rendering_;
   GridMap map_;
   std::vector<Pose2> T_map_integrated_;  ///< [keyframe], pose at integration

@@ -31,6 +31,7 @@ RenderedSubmap::RenderedSubmap(const Submap& submap, const std::vector<Keyframe>
                                const std::vector<Pose2>& T_map_node, const MapRenderingSettings& rendering)
     : map_(render_submap(submap, keyframes, T_map_node, rendering)),
       surface_points_(surface_points_of(map_)),
-      pyramid_(map_, kPyramidCell_m, kSubmapPyramidLevels) {}
+      pyramid_(map_, kPyramidCell_m, kSubmapPyramidLevels),
+      T_map_node_(T_map_node.begin() + submap.first, T_map_node.begin() + submap.last + 1) {}
 
 }  // namespace patrol::slam

@@ -44,16 +44,19 @@ class RenderedSubmap {
   const std::vector<MatchPoint>& surface_points() const { return surface_points_; }
   double point_spacing_m() const { return 2.0 * map_.resolution_m(); }
   const LikelihoodPyramid& pyramid() const { return pyramid_; }
+  /// Poses at which the keyframes of the submap were rendered.
+  const std::vector<Pose2>& T_map_node() const { return T_map_node_; }
 
   template <typename Archive>
   void serialize_state(Archive& archive) {
-    archive(map_, surface_points_, pyramid_);
+    archive(map_, surface_points_, pyramid_, T_map_node_);
   }
 
  private:
   GridMap map_;
   std::vector<MatchPoint> surface_points_;
   LikelihoodPyramid pyramid_;
+  std::vector<Pose2> T_map_node_;
 };
 
 /// Cache of the most recently used rendered submaps.
@@ -65,15 +68,23 @@ class SubmapCache {
   std::shared_ptr<const RenderedSubmap> get(int submap, Render&& render);
   void clear() { entries_.clear(); }
 
-  template <typename Archive>
-  void serialize_state(Archive& archive) {
-    archive(entries_);
+  /// Saves the poses at which the submaps were rendered, or renders them again: `render(submap, poses)`.
+  template <typename Archive, typename Render>
+  void serialize_state(Archive& archive, Render&& render) {
+    const std::size_t size = archive.size_of(entries_.size());
+    if (archive.is_loading()) entries_.assign(size, {});
+    for (Entry& entry : entries_) {
+      std::vector<Pose2> T_map_node;
+      if (!archive.is_loading()) T_map_node = entry.rendered->T_map_node();
+      archive(entry.submap, T_map_node);
+      if (archive.is_loading()) entry.rendered = render(entry.submap, T_map_node);
+    }
   }
 
  private:
   struct Entry {
-    int submap;
-    std::shared_ptr<const RenderedSubmap> rendered;
+    int submap = 0;
+    std::shared_ptr<const RenderedSubmap> rendered = nullptr;
   };
   std::size_t capacity_;
   std::vector<Entry> entries_;  ///< in order of use, the newest last

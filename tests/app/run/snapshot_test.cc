@@ -102,11 +102,13 @@ TEST(Snapshots, TheNewestUpToTheInstantIsTaken) {
   const TemporaryFolder folder("snapshots");
   const SnapshotFolder snapshots(folder.path() / "s", "content", "name");
   EXPECT_FALSE(load_snapshot(folder.path() / "s", from_seconds(100), "content"));
-  for (const double at_s : {2.0, 10.0, 63.2})
+  for (const double at_s : {2.0, 10.0, 60.0, 63.2})
     snapshots.save({.time = from_seconds(at_s), .bytes = std::string(1000, 'a') + std::to_string(at_s)});
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "s" / "63.2.snap"));
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "s" / "10.snap"));
   EXPECT_FALSE(load_snapshot(folder.path() / "s", from_seconds(1.999), "content"));
   EXPECT_EQ(load_snapshot(folder.path() / "s", from_seconds(2.0), "content")->time, from_seconds(2.0));
-  EXPECT_EQ(load_snapshot(folder.path() / "s", from_seconds(63.1), "content")->time, from_seconds(10.0));
+  EXPECT_EQ(load_snapshot(folder.path() / "s", from_seconds(63.1), "content")->time, from_seconds(60.0));
   const auto newest = load_snapshot(folder.path() / "s", Time::max(), "content");
   EXPECT_EQ(newest->time, from_seconds(63.2));
   EXPECT_THAT(newest->bytes, testing::EndsWith("63.200000"));
