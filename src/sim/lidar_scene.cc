@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 
 #include <Eigen/Geometry>
 #include <embree3/rtcore.h>
@@ -192,13 +193,13 @@ struct LidarScene::Impl {
   }
 
   void update_poses(const mjData& data) {
-    if (poses.use_count() > 1) poses = std::make_shared<Poses>(*poses);
     for (std::size_t i = 0; i < parts.size(); ++i) {
       const MovingPart& part = parts[i];
-      BodyPose& pose = poses->parts[i];
       const Eigen::Map<const Eigen::Vector3d> position(data.xpos + 3 * part.body);
       const Eigen::Map<const Matrix3> rotation(data.xmat + 9 * part.body);
-      if (pose.position == position && pose.rotation == rotation) continue;
+      if (poses->parts[i].position == position && poses->parts[i].rotation == rotation) continue;
+      if (std::exchange(are_given_out, false)) poses = std::make_shared<Poses>(*poses);
+      BodyPose& pose = poses->parts[i];
       pose = {position, rotation};
       poses->boxes.set(i, pose.position + pose.rotation * part.box.center(),
                        pose.rotation.cwiseAbs() * part.box.sizes() / 2.0);
@@ -251,7 +252,8 @@ struct LidarScene::Impl {
   RTCDevice device;
   std::unique_ptr<EmbreeScene> static_scene;
   std::vector<MovingPart> parts;
-  std::shared_ptr<Poses> poses;  ///< present poses; copied before a change if others have them
+  std::shared_ptr<Poses> poses;  ///< present poses
+  bool are_given_out = false;    ///< others may read `poses` in another thread: they are copied before a change
 };
 
 LidarScene::LidarScene(const mjModel& view) : impl_(std::make_unique<Impl>(view)) {}
@@ -266,7 +268,10 @@ std::optional<RayHit> LidarScene::cast(const Eigen::Vector3d& origin, const Eige
   return impl_->cast(*impl_->poses, origin, direction, max_range_m, mask);
 }
 
-std::shared_ptr<const LidarScene::Poses> LidarScene::poses() const { return impl_->poses; }
+std::shared_ptr<const LidarScene::Poses> LidarScene::poses() const {
+  impl_->are_given_out = true;
+  return impl_->poses;
+}
 
 std::optional<RayHit> LidarScene::cast(const Poses& poses, const Eigen::Vector3d& origin,
                                        const Eigen::Vector3d& direction, double max_range_m, std::uint32_t mask) const {
