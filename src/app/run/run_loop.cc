@@ -178,7 +178,7 @@ class ClosedLoop {
   void trace() {
     if (!part_.trace || simulator_.now() < part_.trace_from) return;
     const auto hash_of = [](auto& part) {
-      StateArchive archive;
+      StateArchive archive = StateArchive::for_comparison();
       archive(part);
       return hash_bytes(archive.bytes());
     };

@@ -75,7 +75,16 @@ class StateArchive {
   /// Creates an archive that restores from `bytes`.
   explicit StateArchive(std::string bytes) : bytes_(std::move(bytes)), is_loading_(true) {}
 
+  /// Creates an archive that saves for a comparison with another state. Bytes that no result depends on may be left
+  /// out.
+  static StateArchive for_comparison() {
+    StateArchive archive;
+    archive.is_comparing_ = true;
+    return archive;
+  }
+
   bool is_loading() const { return is_loading_; }
+  bool is_comparing() const { return is_comparing_; }
   const std::string& bytes() const { return bytes_; }
   /// Returns whether everything has been restored.
   bool is_at_end() const { return position_ == bytes_.size(); }
@@ -347,6 +356,7 @@ class StateArchive {
   std::string bytes_;
   std::size_t position_ = 0;
   bool is_loading_ = false;
+  bool is_comparing_ = false;
   std::map<const void*, std::size_t> saved_;   ///< number of each shared object, from 1
   std::vector<std::shared_ptr<void>> loaded_;  ///< [number - 1]
 };

@@ -26,6 +26,19 @@ void serialize_arena_pointer(T*& pointer, std::byte* arena, StateArchive& archiv
   pointer = offset == kNull ? nullptr : reinterpret_cast<T*>(arena + offset);
 }
 
+/// Saves or restores contacts, constraints and solver. MuJoCo computes them from the other fields, and leaves parts of
+/// their memory uninitialized that it does not read.
+void serialize_arena(mjData& data, StateArchive& archive) {
+  auto* arena = static_cast<std::byte*>(data.arena);
+  archive.raw(arena, data.parena);
+#define X(type, name, rows, columns) serialize_arena_pointer(data.name, arena, archive);
+#undef XNV
+#define XNV X
+  MJDATA_ARENA_POINTERS
+#undef XNV
+#undef X
+}
+
 }  // namespace
 
 void serialize_state(const mjModel& model, mjData& data, StateArchive& archive) {
@@ -46,14 +59,7 @@ void serialize_state(const mjModel& model, mjData& data, StateArchive& archive) 
   archive.raw(data.warning, std::size(data.warning));
   archive.raw(data.energy, std::size(data.energy));
 
-  auto* arena = static_cast<std::byte*>(data.arena);
-  archive.raw(arena, data.parena);
-#define X(type, name, rows, columns) serialize_arena_pointer(data.name, arena, archive);
-#undef XNV
-#define XNV X
-  MJDATA_ARENA_POINTERS
-#undef XNV
-#undef X
+  if (!archive.is_comparing()) serialize_arena(data, archive);
 }
 
 void serialize_state(mjModel& physics, StateArchive& archive) {

@@ -86,7 +86,7 @@ TEST(BranchSettings, WhatShapesTheStateIsRefusedByNameAndWhatIsReadLaterIsNot) {
   EXPECT_NO_THROW(check({"time_limit_s=5", "leaks=[]", "wind.speed_mps=3"}, 10.0));
   EXPECT_NO_THROW(check({"faults=[{sensor: imu, start_s: 10.1}]", "kidnaps=[{at_s: 10}]"}, 10.0));
   for (const char* setting :
-       {"seed=2", "sensors.lidar.rate_hz=5", "stack.slam.method=rbpf", "as_built.enabled=true", "start.yaw_deg=1"}) {
+       {"seed=2", "sensors.lidar.rate_hz=5", "stack.slam.method=rbpf", "as_built.enabled=false", "start.yaw_deg=1"}) {
     const std::string path = std::string(setting).substr(0, std::string(setting).find('='));
     EXPECT_THAT([&] { check({setting}, 10.0); }, ThrowsMessage<InputError>(HasSubstr("--set " + path + ": cannot")));
   }
