@@ -207,7 +207,7 @@ class BadInput(unittest.TestCase):
         self.refuse("replay", "absent", "--still=1", "--out", "still.jpg", says=["--out still.jpg: must end with .png"])
 
     def test_unknown_command(self):
-        self.refuse("fly", says=["unknown command 'fly' (known: run, score, "])
+        self.refuse("fly", says=["unknown command 'fly' (known: run, trace, bisect, score, "])
 
     def test_former_names_of_commands_and_options_name_the_present_ones(self):
         self.refuse("send", "absent", "--to", "http://localhost:1", says=["patrol: send: renamed to upload"])

@@ -397,7 +397,7 @@ std::string run_until(Time end, const Scenario& scenario, sim::Simulator& simula
   std::string state = loop.run_until(end);
   if (state.empty() && !part.trace && loop.outcome().end != RunEnd::kInterrupted) {
     throw InputError(
-        fmt::format("--from: the run ends at {} s, before {} s", to_seconds(simulator.now()), to_seconds(end)));
+        fmt::format("--from: the run ends at {:.3f} s, before {:.3f} s", to_seconds(simulator.now()), to_seconds(end)));
   }
   return state;
 }

@@ -81,11 +81,11 @@ class Branch {
     is_changed_ = to_yaml(scenario_) != to_yaml(scenario);
     const std::optional<Time> end = io::McapReader(parent_.log()).last_time();
     if (!end || origin_.at > *end)
-      throw InputError(fmt::format("{}: the run ends before {} s", origin_.run.string(), to_seconds(origin_.at)));
+      throw InputError(fmt::format("{}: the run ends before {:.3f} s", origin_.run.string(), to_seconds(origin_.at)));
     snapshot_ = load_snapshot(parent_.snapshots(), origin_.at, content_hash(scenario_, context_.data_root));
     if (!snapshot_ && std::filesystem::exists(parent_.branch())) {
       throw InputError(
-          fmt::format("{}: is a branch without a snapshot at or before {} s: repeat it with "
+          fmt::format("{}: is a branch without a snapshot at or before {:.3f} s: repeat it with "
                       "--snapshot-every",
                       origin_.run.string(), to_seconds(origin_.at)));
     }

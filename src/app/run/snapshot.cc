@@ -172,7 +172,7 @@ void check_branch_settings(const Scenario& parent, const Scenario& branch, Time 
     return fault.sensor == SensorTraits<PanoramicScan>::kInfo.name && fault.kind == "freeze";
   };
   if (to_yaml(past_events(parent, at)) != to_yaml(past_events(branch, at)))
-    throw InputError(fmt::format("--from: faults and kidnaps up to {} s cannot change", to_seconds(at)));
+    throw InputError(fmt::format("--from: faults and kidnaps up to {:.3f} s cannot change", to_seconds(at)));
   if (std::ranges::any_of(branch.faults, is_freeze) && std::ranges::none_of(parent.faults, is_freeze))
     throw InputError("--from: faults: a branch cannot add the first freeze of the scanner: its last scan is not kept");
   std::vector<SettingDifference> differences = settings_differences(parent, branch);

@@ -91,9 +91,9 @@ TEST(BranchSettings, WhatShapesTheStateIsRefusedByNameAndWhatIsReadLaterIsNot) {
     EXPECT_THAT([&] { check({setting}, 10.0); }, ThrowsMessage<InputError>(HasSubstr("--set " + path + ": cannot")));
   }
   EXPECT_THAT([&] { check({"faults=[{sensor: imu, start_s: 10}]"}, 10.0); },
-              ThrowsMessage<InputError>(HasSubstr("up to 10 s cannot change")));
+              ThrowsMessage<InputError>(HasSubstr("up to 10.000 s cannot change")));
   EXPECT_THAT([&] { check({"kidnaps=[{at_s: 9.9}]"}, 10.0); },
-              ThrowsMessage<InputError>(HasSubstr("up to 10 s cannot change")));
+              ThrowsMessage<InputError>(HasSubstr("up to 10.000 s cannot change")));
   EXPECT_THAT([&] { check({"faults=[{sensor: scanner, kind: freeze, start_s: 20}]"}, 10.0); },
               ThrowsMessage<InputError>(HasSubstr("first freeze of the scanner")));
 }
