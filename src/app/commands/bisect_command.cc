@@ -123,7 +123,7 @@ ExitCode bisect_command(const BisectOptions& options) {
   json["parts"] = difference->parts;
   json["first_message"] = io::describe(*in_logs);
   print_result(options.form,
-               fmt::format("first difference at {} s: {}\nfirst message that differs: {}\n",
+               fmt::format("first difference at {:.3f} s: {}\nfirst message that differs: {}\n",
                            to_seconds(difference->time), join(difference->parts, ", "), io::describe(*in_logs)),
                json);
   return ExitCode::kExpectationMissed;

@@ -8,6 +8,7 @@
 #include "app/record/run_directory.h"
 #include "app/report/run_summary.h"
 #include "app/run/feed_loop.h"
+#include "app/run/make_simulator.h"
 #include "app/run/make_stack_port.h"
 #include "app/run/progress_line.h"
 #include "app/run/run_junit.h"

@@ -11,6 +11,7 @@
 #include "app/film/render_film.h"
 #include "app/record/run_directory.h"
 #include "app/record/run_record.h"
+#include "app/run/make_simulator.h"
 #include "app/scenario/data_folders.h"
 #include "core/error.h"
 #include "render/film/replay.h"

@@ -10,6 +10,7 @@
 #include "app/common/temporary_folder.h"
 #include "app/record/run_directory.h"
 #include "app/run/feed_loop.h"
+#include "app/run/make_simulator.h"
 #include "app/run/make_stack_port.h"
 #include "app/run/progress_line.h"
 #include "app/run/recorded_stack.h"

@@ -53,20 +53,10 @@ class NullObserver final : public RunObserver {
   bool keep_running(Time, double) override { return true; }
 };
 
-/// Actual start pose of the robot, in world.
-Pose2 start_in_world(const Scenario& scenario, const ScenarioFiles& files);
-
-/// Static obstacles of the scenario: the listed ones and the randomly scattered ones.
-std::vector<sim::StaticObstacleSettings> all_static_obstacles(const Scenario& scenario);
-
 /// Writes a message of the stack to the log.
 void write_published(io::RunLogWriter& log, Time now, const PublishedMessage& message);
 /// Sets the end of a run whose stack failed.
 void set_failure(RunOutcome& outcome, const link::LinkError& error);
-
-/// Creates the simulator, with a thread of its own for expensive sensors if requested. Throws InputError if the
-/// settings of the scenario are inconsistent.
-sim::Simulator make_simulator(const Scenario& scenario, const ScenarioFiles& files, bool has_sensor_thread = false);
 
 /// Start, end and snapshots of a part of a run.
 struct RunPart {

@@ -10,6 +10,7 @@
 #include "app/common/process_cost.h"
 #include "app/common/temporary_folder.h"
 #include "app/record/run_directory.h"
+#include "app/run/make_simulator.h"
 #include "app/run/make_stack_port.h"
 #include "app/run/run_junit.h"
 #include "app/run/snapshot.h"

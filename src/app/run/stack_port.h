@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -50,8 +51,11 @@ class StackPort {
   /// Returns whether the log has a StackTurn of every turn. Otherwise the turns are those of the built-in stack,
   /// without delay.
   virtual bool records_turns() const = 0;
-  /// Saves or restores the state between two turns. Throws InputError if the stack has none that can be saved.
-  virtual void serialize_state(StateArchive& archive);
+  /// Saves or restores the state between two turns. Throws InputError if the method of the stack cannot be saved, and
+  /// std::logic_error for software in another process, whose runs are refused before it starts.
+  virtual void serialize_state(StateArchive& /*archive*/) {
+    throw std::logic_error("state of a stack in another process");
+  }
   /// Returns the wall time by stage.
   virtual std::map<std::string, double> seconds_by_stage() const = 0;
   /// Returns the number of calls by stage; empty for software in another process.

@@ -71,9 +71,8 @@ studies::Study navigation_study(const std::string& name, std::size_t index) {
       .source = "no publication; test of the import of sites",
       .conditions = fmt::format(
           "Each seed: {} without its actors in the world, and with the same mission, map and seed in the site of 12 "
-          "panoramic "
-          "scans, taken with that seed (study scan-import). The clearance is that from the surfaces of the world or of "
-          "the site.",
+          "panoramic scans, taken with that seed (study scan-import). The clearance is that from the surfaces of the "
+          "world or of the site.",
           world.scenario),
       .default_seeds = 10,
       .compared_with = "the world"};

@@ -154,7 +154,7 @@ void Lidar::submit() {
   else measure_beams();
 }
 
-/// Waits until all beams so far are measured.
+/// Waits until all fired beams are measured.
 void Lidar::finish_shots() {
   submit();
   if (worker_) worker_->wait(submitted_);
