@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -44,26 +45,30 @@ bool intersects(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& origin, c
   return !(enter > leave || leave < 0.0 || enter > reach_m);
 }
 
-/// Axis-aligned bounding boxes, stored so that the compiler can test four at a time.
+constexpr double kBoxMargin_m = 1e-3;  ///< exceeds the rounding of coordinates to float
+
+/// Axis-aligned bounding boxes, four side by side so that one instruction tests four.
 class Boxes {
  public:
   void resize(std::size_t count) {
+    const auto packs = (count + kPack - 1) / kPack;
     for (auto* side : {&lower_, &upper_}) {
-      for (std::vector<float>& axis : *side) axis.resize(count);
+      for (std::vector<Pack>& axis : *side) axis.resize(packs, Pack::Constant(kInfinity));
     }
+    count_ = count;
   }
 
   void add(const Eigen::AlignedBox3d& box) {
-    resize(lower_[0].size() + 1);
-    set(lower_[0].size() - 1, box.center(), box.sizes() / 2.0);
+    resize(count_ + 1);
+    set(count_ - 1, box.center(), box.sizes() / 2.0);
   }
 
   void set(std::size_t i, const Eigen::Vector3d& center, const Eigen::Vector3d& half) {
-    constexpr double kFloatLoss_m = 1e-3;
+    const auto lane = static_cast<Eigen::Index>(i % kPack);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto row = static_cast<Eigen::Index>(axis);
-      lower_[axis][i] = static_cast<float>(center[row] - half[row] - kFloatLoss_m);
-      upper_[axis][i] = static_cast<float>(center[row] + half[row] + kFloatLoss_m);
+      lower_[axis][i / kPack][lane] = static_cast<float>(center[row] - half[row] - kBoxMargin_m);
+      upper_[axis][i / kPack][lane] = static_cast<float>(center[row] + half[row] + kBoxMargin_m);
     }
   }
 
@@ -73,38 +78,41 @@ class Boxes {
                          Visit visit) const {
     // Replace zero components by a tiny value, so that the inverse is finite and no product below is 0 x infinity.
     const Eigen::Array3f inverse = (direction.array().abs() < 1e-12f).select(1e-12f, direction.array()).inverse();
-    constexpr std::size_t kChunk = 64;
-    // Length of the ray inside the box; negative if it misses.
-    std::array<float, kChunk> stay;  // NOLINT(cppcoreguidelines-pro-type-member-init): per ray, filled below
-    for (std::size_t begin = 0; begin < lower_[0].size(); begin += kChunk) {
-      const std::size_t count = std::min(kChunk, lower_[0].size() - begin);
-      for (std::size_t k = 0; k < count; ++k) {
-        const std::size_t i = begin + k;
-        const float x0 = (lower_[0][i] - origin.x()) * inverse.x(), x1 = (upper_[0][i] - origin.x()) * inverse.x();
-        const float y0 = (lower_[1][i] - origin.y()) * inverse.y(), y1 = (upper_[1][i] - origin.y()) * inverse.y();
-        const float z0 = (lower_[2][i] - origin.z()) * inverse.z(), z1 = (upper_[2][i] - origin.z()) * inverse.z();
-        const float enter = std::max(std::max(std::min(x0, x1), std::min(y0, y1)), std::max(std::min(z0, z1), 0.0f));
-        const float leave = std::min(std::min(std::max(x0, x1), std::max(y0, y1)), std::min(std::max(z0, z1), reach_m));
-        stay[k] = leave - enter;
+    for (std::size_t pack = 0; pack < lower_[0].size(); ++pack) {
+      Pack enter = Pack::Zero(), leave = Pack::Constant(reach_m);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto row = static_cast<Eigen::Index>(axis);
+        const Pack to_lower = (lower_[axis][pack] - origin[row]) * inverse[row],
+                   to_upper = (upper_[axis][pack] - origin[row]) * inverse[row];
+        enter = enter.max(to_lower.min(to_upper));
+        leave = leave.min(to_lower.max(to_upper));
       }
-      for (std::size_t k = 0; k < count; ++k) {
-        if (stay[k] >= 0.0f) visit(begin + k);
+      const Pack stay = leave - enter;  // length of the ray inside the box; negative if it misses
+      if (stay.maxCoeff() < 0.0f) continue;
+      for (std::size_t lane = 0; lane < kPack; ++lane) {
+        if (stay[static_cast<Eigen::Index>(lane)] >= 0.0f) visit(kPack * pack + lane);
       }
     }
   }
 
  private:
-  std::array<std::vector<float>, 3> lower_, upper_;  ///< bounds, [axis][part]
+  static constexpr std::size_t kPack = 4;
+  static constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  using Pack = Eigen::Array<float, kPack, 1>;
+
+  std::array<std::vector<Pack>, 3> lower_, upper_;  ///< bounds, [axis][part / 4][part % 4]; unused: infinitely far
+  std::size_t count_ = 0;
 };
 
 /// Rigid group of geoms: a body and everything welded to it.
 struct MovingPart {
   int body;
   std::uint32_t mask;
-  std::vector<PlacedGeom> shapes = {};            ///< geoms that are not assets, with poses in the body's frame
-  Boxes shape_boxes = {};                         ///< bounding boxes, [shape], in the body's frame
-  std::unique_ptr<EmbreeScene> assets = nullptr;  ///< meshes and height fields; null if there are none
-  Eigen::AlignedBox3d box = {};                   ///< bounding box of all geoms, in the body's frame
+  std::vector<PlacedGeom> shapes = {};               ///< geoms that are not assets, with poses in the body's frame
+  Boxes shape_boxes = {};                            ///< bounding boxes, [shape], in the body's frame
+  std::vector<Eigen::AlignedBox3d> wide_boxes = {};  ///< the same with a margin
+  std::unique_ptr<EmbreeScene> assets = nullptr;     ///< meshes and height fields; null if there are none
+  Eigen::AlignedBox3d box = {};                      ///< bounding box of all geoms, in the body's frame
 };
 
 /// One instruction set for every processor: with another one hits differ in the last bits, and runs after minutes.
@@ -169,6 +177,7 @@ struct LidarScene::Impl {
     if (!is_asset(type)) {
       part.shapes.push_back(placed);
       part.shape_boxes.add(box);
+      part.wide_boxes.emplace_back(box.min().array() - kBoxMargin_m, box.max().array() + kBoxMargin_m);
       return;
     }
     if (!part.assets) part.assets = std::make_unique<EmbreeScene>(device, RTC_BUILD_QUALITY_MEDIUM);
@@ -206,9 +215,12 @@ struct LidarScene::Impl {
     }
   }
 
-  /// Replaces `best` by the hit on a part if it is nearer than `reach_m`, and reduces `reach_m`.
+  /// Replaces `best` by the hit on a part if it is nearer than `reach_m`, and reduces `reach_m`. `visit_shapes` calls
+  /// its last argument with the index of every shape that the ray, in the body's frame, may hit within its reach.
+  template <typename VisitShapes>
   static void cast_at_part(const MovingPart& part, const BodyPose& pose, const Eigen::Vector3d& origin,
-                           const Eigen::Vector3d& direction, double& reach_m, std::optional<RayHit>& best) {
+                           const Eigen::Vector3d& direction, double& reach_m, std::optional<RayHit>& best,
+                           VisitShapes visit_shapes) {
     const Eigen::Vector3d from = pose.rotation.transpose() * (origin - pose.position);
     const Eigen::Vector3d along = pose.rotation.transpose() * direction;
     if (!intersects(part.box, from, along, reach_m)) return;
@@ -220,7 +232,7 @@ struct LidarScene::Impl {
         is_nearer = true;
       }
     }
-    const auto cast_at_shape = [&](std::size_t i) {
+    visit_shapes(from, along, reach_m, [&](std::size_t i) {
       const PlacedGeom& shape = part.shapes[i];
       Eigen::Vector3d normal;
       const double distance_m =
@@ -229,23 +241,69 @@ struct LidarScene::Impl {
       best = RayHit{.distance_m = distance_m, .geom = shape.geom, .normal = normal};
       reach_m = distance_m;
       is_nearer = true;
-    };
-    part.shape_boxes.visit_intersected(from.cast<float>(), along.cast<float>(), static_cast<float>(reach_m),
-                                       cast_at_shape);
+    });
     if (is_nearer) best->normal = pose.rotation * best->normal;
+  }
+
+  /// `cast_at_parts` replaces a hit on the static scene by a nearer one on a part.
+  template <typename CastAtParts>
+  std::optional<RayHit> cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double max_range_m,
+                             std::uint32_t mask, CastAtParts cast_at_parts) const {
+    std::optional<RayHit> best;
+    if (mask & kRayScenery) best = static_scene->cast(origin, direction, max_range_m);
+    double reach_m = best ? best->distance_m : max_range_m;
+    cast_at_parts(reach_m, best);
+    if (best && best->normal.dot(direction) > 0.0) best->normal = -best->normal;
+    return best;
   }
 
   std::optional<RayHit> cast(const Poses& at, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
                              double max_range_m, std::uint32_t mask) const {
-    std::optional<RayHit> best;
-    if (mask & kRayScenery) best = static_scene->cast(origin, direction, max_range_m);
-    double reach_m = best ? best->distance_m : max_range_m;
-    const auto cast_at = [&](std::size_t i) {
-      if (parts[i].mask & mask) cast_at_part(parts[i], at.parts[i], origin, direction, reach_m, best);
+    return cast(origin, direction, max_range_m, mask, [&](double& reach_m, std::optional<RayHit>& best) {
+      const auto cast_at = [&](std::size_t i) {
+        const MovingPart& part = parts[i];
+        if (!(part.mask & mask)) return;
+        const auto visit_shapes = [&part](const auto& from, const auto& along, double reach, const auto& visit) {
+          part.shape_boxes.visit_intersected(from.template cast<float>(), along.template cast<float>(),
+                                             static_cast<float>(reach), visit);
+        };
+        cast_at_part(part, at.parts[i], origin, direction, reach_m, best, visit_shapes);
+      };
+      at.boxes.visit_intersected(origin.cast<float>(), direction.cast<float>(), static_cast<float>(reach_m), cast_at);
+    });
+  }
+
+  std::optional<RayHit> cast(const Targets& targets, const Eigen::Vector3d& origin,
+                             const Eigen::Vector3d& direction) const {
+    const Poses& at = *targets.poses;
+    if (!targets.cone.contains(origin, direction))
+      return cast(at, origin, direction, targets.max_range_m, targets.mask);
+    return cast(origin, direction, targets.max_range_m, targets.mask, [&](double& reach_m, auto& best) {
+      for (const Targets::Part& target : targets.parts) {
+        const MovingPart& part = parts[target.index];
+        const auto visit_shapes = [&](const auto& from, const auto& along, const double& reach, const auto& visit) {
+          for (std::size_t k = target.begin; k < target.end; ++k) {
+            if (intersects(part.wide_boxes[targets.shapes[k]], from, along, reach)) visit(targets.shapes[k]);
+          }
+        };
+        cast_at_part(part, at.parts[target.index], origin, direction, reach_m, best, visit_shapes);
+      }
+    });
+  }
+
+  void add_targets(std::size_t index, Targets& targets) const {
+    const MovingPart& part = parts[index];
+    const BodyPose& pose = targets.poses->parts[index];
+    const auto may_hit = [&](const Eigen::AlignedBox3d& box) {
+      return targets.cone.may_hit(pose.position + pose.rotation * box.center(), box.diagonal().norm() / 2.0,
+                                  targets.max_range_m);
     };
-    at.boxes.visit_intersected(origin.cast<float>(), direction.cast<float>(), static_cast<float>(reach_m), cast_at);
-    if (best && best->normal.dot(direction) > 0.0) best->normal = -best->normal;
-    return best;
+    if (!(part.mask & targets.mask) || !may_hit(part.box)) return;
+    const std::size_t begin = targets.shapes.size();
+    for (std::size_t shape = 0; shape < part.shapes.size(); ++shape) {
+      if (may_hit(part.wide_boxes[shape])) targets.shapes.push_back(shape);
+    }
+    if (part.assets || targets.shapes.size() > begin) targets.parts.push_back({index, begin, targets.shapes.size()});
   }
 
   const mjModel& model;
@@ -276,6 +334,18 @@ std::shared_ptr<const LidarScene::Poses> LidarScene::poses() const {
 std::optional<RayHit> LidarScene::cast(const Poses& poses, const Eigen::Vector3d& origin,
                                        const Eigen::Vector3d& direction, double max_range_m, std::uint32_t mask) const {
   return impl_->cast(poses, origin, direction, max_range_m, mask);
+}
+
+LidarScene::Targets LidarScene::targets(std::shared_ptr<const Poses> poses, const RayCone& cone, double max_range_m,
+                                        std::uint32_t mask) const {
+  Targets targets{.poses = std::move(poses), .cone = cone, .max_range_m = max_range_m, .mask = mask};
+  for (std::size_t i = 0; i < impl_->parts.size(); ++i) impl_->add_targets(i, targets);
+  return targets;
+}
+
+std::optional<RayHit> LidarScene::cast(const Targets& targets, const Eigen::Vector3d& origin,
+                                       const Eigen::Vector3d& direction) const {
+  return impl_->cast(targets, origin, direction);
 }
 
 }  // namespace patrol::sim

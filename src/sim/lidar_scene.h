@@ -9,6 +9,8 @@
 #include <Eigen/Core>
 #include <mujoco/mujoco.h>
 
+#include "sim/ray_cone.h"
+
 struct RTCSceneTy;
 
 namespace patrol::sim {
@@ -60,6 +62,25 @@ class LidarScene {
   /// Returns the first hit with the bodies at `poses`. May be called in any thread, also during `update`.
   std::optional<RayHit> cast(const Poses& poses, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
                              double max_range_m, std::uint32_t mask) const;
+
+  /// Moving bodies that the rays of a cone may hit before `max_range_m`.
+  struct Targets {
+    struct Part {
+      std::size_t index;
+      std::size_t begin, end;  ///< of its shapes in `shapes`
+    };
+    std::shared_ptr<const Poses> poses;
+    RayCone cone;
+    double max_range_m;
+    std::uint32_t mask;
+    std::vector<Part> parts = {};
+    std::vector<std::size_t> shapes = {};  ///< indices in their parts
+  };
+  Targets targets(std::shared_ptr<const Poses> poses, const RayCone& cone, double max_range_m,
+                  std::uint32_t mask) const;
+  /// Returns the first hit, as `cast` at the poses of the targets does. Faster for the rays in the cone.
+  std::optional<RayHit> cast(const Targets& targets, const Eigen::Vector3d& origin,
+                             const Eigen::Vector3d& direction) const;
 
   const mjModel& model() const;
   /// Returns Embree's scene of the static geometry, for benchmarks.

@@ -161,6 +161,41 @@ TEST(LidarScene, InTheTunnelItIsWithin1MillimetreOfMjRayOnLiningRockAndInvert) {
   EXPECT_LT(agreement.largest_m, 5e-4);
 }
 
+/// 200 cones of 50 rays, a tenth of which leave their cone.
+TEST(LidarScene, RaysOfAConeHitWhatTheyHitWithoutIt) {
+  SmallWorld world(kEveryShape, kMesh);
+  const auto poses = world.scene.poses();
+  const RandomStream random(6, "rays");
+  int hits = 0, left_out = 0;
+  for (std::uint64_t bundle = 0; bundle < 200; ++bundle) {
+    const double half_angle = 0.02 + 0.5 * random.uniform(bundle, 1);
+    const RayCone cone{.center = 3.0 * random_direction(random, 1000 + bundle) + Eigen::Vector3d(0, 0, 3.2),
+                       .radius_m = 0.05,
+                       .axis = random_direction(random, 2000 + bundle),
+                       .cosine = std::cos(half_angle),
+                       .sine = std::sin(half_angle)};
+    const LidarScene::Targets targets = world.scene.targets(poses, cone, kRange_m, kRayEverything);
+    if (targets.parts.size() < 3) ++left_out;
+    for (std::uint64_t ray = 0; ray < 50; ++ray) {
+      const std::uint64_t draw = 10000 + 50 * bundle + ray;
+      const Eigen::Vector3d origin = cone.center + 0.05 * random.uniform(draw, 3) * random_direction(random, draw);
+      const double turn = (ray % 10 == 0 ? 1.5 : 0.999) * half_angle * random.uniform(draw, 4);
+      const Eigen::Vector3d side = cone.axis.cross(random_direction(random, draw + 50000)).normalized();
+      const Eigen::Vector3d direction = (std::cos(turn) * cone.axis + std::sin(turn) * side).normalized();
+      const auto fast = world.scene.cast(targets, origin, direction);
+      const auto full = world.scene.cast(*poses, origin, direction, kRange_m, kRayEverything);
+      ASSERT_EQ(fast.has_value(), full.has_value()) << "cone " << bundle << ", ray " << ray;
+      if (!full) continue;
+      if (world.model->body_weldid[world.model->geom_bodyid[full->geom]] != 0) ++hits;
+      EXPECT_EQ(fast->distance_m, full->distance_m);
+      EXPECT_EQ(fast->geom, full->geom);
+      EXPECT_EQ(fast->normal, full->normal);
+    }
+  }
+  EXPECT_GT(hits, 400) << "rays that hit a moving body";
+  EXPECT_GT(left_out, 100) << "cones that miss a body";
+}
+
 TEST(LidarScene, NormalsAreThoseOfMuJoCoAndLookTowardsTheRaysOrigin) {
   const SmallWorld world(kEveryShape, kMesh);
   const RandomStream random(3, "rays");

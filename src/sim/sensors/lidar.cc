@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 #include "core/error.h"
@@ -146,9 +147,7 @@ void Lidar::advance(Time from, Time to, const Pose3& T_world_body_from, const Po
 /// Measures the beams, or gives them to the worker.
 void Lidar::submit() {
   const auto measure_beams = [this, shots = std::exchange(shots_, {}), revolution = revolution_] {
-    for (const Shots& of_tick : shots) {
-      for (const Beam& beam : of_tick.beams) fire(beam, *of_tick.bodies, *revolution);
-    }
+    for (const Shots& of_tick : shots) fire(of_tick, *revolution);
   };
   if (worker_) submitted_ = worker_->submit(measure_beams);
   else measure_beams();
@@ -173,19 +172,54 @@ void Lidar::finish_revolution() {
   scans_.push_back(std::move(revolution_->scan));
 }
 
-void Lidar::fire(const Beam& beam, const LidarScene::Poses& bodies, Revolution& revolution) const {
+Eigen::Vector3d Lidar::direction(std::size_t column, std::size_t ring) const {
+  return {elevation_[ring].x() * azimuth_[column].x(), elevation_[ring].x() * azimuth_[column].y(),
+          elevation_[ring].y()};
+}
+
+void Lidar::fire(const Shots& shots, Revolution& revolution) const {
+  constexpr std::size_t kBeamsPerCone = 32;
+  for (std::size_t begin = 0; begin < shots.beams.size(); begin += kBeamsPerCone) {
+    const std::span beams = std::span(shots.beams).subspan(begin, std::min(kBeamsPerCone, shots.beams.size() - begin));
+    const LidarScene::Targets targets = scene_.targets(shots.bodies, cone_of(beams), settings_.range_max_m, mask_);
+    for (const Beam& beam : beams) fire(beam, targets, revolution);
+  }
+}
+
+/// Returns a cone about the beams. Errors of direction beyond its margin cost time only.
+RayCone Lidar::cone_of(std::span<const Beam> beams) const {
+  const double margin_rad = kDegree * (0.5 + 0.5 * settings_.beam_width_deg + 4.0 * settings_.angle_noise_std_deg);
+  const Beam& middle = beams[beams.size() / 2];
+  const auto column = [&](const Beam& beam) { return static_cast<std::size_t>(beam.number % settings_.beams); };
+  RayCone cone{.center = middle.T_world_lidar.position, .radius_m = 0.0, .axis = Eigen::Vector3d::Zero()};
+  for (const std::size_t ring : {std::size_t{0}, elevation_.size() - 1})
+    cone.axis += middle.T_world_lidar.rotation * direction(column(middle), ring);
+  cone.axis.normalize();
+  for (const Beam* end : {&beams.front(), &beams.back()}) {
+    cone.radius_m = std::max(cone.radius_m, (end->T_world_lidar.position - cone.center).norm() + 1e-6);
+    for (const std::size_t ring : {std::size_t{0}, elevation_.size() - 1}) {
+      const Eigen::Vector3d ray = end->T_world_lidar.rotation * direction(column(*end), ring);
+      cone.cosine = std::min(cone.cosine, cone.axis.dot(ray));
+    }
+  }
+  const double half_angle_rad = std::min(std::acos(cone.cosine) + margin_rad, std::numbers::pi / 2.0);
+  cone.cosine = std::cos(half_angle_rad);
+  cone.sine = std::sin(half_angle_rad);
+  return cone;
+}
+
+void Lidar::fire(const Beam& beam, const LidarScene::Targets& targets, Revolution& revolution) const {
   const auto tick = static_cast<std::uint64_t>(beam.number / settings_.beams);
   const auto column = static_cast<std::size_t>(beam.number % settings_.beams);
   for (std::size_t ring = 0; ring < elevation_.size(); ++ring) {
     const std::uint64_t index = column * elevation_.size() + ring;
-    const Eigen::Vector3d direction(elevation_[ring].x() * azimuth_[column].x(),
-                                    elevation_[ring].x() * azimuth_[column].y(), elevation_[ring].y());
-    const Return got = measure(tick, index, bodies, beam.T_world_lidar, direction, revolution.last_range_m[ring]);
+    const Eigen::Vector3d nominal = direction(column, ring);
+    const Return got = measure(tick, index, targets, beam.T_world_lidar, nominal, revolution.last_range_m[ring]);
     if (settings_.rings == 1) {
       revolution.scan.ranges_m.push_back(static_cast<float>(got.range_m));
       revolution.scan.intensities.push_back(static_cast<float>(got.intensity));
     } else if (std::isfinite(got.range_m)) {
-      const Eigen::Vector3f point = (got.range_m * direction).cast<float>();
+      const Eigen::Vector3f point = (got.range_m * nominal).cast<float>();
       revolution.cloud.points.push_back(
           {.x = point.x(),
            .y = point.y(),
@@ -198,7 +232,7 @@ void Lidar::fire(const Beam& beam, const LidarScene::Poses& bodies, Revolution& 
 }
 
 /// Returns the reading of one beam with all error sources.
-Lidar::Return Lidar::measure(std::uint64_t tick, std::uint64_t index, const LidarScene::Poses& bodies,
+Lidar::Return Lidar::measure(std::uint64_t tick, std::uint64_t index, const LidarScene::Targets& targets,
                              const Pose3& T_world_lidar, const Eigen::Vector3d& direction, double& last_range_m) const {
   Eigen::Vector3d aimed = direction;
   if (settings_.angle_noise_std_deg > 0.0) {
@@ -207,10 +241,10 @@ Lidar::Return Lidar::measure(std::uint64_t tick, std::uint64_t index, const Lida
     aimed.normalize();
   }
   aimed = errors_.actual_direction(aimed);
-  Return got = trace(bodies, T_world_lidar, aimed);
+  Return got = trace(targets, T_world_lidar, aimed);
   const double jump_m = std::abs(got.range_m - std::exchange(last_range_m, got.range_m));
   if (jump_m > kMinJump_m && jump_m < kPulseLength_m && settings_.beam_width_deg > 0.0) {
-    got = mixed_pixel_return(bodies, T_world_lidar, aimed, got);
+    got = mixed_pixel_return(targets, T_world_lidar, aimed, got);
   }
   if (false_return_rate_per_m_ > 0.0) {
     const double path_m = std::min(got.range_m, settings_.range_max_m);
@@ -233,15 +267,15 @@ Lidar::Return Lidar::measure(std::uint64_t tick, std::uint64_t index, const Lida
 }
 
 /// Returns the reading of an ideal ray without width.
-Lidar::Return Lidar::trace(const LidarScene::Poses& bodies, const Pose3& T_world_lidar,
+Lidar::Return Lidar::trace(const LidarScene::Targets& targets, const Pose3& T_world_lidar,
                            const Eigen::Vector3d& direction) const {
   const Eigen::Vector3d ray = T_world_lidar.rotation * direction;
-  const std::optional<RayHit> hit = scene_.cast(bodies, T_world_lidar.position, ray, settings_.range_max_m, mask_);
+  const std::optional<RayHit> hit = scene_.cast(targets, T_world_lidar.position, ray);
   return hit ? to_return(*hit, ray, hit->distance_m) : Return{kInfinity, 0.0};
 }
 
 /// Returns the mean over the beam width, weighted by the returned light, of surfaces within one pulse length only.
-Lidar::Return Lidar::mixed_pixel_return(const LidarScene::Poses& bodies, const Pose3& T_world_lidar,
+Lidar::Return Lidar::mixed_pixel_return(const LidarScene::Targets& targets, const Pose3& T_world_lidar,
                                         const Eigen::Vector3d& direction, const Return& middle) const {
   constexpr int kRays = 4;
   const Eigen::Vector3d sideways =
@@ -249,7 +283,7 @@ Lidar::Return Lidar::mixed_pixel_return(const LidarScene::Poses& bodies, const P
   double light = 0.0, light_range = 0.0, light_intensity = 0.0;
   for (int i = 0; i < kRays; ++i) {
     const double fraction = (i + 0.5) / kRays - 0.5;
-    const Return part = trace(bodies, T_world_lidar, (direction + fraction * sideways).normalized());
+    const Return part = trace(targets, T_world_lidar, (direction + fraction * sideways).normalized());
     if (!(std::abs(part.range_m - middle.range_m) < kPulseLength_m)) continue;
     const double returned = part.intensity / (part.range_m * part.range_m);
     light += returned;

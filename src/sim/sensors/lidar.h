@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -75,11 +76,14 @@ class Lidar {
   void submit();
   void finish_shots();
   void finish_revolution();
-  void fire(const Beam& beam, const LidarScene::Poses& bodies, Revolution& revolution) const;
-  Return measure(std::uint64_t tick, std::uint64_t index, const LidarScene::Poses& bodies, const Pose3& T_world_lidar,
-                 const Eigen::Vector3d& direction, double& last_range_m) const;
-  Return trace(const LidarScene::Poses& bodies, const Pose3& T_world_lidar, const Eigen::Vector3d& direction) const;
-  Return mixed_pixel_return(const LidarScene::Poses& bodies, const Pose3& T_world_lidar,
+  void fire(const Shots& shots, Revolution& revolution) const;
+  RayCone cone_of(std::span<const Beam> beams) const;
+  Eigen::Vector3d direction(std::size_t column, std::size_t ring) const;
+  void fire(const Beam& beam, const LidarScene::Targets& targets, Revolution& revolution) const;
+  Return measure(std::uint64_t tick, std::uint64_t index, const LidarScene::Targets& targets,
+                 const Pose3& T_world_lidar, const Eigen::Vector3d& direction, double& last_range_m) const;
+  Return trace(const LidarScene::Targets& targets, const Pose3& T_world_lidar, const Eigen::Vector3d& direction) const;
+  Return mixed_pixel_return(const LidarScene::Targets& targets, const Pose3& T_world_lidar,
                             const Eigen::Vector3d& direction, const Return& middle) const;
   Return to_return(const RayHit& hit, const Eigen::Vector3d& direction, double range_m) const;
   void begin_revolution();
