@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "core/error.h"
+#include "sim/height_field_contact.h"
 
 namespace patrol::sim {
 namespace {
@@ -35,6 +36,7 @@ SpecPtr parse_spec(const std::string& xml) {
 }
 
 ModelPtr compile(mjSpec& spec, const std::string& name) {
+  use_closed_form_sphere_contacts();
   ModelPtr model(mj_compile(&spec, nullptr));
   if (!model) throw InputError(name + ": " + one_line(mjs_getError(&spec)));
   return model;

@@ -306,7 +306,7 @@ void add_robot(mjSpec& world, const RobotUrdf& urdf, const RobotDescription& rob
                          .is_tracked = has_tracks(*model),
                          .road_wheel_load_n = road_wheel_load_n(*model)};
   add_link(world, *model->getRoot(), parts, *base);
-  if (parts.is_tracked) use_track_friction(world.option);
+  if (parts.is_tracked) use_track_options(world.option);
   else if (robot.legs.empty()) use_wheel_friction(world.option);
 }
 

@@ -26,12 +26,12 @@ void add_wheels(const urdf::Link& track, double load_n, mjsBody& body);
 /// Returns the reflected inertia of a sprocket's motor and belt, kg m2.
 double sprocket_armature();
 
-/// Selects pyramidal friction cones.
+/// Selects pyramidal friction cones and sparse algebra.
 ///
 /// Tracks slide whenever the robot turns. A step with many sliding contacts costs half as much with pyramidal as with
 /// elliptic cones (tests/bench/physics_bench.cc). A turn is within 3 % of the closed form of isotropic friction instead
 /// of 1 % (tests/scenario/tracks_test.cc).
-void use_track_friction(mjOption& option);
+void use_track_options(mjOption& option);
 
 /// Returns the stance 1 cm above the highest ground below any wheel. The robot settles from there in the first ticks
 /// without oscillating on its springs.
