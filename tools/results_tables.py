@@ -197,6 +197,19 @@ def course_table(results):
     return "\n".join(lines) + "\n\nThe score is at most 0.5. The times are those of the successes. The interval is Wilson's.\n"
 
 
+def branch_table(rows):
+    """Rows of tools/branches: one line per scenario."""
+    lines = ["| scenario | simulated (s) | instants | identical | largest snapshot (MB) | one snapshot (ms) | branch / run, processor time |",
+             "| --- | --- | --- | --- | --- | --- | --- |"]
+    for row in rows:
+        branches = row["branches"]
+        identical = sum(branch["difference"] is None for branch in branches)
+        share = sum(branch["processor_s"] for branch in branches) / len(branches) / row["run_s"]
+        lines.append(f"| {row['scenario']} | {row['duration_s']:.0f} | {len(branches)} | {identical} | {row['largest_mb']:.1f} | "
+                     f"{row['snapshot_ms']:.0f} | {share:.2f} |")
+    return "\n".join(lines) + "\n"
+
+
 # --- Studies ------------------------------------------------------------------------------------------------------------------
 
 

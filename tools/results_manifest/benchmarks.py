@@ -1,7 +1,7 @@
-"""Tables of benchmarks and mutations."""
+"""Tables of benchmarks, branches and mutations."""
 import json
 
-from results_tables import NONE, benchmark_values, markdown, yes_no
+from results_tables import NONE, benchmark_values, branch_table, markdown, yes_no
 from .declare import Step, add
 
 BENCHMARKS = ("physics", "lidar", "render", "particle", "plan")
@@ -22,6 +22,12 @@ add(name="benchmarks", file="tests/README.md", seeds="none", minutes=6,
            for name in BENCHMARKS],
     values=benchmarks_values, text=benchmarks_text, targets=tuple(f"{name}_bench" for name in BENCHMARKS),
     files=("tests/bench",))
+
+
+BRANCHED = ("street/patrol", "tunnel/navigate", "tunnel/inspection_round", "substation/patrol")
+add(name="branches", file="src/app/README.md", seeds="1", minutes=30,
+    steps=[Step("branches", ["tools/branches", *BRANCHED, "--out", "{out}"])],
+    values=lambda folders: json.loads((folders["branches"] / "branches.json").read_text()), text=branch_table, files=("tools/branches",))
 
 
 def mutations_values(folders):

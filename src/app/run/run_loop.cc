@@ -147,7 +147,9 @@ class ClosedLoop {
     for (; num_snapshots_ < part_.snapshot_times.size() && now >= part_.snapshot_times[num_snapshots_];
          ++num_snapshots_)
       is_due = true;
-    if (is_due) part_.save(now, state());
+    if (!is_due) return;
+    const auto timer = profiler_.time_stage("snapshots");
+    part_.save(now, state());
   }
 
   /// Reports the hashes of a tick.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <utility>
 
@@ -269,6 +270,8 @@ void DepthRenderer::draw(const sim::BodyPoses& bodies, const Pose3& T_world_came
 
 std::unique_ptr<sim::DepthImager> make_depth_renderer(const mjModel& view, const sim::PinholeLens& lens, double near_m,
                                                       double far_m) {
+  // Threads of the rasterizer of OSMesa cost more than they save on small images. The environment of the user prevails.
+  ::setenv("LP_NUM_THREADS", "0", 0);
   return std::make_unique<DepthRenderer>(view, lens, near_m, far_m);
 }
 
