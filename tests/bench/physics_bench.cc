@@ -1,6 +1,6 @@
 // What scenery costs physics: a step of the walking robot in the street against the same robot on a bare
 // plane. And what tracks cost: a tick of the tracked robot on rubble, firmware, belts and all, against a bare mj_step
-// of the same model under the same orders.
+// of the same model under the same orders. And what the closed form of its contacts saves.
 //   tests/bench/physics_bench                       `ratio` is to be at most 1.2
 
 #include <benchmark/benchmark.h>
@@ -78,6 +78,25 @@ BENCHMARK(TracksOnRubbleAgainstBareStep)
     ->UseManualTime()
     ->Iterations(200)
     ->Unit(benchmark::kMicrosecond);
+
+/// The collision functions of MuJoCo before Patrol replaces one (sim/height_field_contact.h).
+const mjfCollision kGeneralContact = mjCOLLISIONFUNC[mjGEOM_HFIELD][mjGEOM_SPHERE];
+
+/// Contacts of the tracked robot's wheels with rubble in closed form, against MuJoCo's general algorithm.
+void WheelContactsAgainstGeneralAlgorithm(benchmark::State& state) {
+  sim::TrackedRobot robot(sim::make_rubble_world(24.0, 6.0), {-10.0, 0.0, 0.0});
+  mjfCollision& contact = mjCOLLISIONFUNC[mjGEOM_HFIELD][mjGEOM_SPHERE];
+  const mjfCollision closed_form = contact;
+  Ratio ratio;
+  for (auto _ : state) {
+    contact = kGeneralContact;
+    ratio.reference([&] { mj_collision(&robot.model(), &robot.data()); });
+    contact = closed_form;
+    state.SetIterationTime(ratio.subject([&] { mj_collision(&robot.model(), &robot.data()); }));
+  }
+  ratio.report(state);
+}
+BENCHMARK(WheelContactsAgainstGeneralAlgorithm)->UseManualTime()->Iterations(2000)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace patrol::bench
