@@ -1,4 +1,4 @@
-"""Tables of benchmarks, branches and mutations."""
+"""Tables of benchmarks, speed, branches and mutations."""
 import json
 
 from results_tables import NONE, benchmark_values, branch_table, markdown, yes_no
@@ -23,6 +23,31 @@ add(name="benchmarks", file="tests/README.md", seeds="none", minutes=6,
     values=benchmarks_values, text=benchmarks_text, targets=tuple(f"{name}_bench" for name in BENCHMARKS),
     files=("tests/bench",))
 
+
+SPED = ("street/patrol", "tunnel/navigate", "tunnel/inspection_round", "substation/patrol")
+SHOWN_PARTS = ("physics", "lidar", "depth_camera", "slam", "localization", "planning", "inspection", "log")
+
+
+def speed_values(folders):
+    return {key: json.loads((folder / "metrics.json").read_text())["performance"] for key, folder in folders.items()}
+
+
+def speed_text(values):
+    rows = []
+    for scenario in SPED:
+        one, two = (values[f"{scenario.replace('/', '_')}_{threads}"] for threads in (1, 2))
+        simulated_s = one["real_time_factor"] * one["wall_s"]
+        parts = [f"{one['parts_s'][part]:.1f}" if part in one["parts_s"] else NONE for part in SHOWN_PARTS]
+        rows.append([f"`{scenario}`", f"{simulated_s:.0f}", f"{one['cpu_s']:.1f}", f"{simulated_s / one['cpu_s']:.1f}", f"{one['wall_s']:.1f}",
+                     f"{two['wall_s']:.1f}", *parts])
+    return markdown(["scenario", "simulated, s", "processor, s", "simulated / processor", "wall, 1 thread, s", "wall, 2 threads, s",
+                     *(f"{part.replace('_', ' ')}, s" for part in SHOWN_PARTS)], rows)
+
+
+add(name="speed", file="tests/README.md", seeds="those of the scenarios", minutes=8,
+    steps=[Step(f"{scenario.replace('/', '_')}_{threads}", ["build/patrol", "run", scenario, "--threads", str(threads), "--out", "{out}"])
+           for scenario in SPED for threads in (1, 2)],
+    values=speed_values, text=speed_text)
 
 BRANCHED = ("street/patrol", "tunnel/navigate", "tunnel/inspection_round", "substation/patrol")
 add(name="branches", file="src/app/README.md", seeds="1", minutes=30,
