@@ -197,6 +197,30 @@ def course_table(results):
     return "\n".join(lines) + "\n\nThe score is at most 0.5. The times are those of the successes. The interval is Wilson's.\n"
 
 
+def growth(rows, size, column):
+    """Exponent of a power law through the first and the last row; None with one row."""
+    if len(rows) < 2 or rows[0][column] <= 0.0:
+        return None
+    return math.log(rows[-1][column] / rows[0][column]) / math.log(rows[-1][size] / rows[0][size])
+
+
+def cost_table(cost):
+    """Rows of tools/cost_of_size: one line per run, then the exponents."""
+    columns = ("processor_s", "score_s", "memory_mb", "log_mb")
+    lines = ["| area (m²) | path (m) | simulated (s) | processor time (s) | scoring (s) | memory (MB) | log (MB) |", "| --- | --- | --- | --- | --- | --- | --- |"]
+    shown = []
+    for row in [*cost["path"], *cost["site"]]:
+        if row in shown:
+            continue
+        shown.append(row)
+        lines.append(f"| {row['area_m2']:.0f} | {row['distance_m']:.0f} | {row['duration_s']:.0f} | {row['processor_s']:.1f} | {row['score_s']:.2f} | "
+                     f"{row['memory_mb']:.0f} | {row['log_mb']:.1f} |")
+    for name, size in (("path", "distance_m"), ("site", "area_m2")):
+        exponents = [growth(cost[name], size, column) for column in columns]
+        lines.append(f"| growth with the {name}: exponent | | | " + " | ".join("–" if value is None else f"{value:.2f}" for value in exponents) + " |")
+    return "\n".join(lines) + "\n"
+
+
 def branch_table(rows):
     """Rows of tools/branches: one line per scenario."""
     lines = ["| scenario | simulated (s) | instants | identical | largest snapshot (MB) | one snapshot (ms) | branch / run, processor time |",

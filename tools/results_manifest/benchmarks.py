@@ -1,7 +1,7 @@
-"""Tables of benchmarks, speed, branches and mutations."""
+"""Tables of benchmarks, speed, cost of size, branches and mutations."""
 import json
 
-from results_tables import NONE, benchmark_values, branch_table, markdown, yes_no
+from results_tables import NONE, benchmark_values, branch_table, cost_table, markdown, yes_no
 from .declare import Step, add
 
 BENCHMARKS = ("physics", "lidar", "render", "particle", "plan")
@@ -48,6 +48,10 @@ add(name="speed", file="tests/README.md", seeds="those of the scenarios", minute
     steps=[Step(f"{scenario.replace('/', '_')}_{threads}", ["build/patrol", "run", scenario, "--threads", str(threads), "--out", "{out}"])
            for scenario in SPED for threads in (1, 2)],
     values=speed_values, text=speed_text)
+
+add(name="cost_of_size", file="tests/README.md", seeds="1", minutes=3,
+    steps=[Step("cost", ["tools/cost_of_size", "--picture", "tests/bench/cost_of_size.svg", "--out", "{out}"])],
+    values=lambda folders: json.loads((folders["cost"] / "cost.json").read_text()), text=cost_table, files=("tools/cost_of_size",))
 
 BRANCHED = ("street/patrol", "tunnel/navigate", "tunnel/inspection_round", "substation/patrol")
 add(name="branches", file="src/app/README.md", seeds="1", minutes=30,
