@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "slam/point_transform.h"
+#include "core/point_transform.h"
 
 namespace patrol::slam {
 

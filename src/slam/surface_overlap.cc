@@ -1,6 +1,6 @@
 #include "slam/surface_overlap.h"
 
-#include "slam/point_transform.h"
+#include "core/point_transform.h"
 
 namespace patrol::slam {
 

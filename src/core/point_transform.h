@@ -6,7 +6,7 @@
 
 #include "core/frames.h"
 
-namespace patrol::slam {
+namespace patrol {
 
 /// Transforms many points by one pose: sine and cosine are computed once. Equal to `T_a_b * p_b` to the bit.
 class PointTransform {
@@ -22,4 +22,4 @@ class PointTransform {
   double x_, y_, cos_, sin_;
 };
 
-}  // namespace patrol::slam
+}  // namespace patrol

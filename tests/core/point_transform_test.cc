@@ -1,10 +1,10 @@
-#include "slam/point_transform.h"
+#include "core/point_transform.h"
 
 #include <gtest/gtest.h>
 
 #include "core/random.h"
 
-namespace patrol::slam::point_transform_test {
+namespace patrol::point_transform_test {
 namespace {
 
 TEST(PointTransform, EqualsTheProductOfPoseAndPointToTheBit) {
@@ -18,4 +18,4 @@ TEST(PointTransform, EqualsTheProductOfPoseAndPointToTheBit) {
 }
 
 }  // namespace
-}  // namespace patrol::slam::point_transform_test
+}  // namespace patrol::point_transform_test
