@@ -1,60 +1,17 @@
 #include "slam/local_line.h"
 
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <cstdint>
+#include "slam/line_fit.h"
 
 namespace patrol::slam {
-namespace {
 
-/// `condition ? a : b` without a branch, for conditions that are hard to predict.
-double select(bool condition, double a, double b) {
-  const std::uint64_t mask = -static_cast<std::uint64_t>(condition);
-  return std::bit_cast<double>((std::bit_cast<std::uint64_t>(a) & mask) | (std::bit_cast<std::uint64_t>(b) & ~mask));
-}
-
-}  // namespace
-
-// In scalars: vectors of two numbers would be packed and unpacked for every cell.
 std::optional<LocalLine> fit_local_line(const GridMap& map, const Eigen::Vector2d& p_map, int radius_cells) {
-  const double px = p_map.x(), py = p_map.y();
-  int num_cells = 0, num_hits = 0;
-  double n = 0.0, sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0, syy = 0.0;
-  map.for_each_surface_near(map.cell_at(p_map), radius_cells, [&](double mean_x_m, double mean_y_m, int hits) {
-    const double x = mean_x_m - px, y = mean_y_m - py, w = hits;
-    const double wx = w * x, wy = w * y;
-    ++num_cells;
-    num_hits += hits;
-    n += w;
-    sx += wx;
-    sy += wy;
-    sxx += wx * x;
-    sxy += wx * y;
-    syy += wy * y;
-  });
-  if (num_cells < 3) return std::nullopt;
-
-  // 2 x 2 scatter matrix in closed form: the smaller eigenvalue is the roughness, its eigenvector the normal.
-  const double mx = sx / n, my = sy / n;
-  const double cxx = sxx / n - mx * mx, cxy = sxy / n - mx * my, cyy = syy / n - my * my;
-  const double half_difference = 0.5 * (cxx - cyy);
-  const double root = std::sqrt(half_difference * half_difference + cxy * cxy);
-  const double middle = 0.5 * (cxx + cyy);
-  const double across = std::max(0.0, middle - root), along = middle + root;
-  const double min_along = 0.25 * map.resolution_m() * map.resolution_m();
-  if (along < min_along) return std::nullopt;
-  // (cxy, across - cxx) and (across - cyy, cxy) are both parallel to the eigenvector; the longer is better conditioned.
-  const double longer = -std::abs(half_difference) - root;
-  const bool is_y_longer = half_difference > 0.0;
-  const double nx = select(is_y_longer, cxy, longer), ny = select(is_y_longer, longer, cxy);
-  const double length = std::sqrt(nx * nx + ny * ny);
-  if (!(length > 0.0)) return std::nullopt;
-  return LocalLine{.point_map = {px + mx, py + my},
-                   .normal_map = {nx / length, ny / length},
-                   .normal_var_m2 = across,
-                   .linearity = 1.0 - across / along,
-                   .num_hits = num_hits};
+  LineFit fit;
+  if (!fit_line(map, p_map, radius_cells, fit)) return std::nullopt;
+  return LocalLine{.point_map = p_map + Eigen::Vector2d(fit.mean_x_m, fit.mean_y_m),
+                   .normal_map = {fit.normal_x, fit.normal_y},
+                   .normal_var_m2 = fit.normal_var_m2,
+                   .linearity = fit.linearity,
+                   .num_hits = fit.num_hits};
 }
 
 }  // namespace patrol::slam

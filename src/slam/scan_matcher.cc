@@ -7,7 +7,7 @@
 #include <Eigen/Cholesky>
 
 #include "core/geometry/linear_algebra.h"
-#include "slam/local_line.h"
+#include "slam/line_fit.h"
 
 namespace patrol::slam {
 namespace {
@@ -28,8 +28,9 @@ struct Loss {
 
 /// Contribution of one point to the normal equations.
 struct PointTerm {
-  std::optional<LocalLine> line;  ///< none: no surface nearby
-  Eigen::Vector2d arm;            ///< vector from the body to the point, rotated into map
+  bool has_line = false;  ///< false: no surface nearby
+  double normal_x = 0.0, normal_y = 0.0;
+  double arm_x_m = 0.0, arm_y_m = 0.0;  ///< vector from the body to the point, rotated into map
   double residual_m = 0.0, weight = 0.0;
   Loss loss = {};
 };
@@ -43,26 +44,30 @@ class Terms {
         R_(Eigen::Rotation2Dd(T_map_body.yaw).toRotationMatrix()),
         t_(T_map_body.position()) {}
 
-  /// Returns none in unobserved cells, and near a surface with too few hits for a line, which the map hardly knows yet.
-  std::optional<PointTerm> at(const MatchPoint& point) const {
-    std::optional<PointTerm> term(PointTerm{.line = {}, .arm = R_ * point.p_body});
-    const Eigen::Vector2d p_map = t_ + term->arm;
-    const double point_var = squared(settings_.point_std_m) + squared(settings_.point_angle_std_rad * point.range_m);
-    term->line = fit_local_line(map_, p_map, settings_.surface_radius_cells);
-    if (!term->line) {
+  /// Returns false in unobserved cells, and near a surface with too few hits for a line, which the map hardly knows
+  /// yet. `term` is then undefined.
+  bool compute(const MatchPoint& point, PointTerm& term) const {
+    const double x = point.p_body.x(), y = point.p_body.y();
+    term.arm_x_m = R_(0, 0) * x + R_(0, 1) * y, term.arm_y_m = R_(1, 0) * x + R_(1, 1) * y;
+    const double px = t_.x() + term.arm_x_m, py = t_.y() + term.arm_y_m;
+    const Eigen::Vector2d p_map(px, py);
+    const double point_var = point_std_var_ + squared(settings_.point_angle_std_rad * point.range_m);
+    LineFit line;
+    term.has_line = fit_line(map_, p_map, settings_.surface_radius_cells, line);
+    if (!term.has_line) {
+      term.loss = {.variance = point_var, .ratio = unmatched_ratio_};
       const Cell at = map_.cell_at(p_map);
       const std::optional<GridCell> cell = map_.find(at);
-      if (!cell || !cell->is_observed() || map_.is_surface_within(at, settings_.surface_radius_cells)) term.reset();
-      else term->loss = {.variance = point_var, .ratio = unmatched_ratio_};
-      return term;
+      return cell && cell->is_observed() && !map_.is_surface_within(at, settings_.surface_radius_cells);
     }
     // Cauchy: loss = kernel^2 log(1 + (r/kernel)^2), weight = 1 / (1 + (r/kernel)^2).
-    term->residual_m = term->line->distance_m(p_map);
-    term->loss = {.variance =
-                      point_var + term->line->normal_var_m2 + squared(settings_.point_std_m) / term->line->num_hits,
-                  .ratio = squared(term->residual_m) / kernel_var_};
-    term->weight = squared(term->line->linearity) / (term->loss.variance * (1.0 + term->loss.ratio));
-    return term;
+    term.normal_x = line.normal_x, term.normal_y = line.normal_y;
+    term.residual_m = line.normal_x * (px - (px + line.mean_x_m)) + line.normal_y * (py - (py + line.mean_y_m));
+    const double variance = point_var + line.normal_var_m2 + point_std_var_ / line.num_hits,
+                 ratio = squared(term.residual_m) / kernel_var_;
+    term.weight = squared(line.linearity) / (variance * (1.0 + ratio));
+    term.loss = {.variance = variance, .ratio = ratio};
+    return true;
   }
 
   double log_likelihood(const Loss& loss) const {
@@ -75,6 +80,7 @@ class Terms {
   const ScanMatcherSettings& settings_;
   Eigen::Matrix2d R_;
   Eigen::Vector2d t_;
+  double point_std_var_ = squared(settings_.point_std_m);
   double kernel_var_ = squared(settings_.kernel_m);
   double unmatched_ratio_ = squared(settings_.surface_radius_cells * map_.resolution_m()) / kernel_var_;
   double unmatched_log_ = std::log1p(unmatched_ratio_);
@@ -87,21 +93,28 @@ struct NormalEquations {
   int num_matched = 0;  ///< points near a surface, out of those in observed cells
 };
 
-/// Fills `losses` with those of the points in observed cells.
+/// Fills `losses` with those of the points in observed cells. Sums are in scalars, which stay in registers.
 NormalEquations linearize(const Terms& terms, const std::vector<MatchPoint>& points, std::vector<Loss>& losses) {
-  NormalEquations sum;
+  double xx = 0.0, xy = 0.0, xz = 0.0, yx = 0.0, yy = 0.0, yz = 0.0, zx = 0.0, zy = 0.0, zz = 0.0;
+  double bx = 0.0, by = 0.0, bz = 0.0;
+  int num_matched = 0;
   losses.clear();
+  PointTerm term;
   for (const MatchPoint& point : points) {
-    const std::optional<PointTerm> term = terms.at(point);
-    if (!term) continue;
-    losses.push_back(term->loss);
-    if (!term->line) continue;
-    ++sum.num_matched;
-    const Eigen::Vector2d& n = term->line->normal_map;
-    const Eigen::Vector3d J(n.x(), n.y(), n.y() * term->arm.x() - n.x() * term->arm.y());
-    sum.H += term->weight * J * J.transpose();
-    sum.b += term->weight * term->residual_m * J;
+    if (!terms.compute(point, term)) continue;
+    losses.push_back(term.loss);
+    if (!term.has_line) continue;
+    ++num_matched;
+    const double x = term.normal_x, y = term.normal_y, z = y * term.arm_x_m - x * term.arm_y_m;  // Jacobian
+    const double wx = term.weight * x, wy = term.weight * y, wz = term.weight * z, wr = term.weight * term.residual_m;
+    xx += wx * x, xy += wx * y, xz += wx * z;  // to the bit, the sum is not symmetric
+    yx += wy * x, yy += wy * y, yz += wy * z;
+    zx += wz * x, zy += wz * y, zz += wz * z;
+    bx += wr * x, by += wr * y, bz += wr * z;
   }
+  NormalEquations sum{.num_matched = num_matched};
+  sum.H << xx, xy, xz, yx, yy, yz, zx, zy, zz;
+  sum.b << bx, by, bz;
   return sum;
 }
 
@@ -165,10 +178,10 @@ double scan_log_likelihood(const GridMap& map, const std::vector<MatchPoint>& po
   const Terms terms(map, T_map_body, settings);
   double sum = 0.0;
   std::size_t num_observed = 0;
+  PointTerm term;
   for (const MatchPoint& point : points) {
-    const std::optional<PointTerm> term = terms.at(point);
-    if (!term) continue;
-    sum += terms.log_likelihood(term->loss);
+    if (!terms.compute(point, term)) continue;
+    sum += terms.log_likelihood(term.loss);
     ++num_observed;
   }
   const double kernel_var = squared(settings.kernel_m);
@@ -182,9 +195,10 @@ std::vector<double> point_log_likelihoods(const GridMap& map, const std::vector<
   const Terms terms(map, T_map_body, settings);
   std::vector<double> log_likelihoods;
   log_likelihoods.reserve(points.size());
+  PointTerm term;
   for (const MatchPoint& point : points) {
-    const std::optional<PointTerm> term = terms.at(point);
-    log_likelihoods.push_back(term ? terms.log_likelihood(term->loss) : std::numeric_limits<double>::quiet_NaN());
+    const bool is_known = terms.compute(point, term);
+    log_likelihoods.push_back(is_known ? terms.log_likelihood(term.loss) : std::numeric_limits<double>::quiet_NaN());
   }
   return log_likelihoods;
 }
