@@ -40,18 +40,18 @@ void GridMap::add_hit(const Eigen::Vector2d& p_map) {
   GridTile::Hits& hits = tile->hits[GridTile::index_of(col, row)];
   if (hits.count < kMaxCount) {
     ++hits.count;
-    const Eigen::Vector2f offset = (p_map - center_of(at)).cast<float>();
+    const auto x_m = static_cast<float>(p_map.x() - resolution_m_ * (at.col + 0.5)),
+               y_m = static_cast<float>(p_map.y() - resolution_m_ * (at.row + 0.5));
     const float weight = 1.0F / static_cast<float>(hits.count);
-    hits.mean_x_m += weight * (offset.x() - hits.mean_x_m);
-    hits.mean_y_m += weight * (offset.y() - hits.mean_y_m);
+    hits.mean_x_m += weight * (x_m - hits.mean_x_m);
+    hits.mean_y_m += weight * (y_m - hits.mean_y_m);
   }
   tile->hit_bits[static_cast<std::size_t>(row)] |= 1U << col;
   tile->update_surface_bit(col, row);
   has_surface_ = true;
 }
 
-// Voxel traversal [Amanatides87], tile by tile. The step from cell to cell has no branches: whether a ray crosses into
-// the next column or into the next row first is hard to predict.
+// Voxel traversal [Amanatides87], tile by tile.
 void GridMap::add_free_ray(const Eigen::Vector2d& from_map, const Eigen::Vector2d& to_map, int weight,
                            bool stop_at_surface) {
   const Eigen::Vector2d ray = to_map - from_map;
@@ -70,8 +70,9 @@ void GridMap::add_free_ray(const Eigen::Vector2d& from_map, const Eigen::Vector2
   double next_x = first_crossing(at.col, step_x, from_map.x(), direction.x());
   double next_y = first_crossing(at.row, step_y, from_map.y(), direction.y());
   const auto is_near_mean = [&](Cell cell, const GridTile::Hits& hits) {
-    const Eigen::Vector2d to_mean = center_of(cell) + Eigen::Vector2d(hits.mean_x_m, hits.mean_y_m) - from_map;
-    return std::abs(direction.x() * to_mean.y() - direction.y() * to_mean.x()) < kPassToleranceInCells * resolution_m_;
+    const double x_m = resolution_m_ * (cell.col + 0.5) + static_cast<double>(hits.mean_x_m) - from_map.x(),
+                 y_m = resolution_m_ * (cell.row + 0.5) + static_cast<double>(hits.mean_y_m) - from_map.y();
+    return std::abs(direction.x() * y_m - direction.y() * x_m) < kPassToleranceInCells * resolution_m_;
   };
 
   for (double traveled = 0.0; traveled < length_m;) {
@@ -90,12 +91,15 @@ void GridMap::add_free_ray(const Eigen::Vector2d& from_map, const Eigen::Vector2
           tile->update_surface_bit(col, row);
         }
       }
-      const bool is_column = next_x < next_y;
-      traveled = is_column ? next_x : next_y;
-      next_x += is_column ? delta_x : 0.0;
-      next_y += is_column ? 0.0 : delta_y;
-      col += is_column ? step_x : 0;
-      row += is_column ? 0 : step_y;
+      if (next_x < next_y) {
+        traveled = next_x;
+        next_x += delta_x;
+        col += step_x;
+      } else {
+        traveled = next_y;
+        next_y += delta_y;
+        row += step_y;
+      }
     } while (traveled < length_m && ((col | row) & ~(GridTile::kSize - 1)) == 0);
     at = {corner.col + col, corner.row + row};
   }
