@@ -26,29 +26,32 @@ GridMap::GridMap(double resolution_m, double max_extent_m)
       inverse_resolution_(1.0 / resolution_m),
       max_tile_(std::max(1, static_cast<int>(std::ceil(max_extent_m / (2.0 * resolution_m * GridTile::kSize))))) {}
 
-const GridCell* GridMap::find(Cell cell) const {
+std::optional<GridCell> GridMap::find(Cell cell) const {
   const GridTile* tile = tile_at(tile_of(cell.col), tile_of(cell.row));
-  return tile ? &tile->at(local(cell.col), local(cell.row)) : nullptr;
+  return tile ? std::optional(tile->at(local(cell.col), local(cell.row))) : std::nullopt;
 }
 
 void GridMap::add_hit(const Eigen::Vector2d& p_map) {
   const Cell at = cell_at(p_map);
   GridTile* tile = writable_tile(tile_of(at.col), tile_of(at.row));
   if (!tile) return;
+  if (tile->hits.empty()) tile->hits.resize(GridTile::kSize * GridTile::kSize);
   const int col = local(at.col), row = local(at.row);
-  GridCell& cell = tile->at(col, row);
-  if (cell.hits < kMaxCount) {
-    ++cell.hits;
-    const Eigen::Vector2f offset = (p_map - center_of(at)).cast<float>();
-    const float weight = 1.0F / static_cast<float>(cell.hits);
-    cell.mean_x_m += weight * (offset.x() - cell.mean_x_m);
-    cell.mean_y_m += weight * (offset.y() - cell.mean_y_m);
+  GridTile::Hits& hits = tile->hits[GridTile::index_of(col, row)];
+  if (hits.count < kMaxCount) {
+    ++hits.count;
+    const auto x_m = static_cast<float>(p_map.x() - resolution_m_ * (at.col + 0.5)),
+               y_m = static_cast<float>(p_map.y() - resolution_m_ * (at.row + 0.5));
+    const float weight = 1.0F / static_cast<float>(hits.count);
+    hits.mean_x_m += weight * (x_m - hits.mean_x_m);
+    hits.mean_y_m += weight * (y_m - hits.mean_y_m);
   }
+  tile->hit_bits[static_cast<std::size_t>(row)] |= 1U << col;
   tile->update_surface_bit(col, row);
   has_surface_ = true;
 }
 
-// Voxel traversal [Amanatides87].
+// Voxel traversal [Amanatides87], tile by tile.
 void GridMap::add_free_ray(const Eigen::Vector2d& from_map, const Eigen::Vector2d& to_map, int weight,
                            bool stop_at_surface) {
   const Eigen::Vector2d ray = to_map - from_map;
@@ -66,44 +69,48 @@ void GridMap::add_free_ray(const Eigen::Vector2d& from_map, const Eigen::Vector2
   };
   double next_x = first_crossing(at.col, step_x, from_map.x(), direction.x());
   double next_y = first_crossing(at.row, step_y, from_map.y(), direction.y());
-  const double pass_tolerance_m = kPassToleranceInCells * resolution_m_;
+  const auto is_near_mean = [&](Cell cell, const GridTile::Hits& hits) {
+    const double x_m = resolution_m_ * (cell.col + 0.5) + static_cast<double>(hits.mean_x_m) - from_map.x(),
+                 y_m = resolution_m_ * (cell.row + 0.5) + static_cast<double>(hits.mean_y_m) - from_map.y();
+    return std::abs(direction.x() * y_m - direction.y() * x_m) < kPassToleranceInCells * resolution_m_;
+  };
 
-  GridTile* tile = nullptr;
-  int tile_col = 0, tile_row = 0;
   for (double traveled = 0.0; traveled < length_m;) {
-    if (!tile || tile_of(at.col) != tile_col || tile_of(at.row) != tile_row) {
-      tile_col = tile_of(at.col), tile_row = tile_of(at.row);
-      tile = writable_tile(tile_col, tile_row);
-      if (!tile) return;
-    }
-    const int col = local(at.col), row = local(at.row);
-    GridCell& cell = tile->at(col, row);
-    if (cell.hits == 0) {
-      cell.passes = add_saturated(cell.passes, weight);
-    } else {
-      if (stop_at_surface && cell.is_surface()) return;
-      const Eigen::Vector2d to_mean = center_of(at) + Eigen::Vector2d(cell.mean_x_m, cell.mean_y_m) - from_map;
-      if (std::abs(direction.x() * to_mean.y() - direction.y() * to_mean.x()) < pass_tolerance_m) {
-        cell.passes = add_saturated(cell.passes, weight);
-        tile->update_surface_bit(col, row);
+    GridTile* tile = writable_tile(tile_of(at.col), tile_of(at.row));
+    if (!tile) return;
+    const Cell corner{at.col - local(at.col), at.row - local(at.row)};
+    int col = local(at.col), row = local(at.row);
+    do {
+      const std::size_t index = GridTile::index_of(col, row);
+      if (!tile->has_hits(col, row)) {
+        tile->passes[index] = add_saturated(tile->passes[index], weight);
+      } else {
+        if (stop_at_surface && tile->is_surface(col, row)) return;
+        if (is_near_mean({corner.col + col, corner.row + row}, tile->hits[index])) {
+          tile->passes[index] = add_saturated(tile->passes[index], weight);
+          tile->update_surface_bit(col, row);
+        }
       }
-    }
-    if (next_x < next_y) {
-      traveled = next_x;
-      next_x += delta_x;
-      at.col += step_x;
-    } else {
-      traveled = next_y;
-      next_y += delta_y;
-      at.row += step_y;
-    }
+      if (next_x < next_y) {
+        traveled = next_x;
+        next_x += delta_x;
+        col += step_x;
+      } else {
+        traveled = next_y;
+        next_y += delta_y;
+        row += step_y;
+      }
+    } while (traveled < length_m && ((col | row) & ~(GridTile::kSize - 1)) == 0);
+    at = {corner.col + col, corner.row + row};
   }
 }
 
 GridTile* GridMap::writable_tile(int tile_col, int tile_row) {
   const auto is_kept = [this](int index) { return index >= -max_tile_ && index < max_tile_; };
   if (!is_kept(tile_col) || !is_kept(tile_row)) return nullptr;
-  grow_to_include(tile_col, tile_row);
+  if (static_cast<unsigned>(tile_col - first_col_) >= static_cast<unsigned>(num_cols_) ||
+      static_cast<unsigned>(tile_row - first_row_) >= static_cast<unsigned>(num_rows_))
+    grow_to_include(tile_col, tile_row);
   auto& tile = tiles_[static_cast<std::size_t>((tile_row - first_row_) * num_cols_ + tile_col - first_col_)];
   if (!tile) {
     tile = std::make_shared<GridTile>();
@@ -116,9 +123,6 @@ GridTile* GridMap::writable_tile(int tile_col, int tile_row) {
 // Grows by a margin of tiles, so that the pointers are not copied at every step.
 void GridMap::grow_to_include(int tile_col, int tile_row) {
   constexpr int kMargin = 16;
-  const bool is_inside = tile_col >= first_col_ && tile_col < first_col_ + num_cols_ && tile_row >= first_row_ &&
-                         tile_row < first_row_ + num_rows_;
-  if (is_inside) return;
   const bool is_empty = tiles_.empty();
   const auto grown = [&](int index, int first, int count) {
     int low = is_empty ? index : first, high = is_empty ? index + 1 : first + count;

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -29,18 +29,41 @@ struct GridCell {
   /// the passes.
   bool is_surface() const { return hits > 0 && 4U * hits >= passes; }
   bool is_observed() const { return hits > 0 || passes > 0; }
+  bool operator==(const GridCell&) const = default;
 };
 
-/// Square block of cells, shared between particles and copied on write.
+/// Square block of cells, shared between particles and copied on write. Passes are separate from hits: a row of passes
+/// is one cache line, and most tiles have no hits.
 struct GridTile {
   static constexpr int kBits = 5;
   static constexpr int kSize = 1 << kBits;
 
-  std::array<GridCell, kSize * kSize> cells{};      ///< [row][col]
-  std::array<std::uint32_t, kSize> surface_bits{};  ///< [row]: bit col is cells[row][col].is_surface()
+  /// Hits of a cell.
+  struct Hits {
+    float mean_x_m = 0.0F;  ///< mean of the hits relative to the cell center
+    float mean_y_m = 0.0F;
+    std::uint16_t count = 0;
+  };
 
-  GridCell& at(int col, int row) { return cells[static_cast<std::size_t>(row * kSize + col)]; }
-  const GridCell& at(int col, int row) const { return cells[static_cast<std::size_t>(row * kSize + col)]; }
+  alignas(64) std::array<std::uint16_t, kSize * kSize> passes{};  ///< [row][col]
+  std::array<std::uint32_t, kSize> hit_bits{};                    ///< [row]: bit col is at(col, row).hits > 0
+  std::array<std::uint32_t, kSize> surface_bits{};                ///< [row]: bit col is at(col, row).is_surface()
+  std::vector<Hits> hits;                                         ///< [row][col]; empty: no cell has hits
+
+  static std::size_t index_of(int col, int row) { return static_cast<std::size_t>(row * kSize + col); }
+  bool has_hits(int col, int row) const { return (hit_bits[static_cast<std::size_t>(row)] >> col & 1U) != 0; }
+  bool is_surface(int col, int row) const { return (surface_bits[static_cast<std::size_t>(row)] >> col & 1U) != 0; }
+  GridCell at(int col, int row) const;
+  /// Calls `visit(col, row, hits)` for the surface cells in ascending row order.
+  template <typename Visitor>
+  void for_each_surface(Visitor&& visit) const {
+    for (int row = 0; row < kSize; ++row) {
+      for (std::uint32_t bits = surface_bits[static_cast<std::size_t>(row)]; bits != 0; bits &= bits - 1) {
+        const int col = std::countr_zero(bits);
+        visit(col, row, hits[index_of(col, row)]);
+      }
+    }
+  }
   void update_surface_bit(int col, int row);
 };
 
@@ -54,20 +77,19 @@ class GridMap {
 
   double resolution_m() const { return resolution_m_; }
   Cell cell_at(const Eigen::Vector2d& p_map) const {
-    return {static_cast<int>(std::floor(p_map.x() * inverse_resolution_)),
-            static_cast<int>(std::floor(p_map.y() * inverse_resolution_))};
+    return {floor_to_int(p_map.x() * inverse_resolution_), floor_to_int(p_map.y() * inverse_resolution_)};
   }
   Eigen::Vector2d center_of(Cell cell) const { return resolution_m_ * Eigen::Vector2d(cell.col + 0.5, cell.row + 0.5); }
 
-  /// Returns null in tiles without observations.
-  const GridCell* find(Cell cell) const;
+  /// Returns none in tiles without observations.
+  std::optional<GridCell> find(Cell cell) const;
   bool is_surface(Cell cell) const { return is_surface_within(cell, 0); }
   /// Returns whether a surface cell is at most `radius` columns and rows away; radius < 16.
   bool is_surface_within(Cell cell, int radius) const {
     return visit_surface(cell, radius, [](const GridTile&, int, int, Cell) { return true; });
   }
-  /// Calls `visit(mean, hits)` for every surface cell at most `radius` columns and rows away, with the mean of its hits
-  /// in map and their number.
+  /// Calls `visit(mean_x_m, mean_y_m, hits)` for every surface cell at most `radius` columns and rows away, with the
+  /// mean of its hits in map and their number.
   template <typename Visitor>
   void for_each_surface_near(Cell cell, int radius, Visitor&& visit) const;
 
@@ -93,6 +115,10 @@ class GridMap {
   }
 
  private:
+  static int floor_to_int(double value) {
+    const int truncated = static_cast<int>(value);
+    return static_cast<int>(static_cast<unsigned>(truncated) - (value < truncated ? 1U : 0U));
+  }
   static int tile_of(int index) { return index >> GridTile::kBits; }
   static int local(int index) { return index & (GridTile::kSize - 1); }
 
@@ -106,6 +132,18 @@ class GridMap {
   template <typename Visitor>
   bool visit_surface(Cell cell, int radius, Visitor&& visit) const;
 
+  /// Columns and rows of a tile.
+  struct LocalWindow {
+    int col = 0, row = 0;            ///< first column and row
+    int num_cols = 1, num_rows = 1;  ///< number of columns and rows
+  };
+  /// Calls `visit(col, row)` for the surface cells of a window until it returns true, in ascending row order.
+  template <typename Visitor>
+  static bool visit_rows(const GridTile& tile, const LocalWindow& window, Visitor&& visit);
+  /// The same for a window of at most 8 columns and rows.
+  template <typename Visitor>
+  static bool visit_small(const GridTile& tile, const LocalWindow& window, Visitor&& visit);
+
   double resolution_m_;
   double inverse_resolution_;
   int max_tile_;                                                     ///< tiles from -max_tile_ to max_tile_ - 1 exist
@@ -114,8 +152,19 @@ class GridMap {
   bool has_surface_ = false;
 };
 
-// Visits surface cells until the visitor returns true. One word of bits covers a row of a tile, so that the mostly
-// empty neighborhood costs a few instructions per row.
+inline GridCell GridTile::at(int col, int row) const {
+  const std::size_t index = index_of(col, row);
+  GridCell cell{.passes = passes[index]};
+  if (has_hits(col, row)) {
+    cell.mean_x_m = hits[index].mean_x_m;
+    cell.mean_y_m = hits[index].mean_y_m;
+    cell.hits = hits[index].count;
+  }
+  return cell;
+}
+
+// Visits surface cells until the visitor returns true. One word of bits covers a row of a tile, and one word of 8 x 8
+// bits a small window in a tile, so that the mostly empty neighborhood costs a few instructions.
 template <typename Visitor>
 bool GridMap::visit_surface(Cell cell, int radius, Visitor&& visit) const {
   const int col_end = cell.col + radius, row_end = cell.row + radius;
@@ -126,14 +175,11 @@ bool GridMap::visit_surface(Cell cell, int radius, Visitor&& visit) const {
       const int tile_col = tile_of(col);
       const int last_col = std::min(col_end, (tile_col + 1) * GridTile::kSize - 1);
       if (const GridTile* tile = tile_at(tile_col, tile_row)) {
-        const std::uint32_t window = (~0U >> (31 - (last_col - col))) << local(col);
-        for (int r = row; r <= last_row; ++r) {
-          for (std::uint32_t bits = tile->surface_bits[static_cast<std::size_t>(local(r))] & window; bits != 0;
-               bits &= bits - 1) {
-            const int c = std::countr_zero(bits);
-            if (visit(*tile, c, local(r), Cell{tile_col * GridTile::kSize + c, r})) return true;
-          }
-        }
+        const auto visit_local = [&](int c, int r) {
+          return visit(*tile, c, r, Cell{tile_col * GridTile::kSize + c, tile_row * GridTile::kSize + r});
+        };
+        const LocalWindow window{local(col), local(row), last_col - col + 1, last_row - row + 1};
+        if (radius < 4 ? visit_small(*tile, window, visit_local) : visit_rows(*tile, window, visit_local)) return true;
       }
       col = last_col + 1;
     }
@@ -143,11 +189,37 @@ bool GridMap::visit_surface(Cell cell, int radius, Visitor&& visit) const {
 }
 
 template <typename Visitor>
+bool GridMap::visit_small(const GridTile& tile, const LocalWindow& window, Visitor&& visit) {
+  const std::uint32_t row_mask = (1U << window.num_cols) - 1U;
+  std::uint64_t bits = 0;
+  for (int i = 0; i < window.num_rows; ++i) {
+    const std::uint64_t row_bits = tile.surface_bits[static_cast<std::size_t>(window.row + i)] >> window.col & row_mask;
+    bits |= row_bits << (8 * i);
+  }
+  for (; bits != 0; bits &= bits - 1) {
+    const int bit = std::countr_zero(bits);
+    if (visit(window.col + (bit & 7), window.row + (bit >> 3))) return true;
+  }
+  return false;
+}
+
+template <typename Visitor>
+bool GridMap::visit_rows(const GridTile& tile, const LocalWindow& window, Visitor&& visit) {
+  const std::uint32_t mask = (~0U >> (32 - window.num_cols)) << window.col;
+  for (int row = window.row; row < window.row + window.num_rows; ++row) {
+    for (std::uint32_t bits = tile.surface_bits[static_cast<std::size_t>(row)] & mask; bits != 0; bits &= bits - 1) {
+      if (visit(std::countr_zero(bits), row)) return true;
+    }
+  }
+  return false;
+}
+
+template <typename Visitor>
 void GridMap::for_each_surface_near(Cell cell, int radius, Visitor&& visit) const {
   visit_surface(cell, radius, [&](const GridTile& tile, int col, int row, Cell at) {
-    const GridCell& hit_cell = tile.at(col, row);
-    const Eigen::Vector2d mean = center_of(at) + Eigen::Vector2d(hit_cell.mean_x_m, hit_cell.mean_y_m);
-    visit(mean, static_cast<int>(hit_cell.hits));
+    const GridTile::Hits& hits = tile.hits[GridTile::index_of(col, row)];
+    visit(resolution_m_ * (at.col + 0.5) + static_cast<double>(hits.mean_x_m),
+          resolution_m_ * (at.row + 0.5) + static_cast<double>(hits.mean_y_m), static_cast<int>(hits.count));
     return false;
   });
 }

@@ -1,7 +1,6 @@
 #include "slam/map_rendering.h"
 
 #include <algorithm>
-#include <bit>
 #include <limits>
 
 #include "slam/local_line.h"
@@ -24,6 +23,8 @@ GridGeometry observed_extent(const GridMap& map) {
   constexpr int kFar = std::numeric_limits<int>::max();
   int col_min = kFar, row_min = kFar, col_max = -kFar, row_max = -kFar;
   map.for_each_tile([&](Cell first, const GridTile& tile) {
+    const int last_col = first.col + GridTile::kSize - 1, last_row = first.row + GridTile::kSize - 1;
+    if (first.col >= col_min && last_col <= col_max && first.row >= row_min && last_row <= row_max) return;
     for (int row = 0; row < GridTile::kSize; ++row) {
       for (int col = 0; col < GridTile::kSize; ++col) {
         if (!tile.at(col, row).is_observed()) continue;
@@ -48,23 +49,21 @@ OccupancyGrid render_map(const GridMap& map, int min_hits, double min_hit_ratio)
 
   map.for_each_tile([&](Cell first, const GridTile& tile) {
     for (int row = 0; row < GridTile::kSize; ++row) {
+      const std::uint16_t* passes = &tile.passes[GridTile::index_of(0, row)];
       for (int col = 0; col < GridTile::kSize; ++col) {
-        if (tile.at(col, row).passes > 0) grid.at(to_grid({first.col + col, first.row + row})) = kFree;
+        if (passes[col] > 0) grid.at(to_grid({first.col + col, first.row + row})) = kFree;
       }
     }
   });
   map.for_each_tile([&](Cell first, const GridTile& tile) {
-    for (int row = 0; row < GridTile::kSize; ++row) {
-      for (std::uint32_t bits = tile.surface_bits[static_cast<std::size_t>(row)]; bits != 0; bits &= bits - 1) {
-        const int col = std::countr_zero(bits);
-        const GridCell& cell = tile.at(col, row);
-        if (cell.hits < min_hits || cell.hits < min_hit_ratio * (cell.hits + cell.passes)) continue;
-        const Eigen::Vector2d mean =
-            map.center_of({first.col + col, first.row + row}) + Eigen::Vector2d(cell.mean_x_m, cell.mean_y_m);
-        const Cell at = to_grid(map.cell_at(surface_point(map, mean)));
-        if (grid.contains(at)) grid.at(at) = kOccupied;
-      }
-    }
+    tile.for_each_surface([&](int col, int row, const GridTile::Hits& hits) {
+      const int passes = tile.passes[GridTile::index_of(col, row)];
+      if (hits.count < min_hits || hits.count < min_hit_ratio * (hits.count + passes)) return;
+      const Eigen::Vector2d mean =
+          map.center_of({first.col + col, first.row + row}) + Eigen::Vector2d(hits.mean_x_m, hits.mean_y_m);
+      const Cell at = to_grid(map.cell_at(surface_point(map, mean)));
+      if (grid.contains(at)) grid.at(at) = kOccupied;
+    });
   });
   return grid;
 }

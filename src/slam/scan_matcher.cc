@@ -7,77 +7,126 @@
 #include <Eigen/Cholesky>
 
 #include "core/geometry/linear_algebra.h"
-#include "slam/local_line.h"
+#include "slam/line_fit.h"
 
 namespace patrol::slam {
 namespace {
 
 constexpr double kStepTolerance_m = 2e-4;
 constexpr double kStepTolerance_rad = 1e-5;
+/// Distance from a known optimum below which an iteration would converge to it.
+constexpr double kSameOptimum_m = 0.005, kSameOptimum_rad = 0.005;
 constexpr int kMinPoints = 6;  // three points suffice for three unknowns; the margin is for noise
+
+double squared(double value) { return value * value; }
+
+/// Cauchy loss of a point: kernel^2 log(1 + ratio) / (2 variance).
+struct Loss {
+  double variance = 1.0;
+  double ratio = 0.0;  ///< squared residual / squared scale of the kernel
+};
+
+/// Contribution of one point to the normal equations.
+struct PointTerm {
+  bool has_line = false;  ///< false: no surface nearby
+  double normal_x = 0.0, normal_y = 0.0;
+  double arm_x_m = 0.0, arm_y_m = 0.0;  ///< vector from the body to the point, rotated into map
+  double residual_m = 0.0, weight = 0.0;
+  Loss loss = {};
+};
+
+/// Terms of the points of a scan at a pose.
+class Terms {
+ public:
+  Terms(const GridMap& map, const Pose2& T_map_body, const ScanMatcherSettings& settings)
+      : map_(map),
+        settings_(settings),
+        R_(Eigen::Rotation2Dd(T_map_body.yaw).toRotationMatrix()),
+        t_(T_map_body.position()) {}
+
+  /// Returns false in unobserved cells, and near a surface with too few hits for a line, which the map hardly knows
+  /// yet. `term` is then undefined.
+  bool compute(const MatchPoint& point, PointTerm& term) const {
+    const double x = point.p_body.x(), y = point.p_body.y();
+    term.arm_x_m = R_(0, 0) * x + R_(0, 1) * y, term.arm_y_m = R_(1, 0) * x + R_(1, 1) * y;
+    const double px = t_.x() + term.arm_x_m, py = t_.y() + term.arm_y_m;
+    const Eigen::Vector2d p_map(px, py);
+    const double point_var = point_std_var_ + squared(settings_.point_angle_std_rad * point.range_m);
+    LineFit line;
+    term.has_line = fit_line(map_, p_map, settings_.surface_radius_cells, line);
+    if (!term.has_line) {
+      term.loss = {.variance = point_var, .ratio = unmatched_ratio_};
+      const Cell at = map_.cell_at(p_map);
+      const std::optional<GridCell> cell = map_.find(at);
+      return cell && cell->is_observed() && !map_.is_surface_within(at, settings_.surface_radius_cells);
+    }
+    // Cauchy: loss = kernel^2 log(1 + (r/kernel)^2), weight = 1 / (1 + (r/kernel)^2).
+    term.normal_x = line.normal_x, term.normal_y = line.normal_y;
+    term.residual_m = line.normal_x * (px - (px + line.mean_x_m)) + line.normal_y * (py - (py + line.mean_y_m));
+    const double variance = point_var + line.normal_var_m2 + point_std_var_ / line.num_hits,
+                 ratio = squared(term.residual_m) / kernel_var_;
+    term.weight = squared(line.linearity) / (variance * (1.0 + ratio));
+    term.loss = {.variance = variance, .ratio = ratio};
+    return true;
+  }
+
+  double log_likelihood(const Loss& loss) const {
+    const double log = loss.ratio == unmatched_ratio_ ? unmatched_log_ : std::log1p(loss.ratio);
+    return -0.5 * kernel_var_ / loss.variance * log;
+  }
+
+ private:
+  const GridMap& map_;
+  const ScanMatcherSettings& settings_;
+  Eigen::Matrix2d R_;
+  Eigen::Vector2d t_;
+  double point_std_var_ = squared(settings_.point_std_m);
+  double kernel_var_ = squared(settings_.kernel_m);
+  double unmatched_ratio_ = squared(settings_.surface_radius_cells * map_.resolution_m()) / kernel_var_;
+  double unmatched_log_ = std::log1p(unmatched_ratio_);
+};
 
 /// Normal equations of the scan terms at a pose, without the prior.
 struct NormalEquations {
   Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
-  double log_likelihood = 0.0;
-  int num_observed = 0;  ///< points in observed cells
-  int num_matched = 0;   ///< points near a surface, out of num_observed
+  int num_matched = 0;  ///< points near a surface, out of those in observed cells
 };
 
-double squared(double value) { return value * value; }
-
-/// Contribution of one point to the normal equations.
-struct PointTerm {
-  std::optional<LocalLine> line;  ///< none: no surface nearby
-  Eigen::Vector2d arm;            ///< vector from the body to the point, rotated into map
-  double residual_m = 0.0, variance = 0.0, weight = 0.0;
-  double log_likelihood = 0.0;
-};
-
-/// Returns none in unobserved cells, and near a surface with too few hits for a line, which the map hardly knows yet.
-std::optional<PointTerm> to_term(const GridMap& map, const MatchPoint& point, const Eigen::Matrix2d& R,
-                                 const Eigen::Vector2d& t, const ScanMatcherSettings& settings) {
-  const double kernel_var = squared(settings.kernel_m);
-  PointTerm term{.line = {}, .arm = R * point.p_body};
-  const Eigen::Vector2d p_map = t + term.arm;
-  const double point_var = squared(settings.point_std_m) + squared(settings.point_angle_std_rad * point.range_m);
-  term.line = fit_local_line(map, p_map, settings.surface_radius_cells);
-  if (!term.line) {
-    const Cell at = map.cell_at(p_map);
-    const GridCell* cell = map.find(at);
-    if (!cell || !cell->is_observed() || map.is_surface_within(at, settings.surface_radius_cells)) return std::nullopt;
-    term.log_likelihood = -0.5 * kernel_var / point_var *
-                          std::log1p(squared(settings.surface_radius_cells * map.resolution_m()) / kernel_var);
-    return term;
+/// Fills `losses` with those of the points in observed cells. Sums are in scalars, which stay in registers.
+NormalEquations linearize(const Terms& terms, const std::vector<MatchPoint>& points, std::vector<Loss>& losses) {
+  double xx = 0.0, xy = 0.0, xz = 0.0, yx = 0.0, yy = 0.0, yz = 0.0, zx = 0.0, zy = 0.0, zz = 0.0;
+  double bx = 0.0, by = 0.0, bz = 0.0;
+  int num_matched = 0;
+  losses.clear();
+  PointTerm term;
+  for (const MatchPoint& point : points) {
+    if (!terms.compute(point, term)) continue;
+    losses.push_back(term.loss);
+    if (!term.has_line) continue;
+    ++num_matched;
+    const double x = term.normal_x, y = term.normal_y, z = y * term.arm_x_m - x * term.arm_y_m;  // Jacobian
+    const double wx = term.weight * x, wy = term.weight * y, wz = term.weight * z, wr = term.weight * term.residual_m;
+    xx += wx * x, xy += wx * y, xz += wx * z;  // to the bit, the sum is not symmetric
+    yx += wy * x, yy += wy * y, yz += wy * z;
+    zx += wz * x, zy += wz * y, zz += wz * z;
+    bx += wr * x, by += wr * y, bz += wr * z;
   }
-  // Cauchy: loss = kernel^2 log(1 + (r/kernel)^2), weight = 1 / (1 + (r/kernel)^2).
-  term.residual_m = term.line->distance_m(p_map);
-  term.variance = point_var + term.line->normal_var_m2 + squared(settings.point_std_m) / term.line->num_hits;
-  const double ratio = squared(term.residual_m) / kernel_var;
-  term.weight = squared(term.line->linearity) / (term.variance * (1.0 + ratio));
-  term.log_likelihood = -0.5 * kernel_var / term.variance * std::log1p(ratio);
-  return term;
+  NormalEquations sum{.num_matched = num_matched};
+  sum.H << xx, xy, xz, yx, yy, yz, zx, zy, zz;
+  sum.b << bx, by, bz;
+  return sum;
 }
 
-NormalEquations linearize(const GridMap& map, const std::vector<MatchPoint>& points, const Pose2& T_map_body,
-                          const ScanMatcherSettings& settings) {
-  NormalEquations sum;
-  const Eigen::Matrix2d R = Eigen::Rotation2Dd(T_map_body.yaw).toRotationMatrix();
-  const Eigen::Vector2d t = T_map_body.position();
-  for (const MatchPoint& point : points) {
-    const std::optional<PointTerm> term = to_term(map, point, R, t, settings);
-    if (!term) continue;
-    ++sum.num_observed;
-    sum.log_likelihood += term->log_likelihood;
-    if (!term->line) continue;
-    ++sum.num_matched;
-    const Eigen::Vector2d& n = term->line->normal_map;
-    const Eigen::Vector3d J(n.x(), n.y(), n.y() * term->arm.x() - n.x() * term->arm.y());
-    sum.H += term->weight * J * J.transpose();
-    sum.b += term->weight * term->residual_m * J;
-  }
+double total_log_likelihood(const Terms& terms, const std::vector<Loss>& losses) {
+  double sum = 0.0;
+  for (const Loss& loss : losses) sum += terms.log_likelihood(loss);
   return sum;
+}
+
+bool is_near(const Pose2& a, const Pose2& b) {
+  return (a.position() - b.position()).norm() < kSameOptimum_m &&
+         std::abs(wrap_angle(a.yaw - b.yaw)) < kSameOptimum_rad;
 }
 
 /// Number of points on or next to a surface cell.
@@ -91,14 +140,17 @@ int count_on_surface(const GridMap& map, const std::vector<Eigen::Vector2d>& rot
 
 std::optional<MatchResult> match_scan(const GridMap& map, const std::vector<MatchPoint>& points,
                                       const Pose2& T_map_start, const std::optional<PoseGaussian>& prior,
-                                      const ScanMatcherSettings& settings) {
+                                      const ScanMatcherSettings& settings, const Pose2* T_map_known) {
   MatchResult result{.T_map_body = T_map_start};
   Eigen::Matrix3d prior_information = Eigen::Matrix3d::Zero();
   if (prior) prior_information = prior->covariance.inverse();
+  std::vector<Loss> losses;
+  losses.reserve(points.size());
 
   while (!result.converged && result.iterations < settings.max_iterations) {
-    const NormalEquations sum = linearize(map, points, result.T_map_body, settings);
-    const double inlier_ratio = sum.num_observed > 0 ? static_cast<double>(sum.num_matched) / sum.num_observed : 0.0;
+    const Terms terms(map, result.T_map_body, settings);
+    const NormalEquations sum = linearize(terms, points, losses);
+    const double inlier_ratio = losses.empty() ? 0.0 : sum.num_matched / static_cast<double>(losses.size());
     if (sum.num_matched < kMinPoints || inlier_ratio < settings.min_inlier_ratio) return std::nullopt;
 
     Eigen::Matrix3d H = sum.H + prior_information;
@@ -109,33 +161,44 @@ std::optional<MatchResult> match_scan(const GridMap& map, const std::vector<Matc
     if (!step.allFinite()) return std::nullopt;
 
     result.T_map_body = perturbed(result.T_map_body, step);
+    if (T_map_known && is_near(result.T_map_body, *T_map_known)) return std::nullopt;
     result.information = sum.H;
-    result.log_likelihood = sum.log_likelihood;
     result.inlier_ratio = inlier_ratio;
     result.num_matched = sum.num_matched;
     result.converged = step.head<2>().norm() < kStepTolerance_m && std::abs(step.z()) < kStepTolerance_rad;
     ++result.iterations;
+    if (result.converged || result.iterations == settings.max_iterations)
+      result.log_likelihood = total_log_likelihood(terms, losses);
   }
   return result;
 }
 
 double scan_log_likelihood(const GridMap& map, const std::vector<MatchPoint>& points, const Pose2& T_map_body,
                            const ScanMatcherSettings& settings) {
-  const NormalEquations sum = linearize(map, points, T_map_body, settings);
+  const Terms terms(map, T_map_body, settings);
+  double sum = 0.0;
+  std::size_t num_observed = 0;
+  PointTerm term;
+  for (const MatchPoint& point : points) {
+    if (!terms.compute(point, term)) continue;
+    sum += terms.log_likelihood(term.loss);
+    ++num_observed;
+  }
   const double kernel_var = squared(settings.kernel_m);
   const double outlier_loss = std::log1p(squared(settings.surface_radius_cells * map.resolution_m()) / kernel_var);
-  const double num_unknown = static_cast<double>(points.size()) - sum.num_observed;
-  return sum.log_likelihood - 0.5 * num_unknown * kernel_var / squared(settings.point_std_m) * outlier_loss;
+  const double num_unknown = static_cast<double>(points.size()) - static_cast<double>(num_observed);
+  return sum - 0.5 * num_unknown * kernel_var / squared(settings.point_std_m) * outlier_loss;
 }
 
 std::vector<double> point_log_likelihoods(const GridMap& map, const std::vector<MatchPoint>& points,
                                           const Pose2& T_map_body, const ScanMatcherSettings& settings) {
-  const Eigen::Matrix2d R = Eigen::Rotation2Dd(T_map_body.yaw).toRotationMatrix();
+  const Terms terms(map, T_map_body, settings);
   std::vector<double> log_likelihoods;
   log_likelihoods.reserve(points.size());
+  PointTerm term;
   for (const MatchPoint& point : points) {
-    const std::optional<PointTerm> term = to_term(map, point, R, T_map_body.position(), settings);
-    log_likelihoods.push_back(term ? term->log_likelihood : std::numeric_limits<double>::quiet_NaN());
+    const bool is_known = terms.compute(point, term);
+    log_likelihoods.push_back(is_known ? terms.log_likelihood(term.loss) : std::numeric_limits<double>::quiet_NaN());
   }
   return log_likelihoods;
 }

@@ -35,9 +35,12 @@ struct MatchResult {
 ///
 /// With a `prior`, its squared Mahalanobis distance is part of the sum, so that odometry constrains the direction along
 /// a corridor. Returns none if too few points matched a surface.
+///
+/// `T_map_known`, if not null, is the pose of an earlier match of the scan. Returns none as soon as an iteration is
+/// within 5 mm and 5 mrad of it: another start pose that leads to the same match is of no interest.
 std::optional<MatchResult> match_scan(const GridMap& map, const std::vector<MatchPoint>& points,
                                       const Pose2& T_map_start, const std::optional<PoseGaussian>& prior,
-                                      const ScanMatcherSettings& settings);
+                                      const ScanMatcherSettings& settings, const Pose2* T_map_known = nullptr);
 
 /// Log likelihood of a scan at a pose, up to a constant. Unlike in match_scan, points in unobserved cells have the loss
 /// of points far from all surfaces; otherwise a search would prefer poses outside the map.

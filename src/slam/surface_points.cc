@@ -9,17 +9,13 @@ namespace patrol::slam {
 std::vector<Eigen::Vector2d> surface_points(const GridMap& map) {
   std::map<std::pair<int, int>, std::pair<Eigen::Vector2d, double>> squares;  // [row, col]
   map.for_each_tile([&](Cell first, const GridTile& tile) {
-    for (int row = 0; row < GridTile::kSize; ++row) {
-      for (int col = 0; col < GridTile::kSize; ++col) {
-        const GridCell& cell = tile.at(col, row);
-        if (!cell.is_surface() || cell.hits < 2) continue;
-        const Cell at{first.col + col, first.row + row};
-        auto& [sum, weight] =
-            squares.try_emplace({at.row >> 1, at.col >> 1}, Eigen::Vector2d::Zero(), 0.0).first->second;
-        sum += cell.hits * (map.center_of(at) + Eigen::Vector2d(cell.mean_x_m, cell.mean_y_m));
-        weight += cell.hits;
-      }
-    }
+    tile.for_each_surface([&](int col, int row, const GridTile::Hits& hits) {
+      if (hits.count < 2) return;
+      const Cell at{first.col + col, first.row + row};
+      auto& [sum, weight] = squares.try_emplace({at.row >> 1, at.col >> 1}, Eigen::Vector2d::Zero(), 0.0).first->second;
+      sum += hits.count * (map.center_of(at) + Eigen::Vector2d(hits.mean_x_m, hits.mean_y_m));
+      weight += hits.count;
+    });
   });
   std::vector<Eigen::Vector2d> points;
   points.reserve(squares.size());
@@ -39,7 +35,7 @@ std::vector<Eigen::Vector2d> estimate_free_space_normals(const std::vector<Eigen
     int free = 0;
     for (int row = at.row - reach; row <= at.row + reach; ++row) {
       for (int col = at.col - reach; col <= at.col + reach; ++col) {
-        const GridCell* cell = map.find({col, row});
+        const std::optional<GridCell> cell = map.find({col, row});
         const Eigen::Vector2d towards = map.center_of({col, row}) - p;
         const double distance_m = towards.norm();
         if (!cell || !cell->is_observed() || cell->is_surface() || distance_m > radius_m || distance_m == 0.0) continue;

@@ -20,7 +20,7 @@ constexpr double kResolution_m = 0.1;
 GridMap make_map() { return GridMap(kResolution_m, 100.0); }
 
 GridCell cell_of(const GridMap& map, Cell cell) {
-  const GridCell* found = map.find(cell);
+  const std::optional<GridCell> found = map.find(cell);
   return found ? *found : GridCell{};
 }
 
@@ -61,7 +61,7 @@ TEST(GridMap, ABeamPassesTheCellsThatItsPointsLieIn) {
     }
     std::size_t passed = 0;
     map.for_each_tile([&](Cell, const GridTile& tile) {
-      for (const GridCell& cell : tile.cells) passed += cell.passes;
+      for (const std::uint16_t passes : tile.passes) passed += passes;
     });
     EXPECT_LE(passed - crossed.size(), 1U) << "a corner nicked between two points";
     for (const auto& [col, row] : crossed) EXPECT_EQ(cell_of(map, {col, row}).passes, 1);
@@ -127,7 +127,7 @@ TEST(GridMap, NothingIsKeptBeyondHalfItsExtent) {
   map.add_hit({3.25, 0.0});
   map.add_hit({0.0, -1e9});
   EXPECT_TRUE(map.is_surface({31, -32}));
-  EXPECT_EQ(map.find({32, 0}), nullptr);
+  EXPECT_EQ(map.find({32, 0}), std::nullopt);
   EXPECT_EQ(map.num_tiles(), 1U);
 }
 
@@ -169,7 +169,8 @@ TEST(GridMap, FindsSurfaceNearbyAsASearchCellByCellDoes) {
               expected.push_back(map.center_of({c, r}) + Eigen::Vector2d(cell.mean_x_m, cell.mean_y_m));
           }
         }
-        map.for_each_surface_near({col, row}, radius, [&](const Eigen::Vector2d& mean, int) { found.push_back(mean); });
+        map.for_each_surface_near(
+            {col, row}, radius, [&](double mean_x_m, double mean_y_m, int) { found.emplace_back(mean_x_m, mean_y_m); });
         const auto by_place = [](const auto& a, const auto& b) {
           return a.y() < b.y() || (a.y() == b.y() && a.x() < b.x());
         };

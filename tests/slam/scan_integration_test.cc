@@ -15,7 +15,7 @@ GridMap map_after(double range_m, bool is_hit, const ScanIntegrationSettings& se
 }
 
 int passes_of(const GridMap& map, int col) {
-  const GridCell* cell = map.find({col, 0});
+  const std::optional<GridCell> cell = map.find({col, 0});
   return cell ? cell->passes : 0;
 }
 

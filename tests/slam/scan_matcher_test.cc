@@ -67,6 +67,37 @@ TEST(MatchScan, RecoversTenCentimetersAndThreeDegreesToFiveMillimetersAndATenthO
 
 // Single beams with the noise that the settings state; the map's own roughness makes the match say a little
 // less.
+TEST(MatchScan, EndsWithoutResultWhereItComesWithinFiveMillimetersAndMilliradiansOfAKnownMatch) {
+  const RoomWorld room = make_room();
+  const GridMap map = make_map(room);
+  const std::vector<MatchPoint> points = look(room, kTruth);
+  const Pose2 start{kTruth.x + 0.08, kTruth.y - 0.06, kTruth.yaw + 3.0 * kDegree};
+  const auto match = match_scan(map, points, start, std::nullopt, {});
+  ASSERT_TRUE(match);
+  Pose2 known = match->T_map_body;
+  EXPECT_FALSE(match_scan(map, points, start, std::nullopt, {}, &known));
+  known.x += 0.0045;
+  EXPECT_FALSE(match_scan(map, points, start, std::nullopt, {}, &known));
+  for (const Pose2& offset : {Pose2{0.0055, 0.0, 0.0}, Pose2{0.0, 0.0, 0.0055}}) {
+    known = {match->T_map_body.x + offset.x, match->T_map_body.y, match->T_map_body.yaw + offset.yaw};
+    const auto beside = match_scan(map, points, match->T_map_body, std::nullopt, {}, &known);
+    ASSERT_TRUE(beside);
+    EXPECT_THAT(beside->T_map_body, Pose2Near(match->T_map_body, 2e-4, 1e-5));
+  }
+}
+
+TEST(MatchScan, LogLikelihoodIsThatOfTheScanAtTheLastLinearization) {
+  const RoomWorld room = make_room();
+  const GridMap map = make_map(room);
+  const std::vector<MatchPoint> points = look(room, kTruth);
+  const auto match = match_scan(map, points, kTruth, std::nullopt, {.max_iterations = 1});
+  ASSERT_TRUE(match);
+  double sum = 0.0;
+  for (const double value : point_log_likelihoods(map, points, kTruth, {})) sum += std::isnan(value) ? 0.0 : value;
+  EXPECT_LT(sum, -1.0);
+  EXPECT_DOUBLE_EQ(match->log_likelihood, sum);
+}
+
 TEST(MatchScan, CovarianceIsConsistentToAFactorOfTwo) {
   const RoomWorld room = make_room();
   const GridMap map = make_map(room);

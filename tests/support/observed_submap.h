@@ -30,7 +30,7 @@ inline SeenSubmap see_submap(const RoomWorld& world, const Pose2& T_world_submap
   submap.map.for_each_tile([&](Cell first, const slam::GridTile& tile) {
     for (int row = 0; row < slam::GridTile::kSize; ++row) {
       for (int col = 0; col < slam::GridTile::kSize; ++col) {
-        const slam::GridCell& cell = tile.at(col, row);
+        const slam::GridCell cell = tile.at(col, row);
         if (!cell.is_surface() || cell.hits < 2) continue;
         submap.points.push_back(submap.map.center_of({first.col + col, first.row + row}) +
                                 Eigen::Vector2d(cell.mean_x_m, cell.mean_y_m));

@@ -1,8 +1,10 @@
 #include "core/geometry/distance_transform.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cstddef>
+#include <cstring>
 #include <limits>
 
 namespace patrol {
@@ -73,34 +75,46 @@ class LowerEnvelope {
 DistanceTransform::DistanceTransform(int cap_cells) : cap_(cap_cells) { assert(cap_ >= 1 && cap_ <= kMaxCap_cells); }
 
 void DistanceTransform::compute(const std::vector<std::uint8_t>& is_obstacle, int width, int height,
-                                SquaredDistances& result) {
-  const auto columns = static_cast<std::size_t>(width);
-  const auto rows = static_cast<std::size_t>(height);
+                                const Window& target, SquaredDistances& result) {
+  constexpr std::size_t kBlock = 16;  // columns in two vector registers
+  using Block = std::array<std::int16_t, kBlock>;
+  const auto columns = static_cast<std::size_t>(width), rows = static_cast<std::size_t>(height),
+             cap = static_cast<std::size_t>(cap_);
   assert(is_obstacle.size() == columns * rows);
-  along_rows_.resize(columns * rows);
-  row_is_empty_.resize(rows);
+  assert(target.col >= 0 && target.row >= 0 && target.col + target.width <= width &&
+         target.row + target.height <= height);
+  along_rows_.resize(columns * rows + kBlock);  // the last block of a row may extend beyond it
+  rows_.clear();
   const auto square = [this](int distance) {
     return distance > cap_ ? beyond() : static_cast<std::int16_t>(distance * distance);
   };
   for (std::size_t row = 0; row < rows; ++row) {
     const std::uint8_t* obstacles = is_obstacle.data() + row * columns;
-    row_is_empty_[row] = std::find(obstacles, obstacles + columns, 1) == obstacles + columns ? 1 : 0;
-    if (!row_is_empty_[row]) transform_row(obstacles, width, cap_ + 1, square, along_rows_.data() + row * columns);
+    if (std::find(obstacles, obstacles + columns, 1) == obstacles + columns) continue;
+    transform_row(obstacles, width, cap_ + 1, square, along_rows_.data() + row * columns);
+    rows_.push_back(row);
   }
 
-  result.assign(columns * rows, beyond());
-  for (std::size_t row = 0; row < rows; ++row) {
-    std::int16_t* nearest = result.data() + row * columns;
-    const std::size_t first = row - std::min(row, static_cast<std::size_t>(cap_));
-    const std::size_t last = std::min(rows - 1, row + static_cast<std::size_t>(cap_));
-    for (std::size_t other = first; other <= last; ++other) {
-      if (row_is_empty_[other]) continue;
-      const int apart = static_cast<int>(other) - static_cast<int>(row);
-      const auto parabola = static_cast<std::int16_t>(apart * apart);
-      const std::int16_t* squared = along_rows_.data() + other * columns;
-      for (std::size_t col = 0; col < columns; ++col) {
-        nearest[col] = std::min(nearest[col], static_cast<std::int16_t>(squared[col] + parabola));
+  const auto target_columns = static_cast<std::size_t>(target.width), first_row = static_cast<std::size_t>(target.row);
+  result.resize(target_columns * static_cast<std::size_t>(target.height));
+  std::int16_t* out = result.data();
+  std::size_t begin = 0, end = 0;  // of the rows within the cap, in rows_
+  for (std::size_t row = first_row; row < first_row + static_cast<std::size_t>(target.height); ++row) {
+    while (begin < rows_.size() && rows_[begin] + cap < row) ++begin;
+    while (end < rows_.size() && rows_[end] <= row + cap) ++end;
+    for (std::size_t first = 0; first < target_columns; first += kBlock) {
+      Block nearest;
+      nearest.fill(beyond());
+      for (std::size_t i = begin; i < end; ++i) {
+        const int apart = static_cast<int>(rows_[i]) - static_cast<int>(row);
+        const auto parabola = static_cast<std::int16_t>(apart * apart);
+        Block squared;
+        std::memcpy(squared.data(), &along_rows_[rows_[i] * columns + static_cast<std::size_t>(target.col) + first],
+                    sizeof(squared));
+        for (std::size_t col = 0; col < kBlock; ++col)
+          nearest[col] = std::min(nearest[col], static_cast<std::int16_t>(squared[col] + parabola));
       }
+      out = std::copy_n(nearest.begin(), std::min(kBlock, target_columns - first), out);
     }
   }
 }

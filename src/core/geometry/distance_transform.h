@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -25,13 +26,25 @@ class DistanceTransform {
   /// Value of cells without an obstacle within the cap: `cap_cells` squared + 1.
   std::int16_t beyond() const { return static_cast<std::int16_t>(cap_ * cap_ + 1); }
 
+  /// Rectangle of cells of a grid.
+  struct Window {
+    int col = 0, row = 0;  ///< first column and row
+    int width = 0, height = 0;
+  };
+
   /// `is_obstacle` and `result`: width x height, row by row; obstacles are 1, all others 0.
-  void compute(const std::vector<std::uint8_t>& is_obstacle, int width, int height, SquaredDistances& result);
+  void compute(const std::vector<std::uint8_t>& is_obstacle, int width, int height, SquaredDistances& result) {
+    compute(is_obstacle, width, height, {.width = width, .height = height}, result);
+  }
+  /// Computes the distances of the cells of `target` only, which is inside the grid. `result`: [row * target.width +
+  /// column].
+  void compute(const std::vector<std::uint8_t>& is_obstacle, int width, int height, const Window& target,
+               SquaredDistances& result);
 
  private:
   int cap_;
   std::vector<std::int16_t> along_rows_;  ///< squared distance to the nearest obstacle of the same row
-  std::vector<std::uint8_t> row_is_empty_;
+  std::vector<std::size_t> rows_;         ///< rows with obstacles, ascending
 };
 
 /// Value of `squared_distances` in a grid without obstacles.

@@ -62,6 +62,7 @@ std::optional<VelocityCommand> DynamicWindow::choose(const Costmap& costmap, con
                            .max_lateral_speed_mps = settings_.max_lateral_speed_mps};
   const std::vector<double> lateral_speeds = reachable_lateral_speeds(twist.linear.y());
   const double clearance_now = costmap.clearance_m(T_map_body);
+  const bool is_in_collision = clearance_now < 0.0;
   std::optional<VelocityCommand> best;
   double best_cost = std::numeric_limits<double>::infinity();
   for (const double vx : samples(min_reachable, max_reachable, settings_.speed_samples)) {
@@ -69,8 +70,9 @@ std::optional<VelocityCommand> DynamicWindow::choose(const Costmap& costmap, con
          samples(std::max(-settings_.max_yaw_rate_radps, yaw_rate - yaw_window),
                  std::min(settings_.max_yaw_rate_radps, yaw_rate + yaw_window), settings_.yaw_rate_samples)) {
       for (const double vy : lateral_speeds) {
-        const Rollout rollout = roll_out(costmap, T_map_body, vx, yaw, settings_.horizon_s, settings_.steps, vy);
-        const bool leads_away = clearance_now < 0.0 &&
+        const Rollout rollout = roll_out(costmap, T_map_body, vx, yaw, settings_.horizon_s, settings_.steps, vy,
+                                         /*until_contact=*/!is_in_collision);
+        const bool leads_away = is_in_collision &&
                                 costmap.clearance_m(rollout.T_map_body.back()) > clearance_now + 0.02 &&
                                 rollout.min_clearance_m > clearance_now - 0.02;
         if (rollout.min_clearance_m <= 0.0 && !leads_away) continue;

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "plan/perception/bilinear.h"
 
 namespace patrol::plan {
 namespace {
@@ -57,7 +58,7 @@ void Costmap::set_keep_out_lines(std::vector<Polyline> lines_in_map) {
   keep_out_.set_lines(std::move(lines_in_map));
   include_keep_out_lines();
   keep_out_.resize(lattice_);
-  refresh(all_cells(lattice_.geometry));
+  refresh_costs(all_cells(lattice_.geometry));
 }
 
 void Costmap::include(const Eigen::Vector2d& p_map, double margin_m) {
@@ -120,17 +121,21 @@ void Costmap::add_ping(const SonarCone& cone, Time stamp, const Pose2& T_map_bod
 }
 
 void Costmap::clear_obstacles(const Eigen::Vector2d& p_map, double radius_m) {
-  CellBox changed = low_.clear_sonar(p_map, radius_m);
+  CellBoxes changed = low_.clear_sonar(p_map, radius_m);
   changed.merge(scan_.clear(p_map, radius_m));
   refresh(changed);
 }
 
-/// Combines the layers around cells whose obstacles have changed.
 void Costmap::refresh(const CellBox& changed) {
   if (changed.is_empty()) return;
-  const CellBox target = inflation_.update(changed, [this](Cell cell) {
-    return static_map_.is_obstacle(cell) || scan_.is_obstacle(cell) || low_.is_obstacle(cell);
-  });
+  refresh_costs(inflation_.update(changed, [this](Cell first, int count, std::uint8_t* is_obstacle) {
+    static_map_.mark_obstacles(first, count, is_obstacle);
+    scan_.mark_obstacles(first, count, is_obstacle);
+    low_.mark_obstacles(first, count, is_obstacle);
+  }));
+}
+
+void Costmap::refresh_costs(const CellBox& target) {
   for (int row = target.min.row; row <= target.max.row; ++row) {
     const Cell first{target.min.col, row};
     Cost* cost = &cost_.at(first);
@@ -145,15 +150,17 @@ Cost Costmap::cost_at(const Eigen::Vector2d& p_map) const {
   return cost_.contains(cell) ? cost_.at(cell) : static_map_.unknown_cost();
 }
 
+// Without lines, the distance to a line is at least max_distance_m() beyond the margin, which no obstacle exceeds.
 double Costmap::clearance_m(const Pose2& T_map_body) const {
   const double c = std::cos(T_map_body.yaw), s = std::sin(T_map_body.yaw);
+  const bool has_lines = !keep_out_.lines().empty();
   double clearance = std::numeric_limits<double>::infinity();
   for (const Disc& disc : footprint_.discs()) {
     const Eigen::Vector2d p_map(T_map_body.x + c * disc.center_m.x() - s * disc.center_m.y(),
                                 T_map_body.y + s * disc.center_m.x() + c * disc.center_m.y());
-    const double from_obstacle = obstacle_distance_m(p_map) - disc.radius_m - settings_.safety_margin_m;
-    const double from_line = keep_out_distance_m(p_map) - settings_.keep_out_margin_m;
-    clearance = std::min({clearance, from_obstacle, from_line});
+    const BilinearCell at(geometry(), p_map);
+    clearance = std::min(clearance, inflation_.distance_m(at) - disc.radius_m - settings_.safety_margin_m);
+    if (has_lines) clearance = std::min(clearance, keep_out_.distance_m(at) - settings_.keep_out_margin_m);
   }
   return clearance;
 }

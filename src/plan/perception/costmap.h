@@ -83,7 +83,13 @@ class Costmap {
  private:
   /// Moves all layers to a new lattice, from the lattice cell `min` up to, but without, `end`.
   void resize(Cell min, Cell end);
+  /// Combines the layers around cells whose obstacles have changed.
   void refresh(const CellBox& changed);
+  void refresh(const CellBoxes& changed) {
+    for (const CellBox& box : changed.boxes()) refresh(box);
+  }
+  /// Combines the costs of the layers.
+  void refresh_costs(const CellBox& target);
   void include_keep_out_lines();
 
   CostmapSettings settings_;

@@ -21,12 +21,18 @@ struct Point {
 /// which is the nearer or lower point.
 template <std::size_t N>
 float median(std::array<float, N> values) {
-  const auto end = std::partition(values.begin(), values.end(), [](float value) { return !std::isnan(value); });
-  const auto count = end - values.begin();
-  if (count < 2) return kNoDepth;
-  const auto middle = values.begin() + (count - 1) / 2;
-  std::nth_element(values.begin(), middle, end);
-  return *middle;
+  std::size_t count = 0;
+  for (float& value : values) {
+    count += std::isnan(value) ? 0 : 1;
+    value = std::isnan(value) ? std::numeric_limits<float>::infinity() : value;
+  }
+  for (std::size_t round = 0; round < N; ++round) {  // odd-even transposition sort, without branches
+    for (std::size_t i = round % 2; i + 1 < N; i += 2) {
+      const float low = std::min(values[i], values[i + 1]), high = std::max(values[i], values[i + 1]);
+      values[i] = low, values[i + 1] = high;
+    }
+  }
+  return count < 2 ? kNoDepth : values[(count - 1) / 2];
 }
 
 /// Points of a depth image, [row][column], median filtered along the row.
@@ -102,7 +108,8 @@ DepthPoints segment_obstacles(const DepthObstaclesSettings& settings, const Dept
       bool rises = false;
       for (int below = row + 1; below <= last && !rises; ++below) {
         const Point& q = ground[index(below, col)];
-        rises = p.z - q.z > min_rise + max_slope * std::hypot(p.x - q.x, p.y - q.y);  // false if q is NaN
+        const float rise = p.z - q.z;  // NaN if q is: no rise
+        rises = rise > min_rise && rise > min_rise + max_slope * std::hypot(p.x - q.x, p.y - q.y);
       }
       const Eigen::Vector2d point(p.x, p.y);
       const double range_m = (point - p_level_camera).norm();

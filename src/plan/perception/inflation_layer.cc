@@ -49,18 +49,25 @@ void InflationLayer::resize(const CellLattice& lattice) {
 }
 
 void InflationLayer::update_distances(const CellBox& window, const CellBox& target) {
-  transform_.compute(is_obstacle_, window.width(), window.height(), window_squared_);
-  for (int row = target.min.row; row <= target.max.row; ++row) {
-    const std::int16_t* squared = window_squared_.data() +
-                                  static_cast<std::ptrdiff_t>(row - window.min.row) * window.width() +
-                                  (target.min.col - window.min.col);
+  transform_.compute(is_obstacle_, window.width(), window.height(),
+                     {.col = target.min.col - window.min.col,
+                      .row = target.min.row - window.min.row,
+                      .width = target.width(),
+                      .height = target.height()},
+                     target_squared_);
+  const std::int16_t* squared = target_squared_.data();
+  for (int row = target.min.row; row <= target.max.row; ++row, squared += target.width())
     std::copy(squared, squared + target.width(), &squared_.at({target.min.col, row}));
-  }
 }
 
 double InflationLayer::distance_m(const Eigen::Vector2d& p_map) const {
-  return interpolate_bilinear(squared_.geometry(), p_map,
-                              [this](Cell cell) { return distance_of_[static_cast<std::size_t>(squared_.at(cell))]; });
+  return distance_m(BilinearCell(squared_.geometry(), p_map));
+}
+
+double InflationLayer::distance_m(const BilinearCell& at) const {
+  const std::int16_t* const squared = squared_.values().data();
+  const double* const distance_of = distance_of_.data();
+  return at.interpolate([&](std::size_t cell) { return distance_of[squared[cell]]; });
 }
 
 void InflationLayer::set_costs(Cell first, int count, Cost* cost) const {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/geometry/distance_transform.h"
+#include "plan/perception/bilinear.h"
 #include "plan/perception/cell_box.h"
 #include "plan/perception/cell_lattice.h"
 #include "plan/perception/cost.h"
@@ -21,17 +22,16 @@ class InflationLayer {
 
   /// Resets the layer to a lattice without obstacles.
   void resize(const CellLattice& lattice);
-  /// Updates the distances around cells that have changed; returns the cells whose distance may change. `is_obstacle`
-  /// takes a cell of the grid.
-  template <typename Predicate>
-  CellBox update(const CellBox& changed, const Predicate& is_obstacle) {
+  /// Updates the distances around cells that have changed; returns the cells whose distance may change. `mark(first,
+  /// count, is_obstacle)` sets the flags of the obstacles among `count` cells of a row, and leaves the others.
+  template <typename Mark>
+  CellBox update(const CellBox& changed, const Mark& mark) {
     // Distances change up to the cap around the changed cells, and depend on obstacles up to the cap around those.
     const CellBox window = changed.grown(2 * transform_.cap_cells(), squared_.geometry());
-    is_obstacle_.resize(static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(window.height()));
-    std::uint8_t* obstacle = is_obstacle_.data();
-    for (int row = window.min.row; row <= window.max.row; ++row) {
-      for (int col = window.min.col; col <= window.max.col; ++col) *obstacle++ = is_obstacle(Cell{col, row});
-    }
+    is_obstacle_.assign(static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(window.height()), 0);
+    std::uint8_t* is_obstacle = is_obstacle_.data();
+    for (int row = window.min.row; row <= window.max.row; ++row, is_obstacle += window.width())
+      mark(Cell{window.min.col, row}, window.width(), is_obstacle);
     const CellBox target = changed.grown(transform_.cap_cells(), squared_.geometry());
     update_distances(window, target);
     return target;
@@ -39,6 +39,8 @@ class InflationLayer {
 
   /// Distance to the nearest obstacle's surface, interpolated between cells; at most `max_distance_m`.
   double distance_m(const Eigen::Vector2d& p_map) const;
+  /// The same at a position in the layer's lattice.
+  double distance_m(const BilinearCell& at) const;
   double max_distance_m() const { return distance_of_.back(); }
   /// Sets the costs of `count` cells of a row.
   void set_costs(Cell first, int count, Cost* cost) const;
@@ -58,7 +60,7 @@ class InflationLayer {
   Grid<std::int16_t> squared_;       ///< squared distance to the nearest obstacle, cells
 
   std::vector<std::uint8_t> is_obstacle_;  ///< obstacle cells in the window of an update, row by row
-  DistanceTransform::SquaredDistances window_squared_;
+  DistanceTransform::SquaredDistances target_squared_;
 };
 
 }  // namespace patrol::plan

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "core/geometry/segment.h"
-#include "plan/perception/bilinear.h"
 #include "plan/perception/cell_box.h"
 
 namespace patrol::plan {
@@ -20,6 +19,16 @@ void KeepOutLayer::resize(const CellLattice& lattice) {
   for (const Polyline& line : lines_) {
     for (std::size_t i = 0; i + 1 < line.size(); ++i) rasterize(line[i], line[i + 1]);
   }
+  cost_ = Grid<Cost>(lattice.geometry, kFreeCost);
+  if (lines_.empty()) return;
+  std::transform(distance_m_.values().begin(), distance_m_.values().end(), cost_.values().begin(),
+                 [this](float distance_m) { return cost_of(distance_m); });
+}
+
+Cost KeepOutLayer::cost_of(float distance_m) const {
+  const auto margin_m = static_cast<float>(margin_m_), end_m = static_cast<float>(margin_m_ + inflation_m_);
+  if (distance_m >= end_m) return kFreeCost;
+  return distance_m <= margin_m ? kLethalCost : decaying_cost(distance_m - margin_m, inflation_m_ / 3.0);
 }
 
 void KeepOutLayer::rasterize(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
@@ -37,18 +46,18 @@ void KeepOutLayer::rasterize(const Eigen::Vector2d& a, const Eigen::Vector2d& b)
 }
 
 double KeepOutLayer::distance_m(const Eigen::Vector2d& p_map) const {
-  return interpolate_bilinear(distance_m_.geometry(), p_map,
-                              [this](Cell cell) { return static_cast<double>(distance_m_.at(cell)); });
+  return distance_m(BilinearCell(distance_m_.geometry(), p_map));
+}
+
+double KeepOutLayer::distance_m(const BilinearCell& at) const {
+  const float* const distance_m = distance_m_.values().data();
+  return at.interpolate([&](std::size_t cell) { return static_cast<double>(distance_m[cell]); });
 }
 
 void KeepOutLayer::raise_costs(Cell first, int count, Cost* cost) const {
-  const float* distance_m = &distance_m_.at(first);
-  const auto margin_m = static_cast<float>(margin_m_), end_m = static_cast<float>(margin_m_ + inflation_m_);
-  for (int i = 0; i < count; ++i) {
-    if (distance_m[i] >= end_m) continue;
-    const bool is_lethal = distance_m[i] <= margin_m;
-    cost[i] = std::max(cost[i], is_lethal ? kLethalCost : decaying_cost(distance_m[i] - margin_m, inflation_m_ / 3.0));
-  }
+  if (lines_.empty()) return;
+  const Cost* line_cost = &cost_.at(first);
+  for (int i = 0; i < count; ++i) cost[i] = std::max(cost[i], line_cost[i]);
 }
 
 }  // namespace patrol::plan

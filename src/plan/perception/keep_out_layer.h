@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "plan/perception/bilinear.h"
 #include "plan/perception/cell_lattice.h"
 #include "plan/perception/cost.h"
 #include "plan/perception/costmap_settings.h"
@@ -24,20 +25,24 @@ class KeepOutLayer {
   const std::vector<Polyline>& lines() const { return lines_; }
   /// Distance to the nearest line, interpolated between cells.
   double distance_m(const Eigen::Vector2d& p_map) const;
+  /// The same at a position in the layer's lattice.
+  double distance_m(const BilinearCell& at) const;
   /// Raises the costs of `count` cells of a row to those of the lines.
   void raise_costs(Cell first, int count, Cost* cost) const;
 
   template <typename Archive>
   void serialize_state(Archive& archive) {
-    archive(lines_, distance_m_);
+    archive(lines_, distance_m_, cost_);
   }
 
  private:
   void rasterize(const Eigen::Vector2d& a, const Eigen::Vector2d& b);
+  Cost cost_of(float distance_m) const;
 
   double margin_m_, inflation_m_, cutoff_m_;
   std::vector<Polyline> lines_;
   Grid<float> distance_m_;
+  Grid<Cost> cost_;
 };
 
 }  // namespace patrol::plan

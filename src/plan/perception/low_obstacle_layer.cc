@@ -1,8 +1,9 @@
 #include "plan/perception/low_obstacle_layer.h"
 
 #include <algorithm>
-#include <map>
 #include <utility>
+
+#include "core/point_transform.h"
 
 namespace patrol::plan {
 namespace {
@@ -20,22 +21,26 @@ void LowObstacleLayer::resize(const CellLattice& lattice) {
 
 std::vector<Cell> LowObstacleLayer::lattice_cells(const std::vector<Eigen::Vector2d>& p_level, const Pose2& T_map_body,
                                                   int min_count) const {
-  std::map<std::pair<int, int>, int> counts;  // map: its order does not depend on the order of the points
+  std::vector<Cell> hit;
+  hit.reserve(p_level.size());
+  const PointTransform to_map(T_map_body);
   for (const Eigen::Vector2d& p : p_level) {
-    const Cell cell = lattice_.geometry.cell_at(T_map_body * p);
-    if (!lattice_.geometry.contains(cell)) continue;
-    const Cell lattice = lattice_.to_lattice(cell);
-    ++counts[{lattice.row, lattice.col}];
+    const Cell cell = lattice_.geometry.cell_at(to_map(p));
+    if (lattice_.geometry.contains(cell)) hit.push_back(lattice_.to_lattice(cell));
   }
+  // Sorted, so that the order of the cells does not depend on that of the points.
+  std::ranges::sort(hit, {}, [](Cell cell) { return std::pair(cell.row, cell.col); });
   std::vector<Cell> cells;
-  for (const auto& [key, count] : counts) {
-    if (count >= min_count) cells.push_back({key.second, key.first});
+  for (auto first = hit.begin(); first != hit.end();) {
+    const auto end = std::find_if(first, hit.end(), [&](Cell cell) { return cell != *first; });
+    if (end - first >= min_count) cells.push_back(*first);
+    first = end;
   }
   return cells;
 }
 
-CellBox LowObstacleLayer::add_image(const DepthPoints& points, Time stamp, const Pose2& T_map_body,
-                                    const ScanLayer& scan) {
+CellBoxes LowObstacleLayer::add_image(const DepthPoints& points, Time stamp, const Pose2& T_map_body,
+                                      const ScanLayer& scan) {
   const std::vector<Cell> obstacles = lattice_cells(points.obstacles_m, T_map_body, settings_.min_camera_points);
   std::vector<bool> may_move;
   for (const Cell cell : obstacles) may_move.push_back(scan.has_obstacle_near(lattice_.to_grid(cell), kMoving_cells));
@@ -50,8 +55,8 @@ CellBox LowObstacleLayer::add_image(const DepthPoints& points, Time stamp, const
   return apply_changes();
 }
 
-CellBox LowObstacleLayer::add_ping(const SonarCone& cone, Time stamp, const Pose2& T_map_body, const ScanLayer& scan,
-                                   const StaticMapLayer& map) {
+CellBoxes LowObstacleLayer::add_ping(const SonarCone& cone, Time stamp, const Pose2& T_map_body, const ScanLayer& scan,
+                                     const StaticMapLayer& map) {
   std::vector<Cell> arc = lattice_cells(cone.arc_m, T_map_body, 1);
   const auto is_explained = [&](Cell lattice) {
     const Cell cell = lattice_.to_grid(lattice);
@@ -63,15 +68,20 @@ CellBox LowObstacleLayer::add_ping(const SonarCone& cone, Time stamp, const Pose
   return apply_changes();
 }
 
-CellBox LowObstacleLayer::clear_sonar(const Eigen::Vector2d& p_map, double radius_m) {
+CellBoxes LowObstacleLayer::clear_sonar(const Eigen::Vector2d& p_map, double radius_m) {
   low_.clear_sonar_evidence([&](Cell lattice) {
     return (lattice_.geometry.center_of(lattice_.to_grid(lattice)) - p_map).norm() <= radius_m;
   });
   return apply_changes();
 }
 
-CellBox LowObstacleLayer::apply_changes() {
-  CellBox changed;
+void LowObstacleLayer::mark_obstacles(Cell first, int count, std::uint8_t* is_obstacle) const {
+  const std::uint8_t* is_low = &is_low_.at(first);
+  for (int i = 0; i < count; ++i) is_obstacle[i] |= is_low[i];
+}
+
+CellBoxes LowObstacleLayer::apply_changes() {
+  CellBoxes changed;
   for (const Cell lattice : low_.take_changed()) {
     const Cell cell = lattice_.to_grid(lattice);
     is_low_.at(cell) = low_.is_obstacle(lattice) ? 1 : 0;

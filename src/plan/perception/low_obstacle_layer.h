@@ -21,16 +21,18 @@ class LowObstacleLayer {
   void resize(const CellLattice& lattice);
   /// Adds the points of a depth image, in level at its stamp; returns the cells that change. Obstacles near those of
   /// the scan layer have the shorter persistence of moving obstacles.
-  CellBox add_image(const DepthPoints& points, Time stamp, const Pose2& T_map_body, const ScanLayer& scan);
+  CellBoxes add_image(const DepthPoints& points, Time stamp, const Pose2& T_map_body, const ScanLayer& scan);
   /// Adds a ping, in level at its stamp; returns the cells that change. Echoes near obstacles of the other layers are
   /// ignored.
-  CellBox add_ping(const SonarCone& cone, Time stamp, const Pose2& T_map_body, const ScanLayer& scan,
-                   const StaticMapLayer& map);
+  CellBoxes add_ping(const SonarCone& cone, Time stamp, const Pose2& T_map_body, const ScanLayer& scan,
+                     const StaticMapLayer& map);
   /// Discards the evidence of sonar within a radius; returns the cells that change.
-  CellBox clear_sonar(const Eigen::Vector2d& p_map, double radius_m);
+  CellBoxes clear_sonar(const Eigen::Vector2d& p_map, double radius_m);
 
   /// Whether a cell inside the grid is an obstacle.
   bool is_obstacle(Cell cell) const { return is_low_.at(cell) != 0; }
+  /// Sets the flags of the obstacles among `count` cells of a row.
+  void mark_obstacles(Cell first, int count, std::uint8_t* is_obstacle) const;
   bool contains_obstacle(Cell cell) const { return is_low_.contains(cell) && is_obstacle(cell); }
   std::size_t num_obstacles() const { return low_.num_obstacles(); }
 
@@ -43,7 +45,7 @@ class LowObstacleLayer {
   /// Lattice cells inside the grid with at least `min_count` of the points.
   std::vector<Cell> lattice_cells(const std::vector<Eigen::Vector2d>& p_level, const Pose2& T_map_body,
                                   int min_count) const;
-  CellBox apply_changes();
+  CellBoxes apply_changes();
 
   LowObstaclesSettings settings_;
   CellLattice lattice_;

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <utility>
 
+#include "core/point_transform.h"
+
 namespace patrol::plan {
 namespace {
 
@@ -43,22 +45,22 @@ void ScanLayer::resize(const CellLattice& lattice) {
     index_.at(to_cell(obstacles_[i])) = static_cast<std::uint32_t>(i + 1);
 }
 
-CellBox ScanLayer::add_scan(const LevelScan& scan, const Pose2& T_map_body, const StaticMapLayer& map) {
-  CellBox changed;
+CellBoxes ScanLayer::add_scan(const LevelScan& scan, const Pose2& T_map_body, const StaticMapLayer& map) {
+  CellBoxes changed;
   clear_passed(scan, T_map_body, map, changed);
   mark_hits(scan, T_map_body, map, changed);
   return changed;
 }
 
 void ScanLayer::clear_passed(const LevelScan& scan, const Pose2& T_map_body, const StaticMapLayer& map,
-                             CellBox& changed) {
+                             CellBoxes& changed) {
   const ObservedRange seen(scan);
-  const Pose2 T_body_map = T_map_body.inverse();
+  const PointTransform to_body(T_map_body.inverse());
   const Time memory = from_seconds(settings_.obstacle_persistence_s);
   const double slack_m = 0.75 * settings_.resolution_m;
   for (std::size_t i = 0; i < obstacles_.size();) {
     const Cell cell = to_cell(obstacles_[i]);
-    const Eigen::Vector2d from_lidar = T_body_map * lattice_.geometry.center_of(cell) - scan.origin_m;
+    const Eigen::Vector2d from_lidar = to_body(lattice_.geometry.center_of(cell)) - scan.origin_m;
     const bool is_passed = seen.along(from_lidar) > from_lidar.norm() + slack_m;
     const bool is_old = scan.stamp - obstacles_[i].seen > memory;
     if (!is_passed && !is_old && !map.has_obstacle_near(cell, settings_.map_match_tolerance_cells)) {
@@ -73,11 +75,13 @@ void ScanLayer::clear_passed(const LevelScan& scan, const Pose2& T_map_body, con
   }
 }
 
-void ScanLayer::mark_hits(const LevelScan& scan, const Pose2& T_map_body, const StaticMapLayer& map, CellBox& changed) {
+void ScanLayer::mark_hits(const LevelScan& scan, const Pose2& T_map_body, const StaticMapLayer& map,
+                          CellBoxes& changed) {
+  const PointTransform to_map(T_map_body);
   for (const LevelScan::Beam& beam : scan.beams) {
     const Eigen::Vector2d end_m = beam.end_m.cast<double>();
     if (!beam.is_hit || (end_m - scan.origin_m).norm() > settings_.obstacle_range_m) continue;
-    const Cell cell = lattice_.geometry.cell_at(T_map_body * end_m);
+    const Cell cell = lattice_.geometry.cell_at(to_map(end_m));
     if (!index_.contains(cell) || map.has_obstacle_near(cell, settings_.map_match_tolerance_cells)) continue;
     if (index_.at(cell) != 0) {
       obstacles_[index_.at(cell) - 1].seen = scan.stamp;
@@ -89,8 +93,8 @@ void ScanLayer::mark_hits(const LevelScan& scan, const Pose2& T_map_body, const 
   }
 }
 
-CellBox ScanLayer::clear(const Eigen::Vector2d& p_map, double radius_m) {
-  CellBox changed;
+CellBoxes ScanLayer::clear(const Eigen::Vector2d& p_map, double radius_m) {
+  CellBoxes changed;
   std::vector<Obstacle> kept;
   for (const Obstacle& obstacle : obstacles_) {
     const Cell cell = to_cell(obstacle);
@@ -104,6 +108,11 @@ CellBox ScanLayer::clear(const Eigen::Vector2d& p_map, double radius_m) {
   }
   obstacles_ = std::move(kept);
   return changed;
+}
+
+void ScanLayer::mark_obstacles(Cell first, int count, std::uint8_t* is_obstacle) const {
+  const std::uint32_t* index = &index_.at(first);
+  for (int i = 0; i < count; ++i) is_obstacle[i] |= index[i] != 0 ? 1 : 0;
 }
 
 bool ScanLayer::has_obstacle_near(Cell cell, int radius_cells) const {

@@ -20,12 +20,14 @@ class ScanLayer {
 
   void resize(const CellLattice& lattice);
   /// Clears and marks obstacles; returns the cells that change.
-  CellBox add_scan(const LevelScan& scan, const Pose2& T_map_body, const StaticMapLayer& map);
+  CellBoxes add_scan(const LevelScan& scan, const Pose2& T_map_body, const StaticMapLayer& map);
   /// Clears all obstacles within a radius; returns their cells.
-  CellBox clear(const Eigen::Vector2d& p_map, double radius_m);
+  CellBoxes clear(const Eigen::Vector2d& p_map, double radius_m);
 
   /// Whether a cell inside the grid is an obstacle.
   bool is_obstacle(Cell cell) const { return index_.at(cell) != 0; }
+  /// Sets the flags of the obstacles among `count` cells of a row.
+  void mark_obstacles(Cell first, int count, std::uint8_t* is_obstacle) const;
   bool contains_obstacle(Cell cell) const { return index_.contains(cell) && is_obstacle(cell); }
   /// Whether an obstacle lies at most `radius_cells` columns and rows from a cell, which may be outside the grid.
   bool has_obstacle_near(Cell cell, int radius_cells) const;
@@ -46,8 +48,8 @@ class ScanLayer {
   };
 
   Cell to_cell(const Obstacle& obstacle) const { return lattice_.to_grid(obstacle.lattice); }
-  void clear_passed(const LevelScan& scan, const Pose2& T_map_body, const StaticMapLayer& map, CellBox& changed);
-  void mark_hits(const LevelScan& scan, const Pose2& T_map_body, const StaticMapLayer& map, CellBox& changed);
+  void clear_passed(const LevelScan& scan, const Pose2& T_map_body, const StaticMapLayer& map, CellBoxes& changed);
+  void mark_hits(const LevelScan& scan, const Pose2& T_map_body, const StaticMapLayer& map, CellBoxes& changed);
 
   CostmapSettings settings_;
   CellLattice lattice_;

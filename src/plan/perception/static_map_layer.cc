@@ -61,11 +61,16 @@ bool StaticMapLayer::has_obstacle_near(Cell cell, int radius_cells) const {
   return any_cell_near(cell, radius_cells, [this](Cell near) { return map_.contains(near) && is_obstacle(near); });
 }
 
+void StaticMapLayer::mark_obstacles(Cell first, int count, std::uint8_t* is_obstacle) const {
+  const std::int8_t* occupancy = &map_.at(first);
+  const int occupied_percent = occupied_percent_;
+  for (int i = 0; i < count; ++i) is_obstacle[i] |= occupancy[i] >= occupied_percent ? 1 : 0;
+}
+
 void StaticMapLayer::raise_costs(Cell first, int count, Cost* cost) const {
   const std::int8_t* occupancy = &map_.at(first);
-  for (int i = 0; i < count; ++i) {
-    if (occupancy[i] == kUnknown) cost[i] = std::max(cost[i], unknown_cost_);
-  }
+  const Cost unknown_cost = unknown_cost_;
+  for (int i = 0; i < count; ++i) cost[i] = std::max(cost[i], occupancy[i] == kUnknown ? unknown_cost : kFreeCost);
 }
 
 }  // namespace patrol::plan

@@ -19,6 +19,8 @@ class StaticMapLayer {
   CellBox set_map(const OccupancyGrid& map);
 
   bool is_obstacle(Cell cell) const { return map_.at(cell) >= occupied_percent_; }
+  /// Sets the flags of the obstacles among `count` cells of a row.
+  void mark_obstacles(Cell first, int count, std::uint8_t* is_obstacle) const;
   /// Whether an obstacle lies at most `radius_cells` columns and rows from a cell, which may be outside the grid.
   bool has_obstacle_near(Cell cell, int radius_cells) const;
   /// Cost of a cell that is unknown in the map.

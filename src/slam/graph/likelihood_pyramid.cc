@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 namespace patrol::slam {
@@ -23,6 +24,76 @@ Kernel surface_kernel() {
     }
   }
   return kernel;
+}
+
+/// Marks the free cells of a tile. `centers`: columns and rows of the tile's cells in the level.
+void mark_free(const GridTile& tile, const std::array<Cell, GridTile::kSize>& centers,
+               LikelihoodPyramid::Level& finest) {
+  for (std::size_t row = 0; row < GridTile::kSize;) {
+    const int finest_row = centers[row].row;
+    std::array<std::uint16_t, GridTile::kSize> passes{};  // nonzero: free in one of the rows in finest_row
+    for (; row < GridTile::kSize && centers[row].row == finest_row; ++row) {
+      const std::uint16_t* passes_of_row = &tile.passes[GridTile::kSize * row];
+      const std::uint32_t surfaces = tile.surface_bits[row];
+      if (surfaces == 0) {
+        for (std::size_t col = 0; col < GridTile::kSize; ++col) passes[col] |= passes_of_row[col];
+      } else {
+        for (std::size_t col = 0; col < GridTile::kSize; ++col)
+          passes[col] |= (surfaces >> col & 1U) != 0 ? std::uint16_t{0} : passes_of_row[col];
+      }
+    }
+    std::int8_t* const values = &finest.at(centers[0].col, finest_row);
+    for (std::size_t col = 0; col < GridTile::kSize; ++col) {
+      if (passes[col] != 0) values[centers[col].col - centers[0].col] = LikelihoodPyramid::kInFreeSpace;
+    }
+  }
+}
+
+/// Rows of a level with zeros around it.
+class PaddedRows {
+ public:
+  /// Columns from `first_col` on, `num_cols` or slightly more.
+  PaddedRows(const LikelihoodPyramid::Level& level, int first_col, int num_cols)
+      : first_row_(level.first_row),
+        height_(level.height),
+        width_((static_cast<std::size_t>(num_cols) + kBlock - 1) / kBlock * kBlock),
+        zeros_(width_),
+        values_(width_ * static_cast<std::size_t>(level.height)) {
+    for (int row = 0; row < level.height; ++row) {
+      const auto from = level.values.begin() + static_cast<std::ptrdiff_t>(row) * level.width;
+      std::copy(from, from + level.width,
+                values_.begin() + row * static_cast<std::ptrdiff_t>(width_) + level.first_col - first_col);
+    }
+  }
+
+  /// Number of columns, a multiple of kBlock.
+  std::size_t width() const { return width_; }
+  const std::int8_t* at(int row) const {
+    const int local = row - first_row_;
+    return local < 0 || local >= height_ ? zeros_.data() : &values_[static_cast<std::size_t>(local) * width_];
+  }
+
+  static constexpr std::size_t kBlock = 8;
+
+ private:
+  int first_row_, height_;
+  std::size_t width_;
+  std::vector<std::int8_t> zeros_, values_;
+};
+
+/// Maximum over rows of PaddedRows, [col].
+template <std::size_t kRows>
+void highest_of(const std::array<const std::int8_t*, kRows>& rows, std::vector<std::int8_t>& highest) {
+  for (std::size_t block = 0; block < highest.size(); block += PaddedRows::kBlock) {
+    std::array<std::uint64_t, kRows> words;
+    for (std::size_t i = 0; i < kRows; ++i) std::memcpy(&words[i], rows[i] + block, sizeof(words[i]));
+    std::int8_t* const out = &highest[block];
+    std::memcpy(out, words.data(), sizeof(words[0]));
+    if (std::ranges::count(words, words[0]) == kRows) continue;
+    for (std::size_t i = 1; i < kRows; ++i) {
+      for (std::size_t col = 0; col < PaddedRows::kBlock; ++col) out[col] = std::max(out[col], rows[i][block + col]);
+    }
+  }
 }
 
 }  // namespace
@@ -67,20 +138,11 @@ LikelihoodPyramid::Level LikelihoodPyramid::rasterize_finest(const GridMap& map)
     std::array<Cell, GridTile::kSize> centers;  // of the cells on the tile's diagonal: the column and row of each cell
     for (int i = 0; i < GridTile::kSize; ++i)
       centers[static_cast<std::size_t>(i)] = cell_of(map.center_of({first.col + i, first.row + i}));
-    for (int row = 0; row < GridTile::kSize; ++row) {
-      for (int col = 0; col < GridTile::kSize; ++col) {
-        const GridCell& cell = tile.at(col, row);
-        if (!cell.is_observed()) continue;
-        if (cell.is_surface()) {
-          const Eigen::Vector2d center = map.center_of({first.col + col, first.row + row});
-          surfaces.push_back(cell_of(center + Eigen::Vector2d(cell.mean_x_m, cell.mean_y_m)));
-        } else if (std::int8_t& value = finest.at(centers[static_cast<std::size_t>(col)].col,
-                                                  centers[static_cast<std::size_t>(row)].row);
-                   value == 0) {
-          value = kInFreeSpace;
-        }
-      }
-    }
+    mark_free(tile, centers, finest);
+    tile.for_each_surface([&](int col, int row, const GridTile::Hits& hits) {
+      const Eigen::Vector2d center = map.center_of({first.col + col, first.row + row});
+      surfaces.push_back(cell_of(center + Eigen::Vector2d(hits.mean_x_m, hits.mean_y_m)));
+    });
   });
   const Kernel kernel = surface_kernel();
   for (const Cell& surface : surfaces) {
@@ -97,21 +159,28 @@ LikelihoodPyramid::Level LikelihoodPyramid::rasterize_finest(const GridMap& map)
 }
 
 // A cell and its neighbors cover 4 x 4 cells of the level below. Above the finest level each of those already covers 2
-// x 2, so every second one suffices.
+// x 2, so every second one suffices. The maximum over rows is computed first, of eight columns at a time: most are in
+// an unobserved or free area, where the rows are equal.
 LikelihoodPyramid::Level LikelihoodPyramid::halved(const Level& fine, bool is_from_finest) {
   Level coarse;
   coarse.first_col = (fine.first_col >> 1) - 1, coarse.first_row = (fine.first_row >> 1) - 1;
   coarse.width = ((fine.first_col + fine.width) >> 1) + 1 - coarse.first_col,
   coarse.height = ((fine.first_row + fine.height) >> 1) + 1 - coarse.first_row;
   coarse.clear();
-  const int step = is_from_finest ? 1 : 2;
+  const PaddedRows rows(fine, 2 * coarse.first_col, 2 * coarse.width + 2);
+  std::vector<std::int8_t> highest(rows.width());  // over the rows, [col of fine]
+  const std::size_t step = is_from_finest ? 1 : 2;
+  auto value = coarse.values.begin();
   for (int row = coarse.first_row; row < coarse.first_row + coarse.height; ++row) {
-    for (int col = coarse.first_col; col < coarse.first_col + coarse.width; ++col) {
-      int highest = std::numeric_limits<int>::min();
-      for (int j = 0; j < 4; j += step) {
-        for (int i = 0; i < 4; i += step) highest = std::max(highest, fine.find(2 * col + i, 2 * row + j));
-      }
-      coarse.at(col, row) = static_cast<std::int8_t>(highest);
+    if (is_from_finest) {
+      highest_of<4>({rows.at(2 * row), rows.at(2 * row + 1), rows.at(2 * row + 2), rows.at(2 * row + 3)}, highest);
+    } else {
+      highest_of<2>({rows.at(2 * row), rows.at(2 * row + 2)}, highest);
+    }
+    const std::int8_t* first = highest.data();
+    for (int col = 0; col < coarse.width; ++col, first += 2, ++value) {
+      *value = std::max(first[0], first[2]);
+      if (step == 1) *value = std::max({*value, first[1], first[3]});
     }
   }
   return coarse;

@@ -176,7 +176,7 @@ std::vector<ScanTracker::Branch> ScanTracker::continue_tracks(const std::vector<
   std::vector<Branch> branches;
   for (std::size_t t = 0; t < tracks_.size(); ++t) {
     const PoseGaussian prediction = predict(tracks_[t], step);
-    const Hypothesis by_odometry = match_from(prediction.mean, points, prediction, true);
+    const Hypothesis by_odometry = match_by_odometry(points, prediction);
     const Hypothesis best = match_by_alternatives(tracks_[t], by_odometry, points, step, prediction);
     branches.push_back({.track = t, .prediction = prediction, .best = best});
     if (!step.is_sparse) return branches;
@@ -217,9 +217,10 @@ ScanTracker::Hypothesis ScanTracker::match_by_alternatives(const Track& track, c
   const bool is_likely = best.match && usual_.has_usual_points(*best.match, best.log_likelihoods);
   if (is_likely && step.is_sparse) return without_moving_objects(best, points, prediction);
   const auto consider = [&](const Pose2& start) {
-    const Hypothesis other = match_from(start, points, prediction, false);
-    if (!other.match) return;
-    if (!best.match || (is_determined_by_scan(other, best) && is_better(other, best, points))) best = other;
+    Hypothesis other = match_from(start, points, prediction, best);
+    if (!other.match || (best.match && !is_determined_by_scan(other, best))) return;
+    evaluate(other, points);
+    if (!best.match || is_better(other, best, points)) best = std::move(other);
   };
   const Pose2 as_before = motion_as_before(track, step), none{0.0, 0.0, step.T_last_odom.yaw},
               opposite{-step.T_last_odom.x, -step.T_last_odom.y, step.T_last_odom.yaw};
@@ -287,21 +288,32 @@ bool ScanTracker::is_keyframe_due(const Pose2& T_local_body) const {
          std::abs(T_keyframe_body.yaw) >= settings_.keyframe_angle_rad;
 }
 
-ScanTracker::Hypothesis ScanTracker::match_from(const Pose2& T_local_start, const std::vector<MatchPoint>& points,
-                                                const PoseGaussian& prediction, bool is_odometry) const {
-  // A wide prior keeps degenerate directions bounded when odometry has failed.
-  PoseGaussian prior = prediction;
-  if (!is_odometry) {
-    prior.mean = T_local_start;
-    prior.covariance *= 25.0;
-  }
-  Hypothesis hypothesis{.T_local_body = prediction.mean,
-                        .match = match_scan(older_, points, T_local_start, prior, settings_.matching)};
-  if (!hypothesis.match) return hypothesis;
-  hypothesis.T_local_body = hypothesis.match->T_map_body;
-  hypothesis.log_prior = log_student_t(prediction, hypothesis.T_local_body);
-  hypothesis.log_likelihoods = point_log_likelihoods(older_, points, hypothesis.T_local_body, settings_.matching);
+ScanTracker::Hypothesis ScanTracker::match_by_odometry(const std::vector<MatchPoint>& points,
+                                                       const PoseGaussian& prediction) const {
+  Hypothesis hypothesis =
+      to_hypothesis(match_scan(older_, points, prediction.mean, prediction, settings_.matching), prediction);
+  if (hypothesis.match) evaluate(hypothesis, points);
   return hypothesis;
+}
+
+// A wide prior keeps degenerate directions bounded when odometry has failed.
+ScanTracker::Hypothesis ScanTracker::match_from(const Pose2& T_local_start, const std::vector<MatchPoint>& points,
+                                                const PoseGaussian& prediction, const Hypothesis& best) const {
+  const PoseGaussian prior{.mean = T_local_start, .covariance = 25.0 * prediction.covariance};
+  return to_hypothesis(
+      match_scan(older_, points, T_local_start, prior, settings_.matching, best.match ? &best.T_local_body : nullptr),
+      prediction);
+}
+
+ScanTracker::Hypothesis ScanTracker::to_hypothesis(const std::optional<MatchResult>& match,
+                                                   const PoseGaussian& prediction) {
+  Hypothesis hypothesis{.T_local_body = match ? match->T_map_body : prediction.mean, .match = match};
+  if (match) hypothesis.log_prior = log_student_t(prediction, hypothesis.T_local_body);
+  return hypothesis;
+}
+
+void ScanTracker::evaluate(Hypothesis& hypothesis, const std::vector<MatchPoint>& points) const {
+  hypothesis.log_likelihoods = point_log_likelihoods(older_, points, hypothesis.T_local_body, settings_.matching);
 }
 
 // A smooth corridor matches anywhere along it: such a difference is left to odometry.
@@ -336,7 +348,7 @@ ScanTracker::Hypothesis ScanTracker::without_moving_objects(const Hypothesis& be
   if (gains.votes() > 0) return best;
   std::vector<MatchPoint> others = points;
   std::erase_if(others, [&](const MatchPoint& point) { return gains.vote(SectorGains::sector_of(point)) > 0; });
-  return match_from(prediction.mean, others, prediction, true);
+  return match_by_odometry(others, prediction);
 }
 
 void ScanTracker::integrate(TrackedScan& tracked) {

@@ -73,7 +73,7 @@ class ScanTracker {
     Pose2 T_local_body;
     std::optional<MatchResult> match;
     double log_prior = 0.0;
-    std::vector<double> log_likelihoods = {};  ///< [point]
+    std::vector<double> log_likelihoods = {};  ///< [point]; empty: not computed
   };
 
   /// Reference pose from which odometry is integrated: the last match.
@@ -131,8 +131,13 @@ class ScanTracker {
   bool is_better(const Hypothesis& a, const Hypothesis& b, const std::vector<MatchPoint>& points) const;
   Hypothesis without_moving_objects(const Hypothesis& best, const std::vector<MatchPoint>& points,
                                     const PoseGaussian& prediction) const;
+  Hypothesis match_by_odometry(const std::vector<MatchPoint>& points, const PoseGaussian& prediction) const;
+  /// Match from an alternative start pose, without log likelihoods; none if it is the best match so far.
   Hypothesis match_from(const Pose2& T_local_start, const std::vector<MatchPoint>& points,
-                        const PoseGaussian& prediction, bool is_odometry) const;
+                        const PoseGaussian& prediction, const Hypothesis& best) const;
+  static Hypothesis to_hypothesis(const std::optional<MatchResult>& match, const PoseGaussian& prediction);
+  /// Computes the log likelihoods of the points.
+  void evaluate(Hypothesis& hypothesis, const std::vector<MatchPoint>& points) const;
   void integrate(TrackedScan& tracked);
 
   ScanTrackerSettings settings_;

@@ -11,7 +11,7 @@ void for_each_observed_cell(const GridMap& map, Visitor&& visit) {
   map.for_each_tile([&](Cell first, const GridTile& tile) {
     for (int row = 0; row < GridTile::kSize; ++row) {
       for (int col = 0; col < GridTile::kSize; ++col) {
-        const GridCell& cell = tile.at(col, row);
+        const GridCell cell = tile.at(col, row);
         if (cell.is_observed()) visit(map.center_of({first.col + col, first.row + row}), cell);
       }
     }

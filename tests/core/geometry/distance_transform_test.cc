@@ -70,6 +70,27 @@ TEST(DistanceTransform, AroundOneObstacleIsTheSumOfSquares) {
   EXPECT_EQ(squared[0 * 7 + 0], 9 + 4);  // 3 along, 2 across
 }
 
+TEST(DistanceTransform, OfAWindowEqualsThatPartOfTheWhole) {
+  constexpr int kWidth = 61, kHeight = 47;
+  DistanceTransform transform(9);
+  std::uint64_t seed = 900;
+  for (const double sparsity : {20.0, 300.0}) {
+    const std::vector<std::uint8_t> cells = make_random(kWidth, kHeight, sparsity, ++seed);
+    SquaredDistances whole, part;
+    transform.compute(cells, kWidth, kHeight, whole);
+    for (const DistanceTransform::Window& window :
+         {DistanceTransform::Window{0, 0, 1, 1}, {3, 5, 16, 20}, {20, 10, 41, 37}, {60, 46, 1, 1}, {7, 0, 33, 47}}) {
+      transform.compute(cells, kWidth, kHeight, window, part);
+      ASSERT_EQ(part.size(), static_cast<std::size_t>(window.width * window.height));
+      for (std::size_t i = 0; i < part.size(); ++i) {
+        const int col = window.col + static_cast<int>(i) % window.width,
+                  row = window.row + static_cast<int>(i) / window.width;
+        ASSERT_EQ(part[i], whole[static_cast<std::size_t>(row * kWidth + col)]) << col << ' ' << row;
+      }
+    }
+  }
+}
+
 TEST(DistanceTransform, WithoutObstaclesIsBeyondTheCapEverywhere) {
   SquaredDistances squared;
   DistanceTransform transform(4);

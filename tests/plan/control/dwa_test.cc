@@ -106,6 +106,23 @@ Pose2 drive(const DynamicWindow& window, const Costmap& costmap, const PlannedPa
   return T_map_body;
 }
 
+TEST(RollOut, UntilContactEndsWithTheFirstPoseWithoutClearanceAndIsOtherwiseEqual) {
+  const Costmap costmap({}, Footprint({{-0.3, -0.2}, {0.3, -0.2}, {0.3, 0.2}, {-0.3, 0.2}}),
+                        {{{1.0, -2.0}, {1.0, 2.0}}});  // a keep-out line across, 1 m ahead
+  const Rollout whole = roll_out(costmap, {}, 1.0, 0.1, 2.0, 10),
+                ended = roll_out(costmap, {}, 1.0, 0.1, 2.0, 10, 0.0, true),
+                aside = roll_out(costmap, {}, -0.5, 0.1, 2.0, 10, 0.0, true);
+  EXPECT_EQ(whole.T_map_body.size(), 10U);
+  EXPECT_EQ(aside.T_map_body.size(), 10U) << "it never touches the line";
+  ASSERT_GE(ended.T_map_body.size(), 2U);
+  ASSERT_LE(ended.T_map_body.size(), 6U);
+  EXPECT_LE(ended.min_clearance_m, 0.0);
+  EXPECT_LE(whole.min_clearance_m, ended.min_clearance_m);
+  EXPECT_GT(costmap.clearance_m(whole.T_map_body[ended.T_map_body.size() - 2]), 0.0);
+  for (std::size_t i = 0; i < ended.T_map_body.size(); ++i)
+    EXPECT_THAT(ended.T_map_body[i], Pose2Near(whole.T_map_body[i], 0.0, 0.0));
+}
+
 TEST(DynamicWindow, OnAStraightFreePathDrivesStraightAtFullSpeed) {
   const Costmap costmap = Ground().costmap();
   const DwaSettings settings;

@@ -71,13 +71,15 @@ TEST(ScanLayer, LeavesHitsOnTheMapsObstaclesToTheMap) {
   EXPECT_EQ(without.num_obstacles(), 0U);
 }
 
-TEST(InflationLayer, CostsFallWithTheDistanceToTheObstaclesOfThePredicate) {
+TEST(InflationLayer, CostsFallWithTheDistanceToTheMarkedObstacles) {
   const CostmapSettings settings;
   InflationLayer layer(settings, Footprint({{-0.1, -0.1}, {0.1, -0.1}, {0.1, 0.1}, {-0.1, 0.1}}));
   layer.resize(kLattice);
   CellBox changed;
   changed.extend({0, 4});
-  const CellBox target = layer.update(changed, [](Cell cell) { return cell == Cell{0, 4}; });
+  const CellBox target = layer.update(changed, [](Cell first, int, std::uint8_t* is_obstacle) {
+    if (first == Cell{0, 4}) is_obstacle[0] = 1;
+  });
   EXPECT_EQ(target.max, (Cell{9, 7})) << "the cap reaches across the whole grid";
   Cost cost[10];
   layer.set_costs({0, 4}, 10, cost);

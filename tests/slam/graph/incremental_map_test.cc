@@ -37,7 +37,7 @@ double farthest_hit_m(const GridMap& map) {
 int hits_in(const GridMap& map) {
   int hits = 0;
   map.for_each_tile([&](Cell, const GridTile& tile) {
-    for (const GridCell& cell : tile.cells) hits += cell.hits;
+    for (const GridTile::Hits& cell : tile.hits) hits += cell.count;
   });
   return hits;
 }
@@ -74,7 +74,7 @@ TEST(IncrementalMap, ARotationCountsByItsDisplacementAtTenMeters) {
   const auto mean_of = [&](double max_shift_m) {
     double sum = 0.0;
     live.render(drive.keyframes, drive.poses, max_shift_m).for_each_tile([&](Cell, const GridTile& tile) {
-      for (const GridCell& cell : tile.cells) sum += cell.mean_y_m;
+      for (const GridTile::Hits& cell : tile.hits) sum += cell.mean_y_m;
     });
     return sum;
   };

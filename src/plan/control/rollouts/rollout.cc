@@ -19,14 +19,16 @@ Pose2 follow_arc(const Pose2& T_map_body, double vx_mps, double yaw_rate_radps, 
 }
 
 Rollout roll_out(const Costmap& costmap, const Pose2& T_map_body, double vx_mps, double yaw_rate_radps,
-                 double horizon_s, int steps, double vy_mps) {
+                 double horizon_s, int steps, double vy_mps, bool until_contact) {
   Rollout rollout{
       .vx_mps = vx_mps, .yaw_rate_radps = yaw_rate_radps, .vy_mps = vy_mps, .T_map_body = {}, .min_clearance_m = 0.0};
   rollout.min_clearance_m = std::numeric_limits<double>::infinity();
+  rollout.T_map_body.reserve(static_cast<std::size_t>(steps));
   for (int step = 1; step <= steps; ++step) {
     const double time_s = horizon_s * step / steps;
     rollout.T_map_body.push_back(follow_arc(T_map_body, vx_mps, yaw_rate_radps, time_s, vy_mps));
     rollout.min_clearance_m = std::min(rollout.min_clearance_m, costmap.clearance_m(rollout.T_map_body.back()));
+    if (until_contact && rollout.min_clearance_m <= 0.0) break;
   }
   return rollout;
 }

@@ -32,8 +32,9 @@ struct RolloutScene {
 /// Pose after moving at constant velocity in body for a time: an arc, or a turn in place.
 Pose2 follow_arc(const Pose2& T_map_body, double vx_mps, double yaw_rate_radps, double time_s, double vy_mps = 0.0);
 
-/// Simulates a constant command for `horizon_s` in `steps` equal steps.
+/// Simulates a constant command for `horizon_s` in `steps` equal steps. With `until_contact`, the rollout ends with the
+/// first pose without clearance.
 Rollout roll_out(const Costmap& costmap, const Pose2& T_map_body, double vx_mps, double yaw_rate_radps,
-                 double horizon_s, int steps, double vy_mps = 0.0);
+                 double horizon_s, int steps, double vy_mps = 0.0, bool until_contact = false);
 
 }  // namespace patrol::plan
