@@ -58,6 +58,7 @@ void compare_navigation(const ScannedWorld& world, std::uint64_t seed, studies::
   const importer::ImportedSite site = importer::import_site({.file = folder.path() / "scans", .name = name});
   importer::write_site(site, folder.path() / name);
   files.world_xml = folder.path() / name / (name + ".xml");
+  add_anchors(world, files.world_xml);
   files.site = {.ground = site.ground};
   sample.push_back(navigate(scenario, files, data_root, folder.path() / "site_run"));
 }

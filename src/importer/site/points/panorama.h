@@ -17,6 +17,7 @@ enum PixelState : std::uint8_t {
   kPixelMoving = 1u << 3,    ///< return of an object that other scans look through
   kPixelCovered = 1u << 4,   ///< another scan measured the same surface with closer beams
   kPixelObserved = 1u << 5,  ///< another scan measured the same surface
+  kPixelBlocked = 1u << 6,   ///< no return, where a surface may be closer than the minimum range (near_gaps.h)
 };
 
 /// Pixel of a panorama.

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "importer/site/points/near_gaps.h"
+
 namespace patrol::importer {
 namespace {
 
@@ -114,7 +116,7 @@ Evidence evidence_of(const Panorama& other, const SeenPoint& seen) {
   const double tolerance_m = 0.03 + 0.002 * distance_m;
   double nearest_m = 1e9, nearest_point_m = 1e9;
   int num_empty = 0;
-  bool is_observed = false;
+  bool is_observed = false, is_blocked = false;
   Pixel nearest = *center;
   for (int dc = -1; dc <= 1; ++dc) {
     for (int dr = -1; dr <= 1; ++dr) {
@@ -122,6 +124,7 @@ Evidence evidence_of(const Panorama& other, const SeenPoint& seen) {
       const double range_m = double{other.range_m(pixel)};
       if (range_m <= 0.0) {
         ++num_empty;
+        is_blocked = is_blocked || other.has(pixel, kPixelBlocked);
         continue;
       }
       nearest_m = std::min(nearest_m, range_m);
@@ -158,6 +161,7 @@ Evidence evidence_of(const Panorama& other, const SeenPoint& seen) {
       return Evidence::kCovered;
   }
   if (is_observed) return Evidence::kObserved;
+  if (is_blocked) return Evidence::kNone;
   // At least one of three neighboring beams would meet the surface. Beams along it pass at one of its sides.
   constexpr double kMinCosine = 0.1;
   if (1.15 * footprint_m > seen.width_m || cosine < kMinCosine) return Evidence::kNone;
@@ -281,7 +285,10 @@ void grow_moving(Panorama& scan) {
 }  // namespace
 
 StaticPointCounts find_static_points(std::vector<Panorama>& scans, const std::function<void(std::size_t)>& on_scan) {
-  for (Panorama& scan : scans) mark_outliers(scan);
+  for (Panorama& scan : scans) {
+    mark_outliers(scan);
+    mark_near_gaps(scan);
+  }
   for (std::size_t i = 0; i < scans.size(); ++i) {
     on_scan(i);
     compare(scans, i);
