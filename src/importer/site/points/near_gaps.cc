@@ -73,7 +73,8 @@ class GapMarker {
         }
       }
     }
-    const bool is_near = num_near > 0 && static_cast<double>(num_near) >= kMinFraction * static_cast<double>(num_around);
+    const bool is_near =
+        num_near > 0 && static_cast<double>(num_near) >= kMinFraction * static_cast<double>(num_around);
     if (!is_near && !is_down) return;
     for (const Pixel pixel : gap) scan_.state(pixel) |= kPixelBlocked;
   }
@@ -85,8 +86,6 @@ class GapMarker {
 
 }  // namespace
 
-void mark_near_gaps(Panorama& scan) {
-  GapMarker(scan, near_range_m(scan)).mark_all();
-}
+void mark_near_gaps(Panorama& scan) { GapMarker(scan, near_range_m(scan)).mark_all(); }
 
 }  // namespace patrol::importer

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <map>
 
 #include "importer/site/points/near_gaps.h"
 
@@ -48,18 +49,25 @@ void mark_outliers(Panorama& scan) {
   }
 }
 
-/// Lengths of the connected runs through each pixel, along rows and columns, in pixels, at most kMaxRun_px.
+/// Extents of the connected runs through each pixel, along rows and columns: the larger of the distance between the
+/// ends of the run, which on a surface at a flat angle is that along the surface, and its width across the beams, of at
+/// most kMaxRun_px pixels.
 class Runs {
  public:
   explicit Runs(const Panorama& scan) : rows_(static_cast<std::size_t>(scan.rows())) {
     const std::size_t size = static_cast<std::size_t>(scan.columns()) * rows_;
-    along_row_.assign(size, 0);
-    along_column_.assign(size, 0);
+    along_row_m_.assign(size, 0.0f);
+    along_column_m_.assign(size, 0.0f);
     for (int row = 0; row < scan.rows(); ++row) {
       for (int col = 0; col < scan.columns();) {
         int end = col + 1;
         while (end < scan.columns() && scan.is_connected_right({end - 1, row})) ++end;
-        for (int c = col; c < end; ++c) along_row_[index({c, row})] = clipped(end - col);
+        const double length_m = (scan.point({end - 1, row}) - scan.point({col, row})).norm(),
+                     angle_rad = scan.column_angle_rad(row) * std::min(end - col, kMaxRun_px);
+        for (int c = col; c < end; ++c) {
+          along_row_m_[index({c, row})] =
+              static_cast<float>(std::max(length_m, angle_rad * double{scan.range_m({c, row})}));
+        }
         col = end;
       }
     }
@@ -67,27 +75,30 @@ class Runs {
       for (int row = 0; row < scan.rows();) {
         int end = row + 1;
         while (end < scan.rows() && scan.is_connected_up({col, end - 1})) ++end;
-        for (int r = row; r < end; ++r) along_column_[index({col, r})] = clipped(end - row);
+        const double length_m = (scan.point({col, end - 1}) - scan.point({col, row})).norm(),
+                     angle_rad = scan.step_rad() * std::min(end - row, kMaxRun_px);
+        for (int r = row; r < end; ++r) {
+          along_column_m_[index({col, r})] =
+              static_cast<float>(std::max(length_m, angle_rad * double{scan.range_m({col, r})}));
+        }
         row = end;
       }
     }
   }
 
   /// Returns the smaller extent of the surface through a pixel, m.
-  double width_m(const Panorama& scan, Pixel pixel) const {
+  double width_m(Pixel pixel) const {
     const std::size_t at = index(pixel);
-    return double{scan.range_m(pixel)} *
-           std::min(scan.column_angle_rad(pixel.row) * along_row_[at], scan.step_rad() * along_column_[at]);
+    return double{std::min(along_row_m_[at], along_column_m_[at])};
   }
 
  private:
-  static std::uint8_t clipped(int length) { return static_cast<std::uint8_t>(std::min(length, kMaxRun_px)); }
   std::size_t index(Pixel pixel) const {
     return static_cast<std::size_t>(pixel.col) * rows_ + static_cast<std::size_t>(pixel.row);
   }
 
   std::size_t rows_;
-  std::vector<std::uint8_t> along_row_, along_column_;
+  std::vector<float> along_row_m_, along_column_m_;
 };
 
 /// Evidence of another scan about a point.
@@ -186,7 +197,7 @@ void compare(std::vector<Panorama>& scans, std::size_t i) {
       const SeenPoint seen{.position = scan.point(pixel),
                            .normal = normal,
                            .spacing_m = spacing_on_surface_m(double{scan.range_m(pixel)}, scan.step_rad(), cosine),
-                           .width_m = runs.width_m(scan, pixel),
+                           .width_m = runs.width_m(pixel),
                            .footprint_m = scan.step_rad() * double{scan.range_m(pixel)}};
       bool is_free = false, is_observed = false, is_covered = false;
       for (std::size_t k = 0; k < scans.size() && !(is_covered && is_observed); ++k) {
@@ -282,6 +293,73 @@ void grow_moving(Panorama& scan) {
   }
 }
 
+/// Extends moving objects downward along the same steep surface: at its foot, other scans observe the ground at nearly the
+/// same range.
+void remove_feet(Panorama& scan) {
+  constexpr double kReach_m = 0.2, kSteep = 0.6;
+  for (int col = 0; col < scan.columns(); ++col) {
+    double reached_m = 0.0;
+    for (int row = scan.rows() - 2; row >= 0; --row) {
+      const Pixel pixel{col, row};
+      if (scan.has(pixel, kPixelMoving)) {
+        reached_m = 0.0;
+        continue;
+      }
+      if (!scan.is_usable(pixel) || !scan.has({col, row + 1}, kPixelMoving) || !scan.is_connected_up(pixel)) continue;
+      reached_m += scan.step_rad() * double{scan.range_m(pixel)};
+      if (reached_m < kReach_m && std::abs(scan.normal(pixel).z()) < kSteep) scan.state(pixel) |= kPixelMoving;
+    }
+  }
+}
+
+/// Removes narrow strips of points next to moving objects, such as those of a side at a flat angle, of which each
+/// column of beams meets another part: too narrow to be looked through, not connected to the object, and observed by no
+/// other scan.
+void remove_strips_at_moving(Panorama& scan) {
+  constexpr double kVoxel_m = 0.6, kMaxWidth_m = 0.1;
+  constexpr int kMinPoints = 30;
+  std::map<std::array<int, 3>, int> num_moving;
+  const auto voxel_of = [&](Pixel pixel) {
+    const Eigen::Vector3d p = scan.point(pixel) / kVoxel_m;
+    return std::array<int, 3>{static_cast<int>(std::floor(p.x())), static_cast<int>(std::floor(p.y())),
+                              static_cast<int>(std::floor(p.z()))};
+  };
+  const auto for_pixels = [&](auto visit) {
+    for (int col = 0; col < scan.columns(); ++col) {
+      for (int row = 0; row < scan.rows(); ++row) visit(Pixel{col, row});
+    }
+  };
+  for_pixels([&](Pixel pixel) {
+    if (scan.has(pixel, kPixelMoving)) ++num_moving[voxel_of(pixel)];
+  });
+  if (num_moving.empty()) return;
+  const Runs runs(scan);
+  std::vector<Pixel> candidates;
+  for_pixels([&](Pixel pixel) {
+    if (scan.is_usable(pixel) && !scan.has(pixel, kPixelObserved) && runs.width_m(pixel) < kMaxWidth_m)
+      candidates.push_back(pixel);
+  });
+  const auto is_next_to_moving = [&](Pixel pixel) {
+    const std::array<int, 3> at = voxel_of(pixel);
+    int count = 0;
+    for (int k = 0; k < 27; ++k) {
+      const auto found = num_moving.find({at[0] + k % 3 - 1, at[1] + k / 3 % 3 - 1, at[2] + k / 9 - 1});
+      count += found != num_moving.end() ? found->second : 0;
+    }
+    return count >= kMinPoints;
+  };
+  for (bool is_changed = true; is_changed;) {
+    const auto kept = std::stable_partition(candidates.begin(), candidates.end(),
+                                            [&](Pixel pixel) { return !is_next_to_moving(pixel); });
+    is_changed = kept != candidates.end();
+    for (auto pixel = kept; pixel != candidates.end(); ++pixel) {
+      scan.state(*pixel) |= kPixelMoving;
+      ++num_moving[voxel_of(*pixel)];
+    }
+    candidates.erase(kept, candidates.end());
+  }
+}
+
 }  // namespace
 
 StaticPointCounts find_static_points(std::vector<Panorama>& scans, const std::function<void(std::size_t)>& on_scan) {
@@ -297,6 +375,8 @@ StaticPointCounts find_static_points(std::vector<Panorama>& scans, const std::fu
   for (Panorama& scan : scans) {
     erode_moving(scan);
     grow_moving(scan);
+    remove_feet(scan);
+    remove_strips_at_moving(scan);
     for (int col = 0; col < scan.columns(); ++col) {
       for (int row = 0; row < scan.rows(); ++row) {
         const Pixel pixel{col, row};
