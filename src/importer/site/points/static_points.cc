@@ -293,8 +293,8 @@ void grow_moving(Panorama& scan) {
   }
 }
 
-/// Extends moving objects downward along the same steep surface: at its foot, other scans observe the ground at nearly the
-/// same range.
+/// Extends moving objects downward along the same surface if it does not face upward: at its foot, other scans observe
+/// the ground at nearly the same range.
 void remove_feet(Panorama& scan) {
   constexpr double kReach_m = 0.2, kSteep = 0.6;
   for (int col = 0; col < scan.columns(); ++col) {
@@ -307,7 +307,7 @@ void remove_feet(Panorama& scan) {
       }
       if (!scan.is_usable(pixel) || !scan.has({col, row + 1}, kPixelMoving) || !scan.is_connected_up(pixel)) continue;
       reached_m += scan.step_rad() * double{scan.range_m(pixel)};
-      if (reached_m < kReach_m && std::abs(scan.normal(pixel).z()) < kSteep) scan.state(pixel) |= kPixelMoving;
+      if (reached_m < kReach_m && scan.normal(pixel).z() < kSteep) scan.state(pixel) |= kPixelMoving;
     }
   }
 }
