@@ -241,7 +241,7 @@ const std::vector<ScannedWorld>& scanned_worlds() {
        .truck_m = {50.0, 0.0},
        .truck_yaw_deg = 180.0},
       {.name = "substation",
-       .scenario = "worlds/substation/scenarios/patrol.yaml",
+       .scenario = "worlds/substation/scenarios/navigate.yaml",
        .step_deg = 0.12,
        .scanners_m = {{8.0, 8.0},
                       {40.0, 8.0},
