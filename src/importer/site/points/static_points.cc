@@ -312,51 +312,48 @@ void remove_feet(Panorama& scan) {
   }
 }
 
-/// Removes narrow strips of points next to moving objects, such as those of a side at a flat angle, of which each
+using Voxel = std::array<int, 3>;
+
+/// Removes narrow strips of points next to large moving objects, such as those of a side at a flat angle, of which each
 /// column of beams meets another part: too narrow to be looked through, not connected to the object, and observed by no
-/// other scan.
+/// other scan. Strips that continue each other follow up to a distance from the object.
 void remove_strips_at_moving(Panorama& scan) {
-  constexpr double kVoxel_m = 0.6, kMaxWidth_m = 0.1;
-  constexpr int kMinPoints = 30;
-  std::map<std::array<int, 3>, int> num_moving;
+  constexpr double kVoxel_m = 1.0, kMaxWidth_m = 0.1;
+  constexpr int kMinPoints = 300, kMaxSteps = 4;
   const auto voxel_of = [&](Pixel pixel) {
     const Eigen::Vector3d p = scan.point(pixel) / kVoxel_m;
-    return std::array<int, 3>{static_cast<int>(std::floor(p.x())), static_cast<int>(std::floor(p.y())),
-                              static_cast<int>(std::floor(p.z()))};
+    return Voxel{static_cast<int>(std::floor(p.x())), static_cast<int>(std::floor(p.y())),
+                 static_cast<int>(std::floor(p.z()))};
   };
-  const auto for_pixels = [&](auto visit) {
-    for (int col = 0; col < scan.columns(); ++col) {
-      for (int row = 0; row < scan.rows(); ++row) visit(Pixel{col, row});
-    }
-  };
-  for_pixels([&](Pixel pixel) {
-    if (scan.has(pixel, kPixelMoving)) ++num_moving[voxel_of(pixel)];
-  });
-  if (num_moving.empty()) return;
   const Runs runs(scan);
-  std::vector<Pixel> candidates;
-  for_pixels([&](Pixel pixel) {
-    if (scan.is_usable(pixel) && !scan.has(pixel, kPixelObserved) && runs.width_m(pixel) < kMaxWidth_m)
-      candidates.push_back(pixel);
-  });
-  const auto is_next_to_moving = [&](Pixel pixel) {
-    const std::array<int, 3> at = voxel_of(pixel);
-    int count = 0;
-    for (int k = 0; k < 27; ++k) {
-      const auto found = num_moving.find({at[0] + k % 3 - 1, at[1] + k / 3 % 3 - 1, at[2] + k / 9 - 1});
-      count += found != num_moving.end() ? found->second : 0;
+  std::map<Voxel, int> num_moving;
+  std::map<Voxel, std::vector<Pixel>> strips;
+  for (int col = 0; col < scan.columns(); ++col) {
+    for (int row = 0; row < scan.rows(); ++row) {
+      const Pixel pixel{col, row};
+      if (scan.has(pixel, kPixelMoving)) {
+        ++num_moving[voxel_of(pixel)];
+      } else if (scan.is_usable(pixel) && !scan.has(pixel, kPixelObserved) && runs.width_m(pixel) < kMaxWidth_m) {
+        strips[voxel_of(pixel)].push_back(pixel);
+      }
     }
-    return count >= kMinPoints;
-  };
-  for (bool is_changed = true; is_changed;) {
-    const auto kept = std::stable_partition(candidates.begin(), candidates.end(),
-                                            [&](Pixel pixel) { return !is_next_to_moving(pixel); });
-    is_changed = kept != candidates.end();
-    for (auto pixel = kept; pixel != candidates.end(); ++pixel) {
-      scan.state(*pixel) |= kPixelMoving;
-      ++num_moving[voxel_of(*pixel)];
+  }
+  std::vector<Voxel> front;
+  for (const auto& [voxel, count] : num_moving) {
+    if (count >= kMinPoints) front.push_back(voxel);
+  }
+  for (int step = 0; step < kMaxSteps && !front.empty(); ++step) {
+    std::vector<Voxel> next;
+    for (const Voxel& at : front) {
+      for (int k = 0; k < 27; ++k) {
+        const auto found = strips.find({at[0] + k % 3 - 1, at[1] + k / 3 % 3 - 1, at[2] + k / 9 - 1});
+        if (found == strips.end()) continue;
+        for (const Pixel pixel : found->second) scan.state(pixel) |= kPixelMoving;
+        next.push_back(found->first);
+        strips.erase(found);
+      }
     }
-    candidates.erase(kept, candidates.end());
+    front = std::move(next);
   }
 }
 
