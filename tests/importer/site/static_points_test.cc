@@ -34,7 +34,7 @@ double fraction_with(const Panorama& scan, const Eigen::AlignedBox3d& box, Pixel
       num_with += scan.has({col, row}, state) ? 1 : 0;
     }
   }
-  return num_points < 100 ? -1.0 : static_cast<double>(num_with) / static_cast<double>(num_points);
+  return num_points < 30 ? -1.0 : static_cast<double>(num_with) / static_cast<double>(num_points);
 }
 
 std::size_t num_blocked(Panorama scan) {
@@ -69,6 +69,39 @@ TEST(StaticPoints, ObjectThatAScannerWithoutThePlateLooksThroughIsMoving) {
   Eigen::AlignedBox3d box = kPost;
   box.min() += Eigen::Vector3d(-0.02, -0.02, 0.03);
   EXPECT_GT(fraction_with(scans[0], box, kPixelMoving), 0.97);
+}
+
+TEST(StaticPoints, FootOfARemovedPostIsRemovedDownTo3Centimeters) {
+  ScannedRoom with;
+  with.objects = {kPost};
+  const Eigen::Vector3d second(1.2, 2.0, 1.7), third(1.2, -2.0, 1.7);
+  std::vector<Panorama> scans = {panorama_of(with, kOpen), panorama_of(ScannedRoom{}, second),
+                                 panorama_of(ScannedRoom{}, third)};
+  find_static_points(scans, [](std::size_t) {});
+  // The side toward the first scanner: from 2.8 m away its rows are 3 cm apart.
+  const Eigen::AlignedBox3d foot(Eigen::Vector3d(-0.22, -0.18, 0.03), Eigen::Vector3d(-0.18, 0.18, 0.2));
+  EXPECT_GT(fraction_with(scans[0], foot, kPixelMoving), 0.97);
+  const Eigen::AlignedBox3d floor(Eigen::Vector3d(-1.0, -0.5, -0.01), Eigen::Vector3d(-0.3, 0.5, 0.005));
+  EXPECT_EQ(fraction_with(scans[0], floor, kPixelMoving), 0.0);
+}
+
+TEST(StaticPoints, BarTooNarrowToBeLookedThroughIsRemovedWithTheObjectNextToIt) {
+  ScannedRoom with;
+  // The bar is 2.5 cm wide. The beams of the second scanner are 3 cm apart there.
+  const Eigen::AlignedBox3d box(Eigen::Vector3d(-0.4, -0.4, 0.0), Eigen::Vector3d(0.4, 0.4, 1.4)),
+      bar(Eigen::Vector3d(-0.1, 0.9, 0.4), Eigen::Vector3d(-0.075, 0.925, 1.4));
+  const Eigen::Vector3d first(-2.0, -1.0, 1.7), second(2.0, 2.5, 1.7);
+  Eigen::AlignedBox3d around = bar;
+  around.min().array() -= 0.02;
+  around.max().array() += 0.02;
+  const auto removed = [&](const std::vector<Eigen::AlignedBox3d>& objects) {
+    with.objects = objects;
+    std::vector<Panorama> scans = {panorama_of(with, first), panorama_of(ScannedRoom{}, second)};
+    find_static_points(scans, [](std::size_t) {});
+    return fraction_with(scans[0], around, kPixelMoving);
+  };
+  EXPECT_EQ(removed({bar}), 0.0);
+  EXPECT_GT(removed({box, bar}), 0.95);
 }
 
 TEST(NearGaps, GapAtAPlateIsBlocked) {
