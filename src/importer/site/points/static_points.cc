@@ -116,10 +116,13 @@ double spacing_on_surface_m(double range_m, double step_rad, double cosine) {
   return range_m * step_rad / std::sqrt(std::max(cosine, 0.05));
 }
 
+constexpr double kMaxReturnRange_m = 45.0;  // to which beams without a return count as free
+
 Evidence evidence_of(const Panorama& other, const SeenPoint& seen) {
   const Eigen::Vector3d offset = seen.position - other.origin();
   const double distance_m = offset.norm();
-  if (distance_m < 0.1) return Evidence::kNone;
+  if (distance_m < 0.1 || (distance_m > kMaxReturnRange_m && 0.9 * distance_m > other.max_range_m()))
+    return Evidence::kNone;
   const std::optional<Pixel> center = other.pixel_of(seen.position);
   if (!center || center->row < 1 || center->row + 1 >= other.rows()) return Evidence::kNone;
   const double cosine = std::abs(seen.normal.dot(offset)) / distance_m;
@@ -176,7 +179,7 @@ Evidence evidence_of(const Panorama& other, const SeenPoint& seen) {
   // At least one of three neighboring beams would meet the surface. Beams along it pass at one of its sides.
   constexpr double kMinCosine = 0.1;
   if (1.15 * footprint_m > seen.width_m || cosine < kMinCosine) return Evidence::kNone;
-  constexpr double kMinReturnCosine = 0.35, kMaxReturnRange_m = 45.0;
+  constexpr double kMinReturnCosine = 0.35;
   const bool would_return = cosine > kMinReturnCosine && distance_m < kMaxReturnRange_m && distance_m > 1.0;
   if (num_empty == 9) return would_return ? Evidence::kFree : Evidence::kNone;
   if (num_empty > 0 && !would_return) return Evidence::kNone;
