@@ -297,9 +297,10 @@ def study_table(rows, head, columns, key="method"):
     return markdown(head, lines)
 
 
-def study_values(folder):
-    """Results and processor times of a study, with the failures, pairs and adjusted p-values of its comparisons."""
-    texts = ("world", "method", "particles", "figure", "seeds", "failed", "pairs")
+def study_values(folder, columns=()):
+    """Results and processor times of a study, with the failures, pairs and adjusted p-values of its comparisons, and further columns of
+    text."""
+    texts = ("world", "method", "particles", "figure", "seeds", "failed", "pairs", *columns)
     numbers = ("published", "mean", "mean_low", "mean_high", "adjusted_p_value", "adjusted_failure_p_value")
     values = csv_values(folder / "results.csv", texts + numbers) + csv_values(folder / "performance.csv", texts + numbers)
     for row in values:

@@ -1,6 +1,6 @@
 """Tables of published experiments."""
-from results_tables import study_table, study_values
-from .declare import Step, add
+from results_tables import NONE, markdown, study_cell, study_table, study_values
+from .declare import REPORT, Step, add
 
 
 def study(name, seeds=None):
@@ -59,3 +59,25 @@ def planners_text(values):
 
 add(name="study_planners", file="src/app/study/README.md", seeds=STUDY_SEEDS, minutes=28, steps=[study("planners")],
     values=lambda folders: study_values(folders["study"]), text=planners_text)
+
+
+# Sites from scans: the figures of a study in rows, its worlds or methods in columns.
+def by_figure(values, head, key, names, form):
+    num_runs = max((int(row.get("seeds") or 0) + int(row.get("failed") or 0) for row in values), default=0)
+    rows = []
+    for figure, unit in dict.fromkeys((row["figure"], row.get("unit", "")) for row in values):
+        cells = [next((study_cell(row, form, num_runs) for row in values if row["figure"] == figure and row[key] == name), NONE) for name in names]
+        rows.append([f"{figure}, {unit}" if unit else figure, *cells])
+    return markdown([head, *names], rows)
+
+
+def add_scan_study(name, command, seeds, minutes, text):
+    add(name=name, file="src/app/study/README.md", seeds=seeds, minutes=minutes, steps=[study(command, seeds)],
+        values=lambda folders: study_values(folders["study"], ("unit",)), text=text)
+
+
+add_scan_study("study_scan_import", "scan-import", "2001..2002", 5,
+               lambda values: by_figure(values, "mean of the seeds", "world", ("tunnel", "substation"), "mean"))
+for name, command in (("study_scan_navigation", "scan-navigation"), ("study_scan_navigation_substation", "scan-navigation-substation")):
+    add_scan_study(name, command, REPORT, 18, lambda values: f"{legend('the world')}\n\n" + by_figure(
+        values, "", "method", ("world", "site of scans"), "compared"))

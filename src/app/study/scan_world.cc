@@ -12,8 +12,10 @@
 #include "core/geometry/angles.h"
 #include "core/random.h"
 #include "importer/grid/height_grid.h"
+#include "io/files/atomic_file.h"
 #include "sim/sensors/panoramic_scanner.h"
 #include "sim/sensors/surface_optics.h"
+#include "sim/sensors/uwb.h"
 #include "sim/static_obstacles.h"
 
 namespace patrol::app {
@@ -220,8 +222,8 @@ const std::vector<ScannedWorld>& scanned_worlds() {
       {.name = "tunnel",
        .scenario = "worlds/tunnel/scenarios/navigate.yaml",
        .step_deg = 0.18,
-       .scanners_m = {{5.0, 1.5},
-                      {18.0, -1.5},
+       .scanners_m = {{6.5, -1.5},  // sees both sides of the notches of the charging post
+                      {18.0, 1.0},
                       {31.0, 1.5},
                       {44.0, -1.5},
                       {57.0, 1.5},
@@ -239,7 +241,7 @@ const std::vector<ScannedWorld>& scanned_worlds() {
        .truck_m = {50.0, 0.0},
        .truck_yaw_deg = 180.0},
       {.name = "substation",
-       .scenario = "worlds/substation/scenarios/patrol.yaml",
+       .scenario = "worlds/substation/scenarios/navigate.yaml",
        .step_deg = 0.12,
        .scanners_m = {{8.0, 8.0},
                       {40.0, 8.0},
@@ -315,6 +317,21 @@ std::size_t save_scans(const ScannedWorld& world, std::uint64_t seed, const std:
   std::size_t num_points = 0;
   for (const io::StationScan& scan : scans) num_points += scan.points.size();
   return num_points;
+}
+
+void add_anchors(const ScannedWorld& world, const std::filesystem::path& site_xml) {
+  const std::string file = world_xml(world), end = "</worldbody>";
+  const sim::SpecPtr spec = sim::load_spec(file);
+  const sim::ModelPtr model = sim::compile(*spec, file);
+  std::string anchors;
+  for (const sim::UwbAnchor& anchor : sim::uwb_anchors(*model)) {
+    const Eigen::Vector3d& p = anchor.p_world;
+    anchors += fmt::format("  <site name=\"{}{}\" pos=\"{} {} {}\"/>\n  ", sim::kUwbAnchor, anchor.number, p.x(), p.y(),
+                           p.z());
+  }
+  std::string mjcf = io::load_text(site_xml);
+  mjcf.insert(mjcf.rfind(end), anchors);
+  io::save_text(site_xml, mjcf);
 }
 
 SiteComparison compare_site(const ScannedWorld& world, const importer::ImportedSite& site, const std::string& site_xml,

@@ -50,6 +50,9 @@ std::vector<io::StationScan> take_scans(const ScannedWorld& world, std::uint64_t
 /// Takes scans and writes them to `folder`. Returns the number of points.
 std::size_t save_scans(const ScannedWorld& world, std::uint64_t seed, const std::filesystem::path& folder);
 
+/// Adds the UWB anchors of the world to the MJCF of its site. They are surveyed; scans cannot identify them.
+void add_anchors(const ScannedWorld& world, const std::filesystem::path& site_xml);
+
 /// Differences of ranges at held-out poses. A beam returns up to an incidence of 85 degrees. Its difference is that of
 /// the first surfaces; it is infinite if the world returns it and the site has no surface, or if the site returns it
 /// and the world has no surface within 0.1 m of that range. A scanner sees a surface if the line to it is free, at most

@@ -54,6 +54,7 @@ void add_beams(const Prism& prism, const Surroundings& around, const std::vector
   for (int k = -reach; k <= reach; ++k) {
     for (int row = low_row + row_step / 2; row <= high_row; row += row_step) {
       const Pixel pixel{scan.wrapped(top.col + k), row};
+      if (scan.has(pixel, kPixelBlocked)) continue;
       const Eigen::Vector3d d = scan.direction(pixel);
       const double level = d.head<2>().norm();
       PlanBeam beam{.origin_m = origin_m,

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <unordered_map>
+#include <unordered_set>
 
 #include "importer/grid/cell_regions.h"
 
@@ -33,6 +34,28 @@ VoxelKey key_of(const std::array<int, 3>& at) {
   for (const int axis : at)
     key = (key << kBitsPerAxis) | static_cast<VoxelKey>((axis + kMiddle) & ((1 << kBitsPerAxis) - 1));
   return key;
+}
+
+/// Removes groups of adjacent voxels whose surfaces together are too small for an obstacle.
+void remove_specks(std::unordered_map<VoxelKey, Voxel>& voxels, double min_area_m2) {
+  std::vector<VoxelKey> keys;
+  for (const auto& [key, voxel] : voxels) keys.push_back(key);
+  std::unordered_set<VoxelKey> visited;
+  for (const VoxelKey first : keys) {
+    if (!voxels.contains(first) || !visited.insert(first).second) continue;
+    std::vector<VoxelKey> group = {first};
+    double area_m2 = 0.0;
+    for (std::size_t i = 0; i < group.size(); ++i) {
+      const Voxel& voxel = voxels.at(group[i]);
+      area_m2 += voxel.area_m2;
+      for (int k = 0; k < 27; ++k) {
+        const VoxelKey next = key_of({voxel.at[0] + k % 3 - 1, voxel.at[1] + k / 3 % 3 - 1, voxel.at[2] + k / 9 - 1});
+        if (voxels.contains(next) && visited.insert(next).second) group.push_back(next);
+      }
+    }
+    if (area_m2 >= min_area_m2) continue;
+    for (const VoxelKey key : group) voxels.erase(key);
+  }
 }
 
 std::vector<Voxel> occupied_voxels(const std::vector<Patch>& patches, const ScannedGround& ground,
@@ -65,6 +88,7 @@ std::vector<Voxel> occupied_voxels(const std::vector<Patch>& patches, const Scan
       voxel.area_m2 += area_m2;
     }
   }
+  remove_specks(voxels, settings.min_group_area_m2);
   std::vector<Voxel> occupied;
   for (const auto& [key, voxel] : voxels) {
     if (voxel.area_m2 >= settings.min_area_m2) occupied.push_back(voxel);

@@ -152,6 +152,7 @@ void Panorama::fill_pixels(const io::StationScan& scan) {
     distance[at] = off;
     range_m_[at] = static_cast<float>(range);
     intensity_[at] = point.intensity;
+    max_range_m_ = std::max(max_range_m_, range);
   }
 }
 

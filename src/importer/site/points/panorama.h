@@ -17,6 +17,7 @@ enum PixelState : std::uint8_t {
   kPixelMoving = 1u << 3,    ///< return of an object that other scans look through
   kPixelCovered = 1u << 4,   ///< another scan measured the same surface with closer beams
   kPixelObserved = 1u << 5,  ///< another scan measured the same surface
+  kPixelBlocked = 1u << 6,   ///< no return, where a surface may be closer than the minimum range (near_gaps.h)
 };
 
 /// Pixel of a panorama.
@@ -39,6 +40,8 @@ class Panorama {
   int rows() const { return rows_; }
   double step_rad() const { return step_rad_; }
   const Eigen::Vector3d& origin() const { return T_site_scanner_.position; }
+  /// Returns the largest range of a return.
+  double max_range_m() const { return max_range_m_; }
 
   /// Returns the range, m; 0 if the pixel has no return.
   float range_m(Pixel pixel) const { return range_m_[index(pixel)]; }
@@ -92,6 +95,7 @@ class Panorama {
   Eigen::Matrix3d R_site_scanner_ = Eigen::Matrix3d::Identity();
   int columns_ = 0, rows_ = 0;
   double step_rad_ = 0.0;
+  double max_range_m_ = 0.0;
   double azimuth_rad_ = 0.0;    ///< azimuth of column 0
   double elevation_rad_ = 0.0;  ///< elevation of row 0
   std::vector<float> range_m_, intensity_;

@@ -18,6 +18,14 @@ struct PixelRectangle {
   double light_sum = 0.0;  ///< of the intensities
 };
 
+/// Returns the length of a step across a beam when it is projected onto a plane along the beam, up to an incidence of
+/// 85 degrees.
+double length_on_plane(const Eigen::Vector3d& step, const Eigen::Vector3d& normal, const Eigen::Vector3d& beam) {
+  constexpr double kMinCosine = 0.087;
+  const double cosine = std::max(kMinCosine, std::abs(normal.dot(beam)));
+  return step.norm() * std::hypot(1.0, normal.dot(step.normalized()) / cosine);
+}
+
 class PatchMaker {
  public:
   PatchMaker(const Panorama& scan, const PanoramaPatchSettings& settings,
@@ -215,14 +223,21 @@ class PatchMaker {
         max_range_m = std::max(max_range_m, r);
       }
     }
-    const double pixel_m = scan_.step_rad() * range_m;
-    const auto more = [&](bool is_end) {
+    // Lengths of a pixel on the plane along the rows and along the columns.
+    const Eigen::Vector3d d_center = plane.center / range_m,
+                          aside = scan_.direction(rectangle.begin.col + 1.0, rectangle.begin.row) -
+                                  scan_.direction(rectangle.begin.col, rectangle.begin.row),
+                          upward = scan_.direction(rectangle.begin.col, rectangle.begin.row + 1.0) -
+                                   scan_.direction(rectangle.begin.col, rectangle.begin.row);
+    const double row_m = range_m * length_on_plane(aside, normal, d_center),
+                 col_m = range_m * length_on_plane(upward, normal, d_center);
+    const auto more = [&](bool is_end, double pixel_m) {
       return is_end ? settings_.silhouette_px + settings_.end_overlap_m / pixel_m : 0.5 + settings_.overlap_m / pixel_m;
     };
-    const double left = rectangle.begin.col + rectangle.width - 1 + more(is_end(rectangle, 1, 0)),
-                 right = rectangle.begin.col - more(is_end(rectangle, -1, 0));
-    const double bottom = rectangle.begin.row - more(is_end(rectangle, 0, -1)),
-                 top = rectangle.begin.row + rectangle.height - 1 + more(is_end(rectangle, 0, 1));
+    const double left = rectangle.begin.col + rectangle.width - 1 + more(is_end(rectangle, 1, 0), row_m),
+                 right = rectangle.begin.col - more(is_end(rectangle, -1, 0), row_m);
+    const double bottom = rectangle.begin.row - more(is_end(rectangle, 0, -1), col_m),
+                 top = rectangle.begin.row + rectangle.height - 1 + more(is_end(rectangle, 0, 1), col_m);
     // Counterclockwise seen from the scanner: columns grow to the left.
     const double corners[4][2] = {{left, bottom}, {right, bottom}, {right, top}, {left, top}};
     Patch patch{.corners_m = {}, .num_corners = 4};

@@ -15,9 +15,9 @@ struct PanoramaPatchSettings {
   double max_reflectivity_step = 0.12;  ///< largest difference of the reflectivities of two patches that are joined
   double silhouette_px = 0.3;           ///< width of the outer half of a pixel where the surface ends. The union of
                                         ///< several scans would be too wide with half a pixel
-  double end_overlap_m = 0.003;         ///< length by which patches extend where the surface ends
-  double overlap_m = 0.01;  ///< length by which patches extend where the surface continues, against gaps seen from
-                            ///< other directions
+  double end_overlap_m = 0.003;         ///< length on the surface by which patches extend where it ends
+  double overlap_m = 0.01;  ///< length on the surface by which patches extend where it continues, against gaps seen
+                            ///< from other directions
 };
 
 /// Returns flat patches of the usable pixels that no other scan covers: the largest aligned squares of pixels on

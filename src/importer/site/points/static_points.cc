@@ -4,6 +4,9 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <map>
+
+#include "importer/site/points/near_gaps.h"
 
 namespace patrol::importer {
 namespace {
@@ -46,18 +49,25 @@ void mark_outliers(Panorama& scan) {
   }
 }
 
-/// Lengths of the connected runs through each pixel, along rows and columns, in pixels, at most kMaxRun_px.
+/// Extents of the connected runs through each pixel, along rows and columns: the larger of the distance between the
+/// ends of the run, which on a surface at a flat angle is that along the surface, and its width across the beams, of at
+/// most kMaxRun_px pixels.
 class Runs {
  public:
   explicit Runs(const Panorama& scan) : rows_(static_cast<std::size_t>(scan.rows())) {
     const std::size_t size = static_cast<std::size_t>(scan.columns()) * rows_;
-    along_row_.assign(size, 0);
-    along_column_.assign(size, 0);
+    along_row_m_.assign(size, 0.0f);
+    along_column_m_.assign(size, 0.0f);
     for (int row = 0; row < scan.rows(); ++row) {
       for (int col = 0; col < scan.columns();) {
         int end = col + 1;
         while (end < scan.columns() && scan.is_connected_right({end - 1, row})) ++end;
-        for (int c = col; c < end; ++c) along_row_[index({c, row})] = clipped(end - col);
+        const double length_m = (scan.point({end - 1, row}) - scan.point({col, row})).norm(),
+                     angle_rad = scan.column_angle_rad(row) * std::min(end - col, kMaxRun_px);
+        for (int c = col; c < end; ++c) {
+          along_row_m_[index({c, row})] =
+              static_cast<float>(std::max(length_m, angle_rad * double{scan.range_m({c, row})}));
+        }
         col = end;
       }
     }
@@ -65,27 +75,30 @@ class Runs {
       for (int row = 0; row < scan.rows();) {
         int end = row + 1;
         while (end < scan.rows() && scan.is_connected_up({col, end - 1})) ++end;
-        for (int r = row; r < end; ++r) along_column_[index({col, r})] = clipped(end - row);
+        const double length_m = (scan.point({col, end - 1}) - scan.point({col, row})).norm(),
+                     angle_rad = scan.step_rad() * std::min(end - row, kMaxRun_px);
+        for (int r = row; r < end; ++r) {
+          along_column_m_[index({col, r})] =
+              static_cast<float>(std::max(length_m, angle_rad * double{scan.range_m({col, r})}));
+        }
         row = end;
       }
     }
   }
 
   /// Returns the smaller extent of the surface through a pixel, m.
-  double width_m(const Panorama& scan, Pixel pixel) const {
+  double width_m(Pixel pixel) const {
     const std::size_t at = index(pixel);
-    return double{scan.range_m(pixel)} *
-           std::min(scan.column_angle_rad(pixel.row) * along_row_[at], scan.step_rad() * along_column_[at]);
+    return double{std::min(along_row_m_[at], along_column_m_[at])};
   }
 
  private:
-  static std::uint8_t clipped(int length) { return static_cast<std::uint8_t>(std::min(length, kMaxRun_px)); }
   std::size_t index(Pixel pixel) const {
     return static_cast<std::size_t>(pixel.col) * rows_ + static_cast<std::size_t>(pixel.row);
   }
 
   std::size_t rows_;
-  std::vector<std::uint8_t> along_row_, along_column_;
+  std::vector<float> along_row_m_, along_column_m_;
 };
 
 /// Evidence of another scan about a point.
@@ -103,10 +116,13 @@ double spacing_on_surface_m(double range_m, double step_rad, double cosine) {
   return range_m * step_rad / std::sqrt(std::max(cosine, 0.05));
 }
 
+constexpr double kMaxReturnRange_m = 45.0;  // to which beams without a return count as free
+
 Evidence evidence_of(const Panorama& other, const SeenPoint& seen) {
   const Eigen::Vector3d offset = seen.position - other.origin();
   const double distance_m = offset.norm();
-  if (distance_m < 0.1) return Evidence::kNone;
+  if (distance_m < 0.1 || (distance_m > kMaxReturnRange_m && 0.9 * distance_m > other.max_range_m()))
+    return Evidence::kNone;
   const std::optional<Pixel> center = other.pixel_of(seen.position);
   if (!center || center->row < 1 || center->row + 1 >= other.rows()) return Evidence::kNone;
   const double cosine = std::abs(seen.normal.dot(offset)) / distance_m;
@@ -114,7 +130,7 @@ Evidence evidence_of(const Panorama& other, const SeenPoint& seen) {
   const double tolerance_m = 0.03 + 0.002 * distance_m;
   double nearest_m = 1e9, nearest_point_m = 1e9;
   int num_empty = 0;
-  bool is_observed = false;
+  bool is_observed = false, is_blocked = false;
   Pixel nearest = *center;
   for (int dc = -1; dc <= 1; ++dc) {
     for (int dr = -1; dr <= 1; ++dr) {
@@ -122,6 +138,7 @@ Evidence evidence_of(const Panorama& other, const SeenPoint& seen) {
       const double range_m = double{other.range_m(pixel)};
       if (range_m <= 0.0) {
         ++num_empty;
+        is_blocked = is_blocked || other.has(pixel, kPixelBlocked);
         continue;
       }
       nearest_m = std::min(nearest_m, range_m);
@@ -158,10 +175,11 @@ Evidence evidence_of(const Panorama& other, const SeenPoint& seen) {
       return Evidence::kCovered;
   }
   if (is_observed) return Evidence::kObserved;
+  if (is_blocked) return Evidence::kNone;
   // At least one of three neighboring beams would meet the surface. Beams along it pass at one of its sides.
   constexpr double kMinCosine = 0.1;
   if (1.15 * footprint_m > seen.width_m || cosine < kMinCosine) return Evidence::kNone;
-  constexpr double kMinReturnCosine = 0.35, kMaxReturnRange_m = 45.0;
+  constexpr double kMinReturnCosine = 0.35;
   const bool would_return = cosine > kMinReturnCosine && distance_m < kMaxReturnRange_m && distance_m > 1.0;
   if (num_empty == 9) return would_return ? Evidence::kFree : Evidence::kNone;
   if (num_empty > 0 && !would_return) return Evidence::kNone;
@@ -182,7 +200,7 @@ void compare(std::vector<Panorama>& scans, std::size_t i) {
       const SeenPoint seen{.position = scan.point(pixel),
                            .normal = normal,
                            .spacing_m = spacing_on_surface_m(double{scan.range_m(pixel)}, scan.step_rad(), cosine),
-                           .width_m = runs.width_m(scan, pixel),
+                           .width_m = runs.width_m(pixel),
                            .footprint_m = scan.step_rad() * double{scan.range_m(pixel)}};
       bool is_free = false, is_observed = false, is_covered = false;
       for (std::size_t k = 0; k < scans.size() && !(is_covered && is_observed); ++k) {
@@ -278,10 +296,77 @@ void grow_moving(Panorama& scan) {
   }
 }
 
+/// Extends moving objects downward along the same surface if it does not face upward: at its foot, other scans observe
+/// the ground at nearly the same range.
+void remove_feet(Panorama& scan) {
+  constexpr double kReach_m = 0.2, kSteep = 0.6;
+  for (int col = 0; col < scan.columns(); ++col) {
+    double reached_m = 0.0;
+    for (int row = scan.rows() - 2; row >= 0; --row) {
+      const Pixel pixel{col, row};
+      if (scan.has(pixel, kPixelMoving)) {
+        reached_m = 0.0;
+        continue;
+      }
+      if (!scan.is_usable(pixel) || !scan.has({col, row + 1}, kPixelMoving) || !scan.is_connected_up(pixel)) continue;
+      reached_m += scan.step_rad() * double{scan.range_m(pixel)};
+      if (reached_m < kReach_m && scan.normal(pixel).z() < kSteep) scan.state(pixel) |= kPixelMoving;
+    }
+  }
+}
+
+using Voxel = std::array<int, 3>;
+
+/// Removes narrow strips of points next to large moving objects, such as those of a side at a flat angle, of which each
+/// column of beams meets another part: too narrow to be looked through, not connected to the object, and observed by no
+/// other scan. Strips that continue each other follow up to a distance from the object.
+void remove_strips_at_moving(Panorama& scan) {
+  constexpr double kVoxel_m = 1.0, kMaxWidth_m = 0.1;
+  constexpr int kMinPoints = 300, kMaxSteps = 4;
+  const auto voxel_of = [&](Pixel pixel) {
+    const Eigen::Vector3d p = scan.point(pixel) / kVoxel_m;
+    return Voxel{static_cast<int>(std::floor(p.x())), static_cast<int>(std::floor(p.y())),
+                 static_cast<int>(std::floor(p.z()))};
+  };
+  const Runs runs(scan);
+  std::map<Voxel, int> num_moving;
+  std::map<Voxel, std::vector<Pixel>> strips;
+  for (int col = 0; col < scan.columns(); ++col) {
+    for (int row = 0; row < scan.rows(); ++row) {
+      const Pixel pixel{col, row};
+      if (scan.has(pixel, kPixelMoving)) {
+        ++num_moving[voxel_of(pixel)];
+      } else if (scan.is_usable(pixel) && !scan.has(pixel, kPixelObserved) && runs.width_m(pixel) < kMaxWidth_m) {
+        strips[voxel_of(pixel)].push_back(pixel);
+      }
+    }
+  }
+  std::vector<Voxel> front;
+  for (const auto& [voxel, count] : num_moving) {
+    if (count >= kMinPoints) front.push_back(voxel);
+  }
+  for (int step = 0; step < kMaxSteps && !front.empty(); ++step) {
+    std::vector<Voxel> next;
+    for (const Voxel& at : front) {
+      for (int k = 0; k < 27; ++k) {
+        const auto found = strips.find({at[0] + k % 3 - 1, at[1] + k / 3 % 3 - 1, at[2] + k / 9 - 1});
+        if (found == strips.end()) continue;
+        for (const Pixel pixel : found->second) scan.state(pixel) |= kPixelMoving;
+        next.push_back(found->first);
+        strips.erase(found);
+      }
+    }
+    front = std::move(next);
+  }
+}
+
 }  // namespace
 
 StaticPointCounts find_static_points(std::vector<Panorama>& scans, const std::function<void(std::size_t)>& on_scan) {
-  for (Panorama& scan : scans) mark_outliers(scan);
+  for (Panorama& scan : scans) {
+    mark_outliers(scan);
+    mark_near_gaps(scan);
+  }
   for (std::size_t i = 0; i < scans.size(); ++i) {
     on_scan(i);
     compare(scans, i);
@@ -290,6 +375,8 @@ StaticPointCounts find_static_points(std::vector<Panorama>& scans, const std::fu
   for (Panorama& scan : scans) {
     erode_moving(scan);
     grow_moving(scan);
+    remove_feet(scan);
+    remove_strips_at_moving(scan);
     for (int col = 0; col < scan.columns(); ++col) {
       for (int row = 0; row < scan.rows(); ++row) {
         const Pixel pixel{col, row};

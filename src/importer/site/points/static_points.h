@@ -21,6 +21,7 @@ struct StaticPointCounts {
 ///   nothing although the surface would return them), and no scan observes it. A scan decides only if its beams are
 ///   closer together than the surface is wide, so that thin posts stay. Neighbors within 0.5 m that no scan observes
 ///   follow. An object that at least two scans observe at one position stays.
+/// - Gaps without returns at a surface closer than the minimum range (near_gaps.h) are no evidence.
 /// - Covered: another scan measured the surface with beams that are closer together on it.
 /// `on_scan` is called before each scan is compared with the others, with its index.
 StaticPointCounts find_static_points(std::vector<Panorama>& scans, const std::function<void(std::size_t)>& on_scan);
