@@ -5,6 +5,8 @@
 #include <initializer_list>
 #include <limits>
 
+#include <Eigen/Core>
+
 #include "core/error.h"
 
 namespace patrol::sim {
@@ -50,6 +52,8 @@ mjsBody* add_suspension(const urdf::Collision& wheel, double load_n, mjsBody& tr
   set(carrier->pos, {center.x, center.y, center.z});
   carrier->explicitinertial = true;
   carrier->mass = kWheelMass_kg;
+  set(carrier->ipos, {0.0, 0.0, 0.0});
+  set(carrier->iquat, {1.0, 0.0, 0.0, 0.0});
   std::fill_n(carrier->inertia, 3, kWheelInertia_kgm2);
   mjsJoint* slide = mjs_addJoint(carrier, nullptr);
   mjs_setName(slide->element, (wheel.name + "_spring").c_str());
@@ -104,10 +108,16 @@ double road_wheel_load_n(const urdf::ModelInterface& robot) {
 }
 
 void add_wheels(const urdf::Link& track, double load_n, mjsBody& body) {
+  Eigen::Map<Eigen::Vector3d> center_m(body.ipos);
   for (const urdf::CollisionSharedPtr& wheel : track.collision_array) {
     const bool is_sprung = is_road_wheel(track, *wheel);
     add_wheel(*wheel, is_sprung ? *add_suspension(*wheel, load_n, body) : body, is_sprung);
-    if (is_sprung) body.mass -= kWheelMass_kg;
+    if (!is_sprung) continue;
+    const urdf::Vector3& p_wheel = wheel->origin.position;
+    const Eigen::Vector3d moment =
+        body.mass * center_m - kWheelMass_kg * Eigen::Vector3d(p_wheel.x, p_wheel.y, p_wheel.z);
+    body.mass -= kWheelMass_kg;
+    center_m = moment / body.mass;
   }
 }
 

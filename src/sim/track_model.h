@@ -18,9 +18,9 @@ bool is_track(const urdf::Link& link);
 /// Returns the load of each road wheel on level ground, N; 0 for a robot without tracks.
 double road_wheel_load_n(const urdf::ModelInterface& robot);
 
-/// Adds the wheels of `track` to its body, with geoms named as the collision shapes and joints `<wheel>_spring`. Their
-/// mass is subtracted from the body. `load_n` is the load of each road wheel at its position in the URDF. Throws
-/// InputError for shapes other than cylinders.
+/// Adds the wheels of `track` to its body, with geoms named as the collision shapes and joints `<wheel>_spring`. Mass
+/// and center of mass of the track remain those of the URDF; its inertia is not reduced by theirs. `load_n` is the load
+/// of each road wheel at its position in the URDF. Throws InputError for shapes other than cylinders.
 void add_wheels(const urdf::Link& track, double load_n, mjsBody& body);
 
 /// Returns the reflected inertia of a sprocket's motor and belt, kg m2.

@@ -167,6 +167,24 @@ TEST(ModelAssembly, TheTrackedRobotWeighsItsUrdfs85KilogramsWithItsWheelsTakenOf
   EXPECT_NEAR(model.physics->body_subtreemass[base], io::load_robot_description(kTrackedUrdf).mass_kg, 1e-9);
 }
 
+TEST(ModelAssembly, TracksWithTheirRoadWheelsHaveTheCenterOfMassOfTheUrdfWithin1Micrometer) {
+  const AssembledModel model = tracked_on(make_flat_world());
+  const mjModel& physics = *model.physics;
+  for (const std::string track : {"left_track", "right_track"}) {
+    const int body = mj_name2id(&physics, mjOBJ_BODY, track.c_str());
+    double mass_kg = physics.body_mass[body];
+    Eigen::Vector3d moment = mass_kg * Eigen::Map<const Eigen::Vector3d>(physics.body_ipos + 3 * body);
+    for (int wheel = body + 1; wheel < physics.nbody && physics.body_parentid[wheel] == body; ++wheel) {
+      const Eigen::Map<const Eigen::Vector3d> p_wheel(physics.body_pos + 3 * wheel);
+      EXPECT_EQ(Eigen::Map<const Eigen::Vector3d>(physics.body_ipos + 3 * wheel).norm(), 0.0) << "of a wheel";
+      mass_kg += physics.body_mass[wheel];
+      moment += physics.body_mass[wheel] * p_wheel;
+    }
+    EXPECT_NEAR(mass_kg, 17.0, 1e-9);
+    EXPECT_LT((moment / mass_kg - Eigen::Vector3d(0.0, 0.0, -0.045)).norm(), 1e-6);
+  }
+}
+
 TEST(ModelAssembly, TheTrackedRobotStartsAHandsBreadthAboveRubbleAndAboveAKerbUnderOneTrack) {
   for (const std::string& world :
        {make_rubble_world(4.0, 4.0), make_flat_world(R"(<geom type="box" pos="0 0.3 0.06" size="1 0.1 0.06"/>)")}) {
