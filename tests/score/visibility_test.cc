@@ -147,7 +147,7 @@ TEST(MarkSeeable, From24PlacesInAFieldOfPostsItMarksWhatEveryRayCrossesCellByCel
   OccupancyGrid map({.resolution_m = 0.1, .width = 330, .height = 250});
   for (std::size_t i = 0; i < map.values().size(); ++i) {
     const double draw = random.uniform(i, 0);
-    map.values()[i] = draw < 0.0005 ? kOccupied : draw < 0.0006 ? kUnknown : kFree;
+    map.values()[i] = draw < 0.006 ? kOccupied : draw < 0.0065 ? kUnknown : kFree;
   }
   constexpr double kRange_m = 7.0;
   std::vector<Eigen::Vector2d> places;
