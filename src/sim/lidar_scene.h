@@ -36,7 +36,7 @@ struct RayHit {
 ///
 /// Static geometry is in Embree (sim/embree_scene.h). Moving bodies have few shapes: a ray that hits the bounding box
 /// of a moving body is transformed into its frame and tested against each shape. So no structure is rebuilt when bodies
-/// move.
+/// move. A lidar casts its beams in cones: the bodies and shapes that no beam of a cone can hit are left out at once.
 ///
 /// Includes geom groups 0 and 2 (solid and lidar-only) and the robot's visual shapes. Agrees with mj_ray to within a
 /// millimeter (tests/sim/lidar_scene_test.cc).
