@@ -132,7 +132,7 @@ class ScanTracker {
   Hypothesis without_moving_objects(const Hypothesis& best, const std::vector<MatchPoint>& points,
                                     const PoseGaussian& prediction) const;
   Hypothesis match_by_odometry(const std::vector<MatchPoint>& points, const PoseGaussian& prediction) const;
-  /// Match from an alternative start pose, without log likelihoods; none if it is the best match so far.
+  /// Match from an alternative start pose, without log likelihoods; empty if it is the best match already found.
   Hypothesis match_from(const Pose2& T_local_start, const std::vector<MatchPoint>& points,
                         const PoseGaussian& prediction, const Hypothesis& best) const;
   static Hypothesis to_hypothesis(const std::optional<MatchResult>& match, const PoseGaussian& prediction);
