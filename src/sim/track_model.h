@@ -10,7 +10,7 @@ namespace patrol::sim {
 
 // Track in the physics model: road wheels on springs, end wheels on the chassis.
 //
-// No wheel rotates; the motion of the track is a surface velocity of the wheels (locomotion/track_belts.h). Without
+// No wheel rotates; the motion of the track is a surface velocity of the wheels (locomotion/track_contact.h). Without
 // springs, a few wheels would carry the whole load, and the robot would turn like a four-wheeled cart.
 
 bool is_track(const urdf::Link& link);

@@ -56,6 +56,13 @@ class CostOfSize(unittest.TestCase):
         dashed = next(line for line in root.iter(f"{name}line") if line.get("stroke-dasharray"))
         self.assertEqual(points, [f"{dashed.get('x1')},{dashed.get('y1')}", f"{dashed.get('x2')},{dashed.get('y2')}"])
 
+    def test_a_refused_input_is_told_from_a_failure_and_a_missed_expectation_is_neither(self):
+        self.assertGreaterEqual(cost.processor_s(["sh", "-c", "exit 1"]), 0.0)
+        with self.assertRaisesRegex(cost.InputError, "^second$"):
+            cost.processor_s(["sh", "-c", "echo first >&2; echo second >&2; exit 2"])
+        with self.assertRaisesRegex(RuntimeError, "exit code 3: no message"):
+            cost.processor_s(["sh", "-c", "exit 3"])
+
     def test_wrong_input_gives_one_line_and_exit_code_2(self):
         for words, message in ((["--path", "2,1"], "--path 2,1"), (["--site", "a"], "--site a"), (["--patrol", "/nowhere"], "cannot be executed")):
             done = subprocess.run([SOURCE / "tools/cost_of_size", *words], capture_output=True, text=True)
