@@ -141,8 +141,9 @@ class Batch {
 
   void handle(std::size_t i, const TaskEnd& end) {
     const BatchRun& run = runs_[i];
-    const bool is_killed_from_outside = end.signal == SIGKILL && !end.is_over_time;
-    if (is_killed_from_outside && killed_once_.insert(i).second) {
+    // A job scheduler ends all processes of a job with SIGTERM or SIGKILL, in any order: here the run came first.
+    const bool is_ended_from_outside = (end.signal == SIGKILL || end.signal == SIGTERM) && !end.is_over_time;
+    if (is_ended_from_outside && (interrupt_.is_interrupted() || ended_once_.insert(i).second)) {
       pending_.push_back(i);
       return;
     }
@@ -182,7 +183,7 @@ class Batch {
   std::map<std::size_t, std::set<Time>> snapshot_times_;    ///< [run from which others branch]
   std::vector<std::size_t> pending_;
   std::vector<std::size_t> branches_;  ///< runs after these
-  std::set<std::size_t> killed_once_;
+  std::set<std::size_t> ended_once_;  ///< runs whose process was ended from outside
   std::size_t num_done_ = 0, num_failed_ = 0;
   ProgressBar bar_;
   InterruptGuard interrupt_;

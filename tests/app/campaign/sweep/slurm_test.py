@@ -120,8 +120,8 @@ class Slurm(SweepCase):
             time.sleep(0.05)
         job = (out / "slurm/job").read_text()
         subprocess.run(["scancel", "--signal=KILL", "--full", f"{job}_1"], check=True)
-        _, said = process.communicate(timeout=280)
-        self.assertEqual(process.returncode, 0, said)
+        shown, said = process.communicate(timeout=280)
+        self.assertEqual(process.returncode, 0, shown + said)
         self.assert_same_tables(out)
         self.assertEqual(said.count("\n"), 2, said)  # a second submission, of what was missing
 

@@ -78,7 +78,7 @@ class Sweep(SweepCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assert_same_tables(out)
 
-    def test_a_run_that_crashes_is_a_row_and_one_killed_from_outside_is_tried_again(self):
+    def test_a_run_that_crashes_is_a_row_and_one_ended_from_outside_is_tried_again(self):
         out = self.path / "crashed"
         process = self.start(out, *self.vary, "--jobs", "1")
         subprocess.run(["kill", "-SEGV", str(self.wait_for_a_child(process))], check=True)
@@ -88,11 +88,26 @@ class Sweep(SweepCase):
         self.assertEqual((ends.count("crashed"), ends.count("done")), (1, 3))
         self.assertIn("signal 11", said)
 
-        out = self.path / "shot"
+        for name in ("KILL", "TERM"):
+            out = self.path / f"ended_by_{name}"
+            process = self.start(out, *self.vary, "--jobs", "1")
+            subprocess.run(["kill", f"-{name}", str(self.wait_for_a_child(process))], check=True)
+            _, said = process.communicate(timeout=280)
+            self.assertEqual(process.returncode, 0, said)
+            self.assert_same_tables(out)
+
+    def test_ended_by_sigterm_together_with_its_run_it_records_nothing_and_goes_on(self):
+        out = self.path / "terminated"
         process = self.start(out, *self.vary, "--jobs", "1")
-        subprocess.run(["kill", "-KILL", str(self.wait_for_a_child(process))], check=True)
-        _, said = process.communicate(timeout=280)
-        self.assertEqual(process.returncode, 0, said)
+        child = self.wait_for_a_child(process)
+        process.send_signal(signal.SIGSTOP)  # so that the run ends first
+        subprocess.run(["kill", "-TERM", str(child)], check=True)
+        process.send_signal(signal.SIGTERM)
+        process.send_signal(signal.SIGCONT)
+        _, said = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 3, said)
+        self.assertEqual(list((out / "runs").glob("*.json")), [])
+        self.assertEqual(self.sweep(out, *self.vary).returncode, 0)
         self.assert_same_tables(out)
 
     def test_a_run_over_its_wall_time_is_a_row_and_4(self):
