@@ -11,6 +11,7 @@
 
 #include "core/error.h"
 #include "core/geometry/angles.h"
+#include "sim/locomotion/leg_gains.h"
 #include "sim/track_model.h"
 #include "sim/wheel_model.h"
 
@@ -18,11 +19,14 @@ namespace patrol::sim {
 namespace {
 
 // Leg joints: reflected rotor inertia typical of motors of 23.7 N m, friction of a good bearing. Tuned so that the
-// passive leg swings like the damping in the public robot description. Other motors are proportional to their torque.
+// passive leg swings like the damping in the public robot description. Other motors are proportional to their torque,
+// up to three times the torque that is proportional to mass and leg length, about the robot's weight at the length of a
+// leg. A higher `effort` is a placeholder, and its friction would hold the robot fast.
 constexpr double kArmature = 0.01;
 constexpr double kDamping = 0.1;
 constexpr double kFrictionLoss = 0.2;
 constexpr double kLegTorque_nm = 23.7;
+constexpr double kMaxTorqueOfWeight = 3.0;
 
 // Rubber foot on asphalt: time constant of 6 ms; the friction of the foot applies on any ground.
 constexpr double kFootFriction = 0.8;
@@ -112,13 +116,16 @@ bool is_foot(const urdf::Link& link, const RobotParts& robot) {
   return std::any_of(legs.begin(), legs.end(), [&](const LegGeometry& leg) { return leg.foot_link == link.name; });
 }
 
-/// Returns the torque of the motors of the leg with a joint relative to `kLegTorque_nm`, by the first joint of the leg;
-/// 1 for a joint of no leg.
+/// Returns the torque of the motors of the leg with a joint relative to `kLegTorque_nm`, by the first joint of the leg,
+/// at most `kMaxTorqueOfWeight` times that of the scaled robot; 1 for a joint of no leg.
 double leg_torque_ratio(const std::string& joint, const RobotParts& robot) {
   const std::vector<std::string>& names = robot.description.joint_names;
   if (robot.description.legs.empty()) return 1.0;
   const auto index = static_cast<std::size_t>(std::find(names.begin(), names.end(), joint) - names.begin());
-  return index < names.size() ? robot.description.joint_limits[index - index % 3].effort_nm / kLegTorque_nm : 1.0;
+  if (index >= names.size()) return 1.0;
+  const LegScale scale = leg_scale(robot.description);
+  return std::min(robot.description.joint_limits[index - index % 3].effort_nm / kLegTorque_nm,
+                  kMaxTorqueOfWeight * scale.force * scale.length);
 }
 
 void add_collisions(const urdf::Link& link, const RobotParts& robot, mjSpec& spec, mjsBody& body) {

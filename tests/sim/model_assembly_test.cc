@@ -12,6 +12,7 @@
 #include "io/urdf.h"
 #include "sim/robot_model.h"
 #include "tests/sim/rubble.h"
+#include "tests/support/legged_urdf.h"
 #include "tests/support/simulated_quadruped.h"
 #include "tests/support/simulated_tracked_robot.h"
 #include "tests/support/temporary_file.h"
@@ -235,6 +236,22 @@ TEST(ModelAssembly, AMissingOrBrokenFileIsRefusedByName) {
                 assemble_model(world.path(), "no/such/robot.urdf", io::load_robot_description(kRobotUrdf), {});
               }),
               HasSubstr("no/such/robot.urdf"));
+}
+
+/// Friction of the first joint of a quadruped of 20 kg with legs of 0.45 m, whose motors have the given torque.
+double leg_friction_nm(double effort_nm) {
+  const test::TemporaryFile world("world.xml", make_flat_world());
+  const test::TemporaryFile urdf("robot.urdf", test::UrdfQuadruped{.effort_nm = effort_nm}.text());
+  const AssembledModel model =
+      assemble_model(world.path(), urdf.path(), io::load_robot_description(urdf.path()), Pose2{});
+  return model.physics->dof_frictionloss[6];
+}
+
+TEST(LegFriction, IsProportionalToTheTorqueUpTo3TimesThatOfTheWeight) {
+  EXPECT_NEAR(leg_friction_nm(23.7), 0.2, 1e-9);
+  EXPECT_NEAR(leg_friction_nm(47.4), 0.4, 1e-9);
+  const double of_weight = 1.47 * 0.45 / 0.426;  // ratio of the masses, of the legs
+  EXPECT_NEAR(leg_friction_nm(1000.0), 3.0 * of_weight * 0.2, 0.02);
 }
 
 }  // namespace

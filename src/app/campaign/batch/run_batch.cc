@@ -183,7 +183,7 @@ class Batch {
   std::map<std::size_t, std::set<Time>> snapshot_times_;    ///< [run from which others branch]
   std::vector<std::size_t> pending_;
   std::vector<std::size_t> branches_;  ///< runs after these
-  std::set<std::size_t> ended_once_;  ///< runs whose process was ended from outside
+  std::set<std::size_t> ended_once_;   ///< runs whose process was ended from outside
   std::size_t num_done_ = 0, num_failed_ = 0;
   ProgressBar bar_;
   InterruptGuard interrupt_;
