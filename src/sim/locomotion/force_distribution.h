@@ -18,8 +18,9 @@ struct FrictionLimits {
 };
 
 /// Returns the minimum-norm ground forces of the stance feet for a wrench: force, and moment about the origin of
-/// `feet`. Each force is then clipped to the friction pyramid of its foot. All in one frame with z up; N and N m. Swing
-/// feet get zero.
+/// `feet`. Each force is then clipped to the friction pyramid of its foot. If that lifts the robot with more than 1.5
+/// times the requested force, because feet would have to pull, these feet get the minimum and the others the rest of
+/// the wrench. All in one frame with z up; N and N m. Swing feet get zero.
 FootVectors distribute_wrench(const Eigen::Vector3d& force, const Eigen::Vector3d& moment, const FootVectors& feet,
                               const FootFlags& is_stance, const FrictionLimits& limits);
 

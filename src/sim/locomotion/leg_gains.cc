@@ -12,10 +12,21 @@ namespace {
 // Robot for which the gains are tuned (models/quadruped).
 constexpr double kTunedMass_kg = 13.56;
 constexpr double kTunedLeg_m = 0.426;
+constexpr double kTunedTorque_nm = 23.7;
+/// Part of the rotors in the vertical inertia of a leg at its foot, 0.745 kg in the standing posture.
+constexpr double kTunedRotorFraction = 0.73;
 const Eigen::Vector3d kTunedCenter_m(-0.0012, 0.0, -0.0093);
 const Eigen::Vector3d kTunedInertiaPerKg_m2(0.01104, 0.03059, 0.03026);
 
 double rounded_to_percent(double ratio) { return std::round(100.0 * ratio) / 100.0; }
+
+/// Returns the ratio of the inertia of a leg at its foot. The inertia of the rotors is proportional to the torque limit
+/// (robot_model.cc), at the foot divided by the square of the length; that of the links is proportional to the mass.
+double swing_inertia_ratio(const RobotDescription& robot, const LegScale& scale) {
+  const double torque = robot.joint_limits.front().effort_nm / kTunedTorque_nm;
+  return rounded_to_percent(kTunedRotorFraction * torque / (scale.length * scale.length) +
+                            (1.0 - kTunedRotorFraction) * scale.force);
+}
 
 }  // namespace
 
@@ -27,7 +38,8 @@ LegScale leg_scale(const RobotDescription& robot) {
 }
 
 LegGains scaled_leg_gains(const RobotDescription& robot) {
-  const auto [length, time, force] = leg_scale(robot);
+  const LegScale scale = leg_scale(robot);
+  const auto [length, time, force] = scale;
   LegGains gains;
   for (double* stiffness : {&gains.height_stiffness, &gains.velocity_integral, &gains.standing_stiffness,
                             &gains.tilt_stiffness, &gains.yaw_stiffness}) {
@@ -42,14 +54,17 @@ LegGains scaled_leg_gains(const RobotDescription& robot) {
     *distance_m *= length;
   }
   for (double* speed_mps : {&gains.search_speed_mps, &gains.max_stop_speed_mps}) *speed_mps *= length / time;
-  for (double* time_s : {&gains.capture_time_s, &gains.ground_time_s}) *time_s *= time;
+  for (double* time_s : {&gains.capture_time_s, &gains.ground_time_s, &gains.velocity_time_s, &gains.lost_contact_s})
+    *time_s *= time;
   for (double* stiffness : {&gains.swing_stiffness_npm, &gains.wake_up_stiffness_npm}) *stiffness *= force / length;
-  for (double* damping : {&gains.swing_damping_nspm, &gains.wake_up_damping_nspm}) *damping *= force / time;
+  gains.swing_damping_nspm *= swing_inertia_ratio(robot, scale) / time;
+  gains.wake_up_damping_nspm *= force / time;
   for (double* force_n : {&gains.touch_force_n, &gains.min_foot_force_n, &gains.max_foot_force_n}) *force_n *= force;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     const double per_kg_m2 = robot.standing_inertia_kgm2[axis] / robot.mass_kg;
     gains.inertia_per_kg_m2[axis] *= rounded_to_percent(per_kg_m2 / kTunedInertiaPerKg_m2[axis]);
   }
+  gains.residual_length_m = std::sqrt(gains.inertia_per_kg_m2.x() / LegGains().inertia_per_kg_m2.x());
   constexpr double kStep_m = 0.005;
   gains.center_m = kStep_m * ((robot.standing_center_m - length * kTunedCenter_m) / kStep_m).array().round();
   return gains;

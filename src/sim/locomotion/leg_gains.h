@@ -26,8 +26,14 @@ struct LegGains {
   double yaw_damping = 14.0;             ///< 1/s
   Eigen::Vector3d inertia_per_kg_m2 = {0.008, 0.024, 0.028};  ///< about roll, pitch and yaw, per kg of robot mass
 
-  /// Point in body on which the virtual model acts: the center of mass, relative to its place in the tuned robot.
+  /// Center of mass in body, relative to its place in the tuned robot. The virtual model acts on this point. The feet
+  /// stand, and touch down, about this point: off the line between two stance feet, gravity rolls the trunk over them.
   Eigen::Vector3d center_m = Eigen::Vector3d::Zero();
+
+  /// Length by which the force distribution weighs the errors of forces and moments, because two stance feet cannot
+  /// exert each wrench: 1 N weighs as much as 1 N times this length. It is proportional to the radius of gyration about
+  /// roll, so the ratio of the linear and angular accelerations is that of the tuned robot.
+  double residual_length_m = 1.0;
 
   // Impedance of a swing foot about its trajectory.
   double swing_stiffness_npm = 700.0;
@@ -36,12 +42,14 @@ struct LegGains {
   double max_step_m = 0.2;         ///< maximum distance of a touch-down from the point below the hip
   double search_speed_mps = 0.35;  ///< speed downward of a foot that misses the ground
   double max_search_m = 0.10;
+  double lost_contact_s = 0.02;  ///< time without contact after which a stance foot searches the ground again
 
   // Impedance of the feet about the standing posture, until the estimator has settled.
   double wake_up_stiffness_npm = 3000.0;
   double wake_up_damping_nspm = 60.0;
 
   double ground_time_s = 0.15;       ///< time constant of the ground estimate below the feet
+  double velocity_time_s = 0.02;     ///< time constant of the stance feet in the estimated velocity
   double max_stop_speed_mps = 0.12;  ///< speed of the trunk below which the robot changes from walking to standing
   double collapsed_m = 0.12;         ///< height of the trunk above the feet below which the robot has fallen
   double touch_force_n = 12.0;       ///< foot force above which a foot touches the ground
@@ -59,8 +67,10 @@ struct LegScale {
 LegScale leg_scale(const RobotDescription& robot);
 
 /// Returns the gains for a robot with legs: lengths are proportional to the length of the legs, times to its square
-/// root (equal Froude numbers), forces to the mass, and moments to the inertia of the standing robot. Ratios of mass
-/// and inertia are rounded to 1 %.
+/// root (equal Froude numbers [Alexander83]), forces to the mass, and moments to the inertia of the standing robot. The
+/// damping of a swing foot is proportional to the inertia of the leg at its foot, of which the rotors of the motors
+/// have the larger part: the errors of its trajectory decay within the same fraction of the swing. Ratios of mass and
+/// inertia are rounded to 1 %.
 LegGains scaled_leg_gains(const RobotDescription& robot);
 
 }  // namespace patrol::sim

@@ -43,7 +43,7 @@ QuadrupedController::QuadrupedController(const RobotDescription& robot, const Lo
       gait_{.period_s = settings.gait_period_s, .duty = settings.gait_duty},
       gains_(scaled_leg_gains(robot)),
       tick_s_(tick_s),
-      estimator_(robot, gains_.touch_force_n, tick_s),
+      estimator_(robot, gains_.touch_force_n, gains_.velocity_time_s, tick_s),
       ground_offset_m_(-settings.trunk_height_m) {
   validate(settings, "locomotion");
   check_trunk_height(robot, settings.trunk_height_m);
@@ -136,8 +136,19 @@ void QuadrupedController::schedule_feet(const TrunkState& trunk) {
       if (trunk.is_touching[leg] || search_s_[leg] * gains_.search_speed_mps > gains_.max_search_m)
         is_searching_[leg] = false;
     }
+    search_lost_ground(trunk, leg);
     phase_[leg] = phase;
   }
+}
+
+/// A stance foot that rebounds from the ground searches it again. Counted as loaded, it would leave the trunk without
+/// the support that the force distribution expects of it.
+void QuadrupedController::search_lost_ground(const TrunkState& trunk, int leg) {
+  const bool is_unloaded = is_stance_[leg] && !is_searching_[leg] && !trunk.is_touching[leg];
+  unloaded_s_[leg] = is_unloaded ? unloaded_s_[leg] + tick_s_ : 0.0;
+  if (unloaded_s_[leg] <= gains_.lost_contact_s) return;
+  is_searching_[leg] = true;
+  search_s_[leg] = unloaded_s_[leg] = 0.0;
 }
 
 // Fits a plane to the four last footholds. The footholds of swing feet are moved against the trunk's motion.
@@ -164,10 +175,15 @@ void QuadrupedController::update_ground(const TrunkState& trunk) {
   ground_offset_m_ = plane.z();
 }
 
+/// Returns the place of a foot in the standing posture, in body: below the hip, with the center of mass in the middle.
+Eigen::Vector2d QuadrupedController::neutral_foot_m(int leg) const {
+  const LegGeometry& geometry = robot_.legs[static_cast<std::size_t>(leg)];
+  return geometry.hip_in_body.head<2>() + Eigen::Vector2d(0.0, geometry.abduction_offset_m) + gains_.center_m.head<2>();
+}
+
 /// Returns the touch-down point of a swing foot, in level.
 Eigen::Vector3d QuadrupedController::touch_down(const TrunkState& trunk, int leg) const {
-  const LegGeometry& geometry = robot_.legs[static_cast<std::size_t>(leg)];
-  const Eigen::Vector2d hip = geometry.hip_in_body.head<2>() + Eigen::Vector2d(0.0, geometry.abduction_offset_m);
+  const Eigen::Vector2d hip = neutral_foot_m(leg);
   const Eigen::Vector2d turning = trunk.rate_radps.z() * Eigen::Vector2d(-hip.y(), hip.x());
   const Eigen::Vector2d velocity = trunk.velocity_mps.head<2>();
   const Eigen::Vector2d step =
@@ -196,8 +212,7 @@ Eigen::Vector3d QuadrupedController::swing_force(const TrunkState& trunk, int le
 
 /// Returns the force that holds the standing posture without the estimated tilt, in level.
 Eigen::Vector3d QuadrupedController::wake_up_force(const TrunkState& trunk, int leg) const {
-  const LegGeometry& geometry = robot_.legs[static_cast<std::size_t>(leg)];
-  const Eigen::Vector3d posture = geometry.hip_in_body + Eigen::Vector3d(0.0, geometry.abduction_offset_m, 0.0);
+  const Eigen::Vector2d posture = neutral_foot_m(leg);
   const Eigen::Vector3d foot_in_body(posture.x(), posture.y(), -settings_.trunk_height_m);
   const Eigen::Vector3d weight(0.0, 0.0, robot_.mass_kg * kGravity / kNumLegs);
   const Eigen::Vector3d error = foot_in_body - trunk.R_level_body.transpose() * trunk.foot_m[leg];
@@ -215,7 +230,7 @@ QuadrupedController::StandingError QuadrupedController::standing_error(const Tru
   };
   if (!standing_foot_m_ || awake_s_ < kWakeUp_s) standing_foot_m_ = trunk.foot_m;
   const Eigen::Vector2d first_center = center(*standing_foot_m_), center_now = center(trunk.foot_m);
-  Eigen::Vector2d hip_center = Eigen::Vector2d::Zero();
+  Eigen::Vector2d hip_center = gains_.center_m.head<2>();
   double dot = 0.0, cross = 0.0;
   for (int leg = 0; leg < kNumLegs; ++leg) {
     const Eigen::Vector2d first = (*standing_foot_m_)[leg].head<2>() - first_center,
@@ -264,11 +279,12 @@ FootVectors QuadrupedController::stance_forces(const TrunkState& trunk) {
   const Eigen::Vector3d moment =
       robot_.mass_kg *
       gains_.inertia_per_kg_m2.cwiseProduct(stiffness.cwiseProduct(tilt_error) + damping.cwiseProduct(rate_error));
-  FootVectors feet_m;  // from the center
-  for (int leg = 0; leg < kNumLegs; ++leg) feet_m[leg] = trunk.foot_m[leg] - center_m;
+  FootVectors feet;  // from the center, in units of residual_length_m
+  const double unit_m = gains_.residual_length_m;
+  for (int leg = 0; leg < kNumLegs; ++leg) feet[leg] = (trunk.foot_m[leg] - center_m) / unit_m;
   FootFlags is_loaded;
   for (int leg = 0; leg < kNumLegs; ++leg) is_loaded[leg] = is_stance_[leg] && !is_searching_[leg];
-  return distribute_wrench(force, moment, feet_m, is_loaded,
+  return distribute_wrench(force, moment / unit_m, feet, is_loaded,
                            {.min_normal_n = gains_.min_foot_force_n, .max_normal_n = gains_.max_foot_force_n});
 }
 

@@ -15,12 +15,11 @@ constexpr double kAttitudeTime_s = 2.0;  // time constant of the accelerometer i
 constexpr double kSettlingTime_s = 0.1;  // time constant of the accelerometer in the first second, before the
                                          // estimate has converged
 constexpr double kSettling_s = 1.0;
-constexpr double kVelocityTime_s = 0.02;  // time constant of the stance feet in the velocity
 
 }  // namespace
 
-TrunkEstimator::TrunkEstimator(RobotDescription robot, double touch_force_n, double tick_s)
-    : robot_(std::move(robot)), touch_force_n_(touch_force_n), tick_s_(tick_s) {
+TrunkEstimator::TrunkEstimator(RobotDescription robot, double touch_force_n, double velocity_time_s, double tick_s)
+    : robot_(std::move(robot)), touch_force_n_(touch_force_n), velocity_time_s_(velocity_time_s), tick_s_(tick_s) {
   if (const auto imu = robot_.T_body_sensor.find("imu"); imu != robot_.T_body_sensor.end())
     R_body_imu_ = imu->second.rotation.toRotationMatrix();
   state_.foot_m.fill(Eigen::Vector3d::Zero());
@@ -92,7 +91,7 @@ void TrunkEstimator::update_velocity(const Imu& imu) {
     sum += foot_roll_mps_[leg] - state_.foot_velocity_mps[leg];
     ++count;
   }
-  if (count > 0) velocity += (tick_s_ / kVelocityTime_s) * (sum / count - velocity);
+  if (count > 0) velocity += (tick_s_ / velocity_time_s_) * (sum / count - velocity);
 }
 
 }  // namespace patrol::sim

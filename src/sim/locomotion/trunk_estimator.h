@@ -29,8 +29,9 @@ struct TrunkState {
 /// separate and more accurate; the firmware needs its estimate within a tick.
 class TrunkEstimator {
  public:
-  /// `touch_force_n` is the foot force above which a foot touches the ground.
-  TrunkEstimator(RobotDescription robot, double touch_force_n, double tick_s);
+  /// `touch_force_n` is the foot force above which a foot touches the ground, `velocity_time_s` the time constant of
+  /// the stance feet in the velocity.
+  TrunkEstimator(RobotDescription robot, double touch_force_n, double velocity_time_s, double tick_s);
 
   const TrunkState& update(const Imu& reading, const JointState& joints, const FootContacts& contacts);
   const TrunkState& state() const { return state_; }
@@ -48,6 +49,7 @@ class TrunkEstimator {
   RobotDescription robot_;
   Eigen::Matrix3d R_body_imu_ = Eigen::Matrix3d::Identity();
   double touch_force_n_;
+  double velocity_time_s_;
   double tick_s_;
   double age_s_ = 0.0;  ///< time since switch-on
   Eigen::Vector3d up_in_body_ = Eigen::Vector3d::UnitZ();
