@@ -5,6 +5,7 @@
 
 #include "core/leg_kinematics.h"
 #include "sim/locomotion/locomotion_settings.h"
+#include "sim/locomotion/swing_speed.h"
 
 namespace patrol::sim {
 namespace {
@@ -84,6 +85,7 @@ LocomotionSettings scaled_locomotion(const RobotDescription& robot) {
     *speed_mps *= length / time;
   settings.max_yaw_rate_radps /= time;
   settings.max_yaw_acceleration_radps2 /= time * time;
+  limit_to_joint_speeds(robot, settings);
   return settings;
 }
 

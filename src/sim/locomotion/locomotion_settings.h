@@ -39,7 +39,8 @@ struct LocomotionSettings {
 };
 
 /// Returns the settings for a robot with legs: lengths are proportional to the length of the legs, times and speeds to
-/// its square root; the trunk is 1 % above the standing posture.
+/// its square root; the trunk is 1 % above the standing posture. Swing and forward speed are lower if the joints are
+/// too slow for them (swing_speed.h).
 LocomotionSettings scaled_locomotion(const RobotDescription& robot);
 
 }  // namespace patrol::sim

@@ -1,0 +1,76 @@
+#include "sim/locomotion/swing_speed.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include <Eigen/LU>
+
+#include "core/leg_kinematics.h"
+#include "sim/locomotion/gait.h"
+#include "sim/locomotion/swing_trajectory.h"
+
+namespace patrol::sim {
+namespace {
+
+constexpr double kMaxRatio = 0.82;  // the control of the swing adds a tenth
+constexpr double kMinClearanceRatio = 0.6, kMinForward_mps = 0.1;
+constexpr int kSamples = 40;
+
+/// Moves the joints until the foot is at a position in body: Newton's method from a posture near it.
+void reach(const LegGeometry& leg, const Eigen::Vector3d& foot_in_body, Eigen::Vector3d& joint_rad) {
+  for (int iteration = 0; iteration < 8; ++iteration) {
+    const Eigen::Vector3d step =
+        foot_jacobian(leg, joint_rad).fullPivLu().solve(foot_in_body - foot_position(leg, joint_rad));
+    joint_rad += step.cwiseMax(-0.3).cwiseMin(0.3);
+  }
+}
+
+/// Returns the largest value in [low, high] that `is_allowed`, or `low`; values below an allowed one are allowed.
+template <typename Predicate>
+double largest(double low, double high, Predicate is_allowed) {
+  if (is_allowed(high)) return high;
+  for (int i = 0; i < 20; ++i) (is_allowed(0.5 * (low + high)) ? low : high) = 0.5 * (low + high);
+  return low;
+}
+
+}  // namespace
+
+double peak_swing_speed_ratio(const RobotDescription& robot, const LocomotionSettings& settings, double forward_mps) {
+  const Gait gait{.period_s = settings.gait_period_s, .duty = settings.gait_duty};
+  const Eigen::Vector3d half_step(0.5 * forward_mps * gait.stance_s(), 0.0, 0.0);
+  double peak = 0.0;
+  for (std::size_t l = 0; l < robot.legs.size(); ++l) {
+    const LegGeometry& leg = robot.legs[l];
+    Eigen::Vector3d joint_rad = leg.standing_rad;
+    Eigen::Vector3d middle = foot_position(leg, joint_rad);
+    middle.z() = -settings.trunk_height_m;
+    for (int i = 0; i <= kSamples; ++i) {
+      const FootMotion foot = swing_foot(middle - half_step, middle + half_step, settings.swing_clearance_m,
+                                         static_cast<double>(i) / kSamples, gait.swing_s());
+      reach(leg, foot.position, joint_rad);
+      const Eigen::Vector3d rate_radps = foot_jacobian(leg, joint_rad).fullPivLu().solve(foot.velocity);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double limit_radps = robot.joint_limits[3 * l + k].velocity_radps;
+        peak = std::max(peak, std::abs(rate_radps[static_cast<Eigen::Index>(k)]) / limit_radps);
+      }
+    }
+  }
+  return peak;
+}
+
+void limit_to_joint_speeds(const RobotDescription& robot, LocomotionSettings& settings) {
+  const auto ratio_with = [&](double clearance_m, double forward_mps) {
+    LocomotionSettings changed = settings;
+    changed.swing_clearance_m = clearance_m;
+    return peak_swing_speed_ratio(robot, changed, forward_mps);
+  };
+  settings.swing_clearance_m =
+      largest(kMinClearanceRatio * settings.swing_clearance_m, settings.swing_clearance_m,
+              [&](double clearance_m) { return ratio_with(clearance_m, settings.max_forward_mps) <= kMaxRatio; });
+  settings.max_forward_mps =
+      largest(std::min(kMinForward_mps, settings.max_forward_mps), settings.max_forward_mps,
+              [&](double mps) { return ratio_with(settings.swing_clearance_m, mps) <= kMaxRatio; });
+}
+
+}  // namespace patrol::sim
