@@ -21,11 +21,11 @@ struct LocomotionSettings {
   /// Fraction of the slope of the ground that the trunk follows: 0 keeps the trunk level on a slope, 1 parallel to the
   /// ground.
   double slope_following = 0.6;
-  /// Length by which the force distribution weighs the errors of forces and moments, because two stance feet cannot
-  /// exert each wrench: 1 N weighs as much as 1 N times this length. The shorter it is, the less the trunk sways.
+  /// Length by which the force distribution weighs moments: an error of 1 N counts as one of 1 N times this length. Two
+  /// stance feet cannot exert each wrench. The shorter the length, the less the trunk sways.
   double moment_arm_m = 1.0;
-  /// The other stance feet give the rest of the wrench for a foot that would have to pull; false: its force is only
-  /// clipped, and the others may lift the robot.
+  /// Whether the other stance feet take over from a foot that would have to pull. Otherwise its force is clipped, and
+  /// the others may lift the robot.
   bool redistributes_forces = false;
 
   template <typename Self, typename Visitor>
