@@ -39,7 +39,7 @@ std::string UrdfQuadruped::text() const {
   const Eigen::Matrix3d I = Eigen::Matrix3d::Identity();
   const Eigen::Vector3d trunk(hip_spacing_m + 0.05, hip_width_m, 0.1 * hip_spacing_m + 0.06);
   std::string out = "<robot name=\"synthetic\">\n<link name=\"base_link\">";
-  out += inertial(0.5 * mass_kg, trunk, {0, 0, 0}, I) + box("visual", trunk, {0, 0, 0}, I) +
+  out += inertial((1.0 - leg_mass_ratio) * mass_kg, trunk, {0, 0, 0}, I) + box("visual", trunk, {0, 0, 0}, I) +
          box("collision", trunk, {0, 0, 0}, I) + "</link>\n";
   for (const auto& [name, z_m] : {std::pair("imu", 0.0), std::pair("lidar", 0.15)}) {
     out += fmt::format(
@@ -47,6 +47,7 @@ std::string UrdfQuadruped::text() const {
         "link=\"{0}\"/><origin xyz=\"0 0 {1}\"/></joint>\n",
         name, z_m);
   }
+  const double leg_kg = 0.25 * leg_mass_ratio * mass_kg;
   const std::array<int, 3> order = is_hip_first ? std::array{1, 0, 2} : std::array{0, 1, 2};
   for (int leg = 0; leg < 4; ++leg) {
     const std::string& name = legs[static_cast<std::size_t>(leg)];
@@ -54,7 +55,7 @@ std::string UrdfQuadruped::text() const {
     const std::array<Eigen::Vector3d, 3> place = {
         Eigen::Vector3d(front * 0.5 * hip_spacing_m, left * 0.5 * hip_width_m, 0.0),
         Eigen::Vector3d(0.0, left * abduction_offset_m, 0.0), Eigen::Vector3d(0.0, left * knee_offset_m, -thigh_m)};
-    const std::array<double, 3> mass = {0.04 * mass_kg, 0.07 * mass_kg, 0.012 * mass_kg};
+    const std::array<double, 3> mass = {0.32 * leg_kg, 0.56 * leg_kg, 0.096 * leg_kg};
     const std::array<Eigen::Vector3d, 3> size = {Eigen::Vector3d(0.2, 0.2, 0.2) * thigh_m,
                                                  Eigen::Vector3d(0.15, 0.12, 0.8) * thigh_m,
                                                  Eigen::Vector3d(0.06, 0.06, 0.9) * shank_m};
@@ -93,7 +94,7 @@ std::string UrdfQuadruped::text() const {
         "<link name=\"{0}_tip\">{3}<collision><geometry><sphere radius=\"{4}\"/></geometry></collision></link><joint "
         "name=\"{0}_tip_mount\" type=\"fixed\"><parent link=\"{1}\"/><child link=\"{0}_tip\"/>{2}</joint>\n",
         name, parent, origin(R_plain_parent.transpose() * Eigen::Vector3d(0, 0, -shank_m), I),
-        inertial(0.003 * mass_kg, Eigen::Vector3d::Constant(2.0 * foot_radius_m), {0, 0, 0}, I), foot_radius_m);
+        inertial(0.024 * leg_kg, Eigen::Vector3d::Constant(2.0 * foot_radius_m), {0, 0, 0}, I), foot_radius_m);
   }
   return out + "</robot>\n";
 }

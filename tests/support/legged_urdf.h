@@ -20,6 +20,7 @@ struct UrdfLegFrame {
 /// Synthetic robot with four legs of 0.45 m by default, and an IMU and a lidar on its trunk. All lengths are in meters.
 struct UrdfQuadruped {
   double mass_kg = 20.0;
+  double leg_mass_ratio = 0.5;  ///< mass of the four legs relative to that of the robot
   double thigh_m = 0.22, shank_m = 0.23;
   double hip_spacing_m = 0.42, hip_width_m = 0.12;
   double abduction_offset_m = 0.08;

@@ -59,8 +59,6 @@ FootVectors inside_pyramids(FootVectors forces, const FootFlags& is_stance, cons
   return forces;
 }
 
-double normal_sum_n(const FootVectors& forces) { return forces[0].z() + forces[1].z() + forces[2].z() + forces[3].z(); }
-
 /// Returns forces with the feet that would pull at their minimum, and the minimum-norm forces of at least two others
 /// for the rest of the wrench: the active set method for the lower bounds of the normal forces.
 FootVectors without_pulling_feet(Vector6 wrench, const FootVectors& feet, const FootFlags& is_stance,
@@ -90,12 +88,10 @@ FootVectors without_pulling_feet(Vector6 wrench, const FootVectors& feet, const 
 
 FootVectors distribute_wrench(const Eigen::Vector3d& force, const Eigen::Vector3d& moment, const FootVectors& feet,
                               const FootFlags& is_stance, const FrictionLimits& limits) {
-  constexpr double kMaxExcess = 1.5;
   Vector6 wrench;
   wrench << force, moment;
-  const FootVectors forces = inside_pyramids(minimum_norm_forces(wrench, feet, is_stance), is_stance, limits);
-  if (normal_sum_n(forces) <= kMaxExcess * force.z()) return forces;
-  return without_pulling_feet(wrench, feet, is_stance, limits);
+  if (limits.redistributes) return without_pulling_feet(wrench, feet, is_stance, limits);
+  return inside_pyramids(minimum_norm_forces(wrench, feet, is_stance), is_stance, limits);
 }
 
 }  // namespace patrol::sim

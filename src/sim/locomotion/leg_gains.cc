@@ -55,8 +55,7 @@ LegGains scaled_leg_gains(const RobotDescription& robot) {
     *distance_m *= length;
   }
   for (double* speed_mps : {&gains.search_speed_mps, &gains.max_stop_speed_mps}) *speed_mps *= length / time;
-  for (double* time_s : {&gains.capture_time_s, &gains.ground_time_s, &gains.velocity_time_s, &gains.lost_contact_s})
-    *time_s *= time;
+  for (double* time_s : {&gains.capture_time_s, &gains.ground_time_s, &gains.velocity_time_s}) *time_s *= time;
   for (double* stiffness : {&gains.swing_stiffness_npm, &gains.wake_up_stiffness_npm}) *stiffness *= force / length;
   gains.swing_damping_nspm *= swing_inertia_ratio(robot, scale) / time;
   gains.wake_up_damping_nspm *= force / time;
@@ -65,7 +64,6 @@ LegGains scaled_leg_gains(const RobotDescription& robot) {
     const double per_kg_m2 = robot.standing_inertia_kgm2[axis] / robot.mass_kg;
     gains.inertia_per_kg_m2[axis] *= rounded_to_percent(per_kg_m2 / kTunedInertiaPerKg_m2[axis]);
   }
-  gains.residual_length_m = std::sqrt(gains.inertia_per_kg_m2.x() / LegGains().inertia_per_kg_m2.x());
   constexpr double kStep_m = 0.005;
   gains.center_m = kStep_m * ((robot.standing_center_m - length * kTunedCenter_m) / kStep_m).array().round();
   return gains;
@@ -80,6 +78,8 @@ LocomotionSettings scaled_locomotion(const RobotDescription& robot) {
   LocomotionSettings settings;
   settings.gait_period_s *= time;
   settings.trunk_height_m = std::round(1000.0 * kAboveStanding * height_m) / 1000.0;
+  settings.moment_arm_m = settings.trunk_height_m;
+  settings.redistributes_forces = true;
   settings.swing_clearance_m *= length;
   for (double* speed_mps : {&settings.max_forward_mps, &settings.max_backward_mps, &settings.max_sideways_mps})
     *speed_mps *= length / time;

@@ -30,11 +30,6 @@ struct LegGains {
   /// stand, and touch down, about this point: off the line between two stance feet, gravity rolls the trunk over them.
   Eigen::Vector3d center_m = Eigen::Vector3d::Zero();
 
-  /// Length by which the force distribution weighs the errors of forces and moments, because two stance feet cannot
-  /// exert each wrench: 1 N weighs as much as 1 N times this length. It is proportional to the radius of gyration about
-  /// roll, so the ratio of the linear and angular accelerations is that of the tuned robot.
-  double residual_length_m = 1.0;
-
   // Impedance of a swing foot about its trajectory.
   double swing_stiffness_npm = 700.0;
   double swing_damping_nspm = 16.0;
@@ -42,7 +37,6 @@ struct LegGains {
   double max_step_m = 0.2;         ///< maximum distance of a touch-down from the point below the hip
   double search_speed_mps = 0.35;  ///< speed downward of a foot that misses the ground
   double max_search_m = 0.10;
-  double lost_contact_s = 0.02;  ///< time without contact after which a stance foot searches the ground again
 
   // Impedance of the feet about the standing posture, until the estimator has settled.
   double wake_up_stiffness_npm = 3000.0;

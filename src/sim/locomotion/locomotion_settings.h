@@ -21,6 +21,12 @@ struct LocomotionSettings {
   /// Fraction of the slope of the ground that the trunk follows: 0 keeps the trunk level on a slope, 1 parallel to the
   /// ground.
   double slope_following = 0.6;
+  /// Length by which the force distribution weighs moments: an error of 1 N counts as one of 1 N times this length. Two
+  /// stance feet cannot exert each wrench. The shorter the length, the less the trunk sways.
+  double moment_arm_m = 1.0;
+  /// Whether the other stance feet take over from a foot that would have to pull. Otherwise its force is clipped, and
+  /// the others may lift the robot.
+  bool redistributes_forces = false;
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -35,12 +41,15 @@ struct LocomotionSettings {
     visit("max_acceleration_mps2", self.max_acceleration_mps2, between(0.1, 3.0));
     visit("max_yaw_acceleration_radps2", self.max_yaw_acceleration_radps2, between(0.1, 10.0));
     visit("slope_following", self.slope_following, between(0.0, 1.0));
+    visit("moment_arm_m", self.moment_arm_m, between(0.02, 10.0));
+    visit("redistributes_forces", self.redistributes_forces);
   }
 };
 
 /// Returns the settings for a robot with legs: lengths are proportional to the length of the legs, times and speeds to
-/// its square root; the trunk is 1 % above the standing posture. Swing and forward speed are lower if the joints are
-/// too slow for them (swing_speed.h).
+/// its square root; the trunk is 1 % above the standing posture. The moment arm is the height of the trunk, the arm of
+/// the horizontal forces of the feet. Swing and forward speed are lower if the joints are too slow for them
+/// (swing_speed.h).
 LocomotionSettings scaled_locomotion(const RobotDescription& robot);
 
 }  // namespace patrol::sim

@@ -136,19 +136,8 @@ void QuadrupedController::schedule_feet(const TrunkState& trunk) {
       if (trunk.is_touching[leg] || search_s_[leg] * gains_.search_speed_mps > gains_.max_search_m)
         is_searching_[leg] = false;
     }
-    search_lost_ground(trunk, leg);
     phase_[leg] = phase;
   }
-}
-
-/// A stance foot that rebounds from the ground searches it again. Counted as loaded, it would leave the trunk without
-/// the support that the force distribution expects of it.
-void QuadrupedController::search_lost_ground(const TrunkState& trunk, int leg) {
-  const bool is_unloaded = is_stance_[leg] && !is_searching_[leg] && !trunk.is_touching[leg];
-  unloaded_s_[leg] = is_unloaded ? unloaded_s_[leg] + tick_s_ : 0.0;
-  if (unloaded_s_[leg] <= gains_.lost_contact_s) return;
-  is_searching_[leg] = true;
-  search_s_[leg] = unloaded_s_[leg] = 0.0;
 }
 
 // Fits a plane to the four last footholds. The footholds of swing feet are moved against the trunk's motion.
@@ -279,13 +268,15 @@ FootVectors QuadrupedController::stance_forces(const TrunkState& trunk) {
   const Eigen::Vector3d moment =
       robot_.mass_kg *
       gains_.inertia_per_kg_m2.cwiseProduct(stiffness.cwiseProduct(tilt_error) + damping.cwiseProduct(rate_error));
-  FootVectors feet;  // from the center, in units of residual_length_m
-  const double unit_m = gains_.residual_length_m;
+  FootVectors feet;  // from the center, in units of moment_arm_m
+  const double unit_m = settings_.moment_arm_m;
   for (int leg = 0; leg < kNumLegs; ++leg) feet[leg] = (trunk.foot_m[leg] - center_m) / unit_m;
   FootFlags is_loaded;
   for (int leg = 0; leg < kNumLegs; ++leg) is_loaded[leg] = is_stance_[leg] && !is_searching_[leg];
   return distribute_wrench(force, moment / unit_m, feet, is_loaded,
-                           {.min_normal_n = gains_.min_foot_force_n, .max_normal_n = gains_.max_foot_force_n});
+                           {.min_normal_n = gains_.min_foot_force_n,
+                            .max_normal_n = gains_.max_foot_force_n,
+                            .redistributes = settings_.redistributes_forces});
 }
 
 void QuadrupedController::detect_fall(const TrunkState& trunk) {

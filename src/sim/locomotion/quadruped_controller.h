@@ -43,8 +43,8 @@ class QuadrupedController {
   template <typename Archive>
   void serialize_state(Archive& archive) {
     archive(estimator_, velocity_mps_, yaw_rate_radps_, yaw_rad_, velocity_integral_, standing_foot_m_, is_walking_,
-            idle_s_, cycle_, phase_, is_stance_, is_searching_, search_s_, unloaded_s_, awake_s_, lift_off_m_,
-            foothold_m_, slope_, ground_offset_m_, fallen_s_);
+            idle_s_, cycle_, phase_, is_stance_, is_searching_, search_s_, awake_s_, lift_off_m_, foothold_m_, slope_,
+            ground_offset_m_, fallen_s_);
   }
 
  private:
@@ -52,7 +52,6 @@ class QuadrupedController {
   void choose_mode(const TrunkState& trunk);
   void update_ground(const TrunkState& trunk);
   void schedule_feet(const TrunkState& trunk);
-  void search_lost_ground(const TrunkState& trunk, int leg);
   Eigen::Vector2d neutral_foot_m(int leg) const;
   Eigen::Vector3d touch_down(const TrunkState& trunk, int leg) const;
   /// Displacement that the trunk needs, and rotation, in level.
@@ -88,9 +87,8 @@ class QuadrupedController {
   FootFlags is_stance_{};
   FootFlags is_searching_{};  ///< true: the stance has begun but the foot has no ground contact
   std::array<double, kNumLegs> search_s_{};
-  std::array<double, kNumLegs> unloaded_s_{};  ///< time for which a stance foot has had no ground contact
-  double awake_s_ = 0.0;                       ///< time since switch-on
-  FootVectors lift_off_m_;                     ///< foot position at lift-off, in level
+  double awake_s_ = 0.0;    ///< time since switch-on
+  FootVectors lift_off_m_;  ///< foot position at lift-off, in level
 
   // Ground plane of the four last footholds: z = offset + slope . (x, y), in level.
   FootVectors foothold_m_;

@@ -11,6 +11,7 @@
 #include "app/common/temporary_folder.h"
 #include "core/geometry/angles.h"
 #include "io/files/atomic_file.h"
+#include "tests/support/legged_urdf.h"
 #include "tests/support/wheeled_urdf.h"
 
 namespace patrol::app::run_check_test {
@@ -61,6 +62,24 @@ TEST(RunCheck, TwoDrivenWheelsWithACasterTurnByTheirGaugeTo1PercentAndPassEveryt
   EXPECT_NEAR(figure(result, "turn", "yaw_rate_ratio"), 1.0, 0.01);
   EXPECT_LT(figure(result, "turn", "center_drift_m"), 0.01) << "about the axle, not about the body origin";
   for (const ManeuverResult& each : result.maneuvers) EXPECT_TRUE(each.is_passed()) << each.maneuver.name;
+}
+
+// With a moment arm of 1 m and forces that are only clipped: 22 degrees on the ramp, and a fall on the steps.
+TEST(RunCheck, AQuadrupedOf6KilogramsWithLegsOf30CentimetersPassesEverythingWithin13DegreesOnTheRamp) {
+  test::UrdfQuadruped robot;
+  robot.mass_kg = 6.0;
+  robot.thigh_m = robot.shank_m = 0.15;
+  robot.hip_spacing_m = 0.27;
+  robot.hip_width_m = 0.066;
+  robot.abduction_offset_m = 0.057;
+  robot.foot_radius_m = 0.014;
+  robot.effort_nm = 7.4;
+  robot.knee_effort_nm = 11.2;
+  const CheckResult result = check_of(robot.text());
+  EXPECT_EQ(result.robot.kind, DriveKind::kLegs);
+  for (const ManeuverResult& each : result.maneuvers) EXPECT_TRUE(each.is_passed()) << each.maneuver.name;
+  EXPECT_LT(figure(result, "ramp", "max_tilt_deg"), 13.0);
+  EXPECT_LT(figure(result, "straight", "max_tilt_deg"), 8.0);
 }
 
 // Slope force and rolling resistance of 0.015: the mean torque of the motors on the way up, T / T_max.

@@ -53,6 +53,21 @@ TEST(ForceDistribution, NoFootPullsPushesBeyondItsLimitOrLeavesItsFrictionPyrami
   }
 }
 
+// Clipped only, the two others push with 1.3 to 1.8 times the weight to make up for the foot that cannot pull.
+TEST(ForceDistribution, AFootThatWouldHaveToPullDoesNotMakeTheOthersLiftTheRobotWithMoreThan10PercentAboveItsWeight) {
+  const FootFlags without_front_left = {false, true, true, true};
+  const FrictionLimits limits{.coefficient = 0.6, .min_normal_n = 5.0, .max_normal_n = 220.0},
+      clips_only{.coefficient = 0.6, .min_normal_n = 5.0, .max_normal_n = 220.0, .redistributes = false};
+  for (const double roll_nm : {12.0, 20.0, 30.0}) {
+    const FootVectors forces = distribute_wrench({0, 0, 133}, {roll_nm, 0, 0}, kFeet, without_front_left, limits);
+    EXPECT_EQ(forces[0], Eigen::Vector3d::Zero());
+    EXPECT_NEAR(forces[3].z(), 5.0, 1e-9);
+    EXPECT_NEAR(total_force(forces).z(), 133.0, 13.3) << roll_nm;
+    const FootVectors clipped = distribute_wrench({0, 0, 133}, {roll_nm, 0, 0}, kFeet, without_front_left, clips_only);
+    EXPECT_GT(total_force(clipped).z(), 1.3 * 133.0) << roll_nm;
+  }
+}
+
 TEST(ForceDistribution, OfAllForcesThatGiveTheWrenchItTakesTheSmallest) {
   const Eigen::Vector3d force(12.0, -6.0, 130.0);
   const FootVectors forces = distribute_wrench(force, {0, 0, 0}, kFeet, kAll, {});
