@@ -13,6 +13,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <tinyxml2.h>
 
 #include "core/error.h"
 #include "io/files/one_line.h"
@@ -154,7 +155,29 @@ std::string joined_lines(const std::string& text) {
   return io::on_one_line(line);
 }
 
+/// Returns whether an element, or one below it, belongs to xacro or has an expression of xacro in an attribute.
+bool has_xacro(const tinyxml2::XMLElement& element) {
+  const std::string name = element.Name();
+  if (name.starts_with("xacro:")) return true;
+  if (name == "gazebo") return false;
+  for (const tinyxml2::XMLAttribute* at = element.FirstAttribute(); at != nullptr; at = at->Next()) {
+    const std::string value = at->Value();
+    if (value.find("$(") != std::string::npos || value.find("${") != std::string::npos) return true;
+  }
+  for (const auto* child = element.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) {
+    if (has_xacro(*child)) return true;
+  }
+  return false;
+}
+
 }  // namespace
+
+bool has_xacro_text(const std::string& text) {
+  tinyxml2::XMLDocument document;
+  if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) return false;
+  const tinyxml2::XMLElement* root = document.RootElement();
+  return root != nullptr && has_xacro(*root);
+}
 
 bool is_xacro(const std::filesystem::path& file) { return file.extension() == ".xacro"; }
 
