@@ -34,6 +34,22 @@ Motor Normalizer::motor_of(const FoundWheel& wheel, std::size_t num_driven, doub
   return motor;
 }
 
+/// Reduces damping and friction of a driven joint that its motor cannot overcome at its speed limit.
+void Normalizer::reduce_losses(const SourceJoint& joint, NormalizedJoint& driven) {
+  const Motor& motor = *driven.motor;
+  const double loss_nm = driven.damping * motor.velocity_radps + driven.friction;
+  if (loss_nm <= motor.effort_nm) return;
+  constexpr double kLoss = 0.25;  // to the torque limit
+  const double factor = kLoss * motor.effort_nm / loss_nm;
+  driven.damping *= factor;
+  driven.friction *= factor;
+  assume(joint.name,
+         fmt::format("damping and friction take {:.3g} N m at the speed limit, more than the torque limit of {:.3g} N "
+                     "m: reduced to a quarter of the limit",
+                     loss_nm, motor.effort_nm),
+         "<dynamics> and <limit effort velocity> of the joint");
+}
+
 /// Adds carriers and wheels. The frames of both are parallel to base_link; a wheel's origin is its center.
 void Normalizer::add_wheels() {
   double mass_kg = total_mass_kg();
@@ -142,6 +158,7 @@ void Normalizer::add_wheels() {
                                    .friction = joint.friction};
     if (driven_.contains(&joint)) {
       target.joint->motor = motor_of(wheel, driven_.size(), mass_kg);
+      reduce_losses(joint, *target.joint);
       max_speed_mps = std::min(max_speed_mps, target.joint->motor->velocity_radps * wheel.radius_m);
     }
     if (wheel.is_ball)

@@ -104,7 +104,7 @@ std::optional<std::filesystem::path> Packages::with_name(const std::string& name
                                                    error);
   for (; !error && at != std::filesystem::recursive_directory_iterator(); at.increment(error)) {
     if (++num_entries > kMaxEntries) return std::nullopt;
-    if (at.depth() > kMaxDepth) at.disable_recursion_pending();
+    if (at.depth() > kMaxDepth || at->path().filename().string().starts_with('.')) at.disable_recursion_pending();
     if (at->path().filename() != name || !at->is_regular_file(error)) continue;
     if (found) return std::nullopt;
     found = at->path();

@@ -182,6 +182,22 @@ TEST(PublicDescription, AWheelWithTheInertiaOfAHouseHasThatOfItsShape) {
   EXPECT_THAT(import.robot.urdf, HasSubstr("iyy=\"0.005\"")) << "m r^2 / 2";
 }
 
+TEST(PublicDescription, DampingThatTheMotorCannotOvercomeIsReduced) {
+  const auto with_damping = [](double damping) {
+    const std::string content = kMotor + fmt::format(R"(<dynamics damping="{}" friction="0.5"/>)", damping);
+    return robot(chassis() + wheel("left", "base_link", "0 0.25 -0.05", 0.1, 0.04, content) +
+                 wheel("right", "base_link", "0 -0.25 -0.05", 0.1, 0.04, content) + caster());
+  };
+  Import import(with_damping(1.0));
+  import.load();
+  EXPECT_THAT(import.assumptions(), HasSubstr("| left_joint, right_joint | damping and friction take 12.5 N m at the "
+                                              "speed limit, more than the torque limit of 10 N m: reduced"));
+  EXPECT_THAT(import.robot.urdf, HasSubstr(R"(<dynamics damping="0.2" friction="0.1"/>)"));
+  Import light(with_damping(0.7));
+  light.load();
+  EXPECT_THAT(light.robot.urdf, HasSubstr(R"(<dynamics damping="0.7" friction="0.5"/>)"));
+}
+
 TEST(PublicDescription, AMassAboveTwentyTonsIsReported) {
   Import import(robot(link("base_link", inertial(30000.0, "-0.1 0 0", 500.0) + shape("collision", box(0.6, 0.4, 0.2))) +
                       two_wheels() + caster()));
