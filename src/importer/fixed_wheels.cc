@@ -16,7 +16,7 @@ constexpr double kMaxSine = 0.05;                  // 2.9 degrees
 constexpr double kMaxLength = 2.5;                 // to the radius
 constexpr double kTouch = 0.02, kTouch_m = 0.005;  // to the radius, and in addition
 
-/// Lying cylinder on a fixed joint. Positions and directions are in the root.
+/// Horizontal cylinder on a fixed joint. Positions and directions are in the root.
 struct FixedWheel {
   SourceJoint* joint = nullptr;
   Eigen::Vector3d center_m = Eigen::Vector3d::Zero();
@@ -27,8 +27,8 @@ struct FixedWheel {
   double bottom_m() const { return center_m.z() - radius_m; }
 };
 
-/// Returns the largest lying cylinder of a link as a wheel; its radius is 0 if there is none.
-FixedWheel lying_cylinder(const SourceLink& link, const Pose3& T_root_link, SourceJoint& joint) {
+/// Returns the largest horizontal cylinder of a link as a wheel; its radius is 0 if there is none.
+FixedWheel horizontal_cylinder(const SourceLink& link, const Pose3& T_root_link, SourceJoint& joint) {
   FixedWheel wheel;
   for (const Shape& shape : link.collisions.empty() ? link.visuals : link.collisions) {
     const Eigen::Vector3d axis = shape.T_link_shape.rotation * Eigen::Vector3d::UnitZ();
@@ -87,7 +87,7 @@ void release_fixed_wheels(SourceRobot& robot) {
   std::vector<FixedWheel> wheels;
   for (SourceJoint& joint : robot.joints) {
     if (joint.type != JointType::kFixed || is_below_turning_joint(robot, joint, T_root_link)) continue;
-    const FixedWheel wheel = lying_cylinder(robot.link(joint.child), T_root_link.at(joint.child), joint);
+    const FixedWheel wheel = horizontal_cylinder(robot.link(joint.child), T_root_link.at(joint.child), joint);
     if (wheel.radius_m > 0.0 && wheel.bottom_m() - ground_m <= kTouch * wheel.radius_m + kTouch_m)
       wheels.push_back(wheel);
   }
@@ -97,8 +97,8 @@ void release_fixed_wheels(SourceRobot& robot) {
     wheel.joint->axis = wheel.axis_in_link;
     robot.assumptions.push_back(
         {.subject = wheel.joint->name,
-         .text = "turns, although the file fixes it: the file has no wheels that turn, and its link is a cylinder that "
-                 "lies on the ground, with another one across from it",
+         .text = "turns, although the file fixes it: the file has no wheels that turn, and its link is a horizontal "
+                 "cylinder that touches the ground, with another one across from it",
          .override_with = "type of the joint"});
   }
 }

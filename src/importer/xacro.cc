@@ -193,9 +193,9 @@ std::string expand_xacro(const std::filesystem::path& file, const std::map<std::
   std::string message = joined_lines(output.error);
   if (output.exit_code == -1 || output.exit_code == 3) {
     throw InputError(fmt::format(
-        "{}: xacro is not available: {}: {}: install it with \"pip install xacro\", or set PATROL_PYTHON to a Python "
+        "{}: xacro is not available{}: {}: {}: install it with \"pip install xacro\", or set PATROL_PYTHON to a Python "
         "interpreter that has it",
-        file.string(), python, message));
+        file.string(), is_xacro(file) ? "" : " to expand its $(...), ${...} and <xacro:...>", python, message));
   }
   throw InputError(fmt::format("{}: xacro: {}", file.string(), message.empty() ? "failed" : message));
 }

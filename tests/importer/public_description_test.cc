@@ -324,7 +324,8 @@ TEST(PublicDescription, AUrdfFileWithExpressionsOfXacroIsExpandedOrNamesWhatIsMi
     EXPECT_THAT(import.description.T_body_sensor.at("camera").position,
                 test::VectorNear(Eigen::Vector3d(0.1, 0.0, 0.2), 1e-9));
   } else {
-    EXPECT_THAT(message, HasSubstr("vendor.urdf: xacro is not available"));
+    EXPECT_THAT(message,
+                HasSubstr("vendor.urdf: xacro is not available to expand its $(...), ${...} and <xacro:...>: "));
   }
 }
 
