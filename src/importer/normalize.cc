@@ -14,7 +14,6 @@
 #include "io/files/one_line.h"
 
 namespace patrol::importer {
-namespace {}  // namespace
 
 void Normalizer::check_options() const {
   if (!options_.base_link.empty() && source_.find_link(options_.base_link) == nullptr)
@@ -146,6 +145,12 @@ void Normalizer::choose_frame() {
   if (is_beside && max_y - min_y > 0.02) {
     T_root_base_.position = T_root_base_ * Eigen::Vector3d(0.0, 0.5 * (min_y + max_y), 0.0);
     assume("base_link", fmt::format("is moved by {:.3f} m along y to the middle of the wheels", 0.5 * (min_y + max_y)),
+           "--base-link LINK");
+  }
+  const double below_m = (T_root_base_.inverse() * Eigen::Vector3d(0.0, 0.0, found_.ground_m)).z();
+  if (below_m > 0.0) {
+    T_root_base_.position = T_root_base_ * Eigen::Vector3d(0.0, 0.0, below_m);
+    assume("base_link", fmt::format("is moved up by {:.3f} m: it was below the ground that the wheels touch", below_m),
            "--base-link LINK");
   }
   for (FoundWheel& wheel : found_.wheels) {
@@ -308,7 +313,8 @@ void Normalizer::choose_rollers() {
 void Normalizer::report_frozen_joints() {
   std::vector<std::string> names;
   for (const SourceJoint& joint : source_.joints) {
-    if (joint.type == JointType::kFixed || kept_.contains(&joint) || found_.roller_joints.contains(&joint)) continue;
+    if (joint.type == JointType::kFixed || kept_.contains(&joint)) continue;
+    if (found_.roller_joints.contains(&joint) || casters_.contains(&joint)) continue;
     const bool is_above_base =
         !T_root_link_.contains(joint.child) || (joint.child == base_ && source_.root().name == joint.parent);
     if (is_above_base && joint.type == JointType::kFloating) continue;
@@ -361,6 +367,7 @@ NormalizedRobot Normalizer::run() {
   } else {
     choose_frame();
     choose_drive();
+    release_fixed_casters();
     choose_rollers();
   }
   report_frozen_joints();

@@ -140,6 +140,9 @@ Inertial Normalizer::moving_inertial(const std::vector<const SourceLink*>& links
       parts.push_back({T_base_new.inverse() * (T_adjust * T_base(link->name)), *inertial});
   }
   if (!parts.empty()) return combine(parts);
+  for (const SourceLink* link : links) {
+    if (link->inertial) source_.fail(link->inertial->line, link->name, "mass = 0: must be positive for a moving link");
+  }
   const Inertial inertial = solid_inertial(fallback, 0.0);
   assume(joint.child,
          fmt::format("has no <inertial>: a mass of {:.3g} kg is assumed, {:.0f} kg/m3 in its shape", inertial.mass_kg,
@@ -201,8 +204,8 @@ void Normalizer::add_chassis() {
     assume(list_of(massless_), "have no <inertial>: massless, since other links of the chassis have masses",
            "<inertial> of the links");
   }
-  if (base().inertial) return;
-  // A free body needs a mass of its own: the heaviest fixed link gives it.
+  // A free body needs a mass of its own: the heaviest fixed link gives it, also in place of a placeholder.
+  constexpr double kPlaceholder = 0.01;  // to the heaviest link
   NormalizedLink* heaviest = nullptr;
   for (NormalizedLink& link : result_.links) {
     if (link.inertial && (heaviest == nullptr || link.inertial->mass_kg > heaviest->inertial->mass_kg))
@@ -211,7 +214,10 @@ void Normalizer::add_chassis() {
   if (heaviest == nullptr) {
     source_.fail(source_.link(base_).line, base_, "the chassis has neither mass nor shapes");
   }
-  base().inertial = combine({{heaviest->joint->T_parent_link, *heaviest->inertial}});
+  if (base().inertial && base().inertial->mass_kg >= kPlaceholder * heaviest->inertial->mass_kg) return;
+  std::vector<std::pair<Pose3, Inertial>> parts = {{heaviest->joint->T_parent_link, *heaviest->inertial}};
+  if (base().inertial) parts.push_back({{}, *base().inertial});
+  base().inertial = combine(parts);
   heaviest->inertial.reset();
 }
 

@@ -42,6 +42,7 @@ void Normalizer::choose_legged_frame() {
   }
   if (yaw != 0.0) T_root_base_.rotation = T_root_base_.rotation * quaternion_from_yaw(yaw);
 
+  check_upright();
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
   for (const FoundLeg& leg : legs_)
     center += T_base(leg.joints.front()->child).position / static_cast<double>(legs_.size());
@@ -53,6 +54,20 @@ void Normalizer::choose_legged_frame() {
                        center.y(), center.z()),
            "--base-link LINK");
   }
+}
+
+/// Refuses a robot whose first joints of the legs are above each other rather than beside each other.
+void Normalizer::check_upright() const {
+  Eigen::AlignedBox3d box;
+  for (const FoundLeg& leg : legs_) box.extend(T_base(leg.joints.front()->child).position);
+  const Eigen::Vector3d size = box.sizes();
+  if (size.z() <= std::min(size.x(), size.y())) return;
+  const SourceJoint& joint = *legs_.front().joints.front();
+  source_.fail(
+      joint.line, joint.name,
+      fmt::format("the first joints of the legs are {:.2f} m apart in height, but only {:.2f} m to the side: z "
+                  "of {} must be up: add a root link with a fixed joint that turns the robot",
+                  size.z(), std::min(size.x(), size.y()), base_));
 }
 
 /// Finds the foot of a leg in the frame of its last joint: the sphere at its end, or a ball in the end of its shapes.

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "core/geometry/angles.h"
 #include "core/geometry/convex_polygon.h"
 #include "core/sensors/lidar.h"
 #include "importer/hull.h"
@@ -167,6 +168,59 @@ void Normalizer::check_clearance() {
   }
 }
 
+/// Reports a chassis that reaches so far beyond the wheels that it hits a ramp of 10 degrees before they do.
+void Normalizer::check_ramps() {
+  constexpr double kRamp_rad = 10.0 / kDegPerRad;
+  const bool has_wheels = !found_.wheels.empty();
+  for (const double direction : {1.0, -1.0}) {
+    const auto ahead = [direction](const FoundWheel& a, const FoundWheel& b) {
+      return direction * a.center_m.x() < direction * b.center_m.x();
+    };
+    if (!has_wheels) return;
+    const FoundWheel& first = *std::max_element(found_.wheels.begin(), found_.wheels.end(), ahead);
+    // Ground turned about the first wheel as a ramp that it touches: angle at which it meets a point.
+    double min_angle_rad = kRamp_rad, reach_m = 0.0, height_m = 0.0;
+    std::string name;
+    for (const std::string& link : chassis_) {
+      for (std::size_t i = 0; i < source_.link(link).collisions.size(); ++i) {
+        if (support_shapes_.contains({link, i})) continue;
+        for (const Eigen::Vector3d& point : outline(source_.link(link).collisions[i])) {
+          const Eigen::Vector3d p = T_base(link) * point;
+          const double x = direction * (p.x() - first.center_m.x()), z = p.z() - ground_m_;
+          if (x <= 0.0 || z < 0.0) continue;
+          // The tangent of the wheel through the point: distance of the point below the axle, and angle to the axle.
+          const double below = first.radius_m - z, distance = std::hypot(x, below);
+          if (distance <= first.radius_m) continue;
+          const double angle = std::asin(first.radius_m / distance) - std::atan2(below, x);
+          if (angle >= min_angle_rad) continue;
+          min_angle_rad = angle, reach_m = x, height_m = z, name = link;
+        }
+      }
+    }
+    if (name.empty()) continue;
+    assume(name,
+           fmt::format("its collision shape reaches {:.2f} m {} the axle, {:.3f} m above the ground: it hits ramps "
+                       "steeper than {:.1f} degrees",
+                       reach_m, direction > 0.0 ? "ahead of" : "behind", height_m, min_angle_rad * kDegPerRad),
+           "<collision> of the link");
+  }
+}
+
+/// Reports a mass that no robot for inspection has.
+void Normalizer::check_mass() {
+  constexpr double kMax_kg = 20000.0;
+  const double mass_kg = total_mass_kg();
+  if (mass_kg <= kMax_kg) return;
+  const auto mass_of = [](const NormalizedLink& link) { return link.inertial ? link.inertial->mass_kg : 0.0; };
+  const auto heaviest = std::max_element(
+      result_.links.begin(), result_.links.end(),
+      [&mass_of](const NormalizedLink& a, const NormalizedLink& b) { return mass_of(a) < mass_of(b); });
+  assume("mass",
+         fmt::format("{:.0f} kg of the file are kept, although more than {:.0f} kg are unlikely: {} has {:.0f} kg",
+                     mass_kg, kMax_kg, heaviest->name, mass_of(*heaviest)),
+         "<mass> of the links");
+}
+
 /// Computes the length and the turning radius, for the settings.
 void Normalizer::finish() {
   if (result_.drive == DriveType::kLegs) {
@@ -174,7 +228,9 @@ void Normalizer::finish() {
   } else {
     check_balance();
     check_clearance();
+    check_ramps();
   }
+  check_mass();
   result_.assumptions = joined(result_.assumptions);
   double front_m = -std::numeric_limits<double>::infinity(), rear_m = -front_m;
   for (const std::string& name : chassis_) {

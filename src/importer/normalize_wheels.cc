@@ -34,6 +34,22 @@ Motor Normalizer::motor_of(const FoundWheel& wheel, std::size_t num_driven, doub
   return motor;
 }
 
+/// Reduces damping and friction of a driven joint that its motor cannot overcome at its speed limit.
+void Normalizer::reduce_losses(const SourceJoint& joint, NormalizedJoint& driven) {
+  const Motor& motor = *driven.motor;
+  const double loss_nm = driven.damping * motor.velocity_radps + driven.friction;
+  if (loss_nm <= motor.effort_nm) return;
+  constexpr double kLoss = 0.25;  // to the torque limit
+  const double factor = kLoss * motor.effort_nm / loss_nm;
+  driven.damping *= factor;
+  driven.friction *= factor;
+  assume(joint.name,
+         fmt::format("damping and friction take {:.3g} N m at the speed limit, more than the torque limit of {:.3g} N "
+                     "m: reduced to a quarter of the limit",
+                     loss_nm, motor.effort_nm),
+         "<dynamics> and <limit effort velocity> of the joint");
+}
+
 /// Adds carriers and wheels. The frames of both are parallel to base_link; a wheel's origin is its center.
 void Normalizer::add_wheels() {
   double mass_kg = total_mass_kg();
@@ -142,6 +158,7 @@ void Normalizer::add_wheels() {
                                    .friction = joint.friction};
     if (driven_.contains(&joint)) {
       target.joint->motor = motor_of(wheel, driven_.size(), mass_kg);
+      reduce_losses(joint, *target.joint);
       max_speed_mps = std::min(max_speed_mps, target.joint->motor->velocity_radps * wheel.radius_m);
     }
     if (wheel.is_ball)
@@ -156,9 +173,69 @@ void Normalizer::add_wheels() {
     for (const SourceLink* link : links)
       add_visuals(*link, T_base_wheel.inverse() * (T_adjust * T_base(link->name)), target);
     target.inertial = moving_inertial(links, T_base_wheel, T_adjust, {tread}, joint);
+    replace_heavy_inertia(wheel, tread, *target.inertial);
     result_.links.push_back(std::move(target));
   }
   result_.max_speed_mps = max_speed_mps;
+}
+
+/// Replaces small wheels by balls that roll and swivel if they have neither motor nor vertical joint and are not on the
+/// only driven axle: fixed in their direction, they would keep the robot from turning.
+void Normalizer::release_fixed_casters() {
+  if (result_.drive != DriveType::kDifferential) return;
+  double min_x = std::numeric_limits<double>::infinity(), max_x = -min_x, min_y = min_x, max_y = -min_x;
+  double radius_m = min_x;  // of the smallest driven wheel
+  for (const FoundWheel& wheel : found_.wheels) {
+    if (!driven_.contains(wheel.joint)) continue;
+    min_x = std::min(min_x, wheel.center_m.x());
+    max_x = std::max(max_x, wheel.center_m.x());
+    min_y = std::min(min_y, wheel.center_m.y());
+    max_y = std::max(max_y, wheel.center_m.y());
+    radius_m = std::min(radius_m, wheel.radius_m);
+  }
+  const double near_m = 0.1 * (max_y - min_y), axle_m = 0.5 * (min_x + max_x);
+  if (max_x - min_x > near_m) return;
+  constexpr double kSmall = 0.9;  // to the radius of a driven wheel
+  std::erase_if(found_.wheels, [&](const FoundWheel& wheel) {
+    const SourceJoint& joint = *wheel.joint;
+    const bool is_caster = wheel.carrier_type == CarrierType::kNone && wheel.num_rollers == 0 &&
+                           !driven_.contains(&joint) && wheel.radius_m < kSmall * radius_m &&
+                           std::abs(wheel.center_m.x() - axle_m) > near_m;
+    if (!is_caster) return false;
+    kept_.erase(&joint);
+    casters_.insert(&joint);
+    for (const SourceLink* link : moving_group(joint)) {
+      chassis_.insert(link->name);
+      for (std::size_t i = 0; i < link->collisions.size(); ++i) support_shapes_.insert({link->name, i});
+    }
+    supports_.push_back({.name = joint.child,
+                         .center_m = {wheel.center_m.x(), wheel.center_m.y(), ground_m_ + wheel.radius_m},
+                         .radius_m = wheel.radius_m,
+                         .link = joint.child});
+    assume(joint.name,
+           fmt::format("is a caster: its wheel is smaller than the driven ones and has no motor, and fixed in its "
+                       "direction it would keep the robot from turning; replaced by a ball of radius {:.3g} m that "
+                       "rolls and swivels freely, with 3 % of the mass",
+                       wheel.radius_m),
+           "a continuous vertical joint above the wheel, or <limit effort velocity> of the joint");
+    return true;
+  });
+}
+
+/// Replaces the inertia of a wheel by that of its shape if it resists rolling like a mass beyond all proportion.
+void Normalizer::replace_heavy_inertia(const FoundWheel& wheel, const Shape& tread, Inertial& inertial) {
+  constexpr double kMaxRatio = 10.0;  // of mass times radius squared; gears and rotors add to that of the wheel
+  const Eigen::Matrix3d R = inertial.T_link_inertia.rotation.toRotationMatrix();
+  const double moment = (R * inertial.inertia * R.transpose())(1, 1);
+  const double rim_kg = moment / (wheel.radius_m * wheel.radius_m);
+  if (rim_kg <= kMaxRatio * inertial.mass_kg) return;
+  assume(
+      wheel.joint->child,
+      fmt::format("its moment of inertia {:.3g} kg m2 about the axle is that of {:.3g} kg at its radius of {:.3g} m, "
+                  "but its mass is {:.3g} kg: replaced by that of its shape",
+                  moment, rim_kg, wheel.radius_m, inertial.mass_kg),
+      "<inertia> of the link");
+  inertial = solid_inertial({tread}, inertial.mass_kg);
 }
 
 /// Finds fixed parts that touch the ground beside the wheels. Boxes and meshes count only if the robot would tip over
@@ -172,7 +249,8 @@ void Normalizer::add_supports() {
     max_y = std::max(max_y, wheel.center_m.y());
   }
   const double gauge_m = max_y - min_y;
-  bool needs_support = max_x - min_x < 0.1 * gauge_m;
+  bool needs_support = max_x - min_x < 0.1 * gauge_m && supports_.empty();
+  const std::size_t num_casters = supports_.size();
   const auto find = [&](bool with_any_shape) {
     for (const std::string& name : chassis_) {
       const SourceLink& link = source_.link(name);
@@ -180,6 +258,7 @@ void Normalizer::add_supports() {
       const auto consider = [&](const std::vector<Shape>& shapes, bool is_collision) {
         for (std::size_t i = 0; i < shapes.size(); ++i) {
           const Shape& shape = shapes[i];
+          if (is_collision && support_shapes_.contains({name, i})) continue;
           const bool is_round = shape.type == ShapeType::kSphere || shape.type == ShapeType::kCylinder;
           if (!is_round && !(with_any_shape && is_leaf)) continue;
           const Pose3 T_base_link = T_base(name);
@@ -220,7 +299,8 @@ void Normalizer::add_supports() {
   };
   find(false);
   if (needs_support) find(true);
-  for (const Support& support : supports_) {
+  for (std::size_t i = num_casters; i < supports_.size(); ++i) {
+    const Support& support = supports_[i];
     assume(support.name,
            fmt::format("is fixed and touches the ground: replaced by a ball of radius {:.3g} m that rolls and swivels "
                        "freely, with 3 % of the mass",

@@ -72,7 +72,7 @@ inline Inertial to_inertial(const SourceInertial& source) {
   return {.mass_kg = source.mass_kg, .T_link_inertia = source.T_link_inertia, .inertia = source.inertia};
 }
 
-/// Fixed part that slides on the ground: center in the base and radius.
+/// Part without a motor that slides on the ground: center in the base and radius.
 struct Support {
   std::string name;
   Eigen::Vector3d center_m;
@@ -101,8 +101,10 @@ class Normalizer {
   void level_base();
   void choose_frame();
   void choose_legged_frame();
+  void check_upright() const;
   void choose_carriers();
   void choose_drive();
+  void release_fixed_casters();
   void choose_rollers();
   void check_fixed_sides(const std::vector<const FoundWheel*>& wheels) const;
   void report_frozen_joints();
@@ -133,6 +135,8 @@ class Normalizer {
   void add_sensors();
   void check_balance();
   void check_clearance();
+  void check_ramps();
+  void check_mass();
   void add_frame(const std::string& frame, const Pose3& T_base_frame, const std::string& link);
   void choose_preset(const std::string& frame, const SourceSensor& sensor);
   void finish();
@@ -146,6 +150,8 @@ class Normalizer {
   void add_collisions(const SourceLink& link, const Pose3& T_new_link, bool from_visuals, NormalizedLink& target);
   std::string add_mesh(const std::string& stem, const Mesh& mesh);
   double total_mass_kg() const;
+  void reduce_losses(const SourceJoint& joint, NormalizedJoint& driven);
+  void replace_heavy_inertia(const FoundWheel& wheel, const Shape& tread, Inertial& inertial);
   Motor motor_of(const FoundWheel& wheel, std::size_t num_driven, double mass_kg);
   NormalizedLink& base() { return result_.links.front(); }
 
@@ -154,10 +160,11 @@ class Normalizer {
   std::map<std::string, Pose3> T_root_link_;
   std::vector<FoundLeg> legs_;  ///< four; none for a robot on wheels
   FoundWheels found_;
-  std::set<const SourceJoint*> kept_;    ///< movable joints of the result
-  std::set<const SourceJoint*> driven_;  ///< wheel joints with motors
-  std::set<std::string> chassis_;        ///< links of the base's rigid group
-  std::string base_;                     ///< link of the file
+  std::set<const SourceJoint*> kept_;     ///< movable joints of the result
+  std::set<const SourceJoint*> driven_;   ///< wheel joints with motors
+  std::set<const SourceJoint*> casters_;  ///< wheel joints that are replaced by supports
+  std::set<std::string> chassis_;         ///< links of the base's rigid group
+  std::string base_;                      ///< link of the file
   Pose3 T_root_base_;
   double ground_m_ = 0.0;  ///< height of the ground in the base
   std::set<std::string> used_links_, used_joints_;

@@ -1,7 +1,9 @@
 #include "importer/packages.h"
 
+#include <algorithm>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <tinyxml2.h>
@@ -10,6 +12,9 @@
 
 namespace patrol::importer {
 namespace {
+
+constexpr int kMaxFoldersAbove = 3;                // searched for a mesh
+constexpr int kMaxDepth = 6, kMaxEntries = 20000;  // of the search for the name of a mesh
 
 /// Returns the name in a folder's package.xml; empty if there is none.
 std::string package_name(const std::filesystem::path& folder) {
@@ -21,6 +26,18 @@ std::string package_name(const std::filesystem::path& folder) {
   const tinyxml2::XMLElement* package = document.FirstChildElement("package");
   const tinyxml2::XMLElement* name = package != nullptr ? package->FirstChildElement("name") : nullptr;
   return name != nullptr && name->GetText() != nullptr ? name->GetText() : "";
+}
+
+/// Returns the parts of a path of a description behind its scheme, package, root and leading "..".
+std::filesystem::path tail_of(const std::string& uri) {
+  const std::size_t scheme = uri.find("://");
+  std::string rest = scheme == std::string::npos ? uri : uri.substr(scheme + 3);
+  if (scheme != std::string::npos && !uri.starts_with("file://")) rest.erase(0, std::min(rest.find('/'), rest.size()));
+  std::filesystem::path tail;
+  for (const auto& part : std::filesystem::path(rest).relative_path()) {
+    if (!tail.empty() || (part != ".." && part != ".")) tail /= part;
+  }
+  return tail;
 }
 
 }  // namespace
@@ -61,6 +78,69 @@ std::filesystem::path Packages::resolve(const std::string& uri) const {
     return path.is_absolute() ? path : folder_ / path;
   }
   return folder_ / uri;
+}
+
+std::optional<std::filesystem::path> Packages::above(const std::filesystem::path& path) const {
+  std::error_code error;
+  std::filesystem::path folder = folder_;
+  for (int i = 0; i <= kMaxFoldersAbove; ++i, folder = folder.parent_path()) {
+    if (std::filesystem::is_regular_file(folder / path, error)) return folder / path;
+    if (folder == folder.root_path()) break;
+  }
+  return std::nullopt;
+}
+
+std::optional<std::filesystem::path> Packages::with_name(const std::string& name) const {
+  std::error_code error;
+  std::filesystem::path root = folder_, folder = folder_;
+  for (int i = 0; i <= kMaxFoldersAbove && folder != folder.root_path(); ++i, folder = folder.parent_path()) {
+    if (!std::filesystem::exists(folder / "package.xml", error)) continue;
+    root = folder;
+    break;
+  }
+  std::optional<std::filesystem::path> found;
+  int num_entries = 0;
+  std::filesystem::recursive_directory_iterator at(root, std::filesystem::directory_options::skip_permission_denied,
+                                                   error);
+  for (; !error && at != std::filesystem::recursive_directory_iterator(); at.increment(error)) {
+    if (++num_entries > kMaxEntries) return std::nullopt;
+    if (at.depth() > kMaxDepth || at->path().filename().string().starts_with('.')) at.disable_recursion_pending();
+    if (at->path().filename() != name || !at->is_regular_file(error)) continue;
+    if (found) return std::nullopt;
+    found = at->path();
+  }
+  return found;
+}
+
+std::filesystem::path Packages::find_mesh(const std::string& uri) const {
+  std::error_code error;
+  std::filesystem::path named;
+  std::string unknown_package;
+  try {
+    named = resolve(uri);
+    if (std::filesystem::is_regular_file(named, error)) return named;
+  } catch (const InputError& refused) {
+    unknown_package = refused.what();
+  }
+  // The whole path behind the scheme, then without its first folders, at last the name alone.
+  std::vector<std::filesystem::path> parts;
+  for (const auto& part : tail_of(uri)) parts.push_back(part);
+  for (std::size_t first = 0; first < parts.size() && (first == 0 || first + 1 < parts.size()); ++first) {
+    std::filesystem::path end;
+    for (std::size_t i = first; i < parts.size(); ++i) end /= parts[i];
+    if (const auto found = above(end)) return *found;
+  }
+  if (!parts.empty()) {
+    if (const auto found = with_name(parts.back().string())) return *found;
+  }
+  if (!unknown_package.empty()) throw InputError(unknown_package);
+  throw MeshNotFound(
+      fmt::format("{}: mesh file not found: put it there, or give the folder of its package with --package NAME=FOLDER",
+                  named.string()));
+}
+
+std::string Packages::relative(const std::filesystem::path& path) const {
+  return path.lexically_normal().lexically_proximate(folder_).string();
 }
 
 }  // namespace patrol::importer

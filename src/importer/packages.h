@@ -5,7 +5,14 @@
 #include <optional>
 #include <string>
 
+#include "core/error.h"
+
 namespace patrol::importer {
+
+/// Error of a mesh that is not where the description names it, nor near it.
+struct MeshNotFound : InputError {
+  using InputError::InputError;
+};
 
 /// Folders of packages, by name: given ones, and those found near a file.
 class Packages {
@@ -20,7 +27,18 @@ class Packages {
   /// file. Throws InputError without file and line if the package is unknown.
   std::filesystem::path resolve(const std::string& uri) const;
 
+  /// Returns the path of an existing mesh: the one of `resolve`; else the same path, or the end of an absolute one,
+  /// from one of the three folders above the file; else the only file of this name in the file's package (or folder,
+  /// if it is in no package). Throws InputError without file and line if there is none.
+  std::filesystem::path find_mesh(const std::string& uri) const;
+
+  /// Returns a path relative to the folder of the file, for messages.
+  std::string relative(const std::filesystem::path& path) const;
+
  private:
+  std::optional<std::filesystem::path> above(const std::filesystem::path& path) const;
+  std::optional<std::filesystem::path> with_name(const std::string& name) const;
+
   std::map<std::string, std::filesystem::path> given_;
   std::filesystem::path folder_;  ///< of the file
 };

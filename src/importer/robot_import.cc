@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "importer/fixed_wheels.h"
 #include "importer/normalize.h"
 #include "importer/output_folder.h"
 #include "importer/packages.h"
@@ -17,12 +18,20 @@ namespace patrol::importer {
 ImportedRobot import_robot(const RobotImportOptions& options) {
   const std::string file = options.file.string();
   std::string text = io::load_text(options.file), label = file;
-  if (is_xacro(options.file)) {
+  const bool is_hidden_xacro = !is_xacro(options.file) && has_xacro_text(text);
+  if (is_hidden_xacro || is_xacro(options.file)) {
     text = expand_xacro(options.file, options.xacro_arguments, options.packages);
     label += " (expanded)";
   }
   const Packages packages(options.packages, options.file);
-  const SourceRobot source = read_source_robot(label, text, packages);
+  SourceRobot source = read_source_robot(label, text, packages);
+  if (is_hidden_xacro) {
+    source.assumptions.insert(source.assumptions.begin(),
+                              {.subject = options.file.filename().string(),
+                               .text = "has expressions of xacro and is expanded by xacro",
+                               .override_with = "--arg NAME=VALUE and environment variables, or an expanded file"});
+  }
+  release_fixed_wheels(source);
   const NormalizedRobot robot = normalize(source, {.name = options.name,
                                                    .base_link = options.base_link,
                                                    .forward = options.forward,

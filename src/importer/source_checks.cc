@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "core/geometry/linear_algebra.h"
 #include "importer/source_reader.h"
 
 namespace patrol::importer {
@@ -40,26 +39,44 @@ void SourceReader::check_tree() const {
   }
 }
 
-/// Checks masses and inertias of links below movable joints.
-void SourceReader::check_joints() const {
-  for (const SourceJoint& joint : robot_.joints) {
-    if (joint.type == JointType::kFixed) continue;
-    const SourceLink& child = robot_.link(joint.child);
-    if (child.inertial && child.inertial->mass_kg <= 0.0)
-      robot_.fail(child.inertial->line, child.name, "mass = 0: must be positive for a moving link");
-  }
-  for (const SourceLink& link : robot_.links) {
-    if (!link.inertial || link.inertial->mass_kg <= 0.0) continue;
-    const Eigen::Vector3d moments = symmetric_eigen(link.inertial->inertia).values;
-    const bool is_physical =
-        moments[0] >= -1e-2 * moments[2] && moments[2] >= 0.0 && moments[2] <= 1.01 * (moments[0] + moments[1]);
-    if (!is_physical && moments.cwiseAbs().maxCoeff() > 1e-12) {
-      robot_.fail(
-          link.inertial->line, link.name,
-          fmt::format("invalid inertia: principal moments {:.3g}, {:.3g} and {:.3g} kg m2: the largest must not "
-                      "exceed the sum of the others",
-                      moments[0], moments[1], moments[2]));
+/// Returns whether a link, or another one that fixed joints connect with it, has a collision shape.
+bool SourceReader::has_rigid_collision(const std::string& link) const {
+  std::string top = link;
+  for (const SourceJoint* joint = robot_.parent_joint(top); joint != nullptr && joint->type == JointType::kFixed;
+       joint = robot_.parent_joint(top))
+    top = joint->parent;
+  std::vector<std::string> open = {top};
+  while (!open.empty()) {
+    const std::string name = open.back();
+    open.pop_back();
+    if (!robot_.link(name).collisions.empty()) return true;
+    for (const SourceJoint* joint : robot_.child_joints(name)) {
+      if (joint->type == JointType::kFixed) open.push_back(joint->child);
     }
+  }
+  return false;
+}
+
+/// Leaves out visuals without their mesh beside a collision shape. Without one, the visual is the contact shape.
+void SourceReader::check_missing_visuals() {
+  for (const MissingVisual& missing : missing_visuals_) {
+    if (!has_rigid_collision(missing.link)) robot_.fail(missing.line, missing.link, missing.message);
+    robot_.assumptions.push_back({.subject = missing.link,
+                                  .text = fmt::format("is drawn without {}: mesh file not found", missing.uri),
+                                  .override_with = "the file, or --package NAME=FOLDER"});
+  }
+}
+
+/// Reports meshes that are not where the description names them.
+void SourceReader::report_meshes_elsewhere() {
+  for (const auto& [folder, names] : elsewhere_) {
+    std::string list;
+    for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+    robot_.assumptions.push_back(
+        {.subject = list,
+         .text =
+             fmt::format("not found where the description names them: the files of these names in {} are used", folder),
+         .override_with = "attribute filename of <mesh>, or --package NAME=FOLDER"});
   }
 }
 

@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -59,19 +60,31 @@ class SourceReader {
   std::string required_name(const tinyxml2::XMLElement& element) const;
   void read_materials(const tinyxml2::XMLElement& root);
   std::optional<Eigen::Vector4d> read_color(const tinyxml2::XMLElement& material, const std::string& name) const;
-  Shape read_shape(const tinyxml2::XMLElement& element, const std::string& link);
+  std::optional<Shape> read_shape(const tinyxml2::XMLElement& element, const std::string& link);
   SourceInertial read_inertial(const tinyxml2::XMLElement& element, const std::string& link) const;
   void read_link(const tinyxml2::XMLElement& element);
   void read_joint(const tinyxml2::XMLElement& element);
+  Eigen::Vector3d read_scale(const tinyxml2::XMLElement& element, const std::string& link);
   void read_mesh(const tinyxml2::XMLElement& element, const std::string& link, Shape& shape);
   void read_motors(const tinyxml2::XMLElement& root);
   void read_plugin(const tinyxml2::XMLElement& plugin);
   void read_sensors(const tinyxml2::XMLElement& root);
   void read_gazebo_sensor(const tinyxml2::XMLElement& sensor, const std::string& link);
   void check_tree() const;
-  void check_joints() const;
+  void check_inertias();
+  void check_missing_visuals();
+  bool has_rigid_collision(const std::string& link) const;
+  void report_meshes_elsewhere();
   void scale_millimeters();
   void check_sizes() const;
+
+  /// Visual whose mesh was not found.
+  struct MissingVisual {
+    std::string link = {};
+    int line = 0;
+    std::string uri = {};
+    std::string message = {};
+  };
 
   const Packages& packages_;
   tinyxml2::XMLDocument document_;
@@ -79,6 +92,8 @@ class SourceReader {
   std::map<std::string, Eigen::Vector4d> materials_;
   std::map<std::string, std::shared_ptr<const std::vector<MeshPart>>> meshes_;  ///< by path and scale
   std::map<std::string, std::string> unscaled_;  ///< key of `meshes_` without scale, to the extension
+  std::vector<MissingVisual> missing_visuals_;
+  std::map<std::string, std::set<std::string>> elsewhere_;  ///< names of meshes that were searched for, by folder
 };
 
 }  // namespace patrol::importer

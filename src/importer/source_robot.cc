@@ -31,6 +31,15 @@ std::string plain_words(std::string name) {
   return name;
 }
 
+/// Returns the path that a description names; empty if its package is unknown.
+std::filesystem::path named_path(const Packages& packages, const std::string& uri) {
+  try {
+    return packages.resolve(uri).lexically_normal();
+  } catch (const InputError&) {
+    return {};
+  }
+}
+
 }  // namespace
 
 SourceReader::SourceReader(const std::string& file, const std::string& text, const Packages& packages)
@@ -122,20 +131,34 @@ void SourceReader::read_materials(const XMLElement& root) {
   });
 }
 
+/// Reads the scale of a mesh: three numbers, or one for all axes. A fourth number, as some simulators write it, has no
+/// meaning.
+Eigen::Vector3d SourceReader::read_scale(const XMLElement& element, const std::string& link) {
+  std::istringstream words(attribute_text(element, "scale"));
+  const auto count = std::distance(std::istream_iterator<std::string>(words), {});
+  std::vector<double> values =
+      numbers(element, "scale", count == 1 || count == 4 ? static_cast<std::size_t>(count) : 3, link);
+  if (count == 1) values.resize(3, values.front());
+  const Eigen::Vector3d scale(values[0], values[1], values[2]);
+  if (scale.cwiseAbs().minCoeff() <= 0.0) fail(element, link, "scale: must not be zero");
+  if (count == 4) {
+    robot_.assumptions.push_back({.subject = link,
+                                  .text = "the fourth number of the scale of its mesh is left out",
+                                  .override_with = "attribute scale of <mesh>"});
+  }
+  return scale;
+}
+
 void SourceReader::read_mesh(const XMLElement& element, const std::string& link, Shape& shape) {
   const std::string uri = attribute_text(element, "filename");
   if (uri.empty()) fail(element, link, "<mesh>: filename is missing");
-  Eigen::Vector3d scale = Eigen::Vector3d::Ones();
   const bool has_scale = element.Attribute("scale") != nullptr;
-  if (has_scale) {
-    std::istringstream words(attribute_text(element, "scale"));
-    const auto count = std::distance(std::istream_iterator<std::string>(words), {});
-    scale = count == 1 ? Eigen::Vector3d::Constant(number(element, "scale", link)) : vector(element, "scale", link);
-    if (scale.cwiseAbs().minCoeff() <= 0.0) fail(element, link, "scale: must not be zero");
-  }
+  const Eigen::Vector3d scale = has_scale ? read_scale(element, link) : Eigen::Vector3d::Ones();
   std::filesystem::path path;
   try {
-    path = packages_.resolve(uri);
+    path = packages_.find_mesh(uri);
+    if (path.lexically_normal() != named_path(packages_, uri))
+      elsewhere_[packages_.relative(path.parent_path())].insert(path.filename().string());
     std::string extension = path.extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -151,6 +174,8 @@ void SourceReader::read_mesh(const XMLElement& element, const std::string& link,
       if (!has_scale) unscaled_[key] = extension;
     }
     shape.mesh = loaded;
+  } catch (const MeshNotFound&) {
+    throw;
   } catch (const InputError& error) {
     fail(element, link, error.what());
   }
@@ -158,7 +183,8 @@ void SourceReader::read_mesh(const XMLElement& element, const std::string& link,
   shape.mesh_name = path.stem().string();
 }
 
-Shape SourceReader::read_shape(const XMLElement& element, const std::string& link) {
+/// Reads a visual or collision. Returns none for a sphere without size, and for a visual whose mesh is not found.
+std::optional<Shape> SourceReader::read_shape(const XMLElement& element, const std::string& link) {
   Shape shape{.T_link_shape = origin(element, link), .line = element.GetLineNum()};
   const XMLElement* geometry = element.FirstChildElement("geometry");
   if (geometry == nullptr) fail(element, link, fmt::format("<{}>: <geometry> is missing", element.Name()));
@@ -175,9 +201,21 @@ Shape SourceReader::read_shape(const XMLElement& element, const std::string& lin
     shape.length_m = positive(*form, "length", link);
   } else if (name == "sphere") {
     shape.type = ShapeType::kSphere;
+    if (number(*form, "radius", link) == 0.0) {
+      robot_.assumptions.push_back({.subject = link,
+                                    .text = fmt::format("its {} sphere of radius 0 is left out", element.Name()),
+                                    .override_with = "attribute radius of <sphere>"});
+      return std::nullopt;
+    }
     shape.radius_m = positive(*form, "radius", link);
   } else if (name == "mesh") {
-    read_mesh(*form, link, shape);
+    try {
+      read_mesh(*form, link, shape);
+    } catch (const MeshNotFound& error) {
+      if (element.Name() != std::string("visual")) fail(*form, link, error.what());
+      missing_visuals_.push_back({link, form->GetLineNum(), attribute_text(*form, "filename"), error.what()});
+      return std::nullopt;
+    }
   } else {
     fail(*form, link, fmt::format("<{}>: unknown shape: must be box, cylinder, sphere or mesh", name));
   }
@@ -208,12 +246,11 @@ void SourceReader::read_link(const XMLElement& element) {
     fail(element, link.name, fmt::format("duplicate link: also in line {}", other->line));
   if (const XMLElement* inertial = element.FirstChildElement("inertial"))
     link.inertial = read_inertial(*inertial, link.name);
-  for (const XMLElement* shape = element.FirstChildElement("visual"); shape != nullptr;
-       shape = shape->NextSiblingElement("visual"))
-    link.visuals.push_back(read_shape(*shape, link.name));
-  for (const XMLElement* shape = element.FirstChildElement("collision"); shape != nullptr;
-       shape = shape->NextSiblingElement("collision"))
-    link.collisions.push_back(read_shape(*shape, link.name));
+  for (const auto& [tag, shapes] : {std::pair{"visual", &link.visuals}, std::pair{"collision", &link.collisions}}) {
+    for (const XMLElement* at = element.FirstChildElement(tag); at != nullptr; at = at->NextSiblingElement(tag)) {
+      if (auto shape = read_shape(*at, link.name)) shapes->push_back(std::move(*shape));
+    }
+  }
   robot_.links.push_back(std::move(link));
 }
 
@@ -288,7 +325,9 @@ SourceRobot SourceReader::read() {
   if (robot_.links.empty()) fail(*root, "<robot>", "has no links");
   for_each("joint", [this](const XMLElement& element) { read_joint(element); });
   check_tree();
-  check_joints();
+  check_missing_visuals();
+  report_meshes_elsewhere();
+  check_inertias();
   read_motors(*root);
   read_sensors(*root);
   scale_millimeters();

@@ -83,12 +83,16 @@ class WheelFinder {
   }
 
   FoundWheels find();
+  bool has_candidates();
 
  private:
+  void find_candidates();
   std::optional<FoundWheel> measure_wheel(const SourceJoint& joint);
   void find_rollers();
+  bool axes_meet(const SourceJoint& a, const SourceJoint& b) const;
   void use_rollers(const Pose3& T_root_axis, FoundWheel& wheel) const;
   void find_carrier(FoundWheel& wheel);
+  bool is_above_all_wheels(const SourceJoint& joint) const;
   void keep_wheels_on_ground();
   void leave_out_passive_balls();
   std::vector<AxialShape> axial_shapes(const std::vector<const SourceLink*>& links, const Pose3& T_root_axis,
@@ -131,6 +135,17 @@ std::optional<AxialShape> round_hull(const std::vector<AxialShape>& shapes) {
   return wheel;
 }
 
+/// Returns whether the axes of two joints intersect or are the same: those of a gear, for example, but not those of a
+/// wheel and its roller.
+bool WheelFinder::axes_meet(const SourceJoint& a, const SourceJoint& b) const {
+  constexpr double kMeet_m = 1e-3, kParallel = 1e-3;
+  const Pose3 &T_root_a = T_root_link_.at(a.child), &T_root_b = T_root_link_.at(b.child);
+  const Eigen::Vector3d along_a = T_root_a.rotation * a.axis, along_b = T_root_b.rotation * b.axis;
+  const Eigen::Vector3d between = T_root_b.position - T_root_a.position, normal = along_a.cross(along_b);
+  if (normal.norm() < kParallel) return (between - between.dot(along_a) * along_a).norm() < kMeet_m;
+  return std::abs(between.dot(normal.normalized())) < kMeet_m;
+}
+
 /// Finds the rollers of wheels and takes their joints from the endless ones. A motor never drives a roller.
 void WheelFinder::find_rollers() {
   const auto wheel_above = [this](const SourceJoint& joint) -> const SourceJoint* {
@@ -143,7 +158,8 @@ void WheelFinder::find_rollers() {
   };
   for (const SourceJoint& joint : robot_.joints) {
     if (!endless_.contains(&joint) || robot_.motors.contains(joint.name)) continue;
-    if (const SourceJoint* wheel = wheel_above(joint)) rollers_[wheel].push_back(&joint);
+    const SourceJoint* wheel = wheel_above(joint);
+    if (wheel != nullptr && !axes_meet(*wheel, joint)) rollers_[wheel].push_back(&joint);
   }
   std::erase_if(rollers_, [](const auto& entry) { return static_cast<int>(entry.second.size()) < kMinRollers; });
   for (const auto& [wheel, joints] : rollers_) found_.roller_joints.insert(joints.begin(), joints.end());
@@ -248,13 +264,23 @@ std::optional<FoundWheel> WheelFinder::measure_wheel(const SourceJoint& joint) {
   return result;
 }
 
+/// Returns whether a joint is above all wheels: one that moves the whole robot in the world, as planners need it.
+bool WheelFinder::is_above_all_wheels(const SourceJoint& joint) const {
+  const auto is_above = [this, &joint](const FoundWheel& wheel) {
+    const SourceJoint* at = robot_.parent_joint(wheel.joint->parent);
+    while (at != nullptr && at != &joint) at = robot_.parent_joint(at->parent);
+    return at == &joint;
+  };
+  return found_.wheels.size() > 2 && std::all_of(found_.wheels.begin(), found_.wheels.end(), is_above);
+}
+
 /// Finds the nearest vertical joint above a wheel. A joint with a range is a steering joint, an endless one a caster's.
 void WheelFinder::find_carrier(FoundWheel& wheel) {
   for (const SourceJoint* at = robot_.parent_joint(wheel.joint->parent); at != nullptr;
        at = robot_.parent_joint(at->parent)) {
     if (at->type != JointType::kRevolute && at->type != JointType::kContinuous) continue;
     const Eigen::Vector3d axis = T_root_link_.at(at->child).rotation * at->axis;
-    if (std::abs(axis.z()) < kVertical) continue;
+    if (std::abs(axis.z()) < kVertical || is_above_all_wheels(*at)) continue;
     wheel.carrier = at;
     wheel.carrier_type = at->is_endless() ? CarrierType::kCaster : CarrierType::kSteering;
     if (at->is_endless() && robot_.motors.contains(at->name)) wheel.carrier_type = CarrierType::kSteering;
@@ -293,16 +319,26 @@ void WheelFinder::leave_out_passive_balls() {
   std::erase_if(found_.wheels, is_passive_ball);
 }
 
-FoundWheels WheelFinder::find() {
+void WheelFinder::find_candidates() {
   find_rollers();
   for (const SourceJoint& joint : robot_.joints) {
     if (!endless_.contains(&joint)) continue;
     if (const auto wheel = measure_wheel(joint)) found_.wheels.push_back(*wheel);
   }
+}
+
+bool WheelFinder::has_candidates() {
+  find_candidates();
+  return !found_.wheels.empty();
+}
+
+FoundWheels WheelFinder::find() {
+  find_candidates();
   if (found_.wheels.empty()) {
     throw InputError(fmt::format(
         "{}: no wheels found: a wheel is a round link on a continuous joint about a horizontal axis that touches the "
-        "ground{}",
+        "ground{}; no legs either: a robot that walks has exactly four, each of three revolute joints one behind the "
+        "other",
         robot_.file, reason_.empty() ? "" : " (" + reason_ + ")"));
   }
   keep_wheels_on_ground();
@@ -340,6 +376,8 @@ std::vector<const SourceLink*> rigid_group(const SourceRobot& robot, const std::
   }
   return group;
 }
+
+bool has_wheels(const SourceRobot& robot) { return WheelFinder(robot).has_candidates(); }
 
 FoundWheels find_wheels(const SourceRobot& robot) { return WheelFinder(robot).find(); }
 

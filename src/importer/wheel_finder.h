@@ -48,6 +48,9 @@ std::map<std::string, Pose3> link_poses(const SourceRobot& robot);
 std::vector<const SourceLink*> rigid_group(const SourceRobot& robot, const std::string& link,
                                            const std::set<const SourceJoint*>& kept);
 
+/// Returns whether a link on an endless joint about a horizontal axis is round about it, at any height.
+bool has_wheels(const SourceRobot& robot);
+
 /// Finds the wheels: links on endless joints about a horizontal axis, round about it within 3.5 %, whose lowest point
 /// is within 2 % of the radius plus 5 mm of the common ground plane. The links on at least four passive endless joints
 /// below the joint of a wheel are its rollers; they determine its radius. Throws InputError if there are no wheels, if

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <tinyxml2.h>
 
 #include "core/error.h"
 #include "io/files/one_line.h"
@@ -154,7 +155,29 @@ std::string joined_lines(const std::string& text) {
   return io::on_one_line(line);
 }
 
+/// Returns whether an element, or one below it, belongs to xacro or has an expression of xacro in an attribute.
+bool has_xacro(const tinyxml2::XMLElement& element) {
+  const std::string name = element.Name();
+  if (name.starts_with("xacro:")) return true;
+  if (name == "gazebo") return false;
+  for (const tinyxml2::XMLAttribute* at = element.FirstAttribute(); at != nullptr; at = at->Next()) {
+    const std::string value = at->Value();
+    if (value.find("$(") != std::string::npos || value.find("${") != std::string::npos) return true;
+  }
+  for (const auto* child = element.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) {
+    if (has_xacro(*child)) return true;
+  }
+  return false;
+}
+
 }  // namespace
+
+bool has_xacro_text(const std::string& text) {
+  tinyxml2::XMLDocument document;
+  if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) return false;
+  const tinyxml2::XMLElement* root = document.RootElement();
+  return root != nullptr && has_xacro(*root);
+}
 
 bool is_xacro(const std::filesystem::path& file) { return file.extension() == ".xacro"; }
 
@@ -170,9 +193,9 @@ std::string expand_xacro(const std::filesystem::path& file, const std::map<std::
   std::string message = joined_lines(output.error);
   if (output.exit_code == -1 || output.exit_code == 3) {
     throw InputError(fmt::format(
-        "{}: xacro is not available: {}: {}: install it with \"pip install xacro\", or set PATROL_PYTHON to a Python "
+        "{}: xacro is not available{}: {}: {}: install it with \"pip install xacro\", or set PATROL_PYTHON to a Python "
         "interpreter that has it",
-        file.string(), python, message));
+        file.string(), is_xacro(file) ? "" : " to expand its $(...), ${...} and <xacro:...>", python, message));
   }
   throw InputError(fmt::format("{}: xacro: {}", file.string(), message.empty() ? "failed" : message));
 }

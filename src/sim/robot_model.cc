@@ -139,6 +139,7 @@ void add_collisions(const urdf::Link& link, const RobotParts& robot, mjSpec& spe
     geom->conaffinity = kRobotConaffinity;
     geom->group = kGroupRobotCollision;
     geom->condim = 3;
+    geom->density = 0.0;  // a link without <inertial> has no mass
     if (is_foot(link, robot)) {
       mjs_setName(geom->element, link.name.c_str());
       geom->priority = 1;

@@ -120,10 +120,11 @@ TEST(BrokenDescription, Numbers) {
 
 TEST(BrokenDescription, Meshes) {
   const auto mesh = [](const std::string& file) {
-    return with(link("x", shape("visual", "<mesh filename=\"" + file + "\"/>")) +
+    return with(link("x", shape("collision", "<mesh filename=\"" + file + "\"/>")) +
                 joint("j", "fixed", "base_link", "x", "0 0 0"));
   };
-  EXPECT_THAT(complaint(mesh("nowhere.stl")), MatchesRegex("v.urdf:[0-9]+: x: .*nowhere.stl: mesh file not found"));
+  EXPECT_THAT(complaint(mesh("nowhere.stl")),
+              MatchesRegex("v.urdf:[0-9]+: x: .*nowhere.stl: mesh file not found: .*--package.*"));
   EXPECT_THAT(complaint(mesh("v.urdf")), MatchesRegex("v.urdf:[0-9]+: x: .*must be an STL, OBJ or DAE file"));
   EXPECT_THAT(complaint(mesh("package://who/a.stl")), MatchesRegex("v.urdf:[0-9]+: x: unknown package \"who\".*"));
   EXPECT_THAT(complaint(with(link("x", shape("visual", "<cone/>")) + joint("j", "fixed", "base_link", "x", "0 0 0"))),

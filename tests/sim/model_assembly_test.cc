@@ -168,6 +168,20 @@ TEST(ModelAssembly, TheTrackedRobotWeighsItsUrdfs85KilogramsWithItsWheelsTakenOf
   EXPECT_NEAR(model.physics->body_subtreemass[base], io::load_robot_description(kTrackedUrdf).mass_kg, 1e-9);
 }
 
+TEST(ModelAssembly, AFixedLinkWithACollisionShapeButNoInertialHasNoMass) {
+  std::string urdf = read(kRobotUrdf);
+  const std::string crate =
+      R"(<link name="crate"><visual><geometry><box size="0.2 0.2 0.2"/></geometry></visual>
+         <collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
+         <joint name="crate_joint" type="fixed"><parent link="base_link"/><child link="crate"/><origin xyz="0 0 0.2"/></joint>)";
+  urdf.insert(urdf.rfind("</robot>"), crate);
+  const test::TemporaryFile world("world.xml", make_flat_world()), robot("robot.urdf", urdf);
+  const RobotDescription description = io::load_robot_description(robot.path());
+  const AssembledModel model = assemble_model(world.path(), robot.path(), description, {});
+  const int base = mj_name2id(model.physics.get(), mjOBJ_BODY, frame_id::kBody);
+  EXPECT_NEAR(model.physics->body_subtreemass[base], description.mass_kg, 1e-9);
+}
+
 TEST(ModelAssembly, TracksWithTheirRoadWheelsHaveTheCenterOfMassOfTheUrdfWithin1Micrometer) {
   const AssembledModel model = tracked_on(make_flat_world());
   const mjModel& physics = *model.physics;
