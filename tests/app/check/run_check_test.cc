@@ -64,7 +64,7 @@ TEST(RunCheck, TwoDrivenWheelsWithACasterTurnByTheirGaugeTo1PercentAndPassEveryt
   for (const ManeuverResult& each : result.maneuvers) EXPECT_TRUE(each.is_passed()) << each.maneuver.name;
 }
 
-// With a moment arm of 1 m and forces that are only clipped: 22 degrees on the ramp, and a fall on the steps.
+// Before, with as-built errors: 22 degrees on the ramp, and a fall on the steps.
 TEST(RunCheck, AQuadrupedOf6KilogramsWithLegsOf30CentimetersPassesEverythingWithin13DegreesOnTheRamp) {
   test::UrdfQuadruped robot;
   robot.mass_kg = 6.0;

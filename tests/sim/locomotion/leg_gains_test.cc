@@ -213,7 +213,7 @@ TEST_P(Walkers, WalkAndTurnWithin10PercentAndKeepTheTrunkWithin9Degrees) {
   }
 }
 
-// With the moment arm of models/quadruped and forces that are only clipped, up to 24 degrees.
+// With a moment arm of 1 m and forces that were only clipped, up to 24 degrees.
 TEST_P(Walkers, CrossARampOf10DegreesAt0_6OfTheirMaximumSpeedWithin14Degrees) {
   for (const std::uint64_t seed : {31, 32}) {
     SCOPED_TRACE(seed);
