@@ -191,6 +191,7 @@ void Normalizer::add_legs() {
         if (is_last && (!foot.is_sphere || link->name == foot.link)) continue;
         add_collisions(*link, T_target_link, false, target);
       }
+      if (is_last && foot.is_sphere) keep_foot_free(foot, joint, target);
       if (is_last && target.collisions.empty()) target.collisions.push_back({.shape = shank_of(foot)});
       target.inertial = moving_inertial(links, T_base_link, {}, shapes, joint);
       parent = target.name;
@@ -221,6 +222,24 @@ JointRange Normalizer::range_of_leg(const SourceJoint& joint) {
                  fmt::format("limit lower = {}: must be below upper = {}", joint.lower, joint.upper));
   }
   return {joint.lower, joint.upper};
+}
+
+/// Replaces shapes that reach almost as far as the sphere of the foot: they would touch the ground beside it.
+void Normalizer::keep_foot_free(const Foot& foot, const SourceJoint& knee, NormalizedLink& shank) {
+  constexpr double kFree = 0.4;  // radii beyond the center of the foot
+  const double reach_m = foot.center_m.norm() + kFree * foot.radius_m;
+  const Eigen::Vector3d direction = foot.center_m.normalized();
+  const std::size_t num_removed = std::erase_if(shank.collisions, [&](const NormalizedShape& part) {
+    const double cap_m = part.shape.type == ShapeType::kCylinder ? part.shape.radius_m : 0.0;  // in the simulator
+    const std::vector<Eigen::Vector3d> points = outline(part.shape);
+    return std::any_of(points.begin(), points.end(),
+                       [&](const Eigen::Vector3d& p) { return p.dot(direction) + cap_m > reach_m; });
+  });
+  if (num_removed == 0) return;
+  shank.collisions.push_back({.shape = shank_of(foot)});
+  assume(knee.child,
+         "collision shapes that reach to the end of the foot are replaced by a cylinder that ends before it",
+         "<collision> of the link");
 }
 
 /// Returns a cylinder from the knee to the foot that ends before the foot.

@@ -127,6 +127,7 @@ class Normalizer {
   Foot find_foot(const FoundLeg& leg);
   Motor motor_of_leg(const SourceJoint& joint, double mass_kg, double leg_m);
   JointRange range_of_leg(const SourceJoint& joint);
+  void keep_foot_free(const Foot& foot, const SourceJoint& knee, NormalizedLink& shank);
   Shape shank_of(const Foot& foot) const;
   void add_legs();
   void check_legged_balance();

@@ -19,14 +19,10 @@ namespace patrol::sim {
 namespace {
 
 // Leg joints: reflected rotor inertia typical of motors of 23.7 N m, friction of a good bearing. Tuned so that the
-// passive leg swings like the damping in the public robot description. Other motors are proportional to their torque,
-// up to three times the torque that is proportional to mass and leg length, about the robot's weight at the length of a
-// leg. A higher `effort` is a placeholder, and its friction would hold the robot fast.
+// passive leg swings like the damping in the public robot description. Others are proportional to `motor_ratio`.
 constexpr double kArmature = 0.01;
 constexpr double kDamping = 0.1;
 constexpr double kFrictionLoss = 0.2;
-constexpr double kLegTorque_nm = 23.7;
-constexpr double kMaxTorqueOfWeight = 3.0;
 
 // Rubber foot on asphalt: time constant of 6 ms; the friction of the foot applies on any ground.
 constexpr double kFootFriction = 0.8;
@@ -116,16 +112,12 @@ bool is_foot(const urdf::Link& link, const RobotParts& robot) {
   return std::any_of(legs.begin(), legs.end(), [&](const LegGeometry& leg) { return leg.foot_link == link.name; });
 }
 
-/// Returns the torque of the motors of the leg with a joint relative to `kLegTorque_nm`, by the first joint of the leg,
-/// at most `kMaxTorqueOfWeight` times that of the scaled robot; 1 for a joint of no leg.
-double leg_torque_ratio(const std::string& joint, const RobotParts& robot) {
+/// Returns the `motor_ratio` of the first joint of the leg with a joint; 1 for a joint of no leg.
+double leg_motor_ratio(const std::string& joint, const RobotParts& robot) {
   const std::vector<std::string>& names = robot.description.joint_names;
   if (robot.description.legs.empty()) return 1.0;
   const auto index = static_cast<std::size_t>(std::find(names.begin(), names.end(), joint) - names.begin());
-  if (index >= names.size()) return 1.0;
-  const LegScale scale = leg_scale(robot.description);
-  return std::min(robot.description.joint_limits[index - index % 3].effort_nm / kLegTorque_nm,
-                  kMaxTorqueOfWeight * scale.force * scale.length);
+  return index < names.size() ? motor_ratio(robot.description, index - index % 3) : 1.0;
 }
 
 void add_collisions(const urdf::Link& link, const RobotParts& robot, mjSpec& spec, mjsBody& body) {
@@ -225,7 +217,7 @@ void add_joint(mjSpec& spec, const urdf::Joint& joint, const RobotParts& robot, 
     set_drive_friction(joint, *hinge);
     hinge->damping[0] = joint.dynamics ? joint.dynamics->damping : 0.0;
   } else {
-    const double ratio = leg_torque_ratio(joint.name, robot);
+    const double ratio = leg_motor_ratio(joint.name, robot);
     hinge->armature = ratio * kArmature;
     hinge->damping[0] = ratio * kDamping;
     hinge->frictionloss = ratio * kFrictionLoss;

@@ -21,11 +21,10 @@ const Eigen::Vector3d kTunedInertiaPerKg_m2(0.01104, 0.03059, 0.03026);
 
 double rounded_to_percent(double ratio) { return std::round(100.0 * ratio) / 100.0; }
 
-/// Returns the ratio of the inertia of a leg at its foot. The inertia of the rotors is proportional to the torque limit
-/// (robot_model.cc), at the foot divided by the square of the length; that of the links is proportional to the mass.
+/// Returns the ratio of the inertia of a leg at its foot. The inertia of the rotors is proportional to their torque, at
+/// the foot divided by the square of the length; that of the links is proportional to the mass.
 double swing_inertia_ratio(const RobotDescription& robot, const LegScale& scale) {
-  const double torque = robot.joint_limits.front().effort_nm / kTunedTorque_nm;
-  return rounded_to_percent(kTunedRotorFraction * torque / (scale.length * scale.length) +
+  return rounded_to_percent(kTunedRotorFraction * motor_ratio(robot, 0) / (scale.length * scale.length) +
                             (1.0 - kTunedRotorFraction) * scale.force);
 }
 
@@ -36,6 +35,13 @@ LegScale leg_scale(const RobotDescription& robot) {
   for (const LegGeometry& leg : robot.legs) leg_m = std::max(leg_m, leg.length_m());
   const double length = leg_m / kTunedLeg_m;
   return {.length = length, .time = std::sqrt(length), .force = rounded_to_percent(robot.mass_kg / kTunedMass_kg)};
+}
+
+double motor_ratio(const RobotDescription& robot, std::size_t joint) {
+  constexpr double kMaxTorqueOfWeight = 3.0;
+  const LegScale scale = leg_scale(robot);
+  return std::min(robot.joint_limits[joint].effort_nm / kTunedTorque_nm,
+                  kMaxTorqueOfWeight * scale.force * scale.length);
 }
 
 LegGains scaled_leg_gains(const RobotDescription& robot) {
@@ -56,8 +62,10 @@ LegGains scaled_leg_gains(const RobotDescription& robot) {
   }
   for (double* speed_mps : {&gains.search_speed_mps, &gains.max_stop_speed_mps}) *speed_mps *= length / time;
   for (double* time_s : {&gains.capture_time_s, &gains.ground_time_s, &gains.velocity_time_s}) *time_s *= time;
-  for (double* stiffness : {&gains.swing_stiffness_npm, &gains.wake_up_stiffness_npm}) *stiffness *= force / length;
-  gains.swing_damping_nspm *= swing_inertia_ratio(robot, scale) / time;
+  const double swing_inertia = swing_inertia_ratio(robot, scale);
+  gains.swing_stiffness_npm *= swing_inertia / length;
+  gains.swing_damping_nspm *= swing_inertia / time;
+  gains.wake_up_stiffness_npm *= force / length;
   gains.wake_up_damping_nspm *= force / time;
   for (double* force_n : {&gains.touch_force_n, &gains.min_foot_force_n, &gains.max_foot_force_n}) *force_n *= force;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+
 #include <Eigen/Core>
 
 #include "core/robot_description.h"
@@ -59,6 +61,11 @@ struct LegScale {
 };
 
 LegScale leg_scale(const RobotDescription& robot);
+
+/// Returns the torque of the motor of a joint relative to the robot for which the gains are tuned, for its rotor
+/// inertia and friction. It is at most three times the ratio of weight times leg length, which is about the weight at
+/// the length of a leg: a higher `effort` is a placeholder, and its friction would hold the robot fast.
+double motor_ratio(const RobotDescription& robot, std::size_t joint);
 
 /// Returns the gains for a robot with legs: lengths are proportional to the length of the legs, times to its square
 /// root (equal Froude numbers [Alexander83]), forces to the mass, and moments to the inertia of the standing robot. The
