@@ -258,6 +258,10 @@ void Normalizer::choose_drive() {
 
 /// Checks the wheels of a mecanum drive, and takes the pattern of the rollers from their joints.
 void Normalizer::choose_rollers() {
+  const bool may_be_mecanum =
+      options_.drive.empty() && result_.drive == DriveType::kDifferential && found_.wheels.size() == 4;
+  if (may_be_mecanum && driven_.size() == 4)
+    assume("drive", "skid steering: the file has no rollers on the four driven wheels", "--drive mecanum");
   if (result_.drive != DriveType::kMecanum) return;
   if (found_.wheels.size() != 4) {
     const SourceJoint& joint = *found_.wheels.back().joint;
@@ -380,6 +384,7 @@ NormalizedRobot Normalizer::run() {
     add_chassis();
     add_wheels();
     const double mass_kg = total_mass_kg();
+    strengthen_casters(mass_kg);
     for (const Support& support : supports_) add_support(support, mass_kg);
   }
   add_sensors();

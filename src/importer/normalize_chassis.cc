@@ -115,10 +115,10 @@ std::optional<Inertial> Normalizer::checked_inertial(const SourceLink& link) {
   }
   const double max = eigen.values[2];
   Eigen::Vector3d& moments = eigen.values;
-  constexpr double kMinRatio = 1e-3, kMargin = 1.00005;
+  constexpr double kMinRatio = 1e-3, kMargin = 1.00005, kBelowSum = 0.9999;
   if (moments[0] >= kMinRatio * 1e-2 * max && moments[2] <= (moments[0] + moments[1]) * kMargin) return inertial;
   moments[0] = std::max(moments[0], kMinRatio * max);
-  moments[2] = std::min(moments[2], moments[0] + moments[1]);
+  moments[2] = std::min(moments[2], kBelowSum * (moments[0] + moments[1]));
   inertial.inertia = eigen.vectors * moments.asDiagonal() * eigen.vectors.transpose();
   assume(link.name, "its principal moments of inertia are adjusted by up to 1 %: no body has them",
          "<inertia> of the link");

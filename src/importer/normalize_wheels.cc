@@ -11,14 +11,20 @@
 #include "importer/normalizer.h"
 
 namespace patrol::importer {
+namespace {
+
+constexpr double kTorqueReserve = 1.5;  // loads differ, and wheels that skid sideways need the torque of friction
+
+}  // namespace
 
 Motor Normalizer::motor_of(const FoundWheel& wheel, std::size_t num_driven, double mass_kg) {
   Motor motor{.effort_nm = wheel.joint->effort.value_or(0.0), .velocity_radps = wheel.joint->velocity.value_or(0.0)};
   const double traction_nm = kFriction * mass_kg * kGravity * wheel.radius_m / static_cast<double>(num_driven);
   if (motor.effort_nm <= 0.0) {
-    motor.effort_nm = traction_nm;
+    motor.effort_nm = kTorqueReserve * traction_nm;
     assume(wheel.joint->name,
-           fmt::format("torque limit {:.3g} N m: friction {} on all driven wheels", motor.effort_nm, kFriction),
+           fmt::format("torque limit {:.3g} N m: {} times that of friction {} on all driven wheels", motor.effort_nm,
+                       kTorqueReserve, kFriction),
            "<limit effort> of the joint");
   } else if (motor.effort_nm > 20.0 * traction_nm) {
     assume(wheel.joint->name,
@@ -340,6 +346,42 @@ void Normalizer::add_supports() {
   }
 }
 
+/// Takes mass from the chassis and returns it: at most a fifth of the mass of base_link.
+double Normalizer::take_from_base(double wanted_kg) {
+  Inertial& inertial = *base().inertial;
+  const double taken_kg = std::min(wanted_kg, 0.2 * inertial.mass_kg);
+  inertial.inertia *= 1.0 - taken_kg / inertial.mass_kg;
+  inertial.mass_kg -= taken_kg;
+  return taken_kg;
+}
+
+/// Gives the carriers and wheels of very light casters mass of the chassis, and an inertia of twice this mass at the
+/// radius of the wheel: their contact is unstable otherwise.
+void Normalizer::strengthen_casters(double robot_mass_kg) {
+  std::map<std::string, double> parts;  // name to radius of the wheel
+  for (const FoundWheel& wheel : found_.wheels) {
+    if (wheel.carrier_type != CarrierType::kCaster) continue;
+    for (const SourceJoint* joint : {wheel.joint, wheel.carrier}) parts[link_name(joint->child)] = wheel.radius_m;
+  }
+  constexpr double kLight = 0.3;    // to the mass that a part gets
+  constexpr double kInertia = 2.0;  // to mass times radius squared
+  const double wanted_kg = kSupportMassRatio * robot_mass_kg / static_cast<double>(parts.size());
+  for (NormalizedLink& link : result_.links) {
+    if (!parts.contains(link.name) || link.inertial->mass_kg >= kLight * wanted_kg) continue;
+    Inertial& inertial = *link.inertial;
+    const double before_kg = inertial.mass_kg;
+    inertial.mass_kg += take_from_base(wanted_kg - before_kg);
+    const double radius_m = parts.at(link.name), moment = kInertia * inertial.mass_kg * radius_m * radius_m;
+    inertial.inertia = moment * Eigen::Matrix3d::Identity();
+    assume(
+        link.name,
+        fmt::format("its mass of {:.3g} kg is raised to {:.3g} kg, taken from the chassis, and its moments of inertia "
+                    "to {:.3g} kg m2: the contact of lighter casters is unstable in the simulation",
+                    before_kg, inertial.mass_kg, moment),
+        "<mass> of the link");
+  }
+}
+
 /// Adds a ball that rolls about y in a carrier that swivels about z, with half the radius of trail.
 void Normalizer::add_support(const Support& support, double robot_mass_kg) {
   // Lighter balls make the contact of the simulation unstable.
@@ -352,13 +394,7 @@ void Normalizer::add_support(const Support& support, double robot_mass_kg) {
       link.inertial.reset();
     }
   }
-  if (mass_kg < wanted_kg) {
-    Inertial& inertial = *base().inertial;
-    const double taken_kg = std::min(wanted_kg - mass_kg, 0.2 * inertial.mass_kg);
-    inertial.inertia *= 1.0 - taken_kg / inertial.mass_kg;
-    inertial.mass_kg -= taken_kg;
-    mass_kg += taken_kg;
-  }
+  if (mass_kg < wanted_kg) mass_kg += take_from_base(wanted_kg - mass_kg);
   const double half_kg = 0.5 * mass_kg, trail_m = 0.5 * support.radius_m;
   const Inertial ball{.mass_kg = half_kg,
                       .inertia = 0.4 * half_kg * support.radius_m * support.radius_m * Eigen::Matrix3d::Identity()};

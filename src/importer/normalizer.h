@@ -132,6 +132,8 @@ class Normalizer {
   void add_legs();
   void check_legged_balance();
   void add_supports();
+  double take_from_base(double wanted_kg);
+  void strengthen_casters(double robot_mass_kg);
   void add_support(const Support& support, double robot_mass_kg);
   void add_sensors();
   void check_balance();

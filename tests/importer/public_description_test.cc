@@ -107,6 +107,19 @@ TEST(PublicDescription, ASmallWheelThatCannotSwivelIsACaster) {
                                           Not(HasSubstr("fixed at zero"))));
 }
 
+TEST(PublicDescription, ALightCasterGetsMassOfTheChassis) {
+  std::string text = caster();
+  for (const auto& [old, by] : {std::pair{"<mass value=\"0.3\"/>", "<mass value=\"0.03\"/>"},
+                                {"<mass value=\"0.2\"/>", "<mass value=\"0.02\"/>"}})
+    text.replace(text.find(old), std::string(old).size(), by);
+  Import import(robot(chassis() + two_wheels() + text));
+  EXPECT_NEAR(import.load().mass_kg, 22.05, 1e-6) << "of the robot, unchanged";
+  EXPECT_THAT(import.assumptions(), AllOf(HasSubstr("| fork | its mass of 0.03 kg is raised to 0.331 kg, taken from "
+                                                    "the chassis, and its moments of inertia to 0.00165 kg m2"),
+                                          HasSubstr("| small | its mass of 0.02 kg is raised to 0.331 kg, taken from "
+                                                    "the chassis, and its moments of inertia to 0.00165 kg m2")));
+}
+
 TEST(PublicDescription, WheelsThatMayKeepTheRobotFromTurningStay) {
   Import equal(robot(chassis() + two_wheels() + small_wheel("a", 0.25, 0.1) + small_wheel("b", -0.25, 0.1)));
   equal.load();
@@ -132,6 +145,7 @@ TEST(PublicDescription, FixedWheelsTurnIfNoOthersDo) {
   const RobotDescription& robot = import.load();
   EXPECT_EQ(robot.wheels.size(), 4U);
   EXPECT_EQ(wheel_drive_type(robot), WheelDriveType::kDifferential);
+  EXPECT_THAT(import.assumptions(), HasSubstr("| drive | skid steering: the file has no rollers"));
   EXPECT_THAT(import.assumptions(), HasSubstr("| fl_joint, fr_joint, rl_joint, rr_joint | turns, although the file "
                                               "fixes it"));
 }
@@ -203,7 +217,7 @@ TEST(PublicDescription, AMassAboveTwentyTonsIsReported) {
                       two_wheels() + caster()));
   import.load();
   EXPECT_THAT(import.assumptions(), HasSubstr("| mass | 30002 kg of the file are kept, although more than 20000 kg are "
-                                              "unlikely: base_link has 30000 kg |"));
+                                              "unlikely: base_link has 29100 kg |"));
 }
 
 TEST(PublicDescription, AChassisThatHitsARampBeforeTheWheelsDoIsReported) {

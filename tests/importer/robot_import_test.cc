@@ -388,7 +388,7 @@ TEST(ImportRobot, MissingInertiasAreThoseOfTheShapes) {
   EXPECT_NEAR(robot.mass_kg, body_kg + 2.0 * wheel_kg + 0.5, 1e-6);
   const JointLimit& limit = robot.joint_limits[*import.wheel("l").drive_joint];
   EXPECT_NEAR(limit.velocity_radps, 15.0, 1e-9);
-  EXPECT_NEAR(limit.effort_nm, 0.8 * (body_kg + 0.5) * 9.81 * 0.1 / 2.0, 0.06 * limit.effort_nm);
+  EXPECT_NEAR(limit.effort_nm, 1.5 * 0.8 * (body_kg + 0.5) * 9.81 * 0.1 / 2.0, 0.06 * limit.effort_nm);
   EXPECT_THAT(import.assumptions(), HasSubstr("the file names no motors"));
   EXPECT_THAT(import.assumptions(), HasSubstr("has no &lt;collision>"));
   expect_footprint(robot, -0.33, 0.3, -0.27, 0.27);
