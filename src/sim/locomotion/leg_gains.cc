@@ -63,7 +63,7 @@ LegGains scaled_leg_gains(const RobotDescription& robot) {
   for (double* speed_mps : {&gains.search_speed_mps, &gains.max_stop_speed_mps}) *speed_mps *= length / time;
   for (double* time_s : {&gains.capture_time_s, &gains.ground_time_s, &gains.velocity_time_s}) *time_s *= time;
   const double swing_inertia = swing_inertia_ratio(robot, scale);
-  gains.swing_stiffness_npm *= swing_inertia / length;
+  gains.swing_stiffness_npm *= std::min(force, swing_inertia) / length;  // stiffer, a light leg would oscillate
   gains.swing_damping_nspm *= swing_inertia / time;
   gains.wake_up_stiffness_npm *= force / length;
   gains.wake_up_damping_nspm *= force / time;

@@ -47,8 +47,9 @@ TEST(LegGains, OfLegsFourTimesAsLongHaveTwiceThePeriodAndAQuarterOfTheStiffnessP
   EXPECT_NEAR(gains.height_damping, defaults.height_damping / 2.0, 1e-9);
   EXPECT_NEAR(gains.max_step_m, 0.8, 1e-9);
   EXPECT_NEAR(gains.touch_force_n, 36.0, 1e-9);
-  EXPECT_NEAR(gains.swing_stiffness_npm, 700.0 * 3.0 / 4.0, 1e-9);
-  EXPECT_NEAR(gains.swing_damping_nspm, 16.0 * 3.0 / 2.0, 1e-9);
+  // The rotors count as those of motors of 3 x 12 times the torque: 0.73 x 36 / 16 + 0.27 x 3.
+  EXPECT_NEAR(gains.swing_stiffness_npm, 700.0 * 2.45 / 4.0, 1e-9);
+  EXPECT_NEAR(gains.swing_damping_nspm, 16.0 * 2.45 / 2.0, 1e-9);
   EXPECT_NEAR(gains.velocity_time_s, 0.04, 1e-9);
   const LocomotionSettings settings = scaled_locomotion(robot);
   EXPECT_NEAR(settings.gait_period_s, 0.72, 1e-9);
@@ -64,6 +65,14 @@ TEST(LegGains, OfMotorsTwiceAsStrongHave1_73TimesTheDampingOfASwingFootAndTheSam
   const LegGains gains = scaled_leg_gains(robot), defaults;
   EXPECT_NEAR(gains.swing_damping_nspm, 1.73 * defaults.swing_damping_nspm, 1e-9);
   EXPECT_EQ(gains.swing_stiffness_npm, defaults.swing_stiffness_npm);
+}
+
+TEST(LegGains, OfMotorsHalfAsStrongHave0_64TimesTheDampingAndTheStiffnessOfASwingFoot) {
+  RobotDescription robot = io::load_robot_description(kRobotUrdf);
+  for (JointLimit& limit : robot.joint_limits) limit.effort_nm *= 0.5;
+  const LegGains gains = scaled_leg_gains(robot), defaults;  // 0.73 / 2 + 0.27, rounded
+  EXPECT_NEAR(gains.swing_damping_nspm, 0.64 * defaults.swing_damping_nspm, 1e-9);
+  EXPECT_NEAR(gains.swing_stiffness_npm, 0.64 * defaults.swing_stiffness_npm, 1e-9);
 }
 
 /// Robot with legs of a length and a mass; torques are proportional to both.
