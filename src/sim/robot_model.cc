@@ -11,7 +11,7 @@
 
 #include "core/error.h"
 #include "core/geometry/angles.h"
-#include "sim/locomotion/leg_gains.h"
+#include "sim/leg_scale.h"
 #include "sim/track_model.h"
 #include "sim/wheel_model.h"
 

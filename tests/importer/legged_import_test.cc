@@ -78,6 +78,25 @@ TEST(LeggedImport, AFootWithoutASphereBecomesABallInTheEndOfTheLegWithin1Centime
   EXPECT_THAT(import.assumptions(), HasSubstr("its foot is a ball of radius"));
 }
 
+int num_cylinders(const Import& import) {
+  int count = 0;
+  const std::string text = import.robot.urdf;
+  for (std::size_t at = text.find("<cylinder"); at != std::string::npos; at = text.find("<cylinder", at + 1)) ++count;
+  return count;
+}
+
+TEST(LeggedImport, AShankThatReachesToTheEndOfItsFootIsReplacedByACylinderAndAShorterOneStays) {
+  UrdfQuadruped robot = vendor_robot();
+  Import plain(robot.text());
+  plain.load();
+  EXPECT_EQ(num_cylinders(plain), 0);
+  robot.shank_collision_ratio = 1.12;  // 0.244 m below the knee; the foot ends at 0.252 m
+  Import import(robot.text());
+  expect_same_legs(import.load(), described(robot), 1e-6);
+  EXPECT_EQ(num_cylinders(import), 4);
+  EXPECT_THAT(import.assumptions(), HasSubstr("replaced by a cylinder that ends before it"));
+}
+
 TEST(LeggedImport, ARobotThatWalksAlongYOfTheFileIsTurned) {
   const std::string text = replaced(vendor_robot().text(), "base_link", "trunk");
   const std::string turned =

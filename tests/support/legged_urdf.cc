@@ -85,7 +85,8 @@ std::string UrdfQuadruped::text() const {
           part == kKnee ? knee_effort_nm : effort_nm);
       out += fmt::format("<link name=\"{}\">", link);
       out += inertial(mass[at], size[at], back * center[at], back) + box("visual", size[at], back * center[at], back);
-      if (part != 0) out += box("collision", 0.9 * size[at], back * center[at], back);
+      const double collision_ratio = part == kKnee ? shank_collision_ratio : 0.9;
+      if (part != 0) out += box("collision", collision_ratio * size[at], back * center[at], back);
       out += "</link>\n";
       parent = link;
       R_plain_parent = R;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "io/urdf.h"
+#include "sim/leg_scale.h"
 #include "tests/support/moments.h"
 #include "tests/support/temporary_file.h"
 

@@ -20,7 +20,7 @@
 #include "io/maps/map_server.h"
 #include "io/urdf.h"
 #include "io/yaml/settings_yaml.h"
-#include "sim/locomotion/leg_gains.h"
+#include "sim/leg_scale.h"
 #include "sim/locomotion/locomotion_settings.h"
 #include "sim/locomotion/roller_contact.h"
 #include "sim/sensors/uwb.h"

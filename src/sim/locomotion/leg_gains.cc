@@ -4,22 +4,18 @@
 #include <cmath>
 
 #include "core/leg_kinematics.h"
+#include "sim/leg_scale.h"
 #include "sim/locomotion/locomotion_settings.h"
 #include "sim/locomotion/swing_speed.h"
 
 namespace patrol::sim {
 namespace {
 
-// Robot for which the gains are tuned (models/quadruped).
-constexpr double kTunedMass_kg = 13.56;
-constexpr double kTunedLeg_m = 0.426;
-constexpr double kTunedTorque_nm = 23.7;
+// Robot for which the gains are tuned (models/quadruped), see leg_scale.cc.
 /// Part of the rotors in the vertical inertia of a leg at its foot, 0.745 kg in the standing posture.
 constexpr double kTunedRotorFraction = 0.73;
 const Eigen::Vector3d kTunedCenter_m(-0.0012, 0.0, -0.0093);
 const Eigen::Vector3d kTunedInertiaPerKg_m2(0.01104, 0.03059, 0.03026);
-
-double rounded_to_percent(double ratio) { return std::round(100.0 * ratio) / 100.0; }
 
 /// Returns the ratio of the inertia of a leg at its foot. The inertia of the rotors is proportional to their torque, at
 /// the foot divided by the square of the length; that of the links is proportional to the mass.
@@ -29,20 +25,6 @@ double swing_inertia_ratio(const RobotDescription& robot, const LegScale& scale)
 }
 
 }  // namespace
-
-LegScale leg_scale(const RobotDescription& robot) {
-  double leg_m = 0.0;
-  for (const LegGeometry& leg : robot.legs) leg_m = std::max(leg_m, leg.length_m());
-  const double length = leg_m / kTunedLeg_m;
-  return {.length = length, .time = std::sqrt(length), .force = rounded_to_percent(robot.mass_kg / kTunedMass_kg)};
-}
-
-double motor_ratio(const RobotDescription& robot, std::size_t joint) {
-  constexpr double kMaxTorqueOfWeight = 3.0;
-  const LegScale scale = leg_scale(robot);
-  return std::min(robot.joint_limits[joint].effort_nm / kTunedTorque_nm,
-                  kMaxTorqueOfWeight * scale.force * scale.length);
-}
 
 LegGains scaled_leg_gains(const RobotDescription& robot) {
   const LegScale scale = leg_scale(robot);

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cstddef>
-
 #include <Eigen/Core>
 
 #include "core/robot_description.h"
@@ -53,25 +51,11 @@ struct LegGains {
   double max_foot_force_n = 220.0;
 };
 
-/// Ratios of a robot with legs to the robot for which the gains are tuned.
-struct LegScale {
-  double length = 1.0;
-  double time = 1.0;   ///< square root of `length`: equal Froude numbers
-  double force = 1.0;  ///< ratio of the masses, rounded to 1 %
-};
-
-LegScale leg_scale(const RobotDescription& robot);
-
-/// Returns the torque of the motor of a joint relative to the robot for which the gains are tuned, for its rotor
-/// inertia and friction. It is at most three times the ratio of weight times leg length, which is about the weight at
-/// the length of a leg: a higher `effort` is a placeholder, and its friction would hold the robot fast.
-double motor_ratio(const RobotDescription& robot, std::size_t joint);
-
 /// Returns the gains for a robot with legs: lengths are proportional to the length of the legs, times to its square
 /// root (equal Froude numbers [Alexander83]), forces to the mass, and moments to the inertia of the standing robot. The
 /// damping of a swing foot is proportional to the inertia of the leg at its foot, of which the rotors of the motors
-/// have the larger part: the errors of its trajectory decay within the same fraction of the swing. Ratios of mass and
-/// inertia are rounded to 1 %.
+/// have the larger part: the errors of its trajectory decay within the same fraction of the swing. Its stiffness is
+/// proportional to the force, at most to that inertia. Ratios of mass and inertia are rounded to 1 %.
 LegGains scaled_leg_gains(const RobotDescription& robot);
 
 }  // namespace patrol::sim

@@ -20,10 +20,6 @@ using test::UrdfQuadruped;
 
 TEST(LegGains, OfTheTunedRobotAreTheDefaultsExactly) {
   const RobotDescription robot = io::load_robot_description(kRobotUrdf);
-  const LegScale scale = leg_scale(robot);
-  EXPECT_EQ(scale.length, 1.0);
-  EXPECT_EQ(scale.time, 1.0);
-  EXPECT_EQ(scale.force, 1.0);
   const LegGains gains = scaled_leg_gains(robot), defaults;
   EXPECT_EQ(gains.height_stiffness, defaults.height_stiffness);
   EXPECT_EQ(gains.swing_damping_nspm, defaults.swing_damping_nspm);
