@@ -90,7 +90,7 @@ TEST(LeggedImport, AShankThatReachesToTheEndOfItsFootIsReplacedByACylinderAndASh
   Import plain(robot.text());
   plain.load();
   EXPECT_EQ(num_cylinders(plain), 0);
-  robot.shank_collision_ratio = 1.12;  // 0.244 m below the knee; the foot ends at 0.252 m
+  robot.shank_collision_ratio = 1.27;  // 0.246 m below the knee; the foot ends at 0.252 m
   Import import(robot.text());
   expect_same_legs(import.load(), described(robot), 1e-6);
   EXPECT_EQ(num_cylinders(import), 4);
