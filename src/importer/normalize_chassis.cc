@@ -204,8 +204,9 @@ void Normalizer::add_chassis() {
     assume(list_of(massless_), "have no <inertial>: massless, since other links of the chassis have masses",
            "<inertial> of the links");
   }
-  // A free body needs a mass of its own: the heaviest fixed link gives it, also in place of a placeholder.
-  constexpr double kPlaceholder = 0.01;  // to the heaviest link
+  // A free body needs a mass of its own: the heaviest fixed link gives it, unless the base has at least a
+  // hundredth of the mass of that link.
+  constexpr double kMinMass = 0.01;  // to the heaviest link
   NormalizedLink* heaviest = nullptr;
   for (NormalizedLink& link : result_.links) {
     if (link.inertial && (heaviest == nullptr || link.inertial->mass_kg > heaviest->inertial->mass_kg))
@@ -214,7 +215,7 @@ void Normalizer::add_chassis() {
   if (heaviest == nullptr) {
     source_.fail(source_.link(base_).line, base_, "the chassis has neither mass nor shapes");
   }
-  if (base().inertial && base().inertial->mass_kg >= kPlaceholder * heaviest->inertial->mass_kg) return;
+  if (base().inertial && base().inertial->mass_kg >= kMinMass * heaviest->inertial->mass_kg) return;
   std::vector<std::pair<Pose3, Inertial>> parts = {{heaviest->joint->T_parent_link, *heaviest->inertial}};
   if (base().inertial) parts.push_back({{}, *base().inertial});
   base().inertial = combine(parts);

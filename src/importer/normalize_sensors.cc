@@ -168,15 +168,14 @@ void Normalizer::check_clearance() {
   }
 }
 
-/// Reports a chassis that reaches so far beyond the wheels that it hits a ramp of 10 degrees before they do.
+/// Reports a chassis that hits a ramp of 10 degrees before the wheels do.
 void Normalizer::check_ramps() {
   constexpr double kRamp_rad = 10.0 / kDegPerRad;
-  const bool has_wheels = !found_.wheels.empty();
+  if (found_.wheels.empty()) return;
   for (const double direction : {1.0, -1.0}) {
     const auto ahead = [direction](const FoundWheel& a, const FoundWheel& b) {
       return direction * a.center_m.x() < direction * b.center_m.x();
     };
-    if (!has_wheels) return;
     const FoundWheel& first = *std::max_element(found_.wheels.begin(), found_.wheels.end(), ahead);
     // Ground turned about the first wheel as a ramp that it touches: angle at which it meets a point.
     double min_angle_rad = kRamp_rad, reach_m = 0.0, height_m = 0.0;

@@ -19,8 +19,8 @@ struct LegScale {
 LegScale leg_scale(const RobotDescription& robot);
 
 /// Returns the torque of the motor of a joint relative to the robot for which the gains are tuned, for its rotor
-/// inertia and friction. It is at most three times the ratio of weight times leg length, which is about the weight at
-/// the length of a leg: a higher `effort` is a placeholder, and its friction would hold the robot fast.
+/// inertia and friction. It is at most three times the ratio of weight times leg length, about the weight at the length
+/// of a leg: some descriptions have an `effort` such as 1000 N m, whose friction exceeds the torques of the gait.
 double motor_ratio(const RobotDescription& robot, std::size_t joint);
 
 }  // namespace patrol::sim
