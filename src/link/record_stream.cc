@@ -26,7 +26,8 @@ RecordStream::RecordStream(Socket socket, WaitLimit wait, const RecordLimits& li
 }
 
 void RecordStream::declare(const std::string& topic, const std::string& type, const std::string& definition) {
-  const auto [known_schema, is_new_schema] = schemas_.emplace(type, static_cast<std::uint16_t>(schemas_.size() + 1));
+  const auto [known_schema, is_new_schema] =
+      schemas_.emplace(std::pair(type, definition), static_cast<std::uint16_t>(schemas_.size() + 1));
   if (is_new_schema) {
     io::mcap::RecordWriter schema;
     schema.number(known_schema->second);

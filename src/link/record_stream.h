@@ -48,8 +48,8 @@ class RecordStream {
   Socket socket_;
   WaitLimit wait_;
   RecordParser parser_;
-  std::map<std::string, std::uint16_t> schemas_;   ///< ids of the sent schemas by type
-  std::map<std::string, std::uint16_t> channels_;  ///< ids of the sent channels by topic
+  std::map<std::pair<std::string, std::string>, std::uint16_t> schemas_;  ///< sent, ids by type and definition
+  std::map<std::string, std::uint16_t> channels_;                         ///< ids of the sent channels by topic
   io::mcap::RecordWriter unsent_;
 };
 

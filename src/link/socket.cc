@@ -16,7 +16,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <sched.h>
 
 #include "core/error.h"
 #include "link/link_error.h"
@@ -25,17 +24,6 @@ namespace patrol::link {
 namespace {
 
 constexpr std::chrono::milliseconds kSlice{100};  ///< between two checks for an interrupt
-/// Time before a thread sleeps until an answer comes: waking up takes longer than most answers. Meanwhile it yields to
-/// other threads.
-constexpr std::chrono::microseconds kSpin{1000};
-
-/// Leaves the core to other threads that are ready, and for some microseconds to the other thread of the core.
-void yield() {
-  ::sched_yield();
-#if defined(__x86_64__)
-  for (int i = 0; i < 200; ++i) __builtin_ia32_pause();
-#endif
-}
 
 /// Waits until the descriptor is ready. Throws LinkError if that takes longer than the wait.
 void wait_for(int descriptor, short events, const WaitLimit& wait, const char* activity) {
@@ -177,13 +165,11 @@ void Socket::send(std::string_view bytes, const WaitLimit& wait) {
 }
 
 std::size_t Socket::receive(char* bytes, std::size_t size, const WaitLimit& wait) {
-  const auto spin_end = std::chrono::steady_clock::now() + kSpin;
   while (true) {
     const ssize_t received = ::recv(descriptor_, bytes, size, MSG_DONTWAIT);
     if (received > 0) return static_cast<std::size_t>(received);
     if (received == 0 || (errno != EINTR && errno != EAGAIN)) throw LinkError(LinkFault::kClosed, "connection closed");
-    if (std::chrono::steady_clock::now() > spin_end) wait_for(descriptor_, POLLIN, wait, "no answer");
-    else yield();
+    wait_for(descriptor_, POLLIN, wait, "no answer");
   }
 }
 

@@ -38,6 +38,10 @@ class StackServer {
 
   /// Declares a topic that the simulator can send, or that the stack can publish: before `greet`.
   void declare(const std::string& topic, const std::string& type) { stream_.declare_known(topic, type); }
+  /// Declares a topic with a type that the program does not know.
+  void declare(const std::string& topic, const std::string& type, const std::string& definition) {
+    stream_.declare(topic, type, definition);
+  }
   /// Sends the hello and returns the answer of the stack.
   const HelloReply& greet(const Hello& hello);
 

@@ -1,5 +1,6 @@
 #include "stack/stack.h"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -79,6 +80,11 @@ void Stack::step(Time now) {
   if (!parts_.sensor_monitor.can_drive() && !parts_.motion.is_teleoperated()) command_ = {};
   command_.stamp = now;
   output_.publish(command_);
+}
+
+Time Stack::next_step() const {
+  const Time next = std::min(next_odometry_, next_control_);
+  return parts_.pose.is_mapping() ? std::min(next, next_map_) : next;
 }
 
 void Stack::publish_map(Time now) {

@@ -39,8 +39,10 @@ class Stack {
   void handle(const SensorMessage& message);
   /// Processes the firmware's report of a fall.
   void handle_fall(Time now);
-  /// Runs odometry, map, mission and control, each at its own period. Call at least every 10 ms.
+  /// Runs odometry, map, mission and control, each at its own period. Call at next_step() or before.
   void step(Time now);
+  /// Time at which something is due next; in the past while the stack waits for odometry.
+  Time next_step() const;
 
   const VelocityCommand& command() const { return command_; }
   bool mission_is_over() const { return parts_.mission->is_over(); }

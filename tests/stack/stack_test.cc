@@ -81,5 +81,23 @@ TEST(Stack, PublishesOdometryAndCommandsAtTheirPeriods) {
               3.0);  // odometry settles for a second
 }
 
+// Odometry is due at multiples of 20 ms, control at multiples of 50 ms.
+TEST(Stack, HasSixStepsIn100ms) {
+  const RobotDescription robot = quadruped_with_outline();
+  std::vector<NavigationFeedback> heard;
+  Stack stack = stack_of(robot, std::make_unique<RecordingMission>(TaskTiming::kNow, heard));
+  const auto ms = [](int count) { return Time(std::chrono::milliseconds(count)); };
+  EXPECT_LE(stack.next_step(), ms(0));
+  stand(stack, robot, 2.0);
+  Time now = ms(2000);
+  std::vector<Time> steps;
+  for (int i = 0; i < 6; ++i) {
+    stack.step(now);
+    now = stack.next_step();
+    steps.push_back(now);
+  }
+  EXPECT_EQ(steps, (std::vector{ms(2020), ms(2040), ms(2050), ms(2060), ms(2080), ms(2100)}));
+}
+
 }  // namespace
 }  // namespace patrol::stack::stack_test

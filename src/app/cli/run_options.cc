@@ -145,6 +145,8 @@ void add_feed(CLI::App& app, Call& call) {
   command->add_option("input", feed.input, "Run directory, or recorded log (CARMEN, MCAP)")->required();
   command->add_option("--stack", feed.stack,
                       "Command of a stack, or unix:PATH or tcp:127.0.0.1:PORT where it connects (default: built in)");
+  command->add_flag("--as-recorded", feed.as_recorded,
+                    "Every message of an MCAP log, below /recorded, instead of its scans and odometry");
   command->add_option("--set", feed.overrides, kSetHelp)->take_all();
   command->add_option("--relations", feed.relations, kRelationsHelp);
   command->add_option("--reference", feed.reference, kReferenceHelp);

@@ -122,6 +122,7 @@ ExitCode verify_command(const VerifyOptions& options);
 struct FeedOptions {
   std::filesystem::path input;       ///< run directory, or recorded log (CARMEN or MCAP)
   std::optional<std::string> stack;  ///< command or address of the stack; default: the built-in one
+  bool as_recorded = false;          ///< deliver every message of an MCAP log instead of its scans and odometry
   std::vector<std::string> overrides;
   std::filesystem::path relations;  ///< reference relations of a recorded log; empty: none
   std::filesystem::path reference;  ///< reference trajectory of a recorded log; empty: none
@@ -130,8 +131,8 @@ struct FeedOptions {
   bool show_all = false;  ///< print every metric
   ResultForm form = ResultForm::kText;
 };
-/// Feeds a stack with the log of a run, or with the scans and the odometry of a recorded log, and scores its answers,
-/// which have no effect on the robot.
+/// Feeds a stack with the log of a run, or with the scans and the odometry or all messages of a recorded log, and
+/// scores its answers, which have no effect on the robot.
 ExitCode feed_command(const FeedOptions& options);
 /// `feed_command` for a recorded log.
 ExitCode feed_log_command(const FeedOptions& options);

@@ -11,6 +11,7 @@
 #include "app/common/output_directory.h"
 #include "app/common/print_result.h"
 #include "app/common/progress_bar.h"
+#include "app/mapping/feed_messages.h"
 #include "app/mapping/feed_scans.h"
 #include "app/mapping/log_documents.h"
 #include "app/mapping/log_mapping.h"
@@ -64,18 +65,34 @@ struct LogFeedSettings {
   }
 };
 
-std::unique_ptr<StackPort> make_stack_of_log(const FeedOptions& options, const LogFeedSettings& settings,
-                                             const InterruptGuard& guard, const io::TransformSet& mounts) {
-  if (!options.stack) return std::make_unique<MappingStack>(settings.mapping, mounts);
+/// Settings of `patrol feed LOG --as-recorded --set`.
+struct RecordedFeedSettings {
+  FedStackSettings stack;
+
+  template <typename Self, typename Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("stack", self.stack);
+  }
+};
+
+std::unique_ptr<StackPort> connect_stack(const FeedOptions& options, const FedStackSettings& settings,
+                                         const InterruptGuard& guard, StackDocuments documents) {
   stack::StackSettings connection;
-  connection.timeout_s = settings.stack.timeout_s;
-  connection.memory_limit_mb = settings.stack.memory_limit_mb;
-  connection.allow_network = settings.stack.allow_network;
-  return std::make_unique<ExternalStack>(log_documents(options.input.filename().string(), settings.mapping, mounts),
+  connection.timeout_s = settings.timeout_s;
+  connection.memory_limit_mb = settings.memory_limit_mb;
+  connection.allow_network = settings.allow_network;
+  return std::make_unique<ExternalStack>(std::move(documents),
                                          StackConnection{.command = *options.stack,
                                                          .output = options.out / "stack.log",
                                                          .is_interrupted = [&] { return guard.is_interrupted(); }},
                                          connection);
+}
+
+std::unique_ptr<StackPort> make_stack_of_log(const FeedOptions& options, const LogFeedSettings& settings,
+                                             const InterruptGuard& guard, const io::TransformSet& mounts) {
+  if (!options.stack) return std::make_unique<MappingStack>(settings.mapping, mounts);
+  return connect_stack(options, settings.stack, guard,
+                       log_documents(options.input.filename().string(), settings.mapping, mounts));
 }
 
 /// Poses that a stack published, with their errors.
@@ -143,22 +160,25 @@ void check_output(const FeedOptions& options) {
   }
 }
 
-std::string log_text(const FeedOptions& options, const std::string& adaptation, const io::ScanLogSummary& summary,
-                     const RunOutcome& outcome) {
-  return fmt::format("{}{}fed to {} in {:.1f} s ({:.0f} times real time)\n", io::to_text(summary),
-                     options.stack ? "" : adaptation, options.stack.value_or("the built-in mapping"), outcome.wall_s,
-                     to_seconds(outcome.duration) / std::max(1e-9, outcome.wall_s));
+std::string feeding_text(const FeedOptions& options, const RunOutcome& outcome) {
+  return fmt::format("fed to {} in {:.1f} s ({:.0f} times real time)\n", options.stack.value_or("the built-in mapping"),
+                     outcome.wall_s, to_seconds(outcome.duration) / std::max(1e-9, outcome.wall_s));
 }
 
-/// Scores the answers of a stack, and completes the directory.
-ExitCode complete_fed_log(const FeedOptions& options, const LogReferences& references, const std::string& adaptation,
-                          const io::ScanLogSummary& summary, const FedScans& fed) {
+/// Scores the answers of a stack, and completes the directory. `text`: on the log. `log`: its metrics.
+ExitCode complete_fed_log(const FeedOptions& options, const LogReferences& references, std::string text,
+                          io::Metrics log, const FedAnswers& fed) {
+  if (fed.outcome.end == RunEnd::kInterrupted) {
+    fmt::print(stderr, "patrol: interrupted; {} is incomplete\n", options.out.string());
+    return ExitCode::kProgramFailed;
+  }
   if (fed.map) io::save_map(options.out / "map.yaml", *fed.map);
   const RunStatus status = status_of(fed.outcome.end, {});
+  log["duration_s"] = to_seconds(fed.outcome.duration);
   io::Metrics metrics{{"status", name_of(status)},
-                      {"log", {{"scans", summary.num_scans}, {"duration_s", to_seconds(fed.outcome.duration)}}},
+                      {"log", std::move(log)},
                       {"performance", {{"wall_s", fed.outcome.wall_s}, {"cpu_s", fed.outcome.cpu_s}}}};
-  std::string text = log_text(options, adaptation, summary, fed.outcome);
+  text += feeding_text(options, fed.outcome);
   const auto add = [&](const char* name, const char* topic, const std::vector<StampedPose>& poses) {
     const std::optional<FedEstimate> estimate =
         score_estimate(options, references, fmt::format("{}.tum", name), topic, poses);
@@ -181,11 +201,9 @@ ExitCode complete_fed_log(const FeedOptions& options, const LogReferences& refer
   return exit_code_of(status);
 }
 
-}  // namespace
-
-ExitCode feed_log_command(const FeedOptions& options) {
+/// Feeds a stack with the scans and the odometry of a log.
+ExitCode feed_scans_of_log(const FeedOptions& options) {
   auto settings = io::parse_settings<LogFeedSettings>(options.overrides);
-  check_output(options);
   const LogReferences references = load_references(options);
   check_scans(*io::open_scan_log(options.input, settings.mapping.log), options.input.string());
   const std::unique_ptr<io::ScanLog> log = io::open_scan_log(options.input, settings.mapping.log);
@@ -193,7 +211,7 @@ ExitCode feed_log_command(const FeedOptions& options) {
 
   const InterruptGuard guard;
   std::optional<OutputLock> lock;
-  const FedScans fed = feed_scans(
+  const FedAnswers fed = feed_scans(
       *log, options.input.filename().string(),
       [&](const io::TransformSet& mounts) { return make_stack_of_log(options, settings, guard, mounts); },
       [&] {
@@ -201,11 +219,40 @@ ExitCode feed_log_command(const FeedOptions& options) {
         io::save_settings(options.out / "settings.yaml", settings);
       },
       options.out / "log.mcap", guard);
-  if (fed.outcome.end == RunEnd::kInterrupted) {
-    fmt::print(stderr, "patrol: interrupted; {} is incomplete\n", options.out.string());
-    return ExitCode::kProgramFailed;
-  }
-  return complete_fed_log(options, references, adaptation, log->summary(), fed);
+  return complete_fed_log(options, references, io::to_text(log->summary()) + (options.stack ? "" : adaptation),
+                          {{"scans", log->summary().num_scans}}, fed);
+}
+
+std::string text_of(const RecordedMessages& recorded) {
+  std::string text = fmt::format("{} messages on {} topics\n", recorded.num_messages, recorded.channels.size());
+  for (const auto& [topic, num_messages] : recorded.left_out)
+    text += fmt::format("left out: {}: {} messages, not CDR with a ROS 2 message definition\n", topic, num_messages);
+  if (!recorded.is_complete) text += "unexpected end of file: read up to the last complete record\n";
+  return text;
+}
+
+/// Feeds a stack with the messages of an MCAP log.
+ExitCode feed_messages_of_log(const FeedOptions& options) {
+  if (!options.stack) throw InputError("--as-recorded: needs --stack: the built-in mapping is fed with scans");
+  const auto settings = io::parse_settings<RecordedFeedSettings>(options.overrides);
+  const LogReferences references = load_references(options);
+  const RecordedMessages recorded = find_recorded_messages(options.input);
+  StackDocuments documents = log_documents(options.input.filename().string(), {}, {});
+  documents.recorded = recorded.channels;
+
+  const InterruptGuard guard;
+  std::unique_ptr<StackPort> stack = connect_stack(options, settings.stack, guard, std::move(documents));
+  const OutputLock lock = begin_output(options.out, kFedLog);
+  io::save_settings(options.out / "settings.yaml", settings);
+  const FedAnswers fed = feed_messages(options.input, recorded, std::move(stack), options.out / "log.mcap", guard);
+  return complete_fed_log(options, references, text_of(recorded), {{"messages", recorded.num_messages}}, fed);
+}
+
+}  // namespace
+
+ExitCode feed_log_command(const FeedOptions& options) {
+  check_output(options);
+  return options.as_recorded ? feed_messages_of_log(options) : feed_scans_of_log(options);
 }
 
 }  // namespace patrol::app

@@ -51,7 +51,7 @@ void publish(link::StackClient& client, Time now, const std::vector<PublishedMes
 
 void take_turns(link::StackClient& client) {
   const std::unique_ptr<StackPort> stack = stack_for(client);
-  client.begin("patrol stack", {}, BuiltInStack::kTurnPeriod);
+  client.begin("patrol stack", {}, BuiltInStack::kMinTurnPeriod);
   for (bool is_last = false; !is_last;) {
     link::ReceivedTurn received = client.next_turn();
     is_last = received.is_last;

@@ -3,26 +3,15 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
-#include <vector>
 
+#include "app/mapping/log_feeder.h"
 #include "app/mapping/read_scans.h"
-#include "app/run/run_loop.h"
 #include "app/run/stack_port.h"
-#include "core/grid.h"
 #include "io/logs/scan_log.h"
 #include "io/ros/ros_messages.h"
 
 namespace patrol::app {
-
-/// Answers of a stack to a recorded log.
-struct FedScans {
-  RunOutcome outcome;
-  std::vector<StampedPose> poses;       ///< poses on /pose, in order of publication
-  std::vector<StampedPose> trajectory;  ///< newest trajectory on /trajectory; empty: none
-  std::optional<OccupancyGrid> map;     ///< newest map on /map
-};
 
 /// Creates the stack of a log whose sensors have these transforms to the body.
 using MakeStack = std::function<std::unique_ptr<StackPort>(const io::TransformSet& mounts)>;
@@ -35,8 +24,8 @@ void check_scans(io::ScanLog& log, const std::string& file);
 /// `log_mcap`. The stack has its turns at the ends of scans, the first at the end of the first scan. Each scan is
 /// preceded by odometry at its stamp and, if its beams have times, at its last beam. `begin`: called once before
 /// anything is written. Throws InputError.
-FedScans feed_scans(io::ScanLog& log, const std::string& name, const MakeStack& make_stack,
-                    const std::function<void()>& begin, const std::filesystem::path& log_mcap,
-                    const InterruptGuard& guard);
+FedAnswers feed_scans(io::ScanLog& log, const std::string& name, const MakeStack& make_stack,
+                      const std::function<void()>& begin, const std::filesystem::path& log_mcap,
+                      const InterruptGuard& guard);
 
 }  // namespace patrol::app

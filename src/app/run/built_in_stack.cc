@@ -1,5 +1,6 @@
 #include "app/run/built_in_stack.h"
 
+#include <algorithm>
 #include <utility>
 #include <variant>
 
@@ -19,7 +20,7 @@ StackAnswer BuiltInStack::take_turn(const StackTurn& turn) {
   stack_.step(turn.now);
   const double cpu_s = thread_cpu_time_s() - start_s;
   return {.messages = published(),
-          .next_turn = turn.now + kTurnPeriod,
+          .next_turn = std::max(stack_.next_step(), turn.now + kMinTurnPeriod),
           .mission_is_over = stack_.mission_is_over(),
           .delay = delay_of(compute_, cpu_s)};
 }

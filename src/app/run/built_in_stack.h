@@ -10,8 +10,8 @@
 
 namespace patrol::app {
 
-/// The built-in stack, with a turn every 10 ms: its periods of odometry and control are multiples of that. It decodes
-/// the messages of the simulator as a stack in another process does, so that both compute with the same numbers.
+/// The built-in stack, with turns when its odometry, control or map is due. It decodes the messages of the simulator as
+/// a stack in another process does, so that both compute with the same numbers.
 class BuiltInStack final : public StackPort {
  public:
   BuiltInStack(stack::Stack stack, const stack::ComputeSettings& compute);
@@ -23,7 +23,7 @@ class BuiltInStack final : public StackPort {
   std::map<std::string, double> seconds_by_stage() const override { return stack_.clock().seconds(); }
   std::map<std::string, std::uint64_t> calls_by_stage() const override { return stack_.clock().calls(); }
 
-  static constexpr Time kTurnPeriod = std::chrono::milliseconds(10);
+  static constexpr Time kMinTurnPeriod = std::chrono::milliseconds(10);  ///< shortest interval between two turns
 
  private:
   void handle(const StackTurn& turn);

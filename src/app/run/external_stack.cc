@@ -135,6 +135,8 @@ void ExternalStack::connect() {
   for (const io::TopicInfo& info : io::topic_infos()) {
     if (io::is_stack_input(info.topic) || io::is_stack_output(info.topic)) server_->declare(info.topic, info.type);
   }
+  for (const io::McapChannel& channel : documents_.recorded)
+    server_->declare(channel.topic, channel.type, channel.definition);
   server_->declare(io::kStaticTransforms.topic, io::kStaticTransforms.type);
   server_->declare(link::kSiteMapTopic, io::kRosType<MapUpdate>);
   server_->send(io::kStaticTransforms.topic, Time{}, documents_.static_transforms);
@@ -245,7 +247,8 @@ PublishedMessage checked_message(link::PublishedMessage message) {
       io::has_control_characters(message.topic)) {
     refuse("name of a topic must begin with / and have at most 200 printable characters");
   }
-  if (message.topic.starts_with("/link/") || !io::is_stack_output(message.topic))
+  if (message.topic.starts_with("/link/") || message.topic.starts_with("/recorded/") ||
+      !io::is_stack_output(message.topic))
     refuse("only the simulator writes this topic");
   const std::optional<io::TopicInfo> info = io::find_topic(message.topic);
   if (!info) {

@@ -23,6 +23,7 @@ struct StackDocuments {
   std::map<std::string, std::string> environment;  ///< variables for a process that Patrol starts
   std::string static_transforms;                   ///< encoded message on /tf_static
   std::string known_map;                           ///< encoded message on /site_map; empty: the robot builds a map
+  std::vector<io::McapChannel> recorded = {};      ///< topics of a recorded log beside those that Patrol knows
 };
 
 /// Connection to a stack in another process.

@@ -14,6 +14,7 @@
 #include "app/run/make_stack_port.h"
 #include "app/run/run_junit.h"
 #include "app/run/snapshot.h"
+#include "app/scenario/data_folders.h"
 #include "app/scoring/score_json.h"
 #include "app/scoring/score_run.h"
 #include "core/error.h"

@@ -130,7 +130,7 @@ void McapReader::add_schema(mcap::RecordReader content) {
   const auto id = content.number<std::uint16_t>();
   Schema& schema = schemas_[id];
   schema.type = content.text();
-  content.text();  // encoding
+  schema.encoding = content.text();
   schema.definition = content.text();
 }
 
@@ -138,7 +138,11 @@ void McapReader::add_channel(mcap::RecordReader content) {
   const auto id = content.number<std::uint16_t>();
   const auto schema = schemas_.find(content.number<std::uint16_t>());
   if (schema == schemas_.end()) throw mcap::FormatError("channel with an unknown schema");
-  channels_[id] = {.topic = content.text(), .type = schema->second.type, .definition = schema->second.definition};
+  channels_[id] = {.topic = content.text(),
+                   .type = schema->second.type,
+                   .definition = schema->second.definition,
+                   .schema_encoding = schema->second.encoding,
+                   .message_encoding = content.text()};
 }
 
 bool McapReader::is_wanted(const std::string& topic) const {

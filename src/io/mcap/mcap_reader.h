@@ -19,8 +19,9 @@ namespace patrol::io {
 /// Channel of an MCAP file: topic and message type.
 struct McapChannel {
   std::string topic;
-  std::string type;        ///< "sensor_msgs/msg/LaserScan"
-  std::string definition;  ///< message definition, including all types that it uses
+  std::string type;                                         ///< "sensor_msgs/msg/LaserScan"
+  std::string definition;                                   ///< message definition, including all types that it uses
+  std::string schema_encoding = {}, message_encoding = {};  ///< "ros2msg" and "cdr" for ROS 2
 };
 
 /// Serialized message of an MCAP file. Valid until the next call of the reader.
@@ -84,9 +85,9 @@ class McapReader {
   std::optional<Time> last_time_;
 
   struct Schema {
-    std::string type, definition;
+    std::string type, definition, encoding;
   };
-  std::map<std::uint16_t, Schema> schemas_;
+  std::map<std::uint16_t, Schema> schemas_ = {{std::uint16_t{0}, {}}};  ///< by id; 0: none
   std::map<std::uint16_t, McapChannel> channels_;
   std::set<std::uint64_t> unwanted_chunks_;  ///< by offset in the file
   std::string record_, chunk_;

@@ -6,12 +6,14 @@ usage: feed_log_test.py PATROL SOURCE
 import json
 import math
 import pathlib
+import struct
 import subprocess
 import sys
 import tempfile
 import unittest
 
 from mcap.reader import make_reader
+from mcap.writer import Writer
 
 from block_log import START_S, carmen_lines, drive
 
@@ -68,6 +70,59 @@ def on_turn(turn):
 
 patrol_client.run(on_turn, turn_period=0.0)
 """
+
+# Publishes the recorded poses, and the number of samples of a sensor that Patrol does not know.
+AS_RECORDED = """
+import patrol_client
+
+COUNT = ("user_msgs/msg/Count", "uint32 count\\n")
+num_samples = 0
+
+def on_start(client):
+    assert client.hello.robot == "" and client.hello.scenario == "robot.mcap", client.hello
+    client.declare("/count", *COUNT)
+
+def on_turn(turn):
+    global num_samples
+    for message in turn.messages:
+        if message.topic == "/recorded/radar":
+            assert list(message.content.strength) == [1.5, 2.5], message.content.strength
+            num_samples += 1
+        if message.topic == "/recorded/pose":
+            pose = turn.new("/pose")
+            pose.header.stamp = message.content.header.stamp
+            pose.pose.pose = message.content.pose
+            turn.publish("/pose", pose)
+    if turn.is_last:
+        turn.publish("/count", turn.client.type_of("/count")(count=num_samples))
+
+patrol_client.run(on_turn, turn_period=0.5, on_start=on_start)
+"""
+
+_HEADER = ("=" * 80 + "\nMSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n" + "=" * 80 +
+           "\nMSG: builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n")
+POSE = ("std_msgs/Header header\ngeometry_msgs/Pose pose\n" + "=" * 80 + "\nMSG: geometry_msgs/Pose\nPoint position\n"
+        "Quaternion orientation\n" + "=" * 80 + "\nMSG: geometry_msgs/Point\nfloat64 x\nfloat64 y\nfloat64 z\n" + "=" * 80 +
+        "\nMSG: geometry_msgs/Quaternion\nfloat64 x\nfloat64 y\nfloat64 z\nfloat64 w\n" + _HEADER)
+
+
+def write_recording(path, poses):
+    """MCAP log of another program: poses, a sensor of its own at 20 Hz, and text in JSON without a schema."""
+    with open(path, "wb") as file:
+        writer = Writer(file)
+        writer.start(profile="ros2")
+        pose = writer.register_channel("/pose", "cdr", writer.register_schema("geometry_msgs/msg/PoseStamped", "ros2msg", POSE.encode()))
+        radar = writer.register_channel("/radar", "cdr", writer.register_schema("user_msgs/msg/Radar", "ros2msg", b"float64[] strength\n"))
+        notes = writer.register_channel("notes", "json", 0)
+        for k, (x, y, yaw) in enumerate(poses):
+            now = round((START_S + 0.2 * k) * 1e9)
+            head = struct.pack("<4sii", bytes([0, 1, 0, 0]), *divmod(now, 10**9)) + struct.pack("<I4s", 4, b"map\0")
+            data = head + struct.pack("<7d", x, y, 0, 0, 0, math.sin(yaw / 2), math.cos(yaw / 2))
+            writer.add_message(pose, now, data, now)
+            for i in range(4):
+                writer.add_message(radar, now + i * 50_000_000, struct.pack("<4sI4x2d", bytes([0, 1, 0, 0]), 2, 1.5, 2.5), now)
+            writer.add_message(notes, now, b"{}", now)
+        writer.finish()
 
 
 class FeedLog(unittest.TestCase):
@@ -211,6 +266,36 @@ class FeedLog(unittest.TestCase):
         done = self.patrol("feed", first / "log.mcap", "--out", first, code=2)
         self.assertIn("must not be the directory of", done.stderr)
         self.assertTrue((first / "log.mcap").exists())
+
+    def test_as_recorded_every_message_is_delivered_unchanged(self):
+        recording = self.folder / "robot.mcap"
+        write_recording(recording, self.poses)
+        fed, out, done = self.feed("as_recorded", "--as-recorded", "--stack", self.stack("as_recorded.py", AS_RECORDED), "--reference", self.reference(), log=recording)
+        self.assertEqual((fed["estimate"]["topic"], fed["estimate"]["poses"]), ("/pose", len(self.poses)))
+        self.assertLess(fed["estimate"]["reference"]["pose"]["ate_rmse_m"], 1e-6)
+        self.assertEqual(fed["log"]["messages"], 5 * len(self.poses))
+        self.assertIn(f"left out: notes: {len(self.poses)} messages", done.stdout)
+        written = self.messages(out)
+        with open(recording, "rb") as file:
+            recorded = [("/recorded" + channel.topic, message.log_time, message.data)
+                        for _, channel, message in make_reader(file).iter_messages(log_time_order=False) if channel.topic != "notes"]
+        self.assertEqual([one for one in written if one[0].startswith("/recorded/")], recorded)
+        self.assertEqual([data for topic, _, data in written if topic == "/count"], [struct.pack("<4sI", bytes([0, 1, 0, 0]), 4 * len(self.poses))])
+        turns = sum(topic == "/stack/turns" for topic, _, _ in written)
+        self.assertAlmostEqual(turns, 0.2 * len(self.poses) / 0.5, delta=3)
+
+    def test_as_recorded_refuses_what_it_cannot_feed(self):
+        out, recording = self.folder / "refused", self.folder / "refused.mcap"
+        write_recording(recording, self.poses[:5])
+        stack = ("--as-recorded", "--stack", f"{PATROL} stack")
+        for arguments, text in [((recording, "--as-recorded"), "--as-recorded: needs --stack"),
+                                ((self.log, *stack), "block.log"),
+                                ((recording, *stack, "--set", "slam.method=rbpf"), "slam"),
+                                ((self.folder, *stack), "--as-recorded: only for a recorded log")]:
+            done = self.patrol("feed", *arguments, "--out", out, code=2)
+            self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
+            self.assertIn(text, done.stderr)
+            self.assertFalse(out.exists())
 
     def test_a_damaged_log_leaves_nothing(self):
         damaged = self.folder / "damaged.log"

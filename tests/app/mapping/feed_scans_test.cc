@@ -93,7 +93,7 @@ RecordedScan scan_at(Time stamp, double x_m = 0.0) {
 
 class FeedScans : public ::testing::Test {
  protected:
-  FedScans feed(std::vector<RecordedScan> scans, Time period = Time{1}, int fails_at_turn = 0) {
+  FedAnswers feed(std::vector<RecordedScan> scans, Time period = Time{1}, int fails_at_turn = 0) {
     GivenLog log(std::move(scans));
     const InterruptGuard guard;
     return feed_scans(
@@ -108,7 +108,7 @@ class FeedScans : public ::testing::Test {
 };
 
 TEST_F(FeedScans, TurnsAreAtTheEndsOfScansAndTheLastScanComesWithTheLastTurn) {
-  const FedScans fed = feed({scan_at(ms(1000)), scan_at(ms(1100)), scan_at(ms(1200))});
+  const FedAnswers fed = feed({scan_at(ms(1000)), scan_at(ms(1100)), scan_at(ms(1200))});
   EXPECT_THAT(given_.turns, ElementsAre(ms(1000), ms(1100), ms(1200)));
   EXPECT_THAT(given_.topics[0], ElementsAre("/recorded_odometry", "/scan"));
   EXPECT_THAT(given_.topics[2], ElementsAre("/recorded_odometry", "/scan"));
@@ -155,7 +155,7 @@ TEST_F(FeedScans, ALidarThatMovesBy6MmOnTheBodyIsRefused) {
 }
 
 TEST_F(FeedScans, TheLogOfAFailedStackHasTheMessagesUpToTheFailure) {
-  const FedScans fed = feed({scan_at(ms(1000)), scan_at(ms(1100)), scan_at(ms(1200))}, Time{1}, 2);
+  const FedAnswers fed = feed({scan_at(ms(1000)), scan_at(ms(1100)), scan_at(ms(1200))}, Time{1}, 2);
   EXPECT_EQ(fed.outcome.end, RunEnd::kStackFailed);
   EXPECT_EQ(fed.outcome.stack_failure, "the stack ended");
   EXPECT_EQ(fed.poses.size(), 1U);

@@ -1,0 +1,65 @@
+#include "app/mapping/log_feeder.h"
+
+#include <algorithm>
+#include <utility>
+#include <variant>
+
+#include "core/overloaded.h"
+
+namespace patrol::app {
+
+void LogFeeder::advance(Time now) {
+  if (now <= turn_.now) return;
+  if (!turn_.messages.empty() && turn_.now >= next_turn_) take_turn();
+  turn_.now = now;
+}
+
+void LogFeeder::deliver(const io::McapChannel& channel, std::string_view cdr) {
+  log_.write_foreign(turn_.now, channel.topic, channel.type, channel.definition, cdr);
+  turn_.messages.push_back({.topic = channel.topic, .log_time = turn_.now, .cdr = std::string(cdr)});
+}
+
+void LogFeeder::take_turn() {
+  const StackAnswer answer = stack_->take_turn(turn_);
+  turn_.messages.clear();
+  next_turn_ = answer.next_turn;
+  record_turn({.turn = turn_.now,
+               .delay = answer.delay,
+               .next_turn = answer.next_turn,
+               .is_last = false,
+               .mission_is_over = answer.mission_is_over});
+  publish(answer.messages);
+}
+
+void LogFeeder::record_turn(const StackTurnRecord& record) {
+  if (stack_->records_turns()) log_.write(record.turn, record);
+}
+
+void LogFeeder::publish(const std::vector<PublishedMessage>& messages) {
+  for (const PublishedMessage& message : messages) {
+    write_published(log_, turn_.now, message);
+    if (!message.content) continue;
+    std::visit(Overloaded{[](const auto&) {},
+                          [&](const PoseEstimate& estimate) {
+                            fed_.poses.push_back({estimate.stamp, to_pose3(estimate.T_map_body)});
+                          },
+                          [&](const TrajectoryEstimate& estimate) { fed_.trajectory = estimate.T_map_body; },
+                          [&](const MapUpdate& update) { fed_.map = update.map; }},
+               *message.content);
+  }
+}
+
+void LogFeeder::finish() {
+  const std::vector<PublishedMessage> messages = stack_->finish(turn_);
+  record_turn({.turn = turn_.now, .delay = {}, .next_turn = turn_.now, .is_last = true, .mission_is_over = true});
+  publish(messages);
+}
+
+FedAnswers LogFeeder::answers(RunOutcome outcome) {
+  log_.close();
+  fed_.outcome = std::move(outcome);
+  fed_.outcome.seconds_by_stage = stack_->seconds_by_stage();
+  return std::move(fed_);
+}
+
+}  // namespace patrol::app
