@@ -4,6 +4,7 @@
 usage: import_robot_test.py PATROL SOURCE_DIR [TEST]...
 """
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -56,6 +57,17 @@ class ImportRobot(unittest.TestCase):
         self.assertEqual(run.returncode, 4, "the time limit: " + run.stderr)
         self.assertIn("Distance", run.stdout)
         self.assertTrue((self.folder / "run/metrics.json").exists())
+
+    def test_joints_that_are_too_slow_to_walk_are_reported(self):
+        urdf = (SOURCE / "models/quadruped/quadruped.urdf").read_text()
+        for name, limit, is_slow in [("fast", "21", False), ("slow", "1.5", True)]:
+            source = self.folder / f"{name}.urdf"
+            source.write_text(re.sub(r'velocity="[0-9.]+"', f'velocity="{limit}"', urdf))
+            result = self.patrol("import", "robot", source, "--out", f"models/{name}")
+            self.assertEqual(result.returncode, 0, result.stderr)
+            page = (self.folder / "models" / name / "README.md").read_text()
+            self.assertEqual("of clearance below the feet needs" in page, is_slow, page)
+            self.assertEqual("speed limits of the legs' joints" in result.stdout, is_slow)
 
     def test_a_robot_without_a_lidar_is_imported_and_checked_as_the_same_robot_with_one(self):
         self.assertEqual(self.patrol("import", "robot", self.urdf, "--out", "models/four").returncode, 0)

@@ -8,12 +8,15 @@
 
 #include "app/commands/commands.h"
 #include "app/common/progress_bar.h"
+#include "app/common/temporary_folder.h"
 #include "app/mapping/log_site.h"
 #include "app/scenario/data_folders.h"
 #include "core/error.h"
 #include "importer/robot_import.h"
 #include "importer/site/site_import.h"
 #include "io/urdf.h"
+#include "sim/locomotion/locomotion_settings.h"
+#include "sim/locomotion/swing_speed.h"
 
 namespace patrol::app {
 namespace {
@@ -45,6 +48,23 @@ void print(const std::vector<importer::Assumption>& assumptions, const std::file
   fmt::print("{}{} assumptions; {}\n", assumptions.empty() ? "" : "\n", assumptions.size(), out.string());
 }
 
+/// Adds an assumption for legs whose joints are too slow for the swing of the slowest walk.
+void check_joint_speeds(importer::ImportedRobot& robot) {
+  const TemporaryFolder folder("import");
+  importer::write_robot(robot, folder.path());
+  const RobotDescription description = io::load_robot_description((folder.path() / (robot.name + ".urdf")).string());
+  if (description.legs.empty()) return;
+  const sim::LocomotionSettings walk = sim::scaled_locomotion(description);
+  const double ratio = sim::peak_swing_speed_ratio(description, walk, walk.max_forward_mps);
+  if (ratio <= 1.0) return;
+  robot.assumptions.push_back(
+      {.subject = "speed limits of the legs' joints",
+       .text = fmt::format(
+           "too low: a walk at {:.2f} m/s with {:.1f} cm of clearance below the feet needs {:.1f} times the limits",
+           walk.max_forward_mps, 100.0 * walk.swing_clearance_m, ratio),
+       .override_with = "<limit velocity> of the joints"});
+}
+
 /// Returns the clearance in which a robot can turn in place with a margin.
 double turning_clearance_m(const std::string& robot) {
   constexpr double kMargin_m = 0.1;
@@ -62,7 +82,7 @@ importer::ImportedSite import_with_progress(importer::SiteImportOptions options)
 }  // namespace
 
 ExitCode import_robot_command(const ImportRobotOptions& options) {
-  const importer::ImportedRobot robot =
+  importer::ImportedRobot robot =
       importer::import_robot({.file = options.file,
                               .name = folder_name(options.out),
                               .packages = to_map<std::filesystem::path>(options.packages, "--package"),
@@ -71,6 +91,7 @@ ExitCode import_robot_command(const ImportRobotOptions& options) {
                               .forward = options.forward,
                               .frames = to_map<std::string>(options.frames, "--frame"),
                               .drive = options.drive});
+  check_joint_speeds(robot);
   importer::write_robot(robot, options.out);
   print(robot.assumptions, options.out);
   return ExitCode::kDone;

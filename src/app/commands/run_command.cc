@@ -22,11 +22,9 @@
 namespace patrol::app {
 namespace {
 
-/// Returns whether a run with goals names a world instead of a scenario.
-bool names_world(const RunOptions& options) {
-  const std::string name = options.scenario.string();
-  return !options.goals.empty() && options.scenario.extension() != ".yaml" && options.scenario.extension() != ".yml" &&
-         std::filesystem::exists(world_folder(name, find_data_root({})) / (name + ".xml"));
+/// Returns the world that a run with goals names instead of a scenario.
+std::optional<std::string> named_world(const RunOptions& options) {
+  return options.goals.empty() ? std::nullopt : world_of(options.scenario);
 }
 
 /// Returns the name in the comment at the head of a scenario of a run directory.
@@ -42,7 +40,7 @@ std::string name_in(const std::filesystem::path& file) {
 /// Name of the run's scenario.
 std::string name_of(const RunOptions& options) {
   if (!options.from.empty()) return name_in(RunDirectory{parse_branch(options.from).run}.scenario());
-  return names_world(options) ? "goals" : options.scenario.stem().string();
+  return named_world(options) ? "goals" : options.scenario.stem().string();
 }
 
 std::filesystem::path default_directory(const RunOptions& options, const Scenario& scenario) {
@@ -93,9 +91,9 @@ Scenario scenario_of(const RunOptions& options) {
   if (options.seed) overrides.push_back(fmt::format("seed={}", *options.seed));
   if (options.robot) overrides.push_back(fmt::format("robot={}", *options.robot));
   std::filesystem::path file = options.scenario;
-  if (names_world(options)) {
+  if (const std::optional<std::string> world = named_world(options)) {
     file.clear();
-    overrides.push_back(fmt::format("world={}", options.scenario.string()));
+    overrides.push_back(fmt::format("world={}", *world));
   }
   if (!options.goals.empty()) {
     const std::filesystem::path data_root = find_data_root(file);
@@ -155,7 +153,7 @@ std::optional<RunVerdict> run_reported(const RunOptions& options, const Scenario
                                        const std::filesystem::path& root, Reporter* reporter, RunObserver& screen) {
   RunMode mode{.snapshot_period_s = options.snapshot_period_s,
                .num_threads = options.threads.value_or(std::thread::hardware_concurrency() > 1 ? 2 : 1)};
-  std::filesystem::path file = names_world(options) ? "" : options.scenario;
+  std::filesystem::path file = named_world(options) ? "" : options.scenario;
   if (!options.from.empty()) {
     mode.branch = parse_branch(options.from);
     file = RunDirectory{mode.branch->run}.scenario();

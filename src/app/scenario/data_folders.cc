@@ -122,6 +122,36 @@ std::filesystem::path find_world(const std::string& name, const std::filesystem:
   return std::filesystem::exists(xml) ? xml : find_definition(data_root, "worlds", "world", name, ".xml");
 }
 
+std::optional<std::string> world_of(const std::filesystem::path& name) {
+  if (name.has_extension()) return std::nullopt;
+  const std::filesystem::path folder = name.has_filename() ? name : name.parent_path();  // worlds/street/
+  const std::string world = folder.filename().string();
+  if (folder.has_parent_path()) {
+    if (!std::filesystem::exists(folder / (world + ".xml"))) return std::nullopt;
+    const std::filesystem::path found = world_folder(world, find_data_root({}));
+    std::error_code ignored;
+    return std::filesystem::equivalent(folder, found, ignored) ? std::optional(world) : std::nullopt;
+  }
+  const bool is_world = std::filesystem::exists(world_folder(world, find_data_root({})) / (world + ".xml"));
+  return is_world ? std::optional(world) : std::nullopt;
+}
+
+void refuse_world(const std::filesystem::path& name) {
+  if (name.empty() || std::filesystem::is_regular_file(name)) return;
+  const std::optional<std::string> world = world_of(name);
+  if (!world) return;
+  std::vector<std::string> scenarios;
+  std::error_code none;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(world_folder(*world, find_data_root({})) / "scenarios", none)) {
+    if (entry.path().extension() == ".yaml") scenarios.push_back(*world + "/" + entry.path().stem().string());
+  }
+  std::ranges::sort(scenarios);
+  throw InputError(
+      fmt::format("{}: is a world: must be a scenario ({}) or, for patrol run, a world with --start and --goal",
+                  name.string(), scenarios.empty() ? "the world has none" : join(scenarios, ", ")));
+}
+
 std::filesystem::path find_scenario(const std::filesystem::path& name) {
   if (std::filesystem::exists(name) || name.has_extension() || name.is_absolute() || !name.has_parent_path())
     return name;

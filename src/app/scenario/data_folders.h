@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,12 @@ std::filesystem::path find_robot(const std::string& name, const std::filesystem:
 
 /// Returns the MJCF file of a world. Throws InputError with the known worlds if there is none.
 std::filesystem::path find_world(const std::string& name, const std::filesystem::path& data_root);
+
+/// Returns the world that a name (street) or a folder (worlds/street) refers to; nullopt if it is neither.
+std::optional<std::string> world_of(const std::filesystem::path& name);
+
+/// Throws InputError with the scenarios of the world if `name` refers to a world instead of a scenario.
+void refuse_world(const std::filesystem::path& name);
 
 /// Returns the file of a scenario: `name` itself if it exists, else the scenario WORLD/NAME of the data root or the
 /// working directory (for example street/patrol). Returns `name` if there is neither.

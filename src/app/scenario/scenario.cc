@@ -202,6 +202,7 @@ Scenario default_scenario(const std::string& robot, const std::filesystem::path&
 }
 
 Scenario load_scenario(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  refuse_world(file);
   const std::filesystem::path data_root = find_data_root(file);
   Scenario named;
   io::SettingsReader::read_section(file.string(), load_with_presets(file, overrides), "", named);

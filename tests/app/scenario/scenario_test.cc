@@ -48,6 +48,17 @@ TEST(Scenario, EveryOneOfEveryWorldIsReadFindsItsFilesAndExpectsSomething) {
   EXPECT_GE(num_scenarios, 10);
 }
 
+TEST(Scenario, AWorldInsteadOfAScenarioIsRefusedWithItsScenarios) {
+  for (const char* name : {"street", "worlds/street", "worlds/street/"}) {
+    EXPECT_THAT([&] { load_scenario(name); },
+                ThrowsMessage<InputError>(AllOf(HasSubstr(std::string(name) + ": is a world"),
+                                                HasSubstr("street/short"), HasSubstr("--goal"))));
+    EXPECT_EQ(world_of(name), "street");
+  }
+  for (const char* name : {"worlds", "models/quadruped", "street/short", "streets", "street.yaml", ""})
+    EXPECT_EQ(world_of(name), std::nullopt) << name;
+}
+
 TEST(Scenario, FindsTheQuadrupedByItsName) {
   Scenario scenario;
   scenario.world = "street";
