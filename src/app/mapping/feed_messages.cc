@@ -33,7 +33,7 @@ RecordedMessages find_recorded_messages(const std::filesystem::path& mcap) {
       ++recorded.left_out[message.channel.topic];
       return;
     }
-    ++recorded.num_messages;
+    if (recorded.num_messages++ == 0) recorded.start = message.log_time;
     const auto [known, is_new] = channels.try_emplace(name_for_stack(message.channel.topic), message.channel);
     if (!is_new && known->second.definition != message.channel.definition)
       throw InputError(fmt::format("{}: {} has messages of two types", mcap.string(), message.channel.topic));
@@ -60,8 +60,7 @@ FedAnswers feed_messages(const std::filesystem::path& mcap, const RecordedMessag
   for (const io::McapChannel& channel : recorded.channels) channels[channel.topic] = &channel;
   ProgressBar bar;
   RunOutcome outcome;
-  std::optional<Time> first;
-  LogFeeder feeder(std::move(stack), log_mcap, {});
+  LogFeeder feeder(std::move(stack), log_mcap, {}, recorded.start);
   io::McapReader reader(mcap);
   try {
     while (const std::optional<io::McapMessage> message = reader.next()) {
@@ -69,8 +68,7 @@ FedAnswers feed_messages(const std::filesystem::path& mcap, const RecordedMessag
       if (!is_ros2(message->channel)) continue;
       feeder.advance(message->log_time);
       feeder.deliver(*channels.at(name_for_stack(message->channel.topic)), message->cdr);
-      if (!first) first = message->log_time;
-      outcome.duration = std::max(outcome.duration, message->log_time - *first);
+      outcome.duration = std::max(outcome.duration, message->log_time - recorded.start);
       bar.show(fmt::format("{}  {:3.0f} %", mcap.filename().string(), 100.0 * reader.progress()), reader.progress());
     }
     if (!guard.is_interrupted()) feeder.finish();

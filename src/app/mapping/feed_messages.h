@@ -18,6 +18,7 @@ struct RecordedMessages {
   std::vector<io::McapChannel> channels;          ///< by topic in the file: their names for the stack
   std::uint64_t num_messages = 0;                 ///< on these channels
   std::map<std::string, std::uint64_t> left_out;  ///< number of messages by topic: not CDR with a ROS 2 definition
+  Time start{};                                   ///< log time of the first of them
   bool is_complete = true;                        ///< false: truncated
 };
 

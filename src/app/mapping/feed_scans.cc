@@ -1,6 +1,5 @@
 #include "app/mapping/feed_scans.h"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -19,11 +18,6 @@ namespace {
 constexpr double kMountTolerance_m = 0.005;
 const double kMountTolerance_rad = to_rad(0.5);
 
-Time end_of(const LaserScan& scan) {
-  const double last_beam = std::max(0.0, static_cast<double>(scan.ranges_m.size()) - 1.0);
-  return scan.stamp + from_seconds(std::max(0.0, last_beam * scan.time_increment_s));
-}
-
 void check_mount(const Pose2& T_body_lidar, const RecordedScan& recorded, const std::string& file) {
   const Pose2 difference = T_body_lidar.inverse() * recorded.T_body_lidar;
   if (difference.position().norm() <= kMountTolerance_m && std::abs(difference.yaw) <= kMountTolerance_rad) return;
@@ -35,9 +29,10 @@ void check_mount(const Pose2& T_body_lidar, const RecordedScan& recorded, const 
 
 /// Delivers a scan at its end, after the odometry of its first beam and, if the beams have times, of its last one.
 void deliver(LogFeeder& feeder, const RecordedScan& recorded) {
-  feeder.advance(end_of(recorded.scan));
+  const Time end = io::last_beam(recorded.scan);
+  feeder.advance(end);
   feeder.deliver(RecordedOdometry{.stamp = recorded.scan.stamp, .T_odom_body = recorded.T_odom_body});
-  if (const Time end = end_of(recorded.scan); end > recorded.scan.stamp)
+  if (end > recorded.scan.stamp)
     feeder.deliver(RecordedOdometry{.stamp = end, .T_odom_body = recorded.T_odom_body * recorded.T_begin_end});
   feeder.deliver(recorded.scan);
 }
@@ -66,7 +61,7 @@ FedAnswers feed_scans(io::ScanLog& log, const std::string& name, const MakeStack
         const io::TransformSet mounts = lidar_mount(recorded.T_body_lidar);
         std::unique_ptr<StackPort> stack = make_stack(mounts);
         begin();
-        feeder.emplace(std::move(stack), log_mcap, mounts);
+        feeder.emplace(std::move(stack), log_mcap, mounts, io::last_beam(recorded.scan));
         first_stamp = recorded.scan.stamp;
       }
       deliver(*feeder, recorded);

@@ -27,9 +27,10 @@ struct FedAnswers {
 /// has its turns at times of messages. Throws link::LinkError if the stack fails.
 class LogFeeder {
  public:
-  /// `mounts`: transforms of the sensors.
-  LogFeeder(std::unique_ptr<StackPort> stack, const std::filesystem::path& log_mcap, const io::TransformSet& mounts)
-      : stack_(std::move(stack)), log_(log_mcap, mounts) {}
+  /// `mounts`: transforms of the sensors. `start`: time of the first messages.
+  LogFeeder(std::unique_ptr<StackPort> stack, const std::filesystem::path& log_mcap, const io::TransformSet& mounts,
+            Time start)
+      : stack_(std::move(stack)), log_(log_mcap, mounts, {}, start) {}
 
   /// Begins the time of the next messages; a time before that of the last ones is theirs. The stack takes a turn with
   /// the earlier messages if it has asked for one by then.

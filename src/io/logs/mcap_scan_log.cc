@@ -43,13 +43,6 @@ void expect_scan(const LaserScan& scan) {
     throw DecodeError("scan times must be finite");
 }
 
-/// Returns the time of the last beam, or of the first if the scan has no plausible beam times.
-Time last_beam(const LaserScan& scan) {
-  constexpr double kMaxDuration_s = 1.0;
-  const double span_s = scan.time_increment_s * static_cast<double>(scan.ranges_m.size() - 1);
-  return span_s > 0.0 && span_s <= kMaxDuration_s ? scan.stamp + from_seconds(span_s) : scan.stamp;
-}
-
 /// Applies REP 117, which many drivers follow only in part.
 void tidy_ranges(LaserScan& scan, double no_return_m) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();

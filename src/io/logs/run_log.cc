@@ -28,9 +28,10 @@ TransformSet sensor_mounts(const RobotDescription& robot) {
 RunLogWriter::RunLogWriter(const std::filesystem::path& log_mcap, const RobotDescription& robot)
     : RunLogWriter(log_mcap, sensor_mounts(robot), {.joints = robot.joint_names}) {}
 
-RunLogWriter::RunLogWriter(const std::filesystem::path& log_mcap, const TransformSet& mounts, RosNames names)
+RunLogWriter::RunLogWriter(const std::filesystem::path& log_mcap, const TransformSet& mounts, RosNames names,
+                           Time start)
     : writer_(log_mcap), names_(std::move(names)) {
-  writer_.write(channel<TransformSet>(kStaticTransforms.topic), Time{}, encode(mounts, names_));
+  writer_.write(channel<TransformSet>(kStaticTransforms.topic), start, encode(mounts, names_));
 }
 
 void RunLogWriter::write_foreign(Time log_time, const std::string& topic, const std::string& type,

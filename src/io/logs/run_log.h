@@ -25,8 +25,8 @@ TransformSet sensor_mounts(const RobotDescription& robot);
 class RunLogWriter {
  public:
   RunLogWriter(const std::filesystem::path& log_mcap, const RobotDescription& robot);
-  /// Log of a robot of which only the poses of the sensors are known.
-  RunLogWriter(const std::filesystem::path& log_mcap, const TransformSet& mounts, RosNames names = {});
+  /// Log of a robot of which only the poses of the sensors are known. `start`: log time of the transforms.
+  RunLogWriter(const std::filesystem::path& log_mcap, const TransformSet& mounts, RosNames names = {}, Time start = {});
 
   /// Writes a message and returns its encoding.
   template <typename Message>

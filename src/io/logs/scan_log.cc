@@ -114,6 +114,13 @@ void ScanLog::count_returned(const RecordedScan& scan) {
   last_stamp_ = scan.scan.stamp;
 }
 
+Time last_beam(const LaserScan& scan) {
+  constexpr double kMaxDuration_s = 1.0;
+  if (scan.ranges_m.empty()) return scan.stamp;
+  const double span_s = scan.time_increment_s * static_cast<double>(scan.ranges_m.size() - 1);
+  return span_s > 0.0 && span_s <= kMaxDuration_s ? scan.stamp + from_seconds(span_s) : scan.stamp;
+}
+
 std::string counted(const ScanLogSummary& summary) {
   std::string text = fmt::format("{} read", summary.num_read);
   for (const auto* const by_name : {&summary.ignored, &summary.skipped}) {

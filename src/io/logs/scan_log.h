@@ -62,6 +62,9 @@ struct ScanLogSummary {
   std::vector<std::string> warnings;             ///< first errors of skipped records, each with its position
 };
 
+/// Returns the time of the last beam, or of the first if the scan has no plausible beam times.
+Time last_beam(const LaserScan& scan);
+
 /// Formats the statistics of a file without scans: "12 lines, 3 SYNC, 4 unreadable lines".
 std::string counted(const ScanLogSummary& summary);
 

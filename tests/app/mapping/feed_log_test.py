@@ -274,6 +274,7 @@ class FeedLog(unittest.TestCase):
         self.assertEqual((fed["estimate"]["topic"], fed["estimate"]["poses"]), ("/pose", len(self.poses)))
         self.assertLess(fed["estimate"]["reference"]["pose"]["ate_rmse_m"], 1e-6)
         self.assertEqual(fed["log"]["messages"], 5 * len(self.poses))
+        self.assertEqual(min(log_time for _, log_time, _ in self.messages(out)), round(START_S * 1e9))
         self.assertIn(f"left out: notes: {len(self.poses)} messages", done.stdout)
         written = self.messages(out)
         with open(recording, "rb") as file:
