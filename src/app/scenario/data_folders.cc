@@ -123,7 +123,7 @@ std::filesystem::path find_world(const std::string& name, const std::filesystem:
 }
 
 std::optional<std::string> world_of(const std::filesystem::path& name) {
-  if (name.has_extension()) return std::nullopt;
+  if (name.extension() == ".yaml" || name.extension() == ".yml") return std::nullopt;
   const std::filesystem::path folder = name.has_filename() ? name : name.parent_path();  // worlds/street/
   const std::string world = folder.filename().string();
   if (folder.has_parent_path()) {
