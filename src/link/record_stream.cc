@@ -62,8 +62,21 @@ void RecordStream::write(const std::string& topic, Time log_time, std::string_vi
 }
 
 void RecordStream::flush() {
-  socket_.send(unsent_.view(), wait_);
+  try {
+    socket_.send(unsent_.view(), wait_);
+  } catch (const LinkError& error) {
+    if (error.fault() == LinkFault::kClosed) throw_last_failure();
+    throw;
+  }
   unsent_.clear();
+}
+
+void RecordStream::throw_last_failure() {
+  try {
+    while (true) read();
+  } catch (const LinkError& error) {
+    if (error.fault() == LinkFault::kInvalid) throw;
+  }
 }
 
 io::McapMessage RecordStream::read() {

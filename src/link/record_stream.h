@@ -34,6 +34,7 @@ class RecordStream {
   }
   /// Declares a topic with a type that the program knows (io/ros/ros_definitions.h).
   void declare_known(const std::string& topic, const std::string& type);
+  /// Sends the messages. Throws the failure of the other side if it sent one and closed the connection.
   void flush();
   /// Begins the time that the other side has for its next answer, of any number of messages.
   void restart_wait() { wait_.start = std::chrono::steady_clock::now(); }
@@ -45,6 +46,9 @@ class RecordStream {
   int peer_process() const { return socket_.peer_process(); }
 
  private:
+  /// Reads what the other side sent before it closed the connection. Throws its failure if it sent one.
+  void throw_last_failure();
+
   Socket socket_;
   WaitLimit wait_;
   RecordParser parser_;

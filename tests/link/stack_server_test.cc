@@ -259,6 +259,21 @@ TEST(StackServer, TheTextOfAFailureReachesTheOtherSide) {
   EXPECT_EQ(error, "division by zero\\nin line 3");  // one line
 }
 
+// The simulator notices by its next messages that the stack has gone; the reason is already there to be read.
+TEST(StackServer, TheTextOfAStackThatHasAlreadyClosedIsRead) {
+  auto [server_end, client_end] = connected_pair();
+  StackServer server(std::move(server_end), {.timeout = 5s});
+  std::thread other([end = std::move(client_end)]() mutable {
+    StackClient client(std::move(end));
+    client.begin("unlucky", {}, 50ms);
+    client.publish(Time{}, VelocityCommand{});
+    client.fail("division by zero");
+  });
+  server.greet(kHello);
+  other.join();
+  EXPECT_THAT([&] { server.turn({}, false); }, testing::ThrowsMessage<LinkError>("division by zero"));
+}
+
 TEST(StackServer, AnInterruptEndsTheWait) {
   auto [server_end, client_end] = connected_pair();
   StackServer server(std::move(server_end), {.timeout = 1h, .is_interrupted = [] { return true; }});
