@@ -5,6 +5,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "core/time.h"
 #include "io/mcap/mcap_format.h"
