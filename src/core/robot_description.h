@@ -97,6 +97,9 @@ struct AntennaGeometry {
 struct RobotDescription {
   std::string name;
   double mass_kg = 0.0;
+  /// Longitudinal position of the center of mass in body with all joints at zero; robots with wheels only. None: in the
+  /// middle of the wheels.
+  std::optional<double> center_of_mass_x_m;
   std::vector<LegGeometry> legs;  ///< FL, FR, RL, RR; empty for a robot without legs
   /// Center of mass in body and moments of inertia about it, in the standing posture; robots with legs only.
   Eigen::Vector3d standing_center_m = Eigen::Vector3d::Zero();

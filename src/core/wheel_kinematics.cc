@@ -52,17 +52,40 @@ double within_steering_limits(const RobotDescription& robot, double forward_mps,
   return std::copysign(allowed, yaw_rate_radps);
 }
 
-/// Returns the longitudinal positions of the contacts of one side relative to the turn center, with equal loads.
-std::vector<double> contacts_x_m(const RobotDescription& robot, const DifferentialGeometry& geometry) {
-  std::vector<double> x_m;
+/// Contact with the ground.
+struct Contact {
+  double x_m = 0.0;   ///< longitudinal position relative to the middle of the wheels or tracks
+  double load = 1.0;  ///< relative to the mean
+};
+
+/// Returns the contacts of a robot without rollers. Loads are those of equal springs under the center of mass.
+std::vector<Contact> contacts_of(const RobotDescription& robot, const DifferentialGeometry& geometry) {
+  std::vector<Contact> contacts;
   if (robot.tracks) {
     constexpr int kNumContacts = 20;
-    for (int i = 0; i < kNumContacts; ++i) x_m.push_back(((i + 0.5) / kNumContacts - 0.5) * geometry.contact_length_m);
-    return x_m;
+    for (int i = 0; i < kNumContacts; ++i)
+      contacts.push_back({.x_m = ((i + 0.5) / kNumContacts - 0.5) * geometry.contact_length_m});
+    return contacts;
   }
   for (const WheelGeometry& wheel : fixed_wheels(robot))
-    x_m.push_back(wheel.center_in_body.x() - geometry.turn_center_x_m);
-  return x_m;
+    contacts.push_back({.x_m = wheel.center_in_body.x() - geometry.turn_center_x_m});
+  if (!robot.center_of_mass_x_m) return contacts;
+  double variance_m2 = 0.0;
+  for (const Contact& contact : contacts)
+    variance_m2 += contact.x_m * contact.x_m / static_cast<double>(contacts.size());
+  const double offset_m = *robot.center_of_mass_x_m - geometry.turn_center_x_m;
+  for (Contact& contact : contacts) contact.load = std::max(0.0, 1.0 + contact.x_m * offset_m / variance_m2);
+  return contacts;
+}
+
+/// Returns the root of a function that increases, between two arguments.
+template <typename Function>
+double root_between(double low, double high, const Function& function) {
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    (function(middle) > 0.0 ? high : low) = middle;
+  }
+  return 0.5 * (low + high);
 }
 
 /// Returns the speed of the rim of a mecanum wheel per velocity of the body origin: forward, left, yaw. The rim and the
@@ -179,23 +202,45 @@ DifferentialGeometry differential_geometry(const RobotDescription& robot) {
           .turn_center_x_m = has_rollers(robot) ? 0.0 : x / count};
 }
 
-// With the sides at -+u and the robot at yaw rate w, contact i of the right side slides over the ground at
-// (w B/2 - u, w x_i). Friction along the opposite direction gives no moment if, with k = (u - w B/2) / w,
-//   sum_i (B/2 k - x_i^2) / sqrt(k^2 + x_i^2) = 0.
-double skid_ratio(const RobotDescription& robot) {
-  if (has_rollers(robot)) return mecanum_gauge_ratio(robot);
+// With the sides at -+u and the robot at yaw rate w about x = c, contact i of the right side slides over the ground at
+// (w B/2 - u, w (x_i - c)). With k = (u - w B/2) / w and the loads N_i, friction along the opposite direction gives
+// neither a lateral force nor a moment if
+//   sum_i N_i (x_i - c) / sqrt(k^2 + (x_i - c)^2) = 0  and
+//   sum_i N_i (B/2 k - x_i (x_i - c)) / sqrt(k^2 + (x_i - c)^2) = 0.
+SkidTurn skid_turn(const RobotDescription& robot) {
   const DifferentialGeometry geometry = differential_geometry(robot);
-  if (geometry.contact_length_m < 1e-6) return 1.0;
-  const double half_gauge_m = 0.5 * geometry.gauge_m;
-  const std::vector<double> x_m = contacts_x_m(robot, geometry);
-  double low = 1e-9, high = 0.5 * geometry.contact_length_m * geometry.contact_length_m / geometry.gauge_m + low;
-  for (int i = 0; i < 60; ++i) {
-    const double k = 0.5 * (low + high);
-    double moment = 0.0;
-    for (const double x : x_m) moment += (half_gauge_m * k - x * x) / std::hypot(k, x);
-    (moment > 0.0 ? high : low) = k;
+  SkidTurn turn{.turn_center_x_m = geometry.turn_center_x_m};
+  if (has_rollers(robot)) {
+    turn.gauge_ratio = mecanum_gauge_ratio(robot);
+    return turn;
   }
-  return (half_gauge_m + 0.5 * (low + high)) / half_gauge_m;
+  if (geometry.contact_length_m < 1e-6) return turn;
+  const double half_gauge_m = 0.5 * geometry.gauge_m, half_length_m = 0.5 * geometry.contact_length_m;
+  const std::vector<Contact> contacts = contacts_of(robot, geometry);
+  const bool is_symmetric = robot.tracks || !robot.center_of_mass_x_m;
+  const auto center_at = [&](double k) {
+    if (is_symmetric) return 0.0;
+    return root_between(-half_length_m, half_length_m, [&](double center) {
+      double force = 0.0;
+      for (const Contact& contact : contacts)
+        force += contact.load * (center - contact.x_m) / std::hypot(k, center - contact.x_m);
+      return force;
+    });
+  };
+  const double max_k = 0.5 * geometry.contact_length_m * geometry.contact_length_m / geometry.gauge_m + 1e-9;
+  const auto moment_at = [&](double k) {
+    const double center = center_at(k);
+    double moment = 0.0;
+    for (const Contact& contact : contacts) {
+      const double arm_m = contact.x_m - center;
+      moment += contact.load * (half_gauge_m * k - contact.x_m * arm_m) / std::hypot(k, arm_m);
+    }
+    return moment;
+  };
+  const double k = root_between(1e-9, max_k, moment_at);
+  turn.gauge_ratio = (half_gauge_m + k) / half_gauge_m;
+  turn.turn_center_x_m += center_at(k);
+  return turn;
 }
 
 WheelCommand wheel_command(const RobotDescription& robot, double forward_mps, double yaw_rate_radps,

@@ -40,22 +40,34 @@ struct DifferentialGeometry {
   double gauge_m = 0.0;           ///< distance between the center lines of the two sides
   double contact_length_m = 0.0;  ///< distance between the first and the last contact of a side with the ground
   double rolling_radius_m = 0.0;  ///< mean wheel radius, or pitch radius of the sprockets
-  double turn_center_x_m = 0.0;   ///< longitudinal position in body of the point that moves straight ahead in a turn
+  double turn_center_x_m = 0.0;   ///< longitudinal position in body of the point that moves straight ahead in a turn,
+                                  ///< if all wheels carry the same load
 };
 
 /// Returns the geometry of the tracks, or of the wheels that are not steered and, if any of these is driven, driven.
 /// Throws InputError for a robot with neither.
 DifferentialGeometry differential_geometry(const RobotDescription& robot);
 
-/// Returns the ratio of the gauge of a differential drive without slip to the geometric gauge, for the same wheel
-/// speeds and yaw rate: 1 for two driven wheels, more for skid steering and mecanum wheels.
+/// Turn of a differential drive.
+struct SkidTurn {
+  double gauge_ratio = 1.0;  ///< gauge of a differential drive without slip relative to the geometric gauge, for the
+                             ///< same wheel speeds and yaw rate
+  double turn_center_x_m = 0.0;  ///< longitudinal position in body of the point that moves straight ahead in a turn
+};
+
+/// Returns the turn of tracks or wheels: the ratio is 1 for two driven wheels, more for skid steering and mecanum
+/// wheels.
 ///
 /// Mecanum wheels turn without slip: the ratio is 1 + (wheelbase / gauge) / tan(angle of the rollers to the axle).
-/// Others:
-/// Closed form of Coulomb friction on level ground: all wheels carry the same load, and the moment of their friction
-/// about the turn center is zero. For four wheels it is 1 + (wheelbase / gauge)^2. The ratio depends neither on the
+/// Others: Coulomb friction on level ground, with neither a lateral force nor a moment on the robot. The center of mass
+/// determines the load of each wheel, and that of tracks is uniform. With equal loads, the ratio of four wheels is
+/// 1 + (wheelbase / gauge)^2, and the turn center is in the middle. If one axle carries so much that its wheels drive
+/// the turn without slip, the ratio is 1 and the turn center is in that axle. The result depends neither on the
 /// friction coefficient nor on the speed.
-double skid_ratio(const RobotDescription& robot);
+SkidTurn skid_turn(const RobotDescription& robot);
+
+/// Returns the gauge ratio of skid_turn().
+inline double skid_ratio(const RobotDescription& robot) { return skid_turn(robot).gauge_ratio; }
 
 /// Set points of the joints of a wheeled robot, [joint] as in `RobotDescription::joint_names`.
 struct WheelCommand {

@@ -13,11 +13,16 @@ namespace {
 
 constexpr double kTorqueReserve = 1.5;  // loads differ, and wheels that skid sideways need the torque of friction
 
+/// Returns the torque of the friction of a tire, N m, if the driven wheels carry the robot.
+double traction_of(const FoundWheel& wheel, std::size_t num_driven, double mass_kg) {
+  return kFriction * mass_kg * kGravity * wheel.radius_m / static_cast<double>(num_driven);
+}
+
 }  // namespace
 
 Motor Normalizer::motor_of(const FoundWheel& wheel, std::size_t num_driven, double mass_kg) {
   Motor motor{.effort_nm = wheel.joint->effort.value_or(0.0), .velocity_radps = wheel.joint->velocity.value_or(0.0)};
-  const double traction_nm = kFriction * mass_kg * kGravity * wheel.radius_m / static_cast<double>(num_driven);
+  const double traction_nm = traction_of(wheel, num_driven, mass_kg);
   if (motor.effort_nm <= 0.0) {
     motor.effort_nm = kTorqueReserve * traction_nm;
     assume(wheel.joint->name,
@@ -38,19 +43,23 @@ Motor Normalizer::motor_of(const FoundWheel& wheel, std::size_t num_driven, doub
   return motor;
 }
 
-/// Reduces damping and friction of a driven joint that its motor cannot overcome at its speed limit.
-void Normalizer::reduce_losses(const SourceJoint& joint, NormalizedJoint& driven) {
+/// Reduces damping and friction of a driven joint that its motor cannot overcome at full speed, or that brake the
+/// robot with more than the friction of the tires.
+void Normalizer::reduce_losses(const SourceJoint& joint, double radius_m, double traction_nm, NormalizedJoint& driven) {
   const Motor& motor = *driven.motor;
-  const double loss_nm = driven.damping * motor.velocity_radps + driven.friction;
-  if (loss_nm <= motor.effort_nm) return;
-  constexpr double kLoss = 0.25;  // to the torque limit
-  const double factor = kLoss * motor.effort_nm / loss_nm;
+  const double speed_radps = std::min(motor.velocity_radps, kAssumedSpeed_mps / radius_m);
+  const double loss_nm = driven.damping * speed_radps + driven.friction;
+  const double limit_nm = std::min(motor.effort_nm, traction_nm);
+  if (loss_nm <= limit_nm) return;
+  constexpr double kLoss = 0.25;  // to the limit
+  const double factor = kLoss * limit_nm / loss_nm;
   driven.damping *= factor;
   driven.friction *= factor;
   assume(joint.name,
-         fmt::format("damping and friction take {:.3g} N m at the speed limit, more than the torque limit of {:.3g} N "
-                     "m: reduced to a quarter of the limit",
-                     loss_nm, motor.effort_nm),
+         fmt::format(
+             "damping and friction take {:.3g} N m at {:.3g} rad/s, more than the {} of {:.3g} N m: reduced to a "
+             "quarter of it",
+             loss_nm, speed_radps, traction_nm < motor.effort_nm ? "friction of the tire" : "torque limit", limit_nm),
          "<dynamics> and <limit effort velocity> of the joint");
 }
 
@@ -162,7 +171,7 @@ void Normalizer::add_wheels() {
                                    .friction = joint.friction};
     if (driven_.contains(&joint)) {
       target.joint->motor = motor_of(wheel, driven_.size(), mass_kg);
-      reduce_losses(joint, *target.joint);
+      reduce_losses(joint, wheel.radius_m, traction_of(wheel, driven_.size(), mass_kg), *target.joint);
       max_speed_mps = std::min(max_speed_mps, target.joint->motor->velocity_radps * wheel.radius_m);
     }
     if (wheel.is_ball)

@@ -153,7 +153,7 @@ class Normalizer {
   void add_collisions(const SourceLink& link, const Pose3& T_new_link, bool from_visuals, NormalizedLink& target);
   std::string add_mesh(const std::string& stem, const Mesh& mesh);
   double total_mass_kg() const;
-  void reduce_losses(const SourceJoint& joint, NormalizedJoint& driven);
+  void reduce_losses(const SourceJoint& joint, double radius_m, double traction_nm, NormalizedJoint& driven);
   void replace_heavy_inertia(const FoundWheel& wheel, const Shape& tread, Inertial& inertial);
   Motor motor_of(const FoundWheel& wheel, std::size_t num_driven, double mass_kg);
   NormalizedLink& base() { return result_.links.front(); }

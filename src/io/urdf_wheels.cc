@@ -108,6 +108,12 @@ void UrdfReader::read_wheels(RobotDescription& robot) const {
     robot.wheels[i].steering_joint = add_joint(carrier.name, robot);
   }
   check_wheels(robot);
+  robot.center_of_mass_x_m = 0.0;
+  for (const auto& [name, link] : model_->links_) {
+    if (!link->inertial) continue;
+    const Pose3 T_body_part = T_body_link(*link) * to_pose(link->inertial->origin);
+    *robot.center_of_mass_x_m += link->inertial->mass / robot.mass_kg * T_body_part.position.x();
+  }
 }
 
 void UrdfReader::check_wheels(const RobotDescription& robot) const {

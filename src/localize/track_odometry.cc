@@ -39,7 +39,7 @@ TrackFilter::Settings filter_settings(const TrackOdometrySettings& s, const Robo
           .icr_x_std_m = s.icr_x_std_m,
           .icr_y_std_m = s.icr_y_std_m,
           .icr_correlation_rad = s.icr_correlation_rad,
-          .turn_center_x_m = differential_geometry(robot).turn_center_x_m,
+          .turn_center_x_m = skid_turn(robot).turn_center_x_m,
           .height_m = robot.body_height_m(),
           .is_lateral_measured = has_rollers(robot)};
 }

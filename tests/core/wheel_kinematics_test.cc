@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/geometry/angles.h"
+#include "core/random.h"
 
 namespace patrol {
 namespace {
@@ -80,6 +81,61 @@ TEST(SkidRatio, OfTwoWheelsIsOneWhereverTheAxleAndTheCasterAre) {
   EXPECT_DOUBLE_EQ(skid_ratio(two), 1.0);
   EXPECT_DOUBLE_EQ(differential_geometry(two).turn_center_x_m, 0.2);
   EXPECT_DOUBLE_EQ(differential_geometry(two).gauge_m, 0.6);
+}
+
+TEST(SkidTurn, WithTheCenterOfMassInTheMiddleIsThatOfEqualLoads) {
+  RobotDescription robot = four_wheels(0.5, 0.6);
+  for (WheelGeometry& wheel : robot.wheels) wheel.center_in_body.x() += 0.1;
+  const SkidTurn equal = skid_turn(robot);
+  EXPECT_NEAR(equal.turn_center_x_m, 0.1, 1e-15);
+  robot.center_of_mass_x_m = 0.1;
+  EXPECT_NEAR(skid_turn(robot).gauge_ratio, equal.gauge_ratio, 1e-9);
+  EXPECT_NEAR(skid_turn(robot).turn_center_x_m, 0.1, 1e-9);
+}
+
+TEST(SkidTurn, WithTheCenterOfMassAboveAnAxleIsThatOfItsTwoWheels) {
+  RobotDescription robot = four_wheels(0.5, 0.6);
+  for (const double x : {0.25, -0.25}) {
+    robot.center_of_mass_x_m = x;
+    EXPECT_NEAR(skid_turn(robot).gauge_ratio, 1.0, 1e-6);
+    EXPECT_NEAR(skid_turn(robot).turn_center_x_m, x, 1e-6);
+  }
+}
+
+// Independent of the solver: friction of every wheel along its slip, at a yaw rate of 1 rad/s. If one axle can drive
+// the turn with friction to spare, its wheels roll.
+TEST(SkidTurn, HasNeitherALateralForceNorAMomentForFiftyDrawnRobotsUnlessOneAxleRolls) {
+  int num_rolling = 0;
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    const RandomStream stream(seed, "skid_turn");
+    const double wheelbase_m = 0.2 + 0.8 * stream.uniform(0), gauge_m = 0.3 + 0.7 * stream.uniform(1);
+    RobotDescription robot = four_wheels(wheelbase_m, gauge_m);
+    const double offset = 0.8 * (stream.uniform(2) - 0.5);  // of the wheelbase
+    robot.center_of_mass_x_m = offset * wheelbase_m;
+    const SkidTurn turn = skid_turn(robot);
+    double lateral = 0.0, moment = 0.0;
+    for (const WheelGeometry& wheel : robot.wheels) {
+      const double load = 0.25 * (1.0 + (wheel.center_in_body.x() > 0.0 ? 2.0 : -2.0) * offset);
+      const double y = wheel.center_in_body.y(), rim_mps = -turn.gauge_ratio * y;
+      const Eigen::Vector2d slip(-y - rim_mps, wheel.center_in_body.x() - turn.turn_center_x_m);
+      const Eigen::Vector2d force = -load * slip.normalized();
+      lateral += force.y();
+      moment += wheel.center_in_body.x() * force.y() - y * force.x();
+    }
+    const bool is_rolling = turn.gauge_ratio < 1.0 + 1e-6;
+    num_rolling += is_rolling ? 1 : 0;
+    EXPECT_NEAR(lateral, 0.0, 1e-6) << seed;
+    if (is_rolling) {
+      EXPECT_GT(moment, 0.0) << seed;
+      EXPECT_NEAR(turn.turn_center_x_m, std::copysign(0.5 * wheelbase_m, offset), 1e-6) << seed;
+    } else {
+      EXPECT_NEAR(moment, 0.0, 1e-9) << seed;
+    }
+    EXPECT_LE(turn.gauge_ratio, 1.0 + std::pow(wheelbase_m / gauge_m, 2)) << "that of equal loads";
+    EXPECT_GE(turn.turn_center_x_m * offset, 0.0) << "toward the center of mass";
+  }
+  EXPECT_GT(num_rolling, 5);
+  EXPECT_LT(num_rolling, 40);
 }
 
 TEST(SkidRatio, OfTracksIsThatOfTwentyEvenlySpreadContacts) {

@@ -196,20 +196,36 @@ TEST(PublicDescription, AWheelWithTheInertiaOfAHouseHasThatOfItsShape) {
   EXPECT_THAT(import.robot.urdf, HasSubstr("iyy=\"0.005\"")) << "m r^2 / 2";
 }
 
+/// Two driven wheels with losses, and a caster. Each driven wheel of 0.1 m holds 8.71 N m by friction 0.8.
+std::string with_losses(const std::string& motor, double damping) {
+  const std::string content = motor + fmt::format(R"(<dynamics damping="{}" friction="0.5"/>)", damping);
+  return robot(chassis() + wheel("left", "base_link", "0 0.25 -0.05", 0.1, 0.04, content) +
+               wheel("right", "base_link", "0 -0.25 -0.05", 0.1, 0.04, content) + caster());
+}
+
 TEST(PublicDescription, DampingThatTheMotorCannotOvercomeIsReduced) {
-  const auto with_damping = [](double damping) {
-    const std::string content = kMotor + fmt::format(R"(<dynamics damping="{}" friction="0.5"/>)", damping);
-    return robot(chassis() + wheel("left", "base_link", "0 0.25 -0.05", 0.1, 0.04, content) +
-                 wheel("right", "base_link", "0 -0.25 -0.05", 0.1, 0.04, content) + caster());
-  };
-  Import import(with_damping(1.0));
+  const std::string motor = R"(<limit effort="5" velocity="12"/>)";
+  Import import(with_losses(motor, 1.0));
   import.load();
-  EXPECT_THAT(import.assumptions(), HasSubstr("| left_joint, right_joint | damping and friction take 12.5 N m at the "
-                                              "speed limit, more than the torque limit of 10 N m: reduced"));
-  EXPECT_THAT(import.robot.urdf, HasSubstr(R"(<dynamics damping="0.2" friction="0.1"/>)"));
-  Import light(with_damping(0.7));
+  EXPECT_THAT(import.assumptions(),
+              HasSubstr("| left_joint, right_joint | damping and friction take 12.5 N m at 12 "
+                        "rad/s, more than the torque limit of 5 N m: reduced to a quarter of it"));
+  EXPECT_THAT(import.robot.urdf, HasSubstr(R"(<dynamics damping="0.1" friction="0.05"/>)"));
+  Import light(with_losses(motor, 0.3));
   light.load();
-  EXPECT_THAT(light.robot.urdf, HasSubstr(R"(<dynamics damping="0.7" friction="0.5"/>)"));
+  EXPECT_THAT(light.robot.urdf, HasSubstr(R"(<dynamics damping="0.3" friction="0.5"/>)"));
+}
+
+// Published descriptions have 1e4 N m and 1000 rad/s for unknown limits, and damping for simulators that set the speed.
+TEST(PublicDescription, DampingThatBrakesMoreThanTheTiresHoldIsReducedWhateverTheMotor) {
+  const std::string motor = R"(<limit effort="10000" velocity="1000"/>)";
+  Import import(with_losses(motor, 1.0));
+  import.load();
+  EXPECT_THAT(import.assumptions(), HasSubstr("| left_joint, right_joint | damping and friction take 15.5 N m at 15 "
+                                              "rad/s, more than the friction of the tire of 8.71 N m: reduced"));
+  Import light(with_losses(motor, 0.5));
+  light.load();
+  EXPECT_THAT(light.robot.urdf, HasSubstr(R"(<dynamics damping="0.5" friction="0.5"/>)"));
 }
 
 TEST(PublicDescription, AMassAboveTwentyTonsIsReported) {

@@ -95,6 +95,25 @@ TEST(Wheels, TurningInPlaceIsWithin2PercentOfTheClosedFormOfCoulombFrictionAtThr
   }
 }
 
+TEST(Wheels,
+     WithTheCenterOfMassAFifthOfTheWheelbaseBehindTheMiddleTheTurnIsThatOfTheClosedFormTo3PercentAnd1Centimeter) {
+  test::UrdfRobot description = skid_steer_urdf(0.5, 0.6);
+  description.center_of_mass_x_m = -0.11;
+  for (const double rate : {0.3, 0.8}) {
+    WheeledRobot robot(make_flat_world(), description.text(), with_geometric_gauge());
+    const SkidTurn expected = skid_turn(robot.description());
+    EXPECT_NEAR(*robot.description().center_of_mass_x_m, -0.1, 1e-9) << "the wheels have a tenth of the mass";
+    EXPECT_LT(expected.gauge_ratio, 1.35) << "1.69 with equal loads";
+    EXPECT_LT(expected.turn_center_x_m, -0.15);
+    EXPECT_NEAR(measured_skid_ratio(robot, 0.0, rate), expected.gauge_ratio, 0.03 * expected.gauge_ratio) << rate;
+    const Pose2 T_world_begin = to_pose2(robot.T_world_body());
+    robot.drive(0.0, rate, 0.5 * M_PI * expected.gauge_ratio / rate);
+    const Eigen::Vector2d center(expected.turn_center_x_m, 0.0);
+    const Eigen::Vector2d moved_m = to_pose2(robot.T_world_body()) * center - T_world_begin * center;
+    EXPECT_LT(moved_m.norm(), 0.01) << rate;
+  }
+}
+
 TEST(Wheels, InACurveOf2MetersTheRatioIsThatOfATurnInPlaceTo3Percent) {
   WheeledRobot robot(make_flat_world(), wheeled_urdf_text(), with_geometric_gauge());
   const double expected = skid_ratio(robot.description());

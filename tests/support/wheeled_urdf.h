@@ -22,7 +22,8 @@ struct UrdfWheel {
 /// Synthetic robot on wheels with a chassis of a box. The origin of base_link is `height_m` above the ground.
 struct UrdfRobot {
   std::vector<UrdfWheel> wheels;
-  double mass_kg = 40.0;  ///< chassis
+  double mass_kg = 40.0;            ///< chassis
+  double center_of_mass_x_m = 0.0;  ///< chassis
   double height_m = 0.2;
   std::string chassis_box = "0.8 0.4 0.2";
   double effort_nm = 30.0;
@@ -73,16 +74,17 @@ inline UrdfRobot ackermann_urdf(double wheelbase_m, double gauge_m, double steer
           .chassis_box = "0.3 0.3 0.2"};
 }
 
-inline std::string inertial(double mass_kg, double ixx, double iyy, double izz) {
+inline std::string inertial(double mass_kg, double ixx, double iyy, double izz, double x_m = 0.0) {
   return fmt::format(
-      R"(<inertial><mass value="{}"/><inertia ixx="{}" ixy="0" ixz="0" iyy="{}" iyz="0" izz="{}"/></inertial>)",
-      mass_kg, ixx, iyy, izz);
+      R"(<inertial><origin xyz="{} 0 0"/><mass value="{}"/>
+      <inertia ixx="{}" ixy="0" ixz="0" iyy="{}" iyz="0" izz="{}"/></inertial>)",
+      x_m, mass_kg, ixx, iyy, izz);
 }
 
 inline std::string UrdfRobot::text() const {
   std::string links =
       fmt::format(R"(<link name="base_link">{}<collision><geometry><box size="{}"/></geometry></collision></link>)",
-                  inertial(mass_kg, 0.02 * mass_kg, 0.05 * mass_kg, 0.06 * mass_kg), chassis_box);
+                  inertial(mass_kg, 0.02 * mass_kg, 0.05 * mass_kg, 0.06 * mass_kg, center_of_mass_x_m), chassis_box);
   for (const UrdfWheel& wheel : wheels) {
     std::string parent = "base_link",
                 origin = fmt::format("{} {} {:.6g}", wheel.x_m, wheel.y_m, wheel.radius_m - height_m);

@@ -154,7 +154,7 @@ CheckRobot load_check_robot(const std::string& name, const std::vector<std::stri
   robot.effective_gauge_ratio = effective_gauge_ratio_of(robot);
   robot.limits = limits_of(robot);
   const bool has_legs = robot.kind == DriveKind::kLegs;
-  robot.turn_center_x_m = has_legs ? 0.0 : differential_geometry(robot.description).turn_center_x_m;
+  robot.turn_center_x_m = has_legs ? 0.0 : skid_turn(robot.description).turn_center_x_m;
   if (has_legs) {
     if (scenario.as_built.enabled) robot.max_gyro_bias_radps = 3.0 * scenario.as_built.imu.gyro_bias_std_radps;
     robot.reaction_s = scenario.locomotion.gait_period_s;

@@ -94,7 +94,8 @@ void add_study(CLI::App& app, Call& call) {
 void add_test(CLI::App& app, Call& call) {
   TestOptions& test = call.test;
   CLI::App* command = app.add_subcommand("test", "Run all scenarios of a folder; write JUnit XML");
-  command->add_option("scenarios", test.scenarios, "Folders of scenarios, and scenario files")->required();
+  command->add_option("scenarios", test.scenarios, "Folders of scenarios, scenario files, worlds, and WORLD/SCENARIO")
+      ->required();
   command->add_option("--set", test.overrides, kSetAllHelp)->take_all();
   CLI::Option* table =
       command->add_option("--seed-table", test.seed_table, "Seeds of scenarios (JSON: end of a scenario's path, seed)");

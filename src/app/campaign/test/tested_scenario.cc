@@ -1,11 +1,15 @@
 #include "app/campaign/test/tested_scenario.h"
 
 #include <algorithm>
+#include <iterator>
+#include <optional>
+#include <string>
 #include <system_error>
 
 #include <fmt/format.h>
 
 #include "app/run/run_junit.h"
+#include "app/scenario/data_folders.h"
 #include "app/scenario/run_hash.h"
 #include "app/scenario/scenario.h"
 #include "core/error.h"
@@ -15,6 +19,13 @@ namespace {
 
 bool is_scenario(const std::filesystem::path& file) {
   return file.extension() == ".yaml" || file.extension() == ".yml";
+}
+
+/// Returns the file or folder of a name as for patrol run: WORLD/SCENARIO, or WORLD for all of its scenarios.
+std::filesystem::path find_scenarios_of(const std::filesystem::path& name) {
+  if (std::filesystem::exists(name)) return name;
+  const std::optional<std::string> world = world_of(name);
+  return world ? find_world(*world, find_data_root({})).parent_path() / "scenarios" : find_scenario(name);
 }
 
 void add_files(const std::filesystem::path& scenarios, std::vector<std::filesystem::path>& files) {
@@ -103,8 +114,10 @@ std::string line_of(const TestedScenario& tested) {
 
 bool is_passed(const TestedScenario& tested) { return tested.verdict && tested.verdict->code() == ExitCode::kDone; }
 
-std::vector<TestedScenario> find_scenarios(const std::vector<std::filesystem::path>& scenarios,
+std::vector<TestedScenario> find_scenarios(const std::vector<std::filesystem::path>& names,
                                            const std::vector<std::string>& overrides, const SeedTable& seeds) {
+  std::vector<std::filesystem::path> scenarios;
+  std::transform(names.begin(), names.end(), std::back_inserter(scenarios), find_scenarios_of);
   const std::string build = build_id();
   const std::vector<std::filesystem::path> files = files_of(scenarios);
   const std::filesystem::path folder = common_folder(scenarios, files);

@@ -24,10 +24,10 @@ struct TestedScenario {
 
 bool is_passed(const TestedScenario& tested);
 
-/// Every *.yaml file in the folders and their subfolders, and the files themselves, each once, sorted by path. Their
-/// seeds are those of the table, if it has them. Overrides come after the table. Throws InputError if a path is not
-/// found.
-std::vector<TestedScenario> find_scenarios(const std::vector<std::filesystem::path>& scenarios,
+/// Every *.yaml file in the folders and their subfolders, and the files themselves, each once, sorted by path. Names
+/// are folders, files, worlds (all scenarios of the world) or WORLD/SCENARIO. Seeds are those of the table, if it has
+/// them. Overrides come after the table. Throws InputError if a name is not found.
+std::vector<TestedScenario> find_scenarios(const std::vector<std::filesystem::path>& names,
                                            const std::vector<std::string>& overrides, const SeedTable& seeds = {});
 
 /// Writes junit.xml, one suite per scenario; scenarios without a verdict are errors.

@@ -99,6 +99,23 @@ class TestCommand(unittest.TestCase):
         shutil.rmtree(self.scenarios)
         self.assertEqual(self.run_test().returncode, 2)
 
+    def test_names_are_those_of_patrol_run_and_a_world_has_all_its_scenarios(self):
+        world = self.path / "worlds/yard"
+        (world / "scenarios").mkdir(parents=True)
+        (world / "yard.xml").write_text("<mujoco/>")
+        (self.path / "models").symlink_to(SOURCE / "models")
+        for name in ("first", "second"):
+            shutil.copy(self.good, world / f"scenarios/{name}.yaml")
+
+        def names_of(*given):
+            done = subprocess.run([PATROL, "test", *given, "--out", self.out, "--json"], capture_output=True, text=True, cwd=self.path)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            return sorted(self.suites())
+        self.assertEqual(names_of("yard"), ["first", "second"])
+        self.assertEqual(names_of("yard/second"), ["second"])
+        refused = subprocess.run([PATROL, "test", "yards"], capture_output=True, text=True, cwd=self.path)
+        self.assertEqual((refused.returncode, refused.stderr), (2, "patrol: yards: not found\n"))
+
     def test_killed_midway_it_stays_red(self):
         self.add("one")
         process = subprocess.Popen([PATROL, "test", self.scenarios, "--out", self.out], stdout=subprocess.PIPE, stderr=subprocess.PIPE, cwd=SOURCE)
