@@ -267,14 +267,20 @@ ReferenceMap reference_map(const mjModel& view, const ReferenceMapSettings& sett
   mj_kinematics(&view, data.get());
   const std::vector<bool> is_static = static_bodies(view, settings);
   const std::vector<CutGeom> cut = geoms_cut_at(view, *data, is_static, settings.height_m);
-  if (cut.empty()) {
-    throw InputError(fmt::format("reference map: no geom intersects the slice at {:.2f} m", settings.height_m));
-  }
   Bounds bounds;
+  ReferenceMap reference;
+  if (cut.empty()) {
+    if (settings.visited_m.empty())
+      throw InputError(
+          fmt::format("reference map: the world has no surface at a height of {:.2f} m", settings.height_m));
+    for (const Eigen::Vector2d& p_m : settings.visited_m)
+      bounds.extend(Eigen::Vector3d(p_m.x(), p_m.y(), settings.height_m));
+    reference.map = OccupancyGrid(geometry_around(bounds, settings), kFree);
+    return reference;
+  }
   for (const CutGeom& geom : cut) bounds.extend(geom.bounds);
   const GridGeometry geometry = geometry_around(bounds, settings);
 
-  ReferenceMap reference;
   reference.map = surface_of(render_solid(view, *data, cut, geometry, settings.height_m));
   reference.check =
       check_and_complete(reference.map, cast_surfaces(view, *data, is_static, geometry, settings.height_m));

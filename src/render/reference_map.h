@@ -18,6 +18,8 @@ struct ReferenceMapSettings {
   double margin_m = 1.0;  ///< free cells around all objects
   /// Names of the actors that move: mocap bodies, with their limbs ("NAME_..."). Without a value all mocap bodies do.
   std::optional<std::vector<std::string>> actors = std::nullopt;
+  /// Positions around which the map is free if no geom intersects the slice. Empty: such a world is refused.
+  std::vector<Eigen::Vector2d> visited_m = {};
 };
 
 /// Agreement of rendered slice and ray casts about the surfaces.
@@ -46,7 +48,7 @@ struct ReferenceMap {
 /// contain a cell center.
 ///
 /// `view` is a render model (sim/model_assembly.h); the robot and the moving objects are excluded. Throws InputError
-/// when no geom intersects the slice.
+/// when no geom intersects the slice and no visited positions are given.
 ReferenceMap reference_map(const mjModel& view, const ReferenceMapSettings& settings = {});
 
 }  // namespace patrol::render

@@ -51,6 +51,20 @@ class ExitCodes(unittest.TestCase):
         self.assertEqual(counts, ["4", "0", "1"])  # the run, one expectation, two faults
         self.assertIn("mission.completed", done.stdout)
 
+    def test_a_run_in_a_world_without_surfaces_is_0_without_metrics_of_the_map(self):
+        (self.path / "worlds/field").mkdir(parents=True)
+        (self.path / "worlds/field/field.xml").write_text(
+            '<mujoco><worldbody><geom name="ground" type="plane" size="50 50 1"/></worldbody></mujoco>')
+        (self.path / "models").symlink_to(SOURCE / "models")
+        done = subprocess.run([PATROL, "run", "field", "--robot", "wheeled", "--start", "0,0", "--goal", "3,1", "--out", self.out],
+                              capture_output=True, text=True, timeout=120, cwd=self.path)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assert_complete()
+        metrics = json.loads((self.out / "metrics.json").read_text())
+        self.assertNotIn("map", metrics)
+        self.assertLess(metrics["pose"]["ate_rmse_m"], 0.1)
+        self.assertTrue(metrics["stations"][0]["reached"])
+
     def test_missed_and_unmeasured_expectations_are_1(self):
         done = self.run_patrol("expect:\n  mission.completed: true\n  mission.distance_m: {min: 1000}\n"
                                "  pose.elegance: {max: 1}\n")

@@ -186,8 +186,22 @@ TEST(ReferenceMapTest, RenderAndRaysAgreeOnShapesOfEveryKind) {
   EXPECT_GE(check.agreement_ratio(), 0.999);
 }
 
-TEST(ReferenceMapTest, AWorldWithNothingThereIsAnError) {
-  EXPECT_THROW(reference_map(*small_scene(R"(<geom type="plane" size="0 0 1"/>)")), InputError);
+TEST(ReferenceMapTest, AWorldWithoutSurfacesIsAnErrorWithoutVisitedPositionsAndFreeAroundThemWithThem) {
+  const sim::ModelPtr model = small_scene(R"(<geom type="plane" size="0 0 1"/>)");
+  EXPECT_THROW(reference_map(*model), InputError);
+  const ReferenceMap reference =
+      reference_map(*model, {.resolution_m = 0.1, .margin_m = 1.0, .visited_m = {{0.0, 0.0}, {4.0, -2.0}}});
+  EXPECT_EQ(num_occupied(reference.map), 0u);
+  EXPECT_EQ(reference.map.geometry().width, 60);
+  EXPECT_EQ(reference.map.geometry().height, 40);
+  EXPECT_EQ(reference.map.geometry().origin_m, Eigen::Vector2d(-1.0, -3.0));
+  EXPECT_EQ(reference.check.agreement_ratio(), 1.0);
+}
+
+TEST(ReferenceMapTest, VisitedPositionsDoNotChangeTheMapOfAWorldWithSurfaces) {
+  const sim::ModelPtr model = small_scene(R"(<geom type="box" size="1 0.5 0.5"/>)");
+  const OccupancyGrid map = reference_map(*model).map;
+  EXPECT_EQ(reference_map(*model, {.visited_m = {{50.0, 0.0}}}).map.values(), map.values());
 }
 
 }  // namespace

@@ -34,9 +34,12 @@ TrueMap true_map(const RunRecord& record, const Scenario& scenario, const Scenar
                 .reference = {}};
   std::vector<std::string> actors;
   for (const sim::ActorSettings& actor : scenario.actors) actors.push_back(actor.name);
-  const render::ReferenceMap map = render::reference_map(
-      *truth.world,
-      {.height_m = truth.lidar_height_m, .resolution_m = kReferenceResolution_m, .actors = std::move(actors)});
+  std::vector<Eigen::Vector2d> visited_m;
+  for (const StampedPose& entry : record.T_world_body) visited_m.push_back(entry.pose.position.head<2>());
+  const render::ReferenceMap map = render::reference_map(*truth.world, {.height_m = truth.lidar_height_m,
+                                                                        .resolution_m = kReferenceResolution_m,
+                                                                        .actors = std::move(actors),
+                                                                        .visited_m = std::move(visited_m)});
   truth.reference_agreement = map.check.agreement_ratio();
   truth.reference = score::mark_observable(map.map, record.T_world_body, scenario.sensors.lidar.range_max_m);
   return truth;

@@ -1,7 +1,9 @@
 #include "score/run/run_score.h"
 
+#include <algorithm>
 #include <array>
 #include <limits>
+#include <ranges>
 
 #include "core/error.h"
 #include "score/pose/live_trajectory.h"
@@ -40,9 +42,15 @@ std::optional<AlignedError> aligned_if_possible(const Trajectory& estimate, cons
   }
 }
 
-/// Error of the run's map. A map without occupied cells covers nothing and has no distances.
-MapError run_map_error(const OccupancyGrid& built, const Pose2& T_world_map, const ReferenceMap& reference,
-                       const DistanceField& reference_field) {
+/// Error of the run's map; none if the robot passed no surface. A map without occupied cells covers nothing and has no
+/// distances.
+std::optional<MapError> run_map_error(const OccupancyGrid& built, const Pose2& T_world_map,
+                                      const ReferenceMap& reference, const DistanceField& reference_field) {
+  const auto is_seen = [&reference](std::size_t i) {
+    return reference.is_observable.values()[i] != 0 && reference.cells.values()[i] == kOccupied;
+  };
+  const auto cells = std::views::iota(std::size_t{0}, reference.cells.values().size());
+  if (std::ranges::none_of(cells, is_seen)) return std::nullopt;
   if (!occupied_points(built).empty()) return map_error(built, T_world_map, reference, reference_field);
   MapError error;
   error.cells_m = Grid<float>(built.geometry(), std::numeric_limits<float>::quiet_NaN());

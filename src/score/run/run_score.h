@@ -74,7 +74,7 @@ struct EstimateScore {
   PoseNees nees;
   std::optional<AlignedError> aligned_pose;  ///< none when no fit is possible, e.g. of an estimate that never moves
   std::optional<TrajectoryError> odometry;   ///< with odometry in the log
-  std::optional<MapError> map;               ///< with a map in the log
+  std::optional<MapError> map;               ///< with a map in the log and surfaces that the robot could see
   double map_agreement = 0.0;
   std::vector<TrackedLocalizability> localizability;
   NavigationScore navigation;

@@ -139,6 +139,15 @@ TEST(EstimateScore, OfAnEmptyMapCoversNothingAndHasNoDistances) {
   EXPECT_EQ(error.cells_m.values().size(), record.map.values().size());
 }
 
+TEST(EstimateScore, WhereTheRobotSeesNoSurfaceHasNoErrorOfTheMap) {
+  RunReferences references = wall_references();
+  references.map.is_observable = Grid<std::uint8_t>(wall_map().geometry(), 0);
+  EXPECT_FALSE(estimate_score(perfect_run(), references).map.has_value());
+  EXPECT_NEAR(estimate_score(perfect_run(), references).pose.ate_rmse_m, 0.0, 1e-9);
+  references.map.cells = OccupancyGrid(wall_map().geometry(), kFree);
+  EXPECT_FALSE(estimate_score(perfect_run(), references).map.has_value());
+}
+
 TEST(EstimateScore, OfAnEstimateThatNeverMovesHasEveryErrorButTheFittedOne) {
   RunRecord record = perfect_run();
   for (StampedPose& pose : record.T_map_body) pose.pose = {};
