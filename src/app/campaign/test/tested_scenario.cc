@@ -1,6 +1,7 @@
 #include "app/campaign/test/tested_scenario.h"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <optional>
 #include <string>
@@ -13,12 +14,34 @@
 #include "app/scenario/run_hash.h"
 #include "app/scenario/scenario.h"
 #include "core/error.h"
+#include "io/yaml/yaml_document.h"
 
 namespace patrol::app {
 namespace {
 
+/// Returns whether a file is of settings of the world or robot in its folder: NAME/NAME.yaml beside NAME.xml or
+/// NAME.urdf.
+bool is_of_world_or_robot(const std::filesystem::path& file) {
+  if (file.stem() != std::filesystem::absolute(file).parent_path().filename()) return false;
+  return std::ranges::any_of(std::array{".xml", ".urdf"}, [&](const char* extension) {
+    return std::filesystem::exists(std::filesystem::path(file).replace_extension(extension));
+  });
+}
+
+/// Returns whether a file describes a map of map_server. False for a file that cannot be read.
+bool is_map(const std::filesystem::path& file) {
+  try {
+    const YAML::Node document = io::load_yaml(file);
+    return document.IsMap() && document["image"] && document["resolution"];
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+/// Returns whether a file in a folder is a scenario. Other files with its extension are taken for wrong scenarios.
 bool is_scenario(const std::filesystem::path& file) {
-  return file.extension() == ".yaml" || file.extension() == ".yml";
+  const bool is_yaml = file.extension() == ".yaml" || file.extension() == ".yml";
+  return is_yaml && !is_of_world_or_robot(file) && !is_map(file);
 }
 
 /// Returns the file or folder of a name as for patrol run: WORLD/SCENARIO, or WORLD for all of its scenarios.

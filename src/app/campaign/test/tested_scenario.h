@@ -24,9 +24,10 @@ struct TestedScenario {
 
 bool is_passed(const TestedScenario& tested);
 
-/// Every *.yaml file in the folders and their subfolders, and the files themselves, each once, sorted by path. Names
-/// are folders, files, worlds (all scenarios of the world) or WORLD/SCENARIO. Seeds are those of the table, if it has
-/// them. Overrides come after the table. Throws InputError if a name is not found.
+/// Every *.yaml file in the folders and their subfolders but settings of worlds and robots and maps of map_server, and
+/// the files themselves, each once, sorted by path. Names are folders, files, worlds (all scenarios of the world) or
+/// WORLD/SCENARIO. Seeds are those of the table, if it has them. Overrides come after the table. Throws InputError if a
+/// name is not found.
 std::vector<TestedScenario> find_scenarios(const std::vector<std::filesystem::path>& names,
                                            const std::vector<std::string>& overrides, const SeedTable& seeds = {});
 

@@ -116,6 +116,19 @@ class TestCommand(unittest.TestCase):
         refused = subprocess.run([PATROL, "test", "yards"], capture_output=True, text=True, cwd=self.path)
         self.assertEqual((refused.returncode, refused.stderr), (2, "patrol: yards: not found\n"))
 
+    def test_in_a_folder_settings_of_worlds_and_robots_and_maps_are_no_scenarios_and_all_others_are(self):
+        self.add("first")
+        for kind, extension in (("yard", ".xml"), ("rover", ".urdf")):
+            (self.scenarios / kind).mkdir()
+            (self.scenarios / kind / f"{kind}{extension}").write_text("")
+            (self.scenarios / kind / f"{kind}.yaml").write_text("ground: {}\n")
+        (self.scenarios / "map.yaml").write_text("image: map.pgm\nresolution: 0.05\norigin: [0, 0, 0]\n")
+        done = self.run_test()
+        self.assertEqual((done.returncode, list(self.suites())), (0, ["first"]), done.stderr)
+        (self.scenarios / "rover/typing_error.yaml").write_text("wrold: street\n")
+        done = self.run_test()
+        self.assertEqual((done.returncode, sorted(self.suites())), (2, ["first", "rover/typing_error"]), done.stderr)
+
     def test_killed_midway_it_stays_red(self):
         self.add("one")
         process = subprocess.Popen([PATROL, "test", self.scenarios, "--out", self.out], stdout=subprocess.PIPE, stderr=subprocess.PIPE, cwd=SOURCE)
