@@ -155,6 +155,11 @@ CheckRobot load_check_robot(const std::string& name, const std::vector<std::stri
   robot.limits = limits_of(robot);
   const bool has_legs = robot.kind == DriveKind::kLegs;
   robot.turn_center_x_m = has_legs ? 0.0 : skid_turn(robot.description).turn_center_x_m;
+  if (robot.kind == DriveKind::kDifferentialWheels && scenario.as_built.enabled) {
+    const double gauge_m = differential_geometry(robot.description).gauge_m * skid_ratio(robot.description);
+    robot.max_heading_drift_rad_per_m =
+        std::max(robot.max_heading_drift_rad_per_m, 2.0 * scenario.as_built.wheels.radius_scale / gauge_m);
+  }
   if (has_legs) {
     if (scenario.as_built.enabled) robot.max_gyro_bias_radps = 3.0 * scenario.as_built.imu.gyro_bias_std_radps;
     robot.reaction_s = scenario.locomotion.gait_period_s;

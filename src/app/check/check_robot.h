@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/geometry/angles.h"
 #include "core/robot_description.h"
 #include "sim/simulator/simulator.h"
 
@@ -42,6 +43,9 @@ struct CheckRobot {
   /// Bound of the yaw rate error of a firmware that follows its gyro without an estimate of the bias: three standard
   /// deviations of the as-built bias. Only robots with legs do so.
   double max_gyro_bias_radps = 0.0;
+  /// Bound of the heading error per distance: 1 degree per meter, or more if the wheels of both sides of a differential
+  /// drive have as-built radii at opposite ends of their tolerance.
+  double max_heading_drift_rad_per_m = kDegree;
   double reaction_s = 0.1;           ///< time in which the firmware follows a command: with legs a period of the gait
   sim::SimulatorSettings simulator;  ///< without world and start pose
 

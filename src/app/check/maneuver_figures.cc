@@ -140,13 +140,17 @@ std::vector<Figure> measure_stand(const CheckRobot& robot, const Maneuver&, cons
 std::vector<Figure> measure_straight(const CheckRobot& robot, const Maneuver&, const DriveRecord& record) {
   const DriveSample& end = record.samples.back();
   const double drift_rad = gyro_drift_rad(robot, record), commanded_m = end.T_start_commanded.x;
+  const double heading_drift_rad = robot.max_heading_drift_rad_per_m * commanded_m;
   std::vector<Figure> figures = {
       symmetric("distance_error_ratio", end.ground_travel_m / commanded_m - 1.0, 0.1,
                 "navigation corrects a speed error of a tenth within its acceleration", true),
-      symmetric("lateral_drift_m", end.T_start_center.y, (0.1 + 0.5 * drift_rad) * commanded_m,
-                with_gyro(robot, "a tenth of the distance")),
-      symmetric("heading_drift_deg", to_deg(end.yaw_rad), commanded_m + to_deg(drift_rad),
-                with_gyro(robot, "1 degree per meter by as-built radii"), true)};
+      symmetric("lateral_drift_m", end.T_start_center.y,
+                (std::max(0.1, 0.5 * heading_drift_rad) + 0.5 * drift_rad) * commanded_m,
+                with_gyro(robot, "a tenth of the distance, or half of it times the limit of the heading")),
+      symmetric(
+          "heading_drift_deg", to_deg(end.yaw_rad), to_deg(heading_drift_rad + drift_rad),
+          with_gyro(robot, "1 degree per meter, or as-built radii of both sides at opposite ends of their tolerance"),
+          true)};
   add_slip_figure(robot, record, 0.05, "rolling wheels and tracks slip by less than 1 %, and their radii vary by 1 %",
                   figures);
   add_motor_figures(record, figures);

@@ -47,6 +47,14 @@ TEST(CheckRobot, TheYawRateOfSkidSteeringIsLimitedByTheSpeedOfItsSides) {
   EXPECT_NEAR(robot.limits.max_yaw_rate_radps, 2.0 * 0.3 / effective_gauge_m, 1e-9);
 }
 
+// Radii of 1 % above and below: 0.02 / gauge, and by skid steering 1.8 times less.
+TEST(CheckRobot, TheLimitOfTheHeadingDriftIs1DegreePerMeterOrThatOfOppositeRadiiOfTheSides) {
+  EXPECT_NEAR(to_deg(load("wheeled").max_heading_drift_rad_per_m), 1.11, 0.01);
+  EXPECT_NEAR(to_deg(load("wheeled", {"as_built.wheels.radius_scale=0.03"}).max_heading_drift_rad_per_m), 3.34, 0.02);
+  EXPECT_NEAR(to_deg(load("wheeled", {"as_built.wheels.radius_scale=0.002"}).max_heading_drift_rad_per_m), 1.0, 1e-9);
+  EXPECT_NEAR(to_deg(load("tracked").max_heading_drift_rad_per_m), 1.0, 1e-9);
+}
+
 TEST(CheckRobot, OnlyTheSensorsOfTheFirmwareAreOn) {
   const sim::SensorSuiteSettings sensors = load("tracked").simulator.sensors;
   EXPECT_FALSE(sensors.lidar.enabled);
