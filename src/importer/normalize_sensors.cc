@@ -1,7 +1,11 @@
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <set>
+#include <string>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -40,6 +44,19 @@ void Normalizer::add_frame(const std::string& frame, const Pose3& T_base_frame, 
 }
 
 namespace {
+
+/// Returns a part of an assumption with the links whose names contain one of the words; empty if there are none. Only
+/// the text depends on names.
+std::string links_named(const std::set<std::string>& links, std::initializer_list<std::string_view> words) {
+  std::vector<std::string> named;
+  for (const std::string& link : links) {
+    std::string lower = link;
+    std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const auto contains = [&lower](std::string_view word) { return lower.find(word) != std::string::npos; };
+    if (std::ranges::any_of(words, contains)) named.push_back(link);
+  }
+  return named.empty() ? "" : fmt::format("; links with such a name: {}", list_of(named));
+}
 
 /// Returns the preset whose field of view and range are those of a lidar; empty if there is none.
 std::string preset_of(const SourceSensor& sensor, bool is_3d) {
@@ -113,10 +130,13 @@ void Normalizer::add_sensors() {
         parts.push_back({link.joint ? link.joint->T_parent_link : Pose3{}, *link.inertial});
     }
     add_frame("imu", translation(combine(parts).T_link_inertia.position), "");
-    assume("imu", "is at the center of mass of the chassis: the file has none", "--frame imu=LINK");
+    assume("imu", "is at the center of mass of the chassis: the file has none" + links_named(chassis_, {"imu", "gyro"}),
+           "--frame imu=LINK");
   }
   if (!added.contains("lidar") && !added.contains("lidar3d"))
-    assume("lidar", "the robot has none: the file has no sensor of type ray or lidar",
+    assume("lidar",
+           "the robot has none: the file has no sensor of type ray or lidar" +
+               links_named(chassis_, {"lidar", "laser", "scan", "velodyne", "hokuyo"}),
            fmt::format("--frame lidar=LINK, or mounts in {}.yaml", result_.name));
 }
 

@@ -12,7 +12,7 @@ namespace patrol::importer::sensor_import_test {
 namespace {
 
 using test::VectorNear;
-using ::testing::AllOf, ::testing::HasSubstr;
+using ::testing::AllOf, ::testing::HasSubstr, ::testing::Not;
 
 TEST(ImportSensors, SensorsAreFoundByTypeAndByOption) {
   const std::string sensors =
@@ -42,6 +42,20 @@ TEST(ImportSensors, WithoutSensorsAnImuIsAtTheCenterOfMassAndNoLidarIsAdded) {
   EXPECT_THAT(robot.T_body("imu").position, VectorNear(Eigen::Vector3d(0.05, 0.0, 0.02), 1e-9));
   EXPECT_FALSE(robot.T_body_sensor.contains("lidar"));
   EXPECT_THAT(import.robot.settings, HasSubstr("lidar: {enabled: false}"));
+}
+
+TEST(ImportSensors, OfASensorThatTheFileLacksTheReportNamesLinksWithSuchANameAndChoosesNone) {
+  const std::string links = joint("a", "fixed", "base_link", "IMU_frame", "0.1 0 0.1") + link("IMU_frame") +
+                            joint("b", "fixed", "base_link", "base_scan", "0.2 0 0.3") + link("base_scan") +
+                            joint("c", "fixed", "base_link", "front_laser", "0.3 0 0.3") + link("front_laser");
+  Import import(robot(chassis() + two_wheels() + caster() + links));
+  EXPECT_FALSE(import.load().T_body_sensor.contains("lidar"));
+  EXPECT_THAT(import.assumptions(), AllOf(HasSubstr("the file has none; links with such a name: IMU_frame |"),
+                                          HasSubstr("ray or lidar; links with such a name: base_scan, front_laser |")));
+  Import chosen(robot(chassis() + two_wheels() + caster() + links));
+  chosen.options.frames["lidar"] = "base_scan";
+  EXPECT_THAT(chosen.load().T_body("lidar").position, VectorNear(Eigen::Vector3d(0.2, 0.0, 0.3), 1e-9));
+  EXPECT_THAT(chosen.assumptions(), Not(HasSubstr("front_laser")));
 }
 
 /// Fixed link with a lidar of Gazebo.
