@@ -154,9 +154,10 @@ CheckRobot load_check_robot(const std::string& name, const std::vector<std::stri
   robot.effective_gauge_ratio = effective_gauge_ratio_of(robot);
   robot.limits = limits_of(robot);
   const bool has_legs = robot.kind == DriveKind::kLegs;
-  robot.turn_center_x_m = has_legs ? 0.0 : skid_turn(robot.description).turn_center_x_m;
+  const SkidTurn turn = has_legs ? SkidTurn{} : skid_turn(robot.description);
+  robot.turn_center_x_m = turn.turn_center_x_m;
   if (robot.kind == DriveKind::kDifferentialWheels && scenario.as_built.enabled) {
-    const double gauge_m = differential_geometry(robot.description).gauge_m * skid_ratio(robot.description);
+    const double gauge_m = differential_geometry(robot.description).gauge_m * turn.gauge_ratio;
     robot.max_heading_drift_rad_per_m =
         std::max(robot.max_heading_drift_rad_per_m, 2.0 * scenario.as_built.wheels.radius_scale / gauge_m);
   }
