@@ -143,7 +143,10 @@ Grid<std::uint8_t> render_solid(const mjModel& model, const mjData& data, const 
   constexpr int kTile = 1000;          // cells; one pixel per cell
   constexpr float kSameDepth = 1e-5f;  // tolerance as a fraction of the depth range
   const int tile_width = std::min(kTile, geometry.width), tile_height = std::min(kTile, geometry.height);
-  Offscreen offscreen(model, tile_width, tile_height);
+  mjModel depth_only = model;  // shares the arrays; textures and a shadow map take time to load and are not used
+  depth_only.ntex = 0;
+  depth_only.vis.quality.shadowsize = 0;
+  Offscreen offscreen(depth_only, tile_width, tile_height);
   SliceScene scene(cut.size());
   Bounds all;
   for (const CutGeom& geom : cut) all.extend(geom.bounds);

@@ -1,7 +1,8 @@
 #include "app/scoring/metric_infos.h"
 
+#include <fnmatch.h>
+
 #include <algorithm>
-#include <regex>
 #include <span>
 #include <string_view>
 
@@ -272,9 +273,9 @@ void add_goal(Collector& collector, const std::string& group, const std::string&
 
 /// Whether `path` has the form of `pattern`, in which `*` stands for one or more parts.
 bool matches(const std::string& pattern, const std::string& path) {
-  std::string expression;
-  for (const char c : pattern) expression += c == '*' ? ".+" : c == '.' ? "\\." : std::string(1, c);
-  return std::regex_match(path, std::regex(expression));
+  std::string glob;
+  for (const char c : pattern) glob += c == '*' ? "?*" : std::string(1, c);
+  return fnmatch(glob.c_str(), path.c_str(), 0) == 0;
 }
 
 }  // namespace
