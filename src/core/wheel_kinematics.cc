@@ -68,12 +68,12 @@ std::vector<Contact> contacts_of(const RobotDescription& robot, const Differenti
     return contacts;
   }
   for (const WheelGeometry& wheel : fixed_wheels(robot))
-    contacts.push_back({.x_m = wheel.center_in_body.x() - geometry.turn_center_x_m});
+    contacts.push_back({.x_m = wheel.center_in_body.x() - geometry.middle_x_m});
   if (!robot.center_of_mass_x_m) return contacts;
   double variance_m2 = 0.0;
   for (const Contact& contact : contacts)
     variance_m2 += contact.x_m * contact.x_m / static_cast<double>(contacts.size());
-  const double offset_m = *robot.center_of_mass_x_m - geometry.turn_center_x_m;
+  const double offset_m = *robot.center_of_mass_x_m - geometry.middle_x_m;
   for (Contact& contact : contacts) contact.load = std::max(0.0, 1.0 + contact.x_m * offset_m / variance_m2);
   return contacts;
 }
@@ -199,7 +199,7 @@ DifferentialGeometry differential_geometry(const RobotDescription& robot) {
   return {.gauge_m = left_y / num_left - right_y / (count - num_left),
           .contact_length_m = front - rear,
           .rolling_radius_m = radius / count,
-          .turn_center_x_m = has_rollers(robot) ? 0.0 : x / count};
+          .middle_x_m = has_rollers(robot) ? 0.0 : x / count};
 }
 
 // With the sides at -+u and the robot at yaw rate w about x = c, contact i of the right side slides over the ground at
@@ -209,7 +209,7 @@ DifferentialGeometry differential_geometry(const RobotDescription& robot) {
 //   sum_i N_i (B/2 k - x_i (x_i - c)) / sqrt(k^2 + (x_i - c)^2) = 0.
 SkidTurn skid_turn(const RobotDescription& robot) {
   const DifferentialGeometry geometry = differential_geometry(robot);
-  SkidTurn turn{.turn_center_x_m = geometry.turn_center_x_m};
+  SkidTurn turn{.turn_center_x_m = geometry.middle_x_m};
   if (has_rollers(robot)) {
     turn.gauge_ratio = mecanum_gauge_ratio(robot);
     return turn;
@@ -247,7 +247,7 @@ WheelCommand wheel_command(const RobotDescription& robot, double forward_mps, do
                            double effective_gauge_ratio, const std::vector<double>& last_angle_rad,
                            double lateral_mps) {
   if (has_rollers(robot)) return mecanum_command(robot, {forward_mps, lateral_mps, yaw_rate_radps});
-  const double center_x_m = differential_geometry(robot).turn_center_x_m;
+  const double center_x_m = differential_geometry(robot).middle_x_m;
   const double yaw_rate = wheel_drive_type(robot) == WheelDriveType::kAckermann
                               ? within_steering_limits(robot, forward_mps, yaw_rate_radps, center_x_m)
                               : yaw_rate_radps * effective_gauge_ratio;
@@ -293,7 +293,7 @@ WheelMotion mecanum_motion(const RobotDescription& robot, const std::vector<doub
 
 double min_turning_radius_m(const RobotDescription& robot) {
   if (wheel_drive_type(robot) != WheelDriveType::kAckermann) return 0.0;
-  const double center_x_m = differential_geometry(robot).turn_center_x_m;
+  const double center_x_m = differential_geometry(robot).middle_x_m;
   constexpr double kMore_radps = 1e6;
   const double left = within_steering_limits(robot, 1.0, kMore_radps, center_x_m),
                right = -within_steering_limits(robot, 1.0, -kMore_radps, center_x_m);

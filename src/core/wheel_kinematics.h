@@ -34,14 +34,13 @@ bool has_rollers(const RobotDescription& robot);
 /// Returns the type of drive. Throws InputError for a robot without driven wheels on both sides.
 WheelDriveType wheel_drive_type(const RobotDescription& robot);
 
-/// Left and right wheels or tracks that are not steered. Their mean speed is the forward speed of the turn center,
-/// which is the body origin for mecanum wheels.
+/// Left and right wheels or tracks that are not steered.
 struct DifferentialGeometry {
   double gauge_m = 0.0;           ///< distance between the center lines of the two sides
   double contact_length_m = 0.0;  ///< distance between the first and the last contact of a side with the ground
   double rolling_radius_m = 0.0;  ///< mean wheel radius, or pitch radius of the sprockets
-  double turn_center_x_m = 0.0;   ///< longitudinal position in body of the point that moves straight ahead in a turn,
-                                  ///< if all wheels carry the same load
+  double middle_x_m = 0.0;        ///< longitudinal position in body of the middle of these wheels; 0 for tracks and
+                                  ///< mecanum wheels
 };
 
 /// Returns the geometry of the tracks, or of the wheels that are not steered and, if any of these is driven, driven.

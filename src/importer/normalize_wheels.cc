@@ -11,11 +11,17 @@
 namespace patrol::importer {
 namespace {
 
+constexpr double kAssumedSpeedRadius_m = 0.1;  // of the smallest wheels at kAssumedSpeed_mps
 constexpr double kTorqueReserve = 1.5;  // loads differ, and wheels that skid sideways need the torque of friction
 
 /// Returns the torque of the friction of a tire, N m, if the driven wheels carry the robot.
 double traction_of(const FoundWheel& wheel, std::size_t num_driven, double mass_kg) {
   return kFriction * mass_kg * kGravity * wheel.radius_m / static_cast<double>(num_driven);
+}
+
+/// Returns the speed limit of a drive whose file has none: that of small robots falls with the square root of their size.
+double assumed_speed_mps(double wheel_radius_m) {
+  return kAssumedSpeed_mps * std::sqrt(std::min(1.0, wheel_radius_m / kAssumedSpeedRadius_m));
 }
 
 }  // namespace
@@ -36,8 +42,9 @@ Motor Normalizer::motor_of(const FoundWheel& wheel, std::size_t num_driven, doub
            "<limit effort> of the joint");
   }
   if (motor.velocity_radps <= 0.0) {
-    motor.velocity_radps = kAssumedSpeed_mps / wheel.radius_m;
-    assume(wheel.joint->name, fmt::format("speed limit {:.3g} rad/s: {} m/s", motor.velocity_radps, kAssumedSpeed_mps),
+    const double speed_mps = assumed_speed_mps(wheel.radius_m);
+    motor.velocity_radps = speed_mps / wheel.radius_m;
+    assume(wheel.joint->name, fmt::format("speed limit {:.3g} rad/s: {:.2g} m/s", motor.velocity_radps, speed_mps),
            "<limit velocity> of the joint");
   }
   return motor;

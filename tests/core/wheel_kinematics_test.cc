@@ -79,7 +79,7 @@ TEST(SkidRatio, OfTwoWheelsIsOneWhereverTheAxleAndTheCasterAre) {
   caster.is_caster = true;
   two.wheels.push_back(caster);
   EXPECT_DOUBLE_EQ(skid_ratio(two), 1.0);
-  EXPECT_DOUBLE_EQ(differential_geometry(two).turn_center_x_m, 0.2);
+  EXPECT_DOUBLE_EQ(differential_geometry(two).middle_x_m, 0.2);
   EXPECT_DOUBLE_EQ(differential_geometry(two).gauge_m, 0.6);
 }
 
@@ -287,7 +287,7 @@ TEST(MecanumKinematics, TheGaugeRatioIsOnePlusWheelbaseOverGaugeAndTheRobotTurns
   EXPECT_EQ(wheel_drive_type(robot), WheelDriveType::kMecanum);
   EXPECT_NEAR(skid_ratio(robot), 1.0 + 0.4 / 0.3, 1e-9);
   EXPECT_EQ(min_turning_radius_m(robot), 0.0);
-  EXPECT_EQ(differential_geometry(robot).turn_center_x_m, 0.0);
+  EXPECT_EQ(differential_geometry(robot).middle_x_m, 0.0);
 }
 
 TEST(MecanumKinematics, RefusesOtherWheelsThanFourDrivenOnesThatAreNotSteeredAndRollersWithoutLever) {

@@ -228,6 +228,18 @@ TEST(PublicDescription, DampingThatBrakesMoreThanTheTiresHoldIsReducedWhateverTh
   EXPECT_THAT(light.robot.urdf, HasSubstr(R"(<dynamics damping="0.5" friction="0.5"/>)"));
 }
 
+TEST(PublicDescription, AMissingSpeedLimitIsLowerForSmallWheels) {
+  const auto assumptions_with = [](const std::string& z, double radius_m) {
+    Import import(robot(chassis() + wheel("left", "base_link", "0 0.25 " + z, radius_m, 0.04, "") +
+                        wheel("right", "base_link", "0 -0.25 " + z, radius_m, 0.04, "") + caster()));
+    import.load();
+    return import.assumptions();
+  };
+  EXPECT_THAT(assumptions_with("-0.1", 0.05), HasSubstr("speed limit 21.2 rad/s: 1.1 m/s"));
+  EXPECT_THAT(assumptions_with("-0.05", 0.1), HasSubstr("speed limit 15 rad/s: 1.5 m/s"));
+  EXPECT_THAT(assumptions_with("0.05", 0.2), HasSubstr("speed limit 7.5 rad/s: 1.5 m/s"));
+}
+
 TEST(PublicDescription, AMassAboveTwentyTonsIsReported) {
   Import import(robot(link("base_link", inertial(30000.0, "-0.1 0 0", 500.0) + shape("collision", box(0.6, 0.4, 0.2))) +
                       two_wheels() + caster()));

@@ -259,7 +259,7 @@ double travel_weight(const Costmap& costmap, const Eigen::Vector2d& p_map, doubl
 ManeuverPlanner::ManeuverPlanner(const ManeuverPlannerSettings& settings, const RobotDescription& robot)
     : settings_(settings),
       radius_m_(settings.radius_factor * min_turning_radius_m(steered(robot))),
-      T_body_center_{differential_geometry(robot).turn_center_x_m, 0.0, 0.0} {
+      T_body_center_{differential_geometry(robot).middle_x_m, 0.0, 0.0} {
   validate(settings, "navigation.maneuver_planner");
 }
 
