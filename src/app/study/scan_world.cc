@@ -54,7 +54,7 @@ std::string world_xml(const ScannedWorld& world) {
 /// Pose of a held-out scan: position on the ground.
 std::vector<Eigen::Vector3d> held_out_poses(const ScannedWorld& world, const RayWorld& truth, int count,
                                             std::uint64_t seed) {
-  constexpr double kClearance_m = 0.6;
+  constexpr double kPoseClearance_m = 0.6;
   constexpr int kMaxDraws = 100'000;
   std::vector<double> ends_m;
   std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> legs;
@@ -82,7 +82,7 @@ std::vector<Eigen::Vector3d> held_out_poses(const ScannedWorld& world, const Ray
       for (const double height_m : {0.25, kLidarHeight_m, kLidar3dHeight_m}) {
         is_free =
             is_free && !truth.scene().cast({p.x(), p.y(), ground_m + height_m}, {std::cos(angle), std::sin(angle), 0.0},
-                                           kClearance_m, sim::kRayScenery);
+                                           kPoseClearance_m, sim::kRayScenery);
       }
     }
     if (is_free) poses.emplace_back(p.x(), p.y(), ground_m);
