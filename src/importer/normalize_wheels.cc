@@ -19,7 +19,8 @@ double traction_of(const FoundWheel& wheel, std::size_t num_driven, double mass_
   return kFriction * mass_kg * kGravity * wheel.radius_m / static_cast<double>(num_driven);
 }
 
-/// Returns the speed limit of a drive whose file has none: that of small robots falls with the square root of their size.
+/// Returns the speed limit of a drive whose file has none: that of small robots falls with the square root of their
+/// size.
 double assumed_speed_mps(double wheel_radius_m) {
   return kAssumedSpeed_mps * std::sqrt(std::min(1.0, wheel_radius_m / kAssumedSpeedRadius_m));
 }
