@@ -315,7 +315,7 @@ void remove_feet(Panorama& scan) {
   }
 }
 
-using CubeIndex = std::array<int, 3>;
+using VoxelIndex = std::array<int, 3>;
 
 /// Removes narrow strips of points next to large moving objects, such as those of a side at a flat angle, of which each
 /// column of beams meets another part: too narrow to be looked through, not connected to the object, and observed by no
@@ -325,12 +325,12 @@ void remove_strips_at_moving(Panorama& scan) {
   constexpr int kMinPoints = 300, kMaxSteps = 4;
   const auto voxel_of = [&](Pixel pixel) {
     const Eigen::Vector3d p = scan.point(pixel) / kVoxel_m;
-    return CubeIndex{static_cast<int>(std::floor(p.x())), static_cast<int>(std::floor(p.y())),
-                     static_cast<int>(std::floor(p.z()))};
+    return VoxelIndex{static_cast<int>(std::floor(p.x())), static_cast<int>(std::floor(p.y())),
+                      static_cast<int>(std::floor(p.z()))};
   };
   const Runs runs(scan);
-  std::map<CubeIndex, int> num_moving;
-  std::map<CubeIndex, std::vector<Pixel>> strips;
+  std::map<VoxelIndex, int> num_moving;
+  std::map<VoxelIndex, std::vector<Pixel>> strips;
   for (int col = 0; col < scan.columns(); ++col) {
     for (int row = 0; row < scan.rows(); ++row) {
       const Pixel pixel{col, row};
@@ -341,13 +341,13 @@ void remove_strips_at_moving(Panorama& scan) {
       }
     }
   }
-  std::vector<CubeIndex> front;
+  std::vector<VoxelIndex> front;
   for (const auto& [voxel, count] : num_moving) {
     if (count >= kMinPoints) front.push_back(voxel);
   }
   for (int step = 0; step < kMaxSteps && !front.empty(); ++step) {
-    std::vector<CubeIndex> next;
-    for (const CubeIndex& at : front) {
+    std::vector<VoxelIndex> next;
+    for (const VoxelIndex& at : front) {
       for (int k = 0; k < 27; ++k) {
         const auto found = strips.find({at[0] + k % 3 - 1, at[1] + k / 3 % 3 - 1, at[2] + k / 9 - 1});
         if (found == strips.end()) continue;
