@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Checks the #include lines of src/: modules include only what the design allows, the robot's software and the
 evaluation never include the simulator, the robot's software never includes the ground truth, and no folders include each
-other in a cycle.
+other in a cycle. The top level of the repository holds nothing else.
 
 The checks themselves are tested on small source trees with planted violations.
 
@@ -9,6 +9,7 @@ usage: modules_test.py SOURCE_DIR
 """
 import pathlib
 import re
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -130,6 +131,15 @@ class Modules(unittest.TestCase):
     def test_every_module_is_known(self):
         modules = {path.name for path in SOURCE.iterdir() if path.is_dir()}
         self.assertEqual(modules, set(MAY_USE))
+
+    def test_the_top_level_holds_nothing_else(self):
+        if not (SOURCE.parent / ".git").exists():
+            self.skipTest("no checkout")
+        git = ["git", "-C", SOURCE.parent]
+        tracked = {name.partition("/")[0] for name in subprocess.check_output([*git, "ls-files"], text=True).split("\n")}
+        self.assertEqual({name for name in tracked if name and not name.startswith(".")},
+                         {"CMakeLists.txt", "CMakePresets.json", "README.md", "LICENSE", "CHANGELOG.md", "models", "src",
+                          "worlds", "tests", "tools"})
 
     def test_includes_follow_the_arrows(self):
         self.assertEqual(arrow_faults(self.includes), [])

@@ -2,6 +2,7 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <iostream>
@@ -40,6 +41,15 @@ int report(const std::string& what, ExitCode code) {
   return static_cast<int>(code);
 }
 
+/// Makes MuJoCo print its warnings and errors; it would write a file into the working directory. An error ends the
+/// program: MuJoCo allows no return from it.
+void print_messages_of_mujoco() {
+  mju_user_warning = [](const char* text) { report(fmt::format("mujoco: {}", text), ExitCode::kDone); };
+  mju_user_error = [](const char* text) {
+    std::_Exit(report(fmt::format("mujoco: {}", text), ExitCode::kProgramFailed));
+  };
+}
+
 /// Parses the command line and runs its command. Exceptions become one line on standard error.
 int run_parsed(CLI::App& app, Call& call, int argc, const char* const* argv) {
   try {
@@ -60,7 +70,7 @@ int run_parsed(CLI::App& app, Call& call, int argc, const char* const* argv) {
 }  // namespace
 
 int run_command_line(int argc, const char* const* argv) {
-  mju_user_warning = [](const char* text) { fmt::print(stderr, "mujoco: {}\n", text); };  // default: a file
+  print_messages_of_mujoco();
   CLI::App app("Patrol: a digital twin for inspection robots");
   app.set_version_flag("--version", PATROL_VERSION);
   app.require_subcommand(1);
