@@ -2,7 +2,7 @@
 """Chromium shows the monitoring platform's page while robots report, and jsonschema holds what they send, and what the platform takes, to
 the published schema.
 
-usage: monitor_test.py PATROL REPORTING_ROBOT
+usage: monitor_test.py PATROL REPORTING_ROBOT [TEST...]
 """
 import copy
 import datetime
@@ -30,6 +30,14 @@ INKED = """const canvas = document.querySelector(arguments[0]);
 const pixels = new Uint32Array(canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data.buffer);
 return pixels.filter((one) => one !== pixels[0]).length / pixels.length;"""
 
+# Counts the requests of the page that are not yet answered and handled.
+COUNT_REQUESTS = """window.openRequests = 0;
+const fetchOfBrowser = window.fetch;
+window.fetch = (...request) => {
+  ++window.openRequests;
+  return fetchOfBrowser(...request).finally(() => setTimeout(() => --window.openRequests, 50));
+};"""
+
 
 def open_browser():
     options = webdriver.ChromeOptions()
@@ -37,7 +45,9 @@ def open_browser():
     for argument in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--hide-scrollbars"):
         options.add_argument(argument)
     options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
-    return webdriver.Chrome(options=options, service=webdriver.ChromeService(DRIVER))
+    browser = webdriver.Chrome(options=options, service=webdriver.ChromeService(DRIVER))
+    browser.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": COUNT_REQUESTS})
+    return browser
 
 
 class Case(PlatformCase):
@@ -52,24 +62,12 @@ class Case(PlatformCase):
             raise RuntimeError(f"{name} could not report")
 
 
-class Page(Case):
+class PageCase(Case):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        cls.run_robot("tracked-1", "tunnel", run="first")
-        cls.run_robot("tracked-1", "tunnel", run="second")
-        cls.run_robot("spot-1", "street")
-        cls.platform.post([event(1, robot=NASTY, subject=NASTY, text=NASTY, world=NASTY), event(2, "note", NASTY, NASTY, robot=NASTY, world=NASTY)])
         cls.browser = open_browser()
         cls.addClassCleanup(cls.browser.quit)
-
-    def show(self, width, robot=None):
-        self.browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": width < 600})
-        self.browser.get(self.platform.url + "/")
-        self.wait("return document.querySelectorAll('.robots b').length >= 3 && document.querySelectorAll('#history tbody tr').length > 0;")
-        if robot:
-            self.js("[...document.querySelectorAll('.robots button')].find((one) => one.querySelector('b').textContent === arguments[0]).click();", robot)
-            time.sleep(1.0)
 
     def js(self, script, *arguments):
         return self.browser.execute_script(script, *arguments)
@@ -79,6 +77,43 @@ class Page(Case):
         while not self.js(script):
             self.assertLess(time.monotonic(), end, script)
             time.sleep(0.05)
+
+
+class AlarmDelay(PageCase):
+    """Measures wall time: no other test runs beside it."""
+
+    def test_an_alarm_is_on_the_page_within_two_seconds(self):
+        self.browser.get(self.platform.url + "/")
+        self.wait("return document.querySelector('#live').textContent === 'live';")
+        robot = self.start_robot("spot-2", "street", seconds=3.0)
+        self.wait("return [...document.querySelectorAll('.alarms li')].some((one) => one.textContent.includes('spot-2'));", 15.0)
+        seen = datetime.datetime.now(datetime.timezone.utc)
+        robot.wait(timeout=60)
+        results = [json.loads(line) for line in (self.path / "run_street_spot-2/outbox.jsonl").read_text().splitlines()]
+        alarm = next(one for one in results if one["kind"] == "event" and one["data"]["kind"] == "gas_alarm")
+        late_s = (seen - datetime.datetime.fromisoformat(alarm["made_utc"])).total_seconds()
+        print(f"alarm on the page after {late_s:.2f} s")
+        self.assertLess(late_s, 2.0)
+        self.assertGreater(late_s, 0.0)
+
+
+class Page(PageCase):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        spot = cls.start_robot("spot-1", "street")
+        cls.run_robot("tracked-1", "tunnel", run="first")
+        cls.run_robot("tracked-1", "tunnel", run="second")
+        spot.wait(timeout=60)
+        cls.platform.post([event(1, robot=NASTY, subject=NASTY, text=NASTY, world=NASTY), event(2, "note", NASTY, NASTY, robot=NASTY, world=NASTY)])
+
+    def show(self, width, robot=None):
+        self.browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": width < 600})
+        self.browser.get(self.platform.url + "/")
+        self.wait("return document.querySelectorAll('.robots b').length >= 3 && document.querySelectorAll('#history tbody tr').length > 0;")
+        if robot:
+            self.js("[...document.querySelectorAll('.robots button')].find((one) => one.querySelector('b').textContent === arguments[0]).click();", robot)
+            self.wait("return window.openRequests === 0;")
 
     def test_everything_is_drawn(self):
         for width in (360, 1280):
@@ -119,19 +154,6 @@ class Page(Case):
         self.assertGreater(len(asked), 8)
         self.assertEqual([url for url in asked if not url.startswith((self.platform.url + "/", "data:"))], [])
         self.assertEqual(self.browser.get_log("browser"), [])
-
-    def test_an_alarm_is_on_the_page_within_two_seconds(self):
-        self.show(1280)
-        robot = self.start_robot("spot-2", "street", seconds=3.0)
-        self.wait("return [...document.querySelectorAll('.alarms li')].some((one) => one.textContent.includes('spot-2'));", 15.0)
-        seen = datetime.datetime.now(datetime.timezone.utc)
-        robot.wait(timeout=60)
-        results = [json.loads(line) for line in (self.path / "run_street_spot-2/outbox.jsonl").read_text().splitlines()]
-        alarm = next(one for one in results if one["kind"] == "event" and one["data"]["kind"] == "gas_alarm")
-        late_s = (seen - datetime.datetime.fromisoformat(alarm["made_utc"])).total_seconds()
-        print(f"alarm on the page after {late_s:.2f} s")
-        self.assertLess(late_s, 2.0)
-        self.assertGreater(late_s, 0.0)
 
     def test_an_alarm_is_acknowledged_with_the_token_that_is_asked_for_once(self):
         self.platform.post([event(10 + i, robot="spot-9", text=f"Leak number {i}.") for i in range(2)])

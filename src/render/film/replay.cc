@@ -99,10 +99,13 @@ ReplayFilm::ReplayFilm(std::filesystem::path log_mcap, sim::AssembledModel model
   while (history_.end >= plan_.speed.run_time(num_frames_ / settings_.frames_per_second)) ++num_frames_;
 }
 
+int segment_size(int num_frames) { return std::clamp((num_frames + 15) / 16, 30, 300); }
+
 FilmSegments ReplayFilm::segments(int part, int num_parts) const {
+  const int size = settings_.frames_per_segment > 0 ? settings_.frames_per_segment : segment_size(num_frames_);
   return {.folder = out_.string() + ".segments",
           .extension = out_.extension().string(),
-          .frames_per_segment = can_join(out_) ? settings_.frames_per_segment : std::max(1, num_frames_),
+          .frames_per_segment = can_join(out_) ? size : std::max(1, num_frames_),
           .part = part,
           .num_parts = num_parts};
 }

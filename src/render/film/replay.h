@@ -28,7 +28,7 @@ struct ReplaySettings {
   int width = 1280;
   int height = 720;
   double frames_per_second = 30.0;
-  int frames_per_segment = 300;  ///< frames that one process renders in a row
+  int frames_per_segment = 0;  ///< frames that one process renders in a row; 0: as segment_size() gives
   Renderer renderer = Renderer::kAuto;
   std::optional<OccupancyGrid> map = {};      ///< map that the robot was given, in map; none for a mapping run
   sim::DustSettings dust = {};                ///< dust of the run
@@ -37,6 +37,10 @@ struct ReplaySettings {
   LightSettings light = {};
   std::vector<Highlight> announced = {};  ///< events known only to the scenario, e.g. injected faults
 };
+
+/// Returns the number of frames of a segment, 30 to 300: sixteen segments, which several processes share evenly. It
+/// does not depend on their number, because the bytes of the film depend on it.
+int segment_size(int num_frames);
 
 /// Called with the completed fraction, 0 ... 1. Returns false to interrupt the replay.
 using ReplayProgress = std::function<bool(double done)>;

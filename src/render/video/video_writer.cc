@@ -86,6 +86,7 @@ void VideoWriter::Encoder::set_quality() const {
   } else if (codec->codec_id == AV_CODEC_ID_H264) {
     av_opt_set(codec->priv_data, "preset", "veryfast", 0);
     av_opt_set(codec->priv_data, "crf", "23", 0);
+    av_opt_set(codec->priv_data, "mbtree", "0", 0);  // x264 164 reads memory there that it has not written
   } else {
     codec->flags |= AV_CODEC_FLAG_QSCALE;
     codec->global_quality = 4 * FF_QP2LAMBDA;

@@ -39,6 +39,7 @@ Lidar::Lidar(const LidarSettings& settings, const LidarScene& scene, Pose3 T_bod
       mask_(kRayEverything & ~static_cast<std::uint32_t>(own_housing)),
       dust_(dust),
       errors_(errors),
+      min_incidence_cosine_(std::cos(settings.max_incidence_deg * kDegree)),
       surfaces_(surface_optics(scene.model())),
       false_return_rate_per_m_(settings.false_return_rate_per_m +
                                dust.backscatter_probability * dust.extinction_per_m()),
@@ -298,7 +299,7 @@ Lidar::Return Lidar::to_return(const RayHit& hit, const Eigen::Vector3d& directi
   const double cosine = std::abs(hit.normal.dot(direction));
   const SurfaceOptics& surface = surfaces_[static_cast<std::size_t>(hit.geom)];
   if (surface.is_transparent_at(cosine)) return {kInfinity, 0.0};
-  if (cosine < std::cos(settings_.max_incidence_deg * kDegree)) return {kInfinity, 0.0};
+  if (cosine < min_incidence_cosine_) return {kInfinity, 0.0};
   // The returned light falls with the square of the range. range_max_m is reached on white, max_range_10pct_m on 10 %.
   const double reflectivity = std::max(0.02, static_cast<double>(surface.reflectivity));
   const double reach_m =

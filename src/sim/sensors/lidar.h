@@ -95,6 +95,7 @@ class Lidar {
   std::uint32_t mask_;
   DustSettings dust_;
   LidarErrors errors_;
+  double min_incidence_cosine_;          ///< cosine of the angle of incidence below which beams are lost
   std::vector<SurfaceOptics> surfaces_;  ///< [geom] of the view model
   double false_return_rate_per_m_;       ///< rate of false returns from rain and dust
   RandomStream range_noise_, is_wide_, wide_noise_, angle_noise_, dropout_, rain_, rain_range_, rate_noise_;

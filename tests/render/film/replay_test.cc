@@ -108,6 +108,14 @@ TEST_F(Replay, InThreePartsOfSegmentsIsTheSameFilm) {
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 3) << "no segments are left";
 }
 
+TEST(SegmentSize, IsASixteenthOfTheFilmFrom30To300Frames) {
+  EXPECT_EQ(segment_size(1), 30);
+  EXPECT_EQ(segment_size(480), 30);
+  EXPECT_EQ(segment_size(481), 31);
+  EXPECT_EQ(segment_size(1090), 69);
+  EXPECT_EQ(segment_size(9000), 300);
+}
+
 TEST_F(Replay, IsAnAnimatedPictureOfTheSameFrames) {
   const int num_frames = replay(log, model(), {}, settings, folder / "film.webp").num_frames;
   const std::string bytes = test::read_bytes(folder / "film.webp");

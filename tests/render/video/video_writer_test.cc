@@ -1,5 +1,8 @@
 #include "render/video/video_writer.h"
 
+#include <malloc.h>
+
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -39,6 +42,34 @@ TEST(VideoWriter, SameFramesGiveTheSameBytes) {
   write_film(folder / "a.mp4", 12);
   write_film(folder / "b.mp4", 12);
   EXPECT_EQ(test::read_bytes(folder / "a.mp4"), test::read_bytes(folder / "b.mp4"));
+}
+
+/// Film of moving tiles under noise, with the heap filled with `byte` before it is used.
+std::string bytes_of_film_on_heap_of(int byte, const std::filesystem::path& file) {
+  constexpr int kTile = 60;
+  mallopt(M_PERTURB, byte);
+  VideoWriter video(file, 320, 180, 30.0);
+  for (int i = 0; i < 12; ++i) {
+    Frame frame(320, 180);
+    std::uint32_t noise = 1U + static_cast<std::uint32_t>(i);
+    for (int y = 0; y < 180; ++y) {
+      for (int x = 0; x < 320; ++x) {
+        noise = 1664525U * noise + 1013904223U;
+        const auto tile = static_cast<std::uint32_t>((x + 9 * i) / kTile * 37 + y / kTile * 91);
+        const auto level = static_cast<std::uint8_t>((tile * 2654435761U >> 25) % 100 + (noise >> 30));
+        frame.at(x, y) = {level, static_cast<std::uint8_t>(level / 2 + y / 2), level};
+      }
+    }
+    video.add(frame);
+  }
+  video.finish();
+  mallopt(M_PERTURB, 0);
+  return test::read_bytes(file);
+}
+
+TEST(VideoWriter, TheBytesDoNotDependOnTheFormerContentOfTheHeap) {
+  const test::TemporaryFolder folder;
+  EXPECT_EQ(bytes_of_film_on_heap_of(5, folder / "a.mp4"), bytes_of_film_on_heap_of(9, folder / "b.mp4"));
 }
 
 TEST(VideoWriter, CanBePlayedBeforeAllOfItHasCome) {
