@@ -12,6 +12,7 @@ namespace patrol::importer {
 namespace {
 
 constexpr double kAssumedSpeedRadius_m = 0.1;  // of the smallest wheels at kAssumedSpeed_mps
+constexpr double kPlaceholderRatio = 10.0;     // of a speed limit to the assumed one
 constexpr double kTorqueReserve = 1.5;  // loads differ, and wheels that skid sideways need the torque of friction
 
 /// Returns the torque of the friction of a tire, N m, if the driven wheels carry the robot.
@@ -49,6 +50,19 @@ Motor Normalizer::motor_of(const FoundWheel& wheel, std::size_t num_driven, doub
            "<limit velocity> of the joint");
   }
   return motor;
+}
+
+/// Returns the speed of the robot at which a driven wheel reaches its limit. A limit that no robot of its size reaches
+/// is taken for a missing one.
+double Normalizer::speed_of(const FoundWheel& wheel, const Motor& motor) {
+  const double limit_mps = motor.velocity_radps * wheel.radius_m, assumed_mps = assumed_speed_mps(wheel.radius_m);
+  if (limit_mps <= kPlaceholderRatio * assumed_mps) return limit_mps;
+  assume(wheel.joint->name,
+         fmt::format(
+             "speed limit {:.4g} rad/s of the file, {:.2g} m/s, is kept for the motor; the robot drives at {:.2g} m/s",
+             motor.velocity_radps, limit_mps, assumed_mps),
+         "wheel_drive.max_speed_mps");
+  return assumed_mps;
 }
 
 /// Reduces damping and friction of a driven joint that its motor cannot overcome at full speed, or that brake the
@@ -180,7 +194,7 @@ void Normalizer::add_wheels() {
     if (driven_.contains(&joint)) {
       target.joint->motor = motor_of(wheel, driven_.size(), mass_kg);
       reduce_losses(joint, wheel.radius_m, traction_of(wheel, driven_.size(), mass_kg), *target.joint);
-      max_speed_mps = std::min(max_speed_mps, target.joint->motor->velocity_radps * wheel.radius_m);
+      max_speed_mps = std::min(max_speed_mps, speed_of(wheel, *target.joint->motor));
     }
     if (wheel.is_ball)
       assume(joint.child, fmt::format("width {:.3g} m: its shape is a sphere", wheel.width_m),

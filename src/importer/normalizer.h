@@ -155,6 +155,7 @@ class Normalizer {
   double total_mass_kg() const;
   void reduce_losses(const SourceJoint& joint, double radius_m, double traction_nm, NormalizedJoint& driven);
   void replace_heavy_inertia(const FoundWheel& wheel, const Shape& tread, Inertial& inertial);
+  double speed_of(const FoundWheel& wheel, const Motor& motor);
   Motor motor_of(const FoundWheel& wheel, std::size_t num_driven, double mass_kg);
   NormalizedLink& base() { return result_.links.front(); }
 

@@ -240,6 +240,25 @@ TEST(PublicDescription, AMissingSpeedLimitIsLowerForSmallWheels) {
   EXPECT_THAT(assumptions_with("0.05", 0.2), HasSubstr("speed limit 7.5 rad/s: 1.5 m/s"));
 }
 
+TEST(PublicDescription, ASpeedLimitThatNoRobotReachesIsTakenForAMissingOne) {
+  const auto import_with = [](const std::string& velocity) {
+    const std::string motor = R"(<limit effort="5" velocity=")" + velocity + R"("/>)";
+    Import import(robot(chassis() + wheel("left", "base_link", "0 0.25 -0.1", 0.05, 0.04, motor) +
+                        wheel("right", "base_link", "0 -0.25 -0.1", 0.05, 0.04, motor) + caster()));
+    import.load();
+    return std::pair{import.assumptions(), import.robot.settings};
+  };
+  const auto [assumed, settings] = import_with("1000");  // 50 m/s
+  EXPECT_THAT(
+      assumed,
+      HasSubstr("| left_joint, right_joint | speed limit 1000 rad/s of the file, 50 m/s, is kept for the motor; "
+                "the robot drives at 1.1 m/s | wheel_drive.max_speed_mps |"));
+  EXPECT_THAT(settings, HasSubstr("wheel_drive: {max_speed_mps: 1.06}"));
+  const auto [fast_assumed, fast_settings] = import_with("200");  // 10 m/s, less than ten times the assumed 1.06 m/s
+  EXPECT_THAT(fast_assumed, Not(HasSubstr("is kept for the motor")));
+  EXPECT_THAT(fast_settings, HasSubstr("wheel_drive: {max_speed_mps: 1.50}"));
+}
+
 TEST(PublicDescription, AMassAboveTwentyTonsIsReported) {
   Import import(robot(link("base_link", inertial(30000.0, "-0.1 0 0", 500.0) + shape("collision", box(0.6, 0.4, 0.2))) +
                       two_wheels() + caster()));
