@@ -14,8 +14,12 @@
 namespace patrol::sim {
 namespace {
 
-/// Removes every geom that cannot be in contact. Masses are explicit in the files, so nothing else changes.
-void strip_visual_geoms(mjSpec& spec) { spec.compiler.discardvisual = true; }
+/// Removes every geom that cannot be in contact, and the images. Masses are explicit in the files, so nothing else
+/// changes.
+void strip_visuals(mjSpec& spec) {
+  spec.compiler.discardvisual = true;
+  drop_textures(spec);
+}
 
 SpecPtr load_world(const std::string& world_xml, const std::vector<StaticObstacleSettings>& obstacles) {
   SpecPtr spec = load_spec(world_xml);
@@ -23,8 +27,8 @@ SpecPtr load_world(const std::string& world_xml, const std::vector<StaticObstacl
   return spec;
 }
 
-double start_height_m(const std::string& world_xml, mjSpec& world, const Stance& stance, const Pose2& T_world_start) {
-  strip_visual_geoms(world);
+double height_in(mjSpec& world, const std::string& world_xml, const Stance& stance, const Pose2& T_world_start) {
+  strip_visuals(world);
   const ModelPtr model = compile(world, world_xml);
   const DataPtr data = make_data(*model);
   mj_forward(model.get(), data.get());
@@ -122,14 +126,16 @@ std::string mjcf_of(const RobotUrdf& robot_urdf, const RobotDescription& robot) 
 }
 
 AssembledModel assemble_model(const std::string& world_xml, const RobotUrdf& robot_urdf, const RobotDescription& robot,
-                              const Pose2& T_world_start, const std::vector<StaticObstacleSettings>& obstacles) {
+                              const Pose2& T_world_start, const std::vector<StaticObstacleSettings>& obstacles,
+                              Textures textures) {
   AssembledModel assembled;
   assembled.stance = to_stance(robot_urdf, robot);
-  const double height_m = start_height_m(world_xml, *load_world(world_xml, obstacles), assembled.stance, T_world_start);
+  const double height_m = height_in(*load_world(world_xml, obstacles), world_xml, assembled.stance, T_world_start);
   const SpecPtr view = load_world(world_xml, obstacles), physics = load_world(world_xml, obstacles);
   for (mjSpec* spec : {view.get(), physics.get()})
     add_robot(*spec, robot_urdf, robot, to_pose3(T_world_start, height_m));
-  strip_visual_geoms(*physics);
+  if (textures == Textures::kNone) drop_textures(*view);
+  strip_visuals(*physics);
   enable_sleep(*physics);
   assembled.view = compile(*view, world_xml);
   assembled.physics = compile(*physics, world_xml);
@@ -139,6 +145,11 @@ AssembledModel assemble_model(const std::string& world_xml, const RobotUrdf& rob
   stow_antenna(model, assembled.start_qpos.data());
   refuse_start_in_collision(model, assembled.start_qpos, T_world_start);
   return assembled;
+}
+
+double start_height_m(const std::string& world_xml, const RobotUrdf& robot_urdf, const RobotDescription& robot,
+                      const Pose2& T_world_start) {
+  return height_in(*load_spec(world_xml), world_xml, to_stance(robot_urdf, robot), T_world_start);
 }
 
 }  // namespace patrol::sim

@@ -20,11 +20,21 @@ struct AssembledModel {
   Stance stance;                   ///< stance of `start_qpos`
 };
 
+/// Whether a model has the images of its textures. Only renders in color need them; their decoding takes as long as the
+/// rest of the compilation.
+enum class Textures { kLoaded, kNone };
+
 /// Adds the robot of a URDF, which `robot` describes, and static obstacles to the world of an MJCF file, with the robot
 /// standing on the ground at `T_world_start`. Throws InputError when a file is invalid or the start pose is inside an
 /// object.
 AssembledModel assemble_model(const std::string& world_xml, const RobotUrdf& robot_urdf, const RobotDescription& robot,
-                              const Pose2& T_world_start, const std::vector<StaticObstacleSettings>& obstacles = {});
+                              const Pose2& T_world_start, const std::vector<StaticObstacleSettings>& obstacles = {},
+                              Textures textures = Textures::kLoaded);
+
+/// Returns the height of `base_link` in world, m, of a robot that stands at `T_world_start` in the world of an MJCF
+/// file. Throws InputError when a file is invalid or no ground is below.
+double start_height_m(const std::string& world_xml, const RobotUrdf& robot_urdf, const RobotDescription& robot,
+                      const Pose2& T_world_start);
 
 /// Returns the MJCF of a robot, which `robot` describes, on a plane, with the keyframe "standing" of its start posture.
 /// It contains absolute paths of the robot's meshes. Throws InputError if the URDF is invalid.

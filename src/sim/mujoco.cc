@@ -42,6 +42,19 @@ ModelPtr compile(mjSpec& spec, const std::string& name) {
   return model;
 }
 
+void drop_textures(mjSpec& spec) {
+  for (mjsElement* element = mjs_firstElement(&spec, mjOBJ_TEXTURE); element != nullptr;
+       element = mjs_nextElement(&spec, element)) {
+    mjsTexture& texture = *mjs_asTexture(element);
+    mjs_setString(texture.file, "");
+    mjs_setStringVec(texture.cubefiles, "");
+    texture.type = mjTEXTURE_2D;
+    texture.builtin = mjBUILTIN_FLAT;
+    texture.mark = mjMARK_NONE;
+    texture.width = texture.height = 1;
+  }
+}
+
 DataPtr make_data(const mjModel& model) {
   DataPtr data(mj_makeData(&model));
   if (!data) throw std::runtime_error("MuJoCo: allocation of mjData failed");

@@ -26,6 +26,9 @@ SpecPtr load_spec(const std::string& path);
 SpecPtr parse_spec(const std::string& xml);
 ModelPtr compile(mjSpec& spec, const std::string& name);
 
+/// Replaces the images of all textures by one texel, which takes no time to compile.
+void drop_textures(mjSpec& spec);
+
 DataPtr make_data(const mjModel& model);
 
 /// Returns the name of an element of the model; empty if it has none.

@@ -1,5 +1,6 @@
 #include "sim/model_assembly.h"
 
+#include <algorithm>
 #include <fstream>
 #include <memory>
 #include <regex>
@@ -57,6 +58,26 @@ std::string error_text(Call call) {
     return error.what();
   }
   return "accepted";
+}
+
+TEST_F(StreetAssembly, WithoutTexturesDiffersInImagesOnly) {
+  const AssembledModel bare =
+      assemble_model(kStreetXml, kRobotUrdf, io::load_robot_description(kRobotUrdf), kStreetStart, {}, Textures::kNone);
+  const mjModel &with = *street().view, &without = *bare.view;
+  EXPECT_GT(with.ntexdata, 1'000'000);
+  EXPECT_EQ(without.ntexdata, 3 * without.ntex) << "one texel each";
+  ASSERT_EQ(with.ntex, without.ntex);
+  ASSERT_EQ(with.ngeom, without.ngeom);
+  ASSERT_EQ(with.nmat, without.nmat);
+  EXPECT_TRUE(std::equal(with.geom_pos, with.geom_pos + 3 * with.ngeom, without.geom_pos));
+  EXPECT_TRUE(std::equal(with.geom_matid, with.geom_matid + with.ngeom, without.geom_matid));
+  EXPECT_TRUE(std::equal(with.mat_rgba, with.mat_rgba + 4 * with.nmat, without.mat_rgba));
+  EXPECT_EQ(bare.start_qpos, street().start_qpos);
+}
+
+TEST_F(StreetAssembly, StartHeightIsThatOfTheBody) {
+  EXPECT_EQ(start_height_m(kStreetXml, kRobotUrdf, io::load_robot_description(kRobotUrdf), kStreetStart),
+            street().start_qpos[2]);
 }
 
 TEST_F(StreetAssembly, EachLinksMassIsThatOfTheUrdfAndTheRobotWeighs12To17Kilograms) {

@@ -29,6 +29,7 @@ double mean_lidar_height_m(const RunRecord& record, const ScenarioFiles& files) 
 
 TrueMap true_map(const RunRecord& record, const Scenario& scenario, const ScenarioFiles& files) {
   const sim::SpecPtr spec = sim::load_spec(files.world_xml.string());
+  sim::drop_textures(*spec);
   TrueMap truth{.world = sim::compile(*spec, files.world_xml.string()),
                 .lidar_height_m = mean_lidar_height_m(record, files),
                 .reference = {}};

@@ -43,8 +43,9 @@ std::unique_ptr<Locomotion> make_locomotion(const SimulatorSettings& settings, c
 }
 
 AssembledModel assemble(const SimulatorSettings& settings, const AsBuiltRobot& robot) {
-  AssembledModel model = assemble_model(settings.world_xml, settings.robot_urdf, robot.nominal(),
-                                        robot.start(settings.T_world_start), settings.static_obstacles);
+  AssembledModel model =
+      assemble_model(settings.world_xml, settings.robot_urdf, robot.nominal(), robot.start(settings.T_world_start),
+                     settings.static_obstacles, Textures::kNone);
   apply_as_built(robot, *model.physics);
   deform_lining(settings.lining_deformations, settings.lining, *model.view);
   return model;
