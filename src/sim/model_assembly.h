@@ -20,8 +20,7 @@ struct AssembledModel {
   Stance stance;                   ///< stance of `start_qpos`
 };
 
-/// Whether a model has the images of its textures. Only renders in color need them; their decoding takes as long as the
-/// rest of the compilation.
+/// Whether a model has the images of its textures. Only renders in color need them.
 enum class Textures { kLoaded, kNone };
 
 /// Adds the robot of a URDF, which `robot` describes, and static obstacles to the world of an MJCF file, with the robot

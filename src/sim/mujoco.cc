@@ -52,6 +52,7 @@ void drop_textures(mjSpec& spec) {
     texture.builtin = mjBUILTIN_FLAT;
     texture.mark = mjMARK_NONE;
     texture.width = texture.height = 1;
+    texture.nchannel = 3;
   }
 }
 

@@ -75,6 +75,18 @@ TEST_F(StreetAssembly, WithoutTexturesDiffersInImagesOnly) {
   EXPECT_EQ(bare.start_qpos, street().start_qpos);
 }
 
+TEST(DropTextures, NeedsNoFileOfAnyKindOfTexture) {
+  const SpecPtr spec = parse_spec(R"(<mujoco><asset><texture name="sky" type="skybox" file="none.png" gridsize="3 4"/>
+      <texture name="grid" type="2d" file="none.png" nchannel="4"/><texture name="side" type="cube" fileright="none.png"/>
+      <texture name="check" type="2d" builtin="checker" mark="edge" width="512" height="512"/>
+      <material name="wall" texture="grid"/></asset>
+      <worldbody><geom name="wall" type="box" size="1 1 1" material="wall"/></worldbody></mujoco>)");
+  drop_textures(*spec);
+  const ModelPtr model = compile(*spec, "test");
+  EXPECT_EQ(model->ntex, 4);
+  EXPECT_EQ(model->ntexdata, 3 * 4);
+}
+
 TEST_F(StreetAssembly, StartHeightIsThatOfTheBody) {
   EXPECT_EQ(start_height_m(kStreetXml, kRobotUrdf, io::load_robot_description(kRobotUrdf), kStreetStart),
             street().start_qpos[2]);
