@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include <fmt/format.h>
+
 #include "core/error.h"
 #include "sim/height_field_contact.h"
 
@@ -18,6 +20,28 @@ std::string one_line(std::string text) {
   return text;
 }
 
+template <typename Visitor>
+void for_each_texture(mjSpec& spec, Visitor&& visit) {
+  for (mjsElement* element = mjs_firstElement(&spec, mjOBJ_TEXTURE); element != nullptr;
+       element = mjs_nextElement(&spec, element))
+    visit(*mjs_asTexture(element));
+}
+
+/// Models are compiled without textures where nothing is rendered, so that MuJoCo does not notice a missing image.
+void refuse_missing_images(mjSpec& spec, const std::string& path) {
+  for_each_texture(spec, [&](const mjsTexture& texture) {
+    const std::filesystem::path file = mjs_getString(texture.file);
+    const mjSpec& origin = *mjs_getOriginSpec(texture.element);
+    const std::filesystem::path image = std::filesystem::path(mjs_getString(origin.modelfiledir)) /
+                                        mjs_getString(origin.compiler.texturedir) /
+                                        (origin.strippath ? file.filename() : file);
+    if (file.empty() || std::filesystem::is_regular_file(image)) return;
+    throw InputError(fmt::format("{}: texture '{}': {} cannot be read ({})", path,
+                                 mjs_getString(mjs_getName(texture.element)), image.string(),
+                                 mjs_getString(texture.info)));
+  });
+}
+
 }  // namespace
 
 SpecPtr load_spec(const std::string& path) {
@@ -25,6 +49,7 @@ SpecPtr load_spec(const std::string& path) {
   std::array<char, 1024> error{};
   SpecPtr spec(mj_parseXML(path.c_str(), nullptr, error.data(), error.size()));
   if (!spec) throw InputError(path + ": " + one_line(error.data()));
+  refuse_missing_images(*spec, path);
   return spec;
 }
 
@@ -43,17 +68,16 @@ ModelPtr compile(mjSpec& spec, const std::string& name) {
 }
 
 void drop_textures(mjSpec& spec) {
-  for (mjsElement* element = mjs_firstElement(&spec, mjOBJ_TEXTURE); element != nullptr;
-       element = mjs_nextElement(&spec, element)) {
-    mjsTexture& texture = *mjs_asTexture(element);
+  for_each_texture(spec, [](mjsTexture& texture) {
+    const bool has_file_per_side = *mjs_getString(texture.file) == '\0' && texture.builtin == mjBUILTIN_NONE;
+    if (has_file_per_side) return;
     mjs_setString(texture.file, "");
-    mjs_setStringVec(texture.cubefiles, "");
     texture.type = mjTEXTURE_2D;
     texture.builtin = mjBUILTIN_FLAT;
     texture.mark = mjMARK_NONE;
     texture.width = texture.height = 1;
     texture.nchannel = 3;
-  }
+  });
 }
 
 DataPtr make_data(const mjModel& model) {

@@ -21,12 +21,12 @@ using DataPtr = std::unique_ptr<mjData, Deleter<mj_deleteData>>;
 using SpecPtr = std::unique_ptr<mjSpec, Deleter<mj_deleteSpec>>;
 
 /// Loads, parses or compiles a model. Throws InputError with MuJoCo's message, which names the line, when the model is
-/// invalid.
+/// invalid. A file also has to have the images of its textures.
 SpecPtr load_spec(const std::string& path);
 SpecPtr parse_spec(const std::string& xml);
 ModelPtr compile(mjSpec& spec, const std::string& name);
 
-/// Replaces the images of all textures by one texel, which takes no time to compile.
+/// Replaces the images of all textures by one texel, which takes no time to compile. A cube with a file per side stays.
 void drop_textures(mjSpec& spec);
 
 DataPtr make_data(const mjModel& model);

@@ -1,6 +1,7 @@
 #include "sim/model_assembly.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <regex>
@@ -75,16 +76,33 @@ TEST_F(StreetAssembly, WithoutTexturesDiffersInImagesOnly) {
   EXPECT_EQ(bare.start_qpos, street().start_qpos);
 }
 
-TEST(DropTextures, NeedsNoFileOfAnyKindOfTexture) {
+TEST(DropTextures, NeedsNoFileOfATexture) {
   const SpecPtr spec = parse_spec(R"(<mujoco><asset><texture name="sky" type="skybox" file="none.png" gridsize="3 4"/>
-      <texture name="grid" type="2d" file="none.png" nchannel="4"/><texture name="side" type="cube" fileright="none.png"/>
+      <texture name="grid" type="2d" file="none.png" nchannel="4"/>
       <texture name="check" type="2d" builtin="checker" mark="edge" width="512" height="512"/>
       <material name="wall" texture="grid"/></asset>
       <worldbody><geom name="wall" type="box" size="1 1 1" material="wall"/></worldbody></mujoco>)");
   drop_textures(*spec);
   const ModelPtr model = compile(*spec, "test");
-  EXPECT_EQ(model->ntex, 4);
-  EXPECT_EQ(model->ntexdata, 3 * 4);
+  EXPECT_EQ(model->ntex, 3);
+  EXPECT_EQ(model->ntexdata, 3 * 3);
+}
+
+// MuJoCo itself notices a missing image only where it compiles the texture.
+TEST(LoadSpec, RefusesATextureWithoutItsImageEvenWhereNoTextureIsCompiled) {
+  const auto world = [](const std::string& directory, const std::string& file) {
+    return test::TemporaryFile("world.xml", "<mujoco>\n<compiler texturedir='" + directory +
+                                                "'/><asset>\n<texture name='wall' type='cube' file='" + file +
+                                                "'/></asset></mujoco>");
+  };
+  const std::string images = PATROL_SOURCE_DIR "/worlds/tunnel/textures";
+  EXPECT_EQ(error_text([&] { load_spec(world(images, "concrete.png").path()); }), "accepted");
+  const test::TemporaryFile missing = world(images, "none.png");
+  EXPECT_EQ(error_text([&] { load_spec(missing.path()); }),
+            missing.path() + ": texture 'wall': " + images + "/none.png cannot be read (line 3)");
+  const test::TemporaryFile beside = world("", "none.png");
+  EXPECT_THAT(error_text([&] { load_spec(beside.path()); }),
+              HasSubstr(std::filesystem::path(beside.path()).parent_path().string() + "/none.png cannot be read"));
 }
 
 TEST_F(StreetAssembly, StartHeightIsThatOfTheBody) {
