@@ -20,6 +20,8 @@ class DivergenceMonitor {
   void add_scan_fit(double fraction) { scan_fit_ += settings_.alpha_fast * (fraction - scan_fit_); }
   /// Adds the likelihood of a range relative to the maximum, 0 ... 1.
   void add_range(double likelihood) { range_fit_ += settings_.alpha_range * (likelihood - range_fit_); }
+  /// Sets the mean range likelihood of a pose that does not continue the former one.
+  void set_range_fit(double likelihood) { range_fit_ = likelihood; }
   /// Clears all averages after the pose was set externally.
   void reset() { *this = DivergenceMonitor(settings_); }
 

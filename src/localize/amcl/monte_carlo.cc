@@ -115,7 +115,7 @@ LocalizationUpdate MonteCarloLocalizer::update(const LevelScan& input_scan, cons
   }
 
   propagate_particles(cloud_, T_before_now, dt_s, settings_.odometry, motion_noise_, updates_);
-  const RefinedPose refined = update_weights(scan, ranges_.ranges_since(last_update_stamp_, T_odom_body));
+  const RefinedPose refined = update_weights(scan, T_odom_body, prediction);
   LocalizationUpdate update = describe(scan, refined);
   update.particles_updated = true;
   update.particles = logged_particles(scan.stamp);
@@ -157,8 +157,9 @@ void MonteCarloLocalizer::update_range_fit(const std::vector<AnchoredRange>& ran
 }
 
 // The pose combines the belief before the scan with the scan, each used once.
-RefinedPose MonteCarloLocalizer::update_weights(const LevelScan& scan, const std::vector<AnchoredRange>& ranges) {
-  for (const AnchoredRange& range : ranges) {
+RefinedPose MonteCarloLocalizer::update_weights(const LevelScan& scan, const Pose2& T_odom_body,
+                                                const slam::PoseGaussian& prediction) {
+  for (const AnchoredRange& range : ranges_.ranges_since(last_update_stamp_, T_odom_body)) {
     for (std::size_t i = 0; i < cloud_.size(); ++i) {
       cloud_.log_weights[i] += range_log_likelihood(range_innovation_m(range, cloud_.T_map_body[i]), settings_.ranges);
     }
@@ -178,16 +179,24 @@ RefinedPose MonteCarloLocalizer::update_weights(const LevelScan& scan, const std
   const std::vector<double> weights = normalized_weights(cloud_.log_weights);
 
   const std::vector<std::size_t> clusters = cluster_particles(cloud_.T_map_body, settings_.kld);
-  const DominantCluster dominant = find_dominant_cluster(clusters, weights);
-  cluster_weight_ = dominant.weight;
-  cluster_gaussian_ = cluster_gaussian(cloud_.T_map_body, weights, clusters, dominant.number);
-  slam::PoseGaussian prior = cluster_gaussian(cloud_.T_map_body, prior_weights, clusters, dominant.number);
+  const ParticleCluster dominant = find_dominant_cluster(clusters, weights);
+  const std::optional<ParticleCluster> tracked = find_cluster_near(prediction, cloud_.T_map_body, clusters, weights);
+  const ParticleCluster without_weight{.number = dominant.number, .weight = 0.0};
+  const ParticleCluster followed = is_lost_ ? dominant : tracked.value_or(without_weight);
+  cluster_weight_ = followed.weight;
+  cluster_gaussian_ = cluster_gaussian(cloud_.T_map_body, weights, clusters, followed.number);
+  slam::PoseGaussian prior = cluster_gaussian(cloud_.T_map_body, prior_weights, clusters, followed.number);
   if (!prior.covariance.allFinite()) prior = cluster_gaussian_;
   cluster_gaussian_.covariance.diagonal() += kMinStd.cwiseAbs2();
   prior.covariance.diagonal() += kMinStd.cwiseAbs2();
+  const std::vector<AnchoredRange> buffered = buffered_ranges(scan.stamp, T_odom_body);
+  if ((!tracked || tracked->number != followed.number) && !buffered.empty())
+    divergence_monitor_.set_range_fit(mean_range_likelihood(buffered, cluster_gaussian_.mean, settings_.ranges));
   return refine_pose(lines_, scan, prior, cluster_gaussian_.mean, settings_.scan_refinement);
 }
 
+// A pose that makes two more ranges outliers than the present one is not injected: a scan of a place that has changed
+// since it was mapped can look like that of another place, scan after scan.
 // An injected particle that contradicts ranges which the present pose explains starts with their likelihood ratio: the
 // cloud has been weighted by them, and the next update may not contain one that tells the two apart.
 int MonteCarloLocalizer::resample_and_inject(const LevelScan& scan, const Pose2& T_odom_body) {
@@ -207,12 +216,17 @@ int MonteCarloLocalizer::resample_and_inject(const LevelScan& scan, const Pose2&
       sample_poses(global_localization(scan, T_odom_body), num_injected, injection_noise_, updates_);
   const std::vector<AnchoredRange> ranges = buffered_ranges(scan.stamp, T_odom_body);
   const double present = ranges_log_likelihood(ranges, cluster_gaussian_.mean, settings_.ranges);
+  const double min_log_ranges = present + 1.5 * std::log(settings_.ranges.outlier_probability);
+  int injected = 0;
   for (std::size_t i = 0; i < poses.size(); ++i) {
+    const double log_ranges = ranges_log_likelihood(ranges, poses[i], settings_.ranges);
+    if (log_ranges < min_log_ranges) continue;
+    ++injected;
     const std::size_t replaced = i * cloud_.size() / poses.size();
     cloud_.T_map_body[replaced] = poses[i];
-    cloud_.log_weights[replaced] = std::min(0.0, ranges_log_likelihood(ranges, poses[i], settings_.ranges) - present);
+    cloud_.log_weights[replaced] = std::min(0.0, log_ranges - present);
   }
-  return static_cast<int>(poses.size());
+  return injected;
 }
 
 // Samples the scan proposal for every other particle near the pose. The rest, which depend on odometry and likelihood

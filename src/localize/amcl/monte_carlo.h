@@ -50,6 +50,9 @@ struct LocalizationUpdate {
 ///   every scan       predict the Gaussian by odometry -> match the scan to the map -> pose, covariance, confidence
 ///   particle update  propagate -> weight by ranges -> weight by scan -> match the scan to the map -> resample, inject
 ///
+/// A tracked pose does not jump. Another cluster than the one that continues it is published only after the robot was
+/// reported as lost, and only if the ranges do not contradict it.
+///
 /// The particle set represents multimodal beliefs: global localization, kidnapping, both directions of a tunnel. The
 /// published pose is a Gaussian: the prior is the dominant particle cluster before the scan, the update a scan match
 /// (pose_refinement.h). Accuracy: millimeters where the scan constrains the pose, otherwise the spread of the cluster.
@@ -85,7 +88,7 @@ class MonteCarloLocalizer {
   void start_from(const LevelScan& scan, const Pose2& T_odom_body);
   bool is_due(const Pose2& T_before_now, Time stamp) const;
   void update_range_fit(const std::vector<AnchoredRange>& ranges, const slam::PoseGaussian& prediction);
-  RefinedPose update_weights(const LevelScan& scan, const std::vector<AnchoredRange>& ranges);
+  RefinedPose update_weights(const LevelScan& scan, const Pose2& T_odom_body, const slam::PoseGaussian& prediction);
   int resample_and_inject(const LevelScan& scan, const Pose2& T_odom_body);
   void apply_scan_proposal(const RefinedPose& refined);
   void resample(const std::vector<double>& weights, std::size_t count);

@@ -3,7 +3,22 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/LU>
+
 namespace patrol::localize {
+namespace {
+
+constexpr double kNearSigmas = 3.0;
+const Eigen::Vector3d kNearStd(1.0, 1.0, 0.3);  // m, m, rad: added to the standard deviations of a pose
+constexpr double kMinClusterWeight = 1e-9;
+
+std::vector<double> weights_of_clusters(const std::vector<std::size_t>& clusters, const std::vector<double>& weights) {
+  std::vector<double> sums(clusters.size(), 0.0);
+  for (std::size_t i = 0; i < clusters.size(); ++i) sums[clusters[i]] += weights[i];
+  return sums;
+}
+
+}  // namespace
 
 std::vector<std::size_t> cluster_particles(const std::vector<Pose2>& T_map_body, const KldSettings& settings) {
   PoseBins bins(settings);
@@ -15,11 +30,28 @@ std::vector<std::size_t> cluster_particles(const std::vector<Pose2>& T_map_body,
   return clusters;
 }
 
-DominantCluster find_dominant_cluster(const std::vector<std::size_t>& clusters, const std::vector<double>& weights) {
-  std::vector<double> cluster_weights(clusters.size(), 0.0);
-  for (std::size_t i = 0; i < clusters.size(); ++i) cluster_weights[clusters[i]] += weights[i];
-  const auto dominant = std::max_element(cluster_weights.begin(), cluster_weights.end());
-  return {.number = static_cast<std::size_t>(dominant - cluster_weights.begin()), .weight = *dominant};
+ParticleCluster find_dominant_cluster(const std::vector<std::size_t>& clusters, const std::vector<double>& weights) {
+  const std::vector<double> sums = weights_of_clusters(clusters, weights);
+  const auto dominant = std::max_element(sums.begin(), sums.end());
+  return {.number = static_cast<std::size_t>(dominant - sums.begin()), .weight = *dominant};
+}
+
+std::optional<ParticleCluster> find_cluster_near(const slam::PoseGaussian& pose, const std::vector<Pose2>& T_map_body,
+                                                 const std::vector<std::size_t>& clusters,
+                                                 const std::vector<double>& weights) {
+  const std::vector<double> sums = weights_of_clusters(clusters, weights);
+  Eigen::Matrix3d covariance = pose.covariance;
+  covariance.diagonal() += kNearStd.cwiseAbs2();
+  const Eigen::Matrix3d information = covariance.inverse();
+  std::optional<ParticleCluster> nearest;
+  for (std::size_t i = 0; i < T_map_body.size(); ++i) {
+    const double weight = sums[clusters[i]];
+    if (weight < kMinClusterWeight || (nearest && weight <= nearest->weight)) continue;
+    const Eigen::Vector3d offset = pose.residual_to_mean(T_map_body[i]);
+    if (offset.dot(information * offset) <= kNearSigmas * kNearSigmas)
+      nearest = {.number = clusters[i], .weight = weight};
+  }
+  return nearest;
 }
 
 slam::PoseGaussian cluster_gaussian(const std::vector<Pose2>& T_map_body, const std::vector<double>& weights,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "core/frames.h"
@@ -24,12 +25,17 @@ struct ParticleCloud {
 /// Clusters of the particles (PoseBins::clusters): [particle] -> cluster number.
 std::vector<std::size_t> cluster_particles(const std::vector<Pose2>& T_map_body, const KldSettings& settings);
 
-struct DominantCluster {
+struct ParticleCluster {
   std::size_t number = 0;
   double weight = 0.0;  ///< sum of the particle weights in the cluster, 0 ... 1
 };
 /// Finds the cluster of largest weight. `weights`: [particle], sum 1.
-DominantCluster find_dominant_cluster(const std::vector<std::size_t>& clusters, const std::vector<double>& weights);
+ParticleCluster find_dominant_cluster(const std::vector<std::size_t>& clusters, const std::vector<double>& weights);
+/// Finds the cluster that continues a pose: the one of largest weight with a particle near it, which is within three
+/// standard deviations plus 3 m and 0.9 rad. None if no such cluster has a weight.
+std::optional<ParticleCluster> find_cluster_near(const slam::PoseGaussian& pose, const std::vector<Pose2>& T_map_body,
+                                                 const std::vector<std::size_t>& clusters,
+                                                 const std::vector<double>& weights);
 
 /// Mean and covariance of the particles of one cluster. The mean heading is a circular mean.
 slam::PoseGaussian cluster_gaussian(const std::vector<Pose2>& T_map_body, const std::vector<double>& weights,

@@ -27,4 +27,13 @@ double ranges_log_likelihood(const std::vector<AnchoredRange>& ranges, const Pos
   return sum;
 }
 
+double mean_range_likelihood(const std::vector<AnchoredRange>& ranges, const Pose2& T_map_body,
+                             const RangeLikelihoodSettings& settings) {
+  if (ranges.empty()) return 1.0;
+  double sum = 0.0;
+  for (const AnchoredRange& range : ranges)
+    sum += std::exp(range_log_likelihood(range_innovation_m(range, T_map_body), settings));
+  return sum / static_cast<double>(ranges.size());
+}
+
 }  // namespace patrol::localize

@@ -28,5 +28,8 @@ double range_innovation_m(const AnchoredRange& range, const Pose2& T_map_body);
 /// Returns the sum of the log likelihoods of independent ranges at a pose.
 double ranges_log_likelihood(const std::vector<AnchoredRange>& ranges, const Pose2& T_map_body,
                              const RangeLikelihoodSettings& settings);
+/// Returns the mean likelihood of the ranges at a pose, relative to the maximum, 0 ... 1; 1 without ranges.
+double mean_range_likelihood(const std::vector<AnchoredRange>& ranges, const Pose2& T_map_body,
+                             const RangeLikelihoodSettings& settings);
 
 }  // namespace patrol::localize

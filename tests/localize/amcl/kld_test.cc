@@ -53,12 +53,29 @@ TEST(ParticleCloud, TheDominantClusterIsDescribedAndNotTheOthers) {
   const std::vector<Pose2> poses = {{0.0, 0.0, 3.1}, {0.2, 0.0, -3.1}, {20.0, 0.0, 0.0}};
   const std::vector<double> weights = {0.3, 0.3, 0.4};
   const std::vector<std::size_t> clusters = cluster_particles(poses, {});
-  const DominantCluster dominant = find_dominant_cluster(clusters, weights);
+  const ParticleCluster dominant = find_dominant_cluster(clusters, weights);
   EXPECT_NEAR(dominant.weight, 0.6, 1e-12);
   const slam::PoseGaussian gaussian = cluster_gaussian(poses, weights, clusters, dominant.number);
   EXPECT_THAT(gaussian.mean, test::Pose2Near((Pose2{0.1, 0.0, std::numbers::pi}), 1e-9, 1e-9));
   EXPECT_NEAR(gaussian.covariance(0, 0), 0.01, 1e-12);  // 0.1^2 either side
   EXPECT_NEAR(gaussian.covariance(2, 2), std::pow(std::numbers::pi - 3.1, 2), 1e-9);
+}
+
+// The heaviest of the clusters near a pose, not the heaviest of all: one is 20 m off, one is turned by half a turn.
+TEST(ParticleCloud, TheClusterThatContinuesAPoseIsWithinThreeSigmasAndThreeMeters) {
+  const std::vector<Pose2> poses = {{0.0, 0.0, 0.0}, {2.8, 0.0, 0.0}, {0.0, 0.0, 3.0}, {20.0, 0.0, 0.0}};
+  const std::vector<double> weights = {0.1, 0.2, 0.3, 0.4};
+  const std::vector<std::size_t> clusters = cluster_particles(poses, {});
+  slam::PoseGaussian pose{.mean = {}, .covariance = Eigen::Matrix3d::Zero()};
+  const auto near = [&] { return find_cluster_near(pose, poses, clusters, weights); };
+  EXPECT_EQ(near().value().number, clusters[1]);
+  EXPECT_NEAR(near().value().weight, 0.2, 1e-12);
+  pose.mean.x = -10.0;
+  EXPECT_FALSE(near().has_value());
+  pose.covariance(0, 0) = 144.0;
+  EXPECT_EQ(near().value().number, clusters[3]) << "30 m are 2.5 sigmas";
+  pose = {.mean = {20.0, 0.0, 0.0}, .covariance = Eigen::Matrix3d::Zero()};
+  EXPECT_FALSE(find_cluster_near(pose, poses, clusters, {0.5, 0.5, 0.0, 0.0}).has_value()) << "its weight is gone";
 }
 
 }  // namespace

@@ -37,6 +37,14 @@ TEST(NlosBias, CountsHeightAndLever) {
 
 const std::vector<UwbAnchor> kAnchors = {{7, {10.0, 0.0, 2.0}}};
 
+// An exact range and one that is 8 m too short, whose likelihood is the floor of the mixture.
+TEST(MeanRangeLikelihood, OfAnExactRangeAndAnOutlierIsHalfOfTheirSum) {
+  const std::vector<AnchoredRange> ranges = {{{3.0, 4.0, 0.0}, Eigen::Vector3d::Zero(), 5.0},
+                                             {{10.0, 0.0, 0.0}, Eigen::Vector3d::Zero(), 2.0}};
+  EXPECT_NEAR(mean_range_likelihood(ranges, {}, {}), 0.5 * (0.9 + 0.02), 1e-9);
+  EXPECT_EQ(mean_range_likelihood({}, {}, {}), 1.0);
+}
+
 TEST(RangeBuffer, KeepsTheNewestRangeOfEachKnownAnchorAndNothingElse) {
   RangeBuffer memory(kAnchors, {});
   memory.add({Time{1}, 7, 9.0}, {});
