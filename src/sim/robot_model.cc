@@ -26,6 +26,9 @@ constexpr double kFrictionLoss = 0.2;
 
 // Rubber foot on asphalt: time constant of 6 ms; the friction of the foot applies on any ground.
 constexpr double kFootFriction = 0.8;
+// Slender cylinders, half as long as two radii or more, are capsules: these collide faster and more smoothly. Their
+// ends reach beyond those of the cylinder by its radius.
+constexpr double kSlender = 2.0;
 
 void set_pose(const urdf::Pose& pose, double position[3], double quaternion[4]) {
   position[0] = pose.position.x;
@@ -125,8 +128,7 @@ void add_collisions(const urdf::Link& link, const RobotParts& robot, mjSpec& spe
     mjsGeom* geom = mjs_addGeom(&body, nullptr);
     set_pose(collision->origin, geom->pos, geom->quat);
     set_shape(*collision->geometry, robot, spec, *geom);
-    // MuJoCo's capsules collide faster and more smoothly than its cylinders; the length remains that of the URDF.
-    if (geom->type == mjGEOM_CYLINDER) geom->type = mjGEOM_CAPSULE;
+    if (geom->type == mjGEOM_CYLINDER && geom->size[1] >= kSlender * geom->size[0]) geom->type = mjGEOM_CAPSULE;
     geom->contype = kRobotContype;
     geom->conaffinity = kRobotConaffinity;
     geom->group = kGroupRobotCollision;

@@ -6,6 +6,8 @@
 #include <memory>
 #include <regex>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -18,6 +20,7 @@
 #include "tests/support/simulated_quadruped.h"
 #include "tests/support/simulated_tracked_robot.h"
 #include "tests/support/temporary_file.h"
+#include "tests/support/wheeled_urdf.h"
 
 namespace patrol::sim::model_assembly_test {
 namespace {
@@ -103,6 +106,26 @@ TEST(LoadSpec, RefusesATextureWithoutItsImageEvenWhereNoTextureIsCompiled) {
   const test::TemporaryFile beside = world("", "none.png");
   EXPECT_THAT(error_text([&] { load_spec(beside.path()); }),
               HasSubstr(std::filesystem::path(beside.path()).parent_path().string() + "/none.png cannot be read"));
+}
+
+// A disc of 40 cm, 2 cm above the ground, as the chassis of many small robots. A capsule would reach 20 cm below it.
+TEST(RobotModel, SquatCylindersAreCylindersAndSlenderOnesCapsules) {
+  std::string urdf = test::differential_urdf().text();
+  const std::string box = "<collision><geometry><box";
+  ASSERT_NE(urdf.find(box), std::string::npos) << urdf;
+  urdf.insert(urdf.find(box),
+              "<collision><origin xyz='0 0 -0.13'/><geometry><cylinder radius='0.2' length='0.1'/>"
+              "</geometry></collision><collision><origin xyz='0 0 0.5'/><geometry>"
+              "<cylinder radius='0.02' length='0.4'/></geometry></collision>");
+  const test::TemporaryFile world("world.xml", make_flat_world()), robot("robot.urdf", urdf);
+  const AssembledModel assembled =
+      assemble_model(world.path(), robot.path(), io::load_robot_description(robot.path()), {});
+  const mjModel& model = *assembled.physics;
+  std::vector<int> types;
+  for (int geom = 0; geom < model.ngeom; ++geom)
+    if (model.geom_bodyid[geom] == mj_name2id(&model, mjOBJ_BODY, frame_id::kBody))
+      types.push_back(model.geom_type[geom]);
+  EXPECT_EQ(types, (std::vector<int>{mjGEOM_CYLINDER, mjGEOM_CAPSULE, mjGEOM_BOX}));
 }
 
 TEST_F(StreetAssembly, StartHeightIsThatOfTheBody) {
