@@ -139,7 +139,8 @@ LegGeometry UrdfReader::read_chain(const urdf::LinkConstSharedPtr& end) const {
 }
 
 /// Computes the standing posture: the leg in a vertical plane along x, the foot below the hip, and the lengths of the
-/// leg in this posture.
+/// leg in this posture. The knee bends to the side to which it is bent at zero angles, and backward if it is straight
+/// there, as far as the limits allow.
 void UrdfReader::choose_standing(const std::array<JointLimit, 3>& limits, double mass_kg, LegGeometry& leg) const {
   // Height of the hip above the foot by the length of the leg: thigh and shank of equal length are at 0.8 rad.
   const double nominal_ratio = std::cos(0.8);
@@ -176,10 +177,12 @@ void UrdfReader::choose_standing(const std::array<JointLimit, 3>& limits, double
   std::optional<double> roll = angle_within(roll_rad, limits[abduction]);
   const double hip_sign = start.axis[hip].y() > 0.0 ? 1.0 : -1.0, knee_sign = start.axis[knee].y() > 0.0 ? 1.0 : -1.0;
   const double hip_rad = angle_from_vertical_rad(thigh), knee_rad = angle_from_vertical_rad(shank) - hip_rad;
+  constexpr double kBent_rad = 0.1;
+  const bool is_forward_at_zero = knee_rad > kBent_rad;
   bool has_posture = false;
   for (double ratio = nominal_ratio; roll && ratio < kMaxRatio; ratio += kStep) {
     const double height_m = ratio * leg.length_m();
-    for (const bool is_backward : {true, false}) {
+    for (const bool is_backward : {!is_forward_at_zero, is_forward_at_zero}) {
       const auto planar = planar_leg_angles(leg.thigh_m, leg.shank_m, 0.0, -height_m, is_backward);
       if (!planar) continue;
       const auto hip_angle = angle_within(hip_sign * (planar->hip_rad - hip_rad), limits[hip]);

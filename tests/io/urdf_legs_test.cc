@@ -122,11 +122,16 @@ std::vector<Variant> variants() {
   UrdfQuadruped both_ways;
   both_ways.knee_lower_rad = -2.7;
   both_ways.knee_upper_rad = 2.7;
+  UrdfQuadruped bent_forward = both_ways, bent_backward = both_ways;
+  bent_forward.frames[2].zero_rad = 0.3;
+  bent_backward.frames[2].zero_rad = -0.3;
   return {{"plain", {}, -1.0},
           {"in actuator frames", in_actuator_frames(), -1.0},
           {"hip first", hip_first, -1.0},
           {"knees forward", forward, 1.0},
-          {"knees both ways", both_ways, -1.0}};
+          {"knees both ways", both_ways, -1.0},
+          {"knees both ways, bent forward at zero", bent_forward, 1.0},
+          {"knees both ways, bent backward at zero", bent_backward, -1.0}};
 }
 
 TEST(UrdfLegs, StandsWithTheFeetBelowTheHipsAt70PercentOfTheLegWithin1Millimeter) {

@@ -103,13 +103,17 @@ void QuadrupedController::choose_mode(const TrunkState& trunk) {
   }
   const bool all_stand = is_stance_[0] && is_stance_[1] && is_stance_[2] && is_stance_[3] && !is_searching_[0] &&
                          !is_searching_[1] && !is_searching_[2] && !is_searching_[3];
-  if (is_walking_ && idle_s_ > gait_.period_s && all_stand &&
-      trunk.velocity_mps.head<2>().norm() < gains_.max_stop_speed_mps) {
+  if (is_walking_ && all_stand && is_stopping(trunk)) {
     is_walking_ = false;
     velocity_integral_.setZero();
   }
 }
 
+bool QuadrupedController::is_stopping(const TrunkState& trunk) const {
+  return idle_s_ > gait_.period_s && trunk.velocity_mps.head<2>().norm() < gains_.max_stop_speed_mps;
+}
+
+// A robot that stops lifts no foot: with late feet, there would be no moment at which all stand.
 void QuadrupedController::schedule_feet(const TrunkState& trunk) {
   if (!is_walking_) {
     is_stance_.fill(true);
@@ -120,7 +124,7 @@ void QuadrupedController::schedule_feet(const TrunkState& trunk) {
   cycle_ += tick_s_ / gait_.period_s;
   for (int leg = 0; leg < kNumLegs; ++leg) {
     const LegPhase phase = leg_phase(gait_, cycle_, leg);
-    if (phase_[leg].is_stance && !phase.is_stance) {  // lift-off
+    if (phase_[leg].is_stance && !phase.is_stance && !is_stopping(trunk)) {  // lift-off
       lift_off_m_[leg] = trunk.foot_m[leg];
       is_stance_[leg] = false;
       is_searching_[leg] = false;

@@ -50,6 +50,7 @@ class QuadrupedController {
  private:
   void follow_command(const VelocityCommand& command);
   void choose_mode(const TrunkState& trunk);
+  bool is_stopping(const TrunkState& trunk) const;
   void update_ground(const TrunkState& trunk);
   void schedule_feet(const TrunkState& trunk);
   Eigen::Vector2d neutral_foot_m(int leg) const;

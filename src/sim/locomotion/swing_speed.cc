@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kMaxRatio = 0.82;  // the control of the swing adds a tenth
 constexpr double kMinClearanceRatio = 0.6, kMinForward_mps = 0.1;
+constexpr double kMaxPeriodRatio = 1.5, kKeptSpeedRatio = 0.35;
 constexpr int kSamples = 40;
 
 /// Moves the joints until the foot is at a position in body: Newton's method from a posture near it.
@@ -60,17 +61,23 @@ double peak_swing_speed_ratio(const RobotDescription& robot, const LocomotionSet
 }
 
 void limit_to_joint_speeds(const RobotDescription& robot, LocomotionSettings& settings) {
-  const auto ratio_with = [&](double clearance_m, double forward_mps) {
-    LocomotionSettings changed = settings;
-    changed.swing_clearance_m = clearance_m;
-    return peak_swing_speed_ratio(robot, changed, forward_mps);
+  const auto are_fast_enough = [&](const LocomotionSettings& changed, double forward_mps) {
+    return peak_swing_speed_ratio(robot, changed, forward_mps) <= kMaxRatio;
   };
+  const double nominal_mps = settings.max_forward_mps, nominal_s = settings.gait_period_s;
   settings.swing_clearance_m =
-      largest(kMinClearanceRatio * settings.swing_clearance_m, settings.swing_clearance_m,
-              [&](double clearance_m) { return ratio_with(clearance_m, settings.max_forward_mps) <= kMaxRatio; });
-  settings.max_forward_mps =
-      largest(std::min(kMinForward_mps, settings.max_forward_mps), settings.max_forward_mps,
-              [&](double mps) { return ratio_with(settings.swing_clearance_m, mps) <= kMaxRatio; });
+      largest(kMinClearanceRatio * settings.swing_clearance_m, settings.swing_clearance_m, [&](double clearance_m) {
+        LocomotionSettings changed = settings;
+        changed.swing_clearance_m = clearance_m;
+        return are_fast_enough(changed, nominal_mps);
+      });
+  settings.gait_period_s = nominal_s / largest(1.0 / kMaxPeriodRatio, 1.0, [&](double frequency_ratio) {
+                             LocomotionSettings changed = settings;
+                             changed.gait_period_s = nominal_s / frequency_ratio;
+                             return are_fast_enough(changed, kKeptSpeedRatio * nominal_mps);
+                           });
+  settings.max_forward_mps = largest(std::min(kMinForward_mps, nominal_mps), nominal_mps,
+                                     [&](double mps) { return are_fast_enough(settings, mps); });
 }
 
 }  // namespace patrol::sim

@@ -9,8 +9,8 @@ namespace patrol::sim {
 /// at `forward_mps` on level ground.
 double peak_swing_speed_ratio(const RobotDescription& robot, const LocomotionSettings& settings, double forward_mps);
 
-/// Lowers the swing and then the forward speed until the joints keep a tenth of their speed as a reserve. The swing
-/// keeps at least 60 % of its clearance, the robot at least 0.1 m/s.
+/// Adapts the gait until the joints keep a tenth of their speed as a reserve: lowers the swing by up to 40 %, then
+/// lengthens the period by up to 50 % for 35 % of the forward speed, then lowers the forward speed to 0.1 m/s or more.
 void limit_to_joint_speeds(const RobotDescription& robot, LocomotionSettings& settings);
 
 }  // namespace patrol::sim

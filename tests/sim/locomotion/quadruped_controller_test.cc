@@ -1,11 +1,14 @@
 #include "sim/locomotion/quadruped_controller.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "core/geometry/angles.h"
+#include "io/urdf.h"
 #include "tests/support/simulated_quadruped.h"
 
 namespace patrol::sim::quadruped_controller_test {
@@ -101,6 +104,31 @@ TEST(QuadrupedController, StopsWithin0_8SecondsOfWalkingHalfAMetreASecondAndStan
   const WalkReport after = robot.stand(1.0);
   EXPECT_LT(after.moved.position().norm(), 0.02);
   EXPECT_EQ(after.steps_taken, 0);
+}
+
+// Feet that touch late, or not at all, are never on the ground together in a trot. It went on in place forever.
+TEST(QuadrupedController, StopsTrottingWithin2SecondsThoughNoFootTouches) {
+  const RobotDescription robot = io::load_robot_description(kRobotUrdf);
+  QuadrupedController controller(robot, {});
+  const Imu imu{.linear_acceleration_mps2 = {0.0, 0.0, 9.81}};
+  JointState joints;
+  for (const LegGeometry& leg : robot.legs)
+    joints.position_rad.insert(joints.position_rad.end(), leg.standing_rad.begin(), leg.standing_rad.end());
+  joints.velocity_radps.assign(joints.position_rad.size(), 0.0);
+  const FootContacts loaded{.force_n = std::vector<double>(kNumLegs, 33.0)},
+      unloaded{.force_n = std::vector<double>(kNumLegs, 0.0)};
+  const auto change_of_torques_nm = [&](double duration_s, const FootContacts& feet, double vx_mps) {
+    const LegSensors sensors{.imu = imu, .joints = joints, .feet = feet};
+    const JointTorques first = controller.step(sensors, {.vx_mps = vx_mps});
+    double change_nm = 0.0;
+    for (int tick = 1; tick < duration_s / 0.002; ++tick)
+      change_nm = std::max(change_nm, (controller.step(sensors, {.vx_mps = vx_mps}) - first).cwiseAbs().maxCoeff());
+    return change_nm;
+  };
+  change_of_torques_nm(2.0, loaded, 0.0);
+  EXPECT_GT(change_of_torques_nm(1.0, unloaded, 0.1), 3.0) << "it does not trot";
+  change_of_torques_nm(2.0, unloaded, 0.0);
+  EXPECT_LT(change_of_torques_nm(1.0, unloaded, 0.0), 0.5) << "it still trots";
 }
 
 TEST(QuadrupedController, TakesAKerbEdgeOf5CentimetresUpAndDownAgain) {

@@ -51,27 +51,42 @@ TEST(SwingSpeed, GrowsWithTheSpeedOfTheRobotAndWithTheClearance) {
   EXPECT_LT(peak_swing_speed_ratio(robot, settings, 0.1), 0.75 * slow);
 }
 
-TEST(SwingSpeed, SlowJointsLowerTheSwingAndVerySlowOnesAlsoTheSpeed) {
+TEST(SwingSpeed, SlowJointsLowerTheSwingThenLengthenThePeriodThenSlowTheRobot) {
   const LocomotionSettings fast = scaled_locomotion(even_legged_robot(1000.0));
   const RobotDescription slow_robot = even_legged_robot(
       1000.0 * peak_swing_speed_ratio(even_legged_robot(1000.0), fast, fast.max_forward_mps));  // a ratio of 1
   const LocomotionSettings slow = scaled_locomotion(slow_robot);
   EXPECT_LT(slow.swing_clearance_m, 0.95 * fast.swing_clearance_m);
   EXPECT_EQ(slow.max_forward_mps, fast.max_forward_mps);
+  EXPECT_EQ(slow.gait_period_s, fast.gait_period_s);
   EXPECT_NEAR(peak_swing_speed_ratio(slow_robot, slow, slow.max_forward_mps), 0.82, 1e-3);
 
   RobotDescription slower_robot = slow_robot;
-  for (JointLimit& limit : slower_robot.joint_limits) limit.velocity_radps *= 0.7;
-  const LocomotionSettings slower = scaled_locomotion(slower_robot);
-  EXPECT_NEAR(slower.swing_clearance_m, 0.6 * fast.swing_clearance_m, 1e-12);
+  const auto slowed_to = [&](double ratio) {
+    for (std::size_t i = 0; i < slower_robot.joint_limits.size(); ++i)
+      slower_robot.joint_limits[i].velocity_radps = ratio * slow_robot.joint_limits[i].velocity_radps;
+    const LocomotionSettings slower = scaled_locomotion(slower_robot);
+    EXPECT_NEAR(slower.swing_clearance_m, 0.6 * fast.swing_clearance_m, 1e-12) << ratio;
+    return slower;
+  };
+  const LocomotionSettings slower = slowed_to(0.75);
+  EXPECT_EQ(slower.gait_period_s, fast.gait_period_s) << "fast enough for 35 % of the speed";
   EXPECT_LT(slower.max_forward_mps, 0.9 * fast.max_forward_mps);
-  EXPECT_GT(slower.max_forward_mps, 0.1);
+  EXPECT_GT(slower.max_forward_mps, 0.35 * fast.max_forward_mps);
+  const LocomotionSettings slowest = slowed_to(0.6);
+  EXPECT_GT(slowest.gait_period_s, 1.05 * fast.gait_period_s);
+  EXPECT_NEAR(slowest.max_forward_mps, 0.35 * fast.max_forward_mps, 1e-3);
+  EXPECT_NEAR(peak_swing_speed_ratio(slower_robot, slowest, slowest.max_forward_mps), 0.82, 1e-3);
+  const LocomotionSettings least = slowed_to(0.4);
+  EXPECT_NEAR(least.gait_period_s, 1.5 * fast.gait_period_s, 1e-9);
+  EXPECT_LT(least.max_forward_mps, 0.35 * fast.max_forward_mps);
 }
 
 TEST(SwingSpeed, TheJointsOfTheFirstQuadrupedAreFastEnough) {
   const LocomotionSettings scaled = scaled_locomotion(io::load_robot_description(kRobotUrdf)), tuned;
   EXPECT_EQ(scaled.swing_clearance_m, tuned.swing_clearance_m);
   EXPECT_EQ(scaled.max_forward_mps, tuned.max_forward_mps);
+  EXPECT_EQ(scaled.gait_period_s, tuned.gait_period_s);
 }
 
 }  // namespace
