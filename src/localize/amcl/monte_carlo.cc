@@ -216,6 +216,7 @@ int MonteCarloLocalizer::resample_and_inject(const LevelScan& scan, const Pose2&
       sample_poses(global_localization(scan, T_odom_body), num_injected, injection_noise_, updates_);
   const std::vector<AnchoredRange> ranges = buffered_ranges(scan.stamp, T_odom_body);
   const double present = ranges_log_likelihood(ranges, cluster_gaussian_.mean, settings_.ranges);
+  // Between one and two outliers more: each lowers the likelihood by at most `outlier_probability`.
   const double min_log_ranges = present + 1.5 * std::log(settings_.ranges.outlier_probability);
   int injected = 0;
   for (std::size_t i = 0; i < poses.size(); ++i) {

@@ -54,8 +54,8 @@ struct LocalizationUpdate {
 /// reported as lost, and only if the ranges do not contradict it.
 ///
 /// The particle set represents multimodal beliefs: global localization, kidnapping, both directions of a tunnel. The
-/// published pose is a Gaussian: the prior is the dominant particle cluster before the scan, the update a scan match
-/// (pose_refinement.h). Accuracy: millimeters where the scan constrains the pose, otherwise the spread of the cluster.
+/// published pose is a Gaussian: the prior is the followed particle cluster before the scan, the update a scan match
+/// (pose_refinement.h). The followed cluster is the tracked one, and the dominant one of a robot that is lost. Accuracy: millimeters where the scan constrains the pose, otherwise the spread of the cluster.
 class MonteCarloLocalizer {
  public:
   /// Anchors are in map, with heights above the body origin, for level ground. Throws InputError if a setting is
