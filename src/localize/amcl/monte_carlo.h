@@ -55,7 +55,8 @@ struct LocalizationUpdate {
 ///
 /// The particle set represents multimodal beliefs: global localization, kidnapping, both directions of a tunnel. The
 /// published pose is a Gaussian: the prior is the followed particle cluster before the scan, the update a scan match
-/// (pose_refinement.h). The followed cluster is the tracked one, and the dominant one of a robot that is lost. Accuracy: millimeters where the scan constrains the pose, otherwise the spread of the cluster.
+/// (pose_refinement.h). The followed cluster is the tracked one, and the dominant one of a robot that is lost.
+/// Accuracy: millimeters where the scan constrains the pose, otherwise the spread of the cluster.
 class MonteCarloLocalizer {
  public:
   /// Anchors are in map, with heights above the body origin, for level ground. Throws InputError if a setting is
