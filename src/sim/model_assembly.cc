@@ -43,10 +43,9 @@ void refuse_start_in_collision(const mjModel& model, const std::vector<double>& 
   const DataPtr data = make_data(model);
   std::copy(qpos.begin(), qpos.end(), data->qpos);
   mj_forward(&model, data.get());
-  constexpr double kContactDepth_m = 0.02;
   for (int i = 0; i < data->ncon; ++i) {
     const mjContact& contact = data->contact[i];
-    if (contact.dist > -kContactDepth_m) continue;
+    if (contact.dist > -kMaxStartDepth_m) continue;
     const bool first_is_robot = model.geom_group[contact.geom[0]] == kGroupRobotCollision;
     const std::string_view object = name_of(model, mjOBJ_GEOM, contact.geom[first_is_robot ? 1 : 0]);
     throw InputError(fmt::format("start pose ({:.2f}, {:.2f}): in collision with {}", T_world_start.x, T_world_start.y,
@@ -80,12 +79,14 @@ double ground_height_m(const mjModel& model, const mjData& data, const Stance& s
   constexpr mjtByte kScenery[mjNGROUP] = {1, 1, 1, 1, 0, 0};  // all groups but the robot's own
   const mjtNum down[3] = {0.0, 0.0, -1.0};
   double nearest_m = std::numeric_limits<double>::infinity();
-  for (const Eigen::Vector2d& support : stance.support_points_m) {
-    const Eigen::Vector2d p_world = T_world_body * support;
+  const auto cast_ray = [&](const Eigen::Vector2d& p_level, double tolerance_m) {
+    const Eigen::Vector2d p_world = T_world_body * p_level;
     const mjtNum from[3] = {p_world.x(), p_world.y(), max_ground_height_m};
     const mjtNum distance = mj_ray(&model, &data, from, down, kScenery, true, -1, nullptr, nullptr);
-    if (distance >= 0.0) nearest_m = std::min(nearest_m, distance);
-  }
+    if (distance >= 0.0) nearest_m = std::min(nearest_m, distance + tolerance_m);
+  };
+  for (const Eigen::Vector2d& support : stance.support_points_m) cast_ray(support, 0.0);
+  for (const Eigen::Vector2d& foot : stance.feet_m) cast_ray(foot, kMaxStartDepth_m);
   if (!std::isfinite(nearest_m)) {
     throw InputError(fmt::format("({:.2f}, {:.2f}): no ground below", T_world_body.x, T_world_body.y));
   }

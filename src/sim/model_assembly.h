@@ -39,9 +39,9 @@ double start_height_m(const std::string& world_xml, const RobotUrdf& robot_urdf,
 /// It contains absolute paths of the robot's meshes. Throws InputError if the URDF is invalid.
 std::string mjcf_of(const RobotUrdf& robot_urdf, const RobotDescription& robot);
 
-/// Returns the ground height below the robot with its base at `T_world_body`, m: the highest collision surface below
-/// `max_ground_height_m` under any support point of its stance. The robot itself is ignored. Throws InputError if there
-/// is none.
+/// Returns the height of the ground on which the robot stands with its base at `T_world_body`, m: that of the highest
+/// collision surface below `max_ground_height_m` under any support point of its stance, or `kMaxStartDepth_m` below the
+/// highest one under a foot, whichever is higher. The robot itself is ignored. Throws InputError if there is none.
 double ground_height_m(const mjModel& model, const mjData& data, const Stance& stance, const Pose2& T_world_body,
                        double max_ground_height_m);
 

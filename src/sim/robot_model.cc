@@ -11,6 +11,7 @@
 
 #include "core/error.h"
 #include "core/geometry/angles.h"
+#include "core/leg_kinematics.h"
 #include "sim/leg_scale.h"
 #include "sim/track_model.h"
 #include "sim/wheel_model.h"
@@ -280,9 +281,14 @@ urdf::ModelInterfaceSharedPtr parse(const RobotUrdf& urdf) {
 /// Returns the stance 5 mm above the ground, in whole millimeters.
 Stance stance_on_feet(const RobotDescription& robot) {
   constexpr double kGap_m = 0.005;
-  return {.height_m = std::round((robot.body_height_m() + kGap_m) * 1000.0) / 1000.0,
-          .support_points_m = {Eigen::Vector2d::Zero()},
-          .max_ground_height_m = 0.3};
+  Stance stance{.height_m = std::round((robot.body_height_m() + kGap_m) * 1000.0) / 1000.0,
+                .support_points_m = {Eigen::Vector2d::Zero()},
+                .feet_m = {},
+                .max_ground_height_m = 0.3};
+  for (const LegGeometry& leg : robot.legs) {
+    stance.feet_m.emplace_back(foot_position(leg, leg.standing_rad).head<2>());
+  }
+  return stance;
 }
 
 }  // namespace

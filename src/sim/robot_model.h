@@ -23,11 +23,15 @@ inline constexpr int kGroupRobotCollision = 5;
 inline constexpr int kRobotContype = 2;
 inline constexpr int kRobotConaffinity = 1;
 
+/// Depth by which a robot may overlap with the scenery where it starts, m.
+inline constexpr double kMaxStartDepth_m = 0.02;
+
 /// Placement of a robot, upright on level ground.
 struct Stance {
   double height_m = 0.0;                          ///< height of the base above the ground
   std::vector<Eigen::Vector2d> support_points_m;  ///< points at which the ground height is sampled, in level
-  double max_ground_height_m = 0.0;               ///< surfaces above this height, in world, are not ground at the start
+  std::vector<Eigen::Vector2d> feet_m;  ///< feet: no ground below them is higher by `kMaxStartDepth_m`; in level
+  double max_ground_height_m = 0.0;     ///< surfaces above this height, in world, are not ground at the start
 };
 
 /// URDF of a robot.

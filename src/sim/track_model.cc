@@ -131,7 +131,8 @@ void use_track_options(mjOption& option) {
 
 Stance stance_on_tracks(const urdf::ModelInterface& robot) {
   constexpr double kDrop_m = 0.01;
-  Stance stance{.height_m = 0.0, .support_points_m = {Eigen::Vector2d::Zero()}, .max_ground_height_m = 1.0};
+  Stance stance{
+      .height_m = 0.0, .support_points_m = {Eigen::Vector2d::Zero()}, .feet_m = {}, .max_ground_height_m = 1.0};
   for (const char* name : {"left_track", "right_track"}) {
     const urdf::LinkConstSharedPtr track = robot.getLink(name);
     if (!track) throw InputError("robot " + robot.getName() + ": link not found: " + name);

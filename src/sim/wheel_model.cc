@@ -71,7 +71,8 @@ void use_wheel_friction(mjOption& option) {
 
 Stance stance_on_wheels(const urdf::ModelInterface& robot) {
   constexpr double kDrop_m = 0.005;
-  Stance stance{.height_m = 0.0, .support_points_m = {Eigen::Vector2d::Zero()}, .max_ground_height_m = 1.0};
+  Stance stance{
+      .height_m = 0.0, .support_points_m = {Eigen::Vector2d::Zero()}, .feet_m = {}, .max_ground_height_m = 1.0};
   for (const auto& [name, link] : robot.links_) {
     if (!is_wheel(*link)) continue;
     const Eigen::Vector3d center = T_root_link(*link) * to_pose(link->collision->origin).position;

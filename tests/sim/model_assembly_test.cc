@@ -7,8 +7,10 @@
 #include <regex>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -214,6 +216,17 @@ TEST(ModelAssembly, TheRobotStartsWithItsFeetWithin1CentimetreOfTheGroundOnThePl
       const int geom = mj_name2id(model.physics.get(), mjOBJ_GEOM, foot);
       EXPECT_NEAR(data->geom_xpos[3 * geom + 2] - model.physics->geom_size[3 * geom], height, 0.01) << foot;
     }
+  }
+}
+
+// A foot may start up to 2 cm deep in the ground, so that a start on slightly uneven ground is at the height below the
+// center.
+TEST(ModelAssembly, WithASlabBelowTheFrontFeetTheRobotStarts2CentimetersBelowTheSlabsHeight) {
+  const double on_plane_m = on_plane("").start_qpos[2];
+  for (const auto& [slab_m, raised_m] : {std::pair{0.01, 0.0}, {0.08, 0.06}}) {
+    const AssembledModel model =
+        on_plane(fmt::format("<geom type='box' pos='0.3 0 {0}' size='0.2 1 {0}'/>", slab_m / 2.0));
+    EXPECT_NEAR(model.start_qpos[2] - on_plane_m, raised_m, 1e-6) << slab_m;
   }
 }
 
