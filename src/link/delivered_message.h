@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include "core/time.h"
@@ -12,5 +13,9 @@ struct DeliveredMessage {
   Time log_time{};  ///< time of delivery, at most that of the turn
   std::string cdr;
 };
+
+/// Size of messages from which a stack gets them before its turn, so that it processes a scan or an image while the
+/// simulator continues.
+inline constexpr std::size_t kEarlyBytes = std::size_t{8} << 10;
 
 }  // namespace patrol::link

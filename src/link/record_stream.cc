@@ -63,13 +63,16 @@ void RecordStream::write(const std::string& topic, Time log_time, std::string_vi
 
 void RecordStream::flush() {
   try {
-    socket_.send(unsent_.view(), wait_);
+    socket_.send(unsent_.view().substr(num_sent_), wait_);
   } catch (const LinkError& error) {
     if (error.fault() == LinkFault::kClosed) throw_last_failure();
     throw;
   }
   unsent_.clear();
+  num_sent_ = 0;
 }
+
+void RecordStream::flush_ready() noexcept { num_sent_ += socket_.send_ready(unsent_.view().substr(num_sent_)); }
 
 void RecordStream::throw_last_failure() {
   try {

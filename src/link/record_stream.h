@@ -35,6 +35,9 @@ class RecordStream {
   }
   /// Declares a topic with a type that the program knows (io/ros/ros_definitions.h).
   void declare_known(const std::string& topic, const std::string& type);
+  /// Sends what the connection takes without waiting, and leaves the rest and all failures to `flush`.
+  void flush_ready() noexcept;
+  std::size_t unsent_bytes() const { return unsent_.view().size() - num_sent_; }
   /// Sends the messages. Throws the failure of the other side if it sent one and closed the connection.
   void flush();
   /// Begins the time that the other side has for its next answer, of any number of messages.
@@ -56,6 +59,7 @@ class RecordStream {
   std::map<std::pair<std::string, std::string>, std::uint16_t> schemas_;  ///< sent, ids by type and definition
   std::map<std::string, std::uint16_t> channels_;                         ///< ids of the sent channels by topic
   io::mcap::RecordWriter unsent_;
+  std::size_t num_sent_ = 0;  ///< first bytes of `unsent_` that were sent without waiting
 };
 
 /// Decodes a message of the protocol. Throws LinkError (kInvalid) if the message is another one.

@@ -164,6 +164,11 @@ void Socket::send(std::string_view bytes, const WaitLimit& wait) {
   }
 }
 
+std::size_t Socket::send_ready(std::string_view bytes) noexcept {
+  const ssize_t sent = ::send(descriptor_, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+  return sent > 0 ? static_cast<std::size_t>(sent) : 0;
+}
+
 std::size_t Socket::receive(char* bytes, std::size_t size, const WaitLimit& wait) {
   while (true) {
     const ssize_t received = ::recv(descriptor_, bytes, size, MSG_DONTWAIT);

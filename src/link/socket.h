@@ -53,6 +53,8 @@ class Socket {
   /// Waits for a client.
   Socket accept(const WaitLimit& wait) const;
   void send(std::string_view bytes, const WaitLimit& wait);
+  /// Returns how many bytes were sent without waiting: 0 also if the connection is closed.
+  std::size_t send_ready(std::string_view bytes) noexcept;
   /// Waits for bytes and returns how many were received, at least one.
   std::size_t receive(char* bytes, std::size_t size, const WaitLimit& wait);
 

@@ -51,16 +51,20 @@ void StackClient::begin(const std::string& stack, const std::vector<std::string>
 }
 
 ReceivedTurn StackClient::next_turn() {
-  ReceivedTurn received;
+  std::vector<DeliveredMessage> messages;
+  ReceivedTurn received = next_turn([&](DeliveredMessage message) { messages.push_back(std::move(message)); });
+  received.messages = std::move(messages);
+  return received;
+}
+
+ReceivedTurn StackClient::next_turn(const std::function<void(DeliveredMessage)>& on_message) {
   while (true) {
     const io::McapMessage message = stream_.read();
     if (message.channel.topic == kControlTopic<Turn>) {
       const Turn turn = control_message<Turn>(message);
-      received.now = turn.now;
-      received.is_last = turn.is_last;
-      return received;
+      return {.now = turn.now, .is_last = turn.is_last, .messages = {}};
     }
-    received.messages.push_back(copy_of(message));
+    on_message(copy_of(message));
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -41,6 +42,8 @@ class StackClient {
 
   /// Waits for the turn after the last `done`. Ask for no turn after the last one.
   ReceivedTurn next_turn();
+  /// As above, but passes each message on as it arrives, possibly before the simulator has begun the turn.
+  ReceivedTurn next_turn(const std::function<void(DeliveredMessage)>& on_message);
 
   template <typename Message>
   void publish(Time now, const Message& message) {

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "link/delivered_message.h"
 #include "link/link_error.h"
 
 namespace patrol::link {
@@ -26,14 +27,21 @@ const HelloReply& StackServer::greet(const Hello& hello) {
   return reply_;
 }
 
-void StackServer::send(const std::string& topic, Time log_time, std::string_view cdr) {
-  if (wanted_.empty() || wanted_.contains(topic)) stream_.write(topic, log_time, cdr);
+void StackServer::send(const std::string& topic, Time log_time, std::string_view cdr, bool is_early) {
+  if (!wanted_.empty() && !wanted_.contains(topic)) return;
+  stream_.write(topic, log_time, cdr);
+  if (is_early && stream_.unsent_bytes() >= kEarlyBytes) stream_.flush_ready();
 }
 
-TurnAnswer StackServer::turn(Time now, bool is_last) {
+void StackServer::begin_turn(Time now, bool is_last) {
+  turn_ = {.now = now, .is_last = is_last};
   stream_.restart_wait();
-  stream_.write_control(now, Turn{.now = now, .is_last = is_last});
+  stream_.write_control(now, turn_);
   stream_.flush();
+}
+
+TurnAnswer StackServer::end_turn() {
+  const auto [now, is_last] = turn_;
   TurnAnswer answer;
   std::size_t num_bytes = 0;
   while (true) {

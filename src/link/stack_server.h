@@ -45,10 +45,17 @@ class StackServer {
   /// Sends the hello and returns the answer of the stack.
   const HelloReply& greet(const Hello& hello);
 
-  /// Adds a message to the next turn, unless the stack does not want its topic.
-  void send(const std::string& topic, Time log_time, std::string_view cdr);
-  /// Lets the stack take its turn.
-  TurnAnswer turn(Time now, bool is_last);
+  /// Adds a message to the next turn, unless the stack does not want its topic. `is_early`: whether messages of at
+  /// least kEarlyBytes are sent at once, without waiting for the stack.
+  void send(const std::string& topic, Time log_time, std::string_view cdr, bool is_early);
+  /// Lets the stack begin its turn.
+  void begin_turn(Time now, bool is_last);
+  /// Waits for the end of the turn.
+  TurnAnswer end_turn();
+  TurnAnswer turn(Time now, bool is_last) {
+    begin_turn(now, is_last);
+    return end_turn();
+  }
   /// Tells the stack why the connection ends. Throws nothing.
   void fail(const std::string& text) noexcept;
 
@@ -59,6 +66,7 @@ class StackServer {
   TurnLimits limits_;
   HelloReply reply_;
   std::set<std::string> wanted_;  ///< empty: all
+  Turn turn_;                     ///< last one
 };
 
 }  // namespace patrol::link

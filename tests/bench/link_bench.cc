@@ -98,7 +98,7 @@ double turns_s(const std::string& scan) {
   const auto start = std::chrono::steady_clock::now();
   Time now{};
   for (int i = 0; i < kTurns; ++i) {
-    server.send(io::kTopic<LaserScan>, now, scan);
+    server.send(io::kTopic<LaserScan>, now, scan, true);
     now = server.turn(now, false).next_turn;
   }
   const double seconds = seconds_since(start);

@@ -171,6 +171,14 @@ class SameBytes(unittest.TestCase):
             odometry = [log_time for topic, log_time, _ in messages(delayed) if topic == "/odom"]
             self.assertEqual({time % 32_000_000 for time in odometry}, {0})
 
+    def test_a_stack_that_computes_beside_the_simulator_writes_the_same_log(self):
+        delay = ["stack.compute.model=fixed", "stack.compute.delay_s=0.02"]
+        for settings in ([], delay):
+            one, two = (self.run_to(f"threads_{threads}", settings=settings, threads=threads) for threads in (1, 2))
+            self.assertEqual((one / "log.mcap").read_bytes(), (two / "log.mcap").read_bytes())
+        # The last two runs have the delay, with which a log has the turns of the built-in stack too.
+        self.assertEqual(messages(self.run_to("outside", BUILT_IN, settings=delay)), messages(one))
+
 
 if __name__ == "__main__":
     unittest.main(argv=[sys.argv[0], "-v"])

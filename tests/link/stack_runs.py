@@ -16,13 +16,15 @@ def write_stack(folder, name, text):
     return f"{PYTHON} {path}"
 
 
-def run(out, stack=None, seed=1, time_limit_s=4.0, settings=()):
+def run(out, stack=None, seed=1, time_limit_s=4.0, settings=(), threads=None):
     """Runs street/short until the time limit and returns the finished process."""
     command = [PATROL, "run", "street/short", "--seed", str(seed), "--out", str(out), "--set", f"time_limit_s={time_limit_s}"]
     for setting in settings:
         command += ["--set", setting]
     if stack is not None:
         command += ["--stack", stack]
+    if threads is not None:
+        command += ["--threads", str(threads)]
     return subprocess.run(command, cwd=SOURCE, capture_output=True, text=True, timeout=280)
 
 

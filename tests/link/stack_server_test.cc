@@ -3,8 +3,10 @@
 #include <sys/socket.h>
 
 #include <functional>
+#include <future>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -91,8 +93,8 @@ TEST(StackServer, TurnDeliversWantedMessagesAndReturnsWhatTheStackPublishes) {
         server.declare("/imu", io::kRosType<Imu>);
         server.declare("/gas", io::kRosType<GasReading>);
         server.greet(kHello);
-        server.send("/imu", 10ms, io::encode(Imu{.stamp = 9ms}));
-        server.send("/gas", 10ms, io::encode(GasReading{}));  // the stack does not want it
+        server.send("/imu", 10ms, io::encode(Imu{.stamp = 9ms}), false);
+        server.send("/gas", 10ms, io::encode(GasReading{}), false);  // the stack does not want it
         const TurnAnswer answer = server.turn(10ms, false);
         ASSERT_EQ(answer.messages.size(), 1U);
         EXPECT_EQ(answer.messages[0].topic, "/cmd_vel");
@@ -109,6 +111,56 @@ TEST(StackServer, TurnDeliversWantedMessagesAndReturnsWhatTheStackPublishes) {
         EXPECT_EQ(turn.messages[0].topic, "/imu");
         EXPECT_EQ(io::decode<Imu>(turn.messages[0].cdr).stamp, 9ms);
         client.publish(turn.now, VelocityCommand{.stamp = turn.now, .vx_mps = 0.5});
+        client.done({.now = turn.now, .next_turn = {}, .mission_is_over = true});
+      });
+  EXPECT_EQ(error, "");
+}
+
+TEST(StackServer, AMessageOf8KibibytesArrivesBeforeTheTurnIfItIsSentEarly) {
+  for (const bool is_early : {true, false}) {
+    std::promise<Time> arrival;
+    std::future<Time> has_arrived = arrival.get_future();
+    const std::string error = run_both(
+        [&](StackServer& server) {
+          server.declare("/scan", io::kRosType<LaserScan>);
+          server.greet(kHello);
+          LaserScan scan;
+          scan.ranges_m.assign(kEarlyBytes / sizeof(float), 1.0F);
+          server.send("/scan", 10ms, io::encode(scan), is_early);
+          const auto wait = is_early ? std::chrono::milliseconds(10s) : 50ms;
+          EXPECT_EQ(has_arrived.wait_for(wait) == std::future_status::ready, is_early);
+          server.turn(20ms, false);
+        },
+        [&](Socket socket) {
+          StackClient client(std::move(socket));
+          client.begin("driver", {}, 50ms);
+          const ReceivedTurn turn =
+              client.next_turn([&](const DeliveredMessage& message) { arrival.set_value(message.log_time); });
+          client.done({.now = turn.now, .next_turn = {}, .mission_is_over = true});
+        });
+    EXPECT_EQ(error, "");
+    EXPECT_EQ(has_arrived.get(), 10ms);
+  }
+}
+
+TEST(StackServer, AnEarlyMessageLargerThanTheConnectionHoldsArrivesWhole) {
+  LaserScan scan;
+  for (int i = 0; i < 2'000'000; ++i) scan.ranges_m.push_back(static_cast<float>(i));
+  const std::string cdr = io::encode(scan);
+  const std::string error = run_both(
+      [&](StackServer& server) {
+        server.declare("/scan", io::kRosType<LaserScan>);
+        server.greet(kHello);
+        for (int i = 0; i < 3; ++i) server.send("/scan", 10ms, cdr, true);
+        server.turn(20ms, false);
+      },
+      [&](Socket socket) {
+        StackClient client(std::move(socket));
+        client.begin("driver", {}, 50ms);
+        std::this_thread::sleep_for(20ms);  // the connection fills
+        const ReceivedTurn turn = client.next_turn();
+        ASSERT_EQ(turn.messages.size(), 3U);
+        for (const DeliveredMessage& message : turn.messages) EXPECT_TRUE(message.cdr == cdr);
         client.done({.now = turn.now, .next_turn = {}, .mission_is_over = true});
       });
   EXPECT_EQ(error, "");

@@ -38,7 +38,7 @@ std::unique_ptr<StackPort> stack_for(const link::StackClient& client) {
   Scenario scenario = load_scenario(file);
   scenario.stack.command.clear();  // the built-in stack needs its sensors in this process as well
   const ScenarioFiles files = load_scenario_files(scenario, find_data_root(file));
-  return std::make_unique<BuiltInStack>(make_stack(scenario, files), stack::ComputeSettings{});
+  return std::make_unique<BuiltInStack>(make_stack(scenario, files), stack::ComputeSettings{}, false);
 }
 
 void publish(link::StackClient& client, Time now, const std::vector<PublishedMessage>& messages) {
@@ -53,14 +53,14 @@ void take_turns(link::StackClient& client) {
   const std::unique_ptr<StackPort> stack = stack_for(client);
   client.begin("patrol stack", {}, BuiltInStack::kMinTurnPeriod);
   for (bool is_last = false; !is_last;) {
-    link::ReceivedTurn received = client.next_turn();
-    is_last = received.is_last;
-    const StackTurn turn{.now = received.now, .messages = std::move(received.messages)};
+    const link::ReceivedTurn turn =
+        client.next_turn([&](link::DeliveredMessage message) { stack->deliver(std::move(message)); });
+    is_last = turn.is_last;
     if (is_last) {
-      publish(client, turn.now, stack->finish(turn));
+      publish(client, turn.now, stack->finish(turn.now));
       client.done({.now = turn.now, .next_turn = {}, .mission_is_over = true});
     } else {
-      const StackAnswer answer = stack->take_turn(turn);
+      const StackAnswer answer = stack->take_turn(turn.now);
       publish(client, turn.now, answer.messages);
       client.done({.now = turn.now, .next_turn = answer.next_turn, .mission_is_over = answer.mission_is_over});
     }

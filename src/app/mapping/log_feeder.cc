@@ -9,21 +9,26 @@
 namespace patrol::app {
 
 void LogFeeder::advance(Time now) {
-  if (now <= turn_.now) return;
-  if (!turn_.messages.empty() && turn_.now >= next_turn_) take_turn();
-  turn_.now = now;
+  if (now <= now_) return;
+  if (has_new_messages_ && now_ >= next_turn_) take_turn();
+  now_ = now;
 }
 
 void LogFeeder::deliver(const io::McapChannel& channel, std::string_view cdr) {
-  log_.write_foreign(turn_.now, channel.topic, channel.type, channel.definition, cdr);
-  turn_.messages.push_back({.topic = channel.topic, .log_time = turn_.now, .cdr = std::string(cdr)});
+  log_.write_foreign(now_, channel.topic, channel.type, channel.definition, cdr);
+  give({.topic = channel.topic, .log_time = now_, .cdr = std::string(cdr)});
+}
+
+void LogFeeder::give(link::DeliveredMessage message) {
+  stack_->deliver(std::move(message));
+  has_new_messages_ = true;
 }
 
 void LogFeeder::take_turn() {
-  const StackAnswer answer = stack_->take_turn(turn_);
-  turn_.messages.clear();
+  const StackAnswer answer = stack_->take_turn(now_);
+  has_new_messages_ = false;
   next_turn_ = answer.next_turn;
-  record_turn({.turn = turn_.now,
+  record_turn({.turn = now_,
                .delay = answer.delay,
                .next_turn = answer.next_turn,
                .is_last = false,
@@ -37,7 +42,7 @@ void LogFeeder::record_turn(const StackTurnRecord& record) {
 
 void LogFeeder::publish(const std::vector<PublishedMessage>& messages) {
   for (const PublishedMessage& message : messages) {
-    write_published(log_, turn_.now, message);
+    write_published(log_, now_, message);
     if (!message.content) continue;
     std::visit(Overloaded{[](const auto&) {},
                           [&](const PoseEstimate& estimate) {
@@ -50,8 +55,8 @@ void LogFeeder::publish(const std::vector<PublishedMessage>& messages) {
 }
 
 void LogFeeder::finish() {
-  const std::vector<PublishedMessage> messages = stack_->finish(turn_);
-  record_turn({.turn = turn_.now, .delay = {}, .next_turn = turn_.now, .is_last = true, .mission_is_over = true});
+  const std::vector<PublishedMessage> messages = stack_->finish(now_);
+  record_turn({.turn = now_, .delay = {}, .next_turn = now_, .is_last = true, .mission_is_over = true});
   publish(messages);
 }
 

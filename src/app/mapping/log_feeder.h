@@ -37,8 +37,7 @@ class LogFeeder {
   void advance(Time now);
   template <typename Message>
   void deliver(const Message& message) {
-    turn_.messages.push_back(
-        {.topic = io::kTopic<Message>, .log_time = turn_.now, .cdr = log_.write(turn_.now, message)});
+    give({.topic = io::kTopic<Message>, .log_time = now_, .cdr = log_.write(now_, message)});
   }
   /// Delivers a message of a channel that the stack has been told of.
   void deliver(const io::McapChannel& channel, std::string_view cdr);
@@ -48,13 +47,15 @@ class LogFeeder {
   FedAnswers answers(RunOutcome outcome);
 
  private:
+  void give(link::DeliveredMessage message);
   void take_turn();
   void record_turn(const StackTurnRecord& record);
   void publish(const std::vector<PublishedMessage>& messages);
 
   std::unique_ptr<StackPort> stack_;
   io::RunLogWriter log_;
-  StackTurn turn_;
+  Time now_{};
+  bool has_new_messages_ = false;  ///< since the last turn
   Time next_turn_{};
   FedAnswers fed_;
 };

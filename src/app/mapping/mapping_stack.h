@@ -19,14 +19,15 @@ class MappingStack final : public StackPort {
   /// `mounts`: transforms of the sensors, with that of the lidar. Throws InputError if a setting breaks its rule.
   MappingStack(const LogMappingSettings& settings, const io::TransformSet& mounts);
 
-  StackAnswer take_turn(const StackTurn& turn) override;
-  std::vector<PublishedMessage> finish(const StackTurn& turn) override;
+  void deliver(link::DeliveredMessage message) override;
+  void begin_turn(Time now) override { turn_ = now; }
+  StackAnswer end_turn() override;
+  std::vector<PublishedMessage> finish(Time now) override;
   bool records_turns() const override { return false; }
   std::map<std::string, double> seconds_by_stage() const override { return {{"stack", seconds_}}; }
 
  private:
-  void handle(const StackTurn& turn, std::vector<PublishedMessage>& published);
-  void map_scan(LaserScan scan, std::vector<PublishedMessage>& published);
+  void map_scan(LaserScan scan);
 
   LogMappingSettings settings_;
   std::unique_ptr<slam::Mapper> mapper_;
@@ -34,7 +35,9 @@ class MappingStack final : public StackPort {
   Pose2 T_body_lidar_;
   std::optional<Pose2> T_odom_first_, T_odom_last_;  ///< odometry at the first and the last beam of the next scan
   std::vector<Time> stamps_;
-  double seconds_ = 0.0;  ///< CPU time
+  Time turn_{};                              ///< last turn
+  std::vector<PublishedMessage> published_;  ///< since the last turn
+  double seconds_ = 0.0;                     ///< CPU time
 };
 
 }  // namespace patrol::app

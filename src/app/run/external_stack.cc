@@ -139,8 +139,8 @@ void ExternalStack::connect() {
     server_->declare(channel.topic, channel.type, channel.definition);
   server_->declare(io::kStaticTransforms.topic, io::kStaticTransforms.type);
   server_->declare(link::kSiteMapTopic, io::kRosType<MapUpdate>);
-  server_->send(io::kStaticTransforms.topic, Time{}, documents_.static_transforms);
-  if (!documents_.known_map.empty()) server_->send(link::kSiteMapTopic, Time{}, documents_.known_map);
+  server_->send(io::kStaticTransforms.topic, Time{}, documents_.static_transforms, false);
+  if (!documents_.known_map.empty()) server_->send(link::kSiteMapTopic, Time{}, documents_.known_map, false);
   server_->greet(documents_.hello);
 }
 
@@ -171,12 +171,7 @@ link::Socket ExternalStack::accept(const link::WaitLimit& wait) {
   }
 }
 
-void ExternalStack::send(const StackTurn& turn) {
-  for (const link::DeliveredMessage& message : turn.messages)
-    server_->send(message.topic, message.log_time, message.cdr);
-}
-
-/// Connects before the first turn, which is the last one if there is no other.
+/// Connects before the first message, or before the first turn if there is none.
 void ExternalStack::ensure_connected() {
   if (server_) return;
   try {
@@ -186,33 +181,51 @@ void ExternalStack::ensure_connected() {
   }
 }
 
-StackAnswer ExternalStack::take_turn(const StackTurn& turn) {
+std::optional<Time> ExternalStack::known_delay() const { return known_delay_of(settings_.compute); }
+
+void ExternalStack::deliver(link::DeliveredMessage message) {
   ensure_connected();
-  const std::optional<double> cpu_start_s = cpu_seconds();
-  StackAnswer answer = exchange(turn, false);
-  const std::optional<double> cpu_end_s = cpu_seconds();
-  answer.delay = delay_of(settings_.compute, cpu_start_s && cpu_end_s ? *cpu_end_s - *cpu_start_s : 0.0);
-  return answer;
+  const bool is_early = known_delay().has_value();  // a measured turn contains the processing of its messages
+  server_->send(message.topic, message.log_time, message.cdr, is_early);
 }
 
-std::vector<PublishedMessage> ExternalStack::finish(const StackTurn& turn) {
+void ExternalStack::begin_turn(Time now) {
   ensure_connected();
-  return exchange(turn, true).messages;
+  cpu_start_s_ = cpu_seconds();
+  begin_turn(now, false);
 }
 
-StackAnswer ExternalStack::exchange(const StackTurn& turn, bool is_last) {
+void ExternalStack::begin_turn(Time now, bool is_last) {
+  turn_ = now;
   const auto start = std::chrono::steady_clock::now();
   try {
-    send(turn);
-    link::TurnAnswer received = server_->turn(turn.now, is_last);
+    server_->begin_turn(now, is_last);
+  } catch (const LinkError& error) {
+    fail(error, fmt::format("at {:.3f} s", to_seconds(turn_)));
+  }
+  wait_s_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+StackAnswer ExternalStack::end_turn() {
+  const auto start = std::chrono::steady_clock::now();
+  try {
+    link::TurnAnswer received = server_->end_turn();
     wait_s_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     StackAnswer answer{.messages = {}, .next_turn = received.next_turn, .mission_is_over = received.mission_is_over};
     for (link::PublishedMessage& message : received.messages)
       answer.messages.push_back(checked_message(std::move(message)));
+    const std::optional<double> cpu_end_s = cpu_seconds();
+    answer.delay = delay_of(settings_.compute, cpu_start_s_ && cpu_end_s ? *cpu_end_s - *cpu_start_s_ : 0.0);
     return answer;
   } catch (const LinkError& error) {
-    fail(error, fmt::format("at {:.3f} s", to_seconds(turn.now)));
+    fail(error, fmt::format("at {:.3f} s", to_seconds(turn_)));
   }
+}
+
+std::vector<PublishedMessage> ExternalStack::finish(Time now) {
+  ensure_connected();
+  begin_turn(now, true);
+  return end_turn().messages;
 }
 
 /// Throws the error again, with a sentence about the stack.

@@ -42,8 +42,11 @@ class ExternalStack final : public StackPort {
   ExternalStack(StackDocuments documents, StackConnection connection, stack::StackSettings settings);
   ~ExternalStack() override;
 
-  StackAnswer take_turn(const StackTurn& turn) override;
-  std::vector<PublishedMessage> finish(const StackTurn& turn) override;
+  void deliver(link::DeliveredMessage message) override;
+  void begin_turn(Time now) override;
+  StackAnswer end_turn() override;
+  std::vector<PublishedMessage> finish(Time now) override;
+  std::optional<Time> known_delay() const override;
   bool records_turns() const override { return true; }
   std::map<std::string, double> seconds_by_stage() const override { return {{"stack", wait_s_}}; }
 
@@ -53,8 +56,7 @@ class ExternalStack final : public StackPort {
   link::Socket accept(const link::WaitLimit& wait);
   void close_listener();
   void start_process();
-  void send(const StackTurn& turn);
-  StackAnswer exchange(const StackTurn& turn, bool is_last);
+  void begin_turn(Time now, bool is_last);
   [[noreturn]] void fail(const link::LinkError& error, const std::string& when);
   std::optional<double> cpu_seconds() const;
 
@@ -66,6 +68,9 @@ class ExternalStack final : public StackPort {
   std::filesystem::path folder_;          ///< of the socket of a process that Patrol starts; removed at the end
   std::optional<link::StackProcess> process_;
   std::optional<link::StackServer> server_;
+  Time turn_{};  ///< last turn
+  std::optional<double>
+      cpu_start_s_;  ///< CPU time of the stack at its beginning; nullopt unless it delays the commands
   double wait_s_ = 0.0;
 };
 

@@ -95,33 +95,32 @@ class FeedLoop {
   /// Lets the stack take a turn and publishes its answer. `recorded_delay`: instead of the delay of the answer.
   StackAnswer take_turn(Time now, const std::optional<Time>& recorded_delay) {
     deliver_until(now, false);
-    StackAnswer answer = stack_.take_turn(turn_);
-    turn_.messages.clear();
+    StackAnswer answer = stack_.take_turn(now);
     answer.delay = recorded_delay.value_or(answer.delay);
-    record_turn({.turn = now,
-                 .delay = answer.delay,
-                 .next_turn = answer.next_turn,
-                 .is_last = false,
-                 .mission_is_over = answer.mission_is_over});
-    publish(std::min(tick_at(now + answer.delay), end_), answer.messages);
+    const Time time = std::min(tick_at(now + answer.delay), end_);
+    record_turn(time, {.turn = now,
+                       .delay = answer.delay,
+                       .next_turn = answer.next_turn,
+                       .is_last = false,
+                       .mission_is_over = answer.mission_is_over});
+    publish(time, answer.messages);
     return answer;
   }
 
-  void record_turn(const StackTurnRecord& record) {
-    if (stack_.records_turns()) log_.write(record.turn, record);
+  void record_turn(Time now, const StackTurnRecord& record) {
+    if (stack_.records_turns()) log_.write(now, record);
   }
 
   void finish(Time now) {
     deliver_until(now, true);
-    const std::vector<PublishedMessage> messages = stack_.finish(turn_);
-    record_turn({.turn = now, .delay = {}, .next_turn = now, .is_last = true, .mission_is_over = true});
+    const std::vector<PublishedMessage> messages = stack_.finish(now);
+    record_turn(now, {.turn = now, .delay = {}, .next_turn = now, .is_last = true, .mission_is_over = true});
     publish(now, messages);
   }
 
-  /// Writes the messages of the simulator up to a time, and adds those for the stack to its next turn. The ground truth
+  /// Writes the messages of the simulator up to a time, and delivers those for the stack. The ground truth
   /// of that time is written after the answers, unless the run ends.
   void deliver_until(Time now, bool is_end) {
-    turn_.now = now;
     while (true) {
       if (!next_input_) next_input_ = read_input();
       if (!next_input_) return;
@@ -129,7 +128,7 @@ class FeedLoop {
       const bool is_for_stack = io::is_stack_input(message.topic);
       if (message.log_time > now || (!is_for_stack && !is_end && message.log_time == now)) return;
       log_.write_foreign(message.log_time, message.topic, next_input_->type, next_input_->definition, message.cdr);
-      if (is_for_stack) turn_.messages.push_back(std::move(message));
+      if (is_for_stack) stack_.deliver(std::move(message));
       next_input_.reset();
     }
   }
@@ -168,7 +167,6 @@ class FeedLoop {
   Time end_{};
   Time next_progress_{};
   std::optional<Input> next_input_;
-  StackTurn turn_;
   RunOutcome outcome_;
 };
 

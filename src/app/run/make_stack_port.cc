@@ -24,7 +24,7 @@ stack::LiningReferences references_of(const ScenarioFiles& files) {
 
 std::unique_ptr<StackPort> make_stack_port(const Scenario& scenario, const ScenarioFiles& files, StackContext context) {
   if (scenario.stack.command.empty())
-    return std::make_unique<BuiltInStack>(make_stack(scenario, files), scenario.stack.compute);
+    return std::make_unique<BuiltInStack>(make_stack(scenario, files), scenario.stack.compute, context.has_thread);
   StackConnection connection{.command = scenario.stack.command,
                              .output = std::move(context.output),
                              .is_interrupted = std::move(context.is_interrupted)};

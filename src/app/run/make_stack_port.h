@@ -18,6 +18,7 @@ struct StackContext {
   Time tick{};                           ///< of the simulator
   std::filesystem::path output;          ///< file for the output of a stack in another process
   std::function<bool()> is_interrupted;  ///< polled while Patrol waits for such a stack
+  bool has_thread = false;               ///< whether the built-in stack has a thread of its own
 };
 
 /// Creates the built-in stack, or the connection to the stack of `stack.command`. Throws InputError if the settings of

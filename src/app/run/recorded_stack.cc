@@ -25,11 +25,11 @@ RecordedStack::RecordedStack(const std::filesystem::path& log_mcap, Time tick, b
   next_ = next_entry();
 }
 
-StackAnswer RecordedStack::take_turn(const StackTurn& turn) {
-  StackAnswer answer{.messages = {}, .next_turn = turn.now + tick_};
+StackAnswer RecordedStack::end_turn() {
+  StackAnswer answer{.messages = {}, .next_turn = turn_ + tick_};
   if (has_turns_) {
     answer.mission_is_over = !next_;
-    if (!next_ || !next_->turn || next_->turn->turn != turn.now) return answer;
+    if (!next_ || !next_->turn || next_->turn->turn != turn_) return answer;
     const StackTurnRecord record = *next_->turn;
     answer.next_turn = record.next_turn;
     answer.delay = record.delay;
@@ -37,15 +37,15 @@ StackAnswer RecordedStack::take_turn(const StackTurn& turn) {
     answer.messages = take_until_next_turn();
     return answer;
   }
-  answer.mission_is_over = turn.now >= end_;
-  while (next_ && !next_->follows_truth && next_->log_time <= turn.now) {
+  answer.mission_is_over = turn_ >= end_;
+  while (next_ && !next_->follows_truth && next_->log_time <= turn_) {
     answer.messages.push_back(std::move(next_->message));
     next_ = next_entry();
   }
   return answer;
 }
 
-std::vector<PublishedMessage> RecordedStack::finish(const StackTurn&) { return take_until_next_turn(); }
+std::vector<PublishedMessage> RecordedStack::finish(Time /*now*/) { return take_until_next_turn(); }
 
 /// Removes and returns the messages of a turn, whose record is next in a log that has them.
 std::vector<PublishedMessage> RecordedStack::take_until_next_turn() {

@@ -18,8 +18,10 @@ class RecordedStack final : public StackPort {
   /// `tick`: of the simulator. `has_turns`: whether the log has records of turns. Throws InputError.
   RecordedStack(const std::filesystem::path& log_mcap, Time tick, bool has_turns);
 
-  StackAnswer take_turn(const StackTurn& turn) override;
-  std::vector<PublishedMessage> finish(const StackTurn& turn) override;
+  void deliver(link::DeliveredMessage /*message*/) override {}
+  void begin_turn(Time now) override { turn_ = now; }
+  StackAnswer end_turn() override;
+  std::vector<PublishedMessage> finish(Time now) override;
   bool records_turns() const override { return has_turns_; }
   std::map<std::string, double> seconds_by_stage() const override { return {}; }
 
@@ -36,6 +38,7 @@ class RecordedStack final : public StackPort {
   std::vector<PublishedMessage> take_until_next_turn();
 
   Time tick_;
+  Time turn_{};  ///< last turn
   Time end_{};
   bool has_turns_ = false;
   io::McapReader reader_;

@@ -125,6 +125,7 @@ class ClosedLoop {
   }
 
   std::string state() {
+    if (turn_is_running_) take_answer();
     StateArchive archive;
     serialize_state(archive);
     return archive.bytes();
@@ -185,39 +186,54 @@ class ClosedLoop {
     outcome_.end = RunEnd::kFall;
   }
 
-  /// Writes a message and adds it to the next turn of the stack.
+  /// Writes a message and hands it over to the stack.
   template <typename Message>
   void deliver(Time now, const Message& message) {
-    turn_.messages.push_back({.topic = io::kTopic<Message>, .log_time = now, .cdr = log_.write(now, message)});
-    trace_message(turn_.messages.back().topic, turn_.messages.back().cdr);
+    link::DeliveredMessage delivered{.topic = io::kTopic<Message>, .log_time = now, .cdr = log_.write(now, message)};
+    trace_message(delivered.topic, delivered.cdr);
+    stack_.deliver(std::move(delivered));
   }
 
-  /// Publishes what the stack has computed by now, and lets it take a turn when it is due.
+  /// Publishes what the stack has computed by now, and lets it begin a turn when it is due. The simulator continues
+  /// beside a turn whose delay is known.
   void give_turn(Time now) {
     publish_answer(now);
-    if (answer_ || now < next_turn_) return;
-    turn_.now = now;
-    answer_ = stack_.take_turn(turn_);
-    turn_.messages.clear();
-    answer_time_ = now + answer_->delay;
-    next_turn_ = answer_->next_turn;
-    record_turn({.turn = now,
-                 .delay = answer_->delay,
-                 .next_turn = answer_->next_turn,
-                 .is_last = false,
-                 .mission_is_over = answer_->mission_is_over});
+    if (turn_is_running_ || answer_ || now < next_turn_) return;
+    turn_ = now;
+    stack_.begin_turn(now);
+    turn_is_running_ = true;
+    if (const std::optional<Time> delay = stack_.known_delay()) answer_time_ = now + *delay;
+    else take_answer();
     publish_answer(now);
   }
 
-  void record_turn(const StackTurnRecord& record) {
-    if (stack_.records_turns()) log_.write(record.turn, record);
+  void take_answer() {
+    answer_ = stack_.end_turn();
+    turn_is_running_ = false;
+    answer_time_ = turn_ + answer_->delay;
+    next_turn_ = answer_->next_turn;
   }
 
   void publish_answer(Time now) {
-    if (!answer_ || now < answer_time_) return;
-    publish(now, answer_->messages);
-    mission_is_over_ = answer_->mission_is_over || (fall_time_ && turn_.now >= *fall_time_);
+    if (now < answer_time_) return;
+    if (turn_is_running_) take_answer();
+    if (!answer_) return;
+    publish(now, *answer_);
+    mission_is_over_ = answer_->mission_is_over || (fall_time_ && turn_ >= *fall_time_);
     answer_.reset();
+  }
+
+  void publish(Time now, const StackAnswer& answer) {
+    record_turn(now, {.turn = turn_,
+                      .delay = answer.delay,
+                      .next_turn = answer.next_turn,
+                      .is_last = false,
+                      .mission_is_over = answer.mission_is_over});
+    publish(now, answer.messages);
+  }
+
+  void record_turn(Time now, const StackTurnRecord& record) {
+    if (stack_.records_turns()) log_.write(now, record);
   }
 
   void publish(Time now, const std::vector<PublishedMessage>& messages) {
@@ -269,10 +285,10 @@ class ClosedLoop {
 
   /// Lets the stack publish its last results.
   void finish_stack(Time now) {
-    if (answer_) publish(now, answer_->messages);
-    turn_.now = now;
-    const std::vector<PublishedMessage> messages = stack_.finish(turn_);
-    record_turn({.turn = now, .delay = {}, .next_turn = now, .is_last = true, .mission_is_over = true});
+    if (turn_is_running_) take_answer();
+    if (answer_) publish(now, *answer_);
+    const std::vector<PublishedMessage> messages = stack_.finish(now);
+    record_turn(now, {.turn = now, .delay = {}, .next_turn = now, .is_last = true, .mission_is_over = true});
     publish(now, messages);
   }
 
@@ -313,7 +329,8 @@ class ClosedLoop {
   std::vector<KidnapSettings> kidnaps_;  ///< by time
   Eigen::Vector3d last_position_;
   double distance_m_ = 0.0;
-  StackTurn turn_;                     ///< next turn, or the one that is being answered
+  Time turn_{};                        ///< last turn
+  bool turn_is_running_ = false;       ///< the stack has begun the turn and may compute
   std::optional<StackAnswer> answer_;  ///< answer that has not taken effect
   Time answer_time_{}, next_turn_{};
   Time command_time_{};  ///< of the last velocity command

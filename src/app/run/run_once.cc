@@ -48,6 +48,7 @@ struct RunSystem {
   RunSystem(const Scenario& scenario, ScenarioFiles scenario_files, StackContext context, int num_threads = 1)
       : files(std::move(scenario_files)), simulator(make_simulator(scenario, files, num_threads > 1)) {
     context.tick = simulator.tick();
+    context.has_thread = num_threads > 1;
     stack = make_stack_port(scenario, files, std::move(context));
   }
 

@@ -27,7 +27,7 @@ struct RunMode {
   double snapshot_period_s = 0.0;         ///< 0: no periodic snapshots
   std::vector<Time> snapshot_times = {};  ///< instants of further snapshots, in ascending order
   std::optional<BranchOrigin> branch = {};
-  int num_threads = 1;  ///< 2: expensive sensors have a thread of their own; the results are the same
+  int num_threads = 1;  ///< 2: expensive sensors and the built-in stack have threads of their own; same results
 
   bool has_snapshots() const { return snapshot_period_s > 0.0 || !snapshot_times.empty(); }
 };

@@ -23,12 +23,6 @@ struct PublishedMessage {
   std::string cdr;
 };
 
-/// Turn of the stack, with the messages that were delivered since the last one.
-struct StackTurn {
-  Time now{};
-  std::vector<link::DeliveredMessage> messages;
-};
-
 /// Answer of the stack to a turn.
 struct StackAnswer {
   std::vector<PublishedMessage> messages;
@@ -37,7 +31,9 @@ struct StackAnswer {
   Time delay{};  ///< time from the start of the turn until its messages take effect
 };
 
-/// The robot's software in the closed loop of a run. Throws link::LinkError if software in another process fails.
+/// The robot's software in the closed loop of a run. Use: `deliver` each message; `begin_turn`; `end_turn`; at the end
+/// `finish`. The stack may process messages before its turn, and the turn until its end, beside the simulator: its
+/// answers do not depend on that. Throws link::LinkError if software in another process fails.
 class StackPort {
  public:
   StackPort() = default;
@@ -45,14 +41,24 @@ class StackPort {
   StackPort(const StackPort&) = delete;
   StackPort& operator=(const StackPort&) = delete;
 
-  virtual StackAnswer take_turn(const StackTurn& turn) = 0;
+  /// Hands over a message for the next turn to begin.
+  virtual void deliver(link::DeliveredMessage message) = 0;
+  virtual void begin_turn(Time now) = 0;
+  /// Waits for the answer to the turn that has begun.
+  virtual StackAnswer end_turn() = 0;
+  StackAnswer take_turn(Time now) {
+    begin_turn(now);
+    return end_turn();
+  }
   /// Ends the run: the stack completes its map and publishes its last results.
-  virtual std::vector<PublishedMessage> finish(const StackTurn& turn) = 0;
+  virtual std::vector<PublishedMessage> finish(Time now) = 0;
+  /// Returns the delay of every answer if it is known before the end of the turn.
+  virtual std::optional<Time> known_delay() const { return std::nullopt; }
   /// Returns whether the log has a StackTurn of every turn. Otherwise the turns are those of the built-in stack,
   /// without delay.
   virtual bool records_turns() const = 0;
-  /// Saves or restores the state between two turns. Throws InputError if the method of the stack cannot be saved, and
-  /// std::logic_error for software in another process, whose runs are refused before it starts.
+  /// Saves or restores the state after the end of a turn. Throws InputError if the method of the stack cannot be saved,
+  /// and std::logic_error for software in another process, whose runs are refused before it starts.
   virtual void serialize_state(StateArchive& /*archive*/) {
     throw std::logic_error("state of a stack in another process");
   }

@@ -8,6 +8,8 @@
 
 #include <png.h>
 
+#include "io/images/libav.h"
+
 extern "C" {
 #include <libavcodec/avcodec.h>
 #include <libswscale/swscale.h>
@@ -17,16 +19,16 @@ namespace patrol::importer {
 namespace {
 
 struct FreeContext {
-  void operator()(AVCodecContext* context) const { avcodec_free_context(&context); }
+  void operator()(AVCodecContext* context) const { PATROL_LIBAV(avcodec_free_context)(&context); }
 };
 struct FreePicture {
-  void operator()(AVFrame* frame) const { av_frame_free(&frame); }
+  void operator()(AVFrame* frame) const { PATROL_LIBAV(av_frame_free)(&frame); }
 };
 struct FreeImagePacket {
-  void operator()(AVPacket* packet) const { av_packet_free(&packet); }
+  void operator()(AVPacket* packet) const { PATROL_LIBAV(av_packet_free)(&packet); }
 };
 struct FreeScaler {
-  void operator()(SwsContext* scaler) const { sws_freeContext(scaler); }
+  void operator()(SwsContext* scaler) const { PATROL_LIBAV(sws_freeContext)(scaler); }
 };
 
 AVCodecID codec_of(std::string_view bytes, const std::string& extension) {
@@ -43,20 +45,21 @@ AVCodecID codec_of(std::string_view bytes, const std::string& extension) {
 using Picture = std::unique_ptr<AVFrame, FreePicture>;
 
 Picture decode(std::string_view bytes, AVCodecID id) {
-  av_log_set_level(AV_LOG_QUIET);
-  const AVCodec* codec = avcodec_find_decoder(id);
+  PATROL_LIBAV(av_log_set_level)(AV_LOG_QUIET);
+  const AVCodec* codec = PATROL_LIBAV(avcodec_find_decoder)(id);
   if (codec == nullptr) return nullptr;
-  const std::unique_ptr<AVCodecContext, FreeContext> context(avcodec_alloc_context3(codec));
-  const std::unique_ptr<AVPacket, FreeImagePacket> packet(av_packet_alloc());
-  Picture picture(av_frame_alloc());
+  const std::unique_ptr<AVCodecContext, FreeContext> context(PATROL_LIBAV(avcodec_alloc_context3)(codec));
+  const std::unique_ptr<AVPacket, FreeImagePacket> packet(PATROL_LIBAV(av_packet_alloc)());
+  Picture picture(PATROL_LIBAV(av_frame_alloc)());
   if (!context || !packet || !picture) return nullptr;
   context->thread_count = 1;
-  if (avcodec_open2(context.get(), codec, nullptr) < 0) return nullptr;
-  if (bytes.size() > 1u << 30 || av_new_packet(packet.get(), static_cast<int>(bytes.size())) < 0) return nullptr;
+  if (PATROL_LIBAV(avcodec_open2)(context.get(), codec, nullptr) < 0) return nullptr;
+  if (bytes.size() > 1u << 30 || PATROL_LIBAV(av_new_packet)(packet.get(), static_cast<int>(bytes.size())) < 0)
+    return nullptr;
   std::memcpy(packet->data, bytes.data(), bytes.size());
-  if (avcodec_send_packet(context.get(), packet.get()) < 0) return nullptr;
-  avcodec_send_packet(context.get(), nullptr);
-  if (avcodec_receive_frame(context.get(), picture.get()) < 0) return nullptr;
+  if (PATROL_LIBAV(avcodec_send_packet)(context.get(), packet.get()) < 0) return nullptr;
+  PATROL_LIBAV(avcodec_send_packet)(context.get(), nullptr);
+  if (PATROL_LIBAV(avcodec_receive_frame)(context.get(), picture.get()) < 0) return nullptr;
   return picture;
 }
 
@@ -87,21 +90,21 @@ std::optional<TextureImage> decode_image(std::string_view bytes, const std::stri
   TextureImage image;
   image.width = std::max(1, static_cast<int>(picture->width / reduction));
   image.height = std::max(1, static_cast<int>(picture->height / reduction));
-  const std::unique_ptr<SwsContext, FreeScaler> scaler(
-      sws_getContext(picture->width, picture->height, plain_format(picture->format), image.width, image.height,
-                     AV_PIX_FMT_RGB24, SWS_AREA | SWS_ACCURATE_RND | SWS_FULL_CHR_H_INT, nullptr, nullptr, nullptr));
+  const std::unique_ptr<SwsContext, FreeScaler> scaler(PATROL_LIBAV(sws_getContext)(
+      picture->width, picture->height, plain_format(picture->format), image.width, image.height, AV_PIX_FMT_RGB24,
+      SWS_AREA | SWS_ACCURATE_RND | SWS_FULL_CHR_H_INT, nullptr, nullptr, nullptr));
   if (!scaler) return std::nullopt;
   if (plain_format(picture->format) != picture->format || picture->color_range == AVCOL_RANGE_JPEG) {
-    const int* coefficients = sws_getCoefficients(SWS_CS_DEFAULT);
-    sws_setColorspaceDetails(scaler.get(), coefficients, 1, coefficients, 1, 0, 1 << 16, 1 << 16);
+    const int* coefficients = PATROL_LIBAV(sws_getCoefficients)(SWS_CS_DEFAULT);
+    PATROL_LIBAV(sws_setColorspaceDetails)(scaler.get(), coefficients, 1, coefficients, 1, 0, 1 << 16, 1 << 16);
   }
   // The scaler writes whole vectors beyond the end of a row.
   const int stride = (3 * image.width + 63) / 64 * 64;
   std::vector<std::uint8_t> padded(static_cast<std::size_t>(stride) * static_cast<std::size_t>(image.height) + 64);
   std::array<std::uint8_t*, 4> planes = {padded.data(), nullptr, nullptr, nullptr};
   const std::array<int, 4> strides = {stride, 0, 0, 0};
-  if (sws_scale(scaler.get(), picture->data, picture->linesize, 0, picture->height, planes.data(), strides.data()) !=
-      image.height)
+  if (PATROL_LIBAV(sws_scale)(scaler.get(), picture->data, picture->linesize, 0, picture->height, planes.data(),
+                              strides.data()) != image.height)
     return std::nullopt;
   for (int row = 0; row < image.height; ++row) {
     const auto begin = padded.begin() + std::ptrdiff_t{row} * stride;

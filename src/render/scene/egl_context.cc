@@ -1,5 +1,3 @@
-#include <dlfcn.h>
-
 #include <stdexcept>
 #include <string_view>
 #include <vector>
@@ -9,6 +7,7 @@
 #include <EGL/eglext.h>
 
 #include "core/error.h"
+#include "core/shared_library.h"
 #include "render/scene/gl_context.h"
 
 namespace patrol::render {
@@ -18,20 +17,19 @@ namespace {
 /// (eglGetProcAddress before OSMesaGetProcAddress). A program linked with EGL could therefore never use OSMesa.
 class EglLibrary {
  public:
-  explicit EglLibrary(bool is_global)
-      : handle_(dlopen("libEGL.so.1", RTLD_NOW | (is_global ? RTLD_GLOBAL : RTLD_LOCAL))) {}
+  explicit EglLibrary(SharedLibrary::Scope scope) : library_("libEGL.so.1", scope) {}
 
-  bool is_loaded() const { return handle_ != nullptr; }
+  bool is_loaded() const { return library_.is_loaded(); }
 
   template <typename Function>
   Function function(const char* name) const {
-    if (void* const found = dlsym(handle_, name)) return reinterpret_cast<Function>(found);
-    const auto get = reinterpret_cast<decltype(&eglGetProcAddress)>(dlsym(handle_, "eglGetProcAddress"));
+    if (void* const found = library_.find(name)) return reinterpret_cast<Function>(found);
+    const auto get = reinterpret_cast<decltype(&eglGetProcAddress)>(library_.find("eglGetProcAddress"));
     return reinterpret_cast<Function>(get(name));
   }
 
  private:
-  void* handle_;  // never closed: MuJoCo keeps pointers into the library
+  SharedLibrary library_;
 };
 
 bool contains_word(const char* words, std::string_view word) {
@@ -110,12 +108,12 @@ class EglContext : public GlContext {
 }  // namespace
 
 bool has_graphics_card() {
-  const EglLibrary egl(false);
+  const EglLibrary egl(SharedLibrary::Scope::kLocal);
   return egl.is_loaded() && open_graphics_card(egl) != EGL_NO_DISPLAY;
 }
 
 std::unique_ptr<GlContext> make_egl_context() {
-  const EglLibrary egl(true);
+  const EglLibrary egl(SharedLibrary::Scope::kGlobal);
   if (!egl.is_loaded()) throw InputError("renderer = egl: libEGL.so.1 is not installed (package libegl1)");
   return std::make_unique<EglContext>(egl);
 }

@@ -12,7 +12,7 @@ namespace {
 
 /// Gives an empty file the stream parameters of a video.
 void copy_parameters(const AVStream& from, AVStream& to) {
-  libav::checked(avcodec_parameters_copy(to.codecpar, from.codecpar), "stream parameters");
+  libav::checked(PATROL_LIBAV(avcodec_parameters_copy)(to.codecpar, from.codecpar), "stream parameters");
   to.codecpar->codec_tag = 0;
   to.time_base = from.time_base;
   to.avg_frame_rate = from.avg_frame_rate;
@@ -21,9 +21,10 @@ void copy_parameters(const AVStream& from, AVStream& to) {
 /// Appends the packets of `video` to `file`, `num_frames` frames after the beginning.
 void append(AVFormatContext& video, int num_frames, VideoFile& file) {
   const AVStream& from = *video.streams[0];
-  const std::int64_t shift = av_rescale_q(num_frames, av_inv_q(file.stream().avg_frame_rate), from.time_base);
+  const std::int64_t shift =
+      PATROL_LIBAV(av_rescale_q)(num_frames, av_inv_q(file.stream().avg_frame_rate), from.time_base);
   const libav::Packet packet = libav::make_packet();
-  while (av_read_frame(&video, packet.get()) >= 0) {
+  while (PATROL_LIBAV(av_read_frame)(&video, packet.get()) >= 0) {
     packet->pts += shift;
     packet->dts += shift;
     packet->pos = -1;

@@ -9,7 +9,7 @@ namespace {
 
 std::string message(int code) {
   char text[AV_ERROR_MAX_STRING_SIZE] = {};
-  av_strerror(code, text, sizeof text);
+  PATROL_LIBAV(av_strerror)(code, text, sizeof text);
   return text;
 }
 
@@ -20,14 +20,14 @@ int checked(int code, const char* doing) {
   return code;
 }
 
-Packet make_packet() { return Packet(not_null(av_packet_alloc(), "packet")); }
+Packet make_packet() { return Packet(not_null(PATROL_LIBAV(av_packet_alloc)(), "packet")); }
 
 InputVideo open_input(const std::filesystem::path& file) {
   AVFormatContext* opened = nullptr;
-  if (avformat_open_input(&opened, file.c_str(), nullptr, nullptr) < 0)
+  if (PATROL_LIBAV(avformat_open_input)(&opened, file.c_str(), nullptr, nullptr) < 0)
     throw InputError(file.string() + ": cannot read as a video");
   InputVideo video(opened);
-  checked(avformat_find_stream_info(opened, nullptr), "no stream");
+  checked(PATROL_LIBAV(avformat_find_stream_info)(opened, nullptr), "no stream");
   return video;
 }
 

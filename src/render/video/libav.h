@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "io/images/libav.h"
+
 extern "C" {
 #include <libavcodec/avcodec.h>
 #include <libavformat/avformat.h>
@@ -25,13 +27,13 @@ Pointer* not_null(Pointer* pointer, const char* name) {
 }
 
 struct FreePacket {
-  void operator()(AVPacket* packet) const { av_packet_free(&packet); }
+  void operator()(AVPacket* packet) const { PATROL_LIBAV(av_packet_free)(&packet); }
 };
 using Packet = std::unique_ptr<AVPacket, FreePacket>;
 Packet make_packet();
 
 struct CloseInput {
-  void operator()(AVFormatContext* context) const { avformat_close_input(&context); }
+  void operator()(AVFormatContext* context) const { PATROL_LIBAV(avformat_close_input)(&context); }
 };
 using InputVideo = std::unique_ptr<AVFormatContext, CloseInput>;
 

@@ -46,16 +46,18 @@ class NotingStack final : public StackPort {
  public:
   NotingStack(Given& given, Time period, int fails_at_turn)
       : given_(given), period_(period), fails_at_turn_(fails_at_turn) {}
-  StackAnswer take_turn(const StackTurn& turn) override {
-    note(turn);
+  void deliver(link::DeliveredMessage message) override { messages_.push_back(std::move(message)); }
+  void begin_turn(Time now) override { note(now); }
+  StackAnswer end_turn() override {
+    const Time now = given_.turns.back();
     if (static_cast<int>(given_.turns.size()) == fails_at_turn_)
       throw link::LinkError(link::LinkFault::kClosed, "the stack ended");
-    const PoseEstimate pose{.stamp = turn.now, .T_map_body = {1.0, 2.0, 0.5}};
-    return {.messages = {message(pose)}, .next_turn = turn.now + period_, .mission_is_over = false, .delay = {}};
+    const PoseEstimate pose{.stamp = now, .T_map_body = {1.0, 2.0, 0.5}};
+    return {.messages = {message(pose)}, .next_turn = now + period_, .mission_is_over = false, .delay = {}};
   }
-  std::vector<PublishedMessage> finish(const StackTurn& turn) override {
-    note(turn);
-    return {message(TrajectoryEstimate{.stamp = turn.now, .T_map_body = {{turn.now, {}}}})};
+  std::vector<PublishedMessage> finish(Time now) override {
+    note(now);
+    return {message(TrajectoryEstimate{.stamp = now, .T_map_body = {{now, {}}}})};
   }
   bool records_turns() const override { return true; }
   std::map<std::string, double> seconds_by_stage() const override { return {}; }
@@ -65,10 +67,10 @@ class NotingStack final : public StackPort {
   static PublishedMessage message(const Message& content) {
     return {.content = content, .topic = io::kTopic<Message>, .type = {}, .definition = {}, .cdr = io::encode(content)};
   }
-  void note(const StackTurn& turn) {
-    given_.turns.push_back(turn.now);
+  void note(Time now) {
+    given_.turns.push_back(now);
     given_.topics.emplace_back();
-    for (const link::DeliveredMessage& delivered : turn.messages) {
+    for (const link::DeliveredMessage& delivered : std::exchange(messages_, {})) {
       given_.topics.back().push_back(delivered.topic);
       if (delivered.topic == io::kTopic<RecordedOdometry>)
         given_.odometry.push_back(io::decode<RecordedOdometry>(delivered.cdr));
@@ -78,6 +80,7 @@ class NotingStack final : public StackPort {
   Given& given_;
   Time period_;
   int fails_at_turn_;
+  std::vector<link::DeliveredMessage> messages_;
 };
 
 constexpr Time ms(int count) { return std::chrono::milliseconds(count); }
