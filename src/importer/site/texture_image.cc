@@ -8,7 +8,7 @@
 
 #include <png.h>
 
-#include "io/images/libav.h"
+#include "io/images/libav_function.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>

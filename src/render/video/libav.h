@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "io/images/libav.h"
+#include "io/images/libav_function.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>

@@ -33,7 +33,8 @@ slam::MapperSettings default_slam_settings();
 
 /// Computing time of the stack in simulated time.
 struct ComputeSettings {
-  /// Model: free takes no simulated time; fixed takes delay_s for every turn; measured takes the CPU time of the turn.
+  /// Model: free takes no simulated time; fixed takes delay_s for every turn, beside the simulator; measured takes the
+  /// CPU time of the turn.
   std::string model = "free";
   double delay_s = 0.02;  ///< time from the start of a turn until its messages take effect, model fixed
   double factor = 1.0;    ///< ratio of the robot's computing time to that of this computer, model measured

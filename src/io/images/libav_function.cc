@@ -1,4 +1,4 @@
-#include "io/images/libav.h"
+#include "io/images/libav_function.h"
 
 #include <array>
 #include <stdexcept>
