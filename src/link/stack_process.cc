@@ -45,19 +45,17 @@ std::vector<char*> pointers_to(std::vector<std::string>& words) {
 }
 
 /// Child between fork and exec: only functions that are safe after a fork.
-[[noreturn]] void execute(char* const* arguments, char** environment, const char* output, pid_t parent, int error_pipe,
+[[noreturn]] void execute(char* const* arguments, char** environment, int output, pid_t parent, int error_pipe,
                           const std::optional<std::uint64_t>& memory_bytes) {
   ::setpgid(0, 0);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) ::_exit(127);  // the parent ended before prctl
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) std::signal(signal, SIG_DFL);
-  const int file = ::open(output, O_WRONLY | O_CREAT | O_APPEND, 0666);
   const int nothing = ::open("/dev/null", O_RDONLY);
-  if (file >= 0 && nothing >= 0) {
+  if (nothing >= 0) {
     ::dup2(nothing, STDIN_FILENO);
-    ::dup2(file, STDOUT_FILENO);
-    ::dup2(file, STDERR_FILENO);
-    ::close(file);
+    ::dup2(output, STDOUT_FILENO);
+    ::dup2(output, STDERR_FILENO);
     ::close(nothing);
     bool is_limited = true;
     if (memory_bytes) {
@@ -124,14 +122,14 @@ StackProcess::StackProcess(const ProcessSettings& settings) {
   std::vector<std::string> environment = environment_with(settings.environment);
   const std::vector<char*> arguments = pointers_to(words);
   std::vector<char*> variables = pointers_to(environment);
-  const std::string output = settings.output.string();
   int error_pipe[2];
   if (::pipe2(error_pipe, O_CLOEXEC) != 0) throw std::runtime_error(fmt::format("pipe: {}", std::strerror(errno)));
   const pid_t parent = ::getpid();
   id_ = ::fork();
   if (id_ == 0)
-    execute(arguments.data(), variables.data(), output.c_str(), parent, error_pipe[1], settings.memory_bytes);
+    execute(arguments.data(), variables.data(), output_.writing_end(), parent, error_pipe[1], settings.memory_bytes);
   ::close(error_pipe[1]);
+  output_.close_writing_end();
   int error = 0;
   const bool failed = id_ < 0 || ::read(error_pipe[0], &error, sizeof(error)) > 0;
   if (id_ < 0) error = errno;
@@ -151,6 +149,7 @@ void StackProcess::stop(std::chrono::steady_clock::duration timeout) {
   }
   ::kill(-id_, SIGKILL);  // also the processes that the stack has started
   while (!status_) wait_for(kTimeToEnd);
+  output_.finish();
 }
 
 bool StackProcess::wait_for(std::chrono::steady_clock::duration timeout) {

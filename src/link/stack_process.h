@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "link/process_output.h"
+
 namespace patrol::link {
 
 /// Splits a command line into words at blanks. Quotation marks (' or ") and backslashes protect blanks; nothing else is
@@ -23,11 +25,11 @@ void check_program(const std::string& program);
 struct ProcessSettings {
   std::vector<std::string> words;                  ///< program, found by PATH, and its arguments
   std::map<std::string, std::string> environment;  ///< variables in addition to those of this process
-  std::filesystem::path output;                    ///< file for standard output and standard error
   std::optional<std::uint64_t> memory_bytes = {};  ///< limit of the address space
 };
 
-/// Child process in a process group of its own, which the destructor kills.
+/// Child process in a process group of its own, which the destructor kills. Its output waits in a pipe until there is a
+/// file for it.
 class StackProcess {
  public:
   /// Throws InputError if the program cannot be started.
@@ -35,6 +37,10 @@ class StackProcess {
   ~StackProcess();
   StackProcess(const StackProcess&) = delete;
   StackProcess& operator=(const StackProcess&) = delete;
+
+  /// Appends standard output and standard error to a file from now on, beginning with the output before. Throws
+  /// InputError if the file cannot be written.
+  void write_output_to(const std::filesystem::path& file) { output_.write_to(file); }
 
   pid_t id() const { return id_; }
   bool is_running();
@@ -46,6 +52,7 @@ class StackProcess {
  private:
   bool wait_for(std::chrono::steady_clock::duration timeout);
 
+  ProcessOutput output_;
   pid_t id_ = -1;
   std::optional<int> status_;
 };

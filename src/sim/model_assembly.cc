@@ -148,6 +148,8 @@ AssembledModel assemble_model(const std::string& world_xml, const RobotUrdf& rob
   return assembled;
 }
 
+Time tick_of(const std::string& world_xml) { return from_seconds(load_spec(world_xml)->option.timestep); }
+
 double start_height_m(const std::string& world_xml, const RobotUrdf& robot_urdf, const RobotDescription& robot,
                       const Pose2& T_world_start) {
   return height_in(*load_spec(world_xml), world_xml, to_stance(robot_urdf, robot), T_world_start);

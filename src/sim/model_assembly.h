@@ -5,6 +5,7 @@
 
 #include "core/frames.h"
 #include "core/robot_description.h"
+#include "core/time.h"
 #include "sim/mujoco.h"
 #include "sim/robot_model.h"
 #include "sim/static_obstacles.h"
@@ -29,6 +30,9 @@ enum class Textures { kLoaded, kNone };
 AssembledModel assemble_model(const std::string& world_xml, const RobotUrdf& robot_urdf, const RobotDescription& robot,
                               const Pose2& T_world_start, const std::vector<StaticObstacleSettings>& obstacles = {},
                               Textures textures = Textures::kLoaded);
+
+/// Returns the time step of the world of an MJCF file. Throws InputError when the file is invalid.
+Time tick_of(const std::string& world_xml);
 
 /// Returns the height of `base_link` in world, m, of a robot that stands at `T_world_start` in the world of an MJCF
 /// file. Throws InputError when a file is invalid or no ground is below.

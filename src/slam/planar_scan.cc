@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
+
+#include "slam/range_smoothing.h"
 
 namespace patrol::slam {
 namespace {
@@ -15,12 +18,14 @@ Pose2 interpolate_motion(const Pose2& motion, double fraction) {
 
 LevelScan planar_scan(const RecordedScan& recorded, const PlanarScanSettings& settings) {
   const LaserScan& scan = recorded.scan;
+  const std::vector<float> ranges_m =
+      settings.range_std_m > 0.0 ? smoothed_ranges(scan, settings.range_std_m) : scan.ranges_m;
   LevelScan level;
   level.stamp = scan.stamp;
   level.origin_m = recorded.T_body_lidar.position();
-  const double last_beam = std::max(1.0, static_cast<double>(scan.ranges_m.size()) - 1.0);
-  for (std::size_t beam = 0; beam < scan.ranges_m.size(); ++beam) {
-    const double range = scan.ranges_m[beam];
+  const double last_beam = std::max(1.0, static_cast<double>(ranges_m.size()) - 1.0);
+  for (std::size_t beam = 0; beam < ranges_m.size(); ++beam) {
+    const double range = ranges_m[beam];
     if (std::isnan(range) || range < settings.min_range_m) continue;
     const bool is_hit = range <= settings.max_range_m;
     const double length = is_hit              ? range

@@ -102,10 +102,23 @@ class FailingStack(unittest.TestCase):
         broken.write_text("#!/no/such/interpreter\n")
         broken.chmod(0o755)
         done = run(out, str(broken))
-        self.assertEqual(done.returncode, 3, done.stdout + done.stderr)
-        self.assertIn("cannot be started: No such file or directory", done.stdout)
-        self.assertTrue((out / "metrics.json").exists())
-        self.assertFalse(list(out.glob("INCOMPLETE*")))
+        self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+        self.assertEqual(done.stderr, f"patrol: stack {broken}: cannot be started: No such file or directory\n")
+        self.assertFalse(out.exists())
+
+    def test_a_stack_that_prints_a_lot_before_it_connects(self):
+        out, done = self.run_stack("import sys\nsys.stdout.write('x' * 3_000_000 + '\\n')\nraise SystemExit(5)")
+        self.assert_verdict(out, done, 3, "the stack exited with code 5 before the start; its output: stack.log")
+        self.assertEqual(len((out / "stack.log").read_text()), 3_000_001)
+
+    def test_a_stack_beside_a_simulator_that_cannot_be_built(self):
+        out, done = self.run_stack(f"open({str(self.path / 'id')!r}, 'w').write(str(__import__('os').getpid()))\n"
+                                   "__import__('time').sleep(1000)", settings=["start.left_m=1000"])
+        self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+        self.assertRegex(done.stderr, r"\Apatrol: start pose \(.*\): no ground below in .*\n\Z")
+        self.assertFalse(out.exists())
+        if (self.path / "id").exists() and (self.path / "id").read_text():
+            self.assertFalse(pathlib.Path("/proc", (self.path / "id").read_text()).exists(), "the process remains")
 
     def test_a_message_that_patrol_cannot_use_in_the_last_turn(self):
         out, done = self.run_until(1.5, "turn.is_last and turn.publish_velocity(float('nan'))", time_limit_s=1.5)

@@ -23,7 +23,7 @@ class StackProcessTest : public testing::Test {
   ~StackProcessTest() override { std::filesystem::remove_all(folder_); }
 
   ProcessSettings settings(std::vector<std::string> words) const {
-    return {.words = std::move(words), .environment = {}, .output = output_};
+    return {.words = std::move(words), .environment = {}};
   }
   std::string output() const {
     std::ifstream file(output_);
@@ -59,6 +59,7 @@ TEST_F(StackProcessTest, OutputGoesToTheFileAndTheVariablesToTheProcess) {
   ProcessSettings start = settings({"sh", "-c", "echo $GREETING; echo $0 >&2; exit 7", "it's"});
   start.environment = {{"GREETING", "hello there"}};
   StackProcess process(start);
+  process.write_output_to(output_);
   process.stop(5s);
   EXPECT_EQ(process.end_text(), "exited with code 7");
   EXPECT_EQ(output(), "hello there\nit's\n");
@@ -75,6 +76,7 @@ TEST_F(StackProcessTest, EndTextIsEmptyWhileItRunsAndNamesTheSignalAfterwards) {
 TEST_F(StackProcessTest, StopsAProcessThatIsStoppedAndIgnoresTheRequest) {
   const auto start = std::chrono::steady_clock::now();
   StackProcess process(settings({"sh", "-c", "trap '' TERM; echo ready; kill -STOP $$; while :; do sleep 0.05; done"}));
+  process.write_output_to(output_);
   while (output() != "ready\n") ASSERT_LT(std::chrono::steady_clock::now() - start, 30s);
   process.stop({});
   EXPECT_EQ(process.end_text(), "was killed by signal 9 (Killed)");

@@ -65,5 +65,14 @@ TEST(PlanarScan, ABeamWithoutReturnIsFreeOnlyAsFarAsIsAskedFor) {
   EXPECT_THAT(scan.beams[0].end_m, test::VectorNear(Eigen::Vector2f(6.5F, 0.0F), 1e-6));
 }
 
+TEST(PlanarScan, NoisyRangesAreSmoothedIfTheirNoiseIsGiven) {
+  RecordedScan recorded;
+  recorded.scan.angle_min_rad = -0.1;
+  recorded.scan.angle_increment_rad = 0.02;
+  recorded.scan.ranges_m = {2.0F, 2.1F, 1.9F, 2.0F, 2.1F, 1.9F, 2.0F, 2.1F, 1.9F, 2.0F, 2.0F};
+  EXPECT_EQ(planar_scan(recorded, {}).beams[5].end_m.x(), 1.9F);
+  EXPECT_NEAR(planar_scan(recorded, {.range_std_m = 0.1}).beams[5].end_m.x(), 2.0F, 0.03F);
+}
+
 }  // namespace
 }  // namespace patrol::slam::planar_scan_test

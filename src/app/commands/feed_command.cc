@@ -8,13 +8,13 @@
 #include "app/record/run_directory.h"
 #include "app/report/run_summary.h"
 #include "app/run/feed_loop.h"
-#include "app/run/make_simulator.h"
 #include "app/run/make_stack_port.h"
 #include "app/run/progress_line.h"
 #include "app/run/run_junit.h"
 #include "app/run/run_once.h"
 #include "app/scenario/data_folders.h"
 #include "core/error.h"
+#include "sim/model_assembly.h"
 
 namespace patrol::app {
 namespace {
@@ -37,7 +37,7 @@ ExitCode feed_run(const FeedOptions& options) {
   scenario.stack.command = options.stack.value_or("");  // never starts a command that a run directory names
   const std::filesystem::path data_root = find_data_root(fed.scenario());
   const ScenarioFiles files = load_scenario_files(scenario, data_root);
-  const Time tick = make_simulator(scenario, files).tick();
+  const Time tick = sim::tick_of(files.world_xml.string());
   const std::string name = options.input.filename().string();
   if (std::filesystem::exists(options.out) && std::filesystem::equivalent(options.out, options.input))
     throw InputError(fmt::format("--out = {}: must not be the directory of the run", options.out.string()));
@@ -47,7 +47,6 @@ ExitCode feed_run(const FeedOptions& options) {
       make_stack_port(scenario, files,
                       {.scenario = name,
                        .data_root = data_root,
-                       .tick = tick,
                        .output = RunDirectory{options.out}.stack_output(),
                        .is_interrupted = [&] { return observer.is_interrupted(); }});
   const RunDirectory directory = begin_run_directory(options.out);

@@ -73,13 +73,11 @@ ExitCode verify_command(const VerifyOptions& options) {
   }
   if (options.stack) scenario.stack.command = *options.stack;
   ProgressLine observer("verify stack", scenario.time_limit_s);
-  const std::unique_ptr<StackPort> stack =
-      make_stack_port(scenario, files,
-                      {.scenario = name,
-                       .data_root = data_root,
-                       .tick = simulator.tick(),
-                       .output = again.path() / "stack.log",
-                       .is_interrupted = [&] { return observer.is_interrupted(); }});
+  const std::unique_ptr<StackPort> stack = make_stack_port(
+      scenario, files,
+      {.scenario = name, .data_root = data_root, .output = again.path() / "stack.log", .is_interrupted = [&] {
+         return observer.is_interrupted();
+       }});
   const std::filesystem::path log = again.path() / "stack.mcap";
   throw_if_ended_early(feed_loop(directory.log(), files, simulator.tick(), *stack, log, observer, turns));
   is_same = report("stack", io::first_difference(directory.log(), log, io::is_stack_output)) && is_same;

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
@@ -13,13 +14,12 @@ namespace patrol::app {
 namespace {
 
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): a signal handler has no other access
-volatile std::sig_atomic_t interrupts = 0;
+std::atomic<int> interrupts = 0;  // lock-free: also written by a signal handler
 
 constexpr int kCounted[] = {SIGINT, SIGTERM, SIGHUP};
 
 void count_interrupt(int signal) {
-  interrupts = interrupts + 1;
-  if (interrupts > 1) {
+  if (++interrupts > 1) {
     std::signal(signal, SIG_DFL);
     std::raise(signal);
   }

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <unistd.h>
-
+#include <cstdlib>
 #include <filesystem>
+#include <stdexcept>
 #include <string>
 #include <system_error>
 
@@ -10,13 +10,14 @@
 
 namespace patrol::app {
 
-/// Folder of this process that is removed on destruction.
+/// Folder that only the user can access, and that is removed on destruction.
 class TemporaryFolder {
  public:
-  /// `purpose` distinguishes the folders of one process.
-  explicit TemporaryFolder(const std::string& purpose)
-      : path_(std::filesystem::temp_directory_path() / fmt::format("patrol-{}-{}", purpose, ::getpid())) {
-    std::filesystem::create_directories(path_);
+  /// `purpose` is part of its name. Throws std::runtime_error if it cannot be created.
+  explicit TemporaryFolder(const std::string& purpose) {
+    std::string name = (std::filesystem::temp_directory_path() / fmt::format("patrol-{}-XXXXXX", purpose)).string();
+    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error(name + ": cannot be created");
+    path_ = name;
   }
   ~TemporaryFolder() {
     std::error_code ignored;

@@ -28,10 +28,9 @@ double estimate_range_std_m(const std::filesystem::path& file, const io::ScanLog
 
 std::string adapt_to_log(const std::filesystem::path& log, LogMappingSettings& settings) {
   if (settings.range_std_m == 0.0) settings.range_std_m = estimate_range_std_m(log, settings.log);
-  if (settings.slam.method != "graph" ||
-      !slam::adapt_to_range_noise(settings.range_std_m, settings.slam.graph.scan_odometry))
-    return "";
-  return fmt::format("ranges have noise of {:.2f} m: settings of graph adapted\n", settings.range_std_m);
+  if (!slam::adapt_to_range_noise(settings.range_std_m, settings.slam.graph.scan_odometry)) return "";
+  settings.scan.range_std_m = settings.range_std_m;
+  return fmt::format("ranges have noise of {:.2f} m: smoothed along the scans\n", settings.range_std_m);
 }
 
 std::unique_ptr<slam::Mapper> make_log_mapper(const LogMappingSettings& settings) {

@@ -33,9 +33,9 @@ struct LogMappingSettings {
   }
 };
 
-/// Sets the standard deviation of the ranges, unless it is given, from the first scans of a log, and adapts the
-/// settings of the method `graph` to it. Returns a line about the adaptation; empty if there was none. Throws
-/// InputError.
+/// Sets the standard deviation of the ranges, unless it is given, from the first scans of a log. Noisy ranges are
+/// smoothed along the scans, and the settings of the method `graph` are adapted. Returns a line about the adaptation;
+/// empty if there was none. Throws InputError.
 std::string adapt_to_log(const std::filesystem::path& log, LogMappingSettings& settings);
 
 /// Creates the mapper of `settings.slam`. Throws InputError.

@@ -29,13 +29,6 @@ constexpr std::chrono::seconds kTimeToEnd{2};         ///< of the process after 
 constexpr std::chrono::milliseconds kTimeToDie{200};  ///< of a process whose connection has closed
 constexpr std::size_t kMaxNameBytes = 200;
 
-/// Folder that only the user can access. Throws std::runtime_error.
-std::filesystem::path make_private_folder() {
-  std::string name = (std::filesystem::temp_directory_path() / "patrol-stack-XXXXXX").string();
-  if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error(name + ": cannot be created");
-  return name;
-}
-
 bool is_finite(const Pose2& pose) { return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.yaw); }
 bool is_finite(const Pose3& pose) { return pose.position.allFinite() && pose.rotation.coeffs().allFinite(); }
 
@@ -84,7 +77,8 @@ std::string quoted_name(const std::string& name) { return io::on_one_line(name.s
 ExternalStack::ExternalStack(StackDocuments documents, StackConnection connection, stack::StackSettings settings)
     : documents_(std::move(documents)), connection_(std::move(connection)), settings_(std::move(settings)) {
   if (!link::is_address(connection_.command)) {
-    link::check_program(link::command_words(connection_.command).front());
+    start_process();
+    connecting_ = std::async(std::launch::async, [this] { connect(); });
     return;
   }
   address_ = link::parse_address(connection_.command);
@@ -101,14 +95,19 @@ ExternalStack::ExternalStack(StackDocuments documents, StackConnection connectio
                     connection_.command));
   }
   listener_.emplace(link::Socket::listen(*address_));
+  connecting_ = std::async(std::launch::deferred, [this] {
+    fmt::print(stderr, "patrol: waiting for a stack at {}\n", connection_.command);
+    connect();
+  });
 }
 
 ExternalStack::~ExternalStack() {
+  is_abandoned_ = true;
+  connecting_ = {};  // waits for its thread
+  const auto time_to_end = server_ ? kTimeToEnd : std::chrono::seconds{0};
   server_.reset();
-  if (process_) process_->stop(kTimeToEnd);
   close_listener();
-  std::error_code ignored;
-  if (!folder_.empty()) std::filesystem::remove_all(folder_, ignored);
+  if (process_) process_->stop(time_to_end);
 }
 
 /// Closes the socket for connections, and removes its name.
@@ -118,18 +117,13 @@ void ExternalStack::close_listener() {
   listener_.reset();
 }
 
+/// Waits for the stack, sends it the documents, and waits for its answer.
 void ExternalStack::connect() {
   const link::WaitLimit wait{.timeout = std::chrono::duration_cast<std::chrono::steady_clock::duration>(
                                  std::chrono::duration<double>(settings_.timeout_s)),
-                             .is_interrupted = connection_.is_interrupted};
-  if (listener_) {
-    fmt::print(stderr, "patrol: waiting for a stack at {}\n", connection_.command);
-  } else {
-    folder_ = make_private_folder();
-    address_ = link::Address{.is_unix = true, .path = folder_ / "socket"};
-    listener_.emplace(link::Socket::listen(*address_));
-    start_process();
-  }
+                             .is_interrupted = [this] {
+                               return is_abandoned_ || (connection_.is_interrupted && connection_.is_interrupted());
+                             }};
   server_.emplace(accept(wait), wait);
   close_listener();
   for (const io::TopicInfo& info : io::topic_infos()) {
@@ -145,17 +139,15 @@ void ExternalStack::connect() {
 }
 
 void ExternalStack::start_process() {
-  link::ProcessSettings start{.words = link::command_words(connection_.command),
-                              .environment = documents_.environment,
-                              .output = connection_.output};
+  link::ProcessSettings start{.words = link::command_words(connection_.command), .environment = documents_.environment};
+  link::check_program(start.words.front());
+  folder_.emplace("stack");
+  address_ = link::Address{.is_unix = true, .path = folder_->path() / "socket"};
   start.environment[link::kSocketVariable] = address_->path;
   if (settings_.memory_limit_mb > 0.0)
     start.memory_bytes = static_cast<std::uint64_t>(std::llround(settings_.memory_limit_mb * 1e6));
-  try {
-    process_.emplace(start);
-  } catch (const InputError& error) {  // found, but not a program: the run has begun and gets a verdict
-    throw LinkError(LinkFault::kClosed, error.what());
-  }
+  listener_.emplace(link::Socket::listen(*address_));
+  process_.emplace(start);
 }
 
 /// Waits for the stack. A process that ends without connecting ends the wait.
@@ -171,11 +163,12 @@ link::Socket ExternalStack::accept(const link::WaitLimit& wait) {
   }
 }
 
-/// Connects before the first message, or before the first turn if there is none.
+/// Waits for the connection before the first message, or before the first turn if there is none.
 void ExternalStack::ensure_connected() {
-  if (server_) return;
+  if (!connecting_.valid()) return;
+  if (process_) process_->write_output_to(connection_.output);
   try {
-    connect();
+    connecting_.get();
   } catch (const LinkError& error) {
     fail(error, "before the start");
   }

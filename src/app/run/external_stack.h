@@ -1,13 +1,16 @@
 #pragma once
 
+#include <atomic>
 #include <filesystem>
 #include <functional>
+#include <future>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "app/common/temporary_folder.h"
 #include "app/run/stack_port.h"
 #include "link/link_error.h"
 #include "link/protocol.h"
@@ -37,8 +40,8 @@ struct StackConnection {
 /// the simulator get them.
 class ExternalStack final : public StackPort {
  public:
-  /// The first turn starts the process, or waits for it to connect. Throws InputError if the command is invalid or the
-  /// address cannot be used.
+  /// Starts the process, and connects to it while the caller continues. A stack at an address is waited for before the
+  /// first message. Throws InputError if the command is invalid or the address cannot be used.
   ExternalStack(StackDocuments documents, StackConnection connection, stack::StackSettings settings);
   ~ExternalStack() override;
 
@@ -63,15 +66,17 @@ class ExternalStack final : public StackPort {
   StackDocuments documents_;
   StackConnection connection_;
   stack::StackSettings settings_;
-  std::optional<link::Address> address_;  ///< at which the stack connects
-  std::optional<link::Socket> listener_;  ///< until the stack has connected
-  std::filesystem::path folder_;          ///< of the socket of a process that Patrol starts; removed at the end
+  std::optional<link::Address> address_;   ///< at which the stack connects
+  std::optional<link::Socket> listener_;   ///< until the stack has connected
+  std::optional<TemporaryFolder> folder_;  ///< of the socket of a process that Patrol starts
   std::optional<link::StackProcess> process_;
   std::optional<link::StackServer> server_;
   Time turn_{};  ///< last turn
   std::optional<double>
       cpu_start_s_;  ///< CPU time of the stack at its beginning; nullopt unless it delays the commands
   double wait_s_ = 0.0;
+  std::atomic<bool> is_abandoned_ = false;  ///< the run ends before the stack has connected
+  std::future<void> connecting_;  ///< until the stack has connected; last, because its thread uses the other members
 };
 
 /// Returns a message of a stack in another process with its content. Throws link::LinkError (kInvalid) if a topic that

@@ -6,6 +6,7 @@
 #include "app/run/external_stack.h"
 #include "app/run/stack_documents.h"
 #include "inspect/route_frame.h"
+#include "sim/model_assembly.h"
 #include "stack/make_stack.h"
 
 namespace patrol::app {
@@ -29,8 +30,8 @@ std::unique_ptr<StackPort> make_stack_port(const Scenario& scenario, const Scena
                              .output = std::move(context.output),
                              .is_interrupted = std::move(context.is_interrupted)};
   return std::make_unique<ExternalStack>(
-      stack_documents(scenario, context.scenario, files, context.data_root, context.tick), std::move(connection),
-      scenario.stack);
+      stack_documents(scenario, context.scenario, files, context.data_root, sim::tick_of(files.world_xml.string())),
+      std::move(connection), scenario.stack);
 }
 
 stack::Stack make_stack(const Scenario& scenario, const ScenarioFiles& files) {

@@ -15,7 +15,6 @@ namespace patrol::app {
 struct StackContext {
   std::string scenario;  ///< name of the scenario
   std::filesystem::path data_root;
-  Time tick{};                           ///< of the simulator
   std::filesystem::path output;          ///< file for the output of a stack in another process
   std::function<bool()> is_interrupted;  ///< polled while Patrol waits for such a stack
   bool has_thread = false;               ///< whether the built-in stack has a thread of its own

@@ -41,20 +41,18 @@ io::Metrics performance_of(const RunOutcome& outcome) {
   return performance;
 }
 
-/// Simulator and stack of a scenario.
+/// Simulator and stack of a scenario. A stack in another process starts while the simulator is built.
 struct RunSystem {
-  RunSystem(const Scenario& scenario, StackContext context)
-      : RunSystem(scenario, load_scenario_files(scenario, context.data_root), std::move(context)) {}
-  RunSystem(const Scenario& scenario, ScenarioFiles scenario_files, StackContext context, int num_threads = 1)
-      : files(std::move(scenario_files)), simulator(make_simulator(scenario, files, num_threads > 1)) {
-    context.tick = simulator.tick();
-    context.has_thread = num_threads > 1;
-    stack = make_stack_port(scenario, files, std::move(context));
-  }
+  RunSystem(const Scenario& scenario, const StackContext& context)
+      : RunSystem(scenario, load_scenario_files(scenario, context.data_root), context) {}
+  RunSystem(const Scenario& scenario, ScenarioFiles scenario_files, const StackContext& context)
+      : files(std::move(scenario_files)),
+        stack(make_stack_port(scenario, files, context)),
+        simulator(make_simulator(scenario, files, context.has_thread)) {}
 
   ScenarioFiles files;
-  sim::Simulator simulator;
   std::unique_ptr<StackPort> stack;
+  sim::Simulator simulator;
 };
 
 /// Throws InputError if the stack is in another process.
@@ -73,13 +71,14 @@ void check_state(StackPort& stack) {
 class Branch {
  public:
   /// Throws InputError if the run cannot be continued with the scenario.
-  Branch(BranchOrigin origin, const Scenario& scenario, const StackContext& context, const std::filesystem::path& root)
+  Branch(BranchOrigin origin, const Scenario& scenario, const StackContext& context, Time tick,
+         const std::filesystem::path& root)
       : origin_(std::move(origin)), parent_(open_run_directory(origin_.run)), context_(context) {
     if (!parent_.is_complete()) throw InputError(origin_.run.string() + ": the run is incomplete");
     if (std::filesystem::exists(root) && std::filesystem::equivalent(root, origin_.run))
       throw InputError(origin_.run.string() + ": a branch needs another --out directory");
     scenario_ = load_scenario(parent_.scenario());
-    origin_.at = (origin_.at + context_.tick - Time{1}) / context_.tick * context_.tick;
+    origin_.at = (origin_.at + tick - Time{1}) / tick * tick;
     check_branch_settings(scenario_, scenario, origin_.at);
     is_changed_ = to_yaml(scenario_) != to_yaml(scenario);
     const std::optional<Time> end = io::McapReader(parent_.log()).last_time();
@@ -183,16 +182,16 @@ std::optional<RunVerdict> run_once(const Scenario& scenario, const std::string& 
 std::optional<RunVerdict> run_once(const Scenario& scenario, const ScenarioFiles& files, const std::string& name,
                                    const std::filesystem::path& data_root, const std::filesystem::path& root,
                                    RunObserver& observer, const RunMode& mode) {
-  StackContext context{.scenario = name,
-                       .data_root = data_root,
-                       .output = RunDirectory{root}.stack_output(),
-                       .is_interrupted = [&] { return observer.is_interrupted(); }};
+  const StackContext context{.scenario = name,
+                             .data_root = data_root,
+                             .output = RunDirectory{root}.stack_output(),
+                             .is_interrupted = [&] { return observer.is_interrupted(); },
+                             .has_thread = mode.num_threads > 1};
   if (mode.has_snapshots() || mode.branch) refuse_other_process(scenario);
-  RunSystem run(scenario, files, context, mode.num_threads);  // these throw InputError before anything is written
+  RunSystem run(scenario, files, context);  // these throw InputError before anything is written
   if (mode.has_snapshots() || mode.branch) check_state(*run.stack);
-  context.tick = run.simulator.tick();
   std::optional<Branch> branch;
-  if (mode.branch) branch.emplace(*mode.branch, scenario, context, root);
+  if (mode.branch) branch.emplace(*mode.branch, scenario, context, run.simulator.tick(), root);
   const std::string content = mode.has_snapshots() ? content_hash(scenario, data_root) : "";
 
   const RunDirectory directory = begin_run_directory(root);

@@ -12,9 +12,13 @@ constexpr double kMaxSpacing_m = 0.15;  ///< between neighboring beams
 constexpr double kMadOfStd = 0.6745;    ///< median absolute deviation of a normal distribution
 constexpr double kMinAdapted_m = 0.04;
 constexpr int kMaxRadiusCells = 10;
-/// In standard deviations of the ranges. Half of the noise is attributed to points, the remainder is the thickness of
-/// the surfaces in the map.
+/// Noise of smoothed ranges, as a fraction of that of the measured ones: that of surfaces between corners is smaller.
+constexpr double kSmoothed = 0.6;
+/// In standard deviations of the smoothed ranges. Half of the noise is attributed to points, the remainder is the
+/// thickness of the surfaces in the map.
 constexpr double kRadius = 2.8, kFreeMargin = 3.5, kKernel = 2.5, kPointStd = 0.5;
+/// Smallest distance between keyframes, as a fraction of the usual one.
+constexpr double kMinKeyframeStep = 0.4;
 
 }  // namespace
 
@@ -41,12 +45,18 @@ std::optional<double> RangeNoiseEstimator::std_m() const {
 
 bool adapt_to_range_noise(double range_std_m, ScanTrackerSettings& settings) {
   if (range_std_m <= kMinAdapted_m) return false;
+  const ScanTrackerSettings usual;
   ScanMatcherSettings& matching = settings.matching;
-  const int radius = static_cast<int>(std::lround(kRadius * range_std_m / settings.resolution_m));
+  const double smoothed_m = kSmoothed * range_std_m;
+  const int radius = static_cast<int>(std::lround(kRadius * smoothed_m / settings.resolution_m));
   matching.surface_radius_cells = std::max(matching.surface_radius_cells, std::min(radius, kMaxRadiusCells));
-  matching.kernel_m = std::max(matching.kernel_m, kKernel * range_std_m);
-  matching.point_std_m = std::max(matching.point_std_m, kPointStd * range_std_m);
-  settings.integration.free_margin_m = std::max(settings.integration.free_margin_m, kFreeMargin * range_std_m);
+  matching.kernel_m = std::max(matching.kernel_m, kKernel * smoothed_m);
+  matching.point_std_m = std::max(matching.point_std_m, kPointStd * smoothed_m);
+  settings.integration.free_margin_m = std::max(settings.integration.free_margin_m, kFreeMargin * smoothed_m);
+  const double step = std::max(kMinKeyframeStep, kMinAdapted_m / range_std_m);
+  settings.keyframe_distance_m = std::min(settings.keyframe_distance_m, step * usual.keyframe_distance_m);
+  settings.keyframe_angle_rad = std::min(settings.keyframe_angle_rad, step * usual.keyframe_angle_rad);
+  settings.groups_scans = true;
   return true;
 }
 

@@ -23,9 +23,10 @@ class RangeNoiseEstimator {
   std::vector<float> differences_m_;  ///< absolute values
 };
 
-/// Adapts the settings of scan matching and of the maps to ranges with a standard deviation of more than 0.04 m. The
-/// surfaces of a map are then thicker than the neighborhoods in which lines are fitted. Settings that are larger
-/// remain. Returns whether the deviation is that large.
+/// Adapts the settings of the tracker to ranges with a standard deviation of more than 0.04 m, which are smoothed along
+/// the scan (range_smoothing.h). The surfaces of a map are then thicker than the neighborhoods in which lines are
+/// fitted, and more scans are averaged: a keyframe contains all scans since the last one, and keyframes are closer.
+/// Settings that go further remain. Returns whether the deviation is that large.
 bool adapt_to_range_noise(double range_std_m, ScanTrackerSettings& settings);
 
 }  // namespace patrol::slam

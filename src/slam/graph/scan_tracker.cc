@@ -101,13 +101,14 @@ TrackedScan ScanTracker::update(const LevelScan& scan, const Pose2& T_odom_body)
   tracks_ = std::move(continued);
   TrackedScan tracked = to_tracked_scan(best.best, best.prediction);
   tracked.is_keyframe = is_keyframe_due(tracked.T_local_body);
-  if (step.is_sparse) {
-    sparse_scans_.add(scan, tracked.T_local_body);
+  const bool is_grouped = step.is_sparse || settings_.groups_scans;
+  if (is_grouped) {
+    scans_since_keyframe_.add(scan, tracked.T_local_body);
   } else {
-    sparse_scans_.clear();
+    scans_since_keyframe_.clear();
   }
   if (tracked.is_keyframe) {
-    tracked.scans = step.is_sparse ? sparse_scans_.take() : ScanGroup(scan);
+    tracked.scans = is_grouped ? scans_since_keyframe_.take() : ScanGroup(scan);
     integrate(tracked);
   }
   update_constant_odometry(T_odom_body, tracked.T_local_body);

@@ -10,7 +10,7 @@
 #include "slam/graph/odometry_correction.h"
 #include "slam/graph/scan_group.h"
 #include "slam/graph/scan_tracker_settings.h"
-#include "slam/graph/sparse_scans.h"
+#include "slam/graph/scans_since_keyframe.h"
 #include "slam/graph/usual_match.h"
 #include "slam/motion_model.h"
 #include "slam/scan_integration.h"
@@ -51,7 +51,7 @@ struct TrackedScan {
 /// Robust against sparse scans, whose few points can match anywhere: one that matches as usual has no alternatives, and
 /// otherwise both the alternative and the match of the odometry prediction are continued. Several such tracks exist at
 /// a time, and the one with the highest probability of its last scans is the result. Keyframes consist of all scans
-/// since the last keyframe, so that the map is dense.
+/// since the last keyframe, so that the map is dense. So they do with noisy ranges (range_noise.h).
 ///
 /// Robust against moving objects: a match that contradicts odometry needs the majority of the sectors of bearings that
 /// distinguish the two poses. Sectors of a rejected match are left out.
@@ -65,7 +65,7 @@ class ScanTracker {
   void serialize_state(Archive& archive) {
     archive(older_, newer_, older_keyframes_, newer_keyframes_, keyframes_, submap_, stamp_, T_odom_last_,
             T_local_keyframe_, tracks_, last_step_s_, T_local_constant_, is_odometry_constant_, correction_, usual_,
-            sparse_scans_, pyramid_);
+            scans_since_keyframe_, pyramid_);
   }
 
  private:
@@ -151,7 +151,7 @@ class ScanTracker {
   bool is_odometry_constant_ = false;
   OdometryCorrection correction_;
   UsualMatch usual_;
-  SparseScans sparse_scans_;
+  ScansSinceKeyframe scans_since_keyframe_;
   std::optional<LikelihoodPyramid> pyramid_;  ///< of older_; none: not needed since it has changed
 };
 

@@ -13,6 +13,7 @@ struct ScanTrackerSettings {
   double keyframe_distance_m = 0.25;  ///< distance after which a new keyframe begins
   double keyframe_angle_rad = 0.15;   ///< rotation after which a new keyframe begins
   int min_hits = 60;           ///< number of returns below which a keyframe also contains the scans since the last one
+  bool groups_scans = false;   ///< whether every keyframe contains the scans since the last one
   int initial_keyframes = 10;  ///< number of scans from the first on that are all keyframes
   int submap_keyframes = 60;   ///< number of keyframes per map; consecutive maps overlap by half
   /// Tempering factor: fraction of the points with independent errors. It is larger for scans of few, distant points.
@@ -39,6 +40,7 @@ struct ScanTrackerSettings {
     visit("keyframe_distance_m", self.keyframe_distance_m, between(0.0, 10.0));
     visit("keyframe_angle_rad", self.keyframe_angle_rad, between(0.0, 3.2));
     visit("min_hits", self.min_hits, between(0, 100000));
+    visit("groups_scans", self.groups_scans);
     visit("initial_keyframes", self.initial_keyframes, between(1, 1000));
     visit("submap_keyframes", self.submap_keyframes, between(4, 10000));
     visit("likelihood_tempering", self.likelihood_tempering, between(0.0, 1.0));

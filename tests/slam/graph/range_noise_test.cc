@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -46,21 +47,40 @@ TEST(RangeNoise, OfFewOrDistantBeamsIsNotEstimated) {
 TEST(RangeNoise, UpToFourCentimetersLeavesTheSettings) {
   ScanTrackerSettings settings;
   EXPECT_FALSE(adapt_to_range_noise(0.04, settings));
-  EXPECT_EQ(settings.matching.surface_radius_cells, ScanTrackerSettings{}.matching.surface_radius_cells);
-  EXPECT_EQ(settings.integration.free_margin_m, ScanTrackerSettings{}.integration.free_margin_m);
+  const ScanTrackerSettings usual;
+  EXPECT_EQ(settings.matching.surface_radius_cells, usual.matching.surface_radius_cells);
+  EXPECT_EQ(settings.integration.free_margin_m, usual.integration.free_margin_m);
+  EXPECT_EQ(settings.keyframe_distance_m, usual.keyframe_distance_m);
+  EXPECT_FALSE(settings.groups_scans);
 }
 
+// Smoothed ranges have 0.6 of the noise.
 TEST(RangeNoise, WidensNeighborhoodKernelAndMarginUpToTheLimitOfTheRadius) {
   ScanTrackerSettings settings;
-  EXPECT_TRUE(adapt_to_range_noise(0.1, settings));
-  EXPECT_EQ(settings.matching.surface_radius_cells, 6);
-  EXPECT_NEAR(settings.matching.kernel_m, 0.25, 1e-12);
-  EXPECT_NEAR(settings.matching.point_std_m, 0.05, 1e-12);
-  EXPECT_NEAR(settings.integration.free_margin_m, 0.35, 1e-12);
+  EXPECT_TRUE(adapt_to_range_noise(0.2, settings));
+  EXPECT_EQ(settings.matching.surface_radius_cells, 7);
+  EXPECT_NEAR(settings.matching.kernel_m, 0.3, 1e-12);
+  EXPECT_NEAR(settings.matching.point_std_m, 0.06, 1e-12);
+  EXPECT_NEAR(settings.integration.free_margin_m, 0.42, 1e-12);
   EXPECT_TRUE(adapt_to_range_noise(0.05, settings));  // larger settings remain
-  EXPECT_EQ(settings.matching.surface_radius_cells, 6);
+  EXPECT_EQ(settings.matching.surface_radius_cells, 7);
   EXPECT_TRUE(adapt_to_range_noise(1.0, settings));
   EXPECT_EQ(settings.matching.surface_radius_cells, 10);
+}
+
+TEST(RangeNoise, KeyframesAreCloserByUpToFourTenthsAndContainAllScans) {
+  const ScanTrackerSettings usual;
+  for (const auto& [std_m, step] : {std::pair{0.05, 0.8}, {0.1, 0.4}, {0.3, 0.4}}) {
+    ScanTrackerSettings settings;
+    EXPECT_TRUE(adapt_to_range_noise(std_m, settings));
+    EXPECT_NEAR(settings.keyframe_distance_m, step * usual.keyframe_distance_m, 1e-12) << std_m;
+    EXPECT_NEAR(settings.keyframe_angle_rad, step * usual.keyframe_angle_rad, 1e-12) << std_m;
+    EXPECT_TRUE(settings.groups_scans);
+  }
+  ScanTrackerSettings closer;
+  closer.keyframe_distance_m = 0.01;
+  EXPECT_TRUE(adapt_to_range_noise(0.1, closer));
+  EXPECT_EQ(closer.keyframe_distance_m, 0.01);
 }
 
 }  // namespace

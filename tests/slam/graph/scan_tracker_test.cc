@@ -15,8 +15,9 @@ namespace {
 template <typename Odometry>
 std::vector<TrackedScan> track(const std::vector<test::DriveStep>& drive, Odometry&& odometry,
                                const test::RoomWorld::ScanOptions& lidar = test::kOldLidar, std::uint64_t seed = 1,
-                               const test::RoomWorld& office = test::make_office()) {
-  ScanTracker tracker({});
+                               const test::RoomWorld& office = test::make_office(),
+                               const ScanTrackerSettings& settings = {}) {
+  ScanTracker tracker(settings);
   const RandomStream noise(seed, "test/tracker");
   Pose2 T_odom_body;
   std::vector<TrackedScan> tracked;
@@ -131,7 +132,7 @@ TEST(ScanTracker, With24BeamsAndWrongOdometryItIsWithin25CentimetersAfter20Meter
   EXPECT_LT(worst_error_m(drive_round_corner(), tracked), 0.25);
 }
 
-TEST(ScanTracker, AKeyframeOfSparseScansHasAllSinceTheLastOne) {
+TEST(ScanTracker, AKeyframeOfSparseOrGroupedScansHasAllSinceTheLastOne) {
   test::RoomWorld::ScanOptions sparse = test::kOldLidar;
   sparse.beams = 24;
   const auto steps = [](std::size_t, const Pose2& motion) { return motion; };
@@ -142,6 +143,10 @@ TEST(ScanTracker, AKeyframeOfSparseScansHasAllSinceTheLastOne) {
   };
   EXPECT_EQ(scans_of_last_keyframe(track(corridor_drive(), steps, sparse)), 3U);  // 0.12 m a scan, 0.25 m a keyframe
   EXPECT_EQ(scans_of_last_keyframe(track(corridor_drive(), steps)), 1U);
+  ScanTrackerSettings grouped;
+  grouped.groups_scans = true;
+  EXPECT_EQ(scans_of_last_keyframe(track(corridor_drive(), steps, test::kOldLidar, 1, test::make_office(), grouped)),
+            3U);
 }
 
 // Between smooth walls the scan says nothing of the way: odometry's word stands, and the covariance says how little it

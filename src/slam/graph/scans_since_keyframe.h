@@ -4,9 +4,9 @@
 
 namespace patrol::slam {
 
-/// Sparse scans since the last keyframe, which consists of all of them. Of several in the same place it keeps the
+/// Scans since the last keyframe, which consists of all of them. Of several in the same place it keeps the
 /// newest.
-class SparseScans {
+class ScansSinceKeyframe {
  public:
   void add(const LevelScan& scan, const Pose2& T_local_body);
   void clear() { scans_ = {}; }

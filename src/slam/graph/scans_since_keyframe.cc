@@ -1,4 +1,4 @@
-#include "slam/graph/sparse_scans.h"
+#include "slam/graph/scans_since_keyframe.h"
 
 #include <cmath>
 #include <utility>
@@ -11,7 +11,7 @@ constexpr double kDistinct_m = 0.05;
 
 }  // namespace
 
-void SparseScans::add(const LevelScan& scan, const Pose2& T_local_body) {
+void ScansSinceKeyframe::add(const LevelScan& scan, const Pose2& T_local_body) {
   const Pose2 T_distinct_now = T_local_distinct_.inverse() * T_local_body,
               T_before_now = T_local_newest_.inverse() * T_local_body;
   const bool is_distinct =
@@ -27,6 +27,6 @@ void SparseScans::add(const LevelScan& scan, const Pose2& T_local_body) {
   T_local_newest_ = T_local_body;
 }
 
-ScanGroup SparseScans::take() { return std::exchange(scans_, {}); }
+ScanGroup ScansSinceKeyframe::take() { return std::exchange(scans_, {}); }
 
 }  // namespace patrol::slam
