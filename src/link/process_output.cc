@@ -26,7 +26,7 @@ void close_descriptor(int& descriptor) {
   descriptor = -1;
 }
 
-/// Writes as much as the file takes: output is not worth an error of the run.
+/// Writes as much as the file takes. A full disk ends no run because of the output of a process.
 void write_all(int file, std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t written = ::write(file, bytes.data(), bytes.size());
