@@ -100,6 +100,11 @@ class Variants(unittest.TestCase):
         self.assertAlmostEqual(mean, 0.0, delta=0.005)
         self.assertAlmostEqual(deviation, 0.1, delta=0.005)
 
+    def test_the_seed_selects_the_draw(self):
+        first = self.scans("noise_0.1m")
+        self.assertEqual(first, self.scans("noise_0.1m", "--seed", "1"))
+        self.assertNotEqual(first, self.scans("noise_0.1m", "--seed", "2"))
+
     def test_parts_together_are_the_whole(self):
         parts = [self.scans("scans_2", "--part", f"{k}/7") for k in range(1, 8)]
         self.assertEqual([scan for part in parts for scan in part], self.scans("scans_2"))
