@@ -4,27 +4,27 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <numbers>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/geometry/angles.h"
 #include "core/random.h"
 
 namespace patrol::slam::range_smoothing_test {
 namespace {
 
-constexpr double kStep_rad = std::numbers::pi / 180.0;
+constexpr double kStep_rad = to_rad(1.0);
 
 /// Scan of 121 beams over 120 degrees; `range_m` of the angle.
 template <typename Range>
-LaserScan scan_of(Range&& range_m, double std_m, std::uint64_t seed, double step_rad = kStep_rad) {
+LaserScan scan_of(Range&& range_m, double std_m, std::uint64_t seed) {
   const RandomStream noise(seed, "test/range_smoothing");
   LaserScan scan;
-  scan.angle_min_rad = -60.0 * step_rad;
-  scan.angle_increment_rad = step_rad;
+  scan.angle_min_rad = -60.0 * kStep_rad;
+  scan.angle_increment_rad = kStep_rad;
   for (int beam = 0; beam <= 120; ++beam) {
-    const double range = range_m(scan.angle_min_rad + beam * step_rad);
+    const double range = range_m(scan.angle_min_rad + beam * kStep_rad);
     scan.ranges_m.push_back(static_cast<float>(range + std_m * noise.normal(static_cast<std::uint64_t>(beam))));
   }
   return scan;
