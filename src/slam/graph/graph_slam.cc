@@ -13,6 +13,12 @@
 #include "slam/map_rendering.h"
 
 namespace patrol::slam {
+namespace {
+
+/// Drift along directions that the scans determine, as a fraction of that of odometry.
+constexpr double kTrackedDrift = 0.25;
+
+}  // namespace
 
 GraphSlam::GraphSlam(const GraphSlamSettings& settings)
     : settings_(settings),
@@ -51,6 +57,9 @@ Pose2 GraphSlam::T_map_body(const Pose2& T_local_body) const {
 
 void GraphSlam::add_keyframe(const TrackedScan& tracked) {
   const int node = static_cast<int>(keyframes_.size());
+  matches_.push_back({.is_matched = tracked.inlier_ratio > 0.0});
+  if (const auto degenerate = degenerate_direction(tracked.match_information, settings_.min_eigenvalue_ratio))
+    matches_.back().undetermined = Eigen::Rotation2Dd(-tracked.T_local_body.yaw) * *degenerate;
   if (node == first_keyframe_) {
     graph_.T_map_node.push_back(tracked.T_local_body);
   } else {
@@ -175,7 +184,7 @@ Eigen::Vector2d GraphSlam::submap_center(int submap) const {
 
 // Uses the drift between consecutive submaps and the loop closures. An earlier map is optimized: its submaps do not
 // drift. Submaps of other sessions have infinite covariance until a loop is closed.
-std::vector<PoseGaussian> GraphSlam::relative_pose_distributions(int submap) const {
+std::vector<PoseGaussian> GraphSlam::relative_pose_distributions(int submap, Drift drift) const {
   std::vector<Pose2> T_map_submaps;
   for (int s = 0; s < finished_submaps_; ++s) T_map_submaps.push_back(T_map_submap(s));
   std::vector<CovarianceEdge> covariance_edges;
@@ -184,7 +193,7 @@ std::vector<PoseGaussian> GraphSlam::relative_pose_distributions(int submap) con
   for (int s = 0; s + 1 < finished_submaps_; ++s) {
     if (s + 1 == first_submap_) continue;  // between the sessions there are only loop closures
     covariance_edges.push_back(
-        {.from = s, .to = s + 1, .covariance = s < first_submap_ ? earlier : odometry_drift_covariance(s)});
+        {.from = s, .to = s + 1, .covariance = s < first_submap_ ? earlier : drift_covariance(s, drift)});
   }
   for (const LoopEdge& loop : loops_) {
     covariance_edges.push_back({.from = loop.target,
@@ -194,19 +203,32 @@ std::vector<PoseGaussian> GraphSlam::relative_pose_distributions(int submap) con
   return shortest_path_distributions(submap, T_map_submaps, covariance_edges);
 }
 
-// Covariance of the next submap's pose in this submap's frame.
-Eigen::Matrix3d GraphSlam::odometry_drift_covariance(int submap) const {
-  double length_m = 0.0, turn_rad = 0.0;
-  for (int k = submaps_[static_cast<std::size_t>(submap)].first;
-       k < submaps_[static_cast<std::size_t>(submap) + 1].first; ++k) {
-    const Pose2 step = keyframes_[static_cast<std::size_t>(k)].T_local_body.inverse() *
-                       keyframes_[static_cast<std::size_t>(k) + 1].T_local_body;
-    length_m += step.position().norm();
-    turn_rad += std::abs(step.yaw);
+// Covariance of the next submap's pose in this submap's frame. Tracked scans reduce the drift of odometry along the
+// directions that they determine.
+Eigen::Matrix3d GraphSlam::drift_covariance(int submap, Drift drift) const {
+  const int first = submaps_[static_cast<std::size_t>(submap)].first,
+            next = submaps_[static_cast<std::size_t>(submap) + 1].first;
+  const double yaw_first = keyframes_[static_cast<std::size_t>(first)].T_local_body.yaw;
+  double length_m = 0.0, turn_rad = 0.0, undetermined_m = 0.0;
+  Eigen::Matrix2d undetermined_m2 = Eigen::Matrix2d::Zero();
+  for (int k = first; k < next; ++k) {
+    const Pose2& T_local_next = keyframes_[static_cast<std::size_t>(k) + 1].T_local_body;
+    const Pose2 step = keyframes_[static_cast<std::size_t>(k)].T_local_body.inverse() * T_local_next;
+    const KeyframeMatch& match = matches_[static_cast<std::size_t>(k + 1 - first_keyframe_)];
+    const double fraction = drift == Drift::kTracked && match.is_matched ? kTrackedDrift : 1.0;
+    length_m += fraction * step.position().norm();
+    turn_rad += fraction * std::abs(step.yaw);
+    if (drift == Drift::kOdometry) continue;
+    const Eigen::Vector2d direction = Eigen::Rotation2Dd(T_local_next.yaw - yaw_first) * match.undetermined;
+    undetermined_m += direction.squaredNorm() * step.position().norm();
+    undetermined_m2 += step.position().norm() * direction * direction.transpose();
   }
   const double std_m = settings_.drift_std_m_per_m * length_m,
                std_rad = settings_.drift_std_rad_per_m * length_m + settings_.drift_std_rad_per_rad * turn_rad;
-  return Eigen::Vector3d(std_m * std_m, std_m * std_m, std_rad * std_rad).asDiagonal();
+  Eigen::Matrix3d covariance = Eigen::Vector3d(std_m * std_m, std_m * std_m, std_rad * std_rad).asDiagonal();
+  covariance.topLeftCorner<2, 2>() +=
+      settings_.drift_std_m_per_m * settings_.drift_std_m_per_m * undetermined_m * undetermined_m2;
+  return covariance;
 }
 
 // Fuses the covariance of a relative pose by scans and odometry with that of two surveyed positions.
@@ -248,11 +270,18 @@ void GraphSlam::optimize() { solve(graph_, settings_.solver, survey_, is_located
 
 bool GraphSlam::add_loops(int source, const std::vector<PoseGaussian>& around) {
   bool has_closed = false;
+  std::vector<PoseGaussian> tracked;
   for (const int target : submaps_near(source, around)) {
     PoseGaussian prediction = invert(around[static_cast<std::size_t>(target)]);  // pose of source in target
     prediction.covariance = limited_by_survey(prediction.covariance, target, source);
-    const SubmapMatchResult result = match_submaps(*rendered(target), *rendered(source), prediction,
-                                                   settings_.loop_closure, settings_.scan_odometry.matching);
+    SubmapMatchResult result = match_submaps(*rendered(target), *rendered(source), prediction, settings_.loop_closure,
+                                             settings_.scan_odometry.matching);
+    if (result.failure == MatchFailure::kAmbiguous && target >= first_submap_) {
+      if (tracked.empty()) tracked = relative_pose_distributions(source, Drift::kTracked);
+      result = match_submaps_by_tracking(*rendered(target), *rendered(source),
+                                         invert(tracked[static_cast<std::size_t>(target)]), settings_.loop_closure,
+                                         settings_.scan_odometry.matching);
+    }
     loop_closure_statistics_.add(result.failure);
     if (!result.match) continue;
     has_closed = true;

@@ -78,9 +78,9 @@ class GraphSlam {
 
   template <typename Archive>
   void serialize_state(Archive& archive) {
-    archive(tracker_, keyframes_, path_, submaps_, finished_submaps_, first_keyframe_, first_submap_, is_located_,
-            earlier_map_, located_, last_located_keyframe_, graph_, loops_, loop_closure_statistics_, is_finished_,
-            now_, stamp_, new_ranges_, new_positions_, survey_, smoothed_until_);
+    archive(tracker_, keyframes_, matches_, path_, submaps_, finished_submaps_, first_keyframe_, first_submap_,
+            is_located_, earlier_map_, located_, last_located_keyframe_, graph_, loops_, loop_closure_statistics_,
+            is_finished_, now_, stamp_, new_ranges_, new_positions_, survey_, smoothed_until_);
     incremental_map_.serialize_state(archive, keyframes_);
     cache_.serialize_state(
         archive, [this](int submap, const std::vector<Pose2>& T_map_node) { return render_again(submap, T_map_node); });
@@ -92,6 +92,16 @@ class GraphSlam {
     int keyframe = 0;
     Pose2 T_local_body;
   };
+
+  /// Match of a keyframe with the map.
+  struct KeyframeMatch {
+    bool is_matched = false;
+    /// Direction along which the match does not determine the position, in the frame of the keyframe; zero: none.
+    Eigen::Vector2d undetermined = Eigen::Vector2d::Zero();
+  };
+
+  /// Drift between submaps: of the odometry alone, or of the scans tracked with it.
+  enum class Drift { kOdometry, kTracked };
 
   struct LoopEdge {
     int target, source;  ///< submap indices
@@ -114,9 +124,9 @@ class GraphSlam {
   void close_loops(int source);
   bool add_loops(int source, const std::vector<PoseGaussian>& around);
   void optimize();
-  std::vector<PoseGaussian> relative_pose_distributions(int submap) const;
+  std::vector<PoseGaussian> relative_pose_distributions(int submap, Drift drift = Drift::kOdometry) const;
   Eigen::Matrix3d limited_by_survey(const Eigen::Matrix3d& covariance, int target, int source) const;
-  Eigen::Matrix3d odometry_drift_covariance(int submap) const;
+  Eigen::Matrix3d drift_covariance(int submap, Drift drift) const;
   std::shared_ptr<const RenderedSubmap> rendered(int submap);
   /// Renders a submap at the poses of its keyframes at another time.
   std::shared_ptr<const RenderedSubmap> render_again(int submap, const std::vector<Pose2>& T_map_submap_node) const;
@@ -145,6 +155,7 @@ class GraphSlam {
   MapRenderingSettings rendering_;
   ScanTracker tracker_;
   std::vector<Keyframe> keyframes_;
+  std::vector<KeyframeMatch> matches_;  ///< [keyframe of this session]
   std::vector<TrackedPose> path_;
   std::vector<Submap> submaps_;
   int finished_submaps_ = 0;

@@ -12,12 +12,30 @@ namespace {
 
 constexpr int kOverlapRadius = 2;      // cells
 constexpr int kMaxCompetingPoses = 8;  // maximum number of poses that are compared with a match
+// Matches that the tracked pose decides.
+constexpr double kPossibleStd = 6.0;   // deviation up to which another pose is possible
+constexpr double kPlausibleStd = 3.0;  // maximum deviation of the match
+constexpr std::size_t kMaxPossiblePoses = 24;
+constexpr double kMinShift_m = 0.3, kShiftStep_m = 0.1;  // of shifted poses that a match is compared with
 
 /// Surfaces that must overlap in a match.
 enum class Coverage {
   kBoth,    ///< those of both submaps
   kSource,  ///< those of the source, because the target is much larger
 };
+
+/// Overlap of the surfaces of `source` with `target`, and the reverse.
+struct MutualOverlap {
+  SurfaceOverlap forth, back;
+
+  double inlier_ratio() const { return std::min(forth.inlier_ratio(), back.inlier_ratio()); }
+};
+
+MutualOverlap measure_mutual_overlap(const RenderedSubmap& target, const RenderedSubmap& source,
+                                     const Pose2& T_target_source) {
+  return {.forth = measure_overlap(target.map(), source.surface_points(), T_target_source, kOverlapRadius),
+          .back = measure_overlap(source.map(), target.surface_points(), T_target_source.inverse(), kOverlapRadius)};
+}
 
 /// Refines the pose of `source` in `target`, and checks that the surfaces of each lie on surfaces of the other.
 SubmapMatchResult refine_and_check(const RenderedSubmap& target, const RenderedSubmap& source,
@@ -26,18 +44,17 @@ SubmapMatchResult refine_and_check(const RenderedSubmap& target, const RenderedS
   const std::optional<MatchResult> fine =
       match_scan(target.map(), source.surface_points(), found.T_map_points, match_prior(found.T_map_points), matching);
   if (!fine) return {.match = {}, .failure = MatchFailure::kMismatch};
-  const SurfaceOverlap forth = measure_overlap(target.map(), source.surface_points(), fine->T_map_body, kOverlapRadius);
-  const SurfaceOverlap back =
-      measure_overlap(source.map(), target.surface_points(), fine->T_map_body.inverse(), kOverlapRadius);
+  const MutualOverlap overlap = measure_mutual_overlap(target, source, fine->T_map_body);
+  const double forth_ratio = overlap.forth.overlap_ratio();
   const SubmapMatch match{.T_target_source = fine->T_map_body,
                           .information = fine->information,
                           .score = found.score,
                           .overlap_ratio = coverage == Coverage::kSource
-                                               ? forth.overlap_ratio()
-                                               : std::min(forth.overlap_ratio(), back.overlap_ratio()),
-                          .inlier_ratio = std::min(forth.inlier_ratio(), back.inlier_ratio())};
+                                               ? forth_ratio
+                                               : std::min(forth_ratio, overlap.back.overlap_ratio()),
+                          .inlier_ratio = overlap.inlier_ratio()};
   if (match.overlap_ratio < settings.min_overlap_ratio ||
-      forth.num_matched * source.point_spacing_m() < settings.min_matched_length_m)
+      overlap.forth.num_matched * source.point_spacing_m() < settings.min_matched_length_m)
     return {.match = {}, .failure = MatchFailure::kNoOverlap};
   if (match.inlier_ratio < settings.min_inlier_ratio) return {.match = {}, .failure = MatchFailure::kMismatch};
   return {.match = match, .failure = MatchFailure::kNone};
@@ -91,17 +108,76 @@ SubmapMatchResult match_in_window(const RenderedSubmap& target, const RenderedSu
   return result;
 }
 
+/// Returns whether a pose agrees almost as well that is shifted by up to the distance of distinct poses, along the
+/// direction that the surfaces determine least. Bare walls hide a shift where few other surfaces overlap.
+bool slides(const RenderedSubmap& target, const RenderedSubmap& source, const SubmapMatch& match,
+            const SubmapMatcherSettings& settings) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> covariance(match.information.inverse().topLeftCorner<2, 2>());
+  const Eigen::Vector2d weakest = covariance.eigenvectors().col(1);
+  for (double shift_m = kMinShift_m; shift_m <= settings.min_second_best_distance_m; shift_m += kShiftStep_m) {
+    for (const double sign : {-1.0, 1.0}) {
+      Pose2 shifted = match.T_target_source;
+      shifted.x += sign * shift_m * weakest.x();
+      shifted.y += sign * shift_m * weakest.y();
+      if (measure_mutual_overlap(target, source, shifted).inlier_ratio() >=
+          settings.max_second_best_inlier_fraction * match.inlier_ratio)
+        return true;
+    }
+  }
+  return false;
+}
+
+/// Distance of a pose from the mean of a distribution, in standard deviations.
+double deviation(const PoseGaussian& distribution, const Pose2& pose) {
+  const Eigen::Vector3d offset = distribution.residual_to_mean(pose);
+  return std::sqrt(std::max(0.0, offset.dot(distribution.covariance.inverse() * offset)));
+}
+
+/// Window of `num_std` standard deviations and a margin around a distribution.
+SearchWindow window_around(const PoseGaussian& prediction, double num_std, const SubmapMatcherSettings& settings) {
+  const double std_m = std::sqrt(std::max(prediction.covariance(0, 0), prediction.covariance(1, 1))),
+               std_rad = std::sqrt(prediction.covariance(2, 2));
+  return {.T_map_center = prediction.mean,
+          .half_width_m = std::min(settings.max_window_m, num_std * std_m + 0.3),
+          .half_angle_rad = std::min(settings.max_window_rad, num_std * std_rad + 0.05)};
+}
+
 }  // namespace
+
+SubmapMatchResult match_submaps_by_tracking(const RenderedSubmap& target, const RenderedSubmap& source,
+                                            const PoseGaussian& tracked, const SubmapMatcherSettings& settings,
+                                            const ScanMatcherSettings& matching) {
+  const SubmapMatchResult ambiguous{.match = {}, .failure = MatchFailure::kAmbiguous};
+  const std::vector<Eigen::Vector2d> points = positions_of(source.surface_points(), settings.search_points);
+  const SearchWindow window = window_around(tracked, kPossibleStd, settings);
+  std::vector<SearchExclusion> known;
+  std::vector<SubmapMatch> possible;
+  while (const std::optional<SearchResult> found =
+             search_window(target.pyramid(), points, window, settings.min_search_score, known)) {
+    if (known.size() >= kMaxPossiblePoses) return ambiguous;
+    known.push_back({.T_map_center = found->T_map_points,
+                     .radius_m = settings.min_second_best_distance_m,
+                     .angle_rad = settings.min_second_best_angle_rad});
+    const SubmapMatchResult result = refine_and_check(target, source, *found, Coverage::kBoth, settings, matching);
+    if (result.match && deviation(tracked, result.match->T_target_source) < kPossibleStd)
+      possible.push_back(*result.match);
+  }
+  const auto best = std::ranges::max_element(possible, {}, &SubmapMatch::inlier_ratio);
+  if (best == possible.end()) return ambiguous;
+  const bool has_other = std::ranges::any_of(possible, [&](const SubmapMatch& other) {
+    return other.inlier_ratio >= settings.max_second_best_inlier_fraction * best->inlier_ratio &&
+           (other.T_target_source.position() - best->T_target_source.position()).norm() >
+               settings.min_second_best_distance_m;
+  });
+  if (has_other || deviation(tracked, best->T_target_source) > kPlausibleStd || slides(target, source, *best, settings))
+    return ambiguous;
+  return {.match = *best, .failure = MatchFailure::kNone};
+}
 
 SubmapMatchResult match_submaps(const RenderedSubmap& target, const RenderedSubmap& source,
                                 const PoseGaussian& prediction, const SubmapMatcherSettings& settings,
                                 const ScanMatcherSettings& matching) {
-  const double std_m = std::sqrt(std::max(prediction.covariance(0, 0), prediction.covariance(1, 1))),
-               std_rad = std::sqrt(prediction.covariance(2, 2));
-  const SearchWindow window{.T_map_center = prediction.mean,
-                            .half_width_m = std::min(settings.max_window_m, 3.0 * std_m + 0.3),
-                            .half_angle_rad = std::min(settings.max_window_rad, 3.0 * std_rad + 0.05)};
-  return match_in_window(target, source, window, Coverage::kBoth, settings, matching);
+  return match_in_window(target, source, window_around(prediction, 3.0, settings), Coverage::kBoth, settings, matching);
 }
 
 SubmapMatchResult locate_submap(const RenderedSubmap& map, const RenderedSubmap& source, const SearchWindow& window,

@@ -40,6 +40,14 @@ SubmapMatchResult match_submaps(const RenderedSubmap& target, const RenderedSubm
                                 const PoseGaussian& prediction, const SubmapMatcherSettings& settings,
                                 const ScanMatcherSettings& matching);
 
+/// Decides a match that match_submaps() rejects as ambiguous, by the pose that the tracked scans predict. The match is
+/// the only pose within six standard deviations of `tracked` that passes the tests, and lies within three. Besides, a
+/// shift by less than the distance of distinct poses, along the direction that the surfaces determine least, must
+/// reduce the inlier ratio.
+SubmapMatchResult match_submaps_by_tracking(const RenderedSubmap& target, const RenderedSubmap& source,
+                                            const PoseGaussian& tracked, const SubmapMatcherSettings& settings,
+                                            const ScanMatcherSettings& matching);
+
 /// Finds a submap in a map that contains many of them, at any pose of its surfaces in `window`. Like match_submaps, but
 /// only the source has to overlap the map; a competing pose has the angle of the match, or a score almost as high.
 SubmapMatchResult locate_submap(const RenderedSubmap& map, const RenderedSubmap& source, const SearchWindow& window,

@@ -137,32 +137,28 @@ TEST(GraphSlam, WithoutTheCheckForASecondMatchDoorsAreTakenForOneAnotherInEveryD
   EXPECT_GT(least_squares_m, 0.8);
 }
 
-// There and back in a corridor with a door every 3 m on both sides and no end in reach; odometry is 8 % too long. A
-// pose that is off by a door can have the larger overlap and the higher score: without the comparison of inlier ratios,
-// 7 of the 20 drives close a loop that is off by a door.
-TEST(GraphSlam, InACorridorOfIdenticalDoorsWithoutAnEndNoneOf20DrivesClosesALoopThatIsOffByADoor) {
-  constexpr double kSpacing_m = 3.0;
-  const auto num_shifted = [](const GraphSlamSettings& settings, std::uint64_t seed) {
+// There and back in a corridor with a door every 2 to 4 m on both sides and no end in reach; odometry is 8 % too long.
+// Every match is ambiguous by the drift of odometry, and the tracked pose decides it.
+TEST(GraphSlam, InACorridorOfIdenticalDoorsWithoutAnEnd20DrivesCloseNineOfTenLoopsAndNoneThatIsOffByADoor) {
+  int num_searched = 0, num_closed = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const RandomStream draw(seed, "test/doors");
-    const double y = 0.4 * (2.0 * draw.uniform(0) - 1.0);
+    const double y = 0.4 * (2.0 * draw.uniform(0) - 1.0), spacing_m = 2.0 + 2.0 * draw.uniform(1);
     const std::vector<test::DriveStep> drive =
         test::drive_along({{0.0, y}, {40.0, y}, {0.0, -y}},
                           {.speed_mps = 1.0, .odometry_scale = 0.08, .odometry_drift_rad_per_m = 0.002});
-    const GalleryMapping mapped =
-        map_doors(test::make_endless_corridor_of_doors(kSpacing_m, kSpacing_m * draw.uniform(1)), drive, kSpacing_m,
-                  settings, seed);
-    EXPECT_GE(mapped.slam.loop_closure_statistics().searched, 2) << seed;
-    EXPECT_LT(mapped.rms_error_m(), 0.2) << seed;
-    return mapped.num_shifted;
-  };
-  GraphSlamSettings score_only;
-  score_only.loop_closure.max_second_best_inlier_fraction = 10.0;
-  int num_shifted_by_score = 0;
-  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    EXPECT_EQ(num_shifted({}, seed), 0) << seed;
-    if (seed <= 5) num_shifted_by_score += num_shifted(score_only, seed);
+    const GalleryMapping mapped = map_doors(
+        test::make_endless_corridor_of_doors(spacing_m, spacing_m * draw.uniform(2)), drive, spacing_m, {}, seed);
+    num_searched += mapped.slam.loop_closure_statistics().searched;
+    num_closed += mapped.slam.loop_closure_statistics().closed;
+    EXPECT_EQ(mapped.num_shifted, 0) << seed;
+    EXPECT_GE(mapped.num_correct, 2) << seed;
+    EXPECT_LT(mapped.rms_error_m(), 0.25) << seed;
   }
-  EXPECT_GE(num_shifted_by_score, 1);
+  EXPECT_GE(num_searched, 80);
+  EXPECT_GE(num_closed, 0.9 * num_searched);
+  RecordProperty("closed", num_closed);
+  RecordProperty("searched", num_searched);
 }
 
 TEST(GraphSlam, TheSameScansGiveTheSamePathToTheBit) {

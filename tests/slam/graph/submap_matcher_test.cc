@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/slam/graph/door_gallery.h"
 #include "tests/slam/graph/office_world.h"
 #include "tests/slam/graph/rendered_submap.h"
 #include "tests/support/pose_near.h"
@@ -66,6 +67,67 @@ TEST(MatchSubmaps, AmongIdenticalDoorsAMatchIsTakenOnlyWhereNoOtherCanBeMeant) {
   const SubmapMatchResult unsure = match_submaps(target, source, around({1.2, 0.0, 0.0}, 2.0, 0.02), {}, {});
   EXPECT_FALSE(unsure.match);
   EXPECT_EQ(unsure.failure, MatchFailure::kAmbiguous);
+}
+
+/// A corridor with a door every 3 m and no end in reach, along 10 to 26 m and back along 20 to 4 m.
+struct PassagesOfDoors {
+  static constexpr double kSpacing_m = 3.0;
+
+  explicit PassagesOfDoors(double phase_m)
+      : corridor(test::make_endless_corridor_of_doors(kSpacing_m, phase_m)),
+        target(drive_past(corridor, {{10.0, 0.2}, {26.0, 0.2}}, 1, test::DoorGallery::kLidar)),
+        source(drive_past(corridor, {{20.0, -0.2}, {4.0, -0.2}}, 2, test::DoorGallery::kLidar)) {}
+
+  test::RoomWorld corridor;
+  RenderedSubmap target, source;
+  Pose2 truth{10.0, -0.4, std::numbers::pi};
+};
+
+TEST(MatchSubmaps, APoseOffByADoorHasTheHighestScoreAndIsRejectedForItsInlierRatio) {
+  SubmapMatcherSettings score_only;
+  score_only.max_second_best_inlier_fraction = 10.0;
+  for (const double phase_m : {0.0, 1.0, 2.0}) {
+    const PassagesOfDoors doors(phase_m);
+    const PoseGaussian prediction = around(doors.truth, 1.1, 0.02);
+    const SubmapMatchResult by_score = match_submaps(doors.target, doors.source, prediction, score_only, {});
+    ASSERT_TRUE(by_score.match) << phase_m;
+    EXPECT_NEAR(by_score.match->T_target_source.x - doors.truth.x, doors.kSpacing_m, 0.05) << phase_m;
+    EXPECT_EQ(match_submaps(doors.target, doors.source, prediction, {}, {}).failure, MatchFailure::kAmbiguous);
+  }
+}
+
+TEST(MatchSubmapsByTracking, TakesTheDoorThatTheTrackedPoseMeansIfNoOtherIsWithinSixStandardDeviations) {
+  const PassagesOfDoors doors(0.5);
+  const auto match = [&](double off_m, double std_m) {
+    const Pose2 tracked{doors.truth.x + off_m, doors.truth.y, doors.truth.yaw};
+    return match_submaps_by_tracking(doors.target, doors.source, around(tracked, std_m, 0.02), {}, {});
+  };
+  for (const double off_m : {-0.5, 0.0, 0.5}) {
+    const SubmapMatchResult sure = match(off_m, 0.3);
+    ASSERT_TRUE(sure.match) << off_m;
+    EXPECT_THAT(sure.match->T_target_source, Pose2Near(doors.truth, 0.03, 0.003)) << off_m;
+  }
+  for (const auto& [off_m, std_m] : {std::pair{0.0, 0.6}, {1.2, 0.3}, {-1.2, 0.3}, {1.5, 0.6}}) {
+    const SubmapMatchResult unsure = match(off_m, std_m);
+    EXPECT_FALSE(unsure.match) << off_m << " " << std_m;
+    EXPECT_EQ(unsure.failure, MatchFailure::kAmbiguous);
+  }
+}
+
+// The only door of 16 m of wall is a small part of the surfaces: a pose half a meter off agrees almost as well.
+TEST(MatchSubmapsByTracking, RejectsAMatchOfBareWallsThatCanSlide) {
+  test::RoomWorld corridor;
+  for (const double side : {-1.2, 1.2})
+    corridor.add_polyline(test::wall_with_doors(side, -100.0, 100.0, side < 0.0 ? 14.0 : 100.0, 300.0));
+  const RenderedSubmap target = drive_past(corridor, {{10.0, 0.2}, {26.0, 0.2}}, 1, test::DoorGallery::kLidar),
+                       source = drive_past(corridor, {{20.0, -0.2}, {4.0, -0.2}}, 2, test::DoorGallery::kLidar);
+  const Pose2 truth{10.0, -0.4, std::numbers::pi};
+  const SubmapMatchResult result = match_submaps_by_tracking(target, source, around(truth, 0.1, 0.02), {}, {});
+  EXPECT_FALSE(result.match);
+  EXPECT_EQ(result.failure, MatchFailure::kAmbiguous);
+  SubmapMatcherSettings sliding;  // compares with no shifted pose
+  sliding.min_second_best_distance_m = 0.2;
+  EXPECT_TRUE(match_submaps_by_tracking(target, source, around(truth, 0.02, 0.02), sliding, {}).match);
 }
 
 }  // namespace
