@@ -20,7 +20,7 @@ ImportedRobot import_robot(const RobotImportOptions& options) {
   std::string text = io::load_text(options.file), label = file;
   const bool is_hidden_xacro = !is_xacro(options.file) && has_xacro_text(text);
   if (is_hidden_xacro || is_xacro(options.file)) {
-    text = expand_xacro(options.file, options.xacro_arguments, options.packages);
+    text = expand_xacro(options.file, options.xacro_arguments, options.packages, options.python);
     label += " (expanded)";
   }
   const Packages packages(options.packages, options.file);

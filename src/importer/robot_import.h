@@ -16,6 +16,8 @@ struct RobotImportOptions {
   std::string name = {};       ///< of the robot, its folder and files; empty: the name in the file
   std::map<std::string, std::filesystem::path> packages = {};  ///< folders of package:// and $(find ...)
   std::map<std::string, std::string> xacro_arguments = {};
+  /// Python interpreter with the package xacro; the environment variable PATROL_PYTHON overrides it.
+  std::string python = "python3";
   std::string base_link = {};  ///< link of the file; empty: by rule
   std::string forward = {};    ///< direction of travel in the base link: x, -x, y, -y; empty: by rule
   std::map<std::string, std::string> frames = {};  ///< sensor frame of Patrol to link of the file

@@ -182,10 +182,10 @@ bool has_xacro_text(const std::string& text) {
 bool is_xacro(const std::filesystem::path& file) { return file.extension() == ".xacro"; }
 
 std::string expand_xacro(const std::filesystem::path& file, const std::map<std::string, std::string>& arguments,
-                         const std::map<std::string, std::filesystem::path>& packages) {
-  const char* given = std::getenv("PATROL_PYTHON");
-  const std::string python = given != nullptr && *given != '\0' ? given : "python3";
-  std::vector<std::string> words = {python, "-c", kScript, file.string(), std::to_string(packages.size())};
+                         const std::map<std::string, std::filesystem::path>& packages, const std::string& python) {
+  const char* named = std::getenv("PATROL_PYTHON");
+  const std::string interpreter = named != nullptr && *named != '\0' ? named : python;
+  std::vector<std::string> words = {interpreter, "-c", kScript, file.string(), std::to_string(packages.size())};
   for (const auto& [name, folder] : packages) words.push_back(name + "=" + folder.string());
   for (const auto& [name, value] : arguments) words.push_back(name + "=" + value);
   Output output = run_python(words);
@@ -195,7 +195,7 @@ std::string expand_xacro(const std::filesystem::path& file, const std::map<std::
     throw InputError(fmt::format(
         "{}: xacro is not available{}: {}: {}: install it with \"pip install xacro\", or set PATROL_PYTHON to a Python "
         "interpreter that has it",
-        file.string(), is_xacro(file) ? "" : " to expand its $(...), ${...} and <xacro:...>", python, message));
+        file.string(), is_xacro(file) ? "" : " to expand its $(...), ${...} and <xacro:...>", interpreter, message));
   }
   throw InputError(fmt::format("{}: xacro: {}", file.string(), message.empty() ? "failed" : message));
 }

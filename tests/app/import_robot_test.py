@@ -3,6 +3,7 @@
 
 usage: import_robot_test.py PATROL SOURCE_DIR [TEST]...
 """
+import os
 import pathlib
 import re
 import subprocess
@@ -57,6 +58,18 @@ class ImportRobot(unittest.TestCase):
         self.assertEqual(run.returncode, 4, "the time limit: " + run.stderr)
         self.assertIn("Distance", run.stdout)
         self.assertTrue((self.folder / "run/metrics.json").exists())
+
+    def test_a_xacro_file_needs_no_python_but_that_of_the_source_tree(self):
+        if not (SOURCE / ".deps/python/bin/python3").exists():
+            self.skipTest("tools/setup was not run")
+        (self.folder / "bin").mkdir()
+        (self.folder / "bin/python3").symlink_to("/bin/false")  # a python3 without xacro
+        source = self.folder / "four.xacro"
+        source.write_text(vendor_urdf().replace('<robot name="four">', '<robot name="four" xmlns:xacro="http://ros.org/wiki/xacro">'))
+        environment = {name: value for name, value in os.environ.items() if name != "PATROL_PYTHON"} | {"PATH": f"{self.folder}/bin"}
+        done = subprocess.run([PATROL, "import", "robot", source, "--out", "models/four"], cwd=self.folder, env=environment, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertTrue((self.folder / "models/four/four.urdf").exists())
 
     def test_joints_that_are_too_slow_to_walk_are_reported(self):
         urdf = (SOURCE / "models/quadruped/quadruped.urdf").read_text()

@@ -71,6 +71,12 @@ double turning_clearance_m(const std::string& robot) {
   return io::load_robot_description(find_robot(robot, find_data_root({})).string()).outline_radius_m() + kMargin_m;
 }
 
+/// Returns the Python interpreter that tools/setup installs in the source tree, otherwise that of the system.
+std::string python_with_xacro() {
+  const std::filesystem::path installed = find_data_root({}) / ".deps/python/bin/python3";
+  return std::filesystem::exists(installed) ? installed.string() : "python3";
+}
+
 importer::ImportedSite import_with_progress(importer::SiteImportOptions options) {
   ProgressBar bar;
   options.on_progress = [&bar, name = options.name](const std::string& work, double fraction) {
@@ -87,6 +93,7 @@ ExitCode import_robot_command(const ImportRobotOptions& options) {
                               .name = folder_name(options.out),
                               .packages = to_map<std::filesystem::path>(options.packages, "--package"),
                               .xacro_arguments = to_map<std::string>(options.xacro_arguments, "--xacro-arg"),
+                              .python = python_with_xacro(),
                               .base_link = options.base_link,
                               .forward = options.forward,
                               .frames = to_map<std::string>(options.frames, "--frame"),
