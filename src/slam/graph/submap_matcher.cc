@@ -11,12 +11,14 @@ namespace patrol::slam {
 namespace {
 
 constexpr int kOverlapRadius = 2;      // cells
+constexpr int kFineOverlapRadius = 1;  // cells
 constexpr int kMaxCompetingPoses = 8;  // maximum number of poses that are compared with a match
 // Matches that the tracked pose decides.
 constexpr double kPossibleStd = 6.0;   // deviation up to which another pose is possible
 constexpr double kPlausibleStd = 3.0;  // maximum deviation of the match
 constexpr std::size_t kMaxPossiblePoses = 24;
-constexpr double kMinShift_m = 0.3, kShiftStep_m = 0.1;  // of shifted poses that a match is compared with
+constexpr double kMinScoreFraction = 0.7;  // score of a possible pose, relative to the best one
+constexpr int kNumShifts = 4;              // of shifted poses on either side that a match is compared with
 
 /// Surfaces that must overlap in a match.
 enum class Coverage {
@@ -32,9 +34,9 @@ struct MutualOverlap {
 };
 
 MutualOverlap measure_mutual_overlap(const RenderedSubmap& target, const RenderedSubmap& source,
-                                     const Pose2& T_target_source) {
-  return {.forth = measure_overlap(target.map(), source.surface_points(), T_target_source, kOverlapRadius),
-          .back = measure_overlap(source.map(), target.surface_points(), T_target_source.inverse(), kOverlapRadius)};
+                                     const Pose2& T_target_source, int radius) {
+  return {.forth = measure_overlap(target.map(), source.surface_points(), T_target_source, radius),
+          .back = measure_overlap(source.map(), target.surface_points(), T_target_source.inverse(), radius)};
 }
 
 /// Refines the pose of `source` in `target`, and checks that the surfaces of each lie on surfaces of the other.
@@ -44,7 +46,7 @@ SubmapMatchResult refine_and_check(const RenderedSubmap& target, const RenderedS
   const std::optional<MatchResult> fine =
       match_scan(target.map(), source.surface_points(), found.T_map_points, match_prior(found.T_map_points), matching);
   if (!fine) return {.match = {}, .failure = MatchFailure::kMismatch};
-  const MutualOverlap overlap = measure_mutual_overlap(target, source, fine->T_map_body);
+  const MutualOverlap overlap = measure_mutual_overlap(target, source, fine->T_map_body, kOverlapRadius);
   const double forth_ratio = overlap.forth.overlap_ratio();
   const SubmapMatch match{.T_target_source = fine->T_map_body,
                           .information = fine->information,
@@ -108,20 +110,25 @@ SubmapMatchResult match_in_window(const RenderedSubmap& target, const RenderedSu
   return result;
 }
 
-/// Returns whether a pose agrees almost as well that is shifted by up to the distance of distinct poses, along the
-/// direction that the surfaces determine least. Bare walls hide a shift where few other surfaces overlap.
-bool slides(const RenderedSubmap& target, const RenderedSubmap& source, const SubmapMatch& match,
+/// Inlier ratio of a pose at the resolution of the maps, in which doors are visible that are only two cells deep.
+double fine_inlier_ratio(const RenderedSubmap& target, const RenderedSubmap& source, const Pose2& T_target_source) {
+  return measure_mutual_overlap(target, source, T_target_source, kFineOverlapRadius).inlier_ratio();
+}
+
+/// Returns whether the surfaces leave the pose open along the direction that they determine least: a pose at the
+/// distance of distinct poses agrees almost as well, or a nearer one better. Bare walls hide such a shift.
+bool slides(const RenderedSubmap& target, const RenderedSubmap& source, const SubmapMatch& match, double ratio,
             const SubmapMatcherSettings& settings) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> covariance(match.information.inverse().topLeftCorner<2, 2>());
   const Eigen::Vector2d weakest = covariance.eigenvectors().col(1);
-  for (double shift_m = kMinShift_m; shift_m <= settings.min_second_best_distance_m; shift_m += kShiftStep_m) {
+  for (int step = 1; step <= kNumShifts; ++step) {
+    const double shift_m = settings.min_second_best_distance_m * step / kNumShifts;
+    const double max_ratio = step < kNumShifts ? ratio : settings.max_second_best_inlier_fraction * ratio;
     for (const double sign : {-1.0, 1.0}) {
       Pose2 shifted = match.T_target_source;
       shifted.x += sign * shift_m * weakest.x();
       shifted.y += sign * shift_m * weakest.y();
-      if (measure_mutual_overlap(target, source, shifted).inlier_ratio() >=
-          settings.max_second_best_inlier_fraction * match.inlier_ratio)
-        return true;
+      if (fine_inlier_ratio(target, source, shifted) >= max_ratio) return true;
     }
   }
   return false;
@@ -152,8 +159,9 @@ SubmapMatchResult match_submaps_by_tracking(const RenderedSubmap& target, const 
   const SearchWindow window = window_around(tracked, kPossibleStd, settings);
   std::vector<SearchExclusion> known;
   std::vector<SubmapMatch> possible;
-  while (const std::optional<SearchResult> found =
-             search_window(target.pyramid(), points, window, settings.min_search_score, known)) {
+  double min_score = settings.min_search_score;
+  while (const std::optional<SearchResult> found = search_window(target.pyramid(), points, window, min_score, known)) {
+    min_score = std::max(min_score, kMinScoreFraction * found->score);
     if (known.size() >= kMaxPossiblePoses) return ambiguous;
     known.push_back({.T_map_center = found->T_map_points,
                      .radius_m = settings.min_second_best_distance_m,
@@ -162,16 +170,21 @@ SubmapMatchResult match_submaps_by_tracking(const RenderedSubmap& target, const 
     if (result.match && deviation(tracked, result.match->T_target_source) < kPossibleStd)
       possible.push_back(*result.match);
   }
-  const auto best = std::ranges::max_element(possible, {}, &SubmapMatch::inlier_ratio);
-  if (best == possible.end()) return ambiguous;
-  const bool has_other = std::ranges::any_of(possible, [&](const SubmapMatch& other) {
-    return other.inlier_ratio >= settings.max_second_best_inlier_fraction * best->inlier_ratio &&
-           (other.T_target_source.position() - best->T_target_source.position()).norm() >
-               settings.min_second_best_distance_m;
-  });
-  if (has_other || deviation(tracked, best->T_target_source) > kPlausibleStd || slides(target, source, *best, settings))
+  if (possible.empty()) return ambiguous;
+  std::vector<double> ratios;
+  for (const SubmapMatch& match : possible) ratios.push_back(fine_inlier_ratio(target, source, match.T_target_source));
+  const auto best = static_cast<std::size_t>(std::ranges::max_element(ratios) - ratios.begin());
+  const SubmapMatch& match = possible[best];
+  for (std::size_t i = 0; i < possible.size(); ++i) {
+    const double distance_m = (possible[i].T_target_source.position() - match.T_target_source.position()).norm();
+    if (distance_m > settings.min_second_best_distance_m &&
+        ratios[i] >= settings.max_second_best_inlier_fraction * ratios[best])
+      return ambiguous;
+  }
+  if (deviation(tracked, match.T_target_source) > kPlausibleStd ||
+      slides(target, source, match, ratios[best], settings))
     return ambiguous;
-  return {.match = *best, .failure = MatchFailure::kNone};
+  return {.match = match, .failure = MatchFailure::kNone};
 }
 
 SubmapMatchResult match_submaps(const RenderedSubmap& target, const RenderedSubmap& source,

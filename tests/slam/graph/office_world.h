@@ -47,11 +47,12 @@ inline RoomWorld make_office() {
   return office;
 }
 
-/// Points along a wall at y = `y` from x = `begin` to `end`, with a door niche 1 m wide and 0.3 m deep every `spacing`
-/// from `first` on, m.
-inline std::vector<Eigen::Vector2d> wall_with_doors(double y, double begin, double end, double first, double spacing) {
+/// Points along a wall at y = `y` from x = `begin` to `end`, with a door niche 1 m wide every `spacing` from `first`
+/// on, m.
+inline std::vector<Eigen::Vector2d> wall_with_doors(double y, double begin, double end, double first, double spacing,
+                                                    double niche_depth = 0.3) {
   std::vector<Eigen::Vector2d> wall = {{begin, y}};
-  const double out = y < 0.0 ? -0.3 : 0.3;
+  const double out = y < 0.0 ? -niche_depth : niche_depth;
   for (double x = first; x < end - 1.0; x += spacing) {
     for (const auto& [dx, depth] : {std::pair{0.0, 0.0}, {0.0, out}, {1.0, out}, {1.0, 0.0}})
       wall.emplace_back(x + dx, y + depth);
@@ -70,10 +71,10 @@ inline RoomWorld make_corridor_of_doors() {
 
 /// A corridor along x, 2.4 m wide and open at both ends, 100 m and more from the origin, with a door niche every
 /// `spacing_m` on both sides.
-inline RoomWorld make_endless_corridor_of_doors(double spacing_m, double phase_m) {
+inline RoomWorld make_endless_corridor_of_doors(double spacing_m, double phase_m, double niche_depth_m = 0.3) {
   RoomWorld corridor;
   for (const double side : {-1.2, 1.2})
-    corridor.add_polyline(wall_with_doors(side, -110.0, 150.0, -100.0 + phase_m, spacing_m));
+    corridor.add_polyline(wall_with_doors(side, -110.0, 150.0, -100.0 + phase_m, spacing_m, niche_depth_m));
   return corridor;
 }
 
