@@ -157,6 +157,8 @@ SubmapMatchResult match_submaps_by_tracking(const RenderedSubmap& target, const 
   const SubmapMatchResult ambiguous{.match = {}, .failure = MatchFailure::kAmbiguous};
   const std::vector<Eigen::Vector2d> points = positions_of(source.surface_points(), settings.search_points);
   const SearchWindow window = window_around(tracked, kPossibleStd, settings);
+  if (window.half_width_m >= settings.max_window_m || window.half_angle_rad >= settings.max_window_rad)
+    return ambiguous;  // another pose can lie outside the search
   std::vector<SearchExclusion> known;
   std::vector<SubmapMatch> possible;
   double min_score = settings.min_search_score;

@@ -114,6 +114,15 @@ TEST(MatchSubmapsByTracking, TakesTheDoorThatTheTrackedPoseMeansIfNoOtherIsWithi
   }
 }
 
+TEST(MatchSubmapsByTracking, RejectsEveryMatchIfThePossiblePosesReachBeyondTheLargestSearch) {
+  const PassagesOfDoors doors(0.5);
+  SubmapMatcherSettings narrow;
+  narrow.max_window_m = 1.5;
+  EXPECT_FALSE(match_submaps_by_tracking(doors.target, doors.source, around(doors.truth, 0.3, 0.02), narrow, {}).match);
+  narrow.max_window_m = 3.0;
+  EXPECT_TRUE(match_submaps_by_tracking(doors.target, doors.source, around(doors.truth, 0.3, 0.02), narrow, {}).match);
+}
+
 // The only door of 16 m of wall is a small part of the surfaces: a pose half a meter off agrees almost as well.
 TEST(MatchSubmapsByTracking, RejectsAMatchOfBareWallsThatCanSlide) {
   test::RoomWorld corridor;
