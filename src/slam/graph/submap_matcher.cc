@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include <Eigen/Eigenvalues>
+
 #include "slam/surface_overlap.h"
 
 namespace patrol::slam {
