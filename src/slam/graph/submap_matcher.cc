@@ -118,7 +118,7 @@ double fine_inlier_ratio(const RenderedSubmap& target, const RenderedSubmap& sou
 }
 
 /// Returns whether the surfaces leave the pose open along the direction that they determine least: a pose at the
-/// distance of distinct poses agrees almost as well, or a nearer one better. Bare walls hide such a shift.
+/// distance of distinct poses agrees almost as well, or a nearer one at least as well. Bare walls hide such a shift.
 bool slides(const RenderedSubmap& target, const RenderedSubmap& source, const SubmapMatch& match, double ratio,
             const SubmapMatcherSettings& settings) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> covariance(match.information.inverse().topLeftCorner<2, 2>());

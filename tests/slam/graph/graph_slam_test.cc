@@ -138,9 +138,11 @@ TEST(GraphSlam, WithoutTheCheckForASecondMatchDoorsAreTakenForOneAnotherInEveryD
 }
 
 // There and back in a corridor with a door every 2 to 6 m on both sides, 0.1 to 0.3 m deep, and no end in reach;
-// odometry is 8 % too long. Every match is ambiguous by the drift of odometry, and the tracked pose decides it.
+// odometry is 8 % too long. Matches are ambiguous by the drift of odometry, and the tracked pose decides them. Shallow
+// doors hardly determine the distance: the map is up to 1.2 m off.
 TEST(GraphSlam, InACorridorOfIdenticalDoorsWithoutAnEnd20DrivesCloseNineOfTenLoopsAndNoneThatIsOffByADoor) {
   int num_searched = 0, num_closed = 0;
+  double max_error_m = 0.0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const RandomStream draw(seed, "test/doors");
     const double y = 0.4 * (2.0 * draw.uniform(0) - 1.0), spacing_m = 2.0 + 4.0 * draw.uniform(1);
@@ -152,10 +154,13 @@ TEST(GraphSlam, InACorridorOfIdenticalDoorsWithoutAnEnd20DrivesCloseNineOfTenLoo
     const GalleryMapping mapped = map_doors(corridor, drive, spacing_m, {}, seed);
     num_searched += mapped.slam.loop_closure_statistics().searched;
     num_closed += mapped.slam.loop_closure_statistics().closed;
+    max_error_m = std::max(max_error_m, mapped.rms_error_m());
     EXPECT_EQ(mapped.num_shifted, 0) << seed;
   }
   EXPECT_GE(num_searched, 80);
   EXPECT_GE(num_closed, 0.9 * num_searched);
+  EXPECT_LT(max_error_m, 1.3);
+  RecordProperty("max_error_mm", static_cast<int>(1000.0 * max_error_m));
   RecordProperty("closed", num_closed);
   RecordProperty("searched", num_searched);
 }
