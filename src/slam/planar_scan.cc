@@ -5,17 +5,9 @@
 #include <vector>
 
 #include "slam/range_smoothing.h"
+#include "slam/rigid_motion.h"
 
 namespace patrol::slam {
-namespace {
-
-/// Fraction of a small motion at constant velocity.
-Pose2 interpolate_motion(const Pose2& motion, double fraction) {
-  return {fraction * motion.x, fraction * motion.y, fraction * motion.yaw};
-}
-
-}  // namespace
-
 LevelScan planar_scan(const RecordedScan& recorded, const PlanarScanSettings& settings) {
   const LaserScan& scan = recorded.scan;
   const std::vector<float> ranges_m =
@@ -33,7 +25,7 @@ LevelScan planar_scan(const RecordedScan& recorded, const PlanarScanSettings& se
                                               : settings.max_range_m;
     if (!(length > 0.0)) continue;
     const double angle = scan.angle_min_rad + static_cast<double>(beam) * scan.angle_increment_rad;
-    const Pose2 T_body_then = interpolate_motion(recorded.T_begin_end, static_cast<double>(beam) / last_beam);
+    const Pose2 T_body_then = scaled_motion(recorded.T_begin_end, static_cast<double>(beam) / last_beam);
     const Eigen::Vector2d end =
         T_body_then * (recorded.T_body_lidar * Eigen::Vector2d(length * std::cos(angle), length * std::sin(angle)));
     level.beams.push_back({end.cast<float>(), is_hit});

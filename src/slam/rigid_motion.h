@@ -13,4 +13,9 @@ namespace patrol::slam {
 Pose2 fit_rigid_motion(const std::vector<Eigen::Vector2d>& points_target,
                        const std::vector<Eigen::Vector2d>& points_source);
 
+/// Scales a small motion to a fraction of its duration, or to a multiple, at constant velocity.
+inline Pose2 scaled_motion(const Pose2& motion, double factor) {
+  return {factor * motion.x, factor * motion.y, factor * motion.yaw};
+}
+
 }  // namespace patrol::slam

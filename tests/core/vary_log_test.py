@@ -80,10 +80,11 @@ class Variants(unittest.TestCase):
         self.assertEqual(len((self.path / "out").read_text().splitlines()), SCANS // 2)
         self.assertEqual(len((self.path / "kept").read_text().splitlines()), 5)
 
-    def test_odometry_is_scaled_zero_delayed_and_jumps(self):
+    def test_odometry_is_scaled_zero_delayed_early_and_jumps(self):
         self.assertAlmostEqual(self.scans("distance_0.9")[-1][3][0], 0.9 * pose(SCANS - 1)[0], 3)
         self.assertEqual(self.scans("odometry_zero")[-1][3], (0.0, 0.0, 0.0))
         self.assertAlmostEqual(self.scans("odometry_delayed")[10][3][0], pose(9)[0])
+        self.assertAlmostEqual(self.scans("odometry_early")[10][3][0], pose(11)[0])
         steps = [math.dist(a[3][:2], b[3][:2]) for a, b in zip(self.scans("odometry_jumps"), self.scans("odometry_jumps")[1:])]
         self.assertEqual(sum(abs(step - 0.1) > 0.01 for step in steps), 1)
 

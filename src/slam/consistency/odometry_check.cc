@@ -6,6 +6,7 @@
 
 #include "core/upper_median.h"
 #include "slam/calibration/calibrate.h"
+#include "slam/rigid_motion.h"
 
 namespace patrol::slam {
 namespace {
@@ -162,7 +163,7 @@ std::vector<Pose2> without_delay(const std::vector<Pose2>& T_odom_body, double d
                  fraction = at - whole;
     const auto before = static_cast<std::size_t>(whole);
     const Pose2 step = T_odom_body[before].inverse() * T_odom_body[std::min(before + 1, T_odom_body.size() - 1)];
-    shifted.push_back(T_odom_body[before] * Pose2{fraction * step.x, fraction * step.y, fraction * step.yaw});
+    shifted.push_back(T_odom_body[before] * scaled_motion(step, fraction));
   }
   return shifted;
 }

@@ -10,6 +10,7 @@
 #include "slam/graph/branch_and_bound.h"
 #include "slam/graph/degeneracy.h"
 #include "slam/graph/sector_gains.h"
+#include "slam/rigid_motion.h"
 
 namespace patrol::slam {
 namespace {
@@ -65,9 +66,6 @@ int num_hits(const LevelScan& scan) {
       std::count_if(scan.beams.begin(), scan.beams.end(), [](const LevelScan::Beam& beam) { return beam.is_hit; }));
 }
 
-/// Scales a motion to another duration at constant velocity.
-Pose2 scaled(const Pose2& motion, double factor) { return {factor * motion.x, factor * motion.y, factor * motion.yaw}; }
-
 }  // namespace
 
 ScanTracker::ScanTracker(const ScanTrackerSettings& settings)
@@ -75,7 +73,8 @@ ScanTracker::ScanTracker(const ScanTrackerSettings& settings)
       older_(settings.resolution_m, settings.max_extent_m),
       newer_(settings.resolution_m, settings.max_extent_m) {}
 
-TrackedScan ScanTracker::update(const LevelScan& scan, const Pose2& T_odom_body) {
+TrackedScan ScanTracker::update(const LevelScan& scan, const Pose2& T_odom_stamp) {
+  const Pose2 T_odom_body = delay_.compensated(scan.stamp, T_odom_stamp);
   if (!stamp_) {
     T_odom_last_ = tracks_[0].matched.T_odom_body = T_odom_body;
     stamp_ = tracks_[0].matched.stamp = scan.stamp;
@@ -111,6 +110,7 @@ TrackedScan ScanTracker::update(const LevelScan& scan, const Pose2& T_odom_body)
     tracked.scans = is_grouped ? scans_since_keyframe_.take() : ScanGroup(scan);
     integrate(tracked);
   }
+  delay_.update(tracked.T_local_body.yaw);
   update_constant_odometry(T_odom_body, tracked.T_local_body);
   last_step_s_ = step.seconds;
   T_odom_last_ = T_odom_body;
@@ -152,7 +152,7 @@ PoseGaussian ScanTracker::predict_without_odometry(const Track& track, const Ste
 }
 
 Pose2 ScanTracker::motion_as_before(const Track& track, const Step& step) const {
-  return scaled(track.T_last_now, last_step_s_ > 1e-3 ? std::clamp(step.seconds / last_step_s_, 0.0, 2.0) : 1.0);
+  return scaled_motion(track.T_last_now, last_step_s_ > 1e-3 ? std::clamp(step.seconds / last_step_s_, 0.0, 2.0) : 1.0);
 }
 
 // Scans that change while odometry does not are evidence of motion only along directions that they determine, because

@@ -8,6 +8,7 @@
 #include "core/settings.h"
 #include "slam/graph/likelihood_pyramid.h"
 #include "slam/graph/odometry_correction.h"
+#include "slam/graph/odometry_delay.h"
 #include "slam/graph/scan_group.h"
 #include "slam/graph/scan_tracker_settings.h"
 #include "slam/graph/scans_since_keyframe.h"
@@ -39,7 +40,8 @@ struct TrackedScan {
 /// Two maps are updated at a time; the second begins when the first is half full. Scans are matched with the older map,
 /// which thus always has at least half the full length.
 ///
-/// Odometry is calibrated while tracking (odometry_correction.h).
+/// Odometry is calibrated while tracking (odometry_correction.h), and so is its time offset to the scans
+/// (odometry_delay.h).
 ///
 /// Robust against failures of wheel odometry (slip, frozen, constant or reversed readings). Alternative start poses are
 /// the previous motion, no motion, the reversed motion, and, if the odometry prediction does not match as usual, the
@@ -59,13 +61,14 @@ class ScanTracker {
  public:
   explicit ScanTracker(const ScanTrackerSettings& settings);
 
-  TrackedScan update(const LevelScan& scan, const Pose2& T_odom_body);
+  /// `T_odom_stamp`: odometry at the stamp of the scan.
+  TrackedScan update(const LevelScan& scan, const Pose2& T_odom_stamp);
 
   template <typename Archive>
   void serialize_state(Archive& archive) {
     archive(older_, newer_, older_keyframes_, newer_keyframes_, keyframes_, submap_, stamp_, T_odom_last_,
-            T_local_keyframe_, tracks_, last_step_s_, T_local_constant_, is_odometry_constant_, correction_, usual_,
-            scans_since_keyframe_, pyramid_);
+            T_local_keyframe_, tracks_, last_step_s_, T_local_constant_, is_odometry_constant_, delay_, correction_,
+            usual_, scans_since_keyframe_, pyramid_);
   }
 
  private:
@@ -149,6 +152,7 @@ class ScanTracker {
   double last_step_s_ = 0.0;
   Pose2 T_local_constant_;  ///< where odometry changed last
   bool is_odometry_constant_ = false;
+  OdometryDelay delay_;
   OdometryCorrection correction_;
   UsualMatch usual_;
   ScansSinceKeyframe scans_since_keyframe_;
