@@ -85,6 +85,8 @@ MappingVerdict OdometryReport::verdict() const {
     warn("odometry has faults");
   } else if (has_wrong_scale) {
     warn("odometry is not calibrated");
+  } else if (!health.distance && !health.turn) {
+    warn("odometry not checked");
   }
   found.push_back(scales);
   if (health.num_gaps > 0) {

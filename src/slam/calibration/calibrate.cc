@@ -119,8 +119,9 @@ class Calibrator {
   }
 
   /// Uses only components that matching constrains better than odometry; elsewhere the tracker followed odometry, so
-  /// the residual is too small.
+  /// the residual is too small. Without such components the noise is that of the settings.
   void estimate_noise() {
+    translation_noise_scale_ = rotation_noise_scale_ = 1.0;
     std::vector<double> translation_errors, rotation_errors;
     for (const MotionResidual& residual : residuals_) {
       for (Eigen::Index i = 0; i < 3; ++i) {

@@ -41,6 +41,13 @@ TEST(OdometryReport, WithAScaleOffBy4PercentIsNotCalibrated) {
   EXPECT_EQ(report_of(health).block().tone, Tone::kWarning);
 }
 
+TEST(OdometryReport, WithoutScalesIsNotChecked) {
+  slam::OdometryHealth health = healthy();
+  health.distance = health.turn = std::nullopt;
+  EXPECT_EQ(report_of(health).block().word, "odometry not checked");
+  EXPECT_EQ(report_of(health).block().tone, Tone::kWarning);
+}
+
 TEST(OdometryReport, ConstantOverNineTenthsOfTheWayIsMostlyConstant) {
   slam::OdometryHealth health = healthy();
   health.num_faulty = 180;

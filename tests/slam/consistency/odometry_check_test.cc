@@ -47,6 +47,16 @@ TEST(OdometryCheck, FindsAScaleOf3PercentAndASteeringBiasOf10MilliradiansPerMete
   EXPECT_EQ(health.num_gaps, 0U);
 }
 
+TEST(OdometryCheck, FindsDistancesThatAre15To40PercentTooShortOrTooLong) {
+  for (const double factor : {0.6, 0.7, 0.85, 1.15, 1.4}) {
+    Drive drive;
+    drive.change(0, drive.stamps.size(), [&](const Pose2& step) { return Pose2{factor * step.x, step.y, step.yaw}; });
+    const OdometryHealth health = drive.check();
+    ASSERT_TRUE(health.distance) << factor;
+    EXPECT_NEAR(health.distance->value, 1.0 / (1.03 * factor), 0.005) << factor;
+  }
+}
+
 TEST(OdometryCheck, OdometryThatStandsFor100ScansIsConstantThere) {
   Drive drive;
   drive.change(100, 200, [](const Pose2&) { return Pose2{}; });
