@@ -31,6 +31,10 @@ std::vector<double> to_ranks(const std::vector<double>& values) {
   return ranks;
 }
 
+bool has_nan(const std::vector<double>& values) {
+  return std::ranges::any_of(values, [](double value) { return std::isnan(value); });
+}
+
 }  // namespace
 
 double mean(const std::vector<double>& values) {
@@ -122,6 +126,7 @@ double sign_test_p_value(int num_first, int num_second) {
 }
 
 std::optional<double> rank_correlation(const std::vector<double>& a, const std::vector<double>& b) {
+  if (has_nan(a) || has_nan(b)) return std::nullopt;
   const std::vector<double> ranks_a = to_ranks(a), ranks_b = to_ranks(b);
   const double spread = std::sqrt(variance(ranks_a) * variance(ranks_b));
   if (!(spread > 0.0)) return std::nullopt;
@@ -132,6 +137,7 @@ std::optional<double> rank_correlation(const std::vector<double>& a, const std::
 }
 
 std::optional<double> roc_auc(const std::vector<double>& values, const std::vector<bool>& is_marked) {
+  if (has_nan(values)) return std::nullopt;
   const std::vector<double> ranks = to_ranks(values);
   double sum = 0.0, num_marked = 0.0;
   for (std::size_t i = 0; i < values.size(); ++i) {

@@ -43,11 +43,12 @@ void adjust_by_holm(const std::vector<std::optional<double>*>& p_values);
 /// at least as many fall on one side as on the larger of the two. 1 without any toss.
 double sign_test_p_value(int num_first, int num_second);
 
-/// Spearman's rank correlation, -1 ... 1; ties have the mean of their ranks. None when either list is constant.
+/// Spearman's rank correlation, -1 ... 1; ties have the mean of their ranks. None when either list is constant or has a
+/// NaN.
 std::optional<double> rank_correlation(const std::vector<double>& a, const std::vector<double>& b);
 
 /// Probability that a marked value is greater than an unmarked one; ties count half. This is the area under the ROC
-/// curve, Mann-Whitney's U / (n m). None unless there are marked and unmarked values.
+/// curve, Mann-Whitney's U / (n m). None unless there are marked and unmarked values, or with a NaN.
 std::optional<double> roc_auc(const std::vector<double>& values, const std::vector<bool>& is_marked);
 
 }  // namespace patrol::score

@@ -1,6 +1,7 @@
 #include "score/statistics.h"
 
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include <gtest/gtest.h>
@@ -127,6 +128,13 @@ TEST(ChanceOfOrder, CountsPairsAndTiesHalf) {
   EXPECT_DOUBLE_EQ(*roc_auc({1, 3, 2, 4}, {false, false, true, true}), 0.75);
   EXPECT_DOUBLE_EQ(*roc_auc({7, 7}, {false, true}), 0.5);
   EXPECT_FALSE(roc_auc({1, 2}, {true, true}));
+}
+
+TEST(RankCorrelation, AndRocAucAreUnknownWithANaN) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(rank_correlation({1, nan, 3}, {1, 2, 3}));
+  EXPECT_FALSE(rank_correlation({1, 2, 3}, {nan, nan, nan}));
+  EXPECT_FALSE(roc_auc({1, nan, 3}, {false, true, true}));
 }
 
 }  // namespace
