@@ -14,9 +14,9 @@
 
 #include "app/run/compute_delay.h"
 #include "core/error.h"
-#include "core/overloaded.h"
 #include "io/files/one_line.h"
 #include "io/logs/topics.h"
+#include "io/ros/ros_messages.h"
 #include "link/stack_client.h"
 
 namespace patrol::app {
@@ -29,36 +29,14 @@ constexpr std::chrono::seconds kTimeToEnd{2};         ///< of the process after 
 constexpr std::chrono::milliseconds kTimeToDie{200};  ///< of a process whose connection has closed
 constexpr std::size_t kMaxNameBytes = 200;
 
-bool is_finite(const Pose2& pose) { return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.yaw); }
-bool is_finite(const Pose3& pose) { return pose.position.allFinite() && pose.rotation.coeffs().allFinite(); }
+bool has_finite_numbers(const stack::StackMessage& message) {
+  return std::visit([](const auto& content) { return io::has_finite_numbers(content); }, message);
+}
 
-/// Returns whether the numbers that Patrol computes with are finite.
-bool is_finite(const stack::StackMessage& message) {
-  return std::visit(Overloaded{[](const VelocityCommand& command) {
-                                 return std::isfinite(command.vx_mps) && std::isfinite(command.vy_mps) &&
-                                        std::isfinite(command.yaw_rate_radps);
-                               },
-                               [](const AntennaCommand& command) {
-                                 return std::isfinite(command.yaw_rad) && std::isfinite(command.pitch_rad);
-                               },
-                               [](const OdometryEstimate& odometry) {
-                                 return is_finite(odometry.T_odom_body) && odometry.planar_covariance.allFinite();
-                               },
-                               [](const PoseEstimate& estimate) {
-                                 return is_finite(estimate.T_map_body) && estimate.covariance.allFinite();
-                               },
-                               [](const TrajectoryEstimate& estimate) {
-                                 return std::ranges::all_of(estimate.T_map_body, [](const StampedPose& stamped) {
-                                   return is_finite(stamped.pose);
-                                 });
-                               },
-                               [](const SiteRegistration& registration) { return is_finite(registration.T_site_map); },
-                               [](const MapUpdate& update) {
-                                 const GridGeometry& geometry = update.map.geometry();
-                                 return geometry.resolution_m > 0.0 && geometry.origin_m.allFinite();
-                               },
-                               [](const auto&) { return true; }},
-                    message);
+/// Returns whether the cells of a map have a size.
+bool has_resolution(const stack::StackMessage& message) {
+  const auto* update = std::get_if<MapUpdate>(&message);
+  return update == nullptr || update->map.geometry().resolution_m > 0.0;
 }
 
 /// Returns whether the rotations of a trajectory, which are written to files as they are, are unit quaternions.
@@ -271,7 +249,8 @@ PublishedMessage checked_message(link::PublishedMessage message) {
   } catch (const InputError& error) {
     refuse(error.what());
   }
-  if (checked.content && !is_finite(*checked.content)) refuse("contains a number that is not finite");
+  if (checked.content && !has_finite_numbers(*checked.content)) refuse("contains a number that is not finite");
+  if (checked.content && !has_resolution(*checked.content)) refuse("resolution must be at least 0.0001 m");
   if (checked.content && !has_unit_quaternions(*checked.content)) refuse("contains a quaternion whose norm is not 1");
   return checked;
 }

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include <fastcdr/Cdr.h>
@@ -38,6 +40,27 @@ struct Reader {
   template <typename T>
   void operator()(T& value) {
     cdr >> value;
+  }
+};
+
+/// Codec that checks: whether every floating-point field is finite. It visits the fields that a Writer writes.
+struct FiniteCheck {
+  RosNames names{};
+  bool is_finite = true;
+  static constexpr bool kWrites = true;
+  template <typename T>
+  void operator()(const T& value) {
+    if constexpr (std::is_floating_point_v<T>) is_finite = is_finite && std::isfinite(value);
+  }
+  template <typename T, std::size_t kSize>
+  void operator()(const std::array<T, kSize>& values) {
+    for (const T& value : values) (*this)(value);
+  }
+  template <typename T>
+  void operator()(const std::vector<T>& values) {
+    if constexpr (std::is_floating_point_v<T>) {
+      for (const T& value : values) (*this)(value);
+    }
   }
 };
 
@@ -226,12 +249,21 @@ Message decode(std::string_view bytes) {
   return message;
 }
 
+template <typename Message>
+bool has_finite_numbers(const Message& message) {
+  Message copy = message;
+  ros::FiniteCheck check;
+  describe(check, copy);
+  return check.is_finite;
+}
+
 }  // namespace patrol::io
 
-/// Instantiates `encode` and `decode` of a message with a `describe` function above.
+/// Instantiates `encode`, `decode` and `has_finite_numbers` of a message with a `describe` function above.
 // NOLINTNEXTLINE(cppcoreguidelines-macro-usage): a template cannot instantiate others
 #define PATROL_ROS_MESSAGE(Message)                             \
   template std::string encode(const Message&, const RosNames&); \
+  template bool has_finite_numbers(const Message&);             \
   template Message decode<Message>(std::string_view)
 
 /// Instantiates `encode` and `decode` of a sensor message. `fields`: fields of its ROS type; "" for a type of

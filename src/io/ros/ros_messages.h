@@ -116,6 +116,10 @@ class DecodeError : public InputError {
 template <typename Message>
 Message decode(std::string_view bytes);
 
+/// Returns whether all floating-point fields of a message are finite.
+template <typename Message>
+bool has_finite_numbers(const Message& message);
+
 /// Returns header.frame_id of a message that begins with a header. Throws DecodeError.
 std::string frame_id_of(std::string_view bytes);
 

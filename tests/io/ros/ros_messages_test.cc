@@ -1,6 +1,7 @@
 #include "io/ros/ros_messages.h"
 
 #include <cstring>
+#include <limits>
 #include <map>
 
 #include <gtest/gtest.h>
@@ -232,6 +233,31 @@ TEST(Decode, EmptyListsStayEmpty) {
 }
 
 // What ROS readers see under their own names.
+template <typename Message, typename Field>
+bool finds_nan(Message message, Field field) {
+  field(message) = std::numeric_limits<double>::quiet_NaN();
+  return !has_finite_numbers(message);
+}
+
+TEST(HasFiniteNumbers, ANaNInAnyOfNineTypesIsFound) {
+  EXPECT_TRUE(has_finite_numbers(test::sample_path()));
+  EXPECT_TRUE(has_finite_numbers(test::sample_lining()));
+  EXPECT_TRUE(finds_nan(test::sample_path(), [](Path& path) -> double& { return path.T_map_body[1].x; }));
+  EXPECT_TRUE(
+      finds_nan(test::sample_trust(), [](LocalizationConfidence& trust) -> double& { return trust.confidence; }));
+  EXPECT_TRUE(finds_nan(test::sample_particles(), [](ParticleSet& set) -> double& { return set.weights[1]; }));
+  EXPECT_TRUE(finds_nan(test::sample_event(), [](Event& event) -> double& { return event.value; }));
+  EXPECT_TRUE(
+      finds_nan(test::sample_lining(), [](LiningResult& lining) -> double& { return lining.cells[0].inward_m; }));
+  EXPECT_TRUE(finds_nan(test::sample_water(), [](WaterResult& water) -> double& { return water.radius_m; }));
+  EXPECT_TRUE(finds_nan(test::sample_calibration(),
+                        [](CalibrationEstimate& estimate) -> double& { return estimate.values[1].std; }));
+  EXPECT_TRUE(finds_nan(test::sample_odometry(),
+                        [](OdometryEstimate& odometry) -> double& { return odometry.twist.linear.y(); }));
+  EXPECT_TRUE(
+      finds_nan(test::sample_estimate(), [](PoseEstimate& estimate) -> double& { return estimate.covariance(2, 2); }));
+}
+
 TEST(RosFields, ReadEveryMessageByItsDefinitionAlone) {
   EXPECT_EQ(fields_of(test::sample_scan()).at("header.frame_id"), "\"lidar\"");
   EXPECT_EQ(fields_of(test::sample_scan()).at("header.stamp.nanosec"), "345678901");
