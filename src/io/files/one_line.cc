@@ -14,7 +14,13 @@ std::size_t utf8_length(std::string_view text) {
                              : (first & 0xf0U) == 0xe0       ? 3
                              : first >= 0xf0 && first < 0xf5 ? 4
                                                              : 0;
-  if (length > text.size()) return 0;
+  if (length == 0 || length > text.size()) return 0;
+  if (length > 1) {  // no overlong forms, no surrogates, nothing above U+10FFFF
+    const unsigned char second = byte(1);
+    if ((first == 0xe0 && second < 0xa0) || (first == 0xed && second >= 0xa0) || (first == 0xf0 && second < 0x90) ||
+        (first == 0xf4 && second >= 0x90))
+      return 0;
+  }
   for (std::size_t i = 1; i < length; ++i) {
     if ((byte(i) & 0xc0U) != 0x80) return 0;
   }
@@ -37,6 +43,15 @@ bool has_control_characters(std::string_view text) {
     if (control_length(text.substr(i)) > 0) return true;
   }
   return false;
+}
+
+bool is_utf8(std::string_view text) {
+  while (!text.empty()) {
+    const std::size_t length = utf8_length(text);
+    if (length == 0) return false;
+    text.remove_prefix(length);
+  }
+  return true;
 }
 
 std::string on_one_line(std::string_view text) {

@@ -11,6 +11,8 @@ namespace patrol::io {
 std::size_t control_length(std::string_view text);
 bool has_control_characters(std::string_view text);
 
+bool is_utf8(std::string_view text);
+
 /// Formats text for one line of a terminal or a log: line ends, other control characters and invalid UTF-8 are escaped.
 std::string on_one_line(std::string_view text);
 

@@ -16,4 +16,7 @@ struct RosField {
 /// Throws InputError when the bytes do not match the definition.
 std::vector<RosField> ros_fields(const std::string& type, const std::string& definition, std::string_view bytes);
 
+/// Throws InputError if a CDR message does not match its definition. Bytes after the last field are allowed.
+void check_ros_message(const std::string& type, const std::string& definition, std::string_view bytes);
+
 }  // namespace patrol::io

@@ -20,6 +20,15 @@ TEST(OneLine, C1ControlsAndBytesThatAreNotUtf8AreWrittenOut) {
                              "e \xe2\x82\xac"));
 }
 
+TEST(IsUtf8, OverlongFormsSurrogatesAndCutSequencesAreNone) {
+  EXPECT_TRUE(is_utf8(""));
+  EXPECT_TRUE(
+      is_utf8("/gr\xc3\xbc\xc3\x9f"
+              "e/\xf0\x9f\xa4\x96"));
+  for (const char* text : {"\xff", "a\xc3", "\xe0\x80\x80", "\xed\xa0\x80", "\xf4\x90\x80\x80", "\xf0\x80\x80\x80"})
+    EXPECT_FALSE(is_utf8(text)) << on_one_line(text);
+}
+
 TEST(OneLine, LettersBeyondAsciiStay) { EXPECT_EQ(on_one_line("Größe 5 µm"), "Größe 5 µm"); }
 
 }  // namespace
