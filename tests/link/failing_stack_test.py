@@ -151,6 +151,17 @@ class FailingStack(unittest.TestCase):
             out, done = self.run_until(1.0, action)
             self.assert_verdict(out, done, 3, reason)
 
+    def test_a_pose_with_the_time_of_the_wall_clock(self):
+        stamp = "p = turn.client.type_of('/pose')(); p.header.stamp.sec = int(time.time()); turn.publish('/pose', p)"
+        out, done = self.run_until(1.0, stamp)
+        self.assert_verdict(out, done, 3, "the stack failed at 1.000 s: message on /pose: stamp is 1")
+
+    def test_a_pose_in_another_frame_is_a_warning(self):
+        pose = "p = turn.new('/pose'); p.header.frame_id = 'banana'; p.pose.pose.orientation.w = 1.0; turn.publish('/pose', p)"
+        _, done = self.run_until(1.0, pose, time_limit_s=1.5)
+        self.assertEqual(done.returncode, 4, done.stderr)
+        self.assertEqual(done.stderr.count("patrol: warning: frame of /pose is banana: it is taken as map"), 1, done.stderr)
+
     def test_a_topic_of_the_stacks_own_is_in_the_log(self):
         out, done = self.run_until(1.0, "turn.client.declare('/mine', 'my_msgs/msg/Mine', 'float64 x\\n'); "
                                         "turn.publish('/mine', turn.client.type_of('/mine')(x=1.5))", time_limit_s=1.5)

@@ -6,16 +6,21 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <iterator>
 #include <stdexcept>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "app/run/compute_delay.h"
 #include "core/error.h"
+#include "core/frames.h"
+#include "core/site/site_registration.h"
 #include "io/files/one_line.h"
 #include "io/logs/topics.h"
+#include "io/ros/ros_fields.h"
 #include "io/ros/ros_messages.h"
 #include "link/stack_client.h"
 
@@ -28,6 +33,7 @@ using link::LinkFault;
 constexpr std::chrono::seconds kTimeToEnd{2};         ///< of the process after the last turn
 constexpr std::chrono::milliseconds kTimeToDie{200};  ///< of a process whose connection has closed
 constexpr std::size_t kMaxNameBytes = 200;
+constexpr Time kStampTolerance = std::chrono::seconds(1);  ///< of stamps before the start and after the turn
 
 bool has_finite_numbers(const stack::StackMessage& message) {
   return std::visit([](const auto& content) { return io::has_finite_numbers(content); }, message);
@@ -46,6 +52,32 @@ bool has_unit_quaternions(const stack::StackMessage& message) {
   return estimate == nullptr || std::ranges::all_of(estimate->T_map_body, [](const StampedPose& stamped) {
            return std::abs(stamped.pose.rotation.norm() - 1.0) < kTolerance;
          });
+}
+
+/// Returns the stamps of a message: that of its header and, of a trajectory, those of its poses.
+std::vector<Time> stamps_of(const io::MessageHeader& header, const stack::StackMessage& content) {
+  std::vector<Time> stamps = {header.stamp()};
+  if (const auto* trajectory = std::get_if<TrajectoryEstimate>(&content))
+    std::ranges::transform(trajectory->T_map_body, std::back_inserter(stamps), &StampedPose::stamp);
+  return stamps;
+}
+
+/// Returns the frame that Patrol writes in a message of a type, by index of the type.
+std::vector<std::string> frames_of_types() {
+  return []<std::size_t... kIndex>(std::index_sequence<kIndex...>) {
+    return std::vector<std::string>{
+        io::header_of(io::encode(std::variant_alternative_t<kIndex, stack::StackMessage>{})).frame...};
+  }
+  (std::make_index_sequence<std::variant_size_v<stack::StackMessage>>{});
+}
+
+/// Returns the frame of the content of a message if it is fixed in the site or in the map; nullopt for frames of the
+/// robot.
+std::optional<std::string> expected_frame(const stack::StackMessage& content) {
+  static const std::vector<std::string> frames = frames_of_types();
+  const std::string& frame = frames[content.index()];
+  const bool is_fixed = frame == frame_id::kMap || frame == frame_id::kOdom || frame == frame_id::kSite;
+  return is_fixed ? std::optional(frame) : std::nullopt;
 }
 
 std::string quoted_name(const std::string& name) { return io::on_one_line(name.substr(0, kMaxNameBytes)); }
@@ -156,6 +188,7 @@ std::optional<Time> ExternalStack::known_delay() const { return known_delay_of(s
 
 void ExternalStack::deliver(link::DeliveredMessage message) {
   ensure_connected();
+  if (io::is_stack_input(message.topic)) newest_stamp_ = std::max(newest_stamp_, io::header_of(message.cdr).stamp());
   const bool is_early = known_delay().has_value();  // a measured turn contains the processing of its messages
   server_->send(message.topic, message.log_time, message.cdr, is_early);
 }
@@ -184,7 +217,8 @@ StackAnswer ExternalStack::end_turn() {
     wait_s_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     StackAnswer answer{.messages = {}, .next_turn = received.next_turn, .mission_is_over = received.mission_is_over};
     for (link::PublishedMessage& message : received.messages)
-      answer.messages.push_back(checked_message(std::move(message)));
+      answer.messages.push_back(checked_message(std::move(message), stamp_range()));
+    for (const PublishedMessage& message : answer.messages) warn_of_frame(message);
     const std::optional<double> cpu_end_s = cpu_seconds();
     answer.delay = delay_of(settings_.compute, cpu_start_s_ && cpu_end_s ? *cpu_end_s - *cpu_start_s_ : 0.0);
     return answer;
@@ -216,6 +250,22 @@ void ExternalStack::fail(const LinkError& error, const std::string& when) {
   throw LinkError(error.fault(), text);
 }
 
+/// Stamps that messages of this turn may have. The clock of a sensor may be ahead of the turn. Stamps of a recorded log
+/// that is fed unchanged are of any clock.
+StampRange ExternalStack::stamp_range() const {
+  if (!documents_.recorded.empty()) return {};
+  return {.from = -kStampTolerance, .to = std::max(turn_, newest_stamp_) + kStampTolerance};
+}
+
+void ExternalStack::warn_of_frame(const PublishedMessage& message) {
+  if (!documents_.recorded.empty() || warned_.contains(message.topic)) return;
+  const std::optional<std::string> frame = unexpected_frame(message);
+  if (!frame) return;
+  warned_.insert(message.topic);
+  fmt::print(stderr, "patrol: warning: frame of {} is {}: it is taken as {}\n", message.topic, quoted_name(*frame),
+             *expected_frame(*message.content));
+}
+
 /// CPU time of the stack since its start; nullopt unless it delays the commands.
 std::optional<double> ExternalStack::cpu_seconds() const {
   if (settings_.compute.model != "measured") return std::nullopt;
@@ -223,19 +273,36 @@ std::optional<double> ExternalStack::cpu_seconds() const {
   return id > 0 ? link::cpu_seconds_of(id) : std::nullopt;
 }
 
-PublishedMessage checked_message(link::PublishedMessage message) {
+std::optional<std::string> unexpected_frame(const PublishedMessage& message) {
+  if (!message.content) return std::nullopt;
+  const std::optional<std::string> expected = expected_frame(*message.content);
+  std::string frame = io::header_of(message.cdr).frame;
+  if (frame.starts_with('/')) frame.erase(0, 1);  // ROS 1
+  if (!expected || frame.empty() || frame == *expected) return std::nullopt;
+  return frame;
+}
+
+PublishedMessage checked_message(link::PublishedMessage message, const StampRange& stamps) {
   const auto refuse = [name = quoted_name(message.topic)](const std::string& reason) {
     throw LinkError(LinkFault::kInvalid, fmt::format("message on {}: {}", name, reason));
   };
-  if (!message.topic.starts_with('/') || message.topic.size() > kMaxNameBytes ||
+  if (!message.topic.starts_with('/') || message.topic.size() > kMaxNameBytes || !io::is_utf8(message.topic) ||
       io::has_control_characters(message.topic)) {
-    refuse("name of a topic must begin with / and have at most 200 printable characters");
+    refuse("name of a topic must begin with / and have at most 200 printable characters in UTF-8");
   }
   if (message.topic.starts_with("/link/") || message.topic.starts_with("/recorded/") ||
       !io::is_stack_output(message.topic))
     refuse("only the simulator writes this topic");
   const std::optional<io::TopicInfo> info = io::find_topic(message.topic);
   if (!info) {
+    for (const std::string* text : {&message.type, &message.definition}) {
+      if (!io::is_utf8(*text)) refuse("type and definition must be UTF-8");
+    }
+    try {
+      io::check_ros_message(message.type, message.definition, message.cdr);
+    } catch (const InputError& error) {
+      refuse(error.what());
+    }
     return {.content = {},
             .topic = std::move(message.topic),
             .type = std::move(message.type),
@@ -249,9 +316,18 @@ PublishedMessage checked_message(link::PublishedMessage message) {
   } catch (const InputError& error) {
     refuse(error.what());
   }
-  if (checked.content && !has_finite_numbers(*checked.content)) refuse("contains a number that is not finite");
-  if (checked.content && !has_resolution(*checked.content)) refuse("resolution must be at least 0.0001 m");
-  if (checked.content && !has_unit_quaternions(*checked.content)) refuse("contains a quaternion whose norm is not 1");
+  if (!checked.content) return checked;
+  const io::MessageHeader header = io::header_of(checked.cdr);
+  if (header.nanoseconds >= 1'000'000'000U)
+    refuse(fmt::format("nanosec of the stamp is {}: must be below 1000000000", header.nanoseconds));
+  for (const Time stamp : stamps_of(header, *checked.content)) {
+    if (stamp >= stamps.from && stamp <= stamps.to) continue;
+    refuse(fmt::format("stamp is {:.3f} s: must be in simulated time, from {:.3f} to {:.3f} s", to_seconds(stamp),
+                       to_seconds(stamps.from), to_seconds(stamps.to)));
+  }
+  if (!has_finite_numbers(*checked.content)) refuse("contains a number that is not finite");
+  if (!has_resolution(*checked.content)) refuse("resolution must be at least 0.0001 m");
+  if (!has_unit_quaternions(*checked.content)) refuse("contains a quaternion whose norm is not 1");
   return checked;
 }
 

@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,11 @@ struct StackConnection {
   std::function<bool()> is_interrupted;  ///< polled while Patrol waits
 };
 
+/// Stamps that the messages of a stack may have, both included.
+struct StampRange {
+  Time from = Time::min(), to = Time::max();
+};
+
 /// A stack in another process, by the turn protocol (src/link/README.md). Its messages are checked before the log and
 /// the simulator get them.
 class ExternalStack final : public StackPort {
@@ -62,6 +68,8 @@ class ExternalStack final : public StackPort {
   void begin_turn(Time now, bool is_last);
   [[noreturn]] void fail(const link::LinkError& error, const std::string& when);
   std::optional<double> cpu_seconds() const;
+  StampRange stamp_range() const;
+  void warn_of_frame(const PublishedMessage& message);
 
   StackDocuments documents_;
   StackConnection connection_;
@@ -71,7 +79,9 @@ class ExternalStack final : public StackPort {
   std::optional<TemporaryFolder> folder_;  ///< of the socket of a process that Patrol starts
   std::optional<link::StackProcess> process_;
   std::optional<link::StackServer> server_;
-  Time turn_{};  ///< last turn
+  Time turn_{};                   ///< last turn
+  Time newest_stamp_{};           ///< of the delivered messages
+  std::set<std::string> warned_;  ///< topics with a warning
   std::optional<double>
       cpu_start_s_;  ///< CPU time of the stack at its beginning; nullopt unless it delays the commands
   double wait_s_ = 0.0;
@@ -80,7 +90,12 @@ class ExternalStack final : public StackPort {
 };
 
 /// Returns a message of a stack in another process with its content. Throws link::LinkError (kInvalid) if a topic that
-/// Patrol knows has another type or invalid content, or is one that only the simulator writes.
-PublishedMessage checked_message(link::PublishedMessage message);
+/// Patrol knows has another type, invalid content or a stamp outside of the range, or is one that only the simulator
+/// writes.
+PublishedMessage checked_message(link::PublishedMessage message, const StampRange& stamps = {});
+
+/// Returns the frame of a message in `map`, `odom` or `site` if it names another one; nullopt without a difference. An
+/// empty frame is none.
+std::optional<std::string> unexpected_frame(const PublishedMessage& message);
 
 }  // namespace patrol::app

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -67,8 +68,9 @@ struct FiniteCheck {
 template <typename Codec>
 void time_field(Codec& codec, Time& time) {
   constexpr std::int64_t kSecond = 1'000'000'000;
-  auto seconds = static_cast<std::int32_t>(time.count() / kSecond);
-  auto nanoseconds = static_cast<std::uint32_t>(time.count() % kSecond);
+  const auto whole = std::chrono::floor<std::chrono::seconds>(time);
+  auto seconds = static_cast<std::int32_t>(whole.count());
+  auto nanoseconds = static_cast<std::uint32_t>((time - whole).count());
   codec(seconds);
   codec(nanoseconds);
   time = Time{seconds * kSecond + nanoseconds};

@@ -87,11 +87,17 @@ void describe(Codec& codec, ParticleSet& particles) {
   }
 }
 
+inline bool is_identity(const Eigen::Quaterniond& rotation) {
+  constexpr double kTolerance = 1e-4;  // 1 cm at 50 m
+  return rotation.vec().norm() <= kTolerance && std::abs(std::abs(rotation.w()) - 1.0) <= kTolerance;
+}
+
 template <typename Codec>
 void describe(Codec& codec, MapUpdate& update) {
   header(codec, update.stamp, frame_id::kMap);
   GridGeometry geometry = update.map.geometry();
-  time_field(codec, update.stamp);
+  Time map_load_time = update.stamp;
+  time_field(codec, map_load_time);
   float_field(codec, geometry.resolution_m);
   auto width = static_cast<std::uint32_t>(geometry.width), height = static_cast<std::uint32_t>(geometry.height);
   codec(width);
@@ -101,6 +107,11 @@ void describe(Codec& codec, MapUpdate& update) {
   std::vector<std::int8_t> cells = update.map.values();
   codec(cells);
   if constexpr (!Codec::kWrites) {
+    if (!is_identity(origin.rotation)) {
+      throw DecodeError(
+          "orientation of the origin must be the identity (x, y, z = 0, w = 1): rotated maps are not "
+          "supported");
+    }
     // A float32 cannot represent 0.05: round to the tenth of a millimeter.
     geometry = {.resolution_m = std::round(geometry.resolution_m * 1e4) / 1e4,
                 .width = static_cast<int>(width),
@@ -225,10 +236,14 @@ OdometryFrames odometry_frames_of(std::string_view bytes) {
   return frames;
 }
 
-std::string frame_id_of(std::string_view bytes) {
-  std::string frame;
-  ros::read_cdr(bytes, "message with a header", [&](ros::Reader& reader) { ros::read_head(reader, frame); });
-  return frame;
+MessageHeader header_of(std::string_view bytes) {
+  MessageHeader header;
+  ros::read_cdr(bytes, "message with a header", [&](ros::Reader& reader) {
+    reader(header.seconds);
+    reader(header.nanoseconds);
+    reader(header.frame);
+  });
+  return header;
 }
 
 PATROL_ROS_MESSAGE(LocalizationConfidence);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <chrono>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -120,8 +122,16 @@ Message decode(std::string_view bytes);
 template <typename Message>
 bool has_finite_numbers(const Message& message);
 
-/// Returns header.frame_id of a message that begins with a header. Throws DecodeError.
-std::string frame_id_of(std::string_view bytes);
+/// Header of a message, as it is in the bytes.
+struct MessageHeader {
+  std::int32_t seconds = 0;
+  std::uint32_t nanoseconds = 0;  ///< below 1e9 in a valid message
+  std::string frame;
+
+  Time stamp() const { return std::chrono::seconds(seconds) + std::chrono::nanoseconds(nanoseconds); }
+};
+/// Returns the header of a message that begins with one. Throws DecodeError.
+MessageHeader header_of(std::string_view bytes);
 
 /// Frames of a nav_msgs/Odometry: header.frame_id and child_frame_id.
 struct OdometryFrames {

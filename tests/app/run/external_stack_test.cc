@@ -1,9 +1,14 @@
 #include "app/run/external_stack.h"
 
+#include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <limits>
 #include <string>
+#include <utility>
 #include <variant>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "io/logs/topics.h"
@@ -13,6 +18,8 @@
 
 namespace patrol::app::external_stack_test {
 namespace {
+
+using namespace std::chrono_literals;
 
 template <typename Message>
 link::PublishedMessage published(const Message& message) {
@@ -65,6 +72,78 @@ TEST(CheckedMessage, RefusesAMapOfResolution0ByItsResolution) {
   EXPECT_EQ(refusal_of(published(MapUpdate{
                 .stamp = {}, .map = OccupancyGrid({.resolution_m = 0.0, .width = 1, .height = 1}, kUnknown)})),
             "message on /map: resolution must be at least 0.0001 m");
+}
+
+constexpr StampRange kAtTwoSeconds{.from = -1s, .to = 3s};
+
+std::string refusal_at_two_seconds(const auto& message) {
+  try {
+    checked_message(published(message), kAtTwoSeconds);
+    return {};
+  } catch (const link::LinkError& error) {
+    return error.what();
+  }
+}
+
+TEST(CheckedMessage, RefusesStampsOutsideOfTheTurnByTopicStampAndRange) {
+  EXPECT_EQ(refusal_at_two_seconds(PoseEstimate{.stamp = 3s, .T_map_body = {}}), "");
+  EXPECT_EQ(refusal_at_two_seconds(PoseEstimate{.stamp = 0s, .T_map_body = {}}), "");
+  EXPECT_EQ(refusal_at_two_seconds(UwbPoseEstimate{PoseEstimate{.stamp = 1'796'000'000s, .T_map_body = {}}}),
+            "message on /uwb_odometry/pose: stamp is 1796000000.000 s: must be in simulated time, from -1.000 to 3.000 "
+            "s");
+  EXPECT_EQ(refusal_at_two_seconds(PoseEstimate{.stamp = -2s, .T_map_body = {}}),
+            "message on /pose: stamp is -2.000 s: must be in simulated time, from -1.000 to 3.000 s");
+  EXPECT_EQ(refusal_at_two_seconds(TrajectoryEstimate{.stamp = 2s, .T_map_body = {{1s, {}}, {9s, {}}}}),
+            "message on /trajectory: stamp is 9.000 s: must be in simulated time, from -1.000 to 3.000 s");
+}
+
+TEST(CheckedMessage, RefusesNanosecondsOf4Billion) {
+  link::PublishedMessage pose = published(PoseEstimate{.stamp = 1s, .T_map_body = {}});
+  const std::uint32_t nanoseconds = 4'000'000'000;
+  std::memcpy(pose.cdr.data() + 8, &nanoseconds, sizeof nanoseconds);
+  EXPECT_EQ(refusal_of(pose), "message on /pose: nanosec of the stamp is 4000000000: must be below 1000000000");
+}
+
+TEST(CheckedMessage, RefusesAMapTurnedBy90Degrees) {
+  link::PublishedMessage map = published(test::sample_map());
+  const double one = 1.0, zero = 0.0;
+  const std::string identity(reinterpret_cast<const char*>(&one), sizeof one);
+  const std::size_t w = map.cdr.find(identity);
+  ASSERT_NE(w, std::string::npos);
+  for (const auto& [z, w_value] : {std::pair(std::sqrt(0.5), std::sqrt(0.5)), std::pair(zero, zero)}) {
+    std::memcpy(map.cdr.data() + w - sizeof z, &z, sizeof z);
+    std::memcpy(map.cdr.data() + w, &w_value, sizeof w_value);
+    EXPECT_EQ(refusal_of(map),
+              "message on /map: orientation of the origin must be the identity (x, y, z = 0, w = 1): rotated maps are "
+              "not supported");
+  }
+}
+
+TEST(CheckedMessage, RefusesAnOwnTopicThatOthersCannotRead) {
+  const auto refusal = [](const std::string& topic, const std::string& definition, const std::string& cdr) {
+    return refusal_of({.topic = topic, .type = "my/msg/X", .definition = definition, .cdr = cdr});
+  };
+  const std::string one = std::string("\x00\x01\x00\x00", 4) + std::string(8, '\0');
+  EXPECT_EQ(refusal("/own", "float64 a\n", one), "");
+  EXPECT_THAT(refusal("/own\xff", "float64 a\n", one), testing::HasSubstr("/own\\xff: name of a topic must begin"));
+  EXPECT_EQ(refusal("/own", "float64 a # \xff\n", one), "message on /own: type and definition must be UTF-8");
+  EXPECT_THAT(refusal("/own", "float64 a\n", ""), testing::HasSubstr("message on /own: not a my/msg/X"));
+  EXPECT_THAT(refusal("/own", "float64 a\n", one.substr(0, 5)), testing::HasSubstr("message on /own: not a my/msg/X"));
+  EXPECT_EQ(refusal("/own", "float64 a\nFoo b\n", one), "message on /own: message definition: type not found: Foo");
+}
+
+TEST(UnexpectedFrame, IsNamedForMessagesInMapOdomOrSite) {
+  const auto frame_of = [](const auto& message, const std::string& frame, const std::string& written) {
+    link::PublishedMessage one = published(message);
+    const std::size_t at = one.cdr.find(written + '\0');
+    one.cdr.replace(at, written.size(), frame);  // of the same length
+    return unexpected_frame(checked_message(std::move(one)));
+  };
+  EXPECT_EQ(frame_of(test::sample_estimate(), "lid", "map"), "lid");
+  EXPECT_EQ(frame_of(test::sample_odometry(), "oddm", "odom"), "oddm");
+  EXPECT_EQ(frame_of(test::sample_registration(), "sita", "site"), "sita");
+  EXPECT_FALSE(frame_of(test::sample_estimate(), "map", "map"));
+  EXPECT_FALSE(frame_of(test::sample_command(), "base_camera_id", "base_footprint"));
 }
 
 }  // namespace

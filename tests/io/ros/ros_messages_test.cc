@@ -233,6 +233,14 @@ TEST(Decode, EmptyListsStayEmpty) {
 }
 
 // What ROS readers see under their own names.
+TEST(Encode, AStampBeforeZeroHasNanosecondsBelowASecond) {
+  const MessageHeader header = header_of(encode(VelocityCommand{.stamp = -20ms}));
+  EXPECT_EQ(header.seconds, -1);
+  EXPECT_EQ(header.nanoseconds, 980'000'000U);
+  EXPECT_EQ(header.stamp(), -20ms);
+  EXPECT_EQ(header.frame, "base_footprint");
+}
+
 template <typename Message, typename Field>
 bool finds_nan(Message message, Field field) {
   field(message) = std::numeric_limits<double>::quiet_NaN();
@@ -292,6 +300,25 @@ TEST(RosFields, BytesThatDoNotFitTheDefinitionAreRefused) {
   const std::string type = kRosType<Imu>;
   EXPECT_THROW(ros_fields(type, ros_definition(type), "\x00\x01"), InputError);
   EXPECT_THROW(ros_fields(type, ros_definition(type), encode(test::sample_command())), InputError);
+}
+
+TEST(CheckRosMessage, NamesOfTheSamePackageConstantsAndBoundsAreUnderstood) {
+  const std::string definition =
+      "uint8 LIMIT=3\nstring<=10 name\nfloat64[<=5] values\nPoint[] points\n"
+      "================\nMSG: my/Point\nfloat32 x\nfloat32 y\n";
+  std::string bytes(
+      "\x00\x01\x00\x00\x02\x00\x00\x00"
+      "a\x00\x00\x00\x00\x00\x00\x00\x01\x00\x00\x00",
+      20);
+  bytes += std::string(8, '\1');
+  EXPECT_NO_THROW(check_ros_message("my/msg/Cloud", definition, bytes));
+}
+
+TEST(CheckRosMessage, ATypeInItselfAndBillionsOfElementsAreRefused) {
+  const std::string head("\x00\x01\x00\x00", 4);
+  EXPECT_THROW(check_ros_message("my/msg/A", "A a\n", head + "1234"), InputError);
+  EXPECT_THROW(check_ros_message("my/msg/A", "B[] b\n===\nMSG: my/B\n", head + "\xff\xff\xff\xff"), InputError);
+  EXPECT_THROW(check_ros_message("my/msg/A", "uint8[x] b\n", head + "1234"), InputError);
 }
 
 TEST(RosDefinition, CarriesEveryTypeItUsesOnce) {
