@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cstdlib>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -122,6 +124,30 @@ TEST_F(Mcap, EveryInstantIsFoundByItself) {
     const Time instant = i * 100ms;
     ASSERT_EQ(read_log(file, {.topics = {}, .from = instant, .to = instant}).size(), i % 10 == 0 ? 2U : 1U) << i;
   }
+}
+
+/// Entries in the order of a permutation that moves them by up to several seconds.
+std::vector<Entry> shuffled(std::vector<Entry> entries) {
+  std::ranges::sort(entries, {}, [](const Entry& entry) { return entry.log_time.count() / 1'000'000 * 7919 % 10'007; });
+  return entries;
+}
+
+TEST_F(Mcap, ByLogTimeAShuffledFileOf110MessagesIsInOrder) {
+  const std::vector<Entry> unsorted = shuffled(entries);
+  write_log(file, unsorted);
+  EXPECT_EQ(read_log(file), unsorted);
+  std::vector<Entry> sorted = unsorted;
+  std::ranges::stable_sort(sorted, {}, &Entry::log_time);
+  EXPECT_EQ(read_log(file, {.topics = {}, .order = McapOrder::kLogTime}), sorted);
+  EXPECT_EQ(read_log(file, {.topics = {"/b"}, .order = McapOrder::kLogTime}).size(), 10U);
+  EXPECT_EQ(McapReader(file).topics(), (std::set<std::string>{"/a", "/b"}));
+}
+
+TEST_F(Mcap, ByLogTimeAFileWithoutSummaryIsInTheOrderOfTheFile) {
+  const std::vector<Entry> unsorted = shuffled(entries);
+  write_log(file, unsorted, false);
+  EXPECT_EQ(read_log(file, {.topics = {}, .order = McapOrder::kLogTime}), unsorted);
+  EXPECT_FALSE(McapReader(file).topics());
 }
 
 TEST_F(Mcap, AWriterThatNeverClosedLeavesAllItsMessages) {

@@ -38,7 +38,7 @@ RecordedMessages find_recorded_messages(const std::filesystem::path& mcap) {
     if (!is_new && known->second.definition != message.channel.definition)
       throw InputError(fmt::format("{}: {} has messages of two types", mcap.string(), message.channel.topic));
   };
-  recorded.is_complete = io::read_mcap(mcap, add);
+  recorded.is_complete = io::read_mcap(mcap, add, {.topics = {}, .order = io::McapOrder::kLogTime});
   if (channels.empty())
     throw InputError(mcap.string() + ": contains no message in CDR with a ROS 2 message definition");
   if (channels.size() > kMaxTopics) {
@@ -61,7 +61,7 @@ FedAnswers feed_messages(const std::filesystem::path& mcap, const RecordedMessag
   ProgressBar bar;
   RunOutcome outcome;
   LogFeeder feeder(std::move(stack), log_mcap, {}, recorded.start);
-  io::McapReader reader(mcap);
+  io::McapReader reader(mcap, {.topics = {}, .order = io::McapOrder::kLogTime});
   try {
     while (const std::optional<io::McapMessage> message = reader.next()) {
       if (guard.is_interrupted()) break;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <sstream>
 
@@ -9,6 +10,7 @@
 
 #include "core/error.h"
 #include "core/text.h"
+#include "io/files/one_line.h"
 #include "io/logs/cloud_slice.h"
 #include "io/logs/run_log.h"
 #include "io/ros/point_cloud2.h"
@@ -31,6 +33,23 @@ void expect_pose(const Pose3& pose, const char* whose) {
 }
 
 Pose3 normalized(const Pose3& pose) { return {pose.position, pose.rotation.normalized()}; }
+
+bool is_static_topic(const std::string& topic) { return topic.ends_with(kTfStaticSuffix); }
+
+void expect_cdr(const McapMessage& message) {
+  const std::string& encoding = message.channel.message_encoding;
+  if (encoding != "cdr") throw DecodeError(fmt::format("message encoding is {}: must be cdr", on_one_line(encoding)));
+}
+
+std::vector<FrameTransform> transforms_of(const McapMessage& message) {
+  expect_cdr(message);
+  std::vector<FrameTransform> transforms = decode<TransformSet>(message.cdr).transforms;
+  for (FrameTransform& transform : transforms) {
+    expect_pose(transform.T_parent_child, "transform");
+    transform.T_parent_child = normalized(transform.T_parent_child);
+  }
+  return transforms;
+}
 
 void expect_scan(const LaserScan& scan) {
   const std::size_t num_beams = scan.ranges_m.size();
@@ -77,13 +96,40 @@ McapScanLog::McapScanLog(const std::filesystem::path& file, const ScanLogOptions
                          std::optional<double> gyro_bias_radps)
     : file_(file),
       options_(options),
-      reader_(file, {.topics = {}, .use_summary = false}),
+      reader_(file, {.topics = {}, .order = McapOrder::kLogTime}),
       scan_topics_(topics_of(options.scan_topic)),
       odometry_topic_(options.odometry_topic),
       imu_topic_(options.imu_topic),
       gyro_(gyro_bias_radps) {
   if (!(options.cloud.min_height_m < options.cloud.max_height_m))
     throw InputError("log.cloud.min_height_m: must be below log.cloud.max_height_m");
+  add_static_transforms();
+}
+
+/// Adds the first static transform of each frame, wherever it is in the file. Damage is reported by the actual pass.
+void McapScanLog::add_static_transforms() {
+  McapSelection selection{.topics = {}, .order = McapOrder::kLogTime};
+  if (const std::optional<std::set<std::string>> topics = reader_.topics()) {
+    std::ranges::copy_if(*topics, std::back_inserter(selection.topics), is_static_topic);
+    if (selection.topics.empty()) return;
+  }
+  McapReader reader(file_, selection);
+  std::set<std::string> frames;
+  std::optional<double> damaged_at;
+  while (true) {
+    try {
+      const std::optional<McapMessage> message = reader.next();
+      if (!message) return;
+      if (!is_static_topic(message->channel.topic) || message->channel.type != kRosType<TransformSet>) continue;
+      for (const FrameTransform& transform : transforms_of(*message)) {
+        if (frames.insert(transform.child).second) frames_.add_static(transform);
+      }
+    } catch (const DecodeError&) {
+    } catch (const InputError&) {
+      if (damaged_at == reader.progress()) return;
+      damaged_at = reader.progress();
+    }
+  }
 }
 
 std::string McapScanLog::location(const McapMessage& message) const {
@@ -148,20 +194,22 @@ void McapScanLog::handle(const McapMessage& message) {
     if (imu_topic_.empty()) imu_topic_ = topic;
     if (topic == imu_topic_) return add_imu(message);
   } else if (type == kRosType<TransformSet>) {
-    return add_transforms(message, topic.ends_with(kTfStaticSuffix));
+    return add_transforms(message, is_static_topic(topic));
   }
   count_ignored(topic);
 }
 
 void McapScanLog::add_scan(const McapMessage& message) {
-  WaitingScan waiting{.scan = decode<LaserScan>(message.cdr), .frame = frame_id_of(message.cdr)};
+  expect_cdr(message);
+  WaitingScan waiting{.scan = decode<LaserScan>(message.cdr), .frame = header_of(message.cdr).frame};
   add_waiting(std::move(waiting), message);
 }
 
 /// Slices a cloud in the frame of the lidar without roll and pitch of its mount, if its mount is known by now.
 void McapScanLog::add_cloud(const McapMessage& message) {
+  expect_cdr(message);
   const PointCloud cloud = decode_point_cloud(message.cdr);
-  WaitingScan waiting{.scan = {}, .frame = frame_id_of(message.cdr)};
+  WaitingScan waiting{.scan = {}, .frame = header_of(message.cdr).frame};
   const std::optional<Pose3> T_body_lidar = sensor_pose_in_body(waiting.frame, cloud.stamp);
   Eigen::Quaterniond R_level_lidar = Eigen::Quaterniond::Identity();
   if (T_body_lidar)
@@ -183,6 +231,7 @@ void McapScanLog::add_waiting(WaitingScan waiting, const McapMessage& message) {
 }
 
 void McapScanLog::add_odometry(const McapMessage& message) {
+  expect_cdr(message);
   const auto odometry = decode<OdometryEstimate>(message.cdr);
   const OdometryFrames names = odometry_frames_of(message.cdr);
   const bool is_own_opinion = names.frame != frame_id::kWorld && names.frame != frame_id::kMap;
@@ -198,18 +247,17 @@ void McapScanLog::add_odometry(const McapMessage& message) {
 }
 
 void McapScanLog::add_imu(const McapMessage& message) {
+  expect_cdr(message);
   const Imu imu = decode<Imu>(message.cdr);
   if (!(imu.angular_velocity_radps.norm() <= kMaxRateRadps)) throw DecodeError("IMU rates not finite or implausible");
-  const std::optional<Pose3> T_body_imu = sensor_pose_in_body(frame_id_of(message.cdr), imu.stamp);
+  const std::optional<Pose3> T_body_imu = sensor_pose_in_body(header_of(message.cdr).frame, imu.stamp);
   if (!T_body_imu && options_.imu == "on") count_assumed("IMU messages: IMU mounted level (no transform)");
   gyro_.add(imu.stamp,
             T_body_imu ? (T_body_imu->rotation * imu.angular_velocity_radps).z() : imu.angular_velocity_radps.z());
 }
 
 void McapScanLog::add_transforms(const McapMessage& message, bool is_static) {
-  for (FrameTransform& transform : decode<TransformSet>(message.cdr).transforms) {
-    expect_pose(transform.T_parent_child, "transform");
-    transform.T_parent_child = normalized(transform.T_parent_child);
+  for (const FrameTransform& transform : transforms_of(message)) {
     is_static ? frames_.add_static(transform) : frames_.add(transform);
   }
   resolve_waiting();

@@ -23,6 +23,9 @@ namespace patrol::io {
 /// - The lidar pose is the planar part of /tf_static from the child frame of the odometry (or base_link) to the frame
 ///   of the scan. The beams of a lidar mounted upside down are reversed. Without a transform the pose is the body
 ///   origin, which is counted in the summary.
+/// - A static transform holds for the whole log, also before its message. Of several for a frame, the first one holds
+///   until the message of the next one.
+/// - Messages are read by log time (McapOrder::kLogTime).
 /// - A scan waits until odometry has passed its stamp. Scans before the first and after the last odometry are skipped
 ///   and counted.
 /// - sensor_msgs/Imu: the rate about the z axis of the body, using /tf_static from base_link to the frame of the IMU.
@@ -46,6 +49,7 @@ class McapScanLog : public ScanLog {
     bool is_level = false;  ///< angles are about the vertical axis, not about that of the lidar
   };
 
+  void add_static_transforms();
   std::optional<McapMessage> next_message();
   bool read_message();
   void handle(const McapMessage& message);

@@ -60,9 +60,112 @@ McapReader::McapReader(const std::filesystem::path& path, McapSelection selectio
   try {
     find_footer();
   } catch (const mcap::FormatError& format_error) {
-    fail(format_error.what());
+    if (selection_.order != McapOrder::kLogTime) fail(format_error.what());
+    channels_.clear();  // damaged: the file is read sequentially
+    unwanted_chunks_.clear();
   }
+  if (selection_.order == McapOrder::kLogTime) open_by_time();
   offset_ = mcap::kMagic.size();
+}
+
+double McapReader::progress() const {
+  if (is_by_time_) {
+    const auto num_chunks = static_cast<double>(chunks_by_time_.size());
+    return num_chunks > 0.0 ? static_cast<double>(num_opened_) / num_chunks : 1.0;
+  }
+  return size_ > 0 ? static_cast<double>(offset_) / static_cast<double>(size_) : 1.0;
+}
+
+std::optional<std::set<std::string>> McapReader::topics() const {
+  if (summary_channels_.empty()) return std::nullopt;
+  return summary_channels_;
+}
+
+/// Prepares reading by log time. Without a usable summary, or with messages outside of chunks, nothing of the summary
+/// is used.
+void McapReader::open_by_time() {
+  std::optional<std::vector<ChunkEntry>> chunks = channels_.empty() ? std::nullopt : find_chunks();
+  is_by_time_ = chunks.has_value();
+  if (!chunks) {
+    channels_.clear();
+    unwanted_chunks_.clear();
+    return;
+  }
+  chunks_by_time_ = std::move(*chunks);
+  std::erase_if(chunks_by_time_, [&](const ChunkEntry& chunk) { return unwanted_chunks_.contains(chunk.offset); });
+  std::ranges::stable_sort(chunks_by_time_, {}, &ChunkEntry::start);
+}
+
+/// Returns the chunks by the heads of all records; nullopt if a message is outside of them or a record is damaged.
+std::optional<std::vector<McapReader::ChunkEntry>> McapReader::find_chunks() {
+  std::vector<ChunkEntry> chunks;
+  for (std::uint64_t offset = mcap::kMagic.size(); offset + mcap::kRecordHeadSize <= size_;) {
+    const std::string head_bytes = read_bytes(offset, mcap::kRecordHeadSize);
+    mcap::RecordReader head(head_bytes);
+    const auto opcode = head.number<std::uint8_t>();
+    const auto length = head.number<std::uint64_t>();
+    const std::uint64_t start = offset + mcap::kRecordHeadSize;
+    if (opcode == mcap::kDataEnd || opcode == mcap::kFooter) return chunks;
+    if (opcode == 0 || opcode == mcap::kMessage || length > size_ - start) return std::nullopt;
+    if (opcode == mcap::kChunk) {
+      if (length < sizeof(std::uint64_t) || length > kMaxRecordBytes) return std::nullopt;
+      const std::string time_bytes = read_bytes(start, sizeof(std::uint64_t));
+      mcap::RecordReader time(time_bytes);
+      chunks.push_back({.start = to_time(time.number<std::uint64_t>()), .offset = offset, .length = length});
+    }
+    offset = start + length;
+  }
+  return std::nullopt;
+}
+
+/// Unpacks a chunk and sorts its messages.
+void McapReader::open_chunk(const ChunkEntry& entry) {
+  record_start_ = entry.offset;
+  const std::string record = read_bytes(entry.offset + mcap::kRecordHeadSize, entry.length);
+  OpenChunk chunk{.bytes = unpack_chunk(mcap::RecordReader(record)), .messages = {}};
+  // A short string has its bytes in itself: views are taken where the chunk stays.
+  const auto place = open_chunks_.emplace(std::pair(entry.start, entry.offset), std::move(chunk)).first;
+  OpenChunks::node_type node = open_chunks_.extract(place);
+  OpenChunk& opened = node.mapped();
+  mcap::RecordReader records(opened.bytes);
+  while (!records.is_empty()) {
+    const auto opcode = records.number<std::uint8_t>();
+    const std::string_view bytes = records.take(records.number<std::uint64_t>());
+    mcap::RecordReader content(bytes);
+    if (opcode == mcap::kSchema) add_schema(content);
+    if (opcode == mcap::kChannel) add_channel(content);
+    if (opcode != mcap::kMessage) continue;
+    content.take(sizeof(std::uint16_t) + sizeof(std::uint32_t));  // channel and sequence
+    opened.messages.emplace_back(to_time(content.number<std::uint64_t>()), bytes);
+  }
+  if (opened.messages.empty()) return;
+  std::ranges::stable_sort(opened.messages, {}, [](const auto& message) { return message.first; });
+  node.key().first = opened.messages.front().first;
+  open_chunks_.insert(std::move(node));
+}
+
+std::optional<McapMessage> McapReader::next_by_time() {
+  last_chunk_ = {};
+  while (true) {
+    const bool has_closed = num_opened_ < chunks_by_time_.size();
+    if (has_closed &&
+        (open_chunks_.empty() || chunks_by_time_[num_opened_].start <= open_chunks_.begin()->first.first)) {
+      open_chunk(chunks_by_time_[num_opened_++]);
+      continue;
+    }
+    if (open_chunks_.empty()) return std::nullopt;
+    OpenChunks::node_type node = open_chunks_.extract(open_chunks_.begin());
+    OpenChunk& chunk = node.mapped();
+    record_start_ = node.key().second;
+    const std::string_view content = chunk.messages[chunk.next++].second;
+    if (chunk.next < chunk.messages.size()) {
+      node.key().first = chunk.messages[chunk.next].first;
+      open_chunks_.insert(std::move(node));
+    } else {
+      last_chunk_ = std::move(node);
+    }
+    if (const auto message = read_message(mcap::RecordReader(content))) return message;
+  }
 }
 
 void McapReader::fail(const std::string& what) const {
@@ -88,7 +191,7 @@ void McapReader::find_footer() {
   if (!is_footer || !tail.ends_with(mcap::kMagic)) return;
   footer_start_ = size_ - tail_size;
   const auto summary_start = footer.number<std::uint64_t>();
-  if (summary_start > 0 && selection_.use_summary) read_summary(summary_start, footer_start_);
+  if (summary_start > 0) read_summary(summary_start, footer_start_);
 }
 
 void McapReader::read_summary(std::uint64_t start, std::uint64_t end) {
@@ -108,6 +211,7 @@ void McapReader::read_summary(std::uint64_t start, std::uint64_t end) {
       last_time_ = to_time(content.number<std::uint64_t>());
     }
   }
+  for (const auto& [id, channel] : channels_) summary_channels_.insert(channel.topic);
   if (channels_.empty()) unwanted_chunks_.clear();  // the channels are in the chunks: skip none
 }
 
@@ -150,23 +254,28 @@ bool McapReader::is_wanted(const std::string& topic) const {
   return topics.empty() || std::find(topics.begin(), topics.end(), topic) != topics.end();
 }
 
+std::optional<McapMessage> McapReader::next_in_file() {
+  while (true) {
+    while (!rest_of_chunk_.empty()) {
+      mcap::RecordReader records(rest_of_chunk_);
+      const auto opcode = records.number<std::uint8_t>();
+      const mcap::RecordReader content(records.take(records.number<std::uint64_t>()));
+      rest_of_chunk_ = records.rest();
+      if (opcode == mcap::kSchema) add_schema(content);
+      if (opcode == mcap::kChannel) add_channel(content);
+      if (opcode != mcap::kMessage) continue;
+      if (const auto message = read_message(content)) return message;
+    }
+    if (!read_record()) return std::nullopt;
+  }
+}
+
 std::optional<McapMessage> McapReader::next() {
   try {
-    while (true) {
-      while (!rest_of_chunk_.empty()) {
-        mcap::RecordReader records(rest_of_chunk_);
-        const auto opcode = records.number<std::uint8_t>();
-        const mcap::RecordReader content(records.take(records.number<std::uint64_t>()));
-        rest_of_chunk_ = records.rest();
-        if (opcode == mcap::kSchema) add_schema(content);
-        if (opcode == mcap::kChannel) add_channel(content);
-        if (opcode != mcap::kMessage) continue;
-        if (const auto message = read_message(content)) return message;
-      }
-      if (!read_record()) return std::nullopt;
-    }
+    return is_by_time_ ? next_by_time() : next_in_file();
   } catch (const mcap::FormatError& format_error) {
     rest_of_chunk_ = {};
+    std::erase_if(open_chunks_, [&](const auto& chunk) { return chunk.first.second == record_start_; });
     fail(format_error.what());
   }
 }

@@ -73,6 +73,34 @@ TEST_F(McapScans, MessagesThatCannotBeReadAreRefusedOrSkipped) {
   EXPECT_THAT(result.summary.skipped, ElementsAre(Pair("unreadable messages", 1U)));
 }
 
+TEST_F(McapScans, AMessageInJsonIsRefusedByItsEncoding) {
+  const auto record = [](mcap::Opcode opcode, const auto& fill) {
+    mcap::RecordWriter content, whole;
+    fill(content);
+    whole.record(opcode, content);
+    return std::string(whole.view());
+  };
+  std::string bytes(mcap::kMagic);
+  bytes += record(mcap::kSchema, [](mcap::RecordWriter& schema) {
+    schema.number(std::uint16_t{1});
+    for (const char* text : {kRosType<TransformSet>, "jsonschema", "{}"}) schema.text(text);
+  });
+  bytes += record(mcap::kChannel, [](mcap::RecordWriter& channel) {
+    for (int i = 0; i < 2; ++i) channel.number(std::uint16_t{1});
+    for (const char* text : {"/tf", "json"}) channel.text(text);
+    channel.number(std::uint32_t{0});
+  });
+  bytes += record(mcap::kMessage, [](mcap::RecordWriter& message) {
+    message.number(std::uint16_t{1});
+    message.number(std::uint32_t{0});
+    for (int i = 0; i < 2; ++i) message.number(std::uint64_t{1'000'000'000});
+    message.raw("{}");
+  });
+  writer.close();
+  write_bytes(file, bytes);
+  EXPECT_EQ(complaint(), "log.mcap: /tf at 1.000000000 s: message encoding is json: must be cdr");
+}
+
 TEST_F(McapScans, ScansAndPosesThatAreNoneAreNamed) {
   const auto complaint_about = [&](const auto& topic, const auto& message) {
     const std::filesystem::path bad = folder / "bad.mcap";

@@ -80,6 +80,25 @@ TEST_F(McapScans, TheLidarPoseIsThePlanarPartOfTfStatic) {
   EXPECT_TRUE(result.summary.assumed.empty());
 }
 
+TEST_F(McapScans, AStaticTransformAtTheEndHoldsFromTheStart) {
+  for (int second = 0; second <= 2; ++second) writer.write("/odom", second * 1s, odometry_at(second * 1s));
+  for (int tenth = 0; tenth < 20; ++tenth) writer.write("/scan", tenth * 100ms, scan_at(tenth * 100ms));
+  writer.write("/tf_static", 2s, TransformSet{{placed("base_link", "lidar", {{0.3, 0.1, 0.5}})}});
+  writer.write("/tf_static", 2s, TransformSet{{placed("base_link", "lidar", {{0.7, 0.1, 0.5}})}});
+  writer.close();
+  const Read result = read();
+  ASSERT_EQ(result.scans.size(), 20U);
+  EXPECT_THAT(result.scans.front().T_body_lidar, Pose2Near(Pose2{0.3, 0.1, 0.0}, kExactTol, kExactTol));
+  EXPECT_TRUE(result.summary.assumed.empty());
+}
+
+TEST_F(McapScans, ScansBeforeAllOdometryInTheFileAreReadByLogTime) {
+  for (int tenth = 0; tenth < 600; ++tenth) writer.write("/scan", tenth * 100ms, scan_at(tenth * 100ms));
+  for (int second = 0; second <= 60; ++second) writer.write("/odom", second * 1s, odometry_at(second * 1s));
+  writer.close();
+  EXPECT_EQ(read().scans.size(), 600U);
+}
+
 TEST_F(McapScans, ALidarUpsideDownRotatesTheOppositeWay) {
   writer.write("/tf_static", 0s,
                TransformSet{{placed("base_link", "lidar",
