@@ -102,8 +102,11 @@ void CarmenLog::finish() {
     reject_or_skip(options_, "unexpected end of file",
                    fmt::format("{}: {} after line {}", lines_.file().string(), *lines_.read_error(), line_));
   if (summary().num_scans == 0 && sorter_.is_empty()) {
-    throw InputError(fmt::format("{}: contains no scan ({}): must contain FLASER, ROBOTLASER1 or RAWLASER1",
-                                 lines_.file().string(), counted(summary())));
+    const std::string missing =
+        laser_.starts_with("RAWLASER") && !odometry_
+            ? fmt::format("contains {} without odometry ({}): must contain ODOM", laser_, counted(summary()))
+            : fmt::format("contains no scan ({}): must contain FLASER, ROBOTLASER1 or RAWLASER1", counted(summary()));
+    throw InputError(fmt::format("{}: {}", lines_.file().string(), missing));
   }
 }
 
