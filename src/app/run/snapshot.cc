@@ -5,6 +5,7 @@
 #include <iterator>
 #include <sstream>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -14,12 +15,13 @@
 #include "app/scenario/settings_difference.h"
 #include "core/error.h"
 #include "core/text.h"
+#include "io/files/digest.h"
 #include "io/files/zstd_bytes.h"
 
 namespace patrol::app {
 namespace {
 
-constexpr const char* kMagic = "PATROL SNAPSHOT 1";
+constexpr std::string_view kMagic = "PATROL SNAPSHOT 2 ";  ///< followed by the checksum of the rest, and a line end
 constexpr const char* kExtension = ".snap";
 
 std::string read_bytes(const std::filesystem::path& file) {
@@ -48,13 +50,17 @@ std::optional<Time> time_of(const std::filesystem::path& file) {
 }
 
 RunState read_snapshot(const std::filesystem::path& file, const std::string& content) {
-  const std::string bytes = read_bytes(file);
-  const std::size_t magic_end = bytes.find('\n');
-  const std::size_t header_end = magic_end == std::string::npos ? magic_end : bytes.find('\n', magic_end + 1);
-  if (header_end == std::string::npos || bytes.substr(0, magic_end) != kMagic)
-    throw InputError(file.string() + ": is not a snapshot of this version");
+  const std::string all_bytes = read_bytes(file);
+  std::string_view bytes = all_bytes;
+  if (!bytes.starts_with(kMagic)) throw InputError(file.string() + ": is not a snapshot of this version");
+  bytes.remove_prefix(kMagic.size());
+  const std::size_t checksum_end = bytes.find('\n');
+  const std::string_view checksum = bytes.substr(0, checksum_end);
+  bytes.remove_prefix(checksum_end == std::string_view::npos ? bytes.size() : checksum_end + 1);
+  if (checksum != io::sha256(bytes)) throw InputError(file.string() + ": is damaged");
   try {
-    const auto header = nlohmann::json::parse(bytes.substr(magic_end + 1, header_end - magic_end - 1));
+    const std::size_t header_end = bytes.find('\n');
+    const auto header = nlohmann::json::parse(bytes.substr(0, header_end));
     if (header.at("content").get<std::string>() != content) {
       throw InputError(
           fmt::format("{}: belongs to another build of patrol, or the scenario or its files have changed "
@@ -62,8 +68,7 @@ RunState read_snapshot(const std::filesystem::path& file, const std::string& con
                       file.string()));
     }
     return {.time = Time{header.at("time_ns").get<std::int64_t>()},
-            .bytes = io::zstd_decompressed(std::string_view(bytes).substr(header_end + 1),
-                                           header.at("size").get<std::uint64_t>())};
+            .bytes = io::zstd_decompressed(bytes.substr(header_end + 1), header.at("size").get<std::uint64_t>())};
   } catch (const nlohmann::json::exception&) {
     throw InputError(file.string() + ": is damaged");
   } catch (const InputError&) {
@@ -106,7 +111,8 @@ void SnapshotFolder::save(const RunState& state) const {
   const nlohmann::ordered_json header = {
       {"name", name_}, {"content", content_}, {"time_ns", state.time.count()}, {"size", state.bytes.size()}};
   std::ofstream stream(part, std::ios::binary);
-  stream << kMagic << '\n' << header.dump() << '\n' << io::zstd_compressed(state.bytes);
+  const std::string rest = header.dump() + '\n' + io::zstd_compressed(state.bytes);
+  stream << kMagic << io::sha256(rest) << '\n' << rest;
   stream.close();
   if (!stream) throw std::runtime_error(part.string() + ": cannot be written");
   std::filesystem::rename(part, file);

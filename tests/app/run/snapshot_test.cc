@@ -1,7 +1,9 @@
 #include "app/run/snapshot.h"
 
+#include <cstdint>
 #include <fstream>
 #include <set>
+#include <sstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -130,10 +132,39 @@ TEST(Snapshots, OfAnotherRunOrDamagedAreRefusedWithTheirFile) {
   }
 }
 
+TEST(Snapshots, OneFlippedBitAnywhereIsRefused) {
+  const TemporaryFolder folder("flipped");
+  const SnapshotFolder snapshots(folder.path(), "content", "name");
+  std::string state;
+  for (std::uint32_t i = 0, noise = 1; i < 400; ++i)
+    state += static_cast<char>((noise = noise * 1664525U + 1013904223U) >> 24U);
+  snapshots.save({.time = from_seconds(2.0), .bytes = state});
+  const auto file = folder.path() / "2.snap";
+  std::ostringstream content;
+  content << std::ifstream(file, std::ios::binary).rdbuf();
+  const std::string bytes = content.str();
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    std::string flipped = bytes;
+    flipped[i] = static_cast<char>(flipped[i] ^ 0x10);
+    std::ofstream(file, std::ios::binary) << flipped;
+    EXPECT_THAT([&] { load_snapshot(folder.path(), Time::max(), "content"); },
+                ThrowsMessage<InputError>(HasSubstr("2.snap: is ")))
+        << i;
+  }
+}
+
+TEST(Snapshots, OfVersion1WithoutAChecksumAreRefused) {
+  const TemporaryFolder folder("old");
+  std::ofstream(folder.path() / "2.snap") << "PATROL SNAPSHOT 1\n{}\n";
+  EXPECT_THAT([&] { load_snapshot(folder.path(), Time::max(), "content"); },
+              ThrowsMessage<InputError>(HasSubstr("2.snap: is not a snapshot of this version")));
+}
+
 TEST(BranchText, IsARunAndSeconds) {
   EXPECT_EQ(parse_branch("out/a@b@63.2").run, "out/a@b");
   EXPECT_EQ(parse_branch("out/a@b@63.2").at, from_seconds(63.2));
-  for (const char* text : {"", "out/run", "out/run@", "out/run@x", "out/run@5s", "out/run@-1", "out/run@0"})
+  for (const char* text :
+       {"", "out/run", "out/run@", "out/run@x", "out/run@5s", "out/run@-1", "out/run@0", "out/run@1e300"})
     EXPECT_THAT([&] { parse_branch(text); }, ThrowsMessage<InputError>(HasSubstr("must be RUN@SECONDS"))) << text;
 }
 
