@@ -130,7 +130,7 @@ CheckRobot load_check_robot(const std::string& name, const std::vector<std::stri
   Scenario scenario = default_scenario(name, data_root);
   const std::vector<MountSettings> mounts = std::exchange(scenario.mounts, {});
   const YAML::Node given = io::parse_overrides(overrides);
-  io::SettingsReader::read_section("--set", given, "", scenario);
+  io::SettingsReader::read_section({"--set", overrides}, given, "", scenario);
   complete_mounts("--set", YAML::Node(), scenario.mounts);
   io::MountedRobot mounted =
       io::load_mounted_robot(urdf.string(), sensor_mounts(merge_mounts(mounts, scenario.mounts)));

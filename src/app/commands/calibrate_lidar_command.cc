@@ -28,7 +28,7 @@ LidarCalibrationSettings settings_of(const CalibrateOptions& options, const LogO
   if (options.skip_invalid) overrides.emplace_back("input.log.skip_invalid=true");
   LidarCalibrationSettings settings;
   settings.realism.positions.align = !is_path_exact(site);
-  io::SettingsReader::read_section("--set", io::parse_overrides(overrides), "", settings);
+  io::SettingsReader::read_section({"--set", overrides}, io::parse_overrides(overrides), "", settings);
   return settings;
 }
 

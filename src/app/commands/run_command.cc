@@ -16,8 +16,10 @@
 #include "app/run/run_once.h"
 #include "app/run/terminal_view.h"
 #include "app/scenario/data_folders.h"
+#include "app/scoring/expectations.h"
 #include "core/error.h"
 #include "core/geometry/angles.h"
+#include "io/yaml/settings_yaml.h"
 
 namespace patrol::app {
 namespace {
@@ -81,7 +83,10 @@ Scenario branch_scenario(const RunOptions& options) {
         std::pair{"--stack", options.stack.has_value()}}) {
     if (is_given) throw InputError(fmt::format("--from: excludes {}: those of the run apply", option));
   }
-  return load_scenario(open_run_directory(parse_branch(options.from).run).scenario(), options.overrides);
+  const std::filesystem::path file = open_run_directory(parse_branch(options.from).run).scenario();
+  Scenario scenario = load_scenario(file, options.overrides);
+  check_expected_metrics(scenario.expect, {file.string(), options.overrides});
+  return scenario;
 }
 
 Scenario scenario_of(const RunOptions& options) {
@@ -103,6 +108,7 @@ Scenario scenario_of(const RunOptions& options) {
     overrides.insert(overrides.end(), tour.begin(), tour.end());
   }
   Scenario scenario = load_scenario(file, overrides);
+  check_expected_metrics(scenario.expect, {file.string(), overrides});
   if (options.stack) scenario.stack.command = *options.stack;
   return scenario;
 }

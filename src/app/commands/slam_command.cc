@@ -144,7 +144,7 @@ ExitCode slam_command(const SlamOptions& options) {
   if (options.skip_invalid) overrides.emplace_back("log.skip_invalid=true");
   LogMappingSettings settings;
   if (options.calibration) settings.calibration = io::load_settings<slam::Calibration>(*options.calibration, {});
-  io::SettingsReader::read_section("--set", io::parse_overrides(overrides), "", settings);
+  io::SettingsReader::read_section({"--set", overrides}, io::parse_overrides(overrides), "", settings);
   const std::unique_ptr<io::ScanLog> log = io::open_scan_log(options.log, settings.log);
   const std::string adaptation = adapt_to_log(options.log, settings);
   const std::unique_ptr<slam::Mapper> mapper = make_log_mapper(settings);

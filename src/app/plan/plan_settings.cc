@@ -80,7 +80,7 @@ PlanSetup load_plan_setup(const PlanOptions& options) {
   if (options.seed) overrides.push_back(fmt::format("seed={}", *options.seed));
   if (options.smooth) overrides.emplace_back("smooth=true");
   if (options.speed_mps) overrides.push_back(fmt::format("speed_mps={}", *options.speed_mps));
-  io::SettingsReader::read_section("--set", io::parse_overrides(overrides), "", settings);
+  io::SettingsReader::read_section({"--set", overrides}, io::parse_overrides(overrides), "", settings);
   settings.costmap.allow_unknown = settings.allow_unknown;
   plan::make_route_planner(settings.planner, settings.routes, settings.seed);  // throws for an unknown planner
   if (settings.smooth && settings.planner == "visibility_graph") {

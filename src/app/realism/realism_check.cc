@@ -25,7 +25,7 @@ RealismSettings realism_settings(const LogOnSiteOptions& options, std::vector<st
   if (skip_invalid) overrides.emplace_back("input.log.skip_invalid=true");
   RealismSettings settings;
   settings.positions.align = !is_path_exact(options);
-  io::SettingsReader::read_section("--set", io::parse_overrides(overrides), "", settings);
+  io::SettingsReader::read_section({"--set", overrides}, io::parse_overrides(overrides), "", settings);
   return settings;
 }
 

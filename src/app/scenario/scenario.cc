@@ -73,7 +73,7 @@ void read_over(const std::filesystem::path& file, const std::vector<std::string>
   const std::vector<MountSettings> inherited = std::exchange(settings.mounts, {});
   const YAML::Node document = load_with_presets(file, overrides);
   const auto read_document = [&](Settings& into) {
-    io::SettingsReader::read_section(file.string(), document, "", into);
+    io::SettingsReader::read_section({file.string(), overrides}, document, "", into);
   };
   Settings read = settings;
   read_document(read);
@@ -205,7 +205,7 @@ Scenario load_scenario(const std::filesystem::path& file, const std::vector<std:
   refuse_world(file);
   const std::filesystem::path data_root = find_data_root(file);
   Scenario named;
-  io::SettingsReader::read_section(file.string(), load_with_presets(file, overrides), "", named);
+  io::SettingsReader::read_section({file.string(), overrides}, load_with_presets(file, overrides), "", named);
   const std::string robot = named.robot;
   const std::filesystem::path profile = robot_file(robot, ".yaml", data_root);
   const Scenario of_profile = scenario_of_profile(profile, robot_file(robot, ".urdf", data_root));

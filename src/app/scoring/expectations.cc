@@ -3,12 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <optional>
 #include <string_view>
 
 #include <fmt/format.h>
 
+#include "app/scenario/mounts.h"
+#include "app/scoring/metric_infos.h"
 #include "io/logs/topics.h"
+#include "io/yaml/settings_yaml.h"
 
 namespace patrol::app {
 namespace {
@@ -111,6 +115,15 @@ std::vector<std::string> unpublished_topics(const io::Metrics& metrics) {
       topics.emplace_back(scored.topic);
   }
   return topics;
+}
+
+void check_expected_metrics(const io::Expectations& expectations, const io::SettingsSource& source) {
+  for (const auto& [metric, expectation] : expectations) {
+    int line = 0;
+    if (!find_metric_info(metric) && std::filesystem::is_regular_file(source.file))
+      line = io::line_of(find_node(io::load_document(source.file, {}), {"expect", metric}));
+    check_metric(source.location(line, "expect." + metric), metric);
+  }
 }
 
 bool all_met(const std::vector<CheckedExpectation>& checks) {

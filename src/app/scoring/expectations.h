@@ -7,6 +7,10 @@
 #include "io/yaml/expectations.h"
 #include "score/run_record.h"
 
+namespace patrol::io {
+struct SettingsSource;
+}
+
 namespace patrol::app {
 
 /// Result of one line of a scenario's `expect:` on metrics.json.
@@ -27,6 +31,10 @@ std::vector<CheckedExpectation> check_expectations(const io::Expectations& expec
 std::vector<std::string> published_topics(const score::RunRecord& record);
 /// Topics with scored messages of every stack that the stack did not publish; empty if metrics.json does not list them.
 std::vector<std::string> unpublished_topics(const io::Metrics& metrics);
+
+/// Throws InputError for an expectation of an unknown metric, with the place of the expectation. `source`: scenario and
+/// overrides.
+void check_expected_metrics(const io::Expectations& expectations, const io::SettingsSource& source);
 
 bool all_met(const std::vector<CheckedExpectation>& checks);
 

@@ -8,6 +8,9 @@
 
 #include <fmt/format.h>
 
+#include "core/error.h"
+#include "io/yaml/settings_yaml.h"
+
 namespace patrol::app {
 namespace {
 
@@ -312,6 +315,15 @@ std::optional<MetricInfo> find_metric_info(const std::string& path) {
   const std::vector<MetricInfo> infos = metric_infos();
   const auto found = std::ranges::find_if(infos, [&](const MetricInfo& info) { return matches(info.path, path); });
   return found == infos.end() ? std::nullopt : std::optional(*found);
+}
+
+void check_metric(const std::string& location, const std::string& path) {
+  if (find_metric_info(path)) return;
+  std::vector<std::string> known;
+  for (const MetricInfo& info : metric_infos()) known.push_back(info.path);
+  const std::string nearest = io::closest_match(path, known);
+  throw InputError(fmt::format("{}unknown metric{} ('patrol list metrics' shows all)", location,
+                               nearest.empty() ? "" : "; did you mean " + nearest + "?"));
 }
 
 }  // namespace patrol::app

@@ -19,4 +19,7 @@ std::vector<MetricInfo> metric_infos();
 /// Entry of the metric at `path`; nullopt if there is none.
 std::optional<MetricInfo> find_metric_info(const std::string& path);
 
+/// Throws InputError if there is no metric at `path`, with the nearest one. `location`: start of the message.
+void check_metric(const std::string& location, const std::string& path);
+
 }  // namespace patrol::app

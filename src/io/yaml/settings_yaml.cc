@@ -100,8 +100,18 @@ std::string closest_match(const std::string& word, const std::vector<std::string
   return nearest;
 }
 
-SettingsReader::SettingsReader(std::string file, const YAML::Node& node, std::string path)
-    : file_(std::move(file)), node_(node), path_(std::move(path)) {
+std::string SettingsSource::location(int line, const std::string& key) const {
+  for (auto override = overrides.rbegin(); override != overrides.rend(); ++override) {
+    const std::string path = override->substr(0, override->find('='));
+    if (key == path) return fmt::format("--set {}: ", *override);
+    if (key.starts_with(path + ".")) return fmt::format("--set {}: {}: ", *override, key);
+  }
+  const std::string place = line > 0 ? fmt::format("{}:{}: ", file, line) : file + ": ";
+  return key.empty() ? place : fmt::format("{}{}: ", place, key);
+}
+
+SettingsReader::SettingsReader(SettingsSource source, const YAML::Node& node, std::string path)
+    : source_(std::move(source)), node_(node), path_(std::move(path)) {
   if (node_ && !node_.IsNull() && !node_.IsMap()) fail(node_, path_, "must be a section of keys and values");
 }
 
@@ -136,7 +146,7 @@ YAML::Node SettingsReader::child(const char* name) {
 }
 
 void SettingsReader::fail(const YAML::Node& node, const std::string& key, const std::string& what) const {
-  throw input_error(file_, line_of(node), (key.empty() ? "" : key + ": ") + what);
+  throw InputError(source_.location(line_of(node), key) + what);
 }
 
 void SettingsReader::finish() const {
@@ -218,7 +228,7 @@ void SettingsReader::read_expectations(const YAML::Node& node, const std::string
     if (bool wanted = false; entry.second.IsScalar() && YAML::convert<bool>::decode(entry.second, wanted)) {
       expectation = {.min = wanted ? 1.0 : 0.0, .max = wanted ? 1.0 : 0.0, .is_boolean = true};
     } else if (entry.second.IsMap()) {
-      SettingsReader band(file_, entry.second, path);
+      SettingsReader band(source_, entry.second, path);
       if (entry.second["min"].IsDefined()) band("min", expectation.min);
       if (entry.second["max"].IsDefined()) band("max", expectation.max);
       band.known_ = {"min", "max"};

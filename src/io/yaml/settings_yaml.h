@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <yaml-cpp/yaml.h>
@@ -15,10 +16,25 @@
 /// Conversion of settings structs (core/settings.h) from and to YAML. Errors name file, line, key and rule.
 namespace patrol::io {
 
+/// Origin of a document, for error messages.
+struct SettingsSource {
+  // NOLINTNEXTLINE(google-explicit-constructor): a file without overrides
+  SettingsSource(std::string file_name, std::vector<std::string> given_overrides = {})
+      : file(std::move(file_name)), overrides(std::move(given_overrides)) {}
+  // NOLINTNEXTLINE(google-explicit-constructor)
+  SettingsSource(const char* file_name) : file(file_name) {}
+
+  /// Returns the start of an error message on a key: the override that sets it, or else the file with the line.
+  std::string location(int line, const std::string& key) const;
+
+  std::string file;
+  std::vector<std::string> overrides;  ///< "path=value"
+};
+
 /// Reads a YAML document into a struct, field by field, and rejects remaining keys.
 class SettingsReader {
  public:
-  SettingsReader(std::string file, const YAML::Node& node, std::string path);
+  SettingsReader(SettingsSource source, const YAML::Node& node, std::string path);
 
   void operator()(const char* name, bool& value, const Limits& limits = {});
   void operator()(const char* name, int& value, const Limits& limits = {});
@@ -36,12 +52,12 @@ class SettingsReader {
   void finish() const;
 
   template <typename Settings>
-  static void read_section(const std::string& file, const YAML::Node& node, const std::string& path,
+  static void read_section(const SettingsSource& source, const YAML::Node& node, const std::string& path,
                            Settings& settings) {
-    SettingsReader reader(file, node, path);
+    SettingsReader reader(source, node, path);
     if constexpr (requires { Settings::of_preset(std::string()); }) {
       if (node.IsMap() && node["preset"].IsDefined()) {
-        SettingsReader whole(file, node, path);
+        SettingsReader whole(source, node, path);
         Only preset{whole, "preset"};
         Settings::fields(settings, preset);
         const bool is_enabled = settings.enabled;
@@ -74,7 +90,7 @@ class SettingsReader {
         read(node[i], key + "." + std::to_string(i), value.back(), limits);
       }
     } else {
-      read_section(file_, node, key, value);
+      read_section(source_, node, key, value);
     }
   }
   void read(const YAML::Node& node, const std::string& key, int& value, const Limits& limits) const;
@@ -94,7 +110,7 @@ class SettingsReader {
   /// Returns the node of a field and notes that the field is known; undefined if the document does not have it.
   YAML::Node child(const char* name);
 
-  std::string file_;
+  SettingsSource source_;
   YAML::Node node_;
   std::string path_;
   std::vector<std::string> known_;
@@ -155,7 +171,8 @@ int line_of(const YAML::Node& node);
 /// Reads a file with overrides into `settings`; keys that are missing keep their present values.
 template <typename Settings>
 void read_settings(const std::filesystem::path& file, const std::vector<std::string>& overrides, Settings& settings) {
-  SettingsReader::read_section(file.empty() ? "--set" : file.string(), load_document(file, overrides), "", settings);
+  SettingsReader::read_section({file.empty() ? "--set" : file.string(), overrides}, load_document(file, overrides), "",
+                               settings);
 }
 
 template <typename Settings>
@@ -169,7 +186,7 @@ Settings load_settings(const std::filesystem::path& file, const std::vector<std:
 template <typename Settings>
 Settings parse_settings(const std::vector<std::string>& overrides) {
   Settings settings;
-  SettingsReader::read_section("--set", parse_overrides(overrides), "", settings);
+  SettingsReader::read_section({"--set", overrides}, parse_overrides(overrides), "", settings);
   return settings;
 }
 

@@ -67,7 +67,8 @@ TEST(CheckRobot, AnUnknownRobotIsRefusedWithTheKnownOnes) {
 }
 
 TEST(CheckRobot, AnUnknownSettingIsRefusedWithItsKey) {
-  EXPECT_THAT(error_of("wheeled", {"wheel_drive.frictoin=0.1"}), testing::HasSubstr("--set: wheel_drive.frictoin"));
+  EXPECT_THAT(error_of("wheeled", {"wheel_drive.frictoin=0.1"}),
+              testing::HasSubstr("--set wheel_drive.frictoin=0.1: unknown key"));
 }
 
 TEST(CheckRobot, TheSeedOfTheCallReplacesThatOfTheSettings) {

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "app/scoring/score_json.h"
+#include "core/error.h"
 
 namespace patrol::app::metric_infos_test {
 namespace {
@@ -31,6 +32,18 @@ TEST(MetricInfos, EntryOfAPathIsFoundAndAnUnknownPathHasNone) {
   EXPECT_FALSE(find_metric_info("pose.ate_rmse"));
   EXPECT_FALSE(find_metric_info("posexate_rmse_m"));
   EXPECT_FALSE(find_metric_info(""));
+}
+
+TEST(CheckMetric, AnUnknownOneIsRefusedWithTheNearest) {
+  EXPECT_NO_THROW(check_metric("", "goals.goal_1.position_error_m.mean"));
+  try {
+    check_metric("--metric mission.colisions: ", "mission.colisions");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(),
+                 "--metric mission.colisions: unknown metric; did you mean mission.collisions? ('patrol list metrics' "
+                 "shows all)");
+  }
 }
 
 /// Paths of all values, entries of lists by index.

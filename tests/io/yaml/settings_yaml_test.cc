@@ -257,7 +257,11 @@ TEST(Overrides, TheLastOfTwoWins) { EXPECT_EQ(load("seed: 1\n", {"seed=2", "seed
 
 TEST(Overrides, AreComplainedAboutLikeTheFile) {
   EXPECT_THAT(complaint_about("{}", {"sensors.lidar.range_nois_m=1"}),
-              HasSubstr("sensors.lidar.range_nois_m: unknown key; did you mean range_noise_m?"));
+              StartsWith("--set sensors.lidar.range_nois_m=1: unknown key; did you mean range_noise_m?"));
+  EXPECT_EQ(complaint_about("seed: 1\n", {"seed=2", "seed=x"}), "--set seed=x: must be a non-negative integer, not x");
+  EXPECT_THAT(complaint_about("seed: 1\n", {"leaks=[{rate_g_s: x}]"}),
+              StartsWith("--set leaks=[{rate_g_s: x}]: leaks.0.rate_g_s: must be a number, not x"));
+  EXPECT_THAT(complaint_about("seed: x\n", {"wind_mps=[3, 4]"}), StartsWith("a.yaml:1: seed: must be"));
   EXPECT_THAT(complaint_about("{}", {"seed"}), HasSubstr("--set seed: must be path=value"));
   EXPECT_THAT(complaint_about("leaks: [{at: a}]\n", {"leaks.1.at=b"}),
               HasSubstr("--set leaks.1.at=b: the list has 1 entries"));

@@ -10,6 +10,8 @@
 #include "app/campaign/sweep/fault_matrix.h"
 #include "app/scenario/data_folders.h"
 #include "app/scenario/run_hash.h"
+#include "app/scoring/expectations.h"
+#include "app/scoring/metric_infos.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "io/yaml/settings_yaml.h"
@@ -20,6 +22,7 @@ namespace {
 /// Manifest with the parts common to all kinds; variants and runs follow.
 template <typename Options>
 SweepManifest begin_manifest(SweepKind kind, const Options& options) {
+  for (const std::string& metric : options.metrics) check_metric(fmt::format("--metric {}: ", metric), metric);
   return {.kind = kind,
           .scenario = options.scenario.filename().string(),
           .overrides = options.overrides,
@@ -31,6 +34,24 @@ SweepManifest begin_manifest(SweepKind kind, const Options& options) {
           .runs = {}};
 }
 
+/// Loads the scenario of a run. In a sweep, an error in an override of the variant names --vary.
+Scenario load_variant(const std::filesystem::path& scenario, const SweepManifest& manifest, const PlannedRun& run) {
+  const std::vector<std::string> overrides = overrides_of(manifest, run);
+  try {
+    Scenario loaded = load_scenario(scenario, overrides);
+    check_expected_metrics(loaded.expect, {scenario.string(), overrides});
+    return loaded;
+  } catch (const InputError& error) {
+    const std::string text = error.what();
+    for (const std::string& override : run.overrides) {
+      if (manifest.kind != SweepKind::kSweep) break;
+      const std::string place = fmt::format("--set {}:", override);
+      if (text.starts_with(place)) throw InputError(fmt::format("--vary {}:{}", override, text.substr(place.size())));
+    }
+    throw;
+  }
+}
+
 /// Adds the runs, ordered by seed, then by variant.
 void plan_runs(const std::filesystem::path& scenario, const std::vector<Axis>& axes, SweepManifest& manifest) {
   RunHasher hasher(find_data_root(scenario));
@@ -40,7 +61,7 @@ void plan_runs(const std::filesystem::path& scenario, const std::vector<Axis>& a
       for (const Axis& axis : axes) {
         if (axis.is_random()) run.overrides.push_back(axis.sample(seed));
       }
-      run.hash = hasher.hash(load_scenario(scenario, overrides_of(manifest, run)));
+      run.hash = hasher.hash(load_variant(scenario, manifest, run));
       manifest.runs.push_back(run);
     }
   }
@@ -68,7 +89,10 @@ std::vector<sim::FaultSettings> chosen_faults(const std::vector<sim::FaultSettin
 
 SweepManifest plan_sweep(const SweepOptions& options) {
   std::vector<Axis> axes;
-  for (const std::string& text : options.vary) axes.push_back(parse_axis(text));
+  for (const std::string& text : options.vary) {
+    axes.push_back(parse_axis(text));
+    if (axes.back().path == "seed") throw InputError(fmt::format("--vary {}: seeds are varied with --seeds", text));
+  }
   SweepManifest manifest = begin_manifest(SweepKind::kSweep, options);
   manifest.variants = cartesian_product(axes);
   manifest.stop = {.is_early = options.early_stop, .equivalence_margin = options.equivalence_margin};
