@@ -30,14 +30,32 @@ std::string refuse_bad_number(const std::string& text) {
   return fmt::format("{}: must be a number in [-1e9, 1e9]", text);
 }
 
+/// Returns a check of numbers; those that are no numbers have their own.
+CLI::Validator limit_check(bool (*allows)(double), const std::string& name, const std::string& rule) {
+  const auto refuse = [allows, rule](const std::string& text) {
+    const bool is_allowed = !refuse_bad_number(text).empty() || allows(std::strtod(text.c_str(), nullptr));
+    return is_allowed ? std::string() : fmt::format("{}: {}", text, rule);
+  };
+  return {refuse, name, name};
+}
+
 }  // namespace
+
+CLI::Validator above_zero() {
+  return limit_check([](double value) { return value > 0.0; }, "POSITIVE", "must be above 0");
+}
+
+CLI::Validator not_negative() {
+  return limit_check([](double value) { return value >= 0.0; }, "NONNEGATIVE", "must be at least 0");
+}
 
 void add_number_checks(CLI::App& app) {
   for (CLI::App* command : app.get_subcommands({})) {
     for (CLI::Option* option : command->get_options()) {
       const std::string type = option->get_type_name();
-      if (type == "UINT") option->check(CLI::Validator(refuse_bad_seed, "", "seed"));
-      if (type == "FLOAT") option->check(CLI::Validator(refuse_bad_number, "", "number"));
+      // A further check appends its name to the type.
+      if (type.starts_with("UINT")) option->check(CLI::Validator(refuse_bad_seed, "", "seed"));
+      if (type.starts_with("FLOAT")) option->check(CLI::Validator(refuse_bad_number, "", "number"));
     }
   }
 }

@@ -1,4 +1,5 @@
 #include "app/cli/command_options.h"
+#include "app/cli/number_checks.h"
 
 namespace patrol::app {
 namespace {
@@ -20,7 +21,7 @@ void add_run(CLI::App& app, Call& call) {
   command->add_option("--threads", run.threads, "Threads, 1 or 2, with the same results (default: 2 on several cores)")
       ->check(CLI::Range(1, 2));
   command->add_option("--snapshot-every", run.snapshot_period_s, "Simulated time between two snapshots, s")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   command->add_option("--from", run.from, "Branch RUN@SECONDS: continue that run, with --set from there on");
   command->add_option("--out", run.out, kOutHelp);
   command->add_option("--monitor-url", run.monitor_url, "Monitoring server, http://host:port");
@@ -35,10 +36,8 @@ void add_trace(CLI::App& app, Call& call) {
   TraceOptions& trace = call.trace;
   CLI::App* command = app.add_subcommand("trace", "Print hashes of the state of a run at every tick");
   command->add_option("run", trace.run, "Run directory")->required();
-  command->add_option("--from-s", trace.from_s, "First instant, s")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  command->add_option("--to-s", trace.to_s, "Last instant, s")->check(CLI::NonNegativeNumber)->required();
+  command->add_option("--from-s", trace.from_s, "First instant, s")->check(not_negative())->capture_default_str();
+  command->add_option("--to-s", trace.to_s, "Last instant, s")->check(not_negative())->required();
   command->callback([&] { call.chosen = [&] { return trace_command(call.trace); }; });
 }
 

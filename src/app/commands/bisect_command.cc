@@ -14,6 +14,7 @@
 #include "app/record/run_directory.h"
 #include "app/run/run_once.h"
 #include "app/run/snapshot.h"
+#include "app/scenario/scenario.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "io/json/metrics_json.h"
@@ -107,6 +108,7 @@ ExitCode bisect_command(const BisectOptions& options) {
     print_result(options.form, "equal: no message differs\n", {{"equal", true}});
     return ExitCode::kDone;
   }
+  for (const RunDirectory& run : {a, b}) refuse_other_process(load_scenario(run.scenario()), run.root.string());
   const TracePair pair({a.root, options.program_a.value_or(self)}, {b.root, options.program_b.value_or(self)});
   const std::vector<Time> instants = common_instants(a, b, in_logs->log_time);
   const auto last_equal = std::prev(

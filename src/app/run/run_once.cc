@@ -55,12 +55,6 @@ struct RunSystem {
   sim::Simulator simulator;
 };
 
-/// Throws InputError if the stack is in another process.
-void refuse_other_process(const Scenario& scenario) {
-  if (!scenario.stack.command.empty())
-    throw InputError("--snapshot-every, --from: the state of a stack in another process cannot be saved");
-}
-
 /// Throws InputError if the state of a stack cannot be saved.
 void check_state(StackPort& stack) {
   StateArchive trial;
@@ -129,6 +123,13 @@ class Branch {
 
 }  // namespace
 
+void refuse_other_process(const Scenario& scenario, const std::string& location) {
+  if (!scenario.stack.command.empty()) {
+    throw InputError(fmt::format("{}: the state of a stack in another process cannot be saved (stack.command = {})",
+                                 location, scenario.stack.command));
+  }
+}
+
 RunVerdict complete_run(const RunDirectory& directory, const Scenario& scenario, const std::string& name,
                         const ScenarioFiles& files, const RunOutcome& outcome) {
   const ScoredRun scored = score_run(directory.log(), scenario, files);
@@ -143,10 +144,11 @@ RunVerdict complete_run(const RunDirectory& directory, const Scenario& scenario,
 }
 
 BranchOrigin parse_branch(const std::string& text) {
+  constexpr double kMaxBranch_s = 1e9;
   const std::size_t at = text.rfind('@');
   double seconds = 0.0;
   std::istringstream number(at == std::string::npos ? "" : text.substr(at + 1));
-  if (!(number >> seconds) || !number.eof() || !(seconds > 0.0))
+  if (!(number >> seconds) || !number.eof() || !(seconds > 0.0 && seconds <= kMaxBranch_s))
     throw InputError(fmt::format("--from {}: must be RUN@SECONDS, for example out/run@63.2", text));
   return {.run = text.substr(0, at), .at = from_seconds(seconds)};
 }
@@ -156,7 +158,7 @@ void trace_run(const std::filesystem::path& root, Time from, Time to,
   const RunDirectory directory = open_run_directory(root);
   const std::filesystem::path data_root = find_data_root(directory.scenario());
   const Scenario scenario = load_scenario(directory.scenario());
-  refuse_other_process(scenario);
+  refuse_other_process(scenario, directory.root.string());
   const TemporaryFolder folder("trace");
   NullObserver observer;
   RunSystem run(scenario, {.scenario = "trace",
@@ -187,7 +189,7 @@ std::optional<RunVerdict> run_once(const Scenario& scenario, const ScenarioFiles
                              .output = RunDirectory{root}.stack_output(),
                              .is_interrupted = [&] { return observer.is_interrupted(); },
                              .has_thread = mode.num_threads > 1};
-  if (mode.has_snapshots() || mode.branch) refuse_other_process(scenario);
+  if (mode.has_snapshots() || mode.branch) refuse_other_process(scenario, mode.branch ? "--from" : "--snapshot-every");
   RunSystem run(scenario, files, context);  // these throw InputError before anything is written
   if (mode.has_snapshots() || mode.branch) check_state(*run.stack);
   std::optional<Branch> branch;

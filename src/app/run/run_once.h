@@ -35,6 +35,9 @@ struct RunMode {
 /// Returns the run directory and the instant of "RUN@SECONDS". Throws InputError.
 BranchOrigin parse_branch(const std::string& text);
 
+/// Throws InputError if the stack is in another process: its state cannot be saved. `location`: start of the message.
+void refuse_other_process(const Scenario& scenario, const std::string& location);
+
 /// Repeats a part of a run, from the newest snapshot before it, and reports the hashes of its ticks, both ends
 /// included. Throws InputError if `root` is not a run of this program.
 void trace_run(const std::filesystem::path& root, Time from, Time to,
