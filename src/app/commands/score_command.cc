@@ -1,3 +1,8 @@
+#include <unistd.h>
+
+#include <string>
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "app/commands/commands.h"
@@ -31,13 +36,15 @@ ExitCode score_directory(const ScoreOptions& options) {
     return score_run(directory.log(), scenario, files,
                      [&](const char* stage, double done) { bar.show(fmt::format("score  {}", stage), done); });
   }();
-  save_scored_run(directory, scored, scenario);
+  const bool is_writable = ::access(directory.root.c_str(), W_OK) == 0;
+  if (is_writable) save_scored_run(directory, scored, scenario);
+  else fmt::print(stderr, "patrol: {}: cannot be written: the score is not saved\n", directory.root.string());
   io::Metrics metrics = metrics_of(scored);
   if (std::filesystem::exists(directory.metrics())) {
     const io::Metrics before = io::load_metrics(directory.metrics());
     if (before.contains("performance")) metrics["performance"] = before["performance"];
   }
-  io::save_metrics(directory.metrics(), metrics);
+  if (is_writable) io::save_metrics(directory.metrics(), metrics);
   const std::vector<CheckedExpectation> checks = check_expectations(scenario.expect, metrics);
   // The log does not contain how the run ended: only the expectations count.
   const RunVerdict verdict{.end = status_of(RunEnd::kMissionOver, checks),
@@ -53,13 +60,29 @@ ExitCode score_directory(const ScoreOptions& options) {
   return verdict.code();
 }
 
+/// Returns the first option of a file to score; empty if there is none.
+std::string file_option_of(const ScoreOptions& options) {
+  for (const auto& [name, file] :
+       {std::pair{"--estimate", &options.estimate}, std::pair{"--reference", &options.reference},
+        std::pair{"--relations", &options.relations}, std::pair{"--map", &options.map},
+        std::pair{"--reference-map", &options.reference_map}}) {
+    if (!file->empty()) return name;
+  }
+  return {};
+}
+
 }  // namespace
 
 ExitCode score_command(const ScoreOptions& options) {
   const bool is_pair_of_trajectories = !options.estimate.empty() && !options.reference.empty();
   const bool is_relations = !options.estimate.empty() && !options.relations.empty();
   const bool is_pair_of_maps = !options.map.empty() && !options.reference_map.empty();
-  if (!options.run.empty()) return score_directory(options);
+  validate(options.relation_settings, "relations");
+  if (!options.run.empty()) {
+    if (const std::string option = file_option_of(options); !option.empty())
+      throw InputError(fmt::format("{}: excludes a run directory", option));
+    return score_directory(options);
+  }
   if (is_relations) {
     const Trajectory estimate = io::load_tum(options.estimate, io::SameStamps::kKeepFirst);
     const score::RelationError error =
@@ -68,7 +91,8 @@ ExitCode score_command(const ScoreOptions& options) {
     return ExitCode::kDone;
   }
   if (is_pair_of_trajectories) {
-    const io::Metrics metrics = score_trajectories(io::load_tum(options.estimate), io::load_tum(options.reference));
+    const io::Metrics metrics =
+        score_trajectories(io::load_tum(options.estimate, io::SameStamps::kKeepFirst), io::load_tum(options.reference));
     print_result(options.form, score_table(metrics, {}), metrics);
     return ExitCode::kDone;
   }
