@@ -51,6 +51,31 @@ class BadInput(unittest.TestCase):
         file = self.scenario("sensors:\n  uwb: {blocked_loss: 0.1}\n")
         self.refuse_run(file, says=["scenario.yaml:2", "sensors.uwb.blocked_loss: renamed to sensors.uwb.nlos_loss_probability"])
 
+    def test_an_override_is_named_instead_of_the_file(self):
+        self.refuse_run(SHORT, "--set", "time_limit_s=nan", says=["patrol: --set time_limit_s=nan: must be a number, not nan"])
+        self.refuse_variants("sweep", "--vary", "time_limit_s=1,nan", says=["patrol: --vary time_limit_s=nan: must be a number, not nan"])
+
+    def test_a_varied_seed_is_refused_before_anything_is_written(self):
+        self.refuse_variants("sweep", "--vary", "seed=1,2", says=["--vary seed=1,2: seeds are varied with --seeds"])
+
+    def test_an_unknown_metric_is_refused_with_the_nearest(self):
+        self.refuse_variants("sweep", "--metric", "foo.bar", says=["--metric foo.bar: unknown metric"])
+        self.refuse_run(SHORT, "--set", "expect.mission.colisions=0",
+                        says=["--set expect.mission.colisions=0: unknown metric; did you mean mission.collisions?"])
+        file = self.scenario("world: street\nexpect:\n  mission.colisions: 0\n")
+        self.refuse_run(file, says=["scenario.yaml:3: expect.mission.colisions: unknown metric"])
+
+    def test_numbers_of_options_that_are_none(self):
+        self.refuse_run(SHORT, "--snapshot-every", "nan", says=["--snapshot-every", "nan: must be a number in [-1e9, 1e9]"])
+        self.refuse_run(SHORT, "--snapshot-every", "0", says=["--snapshot-every", "0: must be above 0"])
+        self.refuse("run", "--from", "base@1e300", "--out", self.out, says=["--from base@1e300: must be RUN@SECONDS"])
+        self.refuse("trace", "base", "--to-s", "nan", says=["--to-s", "nan"])
+        self.refuse("trace", "base", "--to-s", "-1", says=["--to-s", "-1: must be at least 0"])
+        self.refuse("score", "--estimate", "a", "--reference", "b", "--max-dt-s", "-1", says=["max_dt_s"])
+
+    def test_a_run_directory_excludes_files_to_score(self):
+        self.refuse("score", "base", "--estimate", "a.tum", "--reference", "b.tum", says=["--estimate: excludes a run directory"])
+
     def test_wrong_unit_is_an_unknown_key_that_names_the_right_unit(self):
         file = self.scenario("sensors:\n  lidar: {range_noise_std_cm: 3}\n")
         self.refuse_run(file, says=["scenario.yaml:2", "range_noise_std_cm", "range_noise_std_m"])
