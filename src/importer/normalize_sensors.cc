@@ -278,7 +278,7 @@ void Normalizer::finish() {
   result_.length_m = front_m - rear_m;
   if (num_steered > 0.0) {
     const double wheelbase_m = std::abs(steered_x / num_steered - fixed_x / num_fixed);
-    result_.min_turning_radius_m = wheelbase_m / std::tan(std::clamp(max_angle, 0.05, 1.5));
+    result_.min_turning_radius_m = wheelbase_m / std::tan(std::clamp(max_angle, kMinSteering_rad, 1.5));
   }
 }
 

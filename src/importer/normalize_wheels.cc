@@ -132,9 +132,10 @@ void Normalizer::add_wheels() {
         range = {-0.6, 0.6};
         assume(joint.name, "steering angle is limited to 0.6 rad: the joint has no limits",
                "<limit lower upper> of the joint");
-      } else if (joint.lower >= joint.upper) {
+      } else if (joint.lower > -kMinSteering_rad || joint.upper < kMinSteering_rad) {
         source_.fail(joint.line, joint.name,
-                     fmt::format("limit lower = {}: must be below upper = {}", joint.lower, joint.upper));
+                     fmt::format("steering range {:.3g} to {:.3g} rad: must reach at least {} rad to both sides",
+                                 joint.lower, joint.upper, kMinSteering_rad));
       }
       target.joint->range = range;
       Motor motor{joint.effort.value_or(0.0), joint.velocity.value_or(0.0)};

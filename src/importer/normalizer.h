@@ -27,9 +27,10 @@ inline double axle_angle_rad(const Eigen::Vector3d& axis) {
 }
 
 inline constexpr double kGravity = 9.81;
-inline constexpr double kFriction = 0.8;         // rubber on asphalt
-inline constexpr double kDensity_kgpm3 = 500.0;  // of a link without mass
-inline constexpr double kParallel_rad = 0.0447;  // 2.6 degrees, as io/urdf.cc
+inline constexpr double kFriction = 0.8;          // rubber on asphalt
+inline constexpr double kDensity_kgpm3 = 500.0;   // of a link without mass
+inline constexpr double kMinSteering_rad = 0.05;  // to each side
+inline constexpr double kParallel_rad = 0.0447;   // 2.6 degrees, as io/urdf.cc
 inline constexpr double kAssumedSpeed_mps = 1.5;
 inline constexpr double kSupportMassRatio = 0.03;  // of balls in place of fixed supports, to the robot
 inline constexpr std::size_t kManyTriangles = 20000;

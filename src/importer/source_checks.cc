@@ -10,6 +10,7 @@ namespace patrol::importer {
 namespace {
 
 constexpr double kMaxRobot_m = 20.0;
+constexpr double kMaxLink_kg = 1e6;
 
 }  // namespace
 
@@ -116,18 +117,53 @@ void SourceReader::scale_millimeters() {
   }
 }
 
+/// Refuses a shape that is larger than a robot or farther from its link than a robot is large.
+void SourceReader::check_shape(const Shape& shape, const SourceLink& link) const {
+  const double distance_m = shape.T_link_shape.position.norm();
+  if (distance_m > kMaxRobot_m) {
+    robot_.fail(shape.line, link.name,
+                fmt::format("<origin> of a shape is {:.3g} m from the link: at most {} m", distance_m, kMaxRobot_m));
+  }
+  if (shape.type == ShapeType::kMesh) {
+    const double size_m = diagonal_m(whole_mesh(shape));
+    if (size_m <= kMaxRobot_m) return;
+    robot_.fail(
+        shape.line, link.name,
+        fmt::format("mesh {} is {:.3g} m large: at most {} m: check its scale", shape.mesh_name, size_m, kMaxRobot_m));
+  }
+  const double size_m = std::max({shape.size_m.maxCoeff(), 2.0 * shape.radius_m, shape.length_m});
+  if (size_m > kMaxRobot_m)
+    robot_.fail(shape.line, link.name, fmt::format("shape is {:.3g} m large: at most {} m", size_m, kMaxRobot_m));
+}
+
+/// Returns whether a joint places the whole robot in the world: its parent is a root without mass and shapes.
+bool SourceReader::is_of_world(const SourceJoint& joint) const {
+  const SourceLink& parent = robot_.link(joint.parent);
+  return robot_.parent_joint(joint.parent) == nullptr && !parent.has_shapes() && !parent.inertial &&
+         robot_.child_joints(joint.parent).size() == 1;
+}
+
+/// Refuses positions, sizes and masses that no robot has: often lengths in millimeters.
 void SourceReader::check_sizes() const {
   for (const SourceLink& link : robot_.links) {
     for (const std::vector<Shape>* shapes : {&link.visuals, &link.collisions}) {
-      for (const Shape& shape : *shapes) {
-        if (shape.type != ShapeType::kMesh) continue;
-        const double size_m = diagonal_m(whole_mesh(shape));
-        if (size_m <= kMaxRobot_m) continue;
-        robot_.fail(shape.line, link.name,
-                    fmt::format("mesh {} is {:.0f} m large: at most {} m: check its scale", shape.mesh_name, size_m,
-                                kMaxRobot_m));
-      }
+      for (const Shape& shape : *shapes) check_shape(shape, link);
     }
+    if (!link.inertial) continue;
+    const SourceInertial& inertial = *link.inertial;
+    if (inertial.mass_kg > kMaxLink_kg)
+      robot_.fail(inertial.line, link.name,
+                  fmt::format("mass = {:.3g} kg: at most {:.0f} kg", inertial.mass_kg, kMaxLink_kg));
+    const double distance_m = inertial.T_link_inertia.position.norm();
+    if (distance_m > kMaxRobot_m)
+      robot_.fail(inertial.line, link.name,
+                  fmt::format("center of mass is {:.3g} m from the link: at most {} m", distance_m, kMaxRobot_m));
+  }
+  for (const SourceJoint& joint : robot_.joints) {
+    const double distance_m = joint.T_parent_child.position.norm();
+    if (distance_m <= kMaxRobot_m || is_of_world(joint)) continue;
+    robot_.fail(joint.line, joint.name,
+                fmt::format("<origin> is {:.3g} m from the parent link: at most {} m", distance_m, kMaxRobot_m));
   }
 }
 

@@ -76,6 +76,8 @@ class SourceReader {
   bool has_rigid_collision(const std::string& link) const;
   void report_meshes_elsewhere();
   void scale_millimeters();
+  void check_shape(const Shape& shape, const SourceLink& link) const;
+  bool is_of_world(const SourceJoint& joint) const;
   void check_sizes() const;
 
   /// Visual whose mesh was not found.

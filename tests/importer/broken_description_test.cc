@@ -100,6 +100,34 @@ TEST(BrokenDescription, MassesAndInertias) {
               MatchesRegex("v.urdf:[0-9]+: left: invalid inertia: principal moments.*"));
 }
 
+TEST(BrokenDescription, SizesOfMoreThan20MetersAndMassesOfMoreThan1000Tons) {
+  EXPECT_THAT(complaint(changed("xyz=\"0 0.25 -0.05\"", "xyz=\"0 250 -50\"")),
+              MatchesRegex("v.urdf:[0-9]+: left_joint: <origin> is 255 m from the parent link: at most 20 m"));
+  EXPECT_THAT(complaint(changed("<box size=\"0.6 0.4 0.2\"/>", "<box size=\"600 400 200\"/>")),
+              MatchesRegex("v.urdf:[0-9]+: base_link: shape is 600 m large: at most 20 m"));
+  EXPECT_THAT(complaint(changed("radius=\"0.1\"", "radius=\"100\"")),
+              MatchesRegex("v.urdf:[0-9]+: left: shape is 200 m large: at most 20 m"));
+  EXPECT_THAT(complaint(changed("<mass value=\"20\"/>", "<mass value=\"1e300\"/>")),
+              MatchesRegex("v.urdf:[0-9]+: base_link: mass = 1e\\+300 kg: at most 1000000 kg"));
+  EXPECT_THAT(complaint(changed("<origin xyz=\"0 0 0\"/><mass", "<origin xyz=\"0 0 50\"/><mass")),
+              MatchesRegex("v.urdf:[0-9]+: base_link: center of mass is 50 m from the link: at most 20 m"));
+  EXPECT_EQ(complaint(with(link("world") + joint("place", "fixed", "world", "base_link", "120 80 0"))), "");
+}
+
+TEST(BrokenDescription, ASteeringJointThatReachesOnlyOneSide) {
+  std::string text = chassis();
+  for (const auto& [side, y] : {std::pair{"l", "0.25"}, {"r", "-0.25"}}) {
+    const std::string knuckle = std::string("knuckle_") + side;
+    text += joint(std::string("steer_") + side, "revolute", "base_link", knuckle, fmt::format("0.4 {} -0.05", y),
+                  axis("0 0 1") + R"(<limit lower="0" upper="1" effort="20" velocity="3"/>)") +
+            link(knuckle, inertial(0.5)) + wheel(std::string("f") + side, knuckle, "0 0 0", 0.1, 0.05, "") +
+            wheel(std::string("r") + side, "base_link", fmt::format("-0.1 {} -0.05", y), 0.1, 0.05);
+  }
+  EXPECT_THAT(complaint(robot(text)),
+              MatchesRegex("v.urdf:[0-9]+: steer_l: steering range 0 to 1 rad: must reach at least 0.05 rad to both "
+                           "sides"));
+}
+
 TEST(BrokenDescription, Numbers) {
   for (const char* bad : {"nan", "inf", "1e999", "one", "1,0", "0x"}) {
     EXPECT_THAT(complaint(changed("<mass value=\"1\"/>", fmt::format("<mass value=\"{}\"/>", bad))),

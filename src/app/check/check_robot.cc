@@ -4,10 +4,13 @@
 #include <cmath>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "app/scenario/data_folders.h"
 #include "app/scenario/mounts.h"
 #include "app/scenario/scenario.h"
 #include "app/scenario/sensor_needs.h"
+#include "core/error.h"
 #include "core/sensors/registry.h"
 #include "core/wheel_kinematics.h"
 #include "io/urdf.h"
@@ -17,6 +20,8 @@
 
 namespace patrol::app {
 namespace {
+
+constexpr double kMaxTurningRadius_m = 50.0;  // a circle takes minutes
 
 DriveKind kind_of(const RobotDescription& robot) {
   if (robot.tracks) return DriveKind::kTracks;
@@ -73,6 +78,12 @@ DriveLimits limits_of_wheels(const CheckRobot& robot) {
       lateral_mps = std::min(lateral_mps, wheel.radius_m * no_load_radps / std::abs(std::tan(*wheel.roller_axis_rad)));
   }
   const double radius_m = min_turning_radius_m(robot.description);
+  if (radius_m > kMaxTurningRadius_m) {
+    throw InputError(
+        fmt::format("robot {}: the steering joints reach only circles of {:.3g} m: patrol check needs at "
+                    "most {:g} m, to both sides",
+                    robot.name, radius_m, kMaxTurningRadius_m));
+  }
   const double kinematic_radps =
       radius_m > 0.0
           ? speed_mps / radius_m

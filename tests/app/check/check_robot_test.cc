@@ -1,10 +1,15 @@
 #include "app/check/check_robot.h"
 
+#include <filesystem>
+#include <regex>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "core/wheel_kinematics.h"
+#include "io/files/atomic_file.h"
+#include "tests/support/temporary_file.h"
 
 namespace patrol::app::check_robot_test {
 namespace {
@@ -69,6 +74,23 @@ TEST(CheckRobot, AnUnknownRobotIsRefusedWithTheKnownOnes) {
 TEST(CheckRobot, AnUnknownSettingIsRefusedWithItsKey) {
   EXPECT_THAT(error_of("wheeled", {"wheel_drive.frictoin=0.1"}),
               testing::HasSubstr("--set wheel_drive.frictoin=0.1: unknown key"));
+}
+
+// The steering of the cart, which reaches 0.55 rad to both sides, without the side to the right.
+TEST(CheckRobot, ARobotThatSteersToOneSideOnlyIsRefused) {
+  const test::TemporaryFolder data;
+  std::filesystem::create_directory(data / "worlds");
+  std::filesystem::copy(std::filesystem::path(PATROL_SOURCE_DIR) / "models/cart", data / "models/cart",
+                        std::filesystem::copy_options::recursive);
+  const std::filesystem::path file = data / "models/cart/cart.urdf";
+  const std::string text = std::regex_replace(io::load_text(file), std::regex(R"(lower="-0\.[0-9]+")"), R"(lower="0")");
+  test::write_bytes(file, text);
+  try {
+    load_check_robot("cart", {}, {}, data.path());
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("robot cart: the steering joints reach only circles of"));
+  }
 }
 
 TEST(CheckRobot, TheSeedOfTheCallReplacesThatOfTheSettings) {
