@@ -93,6 +93,7 @@ class WheelFinder {
   void use_rollers(const Pose3& T_root_axis, FoundWheel& wheel) const;
   void find_carrier(FoundWheel& wheel);
   bool is_above_all_wheels(const SourceJoint& joint) const;
+  bool swivels(const SourceJoint& joint) const;
   void keep_wheels_on_ground();
   void leave_out_passive_balls();
   std::vector<AxialShape> axial_shapes(const std::vector<const SourceLink*>& links, const Pose3& T_root_axis,
@@ -103,7 +104,8 @@ class WheelFinder {
   std::set<const SourceJoint*> endless_;                                   ///< without the joints of rollers
   std::map<const SourceJoint*, std::vector<const SourceJoint*>> rollers_;  ///< by the joint of the wheel
   FoundWheels found_;
-  std::string reason_;  ///< why the last candidate is no wheel
+  std::set<const SourceJoint*> reported_;  ///< joints of casters with a range
+  std::string reason_;                     ///< why the last candidate is no wheel
 };
 
 std::vector<AxialShape> WheelFinder::axial_shapes(const std::vector<const SourceLink*>& links, const Pose3& T_root_axis,
@@ -274,7 +276,16 @@ bool WheelFinder::is_above_all_wheels(const SourceJoint& joint) const {
   return found_.wheels.size() > 2 && std::all_of(found_.wheels.begin(), found_.wheels.end(), is_above);
 }
 
-/// Finds the nearest vertical joint above a wheel. A joint with a range is a steering joint, an endless one a caster's.
+/// Returns whether a vertical joint above a wheel is that of a caster: it has no motor and turns by a full turn.
+bool WheelFinder::swivels(const SourceJoint& joint) const {
+  constexpr double kFullTurn_rad = 2.0 * std::numbers::pi - 0.05;
+  if (robot_.motors.contains(joint.name)) return false;
+  if (joint.is_endless()) return true;
+  const bool has_motor = robot_.motors.empty() && joint.effort.value_or(0.0) > 0.0;
+  return !has_motor && joint.upper - joint.lower >= kFullTurn_rad;
+}
+
+/// Finds the nearest vertical joint above a wheel: that of a caster or a steering joint.
 void WheelFinder::find_carrier(FoundWheel& wheel) {
   for (const SourceJoint* at = robot_.parent_joint(wheel.joint->parent); at != nullptr;
        at = robot_.parent_joint(at->parent)) {
@@ -282,8 +293,13 @@ void WheelFinder::find_carrier(FoundWheel& wheel) {
     const Eigen::Vector3d axis = T_root_link_.at(at->child).rotation * at->axis;
     if (std::abs(axis.z()) < kVertical || is_above_all_wheels(*at)) continue;
     wheel.carrier = at;
-    wheel.carrier_type = at->is_endless() ? CarrierType::kCaster : CarrierType::kSteering;
-    if (at->is_endless() && robot_.motors.contains(at->name)) wheel.carrier_type = CarrierType::kSteering;
+    wheel.carrier_type = swivels(*at) ? CarrierType::kCaster : CarrierType::kSteering;
+    if (wheel.carrier_type == CarrierType::kCaster && !at->is_endless() && reported_.insert(at).second) {
+      found_.assumptions.push_back(
+          {.subject = at->name,
+           .text = "swivels without end, although the file limits it: it turns by a full turn and has no motor",
+           .override_with = "<limit lower upper effort> of the joint"});
+    }
     return;
   }
 }

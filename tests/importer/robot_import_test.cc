@@ -130,6 +130,27 @@ TEST(ImportRobot, ARobotWithOneAxleAndNothingElseGetsASupportWithAnAssumption) {
   EXPECT_THAT(import.assumptions(), HasSubstr("keeps the robot upright"));
 }
 
+// Files of casters often limit the joint to 180 degrees, because the type revolute needs a range.
+TEST(ImportRobot, AJointOfAFullTurnWithoutMotorBelongsToACasterAndWithMotorSteers) {
+  const auto with_fork = [](const std::string& limit) {
+    std::string text = caster();
+    const std::string type = "type=\"continuous\"", axis_z = axis("0 0 1");
+    text.replace(text.find(type), type.size(), "type=\"revolute\"");
+    text.insert(text.find(axis_z), limit);
+    const std::string transmission = R"(<transmission name="t"><joint name="left_joint"/></transmission>
+<transmission name="u"><joint name="right_joint"/></transmission>)";
+    return robot(chassis() + two_wheels() + text + transmission);
+  };
+  Import import(with_fork(R"(<limit lower="-3.14" upper="3.14" effort="10" velocity="5"/>)"));
+  import.load();
+  EXPECT_TRUE(import.wheel("small").is_caster);
+  EXPECT_EQ(wheel_drive_type(import.description), WheelDriveType::kDifferential);
+  EXPECT_THAT(import.assumptions(), HasSubstr("| swivel | swivels without end, although the file limits it"));
+  Import steered(with_fork(R"(<limit lower="-1.5" upper="1.5" effort="10" velocity="5"/>)"));
+  EXPECT_FALSE(steered.load().wheels.empty());
+  EXPECT_FALSE(steered.wheel("small").is_caster);
+}
+
 TEST(ImportRobot, FourFixedWheelsAreADifferentialDrive) {
   Import import(robot(chassis() + four_wheels(0.1, 0.05)));
   const RobotDescription& robot = import.load();
