@@ -373,6 +373,28 @@ const SourceLink& SourceRobot::root() const {
   throw InputError(file + ": the joints form a cycle");
 }
 
+bool SourceRobot::moves_whole_robot(const SourceJoint& joint) const {
+  constexpr double kNegligible = 0.01;  // to the mass of the robot
+  std::set<std::string> moved = {joint.child};
+  std::vector<std::string> open = {joint.child};
+  while (!open.empty()) {
+    const std::string name = open.back();
+    open.pop_back();
+    for (const SourceJoint* child : child_joints(name)) {
+      if (moved.insert(child->child).second) open.push_back(child->child);
+    }
+  }
+  double mass_kg = 0.0, other_kg = 0.0;
+  for (const SourceLink& link : links) {
+    const double link_kg = link.inertial ? link.inertial->mass_kg : 0.0;
+    mass_kg += link_kg;
+    if (moved.contains(link.name)) continue;
+    if (link.has_shapes()) return false;
+    other_kg += link_kg;
+  }
+  return other_kg <= kNegligible * mass_kg;
+}
+
 void SourceRobot::fail(int line, const std::string& element, const std::string& what) const {
   throw input_error(file, line, fmt::format("{}: {}", io::on_one_line(element), what));
 }

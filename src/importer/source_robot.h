@@ -105,6 +105,10 @@ struct SourceRobot {
   std::vector<const SourceJoint*> child_joints(const std::string& link_name) const;
   const SourceLink& root() const;
 
+  /// Whether a joint moves the whole robot in the world, as planners need it: the links that it does not move have no
+  /// shapes and at most 1 % of the mass.
+  bool moves_whole_robot(const SourceJoint& joint) const;
+
   [[noreturn]] void fail(int line, const std::string& element, const std::string& what) const;
 };
 

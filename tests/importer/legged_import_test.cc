@@ -1,4 +1,6 @@
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -134,6 +136,35 @@ TEST(LeggedImport, AnArmOnTheBackIsFixedAndReported) {
   EXPECT_EQ(import.load().joint_names.size(), 12U);
   EXPECT_NEAR(import.description.mass_kg, described(vendor_robot()).mass_kg + 5 * 0.4, 1e-5);
   EXPECT_THAT(import.assumptions(), HasSubstr("fixed at zero: not joints of wheels or legs"));
+}
+
+/// Adds a gimbal of three revolute joints with the given axes.
+std::string with_gimbal(const std::string& text, const std::array<std::string, 3>& axes) {
+  std::string gimbal;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::string name = "gimbal_" + std::to_string(i);
+    gimbal += joint(name + "_joint", "revolute", i == 0 ? "base_link" : "gimbal_" + std::to_string(i - 1), name,
+                    "0 0 0.05", axis(axes[i]) + R"(<limit lower="-1" upper="1" effort="2" velocity="2"/>)") +
+              link(name, inertial(0.1) + shape("collision", box(0.05, 0.05, 0.05)));
+  }
+  return replaced(text, "</robot>", gimbal + "</robot>");
+}
+
+TEST(LeggedImport, AGimbalOfThreeJointsIsFixedAndReported) {
+  const UrdfQuadruped vendor = vendor_robot();
+  Import import(with_gimbal(vendor.text(), {"0 0 1", "1 0 0", "0 1 0"}));
+  const RobotDescription& robot = import.load();
+  EXPECT_EQ(robot.legs.size(), 4U);
+  EXPECT_EQ(robot.joint_names, described(vendor).joint_names);
+  EXPECT_THAT(import.assumptions(), HasSubstr("gimbal_0_joint, gimbal_1_joint, gimbal_2_joint | fixed at zero"));
+}
+
+TEST(LeggedImport, APlanarJointAboveTheTrunkIsNoJointOfALeg) {
+  Import import(
+      replaced(vendor_robot().text(), "</robot>",
+               link("plane") + joint("place", "planar", "plane", "base_link", "0 0 0", axis("0 0 1")) + "</robot>"));
+  EXPECT_EQ(import.load().legs.size(), 4U);
+  EXPECT_THAT(import.assumptions(), HasSubstr("| place | fixed at zero"));
 }
 
 TEST(LeggedImport, JointsWithoutLimitsGetTorqueSpeedAndAHalfTurnAndAreReported) {
