@@ -266,7 +266,7 @@ std::optional<FoundWheel> WheelFinder::measure_wheel(const SourceJoint& joint) {
   return result;
 }
 
-/// Returns whether a joint is above all wheels: one that moves the whole robot in the world, as planners need it.
+/// Returns whether a joint is above all of at least three wheels: no joint of a steered axle.
 bool WheelFinder::is_above_all_wheels(const SourceJoint& joint) const {
   const auto is_above = [this, &joint](const FoundWheel& wheel) {
     const SourceJoint* at = robot_.parent_joint(wheel.joint->parent);
@@ -291,7 +291,7 @@ void WheelFinder::find_carrier(FoundWheel& wheel) {
        at = robot_.parent_joint(at->parent)) {
     if (at->type != JointType::kRevolute && at->type != JointType::kContinuous) continue;
     const Eigen::Vector3d axis = T_root_link_.at(at->child).rotation * at->axis;
-    if (std::abs(axis.z()) < kVertical || is_above_all_wheels(*at)) continue;
+    if (std::abs(axis.z()) < kVertical || is_above_all_wheels(*at) || robot_.moves_whole_robot(*at)) continue;
     wheel.carrier = at;
     wheel.carrier_type = swivels(*at) ? CarrierType::kCaster : CarrierType::kSteering;
     if (wheel.carrier_type == CarrierType::kCaster && !at->is_endless() && reported_.insert(at).second) {

@@ -174,6 +174,9 @@ TEST(PublicDescription, JointsThatMoveTheRobotInTheWorldAreNoCasters) {
   Import import(robot(planar + chassis() + four_fixed_wheels()));
   EXPECT_EQ(import.load().wheels.size(), 4U);
   EXPECT_THAT(import.assumptions(), HasSubstr("| x, y, yaw | fixed at zero"));
+  Import one_axle(robot(planar + chassis() + two_wheels()));
+  EXPECT_EQ(one_axle.load().wheels.size(), 4U) << "with two balls that keep it upright";
+  EXPECT_THAT(one_axle.assumptions(), HasSubstr("| x, y, yaw | fixed at zero"));
 }
 
 TEST(PublicDescription, ABaseBelowTheGroundIsMovedUp) {
