@@ -294,8 +294,14 @@ void SourceReader::read_joint(const XMLElement& element) {
     joint.effort = optional_number(*limit, "effort", joint.name);
     joint.velocity = optional_number(*limit, "velocity", joint.name);
     const bool is_given = limit->Attribute("lower") != nullptr || limit->Attribute("upper") != nullptr;
-    if (needs_limit && is_given && joint.lower >= joint.upper)
+    if (needs_limit && is_given && joint.lower == 0.0 && joint.upper == 0.0) {
+      joint.type = JointType::kFixed;
+      robot_.assumptions.push_back({.subject = joint.name,
+                                    .text = "fixed at zero: its limits lower and upper are both 0",
+                                    .override_with = "<limit lower upper> of the joint"});
+    } else if (needs_limit && is_given && joint.lower >= joint.upper) {
       fail(*limit, joint.name, fmt::format("limit lower = {}: must be below upper = {}", joint.lower, joint.upper));
+    }
   } else if (needs_limit) {
     fail(element, joint.name, fmt::format("<limit> is missing: required for a {} joint", type));
   }

@@ -179,6 +179,16 @@ TEST(PublicDescription, JointsThatMoveTheRobotInTheWorldAreNoCasters) {
   EXPECT_THAT(one_axle.assumptions(), HasSubstr("| x, y, yaw | fixed at zero"));
 }
 
+// Exporters of CAD programs write these limits for every joint without a range.
+TEST(PublicDescription, AJointWithBothLimitsAtZeroIsFixed) {
+  Import import(robot(chassis() + two_wheels() + caster() +
+                      joint("mast_joint", "revolute", "base_link", "mast", "0 0 0.2",
+                            axis("0 0 1") + R"(<limit lower="0" upper="0" effort="0" velocity="0"/>)") +
+                      link("mast", inertial(0.5))));
+  EXPECT_EQ(import.load().wheels.size(), 3U);
+  EXPECT_THAT(import.assumptions(), HasSubstr("| mast_joint | fixed at zero: its limits lower and upper are both 0"));
+}
+
 TEST(PublicDescription, ABaseBelowTheGroundIsMovedUp) {
   Import import(
       robot(link("low") + joint("j", "fixed", "low", "base_link", "0 0 0.2") + chassis() + two_wheels() + caster()));
