@@ -115,8 +115,7 @@ void Normalizer::choose_frame() {
                       first->joint->name));
     }
   }
-  if (first == nullptr)
-    throw InputError(source_.file + ": all wheels are casters: at least two wheels must not swivel");
+  if (first == nullptr) fail_for_wheels(nullptr, "all wheels are casters: at least two wheels must not swivel");
   if (!options_.forward.empty()) {
     yaw = yaws.at(options_.forward);
   } else if (std::abs(axle(*first)) > kParallel_rad) {
@@ -202,6 +201,18 @@ void Normalizer::choose_carriers() {
                                                              : DriveType::kDifferential;
 }
 
+/// Refuses the wheels that were found. Names the link with a motor that is no wheel, which often is the reason; without
+/// one, the joint; without a joint, only the file.
+void Normalizer::fail_for_wheels(const SourceJoint* joint, const std::string& what) const {
+  for (const RejectedWheel& rejected : found_.rejected) {
+    const SourceJoint& at = *rejected.joint;
+    if (!source_.motors.contains(at.name) && at.effort.value_or(0.0) <= 0.0) continue;
+    source_.fail(at.line, at.child, fmt::format("is no wheel: {}; without it, {}", rejected.reason, what));
+  }
+  if (joint != nullptr) source_.fail(joint->line, joint->name, what);
+  throw InputError(fmt::format("{}: {}", source_.file, what));
+}
+
 /// Checks that wheels that are not steered are on both sides; if motors drive any of these, that driven ones are.
 void Normalizer::check_fixed_sides(const std::vector<const FoundWheel*>& wheels) const {
   bool is_any_driven = false;
@@ -216,7 +227,7 @@ void Normalizer::check_fixed_sides(const std::vector<const FoundWheel*>& wheels)
   if (left != nullptr && right != nullptr) return;
   const SourceJoint& joint = *wheels.front()->joint;
   const SourceJoint& at = left != nullptr ? *left->joint : right != nullptr ? *right->joint : joint;
-  source_.fail(at.line, at.name, "wheels that are not steered are on one side only: both sides must have one");
+  fail_for_wheels(&at, "wheels that are not steered are on one side only: both sides must have one");
 }
 
 /// Chooses the wheels with motors.
@@ -250,8 +261,12 @@ void Normalizer::choose_drive() {
     max_y = std::max(max_y, wheel->center_m.y());
   }
   if (min_y > 0.0 || max_y < 0.0 || max_y - min_y < 1e-3) {
-    const SourceJoint& joint = **driven_.begin();
-    source_.fail(joint.line, joint.name, "driven wheels on one side only: both sides must be driven");
+    constexpr double kMiddle_m = 0.01;
+    const bool is_in_middle = std::max(std::abs(min_y), std::abs(max_y)) < kMiddle_m;
+    fail_for_wheels(*driven_.begin(),
+                    is_in_middle ? "the driven wheel is in the middle: not supported: wheels on both sides must be "
+                                   "driven, each on a joint of its own"
+                                 : "driven wheels on one side only: both sides must be driven");
   }
   check_fixed_sides(candidates);
 }

@@ -104,6 +104,7 @@ class Normalizer {
   void choose_legged_frame();
   void check_upright() const;
   void choose_carriers();
+  [[noreturn]] void fail_for_wheels(const SourceJoint* joint, const std::string& what) const;
   void choose_drive();
   void release_fixed_casters();
   void choose_rollers();

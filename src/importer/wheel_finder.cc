@@ -105,7 +105,6 @@ class WheelFinder {
   std::map<const SourceJoint*, std::vector<const SourceJoint*>> rollers_;  ///< by the joint of the wheel
   FoundWheels found_;
   std::set<const SourceJoint*> reported_;  ///< joints of casters with a range
-  std::string reason_;                     ///< why the last candidate is no wheel
 };
 
 std::vector<AxialShape> WheelFinder::axial_shapes(const std::vector<const SourceLink*>& links, const Pose3& T_root_axis,
@@ -230,7 +229,10 @@ void WheelFinder::use_rollers(const Pose3& T_root_axis, FoundWheel& wheel) const
 std::optional<FoundWheel> WheelFinder::measure_wheel(const SourceJoint& joint) {
   const Pose3& T_root_child = T_root_link_.at(joint.child);
   const Eigen::Vector3d axis = T_root_child.rotation * joint.axis;
-  if (std::abs(axis.z()) > kHorizontal) return std::nullopt;
+  if (std::abs(axis.z()) > kHorizontal) {
+    found_.rejected.push_back({&joint, fmt::format("the axis of joint {} is not horizontal", joint.name)});
+    return std::nullopt;
+  }
   const Pose3 T_root_axis{T_root_child.position, Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), axis)};
   const std::vector<const SourceLink*> links = rigid_group(robot_, joint.child, endless_);
   const std::vector<AxialShape> collisions = axial_shapes(links, T_root_axis, false);
@@ -243,7 +245,7 @@ std::optional<FoundWheel> WheelFinder::measure_wheel(const SourceJoint& joint) {
     return result;
   }
   if (!wheel) {
-    reason_ = fmt::format("line {}: {} is not round about the axis of joint {}", joint.line, joint.child, joint.name);
+    found_.rejected.push_back({&joint, fmt::format("is not round about the axis of joint {}", joint.name)});
     return std::nullopt;
   }
   FoundWheel result{.joint = &joint,
@@ -316,6 +318,8 @@ void WheelFinder::keep_wheels_on_ground() {
       robot_.fail(wheel.joint->line, wheel.joint->child,
                   fmt::format("is {:.3f} m above the lowest wheel: all wheels must touch one plane", above_m));
     }
+    found_.rejected.push_back(
+        {wheel.joint, fmt::format("is round, but {:.3f} m above the ground of the lowest wheel", above_m)});
     found_.assumptions.push_back(
         {.subject = wheel.joint->name,
          .text = fmt::format("is fixed at zero: its link is round, but {:.3f} m above the ground", above_m),
@@ -351,11 +355,14 @@ bool WheelFinder::has_candidates() {
 FoundWheels WheelFinder::find() {
   find_candidates();
   if (found_.wheels.empty()) {
+    const std::string reason = found_.rejected.empty()
+                                   ? ""
+                                   : fmt::format(" (line {}: {}: {})", found_.rejected.back().joint->line,
+                                                 found_.rejected.back().joint->child, found_.rejected.back().reason);
     throw InputError(fmt::format(
         "{}: no wheels found: a wheel is a round link on a continuous joint about a horizontal axis that touches the "
-        "ground{}; no legs either: a robot that walks has exactly four, each of three revolute joints one behind the "
-        "other",
-        robot_.file, reason_.empty() ? "" : " (" + reason_ + ")"));
+        "ground{}; no legs either: a robot that walks has four, each of three revolute joints one behind the other",
+        robot_.file, reason));
   }
   keep_wheels_on_ground();
   leave_out_passive_balls();

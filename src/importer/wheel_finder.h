@@ -33,10 +33,17 @@ struct FoundWheel {
   double bottom_m() const { return center_m.z() - radius_m; }
 };
 
+/// Link on an endless joint that is no wheel.
+struct RejectedWheel {
+  const SourceJoint* joint = nullptr;
+  std::string reason;  ///< about the link
+};
+
 /// Wheels of a description and the height of the ground below them.
 struct FoundWheels {
   std::vector<FoundWheel> wheels;
   std::set<const SourceJoint*> roller_joints;
+  std::vector<RejectedWheel> rejected;
   double ground_m = 0.0;  ///< in the root
   std::vector<Assumption> assumptions;
 };

@@ -204,6 +204,29 @@ TEST(BrokenDescription, Wheels) {
               HasSubstr("v.urdf:"));
 }
 
+TEST(BrokenDescription, ADrivenLinkThatIsNoWheelIsNamedWithItsReason) {
+  const std::string round = "<cylinder radius=\"0.1\" length=\"0.04\"/>";
+  EXPECT_THAT(complaint(changed(round, "<box size=\"0.2 0.2 0.04\"/>")),
+              MatchesRegex("v.urdf:[0-9]+: left: is no wheel: is not round about the axis of joint left_joint; without "
+                           "it, driven wheels on one side only: both sides must be driven"));
+  EXPECT_THAT(complaint(changed("<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 0 1\"/>")),
+              MatchesRegex("v.urdf:[0-9]+: left: is no wheel: the axis of joint left_joint is not horizontal; .*"));
+  EXPECT_THAT(complaint(changed(round, "<cylinder radius=\"0.04\" length=\"0.04\"/>")),
+              MatchesRegex("v.urdf:[0-9]+: left: is no wheel: is round, but 0.060 m above the ground of the lowest "
+                           "wheel; .*"));
+  std::string boxes = changed(round, "<box size=\"0.2 0.2 0.04\"/>");
+  boxes.replace(boxes.find(round), round.size(), "<box size=\"0.2 0.2 0.04\"/>");
+  EXPECT_THAT(complaint(boxes), MatchesRegex("v.urdf:[0-9]+: left: is no wheel: .*; without it, all wheels are "
+                                             "casters: at least two wheels must not swivel"));
+}
+
+TEST(BrokenDescription, ADrivenWheelInTheMiddle) {
+  EXPECT_THAT(complaint(robot(chassis() + wheel("axle", "base_link", "0.2 0 -0.05", 0.1, 0.5) +
+                              wheel("l", "base_link", "-0.2 0.25 -0.05", 0.1, 0.04, "") +
+                              wheel("r", "base_link", "-0.2 -0.25 -0.05", 0.1, 0.04, ""))),
+              MatchesRegex("v.urdf:[0-9]+: axle_joint: the driven wheel is in the middle: not supported: .*"));
+}
+
 TEST(BrokenDescription, Options) {
   EXPECT_THAT(complaint(with(""), {.file = "", .base_link = "torso"}),
               HasSubstr("v.urdf: base link torso: unknown link"));
