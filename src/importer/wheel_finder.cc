@@ -94,6 +94,7 @@ class WheelFinder {
   void find_carrier(FoundWheel& wheel);
   bool is_above_all_wheels(const SourceJoint& joint) const;
   bool swivels(const SourceJoint& joint) const;
+  void check_upright() const;
   void keep_wheels_on_ground();
   void leave_out_passive_balls();
   std::vector<AxialShape> axial_shapes(const std::vector<const SourceLink*>& links, const Pose3& T_root_axis,
@@ -306,6 +307,31 @@ void WheelFinder::find_carrier(FoundWheel& wheel) {
   }
 }
 
+/// Refuses a robot that lies on its front or back: all of at least three wheels touch a plane that is upright, as in
+/// files whose y axis is up.
+void WheelFinder::check_upright() const {
+  if (found_.wheels.size() < 3) return;
+  const Eigen::Vector3d horizontal = found_.wheels.front().axis.cross(Eigen::Vector3d::UnitZ());
+  const auto spread = [this](const Eigen::Vector3d& up) {
+    double min_m = std::numeric_limits<double>::infinity(), max_m = -min_m, min_radius_m = min_m;
+    for (const FoundWheel& wheel : found_.wheels) {
+      const double bottom_m = up.dot(wheel.center_m) - wheel.radius_m;
+      min_m = std::min(min_m, bottom_m);
+      max_m = std::max(max_m, bottom_m);
+      min_radius_m = std::min(min_radius_m, wheel.radius_m);
+    }
+    return (max_m - min_m) / min_radius_m;
+  };
+  constexpr double kFlat = 0.05, kUpright = 1.0;  // to the smallest radius
+  if (spread(Eigen::Vector3d::UnitZ()) < kUpright) return;
+  if (std::min(spread(horizontal), spread(-horizontal)) > kFlat) return;
+  const SourceJoint& joint = *found_.wheels.front().joint;
+  robot_.fail(joint.line, joint.name,
+              fmt::format("the wheels touch one plane, but it is upright: z of {} must be up: add a root link with a "
+                          "fixed joint that turns the robot",
+                          robot_.root().name));
+}
+
 /// Keeps the wheels on the ground plane. A candidate far above it is another round part, for example a spinning sensor.
 void WheelFinder::keep_wheels_on_ground() {
   found_.ground_m = std::numeric_limits<double>::infinity();
@@ -364,6 +390,7 @@ FoundWheels WheelFinder::find() {
         "ground{}; no legs either: a robot that walks has four, each of three revolute joints one behind the other",
         robot_.file, reason));
   }
+  check_upright();
   keep_wheels_on_ground();
   leave_out_passive_balls();
   for (FoundWheel& wheel : found_.wheels) find_carrier(wheel);

@@ -61,7 +61,7 @@ bool has_wheels(const SourceRobot& robot);
 /// Finds the wheels: links on endless joints about a horizontal axis, round about it within 3.5 %, whose lowest point
 /// is within 2 % of the radius plus 5 mm of the common ground plane. The links on at least four passive endless joints
 /// below the joint of a wheel are its rollers; they determine its radius. Throws InputError if there are no wheels, if
-/// they are not on one plane, or if the rollers of a wheel are not those of a mecanum wheel.
+/// they are not on one plane, if this plane is upright, or if the rollers of a wheel are not those of a mecanum wheel.
 FoundWheels find_wheels(const SourceRobot& robot);
 
 }  // namespace patrol::importer

@@ -220,6 +220,18 @@ TEST(BrokenDescription, ADrivenLinkThatIsNoWheelIsNamedWithItsReason) {
                                              "casters: at least two wheels must not swivel"));
 }
 
+TEST(BrokenDescription, ARobotOnWheelsWhoseYAxisIsUp) {
+  std::string wheels;
+  for (const char* xyz : {"0.25 -0.05 0.2", "-0.25 -0.05 0.2", "0.25 -0.05 -0.2", "-0.25 -0.05 -0.2"}) {
+    const std::string name = "w" + std::to_string(wheels.size());
+    wheels += joint(name + "_joint", "continuous", "base_link", name, xyz, axis("1 0 0") + kMotor) +
+              link(name, inertial(1.0) + shape("collision", cylinder(0.1, 0.05), "0 0 0", "0 1.5707963267948966 0"));
+  }
+  EXPECT_THAT(complaint(robot(chassis() + wheels)),
+              MatchesRegex("v.urdf:[0-9]+: w0_joint: the wheels touch one plane, but it is upright: z of base_link "
+                           "must be up: .*"));
+}
+
 TEST(BrokenDescription, ADrivenWheelInTheMiddle) {
   EXPECT_THAT(complaint(robot(chassis() + wheel("axle", "base_link", "0.2 0 -0.05", 0.1, 0.5) +
                               wheel("l", "base_link", "-0.2 0.25 -0.05", 0.1, 0.04, "") +
