@@ -8,6 +8,19 @@
 #include "importer/normalizer.h"
 
 namespace patrol::importer {
+namespace {
+
+/// Returns whether a shape touches the ground as a ball or a wheel does. An upright cylinder of the base is the
+/// chassis.
+bool is_round_below(const Shape& shape, const Pose3& T_base_link, bool is_leaf) {
+  if (shape.type == ShapeType::kSphere) return true;
+  if (shape.type != ShapeType::kCylinder) return false;
+  constexpr double kUpright = 0.9;
+  const Eigen::Vector3d axis = T_base_link.rotation * (shape.T_link_shape.rotation * Eigen::Vector3d::UnitZ());
+  return is_leaf || std::abs(axis.z()) < kUpright;
+}
+
+}  // namespace
 
 /// Replaces small wheels by balls that roll and swivel if they have neither motor nor vertical joint and are not on the
 /// only driven axle: fixed in their direction, they would keep the robot from turning.
@@ -73,7 +86,7 @@ void Normalizer::add_supports() {
         for (std::size_t i = 0; i < shapes.size(); ++i) {
           const Shape& shape = shapes[i];
           if (is_collision && support_shapes_.contains({name, i})) continue;
-          const bool is_round = shape.type == ShapeType::kSphere || shape.type == ShapeType::kCylinder;
+          const bool is_round = is_round_below(shape, T_base(name), is_leaf);
           if (!is_round && !(with_any_shape && is_leaf)) continue;
           const Pose3 T_base_link = T_base(name);
           Eigen::Vector3d lower = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity()), upper = -lower;

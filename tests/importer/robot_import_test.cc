@@ -151,6 +151,16 @@ TEST(ImportRobot, AJointOfAFullTurnWithoutMotorBelongsToACasterAndWithMotorSteer
   EXPECT_FALSE(steered.wheel("small").is_caster);
 }
 
+// A round vacuum cleaner: its chassis ends 5 mm above the ground.
+TEST(ImportRobot, AnUprightCylinderOfTheBaseNearTheGroundIsTheChassisAndNoCaster) {
+  Import import(
+      robot(link("base_link", inertial(20.0, "-0.1 0 0", 0.5) + shape("collision", cylinder(0.2, 0.2), "0 0 -0.045")) +
+            two_wheels() + caster()));
+  const RobotDescription& robot = import.load();
+  ASSERT_EQ(robot.wheels.size(), 3U);
+  EXPECT_THAT(import.assumptions(), Not(HasSubstr("is fixed and touches the ground")));
+}
+
 TEST(ImportRobot, FourFixedWheelsAreADifferentialDrive) {
   Import import(robot(chassis() + four_wheels(0.1, 0.05)));
   const RobotDescription& robot = import.load();
