@@ -379,6 +379,8 @@ std::string Normalizer::joint_name(const std::string& source_name) {
 
 NormalizedRobot Normalizer::run() {
   check_options();
+  measure_box();
+  check_centers();
   find_drive();
   choose_base();
   if (result_.drive == DriveType::kLegs) {

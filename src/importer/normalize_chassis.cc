@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <utility>
 
@@ -95,6 +96,31 @@ Inertial Normalizer::solid_inertial(const std::vector<Shape>& shapes, double mas
   return combine(parts);
 }
 
+/// Measures the box around all shapes.
+void Normalizer::measure_box() {
+  for (const SourceLink& link : source_.links) {
+    for (const std::vector<Shape>* shapes : {&link.collisions, &link.visuals}) {
+      for (const Shape& shape : *shapes) {
+        for (const Eigen::Vector3d& point : outline(shape)) box_.extend(T_root_link_.at(link.name) * point);
+      }
+    }
+  }
+}
+
+/// Refuses a center of mass that is farther from the shapes than the robot is large.
+void Normalizer::check_centers() const {
+  if (box_.isEmpty()) return;
+  const double size_m = box_.diagonal().norm();
+  for (const SourceLink& link : source_.links) {
+    if (!link.inertial || link.inertial->mass_kg <= 0.0) continue;
+    const double outside_m = box_.exteriorDistance(T_root_link_.at(link.name) * link.inertial->T_link_inertia.position);
+    if (outside_m <= size_m) continue;
+    source_.fail(link.inertial->line, link.name,
+                 fmt::format("center of mass is {:.3g} m outside the shapes of a robot of {:.3g} m: check <origin>",
+                             outside_m, size_m));
+  }
+}
+
 /// Returns the inertia of a link, with moments that no body has corrected.
 std::optional<Inertial> Normalizer::checked_inertial(const SourceLink& link) {
   if (!link.inertial) return std::nullopt;
@@ -114,6 +140,18 @@ std::optional<Inertial> Normalizer::checked_inertial(const SourceLink& link) {
     return inertial;
   }
   const double max = eigen.values[2];
+  const double size_m = box_.isEmpty() ? 0.0 : box_.diagonal().norm();
+  if (chassis_.contains(link.name) && size_m > 0.0 && max > inertial.mass_kg * size_m * size_m) {
+    const Shape whole{.type = ShapeType::kBox, .size_m = box_.sizes()};
+    inertial.inertia = shapes.empty() ? solid_inertial({whole}, inertial.mass_kg).inertia : solid.inertia;
+    inertial.T_link_inertia.rotation.setIdentity();
+    assume(link.name,
+           fmt::format("its moment of inertia {:.3g} kg m2 is that of its {:.3g} kg at a distance of {:.3g} m, but the "
+                       "robot is {:.3g} m large: replaced by that of its shape",
+                       max, inertial.mass_kg, std::sqrt(max / inertial.mass_kg), size_m),
+           "<inertia> of the link");
+    return inertial;
+  }
   Eigen::Vector3d& moments = eigen.values;
   constexpr double kMinRatio = 1e-3, kMargin = 1.00005, kBelowSum = 0.9999;
   if (moments[0] >= kMinRatio * 1e-2 * max && moments[2] <= (moments[0] + moments[1]) * kMargin) return inertial;

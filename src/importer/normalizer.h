@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include <Eigen/Geometry>
+
 #include "importer/leg_finder.h"
 #include "importer/normalize.h"
 #include "importer/wheel_finder.h"
@@ -103,6 +105,8 @@ class Normalizer {
   void choose_frame();
   void choose_legged_frame();
   void check_upright() const;
+  void measure_box();
+  void check_centers() const;
   void choose_carriers();
   [[noreturn]] void fail_for_wheels(const SourceJoint* joint, const std::string& what) const;
   void choose_drive();
@@ -172,7 +176,8 @@ class Normalizer {
   std::set<std::string> chassis_;         ///< links of the base's rigid group
   std::string base_;                      ///< link of the file
   Pose3 T_root_base_;
-  double ground_m_ = 0.0;  ///< height of the ground in the base
+  Eigen::AlignedBox3d box_;  ///< of all shapes, in the root
+  double ground_m_ = 0.0;    ///< height of the ground in the base
   std::set<std::string> used_links_, used_joints_;
   std::map<std::string, std::string> link_names_, joint_names_;  ///< source to result
   std::map<const void*, std::vector<std::pair<std::string, std::optional<Eigen::Vector4d>>>> mesh_files_;

@@ -114,6 +114,11 @@ TEST(BrokenDescription, SizesOfMoreThan20MetersAndMassesOfMoreThan1000Tons) {
   EXPECT_EQ(complaint(with(link("world") + joint("place", "fixed", "world", "base_link", "120 80 0"))), "");
 }
 
+TEST(BrokenDescription, ACenterOfMassFartherOutsideThanTheRobotIsLarge) {
+  EXPECT_THAT(complaint(changed("<origin xyz=\"0 0 0\"/><mass", "<origin xyz=\"0 0 5\"/><mass")),
+              MatchesRegex("v.urdf:[0-9]+: base_link: center of mass is 4.9 m outside the shapes of a robot of .*"));
+}
+
 TEST(BrokenDescription, ASteeringJointThatReachesOnlyOneSide) {
   std::string text = chassis();
   for (const auto& [side, y] : {std::pair{"l", "0.25"}, {"r", "-0.25"}}) {

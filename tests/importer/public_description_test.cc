@@ -189,6 +189,15 @@ TEST(PublicDescription, AJointWithBothLimitsAtZeroIsFixed) {
   EXPECT_THAT(import.assumptions(), HasSubstr("| mast_joint | fixed at zero: its limits lower and upper are both 0"));
 }
 
+// 20 kg at 122 m.
+TEST(PublicDescription, AChassisWithAnInertiaBeyondTheSizeOfTheRobotGetsThatOfItsShape) {
+  Import import(robot(link("base_link", inertial(20.0, "0 0 0", 3e5) + shape("collision", box(0.6, 0.4, 0.2))) +
+                      two_wheels() + caster()));
+  import.load();
+  EXPECT_THAT(import.assumptions(), HasSubstr("| base_link | its moment of inertia 3e+05 kg m2 is that of its 20 kg at "
+                                              "a distance of 122 m"));
+}
+
 TEST(PublicDescription, ABaseBelowTheGroundIsMovedUp) {
   Import import(
       robot(link("low") + joint("j", "fixed", "low", "base_link", "0 0 0.2") + chassis() + two_wheels() + caster()));
