@@ -1,5 +1,7 @@
 #include "importer/robot_import.h"
 
+#include <regex>
+
 #include <fmt/format.h>
 
 #include "core/error.h"
@@ -63,10 +65,10 @@ void write_robot(const ImportedRobot& robot, const std::filesystem::path& folder
   try {
     io::load_robot_description(urdf);
   } catch (const InputError& refused) {
-    const std::string message = refused.what();
-    throw InputError(
-        fmt::format("{}: the normalized description is refused: {}", robot.source,
-                    message.starts_with(urdf) ? robot.name + ".urdf" + message.substr(urdf.size()) : message));
+    std::string message = refused.what();
+    if (message.starts_with(urdf))
+      message = std::regex_replace(message.substr(urdf.size()), std::regex("^:([0-9]+:)? *"), "");
+    throw InputError(fmt::format("{}: the robot cannot be simulated: {}", robot.source, message));
   }
   output.publish();
 }
