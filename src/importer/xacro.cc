@@ -22,9 +22,10 @@ namespace patrol::importer {
 namespace {
 
 /// Script that calls xacro: arguments FILE, N, N times NAME=FOLDER of packages, then NAME=VALUE of xacro arguments.
-/// $(find PKG) is searched as by the class Packages. Exit status 3: xacro is not installed; 4: the expansion failed.
+/// $(find PKG) is searched as by the class Packages. Exit status 3: xacro is not installed; 4:
+/// the expansion failed, with the message on the standard output.
 constexpr const char* kScript = R"py(
-import os, sys
+import os, re, sys
 try:
     import xacro
     from xacro import substitution_args
@@ -61,12 +62,38 @@ def find(package):
             raise Exception('unknown package "%s": give its folder with --package %s=FOLDER' % (package, package))
         folder = above
 
+def place_of(message):
+    """File of the error with the line, if one line of it has the text that the message quotes."""
+    stack = xacro.macrostack or []
+    at = stack[-1].history[-1][-1] if stack else (xacro.filestack or [file])[-1]
+    at = at or file
+    quoted = re.findall("evaluating expression '(.*?)'", message)[-1:] or re.findall('package "(.*?)"', message)
+    if not quoted:
+        quoted = [os.path.basename(path) for path in re.findall('directory: ([^ ]*)', message)]
+    try:
+        with open(at, encoding='utf-8') as text:
+            lines = [i for i, line in enumerate(text, 1) if quoted and quoted[0] in line]
+    except Exception:
+        lines = []
+    if os.path.abspath(at) == file:
+        at = sys.argv[1]
+    return '%s:%d' % (at, lines[0]) if len(lines) == 1 else at
+
+def macros():
+    names = [macro.body.getAttribute('name') for macro in reversed(xacro.macrostack or [])]
+    return ''.join(', in macro %s' % name for name in dict.fromkeys(names))
+
 substitution_args._eval_find = find
 substitution_args._eval_dict['find'] = find
 try:
     text = xacro.process_file(file, mappings=mappings).toprettyxml(indent='  ', encoding='utf-8')
 except BaseException as error:
-    sys.stderr.write('%s: %s' % (type(error).__name__, error))
+    message = str(error) or type(error).__name__
+    if not isinstance(error, xacro.XacroException):
+        message = '%s: %s' % (type(error).__name__, error)
+    message = re.sub(r" \[Errno \d+\].*$", '', ' '.join(message.split()).replace("<class 'Exception'>: ", ''))
+    message = re.sub(r'^(.+) \1$', r'\1', message)
+    print('%s: xacro: %s%s' % (place_of(message), message, macros()))
     sys.exit(4)
 sys.stdout.buffer.write(text)
 )py";
@@ -197,6 +224,7 @@ std::string expand_xacro(const std::filesystem::path& file, const std::map<std::
         "interpreter that has it",
         file.string(), is_xacro(file) ? "" : " to expand its $(...), ${...} and <xacro:...>", interpreter, message));
   }
+  if (output.exit_code == 4) throw InputError(joined_lines(output.out));
   throw InputError(fmt::format("{}: xacro: {}", file.string(), message.empty() ? "failed" : message));
 }
 

@@ -61,6 +61,42 @@ TEST(Xacro, AFailedExpansionIsReportedInOneLine) {
   }
 }
 
+TEST(Xacro, AnErrorInAnIncludedMacroHasItsFileLineAndMacro) {
+  if (!has_xacro()) GTEST_SKIP() << "the Python package xacro is not installed";
+  const std::string head = "<robot xmlns:xacro=\"http://www.ros.org/wiki/xacro\" name=\"a\">\n";
+  Import import(head + "<xacro:include filename=\"w.xacro\"/>\n<xacro:w n=\"left\"/>\n</robot>", "a.xacro");
+  test::write_bytes(
+      import.folder / "w.xacro",
+      head + "<xacro:macro name=\"w\" params=\"n\">\n<link name=\"${n}_${sise}\"/>\n</xacro:macro>\n</robot>");
+  try {
+    import_robot(import.options);
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(),
+                EndsWith("w.xacro:3: xacro: name 'sise' is not defined when evaluating expression 'sise', "
+                         "in macro w"));
+  }
+}
+
+TEST(Xacro, AnUnknownPackageAndAMissingFileAreNamedOnce) {
+  if (!has_xacro()) GTEST_SKIP() << "the Python package xacro is not installed";
+  for (const auto& [name, message] :
+       {std::pair{"$(find nopkg)/a.xacro",
+                  "a.xacro:2: xacro: unknown package \"nopkg\": give its folder with --package "
+                  "nopkg=FOLDER"},
+        {"/nowhere/b.xacro", "a.xacro:2: xacro: No such file or directory: /nowhere/b.xacro"}}) {
+    Import import("<robot xmlns:xacro=\"http://www.ros.org/wiki/xacro\" name=\"a\">\n<xacro:include filename=\"" +
+                      std::string(name) + "\"/>\n</robot>",
+                  "a.xacro");
+    try {
+      import_robot(import.options);
+      ADD_FAILURE();
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), EndsWith(message));
+    }
+  }
+}
+
 TEST(Xacro, AMissingInterpreterIsReportedInOneLine) {
   const char* before = std::getenv("PATROL_PYTHON");
   const std::string saved = before != nullptr ? before : "";
