@@ -59,6 +59,10 @@ void Normalizer::add_collisions(const SourceLink& link, const Pose3& T_new_link,
     if (files.empty()) {
       const ConvexPieces pieces = convex_pieces(whole_mesh(shape));
       for (const Mesh& piece : pieces.pieces) files.push_back(add_mesh(shape.mesh_name + "_hull", piece));
+      if (pieces.pieces.empty())
+        source_.fail(
+            shape.line, link.name,
+            fmt::format("collision mesh {} has no surface: must have triangles with an area", shape.mesh_name));
       assume(
           link.name,
           fmt::format(

@@ -80,7 +80,7 @@ void Normalizer::choose_preset(const std::string& frame, const SourceSensor& sen
   if (preset.empty()) {
     assume(
         frame,
-        fmt::format("no preset has its field of view of {:.0f} degrees and its range of {:.0f} m: the default preset "
+        fmt::format("no preset has its field of view of {:.0f} degrees and its range of {:.3g} m: the default preset "
                     "is simulated",
                     sensor.fov_deg, sensor.range_max_m),
         key);

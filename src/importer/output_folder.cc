@@ -13,6 +13,7 @@ namespace patrol::importer {
 namespace {
 
 std::filesystem::path without_last_slash(const std::filesystem::path& folder) {
+  if (folder.empty()) throw InputError("output folder: is empty: must be the path of a folder");
   const std::filesystem::path normal = std::filesystem::absolute(folder).lexically_normal();
   return normal.has_filename() ? normal : normal.parent_path();
 }

@@ -47,7 +47,9 @@ SourceReader::SourceReader(const std::string& file, const std::string& text, con
   robot_.file = file;
   if (trimmed(text.c_str()).empty()) throw InputError(file + ": is empty: must be a URDF file");
   if (document_.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
-    throw input_error(file, document_.ErrorLineNum(), "not an XML file: " + plain_words(document_.ErrorName()));
+    const std::string reason = document_.ErrorID() == tinyxml2::XML_ERROR_PARSING ? "incomplete or not well-formed"
+                                                                                  : plain_words(document_.ErrorName());
+    throw input_error(file, document_.ErrorLineNum(), "not an XML file: " + reason);
   }
 }
 

@@ -52,6 +52,8 @@ TEST(BrokenDescription, AFileThatIsNoDescription) {
   EXPECT_THAT(complaint(""), HasSubstr("v.urdf: is empty"));
   EXPECT_THAT(complaint("no XML"), HasSubstr("v.urdf"));
   EXPECT_THAT(complaint(with("<link")), MatchesRegex("v.urdf:[0-9]+: not an XML file.*"));
+  EXPECT_THAT(complaint("<robot><link"),
+              MatchesRegex("v.urdf:1: not an XML file: (incomplete or not well-formed|mismatched element)"));
   EXPECT_THAT(complaint("<sdf/>"), MatchesRegex("v.urdf:1: <robot> is missing.*"));
   EXPECT_THAT(complaint(robot("")), MatchesRegex("v.urdf:2: <robot>: has no links"));
 }
@@ -180,6 +182,30 @@ TEST(BrokenDescription, Meshes) {
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("bad.stl: mesh "));
     EXPECT_THAT(error.what(), HasSubstr(": x: "));
+  }
+}
+
+TEST(BrokenDescription, ACollisionMeshWithoutASurface) {
+  Import import(with(link("x", shape("collision", R"(<mesh filename="line.stl"/>)")) +
+                     joint("j", "fixed", "base_link", "x", "0 0 0")),
+                "v.urdf");
+  const Eigen::Vector3d a(0.0, 0.0, 0.0), b(0.1, 0.0, 0.0), c(0.2, 0.0, 0.0);
+  write_bytes(import.folder / "line.stl", stl({{a, b, c}}));
+  try {
+    import_robot(import.options);
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr(": x: collision mesh line has no surface"));
+  }
+}
+
+TEST(BrokenDescription, AnEmptyNameOfTheOutputFolder) {
+  Import import(with(""));
+  try {
+    write_robot(import_robot(import.options), "");
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("output folder: is empty"));
   }
 }
 

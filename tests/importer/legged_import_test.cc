@@ -167,6 +167,19 @@ TEST(LeggedImport, APlanarJointAboveTheTrunkIsNoJointOfALeg) {
   EXPECT_THAT(import.assumptions(), HasSubstr("| place | fixed at zero"));
 }
 
+// Three joints in a row that are all about the vertical are no leg that can walk.
+TEST(LeggedImport, ARobotThatCannotBeSimulatedIsRefusedWithoutALineOfTheFileThatIsNotWritten) {
+  const UrdfQuadruped plain;
+  Import import(replaced(replaced(plain.text(), axis("1 0 0"), axis("0 0 1")), axis("0 1 0"), axis("0 0 1")));
+  try {
+    import.load();
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::StartsWith("vendor.urdf: the robot cannot be simulated: "));
+    EXPECT_THAT(error.what(), Not(HasSubstr("imported.urdf")));
+  }
+}
+
 TEST(LeggedImport, JointsWithoutLimitsGetTorqueSpeedAndAHalfTurnAndAreReported) {
   UrdfQuadruped robot = vendor_robot();
   std::string text = replaced(robot.text(), " effort=\"40\" velocity=\"25\"", "");

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <string>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -17,7 +19,7 @@ namespace patrol::importer::xacro_test {
 namespace {
 
 using test::TemporaryFolder, test::write_bytes;
-using ::testing::HasSubstr, ::testing::MatchesRegex, ::testing::Not;
+using ::testing::EndsWith, ::testing::HasSubstr, ::testing::MatchesRegex, ::testing::Not;
 
 /// Returns whether xacro is installed, in the interpreter of the tests that tools/setup makes or in another.
 bool has_xacro() {
