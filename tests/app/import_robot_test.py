@@ -47,6 +47,10 @@ class ImportRobot(unittest.TestCase):
         self.assertIn(text, result.stderr)
         self.assertFalse((self.folder / "models/four").exists(), "nothing is half-written")
 
+    def test_the_name_of_a_robot_of_patrol_is_refused(self):
+        self.refuse("--out models/tracked: tracked is a robot in ", self.urdf, "--out", "models/tracked")
+        self.assertFalse((self.folder / "models").exists())
+
     def test_the_imported_robot_is_found_in_the_working_directory_and_drives_ten_seconds_of_a_scenario(self):
         result = self.patrol("import", "robot", self.urdf, "--frame", "lidar=laser", "--out", "models/four")
         self.assertEqual(result.returncode, 0, result.stderr)

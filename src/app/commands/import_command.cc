@@ -1,3 +1,4 @@
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
@@ -65,6 +66,15 @@ void check_joint_speeds(importer::ImportedRobot& robot) {
        .override_with = "<limit velocity> of the joints"});
 }
 
+/// Refuses the name of a robot of the data folder: it is found before a robot of the working directory.
+void refuse_known_name(const std::string& robot, const std::filesystem::path& out) {
+  const std::filesystem::path known = find_data_root({}) / "models" / robot;
+  if (!std::filesystem::exists(known / (robot + ".urdf"))) return;
+  if (std::filesystem::weakly_canonical(known) == std::filesystem::weakly_canonical(out)) return;
+  throw InputError(fmt::format("--out {}: {} is a robot in {}, which would be found first: use another name",
+                               out.string(), robot, known.parent_path().string()));
+}
+
 /// Returns the clearance in which a robot can turn in place with a margin.
 double turning_clearance_m(const std::string& robot) {
   constexpr double kMargin_m = 0.1;
@@ -98,6 +108,7 @@ ExitCode import_robot_command(const ImportRobotOptions& options) {
                               .forward = options.forward,
                               .frames = to_map<std::string>(options.frames, "--frame"),
                               .drive = options.drive});
+  refuse_known_name(robot.name, options.out);
   check_joint_speeds(robot);
   importer::write_robot(robot, options.out);
   print(robot.assumptions, options.out);
