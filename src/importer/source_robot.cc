@@ -386,18 +386,18 @@ bool SourceRobot::moves_whole_robot(const SourceJoint& joint) const {
   std::set<std::string> moved = {joint.child};
   std::vector<std::string> open = {joint.child};
   while (!open.empty()) {
-    const std::string name = open.back();
+    const std::string at = open.back();
     open.pop_back();
-    for (const SourceJoint* child : child_joints(name)) {
+    for (const SourceJoint* child : child_joints(at)) {
       if (moved.insert(child->child).second) open.push_back(child->child);
     }
   }
   double mass_kg = 0.0, other_kg = 0.0;
-  for (const SourceLink& link : links) {
-    const double link_kg = link.inertial ? link.inertial->mass_kg : 0.0;
+  for (const SourceLink& each : links) {
+    const double link_kg = each.inertial ? each.inertial->mass_kg : 0.0;
     mass_kg += link_kg;
-    if (moved.contains(link.name)) continue;
-    if (link.has_shapes()) return false;
+    if (moved.contains(each.name)) continue;
+    if (each.has_shapes()) return false;
     other_kg += link_kg;
   }
   return other_kg <= kNegligible * mass_kg;
