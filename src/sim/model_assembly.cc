@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -13,6 +14,8 @@
 
 namespace patrol::sim {
 namespace {
+
+constexpr mjtByte kScenery[mjNGROUP] = {1, 1, 1, 1, 0, 0};  // all groups but the robot's own
 
 /// Removes every geom that cannot be in contact, and the images. Masses are explicit in the files, so nothing else
 /// changes.
@@ -27,13 +30,83 @@ SpecPtr load_world(const std::string& world_xml, const std::vector<StaticObstacl
   return spec;
 }
 
+/// Height of the highest ground plane at a point; none without a plane.
+std::optional<double> plane_height_m(const mjModel& model, const mjData& data, const Eigen::Vector2d& p_world) {
+  std::optional<double> height_m;
+  for (int geom = 0; geom < model.ngeom; ++geom) {
+    if (model.geom_type[geom] != mjGEOM_PLANE || kScenery[model.geom_group[geom]] == 0) continue;
+    const mjtNum *center = data.geom_xpos + 3 * geom, *R = data.geom_xmat + 9 * geom;
+    const Eigen::Vector3d normal(R[2], R[5], R[8]);
+    if (normal.z() < std::sqrt(0.5)) continue;
+    const Eigen::Vector2d moved = p_world - Eigen::Vector2d(center[0], center[1]);
+    const double z_m = center[2] - normal.head<2>().dot(moved) / normal.z();
+    height_m = std::max(height_m.value_or(z_m), z_m);
+  }
+  return height_m;
+}
+
+/// Returns the height of the lowest floor at a point: a plane or a surface that faces up, with free space of at least
+/// `kMinFree_m` above it. Objects that stand on a plane and are higher than `kMaxPlatform_m` have no floor.
+std::optional<double> lowest_floor_m(const mjModel& model, const mjData& data, const Eigen::Vector2d& p_world) {
+  constexpr double kMinFree_m = 0.5, kMaxPlatform_m = 1.0, kBelowSurface_m = 1e-3;
+  constexpr int kMaxSurfaces = 1000;
+  const mjtNum down[3] = {0.0, 0.0, -1.0};
+  const std::optional<double> plane_m = plane_height_m(model, data, p_world);
+  double from_m = plane_m.value_or(0.0);
+  for (int geom = 0; geom < model.ngeom; ++geom)
+    from_m = std::max(from_m, data.geom_xpos[3 * geom + 2] + model.geom_rbound[geom] + 1.0);
+  std::optional<double> floor_m;
+  double above_m = std::numeric_limits<double>::infinity();
+  bool is_free = true;  // no solid directly above the next surface
+  for (int i = 0; i < kMaxSurfaces; ++i) {
+    const mjtNum from[3] = {p_world.x(), p_world.y(), from_m};
+    mjtNum normal[3];
+    const mjtNum distance = mj_ray(&model, &data, from, down, kScenery, true, -1, nullptr, normal);
+    const double height_m = from_m - distance;
+    if (distance < 0.0 || (plane_m && height_m <= *plane_m)) break;
+    if (normal[2] > 0.0 && is_free && above_m - height_m >= kMinFree_m) floor_m = height_m;
+    is_free = normal[2] < 0.0;
+    above_m = height_m;
+    from_m = height_m - kBelowSurface_m;
+  }
+  if (plane_m && (above_m - *plane_m >= kMinFree_m || floor_m.value_or(0.0) - *plane_m > kMaxPlatform_m))
+    floor_m = plane_m;
+  return floor_m;
+}
+
+/// Returns the height of the floor of a start. The top of an object that is surrounded by a floor lower than 45 degrees
+/// is none.
+std::optional<double> start_floor_m(const mjModel& model, const mjData& data, const Eigen::Vector2d& p_world) {
+  constexpr int kDirections = 8;
+  const std::optional<double> center_m = lowest_floor_m(model, data, p_world);
+  std::optional<double> floor_m = center_m;
+  for (const double radius_m : {1.0, 2.0}) {
+    for (int i = 0; i < kDirections; ++i) {
+      const double angle = 2.0 * M_PI * i / kDirections;
+      const std::optional<double> near_m =
+          lowest_floor_m(model, data, p_world + radius_m * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
+      if (near_m && (!center_m || *near_m < *center_m - radius_m))
+        floor_m = std::min(*near_m, floor_m.value_or(*near_m));
+    }
+  }
+  return floor_m;
+}
+
+/// Returns the height below which the ground of a start is searched. It is the same for all floors near 0.
+double max_start_ground_m(const mjModel& model, const mjData& data, const Stance& stance, const Pose2& T_world_start) {
+  constexpr double kNearZero_m = 0.2;
+  const double floor_m = start_floor_m(model, data, T_world_start.position()).value_or(0.0);
+  return stance.max_ground_height_m + (std::abs(floor_m) <= kNearZero_m ? 0.0 : floor_m);
+}
+
 double height_in(mjSpec& world, const std::string& world_xml, const Stance& stance, const Pose2& T_world_start) {
   strip_visuals(world);
   const ModelPtr model = compile(world, world_xml);
   const DataPtr data = make_data(*model);
   mj_forward(model.get(), data.get());
   try {
-    return ground_height_m(*model, *data, stance, T_world_start, stance.max_ground_height_m) + stance.height_m;
+    const double max_m = max_start_ground_m(*model, *data, stance, T_world_start);
+    return ground_height_m(*model, *data, stance, T_world_start, max_m) + stance.height_m;
   } catch (const InputError& error) {
     throw InputError(fmt::format("start pose {} in {}", error.what(), world_xml));
   }
@@ -76,7 +149,6 @@ void complete_inertial_frames(mjSpec& spec) {
 
 double ground_height_m(const mjModel& model, const mjData& data, const Stance& stance, const Pose2& T_world_body,
                        double max_ground_height_m) {
-  constexpr mjtByte kScenery[mjNGROUP] = {1, 1, 1, 1, 0, 0};  // all groups but the robot's own
   const mjtNum down[3] = {0.0, 0.0, -1.0};
   double nearest_m = std::numeric_limits<double>::infinity();
   const auto cast_ray = [&](const Eigen::Vector2d& p_level, double tolerance_m) {

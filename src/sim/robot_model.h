@@ -31,7 +31,7 @@ struct Stance {
   double height_m = 0.0;                          ///< height of the base above the ground
   std::vector<Eigen::Vector2d> support_points_m;  ///< points at which the ground height is sampled, in level
   std::vector<Eigen::Vector2d> feet_m;  ///< feet: no ground below them is higher by `kMaxStartDepth_m`; in level
-  double max_ground_height_m = 0.0;     ///< surfaces above this height, in world, are not ground at the start
+  double max_ground_height_m = 0.0;  ///< surfaces higher than this above the lowest floor are not ground at the start
 };
 
 /// URDF of a robot.

@@ -1,6 +1,7 @@
 #include "sim/model_assembly.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -314,6 +315,40 @@ TEST(ModelAssembly, AStartInsideAWallIsRefusedWithTheWallsName) {
   });
   EXPECT_THAT(said, HasSubstr("start pose (1.00, 0.00)"));
   EXPECT_THAT(said, HasSubstr("garden_wall"));
+}
+
+/// Start height of the tracked robot above a floor.
+double tracked_start_m(const std::string& geoms, const Pose2& T_world_start) {
+  const test::TemporaryFile world("world.xml", make_world(geoms));
+  return start_height_m(world.path(), kTrackedUrdf, io::load_robot_description(kTrackedUrdf), T_world_start);
+}
+
+TEST(ModelAssembly, RobotsStartOnFloorsFrom20mBelowTo200mAboveTheOriginAndNotOnTheRoof3mHigher) {
+  const auto hall = [](double z_m) {
+    return fmt::format(
+        R"(<geom type="box" pos="0 0 {}" size="9 9 0.1"/><geom type="box" pos="0 0 {}" size="9 9 0.1"/>)", z_m - 0.1,
+        z_m + 3.1);
+  };
+  const double stand_m = tracked_start_m(hall(0.0), {});
+  for (const double z_m : {-20.0, -0.5, 1.5, 2.0, 20.0, 200.0}) {
+    EXPECT_NEAR(tracked_start_m(hall(z_m), {}), z_m + stand_m, 1e-9) << z_m;
+    const test::TemporaryFile world("world.xml", make_world(hall(z_m)));
+    EXPECT_NEAR(start_height_m(world.path(), kRobotUrdf, io::load_robot_description(kRobotUrdf), {}), z_m + 0.38, 0.1);
+  }
+}
+
+TEST(ModelAssembly, AStartOnAHillOf5mIsOnItsSurface) {
+  const std::string hill = R"(<geom type="box" pos="0 0 0" size="9 9 5" euler="0 20 0"/>)";
+  EXPECT_NEAR(tracked_start_m(hill, {}), 5.0 / std::cos(20.0 * M_PI / 180.0) + 0.25, 0.25);
+}
+
+TEST(ModelAssembly, AStartInsideAWallOf2mOnASlabAt20mIsRefused) {
+  const test::TemporaryFile world("world.xml", make_world(R"(<geom type="box" pos="0 0 19.9" size="9 9 0.1"/>
+      <geom name="garden_wall" type="box" pos="1 0 21" size="0.2 3 1"/>)"));
+  EXPECT_THAT(error_text([&] {
+                assemble_model(world.path(), kTrackedUrdf, io::load_robot_description(kTrackedUrdf), {1.0, 0.0, 0.0});
+              }),
+              HasSubstr("garden_wall"));
 }
 
 TEST(ModelAssembly, AStartOverNothingIsRefused) {
