@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <deque>
 #include <limits>
+#include <vector>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
@@ -82,19 +83,29 @@ class GroundFlood {
 
   std::int32_t last_region() const { return num_regions_; }
 
-  /// Plan of a region: its cells are free, the cells beside it that hold an obstacle are occupied.
+  /// Plan of a region: its cells are free. Cells beside it that hold an obstacle are occupied, and those of its cells
+  /// that hold a surface thinner than a cell, which the flood reached from both sides.
   OccupancyGrid plan_of_region(std::int32_t label) const {
     OccupancyGrid plan(grid(), -1);
+    std::vector<Cell> thin;
     for (int row = 0; row < grid().height; ++row) {
       for (int col = 0; col < grid().width; ++col) {
-        if (region_.at({col, row}) != label) continue;
-        plan.at({col, row}) = 0;
+        const Cell cell{col, row};
+        if (region_.at(cell) != label) continue;
+        plan.at(cell) = 0;
         for (const auto& [dc, dr] : kNeighbors) {
           const Cell next{col + dc, row + dr};
-          if (grid().contains(next) && region_.at(next) != label && is_obstacle({col, row}, next)) plan.at(next) = 100;
+          if (!grid().contains(next)) continue;
+          if (region_.at(next) != label) {
+            if (is_obstacle(cell, next)) plan.at(next) = 100;
+          } else if (dc + dr > 0) {  // each pair once
+            if (const std::optional<double> distance_m = wall_distance_m(cell, next))
+              thin.push_back(*distance_m < 0.5 * grid().resolution_m ? cell : next);
+          }
         }
       }
     }
+    for (const Cell cell : thin) plan.at(cell) = 100;
     return plan;
   }
 
@@ -123,12 +134,22 @@ class GroundFlood {
     return floor_m;
   }
 
-  /// Whether a surface is between the centers of two neighboring cells at a height above the ground of the first.
-  bool is_blocked(Cell from, Cell to, double above_m) const {
+  /// Distance of the first surface from the center of a cell to that of its neighbor, at a height above the ground of
+  /// the first; none without a surface between them.
+  std::optional<double> surface_between_m(Cell from, Cell to, double above_m) const {
     const Eigen::Vector2d p = grid().center_of(from), step = grid().center_of(to) - p;
     const Eigen::Vector3d origin(p.x(), p.y(), static_cast<double>(ground_m_.at(from)) + above_m);
     const Eigen::Vector3d direction(step.x() / step.norm(), step.y() / step.norm(), 0.0);
-    return scene_.cast(origin, direction, step.norm(), sim::kRayEverything).has_value();
+    const auto hit = scene_.cast(origin, direction, step.norm(), sim::kRayEverything);
+    return hit ? std::optional(hit->distance_m) : std::nullopt;
+  }
+
+  /// Distance of the first surface between two neighboring cells at the heights at which a robot is blocked.
+  std::optional<double> wall_distance_m(Cell from, Cell to) const {
+    for (const double above_m : {settings_.max_step_m + settings_.min_obstacle_m, 0.5 * settings_.height_m}) {
+      if (const std::optional<double> distance_m = surface_between_m(from, to, above_m)) return distance_m;
+    }
+    return std::nullopt;
   }
 
   /// Ground of a neighboring cell that can be reached from `from`.
@@ -136,10 +157,7 @@ class GroundFlood {
     const double ground_m = static_cast<double>(ground_m_.at(from));
     const std::optional<double> height_m = surface_below_m(grid().center_of(to), ground_m + settings_.height_m);
     if (!height_m || std::abs(*height_m - ground_m) > settings_.max_step_m) return std::nullopt;
-    for (const double above_m : {settings_.max_step_m + settings_.min_obstacle_m, 0.5 * settings_.height_m}) {
-      if (is_blocked(from, to, above_m)) return std::nullopt;
-    }
-    return height_m;
+    return wall_distance_m(from, to) ? std::nullopt : height_m;
   }
 
   /// Whether a cell beside a ground cell holds a surface above the ground, or is behind one.
@@ -147,8 +165,7 @@ class GroundFlood {
     const double ground_m = static_cast<double>(ground_m_.at(from));
     const std::optional<double> height_m = surface_below_m(grid().center_of(to), ground_m + settings_.height_m);
     if (height_m && *height_m - ground_m > settings_.min_obstacle_m) return true;
-    return is_blocked(from, to, settings_.max_step_m + settings_.min_obstacle_m) ||
-           is_blocked(from, to, 0.5 * settings_.height_m);
+    return wall_distance_m(from, to).has_value();
   }
 
   sim::LidarScene scene_;

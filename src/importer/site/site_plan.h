@@ -20,9 +20,9 @@ struct SitePlanSettings {
 };
 
 /// Returns the floor plan of a site by what its lidars see: cells of the connected ground are free, cells with a
-/// surface up to `height_m` above it are occupied, all others are unknown. The ground is the lowest surface that faces
-/// up with the height above it; it is flooded from the cell at `p_start_m`, or from the start that floods the largest
-/// region. Throws InputError if there is no ground.
+/// surface up to `height_m` above it are occupied, also of walls that are thinner than a cell; all others are unknown.
+/// The ground is the lowest surface that faces up with the height above it; it is flooded from the cell at `p_start_m`,
+/// or from the start that floods the largest region. Throws InputError if there is no ground.
 OccupancyGrid plan_of(const mjModel& site, const std::optional<Eigen::Vector2d>& p_start_m,
                       const SitePlanSettings& settings = {});
 

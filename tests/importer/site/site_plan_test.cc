@@ -41,6 +41,26 @@ TEST(SitePlan, TheGroundOfARoomIsFreeItsWallsAndATableAreOccupiedAndTheFieldOuts
   EXPECT_NEAR(occupied, 24.0 / 0.05, 60);
 }
 
+TEST(SitePlan, AWallOf2cmAndASheetWithGroundOnBothSidesAreOneOccupiedCellThickAndTheDoorBesideThemIsFree) {
+  const sim::ModelPtr site = sim::compile(*sim::parse_spec(R"(<mujoco><worldbody>
+  <geom type="plane" size="20 20 1"/>
+  <geom type="box" size="0.01 1 1.25" pos="1.003 0 1.25"/>
+  <geom type="box" size="1 0.0001 0.5" pos="0 1.491 0.5"/>
+  </worldbody></mujoco>)"),
+                                          "partitions");
+  const OccupancyGrid plan = plan_of(*site, Eigen::Vector2d(0.0, 0.0));
+  const auto count_occupied = [&](const Eigen::Vector2d& from, const Eigen::Vector2d& step) {
+    int count = 0;
+    for (int i = -4; i <= 4; ++i) count += value_at(plan, from.x() + i * step.x(), from.y() + i * step.y()) == 100;
+    return count;
+  };
+  for (const double along : {-0.9, -0.5, 0.0, 0.5, 0.9}) {
+    EXPECT_EQ(count_occupied({1.003, along}, {0.05, 0.0}), 1) << along;
+    EXPECT_EQ(count_occupied({along, 1.491}, {0.0, 0.05}), 1) << along;
+  }
+  EXPECT_EQ(count_occupied({1.003, 1.2}, {0.05, 0.0}), 0);
+}
+
 TEST(SitePlan, WithoutAStartTheLargestGroundIsTaken) {
   const sim::ModelPtr site = sim::compile(*sim::parse_spec(kRoom), "room");
   const OccupancyGrid plan = plan_of(*site, std::nullopt, {.margin_m = 10.0});
