@@ -76,7 +76,7 @@ std::optional<importer::ImportedSite> import_log_site(const importer::SiteImport
   if (!for_each_scan(options.file, settings, "walls", add_hits)) return std::nullopt;
   importer::ImportedSite site = importer::site_of_walls(plan, walls, options.file.filename().string(), options);
   importer::MissionOptions mission = options.mission;
-  if (!mission.start && !path.empty()) mission.start = path.front();
+  if (!mission.start && !path.empty()) mission.start = path.front(), mission.start_is_recorded = true;
   if (mission.start) site.T_site_start = *mission.start;
   importer::add_mission(mission, site);
   if (!site.route) add_recorded_path(path, mission, site);

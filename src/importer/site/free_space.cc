@@ -17,15 +17,19 @@ namespace {
 
 constexpr double kAccuracy_m = 0.3;  // position tolerance of a station
 
-/// Returns the cells with enough clearance to the next cell that is not free.
-Grid<std::uint8_t> cells_with_clearance(const OccupancyGrid& plan, double min_clearance_m) {
-  const GridGeometry& grid = plan.geometry();
-  std::vector<std::uint8_t> is_blocked(grid.size());
+/// Returns the squared distance of each cell to the next cell that is not free, in cells.
+std::vector<double> squared_clearances(const OccupancyGrid& plan) {
+  std::vector<std::uint8_t> is_blocked(plan.geometry().size());
   std::transform(plan.values().begin(), plan.values().end(), is_blocked.begin(),
                  [](std::int8_t percent) { return static_cast<std::uint8_t>(is_free(percent) ? 0 : 1); });
-  const std::vector<double> squared = squared_distances(is_blocked, grid.width, grid.height);
-  const double min_cells = min_clearance_m / grid.resolution_m;
-  Grid<std::uint8_t> result(grid);
+  return squared_distances(is_blocked, plan.geometry().width, plan.geometry().height);
+}
+
+/// Returns the cells with enough clearance to the next cell that is not free.
+Grid<std::uint8_t> cells_with_clearance(const OccupancyGrid& plan, double min_clearance_m) {
+  const std::vector<double> squared = squared_clearances(plan);
+  const double min_cells = min_clearance_m / plan.geometry().resolution_m;
+  Grid<std::uint8_t> result(plan.geometry());
   for (std::size_t i = 0; i < squared.size(); ++i) result.values()[i] = squared[i] >= min_cells * min_cells ? 1 : 0;
   return result;
 }
@@ -99,6 +103,24 @@ bool FreeSpace::contains(const Eigen::Vector2d& p_m) const {
 
 Eigen::Vector2d FreeSpace::nearest(const Eigen::Vector2d& p_m) const {
   return grid_.center_of(*nearest_open(region_, p_m));
+}
+
+PlaceCheck::PlaceCheck(const OccupancyGrid& plan, double min_clearance_m)
+    : plan_(plan), min_clearance_m_(min_clearance_m), clearance_m_(plan.geometry()) {
+  const std::vector<double> squared = squared_clearances(plan);
+  std::transform(squared.begin(), squared.end(), clearance_m_.values().begin(),
+                 [&](double cells) { return std::sqrt(cells) * plan.geometry().resolution_m; });
+}
+
+std::optional<std::string> PlaceCheck::problem_at(const Eigen::Vector2d& p_m) const {
+  const Cell cell = plan_.geometry().cell_at(p_m);
+  if (!plan_.geometry().contains(cell)) return "outside the floor plan";
+  if (is_occupied(plan_.at(cell))) return "in a wall or an obstacle of the floor plan";
+  if (!is_free(plan_.at(cell))) return "not on the free ground of the floor plan";
+  const double clearance_m = clearance_m_.at(cell);
+  if (clearance_m >= min_clearance_m_) return std::nullopt;
+  return fmt::format("{:.2f} m from walls or unknown space: the robot needs at least {:.2f} m", clearance_m,
+                     min_clearance_m_);
 }
 
 std::vector<Station> random_stations(const FreeSpace& space, const Pose2& start, int count, std::uint64_t seed,

@@ -30,6 +30,21 @@ class FreeSpace {
   std::vector<Eigen::Vector2d> cells_m_;
 };
 
+/// Check of places in a floor plan at which a robot shall stand.
+class PlaceCheck {
+ public:
+  /// `min_clearance_m`: minimum distance to cells that are occupied or unknown.
+  PlaceCheck(const OccupancyGrid& plan, double min_clearance_m);
+
+  /// Returns what is wrong with a place, such as "outside the floor plan"; none if a robot can stand there.
+  std::optional<std::string> problem_at(const Eigen::Vector2d& p_m) const;
+
+ private:
+  OccupancyGrid plan_;
+  double min_clearance_m_;
+  Grid<double> clearance_m_;  ///< distance to the nearest cell that is not free
+};
+
 /// Returns `count` stations at random cells of a region, at least `separation_m` apart while there is room, half of it
 /// when 100 draws found none, and so on. Each faces away from the one before; the first one from the start. A last
 /// station, "home", is the start.

@@ -1,4 +1,7 @@
 #include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -16,24 +19,100 @@ constexpr double kStationAccuracy_m = 0.3;
 
 /// Returns the stations of a table; the last one ends the mission. Without a heading, a robot arrives from the station
 /// before.
-std::vector<Station> stations_of_table(const std::filesystem::path& file, const Pose2& start) {
+std::vector<Station> stations_of(const std::vector<io::TourStation>& rows, const Pose2& start) {
   std::vector<Station> stations;
-  Eigen::Vector2d last = start.position();
-  for (const io::TourStation& row : io::load_tour_stations(file)) {
-    const Eigen::Vector2d p(row.x, row.y), moved = p - last;
-    stations.push_back(
-        {.number = static_cast<int>(stations.size()) + 1,
-         .name = row.name,
-         .type = StationType::kPass,
-         .T_route_body = {p.x(), p.y(), row.heading_deg ? to_rad(*row.heading_deg) : std::atan2(moved.y(), moved.x())},
-         .accuracy_m = kStationAccuracy_m,
-         .priority = row.priority,
-         .earliest_s = row.earliest_s,
-         .latest_s = row.latest_s});
-    last = p;
+  Pose2 last = start;
+  for (const io::TourStation& row : rows) {
+    const Eigen::Vector2d p(row.x, row.y), moved = p - last.position();
+    const double arrival = moved.norm() > 1e-9 ? std::atan2(moved.y(), moved.x()) : last.yaw;
+    last = {p.x(), p.y(), row.heading_deg ? to_rad(*row.heading_deg) : arrival};
+    stations.push_back({.number = static_cast<int>(stations.size()) + 1,
+                        .name = row.name,
+                        .type = StationType::kPass,
+                        .T_route_body = last,
+                        .accuracy_m = kStationAccuracy_m,
+                        .priority = row.priority,
+                        .earliest_s = row.earliest_s,
+                        .latest_s = row.latest_s});
   }
   stations.back().type = StationType::kHome;
   return stations;
+}
+
+InputError station_error(const MissionOptions& options, const io::TourStation& row, const std::string& what) {
+  return input_error(options.stations.string(), row.line,
+                     fmt::format("{}: ({:g}, {:g}): {}", row.name, row.x, row.y, what));
+}
+
+/// Gives a site without a floor plan one: that of the ground at a place, or the largest one.
+void require_plan(const std::optional<Eigen::Vector2d>& near, const std::string& ground, ImportedSite& site) {
+  if (site.map) return;
+  site.map = plan_of(*compile_site(site), near);
+  site.assumptions.push_back({"map",
+                              fmt::format("floor plan of the {} ground by what lidars see, cells of {:g} m", ground,
+                                          site.map->geometry().resolution_m),
+                              "--start"});
+}
+
+/// Refuses a start that the options name and at which the robot cannot stand.
+void check_start(const MissionOptions& options, const ImportedSite& site) {
+  if (!options.start || options.start_is_recorded) return;
+  const Pose2& start = *options.start;
+  if (const auto problem = PlaceCheck(*site.map, options.clearance_m).problem_at(start.position()))
+    throw InputError(fmt::format("--start {:g},{:g}: {}", start.x, start.y, *problem));
+}
+
+/// Start at the first station with its heading, otherwise toward the next one.
+Pose2 start_at_first(const std::vector<io::TourStation>& rows) {
+  const io::TourStation& first = rows.front();
+  double yaw = 0.0;
+  if (first.heading_deg) yaw = to_rad(*first.heading_deg);
+  else if (rows.size() > 1) yaw = std::atan2(rows[1].y - first.y, rows[1].x - first.x);
+  return {first.x, first.y, yaw};
+}
+
+void add_table_mission(const MissionOptions& options, ImportedSite& site) {
+  const std::vector<io::TourStation> rows = io::load_tour_stations(options.stations);
+  const Pose2 start = options.start ? *options.start : start_at_first(rows);
+  try {
+    require_plan(start.position(), options.start ? "start's" : "first station's", site);
+  } catch (const InputError& error) {
+    if (options.start) throw;
+    throw station_error(options, rows.front(), error.what());
+  }
+  check_start(options, site);
+  const PlaceCheck check(*site.map, options.clearance_m);
+  const FreeSpace connected(*site.map, 0.5 * site.map->geometry().resolution_m, start.position());
+  for (const io::TourStation& row : rows) {
+    const Eigen::Vector2d p(row.x, row.y);
+    if (const auto problem = check.problem_at(p)) throw station_error(options, row, *problem);
+    if (!connected.contains(p))
+      throw station_error(options, row, "not connected to the start by free ground of the floor plan");
+  }
+  if (!options.start)
+    site.assumptions.push_back(
+        {"start",
+         fmt::format("at the first station, ({:.2f}, {:.2f}), heading {:.0f}", start.x, start.y, to_deg(start.yaw)),
+         "--start"});
+  site.T_site_start = start;
+  site.route = Route{.stations = stations_of(rows, start)};
+}
+
+void add_random_mission(const MissionOptions& options, ImportedSite& site) {
+  const std::optional<Eigen::Vector2d> near = options.start ? std::optional(options.start->position()) : std::nullopt;
+  require_plan(near, near ? "start's" : "largest connected", site);
+  check_start(options, site);
+  const FreeSpace space(*site.map, options.clearance_m, near);
+  if (options.start) {
+    site.T_site_start = *options.start;
+  } else {  // the first random station
+    const std::vector<Station> first = random_stations(space, {}, 1, options.seed);
+    site.T_site_start = {first[0].T_route_body.x, first[0].T_route_body.y, 0.0};
+    site.assumptions.push_back(
+        {"start", fmt::format("drawn at ({:.2f}, {:.2f}), heading 0", site.T_site_start.x, site.T_site_start.y),
+         "--start"});
+  }
+  site.route = Route{.stations = random_stations(space, site.T_site_start, options.num_random, options.seed)};
 }
 
 }  // namespace
@@ -42,31 +121,8 @@ void add_mission(const MissionOptions& options, ImportedSite& site) {
   site.robot = options.robot;
   if (!options.stations.empty() && options.num_random > 0)
     throw InputError("--stations and --random-stations are mutually exclusive: only one of them is allowed");
-  if (!options.stations.empty()) {
-    if (options.start) site.T_site_start = *options.start;
-    site.route = Route{.stations = stations_of_table(options.stations, site.T_site_start)};
-  } else if (options.num_random > 0) {
-    const std::optional<Eigen::Vector2d> near = options.start ? std::optional(options.start->position()) : std::nullopt;
-    if (!site.map) {
-      site.map = plan_of(*compile_site(site), near);
-      site.assumptions.push_back(
-          {"map",
-           fmt::format("floor plan of the {} ground by what lidars see, cells of {:g} m",
-                       near ? "start's" : "largest connected", site.map->geometry().resolution_m),
-           "--start"});
-    }
-    const FreeSpace space(*site.map, options.clearance_m, near);
-    if (options.start) {
-      site.T_site_start = *options.start;
-    } else {  // the first random station
-      const std::vector<Station> first = random_stations(space, {}, 1, options.seed);
-      site.T_site_start = {first[0].T_route_body.x, first[0].T_route_body.y, 0.0};
-      site.assumptions.push_back(
-          {"start", fmt::format("drawn at ({:.2f}, {:.2f}), heading 0", site.T_site_start.x, site.T_site_start.y),
-           "--start"});
-    }
-    site.route = Route{.stations = random_stations(space, site.T_site_start, options.num_random, options.seed)};
-  }
+  if (!options.stations.empty()) add_table_mission(options, site);
+  else if (options.num_random > 0) add_random_mission(options, site);
 }
 
 }  // namespace patrol::importer

@@ -20,7 +20,8 @@ struct MissionOptions {
   int num_random = 0;               ///< number of random stations in free space
   std::uint64_t seed = 1;           ///< seed of random stations
   std::optional<Pose2> start = {};  ///< in site; none: by rule
-  double clearance_m = 0.5;         ///< distance of random stations from walls and unknown space
+  bool start_is_recorded = false;   ///< the start is that of a recorded path, which needs no clearance
+  double clearance_m = 0.5;         ///< distance of start and stations from walls and unknown space
   std::string robot = "wheeled";    ///< robot of the scenario
 };
 
@@ -40,8 +41,10 @@ struct SiteImportOptions {
   ImportProgress on_progress = {};  ///< scans and points: called during the import; empty: not called
 };
 
-/// Gives a site the mission of the options; without stations it has none. Random stations of a site
-/// without a floor plan add one (site_plan.h). Throws InputError.
+/// Gives a site the mission of the options; without stations it has none. A site without a floor plan gets one
+/// (site_plan.h). Without a start, the mission begins at the first station of the table or at a random place. Throws
+/// InputError if the start or a station is outside the free ground of the plan, has too little clearance, or is not
+/// connected to the start.
 void add_mission(const MissionOptions& options, ImportedSite& site);
 
 /// Reads a site file of any known kind, chosen by its extension, and adds its mission. Throws InputError with one line,

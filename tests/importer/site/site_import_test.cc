@@ -87,7 +87,7 @@ TEST_F(PlanImport, RandomStationsAreAMissionInTheFreeSpaceOfThePlan) {
 
 TEST_F(PlanImport, ATableOfStationsIsAMissionThatEndsAtTheLastOneAndFacesAwayFromTheOneBefore) {
   test::write_bytes(folder_ / "stations.csv", "name,x,y,heading_deg\npump,1.0,0.0,\nvalve,1.0,1.0,180\n");
-  const ImportedSite site = import_site(options({.stations = folder_ / "stations.csv"}));
+  const ImportedSite site = import_site(options({.stations = folder_ / "stations.csv", .start = Pose2{}}));
   ASSERT_TRUE(site.route);
   ASSERT_EQ(site.route->stations.size(), 2u);
   EXPECT_EQ(site.route->stations[0].name, "pump");
@@ -95,6 +95,45 @@ TEST_F(PlanImport, ATableOfStationsIsAMissionThatEndsAtTheLastOneAndFacesAwayFro
   EXPECT_NEAR(site.route->stations[0].T_route_body.yaw, 0.0, 1e-12);
   EXPECT_NEAR(site.route->stations[1].T_route_body.yaw, M_PI, 1e-12);
   EXPECT_EQ(site.route->stations[1].type, StationType::kHome);
+}
+
+TEST_F(PlanImport, WithoutAStartATableStartsAtItsFirstStationTowardTheSecondWithARowThatNamesTheOption) {
+  test::write_bytes(folder_ / "stations.csv", "name,x,y\npump,1.0,-0.5\nvalve,1.0,0.5\n");
+  const ImportedSite site = import_site(options({.stations = folder_ / "stations.csv"}));
+  EXPECT_EQ(site.T_site_start.x, 1.0);
+  EXPECT_EQ(site.T_site_start.y, -0.5);
+  EXPECT_NEAR(site.T_site_start.yaw, 0.5 * M_PI, 1e-12);
+  EXPECT_NEAR(site.route->stations[0].T_route_body.yaw, 0.5 * M_PI, 1e-12);
+  EXPECT_EQ(site.assumptions.back().subject, "start");
+  EXPECT_EQ(site.assumptions.back().override_with, "--start");
+}
+
+TEST_F(PlanImport, StationsOutsideInAWallWithTooLittleClearanceOrBehindAWallAreRefusedWithTheirLine) {
+  OccupancyGrid plan = room_plan();
+  for (int row = 9; row <= 40; ++row) plan.at({20, row}) = 100;
+  io::save_map(folder_ / "room.yaml", plan);
+  const auto expect_refusal = [&](const std::string& row, const std::string& what) {
+    test::write_bytes(folder_ / "s.csv", "name,x,y\npump,1,0\n" + row + "\n");
+    EXPECT_THAT([&] { import_site(options({.stations = folder_ / "s.csv"})); },
+                ThrowsMessage<InputError>(HasSubstr("s.csv:3: valve: (" + what)));
+  };
+  expect_refusal("valve,400,0", "400, 0): outside the floor plan");
+  expect_refusal("valve,1,1.55", "1, 1.55): in a wall or an obstacle");
+  expect_refusal("valve,-2.5,0", "-2.5, 0): not on the free ground");
+  expect_refusal("valve,1,1.3", "1, 1.3): 0.30 m from walls or unknown space: the robot needs at least 0.50 m");
+  expect_refusal("valve,-1.5,0", "-1.5, 0): not connected to the start");
+}
+
+TEST_F(PlanImport, AStartOutsideOrInAWallIsRefusedWithATableAndWithRandomStations) {
+  test::write_bytes(folder_ / "s.csv", "name,x,y\npump,1,0\n");
+  for (MissionOptions mission : {MissionOptions{.stations = folder_ / "s.csv"}, MissionOptions{.num_random = 1}}) {
+    mission.start = Pose2{40.0, 0.0, 0.0};
+    EXPECT_THAT([&] { import_site(options(mission)); },
+                ThrowsMessage<InputError>(HasSubstr("--start 40,0: outside the floor plan")));
+    mission.start = Pose2{-2.05, 0.0, 0.0};
+    EXPECT_THAT([&] { import_site(options(mission)); },
+                ThrowsMessage<InputError>(HasSubstr("--start -2.05,0: in a wall")));
+  }
 }
 
 TEST_F(PlanImport, WrongInputsAreRefusedAndNothingIsWritten) {
