@@ -86,6 +86,13 @@ void check(const ImportedSite& site) {
 
 }  // namespace
 
+void use_height_fields_as_ground(ImportedSite& site) {
+  for (const SiteShape& shape : site.shapes) {
+    const bool has_contact = shape.use == ShapeUse::kSolid || shape.use == ShapeUse::kContactOnly;
+    if (shape.type == SiteShapeType::kHeightField && has_contact) site.ground.all.geoms.push_back(shape.name);
+  }
+}
+
 void write_site(const ImportedSite& site, const std::filesystem::path& folder) {
   require_folder_name(site.name, site.source, "site");
   check(site);

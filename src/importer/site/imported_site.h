@@ -85,6 +85,9 @@ struct ImportedSite {
   std::vector<Assumption> assumptions = {};
 };
 
+/// Makes the height fields with contact ground of the site: on a slope, the wheels of a robot are at different heights.
+void use_height_fields_as_ground(ImportedSite& site);
+
 /// Returns the MJCF of a site, in which meshes, height fields and textures are files below its folder.
 std::string to_mjcf(const ImportedSite& site);
 

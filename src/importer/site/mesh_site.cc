@@ -171,6 +171,7 @@ ImportedSite read_mesh_site(const SiteImportOptions& options) {
   site.files = std::move(scene.textures);
   std::move(contact.shapes.begin(), contact.shapes.end(), std::back_inserter(site.shapes));
   site.assumptions.insert(site.assumptions.end(), contact.rows.begin(), contact.rows.end());
+  use_height_fields_as_ground(site);
   return site;
 }
 

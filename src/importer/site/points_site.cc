@@ -113,7 +113,7 @@ void add_contact(ImportedSite& site, const std::vector<Patch>& patches, const Sc
                            .size_m = 0.5 * boxes[i].sizes(),
                            .material = "contact"});
   }
-  site.ground.all.geoms = {"ground"};
+  use_height_fields_as_ground(site);
   site.ground.max_step_m = 0.0;
   site.assumptions.push_back(
       {"contact",

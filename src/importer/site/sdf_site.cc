@@ -187,6 +187,7 @@ ImportedSite read_sdf_site(const SiteImportOptions& options) {
   SdfSiteBuilder builder(world, site);
   builder.add_world();
   builder.add_mesh_contacts(options);
+  use_height_fields_as_ground(site);
   if (site.shapes.empty()) throw InputError(options.file.string() + ": the world has no geometry");
   return site;
 }
