@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "core/letter_case.h"
 #include "io/files/atomic_file.h"
 #include "io/files/one_line.h"
 
@@ -31,6 +32,11 @@ std::string json_of_glb(const std::filesystem::path& file, const std::string& by
 }
 
 }  // namespace
+
+bool is_gltf(const std::filesystem::path& file) {
+  const std::string extension = to_lower(file.extension().string());
+  return extension == ".gltf" || extension == ".glb";
+}
 
 GltfHeader read_gltf_header(const std::filesystem::path& file) {
   const std::string bytes = io::load_text(file);

@@ -6,6 +6,9 @@
 
 namespace patrol::importer {
 
+/// Returns whether the name of a file is that of a glTF or GLB file.
+bool is_gltf(const std::filesystem::path& file);
+
 /// Extensions of a glTF or GLB file that its header lists.
 struct GltfHeader {
   std::vector<std::string> used = {};

@@ -7,6 +7,7 @@
 #include <tinyxml2.h>
 
 #include "core/error.h"
+#include "core/letter_case.h"
 #include "io/files/atomic_file.h"
 
 namespace patrol::importer {
@@ -47,8 +48,9 @@ void check_collada(const std::filesystem::path& file) {
 }  // namespace
 
 void check_mesh_file(const std::filesystem::path& file) {
-  if (file.extension() == ".ply") check_ply_header(file);
-  if (file.extension() == ".dae") check_collada(file);
+  const std::string extension = to_lower(file.extension().string());
+  if (extension == ".ply") check_ply_header(file);
+  if (extension == ".dae") check_collada(file);
 }
 
 void check_faces(const std::filesystem::path& file, const aiScene& scene) {

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "importer/site/gltf_header.h"
 #include "importer/site/texture_image.h"
 #include "io/files/atomic_file.h"
 #include "io/files/one_line.h"
@@ -69,7 +70,7 @@ std::optional<TextureImage> decode_embedded(const aiTexture& texture) {
 MeshMaterials::MeshMaterials(const aiScene& source, const std::filesystem::path& file, std::string prefix,
                              MeshScene& scene)
     : source_(source), file_(file), prefix_(std::move(prefix)), scene_(scene) {
-  is_linear_ = file.extension() == ".gltf" || file.extension() == ".glb";
+  is_linear_ = is_gltf(file);
 }
 
 bool MeshMaterials::has_color(unsigned index) const {

@@ -16,6 +16,7 @@
 #include <tinyxml2.h>
 
 #include "core/error.h"
+#include "core/letter_case.h"
 #include "core/text.h"
 #include "importer/site/gltf_header.h"
 #include "importer/site/mesh_checks.h"
@@ -27,8 +28,6 @@ namespace patrol::importer {
 namespace {
 
 constexpr std::uintmax_t kMaxFile_bytes = std::uintmax_t{3} << 30;
-
-bool is_gltf(const std::filesystem::path& file) { return file.extension() == ".gltf" || file.extension() == ".glb"; }
 
 /// Transform of a node in double precision.
 Eigen::Affine3d to_affine(const aiMatrix4x4& m) {
@@ -165,7 +164,7 @@ void center(MeshScene& scene) {
   }
 }
 
-/// Reads <unit> and <up_axis> of a Collada file.
+/// Reads <unit>, which libassimp applies, and <up_axis> of a Collada file.
 void read_collada_asset(const std::filesystem::path& file, MeshScene& scene) {
   tinyxml2::XMLDocument document;
   scene.unit_m = 1.0;
@@ -174,6 +173,8 @@ void read_collada_asset(const std::filesystem::path& file, MeshScene& scene) {
   const tinyxml2::XMLElement* root = document.RootElement();
   const tinyxml2::XMLElement* asset = root == nullptr ? nullptr : root->FirstChildElement("asset");
   if (asset == nullptr) return;
+  if (const tinyxml2::XMLElement* unit = asset->FirstChildElement("unit"))
+    scene.applied_unit_m = unit->DoubleAttribute("meter", 1.0);
   const tinyxml2::XMLElement* up = asset->FirstChildElement("up_axis");
   if (up == nullptr || up->GetText() == nullptr) return;
   const std::string text = up->GetText();
@@ -251,6 +252,7 @@ MeshScene read_mesh_scene(const std::filesystem::path& file, const std::string& 
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) throw InputError(file.string() + ": mesh file not found");
   if (std::filesystem::file_size(file, error) > kMaxFile_bytes) throw InputError(file.string() + ": larger than 3 GiB");
+  const std::string extension = patrol::to_lower(file.extension().string());
   MeshScene scene;
   if (is_gltf(file)) {
     const GltfHeader header = read_gltf_header(file);
@@ -259,9 +261,9 @@ MeshScene read_mesh_scene(const std::filesystem::path& file, const std::string& 
     scene.unit_m = 1.0;
     scene.up = 'y';
   }
-  if (file.extension() == ".dae") read_collada_asset(file, scene);
+  if (extension == ".dae") read_collada_asset(file, scene);
   check_mesh_file(file);
-  if (file.extension() == ".obj") check_material_libraries(file, scene);
+  if (extension == ".obj") check_material_libraries(file, scene);
   Assimp::Importer importer;
   const aiScene& source = read_scene(file, importer);
   MeshMaterials materials(source, file, prefix, scene);

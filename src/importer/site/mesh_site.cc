@@ -104,13 +104,14 @@ SceneFrame frame_of(const MeshScene& scene, double scale, const std::string& up)
   if (!up.empty()) frame.up = up.front();
   else if (scene.up != 0) frame.up = scene.up;
   else frame.up = up_by_rule(scene, box, frame);
-  if (scale > 0.0) frame.unit_m = scale;
+  if (scale > 0.0) frame.unit_m = scale / scene.applied_unit_m;
   else if (scene.unit_m > 0.0) frame.unit_m = scene.unit_m;
   else frame.unit_m = unit_by_rule(box, frame.up, frame);
   if (up.empty() && scene.up != 0)
     frame.rows.push_back({"up axis", fmt::format("{}, by the format", scene.up), "--up"});
   if (scale <= 0.0 && scene.unit_m > 0.0)
-    frame.rows.push_back({"scale", fmt::format("{:g} m per unit, by the format", scene.unit_m), "--scale"});
+    frame.rows.push_back(
+        {"scale", fmt::format("{:g} m per unit, by the format", scene.unit_m * scene.applied_unit_m), "--scale"});
   return frame;
 }
 
@@ -170,8 +171,8 @@ ImportedSite read_mesh_site(const SiteImportOptions& options) {
   site.materials.push_back(contact_material());
   site.files = std::move(scene.textures);
   std::move(contact.shapes.begin(), contact.shapes.end(), std::back_inserter(site.shapes));
-  site.assumptions.insert(site.assumptions.end(), contact.rows.begin(), contact.rows.end());
   use_height_fields_as_ground(site);
+  site.assumptions.insert(site.assumptions.end(), contact.rows.begin(), contact.rows.end());
   return site;
 }
 

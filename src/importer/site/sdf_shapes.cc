@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "importer/site/gltf_header.h"
 #include "importer/site/mesh_site.h"
 #include "importer/site/polygon_mesh.h"
 #include "importer/site/texture_image.h"
@@ -103,15 +104,18 @@ std::string SdfShapes::material_of(const sdf::Visual& visual) {
     const auto found = std::find_if(kGazeboColors.begin(), kGazeboColors.end(),
                                     [&](const GazeboColor& color) { return color.name == spelled; });
     if (found != kGazeboColors.end()) rgba.head<3>() = Eigen::Vector3d(found->r, found->g, found->b);
-    const Assumption row = {"script " + script, "unknown material: gray", "<diffuse>"};
-    const bool is_new = std::none_of(site_.assumptions.begin(), site_.assumptions.end(),
-                                     [&](const Assumption& other) { return other.subject == row.subject; });
-    if (found == kGazeboColors.end() && is_new) site_.assumptions.push_back(row);
+    else add_row_once({"script " + script, "unknown material: gray", "<diffuse>"});
   } else if (opacity >= 1.0) {
     return {};
   }
   rgba[3] *= opacity;
   return add_material(script.empty() ? "color" : script, rgba);
+}
+
+void SdfShapes::add_row_once(const Assumption& row) {
+  const bool is_new = std::none_of(site_.assumptions.begin(), site_.assumptions.end(),
+                                   [&](const Assumption& other) { return other.subject == row.subject; });
+  if (is_new) site_.assumptions.push_back(row);
 }
 
 const MeshScene& SdfShapes::scene_of(const sdf::Mesh& mesh) {
@@ -126,9 +130,8 @@ const MeshScene& SdfShapes::scene_of(const sdf::Mesh& mesh) {
   } catch (const InputError& error) {
     world_.fail(element, error.what());
   }
-  const bool is_gltf = file.extension() == ".gltf" || file.extension() == ".glb";
-  to_site_axes(scene, {.unit_m = 1.0, .up = is_gltf ? 'y' : 'z'});
-  if (!is_gltf && scene.up == 'y')
+  to_site_axes(scene, {.unit_m = 1.0, .up = is_gltf(file) ? 'y' : 'z'});
+  if (!is_gltf(file) && scene.up == 'y')
     site_.assumptions.push_back(
         {"mesh " + file.filename().string(), "its up axis is not applied, as in RViz", "the file"});
   for (const Assumption& row : scene.rows)
@@ -180,8 +183,8 @@ SiteShape SdfShapes::height_map(const sdf::Heightmap& map, const SiteShape& comm
   }
   const ignition::math::Vector3d& p = map.Position();
   shape.T_site_shape = common.T_site_shape * Pose3{{p.X(), p.Y(), p.Z()}, Eigen::Quaterniond::Identity()};
-  site_.assumptions.push_back({"heightmap " + file.filename().string(),
-                               "heights of 8 bits; textures and blends are ignored; one color", "a mesh"});
+  add_row_once({"heightmap " + file.filename().string(),
+                "heights of 8 bits; textures and blends are ignored; one color", "a mesh"});
   return shape;
 }
 

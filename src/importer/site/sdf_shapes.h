@@ -31,6 +31,7 @@ class SdfShapes {
   std::string unique_name(const std::string& wanted);
 
  private:
+  void add_row_once(const Assumption& row);
   std::string add_material(const std::string& name, const Eigen::Vector4d& rgba);
   std::vector<SiteShape> mesh_shapes(const sdf::Mesh& mesh, const std::string& name, const Pose3& T_site_shape,
                                      const std::string& material);

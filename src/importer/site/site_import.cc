@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/letter_case.h"
 #include "core/text.h"
 #include "importer/site/mesh_site.h"
 #include "importer/site/mjcf_site.h"
@@ -44,9 +45,10 @@ constexpr std::array kReaders = std::to_array<SiteReader>({
 
 ImportedSite read_site(const SiteImportOptions& options) {
   if (std::filesystem::is_directory(options.file)) return read_scans_site(options);
+  const std::string extension = to_lower(options.file.extension().string());
   std::vector<std::string> known;
   for (const SiteReader& reader : kReaders) {
-    if (options.file.extension() == reader.extension) return reader.read(options);
+    if (extension == reader.extension) return reader.read(options);
     known.emplace_back(reader.extension);
   }
   throw InputError(

@@ -8,6 +8,7 @@
 
 #include <png.h>
 
+#include "core/letter_case.h"
 #include "io/images/libav_function.h"
 
 extern "C" {
@@ -39,7 +40,7 @@ AVCodecID codec_of(std::string_view bytes, const std::string& extension) {
   if (bytes.starts_with("GIF8"sv)) return AV_CODEC_ID_GIF;
   if (bytes.starts_with("II*\0"sv) || bytes.starts_with("MM\0*"sv)) return AV_CODEC_ID_TIFF;
   if (bytes.starts_with("RIFF"sv) && bytes.substr(0, 12).ends_with("WEBP"sv)) return AV_CODEC_ID_WEBP;
-  return extension == ".tga" || extension == ".TGA" ? AV_CODEC_ID_TARGA : AV_CODEC_ID_NONE;
+  return to_lower(extension) == ".tga" ? AV_CODEC_ID_TARGA : AV_CODEC_ID_NONE;
 }
 
 using Picture = std::unique_ptr<AVFrame, FreePicture>;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/letter_case.h"
 #include "io/points/pcd.h"
 #include "io/points/ply.h"
 #include "io/points/point_table.h"
@@ -12,9 +13,10 @@ namespace patrol::io {
 RelativePoints load_points(const std::filesystem::path& file, const std::optional<Eigen::Vector3d>& origin) {
   PointShift shift{.origin = origin, .num_dropped = 0};
   RelativePoints relative;
-  if (file.extension() == ".ply") {
+  const std::string extension = to_lower(file.extension().string());
+  if (extension == ".ply") {
     relative.points = load_shifted_ply(file, shift);
-  } else if (file.extension() == ".pcd") {
+  } else if (extension == ".pcd") {
     relative.points = load_shifted_pcd(file, shift);
   } else {
     throw InputError(fmt::format("{}: extension of a point cloud must be .ply or .pcd", file.string()));

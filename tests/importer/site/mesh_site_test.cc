@@ -189,8 +189,9 @@ TEST(MeshSite, UnitsAndTheUpAxisOfAnObjFollowTheRulesAndTheOptions) {
   EXPECT_EQ(centimeters.assumption("scale"), "");
 }
 
-TEST(MeshSite, ColladaUnitsAndUpAxisAreThoseOfTheFile) {
-  const std::string dae =
+/// Collada file in centimeters with a quadrilateral.
+std::string collada_floor(const std::string& up_axis, const std::string& corners) {
+  return fmt::format(
       R"(<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
 <asset><unit name="centimeter" meter="0.01"/><up_axis>{}</up_axis></asset>
 <library_geometries><geometry id="g"><mesh><source id="p"><float_array id="a" count="12">{}</float_array><technique_common>
@@ -198,11 +199,40 @@ TEST(MeshSite, ColladaUnitsAndUpAxisAreThoseOfTheFile) {
 </technique_common></source><vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
 <triangles count="2"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2 0 2 3</p></triangles></mesh></geometry></library_geometries>
 <library_visual_scenes><visual_scene id="s"><node><instance_geometry url="#g"/></node></visual_scene></library_visual_scenes>
-<scene><instance_visual_scene url="#s"/></scene></COLLADA>)";
-  SiteFileImport z("floor.dae", fmt::format(fmt::runtime(dae), "Z_UP", "0 0 0 500 0 0 500 400 0 0 400 0"));
+<scene><instance_visual_scene url="#s"/></scene></COLLADA>)",
+      up_axis, corners);
+}
+
+TEST(MeshSite, ColladaUnitsAndUpAxisAreThoseOfTheFile) {
+  SiteFileImport z("floor.dae", collada_floor("Z_UP", "0 0 0 500 0 0 500 400 0 0 400 0"));
   EXPECT_THAT(box_of_shape(seen(z.read())).max(), VectorNear(Eigen::Vector3d(5, 4, 0), 1e-6));
-  SiteFileImport y("floor.dae", fmt::format(fmt::runtime(dae), "Y_UP", "0 0 0 500 0 0 500 0 -400 0 0 -400"));
+  SiteFileImport y("floor.dae", collada_floor("Y_UP", "0 0 0 500 0 0 500 0 -400 0 0 -400"));
   EXPECT_THAT(box_of_shape(seen(y.read())).max(), VectorNear(Eigen::Vector3d(5, 4, 0), 1e-6));
+}
+
+TEST(MeshSite, TheScaleOptionReplacesTheUnitOfACollada) {
+  SiteFileImport millimeters("floor.dae", collada_floor("Z_UP", "0 0 0 500 0 0 500 400 0 0 400 0"));
+  millimeters.read();
+  EXPECT_EQ(millimeters.assumption("scale"), "0.01 m per unit, by the format");
+  millimeters.options.scale = 0.02;
+  EXPECT_THAT(box_of_shape(seen(millimeters.read())).max(), VectorNear(Eigen::Vector3d(10, 8, 0), 1e-5));
+}
+
+TEST(MeshSite, UppercaseExtensionsAreKnown) {
+  SiteFileImport gltf("room.GLTF", GltfText().of(y_up(room_with_crate())));
+  EXPECT_THAT(box_of_shape(seen(gltf.read())).max(), VectorNear(Eigen::Vector3d(8, 6, 3), 1e-6));
+  EXPECT_EQ(gltf.assumption("up axis"), "y, by the format");
+  SiteFileImport dae("floor.DAE", collada_floor("Y_UP", "0 0 0 500 0 0 500 0 -400 0 0 -400"));
+  EXPECT_THAT(box_of_shape(seen(dae.read())).max(), VectorNear(Eigen::Vector3d(5, 4, 0), 1e-6));
+}
+
+TEST(MeshSite, ARampIsGroundAtAllHeightsAndAPlaneNeedsNoRule) {
+  Mesh ramp;
+  add_quad(ramp, {0, 0, 0}, {8, 0, 3}, {8, 4, 3}, {0, 4, 0});
+  SiteFileImport sloping("ramp.gltf", GltfText().of(y_up(ramp)));
+  EXPECT_THAT(sloping.read().ground.all.geoms, ::testing::ElementsAre("contact_ground"));
+  SiteFileImport level("room.gltf", GltfText().of(y_up(room_with_crate())));
+  EXPECT_THAT(level.read().ground.all.geoms, ::testing::IsEmpty());
 }
 
 TEST(MeshSite, AMirroredNodeKeepsItsFrontsOutside) {

@@ -173,6 +173,31 @@ TEST(SdfSite, AHeightmapHasTheHeightsOfItsPicture) {
   EXPECT_NEAR(10.0 - corner->distance_m, 1.0, 1e-3);  // first pixel: 0, at -x and +y
 }
 
+TEST(SdfSite, AHeightmapThatIsVisualAndCollisionIsOneRowAndItsCollisionIsGround) {
+  const std::string map = "<heightmap><uri>h.png</uri><size>8 8 2.55</size></heightmap>";
+  SiteFileImport import("a.sdf", world(model("t", visual(map) + collision(map))));
+  TextureImage image{.width = 3, .height = 3};
+  for (int i = 0; i < 9; ++i) image.rgb.insert(image.rgb.end(), 3, static_cast<std::uint8_t>(20 * i));
+  test::write_bytes(import.folder / "h.png", encode_png(image));
+  import.read();
+  int rows = 0;
+  for (const Assumption& row : import.site.assumptions) rows += row.subject == "heightmap h.png" ? 1 : 0;
+  EXPECT_EQ(rows, 1);
+  EXPECT_THAT(import.site.ground.all.geoms, ::testing::ElementsAre("t.link.collision"));
+}
+
+TEST(SdfSite, AMeshWithAnUppercaseGltfExtensionIsTurnedUpright) {
+  Mesh box, turned;
+  add_box(box, {0, 0, 0}, {1, 2, 3});
+  turned = box;
+  for (Eigen::Vector3d& v : turned.vertices_m) v = Eigen::Vector3d(v.x(), v.z(), -v.y());
+  SiteFileImport import("a.sdf", world(model("m", visual("<mesh><uri>box.GLTF</uri></mesh>"))));
+  test::write_bytes(import.folder / "box.GLTF", GltfText().of(turned));
+  Eigen::AlignedBox3d extent;
+  for (const Eigen::Vector3d& v : import.read().shapes.front().mesh.vertices_m) extent.extend(v);
+  EXPECT_THAT(extent.max(), VectorNear(Eigen::Vector3d(1, 2, 3), 1e-6));
+}
+
 TEST(SdfSite, IgnoredElementsAreRowsWithTheirNumbersAndLines) {
   SiteFileImport import(
       "a.sdf", world("<plugin name=\"a\" filename=\"a.so\"/>\n<plugin name=\"b\" filename=\"b.so\"/>\n<thing/>\n"
