@@ -121,6 +121,8 @@ struct WalkableSurface {
   bool faces_up() const { return 2 * num_up > count; }
 };
 
+/// Labels connected walkable surfaces. Top and underside of a slab stay apart, also with cells larger than the slab is
+/// thick: walkable undersides are at least `kMinFree_m` below the top.
 std::vector<WalkableSurface> label_surfaces(SurfaceSamples& samples, double rise_m) {
   std::vector<WalkableSurface> surfaces;
   std::vector<std::size_t> queue;
@@ -139,7 +141,8 @@ std::vector<WalkableSurface> label_surfaces(SurfaceSamples& samples, double rise
       samples.for_neighbors(here.cell, [&](std::size_t cell) {
         for (std::size_t i = samples.begin(cell); i < samples.end(cell); ++i) {
           SurfaceSample& next = samples.all()[i];
-          const bool is_near = std::abs(double{next.z_m} - double{here.z_m}) <= rise_m;
+          const double max_rise_m = next.faces_up == here.faces_up ? rise_m : std::min(rise_m, 0.5 * kMinFree_m);
+          const bool is_near = std::abs(double{next.z_m} - double{here.z_m}) <= max_rise_m;
           if (next.surface >= 0 || !is_near || !samples.is_walkable(i)) continue;
           next.surface = label;
           queue.push_back(i);
@@ -151,15 +154,22 @@ std::vector<WalkableSurface> label_surfaces(SurfaceSamples& samples, double rise
   return surfaces;
 }
 
-int surface_at(SurfaceSamples& samples, const GridGeometry& grid, const Eigen::Vector2d& start) {
+/// Lowest walkable surface at a point that faces up; the lowest one if none does.
+int surface_at(SurfaceSamples& samples, const std::vector<WalkableSurface>& surfaces, const GridGeometry& grid,
+               const Eigen::Vector2d& start) {
+  int lowest = -1;
   const Cell at = grid.cell_at(start);
   if (grid.contains(at)) {
     const std::size_t cell =
         static_cast<std::size_t>(at.row) * static_cast<std::size_t>(grid.width) + static_cast<std::size_t>(at.col);
     for (std::size_t i = samples.begin(cell); i < samples.end(cell); ++i) {
-      if (samples.all()[i].surface >= 0) return samples.all()[i].surface;
+      const int surface = samples.all()[i].surface;
+      if (surface < 0) continue;
+      if (surfaces[static_cast<std::size_t>(surface)].faces_up()) return surface;
+      if (lowest < 0) lowest = surface;
     }
   }
+  if (lowest >= 0) return lowest;
   throw InputError(fmt::format("--start {:g},{:g}: no walkable surface there", start.x(), start.y()));
 }
 
@@ -220,7 +230,7 @@ GroundSurface find_ground(const Mesh& mesh, const Mesh& given, const GridGeometr
   const double rise_m = grid.resolution_m, cell_m2 = grid.resolution_m * grid.resolution_m;
   SurfaceSamples samples(mesh, given, grid);
   const std::vector<WalkableSurface> surfaces = label_surfaces(samples, 1.001 * rise_m);
-  const int chosen = start ? surface_at(samples, grid, *start) : surface_by_rule(surfaces, cell_m2);
+  const int chosen = start ? surface_at(samples, surfaces, grid, *start) : surface_by_rule(surfaces, cell_m2);
   GroundSurface ground;
   ground.height_m = Grid<float>(grid);
   if (chosen < 0) {

@@ -206,6 +206,25 @@ TEST(ContactGeometry, AStartChoosesTheGround) {
   }
 }
 
+TEST(ContactGeometry, AStartOnASlabOf20cmChoosesItsTopAndNotItsUnderside) {
+  Mesh slab;
+  add_box(slab, {0, 0, -0.2}, {8, 6, 0});
+  const ContactGeometry contact = contact_geometry(slab, {}, {.start = Eigen::Vector2d(1, 1)});
+  EXPECT_EQ(ground_of(contact).type, SiteShapeType::kPlane);
+  EXPECT_NEAR(ground_of(contact).T_site_shape.position.z(), 0.0, 1e-6);
+  EXPECT_THAT(contact.rows.front().text, testing::Not(HasSubstr("face down")));
+}
+
+TEST(ContactGeometry, WithCellsOf25cmTheGroundOfAHallIsTheTopOfItsSlabOf20cmAndNotTheTopsOfItsWalls) {
+  Mesh hall;
+  add_box(hall, {0, 0, -0.2}, {12, 8, 0});
+  for (const double x : {0.0, 11.5}) add_box(hall, {x, 0, 0}, {x + 0.5, 8, 3});
+  const ContactGeometry contact = contact_geometry(hall, {}, {.cell_m = 0.25});
+  EXPECT_EQ(ground_of(contact).type, SiteShapeType::kPlane);
+  EXPECT_NEAR(ground_of(contact).T_site_shape.position.z(), 0.0, 1e-6);
+  EXPECT_NEAR(contact.ground_area_m2, 96.0, 4.0);
+}
+
 TEST(ContactGeometry, ARampBecomesAHeightFieldExactToAMillimeterAndAStepOfTwentyCentimetersABox) {
   Mesh mesh;
   add_quad(mesh, {0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0});
