@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "app/cli/command_options.h"
+#include "app/cli/number_checks.h"
 #include "core/error.h"
 
 namespace patrol::app {
@@ -47,7 +48,7 @@ void add_site(CLI::App& command, ImportSiteOptions& site) {
       ->capture_default_str()
       ->group(kSites);
   command.add_option("--scale", site.scale, "Meters per unit of the file (default: by rule)")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->group(kSites);
   command.add_option("--up", site.up, "Axis of the file that points up (default: by rule)")
       ->check(CLI::IsMember({"y", "z"}))
