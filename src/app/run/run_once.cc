@@ -12,6 +12,7 @@
 #include "app/record/run_directory.h"
 #include "app/run/make_simulator.h"
 #include "app/run/make_stack_port.h"
+#include "app/run/route_extent.h"
 #include "app/run/run_junit.h"
 #include "app/run/snapshot.h"
 #include "app/scenario/data_folders.h"
@@ -48,7 +49,9 @@ struct RunSystem {
   RunSystem(const Scenario& scenario, ScenarioFiles scenario_files, const StackContext& context)
       : files(std::move(scenario_files)),
         stack(make_stack_port(scenario, files, context)),
-        simulator(make_simulator(scenario, files, context.has_thread)) {}
+        simulator(make_simulator(scenario, files, context.has_thread)) {
+    require_stations_near(files.route, simulator.physics());
+  }
 
   ScenarioFiles files;
   std::unique_ptr<StackPort> stack;
