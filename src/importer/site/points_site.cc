@@ -47,6 +47,14 @@ std::size_t class_of(float reflectivity) {
 
 std::string name_of_class(std::size_t i) { return fmt::format("measured_{:02.0f}", 100.0 * kReflectivities[i]); }
 
+/// Meters per unit of the file.
+double unit_of_points(const SiteImportOptions& options) { return options.scale > 0.0 ? options.scale : 1.0; }
+
+/// Place of errors: the file with its folder.
+std::string error_place(const SiteImportOptions& options, const std::string& source) {
+  return options.file.empty() ? source : options.file.string();
+}
+
 /// Rotation from the frame of the file to z up.
 Eigen::Matrix3d upright(const SiteImportOptions& options) {
   if (options.up != "y") return Eigen::Matrix3d::Identity();
@@ -171,8 +179,7 @@ ImportProgress progress_of(const SiteImportOptions& options) {
 
 void add_frame_rows(ImportedSite& site, const Eigen::Vector3d& origin, std::size_t num_dropped,
                     const SiteImportOptions& options) {
-  const double scale = options.scale > 0.0 ? options.scale : 1.0;
-  site.assumptions.push_back({"scale", fmt::format("{:g} m per unit of the file", scale), "--scale"});
+  site.assumptions.push_back({"scale", fmt::format("{:g} m per unit of the file", unit_of_points(options)), "--scale"});
   site.assumptions.push_back({"up", fmt::format("axis {}", options.up.empty() ? "z" : options.up), "--up"});
   if (!origin.isZero()) {
     site.assumptions.push_back(
@@ -188,19 +195,21 @@ void add_frame_rows(ImportedSite& site, const Eigen::Vector3d& origin, std::size
 
 ImportedSite read_scans_site(const SiteImportOptions& options) {
   progress_of(options)("read scans", 0.0);
-  return site_of_scans(io::load_relative_scans(options.file), options.file.filename().string(), options);
+  return site_of_scans(io::load_relative_scans(options.file, unit_of_points(options)), options.file.filename().string(),
+                       options);
 }
 
 ImportedSite read_cloud_site(const SiteImportOptions& options) {
   progress_of(options)("read points", 0.0);
-  return site_of_cloud(io::load_points(options.file), options.file.filename().string(), options);
+  return site_of_cloud(io::load_points(options.file, {}, unit_of_points(options)), options.file.filename().string(),
+                       options);
 }
 
 ImportedSite site_of_scans(io::RelativeScans scans, const std::string& source, const SiteImportOptions& options) {
-  if (scans.scans.empty()) throw InputError(source + ": has no scans");
+  if (scans.scans.empty()) throw InputError(error_place(options, source) + ": has no scans");
   const auto progress = progress_of(options);
   ImportedSite site{.name = options.name, .source = source};
-  const Eigen::Matrix3d R = upright(options), A = (options.scale > 0.0 ? options.scale : 1.0) * R;
+  const Eigen::Matrix3d R = upright(options), A = unit_of_points(options) * R;
   float largest = 0.0f;
   std::vector<Panorama> panoramas;
   for (io::StationScan& scan : scans.scans) {
@@ -245,7 +254,7 @@ ImportedSite site_of_scans(io::RelativeScans scans, const std::string& source, c
   site.assumptions.push_back({"reflectivity", scale.rule + ", divided by the cosine of incidence", ""});
   site.assumptions.push_back(
       {"ground", "the surface around the scanners and what is connected by steps of at most 0.12 m", ""});
-  const ScannedGround ground = find_scanned_ground(patches, scanners_m, true, {}, source);
+  const ScannedGround ground = find_scanned_ground(patches, scanners_m, true, {}, error_place(options, source));
   progress("close thin objects", 0.7);
   const std::vector<Patch> sides = close_thin_objects(patches, panoramas, ground, {});
   progress("find surfaces without thin objects", 0.85);
@@ -262,7 +271,7 @@ ImportedSite site_of_cloud(io::RelativePoints cloud, const std::string& source, 
   const auto progress = progress_of(options);
   progress("find surfaces", 0.3);
   ImportedSite site{.name = options.name, .source = source};
-  transform(cloud.points, (options.scale > 0.0 ? options.scale : 1.0) * upright(options));
+  transform(cloud.points, unit_of_points(options) * upright(options));
   float largest = 0.0f;
   for (const ScannerPoint& point : cloud.points) largest = std::max(largest, point.intensity);
   const IntensityScale scale = scale_of(largest);
@@ -272,7 +281,7 @@ ImportedSite site_of_cloud(io::RelativePoints cloud, const std::string& source, 
         return scale.factor <= 0.0f ? static_cast<float>(kUnknownReflectivity)
                                     : std::clamp(scale.factor * intensity, 0.0f, 1.0f);
       },
-      source);
+      error_place(options, source));
   add_frame_rows(site, cloud.origin, cloud.num_dropped, options);
   site.assumptions.push_back(
       {"points",
@@ -287,7 +296,7 @@ ImportedSite site_of_cloud(io::RelativePoints cloud, const std::string& source, 
   site.assumptions.push_back(
       {"ground", "the lowest large level surface and what is connected by steps of at most 0.12 m", ""});
   progress("find the ground", 0.8);
-  const ScannedGround ground = find_scanned_ground(found.patches, {}, false, {}, source);
+  const ScannedGround ground = find_scanned_ground(found.patches, {}, false, {}, error_place(options, source));
   orient(found.patches, ground);
   constexpr double kUnseenExtent_m = 0.6;  // without beams, only small convex hulls are likely
   std::vector<Panorama> no_scans;

@@ -1,5 +1,6 @@
 #include "io/points/ply.h"
 
+#include <bit>
 #include <map>
 #include <string_view>
 
@@ -23,6 +24,8 @@ const std::map<std::string_view, NumberType> kPlyTypes = {
     {"int32", NumberType::kInt32},    {"uint", NumberType::kUint32},     {"uint32", NumberType::kUint32},
     {"float", NumberType::kFloat32},  {"float32", NumberType::kFloat32}, {"double", NumberType::kFloat64},
     {"float64", NumberType::kFloat64}};
+
+constexpr const char* kBigEndian = "binary_big_endian";
 
 struct PlyHeader {
   std::string format;
@@ -84,8 +87,8 @@ PlyHeader read_ply_header(FileText& text) {
     }
   }
   if (header.num_elements == 0) text.refuse("the header contains no element");
-  if (header.format != "ascii" && header.format != "binary_little_endian") {
-    text.refuse("unsupported format (known: ascii, binary_little_endian)");
+  if (header.format != "ascii" && header.format != "binary_little_endian" && header.format != kBigEndian) {
+    text.refuse("unsupported format (known: ascii, binary_little_endian, binary_big_endian)");
   }
   return header;
 }
@@ -94,7 +97,8 @@ std::vector<ScannerPoint> read_ply_points(const std::filesystem::path& file, Poi
   FileText text(file);
   PlyHeader header = read_ply_header(text);
   PointTable table(text, std::move(header.columns), header.num_points, shift);
-  std::vector<ScannerPoint> points = header.format == "ascii" ? table.read_ascii() : table.read_binary();
+  const std::endian order = header.format == kBigEndian ? std::endian::big : std::endian::little;
+  std::vector<ScannerPoint> points = header.format == "ascii" ? table.read_ascii() : table.read_binary(order);
   if (header.num_elements == 1) table.expect_end();
   return points;
 }

@@ -10,8 +10,9 @@
 
 namespace patrol::io {
 
-RelativePoints load_points(const std::filesystem::path& file, const std::optional<Eigen::Vector3d>& origin) {
-  PointShift shift{.origin = origin, .num_dropped = 0};
+RelativePoints load_points(const std::filesystem::path& file, const std::optional<Eigen::Vector3d>& origin,
+                           double unit_m) {
+  PointShift shift{.origin = origin, .num_dropped = 0, .unit_m = unit_m};
   RelativePoints relative;
   const std::string extension = to_lower(file.extension().string());
   if (extension == ".ply") {

@@ -21,9 +21,10 @@ struct RelativePoints {
 };
 
 /// Reads a PLY or PCD file, by its extension, and drops points that are not finite. `origin`: in the frame of the file;
-/// without it, zero if the first finite point is within 10 km of zero on each axis, else that point rounded to 100 m.
-/// Throws InputError for an invalid file or another extension.
-RelativePoints load_points(const std::filesystem::path& file, const std::optional<Eigen::Vector3d>& origin = {});
+/// `unit_m`: meters per unit. Without an origin, it is zero if the first finite point is within 10 km of zero on each
+/// axis, else that point rounded to 100 m. Throws InputError for an invalid file or another extension.
+RelativePoints load_points(const std::filesystem::path& file, const std::optional<Eigen::Vector3d>& origin = {},
+                           double unit_m = 1.0);
 
 /// Scans of a folder relative to one origin.
 struct RelativeScans {
@@ -33,7 +34,7 @@ struct RelativeScans {
 };
 
 /// Reads stored scans as `load_station_scans`, relative to an origin by the first pose.
-RelativeScans load_relative_scans(const std::filesystem::path& folder);
+RelativeScans load_relative_scans(const std::filesystem::path& folder, double unit_m = 1.0);
 
 /// Returns whether a PLY file has an element `face` with at least one face. Throws InputError for an invalid header.
 bool has_faces(const std::filesystem::path& ply_file);

@@ -1,5 +1,6 @@
 #include "io/points/point_table.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -91,10 +92,11 @@ std::optional<std::string_view> FileText::next_line() {
 
 void FileText::refuse(const std::string& what) const { throw input_error(file_, line_, what); }
 
-Eigen::Vector3d origin_of(const Eigen::Vector3d& first_m) {
+Eigen::Vector3d origin_of(const Eigen::Vector3d& first, double unit_m) {
   constexpr double kNear_m = 10'000.0, kStep_m = 100.0;
-  if (first_m.cwiseAbs().maxCoeff() <= kNear_m) return Eigen::Vector3d::Zero();
-  return kStep_m * (first_m / kStep_m).array().round();
+  if (unit_m * first.cwiseAbs().maxCoeff() <= kNear_m) return Eigen::Vector3d::Zero();
+  const double step = kStep_m / unit_m;
+  return step * (first / step).array().round();
 }
 
 PointTable::PointTable(FileText& text, std::vector<PointColumn> columns, std::size_t num_points, PointShift* shift)
@@ -121,7 +123,7 @@ bool PointTable::append(std::array<double, 4> numbers, std::vector<ScannerPoint>
       ++shift_->num_dropped;
       return true;
     }
-    if (!shift_->origin) shift_->origin = origin_of(position);
+    if (!shift_->origin) shift_->origin = origin_of(position, shift_->unit_m);
     for (int axis = 0; axis < 3; ++axis) numbers[static_cast<std::size_t>(axis)] -= (*shift_->origin)[axis];
   }
   if (!make_point(numbers, point)) return false;
@@ -129,7 +131,7 @@ bool PointTable::append(std::array<double, 4> numbers, std::vector<ScannerPoint>
   return true;
 }
 
-std::vector<ScannerPoint> PointTable::read_binary() {
+std::vector<ScannerPoint> PointTable::read_binary(std::endian order) {
   const std::string_view rows = text_.rest();
   if (num_points_ > rows.size() / row_bytes_) {
     throw InputError(
@@ -140,7 +142,12 @@ std::vector<ScannerPoint> PointTable::read_binary() {
   for (std::size_t i = 0; i < num_points_; ++i) {
     std::array<double, 4> numbers{};
     for (std::size_t k = 0; k < numbers.size(); ++k) {
-      if (sources_[k]) numbers[k] = number_at(rows.data() + i * row_bytes_ + sources_[k]->byte, sources_[k]->type);
+      if (!sources_[k]) continue;
+      std::array<char, 8> bytes{};
+      const std::size_t count = bytes_of(sources_[k]->type);
+      std::copy_n(rows.data() + i * row_bytes_ + sources_[k]->byte, count, bytes.begin());
+      if (order != std::endian::native) std::reverse(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(count));
+      numbers[k] = number_at(bytes.data(), sources_[k]->type);
     }
     if (!append(numbers, points)) throw InputError(fmt::format("{}: point {} is not finite", text_.file(), i + 1));
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -60,10 +61,12 @@ class FileText {
 struct PointShift {
   std::optional<Eigen::Vector3d> origin;  ///< none: set by the first finite point (io/points/point_reading.h)
   std::size_t num_dropped = 0;            ///< number of points that are not finite, which are left out
+  double unit_m = 1.0;                    ///< meters per unit of the file
 };
 
-/// Returns zero for a position within 10 km of zero on each axis, else the position rounded to 100 m.
-Eigen::Vector3d origin_of(const Eigen::Vector3d& first_m);
+/// Returns zero for a position within 10 km of zero on each axis, else the position rounded to 100 m; both in units of
+/// the file.
+Eigen::Vector3d origin_of(const Eigen::Vector3d& first, double unit_m = 1.0);
 
 /// Reader of x, y, z and intensity (0 if missing) from rows of columns, little-endian binary or ASCII. All rows must be
 /// complete, and without a shift all four values finite.
@@ -72,7 +75,7 @@ class PointTable {
   /// Throws InputError through `text` if x, y or z is missing or duplicate.
   PointTable(FileText& text, std::vector<PointColumn> columns, std::size_t num_points, PointShift* shift = nullptr);
 
-  std::vector<ScannerPoint> read_binary();
+  std::vector<ScannerPoint> read_binary(std::endian order = std::endian::little);
   std::vector<ScannerPoint> read_ascii();
   /// Throws InputError if non-blank data remain.
   void expect_end() const;

@@ -79,12 +79,12 @@ std::vector<StationScan> load_station_scans(const std::filesystem::path& folder)
   return scans;
 }
 
-RelativeScans load_relative_scans(const std::filesystem::path& folder) {
+RelativeScans load_relative_scans(const std::filesystem::path& folder, double unit_m) {
   RelativeScans relative;
   const std::vector<Entry> entries = load_index(folder);
-  if (!entries.empty()) relative.origin = origin_of(entries.front().T_map_scanner.position);
+  if (!entries.empty()) relative.origin = origin_of(entries.front().T_map_scanner.position, unit_m);
   for (const auto& [station, T_map_scanner] : entries) {
-    PointShift shift{.origin = relative.origin, .num_dropped = 0};
+    PointShift shift{.origin = relative.origin, .num_dropped = 0, .unit_m = unit_m};
     relative.scans.push_back({.station = station,
                               .T_map_scanner = {T_map_scanner.position - relative.origin, T_map_scanner.rotation},
                               .points = load_shifted_ply(cloud_file(folder, station), shift)});

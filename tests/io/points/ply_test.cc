@@ -70,8 +70,8 @@ TEST(Ply, WhatIsNoPlyIsRefusedWithItsLine) {
   EXPECT_EQ(complaint_about("pcd\n"), "c.ply:1: is not a PLY file");
   EXPECT_EQ(complaint_about(""), "c.ply: is not a PLY file");
   EXPECT_EQ(complaint_about("ply\nformat ascii 1.0\n"), "c.ply:2: the header is incomplete");
-  EXPECT_EQ(complaint_about("ply\nformat binary_big_endian 1.0\nelement vertex 0\n" + kXyz + "end_header\n"),
-            "c.ply:7: unsupported format (known: ascii, binary_little_endian)");
+  EXPECT_EQ(complaint_about("ply\nformat binary_middle_endian 1.0\nelement vertex 0\n" + kXyz + "end_header\n"),
+            "c.ply:7: unsupported format (known: ascii, binary_little_endian, binary_big_endian)");
   EXPECT_EQ(complaint_about("ply\nformat ascii 1.0\nelement face 0\nend_header\n"),
             "c.ply:3: the first element must be vertex");
   EXPECT_EQ(complaint_about("ply\nformat ascii 1.0\nend_header\n"), "c.ply:3: the header contains no element");

@@ -38,6 +38,27 @@ TEST(PointReading, NearCoordinatesKeepTheirOrigin) {
   EXPECT_EQ(load_points(folder / "c.ply", Eigen::Vector3d(1.0, 0.0, 0.0)).points[0].x, 9998.0f);
 }
 
+TEST(PointReading, TheLimitOf10KilometersAppliesToMetersAndNotToUnitsOfTheFile) {
+  const TemporaryFolder folder;
+  write_bytes(folder / "c.ply", kHeader + "end_header\n20000 1 2\n0 0 0\n0 0 1\n");
+  EXPECT_EQ(load_points(folder / "c.ply", {}, 0.001).origin, Eigen::Vector3d::Zero().eval());
+  EXPECT_EQ(load_points(folder / "c.ply").origin, Eigen::Vector3d(20000.0, 0.0, 0.0));
+  EXPECT_EQ(load_points(folder / "c.ply", {}, 2.0).origin, Eigen::Vector3d(20000.0, 0.0, 0.0));
+}
+
+TEST(PointReading, ABigEndianPlyHasTheSamePoints) {
+  const TemporaryFolder folder;
+  const std::string header =
+      "ply\nformat binary_big_endian 1.0\nelement vertex 1\nproperty float x\nproperty double y\nproperty short z\n"
+      "end_header\n";
+  write_bytes(folder / "c.ply", header + std::string("\x3F\xC0\x00\x00\x40\x04\x00\x00\x00\x00\x00\x00\xFF\xFE", 14));
+  const RelativePoints relative = load_points(folder / "c.ply");
+  ASSERT_EQ(relative.points.size(), 1U);
+  EXPECT_EQ(relative.points[0].x, 1.5f);
+  EXPECT_EQ(relative.points[0].y, 2.5f);
+  EXPECT_EQ(relative.points[0].z, -2.0f);
+}
+
 TEST(PointReading, PointsThatAreNotFiniteAreDropped) {
   const TemporaryFolder folder;
   const float nan = std::numeric_limits<float>::quiet_NaN();

@@ -6,6 +6,9 @@
 #include <set>
 #include <unordered_set>
 
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
 #include "core/error.h"
 
 namespace patrol::importer {
@@ -309,7 +312,14 @@ Grid<Cell> nearest_free(const std::vector<Patch>& patches, const ScannedGround& 
 CloudPatches patches_of_cloud(const std::vector<ScannerPoint>& points,
                               const std::function<float(float intensity)>& reflectivity, const std::string& source) {
   CloudPatches found = CloudOctree(points, reflectivity, source).make();
-  if (found.patches.empty()) throw InputError(source + ": the points form no surface");
+  if (found.patches.empty()) {
+    Eigen::AlignedBox3f box;
+    for (const ScannerPoint& point : points) box.extend(Eigen::Vector3f(point.x, point.y, point.z));
+    const Eigen::Vector3f size = points.empty() ? Eigen::Vector3f::Zero().eval() : box.sizes().eval();
+    throw InputError(fmt::format(
+        "{}: the points form no surface; they span {:.4g} x {:.4g} x {:.4g} m, --scale gives the meters per unit",
+        source, size.x(), size.y(), size.z()));
+  }
   return found;
 }
 
