@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/letter_case.h"
 #include "io/files/line_reader.h"
 
 namespace patrol::io {
@@ -76,6 +77,8 @@ class StationReader {
       if (line->is_cut) refuse("is too long");
       std::string_view text = line->text;
       if (number_ == 1 && text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+      if (number_ == 1 && (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")))
+        refuse("is encoded as UTF-16: must be UTF-8");
       if (text.ends_with('\r')) text.remove_suffix(1);
       if (text.empty() && !columns_.empty()) continue;
       const std::vector<std::string> cells = split_cells(text, [&](const std::string& what) { refuse(what); });
@@ -90,7 +93,8 @@ class StationReader {
  private:
   [[noreturn]] void refuse(const std::string& what) const { throw input_error(lines_.file().string(), number_, what); }
 
-  void read_header(const std::vector<std::string>& cells) {
+  void read_header(std::vector<std::string> cells) {
+    std::transform(cells.begin(), cells.end(), cells.begin(), to_lower);
     for (std::size_t i = 0; i < cells.size(); ++i) {
       const auto known = {"name", "x", "y", "heading_deg", "service_s", "earliest_s", "latest_s", "priority"};
       if (std::find(known.begin(), known.end(), cells[i]) == known.end()) {

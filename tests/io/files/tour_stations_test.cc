@@ -56,6 +56,11 @@ TEST(TourStations, NamesMayBeQuotedAndFilesMayComeFromASpreadsheet) {
   EXPECT_EQ(stations[0].name, "ring 7, \"left\"");
 }
 
+TEST(TourStations, ColumnsMayHaveCapitalsAndUtf16IsRefusedByName) {
+  EXPECT_EQ(load("Name,X,Y\na,1,2\n")[0].y, 2.0);
+  EXPECT_EQ(complaint(std::string("\xFF\xFEn\0a\0", 6)), "stations.csv:1: is encoded as UTF-16: must be UTF-8");
+}
+
 TEST(TourStations, WhatIsWrongIsNamedWithItsLineAndColumn) {
   const std::string header = "name,x,y,service_s,earliest_s,latest_s,priority\n";
   EXPECT_EQ(complaint("name,x\na,1\n").substr(0, 29), "stations.csv:1: y: is missing");
