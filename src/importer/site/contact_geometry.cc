@@ -209,7 +209,8 @@ ContactGeometry contact_geometry(const Mesh& mesh, const Mesh& given, const Cont
   constexpr double kMaxCoordinate_m = 1e5;
   if (max_coordinate_m(mesh) > kMaxCoordinate_m)
     throw InputError(
-        fmt::format("coordinates up to {:.3g} m: must be at most {:g} m", max_coordinate_m(mesh), kMaxCoordinate_m));
+        fmt::format("coordinates up to {:.3g} m: must be at most {:g} m: move the origin of the file near the site",
+                    max_coordinate_m(mesh), kMaxCoordinate_m));
   const Split parts = split(mesh);
   double cell_m = options.cell_m;
   for (int attempt = 0;; ++attempt, cell_m *= 2.0) {

@@ -85,7 +85,7 @@ std::optional<Cell> seed_of_largest(const Grid<std::uint8_t>& open) {
 FreeSpace::FreeSpace(const OccupancyGrid& plan, double min_clearance_m, const std::optional<Eigen::Vector2d>& p_start_m)
     : grid_(plan.geometry()), region_(cells_with_clearance(plan, min_clearance_m)) {
   const std::optional<Cell> seed = p_start_m ? nearest_open(region_, *p_start_m) : seed_of_largest(region_);
-  if (!seed) throw InputError(fmt::format("the plan has no free cell with a clearance of {:g} m", min_clearance_m));
+  if (!seed) throw InputError(fmt::format("the plan has no free cell with a clearance of {:.2g} m", min_clearance_m));
   flood(region_, *seed, 2);
   for (int row = 0; row < grid_.height; ++row) {
     for (int col = 0; col < grid_.width; ++col) {

@@ -41,7 +41,7 @@ void check_integers(const std::filesystem::path& file, const tinyxml2::XMLElemen
 void check_collada(const std::filesystem::path& file) {
   tinyxml2::XMLDocument document;
   if (document.LoadFile(file.c_str()) != tinyxml2::XML_SUCCESS || document.RootElement() == nullptr)
-    throw InputError(fmt::format("{}:{}: not XML: {}", file.string(), document.ErrorLineNum(), document.ErrorName()));
+    throw input_error(file.string(), document.ErrorLineNum(), fmt::format("not XML: {}", document.ErrorName()));
   check_integers(file, *document.RootElement());
 }
 

@@ -11,6 +11,7 @@
 #include "importer/site/site_import.h"
 #include "importer/site/site_plan.h"
 #include "io/files/tour_stations.h"
+#include "sim/mujoco.h"
 
 namespace patrol::importer {
 namespace {
@@ -47,7 +48,12 @@ InputError station_error(const MissionOptions& options, const io::TourStation& r
 /// Gives a site without a floor plan one: that of the ground at a place, or the largest one.
 void require_plan(const std::optional<Eigen::Vector2d>& near, const std::string& ground, ImportedSite& site) {
   if (site.map) return;
-  site.map = plan_of(*compile_site(site), near);
+  const sim::ModelPtr model = compile_site(site);
+  try {
+    site.map = plan_of(*model, near);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", site.source, error.what()));
+  }
   site.assumptions.push_back({"map",
                               fmt::format("floor plan of the {} ground by what lidars see, cells of {:g} m", ground,
                                           site.map->geometry().resolution_m),
@@ -98,11 +104,20 @@ void add_table_mission(const MissionOptions& options, ImportedSite& site) {
   site.route = Route{.stations = stations_of(rows, start)};
 }
 
+FreeSpace free_space_of(const MissionOptions& options, const std::optional<Eigen::Vector2d>& near,
+                        const ImportedSite& site) {
+  try {
+    return {*site.map, options.clearance_m, near};
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}; the site needs a floor of that size", site.source, error.what()));
+  }
+}
+
 void add_random_mission(const MissionOptions& options, ImportedSite& site) {
   const std::optional<Eigen::Vector2d> near = options.start ? std::optional(options.start->position()) : std::nullopt;
   require_plan(near, near ? "start's" : "largest connected", site);
   check_start(options, site);
-  const FreeSpace space(*site.map, options.clearance_m, near);
+  const FreeSpace space = free_space_of(options, near, site);
   if (options.start) {
     site.T_site_start = *options.start;
   } else {  // the first random station

@@ -56,8 +56,8 @@ void SdfSource::fail(const tinyxml2::XMLElement& element, const std::string& wha
 SdfSource::SdfSource(const std::filesystem::path& file) : file_(file) {
   const std::string text = io::load_text(file);
   if (document_.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS || document_.RootElement() == nullptr)
-    throw InputError(fmt::format("{}:{}: not XML: {}", file.string(), document_.ErrorLineNum(),
-                                 io::on_one_line(document_.ErrorName())));
+    throw input_error(file.string(), document_.ErrorLineNum(),
+                      fmt::format("not XML: {}", io::on_one_line(document_.ErrorName())));
   const tinyxml2::XMLElement& root = *document_.RootElement();
   if (std::string_view(root.Name()) != "sdf") fail(root, "must be <sdf>");
   const char* version = root.Attribute("version");

@@ -294,7 +294,8 @@ TEST(MeshSite, BrokenFilesAreRefusedByOneLine) {
             ".ply, .pcd");
   SiteFileImport large("a.obj", to_obj(room));
   large.options.scale = 1e5;
-  EXPECT_EQ(large.error(), "a.obj: coordinates up to 8e+05 m: must be at most 100000 m");
+  EXPECT_EQ(large.error(),
+            "a.obj: coordinates up to 8e+05 m: must be at most 100000 m: move the origin of the file near the site");
   SiteFileImport start("a.obj", to_obj(room));
   start.options.mission.start = Pose2{50.0, 0.0, 0.0};
   EXPECT_EQ(start.error(), "a.obj: --start 50,0: no walkable surface there");

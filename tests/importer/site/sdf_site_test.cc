@@ -198,6 +198,18 @@ TEST(SdfSite, AMeshWithAnUppercaseGltfExtensionIsTurnedUpright) {
   EXPECT_THAT(extent.max(), VectorNear(Eigen::Vector3d(1, 2, 3), 1e-6));
 }
 
+TEST(SdfSite, AnEmptyFileIsRefusedWithoutALine) {
+  EXPECT_EQ(SiteFileImport("a.sdf", "").error(), "a.sdf: not XML: XML_ERROR_EMPTY_DOCUMENT");
+  EXPECT_EQ(SiteFileImport("a.dae", "").error(), "a.dae: not XML: XML_ERROR_EMPTY_DOCUMENT");
+}
+
+TEST(SdfSite, AWorldWithoutAFloorForRandomStationsIsRefusedWithItsFile) {
+  SiteFileImport import("a.sdf", world(model("m", visual(kBox) + collision(kBox))));
+  import.options.mission.num_random = 1;
+  import.options.mission.clearance_m = 1.2;
+  EXPECT_EQ(import.error().substr(0, 68), "a.sdf: the plan has no free cell with a clearance of 1.2 m; the site");
+}
+
 TEST(SdfSite, IgnoredElementsAreRowsWithTheirNumbersAndLines) {
   SiteFileImport import(
       "a.sdf", world("<plugin name=\"a\" filename=\"a.so\"/>\n<plugin name=\"b\" filename=\"b.so\"/>\n<thing/>\n"
