@@ -68,7 +68,7 @@ TEST(PlanSettings, OptionsWinOverSet) {
 
 TEST(PlanSettings, WhatIsWrongIsNamed) {
   const std::string unknown_planner = complaint({.map = "m.yaml", .planner = "fly"});
-  EXPECT_NE(unknown_planner.find("planner: fly is out of range: must be one of astar, dijkstra, theta_star"),
+  EXPECT_NE(unknown_planner.find("--set planner=fly: fly is out of range: must be one of astar, dijkstra, theta_star"),
             std::string::npos)
       << unknown_planner;
   EXPECT_EQ(complaint({.map = "m.yaml", .robot = "hovering"}),
@@ -80,7 +80,7 @@ TEST(PlanSettings, WhatIsWrongIsNamed) {
   EXPECT_EQ(complaint({.map = "m.yaml", .planner = "visibility_graph", .smooth = true}).substr(0, 9), "--smooth:");
   EXPECT_NE(complaint({.map = "m.yaml", .planner = "visibility_graph", .robot = "tracked"}).find("routes.cost_weight"),
             std::string::npos);
-  EXPECT_NE(complaint(options_of({"allow_unknown=maybe"})).find("allow_unknown: must be true or false"),
+  EXPECT_NE(complaint(options_of({"allow_unknown=maybe"})).find("--set allow_unknown=maybe: must be true or false"),
             std::string::npos)
       << complaint(options_of({"allow_unknown=maybe"}));
   EXPECT_EQ(complaint(options_of({"costmap.crosses_unknown=true"})),

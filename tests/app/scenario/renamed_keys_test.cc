@@ -66,9 +66,10 @@ TEST(RenamedKeys, AFormerKeyIsRefusedWithItsPresentPath) {
               ThrowsMessage<InputError>(EndsWith("stack.plan: renamed to stack.navigation")));
   EXPECT_THAT([&] { load_scenario(file, {"stack.navigation.patience_s=3"}); },
               ThrowsMessage<InputError>(
-                  EndsWith("stack.navigation.patience_s: renamed to stack.navigation.blocked_timeout_s")));
-  EXPECT_THAT([&] { load_scenario(file, {"stack.slam.particles=3"}); },
-              ThrowsMessage<InputError>(EndsWith("stack.slam.particles: renamed to stack.slam.rbpf.particles")));
+                  EndsWith("--set stack.navigation.patience_s=3: renamed to stack.navigation.blocked_timeout_s")));
+  EXPECT_THAT(
+      [&] { load_scenario(file, {"stack.slam.particles=3"}); },
+      ThrowsMessage<InputError>(EndsWith("--set stack.slam.particles=3: renamed to stack.slam.rbpf.particles")));
 }
 
 }  // namespace

@@ -1,9 +1,18 @@
 #include "app/scoring/expectations.h"
 
+#include <filesystem>
+
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "app/scenario/scenario.h"
+#include "core/error.h"
+#include "io/yaml/settings_yaml.h"
 
 namespace patrol::app::expectations_test {
 namespace {
+
+const std::filesystem::path kRoot = PATROL_SOURCE_DIR;
 
 io::Metrics make_metrics() {
   return io::Metrics::parse(R"({
@@ -136,6 +145,26 @@ TEST(Expectations, AMetricOfATopicThatTheStackDoesNotPublishSaysSo) {
 TEST(Expectations, MetricsOfAnOlderRunDoNotSayWhatWasPublished) {
   EXPECT_TRUE(unpublished_topics(make_metrics()).empty());
   EXPECT_EQ(check("map.coverage", at_least(0.5)).got, "not measured");
+}
+
+TEST(ExpectedMetrics, AllExpectationsOfTheShippedScenariosAreKnown) {
+  int num_checked = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(kRoot / "worlds")) {
+    if (entry.path().extension() != ".yaml" || entry.path().parent_path().filename() != "scenarios") continue;
+    const Scenario scenario = load_scenario(entry.path());
+    EXPECT_NO_THROW(check_expected_metrics(scenario.expect, entry.path().string())) << entry.path();
+    num_checked += static_cast<int>(scenario.expect.size());
+  }
+  EXPECT_GE(num_checked, 100);
+}
+
+TEST(ExpectedMetrics, AnUnknownOneIsRefusedWithItsOverride) {
+  EXPECT_THAT(
+      [] {
+        check_expected_metrics({{"mission.colisions", {}}}, {"a.yaml", {"expect.mission.colisions=0"}});
+      },
+      testing::ThrowsMessage<InputError>(
+          testing::StartsWith("--set expect.mission.colisions=0: unknown metric; did you mean mission.collisions?")));
 }
 
 }  // namespace

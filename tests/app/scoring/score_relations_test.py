@@ -44,6 +44,16 @@ class ScoreRelations(unittest.TestCase):
         self.assertIn("1 interpolated", self.score(relation).stdout)
         self.assertIn("0 interpolated", self.score(relation, "--max-dt-s", "0.1").stdout)
 
+    def test_two_poses_of_one_stamp_are_scored_against_a_trajectory_by_the_first(self):
+        curve = [f"{976052857 + i}.222433 {i} {0.1 * i * i} 0 0 0 0 1" for i in range(10)]
+        (self.path / "t.tum").write_text("\n".join(curve) + "\n")
+        curve.insert(3, "976052859.222433 99 0 0 0 0 0 1")
+        (self.path / "twice.tum").write_text("\n".join(curve) + "\n")
+        done = subprocess.run([PATROL, "score", "--estimate", self.path / "twice.tum", "--reference", self.path / "t.tum"],
+                              capture_output=True, text=True, timeout=60)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn(["pose.ate_max_m", "0"], [line.split() for line in done.stdout.splitlines()])
+
     def test_bad_calls_and_files_are_2_with_one_line(self):
         good = "976052857 976052858 1 0 0 0 0 0\n"
         for done, says in ((self.score(good + "1 2 x\n"), "f.relations:2: x 'x' is not a finite number"),

@@ -338,6 +338,8 @@ TEST(CarmenLog, AFileWithoutScansIsReportedWithItsContents) {
   EXPECT_EQ(complaint_about(""), "a.log: contains no scan (0 read): must contain FLASER, ROBOTLASER1 or RAWLASER1");
   EXPECT_EQ(complaint_about("SYNC a 1 h 1\nODOM 1 2 0 0 0 0 1 h 1\n"),
             "a.log: contains no scan (2 read, 1 ODOM, 1 SYNC): must contain FLASER, ROBOTLASER1 or RAWLASER1");
+  EXPECT_EQ(complaint_about("RAWLASER1 0 0 3.14 1.57 80 0.01 0 3 1 2 3 0 1 h 1\n"),
+            "a.log: contains RAWLASER1 without odometry (1 read, 1 scans before the first ODOM): must contain ODOM");
   EXPECT_EQ(complaint_about("FLASER 4 1\n", kSkip),
             "a.log: contains no scan (1 read, 1 unreadable lines): must contain FLASER, ROBOTLASER1 or RAWLASER1");
 }
