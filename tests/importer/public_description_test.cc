@@ -13,6 +13,7 @@
 #include "tests/importer/description.h"
 #include "tests/importer/import.h"
 #include "tests/support/pose_near.h"
+#include "tests/support/simulated_wheeled_robot.h"
 #include "tests/support/temporary_file.h"
 
 /// Synthetic descriptions with the faults and habits of public ones: imported with an assumption, or refused with a
@@ -196,6 +197,27 @@ TEST(PublicDescription, AChassisWithAnInertiaBeyondTheSizeOfTheRobotGetsThatOfIt
   import.load();
   EXPECT_THAT(import.assumptions(), HasSubstr("| base_link | its moment of inertia 3e+05 kg m2 is that of its 20 kg at "
                                               "a distance of 122 m"));
+}
+
+// A robot of 1.5 kg. With a deflection of 2 % of the radius, the balls would be too stiff for the time step.
+TEST(PublicDescription, ASmallRobotWithBallCastersOf5MillimetersStandsFor3SecondsWithATiltBelow1Degree) {
+  std::string text = link("base_link", inertial(1.4, "-0.05 0 0.02", 0.009) +
+                                           shape("collision", box(0.266, 0.266, 0.094), "-0.064 0 0.047"));
+  for (const auto& [name, y] : {std::pair{"left", "0.144"}, {"right", "-0.144"}}) {
+    text += joint(std::string(name) + "_joint", "continuous", "base_link", name, fmt::format("0 {} 0.023", y),
+                  axis("0 1 0")) +
+            link(name, inertial(0.03, "0 0 0", 1.5e-5) + shape("collision", cylinder(0.033, 0.018), "0 0 0", kAcross));
+  }
+  for (const auto& [name, y] : {std::pair{"ball_l", "0.064"}, {"ball_r", "-0.064"}}) {
+    text += joint(std::string(name) + "_joint", "fixed", "base_link", name, fmt::format("-0.177 {} -0.005", y)) +
+            link(name, inertial(0.005, "0 0 0", 1e-6) + shape("collision", sphere(0.005)));
+  }
+  Import import(robot(text));
+  ASSERT_EQ(import.load().wheels.size(), 4U);
+  const std::string level = R"(<mujoco><option timestep="0.002" cone="elliptic"/><worldbody>
+    <geom name="ground" type="plane" size="20 20 1" contype="1" conaffinity="2"/></worldbody></mujoco>)";
+  sim::WheeledRobot standing(level, import.robot.urdf);
+  EXPECT_LT(standing.drive(0.0, 0.0, 3.0).max_tilt_rad, 0.0175);
 }
 
 TEST(PublicDescription, ABaseBelowTheGroundIsMovedUp) {
