@@ -80,6 +80,7 @@ TEST(CheckRobot, AnUnknownSettingIsRefusedWithItsKey) {
 TEST(CheckRobot, ARobotThatSteersToOneSideOnlyIsRefused) {
   const test::TemporaryFolder data;
   std::filesystem::create_directory(data / "worlds");
+  std::filesystem::create_directory(data / "models");
   std::filesystem::copy(std::filesystem::path(PATROL_SOURCE_DIR) / "models/cart", data / "models/cart",
                         std::filesystem::copy_options::recursive);
   const std::filesystem::path file = data / "models/cart/cart.urdf";
