@@ -100,9 +100,10 @@ Inertial Normalizer::solid_inertial(const std::vector<Shape>& shapes, double mas
   return combine(parts);
 }
 
-/// Measures the box around all shapes.
+/// Measures the mass of the file and the box around all shapes.
 void Normalizer::measure_box() {
   for (const SourceLink& link : source_.links) {
+    source_kg_ += link.inertial ? link.inertial->mass_kg : 0.0;
     for (const std::vector<Shape>* shapes : {&link.collisions, &link.visuals}) {
       for (const Shape& shape : *shapes) {
         for (const Eigen::Vector3d& point : outline(shape)) box_.extend(T_root_link_.at(link.name) * point);
@@ -145,7 +146,9 @@ std::optional<Inertial> Normalizer::checked_inertial(const SourceLink& link) {
   }
   const double max = eigen.values[2];
   const double size_m = box_.isEmpty() ? 0.0 : box_.diagonal().norm();
-  if (chassis_.contains(link.name) && size_m > 0.0 && max > inertial.mass_kg * size_m * size_m) {
+  constexpr double kNegligible = 0.01;  // to the moment of the whole mass at the size of the robot
+  const double limit = std::max(inertial.mass_kg, kNegligible * source_kg_) * size_m * size_m;
+  if (chassis_.contains(link.name) && size_m > 0.0 && max > limit) {
     const Shape whole{.type = ShapeType::kBox, .size_m = box_.sizes()};
     inertial.inertia = shapes.empty() ? solid_inertial({whole}, inertial.mass_kg).inertia : solid.inertia;
     inertial.T_link_inertia.rotation.setIdentity();

@@ -176,6 +176,7 @@ class Normalizer {
   std::set<std::string> chassis_;         ///< links of the base's rigid group
   std::string base_;                      ///< link of the file
   Pose3 T_root_base_;
+  double source_kg_ = 0.0;   ///< mass of the file
   Eigen::AlignedBox3d box_;  ///< of all shapes, in the root
   double ground_m_ = 0.0;    ///< height of the ground in the base
   std::set<std::string> used_links_, used_joints_;

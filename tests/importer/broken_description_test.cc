@@ -52,8 +52,7 @@ TEST(BrokenDescription, AFileThatIsNoDescription) {
   EXPECT_THAT(complaint(""), HasSubstr("v.urdf: is empty"));
   EXPECT_THAT(complaint("no XML"), HasSubstr("v.urdf"));
   EXPECT_THAT(complaint(with("<link")), MatchesRegex("v.urdf:[0-9]+: not an XML file.*"));
-  EXPECT_THAT(complaint("<robot><link"),
-              MatchesRegex("v.urdf:1: not an XML file: (incomplete or not well-formed|mismatched element)"));
+  EXPECT_EQ(complaint("<robot>\n<link name=\"a\"/>"), "v.urdf:1: not an XML file: incomplete or not well-formed");
   EXPECT_THAT(complaint("<sdf/>"), MatchesRegex("v.urdf:1: <robot> is missing.*"));
   EXPECT_THAT(complaint(robot("")), MatchesRegex("v.urdf:2: <robot>: has no links"));
 }

@@ -1,6 +1,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <regex>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -170,7 +171,7 @@ TEST(LeggedImport, APlanarJointAboveTheTrunkIsNoJointOfALeg) {
 // Three joints in a row that are all about the vertical are no leg that can walk.
 TEST(LeggedImport, ARobotThatCannotBeSimulatedIsRefusedWithoutALineOfTheFileThatIsNotWritten) {
   const UrdfQuadruped plain;
-  Import import(replaced(replaced(plain.text(), axis("1 0 0"), axis("0 0 1")), axis("0 1 0"), axis("0 0 1")));
+  Import import(std::regex_replace(plain.text(), std::regex("<axis xyz=\"[^\"]*\"/>"), axis("0 0 1")));
   try {
     import.load();
     ADD_FAILURE();
