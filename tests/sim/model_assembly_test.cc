@@ -16,6 +16,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "core/geometry/angles.h"
 #include "io/urdf.h"
 #include "sim/robot_model.h"
 #include "tests/sim/rubble.h"
@@ -339,7 +340,7 @@ TEST(ModelAssembly, RobotsStartOnFloorsFrom20mBelowTo200mAboveTheOriginAndNotOnT
 
 TEST(ModelAssembly, AStartOnAHillOf5mIsOnItsSurface) {
   const std::string hill = R"(<geom type="box" pos="0 0 0" size="9 9 5" euler="0 20 0"/>)";
-  EXPECT_NEAR(tracked_start_m(hill, {}), 5.0 / std::cos(20.0 * M_PI / 180.0) + 0.25, 0.25);
+  EXPECT_NEAR(tracked_start_m(hill, {}), 5.0 / std::cos(to_rad(20.0)) + 0.25, 0.25);
 }
 
 TEST(ModelAssembly, AStartInsideAWallOf2mOnASlabAt20mIsRefused) {
