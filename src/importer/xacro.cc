@@ -62,7 +62,7 @@ def find(package):
             raise Exception('unknown package "%s": give its folder with --package %s=FOLDER' % (package, package))
         folder = above
 
-def place_of(message):
+def location_of(message):
     """File of the error with the line, if one line of it has the text that the message quotes."""
     stack = xacro.macrostack or []
     at = stack[-1].history[-1][-1] if stack else (xacro.filestack or [file])[-1]
@@ -93,7 +93,7 @@ except BaseException as error:
         message = '%s: %s' % (type(error).__name__, error)
     message = re.sub(r" \[Errno \d+\].*$", '', ' '.join(message.split()).replace("<class 'Exception'>: ", ''))
     message = re.sub(r'^(.+) \1$', r'\1', message)
-    print('%s: xacro: %s%s' % (place_of(message), message, macros()))
+    print('%s: xacro: %s%s' % (location_of(message), message, macros()))
     sys.exit(4)
 sys.stdout.buffer.write(text)
 )py";

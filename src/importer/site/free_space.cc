@@ -105,14 +105,14 @@ Eigen::Vector2d FreeSpace::nearest(const Eigen::Vector2d& p_m) const {
   return grid_.center_of(*nearest_open(region_, p_m));
 }
 
-PlaceCheck::PlaceCheck(const OccupancyGrid& plan, double min_clearance_m)
+ClearanceCheck::ClearanceCheck(const OccupancyGrid& plan, double min_clearance_m)
     : plan_(plan), min_clearance_m_(min_clearance_m), clearance_m_(plan.geometry()) {
   const std::vector<double> squared = squared_clearances(plan);
   std::transform(squared.begin(), squared.end(), clearance_m_.values().begin(),
                  [&](double cells) { return std::sqrt(cells) * plan.geometry().resolution_m; });
 }
 
-std::optional<std::string> PlaceCheck::problem_at(const Eigen::Vector2d& p_m) const {
+std::optional<std::string> ClearanceCheck::problem_at(const Eigen::Vector2d& p_m) const {
   const Cell cell = plan_.geometry().cell_at(p_m);
   if (!plan_.geometry().contains(cell)) return "outside the floor plan";
   if (is_occupied(plan_.at(cell))) return "in a wall or an obstacle of the floor plan";

@@ -31,10 +31,10 @@ class FreeSpace {
 };
 
 /// Check of places in a floor plan at which a robot shall stand.
-class PlaceCheck {
+class ClearanceCheck {
  public:
   /// `min_clearance_m`: minimum distance to cells that are occupied or unknown.
-  PlaceCheck(const OccupancyGrid& plan, double min_clearance_m);
+  ClearanceCheck(const OccupancyGrid& plan, double min_clearance_m);
 
   /// Returns what is wrong with a place, such as "outside the floor plan"; none if a robot can stand there.
   std::optional<std::string> problem_at(const Eigen::Vector2d& p_m) const;

@@ -64,7 +64,7 @@ void require_plan(const std::optional<Eigen::Vector2d>& near, const std::string&
 void check_start(const MissionOptions& options, const ImportedSite& site) {
   if (!options.start || options.start_is_recorded) return;
   const Pose2& start = *options.start;
-  if (const auto problem = PlaceCheck(*site.map, options.clearance_m).problem_at(start.position()))
+  if (const auto problem = ClearanceCheck(*site.map, options.clearance_m).problem_at(start.position()))
     throw InputError(fmt::format("--start {:g},{:g}: {}", start.x, start.y, *problem));
 }
 
@@ -87,7 +87,7 @@ void add_table_mission(const MissionOptions& options, ImportedSite& site) {
     throw station_error(options, rows.front(), error.what());
   }
   check_start(options, site);
-  const PlaceCheck check(*site.map, options.clearance_m);
+  const ClearanceCheck check(*site.map, options.clearance_m);
   const FreeSpace connected(*site.map, 0.5 * site.map->geometry().resolution_m, start.position());
   for (const io::TourStation& row : rows) {
     const Eigen::Vector2d p(row.x, row.y);

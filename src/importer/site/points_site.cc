@@ -51,7 +51,7 @@ std::string name_of_class(std::size_t i) { return fmt::format("measured_{:02.0f}
 double unit_of_points(const SiteImportOptions& options) { return options.scale > 0.0 ? options.scale : 1.0; }
 
 /// Place of errors: the file with its folder.
-std::string error_place(const SiteImportOptions& options, const std::string& source) {
+std::string error_location(const SiteImportOptions& options, const std::string& source) {
   return options.file.empty() ? source : options.file.string();
 }
 
@@ -206,7 +206,7 @@ ImportedSite read_cloud_site(const SiteImportOptions& options) {
 }
 
 ImportedSite site_of_scans(io::RelativeScans scans, const std::string& source, const SiteImportOptions& options) {
-  if (scans.scans.empty()) throw InputError(error_place(options, source) + ": has no scans");
+  if (scans.scans.empty()) throw InputError(error_location(options, source) + ": has no scans");
   const auto progress = progress_of(options);
   ImportedSite site{.name = options.name, .source = source};
   const Eigen::Matrix3d R = upright(options), A = unit_of_points(options) * R;
@@ -254,7 +254,7 @@ ImportedSite site_of_scans(io::RelativeScans scans, const std::string& source, c
   site.assumptions.push_back({"reflectivity", scale.rule + ", divided by the cosine of incidence", ""});
   site.assumptions.push_back(
       {"ground", "the surface around the scanners and what is connected by steps of at most 0.12 m", ""});
-  const ScannedGround ground = find_scanned_ground(patches, scanners_m, true, {}, error_place(options, source));
+  const ScannedGround ground = find_scanned_ground(patches, scanners_m, true, {}, error_location(options, source));
   progress("close thin objects", 0.7);
   const std::vector<Patch> sides = close_thin_objects(patches, panoramas, ground, {});
   progress("find surfaces without thin objects", 0.85);
@@ -281,7 +281,7 @@ ImportedSite site_of_cloud(io::RelativePoints cloud, const std::string& source, 
         return scale.factor <= 0.0f ? static_cast<float>(kUnknownReflectivity)
                                     : std::clamp(scale.factor * intensity, 0.0f, 1.0f);
       },
-      error_place(options, source));
+      error_location(options, source));
   add_frame_rows(site, cloud.origin, cloud.num_dropped, options);
   site.assumptions.push_back(
       {"points",
@@ -296,7 +296,7 @@ ImportedSite site_of_cloud(io::RelativePoints cloud, const std::string& source, 
   site.assumptions.push_back(
       {"ground", "the lowest large level surface and what is connected by steps of at most 0.12 m", ""});
   progress("find the ground", 0.8);
-  const ScannedGround ground = find_scanned_ground(found.patches, {}, false, {}, error_place(options, source));
+  const ScannedGround ground = find_scanned_ground(found.patches, {}, false, {}, error_location(options, source));
   orient(found.patches, ground);
   constexpr double kUnseenExtent_m = 0.6;  // without beams, only small convex hulls are likely
   std::vector<Panorama> no_scans;

@@ -79,11 +79,11 @@ void OdometryDelay::evaluate(std::size_t reading) {
 }
 
 void OdometryDelay::choose_offset() {
-  const auto least = std::min_element(differences_.begin(), differences_.end());
-  const int step = static_cast<int>(least - differences_.begin()) - kMaxSteps;
+  const auto min_difference = std::min_element(differences_.begin(), differences_.end());
+  const int step = static_cast<int>(min_difference - differences_.begin()) - kMaxSteps;
   const double none = differences_[kMaxSteps], opposite = differences_[static_cast<std::size_t>(kMaxSteps - step)];
-  if (step <= 0 || turned_rad_ < kMinTurnedRad || none - *least < kMinGainRad || *least > kMaxRatio * none ||
-      opposite < none)
+  if (step <= 0 || turned_rad_ < kMinTurnedRad || none - *min_difference < kMinGainRad ||
+      *min_difference > kMaxRatio * none || opposite < none)
     return;
   const double found_s = kStep_s * step;
   if (found_s == scan_delay_s_) return;

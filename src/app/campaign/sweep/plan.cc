@@ -45,8 +45,9 @@ Scenario load_variant(const std::filesystem::path& scenario, const SweepManifest
     const std::string text = error.what();
     for (const std::string& override : run.overrides) {
       if (manifest.kind != SweepKind::kSweep) break;
-      const std::string place = fmt::format("--set {}:", override);
-      if (text.starts_with(place)) throw InputError(fmt::format("--vary {}:{}", override, text.substr(place.size())));
+      const std::string location = fmt::format("--set {}:", override);
+      if (text.starts_with(location))
+        throw InputError(fmt::format("--vary {}:{}", override, text.substr(location.size())));
     }
     throw;
   }
