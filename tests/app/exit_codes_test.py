@@ -67,7 +67,7 @@ class ExitCodes(unittest.TestCase):
 
     def test_missed_and_unmeasured_expectations_are_1(self):
         done = self.run_patrol("expect:\n  mission.completed: true\n  mission.distance_m: {min: 1000}\n"
-                               "  pose.elegance: {max: 1}\n")
+                               "  docking.position_error_m.max: {max: 1}\n")
         self.assertEqual(done.returncode, 1, done.stderr)
         self.assert_complete()
         self.assertEqual((self.junit().get("tests"), self.junit().get("failures")), ("4", "2"))
