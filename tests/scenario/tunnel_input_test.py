@@ -135,7 +135,7 @@ class BadInput(TunnelRun):
             self.refuse_map(f"no {key}", "map.yaml", f"{key}: is missing",
                             yaml="\n".join(line for line in lines if not line.startswith(key)))
         wrong = {"image": ["absent.pgm", "[a]", "''", "."],
-                 "mode": ["raw", "scale"],
+                 "mode": ["binary", "1"],
                  "resolution": ["0", "-1", ".nan", ".inf", "1e-9", "1e9", "fine", "[1]"],
                  "origin": ["0", "[0]", "[a, b, 0]", "[.nan, 0, 0]", "[0, 0, 1]", "[1e300, 0, 0]"],
                  "negate": ["2", "perhaps"],
@@ -166,7 +166,8 @@ class BadInput(TunnelRun):
         self.refuse_map("rows for columns", "map.yaml", "start", "outside the map", image=image(height, width, pixels))
         self.refuse_map("no pixel", "map.pgm", "0 x 0", image=image(0, 0, b""))
         self.refuse_map("more pixels than fit anywhere", "map.pgm", "ends too early", image=image(2000000000, 2000000000, b"\0"))
-        self.refuse_map("another format", "map.pgm", "PGM", image=b"\x89PNG\r\n\x1a\n")
+        self.refuse_map("another format", "map.pgm", "neither an 8-bit PGM nor a PNG", image=b"GIF89a")
+        self.refuse_map("broken PNG", "map.pgm", "is not a valid PNG: ends too early", image=b"\x89PNG\r\n\x1a\n")
         self.refuse_map("empty file", "map.pgm", "PGM", image=b"")
         self.refuse_map("all unknown", "map.yaml", "no free cell", image=image(width, height, b"\xcd" * (width * height)))
         self.refuse_map("all free", "map.yaml", "no occupied cell", image=image(width, height, b"\xfe" * (width * height)))

@@ -5,8 +5,8 @@
 
 namespace patrol::importer {
 
-/// Reads a floor plan of map_server (YAML and PGM) and extrudes its occupied cells to walls of `wall_height_m`. Gaps of
-/// the plan stay open; unknown cells are empty. The map itself becomes the floor plan of the site, and its frame is
+/// Reads a floor plan of map_server (YAML and image) and extrudes its occupied cells to walls of `wall_height_m`. Gaps
+/// of the plan stay open; unknown cells are empty. The map itself becomes the floor plan of the site, and its frame is
 /// `site`. Throws InputError if the file is invalid or has no occupied cell.
 ImportedSite read_plan_site(const SiteImportOptions& options);
 

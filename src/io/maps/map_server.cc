@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 #include <vector>
 
 #include <fmt/format.h>
@@ -12,14 +11,13 @@
 #include "core/error.h"
 #include "core/settings.h"
 #include "io/files/atomic_file.h"
+#include "io/maps/map_image.h"
 #include "io/yaml/settings_yaml.h"
 
 namespace patrol::io {
 namespace {
 
 constexpr double kOccupiedThreshold = 0.65, kFreeThreshold = 0.196;
-constexpr int kMaxPixelValue = 255;
-constexpr std::size_t kMaxPixels = 100'000'000;
 constexpr unsigned char kOccupiedPixel = 0, kFreePixel = 254, kUnknownPixel = 205;
 constexpr unsigned char kMaxError = 254, kNoError = 255;  // mm
 
@@ -46,51 +44,6 @@ std::string to_pgm(const Grid<Value>& grid, const PixelOf& pixel_of_value) {
   return image;
 }
 
-/// Gray image, 8 bits per pixel: [row from the top * width + column].
-struct Image {
-  int width = 0, height = 0;
-  std::vector<unsigned char> pixels;
-};
-
-/// Reads the next number of a PGM and skips comments; -1 if there is none.
-int pgm_number(std::istream& in) {
-  while (in >> std::ws && in.peek() == '#') in.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
-  int value = -1;
-  return in >> value ? value : -1;
-}
-
-/// Reads a PGM image, binary (P5) or ASCII (P2).
-Image load_pgm(const std::filesystem::path& file) {
-  std::istringstream in(load_text(file));
-  const auto refuse = [&](const std::string& what) { throw InputError(file.string() + ": " + what); };
-  const std::size_t size = in.view().size();
-  std::string magic;
-  in >> magic;
-  Image image{.width = pgm_number(in), .height = pgm_number(in), .pixels = {}};
-  const int maximum = pgm_number(in);
-  if ((magic != "P5" && magic != "P2") || maximum != kMaxPixelValue) refuse("is not an 8-bit PGM");
-  if (image.width <= 0 || image.height <= 0)
-    refuse(fmt::format("is {} x {} pixels: contains no map", image.width, image.height));
-  // Each pixel takes at least one byte of the file: check the size before memory is allocated.
-  const std::size_t count = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
-  const std::string pixels = fmt::format("{} x {} pixels", image.width, image.height);
-  if (count > size) refuse("ends too early for " + pixels);
-  if (count > kMaxPixels) refuse(fmt::format("has {}: at most {} are allowed", pixels, kMaxPixels));
-  image.pixels.resize(count);
-  in.get();
-  if (magic == "P5") in.read(reinterpret_cast<char*>(image.pixels.data()), static_cast<std::streamsize>(count));
-  for (std::size_t i = 0; magic == "P2" && i < count; ++i) {
-    const int value = pgm_number(in);
-    if (value < 0) in.setstate(std::ios::failbit);
-    if (value > maximum) refuse(fmt::format("a pixel of {} is brighter than {}", value, maximum));
-    image.pixels[i] = static_cast<unsigned char>(value);
-  }
-  if (!in) refuse("ends too early for " + pixels);
-  if (magic == "P2") in >> std::ws;
-  if (in.peek() != std::istringstream::traits_type::eof()) refuse("has data after its " + pixels);
-  return image;
-}
-
 /// Content of the YAML file of a map, with defaults for missing keys.
 struct MapFile {
   std::string image;
@@ -104,7 +57,7 @@ struct MapFile {
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("image", self.image);
-    visit("mode", self.mode, one_of({"trinary"}));
+    visit("mode", self.mode, one_of({"trinary", "scale", "raw"}));
     visit("resolution", self.resolution, between(0.001, 10.0));
     visit("origin", self.origin, between(-1e5, 1e5));
     visit("negate", self.negate, one_of({"0", "1", "false", "true"}));
@@ -128,11 +81,33 @@ MapFile load_map_file(const std::filesystem::path& file) {
   if (map.origin.size() != 3) refuse("origin", "must be three numbers: x, y, yaw");
   if (map.origin[2] != 0.0) refuse("origin", "rotated maps (yaw other than 0) are not supported");
   if (map.free_thresh > map.occupied_thresh) refuse("free_thresh", "must not be above occupied_thresh");
+  if (map.mode == "scale" && map.free_thresh == map.occupied_thresh)
+    refuse("free_thresh", "must be below occupied_thresh in mode scale");
   const std::filesystem::path image = file.parent_path() / map.image;
   std::error_code ignored;  // error for an invalid name
   if (!std::filesystem::is_regular_file(image, ignored)) refuse("image", "file not found: " + image.string());
   map.image = image.string();
   return map;
+}
+
+/// Occupancy of a pixel, as in nav2_map_server (map_io.cpp). Mode trinary averages alpha with the color channels.
+std::int8_t cell_of(const MapFile& about, const MapImage& image, std::size_t pixel) {
+  const bool has_alpha = !image.opacity.empty(), averages_alpha = has_alpha && about.mode == "trinary";
+  const double maximum = static_cast<double>((averages_alpha ? 4 : 3) * image.maximum);
+  const double value = image.brightness[pixel] + (averages_alpha ? image.opacity[pixel] : 0U);
+  if (about.mode == "raw") {
+    const double percent = std::round(255.0 * value / maximum);
+    return percent <= kOccupied ? static_cast<std::int8_t>(percent) : kUnknown;
+  }
+  const bool negate = about.negate == "1" || about.negate == "true";
+  const double p = (negate ? value : maximum - value) / maximum;
+  const bool is_scale = about.mode == "scale";
+  if (is_scale && has_alpha && image.opacity[pixel] != image.maximum) return kUnknown;
+  if (p > about.occupied_thresh) return kOccupied;
+  if (p < about.free_thresh) return kFree;
+  if (!is_scale) return kUnknown;
+  const double share = (p - about.free_thresh) / (about.occupied_thresh - about.free_thresh);
+  return static_cast<std::int8_t>(std::rint(kOccupied * share));
 }
 
 }  // namespace
@@ -151,17 +126,13 @@ std::filesystem::path map_image(const std::filesystem::path& file) { return load
 
 OccupancyGrid load_map(const std::filesystem::path& file) {
   const MapFile about = load_map_file(file);
-  const Image image = load_pgm(about.image);
-  const bool negate = about.negate == "1" || about.negate == "true";
+  const MapImage image = load_map_image(about.image);
   const Eigen::Vector2d origin_m(about.origin[0], about.origin[1]);
   OccupancyGrid map(
       {.resolution_m = about.resolution, .width = image.width, .height = image.height, .origin_m = origin_m}, kUnknown);
-  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
-    const double value = image.pixels[i];
-    const double p = (negate ? value : kMaxPixelValue - value) / kMaxPixelValue;
+  for (std::size_t i = 0; i < image.brightness.size(); ++i) {
     const int col = static_cast<int>(i) % image.width, row = image.height - 1 - static_cast<int>(i) / image.width;
-    if (p > about.occupied_thresh) map.at({col, row}) = kOccupied;
-    else if (p < about.free_thresh) map.at({col, row}) = kFree;
+    map.at({col, row}) = cell_of(about, image, i);
   }
   return map;
 }
@@ -171,7 +142,7 @@ void save_map_errors(const std::filesystem::path& file_pgm, const Grid<float>& e
 }
 
 Grid<float> load_map_errors(const std::filesystem::path& file_pgm, const GridGeometry& geometry) {
-  const Image image = load_pgm(file_pgm);
+  const MapImage image = load_map_image(file_pgm);
   if (image.width != geometry.width || image.height != geometry.height) {
     throw InputError(fmt::format("{}: is {} x {} pixels, its map {} x {}", file_pgm.string(), image.width, image.height,
                                  geometry.width, geometry.height));
@@ -179,9 +150,10 @@ Grid<float> load_map_errors(const std::filesystem::path& file_pgm, const GridGeo
   Grid<float> errors_m(geometry, std::numeric_limits<float>::quiet_NaN());
   for (int row = 0; row < image.height; ++row) {
     for (int col = 0; col < image.width; ++col) {
-      const unsigned char pixel =
-          image.pixels[static_cast<std::size_t>(image.height - 1 - row) * static_cast<std::size_t>(image.width) +
-                       static_cast<std::size_t>(col)];
+      const std::uint32_t pixel =
+          image.brightness[static_cast<std::size_t>(image.height - 1 - row) * static_cast<std::size_t>(image.width) +
+                           static_cast<std::size_t>(col)] /
+          3;
       if (pixel != kNoError) errors_m.at({col, row}) = 1e-3F * static_cast<float>(pixel);
     }
   }

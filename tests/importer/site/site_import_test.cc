@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "io/json/route_json.h"
+#include "io/maps/map_png.h"
 #include "io/maps/map_server.h"
 #include "io/yaml/settings_yaml.h"
 #include "sim/lidar_scene.h"
@@ -71,6 +72,16 @@ TEST_F(PlanImport, KeepsThePlanAsTheMapAndTheDefaultGroundRules) {
   EXPECT_TRUE(settings.ground.all.geoms.empty());
   EXPECT_THAT(test::read_bytes(folder_ / "worlds/room/README.md"), HasSubstr("--wall-height"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "worlds/room/scenarios"));
+}
+
+TEST_F(PlanImport, APngHasTheWallsOfThePgm) {
+  const ImportedSite of_pgm = import_site(options());
+  std::filesystem::remove(folder_ / "room.pgm");
+  test::write_bytes(folder_ / "room.png", io::map_png(room_plan()));
+  test::write_bytes(folder_ / "room.yaml", "image: room.png\nresolution: 0.1\norigin: [-3, -2.5, 0]\nnegate: 0\n");
+  const ImportedSite of_png = import_site(options());
+  EXPECT_EQ(of_png.map->values(), of_pgm.map->values());
+  EXPECT_EQ(of_png.shapes.size(), of_pgm.shapes.size());
 }
 
 TEST_F(PlanImport, RandomStationsAreAMissionInTheFreeSpaceOfThePlan) {

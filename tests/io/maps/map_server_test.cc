@@ -102,6 +102,16 @@ TEST_F(MapServer, ThresholdsAreTheFiles) {
   EXPECT_THAT(load(lower, "P2\n1 1\n255\n100\n").values(), ElementsAre(X));
 }
 
+TEST_F(MapServer, ScaleSpreadsTheValuesBetweenTheThresholdsOver0To100) {
+  // Gray 128 is occupied with probability 127/255 = 0.498: (0.498 - 0.196) / (0.65 - 0.196) = 66.5 %.
+  EXPECT_THAT(load(good_yaml + "mode: scale\n", "P2\n4 1\n255\n0 128 205 254\n").values(), ElementsAre(X, 67, F, F));
+}
+
+TEST_F(MapServer, RawTakes0To100AsPercentAndTheRestAsUnknown) {
+  EXPECT_THAT(load(good_yaml + "mode: raw\n", "P2\n5 1\n255\n0 42 100 101 255\n").values(),
+              ElementsAre(F, 42, X, U, U));
+}
+
 TEST_F(MapServer, BrokenPicturesAreNamed) {
   EXPECT_EQ(complaint_about(good_yaml, std::string("P5\n3 2\n255\n") + "abcde"),
             "m.pgm: ends too early for 3 x 2 pixels");
@@ -112,9 +122,9 @@ TEST_F(MapServer, BrokenPicturesAreNamed) {
   EXPECT_EQ(complaint_about(good_yaml, "P5\n100000 100000\n255\n"), "m.pgm: ends too early for 100000 x 100000 pixels");
   EXPECT_EQ(complaint_about(good_yaml, "P2\n1 1\n255\n300\n"), "m.pgm: a pixel of 300 is brighter than 255");
   EXPECT_EQ(complaint_about(good_yaml, "P5\n0 2\n255\n"), "m.pgm: is 0 x 2 pixels: contains no map");
-  EXPECT_EQ(complaint_about(good_yaml, "P5\n2 2\n65535\n"), "m.pgm: is not an 8-bit PGM");
-  EXPECT_EQ(complaint_about(good_yaml, "P6\n1 1\n255\nabc"), "m.pgm: is not an 8-bit PGM");
-  EXPECT_EQ(complaint_about(good_yaml, ""), "m.pgm: is not an 8-bit PGM");
+  EXPECT_EQ(complaint_about(good_yaml, "P5\n2 2\n65535\n"), "m.pgm: is neither an 8-bit PGM nor a PNG");
+  EXPECT_EQ(complaint_about(good_yaml, "P6\n1 1\n255\nabc"), "m.pgm: is neither an 8-bit PGM nor a PNG");
+  EXPECT_EQ(complaint_about(good_yaml, ""), "m.pgm: is neither an 8-bit PGM nor a PNG");
 }
 
 TEST_F(MapServer, WrongKeysAreNamedWithTheirLine) {
@@ -138,8 +148,11 @@ TEST_F(MapServer, WrongKeysAreNamedWithTheirLine) {
   EXPECT_EQ(complaint(image + "resolution: 1\norigin: [0, 0, 0.5]\n"),
             "m.yaml:3: origin: rotated maps (yaw other than 0) are not supported");
   EXPECT_EQ(complaint(good + "negate: 2\n"), "m.yaml:4: negate: 2 is out of range: must be one of 0, 1, false, true");
-  EXPECT_EQ(complaint(good + "mode: raw\n"), "m.yaml:4: mode: raw is out of range: must be one of trinary");
+  EXPECT_EQ(complaint(good + "mode: binary\n"),
+            "m.yaml:4: mode: binary is out of range: must be one of trinary, scale, raw");
   EXPECT_EQ(complaint(good + "free_thresh: 0.9\n"), "m.yaml:4: free_thresh: must not be above occupied_thresh");
+  EXPECT_EQ(complaint(good + "mode: scale\nfree_thresh: 0.65\n"),
+            "m.yaml:5: free_thresh: must be below occupied_thresh in mode scale");
   EXPECT_EQ(complaint(good + "resolution: 2\n"), "m.yaml:4: resolution: duplicate key");
   EXPECT_THAT(complaint(good + "occupied_tresh: 0.5\n"),
               HasSubstr("m.yaml:4: occupied_tresh: unknown key; did you mean occupied_thresh?"));
