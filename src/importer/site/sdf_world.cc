@@ -3,6 +3,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdlib>
 #include <iostream>
 #include <sstream>
 #include <string_view>
@@ -10,6 +12,7 @@
 
 #include <console_bridge/console.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "core/error.h"
 #include "io/files/atomic_file.h"
@@ -19,6 +22,27 @@ namespace patrol::importer {
 namespace {
 
 constexpr std::string_view kModelScheme = "model://";
+
+/// Variables of Gazebo Classic and of Gazebo with lists of folders of models, separated by colons.
+constexpr std::array kFolderVariables = {"GAZEBO_MODEL_PATH", "GZ_SIM_RESOURCE_PATH"};
+
+std::optional<std::filesystem::path> find_in_variables(const std::string& model) {
+  for (const char* variable : kFolderVariables) {
+    const char* folders = std::getenv(variable);
+    std::istringstream list(folders != nullptr ? folders : "");
+    for (std::string folder; std::getline(list, folder, ':');) {
+      std::error_code error;
+      const std::filesystem::path path = std::filesystem::path(folder) / model;
+      if (!folder.empty() && std::filesystem::is_directory(path, error)) return std::filesystem::absolute(path);
+    }
+  }
+  return std::nullopt;
+}
+
+std::string unknown_model(const std::string& name) {
+  return fmt::format("unknown model \"{0}\": give its folder with --package {0}=FOLDER, or the folder above it in {1}",
+                     name, fmt::join(kFolderVariables, " or "));
+}
 
 bool is_of_network(std::string_view uri) {
   return uri.starts_with("http://") || uri.starts_with("https://") || uri.starts_with("fuel://");
@@ -120,7 +144,7 @@ void SdfWorld::fail(const sdf::Error& error, const sdf::ParserConfig& config) co
   } else if (const std::size_t at = text.find(kModelScheme); at != std::string::npos) {
     const std::size_t begin = at + kModelScheme.size();
     const std::string name = text.substr(begin, text.find_first_of("]/\"' ", begin) - begin);
-    text = fmt::format("<include>: unknown model \"{0}\": give its folder with --package {0}=FOLDER", name);
+    text = "<include>: " + unknown_model(name);
   }
   const std::string path = error.FilePath().value_or("");
   std::optional<int> line = error.LineNumber();
@@ -147,7 +171,7 @@ std::optional<std::filesystem::path> SdfWorld::find_model(const std::string& nam
   for (std::filesystem::path folder = std::filesystem::absolute(file_).parent_path();; folder = folder.parent_path()) {
     const std::filesystem::path model = folder / "models" / name;
     if (std::filesystem::is_directory(model, error)) return model;
-    if (folder == folder.root_path()) return std::nullopt;
+    if (folder == folder.root_path()) return find_in_variables(name);
   }
 }
 
@@ -186,7 +210,7 @@ std::filesystem::path SdfWorld::resolve(const std::string& uri, const sdf::Eleme
     const std::string rest = uri.substr(kModelScheme.size());
     const std::string name = rest.substr(0, rest.find('/'));
     const auto folder = find_model(name);
-    if (!folder) fail(element, fmt::format("unknown model \"{0}\": give its folder with --package {0}=FOLDER", name));
+    if (!folder) fail(element, unknown_model(name));
     path = *folder / rest.substr(std::min(rest.size(), name.size() + 1));
   } else if (uri.starts_with("package://") || uri.starts_with("file://")) {
     try {

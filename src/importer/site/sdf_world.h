@@ -34,9 +34,10 @@ class BuiltInModels {
 /// SDF world as libsdformat reads it, with its models included.
 class SdfWorld {
  public:
-  /// Reads a file. Models are searched in `packages` by name, in folders of the file's parents, and in folders `models`
-  /// of these; `model://ground_plane` and `model://sun` are known without a folder. Throws InputError with one line,
-  /// "file:line: what", for the first error of libsdformat, for URIs of a network, and unless there is one world.
+  /// Reads a file. Models are searched in `packages` by name, in folders of the file's parents, in folders `models` of
+  /// these, and in the folders of GAZEBO_MODEL_PATH and GZ_SIM_RESOURCE_PATH. `model://ground_plane` and `model://sun`
+  /// are known without a folder. Throws InputError with one line, "file:line: what", for the first error of
+  /// libsdformat, for URIs of a network, and unless there is one world.
   SdfWorld(const std::filesystem::path& file, const std::map<std::string, std::filesystem::path>& packages);
   SdfWorld(const SdfWorld&) = delete;
   SdfWorld& operator=(const SdfWorld&) = delete;

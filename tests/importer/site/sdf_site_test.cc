@@ -366,6 +366,33 @@ TEST(SdfSite, NeitherAReadNorARefusedWorldLeavesATemporaryFolder) {
   EXPECT_EQ(num_temporary_folders(), 0);
 }
 
+TEST(SdfSite, ModelsAreFoundInBothVariablesOfGazeboAndTheOptionComesFirst) {
+  SiteFileImport import("a.sdf", world("<include><uri>model://crate</uri></include>"));
+  const auto write_crate = [&](const std::string& folder, const std::string& size_m) {
+    std::filesystem::create_directories(import.folder / folder / "crate");
+    test::write_bytes(import.folder / folder / "crate/model.config",
+                      "<model><name>crate</name><sdf version=\"1.6\">model.sdf</sdf></model>");
+    test::write_bytes(import.folder / folder / "crate/model.sdf",
+                      "<sdf version=\"1.6\">" +
+                          model("crate", visual("<sphere><radius>" + size_m + "</radius></sphere>")) + "</sdf>");
+    return (import.folder / folder).string();
+  };
+  const auto radius_m = [&] {
+    import.read();
+    return import.site.shapes.front().size_m.x();
+  };
+  EXPECT_THAT(import.error(), HasSubstr("unknown model \"crate\""));
+  for (const char* variable : {"GAZEBO_MODEL_PATH", "GZ_SIM_RESOURCE_PATH"}) {
+    ::setenv(variable, ("/nowhere::" + write_crate("first", "0.5") + ":" + write_crate("second", "0.7")).c_str(), 1);
+    EXPECT_EQ(radius_m(), 0.5) << variable;
+    ::unsetenv(variable);
+  }
+  ::setenv("GAZEBO_MODEL_PATH", (import.folder / "first").c_str(), 1);
+  import.options.packages["crate"] = write_crate("given", "0.9") + "/crate";
+  EXPECT_EQ(radius_m(), 0.9);
+  ::unsetenv("GAZEBO_MODEL_PATH");
+}
+
 /// A broken world with its message.
 struct Broken {
   std::string elements;
@@ -394,9 +421,13 @@ TEST(SdfSite, BrokenAndUnsupportedWorldsAreRefusedByOneLine) {
             "world with name[w]."},
            {m + end + "\n" + m + end, "a.sdf:4: model with name[m] already exists."},
            {"<include><uri>model://nowhere</uri></include>",
-            "a.sdf:3: <include>: unknown model \"nowhere\": give its folder with --package nowhere=FOLDER"},
+            "a.sdf:3: <include>: unknown model \"nowhere\": give its folder with --package nowhere=FOLDER, or the "
+            "folder above it in "
+            "GAZEBO_MODEL_PATH or GZ_SIM_RESOURCE_PATH"},
            {shaped("<mesh><uri>model://nowhere/a.dae</uri></mesh>"),
-            "a.sdf:3: <mesh>: unknown model \"nowhere\": give its folder with --package nowhere=FOLDER"},
+            "a.sdf:3: <mesh>: unknown model \"nowhere\": give its folder with --package nowhere=FOLDER, or the folder "
+            "above it in "
+            "GAZEBO_MODEL_PATH or GZ_SIM_RESOURCE_PATH"},
            {shaped("<mesh><uri>absent.dae</uri></mesh>"), "a.sdf:3: <mesh>: absent.dae: file not found"},
            {shaped("<mesh><uri>https://host/a.dae</uri></mesh>"),
             "a.sdf:3: <mesh>: https://host/a.dae: files of a network are not supported"},
