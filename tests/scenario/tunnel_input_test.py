@@ -222,6 +222,13 @@ class BadInput(TunnelRun):
         self.refuse(["map", "teleop"], "mapping", "map=map/map.yaml")
 
 
+    def test_a_robot_whose_profile_names_no_tunnel_mission(self):
+        self.refuse(["navigate.yaml: stack.mission_type = gas (robot wheeled): mission site.json has no stations: must have at least one",
+                     "stack.mission_type=tunnel"], "navigate", "robot=wheeled")
+        done = self.run_patrol("navigate", "time_limit_s=0.1", "robot=wheeled", "stack.mission_type=tunnel")
+        self.assertEqual(done.returncode, 4, done.stderr)  # it runs to its time limit
+
+
 class NoRoute(TunnelRun):
     """The first goal cannot be reached, the second can: the robot says why, goes on to the second, and collides with nothing."""
 

@@ -2,9 +2,12 @@
 
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "app/run/built_in_stack.h"
 #include "app/run/external_stack.h"
 #include "app/run/stack_documents.h"
+#include "core/error.h"
 #include "inspect/route_frame.h"
 #include "sim/model_assembly.h"
 #include "stack/make_stack.h"
@@ -21,6 +24,16 @@ stack::LiningReferences references_of(const ScenarioFiles& files) {
   return references;
 }
 
+/// Refuses a gas mission without stations. Its type may be the default: few robots have a profile that names another.
+void require_stations(const Scenario& scenario, const ScenarioFiles& files) {
+  if (scenario.stack.mission_type != "gas" || !files.route.stations.empty()) return;
+  throw InputError(fmt::format(
+      "{} = gas (robot {}): mission {} has no stations: must have at least one{}",
+      scenario.mission_type_location.empty() ? "stack.mission_type" : scenario.mission_type_location, scenario.robot,
+      scenario.mission,
+      files.goals.empty() && !files.has_teleop() ? "" : ", or use stack.mission_type=tunnel, which drives to goals"));
+}
+
 }  // namespace
 
 std::unique_ptr<StackPort> make_stack_port(const Scenario& scenario, const ScenarioFiles& files, StackContext context) {
@@ -35,6 +48,7 @@ std::unique_ptr<StackPort> make_stack_port(const Scenario& scenario, const Scena
 }
 
 stack::Stack make_stack(const Scenario& scenario, const ScenarioFiles& files) {
+  require_stations(scenario, files);
   return stack::make_stack(scenario.stack, files.robot, inspect::to_map(files.route, files.T_site_start),
                            {.map = files.map,
                             .map_registration = files.map_registration,

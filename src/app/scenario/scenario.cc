@@ -212,6 +212,9 @@ Scenario load_scenario(const std::filesystem::path& file, const std::vector<std:
   Scenario scenario = of_profile;
   read_over(file, overrides, scenario);
   scenario.robot_location = location_of(file, find_node(lines_of(file, "robot", overrides), {"robot"}), "robot");
+  constexpr const char* kMissionType = "stack.mission_type";
+  scenario.mission_type_location =
+      location_of(file, find_node(lines_of(file, kMissionType, overrides), {"stack", "mission_type"}), kMissionType);
   if (const std::optional<RobotDescription> described = robot_of(robot, data_root, scenario.mounts)) {
     check_profile(profile, *described, of_profile);
     const std::vector<std::string> enabled = enabled_by_name(io::load_document(file, overrides));

@@ -164,6 +164,7 @@ struct Scenario {
   LogSettings log;
   io::Expectations expect;            ///< bounds of metrics that the run must meet, by path of the metric
   std::string robot_location;         ///< file, line and key of `robot` for messages; not a setting
+  std::string mission_type_location;  ///< file, line and key of `stack.mission_type` for messages; not a setting
   std::vector<SensorNeed> requested;  ///< sensors that the file enables and the robot lacks; not a setting
 
   template <typename Self, typename Visitor>
