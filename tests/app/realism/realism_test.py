@@ -102,7 +102,7 @@ class Realism(unittest.TestCase):
                 ([log, *path, "--site", "moon"], "world = moon: "),
                 ([log, *site, *path, "--lidar", "sick"], "--lidar = sick: must be one of"),
                 ([self.folder / "absent", *site, *path], "log not found"),
-                ([log, *site, *path, "--set", "input.max_scans=1"], "input.max_scans: 1 is out of range")]:
+                ([log, *site, *path, "--set", "input.max_scans=1"], "--set input.max_scans=1: 1 is out of range")]:
             for command in (["realism"], ["calibrate", "--sensor", "lidar"]):
                 done = self.patrol(*command, *arguments, "--out", out, code=2)
                 self.assertIn(message, done.stderr)
