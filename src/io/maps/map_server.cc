@@ -106,8 +106,8 @@ std::int8_t cell_of(const MapFile& about, const MapImage& image, std::size_t pix
   if (p > about.occupied_thresh) return kOccupied;
   if (p < about.free_thresh) return kFree;
   if (!is_scale) return kUnknown;
-  const double share = (p - about.free_thresh) / (about.occupied_thresh - about.free_thresh);
-  return static_cast<std::int8_t>(std::rint(kOccupied * share));
+  const double ratio = (p - about.free_thresh) / (about.occupied_thresh - about.free_thresh);
+  return static_cast<std::int8_t>(std::rint(kOccupied * ratio));
 }
 
 }  // namespace
