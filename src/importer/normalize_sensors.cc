@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <initializer_list>
 #include <limits>
@@ -12,6 +11,7 @@
 
 #include "core/geometry/angles.h"
 #include "core/geometry/convex_polygon.h"
+#include "core/letter_case.h"
 #include "core/sensors/lidar.h"
 #include "importer/hull.h"
 #include "importer/normalizer.h"
@@ -50,8 +50,7 @@ namespace {
 std::string links_named(const std::set<std::string>& links, std::initializer_list<std::string_view> words) {
   std::vector<std::string> named;
   for (const std::string& link : links) {
-    std::string lower = link;
-    std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string lower = to_lower(link);
     const auto contains = [&lower](std::string_view word) { return lower.find(word) != std::string::npos; };
     if (std::ranges::any_of(words, contains)) named.push_back(link);
   }

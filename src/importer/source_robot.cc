@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/letter_case.h"
 #include "importer/source_reader.h"
 #include "io/files/one_line.h"
 
@@ -161,9 +162,7 @@ void SourceReader::read_mesh(const XMLElement& element, const std::string& link,
     path = packages_.find_mesh(uri);
     if (path.lexically_normal() != named_path(packages_, uri))
       elsewhere_[packages_.relative(path.parent_path())].insert(path.filename().string());
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string extension = to_lower(path.extension().string());
     if (extension != ".stl" && extension != ".obj" && extension != ".dae")
       throw InputError(fmt::format("{}: mesh must be an STL, OBJ or DAE file", path.string()));
     const std::string key =

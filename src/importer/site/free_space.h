@@ -30,13 +30,13 @@ class FreeSpace {
   std::vector<Eigen::Vector2d> cells_m_;
 };
 
-/// Check of places in a floor plan at which a robot shall stand.
+/// Checks whether a robot can stand at a position of a floor plan.
 class ClearanceCheck {
  public:
   /// `min_clearance_m`: minimum distance to cells that are occupied or unknown.
   ClearanceCheck(const OccupancyGrid& plan, double min_clearance_m);
 
-  /// Returns what is wrong with a place, such as "outside the floor plan"; none if a robot can stand there.
+  /// Returns the problem of a position, such as "outside the floor plan"; none if a robot can stand there.
   std::optional<std::string> problem_at(const Eigen::Vector2d& p_m) const;
 
  private:

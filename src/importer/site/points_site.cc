@@ -50,7 +50,7 @@ std::string name_of_class(std::size_t i) { return fmt::format("measured_{:02.0f}
 /// Meters per unit of the file.
 double unit_of_points(const SiteImportOptions& options) { return options.scale > 0.0 ? options.scale : 1.0; }
 
-/// Place of errors: the file with its folder.
+/// Returns the start of error messages: the file with its folder.
 std::string error_location(const SiteImportOptions& options, const std::string& source) {
   return options.file.empty() ? source : options.file.string();
 }
