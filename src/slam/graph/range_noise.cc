@@ -19,6 +19,8 @@ constexpr double kSmoothed = 0.6;
 constexpr double kRadius = 2.8, kFreeMargin = 3.5, kKernel = 2.5, kPointStd = 0.5;
 /// Smallest distance between keyframes, as a fraction of the usual one.
 constexpr double kMinKeyframeStep = 0.4;
+/// Smallest number of keyframes per map, as a fraction of the usual one, and the noise from which it is the usual one.
+constexpr double kMinSubmap = 0.5, kUsualSubmap_m = 0.2;
 
 }  // namespace
 
@@ -56,6 +58,8 @@ bool adapt_to_range_noise(double range_std_m, ScanTrackerSettings& settings) {
   const double step = std::max(kMinKeyframeStep, kMinAdapted_m / range_std_m);
   settings.keyframe_distance_m = std::min(settings.keyframe_distance_m, step * usual.keyframe_distance_m);
   settings.keyframe_angle_rad = std::min(settings.keyframe_angle_rad, step * usual.keyframe_angle_rad);
+  const double submap = std::clamp(range_std_m / kUsualSubmap_m, kMinSubmap, 1.0) * usual.submap_keyframes;
+  settings.submap_keyframes = std::min(settings.submap_keyframes, static_cast<int>(std::lround(submap)));
   settings.groups_scans = true;
   return true;
 }

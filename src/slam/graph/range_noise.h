@@ -26,7 +26,8 @@ class RangeNoiseEstimator {
 /// Adapts the settings of the tracker to ranges with a standard deviation of more than 0.04 m, which are smoothed along
 /// the scan (range_smoothing.h). The surfaces of a map are then thicker than the neighborhoods in which lines are
 /// fitted, and more scans are averaged: a keyframe contains all scans since the last one, and keyframes are closer.
-/// Settings that go further remain. Returns whether the deviation is that large.
+/// Up to 0.2 m, maps are shorter, so that the final optimization matches each keyframe with several of them, whose
+/// errors are independent. Settings that go further remain. Returns whether the deviation is that large.
 bool adapt_to_range_noise(double range_std_m, ScanTrackerSettings& settings);
 
 }  // namespace patrol::slam

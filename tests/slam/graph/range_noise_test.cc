@@ -2,7 +2,7 @@
 
 #include <cmath>
 #include <limits>
-#include <utility>
+#include <tuple>
 
 #include <gtest/gtest.h>
 
@@ -51,6 +51,7 @@ TEST(RangeNoise, UpToFourCentimetersLeavesTheSettings) {
   EXPECT_EQ(settings.matching.surface_radius_cells, usual.matching.surface_radius_cells);
   EXPECT_EQ(settings.integration.free_margin_m, usual.integration.free_margin_m);
   EXPECT_EQ(settings.keyframe_distance_m, usual.keyframe_distance_m);
+  EXPECT_EQ(settings.submap_keyframes, usual.submap_keyframes);
   EXPECT_FALSE(settings.groups_scans);
 }
 
@@ -68,19 +69,24 @@ TEST(RangeNoise, WidensNeighborhoodKernelAndMarginUpToTheLimitOfTheRadius) {
   EXPECT_EQ(settings.matching.surface_radius_cells, 10);
 }
 
-TEST(RangeNoise, KeyframesAreCloserByUpToFourTenthsAndContainAllScans) {
+TEST(RangeNoise, KeyframesAreCloserByUpToFourTenthsAndContainAllScansAndMapsHaveFewerUpTo20Centimeters) {
   const ScanTrackerSettings usual;
-  for (const auto& [std_m, step] : {std::pair{0.05, 0.8}, {0.1, 0.4}, {0.3, 0.4}}) {
+  ASSERT_EQ(usual.submap_keyframes, 60);
+  for (const auto& [std_m, step, submap_keyframes] :
+       {std::tuple{0.05, 0.8, 30}, {0.1, 0.4, 30}, {0.15, 0.4, 45}, {0.3, 0.4, 60}}) {
     ScanTrackerSettings settings;
     EXPECT_TRUE(adapt_to_range_noise(std_m, settings));
     EXPECT_NEAR(settings.keyframe_distance_m, step * usual.keyframe_distance_m, 1e-12) << std_m;
     EXPECT_NEAR(settings.keyframe_angle_rad, step * usual.keyframe_angle_rad, 1e-12) << std_m;
+    EXPECT_EQ(settings.submap_keyframes, submap_keyframes) << std_m;
     EXPECT_TRUE(settings.groups_scans);
   }
   ScanTrackerSettings closer;
   closer.keyframe_distance_m = 0.01;
+  closer.submap_keyframes = 10;
   EXPECT_TRUE(adapt_to_range_noise(0.1, closer));
   EXPECT_EQ(closer.keyframe_distance_m, 0.01);
+  EXPECT_EQ(closer.submap_keyframes, 10);
 }
 
 }  // namespace
