@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -189,8 +191,11 @@ ExitCode slam_command(const SlamOptions& options) {
     earlier.assign(submaps->keyframes.begin(),
                    submaps->keyframes.begin() + static_cast<std::ptrdiff_t>(num_earlier_nodes));
   ConsistencyReport consistency{.consistency = mapped.consistency.check(path, earlier), .stamps = mapped.stamps};
-  consistency.consistency.unsupported =
+  std::vector<slam::UnsupportedPath>& unsupported = consistency.consistency.unsupported;
+  unsupported =
       slam::find_unsupported_path(consistency.consistency.unmatched_segments, odometry.health.faulty, mapped.stamps);
+  std::ranges::copy(slam::find_unsupported_gaps(mapped.T_odom_body, path, mapped.stamps),
+                    std::back_inserter(unsupported));
   const double took_s = wall_seconds() - wall_s;
   metrics["performance"] = {{"wall_s", took_s},
                             {"processor_s", thread_cpu_time_s() - thread_s},

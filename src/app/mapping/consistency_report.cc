@@ -51,8 +51,23 @@ MappingVerdict ConsistencyReport::verdict() const {
                 fmt::format("{:.0f} % of the scans matched no surfaces, at most {} in a row, from {:.0f} s",
                             100.0 * consistency.unmatched_ratio(), segment.num_scans, seconds(segment.first_scan))};
   }
+  if (!consistency.unconnected.empty()) {
+    const slam::UnconnectedPart& first = consistency.unconnected.front();
+    return {.word = "look at " + place(first.p_map),
+            .tone = report::Tone::kBad,
+            .reason = fmt::format("from {:.0f} s, only odometry over {:.1f} m connects the map with the part before",
+                                  seconds(first.first_scan), first.distance_m)};
+  }
   if (!consistency.unsupported.empty()) {
     const slam::UnsupportedPath& worst = consistency.unsupported.front();
+    if (worst.gap_s > 0.0) {
+      return {.word = "look at " + place(worst.scans.p_map),
+              .tone = report::Tone::kBad,
+              .reason =
+                  fmt::format("before {:.0f} s, there are no scans for {:.1f} s, and odometry contradicts {:.1f} m "
+                              "of the path there",
+                              seconds(worst.scans.first_scan), worst.gap_s, worst.contradiction_m)};
+    }
     return {.word = "look at " + place(worst.scans.p_map),
             .tone = report::Tone::kBad,
             .reason =
@@ -90,6 +105,15 @@ io::Metrics ConsistencyReport::metrics() const {
   for (std::size_t i = 0; i < std::min(kListed, consistency.unsupported.size()); ++i) {
     unsupported.push_back(to_metrics(consistency.unsupported[i].scans));
     unsupported.back()["contradiction_m"] = consistency.unsupported[i].contradiction_m;
+    unsupported.back()["gap_s"] = consistency.unsupported[i].gap_s;
+  }
+  io::Metrics unconnected = io::Metrics::array();
+  for (std::size_t i = 0; i < std::min(kListed, consistency.unconnected.size()); ++i) {
+    const slam::UnconnectedPart& part = consistency.unconnected[i];
+    unconnected.push_back({{"x_m", part.p_map.x()},
+                           {"y_m", part.p_map.y()},
+                           {"from_s", seconds(part.first_scan)},
+                           {"distance_m", part.distance_m}});
   }
   return {{"consistent", consistency.is_consistent()},
           {"segments", consistency.num_segments},
@@ -99,6 +123,7 @@ io::Metrics ConsistencyReport::metrics() const {
           {"unmatched_scans", consistency.num_unmatched},
           {"unmatched_ratio", consistency.unmatched_ratio()},
           {"unmatched_segments", unmatched},
+          {"unconnected", unconnected},
           {"unsupported", unsupported}};
 }
 
@@ -132,6 +157,8 @@ std::vector<report::MapMark> ConsistencyReport::marks() const {
     const slam::UnmatchedSegment& segment = consistency.unmatched_segments.front();
     marks.push_back({.label = fmt::format("{} scans unmatched", segment.num_scans), .p_m = segment.p_map});
   }
+  for (std::size_t i = 0; i < std::min(kMarked, consistency.unconnected.size()); ++i)
+    marks.push_back({.label = "not connected", .p_m = consistency.unconnected[i].p_map});
   for (std::size_t i = 0; i < std::min(kMarked, consistency.unsupported.size()); ++i)
     marks.push_back({.label = "not supported", .p_m = consistency.unsupported[i].scans.p_map});
   return marks;

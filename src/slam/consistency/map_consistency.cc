@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numeric>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "slam/graph/branch_and_bound.h"
@@ -29,6 +31,8 @@ constexpr std::size_t kCachedSegments = 64;
 constexpr int kMinReturns = 3;
 constexpr double kMinMatchScore = 0.3;
 constexpr double kMaxUnmatchedRatio = 0.2;
+/// Length of the path without a matched scan above which it is interrupted.
+constexpr double kMaxUntracked_m = 2.0;
 
 /// Kept scans of a segment of the path.
 struct Segment {
@@ -36,14 +40,16 @@ struct Segment {
   Eigen::Vector2d center_map;
 };
 
-/// Segments of the path through `T_map_kept`, whose indices in ranges begin at `first_index`.
-std::vector<Segment> divide(const std::vector<Pose2>& T_map_kept, int first_index) {
+/// Segments of the path through `T_map_kept`, whose indices in ranges begin at `first_index`. Those after an
+/// interruption begin at the kept scans `starts`.
+std::vector<Segment> divide(const std::vector<Pose2>& T_map_kept, int first_index,
+                            const std::set<std::size_t>& starts = {}) {
   std::vector<Segment> segments;
   double length_m = 0.0;
   for (std::size_t i = 0; i < T_map_kept.size(); ++i) {
     const int k = first_index + static_cast<int>(i);
     if (i > 0) length_m += (T_map_kept[i].position() - T_map_kept[i - 1].position()).norm();
-    if (segments.empty() || length_m > kSegment_m) {
+    if (segments.empty() || length_m > kSegment_m || starts.contains(i)) {
       segments.push_back({.range = {.first = k, .last = k}, .center_map = T_map_kept[i].position()});
       length_m = 0.0;
     }
@@ -63,6 +69,24 @@ double score_at(const LikelihoodPyramid& map, const std::vector<Eigen::Vector2d>
   }
   return sum / (LikelihoodPyramid::kOnSurface * static_cast<double>(points.size()));
 }
+
+/// Segments that are connected with each other.
+class Connections {
+ public:
+  explicit Connections(std::size_t num_segments) : parent_(num_segments) {
+    std::iota(parent_.begin(), parent_.end(), std::size_t{0});
+  }
+  void connect(std::size_t a, std::size_t b) { parent_[root(a)] = root(b); }
+  bool are_connected(std::size_t a, std::size_t b) { return root(a) == root(b); }
+
+ private:
+  std::size_t root(std::size_t s) {
+    while (parent_[s] != s) s = parent_[s] = parent_[parent_[s]];
+    return s;
+  }
+
+  std::vector<std::size_t> parent_;
+};
 
 /// Result of comparing two segments.
 struct Comparison {
@@ -93,7 +117,8 @@ Comparison compare(const RenderedSubmap& a, const RenderedSubmap& b, const Pose2
 bool MapConsistency::has_too_many_unmatched() const { return unmatched_ratio() > kMaxUnmatchedRatio; }
 
 bool MapConsistency::is_consistent() const {
-  return num_compared > 0 && disagreements.empty() && unsupported.empty() && !has_too_many_unmatched();
+  return num_compared > 0 && disagreements.empty() && unconnected.empty() && unsupported.empty() &&
+         !has_too_many_unmatched();
 }
 
 void ConsistencyCheck::add(const LevelScan& scan, const SlamUpdate& update) {
@@ -109,6 +134,24 @@ void ConsistencyCheck::add(const LevelScan& scan, const SlamUpdate& update) {
   }
   kept_.push_back({.scans = ScanGroup(scan), .T_local_body = update.T_map_body});
   kept_indices_.push_back(scans_.size() - 1);
+}
+
+// The place of an unmatched scan is uncertain: the path is measured from the matched scan before it to the one after
+// it.
+std::vector<UnconnectedPart> ConsistencyCheck::interruptions(const std::vector<Pose2>& T_map_body) const {
+  std::vector<UnconnectedPart> interruptions;
+  UnconnectedPart open;
+  for (std::size_t i = 1; i < scans_.size(); ++i) {
+    const double step_m = (T_map_body[i].position() - T_map_body[i - 1].position()).norm();
+    if (scans_[i - 1].is_matched || step_m > kMaxUntracked_m)
+      open = {.first_scan = i, .p_map = T_map_body[i].position()};
+    open.distance_m += step_m;
+    const bool is_end = scans_[i].is_matched || step_m > kMaxUntracked_m;
+    if (!is_end || open.distance_m <= kMaxUntracked_m) continue;
+    interruptions.push_back(open);
+    open.distance_m = 0.0;
+  }
+  return interruptions;
 }
 
 MapConsistency ConsistencyCheck::check(const std::vector<Pose2>& T_map_body,
@@ -139,8 +182,19 @@ MapConsistency ConsistencyCheck::check(const std::vector<Pose2>& T_map_body,
   for (const std::size_t index : kept_indices_) T_map_kept.push_back(T_map_body[index]);
   std::vector<Segment> segments = divide(T_map_earlier, 0);
   const std::size_t num_earlier = segments.size();
-  const std::vector<Segment> own = divide(T_map_kept, static_cast<int>(earlier.size()));
+  const std::vector<UnconnectedPart> interruptions = this->interruptions(T_map_body);
+  std::set<std::size_t> starts;  // of the parts after interruptions, in kept scans
+  for (const UnconnectedPart& part : interruptions)
+    starts.insert(
+        static_cast<std::size_t>(std::ranges::lower_bound(kept_indices_, part.first_scan) - kept_indices_.begin()));
+  const std::vector<Segment> own = divide(T_map_kept, static_cast<int>(earlier.size()), starts);
   segments.insert(segments.end(), own.begin(), own.end());
+  Connections connections(segments.size());
+  for (std::size_t s = 1; s < segments.size(); ++s) {
+    const bool is_start =
+        s >= num_earlier && starts.contains(static_cast<std::size_t>(segments[s].range.first) - earlier.size());
+    if (s != num_earlier && !is_start) connections.connect(s - 1, s);
+  }
   result.num_segments = static_cast<int>(own.size());
   std::vector<Pose2> T_map_keyframe = std::move(T_map_earlier);
   T_map_keyframe.insert(T_map_keyframe.end(), T_map_kept.begin(), T_map_kept.end());
@@ -165,6 +219,7 @@ MapConsistency ConsistencyCheck::check(const std::vector<Pose2>& T_map_body,
       const Comparison comparison = compare(*rendered(a), *rendered(b), T_map(a).inverse() * T_map(b),
                                             T_map(b).inverse() * segments[b].center_map);
       result.num_compared += comparison.is_overlapping ? 1 : 0;
+      if (comparison.is_overlapping && !comparison.better) connections.connect(a, b);
       if (!comparison.better) continue;
       result.disagreements.push_back({.p_map = 0.5 * (segments[a].center_map + segments[b].center_map),
                                       .first_scan = a < num_earlier ? std::nullopt : std::optional(first_scan(a)),
@@ -172,6 +227,17 @@ MapConsistency ConsistencyCheck::check(const std::vector<Pose2>& T_map_body,
                                       .offset_m = comparison.better->position().norm(),
                                       .offset_rad = comparison.better->yaw});
     }
+  }
+  for (const UnconnectedPart& part : interruptions) {
+    const auto start = static_cast<std::size_t>(
+        std::ranges::find_if(segments.begin() + static_cast<std::ptrdiff_t>(num_earlier), segments.end(),
+                             [&](const Segment& segment) {
+                               return kept_indices_[static_cast<std::size_t>(segment.range.first) - earlier.size()] >=
+                                      part.first_scan;
+                             }) -
+        segments.begin());
+    if (start > num_earlier && start < segments.size() && !connections.are_connected(start - 1, start))
+      result.unconnected.push_back(part);
   }
   std::stable_sort(result.disagreements.begin(), result.disagreements.end(),
                    [](const Disagreement& a, const Disagreement& b) { return a.offset_m > b.offset_m; });

@@ -29,8 +29,16 @@ struct UnmatchedSegment {
 
 /// Part of the path that neither scans nor odometry support (unsupported_path.h).
 struct UnsupportedPath {
-  UnmatchedSegment scans;
+  UnmatchedSegment scans;        ///< of a gap between scans: begins after it and is empty
   double contradiction_m = 0.0;  ///< length of the path that odometry contradicts
+  double gap_s = 0.0;            ///< time without scans before the part; 0: the part has scans
+};
+
+/// Part of the path that only odometry connects with the part before it.
+struct UnconnectedPart {
+  std::size_t first_scan = 0;
+  Eigen::Vector2d p_map = Eigen::Vector2d::Zero();  ///< of its first scan
+  double distance_m = 0.0;                          ///< along the path, of the interruption
 };
 
 /// Agreement of a map with the scans from which it was made, without ground truth.
@@ -41,15 +49,16 @@ struct MapConsistency {
   std::size_t num_scans = 0;                              ///< scans with returns
   std::size_t num_unmatched = 0;                          ///< of them, scans that matched no surfaces
   std::vector<UnmatchedSegment> unmatched_segments = {};  ///< most scans first
+  std::vector<UnconnectedPart> unconnected = {};          ///< earliest first
   std::vector<UnsupportedPath> unsupported = {};          ///< most scans first; ConsistencyCheck leaves it empty
 
   double unmatched_ratio() const {
     return num_scans == 0 ? 0.0 : static_cast<double>(num_unmatched) / static_cast<double>(num_scans);
   }
   bool has_too_many_unmatched() const;  ///< more than a fifth of the scans
-  /// Whether nothing indicates a wrong map: segments could be compared and agree, most scans matched, and scans or
-  /// odometry support the path. A map can be consistent and wrong, for example if a loop was not closed and its ends do
-  /// not overlap in the map.
+  /// Whether nothing indicates a wrong map: segments could be compared and agree, most scans matched, scans connect all
+  /// parts of the path, and scans or odometry support it. A map can be consistent and wrong, for example if a loop was
+  /// not closed and its ends do not overlap in the map.
   bool is_consistent() const;
 };
 
@@ -57,6 +66,9 @@ struct MapConsistency {
 /// into segments of 5 m. Two of them disagree if less than 80 % of the surfaces of one lie within 0.2 m of surfaces of
 /// the other, where it has observed cells, and if a search within 2 m and 0.2 rad finds a pose at which clearly more
 /// of them do. Both are necessary: people and furniture move, and smooth corridors match anywhere along them.
+///
+/// The path is interrupted where it has no matched scan for more than 2 m, or consecutive scans are further apart. Its
+/// parts are connected if a segment of each agrees with one of the other.
 class ConsistencyCheck {
  public:
   /// Adds the next scan with the result of mapping it.
@@ -69,6 +81,9 @@ class ConsistencyCheck {
   struct MatchedScan {
     bool has_returns, is_matched;
   };
+  /// Parts after interruptions of the path, whether they are connected or not.
+  std::vector<UnconnectedPart> interruptions(const std::vector<Pose2>& T_map_body) const;
+
   std::vector<MatchedScan> scans_;
   std::vector<Keyframe> kept_;             ///< scans at least 0.1 m or 0.1 rad apart
   std::vector<std::size_t> kept_indices_;  ///< [kept scan]: its index

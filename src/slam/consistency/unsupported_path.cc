@@ -9,6 +9,7 @@ namespace {
 
 constexpr std::size_t kMinScans = 3;
 constexpr double kMinContradiction_m = 2.0, kMaxInterval_s = 5.0;
+constexpr double kMinUnsupportedGap_s = 5.0;
 
 /// Time between two ranges of scans; 0 if they overlap.
 double interval_s(const std::vector<Time>& stamps, std::size_t a_first, std::size_t a_last, std::size_t b_first,
@@ -36,6 +37,26 @@ std::vector<UnsupportedPath> find_unsupported_path(const std::vector<UnmatchedSe
   }
   std::ranges::stable_sort(unsupported, std::ranges::greater{},
                            [](const UnsupportedPath& entry) { return entry.scans.num_scans; });
+  return unsupported;
+}
+
+std::vector<UnsupportedPath> find_unsupported_gaps(const std::vector<Pose2>& T_odom_body,
+                                                   const std::vector<Pose2>& T_map_body,
+                                                   const std::vector<Time>& stamps) {
+  std::vector<UnsupportedPath> unsupported;
+  for (std::size_t i = 1; i < stamps.size(); ++i) {
+    const double gap_s = to_seconds(stamps[i] - stamps[i - 1]);
+    if (gap_s < kMinUnsupportedGap_s) continue;
+    const Pose2 odometry = T_odom_body[i - 1].inverse() * T_odom_body[i],
+                map = T_map_body[i - 1].inverse() * T_map_body[i];
+    const double contradiction_m = (odometry.position() - map.position()).norm();
+    if (contradiction_m < kMinContradiction_m) continue;
+    unsupported.push_back({.scans = {.first_scan = i, .p_map = T_map_body[i].position()},
+                           .contradiction_m = contradiction_m,
+                           .gap_s = gap_s});
+  }
+  std::ranges::stable_sort(unsupported, std::ranges::greater{},
+                           [](const UnsupportedPath& entry) { return entry.gap_s; });
   return unsupported;
 }
 

@@ -204,18 +204,24 @@ std::vector<PoseGaussian> GraphSlam::relative_pose_distributions(int submap, Dri
 }
 
 // Covariance of the next submap's pose in this submap's frame. Tracked scans reduce the drift of odometry along the
-// directions that they determine.
+// directions that they determine. The drift settings are those of a tracked path: unmatched steps have the uncertainty
+// of odometry.
 Eigen::Matrix3d GraphSlam::drift_covariance(int submap, Drift drift) const {
   const int first = submaps_[static_cast<std::size_t>(submap)].first,
             next = submaps_[static_cast<std::size_t>(submap) + 1].first;
   const double yaw_first = keyframes_[static_cast<std::size_t>(first)].T_local_body.yaw;
   double length_m = 0.0, turn_rad = 0.0, undetermined_m = 0.0;
   Eigen::Matrix2d undetermined_m2 = Eigen::Matrix2d::Zero();
+  Eigen::Matrix3d unmatched = Eigen::Matrix3d::Zero();
   for (int k = first; k < next; ++k) {
     const Pose2& T_local_next = keyframes_[static_cast<std::size_t>(k) + 1].T_local_body;
     const Pose2 step = keyframes_[static_cast<std::size_t>(k)].T_local_body.inverse() * T_local_next;
     const KeyframeMatch& match = matches_[static_cast<std::size_t>(k + 1 - first_keyframe_)];
     const double fraction = drift == Drift::kTracked && match.is_matched ? kTrackedDrift : 1.0;
+    if (!match.is_matched) {
+      const double yaw = keyframes_[static_cast<std::size_t>(k)].T_local_body.yaw - yaw_first;
+      unmatched += predict_motion({0.0, 0.0, yaw}, step, 0.0, settings_.scan_odometry.motion).covariance;
+    }
     length_m += fraction * step.position().norm();
     turn_rad += fraction * std::abs(step.yaw);
     if (drift == Drift::kOdometry) continue;
@@ -226,6 +232,7 @@ Eigen::Matrix3d GraphSlam::drift_covariance(int submap, Drift drift) const {
   const double std_m = settings_.drift_std_m_per_m * length_m,
                std_rad = settings_.drift_std_rad_per_m * length_m + settings_.drift_std_rad_per_rad * turn_rad;
   Eigen::Matrix3d covariance = Eigen::Vector3d(std_m * std_m, std_m * std_m, std_rad * std_rad).asDiagonal();
+  covariance += unmatched;
   covariance.topLeftCorner<2, 2>() +=
       settings_.drift_std_m_per_m * settings_.drift_std_m_per_m * undetermined_m * undetermined_m2;
   return covariance;

@@ -7,7 +7,6 @@
 
 #include <Eigen/LU>
 
-#include "slam/graph/branch_and_bound.h"
 #include "slam/graph/degeneracy.h"
 #include "slam/graph/sector_gains.h"
 #include "slam/rigid_motion.h"
@@ -29,6 +28,8 @@ constexpr double kContradiction = 16.0;
 constexpr double kIndependentPoints = 45.0;
 /// Search over possible motions: time between scans, at least because stamps of logs jitter and at most; margins.
 constexpr double kMinSearch_s = 0.4, kMaxSearch_s = 0.7, kSearchMargin_m = 0.1, kSearchMarginRad = 0.05;
+/// Search around the prediction by odometry after a gap between scans, in its standard deviations and at most.
+constexpr double kGapSearchStd = 3.0, kMaxGapSearch_m = 3.0, kMaxGapSearchRad = 0.8;
 /// Standard deviation of a motion without odometry, as a fraction of the possible motion.
 constexpr double kPossibleMotionStd = 0.3;
 /// Motion during which odometry does not change, so that it is constant.
@@ -79,12 +80,13 @@ TrackedScan ScanTracker::update(const LevelScan& scan, const Pose2& T_odom_stamp
     T_odom_last_ = tracks_[0].matched.T_odom_body = T_odom_body;
     stamp_ = tracks_[0].matched.stamp = scan.stamp;
   }
-  const Step step{.stamp = scan.stamp,
-                  .seconds = to_seconds(scan.stamp - *stamp_),
-                  .T_odom_body = T_odom_body,
-                  .T_last_odom = correction_.corrected(T_odom_last_.inverse() * T_odom_body),
-                  .is_sparse = num_hits(scan) < settings_.min_hits,
-                  .is_odometry_constant = is_odometry_constant_ && is_same(T_odom_last_, T_odom_body)};
+  Step step{.stamp = scan.stamp,
+            .seconds = to_seconds(scan.stamp - *stamp_),
+            .T_odom_body = T_odom_body,
+            .T_last_odom = correction_.corrected(T_odom_last_.inverse() * T_odom_body),
+            .is_sparse = num_hits(scan) < settings_.min_hits,
+            .is_odometry_constant = is_odometry_constant_ && is_same(T_odom_last_, T_odom_body)};
+  step.is_gap = is_gap(step);
   const bool can_be_matched = older_.has_surface();
   if (!step.is_sparse) tracks_.resize(1);
   const std::vector<Branch> branches =
@@ -214,6 +216,7 @@ double ScanTracker::score(const Track& track, const Branch& branch, const std::v
 ScanTracker::Hypothesis ScanTracker::match_by_alternatives(const Track& track, const Hypothesis& by_odometry,
                                                            const std::vector<MatchPoint>& points, const Step& step,
                                                            const PoseGaussian& prediction) {
+  if (step.is_gap) return match_after_gap(by_odometry, points, prediction);
   Hypothesis best = by_odometry;
   const bool is_likely = best.match && usual_.has_usual_points(*best.match, best.log_likelihoods);
   if (is_likely && step.is_sparse) return without_moving_objects(best, points, prediction);
@@ -230,19 +233,50 @@ ScanTracker::Hypothesis ScanTracker::match_by_alternatives(const Track& track, c
     if (is_distinct(start, prediction.mean) && is_distinct(start, best.T_local_body)) consider(start);
   }
   if (!is_likely || !usual_.has_usual_loss(best.log_likelihoods)) {
-    if (const std::optional<Pose2> found = search_possible_motions(track.T_local_last, points, step.seconds))
+    if (const std::optional<Pose2> found = search(possible_motions(track.T_local_last, step.seconds), points))
       consider(*found);
   }
   return best.match ? without_moving_objects(best, points, prediction) : best;
 }
 
-std::optional<Pose2> ScanTracker::search_possible_motions(const Pose2& T_local_last,
-                                                          const std::vector<MatchPoint>& points, double seconds) {
-  if (!pyramid_) pyramid_.emplace(older_, 2.0 * settings_.resolution_m, kSearchLevels);
+// Where the map ends, few points are in known cells, and a pose at which all points match is elsewhere.
+ScanTracker::Hypothesis ScanTracker::match_after_gap(const Hypothesis& by_odometry,
+                                                     const std::vector<MatchPoint>& points,
+                                                     const PoseGaussian& prediction) {
+  const auto is_likely = [&](const Hypothesis& hypothesis) {
+    return hypothesis.match && usual_.has_usual_points(*hypothesis.match, hypothesis.log_likelihoods);
+  };
+  if (is_likely(by_odometry)) return by_odometry;
+  const double variance_m2 = std::max(prediction.covariance(0, 0), prediction.covariance(1, 1));
+  const SearchWindow window{
+      .T_map_center = prediction.mean,
+      .half_width_m = std::min(kMaxGapSearch_m, kGapSearchStd * std::sqrt(variance_m2)) + kSearchMargin_m,
+      .half_angle_rad =
+          std::min(kMaxGapSearchRad, kGapSearchStd * std::sqrt(prediction.covariance(2, 2))) + kSearchMarginRad};
+  if (const std::optional<Pose2> found = search(window, points)) {
+    Hypothesis other = match_from(*found, points, prediction, by_odometry);
+    if (other.match) evaluate(other, points);
+    if (is_likely(other)) return other;
+  }
+  return by_odometry;
+}
+
+SearchWindow ScanTracker::possible_motions(const Pose2& T_local_last, double seconds) const {
   const double limited_s = std::clamp(seconds, kMinSearch_s, kMaxSearch_s);
-  const SearchWindow window{.T_map_center = T_local_last,
-                            .half_width_m = settings_.max_speed_mps * limited_s + kSearchMargin_m,
-                            .half_angle_rad = settings_.max_turn_rate_radps * limited_s + kSearchMarginRad};
+  return {.T_map_center = T_local_last,
+          .half_width_m = settings_.max_speed_mps * limited_s + kSearchMargin_m,
+          .half_angle_rad = settings_.max_turn_rate_radps * limited_s + kSearchMarginRad};
+}
+
+bool ScanTracker::is_gap(const Step& step) const {
+  const SearchWindow searched = possible_motions({}, step.seconds);
+  const double moved_m = step.T_last_odom.position().norm();
+  return !step.is_odometry_constant && moved_m > searched.half_width_m &&
+         moved_m <= settings_.max_speed_mps * step.seconds;
+}
+
+std::optional<Pose2> ScanTracker::search(const SearchWindow& window, const std::vector<MatchPoint>& points) {
+  if (!pyramid_) pyramid_.emplace(older_, 2.0 * settings_.resolution_m, kSearchLevels);
   const auto found =
       search_window(*pyramid_, positions_of(points, settings_.matching.search_points), window, kMinSearchScore);
   return found ? std::optional(found->T_map_points) : std::nullopt;

@@ -6,6 +6,7 @@
 
 #include "core/messages.h"
 #include "core/settings.h"
+#include "slam/graph/branch_and_bound.h"
 #include "slam/graph/likelihood_pyramid.h"
 #include "slam/graph/odometry_correction.h"
 #include "slam/graph/odometry_delay.h"
@@ -49,6 +50,9 @@ struct TrackedScan {
 /// likelihood exceeds its loss under the Student's t prior of odometry. Odometry that contradicts a match has a larger
 /// covariance for the next scans. Odometry that does not change at all while the robot moves is not used: the
 /// prediction is then the previous motion, with a covariance that contains all possible motions.
+///
+/// Robust against gaps between scans: if odometry leaves the possible motions of a scan interval, but not those of the
+/// gap, only poses around its prediction are matched, and without a match the pose follows odometry.
 ///
 /// Robust against sparse scans, whose few points can match anywhere: one that matches as usual has no alternatives, and
 /// otherwise both the alternative and the match of the odometry prediction are continued. Several such tracks exist at
@@ -102,6 +106,7 @@ class ScanTracker {
     Pose2 T_last_odom;                  ///< step by calibrated odometry
     bool is_sparse = false;             ///< the scan has few returns
     bool is_odometry_constant = false;  ///< although the robot moves
+    bool is_gap = false;                ///< by odometry, the robot left the search over possible motions
   };
 
   /// Continuation of a track.
@@ -123,8 +128,11 @@ class ScanTracker {
   Hypothesis match_by_alternatives(const Track& track, const Hypothesis& by_odometry,
                                    const std::vector<MatchPoint>& points, const Step& step,
                                    const PoseGaussian& prediction);
-  std::optional<Pose2> search_possible_motions(const Pose2& T_local_last, const std::vector<MatchPoint>& points,
-                                               double seconds);
+  Hypothesis match_after_gap(const Hypothesis& by_odometry, const std::vector<MatchPoint>& points,
+                             const PoseGaussian& prediction);
+  SearchWindow possible_motions(const Pose2& T_local_last, double seconds) const;
+  bool is_gap(const Step& step) const;
+  std::optional<Pose2> search(const SearchWindow& window, const std::vector<MatchPoint>& points);
   static double updated_variance_scale(double scale, const PoseGaussian& prediction, const Hypothesis& best);
   void calibrate_odometry(Time stamp, const Fix& before, const Pose2& T_odom_body, const Hypothesis& best);
   TrackedScan to_tracked_scan(const Hypothesis& best, const PoseGaussian& prediction) const;

@@ -67,6 +67,31 @@ TEST(ConsistencyReport, OfAPathThatNothingSupportsIsBadAndNamesPlaceTimeAndContr
   EXPECT_EQ(result.metrics()["unsupported"][0]["contradiction_m"], 2.9);
 }
 
+TEST(ConsistencyReport, OfAGapThatOdometryContradictsIsBadAndNamesGapAndContradiction) {
+  const ConsistencyReport result = report_of(
+      {.num_compared = 12,
+       .num_scans = 100,
+       .unsupported = {{.scans = {.first_scan = 40, .p_map = {3.0, 4.0}}, .contradiction_m = 9.0, .gap_s = 20.0}}});
+  EXPECT_EQ(
+      result.line(),
+      "look at (3.0, 4.0): before 40 s, there are no scans for 20.0 s, and odometry contradicts 9.0 m of the path "
+      "there");
+  EXPECT_EQ(result.metrics()["unsupported"][0]["gap_s"], 20.0);
+}
+
+TEST(ConsistencyReport, OfAPartThatOnlyOdometryConnectsIsBadAndNamesPlaceTimeAndDistance) {
+  const ConsistencyReport result =
+      report_of({.num_compared = 12,
+                 .num_scans = 100,
+                 .unconnected = {{.first_scan = 40, .p_map = {3.0, 4.0}, .distance_m = 10.4}}});
+  EXPECT_EQ(result.line(),
+            "look at (3.0, 4.0): from 40 s, only odometry over 10.4 m connects the map with the part before");
+  EXPECT_EQ(result.block().tone, Tone::kBad);
+  EXPECT_EQ(result.marks().size(), 1U);
+  EXPECT_EQ(result.metrics()["consistent"], false);
+  EXPECT_EQ(result.metrics()["unconnected"][0]["distance_m"], 10.4);
+}
+
 TEST(ConsistencyReport, WithoutPairsIsNotCheckedEvenIfAScanIsUnmatched) {
   const ConsistencyReport result =
       report_of({.num_scans = 100, .num_unmatched = 1, .unmatched_segments = {{.num_scans = 1}}});

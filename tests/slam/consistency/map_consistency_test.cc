@@ -106,6 +106,36 @@ TEST(MapConsistency, UnmatchedScansAreCountedAndAQuarterOfThemIsTooMany) {
   EXPECT_FALSE(many.check.check(many.T_map_body).is_consistent());
 }
 
+/// A lap of the office without the scans of 12 m of it.
+Drive lap_with_a_gap(double laps) {
+  const test::RoomWorld office = test::make_office();
+  const RandomStream noise(1, "test/consistency");
+  const std::vector<test::DriveStep> steps = test::drive_along(test::office_rounds(2), {.speed_mps = 1.5});
+  const auto num_steps = static_cast<std::size_t>(0.5 * laps * static_cast<double>(steps.size()));
+  Drive drive;
+  for (std::size_t k = 0; k < num_steps; ++k) {
+    if (k >= 60 && k < 100) continue;
+    drive.T_map_body.push_back(steps[k].T_world_body);
+    drive.check.add(office.scan(steps[k].T_world_body, steps[k].stamp, test::kOldLidar, noise, k),
+                    {.T_map_body = steps[k].T_world_body, .match_score = 0.9});
+  }
+  return drive;
+}
+
+TEST(MapConsistency, AfterAGapOf12MetersIsUnconnectedUntilASecondLapSeesBothSidesOfIt) {
+  const Drive once = lap_with_a_gap(0.8), twice = lap_with_a_gap(2.0);
+  const MapConsistency apart = once.check.check(once.T_map_body), whole = twice.check.check(twice.T_map_body);
+  EXPECT_TRUE(apart.disagreements.empty());
+  EXPECT_FALSE(apart.is_consistent());
+  ASSERT_EQ(apart.unconnected.size(), 1U);
+  EXPECT_EQ(apart.unconnected[0].first_scan, 60U);
+  EXPECT_EQ(apart.unconnected[0].p_map, once.T_map_body[60].position());
+  EXPECT_NEAR(apart.unconnected[0].distance_m, (once.T_map_body[60].position() - once.T_map_body[59].position()).norm(),
+              1e-12);
+  EXPECT_TRUE(whole.unconnected.empty());
+  EXPECT_TRUE(whole.is_consistent());
+}
+
 TEST(MapConsistency, OfAMethodWithoutMatchScoresCountsNoScanAsUnmatched) {
   const test::RoomWorld office = test::make_office();
   const RandomStream noise(1, "test/consistency");

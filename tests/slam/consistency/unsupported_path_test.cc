@@ -48,5 +48,23 @@ TEST(FindUnsupportedPath, MostScansAreFirstWithTheLargestContradictionNearby) {
   EXPECT_EQ(found[0].contradiction_m, 4.0);
 }
 
+TEST(FindUnsupportedGaps, OfFiveSecondsAndTwoMetersBetweenOdometryAndPathAreAndShorterOrSmallerOnesAreNot) {
+  const auto gaps = [](double gap_s, double difference_m) {
+    const std::vector<Time> stamps = {from_seconds(0.0), from_seconds(0.5), from_seconds(0.5 + gap_s)};
+    const std::vector<Pose2> odometry = {{}, {0.5, 0.0, 0.0}, {0.5 + difference_m, 0.0, 0.0}},
+                             path = {{}, {0.5, 0.0, 0.0}, {0.5, 0.0, 0.0}};
+    return find_unsupported_gaps(odometry, path, stamps);
+  };
+  EXPECT_TRUE(gaps(4.9, 3.0).empty());
+  EXPECT_TRUE(gaps(6.0, 1.9).empty());
+  const auto found = gaps(6.0, 2.1);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].scans.first_scan, 2U);
+  EXPECT_EQ(found[0].scans.num_scans, 0U);
+  EXPECT_EQ(found[0].scans.p_map, Eigen::Vector2d(0.5, 0.0));
+  EXPECT_NEAR(found[0].contradiction_m, 2.1, 1e-12);
+  EXPECT_NEAR(found[0].gap_s, 6.0, 1e-12);
+}
+
 }  // namespace
 }  // namespace patrol::slam::unsupported_path_test

@@ -89,6 +89,22 @@ TEST(ScanTracker, OdometryThatStopsAfterOneMeterIsNotTrustedFor53MetersMoreInACo
   EXPECT_LT(worst_error_m(drive, tracked), 1.0);
 }
 
+// The doors after the gap look like those before it, which are in the map, and odometry is 3 % too long.
+TEST(ScanTracker, AfterTenMetersWithoutScansThePoseFollowsOdometryAndNotTheSameDoorsBeforeTheGap) {
+  test::RoomWorld::ScanOptions lidar = test::kOldLidar;
+  lidar.range_max_m = 5.0;
+  std::vector<test::DriveStep> drive = test::drive_along({{3.0, 0.0}, {45.0, 0.0}}, {.speed_mps = 1.0});
+  std::erase_if(drive,
+                [](const test::DriveStep& step) { return step.T_world_body.x > 20.0 && step.T_world_body.x < 30.0; });
+  const auto tracked = track(
+      drive,
+      [](std::size_t, const Pose2& motion) {
+        return Pose2{1.03 * motion.x, motion.y, motion.yaw};
+      },
+      lidar, 1, test::make_corridor_of_doors());
+  EXPECT_LT(worst_error_m(drive, tracked), 0.5);
+}
+
 // Every third scan, 0.36 m apart on the way and 34 degrees in the corner.
 TEST(ScanTracker, ATurnThatOdometryMissesIsFoundInTheScans) {
   std::vector<test::DriveStep> thinned;
