@@ -80,6 +80,12 @@ class Variants(unittest.TestCase):
         self.assertEqual(len((self.path / "out").read_text().splitlines()), SCANS // 2)
         self.assertEqual(len((self.path / "kept").read_text().splitlines()), 5)
 
+    def test_a_gap_of_20_s_in_the_middle_leaves_the_scans_before_and_after_it(self):
+        stamps = [scan[4] for scan in self.scans("gap_20s")]
+        self.assertEqual((stamps[0], len(stamps)), (100.0, SCANS - 100))
+        longest = max(after - before for before, after in zip(stamps, stamps[1:]))
+        self.assertTrue(20.0 < longest < 20.4, longest)
+
     def test_odometry_is_scaled_zero_delayed_early_and_jumps(self):
         self.assertAlmostEqual(self.scans("distance_0.9")[-1][3][0], 0.9 * pose(SCANS - 1)[0], 3)
         self.assertEqual(self.scans("odometry_zero")[-1][3], (0.0, 0.0, 0.0))
