@@ -312,6 +312,40 @@ TEST(ImportRobot, WheelsOfScaledMeshesAreMeasured) {
   EXPECT_TRUE(std::filesystem::exists(import.folder / "imported/meshes" / import.robot.meshes[0].first));
 }
 
+TEST(ImportRobot, TheHubOfAWheelMeshDoesNotChangeItsWidthAndCenter) {
+  std::vector<Triangle> triangles = wheel_triangles(0.1, 0.03);
+  for (Triangle hub : wheel_triangles(0.04, 0.08)) {
+    for (Eigen::Vector3d& corner : hub) corner.y() -= 0.055;
+    triangles.push_back(hub);
+  }
+  const std::string mesh = R"(<mesh filename="wheel.stl"/>)";
+  Import import(
+      robot(chassis() + mesh_wheel("l", "0 0.25 -0.05", mesh) + mesh_wheel("r", "0 -0.25 -0.05", mesh) + caster()));
+  write_bytes(import.folder / "wheel.stl", stl(triangles));
+  import.load();
+  expect_wheel(import, "l", {0.0, 0.25, -0.05}, 0.1, 0.03, 1e-5);
+  expect_wheel(import, "r", {0.0, -0.25, -0.05}, 0.1, 0.03, 1e-5);
+}
+
+TEST(ImportRobot, AWheelMeshWithoutAFlatTreadIsAsWideAsItsSurfaceNearTheRadius) {
+  std::vector<Triangle> triangles;  // a double cone, 0.2 m wide at the axle
+  constexpr int kNumSides = 64;
+  for (int i = 0; i < kNumSides; ++i) {
+    const auto rim = [](int k) {
+      const double angle = 2.0 * M_PI * k / kNumSides;
+      return Eigen::Vector3d(0.1 * std::sin(angle), 0.0, 0.1 * std::cos(angle));
+    };
+    triangles.push_back({rim(i), rim(i + 1), Eigen::Vector3d(0.0, 0.1, 0.0)});
+    triangles.push_back({rim(i + 1), rim(i), Eigen::Vector3d(0.0, -0.1, 0.0)});
+  }
+  const std::string mesh = R"(<mesh filename="wheel.stl"/>)";
+  Import import(
+      robot(chassis() + mesh_wheel("l", "0 0.25 -0.05", mesh) + mesh_wheel("r", "0 -0.25 -0.05", mesh) + caster()));
+  write_bytes(import.folder / "wheel.stl", stl(triangles));
+  import.load();
+  expect_wheel(import, "l", {0.0, 0.25, -0.05}, 0.1, 0.02, 1e-5);
+}
+
 TEST(ImportRobot, PackagesAreFoundAboveTheFileByFolderAndByPackageXml) {
   const std::string mesh = R"(<mesh filename="package://{}/meshes/wheel.stl"/>)";
   for (const char* package : {"robot_meshes", "other_name"}) {
