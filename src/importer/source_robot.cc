@@ -294,6 +294,10 @@ void SourceReader::read_joint(const XMLElement& element) {
     joint.upper = optional_number(*limit, "upper", joint.name).value_or(0.0);
     joint.effort = optional_number(*limit, "effort", joint.name);
     joint.velocity = optional_number(*limit, "velocity", joint.name);
+    for (const auto& [attribute, value] : {std::pair{"effort", joint.effort}, std::pair{"velocity", joint.velocity}}) {
+      if (value && *value < 0.0)
+        fail(*limit, joint.name, fmt::format("limit {} = {}: must not be negative", attribute, *value));
+    }
     const bool is_given = limit->Attribute("lower") != nullptr || limit->Attribute("upper") != nullptr;
     if (needs_limit && is_given && joint.lower == 0.0 && joint.upper == 0.0) {
       joint.type = JointType::kFixed;

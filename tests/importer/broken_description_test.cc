@@ -90,6 +90,13 @@ TEST(BrokenDescription, Joints) {
               MatchesRegex("v.urdf:[0-9]+: j: <limit> is missing.*"));
 }
 
+TEST(BrokenDescription, NegativeLimitsOfTorqueAndSpeed) {
+  EXPECT_THAT(complaint(changed("effort=\"10\"", "effort=\"-20\"")),
+              MatchesRegex("v.urdf:[0-9]+: left_joint: limit effort = -20: must not be negative"));
+  EXPECT_THAT(complaint(changed("velocity=\"12\"", "velocity=\"-15\"")),
+              MatchesRegex("v.urdf:[0-9]+: left_joint: limit velocity = -15: must not be negative"));
+}
+
 TEST(BrokenDescription, MassesAndInertias) {
   EXPECT_THAT(complaint(changed("<mass value=\"1\"/>", "<mass value=\"-1\"/>")),
               MatchesRegex("v.urdf:[0-9]+: left: mass = -1: must be positive"));
