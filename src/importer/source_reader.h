@@ -70,6 +70,9 @@ class SourceReader {
   void read_plugin(const tinyxml2::XMLElement& plugin);
   void read_sensors(const tinyxml2::XMLElement& root);
   void read_gazebo_sensor(const tinyxml2::XMLElement& sensor, const std::string& link);
+  std::optional<double> sensor_number(const tinyxml2::XMLElement& element, const char* name,
+                                      const std::string& link) const;
+  void read_scan_field(const tinyxml2::XMLElement& sensor, SourceSensor& found);
   void check_tree() const;
   void check_inertias();
   void check_missing_visuals();

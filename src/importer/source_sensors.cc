@@ -1,12 +1,18 @@
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
+#include <optional>
 #include <sstream>
+#include <string>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "core/geometry/angles.h"
 #include "importer/source_reader.h"
+#include "io/files/one_line.h"
 
 namespace patrol::importer {
 
@@ -61,35 +67,61 @@ int vertical_samples(const XMLElement& sensor) {
   return samples;
 }
 
-/// Returns a number of an element, of its child or attribute; none if it has neither.
-std::optional<double> number_in(const XMLElement& element, const char* name) {
-  double value = 0.0;
-  if (element.QueryDoubleAttribute(name, &value) == tinyxml2::XML_SUCCESS) return value;
+}  // namespace
+
+/// Returns a number of an element, of its attribute or child; none if it has neither. Numbers may be infinite.
+std::optional<double> SourceReader::sensor_number(const XMLElement& element, const char* name,
+                                                  const std::string& link) const {
   const XMLElement* child = element.FirstChildElement(name);
-  if (child != nullptr && child->QueryDoubleText(&value) == tinyxml2::XML_SUCCESS) return value;
-  return std::nullopt;
+  const bool is_attribute = element.Attribute(name) != nullptr;
+  if (!is_attribute && child == nullptr) return std::nullopt;
+  const std::string text = is_attribute ? trimmed(element.Attribute(name)) : trimmed(child->GetText());
+  const char* const end = text.data() + text.size();
+  double value = 0.0;
+  const auto [stop, error] = std::from_chars(text.data() + (text.starts_with('+') ? 1 : 0), end, value);
+  if (error != std::errc() || stop != end || std::isnan(value)) {
+    fail(is_attribute ? element : *child, link,
+         fmt::format("{} = \"{}\" of its sensor: must be a number", name, io::on_one_line(text)));
+  }
+  return value;
 }
 
 /// Reads field of view and range of a lidar. A field of view that is not symmetric turns the frame to its middle.
-void read_scan_field(const XMLElement& sensor, SourceSensor& found) {
+void SourceReader::read_scan_field(const XMLElement& sensor, SourceSensor& found) {
   double middle_rad = 0.0;
   for_each_below(sensor, [&](const XMLElement& element) {
     const std::string tag = element.Name();
     if (tag == "horizontal") {
-      const std::optional<double> min = number_in(element, "min_angle"), max = number_in(element, "max_angle");
-      if (!min || !max || !(*max > *min)) return;
+      const std::optional<double> min = sensor_number(element, "min_angle", found.link),
+                                  max = sensor_number(element, "max_angle", found.link);
+      if (!min || !max) return;
+      if (!(*max > *min)) {
+        robot_.assumptions.push_back(
+            {.subject = found.link,
+             .text = fmt::format("the field of view of its lidar selects no preset: max_angle = {} is not above "
+                                 "min_angle = {} (line {})",
+                                 *max, *min, element.GetLineNum()),
+             .override_with = "<min_angle> and <max_angle> of the sensor"});
+        return;
+      }
       found.fov_deg = kDegPerRad * (*max - *min);
       middle_rad = 0.5 * (*min + *max);
     } else if (tag == "range") {
-      found.range_max_m = number_in(element, "max").value_or(0.0);
+      const std::optional<double> max = sensor_number(element, "max", found.link);
+      if (!max) return;
+      found.range_max_m = *max;
+      if (*max > 0.0) return;
+      robot_.assumptions.push_back({.subject = found.link,
+                                    .text = fmt::format("the range of its lidar selects no preset: max = {} is not "
+                                                        "positive (line {})",
+                                                        *max, element.GetLineNum()),
+                                    .override_with = "<range> of the sensor"});
     }
   });
   constexpr double kSymmetric_rad = 0.02;
   if (std::abs(middle_rad) > kSymmetric_rad && found.fov_deg < 359.0)
     found.T_link_sensor = found.T_link_sensor * Pose3{Eigen::Vector3d::Zero(), quaternion_from_yaw(middle_rad)};
 }
-
-}  // namespace
 
 void SourceReader::read_gazebo_sensor(const XMLElement& sensor, const std::string& link) {
   const std::string type = attribute_text(sensor, "type");

@@ -159,6 +159,22 @@ TEST(BrokenDescription, Numbers) {
               MatchesRegex("v.urdf:[0-9]+: left: radius = 0: must be positive"));
 }
 
+TEST(BrokenDescription, NumbersOfALidarThatAreText) {
+  const auto lidar = [](const std::string& min_angle, const std::string& range_max) {
+    return with(
+        fmt::format("<gazebo reference=\"base_link\">\n<sensor type=\"ray\" name=\"x\"><ray><scan><horizontal>\n"
+                    "<min_angle>{}</min_angle>\n<max_angle>2</max_angle></horizontal></scan>\n"
+                    "<range><max>{}</max></range></ray></sensor></gazebo>",
+                    min_angle, range_max));
+  };
+  EXPECT_EQ(complaint(lidar("-2", " +30 ")), "");
+  EXPECT_THAT(complaint(lidar("-2", "far")),
+              MatchesRegex("v.urdf:[0-9]+: base_link: max = \"far\" of its sensor: must be a number"));
+  EXPECT_THAT(complaint(lidar("-2", "30m")), HasSubstr("base_link: max = \"30m\" of its sensor"));
+  EXPECT_THAT(complaint(lidar("nan", "30")), HasSubstr("base_link: min_angle = \"nan\" of its sensor"));
+  EXPECT_THAT(complaint(lidar("", "30")), HasSubstr("base_link: min_angle = \"\" of its sensor"));
+}
+
 TEST(BrokenDescription, Meshes) {
   const auto mesh = [](const std::string& file) {
     return with(link("x", shape("collision", "<mesh filename=\"" + file + "\"/>")) +

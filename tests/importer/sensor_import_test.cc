@@ -93,6 +93,35 @@ TEST(ImportSensors, ALidarOfNoKnownNumbersKeepsTheDefaultPresetWithARow) {
   EXPECT_THAT(import.assumptions(), HasSubstr("no preset has its field of view of 115 degrees and its range of 8 m"));
 }
 
+/// Robot with a lidar whose numbers are these texts.
+std::string with_numbers(const std::string& min_angle, const std::string& max_angle, const std::string& range_max) {
+  return robot(chassis() + two_wheels() + caster() + joint("bow_joint", "fixed", "base_link", "bow", "0.2 0 0.3") +
+               link("bow", inertial(0.2)) +
+               fmt::format(R"(<gazebo reference="bow"><sensor type="ray" name="x"><ray><scan><horizontal>)"
+                           R"(<min_angle>{}</min_angle><max_angle>{}</max_angle></horizontal></scan>)"
+                           R"(<range><max>{}</max></range></ray></sensor></gazebo>)",
+                           min_angle, max_angle, range_max));
+}
+
+TEST(ImportSensors, NumbersOfALidarThatItCannotHaveAreARow) {
+  Import equal(with_numbers("1", "1", "30"));
+  equal.load();
+  EXPECT_THAT(equal.assumptions(), HasSubstr("| bow | the field of view of its lidar selects no preset: max_angle = 1 "
+                                             "is not above min_angle = 1 (line "));
+  Import reversed(with_numbers("2.35", "-2.35", "30"));
+  reversed.load();
+  EXPECT_THAT(reversed.assumptions(), HasSubstr("max_angle = -2.35 is not above min_angle = 2.35"));
+  Import negative(with_numbers("-2.35", "2.35", "-30"));
+  negative.load();
+  EXPECT_THAT(negative.assumptions(), HasSubstr("the range of its lidar selects no preset: max = -30 is not positive"));
+}
+
+TEST(ImportSensors, AnInfiniteRangeOfALidarSelectsNoPreset) {
+  Import import(with_numbers("-2.35", "2.35", "inf"));
+  import.load();
+  EXPECT_THAT(import.assumptions(), HasSubstr("no preset has its field of view of 269 degrees and its range of inf m"));
+}
+
 TEST(ImportSensors, TheOptionForTheLidarLeavesTheOtherLidarOfTheFileAsTheRearOne) {
   Import import(robot(chassis() + two_wheels() + caster() + lidar_on("bow", "0.2 0 0.3", "0", 2.356, 30.0) +
                       lidar_on("stern", "-0.2 0 0.3", "0", 2.356, 30.0)));
