@@ -129,12 +129,14 @@ void Normalizer::add_sensors() {
         parts.push_back({link.joint ? link.joint->T_parent_link : Pose3{}, *link.inertial});
     }
     add_frame("imu", translation(combine(parts).T_link_inertia.position), "");
-    assume("imu", "is at the center of mass of the chassis: the file has none" + links_named(chassis_, {"imu", "gyro"}),
+    assume("imu",
+           "is at the center of mass of the chassis: no link of the file has one" +
+               links_named(chassis_, {"imu", "gyro"}),
            "--frame imu=LINK");
   }
   if (!added.contains("lidar") && !added.contains("lidar3d"))
     assume("lidar",
-           "the robot has none: the file has no sensor of type ray or lidar" +
+           "the robot has none: no link of the file has a sensor of type ray or lidar" +
                links_named(chassis_, {"lidar", "laser", "scan", "velodyne", "hokuyo"}),
            fmt::format("--frame lidar=LINK, or mounts in {}.yaml", result_.name));
 }

@@ -73,6 +73,7 @@ class SourceReader {
   std::optional<double> sensor_number(const tinyxml2::XMLElement& element, const char* name,
                                       const std::string& link) const;
   void read_scan_field(const tinyxml2::XMLElement& sensor, SourceSensor& found);
+  void report_unknown_link(const std::string& link, int line, const std::string& override_with);
   void check_tree() const;
   void check_inertias();
   void check_missing_visuals();

@@ -149,11 +149,22 @@ void SourceReader::read_gazebo_sensor(const XMLElement& sensor, const std::strin
   robot_.sensors.push_back(found);
 }
 
+/// Reports a sensor of a link that the file does not have.
+void SourceReader::report_unknown_link(const std::string& link, int line, const std::string& override_with) {
+  robot_.assumptions.push_back({.subject = link,
+                                .text = fmt::format("unknown link: its sensor in line {} is left out", line),
+                                .override_with = override_with});
+}
+
 void SourceReader::read_sensors(const XMLElement& root) {
   for (const XMLElement* gazebo = root.FirstChildElement("gazebo"); gazebo != nullptr;
        gazebo = gazebo->NextSiblingElement("gazebo")) {
     const std::string link = attribute_text(*gazebo, "reference");
-    if (robot_.find_link(link) == nullptr) continue;
+    if (robot_.find_link(link) == nullptr) {
+      if (!link.empty() && gazebo->FirstChildElement("sensor") != nullptr)
+        report_unknown_link(link, gazebo->GetLineNum(), "attribute reference of <gazebo>");
+      continue;
+    }
     for (const XMLElement* sensor = gazebo->FirstChildElement("sensor"); sensor != nullptr;
          sensor = sensor->NextSiblingElement("sensor"))
       read_gazebo_sensor(*sensor, link);
@@ -161,8 +172,11 @@ void SourceReader::read_sensors(const XMLElement& root) {
   for (const XMLElement* sensor = root.FirstChildElement("sensor"); sensor != nullptr;
        sensor = sensor->NextSiblingElement("sensor")) {
     const XMLElement* parent = sensor->FirstChildElement("parent");
-    if (parent == nullptr || robot_.find_link(attribute_text(*parent, "link")) == nullptr) continue;
-    if (sensor->FirstChildElement("ray") == nullptr) continue;
+    if (parent == nullptr || sensor->FirstChildElement("ray") == nullptr) continue;
+    if (robot_.find_link(attribute_text(*parent, "link")) == nullptr) {
+      report_unknown_link(attribute_text(*parent, "link"), parent->GetLineNum(), "<parent link> of the sensor");
+      continue;
+    }
     robot_.sensors.push_back({.frame = vertical_samples(*sensor) > 1 ? "lidar3d" : "lidar",
                               .link = attribute_text(*parent, "link"),
                               .T_link_sensor = origin(*sensor, attribute_text(*sensor, "name")),

@@ -50,7 +50,7 @@ TEST(ImportSensors, OfASensorThatTheFileLacksTheReportNamesLinksWithSuchANameAnd
                             joint("c", "fixed", "base_link", "front_laser", "0.3 0 0.3") + link("front_laser");
   Import import(robot(chassis() + two_wheels() + caster() + links));
   EXPECT_FALSE(import.load().T_body_sensor.contains("lidar"));
-  EXPECT_THAT(import.assumptions(), AllOf(HasSubstr("the file has none; links with such a name: IMU_frame |"),
+  EXPECT_THAT(import.assumptions(), AllOf(HasSubstr("no link of the file has one; links with such a name: IMU_frame |"),
                                           HasSubstr("ray or lidar; links with such a name: base_scan, front_laser |")));
   Import chosen(robot(chassis() + two_wheels() + caster() + links));
   chosen.options.frames["lidar"] = "base_scan";
@@ -114,6 +114,18 @@ TEST(ImportSensors, NumbersOfALidarThatItCannotHaveAreARow) {
   Import negative(with_numbers("-2.35", "2.35", "-30"));
   negative.load();
   EXPECT_THAT(negative.assumptions(), HasSubstr("the range of its lidar selects no preset: max = -30 is not positive"));
+}
+
+TEST(ImportSensors, ASensorOfAnUnknownLinkIsARow) {
+  Import import(robot(chassis() + two_wheels() + caster() +
+                      R"(<gazebo reference="lazer"><sensor type="ray" name="x"><ray/></sensor></gazebo>)"
+                      R"(<gazebo reference="nothing"><material>Gazebo/Red</material></gazebo>)"
+                      R"(<sensor name="y"><parent link="lasar"/><ray/></sensor>)"));
+  EXPECT_FALSE(import.load().T_body_sensor.contains("lidar"));
+  EXPECT_THAT(import.assumptions(),
+              AllOf(HasSubstr("| lazer | unknown link: its sensor in line "),
+                    HasSubstr("| lasar | unknown link: its sensor in line "),
+                    HasSubstr("no link of the file has a sensor of type ray or lidar"), Not(HasSubstr("nothing"))));
 }
 
 TEST(ImportSensors, AnInfiniteRangeOfALidarSelectsNoPreset) {
