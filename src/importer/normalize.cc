@@ -14,6 +14,13 @@
 #include "io/files/one_line.h"
 
 namespace patrol::importer {
+namespace {
+
+std::string all_steered(std::size_t num_wheels) {
+  return fmt::format("all {} wheels are steered: not supported: fix the steering joints of one axle", num_wheels);
+}
+
+}  // namespace
 
 void Normalizer::check_options() const {
   if (!options_.base_link.empty() && source_.find_link(options_.base_link) == nullptr)
@@ -115,7 +122,16 @@ void Normalizer::choose_frame() {
                       first->joint->name));
     }
   }
-  if (first == nullptr) fail_for_wheels(nullptr, "all wheels are casters: at least two wheels must not swivel");
+  if (first == nullptr) {
+    const auto is_driven = [this](const SourceJoint& joint) {
+      return source_.motors.contains(joint.name) || joint.effort.value_or(0.0) > 0.0;
+    };
+    const bool is_steered = std::all_of(found_.wheels.begin(), found_.wheels.end(), [&](const FoundWheel& wheel) {
+      return is_driven(*wheel.joint) && is_driven(*wheel.carrier);
+    });
+    fail_for_wheels(nullptr, is_steered ? all_steered(found_.wheels.size())
+                                        : "all wheels are casters: at least two wheels must not swivel");
+  }
   if (!options_.forward.empty()) {
     yaw = yaws.at(options_.forward);
   } else if (std::abs(axle(*first)) > kParallel_rad) {
@@ -184,8 +200,7 @@ void Normalizer::choose_carriers() {
     }
   }
   if (num_steered > 0 && num_steered == found_.wheels.size()) {
-    throw InputError(fmt::format("{}: all {} wheels are steered: not supported: fix the steering joints of one axle",
-                                 source_.file, num_steered));
+    throw InputError(fmt::format("{}: {}", source_.file, all_steered(num_steered)));
   }
   if (options_.drive == "ackermann" && num_steered == 0) {
     throw InputError(
@@ -201,11 +216,14 @@ void Normalizer::choose_carriers() {
                                                              : DriveType::kDifferential;
 }
 
-/// Refuses the wheels that were found. Names the link with a motor that is no wheel, which often is the reason; without
-/// one, the joint; without a joint, only the file.
+/// Refuses the wheels that were found. Names the link with a motor that is no wheel and carries none, which often is
+/// the reason; without one, the joint; without a joint, only the file.
 void Normalizer::fail_for_wheels(const SourceJoint* joint, const std::string& what) const {
   for (const RejectedWheel& rejected : found_.rejected) {
     const SourceJoint& at = *rejected.joint;
+    if (std::any_of(found_.wheels.begin(), found_.wheels.end(),
+                    [&at](const FoundWheel& wheel) { return wheel.carrier == &at; }))
+      continue;
     if (!source_.motors.contains(at.name) && at.effort.value_or(0.0) <= 0.0) continue;
     source_.fail(at.line, at.child, fmt::format("is no wheel: {}; without it, {}", rejected.reason, what));
   }

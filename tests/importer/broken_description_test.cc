@@ -273,6 +273,24 @@ TEST(BrokenDescription, ADrivenLinkThatIsNoWheelIsNamedWithItsReason) {
                                              "casters: at least two wheels must not swivel"));
 }
 
+TEST(BrokenDescription, ARobotWhoseWheelsAreAllSteeredByMotorsWithoutEnd) {
+  const auto modules = [](const std::string& motor) {
+    std::string text = chassis();
+    for (const auto& [name, xyz] : {std::pair{"fl", "0.2 0.25 -0.05"},
+                                    {"fr", "0.2 -0.25 -0.05"},
+                                    {"rl", "-0.2 0.25 -0.05"},
+                                    {"rr", "-0.2 -0.25 -0.05"}}) {
+      const std::string fork = std::string(name) + "_fork";
+      text += joint(std::string(name) + "_steer", "continuous", "base_link", fork, xyz, axis("0 0 1") + motor) +
+              link(fork, inertial(0.5)) + wheel(name, fork, "0 0 0", 0.1, 0.05);
+    }
+    return robot(text);
+  };
+  EXPECT_EQ(complaint(modules(R"(<limit effort="30" velocity="3"/>)")),
+            "v.urdf: all 4 wheels are steered: not supported: fix the steering joints of one axle");
+  EXPECT_EQ(complaint(modules("")), "v.urdf: all wheels are casters: at least two wheels must not swivel");
+}
+
 TEST(BrokenDescription, ARobotOnWheelsWhoseYAxisIsUp) {
   std::string wheels;
   for (const char* xyz : {"0.25 -0.05 0.2", "-0.25 -0.05 0.2", "0.25 -0.05 -0.2", "-0.25 -0.05 -0.2"}) {
