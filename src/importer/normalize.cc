@@ -181,10 +181,23 @@ bool Normalizer::is_near_ground(double bottom_m) const {
   return std::abs(bottom_m - ground_m_) <= 0.02 * max_radius_m + 0.005;
 }
 
+/// Refuses a caster whose wheels are far apart: it is the axle of a trailer or a wagon. Both wheels of a caster are
+/// close together.
+void Normalizer::check_caster(const FoundWheel& wheel) const {
+  constexpr double kMinAxle = 3.0;  // to the radius
+  for (const FoundWheel& other : found_.wheels) {
+    if (other.carrier != wheel.carrier || (other.center_m - wheel.center_m).norm() < kMinAxle * wheel.radius_m)
+      continue;
+    source_.fail(wheel.carrier->line, wheel.carrier->name,
+                 "swivels with a whole axle: trailers, articulated robots and turntable steering are not supported");
+  }
+}
+
 /// Decides about endless joints with motors above wheels, and about steering that the option removes.
 void Normalizer::choose_carriers() {
   std::size_t num_steered = 0;
   for (FoundWheel& wheel : found_.wheels) {
+    if (wheel.carrier_type == CarrierType::kCaster) check_caster(wheel);
     if (wheel.carrier_type != CarrierType::kSteering) continue;
     if (options_.drive == "differential") {
       assume(wheel.carrier->name, "steering is fixed straight ahead: the drive is differential", "--drive ackermann");

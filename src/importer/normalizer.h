@@ -107,6 +107,7 @@ class Normalizer {
   void check_upright() const;
   void measure_box();
   void check_centers() const;
+  void check_caster(const FoundWheel& wheel) const;
   void choose_carriers();
   [[noreturn]] void fail_for_wheels(const SourceJoint* joint, const std::string& what) const;
   void choose_drive();

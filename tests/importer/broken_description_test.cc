@@ -291,6 +291,19 @@ TEST(BrokenDescription, ARobotWhoseWheelsAreAllSteeredByMotorsWithoutEnd) {
   EXPECT_EQ(complaint(modules("")), "v.urdf: all wheels are casters: at least two wheels must not swivel");
 }
 
+TEST(BrokenDescription, ATrailerOnAnEndlessHitch) {
+  const auto behind = [](double track_m) {
+    const std::string none;
+    return robot(chassis() + two_wheels() +
+                 joint("hitch", "continuous", "base_link", "trailer", "-0.3 0 0", axis("0 0 1")) +
+                 link("trailer", inertial(5.0)) +
+                 wheel("tl", "trailer", fmt::format("-0.3 {} -0.05", 0.5 * track_m), 0.1, 0.04, none) +
+                 wheel("tr", "trailer", fmt::format("-0.3 {} -0.05", -0.5 * track_m), 0.1, 0.04, none));
+  };
+  EXPECT_THAT(complaint(behind(0.5)), MatchesRegex("v.urdf:[0-9]+: hitch: swivels with a whole axle: trailers, .*"));
+  EXPECT_EQ(complaint(behind(0.1)), "") << "two wheels of a caster";
+}
+
 TEST(BrokenDescription, ARobotOnWheelsWhoseYAxisIsUp) {
   std::string wheels;
   for (const char* xyz : {"0.25 -0.05 0.2", "-0.25 -0.05 0.2", "0.25 -0.05 -0.2", "-0.25 -0.05 -0.2"}) {
