@@ -18,6 +18,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "importer/mesh_file_system.h"
 #include "io/files/one_line.h"
 
 namespace patrol::importer {
@@ -99,6 +100,7 @@ int root_of(std::vector<int>& parents, int i) {
 std::vector<MeshPart> load_mesh(const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file)) throw InputError(file.string() + ": mesh file not found");
   Assimp::Importer importer;
+  importer.SetIOHandler(new MeshFileSystem);  // the importer deletes it
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_LINE | aiPrimitiveType_POINT);
   importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, 40.0F);

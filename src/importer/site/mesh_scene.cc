@@ -18,6 +18,7 @@
 #include "core/error.h"
 #include "core/letter_case.h"
 #include "core/text.h"
+#include "importer/mesh_file_system.h"
 #include "importer/site/gltf_header.h"
 #include "importer/site/mesh_checks.h"
 #include "importer/site/mesh_materials.h"
@@ -223,6 +224,7 @@ const aiScene& read_scene(const std::filesystem::path& file, Assimp::Importer& i
     throw InputError(
         fmt::format("{}: mesh cannot be read: {}", file.string(), io::on_one_line(importer.GetErrorString())));
   };
+  importer.SetIOHandler(new MeshFileSystem);  // the importer deletes it
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_LINE | aiPrimitiveType_POINT);
   importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, 40.0F);
