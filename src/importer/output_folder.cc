@@ -45,7 +45,7 @@ void OutputFolder::publish() {
 
 void require_folder_name(const std::string& name, const std::string& file, const char* subject) {
   const bool is_path = name.find('/') != std::string::npos || name == "." || name == "..";
-  if (name.empty() || is_path || io::has_control_characters(name)) {
+  if (name.empty() || is_path || io::has_control_characters(name) || !io::is_utf8(name)) {
     throw InputError(
         fmt::format("{}: name of the {} = \"{}\": must be the name of a folder", file, subject, io::on_one_line(name)));
   }

@@ -44,6 +44,7 @@ ImportedRobot import_robot(const RobotImportOptions& options) {
   return {
       .name = robot.name,
       .source = origin,
+      .file = file,
       .urdf = to_urdf(robot, fmt::format("{}, made by patrol import robot from {}; README.md lists the assumptions.",
                                          io::on_one_line(robot.name), io::on_one_line(origin))),
       .settings = settings_of(robot, fmt::format("Settings of {} that differ from the defaults, made by patrol import "
@@ -54,7 +55,7 @@ ImportedRobot import_robot(const RobotImportOptions& options) {
 }
 
 void write_robot(const ImportedRobot& robot, const std::filesystem::path& folder) {
-  require_folder_name(robot.name, robot.source, "robot");
+  require_folder_name(robot.name, robot.file, "robot");
   OutputFolder output(folder);
   io::save_text(output.staging() / (robot.name + ".urdf"), robot.urdf);
   io::save_text(output.staging() / (robot.name + ".yaml"), robot.settings);
@@ -68,7 +69,7 @@ void write_robot(const ImportedRobot& robot, const std::filesystem::path& folder
     std::string message = refused.what();
     if (message.starts_with(urdf))
       message = std::regex_replace(message.substr(urdf.size()), std::regex("^:([0-9]+:)? *"), "");
-    throw InputError(fmt::format("{}: the robot cannot be simulated: {}", robot.source, message));
+    throw InputError(fmt::format("{}: the robot cannot be simulated: {}", robot.file, message));
   }
   output.publish();
 }

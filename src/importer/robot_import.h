@@ -27,7 +27,8 @@ struct RobotImportOptions {
 /// Robot in Patrol's conventions, not yet written.
 struct ImportedRobot {
   std::string name;
-  std::string source;                                       ///< file that it was read from
+  std::string source;                                       ///< name of the file that it was read from
+  std::string file;                                         ///< path of this file, for messages
   std::string urdf;                                         ///< text of NAME.urdf
   std::string settings;                                     ///< text of NAME.yaml
   std::vector<std::pair<std::string, std::string>> meshes;  ///< file name below meshes/, and OBJ text

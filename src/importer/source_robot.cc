@@ -112,6 +112,7 @@ Pose3 SourceReader::origin(const XMLElement& parent, const std::string& name) co
 std::string SourceReader::required_name(const XMLElement& element) const {
   std::string name = attribute_text(element, "name");
   if (name.empty()) fail(element, fmt::format("<{}>", element.Name()), "name is missing");
+  if (!io::is_utf8(name)) fail(element, io::on_one_line(name), "name is not UTF-8: the file must be saved as UTF-8");
   if (io::has_control_characters(name)) fail(element, io::on_one_line(name), "name must have no control characters");
   return name;
 }

@@ -175,6 +175,13 @@ TEST(BrokenDescription, NumbersOfALidarThatAreText) {
   EXPECT_THAT(complaint(lidar("", "30")), HasSubstr("base_link: min_angle = \"\" of its sensor"));
 }
 
+TEST(BrokenDescription, NamesThatAreNotUtf8) {
+  EXPECT_THAT(complaint(with(link("b\xe4r") + joint("j", "fixed", "base_link", "b\xe4r", "0 0 0"))),
+              MatchesRegex("v.urdf:[0-9]+: b.*r: name is not UTF-8: the file must be saved as UTF-8"));
+  EXPECT_EQ(complaint(with(link("b\xc3\xa4r") + joint("j", "fixed", "base_link", "b\xc3\xa4r", "0 0 0"))), "");
+  EXPECT_EQ(complaint(with("<!-- b\xe4r -->")), "");
+}
+
 TEST(BrokenDescription, Meshes) {
   const auto mesh = [](const std::string& file) {
     return with(link("x", shape("collision", "<mesh filename=\"" + file + "\"/>")) +

@@ -176,7 +176,7 @@ TEST(LeggedImport, ARobotThatCannotBeSimulatedIsRefusedWithoutALineOfTheFileThat
     import.load();
     ADD_FAILURE();
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), testing::StartsWith("vendor.urdf: the robot cannot be simulated: "));
+    EXPECT_THAT(error.what(), testing::StartsWith(import.options.file.string() + ": the robot cannot be simulated: "));
     EXPECT_THAT(error.what(), Not(HasSubstr("imported.urdf")));
   }
 }
