@@ -369,6 +369,12 @@ void Normalizer::report_frozen_joints() {
         !T_root_link_.contains(joint.child) || (joint.child == base_ && source_.root().name == joint.parent);
     if (is_above_base && joint.type == JointType::kFloating) continue;
     names.push_back(joint.name);
+    const bool has_limits = joint.type == JointType::kRevolute || joint.type == JointType::kPrismatic;
+    if (!has_limits || (joint.lower <= 0.0 && joint.upper >= 0.0)) continue;
+    assume(joint.name,
+           fmt::format("zero, at which it is fixed, is outside its limits {:.3g} to {:.3g} {}", joint.lower,
+                       joint.upper, joint.type == JointType::kRevolute ? "rad" : "m"),
+           "<origin> and <limit lower upper> of the joint");
   }
   if (names.empty()) return;
   assume(list_of(names), "fixed at zero: not joints of wheels or legs", "none: other joints are not simulated");

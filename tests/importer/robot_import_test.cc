@@ -496,6 +496,24 @@ TEST(ImportRobot, ArmsAreFixedAtZeroWithTheirMass) {
   EXPECT_THAT(robot.T_body_sensor.at("hand").position, VectorNear(Eigen::Vector3d(0.1, 0.0, 0.25), 1e-9));
 }
 
+TEST(ImportRobot, AFixedJointWhoseLimitsExcludeZeroIsARow) {
+  const auto arm = [](const std::string& type, const std::string& limits) {
+    return joint("elbow", type, "base_link", "arm", "0.1 0 0.1", axis("0 1 0") + "<limit " + limits + "/>") +
+           link("arm", inertial(1.0));
+  };
+  Import outside(robot(chassis() + two_wheels() + caster() + arm("revolute", R"(lower="0.5" upper="2.5")")));
+  outside.load();
+  EXPECT_THAT(outside.assumptions(),
+              AllOf(HasSubstr("| elbow | zero, at which it is fixed, is outside its limits 0.5 to 2.5 rad |"),
+                    HasSubstr("| elbow | fixed at zero")));
+  Import below(robot(chassis() + two_wheels() + caster() + arm("prismatic", R"(lower="-0.3" upper="-0.1")")));
+  below.load();
+  EXPECT_THAT(below.assumptions(), HasSubstr("outside its limits -0.3 to -0.1 m |"));
+  Import inside(robot(chassis() + two_wheels() + caster() + arm("revolute", R"(lower="0" upper="2.5")")));
+  inside.load();
+  EXPECT_THAT(inside.assumptions(), Not(HasSubstr("outside its limits")));
+}
+
 TEST(ImportRobot, AWheelOnASuspensionIsFixedToTheChassis) {
   const std::string suspended = joint("spring", "prismatic", "base_link", "arm", "0 0.25 -0.05",
                                       axis("0 0 1") + R"(<limit lower="-0.1" upper="0.1" effort="5" velocity="1"/>)") +
