@@ -9,6 +9,7 @@
 #include <tinyxml2.h>
 
 #include "core/error.h"
+#include "io/files/one_line.h"
 
 namespace patrol::importer {
 namespace {
@@ -43,7 +44,14 @@ std::filesystem::path tail_of(const std::string& uri) {
 }  // namespace
 
 Packages::Packages(std::map<std::string, std::filesystem::path> given, const std::filesystem::path& file)
-    : given_(std::move(given)), folder_(std::filesystem::absolute(file).lexically_normal().parent_path()) {}
+    : given_(std::move(given)), folder_(std::filesystem::absolute(file).lexically_normal().parent_path()) {
+  std::error_code error;
+  for (const auto& [name, folder] : given_) {
+    if (std::filesystem::is_directory(folder, error)) continue;
+    throw InputError(
+        fmt::format("--package {}={}: folder not found", io::on_one_line(name), io::on_one_line(folder.string())));
+  }
+}
 
 std::optional<std::filesystem::path> Packages::find(const std::string& package) const {
   if (const auto found = given_.find(package); found != given_.end()) return std::filesystem::absolute(found->second);

@@ -17,6 +17,7 @@ struct MeshNotFound : InputError {
 /// Folders of packages, by name: given ones, and those found near a file.
 class Packages {
  public:
+  /// Throws InputError if a given folder is none.
   Packages(std::map<std::string, std::filesystem::path> given, const std::filesystem::path& file);
 
   /// Returns the folder of a package: the given one; else, in the folders above the file, one with this name, or one

@@ -20,12 +20,12 @@ namespace patrol::importer {
 ImportedRobot import_robot(const RobotImportOptions& options) {
   const std::string file = options.file.string();
   std::string text = io::load_text(options.file), label = file;
+  const Packages packages(options.packages, options.file);
   const bool is_hidden_xacro = !is_xacro(options.file) && has_xacro_text(text);
   if (is_hidden_xacro || is_xacro(options.file)) {
     text = expand_xacro(options.file, options.xacro_arguments, options.packages, options.python);
     label += " (expanded)";
   }
-  const Packages packages(options.packages, options.file);
   SourceRobot source = read_source_robot(label, text, packages);
   if (is_hidden_xacro) {
     source.assumptions.insert(source.assumptions.begin(),

@@ -1,8 +1,10 @@
 #include "importer/source_robot.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 #include <sstream>
 #include <utility>
@@ -46,6 +48,10 @@ std::filesystem::path named_path(const Packages& packages, const std::string& ur
 SourceReader::SourceReader(const std::string& file, const std::string& text, const Packages& packages)
     : packages_(packages), document_(true, tinyxml2::COLLAPSE_WHITESPACE) {
   robot_.file = file;
+  if (const std::size_t at = text.find('\0'); at != std::string::npos) {
+    const auto line = std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n') + 1;
+    throw input_error(file, static_cast<int>(line), "not an XML file: has a byte of zero: must be text in UTF-8");
+  }
   if (trimmed(text.c_str()).empty()) throw InputError(file + ": is empty: must be a URDF file");
   if (document_.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
     const std::string reason = document_.ErrorID() == tinyxml2::XML_ERROR_PARSING ? "incomplete or not well-formed"
@@ -234,6 +240,11 @@ SourceInertial SourceReader::read_inertial(const XMLElement& element, const std:
   if (inertial.mass_kg < 0.0) fail(*mass, link, fmt::format("mass = {}: must be positive", inertial.mass_kg));
   if (const XMLElement* tensor = element.FirstChildElement("inertia")) {
     const auto value = [&](const char* name) { return optional_number(*tensor, name, link).value_or(0.0); };
+    const std::array<const char*, 3> diagonal = {"ixx", "iyy", "izz"};
+    const auto is_missing = [&](const char* name) { return tensor->Attribute(name) == nullptr; };
+    const auto missing = std::find_if(diagonal.begin(), diagonal.end(), is_missing);
+    if (missing != diagonal.end() && !std::all_of(diagonal.begin(), diagonal.end(), is_missing))
+      fail(*tensor, link, fmt::format("<inertia>: {} is missing", *missing));
     const double xx = value("ixx"), yy = value("iyy"), zz = value("izz");
     const double xy = value("ixy"), xz = value("ixz"), yz = value("iyz");
     inertial.inertia << xx, xy, xz, xy, yy, yz, xz, yz, zz;

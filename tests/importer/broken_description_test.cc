@@ -51,6 +51,9 @@ TEST(BrokenDescription, AFileThatIsNoDescription) {
   EXPECT_THROW(import_robot({.file = "/tmp"}), InputError);
   EXPECT_THAT(complaint(""), HasSubstr("v.urdf: is empty"));
   EXPECT_THAT(complaint("no XML"), HasSubstr("v.urdf"));
+  const std::string zero = "v.urdf:1: not an XML file: has a byte of zero: must be text in UTF-8";
+  EXPECT_EQ(complaint(std::string("\0\1\2", 3)), zero);
+  EXPECT_EQ(complaint(std::string("\xff\xfe<\0r\0", 6)), zero);
   EXPECT_THAT(complaint(with("<link")), MatchesRegex("v.urdf:[0-9]+: not an XML file.*"));
   EXPECT_EQ(complaint("<robot>\n<link name=\"a\"/>"), "v.urdf:1: not an XML file: incomplete or not well-formed");
   EXPECT_THAT(complaint("<sdf/>"), MatchesRegex("v.urdf:1: <robot> is missing.*"));
@@ -106,6 +109,12 @@ TEST(BrokenDescription, MassesAndInertias) {
               MatchesRegex("v.urdf:[0-9]+: left: invalid inertia: principal moments.*"));
   EXPECT_THAT(complaint(changed("ixx=\"0.01\"", "ixx=\"-0.01\"")),
               MatchesRegex("v.urdf:[0-9]+: left: invalid inertia: principal moments.*"));
+}
+
+TEST(BrokenDescription, AMomentOfInertiaThatIsMissing) {
+  EXPECT_THAT(complaint(changed("ixx=\"0.01\"", "")), MatchesRegex("v.urdf:[0-9]+: left: <inertia>: ixx is missing"));
+  EXPECT_EQ(complaint(changed("ixx=\"0.01\" ixy=\"0\" ixz=\"0\" iyy=\"0.01\" iyz=\"0\" izz=\"0.01\"", "")), "")
+      << "the inertia of the shape";
 }
 
 TEST(BrokenDescription, SizesOfMoreThan20MetersAndMassesOfMoreThan1000Tons) {
@@ -328,6 +337,17 @@ TEST(BrokenDescription, ADrivenWheelInTheMiddle) {
                               wheel("l", "base_link", "-0.2 0.25 -0.05", 0.1, 0.04, "") +
                               wheel("r", "base_link", "-0.2 -0.25 -0.05", 0.1, 0.04, ""))),
               MatchesRegex("v.urdf:[0-9]+: axle_joint: the driven wheel is in the middle: not supported: .*"));
+}
+
+TEST(BrokenDescription, AFolderOfAPackageThatDoesNotExist) {
+  Import import(with(""));
+  import.options.packages["who"] = "/nowhere";
+  try {
+    import_robot(import.options);
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "--package who=/nowhere: folder not found");
+  }
 }
 
 TEST(BrokenDescription, Options) {
