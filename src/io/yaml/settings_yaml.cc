@@ -222,8 +222,10 @@ void SettingsReader::read(const YAML::Node& node, const std::string& key, std::s
 
 void SettingsReader::read_expectations(const YAML::Node& node, const std::string& key, Expectations& value) const {
   if (!node.IsMap()) fail(node, key, "must be a section of metrics");
+  std::set<std::string> seen;
   for (const auto& entry : node) {
     const std::string metric = entry.first.Scalar(), path = fmt::format("{}.{}", key, metric);
+    if (!seen.insert(metric).second) fail(entry.first, path, "duplicate key");
     Expectation expectation;
     if (bool wanted = false; entry.second.IsScalar() && YAML::convert<bool>::decode(entry.second, wanted)) {
       expectation = {.min = wanted ? 1.0 : 0.0, .max = wanted ? 1.0 : 0.0, .is_boolean = true};

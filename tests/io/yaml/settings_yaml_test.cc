@@ -235,6 +235,15 @@ TEST(LoadSettings, WrongExpectationsAreNamed) {
               StartsWith("a.yaml:2: expect.pose.ate_rmse_m.maxi: unknown key; did you mean max?"));
 }
 
+TEST(LoadSettings, ASecondExpectationOfAMetricIsRefused) {
+  EXPECT_EQ(complaint_about("expect:\n  pose.ate_rmse_m: {max: 1}\n  pose.ate_rmse_m: {max: 5}\n"),
+            "a.yaml:3: expect.pose.ate_rmse_m: duplicate key");
+  EXPECT_EQ(load("expect:\n  pose.ate_rmse_m: {max: 1}\n", {"expect.pose.ate_rmse_m={max: 5}"})
+                .expect.at("pose.ate_rmse_m")
+                .max,
+            5.0);
+}
+
 TEST(Overrides, ReachSectionsAndListsAndMakeSections) {
   const Scenario scenario = load("leaks: [{at: a}, {at: b}]\n",
                                  {"leaks.1.rate_g_s=2.5", "sensors.lidar.beams=400", "seed=9", "wind_mps=[3, 4]"});
