@@ -85,7 +85,7 @@ Scenario branch_scenario(const RunOptions& options) {
   }
   const std::filesystem::path file = open_run_directory(parse_branch(options.from).run).scenario();
   Scenario scenario = load_scenario(file, options.overrides);
-  check_expected_metrics(scenario.expect, {file.string(), options.overrides});
+  check_expected_metrics(scenario, {file.string(), options.overrides});
   return scenario;
 }
 
@@ -108,7 +108,7 @@ Scenario scenario_of(const RunOptions& options) {
     overrides.insert(overrides.end(), tour.begin(), tour.end());
   }
   Scenario scenario = load_scenario(file, overrides);
-  check_expected_metrics(scenario.expect, {file.string(), overrides});
+  check_expected_metrics(scenario, {file.string(), overrides});
   if (options.stack) scenario.stack.command = *options.stack;
   return scenario;
 }

@@ -258,6 +258,13 @@ std::vector<std::filesystem::path> named_files(const Scenario& scenario, const s
   return files;
 }
 
+Route load_route(const Scenario& scenario, const std::filesystem::path& data_root) {
+  ScenarioFiles files;
+  files.world_xml = load_site(scenario.world, data_root).world_xml;
+  load_mission(scenario, files);
+  return files.route;
+}
+
 ScenarioFiles load_scenario_files(const Scenario& scenario, const std::filesystem::path& data_root) {
   ScenarioFiles files;
   LoadedSite site = load_site(scenario.world, data_root);

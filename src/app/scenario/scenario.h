@@ -255,6 +255,9 @@ void save_scenario(const std::filesystem::path& file, const Scenario& scenario, 
 /// file and key if one is missing.
 std::vector<std::filesystem::path> named_files(const Scenario& scenario, const std::filesystem::path& data_root);
 
+/// Loads the stations of a scenario's mission, in site. Throws InputError as `load_scenario_files`.
+Route load_route(const Scenario& scenario, const std::filesystem::path& data_root);
+
 /// Path of the registration of a map to the site, which need not exist.
 std::filesystem::path registration_beside(const std::filesystem::path& map_yaml);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <optional>
@@ -9,8 +10,12 @@
 
 #include <fmt/format.h>
 
+#include "app/scenario/data_folders.h"
 #include "app/scenario/mounts.h"
 #include "app/scoring/metric_infos.h"
+#include "core/calibration/calibration_estimate.h"
+#include "core/error.h"
+#include "core/text.h"
 #include "io/logs/topics.h"
 #include "io/yaml/settings_yaml.h"
 
@@ -78,6 +83,40 @@ io::Expectations with_map_coverage(io::Expectations expectations) {
   return expectations;
 }
 
+/// Part of a metric's path that its documentation leaves open: "box" of "stations.box.reached" for "stations.*.reached".
+std::string open_part(const std::string& metric, const std::string& pattern) {
+  const std::size_t begin = pattern.find('*'), num_after = pattern.size() - begin - 1;
+  return metric.substr(begin, metric.size() - begin - num_after);
+}
+
+void check_name(const std::string& location, const char* subject, const std::string& name,
+                const std::vector<std::string>& known) {
+  if (std::ranges::find(known, name) != known.end()) return;
+  const std::string nearest = io::closest_match(name, known);
+  throw InputError(fmt::format("{}unknown {} {}{}: must be one of {}", location, subject, name,
+                               nearest.empty() ? "" : "; did you mean " + nearest + "?", join(known, ", ")));
+}
+
+std::vector<std::string> stations_of(const Route& route) {
+  std::vector<std::string> names;
+  for (const Station& station : route.stations) names.push_back(station.name);
+  return names;
+}
+
+/// Names of the calibration parameters, with those of the anchors.
+std::vector<std::string> parameters_of(const Route& route) {
+  std::vector<std::string> names = names_of(kCalibrationParameters);
+  for (const UwbAnchor& anchor : route.anchors) names.push_back(anchor_delay_name(anchor.number));
+  return names;
+}
+
+/// Returns whether `text` is an index into a list.
+bool is_index(const std::string& text, std::size_t size) {
+  std::size_t index = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
+  return error == std::errc() && end == text.data() + text.size() && index < size;
+}
+
 }  // namespace
 
 std::vector<CheckedExpectation> check_expectations(const io::Expectations& expectations, const io::Metrics& metrics) {
@@ -117,12 +156,25 @@ std::vector<std::string> unpublished_topics(const io::Metrics& metrics) {
   return topics;
 }
 
-void check_expected_metrics(const io::Expectations& expectations, const io::SettingsSource& source) {
-  for (const auto& [metric, expectation] : expectations) {
-    int line = 0;
-    if (!find_metric_info(metric) && std::filesystem::is_regular_file(source.file))
-      line = io::line_of(find_node(io::load_document(source.file, {}), {"expect", metric}));
-    check_metric(source.location(line, "expect." + metric), metric);
+void check_expected_metrics(const Scenario& scenario, const io::SettingsSource& source) {
+  YAML::Node document;
+  if (!scenario.expect.empty() && std::filesystem::is_regular_file(source.file))
+    document = io::load_document(source.file, {});
+  std::optional<Route> route;
+  for (const auto& [metric, expectation] : scenario.expect) {
+    const std::string location =
+        source.location(io::line_of(find_node(document, {"expect", metric})), "expect." + metric);
+    check_metric(location, metric);
+    const MetricInfo info = find_metric_info(metric).value();
+    if (expectation.is_boolean && !info.is_boolean())
+      throw InputError(fmt::format("{}must be a number or an interval {{min:, max:}}, not {}", location,
+                                   expectation.min > 0.5 ? "true" : "false"));
+    const bool is_of_station = info.path.starts_with("stations.*"), is_of_parameter = info.path.starts_with("calibration.*");
+    if (info.path.find('*') == std::string::npos || !(is_of_station || is_of_parameter)) continue;
+    if (!route) route = load_route(scenario, find_data_root(source.file));
+    const std::string name = open_part(metric, info.path);
+    if (is_of_parameter) check_name(location, "parameter", name, parameters_of(*route));
+    else if (!is_index(name, route->stations.size())) check_name(location, "station", name, stations_of(*route));
   }
 }
 

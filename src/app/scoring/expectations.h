@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "app/scenario/scenario.h"
 #include "io/json/metrics_json.h"
 #include "io/yaml/expectations.h"
 #include "score/run_record.h"
@@ -32,9 +33,9 @@ std::vector<std::string> published_topics(const score::RunRecord& record);
 /// Topics with scored messages of every stack that the stack did not publish; empty if metrics.json does not list them.
 std::vector<std::string> unpublished_topics(const io::Metrics& metrics);
 
-/// Throws InputError for an expectation of an unknown metric, with the place of the expectation. `source`: scenario and
-/// overrides.
-void check_expected_metrics(const io::Expectations& expectations, const io::SettingsSource& source);
+/// Throws InputError for an expectation of an unknown metric, station or calibration parameter, and for one of true or
+/// false of a metric with numbers, with the place of the expectation. `source`: file and overrides of the scenario.
+void check_expected_metrics(const Scenario& scenario, const io::SettingsSource& source);
 
 bool all_met(const std::vector<CheckedExpectation>& checks);
 

@@ -10,7 +10,10 @@ namespace patrol::app {
 struct MetricInfo {
   /// path as in `expect`; `*` stands for parts that depend on the run, such as the name of a station
   std::string path;
-  std::string summary;  ///< meaning: a noun phrase
+  std::string summary;  ///< meaning: a noun phrase, or a clause with "whether"
+
+  /// Whether the values are true and false.
+  bool is_boolean() const { return summary.starts_with("whether "); }
 };
 
 /// Documentation of all metrics, in the order of metrics.json.

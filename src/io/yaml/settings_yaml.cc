@@ -235,6 +235,10 @@ void SettingsReader::read_expectations(const YAML::Node& node, const std::string
       if (entry.second["max"].IsDefined()) band("max", expectation.max);
       band.known_ = {"min", "max"};
       band.finish();
+      if (entry.second.size() == 0) fail(entry.first, path, "must have min, max or both");
+      if (expectation.min > expectation.max)
+        fail(entry.first, path,
+             fmt::format("min = {} exceeds max = {}: must be at most max", expectation.min, expectation.max));
     } else {
       read_scalar(entry.second, path, expectation.min);
       expectation.max = expectation.min;

@@ -152,19 +152,47 @@ TEST(ExpectedMetrics, AllExpectationsOfTheShippedScenariosAreKnown) {
   for (const auto& entry : std::filesystem::recursive_directory_iterator(kRoot / "worlds")) {
     if (entry.path().extension() != ".yaml" || entry.path().parent_path().filename() != "scenarios") continue;
     const Scenario scenario = load_scenario(entry.path());
-    EXPECT_NO_THROW(check_expected_metrics(scenario.expect, entry.path().string())) << entry.path();
+    EXPECT_NO_THROW(check_expected_metrics(scenario, {entry.path().string(), {}})) << entry.path();
     num_checked += static_cast<int>(scenario.expect.size());
   }
   EXPECT_GE(num_checked, 100);
 }
 
 TEST(ExpectedMetrics, AnUnknownOneIsRefusedWithItsOverride) {
-  EXPECT_THAT(
-      [] {
-        check_expected_metrics({{"mission.colisions", {}}}, {"a.yaml", {"expect.mission.colisions=0"}});
-      },
-      testing::ThrowsMessage<InputError>(
-          testing::StartsWith("--set expect.mission.colisions=0: unknown metric; did you mean mission.collisions?")));
+  Scenario scenario;
+  scenario.expect = {{"mission.colisions", {}}};
+  EXPECT_THAT([&] { check_expected_metrics(scenario, {"a.yaml", {"expect.mission.colisions=0"}}); },
+              testing::ThrowsMessage<InputError>(testing::StartsWith(
+                  "--set expect.mission.colisions=0: unknown metric; did you mean mission.collisions?")));
+}
+
+std::string complaint_about_expectation(const std::string& metric, const std::string& value) {
+  const std::filesystem::path file = kRoot / "worlds/street/scenarios/short.yaml";
+  const std::vector<std::string> overrides = {"expect." + metric + "=" + value};
+  try {
+    check_expected_metrics(load_scenario(file, overrides), {file.string(), overrides});
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(ExpectedMetrics, TrueIsRefusedForANumber) {
+  EXPECT_EQ(complaint_about_expectation("map.coverage", "true"),
+            "--set expect.map.coverage=true: must be a number or an interval {min:, max:}, not true");
+  EXPECT_EQ(complaint_about_expectation("mission.fell", "false"), "");
+}
+
+TEST(ExpectedMetrics, AnUnknownStationOrParameterIsRefusedBeforeTheRun) {
+  EXPECT_THAT(complaint_about_expectation("stations.valve_wel_0.reached", "true"),
+              testing::StartsWith("--set expect.stations.valve_wel_0.reached=true: unknown station valve_wel_0; did you "
+                                  "mean valve_well_0?: must be one of "));
+  EXPECT_THAT(complaint_about_expectation("stations.99.reached", "true"), testing::HasSubstr("unknown station 99"));
+  EXPECT_EQ(complaint_about_expectation("stations.0.reached", "true"), "");
+  EXPECT_THAT(complaint_about_expectation("calibration.lidar.yaw.holds", "true"),
+              testing::StartsWith("--set expect.calibration.lidar.yaw.holds=true: unknown parameter lidar.yaw; did you "
+                                  "mean lidar.yaw_rad?: must be one of "));
+  EXPECT_EQ(complaint_about_expectation("calibration.lidar.yaw_rad.holds", "true"), "");
 }
 
 }  // namespace

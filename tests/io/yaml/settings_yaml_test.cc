@@ -235,6 +235,14 @@ TEST(LoadSettings, WrongExpectationsAreNamed) {
               StartsWith("a.yaml:2: expect.pose.ate_rmse_m.maxi: unknown key; did you mean max?"));
 }
 
+TEST(LoadSettings, BoundsThatNoNumberOrEveryNumberMeetsAreRefused) {
+  EXPECT_EQ(complaint_about("expect:\n  mission.distance_m: {min: 5, max: 3}\n"),
+            "a.yaml:2: expect.mission.distance_m: min = 5 exceeds max = 3: must be at most max");
+  EXPECT_EQ(complaint_about("expect:\n  mission.distance_m: {}\n"),
+            "a.yaml:2: expect.mission.distance_m: must have min, max or both");
+  EXPECT_EQ(load("expect: {mission.distance_m: {min: 3, max: 3}}\n").expect.at("mission.distance_m").min, 3.0);
+}
+
 TEST(LoadSettings, ASecondExpectationOfAMetricIsRefused) {
   EXPECT_EQ(complaint_about("expect:\n  pose.ate_rmse_m: {max: 1}\n  pose.ate_rmse_m: {max: 5}\n"),
             "a.yaml:3: expect.pose.ate_rmse_m: duplicate key");

@@ -14,8 +14,10 @@
 #include "app/common/progress_bar.h"
 #include "app/run/run_once.h"
 #include "app/scenario/data_folders.h"
+#include "app/scoring/expectations.h"
 #include "core/error.h"
 #include "io/mcap/mcap_reader.h"
+#include "io/yaml/settings_yaml.h"
 
 namespace patrol::app {
 namespace {
@@ -26,6 +28,7 @@ constexpr double kMinShared_s = 3.0;
 RunVerdict verdict_of_run(const BatchRun& run, const std::filesystem::path& work, const RunMode& mode) {
   try {
     const Scenario scenario = load_scenario(run.scenario, run.overrides);
+    check_expected_metrics(scenario, {run.scenario.string(), run.overrides});
     NullObserver observer;
     return run_once(scenario, run.scenario.stem().string(), find_data_root(run.scenario), work, observer, mode).value();
   } catch (const InputError& error) {

@@ -39,7 +39,7 @@ Scenario load_variant(const std::filesystem::path& scenario, const SweepManifest
   const std::vector<std::string> overrides = overrides_of(manifest, run);
   try {
     Scenario loaded = load_scenario(scenario, overrides);
-    check_expected_metrics(loaded.expect, {scenario.string(), overrides});
+    check_expected_metrics(loaded, {scenario.string(), overrides});
     return loaded;
   } catch (const InputError& error) {
     const std::string text = error.what();
