@@ -83,7 +83,8 @@ io::Expectations with_map_coverage(io::Expectations expectations) {
   return expectations;
 }
 
-/// Part of a metric's path that its documentation leaves open: "box" of "stations.box.reached" for "stations.*.reached".
+/// Part of a metric's path that its documentation leaves open: "box" of "stations.box.reached" for
+/// "stations.*.reached".
 std::string open_part(const std::string& metric, const std::string& pattern) {
   const std::size_t begin = pattern.find('*'), num_after = pattern.size() - begin - 1;
   return metric.substr(begin, metric.size() - begin - num_after);
@@ -169,7 +170,8 @@ void check_expected_metrics(const Scenario& scenario, const io::SettingsSource& 
     if (expectation.is_boolean && !info.is_boolean())
       throw InputError(fmt::format("{}must be a number or an interval {{min:, max:}}, not {}", location,
                                    expectation.min > 0.5 ? "true" : "false"));
-    const bool is_of_station = info.path.starts_with("stations.*"), is_of_parameter = info.path.starts_with("calibration.*");
+    const bool is_of_station = info.path.starts_with("stations.*"),
+               is_of_parameter = info.path.starts_with("calibration.*");
     if (info.path.find('*') == std::string::npos || !(is_of_station || is_of_parameter)) continue;
     if (!route) route = load_route(scenario, find_data_root(source.file));
     const std::string name = open_part(metric, info.path);

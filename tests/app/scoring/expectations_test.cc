@@ -161,9 +161,12 @@ TEST(ExpectedMetrics, AllExpectationsOfTheShippedScenariosAreKnown) {
 TEST(ExpectedMetrics, AnUnknownOneIsRefusedWithItsOverride) {
   Scenario scenario;
   scenario.expect = {{"mission.colisions", {}}};
-  EXPECT_THAT([&] { check_expected_metrics(scenario, {"a.yaml", {"expect.mission.colisions=0"}}); },
-              testing::ThrowsMessage<InputError>(testing::StartsWith(
-                  "--set expect.mission.colisions=0: unknown metric; did you mean mission.collisions?")));
+  EXPECT_THAT(
+      [&] {
+        check_expected_metrics(scenario, {"a.yaml", {"expect.mission.colisions=0"}});
+      },
+      testing::ThrowsMessage<InputError>(
+          testing::StartsWith("--set expect.mission.colisions=0: unknown metric; did you mean mission.collisions?")));
 }
 
 std::string complaint_about_expectation(const std::string& metric, const std::string& value) {
@@ -184,14 +187,16 @@ TEST(ExpectedMetrics, TrueIsRefusedForANumber) {
 }
 
 TEST(ExpectedMetrics, AnUnknownStationOrParameterIsRefusedBeforeTheRun) {
-  EXPECT_THAT(complaint_about_expectation("stations.valve_wel_0.reached", "true"),
-              testing::StartsWith("--set expect.stations.valve_wel_0.reached=true: unknown station valve_wel_0; did you "
-                                  "mean valve_well_0?: must be one of "));
+  EXPECT_THAT(
+      complaint_about_expectation("stations.valve_wel_0.reached", "true"),
+      testing::StartsWith("--set expect.stations.valve_wel_0.reached=true: unknown station valve_wel_0; did you "
+                          "mean valve_well_0?: must be one of "));
   EXPECT_THAT(complaint_about_expectation("stations.99.reached", "true"), testing::HasSubstr("unknown station 99"));
   EXPECT_EQ(complaint_about_expectation("stations.0.reached", "true"), "");
-  EXPECT_THAT(complaint_about_expectation("calibration.lidar.yaw.holds", "true"),
-              testing::StartsWith("--set expect.calibration.lidar.yaw.holds=true: unknown parameter lidar.yaw; did you "
-                                  "mean lidar.yaw_rad?: must be one of "));
+  EXPECT_THAT(
+      complaint_about_expectation("calibration.lidar.yaw_deg.holds", "true"),
+      testing::StartsWith("--set expect.calibration.lidar.yaw_deg.holds=true: unknown parameter lidar.yaw_deg; did you "
+                          "mean lidar.yaw_rad?: must be one of "));
   EXPECT_EQ(complaint_about_expectation("calibration.lidar.yaw_rad.holds", "true"), "");
 }
 
