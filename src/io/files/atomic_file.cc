@@ -14,6 +14,7 @@
 
 #include "core/error.h"
 #include "io/files/bounded_read.h"
+#include "io/files/output_error.h"
 
 namespace patrol::io {
 namespace {
@@ -40,14 +41,21 @@ class InputFile {
 void save_text(const std::filesystem::path& file, std::string_view text) {
   // Use a name that is unique to the process: other processes may write the same file.
   const std::filesystem::path temporary = file.string() + "." + std::to_string(::getpid()) + ".part";
+  errno = 0;
   std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
-  out << text;
+  const bool is_open = out.is_open();
+  out << text << std::flush;
+  const int cause = errno;
   out.close();
   std::error_code error;
   if (out) std::filesystem::rename(temporary, file, error);
   if (!out || error) {
     std::error_code ignored;
     std::filesystem::remove(temporary, ignored);
+    if (!out && (is_open || is_out_of_space(cause))) {
+      throw OutputError(
+          fmt::format("{}: cannot be written: {}", file.string(), std::strerror(cause != 0 ? cause : EIO)));
+    }
     throw InputError(file.string() + ": cannot be written");
   }
 }

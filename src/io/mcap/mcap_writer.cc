@@ -6,6 +6,7 @@
 #include <zstd.h>
 
 #include "core/error.h"
+#include "io/files/output_error.h"
 
 namespace patrol::io {
 namespace {
@@ -48,7 +49,7 @@ McapWriter::~McapWriter() {
 
 void McapWriter::put(std::string_view bytes) {
   file_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  if (!file_) throw std::runtime_error(path_.string() + ": writing failed (disk full?)");
+  if (!file_) throw OutputError(path_.string() + ": writing failed (disk full?)");
   offset_ += bytes.size();
   crc_ = crc_of(bytes, crc_);
 }

@@ -5,10 +5,12 @@
 
 #include <algorithm>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "io/files/bounded_read.h"
+#include "io/files/output_error.h"
 #include "tests/support/temporary_file.h"
 
 namespace patrol::io::atomic_file_test {
@@ -57,7 +59,8 @@ TEST(SaveText, AFullDiskIsSaid) {
   if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
   const TemporaryFolder folder;
   std::filesystem::create_symlink("/dev/full", part_of(folder / "a.txt"));
-  EXPECT_THROW(save_text(folder / "a.txt", "new"), InputError);
+  EXPECT_THAT([&] { save_text(folder / "a.txt", "new"); }, testing::ThrowsMessage<OutputError>(testing::EndsWith(
+                                                               "a.txt: cannot be written: No space left on device")));
   EXPECT_FALSE(std::filesystem::exists(folder / "a.txt"));
 }
 

@@ -2,6 +2,7 @@
 
 #include <csignal>
 #include <cstring>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <set>
@@ -16,6 +17,7 @@
 #include "app/scenario/data_folders.h"
 #include "app/scoring/expectations.h"
 #include "core/error.h"
+#include "io/files/output_error.h"
 #include "io/mcap/mcap_reader.h"
 #include "io/yaml/settings_yaml.h"
 
@@ -25,12 +27,20 @@ namespace {
 /// Shortest beginning that is worth a snapshot.
 constexpr double kMinShared_s = 3.0;
 
+/// Exit status of a child whose output cannot be written: EX_IOERR of sysexits.h.
+constexpr int kCannotWrite = 74;
+
+/// Throws OutputError or std::filesystem::filesystem_error if the output cannot be written, which is no result.
 RunVerdict verdict_of_run(const BatchRun& run, const std::filesystem::path& work, const RunMode& mode) {
   try {
     const Scenario scenario = load_scenario(run.scenario, run.overrides);
     check_expected_metrics(scenario, {run.scenario.string(), run.overrides});
     NullObserver observer;
     return run_once(scenario, run.scenario.stem().string(), find_data_root(run.scenario), work, observer, mode).value();
+  } catch (const io::OutputError&) {
+    throw;
+  } catch (const std::filesystem::filesystem_error&) {
+    throw;
   } catch (const InputError& error) {
     return {.end = RunStatus::kWrongInput, .message = error.what(), .metrics = {}, .checks = {}, .events = {}};
   } catch (const std::exception& error) {
@@ -93,6 +103,8 @@ class Batch {
       pending_ = std::exchange(branches_, {});
       is_through = run_pending();
     }
+    if (!output_error_.empty())
+      throw io::OutputError(output_error_ + "; runs are missing, repeat the command to continue");
     for (const auto& [leader, times] : snapshot_times_) {
       const std::string& key = runs_[leader].key;
       if (store_.has(key)) keep_or_remove(key, store_.load(key)->code());
@@ -109,7 +121,7 @@ class Batch {
           [&](const TaskEnd& end) { handle(iteration[end.task], end); },
           [&] {
             show();
-            return !interrupt_.is_interrupted();
+            return output_error_.empty() && !interrupt_.is_interrupted();
           });
       if (!is_through) return false;
     }
@@ -131,6 +143,17 @@ class Batch {
 
   /// Executes a run in the child process.
   int run_child(std::size_t i) const {
+    try {
+      return make_result(i);
+    } catch (const io::OutputError& error) {
+      fmt::print(stderr, "{}\n", error.what());
+    } catch (const std::filesystem::filesystem_error& error) {
+      fmt::print(stderr, "{}\n", error.what());
+    }
+    return kCannotWrite;
+  }
+
+  int make_result(std::size_t i) const {
     const BatchRun& run = runs_[i];
     const std::filesystem::path work = work_.path(run.key);
     RunVerdict verdict = verdict_of_run(run, work, mode_of(i));
@@ -148,6 +171,10 @@ class Batch {
     const bool is_ended_from_outside = (end.signal == SIGKILL || end.signal == SIGTERM) && !end.is_over_time;
     if (is_ended_from_outside && (interrupt_.is_interrupted() || ended_once_.insert(i).second)) {
       pending_.push_back(i);
+      return;
+    }
+    if (end.exit_code == kCannotWrite && !store_.has(run.key)) {
+      output_error_ = end.last_stderr_line.empty() ? "the result cannot be written" : end.last_stderr_line;
       return;
     }
     if (!store_.has(run.key)) {
@@ -188,6 +215,7 @@ class Batch {
   std::vector<std::size_t> branches_;  ///< runs after these
   std::set<std::size_t> ended_once_;   ///< runs whose process was ended from outside
   std::size_t num_done_ = 0, num_failed_ = 0;
+  std::string output_error_;  ///< of a run whose output cannot be written; empty: none
   ProgressBar bar_;
   InterruptGuard interrupt_;
 };

@@ -34,8 +34,9 @@ struct BatchSettings {
   KeepRuns keep = KeepRuns::kNone;
 };
 
-/// Executes the runs, stores a verdict for each in every case, and shows the progress. A run that is killed from
-/// outside is repeated once. Returns false if interrupted; completed runs are stored.
+/// Executes the runs, stores a verdict for each, and shows the progress. A run that is killed from outside is repeated
+/// once. Returns false if interrupted; completed runs are stored. Throws OutputError (io/files/output_error.h) at the
+/// first run whose output cannot be written: it has no verdict.
 bool run_batch(const std::vector<BatchRun>& runs, const BatchSettings& settings, const std::filesystem::path& root);
 
 }  // namespace patrol::app
