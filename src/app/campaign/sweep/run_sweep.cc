@@ -1,6 +1,9 @@
 #include "app/campaign/sweep/run_sweep.h"
 
+#include <set>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -13,9 +16,10 @@ void run_sweep(const std::filesystem::path& scenario, const SweepManifest& manif
   while (true) {
     const SweepProgress progress = evaluate_progress(manifest, load_rows(manifest, directory.store()));
     std::vector<BatchRun> runs;
+    std::set<std::string> requested;  // variants with equal settings have one result
     for (const std::size_t i : progress.needed) {
       const PlannedRun& run = manifest.runs[i];
-      if (!shard.contains(i)) continue;
+      if (!shard.contains(i) || !requested.insert(run.hash).second) continue;
       runs.push_back({.scenario = scenario,
                       .overrides = overrides_of(manifest, run),
                       .key = run.hash,

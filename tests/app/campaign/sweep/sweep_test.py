@@ -7,6 +7,7 @@ import csv
 import json
 import pathlib
 import random
+import resource
 import shutil
 import signal
 import subprocess
@@ -50,6 +51,30 @@ class Sweep(SweepCase):
         metrics = json.loads((out / "metrics.json").read_text())
         self.assertEqual(float(row["pose.ate_rmse_m"]), metrics["pose"]["ate_rmse_m"])
         self.assertEqual(float(row["map.nearest_mean_m"]), metrics["map"]["nearest_mean_m"])
+
+    def test_variants_of_equal_settings_are_one_run(self):
+        out = self.path / "equal"
+        done = self.sweep(out, "--vary", "sensors.lidar.range_noise_std_m=0.05,0.050", "--seeds", "1")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(len(list((out / "runs").glob("*.json"))), 1)
+        self.assertEqual([row["end"] for row in self.rows(out)], ["done", "done"])
+
+    def test_a_full_disk_is_no_result_and_a_repeat_makes_the_runs(self):
+        out = self.path / "full"
+
+        def limit_files():  # as a full disk, with another error number
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (50_000, resource.RLIM_INFINITY))
+
+        done = subprocess.run(self.command(out, *self.vary), capture_output=True, text=True, timeout=280, cwd=SOURCE,
+                              preexec_fn=limit_files, restore_signals=False)
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn("repeat the command to continue", done.stderr.strip().splitlines()[-1])
+        self.assertNotIn("wrong input", done.stderr)
+        self.assertNotIn("RUN/", done.stderr)
+        self.assertEqual(list((out / "runs").glob("*.json")), [])
+        self.assertEqual(self.sweep(out, *self.vary).returncode, 0)
+        self.assert_same_tables(out)
 
     def test_killed_three_times_and_resumed_it_leaves_the_same_bytes(self):
         out, chance = self.path / "killed", random.Random(4)
