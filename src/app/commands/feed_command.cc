@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "app/commands/commands.h"
+#include "app/common/output_directory.h"
 #include "app/common/print_result.h"
 #include "app/record/run_directory.h"
 #include "app/report/run_summary.h"
@@ -33,6 +34,8 @@ ExitCode feed_run(const FeedOptions& options) {
                     setting));
   }
   const RunDirectory fed = open_run_directory(options.input);
+  if (std::filesystem::exists(incomplete_marker(fed.root)))
+    fmt::print(stderr, "patrol: {}: incomplete run: fed up to its last message\n", fed.root.string());
   Scenario scenario = load_scenario(fed.scenario(), options.overrides);
   scenario.stack.command = options.stack.value_or("");  // never starts a command that a run directory names
   const std::filesystem::path data_root = find_data_root(fed.scenario());

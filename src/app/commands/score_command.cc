@@ -17,7 +17,9 @@
 #include "app/scoring/score_run.h"
 #include "app/scoring/score_table.h"
 #include "core/error.h"
+#include "io/json/registration_json.h"
 #include "io/maps/map_server.h"
+#include "io/mcap/mcap_reader.h"
 #include "io/trajectories/relations.h"
 #include "io/trajectories/tum.h"
 
@@ -29,6 +31,8 @@ ExitCode score_directory(const ScoreOptions& options) {
   if (std::filesystem::exists(incomplete_marker(directory.root))) {
     throw InputError(fmt::format("{}: incomplete run; cannot be scored", directory.root.string()));
   }
+  if (!io::McapReader(directory.log()).is_complete())
+    throw InputError(fmt::format("{}: is incomplete; cannot be scored", directory.log().string()));
   const Scenario scenario = load_scenario(directory.scenario());
   const ScenarioFiles files = load_scenario_files(scenario, find_data_root(directory.scenario()));
   const ScoredRun scored = [&] {
@@ -71,6 +75,16 @@ std::string file_option_of(const ScoreOptions& options) {
   return {};
 }
 
+/// Pose in the frame of the reference of the frame of a built map. In a run directory, the true map is in site, where
+/// the registration places the map. Other maps are in one frame.
+Pose2 map_in_reference(const std::filesystem::path& map, const std::filesystem::path& reference) {
+  const RunDirectory run{map.parent_path()};
+  const bool is_of_one_run =
+      map.filename() == run.map().filename() && reference.lexically_normal() == run.truth_map().lexically_normal();
+  if (!is_of_one_run || !std::filesystem::exists(run.registration())) return {};
+  return io::load_registration(run.registration()).T_site_map;
+}
+
 }  // namespace
 
 ExitCode score_command(const ScoreOptions& options) {
@@ -97,7 +111,8 @@ ExitCode score_command(const ScoreOptions& options) {
     return ExitCode::kDone;
   }
   if (is_pair_of_maps) {
-    const io::Metrics metrics = score_maps(io::load_map(options.map), io::load_map(options.reference_map));
+    const io::Metrics metrics = score_maps(io::load_map(options.map), io::load_map(options.reference_map),
+                                           map_in_reference(options.map, options.reference_map));
     print_result(options.form, score_table(metrics, {}), metrics);
     return ExitCode::kDone;
   }

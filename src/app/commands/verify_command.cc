@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "app/commands/commands.h"
+#include "app/common/output_directory.h"
 #include "app/common/temporary_folder.h"
 #include "app/record/run_directory.h"
 #include "app/run/feed_loop.h"
@@ -38,6 +39,8 @@ bool report(const char* half, const std::optional<io::LogDifference>& difference
 
 ExitCode verify_command(const VerifyOptions& options) {
   const RunDirectory directory = open_run_directory(options.run);
+  if (std::filesystem::exists(incomplete_marker(directory.root)))
+    throw InputError(fmt::format("{}: incomplete run; cannot be verified", directory.root.string()));
   const std::vector<StackTurnRecord> turns = read_turn_records(directory.log());
   if (!turns.empty() && !turns.back().is_last) {
     throw InputError(fmt::format("{}: its stack failed at {:.3f} s: only a complete run can be verified",

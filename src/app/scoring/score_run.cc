@@ -45,10 +45,10 @@ io::Metrics score_trajectories(const Trajectory& estimate, const Trajectory& ref
   return metrics;
 }
 
-io::Metrics score_maps(const OccupancyGrid& built, const OccupancyGrid& reference) {
+io::Metrics score_maps(const OccupancyGrid& built, const OccupancyGrid& reference, const Pose2& T_reference_built) {
   const score::ReferenceMap all_seeable{reference, Grid<std::uint8_t>(reference.geometry(), 1)};
   io::Metrics metrics;
-  metrics["map"] = to_json(score::map_error(built, {}, all_seeable));
+  metrics["map"] = to_json(score::map_error(built, T_reference_built, all_seeable));
   return metrics;
 }
 

@@ -45,7 +45,8 @@ void save_scored_run(const RunDirectory& directory, const ScoredRun& run, const 
 /// the reference's time that they concern, and `pose.aligned.*`.
 io::Metrics score_trajectories(const Trajectory& estimate, const Trajectory& reference);
 
-/// Scores any two maps in one frame: metrics `map.*`.
-io::Metrics score_maps(const OccupancyGrid& built, const OccupancyGrid& reference);
+/// Scores any two maps: metrics `map.*`. `T_reference_built`: pose of the frame of the built map in that of the
+/// reference.
+io::Metrics score_maps(const OccupancyGrid& built, const OccupancyGrid& reference, const Pose2& T_reference_built = {});
 
 }  // namespace patrol::app

@@ -72,6 +72,20 @@ class RunOutput(unittest.TestCase):
         plan = json.loads(self.call("plan", "worlds/tunnel/map/map.yaml", "--from", "0,0", "--to", "-5,0", "--json"))
         self.assertTrue(plan)
 
+    def test_maps_of_one_run_are_compared_by_its_registration(self):
+        run = self.path / "maps"
+        run.mkdir()
+        pixels = bytes(0 if x in (5, 30) or y in (8, 25) else 254 for y in range(40) for x in range(40))
+        for name, origin in (("map", "[0, 0, 0]"), ("truth_map", "[3, -2, 0]")):
+            (run / f"{name}.pgm").write_bytes(b"P5\n40 40\n255\n" + pixels)
+            (run / f"{name}.yaml").write_text(f"image: {name}.pgm\nresolution: 0.05\norigin: {origin}\nnegate: 0\n"
+                                              "occupied_thresh: 0.65\nfree_thresh: 0.196\n")
+        (run / "registration.json").write_text(json.dumps({"position": [3, -2, 0], "orientation": [0, 0, 0, 1], "covariance": [1e-4, 0, 0, 0, 1e-4, 0, 0, 0, 1e-4]}))
+        score = json.loads(self.call("score", "--map", run / "map.yaml", "--reference-map", run / "truth_map.yaml", "--json"))
+        self.assertEqual(score["map"]["iou"], 1.0)
+        same = json.loads(self.call("score", "--map", run / "map.yaml", "--reference-map", run / "map.yaml", "--json"))
+        self.assertEqual(same["map"]["iou"], 1.0)
+
 
 if __name__ == "__main__":
     unittest.main(argv=[sys.argv[0], "-v"])
