@@ -171,6 +171,34 @@ class BadInput(unittest.TestCase):
     def test_start_inside_a_wall(self):
         self.refuse_run(SHORT, "--set", "start.left_m=10", says=["start"])
 
+    def test_an_error_of_a_scenario_names_its_file_and_line(self):
+        text = SHORT.read_text()
+        for old, new, says in (
+                ("routes/short.json", "routes/nosuch.json", ["scenario.yaml:6: mission = routes/nosuch.json: ", "not found"]),
+                ("mission: routes/short.json", "mission: routes/short.json\nreferences: nosuch", ["scenario.yaml:7: references = nosuch: "]),
+                ("mission: routes/short.json", "mission: routes/short.json\ngoals: nosuch.json", ["scenario.yaml:7: goals = nosuch.json: "]),
+                ("valve_well_0, rate", "nosuch, rate", ["scenario.yaml:8: leaks: unknown site at = 'nosuch'"]),
+                ("mission: routes/short.json", "mission: routes/short.json\ntour: {stations: [{x_m: 1, y_m: 0}]}",
+                 ["scenario.yaml:6: mission and tour are mutually exclusive"])):
+            self.refuse_run(self.scenario(text.replace(old, new)), says=says)
+        self.refuse_run(SHORT, "--set", "leaks.0.at=nosuch", says=["--set leaks.0.at=nosuch: leaks: unknown site"])
+
+    def test_a_kidnap_to_where_the_robot_cannot_stand(self):
+        self.refuse_run(SHORT, "--set", "kidnaps=[{at_s: 5, x_m: 1000, y_m: 1000}]",
+                        says=["--set kidnaps=[{at_s: 5, x_m: 1000, y_m: 1000}]: kidnaps.0: (1000.00, 1000.00): no ground below"])
+
+    def test_a_fault_without_effect(self):
+        file = self.scenario(SHORT.read_text() + "faults:\n  - {sensor: hall, kind: delay}\n")
+        self.refuse_run(file, says=["scenario.yaml:", "faults.0.sensor = hall: quadruped has no such sensor"])
+        file = self.scenario(SHORT.read_text() + "faults:\n  - {sensor: imu, kind: delay, magnitude: -3}\n")
+        self.refuse_run(file, says=["scenario.yaml:", "faults.0.magnitude = -3: must be at least 0 for delay"])
+
+    def test_an_expectation_of_an_unknown_station(self):
+        self.refuse_run(SHORT, "--set", "expect.stations.nosuch.reached=true", says=["unknown station nosuch: must be one of "])
+
+    def test_an_empty_output_directory(self):
+        self.refuse("run", SHORT, "--out", "", says=["--out: is empty: must name a directory for the run"])
+
     def test_leak_at_an_unknown_place(self):
         self.refuse_run(SHORT, "--set", "leaks.0.at=nowhere", says=["nowhere"])
 

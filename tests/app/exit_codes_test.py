@@ -47,6 +47,7 @@ class ExitCodes(unittest.TestCase):
                                "  - {sensor: gnss, kind: dropout, start_s: 0}\n")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assert_complete()
+        self.assertIn("warning: fault imu freeze at 900 s: not before the time limit of 900 s", done.stderr)
         counts = [self.junit().get(key) for key in ("tests", "failures", "skipped")]
         self.assertEqual(counts, ["4", "0", "1"])  # the run, one expectation, two faults
         self.assertIn("mission.completed", done.stdout)

@@ -14,6 +14,7 @@
 #include "app/report/run_summary.h"
 #include "app/run/progress_line.h"
 #include "app/run/run_once.h"
+#include "app/run/run_verdict.h"
 #include "app/run/terminal_view.h"
 #include "app/scenario/data_folders.h"
 #include "app/scoring/expectations.h"
@@ -172,7 +173,8 @@ std::optional<RunVerdict> run_reported(const RunOptions& options, const Scenario
     if (!verdict) reporter->finish("interrupted", "interrupted by user");
     else
       reporter->finish(verdict->code() == ExitCode::kDone ? "finished" : "failed",
-                       verdict->message.empty() ? std::string(name_of(verdict->end)) : verdict->message);
+                       verdict->message.empty() ? std::string(name_of(verdict->end))
+                                                : fmt::format("{}: {}", name_of(verdict->end), verdict->message));
     return verdict;
   } catch (const std::exception& error) {
     reporter->finish("failed", error.what());
@@ -194,10 +196,24 @@ void report_delivery(const Reporter& reporter, const std::string& to, const std:
   }
 }
 
+/// Prints a warning for each fault and kidnap that the run does not reach.
+void warn_of_late_events(const Scenario& scenario) {
+  const auto warn = [&](const std::string& event) {
+    fmt::print(stderr, "patrol: warning: {}: not before the time limit of {:g} s\n", event, scenario.time_limit_s);
+  };
+  for (const sim::FaultSettings& fault : scenario.faults) {
+    if (fault.start_s >= scenario.time_limit_s) warn(app::name_of(fault));
+  }
+  for (const KidnapSettings& kidnap : scenario.kidnaps) {
+    if (kidnap.at_s >= scenario.time_limit_s) warn(app::name_of(kidnap));
+  }
+}
+
 }  // namespace
 
 ExitCode run_command(const RunOptions& options) {
   const Scenario scenario = scenario_of(options);
+  warn_of_late_events(scenario);
   const std::string name = name_of(options);
   const std::filesystem::path root = options.out.value_or(default_directory(options, scenario));
 

@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "io/files/output_error.h"
 
 namespace patrol::app {
 namespace {
@@ -36,8 +37,10 @@ bool is_folder_of(const std::string& name, const std::vector<std::string>& patte
                      [&](const std::string& pattern) { return pattern.starts_with(top); });
 }
 
-InputError cannot_be_written(const std::filesystem::path& root, int error) {
-  return InputError{fmt::format("{}: cannot write: {}", root.string(), std::strerror(error))};
+[[noreturn]] void throw_cannot_write(const std::filesystem::path& root, int error) {
+  const std::string text = fmt::format("{}: cannot write: {}", root.string(), std::strerror(error));
+  if (io::is_out_of_space(error)) throw io::OutputError(text);
+  throw InputError(text);
 }
 
 /// Lists the entries that may be removed. Throws InputError if there are any others.
@@ -77,7 +80,7 @@ EarlierOutput earlier_output(const std::filesystem::path& root, const OutputKind
 OutputLock open_marker(const std::filesystem::path& root, int& descriptor) {
   const std::filesystem::path marker = incomplete_marker(root);
   descriptor = ::open(marker.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
-  if (descriptor < 0 && errno != ELOOP && errno != EISDIR && errno != ENXIO) throw cannot_be_written(root, errno);
+  if (descriptor < 0 && errno != ELOOP && errno != EISDIR && errno != ENXIO) throw_cannot_write(root, errno);
   OutputLock lock(descriptor);
   struct stat status {};
   const bool is_plain =
@@ -105,7 +108,7 @@ OutputLock take_marker(const std::filesystem::path& root, const OutputKind& kind
     whole.l_type = F_WRLCK;
     whole.l_whence = SEEK_SET;
     if (::fcntl(descriptor, F_SETLK, &whole) != 0) {
-      if (errno != EACCES && errno != EAGAIN) throw cannot_be_written(root, errno);
+      if (errno != EACCES && errno != EAGAIN) throw_cannot_write(root, errno);
       throw InputError(fmt::format("{}: in use by another process that writes a {}; wait or choose another directory",
                                    root.string(), kind.name));
     }
@@ -118,7 +121,7 @@ void write_marker(const std::filesystem::path& root, const OutputKind& kind, int
   const std::string text = kind.marker_text + "\n";
   const bool is_written = ::ftruncate(descriptor, 0) == 0 &&
                           ::pwrite(descriptor, text.data(), text.size(), 0) == static_cast<ssize_t>(text.size());
-  if (!is_written) throw cannot_be_written(root, errno);
+  if (!is_written) throw_cannot_write(root, errno);
 }
 
 }  // namespace
@@ -136,7 +139,9 @@ std::filesystem::path incomplete_marker(const std::filesystem::path& root) { ret
 
 OutputLock begin_output(const std::filesystem::path& root, const OutputKind& kind) {
   std::error_code error;
+  if (root.empty()) throw InputError(fmt::format("--out: is empty: must name a directory for the {}", kind.name));
   std::filesystem::create_directories(root, error);
+  if (error && io::is_out_of_space(error.value())) throw_cannot_write(root, error.value());
   if (error) throw InputError(fmt::format("{}: cannot create the directory: {}", root.string(), error.message()));
   earlier_output(root, kind);  // throws before anything is written
   int descriptor = -1;

@@ -1,9 +1,16 @@
 #include "app/run/make_simulator.h"
 
+#include <string>
+#include <string_view>
 #include <vector>
 
+#include <fmt/format.h>
+
+#include "app/scenario/mounts.h"
+#include "core/error.h"
 #include "core/geometry/angles.h"
 #include "render/scene/depth_renderer.h"
+#include "sim/model_assembly.h"
 
 namespace patrol::app {
 namespace {
@@ -48,7 +55,24 @@ std::vector<sim::StaticObstacleSettings> all_static_obstacles(const Scenario& sc
 sim::Simulator make_simulator(const Scenario& scenario, const ScenarioFiles& files, bool has_sensor_thread) {
   sim::SimulatorSettings settings = simulator_settings(scenario, files);
   settings.has_sensor_thread = has_sensor_thread;
-  return {settings, files.robot, scenario.seed, render::make_depth_renderer};
+  return with_location(
+      scenario, [&] { return sim::Simulator(settings, files.robot, scenario.seed, render::make_depth_renderer); });
+}
+
+void check_kidnaps(const Scenario& scenario, const ScenarioFiles& files) {
+  constexpr std::string_view kStart = "start pose ";
+  for (std::size_t i = 0; i < scenario.kidnaps.size(); ++i) {
+    const KidnapSettings& kidnap = scenario.kidnaps[i];
+    try {
+      sim::assemble_model(files.world_xml.string(), files.simulated_robot(), files.robot,
+                          {kidnap.x_m, kidnap.y_m, to_rad(kidnap.heading_deg)}, all_static_obstacles(scenario),
+                          sim::Textures::kNone);
+    } catch (const InputError& error) {
+      std::string text = error.what();
+      if (text.starts_with(kStart)) text.erase(0, kStart.size());
+      throw InputError(with_location_of_key(scenario, fmt::format("kidnaps.{}: {}", i, text)));
+    }
+  }
 }
 
 }  // namespace patrol::app

@@ -17,4 +17,8 @@ std::vector<sim::StaticObstacleSettings> all_static_obstacles(const Scenario& sc
 /// settings of the scenario are inconsistent.
 sim::Simulator make_simulator(const Scenario& scenario, const ScenarioFiles& files, bool has_sensor_thread = false);
 
+/// Throws InputError with file, line and key for a kidnap to a pose where the robot cannot stand: without ground below,
+/// or in collision with the site or a static obstacle. Assembles a model for each kidnap.
+void check_kidnaps(const Scenario& scenario, const ScenarioFiles& files);
+
 }  // namespace patrol::app

@@ -15,8 +15,9 @@ io::JunitCase end_case(const std::string& name, const RunVerdict& verdict, doubl
   if (verdict.end == RunStatus::kDone || verdict.end == RunStatus::kExpectationMissed) return test;  // own cases
   const bool is_stack_failure = verdict.end == RunStatus::kStackFailed || verdict.end == RunStatus::kStackSilent;
   const bool came_to_a_score = !verdict.metrics.empty() && !is_stack_failure;
+  const bool has_whole_message = came_to_a_score && verdict.end != RunStatus::kTimeLimit;
   test.result = came_to_a_score ? io::JunitResult::kFailure : io::JunitResult::kError;
-  test.message = came_to_a_score ? verdict.message : fmt::format("{}: {}", name_of(verdict.end), verdict.message);
+  test.message = has_whole_message ? verdict.message : fmt::format("{}: {}", name_of(verdict.end), verdict.message);
   return test;
 }
 

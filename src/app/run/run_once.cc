@@ -51,6 +51,7 @@ struct RunSystem {
         stack(make_stack_port(scenario, files, context)),
         simulator(make_simulator(scenario, files, context.has_thread)) {
     require_stations_near(files.route, simulator.physics());
+    check_kidnaps(scenario, files);
   }
 
   ScenarioFiles files;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <set>
+#include <sstream>
 #include <string_view>
 #include <type_traits>
 
@@ -81,6 +82,29 @@ void check_preset(const MountSettings& mount) {
         fmt::format("{}.preset = {}: must be one of {}", mount.location, mount.preset, join(presets.names, ", ")));
 }
 
+/// Returns whether a key is `path` or one below it.
+bool is_at_or_below(const std::string& key, const std::string& path) {
+  return key.starts_with(path) && (key.size() == path.size() || key[path.size()] == '.');
+}
+
+/// Line of the last node of a document on the way to a key, "leaks.0.at"; 0 if the document has none.
+int last_line_on(const YAML::Node& document, const std::string& key) {
+  YAML::Node node = document;
+  int line = 0;
+  std::istringstream words(key);
+  for (std::string word; std::getline(words, word, '.');) {
+    const YAML::Node& parent = node;  // reading a constant node adds no key
+    const bool is_number = !word.empty() && word.find_first_not_of("0123456789") == std::string::npos;
+    const YAML::Node child = parent.IsMap()                     ? parent[word]
+                             : parent.IsSequence() && is_number ? parent[std::stoul(word)]
+                                                                : YAML::Node(YAML::NodeType::Undefined);
+    if (!child.IsDefined()) break;
+    line = io::line_of(child);
+    node.reset(child);
+  }
+  return line;
+}
+
 }  // namespace
 
 YAML::Node find_node(const YAML::Node& document, const std::vector<std::string>& path) {
@@ -98,6 +122,19 @@ YAML::Node find_node(const YAML::Node& document, const std::vector<std::string>&
 std::string location_of(const std::filesystem::path& file, const YAML::Node& node, const std::string& key) {
   const int line = node.IsDefined() ? io::line_of(node) : 0;
   return line > 0 ? fmt::format("{}:{}: {}", file.string(), line, key) : fmt::format("{}: {}", file.string(), key);
+}
+
+std::string with_location_of_key(const Scenario& scenario, const std::string& message) {
+  const std::size_t end = message.find_first_of(": ");
+  const std::string key = message.substr(0, end);
+  if (key.empty() || end == std::string::npos) return message;
+  for (auto override = scenario.overrides.rbegin(); override != scenario.overrides.rend(); ++override) {
+    const std::string path = override->substr(0, override->find('='));
+    if (is_at_or_below(path, key) || is_at_or_below(key, path)) return fmt::format("--set {}: {}", *override, message);
+  }
+  if (!std::filesystem::is_regular_file(scenario.file)) return message;
+  const int line = last_line_on(io::load_document(scenario.file, {}), key);
+  return line > 0 ? fmt::format("{}:{}: {}", scenario.file.string(), line, message) : message;
 }
 
 void complete_mounts(const std::filesystem::path& file, const YAML::Node& document,

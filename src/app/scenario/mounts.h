@@ -7,6 +7,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include "app/scenario/scenario.h"
+#include "core/error.h"
 #include "io/urdf.h"
 
 namespace patrol::app {
@@ -29,5 +30,19 @@ YAML::Node find_node(const YAML::Node& document, const std::vector<std::string>&
 
 /// Returns "file:line: key", the location of a node in messages.
 std::string location_of(const std::filesystem::path& file, const YAML::Node& node, const std::string& key);
+
+/// Returns a message that begins with a key of a scenario, "leaks.0.at = x: ...", with the place of the key before it:
+/// "file:line: " or "--set path=value: ". Other messages, and those of keys that neither has, are unchanged.
+std::string with_location_of_key(const Scenario& scenario, const std::string& message);
+
+/// Calls a function; an InputError that it throws gets the place of the key with which its message begins.
+template <typename Function>
+auto with_location(const Scenario& scenario, Function&& function) {
+  try {
+    return function();
+  } catch (const InputError& error) {
+    throw InputError(with_location_of_key(scenario, error.what()));
+  }
+}
 
 }  // namespace patrol::app

@@ -1,6 +1,7 @@
 #include "app/scenario/scenario.h"
 
 #include <algorithm>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -182,6 +183,105 @@ void load_mission(const Scenario& scenario, ScenarioFiles& files) {
   files.datum = route.datum;
 }
 
+/// Loads the files of a scenario; errors have no location.
+ScenarioFiles load_files(const Scenario& scenario, const std::filesystem::path& data_root) {
+  ScenarioFiles files;
+  LoadedSite site = load_site(scenario.world, data_root);
+  files.world_xml = std::move(site.world_xml);
+  files.site = std::move(site.settings);
+  files.robot_urdf = find_robot(scenario.robot, data_root);
+  io::MountedRobot robot = io::load_mounted_robot(files.robot_urdf.string(), sensor_mounts(scenario.mounts));
+  files.robot_urdf_text = std::move(robot.urdf);
+  files.robot = std::move(robot.description);
+  sim::set_drive_type(scenario.wheel_drive, files.robot);
+  const auto named_file = [&](const char* key, const std::string& name) {
+    return find_named_file(files.world_xml.parent_path(), key, name);
+  };
+  load_mission(scenario, files);
+  if (!scenario.map.empty()) {
+    const std::filesystem::path file = named_file("map", scenario.map);
+    files.map = io::load_map(file);
+    stack::validate_map(file.string(), *files.map);
+    if (const auto registration = registration_of(file)) files.map_registration = io::load_registration(*registration);
+  }
+  if (!scenario.goals.empty()) {
+    const std::filesystem::path file = named_file("goals", scenario.goals);
+    files.goals = io::load_nav(file);
+    stack::validate_goals(file.string(), files.goals, files.map);
+  }
+  require_sensors(sensor_needs(scenario, files), files.robot, scenario.robot,
+                  scenario.robot_location.empty() ? "robot" : scenario.robot_location);
+  files.neighbor_model = load_neighbor_model(scenario.stack.slam.method, data_root);
+  if (!scenario.references.empty()) {
+    const std::filesystem::path folder = files.world_xml.parent_path() / scenario.references;
+    if (!std::filesystem::is_directory(folder))
+      throw InputError(fmt::format("references = {}: {} is not a folder", scenario.references, folder.string()));
+    files.references = io::load_station_scans(folder);
+  }
+  const TeleopSettings& teleop = scenario.teleop;
+  if (!teleop.route.empty() && !teleop.recorded.empty()) {
+    throw InputError("teleop: route and recorded are mutually exclusive: only one of them is allowed");
+  }
+  if (!teleop.route.empty()) files.teleop_route = io::load_teleop_route(named_file("teleop.route", teleop.route));
+  if (!teleop.recorded.empty()) files.recorded = io::load_teleop(named_file("teleop.recorded", teleop.recorded));
+  const bool has_operator_goal = std::any_of(files.goals.begin(), files.goals.end(),
+                                             [](const SavedGoal& goal) { return goal.type == GoalType::kOperator; });
+  if (files.map && files.has_teleop() && !has_operator_goal) {
+    throw InputError(fmt::format(
+        "map = {}: map and teleop are mutually exclusive, because a teleoperated run builds a new map: both are "
+        "allowed only with a goal of type R",
+        scenario.map));
+  }
+  return files;
+}
+
+/// Returns whether a robot has the parts that a sensor measures.
+bool is_fitted_sensor(const std::string& sensor, const RobotDescription& robot) {
+  bool is_fitted_to_robot = true;
+  Sensors::for_each([&]<typename Message>(std::type_identity<Message>) {
+    if (sensor == SensorTraits<Message>::kInfo.name) is_fitted_to_robot = is_fitted<Message>(robot);
+  });
+  return is_fitted_to_robot;
+}
+
+/// Refuses faults that have no effect. Sensors without a frame of the robot are refused with the other needs of the
+/// scenario (sensor_needs.h).
+void check_faults(const std::vector<sim::FaultSettings>& faults, const std::string& robot_name,
+                  const RobotDescription& robot) {
+  for (std::size_t i = 0; i < faults.size(); ++i) {
+    const sim::FaultSettings& fault = faults[i];
+    if (!is_fitted_sensor(fault.sensor, robot))
+      throw InputError(fmt::format("faults.{}.sensor = {}: {} has no such sensor", i, fault.sensor, robot_name));
+    if ((fault.kind == "delay" || fault.kind == "jitter") && fault.magnitude < 0.0)
+      throw InputError(
+          fmt::format("faults.{}.magnitude = {:g}: must be at least 0 for {}", i, fault.magnitude, fault.kind));
+  }
+}
+
+/// Paths of the files that a scenario names; errors have no location.
+std::vector<std::filesystem::path> files_of(const Scenario& scenario, const std::filesystem::path& data_root) {
+  const std::filesystem::path world = world_folder(scenario.world, data_root);
+  const std::pair<const char*, const std::string&> named[] = {{"mission", scenario.mission},
+                                                              {"map", scenario.map},
+                                                              {"goals", scenario.goals},
+                                                              {"teleop.route", scenario.teleop.route},
+                                                              {"teleop.recorded", scenario.teleop.recorded}};
+  std::vector<std::filesystem::path> files;
+  for (const auto& [key, name] : named) {
+    if (!name.empty()) files.push_back(find_named_file(world, key, name));
+  }
+  if (!scenario.map.empty()) {
+    const std::filesystem::path map_yaml = find_named_file(world, "map", scenario.map);
+    files.push_back(io::map_image(map_yaml));
+    if (const auto registration = registration_of(map_yaml)) files.push_back(*registration);
+  }
+  if (!scenario.references.empty()) {
+    for (const std::filesystem::path& file : io::station_scan_files(world / scenario.references)) files.push_back(file);
+  }
+  if (needs_neighbor_model(scenario.stack.slam.method)) files.push_back(data_root / kNeighborModel);
+  return files;
+}
+
 }  // namespace
 
 LoadedSite load_site(const std::string& world, const std::filesystem::path& data_root) {
@@ -211,12 +311,15 @@ Scenario load_scenario(const std::filesystem::path& file, const std::vector<std:
   const Scenario of_profile = scenario_of_profile(profile, robot_file(robot, ".urdf", data_root));
   Scenario scenario = of_profile;
   read_over(file, overrides, scenario);
+  scenario.file = file;
+  scenario.overrides = overrides;
   scenario.robot_location = location_of(file, find_node(lines_of(file, "robot", overrides), {"robot"}), "robot");
   constexpr const char* kMissionType = "stack.mission_type";
   scenario.mission_type_location =
       location_of(file, find_node(lines_of(file, kMissionType, overrides), {"stack", "mission_type"}), kMissionType);
   if (const std::optional<RobotDescription> described = robot_of(robot, data_root, scenario.mounts)) {
     check_profile(profile, *described, of_profile);
+    with_location(scenario, [&] { check_faults(scenario.faults, robot, *described); });
     const std::vector<std::string> enabled = enabled_by_name(io::load_document(file, overrides));
     disable_absent_sensors(*described, enabled, scenario);
     const bool is_asked_for_uwb = std::ranges::find(enabled, "uwb") != enabled.end();
@@ -236,80 +339,20 @@ void save_scenario(const std::filesystem::path& file, const Scenario& scenario, 
 }
 
 std::vector<std::filesystem::path> named_files(const Scenario& scenario, const std::filesystem::path& data_root) {
-  const std::filesystem::path world = world_folder(scenario.world, data_root);
-  const std::pair<const char*, const std::string&> named[] = {{"mission", scenario.mission},
-                                                              {"map", scenario.map},
-                                                              {"goals", scenario.goals},
-                                                              {"teleop.route", scenario.teleop.route},
-                                                              {"teleop.recorded", scenario.teleop.recorded}};
-  std::vector<std::filesystem::path> files;
-  for (const auto& [key, name] : named) {
-    if (!name.empty()) files.push_back(find_named_file(world, key, name));
-  }
-  if (!scenario.map.empty()) {
-    const std::filesystem::path map_yaml = find_named_file(world, "map", scenario.map);
-    files.push_back(io::map_image(map_yaml));
-    if (const auto registration = registration_of(map_yaml)) files.push_back(*registration);
-  }
-  if (!scenario.references.empty()) {
-    for (const std::filesystem::path& file : io::station_scan_files(world / scenario.references)) files.push_back(file);
-  }
-  if (needs_neighbor_model(scenario.stack.slam.method)) files.push_back(data_root / kNeighborModel);
-  return files;
+  return with_location(scenario, [&] { return files_of(scenario, data_root); });
 }
 
 Route load_route(const Scenario& scenario, const std::filesystem::path& data_root) {
   ScenarioFiles files;
-  files.world_xml = load_site(scenario.world, data_root).world_xml;
-  load_mission(scenario, files);
+  with_location(scenario, [&] {
+    files.world_xml = load_site(scenario.world, data_root).world_xml;
+    load_mission(scenario, files);
+  });
   return files.route;
 }
 
 ScenarioFiles load_scenario_files(const Scenario& scenario, const std::filesystem::path& data_root) {
-  ScenarioFiles files;
-  LoadedSite site = load_site(scenario.world, data_root);
-  files.world_xml = std::move(site.world_xml);
-  files.site = std::move(site.settings);
-  files.robot_urdf = find_robot(scenario.robot, data_root);
-  io::MountedRobot robot = io::load_mounted_robot(files.robot_urdf.string(), sensor_mounts(scenario.mounts));
-  files.robot_urdf_text = std::move(robot.urdf);
-  files.robot = std::move(robot.description);
-  sim::set_drive_type(scenario.wheel_drive, files.robot);
-  const auto named_file = [&](const char* key, const std::string& name) {
-    return find_named_file(files.world_xml.parent_path(), key, name);
-  };
-  load_mission(scenario, files);
-  if (!scenario.map.empty()) {
-    const std::filesystem::path file = named_file("map", scenario.map);
-    files.map = io::load_map(file);
-    stack::validate_map(file.string(), *files.map);
-    if (const auto registration = registration_of(file)) files.map_registration = io::load_registration(*registration);
-  }
-  if (!scenario.goals.empty()) {
-    const std::filesystem::path file = named_file("goals", scenario.goals);
-    files.goals = io::load_nav(file);
-    stack::validate_goals(file.string(), files.goals, files.map);
-  }
-  require_sensors(sensor_needs(scenario, files), files.robot, scenario.robot,
-                  scenario.robot_location.empty() ? "robot" : scenario.robot_location);
-  files.neighbor_model = load_neighbor_model(scenario.stack.slam.method, data_root);
-  if (!scenario.references.empty())
-    files.references = io::load_station_scans(files.world_xml.parent_path() / scenario.references);
-  const TeleopSettings& teleop = scenario.teleop;
-  if (!teleop.route.empty() && !teleop.recorded.empty()) {
-    throw InputError("teleop: route and recorded are mutually exclusive: only one of them is allowed");
-  }
-  if (!teleop.route.empty()) files.teleop_route = io::load_teleop_route(named_file("teleop.route", teleop.route));
-  if (!teleop.recorded.empty()) files.recorded = io::load_teleop(named_file("teleop.recorded", teleop.recorded));
-  const bool has_operator_goal = std::any_of(files.goals.begin(), files.goals.end(),
-                                             [](const SavedGoal& goal) { return goal.type == GoalType::kOperator; });
-  if (files.map && files.has_teleop() && !has_operator_goal) {
-    throw InputError(fmt::format(
-        "map = {}: map and teleop are mutually exclusive, because a teleoperated run builds a new map: both are "
-        "allowed only with a goal of type R",
-        scenario.map));
-  }
-  return files;
+  return with_location(scenario, [&] { return load_files(scenario, data_root); });
 }
 
 }  // namespace patrol::app

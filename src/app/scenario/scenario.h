@@ -162,10 +162,12 @@ struct Scenario {
   std::vector<KidnapSettings> kidnaps;
   CourseSettings course;
   LogSettings log;
-  io::Expectations expect;            ///< bounds of metrics that the run must meet, by path of the metric
-  std::string robot_location;         ///< file, line and key of `robot` for messages; not a setting
-  std::string mission_type_location;  ///< file, line and key of `stack.mission_type` for messages; not a setting
-  std::vector<SensorNeed> requested;  ///< sensors that the file enables and the robot lacks; not a setting
+  io::Expectations expect;             ///< bounds of metrics that the run must meet, by path of the metric
+  std::filesystem::path file;          ///< file of the scenario, for messages; empty: none; not a setting
+  std::vector<std::string> overrides;  ///< overrides "path=value", for messages; not a setting
+  std::string robot_location;          ///< file, line and key of `robot` for messages; not a setting
+  std::string mission_type_location;   ///< file, line and key of `stack.mission_type` for messages; not a setting
+  std::vector<SensorNeed> requested;   ///< sensors that the file enables and the robot lacks; not a setting
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
