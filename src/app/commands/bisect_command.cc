@@ -11,6 +11,7 @@
 #include "app/campaign/batch/program.h"
 #include "app/commands/commands.h"
 #include "app/common/print_result.h"
+#include "app/common/progress_bar.h"
 #include "app/record/run_directory.h"
 #include "app/run/run_once.h"
 #include "app/run/snapshot.h"
@@ -102,6 +103,8 @@ ExitCode trace_command(const TraceOptions& options) {
 
 ExitCode bisect_command(const BisectOptions& options) {
   const RunDirectory a = open_run_directory(options.a), b = open_run_directory(options.b);
+  ProgressBar bar;
+  bar.show("bisect  comparing the logs");
   const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
   const std::optional<io::LogDifference> in_logs = io::first_difference(a.log(), b.log());
   if (!in_logs) {
@@ -109,13 +112,18 @@ ExitCode bisect_command(const BisectOptions& options) {
     return ExitCode::kDone;
   }
   for (const RunDirectory& run : {a, b}) refuse_other_process(load_scenario(run.scenario()), run.root.string());
+  bar.show("bisect  comparing the starts");
   const TracePair pair({a.root, options.program_a.value_or(self)}, {b.root, options.program_b.value_or(self)});
   const std::vector<Time> instants = common_instants(a, b, in_logs->log_time);
-  const auto last_equal = std::prev(
-      std::partition_point(instants.begin() + 1, instants.end(), [&](Time time) { return pair.are_equal_at(time); }));
+  const auto last_equal = std::prev(std::partition_point(instants.begin() + 1, instants.end(), [&](Time time) {
+    bar.show(fmt::format("bisect  comparing the states at {:.1f} s", to_seconds(time)));
+    return pair.are_equal_at(time);
+  }));
   const auto next = std::next(last_equal);
-  const std::optional<TracePair::Difference> difference =
-      pair.first_difference(*last_equal, next == instants.end() ? in_logs->log_time + Time{1} : *next);
+  const Time end = next == instants.end() ? in_logs->log_time + Time{1} : *next;
+  bar.show(
+      fmt::format("bisect  repeating both runs from {:.1f} to {:.1f} s", to_seconds(*last_equal), to_seconds(end)));
+  const std::optional<TracePair::Difference> difference = pair.first_difference(*last_equal, end);
   if (!difference)
     throw InputError(fmt::format("{} and {}: their programs do not repeat the difference of their logs: {}",
                                  a.root.string(), b.root.string(), io::describe(*in_logs)));

@@ -16,6 +16,7 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "io/files/digest.h"
+#include "io/files/output_error.h"
 #include "io/files/zstd_bytes.h"
 
 namespace patrol::app {
@@ -114,7 +115,7 @@ void SnapshotFolder::save(const RunState& state) const {
   const std::string rest = header.dump() + '\n' + io::zstd_compressed(state.bytes);
   stream << kMagic << io::sha256(rest) << '\n' << rest;
   stream.close();
-  if (!stream) throw std::runtime_error(part.string() + ": cannot be written");
+  if (!stream) throw io::OutputError(part.string() + ": cannot be written");
   std::filesystem::rename(part, file);
 }
 
@@ -179,6 +180,9 @@ void check_branch_settings(const Scenario& parent, const Scenario& branch, Time 
   };
   if (to_yaml(past_events(parent, at)) != to_yaml(past_events(branch, at)))
     throw InputError(fmt::format("--from: faults and kidnaps up to {:.3f} s cannot change", to_seconds(at)));
+  if (branch.time_limit_s < to_seconds(at))
+    throw InputError(fmt::format("--from: time_limit_s = {:g} is before the branch: must be at least {:.3f} s",
+                                 branch.time_limit_s, to_seconds(at)));
   if (std::ranges::any_of(branch.faults, is_freeze) && std::ranges::none_of(parent.faults, is_freeze))
     throw InputError("--from: faults: a branch cannot add the first freeze of the scanner: its last scan is not kept");
   std::vector<SettingDifference> differences = settings_differences(parent, branch);

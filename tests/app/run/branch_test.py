@@ -55,9 +55,27 @@ class Branch(unittest.TestCase):
         self.refused("must be RUN@SECONDS", "--from", self.parent)
         self.refused("the run ends before 7.000 s", "--from", f"{self.parent}@7")
         self.refused("--set seed: cannot change in a branch", "--from", f"{self.parent}@4", "--set", "seed=2")
+        self.refused("time_limit_s = 3 is before the branch: must be at least 4.000 s", "--from", f"{self.parent}@4", "--set", "time_limit_s=3")
         self.refused("excludes --seed", "--from", f"{self.parent}@4", "--seed", 2)
         self.refused("needs a scenario", "--set", "seed=2")
         self.refused("cannot be saved", SHORT, "--snapshot-every", 2, "--stack", "some program")
+
+    def test_a_run_that_is_not_whole_is_no_result(self):
+        broken = self.path / "broken"
+        shutil.copytree(self.parent, broken)
+        log = (broken / "log.mcap").read_bytes()
+        (broken / "log.mcap").write_bytes(log[: len(log) // 2])
+        done, metrics = run_patrol("score", broken), (broken / "metrics.json").read_bytes()
+        self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1), done.stderr)
+        self.assertIn("log.mcap: is incomplete; cannot be scored", done.stderr)
+        self.assertEqual(metrics, (self.parent / "metrics.json").read_bytes())
+        (broken / "log.mcap").write_bytes(log)
+        (broken / "INCOMPLETE").write_text("")
+        done = run_patrol("verify", broken)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("incomplete run; cannot be verified", done.stderr)
+        fed = run_patrol("feed", broken, "--out", self.path / "fed")
+        self.assertIn("broken: incomplete run: fed up to its last message", fed.stderr)
 
     def test_a_snapshot_of_another_scenario_is_refused(self):
         other = self.path / "other"
