@@ -56,7 +56,12 @@ void apply_override(const YAML::Node& root, const std::string& override) {
     throw InputError("--set " + override + ": must be path=value, e.g. sensors.lidar.range_noise_std_m=0.05");
   }
   const YAML::Node value = parse_yaml("--set " + override, override.substr(equals + 1), false);
-  const std::vector<std::string> path = override_path(override.substr(0, equals));
+  const std::string text = override.substr(0, equals);
+  const std::vector<std::string> path = override_path(text);
+  if (const std::size_t bracket = text.find('['); path.front() != "expect" && bracket != std::string::npos) {
+    throw InputError(
+        fmt::format("--set {}: {}: must name entries of a list as in {}.0", override, text, text.substr(0, bracket)));
+  }
   YAML::Node node = root;
   for (std::size_t i = 0; i < path.size(); ++i) {
     const bool is_last = i + 1 == path.size();
@@ -104,7 +109,8 @@ std::string SettingsSource::location(int line, const std::string& key) const {
   for (auto override = overrides.rbegin(); override != overrides.rend(); ++override) {
     const std::string path = override->substr(0, override->find('='));
     if (key == path) return fmt::format("--set {}: ", *override);
-    if (key.starts_with(path + ".")) return fmt::format("--set {}: {}: ", *override, key);
+    const bool is_above_new_key = line == 0 && !key.empty() && path.starts_with(key + ".");
+    if (key.starts_with(path + ".") || is_above_new_key) return fmt::format("--set {}: {}: ", *override, key);
   }
   const std::string place = line > 0 ? fmt::format("{}:{}: ", file, line) : file + ": ";
   return key.empty() ? place : fmt::format("{}{}: ", place, key);

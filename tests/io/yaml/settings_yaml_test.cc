@@ -270,6 +270,18 @@ TEST(Overrides, OfAnExpectationNameItsMetric) {
   EXPECT_EQ(load("{}", {"expect.mission.collisions=0"}).expect.at("mission.collisions").max, 0.0);
 }
 
+TEST(Overrides, WithBracketsAreRefusedWithTheNotationOfLists) {
+  const TemporaryFile file("a.yaml", "leaks: [{at: a}]\n");
+  EXPECT_THAT([&] { load_settings<Scenario>(file.path(), {"leaks[0].rate_g_s=5"}); },
+              testing::ThrowsMessage<InputError>(
+                  "--set leaks[0].rate_g_s=5: leaks[0].rate_g_s: must name entries of a list as in leaks.0"));
+}
+
+TEST(Overrides, AnUnknownSectionThatTheyMakeIsTheirs) {
+  EXPECT_THAT(complaint_about("{}", {"sensor.lidar.beams=5"}),
+              StartsWith("--set sensor.lidar.beams=5: sensor: unknown key; did you mean sensors?"));
+}
+
 TEST(Overrides, TheLastOfTwoWins) { EXPECT_EQ(load("seed: 1\n", {"seed=2", "seed=3"}).seed, 3U); }
 
 TEST(Overrides, AreComplainedAboutLikeTheFile) {
