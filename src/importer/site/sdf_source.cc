@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <functional>
+#include <charconv>
 #include <set>
+#include <system_error>
 
 #include <fmt/format.h>
 
@@ -24,12 +25,16 @@ constexpr std::array kRefusedElements = std::to_array<RefusedElement>({
     {"population", "populations are not supported: write the models out"},
     {"road", "roads are not supported: use a mesh or boxes"},
     {"image", "extruded images are not supported: use a mesh or a floor plan"},
+    {"cone", "cones are not supported: use a mesh"},
     {"insertions", "insertions of a state are not supported: write the models out"},
     {"deletions", "deletions of a state are not supported: remove the models"},
 });
 
-const std::set<std::string_view> kGeometries = {"box",   "capsule", "cylinder", "ellipsoid", "empty", "heightmap",
-                                                "image", "mesh",    "plane",    "polyline",  "sphere"};
+/// Latest minor version of SDF 1 whose elements are known here.
+constexpr int kMaxMinorVersion = 12;
+
+const std::set<std::string_view> kGeometries = {"box",       "cone",  "capsule", "cylinder", "ellipsoid", "empty",
+                                                "heightmap", "image", "mesh",    "plane",    "polyline",  "sphere"};
 
 /// Calls `visit` with the element and all below it, in the order of the file.
 void for_each_element(const tinyxml2::XMLElement& element,
@@ -39,7 +44,55 @@ void for_each_element(const tinyxml2::XMLElement& element,
     for_each_element(*child, visit);
 }
 
+/// Elements whose content is not that of a site.
+bool is_opaque(std::string_view element) {
+  return element == "plugin" || element == "sensor" || element == "gui" || element == "script";
+}
+
+/// Printer that starts every element in its line of the file.
+class LinePrinter : public tinyxml2::XMLPrinter {
+ public:
+  LinePrinter() : tinyxml2::XMLPrinter(nullptr, true) {}
+
+  bool VisitEnter(const tinyxml2::XMLElement& element, const tinyxml2::XMLAttribute* attribute) override {
+    const int missing = element.GetLineNum() - line_;
+    if (missing > 0) PushText(std::string(static_cast<std::size_t>(missing), '\n').c_str());
+    return tinyxml2::XMLPrinter::VisitEnter(element, attribute);
+  }
+  using tinyxml2::XMLPrinter::VisitEnter;
+
+ protected:
+  void Write(const char* data, std::size_t size) override {
+    line_ += static_cast<int>(std::count(data, data + size, '\n'));
+    tinyxml2::XMLPrinter::Write(data, size);
+  }
+  void Putc(char c) override {
+    line_ += c == '\n' ? 1 : 0;
+    tinyxml2::XMLPrinter::Putc(c);
+  }
+
+ private:
+  int line_ = 1;
+};
+
+void add_includes(tinyxml2::XMLElement& element, std::vector<tinyxml2::XMLElement*>& includes) {
+  if (is_opaque(element.Name())) return;
+  for (auto* child = element.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) {
+    if (std::string_view(child->Name()) == "include") includes.push_back(child);
+    else add_includes(*child, includes);
+  }
+}
+
 }  // namespace
+
+std::optional<int> minor_sdf_version(std::string_view version) {
+  if (!version.starts_with("1.")) return std::nullopt;
+  const std::string_view digits = version.substr(2);
+  int minor = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), minor);
+  const bool is_number = error == std::errc() && end == digits.data() + digits.size() && minor >= 0;
+  return is_number ? std::optional(minor) : std::nullopt;
+}
 
 std::optional<std::string_view> sdf_refusal(std::string_view element) {
   const auto found = std::find_if(kRefusedElements.begin(), kRefusedElements.end(),
@@ -53,7 +106,7 @@ void SdfSource::fail(const tinyxml2::XMLElement& element, const std::string& wha
                                io::on_one_line(what)));
 }
 
-SdfSource::SdfSource(const std::filesystem::path& file) : file_(file) {
+SdfSource::SdfSource(const std::filesystem::path& file, SdfContent content) : file_(file) {
   const std::string text = io::load_text(file);
   if (document_.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS || document_.RootElement() == nullptr)
     throw input_error(file.string(), document_.ErrorLineNum(),
@@ -62,20 +115,42 @@ SdfSource::SdfSource(const std::filesystem::path& file) : file_(file) {
   if (std::string_view(root.Name()) != "sdf") fail(root, "must be <sdf>");
   const char* version = root.Attribute("version");
   const std::string_view digits = version == nullptr ? "" : version;
-  if (digits.size() != 3 || !digits.starts_with("1.") || digits[2] < '0' || digits[2] > '9')
-    fail(root, fmt::format("version = \"{}\": must be 1.0 to 1.9", digits));
-  int num_worlds = 0;
-  for (const auto* child = root.FirstChildElement("world"); child != nullptr;
-       child = child->NextSiblingElement("world")) {
-    if (++num_worlds > 1) fail(*child, "second world: must be one");
-  }
-  if (num_worlds == 0) fail(root, "has no <world>: import a world that includes the model");
+  if (minor_sdf_version(digits).value_or(kMaxMinorVersion + 1) > kMaxMinorVersion)
+    fail(root, fmt::format("version = \"{}\": must be 1.0 to 1.{}", digits, kMaxMinorVersion));
+  check_content(content);
   check(root);
+  if (*minor_sdf_version(digits) > kMaxLibraryVersion)
+    document_.RootElement()->SetAttribute("version", fmt::format("1.{}", kMaxLibraryVersion).c_str());
+}
+
+void SdfSource::check_content(SdfContent content) const {
+  const tinyxml2::XMLElement& root = *document_.RootElement();
+  const bool is_world = content == SdfContent::kWorld;
+  int count = 0;
+  for (const auto* child = root.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) {
+    const std::string_view name = child->Name();
+    const bool is_content = is_world ? name == "world" : name == "model" || name == "light" || name == "actor";
+    if (is_content && ++count > 1) fail(*child, fmt::format("second {}: must be one", name));
+  }
+  if (count > 0) return;
+  fail(root, is_world ? "has no <world>: import a world that includes the model" : "has no <model> to include");
+}
+
+std::vector<tinyxml2::XMLElement*> SdfSource::includes() {
+  std::vector<tinyxml2::XMLElement*> includes;
+  add_includes(*document_.RootElement(), includes);
+  return includes;
+}
+
+std::string SdfSource::text() const {
+  LinePrinter printer;
+  document_.Accept(&printer);
+  return printer.CStr();
 }
 
 void SdfSource::check(const tinyxml2::XMLElement& element) const {
   const std::string_view name = element.Name();
-  if (name == "plugin" || name == "sensor" || name == "gui" || name == "script") return;  // elements of their own
+  if (is_opaque(name)) return;
   if (const auto refusal = sdf_refusal(name)) fail(element, std::string(*refusal));
   for (const auto* child = element.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) {
     if (name == "geometry" && !kGeometries.contains(child->Name())) fail(*child, "is not a geometry of the format");
@@ -83,20 +158,22 @@ void SdfSource::check(const tinyxml2::XMLElement& element) const {
   }
 }
 
-std::optional<int> SdfSource::line_of(const std::string& name) const {
-  std::optional<int> line;
+const tinyxml2::XMLElement* SdfSource::named(const std::string& name,
+                                             const std::function<bool(const tinyxml2::XMLElement&)>& wanted) const {
+  const tinyxml2::XMLElement* last = nullptr;
   for_each_element(*document_.RootElement(), [&](const tinyxml2::XMLElement& element) {
     const char* attribute = element.Attribute("name");
-    if (attribute != nullptr && name == attribute) line = element.GetLineNum();
+    if (attribute != nullptr && name == attribute && wanted(element)) last = &element;
   });
-  return line;
+  return last;
 }
 
 std::vector<SdfSource::Part> SdfSource::parts() const {
   std::vector<Part> parts;
   const tinyxml2::XMLElement& root = *document_.RootElement();
-  for (const auto* child = root.FirstChildElement("world")->FirstChildElement(); child != nullptr;
-       child = child->NextSiblingElement()) {
+  const tinyxml2::XMLElement* world = root.FirstChildElement("world");
+  if (world == nullptr) return parts;
+  for (const auto* child = world->FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) {
     tinyxml2::XMLPrinter printer;
     child->Accept(&printer);
     parts.push_back({.line = child->GetLineNum(),

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,15 +14,37 @@ namespace patrol::importer {
 /// Returns why an element of SDF is refused; none: it is not.
 std::optional<std::string_view> sdf_refusal(std::string_view element);
 
+/// Latest minor version of SDF 1 that libsdformat 12 reads.
+constexpr int kMaxLibraryVersion = 9;
+
+/// Returns N of the version "1.N"; none if the text is not of this form.
+std::optional<int> minor_sdf_version(std::string_view version);
+
+/// Content that an SDF file must have: one <world>, or one <model> or <light> to include.
+enum class SdfContent { kWorld, kModel };
+
 /// Text of an SDF file as XML: checks before libsdformat reads it, and places for its errors without a line.
 class SdfSource {
  public:
-  /// Throws InputError "file:line: what" unless the file is XML with a root <sdf> of version 1.0 to 1.9 and one world,
-  /// and for the first element that is refused or is no geometry of the format.
-  explicit SdfSource(const std::filesystem::path& file);
+  /// Throws InputError "file:line: what" unless the file is XML with a root <sdf> of version 1.0 to 1.12 and the
+  /// content, and for the first element that is refused or is no geometry of the format.
+  SdfSource(const std::filesystem::path& file, SdfContent content);
 
-  /// Returns the line of the last element with this name in its attribute "name".
-  std::optional<int> line_of(const std::string& name) const;
+  /// Returns the elements <include>, in the order of the file.
+  std::vector<tinyxml2::XMLElement*> includes();
+
+  /// Returns the text for libsdformat, with every element in its line of the file. Versions above 1.9, the latest that
+  /// libsdformat 12 reads, are replaced by it: they only add elements, and the shapes among these are refused.
+  std::string text() const;
+
+  const std::filesystem::path& file() const { return file_; }
+
+  /// Throws InputError "file:line: <element>: what".
+  [[noreturn]] void fail(const tinyxml2::XMLElement& element, const std::string& what) const;
+
+  /// Returns the last element with this name in its attribute "name" that is `wanted`; nullptr: none is.
+  const tinyxml2::XMLElement* named(const std::string& name,
+                                    const std::function<bool(const tinyxml2::XMLElement&)>& wanted) const;
 
   /// Element of the world alone in a world.
   struct Part {
@@ -30,15 +53,15 @@ class SdfSource {
     std::string text;  ///< SDF
   };
 
-  /// Returns each element of the world, to find which one is invalid.
+  /// Returns each element of the world, to find which one is invalid; none if the file is that of a model.
   std::vector<Part> parts() const;
 
   /// Returns the text of the element at the line if it has no elements below it.
   std::optional<std::string> text_at(int line, std::string_view element) const;
 
  private:
+  void check_content(SdfContent content) const;
   void check(const tinyxml2::XMLElement& element) const;
-  [[noreturn]] void fail(const tinyxml2::XMLElement& element, const std::string& what) const;
 
   std::filesystem::path file_;
   tinyxml2::XMLDocument document_;

@@ -448,11 +448,102 @@ TEST(SdfSite, BrokenAndUnsupportedWorldsAreRefusedByOneLine) {
   EXPECT_EQ(SiteFileImport("a.sdf", "<sdf version='1.7'>\n<world name='w'>\n</sdf>").error(),
             "a.sdf:2: not XML: XML_ERROR_MISMATCHED_ELEMENT");
   EXPECT_EQ(SiteFileImport("a.sdf", "<sdf version='2.0'/>").error(),
-            "a.sdf:1: <sdf>: version = \"2.0\": must be 1.0 to 1.9");
+            "a.sdf:1: <sdf>: version = \"2.0\": must be 1.0 to 1.12");
   EXPECT_EQ(SiteFileImport("a.sdf", "<sdf version='1.7'>\n<world name='w'/>\n<world name='v'/></sdf>").error(),
             "a.sdf:3: <world>: second world: must be one");
   EXPECT_EQ(SiteFileImport("a.sdf", "<sdf version='1.7'><model name='m'/></sdf>").error(),
             "a.sdf:1: <sdf>: has no <world>: import a world that includes the model");
+}
+
+/// Writes the model `name` beside the world, with its elements from line 2 on.
+void write_model(const SiteFileImport& import, const std::string& name, const std::string& elements,
+                 const std::string& version = "1.8") {
+  const std::filesystem::path folder = import.folder / ("models/" + name);
+  std::filesystem::create_directories(folder);
+  test::write_bytes(folder / "model.config",
+                    fmt::format("<model><name>{}</name><sdf version=\"{}\">model.sdf</sdf></model>", name, version));
+  test::write_bytes(folder / "model.sdf",
+                    fmt::format("<sdf version=\"{}\"><model name=\"{}\"><static>1</static>\n{}\n</model></sdf>",
+                                version, name, elements));
+}
+
+std::string include(const std::string& name, const std::string& more = "") {
+  return fmt::format("<include><uri>model://{}</uri>{}</include>", name, more);
+}
+
+std::string link(const std::string& shapes) { return "<link name=\"link\">" + shapes + "</link>"; }
+
+TEST(SdfSite, ModelsThatIncludedModelsIncludeAreImportedWithTheirNamesAndPoses) {
+  SiteFileImport import("a.sdf", world(include("hall", "<name>h</name><pose>10 0 0 0 0 1.5707963267948966</pose>")));
+  write_model(import, "hall",
+              "<frame name=\"f\"><pose>1 0 0 0 0 0</pose></frame>" + link(visual(kBox)) +
+                  include("shelf", "<name>s1</name><pose relative_to=\"f\">2 0 0 0 0 0</pose>") +
+                  include("shelf", "<name>s2</name><pose>0 0 5 0 0 0</pose>"));
+  write_model(import, "shelf",
+              link(visual(kBox)) + "<include>\n<uri>\n model://cup </uri><pose>0 1 0 0 0 0</pose></include>", "1.6");
+  write_model(import, "cup", link(visual("<sphere><radius>0.1</radius></sphere>")));
+  const ImportedSite& site = import.read();
+  EXPECT_EQ(site.shapes.size(), 5u);
+  EXPECT_THAT(shape_of(site, "h.s1.link.visual").T_site_shape.position, VectorNear(Eigen::Vector3d(10, 3, 0), 1e-6));
+  EXPECT_THAT(shape_of(site, "h.s2.link.visual").T_site_shape.position, VectorNear(Eigen::Vector3d(10, 0, 5), 1e-6));
+  EXPECT_THAT(shape_of(site, "h.s1.cup.link.visual").T_site_shape.position, VectorNear(Eigen::Vector3d(9, 3, 0), 1e-6));
+}
+
+TEST(SdfSite, AModelThatIncludesItselfAndOneThatIsNotFoundAreRefusedWithTheirFile) {
+  SiteFileImport import("a.sdf", world(include("hall")));
+  write_model(import, "hall", link("") + include("shelf"));
+  write_model(import, "shelf", link("") + "\n" + include("hall"));
+  EXPECT_EQ(import.error(), "models/shelf/model.sdf:3: <include>: \"model://hall\": the model includes itself");
+  write_model(import, "shelf", link("") + "\n" + include("absent"));
+  EXPECT_THAT(import.error(), ::testing::StartsWith("models/shelf/model.sdf:3: <include>: unknown model \"absent\": "));
+  write_model(import, "shelf", link("") + "\n<include><uri/></include>");
+  EXPECT_EQ(import.error(), "models/shelf/model.sdf:3: <uri>: is empty");
+}
+
+TEST(SdfSite, ErrorsOfIncludedModelsHaveTheirFileAndLine) {
+  const std::string file = "models/crate/model.sdf:3: ";
+  for (const bool is_nested : {false, true}) {
+    SiteFileImport import("a.sdf", world(include(is_nested ? "hall" : "crate")));
+    write_model(import, "hall", link("") + include("crate"));
+    const auto error_of = [&](const std::string& elements) {
+      write_model(import, "crate", elements);
+      return import.error();
+    };
+    EXPECT_EQ(error_of("\n" + link(visual("<box><size>1 x 1</size></box>"))),
+              file + "<size>: \"1 x 1\" is not a valid value");
+    EXPECT_EQ(error_of("\n" + link(visual("<torus/>"))), file + "<torus>: is not a geometry of the format");
+    EXPECT_EQ(error_of("\n<link>"), file + "not XML: XML_ERROR_MISMATCHED_ELEMENT");
+    EXPECT_EQ(error_of(link("") + "\n" + link("")), file + "link with name[link] already exists.");
+  }
+}
+
+TEST(SdfSite, AWorldOfVersion111WithAModelOfVersion110AndARelativeMeshIsImported) {
+  SiteFileImport import("a.sdf", world(include("crate", "<pose>3 0 0 0 0 0</pose>"), "1.11"));
+  write_model(import, "crate",
+              "<link name=\"link\"><inertial auto=\"true\"><density>500</density></inertial>" +
+                  visual("<mesh optimization=\"convex_hull\"><uri>meshes/box.obj</uri></mesh>") + "</link>",
+              "1.10");
+  Mesh box;
+  add_box(box, {-0.5, -0.5, 0}, {0.5, 0.5, 1});
+  std::filesystem::create_directories(import.folder / "models/crate/meshes");
+  test::write_bytes(import.folder / "models/crate/meshes/box.obj", to_obj(box));
+  const SiteShape& shape = shape_of(import.read(), "crate.link.visual_1");
+  EXPECT_EQ(shape.mesh.triangles.size(), 12u);
+  EXPECT_THAT(shape.T_site_shape.position, VectorNear(Eigen::Vector3d(3, 0, 0), 1e-9));
+  EXPECT_EQ(
+      SiteFileImport("a.sdf", world(model("m", visual("<cone><radius>1</radius><length>1</length></cone>")), "1.12"))
+          .error(),
+      "a.sdf:3: <cone>: cones are not supported: use a mesh");
+  EXPECT_EQ(SiteFileImport("a.sdf", world(model("m", visual(kBox)), "1.13")).error(),
+            "a.sdf:2: <sdf>: version = \"1.13\": must be 1.0 to 1.12");
+}
+
+TEST(SdfSite, LinesOfErrorsAreThoseOfTheFileBehindCommentsAndTextOfSeveralLines) {
+  EXPECT_EQ(SiteFileImport("a.sdf", world("<!-- a\n -->\n<model\n name='m'><static>\n1\n</static>" +
+                                          link(visual("<box><size>1\n1\n1</size></box>")) +
+                                          "\n\n<pose>x 0 0 0 0 0</pose></model>"))
+                .error(),
+            "a.sdf:12: <pose>: \"x 0 0 0 0 0\" is not a valid value");
 }
 
 TEST(SdfSite, AFileNamedLikeOneOfTheLibraryIsReadItself) {

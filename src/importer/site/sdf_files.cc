@@ -1,0 +1,139 @@
+#include "importer/site/sdf_files.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <stdexcept>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+#include <sdf/sdf.hh>
+#include <tinyxml2.h>
+
+#include "core/error.h"
+#include "importer/source_reader.h"
+#include "io/files/atomic_file.h"
+#include "io/files/one_line.h"
+
+namespace patrol::importer {
+namespace {
+
+constexpr std::size_t kMaxModels = 100'000;
+
+constexpr const char* kGroundPlane =
+    R"(<sdf version="1.6"><model name="ground_plane"><static>true</static><link name="link">
+<collision name="collision"><geometry><plane><normal>0 0 1</normal><size>100 100</size></plane></geometry></collision>
+<visual name="visual"><geometry><plane><normal>0 0 1</normal><size>100 100</size></plane></geometry>
+<material><diffuse>0.7 0.7 0.7 1</diffuse></material></visual></link></model></sdf>)";
+
+constexpr const char* kSun = R"(<sdf version="1.6"><light name="sun" type="directional"><pose>0 0 10 0 0 0</pose>
+<diffuse>0.8 0.8 0.8 1</diffuse><direction>-0.5 0.1 -0.9</direction></light></sdf>)";
+
+/// Returns whether libsdformat reads the file as URDF.
+bool is_urdf(const std::filesystem::path& file) {
+  tinyxml2::XMLDocument document;
+  return document.LoadFile(file.c_str()) == tinyxml2::XML_SUCCESS && document.RootElement() != nullptr &&
+         std::string_view(document.RootElement()->Name()) == "robot";
+}
+
+}  // namespace
+
+SdfFolder::SdfFolder() {
+  std::string name =
+      (std::filesystem::temp_directory_path() / fmt::format("patrol_sdf_{}_XXXXXX", ::getpid())).string();
+  if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error(name + ": cannot be created");
+  path_ = name;
+}
+
+SdfFolder::~SdfFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
+}
+
+SdfFiles::SdfFiles(const std::filesystem::path& world, const SdfModels& models) : models_(models) {
+  add(world, SdfContent::kWorld);
+}
+
+const SdfFiles::File* SdfFiles::find(const std::filesystem::path& path) const {
+  const auto known = std::find_if(files_.begin(), files_.end(), [&](const File& file) { return file.path == path; });
+  return known == files_.end() ? nullptr : &*known;
+}
+
+const SdfFiles::File& SdfFiles::add(const std::filesystem::path& path, SdfContent content) {
+  File file{.path = path, .copy = {}, .source = std::make_unique<SdfSource>(path, content)};
+  open_.push_back(path);
+  for (tinyxml2::XMLElement* include : file.source->includes()) {
+    // Without <uri>, libsdformat refuses it.
+    if (tinyxml2::XMLElement* uri = include->FirstChildElement("uri"))
+      uri->SetText(copy_of(*file.source, *include, file.num_models).c_str());
+    if (file.num_models > kMaxModels)
+      file.source->fail(*include, fmt::format("{} models: must be at most {}", file.num_models, kMaxModels));
+  }
+  open_.pop_back();
+  file.copy = folder_.path() / fmt::format("{}.sdf", files_.size());
+  io::save_text(file.copy, file.source->text());
+  return files_.emplace_back(std::move(file));
+}
+
+std::filesystem::path SdfFiles::copy_of(const SdfSource& source, tinyxml2::XMLElement& include,
+                                        std::size_t& num_models) {
+  // libsdformat reads the text of these elements without a check.
+  for (const char* name : {"uri", "name", "static", "placement_frame"}) {
+    const tinyxml2::XMLElement* child = include.FirstChildElement(name);
+    if (child != nullptr && child->GetText() == nullptr) source.fail(*child, "is empty");
+  }
+  const tinyxml2::XMLElement& uri = *include.FirstChildElement("uri");
+  const std::filesystem::path path = resolve(source, uri);
+  if (std::find(open_.begin(), open_.end(), path) != open_.end())
+    source.fail(include, fmt::format("\"{}\": the model includes itself", uri.GetText()));
+  const File* included = find(path);
+  if (included == nullptr && is_urdf(path)) return path;
+  if (included == nullptr) included = &add(path, SdfContent::kModel);
+  num_models += included->num_models;
+  return included->copy;
+}
+
+std::filesystem::path SdfFiles::resolve(const SdfSource& source, const tinyxml2::XMLElement& element) {
+  const auto fail = [&](const std::string& what) {
+    return input_error(source.file().string(), element.GetLineNum(), io::on_one_line(what));
+  };
+  const std::string uri = trimmed(element.GetText());
+  if (is_of_network(uri))
+    throw fail("models of a network are not supported: download it and give its folder with --package: " + uri);
+  auto path = models_.find_uri(uri, std::filesystem::absolute(source.file()).parent_path());
+  std::error_code error;
+  if (!path && uri == std::string(kModelScheme) + model_name_of(uri)) path = built_in(model_name_of(uri));
+  if (!path || !std::filesystem::exists(*path, error)) {
+    // The folders that libsdformat searches: the working directory and those of SDF_PATH.
+    if (const std::string found = sdf::findFile(uri, true, false); !found.empty()) path = found;
+  }
+  if (!path) throw fail("<include>: " + unknown_model(model_name_of(uri)));
+  try {
+    if (std::filesystem::is_directory(*path, error)) path = sdf_file_of_model(*path);
+  } catch (const InputError& unknown) {
+    throw fail(fmt::format("<include>: {}", unknown.what()));
+  }
+  if (!std::filesystem::is_regular_file(*path, error)) throw fail(fmt::format("<include>: {}: file not found", uri));
+  return std::filesystem::absolute(*path).lexically_normal();
+}
+
+std::optional<std::filesystem::path> SdfFiles::built_in(const std::string& name) {
+  if (name != "ground_plane" && name != "sun") return std::nullopt;
+  const std::filesystem::path file = folder_.path() / (name + ".sdf");
+  if (std::filesystem::exists(file)) return file;
+  io::save_text(file, name == "sun" ? kSun : kGroundPlane);
+  rows_.push_back({"model://" + name,
+                   name == "sun" ? "no folder is given: a directional light" : "no folder is given: the plane z = 0",
+                   fmt::format("--package {}=FOLDER", name)});
+  return file;
+}
+
+const SdfFiles::File* SdfFiles::find_copy(const std::filesystem::path& copy) const {
+  const auto found = std::find_if(files_.begin(), files_.end(), [&](const File& file) { return file.copy == copy; });
+  return found == files_.end() ? nullptr : &*found;
+}
+
+}  // namespace patrol::importer
