@@ -35,10 +35,30 @@ class QuietLibraries {
   std::streambuf* before_;
 };
 
+/// Returns the text of an error about a cycle of frames, and its line; none if it is another error.
+std::optional<std::string> text_of_cycle(const SdfSource& source, const std::string& text, std::optional<int>& line) {
+  constexpr std::string_view kVertex = "cycle detected, already visited vertex [";
+  const std::size_t at = text.find(kVertex);
+  if (at == std::string::npos) return std::nullopt;
+  std::string name = text.substr(at + kVertex.size(), text.find(']', at + kVertex.size()) - at - kVertex.size());
+  if (const std::size_t scope = name.rfind("::"); scope != std::string::npos) name = name.substr(scope + 2);
+  const bool is_attached = text.starts_with("FrameAttachedTo");
+  const tinyxml2::XMLElement* frame = source.named(name, [&](const tinyxml2::XMLElement& element) {
+    const tinyxml2::XMLElement* pose = element.FirstChildElement("pose");
+    return is_attached ? element.Attribute("attached_to") != nullptr
+                       : pose != nullptr && pose->Attribute("relative_to") != nullptr;
+  });
+  if (frame == nullptr) return std::nullopt;
+  line = frame->GetLineNum();
+  return fmt::format("<{}>: \"{}\": {}: cycle of frames: must lead to a link, a model or the world", frame->Name(),
+                     name, is_attached ? "attached_to" : "relative_to");
+}
+
 /// Returns the text of an error without a line, and its line in the source if it is found.
 std::string text_of_unlocated(const SdfSource& source, const sdf::Error& error, const sdf::ParserConfig& config,
                               std::optional<int>& line) {
   const std::string text = io::on_one_line(error.Message());
+  if (const auto cycle = text_of_cycle(source, text, line)) return *cycle;
   if (const std::size_t at = text.find("with name["); at != std::string::npos) {
     const std::size_t begin = at + 10;
     const std::string name = text.substr(begin, text.find(']', begin) - begin);

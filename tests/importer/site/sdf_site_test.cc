@@ -514,7 +514,22 @@ TEST(SdfSite, ErrorsOfIncludedModelsHaveTheirFileAndLine) {
     EXPECT_EQ(error_of("\n" + link(visual("<torus/>"))), file + "<torus>: is not a geometry of the format");
     EXPECT_EQ(error_of("\n<link>"), file + "not XML: XML_ERROR_MISMATCHED_ELEMENT");
     EXPECT_EQ(error_of(link("") + "\n" + link("")), file + "link with name[link] already exists.");
+    EXPECT_EQ(error_of(link("") + "\n<frame name='f' attached_to='g'/><frame name='g' attached_to='f'/>"),
+              file + "<frame>: \"f\": attached_to: cycle of frames: must lead to a link, a model or the world");
   }
+}
+
+TEST(SdfSite, CyclesOfFramesAreRefusedWithTheirLine) {
+  const std::string text = ": cycle of frames: must lead to a link, a model or the world";
+  EXPECT_EQ(SiteFileImport("a.sdf", world("<frame name='a' attached_to='b'/>\n<frame name='b' attached_to='a'/>\n" +
+                                          model("m", visual(kBox))))
+                .error(),
+            "a.sdf:3: <frame>: \"a\": attached_to" + text);
+  EXPECT_EQ(SiteFileImport("a.sdf", world("<frame name='a'><pose relative_to='b'/></frame>\n"
+                                          "<frame name='b'><pose relative_to='a'/></frame>\n" +
+                                          model("m", visual(kBox))))
+                .error(),
+            "a.sdf:3: <frame>: \"a\": relative_to" + text);
 }
 
 TEST(SdfSite, AWorldOfVersion111WithAModelOfVersion110AndARelativeMeshIsImported) {
