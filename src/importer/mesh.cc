@@ -19,7 +19,7 @@
 
 #include "core/error.h"
 #include "importer/mesh_file_system.h"
-#include "io/files/one_line.h"
+#include "importer/mesh_text.h"
 
 namespace patrol::importer {
 namespace {
@@ -99,6 +99,7 @@ int root_of(std::vector<int>& parents, int i) {
 
 std::vector<MeshPart> load_mesh(const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file)) throw InputError(file.string() + ": mesh file not found");
+  check_mesh_text(file);
   Assimp::Importer importer;
   importer.SetIOHandler(new MeshFileSystem);  // the importer deletes it
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
@@ -107,8 +108,7 @@ std::vector<MeshPart> load_mesh(const std::filesystem::path& file) {
   const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_GenSmoothNormals |
                                                               aiProcess_SortByPType | aiProcess_JoinIdenticalVertices);
   if (scene == nullptr || scene->mRootNode == nullptr)
-    throw InputError(
-        fmt::format("{}: mesh cannot be read: {}", file.string(), io::on_one_line(importer.GetErrorString())));
+    throw InputError(fmt::format("{}: mesh cannot be read: {}", file.string(), mesh_error(importer.GetErrorString())));
   PartsByColor by_color;
   add_node(*scene, *scene->mRootNode, aiMatrix4x4(), by_color);
   std::erase_if(by_color.parts, [](const MeshPart& part) { return part.mesh.empty(); });

@@ -29,7 +29,8 @@ struct MeshPart {
 
 /// Reads an STL, OBJ or DAE file by libassimp: triangles in meters, with the transforms of the file's nodes. The unit
 /// of a DAE file is applied. Its up axis is not, as in RViz: coordinates are those of the link. One part for each
-/// color. Throws InputError with the file if it cannot be read or has no triangles.
+/// color. Throws InputError with the file if it cannot be read or has no triangles, and for what check_mesh_text
+/// refuses.
 std::vector<MeshPart> load_mesh(const std::filesystem::path& file);
 
 /// Returns all parts as one mesh, without normals.

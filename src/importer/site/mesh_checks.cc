@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/letter_case.h"
+#include "importer/mesh_text.h"
 #include "io/files/atomic_file.h"
 
 namespace patrol::importer {
@@ -51,6 +52,7 @@ void check_mesh_file(const std::filesystem::path& file) {
   const std::string extension = to_lower(file.extension().string());
   if (extension == ".ply") check_ply_header(file);
   if (extension == ".dae") check_collada(file);
+  check_mesh_text(file);
 }
 
 void check_faces(const std::filesystem::path& file, const aiScene& scene) {

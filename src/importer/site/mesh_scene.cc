@@ -19,6 +19,7 @@
 #include "core/letter_case.h"
 #include "core/text.h"
 #include "importer/mesh_file_system.h"
+#include "importer/mesh_text.h"
 #include "importer/site/gltf_header.h"
 #include "importer/site/mesh_checks.h"
 #include "importer/site/mesh_materials.h"
@@ -221,8 +222,7 @@ void add_rows(const aiScene& source, const PartCollector& collector, MeshScene& 
 const aiScene& read_scene(const std::filesystem::path& file, Assimp::Importer& importer) {
   const auto check = [&](const aiScene* scene) -> const aiScene& {
     if (scene != nullptr && scene->mRootNode != nullptr) return *scene;
-    throw InputError(
-        fmt::format("{}: mesh cannot be read: {}", file.string(), io::on_one_line(importer.GetErrorString())));
+    throw InputError(fmt::format("{}: mesh cannot be read: {}", file.string(), mesh_error(importer.GetErrorString())));
   };
   importer.SetIOHandler(new MeshFileSystem);  // the importer deletes it
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);

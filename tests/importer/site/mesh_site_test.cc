@@ -284,7 +284,8 @@ TEST(MeshSite, BrokenFilesAreRefusedByOneLine) {
   const std::string ply =
       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
       "property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n";
-  EXPECT_EQ(SiteFileImport("a.ply", ply + "3 0 8 2\n").error(), "a.ply: mesh cannot be read: face 0 has vertex 8 of 3");
+  EXPECT_EQ(SiteFileImport("a.ply", ply + "3 0 8 2\n").error(),
+            "a.ply:13: vertex_indices: 8: must be one of the 3 vertices, from 0");
   EXPECT_EQ(SiteFileImport("a.dae", "<COLLADA>\n<p>0 . 2</p></COLLADA>").error(), "a.dae:2: <p>: must be integers");
   SiteFileImport absent("a.obj", "");
   absent.options.file = absent.folder / "b.obj";
