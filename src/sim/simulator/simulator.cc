@@ -1,6 +1,7 @@
 #include "sim/simulator/simulator.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -196,11 +197,26 @@ void Simulator::record_collisions() {
   }
 }
 
+// MuJoCo replaces motor commands that are not finite by zeros and only counts them.
 void Simulator::throw_if_diverged() const {
+  struct Quantity {
+    mjtWarning warning;
+    const char* name;
+  };
+  constexpr std::array kUnstable = std::to_array<Quantity>({{mjWARN_BADQPOS, "a position"},
+                                                            {mjWARN_BADQVEL, "a velocity"},
+                                                            {mjWARN_BADQACC, "an acceleration"},
+                                                            {mjWARN_BADCTRL, "a motor command"}});
+  const auto fail = [&](const char* name) {
+    throw std::runtime_error(
+        fmt::format("physics diverged at {:.3f} s: {} is not finite or too large (time step {:g} s)", to_seconds(now_),
+                    name, model_.physics->opt.timestep));
+  };
   for (int i = 0; i < model_.physics->nq; ++i) {
-    if (!std::isfinite(data_->qpos[i])) {
-      throw std::runtime_error(fmt::format("physics diverged at {:.3f} s", to_seconds(now_)));
-    }
+    if (!std::isfinite(data_->qpos[i])) fail("a position");
+  }
+  for (const Quantity& quantity : kUnstable) {
+    if (data_->warning[quantity.warning].number > 0) fail(quantity.name);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -72,6 +73,21 @@ TEST(Simulator, ATrackedRobotSends50TicksASecondAndNothingOfLegs) {
 TEST(Simulator, ARobotOnLegsSendsNoTicks) {
   SmallSimulation simulator(kRobotUrdf, make_flat_world());
   EXPECT_EQ(count<TrackTicks>(simulator.run(0.0, 0.2)), 0);
+}
+
+TEST(Simulator, ControlThatIsNotFiniteEndsTheSimulationWithAnError) {
+  const std::string too_slow = R"(<mujoco><option timestep="0.01"/><worldbody>
+      <geom type="plane" size="20 20 0.1" conaffinity="2"/></worldbody></mujoco>)";
+  mju_user_warning = [](const char*) {};  // otherwise MuJoCo writes a file
+  SmallSimulation simulator(PATROL_SOURCE_DIR "/models/wheeled/wheeled.urdf", too_slow);
+  try {
+    simulator.run(0.5, 5.0);
+    ADD_FAILURE() << "the simulation goes on";
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), ::testing::MatchesRegex("physics diverged at .* s: a motor command is not finite or too "
+                                                      "large \\(time step 0.01 s\\)"));
+  }
+  mju_user_warning = nullptr;
 }
 
 TEST(Simulator, LiftedToAnotherPlaceEitherRobotStandsThereUprightAndItsCountersKnowNothingOfIt) {
