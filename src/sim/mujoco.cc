@@ -72,10 +72,13 @@ void drop_textures(mjSpec& spec) {
     const bool has_file_per_side = *mjs_getString(texture.file) == '\0' && texture.builtin == mjBUILTIN_NONE;
     if (has_file_per_side) return;
     mjs_setString(texture.file, "");
-    texture.type = mjTEXTURE_2D;
+    // A skybox stays one: only it may have no name. It has the height of six sides.
+    const bool is_sky = texture.type == mjTEXTURE_SKYBOX;
+    if (!is_sky) texture.type = mjTEXTURE_2D;
     texture.builtin = mjBUILTIN_FLAT;
     texture.mark = mjMARK_NONE;
-    texture.width = texture.height = 1;
+    texture.width = 1;
+    texture.height = is_sky ? 6 : 1;
     texture.nchannel = 3;
   });
 }
