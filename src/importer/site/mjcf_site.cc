@@ -7,11 +7,13 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 #include <tinyxml2.h>
 
 #include "core/error.h"
+#include "importer/site/mjcf_options.h"
 #include "io/files/atomic_file.h"
 #include "io/files/one_line.h"
 
@@ -56,6 +58,7 @@ class MjcfCopy {
     XMLElement& root = *document.RootElement();
     if (std::string_view(root.Name()) != "mujoco")
       throw InputError(fmt::format("{}:{}: <{}>: must be <mujoco>", file_.string(), root.GetLineNum(), root.Name()));
+    use_options_of_sites(file_, root);
     insert_includes(root, file_);
     read_folders(root);
     copy_files(root);
@@ -77,6 +80,10 @@ class MjcfCopy {
                                    io::on_one_line(document.ErrorName())));
   }
 
+  void use_options_of_sites(const std::filesystem::path& file, XMLElement& root) {
+    for (Assumption& row : replace_options(file, root)) site_.assumptions.push_back(std::move(row));
+  }
+
   /// Replaces the includes below an element of `file` by the content of the files, which are relative to the model.
   void insert_includes(XMLElement& parent, const std::filesystem::path& file) {
     for (XMLElement* child = parent.FirstChildElement(); child != nullptr;) {
@@ -94,6 +101,7 @@ class MjcfCopy {
         fail(*child, file, name + ": is included twice");
       tinyxml2::XMLDocument document;
       parse(included, document);
+      use_options_of_sites(included, *document.RootElement());
       insert_includes(*document.RootElement(), included);
       tinyxml2::XMLNode* last = child;
       for (const tinyxml2::XMLNode* node = document.RootElement()->FirstChild(); node != nullptr;
@@ -171,13 +179,14 @@ class MjcfCopy {
 ImportedSite read_mjcf_site(const SiteImportOptions& options) {
   ImportedSite site{.name = options.name, .source = options.file.filename().string()};
   site.mjcf = MjcfCopy(options.file, site).text();
-  site.assumptions = {
+  site.assumptions.push_back(
       {"ground",
        fmt::format("contacts from above up to {:g} m above the robot's lowest contact, and no geom by name",
                    site.ground.max_step_m),
-       "ground in " + options.name + ".yaml"},
+       "ground in " + options.name + ".yaml"});
+  site.assumptions.push_back(
       {"groups", "geoms of groups 0 and 1 are seen by cameras, 0 and 2 by lidars, 4 and 5 are those of robots",
-       "group"}};
+       "group"});
   return site;
 }
 
