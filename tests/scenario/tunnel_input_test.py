@@ -166,7 +166,7 @@ class BadInput(TunnelRun):
         self.refuse_map("rows for columns", "map.yaml", "start", "outside the map", image=image(height, width, pixels))
         self.refuse_map("no pixel", "map.pgm", "0 x 0", image=image(0, 0, b""))
         self.refuse_map("more pixels than fit anywhere", "map.pgm", "ends too early", image=image(2000000000, 2000000000, b"\0"))
-        self.refuse_map("another format", "map.pgm", "neither an 8-bit PGM nor a PNG", image=b"GIF89a")
+        self.refuse_map("another format", "map.pgm", "neither a PGM (P5 or P2) nor a PNG", image=b"GIF89a")
         self.refuse_map("broken PNG", "map.pgm", "is not a valid PNG: ends too early", image=b"\x89PNG\r\n\x1a\n")
         self.refuse_map("empty file", "map.pgm", "PGM", image=b"")
         self.refuse_map("all unknown", "map.yaml", "no free cell", image=image(width, height, b"\xcd" * (width * height)))

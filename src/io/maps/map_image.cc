@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
+#include <charconv>
 #include <csetjmp>
 #include <cstring>
 #include <limits>
@@ -9,17 +11,20 @@
 #include <sstream>
 #include <string>
 #include <string_view>
+#include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 #include <png.h>
 
 #include "core/error.h"
 #include "io/files/atomic_file.h"
+#include "io/files/one_line.h"
 
 namespace patrol::io {
 namespace {
 
-constexpr int kMaxPixelValue = 255;  // of a PGM
+constexpr int kMaxByte = 255, kMaxPgmValue = 65535;
 constexpr std::size_t kMaxPixels = 100'000'000;
 constexpr std::string_view kPngSignature = "\x89PNG";
 
@@ -38,41 +43,79 @@ std::size_t checked_count(const std::filesystem::path& file, const MapImage& ima
   return count;
 }
 
-/// Reads the next number of a PGM and skips comments; -1 if there is none.
-int pgm_number(std::istream& in) {
-  while (in >> std::ws && in.peek() == '#') in.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
-  int value = -1;
-  return in >> value ? value : -1;
-}
+/// Reader of a PGM image, binary (P5) or ASCII (P2), with one or two bytes per pixel.
+class PgmDecoder {
+ public:
+  PgmDecoder(const std::filesystem::path& file, std::string bytes) : file_(file), in_(std::move(bytes)) {}
 
-/// Decodes a PGM image, binary (P5) or ASCII (P2).
-MapImage decode_pgm(const std::filesystem::path& file, std::string bytes) {
-  std::istringstream in(std::move(bytes));
-  std::string magic;
-  in >> magic;
-  MapImage image{.width = pgm_number(in), .height = pgm_number(in), .brightness = {}, .opacity = {}};
-  const int maximum = pgm_number(in);
-  if ((magic != "P5" && magic != "P2") || maximum != kMaxPixelValue)
-    refuse_image(file, "is neither an 8-bit PGM nor a PNG");
-  if (image.width <= 0 || image.height <= 0)
-    refuse_image(file, fmt::format("is {} x {} pixels: contains no map", image.width, image.height));
-  // Each pixel takes at least one byte of the file.
-  const std::size_t min_bytes = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
-  const std::size_t count = checked_count(file, image, min_bytes, in.view().size());
-  image.brightness.reserve(count);
-  in.get();
-  for (std::size_t i = 0; i < count && in; ++i) {
-    const int value = magic == "P5" ? in.get() : pgm_number(in);
-    if (value < 0) in.setstate(std::ios::failbit);
-    if (value > maximum) refuse_image(file, fmt::format("a pixel of {} is brighter than {}", value, maximum));
-    image.brightness.push_back(3 * static_cast<std::uint32_t>(std::max(value, 0)));
+  MapImage decode() {
+    std::string magic;
+    in_ >> magic;
+    if (magic != "P5" && magic != "P2") refuse_image(file_, "is neither a PGM (P5 or P2) nor a PNG");
+    MapImage image{.width = number(), .height = number(), .brightness = {}, .opacity = {}};
+    const int maximum = number();
+    if (maximum < 1 || maximum > kMaxPgmValue)
+      refuse_image(file_, fmt::format("largest gray value {}: must be in [1, {}]", maximum, kMaxPgmValue));
+    image.maximum = static_cast<std::uint32_t>(maximum);
+    if (image.width <= 0 || image.height <= 0)
+      refuse_image(file_, fmt::format("is {} x {} pixels: contains no map", image.width, image.height));
+    // Each pixel takes at least one byte of the file.
+    const std::size_t min_bytes = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+    const std::size_t count = checked_count(file_, image, min_bytes, in_.view().size());
+    image.brightness.reserve(count);
+    if (magic == "P5") in_.get();
+    for (std::size_t i = 0; i < count && in_; ++i) {
+      const int value = magic == "P2" ? number() : maximum > kMaxByte ? two_bytes() : in_.get();
+      if (value < 0) in_.setstate(std::ios::failbit);
+      if (value > maximum) refuse_image(file_, fmt::format("a pixel of {} is brighter than {}", value, maximum));
+      image.brightness.push_back(3 * static_cast<std::uint32_t>(std::max(value, 0)));
+    }
+    const std::string pixels = fmt::format("{} x {} pixels", image.width, image.height);
+    if (!in_) refuse_image(file_, "ends too early for " + pixels);
+    if (magic == "P2") skip_comments();
+    if (in_.peek() != kEnd) refuse_image(file_, "has data after its " + pixels);
+    return image;
   }
-  const std::string pixels = fmt::format("{} x {} pixels", image.width, image.height);
-  if (!in) refuse_image(file, "ends too early for " + pixels);
-  if (magic == "P2") in >> std::ws;
-  if (in.peek() != std::istringstream::traits_type::eof()) refuse_image(file, "has data after its " + pixels);
-  return image;
-}
+
+ private:
+  static constexpr int kEnd = std::istringstream::traits_type::eof();
+
+  void skip_comments() {
+    while (in_ >> std::ws && in_.peek() == '#') in_.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
+  }
+
+  /// Reads the next number and skips comments; -1 at the end of the file. Throws InputError with the line of a word
+  /// that is no number.
+  int number() {
+    skip_comments();
+    std::string word;
+    while (in_ && in_.peek() != kEnd && in_.peek() != '#' && std::isspace(in_.peek()) == 0)
+      word += static_cast<char>(in_.get());
+    if (word.empty()) return -1;
+    int value = -1;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error != std::errc() || end != word.data() + word.size() || value < 0) refuse_word(word);
+    return value;
+  }
+
+  [[noreturn]] void refuse_word(const std::string& word) {
+    in_.clear();
+    const std::string_view before = in_.view().substr(0, static_cast<std::size_t>(in_.tellg()));
+    constexpr std::size_t kMaxShown = 20;
+    throw InputError(fmt::format("{}:{}: '{}': must be a whole number", file_.string(),
+                                 1 + std::count(before.begin(), before.end(), '\n'),
+                                 on_one_line(word.substr(0, kMaxShown))));
+  }
+
+  /// Value of a pixel of two bytes, the higher one first.
+  int two_bytes() {
+    const int high = in_.get(), low = in_.get();
+    return low == kEnd ? -1 : high << 8 | low;
+  }
+
+  std::filesystem::path file_;
+  std::istringstream in_;
+};
 
 /// Reader of a PNG in memory by libpng. Errors of libpng jump back into the method that is running. Its local variables
 /// have no destructors.
@@ -193,7 +236,7 @@ MapImage decode_png(const std::filesystem::path& file, const std::string& bytes)
 
 MapImage load_map_image(const std::filesystem::path& file) {
   std::string bytes = load_text(file);
-  return bytes.starts_with(kPngSignature) ? decode_png(file, bytes) : decode_pgm(file, std::move(bytes));
+  return bytes.starts_with(kPngSignature) ? decode_png(file, bytes) : PgmDecoder(file, std::move(bytes)).decode();
 }
 
 }  // namespace patrol::io

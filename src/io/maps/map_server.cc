@@ -147,13 +147,15 @@ Grid<float> load_map_errors(const std::filesystem::path& file_pgm, const GridGeo
     throw InputError(fmt::format("{}: is {} x {} pixels, its map {} x {}", file_pgm.string(), image.width, image.height,
                                  geometry.width, geometry.height));
   }
+  constexpr std::uint32_t kMaxPixel = 255;
   Grid<float> errors_m(geometry, std::numeric_limits<float>::quiet_NaN());
   for (int row = 0; row < image.height; ++row) {
     for (int col = 0; col < image.width; ++col) {
       const std::uint32_t pixel =
+          kMaxPixel *
           image.brightness[static_cast<std::size_t>(image.height - 1 - row) * static_cast<std::size_t>(image.width) +
                            static_cast<std::size_t>(col)] /
-          3;
+          (3 * image.maximum);
       if (pixel != kNoError) errors_m.at({col, row}) = 1e-3F * static_cast<float>(pixel);
     }
   }

@@ -141,6 +141,28 @@ TEST_F(MapImageFile, ScaleTakesPixelsThatAreNotOpaqueAsUnknown) {
       ElementsAre(X, F, 67, U));
 }
 
+TEST_F(MapImageFile, PgmsWithAnyLargestGrayValueHaveTheSameCells) {
+  const std::string about = "resolution: 0.1\norigin: [0, 0, 0]\nnegate: 0\n";
+  write_bytes(folder / "m.yaml", "image: m.png\n" + about);
+  // Ratios: 1 (free), 0.8 (unknown with 0.2), 0 (occupied).
+  for (const std::string& bytes : {std::string("P5 3 1 100\n") + std::string("d\x50\0", 3),
+                                   std::string("P5 3 1 1000\n") + std::string("\x03\xe8\x03\x20\0\0", 6),
+                                   std::string("P2 3 1 65535# largest\n65535 52428 0 # end\n")}) {
+    write_bytes(folder / "m.png", bytes);
+    EXPECT_THAT(load_map(folder / "m.yaml").values(), ElementsAre(F, U, X)) << bytes;
+  }
+}
+
+TEST_F(MapImageFile, BrokenPgmsAreNamedWithTheirCause) {
+  EXPECT_EQ(complaint_about("P2\n# made by hand\n2 2\n255\n0 254\n2x5 0\n"), "m.png:6: '2x5': must be a whole number");
+  EXPECT_EQ(complaint_about("P2\n2 2\n255\n0 254 -5 0\n"), "m.png:4: '-5': must be a whole number");
+  EXPECT_EQ(complaint_about("P2\n2 2\n255\n0 254 205\n"), "m.png: ends too early for 2 x 2 pixels");
+  EXPECT_EQ(complaint_about(std::string("P5 1 2 1000\n\0\0\0", 15)), "m.png: ends too early for 1 x 2 pixels");
+  EXPECT_EQ(complaint_about("P5 1 1 70000\n0"), "m.png: largest gray value 70000: must be in [1, 65535]");
+  EXPECT_EQ(complaint_about("P6 1 1 255\n000"), "m.png: is neither a PGM (P5 or P2) nor a PNG");
+  EXPECT_EQ(complaint_about("P2 1 1 100\n101"), "m.png: a pixel of 101 is brighter than 100");
+}
+
 TEST_F(MapImageFile, BrokenPngsAreNamedInOneLine) {
   const std::string good = to_png(gray);
   EXPECT_EQ(complaint_about(good), "");

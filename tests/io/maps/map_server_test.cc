@@ -122,9 +122,9 @@ TEST_F(MapServer, BrokenPicturesAreNamed) {
   EXPECT_EQ(complaint_about(good_yaml, "P5\n100000 100000\n255\n"), "m.pgm: ends too early for 100000 x 100000 pixels");
   EXPECT_EQ(complaint_about(good_yaml, "P2\n1 1\n255\n300\n"), "m.pgm: a pixel of 300 is brighter than 255");
   EXPECT_EQ(complaint_about(good_yaml, "P5\n0 2\n255\n"), "m.pgm: is 0 x 2 pixels: contains no map");
-  EXPECT_EQ(complaint_about(good_yaml, "P5\n2 2\n65535\n"), "m.pgm: is neither an 8-bit PGM nor a PNG");
-  EXPECT_EQ(complaint_about(good_yaml, "P6\n1 1\n255\nabc"), "m.pgm: is neither an 8-bit PGM nor a PNG");
-  EXPECT_EQ(complaint_about(good_yaml, ""), "m.pgm: is neither an 8-bit PGM nor a PNG");
+  EXPECT_EQ(complaint_about(good_yaml, "P5\n2 2\n65535\n"), "m.pgm: ends too early for 2 x 2 pixels");
+  EXPECT_EQ(complaint_about(good_yaml, "P6\n1 1\n255\nabc"), "m.pgm: is neither a PGM (P5 or P2) nor a PNG");
+  EXPECT_EQ(complaint_about(good_yaml, ""), "m.pgm: is neither a PGM (P5 or P2) nor a PNG");
 }
 
 TEST_F(MapServer, WrongKeysAreNamedWithTheirLine) {
