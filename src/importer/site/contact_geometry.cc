@@ -155,8 +155,10 @@ void add_ground(const GroundSurface& ground, const GridGeometry& grid, ContactGe
     contact.rows.push_back({"ground", "the surfaces with contact of their own", ""});
     return;
   }
-  const std::string found = ground.is_found ? fmt::format("{:.4g} m2 of walkable surface{}", ground.area_m2,
-                                                          ground.faces_up ? "" : " whose triangles face down")
+  const char* side = ground.is_oriented ? (ground.faces_up ? "" : " whose triangles face down")
+                     : ground.faces_up  ? " with 1 m of free height, because triangles face both sides"
+                                        : " with less than 1 m of free height: triangles face both sides";
+  const std::string found = ground.is_found ? fmt::format("{:.4g} m2 of walkable surface{}", ground.area_m2, side)
                                             : "no walkable surface of 1 m2, the lowest point of the mesh";
   const double middle_m = 0.5 * (double{*lowest} + double{*highest});
   if (double{*highest} - middle_m <= kLevel_m) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
@@ -16,6 +17,8 @@ namespace patrol::importer {
 namespace {
 
 constexpr double kMinFree_m = 0.2;        // free height above a walkable surface
+constexpr double kStandingFree_m = 1.0;   // free height above a ground whose triangles do not tell its side
+constexpr double kMaxWrongRatio = 0.05;   // of the edges of triangles that face both ways
 constexpr double kSame_m = 1e-3;          // samples closer than this are one
 constexpr double kMinGround_m2 = 1.0;     // smaller surfaces are no ground by rule
 constexpr double kMinGroundRatio = 0.25;  // of the largest surface
@@ -73,9 +76,11 @@ class SurfaceSamples {
   std::size_t begin(std::size_t cell) const { return begin_[cell]; }
   std::size_t end(std::size_t cell) const { return begin_[cell + 1]; }
 
-  bool is_walkable(std::size_t i) const {
+  bool is_walkable(std::size_t i) const { return samples_[i].is_gentle && has_free_height(i, kMinFree_m); }
+
+  bool has_free_height(std::size_t i, double height_m) const {
     const bool is_last = i + 1 >= samples_.size() || samples_[i + 1].cell != samples_[i].cell;
-    return samples_[i].is_gentle && (is_last || double{samples_[i + 1].z_m} - double{samples_[i].z_m} >= kMinFree_m);
+    return is_last || double{samples_[i + 1].z_m} - double{samples_[i].z_m} >= height_m;
   }
 
   /// Calls `visit` with the index of each of the four neighbors of a cell.
@@ -111,10 +116,42 @@ class SurfaceSamples {
   std::vector<std::size_t> begin_;  ///< [cell]
 };
 
+/// Returns whether the triangles of a mesh face one side. They do not if neighbors, or two triangles with the same
+/// corners, face opposite sides.
+bool is_oriented(const Mesh& mesh) {
+  const Mesh joined = welded(mesh);
+  struct Edge {
+    int low, high, opposite;
+    bool is_reversed;
+    auto key() const { return std::tie(low, high); }
+  };
+  std::vector<Edge> edges;
+  edges.reserve(3 * joined.triangles.size());
+  for (const std::array<int, 3>& t : joined.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int a = t[k], b = t[(k + 1) % 3];
+      edges.push_back({std::min(a, b), std::max(a, b), t[(k + 2) % 3], a > b});
+    }
+  }
+  std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) { return a.key() < b.key(); });
+  std::size_t num_wrong = 0, num_shared = 0;
+  for (std::size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
+    while (end < edges.size() && edges[end].key() == edges[begin].key()) ++end;
+    if (end - begin < 2) continue;
+    ++num_shared;
+    const bool has_two = end - begin == 2;
+    bool is_wrong = has_two && edges[begin].is_reversed == edges[begin + 1].is_reversed;
+    for (std::size_t i = begin + 1; i < end; ++i)
+      is_wrong |= edges[i].opposite == edges[begin].opposite && edges[i].is_reversed != edges[begin].is_reversed;
+    num_wrong += is_wrong ? 1 : 0;
+  }
+  return static_cast<double>(num_wrong) <= kMaxWrongRatio * static_cast<double>(num_shared);
+}
+
 /// Connected walkable surface.
 struct WalkableSurface {
   std::size_t count = 0;
-  std::size_t num_up = 0;
+  std::size_t num_up = 0;  ///< samples that face up; of a mesh that is not oriented, samples with `kStandingFree_m`
   double sum_z_m = 0.0;
 
   double mean_z_m() const { return sum_z_m / static_cast<double>(count); }
@@ -123,7 +160,7 @@ struct WalkableSurface {
 
 /// Labels connected walkable surfaces. Top and underside of a slab stay apart, also with cells larger than the slab is
 /// thick: walkable undersides are at least `kMinFree_m` below the top.
-std::vector<WalkableSurface> label_surfaces(SurfaceSamples& samples, double rise_m) {
+std::vector<WalkableSurface> label_surfaces(SurfaceSamples& samples, double rise_m, bool is_mesh_oriented) {
   std::vector<WalkableSurface> surfaces;
   std::vector<std::size_t> queue;
   for (std::size_t seed = 0; seed < samples.all().size(); ++seed) {
@@ -133,10 +170,12 @@ std::vector<WalkableSurface> label_surfaces(SurfaceSamples& samples, double rise
     samples.all()[seed].surface = label;
     queue.assign(1, seed);
     while (!queue.empty()) {
-      const SurfaceSample here = samples.all()[queue.back()];
+      const std::size_t at = queue.back();
+      const SurfaceSample here = samples.all()[at];
       queue.pop_back();
       ++surface.count;
-      surface.num_up += here.faces_up ? 1 : 0;
+      const bool is_up = is_mesh_oriented ? here.faces_up : samples.has_free_height(at, kStandingFree_m);
+      surface.num_up += is_up ? 1 : 0;
       surface.sum_z_m += double{here.z_m};
       samples.for_neighbors(here.cell, [&](std::size_t cell) {
         for (std::size_t i = samples.begin(cell); i < samples.end(cell); ++i) {
@@ -229,7 +268,8 @@ GroundSurface find_ground(const Mesh& mesh, const Mesh& given, const GridGeometr
                           const std::optional<Eigen::Vector2d>& start) {
   const double rise_m = grid.resolution_m, cell_m2 = grid.resolution_m * grid.resolution_m;
   SurfaceSamples samples(mesh, given, grid);
-  const std::vector<WalkableSurface> surfaces = label_surfaces(samples, 1.001 * rise_m);
+  const bool is_mesh_oriented = is_oriented(mesh);
+  const std::vector<WalkableSurface> surfaces = label_surfaces(samples, 1.001 * rise_m, is_mesh_oriented);
   const int chosen = start ? surface_at(samples, surfaces, grid, *start) : surface_by_rule(surfaces, cell_m2);
   GroundSurface ground;
   ground.height_m = Grid<float>(grid);
@@ -240,6 +280,7 @@ GroundSurface find_ground(const Mesh& mesh, const Mesh& given, const GridGeometr
     return ground;
   }
   ground.is_found = true;
+  ground.is_oriented = is_mesh_oriented;
   ground.faces_up = surfaces[static_cast<std::size_t>(chosen)].faces_up();
   std::vector<char> is_known(grid.size(), 0);
   for (const SurfaceSample& sample : samples.all()) {

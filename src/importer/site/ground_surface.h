@@ -17,7 +17,9 @@ struct GroundSurface {
   double area_m2 = 0.0;      ///< of the ground, without filled cells
   double own_area_m2 = 0.0;  ///< of the ground that belongs to the mesh and not to the given surfaces
   bool is_found = false;     ///< false: no walkable surface of at least 1 m2; the heights are the lowest of the mesh
-  bool faces_up = true;      ///< most of the ground's triangles are counterclockwise seen from above
+  bool is_oriented = true;   ///< false: the triangles of the mesh face both sides, and do not tell top and underside
+  bool faces_up = true;      ///< most of the ground's triangles are counterclockwise seen from above; if not oriented:
+                             ///< most of the ground has 1 m of free height
 
   /// Returns the height at a point, interpolated between the centers of cells.
   double at(const Eigen::Vector2d& p_m) const;

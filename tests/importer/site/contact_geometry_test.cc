@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <random>
+#include <utility>
 
 #include <Eigen/Geometry>
 #include <gmock/gmock.h>
@@ -121,6 +123,31 @@ class SurfacePoints {
   const Mesh& mesh_;
   std::mt19937 random_{2001};
 };
+
+/// Slab from -0.3 to 0 m, with a table on it.
+Mesh thick_slab() {
+  Mesh mesh;
+  add_box(mesh, {-5, -4, -0.3}, {5, 4, 0});
+  add_box(mesh, {1, 1, 0}, {2, 2, 0.8});
+  return mesh;
+}
+
+TEST(ContactGeometry, TheGroundIsTheTopOfASlabWhateverTheSidesOfItsTriangles) {
+  const Mesh slab = thick_slab();
+  Mesh doubled = slab, mixed = slab, turned = slab;
+  for (const auto& [a, b, c] : slab.triangles) doubled.triangles.push_back({a, c, b});
+  for (std::size_t i = 0; i < mixed.triangles.size(); i += 2) std::swap(mixed.triangles[i][1], mixed.triangles[i][2]);
+  std::swap(turned.triangles[2][1], turned.triangles[2][2]);  // one half of the top
+  std::swap(turned.triangles[0][1], turned.triangles[0][2]);  // one half of the underside
+  for (const Mesh& mesh : {slab, doubled, mixed, turned}) {
+    for (const std::optional<Eigen::Vector2d>& start :
+         {std::optional<Eigen::Vector2d>(), std::optional(Eigen::Vector2d(-3.0, 0.0))}) {
+      const ContactGeometry contact = contact_geometry(mesh, {}, {.start = start});
+      EXPECT_NEAR(ground_of(contact).T_site_shape.position.z(), 0.0, 1e-6) << contact.rows.front().text;
+    }
+  }
+  EXPECT_THAT(contact_geometry(doubled, {}, {}).rows.front().text, HasSubstr("triangles face both sides"));
+}
 
 TEST(ContactGeometry, EnclosesEverySurfaceAndIsNowhereFurtherThanAVoxelFromIt) {
   const Mesh mesh = two_rooms();
