@@ -1,3 +1,4 @@
+#include <string>
 #include <vector>
 
 #include <fmt/format.h>
@@ -19,6 +20,15 @@ void refuse_options(const CLI::App& command, const std::string& kind, const char
     if (option->get_group() == other_group && option->count() > 0)
       throw InputError(fmt::format("{}: not an option of import {}", option->get_name(), kind));
   }
+}
+
+/// Names of the options on the command line.
+std::vector<std::string> given_options(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options({})) {
+    if (option->count() > 0) names.push_back(option->get_name());
+  }
+  return names;
 }
 
 void add_robot(CLI::App& command, ImportRobotOptions& robot) {
@@ -43,14 +53,14 @@ void add_robot(CLI::App& command, ImportRobotOptions& robot) {
 }
 
 void add_site(CLI::App& command, ImportSiteOptions& site) {
-  command.add_option("--wall-height", site.wall_height_m, "Height of the walls of a floor plan, m")
+  command.add_option("--wall-height", site.wall_height_m, "Height of the walls of a floor plan or a log, m")
       ->check(CLI::Range(0.1, 100.0))
       ->capture_default_str()
       ->group(kSites);
-  command.add_option("--scale", site.scale, "Meters per unit of the file (default: by rule)")
+  command.add_option("--scale", site.scale, "Meters per unit of a mesh or of points (default: by rule)")
       ->check(above_zero())
       ->group(kSites);
-  command.add_option("--up", site.up, "Axis of the file that points up (default: by rule)")
+  command.add_option("--up", site.up, "Axis of a mesh or of points that points up (default: by rule)")
       ->check(CLI::IsMember({"y", "z"}))
       ->group(kSites);
   command.add_option("--stations", site.stations, "Stations of the mission: CSV with the columns name, x, y")
@@ -64,7 +74,7 @@ void add_site(CLI::App& command, ImportSiteOptions& site) {
                   "Start of the mission, X,Y or X,Y,DEG, and point of a mesh's ground (default: by rule)")
       ->group(kSites);
   command.add_option("--robot", site.robot, "Robot of the scenario")->capture_default_str()->group(kSites);
-  command.add_option("--contact-cell", site.contact_cell_m, "Cell of a mesh's contact geometry, m")
+  command.add_option("--contact-cell", site.contact_cell_m, "Cell of the contact geometry of a mesh or of SDF, m")
       ->check(CLI::Range(0.02, 1.0))
       ->capture_default_str()
       ->group(kSites);
@@ -91,6 +101,7 @@ void add_import_command(CLI::App& app, Call& call) {
       call.import_site.file = call.import_robot.file;
       call.import_site.out = call.import_robot.out;
       call.import_site.packages = call.import_robot.packages;
+      call.import_site.given = given_options(*command);
       return import_site_command(call.import_site);
     };
   });

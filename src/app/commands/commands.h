@@ -231,7 +231,8 @@ struct ImportSiteOptions {
   std::uint64_t seed = 1;
   std::string start;  ///< "X,Y" or "X,Y,DEG"; empty: by rule
   std::string robot = "wheeled";
-  double contact_cell_m = 0.05;  ///< cell of the contact geometry of meshes
+  double contact_cell_m = 0.05;    ///< cell of the contact geometry of meshes
+  std::vector<std::string> given;  ///< options on the command line, such as "--scale"
 };
 /// Makes a site of `worlds` from a file.
 ExitCode import_site_command(const ImportSiteOptions& options);

@@ -14,6 +14,7 @@
 #include "app/scenario/data_folders.h"
 #include "core/error.h"
 #include "importer/robot_import.h"
+#include "importer/site/site_format.h"
 #include "importer/site/site_import.h"
 #include "io/urdf.h"
 #include "sim/locomotion/locomotion_settings.h"
@@ -116,6 +117,7 @@ ExitCode import_robot_command(const ImportRobotOptions& options) {
 }
 
 ExitCode import_site_command(const ImportSiteOptions& options) {
+  importer::refuse_unused_options(options.file, options.given);
   importer::SiteImportOptions import{.file = options.file,
                                      .name = folder_name(options.out),
                                      .wall_height_m = options.wall_height_m,
@@ -129,8 +131,8 @@ ExitCode import_site_command(const ImportSiteOptions& options) {
                                                  .robot = options.robot}};
   if (!options.start.empty()) import.mission.start = parse_pose(options.start, "--start", {}).pose();
   import.mission.clearance_m = turning_clearance_m(options.robot);
-  const std::optional<importer::ImportedSite> site =
-      is_scan_log(options.file) ? import_log_site(import) : import_with_progress(import);
+  const bool is_log = importer::site_format(options.file) == importer::SiteFormat::kLog;
+  const std::optional<importer::ImportedSite> site = is_log ? import_log_site(import) : import_with_progress(import);
   if (!site) {
     fmt::print(stderr, "patrol: interrupted; nothing was written\n");
     return ExitCode::kProgramFailed;

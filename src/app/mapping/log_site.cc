@@ -1,5 +1,6 @@
 #include "app/mapping/log_site.h"
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -56,11 +57,6 @@ void add_recorded_path(const std::vector<Pose2>& path, const importer::MissionOp
 }
 
 }  // namespace
-
-bool is_scan_log(const std::filesystem::path& file) {
-  const std::string extension = file.extension().string();
-  return extension == ".mcap" || extension == ".clf" || extension == ".log" || extension == ".gz";
-}
 
 std::optional<importer::ImportedSite> import_log_site(const importer::SiteImportOptions& options) {
   LogMappingSettings settings;

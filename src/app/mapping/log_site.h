@@ -1,14 +1,10 @@
 #pragma once
 
-#include <filesystem>
 #include <optional>
 
 #include "importer/site/site_import.h"
 
 namespace patrol::app {
-
-/// Returns whether the extension is that of a recorded lidar log: .mcap, .clf, .log or .gz.
-bool is_scan_log(const std::filesystem::path& file);
 
 /// Maps a recorded lidar log as `patrol slam` does, fits the walls to the hits, and returns the site of the mapped
 /// building: `site` is the pose of the body at the first scan. Without stations in the options, the mission is the

@@ -15,8 +15,8 @@ namespace patrol::importer {
 
 /// Mission of an imported site. At most one of `stations` and `num_random`.
 struct MissionOptions {
-  std::filesystem::path stations =
-      {};  ///< CSV with the columns name, x, y and optionally heading_deg, priority, earliest_s, latest_s; empty: none
+  std::filesystem::path stations = {};  ///< CSV with the columns name, x, y and optionally heading_deg, priority,
+                                        ///< earliest_s, latest_s, service_s (without effect); empty: none
   int num_random = 0;               ///< number of random stations in free space
   std::uint64_t seed = 1;           ///< seed of random stations
   std::optional<Pose2> start = {};  ///< in site; none: by rule
@@ -32,10 +32,10 @@ using ImportProgress = std::function<void(const std::string& work, double fracti
 struct SiteImportOptions {
   std::filesystem::path file;
   std::string name;              ///< of the site, its folder and its files
-  double wall_height_m = 2.5;    ///< floor plans: height of the walls
+  double wall_height_m = 2.5;    ///< floor plans and logs: height of the walls
   double scale = 0.0;            ///< meshes and points: meters per unit of the file; 0: by rule
   std::string up = {};           ///< meshes and points: axis of the file that points up, y or z; empty: by rule
-  double contact_cell_m = 0.05;  ///< meshes: cell of the contact geometry
+  double contact_cell_m = 0.05;  ///< meshes and SDF: cell of the contact geometry
   std::map<std::string, std::filesystem::path> packages = {};  ///< SDF: folders of models, by name
   MissionOptions mission = {};
   ImportProgress on_progress = {};  ///< scans and points: called during the import; empty: not called
@@ -47,7 +47,7 @@ struct SiteImportOptions {
 /// connected to the start.
 void add_mission(const MissionOptions& options, ImportedSite& site);
 
-/// Reads a site file of any known kind, chosen by its extension, and adds its mission. Throws InputError with one line,
+/// Reads a site file of any format but logs (site_format.h) and adds its mission. Throws InputError with one line,
 /// "file:line: element: what", or with the known extensions.
 ImportedSite import_site(const SiteImportOptions& options);
 
