@@ -21,7 +21,8 @@ std::filesystem::path without_last_slash(const std::filesystem::path& folder) {
 }  // namespace
 
 OutputFolder::OutputFolder(const std::filesystem::path& target)
-    : target_(without_last_slash(target)), staging_(fmt::format("{}.{}.part", target_.string(), ::getpid())) {
+    : target_(without_last_slash(target)),
+      staging_(fmt::format("{}.{}{}", target_.string(), ::getpid(), kStagingExtension)) {
   std::error_code error;
   if (std::filesystem::exists(target_, error) &&
       (!std::filesystem::is_directory(target_, error) || !std::filesystem::is_empty(target_, error)))

@@ -5,6 +5,9 @@
 
 namespace patrol::importer {
 
+/// Extension of a staging folder. One remains if the program is killed.
+inline constexpr const char* kStagingExtension = ".part";
+
 /// Folder that is written beside its final place and renamed when it is complete. It is removed with its content
 /// otherwise.
 class OutputFolder {

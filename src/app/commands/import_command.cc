@@ -96,6 +96,12 @@ importer::ImportedSite import_with_progress(importer::SiteImportOptions options)
   return importer::import_site(options);
 }
 
+/// Returns false, without a folder, if the user interrupts.
+bool write_unless_interrupted(const importer::ImportedSite& site, const std::filesystem::path& out) {
+  const InterruptGuard guard;
+  return importer::write_site(site, out, [&] { return guard.is_interrupted(); });
+}
+
 }  // namespace
 
 ExitCode import_robot_command(const ImportRobotOptions& options) {
@@ -133,11 +139,10 @@ ExitCode import_site_command(const ImportSiteOptions& options) {
   import.mission.clearance_m = turning_clearance_m(options.robot);
   const bool is_log = importer::site_format(options.file) == importer::SiteFormat::kLog;
   const std::optional<importer::ImportedSite> site = is_log ? import_log_site(import) : import_with_progress(import);
-  if (!site) {
+  if (!site || !write_unless_interrupted(*site, options.out)) {
     fmt::print(stderr, "patrol: interrupted; nothing was written\n");
     return ExitCode::kProgramFailed;
   }
-  importer::write_site(*site, options.out);
   print(site->assumptions, options.out);
   return ExitCode::kDone;
 }

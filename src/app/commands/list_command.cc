@@ -20,6 +20,7 @@
 #include "core/named_table.h"
 #include "core/route.h"
 #include "core/text.h"
+#include "importer/output_folder.h"
 #include "io/json/table_json.h"
 #include "io/logs/topics.h"
 #include "plan/routes/planners.h"
@@ -43,7 +44,10 @@ std::vector<DataFile> data_files(const std::vector<DataFolder>& folders, const s
     const auto first = static_cast<std::ptrdiff_t>(found.size());
     std::error_code ignored;
     if (!std::filesystem::is_directory(folder.path / kind, ignored)) continue;
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder.path / kind)) {
+    auto iterator = std::filesystem::recursive_directory_iterator(folder.path / kind);
+    for (const auto& entry : iterator) {
+      if (entry.path().extension() == importer::kStagingExtension && entry.is_directory(ignored))
+        iterator.disable_recursion_pending();
       // A link to itself is no regular file.
       if (!entry.is_regular_file(ignored) || !keep(entry.path())) continue;
       found.push_back({.path = entry.path(),

@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/text.h"
+#include "importer/output_folder.h"
 
 namespace patrol::app {
 namespace {
@@ -35,7 +36,8 @@ std::filesystem::path data_root_of_program() {
 std::string folders_in(const std::filesystem::path& parent) {
   std::vector<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(parent)) {
-    if (entry.is_directory()) names.push_back(entry.path().filename().string());
+    if (entry.is_directory() && entry.path().extension() != importer::kStagingExtension)
+      names.push_back(entry.path().filename().string());
   }
   std::sort(names.begin(), names.end());
   return join(names, ", ");

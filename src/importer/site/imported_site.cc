@@ -93,7 +93,8 @@ void use_height_fields_as_ground(ImportedSite& site) {
   }
 }
 
-void write_site(const ImportedSite& site, const std::filesystem::path& folder) {
+bool write_site(const ImportedSite& site, const std::filesystem::path& folder,
+                const std::function<bool()>& is_interrupted) {
   require_folder_name(site.name, site.source, "site");
   check(site);
   OutputFolder output(folder);
@@ -107,8 +108,12 @@ void write_site(const ImportedSite& site, const std::filesystem::path& folder) {
     io::save_registration(output.staging() / "map" / "registration.json", identity_registration());
   }
   write_mission(site, output.staging());
+  const auto must_stop = [&] { return is_interrupted && is_interrupted(); };
+  if (must_stop()) return false;
   compile_in(site, output.staging());
+  if (must_stop()) return false;
   output.publish();
+  return true;
 }
 
 sim::ModelPtr compile_site(const ImportedSite& site) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -94,8 +95,10 @@ std::string to_mjcf(const ImportedSite& site);
 /// Writes NAME.xml, NAME.yaml, README.md with the assumptions, meshes/, textures/, for a floor plan map/, and for a
 /// mission routes/patrol.json and scenarios/patrol.yaml: first into a folder beside it, in which MuJoCo compiles the
 /// site, then renamed. Throws InputError if the folder exists and is not empty, cannot be written, or MuJoCo refuses
-/// the site; nothing is left behind then.
-void write_site(const ImportedSite& site, const std::filesystem::path& folder);
+/// the site; nothing is left behind then. Returns false, with nothing left behind, if `is_interrupted` returns true
+/// before or after the compilation.
+bool write_site(const ImportedSite& site, const std::filesystem::path& folder,
+                const std::function<bool()>& is_interrupted = {});
 
 /// Compiles a site without writing its folder: its files lie in a temporary folder meanwhile. Throws InputError if
 /// MuJoCo refuses the site.

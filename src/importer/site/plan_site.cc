@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <functional>
+#include <vector>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
@@ -22,13 +23,20 @@ SiteShape wall(std::size_t number, const Eigen::Vector2d& center_m, double yaw_r
           .material = "wall"};
 }
 
-void add_cells(const GridGeometry& grid, const std::function<bool(Cell)>& is_selected, double height_m,
+/// Throws InputError if there are too many rectangles: the time in which MuJoCo reads a model grows with their square.
+void add_cells(const GridGeometry& grid, const std::function<bool(Cell)>& is_selected, const SiteImportOptions& options,
                ImportedSite& site) {
-  for (const CellRectangle& part : rectangles_of(grid, is_selected)) {
+  constexpr std::size_t kMaxRectangles = 60000;
+  const std::vector<CellRectangle> parts = rectangles_of(grid, is_selected);
+  if (parts.size() > kMaxRectangles)
+    throw InputError(fmt::format(
+        "{}: the occupied cells form {} rectangles: at most {} are allowed: remove single cells from the plan",
+        options.file.string(), parts.size(), kMaxRectangles));
+  for (const CellRectangle& part : parts) {
     const Eigen::Vector2d half_m = 0.5 * grid.resolution_m * Eigen::Vector2d(part.width, part.height);
     const Eigen::Vector2d center =
         grid.origin_m + grid.resolution_m * Eigen::Vector2d(part.begin.col, part.begin.row) + half_m;
-    site.shapes.push_back(wall(site.shapes.size(), center, 0.0, half_m, height_m));
+    site.shapes.push_back(wall(site.shapes.size(), center, 0.0, half_m, options.wall_height_m));
   }
 }
 
@@ -62,7 +70,7 @@ ImportedSite read_plan_site(const SiteImportOptions& options) {
   const OccupancyGrid plan = io::load_map(options.file);
   ImportedSite site = empty_site(plan, options.file.filename().string(), options);
   add_cells(
-      plan.geometry(), [&](Cell cell) { return is_occupied(plan.at(cell)); }, options.wall_height_m, site);
+      plan.geometry(), [&](Cell cell) { return is_occupied(plan.at(cell)); }, options, site);
   if (site.shapes.size() == 1) throw InputError(options.file.string() + ": the plan has no occupied cell");
   site.assumptions.push_back({"walls",
                               fmt::format("occupied cells are solid from the floor to {:g} m", options.wall_height_m),
@@ -81,7 +89,7 @@ ImportedSite site_of_walls(const OccupancyGrid& plan, const WallFitter& walls, c
   }
   const std::size_t num_faces = site.shapes.size() - 1;
   add_cells(
-      plan.geometry(), [&](Cell cell) { return walls.is_uncovered(cell); }, options.wall_height_m, site);
+      plan.geometry(), [&](Cell cell) { return walls.is_uncovered(cell); }, options, site);
   site.assumptions.push_back(
       {"walls",
        fmt::format(

@@ -62,6 +62,8 @@ class List(unittest.TestCase):
             (here / "worlds/mine/scenarios").mkdir(parents=True)
             (here / "worlds/mine/mine.xml").write_text("<mujoco/>")
             (here / "worlds/mine/scenarios/short.yaml").write_text("world: mine\n")
+            (here / "worlds/other.123.part/scenarios").mkdir(parents=True)  # of an import that was killed
+            (here / "worlds/other.123.part/scenarios/patrol.yaml").write_text("world: other\n")
             (here / "models/robot").mkdir(parents=True)
             (here / "models/robot/robot.urdf").write_text("<robot name='robot'/>")
             environment = {**os.environ, "PATROL_DATA": str(SOURCE)}

@@ -147,6 +147,19 @@ TEST_F(PlanImport, AStartOutsideOrInAWallIsRefusedWithATableAndWithRandomStation
   }
 }
 
+TEST_F(PlanImport, APlanOfTooManySpecksIsRefusedBeforeTheSimulatorReadsIt) {
+  OccupancyGrid specks({.resolution_m = 0.1, .width = 500, .height = 500}, 0);
+  for (int row = 0; row < 500; row += 2) {
+    for (int col = 0; col < 500; col += 2) specks.at({col, row}) = 100;
+  }
+  io::save_map(folder_ / "specks.yaml", specks);
+  SiteImportOptions many = options();
+  many.file = folder_ / "specks.yaml";
+  EXPECT_THAT([&] { import_site(many); }, ThrowsMessage<InputError>(HasSubstr(
+                                              "specks.yaml: the occupied cells form 62500 rectangles: at most 60000 "
+                                              "are allowed")));
+}
+
 TEST_F(PlanImport, WrongInputsAreRefusedAndNothingIsWritten) {
   test::write_bytes(folder_ / "stations.csv", "name,x,y\npump,1.0,north\n");
   EXPECT_THAT([&] { import_site(options({.stations = folder_ / "stations.csv"})); },
