@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -173,6 +174,47 @@ void complete(ImportedSite& site, std::vector<Patch> patches, const std::vector<
   add_surfaces(site, patches, reflectivity);
 }
 
+/// Adds the row about the ground with its heights.
+void add_ground_row(ImportedSite& site, const std::string& rule, const ScannedGround& ground) {
+  double lowest_m = std::numeric_limits<double>::infinity(), highest_m = -lowest_m;
+  for (std::size_t i = 0; i < ground.height_m.values().size(); ++i) {
+    if (ground.origin.values()[i] != GroundOrigin::kMeasured) continue;
+    lowest_m = std::min(lowest_m, double{ground.height_m.values()[i]});
+    highest_m = std::max(highest_m, double{ground.height_m.values()[i]});
+  }
+  site.assumptions.push_back(
+      {"ground", fmt::format("{}: heights from {:.2f} to {:.2f} m", rule, lowest_m, highest_m), ""});
+}
+
+/// Adds a row about surfaces of a cloud below its ground. Throws InputError if they are most of the surfaces off the
+/// ground, as below the ceiling of a room without a floor.
+void check_below(ImportedSite& site, const ScannedGround& ground, const std::vector<Patch>& patches,
+                 const std::string& location) {
+  constexpr double kOff_m = 0.3, kMaxOffRatio = 0.5, kMaxRatio = 0.25, kFewRatio = 0.05;
+  double below_m2 = 0.0, above_m2 = 0.0, all_m2 = 0.0;
+  for (const Patch& patch : patches) {
+    const Eigen::Vector3d p = patch.corners_m[0].cast<double>();
+    const double height_m = p.z() - ground.height_at(p.head<2>()), area_m2 = patch.area_m2();
+    all_m2 += area_m2;
+    if (height_m < -kOff_m) below_m2 += area_m2;
+    if (height_m > kOff_m) above_m2 += area_m2;
+  }
+  if (below_m2 > kMaxRatio * all_m2 && below_m2 > kMaxOffRatio * (below_m2 + above_m2)) {
+    const float lowest_m = *std::min_element(ground.height_m.values().begin(), ground.height_m.values().end());
+    throw InputError(
+        fmt::format("{}: {:.0f} % of the surfaces are below the lowest large level one, at {:.2f} m: the cloud must "
+                    "contain the floor",
+                    location, 100.0 * below_m2 / all_m2, lowest_m));
+  }
+  if (below_m2 > kFewRatio * all_m2) {
+    site.assumptions.push_back(
+        {"below the ground",
+         fmt::format("{:.0f} % of the surfaces are more than {:g} m below the ground and have no contact",
+                     100.0 * below_m2 / all_m2, kOff_m),
+         ""});
+  }
+}
+
 ImportProgress progress_of(const SiteImportOptions& options) {
   return options.on_progress ? options.on_progress : [](const std::string&, double) {};
 }
@@ -252,9 +294,8 @@ ImportedSite site_of_scans(io::RelativeScans scans, const std::string& source, c
       {"moving objects",
        fmt::format("{} points that another scan looks through and none observes are removed", counts.num_moving), ""});
   site.assumptions.push_back({"reflectivity", scale.rule + ", divided by the cosine of incidence", ""});
-  site.assumptions.push_back(
-      {"ground", "the surface around the scanners and what is connected by steps of at most 0.12 m", ""});
   const ScannedGround ground = find_scanned_ground(patches, scanners_m, true, {}, error_location(options, source));
+  add_ground_row(site, "the surface around the scanners and what is connected by steps of at most 0.12 m", ground);
   progress("close thin objects", 0.7);
   const std::vector<Patch> sides = close_thin_objects(patches, panoramas, ground, {});
   progress("find surfaces without thin objects", 0.85);
@@ -293,10 +334,10 @@ ImportedSite site_of_cloud(io::RelativePoints cloud, const std::string& source, 
   site.assumptions.push_back(
       {"normals", "surfaces face the nearest place where a person can stand, 1.5 m above the ground", ""});
   site.assumptions.push_back({"reflectivity", scale.rule + ", at any incidence", ""});
-  site.assumptions.push_back(
-      {"ground", "the lowest large level surface and what is connected by steps of at most 0.12 m", ""});
   progress("find the ground", 0.8);
   const ScannedGround ground = find_scanned_ground(found.patches, {}, false, {}, error_location(options, source));
+  add_ground_row(site, "the lowest large level surface and what is connected by steps of at most 0.12 m", ground);
+  check_below(site, ground, found.patches, error_location(options, source));
   orient(found.patches, ground);
   constexpr double kUnseenExtent_m = 0.6;  // without beams, only small convex hulls are likely
   std::vector<Panorama> no_scans;

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -63,6 +65,28 @@ TEST(CloudSite, RoomWithoutOriginsFacesInward) {
   EXPECT_GT(near_m2 / area_m2, 0.97);
   EXPECT_GT(facing_m2 / area_m2, 0.97);
   EXPECT_THAT(assumption(site, "normals"), testing::HasSubstr("nearest place where a person can stand"));
+}
+
+TEST(CloudSite, TheRowOfTheGroundStatesItsHeight) {
+  const ImportedSite site = site_of_cloud({.points = room_cloud()}, "room.ply", {.file = "room.ply", .name = "room"});
+  const auto ground = std::find_if(site.assumptions.begin(), site.assumptions.end(),
+                                   [](const Assumption& row) { return row.subject == "ground"; });
+  ASSERT_NE(ground, site.assumptions.end());
+  EXPECT_THAT(ground->text, testing::MatchesRegex(".*: heights from -?0.0. to 0.0. m"));
+}
+
+TEST(CloudSite, ACloudWithoutAFloorIsRefusedAndNotDrivenOnItsCeiling) {
+  std::vector<ScannerPoint> points;
+  for (const ScannerPoint& point : room_cloud()) {
+    if (point.z > 0.05f) points.push_back(point);
+  }
+  try {
+    site_of_cloud({.points = points}, "room.ply", {.file = "room.ply", .name = "room"});
+    ADD_FAILURE() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::MatchesRegex("room.ply: [0-9]+ % of the surfaces are below the lowest large "
+                                                    "level one, at [23].[0-9]+ m: the cloud must contain the floor"));
+  }
 }
 
 TEST(CloudSite, CoordinatesOfMillionsOfMetersAreShifted) {
