@@ -86,23 +86,14 @@ std::string leg_settings(const NormalizedRobot& robot) {
 }  // namespace
 
 std::string settings_of(const NormalizedRobot& robot, const std::string& comment) {
-  const auto has = [&robot](const char* frame) {
-    return std::find(robot.sensor_frames.begin(), robot.sensor_frames.end(), frame) != robot.sensor_frames.end()
-               ? "true"
-               : "false";
-  };
-  std::string text = fmt::format("# {}\n", comment);
-  text += "sensors:\n";
-  const auto preset = [&robot](const char* frame) {
+  std::string text = fmt::format("# {}\nsensors:\n", comment);
+  // Absent sensors have no row: a mount that the user adds switches its sensor on.
+  for (const char* frame : {"lidar", "lidar_rear", "lidar3d", "gnss", "depth_camera", "tdlas", "uwb"}) {
+    if (std::ranges::find(robot.sensor_frames, frame) == robot.sensor_frames.end()) continue;
     const auto chosen = robot.presets.find(frame);
-    return chosen == robot.presets.end() ? "" : ", preset: " + chosen->second;
-  };
-  for (const char* frame : {"lidar", "lidar_rear", "lidar3d"})
-    text += fmt::format("  {}: {{enabled: {}{}}}\n", frame, has(frame), preset(frame));
-  text += fmt::format("  gnss: {{enabled: {}}}\n", has("gnss"));
-  text += fmt::format("  depth_camera: {{enabled: {}}}\n", has("depth_camera"));
-  text += fmt::format("  tdlas: {{enabled: {}}}\n", has("tdlas"));
-  text += fmt::format("  uwb: {{enabled: {}}}\n", has("uwb"));
+    const std::string preset = chosen == robot.presets.end() ? "" : ", preset: " + chosen->second;
+    text += fmt::format("  {}: {{enabled: true{}}}\n", frame, preset);
+  }
   return text + (robot.drive == DriveType::kLegs ? leg_settings(robot) : wheel_settings(robot));
 }
 

@@ -89,7 +89,7 @@ class ImportRobot(unittest.TestCase):
     def test_a_robot_without_a_lidar_is_imported_and_checked_as_the_same_robot_with_one(self):
         self.assertEqual(self.patrol("import", "robot", self.urdf, "--out", "models/four").returncode, 0)
         self.assertEqual(self.patrol("import", "robot", self.urdf, "--frame", "lidar=laser", "--out", "models/seeing").returncode, 0)
-        self.assertIn("lidar: {enabled: false}", (self.folder / "models/four/four.yaml").read_text())
+        self.assertNotIn("lidar", (self.folder / "models/four/four.yaml").read_text())
         check, seeing = self.patrol("check", "four", "--out", "check"), self.patrol("check", "seeing", "--out", "check")
         self.assertIn("passed   square", check.stdout, check.stderr)
         self.assertEqual((check.returncode, check.stdout.replace("four", "seeing")), (seeing.returncode, seeing.stdout))

@@ -152,13 +152,22 @@ void complete_mounts(const std::filesystem::path& file, const YAML::Node& docume
   }
 }
 
+std::vector<std::string> sensors_of(const MountSettings& mount) {
+  std::vector<std::string> sensors;
+  for (const SensorInfo& info : kSensorInfos) {
+    if (mount.frame == info.name || (is_ultrasonic(mount.frame) && is_ultrasonic(info.frame)))
+      sensors.emplace_back(info.name);
+  }
+  return sensors;
+}
+
 void mount_sensor(const MountSettings& mount, sim::SensorSuiteSettings& sensors) {
+  const std::vector<std::string> mounted = sensors_of(mount);
   Sensors::for_each([&]<typename Message>(std::type_identity<Message>) {
     if constexpr (HasSensorSettings<Message>) {
-      constexpr const SensorInfo& kInfo = SensorTraits<Message>::kInfo;
       auto& own = sensors.*SensorTraits<Message>::kSettings;
       if constexpr (requires { own.enabled; }) {
-        if (mount.frame == kInfo.name || (is_ultrasonic(mount.frame) && is_ultrasonic(kInfo.frame))) own.enabled = true;
+        if (std::ranges::find(mounted, SensorTraits<Message>::kInfo.name) != mounted.end()) own.enabled = true;
       }
     }
   });

@@ -16,6 +16,9 @@ namespace patrol::app {
 /// its list of mounts, locations have no line. Throws InputError with file, line and key.
 void complete_mounts(const std::filesystem::path& file, const YAML::Node& document, std::vector<MountSettings>& mounts);
 
+/// Returns the names of the sensors that a mount switches on.
+std::vector<std::string> sensors_of(const MountSettings& mount);
+
 /// Switches the sensor of a mount on and applies its preset.
 void mount_sensor(const MountSettings& mount, sim::SensorSuiteSettings& sensors);
 

@@ -122,7 +122,7 @@ Scenario scenario_of_profile(const std::filesystem::path& profile_file, const st
   return scenario;
 }
 
-/// Refuses a profile that enables a sensor without a frame of the robot.
+/// Refuses a profile that enables a sensor without a frame of the robot, or disables a sensor that it mounts.
 void check_profile(const std::filesystem::path& profile_file, const RobotDescription& robot,
                    const Scenario& of_profile) {
   if (!std::filesystem::exists(profile_file)) return;
@@ -132,6 +132,16 @@ void check_profile(const std::filesystem::path& profile_file, const RobotDescrip
     if (!enabled.IsDefined()) continue;
     throw InputError(fmt::format("{} = true: the robot has no frame of this sensor: add a mount (mounts)",
                                  location_of(profile_file, enabled, fmt::format("sensors.{}.enabled", sensor))));
+  }
+  for (const MountSettings& mount : of_profile.mounts) {
+    for (const std::string& sensor : sensors_of(mount)) {
+      const YAML::Node enabled = find_node(document, {"sensors", sensor, "enabled"});
+      if (!enabled.IsDefined() || enabled.as<bool>(true)) continue;
+      throw InputError(
+          fmt::format("{} = false: mounts of the same file have the frame {}, which switches the sensor "
+                      "on: only one of both is allowed",
+                      location_of(profile_file, enabled, fmt::format("sensors.{}.enabled", sensor)), mount.frame));
+    }
   }
 }
 

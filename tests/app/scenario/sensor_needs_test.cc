@@ -154,6 +154,15 @@ TEST(Mounts, SettingsOfTheScenarioWinOverThePresetOfAMountAndItsMountsOverThoseO
   EXPECT_EQ(scenario.mounts[1].x_m, 0.3);
 }
 
+TEST(Mounts, AProfileThatDisablesASensorThatItMountsIsRefusedWithItsLine) {
+  const CourierData data({}, "sensors:\n  gnss: {enabled: false}\nmounts: [{frame: gnss, z_m: 0.4}]\n");
+  EXPECT_EQ(data.error(""), data.file("models/courier/courier.yaml") +
+                                ":3: sensors.gnss.enabled = false: mounts of the same file have the frame gnss, which "
+                                "switches the sensor on: only one of both is allowed");
+  const CourierData mounted({}, "mounts: [{frame: gnss, z_m: 0.4}]\n");
+  EXPECT_FALSE(mounted.load("", {"sensors.gnss.enabled=false"}).sensors.gnss.enabled);
+}
+
 TEST(Mounts, TheResolvedScenarioReadAgainIsTheSame) {
   const CourierData data({"gnss"}, "mounts: [{frame: lidar_rear, x_m: -0.4, yaw_deg: 180.0, preset: utm30lx}]\n");
   const Scenario first = data.load("mounts: [{frame: tdlas, x_m: 0.2}]\nsensors: {lidar_rear: {rate_hz: 20.0}}\n");
