@@ -4,6 +4,7 @@
 #include <cmath>
 #include <complex>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 namespace patrol::localize {
@@ -16,6 +17,14 @@ struct Knot {
   Eigen::Matrix3d R;
   Eigen::Vector3d p;
 };
+
+/// Returns the pose with its xy plane level. A lidar that is upside down stays so.
+Pose3 with_level_plane(const Pose3& T_level_lidar) {
+  const bool is_upside_down = (T_level_lidar.rotation * Eigen::Vector3d::UnitZ()).z() < 0.0;
+  const Pose3 level = remove_tilt(T_level_lidar);
+  return is_upside_down ? level * Pose3{Eigen::Vector3d::Zero(), quaternion_from_rpy(std::numbers::pi, 0.0, 0.0)}
+                        : level;
+}
 
 Time beam_time(const LaserScan& scan, double beam) { return scan.stamp + from_seconds(beam * scan.time_increment_s); }
 
@@ -41,7 +50,7 @@ std::optional<LevelScan> ScanLeveler::level(const LaserScan& scan, const PoseLoo
   const Pose3 T_level_odom = Pose3{T_odom_body->position, quaternion_from_yaw(to_yaw(T_odom_body->rotation))}.inverse();
 
   const auto mounted = [this](const Pose3& T_level_lidar) {
-    return settings_.gimbal_stabilized ? remove_tilt(T_level_lidar) : T_level_lidar;
+    return settings_.gimbal_stabilized ? with_level_plane(T_level_lidar) : T_level_lidar;
   };
   const std::size_t num_segments = std::min(kNumKnots - 1, num_beams);
   const auto knot_at = [&](std::size_t beam) -> std::optional<Knot> {
@@ -55,7 +64,7 @@ std::optional<LevelScan> ScanLeveler::level(const LaserScan& scan, const PoseLoo
   level.stamp = beam_time(scan, last_beam);
   const Pose3 T_level_lidar = mounted(T_level_odom * *T_odom_body * T_body_lidar_);
   level.origin_m = T_level_lidar.position.head<2>();
-  level.tilt_rad = std::acos(std::clamp(T_level_lidar.rotation.toRotationMatrix()(2, 2), -1.0, 1.0));
+  level.tilt_rad = std::acos(std::min(std::abs(T_level_lidar.rotation.toRotationMatrix()(2, 2)), 1.0));
   level.beams.reserve(num_beams);
   const std::complex<double> step = std::polar(1.0, scan.angle_increment_rad);
   std::optional<Knot> before = knot_at(0);

@@ -167,6 +167,27 @@ TEST(ScanLeveler, ReportsATiltOf12DegreesInAnyDirection) {
   }
 }
 
+TEST(ScanLeveler, AnUpsideDownLidarIsLevelAndItsBeamsEndWhereThoseOfAnUprightOneDo) {
+  const double roll = 0.05;
+  const PoseLookup tilted = [=](Time) { return Pose3{{0, 0, 0}, quaternion_from_rpy(roll, 0.0, 0.3)}; };
+  const Pose3 flipped{kLidar.position, kLidar.rotation * quaternion_from_rpy(std::numbers::pi, 0.0, 0.0)};
+  LaserScan upright{.angle_min_rad = -1.0, .angle_increment_rad = 0.5, .ranges_m = {}, .intensities = {}};
+  upright.ranges_m = {1.0F, 2.0F, 1.5F, 3.0F, 2.5F};
+  LaserScan mirrored = upright;
+  std::ranges::reverse(mirrored.ranges_m);
+  for (const bool is_stabilized : {false, true}) {
+    const ScanLevelerSettings settings{.min_height_m = -1.0, .gimbal_stabilized = is_stabilized};
+    const auto expected = ScanLeveler(kLidar, settings).level(upright, tilted, 0.3);
+    const auto level = ScanLeveler(flipped, settings).level(mirrored, tilted, 0.3);
+    EXPECT_NEAR(level->tilt_rad, is_stabilized ? 0.0 : roll, 1e-7);
+    ASSERT_EQ(level->beams.size(), 5U);
+    for (std::size_t i = 0; i < 5; ++i) {
+      EXPECT_LT((level->beams[i].end_m - expected->beams[4 - i].end_m).norm(), 1e-5F);
+      EXPECT_TRUE(level->beams[i].is_hit);
+    }
+  }
+}
+
 TEST(ScanLeveler, RangesFollowRep117) {
   const PoseLookup still = [](Time) { return Pose3{}; };
   const LaserScan scan{.angle_increment_rad = 0.1,
