@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "core/cycle.h"
@@ -94,8 +96,13 @@ void Stack::publish_map(Time now) {
   output_.publish(std::move(update));
 }
 
-/// Completes the map; everything that the robot has located in it follows its final optimization.
+/// Completes the map; everything that the robot has located in it follows its final optimization. Aborts the mission if
+/// no scan was used for the map: no localizer works on it.
 void Stack::finish_map(Time now, const PoseEstimate& pose) {
+  if (const std::optional<std::string> failure = parts_.pose.mapping_failure()) {
+    if (!mission_is_over()) output_.publish(parts_.mission->abort(now, EventKind::kMissionFailed, *failure));
+    return publish_map(now);
+  }
   {
     const auto timer = output_.time_stage("slam");
     const std::optional<localize::MapCorrection> correction = parts_.pose.finish_map(pose);

@@ -81,6 +81,64 @@ TEST(Stack, PublishesOdometryAndCommandsAtTheirPeriods) {
               3.0);  // odometry settles for a second
 }
 
+/// Ends the mapping drive in its tenth step.
+class MappingMission final : public Mission {
+ public:
+  MissionOutput step(Time, const MissionInput&) override {
+    MissionOutput output;
+    output.is_map_complete = ++num_steps_ == 10;
+    return output;
+  }
+  bool is_over() const override { return is_over_; }
+  Event abort(Time now, EventKind kind, const std::string& text) override {
+    is_over_ = true;
+    return {.stamp = now, .kind = kind, .text = text};
+  }
+  TaskTiming timing() const override { return TaskTiming::kNow; }
+  bool starts_at_survey() const override { return true; }
+  void serialize_state(StateArchive&) override {}
+
+ private:
+  int num_steps_ = 0;
+  bool is_over_ = false;
+};
+
+TEST(Stack, AMappingDriveWithoutAUsedScanAbortsTheMissionWithTheNumberOfScansAndTheReason) {
+  const auto event_text = [](const StackSettings& settings, const Pose3& T_body_lidar) {
+    RobotDescription robot = quadruped_with_outline();
+    robot.T_body_sensor["lidar"] = T_body_lidar;
+    Stack stack({.pose = PosePipeline(settings, robot, {}, {.has_mapping_drive = true}, 1),
+                 .motion = MotionExecutor(settings, robot, {}, 1),
+                 .mission = std::make_unique<MappingMission>(),
+                 .instruments = InstrumentSet({}, 1.0),
+                 .sensor_monitor = SensorMonitor(settings.sensor_monitor),
+                 .dock = std::nullopt});
+    std::vector<StackMessage> messages = stand(stack, robot, 4.0);
+    stack.finish(from_seconds(4.0));
+    for (StackMessage& message : stack.take_messages()) messages.push_back(std::move(message));
+    const std::vector<Event> events = all_of<Event>(messages);
+    EXPECT_EQ(stack.mission_is_over(), !events.empty());
+    if (events.empty()) return std::string();
+    EXPECT_EQ(events.size(), 1U);
+    EXPECT_EQ(events[0].kind, EventKind::kMissionFailed);
+    return events[0].text;
+  };
+  const Pose3 level{{0.0, 0.0, 0.2}, Eigen::Quaterniond::Identity()},
+      tilted{{0.0, 0.0, 0.2}, quaternion_from_rpy(0.2, 0.0, 0.0)};
+  StackSettings settings;
+  settings.odometry_settling_time_s = 0.1;
+  EXPECT_EQ(event_text(settings, level), "");
+  settings.slam.graph.max_tilt_rad = 0.05;
+  EXPECT_EQ(
+      event_text(settings, tilted),
+      "No map: of 5 scans of the sensor lidar none was used: 3 tilted by more than 0.05 rad, 2 without odometry.");
+  settings.scan_leveling.max_range_m = 0.5;
+  EXPECT_EQ(
+      event_text(settings, level),
+      "No map: of 5 scans of the sensor lidar none was used: 3 without a hit on anything but the robot, 2 without "
+      "odometry.");
+}
+
 // Odometry is due at multiples of 20 ms, control at multiples of 50 ms.
 TEST(Stack, HasSixStepsIn100ms) {
   const RobotDescription robot = quadruped_with_outline();

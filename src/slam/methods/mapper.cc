@@ -1,6 +1,7 @@
 #include "slam/methods/mapper.h"
 
 #include <array>
+#include <limits>
 #include <type_traits>
 #include <utility>
 
@@ -104,6 +105,12 @@ constexpr std::array kMethods = std::to_array<MappingMethod>({
 }  // namespace
 
 std::span<const MappingMethod> mapping_methods() { return kMethods; }
+
+double max_tilt_rad(const MapperSettings& settings) {
+  if (settings.method == "graph") return settings.graph.max_tilt_rad;
+  if (settings.method == "rbpf") return settings.rbpf.filter.max_tilt_rad;
+  return std::numeric_limits<double>::infinity();
+}
 
 std::unique_ptr<Mapper> make_mapper(const MapperSettings& settings, const BoostedStumps& neighbors,
                                     std::uint64_t seed) {

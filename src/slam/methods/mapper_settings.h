@@ -27,6 +27,9 @@ struct MappingMethod {
 
 std::span<const MappingMethod> mapping_methods();
 
+/// Returns the tilt above which the selected method does not use scans; infinite for methods without such a limit.
+double max_tilt_rad(const MapperSettings& settings);
+
 /// Settings of all SLAM methods and the selected one.
 struct MapperSettings {
   std::string method = "graph";  ///< SLAM method (`patrol list`)

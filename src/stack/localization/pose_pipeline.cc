@@ -54,6 +54,7 @@ PosePipeline::PosePipeline(const StackSettings& settings, const RobotDescription
       registrar_(for_map(settings.registration, start.map.has_value()), site, start.map_registration,
                  uwb_calibration(settings.uwb_filter)),
       T_start_site_(site.T_site_start.inverse()),
+      max_mapping_tilt_rad_(slam::max_tilt_rad(settings.slam)),
       T_body_lidar_(robot.T_body("lidar")),
       anchors_in_site_(placed(site_in_map.anchors, site.T_site_start)),
       anchors_in_map_(site_in_map.anchors),
@@ -182,6 +183,11 @@ std::optional<SiteRegistration> PosePipeline::register_to_site(Time now) {
   return registrar_.update(now, localizer_->path());
 }
 
+std::optional<std::string> PosePipeline::mapping_failure() const {
+  if (!localizer_->is_mapping() || scan_counts_.num_used() > 0) return std::nullopt;
+  return scan_counts_.failure_text(max_mapping_tilt_rad_);
+}
+
 std::optional<localize::MapCorrection> PosePipeline::finish_map(const PoseEstimate& pose) {
   if (!localizer_->is_mapping()) return std::nullopt;
   tracker_.move_map(localizer_->finish_map(pose));
@@ -200,8 +206,10 @@ std::optional<OdometryEstimate> PosePipeline::update_odometry() {
 }
 
 std::optional<LevelScan> PosePipeline::level(const LaserScan& scan, StackOutput& output) {
-  if (!has_settled(scan.stamp)) return std::nullopt;
-  return calibrator_ ? level_corrected(scan, output) : level_as_stamped(scan, output);
+  std::optional<LevelScan> level;
+  if (has_settled(scan.stamp)) level = calibrator_ ? level_corrected(scan, output) : level_as_stamped(scan, output);
+  scan_counts_.add(level, max_mapping_tilt_rad_);
+  return level;
 }
 
 /// Levels the scan with the estimated time offset and lidar yaw, and adds it to the calibration.

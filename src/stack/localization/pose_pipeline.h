@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/dock_detection.h"
@@ -22,6 +23,7 @@
 #include "stack/localization/make_localizer.h"
 #include "stack/localization/odometry_source.h"
 #include "stack/localization/range_pose_tracker.h"
+#include "stack/localization/scan_counts.h"
 #include "stack/localization/site_registrar.h"
 #include "stack/sensors/clock_monitor.h"
 
@@ -73,6 +75,8 @@ class PosePipeline {
   bool is_mapping() const { return localizer_->is_mapping(); }
   bool is_lost() const { return localizer_->is_lost(); }
 
+  /// Returns why there is no map, as a sentence; none unless the robot maps and no scan was used.
+  std::optional<std::string> mapping_failure() const;
   /// Ends the mapping with its final optimization, which the pose and the registration to the site follow. `pose`:
   /// present pose. Returns the motion of the map; none where the map is given or complete.
   std::optional<localize::MapCorrection> finish_map(const PoseEstimate& pose);
@@ -84,7 +88,7 @@ class PosePipeline {
 
   template <typename Archive>
   void serialize_state(Archive& archive) {
-    archive(odometry_, localizer_, tracker_, registrar_, num_scans_, mapped_, T_map_mapped_, T_odom_scan_,
+    archive(odometry_, localizer_, tracker_, registrar_, num_scans_, mapped_, T_map_mapped_, T_odom_scan_, scan_counts_,
             anchors_in_map_, line_of_sight_, next_calibration_, first_odometry_);
     archive.part(range_pose_);
     archive.part(calibrator_);
@@ -112,6 +116,8 @@ class PosePipeline {
   SiteRegistrar registrar_;
   Pose2 T_start_site_;
   std::optional<Pose3> T_body_gnss_;    ///< present for a robot with a GNSS antenna
+  double max_mapping_tilt_rad_;         ///< tilt above which the SLAM method does not use scans
+  ScanCounts scan_counts_;              ///< of all received scans
   std::size_t num_scans_ = 0;           ///< scans that the localizer has processed
   std::vector<Time> mapped_;            ///< stamps of the scans while the robot maps
   std::vector<Pose2> T_map_mapped_;     ///< [scan] body pose at each of them, as estimated then
