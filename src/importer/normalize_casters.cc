@@ -176,23 +176,49 @@ double Normalizer::take_from_base(double wanted_kg) {
   return taken_kg;
 }
 
-/// Gives the carriers and wheels of very light casters mass of the chassis, and an inertia of twice this mass at the
-/// radius of the wheel: their contact is unstable otherwise.
+/// Gives the carriers and wheels of very light casters mass of the chassis, and those with a small inertia an inertia
+/// of twice this mass at the radius of the wheel: their contact is unstable otherwise.
 void Normalizer::strengthen_casters(double robot_mass_kg) {
-  std::map<std::string, double> parts;  // name to radius of the wheel
+  struct CasterPart {
+    double radius_m = 0.0;  // of the wheel
+    bool rolls = false;
+  };
+  std::map<std::string, CasterPart> parts;
   for (const FoundWheel& wheel : found_.wheels) {
     if (wheel.carrier_type != CarrierType::kCaster) continue;
-    for (const SourceJoint* joint : {wheel.joint, wheel.carrier}) parts[link_name(joint->child)] = wheel.radius_m;
+    for (const SourceJoint* joint : {wheel.carrier, wheel.joint})
+      parts[link_name(joint->child)] = {wheel.radius_m, joint == wheel.joint};
   }
   constexpr double kLight = 0.3;    // to the mass that a part gets
   constexpr double kInertia = 2.0;  // to mass times radius squared
   const double wanted_kg = kSupportMassRatio * robot_mass_kg / static_cast<double>(parts.size());
   for (NormalizedLink& link : result_.links) {
-    if (!parts.contains(link.name) || link.inertial->mass_kg >= kLight * wanted_kg) continue;
+    const auto part = parts.find(link.name);
+    if (part == parts.end()) continue;
     Inertial& inertial = *link.inertial;
+    const double radius_m = part->second.radius_m;
+    if (inertial.mass_kg >= kLight * wanted_kg) {
+      const auto moment_about = [&inertial](const Eigen::Vector3d& axis) {
+        const Eigen::Vector3d in_inertia = inertial.T_link_inertia.rotation.conjugate() * axis;
+        return in_inertia.dot(inertial.inertia * in_inertia);
+      };
+      const double about_swivel = moment_about(Eigen::Vector3d::UnitZ()),
+                   about_axle = moment_about(Eigen::Vector3d::UnitY());
+      const double before = part->second.rolls ? std::min(about_swivel, about_axle) : about_swivel;
+      const double missing = kInertia * wanted_kg * radius_m * radius_m - before;
+      if (missing <= 0.0) continue;
+      inertial.inertia += missing * Eigen::Matrix3d::Identity();
+      assume(link.name,
+             fmt::format("its moment of inertia about {} of {:.3g} kg m2 is raised to {:.3g} kg m2: the contact of "
+                         "casters with less inertia is unstable in the simulation",
+                         part->second.rolls ? "the swivel axis or the axle" : "the swivel axis", before,
+                         before + missing),
+             "<inertia> of the link");
+      continue;
+    }
     const double before_kg = inertial.mass_kg;
     inertial.mass_kg += take_from_base(wanted_kg - before_kg);
-    const double radius_m = parts.at(link.name), moment = kInertia * inertial.mass_kg * radius_m * radius_m;
+    const double moment = kInertia * inertial.mass_kg * radius_m * radius_m;
     inertial.inertia = moment * Eigen::Matrix3d::Identity();
     assume(
         link.name,

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdlib>
 #include <string>
 
@@ -119,6 +120,41 @@ TEST(PublicDescription, ALightCasterGetsMassOfTheChassis) {
                                                     "the chassis, and its moments of inertia to 0.00165 kg m2"),
                                           HasSubstr("| small | its mass of 0.02 kg is raised to 0.331 kg, taken from "
                                                     "the chassis, and its moments of inertia to 0.00165 kg m2")));
+}
+
+// The masses are not small, but the inertias are those of the small parts: without a larger inertia, the contacts of
+// the casters chatter with several m/s2.
+TEST(PublicDescription, ARobotWithCastersOfSmallInertiaStandsStill) {
+  std::string text = link("base_link",
+                          "<inertial><mass value=\"40\"/><inertia ixx=\"0.967\" ixy=\"0\" ixz=\"0\" iyy=\"2.83\" "
+                          "iyz=\"0\" izz=\"3.53\"/></inertial>" +
+                              shape("collision", box(0.9, 0.5, 0.2))) +
+                     wheel("left", "base_link", "0 0.28 -0.05", 0.1, 0.05) +
+                     wheel("right", "base_link", "0 -0.28 -0.05", 0.1, 0.05);
+  for (const auto& [name, x] : {std::pair{"front", 0.38}, {"rear", -0.38}}) {
+    const std::string fork = std::string(name) + "_fork";
+    text += joint(std::string(name) + "_swivel", "continuous", "base_link", fork, fmt::format("{} 0 -0.09", x),
+                  axis("0 0 1")) +
+            link(fork, inertial(0.3, "0 0 0", 0.00018)) +
+            joint(std::string(name) + "_roll", "continuous", fork, name, "-0.03 0 -0.02", axis("0 1 0")) +
+            link(name, inertial(0.3, "0 0 0", 0.00024) + shape("collision", cylinder(0.04, 0.03), "0 0 0", kAcross));
+  }
+  Import import(robot(text));
+  import.load();
+  EXPECT_THAT(import.assumptions(),
+              HasSubstr("| front_fork, rear_fork | its moment of inertia about the swivel axis of "
+                        "0.00018 kg m2 is raised to 0.00104 kg m2"));
+  const std::string level = R"(<mujoco><option timestep="0.002" cone="elliptic"/><worldbody>
+    <geom name="ground" type="plane" size="20 20 1" contype="1" conaffinity="2"/></worldbody></mujoco>)";
+  sim::WheeledRobot standing(level, import.robot.urdf);
+  standing.drive(0.0, 0.0, 1.0);
+  double max_mps2 = 0.0;
+  for (int i = 0; i < 100; ++i) {
+    const Eigen::Vector3d before_mps = standing.velocity_mps();
+    standing.drive(0.0, 0.0, 0.002);
+    max_mps2 = std::max(max_mps2, (standing.velocity_mps() - before_mps).norm() / 0.002);
+  }
+  EXPECT_LT(max_mps2, 0.1);
 }
 
 TEST(PublicDescription, WheelsThatMayKeepTheRobotFromTurningStay) {
