@@ -43,6 +43,38 @@ void Normalizer::add_frame(const std::string& frame, const Pose3& T_base_frame, 
   if (!link.empty()) assume(frame, fmt::format("is the frame of {}", link), fmt::format("--frame {}=LINK", frame));
 }
 
+/// Moves the shapes of the link that carries a lidar to the frame of the lidar: its own beams ignore them. Shapes that
+/// are too large for a housing stay.
+void Normalizer::move_housing(const std::string& frame, const std::string& link) {
+  constexpr double kMaxHousing_m = 0.3;  // distance from the origin of the beams
+  if (link == base_ || !(frame.starts_with("lidar") || frame == "scanner")) return;
+  const auto name = link_names_.find(link);
+  if (name == link_names_.end()) return;
+  NormalizedLink& housing = result_.links.back();
+  const auto carrier = std::ranges::find(result_.links, name->second, &NormalizedLink::name);
+  if (carrier == result_.links.end() || (carrier->visuals.empty() && carrier->collisions.empty())) return;
+  const Pose3 T_frame_link = housing.joint->T_parent_link.inverse() * T_base(link);
+  const SourceLink& source = source_.link(link);
+  for (const std::vector<Shape>* shapes : {&source.visuals, &source.collisions}) {
+    for (const Shape& shape : *shapes) {
+      for (const Eigen::Vector3d& point : outline(shape)) {
+        if ((T_frame_link * point).norm() > kMaxHousing_m) return;
+      }
+    }
+  }
+  const auto move = [&](std::vector<NormalizedShape>& from, std::vector<NormalizedShape>& to) {
+    for (NormalizedShape& shape : from) {
+      shape.shape.T_link_shape = T_frame_link * shape.shape.T_link_shape;
+      to.push_back(std::move(shape));
+    }
+    from.clear();
+  };
+  move(carrier->visuals, housing.visuals);
+  move(carrier->collisions, housing.collisions);
+  assume(frame, fmt::format("the shapes of {} are its housing: its own beams ignore them", link),
+         "<visual> and <collision> of the link");
+}
+
 namespace {
 
 /// Returns a part of an assumption with the links whose names contain one of the words; empty if there are none. Only
@@ -96,6 +128,7 @@ void Normalizer::add_sensors() {
     if (!chassis_.contains(link))
       source_.fail(source_.link(link).line, link, fmt::format("frame {}: must be on the chassis", frame));
     add_frame(frame, T_base(link), "");
+    move_housing(frame, link);
     added.insert(frame);
   }
   for (const SourceSensor& sensor : source_.sensors) {
@@ -157,6 +190,7 @@ void Normalizer::check_balance() {
   double margin_m = polygon.size() < 3 ? 0.0 : std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < polygon.size() && polygon.size() >= 3; ++i) {
     const Eigen::Vector2d side = (polygon[(i + 1) % polygon.size()] - polygon[i]).normalized(),
+    move_housing(frame, sensor.link);
                           to = center - polygon[i];
     margin_m = std::min(margin_m, side.x() * to.y() - side.y() * to.x());
   }

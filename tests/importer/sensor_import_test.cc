@@ -75,6 +75,28 @@ std::string lidar_on(const std::string& name, const std::string& xyz, const std:
              name, half_fov_rad, half_fov_rad, range_m);
 }
 
+TEST(ImportSensors, TheHousingOfALidarMovesToItsFrameSoThatItsBeamsIgnoreIt) {
+  const std::string housing = shape("visual", cylinder(0.04, 0.06), "0 0 -0.01") + shape("collision", sphere(0.03));
+  std::string laser = lidar_on("laser", "0.2 0 0.3", "0.5", 2.356, 30.0);
+  laser.insert(laser.find("</link>"), housing);
+  Import import(robot(chassis() + two_wheels() + caster() + laser));
+  import.load();
+  const std::string& urdf = import.robot.urdf;
+  const auto link_text = [&](const std::string& name) {
+    const std::size_t begin = urdf.find("<link name=\"" + name + "\"");
+    return urdf.substr(begin, urdf.find("<link name", begin + 1) - begin);
+  };
+  EXPECT_THAT(link_text("lidar"), AllOf(HasSubstr("<sphere radius=\"0.03\""), HasSubstr("xyz=\"0 0 -0.01\"")));
+  EXPECT_THAT(link_text("laser"), Not(HasSubstr("geometry")));
+  EXPECT_THAT(import.assumptions(), HasSubstr("| lidar | the shapes of laser are its housing"));
+
+  std::string tower = lidar_on("tower", "0.2 0 0.3", "0", 2.356, 30.0);
+  tower.insert(tower.find("</link>"), shape("collision", box(0.1, 0.1, 0.8)));
+  Import large(robot(chassis() + two_wheels() + caster() + tower));
+  large.load();
+  EXPECT_THAT(large.assumptions(), Not(HasSubstr("housing")));
+}
+
 TEST(ImportSensors, ASecondLidarBecomesLidarRearWithThePresetOfItsNumbersAndAThirdIsLeftOut) {
   Import import(robot(chassis() + two_wheels() + caster() + lidar_on("bow", "0.2 0 0.3", "0", 2.356, 30.0) +
                       lidar_on("stern", "-0.2 0 0.3", "3.14159265", 2.356, 25.0) +
