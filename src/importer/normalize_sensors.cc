@@ -121,6 +121,45 @@ void Normalizer::choose_preset(const std::string& frame, const SourceSensor& sen
   assume(frame, fmt::format("is simulated as {}, by its field of view and its range", preset), key);
 }
 
+/// Returns the sensors of the file with the 2D lidars in the order in which they get frames: the one that looks most
+/// forward, the one that looks most backward, then the others.
+std::vector<SourceSensor> Normalizer::sensors_in_order() {
+  constexpr double kSameYaw_rad = 0.02;
+  const auto chosen = options_.frames.find("lidar");
+  const bool has_lidar = chosen != options_.frames.end();
+  std::vector<SourceSensor> sensors = source_.sensors, lidars;
+  std::vector<std::size_t> slots;
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    if (sensors[i].frame != "lidar" || !chassis_.contains(sensors[i].link)) continue;
+    if (has_lidar && chosen->second == sensors[i].link) continue;
+    slots.push_back(i);
+    lidars.push_back(sensors[i]);
+  }
+  const auto pose_of = [this](const SourceSensor& sensor) { return T_base(sensor.link) * sensor.T_link_sensor; };
+  const auto turn_of = [&](const SourceSensor& sensor) {
+    return std::round(std::abs(to_yaw(pose_of(sensor).rotation)) / kSameYaw_rad);
+  };
+  std::ranges::stable_sort(lidars, [&](const SourceSensor& a, const SourceSensor& b) {
+    if (turn_of(a) != turn_of(b)) return turn_of(a) < turn_of(b);
+    return pose_of(a).position.x() > pose_of(b).position.x() + 1e-6;
+  });
+  if (lidars.size() > 1) std::rotate(lidars.begin() + (has_lidar ? 0 : 1), lidars.end() - 1, lidars.end());
+  if (lidars.size() > 1 && !has_lidar) {
+    const auto place = [&](const SourceSensor& sensor) {
+      const Pose3 T_base_lidar = pose_of(sensor);
+      return fmt::format("{} at x = {:.2f}, y = {:.2f} m, turned by {:.0f} degrees", sensor.link,
+                         T_base_lidar.position.x(), T_base_lidar.position.y(),
+                         std::round(kDegPerRad * to_yaw(T_base_lidar.rotation)) + 0.0);
+    };
+    assume("lidar, lidar_rear",
+           fmt::format("are the lidars that look most forward and most backward: {}; {}", place(lidars[0]),
+                       place(lidars[1])),
+           "--frame lidar=LINK, --frame lidar_rear=LINK");
+  }
+  for (std::size_t i = 0; i < slots.size(); ++i) sensors[slots[i]] = lidars[i];
+  return sensors;
+}
+
 void Normalizer::add_sensors() {
   std::map<std::string, std::vector<std::string>> others;
   std::set<std::string> added;
@@ -131,7 +170,7 @@ void Normalizer::add_sensors() {
     move_housing(frame, link);
     added.insert(frame);
   }
-  for (const SourceSensor& sensor : source_.sensors) {
+  for (const SourceSensor& sensor : sensors_in_order()) {
     if (!chassis_.contains(sensor.link)) {
       assume(sensor.link, fmt::format("its sensor of type {} is on a moving part and left out", sensor.frame),
              fmt::format("--frame {}=LINK", sensor.frame));
@@ -149,6 +188,7 @@ void Normalizer::add_sensors() {
       continue;
     }
     add_frame(frame, T_base(sensor.link) * sensor.T_link_sensor, sensor.link);
+    move_housing(frame, sensor.link);
     choose_preset(frame, sensor);
   }
   for (const auto& [frame, links] : others)
@@ -190,7 +230,6 @@ void Normalizer::check_balance() {
   double margin_m = polygon.size() < 3 ? 0.0 : std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < polygon.size() && polygon.size() >= 3; ++i) {
     const Eigen::Vector2d side = (polygon[(i + 1) % polygon.size()] - polygon[i]).normalized(),
-    move_housing(frame, sensor.link);
                           to = center - polygon[i];
     margin_m = std::min(margin_m, side.x() * to.y() - side.y() * to.x());
   }

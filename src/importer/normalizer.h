@@ -147,9 +147,10 @@ class Normalizer {
   void check_clearance();
   void check_ramps();
   void check_mass();
+  std::vector<SourceSensor> sensors_in_order();
   void add_frame(const std::string& frame, const Pose3& T_base_frame, const std::string& link);
-  void choose_preset(const std::string& frame, const SourceSensor& sensor);
   void move_housing(const std::string& frame, const std::string& link);
+  void choose_preset(const std::string& frame, const SourceSensor& sensor);
   void finish();
 
   std::vector<const SourceLink*> moving_group(const SourceJoint& joint) const;

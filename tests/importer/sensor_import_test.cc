@@ -75,6 +75,24 @@ std::string lidar_on(const std::string& name, const std::string& xyz, const std:
              name, half_fov_rad, half_fov_rad, range_m);
 }
 
+TEST(ImportSensors, OfTwoLidarsTheOneThatLooksForwardIsTheFirstInAnyOrderOfTheFile) {
+  const std::string bow = lidar_on("bow", "0.2 0.15 0.3", "0.785", 2.356, 30.0),
+                    stern = lidar_on("stern", "-0.2 -0.15 0.3", "-2.356", 2.356, 30.0);
+  for (const std::string& lidars : {bow + stern, stern + bow}) {
+    Import import(robot(chassis() + two_wheels() + caster() + lidars));
+    const RobotDescription& robot = import.load();
+    EXPECT_THAT(robot.T_body("lidar").position, VectorNear(Eigen::Vector3d(0.2, 0.15, 0.3), 1e-9));
+    EXPECT_THAT(robot.T_body("lidar_rear").position, VectorNear(Eigen::Vector3d(-0.2, -0.15, 0.3), 1e-9));
+    EXPECT_THAT(import.assumptions(),
+                HasSubstr("| lidar, lidar_rear | are the lidars that look most forward and most backward: bow at x = "
+                          "0.20, y = 0.15 m, turned by 45 degrees; stern at x = -0.20, y = -0.15 m, turned by -135 "
+                          "degrees |"));
+  }
+  Import chosen(robot(chassis() + two_wheels() + caster() + bow + stern));
+  chosen.options.frames["lidar"] = "stern";
+  EXPECT_THAT(chosen.load().T_body("lidar_rear").position, VectorNear(Eigen::Vector3d(0.2, 0.15, 0.3), 1e-9));
+}
+
 TEST(ImportSensors, TheHousingOfALidarMovesToItsFrameSoThatItsBeamsIgnoreIt) {
   const std::string housing = shape("visual", cylinder(0.04, 0.06), "0 0 -0.01") + shape("collision", sphere(0.03));
   std::string laser = lidar_on("laser", "0.2 0 0.3", "0.5", 2.356, 30.0);
