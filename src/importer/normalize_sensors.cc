@@ -145,15 +145,15 @@ std::vector<SourceSensor> Normalizer::sensors_in_order() {
   });
   if (lidars.size() > 1) std::rotate(lidars.begin() + (has_lidar ? 0 : 1), lidars.end() - 1, lidars.end());
   if (lidars.size() > 1 && !has_lidar) {
-    const auto place = [&](const SourceSensor& sensor) {
+    const auto description_of = [&](const SourceSensor& sensor) {
       const Pose3 T_base_lidar = pose_of(sensor);
       return fmt::format("{} at x = {:.2f}, y = {:.2f} m, turned by {:.0f} degrees", sensor.link,
                          T_base_lidar.position.x(), T_base_lidar.position.y(),
                          std::round(kDegPerRad * to_yaw(T_base_lidar.rotation)) + 0.0);
     };
     assume("lidar, lidar_rear",
-           fmt::format("are the lidars that look most forward and most backward: {}; {}", place(lidars[0]),
-                       place(lidars[1])),
+           fmt::format("are the lidars that look most forward and most backward: {}; {}", description_of(lidars[0]),
+                       description_of(lidars[1])),
            "--frame lidar=LINK, --frame lidar_rear=LINK");
   }
   for (std::size_t i = 0; i < slots.size(); ++i) sensors[slots[i]] = lidars[i];
