@@ -67,7 +67,9 @@ std::string check_table(const CheckResult& result, TextStyle style) {
                         key_figures(each));
     for (const std::string& failure : each.failures) text += fmt::format("{:>25}{}\n", "", failure);
   }
-  return text + "\n" + verdict_text(result) + "\n";
+  text += "\n";
+  for (const std::string& warning : result.warnings) text += "warning: " + warning + "\n";
+  return text + verdict_text(result) + "\n";
 }
 
 io::Metrics check_json(const CheckResult& result) {
@@ -85,6 +87,7 @@ io::Metrics check_json(const CheckResult& result) {
                         {"max_acceleration_mps2", rounded(limits.max_acceleration_mps2)},
                         {"max_yaw_acceleration_radps2", rounded(limits.max_yaw_acceleration_radps2)},
                         {"min_turning_radius_m", rounded(limits.min_turning_radius_m)}}},
+                      {"warnings", result.warnings},
                       {"maneuvers", io::Metrics::array()}};
   if (limits.max_lateral_speed_mps > 0.0)
     json["limits"]["max_lateral_speed_mps"] = rounded(limits.max_lateral_speed_mps);

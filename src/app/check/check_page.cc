@@ -131,6 +131,7 @@ std::vector<std::pair<std::string, std::string>> facts_of(const CheckResult& res
       {"maximum speed", fmt::format("{:.2f} m/s", robot.limits.max_speed_mps)},
       {"maximum yaw rate", fmt::format("{:.2f} rad/s", robot.limits.max_yaw_rate_radps)},
       {"seed", fmt::format("{}", robot.seed)}};
+  if (!result.warnings.empty()) facts.emplace_back("warnings", join(result.warnings, "; "));
   if (!robot.overrides.empty()) facts.emplace_back("settings", join(robot.overrides, ", "));
   facts.emplace_back("patrol", PATROL_VERSION);
   return facts;

@@ -107,6 +107,17 @@ DriveLimits limits_of(const CheckRobot& robot) {
   }
 }
 
+/// Returns the lidars that the settings enable and the robot has.
+std::vector<CheckLidar> lidars_of(const sim::SensorSuiteSettings& sensors, const RobotDescription& robot) {
+  std::vector<CheckLidar> lidars = {{"lidar", sensors.lidar, sim::kRayLidar2d},
+                                    {"lidar_rear", sensors.lidar_rear, sim::kRayLidarRear},
+                                    {"lidar3d", sensors.lidar3d, sim::kRayLidar3d}};
+  std::erase_if(lidars, [&](const CheckLidar& lidar) {
+    return !lidar.settings.enabled || !robot.T_body_sensor.contains(lidar.frame);
+  });
+  return lidars;
+}
+
 void disable_other_sensors(sim::SensorSuiteSettings& sensors) {
   Sensors::for_each([&]<typename Message>(std::type_identity<Message>) {
     if constexpr (HasSensorSettings<Message>) {
@@ -160,6 +171,7 @@ CheckRobot load_check_robot(const std::string& name, const std::vector<std::stri
   robot.simulator.locomotion = scenario.locomotion;
   robot.simulator.track_drive = scenario.track_drive;
   robot.simulator.wheel_drive = scenario.wheel_drive;
+  robot.lidars = lidars_of(robot.simulator.sensors, robot.description);
   disable_other_sensors(robot.simulator.sensors);
   robot.kind = kind_of(robot.description);
   robot.effective_gauge_ratio = effective_gauge_ratio_of(robot);

@@ -8,6 +8,8 @@
 
 #include "core/geometry/angles.h"
 #include "core/robot_description.h"
+#include "core/sensors/lidar.h"
+#include "sim/lidar_scene.h"
 #include "sim/simulator/simulator.h"
 
 namespace patrol::app {
@@ -26,6 +28,13 @@ struct DriveLimits {
   double max_yaw_acceleration_radps2 = 0.0;  ///< of the commanded yaw rate
   double min_turning_radius_m = 0.0;         ///< 0: the robot turns in place
   double max_lateral_speed_mps = 0.0;        ///< of mecanum wheels; 0: the check has no lateral motion
+};
+
+/// Lidar of a robot.
+struct CheckLidar {
+  std::string frame;
+  LidarSettings settings;
+  sim::RayMask housing;  ///< shapes that its own beams ignore
 };
 
 /// Robot of a check drive.
@@ -47,6 +56,7 @@ struct CheckRobot {
   /// drive have as-built radii at opposite ends of their tolerance.
   double max_heading_drift_rad_per_m = kDegree;
   double reaction_s = 0.1;           ///< time in which the firmware follows a command: with legs a period of the gait
+  std::vector<CheckLidar> lidars;    ///< that the settings enable
   sim::SimulatorSettings simulator;  ///< without world and start pose
 
   bool turns_in_place() const { return limits.min_turning_radius_m == 0.0; }

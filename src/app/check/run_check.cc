@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "app/check/blocked_beams.h"
 #include "app/check/check_drive.h"
 #include "app/check/maneuver_figures.h"
 #include "app/common/temporary_folder.h"
@@ -51,7 +52,7 @@ CheckResult run_check(const CheckRobot& robot, const CheckProgress& progress) {
   const std::vector<Maneuver> maneuvers = maneuvers_of(robot);
   double total_s = 0.0, done_s = 0.0;
   for (const Maneuver& maneuver : maneuvers) total_s += maneuver.duration_s;
-  CheckResult result{.robot = robot, .maneuvers = {}};
+  CheckResult result{.robot = robot, .warnings = warnings_of(blocked_beams(robot, folder.path())), .maneuvers = {}};
   for (const Maneuver& maneuver : maneuvers) {
     const auto on_time = [&](double time_s) {
       progress(maneuver.title, (done_s + std::min(time_s, maneuver.duration_s)) / total_s);

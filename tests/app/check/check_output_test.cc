@@ -42,6 +42,15 @@ TEST(CheckOutput, TheTableHasOneLinePerManeuverAndTheReasonOfAFailureBelow) {
   EXPECT_THAT(table, HasSubstr("1 of 2 maneuvers failed: turn.\n"));
 }
 
+TEST(CheckOutput, AWarningIsPrintedAboveTheVerdictAndIsInJsonAndPage) {
+  CheckResult result = check_of(0.05);
+  result.warnings = {"all beams of lidar hit the robot itself: its frame is enclosed in base_link"};
+  EXPECT_THAT(check_table(result, TextStyle::kPlain),
+              HasSubstr("\nwarning: " + result.warnings[0] + "\nAll 2 maneuvers passed.\n"));
+  EXPECT_EQ(check_json(result)["warnings"][0], result.warnings[0]);
+  EXPECT_THAT(report::to_html(check_page(result, {})), HasSubstr(result.warnings[0]));
+}
+
 TEST(CheckOutput, TheJsonHasFiguresLimitsAndVerdicts) {
   const io::Metrics json = check_json(check_of(0.3));
   EXPECT_EQ(json["verdict"], "failed");

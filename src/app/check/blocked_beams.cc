@@ -1,0 +1,91 @@
+#include "app/check/blocked_beams.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "app/check/check_world.h"
+#include "core/frames.h"
+#include "core/geometry/angles.h"
+#include "core/text.h"
+#include "io/files/atomic_file.h"
+#include "sim/lidar_scene.h"
+#include "sim/model_assembly.h"
+#include "sim/mujoco.h"
+
+namespace patrol::app {
+namespace {
+
+/// Casts all beams of a lidar at the robot alone.
+BlockedBeams beams_on_robot(const CheckLidar& lidar, const Pose3& T_world_lidar, const sim::LidarScene& scene) {
+  const LidarSettings& settings = lidar.settings;
+  const std::uint32_t mask = sim::kRayEverything & ~std::uint32_t{sim::kRayScenery} & ~std::uint32_t{lidar.housing};
+  std::map<std::string, int> num_hits;
+  int num_blocked = 0;
+  for (int ring = 0; ring < settings.rings; ++ring) {
+    const double part = settings.rings > 1 ? static_cast<double>(ring) / (settings.rings - 1) : 0.0;
+    const double elevation = to_rad(std::lerp(settings.elevation_min_deg, settings.elevation_max_deg, part));
+    for (int beam = 0; beam < settings.beams; ++beam) {
+      const double azimuth = to_rad(settings.fov_deg * (static_cast<double>(beam) / settings.beams - 0.5));
+      const Eigen::Vector3d direction{std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
+                                      std::sin(elevation)};
+      const std::optional<sim::RayHit> hit =
+          scene.cast(T_world_lidar.position, T_world_lidar.rotation * direction, settings.range_max_m, mask);
+      if (!hit) continue;
+      ++num_blocked;
+      ++num_hits[std::string(sim::name_of(scene.model(), mjOBJ_BODY, scene.model().geom_bodyid[hit->geom]))];
+    }
+  }
+  std::vector<std::pair<int, std::string>> links;
+  for (const auto& [link, num] : num_hits) links.emplace_back(-num, link);
+  std::ranges::sort(links);
+  BlockedBeams blocked{
+      .frame = lidar.frame, .ratio = static_cast<double>(num_blocked) / (settings.rings * settings.beams), .links = {}};
+  for (const auto& [num, link] : links) blocked.links.push_back(link);
+  return blocked;
+}
+
+}  // namespace
+
+std::vector<BlockedBeams> blocked_beams(const CheckRobot& robot, const std::filesystem::path& folder) {
+  if (robot.lidars.empty()) return {};
+  const std::filesystem::path world_xml = folder / "blocked_beams.xml";
+  io::save_text(world_xml, plane_world().mjcf);
+  const sim::AssembledModel model = sim::assemble_model(world_xml.string(), robot.simulator.robot_urdf,
+                                                        robot.description, {}, {}, sim::Textures::kNone);
+  const sim::DataPtr data = sim::make_data(*model.view);
+  std::ranges::copy(model.start_qpos, data->qpos);
+  mj_kinematics(model.view.get(), data.get());
+  sim::LidarScene scene(*model.view);
+  scene.update(*data);
+  const int body = mj_name2id(model.view.get(), mjOBJ_BODY, frame_id::kBody);
+  const mjtNum* p = data->xpos + 3 * body;
+  const mjtNum* q = data->xquat + 4 * body;
+  const Pose3 T_world_body{{p[0], p[1], p[2]}, Eigen::Quaterniond(q[0], q[1], q[2], q[3])};
+  std::vector<BlockedBeams> result;
+  for (const CheckLidar& lidar : robot.lidars)
+    result.push_back(beams_on_robot(lidar, T_world_body * robot.description.T_body(lidar.frame), scene));
+  return result;
+}
+
+std::vector<std::string> warnings_of(const std::vector<BlockedBeams>& lidars) {
+  constexpr double kManyBeams = 0.05;
+  std::vector<std::string> warnings;
+  for (const BlockedBeams& lidar : lidars) {
+    if (lidar.ratio <= kManyBeams) continue;
+    warnings.push_back(lidar.ratio < 1.0
+                           ? fmt::format("{:.0f} % of the beams of {} hit the robot itself: {}", 100.0 * lidar.ratio,
+                                         lidar.frame, join(lidar.links, ", "))
+                           : fmt::format("all beams of {} hit the robot itself: its frame is enclosed in {}",
+                                         lidar.frame, join(lidar.links, ", ")));
+  }
+  return warnings;
+}
+
+}  // namespace patrol::app
