@@ -167,7 +167,12 @@ void Stack::advance_mission(const Period& period) {
                                                            .inspection = inspection_,
                                                            .teleop = std::exchange(new_teleop_, std::nullopt)});
   for (Event& event : output.events) output_.publish(std::move(event));
-  if (output.is_map_complete) finish_map(period.now, period.pose);
+  if (output.is_map_complete) {
+    // The mission may be over, with a drive that saved no goals: report the failure all the same.
+    if (const std::optional<std::string> failure = parts_.pose.mapping_failure())
+      output_.publish(parts_.mission->abort(period.now, EventKind::kMissionFailed, *failure));
+    finish_map(period.now, period.pose);
+  }
   relocalize(output.relocalization, period.odometry);
   task_ = std::move(output.task);
 }
