@@ -56,10 +56,13 @@ void add_bisect(CLI::App& app, Call& call) {
 constexpr const char* kReferenceHelp = "Reference trajectory (TUM)";
 constexpr const char* kRelationsHelp = "Reference relations (Freiburg: t1 t2 x y z roll pitch yaw)";
 
-void add_relation_settings(CLI::App& command, score::RelationSettings& relations) {
-  command.add_option("--max-dt-s", relations.max_dt_s, "Maximum time difference for nearest-pose association, s")
-      ->capture_default_str();
-  command.add_option("--reference-x-m", relations.reference_x_m, "Offset of the reference point along body x, m")
+void add_association(CLI::App& command, AssociationOptions& association) {
+  command.add_option("--max-dt-s", association.max_dt_s,
+                     "Maximum time difference for nearest-pose association, s (default: 0.02 for relations, 0.01 for "
+                     "the alignment to a reference)");
+  command
+      .add_option("--reference-x-m", association.reference_x_m,
+                  "Offset of the relations' reference point along body x, m")
       ->capture_default_str();
 }
 
@@ -70,7 +73,7 @@ void add_score(CLI::App& app, Call& call) {
   command->add_option("--estimate", score.estimate, "Estimated trajectory (TUM)");
   command->add_option("--reference", score.reference, kReferenceHelp);
   command->add_option("--relations", score.relations, kRelationsHelp);
-  add_relation_settings(*command, score.relation_settings);
+  add_association(*command, score.association);
   command->add_option("--map", score.map, "Built map (map_server YAML)");
   command->add_option("--reference-map", score.reference_map, "Reference map (map_server YAML)");
   command->add_flag("--all", score.show_all, kAllHelp);
@@ -149,7 +152,7 @@ void add_feed(CLI::App& app, Call& call) {
   command->add_option("--set", feed.overrides, kSetHelp)->take_all();
   command->add_option("--relations", feed.relations, kRelationsHelp);
   command->add_option("--reference", feed.reference, kReferenceHelp);
-  add_relation_settings(*command, feed.relation_settings);
+  add_association(*command, feed.association);
   command->add_option("--out", feed.out, kOutHelp)->capture_default_str();
   command->add_flag("--all", feed.show_all, kAllHelp);
   add_json(*command, feed.form);

@@ -14,6 +14,7 @@
 #include "app/plan/plan_options.h"
 #include "app/realism/log_on_site.h"
 #include "score/pose/relation_error.h"
+#include "score/pose/trajectory_error.h"
 
 /// Functions of the program's commands, one each. Results are printed to standard output, messages to standard error.
 namespace patrol::app {
@@ -56,13 +57,26 @@ struct BisectOptions {
 };
 ExitCode bisect_command(const BisectOptions& options);
 
-/// Input of `patrol score`: a run directory, two trajectories, a trajectory and relations, or two maps.
+/// Assignment of the poses of an estimate to the stamps of a reference.
+struct AssociationOptions {
+  std::optional<double> max_dt_s;  ///< default: that of RelationSettings, of a reference score::kMaxAlignedDt
+  double reference_x_m = 0.0;      ///< of relations only
+
+  score::RelationSettings of_relations() const {
+    score::RelationSettings settings{.reference_x_m = reference_x_m};
+    if (max_dt_s) settings.max_dt_s = *max_dt_s;
+    return settings;
+  }
+  Time of_reference() const { return max_dt_s ? from_seconds(*max_dt_s) : score::kMaxAlignedDt; }
+};
+
+/// Input of `patrol score`: a run directory, an estimate and a reference trajectory, relations or both, or two maps.
 struct ScoreOptions {
   std::filesystem::path run;
   std::filesystem::path estimate;
   std::filesystem::path reference;
   std::filesystem::path relations;
-  score::RelationSettings relation_settings;
+  AssociationOptions association;
   std::filesystem::path map;
   std::filesystem::path reference_map;
   bool show_all = false;  ///< print every metric of a run
@@ -126,7 +140,7 @@ struct FeedOptions {
   std::vector<std::string> overrides;
   std::filesystem::path relations;  ///< reference relations of a recorded log; empty: none
   std::filesystem::path reference;  ///< reference trajectory of a recorded log; empty: none
-  score::RelationSettings relation_settings;
+  AssociationOptions association;
   std::filesystem::path out = "out/feed";
   bool show_all = false;  ///< print every metric
   ResultForm form = ResultForm::kText;

@@ -124,7 +124,7 @@ struct LogReferences {
 };
 
 LogReferences load_references(const FeedOptions& options) {
-  validate(options.relation_settings, "relations");
+  validate(options.association.of_relations(), "relations");
   LogReferences references;
   if (!options.relations.empty()) references.relations = io::load_relations(options.relations);
   if (!options.reference.empty()) references.trajectory = io::load_tum(options.reference);
@@ -143,8 +143,9 @@ std::optional<FedEstimate> score_estimate(const FeedOptions& options, const LogR
   const Trajectory trajectory = io::load_tum(options.out / file, io::SameStamps::kKeepFirst);
   try {
     if (references.relations)
-      estimate.relations = score::relation_error(trajectory, *references.relations, options.relation_settings);
-    if (references.trajectory) estimate.reference = score_trajectories(trajectory, *references.trajectory);
+      estimate.relations = score::relation_error(trajectory, *references.relations, options.association.of_relations());
+    if (references.trajectory)
+      estimate.reference = score_trajectories(trajectory, *references.trajectory, options.association.of_reference());
   } catch (const InputError& error) {  // too few poses, or none at the times of the reference
     estimate.why_not_scored = error.what();
   }

@@ -85,31 +85,44 @@ Pose2 map_in_reference(const std::filesystem::path& map, const std::filesystem::
   return io::load_registration(run.registration()).T_site_map;
 }
 
+/// Scores an estimate by a reference trajectory, by relations, or by both.
+ExitCode score_estimate_file(const ScoreOptions& options) {
+  std::size_t num_same_stamps = 0;
+  const Trajectory estimate = io::load_tum(options.estimate, io::SameStamps::kKeepFirst, &num_same_stamps);
+  io::Metrics metrics;
+  std::string text;
+  if (!options.relations.empty()) {
+    const score::RelationError error =
+        score::relation_error(estimate, io::load_relations(options.relations), options.association.of_relations());
+    metrics = relation_json(error);
+    text += relation_table(error);
+  }
+  if (!options.reference.empty()) {
+    const io::Metrics by_reference =
+        score_trajectories(estimate, io::load_tum(options.reference), options.association.of_reference());
+    metrics.update(by_reference);
+    text += score_table(by_reference, {});
+  }
+  metrics["same_stamps"] = num_same_stamps;
+  if (num_same_stamps > 0)
+    text +=
+        fmt::format("\n{} poses of the estimate left out: each has the stamp of the previous pose\n", num_same_stamps);
+  print_result(options.form, text, metrics);
+  return ExitCode::kDone;
+}
+
 }  // namespace
 
 ExitCode score_command(const ScoreOptions& options) {
-  const bool is_pair_of_trajectories = !options.estimate.empty() && !options.reference.empty();
-  const bool is_relations = !options.estimate.empty() && !options.relations.empty();
+  const bool has_truth = !options.reference.empty() || !options.relations.empty();
   const bool is_pair_of_maps = !options.map.empty() && !options.reference_map.empty();
-  validate(options.relation_settings, "relations");
+  validate(options.association.of_relations(), "relations");
   if (!options.run.empty()) {
     if (const std::string option = file_option_of(options); !option.empty())
       throw InputError(fmt::format("{}: excludes a run directory", option));
     return score_directory(options);
   }
-  if (is_relations) {
-    const Trajectory estimate = io::load_tum(options.estimate, io::SameStamps::kKeepFirst);
-    const score::RelationError error =
-        score::relation_error(estimate, io::load_relations(options.relations), options.relation_settings);
-    print_result(options.form, relation_table(error), relation_json(error));
-    return ExitCode::kDone;
-  }
-  if (is_pair_of_trajectories) {
-    const io::Metrics metrics =
-        score_trajectories(io::load_tum(options.estimate, io::SameStamps::kKeepFirst), io::load_tum(options.reference));
-    print_result(options.form, score_table(metrics, {}), metrics);
-    return ExitCode::kDone;
-  }
+  if (!options.estimate.empty() && has_truth) return score_estimate_file(options);
   if (is_pair_of_maps) {
     const io::Metrics metrics = score_maps(io::load_map(options.map), io::load_map(options.reference_map),
                                            map_in_reference(options.map, options.reference_map));

@@ -4,6 +4,7 @@
 #include "app/scoring/run_references.h"
 #include "app/scoring/run_scans.h"
 #include "app/scoring/score_json.h"
+#include "core/error.h"
 
 namespace patrol::app {
 
@@ -36,12 +37,20 @@ io::Metrics metrics_of(const ScoredRun& run) {
   return metrics;
 }
 
-io::Metrics score_trajectories(const Trajectory& estimate, const Trajectory& reference) {
+io::Metrics score_trajectories(const Trajectory& estimate, const Trajectory& reference, Time max_dt) {
   const Pose2 T_reference_estimate = score::align_at_start(estimate, reference);
+  const score::TrajectoryError error = score::trajectory_error(estimate, T_reference_estimate, reference);
   io::Metrics metrics;
-  metrics["pose"] = to_json(score::trajectory_error(estimate, T_reference_estimate, reference));
-  metrics["pose"]["coverage"] = score::time_coverage(estimate, reference);
-  metrics["pose"]["aligned"] = to_json(score::aligned_error(estimate, reference));
+  io::Metrics& pose = metrics["pose"];
+  pose = to_json(error);
+  pose["left_out"] = estimate.size() - error.num_poses;
+  pose["coverage"] = score::time_coverage(estimate, reference);
+  try {
+    pose["aligned"] = to_json(score::aligned_error(estimate, reference, max_dt));
+  } catch (const InputError& reason) {  // the errors in the frame of the start do not need an alignment
+    pose["aligned"] = nullptr;
+    pose["not_aligned"] = reason.what();
+  }
   return metrics;
 }
 

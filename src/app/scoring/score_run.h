@@ -13,6 +13,7 @@
 #include "core/trajectory.h"
 #include "io/json/metrics_json.h"
 #include "io/points/station_scans.h"
+#include "score/pose/trajectory_error.h"
 #include "score/run/run_score.h"
 
 namespace patrol::app {
@@ -42,8 +43,11 @@ io::Metrics metrics_of(const ScoredRun& run);
 void save_scored_run(const RunDirectory& directory, const ScoredRun& run, const Scenario& scenario);
 
 /// Scores any two trajectories at the stamps of the estimate: metrics `pose.*`, with `pose.coverage` as the fraction of
-/// the reference's time that they concern, and `pose.aligned.*`.
-io::Metrics score_trajectories(const Trajectory& estimate, const Trajectory& reference);
+/// the reference's time that they concern, `pose.left_out` as the number of poses outside the reference's time or in
+/// its holes, and `pose.aligned.*`. Without a unique alignment `pose.aligned` is null and `pose.not_aligned` is the
+/// reason. `max_dt`: maximum difference of stamps of the pairs that are aligned.
+io::Metrics score_trajectories(const Trajectory& estimate, const Trajectory& reference,
+                               Time max_dt = score::kMaxAlignedDt);
 
 /// Scores any two maps: metrics `map.*`. `T_reference_built`: pose of the frame of the built map in that of the
 /// reference.

@@ -107,6 +107,13 @@ double LineTokenizer::number(const char* what) {
   return value;
 }
 
+double LineTokenizer::distance(const char* what) {
+  const double distance_m = number(what);
+  if (std::abs(distance_m) > kMaxDistance_m)
+    throw ParseError(fmt::format("{} {:.4g} m is off the earth", what, distance_m));
+  return distance_m;
+}
+
 std::int64_t LineTokenizer::integer(const char* what, std::int64_t min, std::int64_t max) {
   const std::string_view text = word(what);
   std::int64_t value = 0;
@@ -119,8 +126,12 @@ std::int64_t LineTokenizer::integer(const char* what, std::int64_t min, std::int
 Time LineTokenizer::stamp(const char* what) {
   const std::string_view text = word(what);
   const std::optional<Time> stamp = parse_stamp(text);
-  if (!stamp) throw ParseError(fmt::format("{} {} is not a time in seconds", what, quoted(text)));
-  return *stamp;
+  if (stamp) return *stamp;
+  double number = 0.0;
+  if (parse_all(text, number) && std::isfinite(number))
+    throw ParseError(fmt::format("{} {} is out of range: must be at most {:g} s", what, quoted(text),
+                                 static_cast<double>(kMaxSeconds)));
+  throw ParseError(fmt::format("{} {} is not a time in seconds", what, quoted(text)));
 }
 
 Pose2 LineTokenizer::pose(const char* what) {

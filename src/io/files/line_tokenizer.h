@@ -40,6 +40,8 @@ class LineTokenizer {
   double any_number(const char* what);
   /// Reads a finite number.
   double number(const char* what);
+  /// Reads a coordinate, m: at most 100,000 km.
+  double distance(const char* what);
   std::int64_t integer(const char* what, std::int64_t min, std::int64_t max);
   Time stamp(const char* what);
   /// Reads a pose x y yaw; m, rad. At most 100,000 km from the origin; the yaw is wrapped.

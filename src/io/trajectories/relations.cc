@@ -13,8 +13,8 @@ PoseRelation parse_relation(LineTokenizer fields) {
   PoseRelation relation;
   relation.from = fields.stamp("t1");
   relation.to = fields.stamp("t2");
-  relation.T_from_to.x = fields.number("x");
-  relation.T_from_to.y = fields.number("y");
+  relation.T_from_to.x = fields.distance("x");
+  relation.T_from_to.y = fields.distance("y");
   for (const char* const what : {"z", "roll", "pitch"}) fields.number(what);
   relation.T_from_to.yaw = wrap_angle(fields.number("yaw"));
   if (!fields.is_empty()) throw ParseError("more than eight numbers");

@@ -17,7 +17,7 @@ constexpr double kUnitTolerance = 1e-3;  ///< tolerance of the norm of a quatern
 StampedPose parse_pose(LineTokenizer fields) {
   StampedPose entry{.stamp = fields.stamp("t"), .pose = {}};
   Eigen::Vector3d& p = entry.pose.position;
-  for (int axis = 0; axis < 3; ++axis) p[axis] = fields.number("position");
+  for (int axis = 0; axis < 3; ++axis) p[axis] = fields.distance("position");
   const double x = fields.number("qx"), y = fields.number("qy"), z = fields.number("qz"), w = fields.number("qw");
   if (!fields.is_empty()) throw ParseError("more than eight words");
   entry.pose.rotation = Eigen::Quaterniond(w, x, y, z);
@@ -26,16 +26,16 @@ StampedPose parse_pose(LineTokenizer fields) {
 
 StampedPose read_pose(const std::string& file, const LineReader::Line& line) {
   try {
-    if (line.is_cut) throw ParseError("too long");
+    if (line.is_cut) throw ParseError("is too long");
     return parse_pose(LineTokenizer(line.text));
-  } catch (const ParseError&) {
-    throw input_error(file, line.number, "must be eight finite numbers: t x y z qx qy qz qw");
+  } catch (const ParseError& error) {
+    throw input_error(file, line.number, fmt::format("{}: a pose is t x y z qx qy qz qw", error.what()));
   }
 }
 
 }  // namespace
 
-Trajectory load_tum(const std::filesystem::path& file, SameStamps same_stamps) {
+Trajectory load_tum(const std::filesystem::path& file, SameStamps same_stamps, std::size_t* num_left_out) {
   LineReader lines(file);
   Trajectory trajectory;
   while (const auto line = lines.next()) {
@@ -47,7 +47,10 @@ Trajectory load_tum(const std::filesystem::path& file, SameStamps same_stamps) {
                         fmt::format("the quaternion has length {:.4g}, must be 1", length));
     entry.pose.rotation.normalize();
     if (!trajectory.empty() && entry.stamp <= trajectory.back().stamp) {
-      if (same_stamps == SameStamps::kKeepFirst && entry.stamp == trajectory.back().stamp) continue;
+      if (same_stamps == SameStamps::kKeepFirst && entry.stamp == trajectory.back().stamp) {
+        if (num_left_out != nullptr) ++*num_left_out;
+        continue;
+      }
       throw input_error(file.string(), line->number,
                         fmt::format("stamp {} does not follow {}: stamps must increase", format_stamp(entry.stamp),
                                     format_stamp(trajectory.back().stamp)));

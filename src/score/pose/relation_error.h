@@ -31,11 +31,12 @@ struct ErrorSpread {
 /// Error of a trajectory relative to given true relative poses. No frame is fitted: each relation concerns only two
 /// poses, so an early heading error is not counted again in every later pose.
 struct RelationError {
-  std::size_t num_relations = 0;
-  std::size_t num_stamps = 0;        ///< number of distinct stamps in the relations
-  std::size_t num_interpolated = 0;  ///< stamps without a pose of the trajectory within `max_dt_s`
-  /// of the interpolated stamps, those before the first or after the last pose; the end pose is used
-  std::size_t num_outside = 0;
+  std::size_t num_relations = 0;  ///< number of scored relations: both stamps have a pose of the trajectory
+  std::size_t num_given = 0;
+  std::size_t num_stamps = 0;        ///< number of distinct stamps in the given relations
+  std::size_t num_interpolated = 0;  ///< stamps with an interpolated pose: no pose is within `max_dt_s`
+  std::size_t num_outside = 0;       ///< stamps without a pose: before the first or after the last one
+  std::size_t num_in_holes = 0;      ///< stamps without a pose: in a hole of the trajectory (interpolation_limit.h)
   ErrorSpread trans_m, squared_trans_m2;
   double trans_median_m = 0.0, trans_max_m = 0.0;
   ErrorSpread rot_deg, squared_rot_deg2;
@@ -44,7 +45,8 @@ struct RelationError {
 
 /// Compares est(t1)^-1 est(t2) with each relation: distance of the translations and difference of the headings. The
 /// metric is that of [Kuemmerle09] with translation and rotation apart. With an even number of relations the median is
-/// the upper one. Throws InputError when the trajectory or the list of relations is empty.
+/// the upper one. Throws InputError when the trajectory or the list of relations is empty, or no relation has poses of
+/// the trajectory at both stamps.
 RelationError relation_error(const Trajectory& T_map_body, const std::vector<PoseRelation>& relations,
                              const RelationSettings& settings = {});
 

@@ -24,6 +24,7 @@ struct MatchedPose {
 Pose2 align_at_start(const Trajectory& T_map_body, const Trajectory& T_world_body);
 
 /// Matches every pose of the estimate within the time range of the ground truth, interpolated to the pose's stamp.
+/// Poses in holes of the ground truth (interpolation_limit.h) are left out.
 std::vector<MatchedPose> pair_poses(const Trajectory& T_map_body, const Pose2& T_world_map,
                                     const Trajectory& T_world_body);
 
@@ -48,7 +49,8 @@ double time_coverage(const Trajectory& estimate, const Trajectory& reference);
 
 /// Trajectory error after the best rigid motion in space of the estimate to the reference ([Umeyama91], without scale).
 /// For comparison with published values: equals the output of `evo_ape tum reference estimate --align`. Pairs are
-/// formed as in evo: each pose of the shorter trajectory with the nearest stamp of the other, at most 10 ms apart.
+/// formed as in evo: each pose of the shorter trajectory with the nearest stamp of the other, at most `max_dt` apart.
+/// Unlike evo, positions on a level line are aligned by the best motion in the plane.
 struct AlignedError {
   std::size_t num_pairs = 0;
   double rmse_m = 0.0;  ///< distance in space (3D)
@@ -57,7 +59,9 @@ struct AlignedError {
   Pose3 T_reference_estimate;  ///< fitted rigid motion
 };
 
-/// Throws InputError for fewer than three pairs, or when the positions lie on a line or a point.
-AlignedError aligned_error(const Trajectory& estimate, const Trajectory& reference);
+constexpr Time kMaxAlignedDt = std::chrono::milliseconds(10);  ///< default of evo
+
+/// Throws InputError for fewer than three pairs, or when the positions lie on a point or on a line that is not level.
+AlignedError aligned_error(const Trajectory& estimate, const Trajectory& reference, Time max_dt = kMaxAlignedDt);
 
 }  // namespace patrol::score

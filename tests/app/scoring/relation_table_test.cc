@@ -7,9 +7,11 @@ namespace {
 
 TEST(RelationTable, HasTheFiguresInTheDigitsInWhichTheyArePublished) {
   const score::RelationError error{.num_relations = 2984,
+                                   .num_given = 2990,
                                    .num_stamps = 3000,
                                    .num_interpolated = 7,
                                    .num_outside = 2,
+                                   .num_in_holes = 1,
                                    .trans_m = {0.02291, 0.03514},
                                    .squared_trans_m2 = {0.00176, 0.01},
                                    .trans_median_m = 0.0151,
@@ -19,7 +21,8 @@ TEST(RelationTable, HasTheFiguresInTheDigitsInWhichTheyArePublished) {
                                    .rot_median_deg = 0.25,
                                    .rot_max_deg = 12.345};
   EXPECT_EQ(relation_table(error),
-            "2984 relations between 3000 stamps: 2993 nearest poses, 7 interpolated (2 outside the estimate)\n"
+            "2984 of 2990 relations scored, 3000 stamps: 2990 nearest poses, 7 interpolated, 2 outside the estimate, "
+            "1 in its holes\n"
             "\n"
             "                                 mean        std     median        max\n"
             "  translation, m               0.0229     0.0351     0.0151      0.765\n"

@@ -48,7 +48,24 @@ TEST(ScoreTrajectories, TellsHowMuchOfTheReferenceAShortEstimateCovers) {
   const io::Metrics metrics = score_trajectories(drive(2.0, 6.0), drive(0.0, 10.0));
   EXPECT_NEAR(metrics.at("pose").at("ate_max_m").get<double>(), 0.0, 1e-9);
   EXPECT_EQ(metrics.at("pose").at("poses"), 41);
+  EXPECT_EQ(metrics.at("pose").at("left_out"), 0);
   EXPECT_NEAR(metrics.at("pose").at("coverage").get<double>(), 0.44, 1e-9);
+}
+
+TEST(ScoreTrajectories, CountsPosesInHolesOfTheReference) {
+  Trajectory reference = drive(0.0, 10.0);
+  std::erase_if(reference, [](const StampedPose& e) { return e.stamp > from_seconds(4) && e.stamp < from_seconds(6); });
+  const io::Metrics pose = score_trajectories(drive(0.0, 10.0), reference).at("pose");
+  EXPECT_EQ(pose.at("left_out"), 19);
+  EXPECT_NEAR(pose.at("ate_max_m").get<double>(), 0.0, 1e-9);
+}
+
+TEST(ScoreTrajectories, WithoutAUniqueAlignmentGivesTheErrorsInTheFrameOfTheStart) {
+  const Trajectory still = {{from_seconds(0), {}}, {from_seconds(1), {}}, {from_seconds(2), {}}};
+  const io::Metrics pose = score_trajectories(still, still).at("pose");
+  EXPECT_EQ(pose.at("ate_rmse_m"), 0.0);
+  EXPECT_TRUE(pose.at("aligned").is_null());
+  EXPECT_NE(pose.at("not_aligned").get<std::string>().find("no unique alignment"), std::string::npos);
 }
 
 }  // namespace

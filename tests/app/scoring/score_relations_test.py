@@ -3,6 +3,7 @@
 
 usage: score_relations_test.py PATROL
 """
+import json
 import pathlib
 import subprocess
 import sys
@@ -38,6 +39,7 @@ class ScoreRelations(unittest.TestCase):
         self.assertIn(["translation,", "m", "0.2000", "0.1000", "0.3000", "0.300"], words)
         self.assertIn(["translation", "squared,", "m2", "0.0500", "0.0400"], words)
         self.assertIn("3 nearest poses, 0 interpolated", done.stdout)
+        self.assertIn("1 poses of the estimate left out: each has the stamp of the previous pose", done.stdout)
 
     def test_max_dt_says_which_poses_are_taken_as_they_are(self):
         relation = "976052857.322433 976052859.222433 2 0 0 0 0 0\n"
@@ -53,6 +55,29 @@ class ScoreRelations(unittest.TestCase):
                               capture_output=True, text=True, timeout=60)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn(["pose.ate_max_m", "0"], [line.split() for line in done.stdout.splitlines()])
+
+    def test_relations_and_reference_are_scored_together(self):
+        (self.path / "t.tum").write_text((self.path / "e.tum").read_text().replace("976052859.222433 99 0 0 0 0 0 1\n", ""))
+        done = self.score("976052857.222433 976052859.222433 2 0 0 0 0 0\n", "--reference", self.path / "t.tum")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("1 of 1 relations scored", done.stdout)
+        self.assertIn(["pose.ate_max_m", "0"], [line.split() for line in done.stdout.splitlines()])
+
+    def test_max_dt_is_that_of_the_pairs_with_a_reference(self):
+        late = [f"{976052857 + i}.262433 {i} 0 0 0 0 0 1" for i in range(9)]
+        (self.path / "t.tum").write_text("\n".join(late) + "\n")
+        command = [PATROL, "score", "--estimate", self.path / "e.tum", "--reference", self.path / "t.tum", "--json"]
+        pairs = []
+        for more in ([], ["--max-dt-s", "0.05"]):
+            done = subprocess.run(command + more, capture_output=True, text=True, timeout=60)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            pairs.append((json.loads(done.stdout)["pose"]["aligned"] or {}).get("pairs"))
+        self.assertEqual(pairs, [None, 9])
+
+    def test_relations_outside_the_estimate_are_left_out(self):
+        inside, outside = "976052857.222433 976052859.222433 2 0 0 0 0 0\n", "976000000 976000001 1 0 0 0 0 0\n"
+        self.assertIn("1 of 2 relations scored", self.score(inside + outside).stdout)
+        self.assertEqual(self.score(outside).returncode, 2)
 
     def test_bad_calls_and_files_are_2_with_one_line(self):
         good = "976052857 976052858 1 0 0 0 0 0\n"

@@ -69,6 +69,9 @@ TEST(LineTokenizer, NamesWhatIsNoNumber) {
   EXPECT_EQ(complaint_about("1,5", [](LineTokenizer& f) { f.any_number("range"); }), "range '1,5' is not a number");
   EXPECT_EQ(complaint_about("", [](LineTokenizer& f) { f.number("range"); }), "ends before range");
   EXPECT_EQ(complaint_about("1.5x", [](LineTokenizer& f) { f.stamp("t"); }), "t '1.5x' is not a time in seconds");
+  EXPECT_EQ(complaint_about("1e12", [](LineTokenizer& f) { f.stamp("t"); }),
+            "t '1e12' is out of range: must be at most 9e+09 s");
+  EXPECT_EQ(complaint_about("-1e9", [](LineTokenizer& f) { f.distance("x"); }), "x -1e+09 m is off the earth");
   EXPECT_EQ(complaint_about("11", [](LineTokenizer& f) { f.integer("n", 0, 10); }),
             "n '11' must be an integer in [0, 10]");
   EXPECT_EQ(complaint_about("1.0", [](LineTokenizer& f) { f.integer("n", 0, 10); }),

@@ -51,12 +51,19 @@ TEST(SaveTum, ThereAndBackKeepsNanosecondsAndMicrometres) {
 
 TEST(LoadTum, WhatIsNoPoseIsNamedByItsLine) {
   const std::string good = "1 0 0 0 0 0 0 1\n";
-  const std::string rule = "must be eight finite numbers: t x y z qx qy qz qw";
-  EXPECT_EQ(complaint_about(good + "2 0 0 0 0 0 0\n"), "a.tum:2: " + rule);
-  EXPECT_EQ(complaint_about(good + "2 0 0 0 0 0 0 1 9\n"), "a.tum:2: " + rule);
-  EXPECT_EQ(complaint_about("# c\n\n" + good + "2 0 nan 0 0 0 0 1\n"), "a.tum:4: " + rule);
-  EXPECT_EQ(complaint_about(good + "2 0 inf 0 0 0 0 1\n"), "a.tum:2: " + rule);
-  EXPECT_EQ(complaint_about("1,0,0,0,0,0,0,1\n"), "a.tum:1: " + rule);
+  const std::string rule = ": a pose is t x y z qx qy qz qw";
+  EXPECT_EQ(complaint_about(good + "2 0 0 0 0 0 0\n"), "a.tum:2: ends before qw" + rule);
+  EXPECT_EQ(complaint_about(good + "2 0 0 0 0 0 0 1 9\n"), "a.tum:2: more than eight words" + rule);
+  EXPECT_EQ(complaint_about("# c\n\n" + good + "2 0 nan 0 0 0 0 1\n"),
+            "a.tum:4: position 'nan' is not a finite number" + rule);
+  EXPECT_EQ(complaint_about(good + "2 0 inf 0 0 0 0 1\n"), "a.tum:2: position 'inf' is not a finite number" + rule);
+  EXPECT_EQ(complaint_about("1,0,0,0,0,0,0,1\n"), "a.tum:1: t '1,0,0,0,0,0,0,1' is not a time in seconds" + rule);
+}
+
+TEST(LoadTum, NumbersOutOfRangeAreNamed) {
+  EXPECT_THAT(complaint_about("1000000000000.5 0 0 0 0 0 0 1\n"),
+              HasSubstr("a.tum:1: t '1000000000000.5' is out of range: must be at most 9e+09 s"));
+  EXPECT_THAT(complaint_about("1 1e300 0 0 0 0 0 1\n"), HasSubstr("a.tum:1: position 1e+300 m is off the earth"));
 }
 
 TEST(LoadTum, StampsMustGrow) {
@@ -67,8 +74,10 @@ TEST(LoadTum, StampsMustGrow) {
 
 TEST(LoadTum, OfPosesOfOneStampTheFirstMayBeKept) {
   const TemporaryFile file("a.tum", "1 5 0 0 0 0 0 1\n1 6 0 0 0 0 0 1\n2 7 0 0 0 0 0 1\n");
-  const Trajectory trajectory = load_tum(file.path(), SameStamps::kKeepFirst);
+  std::size_t num_left_out = 0;
+  const Trajectory trajectory = load_tum(file.path(), SameStamps::kKeepFirst, &num_left_out);
   ASSERT_EQ(trajectory.size(), 2U);
+  EXPECT_EQ(num_left_out, 1U);
   EXPECT_EQ(trajectory[0].pose.position.x(), 5.0);
   EXPECT_EQ(trajectory[1].pose.position.x(), 7.0);
   const TemporaryFile falling("a.tum", "2 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n");

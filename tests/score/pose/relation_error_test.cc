@@ -99,11 +99,33 @@ TEST(RelationError, HeadingsAreInterpolatedTheShortWay) {
   EXPECT_NEAR(relation_error(turned, {{0s, 500ms, {0.0, 0.0, turn / 2.0}}}).rot_deg.mean, 0.0, 1e-10);
 }
 
-TEST(RelationError, OutsideTheTrajectoryItsEndIsTakenAndCounted) {
-  const RelationError error = relation_error(straight(), {{Time(-5s), 20s, {9.0, 0.0, 0.0}}});
-  EXPECT_NEAR(error.trans_m.mean, 0.0, kTol);
-  EXPECT_EQ(error.num_interpolated, 2U);
+TEST(RelationError, OfAStampOutsideTheTrajectoryIsLeftOutAndCounted) {
+  const RelationError error =
+      relation_error(straight(), {{Time(-5s), 2s, {9.0, 0.0, 0.0}}, {1s, 3s, {2.0, 0.0, 0.0}}, {8s, 20s, {}}});
+  EXPECT_NEAR(error.trans_max_m, 0.0, kTol);
+  EXPECT_EQ(error.num_relations, 1U);
+  EXPECT_EQ(error.num_given, 3U);
   EXPECT_EQ(error.num_outside, 2U);
+  EXPECT_EQ(error.num_interpolated, 0U);
+}
+
+TEST(RelationError, WithinMaxDtOfTheEndsOfTheTrajectoryIsScored) {
+  const RelationError error = relation_error(straight(), {{Time(-10ms), 9010ms, {9.0, 0.0, 0.0}}});
+  EXPECT_EQ(error.num_relations, 1U);
+  EXPECT_EQ(error.num_outside, 0U);
+}
+
+TEST(RelationError, OfAStampInAHoleOfTheTrajectoryIsLeftOutAndCounted) {
+  Trajectory with_hole = straight();
+  with_hole.erase(with_hole.begin() + 3, with_hole.begin() + 7);  // 5 s of steps of 1 s
+  const RelationError error = relation_error(with_hole, {{0s, 4s, {9.0, 0.0, 0.0}}, {1s, 7s, {6.0, 0.0, 0.0}}});
+  EXPECT_NEAR(error.trans_max_m, 0.0, kTol);
+  EXPECT_EQ(error.num_relations, 1U);
+  EXPECT_EQ(error.num_in_holes, 1U);
+}
+
+TEST(RelationError, NoRelationInTheTimeOfTheTrajectoryIsRefused) {
+  EXPECT_THROW(relation_error(straight(), {{100s, 102s, {2.0, 0.0, 0.0}}}), InputError);
 }
 
 TEST(RelationError, TheReferencePointMayLieAheadOfTheBody) {

@@ -224,11 +224,67 @@ TEST(AlignedError, PairsTheNearestStampWithinTenMilliseconds) {
   EXPECT_THROW(aligned_error(estimate, truth), InputError);
 }
 
-TEST(AlignedError, OnALineOrOfTwoPosesIsRefused) {
+TEST(AlignedError, PairsWithinTheGivenDifferenceOfStamps) {
+  const Trajectory truth = make_trajectory(corner());
+  Trajectory estimate;
+  for (const StampedPose& entry : truth) estimate.push_back({entry.stamp + 40ms, entry.pose});
+  EXPECT_EQ(aligned_error(estimate, truth, 50ms).num_pairs, 82U);
+}
+
+TEST(AlignedError, OfALevelLineIsThatOfTheBestMotionInThePlane) {
+  const Trajectory line = make_trajectory(straight(20));
+  const Pose3 T_estimate_reference = to_pose3({5.0, -3.0, 2.5});
+  Trajectory estimate = moved(line, T_estimate_reference);
+  EXPECT_THAT(aligned_error(estimate, line).T_reference_estimate,
+              Pose3Near(T_estimate_reference.inverse(), 1e-9, 1e-9));
+  const Trajectory longer = make_trajectory(straight(20), [](int, const Pose2& p) {
+    return Pose2{1.1 * p.x, p.y, p.yaw};
+  });
+  EXPECT_NEAR(aligned_error(moved(longer, T_estimate_reference), line).max_m, 0.25, kExactTol) << "half of 10 % of 5 m";
+}
+
+TEST(AlignedError, OfAPointASlopingLineOrTwoPosesIsRefused) {
   const Trajectory line = make_trajectory(straight(20)), two = make_trajectory(straight(1));
-  EXPECT_THROW(aligned_error(line, line), InputError);
+  const Trajectory still = make_trajectory(std::vector<Pose2>(20, Pose2{1.0, 2.0, 0.0}));
+  const Trajectory sloping = moved(line, {{}, quaternion_from_rpy(0.0, 0.1, 0.0)});
+  EXPECT_THROW(aligned_error(still, still), InputError);
+  EXPECT_THROW(aligned_error(still, line), InputError);
+  EXPECT_THROW(aligned_error(sloping, sloping), InputError);
   EXPECT_THROW(aligned_error(two, two), InputError);
   EXPECT_THROW(aligned_error({}, line), InputError);
+}
+
+/// The corner without the poses from 3 s to 5 s, both not included: 2 m before and 3 m after the turn at 4 s.
+Trajectory with_hole(Trajectory trajectory) {
+  std::erase_if(trajectory, [](const StampedPose& entry) { return entry.stamp > 3s && entry.stamp < 5s; });
+  return trajectory;
+}
+
+TEST(MatchPoses, LeavesOutPosesInHolesOfTheTruth) {
+  const Trajectory truth = make_trajectory(corner());
+  const auto matches = pair_poses(truth, {}, with_hole(truth));
+  EXPECT_EQ(matches.size(), 82U - 19U);
+  const TrajectoryError error = trajectory_error(truth, {}, with_hole(truth));
+  EXPECT_EQ(error.num_poses, 82U - 19U);
+  EXPECT_NEAR(error.ate_max_m, 0.0, kExactTol);
+}
+
+// The estimate jumps by 5 m in the hole.
+TEST(TrajectoryError, HasNoSegmentAcrossAHoleOfTheTruth) {
+  const Trajectory truth = make_trajectory(straight(40));
+  Trajectory jumped = truth;
+  for (StampedPose& entry : jumped)
+    if (entry.stamp >= 3s) entry.pose.position.x() += 5.0;
+  Trajectory holed = truth;
+  std::erase_if(holed, [](const StampedPose& entry) { return entry.stamp > 1s && entry.stamp < 3s; });
+  EXPECT_NEAR(trajectory_error(jumped, {}, holed).rpe_trans_1m_m, 0.0, kExactTol);
+}
+
+TEST(JoinAtStart, SkipsAHoleOfTheTruth) {
+  const Trajectory truth = make_trajectory(corner());
+  Trajectory estimate = truth;
+  estimate.erase(estimate.begin(), estimate.begin() + 35);
+  EXPECT_THAT(align_at_start(estimate, with_hole(truth)), Pose2Near(Pose2{}, kExactTol, kExactTol));
 }
 
 }  // namespace
