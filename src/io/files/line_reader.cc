@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <zlib.h>
@@ -16,6 +17,8 @@ constexpr unsigned kGzipBufferBytes = 1U << 16;
 constexpr std::size_t kReadBytes = std::size_t{1} << 15;
 /// Maximum length of a skipped line; longer runs, such as zeros of a damaged disk, end the reading.
 constexpr std::size_t kMaxDroppedBytes = std::size_t{1} << 26;
+
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  ///< of UTF-8; some editors write it
 
 }  // namespace
 
@@ -79,8 +82,9 @@ void LineReader::drop_rest_of_line() {
 }
 
 std::optional<LineReader::Line> LineReader::take(std::size_t size, std::size_t end_size) {
-  const std::string_view text(buffer_.data() + begin_, size);
+  std::string_view text(buffer_.data() + begin_, size);
   begin_ += size + end_size;
+  if (number_ == 0 && text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   if (number_ < std::numeric_limits<int>::max()) ++number_;
   return Line{.number = number_, .text = text, .is_cut = is_inside_cut_line_};
 }

@@ -91,6 +91,10 @@ bool CarmenLog::read_line() {
   try {
     read_message(*line);
   } catch (const ParseError& error) {
+    if (lines_.read_error()) {  // the last line is incomplete; finish() reports why
+      --line_;
+      return true;
+    }
     reject_or_skip(options_, "unreadable lines", location() + error.what());
   }
   return true;
@@ -101,6 +105,8 @@ void CarmenLog::finish() {
   if (lines_.read_error())
     reject_or_skip(options_, "unexpected end of file",
                    fmt::format("{}: {} after line {}", lines_.file().string(), *lines_.read_error(), line_));
+  if (is_rear_laser(laser_) && (summary().num_scans > 0 || !sorter_.is_empty()))
+    add_found(fmt::format("{} is the rear laser of CARMEN: it looks backward (log.carmen_laser)", laser_));
   if (summary().num_scans == 0 && sorter_.is_empty()) {
     const std::string missing =
         laser_.starts_with("RAWLASER") && !odometry_
@@ -123,7 +129,10 @@ void CarmenLog::read_message(const LineReader::Line& line) {
   try {
     if (family && name == laser_) return add(parse_carmen_scan(*family, contents));
     if (name == "PARAM") return store_parameter(parse_carmen_parameter(contents));
-    if (name == "ODOM") odometry_ = parse_carmen_odometry(contents);
+    if (name == "ODOM") {
+      odometry_ = parse_carmen_odometry(contents);
+      if (laser_.starts_with("RAWLASER")) return;
+    }
     count_ignored(std::string(name));
   } catch (const ParseError& error) {
     throw ParseError(fmt::format("{}: {}", name, error.what()));

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <limits>
 #include <sstream>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -24,6 +25,7 @@ constexpr double kQuaternionTolerance = 1e-3;  ///< tolerance of the norm of a q
 constexpr double kMaxPoseDistance_m = 1e8;
 constexpr double kMaxScanAngle_rad = 7.0;  ///< one turn plus rounding
 constexpr double kMaxRateRadps = 1e3;      ///< maximum plausible rate
+constexpr std::size_t kMaxNamespaces = 50;
 constexpr const char* kTfStaticSuffix = "/tf_static";
 
 void expect_pose(const Pose3& pose, const char* whose) {
@@ -85,6 +87,9 @@ std::vector<std::string> topics_of(const std::string& list) {
   }
   return topics;
 }
+
+/// Removes the leading slash of ROS 1 frame names.
+std::string without_slash(const std::string& frame) { return frame.starts_with('/') ? frame.substr(1) : frame; }
 
 bool contains(const std::vector<std::string>& topics, const std::string& topic) {
   return std::find(topics.begin(), topics.end(), topic) != topics.end();
@@ -235,7 +240,10 @@ void McapScanLog::add_odometry(const McapMessage& message) {
   const auto odometry = decode<OdometryEstimate>(message.cdr);
   const OdometryFrames names = odometry_frames_of(message.cdr);
   const bool is_own_opinion = names.frame != frame_id::kWorld && names.frame != frame_id::kMap;
-  if (options_.odometry_topic.empty() && !is_own_opinion) return count_ignored(message.channel.topic);
+  if (options_.odometry_topic.empty() && !is_own_opinion) {
+    if (not_odometry_.size() < kMaxNamespaces) not_odometry_[message.channel.topic] = names.frame;
+    return count_ignored(message.channel.topic);
+  }
   expect_pose(odometry.T_odom_body, "odometry");
   odometry_topic_ = message.channel.topic;
   if (body_frame_.empty()) body_frame_ = names.child.empty() ? frame_id::kBody : names.child;
@@ -259,21 +267,38 @@ void McapScanLog::add_imu(const McapMessage& message) {
 void McapScanLog::add_transforms(const McapMessage& message, bool is_static) {
   for (const FrameTransform& transform : transforms_of(message)) {
     is_static ? frames_.add_static(transform) : frames_.add(transform);
+    const std::string parent = without_slash(transform.parent);
+    const bool is_odom = parent == frame_id::kOdom || parent.ends_with(fmt::format("/{}", frame_id::kOdom));
+    if (is_odom && tf_namespaces_.size() < kMaxNamespaces)
+      tf_namespaces_.insert(parent.substr(0, parent.size() - std::string_view(frame_id::kOdom).size()));
   }
   resolve_waiting();
 }
 
-std::optional<Pose3> McapScanLog::odometry_at(Time stamp) const {
+/// Returns the frames of the robot with the frame of a sensor: those of its namespace, or of the only namespace.
+McapScanLog::TfFrames McapScanLog::tf_frames_of(const std::string& frame) const {
+  std::string name_space;
+  if (tf_namespaces_.size() == 1) name_space = *tf_namespaces_.begin();
+  for (const std::string& candidate : tf_namespaces_)
+    if (without_slash(frame).starts_with(candidate)) name_space = candidate;  // in order: the longest is the last
+  const std::string body = name_space + frame_id::kBody, level = name_space + frame_id::kLevel;
+  return {.odom = name_space + frame_id::kOdom,
+          .body = !frames_.contains(body) && frames_.contains(level) ? level : body};
+}
+
+std::optional<Pose3> McapScanLog::odometry_at(const std::string& frame, Time stamp) const {
   const bool has_topic = !odometry_topic_.empty() && !uses_tf_;
-  return (has_topic ? odometry_ : frames_).find(frame_id::kOdom, frame_id::kBody, stamp);
+  if (has_topic) return odometry_.find(frame_id::kOdom, frame_id::kBody, stamp);
+  const TfFrames names = tf_frames_of(frame);
+  return frames_.find(names.odom, names.body, stamp);
 }
 
 /// Passes on the scans whose stamps odometry has reached.
 void McapScanLog::resolve_waiting() {
   std::deque<WaitingScan> still_waiting;
   for (WaitingScan& waiting : waiting_) {
-    const std::optional<Pose3> T_odom_first = odometry_at(waiting.scan.stamp),
-                               T_odom_last = odometry_at(last_beam(waiting.scan));
+    const std::optional<Pose3> T_odom_first = odometry_at(waiting.frame, waiting.scan.stamp),
+                               T_odom_last = odometry_at(waiting.frame, last_beam(waiting.scan));
     if (T_odom_first && (T_odom_last || is_at_end_))
       add_with_pose(std::move(waiting), to_pose2(*T_odom_first), to_pose2(T_odom_last.value_or(*T_odom_first)));
     else still_waiting.push_back(std::move(waiting));
@@ -293,7 +318,8 @@ void McapScanLog::add_with_pose(WaitingScan waiting, const Pose2& T_odom_body, c
 }
 
 std::optional<Pose3> McapScanLog::sensor_pose_in_body(const std::string& frame, Time stamp) const {
-  const std::optional<Pose3> T_frame = frames_.find(body_frame_.empty() ? frame_id::kBody : body_frame_, frame, stamp);
+  const std::optional<Pose3> T_frame =
+      frames_.find(body_frame_.empty() ? tf_frames_of(frame).body : body_frame_, frame, stamp);
   return T_frame ? T_frame : frames_.find(frame_id::kBody, frame, stamp);
 }
 
@@ -340,10 +366,16 @@ void McapScanLog::finish() {
   if (summary().num_scans > 0 || !sorter_.is_empty()) return;
   const std::string selected =
       options_.scan_topic.empty() ? "" : fmt::format(" on {} (log.scan_topic)", options_.scan_topic);
-  const std::string what =
-      without_odometry > 0
-          ? "no odometry overlaps the scans: must contain nav_msgs/msg/Odometry or tf odom -> base_link"
-          : fmt::format("contains no scan{}: must contain sensor_msgs/msg/LaserScan", selected);
+  std::string what = fmt::format("contains no scan{}: must contain sensor_msgs/msg/LaserScan", selected);
+  if (without_odometry > 0 && !not_odometry_.empty()) {
+    const auto& [topic, frame] = *not_odometry_.begin();
+    what = fmt::format("the odometry on {} is in the frame {}, not in odom: can be selected: log.odometry_topic={}",
+                       topic, frame, topic);
+  } else if (without_odometry > 0) {
+    what =
+        "no odometry overlaps the scans: must contain nav_msgs/msg/Odometry or tf odom -> base_link or base_footprint, "
+        "which may have a common namespace";
+  }
   const std::string clouds = cloud_topics_.empty() ? ""
                                                    : fmt::format("; point clouds can be selected: log.scan_topic={}",
                                                                  join(cloud_topics_, ","));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <deque>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -16,7 +17,7 @@ namespace patrol::io {
 /// Reader of 2D lidar scans from an MCAP log with ROS 2 messages, also the log.mcap of `patrol run`. Scans are
 /// sensor_msgs/LaserScan, or slices of sensor_msgs/PointCloud2 if the topic is selected. Odometry is nav_msgs/Odometry
 /// or, if the file has none, tf (odom -> base_link), whichever covers a scan first; it is interpolated to the stamp of
-/// the scan.
+/// the scan. The frames of tf may have a common namespace (robot1/odom); without base_link the body is base_footprint.
 ///
 /// - Odometry in the frames `world` and `map` is not an estimate of odometry and is ignored, unless its topic is
 ///   selected.
@@ -48,6 +49,10 @@ class McapScanLog : public ScanLog {
     std::string frame;
     bool is_level = false;  ///< angles are about the vertical axis, not about that of the lidar
   };
+  /// Names of the frames of odometry in tf.
+  struct TfFrames {
+    std::string odom, body;
+  };
 
   void add_static_transforms();
   std::optional<McapMessage> next_message();
@@ -61,7 +66,8 @@ class McapScanLog : public ScanLog {
   void add_transforms(const McapMessage& message, bool is_static);
   void resolve_waiting();
   void add_with_pose(WaitingScan waiting, const Pose2& T_odom_body, const Pose2& T_odom_last);
-  std::optional<Pose3> odometry_at(Time stamp) const;
+  TfFrames tf_frames_of(const std::string& frame) const;
+  std::optional<Pose3> odometry_at(const std::string& frame, Time stamp) const;
   std::optional<Pose3> sensor_pose_in_body(const std::string& frame, Time stamp) const;
   Pose3 mount_of(WaitingScan& waiting);
   void report_gyro();
@@ -77,6 +83,8 @@ class McapScanLog : public ScanLog {
   TransformBuffer odometry_;  ///< odometry topic only
   TransformBuffer frames_;    ///< transforms of /tf and /tf_static
   GyroOdometry gyro_;
+  std::set<std::string> tf_namespaces_;              ///< of the odom frames in tf: "robot1/", "" without
+  std::map<std::string, std::string> not_odometry_;  ///< frame of ignored odometry, by topic
   bool uses_tf_ = false;
   std::deque<WaitingScan> waiting_;
   ScanSorter sorter_;

@@ -1,5 +1,7 @@
 #include "io/logs/scan_log.h"
 
+#include <algorithm>
+#include <cmath>
 #include <fstream>
 
 #include <fmt/format.h>
@@ -16,6 +18,9 @@ namespace {
 constexpr std::size_t kMaxWarnings = 5;
 constexpr int kMaxFirstPassScans = 5000;
 constexpr double kMaxNoReturn_m = 1e4;  ///< maximum of the option no_return_m
+/// Fewer beams with a range, and longer steps between scans, are more likely due to the units of the log.
+constexpr double kMinReturnRatio = 0.05, kMaxMeanStep_s = 20.0;
+constexpr std::uint64_t kMinHintBeams = 1000, kMinHintScans = 10;
 /// Maximum number of distinct names of ignored messages: a damaged file may contain any number.
 constexpr std::size_t kMaxNames = 50;
 
@@ -109,9 +114,14 @@ void ScanLog::sort_in(ScanSorter& sorter, RecordedScan scan, const ScanLogOption
 }
 
 void ScanLog::count_returned(const RecordedScan& scan) {
+  const Time stamp = scan.scan.stamp;
+  if (summary_.num_scans == 0) summary_.first_stamp = stamp;
+  else if (summary_.last_stamp == stamp) ++summary_.num_same_stamp;
+  summary_.last_stamp = stamp;
   ++summary_.num_scans;
-  if (last_stamp_ == scan.scan.stamp) ++summary_.num_same_stamp;
-  last_stamp_ = scan.scan.stamp;
+  summary_.num_beams += scan.scan.ranges_m.size();
+  summary_.num_returns += static_cast<std::uint64_t>(std::ranges::count_if(
+      scan.scan.ranges_m, [](float range_m) { return std::isfinite(range_m) && range_m > 0.0F; }));
 }
 
 Time last_beam(const LaserScan& scan) {
@@ -129,6 +139,28 @@ std::string counted(const ScanLogSummary& summary) {
   return text;
 }
 
+namespace {
+
+/// Hints at properties of a log that are unlikely in meters and seconds, a line each.
+std::string unit_hints(const ScanLogSummary& summary) {
+  std::string text;
+  const auto ratio = [](auto part, auto whole) { return static_cast<double>(part) / static_cast<double>(whole); };
+  if (summary.num_beams >= kMinHintBeams && ratio(summary.num_returns, summary.num_beams) < kMinReturnRatio) {
+    text += fmt::format(
+        "warning: only {:.1f} % of the beams have a return: ranges must be in meters (log.no_return_m is the range of "
+        "a beam without return)\n",
+        100.0 * ratio(summary.num_returns, summary.num_beams));
+  }
+  if (summary.num_scans < kMinHintScans) return text;
+  const double step_s =
+      to_seconds(summary.last_stamp - summary.first_stamp) / static_cast<double>(summary.num_scans - 1);
+  if (step_s > kMaxMeanStep_s)
+    text += fmt::format("warning: the scans are {:.0f} s apart on average: stamps must be in seconds\n", step_s);
+  return text;
+}
+
+}  // namespace
+
 std::string to_text(const ScanLogSummary& summary) {
   std::string text = fmt::format("{} scans", summary.num_scans);
   if (summary.num_reordered > 0) text += fmt::format(", {} sorted by stamp", summary.num_reordered);
@@ -140,7 +172,7 @@ std::string to_text(const ScanLogSummary& summary) {
   if (!summary.ignored.empty()) text += "ignored: " + counts(summary.ignored) + "\n";
   if (!summary.skipped.empty()) text += "skipped: " + counts(summary.skipped) + "\n";
   for (const std::string& warning : summary.warnings) text += "  " + warning + "\n";
-  return text;
+  return text + unit_hints(summary);
 }
 
 std::unique_ptr<ScanLog> open_scan_log(const std::filesystem::path& file, const ScanLogOptions& options) {

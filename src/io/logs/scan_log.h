@@ -54,6 +54,8 @@ struct ScanLogSummary {
   std::uint64_t num_scans = 0;                   ///< number of scans returned
   std::uint64_t num_reordered = 0;               ///< number of these that were preceded by a later scan in the file
   std::uint64_t num_same_stamp = 0;              ///< number of these with the same stamp as the previous scan
+  std::uint64_t num_beams = 0, num_returns = 0;  ///< number of their beams, and of beams with a range
+  Time first_stamp{}, last_stamp{};              ///< of the scans
   std::map<std::string, std::uint64_t> ignored;  ///< number by message name: not selected, or of unknown type
   std::vector<std::string> found;                ///< properties detected in the log and applied
   /// Number of scans by assumption: the file has no or conflicting information.
@@ -68,7 +70,7 @@ Time last_beam(const LaserScan& scan);
 /// Formats the statistics of a file without scans: "12 lines, 3 SYNC, 4 unreadable lines".
 std::string counted(const ScanLogSummary& summary);
 
-/// Formats the statistics in a few lines for a terminal.
+/// Formats the statistics in a few lines for a terminal, with hints at wrong units of ranges and stamps.
 std::string to_text(const ScanLogSummary& summary);
 
 /// Sequential reader of a recorded log of 2D lidar and odometry; memory does not grow with the file. Ranges follow REP
@@ -110,7 +112,6 @@ class ScanLog {
 
  private:
   ScanLogSummary summary_;
-  std::optional<Time> last_stamp_;
 };
 
 /// Opens a log by the content of the file: MCAP, otherwise CARMEN text, plain or gzip-compressed. Unless disabled in

@@ -50,6 +50,12 @@ void TransformBuffer::add(const FrameTransform& transform) {
   while (poses.size() > kMaxPoses || transform.stamp - poses.front().stamp > kBufferLength) poses.pop_front();
 }
 
+bool TransformBuffer::contains(const std::string& frame) const {
+  const std::string name = plain(frame);
+  return links_.contains(name) ||
+         std::ranges::any_of(links_, [&](const auto& link) { return link.second.parent == name; });
+}
+
 std::vector<TransformBuffer::Ancestor> TransformBuffer::ancestors(const std::string& frame, Time stamp) const {
   std::vector<Ancestor> line = {{plain(frame), {}}};
   while (line.size() < kMaxTreeDepth) {

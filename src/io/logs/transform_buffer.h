@@ -28,6 +28,9 @@ class TransformBuffer {
   /// of the frame changes, the earlier transforms are discarded.
   void add(const FrameTransform& transform);
 
+  /// Returns whether a transform has the frame as its parent or child.
+  bool contains(const std::string& frame) const;
+
   /// Returns the pose of `child` in `parent` at an instant, over any chain of frames; nullopt if the chain is not
   /// connected at this instant.
   std::optional<Pose3> find(const std::string& parent, const std::string& child, Time stamp) const;

@@ -12,6 +12,7 @@
 #include <fastcdr/Cdr.h>
 #include <fastcdr/FastBuffer.h>
 #include <fastcdr/exceptions/Exception.h>
+#include <fastcdr/exceptions/NotEnoughMemoryException.h>
 
 #include "io/ros/ros_messages.h"
 
@@ -214,6 +215,8 @@ void read_cdr(std::string_view bytes, const char* type, const Read& read) {
     cdr.read_encapsulation();
     Reader reader{cdr};
     read(reader);
+  } catch (const eprosima::fastcdr::exception::NotEnoughMemoryException&) {
+    throw DecodeError(std::string("not a ") + type + ": the message is cut off");
   } catch (const eprosima::fastcdr::exception::Exception& error) {
     throw DecodeError(std::string("not a ") + type + ": " + error.what());
   }

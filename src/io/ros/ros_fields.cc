@@ -10,6 +10,7 @@
 #include <fastcdr/Cdr.h>
 #include <fastcdr/FastBuffer.h>
 #include <fastcdr/exceptions/Exception.h>
+#include <fastcdr/exceptions/NotEnoughMemoryException.h>
 #include <fmt/format.h>
 
 #include "core/error.h"
@@ -194,6 +195,8 @@ std::vector<RosField> read_fields(const std::string& type, const std::string& de
     FieldReader reader(types, cdr, bytes.size(), keeps_fields);
     reader.read_message(short_name(type), "");
     return reader.take_fields();
+  } catch (const eprosima::fastcdr::exception::NotEnoughMemoryException&) {
+    throw InputError("not a " + type + ": the message is cut off");
   } catch (const eprosima::fastcdr::exception::Exception& error) {
     throw InputError("not a " + type + ": " + error.what());
   }

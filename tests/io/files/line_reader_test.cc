@@ -28,6 +28,11 @@ TEST(LineReader, NumbersLinesFromOneWithOrWithoutALastNewline) {
   EXPECT_THAT(all_lines(TemporaryFile("a", "").path()), ElementsAre());
 }
 
+TEST(LineReader, SkipsTheByteOrderMarkOfTheFirstLine) {
+  EXPECT_THAT(all_lines(TemporaryFile("a", "\xEF\xBB\xBFone\n\xEF\xBB\xBFtwo").path()),
+              ElementsAre("1:one", "2:\xEF\xBB\xBFtwo"));
+}
+
 TEST(LineReader, ReadsGzipAsThePlainFile) {
   EXPECT_THAT(all_lines(TemporaryFile("a.gz", gzipped("one\ntwo\n")).path()), ElementsAre("1:one", "2:two"));
 }

@@ -48,6 +48,42 @@ TEST_F(McapScans, WithoutAnOdometryTopicTfIsTakenOverItsFramesBetween) {
   EXPECT_THAT(read().scans.at(0).T_odom_body, Pose2Near(Pose2{1.5, 0.0, 0.5}, kExactTol, kExactTol));
 }
 
+TEST_F(McapScans, WithoutBaseLinkTfLeadsToBaseFootprint) {
+  writer.write("/tf_static", 0s, TransformSet{{placed("base_footprint", "lidar", {{0.3, 0.1, 0.5}})}});
+  for (const Time t : {1s, 2s}) {
+    writer.write("/tf", t,
+                 TransformSet{{placed("odom", "base_footprint",
+                                      {{to_seconds(t), 0.0, 0.0}, Eigen::Quaterniond::Identity()}, t)}});
+    if (t == 1s) writer.write("/scan", 1500ms, scan_at(1500ms));
+  }
+  writer.close();
+  const Read result = read();
+  ASSERT_EQ(result.scans.size(), 1U);
+  EXPECT_THAT(result.scans[0].T_odom_body, Pose2Near(Pose2{1.5, 0.0, 0.0}, kExactTol, kExactTol));
+  EXPECT_THAT(result.scans[0].T_body_lidar, Pose2Near(Pose2{0.3, 0.1, 0.0}, kExactTol, kExactTol));
+}
+
+TEST_F(McapScans, FramesOfTfMayHaveANamespace) {
+  for (const Time t : {1s, 2s}) {
+    writer.write("/tf", t,
+                 TransformSet{{placed("robot1/odom", "robot1/base_link",
+                                      {{to_seconds(t), 0.0, 0.0}, Eigen::Quaterniond::Identity()}, t)}});
+    if (t == 1s) writer.write("/robot1/scan", 1500ms, scan_at(1500ms));
+  }
+  writer.close();
+  EXPECT_THAT(read().scans.at(0).T_odom_body, Pose2Near(Pose2{1.5, 0.0, 0.0}, kExactTol, kExactTol));
+}
+
+TEST_F(McapScans, OdometryInWorldIsNamedWithItsTopic) {
+  for (const Time t : {0s, 1s}) {
+    writer.write("/odom", t, GroundTruth{.stamp = t, .T_world_body = {}, .twist = {}});
+    if (t == 0s) writer.write("/scan", 500ms, scan_at(500ms));
+  }
+  writer.close();
+  EXPECT_THAT(complaint(), HasSubstr("the odometry on /odom is in the frame world, not in odom: can be selected: "
+                                     "log.odometry_topic=/odom"));
+}
+
 TEST_F(McapScans, TheFirstSourceIsKept) {
   writer.write("/tf", 0s, TransformSet{{placed("odom", "base_link", {}, 0s)}});
   writer.write("/scan", 500ms, scan_at(500ms));
