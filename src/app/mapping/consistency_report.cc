@@ -115,7 +115,9 @@ io::Metrics ConsistencyReport::metrics() const {
                            {"from_s", seconds(part.first_scan)},
                            {"distance_m", part.distance_m}});
   }
-  return {{"consistent", consistency.is_consistent()},
+  const bool is_checked = consistency.num_compared > 0 || !consistency.disagreements.empty() ||
+                          !consistency.unsupported.empty() || consistency.has_too_many_unmatched();
+  return {{"consistent", is_checked ? io::Metrics(consistency.is_consistent()) : io::Metrics()},
           {"segments", consistency.num_segments},
           {"compared_pairs", consistency.num_compared},
           {"disagreeing_pairs", consistency.disagreements.size()},

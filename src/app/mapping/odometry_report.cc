@@ -17,6 +17,8 @@ constexpr std::size_t kShownFaults = 8;    ///< of them, on the page
 constexpr double kMaxFaulty = 0.05, kMostly = 0.5;
 /// Scales further from 1, and a steering bias larger than this, are worth a warning.
 constexpr double kMaxScaleError = 0.03, kMaxSteering_radpm = 0.02;
+/// Smaller standard deviations are rounding errors: the path is that of odometry.
+constexpr double kRounding = 1e-6;
 
 using Distances = std::array<double, slam::kOdometryFaultNames.size()>;
 
@@ -39,6 +41,16 @@ std::string text(const std::optional<slam::OdometryScale>& scale, const std::str
   return fmt::format("{:.3f} ± {:.3f}{}", scale->value, scale->std, unit);
 }
 
+bool is_exactly(const std::optional<slam::OdometryScale>& scale, double value) {
+  return !scale || (scale->std < kRounding && std::abs(scale->value - value) < kRounding);
+}
+
+/// Returns whether the mapped path is that of odometry, because the scans determine no motion.
+bool is_path_of_odometry(const slam::OdometryHealth& health) {
+  return (health.distance || health.turn) && health.num_faulty == 0 && is_exactly(health.distance, 1.0) &&
+         is_exactly(health.turn, 1.0) && is_exactly(health.steering, 0.0);
+}
+
 io::Metrics to_metrics(const std::optional<slam::OdometryScale>& scale) {
   if (!scale) return nullptr;
   return {{"value", scale->value}, {"std", scale->std}};
@@ -53,6 +65,11 @@ MappingVerdict OdometryReport::verdict() const {
     return {.word = "odometry not checked",
             .tone = report::Tone::kWarning,
             .reason = "it hardly moves, and neither does the robot in the map"};
+  }
+  if (is_path_of_odometry(health)) {
+    return {.word = "odometry not checked",
+            .tone = report::Tone::kWarning,
+            .reason = "the scans determine no motion, the path is that of odometry"};
   }
   const std::string scales = fmt::format("scale of distance {}, of turn {}, steering {}", text(health.distance),
                                          text(health.turn), text(health.steering, " rad per m"));
@@ -112,15 +129,19 @@ io::Metrics OdometryReport::metrics() const {
   io::Metrics by_fault;
   const Distances distances = distances_by_fault(health);
   for (std::size_t k = 0; k < distances.size(); ++k) by_fault[fault_name(k) + "_m"] = distances[k];
+  const bool is_checked = !is_path_of_odometry(health);
+  const auto scale_metrics = [&](const std::optional<slam::OdometryScale>& scale) {
+    return is_checked ? to_metrics(scale) : io::Metrics();
+  };
   return {{"segments", health.num_segments},
           {"faulty_segments", health.num_faulty},
           {"faulty_ratio", health.faulty_ratio()},
           {"distance_m", health.distance_m},
           {"faulty_distance", by_fault},
           {"faults", listed},
-          {"distance_scale", to_metrics(health.distance)},
-          {"turn_scale", to_metrics(health.turn)},
-          {"steering_rad_per_m", to_metrics(health.steering)},
+          {"distance_scale", scale_metrics(health.distance)},
+          {"turn_scale", scale_metrics(health.turn)},
+          {"steering_rad_per_m", scale_metrics(health.steering)},
           {"delay_s", health.delay_s},
           {"gaps", health.num_gaps},
           {"max_gap_s", health.max_gap_s}};

@@ -74,6 +74,20 @@ TEST(OdometryReport, NamesDelayAndGaps) {
   EXPECT_NE(line.find("3 gaps between scans, at most 2.5 s, at 40 s"), std::string::npos) << line;
 }
 
+TEST(OdometryReport, ByAPathThatIsThatOfOdometryIsNotChecked) {
+  slam::OdometryHealth health = healthy();
+  health.distance = {{1.0, 5e-16}};
+  health.turn = {{1.0 + 6e-13, 2e-12}};
+  health.steering = {{8e-12, 1e-12}};
+  const OdometryReport result = report_of(health);
+  EXPECT_EQ(result.line(), "odometry not checked: the scans determine no motion, the path is that of odometry");
+  EXPECT_EQ(result.block().tone, Tone::kWarning);
+  EXPECT_TRUE(result.metrics()["distance_scale"].is_null());
+  EXPECT_TRUE(result.metrics()["turn_scale"].is_null());
+  health.distance->std = 0.001;
+  EXPECT_EQ(report_of(health).block().word, "odometry agrees");
+}
+
 TEST(OdometryReport, WithoutMotionIsNotChecked) {
   EXPECT_EQ(report_of(slam::OdometryHealth{}).line(),
             "odometry not checked: it hardly moves, and neither does the robot in the map");
