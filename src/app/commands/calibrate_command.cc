@@ -15,6 +15,7 @@
 #include "io/logs/scan_log.h"
 #include "io/yaml/settings_yaml.h"
 #include "slam/calibration/calibrate.h"
+#include "slam/calibration/calibration_contradiction.h"
 
 namespace patrol::app {
 namespace {
@@ -148,6 +149,11 @@ ExitCode calibrate_command(const CalibrateOptions& options) {
     log = calibrate_once(options.log, settings, prior,
                          fmt::format("{}, {} of {}", options.log.filename().string(), pass, settings.passes));
     if (!log) break;
+  }
+  if (log) {
+    const std::string reason =
+        slam::calibration_contradiction(log->pairs, log->result, settings.calibrator.min_segments);
+    if (!reason.empty()) throw InputError(fmt::format("{}: {}", options.log.string(), reason));
   }
   const OutputLock lock = begin_output(options.out, kCalibrating);  // not earlier: a damaged log must leave no output
   if (!log) {

@@ -98,6 +98,18 @@ class Calibrate(unittest.TestCase):
         self.assertIn(says, done.stderr)
         self.assertFalse(out.exists())
 
+    def test_a_reversed_lidar_is_refused(self):
+        reversed_lines = []
+        for line in self.lines:
+            words = line.split()
+            if words[0] == "FLASER":
+                count = int(words[1])
+                words[2:2 + count] = words[1 + count:1:-1]
+            reversed_lines.append(" ".join(words))
+        log = self.folder / "reversed.log"
+        log.write_text("\n".join(reversed_lines) + "\n")
+        self.refuse("calibrate", log, says="odometry and lidar turn in opposite directions")
+
     def test_bad_input_is_refused_in_one_line_and_leaves_nothing(self):
         short, damaged, wrong = self.folder / "short.log", self.folder / "damaged.log", self.folder / "wrong.yaml"
         short.write_text("\n".join(self.lines[:30]) + "\n")
