@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "app/common/progress_bar.h"
+#include "core/error.h"
 #include "core/geometry/angles.h"
 
 namespace patrol::app {
@@ -47,6 +48,19 @@ realism::LidarFitSettings fit_settings(const LidarCalibrationSettings& settings)
   return fit;
 }
 
+/// Refuses scans on a site or a path that are not those of the log.
+void check_site_fits(const std::vector<realism::Beam>& beams) {
+  constexpr std::size_t kMinStaticBeams = 100;
+  constexpr double kMinFitRatio = 0.2;
+  const std::size_t num_static = count_of(beams, realism::BeamClass::kStatic);
+  const double ratio = static_ratio(beams);
+  if (ratio >= kMinFitRatio && num_static >= kMinStaticBeams) return;
+  throw InputError(
+      fmt::format("too few beams on surfaces of the site: {} static, {:.1f} % moving or unmapped: --site and "
+                  "--trajectory must be those of the log",
+                  num_static, 100.0 * (1.0 - ratio)));
+}
+
 std::string number(double value) { return fmt::format("{:.4g}", value); }
 
 std::string yaml_bound(double value) {
@@ -67,6 +81,7 @@ std::optional<LidarCalibration> calibrate_lidar(const RealismInput& input, const
   const realism::PositionedScans first =
       position_scans(input.site, half_of(input, false), positions, progress.of("first half"));
   if (progress.is_interrupted()) return std::nullopt;
+  check_site_fits(first.set.beams);
   progress.show("fit");
   LidarCalibration calibration;
   realism::LidarDevice base = input.source.device;

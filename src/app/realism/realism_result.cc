@@ -13,6 +13,8 @@ namespace {
 using realism::Beam;
 using realism::BeamClass;
 
+constexpr double kMinStaticRatio = 0.5;  ///< smaller ratios are worth a warning
+
 double rate_of(const std::vector<Beam>& beams, BeamClass kind, bool (*is_counted)(const Beam&)) {
   std::size_t count = 0, total = 0;
   for (const Beam& beam : beams) {
@@ -153,6 +155,12 @@ io::Metrics metrics_of(const RealismResult& result) {
   return metrics;
 }
 
+double static_ratio(const std::vector<Beam>& beams) {
+  const auto num_static = static_cast<double>(count_of(beams, BeamClass::kStatic));
+  const auto num_moving = static_cast<double>(count_of(beams, BeamClass::kMoving));
+  return num_static + num_moving == 0.0 ? 0.0 : num_static / (num_static + num_moving);
+}
+
 std::string summary_text(const RealismResult& result) {
   const realism::ResidualDistribution recorded = result.residual(), simulated = result.simulated_residual();
   const auto row = [](const char* name, const realism::ResidualDistribution& residual, double dropout) {
@@ -167,7 +175,11 @@ std::string summary_text(const RealismResult& result) {
          fmt::format(
              "Kolmogorov-Smirnov distance of the residuals on static surfaces: {:.3f}\n"
              "moving or unmapped: {:.1f} % of the beams on smooth surfaces\n",
-             result.ks(), 100.0 * rate_of(result.recorded.set.beams, BeamClass::kMoving, is_on_smooth));
+             result.ks(), 100.0 * rate_of(result.recorded.set.beams, BeamClass::kMoving, is_on_smooth)) +
+         (static_ratio(result.recorded.set.beams) < kMinStaticRatio
+              ? "warning: most beams are not on surfaces of the site: --site and --trajectory must be those of the "
+                "log\n"
+              : "");
 }
 
 }  // namespace patrol::app

@@ -40,7 +40,11 @@ io::Table residual_table(const std::vector<BinnedResiduals>& groups);
 
 io::Metrics metrics_of(const RealismResult& result);
 
-/// Summary for a terminal.
+/// Fraction of static returns among the static and the moving or unmapped ones. It is small in another site than that
+/// of the log, or on a wrong path.
+double static_ratio(const std::vector<realism::Beam>& beams);
+
+/// Summary for a terminal, with a warning if most returns are not on surfaces of the site.
 std::string summary_text(const RealismResult& result);
 
 }  // namespace patrol::app

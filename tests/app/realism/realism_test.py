@@ -92,6 +92,17 @@ class Realism(unittest.TestCase):
         self.assertIn("Kolmogorov-Smirnov", again.stdout)
         self.assertLess(json.loads((self.folder / "again/metrics.json").read_text())["ks_distance"], 0.06)
 
+    def test_a_path_that_is_not_that_of_the_log_is_refused_or_warned_of(self):
+        rows = [line.split() for line in (self.folder / "path.tum").read_text().splitlines()]
+        path = self.folder / "elsewhere.tum"
+        path.write_text("".join(" ".join([row[0], str(float(row[1]) + 3.7), str(float(row[2]) - 2.9), *row[3:]]) + "\n" for row in rows))
+        inputs = [self.folder / "log.clf", "--site", self.folder / "site.xml", "--trajectory", path]
+        done = self.patrol("calibrate", "--sensor", "lidar", *inputs, "--out", self.folder / "none", code=2)
+        self.assertIn("too few beams on surfaces of the site", done.stderr)
+        self.assertFalse((self.folder / "none").exists())
+        done = self.patrol("realism", *inputs, "--set", "input.max_scans=20", "--out", self.folder / "warned")
+        self.assertIn("warning: most beams are not on surfaces of the site", done.stdout)
+
     def test_what_is_missing_or_does_not_fit_is_refused_without_output(self):
         log, out = self.folder / "log.clf", self.folder / "refused"
         site, path = ["--site", self.folder / "site.xml"], ["--trajectory", self.folder / "path.tum"]
