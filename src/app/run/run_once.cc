@@ -77,11 +77,11 @@ class Branch {
       throw InputError(origin_.run.string() + ": a branch needs another --out directory");
     scenario_ = load_scenario(parent_.scenario());
     origin_.at = (origin_.at + tick - Time{1}) / tick * tick;
-    check_branch_settings(scenario_, scenario, origin_.at);
     is_changed_ = to_yaml(scenario_) != to_yaml(scenario);
     const std::optional<Time> end = io::McapReader(parent_.log()).last_time();
     if (!end || origin_.at > *end)
       throw InputError(fmt::format("{}: the run ends before {:.3f} s", origin_.run.string(), to_seconds(origin_.at)));
+    check_branch_settings(scenario_, scenario, origin_.at);
     snapshot_ = load_snapshot(parent_.snapshots(), origin_.at, content_hash(scenario_, context_.data_root));
     if (!snapshot_ && std::filesystem::exists(parent_.branch())) {
       throw InputError(
