@@ -13,6 +13,7 @@
 
 namespace patrol::sim {
 
+/// Point of a path in world.
 struct WaypointSettings {
   double x_m = 0.0;  ///< x of the waypoint in the world
   double y_m = 0.0;  ///< y of the waypoint in the world

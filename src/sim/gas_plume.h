@@ -24,6 +24,7 @@ struct LeakSettings {
   }
 };
 
+/// Settings of the wind, which carries the gas.
 struct WindSettings {
   double speed_mps = 1.5;        ///< wind speed
   double direction_deg = 240.0;  ///< direction from which the wind blows, clockwise from north (+y)

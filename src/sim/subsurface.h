@@ -59,6 +59,7 @@ struct FaultZoneSettings {
   }
 };
 
+/// Settings of the rock ahead of the tunnel face: its conductivity, the air of the tunnel and a fault zone.
 struct RockSettings {
   double conductivity_spm = 0.003;  ///< conductivity of the rock; limestone: 0.0005 to 0.005
   /// Standard deviation of the logarithm of the conductivity over seeds; the conductivity above is its median.

@@ -14,6 +14,7 @@
 
 namespace patrol::sim {
 
+/// Settings of the simulated operator that drives the robot along a route.
 struct TeleopOperatorSettings {
   double speed_mps = 0.8;                   ///< forward speed of the operator's commands
   double yaw_rate_radps = 0.6;              ///< yaw rate of a turn in place

@@ -55,6 +55,15 @@ class Reference(unittest.TestCase):
         self.assertGreater(len(expected), 800)
         self.assertEqual(sorted(expected - listed), [])
 
+    def test_no_section_has_an_empty_description(self):
+        pages = self.tool.settings_pages(self.reference["settings"], self.tool.Comments())
+        bare = [part.splitlines()[0] for text in pages.values() for part in text.split("\n## ")[1:] if "\n.\n" in part]
+        self.assertEqual(bare, [])
+
+    def test_units_by_the_end_of_a_name(self):
+        units = {key: self.tool.unit_of(key) for key in ("rate_g_s", "start_s")}
+        self.assertEqual(units, {"rate_g_s": "g/s", "start_s": "s"})
+
     def test_every_key_has_a_meaning_that_is_a_noun_phrase(self):
         comments = self.tool.Comments()
         bad = []
