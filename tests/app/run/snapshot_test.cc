@@ -85,13 +85,15 @@ TEST(BranchSettings, WhatShapesTheStateIsRefusedByNameAndWhatIsReadLaterIsNot) {
     check_branch_settings(parent, scenario_of("street/scenarios/short.yaml", std::move(overrides)), from_seconds(at_s));
   };
   EXPECT_NO_THROW(check({}, 10.0));
-  EXPECT_NO_THROW(check({"time_limit_s=5", "leaks=[]", "wind.speed_mps=3"}, 10.0));
+  EXPECT_NO_THROW(check({"time_limit_s=15", "leaks=[]", "wind.speed_mps=3"}, 10.0));
   EXPECT_NO_THROW(check({"faults=[{sensor: imu, start_s: 10.1}]", "kidnaps=[{at_s: 10}]"}, 10.0));
   for (const char* setting :
        {"seed=2", "sensors.lidar.rate_hz=5", "stack.slam.method=rbpf", "as_built.enabled=false", "start.yaw_deg=1"}) {
     const std::string path = std::string(setting).substr(0, std::string(setting).find('='));
     EXPECT_THAT([&] { check({setting}, 10.0); }, ThrowsMessage<InputError>(HasSubstr("--set " + path + ": cannot")));
   }
+  EXPECT_THAT([&] { check({"time_limit_s=5"}, 10.0); },
+              ThrowsMessage<InputError>(HasSubstr("time_limit_s = 5 is before the branch: must be at least 10.000 s")));
   EXPECT_THAT([&] { check({"faults=[{sensor: imu, start_s: 10}]"}, 10.0); },
               ThrowsMessage<InputError>(HasSubstr("up to 10.000 s cannot change")));
   EXPECT_THAT([&] { check({"kidnaps=[{at_s: 9.9}]"}, 10.0); },
