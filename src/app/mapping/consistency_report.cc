@@ -63,10 +63,9 @@ MappingVerdict ConsistencyReport::verdict() const {
     if (worst.gap_s > 0.0) {
       return {.word = "look at " + place(worst.scans.p_map),
               .tone = report::Tone::kBad,
-              .reason =
-                  fmt::format("before {:.0f} s, there are no scans for {:.1f} s, and odometry contradicts {:.1f} m "
-                              "of the path there",
-                              seconds(worst.scans.first_scan), worst.gap_s, worst.contradiction_m)};
+              .reason = fmt::format("until {:.0f} s, scans are missing for {:.1f} s, and odometry contradicts {:.1f} m "
+                                    "of the path there",
+                                    seconds(worst.scans.first_scan), worst.gap_s, worst.contradiction_m)};
     }
     return {.word = "look at " + place(worst.scans.p_map),
             .tone = report::Tone::kBad,

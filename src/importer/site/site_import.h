@@ -17,12 +17,12 @@ namespace patrol::importer {
 struct MissionOptions {
   std::filesystem::path stations = {};  ///< CSV with the columns name, x, y and optionally heading_deg, priority,
                                         ///< earliest_s, latest_s, service_s (without effect); empty: none
-  int num_random = 0;               ///< number of random stations in free space
-  std::uint64_t seed = 1;           ///< seed of random stations
-  std::optional<Pose2> start = {};  ///< in site; none: by rule
-  bool start_is_recorded = false;   ///< the start is that of a recorded path, which needs no clearance
-  double clearance_m = 0.5;         ///< distance of start and stations from walls and unknown space
-  std::string robot = "wheeled";    ///< robot of the scenario
+  int num_random = 0;                   ///< number of random stations in free space
+  std::uint64_t seed = 1;               ///< seed of random stations
+  std::optional<Pose2> start = {};      ///< in site; none: by rule
+  bool start_is_recorded = false;       ///< the start is that of a recorded path, which needs no clearance
+  double clearance_m = 0.5;             ///< distance of start and stations from walls and unknown space
+  std::string robot = "wheeled";        ///< robot of the scenario
 };
 
 /// Receives the kind of work that begins, such as "compare scans", and the completed fraction of all work, 0 ... 1.

@@ -72,10 +72,9 @@ TEST(ConsistencyReport, OfAGapThatOdometryContradictsIsBadAndNamesGapAndContradi
       {.num_compared = 12,
        .num_scans = 100,
        .unsupported = {{.scans = {.first_scan = 40, .p_map = {3.0, 4.0}}, .contradiction_m = 9.0, .gap_s = 20.0}}});
-  EXPECT_EQ(
-      result.line(),
-      "look at (3.0, 4.0): before 40 s, there are no scans for 20.0 s, and odometry contradicts 9.0 m of the path "
-      "there");
+  EXPECT_EQ(result.line(),
+            "look at (3.0, 4.0): until 40 s, scans are missing for 20.0 s, and odometry contradicts 9.0 m of the path "
+            "there");
   EXPECT_EQ(result.metrics()["unsupported"][0]["gap_s"], 20.0);
 }
 
