@@ -115,7 +115,7 @@ class FailingStack(unittest.TestCase):
         out, done = self.run_stack(f"open({str(self.path / 'id')!r}, 'w').write(str(__import__('os').getpid()))\n"
                                    "__import__('time').sleep(1000)", settings=["start.left_m=1000"])
         self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
-        self.assertRegex(done.stderr, r"\Apatrol: start pose \(.*\): no ground below in .*\n\Z")
+        self.assertRegex(done.stderr, r"\Apatrol: --set start\.left_m=1000: start pose \(.*\): no ground below in .*\n\Z")
         self.assertFalse(out.exists())
         if (self.path / "id").exists() and (self.path / "id").read_text():
             self.assertFalse(pathlib.Path("/proc", (self.path / "id").read_text()).exists(), "the process remains")
