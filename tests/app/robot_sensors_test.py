@@ -93,6 +93,8 @@ class RobotSensors(unittest.TestCase):
         drive = (SOURCE / "models/wheeled/wheeled.yaml").read_text()
         if "gnss" in missing:
             drive = drive.replace("  gnss: {enabled: true}\n", "")
+        if "frame: tdlas" in profile:
+            drive = drive.replace("  tdlas: {enabled: false}\n", "")
         (models / "courier.yaml").write_text(drive + profile)
         scenario = self.folder / "courier.yaml"
         scenario.write_text(SCENARIO)

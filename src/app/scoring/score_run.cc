@@ -40,6 +40,8 @@ io::Metrics metrics_of(const ScoredRun& run) {
 io::Metrics score_trajectories(const Trajectory& estimate, const Trajectory& reference, Time max_dt) {
   const Pose2 T_reference_estimate = score::align_at_start(estimate, reference);
   const score::TrajectoryError error = score::trajectory_error(estimate, T_reference_estimate, reference);
+  if (error.num_poses < 2)
+    throw InputError("estimate: has one pose at the times of the reference: must be two or more");
   io::Metrics metrics;
   io::Metrics& pose = metrics["pose"];
   pose = to_json(error);

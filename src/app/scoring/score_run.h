@@ -45,7 +45,8 @@ void save_scored_run(const RunDirectory& directory, const ScoredRun& run, const 
 /// Scores any two trajectories at the stamps of the estimate: metrics `pose.*`, with `pose.coverage` as the fraction of
 /// the reference's time that they concern, `pose.left_out` as the number of poses outside the reference's time or in
 /// its holes, and `pose.aligned.*`. Without a unique alignment `pose.aligned` is null and `pose.not_aligned` is the
-/// reason. `max_dt`: maximum difference of stamps of the pairs that are aligned.
+/// reason. `max_dt`: maximum difference of stamps of the pairs that are aligned. Throws InputError if fewer than two
+/// poses of the estimate have a reference.
 io::Metrics score_trajectories(const Trajectory& estimate, const Trajectory& reference,
                                Time max_dt = score::kMaxAlignedDt);
 
