@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <numeric>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "slam/graph/branch_and_bound.h"
@@ -40,10 +40,11 @@ struct Segment {
   Eigen::Vector2d center_map;
 };
 
-/// Segments of the path through `T_map_kept`, whose indices in ranges begin at `first_index`. Those after an
-/// interruption begin at the kept scans `starts`.
-std::vector<Segment> divide(const std::vector<Pose2>& T_map_kept, int first_index,
-                            const std::set<std::size_t>& starts = {}) {
+/// Parts of the path after interruptions, by the kept scan that begins each.
+using PartStarts = std::map<std::size_t, UnconnectedPart>;
+
+/// Segments of the path through `T_map_kept`, whose indices in ranges begin at `first_index`. One begins at each start.
+std::vector<Segment> divide(const std::vector<Pose2>& T_map_kept, int first_index, const PartStarts& starts = {}) {
   std::vector<Segment> segments;
   double length_m = 0.0;
   for (std::size_t i = 0; i < T_map_kept.size(); ++i) {
@@ -136,9 +137,8 @@ void ConsistencyCheck::add(const LevelScan& scan, const SlamUpdate& update) {
   kept_indices_.push_back(scans_.size() - 1);
 }
 
-// The place of an unmatched scan is uncertain: the path is measured from the matched scan before it to the one after
-// it.
-std::vector<UnconnectedPart> ConsistencyCheck::interruptions(const std::vector<Pose2>& T_map_body) const {
+// The pose of an unmatched scan is uncertain: the path is measured from the matched scan before it to the one after it.
+std::vector<UnconnectedPart> ConsistencyCheck::find_interruptions(const std::vector<Pose2>& T_map_body) const {
   std::vector<UnconnectedPart> interruptions;
   UnconnectedPart open;
   for (std::size_t i = 1; i < scans_.size(); ++i) {
@@ -182,18 +182,21 @@ MapConsistency ConsistencyCheck::check(const std::vector<Pose2>& T_map_body,
   for (const std::size_t index : kept_indices_) T_map_kept.push_back(T_map_body[index]);
   std::vector<Segment> segments = divide(T_map_earlier, 0);
   const std::size_t num_earlier = segments.size();
-  const std::vector<UnconnectedPart> interruptions = this->interruptions(T_map_body);
-  std::set<std::size_t> starts;  // of the parts after interruptions, in kept scans
-  for (const UnconnectedPart& part : interruptions)
-    starts.insert(
-        static_cast<std::size_t>(std::ranges::lower_bound(kept_indices_, part.first_scan) - kept_indices_.begin()));
+  PartStarts starts;
+  for (const UnconnectedPart& part : find_interruptions(T_map_body)) {
+    const auto first_kept = std::ranges::lower_bound(kept_indices_, part.first_scan);
+    starts.emplace(static_cast<std::size_t>(first_kept - kept_indices_.begin()), part);
+  }
   const std::vector<Segment> own = divide(T_map_kept, static_cast<int>(earlier.size()), starts);
   segments.insert(segments.end(), own.begin(), own.end());
   Connections connections(segments.size());
+  std::vector<std::pair<std::size_t, UnconnectedPart>> interrupted;  // first segment of a part, and the part
   for (std::size_t s = 1; s < segments.size(); ++s) {
-    const bool is_start =
-        s >= num_earlier && starts.contains(static_cast<std::size_t>(segments[s].range.first) - earlier.size());
-    if (s != num_earlier && !is_start) connections.connect(s - 1, s);
+    if (s == num_earlier) continue;
+    const std::size_t first = static_cast<std::size_t>(segments[s].range.first);
+    const auto start = s > num_earlier ? starts.find(first - earlier.size()) : starts.end();
+    if (start != starts.end()) interrupted.emplace_back(s, start->second);
+    else connections.connect(s - 1, s);
   }
   result.num_segments = static_cast<int>(own.size());
   std::vector<Pose2> T_map_keyframe = std::move(T_map_earlier);
@@ -228,16 +231,8 @@ MapConsistency ConsistencyCheck::check(const std::vector<Pose2>& T_map_body,
                                       .offset_rad = comparison.better->yaw});
     }
   }
-  for (const UnconnectedPart& part : interruptions) {
-    const auto start = static_cast<std::size_t>(
-        std::ranges::find_if(segments.begin() + static_cast<std::ptrdiff_t>(num_earlier), segments.end(),
-                             [&](const Segment& segment) {
-                               return kept_indices_[static_cast<std::size_t>(segment.range.first) - earlier.size()] >=
-                                      part.first_scan;
-                             }) -
-        segments.begin());
-    if (start > num_earlier && start < segments.size() && !connections.are_connected(start - 1, start))
-      result.unconnected.push_back(part);
+  for (const auto& [first, part] : interrupted) {
+    if (!connections.are_connected(first - 1, first)) result.unconnected.push_back(part);
   }
   std::stable_sort(result.disagreements.begin(), result.disagreements.end(),
                    [](const Disagreement& a, const Disagreement& b) { return a.offset_m > b.offset_m; });

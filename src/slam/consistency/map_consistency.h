@@ -82,7 +82,7 @@ class ConsistencyCheck {
     bool has_returns, is_matched;
   };
   /// Parts after interruptions of the path, whether they are connected or not.
-  std::vector<UnconnectedPart> interruptions(const std::vector<Pose2>& T_map_body) const;
+  std::vector<UnconnectedPart> find_interruptions(const std::vector<Pose2>& T_map_body) const;
 
   std::vector<MatchedScan> scans_;
   std::vector<Keyframe> kept_;             ///< scans at least 0.1 m or 0.1 rad apart

@@ -239,7 +239,7 @@ ScanTracker::Hypothesis ScanTracker::match_by_alternatives(const Track& track, c
   return best.match ? without_moving_objects(best, points, prediction) : best;
 }
 
-// Where the map ends, few points are in known cells, and a pose at which all points match is elsewhere.
+// At the end of the map, few points are in known cells, and a pose at which all points match is a wrong one.
 ScanTracker::Hypothesis ScanTracker::match_after_gap(const Hypothesis& by_odometry,
                                                      const std::vector<MatchPoint>& points,
                                                      const PoseGaussian& prediction) {
