@@ -1,6 +1,6 @@
 """Metrics of a run, each of which must have an entry in the reference.
 
-usage: documented_metrics.py PATROL FOLDER    checks the results of every `patrol test` below the folder
+usage: documented_metrics.py PATROL FOLDER NUMBER    checks the results of every `patrol test` below the folder, which are NUMBER
 """
 import json
 import pathlib
@@ -36,9 +36,9 @@ def load_metrics(patrol, folder):
 
 
 def main():
-    patrol, folder = sys.argv[1], pathlib.Path(sys.argv[2])
+    patrol, folder, number = sys.argv[1], pathlib.Path(sys.argv[2]), int(sys.argv[3])
     results = [json.loads(file.read_text()) for file in sorted(folder.glob("*/runs/*.json"))]
-    assert len(results) >= 9, f"{folder}: {len(results)} results"
+    assert len(results) == number, f"{folder}: {len(results)} results, expected {number}"
     missing = sorted({path for result in results for path in undocumented(patrol, result["metrics"])})
     print(f"{len(results)} results, metrics without an entry: {missing or 'none'}")
     sys.exit(1 if missing else 0)
