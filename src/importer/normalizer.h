@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <cstddef>
 #include <map>
 #include <numbers>
 #include <optional>
@@ -13,12 +14,18 @@
 #include <vector>
 
 #include <Eigen/Geometry>
+#include <fmt/format.h>
 
 #include "importer/leg_finder.h"
 #include "importer/normalize.h"
 #include "importer/wheel_finder.h"
 
 namespace patrol::importer {
+
+/// Returns the message about a robot all of whose wheels are steered.
+inline std::string all_steered(std::size_t num_wheels) {
+  return fmt::format("all {} wheels are steered: not supported: fix the steering joints of one axle", num_wheels);
+}
 
 /// Returns the angle of an axle relative to y of the base, in (-pi/2, pi/2].
 inline double axle_angle_rad(const Eigen::Vector3d& axis) {
