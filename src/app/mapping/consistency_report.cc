@@ -115,7 +115,8 @@ io::Metrics ConsistencyReport::metrics() const {
                            {"distance_m", part.distance_m}});
   }
   const bool is_checked = consistency.num_compared > 0 || !consistency.disagreements.empty() ||
-                          !consistency.unsupported.empty() || consistency.has_too_many_unmatched();
+                          !consistency.unsupported.empty() || !consistency.unconnected.empty() ||
+                          consistency.has_too_many_unmatched();
   return {{"consistent", is_checked ? io::Metrics(consistency.is_consistent()) : io::Metrics()},
           {"segments", consistency.num_segments},
           {"compared_pairs", consistency.num_compared},

@@ -115,7 +115,7 @@ std::optional<ScansOnPath> read_scans_on_path(const LogOnSite& source, const Log
           kept.push_back(recorded);
           if (kept.size() < 2 * max_scans) return;
           // Keep every other scan: an even sample of a log of unknown length.
-          for (std::size_t k = 0; 2 * k < kept.size(); ++k) kept[k] = std::move(kept[2 * k]);
+          for (std::size_t k = 1; 2 * k < kept.size(); ++k) kept[k] = std::move(kept[2 * k]);
           kept.resize(max_scans);
           stride *= 2;
         });

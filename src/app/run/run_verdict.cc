@@ -1,5 +1,8 @@
 #include "app/run/run_verdict.h"
 
+#include <algorithm>
+#include <cstddef>
+
 #include <fmt/format.h>
 
 namespace patrol::app {
@@ -10,8 +13,12 @@ std::vector<InjectedEvent> events_of(const RunOutcome& outcome, const std::vecto
   for (const sim::FaultStatus& report : outcome.faults) {
     events.push_back({.name = name_of(report.fault), .was_triggered = report.was_triggered});
   }
-  for (std::size_t i = 0; i < kidnaps.size(); ++i) {
-    events.push_back({.name = name_of(kidnaps[i]), .was_triggered = i < outcome.num_kidnaps});
+  for (auto kidnap = kidnaps.begin(); kidnap != kidnaps.end(); ++kidnap) {
+    const auto is_earlier = [&](const KidnapSettings& other) { return other.at_s < kidnap->at_s; };
+    const auto is_same = [&](const KidnapSettings& other) { return other.at_s == kidnap->at_s; };
+    const auto num_before = static_cast<std::size_t>(std::count_if(kidnaps.begin(), kidnaps.end(), is_earlier) +
+                                                     std::count_if(kidnaps.begin(), kidnap, is_same));
+    events.push_back({.name = name_of(*kidnap), .was_triggered = num_before < outcome.num_kidnaps});
   }
   return events;
 }

@@ -91,6 +91,12 @@ TEST(ConsistencyReport, OfAPartThatOnlyOdometryConnectsIsBadAndNamesPlaceTimeAnd
   EXPECT_EQ(result.metrics()["unconnected"][0]["distance_m"], 10.4);
 }
 
+TEST(ConsistencyReport, OfAnUnconnectedPartWithoutPairsIsInconsistent) {
+  const ConsistencyReport result =
+      report_of({.num_scans = 100, .unconnected = {{.first_scan = 40, .p_map = {3.0, 4.0}, .distance_m = 10.4}}});
+  EXPECT_EQ(result.metrics()["consistent"], false);
+}
+
 TEST(ConsistencyReport, WithoutPairsIsNotCheckedEvenIfAScanIsUnmatched) {
   const ConsistencyReport result =
       report_of({.num_scans = 100, .num_unmatched = 1, .unmatched_segments = {{.num_scans = 1}}});

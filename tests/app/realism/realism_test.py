@@ -102,6 +102,7 @@ class Realism(unittest.TestCase):
         self.assertFalse((self.folder / "none").exists())
         done = self.patrol("realism", *inputs, "--set", "input.max_scans=20", "--out", self.folder / "warned")
         self.assertIn("warning: most beams are not on surfaces of the site", done.stdout)
+        self.assertEqual(json.loads((self.folder / "warned/metrics.json").read_text())["scans"], 20)
 
     def test_what_is_missing_or_does_not_fit_is_refused_without_output(self):
         log, out = self.folder / "log.clf", self.folder / "refused"

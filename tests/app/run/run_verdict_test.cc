@@ -50,6 +50,16 @@ TEST(RunVerdict, KidnapsThatTheRunDidNotReachAreNotExecuted) {
   EXPECT_EQ(verdict.events[1].name, "kidnap at 900 s");
 }
 
+TEST(RunVerdict, KidnapsAreExecutedInTheOrderOfTheirTimes) {
+  RunOutcome outcome = ended(RunEnd::kMissionOver, 60.0);
+  outcome.num_kidnaps = 2;
+  const RunVerdict verdict = verdict_of(outcome, {{.at_s = 900.0}, {.at_s = 10.0}, {.at_s = 10.0}}, {}, {});
+  ASSERT_EQ(verdict.events.size(), 3u);
+  EXPECT_FALSE(verdict.events[0].was_triggered);
+  EXPECT_TRUE(verdict.events[1].was_triggered);
+  EXPECT_TRUE(verdict.events[2].was_triggered);
+}
+
 TEST(RunVerdict, ComesBackFromJson) {
   RunOutcome outcome = ended(RunEnd::kTimeLimit, 60.0);
   outcome.faults = {{.fault = {.sensor = "imu", .kind = "freeze", .start_s = 12.0}, .was_triggered = true}};

@@ -50,11 +50,12 @@ std::string numbers(const std::optional<score::Interval>& interval) {
                   : "  too few runs";
 }
 
-/// Text bar from `from` to `to` on a scale of `full`.
+/// Text bar from `from` to `to` on a scale of `full`; at its start if `full` is not positive.
 std::string bar(double from, double to, double full) {
   constexpr double kWidth = 30.0;
   const auto bar_cell = [&](double value) {
-    return static_cast<std::size_t>(std::lround(kWidth * std::clamp(value / full, 0.0, 1.0)));
+    const double fraction = full > 0.0 ? std::clamp(value / full, 0.0, 1.0) : 0.0;
+    return static_cast<std::size_t>(std::lround(kWidth * fraction));
   };
   const std::size_t begin = bar_cell(std::min(from, to)), end = std::max(bar_cell(std::max(from, to)), begin + 1);
   std::string text(begin, ' ');

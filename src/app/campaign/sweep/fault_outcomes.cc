@@ -13,8 +13,9 @@ namespace {
 
 /// Whether the single declared fault of a run was triggered; none without a fault.
 std::optional<bool> was_triggered(const RunVerdict& verdict) {
-  if (verdict.events.empty()) return std::nullopt;
-  return verdict.events.front().was_triggered;
+  const auto fault = std::find_if(verdict.events.begin(), verdict.events.end(),
+                                  [](const InjectedEvent& event) { return event.name.starts_with("fault "); });
+  return fault == verdict.events.end() ? std::nullopt : std::optional(fault->was_triggered);
 }
 
 /// Metrics by which a run with a fault is compared with the one without.

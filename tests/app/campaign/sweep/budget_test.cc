@@ -98,6 +98,11 @@ TEST(Budget, AShareWithAPValueOfThreePercentIsNotSignificantAmongTwoSources) {
   EXPECT_FALSE(budget.contributions[0].is_significant());
 }
 
+TEST(Budget, OfAMetricThatIsZeroInEveryRunHasBars) {
+  const std::string text = budget_text(budget_of({{0.0, 0.0, 0.0, 0.0}, {0.0, 0.0, 0.0, 0.0}}));
+  EXPECT_THAT(text, HasSubstr("+0.00000"));
+}
+
 TEST(Budget, WithoutFiguresItSaysSo) {
   const std::vector<std::vector<double>> values = {{1.0, 0.9, 1.0, 0.9}};
   EXPECT_THAT(budget_text(budget_of(values)), HasSubstr("too few runs"));

@@ -34,5 +34,18 @@ TEST(FaultRow, HasNoEffectWhenOnlyTheNumberOfReportedFaultsAndThePerformanceDiff
   EXPECT_FALSE(fault_rows(manifest, rows)[1].is_without_effect());
 }
 
+TEST(FaultRow, AKidnapOfTheScenarioIsNoFault) {
+  SweepManifest manifest;
+  manifest.variants = {{.name = "no fault", .overrides = {}}, {.name = "gnss: drift", .overrides = {}}};
+  manifest.seeds = {1};
+  for (std::size_t i = 0; i < 2; ++i) manifest.runs.push_back({.variant = i, .seed = 1, .overrides = {}, .hash = ""});
+  SweepRows rows = {fault_verdict(RunStatus::kDone, true, 0), fault_verdict(RunStatus::kDone, true, 0)};
+  const InjectedEvent kidnap{.name = "kidnap at 900 s", .was_triggered = false};
+  rows[0]->events = {kidnap};
+  rows[1]->events.insert(rows[1]->events.begin(), kidnap);
+  EXPECT_EQ(fault_rows(manifest, rows)[0].was_triggered, std::nullopt);
+  EXPECT_EQ(fault_rows(manifest, rows)[1].was_triggered, true);
+}
+
 }  // namespace
 }  // namespace patrol::app::fault_outcomes_test

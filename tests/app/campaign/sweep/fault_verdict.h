@@ -12,7 +12,7 @@ inline app::RunVerdict fault_verdict(app::RunStatus end, bool is_completed, int 
       .metrics = {{"mission", {{"completed", is_completed}, {"collisions", collisions}, {"sensor_faults_noticed", 1}}},
                   {"pose", {{"ate_rmse_m", 0.1}}}},
       .checks = {},
-      .events = {{.name = "fault", .was_triggered = was_triggered}}};
+      .events = {{.name = "fault imu freeze at 12 s", .was_triggered = was_triggered}}};
 }
 
 }  // namespace patrol::test
