@@ -13,44 +13,57 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kMu0 = 4e-7 * kPi;  // V s / (A m)
 constexpr int kMaxOrder = 40;
 
-using Complex = std::complex<double>;
+/// Two numbers in one register.
+using Pair = double __attribute__((vector_size(2 * sizeof(double))));
 
-// Modified spherical Bessel functions i_n (finite at the origin) and k_n (decaying, here with k_0 = e^-x / x), n = 0
-// ... order + 1.
-using Orders = std::array<Complex, kMaxOrder + 2>;
+/// Two complex numbers. Their sizes are moderate: products and quotients need no scaling.
+struct Complex {
+  Pair re, im;
+};
 
-/// Computes i_n by downward recurrence (Miller), because upward recurrence loses all digits; scaled with i_0 = sinh(x)
-/// / x.
-Orders bessel_i(Complex x, int order) {
-  constexpr int kAhead = 12;
-  Orders values{};
-  const Complex inverse = 1.0 / x;
-  Complex above = 0.0, here = 1e-250;
-  for (int n = order + 1 + kAhead + static_cast<int>(std::abs(x)); n > 0; --n) {
-    const Complex below = above + (2.0 * n + 1.0) * (inverse * here);
-    above = here;
-    here = below;
-    if (n - 1 <= order + 1) values[static_cast<std::size_t>(n - 1)] = here;
-    if (std::norm(here) > 1e200) {
-      here *= 1e-100, above *= 1e-100;
-      for (Complex& value : values) value *= 1e-100;
-    }
-  }
-  const Complex scale = std::sinh(x) * inverse / values[0];
-  for (int n = 0; n <= order + 1; ++n) values[static_cast<std::size_t>(n)] *= scale;
-  return values;
+Complex constant(double value) { return {Pair{value, value}, Pair{0.0, 0.0}}; }
+
+inline Complex operator+(const Complex& a, const Complex& b) { return {a.re + b.re, a.im + b.im}; }
+inline Complex operator-(const Complex& a, const Complex& b) { return {a.re - b.re, a.im - b.im}; }
+inline Complex operator*(double a, const Complex& b) { return {a * b.re, a * b.im}; }
+inline Complex operator*(const Complex& a, const Complex& b) {
+  return {a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re};
 }
 
-Orders bessel_k(Complex x, int order) {
-  Orders values{};
-  const Complex inverse = 1.0 / x;
-  values[0] = std::exp(-x) * inverse;
-  values[1] = values[0] * (1.0 + inverse);
-  for (int n = 1; n <= order; ++n) {
-    const auto at = static_cast<std::size_t>(n);
-    values[at + 1] = values[at - 1] + (2.0 * n + 1.0) * (inverse * values[at]);
+inline Complex inverse(const Complex& a) {
+  const Pair scale = 1.0 / (a.re * a.re + a.im * a.im);
+  return {a.re * scale, -a.im * scale};
+}
+
+Complex exp(const Complex& a) {
+  const std::complex<double> first = std::exp(std::complex<double>(a.re[0], a.im[0])),
+                             second = std::exp(std::complex<double>(a.re[1], a.im[1]));
+  return {Pair{first.real(), second.real()}, Pair{first.imag(), second.imag()}};
+}
+
+/// Modified spherical Bessel functions i_n that are finite at the origin: `value` is i_n (2n + 1)!! / x^n up to a
+/// factor common to all n, `next` that of x i_(n+1), n = 0 ... order.
+struct BesselI {
+  std::array<Complex, kMaxOrder + 1> value, next;
+};
+
+/// Computes them by downward recurrence (Miller), because upward recurrence loses all digits.
+void bessel_i(const Complex& x, int order, BesselI& i) {
+  constexpr int kAhead = 8;
+  const Complex x_squared = x * x;
+  const Pair square = x.re * x.re + x.im * x.im;
+  int n = order + kAhead + static_cast<int>(std::sqrt(std::max(square[0], square[1])));
+  Complex above = constant(1.0), here = above;
+  for (double above_inverse = 1.0 / (2.0 * n + 3.0); n >= 0; --n) {
+    const Complex next = above_inverse * (x_squared * above);
+    above_inverse = 1.0 / (2.0 * n + 1.0);
+    if (n <= order) {
+      i.value[static_cast<std::size_t>(n)] = here;
+      i.next[static_cast<std::size_t>(n)] = next;
+    }
+    above = here;
+    here = here + above_inverse * next;
   }
-  return values;
 }
 
 /// Returns the number of multipoles that the static field of a perfect conductor needs for 1e-5. Multipole n decreases
@@ -64,53 +77,75 @@ struct Field {
   Complex axial, transverse;
 };
 
-/// Returns the secondary field H of the sphere at the dipole and along it, per unit moment, at Laplace frequency `s`.
-/// With g = sqrt(mu0 sigma s) in the rock and x = g R, the contribution of multipole n is
+/// Returns the secondary field H of the sphere at the dipole and along it, per unit moment, at Laplace frequency s with
+/// `root` = sqrt(mu0 s). With g = sqrt(mu0 sigma s) in the rock and x = g R, the contribution of multipole n is
 ///   axial       g / (4 pi R^2) (2n + 1) n (n + 1)   TE_n k_n(x)^2
 ///   transverse  g^3 / (4 pi) (2n + 1) / 2         ( TE_n ((x k_n(x))' / x)^2 - TM_n k_n(x)^2 )
-/// TE_n and TM_n are the reflection coefficients of the sphere from i_n into k_n: tangential E and H are continuous.
-Field sphere_field(double rock_spm, const ConductiveSphere& sphere, int order, Complex s) {
-  const Complex root = std::sqrt(s);
-  const Complex g1 = std::sqrt(kMu0 * rock_spm) * root, g2 = std::sqrt(kMu0 * sphere.conductivity_spm) * root;
-  const Complex x1 = g1 * sphere.radius_m, x2 = g2 * sphere.radius_m, x = g1 * sphere.distance_m;
-  const Orders i1 = bessel_i(x1, order), i2 = bessel_i(x2, order), k1 = bessel_k(x1, order), k = bessel_k(x, order);
-  const double resistance = rock_spm / sphere.conductivity_spm;
-  Field field;
+/// k_n are the decaying modified spherical Bessel functions with k_0 = e^-x / x. TE_n and TM_n are the reflection
+/// coefficients of the sphere from i_n into k_n: tangential E and H are continuous. All functions are free of their
+/// powers of x and double factorials, of which (a / R)^(2n + 1) / (2n + 1) remains: i_n as above, and k_n with the
+/// factor x^(n + 1) / (2n - 1)!! e^x, which follows from upward recurrence.
+Field sphere_field(double rock_spm, const ConductiveSphere& sphere, int order, const Complex& root) {
+  const Complex g1 = std::sqrt(rock_spm) * root, g2 = std::sqrt(sphere.conductivity_spm) * root;
+  const Complex x1 = sphere.radius_m * g1, x2 = sphere.radius_m * g2, x = sphere.distance_m * g1;
+  BesselI i1, i2;
+  bessel_i(x1, order, i1);
+  bessel_i(x2, order, i2);
+  const double resistance = rock_spm / sphere.conductivity_spm, ratio = sphere.radius_m / sphere.distance_m;
+  const Complex x1_squared = x1 * x1, x_squared = x * x;
+  // Functions of order n - 1 and n.
+  Complex k1_below = constant(1.0), k1 = k1_below + x1, k_below = constant(1.0), k = k_below + x;
+  // The Wronskian i_0 k_1 + i_1 k_0 = x^-2 yields the factor of `i1`.
+  const Complex factor = exp(2.0 * (x1 - x)) * inverse(x * (i1.value[0] * k1 + i1.next[0]));
+  const Complex inverse_x_squared = inverse(x_squared);
+  double power = ratio;
+  Field field{constant(0.0), constant(0.0)};
   for (int order_n = 1; order_n <= order; ++order_n) {
     const auto n = static_cast<std::size_t>(order_n);
     const double m = order_n;
-    const Complex in2 = x2 * i2[n + 1], in1 = x1 * i1[n + 1], out1 = x1 * k1[n - 1];
-    const Complex te = -(i1[n] * in2 - i2[n] * in1) / (k1[n] * (in2 + (2.0 * m + 1.0) * i2[n]) + i2[n] * out1);
-    const Complex slope_i1 = in1 + (m + 1.0) * i1[n], slope_i2 = in2 + (m + 1.0) * i2[n],
-                  slope_k1 = -out1 - m * k1[n];  // (x i_n)' ...
-    const Complex tm =
-        -(i1[n] * slope_i2 * resistance - i2[n] * slope_i1) / (k1[n] * slope_i2 * resistance - i2[n] * slope_k1);
-    const Complex slope_k = k[n - 1] + m * k[n] / x, k_squared = k[n] * k[n];
-    field.axial += (2.0 * m + 1.0) * m * (m + 1.0) * te * k_squared;
-    field.transverse += (m + 0.5) * (te * slope_k * slope_k - tm * k_squared);
+    power *= ratio * ratio;
+    // x k_(n-1) as the others: without the factor of k_n.
+    const Complex out1 = 1.0 / (2.0 * m - 1.0) * (x1_squared * k1_below),
+                  out = 1.0 / (2.0 * m - 1.0) * (x_squared * k_below);
+    const Complex &in1 = i1.value[n], &in2 = i2.value[n];
+    const Complex te =
+        (i1.next[n] * in2 - in1 * i2.next[n]) * inverse(k1 * ((2.0 * m + 1.0) * in2 + i2.next[n]) + in2 * out1);
+    const Complex slope_i1 = (m + 1.0) * in1 + i1.next[n], slope_i2 = resistance * ((m + 1.0) * in2 + i2.next[n]),
+                  slope_k1 = m * k1 + out1, slope_k = m * k + out;  // (x i_n)' ..., -(x k_n)'
+    const Complex tm = (slope_i1 * in2 - in1 * slope_i2) * inverse(k1 * slope_i2 + in2 * slope_k1);
+    const Complex k_squared = k * k;
+    field.axial = field.axial + power * m * (m + 1.0) * (te * k_squared);
+    field.transverse = field.transverse + 0.5 * power * (te * slope_k * slope_k * inverse_x_squared - tm * k_squared);
+    k1_below = k1, k_below = k;
+    k1 = k1 + 1.0 / (2.0 * m + 1.0) * out1;
+    k = k + 1.0 / (2.0 * m + 1.0) * out;
   }
-  field.axial *= g1 / (4.0 * kPi * sphere.distance_m * sphere.distance_m);
-  field.transverse *= g1 * g1 * g1 / (4.0 * kPi);
+  field.axial = 1.0 / (4.0 * kPi * sphere.distance_m * sphere.distance_m) * (g1 * factor * field.axial);
+  field.transverse = 1.0 / (4.0 * kPi) * (g1 * g1 * g1 * factor * field.transverse);
   return field;
 }
 
-/// Node of the inversion contour. `st` is the Laplace frequency times t; the weight includes the exponential.
-struct ContourPoint {
-  Complex st;
+/// Two nodes of the inversion contour for time t. The weight includes the exponential.
+struct ContourPair {
+  Complex root;  ///< sqrt(mu0 s t)
   Complex weight;
 };
 
 /// Returns Talbot's contour with the optimized parameters of [Trefethen06]. Twelve nodes, six of which mirror the
 /// others. The error is 3.89^-12 = 1e-7 of the scale of the decay at time t.
-std::array<ContourPoint, 6> talbot_contour() {
-  std::array<ContourPoint, 6> contour;
+std::array<ContourPair, 3> talbot_contour() {
+  std::array<ContourPair, 3> contour;
   constexpr double kPoints = 12.0;
-  for (std::size_t i = 0; i < contour.size(); ++i) {
+  for (std::size_t i = 0; i < 2 * contour.size(); ++i) {
     const double theta = (2.0 * static_cast<double>(i) + 1.0) * kPi / kPoints;
     const double cot = 1.0 / std::tan(0.6407 * theta), sin = std::sin(0.6407 * theta);
-    const Complex st = kPoints * Complex(0.5017 * theta * cot - 0.6122, 0.2645 * theta);
-    const Complex slope = kPoints * Complex(0.5017 * (cot - 0.6407 * theta / (sin * sin)), 0.2645);
-    contour[i] = {st, 2.0 / kPoints * std::exp(st) * slope};
+    const std::complex<double> st = kPoints * std::complex<double>(0.5017 * theta * cot - 0.6122, 0.2645 * theta);
+    const std::complex<double> slope =
+        kPoints * std::complex<double>(0.5017 * (cot - 0.6407 * theta / (sin * sin)), 0.2645);
+    const std::complex<double> root = std::sqrt(kMu0 * st), weight = 2.0 / kPoints * std::exp(st) * slope;
+    ContourPair& pair = contour[i / 2];
+    pair.root.re[i % 2] = root.real(), pair.root.im[i % 2] = root.imag();
+    pair.weight.re[i % 2] = weight.real(), pair.weight.im[i % 2] = weight.imag();
   }
   return contour;
 }
@@ -134,13 +169,14 @@ double whole_space_response(double rock_spm, double time_s) {
 }
 
 SphereResponse sphere_response(double rock_spm, const ConductiveSphere& sphere, double time_s) {
-  const std::array<ContourPoint, 6> contour = talbot_contour();
+  static const std::array<ContourPair, 3> contour = talbot_contour();
   const int order = order_for(sphere);
   SphereResponse rate;
-  for (const ContourPoint& point : contour) {
-    const Field field = sphere_field(rock_spm, sphere, order, point.st / time_s);
-    rate.axial += kMu0 / time_s * (point.weight * field.axial).imag();
-    rate.transverse += kMu0 / time_s * (point.weight * field.transverse).imag();
+  for (const ContourPair& pair : contour) {
+    const Field field = sphere_field(rock_spm, sphere, order, 1.0 / std::sqrt(time_s) * pair.root);
+    const Pair axial = (pair.weight * field.axial).im, transverse = (pair.weight * field.transverse).im;
+    rate.axial += kMu0 / time_s * (axial[0] + axial[1]);
+    rate.transverse += kMu0 / time_s * (transverse[0] + transverse[1]);
   }
   return rate;
 }

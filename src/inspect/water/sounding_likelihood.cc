@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include <Eigen/Cholesky>
 #include <Eigen/QR>
 #include <fmt/format.h>
 
@@ -12,10 +13,13 @@
 namespace patrol::inspect {
 namespace {
 
+using Form = Eigen::Matrix<double, 6, 1>;  ///< coefficients of a quadratic form of the axis with respect to `products`
+
 constexpr std::array kSteelDecay_s = {1e-5, 3e-5, 1e-4, 3e-4};
 constexpr double kSteelReferenceTime_s = 1e-5;
-constexpr Eigen::Index kForm = 7;  // an isotropic part and the six products of the components of an axis
-constexpr Eigen::Index kShape = 4;
+constexpr Eigen::Index kProducts = 6;          // products of the components of an axis
+constexpr Eigen::Index kForm = 1 + kProducts;  // with an isotropic part
+constexpr Eigen::Index kShape = 4, kAir = 2;
 constexpr double kReferenceRock_spm = 0.003;  // conductivity to which `tunnel_air_std` and `layer_std` refer
 
 /// Ratios of the response of the tunnel's air to that of the rock, relative to the ratio across the axis at 2 us. Fit
@@ -45,8 +49,21 @@ TemGateLayout gate_layout(const SoundingErrorSettings& settings, const std::vect
 }
 
 /// Returns the six products of the components of an axis that span the quadratic forms.
-Eigen::Matrix<double, 6, 1> products(const Eigen::Vector3d& a) {
+Form products(const Eigen::Vector3d& a) {
   return {a.x() * a.x(), a.y() * a.y(), a.z() * a.z(), 2.0 * a.x() * a.y(), 2.0 * a.x() * a.z(), 2.0 * a.y() * a.z()};
+}
+
+/// Form that is 1 for all axes.
+const Form kIsotropic{1.0, 1.0, 1.0, 0.0, 0.0, 0.0};
+
+/// Returns the form (a d) (a e) of the axis a.
+Form product_form(const Eigen::Vector3d& d, const Eigen::Vector3d& e) {
+  return {d.x() * e.x(),
+          d.y() * e.y(),
+          d.z() * e.z(),
+          0.5 * (d.x() * e.y() + d.y() * e.x()),
+          0.5 * (d.x() * e.z() + d.z() * e.x()),
+          0.5 * (d.y() * e.z() + d.z() * e.y())};
 }
 
 /// Returns soundings with reduced noise: per gate the best-fitting quadratic form of the axis, or zero if it is not
@@ -91,13 +108,14 @@ SoundingLikelihood::SoundingLikelihood(const SoundingErrorSettings& settings,
     : gates_(gate_layout(settings, soundings)),
       gate_s_(soundings.front().sounding.gate_s),
       num_gates_(static_cast<Eigen::Index>(gate_s_.size())),
+      num_layer_(settings.layer_std > 0.0 ? kForm : 0),
       body_shape_std_(settings.body_shape_std) {
   const auto count = static_cast<Eigen::Index>(soundings.size());
+  std::vector<Eigen::Vector3d> axes;
   Eigen::MatrixXd rate(num_gates_, count), std(num_gates_, count);
   for (Eigen::Index i = 0; i < count; ++i) {
     const OrientedSounding& oriented = soundings[static_cast<std::size_t>(i)];
-    axes_.push_back(quaternion_from_rpy(0.0, oriented.pose.pitch_rad, oriented.pose.yaw_rad) *
-                    Eigen::Vector3d::UnitX());
+    axes.push_back(quaternion_from_rpy(0.0, oriented.pose.pitch_rad, oriented.pose.yaw_rad) * Eigen::Vector3d::UnitX());
     for (Eigen::Index gate = 0; gate < num_gates_; ++gate) {
       const auto g = static_cast<std::size_t>(gate);
       rate(gate, i) = oriented.sounding.rate_tps[g] / oriented.sounding.moment_am2;
@@ -109,143 +127,151 @@ SoundingLikelihood::SoundingLikelihood(const SoundingErrorSettings& settings,
       }
     }
   }
-  const Eigen::MatrixXd smooth = fit_quadratic_form(rate, std, axes_);
+  const Eigen::MatrixXd smooth = fit_quadratic_form(rate, std, axes);
   const Eigen::VectorXd mean = smooth.rowwise().mean(), slopes = log_slopes(gate_s_, mean);
   std = (std.array().square() + (settings.model_std * smooth.array()).square()).sqrt();
 
   const Eigen::Index common = 2 + kForm * static_cast<Eigen::Index>(kSteelDecay_s.size());
   const Eigen::Index data = num_gates_ * count;
-  data_.resize(data);
-  inverse_std_.resize(data);
-  nuisances_ = Eigen::MatrixXd::Zero(data, common + count);
+  Eigen::VectorXd whitened(data), inverse_std(data);
+  Eigen::MatrixXd nuisances = Eigen::MatrixXd::Zero(data, common + count);
   for (Eigen::Index i = 0; i < count; ++i) {
     for (Eigen::Index gate = 0; gate < num_gates_; ++gate) {
       const Eigen::Index row = i * num_gates_ + gate;
       const double time_s = gate_s_[static_cast<std::size_t>(gate)], signal = smooth(gate, i) / std(gate, i);
-      inverse_std_[row] = 1.0 / std(gate, i);
-      data_[row] = rate(gate, i) / std(gate, i);
-      nuisances_(row, 0) = settings.gain_std * signal;
-      nuisances_(row, 1) = settings.time_shift_std_s * slopes[gate] * signal;
-      nuisances_(row, common + i) = settings.sounding_gain_std * signal;
+      inverse_std[row] = 1.0 / std(gate, i);
+      whitened[row] = rate(gate, i) / std(gate, i);
+      nuisances(row, 0) = settings.gain_std * signal;
+      nuisances(row, 1) = settings.time_shift_std_s * slopes[gate] * signal;
+      nuisances(row, common + i) = settings.sounding_gain_std * signal;
       Eigen::Index column = 2;
       const auto add_form = [&](double isotropic, double anisotropy) {
-        nuisances_(row, column) = isotropic;
-        nuisances_.block<1, 6>(row, column + 1) =
-            anisotropy * isotropic * products(axes_[static_cast<std::size_t>(i)]).transpose();
+        nuisances(row, column) = isotropic;
+        nuisances.block<1, 6>(row, column + 1) =
+            anisotropy * isotropic * products(axes[static_cast<std::size_t>(i)]).transpose();
         column += kForm;
       };
       for (const double decay_s : kSteelDecay_s) {
-        add_form(settings.steel_response * std::exp((kSteelReferenceTime_s - time_s) / decay_s) * inverse_std_[row],
+        add_form(settings.steel_response * std::exp((kSteelReferenceTime_s - time_s) / decay_s) * inverse_std[row],
                  settings.steel_anisotropy);
       }
     }
   }
-  set_ground_deviations(settings);
-  const Eigen::Index columns = nuisances_.cols();
-  nuisance_information_.compute(Eigen::MatrixXd::Identity(columns, columns) + nuisances_.transpose() * nuisances_);
+  set_gram(nuisances, model_columns(settings, axes, inverse_std, whitened));
 }
 
-/// Sets the deviations of the response of the ground from that of homogeneous rock, for rock of unit conductivity. The
-/// tunnel's axis is the x axis of the mount.
-void SoundingLikelihood::set_ground_deviations(const SoundingErrorSettings& settings) {
+/// Returns the whitened columns that models and data consist of, [datum][column]: per product of the components of the
+/// axis and gate, a response of 1; the deviations of the ground's response by the tunnel's air and by layers; rock; the
+/// data. The ground is of unit conductivity. The tunnel's axis is the x axis of the mount.
+Eigen::MatrixXd SoundingLikelihood::model_columns(const SoundingErrorSettings& settings,
+                                                  const std::vector<Eigen::Vector3d>& axes,
+                                                  const Eigen::VectorXd& inverse_std,
+                                                  const Eigen::VectorXd& data) const {
   const Eigen::VectorXd rock = gated_whole_space_response(gates_, 1.0);
-  const Eigen::Index num_air = settings.tunnel_air_std > 0.0 ? 2 : 0, num_layer = settings.layer_std > 0.0 ? kForm : 0;
-  air_ = Eigen::MatrixXd::Zero(data_.size(), num_air);
-  layer_ = Eigen::MatrixXd::Zero(data_.size(), num_layer);
-  for (Eigen::Index row = 0; row < data_.size(); ++row) {
+  const Eigen::Index air = kProducts * num_gates_, layer = air + kAir;
+  Eigen::MatrixXd columns(data.size(), layer + num_layer_ + 2);
+  columns.setZero();
+  for (Eigen::Index row = 0; row < data.size(); ++row) {
     const Eigen::Index gate = row % num_gates_;
-    const Eigen::Vector3d& axis = axes_[static_cast<std::size_t>(row / num_gates_)];
+    const Eigen::Vector3d& axis = axes[static_cast<std::size_t>(row / num_gates_)];
     const double time_s = gate_s_[static_cast<std::size_t>(gate)], cosine_squared = axis.x() * axis.x();
-    const double scale = rock[gate] * inverse_std_[row];
-    if (num_air > 0) {
-      air_(row, 0) = settings.tunnel_air_std * air_along(time_s) * cosine_squared * scale;
-      air_(row, 1) = settings.tunnel_air_std * air_across(time_s) * (1.0 - cosine_squared) * scale;
+    const double scale = rock[gate] * inverse_std[row];
+    const Form form = products(axis);
+    for (Eigen::Index product = 0; product < kProducts; ++product)
+      columns(row, product * num_gates_ + gate) = form[product] * inverse_std[row];
+    columns(row, air) = settings.tunnel_air_std * air_along(time_s) * cosine_squared * scale;
+    columns(row, air + 1) = settings.tunnel_air_std * air_across(time_s) * (1.0 - cosine_squared) * scale;
+    if (num_layer_ > 0) {
+      columns(row, layer) = settings.layer_std * layer_decay(time_s) * scale;
+      columns.block<1, kProducts>(row, layer + 1) = columns(row, layer) * form.transpose();
     }
-    if (num_layer > 0) {
-      layer_(row, 0) = settings.layer_std * layer_decay(time_s) * scale;
-      layer_.block<1, 6>(row, 1) = layer_(row, 0) * products(axis).transpose();
-    }
+    columns(row, layer + num_layer_) = scale;
+    columns(row, layer + num_layer_ + 1) = data[row];
   }
+  return columns;
 }
 
-/// Returns the deviations of the ground's response for a conductivity of the rock, whitened, followed by `num_others`
-/// columns of zeros, [datum][deviation]. The response of rock is proportional to the power 3/2 of its conductivity.
-/// That of the air, relative to it, is proportional to the conductivity; that of a layer is inversely proportional.
-Eigen::MatrixXd SoundingLikelihood::deviations(double rock_spm, Eigen::Index num_others) const {
-  const double rock = rock_spm * std::sqrt(rock_spm), ratio = rock_spm / kReferenceRock_spm;
-  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(data_.size(), air_.cols() + layer_.cols() + num_others);
-  all.leftCols(air_.cols()) = (rock * ratio) * air_;
-  all.middleCols(air_.cols(), layer_.cols()) = (rock / ratio) * layer_;
+// With columns X and nuisances B, both whitened: X' (I + B B')^-1 X = X'X - (B'X)' (I + B'B)^-1 (B'X).
+void SoundingLikelihood::set_gram(const Eigen::MatrixXd& nuisances, const Eigen::MatrixXd& columns) {
+  const Eigen::Index count = nuisances.cols();
+  const Eigen::LLT<Eigen::MatrixXd> information(Eigen::MatrixXd::Identity(count, count) +
+                                                nuisances.transpose() * nuisances);
+  const Eigen::MatrixXd projected = nuisances.transpose() * columns;
+  gram_ = columns.transpose() * columns - projected.transpose() * information.solve(projected);
+}
+
+/// Returns the Gram matrix of the terms of a body's response, followed by the columns from the air on. The terms: along
+/// and across the line of sight, and the two mixed terms of a body whose axes are oblique. A moment of 1 along the line
+/// of sight responds like 4 along, 1 across and 2 mixed; the mixed terms have the profile of that along.
+SoundingLikelihood::Gram SoundingLikelihood::body_gram(const GatedSphereResponse& body,
+                                                       const Eigen::Vector3d& direction) const {
+  const Eigen::Index responses = kProducts * num_gates_, others = gram_.cols() - responses;
+  Eigen::Matrix<double, Eigen::Dynamic, 2> profiles(num_gates_, 2), product(responses, 2);
+  profiles << body.axial, body.transverse;
+  // Row 2 f + p: profile p of the body times product f of the components of the axis.
+  Eigen::Matrix<double, 2 * kProducts, 2 * kProducts> gram;
+  Eigen::Matrix<double, 2 * kProducts, Eigen::Dynamic, 0, 2 * kProducts, kMaxColumns> gram_others(2 * kProducts,
+                                                                                                  others);
+  for (Eigen::Index f = 0; f < kProducts; ++f) {
+    const Eigen::Index first = f * num_gates_, rows = responses - first;
+    // Per column: Eigen would copy the matrix for a product of matrices.
+    for (Eigen::Index p = 0; p < 2; ++p)
+      product.col(p).head(rows).noalias() = gram_.block(first, first, rows, num_gates_) * profiles.col(p);
+    for (Eigen::Index e = f; e < kProducts; ++e) {
+      gram.block<2, 2>(2 * e, 2 * f) = profiles.transpose() * product.middleRows((e - f) * num_gates_, num_gates_);
+      gram.block<2, 2>(2 * f, 2 * e) = gram.block<2, 2>(2 * e, 2 * f).transpose().eval();
+    }
+    gram_others.middleRows<2>(2 * f) = profiles.transpose() * gram_.block(first, responses, num_gates_, others);
+  }
+  const Eigen::Vector3d aside = direction.unitOrthogonal(), other = direction.cross(aside);
+  const Form along = product_form(direction, direction), mixed = product_form(direction, aside),
+             other_mixed = product_form(direction, other);
+  Eigen::Matrix<double, 2 * kProducts, kShape> terms = Eigen::Matrix<double, 2 * kProducts, kShape>::Zero();
+  for (Eigen::Index f = 0; f < kProducts; ++f) {
+    terms(2 * f, 0) = along[f];
+    terms(2 * f + 1, 1) = kIsotropic[f] - along[f];
+    terms(2 * f, 2) = mixed[f];
+    terms(2 * f, 3) = other_mixed[f];
+  }
+  Gram all(kShape + others, kShape + others);
+  all.topLeftCorner<kShape, kShape>() = terms.transpose() * gram * terms;
+  all.topRightCorner(kShape, others) = terms.transpose() * gram_others;
+  all.bottomLeftCorner(others, kShape) = all.topRightCorner(kShape, others).transpose();
+  all.bottomRightCorner(others, others) = gram_.bottomRightCorner(others, others);
   return all;
 }
 
-// With residual r and nuisances B, both whitened: r' (I + B B')^-1 r = r'r - (B'r)' (I + B'B)^-1 (B'r).
-double SoundingLikelihood::log_likelihood_residual(const Eigen::VectorXd& whitened) const {
-  const Eigen::VectorXd projected = nuisances_.transpose() * whitened;
-  return -0.5 * (whitened.squaredNorm() - projected.dot(nuisance_information_.solve(projected)));
-}
-
-// The deviations C of the model, whitened with unit prior standard deviation, depend on the parameters: with M = (I + B
-// B')^-1 and G = C'M C, r' (I + B B' + C C')^-1 r = r'M r - (C'M r)' (I + G)^-1 (C'M r), and the determinant grows by
-// that of I + G.
-double SoundingLikelihood::log_likelihood_residual(const Eigen::VectorXd& whitened,
-                                                   const Eigen::MatrixXd& deviations) const {
-  if (deviations.cols() == 0) return log_likelihood_residual(whitened);
-  const Eigen::MatrixXd projected_deviations = nuisances_.transpose() * deviations,
-                        solved = nuisance_information_.solve(projected_deviations);
-  const Eigen::MatrixXd information = Eigen::MatrixXd::Identity(deviations.cols(), deviations.cols()) +
-                                      deviations.transpose() * deviations - projected_deviations.transpose() * solved;
-  const Eigen::VectorXd projected =
-      deviations.transpose() * whitened - solved.transpose() * (nuisances_.transpose() * whitened);
-  const Eigen::LLT<Eigen::MatrixXd> factor(information);
+/// Returns the log likelihood for the Gram matrix of the deviations of the model, rock, and data. The first `num_shape`
+/// deviations are the terms of a body. The response of rock is proportional to the power 3/2 of its conductivity. That
+/// of the air, relative to it, is proportional to the conductivity; that of a layer is inversely proportional.
+///
+/// The deviations C of the model have unit prior standard deviation. With nuisances B, M = (I + B B')^-1 and G = C'M C,
+/// r' (I + B B' + C C')^-1 r = r'M r - (C'M r)' (I + G)^-1 (C'M r), and the determinant grows by that of I + G.
+double SoundingLikelihood::log_likelihood(double rock_spm, const Gram& gram, Eigen::Index num_shape) const {
+  const double rock = rock_spm * std::sqrt(rock_spm), ratio = rock_spm / kReferenceRock_spm;
+  const Eigen::Index columns = gram.cols(), count = columns - 2;
+  Column residual = Column::Zero(columns), scale(count);
+  residual.head(std::min<Eigen::Index>(num_shape, 2)).setConstant(-1.0);  // a sphere: along and across
+  residual[count] = -rock;
+  residual[count + 1] = 1.0;
+  scale << Column::Constant(num_shape, body_shape_std_), Column::Constant(kAir, rock * ratio),
+      Column::Constant(num_layer_, rock / ratio);
+  const Column product = gram * residual, projected = scale.cwiseProduct(product.head(count));
+  Gram information = scale.asDiagonal() * gram.topLeftCorner(count, count) * scale.asDiagonal();
+  information.diagonal().array() += 1.0;
+  const Eigen::LLT<Gram> factor(information);
   const double log_determinant = 2.0 * factor.matrixLLT().diagonal().array().log().sum();
-  return log_likelihood_residual(whitened) + 0.5 * (projected.dot(factor.solve(projected)) - log_determinant);
-}
-
-/// Returns the deviations of a body's response from that of a sphere, whitened, [datum][deviation]: along and across
-/// the line of sight, and the two mixed terms of a body whose axes are oblique. A moment of 1 along the line of sight
-/// responds like 4 along, 1 across and 2 mixed.
-Eigen::MatrixXd SoundingLikelihood::shape_deviations(const GatedSphereResponse& body,
-                                                     const Eigen::Vector3d& direction) const {
-  const Eigen::Vector3d aside = direction.unitOrthogonal(), other = direction.cross(aside);
-  Eigen::MatrixXd shape(data_.size(), kShape);
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
-    const Eigen::Index row = static_cast<Eigen::Index>(i) * num_gates_;
-    const double cosine = axes_[i].dot(direction);
-    const auto scale = inverse_std_.segment(row, num_gates_);
-    const Eigen::VectorXd axial = body_shape_std_ * body.axial.cwiseProduct(scale);
-    shape.col(0).segment(row, num_gates_) = cosine * cosine * axial;
-    shape.col(1).segment(row, num_gates_) =
-        body_shape_std_ * (1.0 - cosine * cosine) * body.transverse.cwiseProduct(scale);
-    shape.col(2).segment(row, num_gates_) = cosine * axes_[i].dot(aside) * axial;
-    shape.col(3).segment(row, num_gates_) = cosine * axes_[i].dot(other) * axial;
-  }
-  return shape;
+  return -0.5 * (residual.dot(product) - projected.dot(factor.solve(projected)) + log_determinant);
 }
 
 double SoundingLikelihood::log_likelihood_rock(double rock_spm) const {
-  const Eigen::VectorXd rock = gated_whole_space_response(gates_, rock_spm);
-  return log_likelihood_residual(
-      data_ - rock.replicate(static_cast<Eigen::Index>(axes_.size()), 1).cwiseProduct(inverse_std_),
-      deviations(rock_spm, 0));
+  const Eigen::Index columns = kAir + num_layer_ + 2;
+  return log_likelihood(rock_spm, gram_.bottomRightCorner(columns, columns), 0);
 }
 
 double SoundingLikelihood::log_likelihood_body(double rock_spm, const ConductiveSphere& sphere,
                                                const Eigen::Vector3d& direction) const {
-  const GatedSphereResponse body = gated_sphere_response(gates_, rock_spm, sphere);
-  const Eigen::VectorXd across = gated_whole_space_response(gates_, rock_spm) + body.transverse,
-                        along = body.axial - body.transverse;
-  Eigen::VectorXd whitened = data_;
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
-    const Eigen::Index row = static_cast<Eigen::Index>(i) * num_gates_;
-    const double cosine = axes_[i].dot(direction);
-    whitened.segment(row, num_gates_) -=
-        (across + cosine * cosine * along).cwiseProduct(inverse_std_.segment(row, num_gates_));
-  }
-  const Eigen::Index num_shape = body_shape_std_ > 0.0 ? kShape : 0;
-  Eigen::MatrixXd all = deviations(rock_spm, num_shape);
-  if (num_shape > 0) all.rightCols(num_shape) = shape_deviations(body, direction);
-  return log_likelihood_residual(whitened, all);
+  return log_likelihood(rock_spm, body_gram(gated_sphere_response(gates_, rock_spm, sphere), direction), kShape);
 }
 
 }  // namespace patrol::inspect

@@ -2,7 +2,6 @@
 
 #include <vector>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 #include "core/sensors/tem_response.h"
@@ -17,6 +16,10 @@ namespace patrol::inspect {
 /// 300 us. Each decay has an isotropic part and one that is a quadratic form of the coil axis. So have the responses of
 /// the tunnel's air and of layers, which the models of the rock lack; they are proportional to the signal. The response
 /// of a body deviates from that of a sphere by factors along and across the line of sight.
+///
+/// All models are linear combinations of fixed columns: the response of a body is, per gate, a quadratic form of the
+/// coil axis, and that of the ground a multiple of that in unit conductivity. Their Gram matrix with the data is
+/// computed once; a likelihood needs no sum over the data.
 class SoundingLikelihood {
  public:
   /// Prepares the likelihood. Throws InputError if there are no soundings or their gates differ.
@@ -28,22 +31,24 @@ class SoundingLikelihood {
   double log_likelihood_body(double rock_spm, const ConductiveSphere& sphere, const Eigen::Vector3d& direction) const;
 
  private:
-  double log_likelihood_residual(const Eigen::VectorXd& whitened) const;
-  double log_likelihood_residual(const Eigen::VectorXd& whitened, const Eigen::MatrixXd& deviations) const;
-  void set_ground_deviations(const SoundingErrorSettings& settings);
-  Eigen::MatrixXd deviations(double rock_spm, Eigen::Index num_others) const;
-  Eigen::MatrixXd shape_deviations(const GatedSphereResponse& body, const Eigen::Vector3d& direction) const;
+  static constexpr int kMaxColumns =
+      15;  // columns of a Gram matrix: 4 of the body, 2 of the air, 7 of layers; rock; data
+  using Gram = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxColumns, kMaxColumns>;
+  using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxColumns, 1>;
+
+  Eigen::MatrixXd model_columns(const SoundingErrorSettings& settings, const std::vector<Eigen::Vector3d>& axes,
+                                const Eigen::VectorXd& inverse_std, const Eigen::VectorXd& data) const;
+  void set_gram(const Eigen::MatrixXd& nuisances, const Eigen::MatrixXd& columns);
+  Gram body_gram(const GatedSphereResponse& body, const Eigen::Vector3d& direction) const;
+  double log_likelihood(double rock_spm, const Gram& gram, Eigen::Index num_shape) const;
 
   TemGates gates_;
   std::vector<double> gate_s_;  ///< [gate]
   Eigen::Index num_gates_;
+  Eigen::Index num_layer_;  ///< number of deviations by layers; 0 if not modeled
   double body_shape_std_;
-  std::vector<Eigen::Vector3d> axes_;  ///< [sounding]
-  // Stacked by sounding, then gate; per unit moment; divided by the standard deviation.
-  Eigen::VectorXd data_, inverse_std_;
-  Eigen::MatrixXd nuisances_;  ///< [datum][nuisance], scaled to unit prior standard deviation
-  Eigen::LLT<Eigen::MatrixXd> nuisance_information_;
-  Eigen::MatrixXd air_, layer_;  ///< [datum][deviation], in rock of unit conductivity; without columns if not modeled
+  /// Gram matrix of the columns of `model_columns` in the metric of the data with integrated nuisances.
+  Eigen::MatrixXd gram_;
 };
 
 }  // namespace patrol::inspect
