@@ -64,6 +64,7 @@ TunnelCoordinates TunnelLining::to_tunnel_coordinates(const Eigen::Vector3d& p_r
       nearest.chainage_m = begin_m + distance_m;
       nearest.left_m = left_m;
     }
+    if (is_last) break;
     start = pose_along(start, curvature_1pm, length_m);
     begin_m += length_m;
   }

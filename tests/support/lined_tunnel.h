@@ -114,18 +114,26 @@ struct LinedTunnel {
     return lining.radius_at(clock_deg) - inward_m(lining.ring_at(place.chainage_m), clock_deg) -
            std::hypot(place.left_m, place.height_m - lining.crown_center_m);
   }
-  /// In steps of about the way to the wall, then halved about it.
+  /// In steps of about the way to the wall, then by secants about it (Illinois rule).
   double lining_range_m(const Eigen::Vector3d& from, const Eigen::Vector3d& towards, double limit_m) const {
-    double t = 0.0, before = 0.0;
-    for (double inside = inside_m(from); t < limit_m; inside = inside_m(from + t * towards)) {
-      if (inside < 1e-5) break;
+    double t = 0.0, before = 0.0, inside = inside_m(from), inside_before = inside;
+    for (; t < limit_m && inside >= 1e-5; inside = inside_m(from + t * towards)) {
       before = t;
+      inside_before = inside;
       t += std::max(0.95 * inside, 2e-4);
     }
     if (t >= limit_m) return limit_m;
-    while (t - before > 1e-6) {
-      const double middle = 0.5 * (before + t);
-      (inside_m(from + middle * towards) > 0.0 ? before : t) = middle;
+    for (int side = 0; inside < 0.0 && t - before > 1e-6;) {
+      const double ratio = std::clamp(inside_before / (inside_before - inside), 0.01, 0.99);
+      const double middle = before + ratio * (t - before), inside_middle = inside_m(from + middle * towards);
+      if (std::abs(inside_middle) < 1e-9) return middle;
+      if (inside_middle > 0.0) {
+        if (side > 0) inside *= 0.5;
+        before = middle, inside_before = inside_middle, side = 1;
+      } else {
+        if (side < 0) inside_before *= 0.5;
+        t = middle, inside = inside_middle, side = -1;
+      }
     }
     return t;
   }

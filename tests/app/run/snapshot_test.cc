@@ -62,9 +62,9 @@ TEST_P(Branches, UnchangedTheyContinueWithTheSameMessagesAndSnapshotsChangeNothi
 
 INSTANTIATE_TEST_SUITE_P(
     Worlds, Branches,
-    testing::Values(Continued{"street/scenarios/short.yaml", {"time_limit_s=9"}, 2.0, {2.0, 5.3, 8.9}},
-                    Continued{"tunnel/scenarios/navigate.yaml", {"time_limit_s=12"}, 3.0, {4.0, 11.0}},
-                    Continued{"substation/scenarios/short.yaml", {"time_limit_s=9"}, 4.0, {4.0, 8.1}}),
+    testing::Values(Continued{"street/scenarios/short.yaml", {"time_limit_s=6"}, 2.0, {2.0, 3.3, 5.9}},
+                    Continued{"tunnel/scenarios/navigate.yaml", {"time_limit_s=8"}, 3.0, {4.0, 7.0}},
+                    Continued{"substation/scenarios/short.yaml", {"time_limit_s=6"}, 3.0, {3.0, 5.1}}),
     [](const auto& row) { return row.param.file.substr(0, row.param.file.find('/')); });
 
 TEST(Branch, AFaultAfterTheInstantGivesTheMessagesOfAWholeRunWithTheFault) {
