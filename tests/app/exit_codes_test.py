@@ -89,11 +89,12 @@ class ExitCodes(unittest.TestCase):
         self.assertNotIn("pose", json.loads((self.out / "metrics.json").read_text()))
 
     def start_long_run(self):
-        """A run that has begun to write, and goes on for 300 simulated seconds."""
-        run = subprocess.Popen([PATROL, "run", self.scenario(""), "--set", "stack.gas_mission.init_wait_s=300", "--out", self.out],
+        """A run that has begun to write, and goes on for 600 simulated seconds."""
+        signal.signal(signal.SIGHUP, signal.SIG_DFL)  # ignored below nohup, and then by patrol too
+        run = subprocess.Popen([PATROL, "run", self.scenario(""), "--set", "stack.gas_mission.init_wait_s=600", "--out", self.out],
                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=SOURCE)
         deadline = time.monotonic() + 60
-        while not (self.out / "log.mcap").exists() and time.monotonic() < deadline:
+        while run.poll() is None and not (self.out / "log.mcap").exists() and time.monotonic() < deadline:
             time.sleep(0.05)
         return run
 

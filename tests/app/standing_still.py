@@ -1,19 +1,33 @@
-"""The shortest mission there is, for tests of the command line that need a run."""
+"""The shortest mission there is, in a small world of its own, for tests of the command line that need a run."""
 import json
 import pathlib
 import sys
 
 PATROL, SOURCE = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
-STREET = SOURCE / "worlds/street"
+HOME = {"position": [1.0, 0.5, 0.0], "orientation": [0.0, 0.0, 0.707106781, 0.707106781]}
+YARD = """<mujoco>
+  <option timestep="0.002" cone="elliptic" impratio="10"/>
+  <worldbody>
+    <geom name="ground" type="plane" size="10 10 1"/>
+    <geom type="box" pos="0 6 1" size="5 0.1 1"/>
+    <geom type="box" pos="0 -5 1" size="5 0.1 1"/>
+    <geom type="box" pos="-5 0 1" size="0.1 6 1"/>
+    <geom type="box" pos="5 0 1" size="0.1 6 1"/>
+    <geom type="box" pos="2 4 0.5" size="0.4 0.3 0.5"/>
+  </worldbody>
+</mujoco>
+"""
 
 
 def standing_still(folder, more=""):
-    """A scenario file: to stand at home, where the robot starts."""
-    route = json.loads((STREET / "routes/short.json").read_text())
-    start = route["start"]
-    route["stations"] = [{"number": 1, "name": "home", "type": "home", "position": start["position"],
-                          "orientation": start["orientation"], "accuracy": 0.2, "target": start["position"]}]
+    """A scenario file: to stand at home, where the robot starts, in the world `yard` below `folder`."""
+    world = folder / "worlds/yard"
+    world.mkdir(parents=True, exist_ok=True)
+    (world / "yard.xml").write_text(YARD)
+    (folder / "models").mkdir(exist_ok=True)  # a folder of data has both
+    station = {"number": 1, "name": "home", "type": "home", **HOME, "accuracy": 0.2, "target": HOME["position"]}
+    route = {"version": 1, "frame": "site", "datum": {"latitude_deg": 29.21, "longitude_deg": 119.46}, "start": HOME, "stations": [station]}
     (folder / "home.json").write_text(json.dumps(route))
     file = folder / "home.yaml"
-    file.write_text(f"world: street\nmission: {folder / 'home.json'}\n" + more)
+    file.write_text(f"world: yard\nmission: {folder / 'home.json'}\n" + more)
     return file

@@ -46,7 +46,7 @@ class ReportedRun(unittest.TestCase):
         self.assertEqual((kinds[0], kinds[-1]), ("status", "status"))
         self.assertTrue({"pose", "event", "map"} <= set(kinds), kinds)
         robot = platform.get("/api/robots")["robots"][0]
-        self.assertEqual((robot["robot"], robot["world"], robot["state"], robot["at"]), ("Rex", "street", "finished", "home"))
+        self.assertEqual((robot["robot"], robot["world"], robot["state"], robot["at"]), ("Rex", "yard", "finished", "home"))
 
     def test_results_wait_while_the_platform_is_away_and_are_sent_later(self):
         run = self.path / "run"
