@@ -1,4 +1,5 @@
 """A CARMEN log made here: a robot drives twice round a block of offices."""
+import itertools
 import math
 
 STEP_M, BEAMS, START_S = 0.15, 180, 976052890.25
@@ -14,22 +15,33 @@ def walls():
     return segments
 
 
+def beams_towards(ax, ay, bx, by):
+    """Beams that may hit the segment from a to b, given in the frame of the lidar with beam 0 along x; all where the segment passes the lidar closely."""
+    first = math.atan2(ay, ax)
+    turn = math.remainder(math.atan2(by, bx) - first, 2 * math.pi)
+    if abs(turn) > 3.0:
+        return range(BEAMS)
+    low = math.floor(min(first, first + turn) * BEAMS / math.pi) - 1
+    high = math.ceil(max(first, first + turn) * BEAMS / math.pi) + 2
+    return itertools.chain(*(range(max(0, low + shift), min(BEAMS, high + shift)) for shift in (-2 * BEAMS, 0, 2 * BEAMS)))
+
+
 def ranges_from(x, y, yaw, segments):
-    found = []
-    for beam in range(BEAMS):
-        angle = yaw - 0.5 * math.pi + beam * math.pi / BEAMS
-        c, s = math.cos(angle), math.sin(angle)
-        nearest = 81.83
-        for (ax, ay), (bx, by) in segments:
-            ex, ey = bx - ax, by - ay
+    angles = [yaw - 0.5 * math.pi + beam * math.pi / BEAMS for beam in range(BEAMS)]
+    directions = [(math.cos(angle), math.sin(angle)) for angle in angles]
+    found = [81.83] * BEAMS
+    c0, s0 = directions[0]
+    for (ax, ay), (bx, by) in segments:
+        ex, ey, px, py, qx, qy = bx - ax, by - ay, ax - x, ay - y, bx - x, by - y
+        for beam in beams_towards(c0 * px + s0 * py, c0 * py - s0 * px, c0 * qx + s0 * qy, c0 * qy - s0 * qx):
+            c, s = directions[beam]
             determinant = c * ey - s * ex
             if abs(determinant) < 1e-12:
                 continue
-            along = ((ax - x) * ey - (ay - y) * ex) / determinant
-            share = ((ax - x) * s - (ay - y) * c) / determinant
-            if along > 0.0 and 0.0 <= share <= 1.0:
-                nearest = min(nearest, along)
-        found.append(nearest)
+            along = (px * ey - py * ex) / determinant
+            share = (px * s - py * c) / determinant
+            if along > 0.0 and 0.0 <= share <= 1.0 and along < found[beam]:
+                found[beam] = along
     return found
 
 

@@ -3,6 +3,7 @@
 
 usage: slam_test.py PATROL SOURCE_DIR
 """
+import functools
 import gzip
 import json
 import math
@@ -42,6 +43,23 @@ class Slam(unittest.TestCase):
         self.patrol("slam", log or self.log, "--out", self.folder / name, *more)
         return self.folder / name
 
+    @classmethod
+    @functools.cache
+    def mapped(cls):
+        """The map by the default settings, made once."""
+        subprocess.run([PATROL, "slam", cls.log, "--out", cls.folder / "mapped"], capture_output=True, timeout=200, cwd=SOURCE, check=True)
+        return cls.folder / "mapped"
+
+    @classmethod
+    @functools.cache
+    def mapped_by(cls, method, cores=None):
+        """The map by a method on some of the cores, made once; on all without `cores`."""
+        cores = cores or frozenset(os.sched_getaffinity(0))
+        out = cls.folder / f"{method}_{len(cores)}_cores"
+        subprocess.run([PATROL, "slam", cls.log, "--method", method, "--out", out], capture_output=True, timeout=200, cwd=SOURCE, check=True,
+                       preexec_fn=lambda: os.sched_setaffinity(0, cores), env={**os.environ, "OMP_NUM_THREADS": str(len(cores))})
+        return out
+
     def errors_m(self, out, file="estimate.tum"):
         """Distance from the truth, both from the first pose."""
         x0, y0, yaw0 = self.poses[0]
@@ -57,12 +75,12 @@ class Slam(unittest.TestCase):
 
     def test_all_methods_follow_to_centimeters_where_odometry_is_meters_off(self):
         for method, limit_m in [("graph", 0.04), ("submap_rbpf", 0.12), ("rbpf", 0.12)]:
-            out = self.map(method, "--method", method)
+            out = self.mapped_by(method)
             self.assertLess(max(self.errors_m(out)), limit_m, method)
         self.assertGreater(max(self.errors_m(out, "odometry.tum")), 3.0)
 
     def test_every_file_is_there_and_the_graph_has_loops(self):
-        out = self.map("files")
+        out = self.mapped()
         self.assertEqual(sorted(file.name for file in out.iterdir()),
                          ["estimate.tum", "keyframes.mcap", "map.pgm", "map.yaml", "metrics.json", "odometry.tum", "performance.csv", "pose_graph.g2o", "report.html", "settings.yaml", "submaps.csv"])
         metrics = json.loads((out / "metrics.json").read_text())
@@ -80,7 +98,7 @@ class Slam(unittest.TestCase):
         self.assertEqual((out / "pose_graph.g2o").read_text().count("VERTEX_SE2"), metrics["graph"]["nodes"])
 
     def test_the_page_shows_the_map_and_what_scans_cost(self):
-        out = self.map("page")
+        out = self.mapped()
         html = (out / "report.html").read_text()
         for text in ["mapped by graph", "Computation time per scan", "estimated path"]:
             self.assertIn(text, html)
@@ -112,7 +130,7 @@ class Slam(unittest.TestCase):
         refused = self.patrol("slam", self.log, "--map", self.folder / "nothing", "--out", self.folder / "refused", code=2)
         self.assertEqual(len(refused.stderr.strip().splitlines()), 1)
         self.assertIn("keyframes.mcap", refused.stderr)
-        out = self.map("extended")
+        out = self.mapped()
         before = (out / "keyframes.mcap").read_bytes()
         refused = self.patrol("slam", self.log, "--map", out, "--out", out, code=2)
         self.assertIn("--out: must not be the directory of --map", refused.stderr)
@@ -124,20 +142,15 @@ class Slam(unittest.TestCase):
     def test_gzip_and_a_second_time_give_the_same_bytes(self):
         packed = self.folder / "block.log.gz"
         packed.write_bytes(gzip.compress(self.log.read_bytes()))
-        first, second = self.map("first"), self.map("second", log=packed)
+        first, second = self.mapped(), self.map("packed", log=packed)
         for name in ["estimate.tum", "map.pgm", "pose_graph.g2o"]:
             self.assertEqual((first / name).read_bytes(), (second / name).read_bytes(), name)
 
     def test_one_core_and_two_give_the_same_bytes(self):
         for method in ["graph", "submap_rbpf"]:
-            outs = []
-            for cores in [{0}, os.sched_getaffinity(0)]:
-                out = self.folder / f"{method}_{len(cores)}_cores_{len(outs)}"
-                subprocess.run([PATROL, "slam", self.log, "--method", method, "--out", out], capture_output=True, timeout=200, cwd=SOURCE, check=True,
-                               preexec_fn=lambda: os.sched_setaffinity(0, cores), env={**os.environ, "OMP_NUM_THREADS": str(len(cores))})
-                outs.append(out)
+            one, all_cores = self.mapped_by(method, frozenset({min(os.sched_getaffinity(0))})), self.mapped_by(method)
             for name in ["estimate.tum", "map.pgm", "pose_graph.g2o"]:
-                self.assertEqual((outs[0] / name).read_bytes(), (outs[1] / name).read_bytes(), name)
+                self.assertEqual((one / name).read_bytes(), (all_cores / name).read_bytes(), name)
 
     def test_eight_meters_for_no_return_are_found_and_are_no_wall(self):
         log = self.folder / "eight.log"
@@ -150,7 +163,7 @@ class Slam(unittest.TestCase):
         self.assertGreater(max(self.errors_m(self.folder / "walls")), 0.06)
 
     def test_relations_score_the_estimate(self):
-        out = self.map("scored")
+        out = self.mapped()
         lines, pairs = [], [(10, 20), (50, 90), (3, 200), (100, len(self.poses) - 5)]
         for a, b in pairs:
             (ax, ay, ayaw), (bx, by, byaw) = self.poses[a], self.poses[b]
