@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <system_error>
@@ -179,9 +180,11 @@ std::pair<std::string, std::string> robot_and_needs_of(const std::filesystem::pa
   }
 }
 
-Section scenario_section(const std::vector<DataFolder>& folders) {
+/// Section of the scenarios; without rows if `has_rows` is false, as the rows load every scenario.
+Section scenario_section(const std::vector<DataFolder>& folders, bool has_rows) {
   Section result{.title = "scenarios, their robots, the sensors that they need and their folders",
                  .table = {.name = "scenarios", .columns = {"name", "robot", "needed_sensors", "folder"}, .rows = {}}};
+  if (!has_rows) return result;
   const auto is_scenario = [](const auto& file) { return file.parent_path().filename() == "scenarios"; };
   for (const DataFile& file : data_files(folders, "worlds", is_scenario)) {
     const auto [robot, needs] = robot_and_needs_of(file.path);
@@ -198,7 +201,7 @@ Section file_section(const std::string& name, const std::vector<DataFile>& files
 }
 
 /// Adds scenarios, worlds and robots; an explanation if the data folder is missing.
-void add_data(std::vector<Section>& sections) {
+void add_data(bool has_scenarios, std::vector<Section>& sections) {
   std::vector<DataFolder> folders;
   try {
     folders = data_folders();
@@ -206,7 +209,7 @@ void add_data(std::vector<Section>& sections) {
     fmt::print(stderr, "patrol: no scenarios, worlds and robots: {}\n", error.what());
     return;
   }
-  sections.push_back(scenario_section(folders));
+  sections.push_back(scenario_section(folders, has_scenarios));
   sections.push_back(file_section("worlds", data_files(folders, "worlds", [](const auto& file) {
                                     return file.extension() == ".xml" && file.stem() == file.parent_path().filename();
                                   })));
@@ -214,9 +217,10 @@ void add_data(std::vector<Section>& sections) {
       "robots", data_files(folders, "models", [](const auto& file) { return file.extension() == ".urdf"; })));
 }
 
-std::vector<Section> all_sections() {
+/// All sections; the scenarios have rows only if `wanted` is their section or none.
+std::vector<Section> all_sections(const std::optional<std::string>& wanted) {
   std::vector<Section> sections;
-  add_data(sections);
+  add_data(wanted.value_or("scenarios") == "scenarios", sections);
   sections.push_back(sensor_section());
   sections.push_back(section("lidar presets", "lidar_presets", allowed<LidarSettings>("preset")));
   ToleranceSections tolerances;
@@ -260,7 +264,7 @@ ExitCode list_command(const ListOptions& options) {
   std::string text;
   io::Metrics json = io::Metrics::object();
   std::vector<std::string> known;
-  for (const Section& section : all_sections()) {
+  for (const Section& section : all_sections(options.section)) {
     known.push_back(section.table.name);
     if (options.section && *options.section != section.table.name) continue;
     text += to_text(section);
