@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <regex>
 #include <sstream>
+#include <string_view>
 
 #include <Eigen/Eigenvalues>
 #include <console_bridge/console.h>
@@ -23,6 +23,9 @@ namespace {
 
 constexpr std::array kSideNames = {"left", "right"};
 constexpr std::array kTrackNames = {"left_track", "right_track"};
+constexpr std::string_view kSpaces = " \t\n\v\f\r";
+constexpr std::array<std::string_view, 11> kNumberNames = {"xyz",   "rpy",   "size",  "scale",  "radius",  "length",
+                                                           "value", "lower", "upper", "effort", "velocity"};
 
 /// Returns whether all words are finite numbers.
 bool are_numbers(const std::string& words_text) {
@@ -37,17 +40,32 @@ bool are_numbers(const std::string& words_text) {
   return true;
 }
 
+/// Length of the name of an attribute of numbers at the end of `text`; 0 if there is none.
+std::size_t length_of_number_name(std::string_view text) {
+  for (const std::string_view name : kNumberNames) {
+    if (text.ends_with(name)) return name.size();
+  }
+  const auto is_axis = [](char c) { return c >= 'x' && c <= 'z'; };
+  const std::string_view inertia = text.substr(text.size() - std::min<std::size_t>(3, text.size()));
+  return inertia.size() == 3 && inertia[0] == 'i' && is_axis(inertia[1]) && is_axis(inertia[2]) ? 3 : 0;
+}
+
 }  // namespace
 
 /// Rejects numbers that are not finite, in the text of the file. urdfdom accepts "nan" and reports "inf" without a
 /// position.
 void UrdfReader::check_numbers() const {
-  const std::regex numbers(
-      R"rx((xyz|rpy|size|scale|radius|length|value|i[xyz][xyz]|lower|upper|effort|velocity)\s*=\s*"([^"]*)")rx");
-  for (std::sregex_iterator at(text_.begin(), text_.end(), numbers), end; at != end; ++at) {
-    if (are_numbers((*at)[2])) continue;
-    const auto line = 1 + std::count(text_.begin(), text_.begin() + at->position(), '\n');
-    throw input_error(path_, static_cast<int>(line), fmt::format("{}: must be finite numbers", at->str()));
+  for (std::size_t equals = text_.find('='); equals != std::string::npos; equals = text_.find('=', equals + 1)) {
+    const std::size_t name_end = text_.find_last_not_of(kSpaces, equals == 0 ? 0 : equals - 1) + 1;
+    const std::size_t quote = text_.find_first_not_of(kSpaces, equals + 1);
+    const std::size_t length = length_of_number_name(std::string_view(text_).substr(0, std::min(name_end, equals)));
+    if (length == 0 || quote == std::string::npos || text_[quote] != '"') continue;
+    const std::size_t end = text_.find('"', quote + 1);
+    if (end == std::string::npos || are_numbers(text_.substr(quote + 1, end - quote - 1))) continue;
+    const std::size_t begin = name_end - length;
+    const auto line = 1 + std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(begin), '\n');
+    throw input_error(path_, static_cast<int>(line),
+                      fmt::format("{}: must be finite numbers", text_.substr(begin, end + 1 - begin)));
   }
 }
 

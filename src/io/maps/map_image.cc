@@ -65,7 +65,7 @@ class PgmDecoder {
     image.brightness.reserve(count);
     if (magic == "P5") in_.get();
     for (std::size_t i = 0; i < count && in_; ++i) {
-      const int value = magic == "P2" ? number() : maximum > kMaxByte ? two_bytes() : in_.get();
+      const int value = magic == "P2" ? number() : maximum > kMaxByte ? two_bytes() : in_.rdbuf()->sbumpc();
       if (value < 0) in_.setstate(std::ios::failbit);
       if (value > maximum) refuse_image(file_, fmt::format("a pixel of {} is brighter than {}", value, maximum));
       image.brightness.push_back(3 * static_cast<std::uint32_t>(std::max(value, 0)));

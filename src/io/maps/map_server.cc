@@ -90,25 +90,40 @@ MapFile load_map_file(const std::filesystem::path& file) {
   return map;
 }
 
-/// Occupancy of a pixel, as in nav2_map_server (map_io.cpp). Mode trinary averages alpha with the color channels.
-std::int8_t cell_of(const MapFile& about, const MapImage& image, std::size_t pixel) {
-  const bool has_alpha = !image.opacity.empty(), averages_alpha = has_alpha && about.mode == "trinary";
-  const double maximum = static_cast<double>((averages_alpha ? 4 : 3) * image.maximum);
-  const double value = image.brightness[pixel] + (averages_alpha ? image.opacity[pixel] : 0U);
-  if (about.mode == "raw") {
-    const double percent = std::round(255.0 * value / maximum);
-    return percent <= kOccupied ? static_cast<std::int8_t>(percent) : kUnknown;
+/// Occupancy of the pixels of an image, as in nav2_map_server (map_io.cpp). Mode trinary averages alpha with the color
+/// channels.
+class PixelToCell {
+ public:
+  PixelToCell(const MapFile& about, const MapImage& image)
+      : about_(about),
+        image_(image),
+        averages_alpha_(has_alpha_ && about.mode == "trinary"),
+        maximum_(static_cast<double>((averages_alpha_ ? 4 : 3) * image.maximum)) {}
+
+  std::int8_t operator()(std::size_t pixel) const {
+    const double value = image_.brightness[pixel] + (averages_alpha_ ? image_.opacity[pixel] : 0U);
+    if (is_raw_) {
+      const double percent = std::round(255.0 * value / maximum_);
+      return percent <= kOccupied ? static_cast<std::int8_t>(percent) : kUnknown;
+    }
+    const double p = (negates_ ? value : maximum_ - value) / maximum_;
+    if (is_scale_ && has_alpha_ && image_.opacity[pixel] != image_.maximum) return kUnknown;
+    if (p > about_.occupied_thresh) return kOccupied;
+    if (p < about_.free_thresh) return kFree;
+    if (!is_scale_) return kUnknown;
+    const double ratio = (p - about_.free_thresh) / (about_.occupied_thresh - about_.free_thresh);
+    return static_cast<std::int8_t>(std::rint(kOccupied * ratio));
   }
-  const bool negate = about.negate == "1" || about.negate == "true";
-  const double p = (negate ? value : maximum - value) / maximum;
-  const bool is_scale = about.mode == "scale";
-  if (is_scale && has_alpha && image.opacity[pixel] != image.maximum) return kUnknown;
-  if (p > about.occupied_thresh) return kOccupied;
-  if (p < about.free_thresh) return kFree;
-  if (!is_scale) return kUnknown;
-  const double ratio = (p - about.free_thresh) / (about.occupied_thresh - about.free_thresh);
-  return static_cast<std::int8_t>(std::rint(kOccupied * ratio));
-}
+
+ private:
+  const MapFile& about_;
+  const MapImage& image_;
+  bool has_alpha_ = !image_.opacity.empty();
+  bool averages_alpha_;
+  double maximum_;
+  bool is_raw_ = about_.mode == "raw", is_scale_ = about_.mode == "scale";
+  bool negates_ = about_.negate == "1" || about_.negate == "true";
+};
 
 }  // namespace
 
@@ -130,9 +145,10 @@ OccupancyGrid load_map(const std::filesystem::path& file) {
   const Eigen::Vector2d origin_m(about.origin[0], about.origin[1]);
   OccupancyGrid map(
       {.resolution_m = about.resolution, .width = image.width, .height = image.height, .origin_m = origin_m}, kUnknown);
-  for (std::size_t i = 0; i < image.brightness.size(); ++i) {
-    const int col = static_cast<int>(i) % image.width, row = image.height - 1 - static_cast<int>(i) / image.width;
-    map.at({col, row}) = cell_of(about, image, i);
+  const PixelToCell cell_of(about, image);
+  std::size_t pixel = 0;
+  for (int row = image.height - 1; row >= 0; --row) {
+    for (int col = 0; col < image.width; ++col) map.at({col, row}) = cell_of(pixel++);
   }
   return map;
 }
