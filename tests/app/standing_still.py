@@ -19,14 +19,14 @@ YARD = """<mujoco>
 """
 
 
-def standing_still(folder, more=""):
-    """A scenario file: to stand at home, where the robot starts, in the world `yard` below `folder`."""
+def standing_still(folder, more="", station=HOME):
+    """A scenario file: to stand at home, where the robot starts, or to go to another station, in the world `yard` below `folder`."""
     world = folder / "worlds/yard"
     world.mkdir(parents=True, exist_ok=True)
     (world / "yard.xml").write_text(YARD)
     (folder / "models").mkdir(exist_ok=True)  # a folder of data has both
-    station = {"number": 1, "name": "home", "type": "home", **HOME, "accuracy": 0.2, "target": HOME["position"]}
-    route = {"version": 1, "frame": "site", "datum": {"latitude_deg": 29.21, "longitude_deg": 119.46}, "start": HOME, "stations": [station]}
+    visit = {"number": 1, "name": "home", "type": "home", **station, "accuracy": 0.2, "target": station["position"]}
+    route = {"version": 1, "frame": "site", "datum": {"latitude_deg": 29.21, "longitude_deg": 119.46}, "start": HOME, "stations": [visit]}
     (folder / "home.json").write_text(json.dumps(route))
     file = folder / "home.yaml"
     file.write_text(f"world: yard\nmission: {folder / 'home.json'}\n" + more)

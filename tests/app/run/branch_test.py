@@ -13,9 +13,8 @@ import tempfile
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent.parent))
-from standing_still import PATROL, SOURCE  # noqa: E402
+from standing_still import HOME, PATROL, SOURCE, standing_still  # noqa: E402
 
-SHORT = "street/short"
 TICK_S = 0.002
 IMU_PERIOD_S = 0.005
 
@@ -31,7 +30,8 @@ class Branch(unittest.TestCase):
         cls.addClassCleanup(folder.cleanup)
         cls.path = pathlib.Path(folder.name)
         cls.parent = cls.path / "parent"
-        done = run_patrol("run", SHORT, "--set", "time_limit_s=6", "--snapshot-every", 2, "--out", cls.parent)
+        cls.scenario = standing_still(cls.path, station={**HOME, "position": [1.0, 3.0, 0.0]})
+        done = run_patrol("run", cls.scenario, "--set", "time_limit_s=6", "--snapshot-every", 2, "--out", cls.parent)
         assert done.returncode == 4, done.stderr
 
     def refused(self, what, *words):
@@ -58,7 +58,7 @@ class Branch(unittest.TestCase):
         self.refused("time_limit_s = 3 is before the branch: must be at least 4.000 s", "--from", f"{self.parent}@4", "--set", "time_limit_s=3")
         self.refused("excludes --seed", "--from", f"{self.parent}@4", "--seed", 2)
         self.refused("needs a scenario", "--set", "seed=2")
-        self.refused("cannot be saved", SHORT, "--snapshot-every", 2, "--stack", "some program")
+        self.refused("cannot be saved", self.scenario, "--snapshot-every", 2, "--stack", "some program")
 
     def test_a_run_that_is_not_whole_is_no_result(self):
         broken = self.path / "broken"
@@ -88,7 +88,7 @@ class Branch(unittest.TestCase):
         other = self.path / "with_fault"
         start_s = 4.356
         fault = f"faults=[{{sensor: imu, kind: clock_offset, start_s: {start_s}, duration_s: 1, magnitude: 1.0e-6}}]"
-        run_patrol("run", SHORT, "--set", "time_limit_s=6", fault, "--snapshot-every", 2, "--out", other)
+        run_patrol("run", self.scenario, "--set", "time_limit_s=6", fault, "--snapshot-every", 2, "--out", other)
         done = run_patrol("bisect", self.parent, other, "--json")
         self.assertEqual(done.returncode, 1, done.stderr)
         found = json.loads(done.stdout)
@@ -98,7 +98,7 @@ class Branch(unittest.TestCase):
 
     def test_bisect_finds_no_difference_of_a_repeated_run(self):
         again = self.path / "again"
-        run_patrol("run", SHORT, "--set", "time_limit_s=6", "--out", again)
+        run_patrol("run", self.scenario, "--set", "time_limit_s=6", "--out", again)
         done = run_patrol("bisect", self.parent, again)
         self.assertEqual((done.returncode, done.stdout), (0, "equal: no message differs\n"), done.stderr)
 
@@ -107,11 +107,10 @@ class Branch(unittest.TestCase):
         other = self.path / "other_program"
         kidnap_s = 3.1
         program = self.path / "patrol"
-        scenario = SOURCE / "worlds/street/scenarios/short.yaml"
         truth = [line.split() for line in (self.parent / "truth.tum").read_text().splitlines() if not line.startswith("#")]
         x, y = next((float(row[1]), float(row[2])) for row in truth if float(row[0]) >= kidnap_s)
         kidnap = f"kidnaps=[{{at_s: {kidnap_s}, x_m: {x + 0.001}, y_m: {y}, heading_deg: 90}}]"
-        run_patrol("run", scenario, "--set", "time_limit_s=6", kidnap, "--snapshot-every", 2, "--out", other)
+        run_patrol("run", self.scenario, "--set", "time_limit_s=6", kidnap, "--snapshot-every", 2, "--out", other)
         program.write_text(f'#!/bin/sh\necho "$1" >> {self.path}/called\nexec {PATROL} "$@"\n')
         program.chmod(0o755)
         done = run_patrol("bisect", self.parent, other, "--program-b", program, "--json")
