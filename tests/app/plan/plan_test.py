@@ -81,13 +81,13 @@ class Plan(unittest.TestCase):
 
     # MovingAI
 
-    def drawn_problems(self, named="drawn.map"):
-        """A map of 40 x 30 cells, a third of them trees, and 60 problems with the lengths of the test's own Dijkstra."""
+    def drawn_problems(self, named="drawn.map", count=60):
+        """A map of 40 x 30 cells, a third of them trees, and problems with the lengths of the test's own Dijkstra."""
         chance = random.Random(5)
         rows = ["".join("T" if chance.random() < 0.3 else "." for _ in range(40)) for _ in range(30)]
         lines = ["version 1"]
         free = [(x, y) for y in range(30) for x in range(40) if rows[y][x] == "."]
-        while len(lines) < 61:
+        while len(lines) <= count:
             lengths = octile_lengths(rows, chance.choice(free))
             start, goal = min(lengths, key=lengths.get), chance.choice(sorted(lengths))
             lines.append(f"{int(lengths[goal] / 4)}\t{named}\t40\t30\t{start[0]}\t{start[1]}\t{goal[0]}\t{goal[1]}\t{lengths[goal]:.8f}")
@@ -104,9 +104,10 @@ class Plan(unittest.TestCase):
 
     def test_any_angle_routes_are_never_longer_and_others_never_shorter_than_the_any_angle_optimum(self):
         _, file = self.drawn_problems()
+        first = self.write("first.map.scen", "\n".join(file.read_text().splitlines()[:21]) + "\n")  # ants take long
         lengths = {}
         for planner in PLANNERS[:6]:
-            self.assertEqual(self.plan(file, "--planner", planner)["num_failed"], 0, planner)
+            self.assertEqual(self.plan(first if planner.startswith("ant") else file, "--planner", planner)["num_failed"], 0, planner)
             lengths[planner] = [float(row["length_cells"]) for row in self.rows("problems.csv")]
         for planner, values in lengths.items():
             for value, best, octile in zip(values, lengths["visibility_graph"], lengths["astar"]):
@@ -170,7 +171,7 @@ class Plan(unittest.TestCase):
         self.assertEqual((plan["status"], plan["route"]["length_cells"], plan["route"]["points"]), ("found", 0.0, 1))
 
     def test_the_same_seed_gives_the_same_files(self):
-        _, file = self.drawn_problems()
+        _, file = self.drawn_problems(count=10)
         kept = []
         for seed in (4, 4, 5):
             plan = self.plan(file, "--planner", "ant_system", "--seed", seed)
