@@ -3,6 +3,7 @@
 
 usage: command_texts_test.py PATROL
 """
+import functools
 import re
 import shutil
 import subprocess
@@ -12,10 +13,12 @@ import unittest
 PATROL = sys.argv[1]
 
 
+@functools.cache
 def printed(text):
     return subprocess.run([PATROL, "print", text], capture_output=True, text=True, check=True).stdout
 
 
+@functools.cache
 def commands():
     """{command: its options} by --help."""
     listed = subprocess.run([PATROL, "--help"], capture_output=True, text=True, check=True).stdout.split("Subcommands:")[1]
