@@ -78,9 +78,11 @@ class Sweep(SweepCase):
 
     def test_killed_three_times_and_resumed_it_leaves_the_same_bytes(self):
         out, chance = self.path / "killed", random.Random(4)
-        for _ in range(3):
+        for num_results in range(3):
             process = self.start(out, *self.vary)
-            time.sleep(chance.uniform(0.2, 2.5))
+            while process.poll() is None and len(list((out / "runs").glob("*.json"))) < num_results:
+                time.sleep(0.005)
+            time.sleep(chance.uniform(0.0, 0.2))
             process.kill()
             process.communicate()
             self.assertTrue((out / "INCOMPLETE").exists() or (out / "runs.csv").exists() or not out.exists())
