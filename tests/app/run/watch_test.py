@@ -12,7 +12,7 @@ import tempfile
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent.parent))
-from standing_still import PATROL, SOURCE  # noqa: E402
+from standing_still import HOME, PATROL, SOURCE, standing_still  # noqa: E402
 
 
 class Watch(unittest.TestCase):
@@ -20,7 +20,8 @@ class Watch(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.path = pathlib.Path(folder.name)
-        self.scenario = SOURCE / "worlds/street/scenarios/short.yaml"  # long enough for several frames, at ten a second of wall time
+        # Long enough for several frames, at ten a second of wall time.
+        self.scenario = standing_still(self.path, "stack: {gas_mission: {init_wait_s: 20}}\n", station={**HOME, "position": [1.0, 3.0, 0.0]})
 
     def test_it_draws_and_the_run_is_the_same(self):
         terminal, shown = pty.openpty()
