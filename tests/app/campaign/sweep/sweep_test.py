@@ -80,7 +80,7 @@ class Sweep(SweepCase):
         out, chance = self.path / "killed", random.Random(4)
         for num_results in range(3):
             process = self.start(out, *self.vary)
-            while process.poll() is None and len(list((out / "runs").glob("*.json"))) < num_results:
+            while process.poll() is None and not ((out / "work").exists() and len(list((out / "runs").glob("*.json"))) >= num_results):
                 time.sleep(0.005)
             time.sleep(chance.uniform(0.0, 0.2))
             process.kill()
