@@ -39,6 +39,11 @@ def open_browser():
     return webdriver.Chrome(options=options, service=webdriver.ChromeService(DRIVER))
 
 
+def setUpModule():
+    PageCase.browser = open_browser()
+    unittest.addModuleCleanup(PageCase.browser.quit)
+
+
 class PageCase:
     """What holds for every page."""
 
@@ -48,8 +53,6 @@ class PageCase:
         cls.addClassCleanup(folder.cleanup)
         cls.path = pathlib.Path(folder.name)
         cls.page = cls.make_page()
-        cls.browser = open_browser()
-        cls.addClassCleanup(cls.browser.quit)
 
     def show(self, width, height=900):
         self.browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 600})
@@ -107,7 +110,7 @@ class RunReport(PageCase, unittest.TestCase):
     def test_a_replay_next_to_the_page_plays(self):
         run = self.path / "run"
         shutil.copytree(RUN, run)
-        subprocess.run([PATROL, "replay", run, "--speed", "30", "--size", "160x90", "--out", run / "replay.mp4"], check=True, capture_output=True, timeout=120)
+        subprocess.run([PATROL, "replay", run, "--style", "continuous", "--speed", "100", "--size", "160x90", "--out", run / "replay.mp4"], check=True, capture_output=True, timeout=120)
         with open(run / "replay.mp4", "ab") as video:  # over what is embedded: an MP4 box of kind "free"
             video.write((7 << 20).to_bytes(4, "big") + b"free" + bytes((7 << 20) - 8))
         self.browser.get(report(run, run / "report.html").as_uri())

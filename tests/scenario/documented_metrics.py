@@ -2,6 +2,7 @@
 
 usage: documented_metrics.py PATROL FOLDER NUMBER    checks the results of every `patrol test` below the folder, which are NUMBER
 """
+import functools
 import json
 import pathlib
 import re
@@ -20,11 +21,16 @@ def paths_of(value, path=""):
     return [found for key, child in items for found in paths_of(child, f"{path}.{key}" if path else key)]
 
 
+@functools.cache
+def documented(patrol):
+    """Patterns of the paths with an entry."""
+    entries = json.loads(subprocess.run([patrol, "list", "metrics", "--json"], check=True, capture_output=True, text=True).stdout)["metrics"]
+    return [re.compile(re.escape(entry["name"]).replace(r"\*", ".+")) for entry in entries]
+
+
 def undocumented(patrol, metrics):
     """Paths without an entry."""
-    entries = json.loads(subprocess.run([patrol, "list", "metrics", "--json"], check=True, capture_output=True, text=True).stdout)["metrics"]
-    patterns = [re.compile(re.escape(entry["name"]).replace(r"\*", ".+")) for entry in entries]
-    return [path for path in paths_of(metrics) if not any(pattern.fullmatch(path) for pattern in patterns)]
+    return [path for path in paths_of(metrics) if not any(pattern.fullmatch(path) for pattern in documented(patrol))]
 
 
 def load_metrics(patrol, folder):
