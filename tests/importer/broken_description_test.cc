@@ -42,8 +42,6 @@ std::string changed(const std::string& old, const std::string& by, const std::st
   return text;
 }
 
-std::string with(const std::string& more) { return robot(chassis() + two_wheels() + caster() + more); }
-
 TEST(BrokenDescription, TheUnchangedOneIsAccepted) { EXPECT_EQ(complaint(with("")), ""); }
 
 TEST(BrokenDescription, AFileThatIsNoDescription) {

@@ -78,6 +78,14 @@ inline std::string caster(const std::string& base = "base_link") {
          link("small", inertial(0.2, "0 0 0", 0.001) + shape("collision", cylinder(0.05, 0.03), "0 0 0", kAcross));
 }
 
+/// A fixed part at the front of the chassis.
+inline std::string part(const std::string& name, const std::string& content) {
+  return joint(name + "_joint", "fixed", "base_link", name, "0.1 0 0.1") + link(name, content);
+}
+
+/// A robot with two driven wheels and a caster, and more.
+inline std::string with(const std::string& more) { return robot(chassis() + two_wheels() + caster() + more); }
+
 /// COLLADA text of an orange triangle from the origin to (2, 0, 0) and (0, 0, 4), in a node at (0, 10, 0).
 inline std::string dae(const std::string& unit, const std::string& up_axis) {
   return R"(<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1"><asset>

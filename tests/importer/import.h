@@ -4,9 +4,15 @@
 #include <stdexcept>
 #include <string>
 
+#include <Eigen/Core>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/error.h"
 #include "core/robot_description.h"
 #include "importer/robot_import.h"
 #include "io/urdf.h"
+#include "tests/support/pose_near.h"
 #include "tests/support/temporary_file.h"
 
 namespace patrol::importer {
@@ -42,5 +48,26 @@ class Import {
   ImportedRobot robot;
   RobotDescription description;
 };
+
+/// Expects an exact wheel.
+inline void expect_wheel(const Import& import, const std::string& link, const Eigen::Vector3d& center, double radius_m,
+                         double width_m, double tolerance = 1e-6) {
+  const WheelGeometry& wheel = import.wheel(link);
+  EXPECT_THAT(wheel.center_in_body, test::VectorNear(center, tolerance)) << link;
+  EXPECT_NEAR(wheel.radius_m, radius_m, tolerance) << link;
+  EXPECT_NEAR(wheel.width_m, width_m, tolerance) << link;
+}
+
+/// Imports; returns the message of a refused description, from the file's name on.
+inline std::string complaint(Import& import) {
+  try {
+    import.load();
+  } catch (const InputError& error) {
+    const std::string what = error.what();
+    EXPECT_EQ(what.find('\n'), std::string::npos) << "one line";
+    return what.substr(std::min(what.size(), what.rfind("vendor.urdf")));
+  }
+  return "";
+}
 
 }  // namespace patrol::importer

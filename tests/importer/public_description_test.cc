@@ -1,96 +1,23 @@
-#include <algorithm>
-#include <cstdlib>
 #include <string>
+#include <utility>
 
+#include <Eigen/Core>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/error.h"
 #include "core/wheel_kinematics.h"
-#include "importer/normalized_robot.h"
-#include "importer/source_robot.h"
-#include "importer/xacro.h"
 #include "tests/importer/description.h"
 #include "tests/importer/import.h"
 #include "tests/support/pose_near.h"
 #include "tests/support/simulated_wheeled_robot.h"
-#include "tests/support/temporary_file.h"
 
 /// Synthetic descriptions with the faults and habits of public ones: imported with an assumption, or refused with a
 /// hint.
 namespace patrol::importer::public_description_test {
 namespace {
 
-using test::write_bytes;
 using ::testing::AllOf, ::testing::HasSubstr, ::testing::MatchesRegex, ::testing::Not;
-
-std::string complaint(Import& import) {
-  try {
-    import.load();
-  } catch (const InputError& error) {
-    const std::string what = error.what();
-    EXPECT_EQ(what.find('\n'), std::string::npos) << "one line";
-    return what.substr(std::min(what.size(), what.rfind("vendor.urdf")));
-  }
-  return "";
-}
-
-std::string inertial_of(double mass_kg, const std::string& tensor) {
-  return fmt::format(R"(<inertial><mass value="{}"/><inertia {}/></inertial>)", mass_kg, tensor);
-}
-
-std::string diagonal(double xx, double yy, double zz) {
-  return fmt::format(R"(ixx="{}" ixy="0" ixz="0" iyy="{}" iyz="0" izz="{}")", xx, yy, zz);
-}
-
-/// A fixed part at the front of the chassis.
-std::string part(const std::string& name, const std::string& content) {
-  return joint(name + "_joint", "fixed", "base_link", name, "0.1 0 0.1") + link(name, content);
-}
-
-std::string with(const std::string& more) { return robot(chassis() + two_wheels() + caster() + more); }
-
-const std::string kOnes = R"(ixx="1e-6" ixy="1e-6" ixz="1e-6" iyy="1e-6" iyz="1e-6" izz="1e-6")";
-
-TEST(PublicDescription, PlaceholderInertiasOfLightLinksAreReplacedInOneRow) {
-  Import import(with(part("antenna", inertial_of(0.001, kOnes)) + part("mark", inertial_of(0.001, kOnes))));
-  EXPECT_NEAR(import.load().mass_kg, 22.502, 1e-6);
-  EXPECT_THAT(import.assumptions(), HasSubstr("| antenna, mark | no body has these inertias: replaced by the nearest "
-                                              "possible ones; with moments of at most 3e-06 kg m2"));
-}
-
-TEST(PublicDescription, ASmallViolationIsReplacedByTheNearestInertiaOfABody) {
-  Import import(with(part("arm", inertial_of(1.0, diagonal(4e-4, 1.8e-3, 2.3e-3)))));
-  import.load();
-  EXPECT_THAT(import.assumptions(),
-              HasSubstr("| arm | its principal moments of inertia 0.0004, 0.0018 and 0.0023 kg m2 are replaced by "
-                        "0.000451, 0.00185 and 0.0023: in a body, none exceeds the sum of the others |"));
-  EXPECT_THAT(import.assumptions(), Not(HasSubstr("adjusted by up to 1 %")));
-}
-
-TEST(PublicDescription, AnInertiaThatIsFarFromThatOfABodyIsRefused) {
-  Import arm(with(part("arm", inertial_of(1.0, diagonal(4e-4, 1.5e-3, 2.3e-3)))));
-  EXPECT_THAT(complaint(arm), MatchesRegex("vendor.urdf:[0-9]+: arm: invalid inertia: principal moments 0.0004, 0.0015 "
-                                           "and 0.0023 kg m2: .*"));
-  Import light(with(part("antenna", inertial_of(0.001, diagonal(0.001, 0.001, 0.01)))));
-  EXPECT_THAT(complaint(light), HasSubstr("antenna: invalid inertia")) << "a light link with a large moment";
-}
-
-TEST(PublicDescription, AMasslessLinkIsLeftOutOnAJointThatIsFixed) {
-  Import import(with(joint("j", "continuous", "base_link", "tip", "0.1 0 0.1", axis("0 0 1")) +
-                     link("tip", inertial_of(0.0, kOnes))));
-  EXPECT_NEAR(import.load().mass_kg, 22.5, 1e-6);
-  EXPECT_THAT(import.assumptions(), HasSubstr("| tip | its &lt;inertial> with mass 0 is left out |"));
-}
-
-TEST(PublicDescription, APlaceholderMassOfTheBaseIsJoinedWithTheHeaviestLink) {
-  Import import(robot(link("root", inertial_of(1e-6, kOnes)) + joint("j", "fixed", "root", "base_link", "0 0 0") +
-                      chassis() + two_wheels()));
-  EXPECT_NEAR(import.load().mass_kg, 22.000001, 1e-9);
-  EXPECT_THAT(import.robot.urdf, HasSubstr("<mass value=\"19.34"))
-      << "3 % of the mass are taken from it for the supports";
-}
 
 /// A passive wheel that rolls about y behind the driven axle and cannot swivel.
 std::string small_wheel(const std::string& name, double y_m, double radius_m, const std::string& limit = "") {
@@ -107,54 +34,6 @@ TEST(PublicDescription, ASmallWheelThatCannotSwivelIsACaster) {
   EXPECT_NEAR(robot.mass_kg, 24.0, 1e-6);
   EXPECT_THAT(import.assumptions(), AllOf(HasSubstr("| a_joint, b_joint | is a caster: its wheel is smaller"),
                                           Not(HasSubstr("fixed at zero"))));
-}
-
-TEST(PublicDescription, ALightCasterGetsMassOfTheChassis) {
-  std::string text = caster();
-  for (const auto& [old, by] : {std::pair{"<mass value=\"0.3\"/>", "<mass value=\"0.03\"/>"},
-                                {"<mass value=\"0.2\"/>", "<mass value=\"0.02\"/>"}})
-    text.replace(text.find(old), std::string(old).size(), by);
-  Import import(robot(chassis() + two_wheels() + text));
-  EXPECT_NEAR(import.load().mass_kg, 22.05, 1e-6) << "of the robot, unchanged";
-  EXPECT_THAT(import.assumptions(), AllOf(HasSubstr("| fork | its mass of 0.03 kg is raised to 0.331 kg, taken from "
-                                                    "the chassis, and its moments of inertia to 0.00165 kg m2"),
-                                          HasSubstr("| small | its mass of 0.02 kg is raised to 0.331 kg, taken from "
-                                                    "the chassis, and its moments of inertia to 0.00165 kg m2")));
-}
-
-// The masses are not small, but the inertias are those of the small parts: without a larger inertia, the contacts of
-// the casters chatter with several m/s2.
-TEST(PublicDescription, ARobotWithCastersOfSmallInertiaStandsStill) {
-  std::string text = link("base_link",
-                          "<inertial><mass value=\"40\"/><inertia ixx=\"0.967\" ixy=\"0\" ixz=\"0\" iyy=\"2.83\" "
-                          "iyz=\"0\" izz=\"3.53\"/></inertial>" +
-                              shape("collision", box(0.9, 0.5, 0.2))) +
-                     wheel("left", "base_link", "0 0.28 -0.05", 0.1, 0.05) +
-                     wheel("right", "base_link", "0 -0.28 -0.05", 0.1, 0.05);
-  for (const auto& [name, x] : {std::pair{"front", 0.38}, {"rear", -0.38}}) {
-    const std::string fork = std::string(name) + "_fork";
-    text += joint(std::string(name) + "_swivel", "continuous", "base_link", fork, fmt::format("{} 0 -0.09", x),
-                  axis("0 0 1")) +
-            link(fork, inertial(0.3, "0 0 0", 0.00018)) +
-            joint(std::string(name) + "_roll", "continuous", fork, name, "-0.03 0 -0.02", axis("0 1 0")) +
-            link(name, inertial(0.3, "0 0 0", 0.00024) + shape("collision", cylinder(0.04, 0.03), "0 0 0", kAcross));
-  }
-  Import import(robot(text));
-  import.load();
-  EXPECT_THAT(import.assumptions(),
-              HasSubstr("| front_fork, rear_fork | its moment of inertia about the swivel axis of "
-                        "0.00018 kg m2 is raised to 0.00104 kg m2"));
-  const std::string level = R"(<mujoco><option timestep="0.002" cone="elliptic"/><worldbody>
-    <geom name="ground" type="plane" size="20 20 1" contype="1" conaffinity="2"/></worldbody></mujoco>)";
-  sim::WheeledRobot standing(level, import.robot.urdf);
-  standing.drive(0.0, 0.0, 1.0);
-  double max_mps2 = 0.0;
-  for (int i = 0; i < 100; ++i) {
-    const Eigen::Vector3d before_mps = standing.velocity_mps();
-    standing.drive(0.0, 0.0, 0.002);
-    max_mps2 = std::max(max_mps2, (standing.velocity_mps() - before_mps).norm() / 0.002);
-  }
-  EXPECT_LT(max_mps2, 0.1);
 }
 
 TEST(PublicDescription, WheelsThatMayKeepTheRobotFromTurningStay) {
@@ -226,15 +105,6 @@ TEST(PublicDescription, AJointWithBothLimitsAtZeroIsFixed) {
   EXPECT_THAT(import.assumptions(), HasSubstr("| mast_joint | fixed at zero: its limits lower and upper are both 0"));
 }
 
-// 20 kg at 122 m.
-TEST(PublicDescription, AChassisWithAnInertiaBeyondTheSizeOfTheRobotGetsThatOfItsShape) {
-  Import import(robot(link("base_link", inertial(20.0, "0 0 0", 3e5) + shape("collision", box(0.6, 0.4, 0.2))) +
-                      two_wheels() + caster()));
-  import.load();
-  EXPECT_THAT(import.assumptions(), HasSubstr("| base_link | its moment of inertia 3e+05 kg m2 is that of its 20 kg at "
-                                              "a distance of 122 m"));
-}
-
 // A robot of 1.5 kg. With a deflection of 2 % of the radius, the balls would be too stiff for the time step.
 TEST(PublicDescription, ASmallRobotWithBallCastersOf5MillimetersStandsFor3SecondsWithATiltBelow1Degree) {
   std::string text = link("base_link", inertial(1.4, "-0.05 0 0.02", 0.009) +
@@ -263,17 +133,6 @@ TEST(PublicDescription, ABaseBelowTheGroundIsMovedUp) {
   EXPECT_NEAR(import.load().body_height_m(), 0.0, 1e-9);
   EXPECT_NEAR(import.wheel("left").center_in_body.z(), 0.1, 1e-6);
   EXPECT_THAT(import.assumptions(), HasSubstr("| base_link | is moved up by 0.050 m: it was below the ground"));
-}
-
-TEST(PublicDescription, AWheelWithTheInertiaOfAHouseHasThatOfItsShape) {
-  std::string text = robot(chassis() + two_wheels() + caster());
-  const std::string inertia = R"(<inertia ixx="0.01" ixy="0" ixz="0" iyy="0.01" iyz="0" izz="0.01"/>)";
-  text.replace(text.find(inertia), inertia.size(), "<inertia " + diagonal(1.0, 1.0, 1.0) + "/>");
-  Import import(text);
-  import.load();
-  EXPECT_THAT(import.assumptions(), HasSubstr("| left | its moment of inertia 1 kg m2 about the axle is that of 100 kg "
-                                              "at its radius of 0.1 m, but its mass is 1 kg: replaced"));
-  EXPECT_THAT(import.robot.urdf, HasSubstr("iyy=\"0.005\"")) << "m r^2 / 2";
 }
 
 /// Two driven wheels with losses, and a caster. Each driven wheel of 0.1 m holds 8.71 N m by friction 0.8.
@@ -339,14 +198,6 @@ TEST(PublicDescription, ASpeedLimitThatNoRobotReachesIsTakenForAMissingOne) {
   EXPECT_THAT(fast_settings, HasSubstr("wheel_drive: {max_speed_mps: 1.50}"));
 }
 
-TEST(PublicDescription, AMassAboveTwentyTonsIsReported) {
-  Import import(robot(link("base_link", inertial(30000.0, "-0.1 0 0", 500.0) + shape("collision", box(0.6, 0.4, 0.2))) +
-                      two_wheels() + caster()));
-  import.load();
-  EXPECT_THAT(import.assumptions(), HasSubstr("| mass | 30002 kg of the file are kept, although more than 20000 kg are "
-                                              "unlikely: base_link has 29100 kg |"));
-}
-
 TEST(PublicDescription, AChassisThatHitsARampBeforeTheWheelsDoIsReported) {
   const auto with_overhang = [](double length_m) {
     return robot(link("base_link", inertial(20.0, "-0.1 0 0", 0.5) + shape("collision", box(length_m, 0.4, 0.24))) +
@@ -363,72 +214,6 @@ TEST(PublicDescription, AChassisThatHitsARampBeforeTheWheelsDoIsReported) {
   EXPECT_THAT(compact.assumptions(), Not(HasSubstr("ahead of the axle")));
 }
 
-TEST(PublicDescription, SpheresWithoutSizeAreLeftOut) {
-  Import import(with(part("toe", shape("visual", sphere(0.0)) + shape("collision", sphere(0.0)))));
-  import.load();
-  EXPECT_THAT(import.assumptions(), AllOf(HasSubstr("| toe | its visual sphere of radius 0 is left out"),
-                                          HasSubstr("| toe | its collision sphere of radius 0 is left out")));
-}
-
-TEST(PublicDescription, AFourthNumberOfAScaleIsLeftOut) {
-  Import import(with(part("x", shape("visual", R"(<mesh filename="m.stl" scale="0.001 0.001 0.002 1"/>)"))));
-  write_bytes(import.folder / "m.stl", stl(box_triangles({100.0, 100.0, 100.0})));
-  import.load();
-  EXPECT_THAT(import.assumptions(), HasSubstr("| x | the fourth number of the scale of its mesh is left out |"));
-  EXPECT_THAT(import.robot.meshes[0].second, HasSubstr(" 0.1\n")) << "scaled by 0.002 along z";
-  Import five(with(part("x", shape("visual", R"(<mesh filename="m.stl" scale="1 1 1 1 1"/>)"))));
-  EXPECT_THAT(complaint(five), HasSubstr("x: scale = \"1 1 1 1 1\": must be 3 numbers"));
-}
-
-/// A description in urdf/ with a collision mesh, and the mesh in a folder beside it.
-void expect_found(const std::string& filename, const std::string& where, bool is_found) {
-  Import import(with(part("x", shape("collision", fmt::format(R"(<mesh filename="{}"/>)", filename)))));
-  for (const char* folder : {"urdf", "urdf/assets", "urdf/other", "meshes"})
-    std::filesystem::create_directories(import.folder / "pkg" / folder);
-  const std::filesystem::path file = import.folder / "pkg/urdf/vendor.urdf";
-  std::filesystem::rename(import.options.file, file);
-  import.options.file = file;
-  write_bytes(import.folder / "pkg" / where, stl(box_triangles({0.1, 0.1, 0.1})));
-  const std::string message = complaint(import);
-  if (is_found) {
-    EXPECT_EQ(message, "") << filename;
-    EXPECT_THAT(import.assumptions(), HasSubstr("| part.stl | not found where the description names them")) << filename;
-  } else {
-    EXPECT_THAT(message, MatchesRegex("vendor.urdf:[0-9]+: x: .*")) << filename;
-  }
-}
-
-TEST(PublicDescription, MeshesNearTheDescriptionAreFound) {
-  expect_found("meshes/part.stl", "meshes/part.stl", true);                          // one folder above
-  expect_found("/home/vendor/ws/src/pkg/meshes/part.stl", "meshes/part.stl", true);  // another computer
-  expect_found("file:///home/vendor/meshes/part.stl", "meshes/part.stl", true);
-  expect_found("package://vendor_description/meshes/part.stl", "meshes/part.stl", true);
-  expect_found("meshes/trunk/part.stl", "urdf/assets/part.stl", true);  // the only file of its name
-  expect_found("meshes/part.stl", "urdf/assets/part_2.stl", false);
-  expect_found("package://vendor_description/meshes/part.stl", "meshes/part_2.stl", false);
-}
-
-TEST(PublicDescription, OfSeveralMeshesOfOneNameNoneIsChosen) {
-  Import import(with(part("x", shape("collision", R"(<mesh filename="meshes/part.stl"/>)"))));
-  for (const char* folder : {"a", "b"}) {
-    std::filesystem::create_directories(import.folder / folder);
-    write_bytes(import.folder / folder / "part.stl", stl(box_triangles({0.1, 0.1, 0.1})));
-  }
-  EXPECT_THAT(complaint(import), MatchesRegex("vendor.urdf:[0-9]+: x: .*/meshes/part.stl: mesh file not found: put it "
-                                              "there, or give the folder of its package with --package NAME=FOLDER"));
-}
-
-TEST(PublicDescription, AMissingMeshOfLooksIsNotDrawn) {
-  const std::string missing = shape("visual", R"(<mesh filename="nowhere/logo.dae"/>)");
-  Import import(with(part("x", missing + shape("collision", box(0.1, 0.1, 0.1))) + part("logo", missing)));
-  import.load();
-  EXPECT_THAT(import.assumptions(), HasSubstr("| x, logo | is drawn without nowhere/logo.dae: mesh file not found |"));
-  // Without a collision shape, the visual of a moving part is its contact shape.
-  Import wheel(robot(chassis() + two_wheels() + caster() +
-                     joint("j", "continuous", "base_link", "w", "0.2 0 0.3", axis("0 1 0")) + link("w", missing)));
-  EXPECT_THAT(complaint(wheel), MatchesRegex("vendor.urdf:[0-9]+: w: .*mesh file not found.*"));
-}
-
 TEST(PublicDescription, ARobotWithTwoWheelsInARowOfGearsKeepsItsWheels) {
   std::string gears =
       joint("ring", "continuous", "base_link", "ring", "0 0.1 -0.02", axis("0 1 0")) +
@@ -441,33 +226,6 @@ TEST(PublicDescription, ARobotWithTwoWheelsInARowOfGearsKeepsItsWheels) {
   }
   Import import(with(gears));
   EXPECT_EQ(import.load().wheels.size(), 3U) << "pinions across the axle are no rollers of a mecanum wheel";
-}
-
-TEST(PublicDescription, ExpressionsOfXacroAreFoundInAUrdfFile) {
-  EXPECT_TRUE(has_xacro_text(with(part("imu", "<visual><origin xyz=\"$(optenv IMU_XYZ 0 0 0)\"/></visual>"))));
-  EXPECT_TRUE(has_xacro_text(with("<link name=\"${name}\"/>")));
-  EXPECT_TRUE(has_xacro_text("<robot><xacro:macro name=\"a\"/></robot>"));
-  EXPECT_FALSE(has_xacro_text(with("")));
-  EXPECT_FALSE(has_xacro_text(with("<gazebo><plugin name=\"$(arg a)\"/></gazebo>"))) << "not part of the robot";
-  EXPECT_FALSE(has_xacro_text("<robot><!-- $(arg a) --></robot>"));
-  EXPECT_FALSE(has_xacro_text("no XML"));
-}
-
-TEST(PublicDescription, AUrdfFileWithExpressionsOfXacroIsExpandedOrNamesWhatIsMissing) {
-  Import import(with(part("imu", "") +
-                     joint("j", "fixed", "base_link", "camera", "$(optenv PATROL_TEST_XYZ 0.1 0 0.2)") +
-                     link("camera")));
-  const bool has_xacro = std::system("${PATROL_PYTHON:-python3} -c 'import xacro' 2> /dev/null") == 0;
-  const std::string message = complaint(import);
-  if (has_xacro) {
-    EXPECT_EQ(message, "");
-    EXPECT_THAT(import.assumptions(), HasSubstr("| vendor.urdf | has expressions of xacro and is expanded by xacro"));
-    EXPECT_THAT(import.description.T_body_sensor.at("camera").position,
-                test::VectorNear(Eigen::Vector3d(0.1, 0.0, 0.2), 1e-9));
-  } else {
-    EXPECT_THAT(message,
-                HasSubstr("vendor.urdf: xacro is not available to expand its $(...), ${...} and <xacro:...>: "));
-  }
 }
 
 TEST(PublicDescription, ALeggedRobotThatLiesIsRefusedWithTheJointThatTurnsIt) {

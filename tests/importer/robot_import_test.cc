@@ -1,14 +1,17 @@
 #include "importer/robot_import.h"
 
-#include <algorithm>
 #include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <utility>
 
+#include <Eigen/Core>
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "core/wheel_kinematics.h"
-#include "importer/normalized_robot.h"
 #include "io/urdf.h"
 #include "tests/importer/description.h"
 #include "tests/importer/import.h"
@@ -18,17 +21,8 @@
 namespace patrol::importer::robot_import_test {
 namespace {
 
-using test::TemporaryFolder, test::VectorNear, test::write_bytes;
-using ::testing::AllOf, ::testing::HasSubstr, ::testing::MatchesRegex, ::testing::Not;
-
-/// Expects an exact wheel.
-void expect_wheel(const Import& import, const std::string& link, const Eigen::Vector3d& center, double radius_m,
-                  double width_m, double tolerance = 1e-6) {
-  const WheelGeometry& wheel = import.wheel(link);
-  EXPECT_THAT(wheel.center_in_body, VectorNear(center, tolerance)) << link;
-  EXPECT_NEAR(wheel.radius_m, radius_m, tolerance) << link;
-  EXPECT_NEAR(wheel.width_m, width_m, tolerance) << link;
-}
+using test::TemporaryFolder, test::VectorNear;
+using ::testing::HasSubstr, ::testing::Not;
 
 /// Expects the bounding box of the footprint.
 void expect_footprint(const RobotDescription& robot, double min_x, double max_x, double min_y, double max_y) {
@@ -68,29 +62,6 @@ TEST(ImportRobot, ADifferentialDriveWithACasterKeepsWheelsMassAndFootprint) {
   EXPECT_EQ(robot.name, "imported");
 }
 
-TEST(ImportRobot, AFixedSphereThatTouchesTheGroundBecomesAFreeBallWithoutChangeOfMass) {
-  const std::string ball =
-      joint("ball_joint", "fixed", "base_link", "ball", "-0.25 0 -0.11") +
-      link("ball", inertial(0.1, "0 0 0", 1e-4) + shape("visual", sphere(0.04)) + shape("collision", sphere(0.04)));
-  Import import(robot(chassis() + two_wheels() + ball));
-  const RobotDescription& robot = import.load();
-  ASSERT_EQ(robot.wheels.size(), 3U);
-  expect_wheel(import, "ball_ball", {-0.25, 0.0, -0.11}, 0.04, 0.08);
-  EXPECT_TRUE(import.wheel("ball_ball").is_caster);
-  EXPECT_NEAR(robot.mass_kg, 22.1, 1e-6);
-  EXPECT_THAT(import.assumptions(), HasSubstr("| ball | is fixed and touches the ground"));
-}
-
-TEST(ImportRobot, ABallOnAJointAboutOneAxisIsAFreeBall) {
-  const std::string ball = joint("ball_joint", "continuous", "base_link", "ball", "-0.25 0 -0.11", axis("1 0 0")) +
-                           link("ball", inertial(0.8, "0 0 0", 1e-4) + shape("collision", sphere(0.04)));
-  Import import(robot(chassis() + two_wheels() + ball));
-  const RobotDescription& robot = import.load();
-  ASSERT_EQ(robot.wheels.size(), 3U);
-  EXPECT_TRUE(import.wheel("ball_ball").is_caster);
-  EXPECT_NEAR(robot.mass_kg, 22.8, 1e-6);
-}
-
 TEST(ImportRobot, ACenterOfMassBesideTheContactsIsReported) {
   Import import(robot(link("base_link", inertial(20.0, "0.1 0 0", 0.5) + shape("collision", box(0.6, 0.4, 0.2))) +
                       two_wheels() + caster()));
@@ -100,65 +71,6 @@ TEST(ImportRobot, ACenterOfMassBesideTheContactsIsReported) {
                         two_wheels() + caster()));
   balanced.load();
   EXPECT_THAT(balanced.assumptions(), Not(HasSubstr("the robot tips over")));
-}
-
-TEST(ImportRobot, LinksFixedToAWheelAreMergedByTheParallelAxisTheorem) {
-  const Inertial wheel{.mass_kg = 1.0, .inertia = 0.01 * Eigen::Matrix3d::Identity()};
-  const Inertial cap{.mass_kg = 1.0, .inertia = 0.02 * Eigen::Matrix3d::Identity()};
-  const Inertial both = combine({{Pose3{}, wheel}, {Pose3{.position = {0.0, 0.2, 0.0}}, cap}});
-  EXPECT_NEAR(both.mass_kg, 2.0, 1e-12);
-  EXPECT_THAT(both.T_link_inertia.position, VectorNear(Eigen::Vector3d(0.0, 0.1, 0.0), 1e-12));
-  EXPECT_NEAR(both.inertia(0, 0), 0.03 + 2.0 * 0.01, 1e-12);
-  EXPECT_NEAR(both.inertia(1, 1), 0.03, 1e-12);
-}
-
-TEST(ImportRobot, AFixedBoxCasterIsASupportOfARobotWithOneAxle) {
-  const std::string skid = joint("skid_joint", "fixed", "base_link", "skid", "-0.2 0 -0.14") +
-                           link("skid", inertial(0.005, "0 0 0", 1e-5) + shape("collision", box(0.03, 0.09, 0.02)));
-  Import import(robot(chassis() + two_wheels() + skid));
-  const RobotDescription& robot = import.load();
-  ASSERT_EQ(robot.wheels.size(), 3U);
-  expect_wheel(import, "skid_ball", {-0.2, 0.0, -0.125}, 0.025, 0.05);
-  EXPECT_NEAR(robot.mass_kg, 22.005, 1e-6);
-}
-
-TEST(ImportRobot, ARobotWithOneAxleAndNothingElseGetsASupportWithAnAssumption) {
-  Import import(robot(chassis() + two_wheels()));
-  const RobotDescription& robot = import.load();
-  EXPECT_EQ(robot.wheels.size(), 4U) << "center of mass above the axle: front and rear";
-  EXPECT_NEAR(robot.mass_kg, 22.0, 1e-6);
-  EXPECT_THAT(import.assumptions(), HasSubstr("keeps the robot upright"));
-}
-
-// Files of casters often limit the joint to 180 degrees, because the type revolute needs a range.
-TEST(ImportRobot, AJointOfAFullTurnWithoutMotorBelongsToACasterAndWithMotorSteers) {
-  const auto with_fork = [](const std::string& limit) {
-    std::string text = caster();
-    const std::string type = "type=\"continuous\"", axis_z = axis("0 0 1");
-    text.replace(text.find(type), type.size(), "type=\"revolute\"");
-    text.insert(text.find(axis_z), limit);
-    const std::string transmission = R"(<transmission name="t"><joint name="left_joint"/></transmission>
-<transmission name="u"><joint name="right_joint"/></transmission>)";
-    return robot(chassis() + two_wheels() + text + transmission);
-  };
-  Import import(with_fork(R"(<limit lower="-3.14" upper="3.14" effort="10" velocity="5"/>)"));
-  import.load();
-  EXPECT_TRUE(import.wheel("small").is_caster);
-  EXPECT_EQ(wheel_drive_type(import.description), WheelDriveType::kDifferential);
-  EXPECT_THAT(import.assumptions(), HasSubstr("| swivel | swivels without end, although the file limits it"));
-  Import steered(with_fork(R"(<limit lower="-1.5" upper="1.5" effort="10" velocity="5"/>)"));
-  EXPECT_FALSE(steered.load().wheels.empty());
-  EXPECT_FALSE(steered.wheel("small").is_caster);
-}
-
-// A round vacuum cleaner: its chassis ends 5 mm above the ground.
-TEST(ImportRobot, AnUprightCylinderOfTheBaseNearTheGroundIsTheChassisAndNoCaster) {
-  Import import(
-      robot(link("base_link", inertial(20.0, "-0.1 0 0", 0.5) + shape("collision", cylinder(0.2, 0.2), "0 0 -0.045")) +
-            two_wheels() + caster()));
-  const RobotDescription& robot = import.load();
-  ASSERT_EQ(robot.wheels.size(), 3U);
-  EXPECT_THAT(import.assumptions(), Not(HasSubstr("is fixed and touches the ground")));
 }
 
 TEST(ImportRobot, FourFixedWheelsAreADifferentialDrive) {
@@ -267,148 +179,6 @@ TEST(ImportRobot, OffsetAndTurnedInertialFramesAreKept) {
   EXPECT_THAT(import.robot.urdf, HasSubstr(R"(ixx="0.5" ixy="0.01" ixz="0.02" iyy="0.6" iyz="0.03" izz="0.7")"));
 }
 
-TEST(ImportRobot, NestedFixedJointsAreFlattenedAndMasslessFramesAboveTheBaseAreDropped) {
-  const std::string text =
-      link("base_footprint") + joint("a", "fixed", "base_footprint", "base_link", "0 0 0.15") + link("base_link") +
-      joint("b", "fixed", "base_link", "body", "0.1 0 0") + chassis("body") +
-      joint("c", "fixed", "body", "axle", "0 0 -0.05") + link("axle", inertial(2.0)) +
-      wheel("left", "axle", "0 0.25 0", 0.1, 0.04) + wheel("right", "axle", "0 -0.25 0", 0.1, 0.04) +
-      joint("hub_joint", "fixed", "left", "hub", "0 0.03 0") +
-      link("hub", inertial(0.5) + shape("visual", cylinder(0.03, 0.01), "0 0 0", kAcross)) + caster("body");
-  Import import(robot(text));
-  const RobotDescription& robot = import.load();
-  EXPECT_EQ(robot.wheels.size(), 3U);
-  expect_wheel(import, "left", {0.0, 0.25, -0.05}, 0.1, 0.04);
-  EXPECT_NEAR(robot.mass_kg, 25.0, 1e-6);
-  EXPECT_THAT(import.robot.urdf, Not(HasSubstr("base_footprint")));
-  EXPECT_THAT(import.assumptions(), HasSubstr("is the link body of the file"));
-  EXPECT_TRUE(robot.T_body_sensor.contains("axle"));
-}
-
-TEST(ImportRobot, TheBaseLinkOptionSelectsTheFrame) {
-  Import import(robot(link("base_footprint") + joint("a", "fixed", "base_footprint", "body", "0 0 0.15") +
-                      chassis("body") + two_wheels("body") + caster("body")));
-  import.options.base_link = "base_footprint";
-  import.load();
-  expect_wheel(import, "left", {0.0, 0.25, 0.1}, 0.1, 0.04);
-}
-
-std::string mesh_wheel(const std::string& name, const std::string& xyz, const std::string& mesh) {
-  return joint(name + "_joint", "continuous", "base_link", name, xyz, axis("0 1 0") + kMotor) +
-         link(name, inertial(1.0) + shape("visual", mesh) + shape("collision", mesh));
-}
-
-TEST(ImportRobot, WheelsOfScaledMeshesAreMeasured) {
-  const std::string mesh =
-      R"(<mesh filename="package://vendor_description/meshes/wheel.stl" scale="0.001 0.001 0.001"/>)";
-  Import import(
-      robot(chassis() + mesh_wheel("l", "0 0.25 -0.05", mesh) + mesh_wheel("r", "0 -0.25 -0.05", mesh) + caster()));
-  std::filesystem::create_directories(import.folder / "pkg/meshes");
-  write_bytes(import.folder / "pkg/meshes/wheel.stl", stl(wheel_triangles(100.0, 40.0)));
-  import.options.packages["vendor_description"] = import.folder / "pkg";
-  import.load();
-  expect_wheel(import, "l", {0.0, 0.25, -0.05}, 0.1, 0.04, 1e-5);
-  ASSERT_EQ(import.robot.meshes.size(), 1U) << "one file for both wheels";
-  EXPECT_TRUE(std::filesystem::exists(import.folder / "imported/meshes" / import.robot.meshes[0].first));
-}
-
-TEST(ImportRobot, TheHubOfAWheelMeshDoesNotChangeItsWidthAndCenter) {
-  std::vector<Triangle> triangles = wheel_triangles(0.1, 0.03);
-  for (Triangle hub : wheel_triangles(0.04, 0.08)) {
-    for (Eigen::Vector3d& corner : hub) corner.y() -= 0.055;
-    triangles.push_back(hub);
-  }
-  const std::string mesh = R"(<mesh filename="wheel.stl"/>)";
-  Import import(
-      robot(chassis() + mesh_wheel("l", "0 0.25 -0.05", mesh) + mesh_wheel("r", "0 -0.25 -0.05", mesh) + caster()));
-  write_bytes(import.folder / "wheel.stl", stl(triangles));
-  import.load();
-  expect_wheel(import, "l", {0.0, 0.25, -0.05}, 0.1, 0.03, 1e-5);
-  expect_wheel(import, "r", {0.0, -0.25, -0.05}, 0.1, 0.03, 1e-5);
-}
-
-TEST(ImportRobot, AWheelMeshWithoutAFlatTreadIsAsWideAsItsSurfaceNearTheRadius) {
-  std::vector<Triangle> triangles;  // a double cone, 0.2 m wide at the axle
-  constexpr int kNumSides = 64;
-  for (int i = 0; i < kNumSides; ++i) {
-    const auto rim = [](int k) {
-      const double angle = 2.0 * M_PI * k / kNumSides;
-      return Eigen::Vector3d(0.1 * std::sin(angle), 0.0, 0.1 * std::cos(angle));
-    };
-    triangles.push_back({rim(i), rim(i + 1), Eigen::Vector3d(0.0, 0.1, 0.0)});
-    triangles.push_back({rim(i + 1), rim(i), Eigen::Vector3d(0.0, -0.1, 0.0)});
-  }
-  const std::string mesh = R"(<mesh filename="wheel.stl"/>)";
-  Import import(
-      robot(chassis() + mesh_wheel("l", "0 0.25 -0.05", mesh) + mesh_wheel("r", "0 -0.25 -0.05", mesh) + caster()));
-  write_bytes(import.folder / "wheel.stl", stl(triangles));
-  import.load();
-  expect_wheel(import, "l", {0.0, 0.25, -0.05}, 0.1, 0.02, 1e-5);
-}
-
-TEST(ImportRobot, PackagesAreFoundAboveTheFileByFolderAndByPackageXml) {
-  const std::string mesh = R"(<mesh filename="package://{}/meshes/wheel.stl"/>)";
-  for (const char* package : {"robot_meshes", "other_name"}) {
-    const std::string text = fmt::format(fmt::runtime(mesh), package);
-    Import import(
-        robot(chassis() + mesh_wheel("l", "0 0.25 -0.05", text) + mesh_wheel("r", "0 -0.25 -0.05", text) + caster()));
-    const auto folder = import.folder / "robot_meshes";
-    std::filesystem::create_directories(folder / "meshes");
-    std::filesystem::create_directories(folder / "urdf");
-    write_bytes(folder / "package.xml", "<package><name>other_name</name></package>");
-    write_bytes(folder / "meshes/wheel.stl", stl(wheel_triangles(0.1, 0.04)));
-    std::filesystem::rename(import.options.file, folder / "urdf/vendor.urdf");
-    import.options.file = folder / "urdf/vendor.urdf";
-    import.load();
-    expect_wheel(import, "l", {0.0, 0.25, -0.05}, 0.1, 0.04, 1e-5);
-  }
-}
-
-TEST(ImportRobot, MeshesInMillimetersWithoutScaleAreScaledWithAnAssumption) {
-  const std::string mesh = R"(<mesh filename="wheel.stl"/>)", body = R"(<mesh filename="body.stl"/>)";
-  Import import(
-      robot(link("base_link", inertial(20.0, "0 0 0", 0.5) + shape("visual", body) + shape("collision", body)) +
-            mesh_wheel("l", "0 0.25 -0.05", mesh) + mesh_wheel("r", "0 -0.25 -0.05", mesh) + caster()));
-  write_bytes(import.folder / "wheel.stl", stl(wheel_triangles(100.0, 40.0)));
-  write_bytes(import.folder / "body.stl", stl(box_triangles({600.0, 400.0, 200.0})));
-  import.load();
-  expect_wheel(import, "r", {0.0, -0.25, -0.05}, 0.1, 0.04, 1e-5);
-  EXPECT_THAT(import.assumptions(), HasSubstr("| meshes *.stl | are in millimeters"));
-  EXPECT_THAT(
-      import.robot.urdf,
-      HasSubstr(R"(<collision><origin xyz="0 0 0" rpy="0 0 0"/><geometry><mesh filename="meshes/body_hull.obj"/>)"));
-  EXPECT_THAT(import.assumptions(), HasSubstr("collision mesh body is replaced by 1 convex piece,"));
-}
-
-TEST(ImportRobot, VisualsKeepTheColorOfTheDescriptionOrElseOfTheirMesh) {
-  const std::string mesh = R"(<mesh filename="part.dae"/>)",
-                    blue = R"(<material name="blue"><color rgba="0 0 1 1"/></material>)";
-  const std::string own = R"(<visual><geometry>)" + mesh + R"(</geometry>)" + blue + "</visual>";
-  Import import(robot(
-      chassis("base_link", shape("visual", mesh)) + two_wheels() + caster() +
-      joint("j", "fixed", "base_link", "x", "0 0 0") + link("x", own) + joint("k", "fixed", "base_link", "y", "0 0 0") +
-      link("y", R"(<visual><geometry><box size="1 1 1"/></geometry><material name="blue"/></visual>)")));
-  write_bytes(import.folder / "part.dae", dae("0.1", "Z_UP"));
-  import.load();
-  EXPECT_EQ(import.robot.meshes.size(), 1U);
-  EXPECT_THAT(import.robot.urdf, HasSubstr(R"(<material name="color_0"><color rgba="1 0.5 0 1"/></material>)"));
-  EXPECT_THAT(import.robot.urdf, HasSubstr(R"(<material name="color_1"><color rgba="0 0 1 1"/></material>)"));
-  EXPECT_THAT(import.robot.urdf, HasSubstr(R"(<box size="1 1 1"/></geometry><material name="color_1"/>)"));
-  EXPECT_THAT(import.robot.meshes[0].second, Not(HasSubstr("mtllib")));
-}
-
-TEST(ImportRobot, AChassisOfSeveralMeshPartsHasOneConvexPieceForEach) {
-  Import import(
-      robot(link("base_link", inertial(20.0, "0 0 0", 0.5) + shape("collision", R"(<mesh filename="body.stl"/>)")) +
-            two_wheels() + caster()));
-  std::vector<Triangle> parts = box_triangles({0.6, 0.4, 0.1});
-  for (const Triangle& triangle : box_triangles({0.1, 0.1, 0.3}, {0.2, 0.0, 0.3})) parts.push_back(triangle);
-  write_bytes(import.folder / "body.stl", stl(parts));
-  import.load();
-  ASSERT_EQ(import.robot.meshes.size(), 2U);
-  EXPECT_THAT(import.robot.urdf, HasSubstr(R"(<mesh filename="meshes/body_hull_2.obj"/>)"));
-}
-
 TEST(ImportRobot, TheSettingsHaveTheSpeedOfTheSlowestWheelMotor) {
   std::string text = robot(chassis() + two_wheels() + caster());
   text.replace(text.find("velocity=\"12\""), 13, "velocity=\"7\"");
@@ -477,62 +247,6 @@ TEST(ImportRobot, ARobotThatFacesYIsTurned) {
   opposite.options.forward = "-y";
   opposite.load();
   expect_wheel(opposite, "left", {0.0, -0.25, -0.05}, 0.1, 0.04);
-}
-
-TEST(ImportRobot, ArmsAreFixedAtZeroWithTheirMass) {
-  const std::string arm = joint("shoulder", "revolute", "base_link", "upper", "0.1 0 0.1",
-                                axis("0 1 0") + R"(<limit lower="-1" upper="1" effort="5" velocity="1"/>)") +
-                          link("upper", inertial(1.0) + shape("collision", box(0.05, 0.05, 0.3))) +
-                          joint("wrist", "continuous", "upper", "hand", "0 0 0.15", axis("0 0 1")) +
-                          link("hand", inertial(0.5)) +
-                          joint("lift", "prismatic", "base_link", "mast", "0 0 0.1",
-                                axis("0 0 1") + R"(<limit lower="0" upper="1" effort="5" velocity="1"/>)") +
-                          link("mast", inertial(0.25));
-  Import import(robot(chassis() + two_wheels() + caster() + arm));
-  const RobotDescription& robot = import.load();
-  EXPECT_EQ(robot.wheels.size(), 3U);
-  EXPECT_NEAR(robot.mass_kg, 24.25, 1e-6);
-  EXPECT_THAT(import.assumptions(), HasSubstr("| shoulder, wrist, lift | fixed at zero"));
-  EXPECT_THAT(robot.T_body_sensor.at("hand").position, VectorNear(Eigen::Vector3d(0.1, 0.0, 0.25), 1e-9));
-}
-
-TEST(ImportRobot, AFixedJointWhoseLimitsExcludeZeroIsARow) {
-  const auto arm = [](const std::string& type, const std::string& limits) {
-    return joint("elbow", type, "base_link", "arm", "0.1 0 0.1", axis("0 1 0") + "<limit " + limits + "/>") +
-           link("arm", inertial(1.0));
-  };
-  Import outside(robot(chassis() + two_wheels() + caster() + arm("revolute", R"(lower="0.5" upper="2.5")")));
-  outside.load();
-  EXPECT_THAT(outside.assumptions(),
-              AllOf(HasSubstr("| elbow | zero, at which it is fixed, is outside its limits 0.5 to 2.5 rad |"),
-                    HasSubstr("| elbow | fixed at zero")));
-  Import below(robot(chassis() + two_wheels() + caster() + arm("prismatic", R"(lower="-0.3" upper="-0.1")")));
-  below.load();
-  EXPECT_THAT(below.assumptions(), HasSubstr("outside its limits -0.3 to -0.1 m |"));
-  Import inside(robot(chassis() + two_wheels() + caster() + arm("revolute", R"(lower="0" upper="2.5")")));
-  inside.load();
-  EXPECT_THAT(inside.assumptions(), Not(HasSubstr("outside its limits")));
-}
-
-TEST(ImportRobot, AWheelOnASuspensionIsFixedToTheChassis) {
-  const std::string suspended = joint("spring", "prismatic", "base_link", "arm", "0 0.25 -0.05",
-                                      axis("0 0 1") + R"(<limit lower="-0.1" upper="0.1" effort="5" velocity="1"/>)") +
-                                link("arm", inertial(0.5)) + wheel("left", "arm", "0 0 0", 0.1, 0.04) +
-                                wheel("right", "base_link", "0 -0.25 -0.05", 0.1, 0.04) + caster();
-  Import import(robot(chassis() + suspended));
-  import.load();
-  expect_wheel(import, "left", {0.0, 0.25, -0.05}, 0.1, 0.04);
-  EXPECT_THAT(import.assumptions(), HasSubstr("| spring | fixed at zero"));
-}
-
-TEST(ImportRobot, ACasterThatIsTurnedAtZeroIsAligned) {
-  std::string text = caster();
-  const std::string origin = R"(<origin xyz="-0.25 0 -0.08" rpy="0 0 0"/>)";
-  ASSERT_NE(text.find(origin), std::string::npos);
-  text.replace(text.find(origin), origin.size(), R"(<origin xyz="-0.25 0 -0.08" rpy="0 0 1.2"/>)");
-  Import import(robot(chassis() + two_wheels() + text));
-  import.load();
-  expect_wheel(import, "small", {-0.28, 0.0, -0.1}, 0.05, 0.03);
 }
 
 TEST(ImportRobot, TransmissionsCommandInterfacesAndPluginsNameTheMotors) {
