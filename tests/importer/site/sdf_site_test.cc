@@ -2,52 +2,31 @@
 
 #include <unistd.h>
 
-#include <cmath>
 #include <filesystem>
 #include <numbers>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
+#include <Eigen/Core>
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/error.h"
-#include "importer/site/texture_image.h"
+#include "importer/mesh.h"
 #include "sim/lidar_scene.h"
 #include "tests/importer/site/mesh_files.h"
+#include "tests/importer/site/sdf_text.h"
 #include "tests/support/pose_near.h"
+#include "tests/support/temporary_file.h"
 
 namespace patrol::importer::sdf_site_test {
 namespace {
 
+using sdf_text::collision, sdf_text::kBox, sdf_text::link, sdf_text::model, sdf_text::shape_of, sdf_text::visual,
+    sdf_text::world;
 using test::VectorNear;
 using ::testing::HasSubstr;
-
-/// World with the elements from line 3 on.
-std::string world(const std::string& elements, const std::string& version = "1.7") {
-  return fmt::format("<?xml version=\"1.0\"?>\n<sdf version=\"{}\"><world name=\"w\">\n{}\n</world></sdf>\n", version,
-                     elements);
-}
-
-std::string model(const std::string& name, const std::string& link, const std::string& pose = "0 0 0 0 0 0") {
-  return fmt::format("<model name=\"{}\"><static>true</static><pose>{}</pose><link name=\"link\">{}</link></model>\n",
-                     name, pose, link);
-}
-
-std::string visual(const std::string& geometry, const std::string& more = "") {
-  return fmt::format("<visual name=\"visual\"><geometry>{}</geometry>{}</visual>", geometry, more);
-}
-
-std::string collision(const std::string& geometry) {
-  return fmt::format("<collision name=\"collision\"><geometry>{}</geometry></collision>", geometry);
-}
-
-const std::string kBox = "<box><size>1 2 3</size></box>";
-
-const SiteShape& shape_of(const ImportedSite& site, const std::string& name) {
-  for (const SiteShape& shape : site.shapes) {
-    if (shape.name == name) return shape;
-  }
-  throw std::runtime_error("no shape " + name);
-}
 
 const SiteMaterial& material_of(const ImportedSite& site, const SiteShape& shape) {
   for (const SiteMaterial& material : site.materials) {
@@ -108,34 +87,6 @@ TEST(SdfSite, GroundPlaneAndSunAreKnownWithoutAFolder) {
   EXPECT_THAT(import.assumption("<light>"), HasSubstr("one sun"));
 }
 
-TEST(SdfSite, IncludedModelsAreFoundBesideTheFileAndByOption) {
-  const std::string include =
-      world("<include><uri>model://crate</uri><name>c2</name><pose>3 0 0 0 0 0</pose></include>");
-  for (const bool is_beside : {true, false}) {
-    SiteFileImport import("a.sdf", include);
-    const std::filesystem::path folder = import.folder / (is_beside ? "models/crate" : "elsewhere/box");
-    std::filesystem::create_directories(folder / "meshes");
-    test::write_bytes(folder / "model.config", "<model><name>crate</name><sdf version=\"1.6\">model.sdf</sdf></model>");
-    Mesh box;
-    add_box(box, {-0.5, -0.5, 0}, {0.5, 0.5, 1});
-    test::write_bytes(folder / "meshes/box.obj", to_obj(box));
-    const std::string mesh = "<mesh><uri>model://crate/meshes/box.obj</uri><scale>2 1 1</scale></mesh>";
-    test::write_bytes(folder / "model.sdf",
-                      "<sdf version=\"1.6\">" +
-                          model("crate", visual(mesh) + collision("<mesh><uri>meshes/box.obj</uri></mesh>")) +
-                          "</sdf>");
-    if (!is_beside) import.options.packages["crate"] = folder;
-    const sim::ModelPtr compiled = import.model();
-    Eigen::AlignedBox3d extent;
-    for (const SiteShape& shape : import.site.shapes) {
-      if (shape.use != ShapeUse::kSeen) continue;
-      for (const Eigen::Vector3d& v : shape.mesh.vertices_m) extent.extend(shape.T_site_shape * v);
-    }
-    EXPECT_THAT(extent.min(), VectorNear(Eigen::Vector3d(2, -0.5, 0), 1e-6));
-    EXPECT_THAT(extent.max(), VectorNear(Eigen::Vector3d(4, 0.5, 1), 1e-6));
-  }
-}
-
 TEST(SdfSite, CollisionsWithoutVisualAreSeenByLidarsOnly) {
   SiteFileImport import("a.sdf", world(model("b", collision(kBox), "4 0 0 0 0 0")));
   const sim::ModelPtr compiled = import.model();
@@ -154,36 +105,6 @@ TEST(SdfSite, APolylineIsAPrismAlsoWithAReentrantCorner) {
   const Mesh& prism = shape_of(import.site, "l.link.visual").mesh;
   EXPECT_TRUE(is_closed(welded(prism)));
   EXPECT_NEAR(integrate(prism).volume_m3, 6.0, 1e-9);
-}
-
-TEST(SdfSite, AHeightmapHasTheHeightsOfItsPicture) {
-  SiteFileImport import(
-      "a.sdf",
-      world(model("t", visual("<heightmap><uri>h.png</uri><size>8 8 2.55</size><pos>0 0 1</pos></heightmap>"))));
-  TextureImage image{.width = 3, .height = 3};
-  for (int i = 0; i < 9; ++i) image.rgb.insert(image.rgb.end(), 3, static_cast<std::uint8_t>(20 * i));
-  test::write_bytes(import.folder / "h.png", encode_png(image));
-  const sim::ModelPtr compiled = import.model();
-  const sim::LidarScene scene(*compiled);
-  const auto down = scene.cast({0, 0, 10}, {0, 0, -1}, 30.0, sim::kRayScenery);
-  ASSERT_TRUE(down);
-  EXPECT_NEAR(10.0 - down->distance_m, 1.0 + 0.8, 1e-3);  // the middle pixel is 80
-  const auto corner = scene.cast({-3.999, 3.999, 10}, {0, 0, -1}, 30.0, sim::kRayScenery);
-  ASSERT_TRUE(corner);
-  EXPECT_NEAR(10.0 - corner->distance_m, 1.0, 1e-3);  // first pixel: 0, at -x and +y
-}
-
-TEST(SdfSite, AHeightmapThatIsVisualAndCollisionIsOneRowAndItsCollisionIsGround) {
-  const std::string map = "<heightmap><uri>h.png</uri><size>8 8 2.55</size></heightmap>";
-  SiteFileImport import("a.sdf", world(model("t", visual(map) + collision(map))));
-  TextureImage image{.width = 3, .height = 3};
-  for (int i = 0; i < 9; ++i) image.rgb.insert(image.rgb.end(), 3, static_cast<std::uint8_t>(20 * i));
-  test::write_bytes(import.folder / "h.png", encode_png(image));
-  import.read();
-  int rows = 0;
-  for (const Assumption& row : import.site.assumptions) rows += row.subject == "heightmap h.png" ? 1 : 0;
-  EXPECT_EQ(rows, 1);
-  EXPECT_THAT(import.site.ground.all.geoms, ::testing::ElementsAre("t.link.collision"));
 }
 
 TEST(SdfSite, AMeshWithAnUppercaseGltfExtensionIsTurnedUpright) {
@@ -333,22 +254,6 @@ TEST(SdfSite, ARoomAsMeshCollisionHasAnOpenInside) {
   EXPECT_GE(boxes, 4);
 }
 
-TEST(SdfSite, ALevelHeightmapIsTheGroundOfAMeshThatFloats50CentimetersAboveIt) {
-  Mesh slab;
-  add_box(slab, {-1, -1, 1.5}, {1, 1, 1.7});
-  SiteFileImport import("a.sdf",
-                        world(model("t", collision("<heightmap><uri>h.png</uri><size>8 8 2.55</size><pos>0 0 1</pos>"
-                                                   "</heightmap>")) +
-                              model("slab", collision("<mesh><uri>slab.obj</uri></mesh>"))));
-  TextureImage image{.width = 9, .height = 9};
-  image.rgb.assign(3 * 81, 0);
-  test::write_bytes(import.folder / "h.png", encode_png(image));
-  test::write_bytes(import.folder / "slab.obj", to_obj(slab));
-  import.read();
-  EXPECT_EQ(import.assumption("ground"), "the surfaces with contact of their own");
-  for (const SiteShape& shape : import.site.shapes) EXPECT_NE(shape.name, "contact_ground");
-}
-
 int num_temporary_folders() {
   int count = 0;
   const std::string prefix = fmt::format("patrol_sdf_{}_", ::getpid());
@@ -364,33 +269,6 @@ TEST(SdfSite, NeitherAReadNorARefusedWorldLeavesATemporaryFolder) {
   SiteFileImport broken("b.sdf", world(sun + "<include><uri>model://absent</uri></include>"));
   EXPECT_THAT(broken.error(), HasSubstr("unknown model \"absent\""));
   EXPECT_EQ(num_temporary_folders(), 0);
-}
-
-TEST(SdfSite, ModelsAreFoundInBothVariablesOfGazeboAndTheOptionComesFirst) {
-  SiteFileImport import("a.sdf", world("<include><uri>model://crate</uri></include>"));
-  const auto write_crate = [&](const std::string& folder, const std::string& size_m) {
-    std::filesystem::create_directories(import.folder / folder / "crate");
-    test::write_bytes(import.folder / folder / "crate/model.config",
-                      "<model><name>crate</name><sdf version=\"1.6\">model.sdf</sdf></model>");
-    test::write_bytes(import.folder / folder / "crate/model.sdf",
-                      "<sdf version=\"1.6\">" +
-                          model("crate", visual("<sphere><radius>" + size_m + "</radius></sphere>")) + "</sdf>");
-    return (import.folder / folder).string();
-  };
-  const auto radius_m = [&] {
-    import.read();
-    return import.site.shapes.front().size_m.x();
-  };
-  EXPECT_THAT(import.error(), HasSubstr("unknown model \"crate\""));
-  for (const char* variable : {"GAZEBO_MODEL_PATH", "GZ_SIM_RESOURCE_PATH"}) {
-    ::setenv(variable, ("/nowhere::" + write_crate("first", "0.5") + ":" + write_crate("second", "0.7")).c_str(), 1);
-    EXPECT_EQ(radius_m(), 0.5) << variable;
-    ::unsetenv(variable);
-  }
-  ::setenv("GAZEBO_MODEL_PATH", (import.folder / "first").c_str(), 1);
-  import.options.packages["crate"] = write_crate("given", "0.9") + "/crate";
-  EXPECT_EQ(radius_m(), 0.9);
-  ::unsetenv("GAZEBO_MODEL_PATH");
 }
 
 /// A broken world with its message.
@@ -455,70 +333,6 @@ TEST(SdfSite, BrokenAndUnsupportedWorldsAreRefusedByOneLine) {
             "a.sdf:1: <sdf>: has no <world>: import a world that includes the model");
 }
 
-/// Writes the model `name` beside the world, with its elements from line 2 on.
-void write_model(const SiteFileImport& import, const std::string& name, const std::string& elements,
-                 const std::string& version = "1.8") {
-  const std::filesystem::path folder = import.folder / ("models/" + name);
-  std::filesystem::create_directories(folder);
-  test::write_bytes(folder / "model.config",
-                    fmt::format("<model><name>{}</name><sdf version=\"{}\">model.sdf</sdf></model>", name, version));
-  test::write_bytes(folder / "model.sdf",
-                    fmt::format("<sdf version=\"{}\"><model name=\"{}\"><static>1</static>\n{}\n</model></sdf>",
-                                version, name, elements));
-}
-
-std::string include(const std::string& name, const std::string& more = "") {
-  return fmt::format("<include><uri>model://{}</uri>{}</include>", name, more);
-}
-
-std::string link(const std::string& shapes) { return "<link name=\"link\">" + shapes + "</link>"; }
-
-TEST(SdfSite, ModelsThatIncludedModelsIncludeAreImportedWithTheirNamesAndPoses) {
-  SiteFileImport import("a.sdf", world(include("hall", "<name>h</name><pose>10 0 0 0 0 1.5707963267948966</pose>")));
-  write_model(import, "hall",
-              "<frame name=\"f\"><pose>1 0 0 0 0 0</pose></frame>" + link(visual(kBox)) +
-                  include("shelf", "<name>s1</name><pose relative_to=\"f\">2 0 0 0 0 0</pose>") +
-                  include("shelf", "<name>s2</name><pose>0 0 5 0 0 0</pose>"));
-  write_model(import, "shelf",
-              link(visual(kBox)) + "<include>\n<uri>\n model://cup </uri><pose>0 1 0 0 0 0</pose></include>", "1.6");
-  write_model(import, "cup", link(visual("<sphere><radius>0.1</radius></sphere>")));
-  const ImportedSite& site = import.read();
-  EXPECT_EQ(site.shapes.size(), 5u);
-  EXPECT_THAT(shape_of(site, "h.s1.link.visual").T_site_shape.position, VectorNear(Eigen::Vector3d(10, 3, 0), 1e-6));
-  EXPECT_THAT(shape_of(site, "h.s2.link.visual").T_site_shape.position, VectorNear(Eigen::Vector3d(10, 0, 5), 1e-6));
-  EXPECT_THAT(shape_of(site, "h.s1.cup.link.visual").T_site_shape.position, VectorNear(Eigen::Vector3d(9, 3, 0), 1e-6));
-}
-
-TEST(SdfSite, AModelThatIncludesItselfAndOneThatIsNotFoundAreRefusedWithTheirFile) {
-  SiteFileImport import("a.sdf", world(include("hall")));
-  write_model(import, "hall", link("") + include("shelf"));
-  write_model(import, "shelf", link("") + "\n" + include("hall"));
-  EXPECT_EQ(import.error(), "models/shelf/model.sdf:3: <include>: \"model://hall\": the model includes itself");
-  write_model(import, "shelf", link("") + "\n" + include("absent"));
-  EXPECT_THAT(import.error(), ::testing::StartsWith("models/shelf/model.sdf:3: <include>: unknown model \"absent\": "));
-  write_model(import, "shelf", link("") + "\n<include><uri/></include>");
-  EXPECT_EQ(import.error(), "models/shelf/model.sdf:3: <uri>: is empty");
-}
-
-TEST(SdfSite, ErrorsOfIncludedModelsHaveTheirFileAndLine) {
-  const std::string file = "models/crate/model.sdf:3: ";
-  for (const bool is_nested : {false, true}) {
-    SiteFileImport import("a.sdf", world(include(is_nested ? "hall" : "crate")));
-    write_model(import, "hall", link("") + include("crate"));
-    const auto error_of = [&](const std::string& elements) {
-      write_model(import, "crate", elements);
-      return import.error();
-    };
-    EXPECT_EQ(error_of("\n" + link(visual("<box><size>1 x 1</size></box>"))),
-              file + "<size>: \"1 x 1\" is not a valid value");
-    EXPECT_EQ(error_of("\n" + link(visual("<torus/>"))), file + "<torus>: is not a geometry of the format");
-    EXPECT_EQ(error_of("\n<link>"), file + "not XML: XML_ERROR_MISMATCHED_ELEMENT");
-    EXPECT_EQ(error_of(link("") + "\n" + link("")), file + "link with name[link] already exists.");
-    EXPECT_EQ(error_of(link("") + "\n<frame name='f' attached_to='g'/><frame name='g' attached_to='f'/>"),
-              file + "<frame>: \"f\": attached_to: cycle of frames: must lead to a link, a model or the world");
-  }
-}
-
 TEST(SdfSite, CyclesOfFramesAreRefusedWithTheirLine) {
   const std::string text = ": cycle of frames: must lead to a link, a model or the world";
   EXPECT_EQ(SiteFileImport("a.sdf", world("<frame name='a' attached_to='b'/>\n<frame name='b' attached_to='a'/>\n" +
@@ -530,27 +344,6 @@ TEST(SdfSite, CyclesOfFramesAreRefusedWithTheirLine) {
                                           model("m", visual(kBox))))
                 .error(),
             "a.sdf:3: <frame>: \"a\": relative_to" + text);
-}
-
-TEST(SdfSite, AWorldOfVersion111WithAModelOfVersion110AndARelativeMeshIsImported) {
-  SiteFileImport import("a.sdf", world(include("crate", "<pose>3 0 0 0 0 0</pose>"), "1.11"));
-  write_model(import, "crate",
-              "<link name=\"link\"><inertial auto=\"true\"><density>500</density></inertial>" +
-                  visual("<mesh optimization=\"convex_hull\"><uri>meshes/box.obj</uri></mesh>") + "</link>",
-              "1.10");
-  Mesh box;
-  add_box(box, {-0.5, -0.5, 0}, {0.5, 0.5, 1});
-  std::filesystem::create_directories(import.folder / "models/crate/meshes");
-  test::write_bytes(import.folder / "models/crate/meshes/box.obj", to_obj(box));
-  const SiteShape& shape = shape_of(import.read(), "crate.link.visual_1");
-  EXPECT_EQ(shape.mesh.triangles.size(), 12u);
-  EXPECT_THAT(shape.T_site_shape.position, VectorNear(Eigen::Vector3d(3, 0, 0), 1e-9));
-  EXPECT_EQ(
-      SiteFileImport("a.sdf", world(model("m", visual("<cone><radius>1</radius><length>1</length></cone>")), "1.12"))
-          .error(),
-      "a.sdf:3: <cone>: cones are not supported: use a mesh");
-  EXPECT_EQ(SiteFileImport("a.sdf", world(model("m", visual(kBox)), "1.13")).error(),
-            "a.sdf:2: <sdf>: version = \"1.13\": must be 1.0 to 1.12");
 }
 
 TEST(SdfSite, LinesOfErrorsAreThoseOfTheFileBehindCommentsAndTextOfSeveralLines) {
