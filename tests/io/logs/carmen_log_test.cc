@@ -1,7 +1,12 @@
 #include "io/logs/carmen_log.h"
 
+#include <chrono>
 #include <cmath>
+#include <cstddef>
+#include <limits>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -9,73 +14,21 @@
 
 #include "core/error.h"
 #include "core/geometry/angles.h"
+#include "tests/io/logs/carmen_lines.h"
 #include "tests/support/gzip_file.h"
 #include "tests/support/pose_near.h"
-#include "tests/support/temporary_file.h"
 
 namespace patrol::io::carmen_log_test {
 namespace {
 
 using namespace std::chrono_literals;
-using test::gzipped, test::Pose2Near, test::TemporaryFile, test::TemporaryFolder;
-using ::testing::ElementsAre, ::testing::EndsWith, ::testing::HasSubstr, ::testing::Pair, ::testing::StartsWith,
-    ::testing::UnorderedElementsAre;
+using carmen_lines::flaser, carmen_lines::Read, carmen_lines::read, carmen_lines::read_one, carmen_lines::repeated,
+    carmen_lines::robotlaser;
+using test::gzipped, test::Pose2Near;
+using ::testing::ElementsAre, ::testing::HasSubstr, ::testing::Pair, ::testing::UnorderedElementsAre;
 
 constexpr double kExactTol = 1e-12;
 constexpr double kRoundedPi = 3.141593;  // as logs write it
-const ScanLogOptions kSkip{.skip_invalid = true, .carmen_laser = {}, .scan_topic = {}, .odometry_topic = {}};
-
-std::string repeated(const std::string& word, int count) {
-  std::string text;
-  for (int i = 0; i < count; ++i) text += " " + word;
-  return text;
-}
-
-/// "FLASER 4 1 2 3 4 <laser> <robot> <t> host 0"
-std::string flaser(const std::string& stamp, const std::string& laser = "1 2 0.5", const std::string& robot = "1 2 0.5",
-                   const std::string& ranges = "4 1 2 3 4") {
-  return "FLASER " + ranges + " " + laser + " " + robot + " " + stamp + " host 0.5\n";
-}
-
-std::string robotlaser(const std::string& geometry, int num_beams, const std::string& poses = "1 2 0.5 1 2 0.5",
-                       const std::string& remissions = "0") {
-  return fmt::format("ROBOTLASER1 {} {}{} {} {} 0.1 0.2 0.3 0.4 0.5 10.25 host 3\n", geometry, num_beams,
-                     repeated("1.5", num_beams), remissions, poses);
-}
-
-struct Read {
-  std::vector<RecordedScan> scans;
-  ScanLogSummary summary;
-};
-
-Read read(const std::string& text, const ScanLogOptions& options = {}) {
-  const TemporaryFile file("a.log", text);
-  const std::unique_ptr<ScanLog> log = open_scan_log(file.path(), options);
-  Read result;
-  while (std::optional<RecordedScan> scan = log->next()) result.scans.push_back(std::move(*scan));
-  EXPECT_EQ(log->progress(), 1.0);
-  result.summary = log->summary();
-  EXPECT_EQ(result.summary.num_scans, result.scans.size());
-  return result;
-}
-
-RecordedScan read_one(const std::string& text, const ScanLogOptions& options = {}) {
-  const Read result = read(text, options);
-  EXPECT_EQ(result.scans.size(), 1U);
-  return result.scans.empty() ? RecordedScan{} : result.scans.front();
-}
-
-std::string complaint_about(const std::string& text, const ScanLogOptions& options = {}) {
-  const TemporaryFile file("a.log", text);
-  try {
-    CarmenLog log(file.path(), options);
-    while (log.next()) {}
-  } catch (const InputError& error) {
-    const std::string what = error.what();
-    return what.substr(what.find("a.log"));
-  }
-  return "";
-}
 
 TEST(CarmenLog, ReadsFlaserWithItsStampRangesAndOdometry) {
   const RecordedScan scan = read_one("# a comment\n" + flaser("976052857.222433", "1 2 0.5", "1 2 0.5"));
@@ -284,117 +237,6 @@ TEST(CarmenLog, LinesOutOfOrderArePutInOrderAndEqualStampsKept) {
   EXPECT_THAT(x, ElementsAre(1, 5, 6, 1));
   EXPECT_EQ(result.summary.num_reordered, 3U);
   EXPECT_EQ(result.summary.num_same_stamp, 1U);
-}
-
-TEST(CarmenLog, AScanTooLateToPutInOrderIsRefusedOrSkipped) {
-  std::string text;
-  for (int i = 0; i < 40; ++i) text += flaser(std::to_string(100 + i));
-  text += flaser("1");
-  EXPECT_EQ(complaint_about(text),
-            "a.log:41: FLASER: stamp 1.000000 s after 107.000000 s, more than 32 scans late: cannot be sorted");
-  const Read result = read(text, kSkip);
-  EXPECT_EQ(result.scans.size(), 40U);
-  EXPECT_THAT(result.summary.skipped, ElementsAre(Pair("scans out of order", 1U)));
-}
-
-TEST(CarmenLog, UnreadableLinesAreNamed) {
-  const std::string good = flaser("1");
-  const auto complaint = [&](const std::string& bad) { return complaint_about(good + bad); };
-  EXPECT_EQ(complaint("FLASER 4 1 2 3\n"), "a.log:2: FLASER: 3 words after the number of readings: must be 13");
-  EXPECT_EQ(complaint(flaser("2", "1 2 0", "1 2 0", "5 1 2 3 4")),
-            "a.log:2: FLASER: 13 words after the number of readings: must be 14");
-  EXPECT_EQ(complaint(flaser("2", "1 2 0", "1 2 0", "3 1 2 3 4")),
-            "a.log:2: FLASER: 13 words after the number of readings: must be 12");
-  EXPECT_EQ(complaint(flaser("2", "1 2 0", "1 2 0", "4 1 2 x 4")), "a.log:2: FLASER: range 'x' is not a number");
-  EXPECT_EQ(complaint(flaser("2", "1 2 nan", "1 2 0")), "a.log:2: FLASER: laser pose 'nan' is not a finite number");
-  EXPECT_EQ(complaint(flaser("2", "1 2 0", "1 inf 0")), "a.log:2: FLASER: robot pose 'inf' is not a finite number");
-  EXPECT_EQ(complaint(flaser("nan")), "a.log:2: FLASER: ipc_timestamp 'nan' is not a time in seconds");
-  EXPECT_EQ(complaint("FLASER\n"), "a.log:2: FLASER: ends before num_readings");
-  EXPECT_EQ(complaint("FLASER 0 1 2 0 1 2 0 1 h 1\n"),
-            "a.log:2: FLASER: num_readings '0' must be an integer in [1, 10000]");
-  EXPECT_EQ(complaint("FLASER 10001" + repeated("1", 10010) + "\n"),
-            "a.log:2: FLASER: num_readings '10001' must be an integer in [1, 10000]");
-  EXPECT_EQ(complaint("FLASER -3 1\n"), "a.log:2: FLASER: num_readings '-3' must be an integer in [1, 10000]");
-  EXPECT_EQ(complaint("ODOM 1 2 nan 0 0 0 1 h 1\n"), "a.log:2: ODOM: robot pose 'nan' is not a finite number");
-  EXPECT_EQ(complaint("ODOM 1 2\n"), "a.log:2: ODOM: 2 words after the name: must be 9");
-  EXPECT_EQ(complaint("PARAM robot_frontlaser_offset far\n"),
-            "a.log:2: PARAM: robot_frontlaser_offset 'far' is not a finite number");
-  EXPECT_EQ(complaint("PARAM\n"), "a.log:2: PARAM: ends before parameter name");
-  EXPECT_EQ(complaint(std::string("\x01\x00\xff garbage\n", 11)),
-            "a.log:2: must begin with a message name such as FLASER or ODOM");
-  EXPECT_EQ(complaint("1.07 1.08 1.09\n"), "a.log:2: must begin with a message name such as FLASER or ODOM");
-  EXPECT_EQ(complaint("FLASER " + std::string(2'000'000, '1') + "\n"), "a.log:2: line longer than 1048576 bytes");
-}
-
-TEST(CarmenLog, UnreadableNewMessagesAreNamed) {
-  const std::string laser = "ROBOTLASER1 0 -1 2 1 80 0 0 ";
-  EXPECT_EQ(complaint_about(laser + "3 1 2 3 0 0 0 0 0 0 0 0 0 0 0 0 1 host\n"),
-            "a.log:1: ROBOTLASER1: 13 words after the remissions: must be 14");
-  EXPECT_EQ(complaint_about(laser + "300 1 2 3 0\n"), "a.log:1: ROBOTLASER1: 4 words left for 300 ranges: too few");
-  EXPECT_EQ(complaint_about(laser + "3 1 2 3 9 1\n"), "a.log:1: ROBOTLASER1: 1 words left for 9 remissions: too few");
-  EXPECT_EQ(complaint_about("ROBOTLASER1 0 -180 180 1 80 0 0 1 1 0\n"),
-            "a.log:1: ROBOTLASER1: start_angle = -180 rad: exceeds one revolution");
-  EXPECT_EQ(complaint_about("ROBOTLASER1 0 -1 nan 1 80 0 0 1 1 0\n"),
-            "a.log:1: ROBOTLASER1: field_of_view 'nan' is not a finite number");
-  EXPECT_EQ(complaint_about("RAWLASER1 0 -1 2 1 80 0 0 1 1 0 1 h\n"),
-            "a.log:1: RAWLASER1: 2 words after the remissions: must be 3");
-}
-
-TEST(CarmenLog, WithSkipInvalidReadableLinesAreUsedAndOthersCounted) {
-  const std::string zeros(3'000'000, '\0');
-  const std::string text = flaser("1") + "FLASER 4 1 2\n" + flaser("2", "1 2 nan", "1 2 0") + zeros + "\n" +
-                           flaser("3") + "FLASER 4 1 2 3 4 1";
-  const Read result = read(text, kSkip);
-  ASSERT_EQ(result.scans.size(), 2U);
-  EXPECT_EQ(result.scans[1].scan.stamp, 3s);
-  EXPECT_THAT(result.summary.skipped, ElementsAre(Pair("unreadable lines", 4U)));
-  ASSERT_EQ(result.summary.warnings.size(), 4U);
-  EXPECT_THAT(result.summary.warnings[2], EndsWith("a.log:4: line longer than 1048576 bytes"));
-  EXPECT_THAT(to_text(result.summary), StartsWith("2 scans\nskipped: 4 unreadable lines\n  "));
-}
-
-TEST(CarmenLog, ACutOffGzipIsRefusedOrReadUpToTheCut) {
-  std::string text;
-  for (int i = 0; i < 2000; ++i) text += flaser(std::to_string(i), fmt::format("{} 2 0", i * 7919 % 10007), "1 2 0");
-  const std::string bytes = gzipped(text);
-  const std::string cut = bytes.substr(0, bytes.size() / 2);
-  EXPECT_THAT(complaint_about(cut, kSkip), "");
-  EXPECT_THAT(complaint_about(cut), ::testing::MatchesRegex("a.log: the gzip data are cut off after line [0-9]+"));
-  const Read result = read(cut, kSkip);
-  EXPECT_GT(result.scans.size(), 500U);
-  EXPECT_EQ(result.summary.skipped.at("unexpected end of file"), 1U);
-}
-
-TEST(CarmenLog, AFileWithoutScansIsReportedWithItsContents) {
-  EXPECT_EQ(complaint_about(""), "a.log: contains no scan (0 read): must contain FLASER, ROBOTLASER1 or RAWLASER1");
-  EXPECT_EQ(complaint_about("SYNC a 1 h 1\nODOM 1 2 0 0 0 0 1 h 1\n"),
-            "a.log: contains no scan (2 read, 1 ODOM, 1 SYNC): must contain FLASER, ROBOTLASER1 or RAWLASER1");
-  EXPECT_EQ(complaint_about("RAWLASER1 0 0 3.14 1.57 80 0.01 0 3 1 2 3 0 1 h 1\n"),
-            "a.log: contains RAWLASER1 without odometry (1 read, 1 scans before the first ODOM): must contain ODOM");
-  EXPECT_EQ(complaint_about("FLASER 4 1\n", kSkip),
-            "a.log: contains no scan (1 read, 1 unreadable lines): must contain FLASER, ROBOTLASER1 or RAWLASER1");
-}
-
-TEST(CarmenLog, TenGigabytesOfZeroBytesAreRefusedAtOnce) {
-  const TemporaryFolder folder;
-  test::write_bytes(folder / "a.log", "");
-  std::filesystem::resize_file(folder / "a.log", 10'000'000'000);  // sparse
-  try {
-    open_scan_log(folder / "a.log")->next();
-    FAIL() << "must throw";
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), EndsWith("a.log:1: line longer than 1048576 bytes"));
-  }
-}
-
-TEST(CarmenLog, TenGigabytesOfZeroBytesAfterALogAreGivenUpAfterSixtyFourMegabytes) {
-  const TemporaryFolder folder;
-  test::write_bytes(folder / "a.log", flaser("1") + flaser("2"));
-  std::filesystem::resize_file(folder / "a.log", 10'000'000'000);  // sparse
-  const std::unique_ptr<ScanLog> log = open_scan_log(folder / "a.log", kSkip);
-  while (log->next()) {}
-  EXPECT_EQ(log->summary().num_scans, 2U);
-  EXPECT_THAT(log->summary().skipped, ElementsAre(Pair("unexpected end of file", 1U), Pair("unreadable lines", 1U)));
 }
 
 TEST(CarmenLog, AtMostFiftyNamesAreCountedSeparately) {
