@@ -1,57 +1,26 @@
 #include "localize/amcl/monte_carlo.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
-#include <optional>
+#include <string>
+#include <vector>
 
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "core/geometry/angles.h"
-#include "tests/support/pose_near.h"
+#include "core/random.h"
+#include "tests/localize/amcl/tunnel_tour.h"
 #include "tests/support/tunnel_world.h"
 
 namespace patrol::localize::amcl_monte_carlo_test {
 namespace {
 
-using test::DriveSettings, test::Tunnel, test::TunnelDrive;
-
 constexpr int kSeeds = 20;
 constexpr double kStudySpeed_mps = 4.0;  // a scan every 0.4 m: half the scans, half the time
-const Pose3 kAntenna{{-0.2, 0.1, 0.3}, Eigen::Quaterniond::Identity()};
-const Eigen::Matrix3d kNearly = Eigen::Vector3d(0.01, 0.01, 0.0025).asDiagonal();  // 10 cm, 3 degrees
-
-/// A tunnel, a robot in it and its localizer; two meters a second, so that the tests are short.
-struct Tour {
-  explicit Tour(std::uint64_t seed, const Pose2& T_map_start, const MonteCarloSettings& settings = {},
-                double way_scale_error = 0.02, double speed_mps = 2.0)
-      : localizer(settings, test::tunnel_map(), tunnel.anchors(), kAntenna, seed),
-        drive(tunnel.world, tunnel.anchors(), kAntenna, T_map_start,
-              {.speed_mps = speed_mps, .way_scale_error = way_scale_error}, seed) {}
-
-  LocalizationUpdate step(bool with_ranges) {
-    drive.step();
-    return look(with_ranges);
-  }
-  LocalizationUpdate look(bool with_ranges) { return look(with_ranges, tunnel.world); }
-  LocalizationUpdate look(bool with_ranges, const test::RoomWorld& world) {
-    if (with_ranges) {
-      for (const UwbRange& range : drive.ranges()) localizer.add(range, to_pose3(drive.T_odom_body()));
-    }
-    return localizer.update(drive.scan_of(world), drive.T_odom_body());
-  }
-  Eigen::Vector3d error(const LocalizationUpdate& update) const {
-    Eigen::Vector3d error = update.estimate.T_map_body.vector() - drive.T_map_body().vector();
-    error.z() = wrap_angle(error.z());
-    return error;
-  }
-  double error_m(const LocalizationUpdate& update) const { return error(update).head<2>().norm(); }
-
-  Tunnel tunnel;
-  MonteCarloLocalizer localizer;
-  TunnelDrive drive;
-};
 
 /// A normally distributed start of 10 cm and 3 degrees about the truth, and an odometry whose scale errs by 2 %.
 Tour nearly_started(std::uint64_t seed) {
@@ -131,81 +100,6 @@ TEST(MonteCarlo, AmongFeaturesItErrsLessThanThreeCentimetersAndHalfADegreeWithCo
   EXPECT_LT(worst_m, 0.03);
   EXPECT_LT(worst_rad, to_rad(0.5));
   EXPECT_LT(nees, 4.16);
-}
-
-/// Seconds of driving until the pose is right and said to be; none if it was said to be and was not, or never.
-std::optional<double> time_to_find(Tour& tour, bool with_ranges, int steps) {
-  for (int i = 1; i <= steps; ++i) {
-    const LocalizationUpdate update = tour.step(with_ranges);
-    if (update.confidence.is_lost) continue;
-    if (tour.error_m(update) < 0.15) return i * TunnelDrive::kPeriod_s;
-    return std::nullopt;
-  }
-  return std::nullopt;
-}
-
-TEST(Kidnap, OfTwentyMetersIsNoticedAndMendedWithinThirtySecondsByRanges) {
-  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    Tour tour(seed, {30.0, 0.0, 0.0});
-    tour.localizer.set_initial_pose({30.0, 0.0, 0.0}, kNearly);
-    tour.look(true);
-    for (int i = 0; i < 50; ++i) tour.step(true);
-    tour.drive.kidnap_to({tour.drive.T_map_body().x + 20.0, 0.3, 0.02});
-    double wrong_s = 0.0;  // not yet noticed, or not yet mended
-    double error_m = 20.0;
-    for (int i = 1; i <= 100; ++i) {
-      const LocalizationUpdate update = tour.step(true);
-      error_m = tour.error_m(update);
-      if (error_m > 0.15) wrong_s = i * TunnelDrive::kPeriod_s;
-    }
-    std::printf("kidnap of 20 m, seed %d: found again after %.1f s\n", static_cast<int>(seed), wrong_s);
-    EXPECT_LT(wrong_s, 30.0);
-    EXPECT_LT(error_m, 0.15);
-  }
-}
-
-// Carried 20 m along a tunnel that looks alike: the scan cannot tell where to.
-TEST(Kidnap, WithoutRangesItReportsLostUntilAFeatureIsInRange) {
-  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    Tour tour(seed, {35.0, 0.0, 0.0});
-    tour.localizer.set_initial_pose({35.0, 0.0, 0.0}, kNearly);
-    tour.look(false);
-    for (int i = 0; i < 10; ++i) tour.step(false);
-    tour.drive.kidnap_to({57.0, 0.5, 0.06});
-    double wrong_s = 0.0;
-    for (int i = 1; i <= 150; ++i) {
-      const LocalizationUpdate update = tour.step(false);
-      if (!update.confidence.is_lost && update.confidence.confidence > 0.5 && tour.error_m(update) > 0.5)
-        wrong_s += TunnelDrive::kPeriod_s;
-    }
-    EXPECT_LT(wrong_s, 2.0) << "s of being wrong and sure, seed " << seed;
-  }
-}
-
-TEST(GlobalLocalization, FromScratchAmongFeaturesTakesOneSecond) {
-  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    Tour tour(seed, {4.0, 0.5, 0.2});
-    const std::optional<double> found_s = time_to_find(tour, false, 10);
-    EXPECT_TRUE(found_s) << "seed " << seed;
-  }
-}
-
-TEST(GlobalLocalization, FromScratchInTheLinedStretchTakesThreeSecondsWithRanges) {
-  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    Tour tour(seed, {55.0, 0.5, 0.05});
-    const std::optional<double> found_s = time_to_find(tour, true, 30);
-    EXPECT_TRUE(found_s) << "seed " << seed;
-  }
-}
-
-// 40 m through the lined stretch, where both directions and every place look alike.
-TEST(GlobalLocalization, WithoutRangesInTheLinedStretchItStaysLost) {
-  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    Tour tour(seed, {45.0, 0.0, 0.0});
-    int found = 0;
-    for (int i = 0; i < 200; ++i) found += tour.step(false).confidence.is_lost ? 0 : 1;
-    EXPECT_EQ(found, 0) << "seed " << seed;
-  }
 }
 
 // From scratch in the lined stretch, towards the rock, which comes into sight after some 20 m.
