@@ -69,10 +69,7 @@ int num_hits(const LevelScan& scan) {
 
 }  // namespace
 
-ScanTracker::ScanTracker(const ScanTrackerSettings& settings)
-    : settings_(settings),
-      older_(settings.resolution_m, settings.max_extent_m),
-      newer_(settings.resolution_m, settings.max_extent_m) {}
+ScanTracker::ScanTracker(const ScanTrackerSettings& settings) : settings_(settings), maps_(settings) {}
 
 TrackedScan ScanTracker::update(const LevelScan& scan, const Pose2& T_odom_stamp) {
   const Pose2 T_odom_body = delay_.compensated(scan.stamp, T_odom_stamp);
@@ -87,7 +84,7 @@ TrackedScan ScanTracker::update(const LevelScan& scan, const Pose2& T_odom_stamp
             .is_sparse = num_hits(scan) < settings_.min_hits,
             .is_odometry_constant = is_odometry_constant_ && is_same(T_odom_last_, T_odom_body)};
   step.is_gap = is_gap(step);
-  const bool can_be_matched = older_.has_surface();
+  const bool can_be_matched = maps_.older().has_surface();
   if (!step.is_sparse) tracks_.resize(1);
   const std::vector<Branch> branches =
       continue_tracks(downsample_scan(scan, settings_.matching.point_spacing_m, settings_.matching.max_points), step);
@@ -172,7 +169,7 @@ void ScanTracker::update_constant_odometry(const Pose2& T_odom_body, const Pose2
 
 // Of dense scans, the best continuation; of sparse scans, several that differ, the one with the highest score first.
 std::vector<ScanTracker::Branch> ScanTracker::continue_tracks(const std::vector<MatchPoint>& points, const Step& step) {
-  if (!older_.has_surface() || points.empty()) {
+  if (!maps_.older().has_surface() || points.empty()) {
     const PoseGaussian prediction = predict(tracks_[0], step);
     return {{.track = 0, .prediction = prediction, .best = {.T_local_body = prediction.mean, .match = {}}}};
   }
@@ -203,7 +200,7 @@ std::vector<ScanTracker::Branch> ScanTracker::continue_tracks(const std::vector<
 double ScanTracker::score(const Track& track, const Branch& branch, const std::vector<MatchPoint>& points) const {
   const std::vector<double> log_likelihoods =
       branch.best.log_likelihoods.size() != points.size()
-          ? point_log_likelihoods(older_, points, branch.best.T_local_body, settings_.matching)
+          ? point_log_likelihoods(maps_.older(), points, branch.best.T_local_body, settings_.matching)
           : branch.best.log_likelihoods;
   double sum = 0.0;
   for (const double value : log_likelihoods) sum += std::isnan(value) ? usual_.unknown_log_likelihood() : value;
@@ -276,7 +273,7 @@ bool ScanTracker::is_gap(const Step& step) const {
 }
 
 std::optional<Pose2> ScanTracker::search(const SearchWindow& window, const std::vector<MatchPoint>& points) {
-  if (!pyramid_) pyramid_.emplace(older_, 2.0 * settings_.resolution_m, kSearchLevels);
+  if (!pyramid_) pyramid_.emplace(maps_.older(), 2.0 * settings_.resolution_m, kSearchLevels);
   const auto found =
       search_window(*pyramid_, positions_of(points, settings_.matching.search_points), window, kMinSearchScore);
   return found ? std::optional(found->T_map_points) : std::nullopt;
@@ -305,7 +302,7 @@ void ScanTracker::calibrate_odometry(Time stamp, const Fix& before, const Pose2&
 }
 
 TrackedScan ScanTracker::to_tracked_scan(const Hypothesis& best, const PoseGaussian& prediction) const {
-  TrackedScan tracked{.T_local_body = best.T_local_body, .submap = submap_};
+  TrackedScan tracked{.T_local_body = best.T_local_body, .submap = maps_.submap()};
   Eigen::Matrix3d information = prediction.covariance.inverse();
   if (best.match) {
     tracked.match_information = best.match->information;
@@ -318,7 +315,7 @@ TrackedScan ScanTracker::to_tracked_scan(const Hypothesis& best, const PoseGauss
 
 bool ScanTracker::is_keyframe_due(const Pose2& T_local_body) const {
   const Pose2 T_keyframe_body = T_local_keyframe_.inverse() * T_local_body;
-  return keyframes_ < settings_.initial_keyframes ||
+  return maps_.num_keyframes() < settings_.initial_keyframes ||
          T_keyframe_body.position().norm() >= settings_.keyframe_distance_m ||
          std::abs(T_keyframe_body.yaw) >= settings_.keyframe_angle_rad;
 }
@@ -326,7 +323,7 @@ bool ScanTracker::is_keyframe_due(const Pose2& T_local_body) const {
 ScanTracker::Hypothesis ScanTracker::match_by_odometry(const std::vector<MatchPoint>& points,
                                                        const PoseGaussian& prediction) const {
   Hypothesis hypothesis =
-      to_hypothesis(match_scan(older_, points, prediction.mean, prediction, settings_.matching), prediction);
+      to_hypothesis(match_scan(maps_.older(), points, prediction.mean, prediction, settings_.matching), prediction);
   if (hypothesis.match) evaluate(hypothesis, points);
   return hypothesis;
 }
@@ -335,9 +332,9 @@ ScanTracker::Hypothesis ScanTracker::match_by_odometry(const std::vector<MatchPo
 ScanTracker::Hypothesis ScanTracker::match_from(const Pose2& T_local_start, const std::vector<MatchPoint>& points,
                                                 const PoseGaussian& prediction, const Hypothesis& best) const {
   const PoseGaussian prior{.mean = T_local_start, .covariance = 25.0 * prediction.covariance};
-  return to_hypothesis(
-      match_scan(older_, points, T_local_start, prior, settings_.matching, best.match ? &best.T_local_body : nullptr),
-      prediction);
+  return to_hypothesis(match_scan(maps_.older(), points, T_local_start, prior, settings_.matching,
+                                  best.match ? &best.T_local_body : nullptr),
+                       prediction);
 }
 
 ScanTracker::Hypothesis ScanTracker::to_hypothesis(const std::optional<MatchResult>& match,
@@ -348,7 +345,8 @@ ScanTracker::Hypothesis ScanTracker::to_hypothesis(const std::optional<MatchResu
 }
 
 void ScanTracker::evaluate(Hypothesis& hypothesis, const std::vector<MatchPoint>& points) const {
-  hypothesis.log_likelihoods = point_log_likelihoods(older_, points, hypothesis.T_local_body, settings_.matching);
+  hypothesis.log_likelihoods =
+      point_log_likelihoods(maps_.older(), points, hypothesis.T_local_body, settings_.matching);
 }
 
 // A smooth corridor matches anywhere along it: such a difference is left to odometry.
@@ -378,7 +376,7 @@ ScanTracker::Hypothesis ScanTracker::without_moving_objects(const Hypothesis& be
       determined_offset(prediction.residual_to_mean(best.T_local_body), best.match->information);
   if (offset.dot(prediction.covariance.inverse() * offset) < kContradiction) return best;
   const SectorGains gains(points, best.log_likelihoods,
-                          point_log_likelihoods(older_, points, prediction.mean, settings_.matching),
+                          point_log_likelihoods(maps_.older(), points, prediction.mean, settings_.matching),
                           usual_.unknown_log_likelihood());
   if (gains.votes() > 0) return best;
   std::vector<MatchPoint> others = points;
@@ -388,22 +386,7 @@ ScanTracker::Hypothesis ScanTracker::without_moving_objects(const Hypothesis& be
 
 void ScanTracker::integrate(TrackedScan& tracked) {
   pyramid_.reset();
-  if (keyframes_ == 0) tracked.is_submap_start = true;
-  if (older_keyframes_ >= settings_.submap_keyframes) {
-    older_ = std::move(newer_);
-    older_keyframes_ = newer_keyframes_;
-    newer_ = GridMap(settings_.resolution_m, settings_.max_extent_m);
-    newer_keyframes_ = 0;
-    ++submap_;
-  }
-  tracked.scans.integrate(tracked.T_local_body, settings_.integration, older_);
-  ++older_keyframes_;
-  if (newer_keyframes_ > 0 || older_keyframes_ > settings_.submap_keyframes / 2) {
-    tracked.is_submap_start = tracked.is_submap_start || newer_keyframes_ == 0;
-    tracked.scans.integrate(tracked.T_local_body, settings_.integration, newer_);
-    ++newer_keyframes_;
-  }
-  ++keyframes_;
+  tracked.is_submap_start = maps_.integrate(tracked.scans, tracked.T_local_body, settings_);
   T_local_keyframe_ = tracked.T_local_body;
 }
 

@@ -13,9 +13,9 @@
 #include "slam/graph/scan_group.h"
 #include "slam/graph/scan_tracker_settings.h"
 #include "slam/graph/scans_since_keyframe.h"
+#include "slam/graph/tracker_maps.h"
 #include "slam/graph/usual_match.h"
 #include "slam/motion_model.h"
-#include "slam/scan_integration.h"
 #include "slam/scan_matcher.h"
 
 namespace patrol::slam {
@@ -38,8 +38,7 @@ struct TrackedScan {
 /// Tracks the robot by matching each scan against a map of the last meters: locally consistent, drifting with distance.
 /// Corresponds to local SLAM of [Hess16]. The origin of `local` is the pose of the first scan.
 ///
-/// Two maps are updated at a time; the second begins when the first is half full. Scans are matched with the older map,
-/// which thus always has at least half the full length.
+/// Scans are matched with the older one of two overlapping maps (tracker_maps.h).
 ///
 /// Odometry is calibrated while tracking (odometry_correction.h), and so is its time offset to the scans
 /// (odometry_delay.h).
@@ -70,9 +69,8 @@ class ScanTracker {
 
   template <typename Archive>
   void serialize_state(Archive& archive) {
-    archive(older_, newer_, older_keyframes_, newer_keyframes_, keyframes_, submap_, stamp_, T_odom_last_,
-            T_local_keyframe_, tracks_, last_step_s_, T_local_constant_, is_odometry_constant_, delay_, correction_,
-            usual_, scans_since_keyframe_, pyramid_);
+    archive(maps_, stamp_, T_odom_last_, T_local_keyframe_, tracks_, last_step_s_, T_local_constant_,
+            is_odometry_constant_, delay_, correction_, usual_, scans_since_keyframe_, pyramid_);
   }
 
  private:
@@ -152,8 +150,7 @@ class ScanTracker {
   void integrate(TrackedScan& tracked);
 
   ScanTrackerSettings settings_;
-  GridMap older_, newer_;
-  int older_keyframes_ = 0, newer_keyframes_ = 0, keyframes_ = 0, submap_ = 0;
+  TrackerMaps maps_;
   std::optional<Time> stamp_;
   Pose2 T_odom_last_, T_local_keyframe_;
   std::vector<Track> tracks_ = std::vector<Track>(1);  ///< the one with the highest score first
@@ -164,7 +161,7 @@ class ScanTracker {
   OdometryCorrection correction_;
   UsualMatch usual_;
   ScansSinceKeyframe scans_since_keyframe_;
-  std::optional<LikelihoodPyramid> pyramid_;  ///< of older_; none: not needed since it has changed
+  std::optional<LikelihoodPyramid> pyramid_;  ///< of the older map; none: not needed since it has changed
 };
 
 }  // namespace patrol::slam
