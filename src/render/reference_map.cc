@@ -171,12 +171,15 @@ Grid<std::uint8_t> render_solid(const mjModel& model, const mjData& data, const 
         const double depth_m = 0.1 + (looks_down ? height_m - all.min().z() : all.max().z() - height_m);
         scene.render(offscreen, tile.center(), size.x(), depth_m, looks_down, true, front);
         scene.render(offscreen, tile.center(), size.x(), depth_m, looks_down, false, nearest);
-        for (int row = 0; row < std::min(tile_height, geometry.height - row0); ++row) {
-          for (int col = 0; col < std::min(tile_width, geometry.width - col0); ++col) {
-            const int pixel_row = tile_height - 1 - row;
-            const int pixel_col = looks_down ? col : tile_width - 1 - col;
-            const auto pixel = static_cast<std::size_t>(pixel_row * tile_width + pixel_col);
-            if (nearest[pixel] < front[pixel] - kSameDepth) solid.at({col0 + col, row0 + row}) = 1;
+        const int rows = std::min(tile_height, geometry.height - row0);
+        const int columns = std::min(tile_width, geometry.width - col0);
+        for (int row = 0; row < rows; ++row) {
+          const int first_pixel = (tile_height - 1 - row) * tile_width + (looks_down ? 0 : tile_width - 1);
+          const int step = looks_down ? 1 : -1;
+          std::uint8_t* cells = &solid.at({col0, row0 + row});
+          for (int col = 0; col < columns; ++col) {
+            const auto pixel = static_cast<std::size_t>(first_pixel + step * col);
+            cells[col] |= static_cast<std::uint8_t>(nearest[pixel] < front[pixel] - kSameDepth);
           }
         }
       }
@@ -189,9 +192,10 @@ bool is_solid(const Grid<std::uint8_t>& solid, Cell cell) { return solid.contain
 
 OccupancyGrid surface_of(const Grid<std::uint8_t>& solid) {
   OccupancyGrid map(solid.geometry(), kFree);
+  const std::uint8_t* value = solid.values().data();
   for (int row = 0; row < solid.geometry().height; ++row) {
     for (int col = 0; col < solid.geometry().width; ++col) {
-      if (!is_solid(solid, {col, row})) continue;
+      if (*value++ == 0) continue;
       const bool is_inside = is_solid(solid, {col - 1, row}) && is_solid(solid, {col + 1, row}) &&
                              is_solid(solid, {col, row - 1}) && is_solid(solid, {col, row + 1});
       map.at({col, row}) = is_inside ? kUnknown : kOccupied;
@@ -245,8 +249,12 @@ ReferenceMapCheck check_and_complete(OccupancyGrid& map, const Grid<std::uint8_t
   const auto is_surface = [&](Cell cell) { return rendered.contains(cell) && rendered.at(cell) == kOccupied; };
   const auto is_hit = [&](Cell cell) { return hit.contains(cell) && hit.at(cell) != 0; };
   ReferenceMapCheck check;
+  const std::int8_t* rendered_value = rendered.values().data();
+  const std::uint8_t* hit_value = hit.values().data();
   for (int row = 0; row < map.geometry().height; ++row) {
     for (int col = 0; col < map.geometry().width; ++col) {
+      const bool is_free = *rendered_value++ == kFree, is_missed = *hit_value++ == 0;
+      if (is_free && is_missed) continue;
       const Cell cell{col, row};
       // Rays also hit surfaces inside overlapping objects; these do not belong to the map.
       const bool is_buried = rendered.at(cell) == kUnknown;

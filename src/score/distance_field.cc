@@ -15,13 +15,11 @@ constexpr std::int8_t kOccupiedPercent = 65;
 
 DistanceField::DistanceField(const Grid<std::uint8_t>& occupied)
     : geometry_(occupied.geometry()),
-      distance_m_(geometry_.size()),
+      distance_m_(squared_distances_float(occupied.values(), geometry_.width, geometry_.height)),
       is_empty_(
           std::all_of(occupied.values().begin(), occupied.values().end(), [](auto value) { return value == 0; })) {
-  const std::vector<double> squared_cells = squared_distances(occupied.values(), geometry_.width, geometry_.height);
   const auto resolution_m = static_cast<float>(geometry_.resolution_m);
-  std::transform(squared_cells.begin(), squared_cells.end(), distance_m_.begin(),
-                 [resolution_m](double squared) { return resolution_m * std::sqrt(static_cast<float>(squared)); });
+  for (float& distance : distance_m_) distance = resolution_m * std::sqrt(distance);
 }
 
 DistanceField::GridPosition DistanceField::grid_position(const Eigen::Vector2d& p_m) const {

@@ -63,10 +63,13 @@ class CrossedCells {
         blocks_per_row_((cells.geometry().width + kBlock - 1) / kBlock),
         num_unmarked_(static_cast<std::size_t>(blocks_per_row_ * ((cells.geometry().height + kBlock - 1) / kBlock))) {
     const GridGeometry& geometry = cells.geometry();
-    auto value = cells.values().begin();
+    const std::int8_t* value = cells.values().data();
     for (int row = 0; row < geometry.height; ++row) {
-      for (int col = 0; col < geometry.width; ++col, ++value)
-        num_unmarked_[block_of(col, row)] += *value == kUnknown || *value == kOccupied ? kNeverComplete : 1;
+      for (int first = 0; first < geometry.width; first += kBlock) {
+        std::int32_t& num_unmarked = num_unmarked_[block_of(first, row)];
+        for (const std::int8_t* end = value + std::min(kBlock, geometry.width - first); value != end; ++value)
+          num_unmarked += *value == kUnknown || *value == kOccupied ? kNeverComplete : 1;
+      }
     }
   }
 
@@ -207,7 +210,7 @@ class CrossedCells {
 ReferenceMap mark_observable(OccupancyGrid reference, const Trajectory& T_world_body, double max_range_m,
                              double spacing_m) {
   const GridGeometry geometry = reference.geometry();
-  ReferenceMap result{std::move(reference), Grid<std::uint8_t>(geometry)};
+  ReferenceMap result{std::move(reference), {}};
   // Adjacent rays are two cells apart at full range; `mark_neighborhood` fills the gap.
   const double step_rad = 2.0 * geometry.resolution_m / max_range_m;
   const int num_rays = static_cast<int>(std::ceil(2.0 * std::numbers::pi / step_rad));

@@ -4,8 +4,8 @@
 #include <array>
 #include <cassert>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
-#include <limits>
 
 namespace patrol {
 namespace {
@@ -26,49 +26,80 @@ void transform_row(const std::uint8_t* is_obstacle, int width, int far, const Sq
   }
 }
 
-/// Lower envelope of parabolas over one column [Felzenszwalb12].
+/// Lower envelope of parabolas over one row [Felzenszwalb12]. The parabolas of the envelope are the vertices of the
+/// lower convex hull of the points (x, x^2 + squared distance along the column at x). All numbers are integers.
 class LowerEnvelope {
  public:
-  explicit LowerEnvelope(std::size_t length) : vertex_(length), boundary_(length + 1), input_(length) {}
+  explicit LowerEnvelope(std::size_t length) : column_(length), height_(length) {}
 
-  /// `line[i]` becomes the minimum over j of line[j] + (i - j)^2.
-  void apply(double* line) {
-    std::copy_n(line, input_.size(), input_.begin());
-    build();
-    for (std::size_t q = 0, k = 0; q < input_.size(); ++q) {
-      while (boundary_[k + 1] < static_cast<double>(q)) ++k;
-      const double step = static_cast<double>(q) - static_cast<double>(vertex_[k]);
-      line[q] = step * step + input_[vertex_[k]];
+  /// `squared[i]` becomes the minimum over j of along[j]^2 + (i - j)^2. Cells with `far` have no parabola.
+  template <typename Value>
+  void apply(const std::vector<std::int32_t>& along, std::int32_t far, Value* squared) {
+    build(along, far);
+    if (size_ == 0) {
+      std::fill_n(squared, along.size(), static_cast<Value>(kNoObstacle));
+      return;
+    }
+    std::size_t k = 0;
+    for (std::size_t i = 0; i < along.size(); ++i) {
+      const auto x = static_cast<std::int64_t>(i);
+      while (k + 1 < size_ && height_[k + 1] - height_[k] <= 2 * x * (column_[k + 1] - column_[k])) ++k;
+      squared[i] = static_cast<Value>(x * x - 2 * x * column_[k] + height_[k]);
     }
   }
 
  private:
-  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-  void build() {
-    std::size_t last = 0;
-    vertex_[0] = 0;
-    boundary_[0] = -kInfinity;
-    boundary_[1] = kInfinity;
-    for (std::size_t q = 1; q < input_.size(); ++q) {
-      double meet = intersection(vertex_[last], q);
-      while (meet <= boundary_[last]) meet = intersection(vertex_[--last], q);
-      vertex_[++last] = q;
-      boundary_[last] = meet;
-      boundary_[last + 1] = kInfinity;
+  void build(const std::vector<std::int32_t>& along, std::int32_t far) {
+    size_ = 0;
+    for (std::size_t i = 0; i < along.size(); ++i) {
+      if (along[i] == far) continue;
+      const auto x = static_cast<std::int64_t>(i), distance = static_cast<std::int64_t>(along[i]);
+      const std::int64_t height = x * x + distance * distance;
+      while (size_ > 1 && !is_below(x, height)) --size_;
+      column_[size_] = x;
+      height_[size_++] = height;
     }
   }
 
-  /// Abscissa at which the parabolas with the vertices p < q intersect.
-  double intersection(std::size_t p, std::size_t q) const {
-    const auto x_p = static_cast<double>(p), x_q = static_cast<double>(q);
-    return ((input_[q] + x_q * x_q) - (input_[p] + x_p * x_p)) / (2.0 * (x_q - x_p));
+  /// True if the last vertex is below the line from the one before it to the point.
+  bool is_below(std::int64_t x, std::int64_t height) const {
+    const std::size_t last = size_ - 1;
+    return (height_[last] - height_[last - 1]) * (x - column_[last]) <
+           (height - height_[last]) * (column_[last] - column_[last - 1]);
   }
 
-  std::vector<std::size_t> vertex_;  ///< of the envelope's parabolas
-  std::vector<double> boundary_;     ///< between neighboring parabolas
-  std::vector<double> input_;
+  std::vector<std::int64_t> column_, height_;  ///< of the vertices
+  std::size_t size_ = 0;                       ///< number of vertices
 };
+
+/// Sweeps down and up the columns, whole rows at a time. The distances to the obstacles below wait in the result.
+template <typename Value>
+std::vector<Value> transform_without_cap(const std::vector<std::uint8_t>& is_obstacle, int width, int height) {
+  const auto columns = static_cast<std::size_t>(width), rows = static_cast<std::size_t>(height);
+  assert(is_obstacle.size() == columns * rows);
+  std::vector<Value> squared(columns * rows);
+  const std::int32_t far = height;
+  std::vector<std::int32_t> along(columns, far), above(columns, far);
+  for (std::size_t row = 0; row < rows; ++row) {
+    const std::uint8_t* obstacles = is_obstacle.data() + row * columns;
+    Value* below = squared.data() + row * columns;
+    for (std::size_t col = 0; col < columns; ++col) {
+      along[col] = obstacles[col] != 0 ? 0 : std::min(far, along[col] + 1);
+      below[col] = static_cast<Value>(along[col]);
+    }
+  }
+  LowerEnvelope envelope(columns);
+  for (std::size_t row = rows; row-- > 0;) {
+    const std::uint8_t* obstacles = is_obstacle.data() + row * columns;
+    Value* result = squared.data() + row * columns;
+    for (std::size_t col = 0; col < columns; ++col) {
+      above[col] = obstacles[col] != 0 ? 0 : std::min(far, above[col] + 1);
+      along[col] = std::min(above[col], static_cast<std::int32_t>(result[col]));
+    }
+    envelope.apply(along, far, result);
+  }
+  return squared;
+}
 
 }  // namespace
 
@@ -120,29 +151,11 @@ void DistanceTransform::compute(const std::vector<std::uint8_t>& is_obstacle, in
 }
 
 std::vector<double> squared_distances(const std::vector<std::uint8_t>& is_obstacle, int width, int height) {
-  const auto columns = static_cast<std::size_t>(width), rows = static_cast<std::size_t>(height);
-  assert(is_obstacle.size() == columns * rows);
-  std::vector<double> squared(columns * rows);
-  if (squared.empty()) return squared;
-  const auto square = [width](int distance) {
-    return distance > width ? kNoObstacle : static_cast<double>(distance) * distance;
-  };
-  for (std::size_t row = 0; row < rows; ++row) {
-    transform_row(is_obstacle.data() + row * columns, width, width + 1, square, squared.data() + row * columns);
-  }
-  // Columns are copied in blocks of a cache line, because a step from row to row leaves the cache.
-  constexpr std::size_t kBlock = 8;
-  std::vector<double> block(kBlock * rows);
-  LowerEnvelope envelope(rows);
-  for (std::size_t first = 0; first < columns; first += kBlock) {
-    const std::size_t num_columns = std::min(kBlock, columns - first);
-    for (std::size_t row = 0; row < rows; ++row)
-      for (std::size_t i = 0; i < num_columns; ++i) block[i * rows + row] = squared[row * columns + first + i];
-    for (std::size_t i = 0; i < num_columns; ++i) envelope.apply(block.data() + i * rows);
-    for (std::size_t row = 0; row < rows; ++row)
-      for (std::size_t i = 0; i < num_columns; ++i) squared[row * columns + first + i] = block[i * rows + row];
-  }
-  return squared;
+  return transform_without_cap<double>(is_obstacle, width, height);
+}
+
+std::vector<float> squared_distances_float(const std::vector<std::uint8_t>& is_obstacle, int width, int height) {
+  return transform_without_cap<float>(is_obstacle, width, height);
 }
 
 }  // namespace patrol

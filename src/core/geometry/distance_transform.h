@@ -10,8 +10,8 @@ namespace patrol {
 ///
 /// The transform is separable [Felzenszwalb12]: two sweeps give the distance along each row, the lower envelope of
 /// parabolas along the columns the rest. Up to a cap of cells the envelope is taken by brute force over the 2 cap + 1
-/// rows within the cap, whole rows at a time, a handful of vector instructions per eight cells. Without a cap it is
-/// built column by column.
+/// rows within the cap, whole rows at a time, a handful of vector instructions per eight cells. Without a cap the
+/// sweeps run along the columns, and the envelope is built row by row.
 class DistanceTransform {
  public:
   /// [row * width + column]; `beyond()` where no obstacle lies within the cap.
@@ -52,5 +52,8 @@ inline constexpr double kNoObstacle = 1e20;
 
 /// Distance transform without a cap: squared distances, [row * width + column]. `is_obstacle`: not 0 for obstacles.
 std::vector<double> squared_distances(const std::vector<std::uint8_t>& is_obstacle, int width, int height);
+
+/// The same in single precision, with half of the memory.
+std::vector<float> squared_distances_float(const std::vector<std::uint8_t>& is_obstacle, int width, int height);
 
 }  // namespace patrol
