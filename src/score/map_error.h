@@ -11,7 +11,7 @@
 
 namespace patrol::score {
 
-/// Accuracy of the built map. Map and world are aligned at the start; nothing is fitted.
+/// Accuracy of the built map, placed in the reference by the caller.
 ///
 /// `nearest_*` is precision: the distance from the center of each occupied cell of the built map to the nearest
 /// occupied cell of the reference, observable or not. It has a lower limit that no mapping method can pass, because a

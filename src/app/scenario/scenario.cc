@@ -193,6 +193,18 @@ void load_mission(const Scenario& scenario, ScenarioFiles& files) {
   files.datum = route.datum;
 }
 
+/// Checks that the simulated receiver measures relative to the datum of the survey.
+void check_datum(const Scenario& scenario, const ScenarioFiles& files) {
+  const GnssSettings& gnss = scenario.sensors.gnss;
+  if (!files.datum || !gnss.enabled || !files.robot.T_body_sensor.contains("gnss")) return;
+  if (gnss.datum_latitude_deg == files.datum->latitude_deg && gnss.datum_longitude_deg == files.datum->longitude_deg)
+    return;
+  throw InputError(fmt::format(
+      "sensors.gnss: datum_latitude_deg and datum_longitude_deg are {} and {}: must be those "
+      "of the mission's datum, {} and {}",
+      gnss.datum_latitude_deg, gnss.datum_longitude_deg, files.datum->latitude_deg, files.datum->longitude_deg));
+}
+
 /// Loads the files of a scenario; errors have no location.
 ScenarioFiles load_files(const Scenario& scenario, const std::filesystem::path& data_root) {
   ScenarioFiles files;
@@ -208,6 +220,7 @@ ScenarioFiles load_files(const Scenario& scenario, const std::filesystem::path& 
     return find_named_file(files.world_xml.parent_path(), key, name);
   };
   load_mission(scenario, files);
+  check_datum(scenario, files);
   if (!scenario.map.empty()) {
     const std::filesystem::path file = named_file("map", scenario.map);
     files.map = io::load_map(file);

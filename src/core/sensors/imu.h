@@ -16,6 +16,8 @@ struct Imu {
 };
 
 /// Inertial measurement unit (error model of IEEE Std 952). Defaults: Analog Devices ADIS16448 data sheet, rounded.
+/// Messages below the rate of the ticks are samples without a low-pass filter: their noise density is larger by the
+/// root of the ratio of the rates, 1.41 at 250 Hz and a tick of 2 ms.
 ///
 /// The constant errors (biases, scale, misalignment) are one share of those of the data sheet. The other share is that
 /// of the as-built robot, section as_built.imu, to which they are added. The root sum of squares of the default shares
@@ -23,10 +25,11 @@ struct Imu {
 struct ImuSettings {
   bool enabled = true;                                   ///< presence of the sensor; false: no messages
   double rate_hz = 250.0;                                ///< message rate; the firmware reads the sensor at every tick
-  double gyro_noise_density_radps_per_sqrt_hz = 2.3e-4;  ///< angle random walk, 0.66 deg/sqrt(h) plus vibration
-  double gyro_bias_std_radps = 0.002;                    ///< standard deviation of the constant bias of each axis
+  double gyro_noise_density_radps_per_sqrt_hz = 2.3e-4;  ///< angle random walk of the samples at each tick, 0.66
+                                                         ///< deg/sqrt(h) plus vibration
+  double gyro_bias_std_radps = 0.002;                      ///< standard deviation of the constant bias of each axis
   double gyro_bias_random_walk_radps_per_sqrt_s = 1.0e-5;  ///< rate random walk
-  double accel_noise_density_mps2_per_sqrt_hz = 0.002;     ///< noise density of the accelerometer
+  double accel_noise_density_mps2_per_sqrt_hz = 0.002;     ///< noise density of the samples at each tick
   double accel_bias_std_mps2 = 0.03;                       ///< standard deviation of the constant bias of each axis
   double accel_bias_random_walk_mps2_per_sqrt_s = 1.0e-4;  ///< random walk of the accelerometer bias
   double scale_error_std = 0.001;                          ///< standard deviation of the scale factor of each axis

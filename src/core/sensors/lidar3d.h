@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -36,8 +38,16 @@ struct SensorTraits<PointCloud> {
                                        .timeout = SensorTimeout::kLidar,
                                        .fault = {.unit = "m", .drift_per_s = 0.02, .outlier = 1.0}};
 
+  /// Adds to the ranges; points that would be behind the sensor are in it.
   static void add_to_reading(PointCloud& cloud, double offset_m) {
-    for (CloudPoint& point : cloud.points) point.x += static_cast<float>(offset_m);
+    for (CloudPoint& point : cloud.points) {
+      const float range_m = std::hypot(point.x, point.y, point.z);
+      if (!(range_m > 0.0F)) continue;
+      const float scale = std::max(0.0F, 1.0F + static_cast<float>(offset_m) / range_m);
+      point.x *= scale;
+      point.y *= scale;
+      point.z *= scale;
+    }
   }
 };
 

@@ -16,8 +16,9 @@ struct FaultSettings {
   std::string kind = "dropout";  ///< kind of the fault (`patrol list sensor_faults`)
   double start_s = 0.0;          ///< time of the start of the fault
   double duration_s = 1.0;       ///< duration of the fault
-  /// Magnitude of the fault. For a delay in s; for jitter the standard deviation of a random delay per message in s;
-  /// for a clock offset in s. For a drift in units of the sensor per s; for outliers in units of the sensor.
+  /// Magnitude of the fault. For a delay in s; for jitter the standard deviation of a normal draw per message whose
+  /// absolute value is the delay, in s; for a clock offset in s. For a drift in units of the sensor per s; for outliers
+  /// in units of the sensor.
   double magnitude = 1.0;
 
   template <typename Self, typename Visitor>

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -214,6 +215,15 @@ TEST(Scenario, TheLightIsAsTheWorldHasItUnlessOneDimsIt) {
   EXPECT_EQ(load_scenario(file, {"light.intensity=0.4"}).light.intensity, 0.4);
   EXPECT_THAT([&] { load_scenario(file, {"light.intensity=1.5"}); },
               ThrowsMessage<InputError>(AllOf(HasSubstr("light.intensity"), HasSubstr("1.5"), HasSubstr("[0, 1]"))));
+}
+
+TEST(ScenarioFiles, ADatumOfGnssThatIsNotThatOfTheSurveyIsRefused) {
+  const auto load = [](const std::vector<std::string>& overrides) {
+    load_scenario_files(load_scenario(kSource / "worlds/street/scenarios/short.yaml", overrides), kSource);
+  };
+  EXPECT_THAT([&] { load({"sensors.gnss.datum_latitude_deg=48"}); },
+              ThrowsMessage<InputError>(HasSubstr("must be those of the mission's datum, 29.21 and 119.46")));
+  EXPECT_NO_THROW(load({"sensors.gnss.datum_latitude_deg=48", "sensors.gnss.enabled=false"}));
 }
 
 TEST(Scenario, AnOverrideOfAnUnknownKeyNamesTheNearest) {
