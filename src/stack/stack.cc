@@ -22,8 +22,8 @@ Stack::Stack(StackParts parts) : parts_(std::move(parts)), map_period_(from_seco
   if (parts_.mission->starts_at_survey()) parts_.pose.start_at_survey();
 }
 
-void Stack::handle(const SensorMessage& message) {
-  if (!parts_.sensor_monitor.receive(message, now_)) return;
+void Stack::handle(const SensorMessage& message, Time received) {
+  if (!parts_.sensor_monitor.receive(message, received)) return;
   const auto station_pose_at = [this](Time stamp) { return parts_.pose.station_pose_at(stamp); };
   std::visit(Overloaded{
                  [&](const LaserScan& scan) { handle_scan(scan); },
@@ -57,7 +57,6 @@ void Stack::handle_fall(Time now) {
 }
 
 void Stack::step(Time now) {
-  now_ = now;
   const std::optional<OdometryEstimate> odometry = parts_.pose.update_odometry();
   if (!odometry) return;
   if (now >= next_odometry_) {

@@ -36,7 +36,8 @@ class Stack {
  public:
   explicit Stack(StackParts parts);
 
-  void handle(const SensorMessage& message);
+  /// Processes a message that arrived at `received`, which may precede the next step by any time.
+  void handle(const SensorMessage& message, Time received);
   /// Processes the firmware's report of a fall.
   void handle_fall(Time now);
   /// Runs odometry, map, mission and control, each at its own period. Call at next_step() or before.
@@ -82,7 +83,6 @@ class Stack {
   InspectionProgress inspection_;
   std::optional<TeleopCommand> new_teleop_;
   VelocityCommand command_;
-  Time now_{};
   Time map_period_;
   Time next_control_{}, next_odometry_{}, next_map_{};
 };

@@ -16,7 +16,7 @@ void Stack::serialize_state(StateArchive& archive) {
   archive.section("stack");
   archive(parts_.pose, parts_.motion, parts_.mission, parts_.instruments, parts_.sensor_monitor, parts_.dock,
           parts_.site);
-  archive(output_, task_, inspection_, new_teleop_, command_, now_, next_control_, next_odometry_, next_map_);
+  archive(output_, task_, inspection_, new_teleop_, command_, next_control_, next_odometry_, next_map_);
 }
 
 void GasMission::serialize_state(StateArchive& archive) {

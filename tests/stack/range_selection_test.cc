@@ -43,10 +43,10 @@ std::map<std::string, CalibrationValue> delays_after_walk() {
   for (int tick = 0; to_seconds(walker.now()) < kWalk_s; ++tick) {
     walker.step();
     const Pose2 T_start_body = to_pose2(walker.T_world_body());
-    stack.handle(walker.imu());
-    stack.handle(walker.joints());
-    stack.handle(walker.contacts());
-    if (tick % 25 == 0) stack.handle(scan_of(world, walker.now(), T_start_body * T_body_lidar));
+    stack.handle(walker.imu(), walker.now());
+    stack.handle(walker.joints(), walker.now());
+    stack.handle(walker.contacts(), walker.now());
+    if (tick % 25 == 0) stack.handle(scan_of(world, walker.now(), T_start_body * T_body_lidar), walker.now());
     if (tick % 50 == 0) {
       for (const UwbAnchor& anchor : route.anchors) {
         const auto index = static_cast<std::uint64_t>(anchor.number);
@@ -56,7 +56,8 @@ std::map<std::string, CalibrationValue> delays_after_walk() {
         stack.handle(UwbRange{.stamp = walker.now(),
                               .anchor = anchor.number,
                               .range_m = distance_m + uwb_bias_at({}, distance_m).bias_m + kDelay_m + excess_m +
-                                         kNoise_m * noise.normal(tick, index)});
+                                         kNoise_m * noise.normal(tick, index)},
+                     walker.now());
       }
     }
     stack.step(walker.now());

@@ -58,11 +58,12 @@ WalkRecord walk(bool use_gnss) {
     walker.step();
     const Pose2 T_start_body = to_pose2(walker.T_world_body());
     record.T_site_body_truth = kSite.T_site_start * kPutDown * T_start_body;
-    stack.handle(walker.imu());
-    stack.handle(walker.joints());
-    stack.handle(walker.contacts());
-    if (tick % 25 == 0) stack.handle(scan_of(world, walker.now(), T_start_body * T_body_lidar));
-    if (tick % 50 == 0) stack.handle(fix_at(record.T_site_body_truth * kLevelGnss.position(), walker.now()));
+    stack.handle(walker.imu(), walker.now());
+    stack.handle(walker.joints(), walker.now());
+    stack.handle(walker.contacts(), walker.now());
+    if (tick % 25 == 0) stack.handle(scan_of(world, walker.now(), T_start_body * T_body_lidar), walker.now());
+    if (tick % 50 == 0)
+      stack.handle(fix_at(record.T_site_body_truth * kLevelGnss.position(), walker.now()), walker.now());
     stack.step(walker.now());
     for (const StackMessage& message : stack.take_messages()) {
       if (const auto* pose = std::get_if<PoseEstimate>(&message)) record.T_map_body = pose->T_map_body;

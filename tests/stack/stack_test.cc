@@ -1,5 +1,7 @@
 #include "stack/stack.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "stack/make_stack.h"
@@ -136,6 +138,17 @@ TEST(Stack, AMappingDriveWithoutAUsedScanAbortsTheMissionWithTheNumberOfScansAnd
       event_text(settings, level),
       "No map: of 5 scans of the sensor lidar none was used: 3 without a hit on anything but the robot, 2 without "
       "odometry.");
+}
+
+// 0.1 s of messages precede each step, as with a computing time of 0.1 s.
+TEST(Stack, MessagesSinceTheLastStepAreNotInTheFuture) {
+  const RobotDescription robot = quadruped_with_outline();
+  std::vector<NavigationFeedback> heard;
+  Stack stack = stack_of(robot, std::make_unique<RecordingMission>(TaskTiming::kNow, heard));
+  const std::vector<StackMessage> messages = stand(stack, robot, 4.0, 20.0, from_seconds(0.1));
+  EXPECT_GT(heard.size(), 20U);
+  EXPECT_TRUE(std::ranges::none_of(all_of<Event>(messages),
+                                   [](const Event& event) { return event.kind == EventKind::kSensorFault; }));
 }
 
 // Odometry is due at multiples of 20 ms, control at multiples of 50 ms.

@@ -52,22 +52,27 @@ inline LaserScan scan_of(const test::RoomWorld& room, Time stamp, const Pose2& T
   return scan;
 }
 
-/// Feeds a stack with the sensors of a robot that stands at the map's origin, tick by tick, for so many seconds.
+/// Feeds a stack with the sensors of a robot that stands at the map's origin, tick by tick, for so many seconds. The
+/// stack has a step after every tick, or once per `step_period`.
 inline std::vector<StackMessage> stand(Stack& stack, const RobotDescription& robot, double seconds,
-                                       double gas_ppm_m = 20.0) {
+                                       double gas_ppm_m = 20.0, Time step_period = {}) {
   const test::RoomWorld room = small_room();
   const Pose3& T_body_lidar = robot.T_body("lidar");
   test::WalkingRobot walker(robot, test::stand_then_walk(1e9, {}), test::WalkingRobotSettings::without_noise(), 1);
   std::vector<StackMessage> messages;
+  Time next_step{};
   for (int tick = 0; to_seconds(walker.now()) < seconds; ++tick) {
     walker.step();
-    stack.handle(walker.imu());
-    stack.handle(walker.joints());
-    stack.handle(walker.contacts());
+    stack.handle(walker.imu(), walker.now());
+    stack.handle(walker.joints(), walker.now());
+    stack.handle(walker.contacts(), walker.now());
     if (tick % 25 == 0)
-      stack.handle(scan_of(room, walker.now(), {T_body_lidar.position.x(), T_body_lidar.position.y(), 0.0}));
+      stack.handle(scan_of(room, walker.now(), {T_body_lidar.position.x(), T_body_lidar.position.y(), 0.0}),
+                   walker.now());
     if (tick % 25 == 0)
-      stack.handle(GasReading{.stamp = walker.now(), .column_ppm_m = gas_ppm_m, .path_length_m = 2.0});
+      stack.handle(GasReading{.stamp = walker.now(), .column_ppm_m = gas_ppm_m, .path_length_m = 2.0}, walker.now());
+    if (walker.now() < next_step) continue;
+    next_step = walker.now() + step_period;
     stack.step(walker.now());
     for (StackMessage& message : stack.take_messages()) messages.push_back(std::move(message));
   }

@@ -62,7 +62,7 @@ void BuiltInStack::handle(const std::vector<link::DeliveredMessage>& messages) {
     if (message.topic == io::kTopic<FallReport>) {
       stack_.handle_fall(message.log_time);
     } else if (const auto content = io::decode_as<SensorMessage>(message.topic, message.cdr)) {
-      stack_.handle(*content);
+      stack_.handle(*content, message.log_time);
     }
   }
 }

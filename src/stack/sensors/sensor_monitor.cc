@@ -20,14 +20,14 @@ bool repeats_reading(const SensorMessage& message, const SensorMessage& before) 
 
 }  // namespace
 
-bool SensorMonitor::receive(const SensorMessage& message, Time now) {
+bool SensorMonitor::receive(const SensorMessage& message, Time received) {
   const std::size_t kind = message.index();
   Sensor& sensor = sensors_[kind];
   sensor.stamp = stamp_of(message);
-  const double lead_s = to_seconds(sensor.stamp - now);
+  const double lead_s = to_seconds(sensor.stamp - received);
   sensor.has_future_stamp = lead_s > sensor.clock_lead_s + settings_.max_clock_lead_s;
-  if (!sensor.has_future_stamp) follow_clock(lead_s, now, sensor);
-  sensor.received = now;
+  if (!sensor.has_future_stamp) follow_clock(lead_s, received, sensor);
+  sensor.received = received;
   if (kSensorInfos[kind].freeze_check == FreezeCheck::kNone || sensor.has_future_stamp) return !sensor.has_future_stamp;
   const bool has_reading = sensor.reading.index() == kind;  // initially a laser scan without returns, which no scan
                                                             // repeats

@@ -28,8 +28,9 @@ class SensorMonitor {
   explicit SensorMonitor(const SensorMonitorSettings& settings)
       : settings_(settings), clock_monitor_(settings.lidar_clock) {}
 
-  /// Processes a message. Returns false if it must not be used, because its stamp is in the future.
-  bool receive(const SensorMessage& message, Time now);
+  /// Processes a message that arrived at `received`. Returns false if it must not be used, because its stamp is in the
+  /// future.
+  bool receive(const SensorMessage& message, Time received);
 
   /// Returns the changes since the last step. Call once per control period. The reference motion is `T_odom_body`; for
   /// the encoders, from which odometry is computed, it is the `command` since the last step. `lidar_clock`: none if the

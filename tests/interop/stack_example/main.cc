@@ -22,7 +22,7 @@ int main(int argc, char** argv) {
   const auto feed = [&](patrol::Time log_time, const auto& message) {
     if (log_time > now) stack.step(now);  // all messages of that tick are there
     now = log_time;
-    stack.handle(message);
+    stack.handle(message, log_time);
   };
   patrol::io::LogHandlers handlers;
   handlers.on<patrol::LaserScan>(feed);
