@@ -31,6 +31,7 @@ struct RunRecord {
   std::vector<TrackReading> tracks;                ///< counts of a tracked robot
   std::optional<CalibrationEstimate> calibration;  ///< newest, if the stack estimates its calibration
   std::vector<Event> events;
+  bool has_fall_report = false;  ///< whether the firmware reported a fall
   std::vector<LocalizationConfidence> confidences;
   std::vector<TeleopCommand> teleop;
   std::vector<Collision> collisions;

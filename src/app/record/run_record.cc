@@ -45,6 +45,7 @@ RunRecord read_run_record(const std::filesystem::path& log_mcap) {
   handlers.on<AsBuiltTruth>([&](Time, const AsBuiltTruth& as_built) { record.as_built = as_built; });
   handlers.on<CalibrationEstimate>(
       [&](Time, const CalibrationEstimate& calibration) { record.calibration = calibration; });
+  handlers.on<FallReport>([&](Time, const FallReport&) { record.has_fall_report = true; });
   handlers.on<Event>([&](Time, const Event& event) { record.events.push_back(event); });
   handlers.on<Path>([&](Time, const Path&) { ++record.num_paths; });
   handlers.on<Collision>([&](Time, const Collision& collision) { record.collisions.push_back(collision); });

@@ -105,7 +105,7 @@ void add_inspection(const RunRecord& record, const RunReferences& references, co
 
 MissionScore mission_score(const RunRecord& record) {
   return {.is_completed = record.has_event(EventKind::kMissionCompleted),
-          .has_fallen = record.has_event(EventKind::kFall),
+          .has_fallen = record.has_fall_report || record.has_event(EventKind::kFall),
           .num_collisions = record.collisions.size(),
           .num_sensor_faults = record.num_events(EventKind::kSensorFault),
           .duration_s = to_seconds(record.T_world_body.back().stamp),

@@ -2,8 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include "app/common/temporary_folder.h"
+#include "io/logs/run_log.h"
+
 namespace patrol::app::run_record_test {
 namespace {
+
+using namespace std::chrono_literals;
 
 /// Run that starts at (2, 1) in world, the origin of map, and is registered twice.
 RunRecord registered_run() {
@@ -17,6 +22,23 @@ RunRecord registered_run() {
     record.registrations.push_back(registration);
   }
   return record;
+}
+
+/// Record of a log that `write` has written after the first ground truth.
+template <typename Write>
+RunRecord record_of_log(const Write& write) {
+  const TemporaryFolder folder("record");
+  const std::filesystem::path file = folder.path() / "log.mcap";
+  io::RunLogWriter log(file, io::TransformSet{});
+  log.write(Time{}, GroundTruth{});
+  write(log);
+  log.close();
+  return read_run_record(file);
+}
+
+TEST(ReadRunRecord, HasAFallIfTheLogHasAReportOfTheFirmware) {
+  EXPECT_FALSE(record_of_log([](io::RunLogWriter&) {}).has_fall_report);
+  EXPECT_TRUE(record_of_log([](io::RunLogWriter& log) { log.write(1s, FallReport{1s}); }).has_fall_report);
 }
 
 TEST(PoseOfMap, IsThatOfAGivenMapElseOfTheLastRegistrationElseOfTheStart) {

@@ -61,6 +61,12 @@ TEST(MissionScore, CountsEventsByTheirKind) {
   EXPECT_NEAR(score.distance_m, 4.0, 1e-6);
 }
 
+TEST(MissionScore, AFallReportOfTheFirmwareIsAFallWithoutAnEventOfTheStack) {
+  RunRecord record = perfect_run();
+  record.has_fall_report = true;
+  EXPECT_TRUE(mission_score(record).has_fallen);
+}
+
 TEST(RunRecord, HasAnEstimateWithThreePoses) {
   RunRecord record = perfect_run();
   record.map = {};
