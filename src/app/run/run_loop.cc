@@ -273,9 +273,10 @@ class ClosedLoop {
     if (state_due_.is_due(now)) log_.write(now, simulator_.state());
   }
 
-  /// Checks the end of the mission, the time limit and the observer, and sets the outcome's end.
+  /// Checks the end of the mission, the time limit and the observer, and sets the outcome's end. A fall and the end of
+  /// the mission precede the time limit.
   bool keep_running(Time now) {
-    if (now >= limit_) outcome_.end = RunEnd::kTimeLimit;
+    if (now >= limit_ && !fall_time_ && !mission_is_over_) outcome_.end = RunEnd::kTimeLimit;
     if (progress_due_.is_due(now) && !observer_.keep_running(now, distance_m_)) {
       outcome_.end = RunEnd::kInterrupted;
       return false;
