@@ -174,7 +174,8 @@ constexpr Row kLocalization[] = {
     {"kidnaps.*.moved_m", "distance between estimated and true position after the kidnapping"},
     {"kidnaps.*.said_lost_s", "time from the kidnapping to the report of lost localization; null without a report"},
     {"kidnaps.*.relocalized_s",
-     "time from the kidnapping to the first of 5 s with less than 0.5 m error; null if not relocalized"},
+     "time from the kidnapping to the first of 5 s with less than 0.5 m error; null without such a period before the "
+     "next kidnapping"},
 };
 
 constexpr Row kInspection[] = {

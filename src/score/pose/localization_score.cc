@@ -43,10 +43,11 @@ LocalizationScore localization_score(const std::vector<MatchedPose>& matched,
   return score;
 }
 
-RelocalizationScore relocalization_score(Time kidnapped, const std::vector<MatchedPose>& matched,
+RelocalizationScore relocalization_score(Time kidnapped, Time next, const std::vector<MatchedPose>& matched,
                                          const std::vector<LocalizationConfidence>& confidences) {
   RelocalizationScore score{.at_s = to_seconds(kidnapped), .time_to_detect_s = {}, .relocalized_s = {}};
   for (const LocalizationConfidence& confidence : confidences) {
+    if (confidence.stamp >= next) break;
     if (confidence.stamp < kidnapped || !confidence.is_lost) continue;
     score.time_to_detect_s = to_seconds(confidence.stamp - kidnapped);
     break;
@@ -55,15 +56,17 @@ RelocalizationScore relocalization_score(Time kidnapped, const std::vector<Match
   Time good_since = kNever;
   bool is_first = true;
   for (const MatchedPose& pose : matched) {
+    if (pose.stamp >= next) break;
     if (pose.stamp < kidnapped) continue;
     if (std::exchange(is_first, false)) score.displacement_m = pose.position_error_m();
     const LocalizationConfidence* confidence = newest_confidence(confidences, pose.stamp);
     const bool is_good = pose.position_error_m() < kMaxAcceptedError_m && confidence != nullptr && !confidence->is_lost;
     if (!is_good) good_since = kNever;
     if (is_good) good_since = std::min(good_since, pose.stamp);
-    if (good_since != kNever && pose.stamp - good_since >= kStablePeriod) break;
+    if (good_since == kNever || pose.stamp - good_since < kStablePeriod) continue;
+    score.relocalized_s = to_seconds(good_since - kidnapped);
+    break;
   }
-  if (good_since != kNever) score.relocalized_s = to_seconds(good_since - kidnapped);
   return score;
 }
 

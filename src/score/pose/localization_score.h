@@ -34,8 +34,8 @@ struct RelocalizationScore {
 LocalizationScore localization_score(const std::vector<MatchedPose>& matched,
                                      const std::vector<LocalizationConfidence>& confidences, Time end);
 
-/// Evaluates the recovery from a kidnapping at time `kidnapped`.
-RelocalizationScore relocalization_score(Time kidnapped, const std::vector<MatchedPose>& matched,
+/// Evaluates the recovery from a kidnapping at time `kidnapped` until `next`, the time of the next one, or Time::max().
+RelocalizationScore relocalization_score(Time kidnapped, Time next, const std::vector<MatchedPose>& matched,
                                          const std::vector<LocalizationConfidence>& confidences);
 
 }  // namespace patrol::score

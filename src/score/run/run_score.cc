@@ -64,8 +64,13 @@ std::optional<KnownMapScore> known_map_score(const RunRecord& record, const Traj
   std::erase_if(matched, [&](const MatchedPose& pose) { return pose.stamp < record.confidences.front().stamp; });
   KnownMapScore score{.localization = localization_score(matched, record.confidences, record.T_world_body.back().stamp),
                       .kidnaps = {}};
-  for (const Time kidnapped : references.kidnaps)
-    score.kidnaps.push_back(relocalization_score(kidnapped, matched, record.confidences));
+  for (const Time kidnapped : references.kidnaps) {
+    Time next = Time::max();
+    for (const Time other : references.kidnaps) {
+      if (other > kidnapped) next = std::min(next, other);
+    }
+    score.kidnaps.push_back(relocalization_score(kidnapped, next, matched, record.confidences));
+  }
   return score;
 }
 

@@ -200,5 +200,16 @@ TEST(EstimateScore, ScoresLocalizationOnAKnownMapAndEachKidnap) {
   EXPECT_EQ(score.known_map->kidnaps.size(), 2U);
 }
 
+TEST(EstimateScore, AReportOfLostLocalizationBelongsToTheLastKidnapBeforeIt) {
+  RunRecord record = perfect_run();
+  record.confidences = {{.stamp = 0s, .confidence = 0.9}, {.stamp = 3s, .confidence = 0.0, .is_lost = true}};
+  RunReferences references = wall_references();
+  references.kidnaps = {1s, 2s};
+  const EstimateScore score = estimate_score(record, references);
+  ASSERT_TRUE(score.known_map);
+  EXPECT_FALSE(score.known_map->kidnaps.at(0).time_to_detect_s);
+  EXPECT_DOUBLE_EQ(score.known_map->kidnaps.at(1).time_to_detect_s.value_or(0.0), 1.0);
+}
+
 }  // namespace
 }  // namespace patrol::score::run_score_test
