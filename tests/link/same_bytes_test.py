@@ -79,6 +79,13 @@ class SameBytes(unittest.TestCase):
         feed(inside, self.path / "fed_outside", BUILT_IN)
         self.assertEqual(without_turns(messages(self.path / "fed_outside")), messages(inside))
 
+    def test_a_stack_with_a_computing_time_that_is_fed_with_its_run_writes_the_log_of_the_run(self):
+        delay = ["stack.compute.model=fixed", "stack.compute.delay_s=0.04"]
+        for stack in (None, BUILT_IN):
+            delayed = self.run_to("delayed", stack, settings=delay)
+            feed(delayed, self.path / "fed", stack)
+            self.assertEqual((self.path / "fed/log.mcap").read_bytes(), (delayed / "log.mcap").read_bytes())
+
     def test_a_fed_stack_has_its_turns_when_it_asks_for_them(self):
         # The run has a turn every 50 ms, the fed stack every 10 ms: it publishes odometry every 20 ms.
         circle = self.run_to("circle", write_stack(self.path, "circle.py", CIRCLE) + f" {self.path / 'process_id'}")

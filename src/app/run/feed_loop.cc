@@ -74,6 +74,7 @@ class FeedLoop {
       outcome_.duration = now;
       const StackAnswer answer = take_turn(now, std::nullopt);
       mission_is_over = answer.mission_is_over;
+      if (mission_is_over) outcome_.duration = answer_time(now, answer.delay);
       next_turn = std::max(answer.next_turn, now + answer.delay);
     }
     if (!mission_is_over) outcome_.duration = end_;
@@ -92,12 +93,17 @@ class FeedLoop {
   /// First tick that is not earlier than a time.
   Time tick_at(Time time) const { return (time + tick_ - Time{1}) / tick_ * tick_; }
 
-  /// Lets the stack take a turn and publishes its answer. `recorded_delay`: instead of the delay of the answer.
+  /// Time at which the answer to a turn takes effect: a tick, at most the end of the log.
+  Time answer_time(Time turn, Time delay) const { return std::min(tick_at(turn + delay), end_); }
+
+  /// Lets the stack take a turn and publishes its answer when it takes effect, after the messages of the simulator
+  /// until then. `recorded_delay`: instead of the delay of the answer.
   StackAnswer take_turn(Time now, const std::optional<Time>& recorded_delay) {
     deliver_until(now, false);
     StackAnswer answer = stack_.take_turn(now);
     answer.delay = recorded_delay.value_or(answer.delay);
-    const Time time = std::min(tick_at(now + answer.delay), end_);
+    const Time time = answer_time(now, answer.delay);
+    deliver_until(time, tick_at(now + answer.delay) > end_);
     record_turn(time, {.turn = now,
                        .delay = answer.delay,
                        .next_turn = answer.next_turn,
