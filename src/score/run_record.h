@@ -25,14 +25,14 @@ struct RunRecord {
   Trajectory T_odom_body;
   std::vector<Time> T_odom_body_received;       ///< [pose of T_odom_body]: log time
   Trajectory T_world_body;                      ///< ground truth
-  std::vector<SiteRegistration> registrations;  ///< pose of map in site, in order; empty in older logs
+  std::vector<SiteRegistration> registrations;  ///< pose of map in site, by stamp; empty in older logs
   std::vector<GyroReading> gyro;
   AsBuiltTruth as_built;                           ///< ground truth; empty for a nominal robot
   std::vector<TrackReading> tracks;                ///< counts of a tracked robot
   std::optional<CalibrationEstimate> calibration;  ///< newest, if the stack estimates its calibration
   std::vector<Event> events;
-  bool has_fall_report = false;  ///< whether the firmware reported a fall
-  std::vector<LocalizationConfidence> confidences;
+  bool has_fall_report = false;                     ///< whether the firmware reported a fall
+  std::vector<LocalizationConfidence> confidences;  ///< by stamp
   std::vector<TeleopCommand> teleop;
   std::vector<Collision> collisions;
   std::vector<LiningResult> linings;

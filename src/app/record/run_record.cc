@@ -1,5 +1,8 @@
 #include "app/record/run_record.h"
 
+#include <algorithm>
+#include <vector>
+
 #include <fmt/format.h>
 
 #include "core/error.h"
@@ -14,6 +17,13 @@ bool append(Trajectory& trajectory, Time stamp, const Pose3& pose) {
   if (!trajectory.empty() && stamp <= trajectory.back().stamp) return false;
   trajectory.push_back({stamp, pose});
   return true;
+}
+
+/// Sorts messages by stamp: the stamps of a stack in another process need not increase. Messages with equal stamps stay
+/// in order of receipt.
+template <typename Message>
+void sort_by_stamp(std::vector<Message>& messages) {
+  std::ranges::stable_sort(messages, {}, &Message::stamp);
 }
 
 }  // namespace
@@ -56,6 +66,8 @@ RunRecord read_run_record(const std::filesystem::path& log_mcap) {
   handlers.on<WaterResult>([&](Time, const WaterResult& result) { record.waters.push_back(result); });
   handlers.on<MapUpdate>([&](Time, const MapUpdate& update) { record.map = update.map; });
   record.is_complete = io::read_run_log(log_mcap, handlers);
+  sort_by_stamp(record.registrations);
+  sort_by_stamp(record.confidences);
   if (record.T_world_body.empty()) throw InputError(fmt::format("{}: contains no ground truth", log_mcap.string()));
   return record;
 }

@@ -41,6 +41,23 @@ TEST(ReadRunRecord, HasAFallIfTheLogHasAReportOfTheFirmware) {
   EXPECT_TRUE(record_of_log([](io::RunLogWriter& log) { log.write(1s, FallReport{1s}); }).has_fall_report);
 }
 
+TEST(ReadRunRecord, HasConfidencesAndRegistrationsByTheirStampsNotByTheirReceipt) {
+  const RunRecord record = record_of_log([](io::RunLogWriter& log) {
+    for (const Time stamp : {1s, 3s, 2s}) {
+      log.write(3s, LocalizationConfidence{.stamp = stamp, .confidence = 1.0});
+      SiteRegistration registration;
+      registration.stamp = stamp;
+      log.write(3s, registration);
+    }
+  });
+  ASSERT_EQ(record.confidences.size(), 3U);
+  ASSERT_EQ(record.registrations.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(record.confidences[i].stamp, std::chrono::seconds(i + 1));
+    EXPECT_EQ(record.registrations[i].stamp, std::chrono::seconds(i + 1));
+  }
+}
+
 TEST(PoseOfMap, IsThatOfAGivenMapElseOfTheLastRegistrationElseOfTheStart) {
   RunRecord record = registered_run();
   EXPECT_EQ(pose_of_map(record, Pose2{5.0, 6.0, 0.3}).vector(), Eigen::Vector3d(5.0, 6.0, 0.3));
