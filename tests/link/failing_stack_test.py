@@ -84,6 +84,12 @@ class FailingStack(unittest.TestCase):
         self.assertEqual(done.returncode, 2)
         self.assertRegex(done.stderr, r"log\.mcap: its stack failed at 0\.980 s: only a complete run can be verified")
 
+    def test_a_run_whose_stack_failed_in_its_first_turn_cannot_be_verified(self):
+        out, _ = self.run_until(0.0, DIES)
+        done = stack_runs.verify(out)
+        self.assertEqual(done.returncode, 2)
+        self.assertRegex(done.stderr, r"log\.mcap: its stack failed before the end of its first turn: only a complete run")
+
     def test_a_stack_that_hangs(self):
         out, done = self.run_until(1.0, "time.sleep(1000)", settings=["stack.timeout_s=5"])
         self.assert_verdict(out, done, 4, "the stack was silent at 1.000 s: no answer within 5 s")

@@ -53,6 +53,13 @@ ExitCode verify_command(const VerifyOptions& options) {
                     directory.root.string()));
   }
   Scenario scenario = load_scenario(directory.scenario());
+  const bool is_external = !scenario.stack.command.empty();
+  if (is_external && turns.empty()) {
+    throw InputError(
+        fmt::format("{}: its stack failed before the end of its first turn: only a complete run can be "
+                    "verified",
+                    directory.log().string()));
+  }
   const std::filesystem::path data_root = find_data_root(directory.scenario());
   const ScenarioFiles files = load_scenario_files(scenario, data_root);
   const std::string name = directory.root.filename().string();
@@ -69,7 +76,6 @@ ExitCode verify_command(const VerifyOptions& options) {
     is_same = report("simulator", io::first_difference(directory.log(), log));
   }
 
-  const bool is_external = !scenario.stack.command.empty();
   if (is_external && !options.stack) {
     fmt::print("stack: not verified: start it with --stack, in this run: {}\n", scenario.stack.command);
     return is_same ? ExitCode::kDone : ExitCode::kExpectationMissed;
