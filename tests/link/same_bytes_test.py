@@ -58,6 +58,17 @@ patrol_client.run(lambda turn: turn.publish_velocity(0.3), topics=["/scan"], tur
 
 
 class SameBytes(unittest.TestCase):
+    """`inside` and `outside`: runs with the built-in stack, which several claims read."""
+
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.inside, cls.outside = pathlib.Path(folder.name) / "inside", pathlib.Path(folder.name) / "outside"
+        for path, stack in (cls.inside, []), (cls.outside, [BUILT_IN]):
+            done = run(path, *stack)
+            assert done.returncode in (1, 4), done.stderr  # 4: time limit
+
     def setUp(self):
         self.folder = tempfile.TemporaryDirectory()
         self.addCleanup(self.folder.cleanup)
@@ -69,15 +80,13 @@ class SameBytes(unittest.TestCase):
         return self.path / name
 
     def test_the_built_in_stack_in_a_process_of_its_own_writes_the_same_log(self):
-        inside, outside = self.run_to("inside"), self.run_to("outside", BUILT_IN)
-        self.assertEqual(without_turns(messages(outside)), messages(inside))
+        self.assertEqual(without_turns(messages(self.outside)), messages(self.inside))
 
     def test_a_stack_that_is_fed_with_its_run_writes_the_log_of_the_run(self):
-        inside = self.run_to("inside")
-        self.assertEqual(feed(inside, self.path / "fed").returncode, 1)
-        self.assertEqual((self.path / "fed/log.mcap").read_bytes(), (inside / "log.mcap").read_bytes())
-        feed(inside, self.path / "fed_outside", BUILT_IN)
-        self.assertEqual(without_turns(messages(self.path / "fed_outside")), messages(inside))
+        self.assertEqual(feed(self.inside, self.path / "fed").returncode, 1)
+        self.assertEqual((self.path / "fed/log.mcap").read_bytes(), (self.inside / "log.mcap").read_bytes())
+        feed(self.inside, self.path / "fed_outside", BUILT_IN)
+        self.assertEqual(without_turns(messages(self.path / "fed_outside")), messages(self.inside))
 
     def test_a_stack_with_a_computing_time_that_is_fed_with_its_run_writes_the_log_of_the_run(self):
         delay = ["stack.compute.model=fixed", "stack.compute.delay_s=0.04"]
@@ -96,17 +105,15 @@ class SameBytes(unittest.TestCase):
         self.assertEqual({later - earlier for earlier, later in zip(times, times[1:])}, {20_000_000})
 
     def test_feed_refuses_to_overwrite_the_run(self):
-        inside = self.run_to("inside")
-        done = feed(inside, inside)
+        done = feed(self.inside, self.inside)
         self.assertEqual(done.returncode, 2)
         self.assertIn("must not be the directory of the run", done.stderr)
-        self.assertTrue((inside / "log.mcap").exists())
+        self.assertTrue((self.inside / "log.mcap").exists())
 
     def test_both_halves_of_a_run_are_verified(self):
-        outside = self.run_to("outside", BUILT_IN)
-        done = verify(outside, BUILT_IN)
+        done = verify(self.outside, BUILT_IN)
         self.assertEqual(done.stdout, "simulator: byte-identical\nstack: byte-identical\n", done.stderr)
-        done = verify(outside)
+        done = verify(self.outside)
         self.assertIn("simulator: byte-identical\nstack: not verified", done.stdout)
 
     def test_a_python_stack_that_is_stopped_for_a_while_writes_the_same_log(self):

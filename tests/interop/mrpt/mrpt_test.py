@@ -37,7 +37,7 @@ class Mrpt(unittest.TestCase):
 
     def test_two_runs_have_the_same_bytes(self):
         for name in ("first", "second"):
-            run(self.path / name, 25.0)
+            run(self.path / name, 12.0)
         logs = [(self.path / name / "log.mcap").read_bytes() for name in ("first", "second")]
         self.assertGreater(len(logs[0]), 10**6)
         self.assertEqual(logs[0], logs[1])
