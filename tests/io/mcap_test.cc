@@ -60,6 +60,12 @@ std::vector<Entry> read_log(const std::filesystem::path& file, const McapSelecti
   return entries;
 }
 
+/// Entries in the order of a permutation that moves them by up to several seconds.
+std::vector<Entry> shuffled(std::vector<Entry> entries) {
+  std::ranges::sort(entries, {}, [](const Entry& entry) { return entry.log_time.count() / 1'000'000 * 7919 % 10'007; });
+  return entries;
+}
+
 std::string complaint_about(const std::filesystem::path& file) {
   try {
     read_log(file);
@@ -94,6 +100,18 @@ TEST_F(Mcap, SameCallsGiveTheSameBytes) {
   EXPECT_EQ(read_bytes(file), read_bytes(folder / "again.mcap"));
 }
 
+TEST_F(Mcap, EachTopicHasTheDefinitionOfItsOwnEvenWithATypeOfOneName) {
+  McapWriter writer(file);
+  const auto a = writer.add_channel("/a", "test_msgs/msg/A", "uint8[] data\n");
+  const auto b = writer.add_channel("/b", "test_msgs/msg/A", "string text\n");
+  const auto c = writer.add_channel("/c", "test_msgs/msg/A", "uint8[] data\n");
+  for (const auto channel : {a, b, c}) writer.write(channel, 1s, "x");
+  writer.close();
+  std::vector<std::string> definitions;
+  read_mcap(file, [&](const McapMessage& message) { definitions.push_back(message.channel.definition); });
+  EXPECT_EQ(definitions, (std::vector<std::string>{"uint8[] data\n", "string text\n", "uint8[] data\n"}));
+}
+
 TEST_F(Mcap, AnEmptyLogIsComplete) {
   write_log(file, {});
   EXPECT_TRUE(read_log(file).empty());
@@ -124,12 +142,6 @@ TEST_F(Mcap, EveryInstantIsFoundByItself) {
     const Time instant = i * 100ms;
     ASSERT_EQ(read_log(file, {.topics = {}, .from = instant, .to = instant}).size(), i % 10 == 0 ? 2U : 1U) << i;
   }
-}
-
-/// Entries in the order of a permutation that moves them by up to several seconds.
-std::vector<Entry> shuffled(std::vector<Entry> entries) {
-  std::ranges::sort(entries, {}, [](const Entry& entry) { return entry.log_time.count() / 1'000'000 * 7919 % 10'007; });
-  return entries;
 }
 
 TEST_F(Mcap, ByLogTimeAShuffledFileOf110MessagesIsInOrder) {

@@ -36,9 +36,14 @@ RunLogWriter::RunLogWriter(const std::filesystem::path& log_mcap, const Transfor
 
 void RunLogWriter::write_foreign(Time log_time, const std::string& topic, const std::string& type,
                                  const std::string& definition, std::string_view cdr) {
-  auto known = channels_.find(topic);
-  if (known == channels_.end()) known = channels_.emplace(topic, writer_.add_channel(topic, type, definition)).first;
-  writer_.write(known->second, log_time, cdr);
+  writer_.write(channel_of(topic, type, definition), log_time, cdr);
+}
+
+McapWriter::ChannelId RunLogWriter::channel_of(const std::string& topic, const std::string& type,
+                                               const std::string& definition) {
+  const auto [known, is_new] = channels_.try_emplace({topic, type, definition});
+  if (is_new) known->second = writer_.add_channel(topic, type, definition);
+  return known->second;
 }
 
 void RunLogWriter::copy(const McapMessage& message) {
@@ -48,8 +53,8 @@ void RunLogWriter::copy(const McapMessage& message) {
   if (topic == kTopic<OdometryEstimate>) remember(decode<OdometryEstimate>(message.cdr));
 }
 
-McapWriter::ChannelId RunLogWriter::add_channel(const std::string& topic, const char* type) {
-  return channels_[topic] = writer_.add_channel(topic, type, ros_definition(type));
+McapWriter::ChannelId RunLogWriter::add_own_channel(const std::string& topic, const char* type) {
+  return own_channels_[topic] = channel_of(topic, type, ros_definition(type));
 }
 
 // odom -> base_footprint (level) -> base_link.

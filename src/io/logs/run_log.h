@@ -5,6 +5,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -42,7 +43,8 @@ class RunLogWriter {
     if constexpr (std::is_same_v<Message, OdometryEstimate> || std::is_same_v<Message, PoseEstimate>)
       write_frames(log_time, decode<Message>(cdr));  // a reader of the log computes the same frames
   }
-  /// Writes an encoded message with its own type. `definition`: ROS 2 message definition.
+  /// Writes an encoded message with its own type. `definition`: ROS 2 message definition. A topic may have messages of
+  /// several types and definitions.
   void write_foreign(Time log_time, const std::string& topic, const std::string& type, const std::string& definition,
                      std::string_view cdr);
 
@@ -55,18 +57,21 @@ class RunLogWriter {
  private:
   template <typename Message>
   McapWriter::ChannelId channel(const char* topic) {
-    const auto known = channels_.find(topic);
-    if (known != channels_.end()) return known->second;
-    return add_channel(topic, kRosType<Message>);
+    const auto known = own_channels_.find(topic);
+    if (known != own_channels_.end()) return known->second;
+    return add_own_channel(topic, kRosType<Message>);
   }
-  McapWriter::ChannelId add_channel(const std::string& topic, const char* type);
+  McapWriter::ChannelId add_own_channel(const std::string& topic, const char* type);
+  McapWriter::ChannelId channel_of(const std::string& topic, const std::string& type, const std::string& definition);
   void write_frames(Time log_time, const OdometryEstimate& odometry);
   void remember(const OdometryEstimate& odometry);
   void write_frames(Time log_time, const PoseEstimate& estimate);
 
   McapWriter writer_;
   RosNames names_;
-  std::map<std::string, McapWriter::ChannelId> channels_;
+  std::map<std::tuple<std::string, std::string, std::string>, McapWriter::ChannelId>
+      channels_;                                               ///< by topic, type and definition
+  std::map<std::string, McapWriter::ChannelId> own_channels_;  ///< of Patrol's messages, by topic
   Trajectory odometry_;  ///< of late, to place map over odom at an estimate's stamp
 };
 

@@ -57,10 +57,10 @@ void McapWriter::put(std::string_view bytes) {
 McapWriter::ChannelId McapWriter::add_channel(const std::string& topic, const std::string& type,
                                               const std::string& definition) {
   mcap::RecordWriter schema, channel, records;
-  auto known = std::find(schema_types_.begin(), schema_types_.end(), type);
-  if (known == schema_types_.end()) {
-    known = schema_types_.insert(schema_types_.end(), type);
-    schema.number(static_cast<std::uint16_t>(schema_types_.size()));
+  const auto [known, is_new] =
+      schemas_by_type_.emplace(std::pair(type, definition), static_cast<std::uint16_t>(schemas_by_type_.size() + 1));
+  if (is_new) {
+    schema.number(known->second);
     schema.text(type);
     schema.text("ros2msg");
     schema.text(definition);
@@ -70,7 +70,7 @@ McapWriter::ChannelId McapWriter::add_channel(const std::string& topic, const st
   message_count_.push_back(0);
   const auto id = static_cast<ChannelId>(message_count_.size());
   channel.number(id);
-  channel.number(static_cast<std::uint16_t>(known - schema_types_.begin() + 1));
+  channel.number(known->second);
   channel.text(topic);
   channel.text("cdr");
   channel.number(std::uint32_t{0});  // no metadata
@@ -179,7 +179,7 @@ void McapWriter::close() {
 mcap::RecordWriter McapWriter::statistics() const {
   mcap::RecordWriter content, record;
   content.number(total_count_);
-  content.number(static_cast<std::uint16_t>(schema_types_.size()));
+  content.number(static_cast<std::uint16_t>(schemas_by_type_.size()));
   content.number(static_cast<std::uint32_t>(message_count_.size()));
   content.number(std::uint32_t{0});  // attachments
   content.number(std::uint32_t{0});  // metadata

@@ -34,7 +34,8 @@ class McapWriter {
   McapWriter(const McapWriter&) = delete;
   McapWriter& operator=(const McapWriter&) = delete;
 
-  /// Adds a channel. `definition`: ROS 2 message definition, including all types that it uses.
+  /// Adds a channel. Channels of equal type and definition share a schema. `definition`: ROS 2 message definition,
+  /// including all types that it uses.
   ChannelId add_channel(const std::string& topic, const std::string& type, const std::string& definition);
 
   void write(ChannelId channel, Time log_time, std::string_view cdr);
@@ -71,9 +72,9 @@ class McapWriter {
   std::unique_ptr<ZSTD_CCtx_s, std::size_t (*)(ZSTD_CCtx_s*)> compressor_;
   std::string packed_;
 
-  std::vector<std::string> schema_types_;     ///< [schema id - 1]
-  mcap::RecordWriter schemas_, channels_;     ///< records for the summary
-  std::vector<std::uint32_t> message_count_;  ///< [channel id - 1]
+  std::map<std::pair<std::string, std::string>, std::uint16_t> schemas_by_type_;  ///< ids, by type and definition
+  mcap::RecordWriter schemas_, channels_;                                         ///< records for the summary
+  std::vector<std::uint32_t> message_count_;                                      ///< [channel id - 1]
   std::uint64_t total_count_ = 0;
   std::uint64_t first_time_ = 0, last_time_ = 0;
 

@@ -84,6 +84,20 @@ TEST_F(RunLog, SensorMessagesGoToTheTopicOfTheirKind) {
   EXPECT_EQ(topics, (std::vector<std::string>{"/tf_static", "/gas", "/imu/data"}));
 }
 
+TEST_F(RunLog, MessagesOfTwoTypesOnOneTopicKeepTheirTypeAndDefinition) {
+  RunLogWriter writer(file, make_robot());
+  const std::vector<std::pair<std::string, std::string>> types = {{"test_msgs/msg/A", "string text\n"},
+                                                                  {"test_msgs/msg/B", "string text\n"},
+                                                                  {"test_msgs/msg/A", "uint8[] data\n"}};
+  for (const auto& [type, definition] : types) writer.write_foreign(1s, "/note", type, definition, "x");
+  writer.close();
+  std::vector<std::pair<std::string, std::string>> read;
+  read_mcap(file,
+            [&](const McapMessage& message) { read.emplace_back(message.channel.type, message.channel.definition); },
+            {.topics = {"/note"}});
+  EXPECT_EQ(read, types);
+}
+
 TEST_F(RunLog, ReadsFromOneTimeToAnother) {
   RunLogWriter writer(file, make_robot());
   for (int i = 0; i < 100; ++i) writer.write(i * 100ms, test::sample_imu());
