@@ -8,8 +8,10 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "io/files/output_error.h"
 #include "io/mcap/mcap_reader.h"
 #include "io/mcap/mcap_writer.h"
+#include "tests/support/file_size_limit.h"
 #include "tests/support/temporary_file.h"
 
 namespace patrol::io::mcap_test {
@@ -98,6 +100,17 @@ TEST_F(Mcap, SameCallsGiveTheSameBytes) {
   write_log(file, entries);
   write_log(folder / "again.mcap", entries);
   EXPECT_EQ(read_bytes(file), read_bytes(folder / "again.mcap"));
+}
+
+TEST_F(Mcap, AFullDiskIsAnErrorOfTheOutputWhereverItIsNoticed) {
+  write_log(file, entries);
+  const std::uintmax_t size = std::filesystem::file_size(file);
+  for (std::uintmax_t max_bytes = 0; max_bytes < size; max_bytes += 97) {
+    const test::FileSizeLimit limit(max_bytes);
+    EXPECT_THROW(write_log(folder / "full.mcap", entries), OutputError) << max_bytes << " of " << size << " bytes";
+  }
+  const test::FileSizeLimit limit(size - 1);
+  EXPECT_THROW(write_log(folder / "full.mcap", entries), OutputError);
 }
 
 TEST_F(Mcap, EachTopicHasTheDefinitionOfItsOwnEvenWithATypeOfOneName) {

@@ -11,6 +11,7 @@
 
 #include "core/error.h"
 #include "core/text.h"
+#include "io/files/output_error.h"
 
 namespace patrol::io {
 namespace {
@@ -26,7 +27,10 @@ std::string identifier(const std::string& name) {
 }
 
 void check(bool is_fine, sqlite3* database) {
-  if (!is_fine) throw InputError(sqlite3_errmsg(database));
+  if (is_fine) return;
+  const int code = sqlite3_errcode(database);
+  if (code == SQLITE_FULL || code == SQLITE_IOERR) throw OutputError(sqlite3_errmsg(database));
+  throw InputError(sqlite3_errmsg(database));
 }
 
 void execute(sqlite3* database, const std::string& sql) {
@@ -79,6 +83,9 @@ void save_sqlite(const std::filesystem::path& file, const std::vector<Table>& ta
   try {
     write_all(temporary, tables);
     std::filesystem::rename(temporary, file);
+  } catch (const OutputError& failure) {
+    std::filesystem::remove(temporary, error);
+    throw OutputError(fmt::format("{}: cannot be written: {}", file.string(), failure.what()));
   } catch (const std::exception& failure) {
     std::filesystem::remove(temporary, error);
     throw InputError(fmt::format("{}: cannot be written: {}", file.string(), failure.what()));

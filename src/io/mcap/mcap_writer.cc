@@ -49,9 +49,13 @@ McapWriter::~McapWriter() {
 
 void McapWriter::put(std::string_view bytes) {
   file_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  if (!file_) throw OutputError(path_.string() + ": writing failed (disk full?)");
+  check_file();
   offset_ += bytes.size();
   crc_ = crc_of(bytes, crc_);
+}
+
+void McapWriter::check_file() const {
+  if (!file_) throw OutputError(path_.string() + ": writing failed (disk full?)");
 }
 
 McapWriter::ChannelId McapWriter::add_channel(const std::string& topic, const std::string& type,
@@ -142,6 +146,7 @@ void McapWriter::write_chunk(const Chunk& chunk) {
   write_message_indexes(chunk, index);
   chunks_.push_back(std::move(index));
   file_.flush();
+  check_file();
 }
 
 void McapWriter::write_message_indexes(const Chunk& chunk, ChunkIndex& index) {
@@ -173,7 +178,7 @@ void McapWriter::close() {
   write_summary();
   put(mcap::kMagic);
   file_.close();
-  if (!file_) throw std::runtime_error(path_.string() + ": closing failed (disk full?)");
+  check_file();
 }
 
 mcap::RecordWriter McapWriter::statistics() const {

@@ -23,7 +23,8 @@ namespace patrol::io {
 ///
 /// Each chunk (1 MB or one second) is written when it is complete, by a thread that compresses it: after a crash the
 /// file is readable up to the last complete chunk. Without `close` the file has no summary, by which readers recognize
-/// truncation. An error of writing is thrown by a later call.
+/// truncation. An error of writing is thrown by a later call, as
+/// OutputError (output_error.h).
 class McapWriter {
  public:
   using ChannelId = std::uint16_t;
@@ -40,7 +41,7 @@ class McapWriter {
 
   void write(ChannelId channel, Time log_time, std::string_view cdr);
 
-  /// Writes the remaining messages and the summary.
+  /// Writes the remaining messages and the summary. Throws OutputError if the disk is full.
   void close();
 
  private:
@@ -56,6 +57,7 @@ class McapWriter {
   };
 
   void put(std::string_view bytes);
+  void check_file() const;
   void begin_chunk(std::uint64_t log_time);
   void flush_chunk();
   void write_chunk(const Chunk& chunk);

@@ -5,6 +5,8 @@
 #include <sqlite3.h>
 
 #include "core/error.h"
+#include "io/files/output_error.h"
+#include "tests/support/file_size_limit.h"
 #include "tests/support/temporary_file.h"
 
 namespace patrol::io::sqlite_test {
@@ -28,6 +30,13 @@ std::vector<std::string> ask(const std::filesystem::path& file, const std::strin
   EXPECT_EQ(sqlite3_exec(database, sql.c_str(), take, &answers, nullptr), SQLITE_OK) << sqlite3_errmsg(database);
   sqlite3_close(database);
   return answers;
+}
+
+TEST(Sqlite, AFullDiskIsAnErrorOfTheOutputAndLeavesNoFile) {
+  const test::TemporaryFolder folder;
+  const test::FileSizeLimit limit(4096);
+  EXPECT_THROW(save_sqlite(folder / "a.sqlite", {kRuns}), OutputError);
+  EXPECT_TRUE(std::filesystem::is_empty(folder / "."));
 }
 
 TEST(Sqlite, AnswersQuestionsAboutItsRows) {
