@@ -14,7 +14,6 @@
 #include "app/common/progress_bar.h"
 #include "app/record/run_directory.h"
 #include "app/run/run_once.h"
-#include "app/run/snapshot.h"
 #include "app/scenario/scenario.h"
 #include "core/error.h"
 #include "core/text.h"
@@ -43,13 +42,20 @@ std::vector<TickDigest> trace(const TracedRun& run, Time from, Time to) {
   return ticks;
 }
 
+/// Returns whether a run is a branch with settings of its own from an instant on.
+bool has_changed_settings(const std::filesystem::path& root) {
+  const std::filesystem::path branch = RunDirectory{root}.branch();
+  return std::filesystem::exists(branch) && io::load_metrics(branch).value("has_other_settings", true);
+}
+
 /// Compares the traces of two runs. Between different builds or scenarios the bytes of a state may differ without a
 /// difference in their values; then only motion and messages are compared.
 class TracePair {
  public:
   TracePair(TracedRun a, TracedRun b) : a_(std::move(a)), b_(std::move(b)) {
     const TickDigest first_a = trace(a_, Time{}, Time{}).at(0), first_b = trace(b_, Time{}, Time{}).at(0);
-    has_states_ = first_a.simulator == first_b.simulator && first_a.stack == first_b.stack;
+    has_states_ = first_a.simulator == first_b.simulator && first_a.stack == first_b.stack &&
+                  !has_changed_settings(a_.root) && !has_changed_settings(b_.root);
   }
 
   /// Names of the parts that differ.
@@ -84,10 +90,10 @@ class TracePair {
   bool has_states_ = false;
 };
 
-/// Instants at which both runs have a snapshot, before `end`, in ascending order; the start is the first.
+/// Instants from which both runs can be traced, before `end`, in ascending order; the start is the first.
 std::vector<Time> common_instants(const RunDirectory& a, const RunDirectory& b, Time end) {
-  const std::vector<Time> of_a = snapshot_times(a.snapshots()), of_b = snapshot_times(b.snapshots());
-  std::vector<Time> common = {Time{}};
+  const std::vector<Time> of_a = trace_starts(a), of_b = trace_starts(b);
+  std::vector<Time> common;
   std::ranges::set_intersection(of_a, of_b, std::back_inserter(common));
   std::erase_if(common, [&](Time time) { return time > end; });
   return common;
@@ -112,9 +118,9 @@ ExitCode bisect_command(const BisectOptions& options) {
     return ExitCode::kDone;
   }
   for (const RunDirectory& run : {a, b}) refuse_other_process(load_scenario(run.scenario()), run.root.string());
+  const std::vector<Time> instants = common_instants(a, b, in_logs->log_time);
   bar.show("bisect  comparing the starts");
   const TracePair pair({a.root, options.program_a.value_or(self)}, {b.root, options.program_b.value_or(self)});
-  const std::vector<Time> instants = common_instants(a, b, in_logs->log_time);
   const auto last_equal = std::prev(std::partition_point(instants.begin() + 1, instants.end(), [&](Time time) {
     bar.show(fmt::format("bisect  comparing the states at {:.1f} s", to_seconds(time)));
     return pair.are_equal_at(time);

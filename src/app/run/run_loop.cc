@@ -69,6 +69,7 @@ class ClosedLoop {
       log_.write(Time{}, as_built);
     }
     next_snapshot_ = simulator_.now() + part_.snapshot_period;
+    messages_ = part_.traced_messages;
   }
 
   /// Runs until a time and returns the state; empty if the run ends before.

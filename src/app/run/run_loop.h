@@ -65,6 +65,7 @@ struct RunPart {
   std::vector<Time> snapshot_times = {};              ///< instants of further snapshots, in ascending order
   std::function<void(const TickDigest&)> trace = {};  ///< receives every tick from `trace_from` on
   Time trace_from{};
+  std::uint64_t traced_messages = 0;                 ///< hash of the messages that a part before this one has traced
   std::function<void(Time, std::string)> save = {};  ///< receives the state of each snapshot
 };
 

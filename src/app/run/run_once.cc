@@ -1,10 +1,14 @@
 #include "app/run/run_once.h"
 
+#include <algorithm>
+#include <cstdint>
+#include <iterator>
 #include <sstream>
 #include <utility>
 
 #include <fmt/format.h>
 #include <mujoco/mujoco.h>
+#include <nlohmann/json.hpp>
 
 #include "app/common/output_directory.h"
 #include "app/common/process_cost.h"
@@ -20,6 +24,7 @@
 #include "app/scoring/score_run.h"
 #include "core/error.h"
 #include "core/state/state_archive.h"
+#include "io/json/metrics_json.h"
 #include "io/logs/run_log.h"
 #include "io/mcap/mcap_reader.h"
 
@@ -125,6 +130,64 @@ class Branch {
   std::optional<RunState> snapshot_;
 };
 
+/// Origin of a branch, by its file. Throws InputError if the other run is missing.
+BranchOrigin load_origin(const std::filesystem::path& file) {
+  BranchOrigin origin;
+  try {
+    const io::Metrics json = io::load_metrics(file);
+    origin = {.run = json.at("branch_of").get<std::string>(), .at = from_seconds(json.at("at_s").get<double>())};
+  } catch (const nlohmann::json::exception&) {
+    throw InputError(file.string() + ": must have the text branch_of and the number at_s");
+  }
+  if (!std::filesystem::exists(RunDirectory{origin.run}.log())) {
+    throw InputError(fmt::format("{}: branch_of = {}: run not found: a branch is repeated from its run", file.string(),
+                                 origin.run.string()));
+  }
+  return origin;
+}
+
+/// Traced part of a run, both ends included.
+struct TraceSpan {
+  Time from{}, to{};
+};
+
+/// Repeats a run up to the end of a span, reports the hashes of its ticks, and returns the state at the end; empty if
+/// the run ends before. A branch without a snapshot begins with the run that it continues. `messages`: hash of the
+/// messages that were traced before.
+std::string trace_part(const RunDirectory& directory, const TraceSpan& span, const std::filesystem::path& folder,
+                       std::uint64_t messages, const std::function<void(const TickDigest&)>& on_tick) {
+  const std::filesystem::path data_root = find_data_root(directory.scenario());
+  const Scenario scenario = load_scenario(directory.scenario());
+  refuse_other_process(scenario, directory.root.string());
+  RunPart part;
+  part.trace = on_tick;
+  part.trace_from = span.from;
+  if (auto snapshot = load_snapshot(directory.snapshots(), span.from, content_hash(scenario, data_root))) {
+    part.start = std::move(snapshot->bytes);
+  } else if (std::filesystem::exists(directory.branch())) {
+    const BranchOrigin origin = load_origin(directory.branch());
+    const RunDirectory parent = open_run_directory(origin.run);
+    if (span.to < origin.at) return trace_part(parent, span, folder, messages, on_tick);
+    const auto trace_parent = [&](const TickDigest& tick) {
+      messages = tick.messages;
+      if (tick.time < origin.at) on_tick(tick);
+    };
+    part.start = trace_part(parent, {std::min(span.from, origin.at), origin.at}, folder, messages, trace_parent);
+    if (part.start.empty())
+      throw InputError(fmt::format("{}: branch_of = {}: the run ends before {:.3f} s", directory.branch().string(),
+                                   origin.run.string(), to_seconds(origin.at)));
+  }
+  part.traced_messages = messages;
+  RunSystem run(scenario,
+                {.scenario = "trace", .data_root = data_root, .output = folder / "stack.log", .is_interrupted = [] {
+                   return false;
+                 }});
+  check_state(*run.stack);
+  NullObserver observer;
+  io::RunLogWriter log(folder / "log.mcap", run.files.robot);
+  return run_until(span.to, scenario, run.simulator, *run.stack, log, observer, part);
+}
+
 }  // namespace
 
 void refuse_other_process(const Scenario& scenario, const std::string& location) {
@@ -159,24 +222,21 @@ BranchOrigin parse_branch(const std::string& text) {
 
 void trace_run(const std::filesystem::path& root, Time from, Time to,
                const std::function<void(const TickDigest&)>& on_tick) {
-  const RunDirectory directory = open_run_directory(root);
-  const std::filesystem::path data_root = find_data_root(directory.scenario());
-  const Scenario scenario = load_scenario(directory.scenario());
-  refuse_other_process(scenario, directory.root.string());
   const TemporaryFolder folder("trace");
-  NullObserver observer;
-  RunSystem run(scenario, {.scenario = "trace",
-                           .data_root = data_root,
-                           .output = folder.path() / "stack.log",
-                           .is_interrupted = [] { return false; }});
-  check_state(*run.stack);
-  RunPart part;
-  part.trace = on_tick;
-  part.trace_from = from;
-  if (const auto snapshot = load_snapshot(directory.snapshots(), from, content_hash(scenario, data_root)))
-    part.start = snapshot->bytes;
-  io::RunLogWriter log(folder.path() / "log.mcap", run.files.robot);
-  run_until(to, scenario, run.simulator, *run.stack, log, observer, part);
+  trace_part(open_run_directory(root), {from, to}, folder.path(), 0, on_tick);
+}
+
+std::vector<Time> trace_starts(const RunDirectory& directory) {
+  std::vector<Time> starts = {Time{}};
+  if (std::filesystem::exists(directory.branch())) {
+    const BranchOrigin origin = load_origin(directory.branch());
+    starts = trace_starts(open_run_directory(origin.run));
+    std::erase_if(starts, [&](Time time) { return time > origin.at; });
+  }
+  std::ranges::copy(snapshot_times(directory.snapshots()), std::back_inserter(starts));
+  std::ranges::sort(starts);
+  starts.erase(std::unique(starts.begin(), starts.end()), starts.end());
+  return starts;
 }
 
 std::optional<RunVerdict> run_once(const Scenario& scenario, const std::string& name,

@@ -43,6 +43,10 @@ void refuse_other_process(const Scenario& scenario, const std::string& location)
 void trace_run(const std::filesystem::path& root, Time from, Time to,
                const std::function<void(const TickDigest&)>& on_tick);
 
+/// Returns the start and the snapshots of a run, from which a trace can begin, in ascending order. A branch has those
+/// of the run that it continues, too.
+std::vector<Time> trace_starts(const RunDirectory& directory);
+
 /// Runs a scenario, scores it, and writes a complete run directory at `root`. Returns none if `observer` stopped the
 /// run: the directory stays marked incomplete. Throws InputError, before anything is written, if a file of the scenario
 /// is missing or its settings are inconsistent. A branch begins with the messages of the other run up to the instant,

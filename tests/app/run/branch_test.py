@@ -96,6 +96,26 @@ class Branch(unittest.TestCase):
         self.assertLessEqual(found["first_difference_s"], start_s + IMU_PERIOD_S)
         self.assertEqual(found["parts"], ["messages"])  # the states differ from the start: they contain the list of faults
 
+    def test_bisect_finds_the_first_difference_of_a_branch_after_its_instant(self):
+        """The branch has no snapshots: its part before the instant is that of the run. So is that of a branch of a branch."""
+        at_s, slow = 4.9, ("--set", "stack.navigation.local_planner.dwa.max_speed_mps=0.2")
+        same, other, second = self.path / "same", self.path / "slow", self.path / "slow_branch_of_branch"
+        run_patrol("run", "--from", f"{self.parent}@{at_s}", *slow, "--out", other)
+        run_patrol("run", "--from", f"{self.parent}@2", "--snapshot-every", 2, "--out", same)
+        run_patrol("run", "--from", f"{same}@{at_s}", *slow, "--out", second)
+        for branch in (other, second):
+            done = run_patrol("bisect", self.parent, branch, "--json")
+            self.assertEqual(done.returncode, 1, done.stderr)
+            self.assertGreaterEqual(json.loads(done.stdout)["first_difference_s"], at_s)
+            self.assertLessEqual(json.loads(done.stdout)["first_difference_s"], at_s + 0.2)
+            self.assertNotIn("state", done.stdout)
+        shutil.move(same, self.path / "moved")
+        done = run_patrol("bisect", self.parent, second)
+        self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1), done.stderr)
+        self.assertIn("branch.json: branch_of = ", done.stderr)
+        span = ("--from-s", at_s - 0.1, "--to-s", at_s)
+        self.assertEqual(run_patrol("trace", other, *span).stdout, run_patrol("trace", self.parent, *span).stdout)
+
     def test_bisect_finds_no_difference_of_a_repeated_run(self):
         again = self.path / "again"
         run_patrol("run", self.scenario, "--set", "time_limit_s=6", "--out", again)
