@@ -14,11 +14,15 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <exception>
 #include <memory>
 #include <stdexcept>
 #include <vector>
 
 #include <fmt/format.h>
+
+#include "app/common/exit_code.h"
+#include "core/error.h"
 
 namespace patrol::app {
 namespace {
@@ -85,9 +89,25 @@ class Child {
     ::setrlimit(RLIMIT_CORE, &no_core);
     ::dup2(::fileno(stderr_file_.get()), STDERR_FILENO);
     ::dup2(::fileno(stderr_file_.get()), STDOUT_FILENO);
-    const int code = task(task_);
+    const int code = code_of(task);
     std::fflush(nullptr);
     std::_Exit(code);
+  }
+
+  /// Returns the exit code of the task. No exception may leave it: unwinding would destroy the copies of the parent's
+  /// children, which kills them.
+  int code_of(const std::function<int(std::size_t)>& task) const {
+    try {
+      return task(task_);
+    } catch (const InputError& error) {
+      fmt::print(stderr, "{}\n", error.what());
+      return static_cast<int>(ExitCode::kWrongInput);
+    } catch (const std::exception& error) {
+      fmt::print(stderr, "{}\n", error.what());
+    } catch (...) {
+      fmt::print(stderr, "unknown exception\n");
+    }
+    return static_cast<int>(ExitCode::kProgramFailed);
   }
 
   std::string last_stderr_line() {

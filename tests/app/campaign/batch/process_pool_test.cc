@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <map>
+#include <stdexcept>
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -53,6 +54,19 @@ TEST(ProcessPool, ACrashIsOnesOwn) {
   EXPECT_EQ(ends.at(1).signal, SIGSEGV);
   EXPECT_EQ(ends.at(0).signal, 0);
   EXPECT_EQ(ends.at(2).signal, 0);
+}
+
+TEST(ProcessPool, AnExceptionOfATaskEndsNoOtherTask) {
+  const auto ends = run(3, {.num_processes = 3}, [](std::size_t task) {
+    std::this_thread::sleep_for(milliseconds(task == 2 ? 100 : 600));
+    if (task == 2) throw std::runtime_error("the world has no floor");
+    return 0;
+  });
+  EXPECT_EQ(ends.at(0).signal, 0);
+  EXPECT_EQ(ends.at(1).signal, 0);
+  EXPECT_EQ(ends.at(2).signal, 0);
+  EXPECT_EQ(ends.at(2).exit_code, 3);
+  EXPECT_EQ(ends.at(2).last_stderr_line, "the world has no floor");
 }
 
 TEST(ProcessPool, AHangIsKilledAtItsLimit) {
