@@ -125,6 +125,15 @@ TEST_F(Mcap, EachTopicHasTheDefinitionOfItsOwnEvenWithATypeOfOneName) {
   EXPECT_EQ(definitions, (std::vector<std::string>{"uint8[] data\n", "string text\n", "uint8[] data\n"}));
 }
 
+TEST_F(Mcap, TheTimeOfTheLastMessageIsThatOfTheWholeOrTruncatedFile) {
+  write_log(file, entries);
+  EXPECT_EQ(last_message_time(file), Time(9900ms));
+  write_log(file, shuffled(entries), false);
+  EXPECT_EQ(last_message_time(file), Time(9900ms));
+  write_log(file, {}, false);
+  EXPECT_THROW(last_message_time(file), InputError);
+}
+
 TEST_F(Mcap, AnEmptyLogIsComplete) {
   write_log(file, {});
   EXPECT_TRUE(read_log(file).empty());

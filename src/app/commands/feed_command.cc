@@ -15,6 +15,7 @@
 #include "app/run/run_once.h"
 #include "app/scenario/data_folders.h"
 #include "core/error.h"
+#include "io/mcap/mcap_reader.h"
 #include "sim/model_assembly.h"
 
 namespace patrol::app {
@@ -44,6 +45,7 @@ ExitCode feed_run(const FeedOptions& options) {
   const std::string name = options.input.filename().string();
   if (std::filesystem::exists(options.out) && std::filesystem::equivalent(options.out, options.input))
     throw InputError(fmt::format("--out = {}: must not be the directory of the run", options.out.string()));
+  io::last_message_time(fed.log());  // throws before earlier output is removed
 
   ProgressLine observer("feed " + name, scenario.time_limit_s);
   const std::unique_ptr<StackPort> stack =

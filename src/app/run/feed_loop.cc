@@ -40,8 +40,7 @@ class FeedLoop {
         input_(input_mcap, {.topics = simulator_topics()}),
         turns_(turns),
         log_(log_mcap, files.robot) {
-    if (!input_.last_time()) throw InputError(input_mcap.string() + ": is incomplete");
-    end_ = *input_.last_time();
+    end_ = io::last_message_time(input_mcap);
     observer.begin(files);
   }
 

@@ -351,4 +351,12 @@ bool read_mcap(const std::filesystem::path& path, const std::function<void(const
   return reader.is_complete();
 }
 
+Time last_message_time(const std::filesystem::path& path) {
+  std::optional<Time> last = McapReader(path).last_time();
+  if (!last)
+    read_mcap(path, [&](const McapMessage& message) { last = std::max(last.value_or(Time::min()), message.log_time); });
+  if (!last) throw InputError(path.string() + ": has no messages");
+  return *last;
+}
+
 }  // namespace patrol::io

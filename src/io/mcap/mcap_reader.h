@@ -135,4 +135,8 @@ class McapReader {
 bool read_mcap(const std::filesystem::path& path, const std::function<void(const McapMessage&)>& handle,
                const McapSelection& selection = {});
 
+/// Returns the log time of the last message, in a truncated file up to the truncation. Throws InputError if the file
+/// has no messages.
+Time last_message_time(const std::filesystem::path& path);
+
 }  // namespace patrol::io

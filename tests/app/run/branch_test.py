@@ -74,8 +74,16 @@ class Branch(unittest.TestCase):
         done = run_patrol("verify", broken)
         self.assertEqual(done.returncode, 2)
         self.assertIn("incomplete run; cannot be verified", done.stderr)
+        (broken / "log.mcap").write_bytes(log[: len(log) // 2])
         fed = run_patrol("feed", broken, "--out", self.path / "fed")
         self.assertIn("broken: incomplete run: fed up to its last message", fed.stderr)
+        self.assertIn(fed.returncode, (0, 1), fed.stderr)
+        self.assertFalse((self.path / "fed/INCOMPLETE").exists())
+        (broken / "log.mcap").write_bytes(log[:100])
+        done = run_patrol("feed", broken, "--out", self.path / "fed")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("log.mcap: has no messages", done.stderr)
+        self.assertTrue((self.path / "fed/metrics.json").exists())
 
     def test_a_snapshot_of_another_scenario_is_refused(self):
         other = self.path / "other"
