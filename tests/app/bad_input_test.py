@@ -75,6 +75,13 @@ class BadInput(unittest.TestCase):
 
     def test_a_run_directory_excludes_files_to_score(self):
         self.refuse("score", "base", "--estimate", "a.tum", "--reference", "b.tum", says=["--estimate: excludes a run directory"])
+        self.refuse("score", "base", "--max-dt-s", "0.1", says=["--max-dt-s", "exclude a run directory"])
+        self.refuse("score", "--estimate", "a", "--map", "m", "--reference-map", "r", says=["--estimate: needs --reference or --relations"])
+        self.refuse("score", "--estimate", "a", "--reference", "b", "--map", "m", says=["--map: needs --reference-map"])
+        self.refuse("score", "--estimate", "a", "--reference", "b", "--reference-x-m", "0.1", says=["--reference-x-m: needs --relations"])
+        self.refuse("feed", self.folder.name, "--max-dt-s", "0.1", says=["--max-dt-s and --reference-x-m: only for a recorded log"])
+        for option in ("--robot-name", "--monitor-token-file"):
+            self.refuse("run", "street/short", option, "rex", says=[f"{option}: needs --monitor-url"])
 
     def test_wrong_unit_is_an_unknown_key_that_names_the_right_unit(self):
         file = self.scenario("sensors:\n  lidar: {range_noise_std_cm: 3}\n")

@@ -62,6 +62,7 @@ struct AssociationOptions {
   std::optional<double> max_dt_s;  ///< default: that of RelationSettings, of a reference score::kMaxAlignedDt
   double reference_x_m = 0.0;      ///< of relations only
 
+  bool is_given() const { return max_dt_s || reference_x_m != 0.0; }
   score::RelationSettings of_relations() const {
     score::RelationSettings settings{.reference_x_m = reference_x_m};
     if (max_dt_s) settings.max_dt_s = *max_dt_s;
@@ -70,7 +71,8 @@ struct AssociationOptions {
   Time of_reference() const { return max_dt_s ? from_seconds(*max_dt_s) : score::kMaxAlignedDt; }
 };
 
-/// Input of `patrol score`: a run directory, an estimate and a reference trajectory, relations or both, or two maps.
+/// Input of `patrol score`: a run directory, or an estimate with a reference trajectory, relations or both, two maps,
+/// or an estimate and maps.
 struct ScoreOptions {
   std::filesystem::path run;
   std::filesystem::path estimate;

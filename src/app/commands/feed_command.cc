@@ -25,6 +25,8 @@ namespace {
 ExitCode feed_run(const FeedOptions& options) {
   if (!options.relations.empty() || !options.reference.empty())
     throw InputError("--relations and --reference: only for a recorded log: a run has its own ground truth");
+  if (options.association.is_given())
+    throw InputError("--max-dt-s and --reference-x-m: only for a recorded log: a run has its own ground truth");
   if (options.as_recorded) throw InputError("--as-recorded: only for a recorded log: a run is always fed as recorded");
   for (const std::string& setting : options.overrides) {
     const bool is_stack = setting.starts_with("stack.") && !setting.starts_with("stack.command=");

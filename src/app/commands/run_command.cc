@@ -212,6 +212,10 @@ void warn_of_late_events(const Scenario& scenario) {
 }  // namespace
 
 ExitCode run_command(const RunOptions& options) {
+  for (const auto& [option, is_given] : {std::pair{"--robot-name", options.robot_name.has_value()},
+                                         std::pair{"--monitor-token-file", options.monitor_token_file.has_value()}}) {
+    if (is_given && !options.monitor_url) throw InputError(fmt::format("{}: needs --monitor-url", option));
+  }
   const Scenario scenario = scenario_of(options);
   warn_of_late_events(scenario);
   const std::string name = name_of(options);

@@ -1,6 +1,7 @@
 #include <unistd.h>
 
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -85,16 +86,14 @@ Pose2 map_in_reference(const std::filesystem::path& map, const std::filesystem::
   return io::load_registration(run.registration()).T_site_map;
 }
 
-/// Scores an estimate by a reference trajectory, by relations, or by both.
-ExitCode score_estimate_file(const ScoreOptions& options) {
+/// Scores an estimate by a reference trajectory, by relations, or by both. Adds the metrics and their text.
+void score_estimate_file(const ScoreOptions& options, io::Metrics& metrics, std::string& text) {
   std::size_t num_same_stamps = 0;
   const Trajectory estimate = io::load_tum(options.estimate, io::SameStamps::kKeepFirst, &num_same_stamps);
-  io::Metrics metrics;
-  std::string text;
   if (!options.relations.empty()) {
     const score::RelationError error =
         score::relation_error(estimate, io::load_relations(options.relations), options.association.of_relations());
-    metrics = relation_json(error);
+    metrics.update(relation_json(error));
     text += relation_table(error);
   }
   if (!options.reference.empty()) {
@@ -107,31 +106,54 @@ ExitCode score_estimate_file(const ScoreOptions& options) {
   if (num_same_stamps > 0)
     text +=
         fmt::format("\n{} poses of the estimate left out: each has the stamp of the previous pose\n", num_same_stamps);
-  print_result(options.form, text, metrics);
-  return ExitCode::kDone;
+}
+
+/// Throws InputError unless every option has the other one that it needs.
+void check_pairs(const ScoreOptions& options) {
+  const bool has_truth = !options.reference.empty() || !options.relations.empty();
+  const bool has_estimate = !options.estimate.empty() && has_truth;
+  const bool has_maps = !options.map.empty() && !options.reference_map.empty();
+  if (!has_estimate && !has_maps) {
+    throw InputError(
+        "score: needs a run directory, or --estimate and --reference, or --estimate and --relations, or --map and "
+        "--reference-map");
+  }
+  for (const auto& [option, is_alone, other] :
+       {std::tuple{"--estimate", !options.estimate.empty() && !has_estimate, "--reference or --relations"},
+        std::tuple{"--reference", !options.reference.empty() && !has_estimate, "--estimate"},
+        std::tuple{"--relations", !options.relations.empty() && !has_estimate, "--estimate"},
+        std::tuple{"--map", !options.map.empty() && !has_maps, "--reference-map"},
+        std::tuple{"--reference-map", !options.reference_map.empty() && !has_maps, "--map"},
+        std::tuple{"--max-dt-s", options.association.max_dt_s && !has_estimate, "--estimate"},
+        std::tuple{"--reference-x-m", options.association.reference_x_m != 0.0 && options.relations.empty(),
+                   "--relations"}}) {
+    if (is_alone) throw InputError(fmt::format("{}: needs {}", option, other));
+  }
 }
 
 }  // namespace
 
 ExitCode score_command(const ScoreOptions& options) {
-  const bool has_truth = !options.reference.empty() || !options.relations.empty();
-  const bool is_pair_of_maps = !options.map.empty() && !options.reference_map.empty();
   validate(options.association.of_relations(), "relations");
   if (!options.run.empty()) {
     if (const std::string option = file_option_of(options); !option.empty())
       throw InputError(fmt::format("{}: excludes a run directory", option));
+    if (options.association.is_given())
+      throw InputError("--max-dt-s and --reference-x-m: exclude a run directory: its ground truth has every instant");
     return score_directory(options);
   }
-  if (!options.estimate.empty() && has_truth) return score_estimate_file(options);
-  if (is_pair_of_maps) {
-    const io::Metrics metrics = score_maps(io::load_map(options.map), io::load_map(options.reference_map),
-                                           map_in_reference(options.map, options.reference_map));
-    print_result(options.form, score_table(metrics, {}), metrics);
-    return ExitCode::kDone;
+  check_pairs(options);
+  io::Metrics metrics;
+  std::string text;
+  if (!options.estimate.empty()) score_estimate_file(options, metrics, text);
+  if (!options.map.empty()) {
+    const io::Metrics by_map = score_maps(io::load_map(options.map), io::load_map(options.reference_map),
+                                          map_in_reference(options.map, options.reference_map));
+    metrics.update(by_map);
+    text += score_table(by_map, {});
   }
-  throw InputError(
-      "score: needs a run directory, or --estimate and --reference, or --estimate and --relations, or --map and "
-      "--reference-map");
+  print_result(options.form, text, metrics);
+  return ExitCode::kDone;
 }
 
 }  // namespace patrol::app

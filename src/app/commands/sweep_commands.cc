@@ -1,3 +1,5 @@
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "app/campaign/sweep/finish_sweep.h"
@@ -19,8 +21,15 @@ void check(const SweepOptions& options) {
   }
   if (options.engine == "slurm" && !options.shard.empty())
     throw InputError("--shard: not compatible with --engine slurm, which has --slurm-tasks");
+  for (const auto& [option, is_given] :
+       {std::pair{"--detach", options.detach}, std::pair{"--slurm-option", !options.slurm_options.empty()},
+        std::pair{"--slurm-tasks", options.slurm_tasks != SweepOptions{}.slurm_tasks}}) {
+    if (is_given && options.engine != "slurm") throw InputError(fmt::format("{}: needs --engine slurm", option));
+  }
   if (options.metrics.empty()) throw InputError("--metric: at least one is required");
   if (!(options.equivalence_margin >= 0.0)) throw InputError("--equivalence-margin: must not be negative");
+  if (options.equivalence_margin > 0.0 && !options.early_stop)
+    throw InputError("--equivalence-margin: needs --early-stop");
   if (options.slurm_tasks < 1 || options.slurm_tasks > 100'000)
     throw InputError("--slurm-tasks: must be in [1, 100000]");
 }

@@ -85,6 +85,10 @@ class RunOutput(unittest.TestCase):
         self.assertEqual(score["map"]["iou"], 1.0)
         same = json.loads(self.call("score", "--map", run / "map.yaml", "--reference-map", run / "map.yaml", "--json"))
         self.assertEqual(same["map"]["iou"], 1.0)
+        trajectory = run / "estimate.tum"
+        trajectory.write_text("".join(f"{t} {t} 0 0 0 0 0 1\n" for t in range(10)))
+        both = json.loads(self.call("score", "--estimate", trajectory, "--reference", trajectory, "--map", run / "map.yaml", "--reference-map", run / "map.yaml", "--json"))
+        self.assertEqual((both["pose"]["ate_rmse_m"], both["map"]["iou"]), (0.0, 1.0))
 
 
 if __name__ == "__main__":

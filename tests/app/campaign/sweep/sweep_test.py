@@ -182,7 +182,8 @@ class Sweep(SweepCase):
         out = self.path / "wrong"
         for wrong in (["--seeds", "0"], ["--shard", "4/3"], ["--vary", "nothing"], ["--vary", "sensors.lidar.rang=1,2"],
                       ["--keep-runs", "some"], ["--engine", "cloud"], ["--jobs", "-1"], ["--run-timeout-s", "0"],
-                      ["--early-stop", "--shard", "1/2"], ["--equivalence-margin", "-1"]):
+                      ["--early-stop", "--shard", "1/2"], ["--equivalence-margin", "-1"],
+                      ["--equivalence-margin", "0.01"], ["--detach"], ["--slurm-tasks", "3"], ["--slurm-option=--partition=long"]):
             done = self.sweep(out, *wrong)
             self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1), (wrong, done.stderr))
             self.assertFalse(out.exists())
