@@ -38,7 +38,7 @@ ExitCode perform(const std::filesystem::path& scenario, const SweepManifest& man
                  const BatchSettings& settings, const std::filesystem::path& out, ResultForm form) {
   const SweepDirectory directory = begin_sweep_directory(out, manifest);
   run_sweep(scenario, manifest, directory, shard, settings);
-  return finish_sweep(directory, manifest, form);
+  return finish_sweep(directory, manifest, form, shard);
 }
 
 }  // namespace

@@ -50,9 +50,21 @@ ExitCode worst_of(const SweepRows& rows, const SweepProgress& progress) {
   return worst;
 }
 
+/// Exit code of the worst run of a shard that gave no result; kDone if there is none.
+ExitCode worst_failure_of(const SweepRows& rows, const Shard& shard) {
+  ExitCode worst = ExitCode::kDone;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (!shard.contains(i) || !rows[i]) continue;
+    const ExitCode code = rows[i]->code();
+    if (code == ExitCode::kProgramFailed || code == ExitCode::kWrongInput) worst = worse(worst, code);
+  }
+  return worst;
+}
+
 }  // namespace
 
-ExitCode finish_sweep(const SweepDirectory& directory, const SweepManifest& manifest, ResultForm form) {
+ExitCode finish_sweep(const SweepDirectory& directory, const SweepManifest& manifest, ResultForm form,
+                      const Shard& shard) {
   const SweepRows rows = load_rows(manifest, directory.store());
   const SweepProgress progress = evaluate_progress(manifest, rows);
   io::Metrics json{{"directory", directory.root.string()},
@@ -63,7 +75,7 @@ ExitCode finish_sweep(const SweepDirectory& directory, const SweepManifest& mani
                  fmt::format("{}: {} of {} runs are missing; merge shards with 'patrol merge'\n",
                              directory.root.string(), progress.needed.size(), progress.counted.size()),
                  json);
-    return ExitCode::kDone;
+    return worst_failure_of(rows, shard);
   }
   const Findings findings = findings_of(manifest, rows, progress);
   if (!findings.markdown.empty()) io::save_text(directory.root / "faults.md", findings.markdown);

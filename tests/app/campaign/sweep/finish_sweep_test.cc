@@ -50,6 +50,27 @@ TEST(FinishSweep, ABudgetsTableIsThereAndCollectWritesTheSameAgain) {
   EXPECT_EQ(test::read_bytes(directory.sqlite()), sqlite);
 }
 
+TEST(FinishSweep, WithoutTheOthersAShardFailsByItsFailedRunsAlone) {
+  const test::TemporaryFolder folder;
+  const SweepManifest manifest = small_budget("a.yaml");
+  const SweepDirectory directory = begin_sweep_directory(folder / "budget", manifest);
+  const auto save = [&](std::size_t run, RunStatus end) {
+    directory.store().save(manifest.runs[run].hash,
+                           {.end = end, .message = "", .metrics = {}, .checks = {}, .events = {}});
+  };
+  const auto code_of_shard = [&](std::size_t index) {
+    return finish_sweep(directory, manifest, ResultForm::kText, {.index = index, .count = 3});
+  };
+  save(0, RunStatus::kDone);
+  save(3, RunStatus::kExpectationMissed);
+  save(1, RunStatus::kCrashed);
+  save(4, RunStatus::kWrongInput);
+  save(2, RunStatus::kWrongInput);
+  EXPECT_EQ(code_of_shard(0), ExitCode::kDone);
+  EXPECT_EQ(code_of_shard(1), ExitCode::kProgramFailed);
+  EXPECT_EQ(code_of_shard(2), ExitCode::kWrongInput);
+}
+
 TEST(FinishSweep, APartOfAnotherSweepIsRefusedAndWhatIsCompleteStaysSo) {
   const test::TemporaryFolder folder;
   const SweepDirectory directory = finished(folder / "budget", small_budget("a.yaml"));
