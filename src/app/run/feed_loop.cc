@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "app/common/process_cost.h"
-#include "core/error.h"
 #include "io/logs/run_log.h"
 #include "io/mcap/mcap_reader.h"
 #include "link/link_error.h"
