@@ -27,7 +27,7 @@ struct ImuSettings {
   double rate_hz = 250.0;                                ///< message rate; the firmware reads the sensor at every tick
   double gyro_noise_density_radps_per_sqrt_hz = 2.3e-4;  ///< angle random walk of the samples at each tick, 0.66
                                                          ///< deg/sqrt(h) plus vibration
-  double gyro_bias_std_radps = 0.002;                      ///< standard deviation of the constant bias of each axis
+  double gyro_bias_std_radps = 0.002;                    ///< standard deviation of the constant bias of each axis
   double gyro_bias_random_walk_radps_per_sqrt_s = 1.0e-5;  ///< rate random walk
   double accel_noise_density_mps2_per_sqrt_hz = 0.002;     ///< noise density of the samples at each tick
   double accel_bias_std_mps2 = 0.03;                       ///< standard deviation of the constant bias of each axis
