@@ -23,8 +23,7 @@ namespace patrol::io {
 ///
 /// Each chunk (1 MB or one second) is written when it is complete, by a thread that compresses it: after a crash the
 /// file is readable up to the last complete chunk. Without `close` the file has no summary, by which readers recognize
-/// truncation. An error of writing is thrown by a later call, as
-/// OutputError (output_error.h).
+/// truncation. An error of writing is thrown by a later call, as OutputError (output_error.h).
 class McapWriter {
  public:
   using ChannelId = std::uint16_t;
