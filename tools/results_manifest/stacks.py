@@ -32,7 +32,7 @@ add(name="stack_mrpt", file="src/link/README.md", seeds=REPORT, minutes=12,
     text=lambda values: "Built-in stack:\n\n" + by_seed(values["built_in"], MRPT_ROWS) + "\n\nMRPT:\n\n" + by_seed(values["mrpt"], MRPT_ROWS),
     targets=("patrol", "mrpt_stack"), files=("tests/interop/mrpt",))
 
-FACTORS = (0, 1, 3, 10, 20, 30)
+FACTORS = (0, 1, 3, 10, 20, 30, 60)
 
 
 def compute_text(values):
