@@ -52,7 +52,7 @@ inline LaserScan scan_of(const test::RoomWorld& room, Time stamp, const Pose2& T
   return scan;
 }
 
-/// Feeds a stack with the sensors of a robot that stands at the map's origin, tick by tick, for so many seconds. The
+/// Feeds a stack with the sensors of a robot that stands at the map's origin, tick by tick, for the given seconds. The
 /// stack has a step after every tick, or once per `step_period`.
 inline std::vector<StackMessage> stand(Stack& stack, const RobotDescription& robot, double seconds,
                                        double gas_ppm_m = 20.0, Time step_period = {}) {

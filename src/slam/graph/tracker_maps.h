@@ -15,7 +15,7 @@ class TrackerMaps {
 
   /// The map with which scans are matched.
   const GridMap& older() const { return older_; }
-  /// Number of keyframes so far.
+  /// Number of integrated keyframes.
   int num_keyframes() const { return keyframes_; }
   /// Index of the older map: 0, 1, ...
   int submap() const { return submap_; }

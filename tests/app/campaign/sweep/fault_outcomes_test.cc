@@ -9,6 +9,15 @@ namespace {
 
 using test::fault_verdict;
 
+/// Fault matrix of one seed: a run without a fault, and one with a drift of GNSS.
+SweepManifest one_fault_and_none() {
+  SweepManifest manifest;
+  manifest.variants = {{.name = "no fault", .overrides = {}}, {.name = "gnss: drift", .overrides = {}}};
+  manifest.seeds = {1};
+  for (std::size_t i = 0; i < 2; ++i) manifest.runs.push_back({.variant = i, .seed = 1, .overrides = {}, .hash = ""});
+  return manifest;
+}
+
 TEST(FaultOutcome, IsTheWorstThatHappened) {
   EXPECT_EQ(outcome_of(fault_verdict(RunStatus::kDone, true, 0)), FaultOutcome::kSurvived);
   EXPECT_EQ(outcome_of(fault_verdict(RunStatus::kExpectationMissed, true, 0)), FaultOutcome::kDegraded);
@@ -20,10 +29,7 @@ TEST(FaultOutcome, IsTheWorstThatHappened) {
 }
 
 TEST(FaultRow, HasNoEffectWhenOnlyTheNumberOfReportedFaultsAndThePerformanceDiffer) {
-  SweepManifest manifest;
-  manifest.variants = {{.name = "no fault", .overrides = {}}, {.name = "gnss: drift", .overrides = {}}};
-  manifest.seeds = {1};
-  for (std::size_t i = 0; i < 2; ++i) manifest.runs.push_back({.variant = i, .seed = 1, .overrides = {}, .hash = ""});
+  const SweepManifest manifest = one_fault_and_none();
   SweepRows rows = {fault_verdict(RunStatus::kDone, true, 0), fault_verdict(RunStatus::kDone, true, 0)};
   rows[0]->events.clear();
   rows[0]->metrics["mission"]["sensor_faults_noticed"] = 0;
@@ -35,10 +41,7 @@ TEST(FaultRow, HasNoEffectWhenOnlyTheNumberOfReportedFaultsAndThePerformanceDiff
 }
 
 TEST(FaultRow, AKidnapOfTheScenarioIsNoFault) {
-  SweepManifest manifest;
-  manifest.variants = {{.name = "no fault", .overrides = {}}, {.name = "gnss: drift", .overrides = {}}};
-  manifest.seeds = {1};
-  for (std::size_t i = 0; i < 2; ++i) manifest.runs.push_back({.variant = i, .seed = 1, .overrides = {}, .hash = ""});
+  const SweepManifest manifest = one_fault_and_none();
   SweepRows rows = {fault_verdict(RunStatus::kDone, true, 0), fault_verdict(RunStatus::kDone, true, 0)};
   const InjectedEvent kidnap{.name = "kidnap at 900 s", .was_triggered = false};
   rows[0]->events = {kidnap};
