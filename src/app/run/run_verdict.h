@@ -18,6 +18,9 @@ namespace patrol::app {
 struct InjectedEvent {
   std::string name;  ///< "fault imu freeze at 12 s"
   bool was_triggered = false;
+
+  /// Returns whether it is a fault, not a kidnap.
+  bool is_fault() const { return name.starts_with("fault "); }
 };
 
 /// Status of a completed run.

@@ -14,7 +14,7 @@ namespace {
 /// Whether the single declared fault of a run was triggered; none without a fault.
 std::optional<bool> was_triggered(const RunVerdict& verdict) {
   const auto fault = std::find_if(verdict.events.begin(), verdict.events.end(),
-                                  [](const InjectedEvent& event) { return event.name.starts_with("fault "); });
+                                  [](const InjectedEvent& event) { return event.is_fault(); });
   return fault == verdict.events.end() ? std::nullopt : std::optional(fault->was_triggered);
 }
 
