@@ -3,6 +3,7 @@
 
 usage: tunnel_test.py PATROL SOURCE_DIR [TEST...]
 """
+import json
 import pathlib
 import subprocess
 import sys
@@ -14,6 +15,29 @@ from seeds import seed_option
 
 PATROL, SOURCE = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
 SCENARIOS = SOURCE / "worlds/tunnel/scenarios"
+
+# The first of the three rings of inspection_round.yaml, without the drive to the face.
+ONE_RING = """
+world: tunnel
+robot: tracked
+seed: 5
+time_limit_s: 300
+mission: site.json
+map: round/map.yaml
+goals: {goals}
+references: round/scans
+lining_deformation:
+  - {{kind: convergence, first_ring: 20, last_ring: 20, inward_mm: 3.0}}
+stack: {{tunnel_mission: {{num_runs: 1}}}}
+expect:
+  mission.completed: true
+  mission.collisions: {{max: 0}}
+  inspection.lining.registered: {{min: 1}}
+  inspection.lining.missed: {{max: 0}}
+  inspection.lining.false_findings: {{max: 0}}
+  inspection.lining.max_error_mm: {{max: 1.4}}
+  docking.position_error_m.max: {{max: 0.02}}
+"""
 
 
 class Tunnel(unittest.TestCase):
@@ -66,6 +90,15 @@ class Tunnel(unittest.TestCase):
 
     def test_touches_none_of_twenty_low_obstacles(self):
         self.assert_as_expected("low_obstacles")
+
+    def test_inspects_one_ring_and_comes_home(self):
+        first_goal = json.loads((SOURCE / "worlds/tunnel/round/nav.json").read_text())[:1]
+        goals, scenario = self.out.parent / "nav.json", self.out.parent / "one_ring.yaml"
+        goals.write_text(json.dumps(first_goal))
+        scenario.write_text(ONE_RING.format(goals=goals))
+        done = subprocess.run([PATROL, "run", scenario, "--out", self.out], capture_output=True, text=True, cwd=SOURCE)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertEqual([ring["ring"] for ring in self.metrics()["inspection"]["lining"]["rings"]], [20])
 
     def test_inspects_lining_and_face_and_comes_home(self):
         self.assert_as_expected("inspection_round")

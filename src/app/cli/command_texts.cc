@@ -128,6 +128,7 @@ std::string man_page(const CLI::App& app, const std::string& version) {
       ".SH EXIT STATUS\n0: every expectation met; 1: an expectation missed; 2: invalid input or command line; 3: the "
       "program or the simulation failed; 4: time limit; 5: nothing executed.\n"
       ".SH ENVIRONMENT\n.TP\n\\fBPATROL_DATA\\fR\nFolder that contains the folders worlds and models.\n"
+      ".TP\n\\fBPATROL_THREADS\\fR\nThreads of a run, 1 or 2.\n"
       ".TP\n\\fBPATROL_TOKEN\\fR\nAccess token of the monitoring server.\n";
   return text;
 }

@@ -18,7 +18,10 @@ void add_run(CLI::App& app, Call& call) {
   command->add_option("--start", run.start, "Start X,Y or X,Y,DEG in the site, with --goal")->needs("--goal");
   command->add_option("--stack", run.stack, kStackHelp);
   command->add_flag("--watch", run.watch, "Show live status in the terminal");
-  command->add_option("--threads", run.threads, "Threads, 1 or 2, with the same results (default: 2 on several cores)")
+  command
+      ->add_option("--threads", run.threads,
+                   "Threads, 1 or 2, with the same results (default: $PATROL_THREADS, else 2 on several cores)")
+      ->envname("PATROL_THREADS")
       ->check(CLI::Range(1, 2));
   command->add_option("--snapshot-every", run.snapshot_period_s, "Simulated time between two snapshots, s")
       ->check(above_zero());

@@ -175,7 +175,6 @@ class ClosedLoop {
   }
 
   void deliver_sensor_messages(Time now) {
-    const auto timer = profiler_.time_stage("log");
     for (const SensorMessage& message : simulator_.take_messages())
       std::visit([&](const auto& content) { deliver(now, content); }, message);
   }
@@ -190,9 +189,15 @@ class ClosedLoop {
   /// Writes a message and hands it over to the stack.
   template <typename Message>
   void deliver(Time now, const Message& message) {
-    link::DeliveredMessage delivered{.topic = io::kTopic<Message>, .log_time = now, .cdr = log_.write(now, message)};
+    link::DeliveredMessage delivered{.topic = io::kTopic<Message>, .log_time = now, .cdr = write(now, message)};
     trace_message(delivered.topic, delivered.cdr);
     stack_.deliver(std::move(delivered));
+  }
+
+  template <typename Message>
+  std::string write(Time now, const Message& message) {
+    const auto timer = profiler_.time_stage("log");
+    return log_.write(now, message);
   }
 
   /// Publishes what the stack has computed by now, and lets it begin a turn when it is due. The simulator continues
@@ -234,13 +239,15 @@ class ClosedLoop {
   }
 
   void record_turn(Time now, const StackTurnRecord& record) {
-    if (stack_.records_turns()) log_.write(now, record);
+    if (stack_.records_turns()) write(now, record);
   }
 
   void publish(Time now, const std::vector<PublishedMessage>& messages) {
     for (const PublishedMessage& message : messages) {
-      const auto timer = profiler_.time_stage("log");
-      write_published(log_, now, message);
+      {
+        const auto timer = profiler_.time_stage("log");
+        write_published(log_, now, message);
+      }
       trace_message(message.topic, message.cdr);
       if (!message.content) continue;
       std::visit(Overloaded{[](const auto&) {},
@@ -264,14 +271,14 @@ class ClosedLoop {
 
   void record_ground_truth(Time now) {
     const GroundTruth truth = simulator_.truth();
-    for (const Collision& collision : simulator_.take_collisions()) log_.write(now, collision);
+    for (const Collision& collision : simulator_.take_collisions()) write(now, collision);
     if (truth_due_.is_due(now)) {
       distance_m_ += (truth.T_world_body.position - last_position_).head<2>().norm();
       last_position_ = truth.T_world_body.position;
-      log_.write(now, truth);
+      write(now, truth);
       observer_.on_ground_truth(truth);
     }
-    if (state_due_.is_due(now)) log_.write(now, simulator_.state());
+    if (state_due_.is_due(now)) write(now, simulator_.state());
   }
 
   /// Checks the end of the mission, the time limit and the observer, and sets the outcome's end. A fall and the end of

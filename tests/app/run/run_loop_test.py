@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A run ends by what happens first: the fall of the robot, the end of the mission or the time limit.
+"""A run ends by what happens first: the fall of the robot, the end of the mission or the time limit. Its parts are measured apart.
 
 usage: run_loop_test.py PATROL SOURCE
 """
@@ -68,6 +68,15 @@ class EndOfARun(unittest.TestCase):
         self.assertNotIn("time limit", line)
         self.assertEqual(code, 0)
         self.assertFalse(metrics["mission"]["fell"])
+
+    def test_the_parts_of_a_run_in_one_thread_add_up_to_its_time_at_most(self):
+        (self.path / "worlds/site").mkdir(parents=True)
+        (self.path / "worlds/site/site.xml").write_text(WORLD.replace("0 9.6 -2", "0 0 -9.81"))
+        subprocess.run([PATROL, "run", "site", "--robot", "wheeled", "--start", "0,0", "--goal", "5,0", "--set", "time_limit_s=12",
+                        "--threads", "1", "--out", "run"], cwd=self.path, capture_output=True, timeout=100)
+        performance = json.loads((self.path / "run/metrics.json").read_text())["performance"]
+        self.assertGreater(performance["parts_s"]["slam"], 0.0)
+        self.assertLessEqual(sum(performance["parts_s"].values()), performance["wall_s"])
 
 
 if __name__ == "__main__":
