@@ -159,12 +159,14 @@ VelocityCommand Stack::control(const Period& period) {
 }
 
 void Stack::advance_mission(const Period& period) {
-  MissionOutput output = parts_.mission->step(period.now, {.pose = period.pose,
-                                                           .is_lost = parts_.pose.is_lost(),
-                                                           .navigation = parts_.motion.navigation(),
-                                                           .docking = parts_.motion.docking(),
-                                                           .inspection = inspection_,
-                                                           .teleop = std::exchange(new_teleop_, std::nullopt)});
+  MissionOutput output =
+      parts_.mission->step(period.now, {.pose = period.pose,
+                                        .is_lost = parts_.pose.is_lost(),
+                                        .awaits_first_scan = parts_.pose.awaits_first_scan(period.now),
+                                        .navigation = parts_.motion.navigation(),
+                                        .docking = parts_.motion.docking(),
+                                        .inspection = inspection_,
+                                        .teleop = std::exchange(new_teleop_, std::nullopt)});
   for (Event& event : output.events) output_.publish(std::move(event));
   if (output.is_map_complete) {
     // The mission may be over, with a drive that saved no goals: report the failure all the same.

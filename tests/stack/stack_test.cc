@@ -38,6 +38,27 @@ class RecordingMission final : public Mission {
   bool is_over_ = false;
 };
 
+/// Records when a mission hears that the first scan is still to come, and the last time.
+class WaitingMission final : public Mission {
+ public:
+  explicit WaitingMission(std::vector<Time>& awaits) : awaits_(awaits) {}
+
+  MissionOutput step(Time now, const MissionInput& input) override {
+    if (input.awaits_first_scan) awaits_.push_back(now);
+    return {};
+  }
+  bool is_over() const override { return false; }
+  Event abort(Time now, EventKind kind, const std::string& text) override {
+    return {.stamp = now, .kind = kind, .text = text};
+  }
+  TaskTiming timing() const override { return TaskTiming::kNow; }
+  bool starts_at_survey() const override { return true; }
+  void serialize_state(StateArchive&) override {}
+
+ private:
+  std::vector<Time>& awaits_;
+};
+
 Stack stack_of(const RobotDescription& robot, std::unique_ptr<Mission> mission, const StackSettings& settings = {}) {
   return Stack({.pose = PosePipeline(settings, robot, {}, {}, 1),
                 .motion = MotionExecutor(settings, robot, {}, 1),
@@ -58,6 +79,29 @@ TEST(Stack, AMissionHearsOfItsTaskInTheNextStepWhateverItsTiming) {
     EXPECT_EQ(heard[4], NavigationFeedback::kDriving);
     EXPECT_EQ(heard[5], NavigationFeedback::kArrived);
   }
+}
+
+TEST(Stack, AMissionHearsThatTheFirstScanIsStillToComeUntilItGivesAPose) {
+  const RobotDescription robot = quadruped_with_outline();
+  std::vector<Time> awaits;
+  Stack stack = stack_of(robot, std::make_unique<WaitingMission>(awaits));
+  const std::vector<PoseEstimate> poses = all_of<PoseEstimate>(stand(stack, robot, 3.0));
+  ASSERT_FALSE(awaits.empty());
+  ASSERT_FALSE(poses.empty());
+  EXPECT_LT(awaits.back(), poses.front().stamp);
+  EXPECT_NEAR(to_seconds(awaits.back()), to_seconds(poses.front().stamp), 0.05);
+}
+
+// The settling time of 1 s, and 2 s for a scan.
+TEST(Stack, AMissionHearsForThreeSecondsThatTheFirstScanIsStillToComeWhenScansAreOfNoUse) {
+  const RobotDescription robot = quadruped_with_outline();
+  StackSettings settings;
+  settings.scan_leveling.max_range_m = 0.5;
+  std::vector<Time> awaits;
+  Stack stack = stack_of(robot, std::make_unique<WaitingMission>(awaits), settings);
+  stand(stack, robot, 5.0);
+  ASSERT_FALSE(awaits.empty());
+  EXPECT_NEAR(to_seconds(awaits.back() - awaits.front()), 3.0, 0.05);
 }
 
 TEST(Stack, AFallEndsTheMissionOnce) {

@@ -1,6 +1,7 @@
 #include "stack/localization/pose_pipeline.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <utility>
 
@@ -181,6 +182,12 @@ std::optional<PoseFromScan> PosePipeline::pose_from_scan(Time stamp) const {
 std::optional<SiteRegistration> PosePipeline::register_to_site(Time now) {
   if (num_scans_ == 0 || !registrar_.is_due(now)) return std::nullopt;
   return registrar_.update(now, localizer_->path());
+}
+
+bool PosePipeline::awaits_first_scan(Time now) const {
+  constexpr Time kLongestWait = std::chrono::seconds(2);
+  return localizer_->is_mapping() && num_scans_ == 0 && first_odometry_ &&
+         now < *first_odometry_ + settle_ + kLongestWait;
 }
 
 std::optional<std::string> PosePipeline::mapping_failure() const {

@@ -75,6 +75,9 @@ class PosePipeline {
   bool is_mapping() const { return localizer_->is_mapping(); }
   bool is_lost() const { return localizer_->is_lost(); }
 
+  /// Returns whether the first scan of the map is still to come. It must be taken at rest, at the map's origin. After
+  /// the settling time of odometry the answer is true for 2 s at most: scans may be missing.
+  bool awaits_first_scan(Time now) const;
   /// Returns why there is no map, as a sentence; none unless the robot maps and no scan was used.
   std::optional<std::string> mapping_failure() const;
   /// Ends the mapping with its final optimization, which the pose and the registration to the site follow. `pose`:

@@ -33,7 +33,7 @@ MissionOutput GasMission::step(Time now, const MissionInput& input) {
   MissionOutput output;
   switch (phase_) {
     case Phase::kWaiting:
-      wait(output);
+      wait(input, output);
       break;
     case Phase::kDriving:
       drive(input.navigation, output);
@@ -83,8 +83,8 @@ Event GasMission::abort(Time now, EventKind kind, const std::string& text) {
   return event(kind, current_ < route_.stations.size() ? station().name : "", text);
 }
 
-void GasMission::wait(MissionOutput& output) {
-  if (now_ < from_seconds(settings_.init_wait_s)) return;
+void GasMission::wait(const MissionInput& input, MissionOutput& output) {
+  if (now_ < from_seconds(settings_.init_wait_s) || input.awaits_first_scan) return;
   std::vector<std::string> names;
   for (const Station& station : route_.stations) names.push_back(station.name);
   const std::string stations = fmt::format("Mission started: {} stations, {}.", names.size(), join(names, ", "));

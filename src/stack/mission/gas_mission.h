@@ -45,7 +45,7 @@ class GasMission final : public Mission {
  private:
   enum class Phase { kWaiting, kDriving, kMeasuring, kOver };
 
-  void wait(MissionOutput& output);
+  void wait(const MissionInput& input, MissionOutput& output);
   void drive(NavigationFeedback feedback, MissionOutput& output);
   void measure(const InspectionProgress& progress, MissionOutput& output);
   void next_station(MissionOutput& output);

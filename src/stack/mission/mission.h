@@ -15,7 +15,8 @@ namespace patrol::stack {
 
 struct MissionInput {
   PoseEstimate pose;
-  bool is_lost = false;  ///< true: localization has reported failure
+  bool is_lost = false;            ///< true: localization has reported failure
+  bool awaits_first_scan = false;  ///< true: the first scan, which defines the map's origin, is still to come
   NavigationFeedback navigation = NavigationFeedback::kDriving;
   DockingFeedback docking = DockingFeedback::kInProgress;
   InspectionProgress inspection = {};

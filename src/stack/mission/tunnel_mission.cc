@@ -36,7 +36,7 @@ MissionOutput TunnelMission::step(Time now, const MissionInput& input) {
   if (monitor_localization(input, output)) return output;
   switch (phase_) {
     case Phase::kWaiting:
-      wait(output);
+      wait(input, output);
       break;
     case Phase::kTeleop:
       teleoperate(input, output);
@@ -111,9 +111,9 @@ bool TunnelMission::monitor_localization(const MissionInput& input, MissionOutpu
   return true;
 }
 
-void TunnelMission::wait(MissionOutput& output) {
-  if (now_ < from_seconds(settings_.init_wait_s) || now_ < *first_step_ + from_seconds(settings_.first_scan_wait_s))
-    return;
+void TunnelMission::wait(const MissionInput& input, MissionOutput& output) {
+  const Time first_scan_wait = *first_step_ + from_seconds(settings_.first_scan_wait_s);
+  if (now_ < from_seconds(settings_.init_wait_s) || now_ < first_scan_wait || input.awaits_first_scan) return;
   if (!has_teleop_ || has_map_) return start_run(output);
   last_teleop_ = now_;
   enter(Phase::kTeleop);

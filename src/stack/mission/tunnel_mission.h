@@ -58,7 +58,7 @@ class TunnelMission final : public Mission {
     kOver
   };
 
-  void wait(MissionOutput& output);
+  void wait(const MissionInput& input, MissionOutput& output);
   void teleoperate(const MissionInput& input, MissionOutput& output);
   void undock(const MissionInput& input);
   void drive(const MissionInput& input, MissionOutput& output);
