@@ -36,10 +36,10 @@ class MotionExecutor {
   /// and else once a second near the post.
   std::optional<DockDetection> add(const LevelScan& scan, const ScanPose& pose);
   void add(const UltrasonicRange& range, const StationPose& station_pose) {
-    navigator_.add_range(range, station_pose.T_level_body, station_pose.T_map_body);
+    navigator_.add_range(range, tilt(station_pose), station_pose.T_map_body);
   }
   void add(const DepthImage& image, const StationPose& station_pose) {
-    navigator_.add_depth(image, station_pose.T_level_body, station_pose.T_map_body);
+    navigator_.add_depth(image, tilt(station_pose), station_pose.T_map_body);
   }
   void add(const TeleopCommand& command) { last_teleop_ = command; }
 
@@ -58,6 +58,10 @@ class MotionExecutor {
   }
 
  private:
+  /// Body pose in the navigator's `level`, whose origin is the body's; that of a station pose is on the ground.
+  static Pose3 tilt(const StationPose& station_pose) {
+    return {Eigen::Vector3d::Zero(), station_pose.T_level_body.rotation};
+  }
   VelocityCommand navigate(Time now, const std::optional<NavigationGoal>& goal, const Pose2& T_map_body,
                            StackOutput& output);
   VelocityCommand teleop_command(Time now) const;

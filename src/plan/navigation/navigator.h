@@ -36,9 +36,11 @@ class Navigator {
   /// Replaces the keep-out lines.
   void set_keep_out_lines(std::vector<Polyline> lines_in_map);
   void add_scan(const LevelScan& scan, const Pose2& T_map_body) { costmap_.add_scan(scan, T_map_body); }
-  /// Adds a depth image; `T_level_body` is the body's tilt. Throws InputError if the robot has no such camera.
+  /// Adds a depth image; `T_level_body` is the body's tilt, without its height above the ground. Throws InputError if
+  /// the robot has no such camera.
   void add_depth(const DepthImage& image, const Pose3& T_level_body, const Pose2& T_map_body);
-  /// Adds an ultrasonic range. Throws InputError if the robot has no such transducer.
+  /// Adds an ultrasonic range; `T_level_body` as for a depth image. Throws InputError if the robot has no such
+  /// transducer.
   void add_range(const UltrasonicRange& ping, const Pose3& T_level_body, const Pose2& T_map_body);
   /// Sets the goal; an unchanged goal has no effect. None stops the robot.
   void set_goal(const std::optional<NavigationGoal>& goal);
