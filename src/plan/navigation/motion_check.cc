@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "plan/control/rollouts/rollout.h"
+
 namespace patrol::plan {
 namespace {
 
@@ -12,8 +14,7 @@ constexpr double kMinPassable_m = 0.02;  // clearance of a safe motion; below, t
 bool is_motion_safe(const Costmap& costmap, const Pose2& T_map_body, const VelocityCommand& command, double time_s) {
   const double clearance_now = costmap.clearance_m(T_map_body);
   for (const double part : {0.25, 0.5, 0.75, 1.0}) {
-    const Pose2 there = T_map_body * Pose2{command.vx_mps * time_s * part, command.vy_mps * time_s * part,
-                                           command.yaw_rate_radps * time_s * part};
+    const Pose2 there = follow_arc(T_map_body, command.vx_mps, command.yaw_rate_radps, time_s * part, command.vy_mps);
     if (costmap.clearance_m(there) < std::min(kMinPassable_m, clearance_now)) return false;
   }
   return true;
