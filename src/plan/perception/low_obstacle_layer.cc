@@ -65,6 +65,7 @@ CellBoxes LowObstacleLayer::add_ping(const SonarCone& cone, Time stamp, const Po
   };
   if (std::any_of(arc.begin(), arc.end(), is_explained)) arc.clear();
   low_.add_ping(arc, lattice_cells(cone.free_m, T_map_body, 1), stamp);
+  low_.clear_expired(stamp);
   return apply_changes();
 }
 

@@ -120,14 +120,14 @@ TEST(CostmapLow, TheLayerSurvivesTheCostmapsGrowth) {
   EXPECT_EQ(looker.costmap().cost_at({1.55, 0.0}), kLethalCost);
 }
 
-SonarCone cone_to(double range_m) {
+SonarCone cone_to(double range_m, double azimuth_rad = 0.0) {
   const UltrasonicRange ping{.stamp = {},
                              .transducer = 0,
                              .field_of_view_rad = 0.6,
                              .range_min_m = 0.2,
                              .range_max_m = 4.0,
                              .range_m = static_cast<float>(range_m)};
-  return inverse_sonar_model({}, ping, {{0.45, 0.0, 0.1}, Eigen::Quaterniond::Identity()}, kBodyHeight_m, 0.1);
+  return inverse_sonar_model({}, ping, {{0.45, 0.0, 0.1}, quaternion_from_yaw(azimuth_rad)}, kBodyHeight_m, 0.1);
 }
 
 TEST(CostmapLow, TwoPingsMarkAnArcAndTwoLongerOnesFreeIt) {
@@ -139,6 +139,20 @@ TEST(CostmapLow, TwoPingsMarkAnArcAndTwoLongerOnesFreeIt) {
   costmap.add_ping(cone_to(3.0), from_seconds(0.4), {});
   costmap.add_ping(cone_to(3.0), from_seconds(0.6), {});
   EXPECT_EQ(costmap.num_low_obstacles(), 0u);
+}
+
+// Without images: pings in another direction end the persistence, too.
+TEST(CostmapLow, EvidenceOfSonarExpiresWithoutImages) {
+  CostmapSettings settings;
+  settings.low.sonar_persistence_s = 15.0;
+  Costmap costmap(settings, make_robot(), {});
+  for (const double time_s : {0.0, 0.2}) costmap.add_ping(cone_to(0.5), from_seconds(time_s), {});
+  ASSERT_GT(costmap.num_low_obstacles(), 0u);
+  costmap.add_ping(cone_to(3.0, M_PI / 2.0), from_seconds(15.1), {});
+  EXPECT_EQ(costmap.cost_at({0.95, 0.0}), kLethalCost);
+  costmap.add_ping(cone_to(3.0, M_PI / 2.0), from_seconds(15.3), {});
+  EXPECT_EQ(costmap.num_low_obstacles(), 0u);
+  EXPECT_LT(costmap.cost_at({0.95, 0.0}), kLethalCost);
 }
 
 TEST(CostmapLow, AnEchoOfWhatTheLidarSeesMarksNothing) {
