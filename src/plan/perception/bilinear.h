@@ -17,7 +17,8 @@ class BilinearCell {
     const int col_floor = floor_to_int(col), row_floor = floor_to_int(row);
     u_ = col - col_floor, v_ = row - row_floor;
     const int left = std::clamp(col_floor, 0, grid.width - 1), low = std::clamp(row_floor, 0, grid.height - 1);
-    const int right = std::min(left + 1, grid.width - 1), high = std::min(low + 1, grid.height - 1);
+    const int right = std::clamp(col_floor + 1, 0, grid.width - 1);
+    const int high = std::clamp(row_floor + 1, 0, grid.height - 1);
     low_left_ = index(left, low), low_right_ = index(right, low);
     high_left_ = index(left, high), high_right_ = index(right, high);
   }
