@@ -14,9 +14,13 @@ namespace {
 /// Lengths of the three parts, in radii: a turn, a straight part or a turn, and a turn.
 using Parts = std::array<double, 3>;
 
+constexpr double kRounding = 1e-9;  // angles and distances in radii below this are rounding errors
+
+/// Equivalent angle in [0, 2 pi - kRounding]. A turn that is a full circle by rounding only is no turn.
 double positive_angle(double angle) {
   const double turn = std::fmod(angle, 2.0 * std::numbers::pi);
-  return turn < 0.0 ? turn + 2.0 * std::numbers::pi : turn;
+  const double positive = turn < 0.0 ? turn + 2.0 * std::numbers::pi : turn;
+  return positive > 2.0 * std::numbers::pi - kRounding ? 0.0 : positive;
 }
 
 /// Turn, straight part, turn. `first`, `last`: 1 to the left, -1 to the right.
@@ -26,6 +30,8 @@ double positive_angle(double angle) {
 std::optional<Parts> turn_straight_turn(const Pose2& goal, double first, double last) {
   const double dx = goal.x - last * std::sin(goal.yaw), dy = goal.y + last * std::cos(goal.yaw) - first;
   const double distance = std::hypot(dx, dy);
+  // The goal is on the circle of the first turn: the straight part has no length and thus no heading.
+  if (first == last && distance < kRounding) return Parts{positive_angle(first * goal.yaw), 0.0, 0.0};
   double heading = std::atan2(dy, dx), straight = distance;
   if (first != last) {
     if (distance < 2.0) return std::nullopt;

@@ -41,5 +41,31 @@ TEST(Dubins, KnownPathsHaveTheirClosedFormLength) {
   EXPECT_NEAR(length_m(dubins_path({0.0, 0.0, pi}, 1.0)), 7.0 * pi / 3.0, 1e-9);  // to turn around: three turns
 }
 
+/// Length of the path between a random frame and a pose relative to it, with the rounding errors of the map frame.
+double length_from_random_frame(std::uint64_t i, const Pose2& T_from_to, double radius_m) {
+  const RandomStream random(2, "dubins");
+  const Pose2 T_map_from{200.0 * (random.uniform(i, 0) - 0.5), 200.0 * (random.uniform(i, 1) - 0.5),
+                         2.0 * std::numbers::pi * (random.uniform(i, 2) - 0.5)};
+  return length_m(dubins_path(T_map_from.inverse() * (T_map_from * T_from_to), radius_m));
+}
+
+TEST(Dubins, AGoalStraightAheadIsReachedWithoutACircle) {
+  const RandomStream random(3, "dubins");
+  for (std::uint64_t i = 0; i < 10000; ++i) {
+    const double distance_m = 0.01 + 20.0 * random.uniform(i, 0), radius_m = 0.5 + random.uniform(i, 1);
+    ASSERT_NEAR(length_from_random_frame(i, {distance_m, 0.0, 0.0}, radius_m), distance_m, 1e-6) << i;
+  }
+}
+
+TEST(Dubins, AGoalOnTheCircleOfTheMinimumRadiusIsReachedByItsArc) {
+  const RandomStream random(4, "dubins");
+  for (std::uint64_t i = 0; i < 10000; ++i) {
+    const double radius_m = 0.5 + random.uniform(i, 0);
+    const double angle_rad = (i % 2 == 0 ? 1.0 : -1.0) * (0.01 + 0.98 * std::numbers::pi * random.uniform(i, 1));
+    const Pose2 goal = along_arc({}, std::copysign(1.0 / radius_m, angle_rad), radius_m * std::abs(angle_rad));
+    ASSERT_NEAR(length_from_random_frame(i, goal, radius_m), radius_m * std::abs(angle_rad), 1e-6) << i;
+  }
+}
+
 }  // namespace
 }  // namespace patrol::plan
