@@ -18,8 +18,6 @@ double bearing_rad(const Pose2& T_goal_body, double forward) {
   return std::atan2(forward * p_body.y(), forward * p_body.x());
 }
 
-bool wants_heading(const NavigationGoal& goal) { return goal.yaw_tolerance_rad < 3.0; }
-
 }  // namespace
 
 void DifferentialPoseController::reset() {
@@ -74,7 +72,7 @@ DifferentialPoseController::Phase DifferentialPoseController::choose(const Pose2
                                                                      const NavigationGoal& goal) const {
   const double aim_m = settings_.tolerance_fraction * goal.position_tolerance_m;
   const double distance_m = T_goal_body.position().norm();
-  if (!wants_heading(goal)) return distance_m <= goal.position_tolerance_m ? Phase::kDone : Phase::kTurnToPosition;
+  if (goal.accepts_any_yaw()) return distance_m <= goal.position_tolerance_m ? Phase::kDone : Phase::kTurnToPosition;
   const double yaw_error = std::abs(T_goal_body.yaw);
   if (distance_m <= goal.position_tolerance_m) {
     return yaw_error <= goal.yaw_tolerance_rad ? Phase::kDone : Phase::kTurnToHeading;
@@ -99,7 +97,7 @@ VelocityCommand DifferentialPoseController::drive_to_position(const Pose2& T_goa
   const double distance_m = T_goal_body.position().norm();
   const double along_m = distance_m * std::cos(turn);
   if (along_m <= settings_.tolerance_fraction * goal.position_tolerance_m / 2.0) {
-    phase_ = wants_heading(goal) ? Phase::kTurnToHeading : Phase::kChoose;
+    phase_ = goal.accepts_any_yaw() ? Phase::kChoose : Phase::kTurnToHeading;
     return {};
   }
   const bool is_far = distance_m > kMinBearingDistance_m;

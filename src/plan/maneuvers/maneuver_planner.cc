@@ -266,8 +266,7 @@ ManeuverPlanner::ManeuverPlanner(const ManeuverPlannerSettings& settings, const 
 ManeuverResult ManeuverPlanner::plan(const Costmap& costmap, const Pose2& T_map_body, bool is_reversing,
                                      const NavigationGoal& goal) const {
   Pose2 T_map_goal = goal.T_map_body;
-  if (goal.yaw_tolerance_rad >= std::numbers::pi)
-    T_map_goal.yaw = arrival_heading(costmap, T_map_body.position(), T_map_goal.position());
+  if (goal.accepts_any_yaw()) T_map_goal.yaw = arrival_heading(costmap, T_map_body.position(), T_map_goal.position());
   if (costmap.clearance_m(T_map_goal) < 0.0) return {.status = PlanStatus::kGoalBlocked};
   Search search(settings_, costmap, T_body_center_.inverse(), radius_m_, T_map_body * T_body_center_,
                 T_map_goal * T_body_center_);

@@ -18,7 +18,7 @@ struct GasMissionSettings {
   double alarm_column_ppm_m = 200.0;    ///< alarm threshold, equal to the column over approximately a hundred meters of
                                         ///< clean air
   double position_tolerance_m = 0.08;   ///< tolerance at a station; the route's own accuracy applies if tighter
-  double yaw_tolerance_rad = 0.06;      ///< maximum heading error of the robot at a station
+  double yaw_tolerance_rad = 0.06;      ///< maximum heading error of the robot at a station; 3 or more: any heading
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

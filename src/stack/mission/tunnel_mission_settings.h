@@ -21,7 +21,7 @@ struct TunnelMissionSettings {
                                    ///< is taken at rest
   double dwell_s = 1.0;            ///< standing time at a goal before it is reported
   double position_tolerance_m = 0.03;      ///< tolerance at a goal; the goal's own accuracy applies if tighter
-  double yaw_tolerance_rad = 0.017;        ///< maximum heading error of the robot at a goal
+  double yaw_tolerance_rad = 0.017;        ///< maximum heading error of the robot at a goal; 3 or more: any heading
   double teleop_timeout_s = 2.0;           ///< timeout after which the teleoperation counts as switched off
   double relocalization_timeout_s = 30.0;  ///< relocalization timeout; the robot stands still meanwhile
   /// Types of the goals saved on the mapping drive, in order; N for the rest. N: stop; V: pass without a stop; D: stop

@@ -42,8 +42,10 @@ TEST(PoseRegulator, TurnsTheShortWayAcrossPi) {
 }
 
 TEST(PoseRegulator, DoesNotTurnWhereAnyHeadingWillDo) {
-  const NavigationGoal goal{.T_map_body = {1.0, 0.0, 2.0}, .yaw_tolerance_rad = std::numbers::pi};
-  EXPECT_EQ(regulate_pose({}, {}, goal).yaw_rate_radps, 0.0);
+  for (const double tolerance_rad : {3.0, 3.1, std::numbers::pi}) {
+    const NavigationGoal goal{.T_map_body = {1.0, 0.0, 2.0}, .yaw_tolerance_rad = tolerance_rad};
+    EXPECT_EQ(regulate_pose({}, {}, goal).yaw_rate_radps, 0.0) << tolerance_rad;
+  }
 }
 
 TEST(PoseRegulator, AtTheGoalStands) {
@@ -77,6 +79,14 @@ TEST(PoseRegulator, ReachedMeansBothPositionAndHeading) {
   EXPECT_FALSE(is_reached({1.04, 0.96, 3.1}, goal));  // 5.7 cm
   EXPECT_TRUE(is_reached({1.0, 1.0, -3.1}, goal));    // 0.083 rad across pi
   EXPECT_FALSE(is_reached({1.0, 1.0, -3.0}, goal));   // 0.183 rad
+}
+
+TEST(PoseRegulator, AnyHeadingWillDoFromAToleranceOfThreeRadOn) {
+  for (const double tolerance_rad : {3.0, 3.1, std::numbers::pi}) {
+    const NavigationGoal goal{.T_map_body = {1.0, 1.0, 0.0}, .yaw_tolerance_rad = tolerance_rad};
+    EXPECT_TRUE(is_reached({1.0, 1.0, std::numbers::pi}, goal)) << tolerance_rad;
+  }
+  EXPECT_FALSE(is_reached({1.0, 1.0, std::numbers::pi}, {.T_map_body = {1.0, 1.0, 0.0}, .yaw_tolerance_rad = 2.9}));
 }
 
 }  // namespace
