@@ -20,12 +20,12 @@ struct DockingSettings {
   double heading_blend_distance_m = 0.15;
   double position_tolerance_m = 0.012;  ///< maximum position error of the docked robot
   double yaw_tolerance_rad = 0.008;     ///< maximum yaw error of the docked robot
-  double settling_time_s = 1.0;         ///< time within the tolerances after which the robot is docked
+  double settling_time_s = 1.0;         ///< time at a standstill after which the pose is compared with the tolerances
   int min_detections = 5;               ///< minimum number of detections of the post before the approach
-  double max_detection_gap_s = 1.0;     ///< maximum time without a detection during the approach
-  double detection_timeout_s = 10.0;    ///< maximum time of waiting for a detection at the staging pose
+  double max_detection_gap_s = 1.0;     ///< time without a detection after which the robot stops and waits
+  double detection_timeout_s = 10.0;    ///< time without a detection after which docking fails
   int max_attempts = 4;                 ///< maximum number of attempts
-  double timeout_s = 120.0;             ///< maximum duration of an attempt
+  double timeout_s = 120.0;             ///< maximum duration of docking, all attempts together, and of undocking
   double undock_distance_m = 1.2;       ///< distance that the robot backs away from the post
   LineFollowingSettings line;
   DockPoseFilterSettings pose_filter;

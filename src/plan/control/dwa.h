@@ -17,9 +17,9 @@
 namespace patrol::plan {
 
 /// Local planner by the dynamic window approach [Fox97]. Of the commands reachable within `window_s` it chooses the one
-/// whose constant-velocity arc has the minimum cost. An arc with negative clearance is rejected, unless the robot is
-/// already in such a pose and the arc leads away from the obstacle. With `max_lateral_speed_mps` the commands also have
-/// a lateral speed.
+/// whose constant-velocity arc has the minimum cost. An arc without positive clearance is rejected, unless the robot
+/// is already in collision and the arc leads away from the obstacle. With `max_lateral_speed_mps` the commands also
+/// have a lateral speed.
 class DynamicWindow final : public LocalPlanner {
  public:
   explicit DynamicWindow(const DwaSettings& settings);

@@ -17,8 +17,10 @@ struct CostmapSettings {
   double obstacle_range_m = 8.0;    ///< maximum range of lidar hits that become obstacles of the scan layer
   double obstacle_persistence_s = 8.0;  ///< persistence of an obstacle of the scan layer that is not observed again
   int map_match_tolerance_cells = 0;    ///< largest distance of a hit from a map obstacle to which it belongs (noise)
-  double keep_out_margin_m = 0.2;       ///< minimum distance between a keep-out line and the body's origin
-  double keep_out_inflation_m = 0.25;   ///< range beyond the margin within which a keep-out line has a cost
+  /// Minimum distance of a keep-out line from the body's origin in global paths, and from the centers of the discs of
+  /// the outline in motions.
+  double keep_out_margin_m = 0.2;
+  double keep_out_inflation_m = 0.25;  ///< range beyond the margin within which a keep-out line has a cost
   LowObstaclesSettings low = {};
 
   template <typename Self, typename Visitor>

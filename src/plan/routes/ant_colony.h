@@ -41,7 +41,7 @@ struct ImprovedColonySettings {
   double coefficient = 4.0;      ///< delta of [Li22, eqs. 7-9]
   double half_angle_deg = 70.0;  ///< half-angle about the force's direction in which neighbors receive pheromone
   PotentialFieldSettings field = {};
-  bool shorten_paths = true;  ///< whether every ant's route is shortened (grid_walk.h) before evaluation; extension
+  bool shorten_paths = true;  ///< whether every ant's route is shortened (grid_path.h) before evaluation; extension
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
