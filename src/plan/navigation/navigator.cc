@@ -6,6 +6,7 @@
 #include "core/wheel_kinematics.h"
 #include "plan/control/pose_regulator.h"
 #include "plan/navigation/maneuver_follower.h"
+#include "plan/navigation/motion_check.h"
 #include "plan/navigation/path_follower.h"
 
 namespace patrol::plan {

@@ -11,7 +11,6 @@
 #include "core/robot_description.h"
 #include "core/sensors/registry.h"
 #include "plan/control/differential_pose_controller.h"
-#include "plan/navigation/motion_check.h"
 #include "plan/navigation/navigation_step.h"
 #include "plan/navigation/navigator_settings.h"
 #include "plan/navigation/progress_monitor.h"
@@ -47,11 +46,6 @@ class Navigator {
 
   /// Command and status of one control period.
   NavigationStep step(Time now, const Pose2& T_map_body);
-
-  /// Whether the robot can move at a velocity for half a second without collision in the costmap.
-  bool is_free(const Pose2& T_map_body, const VelocityCommand& command) const {
-    return is_motion_safe(costmap_, T_map_body, command, 0.5);
-  }
 
   const Costmap& costmap() const { return costmap_; }
   const PlannedPath& path() const { return follower_->path(); }

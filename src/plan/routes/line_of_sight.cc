@@ -4,10 +4,6 @@
 
 namespace patrol::plan {
 
-bool has_line_of_sight(const Grid<Cost>& costs, Cell from, Cell to) {
-  return visit_line_cells(from, to, [&](Cell cell, double) { return costs.at(cell) != kLethalCost; });
-}
-
 std::optional<double> line_cost(const Grid<Cost>& costs, const std::array<double, 256>& factors, Cell from, Cell to) {
   double mean_factor = 0.0;
   const bool is_clear = visit_line_cells(from, to, [&](Cell cell, double fraction) {

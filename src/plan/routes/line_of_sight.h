@@ -38,11 +38,9 @@ bool visit_line_cells(Cell from, Cell to, Visit&& visit) {
   return visit(cell, 1.0 - done);
 }
 
-/// Whether the straight line between two cell centers meets no lethal cell, not even a corner of one; for neighbors
-/// this is is_valid_step's rule. Both cells are in the grid.
-bool has_line_of_sight(const Grid<Cost>& costs, Cell from, Cell to);
-
-/// Cost of the straight line, cells: its length, each part weighted by its cell's factor. None without line of sight.
+/// Cost of the straight line between two cell centers, cells: its length, each part weighted by its cell's factor. None
+/// without line of sight: the line meets a lethal cell, or only a corner of one. For neighbors this is is_valid_step's
+/// rule. Both cells are in the grid.
 std::optional<double> line_cost(const Grid<Cost>& costs, const std::array<double, 256>& factors, Cell from, Cell to);
 
 }  // namespace patrol::plan

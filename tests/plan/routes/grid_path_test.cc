@@ -6,7 +6,7 @@
 
 #include "tests/plan/routes/drawn_grid.h"
 
-namespace patrol::plan::grid_walk_test {
+namespace patrol::plan::grid_path_test {
 namespace {
 
 constexpr double kExactTol = 1e-12;
@@ -128,4 +128,4 @@ TEST(GridPathBuilder, AShortenedPathIsValidAndNeverMoreExpensiveOnTwoHundredRand
 }
 
 }  // namespace
-}  // namespace patrol::plan::grid_walk_test
+}  // namespace patrol::plan::grid_path_test

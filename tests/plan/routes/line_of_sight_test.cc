@@ -11,6 +11,10 @@ using test::draw, test::random_grid;
 
 constexpr double kExactTol = 1e-12;
 
+bool has_line_of_sight(const Grid<Cost>& costs, Cell from, Cell to) {
+  return line_cost(costs, cost_factors(0.0), from, to).has_value();
+}
+
 TEST(LineOfSight, AgreesWithSeparatingAxesOnTenThousandRandomLines) {
   int num_clear = 0, num_blocked = 0;
   for (std::uint64_t seed = 0; seed < 100; ++seed) {
