@@ -6,6 +6,7 @@ import unittest
 
 import numpy as np
 from mcap_ros2 import _dynamic
+from mcap_ros2._vendor.rosidl_adapter import parser
 
 from patrol_client import cdr
 
@@ -130,6 +131,118 @@ class Cdr(unittest.TestCase):
                 TYPE(**values).encode()
         with self.assertRaisesRegex(AttributeError, "no field speed"):
             TYPE(speed=1.0)
+
+    def test_defaults_and_constants_are_those_of_the_parser_of_ros_2(self):
+        definition = """bool YES=true
+bool NO = False
+bool ONE=1
+byte HEX=0xfF
+char LETTER=65
+int8 NEGATIVE=-128
+uint64 LARGE_CONSTANT=18446744073709551615
+int32 LEADING_ZERO=007
+float64 EXPONENT=1e-3
+float32 WHOLE=2
+string QUOTED="a b"
+string BARE=a = b
+bool valid true
+bool invalid False
+bool one 1
+byte hexadecimal 0x7f
+char letter 97
+int16 negative -32768
+int64 small -9223372036854775808
+uint64 large 18446744073709551557
+float32 ratio -.5
+float64 exponent 1e300
+string quoted "it's  "
+string single 'say \\'a\\''
+string bare two words
+wstring wide "\u00e9"
+int32[] list [1, -2,0x10]
+uint64[2] pair [18446744073709551615, 1]
+bool[2] flags [true, 0]
+float64[<=3] limited [1.5, 2]
+string[] texts ["a, b", 'c', d]
+string[] none []
+"""
+        expected = parser.parse_message_string("test_msgs", "Defaults", definition)
+        found = cdr.message_type("test_msgs/msg/Defaults", definition)
+        for constant in expected.constants:
+            self.assertEqual((constant.name, getattr(found, constant.name)), (constant.name, constant.value))
+            self.assertIs(type(getattr(found, constant.name)), type(constant.value), constant.name)
+        message = found()
+        for field in expected.fields:
+            self.assertEqual((field.name, as_plain(getattr(message, field.name))), (field.name, field.default_value))
+        self.assertEqual(as_plain(found.decode(message.encode())), as_plain(message))
+        message.list[0] = 5
+        message.texts.append("e")
+        self.assertEqual((found().list[0], len(found().texts)), (1, 3))  # a default is new for each message
+
+    def test_values_of_a_definition_that_do_not_fit_their_type_are_errors(self):
+        for line in ("bool a yes", "uint8 a 256", "int8 A=-129", "float64 a one", "int32[2] a [1]", "int32[<=1] a [1, 2]",
+                     "int32[] a 1", "string[] a [,]", "test_msgs/Wrong a 1", "float64 x[3]", "byte A='x'"):
+            with self.assertRaisesRegex(cdr.CdrError, "test_msgs/msg/Wrong"):
+                cdr.message_type("test_msgs/msg/Wrong", line + "\n")
+
+    def test_a_type_without_fields_has_one_byte(self):
+        definition = f"std_msgs/Empty first\nuint8 number\nstd_msgs/Empty[] list\nstring text\n{LINE}\nMSG: std_msgs/Empty\n"
+        found = cdr.message_type("test_msgs/msg/Empties", definition)
+        message = found(number=7, text="a")
+        message.list = [message.element("list")] * 3
+        self.assertEqual(as_plain(_dynamic.generate_dynamic("test_msgs/msg/Empties", definition)["test_msgs/msg/Empties"](
+            message.encode())), as_plain(message))
+        self.assertEqual(as_plain(found.decode(message.encode())), as_plain(message))
+        empty = cdr.message_type("std_msgs/msg/Empty", "")
+        self.assertEqual(empty().encode(), b"\x00\x01\x00\x00\x00")
+        with self.assertRaises(cdr.CdrError):
+            found.decode(b"\x00\x01\x00\x00\x00\x07\x00\x00\xff\xff\xff\xff")
+
+    def test_wide_strings_are_utf16_units_of_four_bytes(self):
+        wide = cdr.message_type("test_msgs/msg/Wide", "uint8 a\nwstring text\nwstring[] more\n")
+        message = wide(a=1, text="a\u00e9\U0001f600", more=["", "b"])
+        self.assertEqual(message.encode()[4:28], struct.pack("<BxxxI4I", 1, 4, 0x61, 0xe9, 0xd83d, 0xde00))
+        self.assertEqual(as_plain(wide.decode(message.encode())), as_plain(message))
+        for size in range(len(message.encode())):
+            with self.assertRaises(cdr.CdrError):
+                wide.decode(message.encode()[:size])
+
+    def test_limits_of_strings_and_sequences(self):
+        bounded = cdr.message_type("test_msgs/msg/Bounded", "string<=3 text\nint32[<=2] list\nstring<=1[<=2] texts\n")
+        full = bounded(text="abc", list=[1, 2], texts=["a", "b"])
+        self.assertEqual(as_plain(bounded.decode(full.encode())), as_plain(full))
+        for values in ({"text": "abcd"}, {"list": [1, 2, 3]}, {"texts": ["a"] * 3}, {"texts": ["ab"]}):
+            with self.assertRaisesRegex(cdr.CdrError, f"{next(iter(values))}: .* at most"):
+                bounded(**values).encode()
+
+    def test_arrays_of_numbers_that_do_not_fit_are_errors(self):
+        lists = cdr.message_type("test_msgs/msg/Lists", "int8[] cells\nuint8[] data\nuint64[] large\nfloat32[] ranges\nfloat32 x\n")
+        for values in ({"cells": np.array([100, 200])}, {"cells": [300]}, {"cells": np.array([0.5])}, {"large": np.array([-1])},
+                       {"cells": np.array([np.nan])}, {"cells": np.zeros((2, 3), np.int8)}, {"ranges": np.zeros((2, 3))},
+                       {"ranges": 1.0}, {"ranges": "12"}, {"ranges": ["1"]}, {"large": [2**64]}, {"x": 1e39}):
+            with self.assertRaisesRegex(cdr.CdrError, next(iter(values))):
+                lists(**values).encode()
+        message = lists(cells=np.array([-1.0, 100.0]), data=b"\x01\xff", large=[2**64 - 1, 1], ranges=[1, 2.5])
+        self.assertEqual(as_plain(lists.decode(message.encode())), {
+            "cells": [-1, 100], "data": [1, 255], "large": [2**64 - 1, 1], "ranges": [1.0, 2.5], "x": 0.0})
+
+    def test_a_message_of_another_type_is_an_error(self):
+        message = TYPE()
+        message.header = POINT()
+        with self.assertRaisesRegex(cdr.CdrError, "header: is a geometry_msgs/Point: must be a std_msgs/Header"):
+            message.encode()
+        with self.assertRaisesRegex(cdr.CdrError, "names: is a string"):
+            TYPE(names="ab").encode()
+
+    def test_types_of_the_same_package_and_with_msg_in_their_name(self):
+        found = cdr.message_type("my_msgs/msg/Both", f"Point near\nother_msgs/msg/Point far\n{LINE}\nMSG: other_msgs/Point\n"
+                                 f"float32 z\n{LINE}\nMSG: my_msgs/Point\nfloat32 x\n")
+        self.assertEqual([field.type._type_name for field in found._fields], ["my_msgs/Point", "other_msgs/Point"])
+
+    def test_definitions_that_are_no_types_are_errors(self):
+        for definition in ("Wrong[] children\n", "float64 3x\n", "float64 x\nuint8 x=1\n", "missing_msgs/Type x\n"):
+            with self.assertRaises(cdr.CdrError):
+                cdr.message_type("test_msgs/msg/Wrong", definition)
 
 
 if __name__ == "__main__":
