@@ -64,7 +64,7 @@ class Message:
 
     __slots__ = ("topic", "log_time_ns", "data", "_type", "_content")
 
-    def __init__(self, topic, log_time_ns, data, message_type):
+    def __init__(self, topic, log_time_ns, data, message_type):  # message_type: function that returns the class
         self.topic = topic
         self.log_time_ns = log_time_ns  #: time of delivery, ns
         self.data = data                #: encoded content
@@ -74,7 +74,7 @@ class Message:
     @property
     def log_time(self):
         """Time of delivery, s."""
-        return 1e-9 * self.log_time_ns
+        return self.log_time_ns / 1e9
 
     @property
     def content(self):
@@ -98,7 +98,7 @@ class Turn:
     @property
     def now(self):
         """Simulated time, s."""
-        return 1e-9 * self.now_ns
+        return self.now_ns / 1e9
 
     def latest(self, topic):
         """Content of the newest message on a topic in this turn; None if there is none."""
@@ -139,15 +139,19 @@ class Client:
         self._unsent = data_stream.RecordBuilder()
         self._unsent.write(_MAGIC)
         records.Header(profile="ros2", library="patrol_client").write(self._unsent)
-        self._schemas = {}       # sent, id by type
+        self._schemas = {}       # sent, id by type and definition
         self._sent_channels = {}  # id by topic
         self._received_schemas, self._received_channels = {}, {}
         self._definitions = {topic: definition for topic, definition in _CONTROL.items()}
-        self._types = {}
+        self._types = {}         # class by type and definition
         self.documents = []  #: messages before the first turn: /tf_static and, for a known map, /site_map
-        if self._read_bytes(len(_MAGIC)) != _MAGIC:
-            raise LinkError("not a simulator of Patrol")
-        self.hello = self._read_hello()
+        try:
+            if self._read_bytes(len(_MAGIC)) != _MAGIC:
+                raise LinkError("not a simulator of Patrol")
+            self.hello = self._read_hello()
+        except BaseException:
+            self.close()
+            raise
 
     def __enter__(self):
         return self
@@ -156,26 +160,32 @@ class Client:
         self.close()
 
     def close(self):
+        """Closes the connection. Before the last turn, the run fails."""
         self._file.close()
         self._socket.close()
 
     def type_of(self, topic):
         """Returns the class of the messages on a topic. Raises KeyError if the topic is not known."""
-        if topic not in self._types:
-            self._types[topic] = cdr.message_type(*self._definitions[topic])
-        return self._types[topic]
+        return self._class_of(self._definitions[topic])
 
     def declare(self, topic, type_name, definition):
         """Declares a topic of the software's own, with a ROS 2 message definition (cdr.message_type). Raises ValueError if
-        a message of another type has been published on it."""
-        if topic in self._sent_channels and self._definitions[topic][0] != type_name:
+        a message of another type or definition has been published on it."""
+        if topic in self._sent_channels and self._definitions[topic] != (type_name, definition):
             raise ValueError(f"{topic}: has messages of another type")
         self._definitions[topic] = (type_name, definition)
-        self._types.pop(topic, None)
+
+    def _class_of(self, definition):
+        """Class of a type by its name and definition."""
+        if definition not in self._types:
+            self._types[definition] = cdr.message_type(*definition)
+        return self._types[definition]
 
     def begin(self, stack, topics=(), turn_period=0.0):
         """Answers the hello. `stack`: name; `topics`: to receive, all if empty; `turn_period`: time between turns, s, where
-        a turn does not set the next one; 0: one tick."""
+        a turn does not set the next one; 0: one tick. Raises TypeError if `topics` is one string."""
+        if isinstance(topics, str):
+            raise TypeError(f"topics: must be a list of names, not {topics!r}")
         period_ns = round(turn_period * 1e9)
         reply = self.type_of("/link/hello_reply")(protocol=PROTOCOL_VERSION, stack=stack, topics=list(topics))
         reply.turn_period.sec, reply.turn_period.nanosec = divmod(period_ns, 10**9)
@@ -183,7 +193,7 @@ class Client:
         self._flush()
 
     def next_turn(self):
-        """Waits for the turn after the last `done`."""
+        """Waits for the turn after the last `done`. Raises LinkError if the simulator ends the connection."""
         messages = []
         while True:
             message = self._read_message()
@@ -200,7 +210,7 @@ class Client:
                         data=message.encode()).write(self._unsent)
 
     def done(self, turn):
-        """Ends a turn."""
+        """Ends a turn. Raises LinkError if the simulator has ended the connection."""
         done = self.type_of("/link/done")(mission_is_over=turn.mission_is_over)
         done.now.sec, done.now.nanosec = divmod(turn.now_ns, 10**9)
         done.next_turn.sec, done.next_turn.nanosec = divmod(turn.next_turn_ns, 10**9)
@@ -212,21 +222,28 @@ class Client:
         try:
             self.publish("/link/failure", 0, self.type_of("/link/failure")(text=text))
             self._flush()
-        except OSError:
+        except LinkError:
             pass  # the simulator is gone
 
     def _send_channel(self, topic):
-        type_name, definition = self._definitions[topic]
-        if type_name not in self._schemas:
-            self._schemas[type_name] = len(self._schemas) + 1
-            records.Schema(id=self._schemas[type_name], name=type_name, encoding="ros2msg",
-                           data=definition.encode()).write(self._unsent)
+        definition = self._definitions[topic]
+        if definition not in self._schemas:
+            self._schemas[definition] = len(self._schemas) + 1
+            records.Schema(id=self._schemas[definition], name=definition[0], encoding="ros2msg",
+                           data=definition[1].encode()).write(self._unsent)
         self._sent_channels[topic] = len(self._sent_channels) + 1
         records.Channel(id=self._sent_channels[topic], topic=topic, message_encoding="cdr", metadata={},
-                        schema_id=self._schemas[type_name]).write(self._unsent)
+                        schema_id=self._schemas[definition]).write(self._unsent)
 
     def _flush(self):
-        self._socket.sendall(self._unsent.end())
+        try:
+            self._socket.sendall(self._unsent.end())
+        except OSError as error:
+            while True:  # until the reason that the simulator gave, or the end of the connection: LinkError
+                try:
+                    self._read_message()
+                except LinkError as reason:
+                    raise reason from error
 
     def _read_bytes(self, size):
         try:
@@ -248,12 +265,13 @@ class Client:
             elif head[0] == opcode.Opcode.CHANNEL:
                 channel = records.Channel.read(content)
                 schema = self._received_schemas[channel.schema_id]
-                self._received_channels[channel.id] = channel.topic
-                self._definitions.setdefault(channel.topic, (schema.name, schema.data.decode()))
+                definition = (schema.name, schema.data.decode())
+                self._received_channels[channel.id] = (channel.topic, definition)
+                self._definitions.setdefault(channel.topic, definition)
             elif head[0] == opcode.Opcode.MESSAGE:
                 record = records.Message.read(content, size)
-                topic = self._received_channels[record.channel_id]
-                message = Message(topic, record.log_time, record.data, lambda: self.type_of(topic))
+                topic, definition = self._received_channels[record.channel_id]
+                message = Message(topic, record.log_time, record.data, lambda: self._class_of(definition))
                 if topic == "/link/failure":
                     raise LinkError(message.content.text)
                 return message
@@ -268,7 +286,7 @@ class Client:
             if hello.protocol != PROTOCOL_VERSION:
                 raise LinkError(f"version {hello.protocol} of the protocol: must be {PROTOCOL_VERSION}")
             return Hello(program=hello.program, scenario=hello.scenario, seed=hello.seed,
-                         tick=1e-9 * _nanoseconds(hello.tick),
+                         tick=_nanoseconds(hello.tick) / 1e9,
                          limits=VelocityLimits(hello.forward_mps, hello.backward_mps, hello.sideways_mps, hello.yaw_rate_radps),
                          robot=hello.robot, site=json.loads(hello.site or "{}"),
                          goals=json.loads(hello.goals or "[]"), registration=json.loads(hello.registration or "{}"),
@@ -292,16 +310,20 @@ def _connect(address):
         if not path:
             raise LinkError(f"{SOCKET_VARIABLE} is not set: start this program with patrol run --stack, or give an address")
         address = "unix:" + path
-    kind, _, place = address.partition(":")
-    if kind == "unix":
-        connection = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
-        connection.connect(place)
-    elif kind == "tcp":
-        host, _, port = place.rpartition(":")
+    kind, _, rest = address.partition(":")
+    host, _, port = rest.rpartition(":")
+    if kind == "tcp" and host and port.isdecimal():
         connection = socket.create_connection((host, int(port)))
         connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-    else:
+        return connection
+    if kind != "unix":
         raise LinkError(f"{address}: must be unix:PATH or tcp:HOST:PORT")
+    connection = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+    try:
+        connection.connect(rest)
+    except BaseException:
+        connection.close()
+        raise
     return connection
 
 
