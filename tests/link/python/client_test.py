@@ -124,7 +124,7 @@ class Connection(unittest.TestCase):
             gc.collect()
         self.assertEqual([str(one.message) for one in found], [])
 
-    def test_addresses_that_are_none(self):
+    def test_invalid_addresses_are_errors(self):
         for address in ("tcp:localhost", "tcp:5000", "localhost:5000", "/tmp/socket"):
             with self.assertRaisesRegex(LinkError, "must be unix:PATH or tcp:HOST:PORT"):
                 Client(address)
