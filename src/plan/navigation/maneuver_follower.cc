@@ -116,7 +116,10 @@ VelocityCommand ManeuverFollower::command(const Costmap& costmap, const Pose2& T
   const double speed_mps = std::min(top_mps, std::max(0.1, last_mps + limits.max_acceleration_mps2 * limits.window_s));
   const VelocityCommand command{.vx_mps = next.is_reverse ? -speed_mps : speed_mps,
                                 .yaw_rate_radps = curvature * speed_mps};
-  return is_motion_safe(costmap, T_map_body, command, kSafe_s) ? command : VelocityCommand{};
+  // The body's origin is beside the turn center, so that it also moves sideways.
+  VelocityCommand motion = command;
+  motion.vy_mps = -T_body_center_.x * command.yaw_rate_radps;
+  return is_motion_safe(costmap, T_map_body, motion, kSafe_s) ? command : VelocityCommand{};
 }
 
 bool ManeuverFollower::is_blocked_at(const Costmap& costmap, double along_m) const {
