@@ -220,13 +220,15 @@ void TunnelMission::start_run(MissionOutput& output) {
   goal_ = 0;
   output.relocalization = relocalization();
   output.events.push_back(event(EventKind::kNavigationStarted, fmt::format("navigation_{}", run_),
+/// A robot that is not docked keeps its pose: that of the dock would be wrong.
                                 fmt::format("Run {} of {}: {} goals.", run_, settings_.num_runs, goals_.size()), run_));
   enter(is_docked_ ? Phase::kUndocking : Phase::kDriving);
 }
 
 Relocalization TunnelMission::relocalization() const {
   if (settings_.start_at_survey) return Relocalization::kNone;
-  return settings_.start_docked ? Relocalization::kAtDock : Relocalization::kAnywhere;
+  if (!settings_.start_docked) return Relocalization::kAnywhere;
+  return is_docked_ ? Relocalization::kAtDock : Relocalization::kNone;
 }
 
 void TunnelMission::next_goal(MissionOutput& output) {

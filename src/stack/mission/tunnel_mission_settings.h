@@ -9,7 +9,9 @@
 namespace patrol::stack {
 
 struct TunnelMissionSettings {
-  int num_runs = 10;  ///< number of runs to all goals, each after a restart of the localization
+  /// Number of runs to all goals, each after a restart of the localization. A robot with a post that is not docked
+  /// keeps its pose.
+  int num_runs = 10;
   /// Whether the robot starts at its post; false: the initial pose is unknown, and the robot localizes globally.
   bool start_docked = true;
   /// Whether a robot without a post starts at the surveyed start, localizes from there, and continues between runs

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "core/error.h"
 
 namespace patrol::stack::tunnel_mission_test {
 namespace {
+
+using ::testing::ElementsAre;
 
 constexpr Time kStep = std::chrono::milliseconds(50);
 
@@ -36,6 +39,8 @@ class Robot {
                                  .teleop = teleop});
       if (teleop) teleop->save_goal = teleop->hand_over = false;
       for (const Event& event : output.events) events.push_back(event);
+      if (const int run = count(EventKind::kNavigationStarted); run > static_cast<int>(relocalizations.size()))
+        relocalizations.push_back(output.relocalization);
       restarts += output.relocalization != Relocalization::kNone ? 1 : 0;
       maps += output.is_map_complete ? 1 : 0;
     }
@@ -48,6 +53,7 @@ class Robot {
 
   MissionOutput output;
   std::vector<Event> events;
+  std::vector<Relocalization> relocalizations;  ///< [run] relocalization at its start
   int restarts = 0;
   int maps = 0;
 
@@ -135,6 +141,30 @@ TEST(TunnelMission, ADockingThatFailsFailsTheMission) {
   robot.run(100.0);
   EXPECT_EQ(robot.count(EventKind::kDockFailed), 1);
   EXPECT_EQ(robot.count(EventKind::kMissionFailed), 1);
+}
+
+// The dock's pose would be wrong by the distance to it, at 3 cm of standard deviation.
+TEST(TunnelMission, ARunAfterAFailedDockingKeepsThePose) {
+  Robot robot(TunnelMission({.num_runs = 2}, two_goals(), false));
+  robot.navigation = NavigationFeedback::kDriving;
+  robot.run(6.0);
+  EXPECT_EQ(robot.output.task.motion, Motion::kNavigate);  // it has left the post
+  robot.navigation = NavigationFeedback::kArrived;
+  robot.docking = DockingFeedback::kFailed;
+  robot.run(100.0);
+  EXPECT_EQ(robot.count(EventKind::kDockFailed), 2);
+  EXPECT_THAT(robot.relocalizations, ElementsAre(Relocalization::kAtDock, Relocalization::kNone));
+}
+
+TEST(TunnelMission, ARunWithoutDockingBeforeItKeepsThePose) {
+  Robot robot(TunnelMission({.num_runs = 2, .dock_after_run = false}, two_goals(), false));
+  robot.run(100.0);
+  EXPECT_THAT(robot.relocalizations, ElementsAre(Relocalization::kAtDock, Relocalization::kNone));
+  Robot with_operator(TunnelMission({.num_runs = 1, .dock_after_run = false}, {}, true));
+  with_operator.run(5.0);
+  with_operator.run(1.0, TeleopCommand{.save_goal = true});
+  with_operator.run(100.0);
+  EXPECT_THAT(with_operator.relocalizations, ElementsAre(Relocalization::kNone));
 }
 
 TEST(TunnelMission, LostItStandsAndGoesOnOnceItKnows) {
