@@ -66,7 +66,10 @@ DockingStep Docking::step(Time now, const Pose2& T_odom_body) {
   VelocityCommand command;
   if (phase_ == Phase::kUndock) command = drive_out(T_odom_body);
   if (status() == DockingStatus::kDocking || status() == DockingStatus::kUndocking) {
-    if (now - start_ > from_seconds(settings_.timeout_s)) enter(Phase::kFailed, "Docking failed: timeout.");
+    if (now - start_ > from_seconds(settings_.timeout_s)) {
+      const bool is_leaving = status() == DockingStatus::kUndocking;
+      enter(Phase::kFailed, is_leaving ? "Undocking failed: timeout." : "Docking failed: timeout.");
+    }
   }
   if (status() == DockingStatus::kDocking) {
     const double detection_age_s = to_seconds(now - std::max(start_, pose_filter_.last_stamp()));

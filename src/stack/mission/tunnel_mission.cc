@@ -42,7 +42,7 @@ MissionOutput TunnelMission::step(Time now, const MissionInput& input) {
       teleoperate(input, output);
       break;
     case Phase::kUndocking:
-      undock(input);
+      undock(input, output);
       break;
     case Phase::kDriving:
       drive(input, output);
@@ -132,14 +132,20 @@ void TunnelMission::teleoperate(const MissionInput& input, MissionOutput& output
   }
   const bool is_off = now_ - last_teleop_ > from_seconds(settings_.teleop_timeout_s);
   if (!is_off && !(input.teleop && input.teleop->hand_over)) return;
+  if (input.docking == DockingFeedback::kFailed) {
+    ++num_failed_;
+    output.events.push_back(event(EventKind::kDockFailed, "", "Undocking failed.", run_));
+    return finish(output);
+  }
   output.is_map_complete = true;
   output.events.push_back(
       event(EventKind::kMappingCompleted, "", fmt::format("Mapping completed: {} goals saved.", goals_.size())));
   end_run(output);
 }
 
-void TunnelMission::undock(const MissionInput& input) {
-  if (input.docking != DockingFeedback::kDone) return;
+/// Ends the mission if the robot does not get free of the post: it must not turn there.
+void TunnelMission::undock(const MissionInput& input, MissionOutput& output) {
+  if (input.docking == DockingFeedback::kInProgress) return;
   is_docked_ = false;
   enter(Phase::kDriving);
 }

@@ -60,7 +60,7 @@ class TunnelMission final : public Mission {
 
   void wait(const MissionInput& input, MissionOutput& output);
   void teleoperate(const MissionInput& input, MissionOutput& output);
-  void undock(const MissionInput& input);
+  void undock(const MissionInput& input, MissionOutput& output);
   void drive(const MissionInput& input, MissionOutput& output);
   void stand(MissionOutput& output);
   void scan(const MissionInput& input, MissionOutput& output);

@@ -191,6 +191,16 @@ TEST(Docking, UndockingIsStraightBackByTwelveDecimetres) {
   EXPECT_NEAR(plant.T_map_body.y, 0.0, 1e-9);
 }
 
+TEST(Docking, ReportsThatItDidNotGetOffThePostInTime) {
+  Docking docking({});
+  docking.undock(Time{}, {});
+  docking.step(from_seconds(0.0), {});
+  const DockingStep step = docking.step(from_seconds(DockingSettings{}.timeout_s + kPeriod_s), {});  // it has not moved
+  EXPECT_EQ(step.status, DockingStatus::kFailed);
+  EXPECT_EQ(step.text, "Undocking failed: timeout.");
+  EXPECT_EQ(step.command.vx_mps, 0.0);
+}
+
 TEST(Docking, TheStagingPoseLiesStraightBeforeTheDock) {
   DockingSettings settings;
   settings.staging_distance_m = 1.5;

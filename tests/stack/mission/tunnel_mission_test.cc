@@ -167,6 +167,20 @@ TEST(TunnelMission, ARunWithoutDockingBeforeItKeepsThePose) {
   EXPECT_THAT(with_operator.relocalizations, ElementsAre(Relocalization::kNone));
 }
 
+TEST(TunnelMission, AFailedUndockingEndsTheMission) {
+  Robot robot(TunnelMission({.num_runs = 2}, two_goals(), false));
+  robot.docking = DockingFeedback::kInProgress;
+  robot.run(10.0);
+  EXPECT_EQ(robot.output.task.motion, Motion::kUndock);
+  robot.docking = DockingFeedback::kFailed;
+  robot.run(1.0);
+  EXPECT_TRUE(robot.tour().is_over());
+  EXPECT_EQ(robot.output.task.motion, Motion::kStand);
+  ASSERT_EQ(robot.count(EventKind::kDockFailed), 1);
+  EXPECT_EQ(robot.events[robot.events.size() - 2].text, "Undocking failed.");
+  EXPECT_EQ(robot.events.back().kind, EventKind::kMissionFailed);
+}
+
 TEST(TunnelMission, LostItStandsAndGoesOnOnceItKnows) {
   Robot robot(TunnelMission({.num_runs = 1, .start_docked = false, .dock_after_run = false}, two_goals(), false));
   robot.navigation = NavigationFeedback::kDriving;
