@@ -39,7 +39,7 @@ std::unique_ptr<Localizer> make_localizer(const StackSettings& settings, const R
   const auto refuse = [&](const char* why) { throw InputError(fmt::format("stack.localizer = {}: {}", method, why)); };
   const std::optional<Pose3> T_body_uwb = antenna_of(robot);
   const auto make_on_map = [settings = settings.localization, anchors = site_in_map.anchors,
-                            height_m = start.height_above_ground_m, T_body_uwb,
+                            height_m = robot.body_height_m(), T_body_uwb,
                             covariance = map_covariance(settings.registration),
                             seed](OccupancyGrid map) -> std::unique_ptr<Localizer> {
     return std::make_unique<KnownMapLocalizer>(settings, std::move(map), anchors, height_m,

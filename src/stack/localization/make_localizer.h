@@ -18,7 +18,6 @@ struct LocalizerStart {
   std::optional<SiteRegistration> map_registration = {};  ///< of the given map, if it has been estimated
   bool has_mapping_drive = false;                         ///< true: the mission begins with a drive that makes the map
   BoostedStumps neighbor_model = {};                      ///< classifier of submap pairs, for SLAM methods that need it
-  double height_above_ground_m = 0.0;                     ///< height of the body's origin while the robot stands
 };
 
 /// Makes the localizer named by `settings.localizer`. "automatic" selects monte_carlo with a given map,

@@ -48,7 +48,7 @@ Eigen::Matrix3d PosePipeline::surveyed_covariance() {
 }
 
 PosePipeline::PosePipeline(const StackSettings& settings, const RobotDescription& robot, const Route& site_in_map,
-                           LocalizerStart start, std::uint64_t seed, const SiteFrame& site)
+                           const LocalizerStart& start, std::uint64_t seed, const SiteFrame& site)
     : settle_(from_seconds(settings.odometry_settling_time_s)),
       odometry_(make_odometry_source(settings, robot)),
       leveler_(robot.T_body("lidar"), settings.scan_leveling),
@@ -62,7 +62,6 @@ PosePipeline::PosePipeline(const StackSettings& settings, const RobotDescription
       uwb_calibration_(uwb_calibration(settings.uwb_filter)),
       line_of_sight_(settings.line_of_sight),
       calibration_period_(from_seconds(settings.calibration.period_s)) {
-  start.height_above_ground_m = odometry_->height_above_ground_m();
   localizer_ = make_localizer(settings, robot, site_in_map, start, seed);
   if (robot.T_body_sensor.contains("uwb"))
     range_pose_.emplace(settings.uwb_filter, site_in_map.anchors, robot.T_body("uwb"));

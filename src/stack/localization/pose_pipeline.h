@@ -41,10 +41,9 @@ class PosePipeline {
   /// Returns the covariance of a surveyed pose at which the robot has been placed.
   static Eigen::Matrix3d surveyed_covariance();
 
-  /// `start.height_above_ground_m` is taken from the odometry source. Throws InputError when settings, robot and map
-  /// are inconsistent.
+  /// Throws InputError when settings, robot and map are inconsistent.
   PosePipeline(const StackSettings& settings, const RobotDescription& robot, const Route& site_in_map,
-               LocalizerStart start, std::uint64_t seed, const SiteFrame& site = {});
+               const LocalizerStart& start, std::uint64_t seed, const SiteFrame& site = {});
 
   /// Processes a sensor message other than a scan; `level` and `localize` process scans.
   void add(const SensorMessage& message, StackOutput& output);

@@ -38,5 +38,50 @@ TEST(MakeLocalizer, PublishedCovarianceContainsTheDeformationOfTheMapWithAndWith
   }
 }
 
+/// Confidence after ranges to an anchor above a quadruped, whose likelihood is 0 at an error of half the height of the
+/// body. They are exact for a radio with the given bias.
+LocalizationConfidence confidence_of_ranges(const LocalizerStart& start, const UwbCalibration& radio) {
+  StackSettings settings;
+  settings.localization.ranges = {.range_std_m = 0.03, .nlos_probability = 0.0, .outlier_probability = 1e-6};
+  settings.uwb_filter.bias_distance_m = radio.distance_m;
+  settings.uwb_filter.bias_m = radio.bias_m;
+  RobotDescription robot = test::make_quadruped();
+  const Pose3 T_body_uwb{{0.1, 0.0, 0.1}, Eigen::Quaterniond::Identity()};
+  robot.T_body_sensor["uwb"] = T_body_uwb;
+  Route site;
+  site.anchors = {{.number = 4, .p_m = {1.0, 0.5, 3.0}}};
+  const auto localizer = make_localizer(settings, robot, site, start, 1);
+  localizer->set_initial_pose({}, Eigen::Vector3d(1e-4, 1e-4, 1e-4).asDiagonal());
+  const test::RoomWorld room = small_room();
+  StackOutput output;
+  PoseEstimate pose;
+  for (int i = 0; i <= 60; ++i) {
+    const Pose2 truth{0.02 * i, 0.0, 0.0};
+    const Eigen::Vector3d antenna =
+        uwb_antenna_in_level(Eigen::Quaterniond::Identity(), T_body_uwb, robot.body_height_m());
+    localizer->add({.range = {.stamp = from_seconds(0.1 * i),
+                              .anchor = 4,
+                              .range_m = predict_uwb_range(site.anchors[0], truth, antenna, radio).range_m},
+                    .T_odom_body = {{truth.x, truth.y, 0.0}, Eigen::Quaterniond::Identity()},
+                    .height_m = robot.body_height_m()});
+    LevelScan scan = room.scan(truth, {});
+    scan.stamp = from_seconds(0.1 * i);
+    pose = localizer->update(scan, truth, output);
+    if (i == 20 && localizer->is_mapping()) localizer->finish_map(pose);
+    if (i == 40) localizer->set_anchors(site.anchors);
+  }
+  return all_of<LocalizationConfidence>(output.take_messages()).back();
+}
+
+// The anchors are above the ground, the poses of the particles at the height of the body.
+TEST(MakeLocalizer, ExactRangesOfAQuadrupedConfirmThePoseWithAGivenMapAndAfterMapping) {
+  for (const LocalizerStart& start :
+       {LocalizerStart{.map = map_of_small_room()}, LocalizerStart{.has_mapping_drive = true}}) {
+    const LocalizationConfidence confidence = confidence_of_ranges(start, {});
+    EXPECT_FALSE(confidence.is_lost);
+    EXPECT_GT(confidence.confidence, 0.9);
+  }
+}
+
 }  // namespace
 }  // namespace patrol::stack::make_localizer_test
