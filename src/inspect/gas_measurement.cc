@@ -5,14 +5,13 @@
 namespace patrol::inspect {
 
 void GasMeasurement::add(const GasReading& reading) {
-  if (reading.stamp <= last_stamp_ || !std::isfinite(reading.column_ppm_m)) return;
+  if (reading.stamp <= last_stamp_) return;
+  if (!std::isfinite(reading.column_ppm_m) || !std::isfinite(reading.path_length_m)) return;
   last_stamp_ = reading.stamp;
   ++count_;
   const double deviation = reading.column_ppm_m - mean_ppm_m_;
   mean_ppm_m_ += deviation / count_;
   sum_of_squares_ += deviation * (reading.column_ppm_m - mean_ppm_m_);
-  if (!std::isfinite(reading.path_length_m)) return;
-  ++num_returns_;
   sum_of_lengths_m_ += reading.path_length_m;
 }
 
@@ -21,8 +20,8 @@ double GasMeasurement::standard_error_ppm_m() const {
 }
 
 std::optional<double> GasMeasurement::beam_m() const {
-  if (num_returns_ == 0) return std::nullopt;
-  return sum_of_lengths_m_ / num_returns_;
+  if (count_ == 0) return std::nullopt;
+  return sum_of_lengths_m_ / count_;
 }
 
 }  // namespace patrol::inspect

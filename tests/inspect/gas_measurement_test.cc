@@ -68,6 +68,15 @@ TEST(GasMeasurement, SkipsReadingsThatAreNoNumber) {
   EXPECT_NEAR(gas.mean_ppm_m(), 70.0, kExactTol);
 }
 
+TEST(GasMeasurement, ReadingsWithoutAReturnDoNotCount) {
+  GasMeasurement gas;
+  for (int i = 0; i < 8; ++i) gas.add(reading(i, i % 2 == 0 ? 300.0 : 0.0, i % 2 == 0 ? 5.0 : kInf));
+  gas.add(reading(8, 0.0, std::nan("")));
+  EXPECT_EQ(gas.count(), 4);
+  EXPECT_NEAR(gas.mean_ppm_m(), 300.0, kExactTol);
+  EXPECT_EQ(gas.standard_error_ppm_m(), 0.0);
+}
+
 TEST(GasMeasurement, BeamLengthIsTheMeanOverEchoes) {
   GasMeasurement gas;
   EXPECT_FALSE(gas.beam_m());

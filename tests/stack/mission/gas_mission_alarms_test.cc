@@ -1,3 +1,5 @@
+#include <limits>
+
 #include "stack/mission/gas_mission.h"
 #include "tests/stack/mission/gas_mission_parts.h"
 
@@ -157,6 +159,21 @@ TEST(GasMission, RefusesAnEmptyRouteAndSettingsThatBreakTheirRule) {
   settings.min_readings = 0;
   EXPECT_THAT([&] { GasRound(settings, make_route(), {}); },
               ::testing::ThrowsMessage<InputError>(HasSubstr("gas_mission.min_readings = 0")));
+}
+
+TEST(GasMission, ReadingsWithoutAReturnAreNoReadings) {
+  GasRound mission(make_settings(), make_route(), {});
+  MissionOutput output;
+  for (int tick = 10; tick < 60; ++tick) {
+    const Time now = from_seconds(kPeriod_s * tick);
+    const GasReading dark{.stamp = now, .path_length_m = std::numeric_limits<double>::infinity()};
+    output = mission.step(now, {}, tick < 20 ? NavigationFeedback::kDriving : NavigationFeedback::kArrived, dark);
+    for (const Event& event : output.events) EXPECT_NE(event.kind, EventKind::kGasMeasured);
+    if (tick > 20 && !output.events.empty()) break;
+  }
+  ASSERT_FALSE(output.events.empty());
+  EXPECT_EQ(output.events[0].kind, EventKind::kStationFailed);
+  EXPECT_EQ(output.events[0].text, "Too few methane readings: 0 at first, at least 5 required.");
 }
 
 }  // namespace
