@@ -1,5 +1,6 @@
 #include "stack/localization/odometry_source.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -90,11 +91,20 @@ class TrackedOdometrySource final : public DifferentialOdometrySource {
   }
 };
 
+/// Returns the encoder reading in a message; none for another message, and for a reading that is not of all joints of
+/// the robot or not finite.
+const JointState* usable_joints(const SensorMessage& message, const RobotDescription& robot) {
+  const auto* joints = std::get_if<JointState>(&message);
+  if (!joints || joints->position_rad.size() != robot.joint_names.size()) return nullptr;
+  return std::ranges::all_of(joints->position_rad, [](double rad) { return std::isfinite(rad); }) ? joints : nullptr;
+}
+
 /// The wheels of a side, which are not steered, count as one with the mean of their angles.
 class WheeledOdometrySource final : public DifferentialOdometrySource {
  public:
   WheeledOdometrySource(const RobotDescription& robot, const StackSettings& settings)
       : DifferentialOdometrySource(robot, settings.odometry.wheeled),
+        robot_(robot),
         ticks_per_rad_(settings.odometry.wheeled.ticks_per_sprocket_turn / (2.0 * std::numbers::pi)) {
     for (const WheelGeometry& wheel : robot.wheels) {
       if (wheel.drive_joint && !wheel.steering_joint) (wheel.is_left() ? left_ : right_).push_back(wheel);
@@ -108,7 +118,7 @@ class WheeledOdometrySource final : public DifferentialOdometrySource {
 
  private:
   std::optional<localize::DriveTicks> ticks_of(const SensorMessage& message) const override {
-    const auto* joints = std::get_if<JointState>(&message);
+    const JointState* joints = usable_joints(message, robot_);
     if (!joints) return std::nullopt;
     return TrackTicks{.stamp = joints->stamp, .left = ticks(left_, *joints), .right = ticks(right_, *joints)};
   }
@@ -118,6 +128,7 @@ class WheeledOdometrySource final : public DifferentialOdometrySource {
     return std::llround(angle_rad / static_cast<double>(side.size()) * ticks_per_rad_);
   }
 
+  RobotDescription robot_;
   double ticks_per_rad_;
   std::vector<WheelGeometry> left_, right_;
 };
@@ -135,7 +146,7 @@ class MecanumOdometrySource final : public DifferentialOdometrySource {
 
  private:
   std::optional<localize::DriveTicks> ticks_of(const SensorMessage& message) const override {
-    const auto* joints = std::get_if<JointState>(&message);
+    const JointState* joints = usable_joints(message, robot_);
     if (!joints) return std::nullopt;
     const WheelMotion moved = mecanum_motion(robot_, joints->position_rad);
     const double turned_m = half_gauge_m_ * moved.velocity.z();
