@@ -21,13 +21,13 @@ void Stack::serialize_state(StateArchive& archive) {
 
 void GasMission::serialize_state(StateArchive& archive) {
   archive.section("gas mission");
-  archive(route_, phase_, current_, num_failed_, phase_start_, now_, T_map_body_);
+  archive(route_, phase_, current_, num_failed_, phase_start_, localization_, now_, T_map_body_);
 }
 
 void TunnelMission::serialize_state(StateArchive& archive) {
   archive.section("tunnel mission");
   archive(goals_, saved_, has_map_, is_docked_, phase_, first_step_, phase_start_, last_teleop_, run_, goal_,
-          num_soundings_, num_failed_, lost_since_, now_, T_map_body_);
+          num_soundings_, num_failed_, localization_, now_, T_map_body_);
 }
 
 void GasInstrument::serialize_state(StateArchive& archive) { archive(order_, newest_, measurement_); }

@@ -22,7 +22,10 @@ GasRules gas_rules(const GasMissionSettings& settings) {
 }
 
 GasMission::GasMission(const GasMissionSettings& settings, Route route_in_map, std::string order_text)
-    : settings_(settings), route_(std::move(route_in_map)), order_text_(std::move(order_text)) {
+    : settings_(settings),
+      route_(std::move(route_in_map)),
+      order_text_(std::move(order_text)),
+      localization_(settings.relocalization_timeout_s) {
   validate(settings, "gas_mission");
   if (route_.stations.empty()) throw InputError("route: has no stations: must have at least one");
 }
@@ -31,6 +34,7 @@ MissionOutput GasMission::step(Time now, const MissionInput& input) {
   now_ = now;
   T_map_body_ = input.pose.T_map_body;
   MissionOutput output;
+  if (monitor_localization(input, output)) return output;
   switch (phase_) {
     case Phase::kWaiting:
       wait(input, output);
@@ -83,6 +87,21 @@ Event GasMission::abort(Time now, EventKind kind, const std::string& text) {
   return event(kind, current_ < route_.stations.size() ? station().name : "", text);
 }
 
+/// Returns whether the robot stands still because localization is lost.
+bool GasMission::monitor_localization(const MissionInput& input, MissionOutput& output) {
+  const bool needs_pose = phase_ == Phase::kDriving || phase_ == Phase::kMeasuring;
+  const auto status = localization_.step(now_, input.is_lost && needs_pose, T_map_body_, output.events);
+  if (status == LocalizationMonitor::Status::kUsable) return false;
+  if (status == LocalizationMonitor::Status::kFailed) {
+    num_failed_ += static_cast<int>(route_.stations.size() - current_);
+    finish(output);
+  } else {
+    phase_ = Phase::kDriving;
+    phase_start_ = now_;
+  }
+  return true;
+}
+
 void GasMission::wait(const MissionInput& input, MissionOutput& output) {
   if (now_ < from_seconds(settings_.init_wait_s) || input.awaits_first_scan) return;
   std::vector<std::string> names;
@@ -129,6 +148,10 @@ void GasMission::next_station(MissionOutput& output) {
     phase_ = Phase::kDriving;
     return;
   }
+  finish(output);
+}
+
+void GasMission::finish(MissionOutput& output) {
   phase_ = Phase::kOver;
   if (num_failed_ == 0) {
     output.events.push_back(event(EventKind::kMissionCompleted, "", "Every station was inspected."));

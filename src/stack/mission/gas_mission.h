@@ -12,6 +12,7 @@
 #include "core/settings.h"
 #include "stack/instruments/gas_instrument.h"
 #include "stack/mission/gas_mission_settings.h"
+#include "stack/mission/localization_monitor.h"
 #include "stack/mission/mission.h"
 
 namespace patrol::stack {
@@ -24,8 +25,12 @@ GasRules gas_rules(const GasMissionSettings& settings);
 /// At a station of type "inspect" the robot stands and measures methane (gas_instrument.h). A station that cannot be
 /// reached or measured is reported and skipped. Work at a station with a time window waits until the window opens.
 ///
+/// On a given map, the robot stands while localization is lost. A measurement during which it was lost is discarded:
+/// the robot drives to the station again and repeats it.
+///
 /// Events: mission_started (names the stations in order), station_reached, station_late (value: seconds),
-/// station_failed, mission_completed (every station was done), mission_failed.
+/// station_failed, localization_lost, relocalized, localization_failed, mission_completed (every station was done),
+/// mission_failed.
 class GasMission final : public Mission {
  public:
   /// `route_in_map`: route with its stations in order. `order_text`: a sentence for mission_started. Throws InputError
@@ -48,7 +53,9 @@ class GasMission final : public Mission {
   void wait(const MissionInput& input, MissionOutput& output);
   void drive(NavigationFeedback feedback, MissionOutput& output);
   void measure(const InspectionProgress& progress, MissionOutput& output);
+  bool monitor_localization(const MissionInput& input, MissionOutput& output);
   void next_station(MissionOutput& output);
+  void finish(MissionOutput& output);
   Task task() const;
   NavigationGoal goal_at(const Station& station) const;
   Event event(EventKind kind, const std::string& subject, const std::string& text, double value = 0.0) const;
@@ -61,6 +68,7 @@ class GasMission final : public Mission {
   std::size_t current_ = 0;
   int num_failed_ = 0;
   Time phase_start_{};
+  LocalizationMonitor localization_;
   Time now_{};
   Pose2 T_map_body_;
 };

@@ -19,6 +19,7 @@ struct GasMissionSettings {
                                         ///< clean air
   double position_tolerance_m = 0.08;   ///< tolerance at a station; the route's own accuracy applies if tighter
   double yaw_tolerance_rad = 0.06;      ///< maximum heading error of the robot at a station; 3 or more: any heading
+  double relocalization_timeout_s = 30.0;  ///< relocalization timeout; the robot stands still meanwhile
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
@@ -32,6 +33,7 @@ struct GasMissionSettings {
     visit("alarm_column_ppm_m", self.alarm_column_ppm_m, at_least(0.0));
     visit("position_tolerance_m", self.position_tolerance_m, between(0.005, 5.0));
     visit("yaw_tolerance_rad", self.yaw_tolerance_rad, between(0.005, 3.2));
+    visit("relocalization_timeout_s", self.relocalization_timeout_s, between(1.0, 600.0));
   }
 };
 

@@ -22,7 +22,8 @@ TunnelMission::TunnelMission(const TunnelMissionSettings& settings, std::vector<
       goals_(std::move(goals)),
       has_teleop_(has_teleop),
       has_map_(has_map),
-      is_docked_(settings.start_docked && !settings.start_at_survey) {
+      is_docked_(settings.start_docked && !settings.start_at_survey),
+      localization_(settings.relocalization_timeout_s) {
   validate(settings, "tunnel_mission");
   for (std::size_t i = 0; i < settings.goal_types.size(); ++i) settings.goal_type(i);
   if (goals_.empty() && !has_teleop) throw InputError("tunnel_mission: requires goals or teleoperation to save them");
@@ -92,23 +93,12 @@ Task TunnelMission::task() const {
 /// Returns whether the robot stands still because localization is lost.
 bool TunnelMission::monitor_localization(const MissionInput& input, MissionOutput& output) {
   const bool needs_pose = phase_ == Phase::kDriving || phase_ == Phase::kStanding || phase_ == Phase::kDocking;
-  if (!input.is_lost || !needs_pose) {
-    if (lost_since_)
-      output.events.push_back(event(EventKind::kRelocalized, "", "Relocalized.", to_seconds(now_ - *lost_since_)));
-    lost_since_.reset();
-    return false;
-  }
-  if (!lost_since_) {
-    lost_since_ = now_;
-    output.events.push_back(event(EventKind::kLocalizationLost, "", "Localization lost: robot stopped, relocalizing."));
-  } else if (now_ - *lost_since_ > from_seconds(settings_.relocalization_timeout_s)) {
-    output.events.push_back(
-        event(EventKind::kLocalizationFailed, "",
-              fmt::format("Relocalization failed after {:.0f} s.", settings_.relocalization_timeout_s)));
+  const auto status = localization_.step(now_, input.is_lost && needs_pose, T_map_body_, output.events);
+  if (status == LocalizationMonitor::Status::kFailed) {
     ++num_failed_;
     finish(output);
   }
-  return true;
+  return status != LocalizationMonitor::Status::kUsable;
 }
 
 void TunnelMission::wait(const MissionInput& input, MissionOutput& output) {
@@ -132,11 +122,6 @@ void TunnelMission::teleoperate(const MissionInput& input, MissionOutput& output
   }
   const bool is_off = now_ - last_teleop_ > from_seconds(settings_.teleop_timeout_s);
   if (!is_off && !(input.teleop && input.teleop->hand_over)) return;
-  if (input.docking == DockingFeedback::kFailed) {
-    ++num_failed_;
-    output.events.push_back(event(EventKind::kDockFailed, "", "Undocking failed.", run_));
-    return finish(output);
-  }
   output.is_map_complete = true;
   output.events.push_back(
       event(EventKind::kMappingCompleted, "", fmt::format("Mapping completed: {} goals saved.", goals_.size())));
@@ -147,6 +132,11 @@ void TunnelMission::teleoperate(const MissionInput& input, MissionOutput& output
 void TunnelMission::undock(const MissionInput& input, MissionOutput& output) {
   if (input.docking == DockingFeedback::kInProgress) return;
   is_docked_ = false;
+  if (input.docking == DockingFeedback::kFailed) {
+    ++num_failed_;
+    output.events.push_back(event(EventKind::kDockFailed, "", "Undocking failed.", run_));
+    return finish(output);
+  }
   enter(Phase::kDriving);
 }
 
@@ -226,11 +216,11 @@ void TunnelMission::start_run(MissionOutput& output) {
   goal_ = 0;
   output.relocalization = relocalization();
   output.events.push_back(event(EventKind::kNavigationStarted, fmt::format("navigation_{}", run_),
-/// A robot that is not docked keeps its pose: that of the dock would be wrong.
                                 fmt::format("Run {} of {}: {} goals.", run_, settings_.num_runs, goals_.size()), run_));
   enter(is_docked_ ? Phase::kUndocking : Phase::kDriving);
 }
 
+/// A robot that is not docked keeps its pose: that of the dock would be wrong.
 Relocalization TunnelMission::relocalization() const {
   if (settings_.start_at_survey) return Relocalization::kNone;
   if (!settings_.start_docked) return Relocalization::kAnywhere;

@@ -9,6 +9,7 @@
 #include "core/route.h"
 #include "core/sensors/registry.h"
 #include "core/settings.h"
+#include "stack/mission/localization_monitor.h"
 #include "stack/mission/mission.h"
 #include "stack/mission/tunnel_mission_settings.h"
 
@@ -93,7 +94,7 @@ class TunnelMission final : public Mission {
   std::size_t goal_ = 0;
   int num_soundings_ = 0;
   int num_failed_ = 0;
-  std::optional<Time> lost_since_;
+  LocalizationMonitor localization_;
   Time now_{};
   Pose2 T_map_body_;
 };

@@ -113,6 +113,46 @@ TEST(GasMission, HoldsItsPlaceWhileItMeasures) {
   EXPECT_EQ(measuring.task.goal->T_map_body.vector(), Eigen::Vector3d(3.0, 0.0, 0.0));
 }
 
+// Lost on the way to the first station for five seconds, and then while it is measured.
+TEST(GasMission, StandsWhileLostAndMeasuresAgain) {
+  GasMission mission(make_settings(), make_route());
+  std::vector<EventKind> kinds;
+  const auto step_at = [&](double time_s, bool is_lost, NavigationFeedback navigation) {
+    MissionOutput output =
+        mission.step(from_seconds(time_s), {.pose = {}, .is_lost = is_lost, .navigation = navigation});
+    for (const Event& event : output.events) kinds.push_back(event.kind);
+    return output.task;
+  };
+  EXPECT_FALSE(step_at(0.5, true, NavigationFeedback::kDriving).goal);  // it waits and needs no pose
+  EXPECT_TRUE(kinds.empty());
+  EXPECT_TRUE(step_at(1.0, false, NavigationFeedback::kDriving).goal);
+  EXPECT_EQ(step_at(2.0, true, NavigationFeedback::kDriving).motion, Motion::kStand);
+  EXPECT_FALSE(step_at(7.0, true, NavigationFeedback::kArrived).goal);
+  EXPECT_EQ(step_at(7.1, false, NavigationFeedback::kDriving).motion, Motion::kNavigate);
+  EXPECT_EQ(step_at(8.0, false, NavigationFeedback::kArrived).motion, Motion::kNavigate);
+  EXPECT_TRUE(step_at(8.1, false, NavigationFeedback::kArrived).inspection);
+  EXPECT_FALSE(step_at(8.2, true, NavigationFeedback::kArrived).inspection);
+  EXPECT_FALSE(step_at(9.0, false, NavigationFeedback::kDriving).inspection);
+  EXPECT_EQ(step_at(9.1, false, NavigationFeedback::kArrived).inspection->not_before, from_seconds(9.1));
+  EXPECT_THAT(kinds, ElementsAre(EventKind::kMissionStarted, EventKind::kLocalizationLost, EventKind::kRelocalized,
+                                 EventKind::kStationReached, EventKind::kLocalizationLost, EventKind::kRelocalized,
+                                 EventKind::kStationReached));
+}
+
+TEST(GasMission, LostForLongerThanTheTimeoutFails) {
+  GasMission mission(make_settings(), make_route());
+  mission.step(from_seconds(1.0), {});
+  const MissionInput lost{.pose = {}, .is_lost = true};
+  mission.step(from_seconds(2.0), lost);
+  mission.step(from_seconds(32.0), lost);
+  EXPECT_FALSE(mission.is_over());
+  const MissionOutput output = mission.step(from_seconds(32.1), lost);
+  EXPECT_TRUE(mission.is_over());
+  ASSERT_EQ(output.events.size(), 2U);
+  EXPECT_EQ(output.events[0].kind, EventKind::kLocalizationFailed);
+  EXPECT_EQ(output.events[1].text, "3 of 3 stations were skipped.");
+}
+
 // 150 and 250 in turn: mean 200 + m, the standard error of 11 readings is about 100 / 2 / sqrt(11) = 16: an
 // alarm needs a mean of 232.
 TEST(GasMission, AlarmsOnlyTwoStandardErrorsBeyondTheThreshold) {
