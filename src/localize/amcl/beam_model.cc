@@ -16,14 +16,24 @@ struct PolarBeam {
   double angle_rad, range_m;  ///< from the lidar; +Inf: no return
 };
 
-std::vector<PolarBeam> polar_beams(const LevelScan& scan, int max_beams) {
-  std::vector<PolarBeam> beams;
-  const std::size_t count = std::min(scan.beams.size(), static_cast<std::size_t>(max_beams));
-  for (std::size_t i = 0; i < count; ++i) {
-    const LevelScan::Beam& beam = scan.beams[i * scan.beams.size() / count];
+/// Selects at most `max_beams` beams, spread uniformly over the scan. A beam without a hit is used only if it is free
+/// up to the maximum range: a shorter one may end where it leaves the height band, and determines no range.
+std::vector<PolarBeam> polar_beams(const LevelScan& scan, const BeamModelSettings& settings) {
+  std::vector<Eigen::Vector2d> rays;
+  std::vector<bool> is_hit;
+  for (const LevelScan::Beam& beam : scan.beams) {
     const Eigen::Vector2d ray = beam.end_m.cast<double>() - scan.origin_m;
-    if (!ray.allFinite()) continue;
-    beams.push_back({std::atan2(ray.y(), ray.x()), beam.is_hit ? ray.norm() : std::numeric_limits<double>::infinity()});
+    if (!ray.allFinite() || (!beam.is_hit && ray.norm() < settings.max_range_m)) continue;
+    rays.push_back(ray);
+    is_hit.push_back(beam.is_hit);
+  }
+  std::vector<PolarBeam> beams;
+  const std::size_t count = std::min(rays.size(), static_cast<std::size_t>(settings.max_beams));
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t from = i * rays.size() / count;
+    const Eigen::Vector2d& ray = rays[from];
+    beams.push_back(
+        {std::atan2(ray.y(), ray.x()), is_hit[from] ? ray.norm() : std::numeric_limits<double>::infinity()});
   }
   return beams;
 }
@@ -54,7 +64,7 @@ BeamModel::BeamModel(const BeamModelSettings& settings, const OccupancyGrid& map
     : settings_(settings), distance_m_(distance_to_occupied(map, kFieldCap_m)) {}
 
 ScanLikelihoods BeamModel::evaluate(const LevelScan& scan, const std::vector<Pose2>& T_map_body) const {
-  const std::vector<PolarBeam> beams = polar_beams(scan, settings_.max_beams);
+  const std::vector<PolarBeam> beams = polar_beams(scan, settings_);
   const double best = beam_log_likelihood(1.0, 1.0, settings_);
   ScanLikelihoods result{.mean_log = std::vector<double>(T_map_body.size(), 0.0),
                          .num_beams = static_cast<int>(beams.size())};
@@ -64,8 +74,8 @@ ScanLikelihoods BeamModel::evaluate(const LevelScan& scan, const std::vector<Pos
     double sum = 0.0;
     for (const PolarBeam& beam : beams) {
       const double expected_m = expected_range_m(origin, T_map_body[i].yaw + beam.angle_rad);
-      const double nothing = std::isinf(beam.range_m) ? 0.0 : best;
-      sum += std::min(0.0, beam_log_likelihood(beam.range_m, expected_m, settings_) - nothing);
+      const double max_log = beam.range_m < settings_.max_range_m ? best : 0.0;  // a density, or a probability
+      sum += std::min(0.0, beam_log_likelihood(beam.range_m, expected_m, settings_) - max_log);
     }
     result.mean_log[i] = sum / static_cast<double>(beams.size());
   }

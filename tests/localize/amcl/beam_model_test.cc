@@ -79,5 +79,38 @@ TEST(BeamModel, ThePoseThatTheScanWasTakenFromFitsBest) {
   for (const std::size_t other : {1U, 2U, 3U}) EXPECT_LT(fits.mean_log[other], fits.mean_log[0] - 0.3);
 }
 
+// A beam of 6 m that is free, but leaves the height band there, is consistent with the wall 7 m ahead.
+TEST(BeamModel, BeamsThatEndFreeBeforeTheMaximumRangeAreNotUsed) {
+  const BeamModel model({}, make_room());
+  const auto add_beam = [](LevelScan& scan, double range_m, bool is_hit) {
+    scan.beams.push_back({Eigen::Vector2d(range_m, 0.0).cast<float>(), is_hit});
+  };
+  const std::vector<Pose2> poses = {{3.0, 2.0, 0.0}, {3.2, 2.0, 0.0}};
+  LevelScan hit, with_free;
+  for (int i = 0; i < 3; ++i) {
+    add_beam(hit, 6.95, true);
+    add_beam(with_free, 6.95, true);
+    add_beam(with_free, 6.0, false);
+  }
+  const ScanLikelihoods expected = model.evaluate(hit, poses), actual = model.evaluate(with_free, poses);
+  EXPECT_EQ(actual.num_beams, 3);
+  EXPECT_EQ(actual.mean_log, expected.mean_log);
+}
+
+// The room is 10 m long: beyond 8 m it has no surface for a beam of at most 5 m.
+TEST(BeamModel, AHitBeyondTheMaximumRangeCountsAsNoReturn) {
+  BeamModelSettings settings;
+  settings.max_range_m = 5.0;
+  const BeamModel model(settings, make_room());
+  LevelScan hit, nothing;
+  hit.beams.push_back({{6.95F, 0.0F}, true});
+  nothing.beams.push_back({{6.95F, 0.0F}, false});
+  for (const double x : {3.0, 8.0}) {
+    const double by_hit = model.evaluate(hit, {{x, 2.0, 0.0}}).mean_log[0];
+    EXPECT_EQ(by_hit, model.evaluate(nothing, {{x, 2.0, 0.0}}).mean_log[0]);
+    EXPECT_EQ(by_hit, beam_log_likelihood(kNoEcho, x == 3.0 ? 5.0 : 1.95, settings));
+  }
+}
+
 }  // namespace
 }  // namespace patrol::localize::amcl_beam_model_test
