@@ -67,6 +67,7 @@ void TimeOffsetEstimator::detect_step(const LinearMeasurement& measurement) {
     information += term.information;
     information_offset += term.information_offset;
   }
+  if (information <= 0.0) return;  // the velocity has not changed
   const TimeOffset now = at(measurement.stamp);
   const double difference_s = std::abs(information_offset / information - now.value_s);
   const double std_s = std::sqrt(kRecentVariance / information + now.std_s * now.std_s);

@@ -79,5 +79,18 @@ TEST(TimeOffsetEstimator, DetectsAStepAndStartsAgain) {
   EXPECT_NEAR(estimator.at(from_seconds(90.0)).value_s, -0.02, 0.002);
 }
 
+TEST(TimeOffsetEstimator, AStandingRobotChangesNothing) {
+  TimeOffsetEstimatorSettings settings;
+  TimeOffsetEstimator estimator(settings);
+  for (int i = 0; i < 40; ++i) {
+    estimator.add(
+        {.sweep = {.stamp = from_seconds(0.1 * i), .duration_s = 0.1, .T_odom_begin = {}, .T_odom_end = {}},
+         .match = {.map = 1, .T_local_level = {}, .covariance = Eigen::Vector3d(1e-6, 1e-6, 1e-7).asDiagonal()}});
+  }
+  EXPECT_EQ(estimator.num_steps(), 0);
+  EXPECT_EQ(estimator.at(from_seconds(4.0)).value_s, 0.0);
+  EXPECT_NEAR(estimator.at(from_seconds(4.0)).noise_std_s, settings.prior_std_s, 0.01 * settings.prior_std_s);
+}
+
 }  // namespace
 }  // namespace patrol::localize::time_offset_estimator_test
